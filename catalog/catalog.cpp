@@ -1,0 +1,68 @@
+#include <algorithm>
+
+#include "lacon/catalog/cells.hpp"
+#include "lacon/catalog/contact.hpp"
+#include "lacon/catalog/messages.hpp"
+
+namespace lacon::catalog {
+
+std::optional<CellType> find_cell(std::string_view name) {
+  for (const CellRow& row : cells())
+    if (row.name == name) return row.type;
+  return std::nullopt;
+}
+
+const PatchRow* find_patch(int kind) {
+  for (const PatchRow& row : patches())
+    if (row.kind == kind) return &row;
+  return nullptr;
+}
+
+const SlaveRow* find_slave(int kind, int rank) {
+  for (const SlaveRow& row : slaves())
+    if (row.kind == kind && row.rank == rank) return &row;
+  return nullptr;
+}
+
+}  // namespace lacon::catalog
+
+namespace lacon {
+namespace {
+
+void ignore(const Message&) {}
+MessageSink sink = ignore;
+
+/// `text` with every {name} replaced by its value.
+std::string fill(std::string_view text, std::string_view id, std::initializer_list<MessageValue> values) {
+  std::string filled;
+  for (std::size_t at = 0; at < text.size();) {
+    const std::size_t end = text[at] == '{' ? text.find('}', at) : std::string_view::npos;
+    if (end == std::string_view::npos) {
+      filled += text[at++];
+      continue;
+    }
+    const std::string_view name = text.substr(at + 1, end - at - 1);
+    const auto value = std::find_if(values.begin(), values.end(), [&](const MessageValue& v) { return v.first == name; });
+    if (value == values.end())
+      throw std::logic_error("message " + std::string(id) + " misses a value for {" + std::string(name) + "}");
+    filled += value->second;
+    at = end + 1;
+  }
+  return filled;
+}
+
+}  // namespace
+
+Message message(std::string_view id, std::initializer_list<MessageValue> values) {
+  for (const catalog::MessageRow& row : catalog::messages())
+    if (row.id == id) return {row.severity, std::string(id), fill(row.text, id, values), fill(row.advice, id, values)};
+  throw std::logic_error("message " + std::string(id) + " is not in the catalogue");
+}
+
+void fail(std::string_view id, std::initializer_list<MessageValue> values) { throw Error(message(id, values)); }
+
+void set_message_sink(MessageSink new_sink) { sink = new_sink ? new_sink : ignore; }
+
+void inform(std::string_view id, std::initializer_list<MessageValue> values) { sink(message(id, values)); }
+
+}  // namespace lacon

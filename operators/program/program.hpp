@@ -1,0 +1,34 @@
+#pragma once
+// The frame of every operator's main(): command line, order, messages, timings, exit status.
+#include <functional>
+#include <string>
+#include <string_view>
+
+#include "lacon/structures/base.hpp"
+#include "lacon/structures/order.hpp"
+
+namespace lacon {
+
+enum ExitStatus { done = 0, user_error = 2, solution_failed = 3, internal_error = 4 };
+
+/// What an operator does with its order.
+using Operator = std::function<void(const Order&, const Base&)>;
+
+/// Run `work` on the order that the command line names. Prints messages on stderr, writes --status FILE, never throws.
+/// @return the exit status of DESIGN.md, "operators/"
+int run_program(int argc, char** argv, std::string_view name, std::string_view what_it_does, const Operator& work);
+
+/// The time from construction to destruction goes to the phase `name` of the operator's timings.
+class Phase {
+ public:
+  explicit Phase(std::string name);
+  ~Phase();
+  Phase(const Phase&) = delete;
+  Phase& operator=(const Phase&) = delete;
+
+ private:
+  std::string name_;
+  double start_;
+};
+
+}  // namespace lacon

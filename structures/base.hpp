@@ -1,0 +1,56 @@
+#pragma once
+// A base: the folder of concepts that operators read and write.
+#include <filesystem>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "lacon/structures/concepts.hpp"
+#include "lacon/structures/field.hpp"
+#include "lacon/structures/mesh.hpp"
+#include "lacon/structures/order.hpp"
+
+namespace lacon {
+
+/// Reads concepts by id, and writes the result of one order. Readers throw BASE_1 (no such concept), BASE_2 (unreadable) and
+/// BASE_4 (another type). A writer leaves nothing half-written: it writes `<file>.partial` and renames.
+class Base {
+ public:
+  explicit Base(const Order& order) : folder_(order.base), order_(&order) {}
+
+  const std::filesystem::path& folder() const { return folder_; }
+  std::filesystem::path file(std::string_view id) const;  ///< of a concept; of a result, its index
+  std::string type(std::string_view id) const;            ///< "mesh"
+  std::string label(std::string_view id) const;
+
+  Mesh mesh(std::string_view id) const;
+  Model model(std::string_view id) const;
+  Material material(std::string_view id) const;
+  MaterialField material_field(std::string_view id) const;
+  Load load(std::string_view id) const;
+  Contact contact(std::string_view id) const;
+  Function function(std::string_view id) const;
+  std::vector<double> list_of_reals(std::string_view id) const;
+  TimeSteps time_steps(std::string_view id) const;  ///< of a time_steps or a list_of_reals
+  Result result(std::string_view id) const;
+
+  /// The field of a result at an order; throws RESULT_1 where it has none.
+  Field field(const Result& result, std::string_view name, std::int64_t order) const;
+
+  /// Store the concept that the order asks for, under the order's result id.
+  void store(const Mesh& mesh) const;
+  void store(const Model& model) const;
+  void store(const MaterialField& field) const;
+  void store(const Load& load) const;
+  void store(const Contact& contact) const;
+  void store(const Result& result) const;
+
+  /// Store a field file of the order's result and enter it in the index, which store(result) writes last.
+  void add_field(Result& result, Field field) const;
+
+ private:
+  std::filesystem::path folder_;
+  const Order* order_;
+};
+
+}  // namespace lacon

@@ -1,0 +1,116 @@
+#pragma once
+// The concepts between mesh and result, as docs/structures.md lays them out. Plain data; numbers are 0-based.
+#include <cstdint>
+#include <map>
+#include <string>
+#include <string_view>
+#include <variant>
+#include <vector>
+
+#include "lacon/structures/mesh.hpp"
+
+namespace lacon {
+
+struct Model {
+  std::string mesh;
+  std::string phenomenon;
+  int dimension = 3;
+  std::vector<std::string> elements;   ///< names of rows of the element catalogue, "D_PLAN/TRIA3"
+  std::vector<std::int32_t> element;   ///< of each cell: index into elements, -1 for none
+};
+
+/// Factor keyword -> parameter -> value, or the id of a function.
+struct Material {
+  std::map<std::string, std::map<std::string, std::variant<double, std::string>>> laws;
+};
+
+struct MaterialField {
+  std::string mesh;
+  std::string model;                    ///< may be empty
+  std::vector<std::string> materials;   ///< ids
+  std::vector<std::int32_t> material;   ///< of each cell, -1 for none
+};
+
+struct ImposedDof {
+  std::int32_t node;
+  std::string component;  ///< "DX"
+  double value;
+};
+
+struct PressureLoad {
+  std::int32_t cell;
+  double value;  ///< positive towards the body
+};
+
+struct Load {
+  std::string model;
+  std::string kind;  ///< "cine" or "meca"
+  std::vector<ImposedDof> imposed;
+  std::vector<PressureLoad> pressure;
+};
+
+struct ContactZone {
+  std::string slave_group, master_group;
+  std::vector<std::int32_t> slave, master;  ///< cells
+  std::vector<std::int32_t> patches;        ///< of the mesh
+  std::string jacobian;                     ///< INITIAL, ACTUALISE
+  std::string search;                       ///< RAPIDE, ROBUSTE
+  std::string initial_status;               ///< INTERPENETRE, OUI, NON
+  double tolerance = 1e-8;                  ///< RESI_APPA
+};
+
+struct SlaveElement {
+  std::int32_t cell;
+  std::int32_t patch;
+  std::int32_t rank;    ///< place in the patch, 0-based
+  std::string element;  ///< row of catalog/contact.toml
+};
+
+struct Contact {
+  std::string model, mesh;
+  std::string algorithm = "LAC";
+  bool smoothing = false;
+  bool verify_normals = true;
+  double resi_geom = 1e-6;
+  std::vector<ContactZone> zones;
+  std::vector<SlaveElement> slaves;  ///< zone by zone
+};
+
+/// A piecewise function of one parameter.
+struct Function {
+  std::string parameter;             ///< "INST"
+  std::string interpolation[2] = {"LIN", "LIN"};
+  std::string extension_left = "EXCLU", extension_right = "EXCLU";
+  std::vector<double> x, y;          ///< x increasing
+
+  /// Throws FUNCTION_1 where x is outside and the extension is EXCLU; `label` names the function in the message.
+  double operator()(double at, std::string_view label) const;
+};
+
+struct TimeSteps {
+  std::vector<double> values;
+  bool cut = false;         ///< ACTION='DECOUPE'
+  int cut_into = 4;         ///< SUBD_PAS
+  int cut_levels = 3;       ///< SUBD_NIVEAU
+  double smallest = 0;      ///< SUBD_PAS_MINI
+};
+
+struct ResultLoad {
+  std::string load;
+  std::string function;  ///< may be empty
+};
+
+/// The index of a result: which fields it has at which instants.
+struct Result {
+  std::string model, mesh, material_field, contact;  ///< ids, the last may be empty
+  std::vector<ResultLoad> loads;
+  std::string behaviour;  ///< JSON
+  std::vector<std::int64_t> orders;
+  std::vector<double> instants;
+  /// name -> order -> file, relative to the base folder
+  std::map<std::string, std::map<std::int64_t, std::string>> fields;
+  /// name -> one value for each of `orders`
+  std::map<std::string, std::vector<double>> parameters;
+};
+
+}  // namespace lacon

@@ -1,0 +1,64 @@
+#pragma once
+// An order: one command with complete keywords, as docs/structures.md section 4 describes it.
+#include <cstdint>
+#include <filesystem>
+#include <map>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace lacon {
+
+/// The keywords of a command, or of one occurrence of a factor keyword. Getters throw ORDER_2 where a keyword is missing and
+/// ORDER_4 where it is of another type; `path()` names the keyword in messages ("ZONE[1]/GROUP_MA_ESCL").
+class Keywords {
+ public:
+  Keywords() = default;
+  Keywords(nlohmann::json values, std::string prefix) : values_(std::move(values)), prefix_(std::move(prefix)) {}
+
+  bool has(std::string_view name) const { return values_.contains(name); }
+  double real(std::string_view name) const;
+  std::int64_t integer(std::string_view name) const;
+  std::string text(std::string_view name) const;
+  bool yes(std::string_view name) const { return text(name) == "OUI"; }
+  std::vector<double> reals(std::string_view name) const;
+  std::vector<std::int64_t> integers(std::string_view name) const;
+  std::vector<std::string> texts(std::string_view name) const;  ///< empty where the keyword is absent
+  std::string concept_id(std::string_view name) const;
+  std::optional<std::string> optional_concept(std::string_view name) const;
+  std::vector<std::string> concept_ids(std::string_view name) const;
+  /// Every occurrence of a factor keyword; empty where it is absent.
+  std::vector<Keywords> factors(std::string_view name) const;
+
+  std::string path(std::string_view name) const { return prefix_ + std::string(name); }
+  const nlohmann::json& json() const { return values_; }
+
+ private:
+  const nlohmann::json& value(std::string_view name) const;
+
+  nlohmann::json values_ = nlohmann::json::object();
+  std::string prefix_;
+};
+
+struct Order {
+  std::string command;
+  std::filesystem::path base;
+  std::string result_id, result_label;  ///< empty for a command without result
+  bool reuse = false;
+  std::map<int, std::filesystem::path> units;
+  std::vector<std::filesystem::path> plugins;
+  std::string source;  ///< "study.comm:12"
+  Keywords keywords;
+
+  /// File of a unit; throws ORDER_5 where the unit has none.
+  std::filesystem::path unit(std::int64_t number) const;
+};
+
+/// Read and check an order against the keyword catalogue: ORDER_1 to ORDER_4. Used by every operator.
+Order read_order(const std::filesystem::path& file);
+Order parse_order(const nlohmann::json& json, const std::string& file);
+
+}  // namespace lacon
