@@ -1,0 +1,111 @@
+/* The interface between Lacon and its plug-ins: plain C, so that a plug-in may be built by another compiler.
+ *
+ * A plug-in is a folder: a shared library lib<name>.so beside a plugin.toml, which holds catalogue rows of the shape of
+ * catalog/elements/ and so says which kernel serves which element and option. The library has one entry point,
+ * lacon_plugin(), which returns its table of kernels.
+ *
+ * Kernels work on blocks of LACON_LANES elements of one kind. The element is the fastest index of every array, so that a
+ * loop over it vectorises; the last block is filled up by repeating an element. A kernel allocates nothing and throws nothing;
+ * it reports what is wrong with an element in `error`. An output pointer may be NULL: that output is not wanted.
+ */
+#ifndef LACON_ELEMENTS_PLUGIN_H
+#define LACON_ELEMENTS_PLUGIN_H
+
+#include <stdint.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+#define LACON_ABI 1
+#define LACON_LANES 8
+
+/* Values of `error`. */
+enum lacon_element_error {
+  LACON_FINE = 0,
+  LACON_BAD_JACOBIAN = 1,  /* zero, negative or of mixed sign at the integration points */
+  LACON_BAD_PARAMETER = 2, /* a material parameter outside its range */
+  LACON_NOT_FINITE = 3
+};
+
+/* Solid elements: stiffness, internal forces, stresses at displacement u. ndof = n_nodes * dimension, node by node. */
+typedef struct lacon_solid_batch {
+  uint32_t struct_size;
+  int32_t n_blocks;
+  int32_t n_nodes, dimension, n_points, n_stress, n_parameters;
+  const double* shape;        /* (n_points, n_nodes) */
+  const double* gradient;     /* (n_points, n_nodes, dimension), by reference coordinates */
+  const double* weight;       /* (n_points), of the reference cell */
+  const double* coordinates;  /* (n_blocks, n_nodes, dimension, LANES), initial */
+  const double* displacement; /* (n_blocks, n_nodes, dimension, LANES) */
+  const double* parameter;    /* (n_blocks, n_parameters, LANES), in the order of the kernel's `parameters` */
+  double* matrix;             /* (n_blocks, ndof (ndof + 1) / 2, LANES): lower triangle, row by row */
+  double* force;              /* (n_blocks, ndof, LANES) */
+  double* stress;             /* (n_blocks, n_points, n_stress, LANES) */
+  int32_t* error;             /* (n_blocks, LANES) */
+} lacon_solid_batch;
+
+/* Skin elements under a load of one value an element. */
+typedef struct lacon_load_batch {
+  uint32_t struct_size;
+  int32_t n_blocks;
+  int32_t n_nodes, dimension, n_points; /* dimension of the space */
+  const double* shape;                  /* (n_points, n_nodes) */
+  const double* gradient;               /* (n_points, n_nodes, dimension - 1) */
+  const double* weight;                 /* (n_points) */
+  const double* coordinates;            /* (n_blocks, n_nodes, dimension, LANES) */
+  const double* value;                  /* (n_blocks, LANES) */
+  double* force;                        /* (n_blocks, ndof, LANES): external force */
+  int32_t* error;                       /* (n_blocks, LANES) */
+} lacon_load_batch;
+
+/* Contact cells, one for each couple (slave cell, master cell) of one pair of kinds; not in lanes, for the number of points
+ * differs from cell to cell. Signs of DESIGN.md, section 3; formulas of METHOD.md 3.4 and 5.4 (b). */
+typedef struct lacon_contact_batch {
+  uint32_t struct_size;
+  int32_t n_cells;
+  int32_t n_slave_nodes, n_master_nodes, dimension;
+  int32_t current_jacobian;     /* 0: TYPE_JACOBIEN INITIAL, 1: ACTUALISE */
+  const int64_t* offset;        /* (n_cells + 1): points of each cell */
+  const double* weight;         /* (points), in the slave's reference space */
+  const double* slave_shape;    /* (points, n_slave_nodes) */
+  const double* slave_gradient; /* (points, n_slave_nodes, dimension - 1) */
+  const double* master_shape;   /* (points, n_master_nodes) */
+  const double* slave_initial;  /* (n_cells, n_slave_nodes, dimension) */
+  const double* slave;          /* (n_cells, n_slave_nodes, dimension), current */
+  const double* master;         /* (n_cells, n_master_nodes, dimension), current */
+  const double* slave_normal;   /* (n_cells, n_slave_nodes, dimension): nodal normals (LISSAGE), or NULL */
+  double* point_gap;            /* (points): g = (x_m - x) . n_e */
+  double* gap;                  /* (n_cells): G, integral of g with the measure of TYPE_JACOBIEN */
+  double* measure;              /* (n_cells): integral of 1 with the same measure */
+  double* current_measure;      /* (n_cells): integral of 1 with the current measure (COEFSURF) */
+  double* coupling;             /* (n_cells, (n_slave_nodes + n_master_nodes) dimension): C, slave nodes first */
+  int32_t* error;               /* (n_cells) */
+} lacon_contact_batch;
+
+enum lacon_kernel_kind { LACON_SOLID = 1, LACON_LOAD = 2, LACON_CONTACT = 3 };
+
+typedef struct lacon_kernel {
+  const char* name; /* as catalogue rows call it, behind "plug-in/" */
+  int32_t kind;     /* lacon_kernel_kind: says which pointer below is set */
+  void (*solid)(const lacon_solid_batch*);
+  void (*load)(const lacon_load_batch*);
+  void (*contact)(const lacon_contact_batch*);
+  const char* const* parameters; /* solid: material parameters that it takes, "ELAS/E", NULL at the end */
+} lacon_kernel;
+
+typedef struct lacon_plugin_table {
+  uint32_t abi; /* LACON_ABI */
+  uint32_t solid_batch_size, load_batch_size, contact_batch_size; /* sizeof of the structs it was built with */
+  const char* name;
+  int32_t n_kernels;
+  const lacon_kernel* kernels;
+} lacon_plugin_table;
+
+/* The one entry point of a plug-in's library. */
+const lacon_plugin_table* lacon_plugin(void);
+
+#ifdef __cplusplus
+}
+#endif
+#endif
