@@ -102,6 +102,7 @@ struct ResultLoad {
 
 /// The index of a result: which fields it has at which instants.
 struct Result {
+  std::string label;  ///< when it was written
   std::string model, mesh, material_field, contact;  ///< ids, the last may be empty
   std::vector<ResultLoad> loads;
   std::string behaviour;  ///< JSON

@@ -1,11 +1,10 @@
 #pragma once
 // A mesh: nodes, cells of mixed types, groups, and the macro-elements (patches) of its slave skins.
-#include <array>
 #include <cstdint>
-#include <filesystem>
 #include <optional>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "lacon/catalog/cells.hpp"
@@ -82,7 +81,7 @@ std::span<const std::int32_t> nodes_of_group(const Mesh& mesh, std::string_view 
 /// The nodes of these cells, sorted, each once.
 std::vector<std::int32_t> nodes_of_cells(const Mesh& mesh, std::span<const std::int32_t> cells);
 
-/// Read and write the HDF5 layout of docs/structures.md; `attributes` go into the root (see base.hpp).
-Mesh read_mesh(const std::filesystem::path& file);
+/// The one of `names` that is nearest to `name`, for "did you mean"; empty where none is near.
+std::string nearest_name(std::string_view name, std::span<const std::string> names);
 
 }  // namespace lacon

@@ -34,7 +34,7 @@ class Keywords {
   std::vector<Keywords> factors(std::string_view name) const;
 
   std::string path(std::string_view name) const { return prefix_ + std::string(name); }
-  const nlohmann::json& json() const { return values_; }
+  const nlohmann::json& values() const { return values_; }
 
  private:
   const nlohmann::json& value(std::string_view name) const;

@@ -1,0 +1,93 @@
+#include "lacon/operators/program/program.hpp"
+
+#include <spdlog/sinks/stdout_sinks.h>
+#include <spdlog/spdlog.h>
+
+#include <CLI/CLI.hpp>
+#include <chrono>
+#include <fstream>
+#include <iostream>
+#include <nlohmann/json.hpp>
+#include <vector>
+
+#include "lacon/catalog/messages.hpp"
+
+namespace lacon {
+namespace {
+
+/// What a run has said and where its time went: one operator is one process.
+struct Outcome {
+  std::vector<Message> messages;
+  std::vector<std::pair<std::string, double>> seconds;
+  std::string command, source;
+} outcome;
+
+double now() { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
+
+void print(const Message& message) {
+  std::cout.flush();
+  std::cerr << '<' << message.severity << "> <" << message.id << "> " << message.text << '\n';
+  if (message.severity != 'I') {
+    if (!outcome.command.empty()) std::cerr << "    where: " << outcome.command << ", " << outcome.source << '\n';
+    if (!message.advice.empty()) std::cerr << "    do:    " << message.advice << '\n';
+  }
+  outcome.messages.push_back(message);
+}
+
+void write_status(const std::string& file, int status) {
+  nlohmann::json json{{"status", status}, {"messages", nlohmann::json::array()}, {"seconds", nlohmann::json::object()}};
+  for (const Message& m : outcome.messages)
+    json["messages"].push_back({{"severity", std::string(1, m.severity)}, {"id", m.id}, {"text", m.text}, {"do", m.advice}});
+  for (const auto& [phase, seconds] : outcome.seconds) json["seconds"][phase] = json["seconds"].value(phase, 0.0) + seconds;
+  std::ofstream(file) << json.dump(1) << '\n';
+}
+
+int run(const std::string& file, const Operator& work) {
+  try {
+    const Order order = read_order(file);
+    outcome.command = order.command;
+    outcome.source = order.source;
+    work(order, Base(order));
+    return done;
+  } catch (const Error& error) {
+    print(error.message());
+    return error.message().severity == 'S' ? solution_failed : user_error;
+  } catch (const std::bad_alloc&) {
+    print(message("INTERNAL_1", {{"reason", "the memory is used up"}}));
+  } catch (const std::exception& error) {
+    print(message("INTERNAL_1", {{"reason", error.what()}}));
+  }
+  return internal_error;
+}
+
+}  // namespace
+
+int run_program(int argc, char** argv, std::string_view name, std::string_view what_it_does, const Operator& work) {
+  CLI::App app{std::string(what_it_does), std::string(name)};
+  std::string order, status_file;
+  bool verbose = false;
+  app.add_option("order", order, "JSON order (docs/structures.md, section 4)")->required();
+  app.add_option("--status", status_file, "write the outcome to this JSON file");
+  app.add_flag("-v,--verbose", verbose, "log more on stderr");
+  app.set_version_flag("--version", LACON_VERSION);
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    return app.exit(error) == 0 ? done : user_error;
+  }
+  spdlog::set_default_logger(spdlog::stderr_logger_st("lacon"));
+  spdlog::set_pattern("%v");
+  spdlog::set_level(verbose ? spdlog::level::debug : spdlog::level::warn);
+  set_message_sink(print);
+  const double start = now();
+  const int status = run(order, work);
+  std::cout.flush();
+  outcome.seconds.emplace_back("total", now() - start);
+  if (!status_file.empty()) write_status(status_file, status);
+  return status;
+}
+
+Phase::Phase(std::string name) : name_(std::move(name)), start_(now()) {}
+Phase::~Phase() { outcome.seconds.emplace_back(std::move(name_), now() - start_); }
+
+}  // namespace lacon

@@ -1,0 +1,63 @@
+#include "lacon/structures/field.hpp"
+
+#include <algorithm>
+#include <array>
+#include <stdexcept>
+
+#include "lacon/structures/hdf5.hpp"
+
+namespace lacon {
+namespace {
+constexpr std::array<std::string_view, 4> names{"NOEU", "ELGA", "ELNO", "ELEM"};
+}
+
+std::string_view location_name(Location location) { return names[static_cast<std::size_t>(location)]; }
+
+Location find_location(std::string_view name) {
+  const auto at = std::find(names.begin(), names.end(), name);
+  if (at == names.end()) throw std::logic_error("no location is called " + std::string(name));
+  return static_cast<Location>(at - names.begin());
+}
+
+int Field::component(std::string_view component_name) const {
+  const auto at = std::find(components.begin(), components.end(), component_name);
+  return at == components.end() ? -1 : static_cast<int>(at - components.begin());
+}
+
+Field read_field(const std::filesystem::path& file) {
+  const hdf5::Reader root(file);
+  Field field;
+  field.name = root.text("name");
+  field.quantity = root.text("quantity");
+  field.location = find_location(root.text("location"));
+  field.components = root.attribute_strings("components");
+  field.mesh = root.text("mesh");
+  field.order = root.integer("order");
+  field.instant = root.real("instant");
+  field.support = root.read<std::int32_t>("support");
+  if (root.has("offset")) field.offset = root.read<std::int64_t>("offset");
+  field.values = root.read<double>("values");
+  if (root.has("present")) field.present = root.read<std::uint8_t>("present");
+  return field;
+}
+
+void write_field(const std::filesystem::path& file, const Field& field) {
+  hdf5::write_whole(file, [&](const hdf5::Group& root) {
+    root.set("lacon_type", "field");
+    root.set("format", std::int64_t{1});
+    root.set("name", field.name);
+    root.set("quantity", field.quantity);
+    root.set("location", location_name(field.location));
+    root.set("components", field.components);
+    root.set("mesh", field.mesh);
+    root.set("order", field.order);
+    root.set("instant", field.instant);
+    root.write("support", field.support);
+    if (!field.offset.empty()) root.write("offset", field.offset);
+    const std::vector<hsize_t> shape{field.n_rows(), field.n_components()};
+    root.write("values", field.values, shape);
+    if (!field.present.empty()) root.write("present", field.present, shape);
+  });
+}
+
+}  // namespace lacon

@@ -1,0 +1,336 @@
+#include "lacon/structures/hdf5.hpp"
+
+#include <algorithm>
+#include <cerrno>
+#include <cstring>
+#include <numeric>
+#include <utility>
+
+#include "lacon/catalog/messages.hpp"
+
+namespace lacon::hdf5 {
+namespace {
+
+/// HDF5 prints its own error stack unless told not to; our messages name the file and what was wanted.
+void silence() { H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr); }
+
+std::string zero_ended(std::string_view name) { return std::string(name); }
+
+Handle string_type() {
+  Handle type(H5Tcopy(H5T_C_S1), H5Tclose);
+  H5Tset_size(type, H5T_VARIABLE);
+  H5Tset_cset(type, H5T_CSET_UTF8);
+  return type;
+}
+
+std::size_t count(const std::vector<hsize_t>& shape) {
+  return std::accumulate(shape.begin(), shape.end(), std::size_t{1}, std::multiplies<>());
+}
+
+/// Strings out of `size` items that `read(memory type, buffer)` delivers, of fixed or variable length. Fixed ones lose
+/// trailing blanks and zeros.
+template <class Read>
+bool read_texts(hid_t type, hid_t space, std::size_t size, Read read, std::vector<std::string>& texts) {
+  if (H5Tget_class(type) != H5T_STRING) return false;
+  texts.clear();
+  if (H5Tis_variable_str(type) > 0) {
+    const Handle memory = string_type();
+    H5Tset_cset(memory, H5Tget_cset(type));
+    std::vector<char*> buffer(size, nullptr);
+    if (read(static_cast<hid_t>(memory), static_cast<void*>(buffer.data())) < 0) return false;
+    for (const char* item : buffer) texts.emplace_back(item ? item : "");
+    H5Dvlen_reclaim(memory, space, H5P_DEFAULT, buffer.data());
+    return true;
+  }
+  const std::size_t length = H5Tget_size(type);
+  std::vector<char> buffer(size * length);
+  const Handle memory(H5Tcopy(type), H5Tclose);
+  if (read(static_cast<hid_t>(memory), static_cast<void*>(buffer.data())) < 0) return false;
+  for (std::size_t i = 0; i < size; ++i) {
+    std::string item(buffer.data() + i * length, length);
+    item = item.substr(0, item.find('\0'));
+    item.erase(item.find_last_not_of(' ') + 1);
+    texts.push_back(std::move(item));
+  }
+  return true;
+}
+
+}  // namespace
+
+Handle& Handle::operator=(Handle&& other) noexcept {
+  std::swap(id_, other.id_);
+  std::swap(close_, other.close_);
+  return *this;
+}
+
+Handle::~Handle() {
+  if (id_ >= 0 && close_) close_(id_);
+}
+
+Group::Group(Handle id, std::filesystem::path path, bool writing)
+    : id_(std::move(id)), path_(std::move(path)), writing_(writing) {}
+
+void Group::refuse(std::string_view what) const {
+  fail(writing_ ? "BASE_3" : "BASE_2", {{"file", path_.string()}, {"reason", std::string(what)}});
+}
+
+bool Group::has(std::string_view name) const {
+  // every link on the way must exist: H5Lexists fails on a missing parent
+  for (std::size_t at = name.find('/'); at != std::string_view::npos; at = name.find('/', at + 1))
+    if (H5Lexists(id_, zero_ended(name.substr(0, at)).c_str(), H5P_DEFAULT) <= 0) return false;
+  return H5Lexists(id_, zero_ended(name).c_str(), H5P_DEFAULT) > 0;
+}
+
+std::vector<std::string> Group::children() const {
+  std::vector<std::string> names;
+  const auto collect = [](hid_t, const char* name, const H5L_info_t*, void* list) -> herr_t {
+    static_cast<std::vector<std::string>*>(list)->emplace_back(name);
+    return 0;
+  };
+  if (H5Literate(id_, H5_INDEX_NAME, H5_ITER_INC, nullptr, collect, &names) < 0) refuse("its groups cannot be listed");
+  return names;
+}
+
+bool Group::is_group(std::string_view name) const {
+  H5O_info_t info;
+  return has(name) && H5Oget_info_by_name(id_, zero_ended(name).c_str(), &info, H5P_DEFAULT) >= 0 && info.type == H5O_TYPE_GROUP;
+}
+
+Group Group::open(std::string_view name) const {
+  Handle group(is_group(name) ? H5Gopen2(id_, zero_ended(name).c_str(), H5P_DEFAULT) : H5I_INVALID_HID, H5Gclose);
+  if (group < 0) refuse("it has no group '" + std::string(name) + "'");
+  return Group(std::move(group), path_, writing_);
+}
+
+Group Group::create(std::string_view name) const {
+  const Handle creation(H5Pcreate(H5P_GROUP_CREATE), H5Pclose);
+  H5Pset_link_creation_order(creation, H5P_CRT_ORDER_TRACKED | H5P_CRT_ORDER_INDEXED);
+  const Handle links(H5Pcreate(H5P_LINK_CREATE), H5Pclose);
+  H5Pset_create_intermediate_group(links, 1);
+  Handle group(H5Gcreate2(id_, zero_ended(name).c_str(), links, creation, H5P_DEFAULT), H5Gclose);
+  if (group < 0) refuse("the group '" + std::string(name) + "' cannot be made");
+  return Group(std::move(group), path_, writing_);
+}
+
+std::vector<hsize_t> Group::shape(std::string_view name) const {
+  const Handle set(has(name) && !is_group(name) ? H5Dopen2(id_, zero_ended(name).c_str(), H5P_DEFAULT) : H5I_INVALID_HID, H5Dclose);
+  if (set < 0) refuse("it has no dataset '" + std::string(name) + "'");
+  const Handle space(H5Dget_space(set), H5Sclose);
+  std::vector<hsize_t> extents(static_cast<std::size_t>(std::max(0, H5Sget_simple_extent_ndims(space))));
+  H5Sget_simple_extent_dims(space, extents.data(), nullptr);
+  return extents;
+}
+
+template <class T>
+std::vector<T> Group::read(std::string_view name) const {
+  std::vector<T> values(count(shape(name)));
+  const Handle set(H5Dopen2(id_, zero_ended(name).c_str(), H5P_DEFAULT), H5Dclose);
+  if (!values.empty() && H5Dread(set, native_type<T>(), H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()) < 0)
+    refuse("the dataset '" + std::string(name) + "' cannot be read");
+  return values;
+}
+
+std::vector<std::string> Group::read_strings(std::string_view name) const {
+  const std::size_t size = count(shape(name));
+  const Handle set(H5Dopen2(id_, zero_ended(name).c_str(), H5P_DEFAULT), H5Dclose);
+  const Handle type(H5Dget_type(set), H5Tclose);
+  const Handle space(H5Dget_space(set), H5Sclose);
+  std::vector<std::string> texts;
+  if (size == 0) return texts;
+  const auto read = [&](hid_t memory, void* buffer) { return H5Dread(set, memory, H5S_ALL, H5S_ALL, H5P_DEFAULT, buffer); };
+  if (!read_texts(type, space, size, read, texts)) refuse("the dataset '" + std::string(name) + "' does not hold text");
+  return texts;
+}
+
+template <class T>
+void Group::write(std::string_view name, std::span<const T> values, std::vector<hsize_t> shape) const {
+  if (shape.empty()) shape = {values.size()};
+  const Handle space(H5Screate_simple(static_cast<int>(shape.size()), shape.data(), nullptr), H5Sclose);
+  const Handle links(H5Pcreate(H5P_LINK_CREATE), H5Pclose);
+  H5Pset_create_intermediate_group(links, 1);
+  const Handle set(H5Dcreate2(id_, zero_ended(name).c_str(), native_type<T>(), space, links, H5P_DEFAULT, H5P_DEFAULT), H5Dclose);
+  if (set < 0 || (!values.empty() && H5Dwrite(set, native_type<T>(), H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()) < 0))
+    refuse("the dataset '" + std::string(name) + "' cannot be written");
+}
+
+void Group::write_strings(std::string_view name, const std::vector<std::string>& values) const {
+  std::vector<const char*> pointers;
+  for (const std::string& value : values) pointers.push_back(value.c_str());
+  const hsize_t size = values.size();
+  const Handle space(H5Screate_simple(1, &size, nullptr), H5Sclose);
+  const Handle links(H5Pcreate(H5P_LINK_CREATE), H5Pclose);
+  H5Pset_create_intermediate_group(links, 1);
+  const Handle type = string_type();
+  const Handle set(H5Dcreate2(id_, zero_ended(name).c_str(), type, space, links, H5P_DEFAULT, H5P_DEFAULT), H5Dclose);
+  if (set < 0 || (size > 0 && H5Dwrite(set, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, pointers.data()) < 0))
+    refuse("the dataset '" + std::string(name) + "' cannot be written");
+}
+
+bool Group::has_attribute(std::string_view name) const { return H5Aexists(id_, zero_ended(name).c_str()) > 0; }
+
+namespace {
+
+template <class T>
+bool read_number(hid_t group, std::string_view name, T& value) {
+  if (H5Aexists(group, zero_ended(name).c_str()) <= 0) return false;
+  const Handle attribute(H5Aopen(group, zero_ended(name).c_str(), H5P_DEFAULT), H5Aclose);
+  const Handle space(H5Aget_space(attribute), H5Sclose);
+  return attribute >= 0 && H5Sget_simple_extent_npoints(space) == 1 && H5Aread(attribute, native_type<T>(), &value) >= 0;
+}
+
+Handle new_attribute(hid_t group, std::string_view name, hid_t type, hid_t space) {
+  const std::string key(name);
+  if (H5Aexists(group, key.c_str()) > 0) H5Adelete(group, key.c_str());
+  return Handle(H5Acreate2(group, key.c_str(), type, space, H5P_DEFAULT, H5P_DEFAULT), H5Aclose);
+}
+
+}  // namespace
+
+std::int64_t Group::integer(std::string_view name) const {
+  std::int64_t value = 0;
+  if (!read_number(id_, name, value)) refuse("it has no integer attribute '" + std::string(name) + "'");
+  return value;
+}
+
+double Group::real(std::string_view name) const {
+  double value = 0;
+  if (!read_number(id_, name, value)) refuse("it has no real attribute '" + std::string(name) + "'");
+  return value;
+}
+
+std::vector<std::string> Group::attribute_strings(std::string_view name) const {
+  std::vector<std::string> texts;
+  if (has_attribute(name)) {
+    const Handle attribute(H5Aopen(id_, zero_ended(name).c_str(), H5P_DEFAULT), H5Aclose);
+    const Handle type(H5Aget_type(attribute), H5Tclose);
+    const Handle space(H5Aget_space(attribute), H5Sclose);
+    const auto size = static_cast<std::size_t>(H5Sget_simple_extent_npoints(space));
+    const auto read = [&](hid_t memory, void* buffer) { return H5Aread(attribute, memory, buffer); };
+    if (size == 0 || read_texts(type, space, size, read, texts)) return texts;
+  }
+  refuse("it has no text attribute '" + std::string(name) + "'");
+}
+
+std::string Group::text(std::string_view name) const {
+  const std::vector<std::string> texts = attribute_strings(name);
+  if (texts.size() != 1) refuse("its attribute '" + std::string(name) + "' is not one text");
+  return texts.front();
+}
+
+std::vector<std::string> Group::attributes() const {
+  std::vector<std::string> names;
+  const auto collect = [](hid_t, const char* name, const H5A_info_t*, void* list) -> herr_t {
+    static_cast<std::vector<std::string>*>(list)->emplace_back(name);
+    return 0;
+  };
+  if (H5Aiterate2(id_, H5_INDEX_NAME, H5_ITER_INC, nullptr, collect, &names) < 0) refuse("its attributes cannot be listed");
+  return names;
+}
+
+bool Group::attribute_is_text(std::string_view name) const {
+  if (!has_attribute(name)) return false;
+  const Handle attribute(H5Aopen(id_, zero_ended(name).c_str(), H5P_DEFAULT), H5Aclose);
+  const Handle type(H5Aget_type(attribute), H5Tclose);
+  return H5Tget_class(type) == H5T_STRING;
+}
+
+template <class T>
+void Group::set(std::string_view name, T value) const {
+  const Handle space(H5Screate(H5S_SCALAR), H5Sclose);
+  const Handle attribute = new_attribute(id_, name, native_type<T>(), space);
+  if (attribute < 0 || H5Awrite(attribute, native_type<T>(), &value) < 0)
+    refuse("the attribute '" + std::string(name) + "' cannot be written");
+}
+
+void Group::set(std::string_view name, std::string_view value) const {
+  const Handle space(H5Screate(H5S_SCALAR), H5Sclose);
+  const Handle type = string_type();
+  const Handle attribute = new_attribute(id_, name, type, space);
+  const std::string text(value);
+  const char* pointer = text.c_str();
+  if (attribute < 0 || H5Awrite(attribute, type, &pointer) < 0)
+    refuse("the attribute '" + std::string(name) + "' cannot be written");
+}
+
+void Group::set(std::string_view name, const std::vector<std::string>& values) const {
+  std::vector<const char*> pointers;
+  for (const std::string& value : values) pointers.push_back(value.c_str());
+  const hsize_t size = values.size();
+  const Handle space(H5Screate_simple(1, &size, nullptr), H5Sclose);
+  const Handle type = string_type();
+  const Handle attribute = new_attribute(id_, name, type, space);
+  if (attribute < 0 || (size > 0 && H5Awrite(attribute, type, pointers.data()) < 0))
+    refuse("the attribute '" + std::string(name) + "' cannot be written");
+}
+
+#define LACON_HDF5_TYPE(T)                                                                                      \
+  template std::vector<T> Group::read<T>(std::string_view) const;                                               \
+  template void Group::write<T>(std::string_view, std::span<const T>, std::vector<hsize_t>) const;              \
+  template void Group::set<T>(std::string_view, T) const;
+LACON_HDF5_TYPE(double)
+LACON_HDF5_TYPE(std::int64_t)
+LACON_HDF5_TYPE(std::int32_t)
+LACON_HDF5_TYPE(std::int8_t)
+LACON_HDF5_TYPE(std::uint8_t)
+#undef LACON_HDF5_TYPE
+
+namespace {
+
+[[noreturn]] void cannot_write(const std::filesystem::path& file, const std::string& reason) {
+  fail("BASE_3", {{"file", file.string()}, {"reason", reason}});
+}
+
+class Writer : public Group {
+ public:
+  Writer(Handle root, const std::filesystem::path& path) : Group(std::move(root), path, true) {}
+};
+
+}  // namespace
+
+Reader::Reader(const std::filesystem::path& file) : Group({}, file, false) {
+  silence();
+  std::error_code error;
+  if (!std::filesystem::exists(file, error)) refuse("there is no such file");
+  if (std::filesystem::is_directory(file, error)) refuse("it is a folder");
+  if (std::FILE* stream = std::fopen(file.c_str(), "rb")) {
+    std::fclose(stream);
+  } else {
+    refuse(std::strerror(errno));
+  }
+  if (H5Fis_hdf5(file.c_str()) <= 0) refuse("it is not an HDF5 file");
+  file_ = Handle(H5Fopen(file.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), H5Fclose);
+  if (file_ < 0) refuse("HDF5 cannot open it: it may be cut off, or open elsewhere for writing");
+  id_ = Handle(H5Gopen2(file_, "/", H5P_DEFAULT), H5Gclose);
+}
+
+void write_whole(const std::filesystem::path& file, const std::function<void(const Group&)>& write,
+                 const std::filesystem::path& copy_of) {
+  silence();
+  const std::filesystem::path partial = file.string() + ".partial";
+  std::error_code error;
+  if (!copy_of.empty()) {
+    std::filesystem::copy_file(copy_of, partial, std::filesystem::copy_options::overwrite_existing, error);
+    if (error) cannot_write(file, error.message());
+  }
+  try {
+    const Handle creation(H5Pcreate(H5P_FILE_CREATE), H5Pclose);
+    H5Pset_link_creation_order(creation, H5P_CRT_ORDER_TRACKED | H5P_CRT_ORDER_INDEXED);
+    Handle opened(copy_of.empty() ? H5Fcreate(partial.c_str(), H5F_ACC_TRUNC, creation, H5P_DEFAULT)
+                                  : H5Fopen(partial.c_str(), H5F_ACC_RDWR, H5P_DEFAULT),
+                  H5Fclose);
+    if (opened < 0) cannot_write(file, "the file '" + partial.string() + "' cannot be made");
+    {
+      const Writer root(Handle(H5Gopen2(opened, "/", H5P_DEFAULT), H5Gclose), file);
+      write(root);
+    }
+    if (H5Fflush(opened, H5F_SCOPE_LOCAL) < 0) cannot_write(file, "the disk may be full");
+    opened = Handle();
+    std::filesystem::rename(partial, file, error);
+    if (error) cannot_write(file, error.message());
+  } catch (...) {
+    std::filesystem::remove(partial, error);
+    throw;
+  }
+}
+
+}  // namespace lacon::hdf5

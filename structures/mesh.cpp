@@ -1,0 +1,96 @@
+#include "lacon/structures/mesh.hpp"
+
+#include <algorithm>
+#include <numeric>
+
+#include "lacon/catalog/messages.hpp"
+
+namespace lacon {
+namespace {
+
+/// Number of single-character edits between two names.
+std::size_t distance(std::string_view a, std::string_view b) {
+  std::vector<std::size_t> row(b.size() + 1);
+  std::iota(row.begin(), row.end(), std::size_t{0});
+  for (std::size_t i = 1; i <= a.size(); ++i) {
+    std::size_t diagonal = row[0];
+    row[0] = i;
+    for (std::size_t j = 1; j <= b.size(); ++j) {
+      const std::size_t replace = diagonal + (a[i - 1] == b[j - 1] ? 0 : 1);
+      diagonal = row[j];
+      row[j] = std::min({row[j] + 1, row[j - 1] + 1, replace});
+    }
+  }
+  return row.back();
+}
+
+const Group* find(const std::vector<Group>& groups, std::string_view name) {
+  const auto at = std::find_if(groups.begin(), groups.end(), [&](const Group& g) { return g.name == name; });
+  return at == groups.end() ? nullptr : &*at;
+}
+
+std::span<const std::int32_t> members(const std::vector<Group>& groups, std::string_view name, std::string_view what,
+                                      std::string_view keyword) {
+  const Group* group = find(groups, name);
+  if (!group) {
+    std::vector<std::string> names;
+    for (const Group& g : groups) names.push_back(g.name);
+    std::sort(names.begin(), names.end());
+    const std::string near = nearest_name(name, names);
+    std::string known;
+    for (const std::string& n : names) known += (known.empty() ? "" : ", ") + n;
+    fail("MESH_1", {{"keyword", std::string(keyword)},
+                    {"what", std::string(what)},
+                    {"group", std::string(name)},
+                    {"hint", near.empty() ? "" : "; did you mean '" + near + "'?"},
+                    {"known", known.empty() ? "(it has none)" : known}});
+  }
+  if (group->members.empty())
+    fail("MESH_2", {{"keyword", std::string(keyword)}, {"what", std::string(what)}, {"group", std::string(name)}});
+  return group->members;
+}
+
+}  // namespace
+
+void Mesh::add_cell(CellType type, std::span<const std::int32_t> nodes) {
+  types.push_back(type);
+  cells.push_back(nodes);
+}
+
+const Group* Mesh::find_cell_group(std::string_view group_name) const { return find(cell_groups, group_name); }
+const Group* Mesh::find_node_group(std::string_view group_name) const { return find(node_groups, group_name); }
+
+std::string node_name(std::int64_t node) { return "N" + std::to_string(node + 1); }
+std::string cell_name(std::int64_t cell) { return "M" + std::to_string(cell + 1); }
+
+std::string nearest_name(std::string_view name, std::span<const std::string> names) {
+  std::string best;
+  std::size_t least = std::max<std::size_t>(2, name.size() / 3) + 1;
+  for (const std::string& candidate : names)
+    if (const std::size_t d = distance(name, candidate); d < least) {
+      least = d;
+      best = candidate;
+    }
+  return best;
+}
+
+std::span<const std::int32_t> cells_of_group(const Mesh& mesh, std::string_view group, std::string_view keyword) {
+  return members(mesh.cell_groups, group, "cell", keyword);
+}
+
+std::span<const std::int32_t> nodes_of_group(const Mesh& mesh, std::string_view group, std::string_view keyword) {
+  return members(mesh.node_groups, group, "node", keyword);
+}
+
+std::vector<std::int32_t> nodes_of_cells(const Mesh& mesh, std::span<const std::int32_t> cells) {
+  std::vector<std::int32_t> nodes;
+  for (const std::int32_t cell : cells) {
+    const auto own = mesh.cells[static_cast<std::size_t>(cell)];
+    nodes.insert(nodes.end(), own.begin(), own.end());
+  }
+  std::sort(nodes.begin(), nodes.end());
+  nodes.erase(std::unique(nodes.begin(), nodes.end()), nodes.end());
+  return nodes;
+}
+
+}  // namespace lacon
