@@ -1,0 +1,307 @@
+#include <algorithm>
+#include <cerrno>
+#include <cmath>
+#include <cstdio>
+#include <cstring>
+#include <limits>
+#include <map>
+#include <set>
+#include <utility>
+
+#include "lacon/catalog/messages.hpp"
+#include "lacon/structures/formats/med.hpp"
+#include "lacon/structures/formats/med_layout.hpp"
+
+namespace lacon {
+namespace {
+
+using H5Group = hdf5::Group;
+namespace fs = std::filesystem;
+
+std::string joined(const std::vector<std::string>& names) {
+  std::string text;
+  for (const std::string& name : names) text += (text.empty() ? "'" : ", '") + name + "'";
+  return text;
+}
+
+hdf5::Reader open(const fs::path& file) {
+  std::error_code error;
+  const auto refuse = [&](const std::string& reason) { fail("MED_1", {{"file", file.string()}, {"reason", reason}}); };
+  if (!fs::exists(file, error)) refuse("there is no such file");
+  if (fs::is_directory(file, error)) refuse("it is a folder");
+  std::FILE* stream = std::fopen(file.c_str(), "rb");
+  if (!stream) refuse(std::strerror(errno));
+  char signature[8] = {};
+  const std::size_t length = std::fread(signature, 1, sizeof signature, stream);
+  std::fclose(stream);
+  if (length == 0) refuse("it is empty");
+  const bool hdf5_signature = length == 8 && std::memcmp(signature, "\x89HDF\r\n\x1a\n", 8) == 0;
+  if (!hdf5_signature) fail("MED_2", {{"file", file.string()}, {"reason", "it is not an HDF5 file"}});
+  return hdf5::Reader(file);
+}
+
+/// The root of a MED file of a version that is read.
+hdf5::Reader open_med(const fs::path& file) {
+  hdf5::Reader root = [&] {
+    try {
+      return open(file);
+    } catch (const Error& error) {
+      if (error.message().id != "BASE_2") throw;
+      fail("MED_1", {{"file", file.string()}, {"reason", "HDF5 cannot open it; it may be cut off, or being written"}});
+    }
+  }();
+  if (!root.is_group("INFOS_GENERALES"))
+    fail("MED_2", {{"file", file.string()}, {"reason", "it is HDF5, but has no group INFOS_GENERALES"}});
+  const H5Group about = root.open("INFOS_GENERALES");
+  for (const char* part : {"MAJ", "MIN", "REL"})
+    if (!about.has_attribute(part))
+      fail("MED_2", {{"file", file.string()}, {"reason", "its INFOS_GENERALES do not say the version"}});
+  const std::int64_t major = about.integer("MAJ");
+  if (major != 3 && major != 4) {
+    const std::string version =
+        std::to_string(major) + "." + std::to_string(about.integer("MIN")) + "." + std::to_string(about.integer("REL"));
+    fail("MED_3", {{"file", file.string()}, {"version", version}});
+  }
+  return root;
+}
+
+std::vector<std::string> mesh_names(const H5Group& root) {
+  return root.is_group("ENS_MAA") ? root.open("ENS_MAA").children() : std::vector<std::string>{};
+}
+
+/// Reads one mesh; knows its name and file for the messages.
+class MeshReader {
+ public:
+  MeshReader(const H5Group& root, std::string name) : root_(root), name_(std::move(name)) {}
+
+  Mesh read();
+
+ private:
+  [[noreturn]] void damaged(const std::string& reason) const {
+    fail("MED_7", {{"mesh", name_}, {"file", root_.path().string()}, {"reason", reason}});
+  }
+  [[noreturn]] void unsuitable(const std::string& reason) const {
+    fail("MED_10", {{"mesh", name_}, {"file", root_.path().string()}, {"reason", reason}});
+  }
+  std::int64_t integer(const H5Group& group, const char* attribute, const std::string& where) const {
+    if (!group.has_attribute(attribute)) damaged(where + " has no attribute " + attribute);
+    return group.integer(attribute);
+  }
+  H5Group first_step(const H5Group& mesh) const;
+  H5Group entities(const H5Group& parent, const std::string& name, const std::string& where) const;
+  template <class T>
+  std::vector<T> dataset(const H5Group& group, const std::string& name, const std::string& where, std::size_t size) const;
+  void read_nodes(const H5Group& step, std::int64_t space);
+  void read_cells(const H5Group& step);
+  void read_groups();
+  std::vector<Group> groups_of(const char* kind, const std::vector<std::int64_t>& family) const;
+
+  const H5Group& root_;
+  std::string name_;
+  Mesh mesh_;
+  std::vector<std::int64_t> node_family_, cell_family_;
+};
+
+/// The computation step of the lowest (NDT, NOR); "no step" (-1, -1) comes before every other.
+H5Group MeshReader::first_step(const H5Group& mesh) const {
+  std::string first;
+  std::pair<std::int64_t, std::int64_t> lowest;
+  for (const std::string& child : mesh.children()) {
+    if (!mesh.is_group(child)) continue;
+    const H5Group step = mesh.open(child);
+    if (!step.has_attribute("NDT") || !step.has_attribute("NOR")) continue;
+    const std::pair key(step.integer("NDT"), step.integer("NOR"));
+    if (first.empty() || key < lowest) first = child, lowest = key;
+  }
+  if (first.empty()) damaged("it has no computation step");
+  return mesh.open(first);
+}
+
+/// The group that holds the datasets of an entity. Files of all versions keep them directly in it; where it names a profile,
+/// they belong to a part of the entities, which is not a whole mesh.
+H5Group MeshReader::entities(const H5Group& parent, const std::string& name, const std::string& where) const {
+  if (!parent.is_group(name)) damaged("it has no " + where);
+  H5Group group = parent.open(name);
+  const std::string profile = group.has_attribute("PFL") ? group.text("PFL") : std::string(med::no_profile);
+  if (!profile.empty() && profile != med::no_profile)
+    unsuitable("its " + where + " are stored with the profile '" + profile + "'");
+  return group.is_group(med::no_profile) ? group.open(med::no_profile) : std::move(group);
+}
+
+template <class T>
+std::vector<T> MeshReader::dataset(const H5Group& group, const std::string& name, const std::string& where,
+                                   std::size_t size) const {
+  try {
+    std::vector<T> values = group.read<T>(name);
+    if (values.size() != size)
+      damaged("the dataset " + name + " of its " + where + " has " + std::to_string(values.size()) + " values instead of " +
+              std::to_string(size));
+    return values;
+  } catch (const Error& error) {
+    if (error.message().id != "BASE_2") throw;
+    damaged("the dataset " + name + " of its " + where + " cannot be read");
+  }
+}
+
+void MeshReader::read_nodes(const H5Group& step, std::int64_t space) {
+  const H5Group nodes = entities(step, "NOE", "nodes");
+  if (!nodes.has("COO") || nodes.is_group("COO")) damaged("its nodes have no coordinates");
+  std::int64_t count = med::dataset_integer(nodes, "COO", "NBR");
+  if (count < 0) damaged("the dataset COO of its nodes has no attribute NBR");
+  if (count == 0) damaged("it has no nodes");
+  if (count > std::numeric_limits<std::int32_t>::max() / 4) unsuitable("it has " + std::to_string(count) + " nodes");
+  const auto n = static_cast<std::size_t>(count);
+  const std::vector<double> values = dataset<double>(nodes, "COO", "nodes", n * static_cast<std::size_t>(space));
+  mesh_.coordinates.assign(3 * n, 0.0);
+  for (std::size_t k = 0; k < static_cast<std::size_t>(space); ++k)
+    for (std::size_t i = 0; i < n; ++i) mesh_.coordinates[3 * i + k] = values[k * n + i];
+  for (std::size_t i = 0; i < 3 * n; ++i)
+    if (!std::isfinite(mesh_.coordinates[i]))
+      fail("MED_9", {{"mesh", name_}, {"file", root_.path().string()}, {"node", std::to_string(i / 3 + 1)}});
+  node_family_ = nodes.has("FAM") ? dataset<std::int64_t>(nodes, "FAM", "nodes", n) : std::vector<std::int64_t>(n, 0);
+}
+
+void MeshReader::read_cells(const H5Group& step) {
+  if (!step.is_group("MAI")) damaged("it has no cells");
+  const H5Group all = step.open("MAI");
+  const std::vector<std::string> present = all.children();
+  for (const std::string& type : present) {
+    const auto known =
+        std::any_of(catalog::cells().begin(), catalog::cells().end(), [&](const auto& row) { return row.med_name == type; });
+    if (known) continue;
+    std::string list;
+    for (const catalog::CellRow& row : catalog::cells()) list += (list.empty() ? "" : ", ") + std::string(row.name);
+    const std::string what = type == "POG" || type == "PO2" ? " (polygons)" : type == "POE" ? " (polyhedra)" : "";
+    fail("MED_6", {{"mesh", name_}, {"file", root_.path().string()}, {"type", type}, {"what", what}, {"known", list}});
+  }
+  const auto n_nodes = static_cast<std::int64_t>(mesh_.n_nodes());
+  std::vector<std::int32_t> nodes;
+  for (const catalog::CellRow& row : catalog::cells()) {
+    const std::string type(row.med_name);
+    if (!all.has(type)) continue;
+    const std::string where = "cells " + type;
+    const H5Group group = entities(all, type, where);
+    if (!group.has("NOD") || group.is_group("NOD")) damaged("its " + where + " have no nodal connectivity (NOD)");
+    const std::int64_t count = med::dataset_integer(group, "NOD", "NBR");
+    if (count < 0) damaged("the dataset NOD of its " + where + " has no attribute NBR");
+    if (count > std::numeric_limits<std::int32_t>::max() / 32) unsuitable("it has " + std::to_string(count) + " " + where);
+    const auto n = static_cast<std::size_t>(count);
+    const std::size_t size = static_cast<std::size_t>(row.n_nodes);
+    const std::vector<std::int64_t> connectivity = dataset<std::int64_t>(group, "NOD", where, n * size);
+    const std::vector<std::int64_t> family =
+        group.has("FAM") ? dataset<std::int64_t>(group, "FAM", where, n) : std::vector<std::int64_t>(n, 0);
+    cell_family_.insert(cell_family_.end(), family.begin(), family.end());
+    nodes.resize(size);
+    for (std::size_t c = 0; c < n; ++c) {
+      for (std::size_t j = 0; j < size; ++j) {
+        const std::int64_t node = connectivity[static_cast<std::size_t>(row.med_permutation[j]) * n + c];
+        if (node < 1 || node > n_nodes)
+          fail("MED_8", {{"mesh", name_},
+                         {"file", root_.path().string()},
+                         {"type", type},
+                         {"cell", std::to_string(c + 1)},
+                         {"node", std::to_string(node)},
+                         {"nodes", std::to_string(n_nodes)}});
+        nodes[j] = static_cast<std::int32_t>(node - 1);
+      }
+      mesh_.add_cell(row.type, nodes);
+    }
+  }
+  if (mesh_.n_cells() == 0) damaged("it has no cells");
+}
+
+/// Groups from families. @param family the family number of each entity
+std::vector<Group> MeshReader::groups_of(const char* kind, const std::vector<std::int64_t>& family) const {
+  std::map<std::int64_t, std::vector<std::string>> names_of;  // of each family
+  std::set<std::int64_t> known{0};
+  const std::string path = "FAS/" + name_ + "/" + kind;
+  if (root_.is_group(path)) {
+    const H5Group families = root_.open(path);
+    for (const std::string& child : families.children()) {
+      const H5Group one = families.open(child);
+      const std::int64_t number = integer(one, "NUM", "the family '" + child + "'");
+      known.insert(number);
+      if (!one.is_group("GRO")) continue;
+      const H5Group list = one.open("GRO");
+      const std::int64_t count = integer(list, "NBR", "the list of groups of the family '" + child + "'");
+      const std::vector<std::string> names = med::read_names(list, "NOM");
+      if (static_cast<std::int64_t>(names.size()) != count)
+        damaged("the group names of the family '" + child + "' cannot be read");
+      names_of[number] = names;
+    }
+  }
+  std::map<std::string, std::vector<std::int32_t>> members;
+  for (const auto& [number, names] : names_of)
+    for (const std::string& name : names) members[name];
+  for (std::size_t i = 0; i < family.size(); ++i) {
+    if (family[i] == 0) continue;
+    if (!known.contains(family[i]))
+      damaged("it has no family of the number " + std::to_string(family[i]) + ", to which " +
+              (std::string_view(kind) == "NOEUD" ? node_name(static_cast<std::int64_t>(i))
+                                                 : cell_name(static_cast<std::int64_t>(i))) +
+              " belongs");
+    const auto names = names_of.find(family[i]);
+    if (names == names_of.end()) continue;
+    for (const std::string& name : names->second) {
+      std::vector<std::int32_t>& list = members[name];
+      // a family may name a group twice
+      if (list.empty() || list.back() != static_cast<std::int32_t>(i)) list.push_back(static_cast<std::int32_t>(i));
+    }
+  }
+  std::vector<Group> groups;
+  for (auto& [name, list] : members) groups.push_back({name, std::move(list)});
+  return groups;
+}
+
+void MeshReader::read_groups() {
+  mesh_.node_groups = groups_of("NOEUD", node_family_);
+  mesh_.cell_groups = groups_of("ELEME", cell_family_);
+}
+
+Mesh MeshReader::read() {
+  const H5Group group = root_.open("ENS_MAA/" + name_);
+  mesh_.name = name_;
+  const std::int64_t space = integer(group, "ESP", "it");
+  if (space != 2 && space != 3) unsuitable("its points have " + std::to_string(space) + " coordinates");
+  if (group.has_attribute("TYP") && group.integer("TYP") != 0) unsuitable("it is a structured grid");
+  if (group.has_attribute("REP") && group.integer("REP") != 0) unsuitable("its coordinates are not Cartesian");
+  const H5Group step = first_step(group);
+  read_nodes(step, space);
+  read_cells(step);
+  read_groups();
+  mesh_.dimension = static_cast<int>(space);
+  const auto solid = [](CellType type) { return catalog::cell(type).dimension == 3; };
+  if (space == 3 && std::none_of(mesh_.types.begin(), mesh_.types.end(), solid)) {
+    bool flat = true;
+    for (std::size_t i = 0; i < mesh_.n_nodes(); ++i) flat = flat && mesh_.coordinates[3 * i + 2] == 0.0;
+    if (flat) mesh_.dimension = 2;
+  }
+  return std::move(mesh_);
+}
+
+}  // namespace
+
+std::vector<std::string> med_mesh_names(const fs::path& file) { return mesh_names(open_med(file)); }
+
+Mesh read_med_mesh(const fs::path& file, std::string_view name) {
+  const hdf5::Reader root = open_med(file);
+  const std::vector<std::string> known = mesh_names(root);
+  if (known.empty()) fail("MED_4", {{"file", file.string()}});
+  std::string chosen(name);
+  if (chosen.empty()) {
+    chosen = known.front();
+    if (known.size() > 1)
+      inform("MED_11",
+             {{"file", file.string()}, {"count", std::to_string(known.size())}, {"known", joined(known)}, {"mesh", chosen}});
+  } else if (std::find(known.begin(), known.end(), chosen) == known.end()) {
+    fail("MED_5", {{"file", file.string()}, {"mesh", chosen}, {"known", joined(known)}});
+  }
+  try {
+    return MeshReader(root, chosen).read();
+  } catch (const Error& error) {
+    if (error.message().id != "BASE_2") throw;
+    fail("MED_7", {{"mesh", chosen}, {"file", file.string()}, {"reason", error.message().text}});
+  }
+}
+
+}  // namespace lacon
