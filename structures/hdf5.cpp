@@ -235,6 +235,7 @@ bool Group::attribute_is_text(std::string_view name) const {
 }
 
 template <class T>
+  requires std::is_arithmetic_v<T>
 void Group::set(std::string_view name, T value) const {
   const Handle space(H5Screate(H5S_SCALAR), H5Sclose);
   const Handle attribute = new_attribute(id_, name, native_type<T>(), space);

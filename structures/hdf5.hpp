@@ -8,6 +8,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <type_traits>
 #include <vector>
 
 namespace lacon::hdf5 {
@@ -75,6 +76,7 @@ class Group {
   std::vector<std::string> attributes() const;          ///< names
   bool attribute_is_text(std::string_view name) const;
   template <class T>
+    requires std::is_arithmetic_v<T>
   void set(std::string_view name, T value) const;       ///< scalar of exactly this type
   void set(std::string_view name, std::string_view value) const;
   void set(std::string_view name, const std::vector<std::string>& values) const;
