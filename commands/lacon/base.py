@@ -1,0 +1,214 @@
+"""A base: the folder of a study's concepts and its registry, docs/structures.md section 1.
+
+The registry is replaced as a whole, after the concept it names is there: a killed run loses nothing that was done.
+"""
+
+import contextlib
+import fcntl
+import json
+import os
+import pathlib
+import re
+import shutil
+import weakref
+
+from . import concepts, hdf5
+from .messages import fail
+
+_registry = "base.json"
+_entry = re.compile(r"([a-z_]+_\d+)(\.h5)?(\.partial)?$")
+
+
+class Base:
+    """An open base. One run at a time: the folder is locked until close()."""
+
+    def __init__(self, folder, where, make, fresh=False):
+        """Open `folder`. `make`: start one where there is none; `fresh`: empty the one that is there."""
+        self.folder = pathlib.Path(os.path.abspath(folder))
+        self._made = False
+        self._objects = weakref.WeakValueDictionary()
+        if not self.folder.exists():
+            if not make:
+                fail("STUDY_2", where, folder=self.folder)
+            try:
+                self.folder.mkdir()
+            except OSError as error:
+                fail("STUDY_3", where, folder=self.folder, reason=error.strerror)
+            self._made = True
+        self._check_folder(where, make)
+        try:
+            self._lock = os.open(self.folder, os.O_RDONLY)
+            fcntl.flock(self._lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        except BlockingIOError:
+            os.close(self._lock)
+            fail("STUDY_5", where, folder=self.folder)
+        self.registry = {"format": 1, "next": 1, "labels": {}, "namespace": {}}
+        try:
+            if fresh:
+                self._empty()
+            elif (self.folder / _registry).exists():
+                self._read(where)
+            elif not make:
+                fail("STUDY_2", where, folder=self.folder)
+            self.write(where)
+        except BaseException:
+            self.close()
+            raise
+
+    def _check_folder(self, where, make):
+        """A folder that is not a base is left alone."""
+        if not self.folder.is_dir():
+            fail("STUDY_4", where, folder=self.folder)
+        if not (self.folder / _registry).exists() and any(self.folder.iterdir()):
+            fail("STUDY_4", where, folder=self.folder)
+
+    def _read(self, where):
+        try:
+            registry = json.loads((self.folder / _registry).read_text(encoding="utf-8"))
+            if registry["format"] != 1:
+                raise ValueError(f"format {registry['format']}, this version reads format 1")
+            {}.update(registry["labels"])
+            int(registry["next"])
+        except (OSError, ValueError, KeyError, TypeError) as error:
+            fail("STUDY_6", where, folder=self.folder, reason=error)
+        registry.setdefault("namespace", {})
+        self.registry = registry
+
+    def _empty(self):
+        for path in self.folder.iterdir():
+            if path.name.startswith(_registry) or _entry.match(path.name):
+                _remove(path)
+
+    def write(self, where=""):
+        """Replace the registry."""
+        partial = self.folder / (_registry + ".partial")
+        try:
+            partial.write_text(json.dumps(self.registry, ensure_ascii=False), encoding="utf-8")
+            os.replace(partial, self.folder / _registry)
+        except OSError as error:
+            fail("STUDY_3", where, folder=self.folder, reason=error.strerror)
+
+    def close(self):
+        os.close(self._lock)
+
+    # ------------------------------------------------------------------------------------------- concepts
+
+    def path(self, identifier):
+        """File of a concept; of a result, its index."""
+        if concepts.type_of(identifier) == "result":
+            return self.folder / identifier / "index.h5"
+        return self.folder / f"{identifier}.h5"
+
+    def open(self, identifier):
+        try:
+            return hdf5.h5py().File(self.path(identifier), "r")
+        except OSError as error:
+            fail("STUDY_7", file=self.path(identifier), reason=error)
+
+    def concept(self, identifier, label=""):
+        """The object of an id, the same one as long as anything holds it."""
+        item = self._objects.get(identifier)
+        if item is None:
+            item = self._objects[identifier] = concepts.make(self, identifier, label)
+        return item
+
+    def live_objects(self):
+        """(id, object) of every concept that Python still holds, in whatever variable."""
+        return list(self._objects.items())
+
+    def new_id(self, kind):
+        """An id that no concept has; it counts once the registry is written."""
+        number = self.registry["next"]
+        while any((self.folder / name).exists() for name in (f"{kind}_{number}.h5", f"{kind}_{number}")):
+            number += 1
+        self.registry["next"] = number + 1
+        return f"{kind}_{number}"
+
+    def drop(self, identifier):
+        """Remove what is there of a concept that was not finished, or that nothing refers to."""
+        for path in (self.folder / f"{identifier}.h5", self.folder / f"{identifier}.h5.partial", self.folder / identifier):
+            _remove(path)
+        self._objects.pop(identifier, None)
+
+    def drop_partial(self):
+        """Remove what killed operators left."""
+        for path in list(self.folder.rglob("*.partial")):
+            _remove(path)
+
+    def write_concept(self, kind, label, command, keywords, fill):
+        """A concept that Python makes itself. `fill(file)` writes what is particular to it. @return its object"""
+        identifier = self.new_id(kind)
+        path = self.path(identifier)
+        partial = path.with_name(path.name + ".partial")
+        try:
+            with hdf5.h5py().File(partial, "w") as file:
+                attributes = {
+                    "lacon_type": kind, "format": 1, "version": 1, "id": identifier, "label": label, "command": command,
+                    "keywords": concepts.dumps(keywords),
+                    "references": json.dumps([c.id for c in concepts.concepts_in(keywords)] if kind == "material" else []),
+                }
+                for name, value in attributes.items():
+                    file.attrs[name] = value
+                fill(file)
+            os.replace(partial, path)
+        except OSError as error:
+            with contextlib.suppress(OSError):
+                partial.unlink()
+            fail("STUDY_3", folder=self.folder, reason=error.strerror or error)
+        return self.concept(identifier, label)
+
+    def ids(self):
+        """Ids of all concepts that are there."""
+        found = []
+        for path in self.folder.iterdir():
+            match = _entry.match(path.name)
+            if match and not match[3] and concepts.known_type(match[1]) and self.path(match[1]).exists():
+                found.append(match[1])
+        return found
+
+    def references(self, identifier):
+        """Ids that a concept's file refers to."""
+        with self.open(identifier) as file:
+            texts = [v for k, v in file.attrs.items() if isinstance(v, str) and k not in ("id", "label", "keywords", "command")]
+        return {word for text in texts for word in re.findall(r"[a-z_]+_\d+", text)}
+
+    def clean(self, keep):
+        """Remove every concept that none of the ids `keep` refers to, directly or not, and leftovers. @return removed ids"""
+        present = set(self.ids())
+        reached, queue = set(), [i for i in keep if i in present]
+        while queue:
+            identifier = queue.pop()
+            if identifier not in reached:
+                reached.add(identifier)
+                queue += [i for i in self.references(identifier) if i in present]
+        removed = sorted(present - reached)
+        for identifier in removed:
+            self.drop(identifier)
+        self._clean_results(reached)
+        self.drop_partial()
+        return removed
+
+    def _clean_results(self, reached):
+        """Remove folders without index and field files that no index names."""
+        named = set()
+        for identifier in reached:
+            if concepts.type_of(identifier) == "result":
+                with self.open(identifier) as file:
+                    for group in (file["fields"].values() if "fields" in file else ()):
+                        named.update(group["file"].asstr()[:])
+        for folder in self.folder.iterdir():
+            if folder.is_dir() and _entry.match(folder.name):
+                if folder.name not in reached:
+                    _remove(folder)
+                    continue
+                for path in folder.glob("*.h5"):
+                    if path.name != "index.h5" and f"{folder.name}/{path.name}" not in named:
+                        _remove(path)
+
+
+def _remove(path):
+    if path.is_dir() and not path.is_symlink():
+        shutil.rmtree(path)
+    else:
+        with contextlib.suppress(FileNotFoundError):
+            path.unlink()

@@ -1,0 +1,213 @@
+"""The commands as Python callables: check the keywords, then order the operator or do the work here."""
+
+import os
+import sys
+import threading
+import time
+
+from . import catalog, checker, concepts, hdf5, labels, orders, study
+from .messages import AsterError, InternalError, fail, message
+
+
+class _F(dict):
+    """An occurrence of a factor keyword: _F(GROUP_MA='A', PRES=1.0)."""
+
+    def __init__(self, *args, **keywords):
+        super().__init__(*args, **keywords)
+
+
+class Call:
+    """One call of a command, as the functions of python_commands get it."""
+
+    def __init__(self, study, command, keywords, where, label):
+        self.study = study
+        self.command = command
+        self.keywords = keywords
+        self.where = where
+        self.label = label
+
+    def write(self, kind, fill):
+        """The concept this call makes."""
+        return self.study.base.write_concept(kind, self.label, self.command, self.keywords, fill)
+
+    def fail(self, identifier, path="", **values):
+        fail(identifier, f"{self.command}{'/' + path if path else ''}, {self.where}", **values)
+
+
+def _implementations():
+    """command -> function(call) of those that Python does itself"""
+    from . import checks, functions, lists, materials
+
+    return {
+        "DEBUT": lambda call: call.study.start(call.keywords, call.where, resume=False),
+        "POURSUITE": lambda call: call.study.start(call.keywords, call.where, resume=True),
+        "FIN": lambda call: call.study.finish(call.where),
+        "DEFI_FONCTION": functions.defi_fonction,
+        "DEFI_LIST_REEL": lists.defi_list_reel,
+        "DEFI_LIST_INST": lists.defi_list_inst,
+        "DEFI_MATERIAU": materials.defi_materiau,
+        "TEST_RESU": checks.test_resu,
+        "DETRUIRE": _destroy,
+    }
+
+
+def _destroy(call):
+    items = call.keywords.get("NOM", []) + [c for factor in call.keywords.get("CONCEPT", []) for c in factor["NOM"]]
+    call.study.destroy(items, call.where)
+
+
+class Command:
+    """A command of the catalogue."""
+
+    def __init__(self, name):
+        self.name = name
+        self.__name__ = name
+
+    def __repr__(self):
+        return f"<command {self.name}>"
+
+    @property
+    def __doc__(self):
+        return catalog.command(self.name)["help"]
+
+    def __call__(self, *args, **given):
+        started = time.perf_counter()
+        run = study.current
+        if run is None:
+            raise RuntimeError("commands run in a command file: lacon study.comm")
+        frame = labels.user_frame()
+        where = labels.location(frame)
+        row = catalog.command(self.name)
+        if args:
+            fail("COMMAND_1", f"{self.name}, {where}", command=self.name)
+        starts = self.name in ("DEBUT", "POURSUITE")
+        if not starts and not run.open:
+            fail("STUDY_12" if run.ended else "STUDY_11", where, command=self.name, ended=run.ended)
+        if not starts and run.names.update_labels(run.base):
+            run.base.write(where)
+        reuse = given.pop("reuse", None)
+        keywords, problems = checker.complete(self.name, row, given, where)
+        reused = self._reuse(row, reuse, given, keywords, where, problems)
+        if problems:
+            raise AsterError(problems)
+        label = reused.label if reused else labels.label(frame)
+        run.progress(f"{where}: {label + ' = ' if label else ''}{self.name}")
+        if "operator" in row:
+            result, outcome = self._order(run, row, keywords, where, label, reused)
+            run.timings.add(self.name, where, time.perf_counter() - started, outcome.seconds, outcome.phases)
+            run.count_alarms(outcome.messages)
+        else:
+            result = implementations()[self.name](Call(run, self.name, keywords, where, label))
+            if result is not None:
+                _enter(run, label, result, where)
+            run.timings.add(self.name, where, time.perf_counter() - started)
+        return result
+
+    def _reuse(self, row, reuse, given, keywords, where, problems):
+        """The concept to enrich, or nothing."""
+        path = f"{self.name}/reuse"
+        place = f"{path}, {where}"
+        holder = row.get("reuse")
+        if reuse is None:
+            if row.get("reuse_status") == "mandatory":
+                problems.append(message("COMMAND_2", place, keyword=holder))
+            return None
+        if holder is None:
+            problems.append(message("COMMAND_3", place, command=self.name))
+        elif keywords.get(holder) is not reuse and holder in given:
+            problems.append(message("COMMAND_9", place, keyword=holder))
+        return reuse if isinstance(reuse, concepts.Concept) else None
+
+    def _order(self, run, row, keywords, where, label, reused):
+        """Have the operator run, and enter its result."""
+        units = self._units(run, row, keywords, where)
+        written = {unit for unit in units if unit in run.written_units}
+        result = None
+        if "result" in row:
+            identifier = reused.id if reused else run.base.new_id(row["result"])
+            result = {"id": identifier, "label": label, "reuse": bool(reused)}
+        made = orders.order(self.name, run, keywords, where, result, units, written)
+        copy = orders.keep_copy(run.base, identifier) if reused else None
+        try:
+            _import_ahead()
+            outcome = orders.run(row["operator"], made, run.scratch(), run)
+            if outcome.status != 0:
+                orders.raise_failure(outcome, row["operator"], where)
+            if result and not run.base.path(identifier).exists():
+                how = f"it ended well, and the concept {identifier} is not there"
+                raise InternalError([message("INTERNAL_3", where, program=row["operator"], how=how)])
+            if run.alarm_is_error:
+                run.count_alarms(outcome.messages)
+        except BaseException:
+            if copy:
+                orders.put_back(run.base, identifier, copy)
+            elif result:
+                run.base.drop(identifier)
+            run.base.drop_partial()
+            raise
+        if copy:
+            copy.unlink()
+        run.written_units |= {k for k, keyword in _unit_numbers(row, keywords) if keyword["unit"] == "out"}
+        if not result:
+            return None, outcome
+        item = reused or run.base.concept(identifier, label)
+        _enter(run, label, item, where)
+        return item, outcome
+
+    def _units(self, run, row, keywords, where):
+        """Files of the units that the keywords name."""
+        units = {}
+        for number, keyword in _unit_numbers(row, keywords):
+            place = f"{self.name}/UNITE, {where}"
+            if keyword["unit"] == "in":
+                units[number] = run.input_unit(number, place)
+            else:
+                suffix = {"MED": ".med", "VTU": ".vtu", "RESULTAT": ".resu"}.get(keywords.get("FORMAT"), "")
+                if number not in run.units and number not in run.written_units:
+                    run.inform("COMMAND_10", place, unit=number, file=os.path.relpath(run.output_unit(number, suffix, place)))
+                units[number] = run.output_unit(number, suffix, place)
+        return units
+
+
+def _unit_numbers(row, keywords):
+    return [(keywords[name], keyword) for name, keyword in row.get("keyword", {}).items() if "unit" in keyword and name in keywords]
+
+
+def _enter(run, label, item, where):
+    """Enter a concept that is there now in the registry, under the variable it is about to be assigned to."""
+    run.names.update_labels(run.base, (label, item.id))
+    run.base.write(where)
+
+
+def _import_ahead():
+    """Import h5py while the operator runs: the next command of Python's own, or a check, needs it."""
+    if "h5py" not in sys.modules:
+        threading.Thread(target=hdf5.h5py, daemon=True).start()
+
+
+_table = {}
+
+
+def implementations():
+    if not _table:
+        _table.update(_implementations())
+    return _table
+
+
+class Unavailable:
+    """A command of code_aster that Lacon does not have."""
+
+    def __init__(self, name):
+        self.name = name
+
+    def __call__(self, *args, **given):
+        frame = labels.user_frame()
+        fail("COMMAND_11", labels.location(frame), command=self.name)
+
+
+def all_commands():
+    """name -> callable: every command, and every name of code_aster's that is not one here."""
+    names = {name: Unavailable(name) for name in catalog.peer_commands()}
+    names.update((name, Command(name)) for name in catalog.command_names())
+    names.update(_F=_F, CO=concepts.CO)
+    return names

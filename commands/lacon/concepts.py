@@ -1,0 +1,267 @@
+"""Concepts as a command file sees them: small objects that know their id in the base and read their file when asked."""
+
+import json
+
+
+class Concept:
+    """What a command made. Two variables of one concept are one Python object."""
+
+    type = "concept"
+
+    def __init__(self, base, identifier, label=""):
+        self.base = base
+        self.id = identifier
+        self.label = label
+        self.destroyed = ""  #: where DETRUIRE took it out of the study
+
+    def __repr__(self):
+        return f"<{self.type} {self.label or self.id}>"
+
+    def getName(self):
+        """The variable it was assigned to."""
+        return self.label
+
+    @property
+    def userName(self):
+        return self.label
+
+    def getType(self):
+        return self.type
+
+    def open(self):
+        """Its HDF5 file, open for reading."""
+        return self.base.open(self.id)
+
+
+class Mesh(Concept):
+    type = "mesh"
+
+    def _shape(self, name):
+        with self.open() as file:
+            return file[name].shape[0]
+
+    def getNumberOfNodes(self):
+        return self._shape("coordinates")
+
+    def getNumberOfCells(self):
+        return self._shape("cells/type")
+
+    def getDimension(self):
+        with self.open() as file:
+            return int(file.attrs["dimension"])
+
+    def getCoordinates(self):
+        return Coordinates(self)
+
+    def group(self, kind, name):
+        """Members of a group, 0-based; None where there is no such group. `kind` is "cells" or "nodes"."""
+        with self.open() as file:
+            groups = file.get(f"groups/{kind}")
+            names = [] if groups is None else list(groups["name"].asstr()[:])
+            if name not in names:
+                return None
+            k = names.index(name)
+            first, last = groups["offset"][k], groups["offset"][k + 1]
+            return groups["values"][first:last]
+
+    def group_names(self, kind):
+        with self.open() as file:
+            groups = file.get(f"groups/{kind}")
+            return [] if groups is None else list(groups["name"].asstr()[:])
+
+    def getGroupsOfCells(self):
+        return self.group_names("cells")
+
+    def getGroupsOfNodes(self):
+        return self.group_names("nodes")
+
+
+class Coordinates:
+    """What Mesh.getCoordinates() returns."""
+
+    def __init__(self, mesh):
+        self._mesh = mesh
+
+    def toNumpy(self):
+        """(n, 3) array"""
+        with self._mesh.open() as file:
+            return file["coordinates"][:]
+
+    def getValues(self):
+        """x1, y1, z1, x2, ... as a list"""
+        return self.toNumpy().ravel().tolist()
+
+
+class Model(Concept):
+    type = "model"
+
+
+class Material(Concept):
+    type = "material"
+
+
+class MaterialField(Concept):
+    type = "material_field"
+
+
+class Load(Concept):
+    type = "load"
+
+
+class Contact(Concept):
+    type = "contact"
+
+
+class ListOfReals(Concept):
+    type = "list_of_reals"
+
+    def getValues(self):
+        with self.open() as file:
+            return file["values"][:].tolist()
+
+    Valeurs = getValues
+
+
+class TimeSteps(ListOfReals):
+    type = "time_steps"
+
+
+class Function(Concept):
+    type = "function"
+    _points = None
+
+    def points(self):
+        """A functions.Piecewise with its points and rules."""
+        if self._points is None:
+            from .functions import read_function
+
+            self._points = read_function(self)
+        return self._points
+
+    def __call__(self, x):
+        """The value at x, a number or an array. @throws AsterError outside its points where they are not prolonged"""
+        return self.points().value(x, self.label or self.id)
+
+    def Absc(self):
+        return list(self.points().x)
+
+    def Ordo(self):
+        return list(self.points().y)
+
+    def Valeurs(self):
+        return [self.Absc(), self.Ordo()]
+
+    def getValues(self):
+        return self.Absc() + self.Ordo()
+
+
+class Result(Concept):
+    type = "result"
+
+    def instants(self):
+        """[(order number, instant)]"""
+        with self.open() as file:
+            return list(zip(file["order"][:].tolist(), file["instant"][:].tolist()))
+
+    def getIndexes(self):
+        return [order for order, _ in self.instants()]
+
+    def getNumberOfIndexes(self):
+        return len(self.instants())
+
+    def getLastIndex(self):
+        return self.instants()[-1][0]
+
+    def getTime(self, index):
+        return dict(self.instants())[index]
+
+    def field_names(self):
+        with self.open() as file:
+            return sorted(file["fields"]) if "fields" in file else []
+
+    getFieldsNames = field_names
+
+    def mesh(self):
+        with self.open() as file:
+            return self.base.concept(_text(file.attrs["mesh"]))
+
+    def field(self, name, order):
+        """The field of an order number, a fields.Field; None where there is none."""
+        from .fields import read_field
+
+        with self.open() as file:
+            group = file.get(f"fields/{name}")
+            if group is None:
+                return None
+            orders = group["order"][:].tolist()
+            if order not in orders:
+                return None
+            path = group["file"].asstr()[orders.index(order)]
+        return read_field(self.base, path)
+
+    def getField(self, name, index):
+        return self.field(name, index)
+
+
+_types = {c.type: c for c in (Mesh, Model, Material, MaterialField, Load, Contact, ListOfReals, TimeSteps, Function, Result)}
+
+
+def type_of(identifier):
+    """"material_field_3" -> "material_field\""""
+    return identifier.rpartition("_")[0]
+
+
+def make(base, identifier, label=""):
+    """The object of a concept by its id."""
+    return _types[type_of(identifier)](base, identifier, label)
+
+
+def known_type(identifier):
+    return type_of(identifier) in _types and identifier.rpartition("_")[2].isdigit()
+
+
+class CO:
+    """A name given beforehand to a concept that a command will make."""
+
+    def __init__(self, name):
+        self.name = str(name)
+
+    def __repr__(self):
+        return f"CO({self.name!r})"
+
+
+def _text(value):
+    return value.decode() if isinstance(value, bytes) else value
+
+
+def to_json(value):
+    """Keywords as an order holds them: a concept becomes {"concept": id}."""
+    if isinstance(value, Concept):
+        return {"concept": value.id}
+    if isinstance(value, dict):
+        return {k: to_json(v) for k, v in value.items()}
+    if isinstance(value, (list, tuple)):
+        return [to_json(v) for v in value]
+    return value
+
+
+def concepts_in(value):
+    """Every concept that keywords refer to, without repetition."""
+    found = {}
+
+    def visit(item):
+        if isinstance(item, Concept):
+            found[item.id] = item
+        elif isinstance(item, dict):
+            for v in item.values():
+                visit(v)
+        elif isinstance(item, (list, tuple)):
+            for v in item:
+                visit(v)
+
+    visit(value)
+    return list(found.values())
+
+
+def dumps(value):
+    return json.dumps(to_json(value), ensure_ascii=False)

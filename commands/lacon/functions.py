@@ -1,0 +1,113 @@
+"""DEFI_FONCTION: functions of one parameter by points."""
+
+import bisect
+import math
+
+from .messages import fail
+
+
+class Piecewise:
+    """Points with x increasing, interpolation of x and y (LIN or LOG), extension on either side."""
+
+    def __init__(self, x, y, interpolation=("LIN", "LIN"), left="EXCLU", right="EXCLU"):
+        self.x, self.y = list(x), list(y)
+        self.interpolation = tuple(interpolation)
+        self.left, self.right = left, right
+
+    def value(self, x, name="function"):
+        """@throws AsterError FUNCTION_3 where x lies outside and the function is not prolonged there"""
+        if hasattr(x, "__len__"):
+            import numpy
+
+            return numpy.array([self.value(v, name) for v in x])
+        x = float(x)
+        if len(self.x) == 1:
+            return self._alone(x, name)
+        low, high = self.x[0], self.x[-1]
+        # an instant reached by adding steps misses the last point by round-off
+        slack = 1e-12 * max(abs(low), abs(high))
+        if low - slack <= x < low:
+            x = low
+        if high < x <= high + slack:
+            x = high
+        if x < low or x > high:
+            side = self.left if x < low else self.right
+            if side == "EXCLU":
+                fail("FUNCTION_3", name=name, x=f"{x:g}", low=f"{low:g}", high=f"{high:g}")
+            if side == "CONSTANT":
+                return self.y[0] if x < low else self.y[-1]
+        i = min(max(bisect.bisect_right(self.x, x) - 1, 0), len(self.x) - 2)
+        return self._between(i, x)
+
+    def _alone(self, x, name):
+        side = self.left if x < self.x[0] else self.right
+        if x != self.x[0] and side == "EXCLU":
+            fail("FUNCTION_3", name=name, x=f"{x:g}", low=f"{self.x[0]:g}", high=f"{self.x[0]:g}")
+        return self.y[0]
+
+    def _between(self, i, x):
+        """On the line through points i and i + 1, in the scales of `interpolation`."""
+        x0, x1, y0, y1 = self.x[i], self.x[i + 1], self.y[i], self.y[i + 1]
+        if x == x0:
+            return y0
+        if x == x1:
+            return y1
+        if self.interpolation[0] == "LOG":
+            t = math.log(x / x0) / math.log(x1 / x0)
+        else:
+            t = (x - x0) / (x1 - x0)
+        if self.interpolation[1] == "LOG":
+            return y0 * (y1 / y0) ** t
+        return y0 + t * (y1 - y0)
+
+
+def read_function(concept):
+    with concept.open() as file:
+        a = file.attrs
+        return Piecewise(file["x"][:].tolist(), file["y"][:].tolist(), list(a["interpolation"]), a["extension_left"], a["extension_right"])
+
+
+def defi_fonction(call):
+    k = call.keywords
+    x, y, path = _points(call)
+    if any(not a < b for a, b in zip(x, x[1:])):
+        if k["VERIF"] == "CROISSANT":
+            bad = next(i for i in range(len(x) - 1) if not x[i] < x[i + 1])
+            call.fail("FUNCTION_1", path, first=f"{x[bad]:g}", second=f"{x[bad + 1]:g}")
+        order = sorted(range(len(x)), key=lambda i: x[i])
+        x, y = [x[i] for i in order], [y[i] for i in order]
+        if any(a == b for a, b in zip(x, x[1:])):
+            bad = next(a for a, b in zip(x, x[1:]) if a == b)
+            call.fail("FUNCTION_1", path, first=f"{bad:g}", second=f"{bad:g}")
+    interpolation = k["INTERPOL"] * 2 if len(k["INTERPOL"]) == 1 else k["INTERPOL"]
+    for values, scale, what in ((x, interpolation[0], "parameter"), (y, interpolation[1], "value")):
+        if scale == "LOG" and min(values) <= 0.0:
+            call.fail("FUNCTION_4", path, what=what, value=f"{min(values):g}")
+
+    def fill(file):
+        from .hdf5 import text_type
+
+        for name, value in (("parameter", k["NOM_PARA"]), ("component", k["NOM_RESU"]),
+                            ("extension_left", k["PROL_GAUCHE"]), ("extension_right", k["PROL_DROITE"])):
+            file.attrs[name] = value
+        file.attrs.create("interpolation", interpolation, dtype=text_type())
+        file.create_dataset("x", data=x, dtype="f8")
+        file.create_dataset("y", data=y, dtype="f8")
+
+    return call.write("function", fill)
+
+
+def _points(call):
+    """(x, y, keyword) as given in one of three ways."""
+    k = call.keywords
+    if "VALE" in k:
+        if len(k["VALE"]) % 2:
+            call.fail("FUNCTION_2", "VALE", count=len(k["VALE"]))
+        return k["VALE"][0::2], k["VALE"][1::2], "VALE"
+    if "ABSCISSE" in k:
+        x, y, path = k["ABSCISSE"], k["ORDONNEE"], "ABSCISSE"
+    else:
+        x, y, path = k["VALE_PARA"].getValues(), k["VALE_FONC"].getValues(), "VALE_PARA"
+    if len(x) != len(y):
+        call.fail("FUNCTION_5", path, parameters=len(x), values=len(y))
+    return x, y, path

@@ -1,0 +1,112 @@
+"""The launcher: `lacon study.comm --unit 20=mesh.med`, `lacon study.export`."""
+
+import pathlib
+import sys
+
+from . import version
+
+#: exit statuses, DESIGN.md
+done, user_error, solution_failed, internal_error, check_failed = 0, 2, 3, 4, 5
+
+
+def parse(arguments):
+    import argparse
+
+    parser = argparse.ArgumentParser(
+        prog="lacon", description="Runs code_aster command files with the operators of Lacon.",
+        epilog="Exit status: 0 done, 2 user's error, 3 the solution failed, 4 internal error, 5 a check is NOOK.")
+    parser.add_argument("files", nargs="+", metavar="FILE", help="command files, in order, or one export file")
+    parser.add_argument("--unit", action="append", default=[], metavar="N=FILE", help="the file of unit N; may be repeated")
+    parser.add_argument("--base", metavar="FOLDER", help="folder of the base; otherwise STUDY.base beside the first command file")
+    parser.add_argument("--fresh", action="store_true", help="DEBUT empties the base first")
+    parser.add_argument("--checks", choices=("all",), help="all: a missed VALE_CALC is NOOK, not DIFF")
+    parser.add_argument("--json", metavar="FILE", help="write every check with its figures")
+    parser.add_argument("--timings", action="store_true", help="print where the time went")
+    parser.add_argument("--threads", type=int, metavar="N", help="threads of operators")
+    parser.add_argument("--version", action="version", version=f"lacon {version}")
+    return parser, parser.parse_args(arguments)
+
+
+def units_of(parser, options):
+    units = {}
+    for text in options.unit:
+        number, equals, path = text.partition("=")
+        if not equals or not number.isdigit() or not 1 <= int(number) <= 99 or not path:
+            parser.error(f"--unit {text}: give a number from 1 to 99 and a file, as in --unit 20=mesh.med")
+        if int(number) in units:
+            parser.error(f"--unit {number} is there twice")
+        units[int(number)] = path
+    if options.threads is not None and options.threads < 1:
+        parser.error("--threads: give a number of at least 1")
+    return units
+
+
+def main(arguments=None):
+    """@return the exit status"""
+    parser, options = parse(sys.argv[1:] if arguments is None else arguments)
+    units = units_of(parser, options)
+    sys.stdout.reconfigure(line_buffering=sys.stdout.isatty())
+    from . import messages
+
+    try:
+        status, diagnostic = _run(options, units)
+    except messages.AsterError as error:
+        for item in error.messages:
+            messages.show(item)
+        status, diagnostic = error.status, error.diagnostic
+    except FileNotFoundError as error:  # no catalogue: an installation that is not whole
+        print(f"<F> <INTERNAL> {error}", file=sys.stderr)
+        status, diagnostic = internal_error, "<F>_ABNORMAL_ABORT"
+    print(f"--- DIAGNOSTIC JOB : {diagnostic}", flush=True)
+    return status
+
+
+def _run(options, units):
+    """@return (exit status, words of the diagnosis)"""
+    from . import checks, execution, messages, study
+    from .export import read_export
+
+    files = [pathlib.Path(name) for name in options.files]
+    named, base, threads = [], options.base, options.threads
+    if files[0].suffix == ".export":
+        if len(files) > 1:
+            messages.fail("STUDY_22", str(files[1]))
+        export = read_export(files[0])
+        files, named = export.commands, export.named
+        units = {**export.units, **units}
+        base = base or export.base
+        if threads is None and export.parameters.get("ncpus", "").isdigit():
+            threads = max(1, int(export.parameters["ncpus"]))
+    execution.check_files(files)
+    base = base or files[0].with_suffix(".base")
+    run = study.Study(base, units, options.fresh, threads, options.checks == "all", execution.provided_names())
+    study.current = run
+    status, diagnostic = done, ""
+    try:
+        with execution.delivered(named):
+            execution.run_files(run, files)
+    except execution.Failure as failure:
+        status, diagnostic = failure.status, failure.diagnostic
+    finally:
+        try:
+            run.close()
+        except messages.AsterError as error:
+            for item in error.messages:
+                messages.show(item)
+            status, diagnostic = error.status, error.diagnostic
+    if status == done:
+        if any(check.status == "NOOK" for check in run.checks):
+            status, diagnostic = check_failed, "NOOK_TEST_RESU"
+        else:
+            diagnostic = "<A>_ALARM" if run.alarms else "OK"
+    if run.checks:
+        print(checks.summary(run.checks))
+    if options.json:
+        try:
+            checks.write_json(options.json, run.checks, diagnostic, status)
+        except OSError as error:
+            messages.show(messages.message("STUDY_3", options.json, folder=options.json, reason=error.strerror))
+            status, diagnostic = status or user_error, diagnostic if status else "<F>_ERROR"
+    if options.timings:
+        print(run.timings.table())
+    return status, diagnostic

@@ -1,0 +1,139 @@
+"""Orders: one command with complete keywords, handed to the executable of its operator; docs/structures.md section 4."""
+
+import json
+import os
+import pathlib
+import shutil
+import signal
+import sys
+import time
+
+from . import catalog, concepts
+from .messages import AsterError, ConvergenceError, InternalError, Message, SolutionError, message
+
+#: messages of a solution that failed in the linear solver; any other is one of Newton's method
+_linear_solver = ("FACTOR", "SINGULAR", "SOLVER")
+
+
+def operator_folder():
+    """Where the operators' executables are: LACON_BIN, or beside the launcher."""
+    said = os.environ.get("LACON_BIN")
+    return pathlib.Path(said) if said else pathlib.Path(os.path.realpath(sys.argv[0])).parent
+
+
+class Outcome:
+    """What an operator's process came to."""
+
+    def __init__(self, status, messages, phases, seconds):
+        self.status = status  #: of the process; negative: the signal that ended it
+        self.messages = messages
+        self.phases = phases  #: name -> seconds, as the operator measured them
+        self.seconds = seconds  #: wall time of the process
+
+
+def order(command, study, keywords, where, result=None, units=None, written=()):
+    """The order as JSON. `result`: {"id", "label", "reuse"}; `units`: number -> path."""
+    made = {"format": 1, "command": command, "base": str(study.base.folder)}
+    if result:
+        made["result"] = result
+    made["units"] = {str(k): str(v) for k, v in (units or {}).items()}
+    if written:
+        made["append"] = sorted(str(unit) for unit in written)
+    plugins = [str(folder) for folder in catalog.plugin_folders()]
+    if plugins:
+        made["plugins"] = plugins
+    made["source"] = where
+    made["keywords"] = concepts.to_json(keywords)
+    return made
+
+
+def run(program, made, folder, study):
+    """Start the operator on the order and wait for it. @return its Outcome. @throws InternalError where it does not exist"""
+    import subprocess
+
+    executable = operator_folder() / program
+    if not os.access(executable, os.X_OK):
+        raise InternalError([message("INTERNAL_2", made["source"], program=program, folder=operator_folder())])
+    number = len(list(folder.glob("*.order.json"))) + 1
+    stem = f"{number:03d}-{made['command'].lower()}"
+    order_file, status_file = folder / f"{stem}.order.json", folder / f"{stem}.status.json"
+    order_file.write_text(json.dumps(made, ensure_ascii=False, indent=1), encoding="utf-8")
+    environment = dict(os.environ)
+    if study.threads:
+        environment["LACON_THREADS"] = environment["OMP_NUM_THREADS"] = str(study.threads)
+    sys.stdout.flush()
+    sys.stderr.flush()
+    start = time.perf_counter()
+    quiet = subprocess.PIPE if study.ignored_alarms else None
+    process = subprocess.Popen([executable, order_file, "--status", status_file], env=environment, stderr=quiet, stdin=subprocess.DEVNULL)
+    try:
+        if quiet:
+            _forward(process.stderr, study.ignored_alarms)
+        process.wait()
+    except BaseException:
+        process.kill()
+        process.wait()
+        raise
+    seconds = time.perf_counter() - start
+    return Outcome(process.returncode, *_read_status(status_file, made["source"]), seconds)
+
+
+def _read_status(path, where):
+    """(messages, phases) of what an operator wrote about itself; nothing where it did not come to that."""
+    try:
+        data = json.loads(path.read_text(encoding="utf-8"))
+        messages = [Message(m["severity"], m["id"], m["text"], m.get("do", ""), where) for m in data.get("messages", [])]
+        return messages, dict(data.get("seconds", {}))
+    except (OSError, ValueError, KeyError, TypeError):
+        return [], {}
+
+
+def _forward(stream, ignored):
+    """Hand on what an operator says, without the alarms that the user does not want to see."""
+    hidden = False
+    for raw in stream:
+        line = raw.decode(errors="replace")
+        if line.startswith("<"):
+            hidden = line.startswith("<A>") and any(f"<{identifier}>" in line for identifier in ignored)
+        elif not line.startswith("    "):
+            hidden = False
+        if not hidden:
+            sys.stderr.write(line)
+    sys.stderr.flush()
+
+
+def raise_failure(outcome, program, where):
+    """The Python exception of an operator that did not end with 0."""
+    fatal = [m for m in outcome.messages if m.severity in "FS"]
+    if outcome.status == 2:
+        raise AsterError(fatal or [message("COMMAND_6", where, program=program)], shown=bool(fatal))
+    if outcome.status == 3:
+        items = fatal or [message("COMMAND_7", where, program=program)]
+        linear = any(m.id.startswith(_linear_solver) for m in items)
+        raise (SolutionError if linear else ConvergenceError)(items, shown=bool(fatal))
+    if outcome.status < 0:
+        try:
+            name = signal.Signals(-outcome.status).name
+        except ValueError:
+            name = f"signal {-outcome.status}"
+        raise InternalError([message("INTERNAL_3", where, program=program, how=f"it was ended by {name}")])
+    if fatal and outcome.status == 4:
+        raise InternalError(fatal, shown=True)
+    raise InternalError([message("INTERNAL_3", where, program=program, how=f"its exit status is {outcome.status}")])
+
+
+def keep_copy(base, identifier):
+    """A second link to a concept that `reuse=` is about to change; give it to put_back or throw_away."""
+    path = base.path(identifier)
+    copy = path.with_name(path.name + ".before.partial")
+    if copy.exists():
+        copy.unlink()
+    try:
+        os.link(path, copy)
+    except OSError:
+        shutil.copy2(path, copy)
+    return copy
+
+
+def put_back(base, identifier, copy):
+    os.replace(copy, base.path(identifier))

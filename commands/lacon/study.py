@@ -1,0 +1,159 @@
+"""A run: its base, its names, its files, and what DEBUT, POURSUITE and FIN do to them."""
+
+import atexit
+import os
+import pathlib
+import shutil
+import sys
+import tempfile
+
+from . import concepts
+from .base import Base
+from .messages import AsterError, fail, message, show
+from .namespace import Names
+from .timings import Timings
+
+#: the run of this process
+current = None
+
+
+class Study:
+    """Everything that one call of the launcher shares between its command files."""
+
+    def __init__(self, base_folder, units=None, fresh=False, threads=None, strict_checks=False, provided=None):
+        self.base_folder = pathlib.Path(base_folder)
+        self.units = dict(units or {})  #: number -> path
+        self.fresh = fresh
+        self.threads = threads
+        self.strict_checks = strict_checks
+        self.names = Names(provided or {})
+        self.base = None
+        self.open = False  #: between DEBUT or POURSUITE and FIN
+        self.ended = ""  #: where FIN was
+        self.alarm_is_error = False
+        self.ignored_alarms = frozenset()
+        self.alarms = 0
+        self.checks = []
+        self.written_units = set()
+        self.lost = {}
+        self.timings = Timings()
+        self._scratch = None
+        self._emptied = False
+
+    # ------------------------------------------------------------------------------------------- life
+
+    def start(self, keywords, where, resume):
+        """DEBUT, or with `resume` POURSUITE."""
+        name = "POURSUITE" if resume else "DEBUT"
+        if self.open:
+            fail("STUDY_9", where, command=name)
+        if self.base is None:
+            self.base = Base(self.base_folder, where, make=not resume, fresh=self.fresh and not resume)
+            if resume:
+                self.lost = self.names.restore(self.base)
+                self._explain_lost()
+            else:
+                self.names.forget_data(self.base)
+        elif not resume and self.fresh and not self._emptied:
+            fail("STUDY_10", where)
+        self._emptied = True
+        self.open, self.ended = True, ""
+        self.alarm_is_error = keywords["ERREUR"][0]["ALARME"] == "EXCEPTION"
+        self.ignored_alarms = frozenset(keywords.get("IGNORE_ALARM", ()))
+
+    def _explain_lost(self):
+        builtins = self.names.values.get("__builtins__")
+        if hasattr(builtins, "lost"):
+            builtins.lost.update(self.lost)
+
+    def finish(self, where):
+        """FIN: save; remove what neither a name, nor a concept, nor a live Python object refers to."""
+        self.save()
+        keep = set(self.base.registry["labels"].values())
+        keep |= {i for i, item in self.base.live_objects() if not item.destroyed}
+        self.base.clean(keep)
+        self.open, self.ended = False, where
+
+    def save(self):
+        """Write what a later POURSUITE needs."""
+        if self.base is not None:
+            self.names.save(self.base)
+            self.base.write()
+
+    def close(self):
+        """The end of the run, whatever brought it: save, and after FIN remove what no name refers to any more."""
+        try:
+            if self.base is not None:
+                self.save()
+                if self.ended:
+                    self.base.clean(set(self.base.registry["labels"].values()))
+        finally:
+            if self.base is not None:
+                self.base.close()
+                self.base = None
+            if self._scratch:
+                shutil.rmtree(self._scratch, ignore_errors=True)
+
+    def scratch(self):
+        """Folder of orders and status files, removed at the end; LACON_ORDERS names one that stays."""
+        if os.environ.get("LACON_ORDERS"):
+            folder = pathlib.Path(os.environ["LACON_ORDERS"])
+            folder.mkdir(parents=True, exist_ok=True)
+            return folder
+        if self._scratch is None:
+            self._scratch = pathlib.Path(tempfile.mkdtemp(prefix="lacon-"))
+            atexit.register(shutil.rmtree, self._scratch, ignore_errors=True)
+        return self._scratch
+
+    # ------------------------------------------------------------------------------------------- messages
+
+    def inform(self, identifier, where="", **values):
+        """An alarm or an information from the Python side."""
+        item = message(identifier, where, **values)
+        if item.id in self.ignored_alarms:
+            return
+        show(item)
+        self.count_alarms([item])
+
+    def count_alarms(self, items):
+        """Count alarms that were shown. @throws AsterError where alarms are errors"""
+        alarms = [m for m in items if m.severity == "A" and m.id not in self.ignored_alarms]
+        self.alarms += len(alarms)
+        if alarms and self.alarm_is_error:
+            raise AsterError([m._replace(severity="F") for m in alarms], shown=False)
+
+    # ------------------------------------------------------------------------------------------- units
+
+    def input_unit(self, number, where):
+        """The file of a unit that a command reads."""
+        if number not in self.units:
+            fail("COMMAND_4", where, unit=number)
+        path = self.units[number]
+        if not os.path.isfile(path) or not os.access(path, os.R_OK):
+            fail("COMMAND_5", where, unit=number, file=path)
+        return os.path.abspath(path)
+
+    def output_unit(self, number, suffix, where):
+        """The file of a unit that a command writes; beside the command file where none was given."""
+        path = os.path.abspath(self.units.get(number, self.base_folder.parent / f"{self.base_folder.stem}.{number}{suffix}"))
+        folder = os.path.dirname(path)
+        if not os.path.isdir(folder) or not os.access(folder, os.W_OK) or os.path.isdir(path):
+            fail("COMMAND_8", where, unit=number, file=path)
+        return path
+
+    # ------------------------------------------------------------------------------------------- names
+
+    def destroy(self, items, where):
+        """DETRUIRE: take concepts out of the study and out of its names."""
+        for item in items:
+            item.destroyed = where
+        for name, value in list(self.names.user().items()):
+            if isinstance(value, concepts.Concept) and value.destroyed:
+                del self.names.values[name]
+        self.names.update_labels(self.base)
+        self.base.write(where)
+        kept = set(self.base.registry["labels"].values()) | {i for i, item in self.base.live_objects() if not item.destroyed}
+        self.base.clean(kept)
+
+    def progress(self, text):
+        print(text, flush=sys.stdout.isatty())
