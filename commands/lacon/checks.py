@@ -101,10 +101,10 @@ def _result_check(call, test, path):
     order, instant = _order(call, test, path)
     field = result.field(test["NOM_CHAM"], order)
     if field is None:
-        call.fail("CHECK_3", f"{path}/NOM_CHAM", field=test["NOM_CHAM"], label=result.label, instant=f"{instant:g}",
+        call.fail("TEST_RESU_3", f"{path}/NOM_CHAM", field=test["NOM_CHAM"], label=result.label, instant=f"{instant:g}",
                   known=", ".join(result.field_names()))
     if test["NOM_CMP"] not in field.components:
-        call.fail("CHECK_4", f"{path}/NOM_CMP", component=test["NOM_CMP"], field=test["NOM_CHAM"], known=", ".join(field.components))
+        call.fail("TEST_RESU_4", f"{path}/NOM_CMP", component=test["NOM_CMP"], field=test["NOM_CHAM"], known=", ".join(field.components))
     values, place = _select(call, test, path, field)
     value = _reduce(values, test.get("TYPE_TEST"))
     if test["VALE_ABS"] == "OUI":
@@ -124,7 +124,7 @@ def _order(call, test, path):
     if "NUME_ORDRE" in test:
         found = [(order, t) for order, t in instants if order == test["NUME_ORDRE"]]
         if not found:
-            call.fail("CHECK_1", f"{path}/NUME_ORDRE", what=f"order number {test['NUME_ORDRE']}", label=test["RESULTAT"].label, known=known)
+            call.fail("TEST_RESU_1", f"{path}/NUME_ORDRE", what=f"order number {test['NUME_ORDRE']}", label=test["RESULTAT"].label, known=known)
         return found[0]
     wanted = test["INST"]
     tolerance = test["TOLE_MACHINE"][1] if len(test["TOLE_MACHINE"]) > 1 else 1e-6
@@ -132,9 +132,9 @@ def _order(call, test, path):
     scale = abs(wanted) if kind == "RELATIF" and wanted else 1.0
     found = [(order, t) for order, t in instants if abs(t - wanted) <= tolerance * scale]
     if not found:
-        call.fail("CHECK_1", f"{path}/INST", what=f"instant {wanted:g}", label=test["RESULTAT"].label, known=known)
+        call.fail("TEST_RESU_1", f"{path}/INST", what=f"instant {wanted:g}", label=test["RESULTAT"].label, known=known)
     if len(found) > 1:
-        call.fail("CHECK_2", f"{path}/INST", instant=f"{wanted:g}", found=", ".join(f"{t:.10g}" for _, t in found))
+        call.fail("TEST_RESU_2", f"{path}/INST", instant=f"{wanted:g}", found=", ".join(f"{t:.10g}" for _, t in found))
     return found[0]
 
 
@@ -158,10 +158,10 @@ def _select(call, test, path, field):
         elif field.location == "ELNO":
             rows &= numpy.isin(_nodes_of(mesh, field.support), members)
         else:
-            call.fail("CHECK_5", f"{path}/{keyword}", keyword=keyword, field=field.name)
+            call.fail("TEST_RESU_5", f"{path}/{keyword}", keyword=keyword, field=field.name)
     if "POINT" in test:
         if field.offset is None:
-            call.fail("CHECK_5", f"{path}/POINT", keyword="POINT", field=field.name)
+            call.fail("TEST_RESU_5", f"{path}/POINT", keyword="POINT", field=field.name)
         rank = numpy.concatenate([numpy.arange(n) for n in numpy.diff(field.offset)]) if len(owner) else owner
         rows &= rank == test["POINT"] - 1
         words.append(f"point {test['POINT']}")
@@ -170,11 +170,11 @@ def _select(call, test, path, field):
     values = field.values[rows, column]
     place = " ".join(words)
     if len(values) == 0:
-        call.fail("CHECK_6", path, component=test["NOM_CMP"], field=field.name, place=place or "the whole mesh")
+        call.fail("TEST_RESU_6", path, component=test["NOM_CMP"], field=field.name, place=place or "the whole mesh")
     if "TYPE_TEST" in test:
         place = f"{test['TYPE_TEST']} {place}".strip()
     elif len(values) > 1:
-        call.fail("CHECK_7", path, count=len(values), field=field.name, place=place)
+        call.fail("TEST_RESU_7", path, count=len(values), field=field.name, place=place)
     return values, place
 
 
@@ -186,13 +186,13 @@ def _members(call, test, path, mesh, keyword, kind):
         letter = "N" if kind == "nodes" else "M"
         if name[:1] == letter and name[1:].isdigit() and 1 <= int(name[1:]) <= count:
             return [int(name[1:]) - 1]
-        call.fail("CHECK_8", f"{path}/{keyword}", name=name, what="node" if kind == "nodes" else "cell", letter=letter, count=count)
+        call.fail("TEST_RESU_8", f"{path}/{keyword}", name=name, what="node" if kind == "nodes" else "cell", letter=letter, count=count)
     members = mesh.group(kind, name)
     if members is None:
         from .checker import _nearest
 
         known = mesh.group_names(kind)
-        call.fail("CHECK_9", f"{path}/{keyword}", name=name, what=kind, known=", ".join(known) or "none", nearest=_nearest(name, known))
+        call.fail("TEST_RESU_9", f"{path}/{keyword}", name=name, what=kind, known=", ".join(known) or "none", nearest=_nearest(name, known))
     return members
 
 

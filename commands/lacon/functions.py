@@ -15,7 +15,7 @@ class Piecewise:
         self.left, self.right = left, right
 
     def value(self, x, name="function"):
-        """@throws AsterError FUNCTION_3 where x lies outside and the function is not prolonged there"""
+        """@throws AsterError DEFI_FONCTION_3 where x lies outside and the function is not prolonged there"""
         if hasattr(x, "__len__"):
             import numpy
 
@@ -33,7 +33,7 @@ class Piecewise:
         if x < low or x > high:
             side = self.left if x < low else self.right
             if side == "EXCLU":
-                fail("FUNCTION_3", name=name, x=f"{x:g}", low=f"{low:g}", high=f"{high:g}")
+                fail("DEFI_FONCTION_3", name=name, x=f"{x:g}", low=f"{low:g}", high=f"{high:g}")
             if side == "CONSTANT":
                 return self.y[0] if x < low else self.y[-1]
         i = min(max(bisect.bisect_right(self.x, x) - 1, 0), len(self.x) - 2)
@@ -42,7 +42,7 @@ class Piecewise:
     def _alone(self, x, name):
         side = self.left if x < self.x[0] else self.right
         if x != self.x[0] and side == "EXCLU":
-            fail("FUNCTION_3", name=name, x=f"{x:g}", low=f"{self.x[0]:g}", high=f"{self.x[0]:g}")
+            fail("DEFI_FONCTION_3", name=name, x=f"{x:g}", low=f"{self.x[0]:g}", high=f"{self.x[0]:g}")
         return self.y[0]
 
     def _between(self, i, x):
@@ -73,16 +73,16 @@ def defi_fonction(call):
     if any(not a < b for a, b in zip(x, x[1:])):
         if k["VERIF"] == "CROISSANT":
             bad = next(i for i in range(len(x) - 1) if not x[i] < x[i + 1])
-            call.fail("FUNCTION_1", path, first=f"{x[bad]:g}", second=f"{x[bad + 1]:g}")
+            call.fail("DEFI_FONCTION_1", path, first=f"{x[bad]:g}", second=f"{x[bad + 1]:g}")
         order = sorted(range(len(x)), key=lambda i: x[i])
         x, y = [x[i] for i in order], [y[i] for i in order]
         if any(a == b for a, b in zip(x, x[1:])):
             bad = next(a for a, b in zip(x, x[1:]) if a == b)
-            call.fail("FUNCTION_1", path, first=f"{bad:g}", second=f"{bad:g}")
+            call.fail("DEFI_FONCTION_1", path, first=f"{bad:g}", second=f"{bad:g}")
     interpolation = k["INTERPOL"] * 2 if len(k["INTERPOL"]) == 1 else k["INTERPOL"]
     for values, scale, what in ((x, interpolation[0], "parameter"), (y, interpolation[1], "value")):
         if scale == "LOG" and min(values) <= 0.0:
-            call.fail("FUNCTION_4", path, what=what, value=f"{min(values):g}")
+            call.fail("DEFI_FONCTION_4", path, what=what, value=f"{min(values):g}")
 
     def fill(file):
         from .hdf5 import text_type
@@ -102,12 +102,12 @@ def _points(call):
     k = call.keywords
     if "VALE" in k:
         if len(k["VALE"]) % 2:
-            call.fail("FUNCTION_2", "VALE", count=len(k["VALE"]))
+            call.fail("DEFI_FONCTION_2", "VALE", count=len(k["VALE"]))
         return k["VALE"][0::2], k["VALE"][1::2], "VALE"
     if "ABSCISSE" in k:
         x, y, path = k["ABSCISSE"], k["ORDONNEE"], "ABSCISSE"
     else:
         x, y, path = k["VALE_PARA"].getValues(), k["VALE_FONC"].getValues(), "VALE_PARA"
     if len(x) != len(y):
-        call.fail("FUNCTION_5", path, parameters=len(x), values=len(y))
+        call.fail("DEFI_FONCTION_5", path, parameters=len(x), values=len(y))
     return x, y, path

@@ -4,7 +4,7 @@
 def _increasing(call, values, path):
     for a, b in zip(values, values[1:]):
         if not a < b:
-            call.fail("LIST_1", path, first=f"{a:g}", second=f"{b:g}")
+            call.fail("DEFI_LIST_1", path, first=f"{a:g}", second=f"{b:g}")
 
 
 def defi_list_reel(call):
@@ -23,14 +23,14 @@ def _interval(call, start, interval, path):
     """Values after `start` up to JUSQU_A; the last one is JUSQU_A to the bit."""
     end = interval["JUSQU_A"]
     if not end > start:
-        call.fail("LIST_1", f"{path}/JUSQU_A", first=f"{start:g}", second=f"{end:g}")
+        call.fail("DEFI_LIST_1", f"{path}/JUSQU_A", first=f"{start:g}", second=f"{end:g}")
     if "NOMBRE" in interval:
         count = interval["NOMBRE"]
     else:
         exact = (end - start) / interval["PAS"]
         count = round(exact)
         if count < 1 or abs(exact - count) > 1e-3:
-            call.fail("LIST_2", f"{path}/PAS", step=f"{interval['PAS']:g}", start=f"{start:g}", end=f"{end:g}")
+            call.fail("DEFI_LIST_2", f"{path}/PAS", step=f"{interval['PAS']:g}", start=f"{start:g}", end=f"{end:g}")
     step = (end - start) / count
     return [start + i * step for i in range(1, count)] + [end]
 
@@ -46,9 +46,9 @@ def defi_list_inst(call):
         path = "DEFI_LIST/VALE"
         _increasing(call, values, path)
     if len(values) < 2:
-        call.fail("LIST_3", path)
+        call.fail("DEFI_LIST_3", path)
     if k["METHODE"] == "AUTO":
-        call.study.inform("LIST_4", f"DEFI_LIST_INST/METHODE, {call.where}")
+        call.study.inform("DEFI_LIST_4", f"DEFI_LIST_INST/METHODE, {call.where}")
 
     def fill(file):
         file.create_dataset("values", data=values, dtype="f8")
