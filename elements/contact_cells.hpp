@@ -7,15 +7,15 @@ namespace lacon {
 
 /// Contact cells of one zone. Cell c has the points offset[c] to offset[c + 1].
 struct ContactCells {
-  int dimension = 2;                      ///< of the space; reference spaces of skins have one less
-  std::vector<std::int32_t> slave;        ///< of each contact cell: index into Contact::slaves
-  std::vector<std::int32_t> master;       ///< cell of the mesh
+  int dimension = 2;                 ///< of the space; reference spaces of skins have one less
+  std::vector<std::int32_t> slave;   ///< of each contact cell: index into Contact::slaves
+  std::vector<std::int32_t> master;  ///< cell of the mesh
   std::vector<std::int64_t> offset{0};
-  std::vector<double> slave_point;        ///< (points, dimension - 1): reference coordinates on the slave
-  std::vector<double> master_point;       ///< (points, dimension - 1): their images on the master
-  std::vector<double> weight;             ///< (points): weights in the slave's reference space
+  std::vector<double> slave_point;   ///< (points, dimension - 1): reference coordinates on the slave
+  std::vector<double> master_point;  ///< (points, dimension - 1): their images on the master
+  std::vector<double> weight;        ///< (points): weights in the slave's reference space
   std::vector<std::int64_t> vertex_offset{0};
-  std::vector<double> vertex;             ///< (vertices, dimension - 1): the clipped polygon in the slave's reference space
+  std::vector<double> vertex;  ///< (vertices, dimension - 1): the clipped polygon in the slave's reference space
 
   std::size_t size() const { return slave.size(); }
 };

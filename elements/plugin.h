@@ -20,12 +20,19 @@ extern "C" {
 #define LACON_ABI 1
 #define LACON_LANES 8
 
+#if defined(__GNUC__)
+#define LACON_PLUGIN_EXPORT __attribute__((visibility("default")))
+#else
+#define LACON_PLUGIN_EXPORT
+#endif
+
 /* Values of `error`. */
 enum lacon_element_error {
   LACON_FINE = 0,
   LACON_BAD_JACOBIAN = 1,  /* zero, negative or of mixed sign at the integration points */
   LACON_BAD_PARAMETER = 2, /* a material parameter outside its range */
-  LACON_NOT_FINITE = 3
+  LACON_NOT_FINITE = 3,
+  LACON_BAD_BATCH = 4      /* the kernel does not serve elements of this kind: the catalogue row is wrong */
 };
 
 /* Solid elements: stiffness, internal forces, stresses at displacement u. ndof = n_nodes * dimension, node by node. */
@@ -103,7 +110,7 @@ typedef struct lacon_plugin_table {
 } lacon_plugin_table;
 
 /* The one entry point of a plug-in's library. */
-const lacon_plugin_table* lacon_plugin(void);
+LACON_PLUGIN_EXPORT const lacon_plugin_table* lacon_plugin(void);
 
 #ifdef __cplusplus
 }

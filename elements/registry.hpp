@@ -13,11 +13,14 @@
 namespace lacon {
 
 /// Kernels by name and element rows by name. Built-in rows come from the catalogue, others from the plugin.toml of plug-ins.
+/// Not for several threads at once; the kernels that it hands out are, and live as long as the registry.
 class Registry {
  public:
-  /// Looks in `folders`, then LACON_PLUGIN_PATH, then the folder installed beside the executable. A library is opened when one
-  /// of its kernels is first asked for. Throws PLUGIN_1 (with the file) for a bad plugin.toml, PLUGIN_2 for a row that names an
-  /// unknown cell.
+  /// Looks in `folders`, then LACON_PLUGIN_PATH (separated by colons), then the folder installed beside the executable,
+  /// <executable>/../../lib/lacon/plugins. Each of them is a plug-in, or holds plug-ins. A library is opened when one of its
+  /// kernels is first asked for. Throws PLUGIN_1 (with the file) for a folder without plug-in, a bad plugin.toml, or a name
+  /// that is there twice, PLUGIN_2 for a row that names a cell, rule, component or plug-in that does not exist, or is there
+  /// already.
   explicit Registry(std::span<const std::filesystem::path> folders = {});
   ~Registry();
   Registry(const Registry&) = delete;
@@ -29,8 +32,9 @@ class Registry {
   const catalog::ElementRow* find_element(std::string_view modelisation, CellType cell) const;
   std::vector<std::string> modelisations() const;
 
-  /// The kernel that serves an option of an element; throws PLUGIN_1 or PLUGIN_3 (no such plug-in, kernel or option; wrong ABI).
-  const lacon_kernel& kernel(const catalog::ElementRow& element, std::string_view option);
+  /// The kernel that serves an option of an element. Throws PLUGIN_3 where no row, plug-in or kernel serves it or the kernel is
+  /// of another kind than the caller's, PLUGIN_1 for a library that cannot be opened or was built for another ABI.
+  const lacon_kernel& kernel(const catalog::ElementRow& element, std::string_view option, lacon_kernel_kind kind);
   bool has_kernel(const catalog::ElementRow& element, std::string_view option) const;
 
  private:

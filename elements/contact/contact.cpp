@@ -1,0 +1,120 @@
+// Contact cells of the LAC method: integrated gap, measures and the conservative contact matrix.
+#include <array>
+#include <cmath>
+#include <cstdint>
+
+#include "lacon/elements/plugin.h"
+
+namespace {
+
+template <int D>
+using Vector = std::array<double, D>;
+
+// A Jacobian below this share of the size of its terms is round-off.
+constexpr double flat = 1e-13;
+
+template <int D>
+double dot(const Vector<D>& a, const Vector<D>& b) {
+  double sum = 0;
+  for (int i = 0; i < D; ++i) sum += a[i] * b[i];
+  return sum;
+}
+
+/// Sum of shape_a nodes_a. @param nodes (n, D)
+template <int D>
+Vector<D> interpolate(const double* shape, int stride, const double* nodes, int n) {
+  Vector<D> value{};
+  for (int a = 0; a < n; ++a)
+    for (int i = 0; i < D; ++i) value[i] += shape[a * stride] * nodes[a * D + i];
+  return value;
+}
+
+/// The outward normal of a slave skin at a point, its length being the Jacobian; `scale` gets the size of the terms.
+template <int D>
+Vector<D> area_normal(const double* gradient, const double* nodes, int n, double& scale) {
+  const Vector<D> t = interpolate<D>(gradient, D - 1, nodes, n);
+  if constexpr (D == 2) {
+    scale = 0;
+    for (int a = 0; a < n; ++a)
+      scale += std::abs(gradient[a]) * (std::abs(nodes[2 * a] - nodes[0]) + std::abs(nodes[2 * a + 1] - nodes[1]));
+    return {t[1], -t[0]};
+  } else {
+    const Vector<D> s = interpolate<D>(gradient + 1, D - 1, nodes, n);
+    scale = std::sqrt(dot<D>(t, t) * dot<D>(s, s));
+    return {t[1] * s[2] - t[2] * s[1], t[2] * s[0] - t[0] * s[2], t[0] * s[1] - t[1] * s[0]};
+  }
+}
+
+/// METHOD.md 3.4 and 5.4 (b): at each point the gap g = (x_m - x).n_e; with the measure J of TYPE_JACOBIEN (of the initial
+/// geometry or of the current one, in both) G = sum w J g and C = sum w J (-phi_i n_e on the slave, +phi_j n_e on the master).
+template <int D>
+void lac(const lacon_contact_batch* batch) {
+  const lacon_contact_batch& b = *batch;
+  const int slaves = b.n_slave_nodes, masters = b.n_master_nodes, dofs = (slaves + masters) * D;
+  for (std::int64_t cell = 0; cell < b.n_cells; ++cell) {
+    if (b.dimension != D) {
+      b.error[cell] = LACON_BAD_BATCH;
+      continue;
+    }
+    const double* initial = b.slave_initial + cell * slaves * D;
+    const double* current = b.slave + cell * slaves * D;
+    const double* master = b.master + cell * masters * D;
+    const double* normals = b.slave_normal ? b.slave_normal + cell * slaves * D : nullptr;
+    double* coupling = b.coupling ? b.coupling + cell * dofs : nullptr;
+    for (int i = 0; coupling && i < dofs; ++i) coupling[i] = 0;
+    double gap = 0, measure = 0, current_measure = 0;
+    bool bad = false;
+    for (std::int64_t p = b.offset[cell]; p < b.offset[cell + 1]; ++p) {
+      const double* shape = b.slave_shape + p * slaves;
+      const double* master_shape = b.master_shape + p * masters;
+      const double* gradient = b.slave_gradient + p * slaves * (D - 1);
+      double scale, scale0;
+      Vector<D> n = area_normal<D>(gradient, current, slaves, scale);
+      const Vector<D> n0 = area_normal<D>(gradient, initial, slaves, scale0);
+      const double jacobian = std::sqrt(dot<D>(n, n)), jacobian0 = std::sqrt(dot<D>(n0, n0));
+      bad |= !(jacobian > flat * scale) || !(jacobian0 > flat * scale0);
+      double length = jacobian;
+      if (normals) {
+        n = interpolate<D>(shape, 1, normals, slaves);
+        length = std::sqrt(dot<D>(n, n));
+        bad |= !(length > flat);  // nodal normals that cancel
+      }
+      for (double& component : n) component /= length;
+      const Vector<D> x = interpolate<D>(shape, 1, current, slaves), image = interpolate<D>(master_shape, 1, master, masters);
+      Vector<D> across;
+      for (int i = 0; i < D; ++i) across[i] = image[i] - x[i];
+      const double g = dot<D>(across, n), w = b.weight[p] * (b.current_jacobian ? jacobian : jacobian0);
+      if (b.point_gap) b.point_gap[p] = g;
+      gap += w * g;
+      measure += w;
+      current_measure += b.weight[p] * jacobian;
+      if (!coupling) continue;
+      for (int i = 0; i < D; ++i) {
+        const double wn = w * n[i];
+        for (int a = 0; a < slaves; ++a) coupling[a * D + i] -= wn * shape[a];
+        for (int a = 0; a < masters; ++a) coupling[(slaves + a) * D + i] += wn * master_shape[a];
+      }
+    }
+    if (b.gap) b.gap[cell] = gap;
+    if (b.measure) b.measure[cell] = measure;
+    if (b.current_measure) b.current_measure[cell] = current_measure;
+    const bool finite = std::isfinite(gap) && std::isfinite(measure) && std::isfinite(current_measure);
+    b.error[cell] = bad ? LACON_BAD_JACOBIAN : finite ? LACON_FINE : LACON_NOT_FINITE;
+  }
+}
+
+const lacon_kernel kernels[] = {
+    {"lac_2d", LACON_CONTACT, nullptr, nullptr, lac<2>, nullptr},
+    {"lac_3d", LACON_CONTACT, nullptr, nullptr, lac<3>, nullptr},
+};
+const lacon_plugin_table table = {LACON_ABI,
+                                  sizeof(lacon_solid_batch),
+                                  sizeof(lacon_load_batch),
+                                  sizeof(lacon_contact_batch),
+                                  "contact",
+                                  sizeof kernels / sizeof *kernels,
+                                  kernels};
+
+}  // namespace
+
+extern "C" const lacon_plugin_table* lacon_plugin(void) { return &table; }

@@ -1,0 +1,52 @@
+#pragma once
+// For kernels: the same quantity of LACON_LANES elements as one value that the compiler keeps in vector registers.
+#include <cmath>
+#include <cstdint>
+#include <cstring>
+
+#include "lacon/elements/plugin.h"
+
+// A kernel that is marked so is compiled for several instruction sets; the loader takes the best one that the processor has.
+#if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__)
+#define LACON_KERNEL __attribute__((target_clones("default", "arch=haswell", "arch=skylake-avx512")))
+#else
+#define LACON_KERNEL
+#endif
+
+namespace lacon {
+
+/// One double for each element of a block.
+using Lanes = double __attribute__((vector_size(LACON_LANES * sizeof(double)), aligned(sizeof(double)), may_alias));
+
+/// Item `index` of an array whose fastest index is the lane.
+inline const Lanes& lanes(const double* array, std::int64_t index) {
+  return *reinterpret_cast<const Lanes*>(array + index * LACON_LANES);
+}
+inline Lanes& lanes(double* array, std::int64_t index) { return *reinterpret_cast<Lanes*>(array + index * LACON_LANES); }
+
+/// Items `first` to `first + count` of an array, set to zero.
+inline void clear_lanes(double* array, std::int64_t first, std::int64_t count) {
+  std::memset(array + first * LACON_LANES, 0, static_cast<std::size_t>(count) * LACON_LANES * sizeof(double));
+}
+
+/// What went wrong in each lane: the first thing that did.
+struct LaneErrors {
+  std::int32_t code[LACON_LANES] = {};
+
+  void set(int lane, bool wrong, std::int32_t error) {
+    if (wrong && code[lane] == LACON_FINE) code[lane] = error;
+  }
+  /// `values` that are not numbers, or not finite.
+  void check_finite(const Lanes& values) {
+    for (int l = 0; l < LACON_LANES; ++l) set(l, !std::isfinite(values[l]), LACON_NOT_FINITE);
+  }
+  void store(std::int32_t* error, std::int64_t block) const { std::memcpy(error + block * LACON_LANES, code, sizeof code); }
+};
+
+/// Say of every element of a batch that the kernel does not serve its kind.
+template <class Batch>
+void refuse(const Batch& batch) {
+  for (std::int64_t i = 0; i < std::int64_t{batch.n_blocks} * LACON_LANES; ++i) batch.error[i] = LACON_BAD_BATCH;
+}
+
+}  // namespace lacon

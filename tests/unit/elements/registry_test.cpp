@@ -1,0 +1,240 @@
+// Plug-ins: found, checked and refused with the file's name.
+#include "lacon/elements/registry.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <unistd.h>
+
+#include <cstdlib>
+#include <fstream>
+#include <functional>
+
+#include "lacon/catalog/messages.hpp"
+
+namespace {
+
+namespace fs = std::filesystem;
+using lacon::Registry;
+using testing::AllOf;
+using testing::HasSubstr;
+
+/// A folder for plug-ins that goes away at the end.
+struct Plugins : testing::Test {
+  fs::path folder = fs::temp_directory_path() / ("lacon_plugins_" + std::to_string(::getpid()));
+
+  Plugins() { fs::create_directories(folder); }
+  ~Plugins() override {
+    ::unsetenv("LACON_PLUGIN_PATH");
+    fs::remove_all(folder);
+  }
+
+  fs::path write(const std::string& name, const std::string& rows) {
+    fs::create_directories(folder / name);
+    std::ofstream(folder / name / "plugin.toml") << rows;
+    return folder / name;
+  }
+  /// Put the test library `library` (of broken.cpp) in the folder of the plug-in `name`.
+  void place_library(const std::string& name, const std::string& library) {
+    fs::create_directories(folder / name);
+    fs::copy_file(fs::path(LACON_BINARY_DIR) / "tests" / "broken" / ("lib" + library + ".so"),
+                  folder / name / ("lib" + name + ".so"));
+  }
+};
+
+/// The message of the error that `action` raises.
+lacon::Message message_of(const std::function<void()>& action) {
+  try {
+    action();
+  } catch (const lacon::Error& error) {
+    return error.message();
+  }
+  ADD_FAILURE() << "no error";
+  return {};
+}
+
+/// A row of a plug-in, with `changed` in place of the line that starts so.
+std::string row(const std::string& key = "", const std::string& changed = "") {
+  const std::pair<std::string, std::string> lines[] = {
+      {"modelisation", "modelisation = 'D_TEST'"},
+      {"phenomenon", "phenomenon = 'MECANIQUE'"},
+      {"role", "role = 'solid'"},
+      {"points", "points = { TRIA3 = 1, QUAD4 = 4 }"},
+      {"dofs", "dofs = ['DX', 'DY']"},
+      {"stress", "stress = ['SIXX', 'SIYY', 'SIZZ', 'SIXY']"},
+      {"kernels", "kernels = { FULL_MECA = 'solid/plane_strain_small_elastic' }"}};
+  std::string text = "[[element]]\n";
+  for (const auto& [name, line] : lines) text += (name == key ? changed : line) + "\n";
+  return text;
+}
+
+TEST_F(Plugins, EveryKernelOfTheCatalogueExists) {
+  Registry registry;
+  int kernels = 0;
+  for (const auto& element : lacon::catalog::elements()) {
+    EXPECT_EQ(registry.find_element(element.name), &element);
+    EXPECT_EQ(registry.find_element(element.modelisation, element.cell), &element);
+    for (const auto& option : element.kernels) {
+      const auto kind = option.option == "FULL_MECA" ? LACON_SOLID : option.option == "RIGI_CONT" ? LACON_CONTACT : LACON_LOAD;
+      const lacon_kernel& kernel = registry.kernel(element, option.option, kind);
+      EXPECT_TRUE(std::string(option.kernel).ends_with(std::string("/") + kernel.name)) << element.name;
+      EXPECT_TRUE(registry.has_kernel(element, option.option));
+      ++kernels;
+    }
+  }
+  EXPECT_GE(kernels, 9);
+  EXPECT_THAT(registry.modelisations(), testing::Contains("D_PLAN"));
+}
+
+TEST_F(Plugins, SolidKernelSaysWhichParametersItTakes) {
+  Registry registry;
+  const auto& kernel = registry.kernel(*registry.find_element("D_PLAN/TRIA3"), "FULL_MECA", LACON_SOLID);
+  ASSERT_STREQ(kernel.parameters[0], "ELAS/E");
+  ASSERT_STREQ(kernel.parameters[1], "ELAS/NU");
+  EXPECT_EQ(kernel.parameters[2], nullptr);
+}
+
+TEST_F(Plugins, WhatDoesNotExistIsNotFound) {
+  Registry registry;
+  EXPECT_EQ(registry.find_element("D_PLAN/PYRAM5"), nullptr);
+  EXPECT_EQ(registry.find_element("C_PLAN", lacon::CellType::TRIA3), nullptr);
+  EXPECT_FALSE(registry.has_kernel(*registry.find_element("D_PLAN/TRIA3"), "RIGI_CONT"));
+}
+
+TEST_F(Plugins, AnOptionWithoutKernelOrOfAnotherKindIsRefused) {
+  Registry registry;
+  const auto& solid = *registry.find_element("D_PLAN/TRIA3");
+  lacon::Message message = message_of([&] { registry.kernel(solid, "RIGI_CONT", LACON_CONTACT); });
+  EXPECT_EQ(message.id, "PLUGIN_3");
+  EXPECT_THAT(message.text, AllOf(HasSubstr("D_PLAN/TRIA3"), HasSubstr("RIGI_CONT")));
+  message = message_of([&] { registry.kernel(solid, "FULL_MECA", LACON_LOAD); });
+  EXPECT_EQ(message.id, "PLUGIN_3");
+  EXPECT_THAT(message.text, AllOf(HasSubstr("libsolid.so"), HasSubstr("solid elements")));
+}
+
+TEST_F(Plugins, RowsOfAPluginServeItsCells) {
+  const fs::path plugin = write("test_rows", row());
+  Registry registry(std::vector{plugin});
+  const auto* element = registry.find_element("D_TEST", lacon::CellType::QUAD4);
+  ASSERT_NE(element, nullptr);
+  EXPECT_EQ(element->name, "D_TEST/QUAD4");
+  EXPECT_EQ(element->points, 4);
+  EXPECT_EQ(element->role, lacon::catalog::Role::solid);
+  EXPECT_THAT(element->dofs, testing::ElementsAre("DX", "DY"));
+  EXPECT_THAT(element->stress, testing::ElementsAre("SIXX", "SIYY", "SIZZ", "SIXY"));
+  EXPECT_STREQ(registry.kernel(*element, "FULL_MECA", LACON_SOLID).name, "plane_strain_small_elastic");
+  EXPECT_THAT(registry.modelisations(), testing::ElementsAre("D_PLAN", "D_TEST"));
+}
+
+TEST_F(Plugins, AreFoundOnThePathAlsoInAFolderOfSeveral) {
+  write("test_one", row());
+  write("test_two", row("modelisation", "modelisation = 'D_TWO'"));
+  ::setenv("LACON_PLUGIN_PATH", folder.c_str(), 1);
+  {
+    Registry registry;
+    EXPECT_NE(registry.find_element("D_TEST/TRIA3"), nullptr);
+    EXPECT_NE(registry.find_element("D_TWO/TRIA3"), nullptr);
+  }
+  const std::string path = (folder / "test_one").string() + "/::" + (folder / "test_two").string();
+  ::setenv("LACON_PLUGIN_PATH", path.c_str(), 1);
+  Registry registry(std::vector{folder / "test_two"});  // the same one twice is one
+  EXPECT_NE(registry.find_element("D_TEST/TRIA3"), nullptr);
+  EXPECT_NE(registry.find_element("D_TWO/TRIA3"), nullptr);
+}
+
+TEST_F(Plugins, AFolderThatHoldsNoneIsRefused) {
+  for (const fs::path& bad : {folder, folder / "missing"}) {
+    ::unsetenv("LACON_PLUGIN_PATH");
+    const auto from_order = message_of([&] { Registry registry(std::vector{bad}); });
+    ::setenv("LACON_PLUGIN_PATH", bad.c_str(), 1);
+    const auto from_path = message_of([&] { Registry registry; });
+    for (const auto& message : {from_order, from_path}) {
+      EXPECT_EQ(message.id, "PLUGIN_1");
+      EXPECT_THAT(message.text, HasSubstr(bad.string()));
+    }
+  }
+}
+
+TEST_F(Plugins, TwoOfOneNameAreRefused) {
+  const fs::path plugin = write("solid", row());
+  const auto message = message_of([&] { Registry registry(std::vector{plugin}); });
+  EXPECT_EQ(message.id, "PLUGIN_1");
+  EXPECT_THAT(message.text, HasSubstr("another plug-in of this name"));
+}
+
+TEST_F(Plugins, BadRowsAreRefusedWithFileElementAndReason) {
+  struct Case {
+    std::string rows, id, reason;
+  };
+  const Case cases[] = {
+      {"[[element", "PLUGIN_1", "line 1"},
+      {"element = 3", "PLUGIN_1", "'element' is not a list"},
+      {"[cell]\nname = 'x'", "PLUGIN_1", "'cell' is not a list"},
+      {row("modelisation"), "PLUGIN_2", "element in line 1: it lacks the text 'modelisation'"},
+      {row("role", "role = 'shell'"), "PLUGIN_2", "'shell' is neither"},
+      {row("points"), "PLUGIN_2", "'points'"},
+      {row("points", "points = {}"), "PLUGIN_2", "'points'"},
+      {row("points", "points = { TRIA7 = 1 }"), "PLUGIN_2", "D_TEST/TRIA7: the cell 'TRIA7' does not exist"},
+      {row("points", "points = { TRIA3 = 2 }"), "PLUGIN_2", "no integration rule of 2 points"},
+      {row("points", "points = { TRIA3 = -1 }"), "PLUGIN_2", "no integration rule of -1 points"},
+      {row("points", "points = { TRIA3 = 99999999999 }"), "PLUGIN_2", "no integration rule"},
+      {row("points", "points = { TRIA3 = 'x' }"), "PLUGIN_2", "no integration rule"},
+      {row("dofs"), "PLUGIN_2", "'dofs'"},
+      {row("dofs", "dofs = ['DX', 3]"), "PLUGIN_2", "'dofs' names ''"},
+      {row("dofs", "dofs = ['DX', 'DW']"), "PLUGIN_2", "'DW', which is no component of DEPL_R"},
+      {row("dofs", "dofs = ['DX', 'DX']"), "PLUGIN_2", "'DX' twice"},
+      {row("stress", "stress = ['SIWW']"), "PLUGIN_2", "'SIWW', which is no component of SIEF_R"},
+      {row("kernels"), "PLUGIN_2", "'kernels'"},
+      {row("kernels", "kernels = { FULL_MECA = 'solid' }"), "PLUGIN_2", "'plug-in/kernel'"},
+      {row("kernels", "kernels = { FULL_MECA = 'nowhere/x' }"), "PLUGIN_2", "'nowhere', which was not found"},
+      {row() + "colour = 'blue'\n", "PLUGIN_2", "the key 'colour'"},
+      {row() + row(), "PLUGIN_2", "another row has this name"},
+      {row("modelisation", "modelisation = 'D_PLAN'"), "PLUGIN_2", "D_PLAN/QUAD4: another row has this name"},
+  };
+  for (const Case& c : cases) {
+    const fs::path plugin = write("test_bad", c.rows);
+    const auto message = message_of([&] { Registry registry(std::vector{plugin}); });
+    EXPECT_EQ(message.id, c.id) << c.rows;
+    EXPECT_THAT(message.text, AllOf(HasSubstr((plugin / "plugin.toml").string()), HasSubstr(c.reason))) << c.rows;
+  }
+}
+
+TEST_F(Plugins, BadLibrariesAreRefusedWithTheirFileWhenAKernelIsAskedFor) {
+  const std::pair<std::string, std::string> cases[] = {
+      {"broken_no_entry", "no function lacon_plugin"},
+      {"broken_null", "returns nothing"},
+      {"broken_abi", "interface (ABI) 77"},
+      {"broken_sizes", "other sizes"},
+      {"broken_empty", "has no kernels"},
+      {"broken_unnamed", "has no name"},
+      {"broken_no_function", "'k' has no function"},
+      {"broken_kind", "of the unknown kind 9"},
+      {"broken_parameters", "no list of parameters"},
+      {"broken_symbol", "undefined symbol"},
+  };
+  for (const auto& [name, reason] : cases) {
+    const fs::path plugin = write(name, row("kernels", "kernels = { FULL_MECA = '" + name + "/k' }"));
+    place_library(name, name);
+    Registry registry(std::vector{plugin});  // what nobody uses does no harm
+    const auto message = message_of([&] { registry.kernel(*registry.find_element("D_TEST/TRIA3"), "FULL_MECA", LACON_SOLID); });
+    EXPECT_EQ(message.id, "PLUGIN_1") << name;
+    EXPECT_THAT(message.text, AllOf(HasSubstr((plugin / ("lib" + name + ".so")).string()), HasSubstr(reason))) << name;
+  }
+}
+
+TEST_F(Plugins, AMissingOrUnreadableLibraryOrKernelIsRefusedWithTheFile) {
+  fs::path plugin = write("empty_one", row("kernels", "kernels = { FULL_MECA = 'empty_one/k' }"));
+  const auto ask = [&] {
+    Registry registry(std::vector{plugin});
+    registry.kernel(*registry.find_element("D_TEST/TRIA3"), "FULL_MECA", LACON_SOLID);
+  };
+  EXPECT_THAT(message_of(ask).text, AllOf(HasSubstr("libempty_one.so"), HasSubstr("No such file")));
+  std::ofstream(plugin / "libempty_one.so") << "not a library";
+  EXPECT_THAT(message_of(ask).text, AllOf(HasSubstr("libempty_one.so"), HasSubstr("too short")));
+  plugin = write("test_rows", row("kernels", "kernels = { FULL_MECA = 'solid/plane_stress' }"));
+  const auto message = message_of(ask);
+  EXPECT_EQ(message.id, "PLUGIN_3");
+  EXPECT_THAT(message.text, AllOf(HasSubstr("libsolid.so"), HasSubstr("'plane_stress'"), HasSubstr("D_TEST/TRIA3")));
+}
+
+}  // namespace
