@@ -1,0 +1,57 @@
+#pragma once
+// Pairing of two surfaces: which part of which slave cell sees which master cell, and where its integration points go.
+// METHOD.md 3.3 and 3.4.1; what is decided otherwise here, and why, is in README.md.
+#include <array>
+#include <cstdint>
+#include <string_view>
+#include <vector>
+
+#include "lacon/elements/contact_cells.hpp"
+#include "lacon/pairing/surface.hpp"
+
+namespace lacon {
+
+/// Every tolerance of pairing. All are dimensionless.
+struct PairingTolerances {
+  double sliver = 1e-14;      ///< a contact cell is dropped below this fraction of its slave cell
+  double degenerate = 1e-12;  ///< a cell is degenerate whose tangent is shorter than this, relative to its surface or to itself
+  double box =
+      1e-12;  ///< boxes of the search tree grow by this fraction of the master surface: round-off must not hide a couple
+  double ray = 1e-11;  ///< an image must lie on the normal of its point to this fraction of the couple's extent
+};
+
+struct PairingOptions {
+  PairingTolerances tolerances;
+  bool brute_force = false;  ///< try every couple instead of searching: the oracle of the tests
+};
+
+/// Why a couple of cells that see each other gives no contact cell, or a smaller one.
+enum class Rejection : std::uint8_t {
+  facing_away,        ///< n_e . n_m >= 0: the master shows its back
+  hidden,             ///< all or a part of it lies behind another master that is nearer along the normal
+  sliver,             ///< smaller than PairingTolerances::sliver
+  degenerate_slave,   ///< slave cells (not couples) without a normal: zero length, folded, coordinates not finite
+  degenerate_master,  ///< master cells (not couples) of zero length or with coordinates that are not finite
+  no_image            ///< an integration point has no image on the master's normal
+};
+inline constexpr int n_rejections = 6;
+std::string_view rejection_name(Rejection rejection);
+
+struct Pairing {
+  /// `slave` and `master` number the cells of the two surfaces. Sorted by slave cell, then along it.
+  ContactCells cells;
+  std::array<std::int64_t, n_rejections> rejected{};
+  std::vector<std::int32_t> degenerate_slaves;  ///< which cells these are
+
+  std::int64_t count(Rejection rejection) const { return rejected[static_cast<std::size_t>(rejection)]; }
+};
+
+/// Pair two surfaces of the plane. The result does not depend on the order of cells or nodes, and has the same bits in every
+/// run. On one slave cell contact cells never overlap; where masters cover it they leave no gap. Throws std::invalid_argument
+/// for a cell that is no SEG2 or SEG3.
+Pairing pair(const Surface& slave, const Surface& master, const PairingOptions& options = {});
+
+/// Integration points that pairing places on a contact cell of these two kinds.
+int integration_points(CellType slave, CellType master);
+
+}  // namespace lacon

@@ -1,0 +1,31 @@
+#pragma once
+// A skin as pairing sees it: cells, and where their nodes are now.
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "lacon/catalog/cells.hpp"
+#include "lacon/structures/mesh.hpp"
+
+namespace lacon {
+
+/// One side of a contact zone. Node numbers are rows of `coordinates` and `normals`, which the caller owns and may move between
+/// two pairings. A skin is oriented outward: in 2D the body lies to the left of a cell, and n = (t_y, -t_x) leaves it.
+struct Surface {
+  int dimension = 2;                    ///< of the space
+  std::vector<CellType> types;          ///< of each cell
+  Ragged<std::int32_t> nodes;           ///< of each cell, in the order of catalog/cells.toml
+  std::span<const double> coordinates;  ///< (n_nodes, 3), current; z = 0 in 2D
+  std::span<const double> normals;      ///< (n_nodes, 3), unit, outward (LISSAGE='OUI'), or empty: normals of the cells
+
+  std::size_t size() const { return types.size(); }
+  void add_cell(CellType type, std::span<const std::int32_t> cell_nodes) {
+    types.push_back(type);
+    nodes.push_back(cell_nodes);
+  }
+};
+
+/// The cells `cells` of a mesh as a surface; cell i of it is mesh cell cells[i]. @param coordinates (n_nodes, 3), current
+Surface surface_of(const Mesh& mesh, std::span<const std::int32_t> cells, std::span<const double> coordinates);
+
+}  // namespace lacon
