@@ -17,10 +17,14 @@ std::int64_t order_at(const Result& result, double instant, double tolerance, co
   for (std::size_t k = 0; k < result.orders.size(); ++k)
     if (std::abs(result.instants[k] - instant) <= tolerance) found.push_back(result.orders[k]);
   if (found.empty())
-    fail("FIELDS_2", {{"keyword", keyword}, {"label", result.label}, {"instant", fmt::format("{}", instant)},
+    fail("FIELDS_2", {{"keyword", keyword},
+                      {"label", result.label},
+                      {"instant", fmt::format("{}", instant)},
                       {"known", fmt::format("{}", fmt::join(result.instants, ", "))}});
   if (found.size() > 1)
-    fail("FIELDS_3", {{"keyword", keyword}, {"label", result.label}, {"instant", fmt::format("{}", instant)},
+    fail("FIELDS_3", {{"keyword", keyword},
+                      {"label", result.label},
+                      {"instant", fmt::format("{}", instant)},
                       {"orders", fmt::format("{}", fmt::join(found, ", "))}});
   return found.front();
 }
@@ -38,7 +42,9 @@ std::vector<std::int64_t> selected_orders(const Base& base, const Result& result
     orders = keywords.integers("NUME_ORDRE");
     for (const std::int64_t order : orders)
       if (std::find(result.orders.begin(), result.orders.end(), order) == result.orders.end())
-        fail("FIELDS_1", {{"keyword", keywords.path("NUME_ORDRE")}, {"label", result.label}, {"order", std::to_string(order)},
+        fail("FIELDS_1", {{"keyword", keywords.path("NUME_ORDRE")},
+                          {"label", result.label},
+                          {"order", std::to_string(order)},
                           {"known", fmt::format("{}", fmt::join(result.orders, ", "))}});
   } else {
     const bool list = keywords.has("LIST_INST");
@@ -58,7 +64,8 @@ std::vector<char> selected_cells(const Mesh& mesh, const Keywords& keywords) {
   if (!keywords.has("GROUP_MA")) return std::vector<char>(mesh.n_cells(), 1);
   std::vector<char> wanted(mesh.n_cells(), 0);
   for (const std::string& group : keywords.texts("GROUP_MA"))
-    for (const std::int32_t cell : cells_of_group(mesh, group, keywords.path("GROUP_MA"))) wanted[static_cast<std::size_t>(cell)] = 1;
+    for (const std::int32_t cell : cells_of_group(mesh, group, keywords.path("GROUP_MA")))
+      wanted[static_cast<std::size_t>(cell)] = 1;
   return wanted;
 }
 

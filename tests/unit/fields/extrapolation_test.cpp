@@ -40,7 +40,8 @@ double linear(std::span<const double> at) {
 }
 
 TEST_P(Extrapolation, A_constant_stays_as_it_is) {
-  for (int a = 0; a < cell_.n_nodes; ++a) EXPECT_NEAR(at_node(a, std::vector<double>(static_cast<std::size_t>(n_points_), 3.0)), 3.0, 1e-14);
+  for (int a = 0; a < cell_.n_nodes; ++a)
+    EXPECT_NEAR(at_node(a, std::vector<double>(static_cast<std::size_t>(n_points_), 3.0)), 3.0, 1e-14);
 }
 
 TEST_P(Extrapolation, A_linear_field_is_exact_at_every_node_given_enough_points) {
@@ -51,7 +52,8 @@ TEST_P(Extrapolation, A_linear_field_is_exact_at_every_node_given_enough_points)
   const auto d = static_cast<std::size_t>(cell_.dimension);
   const Rule& rule = integration_rule(cell_.family, n_points_);
   std::vector<double> values;
-  for (std::size_t p = 0; p < static_cast<std::size_t>(n_points_); ++p) values.push_back(linear(std::span(rule.points).subspan(p * d, d)));
+  for (std::size_t p = 0; p < static_cast<std::size_t>(n_points_); ++p)
+    values.push_back(linear(std::span(rule.points).subspan(p * d, d)));
   for (int a = 0; a < cell_.n_nodes; ++a)
     EXPECT_NEAR(at_node(a, values), linear(cell_.nodes.subspan(static_cast<std::size_t>(a) * d, d)), 1e-13) << "node " << a;
 }
@@ -88,10 +90,12 @@ TEST_P(Extrapolation, The_fit_leaves_a_residual_that_no_linear_shape_function_se
 
 INSTANTIATE_TEST_SUITE_P(All, Extrapolation,
                          testing::Values(Case{"SEG2", 2}, Case{"SEG3", 4}, Case{"TRIA3", 1}, Case{"TRIA6", 3}, Case{"TRIA6", 6},
-                                         Case{"QUAD4", 4}, Case{"QUAD8", 9}, Case{"QUAD9", 9}, Case{"TETRA4", 1}, Case{"TETRA10", 5},
-                                         Case{"PENTA6", 6}, Case{"PENTA15", 21}, Case{"PYRAM5", 5}, Case{"PYRAM13", 27},
-                                         Case{"HEXA8", 8}, Case{"HEXA20", 27}, Case{"HEXA27", 27}),
-                         [](const auto& info) { return std::string(info.param.cell) + "_" + std::to_string(info.param.points); });
+                                         Case{"QUAD4", 4}, Case{"QUAD8", 9}, Case{"QUAD9", 9}, Case{"TETRA4", 1},
+                                         Case{"TETRA10", 5}, Case{"PENTA6", 6}, Case{"PENTA15", 21}, Case{"PYRAM5", 5},
+                                         Case{"PYRAM13", 27}, Case{"HEXA8", 8}, Case{"HEXA20", 27}, Case{"HEXA27", 27}),
+                         [](const auto& tested) {
+                           return std::string(tested.param.cell) + "_" + std::to_string(tested.param.points);
+                         });
 
 /// Two squares side by side, (0, 0) to (2, 1), the second one cut into two triangles.
 Mesh three_cells() {
