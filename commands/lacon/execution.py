@@ -118,7 +118,7 @@ def _report(error):
 def _user_entries(error):
     """The traceback without the frames of this package."""
     here = os.path.dirname(os.path.abspath(__file__))
-    return [entry for entry in traceback.extract_tb(error.__traceback__) if not entry.filename.startswith(here)]
+    return [entry for entry in traceback.extract_tb(error.__traceback__) if not entry.filename.startswith((here, "<frozen"))]
 
 
 def _place(error):

@@ -182,13 +182,15 @@ class Names:
         Labels of an earlier run stay until their variable is assigned again. @return true where the registry changed
         """
         user = self.user()
-        labels, containers = {}, {}
+        labels, containers, named = {}, {}, set()
         for name, value in user.items():
             if isinstance(value, Concept) or isinstance(value, (list, tuple, dict)):
                 found = [(label, c) for label, c in concepts_of(name, value) if not c.destroyed]
                 for label, item in found:
                     labels[label] = item.id
-                    item.label = label
+                    if item.id not in named:  # of several variables the first one is its name
+                        named.add(item.id)
+                        item.label = label
                 if found and not isinstance(value, Concept):
                     try:
                         containers[name] = encode(value)
@@ -241,10 +243,8 @@ class Names:
         lost = dict(space.get("lost", {}))
         for label, identifier in labels.items():
             if base.path(identifier).exists():
-                item = base.concept(identifier, label)
-                item.label = label
                 if root(label) == label:
-                    self.values[label] = item
+                    self.values[label] = base.concept(identifier, label)
             else:
                 lost[root(label)] = f"its concept {identifier} is no longer in the base"
         for name, data in space.get("values", {}).items():
@@ -253,6 +253,7 @@ class Names:
             except NotKept as reason:
                 lost[name] = str(reason)
         self._place_elements(base)
+        self.update_labels(base)
         self._lost = {k: v for k, v in lost.items() if k not in self.values}
         return self._lost
 

@@ -8,7 +8,7 @@ import signal
 import sys
 import time
 
-from . import catalog, concepts
+from . import concepts
 from .messages import AsterError, ConvergenceError, InternalError, Message, SolutionError, message
 
 #: messages of a solution that failed in the linear solver; any other is one of Newton's method
@@ -39,9 +39,6 @@ def order(command, study, keywords, where, result=None, units=None, written=()):
     made["units"] = {str(k): str(v) for k, v in (units or {}).items()}
     if written:
         made["append"] = sorted(str(unit) for unit in written)
-    plugins = [str(folder) for folder in catalog.plugin_folders()]
-    if plugins:
-        made["plugins"] = plugins
     made["source"] = where
     made["keywords"] = concepts.to_json(keywords)
     return made

@@ -1,0 +1,373 @@
+"""Keywords are checked before anything runs: every class of mistake, and a property over the whole catalogue."""
+
+import re
+import sys
+import unittest
+
+sys.path.insert(0, __file__.rpartition("/")[0] or ".")
+from support import STUDY, LauncherTest  # noqa: E402
+
+from lacon import catalog, checker, concepts  # noqa: E402
+
+
+class FakeBase:
+    pass
+
+
+def concept(kind):
+    return concepts.make(FakeBase(), f"{kind}_1", kind.upper())
+
+
+def problems(command, **keywords):
+    """[(identifier, path, text)]"""
+    found = checker.complete(command, catalog.command(command), keywords, "study.comm:7")[1]
+    return [(m.id, m.where.partition(",")[0], m.text) for m in found]
+
+
+def complete(command, **keywords):
+    made, found = checker.complete(command, catalog.command(command), keywords)
+    assert not found, found
+    return made
+
+
+class Mistakes(unittest.TestCase):
+    def one(self, identifier, path, *words, command, **keywords):
+        found = problems(command, **keywords)
+        self.assertEqual([(i, p) for i, p, _ in found], [(identifier, path)], found)
+        for word in words:
+            self.assertIn(word, found[0][2])
+
+    def contact(self, **zone):
+        return {"MODELE": concept("model"), "FORMULATION": "CONTINUE", "ALGO_RESO_GEOM": "NEWTON",
+                "ZONE": {"GROUP_MA_MAIT": "A", "GROUP_MA_ESCL": "B", "ALGO_CONT": "LAC", **zone}}
+
+    def test_unknown_keyword_names_the_nearest(self):
+        self.one("KEYWORD_1", "LIRE_MAILLAGE/UNITEE", "nearest one is UNITE", command="LIRE_MAILLAGE", UNITEE=20)
+
+    def test_unknown_keyword_in_an_occurrence(self):
+        self.one("KEYWORD_1", "DEFI_CONTACT/ZONE[1]/CONTACT_INI", "CONTACT_INIT", command="DEFI_CONTACT", **self.contact(CONTACT_INI="OUI"))
+
+    def test_a_keyword_that_only_code_aster_has(self):
+        self.one("KEYWORD_11", "DEFI_CONTACT/ZONE[1]/COEF_CONT", "not available", command="DEFI_CONTACT", **self.contact(COEF_CONT=1.0))
+
+    def test_a_value_that_only_code_aster_has(self):
+        self.one("KEYWORD_13", "LIRE_MAILLAGE/FORMAT", "GMSH", command="LIRE_MAILLAGE", FORMAT="GMSH")
+
+    def test_a_default_that_only_code_aster_has(self):
+        keywords = self.contact()
+        del keywords["FORMULATION"]
+        self.one("KEYWORD_13", "DEFI_CONTACT/FORMULATION", "DISCRETE", command="DEFI_CONTACT", **keywords)
+
+    def test_missing(self):
+        self.one("KEYWORD_2", "CREA_MAILLAGE/DECOUPE_LAC/GROUP_MA_ESCL", "missing", command="CREA_MAILLAGE", MAILLAGE=concept("mesh"), DECOUPE_LAC={})
+
+    def test_none_is_not_given(self):
+        self.assertEqual(problems("LIRE_MAILLAGE", UNITE=None), [])
+        self.assertEqual(complete("LIRE_MAILLAGE", UNITE=None)["UNITE"], 20)
+
+    def test_wrong_types(self):
+        for value in ("20", 20.0, True, [], [20, 21], concept("mesh")):
+            found = problems("LIRE_MAILLAGE", UNITE=value)
+            self.assertEqual(len(found), 1, value)
+            self.assertIn(found[0][0], ("KEYWORD_3", "KEYWORD_5"))
+        self.one("KEYWORD_3", "DEFI_MATERIAU/ELAS/E", "a number", "'hard'", command="DEFI_MATERIAU", ELAS={"E": "hard", "NU": 0.3})
+        self.one("KEYWORD_3", "DEFI_MATERIAU/ELAS/E", "nan", command="DEFI_MATERIAU", ELAS={"E": float("nan"), "NU": 0.3})
+
+    def test_concept_of_the_wrong_type(self):
+        self.one("KEYWORD_3", "AFFE_CHAR_CINE/MODELE", "a model", "MESH (a mesh)", command="AFFE_CHAR_CINE", MODELE=concept("mesh"),
+                 MECA_IMPO={"GROUP_MA": "A", "DX": 0})
+
+    def test_a_name_that_no_command_filled(self):
+        self.one("KEYWORD_3", "CREA_MAILLAGE/MAILLAGE", "'later'", command="CREA_MAILLAGE", MAILLAGE=concepts.CO("later"),
+                 LINE_QUAD={"TOUT": "OUI"})
+
+    def test_value_outside_the_allowed_set_names_the_nearest(self):
+        self.one("KEYWORD_4", "DEFI_CONTACT/ZONE[1]/CONTACT_INIT", "'INTERPENETR'", "nearest one is INTERPENETRE", command="DEFI_CONTACT",
+                 **self.contact(CONTACT_INIT="INTERPENETR"))
+
+    def test_modelisations_come_from_the_element_catalogue(self):
+        affe = {"TOUT": "OUI", "PHENOMENE": "MECANIQUE", "MODELISATION": "D_PLANE"}
+        self.one("KEYWORD_4", "AFFE_MODELE/AFFE[1]/MODELISATION", "nearest one is D_PLAN", command="AFFE_MODELE", MAILLAGE=concept("mesh"), AFFE=affe)
+        self.one("KEYWORD_13", "AFFE_MODELE/AFFE[1]/MODELISATION", command="AFFE_MODELE", MAILLAGE=concept("mesh"),
+                 AFFE={**affe, "MODELISATION": "COQUE_3D"})
+
+    def test_out_of_range(self):
+        self.one("KEYWORD_15", "DEFI_MATERIAU/ELAS/NU", "less than 0.5", command="DEFI_MATERIAU", ELAS={"E": 1, "NU": 0.5})
+        self.one("KEYWORD_15", "DEFI_MATERIAU/ELAS/E", "greater than 0", command="DEFI_MATERIAU", ELAS={"E": 0, "NU": 0.3})
+        self.one("KEYWORD_15", "LIRE_MAILLAGE/UNITE", "at most 99", command="LIRE_MAILLAGE", UNITE=100)
+
+    def test_exclusive(self):
+        self.one("KEYWORD_6", "CREA_MAILLAGE", "DECOUPE_LAC, LINE_QUAD", command="CREA_MAILLAGE", MAILLAGE=concept("mesh"),
+                 DECOUPE_LAC={"GROUP_MA_ESCL": "A"}, LINE_QUAD={"TOUT": "OUI"})
+
+    def test_none_of_those_that_are_needed(self):
+        self.one("KEYWORD_7", "CREA_MAILLAGE", "LINE_QUAD", command="CREA_MAILLAGE", MAILLAGE=concept("mesh"))
+        self.one("KEYWORD_8", "AFFE_CHAR_CINE/MECA_IMPO[2]", "DX, DY, DZ", command="AFFE_CHAR_CINE", MODELE=concept("model"),
+                 MECA_IMPO=[{"GROUP_MA": "A", "DX": 0}, {"GROUP_MA": "A"}])
+
+    def test_together(self):
+        self.one("KEYWORD_9", "DEFI_FONCTION", "ORDONNEE", command="DEFI_FONCTION", NOM_PARA="INST", ABSCISSE=(0, 1))
+
+    def test_forbidden_by_another(self):
+        self.one("KEYWORD_10", "IMPR_RESU/RESU[1]/INST", command="IMPR_RESU", RESU={"MAILLAGE": concept("mesh"), "INST": 1.0})
+
+    def test_mandatory_by_another(self):
+        self.one("KEYWORD_2", "DEFI_GROUP/CREA_GROUP_NO[1]/NOM", command="DEFI_GROUP", MAILLAGE=concept("mesh"), CREA_GROUP_NO={"NOEUD": "N1"})
+        self.assertEqual(problems("DEFI_GROUP", MAILLAGE=concept("mesh"), CREA_GROUP_NO={"GROUP_MA": "A"}), [])
+
+    def test_cardinality(self):
+        self.one("KEYWORD_5", "DEFI_CONTACT/ZONE[1]/GROUP_MA_MAIT", "has 2", command="DEFI_CONTACT", **self.contact(GROUP_MA_MAIT=("A", "B")))
+        self.one("KEYWORD_5", "CREA_MAILLAGE/DECOUPE_LAC", "has 2", command="CREA_MAILLAGE", MAILLAGE=concept("mesh"),
+                 DECOUPE_LAC=[{"GROUP_MA_ESCL": "A"}] * 2)
+        self.one("KEYWORD_5", "DEFI_CONTACT/ZONE", "has 101", command="DEFI_CONTACT",
+                 **{**self.contact(), "ZONE": [self.contact()["ZONE"]] * 101})
+
+    def test_repeated_names(self):
+        self.one("KEYWORD_12", "CREA_MAILLAGE/DECOUPE_LAC/GROUP_MA_ESCL", "'A'", command="CREA_MAILLAGE", MAILLAGE=concept("mesh"),
+                 DECOUPE_LAC={"GROUP_MA_ESCL": ("A", "B", "A")})
+
+    def test_every_mistake_is_found_at_once(self):
+        found = problems("DEFI_CONTACT", MODELE=3, ZONE=[{"GROUP_MA_ESCL": 1}, {"BAD": 1}])
+        self.assertEqual(sorted(p for _, p, _ in found), sorted([
+            "DEFI_CONTACT/MODELE", "DEFI_CONTACT/FORMULATION", "DEFI_CONTACT/ZONE[1]/GROUP_MA_ESCL", "DEFI_CONTACT/ZONE[1]/GROUP_MA_MAIT",
+            "DEFI_CONTACT/ZONE[2]/BAD", "DEFI_CONTACT/ZONE[2]/GROUP_MA_MAIT", "DEFI_CONTACT/ZONE[2]/GROUP_MA_ESCL"]))
+
+    def test_a_destroyed_concept(self):
+        mesh = concept("mesh")
+        mesh.destroyed = "study.comm:3"
+        self.one("KEYWORD_14", "CREA_MAILLAGE/MAILLAGE", "study.comm:3", command="CREA_MAILLAGE", MAILLAGE=mesh, LINE_QUAD={"TOUT": "OUI"})
+
+    def test_what_the_operator_refuses_with_the_peers_own_message_passes(self):
+        keywords = {**self.contact(), "FROTTEMENT": "COULOMB", "ALGO_RESO_GEOM": "POINT_FIXE", "ALGO_RESO_CONT": "POINT_FIXE"}
+        self.assertEqual(problems("DEFI_CONTACT", **keywords), [])
+        keywords["ZONE"] = {"GROUP_MA_MAIT": "A", "GROUP_MA_ESCL": "B"}
+        self.assertEqual(problems("DEFI_CONTACT", **keywords), [])
+
+
+class Completion(unittest.TestCase):
+    def test_one_or_many(self):
+        import numpy as np
+
+        mesh = concept("mesh")
+        for groups in ("A", ("A",), ["A"]):
+            made = complete("CREA_MAILLAGE", MAILLAGE=mesh, DECOUPE_LAC={"GROUP_MA_ESCL": groups})
+            self.assertEqual(made["DECOUPE_LAC"], [{"GROUP_MA_ESCL": ["A"], "DECOUPE_HEXA": "PYRA"}])
+        for factor in ({"JUSQU_A": 1, "PAS": 1}, ({"JUSQU_A": 1, "PAS": 1},), [{"JUSQU_A": 1, "PAS": 1}]):
+            self.assertEqual(complete("DEFI_LIST_REEL", DEBUT=0, INTERVALLE=factor)["INTERVALLE"], [{"JUSQU_A": 1.0, "PAS": 1.0}])
+        for values in ([0, 1], (0, 1), range(2), np.arange(2), np.array([0.0, 1.0], np.float32)):
+            made = complete("DEFI_LIST_REEL", VALE=values)["VALE"]
+            self.assertEqual(made, [0.0, 1.0])
+            self.assertTrue(all(type(x) is float for x in made))
+        self.assertEqual(complete("LIRE_MAILLAGE", UNITE=np.int64(21))["UNITE"], 21)
+        self.assertEqual(complete("LIRE_MAILLAGE", FORMAT=("MED",))["FORMAT"], "MED")
+
+    def test_defaults_that_depend_on_another_keyword(self):
+        zone = {"GROUP_MA_MAIT": "A", "GROUP_MA_ESCL": "B", "ALGO_CONT": "LAC"}
+        for kind, residual in (("NEWTON", 1e-6), ("POINT_FIXE", 1e-2)):
+            made = complete("DEFI_CONTACT", MODELE=concept("model"), FORMULATION="CONTINUE", ALGO_RESO_GEOM=kind, ZONE=zone)
+            self.assertEqual(made["RESI_GEOM"], residual)
+        self.assertEqual(complete("DEFI_CONTACT", MODELE=concept("model"), FORMULATION="CONTINUE", ZONE=zone, RESI_GEOM=0.5)["RESI_GEOM"], 0.5)
+
+    def test_defaults_of_contact_are_those_of_the_method_document(self):
+        zone = {"GROUP_MA_MAIT": "A", "GROUP_MA_ESCL": "B", "ALGO_CONT": "LAC"}
+        made = complete("DEFI_CONTACT", MODELE=concept("model"), FORMULATION="CONTINUE", ALGO_RESO_GEOM="NEWTON", ZONE=zone)
+        expected = {"FROTTEMENT": "SANS", "ALGO_RESO_CONT": "NEWTON", "RESI_GEOM": 1e-6, "RESI_CONT": -1.0, "LISSAGE": "NON",
+                    "VERI_NORM": "OUI", "CONT_STAT_ELAS": 0}
+        self.assertEqual({k: made[k] for k in expected}, expected)
+        self.assertEqual(made["ZONE"], [{**zone, "APPARIEMENT": "MORTAR", "TYPE_APPA": "RAPIDE", "RESI_APPA": 1e-8,
+                                         "TYPE_JACOBIEN": "INITIAL", "INTEGRATION": "AUTO", "CONTACT_INIT": "INTERPENETRE"}])
+
+    def test_convergence(self):
+        base = {"MODELE": concept("model"), "CHAM_MATER": concept("material_field"), "EXCIT": {"CHARGE": concept("load")},
+                "INCREMENT": {"LIST_INST": concept("list_of_reals")}}
+        made = complete("STAT_NON_LINE", **base)
+        self.assertEqual(made["CONVERGENCE"][0]["RESI_GLOB_RELA"], 1e-6)
+        made = complete("STAT_NON_LINE", CONVERGENCE={"RESI_GLOB_MAXI": 1e-12}, **base)
+        self.assertNotIn("RESI_GLOB_RELA", made["CONVERGENCE"][0])
+        self.assertEqual(made["COMPORTEMENT"][0]["RELATION"], "ELAS")
+        self.assertEqual(made["ARCHIVAGE"][0]["CRITERE"], "RELATIF")
+
+
+# ---------------------------------------------------------------------------------------- over the whole catalogue
+
+
+def sample(row):
+    """A value that one keyword accepts."""
+    kind = row["type"].partition("|")[0]
+    if "into_from" in row:
+        one = catalog.lists[row["into_from"]]()[0]
+    elif "into" in row:
+        one = row["into"][0]
+    elif kind == "real":
+        one = (row.get("above", row.get("at_least", 0.0)) + row.get("below", row.get("at_most", 2.0))) / 2
+    elif kind == "integer":
+        one = int(row.get("at_least", 1))
+    elif kind in ("text", "group_ma", "group_no", "cell", "node"):
+        one = "NAME"
+    else:
+        one = concept("mesh" if kind == "concept" else kind)
+    low = row.get("min", 1)
+    return one if low == 1 else [one] * low
+
+
+def minimal(row):
+    """The fewest keywords that a command, or an occurrence, needs."""
+    rows = row.get("keyword", {})
+    given = {}
+
+    def add(name):
+        given[name] = minimal(rows[name]) if rows[name]["type"] == "factor" else sample(rows[name])
+
+    for name, keyword in rows.items():
+        if keyword.get("status") == "mandatory":
+            add(name)
+    for _ in range(3):  # rules may ask for what other rules hold
+        for rule in row.get("rule", ()):
+            there = [k for k in rule["of"] if k in given]
+            if rule["kind"] in ("exactly_one", "at_least_one") and not there:
+                add(rule["of"][0])
+            elif rule["kind"] == "together" and there:
+                for name in rule["of"]:
+                    if name not in given:
+                        add(name)
+    return given
+
+
+def occurrences(row, given, path=()):
+    """(row, keywords, path) of the command and of every factor keyword in `given`."""
+    yield row, given, path
+    for name, value in given.items():
+        keyword = row["keyword"][name]
+        if keyword["type"] == "factor":
+            yield from occurrences(keyword, value, (*path, name))
+
+
+class Properties(unittest.TestCase):
+    """For each command a minimal call is accepted, and each single change that breaks it is refused with the keyword's name."""
+
+    def refused(self, command, given, name):
+        found = problems(command, **given)
+        self.assertTrue(found, (command, name))
+        for identifier, path, text in found:
+            plain = re.sub(r"\[\d+\]", "", path + " " + text)
+            self.assertIn(name, plain, found)
+
+    def start(self, command):
+        given = minimal(catalog.command(command))
+        if command == "DEFI_CONTACT":
+            given["FORMULATION"] = "CONTINUE"
+        return given
+
+    def each(self):
+        for command in catalog.command_names():
+            for _, _, path in occurrences(catalog.command(command), self.start(command)):
+                given = self.start(command)
+                row, inner = catalog.command(command), given
+                for name in path:
+                    row, inner = row["keyword"][name], inner[name]
+                yield command, row, given, inner
+
+    def test_minimal_calls_are_accepted(self):
+        for command in catalog.command_names():
+            with self.subTest(command):
+                self.assertEqual(problems(command, **self.start(command)), [])
+
+    def test_an_unknown_keyword_is_refused(self):
+        for command, row, given, inner in self.each():
+            with self.subTest(command):
+                inner["NO_SUCH"] = 1
+                self.refused(command, given, "NO_SUCH")
+
+    def test_a_missing_mandatory_keyword_is_refused(self):
+        for command, row, given, inner in self.each():
+            for name, keyword in row.get("keyword", {}).items():
+                if keyword.get("status") == "mandatory":
+                    with self.subTest(command, name=name):
+                        kept = inner.pop(name)
+                        self.refused(command, given, name)
+                        inner[name] = kept
+
+    def test_a_value_of_another_type_is_refused(self):
+        class Thing:
+            pass
+
+        for command, row, given, inner in self.each():
+            for name in list(inner):
+                with self.subTest(command, name=name):
+                    kept = inner[name]
+                    inner[name] = Thing()
+                    self.refused(command, given, name)
+                    inner[name] = kept
+
+    def test_an_empty_list_is_refused(self):
+        for command, row, given, inner in self.each():
+            for name in list(inner):
+                with self.subTest(command, name=name):
+                    kept = inner[name]
+                    inner[name] = []
+                    self.refused(command, given, name)
+                    inner[name] = kept
+
+    def test_a_text_outside_the_allowed_ones_is_refused(self):
+        for command, row, given, inner in self.each():
+            for name, keyword in row.get("keyword", {}).items():
+                if keyword["type"] == "text" and ("into" in keyword or "into_from" in keyword):
+                    with self.subTest(command, name=name):
+                        kept = dict(inner)
+                        inner[name] = "NO SUCH VALUE"
+                        self.assertIn(name, " ".join(path for _, path, _ in problems(command, **given)))
+                        inner.clear()
+                        inner.update(kept)
+
+    def test_rows_are_of_the_documented_shape(self):
+        known = {"type", "status", "max", "min", "default", "into", "into_from", "elsewhere", "above", "at_least", "below", "at_most",
+                 "unique", "unit", "help", "keyword", "rule", "when"}
+        types = {"real", "integer", "text", "group_ma", "group_no", "cell", "node", "factor", "concept", *concepts._types}
+
+        def visit(path, row):
+            for name, keyword in row.get("keyword", {}).items():
+                here = f"{path}/{name}"
+                self.assertLessEqual(set(keyword), known, here)
+                self.assertLessEqual(set(keyword["type"].split("|")), types, here)
+                self.assertTrue(keyword["help"], here)
+                self.assertFalse(set(keyword.get("into", ())) & set(keyword.get("elsewhere", ())), here)
+                visit(here, keyword)
+            names = set(row.get("keyword", {}))
+            self.assertFalse(names & set(row.get("elsewhere", ())), path)
+            for rule in row.get("rule", ()):
+                self.assertIn(rule["kind"], ("exactly_one", "at_least_one", "exclusive", "together"))
+                self.assertLessEqual(set(rule["of"]), names, path)
+            for when in row.get("when", ()):
+                self.assertLessEqual({k for key in ("if", "present", "absent", "default", "mandatory", "forbidden") for k in when.get(key, ())},
+                                     names, path)
+
+        for command in catalog.command_names():
+            visit(command, catalog.command(command))
+            self.assertTrue(catalog.command(command)["help"])
+
+
+class Messages(LauncherTest):
+    def test_file_line_command_and_path(self):
+        run = self.refused(self.run_study(STUDY + """
+C = DEFI_CONTACT(MODELE=MO, FORMULATION='CONTINUE',
+                 ZONE=_F(GROUP_MA_MAIT='BODY', GROUP_MA_ESCLA='SKIN', ALGO_CONT='LAC'))
+"""), "<F> <KEYWORD_1>", "<F> <KEYWORD_2>", "DEFI_CONTACT/ZONE[1]/GROUP_MA_ESCLA, study.comm:13", "the nearest one is GROUP_MA_ESCL")
+        self.assertEqual(run.err.count("<F>"), 2)
+
+    def test_unknown_commands(self):
+        self.refused(self.run_study("DEBUT()\nX = MECA_STATIQUE(MODELE=1)\n"), "COMMAND_11", "MECA_STATIQUE", "not available in Lacon",
+                     "study.comm:2")
+        self.refused(self.run_study("DEBUT()\nX = LIRE_MALLAGE()\n"), "STUDY_20", "LIRE_MALLAGE", "LIRE_MAILLAGE", "study.comm:2")
+
+    def test_keywords_only(self):
+        self.refused(self.run_study("DEBUT()\nLIRE_MAILLAGE(20)\n"), "COMMAND_1", "study.comm:2")
+
+    def test_reuse(self):
+        self.refused(self.run_study("DEBUT()\nM = LIRE_MAILLAGE()\nMODI_MAILLAGE(MAILLAGE=M, ORIE_PEAU=_F(GROUP_MA_PEAU='A'))\n"), "COMMAND_2")
+        self.refused(self.run_study("DEBUT()\nM = LIRE_MAILLAGE()\nLIRE_MAILLAGE(reuse=M)\n"), "COMMAND_3", "LIRE_MAILLAGE/reuse")
+        self.refused(self.run_study("DEBUT()\nM = LIRE_MAILLAGE()\nN = LIRE_MAILLAGE()\n"
+                                    "MODI_MAILLAGE(reuse=M, MAILLAGE=N, ORIE_PEAU=_F(GROUP_MA_PEAU='A'))\n"), "COMMAND_9")
+
+
+if __name__ == "__main__":
+    unittest.main()

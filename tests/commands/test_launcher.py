@@ -1,0 +1,315 @@
+"""The launcher: units, exports, exit statuses, the diagnosis, alarms, exceptions in command files, orders."""
+
+import json
+import sys
+import unittest
+
+sys.path.insert(0, __file__.rpartition("/")[0] or ".")
+from support import ROOT, STUDY, LauncherTest  # noqa: E402
+
+
+def said(severity, identifier="MODELE1_63"):
+    return {"severity": severity, "id": identifier, "text": "something to say", "do": "nothing"}
+
+
+class Endings(LauncherTest):
+    def ends(self, run, status, diagnostic):
+        self.assertEqual((run.status, run.last), (status, f"--- DIAGNOSTIC JOB : {diagnostic}"), run.out + run.err)
+
+    def test_done(self):
+        self.ends(self.run_study(STUDY + "FIN()\n"), 0, "OK")
+
+    def test_alarms(self):
+        self.ends(self.run_study(STUDY + "FIN()\n", behaviour={"affe_modele": {"messages": [said("A")]}}), 0, "<A>_ALARM")
+
+    def test_information_is_no_alarm(self):
+        self.ends(self.run_study(STUDY + "FIN()\n", behaviour={"affe_modele": {"messages": [said("I")]}}), 0, "OK")
+
+    def test_alarms_as_exceptions(self):
+        text = STUDY.replace("DEBUT()", "DEBUT(ERREUR=_F(ALARME='EXCEPTION'))") + "FIN()\n"
+        self.ends(self.run_study(text, behaviour={"affe_modele": {"messages": [said("A")]}}), 2, "<F>_ERROR")
+
+    def test_ignored_alarms_are_neither_seen_nor_counted(self):
+        text = STUDY.replace("DEBUT()", "DEBUT(ERREUR=_F(ALARME='EXCEPTION'), IGNORE_ALARM=('MODELE1_63', 'OTHER_1'))") + "FIN()\n"
+        run = self.run_study(text, behaviour={"affe_modele": {"messages": [said("A"), said("I", "MESH_2")]}})
+        self.ends(run, 0, "OK")
+        self.assertNotIn("MODELE1_63", run.err)
+        self.assertIn("<I> <MESH_2>", run.err)
+
+    def test_user_error(self):
+        self.ends(self.run_study(STUDY, behaviour={"crea_maillage": {"status": 2}}), 2, "<F>_ERROR")
+
+    def test_no_convergence(self):
+        behaviour = {"stat_non_line": {"status": 3, "messages": [said("S", "MECANONLINE9_7")]}}
+        self.ends(self.run_study(STUDY, behaviour=behaviour), 3, "<S>_NO_CONVERGENCE")
+
+    def test_singular_matrix(self):
+        self.ends(self.run_study(STUDY, behaviour={"stat_non_line": {"status": 3, "messages": [said("S", "FACTOR_11")]}}), 3, "<S>_ERROR")
+
+    def test_internal_error(self):
+        for behaviour in ({"status": 4}, {"status": 77}, {"kill": 6}):
+            self.ends(self.run_study(STUDY, behaviour={"stat_non_line": behaviour}), 4, "<F>_ABNORMAL_ABORT")
+
+    def test_a_check_that_is_missed(self):
+        check = "TEST_RESU(MAILLAGE=_F(MAILLAGE=M, CARA='NB_NOEUD', VALE_CALC_I=6, REFERENCE='ANALYTIQUE', VALE_REFE_I={}))\nFIN()\n"
+        self.ends(self.run_study(STUDY + check.format(7)), 5, "NOOK_TEST_RESU")
+        self.ends(self.run_study(STUDY + check.format(6)), 0, "OK")
+
+    def test_an_error_counts_more_than_a_missed_check(self):
+        check = "TEST_RESU(MAILLAGE=_F(MAILLAGE=M, CARA='NB_NOEUD', VALE_CALC_I=6, REFERENCE='ANALYTIQUE', VALE_REFE_I=7))\n"
+        run = self.run_study(STUDY + check + "1/0\n")
+        self.ends(run, 2, "<F>_ERROR")
+        self.assertIn("1 NOOK", run.out)
+
+    def test_python_errors_name_the_users_line(self):
+        self.write("helper.py", "def f(x):\n    return 1 / x\n")
+        run = self.refused(self.run_study("from helper import f\nDEBUT()\nf(0)\n"), "STUDY_19", "ZeroDivisionError", "helper.py:2")
+        self.assertIn('File "study.comm", line 3', run.err)
+
+    def test_syntax_errors(self):
+        self.refused(self.run_study("DEBUT()\nM = (\n"), "STUDY_16", "study.comm:2")
+        self.refused(self.run_study("DEBUT()\nM = DEFI_MATERIAU(ELAS=1, ELAS=2)\n"), "STUDY_16", "study.comm:2", "repeated")
+
+    def test_exit(self):
+        self.ends(self.run_study("DEBUT()\nimport sys\nsys.exit()\n"), 0, "OK")
+        self.refused(self.run_study("DEBUT()\nexit(3)\n"), "STUDY_17", "study.comm:2")
+
+    def test_called_through_functions(self):
+        self.refused(self.run_study("DEBUT()\ndef f():\n    LIRE_MAILLAGE(UNIT=1)\nf()\n"), "study.comm:3", "called from study.comm:4")
+
+
+class Exceptions(LauncherTest):
+    def test_a_command_file_may_catch_them(self):
+        text = STUDY.replace("R = STAT_NON_LINE", "try:\n    R = STAT_NON_LINE") + """
+except ConvergenceError as error:
+    assert error.id_message == 'MECANONLINE9_7', error
+    R = None
+try:
+    X = LIRE_MAILLAGE(UNIT=20)
+except AsterError as error:
+    assert error.id_message == 'KEYWORD_1' and 'UNITE' in error.message
+from code_aster import CA
+try:
+    MECA_STATIQUE()
+except CA.AsterError:
+    print('caught')
+FIN()
+"""
+        run = self.run_study(text, behaviour={"stat_non_line": {"status": 3, "messages": [said("S", "MECANONLINE9_7")]}})
+        self.ok(run)
+        self.assertIn("caught", run.out)
+        self.assertNotIn("KEYWORD_1", run.err)
+
+
+class Units(LauncherTest):
+    def test_no_file(self):
+        self.refused(self.run_study("DEBUT()\nM = LIRE_MAILLAGE(UNITE=21)\n"), "COMMAND_4", "unit 21", "--unit 21=FILE", "study.comm:2")
+
+    def test_missing_file(self):
+        self.write("study.comm", "DEBUT()\nM = LIRE_MAILLAGE()\n")
+        self.refused(self.launch("study.comm", "--unit", "20=nowhere.med"), "COMMAND_5", "nowhere.med")
+        self.assertEqual(self.entries(), [])
+
+    def test_an_output_that_cannot_be_written(self):
+        for path in ("nowhere/out.med", "mesh.med/out.med", "."):
+            run = self.run_study(STUDY + "IMPR_RESU(UNITE=80, RESU=_F(RESULTAT=R))\n", "--unit", f"80={path}")
+            self.refused(run, "COMMAND_8", "IMPR_RESU/UNITE, study.comm:12")
+
+    def test_paths_are_absolute_in_orders(self):
+        self.ok(self.run_study(STUDY + "FIN()\n"))
+        order = self.last_order("LIRE_MAILLAGE")
+        self.assertEqual(order["units"], {"20": str(self.work / "mesh.med")})
+
+    def test_an_output_without_file_goes_beside_the_command_file_and_says_so(self):
+        behaviour = {"impr_resu": {"unit": "80"}}
+        run = self.ok(self.run_study(STUDY + "IMPR_RESU(RESU=_F(RESULTAT=R))\nIMPR_RESU(RESU=_F(MAILLAGE=M))\nFIN()\n", behaviour=behaviour))
+        self.assertTrue((self.work / "study.80.med").exists())
+        self.assertEqual(run.err.count("study.80.med"), 1)
+
+    def test_a_second_print_to_one_unit_appends(self):
+        self.ok(self.run_study(STUDY + "IMPR_RESU(RESU=_F(RESULTAT=R))\n" * 2 + "FIN()\n"))
+        orders = sorted(self.orders.glob("*impr_resu.order.json"))
+        self.assertEqual([json.loads(p.read_text()).get("append") for p in orders], [None, ["80"]])
+
+    def test_bad_options(self):
+        self.write("study.comm", "DEBUT()\n")
+        for options in (("--unit", "mesh.med"), ("--unit", "0=a"), ("--unit", "20=a", "--unit", "20=b"), ("--threads", "0"), ("--nope",)):
+            self.assertEqual(self.launch("study.comm", *options).status, 2, options)
+        self.refused(self.launch("nowhere.comm"), "STUDY_14", "nowhere.comm")
+
+
+class Exports(LauncherTest):
+    def export(self, text):
+        self.write("case.export", text)
+        return self.launch("case.export")
+
+    def test_a_study(self):
+        self.write("case.comm", "DEBUT()\nfrom ssnv import value\nM = LIRE_MAILLAGE()\nN = LIRE_MAILLAGE(UNITE=21)\nFIN()\n")
+        self.write("case.com1", "POURSUITE()\nassert value == 3 and M is not N\nFIN()\n")
+        (self.work / "data").mkdir()
+        self.write("data/ssnv.py", "value = 3\n")
+        run = self.export("P time_limit 60\nP memory_limit 512.0\nP testlist submit verification\nP ncpus 3\n\n# a comment\n"
+                          "F com1 case.com1 D 2\nF comm case.comm D 1\nF mmed mesh.med D 20\nF mmed mesh.med D 21\nF nom data/ssnv.py D 0\n"
+                          "F rmed out.med R 80\n")
+        self.ok(run)
+        self.assertEqual(self.last_order("LIRE_MAILLAGE")["units"], {"21": str(self.work / "mesh.med")})
+        self.assertFalse((self.work / "ssnv.py").exists(), "delivered for the time of the run")
+
+    def test_files_are_found_beside_the_export_file(self):
+        (self.work / "sub").mkdir()
+        (self.work / "sub" / "m.med").write_text("")
+        self.write("sub/c.comm", "DEBUT()\nM = LIRE_MAILLAGE()\nFIN()\n")
+        self.write("sub/c.export", "F comm c.comm D 1\nF mmed m.med D 20\n")
+        self.ok(self.launch("sub/c.export"))
+
+    def test_many_continuations_run_in_their_order(self):
+        self.write("c.comm", "DEBUT()\nL = [0]\nFIN()\n")
+        lines = ["F comm c.comm D 1"]
+        for i in (10, 2, 1):
+            self.write(f"c.com{i}", f"POURSUITE()\nL.append({i})\nif {i} == 10:\n    assert L == [0, 1, 2, 10], L\nFIN()\n")
+            lines.append(f"F com{i} c.com{i} D 1")
+        self.ok(self.export("\n".join(lines) + "\n"))
+
+    def test_a_data_file_by_name(self):
+        (self.work / "data").mkdir()
+        self.write("data/points.txt", "42\n")
+        self.write("c.comm", "DEBUT()\nassert open('points.txt').read() == '42\\n'\nFIN()\n")
+        self.ok(self.export("F comm c.comm D 1\nF nom data/points.txt D 0\n"))
+        self.write("points.txt", "another\n")
+        self.refused(self.export("F comm c.comm D 1\nF nom data/points.txt D 0\n"), "STUDY_21", "points.txt")
+        self.assertEqual((self.work / "points.txt").read_text(), "another\n")
+
+    def test_mistakes(self):
+        self.refused(self.export("F comm\n"), "STUDY_13", "case.export:1")
+        self.refused(self.export("F mmed mesh.med D 20\n"), "STUDY_15")
+        self.refused(self.export("F comm nowhere.comm D 1\n"), "STUDY_14", "nowhere.comm")
+        self.write("c.comm", "DEBUT()\n")
+        self.refused(self.launch("case.export", "c.comm"), "STUDY_22")
+
+
+class Files(LauncherTest):
+    def test_what_a_command_file_finds(self):
+        text = """
+DEBUT(CODE='OUI', ERREUR=_F(ALARME='EXCEPTION'), DEBUG=_F(SDVERI='OUI'), INFO=1)
+assert cos(pi) == -1 and _F(A=1) == {'A': 1} and _F(A=1)['A'] == 1
+import os
+assert os.environ['MARK'] == 'here'
+assert __name__ == '__main__' and __file__ == 'study.comm'
+import code_aster
+from code_aster.Commands import *
+from code_aster import CA
+try:
+    from code_aster.Utilities import sympy
+    raise RuntimeError('there is no sympy')
+except ImportError:
+    pass
+test = CA.TestCase()
+test.assertEqual(1, 1)
+test.assertAlmostEqual(1.0, 1.0 + 1e-9)
+test.printSummary()
+name = CO('later')
+print("a title \\q \\2")
+FIN()
+"""
+        run = self.ok(self.run_study(text, environment={"MARK": "here"}))
+        self.assertEqual(run.err, "")
+        self.assertIn("2 checks: 2 OK", run.out)
+
+    def test_a_failed_assertion_of_a_test_case_is_nook(self):
+        run = self.run_study("from code_aster import CA\nDEBUT()\nCA.TestCase().assertEqual(1, 2)\nFIN()\n")
+        self.assertEqual((run.status, run.last), (5, "--- DIAGNOSTIC JOB : NOOK_TEST_RESU"))
+
+    def test_init_and_close(self):
+        self.write("a.comm", "from code_aster import CA\nCA.init('--test', ERREUR=_F(ALARME='ALARME'))\nx = 1\nCA.close()\n")
+        self.write("a.com1", "from code_aster import CA\nCA.init('--test', '--continue')\nassert x == 1\nCA.close()\n")
+        self.ok(self.launch("a.comm", "a.com1"))
+
+    def test_an_encoding(self):
+        (self.work / "study.comm").write_bytes("# coding: latin-1\nDEBUT()\nt = 'déplacé'\nassert len(t) == 7\nFIN()\n".encode("latin-1"))
+        self.ok(self.launch("study.comm"))
+
+    def test_mesh_objects(self):
+        self.ok(self.run_study("""
+DEBUT()
+M = LIRE_MAILLAGE()
+assert M.getNumberOfNodes() == 6 and M.getNumberOfCells() == 3
+values = M.getCoordinates().getValues()
+assert len(values) == 18 and values[3:6] == [1.0, 0.0, 0.0]
+assert M.getName() == 'M' and M.getGroupsOfCells() == ['SKIN', 'BODY']
+FIN()
+"""))
+
+    def test_fields_of_a_result(self):
+        self.ok(self.run_study(STUDY + """
+values, mask = R.getField('DEPL', 2).toSimpleFieldOnNodes().getValues()
+assert values.shape == (6, 2) and values[3, 0] == 4.0
+assert mask[:, 0].all() and list(mask[:, 1]) == [False, True, False, False, True, False]
+values, mask = R.getField('CONT_ELEM', 1).toSimpleFieldOnCells().getValues()
+assert values[2, 0] == -12.5 and list(mask[:, 0]) == [False, False, True]
+assert R.getIndexes() == [0, 1, 2] and R.getTime(1) == 0.5
+FIN()
+"""))
+
+    def test_the_order(self):
+        self.ok(self.run_study(STUDY + "FIN()\n"))
+        order = self.last_order("CREA_MAILLAGE")
+        self.assertEqual(order, {
+            "format": 1, "command": "CREA_MAILLAGE", "base": str(self.work / "study.base"),
+            "result": {"id": "mesh_4", "label": "M", "reuse": False}, "units": {}, "source": "study.comm:6",
+            "keywords": {"MAILLAGE": {"concept": "mesh_3"}, "INFO": 1,
+                         "DECOUPE_LAC": [{"GROUP_MA_ESCL": ["SKIN"], "DECOUPE_HEXA": "PYRA"}]}})
+
+    def test_threads(self):
+        program = self.bin / "lire_maillage"
+        program.write_text(program.read_text().replace("def main():", "def main():\n    print('threads', os.environ['LACON_THREADS'])"))
+        self.assertIn("threads 2", self.run_study("DEBUT()\nM = LIRE_MAILLAGE()\n", "--threads", "2").out)
+
+    def test_timings(self):
+        run = self.run_study(STUDY + "FIN()\n", "--timings")
+        for word in ("start-up of the launcher", "STAT_NON_LINE  study.comm:11", "      work", "total"):
+            self.assertIn(word, run.out)
+        self.assertTrue(run.last.startswith("--- DIAGNOSTIC"))
+
+    def test_version_and_help(self):
+        self.assertRegex(self.launch("--version").out, r"^lacon \d+\.\d+\.\d+")
+        help_text = self.launch("--help").out
+        for word in ("--unit", "--base", "--fresh", "--checks", "--json", "--timings", "--threads", "Exit status"):
+            self.assertIn(word, help_text)
+
+    def test_the_catalogue_is_said_to_be_missing(self):
+        self.write("study.comm", "DEBUT()\n")
+        run = self.launch("study.comm", environment={"LACON_CATALOG": "/nowhere"})
+        self.assertEqual(run.status, 4)
+        self.assertIn("/nowhere", run.err)
+
+
+class Sources(unittest.TestCase):
+    def test_every_message_that_is_raised_exists_with_its_gaps(self):
+        import ast
+        import re
+        import string
+
+        from lacon import catalog
+
+        known = catalog.messages()
+        used = set()
+        for path in sorted((ROOT / "commands" / "lacon").glob("*.py")):
+            for node in ast.walk(ast.parse(path.read_text())):
+                if not isinstance(node, ast.Call):
+                    continue
+                first = node.args[0] if node.args else None
+                choices = (first.body, first.orelse) if isinstance(first, ast.IfExp) else (first,)
+                ids = [a.value for a in choices if isinstance(a, ast.Constant) and isinstance(a.value, str)
+                       and re.fullmatch(r"[A-Z_]+_\d+", a.value)]
+                for identifier in ids:
+                    used.add(identifier)
+                    self.assertIn(identifier, known, path.name)
+                    gaps = {g for key in ("text", "do") for _, g, _, _ in string.Formatter().parse(known[identifier][key]) if g}
+                    given = {k.arg for k in node.keywords} | {"path"}
+                    self.assertLessEqual(gaps, given, f"{path.name}: {identifier}")
+        mine = catalog._toml(ROOT / "catalog" / "messages" / "commands.toml")
+        self.assertEqual(set(mine) - used, set(), "messages that nothing raises")
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,163 @@
+"""Concepts are labelled by the variable they are assigned to; POURSUITE finds names again or says why not."""
+
+import sys
+import unittest
+
+sys.path.insert(0, __file__.rpartition("/")[0] or ".")
+from support import STUDY, LauncherTest  # noqa: E402
+
+MATERIAL = "DEFI_MATERIAU(ELAS=_F(E=1, NU=0))"
+
+
+class Labels(LauncherTest):
+    def labels(self, body):
+        self.ok(self.run_study(f"DEBUT()\n{body}\nFIN()\n"))
+        return self.registry()["labels"]
+
+    def test_a_variable(self):
+        self.assertEqual(self.labels(f"MAT = {MATERIAL}"), {"MAT": "material_1"})
+
+    def test_elements_of_a_list_in_a_loop(self):
+        labels = self.labels(f"M = [None] * 2\nfor i in range(2):\n    M[i] = {MATERIAL}")
+        self.assertEqual(labels, {"M[0]": "material_1", "M[1]": "material_2"})
+
+    def test_an_index_that_is_computed(self):
+        run = self.ok(self.run_study(f"DEBUT()\nM = {{}}\ni = 1\nM[i + 1, 'a'] = {MATERIAL}\nFIN()\n"))
+        self.assertIn("M[(2, 'a')] = DEFI_MATERIAU", run.out)
+        self.assertEqual(list(self.registry()["labels"]), ["M[(2, 'a')]"])
+
+    def test_append_and_comprehension(self):
+        labels = self.labels(f"M = []\nM.append({MATERIAL})\nN = [{MATERIAL} for i in range(2)]")
+        self.assertEqual(set(labels), {"M[0]", "N[0]", "N[1]"})
+
+    def test_tuples_and_dictionaries(self):
+        labels = self.labels(f"A, B = {MATERIAL}, {MATERIAL}\nD = {{'x': {MATERIAL}}}\nT = ({MATERIAL}, [{MATERIAL}])")
+        self.assertEqual(set(labels), {"A", "B", "D['x']", "T[0]", "T[1][0]"})
+
+    def test_a_function_that_returns_a_concept(self):
+        run = self.ok(self.run_study(f"DEBUT()\ndef f():\n    return {MATERIAL}\nA = f()\nL = [0]\nL[0] = f()\nFIN()\n"))
+        self.assertIn("A = DEFI_MATERIAU", run.out)
+        self.assertIn("L[0] = DEFI_MATERIAU", run.out)
+        self.assertEqual(set(self.registry()["labels"]), {"A", "L[0]"})
+
+    def test_a_local_variable_labels_the_file_and_not_the_study(self):
+        self.assertEqual(set(self.labels(f"def f():\n    inner = {MATERIAL}\n    return inner\nA = f()")), {"A"})
+        import h5py
+
+        with h5py.File(self.work / "study.base" / "material_1.h5") as file:
+            self.assertEqual(file.attrs["label"], "inner")
+
+    def test_an_argument_has_no_label(self):
+        run = self.ok(self.run_study(f"DEBUT()\nf = lambda x: x\nA = f({MATERIAL})\nFIN()\n"))
+        self.assertIn(": DEFI_MATERIAU", run.out)
+        self.assertEqual(set(self.registry()["labels"]), {"A"})
+
+    def test_two_names_of_one_concept(self):
+        self.assertEqual(self.labels(f"A = {MATERIAL}\nB = A"), {"A": "material_1", "B": "material_1"})
+
+    def test_assigning_again_leaves_what_was_made_on_the_old_concept(self):
+        self.ok(self.run_study(STUDY + "M = CREA_MAILLAGE(MAILLAGE=M0, LINE_QUAD=_F(TOUT='OUI'))\nFIN()\n"))
+        labels = self.registry()["labels"]
+        self.assertNotEqual(labels["M"], "mesh_4")
+        self.assertIn("mesh_4", self.entries(), "the model refers to it")
+
+    def test_reuse_with_and_without_assignment(self):
+        text = STUDY + """
+MODI_MAILLAGE(reuse=M, MAILLAGE=M, ORIE_PEAU=_F(GROUP_MA_PEAU='SKIN'))
+N = MODI_MAILLAGE(reuse=M, MAILLAGE=M, ORIE_PEAU=_F(GROUP_MA_PEAU='SKIN'))
+assert N is M
+CALC_CHAMP(reuse=R, RESULTAT=R, CONTRAINTE='SIEF_NOEU')
+FIN()
+"""
+        self.ok(self.run_study(text))
+        import h5py
+
+        labels = self.registry()["labels"]
+        self.assertEqual(labels["M"], labels["N"])
+        with h5py.File(self.work / "study.base" / f"{labels['M']}.h5") as file:
+            self.assertEqual(file.attrs["version"], 3)
+        self.assertEqual(self.last_order("CALC_CHAMP")["result"], {"id": labels["R"], "label": "R", "reuse": True})
+
+
+class Resume(LauncherTest):
+    def resume(self, first, second, *options):
+        self.ok(self.run_study(f"DEBUT()\n{first}\nFIN()\n"))
+        name = self.write("more.comm", f"POURSUITE()\n{second}\nFIN()\n").name
+        return self.launch(name, "--base", "study.base", "--unit", "20=mesh.med", *options)
+
+    def test_every_python_name_in_the_same_run(self):
+        self.write("study.comm", f"DEBUT()\nA = {MATERIAL}\ndef f(x):\n    return x + 1\nclass Box: pass\nbox = Box()\nbox.a = A\nFIN()\n")
+        self.write("study.com1", f"POURSUITE()\nassert f(1) == 2 and box.a is A\nassert A.open()\nB = {MATERIAL}\nFIN()\n")
+        self.ok(self.launch("study.comm", "study.com1"))
+        self.assertEqual(set(self.registry()["labels"]), {"A", "B"})
+
+    def test_a_concept_that_only_an_object_holds_survives_fin_in_the_middle(self):
+        self.write("study.comm", f"DEBUT()\nclass Box: pass\nbox = Box()\nbox.a = {MATERIAL}\nFIN()\n")
+        self.write("study.com1", "POURSUITE()\nbox.a.open().close()\nFIN()\n")
+        self.ok(self.launch("study.comm", "study.com1"))
+        self.assertEqual(self.entries(), [], "and at the end nothing refers to it")
+
+    def test_concepts_and_plain_data_in_a_later_run(self):
+        first = f"""
+import numpy as np
+from numpy import linspace
+A = {MATERIAL}
+L = [A, {MATERIAL}]
+D = {{'x': (1, 2.5, 'text', None, True), 3: [1j, b'b', {{4}}]}}
+X = np.arange(6.0).reshape(2, 3)
+x32 = np.float32(1.5)
+inf = float('inf')
+F = DEFI_FONCTION(NOM_PARA='INST', VALE=(0, 0, 1, 10))
+"""
+        second = """
+assert L[0] is A and A.label == 'A' and len(L) == 2, L
+assert D == {'x': (1, 2.5, 'text', None, True), 3: [1j, b'b', {4}]}, D
+assert type(D['x']) is tuple
+assert X.shape == (2, 3) and X[1, 2] == 5 and X.dtype == float
+assert x32 == 1.5 and x32.dtype == np.float32
+assert inf > 1e308
+assert linspace(0, 1, 3)[1] == 0.5
+assert F(0.25) == 2.5
+B = AFFE_MATERIAU(MAILLAGE=LIRE_MAILLAGE(), AFFE=_F(TOUT='OUI', MATER=L[1]))
+"""
+        self.ok(self.resume(first, second))
+
+    def test_a_lost_name_is_explained_where_it_is_first_used(self):
+        run = self.refused(self.resume("def helper():\n    return 1\n", "a = 1\nb = helper()"), "STUDY_8", "'helper'", "function",
+                           "more.comm:3")
+        self.assertIn("define it again", run.err)
+
+    def test_a_lost_name_inside_a_function(self):
+        self.refused(self.resume("g = open(__file__)", "def f():\n    return g\nf()"), "STUDY_8", "'g'", "TextIOWrapper", "more.comm:3")
+
+    def test_a_lost_name_that_is_defined_again_is_no_error(self):
+        self.ok(self.resume("def f():\n    return 1", "def f():\n    return 2\nassert f() == 2"))
+
+    def test_a_lost_name_stays_lost_in_a_third_run(self):
+        self.ok(self.resume("f = lambda: 1", "a = 1"))
+        self.refused(self.launch(self.write("third.comm", "POURSUITE()\nf()\n").name, "--base", "study.base"), "STUDY_8", "'f'")
+
+    def test_a_name_that_never_was_is_an_ordinary_error(self):
+        self.refused(self.resume("a = 1", "nowhere"), "STUDY_20", "'nowhere'", "more.comm:2")
+
+    def test_a_list_that_holds_a_function_is_lost_with_its_reason(self):
+        self.refused(self.resume("L = [1, lambda: 2]", "L"), "STUDY_8", "'L'", "function")
+
+    def test_a_killed_run_loses_nothing_that_was_done(self):
+        text = f"DEBUT()\nA = {MATERIAL}\nL = []\nL.append({MATERIAL})\nM = [0]\nM[0] = {MATERIAL}\nimport os, signal\nos.kill(os.getpid(), 9)\n"
+        self.assertEqual(self.run_study(text).status, -9)
+        more = self.write("more.comm", "POURSUITE()\nassert A and M[0]\nA.open(); M[0].open()\nFIN()\n")
+        self.ok(self.launch(more.name, "--base", "study.base"))
+
+    def test_without_a_base(self):
+        self.refused(self.run_study("POURSUITE()\n"), "STUDY_2", "study.base", "study.comm:1")
+        self.assertFalse((self.work / "study.base").exists())
+
+    def test_names_after_poursuite_win_over_saved_ones(self):
+        self.ok(self.resume(f"A = {MATERIAL}\nx = 1", "x = 2\nA = 3"))
+        self.assertEqual(self.registry()["labels"], {})
+        self.ok(self.launch(self.write("third.comm", "POURSUITE()\nassert (x, A) == (2, 3)\n").name, "--base", "study.base"))
+
+
+if __name__ == "__main__":
+    unittest.main()
