@@ -2,6 +2,7 @@
 
 #include "lacon/catalog/cells.hpp"
 #include "lacon/catalog/contact.hpp"
+#include "lacon/catalog/cuts.hpp"
 #include "lacon/catalog/messages.hpp"
 
 namespace lacon::catalog {
@@ -21,6 +22,12 @@ const PatchRow* find_patch(int kind) {
 const SlaveRow* find_slave(int kind, int rank) {
   for (const SlaveRow& row : slaves())
     if (row.kind == kind && row.rank == rank) return &row;
+  return nullptr;
+}
+
+const CutRow* find_cut(CellType skin, CellType body, std::string_view option) {
+  for (const CutRow& row : cuts())
+    if (row.skin == skin && row.body == body && (row.option.empty() || row.option == option)) return &row;
   return nullptr;
 }
 

@@ -12,6 +12,8 @@ import pathlib
 import sys
 import tomllib
 
+import cuts
+
 
 class CatalogError(Exception):
     """A row of the catalogue contradicts another."""
@@ -43,8 +45,13 @@ def load(folder):
     for path in sorted((folder / "elements").glob("*.toml")):
         elements += read(path)["element"]
     contact = read(folder / "contact.toml")
+    cells = [complete_cell(row, rows) for rows in [read(folder / "cells.toml")["cell"]] for row in rows]
+    by_name = {cell["name"]: cell for cell in cells}
+    all_cuts = [cut for row in read(folder / "cuts.toml")["cut"] for cut in cuts.complete_cut(row, by_name, check)]
+    cuts.check_carriers(all_cuts, contact["patch"], contact["slave"], check)
     return {
-        "cells": [complete_cell(row, rows) for rows in [read(folder / "cells.toml")["cell"]] for row in rows],
+        "cells": cells,
+        "cuts": all_cuts,
         "patches": contact["patch"],
         "slaves": contact["slave"],
         "elements": elements,
@@ -186,6 +193,17 @@ def write_cpp(catalog, writer):
     check(not missing, f"contact.toml: no slave element for (patch kind, rank) {missing}")
     tables["slaves", "SlaveRow"] = rows
 
+    def sub_cells(items):
+        return writer.span("SubCell", (f"{{{kind(n)}, {writer.integers(own)}}}" for n, own in items))
+
+    tables["cuts", "CutRow"] = [
+        f"{{{kind(c['skin'])}, {kind(c['body'])}, {text(c['option'])}, {c['kind']}, {writer.integers(c['facet'])}, "
+        f"{writer.span('double', (repr(x) for p in c['skin_nodes'] for x in p))}, "
+        f"{writer.span('double', (repr(x) for p in c['body_nodes'] for x in p))}, "
+        f"{sub_cells(c['skin_cells'])}, {sub_cells(c['body_cells'])}, {writer.integers(c['carriers'])}, "
+        + writer.span("Placement", (f"{{{f}, {writer.integers(own)}}}" for f, own in c["placements"]))
+        + f", {writer.integers(c['turned'])}}}" for c in catalog["cuts"]]
+
     rows = []
     for e in catalog["elements"]:
         for cell, points in e["points"].items():
@@ -214,7 +232,7 @@ def write_cpp(catalog, writer):
         else:
             body.append(f"std::span<const {row}> {name}() {{ return {{}}; }}")
     includes = "\n".join(f'#include "lacon/catalog/{h}.hpp"' for h in
-                         ("cells", "contact", "elements", "keywords", "messages", "quantities"))
+                         ("cells", "contact", "cuts", "elements", "keywords", "messages", "quantities"))
     return (f"// Made by catalog/generate.py from the catalogue's TOML: do not edit.\n{includes}\n\nnamespace lacon::catalog {{\n"
             "namespace {\n" + "\n".join(writer.arrays) + "\n}\n\n" + "\n".join(body) + "\n}\n")
 
