@@ -1,0 +1,19 @@
+#include "lacon/operators/crea_maillage/crea_maillage.hpp"
+#include "lacon/operators/program/program.hpp"
+
+int main(int argc, char** argv) {
+  using namespace lacon;
+  return run_program(argc, argv, "crea_maillage", "Makes a mesh from another: cut for LAC, linear to quadratic or back",
+                     [](const Order& order, const Base& base) {
+                       const Mesh mesh = [&] {
+                         const Phase phase("read");
+                         return base.mesh(order.keywords.concept_id("MAILLAGE"));
+                       }();
+                       const Mesh made = [&] {
+                         const Phase phase("cut");
+                         return crea_maillage(mesh, order.keywords);
+                       }();
+                       const Phase phase("write");
+                       base.store(made);
+                     });
+}

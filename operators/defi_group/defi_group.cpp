@@ -1,0 +1,178 @@
+#include "lacon/operators/defi_group/defi_group.hpp"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <charconv>
+#include <numeric>
+
+#include "lacon/catalog/messages.hpp"
+
+namespace lacon {
+namespace {
+
+using Members = std::vector<std::int32_t>;
+
+/// What differs between groups of cells and of nodes.
+struct Kind {
+  std::string_view name;    ///< "cell"
+  char letter;              ///< of M12, N3
+  std::string_view remove;  ///< the keyword that removes such a group
+  std::vector<Group> Mesh::*groups;
+  std::span<const std::int32_t> (*members)(const Mesh&, std::string_view, std::string_view);
+};
+
+const Kind cells{"cell", 'M', "DETR_GROUP_MA", &Mesh::cell_groups, cells_of_group};
+const Kind nodes{"node", 'N', "DETR_GROUP_NO", &Mesh::node_groups, nodes_of_group};
+
+/// The number behind `M12`, 0-based.
+std::int32_t number_of(std::string_view name, const Kind& kind, std::size_t count, const std::string& keyword) {
+  std::int64_t number = 0;
+  const char* end = name.data() + name.size();
+  const bool read = name.size() > 1 && name[0] == kind.letter && name[1] != '0' && name[1] != '-' &&
+                    std::from_chars(name.data() + 1, end, number).ptr == end;
+  if (!read || number < 1 || number > static_cast<std::int64_t>(count))
+    fail("GROUPE_2", {{"keyword", keyword},
+                      {"what", std::string(kind.name)},
+                      {"name", std::string(name)},
+                      {"first", std::string(1, kind.letter) + "1"},
+                      {"last", std::string(1, kind.letter) + std::to_string(count)}});
+  return static_cast<std::int32_t>(number - 1);
+}
+
+/// Each member once, in the order of its first appearance.
+Members once(const Members& members, std::size_t count) {
+  std::vector<char> seen(count, 0);
+  Members kept;
+  for (const std::int32_t m : members)
+    if (!std::exchange(seen[static_cast<std::size_t>(m)], 1)) kept.push_back(m);
+  return kept;
+}
+
+/// NOM of members by name, UNION, INTERSEC or DIFFE of groups: nothing where the occurrence has none of them.
+std::optional<Members> combined(const Mesh& mesh, const Kind& kind, const Keywords& factor, std::size_t count) {
+  const auto group = [&](const std::string& name, const char* keyword) {
+    const auto own = kind.members(mesh, name, factor.path(keyword));
+    return Members(own.begin(), own.end());
+  };
+  for (const char* keyword : {"UNION", "INTERSEC", "DIFFE"}) {
+    const std::vector<std::string> names = factor.texts(keyword);
+    if (names.empty()) continue;
+    Members members = group(names[0], keyword);
+    for (std::size_t i = 1; i < names.size(); ++i) {
+      const Members other = group(names[i], keyword);
+      if (keyword == std::string_view("UNION")) {
+        members.insert(members.end(), other.begin(), other.end());
+        continue;
+      }
+      std::vector<char> in_other(count, 0);
+      for (const std::int32_t m : other) in_other[static_cast<std::size_t>(m)] = 1;
+      const bool keep = keyword == std::string_view("INTERSEC");
+      std::erase_if(members, [&](std::int32_t m) { return (in_other[static_cast<std::size_t>(m)] != 0) != keep; });
+    }
+    return members;
+  }
+  const char* by_name = kind.letter == 'M' ? "MAILLE" : "NOEUD";
+  const char* copy = kind.letter == 'M' ? "GROUP_MA" : "GROUP_NO";
+  if (factor.has(by_name)) {
+    Members members;
+    for (const std::string& name : factor.texts(by_name)) members.push_back(number_of(name, kind, count, factor.path(by_name)));
+    return members;
+  }
+  if (factor.has(copy)) return group(factor.text(copy), copy);
+  return std::nullopt;
+}
+
+void refuse_existing(const Mesh& mesh, const Kind& kind, const std::string& name, const std::string& keyword) {
+  for (const Group& group : mesh.*kind.groups)
+    if (group.name == name)
+      fail("GROUPE_1",
+           {{"keyword", keyword}, {"what", std::string(kind.name)}, {"group", name}, {"remove", std::string(kind.remove)}});
+}
+
+void add_group(Mesh& mesh, const Kind& kind, const std::string& name, const Members& members, const std::string& keyword,
+               bool alarm) {
+  refuse_existing(mesh, kind, name, keyword);
+  if (members.empty()) {
+    if (alarm) inform("GROUPE_3", {{"keyword", keyword}, {"what", std::string(kind.name)}, {"group", name}});
+    return;
+  }
+  fmt::print("  {} group {:<24} {:>8} {}s\n", kind.name, name, members.size(), kind.name);
+  (mesh.*kind.groups).push_back({name, members});
+}
+
+void remove_groups(Mesh& mesh, const Kind& kind, const Keywords& keywords) {
+  for (const Keywords& factor : keywords.factors(kind.remove))
+    for (const std::string& name : factor.texts("NOM")) {
+      if (std::none_of((mesh.*kind.groups).begin(), (mesh.*kind.groups).end(), [&](const Group& g) { return g.name == name; }))
+        kind.members(mesh, name, factor.path("NOM"));  // throws MESH_1
+      std::erase_if(mesh.*kind.groups, [&](const Group& group) { return group.name == name; });
+    }
+}
+
+/// Only cells of the types that TYPE_MAILLE names.
+void keep_types(const Mesh& mesh, const Keywords& factor, Members& members) {
+  std::vector<char> wanted(catalog::cells().size(), 0);
+  for (const std::string& name : factor.texts("TYPE_MAILLE")) {
+    const auto type = catalog::find_cell(name);
+    const bool by_dimension = name == "1D" || name == "2D" || name == "3D";
+    if (!type && !by_dimension && name != "TOUT") fail("GROUPE_5", {{"keyword", factor.path("TYPE_MAILLE")}, {"name", name}});
+    for (const catalog::CellRow& row : catalog::cells())
+      if (name == "TOUT" || row.type == type || (by_dimension && row.dimension == name[0] - '0'))
+        wanted[static_cast<std::size_t>(row.type)] = 1;
+  }
+  if (factor.has("TYPE_MAILLE"))
+    std::erase_if(members,
+                  [&](std::int32_t c) { return !wanted[static_cast<std::size_t>(mesh.types[static_cast<std::size_t>(c)])]; });
+}
+
+void create_cell_group(Mesh& mesh, const Keywords& factor, bool alarm) {
+  Members members;
+  if (const auto found = combined(mesh, cells, factor, mesh.n_cells())) {
+    members = *found;
+  } else if (factor.has("TOUT")) {
+    members.resize(mesh.n_cells());
+    std::iota(members.begin(), members.end(), 0);
+  } else {
+    fail("ORDER_2", {{"keyword", factor.path("TOUT, MAILLE, GROUP_MA, INTERSEC, UNION or DIFFE")}});
+  }
+  keep_types(mesh, factor, members);
+  add_group(mesh, cells, factor.text("NOM"), once(members, mesh.n_cells()), factor.path("NOM"), alarm);
+}
+
+void create_node_group(Mesh& mesh, const Keywords& factor, bool alarm) {
+  if (factor.has("TOUT_GROUP_MA")) {
+    for (const Group& group : std::vector<Group>(mesh.cell_groups)) {
+      if (mesh.find_node_group(group.name))
+        inform("GROUPE_6", {{"keyword", factor.path("TOUT_GROUP_MA")}, {"group", group.name}});
+      else
+        add_group(mesh, nodes, group.name, nodes_of_cells(mesh, group.members), factor.path("TOUT_GROUP_MA"), alarm);
+    }
+    return;
+  }
+  if (factor.has("GROUP_MA")) {
+    const std::vector<std::string> groups = factor.texts("GROUP_MA");
+    if (factor.has("NOM") && groups.size() > 1)
+      fail("GROUPE_4", {{"keyword", factor.path("NOM")}, {"count", std::to_string(groups.size())}});
+    for (const std::string& group : groups)
+      add_group(mesh, nodes, factor.has("NOM") ? factor.text("NOM") : group,
+                nodes_of_cells(mesh, cells_of_group(mesh, group, factor.path("GROUP_MA"))),
+                factor.path(factor.has("NOM") ? "NOM" : "GROUP_MA"), alarm);
+    return;
+  }
+  const auto found = combined(mesh, nodes, factor, mesh.n_nodes());
+  if (!found) fail("ORDER_2", {{"keyword", factor.path("TOUT_GROUP_MA, GROUP_MA, NOEUD, GROUP_NO, INTERSEC, UNION or DIFFE")}});
+  add_group(mesh, nodes, factor.text("NOM"), once(*found, mesh.n_nodes()), factor.path("NOM"), alarm);
+}
+
+}  // namespace
+
+void defi_group(Mesh& mesh, const Keywords& keywords) {
+  const bool alarm = keywords.yes("ALARME");
+  remove_groups(mesh, cells, keywords);
+  remove_groups(mesh, nodes, keywords);
+  for (const Keywords& factor : keywords.factors("CREA_GROUP_MA")) create_cell_group(mesh, factor, alarm);
+  for (const Keywords& factor : keywords.factors("CREA_GROUP_NO")) create_node_group(mesh, factor, alarm);
+}
+
+}  // namespace lacon

@@ -1,0 +1,65 @@
+#include "lacon/operators/meshing/body.hpp"
+
+#include <algorithm>
+
+#include "lacon/catalog/messages.hpp"
+
+namespace lacon {
+
+NodeCells::NodeCells(const Mesh& mesh) {
+  cells_.offset.assign(mesh.n_nodes() + 1, 0);
+  cells_.values.resize(mesh.cells.values.size());
+  for (const std::int32_t node : mesh.cells.values) ++cells_.offset[static_cast<std::size_t>(node) + 1];
+  for (std::size_t n = 0; n < mesh.n_nodes(); ++n) cells_.offset[n + 1] += cells_.offset[n];
+  std::vector<std::int64_t> next(cells_.offset.begin(), cells_.offset.end() - 1);
+  for (std::size_t c = 0; c < mesh.n_cells(); ++c)
+    for (const std::int32_t node : mesh.cells[c])
+      cells_.values[static_cast<std::size_t>(next[static_cast<std::size_t>(node)]++)] = static_cast<std::int32_t>(c);
+}
+
+std::optional<FacetMatch> match_facet(CellType type, std::span<const std::int32_t> body, CellType skin_type,
+                                      std::span<const std::int32_t> skin) {
+  const catalog::CellRow& row = catalog::cell(type);
+  const auto n = static_cast<std::size_t>(catalog::cell(skin_type).n_vertices);
+  const auto vertex = [&](const catalog::FacetRow& facet, std::size_t i) {
+    return body[static_cast<std::size_t>(facet.nodes[i])];
+  };
+  for (std::size_t f = 0; f < row.facets.size(); ++f) {
+    const catalog::FacetRow& facet = row.facets[f];
+    if (static_cast<std::size_t>(catalog::cell(facet.type).n_vertices) != n) continue;
+    for (std::size_t start = 0; start < n; ++start) {
+      const auto runs = [&](std::size_t step) {
+        for (std::size_t i = 0; i < n; ++i)
+          if (vertex(facet, i) != skin[(start + i * step) % n]) return false;
+        return true;
+      };
+      const bool outward = runs(1) && (n != 2 || start == 0);  // an edge seen from outside starts at its first vertex
+      if (outward || runs(n - 1)) return FacetMatch{static_cast<int>(f), static_cast<int>(start), outward};
+    }
+  }
+  return std::nullopt;
+}
+
+std::vector<BodyCell> body_cells(const Mesh& mesh, const NodeCells& around, std::size_t skin_cell) {
+  std::vector<BodyCell> found;
+  const auto skin = mesh.cells[skin_cell];
+  for (const std::int32_t candidate : around[static_cast<std::size_t>(skin[0])]) {
+    const auto c = static_cast<std::size_t>(candidate);
+    if (mesh.row(c).dimension != mesh.row(skin_cell).dimension + 1) continue;
+    if (const auto match = match_facet(mesh.types[c], mesh.cells[c], mesh.types[skin_cell], skin))
+      found.push_back({candidate, *match});
+  }
+  return found;
+}
+
+std::vector<std::int32_t> mirrored(CellType type, std::span<const std::int32_t> nodes) {
+  std::vector<std::int32_t> turned;
+  for (const std::int8_t n : catalog::cell(type).mirror) turned.push_back(nodes[static_cast<std::size_t>(n)]);
+  return turned;
+}
+
+void refuse_cut_mesh(const Mesh& mesh, std::string_view what) {
+  if (mesh.patches) fail("MESH1_12", {{"what", std::string(what)}, {"mesh", mesh.name}});
+}
+
+}  // namespace lacon

@@ -1,0 +1,46 @@
+#pragma once
+// Which body cell a skin cell belongs to, and from which side it is seen.
+#include <optional>
+#include <vector>
+
+#include "lacon/structures/mesh.hpp"
+
+namespace lacon {
+
+/// The cells around each node.
+class NodeCells {
+ public:
+  explicit NodeCells(const Mesh& mesh);
+  std::span<const std::int32_t> operator[](std::size_t node) const { return cells_[node]; }
+
+ private:
+  Ragged<std::int32_t> cells_;
+};
+
+/// How a skin cell lies on a facet of a body cell.
+struct FacetMatch {
+  int facet;     ///< index into CellRow::facets
+  int start;     ///< the facet's first vertex, seen from outside, is this vertex of the skin cell
+  bool outward;  ///< the skin cell runs as the facet does (of a body cell of positive volume: its normal leaves the body)
+};
+
+/// The facet of the cell `type` with nodes `body` that has the vertices of the skin cell, or nothing. Only vertices count: the
+/// types of facet and skin may differ.
+std::optional<FacetMatch> match_facet(CellType type, std::span<const std::int32_t> body, CellType skin_type,
+                                      std::span<const std::int32_t> skin);
+
+struct BodyCell {
+  std::int32_t cell;
+  FacetMatch match;
+};
+
+/// Every cell of one dimension more that has the skin cell as a facet, by number.
+std::vector<BodyCell> body_cells(const Mesh& mesh, const NodeCells& around, std::size_t skin_cell);
+
+/// The nodes of a cell in the order of the same cell turned inside out.
+std::vector<std::int32_t> mirrored(CellType type, std::span<const std::int32_t> nodes);
+
+/// Refuse a change of cells on a mesh that is cut for LAC: MESH1_12. @param what the keyword, for the message
+void refuse_cut_mesh(const Mesh& mesh, std::string_view what);
+
+}  // namespace lacon

@@ -1,0 +1,272 @@
+#include "lacon/operators/meshing/cut.hpp"
+
+#include <algorithm>
+#include <array>
+#include <map>
+#include <set>
+
+#include "lacon/catalog/cuts.hpp"
+#include "lacon/catalog/messages.hpp"
+#include "lacon/elements/reference.hpp"
+#include "lacon/operators/meshing/body.hpp"
+#include "lacon/operators/meshing/quality.hpp"
+
+namespace lacon {
+namespace {
+
+using Nodes = std::vector<std::int32_t>;
+
+constexpr std::size_t max_nodes = 27;
+
+/// A slave cell, its body cell before any cut, and the zone it belongs to.
+struct Slave {
+  std::int32_t cell;
+  std::int32_t body;
+  std::size_t zone;
+};
+
+/// Cells while they are cut: a cell that was cut has the sub-cells that replace it. The first ones are those of the mesh.
+class Forest {
+ public:
+  explicit Forest(const Mesh& mesh) : types_(mesh.types), children_(mesh.n_cells()) {
+    for (std::size_t c = 0; c < mesh.n_cells(); ++c) nodes_.emplace_back(mesh.cells[c].begin(), mesh.cells[c].end());
+  }
+
+  CellType type(std::int32_t cell) const { return types_[static_cast<std::size_t>(cell)]; }
+  const Nodes& nodes(std::int32_t cell) const { return nodes_[static_cast<std::size_t>(cell)]; }
+  void turn(std::int32_t cell) { nodes_[static_cast<std::size_t>(cell)] = mirrored(type(cell), nodes(cell)); }
+
+  std::int32_t add(CellType type, Nodes nodes, std::int32_t parent) {
+    const auto cell = static_cast<std::int32_t>(types_.size());
+    types_.push_back(type);
+    nodes_.push_back(std::move(nodes));
+    children_.emplace_back();
+    children_[static_cast<std::size_t>(parent)].push_back(cell);
+    return cell;
+  }
+
+  /// Visit what is left of a cell after all cuts so far, in order; stops where `visit` returns true, and says whether it did.
+  template <class Visit>
+  bool leaves(std::int32_t cell, const Visit& visit) const {
+    const auto& children = children_[static_cast<std::size_t>(cell)];
+    if (children.empty()) return visit(cell);
+    return std::any_of(children.begin(), children.end(), [&](std::int32_t child) { return leaves(child, visit); });
+  }
+
+ private:
+  std::vector<CellType> types_;
+  std::vector<Nodes> nodes_;
+  std::vector<Nodes> children_;
+};
+
+/// Append the images of reference points of a cell (isoparametric, METHOD.md 1.2-3) to the coordinates; returns their numbers.
+Nodes add_nodes(CellType type, const Nodes& nodes, std::span<const double> points, std::vector<double>& coordinates) {
+  const auto d = static_cast<std::size_t>(catalog::cell(type).dimension);
+  Nodes added;
+  for (std::size_t p = 0; p < points.size() / d; ++p) {
+    std::array<double, max_nodes> shape;
+    shape_functions(type, points.subspan(p * d, d), {shape.data(), nodes.size()});
+    std::array<double, 3> image{};
+    for (std::size_t a = 0; a < nodes.size(); ++a)
+      for (std::size_t k = 0; k < 3; ++k) image[k] += shape[a] * coordinates[3 * static_cast<std::size_t>(nodes[a]) + k];
+    added.push_back(static_cast<std::int32_t>(coordinates.size() / 3));
+    coordinates.insert(coordinates.end(), image.begin(), image.end());
+  }
+  return added;
+}
+
+Nodes pick(const Nodes& from, std::span<const std::int8_t> which) {
+  Nodes picked;
+  for (const std::int8_t i : which) picked.push_back(from[static_cast<std::size_t>(i)]);
+  return picked;
+}
+
+void append(Nodes& to, const Nodes& more) { to.insert(to.end(), more.begin(), more.end()); }
+
+/// Every check on the groups and their cells, before anything is cut.
+std::vector<Slave> find_slaves(const Mesh& mesh, std::span<const std::string> groups, const std::string& keyword) {
+  const int skin_dimension = mesh.dimension - 1;
+  const NodeCells around(mesh);
+  std::vector<Slave> slaves;
+  std::map<std::int32_t, std::size_t> zone_of;                    // of a slave cell
+  std::map<std::pair<std::int32_t, int>, std::int32_t> slave_of;  // of a facet of a body cell
+  for (std::size_t zone = 0; zone < groups.size(); ++zone) {
+    const std::string& group = groups[zone];
+    if (std::find(groups.begin(), groups.begin() + static_cast<std::ptrdiff_t>(zone), group) !=
+        groups.begin() + static_cast<std::ptrdiff_t>(zone))
+      fail("DECOUPE_1", {{"keyword", keyword}, {"group", group}});
+    for (const std::int32_t cell : cells_of_group(mesh, group, keyword)) {
+      const auto c = static_cast<std::size_t>(cell);
+      if (mesh.row(c).dimension != skin_dimension)
+        fail("DECOUPE_4",
+             {{"keyword", keyword},
+              {"group", group},
+              {"cell", cell_name(cell)},
+              {"type", std::string(mesh.row(c).name)},
+              {"skin", skin_dimension == 1 ? "segments (SEG2, SEG3)" : "faces (TRIA3, TRIA6, QUAD4, QUAD8, QUAD9)"}});
+      if (const auto [at, fresh] = zone_of.emplace(cell, zone); !fresh)
+        fail("DECOUPE_2", {{"keyword", keyword}, {"cell", cell_name(cell)}, {"first", groups[at->second]}, {"second", group}});
+      const std::vector<BodyCell> bodies = body_cells(mesh, around, c);
+      if (bodies.empty())
+        fail("MESH1_2",
+             {{"keyword", keyword}, {"group", group}, {"cell", cell_name(cell)}, {"type", std::string(mesh.row(c).name)}});
+      if (bodies.size() > 1)
+        fail("DECOUPE_3", {{"keyword", keyword},
+                           {"group", group},
+                           {"cell", cell_name(cell)},
+                           {"first", cell_name(bodies[0].cell)},
+                           {"second", cell_name(bodies[1].cell)}});
+      const BodyCell& body = bodies[0];
+      if (const auto [at, fresh] = slave_of.emplace(std::pair(body.cell, body.match.facet), cell); !fresh)
+        fail("DECOUPE_5", {{"keyword", keyword},
+                           {"group", group},
+                           {"first", cell_name(at->second)},
+                           {"second", cell_name(cell)},
+                           {"body", cell_name(body.cell)}});
+      const auto b = static_cast<std::size_t>(body.cell);
+      if (!is_sound(jacobian_range(mesh.types[b], mesh.cells[b], mesh.coordinates)))
+        fail("DECOUPE_6", {{"keyword", keyword},
+                           {"group", group},
+                           {"what", "the body cell " + cell_name(body.cell) + " under the slave cell " + cell_name(cell)},
+                           {"type", std::string(mesh.row(b).name)}});
+      slaves.push_back({cell, body.cell, zone});
+    }
+  }
+  return slaves;
+}
+
+/// Cut one slave cell and what its body cell has become. @return its sub-cells by rank, as numbers of the forest
+Nodes cut_slave(Forest& forest, const Slave& slave, const std::string& group, std::string_view option,
+                const std::string& keyword, std::vector<double>& coordinates, Patches& patches, CutZone& zone) {
+  std::int32_t body = -1;
+  FacetMatch match{};
+  forest.leaves(slave.body, [&](std::int32_t leaf) {
+    const auto found = match_facet(forest.type(leaf), forest.nodes(leaf), forest.type(slave.cell), forest.nodes(slave.cell));
+    if (found) {
+      body = leaf;
+      match = *found;
+    }
+    return found.has_value();
+  });
+  if (body < 0) throw std::logic_error("a cut of " + cell_name(slave.body) + " has lost the facet of " + cell_name(slave.cell));
+
+  const auto refuse = [&](const std::string& reason) {
+    fail("CREALAC_1", {{"keyword", keyword},
+                       {"group", group},
+                       {"cell", cell_name(slave.cell)},
+                       {"skin", std::string(catalog::cell(forest.type(slave.cell)).name)},
+                       {"body_cell", cell_name(slave.body)},
+                       {"body", std::string(catalog::cell(forest.type(body)).name)},
+                       {"reason", reason}});
+  };
+  const catalog::CutRow* cut = catalog::find_cut(forest.type(slave.cell), forest.type(body), option);
+  if (!cut) refuse("there is no cut for this pair");
+  if (!match.outward) {
+    forest.turn(slave.cell);
+    ++zone.turned;
+    match = match_facet(forest.type(body), forest.nodes(body), forest.type(slave.cell), forest.nodes(slave.cell)).value();
+  }
+
+  // the body cell turned so that its facet lies where the row expects it
+  const auto placement = std::ranges::find(cut->placements, match.facet, &catalog::Placement::facet);
+  if (placement == cut->placements.end()) refuse("the facet is of another type");
+  const Nodes& skin = forest.nodes(slave.cell);
+  Nodes turned_body = pick(forest.nodes(body), placement->nodes);
+  const auto n_vertices = cut->facet.size();
+  const std::int32_t first = turned_body[static_cast<std::size_t>(cut->facet[0])];
+  const auto start = static_cast<std::size_t>(
+      std::find(skin.begin(), skin.begin() + static_cast<std::ptrdiff_t>(n_vertices), first) - skin.begin());
+  const catalog::FacetRow& facet = catalog::cell(forest.type(body)).facets[static_cast<std::size_t>(match.facet)];
+  Nodes of_facet = pick(forest.nodes(body), facet.nodes), of_skin = skin;
+  std::ranges::sort(of_facet);
+  std::ranges::sort(of_skin);
+  if (of_facet != of_skin) refuse("they share their vertices, but not their mid nodes");
+
+  const Nodes new_skin = add_nodes(cut->skin, skin, cut->skin_nodes, coordinates);
+  const Nodes new_body = add_nodes(cut->body, turned_body, cut->body_nodes, coordinates);
+  Nodes on_skin = skin;
+  append(on_skin, new_skin);
+  append(turned_body, pick(new_skin, cut->turned.subspan(start * new_skin.size(), new_skin.size())));
+  append(turned_body, new_body);
+
+  Nodes sub_cells;
+  for (const catalog::SubCell& sub : cut->skin_cells)
+    sub_cells.push_back(forest.add(sub.type, pick(on_skin, sub.nodes), slave.cell));
+  for (const catalog::SubCell& sub : cut->body_cells) {
+    const Nodes own = pick(turned_body, sub.nodes);
+    if (!is_sound(jacobian_range(sub.type, own, coordinates)))
+      fail("DECOUPE_6",
+           {{"keyword", keyword},
+            {"group", group},
+            {"what", "a sub-cell of " + cell_name(slave.body) + ", cut under the slave cell " + cell_name(slave.cell) + ","},
+            {"type", std::string(catalog::cell(sub.type).name)}});
+    forest.add(sub.type, own, body);
+  }
+  patches.kind.push_back(cut->kind);
+  patches.parent.push_back(slave.cell);
+  patches.carriers.push_back(pick(on_skin, cut->carriers));
+  ++zone.patches;
+  return sub_cells;
+}
+
+}  // namespace
+
+Mesh cut_lac(const Mesh& mesh, std::span<const std::string> groups, std::string_view option, std::string_view keyword,
+             CutReport& report) {
+  refuse_cut_mesh(mesh, keyword);
+  const std::string path(keyword);
+  const std::vector<Slave> slaves = find_slaves(mesh, groups, path);
+
+  Mesh done;
+  done.name = mesh.name;
+  done.dimension = mesh.dimension;
+  done.coordinates = mesh.coordinates;
+  done.node_groups = mesh.node_groups;
+  Patches& patches = done.patches.emplace();
+  report = {};
+  for (const std::string& group : groups) report.zones.push_back({group});
+
+  Forest forest(mesh);
+  Ragged<std::int32_t> sub_cells;  // of each patch, as numbers of the forest
+  for (const Slave& slave : slaves)
+    sub_cells.push_back(
+        cut_slave(forest, slave, groups[slave.zone], option, path, done.coordinates, patches, report.zones[slave.zone]));
+
+  // number what is left: sub-cells in place of the cell they come from
+  std::vector<std::int32_t> number_of;  // of a cell of the forest, in the cut mesh
+  Ragged<std::int32_t> replaced_by;     // cells of the cut mesh for each cell of the mesh
+  for (std::size_t c = 0; c < mesh.n_cells(); ++c) {
+    Nodes heirs;
+    forest.leaves(static_cast<std::int32_t>(c), [&](std::int32_t leaf) {
+      const auto number = static_cast<std::int32_t>(done.n_cells());
+      if (static_cast<std::size_t>(leaf) >= number_of.size()) number_of.resize(static_cast<std::size_t>(leaf) + 1, -1);
+      number_of[static_cast<std::size_t>(leaf)] = number;
+      heirs.push_back(number);
+      done.add_cell(forest.type(leaf), forest.nodes(leaf));
+      return false;
+    });
+    replaced_by.push_back(heirs);
+  }
+  for (const Group& group : mesh.cell_groups) {
+    Group extended{group.name, {}};
+    for (const std::int32_t member : group.members) {
+      const auto heirs = replaced_by[static_cast<std::size_t>(member)];
+      extended.members.insert(extended.members.end(), heirs.begin(), heirs.end());
+    }
+    done.cell_groups.push_back(std::move(extended));
+  }
+  for (std::size_t p = 0; p < patches.size(); ++p) {
+    Nodes own;
+    for (const std::int32_t cell : sub_cells[p]) own.push_back(number_of[static_cast<std::size_t>(cell)]);
+    patches.cells.push_back(own);
+  }
+  for (const CutZone& zone : report.zones) {
+    patches.zone_group.push_back(zone.group);
+    patches.zone_offset.push_back(patches.zone_offset.back() + zone.patches);
+  }
+  report.new_nodes = static_cast<std::int64_t>(done.n_nodes() - mesh.n_nodes());
+  report.new_cells = static_cast<std::int64_t>(done.n_cells() - mesh.n_cells());
+  return done;
+}
+
+}  // namespace lacon

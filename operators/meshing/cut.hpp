@@ -1,0 +1,33 @@
+#pragma once
+// DECOUPE_LAC: the slave skins and the body cells under them are cut into macro-elements (METHOD.md 1.2 to 1.8).
+#include <string>
+#include <vector>
+
+#include "lacon/structures/mesh.hpp"
+
+namespace lacon {
+
+struct CutZone {
+  std::string group;
+  std::int64_t patches = 0;
+  std::int64_t turned = 0;  ///< slave cells that looked into the body
+};
+
+struct CutReport {
+  std::vector<CutZone> zones;
+  std::int64_t new_nodes = 0;
+  std::int64_t new_cells = 0;
+};
+
+/// Cut the skins `groups`, one contact zone each, in this order. Sub-cells take the place of the cell they come from, in the
+/// list of cells and in every group; new nodes are appended and belong to no group; inward slave cells are turned first.
+/// @param option DECOUPE_HEXA: "PYRA" or "HEXA" @param keyword path of the keyword that names the groups
+/// @return the cut mesh, with its patches
+/// Throws MESH1_2 (skin cell without body cell), CREALAC_1 (unsupported pair), MESH1_12 (mesh already cut), MESH_1, MESH_2
+/// (unknown, empty group), DECOUPE_1 (repeated group), DECOUPE_2 (cell in two places), DECOUPE_3 (two body cells), DECOUPE_4
+/// (not a skin cell), DECOUPE_5 (two slave cells on one facet), DECOUPE_6 (body cell or sub-cell of negative or mixed
+/// Jacobian).
+Mesh cut_lac(const Mesh& mesh, std::span<const std::string> groups, std::string_view option, std::string_view keyword,
+             CutReport& report);
+
+}  // namespace lacon

@@ -1,0 +1,107 @@
+// LINE_QUAD and QUAD_LINE.
+#include <numeric>
+
+#include "lacon/operators/crea_maillage/crea_maillage.hpp"
+#include "meshes.hpp"
+
+namespace {
+
+using namespace lacon;
+using namespace lacon::test;
+
+Nodes all_cells(const Mesh& mesh) {
+  Nodes all(mesh.n_cells());
+  std::iota(all.begin(), all.end(), 0);
+  return all;
+}
+
+class LineQuad : public testing::TestWithParam<CellType> {};
+
+// Every mid node is half-way on its edge; back to linear, the mesh is what it was.
+TEST_P(LineQuad, and_back_is_the_identity) {
+  const CellType type = GetParam();
+  const catalog::CellRow& row = catalog::cell(type);
+  Mesh mesh = row.dimension == 2 ? block(type, 3, 2, 4) : one_cell(type, row.facets[0].type, 4);
+  const Mesh before = mesh;
+  EXPECT_EQ(make_quadratic(mesh, all_cells(mesh)), static_cast<std::int64_t>(mesh.n_cells()));
+  std::map<Nodes, std::int32_t> middle;
+  for (std::size_t c = 0; c < mesh.n_cells(); ++c) {
+    EXPECT_EQ(mesh.types[c], catalog::cell(before.types[c]).quadratic);
+    const catalog::CellRow& own = mesh.row(c);
+    for (std::size_t e = 0; e < own.edges.size(); ++e) {
+      const auto a = static_cast<std::size_t>(mesh.cells[c][static_cast<std::size_t>(own.edges[e].first)]);
+      const auto b = static_cast<std::size_t>(mesh.cells[c][static_cast<std::size_t>(own.edges[e].second)]);
+      const std::int32_t m = mesh.cells[c][static_cast<std::size_t>(own.n_vertices) + e];
+      const Nodes key = sorted(Nodes{static_cast<std::int32_t>(a), static_cast<std::int32_t>(b)});
+      EXPECT_EQ(middle.emplace(key, m).first->second, m) << "an edge with two mid nodes";
+      for (std::size_t k = 0; k < 3; ++k)
+        EXPECT_EQ(mesh.point(static_cast<std::size_t>(m))[k], (mesh.point(a)[k] + mesh.point(b)[k]) / 2);
+    }
+  }
+  EXPECT_EQ(mesh.n_nodes(), before.n_nodes() + middle.size());
+  EXPECT_EQ(make_linear(mesh, all_cells(mesh)), static_cast<std::int64_t>(mesh.n_cells()));
+  EXPECT_EQ(mesh.coordinates, before.coordinates);
+  EXPECT_EQ(mesh.cells.values, before.cells.values);
+  EXPECT_EQ(mesh.types, before.types);
+}
+
+INSTANTIATE_TEST_SUITE_P(Cells, LineQuad,
+                         testing::Values(CellType::TRIA3, CellType::QUAD4, CellType::TETRA4, CellType::PENTA6, CellType::PYRAM5,
+                                         CellType::HEXA8),
+                         [](const auto& row) { return std::string(catalog::cell(row.param).name); });
+
+// zzzz383a: one QUAD4 with its four edges becomes 8 nodes and 5 cells; cutting its SEG3 adds nothing.
+TEST(LineQuadCut, of_a_square_has_the_counts_of_the_peer) {
+  Mesh mesh = block(CellType::QUAD4, 1, 1, 1);
+  make_quadratic(mesh, all_cells(mesh));
+  const Mesh made = cut(mesh, {"BOTTOM"});
+  EXPECT_EQ(made.n_nodes(), 8u);
+  EXPECT_EQ(made.n_cells(), 5u);
+  EXPECT_EQ(made.patches->kind[0], 14);
+}
+
+// A quadratic neighbour gives its (curved) mid node to a cell that becomes quadratic.
+TEST(LineQuadGroup, uses_the_mid_nodes_that_are_there) {
+  Mesh mesh = block(CellType::TRIA6, 2, 1, 3);
+  const Nodes bottom = mesh.find_cell_group("BOTTOM")->members;
+  const Mesh before = mesh;
+  make_linear(mesh, bottom);
+  EXPECT_EQ(mesh.n_nodes(), before.n_nodes());  // the body still uses their mid nodes
+  EXPECT_EQ(mesh.types[0], CellType::SEG2);
+  make_quadratic(mesh, bottom);
+  EXPECT_EQ(mesh.cells.values, before.cells.values);
+  EXPECT_EQ(mesh.coordinates, before.coordinates);
+}
+
+// INVENTORY 5.2: QUAD_LINE by groups leaves the other body quadratic; what nobody uses goes, and the other nodes keep their
+// order.
+TEST(QuadLineGroup, removes_the_mid_nodes_that_nobody_uses) {
+  Mesh mesh = block(CellType::TRIA6, 1, 1, 3);  // 4 vertices, 5 mid nodes
+  const std::int32_t first = add_node(mesh, 5, 0);
+  add_node(mesh, 6, 0);
+  add_node(mesh, 5.5, 0.1);
+  add(mesh, CellType::SEG3, {first, first + 1, first + 2});
+  const std::int32_t mid = mesh.cells[0][2];
+  mesh.node_groups = {{"MIDS", {mid}}, {"MIX", {0, mid, first + 2}}};
+  Nodes block_cells = all_cells(mesh);
+  block_cells.pop_back();
+  const Listener listener;
+  EXPECT_EQ(make_linear(mesh, block_cells), 6);
+  EXPECT_EQ(mesh.n_nodes(), 7u);
+  EXPECT_EQ(mesh.types.back(), CellType::SEG3);
+  EXPECT_EQ(Nodes(mesh.cells[6].begin(), mesh.cells[6].end()), (Nodes{4, 5, 6}));
+  EXPECT_EQ(mesh.point(6)[0], 5.5);
+  ASSERT_EQ(mesh.node_groups.size(), 1u);
+  EXPECT_EQ(mesh.node_groups[0].members, (Nodes{0, 6}));
+  EXPECT_EQ(Listener::ids(), (std::vector<std::string>{"ORDRE_2", "ORDRE_1"}));
+}
+
+TEST(LineQuadErrors, a_mesh_that_is_cut_is_refused) {
+  const Mesh made = cut(block(CellType::TRIA3, 2, 1, 1), {"TOP"});
+  for (const std::string name : {"LINE_QUAD", "QUAD_LINE"}) {
+    const Keywords keywords(nlohmann::json{{name, {{{"TOUT", "OUI"}}}}}, "");
+    EXPECT_EQ(error_of([&] { crea_maillage(made, keywords); }).id, "MESH1_12");
+  }
+}
+
+}  // namespace
