@@ -1,10 +1,14 @@
 #pragma once
 // Meshes and fields in MED files (HDF5), read and written without libmed. README.md beside says what is where.
 #include <filesystem>
+#include <functional>
+#include <map>
 #include <string>
 #include <string_view>
 #include <vector>
 
+#include "lacon/structures/field.hpp"
+#include "lacon/structures/hdf5.hpp"
 #include "lacon/structures/mesh.hpp"
 
 namespace lacon {
@@ -17,5 +21,51 @@ std::vector<std::string> med_mesh_names(const std::filesystem::path& file);
 /// of the families that name it. A mesh whose file says 3 coordinates, but which has no 3D cell and z = 0 everywhere, is 2D.
 /// Throws MED_1 to MED_10.
 Mesh read_med_mesh(const std::filesystem::path& file, std::string_view name = {});
+
+/// The integration points of the cells of one type: MED wants to know them with a field at integration points.
+struct MedPoints {
+  std::vector<double> points;   ///< (n, dimension), reference coordinates as in catalog/cells.toml
+  std::vector<double> weights;  ///< (n)
+};
+
+/// Finds the integration points of a field on the cells of a type, given their number.
+using MedRule = std::function<MedPoints(CellType, int n_points)>;
+
+/// A MED 4.1 file while it is being written; write_med() hands it out.
+class MedFile {
+ public:
+  explicit MedFile(const hdf5::Group& root);
+
+  /// Put a mesh into the file, or find it there: the same nodes and cells under the same name are written once, and get the
+  /// groups of `mesh`. Where another mesh has the name, the mesh is called `<name>_2`, and so on. Throws MED_12 (name too
+  /// long).
+  /// @return the name it has in the file
+  std::string add_mesh(const Mesh& mesh, std::string_view name);
+
+  /// Put one step of a field into the file; what the field has at this step on the same nodes or cells is replaced.
+  /// Components that exist on the same rows make one MED field, `name`; those that exist elsewhere make further ones,
+  /// `<name>_<component>`. A field on a part of the mesh gets a profile. Where a field of another mesh or with other components
+  /// has the name, the field is called `<name>_2`, and so on.
+  /// @param mesh_name as add_mesh() returned it
+  /// @param step (NDT and NOR), negative for none @param rule only for gauss_points; without it these cannot be written
+  /// @return the names in the file
+  std::vector<std::string> add_field(const Mesh& mesh, std::string_view mesh_name, const Field& field, std::string_view name,
+                                     std::int64_t step, const MedRule& rule = {});
+
+ private:
+  struct Rows;
+  std::string field_group(const std::string& name, std::string_view mesh_name, const std::vector<std::string>& components);
+  void write_entity(const hdf5::Group& step, const std::string& entity, const std::string& profile,
+                    const std::string& localisation, const Rows& rows);
+  std::string profile(const std::string& type, const std::vector<std::int32_t>& numbers);
+  std::string localisation(const catalog::CellRow& row, const MedPoints& points);
+
+  const hdf5::Group& root_;
+  std::map<std::vector<std::int32_t>, std::string> profiles_;
+};
+
+/// Write into a MED file: `write` adds to what the file holds, or to an empty file. The file changes wholly or not at all.
+/// Throws BASE_3 (not writable), MED_1, MED_2, MED_13 (what is there is not MED 4.1).
+void write_med(const std::filesystem::path& file, const std::function<void(MedFile&)>& write);
 
 }  // namespace lacon

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "lacon/structures/hdf5.hpp"
+#include "lacon/structures/mesh.hpp"
 
 namespace lacon::med {
 
@@ -53,5 +54,11 @@ inline std::vector<std::string> read_names(const hdf5::Group& group, std::string
   }
   return names;
 }
+
+/// The mesh of this name of an open MED file; throws MED_6 to MED_10.
+Mesh read_mesh(const hdf5::Group& root, const std::string& name);
+
+/// Throws MED_1 and MED_2 where a file is not MED, MED_13 where it is MED of another version than is written.
+void check_appendable(const std::filesystem::path& file);
 
 }  // namespace lacon::med

@@ -281,6 +281,26 @@ Mesh MeshReader::read() {
 
 }  // namespace
 
+namespace med {
+
+Mesh read_mesh(const H5Group& root, const std::string& name) {
+  try {
+    return MeshReader(root, name).read();
+  } catch (const Error& error) {
+    if (error.message().id != "BASE_2") throw;
+    fail("MED_7", {{"mesh", name}, {"file", root.path().string()}, {"reason", error.message().text}});
+  }
+}
+
+void check_appendable(const fs::path& file) {
+  const H5Group about = open_med(file).open("INFOS_GENERALES");
+  if (about.integer("MAJ") != 4 || about.integer("MIN") != 1)
+    fail("MED_13", {{"file", file.string()},
+                    {"version", std::to_string(about.integer("MAJ")) + "." + std::to_string(about.integer("MIN"))}});
+}
+
+}  // namespace med
+
 std::vector<std::string> med_mesh_names(const fs::path& file) { return mesh_names(open_med(file)); }
 
 Mesh read_med_mesh(const fs::path& file, std::string_view name) {
@@ -296,12 +316,7 @@ Mesh read_med_mesh(const fs::path& file, std::string_view name) {
   } else if (std::find(known.begin(), known.end(), chosen) == known.end()) {
     fail("MED_5", {{"file", file.string()}, {"mesh", chosen}, {"known", joined(known)}});
   }
-  try {
-    return MeshReader(root, chosen).read();
-  } catch (const Error& error) {
-    if (error.message().id != "BASE_2") throw;
-    fail("MED_7", {{"mesh", chosen}, {"file", file.string()}, {"reason", error.message().text}});
-  }
+  return med::read_mesh(root, chosen);
 }
 
 }  // namespace lacon
