@@ -12,8 +12,8 @@ int ContactCellDofs::displacement(int node, int component) const {
 
 void contact_system(const ContactCellDofs& dofs, std::span<const double> coupling, double gap, bool active, double lambda,
                     std::span<double> matrix, std::span<double> residual) {
-  const int size = dofs.size(), nodes = dofs.n_slave_nodes + dofs.n_master_nodes,
-            carriers = static_cast<int>(dofs.carriers.size());
+  [[maybe_unused]] const int size = dofs.size();
+  const int nodes = dofs.n_slave_nodes + dofs.n_master_nodes, carriers = static_cast<int>(dofs.carriers.size());
   assert(static_cast<int>(coupling.size()) >= nodes * dofs.dimension);
   assert(static_cast<int>(matrix.size()) >= size * (size + 1) / 2 && static_cast<int>(residual.size()) >= size);
   std::fill(matrix.begin(), matrix.end(), 0.0);

@@ -22,24 +22,33 @@ double dot(const Vector<D>& a, const Vector<D>& b) {
 
 /// Sum of shape_a nodes_a. @param nodes (n, D)
 template <int D>
-Vector<D> interpolate(const double* shape, int stride, const double* nodes, int n) {
+Vector<D> interpolate(const double* shape, const double* nodes, int n) {
   Vector<D> value{};
   for (int a = 0; a < n; ++a)
-    for (int i = 0; i < D; ++i) value[i] += shape[a * stride] * nodes[a * D + i];
+    for (int i = 0; i < D; ++i) value[i] += shape[a] * nodes[a * D + i];
   return value;
 }
 
-/// The outward normal of a slave skin at a point, its length being the Jacobian; `scale` gets the size of the terms.
+/// The tangent along reference coordinate `axis`, from the first node on: a cell far from the origin loses no digits.
+template <int D>
+Vector<D> tangent(const double* gradient, int axis, const double* nodes, int n) {
+  Vector<D> value{};
+  for (int a = 1; a < n; ++a)
+    for (int i = 0; i < D; ++i) value[i] += gradient[a * (D - 1) + axis] * (nodes[a * D + i] - nodes[i]);
+  return value;
+}
+
+/// The outward normal of a slave skin at a point, its length being the Jacobian; `scale` gets the size of its terms.
 template <int D>
 Vector<D> area_normal(const double* gradient, const double* nodes, int n, double& scale) {
-  const Vector<D> t = interpolate<D>(gradient, D - 1, nodes, n);
+  const Vector<D> t = tangent<D>(gradient, 0, nodes, n);
   if constexpr (D == 2) {
     scale = 0;
-    for (int a = 0; a < n; ++a)
+    for (int a = 1; a < n; ++a)
       scale += std::abs(gradient[a]) * (std::abs(nodes[2 * a] - nodes[0]) + std::abs(nodes[2 * a + 1] - nodes[1]));
     return {t[1], -t[0]};
   } else {
-    const Vector<D> s = interpolate<D>(gradient + 1, D - 1, nodes, n);
+    const Vector<D> s = tangent<D>(gradient, 1, nodes, n);
     scale = std::sqrt(dot<D>(t, t) * dot<D>(s, s));
     return {t[1] * s[2] - t[2] * s[1], t[2] * s[0] - t[0] * s[2], t[0] * s[1] - t[1] * s[0]};
   }
@@ -75,12 +84,12 @@ void lac(const lacon_contact_batch* batch) {
       bad |= !(jacobian > flat * scale) || !(jacobian0 > flat * scale0);
       double length = jacobian;
       if (normals) {
-        n = interpolate<D>(shape, 1, normals, slaves);
+        n = interpolate<D>(shape, normals, slaves);
         length = std::sqrt(dot<D>(n, n));
         bad |= !(length > flat);  // nodal normals that cancel
       }
       for (double& component : n) component /= length;
-      const Vector<D> x = interpolate<D>(shape, 1, current, slaves), image = interpolate<D>(master_shape, 1, master, masters);
+      const Vector<D> x = interpolate<D>(shape, current, slaves), image = interpolate<D>(master_shape, master, masters);
       Vector<D> across;
       for (int i = 0; i < D; ++i) across[i] = image[i] - x[i];
       const double g = dot<D>(across, n), w = b.weight[p] * (b.current_jacobian ? jacobian : jacobian0);
