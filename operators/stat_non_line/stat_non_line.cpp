@@ -103,6 +103,7 @@ class Archive {
     result_.parameters["newton_iterations"].push_back(iterations);
   }
   void store() const { base_.store(result_); }
+  void discard() const { base_.discard(result_); }
   std::size_t n_instants() const { return result_.orders.size(); }
 
  private:
@@ -156,9 +157,12 @@ void stat_non_line(const Order& order, const Base& base) {
   };
   try {
     step_through(steps, solve, go_back, solved);
-  } catch (const Error&) {
+  } catch (...) {
     // what was computed before the failure is not lost; without it the base stays as it was
-    if (archive.n_instants() > 1) archive.store();
+    if (archive.n_instants() > 1)
+      archive.store();
+    else
+      archive.discard();
     throw;
   }
   archive.store();
