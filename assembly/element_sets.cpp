@@ -15,6 +15,7 @@ const char* reason(int error) {
   switch (error) {
     case LACON_BAD_JACOBIAN: return "the Jacobian is zero, negative or of mixed sign";
     case LACON_BAD_PARAMETER: return "a material parameter is out of its range";
+    case LACON_BAD_BATCH: return "the kernel does not serve this kind of element: its catalogue row is wrong";
     default: return "the result is not a finite number";
   }
 }
@@ -80,10 +81,10 @@ class Batch {
   int dimension_;
 };
 
-ElementSet make_set(const catalog::ElementRow& row, Registry& registry, std::string_view option) {
+ElementSet make_set(const catalog::ElementRow& row, Registry& registry, std::string_view option, lacon_kernel_kind kind) {
   ElementSet set;
   set.row = &row;
-  set.kernel = &registry.kernel(row, option);
+  set.kernel = &registry.kernel(row, option, kind);
   set.tabulation = tabulate(row.cell, integration_rule(catalog::cell(row.cell).family, row.points));
   return set;
 }
@@ -117,7 +118,7 @@ std::vector<ElementSet> solid_sets(const Mesh& mesh, const Model& model, Registr
     const catalog::ElementRow* row = registry.find_element(model.elements[e]);
     if (!row) fail("PLUGIN_4", {{"element", model.elements[e]}});
     if (row->role != catalog::Role::solid || cells[e].empty()) continue;
-    ElementSet set = make_set(*row, registry, "FULL_MECA");
+    ElementSet set = make_set(*row, registry, "FULL_MECA", LACON_SOLID);
     set.cells = std::move(cells[e]);
     const auto bare = std::count_if(set.cells.begin(), set.cells.end(), [&](std::int32_t c) { return !materials.has(c); });
     if (bare > 0) {
@@ -141,7 +142,7 @@ std::vector<ElementSet> skin_sets(const Model& model, Registry& registry, std::s
   for (auto& [element, indices] : by_element) {
     const catalog::ElementRow* row = element < 0 ? nullptr : registry.find_element(model.elements[element]);
     if (!row) fail("PLUGIN_4", {{"element", element < 0 ? "none, on cell " + cell_name(cells[indices.front()]) : model.elements[element]}});
-    ElementSet set = make_set(*row, registry, option);
+    ElementSet set = make_set(*row, registry, option, LACON_LOAD);
     for (const std::int32_t i : indices) set.cells.push_back(cells[i]);
     sets.push_back(std::move(set));
     position.push_back(std::move(indices));

@@ -186,7 +186,7 @@ void ContactState::integrate(const Zone& zone, const ContactCells& cells, std::s
     const std::int32_t element = problem_.model.element[first_cell];
     const catalog::ElementRow* row = element < 0 ? nullptr : problem_.registry->find_element(problem_.model.elements[element]);
     if (!row) fail("PLUGIN_4", {{"element", "none, on cell " + cell_name(first_cell)}});
-    problem_.registry->kernel(*row, "RIGI_CONT").contact(&batch);
+    problem_.registry->kernel(*row, "RIGI_CONT", LACON_CONTACT).contact(&batch);
     for (std::size_t i = 0; i < members.size(); ++i) {
       const std::int32_t c = members[i], s = zone.slaves[cells.slave[c]];
       if (error[i] != LACON_FINE) fail("EVOLUTION_3", {{"cell", cell_name(contact_.slaves[s].cell)}});
