@@ -1,6 +1,8 @@
 #include "lacon/assembly/symmetric_matrix.hpp"
 
 #include <algorithm>
+#include <stdexcept>
+#include <utility>
 
 namespace lacon {
 namespace {
@@ -74,7 +76,9 @@ void SymmetricMatrix::set_zero() { std::fill(value_.begin(), value_.end(), 0.0);
 double& SymmetricMatrix::entry(std::int64_t row, std::int64_t column) {
   if (column > row) std::swap(row, column);
   const auto first = column_.begin() + row_[row], last = column_.begin() + row_[row + 1];
-  return value_[std::lower_bound(first, last, static_cast<std::int32_t>(column)) - column_.begin()];
+  const auto at = std::lower_bound(first, last, static_cast<std::int32_t>(column));
+  if (at == last || *at != column) throw std::logic_error("an element matrix does not fit the pattern of the matrix");
+  return value_[at - column_.begin()];
 }
 
 void SymmetricMatrix::add(std::span<const std::int64_t> equations, std::span<const double> lower) {

@@ -81,6 +81,13 @@ TEST(SymmetricMatrix, KnowsItsRoom) {
   EXPECT_FALSE(matrix.has_room_for(std::vector<Coupling>{{4, 3}}));
 }
 
+// An element that does not fit is a defect of the caller, never a wrong entry.
+TEST(SymmetricMatrix, RefusesWhatItHasNoRoomFor) {
+  const Chain chain(4);
+  SymmetricMatrix matrix(chain.numbering, chain.cliques, {});
+  EXPECT_THROW(matrix.add(std::vector<std::int64_t>{0, 7}, std::vector<double>{1, 1, 1}), std::logic_error);
+}
+
 // Every equation has one place, and a multiplier comes behind all nodes of its row.
 TEST(Ordering, PutsMultipliersBehindTheirNodes) {
   const Chain chain(40, 3);
