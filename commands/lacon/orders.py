@@ -56,6 +56,7 @@ def run(program, made, folder, study):
     order_file, status_file = folder / f"{stem}.order.json", folder / f"{stem}.status.json"
     order_file.write_text(json.dumps(made, ensure_ascii=False, indent=1), encoding="utf-8")
     environment = dict(os.environ)
+    environment.setdefault("OPENBLAS_NUM_THREADS", "1")  # fronts are small: more threads of BLAS only slow each other down
     if study.threads:
         environment["LACON_THREADS"] = environment["OMP_NUM_THREADS"] = str(study.threads)
     sys.stdout.flush()
