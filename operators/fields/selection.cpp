@@ -1,0 +1,72 @@
+#include "lacon/operators/fields/selection.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "lacon/catalog/messages.hpp"
+
+namespace lacon {
+namespace {
+
+/// The order whose instant is `instant`. A relative precision of an instant 0 means exactly 0, as with the peer.
+std::int64_t order_at(const Result& result, double instant, double tolerance, const std::string& keyword) {
+  std::vector<std::int64_t> found;
+  for (std::size_t k = 0; k < result.orders.size(); ++k)
+    if (std::abs(result.instants[k] - instant) <= tolerance) found.push_back(result.orders[k]);
+  if (found.empty())
+    fail("FIELDS_2", {{"keyword", keyword},
+                      {"label", result.label},
+                      {"instant", fmt::format("{}", instant)},
+                      {"known", fmt::format("{}", fmt::join(result.instants, ", "))}});
+  if (found.size() > 1)
+    fail("FIELDS_3", {{"keyword", keyword},
+                      {"label", result.label},
+                      {"instant", fmt::format("{}", instant)},
+                      {"orders", fmt::format("{}", fmt::join(found, ", "))}});
+  return found.front();
+}
+
+}  // namespace
+
+bool names_instants(const Keywords& keywords) {
+  return keywords.has("NUME_ORDRE") || keywords.has("INST") || keywords.has("LIST_INST");
+}
+
+std::vector<std::int64_t> selected_orders(const Base& base, const Result& result, const Keywords& keywords) {
+  if (!names_instants(keywords)) return result.orders;
+  std::vector<std::int64_t> orders;
+  if (keywords.has("NUME_ORDRE")) {
+    orders = keywords.integers("NUME_ORDRE");
+    for (const std::int64_t order : orders)
+      if (std::find(result.orders.begin(), result.orders.end(), order) == result.orders.end())
+        fail("FIELDS_1", {{"keyword", keywords.path("NUME_ORDRE")},
+                          {"label", result.label},
+                          {"order", std::to_string(order)},
+                          {"known", fmt::format("{}", fmt::join(result.orders, ", "))}});
+  } else {
+    const bool list = keywords.has("LIST_INST");
+    const std::vector<double> instants = list ? base.list_of_reals(keywords.concept_id("LIST_INST")) : keywords.reals("INST");
+    const double precision = keywords.real("PRECISION");
+    const bool relative = keywords.text("CRITERE") == "RELATIF";
+    for (const double instant : instants)
+      orders.push_back(order_at(result, instant, relative ? precision * std::abs(instant) : precision,
+                                keywords.path(list ? "LIST_INST" : "INST")));
+  }
+  std::sort(orders.begin(), orders.end());
+  orders.erase(std::unique(orders.begin(), orders.end()), orders.end());
+  return orders;
+}
+
+std::vector<char> selected_cells(const Mesh& mesh, const Keywords& keywords) {
+  if (!keywords.has("GROUP_MA")) return std::vector<char>(mesh.n_cells(), 1);
+  std::vector<char> wanted(mesh.n_cells(), 0);
+  for (const std::string& group : keywords.texts("GROUP_MA"))
+    for (const std::int32_t cell : cells_of_group(mesh, group, keywords.path("GROUP_MA")))
+      wanted[static_cast<std::size_t>(cell)] = 1;
+  return wanted;
+}
+
+}  // namespace lacon

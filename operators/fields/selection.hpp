@@ -1,0 +1,21 @@
+#pragma once
+// Which part of a result a command means: TOUT_ORDRE, NUME_ORDRE, INST, LIST_INST; GROUP_MA.
+#include <cstdint>
+#include <vector>
+
+#include "lacon/structures/base.hpp"
+
+namespace lacon {
+
+/// True where the keywords name instants; otherwise all are meant.
+bool names_instants(const Keywords& keywords);
+
+/// The orders of the result that NUME_ORDRE, INST or LIST_INST (with PRECISION and CRITERE) name; all of them without these.
+/// Throws FIELDS_1 for an order, FIELDS_2 for an instant that the result does not have, FIELDS_3 for an instant that is
+/// several.
+std::vector<std::int64_t> selected_orders(const Base& base, const Result& result, const Keywords& keywords);
+
+/// One entry a cell of the mesh: not 0 where GROUP_MA means it, or everywhere without GROUP_MA. Throws MESH_1, MESH_2.
+std::vector<char> selected_cells(const Mesh& mesh, const Keywords& keywords);
+
+}  // namespace lacon
