@@ -1,0 +1,206 @@
+#include "lacon/operators/defi_contact/defi_contact.hpp"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <set>
+
+#include "lacon/catalog/contact.hpp"
+#include "lacon/catalog/messages.hpp"
+#include "lacon/operators/meshing/skin.hpp"
+
+namespace lacon {
+namespace {
+
+std::string number(std::size_t n) { return std::to_string(n); }
+
+/// What the method asks of the command as a whole, before any mesh is looked at.
+void check_method(const Keywords& keywords, const std::vector<Keywords>& zones) {
+  if (keywords.text("FORMULATION") != "CONTINUE") fail("LAC_1", {{"found", keywords.text("FORMULATION")}});
+  const std::string algorithm = zones.front().text("ALGO_CONT");
+  for (const Keywords& zone : zones)
+    if (zone.text("ALGO_CONT") != algorithm)
+      fail("CONTACT3_4", {{"keyword", zone.path("ALGO_CONT")}, {"first", algorithm}, {"other", zone.text("ALGO_CONT")}});
+  if (algorithm != "LAC") fail("LAC_2", {{"keyword", zones.front().path("ALGO_CONT")}, {"found", algorithm}});
+  if (keywords.text("FROTTEMENT") != "SANS") fail("CONTACT4_4", {{"found", keywords.text("FROTTEMENT")}});
+  for (const char* keyword : {"ALGO_RESO_GEOM", "ALGO_RESO_CONT"})
+    if (keywords.text(keyword) != "NEWTON") fail("CONTACT4_1", {{"keyword", keyword}, {"found", keywords.text(keyword)}});
+  for (const Keywords& zone : zones)
+    if (zone.text("ADAPTATION") != "NON")
+      fail("CONTACT_95", {{"keyword", zone.path("ADAPTATION")}, {"found", zone.text("ADAPTATION")}});
+}
+
+/// The place of a group among those given to DECOUPE_LAC, or -1.
+int cut_zone(const Patches& patches, const std::string& group) {
+  const auto at = std::find(patches.zone_group.begin(), patches.zone_group.end(), group);
+  return at == patches.zone_group.end() ? -1 : static_cast<int>(at - patches.zone_group.begin());
+}
+
+/// Every group of DECOUPE_LAC is the slave of one zone, and every slave is such a group.
+void check_zones(const Patches& patches, std::string_view mesh_label, const std::vector<Keywords>& zones) {
+  std::string prepared;
+  for (const std::string& group : patches.zone_group) prepared += (prepared.empty() ? "" : ", ") + group;
+  std::set<std::string> used;
+  for (const Keywords& zone : zones) {
+    const std::string slave = zone.text("GROUP_MA_ESCL"), master = zone.text("GROUP_MA_MAIT");
+    if (cut_zone(patches, slave) < 0 && cut_zone(patches, master) >= 0)
+      fail("CONTACT4_5", {{"keyword", zone.path("GROUP_MA_ESCL")},
+                          {"group", slave},
+                          {"reason", "its cells are no sub-cells of patches, and those of the master '" + master +
+                                         "' are: slave and master look swapped"}});
+    if (cut_zone(patches, slave) < 0)
+      fail("CONTACT2_18", {{"keyword", zone.path("GROUP_MA_ESCL")}, {"group", slave}, {"prepared", prepared}});
+    used.insert(slave);
+  }
+  if (zones.size() != patches.zone_group.size() || used.size() != zones.size())
+    fail("CONTACT2_17", {{"zones", number(zones.size())},
+                         {"used", number(used.size())},
+                         {"groups", number(patches.zone_group.size())},
+                         {"prepared", prepared},
+                         {"mesh", std::string(mesh_label)}});
+}
+
+/// A skin cell needs an element that knows contact.
+void check_elements(const Mesh& mesh, const Model& model, const Registry& registry, std::span<const std::int32_t> cells,
+                    const std::string& where) {
+  for (const std::int32_t cell : cells) {
+    const auto c = static_cast<std::size_t>(cell);
+    const std::string type(mesh.row(c).name);
+    if (mesh.row(c).dimension != model.dimension - 1)
+      fail("CONTACT_96",
+           {{"where", where}, {"cell", cell_name(cell)}, {"type", type}, {"reason", "it is not a skin cell of the model"}});
+    const std::int32_t element = model.element[c];
+    if (element < 0) fail("LAC_4", {{"where", where}, {"cell", cell_name(cell)}, {"type", type}});
+    const std::string& name = model.elements[static_cast<std::size_t>(element)];
+    if (name.starts_with("COQUE_3D/")) fail("CONTACT_94", {{"where", where}, {"cell", cell_name(cell)}});
+    const catalog::ElementRow* row = registry.find_element(name);
+    if (!row || !registry.has_kernel(*row, "RIGI_CONT"))
+      fail("CONTACT_96", {{"where", where},
+                          {"cell", cell_name(cell)},
+                          {"type", type},
+                          {"reason", "its finite element " + name + " has no contact kernel (RIGI_CONT)"}});
+  }
+}
+
+/// The body lies behind every skin cell: METHOD.md 2.1, VERI_NORM.
+void check_sides(const SkinSides& sides, std::span<const std::int32_t> cells, const std::string& where,
+                 const std::string& group) {
+  std::vector<std::int32_t> inward, alone;
+  for (const std::int32_t cell : cells) {
+    const Side side = sides[cell];
+    if (side == Side::inward) inward.push_back(cell);
+    if (side == Side::alone) alone.push_back(cell);
+  }
+  if (!inward.empty())
+    fail("MODELISA4_24",
+         {{"where", where}, {"group", group}, {"count", number(inward.size())}, {"cell", cell_name(inward.front())}});
+  if (!alone.empty())
+    inform("CONTACT2_20", {{"where", where}, {"count", number(alone.size())}, {"cell", cell_name(alone.front())}});
+}
+
+/// The slave group holds the sub-cells of its patches, all of them and no others.
+void check_patches(const Patches& patches, const ContactZone& zone, const std::string& keyword) {
+  std::vector<std::int32_t> in_patches, in_group = zone.slave;
+  for (const std::int32_t patch : zone.patches) {
+    const auto cells = patches.cells[static_cast<std::size_t>(patch)];
+    in_patches.insert(in_patches.end(), cells.begin(), cells.end());
+  }
+  std::sort(in_patches.begin(), in_patches.end());
+  std::sort(in_group.begin(), in_group.end());
+  if (in_patches != in_group)
+    fail("CONTACT4_5", {{"keyword", keyword},
+                        {"group", zone.slave_group},
+                        {"reason", fmt::format("it has {} cells, and its {} patches have {} sub-cells that are not the same",
+                                               in_group.size(), zone.patches.size(), in_patches.size())}});
+}
+
+void add_slaves(Contact& contact, const ContactZone& zone, const Mesh& mesh) {
+  for (const std::int32_t patch : zone.patches) {
+    const auto p = static_cast<std::size_t>(patch);
+    const auto cells = mesh.patches->cells[p];
+    for (std::size_t rank = 0; rank < cells.size(); ++rank) {
+      const std::int32_t cell = cells[rank];
+      const catalog::SlaveRow* row = catalog::find_slave(mesh.patches->kind[p], static_cast<int>(rank));
+      const CellType type = mesh.types[static_cast<std::size_t>(cell)];
+      if (!row || row->cell != type)
+        fail("LAC_5", {{"group", zone.slave_group},
+                       {"cell", cell_name(cell)},
+                       {"type", std::string(catalog::cell(type).name)},
+                       {"kind", std::to_string(mesh.patches->kind[p])},
+                       {"rank", number(rank + 1)}});
+      contact.slaves.push_back({cell, patch, static_cast<std::int32_t>(rank), std::string(row->element)});
+    }
+  }
+}
+
+ContactZone make_zone(const Mesh& mesh, const Keywords& keywords) {
+  ContactZone zone;
+  zone.slave_group = keywords.text("GROUP_MA_ESCL");
+  zone.master_group = keywords.text("GROUP_MA_MAIT");
+  const auto slave = cells_of_group(mesh, zone.slave_group, keywords.path("GROUP_MA_ESCL"));
+  const auto master = cells_of_group(mesh, zone.master_group, keywords.path("GROUP_MA_MAIT"));
+  zone.slave.assign(slave.begin(), slave.end());
+  zone.master.assign(master.begin(), master.end());
+  std::sort(zone.master.begin(), zone.master.end());  // a group may name a cell twice: one contact cell is enough
+  zone.master.erase(std::unique(zone.master.begin(), zone.master.end()), zone.master.end());
+  for (const std::int32_t cell : zone.slave)
+    if (std::binary_search(zone.master.begin(), zone.master.end(), cell))
+      fail("LAC_3", {{"slave", zone.slave_group}, {"master", zone.master_group}, {"cell", cell_name(cell)}});
+  const auto cut = static_cast<std::size_t>(cut_zone(*mesh.patches, zone.slave_group));
+  for (std::int64_t patch = mesh.patches->zone_offset[cut]; patch < mesh.patches->zone_offset[cut + 1]; ++patch)
+    zone.patches.push_back(static_cast<std::int32_t>(patch));
+  zone.jacobian = keywords.text("TYPE_JACOBIEN");
+  zone.search = keywords.text("TYPE_APPA");
+  zone.initial_status = keywords.text("CONTACT_INIT");
+  zone.tolerance = keywords.real("RESI_APPA");
+  return zone;
+}
+
+/// Normals are averaged per zone: a node of two slave skins would have two.
+void check_shared_nodes(const Mesh& mesh, const std::vector<ContactZone>& zones) {
+  std::vector<std::int32_t> owner(mesh.n_nodes(), -1);
+  for (std::size_t z = 0; z < zones.size(); ++z)
+    for (const std::int32_t node : nodes_of_cells(mesh, zones[z].slave)) {
+      std::int32_t& first = owner[static_cast<std::size_t>(node)];
+      if (first >= 0)
+        fail("CONTACT2_16", {{"first", zones[static_cast<std::size_t>(first)].slave_group},
+                             {"second", zones[z].slave_group},
+                             {"node", node_name(node)}});
+      first = static_cast<std::int32_t>(z);
+    }
+}
+
+}  // namespace
+
+Contact defi_contact(const Mesh& mesh, std::string_view mesh_label, const Model& model, const Registry& registry,
+                     const Keywords& keywords) {
+  const std::vector<Keywords> factors = keywords.factors("ZONE");
+  check_method(keywords, factors);
+  if (!mesh.patches || mesh.patches->size() == 0) fail("CONTACT4_2", {{"mesh", std::string(mesh_label)}});
+  check_zones(*mesh.patches, mesh_label, factors);
+
+  Contact contact;
+  contact.mesh = model.mesh;
+  contact.smoothing = keywords.yes("LISSAGE");
+  contact.verify_normals = keywords.yes("VERI_NORM");
+  contact.resi_geom = keywords.real("RESI_GEOM");
+  const SkinSides sides(mesh);
+  for (const Keywords& factor : factors) {
+    const ContactZone zone = make_zone(mesh, factor);
+    check_patches(*mesh.patches, zone, factor.path("GROUP_MA_ESCL"));
+    for (const auto& [keyword, group, cells] : {std::tuple("GROUP_MA_ESCL", zone.slave_group, zone.slave),
+                                                std::tuple("GROUP_MA_MAIT", zone.master_group, zone.master)}) {
+      const std::string where = factor.path(keyword) + " '" + group + "'";
+      check_elements(mesh, model, registry, cells, where);
+      if (contact.verify_normals) check_sides(sides, cells, where, group);
+    }
+    add_slaves(contact, zone, mesh);
+    contact.zones.push_back(zone);
+    fmt::print("  zone {}: slave {} ({} cells, {} patches), master {} ({} cells)\n", contact.zones.size(), zone.slave_group,
+               zone.slave.size(), zone.patches.size(), zone.master_group, zone.master.size());
+  }
+  if (contact.smoothing) check_shared_nodes(mesh, contact.zones);
+  return contact;
+}
+
+}  // namespace lacon

@@ -1,0 +1,25 @@
+#pragma once
+// On which side of a skin cell its body lies.
+#include "lacon/operators/meshing/body.hpp"
+
+namespace lacon {
+
+enum class Side {
+  outward,  ///< the normal leaves the body
+  inward,   ///< the normal looks into the body
+  alone,    ///< no cell has this facet, or only one without volume
+  between   ///< two bodies share the facet
+};
+
+/// Tells by geometry: a body cell that is inside out counts with the sign of its volume.
+class SkinSides {
+ public:
+  explicit SkinSides(const Mesh& mesh) : mesh_(mesh), around_(mesh) {}
+  Side operator[](std::int32_t skin_cell) const;
+
+ private:
+  const Mesh& mesh_;
+  NodeCells around_;
+};
+
+}  // namespace lacon
