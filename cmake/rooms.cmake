@@ -15,6 +15,7 @@ function(lacon_room name)
     "$<BUILD_INTERFACE:${PROJECT_BINARY_DIR}/include>"
     "$<BUILD_INTERFACE:${PROJECT_BINARY_DIR}/generated>"
     "$<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>")
+  target_compile_features(lacon_${name} PUBLIC cxx_std_20)
   target_link_libraries(lacon_${name} PUBLIC ${ROOM_PUBLIC} PRIVATE ${ROOM_PRIVATE})
   install(TARGETS lacon_${name} EXPORT lacon ARCHIVE DESTINATION "${CMAKE_INSTALL_LIBDIR}")
   install(DIRECTORY . DESTINATION "${CMAKE_INSTALL_INCLUDEDIR}/lacon/${name}" FILES_MATCHING PATTERN "*.hpp" PATTERN "*.h")

@@ -8,7 +8,6 @@
 
 #include "lacon/catalog/messages.hpp"
 #include "lacon/structures/formats/med.hpp"
-#include "lacon/structures/hdf5.hpp"
 
 namespace lacon::test {
 
