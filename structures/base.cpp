@@ -497,4 +497,11 @@ void Base::add_field(Result& result, Field field) const {
   result.fields[field.name][field.order] = file;
 }
 
+void Base::discard(const Result& result) const {
+  std::error_code error;
+  for (const auto& [name, files] : result.fields)
+    for (const auto& [order, file] : files) std::filesystem::remove(folder_ / file, error);
+  std::filesystem::remove(folder_ / order_->result_id, error);  // only where it is empty
+}
+
 }  // namespace lacon

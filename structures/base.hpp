@@ -47,6 +47,8 @@ class Base {
 
   /// Store a field file of the order's result and enter it in the index, which store(result) writes last.
   void add_field(Result& result, Field field) const;
+  /// Remove the field files of a result that will not be stored.
+  void discard(const Result& result) const;
 
  private:
   std::filesystem::path folder_;

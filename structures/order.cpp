@@ -151,7 +151,9 @@ Order parse_order(const json& order, const std::string& file) {
       parsed.result_label = order["result"].value("label", parsed.result_id);
       parsed.reuse = order["result"].value("reuse", false);
     }
-    for (const auto& [unit, path] : order.value("units", json::object()).items()) parsed.units[std::stoi(unit)] = path.get<std::string>();
+    const json units = order.value("units", json::object());  // named: items() refers to it
+    for (const auto& [unit, path] : units.items()) parsed.units[std::stoi(unit)] = path.get<std::string>();
+    for (const json& unit : order.value("append", json::array())) parsed.append.insert(std::stoi(unit.get<std::string>()));
     for (const json& folder : order.value("plugins", json::array())) parsed.plugins.emplace_back(folder.get<std::string>());
     parsed.source = order.value("source", file);
     parsed.keywords = Keywords(order.at("keywords"), "");

@@ -6,6 +6,7 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <optional>
+#include <set>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -49,6 +50,7 @@ struct Order {
   std::string result_id, result_label;  ///< empty for a command without result
   bool reuse = false;
   std::map<int, std::filesystem::path> units;
+  std::set<int> append;  ///< units whose file goes on; any other that is there is replaced
   std::vector<std::filesystem::path> plugins;
   std::string source;  ///< "study.comm:12"
   Keywords keywords;

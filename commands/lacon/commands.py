@@ -1,11 +1,9 @@
 """The commands as Python callables: check the keywords, then order the operator or do the work here."""
 
 import os
-import sys
-import threading
 import time
 
-from . import catalog, checker, concepts, hdf5, labels, orders, study
+from . import catalog, checker, concepts, labels, orders, study
 from .messages import AsterError, InternalError, fail, message
 
 
@@ -129,7 +127,6 @@ class Command:
         made = orders.order(self.name, run, keywords, where, result, units, written)
         copy = orders.keep_copy(run.base, identifier) if reused else None
         try:
-            _import_ahead()
             outcome = orders.run(row["operator"], made, run.scratch(), run)
             if outcome.status != 0:
                 orders.raise_failure(outcome, row["operator"], where)
@@ -177,12 +174,6 @@ def _enter(run, label, item, where):
     """Enter a concept that is there now in the registry, under the variable it is about to be assigned to."""
     run.names.update_labels(run.base, (label, item.id))
     run.base.write(where)
-
-
-def _import_ahead():
-    """Import h5py while the operator runs: the next command of Python's own, or a check, needs it."""
-    if "h5py" not in sys.modules:
-        threading.Thread(target=hdf5.h5py, daemon=True).start()
 
 
 _table = {}

@@ -10,8 +10,8 @@ import sys
 import traceback
 import warnings
 
-from . import labels, messages, namespace, peer
-from .messages import AsterError, Message, fail, message, show
+from . import messages, namespace, peer
+from .messages import AsterError, fail, message, show
 
 
 def provided_names():

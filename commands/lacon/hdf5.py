@@ -1,26 +1,23 @@
 """h5py, imported on first use: a launcher that only starts operators does not pay for it."""
 
 import os
-import threading
 
-_lock = threading.Lock()
 _module = None
 
 
 def h5py():
     """The module. Its BLAS starts no threads: nothing here computes, and starting them costs more than the import."""
     global _module
-    with _lock:
-        if _module is None:
-            before = os.environ.get("OPENBLAS_NUM_THREADS")
+    if _module is None:
+        before = os.environ.get("OPENBLAS_NUM_THREADS")
+        if before is None:
+            os.environ["OPENBLAS_NUM_THREADS"] = "1"
+        try:
+            import h5py as module
+        finally:
             if before is None:
-                os.environ["OPENBLAS_NUM_THREADS"] = "1"
-            try:
-                import h5py as module
-            finally:
-                if before is None:
-                    os.environ.pop("OPENBLAS_NUM_THREADS", None)
-            _module = module
+                os.environ.pop("OPENBLAS_NUM_THREADS", None)
+        _module = module
     return _module
 
 

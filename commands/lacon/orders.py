@@ -8,7 +8,7 @@ import signal
 import sys
 import time
 
-from . import concepts
+from . import concepts, hdf5
 from .messages import AsterError, ConvergenceError, InternalError, Message, SolutionError, message
 
 #: messages of a solution that failed in the linear solver; any other is one of Newton's method
@@ -56,6 +56,7 @@ def run(program, made, folder, study):
     order_file, status_file = folder / f"{stem}.order.json", folder / f"{stem}.status.json"
     order_file.write_text(json.dumps(made, ensure_ascii=False, indent=1), encoding="utf-8")
     environment = dict(os.environ)
+    environment.setdefault("OPENBLAS_NUM_THREADS", "1")  # fronts are small: more threads of BLAS only slow each other down
     if study.threads:
         environment["LACON_THREADS"] = environment["OMP_NUM_THREADS"] = str(study.threads)
     sys.stdout.flush()
@@ -64,6 +65,7 @@ def run(program, made, folder, study):
     quiet = subprocess.PIPE if study.ignored_alarms else None
     process = subprocess.Popen([executable, order_file, "--status", status_file], env=environment, stderr=quiet, stdin=subprocess.DEVNULL)
     try:
+        hdf5.h5py()  # imported while the operator works: checks, functions and FIN need it later
         if quiet:
             _forward(process.stderr, study.ignored_alarms)
         process.wait()

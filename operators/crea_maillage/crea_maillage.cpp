@@ -15,7 +15,10 @@ namespace {
 Mesh cut(const Mesh& mesh, const Keywords& factor) {
   CutReport report;
   const std::vector<std::string> groups = factor.texts("GROUP_MA_ESCL");
-  Mesh made = cut_lac(mesh, groups, factor.text("DECOUPE_HEXA"), factor.path("GROUP_MA_ESCL"), report);
+  const std::string option = factor.text("DECOUPE_HEXA");
+  if (option != "PYRA" && option != "HEXA")
+    fail("ORDER_4", {{"keyword", factor.path("DECOUPE_HEXA")}, {"expected", "PYRA or HEXA"}});
+  Mesh made = cut_lac(mesh, groups, option, factor.path("GROUP_MA_ESCL"), report);
   for (const CutZone& zone : report.zones) {
     if (zone.turned > 0) inform("DECOUPE_7", {{"count", std::to_string(zone.turned)}, {"group", zone.group}});
     fmt::print("  zone {:<24} {:>8} macro-elements\n", zone.group, zone.patches);

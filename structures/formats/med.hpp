@@ -8,10 +8,13 @@
 #include <vector>
 
 #include "lacon/structures/field.hpp"
-#include "lacon/structures/hdf5.hpp"
 #include "lacon/structures/mesh.hpp"
 
 namespace lacon {
+
+namespace hdf5 {
+class Group;
+}
 
 /// Names of the meshes of a MED file, sorted. Throws MED_1 (no such file), MED_2 (not MED), MED_3 (version).
 std::vector<std::string> med_mesh_names(const std::filesystem::path& file);

@@ -8,6 +8,7 @@
 
 #include "lacon/catalog/messages.hpp"
 #include "lacon/structures/formats/med.hpp"
+#include "lacon/structures/hdf5.hpp"
 
 namespace lacon::test {
 

@@ -1,0 +1,46 @@
+#pragma once
+// MUMPS for symmetric indefinite matrices: analysis once for a pattern, then factorisations and solutions.
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "lacon/assembly/symmetric_matrix.hpp"
+
+namespace lacon {
+
+struct SolverOptions {
+  int memory_margin = 20;           ///< PCENT_PIVOT, percent
+  double singular_pivot = 1e-13;    ///< a pivot below this fraction of the scaled matrix is zero: a mechanism is left
+  double residual_tolerance = 1e-6;  ///< RESI_RELA: largest relative residual of a solution; negative: not checked
+};
+
+/// What a factorisation found.
+struct Factorisation {
+  std::int64_t negative_pivots = 0;
+  std::vector<std::int64_t> null_pivots;  ///< equations whose pivot is zero: the matrix is singular
+  double flops = 0;
+};
+
+class DirectSolver {
+ public:
+  explicit DirectSolver(const SolverOptions& options = {});
+  ~DirectSolver();
+  DirectSolver(const DirectSolver&) = delete;
+  DirectSolver& operator=(const DirectSolver&) = delete;
+
+  /// Symbolic analysis of a pattern, in the order of METIS. The matrix must live as long as it is solved with.
+  void analyse(const SymmetricMatrix& matrix);
+  /// Factorise the values that the analysed matrix has now.
+  Factorisation factorise();
+  /// Solve in place, refined until the residual is at round-off or stops falling.
+  /// @return the relative residual |b - A x| / (|A| |x| + |b|), largest entry
+  /// Throws SOLVER_1 (S) where it is above the tolerance.
+  double solve(std::span<double> right_side);
+
+ private:
+  struct State;
+  std::unique_ptr<State> state_;
+};
+
+}  // namespace lacon

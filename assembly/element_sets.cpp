@@ -1,0 +1,230 @@
+#include "lacon/assembly/element_sets.hpp"
+
+#include <algorithm>
+#include <map>
+
+#include "lacon/catalog/messages.hpp"
+
+namespace lacon {
+namespace {
+
+constexpr int lanes = LACON_LANES;
+constexpr std::size_t batch_blocks = 32;  // blocks a kernel call: results stay in the cache
+
+const char* reason(int error) {
+  switch (error) {
+    case LACON_BAD_JACOBIAN: return "the Jacobian is zero, negative or of mixed sign";
+    case LACON_BAD_PARAMETER: return "a material parameter is out of its range";
+    case LACON_BAD_BATCH: return "the kernel does not serve this kind of element: its catalogue row is wrong";
+    default: return "the result is not a finite number";
+  }
+}
+
+[[noreturn]] void refuse_elements(const ElementSet& set, std::span<const std::int32_t> errors, std::span<const std::int32_t> cells) {
+  std::int64_t count = 0;
+  std::size_t first = errors.size();
+  for (std::size_t i = 0; i < errors.size(); ++i)
+    if (errors[i] != LACON_FINE) {
+      first = std::min(first, i);
+      ++count;
+    }
+  fail("ELEMENT_1", {{"count", std::to_string(count)},
+                     {"reason", reason(errors[first])},
+                     {"cell", cell_name(cells[first])},
+                     {"element", std::string(set.row->name)}});
+}
+
+/// A batch of cells in lanes: block b, lane l is cells[b * lanes + l]; the last block repeats the last cell.
+class Batch {
+ public:
+  Batch(const ElementSet& set, const Mesh& mesh, std::size_t first, int dimension)
+      : set_(set), mesh_(mesh), first_(first), size_(std::min(set.cells.size() - first, batch_blocks * lanes)), dimension_(dimension) {}
+
+  std::size_t size() const { return size_; }
+  std::size_t n_blocks() const { return (size_ + lanes - 1) / lanes; }
+  std::size_t index(std::size_t i) const { return first_ + std::min(i, size_ - 1); }
+  std::int32_t cell(std::size_t i) const { return set_.cells[index(i)]; }
+
+  /// (n_blocks, n_nodes, dimension, lanes) out of nodal values (nodes, stride).
+  void gather(std::span<const double> nodal, int stride, std::vector<double>& out) const {
+    const int n = set_.n_nodes();
+    out.resize(n_blocks() * n * dimension_ * lanes);
+    for (std::size_t i = 0; i < n_blocks() * lanes; ++i) {
+      const auto nodes = mesh_.cells[cell(i)];
+      double* const block = out.data() + (i / lanes) * n * dimension_ * lanes + i % lanes;
+      for (int k = 0; k < n; ++k)
+        for (int d = 0; d < dimension_; ++d) block[(k * dimension_ + d) * lanes] = nodal[static_cast<std::size_t>(nodes[k]) * stride + d];
+    }
+  }
+  /// (n_blocks, width, lanes) out of values of each cell of the set (cells, width).
+  void gather_cells(std::span<const double> values, int width, std::vector<double>& out) const {
+    out.resize(n_blocks() * width * lanes);
+    for (std::size_t i = 0; i < n_blocks() * lanes; ++i)
+      for (int k = 0; k < width; ++k) out[((i / lanes) * width + k) * lanes + i % lanes] = values[index(i) * width + k];
+  }
+  /// The `width` values of element i.
+  void scatter(std::span<const double> values, std::size_t i, std::size_t width, std::vector<double>& out) const {
+    out.resize(width);
+    const double* const block = values.data() + (i / lanes) * width * lanes + i % lanes;
+    for (std::size_t k = 0; k < width; ++k) out[k] = block[k * lanes];
+  }
+  void check(std::span<const std::int32_t> errors) const {
+    const auto own = errors.first(size_);
+    if (std::all_of(own.begin(), own.end(), [](std::int32_t e) { return e == LACON_FINE; })) return;
+    refuse_elements(set_, own, std::span(set_.cells).subspan(first_, size_));
+  }
+
+ private:
+  const ElementSet& set_;
+  const Mesh& mesh_;
+  std::size_t first_, size_;
+  int dimension_;
+};
+
+ElementSet make_set(const catalog::ElementRow& row, Registry& registry, std::string_view option, lacon_kernel_kind kind) {
+  ElementSet set;
+  set.row = &row;
+  set.kernel = &registry.kernel(row, option, kind);
+  set.tabulation = tabulate(row.cell, integration_rule(catalog::cell(row.cell).family, row.points));
+  return set;
+}
+
+}  // namespace
+
+std::optional<double> MaterialTable::find(std::int32_t cell, std::string_view path) const {
+  const auto slash = path.find('/');
+  const Material& material = materials_[field_->material[cell]];
+  const auto law = material.laws.find(std::string(path.substr(0, slash)));
+  if (law == material.laws.end()) return std::nullopt;
+  const auto value = law->second.find(std::string(path.substr(slash + 1)));
+  if (value == law->second.end() || !std::holds_alternative<double>(value->second)) return std::nullopt;
+  return std::get<double>(value->second);
+}
+
+double MaterialTable::parameter(std::int32_t cell, std::string_view path, std::string_view element) const {
+  if (const auto value = find(cell, path)) return *value;
+  fail("ELEMENT_3", {{"material", labels_[field_->material[cell]]},
+                     {"cell", cell_name(cell)},
+                     {"parameter", std::string(path)},
+                     {"element", std::string(element)}});
+}
+
+std::vector<ElementSet> solid_sets(const Mesh& mesh, const Model& model, Registry& registry, const MaterialTable& materials) {
+  std::vector<std::vector<std::int32_t>> cells(model.elements.size());
+  for (std::size_t c = 0; c < mesh.n_cells(); ++c)
+    if (model.element[c] >= 0) cells[model.element[c]].push_back(static_cast<std::int32_t>(c));
+  std::vector<ElementSet> sets;
+  for (std::size_t e = 0; e < cells.size(); ++e) {
+    const catalog::ElementRow* row = registry.find_element(model.elements[e]);
+    if (!row) fail("PLUGIN_4", {{"element", model.elements[e]}});
+    if (row->role != catalog::Role::solid || cells[e].empty()) continue;
+    ElementSet set = make_set(*row, registry, "FULL_MECA", LACON_SOLID);
+    set.cells = std::move(cells[e]);
+    const auto bare = std::count_if(set.cells.begin(), set.cells.end(), [&](std::int32_t c) { return !materials.has(c); });
+    if (bare > 0) {
+      const auto first = std::find_if(set.cells.begin(), set.cells.end(), [&](std::int32_t c) { return !materials.has(c); });
+      fail("ELEMENT_2", {{"cell", cell_name(*first)}, {"element", std::string(row->name)}, {"count", std::to_string(bare)}});
+    }
+    while (set.kernel->parameters[set.n_parameters]) ++set.n_parameters;
+    for (const std::int32_t cell : set.cells)
+      for (int p = 0; p < set.n_parameters; ++p) set.parameters.push_back(materials.parameter(cell, set.kernel->parameters[p], row->name));
+    sets.push_back(std::move(set));
+  }
+  return sets;
+}
+
+std::vector<ElementSet> skin_sets(const Model& model, Registry& registry, std::string_view option,
+                                  std::span<const std::int32_t> cells, std::vector<std::vector<std::int32_t>>& position) {
+  std::map<std::int32_t, std::vector<std::int32_t>> by_element;
+  for (std::size_t i = 0; i < cells.size(); ++i) by_element[model.element[cells[i]]].push_back(static_cast<std::int32_t>(i));
+  std::vector<ElementSet> sets;
+  position.clear();
+  for (auto& [element, indices] : by_element) {
+    const catalog::ElementRow* row = element < 0 ? nullptr : registry.find_element(model.elements[element]);
+    if (!row) fail("PLUGIN_4", {{"element", element < 0 ? "none, on cell " + cell_name(cells[indices.front()]) : model.elements[element]}});
+    ElementSet set = make_set(*row, registry, option, LACON_LOAD);
+    for (const std::int32_t i : indices) set.cells.push_back(cells[i]);
+    sets.push_back(std::move(set));
+    position.push_back(std::move(indices));
+  }
+  return sets;
+}
+
+void evaluate_solids(const ElementSet& set, const Mesh& mesh, int dimension, std::span<const double> displacement, bool with_matrix,
+                     const std::function<void(const SolidValues&)>& use) {
+  const int ndof = set.n_nodes() * dimension;
+  const std::size_t n_lower = static_cast<std::size_t>(ndof) * (ndof + 1) / 2;
+  const std::size_t n_stress = static_cast<std::size_t>(set.tabulation.n_points) * set.row->stress.size();
+  std::vector<double> coordinates, u, parameters, matrix, force, stress, own_matrix, own_force, own_stress;
+  std::vector<std::int32_t> errors;
+  for (std::size_t first = 0; first < set.cells.size(); first += batch_blocks * lanes) {
+    const Batch batch(set, mesh, first, dimension);
+    batch.gather(mesh.coordinates, 3, coordinates);
+    batch.gather(displacement, dimension, u);
+    batch.gather_cells(set.parameters, set.n_parameters, parameters);
+    const std::size_t padded = batch.n_blocks() * lanes;
+    if (with_matrix) matrix.resize(padded * n_lower);
+    force.resize(padded * ndof);
+    stress.resize(padded * n_stress);
+    errors.assign(padded, LACON_FINE);
+    const lacon_solid_batch call{.struct_size = sizeof(lacon_solid_batch),
+                                 .n_blocks = static_cast<std::int32_t>(batch.n_blocks()),
+                                 .n_nodes = set.n_nodes(),
+                                 .dimension = dimension,
+                                 .n_points = set.tabulation.n_points,
+                                 .n_stress = static_cast<std::int32_t>(set.row->stress.size()),
+                                 .n_parameters = set.n_parameters,
+                                 .shape = set.tabulation.shape.data(),
+                                 .gradient = set.tabulation.gradient.data(),
+                                 .weight = set.tabulation.weight.data(),
+                                 .coordinates = coordinates.data(),
+                                 .displacement = u.data(),
+                                 .parameter = parameters.data(),
+                                 .matrix = with_matrix ? matrix.data() : nullptr,
+                                 .force = force.data(),
+                                 .stress = stress.data(),
+                                 .error = errors.data()};
+    set.kernel->solid(&call);
+    batch.check(errors);
+    for (std::size_t i = 0; i < batch.size(); ++i) {
+      if (with_matrix) batch.scatter(matrix, i, n_lower, own_matrix);
+      batch.scatter(force, i, ndof, own_force);
+      batch.scatter(stress, i, n_stress, own_stress);
+      use({batch.cell(i), own_matrix, own_force, own_stress});
+    }
+  }
+}
+
+void evaluate_loads(const ElementSet& set, const Mesh& mesh, int dimension, std::span<const double> value,
+                    const std::function<void(std::int32_t, std::span<const double>)>& use) {
+  const std::size_t ndof = static_cast<std::size_t>(set.n_nodes()) * dimension;
+  std::vector<double> coordinates, values, force, own;
+  std::vector<std::int32_t> errors;
+  for (std::size_t first = 0; first < set.cells.size(); first += batch_blocks * lanes) {
+    const Batch batch(set, mesh, first, dimension);
+    batch.gather(mesh.coordinates, 3, coordinates);
+    batch.gather_cells(value, 1, values);
+    force.resize(batch.n_blocks() * lanes * ndof);
+    errors.assign(batch.n_blocks() * lanes, LACON_FINE);
+    const lacon_load_batch call{.struct_size = sizeof(lacon_load_batch),
+                                .n_blocks = static_cast<std::int32_t>(batch.n_blocks()),
+                                .n_nodes = set.n_nodes(),
+                                .dimension = dimension,
+                                .n_points = set.tabulation.n_points,
+                                .shape = set.tabulation.shape.data(),
+                                .gradient = set.tabulation.gradient.data(),
+                                .weight = set.tabulation.weight.data(),
+                                .coordinates = coordinates.data(),
+                                .value = values.data(),
+                                .force = force.data(),
+                                .error = errors.data()};
+    set.kernel->load(&call);
+    batch.check(errors);
+    for (std::size_t i = 0; i < batch.size(); ++i) {
+      batch.scatter(force, i, ndof, own);
+      use(batch.cell(i), own);
+    }
+  }
+}
+
+}  // namespace lacon

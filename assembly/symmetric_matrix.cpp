@@ -1,0 +1,109 @@
+#include "lacon/assembly/symmetric_matrix.hpp"
+
+#include <algorithm>
+#include <stdexcept>
+#include <utility>
+
+namespace lacon {
+namespace {
+
+/// The transposed list: for each vertex the cliques it belongs to.
+Ragged<std::int32_t> cliques_of_vertices(std::int64_t n_vertices, const Ragged<std::int32_t>& cliques) {
+  Ragged<std::int32_t> transposed;
+  transposed.offset.assign(n_vertices + 1, 0);
+  for (const std::int32_t v : cliques.values) ++transposed.offset[v + 1];
+  for (std::int64_t v = 0; v < n_vertices; ++v) transposed.offset[v + 1] += transposed.offset[v];
+  transposed.values.resize(cliques.values.size());
+  std::vector<std::int64_t> next(transposed.offset.begin(), transposed.offset.end() - 1);
+  for (std::size_t c = 0; c < cliques.size(); ++c)
+    for (const std::int32_t v : cliques[c]) transposed.values[next[v]++] = static_cast<std::int32_t>(c);
+  return transposed;
+}
+
+Ragged<std::int32_t> neighbours_of_vertices(std::int64_t n_vertices, const Ragged<std::int32_t>& cliques,
+                                            std::span<const Coupling> couplings) {
+  const Ragged<std::int32_t> own = cliques_of_vertices(n_vertices, cliques);
+  std::vector<std::vector<std::int32_t>> extra(n_vertices);
+  for (const Coupling& c : couplings) {
+    extra[c.a].push_back(c.b);
+    extra[c.b].push_back(c.a);
+  }
+  Ragged<std::int32_t> neighbours;
+  std::vector<std::int32_t> seen(n_vertices, -1), row;
+  for (std::int32_t v = 0; v < n_vertices; ++v) {
+    row.clear();
+    seen[v] = v;
+    const auto take = [&](std::int32_t w) {
+      if (seen[w] == v) return;
+      seen[w] = v;
+      row.push_back(w);
+    };
+    for (const std::int32_t c : own[v])
+      for (const std::int32_t w : cliques[c]) take(w);
+    for (const std::int32_t w : extra[v]) take(w);
+    std::sort(row.begin(), row.end());
+    neighbours.push_back(row);
+  }
+  return neighbours;
+}
+
+}  // namespace
+
+SymmetricMatrix::SymmetricMatrix(const Numbering& numbering, const Ragged<std::int32_t>& cliques, std::span<const Coupling> couplings)
+    : numbering_(&numbering), neighbours_(neighbours_of_vertices(numbering.n_vertices(), cliques, couplings)), row_{0} {
+  const auto& first = numbering.first;
+  for (std::int64_t v = 0; v < numbering.n_vertices(); ++v)
+    for (std::int64_t row = first[v]; row < first[v + 1]; ++row) {
+      for (const std::int32_t w : neighbours_[v]) {
+        if (w > v) break;
+        for (std::int64_t column = first[w]; column < first[w + 1]; ++column) column_.push_back(static_cast<std::int32_t>(column));
+      }
+      for (std::int64_t column = first[v]; column <= row; ++column) column_.push_back(static_cast<std::int32_t>(column));
+      row_.push_back(static_cast<std::int64_t>(column_.size()));
+    }
+  value_.assign(column_.size(), 0.0);
+}
+
+bool SymmetricMatrix::has_room_for(std::span<const Coupling> couplings) const {
+  return std::all_of(couplings.begin(), couplings.end(), [&](const Coupling& c) {
+    const auto row = neighbours_[c.a];
+    return std::binary_search(row.begin(), row.end(), c.b);
+  });
+}
+
+void SymmetricMatrix::set_zero() { std::fill(value_.begin(), value_.end(), 0.0); }
+
+double& SymmetricMatrix::entry(std::int64_t row, std::int64_t column) {
+  if (column > row) std::swap(row, column);
+  const auto first = column_.begin() + row_[row], last = column_.begin() + row_[row + 1];
+  const auto at = std::lower_bound(first, last, static_cast<std::int32_t>(column));
+  if (at == last || *at != column) throw std::logic_error("an element matrix does not fit the pattern of the matrix");
+  return value_[at - column_.begin()];
+}
+
+void SymmetricMatrix::add(std::span<const std::int64_t> equations, std::span<const double> lower) {
+  std::size_t at = 0;
+  for (std::size_t i = 0; i < equations.size(); ++i)
+    for (std::size_t j = 0; j <= i; ++j, ++at) {
+      if (equations[i] < 0 || equations[j] < 0 || lower[at] == 0) continue;
+      // an entry and its mirror image fall on one diagonal entry where two degrees of freedom share their equation
+      entry(equations[i], equations[j]) += i != j && equations[i] == equations[j] ? 2 * lower[at] : lower[at];
+    }
+}
+
+void SymmetricMatrix::add_diagonal(std::int64_t equation, double value) { value_[row_[equation + 1] - 1] += value; }
+
+void SymmetricMatrix::multiply(std::span<const double> x, std::span<double> y) const {
+  std::fill(y.begin(), y.end(), 0.0);
+  for (std::int64_t row = 0; row < size(); ++row) {
+    double sum = 0;
+    const std::int64_t last = row_[row + 1] - 1;
+    for (std::int64_t k = row_[row]; k < last; ++k) {
+      sum += value_[k] * x[column_[k]];
+      y[column_[k]] += value_[k] * x[row];
+    }
+    y[row] += sum + value_[last] * x[row];
+  }
+}
+
+}  // namespace lacon

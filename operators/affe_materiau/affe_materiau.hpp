@@ -1,0 +1,11 @@
+#pragma once
+// AFFE_MATERIAU: a material for each cell.
+#include "lacon/structures/base.hpp"
+
+namespace lacon {
+
+/// A later occurrence of AFFE wins over an earlier one. Throws MATERIAU_1 (mesh and model do not belong together), MESH_1,
+/// MESH_2, and BASE_4 where MATER is no material.
+MaterialField affe_materiau(const Base& base, const Keywords& keywords);
+
+}  // namespace lacon

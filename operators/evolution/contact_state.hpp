@@ -1,0 +1,95 @@
+#pragma once
+// The contact of a computation at the current geometry: contact cells, gaps, statuses, and what they add to the system.
+// METHOD.md 3.4 to 3.7 with the conventions of DESIGN.md, section 3.
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "lacon/operators/evolution/static_problem.hpp"
+#include "lacon/operators/evolution/system.hpp"
+#include "lacon/pairing/pairing.hpp"
+
+namespace lacon {
+
+enum class Status : std::int8_t { unpaired = -1, open = 0, active = 1 };
+
+/// Statuses and multipliers of the patches: what a time step starts from and what is restored when it is cut.
+struct Patchwise {
+  std::vector<Status> status;
+  std::vector<double> lambda;
+};
+
+struct ContactTolerances {
+  double unpaired = 1e-14;          ///< covered fraction of a patch below which it has no master
+  double least_coverage = 1e-5;     ///< covered fraction that an active patch needs
+  double initial_gap = 1e-6;        ///< CONTACT_INIT='INTERPENETRE': largest gap, over the smallest edge
+  double lambda_round_off = 1e-10;  ///< of the largest |lambda|: below it a sign means nothing
+  double gap_round_off = 1e-14;     ///< of the size of the mesh
+};
+
+class ContactState {
+ public:
+  explicit ContactState(const StaticProblem& problem, const ContactTolerances& tolerances = {});
+
+  /// Pair on the current geometry, integrate gaps and couplings. @param displacement (n_nodes, dimension)
+  void update_geometry(std::span<const double> displacement);
+  /// Statuses at the first instant (METHOD.md 3.7), multipliers zero.
+  Patchwise initial() const;
+  /// Statuses from lambda + rho g. @return how many have changed
+  std::int64_t update_statuses(Patchwise& patches) const;
+
+  /// Pairs of vertices that the multipliers' rows couple.
+  std::vector<Coupling> couplings() const;
+  /// Add contact forces and the multipliers' rows.
+  void assemble(const Patchwise& patches, System& system) const;
+
+  /// Largest |g_T| / h over the active patches that have an equation.
+  double constraint_residual(const Patchwise& patches) const;
+  /// Active patches that have an equation: the number of negative pivots to expect.
+  std::int64_t n_constraints(const Patchwise& patches) const;
+  /// Whether every displacement in a patch's row is imposed: its multiplier is then undetermined and keeps its value.
+  bool is_locked(std::size_t patch) const { return locked_[patch]; }
+
+  double gap(std::size_t patch) const { return gap_[patch]; }            ///< average, positive when open
+  double coverage(std::size_t patch) const { return coverage_[patch]; }  ///< covered over whole measure, current geometry
+  std::size_t n_patches() const { return gap_.size(); }
+  /// What pairing rejected, summed over the zones.
+  std::span<const std::int64_t> rejected() const { return rejected_; }
+
+ private:
+  struct Zone {
+    std::vector<std::int32_t> slaves;  ///< index into Contact::slaves of each cell of `slave`
+    std::vector<std::int32_t> masters;  ///< mesh cell of each cell of `master`
+    Surface slave, master;
+    bool current_jacobian = false;
+    double smallest_edge = 0;
+    std::string initial_status;
+  };
+  /// A contact cell with what its kernel gave.
+  struct Cell {
+    std::int32_t slave;   ///< index into Contact::slaves
+    std::int32_t master;  ///< cell of the mesh
+    double gap;
+    std::int64_t coupling;  ///< first entry in coupling_
+  };
+
+  void integrate(const Zone& zone, const ContactCells& cells, std::span<const double> normals);
+  void measure_slaves();
+
+  const StaticProblem& problem_;
+  const Contact& contact_;
+  ContactTolerances tolerances_;
+  std::vector<double> coordinates_;  ///< (n_nodes, 3), current
+  std::vector<Zone> zones_;
+  std::vector<Cell> cells_;
+  std::vector<double> coupling_;
+  std::vector<double> gap_, weight_, covered_, whole_, coverage_;  ///< of each patch
+  std::vector<double> size_;  ///< h of each patch: |T| in 2D, sqrt |T| in 3D, initial geometry
+  std::vector<double> rho_;   ///< E / h of each patch
+  std::vector<std::int32_t> zone_of_;
+  std::vector<bool> locked_;
+  std::vector<std::int64_t> rejected_;
+  double gap_tolerance_ = 0;
+};
+
+}  // namespace lacon

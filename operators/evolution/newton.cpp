@@ -1,0 +1,181 @@
+#include "lacon/operators/evolution/newton.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+
+#include "lacon/catalog/messages.hpp"
+#include "lacon/operators/program/program.hpp"
+
+namespace lacon {
+namespace {
+
+Ragged<std::int32_t> nodes_of_solids(const StaticProblem& problem) {
+  Ragged<std::int32_t> nodes;
+  for (const ElementSet& set : problem.solids)
+    for (const std::int32_t cell : set.cells) nodes.push_back(problem.mesh.cells[cell]);
+  return nodes;
+}
+
+/// The largest length of a node's vector.
+double largest_vector(std::span<const double> values, int dimension) {
+  double largest = 0;
+  for (std::size_t i = 0; i + dimension <= values.size(); i += dimension) {
+    double square = 0;
+    for (int d = 0; d < dimension; ++d) square += values[i + d] * values[i + d];
+    largest = std::max(largest, square);
+  }
+  return std::sqrt(largest);
+}
+
+}  // namespace
+
+Newton::Newton(const StaticProblem& problem, const NewtonCriteria& criteria, const SolverOptions& solver)
+    : problem_(problem), criteria_(criteria), elements_(nodes_of_solids(problem)), system_(problem.numbering, elements_), solver_(solver) {
+  if (problem.contact) {
+    contact_.emplace(problem);
+    criteria_.resi_geom = problem.contact->resi_geom;
+  }
+  for (const ElementSet& set : problem.solids)
+    stresses_.emplace_back(set.cells.size() * set.tabulation.n_points * set.row->stress.size());
+}
+
+StaticState Newton::initial_state() {
+  StaticState state{std::vector<double>(problem_.n_dofs(), 0.0), {}};
+  if (contact_) {
+    const Phase phase("pairing");
+    contact_->update_geometry(state.displacement);
+    state.patches = contact_->initial();
+  }
+  assemble(state);
+  return state;
+}
+
+void Newton::assemble(const StaticState& state) {
+  system_.start(contact_ ? contact_->couplings() : std::vector<Coupling>{});
+  const int dimension = problem_.dimension;
+  {
+    const Phase phase("elements");
+    std::vector<std::int64_t> unknowns;
+    std::vector<double> sums(problem_.n_dofs(), 0.0);
+    for (std::size_t s = 0; s < problem_.solids.size(); ++s) {
+      auto stress = stresses_[s].begin();
+      evaluate_solids(problem_.solids[s], problem_.mesh, dimension, state.displacement, true, [&](const SolidValues& element) {
+        unknowns.clear();
+        for (const std::int32_t node : problem_.mesh.cells[element.cell])
+          for (int d = 0; d < dimension; ++d) unknowns.push_back(std::int64_t{node} * dimension + d);
+        system_.add(unknowns, element.matrix, element.force);
+        for (std::size_t i = 0; i < unknowns.size(); ++i) sums[unknowns[i]] += std::abs(element.force[i]);
+        stress = std::copy(element.stress.begin(), element.stress.end(), stress);
+      });
+    }
+    force_scale_ = sums.empty() ? 0 : *std::max_element(sums.begin(), sums.end());
+  }
+  if (contact_) {
+    const Phase phase("contact");
+    contact_->assemble(state.patches, system_);
+  }
+}
+
+void Newton::factorise() {
+  if (system_.take_new_pattern()) {
+    const Phase phase("analysis");
+    solver_.analyse(system_.matrix());
+  }
+  const Phase phase("factorisation");
+  factorisation_ = solver_.factorise();
+  if (factorisation_.null_pivots.empty()) return;
+  std::string names;
+  constexpr std::size_t most = 5;
+  std::size_t shown = 0;
+  for (std::size_t dof = 0; dof < problem_.n_dofs() && shown < most; ++dof) {
+    const std::int64_t equation = problem_.numbering.equation[dof];
+    const auto& null = factorisation_.null_pivots;
+    if (equation < 0 || std::find(null.begin(), null.end(), equation) == null.end()) continue;
+    names += (shown++ ? ", " : "") + problem_.dof_name(static_cast<std::int64_t>(dof));
+  }
+  fail("SOLVER_3", {{"count", std::to_string(factorisation_.null_pivots.size())}, {"names", names.empty() ? "multipliers of contact" : names}});
+}
+
+void Newton::judge(const std::vector<double>& external, const StaticState& state, IterationReport& report) const {
+  const std::vector<double>& residual = system_.residual();
+  double reference = 0;  // external forces and reactions
+  report.maxi = 0;
+  for (std::size_t dof = 0; dof < problem_.n_dofs(); ++dof) {
+    const double unbalanced = std::abs(residual[dof] - external[dof]);
+    if (problem_.imposed[dof]) {
+      reference = std::max(reference, unbalanced);
+    } else if (problem_.exists[dof]) {
+      reference = std::max(reference, std::abs(external[dof]));
+      if (unbalanced > report.maxi || report.worst_dof < 0) {
+        report.maxi = unbalanced;
+        report.worst_dof = static_cast<std::int64_t>(dof);
+      }
+    }
+  }
+  // without any force the residual is measured against what cancels out in it, so that round-off counts as zero
+  report.rela = report.maxi == 0 ? 0 : report.maxi / std::max(reference, 1e-12 * force_scale_);
+  if (!std::isfinite(report.maxi)) report.rela = report.maxi;
+  report.rela_met = !criteria_.resi_glob_rela || report.rela <= *criteria_.resi_glob_rela;
+  report.maxi_met = !criteria_.resi_glob_maxi || report.maxi <= *criteria_.resi_glob_maxi;
+  if (contact_) {
+    report.constraint = contact_->constraint_residual(state.patches);
+    report.geometry_met = report.geometry <= criteria_.resi_geom;
+    report.constraint_met = report.constraint <= criteria_.constraint;
+  }
+}
+
+int Newton::solve(double instant, StaticState& state, const std::function<void(const IterationReport&)>& report) {
+  const int dimension = problem_.dimension;
+  const std::vector<double> external = problem_.external_force(instant), values = problem_.imposed_values(instant);
+  std::vector<double> step(problem_.n_dofs(), 0.0);
+  for (std::size_t dof = 0; dof < step.size(); ++dof)
+    if (problem_.imposed[dof]) step[dof] = values[dof] - state.displacement[dof];
+
+  for (int iteration = 0; iteration <= criteria_.iterations; ++iteration) {
+    const auto start = std::chrono::steady_clock::now();
+    IterationReport line{.iteration = iteration};
+    if (contact_) line.constraints = contact_->n_constraints(state.patches);
+    factorise();
+    line.negative_pivots = factorisation_.negative_pivots;
+    std::vector<double> solution = system_.right_side(external, step);
+    {
+      const Phase phase("solution");
+      solver_.solve(solution);
+    }
+    // the increment of all displacements: imposed ones move in the first iteration alone
+    std::vector<double> increment = step;
+    std::fill(step.begin(), step.end(), 0.0);
+    for (std::size_t dof = 0; dof < increment.size(); ++dof)
+      if (const std::int64_t e = problem_.numbering.equation[dof]; e >= 0) increment[dof] = solution[e];
+    for (std::size_t dof = 0; dof < increment.size(); ++dof) state.displacement[dof] += increment[dof];
+    if (contact_) {
+      for (std::size_t p = 0; p < contact_->n_patches(); ++p)
+        state.patches.lambda[p] += solution[problem_.numbering.of_patch(static_cast<std::int64_t>(p))];
+      const Phase phase("pairing");
+      contact_->update_geometry(state.displacement);
+      line.status_changes = contact_->update_statuses(state.patches);
+    }
+    assemble(state);
+    const double moved = largest_vector(increment, dimension), whole = largest_vector(state.displacement, dimension);
+    line.geometry = moved == 0 ? 0 : whole > 0 ? moved / whole : 1;
+    judge(external, state, line);
+    line.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    report(line);
+    if (line.converged()) return iteration;
+    if (!std::isfinite(line.maxi)) break;
+  }
+  fail("EVOLUTION_4", {{"instant", fmt::format("{:.9g}", instant)}, {"iterations", std::to_string(criteria_.iterations)}});
+}
+
+void Newton::restart(const StaticState& state) {
+  if (contact_) {
+    const Phase phase("pairing");
+    contact_->update_geometry(state.displacement);
+  }
+  assemble(state);
+}
+
+}  // namespace lacon

@@ -1,0 +1,82 @@
+#pragma once
+// Newton's method for one instant: equilibrium, geometry, contact and behaviour in one loop (METHOD.md 3.2, 5.3).
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "lacon/assembly/direct_solver.hpp"
+#include "lacon/operators/evolution/contact_state.hpp"
+#include "lacon/operators/evolution/static_problem.hpp"
+#include "lacon/operators/evolution/system.hpp"
+
+namespace lacon {
+
+struct NewtonCriteria {
+  std::optional<double> resi_glob_rela;
+  std::optional<double> resi_glob_maxi;
+  double resi_geom = 1e-6;
+  double constraint = 1e-8;  ///< largest |g_T| / h over active patches
+  int iterations = 10;       ///< ITER_GLOB_MAXI
+};
+
+/// One line of the Newton table.
+struct IterationReport {
+  int iteration = 0;
+  double rela = 0, maxi = 0;
+  bool rela_met = true, maxi_met = true;
+  std::int64_t worst_dof = -1;      ///< where the residual is largest
+  std::int64_t status_changes = 0;
+  double geometry = 0;              ///< max |du| / max |u|
+  bool geometry_met = true;
+  double constraint = 0;            ///< max |g_T| / h
+  bool constraint_met = true;
+  std::int64_t negative_pivots = 0;
+  std::int64_t constraints = 0;     ///< active patches when the matrix was made: the negative pivots to expect
+  double seconds = 0;
+
+  bool converged() const { return rela_met && maxi_met && geometry_met && constraint_met && status_changes == 0; }
+};
+
+/// All unknowns at an instant.
+struct StaticState {
+  std::vector<double> displacement;  ///< (n_nodes, dimension)
+  Patchwise patches;
+};
+
+class Newton {
+ public:
+  Newton(const StaticProblem& problem, const NewtonCriteria& criteria, const SolverOptions& solver);
+
+  /// The state before any load: displacements zero, statuses of CONTACT_INIT.
+  StaticState initial_state();
+
+  /// Solve the instant, starting from `state`. Calls `report` for each iteration.
+  /// @return number of iterations. Throws EVOLUTION_4 (not converged), SOLVER_3 (singular), ELEMENT_1 ...: severity S. `state` is
+  /// then between two instants.
+  int solve(double instant, StaticState& state, const std::function<void(const IterationReport&)>& report);
+
+  /// Stresses at integration points of each solid set at the last evaluation, (cells, points, components).
+  const std::vector<std::vector<double>>& stresses() const { return stresses_; }
+  /// The contact at the last evaluation; nullptr without contact.
+  const ContactState* contact() const { return contact_ ? &*contact_ : nullptr; }
+  /// Go back to a state: contact, stresses and system are those of `state` again, as solve() needs them.
+  void restart(const StaticState& state);
+
+ private:
+  void assemble(const StaticState& state);
+  void factorise();
+  void judge(const std::vector<double>& external, const StaticState& state, IterationReport& report) const;
+
+  const StaticProblem& problem_;
+  NewtonCriteria criteria_;
+  Ragged<std::int32_t> elements_;
+  System system_;
+  DirectSolver solver_;
+  Factorisation factorisation_;
+  std::optional<ContactState> contact_;
+  std::vector<std::vector<double>> stresses_;
+  double force_scale_ = 0;  ///< largest sum of |element forces| at a node: round-off of a residual is a fraction of it
+};
+
+}  // namespace lacon

@@ -1,0 +1,141 @@
+#include "lacon/operators/evolution/static_problem.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "lacon/catalog/messages.hpp"
+
+namespace lacon {
+namespace {
+
+/// The degrees of freedom that the elements' nodes have; every element of a model has the same components.
+void find_dofs(StaticProblem& problem) {
+  for (const std::string& name : problem.model.elements) {
+    const catalog::ElementRow* row = problem.registry->find_element(name);
+    if (!row) fail("PLUGIN_4", {{"element", name}});
+    if (problem.components.empty()) problem.components.assign(row->dofs.begin(), row->dofs.end());
+  }
+  problem.dimension = static_cast<int>(problem.components.size());
+  problem.exists.assign(problem.mesh.n_nodes() * problem.dimension, 0);
+  for (std::size_t c = 0; c < problem.mesh.n_cells(); ++c) {
+    if (problem.model.element[c] < 0) continue;
+    for (const std::int32_t node : problem.mesh.cells[c])
+      std::fill_n(problem.exists.begin() + static_cast<std::ptrdiff_t>(node) * problem.dimension, problem.dimension, 1);
+  }
+}
+
+TimedLoad read_load(const StaticProblem& problem, const Base& base, const Keywords& excit) {
+  const std::string id = excit.concept_id("CHARGE");
+  const Load load = base.load(id);
+  TimedLoad timed{.label = base.label(id), .force = {}, .dofs = {}, .values = {}, .function = {}, .function_label = {}};
+  if (const auto function = excit.optional_concept("FONC_MULT")) {
+    timed.function = base.function(*function);
+    timed.function_label = base.label(*function);
+  }
+  for (const ImposedDof& imposed : load.imposed) {
+    const auto at = std::find(problem.components.begin(), problem.components.end(), imposed.component);
+    if (at == problem.components.end())
+      fail("LOAD_2", {{"load", timed.label}, {"component", imposed.component}, {"node", node_name(imposed.node)}});
+    timed.dofs.push_back(std::int64_t{imposed.node} * problem.dimension + (at - problem.components.begin()));
+    timed.values.push_back(imposed.value);
+  }
+  if (load.pressure.empty()) return timed;
+  timed.force.assign(problem.n_dofs(), 0.0);
+  std::vector<std::int32_t> cells;
+  for (const PressureLoad& pressure : load.pressure) cells.push_back(pressure.cell);
+  std::vector<std::vector<std::int32_t>> position;
+  const std::vector<ElementSet> sets = skin_sets(problem.model, *problem.registry, "CHAR_MECA_PRES", cells, position);
+  for (std::size_t s = 0; s < sets.size(); ++s) {
+    std::vector<double> values;
+    for (const std::int32_t i : position[s]) values.push_back(load.pressure[i].value);
+    evaluate_loads(sets[s], problem.mesh, problem.dimension, values, [&](std::int32_t cell, std::span<const double> force) {
+      const auto nodes = problem.mesh.cells[cell];
+      for (std::size_t k = 0; k < nodes.size(); ++k)
+        for (int d = 0; d < problem.dimension; ++d)
+          timed.force[std::int64_t{nodes[k]} * problem.dimension + d] += force[k * problem.dimension + d];
+    });
+  }
+  return timed;
+}
+
+}  // namespace
+
+std::vector<double> StaticProblem::external_force(double instant) const {
+  std::vector<double> force(n_dofs(), 0.0);
+  for (const TimedLoad& load : loads) {
+    if (load.force.empty()) continue;
+    const double factor = load.multiplier(instant);
+    for (std::size_t i = 0; i < force.size(); ++i) force[i] += factor * load.force[i];
+  }
+  return force;
+}
+
+std::vector<double> StaticProblem::imposed_values(double instant) const {
+  std::vector<double> values(n_dofs(), 0.0);
+  std::vector<const TimedLoad*> by(n_dofs(), nullptr);
+  for (const TimedLoad& load : loads) {
+    if (load.dofs.empty()) continue;
+    const double factor = load.multiplier(instant);
+    for (std::size_t i = 0; i < load.dofs.size(); ++i) {
+      const std::int64_t dof = load.dofs[i];
+      const double value = factor * load.values[i];
+      if (by[dof] && std::abs(value - values[dof]) > 1e-12 * std::max(std::abs(value), std::abs(values[dof])))
+        fail("LOAD_1", {{"dof", dof_name(dof)},
+                        {"first", by[dof]->label},
+                        {"first_value", fmt::format("{:.15g}", values[dof])},
+                        {"second", load.label},
+                        {"second_value", fmt::format("{:.15g}", value)},
+                        {"instant", fmt::format("{:.15g}", instant)}});
+      by[dof] = &load;
+      values[dof] = value;
+    }
+  }
+  return values;
+}
+
+std::string StaticProblem::dof_name(std::int64_t dof) const {
+  return node_name(dof / dimension) + " " + components[dof % dimension];
+}
+
+StaticProblem read_problem(const Order& order, const Base& base) {
+  StaticProblem problem;
+  const Keywords& keywords = order.keywords;
+  problem.model = base.model(keywords.concept_id("MODELE"));
+  problem.mesh = base.mesh(problem.model.mesh);
+  problem.registry = std::make_unique<Registry>(order.plugins);
+  find_dofs(problem);
+
+  problem.material_field = std::make_unique<MaterialField>(base.material_field(keywords.concept_id("CHAM_MATER")));
+  if (problem.material_field->mesh != problem.model.mesh)
+    fail("EVOLUTION_1", {{"first", "CHAM_MATER"}, {"second", "MODELE"}, {"what", "meshes"}});
+  std::vector<Material> materials;
+  std::vector<std::string> labels;
+  for (const std::string& id : problem.material_field->materials) {
+    materials.push_back(base.material(id));
+    labels.push_back(base.label(id));
+  }
+  problem.materials = std::make_unique<MaterialTable>(*problem.material_field, std::move(materials), std::move(labels));
+  problem.solids = solid_sets(problem.mesh, problem.model, *problem.registry, *problem.materials);
+
+  const std::string model_id = keywords.concept_id("MODELE");
+  problem.imposed.assign(problem.n_dofs(), 0);
+  for (const Keywords& excit : keywords.factors("EXCIT")) {
+    if (base.load(excit.concept_id("CHARGE")).model != model_id)
+      fail("EVOLUTION_1", {{"first", excit.path("CHARGE")}, {"second", "MODELE"}, {"what", "models"}});
+    problem.loads.push_back(read_load(problem, base, excit));
+    for (const std::int64_t dof : problem.loads.back().dofs) problem.imposed[dof] = 1;
+  }
+  if (const auto contact = keywords.optional_concept("CONTACT")) {
+    problem.contact = base.contact(*contact);
+    if (problem.contact->model != model_id) fail("EVOLUTION_1", {{"first", "CONTACT"}, {"second", "MODELE"}, {"what", "models"}});
+  }
+  std::vector<std::uint8_t> free(problem.n_dofs());
+  for (std::size_t i = 0; i < free.size(); ++i) free[i] = problem.exists[i] && !problem.imposed[i];
+  const auto n_patches = problem.contact ? static_cast<std::int64_t>(problem.mesh.patches->size()) : 0;
+  problem.numbering = number_equations(static_cast<std::int64_t>(problem.mesh.n_nodes()), problem.dimension, free, n_patches);
+  return problem;
+}
+
+}  // namespace lacon

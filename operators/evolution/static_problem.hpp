@@ -1,0 +1,53 @@
+#pragma once
+// Everything a quasi-static computation starts from: mesh, elements with materials, loads in time, contact.
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "lacon/assembly/element_sets.hpp"
+#include "lacon/assembly/numbering.hpp"
+#include "lacon/elements/registry.hpp"
+#include "lacon/structures/base.hpp"
+
+namespace lacon {
+
+/// A load and the function of time that multiplies it.
+struct TimedLoad {
+  std::string label;
+  std::vector<double> force;         ///< (n_nodes, dimension) at multiplier 1, empty where it is zero
+  std::vector<std::int64_t> dofs;    ///< imposed displacements: node * dimension + component
+  std::vector<double> values;        ///< of `dofs` at multiplier 1
+  std::optional<Function> function;
+  std::string function_label;
+
+  double multiplier(double instant) const { return function ? (*function)(instant, function_label) : 1.0; }
+};
+
+struct StaticProblem {
+  Mesh mesh;
+  Model model;
+  int dimension = 2;                       ///< displacements of a node
+  std::vector<std::string> components;     ///< "DX", "DY"
+  std::unique_ptr<Registry> registry;
+  std::unique_ptr<MaterialField> material_field;
+  std::unique_ptr<MaterialTable> materials;
+  std::vector<ElementSet> solids;
+  std::vector<TimedLoad> loads;
+  std::optional<Contact> contact;
+  std::vector<std::uint8_t> exists;        ///< (n_nodes, dimension): the degree of freedom exists
+  std::vector<std::uint8_t> imposed;       ///< (n_nodes, dimension): a load imposes it
+  Numbering numbering;
+
+  std::size_t n_dofs() const { return exists.size(); }
+  /// External forces at an instant, (n_nodes, dimension).
+  std::vector<double> external_force(double instant) const;
+  /// Imposed displacements at an instant, (n_nodes, dimension), 0 where none is. Throws LOAD_1 where two loads contradict each other.
+  std::vector<double> imposed_values(double instant) const;
+  std::string dof_name(std::int64_t dof) const;  ///< "N12 DX"
+};
+
+/// What EXCIT, MODELE, CHAM_MATER and CONTACT of an order name.
+StaticProblem read_problem(const Order& order, const Base& base);
+
+}  // namespace lacon

@@ -1,0 +1,57 @@
+#pragma once
+// The tangent system of one Newton iteration: matrix, residual, and what imposed displacements bring to the right side.
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "lacon/assembly/direct_solver.hpp"
+#include "lacon/assembly/symmetric_matrix.hpp"
+
+namespace lacon {
+
+/// Unknowns are counted as displacements (node * dimension + component) and behind them the multipliers of the patches; only
+/// some of them have an equation.
+class System {
+ public:
+  System(const Numbering& numbering, const Ragged<std::int32_t>& elements);
+
+  std::int64_t n_displacements() const { return static_cast<std::int64_t>(numbering_.equation.size()); }
+  std::int64_t multiplier(std::int64_t patch) const { return n_displacements() + patch; }
+  std::int64_t equation(std::int64_t unknown) const;
+
+  /// Empty the matrix and the residual, and make room for these couplings.
+  void start(std::span<const Coupling> couplings);
+  /// Add an element. @param lower (n (n + 1) / 2): lower triangle of its matrix  @param residual (n)
+  void add(std::span<const std::int64_t> unknowns, std::span<const double> lower, std::span<const double> residual);
+  void add_diagonal(std::int64_t unknown, double value);
+
+  std::vector<double>& residual() { return residual_; }  ///< (displacements, multipliers)
+  const std::vector<double>& residual() const { return residual_; }
+  const SymmetricMatrix& matrix() const { return *matrix_; }
+
+  /// The right side -residual + external - K du of the imposed displacements, (n_equations).
+  /// @param external, step (n_displacements): external force; change of the imposed displacements, 0 elsewhere
+  std::vector<double> right_side(std::span<const double> external, std::span<const double> step) const;
+
+  /// Whether the pattern has changed since the last call.
+  bool take_new_pattern() { return std::exchange(new_pattern_, false); }
+
+ private:
+  struct ImposedTerm {
+    std::int64_t equation, dof;
+    double coefficient;
+  };
+  void make_pattern();
+
+  const Numbering& numbering_;
+  const Ragged<std::int32_t>& elements_;
+  std::vector<Coupling> couplings_;
+  std::unique_ptr<SymmetricMatrix> matrix_;
+  bool new_pattern_ = false;
+  std::vector<double> residual_;
+  std::vector<ImposedTerm> imposed_terms_;
+};
+
+}  // namespace lacon

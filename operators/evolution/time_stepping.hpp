@@ -1,0 +1,32 @@
+#pragma once
+// From instant to instant, cutting a step that does not converge.
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <vector>
+
+#include "lacon/catalog/messages.hpp"
+#include "lacon/structures/concepts.hpp"
+
+namespace lacon {
+
+/// What solves one instant; throws an Error of severity S where it fails.
+using SolveInstant = std::function<void(double instant)>;
+/// Go back to the last instant that was solved.
+using GoBack = std::function<void()>;
+/// Called when an instant is solved. @param asked whether the user asked for it (or a cut made it)
+using Solved = std::function<void(double instant, bool asked)>;
+
+/// Solve every instant of `steps` behind the first. A step that fails is cut into `cut_into` equal ones, at most `cut_levels` times
+/// over (DEFI_LIST_INST, ECHEC/ACTION='DECOUPE'); the failure that no cut can help is thrown on.
+void step_through(const TimeSteps& steps, const SolveInstant& solve, const GoBack& go_back, const Solved& solved);
+
+/// The instants that INCREMENT asks for, the initial one first: from INST_INIT or NUME_INST_INIT to INST_FIN or NUME_INST_FIN.
+struct Interval {
+  std::optional<double> first_instant, last_instant;
+  std::optional<std::int64_t> first_number, last_number;
+  double precision = 1e-6;
+};
+TimeSteps restrict(const TimeSteps& steps, const Interval& interval);
+
+}  // namespace lacon

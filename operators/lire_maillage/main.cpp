@@ -1,0 +1,36 @@
+// LIRE_MAILLAGE: a mesh from a file.
+#include <iostream>
+
+#include "lacon/operators/lire_maillage/orient.hpp"
+#include "lacon/operators/program/program.hpp"
+#include "lacon/structures/formats/listing.hpp"
+#include "lacon/structures/formats/med.hpp"
+
+namespace {
+
+using namespace lacon;
+
+void read_mesh(const Order& order, const Base& base) {
+  const Keywords& keywords = order.keywords;
+  const std::filesystem::path file = order.unit(keywords.integer("UNITE"));
+  Mesh mesh = [&] {
+    const Phase phase("read");
+    return read_med_mesh(file, keywords.has("NOM_MED") ? keywords.text("NOM_MED") : "");
+  }();
+  {
+    const Phase phase("check");
+    orient_body_cells(mesh);
+    for (const Keywords& check : keywords.factors("VERI_MAIL"))
+      if (check.yes("VERIF")) inspect(mesh, check.real("APLAT"));
+  }
+  std::cout << "Mesh " << order.result_label << ": '" << mesh.name << "' of " << file.string() << '\n';
+  list_mesh(std::cout, mesh, keywords.integer("INFO") > 1 || keywords.integer("INFO_MED") > 1);
+  const Phase phase("write");
+  base.store(mesh);
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  return lacon::run_program(argc, argv, "lire_maillage", "Reads a mesh from a MED file (command LIRE_MAILLAGE)", read_mesh);
+}

@@ -1,0 +1,19 @@
+#pragma once
+// Checks of a mesh as it comes from a file.
+#include <cstdint>
+#include <vector>
+
+#include "lacon/structures/mesh.hpp"
+
+namespace lacon {
+
+/// Reverse the body cells (of the mesh's dimension) whose Jacobian is negative, with the catalogue's mirror order; skins keep
+/// theirs, whatever it is. Informs LIRE_1 of their number; throws LIRE_2 where the Jacobian changes sign inside a cell.
+/// @return the cells that were reversed
+std::vector<std::int32_t> orient_body_cells(Mesh& mesh);
+
+/// What VERI_MAIL looks at, each told once with LIRE_3 to LIRE_5: nodes of no cell, cells with the same nodes, flat cells,
+/// whose least distance between two vertices is under `flatness` times the greatest.
+void inspect(const Mesh& mesh, double flatness);
+
+}  // namespace lacon

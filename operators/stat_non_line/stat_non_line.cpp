@@ -1,0 +1,171 @@
+#include "lacon/operators/stat_non_line/stat_non_line.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <iostream>
+#include <set>
+
+#include "lacon/catalog/messages.hpp"
+#include "lacon/operators/evolution/archive.hpp"
+#include "lacon/operators/evolution/newton.hpp"
+#include "lacon/operators/evolution/table.hpp"
+#include "lacon/operators/evolution/time_stepping.hpp"
+#include "lacon/operators/program/program.hpp"
+
+namespace lacon {
+namespace {
+
+template <class Get>
+auto optional(const Keywords& keywords, std::string_view name, Get get) -> std::optional<decltype((keywords.*get)(name))> {
+  if (!keywords.has(name)) return std::nullopt;
+  return (keywords.*get)(name);
+}
+
+/// The one occurrence of a factor keyword whose defaults the launcher fills in.
+Keywords single(const Keywords& keywords, std::string_view name) {
+  const std::vector<Keywords> occurrences = keywords.factors(name);
+  if (occurrences.size() != 1) fail("ORDER_4", {{"keyword", keywords.path(name)}, {"expected", "given once"}});
+  return occurrences.front();
+}
+
+NewtonCriteria criteria_of(const Keywords& convergence) {
+  return {.resi_glob_rela = optional(convergence, "RESI_GLOB_RELA", &Keywords::real),
+          .resi_glob_maxi = optional(convergence, "RESI_GLOB_MAXI", &Keywords::real),
+          .iterations = static_cast<int>(convergence.integer("ITER_GLOB_MAXI"))};
+}
+
+TimeSteps steps_of(const Keywords& increment, const Base& base) {
+  return restrict(base.time_steps(increment.concept_id("LIST_INST")),
+                  {.first_instant = optional(increment, "INST_INIT", &Keywords::real),
+                   .last_instant = optional(increment, "INST_FIN", &Keywords::real),
+                   .first_number = optional(increment, "NUME_INST_INIT", &Keywords::integer),
+                   .last_number = optional(increment, "NUME_INST_FIN", &Keywords::integer),
+                   .precision = increment.real("PRECISION")});
+}
+
+/// Which instants and fields are kept. The first and the last instant always are.
+class Archiving {
+ public:
+  Archiving(const Keywords& keywords, const Base& base)
+      : every_(keywords.has("PAS_ARCH") ? keywords.integer("PAS_ARCH") : 1),
+        listed_(keywords.has("LIST_INST") || keywords.has("INST")),
+        instants_(keywords.has("LIST_INST") ? base.list_of_reals(keywords.concept_id("LIST_INST")) : keywords.reals("INST")),
+        precision_(keywords.real("PRECISION")),
+        relative_(keywords.text("CRITERE") == "RELATIF") {
+    for (const std::string& name : keywords.texts("CHAM_EXCLU")) excluded_.insert(name);
+  }
+  bool keeps(double instant, std::int64_t step) const {
+    if (!listed_) return step % every_ == 0;
+    return std::any_of(instants_.begin(), instants_.end(), [&](double listed) {
+      return std::abs(instant - listed) <= precision_ * (relative_ ? std::abs(listed) : 1.0);
+    });
+  }
+  bool keeps(const std::string& field) const { return !excluded_.contains(field); }
+
+ private:
+  std::int64_t every_;
+  bool listed_;
+  std::vector<double> instants_;
+  double precision_;
+  bool relative_;
+  std::set<std::string> excluded_;
+};
+
+/// The result as it grows.
+class Archive {
+ public:
+  Archive(const Order& order, const Base& base, const StaticProblem& problem) : base_(base), problem_(problem) {
+    const Keywords& keywords = order.keywords;
+    result_.label = order.result_label;
+    result_.model = keywords.concept_id("MODELE");
+    result_.mesh = problem.model.mesh;
+    result_.material_field = keywords.concept_id("CHAM_MATER");
+    result_.contact = keywords.optional_concept("CONTACT").value_or("");
+    for (const Keywords& excit : keywords.factors("EXCIT"))
+      result_.loads.push_back({excit.concept_id("CHARGE"), excit.optional_concept("FONC_MULT").value_or("")});
+    result_.behaviour = keywords.values().value("COMPORTEMENT", nlohmann::json::array()).dump();
+  }
+
+  void add(double instant, int iterations, const StaticState& state, const Newton& newton, const Archiving& archiving) {
+    const Phase phase("archive");
+    const auto number = static_cast<std::int64_t>(result_.orders.size());
+    const auto keep = [&](Field field) {
+      if (!archiving.keeps(field.name)) return;
+      field.order = number;
+      field.instant = instant;
+      base_.add_field(result_, std::move(field));
+    };
+    keep(displacement_field(problem_, state));
+    keep(stress_field(problem_, newton.stresses()));
+    if (const ContactState* contact = newton.contact()) keep(contact_field(problem_, state, *contact));
+    result_.orders.push_back(number);
+    result_.instants.push_back(instant);
+    result_.parameters["newton_iterations"].push_back(iterations);
+  }
+  void store() const { base_.store(result_); }
+  void discard() const { base_.discard(result_); }
+  std::size_t n_instants() const { return result_.orders.size(); }
+
+ private:
+  const Base& base_;
+  const StaticProblem& problem_;
+  Result result_;
+};
+
+}  // namespace
+
+void stat_non_line(const Order& order, const Base& base) {
+  const Keywords& keywords = order.keywords;
+  const Keywords solver = single(keywords, "SOLVEUR");
+  StaticProblem problem = [&] {
+    const Phase phase("read");
+    return read_problem(order, base);
+  }();
+  const TimeSteps steps = steps_of(single(keywords, "INCREMENT"), base);
+  const Archiving archiving(single(keywords, "ARCHIVAGE"), base);
+  Newton newton(problem, criteria_of(single(keywords, "CONVERGENCE")),
+                {.memory_margin = static_cast<int>(solver.integer("PCENT_PIVOT")), .residual_tolerance = solver.real("RESI_RELA")});
+  NewtonTable table(std::cout, problem, single(keywords, "AFFICHAGE").yes("INFO_RESIDU"));
+
+  StaticState state = newton.initial_state(), last = state;
+  if (const ContactState* contact = newton.contact()) {
+    std::int64_t locked = 0, first = -1;
+    for (std::size_t p = 0; p < contact->n_patches(); ++p)
+      if (contact->coverage(p) > 0 && contact->is_locked(p)) {
+        if (locked++ == 0) first = problem.mesh.patches->cells[p].front();
+      }
+    if (locked) inform("EVOLUTION_6", {{"count", std::to_string(locked)}, {"cell", cell_name(first)}});
+  }
+  Archive archive(order, base, problem);
+  archive.add(steps.values.front(), 0, state, newton, archiving);
+
+  int iterations = 0;
+  std::int64_t step = 0;
+  const auto solve = [&](double instant) {
+    table.start(instant);
+    iterations = newton.solve(instant, state, [&](const IterationReport& report) { table.line(report); });
+  };
+  const auto go_back = [&] {
+    state = last;
+    newton.restart(state);
+  };
+  const auto solved = [&](double instant, bool asked) {
+    table.finish(instant, iterations, state, newton.contact());
+    last = state;
+    step += asked;
+    if (archiving.keeps(instant, step) || instant == steps.values.back()) archive.add(instant, iterations, state, newton, archiving);
+  };
+  try {
+    step_through(steps, solve, go_back, solved);
+  } catch (...) {
+    // what was computed before the failure is not lost; without it the base stays as it was
+    if (archive.n_instants() > 1)
+      archive.store();
+    else
+      archive.discard();
+    throw;
+  }
+  archive.store();
+}
+
+}  // namespace lacon

@@ -1,0 +1,134 @@
+"""Commands that Python does itself: functions, lists, instants, materials; what their files hold."""
+
+import sys
+import time
+import unittest
+
+import h5py
+
+sys.path.insert(0, __file__.rpartition("/")[0] or ".")
+from support import LauncherTest  # noqa: E402
+
+from lacon.functions import Piecewise  # noqa: E402
+from lacon.messages import AsterError  # noqa: E402
+
+
+class Functions(unittest.TestCase):
+    def test_linear(self):
+        f = Piecewise([0, 1, 3], [0, 10, 0])
+        self.assertEqual([f.value(x) for x in (0, 0.5, 1, 2, 3)], [0, 5, 10, 5, 0])
+        self.assertEqual(list(f.value([0.5, 2])), [5, 5])
+
+    def test_logarithmic(self):
+        f = Piecewise([1, 100], [1, 100], ("LOG", "LOG"))
+        self.assertAlmostEqual(f.value(10), 10)
+        self.assertAlmostEqual(Piecewise([1, 100], [0, 2], ("LOG", "LIN")).value(10), 1)
+        self.assertAlmostEqual(Piecewise([0, 2], [1, 100], ("LIN", "LOG")).value(1), 10)
+
+    def test_outside(self):
+        for left, right, values in (("CONSTANT", "CONSTANT", (1, 3)), ("LINEAIRE", "LINEAIRE", (-1, 5))):
+            f = Piecewise([0, 1], [1, 3], left=left, right=right)
+            self.assertEqual((f.value(-1), f.value(2)), values)
+        with self.assertRaisesRegex(AsterError, "RAMP has no value at 1.1"):
+            Piecewise([0, 1], [1, 3]).value(1.1, "RAMP")
+
+    def test_the_last_instant_within_round_off(self):
+        self.assertEqual(Piecewise([0, 1], [0, 2]).value(sum([0.1] * 10) + 2e-16), 2)
+
+    def test_one_point(self):
+        self.assertEqual(Piecewise([1], [5], left="CONSTANT", right="CONSTANT").value(7), 5)
+        self.assertEqual(Piecewise([1], [5]).value(1), 5)
+        with self.assertRaises(AsterError):
+            Piecewise([1], [5]).value(2)
+
+
+class Commands(LauncherTest):
+    def make(self, *lines):
+        """Run the lines as X = ... . @return files of the concepts, open"""
+        self.ok(self.run_study("DEBUT()\n" + "".join(f"X{i} = {line}\n" for i, line in enumerate(lines)) + "FIN()\n", "--fresh"))
+        labels = self.registry()["labels"]
+        files = [h5py.File(self.work / "study.base" / f"{labels[f'X{i}']}.h5") for i in range(len(lines))]
+        for file in files:
+            self.addCleanup(file.close)
+        return files
+
+    def refuses(self, line, *words):
+        self.refused(self.run_study(f"DEBUT()\nX = {line}\n"), "study.comm:2", *words)
+        self.assertEqual(self.entries(), [])
+
+    def test_functions(self):
+        files = self.make(
+            "DEFI_FONCTION(NOM_PARA='INST', VALE=(0, 0, 1, 2), PROL_DROITE='LINEAIRE')",
+            "DEFI_FONCTION(NOM_PARA='X', NOM_RESU='DX', ABSCISSE=(1, 2), ORDONNEE=(3, 4), INTERPOL='LOG')",
+            "DEFI_FONCTION(NOM_PARA='X', VALE=(2, 20, 1, 10), VERIF='NON', INTERPOL=('LIN', 'LOG'))",
+            "DEFI_FONCTION(NOM_PARA='X', VALE_PARA=DEFI_LIST_REEL(VALE=(0, 1)), VALE_FONC=DEFI_LIST_REEL(VALE=(5, 6)))")
+        self.assertEqual([(list(f["x"]), list(f["y"])) for f in files],
+                         [([0, 1], [0, 2]), ([1, 2], [3, 4]), ([1, 2], [10, 20]), ([0, 1], [5, 6])])
+        self.assertEqual([list(f.attrs["interpolation"]) for f in files], [["LIN", "LIN"], ["LOG", "LOG"], ["LIN", "LOG"], ["LIN", "LIN"]])
+        a = files[0].attrs
+        self.assertEqual((a["parameter"], a["component"], a["extension_left"], a["extension_right"]), ("INST", "TOUTRESU", "EXCLU", "LINEAIRE"))
+
+    def test_attributes_of_every_concept(self):
+        (file,) = self.make("DEFI_MATERIAU(ELAS=_F(E=2000, NU=0.3, RHO=7800))")
+        a = dict(file.attrs)
+        self.assertEqual((a["lacon_type"], a["format"], a["version"], a["id"], a["label"], a["command"], a["references"]),
+                         ("material", 1, 1, "material_1", "X0", "DEFI_MATERIAU", "[]"))
+        self.assertIn('"E": 2000.0', a["keywords"])
+        self.assertEqual(dict(file["ELAS"].attrs), {"E": 2000.0, "NU": 0.3, "RHO": 7800.0})
+        self.assertEqual(list(file), ["ELAS"])
+
+    def test_lists(self):
+        files = self.make("DEFI_LIST_REEL(DEBUT=0, INTERVALLE=(_F(JUSQU_A=1, NOMBRE=2), _F(JUSQU_A=1.3, PAS=0.1)))",
+                          "DEFI_LIST_REEL(VALE=(0, 0.5, 7))")
+        values = list(files[0]["values"])
+        self.assertEqual(len(values), 6)
+        for made, expected in zip(values, (0, 0.5, 1, 1.1, 1.2, 1.3)):
+            self.assertAlmostEqual(made, expected, 15)
+        self.assertEqual(values[-1], 1.3, "the end to the bit")
+        self.assertEqual(list(files[1]["values"]), [0, 0.5, 7])
+
+    def test_many_steps_end_where_they_should(self):
+        (file,) = self.make("DEFI_LIST_REEL(DEBUT=0, INTERVALLE=_F(JUSQU_A=1, PAS=0.001))")
+        self.assertEqual((len(file["values"]), file["values"][-1]), (1001, 1.0))
+
+    def test_instants(self):
+        files = self.make("DEFI_LIST_INST(DEFI_LIST=_F(LIST_INST=DEFI_LIST_REEL(VALE=(0, 1))))",
+                          "DEFI_LIST_INST(METHODE='MANUEL', DEFI_LIST=_F(VALE=(0, 1, 2)), ECHEC=_F(SUBD_PAS=5, SUBD_NIVEAU=6, SUBD_PAS_MINI=1e-3))",
+                          "DEFI_LIST_INST(METHODE='AUTO', DEFI_LIST=_F(VALE=(0, 1)), ECHEC=_F(EVENEMENT='ERREUR', ACTION='ARRET'))")
+        self.assertEqual([[f.attrs[k] for k in ("cut", "cut_into", "cut_levels", "smallest")] for f in files],
+                         [[1, 4, 3, 0.0], [1, 5, 6, 1e-3], [0, 4, 3, 0.0]])
+        self.assertEqual(list(files[1]["values"]), [0, 1, 2])
+
+    def test_refusals(self):
+        self.refuses("DEFI_FONCTION(NOM_PARA='INST', VALE=(0, 0, 0, 1))", "DEFI_FONCTION_1", "DEFI_FONCTION/VALE")
+        self.refuses("DEFI_FONCTION(NOM_PARA='INST', VALE=(0, 0, 0, 1), VERIF='NON')", "DEFI_FONCTION_1")
+        self.refuses("DEFI_FONCTION(NOM_PARA='INST', VALE=(0, 0, 1))", "DEFI_FONCTION_2", "3 numbers")
+        self.refuses("DEFI_FONCTION(NOM_PARA='INST', ABSCISSE=(0, 1), ORDONNEE=(0,))", "DEFI_FONCTION_5")
+        self.refuses("DEFI_FONCTION(NOM_PARA='INST', VALE=(0, 1, 1, 1), INTERPOL='LOG')", "DEFI_FONCTION_4", "parameter")
+        self.refuses("DEFI_LIST_REEL(DEBUT=0, INTERVALLE=_F(JUSQU_A=0, NOMBRE=1))", "DEFI_LIST_1", "INTERVALLE[1]/JUSQU_A")
+        self.refuses("DEFI_LIST_REEL(DEBUT=0, INTERVALLE=_F(JUSQU_A=1, PAS=0.3))", "DEFI_LIST_2")
+        self.refuses("DEFI_LIST_REEL(DEBUT=0, INTERVALLE=_F(JUSQU_A=1, PAS=3))", "DEFI_LIST_2")
+        self.refuses("DEFI_LIST_REEL(VALE=(0, 2, 1))", "DEFI_LIST_1")
+        self.refuses("DEFI_LIST_INST(DEFI_LIST=_F(VALE=(1, 0)))", "DEFI_LIST_1")
+
+    def test_a_list_of_one_instant(self):
+        self.refused(self.run_study("DEBUT()\nL = DEFI_LIST_REEL(VALE=1)\nX = DEFI_LIST_INST(DEFI_LIST=_F(LIST_INST=L))\n"), "DEFI_LIST_3")
+
+    def test_a_function_outside_its_points_in_a_command_file(self):
+        self.refused(self.run_study("DEBUT()\nF = DEFI_FONCTION(NOM_PARA='INST', VALE=(0, 0, 1, 1))\nF(2)\n"), "DEFI_FONCTION_3", "F has no value at 2")
+
+    def test_ten_commands_take_a_quarter_of_a_second(self):
+        """The best of several runs: the machine may be busy with other things."""
+        lines = ["DEBUT()"] + [f"M{i} = DEFI_MATERIAU(ELAS=_F(E=1, NU=0))" for i in range(8)] + ["FIN()"]
+        best = 9.0
+        for _ in range(8):
+            start = time.perf_counter()
+            self.ok(self.run_study("\n".join(lines), "--fresh"))
+            best = min(best, time.perf_counter() - start)
+            if best < 0.25:
+                break
+        self.assertLess(best, 0.25)
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,108 @@
+"""CREA_MAILLAGE alone: DECOUPE_LAC, LINE_QUAD and QUAD_LINE on a base made by hand, and what it refuses."""
+
+import unittest
+
+import numpy as np
+
+from lacon_test import OperatorTest, concept
+
+SQUARE = [[0, 0], [3, 0], [3, 3], [0, 3]]
+CELLS = [("SEG2", [0, 1]), ("SEG2", [1, 2]), ("SEG2", [3, 2]), ("QUAD4", [0, 1, 2, 3])]
+GROUPS = {"LOW": [0], "RIGHT": [1], "TOP": [2], "ALL": [0, 1, 2], "BODY": [3], "NOTHING": []}
+
+
+class CreaMaillage(OperatorTest):
+    def setUp(self):
+        super().setUp()
+        self.write_mesh("mesh_1", SQUARE, CELLS, GROUPS, {"CORNERS": [0, 2]})
+
+    def cut(self, groups, mesh="mesh_1", **more):
+        return {"MAILLAGE": concept(mesh), "DECOUPE_LAC": [{"GROUP_MA_ESCL": groups, "DECOUPE_HEXA": "PYRA", **more}]}
+
+    def test_cuts_a_square_node_by_node(self):
+        before = self.snapshot()
+        run = self.run_command("CREA_MAILLAGE", self.cut(["LOW"]), "mesh_2")
+        self.assertEqual(run.status, 0, run.stderr)
+        mesh = self.read_mesh("mesh_2")
+        np.testing.assert_allclose(mesh.coordinates[4:], [[1, 0, 0], [2, 0, 0], [1, 1.5, 0], [2, 1.5, 0]], atol=1e-15)
+        self.assertEqual(mesh.types, ["SEG2"] * 5 + ["QUAD4"] * 4)
+        self.assertEqual(mesh.cells, [[0, 4], [4, 5], [5, 1], [1, 2], [3, 2], [0, 4, 6, 3], [4, 5, 7, 6], [5, 1, 2, 7], [2, 3, 6, 7]])
+        self.assertEqual({name: list(cells) for name, cells in mesh.cell_groups.items()},
+                         {"LOW": [0, 1, 2], "RIGHT": [3], "TOP": [4], "ALL": [0, 1, 2, 3, 4], "BODY": [5, 6, 7, 8], "NOTHING": []})
+        self.assertEqual(list(mesh.node_groups["CORNERS"]), [0, 2])
+        patches = mesh.patches
+        self.assertEqual((patches.zone_group, list(patches.zone_offset)), (["LOW"], [0, 1]))
+        self.assertEqual((list(patches.kind), list(patches.parent)), ([12], [0]))
+        self.assertEqual((patches.cells, patches.carriers), ([[0, 1, 2]], [[4, 5]]))
+        self.assertEqual({name: digest for name, digest in self.snapshot().items() if name in before}, before)
+        self.assertEqual(int(self.attributes("mesh_2")["version"]), 1)
+
+    def test_says_what_it_made(self):
+        run = self.run_command("CREA_MAILLAGE", self.cut(["LOW", "TOP"]), "mesh_2")
+        self.assertEqual(self.ids(run), ["DECOUPE_7", "MESH1_3"])  # TOP looks into the body
+        self.assertIn("'TOP'", run.messages[0]["text"])
+        self.assertIn("8 nodes and 10 cells", run.messages[1]["text"])
+        self.assertRegex(run.stdout, r"zone LOW +1 macro-elements")
+        self.assertRegex(run.stdout, r"cells +4 -> +14")
+        self.assertEqual(self.read_mesh("mesh_2").patches.zone_group, ["LOW", "TOP"])
+
+    def test_line_quad_and_back(self):
+        run = self.run_command("CREA_MAILLAGE", {"MAILLAGE": concept("mesh_1"), "LINE_QUAD": [{"TOUT": "OUI"}]}, "mesh_2")
+        self.assertEqual(run.status, 0, run.stderr)
+        quadratic = self.read_mesh("mesh_2")
+        self.assertEqual(quadratic.types, ["SEG3", "SEG3", "SEG3", "QUAD8"])
+        self.assertEqual(len(quadratic.coordinates), 8)
+        np.testing.assert_array_equal(quadratic.coordinates[quadratic.cells[3][4:], :2], [[1.5, 0], [3, 1.5], [1.5, 3], [0, 1.5]])
+        run = self.run_command("CREA_MAILLAGE", {"MAILLAGE": concept("mesh_2"), "QUAD_LINE": [{"GROUP_MA": ["ALL"]}]}, "mesh_3")
+        self.assertEqual(self.read_mesh("mesh_3").types, ["SEG2", "SEG2", "SEG2", "QUAD8"])
+        run = self.run_command("CREA_MAILLAGE", {"MAILLAGE": concept("mesh_2"), "QUAD_LINE": [{"TOUT": "OUI"}]}, "mesh_4")
+        self.assertEqual(self.read_mesh("mesh_4").cells, [nodes for _, nodes in CELLS])
+
+    def test_quadratic_skins_are_patches_as_they_are(self):
+        self.run_command("CREA_MAILLAGE", {"MAILLAGE": concept("mesh_1"), "LINE_QUAD": [{"TOUT": "OUI"}]}, "mesh_2")
+        run = self.run_command("CREA_MAILLAGE", self.cut(["LOW"], "mesh_2"), "mesh_3")
+        self.assertEqual(run.status, 0, run.stderr)
+        before, after = self.read_mesh("mesh_2"), self.read_mesh("mesh_3")
+        self.assertEqual(after.cells, before.cells)
+        self.assertEqual((list(after.patches.kind), after.patches.carriers), ([14], [[before.cells[0][2]]]))
+
+    def test_refuses_bad_groups(self):
+        for groups, identifier, word in ((["LOWER"], "MESH_1", "'LOWER'"), (["NOTHING"], "MESH_2", "'NOTHING'"),
+                                         (["LOW", "LOW"], "DECOUPE_1", "'LOW'"), (["LOW", "ALL"], "DECOUPE_2", "M1"),
+                                         (["BODY"], "DECOUPE_4", "M4")):
+            with self.subTest(groups=groups):
+                self.assert_refuses(identifier, "CREA_MAILLAGE", self.cut(groups), word, result="mesh_2")
+
+    def test_refuses_a_skin_without_body(self):
+        self.write_mesh("mesh_5", [*SQUARE, [5, 0], [6, 0]], [*CELLS, ("SEG2", [4, 5])], {"LONE": [4]})
+        self.assert_refuses("MESH1_2", "CREA_MAILLAGE", self.cut(["LONE"], "mesh_5"), "M5", "'LONE'", result="mesh_6")
+
+    def test_refuses_a_pair_without_cut(self):
+        nodes = [*SQUARE, [1.5, 0], [3, 1.5], [1.5, 3], [0, 1.5]]
+        self.write_mesh("mesh_5", nodes, [("SEG2", [0, 1]), ("QUAD8", list(range(8)))], {"LOW": [0]})
+        self.assert_refuses("CREALAC_1", "CREA_MAILLAGE", self.cut(["LOW"], "mesh_5"), "SEG2", "QUAD8", result="mesh_6")
+
+    def test_refuses_an_internal_face(self):
+        self.write_mesh("mesh_5", [*SQUARE, [6, 0], [6, 3]], [("SEG2", [1, 2]), ("QUAD4", [0, 1, 2, 3]), ("QUAD4", [1, 4, 5, 2])], {"IN": [0]})
+        self.assert_refuses("DECOUPE_3", "CREA_MAILLAGE", self.cut(["IN"], "mesh_5"), "M2", "M3", result="mesh_6")
+
+    def test_refuses_a_bad_body_cell(self):
+        self.write_mesh("mesh_5", [[0, 0], [3, 0], [0.5, 0.5], [0, 3]], [("SEG2", [0, 1]), ("QUAD4", [0, 1, 2, 3])], {"LOW": [0]})
+        self.assert_refuses("DECOUPE_6", "CREA_MAILLAGE", self.cut(["LOW"], "mesh_5"), "M2", result="mesh_6")
+
+    def test_refuses_a_mesh_that_is_cut(self):
+        self.run_command("CREA_MAILLAGE", self.cut(["LOW"]), "mesh_2")
+        self.assert_refuses("MESH1_12", "CREA_MAILLAGE", self.cut(["TOP"], "mesh_2"), result="mesh_3")
+        for keyword in ("LINE_QUAD", "QUAD_LINE"):
+            self.assert_refuses("MESH1_12", "CREA_MAILLAGE", {"MAILLAGE": concept("mesh_2"), keyword: [{"TOUT": "OUI"}]}, keyword, result="mesh_3")
+
+    def test_refuses_incomplete_orders(self):
+        self.assert_refuses("ORDER_2", "CREA_MAILLAGE", {"MAILLAGE": concept("mesh_1")}, "DECOUPE_LAC", result="mesh_2")
+        self.assert_refuses("ORDER_2", "CREA_MAILLAGE", {"MAILLAGE": concept("mesh_1"), "LINE_QUAD": [{}]}, "TOUT", result="mesh_2")
+        self.assert_refuses("ORDER_4", "CREA_MAILLAGE", self.cut(["LOW"], DECOUPE_HEXA="TETRA"), "DECOUPE_HEXA", result="mesh_2")
+        self.assert_refuses("ORDER_3", "CREA_MAILLAGE", self.cut(["LOW"], GROUP_NO="A"), "GROUP_NO", result="mesh_2")
+        self.assert_refuses("BASE_1", "CREA_MAILLAGE", self.cut(["LOW"], "mesh_9"), "mesh_9", result="mesh_2")
+
+
+if __name__ == "__main__":
+    unittest.main()
