@@ -9,13 +9,13 @@ import json
 import os
 import pathlib
 import re
-import shutil
 import weakref
 
 from . import concepts, hdf5
 from .messages import fail
 
 _registry = "base.json"
+_orders = "orders.partial"
 _entry = re.compile(r"([a-z_]+_\d+)(\.h5)?(\.partial)?$")
 
 
@@ -76,7 +76,7 @@ class Base:
 
     def _empty(self):
         for path in self.folder.iterdir():
-            if path.name.startswith(_registry) or _entry.match(path.name):
+            if path.name.startswith((_registry, _orders)) or _entry.match(path.name):
                 _remove(path)
 
     def write(self, where=""):
@@ -88,7 +88,15 @@ class Base:
         except OSError as error:
             fail("STUDY_3", where, folder=self.folder, reason=error.strerror)
 
+    def orders(self):
+        """Folder of orders and of what operators say about them, there while a run lasts."""
+        folder = self.folder / _orders
+        folder.mkdir(exist_ok=True)
+        return folder
+
     def close(self):
+        """The run is over: remove its orders, let others in."""
+        _remove(self.folder / _orders)
         os.close(self._lock)
 
     # ------------------------------------------------------------------------------------------- concepts
@@ -133,7 +141,8 @@ class Base:
     def drop_partial(self):
         """Remove what killed operators left."""
         for path in list(self.folder.rglob("*.partial")):
-            _remove(path)
+            if path.name != _orders:
+                _remove(path)
 
     def write_concept(self, kind, label, command, keywords, fill):
         """A concept that Python makes itself. `fill(file)` writes what is particular to it. @return its object"""
@@ -208,6 +217,8 @@ class Base:
 
 def _remove(path):
     if path.is_dir() and not path.is_symlink():
+        import shutil
+
         shutil.rmtree(path)
     else:
         with contextlib.suppress(FileNotFoundError):

@@ -80,8 +80,9 @@ def messages():
 
 
 def plugin_folders():
-    """Plug-in folders of LACON_PLUGIN_PATH: each entry is one, or holds some."""
-    for entry in filter(None, os.environ.get("LACON_PLUGIN_PATH", "").split(os.pathsep)):
+    """Plug-in folders of LACON_PLUGIN_PATH and of the installation: each entry is one, or holds some."""
+    installed = pathlib.Path(os.path.realpath(sys.argv[0])).parent.parent / "lib" / "lacon" / "plugins"
+    for entry in [*filter(None, os.environ.get("LACON_PLUGIN_PATH", "").split(os.pathsep)), installed]:
         folder = pathlib.Path(entry)
         if (folder / "plugin.toml").is_file():
             yield folder
@@ -97,8 +98,19 @@ def modelisations():
     else:
         rows = [row for path in sorted((location() / "elements").glob("*.toml")) for row in _toml(path)["element"]]
     for folder in plugin_folders():
-        rows += _toml(folder / "plugin.toml").get("element", [])
+        rows += _plugin_rows(folder / "plugin.toml")
     return tuple(dict.fromkeys(row["modelisation"] for row in rows))
+
+
+def _plugin_rows(path):
+    import tomllib
+
+    from .messages import fail
+
+    try:
+        return _toml(path).get("element", [])
+    except (tomllib.TOMLDecodeError, OSError) as error:
+        fail("PLUGIN_1", file=path, reason=error)
 
 
 #: `into_from` of a keyword row -> the allowed values

@@ -127,7 +127,7 @@ class Command:
         made = orders.order(self.name, run, keywords, where, result, units, written)
         copy = orders.keep_copy(run.base, identifier) if reused else None
         try:
-            outcome = orders.run(row["operator"], made, run.scratch(), run)
+            outcome = orders.run(row["operator"], made, run)
             if outcome.status != 0:
                 orders.raise_failure(outcome, row["operator"], where)
             if result and not run.base.path(identifier).exists():

@@ -5,12 +5,10 @@ import builtins
 import contextlib
 import math
 import os
-import shutil
 import sys
-import traceback
 import warnings
 
-from . import messages, namespace, peer
+from . import labels, messages, namespace, peer
 from .messages import AsterError, fail, message, show
 
 
@@ -50,6 +48,7 @@ def run_files(study, files):
     if "POURSUITE" in sources[0][1] or "--continue" in sources[0][1]:
         # a name that the saved study lost is explained where it is first used
         values["__builtins__"] = namespace.Builtins({})
+    labels.sources.update(sources)
     for path, source in sources:
         values["__file__"] = path
         _run_file(path, source, values)
@@ -106,7 +105,9 @@ def _run_file(path, source, values):
 
 def _report(error):
     """Why a command failed and where the study stopped."""
-    if not error.shown:
+    if error.shown:  # by the operator, which does not know the command file
+        print(f"    where: {error.messages[0].where}", file=sys.stderr, flush=True)
+    else:
         for item in error.messages:
             show(item)
     entries = _user_entries(error)
@@ -117,6 +118,8 @@ def _report(error):
 
 def _user_entries(error):
     """The traceback without the frames of this package."""
+    import traceback
+
     here = os.path.dirname(os.path.abspath(__file__))
     return [entry for entry in traceback.extract_tb(error.__traceback__) if not entry.filename.startswith((here, "<frozen"))]
 
@@ -127,6 +130,8 @@ def _place(error):
 
 
 def _print_traceback(error):
+    import traceback
+
     sys.stdout.flush()
     print("Traceback (most recent call last):", file=sys.stderr)
     print("".join(traceback.format_list(_user_entries(error))), end="", file=sys.stderr)
@@ -155,6 +160,8 @@ def delivered(files):
                 if not os.path.samefile(path, target):
                     fail("STUDY_21", str(path), file=path, target=target)
                 continue
+            import shutil
+
             shutil.copyfile(path, target)
             placed.append(target)
         if os.getcwd() not in sys.path:

@@ -7,12 +7,14 @@ they are, so that tracebacks name the user's own lines.
 
 import ast
 import itertools
-import linecache
 import os
 import sys
 
 _package = os.path.dirname(os.path.abspath(__file__))
 _tables = {}
+
+#: file name -> source of the command files of this run
+sources = {}
 
 
 def user_frame():
@@ -56,8 +58,8 @@ def _table(filename):
     if filename not in _tables:
         table = {}
         try:
-            tree = ast.parse("".join(linecache.getlines(filename)))
-        except (SyntaxError, ValueError):
+            tree = ast.parse(_source(filename))
+        except (OSError, SyntaxError, ValueError):
             tree = ast.Module([], [])
         for node in ast.walk(tree):
             if isinstance(node, ast.Assign):
@@ -66,6 +68,14 @@ def _table(filename):
                 _pair(node.target, node.value, table)
         _tables[filename] = table
     return _tables[filename]
+
+
+def _source(filename):
+    """The text of a file; of a module that a command file imports, in its own encoding."""
+    if filename in sources:
+        return sources[filename]
+    with open(filename, "rb") as file:
+        return file.read()
 
 
 def _pair(target, value, table):

@@ -3,18 +3,16 @@
 Severities: F the user's error, S the solution failed, A alarm, I information.
 """
 
+import collections
 import sys
-from typing import NamedTuple
 
 from . import catalog
 
 
-class Message(NamedTuple):
-    severity: str
-    id: str
-    text: str
-    do: str
-    where: str = ""
+class Message(collections.namedtuple("Message", "severity id text do where", defaults=("",))):
+    """What is wrong, what to do, and where; printed as docs/structures.md section 4 says."""
+
+    __slots__ = ()
 
     def __str__(self):
         lines = [f"<{self.severity}> <{self.id}> {self.text}"]

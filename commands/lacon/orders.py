@@ -3,7 +3,6 @@
 import json
 import os
 import pathlib
-import shutil
 import signal
 import sys
 import time
@@ -44,16 +43,15 @@ def order(command, study, keywords, where, result=None, units=None, written=()):
     return made
 
 
-def run(program, made, folder, study):
+def run(program, made, study):
     """Start the operator on the order and wait for it. @return its Outcome. @throws InternalError where it does not exist"""
     import subprocess
 
     executable = operator_folder() / program
     if not os.access(executable, os.X_OK):
         raise InternalError([message("INTERNAL_2", made["source"], program=program, folder=operator_folder())])
-    number = len(list(folder.glob("*.order.json"))) + 1
-    stem = f"{number:03d}-{made['command'].lower()}"
-    order_file, status_file = folder / f"{stem}.order.json", folder / f"{stem}.status.json"
+    order_file, status_file = study.order_files(made["command"])
+    status_file.unlink(missing_ok=True)
     order_file.write_text(json.dumps(made, ensure_ascii=False, indent=1), encoding="utf-8")
     environment = dict(os.environ)
     environment.setdefault("OPENBLAS_NUM_THREADS", "1")  # fronts are small: more threads of BLAS only slow each other down
@@ -74,7 +72,7 @@ def run(program, made, folder, study):
         process.wait()
         raise
     seconds = time.perf_counter() - start
-    return Outcome(process.returncode, *_read_status(status_file, made["source"]), seconds)
+    return Outcome(process.returncode, *_read_status(status_file, f"{made['command']}, {made['source']}"), seconds)
 
 
 def _read_status(path, where):
@@ -130,6 +128,8 @@ def keep_copy(base, identifier):
     try:
         os.link(path, copy)
     except OSError:
+        import shutil
+
         shutil.copy2(path, copy)
     return copy
 

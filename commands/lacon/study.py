@@ -1,11 +1,8 @@
 """A run: its base, its names, its files, and what DEBUT, POURSUITE and FIN do to them."""
 
-import atexit
 import os
 import pathlib
-import shutil
 import sys
-import tempfile
 
 from . import concepts
 from .base import Base
@@ -37,7 +34,7 @@ class Study:
         self.written_units = set()
         self.lost = {}
         self.timings = Timings()
-        self._scratch = None
+        self.orders = 0  #: number of orders so far
         self._emptied = False
 
     # ------------------------------------------------------------------------------------------- life
@@ -91,19 +88,17 @@ class Study:
             if self.base is not None:
                 self.base.close()
                 self.base = None
-            if self._scratch:
-                shutil.rmtree(self._scratch, ignore_errors=True)
 
-    def scratch(self):
-        """Folder of orders and status files, removed at the end; LACON_ORDERS names one that stays."""
+    def order_files(self, command):
+        """Where the next order and its outcome go: in the base while the run lasts, or where LACON_ORDERS says, to stay."""
         if os.environ.get("LACON_ORDERS"):
             folder = pathlib.Path(os.environ["LACON_ORDERS"])
             folder.mkdir(parents=True, exist_ok=True)
-            return folder
-        if self._scratch is None:
-            self._scratch = pathlib.Path(tempfile.mkdtemp(prefix="lacon-"))
-            atexit.register(shutil.rmtree, self._scratch, ignore_errors=True)
-        return self._scratch
+        else:
+            folder = self.base.orders()
+        self.orders += 1
+        stem = f"{self.orders:03d}-{command.lower()}"
+        return folder / f"{stem}.order.json", folder / f"{stem}.status.json"
 
     # ------------------------------------------------------------------------------------------- messages
 

@@ -154,7 +154,8 @@ class Failures(LauncherTest):
 
     def test_an_operator_refuses(self):
         error = {"severity": "F", "id": "MESH_1", "text": "unknown group 'X'", "do": "look"}
-        run = self.check_untouched({"crea_maillage": {"status": 2, "messages": [error], "lazy": True}}, self.NEW, "unknown group 'X'")
+        run = self.check_untouched({"crea_maillage": {"status": 2, "messages": [error], "lazy": True}}, self.NEW, "unknown group 'X'",
+                                   "    where: CREA_MAILLAGE, study.comm:2")
         self.assertEqual(run.err.count("MESH_1"), 1, "said once")
 
     def test_an_operator_is_killed_half_way(self):

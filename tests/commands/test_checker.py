@@ -1,13 +1,18 @@
 """Keywords are checked before anything runs: every class of mistake, and a property over the whole catalogue."""
 
+import os
+import pathlib
 import re
 import sys
+import tempfile
 import unittest
+import unittest.mock
 
 sys.path.insert(0, __file__.rpartition("/")[0] or ".")
 from support import STUDY, LauncherTest  # noqa: E402
 
 from lacon import catalog, checker, concepts  # noqa: E402
+from lacon.messages import AsterError  # noqa: E402
 
 
 class FakeBase:
@@ -90,6 +95,26 @@ class Mistakes(unittest.TestCase):
         self.one("KEYWORD_4", "AFFE_MODELE/AFFE[1]/MODELISATION", "nearest one is D_PLAN", command="AFFE_MODELE", MAILLAGE=concept("mesh"), AFFE=affe)
         self.one("KEYWORD_13", "AFFE_MODELE/AFFE[1]/MODELISATION", command="AFFE_MODELE", MAILLAGE=concept("mesh"),
                  AFFE={**affe, "MODELISATION": "COQUE_3D"})
+
+    def test_modelisations_of_plug_ins(self):
+        affe = {"TOUT": "OUI", "PHENOMENE": "MECANIQUE", "MODELISATION": "MY_MODEL"}
+        with tempfile.TemporaryDirectory() as folder:
+            (pathlib.Path(folder) / "mine").mkdir()
+            rows = pathlib.Path(folder) / "mine" / "plugin.toml"
+            rows.write_text('[[element]]\nmodelisation = "MY_MODEL"\n')
+            for path in (folder, f"{folder}/mine"):
+                with unittest.mock.patch.dict(os.environ, LACON_PLUGIN_PATH=f":{path}"):
+                    catalog.modelisations.cache_clear()
+                    self.assertEqual(problems("AFFE_MODELE", MAILLAGE=concept("mesh"), AFFE=affe), [])
+                    self.assertEqual(problems("AFFE_MODELE", MAILLAGE=concept("mesh"), AFFE={**affe, "MODELISATION": "D_PLAN"}), [])
+            rows.write_text("[[element]\n")
+            with unittest.mock.patch.dict(os.environ, LACON_PLUGIN_PATH=folder):
+                catalog.modelisations.cache_clear()
+                catalog._toml.cache_clear()
+                with self.assertRaisesRegex(AsterError, "PLUGIN_1.*plugin.toml"):
+                    problems("AFFE_MODELE", MAILLAGE=concept("mesh"), AFFE=affe)
+        catalog.modelisations.cache_clear()
+        self.assertEqual(problems("AFFE_MODELE", MAILLAGE=concept("mesh"), AFFE=affe)[0][0], "KEYWORD_4")
 
     def test_out_of_range(self):
         self.one("KEYWORD_15", "DEFI_MATERIAU/ELAS/NU", "less than 0.5", command="DEFI_MATERIAU", ELAS={"E": 1, "NU": 0.5})
@@ -174,8 +199,9 @@ class Completion(unittest.TestCase):
         expected = {"FROTTEMENT": "SANS", "ALGO_RESO_CONT": "NEWTON", "RESI_GEOM": 1e-6, "RESI_CONT": -1.0, "LISSAGE": "NON",
                     "VERI_NORM": "OUI", "CONT_STAT_ELAS": 0}
         self.assertEqual({k: made[k] for k in expected}, expected)
-        self.assertEqual(made["ZONE"], [{**zone, "APPARIEMENT": "MORTAR", "TYPE_APPA": "RAPIDE", "RESI_APPA": 1e-8,
-                                         "TYPE_JACOBIEN": "INITIAL", "INTEGRATION": "AUTO", "CONTACT_INIT": "INTERPENETRE"}])
+        of_zone = {**zone, "APPARIEMENT": "MORTAR", "TYPE_APPA": "RAPIDE", "RESI_APPA": 1e-8, "TYPE_JACOBIEN": "INITIAL",
+                   "INTEGRATION": "AUTO", "CONTACT_INIT": "INTERPENETRE"}
+        self.assertEqual({k: made["ZONE"][0][k] for k in of_zone}, of_zone)
 
     def test_convergence(self):
         base = {"MODELE": concept("model"), "CHAM_MATER": concept("material_field"), "EXCIT": {"CHARGE": concept("load")},
