@@ -1,0 +1,78 @@
+"""The rules of the house hold: floors, short mains, a page in every room, no path of a machine."""
+
+import os
+import pathlib
+import re
+import subprocess
+import unittest
+
+SOURCE = pathlib.Path(os.environ["LACON_SOURCE_DIR"])
+FLOORS = {"catalog": 0, "structures": 1, "elements": 2, "pairing": 3, "assembly": 3, "operators": 4}
+SHARED = {"program", "meshing", "fields", "evolution"}
+
+
+def sources():
+    """Every C++ file below the rooms, with its room."""
+    for room in FLOORS:
+        for path in sorted((SOURCE / room).rglob("*")):
+            if path.suffix in (".cpp", ".hpp", ".h"):
+                yield room, path
+
+
+class House(unittest.TestCase):
+    def test_a_file_includes_only_from_its_own_room_or_lower_floors(self):
+        wrong = []
+        seen = 0
+        for room, path in sources():
+            for included in re.findall(r'#include [<"]lacon/(\w+)/', path.read_text()):
+                seen += 1
+                if included != room and FLOORS[included] >= FLOORS[room]:
+                    wrong.append(f"{path.relative_to(SOURCE)} includes {included}")
+        self.assertGreater(seen, 100)
+        self.assertEqual(wrong, [])
+
+    def test_no_operator_includes_another(self):
+        wrong = []
+        for path in sorted((SOURCE / "operators").rglob("*.[ch]pp")):
+            own = path.relative_to(SOURCE / "operators").parts[0]
+            for included in re.findall(r'#include "lacon/operators/(\w+)/', path.read_text()):
+                if included != own and included not in SHARED:
+                    wrong.append(f"{path.relative_to(SOURCE)} includes {included}")
+        self.assertEqual(wrong, [])
+
+    def test_only_solving_operators_link_mumps(self):
+        programs = sorted((SOURCE / "operators").glob("*/main.cpp"))
+        self.assertGreater(len(programs), 5)
+        linked = []
+        for main in programs:
+            program = pathlib.Path(os.environ["LACON_BIN"]) / main.parent.name
+            needed = subprocess.run(["ldd", program], capture_output=True, text=True, check=True).stdout
+            if "mumps" in needed:
+                linked.append(main.parent.name)
+        self.assertEqual(linked, ["stat_non_line"])
+
+    def test_mains_are_short(self):
+        for main in (SOURCE / "operators").glob("*/main.cpp"):
+            self.assertLess(len(main.read_text().splitlines()), 60, main)
+
+    def test_every_room_has_a_page(self):
+        rooms = [*FLOORS, "commands", "tests", *(f"operators/{name}" for name in SHARED - {"program"})]
+        missing = [room for room in rooms if not (SOURCE / room / "README.md").exists()]
+        self.assertEqual(missing, [])
+
+    def test_nothing_names_a_machine(self):
+        tracked = subprocess.run(["git", "ls-files"], cwd=SOURCE, capture_output=True, text=True, check=False)
+        if tracked.returncode:
+            self.skipTest("not a git checkout")
+        wrong = []
+        for name in tracked.stdout.split("\n"):
+            path = SOURCE / name
+            if path.suffix in (".png", ".med", ".mmed") or not path.is_file() or path == pathlib.Path(__file__):
+                continue
+            for found in re.findall(r"/(?:work|root|home)/\w+|/tmp/brief", path.read_text(errors="replace")):
+                wrong.append(f"{name}: {found}")
+        self.assertEqual(wrong, [])
+
+
+if __name__ == "__main__":
+    unittest.main()
