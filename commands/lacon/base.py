@@ -154,7 +154,7 @@ class Base:
                 attributes = {
                     "lacon_type": kind, "format": 1, "version": 1, "id": identifier, "label": label, "command": command,
                     "keywords": concepts.dumps(keywords),
-                    "references": json.dumps([c.id for c in concepts.concepts_in(keywords)] if kind == "material" else []),
+                    "references": json.dumps([c.id for c in concepts.concepts_in(keywords)] if kind in ("material", "formula") else []),
                 }
                 for name, value in attributes.items():
                     file.attrs[name] = value

@@ -35,15 +35,14 @@ class _Check:
         """The keywords of a command, or of one occurrence of a factor keyword."""
         rows = row.get("keyword", {})
         given = {k: v for k, v in given.items() if v is not None}
-        values, failed = {}, set()
+        values, others = {}, {}
         for name, value in given.items():
-            if name not in rows:
+            if name in rows:
+                values[name] = self.keyword(f"{path}/{name}", rows[name], value)
+            elif "others" in row and name not in row.get("elsewhere", ()):
+                others[name] = value
+            else:
                 self.unknown(path, name, row)
-                continue
-            before = len(self.problems)
-            values[name] = self.keyword(f"{path}/{name}", rows[name], value)
-            if len(self.problems) > before:
-                failed.add(name)
         for name, keyword in rows.items():
             if name not in given and "default" in keyword:
                 values[name] = self.default(f"{path}/{name}", keyword)
@@ -61,7 +60,7 @@ class _Check:
                 self.problem("KEYWORD_2", f"{path}/{name}", help=rows[name]["help"])
         for rule in row.get("rule", ()):
             self.rule(path, rule, given)
-        return {name: values[name] for name in rows if name in values}
+        return {**{name: values[name] for name in rows if name in values}, **others}
 
     def unknown(self, path, name, row):
         if name in row.get("elsewhere", ()):

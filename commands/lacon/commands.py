@@ -34,7 +34,7 @@ class Call:
 
 def _implementations():
     """command -> function(call) of those that Python does itself"""
-    from . import checks, functions, lists, materials
+    from . import checks, formulas, functions, lists, materials
 
     return {
         "DEBUT": lambda call: call.study.start(call.keywords, call.where, resume=False),
@@ -43,6 +43,7 @@ def _implementations():
         "DEFI_FONCTION": functions.defi_fonction,
         "DEFI_LIST_REEL": lists.defi_list_reel,
         "DEFI_LIST_INST": lists.defi_list_inst,
+        "FORMULE": formulas.formule,
         "DEFI_MATERIAU": materials.defi_materiau,
         "TEST_RESU": checks.test_resu,
         "DETRUIRE": _destroy,

@@ -155,6 +155,33 @@ class Function(Concept):
         return self.Absc() + self.Ordo()
 
 
+class Formula(Concept):
+    type = "formula"
+    _expression = None
+
+    def expression(self):
+        """A formulas.Expression."""
+        if self._expression is None:
+            from .formulas import read_formula
+
+            self._expression = read_formula(self)
+        return self._expression
+
+    def __call__(self, *values, **named):
+        """Its value at a point, parameters in their order or by name. @throws AsterError where it has none"""
+        expression = self.expression()
+        point = dict(zip(expression.parameters, values), **named)
+        if len(values) > len(expression.parameters) or set(point) != set(expression.parameters):
+            raise TypeError(f"{self.label or self.id} takes the parameters {', '.join(expression.parameters)}")
+        return expression.value(point, self.label or self.id)
+
+    def getVariables(self):
+        return list(self.expression().parameters)
+
+    def getExpression(self):
+        return self.expression().text
+
+
 class Result(Concept):
     type = "result"
 
@@ -203,7 +230,7 @@ class Result(Concept):
         return self.field(name, index)
 
 
-_types = {c.type: c for c in (Mesh, Model, Material, MaterialField, Load, Contact, ListOfReals, TimeSteps, Function, Result)}
+_types = {c.type: c for c in (Mesh, Model, Material, MaterialField, Load, Contact, ListOfReals, TimeSteps, Function, Formula, Result)}
 
 
 def type_of(identifier):

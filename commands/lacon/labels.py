@@ -18,9 +18,9 @@ sources = {}
 
 
 def user_frame():
-    """The innermost frame that is not of this package."""
+    """The innermost frame of a command file or of what it imports."""
     frame = sys._getframe(1)
-    while frame is not None and frame.f_code.co_filename.startswith(_package):
+    while frame is not None and frame.f_code.co_filename.startswith((_package, "<formula>")):
         frame = frame.f_back
     return frame
 

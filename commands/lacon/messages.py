@@ -81,7 +81,11 @@ class InternalError(AsterError):
 
 
 def fail(identifier, where="", **values):
-    """Raise the message as the exception of its severity."""
+    """Raise the message as the exception of its severity. Without `where` it is the line of the command file that is running."""
+    from . import labels, study
+
+    if not where and study.current is not None:
+        where = labels.location(labels.user_frame())
     item = message(identifier, where, **values)
     kind = InternalError if identifier.startswith("INTERNAL") else SolutionError if item.severity == "S" else AsterError
     raise kind([item])

@@ -300,6 +300,8 @@ class Properties(unittest.TestCase):
 
     def test_an_unknown_keyword_is_refused(self):
         for command, row, given, inner in self.each():
+            if "others" in row:
+                continue
             with self.subTest(command):
                 inner["NO_SUCH"] = 1
                 self.refused(command, given, "NO_SUCH")
