@@ -37,10 +37,10 @@ class Base:
             self._made = True
         self._check_folder(where, make)
         try:
-            self._lock = os.open(self.folder, os.O_RDONLY)
-            fcntl.flock(self._lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
+            self.lock = os.open(self.folder, os.O_RDONLY)
+            fcntl.flock(self.lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
         except BlockingIOError:
-            os.close(self._lock)
+            os.close(self.lock)
             fail("STUDY_5", where, folder=self.folder)
         self.registry = {"format": 1, "next": 1, "labels": {}, "namespace": {}}
         try:
@@ -97,7 +97,7 @@ class Base:
     def close(self):
         """The run is over: remove its orders, let others in."""
         _remove(self.folder / _orders)
-        os.close(self._lock)
+        os.close(self.lock)
 
     # ------------------------------------------------------------------------------------------- concepts
 

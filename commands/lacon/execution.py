@@ -120,8 +120,7 @@ def _user_entries(error):
     """The traceback without the frames of this package."""
     import traceback
 
-    here = os.path.dirname(os.path.abspath(__file__))
-    return [entry for entry in traceback.extract_tb(error.__traceback__) if not entry.filename.startswith((here, "<frozen"))]
+    return [entry for entry in traceback.extract_tb(error.__traceback__) if not entry.filename.startswith((labels.package, "<frozen"))]
 
 
 def _place(error):

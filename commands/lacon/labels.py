@@ -10,7 +10,8 @@ import itertools
 import os
 import sys
 
-_package = os.path.dirname(os.path.abspath(__file__))
+#: folder of this package, spelled as in the file names of its own frames
+package = os.path.dirname(sys._getframe().f_code.co_filename)
 _tables = {}
 
 #: file name -> source of the command files of this run
@@ -20,7 +21,7 @@ sources = {}
 def user_frame():
     """The innermost frame of a command file or of what it imports."""
     frame = sys._getframe(1)
-    while frame is not None and frame.f_code.co_filename.startswith((_package, "<formula>")):
+    while frame is not None and frame.f_code.co_filename.startswith((package, "<formula>")):
         frame = frame.f_back
     return frame
 
@@ -37,7 +38,7 @@ def label(frame):
     """
     while frame is not None:
         code = frame.f_code
-        if not code.co_filename.startswith(_package):
+        if not code.co_filename.startswith(package):
             table = _table(code.co_filename)
             position = _position(frame)
             if position in table:

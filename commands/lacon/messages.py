@@ -38,13 +38,16 @@ def show(item):
 class AsterError(Exception):
     """A command failed by the user's doing. A command file may catch it.
 
-    `messages` says why; `shown` is true where an operator has printed them already.
+    `messages` says why: a list of messages, or a text where a command file raises it itself. `shown` is true where an operator
+    has printed them already.
     """
 
     status = 2
     diagnostic = "<F>_ERROR"
 
-    def __init__(self, messages, shown=False):
+    def __init__(self, messages=(), shown=False):
+        if isinstance(messages, str):
+            messages = [Message("F", "USER", messages, "")]
         self.messages = list(messages)
         self.shown = shown
         super().__init__("\n".join(map(str, self.messages)))

@@ -61,7 +61,8 @@ def run(program, made, study):
     sys.stderr.flush()
     start = time.perf_counter()
     quiet = subprocess.PIPE if study.ignored_alarms else None
-    process = subprocess.Popen([executable, order_file, "--status", status_file], env=environment, stderr=quiet, stdin=subprocess.DEVNULL)
+    process = subprocess.Popen([executable, order_file, "--status", status_file], env=environment, stderr=quiet, stdin=subprocess.DEVNULL,
+                               pass_fds=(study.base.lock,))  # an operator that outlives the launcher still holds the base
     try:
         hdf5.h5py()  # imported while the operator works: checks, functions and FIN need it later
         if quiet:

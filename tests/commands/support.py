@@ -57,17 +57,19 @@ class LauncherTest(unittest.TestCase):
         path.write_text(text, encoding="utf-8")
         return path
 
-    def run_study(self, text, *options, name="study.comm", behaviour=None, environment=None):
+    def run_study(self, text, *options, name="study.comm", **more):
         """Write `text` to a command file and run it with unit 20 attached. @return as launch()"""
         self.write(name, text)
-        return self.launch(name, "--unit", "20=mesh.med", *options, behaviour=behaviour, environment=environment)
+        return self.launch(name, "--unit", "20=mesh.med", *options, **more)
 
-    def launch(self, *arguments, behaviour=None, environment=None):
-        """@return .status, .out, .err, .last (the last line of standard output)"""
+    def launch(self, *arguments, behaviour=None, environment=None, output=True):
+        """@return .status, .out, .err, .last (the last line of standard output); without `output` nothing waits for its end"""
         env = {**os.environ, "PYTHONPATH": str(ROOT / "commands"), "LACON_BIN": str(self.bin), "LACON_ORDERS": str(self.orders),
                "STAND_IN": json.dumps(behaviour or {}), "PYTHONDONTWRITEBYTECODE": "1", "OPENBLAS_NUM_THREADS": "1", **(environment or {})}
-        done = subprocess.run([sys.executable, "-m", "lacon", *map(str, arguments)], cwd=self.work, env=env, capture_output=True,
-                              text=True, timeout=120)
+        done = subprocess.run([sys.executable, "-m", "lacon", *map(str, arguments)], cwd=self.work, env=env, text=True, timeout=120,
+                              stdout=subprocess.PIPE if output else subprocess.DEVNULL, stderr=subprocess.PIPE if output else subprocess.DEVNULL)
+        if not output:
+            return types.SimpleNamespace(status=done.returncode)
         lines = done.stdout.rstrip("\n").split("\n")
         return types.SimpleNamespace(status=done.returncode, out=done.stdout, err=done.stderr, last=lines[-1])
 

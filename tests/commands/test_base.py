@@ -4,6 +4,7 @@ import fcntl
 import os
 import signal
 import sys
+import time
 import unittest
 
 sys.path.insert(0, __file__.rpartition("/")[0] or ".")
@@ -76,6 +77,19 @@ class Life(LauncherTest):
             self.refused(self.run_study("DEBUT()\n"), "STUDY_5")
         finally:
             os.close(handle)
+
+    def test_an_operator_that_outlives_the_launcher_holds_the_base(self):
+        program = self.bin / "lire_maillage"
+        program.write_text(f"#!{sys.executable}\nimport os, signal, sys, time\nos.kill(os.getppid(), signal.SIGKILL)\n"
+                           "open(sys.argv[1] + '.pid', 'w').write(str(os.getpid()))\ntime.sleep(30)\n")
+        self.assertEqual(self.run_study("DEBUT()\nM = LIRE_MAILLAGE()\n", output=False).status, -signal.SIGKILL)
+        try:
+            self.refused(self.run_study("DEBUT()\n"), "STUDY_5")
+        finally:
+            deadline = time.monotonic() + 20
+            while not (found := list(self.orders.glob("*.pid"))) and time.monotonic() < deadline:
+                time.sleep(0.02)
+            os.kill(int(found[0].read_text()), signal.SIGKILL)
 
     def test_commands_before_debut_and_after_fin(self):
         self.refused(self.run_study(f"A = {MATERIAL}\n"), "STUDY_11", "study.comm:1")

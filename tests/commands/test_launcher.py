@@ -101,6 +101,10 @@ FIN()
         self.assertNotIn("KEYWORD_1", run.err)
 
 
+    def test_a_command_file_may_raise_them(self):
+        self.refused(self.run_study("DEBUT()\nraise AsterError('not today')\n"), "<F> <USER> not today")
+
+
 class Units(LauncherTest):
     def test_no_file(self):
         self.refused(self.run_study("DEBUT()\nM = LIRE_MAILLAGE(UNITE=21)\n"), "COMMAND_4", "unit 21", "--unit 21=FILE", "study.comm:2")
@@ -263,6 +267,12 @@ FIN()
         program = self.bin / "lire_maillage"
         program.write_text(program.read_text().replace("def main():", "def main():\n    print('threads', os.environ['LACON_THREADS'])"))
         self.assertIn("threads 2", self.run_study("DEBUT()\nM = LIRE_MAILLAGE()\n", "--threads", "2").out)
+
+    def test_lines_and_labels_however_the_package_was_found(self):
+        run = self.run_study("DEBUT()\nM = LIRE_MAILLAGE()\nLIRE_MAILLAGE(UNIT=1)\n",
+                             environment={"PYTHONPATH": str(ROOT / "commands" / ".." / "tests" / ".." / "commands")})
+        self.refused(run, "study.comm:3")
+        self.assertIn("study.comm:2: M = LIRE_MAILLAGE", run.out)
 
     def test_timings(self):
         run = self.run_study(STUDY + "FIN()\n", "--timings")
