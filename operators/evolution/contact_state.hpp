@@ -1,6 +1,7 @@
 #pragma once
 // The contact of a computation at the current geometry: contact cells, gaps, statuses, and what they add to the system.
 // METHOD.md 3.4 to 3.7 with the conventions of DESIGN.md, section 3.
+#include <algorithm>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -53,6 +54,8 @@ class ContactState {
   double gap(std::size_t patch) const { return gap_[patch]; }            ///< average, positive when open
   double coverage(std::size_t patch) const { return coverage_[patch]; }  ///< covered over whole measure, current geometry
   std::size_t n_patches() const { return gap_.size(); }
+  /// The smallest h of a patch.
+  double smallest_patch() const { return *std::min_element(size_.begin(), size_.end()); }
   /// What pairing rejected, summed over the zones.
   std::span<const std::int64_t> rejected() const { return rejected_; }
 

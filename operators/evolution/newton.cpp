@@ -19,6 +19,10 @@ Ragged<std::int32_t> nodes_of_solids(const StaticProblem& problem) {
   return nodes;
 }
 
+constexpr double vanishing_force = 1e-6;         // of the largest force so far
+constexpr double vanishing_displacement = 1e-8;  // of the smallest patch
+constexpr double round_off = 1e-15;              // a few units in the last place
+
 /// The largest length of a node's vector.
 double largest_vector(std::span<const double> values, int dimension) {
   double largest = 0;
@@ -99,7 +103,7 @@ void Newton::factorise() {
   fail("SOLVER_3", {{"count", std::to_string(factorisation_.null_pivots.size())}, {"names", names.empty() ? "multipliers of contact" : names}});
 }
 
-void Newton::judge(const std::vector<double>& external, const StaticState& state, IterationReport& report) const {
+void Newton::judge(const std::vector<double>& external, const StaticState& state, IterationReport& report) {
   const std::vector<double>& residual = system_.residual();
   double reference = 0;  // external forces and reactions
   report.maxi = 0;
@@ -115,10 +119,16 @@ void Newton::judge(const std::vector<double>& external, const StaticState& state
       }
     }
   }
-  // without any force the residual is measured against what cancels out in it, so that round-off counts as zero
-  report.rela = report.maxi == 0 ? 0 : report.maxi / std::max(reference, 1e-12 * force_scale_);
+  // where all forces vanish (unloaded, opened) they are no measure: what is left is compared with the largest forces before
+  largest_force_ = std::max({largest_force_, reference, force_scale_});
+  report.rela = report.maxi == 0 ? 0 : report.maxi / std::max(reference, vanishing_force * largest_force_);
   if (!std::isfinite(report.maxi)) report.rela = report.maxi;
-  report.rela_met = !criteria_.resi_glob_rela || report.rela <= *criteria_.resi_glob_rela;
+  // a body that moves without strain has no forces at all: nothing falls below the round-off of stiffness times displacement
+  double stiffness = 0;
+  for (const std::int64_t equation : problem_.numbering.equation)
+    if (equation >= 0) stiffness = std::max(stiffness, system_.matrix().diagonal(equation));
+  const double noise = round_off * stiffness * largest_vector(state.displacement, problem_.dimension);
+  report.rela_met = !criteria_.resi_glob_rela || report.rela <= *criteria_.resi_glob_rela || report.maxi <= noise;
   report.maxi_met = !criteria_.resi_glob_maxi || report.maxi <= *criteria_.resi_glob_maxi;
   if (contact_) {
     report.constraint = contact_->constraint_residual(state.patches);
@@ -160,7 +170,8 @@ int Newton::solve(double instant, StaticState& state, const std::function<void(c
     }
     assemble(state);
     const double moved = largest_vector(increment, dimension), whole = largest_vector(state.displacement, dimension);
-    line.geometry = moved == 0 ? 0 : whole > 0 ? moved / whole : 1;
+    // likewise displacements that vanish against the patches
+    line.geometry = moved == 0 ? 0 : moved / std::max(whole, contact_ ? vanishing_displacement * contact_->smallest_patch() : 0.0);
     judge(external, state, line);
     line.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     report(line);

@@ -66,7 +66,7 @@ class Newton {
  private:
   void assemble(const StaticState& state);
   void factorise();
-  void judge(const std::vector<double>& external, const StaticState& state, IterationReport& report) const;
+  void judge(const std::vector<double>& external, const StaticState& state, IterationReport& report);
 
   const StaticProblem& problem_;
   NewtonCriteria criteria_;
@@ -76,7 +76,8 @@ class Newton {
   Factorisation factorisation_;
   std::optional<ContactState> contact_;
   std::vector<std::vector<double>> stresses_;
-  double force_scale_ = 0;  ///< largest sum of |element forces| at a node: round-off of a residual is a fraction of it
+  double force_scale_ = 0;    ///< largest sum of |element forces| at a node
+  double largest_force_ = 0;  ///< largest reference of a residual so far
 };
 
 }  // namespace lacon
