@@ -34,6 +34,8 @@ struct CellRow {
   std::span<const std::int8_t> mirror;         ///< node order of the same cell turned inside out
   std::string_view med_name;                   ///< "HE8"
   std::span<const std::int8_t> med_permutation;  ///< node j here is node med_permutation[j] in MED
+  int vtk_type;                                  ///< number in VTK files
+  std::span<const std::int8_t> vtk_permutation;  ///< node j here is node vtk_permutation[j] in VTK
   CellType linear;
   CellType quadratic;  ///< the first quadratic cell of the family (QUAD8, HEXA20); itself where there is none
 };

@@ -67,8 +67,9 @@ class MedFile {
   std::map<std::vector<std::int32_t>, std::string> profiles_;
 };
 
-/// Write into a MED file: `write` adds to what the file holds, or to an empty file. The file changes wholly or not at all.
-/// Throws BASE_3 (not writable), MED_1, MED_2, MED_13 (what is there is not MED 4.1).
-void write_med(const std::filesystem::path& file, const std::function<void(MedFile&)>& write);
+/// Write a MED file, with what `write` puts into it; with `append`, a file that is there keeps what it holds, otherwise it is
+/// replaced. It changes wholly or not at all.
+/// Throws BASE_3 (not writable), and on appending MED_1, MED_2 (what is there is not MED), MED_13 (not version 4.1).
+void write_med(const std::filesystem::path& file, bool append, const std::function<void(MedFile&)>& write);
 
 }  // namespace lacon

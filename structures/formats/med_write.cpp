@@ -6,6 +6,7 @@
 #include "lacon/catalog/messages.hpp"
 #include "lacon/structures/formats/med.hpp"
 #include "lacon/structures/formats/med_layout.hpp"
+#include "lacon/structures/formats/parts.hpp"
 
 namespace lacon {
 namespace {
@@ -308,27 +309,6 @@ void write_masks(const H5Group& field) {
     }
 }
 
-/// Components that exist on the same rows, with these rows.
-struct Part {
-  std::vector<std::size_t> components;
-  std::vector<std::uint8_t> rows;  ///< 1 where they exist, all rows of the field
-};
-
-std::vector<Part> parts_of(const Field& field) {
-  std::vector<Part> parts;
-  for (std::size_t k = 0; k < field.n_components(); ++k) {
-    std::vector<std::uint8_t> rows(field.n_rows());
-    for (std::size_t r = 0; r < rows.size(); ++r) rows[r] = field.has(r, k) ? 1 : 0;
-    if (std::find(rows.begin(), rows.end(), 1) == rows.end()) continue;
-    const auto same = std::find_if(parts.begin(), parts.end(), [&](const Part& part) { return part.rows == rows; });
-    if (same == parts.end())
-      parts.push_back({{k}, std::move(rows)});
-    else
-      same->components.push_back(k);
-  }
-  return parts;
-}
-
 }  // namespace
 
 /// Values of some nodes, or of some cells of one type, as MED keeps them: component by component.
@@ -457,7 +437,7 @@ std::vector<std::string> MedFile::add_field(const Mesh& mesh, std::string_view m
     for (std::size_t i = 0; i < list.size(); ++i) rank[static_cast<std::size_t>(list[i])] = static_cast<std::int32_t>(i);
   const auto offset = [&](std::size_t i) { return field.offset.empty() ? i : static_cast<std::size_t>(field.offset[i]); };
 
-  for (const Part& part : parts_of(field)) {
+  for (const FieldPart& part : parts_of(field)) {
     // what the rows of this part belong to: entity name -> (number in MED, place in the support)
     std::map<std::pair<std::string, std::size_t>, std::vector<std::pair<std::int32_t, std::size_t>>> members;
     for (std::size_t i = 0; i < field.support.size(); ++i) {
@@ -472,10 +452,7 @@ std::vector<std::string> MedFile::add_field(const Mesh& mesh, std::string_view m
     }
     std::vector<std::string> labels;
     for (const std::size_t k : part.components) labels.push_back(field.components[k]);
-    std::string part_name(name);
-    if (!names.empty())
-      for (const std::string& label : labels) part_name += "_" + label;
-    names.push_back(field_group(part_name, mesh_name, labels));
+    names.push_back(field_group(part_name(field, part, name), mesh_name, labels));
     const H5Group group = root_.open("CHA/" + names.back());
     const std::int64_t ndt = std::max<std::int64_t>(step, -1);
     const std::string in_file = step_name(ndt, ndt);
@@ -523,17 +500,17 @@ std::vector<std::string> MedFile::add_field(const Mesh& mesh, std::string_view m
   return names;
 }
 
-void write_med(const fs::path& file, const std::function<void(MedFile&)>& write) {
+void write_med(const fs::path& file, bool append, const std::function<void(MedFile&)>& write) {
   std::error_code error;
-  const bool there = fs::exists(file, error);
-  if (there) med::check_appendable(file);
+  const bool goes_on = append && fs::exists(file, error);
+  if (goes_on) med::check_appendable(file);
   hdf5::write_whole(
       file,
       [&](const H5Group& root) {
         MedFile med(root);
         write(med);
       },
-      there ? file : fs::path{});
+      goes_on ? file : fs::path{});
 }
 
 }  // namespace lacon

@@ -58,7 +58,7 @@ inline Mesh mesh_of_all_types() {
 }
 
 inline void write_mesh(const std::filesystem::path& file, const Mesh& mesh, const std::string& name) {
-  write_med(file, [&](MedFile& med) { med.add_mesh(mesh, name); });
+  write_med(file, true, [&](MedFile& med) { med.add_mesh(mesh, name); });
 }
 
 /// Change a file in place.

@@ -160,7 +160,7 @@ TEST_F(Med, reads_the_first_of_several_computation_steps) {
 TEST_F(Med, reads_a_named_mesh_or_the_first_and_says_so) {
   static std::vector<std::string> told;
   told.clear();
-  write_med(file, [](MedFile& med) {
+  write_med(file, true, [](MedFile& med) {
     med.add_mesh(small_mesh(), "SECOND");
     med.add_mesh(mesh_of({CellType::QUAD4}), "FIRST");
   });
@@ -211,7 +211,7 @@ TEST_F(Med, refuses_a_file_that_is_cut_off_anywhere) {
 }
 
 TEST_F(Med, refuses_a_file_without_mesh) {
-  write_med(file, [](MedFile&) {});
+  write_med(file, true, [](MedFile&) {});
   EXPECT_EQ(message_of([&] { read_med_mesh(file); }).id, "MED_4");
 }
 
@@ -318,7 +318,7 @@ TEST_F(Med, refuses_group_names_that_med_cannot_hold) {
 TEST_F(Med, holds_a_mesh_once_and_another_of_the_same_name_beside_it) {
   const auto add = [&](const Mesh& mesh) {
     std::string name;
-    write_med(file, [&](MedFile& med) { name = med.add_mesh(mesh, "M"); });
+    write_med(file, true, [&](MedFile& med) { name = med.add_mesh(mesh, "M"); });
     return name;
   };
   EXPECT_EQ(add(small_mesh()), "M");
@@ -336,7 +336,7 @@ TEST_F(Med, holds_a_mesh_once_and_another_of_the_same_name_beside_it) {
 TEST_F(Med, stays_as_it_was_when_writing_fails) {
   write_mesh(file, small_mesh(), "M");
   const auto size = std::filesystem::file_size(file);
-  EXPECT_THROW(write_med(file,
+  EXPECT_THROW(write_med(file, true,
                          [&](MedFile& med) {
                            med.add_mesh(mesh_of({CellType::QUAD4}), "OTHER");
                            throw std::runtime_error("killed");
@@ -375,7 +375,7 @@ class MedFields : public Med {
  protected:
   std::vector<std::string> add(const Field& field, const std::string& name, std::int64_t order = 3, const MedRule& rule = {}) {
     std::vector<std::string> names;
-    write_med(file, [&](MedFile& med) { names = med.add_field(mesh, med.add_mesh(mesh, "M"), field, name, order, rule); });
+    write_med(file, true, [&](MedFile& med) { names = med.add_field(mesh, med.add_mesh(mesh, "M"), field, name, order, rule); });
     return names;
   }
   std::vector<double> values(const std::string& path) { return hdf5::Reader(file).read<double>("CHA/" + path + "/CO"); }

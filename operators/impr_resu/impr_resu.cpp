@@ -1,0 +1,202 @@
+#include "lacon/operators/impr_resu/impr_resu.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <map>
+#include <optional>
+#include <sstream>
+#include <tuple>
+
+#include "lacon/catalog/messages.hpp"
+#include "lacon/elements/reference.hpp"
+#include "lacon/structures/formats/listing.hpp"
+#include "lacon/structures/formats/med.hpp"
+#include "lacon/structures/formats/text_file.hpp"
+#include "lacon/structures/formats/vtu.hpp"
+
+namespace lacon {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Concepts that several occurrences of RESU share are read once.
+class Concepts {
+ public:
+  explicit Concepts(const Base& base) : base_(base) {}
+
+  const Mesh& mesh(const std::string& id) {
+    auto [at, is_new] = meshes_.try_emplace(id);
+    if (is_new) at->second = base_.mesh(id);
+    return at->second;
+  }
+  const Result& result(const std::string& id) {
+    auto [at, is_new] = results_.try_emplace(id);
+    if (is_new) at->second = base_.result(id);
+    return at->second;
+  }
+
+ private:
+  const Base& base_;
+  std::map<std::string, Mesh> meshes_;
+  std::map<std::string, Result> results_;
+};
+
+/// The integration points that a field on cells of this type has, where the reference cells know a rule of so many.
+std::optional<MedPoints> points_of(CellType type, int n_points) {
+  try {
+    const Rule& rule = integration_rule(catalog::cell(type).family, n_points);
+    return MedPoints{rule.points, rule.weights};
+  } catch (const std::logic_error&) {
+    return std::nullopt;
+  }
+}
+
+/// The part of a field at integration points whose points MED can be told; a plug-in may have points of its own.
+bool med_knows_points(const Mesh& mesh, const Field& field) {
+  for (std::size_t i = 0; i < field.support.size(); ++i) {
+    const CellType type = mesh.types[static_cast<std::size_t>(field.support[i])];
+    const auto n = static_cast<int>(field.offset[i + 1] - field.offset[i]);
+    if (n > 0 && !points_of(type, n)) return false;
+  }
+  return true;
+}
+
+/// "U____DEPL at 3 instants", counted over the visits.
+class Written {
+ public:
+  void add(const std::string& name) {
+    if (count_[name]++ == 0) names_.push_back(name);
+  }
+  void lines(const std::string& file, std::vector<std::string>& lines) const {
+    for (const std::string& name : names_) {
+      const int n = count_.at(name);
+      lines.push_back(fmt::format("{}{}: {}", name, n > 1 ? fmt::format(" at {} instants", n) : "", file));
+    }
+  }
+
+ private:
+  std::vector<std::string> names_;
+  std::map<std::string, int> count_;
+};
+
+void print_med(const Order& order, const Base& base, Concepts& concepts, const fs::path& file, bool append, Written& written) {
+  write_med(file, append, [&](MedFile& med) {
+    for (const Keywords& one : order.keywords.factors("RESU")) {
+      if (one.has("MAILLAGE")) {
+        const std::string id = one.concept_id("MAILLAGE");
+        written.add("mesh " + med.add_mesh(concepts.mesh(id), base.label(id)));
+        continue;
+      }
+      const Result& result = concepts.result(one.concept_id("RESULTAT"));
+      const Mesh& mesh = concepts.mesh(result.mesh);
+      const std::string mesh_name = med.add_mesh(mesh, base.label(result.mesh));
+      each_field(base, result, mesh, one, [&](PrintedField&& printed) {
+        const Field& field = printed.field;
+        if (field.location == Location::gauss_points && !med_knows_points(mesh, field)) {
+          inform("IMPR_6", {{"label", result.label}, {"field", field.name}});
+          return;
+        }
+        const auto rule = [](CellType type, int n) { return points_of(type, n).value(); };
+        for (const std::string& name : med.add_field(mesh, mesh_name, field, printed.name_in_med, field.order, rule))
+          written.add("field " + name);
+      });
+    }
+  });
+}
+
+/// Fields of one mesh at one instant come into one file, whatever occurrences name them.
+fs::path print_vtu(const Order& order, const Base& base, Concepts& concepts, const fs::path& file, bool append,
+                   Written& written) {
+  struct Step {
+    std::string label;
+    double instant = 0;
+    std::string mesh;
+    std::vector<NamedField> fields;
+  };
+  std::map<std::tuple<std::size_t, std::int64_t>, Step> steps;  // by first occurrence of the label, order
+  std::vector<std::string> labels;
+  const auto rank = [&](const std::string& id) {
+    const auto at = std::find(labels.begin(), labels.end(), id);
+    if (at == labels.end()) return labels.push_back(id), labels.size() - 1;
+    return static_cast<std::size_t>(at - labels.begin());
+  };
+  for (const Keywords& one : order.keywords.factors("RESU")) {
+    if (one.has("MAILLAGE")) {
+      const std::string id = one.concept_id("MAILLAGE");
+      steps[{rank(id), -1}] = {base.label(id), 0, id, {}};
+      written.add("mesh " + base.label(id));
+      continue;
+    }
+    const std::string id = one.concept_id("RESULTAT");
+    const Result& result = concepts.result(id);
+    each_field(base, result, concepts.mesh(result.mesh), one, [&](PrintedField&& printed) {
+      Step& step = steps[{rank(id), printed.field.order}];
+      step.label = result.label;
+      step.instant = printed.field.instant;
+      step.mesh = result.mesh;
+      const std::string name = printed.field.name;
+      written.add("field " + name + " of " + result.label);
+      const auto same = std::count_if(step.fields.begin(), step.fields.end(), [&](const NamedField& f) {
+        return f.name == name || f.name.starts_with(name + "_part_");
+      });
+      step.fields.push_back({same == 0 ? name : fmt::format("{}_part_{}", name, same + 1), std::move(printed.field)});
+    });
+  }
+  std::vector<VtuStep> texts;
+  for (const auto& [key, step] : steps)
+    texts.push_back({step.label, step.instant, vtu_text(concepts.mesh(step.mesh), step.fields)});
+  return write_vtu(file, append, texts);
+}
+
+void print_listing(const Order& order, const Base& base, Concepts& concepts, const fs::path& file, bool append,
+                   Written& written) {
+  std::ostringstream out;
+  std::error_code error;
+  if (append && fs::exists(file, error)) out << read_text(file);
+  for (const Keywords& one : order.keywords.factors("RESU")) {
+    if (one.has("MAILLAGE")) {
+      const std::string id = one.concept_id("MAILLAGE");
+      out << "\nmesh " << base.label(id) << '\n';
+      list_mesh(out, concepts.mesh(id), one.yes("INFO_MAILLAGE"));
+      written.add("mesh " + base.label(id));
+      continue;
+    }
+    const Result& result = concepts.result(one.concept_id("RESULTAT"));
+    const Mesh& mesh = concepts.mesh(result.mesh);
+    FieldListing what;
+    what.coordinates = one.yes("IMPR_COOR");
+    what.greatest = one.has("VALE_MAX");
+    what.least = one.has("VALE_MIN");
+    what.values = !what.greatest && !what.least;
+    each_field(base, result, mesh, one, [&](PrintedField&& printed) {
+      list_field(out, mesh, printed.field, "result " + result.label + ", field " + printed.field.name, what);
+      written.add("field " + printed.field.name + " of " + result.label);
+    });
+  }
+  TextFiles files;
+  files.write(file, out.str());
+  files.commit();
+}
+
+}  // namespace
+
+std::vector<std::string> impr_resu(const Order& order, const Base& base) {
+  const std::int64_t unit = order.keywords.integer("UNITE");
+  fs::path file = order.unit(unit);
+  const bool append = order.append.contains(static_cast<int>(unit));
+  const std::string format = order.keywords.text("FORMAT");
+  Concepts concepts(base);
+  Written written;
+  if (format == "MED")
+    print_med(order, base, concepts, file, append, written);
+  else if (format == "VTU")
+    file = print_vtu(order, base, concepts, file, append, written);
+  else
+    print_listing(order, base, concepts, file, append, written);
+  std::vector<std::string> lines;
+  written.lines(file.string(), lines);
+  return lines;
+}
+
+}  // namespace lacon

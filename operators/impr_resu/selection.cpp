@@ -1,0 +1,128 @@
+// Which fields, instants, components, nodes and cells an occurrence of RESU means.
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <set>
+
+#include "lacon/catalog/messages.hpp"
+#include "lacon/operators/fields/extrapolation.hpp"
+#include "lacon/operators/fields/selection.hpp"
+#include "lacon/operators/impr_resu/impr_resu.hpp"
+
+namespace lacon {
+namespace {
+
+/// The nodes that GROUP_NO and the cells of GROUP_MA mean: one entry a node; all without these keywords.
+std::vector<char> selected_nodes(const Mesh& mesh, const Keywords& keywords, const std::vector<char>& cells) {
+  if (!keywords.has("GROUP_NO") && !keywords.has("GROUP_MA")) return std::vector<char>(mesh.n_nodes(), 1);
+  std::vector<char> wanted(mesh.n_nodes(), 0);
+  for (const std::string& group : keywords.texts("GROUP_NO"))
+    for (const std::int32_t node : nodes_of_group(mesh, group, keywords.path("GROUP_NO")))
+      wanted[static_cast<std::size_t>(node)] = 1;
+  if (keywords.has("GROUP_MA"))
+    for (std::size_t c = 0; c < mesh.n_cells(); ++c)
+      if (cells[c])
+        for (const std::int32_t node : mesh.cells[c]) wanted[static_cast<std::size_t>(node)] = 1;
+  return wanted;
+}
+
+Field restrict_to_nodes(const Field& field, const std::vector<char>& wanted) {
+  Field part = field;
+  part.support.clear();
+  part.values.clear();
+  part.present.clear();
+  const std::size_t width = field.n_components();
+  for (std::size_t i = 0; i < field.support.size(); ++i) {
+    if (!wanted[static_cast<std::size_t>(field.support[i])]) continue;
+    part.support.push_back(field.support[i]);
+    for (std::size_t k = 0; k < width; ++k) {
+      part.values.push_back(field.at(i, k));
+      if (!field.present.empty()) part.present.push_back(field.present[i * width + k]);
+    }
+  }
+  return part;
+}
+
+/// The components of this list that the field has.
+Field restrict_to_components(const Field& field, const std::vector<std::string>& wanted) {
+  std::vector<std::size_t> kept;
+  for (std::size_t k = 0; k < field.n_components(); ++k)
+    if (std::find(wanted.begin(), wanted.end(), field.components[k]) != wanted.end()) kept.push_back(k);
+  Field part = field;
+  part.components.clear();
+  part.values.clear();
+  part.present.clear();
+  for (const std::size_t k : kept) part.components.push_back(field.components[k]);
+  for (std::size_t row = 0; row < field.n_rows(); ++row)
+    for (const std::size_t k : kept) {
+      part.values.push_back(field.at(row, k));
+      if (!field.present.empty()) part.present.push_back(field.has(row, k) ? 1 : 0);
+    }
+  return part;
+}
+
+}  // namespace
+
+std::string med_field_name(const std::string& label, const std::string& field) {
+  std::string name = label;
+  if (name.size() > 8) name += "_";
+  name.resize(std::max<std::size_t>(name.size(), 8), '_');
+  return name + field;
+}
+
+void each_field(const Base& base, const Result& result, const Mesh& mesh, const Keywords& keywords,
+                const std::function<void(PrintedField&&)>& visit) {
+  std::vector<std::string> known, names = keywords.texts("NOM_CHAM");
+  for (const auto& [name, files] : result.fields) known.push_back(name);
+  const bool named = !names.empty();
+  if (!named) names = known;
+  for (const std::string& name : names)
+    if (!result.fields.contains(name))
+      fail("IMPR_1", {{"keyword", keywords.path("NOM_CHAM")},
+                      {"label", result.label},
+                      {"field", name},
+                      {"known", known.empty() ? "none" : fmt::format("{}", fmt::join(known, ", "))}});
+  const std::vector<std::string> med_names = keywords.texts("NOM_CHAM_MED");
+  if (!med_names.empty() && med_names.size() != names.size())
+    fail("IMPR_4", {{"keyword", keywords.path("NOM_CHAM_MED")},
+                    {"names", std::to_string(med_names.size())},
+                    {"fields", std::to_string(names.size())}});
+
+  const std::vector<std::int64_t> orders = selected_orders(base, result, keywords);
+  const std::vector<char> cells = selected_cells(mesh, keywords);
+  const std::vector<char> nodes = selected_nodes(mesh, keywords, cells);
+  const bool only_nodes = keywords.has("GROUP_NO") && !keywords.has("GROUP_MA");
+  const bool parts = only_nodes || keywords.has("GROUP_MA");
+  const std::vector<std::string> wanted = keywords.texts("NOM_CMP");
+  std::set<std::string> all_components, found_components, nowhere(names.begin(), names.end());
+  for (const std::int64_t order : orders) {
+    for (std::size_t i = 0; i < names.size(); ++i) {
+      const auto& files = result.fields.at(names[i]);
+      if (!files.contains(order) && !(named && names_instants(keywords))) continue;  // base.field() refuses the rest
+      Field field = base.field(result, names[i], order);
+      if (field.location != Location::nodes && only_nodes) {
+        if (named) fail("IMPR_3", {{"keyword", keywords.path("GROUP_NO")}, {"field", names[i]}});
+        continue;
+      }
+      all_components.insert(field.components.begin(), field.components.end());
+      if (!wanted.empty()) field = restrict_to_components(field, wanted);
+      found_components.insert(field.components.begin(), field.components.end());
+      if (field.components.empty()) continue;
+      if (parts) field = field.location == Location::nodes ? restrict_to_nodes(field, nodes) : restrict_to_cells(field, cells);
+      if (field.support.empty()) continue;
+      nowhere.erase(names[i]);
+      visit({med_names.empty() ? med_field_name(result.label, names[i]) : med_names[i], std::move(field)});
+    }
+  }
+  for (const std::string& component : wanted)
+    if (!found_components.contains(component))
+      fail("IMPR_2", {{"keyword", keywords.path("NOM_CMP")},
+                      {"component", component},
+                      {"label", result.label},
+                      {"known", fmt::format("{}", fmt::join(all_components, ", "))}});
+  for (const std::string& name : names)
+    if (named && nowhere.contains(name)) inform("IMPR_5", {{"label", result.label}, {"field", name}});
+}
+
+}  // namespace lacon

@@ -1,0 +1,44 @@
+#include "lacon/structures/formats/text_file.hpp"
+
+#include <cerrno>
+#include <cstring>
+#include <fstream>
+#include <iterator>
+#include <system_error>
+
+#include "lacon/catalog/messages.hpp"
+
+namespace lacon {
+
+namespace fs = std::filesystem;
+
+std::string read_text(const fs::path& file) {
+  std::ifstream stream(file, std::ios::binary);
+  if (!stream) fail("BASE_2", {{"file", file.string()}, {"reason", std::strerror(errno)}});
+  return {std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>()};
+}
+
+TextFiles::~TextFiles() {
+  std::error_code error;
+  for (const auto& [partial, file] : files_) fs::remove(partial, error);
+}
+
+void TextFiles::write(const fs::path& file, std::string_view text) {
+  const fs::path partial = file.string() + ".partial";
+  std::ofstream stream(partial, std::ios::binary | std::ios::trunc);
+  if (stream) files_.emplace_back(partial, file);
+  stream.write(text.data(), static_cast<std::streamsize>(text.size()));
+  stream.flush();
+  if (!stream) fail("BASE_3", {{"file", file.string()}, {"reason", std::strerror(errno)}});
+}
+
+void TextFiles::commit() {
+  for (const auto& [partial, file] : files_) {
+    std::error_code error;
+    fs::rename(partial, file, error);
+    if (error) fail("BASE_3", {{"file", file.string()}, {"reason", error.message()}});
+  }
+  files_.clear();
+}
+
+}  // namespace lacon
