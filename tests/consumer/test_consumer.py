@@ -4,10 +4,19 @@ import os
 import pathlib
 import shutil
 import subprocess
+import sys
 import tempfile
 import unittest
 
+import h5py
+import numpy as np
+
 HERE = pathlib.Path(__file__).resolve().parent
+sys.path.insert(0, str(HERE.parent / "operators"))
+import lacon_test  # noqa: E402
+from lacon_test import concept  # noqa: E402
+
+made = {}  # by setUpModule: the folders that every test uses
 
 
 def run(*command, **options):
@@ -15,27 +24,53 @@ def run(*command, **options):
     return subprocess.run([str(c) for c in command], capture_output=True, text=True, timeout=600, check=False, **options)
 
 
-class Consumer(unittest.TestCase):
-    @classmethod
-    def setUpClass(cls):
-        cls.folder = tempfile.TemporaryDirectory(prefix="lacon_consumer_")
-        cls.addClassCleanup(cls.folder.cleanup)
-        root = pathlib.Path(cls.folder.name)
-        cls.prefix, cls.build = root / "prefix", root / "build"
-        flags = "-fsanitize=address,undefined" if os.environ["LACON_SANITIZE"] == "ON" else ""
-        cmake = os.environ["LACON_CMAKE"]
-        for command in (
-            [cmake, "--install", os.environ["LACON_BINARY_DIR"], "--prefix", cls.prefix],
-            [cmake, "-S", HERE / "plane_stress", "-B", cls.build, f"-DCMAKE_PREFIX_PATH={cls.prefix}", f"-DCMAKE_CXX_FLAGS={flags}",
-             f"-DCMAKE_BUILD_TYPE={os.environ['LACON_BUILD_TYPE']}", f"-DCMAKE_CXX_COMPILER={os.environ['LACON_CXX']}",
-             f"-DCMAKE_INSTALL_PREFIX={cls.prefix}"],
-            [cmake, "--build", cls.build],
-        ):
-            done = run(*command)
-            if done.returncode:
-                raise AssertionError(f"{command} failed:\n{done.stdout[-4000:]}\n{done.stderr[-4000:]}")
-        cls.plugin = cls.build / "lib/lacon/plugins/plane_stress"
-        shutil.copy(cls.build / "pull", cls.prefix / "bin/pull")  # beside the operators: it finds the built-in plug-ins as they do
+def setUpModule():
+    """Install the package into a folder of its own and build the plug-in against it."""
+    folder = tempfile.TemporaryDirectory(prefix="lacon_consumer_")
+    unittest.addModuleCleanup(folder.cleanup)
+    root = pathlib.Path(folder.name)
+    prefix, build = root / "prefix", root / "build"
+    flags = "-fsanitize=address,undefined" if os.environ["LACON_SANITIZE"] == "ON" else ""
+    cmake = os.environ["LACON_CMAKE"]
+    for command in (
+        [cmake, "--install", os.environ["LACON_BINARY_DIR"], "--prefix", prefix],
+        [cmake, "-S", HERE / "plane_stress", "-B", build, f"-DCMAKE_PREFIX_PATH={prefix}", f"-DCMAKE_CXX_FLAGS={flags}",
+         f"-DCMAKE_BUILD_TYPE={os.environ['LACON_BUILD_TYPE']}", f"-DCMAKE_CXX_COMPILER={os.environ['LACON_CXX']}",
+         f"-DCMAKE_INSTALL_PREFIX={prefix}"],
+        [cmake, "--build", build],
+    ):
+        done = run(*command)
+        if done.returncode:
+            raise AssertionError(f"{command} failed:\n{done.stdout[-4000:]}\n{done.stderr[-4000:]}")
+    shutil.copy(build / "pull", prefix / "bin/pull")  # beside the operators: it finds the built-in plug-ins as they do
+    made.update(root=root, prefix=prefix, build=build, plugin=build / "lib/lacon/plugins/plane_stress")
+
+
+def copy_of_plugin(name="plane_stress"):
+    """A copy of the plug-in, to break."""
+    folder = pathlib.Path(tempfile.mkdtemp(dir=made["root"])) / name
+    shutil.copytree(made["plugin"], folder)
+    return folder
+
+
+def plugin_of_another_abi():
+    """A copy of the plug-in whose library was built for another ABI."""
+    folder = copy_of_plugin()
+    text = (HERE / "plane_stress/plane_stress.cpp").read_text(encoding="utf-8")
+    assert "LACON_ABI," in text
+    source = folder / "other.cpp"
+    source.write_text(text.replace("LACON_ABI,", "LACON_ABI + 1,"), encoding="utf-8")
+    done = run(os.environ["LACON_CXX"], "-std=c++20", "-shared", "-fPIC", f"-I{made['prefix']}/include", source,
+               "-o", folder / "libplane_stress.so")
+    assert done.returncode == 0, done.stderr
+    return folder
+
+
+class Program(unittest.TestCase):
+    """A program of one's own that links the package."""
+
+    def setUp(self):
+        self.prefix, self.build, self.plugin = made["prefix"], made["build"], made["plugin"]
 
     def pull(self, *folders, path="", program=None):
         environment = dict(os.environ, LACON_PLUGIN_PATH=str(path))
@@ -46,12 +81,6 @@ class Consumer(unittest.TestCase):
         # E / (1 - nu^2) eps = 400 / 100; nu times that; none across; no shear
         for value, exact in zip(map(float, done.stdout.split()), (4, 2, 0, 0), strict=True):
             self.assertAlmostEqual(value, exact, delta=1e-12)
-
-    def copy(self, name="plane_stress"):
-        """A copy of the plug-in, to break."""
-        folder = pathlib.Path(tempfile.mkdtemp(dir=self.folder.name)) / name
-        shutil.copytree(self.plugin, folder)
-        return folder
 
     def test_the_package_installs_the_built_in_plugins_and_the_interface(self):
         for name in ("solid", "load", "contact"):
@@ -84,32 +113,86 @@ class Consumer(unittest.TestCase):
             self.assertIn(str(part), done.stderr)
 
     def test_a_library_of_another_abi_is_refused_with_its_file(self):
-        folder = self.copy()
-        source = folder / "other.cpp"
-        text = (HERE / "plane_stress/plane_stress.cpp").read_text()
-        self.assertIn("LACON_ABI,", text)
-        source.write_text(text.replace("LACON_ABI,", "LACON_ABI + 1,"))
-        library = folder / "libplane_stress.so"
-        done = run(os.environ["LACON_CXX"], "-std=c++20", "-shared", "-fPIC", f"-I{self.prefix}/include", source, "-o", library)
-        self.assertEqual(done.returncode, 0, done.stderr)
-        self.assert_refused(folder, "PLUGIN_1", library, "ABI")
+        folder = plugin_of_another_abi()
+        self.assert_refused(folder, "PLUGIN_1", folder / "libplane_stress.so", "ABI")
 
     def test_a_missing_kernel_is_refused_with_the_library(self):
-        folder = self.copy()
+        folder = copy_of_plugin()
         rows = folder / "plugin.toml"
         rows.write_text(rows.read_text().replace("plane_stress/elastic", "plane_stress/plastic"))
         self.assert_refused(folder, "PLUGIN_3", folder / "libplane_stress.so", "'plastic'")
 
     def test_a_row_that_names_nothing_is_refused_with_its_file(self):
-        folder = self.copy()
+        folder = copy_of_plugin()
         rows = folder / "plugin.toml"
         rows.write_text(rows.read_text().replace("QUAD4 = 4", "QUAD5 = 4"))
         self.assert_refused(folder, "PLUGIN_2", rows, "'QUAD5'")
 
     def test_a_file_that_is_no_library_is_refused_with_its_name(self):
-        folder = self.copy()
+        folder = copy_of_plugin()
         (folder / "libplane_stress.so").write_text("no library")
         self.assert_refused(folder, "PLUGIN_1", folder / "libplane_stress.so")
+
+
+class Operators(lacon_test.OperatorTest):
+    """The installed operators with the plug-in: a bar of a QUAD4 and two TRIA3, pulled along x under plane stress."""
+
+    E, NU, PULL = 100.0, 0.3, 10.0
+
+    def setUp(self):
+        super().setUp()
+        self.addCleanup(setattr, lacon_test, "BIN", lacon_test.BIN)
+        lacon_test.BIN = made["prefix"] / "bin"
+        self.coordinates = np.array([[0, 0], [1, 0], [1, 1], [0, 1], [2, 0], [2, 1]], float)
+        self.write_mesh("mesh_1", self.coordinates, [("QUAD4", [0, 1, 2, 3]), ("TRIA3", [1, 4, 5]), ("TRIA3", [1, 5, 2]), ("SEG2", [4, 5])],
+                        cell_groups={"RIGHT": [3]}, node_groups={"LEFT": [0, 3], "ORIGIN": [0]})
+        self.write_material("mater_2", ELAS={"E": self.E, "NU": self.NU})
+        self.write_material_field("field_3", "mesh_1", ["mater_2"], [0, 0, 0, 0])
+        with self.create("list_4", "list_of_reals") as file:
+            file["values"] = np.array([0.0, 1.0])
+
+    def prepare(self, modelisation):
+        """Model and loads by the operators; @return the keywords of STAT_NON_LINE"""
+        for command, keywords, result in (
+            ("AFFE_MODELE", {"MAILLAGE": concept("mesh_1"),
+                             "AFFE": [{"TOUT": "OUI", "PHENOMENE": "MECANIQUE", "MODELISATION": modelisation}]}, "model_5"),
+            ("AFFE_CHAR_CINE", {"MODELE": concept("model_5"),
+                                "MECA_IMPO": [{"GROUP_NO": ["LEFT"], "DX": 0.0}, {"GROUP_NO": ["ORIGIN"], "DY": 0.0}]}, "load_6"),
+            ("AFFE_CHAR_MECA", {"MODELE": concept("model_5"), "PRES_REP": [{"GROUP_MA": ["RIGHT"], "PRES": -self.PULL}]}, "load_7"),
+        ):
+            done = self.run_command(command, keywords, result=result, environment=self.path_of(made["plugin"]))
+            self.assertEqual(done.status, 0, done.stderr)
+        return {"MODELE": concept("model_5"), "CHAM_MATER": concept("field_3"), "INCREMENT": [{"LIST_INST": concept("list_4")}],
+                "EXCIT": [{"CHARGE": concept("load_6")}, {"CHARGE": concept("load_7")}]}
+
+    @staticmethod
+    def path_of(folder):
+        return {"LACON_PLUGIN_PATH": str(folder)}
+
+    def test_a_bar_under_plane_stress_stretches_and_narrows_as_the_theory_says(self):
+        done = self.run_command("STAT_NON_LINE", self.prepare("PLANE_STRESS"), result="result_8", environment=self.path_of(made["plugin"]))
+        self.assertEqual(done.status, 0, done.stderr)
+        with h5py.File(self.path("model_5")) as file:
+            self.assertEqual({lacon_test.text(n) for n in file["elements"][()]},
+                             {"PLANE_STRESS/QUAD4", "PLANE_STRESS/TRIA3", "PLANE_STRESS/SEG2"})
+        stress = self.read_field("result_8", "SIEF_ELGA", 1)
+        columns = [stress.components.index(c) for c in ("SIXX", "SIYY", "SIZZ", "SIXY")]
+        np.testing.assert_allclose(stress.values[:, columns], np.tile([self.PULL, 0, 0, 0], (4 + 1 + 1, 1)), atol=1e-12 * self.PULL)
+        # plane strain would give (1 - nu^2) and nu (1 + nu) in place of 1 and nu
+        depl = self.read_field("result_8", "DEPL", 1)
+        exact = self.PULL / self.E * self.coordinates[depl.support] * [1, -self.NU]
+        columns = [depl.components.index(c) for c in ("DX", "DY")]
+        np.testing.assert_allclose(depl.values[:, columns], exact, atol=1e-12)
+
+    def test_without_the_plugin_the_model_is_refused(self):
+        self.assert_refuses("MODELE_1", "AFFE_MODELE", {"MAILLAGE": concept("mesh_1"), "AFFE": [
+            {"TOUT": "OUI", "PHENOMENE": "MECANIQUE", "MODELISATION": "PLANE_STRESS"}]}, "PLANE_STRESS", result="model_5",
+            environment=self.path_of(""))
+
+    def test_a_library_of_another_abi_stops_the_operator_and_leaves_the_base_as_it_was(self):
+        keywords, folder = self.prepare("PLANE_STRESS"), plugin_of_another_abi()
+        self.assert_refuses("PLUGIN_1", "STAT_NON_LINE", keywords, str(folder / "libplane_stress.so"), "ABI", result="result_8",
+                            environment=self.path_of(folder))
 
 
 if __name__ == "__main__":
