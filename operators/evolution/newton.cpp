@@ -137,6 +137,22 @@ void Newton::judge(const std::vector<double>& external, const StaticState& state
   }
 }
 
+std::string Newton::unmet_criteria(const IterationReport& line, std::int64_t first_changed) const {
+  std::string text;
+  const auto add = [&](bool met, const std::string& what) {
+    if (!met) text += (text.empty() ? "" : ", ") + what;
+  };
+  const std::string where = line.worst_dof < 0 ? "" : " at " + problem_.dof_name(line.worst_dof);
+  add(line.rela_met, fmt::format("RESI_GLOB_RELA {:.1e}{}", line.rela, where));
+  add(line.maxi_met, fmt::format("RESI_GLOB_MAXI {:.1e}{}", line.maxi, where));
+  add(line.geometry_met, fmt::format("RESI_GEOM {:.1e}", line.geometry));
+  add(line.constraint_met, fmt::format("max. gap / size {:.1e}", line.constraint));
+  if (line.status_changes)
+    add(false, fmt::format("{} patch(es) changing status, the first at slave cell {}", line.status_changes,
+                           cell_name(problem_.mesh.patches->cells[static_cast<std::size_t>(first_changed)].front())));
+  return text;
+}
+
 int Newton::solve(double instant, StaticState& state, const std::function<void(const IterationReport&)>& report) {
   const int dimension = problem_.dimension;
   const std::vector<double> external = problem_.external_force(instant), values = problem_.imposed_values(instant);
@@ -144,7 +160,9 @@ int Newton::solve(double instant, StaticState& state, const std::function<void(c
   for (std::size_t dof = 0; dof < step.size(); ++dof)
     if (problem_.imposed[dof]) step[dof] = values[dof] - state.displacement[dof];
 
+  std::string unmet;
   for (int iteration = 0; iteration <= criteria_.iterations; ++iteration) {
+    std::int64_t changed = 0;  // the first patch whose status has changed
     const auto start = std::chrono::steady_clock::now();
     IterationReport line{.iteration = iteration};
     if (contact_) line.constraints = contact_->n_constraints(state.patches);
@@ -166,7 +184,9 @@ int Newton::solve(double instant, StaticState& state, const std::function<void(c
         state.patches.lambda[p] += solution[problem_.numbering.of_patch(static_cast<std::int64_t>(p))];
       const Phase phase("pairing");
       contact_->update_geometry(state.displacement);
+      const std::vector<Status> before = state.patches.status;
       line.status_changes = contact_->update_statuses(state.patches);
+      changed = std::mismatch(before.begin(), before.end(), state.patches.status.begin()).first - before.begin();
     }
     assemble(state);
     const double moved = largest_vector(increment, dimension), whole = largest_vector(state.displacement, dimension);
@@ -176,9 +196,10 @@ int Newton::solve(double instant, StaticState& state, const std::function<void(c
     line.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     report(line);
     if (line.converged()) return iteration;
+    unmet = unmet_criteria(line, changed);
     if (!std::isfinite(line.maxi)) break;
   }
-  fail("EVOLUTION_4", {{"instant", fmt::format("{:.9g}", instant)}, {"iterations", std::to_string(criteria_.iterations)}});
+  fail("EVOLUTION_4", {{"instant", fmt::format("{:.9g}", instant)}, {"iterations", std::to_string(criteria_.iterations)}, {"unmet", unmet}});
 }
 
 void Newton::restart(const StaticState& state) {

@@ -66,6 +66,8 @@ class Newton {
  private:
   void assemble(const StaticState& state);
   void factorise();
+  /// What keeps the last iteration from being the solution, in words.
+  std::string unmet_criteria(const IterationReport& line, std::int64_t first_changed) const;
   void judge(const std::vector<double>& external, const StaticState& state, IterationReport& report);
 
   const StaticProblem& problem_;

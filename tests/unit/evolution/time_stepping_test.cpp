@@ -19,7 +19,7 @@ struct Solver {
   void run(const TimeSteps& steps) {
     at = steps.values.front();
     step_through(
-        steps, [&](double to) { if (to - at > longest * (1 + 1e-12)) fail("EVOLUTION_4", {{"instant", ""}, {"iterations", ""}}); },
+        steps, [&](double to) { if (to - at > longest * (1 + 1e-12)) fail("EVOLUTION_4", {{"instant", ""}, {"iterations", ""}, {"unmet", ""}}); },
         [&] { ++returns; },
         [&](double to, bool was_asked) {
           at = to;
