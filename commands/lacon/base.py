@@ -83,7 +83,7 @@ class Base:
         """Replace the registry."""
         partial = self.folder / (_registry + ".partial")
         try:
-            partial.write_text(json.dumps(self.registry, ensure_ascii=False), encoding="utf-8")
+            partial.write_text(json.dumps(self.registry), encoding="ascii")
             os.replace(partial, self.folder / _registry)
         except OSError as error:
             fail("STUDY_3", where, folder=self.folder, reason=error.strerror)

@@ -21,7 +21,7 @@ def _candidates():
     launcher = pathlib.Path(os.path.realpath(sys.argv[0])).parent.parent
     yield launcher / "share" / "lacon" / "catalog.json"
     yield launcher / "generated" / "catalog.json"
-    yield _package.parent / "catalog.json"
+    yield _package.parent.parent / "catalog.json"
     yield _package.parent.parent / "catalog"
 
 

@@ -90,7 +90,8 @@ class Command:
         if problems:
             raise AsterError(problems)
         label = reused.label if reused else labels.label(frame)
-        run.progress(f"{where}: {label + ' = ' if label else ''}{self.name}")
+        if self.name != "TEST_RESU":  # its checks print a line each
+            run.progress(f"{where}: {label + ' = ' if label else ''}{self.name}")
         if "operator" in row:
             result, outcome = self._order(run, row, keywords, where, label, reused)
             run.timings.add(self.name, where, time.perf_counter() - started, outcome.seconds, outcome.phases)

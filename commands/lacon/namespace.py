@@ -7,6 +7,8 @@ that cannot be kept is remembered with the reason, and said where it is first us
 import ast
 import base64
 import importlib
+import io
+import math
 import re
 import sys
 import types
@@ -54,7 +56,7 @@ def concepts_of(name, value, seen=()):
     """(label, concept) of every concept that `value`, called `name`, holds in lists, tuples and dicts."""
     if isinstance(value, Concept):
         yield name, value
-    elif isinstance(value, (list, tuple, dict)) and id(value) not in seen:
+    elif isinstance(value, (list, tuple, dict)) and id(value) not in seen and len(seen) < 50:
         items = value.items() if isinstance(value, dict) else enumerate(value)
         if not isinstance(value, dict) and set(map(type, value)) <= _scalars:
             return
@@ -80,7 +82,9 @@ def encode(value, seen=()):
         raise NotKept("it contains itself")
     seen = (*seen, id(value))
     if type(value) in (list, tuple, set, frozenset):
-        return {type(value).__name__: [encode(item, seen) for item in value]}
+        kinds = set(map(type, value))  # lists of a million numbers go as they are
+        plain = kinds <= {int, bool, str, type(None)} or (kinds == {float} and all(map(math.isfinite, value)))
+        return {type(value).__name__: list(value) if plain else [encode(item, seen) for item in value]}
     if isinstance(value, dict):
         from .commands import _F
 
@@ -97,11 +101,12 @@ def encode(value, seen=()):
             return {"module": value.__name__}
         raise NotKept("it is a module that cannot be imported by name")
     numpy = sys.modules.get("numpy")
-    if numpy is not None and isinstance(value, (numpy.ndarray, numpy.generic)):
+    if numpy is not None and (type(value) is numpy.ndarray or isinstance(value, numpy.generic)):
         if value.dtype.hasobject:
             raise NotKept("it is an array of Python objects")
-        raw = base64.b64encode(numpy.ascontiguousarray(value).tobytes()).decode()
-        return {"array": [value.dtype.str, list(value.shape), raw], "scalar": isinstance(value, numpy.generic)}
+        stream = io.BytesIO()
+        numpy.save(stream, value, allow_pickle=False)
+        return {"npy": base64.b64encode(stream.getvalue()).decode(), "scalar": isinstance(value, numpy.generic)}
     return _encode_import(value)
 
 
@@ -143,11 +148,10 @@ def decode(data, base):
         return base64.b64decode(content)
     if kind == "range":
         return range(*content)
-    if kind == "array":
+    if kind == "npy":
         import numpy
 
-        dtype, shape, raw = content
-        array = numpy.frombuffer(base64.b64decode(raw), dtype=dtype).reshape(shape).copy()
+        array = numpy.load(io.BytesIO(base64.b64decode(content)), allow_pickle=False)
         return array[()] if data["scalar"] else array
     try:
         if kind == "module":
@@ -194,8 +198,8 @@ class Names:
                 if found and not isinstance(value, Concept):
                     try:
                         containers[name] = encode(value)
-                    except NotKept:
-                        pass
+                    except (NotKept, RecursionError):
+                        pass  # said when the names are saved
         gone = self._known | set(user)
         self._known = set(user) | self._known
         if pending and pending[0]:
@@ -233,7 +237,7 @@ class Names:
                 continue
             try:
                 space["values"][name] = encode(value)
-            except NotKept as reason:
+            except (NotKept, RecursionError) as reason:
                 space["values"].pop(name, None)
                 space["lost"][name] = str(reason)
 

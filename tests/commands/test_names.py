@@ -107,6 +107,10 @@ D = {{'x': (1, 2.5, 'text', None, True), 3: [1j, b'b', {{4}}]}}
 X = np.arange(6.0).reshape(2, 3)
 x32 = np.float32(1.5)
 inf = float('inf')
+table = np.array([(1, 2.5)], dtype=[('n', 'i4'), ('x', 'f8')])
+big = [0.5] * 100000
+mixed = [1.5, float('nan'), 'a']
+strange = 'caf\\udce9'
 F = DEFI_FONCTION(NOM_PARA='INST', VALE=(0, 0, 1, 10))
 """
         second = """
@@ -116,6 +120,7 @@ assert type(D['x']) is tuple
 assert X.shape == (2, 3) and X[1, 2] == 5 and X.dtype == float
 assert x32 == 1.5 and x32.dtype == np.float32
 assert inf > 1e308
+assert table['x'][0] == 2.5 and big == [0.5] * 100000 and mixed[1] != mixed[1] and strange == 'caf\\udce9'
 assert linspace(0, 1, 3)[1] == 0.5
 assert F(0.25) == 2.5
 B = AFFE_MATERIAU(MAILLAGE=LIRE_MAILLAGE(), AFFE=_F(TOUT='OUI', MATER=L[1]))
