@@ -138,6 +138,13 @@ class Base:
             _remove(path)
         self._objects.pop(identifier, None)
 
+    def give_back(self, identifier):
+        """Drop a concept that was not finished; its number, which nobody has seen, is the next one's again."""
+        self.drop(identifier)
+        number = int(identifier.rpartition("_")[2])
+        if number == self.registry["next"] - 1:
+            self.registry["next"] = number
+
     def drop_partial(self):
         """Remove what killed operators left."""
         for path in list(self.folder.rglob("*.partial")):

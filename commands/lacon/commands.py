@@ -141,7 +141,7 @@ class Command:
             if copy:
                 orders.put_back(run.base, identifier, copy)
             elif result:
-                run.base.drop(identifier)
+                run.base.give_back(identifier)
             run.base.drop_partial()
             raise
         if copy:

@@ -105,9 +105,7 @@ def _run_file(path, source, values):
 
 def _report(error):
     """Why a command failed and where the study stopped."""
-    if error.shown:  # by the operator, which does not know the command file
-        print(f"    where: {error.messages[0].where}", file=sys.stderr, flush=True)
-    else:
+    if not error.shown:  # by the operator, which knows the line from its order
         for item in error.messages:
             show(item)
     entries = _user_entries(error)

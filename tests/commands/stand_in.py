@@ -125,7 +125,8 @@ def main():
         sys.stdout.flush()
         os.kill(os.getpid(), behaviour["kill"])
     for m in behaviour.get("messages", []):
-        print(f"<{m['severity']}> <{m['id']}> {m['text']}\n    do:    {m.get('do', '')}", file=sys.stderr)
+        where = f"{order['command']}, {order['source']}"
+        print(f"<{m['severity']}> <{m['id']}> {m['text']}\n    where: {where}\n    do:    {m.get('do', '')}", file=sys.stderr)
     status = behaviour.get("status", 0)
     pathlib.Path(sys.argv[sys.argv.index("--status") + 1]).write_text(json.dumps(
         {"status": status, "messages": behaviour.get("messages", []), "seconds": {"work": 0.001}}))

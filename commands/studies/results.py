@@ -1,0 +1,48 @@
+"""A result of a base, read with h5py alone (docs/structures.md)."""
+
+import json
+import pathlib
+
+import h5py
+import numpy as np
+
+
+class Result:
+    """The result of this label. .points (n, 2), .cells: list of (type, nodes), .groups: name -> cells, .orders, .instants"""
+
+    def __init__(self, base, label):
+        self.base = pathlib.Path(base)
+        identifier = json.loads((self.base / "base.json").read_text(encoding="utf-8"))["labels"][label]
+        self.index = h5py.File(self.base / identifier / "index.h5", "r")
+        self.orders = self.index["order"][()].tolist()
+        self.instants = dict(zip(self.orders, self.index["instant"][()].tolist()))
+        with h5py.File(self.base / f"{self.index.attrs['mesh']}.h5", "r") as mesh:
+            names = list(mesh["cells"].attrs["types"])
+            self.points = mesh["coordinates"][:, :2]
+            self.cells = list(zip((names[t] for t in mesh["cells/type"][()]), _ragged(mesh["cells"], "nodes")))
+            self.groups = dict(zip(mesh["groups/cells/name"].asstr()[()], _ragged(mesh["groups/cells"], "values")))
+            self.patches = _ragged(mesh["patches/cells"], "values") if "patches" in mesh else []
+
+    def field(self, name, order):
+        """@return (support, component -> values); rows of nodes or cells"""
+        entry = self.index[f"fields/{name}"]
+        path = entry["file"].asstr()[entry["order"][()].tolist().index(order)]
+        with h5py.File(self.base / path, "r") as file:
+            return file["support"][()], dict(zip(file.attrs["components"], file["values"][()].T))
+
+    def at_nodes(self, name, order, component):
+        """One value a node, 0 where the field is not."""
+        support, values = self.field(name, order)
+        full = np.zeros(len(self.points))
+        full[support] = values[component]
+        return full
+
+    def on_cells(self, name, order, component):
+        """cell -> value"""
+        support, values = self.field(name, order)
+        return dict(zip(support.tolist(), values[component].tolist()))
+
+
+def _ragged(group, values):
+    offset, items = group["offset"][()], group[values][()]
+    return [items[a:b] for a, b in zip(offset[:-1], offset[1:])]

@@ -1,0 +1,132 @@
+"""The table of bad inputs: each is refused with its message, its exit status and its diagnosis, and the base stays as it was."""
+
+import unittest
+
+import h5py
+import numpy as np
+from study_test import StudyTest, content
+
+from meshes import Mesh, block, union, write_med
+
+#: what every row goes on from: two blocks, cut, with materials, loads and contact
+GOOD = """
+DEBUT()
+MESH = LIRE_MAILLAGE(UNITE=20)
+CUT = CREA_MAILLAGE(MAILLAGE=MESH, DECOUPE_LAC=_F(GROUP_MA_ESCL="SLAVE"))
+INWARD = LIRE_MAILLAGE(UNITE=21)
+INCUT = CREA_MAILLAGE(MAILLAGE=INWARD, DECOUPE_LAC=_F(GROUP_MA_ESCL="SLAVE"))
+ALL = _F(TOUT="OUI", PHENOMENE="MECANIQUE", MODELISATION="D_PLAN")
+UNCUTMOD = AFFE_MODELE(MAILLAGE=MESH, AFFE=ALL)
+MODEL = AFFE_MODELE(MAILLAGE=CUT, AFFE=ALL)
+INMOD = AFFE_MODELE(MAILLAGE=INCUT, AFFE=ALL)
+STEEL = DEFI_MATERIAU(ELAS=_F(E=2000.0, NU=0.3))
+MATTER = AFFE_MATERIAU(MAILLAGE=CUT, AFFE=_F(TOUT="OUI", MATER=STEEL))
+PUSH = AFFE_CHAR_MECA(MODELE=MODEL, PRES_REP=_F(GROUP_MA="LOAD", PRES=25.0))
+NEWTON = dict(FORMULATION="CONTINUE", ALGO_RESO_GEOM="NEWTON", ALGO_RESO_CONT="NEWTON")
+ZONE = dict(GROUP_MA_ESCL="SLAVE", GROUP_MA_MAIT="MASTER", ALGO_CONT="LAC", CONTACT_INIT="OUI")
+CONTACT = DEFI_CONTACT(MODELE=MODEL, ZONE=_F(**ZONE), **NEWTON)
+TIMES = DEFI_LIST_REEL(VALE=(0.0, 1.0))
+FIN()
+"""
+
+USER, SOLUTION = (2, "<F>_ERROR"), (3, "<S>_ERROR")
+
+#: name -> (command, message identifier, words of the message, (exit status, diagnosis))
+TABLE = {
+    "missing file": ("LIRE_MAILLAGE(UNITE=30)", "COMMAND_5", ["30", "nowhere.med"], USER),
+    "unit without file": ("LIRE_MAILLAGE(UNITE=77)", "COMMAND_4", ["77"], USER),
+    "not HDF5": ("LIRE_MAILLAGE(UNITE=31)", "MED_2", ["text.med"], USER),
+    "MED without mesh": ("LIRE_MAILLAGE(UNITE=32)", "MED_4", ["empty.med"], USER),
+    "cell of mixed Jacobian": ("LIRE_MAILLAGE(UNITE=33)", "LIRE_2", ["M1", "QUAD4"], USER),
+    "unknown group": ("CREA_MAILLAGE(MAILLAGE=MESH, DECOUPE_LAC=_F(GROUP_MA_ESCL='SLAV'))", "MESH_1",
+                      ["GROUP_MA_ESCL", "SLAV", "SLAVE"], USER),
+    "empty group": ("CREA_MAILLAGE(MAILLAGE=MESH, DECOUPE_LAC=_F(GROUP_MA_ESCL='EMPTY'))", "MESH_2", ["GROUP_MA_ESCL", "EMPTY"], USER),
+    "slave without body": ("CREA_MAILLAGE(MAILLAGE=MESH, DECOUPE_LAC=_F(GROUP_MA_ESCL='LOOSE'))", "MESH1_2", ["LOOSE", "SEG2"], USER),
+    "inward skin": ("DEFI_CONTACT(MODELE=INMOD, ZONE=_F(**ZONE), **NEWTON)", "MODELISA4_24", ["GROUP_MA_MAIT", "MASTER"], USER),
+    "DECOUPE_LAC forgotten": ("DEFI_CONTACT(MODELE=UNCUTMOD, ZONE=_F(**ZONE), **NEWTON)", "CONTACT4_2", ["MESH"], USER),
+    "slave and master swapped": ("DEFI_CONTACT(MODELE=MODEL, ZONE=_F(GROUP_MA_ESCL='MASTER', GROUP_MA_MAIT='SLAVE', ALGO_CONT='LAC'), "
+                                 "**NEWTON)", "CONTACT4_5", ["MASTER"], USER),
+    "friction": ("DEFI_CONTACT(MODELE=MODEL, FROTTEMENT='COULOMB', ZONE=_F(**ZONE), **NEWTON)", "CONTACT4_4", ["COULOMB"], USER),
+    "ALGO_RESO_GEOM missing": ("DEFI_CONTACT(MODELE=MODEL, FORMULATION='CONTINUE', ZONE=_F(**ZONE))", "CONTACT4_1",
+                               ["ALGO_RESO_GEOM", "POINT_FIXE"], USER),
+    "unknown keyword": ("AFFE_MODELE(MAILLAGE=CUT, AFFE=_F(TOUT='OUI', PHENOMENE='MECANIQUE', MODELISATON='D_PLAN'))", "KEYWORD_1",
+                        ["AFFE_MODELE/AFFE[1]/MODELISATON", "nearest one is MODELISATION"], USER),
+    "load on a missing group": ("AFFE_CHAR_MECA(MODELE=MODEL, PRES_REP=_F(GROUP_MA='LOADS', PRES=1.0))", "MESH_1",
+                                ["PRES_REP", "LOADS", "LOAD"], USER),
+    "no boundary condition": ("STAT_NON_LINE(MODELE=MODEL, CHAM_MATER=MATTER, EXCIT=_F(CHARGE=PUSH), CONTACT=CONTACT, "
+                              "INCREMENT=_F(LIST_INST=TIMES))", "SOLVER_3", ["singular"], SOLUTION),
+    "result in an unwritable folder": ("IMPR_RESU(FORMAT='MED', UNITE=80, RESU=_F(MAILLAGE=CUT))", "COMMAND_8", ["80", "out.med"], USER),
+}
+
+
+def two_blocks():
+    lines = lambda n, first: np.linspace(first, first + 1, n + 1)  # noqa: E731
+    upper = block("QUAD4", lines(3, 0), lines(2, 0), name="UPPER", sides={"bottom": "SLAVE", "top": "LOAD", "left": "AXIS"})
+    lower = block("QUAD4", lines(2, 0), lines(2, -1), name="LOWER", sides={"top": "MASTER", "bottom": "BASE", "left": "AXIS"})
+    loose = Mesh([(3.0, 0.0), (4.0, 0.0)], {"SEG2": [(0, 1)]}, {"LOOSE": [("SEG2", 0)], "EMPTY": []})
+    return union([upper, lower, loose])
+
+
+class BadInputs(StudyTest):
+    def setUp(self):
+        super().setUp()
+        self.base = self.folder / "study.base"
+        self.units = {number: self.folder / name for number, name in
+                      {20: "good.med", 21: "inward.med", 30: "nowhere.med", 31: "text.med", 32: "empty.med", 33: "arrow.med",
+                       80: "text.med/out.med"}.items()}
+        mesh = two_blocks()
+        write_med(self.units[20], mesh)
+        for kind, c in mesh.cell_groups["MASTER"]:
+            mesh.cells[kind][c] = mesh.cells[kind][c][::-1]
+        write_med(self.units[21], mesh)
+        self.units[31].write_text("this is no mesh\n")
+        with h5py.File(self.units[32], "w") as file:
+            info = file.create_group("INFOS_GENERALES")
+            for name, value in (("MAJ", 4), ("MIN", 1), ("REL", 0)):
+                info.attrs[name] = np.int32(value)
+        write_med(self.units[33], Mesh([(0, 0), (1, 0), (0.1, 0.1), (0, 1)], {"QUAD4": [(0, 1, 2, 3)]}, {"BODY": [("QUAD4", 0)]}))
+
+    def run_text(self, text, base=None):
+        comm = self.folder / "study.comm"
+        comm.write_text(text)
+        units = [word for number, path in self.units.items() for word in ("--unit", f"{number}={path}")]
+        return self.run_lacon(comm, "--base", base or self.base, *units)
+
+    def assert_refused(self, run, identifier, words, outcome):
+        status, diagnosis = outcome
+        self.assertEqual(run.status, status, run.stderr)
+        self.assertEqual(run.diagnostic, f"--- DIAGNOSTIC JOB : {diagnosis}")
+        mark = f"<{diagnosis[1]}> <{identifier}>"
+        self.assertIn(mark, run.stderr)
+        message = run.stderr[run.stderr.index(mark):]
+        for word in [*words, "where:", "study.comm:2", "do:"]:
+            self.assertIn(word, message)
+        self.assertEqual(run.stderr.count("where:"), run.stderr.count("<F> <") + run.stderr.count("<S> <"), "one place a message")
+        self.assertNotIn("Traceback", run.stderr)
+
+    def test_every_row_of_the_table(self):
+        run = self.run_text(GOOD)
+        self.assertEqual(run.status, 0, run.stderr)
+        before = content(self.base)
+        for name, (command, identifier, words, outcome) in TABLE.items():
+            with self.subTest(name):
+                result = "" if command.startswith("IMPR_RESU") else "BAD = "
+                self.assert_refused(self.run_text(f"POURSUITE()\n{result}{command}\nFIN()\n"), identifier, words, outcome)
+                self.assertEqual(content(self.base), before)
+
+    def test_a_base_in_an_unwritable_folder(self):
+        run = self.run_text(GOOD, base=self.units[31] / "study.base")  # below a file that is no folder: fails for root too
+        self.assertEqual(run.status, 2)
+        self.assertIn("<F> <STUDY_", run.stderr)
+        self.assertIn("text.med", run.stderr)
+        self.assertEqual(run.diagnostic, "--- DIAGNOSTIC JOB : <F>_ERROR")
+        self.assertEqual(self.units[31].read_text(), "this is no mesh\n")
+
+    def test_a_base_that_is_not_there_is_not_made_by_a_refused_poursuite(self):
+        run = self.run_text("POURSUITE()\nFIN()\n")
+        self.assertEqual(run.status, 2)
+        self.assertFalse(self.base.exists())
+
+
+if __name__ == "__main__":
+    unittest.main()

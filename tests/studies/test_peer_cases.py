@@ -1,0 +1,39 @@
+"""The peer's cases zzzz383a and ssnp170a: every check OK, none DIFF."""
+
+import pathlib
+import unittest
+
+from study_test import PEER_MESHES, StudyTest
+
+HERE = pathlib.Path(__file__).resolve().parent
+
+
+@unittest.skipUnless(PEER_MESHES.is_dir(), f"the peer's meshes are not in {PEER_MESHES} (set LACON_SHARED_CASES)")
+class PeerCases(StudyTest):
+    def run_case(self, name, count):
+        mesh, out = PEER_MESHES / f"{name}.mmed", self.folder / "out.med"
+        run = self.run_study(HERE / f"{name}.comm", "--checks", "all", "--unit", f"20={mesh}", "--unit", f"80={out}")
+        self.assert_all_ok(run, count)
+        self.assertEqual(sum(line.startswith("OK ") for line in run.stdout.splitlines()), count)
+        return run
+
+    def test_zzzz383a_cuts_a_square_on_two_edges(self):
+        self.run_case("zzzz383a", 4)
+        self.assertTrue((self.folder / "out.med").exists())
+
+    def test_ssnp170a_patch_test_of_triangles(self):
+        run = self.run_case("ssnp170a", 14)
+        self.assertIn("NEWTON", run.stdout)
+
+    def test_an_export_file_runs_the_same_case(self):
+        export = self.folder / "zzzz383a.export"
+        export.write_text("P time_limit 70\nP memory_limit 524\nP ncpus 1\n"
+                          f"F comm {HERE / 'zzzz383a.comm'} D 1\nF mmed {PEER_MESHES / 'zzzz383a.mmed'} D 20\n"
+                          f"F rmed {self.folder / 'out.med'} R 80\n")
+        run = self.run_lacon(export, "--base", self.folder / "study.base", "--checks", "all")
+        self.assert_all_ok(run, 4)
+        self.assertTrue((self.folder / "out.med").exists())
+
+
+if __name__ == "__main__":
+    unittest.main()
