@@ -1,5 +1,5 @@
 # Stands in for an operator: reads its order, writes a small concept. The environment's STAND_IN says how it misbehaves:
-# {"crea_maillage": {"status": 2, "messages": [...], "kill": 9, "half": true, "lazy": true}}
+# {"crea_maillage": {"status": 2, "messages": [...], "kill": 9, "half": true, "lazy": true, "print": "NAME"}}
 import json
 import os
 import pathlib
@@ -117,6 +117,8 @@ def write(path):
 
 def main():
     print(f"{program} at work")
+    if "print" in behaviour:
+        print(behaviour["print"], os.environ[behaviour["print"]])
     if result and not behaviour.get("lazy"):
         write(base / result["id"] / "index.h5" if result["id"].startswith("result") else base / f"{result['id']}.h5")
     if "unit" in behaviour:

@@ -3,6 +3,7 @@
 A stand-in reads its order and writes a small concept with h5py, so that these tests are about the language and nothing else.
 """
 
+import functools
 import json
 import os
 import pathlib
@@ -15,6 +16,9 @@ import unittest
 
 ROOT = pathlib.Path(os.environ.get("LACON_SOURCE_DIR", pathlib.Path(__file__).resolve().parents[2]))
 sys.path.insert(0, str(ROOT / "commands"))
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent))
+
+import stand_in_server  # noqa: E402
 
 OPERATORS = ("lire_maillage", "modi_maillage", "crea_maillage", "defi_group", "affe_modele", "affe_materiau", "affe_char_cine",
              "affe_char_meca", "defi_contact", "stat_non_line", "calc_champ", "impr_resu")
@@ -34,6 +38,12 @@ R = STAT_NON_LINE(MODELE=MO, CHAM_MATER=CM, EXCIT=_F(CHARGE=BC, FONC_MULT=RAMP),
 """
 
 
+@functools.cache
+def stand_in():
+    """Text of the executable that stands in for every operator."""
+    return stand_in_server.start()
+
+
 class LauncherTest(unittest.TestCase):
     """A test with an empty folder, where `run` writes a command file and runs it."""
 
@@ -42,10 +52,9 @@ class LauncherTest(unittest.TestCase):
         self.addCleanup(shutil.rmtree, self.folder, ignore_errors=True)
         self.bin = self.folder / "bin"
         self.bin.mkdir()
-        fake = pathlib.Path(__file__).with_name("stand_in.py")
         for name in OPERATORS:
             program = self.bin / name
-            program.write_text(f"#!{sys.executable}\n" + fake.read_text(encoding="utf-8"), encoding="utf-8")
+            program.write_text(stand_in(), encoding="utf-8")
             program.chmod(0o755)
         self.orders = self.folder / "orders"
         self.work = self.folder / "work"

@@ -264,9 +264,8 @@ FIN()
                          "DECOUPE_LAC": [{"GROUP_MA_ESCL": ["SKIN"], "DECOUPE_HEXA": "PYRA"}]}})
 
     def test_threads(self):
-        program = self.bin / "lire_maillage"
-        program.write_text(program.read_text().replace("def main():", "def main():\n    print('threads', os.environ['LACON_THREADS'])"))
-        self.assertIn("threads 2", self.run_study("DEBUT()\nM = LIRE_MAILLAGE()\n", "--threads", "2").out)
+        run = self.run_study("DEBUT()\nM = LIRE_MAILLAGE()\n", "--threads", "2", behaviour={"lire_maillage": {"print": "LACON_THREADS"}})
+        self.assertIn("LACON_THREADS 2", run.out)
 
     def test_lines_and_labels_however_the_package_was_found(self):
         run = self.run_study("DEBUT()\nM = LIRE_MAILLAGE()\nLIRE_MAILLAGE(UNIT=1)\n",
