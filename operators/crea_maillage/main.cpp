@@ -10,7 +10,7 @@ int main(int argc, char** argv) {
                          return base.mesh(order.keywords.concept_id("MAILLAGE"));
                        }();
                        const Mesh made = [&] {
-                         const Phase phase("cut");
+                         const Phase phase("change");
                          return crea_maillage(mesh, order.keywords);
                        }();
                        const Phase phase("write");
