@@ -54,7 +54,7 @@ class _Check:
                 mandatory |= set(when.get("mandatory", ()))
                 for name in when.get("forbidden", ()):
                     if name in given:
-                        self.problem("KEYWORD_10", f"{path}/{name}", condition=_condition(when))
+                        self.problem("KEYWORD_10", f"{path}/{name}", condition=condition(when))
         for name in rows:
             if name in mandatory and name not in given:
                 self.problem("KEYWORD_2", f"{path}/{name}", help=rows[name]["help"])
@@ -66,7 +66,7 @@ class _Check:
         if name in row.get("elsewhere", ()):
             self.problem("KEYWORD_11", f"{path}/{name}")
             return
-        self.problem("KEYWORD_1", f"{path}/{name}", nearest=_nearest(name, row.get("keyword", {})))
+        self.problem("KEYWORD_1", f"{path}/{name}", nearest=nearest(name, row.get("keyword", {})))
 
     def holds(self, when, values, given):
         return (all(values.get(k) in allowed for k, allowed in when.get("if", {}).items())
@@ -149,7 +149,7 @@ class _Check:
             if converted in row.get("elsewhere", ()):
                 self.problem("KEYWORD_13", path, value=_show(converted), allowed=_list(allowed))
             else:
-                self.problem("KEYWORD_4", path, value=_show(converted), allowed=_list(allowed), nearest=_nearest(converted, allowed))
+                self.problem("KEYWORD_4", path, value=_show(converted), allowed=_list(allowed), nearest=nearest(converted, allowed))
         self.bounds(path, row, converted)
         return converted
 
@@ -209,7 +209,7 @@ def _list(values):
     return ", ".join(map(str, values))
 
 
-def _nearest(name, known):
+def nearest(name, known):
     """"; the nearest is X", or nothing."""
     import difflib
 
@@ -220,7 +220,7 @@ def _nearest(name, known):
     return f"; the nearest one is {upper[close[0]]}" if close else ""
 
 
-def _condition(when):
+def condition(when):
     parts = [f"{k}={' or '.join(map(repr, v))}" for k, v in when.get("if", {}).items()]
     parts += list(when.get("present", ()))
     parts += [f"no {k}" for k in when.get("absent", ())]

@@ -189,10 +189,10 @@ def _members(call, test, path, mesh, keyword, kind):
         call.fail("TEST_RESU_8", f"{path}/{keyword}", name=name, what="node" if kind == "nodes" else "cell", letter=letter, count=count)
     members = mesh.group(kind, name)
     if members is None:
-        from .checker import _nearest
+        from .checker import nearest
 
         known = mesh.group_names(kind)
-        call.fail("TEST_RESU_9", f"{path}/{keyword}", name=name, what=kind, known=", ".join(known) or "none", nearest=_nearest(name, known))
+        call.fail("TEST_RESU_9", f"{path}/{keyword}", name=name, what=kind, known=", ".join(known) or "none", nearest=nearest(name, known))
     return members
 
 

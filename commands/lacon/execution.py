@@ -136,12 +136,12 @@ def _print_traceback(error):
 
 
 def _unknown_name(error, values):
-    from .checker import _nearest
+    from .checker import nearest
 
     name = error.name or ""
     commands = [k for k, v in values.items() if callable(v) and k.isupper() and len(k) > 3]
-    nearest = _nearest(name, commands) if name.isupper() else ""
-    return message("STUDY_20", _place(error), name=name, nearest=nearest)
+    close = nearest(name, commands) if name.isupper() else ""
+    return message("STUDY_20", _place(error), name=name, nearest=close)
 
 
 @contextlib.contextmanager

@@ -63,9 +63,9 @@ def formule(call):
         if name in values:
             continue
         if name not in study:
-            from .checker import _nearest
+            from .checker import nearest
 
-            call.fail("FORMULE_4", "VALE", name=name, nearest=_nearest(name, [*parameters, *call.study.names.user()]))
+            call.fail("FORMULE_4", "VALE", name=name, nearest=nearest(name, [*parameters, *call.study.names.user()]))
         expression.values[name] = study[name]
     saved, lost = {}, {}
     for name, value in expression.values.items():

@@ -1,4 +1,4 @@
-"""The launcher: `lacon study.comm --unit 20=mesh.med`, `lacon study.export`."""
+"""The launcher: `lacon study.comm --unit 20=mesh.med`, `lacon study.export`, `lacon help DEFI_CONTACT`."""
 
 import pathlib
 import sys
@@ -14,7 +14,7 @@ def parse(arguments):
 
     parser = argparse.ArgumentParser(
         prog="lacon", description="Runs code_aster command files with the operators of Lacon.",
-        epilog="Exit status: 0 done, 2 user's error, 3 the solution failed, 4 internal error, 5 a check is NOOK.")
+        epilog="lacon help: all commands; lacon help COMMAND: its keywords. Exit status: 0 done, 2 user's error, 3 the solution failed, 4 internal error, 5 a check is NOOK.")
     parser.add_argument("files", nargs="+", metavar="FILE", help="command files, in order, or one export file")
     parser.add_argument("--unit", action="append", default=[], metavar="N=FILE", help="the file of unit N; may be repeated")
     parser.add_argument("--base", metavar="FOLDER", help="folder of the base; otherwise STUDY.base beside the first command file")
@@ -43,7 +43,12 @@ def units_of(parser, options):
 
 def main(arguments=None):
     """@return the exit status"""
-    parser, options = parse(sys.argv[1:] if arguments is None else arguments)
+    arguments = sys.argv[1:] if arguments is None else arguments
+    if arguments[:1] == ["help"]:
+        from . import help as catalogue_help
+
+        return catalogue_help.run(arguments[1:])
+    parser, options = parse(arguments)
     units = units_of(parser, options)
     sys.stdout.reconfigure(line_buffering=sys.stdout.isatty())
     from . import messages

@@ -285,6 +285,33 @@ FIN()
         for word in ("--unit", "--base", "--fresh", "--checks", "--json", "--timings", "--threads", "Exit status"):
             self.assertIn(word, help_text)
 
+    def test_help_about_commands(self):
+        run = self.launch("help")
+        self.assertEqual(run.status, 0)
+        self.assertRegex(run.out, r"(?m)^DEFI_CONTACT +Contact by local average")
+        run = self.launch("help", "defi_contact", "MODI_MAILLAGE")
+        self.assertEqual(run.status, 0)
+        for line in ("DEFI_CONTACT -> contact", "  MODELE  model; mandatory", "  ZONE  _F(...); up to 100; mandatory",
+                     "      TYPE_APPA  text; one of RAPIDE, ROBUSTE; default RAPIDE", "      RESI_APPA  real; above 0; default 1e-08",
+                     "  with ALGO_RESO_GEOM='NEWTON': RESI_GEOM is 1e-06 by default",
+                     "  reuse= is needed: the concept given as MAILLAGE is changed in place"):
+            self.assertIn(line + "\n", run.out)
+        run = self.launch("help", "DEFI_CONTAC")
+        self.assertEqual(run.status, 2)
+        self.assertIn("the nearest one is DEFI_CONTACT", run.out)
+        run = self.launch("help", "MECA_STATIQUE")
+        self.assertEqual(run.status, 2)
+        self.assertIn("not available", run.out)
+
+    def test_help_about_every_command(self):
+        from lacon import catalog
+
+        run = self.launch("help", *catalog.command_names())
+        self.assertEqual(run.status, 0)
+        for command in catalog.command_names():
+            for keyword in catalog.command(command).get("keyword", {}):
+                self.assertIn(f"  {keyword}  ", run.out)
+
     def test_the_catalogue_is_said_to_be_missing(self):
         self.write("study.comm", "DEBUT()\n")
         run = self.launch("study.comm", environment={"LACON_CATALOG": "/nowhere"})
