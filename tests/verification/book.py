@@ -1,0 +1,145 @@
+"""Runs the verification studies and writes docs/verification.md: book.py [FOLDER of a build; build/release without].
+
+Every figure comes from the run that it makes.
+"""
+
+import contextlib
+import io
+import math
+import os
+import pathlib
+import subprocess
+import sys
+
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+BUILD = pathlib.Path(sys.argv[1]).resolve() if len(sys.argv) > 1 else ROOT / "build/release"
+os.environ.setdefault("LACON_SOURCE_DIR", str(ROOT))
+os.environ.setdefault("LACON_BIN", str(BUILD / "bin"))
+os.environ.setdefault("LACON_SHARED_CASES", str(ROOT.parent / "shared/cases"))
+sys.path[:0] = [str(ROOT / "tests/studies"), str(ROOT / "commands/studies/roller_bearing")]
+
+from study_test import PEER_MESHES, StudyTest  # noqa: E402, I001 (it says where meshes.py is)
+import patch  # noqa: E402
+from test_patch import COMM, two_materials  # noqa: E402
+
+PRESSURE = 25.0
+LOWER = (1000.0, 0.4)
+
+
+def table(head, rows):
+    lines = [head, ["---"] * len(head), *rows]
+    return "\n".join("| " + " | ".join(map(str, line)) + " |" for line in lines)
+
+
+def patch_section(runner):
+    run = patch.run_patches(runner, COMM, patch.PAIRS, pressure=PRESSURE)
+    runner.assert_all_ok(run, patch.CHECKS_A_PAIR * len(patch.PAIRS))
+    found = dict(zip(patch.PAIRS, patch.by_pair(run, len(patch.PAIRS))))
+
+    def pressure_error(pair):
+        return max(patch.worst(found[pair][c], -PRESSURE) for c in ("LAGS_C", "PRES")) / PRESSURE
+
+    rows = [[slave] + [f"{pressure_error((slave, master)):.1e}" for master in patch.KINDS] for slave in patch.KINDS]
+    worst = {c: max(patch.worst(f[c], value) for f in found.values()) for c, value in (("SIYY", -PRESSURE), ("JEU", 0), ("COEFSURF", 1))}
+    return f"""## Patch test
+
+Two blocks, 50 wide and 50 high, in plane strain; 7 columns of cells on 5, none of whose lines meet; E = 2000, nu = 0.3; pressure 25 on
+top, free sideways, TYPE_JACOBIEN='INITIAL', RESI_GLOB_RELA 1e-12. Theory: LAGS_C = PRES = SIYY = -25, JEU = 0, COEFSURF = 1.
+
+Largest error of LAGS_C and PRES over the skin, relative to the pressure; slave body (rows) on master body (columns):
+
+{table(["", *patch.KINDS], rows)}
+
+Over all 25 pairs: SIYY within {worst["SIYY"] / PRESSURE:.1e} of the pressure (1e-10 is asked for), the gap within
+{worst["JEU"] / patch.HEIGHT:.1e} of the height (1e-10), COEFSURF within {worst["COEFSURF"]:.1e} (1e-12).
+"""
+
+
+def current_section(runner):
+    pairs = [(kind, kind) for kind in patch.KINDS]
+    run = patch.run_patches(runner, COMM, pairs, pressure=PRESSURE, jacobian="ACTUALISE")
+    runner.assert_all_ok(run, patch.CHECKS_A_PAIR * len(pairs))
+    stretch = 1 + patch.strain(PRESSURE, patch.YOUNG, patch.POISSON)[0]
+    expected = -PRESSURE / stretch
+    rows = [[slave, f"{found['LAGS_C'][0]:.12f}", f"{patch.worst(found['LAGS_C'], expected) / PRESSURE:.1e}"]
+            for (slave, _), found in zip(pairs, patch.by_pair(run, len(pairs)))]
+    return f"""## On the current length
+
+The same with TYPE_JACOBIEN='ACTUALISE': the pressure belongs to the stretched skin, -p A0 / A with A / A0 = 1 + nu (1 + nu) p / E =
+{stretch:.6f} (plane strain, free sideways), so {expected:.12f}.
+
+{table(["cells", "LAGS_C", "error / p"], rows)}
+"""
+
+
+def materials_section(runner):
+    pairs = [(kind, kind) for kind in patch.KINDS]
+    rows = []
+    for (slave, _), figures in zip(pairs, two_materials(runner, COMM, pairs, LOWER)):
+        order = math.log(figures[0].error / figures[-1].error) / math.log(figures[0].strain / figures[-1].strain)
+        rows.append([slave, *(f"{f.error:.2e} ({f.error / f.strain:.2f})" for f in figures), f"{order:.3f}"])
+    head = [f"p = {p:g}" for p in (25, 5, 1)]
+    return f"""## Two materials
+
+The lower block has E = {LOWER[0]:g}, nu = {LOWER[1]:g}: it stretches sideways more than the upper one, so that the two skins end at different
+places. The pressure is uniform no more: its error is of the order of the difference of strains.
+
+Largest error of PRES relative to p, and in brackets its ratio to the difference of strains:
+
+{table(["cells", *head, "order"], rows)}
+"""
+
+
+def peer_section(runner):
+    if not PEER_MESHES.is_dir():
+        return "## The peer's cases\n\nNot run: their meshes were not there.\n"
+    rows = []
+    for name in ("zzzz383a", "ssnp170a"):
+        run = runner.run_study(ROOT / f"tests/studies/{name}.comm", "--checks", "all", "--unit", f"20={PEER_MESHES / name}.mmed",
+                               "--unit", f"80={runner.folder / 'out.med'}")
+        count = {status: sum(c["status"] == status for c in run.checks) for status in ("OK", "NOOK", "DIFF")}
+        worst = max(c["vale_calc"]["error"] for c in run.checks)
+        rows.append([name, len(run.checks), *count.values(), f"{worst:.1e}"])
+    return f"""## The peer's cases
+
+Every check at the peer's own tolerances, `--checks all`.
+
+{table(["case", "checks", "OK", "NOOK", "DIFF", "largest error against VALE_CALC"], rows)}
+"""
+
+
+def roller_section(runner):
+    from report import Result, summary
+
+    study = ROOT / "commands/studies/roller_bearing"
+    subprocess.run([sys.executable, "-B", study / "mesh.py", runner.folder / "mesh.med"], check=True, capture_output=True)
+    run = runner.run_study(study / "roller_bearing.comm", *(w for n, f in ((20, "mesh.med"), (80, "out.med"), (81, "out.vtu"))
+                                                           for w in ("--unit", f"{n}={runner.folder / f}")))
+    if run.status != 0:
+        raise SystemExit(run.stderr)
+    text = io.StringIO()
+    with contextlib.redirect_stdout(text):
+        summary(Result(runner.folder / "roller_bearing.base", "RESU"))
+    return f"""## Line contacts of Hertz
+
+The study of `./commands/demo`: a polymer roller between two steel rings (QUAD8 on TRIA6, QUAD4 on QUAD8). Hertz' half-width and largest
+pressure for the force that was found; the half-width is known to a patch.
+
+```{text.getvalue().rstrip()}
+```
+"""
+
+
+def main():
+    runner = StudyTest()
+    runner.setUp()
+    try:
+        sections = [make(runner) for make in (patch_section, current_section, materials_section, peer_section, roller_section)]
+    finally:
+        runner.doCleanups()
+    text = "# Verification\n\nWritten by `python3 tests/verification/book.py`, which runs the studies; the same studies are tests.\n\n" + "\n".join(sections)
+    (ROOT / "docs/verification.md").write_text(text, encoding="utf-8")
+
+
+if __name__ == "__main__":
+    main()
