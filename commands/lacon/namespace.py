@@ -8,6 +8,7 @@ import ast
 import base64
 import importlib
 import io
+import itertools
 import math
 import re
 import sys
@@ -58,11 +59,17 @@ def concepts_of(name, value, seen=()):
         yield name, value
     elif isinstance(value, (list, tuple, dict)) and id(value) not in seen and len(seen) < 50:
         items = value.items() if isinstance(value, dict) else enumerate(value)
-        if not isinstance(value, dict) and set(map(type, value)) <= _scalars:
+        if not isinstance(value, dict) and _plain(value):
             return
         for key, item in items:
             if type(item) not in _scalars:
                 yield from concepts_of(f"{name}[{key!r}]", item, (*seen, id(value)))
+
+
+def _plain(items):
+    """True where a list holds numbers and texts only, or lists of such: quickly, for there may be a million."""
+    kinds = set(map(type, items))
+    return kinds <= _scalars or (kinds <= {list, tuple} and set(map(type, itertools.chain.from_iterable(items))) <= _scalars)
 
 
 # ---------------------------------------------------------------------------------------------------- encoding
@@ -207,7 +214,9 @@ class Names:
         registry = base.registry
         old = {k: v for k, v in registry["labels"].items() if root(k) not in gone and k != self._pending}
         self._pending = pending[0] if pending else None
-        values = {k: v for k, v in registry["namespace"].get("values", {}).items() if k not in gone}
+        # plain data stays as it was last saved: that is what is left of it when the run is killed
+        values = {k: v for k, v in registry["namespace"].get("values", {}).items()
+                  if k not in gone or (k in user and not isinstance(user[k], Concept))}
         new = {**old, **labels}
         values.update(containers)
         space = {"values": values, "lost": registry["namespace"].get("lost", {})}

@@ -154,6 +154,18 @@ B = AFFE_MATERIAU(MAILLAGE=LIRE_MAILLAGE(), AFFE=_F(TOUT='OUI', MATER=L[1]))
         more = self.write("more.comm", "POURSUITE()\nassert A and M[0]\nA.open(); M[0].open()\nFIN()\n")
         self.ok(self.launch(more.name, "--base", "study.base"))
 
+    def test_a_killed_run_keeps_the_data_of_the_run_before(self):
+        self.ok(self.run_study("DEBUT()\nx = 5\ny = [1, 2]\nz = 1\nw = 1\nFIN()\n"))
+        text = f"POURSUITE()\ny.append(3)\nz = {MATERIAL}\ndel w\nA = {MATERIAL}\nimport os\nos.kill(os.getpid(), 9)\n"
+        self.assertEqual(self.launch(self.write("second.comm", text).name, "--base", "study.base").status, -9)
+        more = self.write("third.comm", "POURSUITE()\nassert x == 5 and y == [1, 2]\nA.open(); z.open()\nassert 'w' not in globals()\nFIN()\n")
+        self.ok(self.launch(more.name, "--base", "study.base"))
+
+    def test_long_lists_cost_little(self):
+        text = "DEBUT()\npoints = [[0.0, 1.0, 2.0] for i in range(200000)]\nimport time\nstart = time.process_time()\n"
+        text += f"A = [{MATERIAL} for i in range(10)]\nassert time.process_time() - start < 3, time.process_time() - start\npoints = None\nFIN()\n"
+        self.ok(self.run_study(text))
+
     def test_without_a_base(self):
         self.refused(self.run_study("POURSUITE()\n"), "STUDY_2", "study.base", "study.comm:1")
         self.assertFalse((self.work / "study.base").exists())
