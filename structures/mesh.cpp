@@ -1,6 +1,7 @@
 #include "lacon/structures/mesh.hpp"
 
 #include <algorithm>
+#include <charconv>
 #include <numeric>
 
 #include "lacon/catalog/messages.hpp"
@@ -62,6 +63,15 @@ const Group* Mesh::find_node_group(std::string_view group_name) const { return f
 
 std::string node_name(std::int64_t node) { return "N" + std::to_string(node + 1); }
 std::string cell_name(std::int64_t cell) { return "M" + std::to_string(cell + 1); }
+
+std::optional<std::int32_t> number_of_name(std::string_view name, char letter, std::size_t count) {
+  std::int64_t number = 0;
+  const char* end = name.data() + name.size();
+  const bool read = name.size() > 1 && name[0] == letter && name[1] != '0' && name[1] != '-' &&
+                    std::from_chars(name.data() + 1, end, number).ptr == end;
+  if (!read || number < 1 || number > static_cast<std::int64_t>(count)) return std::nullopt;
+  return static_cast<std::int32_t>(number - 1);
+}
 
 std::string nearest_name(std::string_view name, std::span<const std::string> names) {
   std::string best;

@@ -72,6 +72,8 @@ struct Mesh {
 
 std::string node_name(std::int64_t node);  ///< "N1" for node 0
 std::string cell_name(std::int64_t cell);  ///< "M1" for cell 0
+/// The number behind the name of one of `count` nodes (letter N) or cells (M), 0-based; nothing for any other text.
+std::optional<std::int32_t> number_of_name(std::string_view name, char letter, std::size_t count);
 
 /// The members of a group; throws MESH_1 (unknown group, with the nearest known one) or MESH_2 (empty group).
 /// `keyword` is the path of the keyword that names the group.

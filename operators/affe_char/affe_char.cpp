@@ -3,7 +3,6 @@
 #include <fmt/core.h>
 
 #include <algorithm>
-#include <charconv>
 #include <map>
 
 #include "lacon/catalog/messages.hpp"
@@ -48,13 +47,11 @@ std::string names_of(unsigned dofs) {
 }
 
 std::int32_t node_of_name(const Mesh& mesh, const std::string& name, const std::string& keyword) {
-  std::int64_t number = 0;
-  const char* end = name.data() + name.size();
-  const bool read = name.size() > 1 && name[0] == 'N' && std::from_chars(name.data() + 1, end, number).ptr == end;
-  if (!read || number < 1 || number > static_cast<std::int64_t>(mesh.n_nodes()))
+  const std::optional<std::int32_t> node = number_of_name(name, 'N', mesh.n_nodes());
+  if (!node)
     fail("CHARGE_1",
          {{"keyword", keyword}, {"name", name}, {"last", node_name(static_cast<std::int64_t>(mesh.n_nodes()) - 1)}});
-  return static_cast<std::int32_t>(number - 1);
+  return *node;
 }
 
 /// The nodes that an occurrence names, with the keyword that names them.

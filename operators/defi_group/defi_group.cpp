@@ -3,7 +3,6 @@
 #include <fmt/core.h>
 
 #include <algorithm>
-#include <charconv>
 #include <numeric>
 
 #include "lacon/catalog/messages.hpp"
@@ -27,17 +26,14 @@ const Kind nodes{"node", 'N', "DETR_GROUP_NO", &Mesh::node_groups, nodes_of_grou
 
 /// The number behind `M12`, 0-based.
 std::int32_t number_of(std::string_view name, const Kind& kind, std::size_t count, const std::string& keyword) {
-  std::int64_t number = 0;
-  const char* end = name.data() + name.size();
-  const bool read = name.size() > 1 && name[0] == kind.letter && name[1] != '0' && name[1] != '-' &&
-                    std::from_chars(name.data() + 1, end, number).ptr == end;
-  if (!read || number < 1 || number > static_cast<std::int64_t>(count))
+  const std::optional<std::int32_t> number = number_of_name(name, kind.letter, count);
+  if (!number)
     fail("GROUPE_2", {{"keyword", keyword},
                       {"what", std::string(kind.name)},
                       {"name", std::string(name)},
                       {"first", std::string(1, kind.letter) + "1"},
                       {"last", std::string(1, kind.letter) + std::to_string(count)}});
-  return static_cast<std::int32_t>(number - 1);
+  return *number;
 }
 
 /// Each member once, in the order of its first appearance.

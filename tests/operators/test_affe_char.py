@@ -75,7 +75,7 @@ class Loads(OperatorTest):
         self.refuses_imposed("CHARGE_3", [{"GROUP_NO": ["CORNER"], "DZ": 0.0}], "DZ", "N1", "DX, DY")
 
     def test_unknown_nodes_and_groups_are_refused(self):
-        for name in ("N8", "N0", "A1", "N1x", "N"):
+        for name in ("N8", "N0", "N01", "N-1", "A1", "N1x", "N", "N99999999999999999999"):
             self.refuses_imposed("CHARGE_1", [{"NOEUD": [name], "DX": 0.0}], name)
         self.refuses_imposed("MESH_1", [{"GROUP_MA": ["TOPP"], "DX": 0.0}], "TOPP", "TOP")
         self.refuses_imposed("MESH_1", [{"GROUP_NO": ["TOP"], "DX": 0.0}], "node", "TOP")
