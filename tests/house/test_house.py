@@ -41,14 +41,13 @@ class House(unittest.TestCase):
         self.assertEqual(wrong, [])
 
     def test_only_solving_operators_link_mumps(self):
-        programs = sorted((SOURCE / "operators").glob("*/main.cpp"))
+        programs = [path for path in sorted(pathlib.Path(os.environ["LACON_BIN"]).iterdir()) if path.read_bytes()[:4] == b"\x7fELF"]
         self.assertGreater(len(programs), 5)
         linked = []
-        for main in programs:
-            program = pathlib.Path(os.environ["LACON_BIN"]) / main.parent.name
+        for program in programs:
             needed = subprocess.run(["ldd", program], capture_output=True, text=True, check=True).stdout
             if "mumps" in needed:
-                linked.append(main.parent.name)
+                linked.append(program.name)
         self.assertEqual(linked, ["stat_non_line"])
 
     def test_mains_are_short(self):
