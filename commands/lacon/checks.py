@@ -231,7 +231,9 @@ def line(check):
             f"{_number(check.value):>21}  {against} {_number(shown.target):>16}  error {error:>10}  tolerance {shown.tolerance:.1e} {kind}")
     if not shown.judged:
         text += "  (VALE_CALC is 0 and ORDRE_GRANDEUR is not given)"
-    return (text + (f"  {check.legend}" if check.legend else "")).rstrip()
+    if check.legend:
+        text += f"  {check.legend}"
+    return text if check.status == "OK" else f"{text}  ({check.where})"
 
 
 def _number(value):

@@ -115,7 +115,7 @@ class Readings(LauncherTest):
         run, made = self.checks(line)
         self.ok(run)
         self.assertEqual(made[0]["status"], "DIFF")
-        self.assertRegex(run.out, r"(?m)^DIFF +R +DEPL +DX +N4 +INST 1 +4 +VALE_CALC +4.1 +error +2.44e-02 +tolerance 1.0e-06 rel$")
+        self.assertRegex(run.out, r"(?m)^DIFF +R +DEPL +DX +N4 +INST 1 +4 +VALE_CALC +4.1 +error +2.44e-02 +tolerance 1.0e-06 rel  \(check.comm:2\)$")
         run, made = self.checks(line, options=("--checks", "all"))
         self.assertEqual((run.status, run.last, made[0]["status"]), (5, "--- DIAGNOSTIC JOB : NOOK_TEST_RESU", "NOOK"))
         self.assertRegex(run.out, r"(?m)^NOOK ")
