@@ -161,7 +161,7 @@ class Command:
             if keyword["unit"] == "in":
                 units[number] = run.input_unit(number, place)
             else:
-                suffix = {"MED": ".med", "VTU": ".vtu", "RESULTAT": ".resu"}.get(keywords.get("FORMAT"), "")
+                suffix = {"MED": ".med", "VTU": ".pvd", "RESULTAT": ".resu"}.get(keywords.get("FORMAT"), "")
                 if number not in run.units and number not in run.written_units:
                     run.inform("COMMAND_10", place, unit=number, file=os.path.relpath(run.output_unit(number, suffix, place)))
                 units[number] = run.output_unit(number, suffix, place)
