@@ -19,6 +19,7 @@ using lacon::CellType;
 using Numbers = std::vector<double>;
 
 constexpr double eps = 2.3e-16;
+constexpr double garbage = 7e7;  // what outputs hold before they are computed
 
 std::size_t z(int i) { return static_cast<std::size_t>(i); }
 
@@ -65,7 +66,7 @@ ContactResult run(const ContactCell& c, int batch_dimension = 0) {
   const Numbers shape = c.shape(c.slave_type, c.slave_xi, false), gradient = c.shape(c.slave_type, c.slave_xi, true),
                 master_shape = c.shape(c.master_type, c.master_xi, false);
   const std::int64_t offset[] = {0, static_cast<std::int64_t>(c.weight.size())};
-  ContactResult r{Numbers(c.weight.size()), Numbers(z((c.slaves() + c.masters()) * c.dimension)), -1, -1, -1, -1};
+  ContactResult r{Numbers(c.weight.size()), Numbers(z((c.slaves() + c.masters()) * c.dimension), garbage), -1, -1, -1, -1};
   const lacon_contact_batch batch{sizeof(lacon_contact_batch),
                                   1,
                                   c.slaves(),
@@ -580,7 +581,7 @@ Assembled assemble(int kind, const Macro& macro, const std::vector<Numbers>& let
     Numbers coupling, gap(1, 0.1 * static_cast<double>(e + 1));
     for (int a = 0; a <= nodes; ++a)
       for (int i = 0; i < dimension; ++i) coupling.push_back((a < nodes ? letters[e][z(a)] : -7.0) * std::pow(10, i));
-    Numbers matrix(z(dofs.size() * (dofs.size() + 1) / 2)), residual(z(dofs.size()));
+    Numbers matrix(z(dofs.size() * (dofs.size() + 1) / 2), garbage), residual(z(dofs.size()), garbage);
     lacon::contact_system(dofs, coupling, gap[0], active, lambda, matrix, residual);
     const auto entry = [&](int i, int j) { return matrix[z(std::max(i, j) * (std::max(i, j) + 1) / 2 + std::min(i, j))]; };
     sum.gap += gap[0];

@@ -17,6 +17,7 @@ using lacon::CellType;
 using Numbers = std::vector<double>;
 
 constexpr double eps = 2.3e-16;
+constexpr double garbage = 7e7;  // what outputs hold before a kernel runs
 
 lacon::Registry& registry() {
   static lacon::Registry all;
@@ -59,7 +60,8 @@ SolidResult run_solid(CellType type, const std::vector<Numbers>& coordinates, co
   const Numbers x = in_lanes(coordinates), u = in_lanes(displacements), p = in_lanes(parameters);
   const std::size_t n = coordinates.size(), lanes = (n + LACON_LANES - 1) / LACON_LANES * LACON_LANES,
                     dofs = coordinates[0].size();
-  Numbers matrix(lanes * dofs * (dofs + 1) / 2), force(lanes * dofs), stress(lanes * z(table.n_points) * 4);
+  Numbers matrix(lanes * dofs * (dofs + 1) / 2, garbage), force(lanes * dofs, garbage),
+      stress(lanes * z(table.n_points) * 4, garbage);
   std::vector<std::int32_t> error(lanes, -1);
   lacon_solid_batch batch{sizeof(lacon_solid_batch),
                           static_cast<int>(lanes) / LACON_LANES,
@@ -356,7 +358,7 @@ LoadResult run_pressure(CellType type, const std::vector<Numbers>& coordinates, 
   const auto table = lacon::tabulate(type, lacon::integration_rule(lacon::Family::SEG, element.points));
   const Numbers x = in_lanes(coordinates), p = in_lanes(values);
   std::vector<std::int32_t> error(p.size(), -1);
-  Numbers force(x.size());
+  Numbers force(x.size(), garbage);
   lacon_load_batch batch{sizeof(lacon_load_batch),
                          static_cast<int>(p.size()) / LACON_LANES,
                          table.n_nodes,
