@@ -276,6 +276,16 @@ TEST(Pairing, GivesOverlappingMastersToTheNearest) {
   }
 }
 
+TEST(Pairing, IsNotCutByWhatLiesHidden) {
+  Skin slave, master;
+  add_chain(slave, line(0), {0, 1}, Kind::linear);
+  add_chain(master, line(-0.1), {1, 0}, Kind::linear);
+  add_chain(master, line(-0.4), {0.6, 0.2}, Kind::linear);
+  const Pairing found = pair(slave.view(), master.view());
+  EXPECT_EQ(found.cells.vertex, (std::vector<double>{-1, 1}));
+  EXPECT_EQ(found.cells.master, (std::vector<std::int32_t>{0}));
+}
+
 TEST(Pairing, TakesOneOfTwoIdenticalMasters) {
   Skin slave, master;
   add_chain(slave, line(0), {0, 1}, Kind::linear);
