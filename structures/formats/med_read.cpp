@@ -132,11 +132,12 @@ template <class T>
 std::vector<T> MeshReader::dataset(const H5Group& group, const std::string& name, const std::string& where,
                                    std::size_t size) const {
   try {
-    std::vector<T> values = group.read<T>(name);
-    if (values.size() != size)
-      damaged("the dataset " + name + " of its " + where + " has " + std::to_string(values.size()) + " values instead of " +
+    std::size_t found = 1;  // before reading: a spoilt file may claim any size
+    for (const hsize_t extent : group.shape(name)) found *= extent;
+    if (found != size)
+      damaged("the dataset " + name + " of its " + where + " has " + std::to_string(found) + " values instead of " +
               std::to_string(size));
-    return values;
+    return group.read<T>(name);
   } catch (const Error& error) {
     if (error.message().id != "BASE_2") throw;
     damaged("the dataset " + name + " of its " + where + " cannot be read");

@@ -285,6 +285,16 @@ INSTANTIATE_TEST_SUITE_P(
                  replace<double>(s, "NOE/COO", {0, 1, 1, 0}, 4);
                },
                "MED_7", "COO"},
+        Damage{"huge_coordinates",
+               [](const H5& s, const H5&) {
+                 remove_link(s, "NOE/COO");
+                 const hsize_t size = hsize_t{1} << 50;
+                 const hdf5::Handle space(H5Screate_simple(1, &size, nullptr), H5Sclose);
+                 hdf5::Handle(H5Dcreate2(s.id(), "NOE/COO", H5T_NATIVE_DOUBLE, space, H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT),
+                              H5Dclose);
+                 set_dataset_integer(s, "NOE/COO", "NBR", 4);
+               },
+               "MED_7", "1125899906842624 values instead of 8"},
         Damage{"no_cells", [](const H5& s, const H5&) { remove_link(s, "MAI"); }, "MED_7", "no cells"},
         Damage{"no_nodes", [](const H5& s, const H5&) { remove_link(s, "NOE"); }, "MED_7", "no nodes"},
         Damage{"no_step", [](const H5&, const H5& r) { remove_link(r, "ENS_MAA/M/" + std::string(med::no_step)); }, "MED_7",
@@ -375,7 +385,8 @@ class MedFields : public Med {
  protected:
   std::vector<std::string> add(const Field& field, const std::string& name, std::int64_t order = 3, const MedRule& rule = {}) {
     std::vector<std::string> names;
-    write_med(file, true, [&](MedFile& med) { names = med.add_field(mesh, med.add_mesh(mesh, "M"), field, name, order, rule); });
+    write_med(file, true,
+              [&](MedFile& med) { names = med.add_field(mesh, med.add_mesh(mesh, "M"), field, name, order, rule); });
     return names;
   }
   std::vector<double> values(const std::string& path) { return hdf5::Reader(file).read<double>("CHA/" + path + "/CO"); }
