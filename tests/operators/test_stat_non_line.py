@@ -1,0 +1,211 @@
+"""stat_non_line alone: two unit squares of one QUAD8 each, the upper (slave) on the lower (master), everything by hand."""
+
+import unittest
+
+import h5py
+import numpy as np
+from lacon_test import OperatorTest, concept, write_ragged
+
+E, NU, PRESSURE = 2000.0, 0.3, 25.0
+#: no residual under load falls below this, none without load is above it
+UNREACHABLE = {"RESI_GLOB_MAXI": 1e-30, "ITER_GLOB_MAXI": 5}
+#: plane strain, free sideways, pressed by p
+EXX, EYY = NU * (1 + NU) * PRESSURE / E, -(1 - NU * NU) * PRESSURE / E
+
+
+def square(bottom):
+    """Nodes of a QUAD8 on [0, 1] x [bottom, bottom + 1], in Lacon's order."""
+    return [(x, bottom + y) for x, y in [(0, 0), (1, 0), (1, 1), (0, 1), (0.5, 0), (1, 0.5), (0.5, 1), (0, 0.5)]]
+
+
+LOWER, UPPER = list(range(8)), list(range(8, 16))
+#: M1 master skin, M2 slave skin, M3 loaded skin, M4, M5 bodies
+CELLS = [("SEG3", [2, 3, 6]), ("SEG3", [8, 9, 12]), ("SEG3", [10, 11, 14]), ("QUAD8", LOWER), ("QUAD8", UPPER)]
+BASE = [(n, "DY", 0.0) for n in (0, 1, 4)]
+AXIS = [(n, "DX", 0.0) for n in (0, 3, 7, 8, 11, 15)]
+
+
+class StatNonLine(OperatorTest):
+    def setUp(self):
+        super().setUp()
+        self.write_mesh("mesh_1", square(-1) + square(0), CELLS, cell_groups={"MASTER": [0], "SLAVE": [1]})
+        with h5py.File(self.path("mesh_1"), "a") as file:
+            patches = file.create_group("patches")
+            patches["zone_group"] = np.array(["SLAVE"], h5py.string_dtype())
+            patches["zone_offset"] = np.array([0, 1], np.int64)
+            patches["kind"] = patches["parent"] = np.array([14], np.int32)
+            for name, members in (("cells", [1]), ("carriers", [12])):
+                write_ragged(patches.create_group(name), "offset", "values", [members])
+        self.write_model("model_2", "mesh_1", ["D_PLAN/SEG3", "D_PLAN/QUAD8"], [0, 0, 0, 1, 1])
+        self.write_material("material_3", ELAS={"E": E, "NU": NU})
+        self.write_material_field("material_field_4", "mesh_1", ["material_3"], [0] * 5)
+        self.write_load("load_5", imposed=BASE + AXIS, kind="cine")
+        self.write_load("load_6", pressure=[(2, PRESSURE)])
+        self.write_contact("contact_7")
+        self.write_list("list_of_reals_8", [0.0, 1.0])
+
+    def write_load(self, identifier, imposed=(), pressure=(), kind="meca"):
+        with self.create(identifier, "load", references=["model_2"], model="model_2", kind=kind) as file:
+            if imposed:
+                names = sorted({component for _, component, _ in imposed})
+                file["imposed/component"] = np.array(names, h5py.string_dtype())
+                file["imposed/node"] = np.array([node for node, _, _ in imposed], np.int32)
+                file["imposed/component_index"] = np.array([names.index(component) for _, component, _ in imposed], np.int32)
+                file["imposed/value"] = np.array([value for _, _, value in imposed])
+            if pressure:
+                file["pressure/cell"] = np.array([cell for cell, _ in pressure], np.int32)
+                file["pressure/value"] = np.array([value for _, value in pressure])
+
+    def write_contact(self, identifier, initial="OUI"):
+        with self.create(identifier, "contact", references=["model_2", "mesh_1"], model="model_2", mesh="mesh_1", algorithm="LAC",
+                         smoothing=0, verify_normals=1, resi_geom=1e-6) as file:
+            zones = file.create_group("zones")
+            for name, value in (("slave_group", "SLAVE"), ("master_group", "MASTER"), ("jacobian", "INITIAL"), ("search", "RAPIDE"),
+                                ("initial_status", initial)):
+                zones[name] = np.array([value], h5py.string_dtype())
+            zones["tolerance"] = np.array([1e-8])
+            for name, members in (("slave", [1]), ("master", [0]), ("patches", [0])):
+                write_ragged(zones.create_group(name), "offset", "values", [members])
+            for name, value in (("cell", 1), ("patch", 0), ("rank", 0)):
+                file[f"slave/{name}"] = np.array([value], np.int32)
+            file["slave/element"] = np.array(["LACS32D"], h5py.string_dtype())
+
+    def write_list(self, identifier, values):
+        with self.create(identifier, "list_of_reals") as file:
+            file["values"] = np.array(values)
+
+    def write_function(self, identifier, x, y):
+        with self.create(identifier, "function", parameter="INST", component="TOUTRESU", extension_left="EXCLU",
+                         extension_right="EXCLU") as file:
+            file.attrs["interpolation"] = np.array(["LIN", "LIN"], h5py.string_dtype())
+            file["x"], file["y"] = np.array(x), np.array(y)
+
+    def keywords(self, **changes):
+        loads = changes.pop("loads", ["load_5", "load_6"])
+        given = {"MODELE": concept("model_2"), "CHAM_MATER": concept("material_field_4"), "CONTACT": concept("contact_7"),
+                 "EXCIT": [load if isinstance(load, dict) else {"CHARGE": concept(load)} for load in loads],
+                 "COMPORTEMENT": {"RELATION": "ELAS", "DEFORMATION": "PETIT", "TOUT": "OUI"},
+                 "INCREMENT": {"LIST_INST": concept("list_of_reals_8")},
+                 "CONVERGENCE": {"RESI_GLOB_RELA": 1e-12, "ITER_GLOB_MAXI": 20}}
+        given.update(changes)
+        return {name: value for name, value in given.items() if value is not None}
+
+    def solve(self, **changes):
+        return self.run_command("STAT_NON_LINE", self.keywords(**changes), result="result_9", label="RESU")
+
+    def assert_fails(self, identifier, *words, status=2, **changes):
+        return self.assert_refuses(identifier, "STAT_NON_LINE", self.keywords(**changes), *words, status=status, result="result_9")
+
+    # ------------------------------------------------------------------------------------------ what it computes
+
+    def test_two_squares_pressed_together_are_uniform(self):
+        run = self.solve()
+        self.assertEqual((run.status, run.messages), (0, []), run.stderr)
+        points = np.array(square(-1) + square(0))
+        field = self.read_field("result_9", "DEPL", 1)
+        self.assertEqual(field.components, ["DX", "DY", "LAGS_C"])
+        np.testing.assert_array_equal(field.support, range(16))
+        np.testing.assert_allclose(field.values[:, 0], EXX * points[:, 0], atol=1e-14)
+        np.testing.assert_allclose(field.values[:, 1], EYY * (points[:, 1] + 1), atol=1e-14)
+        np.testing.assert_array_equal(np.flatnonzero(field.present[:, 2]), [12])  # the carrier alone
+        self.assertAlmostEqual(field.values[12, 2], -PRESSURE, delta=1e-11)
+        stress = self.read_field("result_9", "SIEF_ELGA", 1)
+        np.testing.assert_array_equal(stress.support, [3, 4])
+        np.testing.assert_array_equal(stress.offset, [0, 9, 18])
+        np.testing.assert_allclose(stress.values, [[0, -PRESSURE, -NU * PRESSURE, 0]] * 18, atol=1e-11)
+        contact = self.read_field("result_9", "CONT_ELEM", 1)
+        self.assertEqual(contact.components, ["CONT", "PRES", "JEU", "COEFSURF", "PRESCOOR"])
+        np.testing.assert_array_equal(contact.support, [1])
+        np.testing.assert_allclose(contact.values, [[1, -PRESSURE, 0, 1, -PRESSURE]], atol=1e-11)
+
+    def test_the_table_has_the_peers_columns_and_counts_negative_pivots(self):
+        run = self.solve(AFFICHAGE={"INFO_RESIDU": "OUI"})
+        for word in ("ITERATION", "RESI_GLOB_RELA", "RESI_GLOB_MAXI", "AU POINT", "VARI. CONT.", "CRIT. GEOM.", "PIVOTS", "SECONDS"):
+            self.assertIn(word, run.stdout)
+        lines = [line.split("|")[1:-1] for line in run.stdout.splitlines() if line.startswith(" |") and "TANGENTE" in line]
+        self.assertEqual([line[0].strip() for line in lines][0], "0X")
+        self.assertTrue(lines[-1][0].strip().isdigit())  # converged: no X
+        self.assertEqual({line[8].strip() for line in lines}, {"1"})  # one active patch
+
+    def test_loads_follow_their_functions(self):
+        self.write_function("function_10", [0, 0.5, 1], [0, 1, 0.5])
+        self.write_list("list_of_reals_8", [0.0, 0.5, 1.0])
+        run = self.solve(loads=["load_5", {"CHARGE": concept("load_6"), "FONC_MULT": concept("function_10")}])
+        self.assertEqual(run.status, 0, run.stderr)
+        for order, factor in enumerate((0, 1, 0.5)):
+            np.testing.assert_allclose(self.read_field("result_9", "CONT_ELEM", order).values[0, 1], -factor * PRESSURE, atol=1e-11)
+
+    def test_without_contact_one_body_is_pulled(self):
+        self.write_load("load_6", imposed=[(n, "DY", 0.01) for n in (10, 11, 14)])
+        self.write_load("load_5", imposed=BASE + AXIS + [(n, "DY", 0.0) for n in (8, 9, 12)])
+        run = self.solve(CONTACT=None)
+        self.assertEqual(run.status, 0, run.stderr)
+        self.assertNotIn("VARI. CONT.", run.stdout)
+        field = self.read_field("result_9", "DEPL", 1)
+        self.assertEqual(field.components, ["DX", "DY"])
+        self.assertIsNone(field.present)
+        stress = self.read_field("result_9", "SIEF_ELGA", 1).values[9:]
+        np.testing.assert_allclose(stress[:, 1], E / (1 - NU * NU) * 0.01, rtol=1e-12)
+        np.testing.assert_allclose(self.read_field("result_9", "SIEF_ELGA", 1).values[:9], 0, atol=1e-12)
+
+    def test_only_what_archivage_asks_for_is_kept(self):
+        self.write_list("list_of_reals_8", [0.0, 0.25, 0.5, 0.75, 1.0])
+        run = self.solve(ARCHIVAGE={"PAS_ARCH": 3, "CHAM_EXCLU": ["SIEF_ELGA"]})
+        self.assertEqual(run.status, 0, run.stderr)
+        with h5py.File(self.path("result_9")) as index:
+            np.testing.assert_array_equal(index["instant"], [0.0, 0.75, 1.0])  # the last one always
+            self.assertEqual(sorted(index["fields"]), ["CONT_ELEM", "DEPL"])
+            np.testing.assert_array_equal(index["fields/DEPL/order"], [0, 1, 2])
+
+    # ------------------------------------------------------------------------------------------ what it refuses
+
+    def test_an_order_that_lacks_a_keyword_is_refused(self):
+        self.assert_fails("ORDER_2", "MODELE", MODELE=None)
+
+    def test_an_unknown_keyword_is_refused(self):
+        self.assert_fails("ORDER_3", "CONTACTE", CONTACTE="OUI")
+
+    def test_loads_that_contradict_each_other_are_refused(self):
+        self.write_load("load_6", imposed=[(4, "DY", 0.5)])
+        self.assert_fails("LOAD_1", "N5 DY", "LOAD_5", "LOAD_6")
+
+    def test_a_function_outside_its_range_is_refused(self):
+        self.write_function("function_10", [0, 0.5], [0, 1])
+        self.assert_fails("FUNCTION_1", "FUNCTION_10", "INST = 1",
+                          loads=["load_5", {"CHARGE": concept("load_6"), "FONC_MULT": concept("function_10")}])
+
+    def test_a_body_without_material_is_refused(self):
+        self.write_material_field("material_field_4", "mesh_1", ["material_3"], [0, 0, 0, -1, 0])
+        self.assert_fails("ELEMENT_2", "M4")
+
+    def test_a_material_without_a_parameter_is_refused(self):
+        self.write_material("material_3", ELAS={"E": E})
+        self.assert_fails("ELEMENT_3", "ELAS/NU", "MATERIAL_3")
+
+    def test_instants_that_are_not_in_the_list_are_refused(self):
+        self.assert_fails("EVOLUTION_5", "0.3", INCREMENT={"LIST_INST": concept("list_of_reals_8"), "INST_FIN": 0.3})
+
+    def test_a_body_that_nothing_holds_is_a_failed_solution(self):
+        self.write_load("load_10", imposed=AXIS)
+        self.assert_fails("SOLVER_3", "DY", status=3, loads=["load_6", "load_10"])
+
+    def test_a_failure_keeps_what_was_computed_before_it(self):
+        self.write_function("function_10", [0, 1, 2], [0, 0, 1])
+        self.write_list("list_of_reals_8", [0.0, 1.0, 2.0])
+        run = self.solve(loads=["load_5", {"CHARGE": concept("load_6"), "FONC_MULT": concept("function_10")}],
+                         CONVERGENCE=UNREACHABLE)
+        self.assert_refused(run, "EVOLUTION_4", "instant 2", "RESI_GLOB_MAXI", status=3)
+        with h5py.File(self.path("result_9")) as index:
+            np.testing.assert_array_equal(index["instant"], [0.0, 1.0])
+
+    def test_a_failing_step_is_cut_where_the_list_says_so(self):
+        with self.create("time_steps_10", "time_steps", cut=1, cut_into=2, cut_levels=2, smallest=0.0) as file:
+            file["values"] = np.array([0.0, 1.0])
+        run = self.solve(INCREMENT={"LIST_INST": concept("time_steps_10")}, CONVERGENCE=UNREACHABLE)  # two levels, then the failure
+        self.assertEqual(self.ids(run), ["EVOLUTION_7", "EVOLUTION_7", "EVOLUTION_4"])
+        self.assertEqual(run.status, 3)
+        self.assertFalse(self.path("result_9").exists())
+
+
+if __name__ == "__main__":
+    unittest.main()
