@@ -1,4 +1,4 @@
-"""The study of ./commands/demo: a roller held by contact alone between two rings, against Hertz' theory."""
+"""The study of ./commands/demo: a roller that nothing but contact holds between two rings, against Hertz' theory."""
 
 import subprocess
 import sys
