@@ -221,6 +221,8 @@ struct Damage {
   std::string id, words;
 };
 
+void PrintTo(const Damage& damage, std::ostream* out) { *out << damage.name; }
+
 class DamagedMed : public InFolder, public testing::WithParamInterface<Damage> {};
 
 TEST_P(DamagedMed, is_refused_with_a_message) {
