@@ -34,7 +34,7 @@ def setUpModule():
     cmake = os.environ["LACON_CMAKE"]
     for command in (
         [cmake, "--install", os.environ["LACON_BINARY_DIR"], "--prefix", prefix],
-        [cmake, "-S", HERE / "plane_stress", "-B", build, f"-DCMAKE_PREFIX_PATH={prefix}", f"-DCMAKE_CXX_FLAGS={flags}",
+        [cmake, "-G", "Ninja", "-S", HERE / "plane_stress", "-B", build, f"-DCMAKE_PREFIX_PATH={prefix}", f"-DCMAKE_CXX_FLAGS={flags}",
          f"-DCMAKE_BUILD_TYPE={os.environ['LACON_BUILD_TYPE']}", f"-DCMAKE_CXX_COMPILER={os.environ['LACON_CXX']}",
          f"-DCMAKE_INSTALL_PREFIX={prefix}"],
         [cmake, "--build", build],
