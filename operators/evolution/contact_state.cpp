@@ -296,4 +296,37 @@ std::int64_t ContactState::n_constraints(const Patchwise& patches) const {
   return count;
 }
 
+std::vector<ZoneBalance> ContactState::balance(const Patchwise& patches) const {
+  std::vector<ZoneBalance> zones;
+  for (const ContactZone& zone : contact_.zones) zones.push_back({.slave_group = zone.slave_group, .master_group = zone.master_group});
+  for (std::size_t p = 0; p < n_patches(); ++p) {
+    if (zone_of_[p] < 0) continue;
+    ZoneBalance& zone = zones[zone_of_[p]];
+    zone.active += patches.status[p] == Status::active;
+    zone.open += patches.status[p] == Status::open;
+    zone.unpaired += patches.status[p] == Status::unpaired;
+    zone.covered += covered_[p];
+    zone.whole += whole_[p];
+    zone.work = std::max(zone.work, std::abs(patches.lambda[p] * gap_[p]));
+  }
+  const int dimension = problem_.dimension;
+  for (const Cell& cell : cells_) {
+    const std::int32_t patch = contact_.slaves[cell.slave].patch;
+    if (patches.status[patch] != Status::active) continue;
+    ZoneBalance& zone = zones[zone_of_[patch]];
+    std::int64_t at = cell.coupling;
+    for (const bool slave : {true, false})
+      for (const std::int32_t node : problem_.mesh.cells[slave ? contact_.slaves[cell.slave].cell : cell.master]) {
+        std::array<double, 3> f{};  // the force on a node is -lambda C
+        for (int d = 0; d < dimension; ++d) f[d] = -patches.lambda[patch] * coupling_[at++];
+        const double* const x = coordinates_.data() + 3 * std::ptrdiff_t{node};
+        for (int d = 0; d < 3; ++d) {
+          (slave ? zone.on_slave : zone.on_master)[d] += f[d];
+          zone.moment[d] += x[(d + 1) % 3] * f[(d + 2) % 3] - x[(d + 2) % 3] * f[(d + 1) % 3];
+        }
+      }
+  }
+  return zones;
+}
+
 }  // namespace lacon

@@ -2,8 +2,10 @@
 // The contact of a computation at the current geometry: contact cells, gaps, statuses, and what they add to the system.
 // METHOD.md 3.4 to 3.7 with the conventions of DESIGN.md, section 3.
 #include <algorithm>
+#include <array>
 #include <cstdint>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "lacon/operators/evolution/static_problem.hpp"
@@ -28,6 +30,16 @@ struct ContactTolerances {
   double gap_round_off = 1e-14;     ///< of the size of the mesh
 };
 
+/// What the contact of a zone does at an instant: the figures by which a user trusts it.
+struct ZoneBalance {
+  std::string slave_group, master_group;
+  std::int64_t active = 0, open = 0, unpaired = 0;
+  std::array<double, 3> on_slave{}, on_master{};  ///< resultants of the contact forces
+  std::array<double, 3> moment{};                 ///< of all contact forces of the zone about the origin: zero where they balance
+  double covered = 0, whole = 0;                  ///< measure of the slave skin, current geometry
+  double work = 0;                                ///< largest |lambda g|: zero where contact and gap exclude each other
+};
+
 class ContactState {
  public:
   explicit ContactState(const StaticProblem& problem, const ContactTolerances& tolerances = {});
@@ -46,6 +58,8 @@ class ContactState {
 
   /// Largest |g_T| / h over the active patches that have an equation.
   double constraint_residual(const Patchwise& patches) const;
+  /// Forces and statuses of each zone.
+  std::vector<ZoneBalance> balance(const Patchwise& patches) const;
   /// Active patches that have an equation: the number of negative pivots to expect.
   std::int64_t n_constraints(const Patchwise& patches) const;
   /// Whether every displacement in a patch's row is imposed: its multiplier is then undetermined and keeps its value.

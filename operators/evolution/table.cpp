@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <vector>
 
@@ -42,6 +43,8 @@ const Column columns[] = {
     {{"TIME", "SECONDS", ""}, [](const IterationReport& r, const StaticProblem&) { return fmt::format("{:.4f}", r.seconds); }},
 };
 
+double norm(const std::array<double, 3>& v) { return std::hypot(v[0], v[1], v[2]); }
+
 std::vector<const Column*> shown(const StaticProblem& problem, bool where) {
   std::vector<const Column*> list;
   for (const Column& column : columns)
@@ -50,6 +53,12 @@ std::vector<const Column*> shown(const StaticProblem& problem, bool where) {
 }
 
 }  // namespace
+
+std::string NewtonTable::components(const std::array<double, 3>& vector) const {
+  std::string text;
+  for (int d = 0; d < problem_.dimension; ++d) text += fmt::format("{}{:.6g}", d ? ", " : "(", vector[d]);
+  return text + ")";
+}
 
 void NewtonTable::rule() {
   out_ << ' ' << std::string(shown(problem_, where_).size() * (width + 1) + 1, '-') << '\n';
@@ -75,22 +84,25 @@ void NewtonTable::line(const IterationReport& report) {
 
 void NewtonTable::finish(double instant, int iterations, const StaticState& state, const ContactState* contact) {
   rule();
-  out_ << fmt::format(" Converged at the instant {:.9g} with {} iteration(s)", instant, iterations);
+  out_ << fmt::format(" Converged at the instant {:.9g} with {} iteration(s)\n", instant, iterations);
   if (contact) {
-    std::int64_t active = 0, unpaired = 0;
     double least = std::numeric_limits<double>::infinity(), most = -least;
     for (std::size_t p = 0; p < contact->n_patches(); ++p) {
-      unpaired += state.patches.status[p] == Status::unpaired;
       if (state.patches.status[p] != Status::active) continue;
-      ++active;
       least = std::min(least, state.patches.lambda[p]);
       most = std::max(most, state.patches.lambda[p]);
     }
-    const auto n = static_cast<std::int64_t>(contact->n_patches());
-    out_ << fmt::format("; of {} patches {} in contact, {} open, {} without master", n, active, n - active - unpaired, unpaired);
-    if (active) out_ << fmt::format("; LAGS_C from {:.9g} to {:.9g}", least, most);
+    if (least <= most) out_ << fmt::format(" LAGS_C of the patches in contact from {:.9g} to {:.9g}\n", least, most);
+    for (const ZoneBalance& zone : contact->balance(state.patches)) {
+      std::array<double, 3> sum;
+      for (int d = 0; d < 3; ++d) sum[d] = zone.on_slave[d] + zone.on_master[d];
+      out_ << fmt::format(" {} on {}: {} patches in contact, {} open, {} without master; covered {:.6g} of {:.6g}\n", zone.slave_group,
+                          zone.master_group, zone.active, zone.open, zone.unpaired, zone.covered, zone.whole)
+           << fmt::format("   force on the slave {}, on the master {}, sum {:.1e}, moment of both {:.1e}; largest |LAGS_C x JEU| {:.1e}\n",
+                          components(zone.on_slave), components(zone.on_master), norm(sum), norm(zone.moment), zone.work);
+    }
   }
-  out_ << std::endl;
+  out_.flush();
 }
 
 }  // namespace lacon

@@ -1,5 +1,6 @@
 #pragma once
 // The Newton table: the peer's columns and words, and beside them the constraint residual, negative pivots and time.
+#include <array>
 #include <ostream>
 #include <string>
 
@@ -14,10 +15,12 @@ class NewtonTable {
 
   void start(double instant);
   void line(const IterationReport& report);
+  /// The proof lines: what each zone transmits, and that it balances.
   void finish(double instant, int iterations, const StaticState& state, const ContactState* contact);
 
  private:
   void rule();
+  std::string components(const std::array<double, 3>& vector) const;
 
   std::ostream& out_;
   const StaticProblem& problem_;

@@ -98,9 +98,29 @@ class Archive {
     keep(displacement_field(problem_, state));
     keep(stress_field(problem_, newton.stresses()));
     if (const ContactState* contact = newton.contact()) keep(contact_field(problem_, state, *contact));
+    if (const ContactState* contact = newton.contact()) add_balance(contact->balance(state.patches));
     result_.orders.push_back(number);
     result_.instants.push_back(instant);
     result_.parameters["newton_iterations"].push_back(iterations);
+  }
+  /// The proof lines as parameters of the instant: zone_1_slave_force_x, ...
+  void add_balance(const std::vector<ZoneBalance>& zones) {
+    for (std::size_t z = 0; z < zones.size(); ++z) {
+      const std::string name = "zone_" + std::to_string(z + 1) + "_";
+      const auto put = [&](const std::string& what, double value) { result_.parameters[name + what].push_back(value); };
+      for (int d = 0; d < 3; ++d) {
+        const std::string axis(1, "xyz"[d]);
+        put("slave_force_" + axis, zones[z].on_slave[d]);
+        put("master_force_" + axis, zones[z].on_master[d]);
+        put("moment_" + axis, zones[z].moment[d]);
+      }
+      put("active", static_cast<double>(zones[z].active));
+      put("open", static_cast<double>(zones[z].open));
+      put("unpaired", static_cast<double>(zones[z].unpaired));
+      put("covered", zones[z].covered);
+      put("whole", zones[z].whole);
+      put("largest_lambda_gap", zones[z].work);
+    }
   }
   void store() const { base_.store(result_); }
   void discard() const { base_.discard(result_); }

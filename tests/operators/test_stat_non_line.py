@@ -118,6 +118,23 @@ class StatNonLine(OperatorTest):
         np.testing.assert_array_equal(contact.support, [1])
         np.testing.assert_allclose(contact.values, [[1, -PRESSURE, 0, 1, -PRESSURE]], atol=1e-11)
 
+    def test_the_proof_lines_say_what_the_zone_transmits(self):
+        """Pressure times length on the slave, its opposite on the master, no moment; printed, and stored for each instant."""
+        run = self.solve()
+        self.assertIn("SLAVE on MASTER: 1 patches in contact, 0 open, 0 without master; covered", run.stdout)
+        with h5py.File(self.path("result_9")) as index:
+            zone = {name: values[()] for name, values in index["parameters"].items() if name.startswith("zone_1_")}
+        self.assertEqual({len(values) for values in zone.values()}, {2})
+        last = {name.removeprefix("zone_1_"): values[1] for name, values in zone.items()}
+        self.assertEqual((last["active"], last["open"], last["unpaired"]), (1, 0, 0))
+        self.assertAlmostEqual(last["slave_force_y"], PRESSURE, delta=1e-11)
+        for axis in "xyz":
+            self.assertAlmostEqual(last[f"slave_force_{axis}"] + last[f"master_force_{axis}"], 0, delta=1e-13 * PRESSURE)
+            self.assertAlmostEqual(last[f"moment_{axis}"], 0, delta=1e-13 * PRESSURE)
+        self.assertAlmostEqual(last["whole"], 1 + EXX, delta=1e-14)
+        self.assertAlmostEqual(last["covered"], last["whole"], delta=1e-14)
+        self.assertLessEqual(last["largest_lambda_gap"], 1e-8 * PRESSURE)
+
     def test_the_table_has_the_peers_columns_and_counts_negative_pivots(self):
         run = self.solve(AFFICHAGE={"INFO_RESIDU": "OUI"})
         for word in ("ITERATION", "RESI_GLOB_RELA", "RESI_GLOB_MAXI", "AU POINT", "VARI. CONT.", "CRIT. GEOM.", "PIVOTS", "SECONDS"):
