@@ -43,8 +43,7 @@ struct DirectSolver::State {
   }
   [[noreturn]] void refuse(const char* phase) {
     const int code = at(mumps.infog, 1);
-    if (code == -13 || code == -19)
-      fail("SOLVER_2", {{"phase", phase}, {"equations", std::to_string(mumps.n)}});
+    if (code == -13 || code == -19) fail("SOLVER_2", {{"phase", phase}, {"equations", std::to_string(mumps.n)}});
     throw std::runtime_error(fmt::format("MUMPS: {} returned INFOG(1) = {}, INFOG(2) = {}", phase, code, at(mumps.infog, 2)));
   }
 };
@@ -94,7 +93,8 @@ Factorisation DirectSolver::factorise() {
   s.mumps.a = const_cast<double*>(s.matrix->values().data());  // read only
   s.call(factorise_job);
   // -8, -9: delayed pivots took more memory than foreseen
-  for (int margin = 2 * s.options.memory_margin; (at(s.mumps.infog, 1) == -8 || at(s.mumps.infog, 1) == -9) && margin < 2000; margin *= 2) {
+  for (int margin = 2 * s.options.memory_margin; (at(s.mumps.infog, 1) == -8 || at(s.mumps.infog, 1) == -9) && margin < 2000;
+       margin *= 2) {
     at(s.mumps.icntl, 14) = margin;
     s.call(factorise_job);
   }
@@ -137,7 +137,8 @@ double DirectSolver::solve(std::span<double> right_side) {
     step = residual;
   }
   if (!std::isfinite(error) || (s.options.residual_tolerance > 0 && error > s.options.residual_tolerance))
-    fail("SOLVER_1", {{"error", fmt::format("{:.1e}", error)}, {"tolerance", fmt::format("{:.1e}", s.options.residual_tolerance)}});
+    fail("SOLVER_1",
+         {{"error", fmt::format("{:.1e}", error)}, {"tolerance", fmt::format("{:.1e}", s.options.residual_tolerance)}});
   std::copy(best.begin(), best.end(), right_side.begin());
   return error;
 }

@@ -10,8 +10,8 @@
 namespace lacon {
 
 struct SolverOptions {
-  int memory_margin = 20;           ///< PCENT_PIVOT, percent
-  double singular_pivot = 1e-13;    ///< a pivot below this fraction of the scaled matrix is zero: a mechanism is left
+  int memory_margin = 20;            ///< PCENT_PIVOT, percent
+  double singular_pivot = 1e-13;     ///< a pivot below this fraction of the scaled matrix is zero: a mechanism is left
   double residual_tolerance = 1e-6;  ///< RESI_RELA: largest relative residual of a solution; negative: not checked
 };
 

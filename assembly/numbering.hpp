@@ -7,13 +7,14 @@
 
 namespace lacon {
 
-/// Unknowns hang on vertices: vertex v < n_nodes is node v with its displacements, vertex n_nodes + p is the multiplier of patch p.
-/// All LAGS_C carriers of a patch are that one equation (METHOD.md 3.6).
+/// Unknowns hang on vertices: vertex v < n_nodes is node v with its displacements, vertex n_nodes + p is the multiplier of
+/// patch p. All LAGS_C carriers of a patch are that one equation (METHOD.md 3.6).
 struct Numbering {
   std::int64_t n_nodes = 0;
-  int n_components = 0;                ///< displacements of a node
-  std::vector<std::int64_t> first;     ///< equations of vertex v: first[v] to first[v + 1], (n_vertices + 1)
-  std::vector<std::int64_t> equation;  ///< (n_nodes, n_components): equation of a displacement, -1 where it is imposed or absent
+  int n_components = 0;             ///< displacements of a node
+  std::vector<std::int64_t> first;  ///< equations of vertex v: first[v] to first[v + 1], (n_vertices + 1)
+  std::vector<std::int64_t>
+      equation;  ///< (n_nodes, n_components): equation of a displacement, -1 where it is imposed or absent
 
   std::int64_t n_vertices() const { return static_cast<std::int64_t>(first.size()) - 1; }
   std::int64_t n_equations() const { return first.back(); }

@@ -35,7 +35,8 @@ std::vector<std::int32_t> elimination_order(const SymmetricMatrix& matrix) {
     idx_t options[METIS_NOPTIONS];
     METIS_SetDefaultOptions(options);
     options[METIS_OPTION_SEED] = 1;  // the same bits in every run
-    if (const int status = METIS_NodeND(&n, offset.data(), adjacent.data(), nullptr, options, inverse.data(), place.data()); status != METIS_OK)
+    if (const int status = METIS_NodeND(&n, offset.data(), adjacent.data(), nullptr, options, inverse.data(), place.data());
+        status != METIS_OK)
       throw std::runtime_error("METIS_NodeND returned " + std::to_string(status));
   }
 

@@ -49,14 +49,16 @@ Ragged<std::int32_t> neighbours_of_vertices(std::int64_t n_vertices, const Ragge
 
 }  // namespace
 
-SymmetricMatrix::SymmetricMatrix(const Numbering& numbering, const Ragged<std::int32_t>& cliques, std::span<const Coupling> couplings)
+SymmetricMatrix::SymmetricMatrix(const Numbering& numbering, const Ragged<std::int32_t>& cliques,
+                                 std::span<const Coupling> couplings)
     : numbering_(&numbering), neighbours_(neighbours_of_vertices(numbering.n_vertices(), cliques, couplings)), row_{0} {
   const auto& first = numbering.first;
   for (std::int64_t v = 0; v < numbering.n_vertices(); ++v)
     for (std::int64_t row = first[v]; row < first[v + 1]; ++row) {
       for (const std::int32_t w : neighbours_[v]) {
         if (w > v) break;
-        for (std::int64_t column = first[w]; column < first[w + 1]; ++column) column_.push_back(static_cast<std::int32_t>(column));
+        for (std::int64_t column = first[w]; column < first[w + 1]; ++column)
+          column_.push_back(static_cast<std::int32_t>(column));
       }
       for (std::int64_t column = first[v]; column <= row; ++column) column_.push_back(static_cast<std::int32_t>(column));
       row_.push_back(static_cast<std::int64_t>(column_.size()));

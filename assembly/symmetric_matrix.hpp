@@ -23,14 +23,14 @@ class SymmetricMatrix {
   bool has_room_for(std::span<const Coupling> couplings) const;
 
   void set_zero();
-  /// Add an element matrix. @param equations of its degrees of freedom, -1: left out; an equation may stand there more than once (tied
-  /// multipliers), and then gets the sum  @param lower (n (n + 1) / 2): lower triangle, row by row
+  /// Add an element matrix. @param equations of its degrees of freedom, -1: left out; an equation may stand there more than
+  /// once (tied multipliers), and then gets the sum  @param lower (n (n + 1) / 2): lower triangle, row by row
   void add(std::span<const std::int64_t> equations, std::span<const double> lower);
   void add_diagonal(std::int64_t equation, double value);
 
   std::int64_t size() const { return static_cast<std::int64_t>(row_.size()) - 1; }
   std::int64_t n_entries() const { return row_.back(); }
-  std::span<const std::int64_t> rows() const { return row_; }   ///< (size + 1)
+  std::span<const std::int64_t> rows() const { return row_; }  ///< (size + 1)
   std::span<const std::int32_t> columns() const { return column_; }
   std::span<const double> values() const { return value_; }
   double diagonal(std::int64_t equation) const { return value_[row_[equation + 1] - 1]; }

@@ -27,12 +27,12 @@ struct CellRow {
   int dimension;
   int n_nodes;
   int n_vertices;
-  int order;                                   ///< 1 linear, 2 quadratic
-  std::span<const double> nodes;               ///< reference coordinates, (n_nodes, dimension)
+  int order;                      ///< 1 linear, 2 quadratic
+  std::span<const double> nodes;  ///< reference coordinates, (n_nodes, dimension)
   std::span<const EdgeRow> edges;
-  std::span<const FacetRow> facets;            ///< with all nodes of the facet
-  std::span<const std::int8_t> mirror;         ///< node order of the same cell turned inside out
-  std::string_view med_name;                   ///< "HE8"
+  std::span<const FacetRow> facets;              ///< with all nodes of the facet
+  std::span<const std::int8_t> mirror;           ///< node order of the same cell turned inside out
+  std::string_view med_name;                     ///< "HE8"
   std::span<const std::int8_t> med_permutation;  ///< node j here is node med_permutation[j] in MED
   int vtk_type;                                  ///< number in VTK files
   std::span<const std::int8_t> vtk_permutation;  ///< node j here is node vtk_permutation[j] in VTK

@@ -20,7 +20,8 @@ struct Message {
 /// What fills a gap `{name}` of a message's text.
 using MessageValue = std::pair<std::string_view, std::string>;
 
-/// The message `id` of the catalogue with its gaps filled. An identifier or a gap that does not exist is a defect: std::logic_error.
+/// The message `id` of the catalogue with its gaps filled. An identifier or a gap that does not exist is a defect:
+/// std::logic_error.
 Message message(std::string_view id, std::initializer_list<MessageValue> values = {});
 
 /// Thrown for every error of the user (F) and every failure of the solution (S).

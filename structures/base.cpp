@@ -11,7 +11,6 @@
 namespace lacon {
 namespace {
 
-
 using nlohmann::json;
 
 // ---------------------------------------------------------------------------------------------- common pieces
@@ -27,7 +26,8 @@ Ragged<T> read_ragged(const hdf5::Group& group, const std::string& offset, const
   Ragged<T> rows;
   rows.offset = group.read<std::int64_t>(offset);
   rows.values = group.read<T>(values);
-  bool sound = !rows.offset.empty() && rows.offset.front() == 0 && rows.offset.back() == static_cast<std::int64_t>(rows.values.size());
+  bool sound =
+      !rows.offset.empty() && rows.offset.front() == 0 && rows.offset.back() == static_cast<std::int64_t>(rows.values.size());
   for (std::size_t i = 1; sound && i < rows.offset.size(); ++i) sound = rows.offset[i] >= rows.offset[i - 1];
   if (!sound) fail("BASE_2", {{"file", group.path().string()}, {"reason", "'" + offset + "' does not fit '" + values + "'"}});
   return rows;
@@ -54,11 +54,13 @@ std::vector<Group> read_groups(const hdf5::Group& root, const std::string& name,
   if (!root.has(name)) return groups;
   const std::vector<std::string> names = root.read_strings(name + "/name");
   const auto members = read_ragged<std::int32_t>(root, name);
-  if (members.size() != names.size()) fail("BASE_2", {{"file", root.path().string()}, {"reason", "'" + name + "' is inconsistent"}});
+  if (members.size() != names.size())
+    fail("BASE_2", {{"file", root.path().string()}, {"reason", "'" + name + "' is inconsistent"}});
   for (std::size_t i = 0; i < names.size(); ++i) {
     for (const std::int32_t m : members[i])
       if (m < 0 || static_cast<std::size_t>(m) >= n_entities)
-        fail("BASE_2", {{"file", root.path().string()}, {"reason", "the group '" + names[i] + "' names member " + std::to_string(m)}});
+        fail("BASE_2",
+             {{"file", root.path().string()}, {"reason", "the group '" + names[i] + "' names member " + std::to_string(m)}});
     groups.push_back({names[i], {members[i].begin(), members[i].end()}});
   }
   return groups;
@@ -87,7 +89,6 @@ hdf5::Reader open_concept(const Base& base, std::string_view id, std::string_vie
     fail("BASE_4", {{"id", std::string(id)}, {"found", found}, {"expected", std::string(type)}});
   return root;
 }
-
 
 }  // namespace
 
@@ -147,9 +148,11 @@ Mesh Base::mesh(std::string_view id) const {
   }
   if (mesh.types.size() != mesh.cells.size()) refuse("'cells/type' does not fit 'cells/offset'");
   for (std::size_t c = 0; c < mesh.n_cells(); ++c) {
-    if (mesh.cells[c].size() != static_cast<std::size_t>(mesh.row(c).n_nodes)) refuse("cell " + cell_name(static_cast<std::int64_t>(c)) + " has a wrong number of nodes");
+    if (mesh.cells[c].size() != static_cast<std::size_t>(mesh.row(c).n_nodes))
+      refuse("cell " + cell_name(static_cast<std::int64_t>(c)) + " has a wrong number of nodes");
     for (const std::int32_t n : mesh.cells[c])
-      if (n < 0 || static_cast<std::size_t>(n) >= mesh.n_nodes()) refuse("cell " + cell_name(static_cast<std::int64_t>(c)) + " names a node that does not exist");
+      if (n < 0 || static_cast<std::size_t>(n) >= mesh.n_nodes())
+        refuse("cell " + cell_name(static_cast<std::int64_t>(c)) + " names a node that does not exist");
   }
   mesh.cell_groups = read_groups(root, "groups/cells", mesh.n_cells());
   mesh.node_groups = read_groups(root, "groups/nodes", mesh.n_nodes());
@@ -261,7 +264,8 @@ Load Base::load(std::string_view id) const {
     const auto names = group.read_strings("component");
     const auto node = group.read<std::int32_t>("node"), index = group.read<std::int32_t>("component_index");
     const auto value = group.read<double>("value");
-    for (std::size_t i = 0; i < node.size(); ++i) load.imposed.push_back({node[i], names.at(static_cast<std::size_t>(index.at(i))), value.at(i)});
+    for (std::size_t i = 0; i < node.size(); ++i)
+      load.imposed.push_back({node[i], names.at(static_cast<std::size_t>(index.at(i))), value.at(i)});
   }
   if (root.has("pressure")) {
     const auto cell = root.read<std::int32_t>("pressure/cell");
@@ -311,8 +315,10 @@ namespace {
 
 /// The zone's members that are plain texts, by the name of their dataset.
 const std::pair<const char*, std::string ContactZone::*> zone_texts[] = {
-    {"zones/slave_group", &ContactZone::slave_group}, {"zones/master_group", &ContactZone::master_group},
-    {"zones/jacobian", &ContactZone::jacobian},       {"zones/search", &ContactZone::search},
+    {"zones/slave_group", &ContactZone::slave_group},
+    {"zones/master_group", &ContactZone::master_group},
+    {"zones/jacobian", &ContactZone::jacobian},
+    {"zones/search", &ContactZone::search},
     {"zones/initial_status", &ContactZone::initial_status}};
 
 /// The zone's members that are lists of numbers.
@@ -339,49 +345,52 @@ Contact Base::contact(std::string_view id) const {
   }
   for (const auto& [name, member] : zone_lists) {
     const auto values = read_ragged<std::int32_t>(root, name);
-    for (std::size_t z = 0; z < contact.zones.size(); ++z) (contact.zones[z].*member).assign(values[z].begin(), values[z].end());
+    for (std::size_t z = 0; z < contact.zones.size(); ++z)
+      (contact.zones[z].*member).assign(values[z].begin(), values[z].end());
   }
   const hdf5::Group slave = root.open("slave");
-  const auto cell = slave.read<std::int32_t>("cell"), patch = slave.read<std::int32_t>("patch"), rank = slave.read<std::int32_t>("rank");
+  const auto cell = slave.read<std::int32_t>("cell"), patch = slave.read<std::int32_t>("patch"),
+             rank = slave.read<std::int32_t>("rank");
   const auto element = slave.read_strings("element");
   for (std::size_t i = 0; i < cell.size(); ++i) contact.slaves.push_back({cell[i], patch.at(i), rank.at(i), element.at(i)});
   return contact;
 }
 
 void Base::store(const Contact& contact) const {
-  store_concept(*this, *order_, concept_file(*this, *order_), "contact", {contact.model, contact.mesh}, [&](const hdf5::Group& root) {
-    root.set("model", contact.model);
-    root.set("mesh", contact.mesh);
-    root.set("algorithm", contact.algorithm);
-    root.set("smoothing", std::int64_t{contact.smoothing});
-    root.set("verify_normals", std::int64_t{contact.verify_normals});
-    root.set("resi_geom", contact.resi_geom);
-    std::vector<double> tolerance;
-    for (const ContactZone& zone : contact.zones) tolerance.push_back(zone.tolerance);
-    root.write("zones/tolerance", tolerance);
-    for (const auto& [name, member] : zone_texts) {
-      std::vector<std::string> values;
-      for (const ContactZone& zone : contact.zones) values.push_back(zone.*member);
-      root.write_strings(name, values);
-    }
-    for (const auto& [name, member] : zone_lists) {
-      Ragged<std::int32_t> values;
-      for (const ContactZone& zone : contact.zones) values.push_back(zone.*member);
-      write_ragged(root, name, values);
-    }
-    std::vector<std::int32_t> cell, patch, rank;
-    std::vector<std::string> element;
-    for (const SlaveElement& slave : contact.slaves) {
-      cell.push_back(slave.cell);
-      patch.push_back(slave.patch);
-      rank.push_back(slave.rank);
-      element.push_back(slave.element);
-    }
-    root.write("slave/cell", cell);
-    root.write("slave/patch", patch);
-    root.write("slave/rank", rank);
-    root.write_strings("slave/element", element);
-  });
+  store_concept(*this, *order_, concept_file(*this, *order_), "contact", {contact.model, contact.mesh},
+                [&](const hdf5::Group& root) {
+                  root.set("model", contact.model);
+                  root.set("mesh", contact.mesh);
+                  root.set("algorithm", contact.algorithm);
+                  root.set("smoothing", std::int64_t{contact.smoothing});
+                  root.set("verify_normals", std::int64_t{contact.verify_normals});
+                  root.set("resi_geom", contact.resi_geom);
+                  std::vector<double> tolerance;
+                  for (const ContactZone& zone : contact.zones) tolerance.push_back(zone.tolerance);
+                  root.write("zones/tolerance", tolerance);
+                  for (const auto& [name, member] : zone_texts) {
+                    std::vector<std::string> values;
+                    for (const ContactZone& zone : contact.zones) values.push_back(zone.*member);
+                    root.write_strings(name, values);
+                  }
+                  for (const auto& [name, member] : zone_lists) {
+                    Ragged<std::int32_t> values;
+                    for (const ContactZone& zone : contact.zones) values.push_back(zone.*member);
+                    write_ragged(root, name, values);
+                  }
+                  std::vector<std::int32_t> cell, patch, rank;
+                  std::vector<std::string> element;
+                  for (const SlaveElement& slave : contact.slaves) {
+                    cell.push_back(slave.cell);
+                    patch.push_back(slave.patch);
+                    rank.push_back(slave.rank);
+                    element.push_back(slave.element);
+                  }
+                  root.write("slave/cell", cell);
+                  root.write("slave/patch", patch);
+                  root.write("slave/rank", rank);
+                  root.write_strings("slave/element", element);
+                });
 }
 
 // ---------------------------------------------------------------------------------------------- functions, lists
@@ -402,7 +411,9 @@ Function Base::function(std::string_view id) const {
   return function;
 }
 
-std::vector<double> Base::list_of_reals(std::string_view id) const { return open_concept(*this, id, "list_of_reals").read<double>("values"); }
+std::vector<double> Base::list_of_reals(std::string_view id) const {
+  return open_concept(*this, id, "list_of_reals").read<double>("values");
+}
 
 TimeSteps Base::time_steps(std::string_view id) const {
   if (type(id) == "list_of_reals") return {.values = list_of_reals(id)};
@@ -482,7 +493,10 @@ Field Base::field(const Result& result, std::string_view name, std::int64_t orde
   std::string known;
   for (const auto& [field, files] : result.fields)
     if (files.contains(order)) known += (known.empty() ? "" : ", ") + field;
-  fail("RESULT_1", {{"label", result.label}, {"field", std::string(name)}, {"order", std::to_string(order)}, {"known", known.empty() ? "none" : known}});
+  fail("RESULT_1", {{"label", result.label},
+                    {"field", std::string(name)},
+                    {"order", std::to_string(order)},
+                    {"known", known.empty() ? "none" : known}});
 }
 
 void Base::add_field(Result& result, Field field) const {
@@ -491,7 +505,8 @@ void Base::add_field(Result& result, Field field) const {
   const std::string stem = order_->result_id + "/" + field.name + "_" + std::to_string(field.order);
   std::string file = stem + ".h5";
   std::error_code error;
-  for (int again = 2; std::filesystem::exists(folder_ / file, error); ++again) file = stem + "_" + std::to_string(again) + ".h5";
+  for (int again = 2; std::filesystem::exists(folder_ / file, error); ++again)
+    file = stem + "_" + std::to_string(again) + ".h5";
   std::filesystem::create_directories(folder_ / order_->result_id);
   write_field(folder_ / file, field);
   result.fields[field.name][field.order] = file;

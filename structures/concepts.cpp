@@ -1,8 +1,8 @@
 #include "lacon/structures/concepts.hpp"
 
+#include <fmt/format.h>
 #include <algorithm>
 #include <cmath>
-#include <fmt/format.h>
 
 #include "lacon/catalog/messages.hpp"
 
@@ -12,7 +12,7 @@ double Function::operator()(double at, std::string_view label) const {
   const double first = x.front(), last = x.back();
   // the ends of a range are met by computed instants only up to round-off
   const double slack = 1e-12 * std::max(std::abs(first), std::abs(last));
-  const bool left = at < first - slack, right = at > last + slack;
+  const bool left = at<first - slack, right = at> last + slack;
   const std::string& extension = left ? extension_left : extension_right;
   if ((left || right) && extension == "EXCLU")
     fail("FUNCTION_1", {{"label", std::string(label)},

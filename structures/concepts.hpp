@@ -15,8 +15,8 @@ struct Model {
   std::string mesh;
   std::string phenomenon;
   int dimension = 3;
-  std::vector<std::string> elements;   ///< names of rows of the element catalogue, "D_PLAN/TRIA3"
-  std::vector<std::int32_t> element;   ///< of each cell: index into elements, -1 for none
+  std::vector<std::string> elements;  ///< names of rows of the element catalogue, "D_PLAN/TRIA3"
+  std::vector<std::int32_t> element;  ///< of each cell: index into elements, -1 for none
 };
 
 /// Factor keyword -> parameter -> value, or the id of a function.
@@ -26,9 +26,9 @@ struct Material {
 
 struct MaterialField {
   std::string mesh;
-  std::string model;                    ///< may be empty
-  std::vector<std::string> materials;   ///< ids
-  std::vector<std::int32_t> material;   ///< of each cell, -1 for none
+  std::string model;                   ///< may be empty
+  std::vector<std::string> materials;  ///< ids
+  std::vector<std::int32_t> material;  ///< of each cell, -1 for none
 };
 
 struct ImposedDof {
@@ -78,10 +78,10 @@ struct Contact {
 
 /// A piecewise function of one parameter.
 struct Function {
-  std::string parameter;             ///< "INST"
+  std::string parameter;  ///< "INST"
   std::string interpolation[2] = {"LIN", "LIN"};
   std::string extension_left = "EXCLU", extension_right = "EXCLU";
-  std::vector<double> x, y;          ///< x increasing
+  std::vector<double> x, y;  ///< x increasing
 
   /// Throws FUNCTION_1 where x is outside and the extension is EXCLU; `label` names the function in the message.
   double operator()(double at, std::string_view label) const;
@@ -89,10 +89,10 @@ struct Function {
 
 struct TimeSteps {
   std::vector<double> values;
-  bool cut = false;         ///< ACTION='DECOUPE'
-  int cut_into = 4;         ///< SUBD_PAS
-  int cut_levels = 3;       ///< SUBD_NIVEAU
-  double smallest = 0;      ///< SUBD_PAS_MINI
+  bool cut = false;     ///< ACTION='DECOUPE'
+  int cut_into = 4;     ///< SUBD_PAS
+  int cut_levels = 3;   ///< SUBD_NIVEAU
+  double smallest = 0;  ///< SUBD_PAS_MINI
 };
 
 struct ResultLoad {
@@ -102,7 +102,7 @@ struct ResultLoad {
 
 /// The index of a result: which fields it has at which instants.
 struct Result {
-  std::string label;  ///< when it was written
+  std::string label;                                 ///< when it was written
   std::string model, mesh, material_field, contact;  ///< ids, the last may be empty
   std::vector<ResultLoad> loads;
   std::string behaviour;  ///< JSON

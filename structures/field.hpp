@@ -12,25 +12,25 @@ namespace lacon {
 
 /// Where the values of a field live.
 enum class Location {
-  nodes,           ///< NOEU: one row a node
-  gauss_points,    ///< ELGA: one row an integration point
-  cell_nodes,      ///< ELNO: one row a node of a cell
-  cells            ///< ELEM: one row a cell
+  nodes,         ///< NOEU: one row a node
+  gauss_points,  ///< ELGA: one row an integration point
+  cell_nodes,    ///< ELNO: one row a node of a cell
+  cells          ///< ELEM: one row a cell
 };
 
 std::string_view location_name(Location location);  ///< "NOEU", "ELGA", "ELNO", "ELEM"
 Location find_location(std::string_view name);
 
 struct Field {
-  std::string name;                     ///< "DEPL"
-  std::string quantity;                 ///< row of catalog/quantities.toml: "DEPL_R"
+  std::string name;      ///< "DEPL"
+  std::string quantity;  ///< row of catalog/quantities.toml: "DEPL_R"
   Location location = Location::nodes;
   std::vector<std::string> components;
-  std::vector<std::int32_t> support;    ///< nodes or cells on which it lives
-  std::vector<std::int64_t> offset;     ///< ELGA, ELNO: rows of each cell, (n + 1); otherwise empty
-  std::vector<double> values;           ///< (rows, components)
-  std::vector<std::uint8_t> present;    ///< (rows, components), 0 where a component does not exist; empty: everywhere
-  std::string mesh;                     ///< id of the mesh
+  std::vector<std::int32_t> support;  ///< nodes or cells on which it lives
+  std::vector<std::int64_t> offset;   ///< ELGA, ELNO: rows of each cell, (n + 1); otherwise empty
+  std::vector<double> values;         ///< (rows, components)
+  std::vector<std::uint8_t> present;  ///< (rows, components), 0 where a component does not exist; empty: everywhere
+  std::string mesh;                   ///< id of the mesh
   std::int64_t order = 0;
   double instant = 0;
 

@@ -93,7 +93,8 @@ std::vector<std::string> Group::children() const {
 
 bool Group::is_group(std::string_view name) const {
   H5O_info_t info;
-  return has(name) && H5Oget_info_by_name(id_, zero_ended(name).c_str(), &info, H5P_DEFAULT) >= 0 && info.type == H5O_TYPE_GROUP;
+  return has(name) && H5Oget_info_by_name(id_, zero_ended(name).c_str(), &info, H5P_DEFAULT) >= 0 &&
+         info.type == H5O_TYPE_GROUP;
 }
 
 Group Group::open(std::string_view name) const {
@@ -113,7 +114,8 @@ Group Group::create(std::string_view name) const {
 }
 
 std::vector<hsize_t> Group::shape(std::string_view name) const {
-  const Handle set(has(name) && !is_group(name) ? H5Dopen2(id_, zero_ended(name).c_str(), H5P_DEFAULT) : H5I_INVALID_HID, H5Dclose);
+  const Handle set(has(name) && !is_group(name) ? H5Dopen2(id_, zero_ended(name).c_str(), H5P_DEFAULT) : H5I_INVALID_HID,
+                   H5Dclose);
   if (set < 0) refuse("it has no dataset '" + std::string(name) + "'");
   const Handle space(H5Dget_space(set), H5Sclose);
   std::vector<hsize_t> extents(static_cast<std::size_t>(std::max(0, H5Sget_simple_extent_ndims(space))));
@@ -148,7 +150,8 @@ void Group::write(std::string_view name, std::span<const T> values, std::vector<
   const Handle space(H5Screate_simple(static_cast<int>(shape.size()), shape.data(), nullptr), H5Sclose);
   const Handle links(H5Pcreate(H5P_LINK_CREATE), H5Pclose);
   H5Pset_create_intermediate_group(links, 1);
-  const Handle set(H5Dcreate2(id_, zero_ended(name).c_str(), native_type<T>(), space, links, H5P_DEFAULT, H5P_DEFAULT), H5Dclose);
+  const Handle set(H5Dcreate2(id_, zero_ended(name).c_str(), native_type<T>(), space, links, H5P_DEFAULT, H5P_DEFAULT),
+                   H5Dclose);
   if (set < 0 || (!values.empty() && H5Dwrite(set, native_type<T>(), H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()) < 0))
     refuse("the dataset '" + std::string(name) + "' cannot be written");
 }
@@ -235,7 +238,7 @@ bool Group::attribute_is_text(std::string_view name) const {
 }
 
 template <class T>
-  requires std::is_arithmetic_v<T>
+requires std::is_arithmetic_v<T>
 void Group::set(std::string_view name, T value) const {
   const Handle space(H5Screate(H5S_SCALAR), H5Sclose);
   const Handle attribute = new_attribute(id_, name, native_type<T>(), space);
@@ -264,9 +267,9 @@ void Group::set(std::string_view name, const std::vector<std::string>& values) c
     refuse("the attribute '" + std::string(name) + "' cannot be written");
 }
 
-#define LACON_HDF5_TYPE(T)                                                                                      \
-  template std::vector<T> Group::read<T>(std::string_view) const;                                               \
-  template void Group::write<T>(std::string_view, std::span<const T>, std::vector<hsize_t>) const;              \
+#define LACON_HDF5_TYPE(T)                                                                         \
+  template std::vector<T> Group::read<T>(std::string_view) const;                                  \
+  template void Group::write<T>(std::string_view, std::span<const T>, std::vector<hsize_t>) const; \
   template void Group::set<T>(std::string_view, T) const;
 LACON_HDF5_TYPE(double)
 LACON_HDF5_TYPE(std::int64_t)

@@ -1,5 +1,6 @@
 #pragma once
-// HDF5 behind one small RAII wrapper. Every failure is a lacon::Error (BASE_2 on reading, BASE_3 on writing) that names the file.
+// HDF5 behind one small RAII wrapper. Every failure is a lacon::Error (BASE_2 on reading, BASE_3 on writing) that names the
+// file.
 #include <hdf5.h>
 
 #include <cstdint>
@@ -34,15 +35,25 @@ class Handle {
 template <class T>
 hid_t native_type();
 template <>
-inline hid_t native_type<double>() { return H5T_NATIVE_DOUBLE; }
+inline hid_t native_type<double>() {
+  return H5T_NATIVE_DOUBLE;
+}
 template <>
-inline hid_t native_type<std::int64_t>() { return H5T_NATIVE_INT64; }
+inline hid_t native_type<std::int64_t>() {
+  return H5T_NATIVE_INT64;
+}
 template <>
-inline hid_t native_type<std::int32_t>() { return H5T_NATIVE_INT32; }
+inline hid_t native_type<std::int32_t>() {
+  return H5T_NATIVE_INT32;
+}
 template <>
-inline hid_t native_type<std::int8_t>() { return H5T_NATIVE_INT8; }
+inline hid_t native_type<std::int8_t>() {
+  return H5T_NATIVE_INT8;
+}
 template <>
-inline hid_t native_type<std::uint8_t>() { return H5T_NATIVE_UINT8; }
+inline hid_t native_type<std::uint8_t>() {
+  return H5T_NATIVE_UINT8;
+}
 
 /// A group of an open file (the root group among them). Names may be paths, "cells/nodes".
 class Group {
@@ -50,10 +61,10 @@ class Group {
   const std::filesystem::path& path() const { return path_; }
   hid_t id() const { return id_; }
 
-  bool has(std::string_view name) const;                ///< a link of this name
-  std::vector<std::string> children() const;            ///< names, in alphabetical order
+  bool has(std::string_view name) const;      ///< a link of this name
+  std::vector<std::string> children() const;  ///< names, in alphabetical order
   Group open(std::string_view name) const;
-  Group create(std::string_view name) const;            ///< with creation order tracked and indexed (MED needs it)
+  Group create(std::string_view name) const;  ///< with creation order tracked and indexed (MED needs it)
   bool is_group(std::string_view name) const;
 
   std::vector<hsize_t> shape(std::string_view name) const;
@@ -71,13 +82,13 @@ class Group {
   bool has_attribute(std::string_view name) const;
   std::int64_t integer(std::string_view name) const;
   double real(std::string_view name) const;
-  std::string text(std::string_view name) const;        ///< fixed or variable length
+  std::string text(std::string_view name) const;  ///< fixed or variable length
   std::vector<std::string> attribute_strings(std::string_view name) const;
-  std::vector<std::string> attributes() const;          ///< names
+  std::vector<std::string> attributes() const;  ///< names
   bool attribute_is_text(std::string_view name) const;
   template <class T>
-    requires std::is_arithmetic_v<T>
-  void set(std::string_view name, T value) const;       ///< scalar of exactly this type
+  requires std::is_arithmetic_v<T>
+  void set(std::string_view name, T value) const;  ///< scalar of exactly this type
   void set(std::string_view name, std::string_view value) const;
   void set(std::string_view name, const std::vector<std::string>& values) const;
 

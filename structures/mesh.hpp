@@ -35,23 +35,23 @@ struct Group {
 
 /// The macro-elements of the slave skins (METHOD.md 1.8), made by CREA_MAILLAGE(DECOUPE_LAC).
 struct Patches {
-  std::vector<std::string> zone_group;    ///< GROUP_MA_ESCL of each zone, in the order given
+  std::vector<std::string> zone_group;       ///< GROUP_MA_ESCL of each zone, in the order given
   std::vector<std::int64_t> zone_offset{0};  ///< patches of zone k: zone_offset[k] to zone_offset[k + 1]
-  std::vector<std::int32_t> kind;         ///< row of catalog/contact.toml
-  std::vector<std::int32_t> parent;       ///< skin cell it came from, in the mesh before the cut
-  Ragged<std::int32_t> cells;             ///< sub-cells by rank
-  Ragged<std::int32_t> carriers;          ///< nodes that carry LAGS_C, the one that is read first
+  std::vector<std::int32_t> kind;            ///< row of catalog/contact.toml
+  std::vector<std::int32_t> parent;          ///< skin cell it came from, in the mesh before the cut
+  Ragged<std::int32_t> cells;                ///< sub-cells by rank
+  Ragged<std::int32_t> carriers;             ///< nodes that carry LAGS_C, the one that is read first
 
   std::size_t size() const { return kind.size(); }
 };
 
 /// Numbers are 0-based; what a user sees is node_name() and cell_name().
 struct Mesh {
-  std::string name;                       ///< in the file it was read from
-  int dimension = 3;                      ///< of the space: 2 or 3
-  std::vector<double> coordinates;        ///< (n_nodes, 3); z = 0 in 2D
-  std::vector<CellType> types;            ///< of each cell
-  Ragged<std::int32_t> cells;             ///< nodes of each cell, in the order of catalog/cells.toml
+  std::string name;                 ///< in the file it was read from
+  int dimension = 3;                ///< of the space: 2 or 3
+  std::vector<double> coordinates;  ///< (n_nodes, 3); z = 0 in 2D
+  std::vector<CellType> types;      ///< of each cell
+  Ragged<std::int32_t> cells;       ///< nodes of each cell, in the order of catalog/cells.toml
   std::vector<Group> cell_groups;
   std::vector<Group> node_groups;
   std::optional<Patches> patches;

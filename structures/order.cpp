@@ -28,8 +28,8 @@ struct Level {
   }
 };
 
-/// An order is complete (mandatory keywords, defaults) and holds only known keywords. Defaults inside a factor keyword count only
-/// where it is given. `place` names the occurrence in messages.
+/// An order is complete (mandatory keywords, defaults) and holds only known keywords. Defaults inside a factor keyword count
+/// only where it is given. `place` names the occurrence in messages.
 void check(const json& keywords, const Level& level, const std::string& place) {
   std::set<std::string> known;
   level.each([&](const catalog::KeywordRow& row, const std::string& name) {
@@ -97,7 +97,8 @@ std::vector<double> Keywords::reals(std::string_view name) const {
 std::vector<std::int64_t> Keywords::integers(std::string_view name) const {
   std::vector<std::int64_t> items;
   if (has(name))
-    for (const json& v : value(name)) items.push_back(get<std::int64_t>(v, v.is_number_integer(), path(name), "a list of integers"));
+    for (const json& v : value(name))
+      items.push_back(get<std::int64_t>(v, v.is_number_integer(), path(name), "a list of integers"));
   return items;
 }
 

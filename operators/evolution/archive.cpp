@@ -74,7 +74,8 @@ Field contact_field(const StaticProblem& problem, const StaticState& state, cons
     const bool paired = status != Status::unpaired;
     const double pressure = paired ? state.patches.lambda[p] : 0, coverage = paired ? contact.coverage(p) : 0;
     field.support.push_back(slave.cell);
-    for (const double value : {static_cast<double>(status), pressure, paired ? contact.gap(p) : -1.0, coverage, coverage * pressure})
+    for (const double value :
+         {static_cast<double>(status), pressure, paired ? contact.gap(p) : -1.0, coverage, coverage * pressure})
       field.values.push_back(value);
   }
   return field;

@@ -37,7 +37,11 @@ double largest_vector(std::span<const double> values, int dimension) {
 }  // namespace
 
 Newton::Newton(const StaticProblem& problem, const NewtonCriteria& criteria, const SolverOptions& solver)
-    : problem_(problem), criteria_(criteria), elements_(nodes_of_solids(problem)), system_(problem.numbering, elements_), solver_(solver) {
+    : problem_(problem),
+      criteria_(criteria),
+      elements_(nodes_of_solids(problem)),
+      system_(problem.numbering, elements_),
+      solver_(solver) {
   if (problem.contact) {
     contact_.emplace(problem);
     criteria_.resi_geom = problem.contact->resi_geom;
@@ -100,7 +104,8 @@ void Newton::factorise() {
     if (equation < 0 || std::find(null.begin(), null.end(), equation) == null.end()) continue;
     names += (shown++ ? ", " : "") + problem_.dof_name(static_cast<std::int64_t>(dof));
   }
-  fail("SOLVER_3", {{"count", std::to_string(factorisation_.null_pivots.size())}, {"names", names.empty() ? "multipliers of contact" : names}});
+  fail("SOLVER_3", {{"count", std::to_string(factorisation_.null_pivots.size())},
+                    {"names", names.empty() ? "multipliers of contact" : names}});
 }
 
 void Newton::judge(const std::vector<double>& external, const StaticState& state, IterationReport& report) {
@@ -191,7 +196,8 @@ int Newton::solve(double instant, StaticState& state, const std::function<void(c
     assemble(state);
     const double moved = largest_vector(increment, dimension), whole = largest_vector(state.displacement, dimension);
     // likewise displacements that vanish against the patches
-    line.geometry = moved == 0 ? 0 : moved / std::max(whole, contact_ ? vanishing_displacement * contact_->smallest_patch() : 0.0);
+    line.geometry =
+        moved == 0 ? 0 : moved / std::max(whole, contact_ ? vanishing_displacement * contact_->smallest_patch() : 0.0);
     judge(external, state, line);
     line.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     report(line);
@@ -199,7 +205,8 @@ int Newton::solve(double instant, StaticState& state, const std::function<void(c
     unmet = unmet_criteria(line, changed);
     if (!std::isfinite(line.maxi)) break;
   }
-  fail("EVOLUTION_4", {{"instant", fmt::format("{:.9g}", instant)}, {"iterations", std::to_string(criteria_.iterations)}, {"unmet", unmet}});
+  fail("EVOLUTION_4",
+       {{"instant", fmt::format("{:.9g}", instant)}, {"iterations", std::to_string(criteria_.iterations)}, {"unmet", unmet}});
 }
 
 void Newton::restart(const StaticState& state) {

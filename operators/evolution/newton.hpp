@@ -25,14 +25,14 @@ struct IterationReport {
   int iteration = 0;
   double rela = 0, maxi = 0;
   bool rela_met = true, maxi_met = true;
-  std::int64_t worst_dof = -1;      ///< where the residual is largest
+  std::int64_t worst_dof = -1;  ///< where the residual is largest
   std::int64_t status_changes = 0;
-  double geometry = 0;              ///< max |du| / max |u|
+  double geometry = 0;  ///< max |du| / max |u|
   bool geometry_met = true;
-  double constraint = 0;            ///< max |g_T| / h
+  double constraint = 0;  ///< max |g_T| / h
   bool constraint_met = true;
   std::int64_t negative_pivots = 0;
-  std::int64_t constraints = 0;     ///< active patches when the matrix was made: the negative pivots to expect
+  std::int64_t constraints = 0;  ///< active patches when the matrix was made: the negative pivots to expect
   double seconds = 0;
 
   bool converged() const { return rela_met && maxi_met && geometry_met && constraint_met && status_changes == 0; }
@@ -52,8 +52,8 @@ class Newton {
   StaticState initial_state();
 
   /// Solve the instant, starting from `state`. Calls `report` for each iteration.
-  /// @return number of iterations. Throws EVOLUTION_4 (not converged), SOLVER_3 (singular), ELEMENT_1 ...: severity S. `state` is
-  /// then between two instants.
+  /// @return number of iterations. Throws EVOLUTION_4 (not converged), SOLVER_3 (singular), ELEMENT_1 ...: severity S. `state`
+  /// is then between two instants.
   int solve(double instant, StaticState& state, const std::function<void(const IterationReport&)>& report);
 
   /// Stresses at integration points of each solid set at the last evaluation, (cells, points, components).

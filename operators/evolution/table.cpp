@@ -23,22 +23,34 @@ struct Column {
 std::string judged(double value, bool met) { return fmt::format("{:.5E} {}", value, met ? ' ' : 'X'); }
 
 const Column columns[] = {
-    {{"NEWTON", "ITERATION", ""}, [](const IterationReport& r, const StaticProblem&) { return fmt::format("{}{}", r.iteration, r.converged() ? ' ' : 'X'); }},
-    {{"RESIDU", "RELATIF", "RESI_GLOB_RELA"}, [](const IterationReport& r, const StaticProblem&) { return judged(r.rela, r.rela_met); }},
-    {{"RESIDU", "ABSOLU", "RESI_GLOB_MAXI"}, [](const IterationReport& r, const StaticProblem&) { return judged(r.maxi, r.maxi_met); }},
+    {{"NEWTON", "ITERATION", ""},
+     [](const IterationReport& r, const StaticProblem&) {
+       return fmt::format("{}{}", r.iteration, r.converged() ? ' ' : 'X');
+     }},
+    {{"RESIDU", "RELATIF", "RESI_GLOB_RELA"},
+     [](const IterationReport& r, const StaticProblem&) { return judged(r.rela, r.rela_met); }},
+    {{"RESIDU", "ABSOLU", "RESI_GLOB_MAXI"},
+     [](const IterationReport& r, const StaticProblem&) { return judged(r.maxi, r.maxi_met); }},
     {{"RESIDU", "MAXIMUM", "AU POINT"},
      [](const IterationReport& r, const StaticProblem& p) { return r.worst_dof < 0 ? std::string() : p.dof_name(r.worst_dof); },
-     false, true},
+     false,
+     true},
     {{"OPTION", "ASSEMBLAGE", ""}, [](const IterationReport&, const StaticProblem&) { return std::string("TANGENTE"); }},
     {{"CONTACT", "NEWTON GENE", "VARI. CONT."},
-     [](const IterationReport& r, const StaticProblem&) { return fmt::format("{} {}", r.status_changes, r.status_changes ? 'X' : ' '); }, true},
+     [](const IterationReport& r, const StaticProblem&) {
+       return fmt::format("{} {}", r.status_changes, r.status_changes ? 'X' : ' ');
+     },
+     true},
     {{"CONTACT", "NEWTON GENE", "CRIT. GEOM."},
-     [](const IterationReport& r, const StaticProblem&) { return judged(r.geometry, r.geometry_met); }, true},
+     [](const IterationReport& r, const StaticProblem&) { return judged(r.geometry, r.geometry_met); },
+     true},
     {{"CONTACT", "MAX. GAP / SIZE", "ACTIVE PATCHES"},
-     [](const IterationReport& r, const StaticProblem&) { return judged(r.constraint, r.constraint_met); }, true},
+     [](const IterationReport& r, const StaticProblem&) { return judged(r.constraint, r.constraint_met); },
+     true},
     {{"SOLVER", "NEGATIVE", "PIVOTS"},
      [](const IterationReport& r, const StaticProblem&) {
-       return r.negative_pivots == r.constraints ? fmt::format("{}", r.negative_pivots) : fmt::format("{} of {}", r.negative_pivots, r.constraints);
+       return r.negative_pivots == r.constraints ? fmt::format("{}", r.negative_pivots)
+                                                 : fmt::format("{} of {}", r.negative_pivots, r.constraints);
      }},
     {{"TIME", "SECONDS", ""}, [](const IterationReport& r, const StaticProblem&) { return fmt::format("{:.4f}", r.seconds); }},
 };
@@ -60,9 +72,7 @@ std::string NewtonTable::components(const std::array<double, 3>& vector) const {
   return text + ")";
 }
 
-void NewtonTable::rule() {
-  out_ << ' ' << std::string(shown(problem_, where_).size() * (width + 1) + 1, '-') << '\n';
-}
+void NewtonTable::rule() { out_ << ' ' << std::string(shown(problem_, where_).size() * (width + 1) + 1, '-') << '\n'; }
 
 void NewtonTable::start(double instant) {
   out_ << fmt::format("\n Instant de calcul: {:.12e}\n", instant);
@@ -78,7 +88,8 @@ void NewtonTable::start(double instant) {
 
 void NewtonTable::line(const IterationReport& report) {
   out_ << " |";
-  for (const Column* column : shown(problem_, where_)) out_ << fmt::format("{:>{}}|", column->value(report, problem_) + " ", width);
+  for (const Column* column : shown(problem_, where_))
+    out_ << fmt::format("{:>{}}|", column->value(report, problem_) + " ", width);
   out_ << std::endl;  // as it goes: a long computation shows where it is
 }
 
@@ -96,10 +107,12 @@ void NewtonTable::finish(double instant, int iterations, const StaticState& stat
     for (const ZoneBalance& zone : contact->balance(state.patches)) {
       std::array<double, 3> sum;
       for (int d = 0; d < 3; ++d) sum[d] = zone.on_slave[d] + zone.on_master[d];
-      out_ << fmt::format(" {} on {}: {} patches in contact, {} open, {} without master; covered {:.6g} of {:.6g}\n", zone.slave_group,
-                          zone.master_group, zone.active, zone.open, zone.unpaired, zone.covered, zone.whole)
-           << fmt::format("   force on the slave {}, on the master {}, sum {:.1e}, moment of both {:.1e}; largest |LAGS_C x JEU| {:.1e}\n",
-                          components(zone.on_slave), components(zone.on_master), norm(sum), norm(zone.moment), zone.work);
+      out_ << fmt::format(" {} on {}: {} patches in contact, {} open, {} without master; covered {:.6g} of {:.6g}\n",
+                          zone.slave_group, zone.master_group, zone.active, zone.open, zone.unpaired, zone.covered, zone.whole)
+           << fmt::format(
+                  "   force on the slave {}, on the master {}, sum {:.1e}, moment of both {:.1e}; largest |LAGS_C x JEU| "
+                  "{:.1e}\n",
+                  components(zone.on_slave), components(zone.on_master), norm(sum), norm(zone.moment), zone.work);
     }
   }
   out_.flush();

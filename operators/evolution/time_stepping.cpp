@@ -61,7 +61,8 @@ TimeSteps restrict(const TimeSteps& steps, const Interval& interval) {
   if (interval.last_number) last = check_number(steps, *interval.last_number);
   if (steps.values.size() < 2 || last <= first) fail("EVOLUTION_5", {{"what", "there is no step to compute"}});
   TimeSteps part = steps;
-  part.values.assign(steps.values.begin() + static_cast<std::ptrdiff_t>(first), steps.values.begin() + static_cast<std::ptrdiff_t>(last) + 1);
+  part.values.assign(steps.values.begin() + static_cast<std::ptrdiff_t>(first),
+                     steps.values.begin() + static_cast<std::ptrdiff_t>(last) + 1);
   return part;
 }
 

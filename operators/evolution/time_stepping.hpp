@@ -17,8 +17,8 @@ using GoBack = std::function<void()>;
 /// Called when an instant is solved. @param asked whether the user asked for it (or a cut made it)
 using Solved = std::function<void(double instant, bool asked)>;
 
-/// Solve every instant of `steps` behind the first. A step that fails is cut into `cut_into` equal ones, at most `cut_levels` times
-/// over (DEFI_LIST_INST, ECHEC/ACTION='DECOUPE'); the failure that no cut can help is thrown on.
+/// Solve every instant of `steps` behind the first. A step that fails is cut into `cut_into` equal ones, at most `cut_levels`
+/// times over (DEFI_LIST_INST, ECHEC/ACTION='DECOUPE'); the failure that no cut can help is thrown on.
 void step_through(const TimeSteps& steps, const SolveInstant& solve, const GoBack& go_back, const Solved& solved);
 
 /// The instants that INCREMENT asks for, the initial one first: from INST_INIT or NUME_INST_INIT to INST_FIN or NUME_INST_FIN.

@@ -143,8 +143,9 @@ void stat_non_line(const Order& order, const Base& base) {
   }();
   const TimeSteps steps = steps_of(single(keywords, "INCREMENT"), base);
   const Archiving archiving(single(keywords, "ARCHIVAGE"), base);
-  Newton newton(problem, criteria_of(single(keywords, "CONVERGENCE")),
-                {.memory_margin = static_cast<int>(solver.integer("PCENT_PIVOT")), .residual_tolerance = solver.real("RESI_RELA")});
+  Newton newton(
+      problem, criteria_of(single(keywords, "CONVERGENCE")),
+      {.memory_margin = static_cast<int>(solver.integer("PCENT_PIVOT")), .residual_tolerance = solver.real("RESI_RELA")});
   NewtonTable table(std::cout, problem, single(keywords, "AFFICHAGE").yes("INFO_RESIDU"));
 
   StaticState state = newton.initial_state(), last = state;
@@ -173,7 +174,8 @@ void stat_non_line(const Order& order, const Base& base) {
     table.finish(instant, iterations, state, newton.contact());
     last = state;
     step += asked;
-    if (archiving.keeps(instant, step) || instant == steps.values.back()) archive.add(instant, iterations, state, newton, archiving);
+    if (archiving.keeps(instant, step) || instant == steps.values.back())
+      archive.add(instant, iterations, state, newton, archiving);
   };
   try {
     step_through(steps, solve, go_back, solved);

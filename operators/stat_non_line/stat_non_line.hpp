@@ -4,7 +4,8 @@
 
 namespace lacon {
 
-/// Compute every instant of the order and store the result. A failure stores what has been computed before it, then is thrown on.
+/// Compute every instant of the order and store the result. A failure stores what has been computed before it, then is thrown
+/// on.
 void stat_non_line(const Order& order, const Base& base);
 
 }  // namespace lacon

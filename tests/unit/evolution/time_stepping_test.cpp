@@ -19,7 +19,10 @@ struct Solver {
   void run(const TimeSteps& steps) {
     at = steps.values.front();
     step_through(
-        steps, [&](double to) { if (to - at > longest * (1 + 1e-12)) fail("EVOLUTION_4", {{"instant", ""}, {"iterations", ""}, {"unmet", ""}}); },
+        steps,
+        [&](double to) {
+          if (to - at > longest * (1 + 1e-12)) fail("EVOLUTION_4", {{"instant", ""}, {"iterations", ""}, {"unmet", ""}});
+        },
         [&] { ++returns; },
         [&](double to, bool was_asked) {
           at = to;
@@ -68,7 +71,13 @@ TEST(TimeStepping, DoesNotCutWhereTheUserDidNotAskForIt) {
 TEST(TimeStepping, CutsOnlyFailuresOfTheSolution) {
   const TimeSteps steps{.values = {0, 1}, .cut = true};
   int returns = 0;
-  EXPECT_THROW(step_through(steps, [](double) { fail("ORDER_5", {{"unit", "20"}}); }, [&] { ++returns; }, [](double, bool) {}), Error);
+  EXPECT_THROW(step_through(
+                   steps,
+                   [](double) {
+                     fail("ORDER_5", {{"unit", "20"}});
+                   },
+                   [&] { ++returns; }, [](double, bool) {}),
+               Error);
   EXPECT_EQ(returns, 0);
 }
 
