@@ -18,6 +18,11 @@ struct PairingTolerances {
   double box =
       1e-12;  ///< boxes of the search tree grow by this fraction of the master surface: round-off must not hide a couple
   double ray = 1e-11;  ///< an image must lie on the normal of its point to this fraction of the couple's extent
+  // in space
+  double flat = 1e-10;  ///< a facet is flat, an edge straight, below this turn of the normal or relative bulge
+  double overlap =
+      1e-12;             ///< two masters hide one another where their polygons share more than this fraction of the slave cell
+  double margin = 0.25;  ///< an image may lie outside its curved cell by this much of the reference cell
 };
 
 struct PairingOptions {
@@ -46,12 +51,13 @@ struct Pairing {
   std::int64_t count(Rejection rejection) const { return rejected[static_cast<std::size_t>(rejection)]; }
 };
 
-/// Pair two surfaces of the plane. The result does not depend on the order of cells or nodes, and has the same bits in every
-/// run. On one slave cell contact cells never overlap; where masters cover it they leave no gap. Throws std::invalid_argument
-/// for a cell that is no SEG2 or SEG3.
+/// Pair two surfaces of the same dimension: SEG2 and SEG3 in the plane, TRIA3, TRIA6, QUAD4, QUAD8 and QUAD9 in space. The
+/// result does not depend on the order of cells or nodes, and has the same bits in every run. On one slave cell contact cells
+/// never overlap; where masters cover it they leave no gap. Throws std::invalid_argument for other cells and for dimensions
+/// that differ.
 Pairing pair(const Surface& slave, const Surface& master, const PairingOptions& options = {});
 
-/// Integration points that pairing places on a contact cell of these two kinds.
+/// Integration points that pairing places on a contact cell of these two kinds in the plane.
 int integration_points(CellType slave, CellType master);
 
 }  // namespace lacon

@@ -1,0 +1,108 @@
+#include "lacon/pairing/facet.hpp"
+
+#include <algorithm>
+#include <limits>
+
+namespace lacon::space {
+
+Map3 interpolate(CellType type, std::span<const Vec3> v) {
+  Map3 m;
+  switch (type) {
+    case CellType::TRIA3:
+      return {3, {v[0], v[1] - v[0], v[2] - v[0]}};
+    case CellType::TRIA6: {
+      // differences to the straight facet first, so that mid nodes in the middle give zero to round-off
+      const Vec3 b1 = v[3] - 0.5 * (v[0] + v[1]), b2 = v[4] - 0.5 * (v[1] + v[2]), b3 = v[5] - 0.5 * (v[2] + v[0]);
+      m.n = 6;
+      m.c[0] = v[0];
+      m.c[1] = v[1] - v[0] + 4 * b1;
+      m.c[2] = v[2] - v[0] + 4 * b3;
+      m.c[3] = 4 * (b2 - b1 - b3);
+      m.c[4] = -4 * b1;
+      m.c[5] = -4 * b3;
+      return m;
+    }
+    default:
+      break;
+  }
+  const Vec3 low = v[1] - v[0], high = v[2] - v[3];
+  m.n = 4;
+  m.c[0] = 0.25 * ((v[0] + v[2]) + (v[1] + v[3]));
+  m.c[1] = 0.25 * (low + high);
+  m.c[2] = 0.25 * ((v[3] - v[0]) + (v[2] - v[1]));
+  m.c[3] = 0.25 * (high - low);
+  if (type == CellType::QUAD4) return m;
+  // differences to the bilinear facet: bulges of edges at (0, -1), (1, 0), (0, 1), (-1, 0) and of the middle
+  const Vec3 s = v[4] - 0.5 * (v[0] + v[1]), e = v[5] - 0.5 * (v[1] + v[2]), n = v[6] - 0.5 * (v[2] + v[3]),
+             w = v[7] - 0.5 * (v[3] + v[0]);
+  const Vec3 middle = type == CellType::QUAD9 ? v[8] - m.c[0] : 0.5 * ((s + n) + (e + w));
+  m.n = 9;
+  m.c[0] = m.c[0] + middle;
+  m.c[1] = m.c[1] + 0.5 * (e - w);
+  m.c[2] = m.c[2] + 0.5 * (n - s);
+  m.c[4] = 0.5 * (e + w) - middle;
+  m.c[5] = 0.5 * (n + s) - middle;
+  m.c[6] = -0.5 * (n - s);
+  m.c[7] = -0.5 * (e - w);
+  m.c[8] = middle - 0.5 * ((s + n) + (e + w));
+  return m;
+}
+
+Map2 project(const Map3& map, Vec3 e1, Vec3 e2) {
+  Map2 p;
+  p.n = map.n;
+  for (int t = 0; t < map.n; ++t) p.c[t] = {dot(map.c[t], e1), dot(map.c[t], e2)};
+  return p;
+}
+
+std::optional<Vec2> inverse(const Map2& map, Family family, Vec2 y, double tolerance, double margin) {
+  const bool triangle = family == Family::TRIA;
+  Vec2 p = triangle ? Vec2{1.0 / 3, 1.0 / 3} : Vec2{0, 0};
+  Map2::Value v = map(p);
+  double residual = norm(y - v.x);
+  for (int iteration = 0; iteration < 60 && residual > 0; ++iteration) {
+    const Vec2 r = y - v.x;
+    const double det = cross(v.d1, v.d2);
+    Vec2 step{cross(r, v.d2) / det, cross(v.d1, r) / det};
+    if (!std::isfinite(step.x) || !std::isfinite(step.y)) break;
+    const double length = std::max(std::abs(step.x), std::abs(step.y));
+    if (length > 2) step = (2 / length) * step;
+    bool better = false;
+    for (int half = 0; half < 8 && !better; ++half, step = 0.5 * step) {
+      const Vec2 q = p + step;
+      const Map2::Value w = map(q);
+      const double left = norm(y - w.x);
+      if (!(left < residual)) continue;
+      better = true;
+      p = q;
+      v = w;
+      residual = left;
+    }
+    if (!better) break;         // round-off
+    if (length <= 1e-9) break;  // quadratic: the next step would be below round-off
+  }
+  const auto [x, z] = p;
+  const bool near =
+      triangle ? x >= -margin && z >= -margin && x + z <= 1 + margin : std::max(std::abs(x), std::abs(z)) <= 1 + margin;
+  if (!(residual <= tolerance) || !near) return std::nullopt;
+  return p;
+}
+
+double distortion(const Map3& map, Family family, Vec3 normal) {
+  double low = std::numeric_limits<double>::infinity(), high = -low;
+  for (const Vec2 p : probes(family)) {
+    const Map3::Value v = map(p);
+    const double jacobian = dot(cross(v.d1, v.d2), normal);
+    low = std::min(low, jacobian);
+    high = std::max(high, jacobian);
+  }
+  return low > 0 ? (high - low) / (high + low) : 1;
+}
+
+std::span<const Vec2> probes(Family family) {
+  static constexpr Vec2 triangle[] = {{0, 0}, {1, 0}, {0, 1}, {0.5, 0}, {0.5, 0.5}, {0, 0.5}, {1.0 / 3, 1.0 / 3}};
+  static constexpr Vec2 square[] = {{-1, -1}, {1, -1}, {1, 1}, {-1, 1}, {0, -1}, {1, 0}, {0, 1}, {-1, 0}, {0, 0}};
+  return family == Family::TRIA ? std::span<const Vec2>(triangle) : std::span<const Vec2>(square);
+}
+
+}  // namespace lacon::space

@@ -1,0 +1,76 @@
+#pragma once
+// The geometry of a facet as a polynomial of its reference coordinates, in space or projected to a plane.
+#include <array>
+#include <cmath>
+#include <optional>
+#include <span>
+
+#include "lacon/catalog/cells.hpp"
+#include "lacon/pairing/polygon.hpp"
+
+namespace lacon::space {
+
+struct Vec3 {
+  double x = 0, y = 0, z = 0;
+};
+inline Vec3 operator+(Vec3 a, Vec3 b) { return {a.x + b.x, a.y + b.y, a.z + b.z}; }
+inline Vec3 operator-(Vec3 a, Vec3 b) { return {a.x - b.x, a.y - b.y, a.z - b.z}; }
+inline Vec3 operator*(double s, Vec3 a) { return {s * a.x, s * a.y, s * a.z}; }
+inline double dot(Vec3 a, Vec3 b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
+inline Vec3 cross(Vec3 a, Vec3 b) { return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x}; }
+inline double norm(Vec3 a) { return std::sqrt(dot(a, a)); }
+
+/// sum of c[t] xi^i eta^j over the terms (i, j) of the kind of facet: TRIA3 takes the first three, QUAD4 four, TRIA6 six, QUAD8
+/// and QUAD9 nine.
+template <class Vec>
+struct FacetMap {
+  int n = 0;
+  std::array<Vec, 9> c{};  ///< of 1, xi, eta, xi eta, xi^2, eta^2, xi^2 eta, xi eta^2, xi^2 eta^2
+
+  struct Value {
+    Vec x, d1, d2;  ///< position, derivatives by xi and by eta
+  };
+  Value operator()(Vec2 p) const {
+    Value v{c[0] + p.x * c[1] + p.y * c[2], c[1], c[2]};
+    if (n > 3) {
+      v.x = v.x + (p.x * p.y) * c[3];
+      v.d1 = v.d1 + p.y * c[3];
+      v.d2 = v.d2 + p.x * c[3];
+    }
+    if (n > 4) {
+      v.x = v.x + (p.x * p.x) * c[4] + (p.y * p.y) * c[5];
+      v.d1 = v.d1 + (2 * p.x) * c[4];
+      v.d2 = v.d2 + (2 * p.y) * c[5];
+    }
+    if (n > 6) {
+      const double xx = p.x * p.x, yy = p.y * p.y, xy = p.x * p.y;
+      v.x = v.x + (xx * p.y) * c[6] + (p.x * yy) * c[7] + (xx * yy) * c[8];
+      v.d1 = v.d1 + (2 * xy) * c[6] + yy * c[7] + (2 * p.x * yy) * c[8];
+      v.d2 = v.d2 + xx * c[6] + (2 * xy) * c[7] + (2 * xx * p.y) * c[8];
+    }
+    return v;
+  }
+};
+using Map3 = FacetMap<Vec3>;
+using Map2 = FacetMap<Vec2>;
+
+/// The map through values at the nodes of a facet. @param values (n_nodes) in the order of catalog/cells.toml
+Map3 interpolate(CellType type, std::span<const Vec3> values);
+
+/// Its components along two directions.
+Map2 project(const Map3& map, Vec3 e1, Vec3 e2);
+
+/// Where a map takes the value y: Newton's method from the middle of the reference cell, with shorter steps where the residual
+/// would grow.
+/// @param tolerance largest residual, a length. Empty where the method ends elsewhere, or further than `margin` from the
+/// reference cell.
+std::optional<Vec2> inverse(const Map2& map, Family family, Vec2 y, double tolerance, double margin);
+
+/// How much the Jacobian along `normal` varies, (max - min) / (max + min) over vertices, middles of edges and the middle; 0 for
+/// an affine facet, at least 1 for a folded one.
+double distortion(const Map3& map, Family family, Vec3 normal);
+
+/// Reference points where a facet is examined: vertices, middles of edges, the middle.
+std::span<const Vec2> probes(Family family);
+
+}  // namespace lacon::space

@@ -1,0 +1,399 @@
+// Pairing in the plane.
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <tuple>
+
+#include "lacon/elements/reference.hpp"
+#include "lacon/pairing/box_tree.hpp"
+#include "lacon/pairing/detail.hpp"
+#include "lacon/pairing/polynomial.hpp"
+
+// Everything rests on one function. T(xi) is the slave's tangent, or what is at a right angle to its interpolated nodal
+// normal; for a point q
+//     f_q(xi) = (q - x_e(xi)) . T(xi)
+// is positive where q lies ahead of the normal through x_e(xi), and negative where it lies behind. That normal crosses a
+// master cell of ends a, b, the master facing the slave, exactly where f_a >= 0 > f_b. f_q is a polynomial of degree 1 to 4,
+// and its sign changes are computed from the slave cell and q alone: two masters that share a node share the end of their
+// intervals bit by bit.
+
+namespace lacon {
+namespace {
+
+struct Vec {
+  double x = 0, y = 0;
+};
+Vec operator+(Vec a, Vec b) { return {a.x + b.x, a.y + b.y}; }
+Vec operator-(Vec a, Vec b) { return {a.x - b.x, a.y - b.y}; }
+Vec operator*(double s, Vec a) { return {s * a.x, s * a.y}; }
+double dot(Vec a, Vec b) { return a.x * b.x + a.y * b.y; }
+double norm(Vec a) { return std::hypot(a.x, a.y); }
+
+/// A polynomial of degree 2 in the plane.
+struct Curve {
+  int degree = 1;
+  std::array<Vec, 3> c{};
+  Vec operator()(double xi) const { return c[0] + xi * (c[1] + xi * c[2]); }
+};
+
+/// Through the values at -1 and 1 and, in a quadratic cell, at 0.
+Curve interpolate(std::span<const Vec> values) {
+  const Vec mean = 0.5 * (values[0] + values[1]);
+  const Vec slope = 0.5 * (values[1] - values[0]);
+  if (values.size() == 2) return {1, {mean, slope, {}}};
+  return {2, {values[2], slope, mean - values[2]}};
+}
+
+Polynomial operator*(const Curve& a, const Curve& b) {
+  Polynomial p;
+  p.degree = a.degree + b.degree;
+  for (int i = 0; i <= a.degree; ++i)
+    for (int j = 0; j <= b.degree; ++j) p.c[i + j] += dot(a.c[i], b.c[j]);
+  return p;
+}
+
+/// p on [-1, 1] lies within the range of these coefficients (Bernstein).
+std::array<double, Polynomial::max_degree + 1> bernstein(const Polynomial& p) {
+  static constexpr double binomial[5][5] = {{1}, {1, 1}, {1, 2, 1}, {1, 3, 3, 1}, {1, 4, 6, 4, 1}};
+  // coefficients of p(2 t - 1) by Horner's scheme, then from powers of t to Bernstein's basis
+  std::array<double, 5> t{};
+  for (int k = p.degree; k >= 0; --k) {
+    for (int i = p.degree; i >= 0; --i) t[i] = (i > 0 ? 2 * t[i - 1] : 0) - t[i];
+    t[0] += p.c[k];
+  }
+  std::array<double, 5> b{};
+  for (int i = 0; i <= p.degree; ++i)
+    for (int k = 0; k <= i; ++k) b[i] += binomial[i][k] / binomial[p.degree][k] * t[k];
+  return b;
+}
+
+Vec point(const Surface& surface, std::int32_t node) {
+  return {surface.coordinates[3 * node], surface.coordinates[3 * node + 1]};
+}
+
+using detail::finite;
+
+double extent(const Surface& surface) {
+  Box<2> box = Box<2>::empty();
+  for (std::size_t cell = 0; cell < surface.size(); ++cell)
+    if (finite(surface, cell))
+      for (const std::int32_t node : surface.nodes[cell]) box.add(surface.coordinates.data() + 3 * node);
+  return surface.size() == 0 || !(box.low[0] <= box.high[0]) ? 0
+                                                             : std::hypot(box.high[0] - box.low[0], box.high[1] - box.low[1]);
+}
+
+/// A slave cell, in coordinates whose origin is its middle: differences of large coordinates are taken once, and exactly alike
+/// for every master.
+struct SlaveCell {
+  Vec origin;
+  Curve x;               ///< x_e - origin
+  Curve tangent;         ///< T; (T_y, -T_x) points along the outward normal
+  Polynomial x_tangent;  ///< x . T
+
+  Polynomial ahead(Vec q) const {
+    const Curve constant{0, {q - origin, {}, {}}};
+    Polynomial f = x_tangent;
+    const Polynomial qt = constant * tangent;
+    for (int k = 0; k <= f.degree; ++k) f.c[k] = (k <= qt.degree ? qt.c[k] : 0) - f.c[k];
+    return f;
+  }
+};
+
+SlaveCell slave_cell(const Surface& surface, std::size_t cell) {
+  const auto nodes = surface.nodes[cell];
+  std::array<Vec, 3> x, t;
+  SlaveCell slave;
+  slave.origin = 0.5 * (point(surface, nodes[0]) + point(surface, nodes[1]));
+  for (std::size_t i = 0; i < nodes.size(); ++i) x[i] = point(surface, nodes[i]) - slave.origin;
+  slave.x = interpolate(std::span(x).first(nodes.size()));
+  if (surface.normals.empty()) {
+    slave.tangent = {slave.x.degree - 1, {slave.x.c[1], 2.0 * slave.x.c[2], {}}};
+  } else {
+    for (std::size_t i = 0; i < nodes.size(); ++i) t[i] = {-surface.normals[3 * nodes[i] + 1], surface.normals[3 * nodes[i]]};
+    slave.tangent = interpolate(std::span(t).first(nodes.size()));
+  }
+  slave.x_tangent = slave.x * slave.tangent;
+  return slave;
+}
+
+bool degenerate(const SlaveCell& slave, const Surface& surface, double size, double tolerance) {
+  const Curve derivative{slave.x.degree - 1, {slave.x.c[1], 2.0 * slave.x.c[2], {}}};
+  const double length = std::max(norm(slave.x.c[1]), norm(slave.x.c[2]));
+  if (!(length > tolerance * size)) return true;
+  const auto vanishes = [&](const Curve& c, double scale) { return !(minimum(c * c) > tolerance * tolerance * scale * scale); };
+  return vanishes(derivative, length) || (!surface.normals.empty() && vanishes(slave.tangent, 1));
+}
+
+/// Which boxes may hold a point that a normal of the slave cell passes: none of those that lie ahead, or behind, of all of
+/// them.
+class Strip {
+ public:
+  explicit Strip(const SlaveCell& slave) : origin_(slave.origin), n_(slave.x_tangent.degree + 1) {
+    Polynomial tx, ty;
+    tx.degree = ty.degree = slave.x_tangent.degree;
+    for (int k = 0; k <= slave.tangent.degree; ++k) {
+      tx.c[k] = slave.tangent.c[k].x;
+      ty.c[k] = slave.tangent.c[k].y;
+    }
+    tx_ = bernstein(tx), ty_ = bernstein(ty), offset_ = bernstein(slave.x_tangent);
+  }
+  bool touches(const Box<2>& box) const {
+    const double x = 0.5 * (box.low[0] + box.high[0]) - origin_.x, y = 0.5 * (box.low[1] + box.high[1]) - origin_.y;
+    const double half_x = 0.5 * (box.high[0] - box.low[0]), half_y = 0.5 * (box.high[1] - box.low[1]);
+    bool all_ahead = true, all_behind = true;
+    for (int k = 0; k < n_; ++k) {
+      const double f = x * tx_[k] + y * ty_[k] - offset_[k];
+      const double range = half_x * std::abs(tx_[k]) + half_y * std::abs(ty_[k]);
+      all_ahead = all_ahead && f > range;
+      all_behind = all_behind && f < -range;
+    }
+    return !all_ahead && !all_behind;
+  }
+
+ private:
+  Vec origin_;
+  int n_;
+  std::array<double, 5> tx_, ty_, offset_;
+};
+
+/// A part of a slave cell that sees one master cell.
+struct Interval {
+  double a, b;
+  std::int32_t master;
+};
+
+/// Sign changes of f_q by node, computed once for each slave cell.
+class Projections {
+ public:
+  explicit Projections(std::size_t n_nodes) : stamp_(n_nodes, -1), at_(n_nodes) {}
+  void start(std::int32_t slave) {
+    slave_ = slave;
+    found_.clear();
+  }
+  const SignChanges& of(const SlaveCell& slave, const Surface& master, std::int32_t node) {
+    if (stamp_[node] != slave_) {
+      stamp_[node] = slave_;
+      at_[node] = found_.size();
+      found_.push_back(sign_changes(slave.ahead(point(master, node))));
+    }
+    return found_[at_[node]];
+  }
+
+ private:
+  std::int32_t slave_ = -1;
+  std::vector<std::int32_t> stamp_;
+  std::vector<std::size_t> at_;
+  std::vector<SignChanges> found_;
+};
+
+/// Call facing(a, b) and away(a, b) for the parts of [-1, 1] on which the normal crosses a master whose ends are `first` and
+/// `second`.
+template <class Facing, class Away>
+void crossings(const SignChanges& first, const SignChanges& second, const Facing& facing, const Away& away) {
+  bool s1 = first.positive, s2 = second.positive;
+  double a = -1;
+  for (int i = 0, j = 0;;) {
+    const double next1 = i < first.n ? first.at[i] : 1, next2 = j < second.n ? second.at[j] : 1;
+    const double b = std::min(next1, next2);
+    if (b > a && s1 && !s2) facing(a, b);
+    if (b > a && !s1 && s2) away(a, b);
+    a = b;
+    if (i < first.n && next1 <= next2) {
+      s1 = !s1;
+      ++i;
+    } else if (j < second.n) {
+      s2 = !s2;
+      ++j;
+    } else {
+      return;
+    }
+  }
+}
+
+struct Image {
+  bool found = false;
+  double xi = 0;   ///< on the master
+  double gap = 0;  ///< (x_m - x) . n_e
+};
+
+/// Where the normal of the slave at xi meets the true master, curved if it is. The ends of the master lie on both sides of the
+/// normal, but for round-off: then the end itself is the image, moved by one step of Newton's method.
+Image image(const SlaveCell& slave, double xi, const Surface& master, std::int32_t cell, const PairingTolerances& tolerances) {
+  const auto nodes = master.nodes[cell];
+  const Vec x = slave.x(xi), t = slave.tangent(xi);
+  std::array<Vec, 3> points;
+  double size = norm(x);
+  for (std::size_t i = 0; i < nodes.size(); ++i) {
+    points[i] = point(master, nodes[i]) - slave.origin - x;
+    size = std::max(size, norm(points[i]));
+  }
+  const Curve curve = interpolate(std::span(points).first(nodes.size()));
+  const Polynomial h = curve * Curve{0, {(1 / norm(t)) * t, {}, {}}};
+  const SignChanges zero = sign_changes(h);
+  Image image;
+  if (zero.n > 0) {
+    image.xi = zero.at[0];
+  } else {
+    const double end = std::abs(h(-1)) < std::abs(h(1)) ? -1 : 1;
+    const double step = -h(end) / h.derivative()(end);
+    image.xi = end + (std::abs(step) <= tolerances.ray ? step : 0);
+  }
+  image.found = std::abs(h(image.xi)) <= tolerances.ray * size;
+  const Vec d = curve(image.xi);
+  image.gap = (d.x * t.y - d.y * t.x) / norm(t);
+  return image;
+}
+
+/// Where several masters cover a part of a slave cell, the nearest along the normal keeps it.
+class Overlaps {
+ public:
+  /// @param[in,out] intervals sorted by (a, b)
+  template <class Distance, class Hidden>
+  void resolve(std::vector<Interval>& intervals, double sliver, const Distance& distance, const Hidden& hidden) {
+    bool any = false;
+    double end = -1;
+    for (const Interval& i : intervals) {
+      any = any || i.a < end;
+      end = std::max(end, i.b);
+    }
+    if (!any) return;
+    breaks_.clear();
+    result_.clear();
+    for (const Interval& i : intervals) breaks_.insert(breaks_.end(), {i.a, i.b});
+    std::sort(breaks_.begin(), breaks_.end());
+    breaks_.erase(std::unique(breaks_.begin(), breaks_.end()), breaks_.end());
+    lost_.assign(intervals.size(), 0.0);
+    for (std::size_t k = 0; k + 1 < breaks_.size(); ++k) {
+      const double a = breaks_[k], b = breaks_[k + 1];
+      const auto covers = [&](const Interval& i) { return i.a <= a && i.b >= b; };
+      const auto n = std::count_if(intervals.begin(), intervals.end(), covers);
+      if (n == 0) continue;
+      std::size_t nearest = intervals.size();
+      double least = std::numeric_limits<double>::infinity();
+      for (std::size_t i = 0; i < intervals.size(); ++i)
+        if (covers(intervals[i])) {
+          const double d = n == 1 ? 0 : std::abs(distance(0.5 * (a + b), intervals[i].master));
+          if (nearest == intervals.size() || d < least) nearest = i, least = d;
+        }
+      for (std::size_t i = 0; i < intervals.size(); ++i)
+        if (i != nearest && covers(intervals[i])) lost_[i] += b - a;
+      if (!result_.empty() && result_.back().b == a && result_.back().master == intervals[nearest].master)
+        result_.back().b = b;
+      else
+        result_.push_back({a, b, intervals[nearest].master});
+    }
+    for (const double lost : lost_)
+      if (lost > 2 * sliver) hidden();
+    intervals.swap(result_);
+  }
+
+ private:
+  std::vector<double> breaks_, lost_;
+  std::vector<Interval> result_;
+};
+
+}  // namespace
+
+int integration_points(CellType slave, CellType master) { return slave == CellType::SEG2 && master == CellType::SEG2 ? 3 : 4; }
+
+Pairing detail::pair_in_plane(const Surface& slave, const Surface& master, const PairingOptions& options) {
+  const PairingTolerances& tolerances = options.tolerances;
+  Pairing pairing;
+  pairing.cells.dimension = 2;
+  const auto reject = [&](Rejection reason) { ++pairing.rejected[static_cast<std::size_t>(reason)]; };
+
+  const double slave_extent = extent(slave), master_extent = extent(master);
+  std::vector<std::int32_t> usable;
+  std::vector<Box<2>> boxes;
+  for (std::size_t cell = 0; cell < master.size(); ++cell) {
+    const Vec a = finite(master, cell) ? point(master, master.nodes[cell][0]) : Vec{},
+              b = finite(master, cell) ? point(master, master.nodes[cell][1]) : Vec{};
+    if (!(norm(b - a) > tolerances.degenerate * master_extent)) {
+      reject(Rejection::degenerate_master);
+      continue;
+    }
+    Box<2> box = Box<2>::empty();  // of the ends alone: where a normal passes between them decides, not where the cell bulges
+    box.add(std::array{a.x, a.y}.data());
+    box.add(std::array{b.x, b.y}.data());
+    for (int d = 0; d < 2; ++d) {
+      box.low[d] -= tolerances.box * master_extent;
+      box.high[d] += tolerances.box * master_extent;
+    }
+    usable.push_back(static_cast<std::int32_t>(cell));
+    boxes.push_back(box);
+  }
+  const BoxTree<2> tree(std::move(boxes));
+
+  Projections projections(master.coordinates.size() / 3);
+  Overlaps overlaps;
+  std::vector<Interval> intervals;
+  for (std::size_t cell = 0; cell < slave.size(); ++cell) {
+    const auto slave_index = static_cast<std::int32_t>(cell);
+    const SlaveCell e = finite(slave, cell) ? slave_cell(slave, cell) : SlaveCell{};
+    if (degenerate(e, slave, slave_extent, tolerances.degenerate)) {
+      reject(Rejection::degenerate_slave);
+      pairing.degenerate_slaves.push_back(slave_index);
+      continue;
+    }
+    intervals.clear();
+    projections.start(slave_index);
+    const auto couple = [&](std::int32_t m) {
+      const std::int32_t first = master.nodes[m][0], second = master.nodes[m][1];
+      projections.of(e, master, first);  // both before a reference is kept: the second may move the first
+      projections.of(e, master, second);
+      double away = 0;
+      crossings(
+          projections.of(e, master, first), projections.of(e, master, second),
+          [&](double a, double b) {
+            intervals.push_back({a, b, m});
+          },
+          [&](double a, double b) { away += b - a; });
+      if (away > 2 * tolerances.sliver) reject(Rejection::facing_away);
+    };
+    if (options.brute_force) {
+      for (const std::int32_t m : usable) couple(m);
+    } else {
+      const Strip strip(e);
+      tree.visit([&](const Box<2>& box) { return strip.touches(box); }, [&](std::int32_t i) { couple(usable[i]); });
+    }
+    std::sort(intervals.begin(), intervals.end(),
+              [](const Interval& i, const Interval& j) { return std::tie(i.a, i.b, i.master) < std::tie(j.a, j.b, j.master); });
+    overlaps.resolve(
+        intervals, tolerances.sliver, [&](double xi, std::int32_t m) { return image(e, xi, master, m, tolerances).gap; },
+        [&] { reject(Rejection::hidden); });
+
+    for (const auto& [a, b, m] : intervals) {
+      if (!(b - a > 2 * tolerances.sliver)) {
+        reject(Rejection::sliver);
+        continue;
+      }
+      const Rule& rule = gauss_rule(integration_points(slave.types[cell], master.types[m]));
+      ContactCells& cells = pairing.cells;
+      const std::size_t before = cells.weight.size();
+      bool complete = true;
+      for (int g = 0; g < rule.size() && complete; ++g) {
+        const double xi = 0.5 * (a + b) + 0.5 * (b - a) * rule.points[g];
+        const Image on_master = image(e, xi, master, m, tolerances);
+        complete = on_master.found;
+        cells.slave_point.push_back(xi);
+        cells.master_point.push_back(on_master.xi);
+        cells.weight.push_back(0.5 * (b - a) * rule.weights[g]);
+      }
+      if (!complete) {
+        cells.slave_point.resize(before);
+        cells.master_point.resize(before);
+        cells.weight.resize(before);
+        reject(Rejection::no_image);
+        continue;
+      }
+      cells.slave.push_back(slave_index);
+      cells.master.push_back(m);
+      cells.offset.push_back(static_cast<std::int64_t>(cells.weight.size()));
+      cells.vertex.insert(cells.vertex.end(), {a, b});
+      cells.vertex_offset.push_back(static_cast<std::int64_t>(cells.vertex.size()));
+    }
+  }
+  return pairing;
+}
+
+}  // namespace lacon

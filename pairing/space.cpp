@@ -1,0 +1,576 @@
+// Pairing in space.
+#include <algorithm>
+#include <limits>
+#include <numbers>
+#include <tuple>
+
+#include "lacon/elements/reference.hpp"
+#include "lacon/pairing/box_tree.hpp"
+#include "lacon/pairing/detail.hpp"
+#include "lacon/pairing/facet.hpp"
+
+// The normal of the slave at xi passes a directed edge (a, b) of a master on the side that the sign of
+//     s(xi) = ((b - a) x n(xi)) . (x_e(xi) - a)
+// tells; it crosses a convex master that faces the slave where s >= 0 for all its edges. So a slave is cut into convex pieces
+// of a *chart*, s is an affine function on each piece, and a master keeps what half-planes leave of it. Two masters that share
+// an edge have the same s but for the sign, to the last bit. Nothing is projected onto an extrapolated slave.
+//
+// The chart of a facet with straight edges is its mean plane. If it is flat and has one normal, s is affine there: one
+// piece, and exact polygons. Otherwise s is interpolated on a grid of triangles. A facet with curved edges has its reference
+// cell as chart.
+
+namespace lacon {
+namespace {
+
+using namespace space;
+
+constexpr int edge_pieces = 4;  // of a curved edge of a master
+
+Vec3 point(const Surface& surface, std::int32_t node) {
+  const double* c = surface.coordinates.data() + 3 * static_cast<std::size_t>(node);
+  return {c[0], c[1], c[2]};
+}
+
+double extent(const Surface& surface) {
+  Box<3> box = Box<3>::empty();
+  for (std::size_t cell = 0; cell < surface.size(); ++cell)
+    if (detail::finite(surface, cell))
+      for (const std::int32_t node : surface.nodes[cell])
+        box.add(surface.coordinates.data() + 3 * static_cast<std::size_t>(node));
+  if (!(box.low[0] <= box.high[0])) return 0;
+  return norm(Vec3{box.high[0] - box.low[0], box.high[1] - box.low[1], box.high[2] - box.low[2]});
+}
+
+/// A facet whose coordinates start at one of its own nodes.
+struct Facet {
+  CellType type{};
+  Family family{};
+  int order = 1, n_vertices = 0;
+  Vec3 origin;
+  std::array<Vec3, 9> nodes;  ///< minus origin
+  Map3 x;                     ///< minus origin
+  Vec3 normal;                ///< mean, unit; 0 for a facet without area
+  double size = 0;            ///< the longest distance from its first node
+  bool straight = true;       ///< edges
+  double distortion = 0;
+};
+
+Facet facet(const Surface& surface, std::size_t cell, double flat) {
+  const auto nodes = surface.nodes[cell];
+  Facet f;
+  f.type = surface.types[cell];
+  const catalog::CellRow& row = catalog::cell(f.type);
+  f.family = row.family;
+  f.order = row.order;
+  f.n_vertices = row.n_vertices;
+  f.origin = point(surface, nodes[0]);
+  for (std::size_t i = 0; i < nodes.size(); ++i) {
+    f.nodes[i] = point(surface, nodes[i]) - f.origin;
+    f.size = std::max(f.size, norm(f.nodes[i]));
+  }
+  f.x = interpolate(f.type, std::span<const Vec3>(f.nodes).first(nodes.size()));
+  Vec3 area;  // of the outline
+  const int nv = f.n_vertices;
+  for (int i = 0; i < nv; ++i) {
+    const Vec3 a = f.nodes[i], b = f.nodes[(i + 1) % nv];
+    area = area + cross(a, b);
+    if (f.order < 2) continue;
+    const Vec3 d = b - a, m = f.nodes[nv + i] - a;
+    const double along = dot(d, m), length2 = dot(d, d);
+    if (!(norm(cross(d, m)) <= flat * length2 && along > 0 && along < length2)) f.straight = false;
+  }
+  const double length = norm(area);
+  if (length > 0) f.normal = (1 / length) * area;
+  f.distortion = distortion(f.x, f.family, f.normal);
+  return f;
+}
+
+/// A convex part of a master's outline; coordinates start at the slave's origin.
+struct Part {
+  int n = 0;
+  std::array<Vec3, 4> p;
+};
+
+bool before(Vec3 a, Vec3 b) { return std::tie(a.x, a.y, a.z) < std::tie(b.x, b.y, b.z); }
+
+/// The outline of a facet as a polygon: `edge_pieces` pieces for a curved edge, at places that depend on the edge alone.
+void outline(const Facet& f, Vec3 shift, std::vector<Vec3>& polygon) {
+  polygon.clear();
+  for (int i = 0; i < f.n_vertices; ++i) {
+    const Vec3 a = f.nodes[i] + shift, b = f.nodes[(i + 1) % f.n_vertices] + shift;
+    polygon.push_back(a);
+    if (f.straight) continue;
+    const Vec3 m = f.nodes[f.n_vertices + i] + shift;
+    const bool forward = before(a, b);
+    const Vec3 first = forward ? a : b, last = forward ? b : a;
+    for (int k = 1; k < edge_pieces; ++k) {
+      const double t = static_cast<double>(forward ? k : edge_pieces - k) / edge_pieces;
+      polygon.push_back(((1 - t) * (1 - 2 * t)) * first + (t * (2 * t - 1)) * last + (4 * t * (1 - t)) * m);
+    }
+  }
+}
+
+struct Piece {
+  Polygon polygon;           ///< in the chart
+  std::array<Vec3, 3> x, n;  ///< at its vertices, where the normal is not constant
+  Vec3 normal;               ///< mean
+};
+
+class SlaveFacet {
+ public:
+  Facet f;
+  bool degenerate = false, constant = true, plane = true;
+  Vec3 n, e1, e2;
+  std::vector<Piece> pieces;
+  double chart_area = 0;  ///< twice the area
+
+  void set(const Surface& surface, std::size_t cell, double size, const PairingTolerances& tolerances) {
+    pieces.clear();
+    degenerate = true;
+    if (!detail::finite(surface, cell)) return;
+    f = facet(surface, cell, tolerances.flat);
+    n = f.normal;
+    if (!(f.size > tolerances.degenerate * size)) return;
+    smooth_ = !surface.normals.empty();
+    if (smooth_) {
+      std::array<Vec3, 9> normals;
+      const auto nodes = surface.nodes[cell];
+      for (std::size_t i = 0; i < nodes.size(); ++i) {
+        const double* c = surface.normals.data() + 3 * static_cast<std::size_t>(nodes[i]);
+        normals[i] = {c[0], c[1], c[2]};
+      }
+      nodal_ = interpolate(f.type, std::span<const Vec3>(normals).first(nodes.size()));
+    }
+    double turn = 0, bend = 0;
+    for (const Vec2 p : probes(f.family)) {
+      const Map3::Value v = f.x(p);
+      if (!(dot(cross(v.d1, v.d2), n) > tolerances.degenerate * f.size * f.size)) return;
+      const Vec3 m = direction(p);
+      if (!(dot(m, n) > tolerances.degenerate)) return;
+      turn = std::max(turn, norm(m - n));
+    }
+    degenerate = false;
+    constant = turn <= tolerances.flat && f.straight;
+    plane = f.straight;
+    // axes that follow an edge: turning the whole mesh turns them too
+    const Vec3 edge = f.nodes[1] - f.nodes[0];
+    const Vec3 t = edge - dot(edge, n) * n;
+    e1 = (1 / norm(t)) * t;
+    e2 = cross(n, e1);
+    chart_ = project(f.x, e1, e2);
+    if (constant) {
+      Piece piece;
+      for (int i = 0; i < f.n_vertices; ++i) piece.polygon.push_back({dot(f.nodes[i], e1), dot(f.nodes[i], e2)});
+      piece.normal = n;
+      pieces.push_back(std::move(piece));
+    } else {
+      for (int k = 3; k < f.x.n && !plane; ++k) bend += norm(f.x.c[k]);
+      subdivide(std::clamp(1 + static_cast<int>(std::ceil(8 * std::max(turn, bend / f.size))), 2, 6));
+    }
+    chart_area = 0;
+    for (const Piece& piece : pieces) chart_area += double_area(piece.polygon);
+    probe_.clear();
+    for (const Vec2 p : probes(f.family)) probe_.push_back({f.x(p).x, direction(p)});
+  }
+
+  /// The unit normal at a reference point.
+  Vec3 direction(Vec2 xi) const {
+    if (constant_normal()) return n;
+    Vec3 m;
+    if (smooth_) {
+      m = nodal_(xi).x;
+    } else {
+      const Map3::Value v = f.x(xi);
+      m = cross(v.d1, v.d2);
+    }
+    return (1 / norm(m)) * m;
+  }
+
+  struct Place {
+    bool found = false;
+    Vec2 xi;
+    double scale = 1;  ///< area of the reference cell by area of the chart
+  };
+
+  /// The reference point of a point of the chart.
+  Place place(Vec2 y, const PairingTolerances& tolerances) const {
+    if (!plane) return {true, y, 1};
+    const std::optional<Vec2> xi = inverse(chart_, f.family, y, tolerances.ray * f.size, tolerances.margin);
+    if (!xi) return {};
+    const Map2::Value v = chart_(*xi);
+    return {true, *xi, 1 / cross(v.d1, v.d2)};
+  }
+
+  /// The side of an edge of a master on which a normal passes, on a piece.
+  HalfPlane side(const Piece& piece, Vec3 a, Vec3 b) const {
+    if (!before(a, b)) return side(piece, b, a).opposite();
+    if (constant) {
+      const Vec2 first{dot(a, e1), dot(a, e2)}, last{dot(b, e1), dot(b, e2)};
+      const Vec2 d = last - first;
+      return {first, {d.y, -d.x}, 0};
+    }
+    std::array<double, 3> s;
+    for (int k = 0; k < 3; ++k) s[k] = dot(cross(b - a, piece.n[k]), piece.x[k] - a);
+    const Vec2 u = piece.polygon[1] - piece.polygon[0], v = piece.polygon[2] - piece.polygon[0];
+    const double ds = s[1] - s[0], dt = s[2] - s[0], det = cross(u, v);
+    return {piece.polygon[0], {(ds * v.y - dt * u.y) / det, (dt * u.x - ds * v.x) / det}, s[0]};
+  }
+
+  /// False only where no normal of the slave meets the box.
+  bool touches(const Box<3>& box) const {
+    const Vec3 centre =
+        Vec3{0.5 * (box.low[0] + box.high[0]), 0.5 * (box.low[1] + box.high[1]), 0.5 * (box.low[2] + box.high[2])} - f.origin;
+    const Vec3 half{0.5 * (box.high[0] - box.low[0]), 0.5 * (box.high[1] - box.low[1]), 0.5 * (box.high[2] - box.low[2])};
+    const auto reach = [&](Vec3 d) { return half.x * std::abs(d.x) + half.y * std::abs(d.y) + half.z * std::abs(d.z); };
+    if (constant) {
+      for (int i = 0; i < f.n_vertices; ++i) {
+        const Vec3 out = cross(f.nodes[(i + 1) % f.n_vertices] - f.nodes[i], n);
+        if (dot(out, centre - f.nodes[i]) > reach(out)) return false;
+      }
+      return true;
+    }
+    // (q - x(xi)) . (w x n(xi)) is 0 on the normal at xi; probes bound it, with a margin for what lies between them
+    for (const Vec3 w : {e1, e2, e1 + e2, e1 - e2}) {
+      double low = std::numeric_limits<double>::infinity(), high = -low, range = 0;
+      for (const auto& [x, m] : probe_) {
+        const Vec3 t = cross(w, m);
+        const double s = dot(centre - x, t);
+        low = std::min(low, s);
+        high = std::max(high, s);
+        range = std::max(range, reach(t));
+      }
+      const double margin = range + 0.25 * (high - low);
+      if (low > margin || high < -margin) return false;
+    }
+    return true;
+  }
+
+ private:
+  bool constant_normal() const { return constant && !pieces.empty(); }
+
+  void subdivide(int k) {
+    const auto vertex = [&](double a, double b) {
+      const Vec2 xi = f.family == Family::TRIA ? Vec2{a / k, b / k} : Vec2{2 * a / k - 1, 2 * b / k - 1};
+      return xi;
+    };
+    const auto add = [&](Vec2 a, Vec2 b, Vec2 c) {
+      Piece piece;
+      const std::array<Vec2, 3> xi{a, b, c};
+      for (int i = 0; i < 3; ++i) {
+        piece.x[i] = f.x(xi[i]).x;
+        piece.n[i] = direction(xi[i]);
+        piece.polygon.push_back(plane ? chart_(xi[i]).x : xi[i]);
+        piece.normal = piece.normal + (1.0 / 3) * piece.n[i];
+      }
+      pieces.push_back(std::move(piece));
+    };
+    for (int j = 0; j < k; ++j)
+      for (int i = 0; i < (f.family == Family::TRIA ? k - j : k); ++i) {
+        add(vertex(i, j), vertex(i + 1, j), vertex(i, j + 1));
+        if (f.family != Family::TRIA || i + j + 1 < k) add(vertex(i + 1, j), vertex(i + 1, j + 1), vertex(i, j + 1));
+      }
+  }
+
+  bool smooth_ = false;
+  Map3 nodal_;
+  Map2 chart_;
+  std::vector<std::pair<Vec3, Vec3>> probe_;
+};
+
+/// Where the normal at a point of a slave meets the true master.
+struct Image {
+  bool found = false;
+  Vec2 xi;
+  double gap = 0;
+};
+
+/// A master as one slave facet sees it.
+class Target {
+ public:
+  Target(const Facet& f, Vec3 slave_origin) : f_(f), x_(f.x) { x_.c[0] = x_.c[0] + (f.origin - slave_origin); }
+
+  Image image(Vec3 x, Vec3 n, Vec3 e1, Vec3 e2, const PairingTolerances& tolerances) {
+    if (!ready_) along_ = project(x_, e1, e2), ready_ = true;
+    const double size = f_.size + std::sqrt(dot(x - x_.c[0], x - x_.c[0]));
+    const std::optional<Vec2> xi =
+        inverse(along_, f_.family, {dot(x, e1), dot(x, e2)}, tolerances.ray * size, tolerances.margin);
+    if (!xi) return {};
+    return {true, *xi, dot(x_(*xi).x - x, n)};
+  }
+  /// As above, for a normal that changes from point to point.
+  Image image(Vec3 x, Vec3 n, const PairingTolerances& tolerances) {
+    const Vec3 axis = std::abs(n.x) <= std::abs(n.y) && std::abs(n.x) <= std::abs(n.z) ? Vec3{1, 0, 0}
+                      : std::abs(n.y) <= std::abs(n.z)                                 ? Vec3{0, 1, 0}
+                                                                                       : Vec3{0, 0, 1};
+    const Vec3 t = cross(n, axis), e1 = (1 / norm(t)) * t;
+    ready_ = false;
+    return image(x, n, e1, cross(n, e1), tolerances);
+  }
+
+ private:
+  const Facet& f_;
+  Map3 x_;
+  Map2 along_;
+  bool ready_ = false;
+};
+
+Image image(const SlaveFacet& slave, Target& target, Vec2 xi, const PairingTolerances& tolerances) {
+  const Vec3 x = slave.f.x(xi).x;
+  return slave.constant ? target.image(x, slave.n, slave.e1, slave.e2, tolerances)
+                        : target.image(x, slave.direction(xi), tolerances);
+}
+
+/// Convex parts of a master's outline, as seen along the slave's mean normal.
+void cut_in_parts(const Facet& f, const SlaveFacet& slave, std::vector<Vec3>& polygon, std::vector<Part>& parts) {
+  parts.clear();
+  const Vec3 shift = f.origin - slave.f.origin;
+  outline(f, shift, polygon);
+  const std::size_t n = polygon.size();
+  if (n == 3) {
+    parts.push_back({3, {polygon[0], polygon[1], polygon[2]}});
+  } else if (n == 4) {
+    // a corner that turns the other way is where a diagonal must start
+    std::array<double, 4> corner;
+    double sum = 0;
+    for (std::size_t i = 0; i < 4; ++i) {
+      corner[i] = dot(cross(polygon[i] - polygon[(i + 3) % 4], polygon[(i + 1) % 4] - polygon[i]), slave.n);
+      sum += corner[i];
+    }
+    std::size_t reflex = 0;
+    for (std::size_t i = 1; i < 4; ++i)
+      if (corner[i] * sum < corner[reflex] * sum) reflex = i;
+    if (slave.constant && corner[reflex] * sum >= 0)
+      parts.push_back({4, {polygon[0], polygon[1], polygon[2], polygon[3]}});
+    else
+      for (const std::size_t k : {std::size_t{1}, std::size_t{2}})
+        parts.push_back({3, {polygon[reflex], polygon[(reflex + k) % 4], polygon[(reflex + k + 1) % 4]}});
+  } else {
+    const Vec3 centre = f.x(probes(f.family).back()).x + shift;
+    for (std::size_t i = 0; i < n; ++i) parts.push_back({3, {centre, polygon[i], polygon[(i + 1) % n]}});
+  }
+}
+
+Vec3 area_vector(const Part& part) {
+  Vec3 sum;
+  for (int i = 2; i < part.n; ++i) sum = sum + cross(part.p[i - 1] - part.p[0], part.p[i] - part.p[0]);
+  return sum;
+}
+
+/// What of a piece sees the front of a part, or its back.
+void see(const SlaveFacet& slave, const Piece& piece, const Part& part, bool front, Region& seen, Polygon& scratch) {
+  seen.polygon = piece.polygon;
+  seen.halves.clear();
+  for (int i = 0; i < part.n && !seen.polygon.empty(); ++i) {
+    const HalfPlane half = slave.side(piece, part.p[i], part.p[(i + 1) % part.n]);
+    seen.halves.push_back(front ? half : half.opposite());
+    clip(seen.polygon, seen.halves.back(), scratch);
+    seen.polygon.swap(scratch);
+  }
+}
+
+/// A part of a slave cell that sees one master.
+struct View {
+  std::int32_t piece, master;
+  Region region;
+};
+
+bool sooner(const View& a, const View& b) {
+  const Vec2 p = middle(a.region.polygon), q = middle(b.region.polygon);
+  return std::tie(a.piece, p.x, p.y, a.master) < std::tie(b.piece, q.x, q.y, b.master);
+}
+
+/// The degree to which a couple is integrated. The integrand is analytic in the plane; the nearest singularity of an inverse
+/// map lies at about 1 / distortion, so that a rule of degree d leaves rho^-d with rho as below (METHOD.md 5.4 has measured
+/// figures). Where polygons are themselves approximate a higher degree than 8 serves nothing.
+int integration_degree(const SlaveFacet& slave, const Facet& master) {
+  const double d = std::min(0.999, std::max(slave.f.distortion, master.distortion));
+  const int polynomial = 2 * std::max(slave.f.order, master.order);
+  if (d <= 0) return std::max(4, polynomial);
+  const double rho = 1 / d + std::sqrt(1 / (d * d) - 1);
+  const int degree = polynomial + static_cast<int>(std::ceil(12 * std::numbers::ln10 / std::log(rho)));
+  const bool exact = slave.constant && master.straight;
+  return std::clamp(degree, 4, exact ? 19 : 8);
+}
+
+const Rule& triangle_rule(int degree) {
+  const int m = degree / 2 + 1;
+  return integration_rule(Family::TRIA, degree <= 4 ? 6 : degree <= 6 ? 12 : degree <= 8 ? 16 : m * m);
+}
+
+}  // namespace
+
+Pairing detail::pair_in_space(const Surface& slave, const Surface& master, const PairingOptions& options) {
+  const PairingTolerances& tolerances = options.tolerances;
+  Pairing pairing;
+  ContactCells& cells = pairing.cells;
+  cells.dimension = 3;
+  const auto reject = [&](Rejection reason) { ++pairing.rejected[static_cast<std::size_t>(reason)]; };
+
+  const double slave_extent = extent(slave), master_extent = extent(master);
+  std::vector<std::int32_t> usable;
+  std::vector<Facet> masters(master.size());
+  std::vector<Box<3>> boxes;
+  std::vector<Vec3> polygon;
+  for (std::size_t cell = 0; cell < master.size(); ++cell) {
+    if (detail::finite(master, cell)) masters[cell] = facet(master, cell, tolerances.flat);
+    const Facet& f = masters[cell];
+    if (!(f.size > tolerances.degenerate * master_extent) || !(norm(f.normal) > 0) ||
+        !(std::abs(dot(cross(f.x({0, 0}).d1, f.x({0, 0}).d2), f.normal)) > tolerances.degenerate * f.size * f.size)) {
+      reject(Rejection::degenerate_master);
+      continue;
+    }
+    Box<3> box = Box<3>::empty();
+    outline(f, f.origin, polygon);
+    polygon.push_back(f.x(probes(f.family).back()).x + f.origin);
+    for (const Vec3 p : polygon) box.add(std::array{p.x, p.y, p.z}.data());
+    for (int d = 0; d < 3; ++d) {
+      box.low[d] -= tolerances.box * master_extent;
+      box.high[d] += tolerances.box * master_extent;
+    }
+    usable.push_back(static_cast<std::int32_t>(cell));
+    boxes.push_back(box);
+  }
+  const BoxTree<3> tree(std::move(boxes));
+
+  SlaveFacet e;
+  std::vector<Part> parts;
+  std::vector<View> views, kept;
+  std::vector<std::int32_t> hidden;
+  std::vector<Region> rest;
+  Region seen;
+  Polygon scratch;
+  for (std::size_t cell = 0; cell < slave.size(); ++cell) {
+    const auto slave_index = static_cast<std::int32_t>(cell);
+    e.set(slave, cell, slave_extent, tolerances);
+    if (e.degenerate) {
+      reject(Rejection::degenerate_slave);
+      pairing.degenerate_slaves.push_back(slave_index);
+      continue;
+    }
+    const double sliver = tolerances.sliver * e.chart_area;
+    views.clear();
+    const auto couple = [&](std::int32_t m) {
+      cut_in_parts(masters[m], e, polygon, parts);
+      bool couples = false, away = false, thin = false;
+      for (const Part& part : parts) {
+        const Vec3 area = area_vector(part);
+        for (std::size_t p = 0; p < e.pieces.size(); ++p) {
+          const Piece& piece = e.pieces[p];
+          const bool faces = dot(area, piece.normal) < 0;
+          if (faces || !e.constant) {
+            see(e, piece, part, true, seen, scratch);
+            const double seen_area = double_area(seen.polygon);
+            if (seen_area > sliver) {
+              views.push_back({static_cast<std::int32_t>(p), m, seen});
+              couples = true;
+              continue;
+            }
+            thin = thin || !seen.polygon.empty();
+          }
+          if (faces || away || couples) continue;
+          see(e, piece, part, false, seen, scratch);
+          away = double_area(seen.polygon) > sliver;
+        }
+      }
+      if (!couples && away) reject(Rejection::facing_away);
+      if (!couples && !away && thin) reject(Rejection::sliver);
+    };
+    if (options.brute_force) {
+      for (const std::int32_t m : usable) couple(m);
+    } else {
+      tree.visit([&](const Box<3>& box) { return e.touches(box); }, [&](std::int32_t i) { couple(usable[i]); });
+    }
+    std::sort(views.begin(), views.end(), sooner);
+
+    // Where several masters cover a part of the slave, the nearest along the normal keeps it.
+    const auto distance = [&](const View& view, Vec2 y) {
+      const SlaveFacet::Place place = e.place(y, tolerances);
+      Target target(masters[view.master], e.f.origin);
+      const Image found = place.found ? image(e, target, place.xi, tolerances) : Image{};
+      return found.found ? std::abs(found.gap) : std::numeric_limits<double>::infinity();
+    };
+    kept.clear();
+    hidden.clear();
+    const double overlap = tolerances.overlap * e.chart_area;
+    std::vector<View> todo;
+    for (View& first : views) {
+      todo.assign(1, std::move(first));
+      while (!todo.empty()) {
+        View view = std::move(todo.back());
+        todo.pop_back();
+        bool whole = true;
+        for (std::size_t k = 0; k < kept.size() && whole; ++k) {
+          if (kept[k].piece != view.piece || separated(kept[k].region, view.region)) continue;
+          const Region both = intersection(kept[k].region, view.region);
+          if (double_area(both.polygon) <= overlap) continue;
+          const Vec2 y = middle(both.polygon);
+          const double old_distance = distance(kept[k], y), new_distance = distance(view, y);
+          const bool old_wins = old_distance < new_distance || (old_distance == new_distance && kept[k].master < view.master);
+          const Region winner = old_wins ? kept[k].region : view.region;
+          const View loser = old_wins ? std::move(view) : std::move(kept[k]);
+          hidden.push_back(loser.master);
+          rest.clear();
+          subtract(loser.region, winner, sliver, rest);
+          if (old_wins) {
+            for (Region& part : rest) todo.push_back({loser.piece, loser.master, std::move(part)});
+            whole = false;
+          } else {
+            kept.erase(kept.begin() + static_cast<std::ptrdiff_t>(k));
+            for (Region& part : rest)
+              kept.insert(kept.begin() + static_cast<std::ptrdiff_t>(k++), {loser.piece, loser.master, std::move(part)});
+            --k;  // wraps at 0, and the loop steps back to it
+          }
+        }
+        if (whole) kept.push_back(std::move(view));
+      }
+    }
+    if (!hidden.empty()) {
+      std::sort(hidden.begin(), hidden.end());
+      pairing.rejected[static_cast<std::size_t>(Rejection::hidden)] +=
+          std::unique(hidden.begin(), hidden.end()) - hidden.begin();
+      std::sort(kept.begin(), kept.end(), sooner);
+    }
+
+    for (const View& view : kept) {
+      const Facet& f = masters[view.master];
+      Target target(f, e.f.origin);
+      const Rule& rule = triangle_rule(integration_degree(e, f));
+      const std::size_t before_points = cells.weight.size(), before_vertices = cells.vertex.size();
+      bool complete = true;
+      for (std::size_t i = 2; i < view.region.polygon.size() && complete; ++i) {
+        const Vec2 a = view.region.polygon[0], u = view.region.polygon[i - 1] - a, v = view.region.polygon[i] - a;
+        const double area = cross(u, v);
+        if (!(area > 0)) continue;  // three vertices on a line, to round-off
+        for (int g = 0; g < rule.size() && complete; ++g) {
+          const Vec2 y = a + rule.points[2 * g] * u + rule.points[2 * g + 1] * v;
+          const SlaveFacet::Place place = e.place(y, tolerances);
+          const Image on_master = place.found ? image(e, target, place.xi, tolerances) : Image{};
+          complete = on_master.found;
+          cells.slave_point.insert(cells.slave_point.end(), {place.xi.x, place.xi.y});
+          cells.master_point.insert(cells.master_point.end(), {on_master.xi.x, on_master.xi.y});
+          cells.weight.push_back(area * rule.weights[g] * place.scale);
+        }
+      }
+      for (const Vec2 y : view.region.polygon) {
+        const SlaveFacet::Place place = e.place(y, tolerances);
+        complete = complete && place.found;
+        cells.vertex.insert(cells.vertex.end(), {place.xi.x, place.xi.y});
+      }
+      if (!complete) {
+        cells.slave_point.resize(2 * before_points);
+        cells.master_point.resize(2 * before_points);
+        cells.weight.resize(before_points);
+        cells.vertex.resize(before_vertices);
+        reject(Rejection::no_image);
+        continue;
+      }
+      cells.slave.push_back(slave_index);
+      cells.master.push_back(view.master);
+      cells.offset.push_back(static_cast<std::int64_t>(cells.weight.size()));
+      cells.vertex_offset.push_back(static_cast<std::int64_t>(cells.vertex.size() / 2));
+    }
+  }
+  return pairing;
+}
+
+}  // namespace lacon

@@ -1,0 +1,596 @@
+// Pairing in space. The slave is the lower skin of a body above it, its outward normal points down; masters look up.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <limits>
+#include <map>
+#include <random>
+
+#include "lacon/elements/reference.hpp"
+#include "lacon/pairing/facet.hpp"
+#include "lacon/pairing/normals.hpp"
+#include "lacon/pairing/pairing.hpp"
+#include "lacon/pairing/polygon.hpp"
+
+namespace lacon::test {
+namespace {
+
+using space::Vec2;
+using space::Vec3;
+using Place3 = std::function<Vec3(double, double)>;
+
+struct Skin3 {
+  std::vector<double> coordinates, normals;
+  Surface surface;
+
+  const Surface& view() {
+    surface.dimension = 3;
+    surface.coordinates = coordinates;
+    surface.normals = normals;
+    return surface;
+  }
+  std::int32_t add_node(Vec3 p) {
+    coordinates.insert(coordinates.end(), {p.x, p.y, p.z});
+    return static_cast<std::int32_t>(coordinates.size() / 3) - 1;
+  }
+  Vec3 node(std::int32_t i) const { return {coordinates[3 * i], coordinates[3 * i + 1], coordinates[3 * i + 2]}; }
+  std::size_t n_nodes() const { return coordinates.size() / 3; }
+};
+
+constexpr CellType kinds[] = {CellType::TRIA3, CellType::TRIA6, CellType::QUAD4, CellType::QUAD8, CellType::QUAD9};
+
+struct Grid {
+  int nx = 3, ny = 3;
+  CellType type = CellType::QUAD4;
+  bool up = true;     ///< normals look along +z
+  double jitter = 0;  ///< of inner nodes, in units of the mesh size
+  double x0 = 0, x1 = 1, y0 = 0, y1 = 1;
+};
+
+/// A mesh of a rectangle, mapped by `place`; mid nodes are mapped too if `curved`, else they lie in the middle of edges.
+Skin3 mesh(const Grid& g, const Place3& place, std::mt19937& random, bool curved = false) {
+  std::uniform_real_distribution<double> uniform(-1, 1);
+  std::vector<Vec2> at;
+  const double hx = (g.x1 - g.x0) / g.nx, hy = (g.y1 - g.y0) / g.ny;
+  for (int j = 0; j <= g.ny; ++j)
+    for (int i = 0; i <= g.nx; ++i) {
+      Vec2 p{g.x0 + hx * i, g.y0 + hy * j};
+      if (i > 0 && i < g.nx) p.x += g.jitter * hx * uniform(random);
+      if (j > 0 && j < g.ny) p.y += g.jitter * hy * uniform(random);
+      at.push_back(p);
+    }
+  Skin3 skin;
+  for (const Vec2 p : at) skin.add_node(place(p.x, p.y));
+  std::map<std::vector<std::int32_t>, std::int32_t> mids;
+  const auto middle = [&](std::vector<std::int32_t> ends) {
+    std::sort(ends.begin(), ends.end());
+    const auto [found, isnew] = mids.try_emplace(ends, 0);
+    if (isnew) {
+      Vec2 p;
+      Vec3 x;
+      for (const std::int32_t n : ends) {
+        p = p + (1.0 / static_cast<double>(ends.size())) * at[n];
+        x = x + (1.0 / static_cast<double>(ends.size())) * skin.node(n);
+      }
+      found->second = skin.add_node(curved ? place(p.x, p.y) : x);
+    }
+    return found->second;
+  };
+  const auto add = [&](std::vector<std::int32_t> corners) {
+    if (!g.up) std::reverse(corners.begin(), corners.end());
+    std::vector<std::int32_t> nodes = corners;
+    if (catalog::cell(g.type).order == 2)
+      for (std::size_t i = 0; i < corners.size(); ++i) nodes.push_back(middle({corners[i], corners[(i + 1) % corners.size()]}));
+    if (g.type == CellType::QUAD9) nodes.push_back(middle(corners));
+    skin.surface.add_cell(g.type, nodes);
+  };
+  for (int j = 0; j < g.ny; ++j)
+    for (int i = 0; i < g.nx; ++i) {
+      const std::int32_t a = j * (g.nx + 1) + i, b = a + 1, c = b + g.nx + 1, d = c - 1;
+      if (catalog::cell(g.type).family == Family::QUAD) {
+        add({a, b, c, d});
+      } else if (random() % 2 == 0) {
+        add({a, b, c});
+        add({a, c, d});
+      } else {
+        add({a, b, d});
+        add({b, c, d});
+      }
+    }
+  return skin;
+}
+
+/// Every cell by itself and cell order mixed: cell i of the result is cell order[i].
+Skin3 permuted(const Skin3& skin, std::vector<std::int32_t>& order, std::mt19937& random) {
+  order.resize(skin.surface.size());
+  for (std::size_t i = 0; i < order.size(); ++i) order[i] = static_cast<std::int32_t>(i);
+  std::shuffle(order.begin(), order.end(), random);
+  Skin3 other;
+  other.coordinates = skin.coordinates;
+  other.normals = skin.normals;
+  for (const std::int32_t c : order) other.surface.add_cell(skin.surface.types[c], skin.surface.nodes[c]);
+  return other;
+}
+
+/// Rotations about z and x, a scale, a shift.
+struct Motion {
+  double angle = 0, tilt = 0, scale = 1;
+  Vec3 shift;
+  void operator()(Skin3& skin) const {
+    const double c = std::cos(angle), s = std::sin(angle), ct = std::cos(tilt), st = std::sin(tilt);
+    for (std::size_t i = 0; i < skin.coordinates.size(); i += 3) {
+      double* q = skin.coordinates.data() + i;
+      const double x = c * q[0] - s * q[1], y = s * q[0] + c * q[1], z = q[2];
+      q[0] = scale * x + shift.x;
+      q[1] = scale * (ct * y - st * z) + shift.y;
+      q[2] = scale * (st * y + ct * z) + shift.z;
+    }
+  }
+};
+
+struct Point3 {
+  Vec3 x, normal;
+  double jacobian;
+  std::vector<double> shape;
+};
+
+/// By the shape functions of elements/, not by the polynomials of pairing/.
+Point3 evaluate(const Skin3& skin, std::int32_t cell, const double* xi) {
+  const CellType type = skin.surface.types[cell];
+  const auto nodes = skin.surface.nodes[cell];
+  Point3 p;
+  p.shape.resize(nodes.size());
+  std::vector<double> points;
+  shape_functions(type, std::span(xi, 2), p.shape);
+  for (std::size_t i = 0; i < nodes.size(); ++i) {
+    p.x = p.x + p.shape[i] * skin.node(nodes[i]);
+    const Vec3 q = skin.node(nodes[i]);
+    points.insert(points.end(), {q.x, q.y, q.z});
+  }
+  const auto n = cell_normal(type, points, std::span(xi, 2));
+  p.normal = {n[0], n[1], n[2]};
+  p.jacobian = space::norm(p.normal);
+  p.normal = (1 / p.jacobian) * p.normal;
+  return p;
+}
+
+template <class Action>
+void for_points(const Skin3& slave, const Skin3& master, const ContactCells& cells, const Action& action) {
+  for (std::size_t c = 0; c < cells.size(); ++c)
+    for (std::int64_t g = cells.offset[c]; g < cells.offset[c + 1]; ++g) {
+      const Point3 x = evaluate(slave, cells.slave[c], &cells.slave_point[2 * g]);
+      const Point3 y = evaluate(master, cells.master[c], &cells.master_point[2 * g]);
+      action(c, cells.weight[g] * x.jacobian, x, y);
+    }
+}
+
+/// Integrals of shape functions over a skin of its own, by a rule that is exact for flat facets.
+std::vector<double> nodal_areas(const Skin3& skin) {
+  std::vector<double> areas(skin.n_nodes(), 0.0);
+  for (std::size_t c = 0; c < skin.surface.size(); ++c) {
+    const Rule& rule = integration_rule(catalog::cell(skin.surface.types[c]).family, 100);
+    for (int g = 0; g < rule.size(); ++g) {
+      const Point3 p = evaluate(skin, static_cast<std::int32_t>(c), &rule.points[2 * g]);
+      for (std::size_t i = 0; i < p.shape.size(); ++i)
+        areas[skin.surface.nodes[c][i]] += rule.weights[g] * p.jacobian * p.shape[i];
+    }
+  }
+  return areas;
+}
+
+double sum(const std::vector<double>& values) {
+  double total = 0;
+  for (const double v : values) total += v;
+  return total;
+}
+
+struct Forces {
+  std::vector<double> slave, master;
+  double area = 0, gap = 0, off_ray = 0;
+};
+
+Forces forces(const Skin3& slave, const Skin3& master, const ContactCells& cells) {
+  Forces f{std::vector<double>(slave.n_nodes(), 0.0), std::vector<double>(master.n_nodes(), 0.0)};
+  for_points(slave, master, cells, [&](std::size_t c, double w, const Point3& x, const Point3& y) {
+    const Vec3 d = y.x - x.x;
+    f.area += w;
+    f.gap += w * space::dot(d, x.normal);
+    f.off_ray = std::max(f.off_ray, space::norm(space::cross(d, x.normal)));
+    for (std::size_t i = 0; i < x.shape.size(); ++i) f.slave[slave.surface.nodes[cells.slave[c]][i]] += w * x.shape[i];
+    for (std::size_t i = 0; i < y.shape.size(); ++i) f.master[master.surface.nodes[cells.master[c]][i]] += w * y.shape[i];
+  });
+  return f;
+}
+
+double largest_difference(const std::vector<double>& a, const std::vector<double>& b) {
+  double most = 0;
+  for (std::size_t i = 0; i < a.size(); ++i) most = std::max(most, std::abs(a[i] - b[i]));
+  return most;
+}
+
+/// Integral of the slave's and master's first shape functions by couple: what must not depend on order.
+using Couples = std::map<std::pair<std::int32_t, std::int32_t>, std::vector<double>>;
+Couples couples(const ContactCells& cells, const std::vector<std::int32_t>& slave_order = {},
+                const std::vector<std::int32_t>& master_order = {}) {
+  Couples found;
+  for (std::size_t c = 0; c < cells.size(); ++c) {
+    std::vector<double>& data = found[{slave_order.empty() ? cells.slave[c] : slave_order[cells.slave[c]],
+                                       master_order.empty() ? cells.master[c] : master_order[cells.master[c]]}];
+    for (std::int64_t g = cells.offset[c]; g < cells.offset[c + 1]; ++g)
+      data.insert(data.end(), {cells.weight[g], cells.slave_point[2 * g], cells.slave_point[2 * g + 1],
+                               cells.master_point[2 * g], cells.master_point[2 * g + 1]});
+  }
+  return found;
+}
+
+Place3 plane(double z) {
+  return [z](double x, double y) { return Vec3{x, y, z}; };
+}
+
+Place3 sheared(double z) {
+  return [z](double x, double y) { return Vec3{x + 0.3 * y, y - 0.1 * x, z}; };
+}
+
+TEST(PairingInSpace, PatchEquilibriumOnAffineFacetsOfEveryKind) {
+  // METHOD.md D.2: measure of the couples = measure of the slave; nodal forces of a uniform pressure exact on both sides, for
+  // every pair of kinds, apart, touching and overlapping, tilted and scaled
+  std::mt19937 random(5);
+  int trial = 0;
+  for (const CellType s : kinds)
+    for (const CellType m : kinds) {
+      const double gap = trial % 3 == 0 ? 0.2 : trial % 3 == 1 ? 0.0 : -0.1;
+      const auto jitter = [](CellType type) { return catalog::cell(type).family == Family::TRIA ? 0.2 : 0.0; };
+      Skin3 slave = mesh({3, 4, s, false, jitter(s)}, sheared(0), random),
+            master = mesh({5, 3, m, true, jitter(m)}, sheared(-gap), random);
+      const Motion motion{0.3 * trial, 0.2 * trial, trial % 2 == 0 ? 1e-3 : 1e3, {1e-3, 2e-3, -1e-3}};
+      motion(slave), motion(master);
+      const Pairing found = pair(slave.view(), master.view());
+      const Forces f = forces(slave, master, found.cells);
+      const std::vector<double> on_slave = nodal_areas(slave), on_master = nodal_areas(master);
+      const double area = sum(on_slave);
+      EXPECT_NEAR(f.area, area, 1e-12 * area) << trial;
+      EXPECT_NEAR(f.gap, gap * motion.scale * area, 1e-12 * motion.scale * area) << trial;
+      EXPECT_LE(f.off_ray, 1e-11 * motion.scale) << trial;
+      EXPECT_LE(largest_difference(f.slave, on_slave), 1e-12 * area) << trial;
+      EXPECT_LE(largest_difference(f.master, on_master), 1e-12 * area) << trial;
+      EXPECT_EQ(found.count(Rejection::hidden), 0);
+      EXPECT_EQ(found.count(Rejection::no_image), 0);
+      EXPECT_EQ(found.count(Rejection::facing_away), 0);
+      ++trial;
+    }
+}
+
+TEST(PairingInSpace, PatchEquilibriumOnDistortedQuadrangles) {
+  // shape functions are rational, or worse, in the plane: the rule's degree follows the distortion
+  std::mt19937 random(6);
+  for (const CellType s : {CellType::QUAD4, CellType::QUAD8, CellType::QUAD9})
+    for (const CellType m : {CellType::QUAD4, CellType::QUAD8, CellType::QUAD9, CellType::TRIA3}) {
+      Skin3 slave = mesh({3, 3, s, false, 0.2}, plane(0), random), master = mesh({4, 5, m, true, 0.2}, plane(0), random);
+      const Motion motion{0.7, 1.1, 10, {}};
+      motion(slave), motion(master);
+      const Pairing found = pair(slave.view(), master.view());
+      const Forces f = forces(slave, master, found.cells);
+      const std::vector<double> on_slave = nodal_areas(slave), on_master = nodal_areas(master);
+      const double area = sum(on_slave);
+      EXPECT_NEAR(f.area, area, 1e-12 * area);
+      EXPECT_LE(largest_difference(f.slave, on_slave), 1e-10 * area);
+      EXPECT_LE(largest_difference(f.master, on_master), 1e-10 * area);
+      EXPECT_EQ(found.count(Rejection::no_image), 0);
+    }
+}
+
+TEST(PairingInSpace, TrapezoidsOfTheHexahedronCutAreExact) {
+  // E1 to E4 around E5, the skin cut of METHOD.md 1.4: a quadrangle of half the size inside another
+  for (const CellType type : {CellType::QUAD4}) {
+    Skin3 slave, master;
+    for (Skin3* skin : {&slave, &master}) {
+      const bool up = skin == &master;
+      const double inner = up ? 0.4 : 0.5;
+      std::vector<std::int32_t> outer_nodes, inner_nodes;
+      for (const auto& [x, y] : {std::pair(-1., -1.), std::pair(1., -1.), std::pair(1., 1.), std::pair(-1., 1.)}) {
+        outer_nodes.push_back(skin->add_node({x, y, 0}));
+        inner_nodes.push_back(skin->add_node({inner * x, inner * y, 0}));
+      }
+      const auto add = [&](std::vector<std::int32_t> nodes) {
+        if (!up) std::reverse(nodes.begin(), nodes.end());
+        skin->surface.add_cell(type, nodes);
+      };
+      for (int i = 0; i < 4; ++i) add({outer_nodes[i], outer_nodes[(i + 1) % 4], inner_nodes[(i + 1) % 4], inner_nodes[i]});
+      add(inner_nodes);
+    }
+    const Pairing found = pair(slave.view(), master.view());
+    const Forces f = forces(slave, master, found.cells);
+    EXPECT_NEAR(f.area, 4, 4e-12);
+    EXPECT_LE(largest_difference(f.slave, nodal_areas(slave)), 4e-10);
+    EXPECT_LE(largest_difference(f.master, nodal_areas(master)), 4e-10);
+  }
+}
+
+TEST(PairingInSpace, ShakenCoordinatesChangeNothingButTheLastDigits) {
+  // matching meshes too: slivers along coincident edges come and go
+  std::mt19937 random(7);
+  std::uniform_real_distribution<double> uniform(-1, 1);
+  for (const CellType type : {CellType::TRIA3, CellType::QUAD4, CellType::TRIA6, CellType::QUAD8})
+    for (const int n : {4, 5}) {
+      Skin3 slave = mesh({4, 4, type, false}, sheared(0), random), master = mesh({n, n, type, true}, sheared(0), random);
+      Motion{0.4, 0.6, 1, {}}(slave);
+      Motion{0.4, 0.6, 1, {}}(master);
+      const Forces before = forces(slave, master, pair(slave.view(), master.view()).cells);
+      const double most = *std::max_element(before.master.begin(), before.master.end());
+      for (int trial = 0; trial < 20; ++trial) {
+        Skin3 s = slave, m = master;
+        for (Skin3* skin : {&s, &m})
+          for (double& c : skin->coordinates) c += 1e-13 * uniform(random);
+        const Pairing found = pair(s.view(), m.view());
+        const Forces after = forces(s, m, found.cells);
+        EXPECT_LE(largest_difference(before.slave, after.slave), 1e-11 * most);
+        EXPECT_LE(largest_difference(before.master, after.master), 1e-11 * most);
+        EXPECT_NEAR(after.gap, 0, 1e-11);
+        EXPECT_EQ(found.count(Rejection::no_image), 0);
+      }
+    }
+}
+
+/// A wavy surface.
+Place3 wave(double z, double height, double phase) {
+  return [=](double x, double y) { return Vec3{x, y, z + height * std::sin(5 * x + phase) * std::cos(4 * y - phase)}; };
+}
+
+TEST(PairingInSpace, TreeEqualsBruteForceOnCurvedSurfaces) {
+  std::mt19937 random(8);
+  for (int trial = 0; trial < 40; ++trial) {
+    const CellType s = kinds[trial % 5], m = kinds[(trial / 5) % 5];
+    Skin3 slave = mesh({4 + trial % 3, 5, s, false, 0.2}, wave(0, 0.04, 0.1 * trial), random, true);
+    Skin3 master = mesh({5, 4 + trial % 4, m, true, 0.2, -0.1, 1.2, -0.2, 1.1}, wave(-0.02, 0.05, 0.3), random, true);
+    if (trial % 2 == 1) slave.normals = nodal_normals(slave.view());
+    PairingOptions brute;
+    brute.brute_force = true;
+    const Pairing a = pair(slave.view(), master.view()), b = pair(slave.view(), master.view(), brute);
+    EXPECT_EQ(couples(a.cells), couples(b.cells)) << trial;
+    EXPECT_EQ(a.count(Rejection::hidden), b.count(Rejection::hidden));
+    EXPECT_GT(a.cells.size(), slave.surface.size());
+    EXPECT_EQ(a.count(Rejection::no_image), 0) << trial;
+    const Forces f = forces(slave, master, a.cells);
+    const double area = sum(nodal_areas(slave));
+    EXPECT_NEAR(f.area, area, 1e-5 * area) << trial;
+    EXPECT_NEAR(sum(f.slave), f.area, 1e-12);
+    EXPECT_NEAR(sum(f.master), f.area, 1e-12);
+    if (slave.normals.empty()) {
+      EXPECT_LE(f.off_ray, 1e-10);
+    }
+  }
+}
+
+TEST(PairingInSpace, DoesNotDependOnTheOrderOfCells) {
+  std::mt19937 random(9);
+  for (int trial = 0; trial < 20; ++trial) {
+    const CellType s = kinds[trial % 5], m = kinds[(trial / 2) % 5];
+    const bool curved = trial % 2 == 0;
+    Skin3 slave = mesh({4, 3, s, false, 0.2}, wave(0, curved ? 0.03 : 0, 0), random, true);
+    Skin3 master = mesh({3, 5, m, true, 0.2}, wave(-0.1, curved ? 0.03 : 0, 1), random, true);
+    std::vector<std::int32_t> so, mo;
+    Skin3 s2 = permuted(slave, so, random), m2 = permuted(master, mo, random);
+    EXPECT_EQ(couples(pair(slave.view(), master.view()).cells), couples(pair(s2.view(), m2.view()).cells, so, mo)) << trial;
+  }
+}
+
+/// A single facet, counter-clockwise seen from above if it looks up.
+Skin3 facet_of(CellType type, std::vector<Vec3> nodes) {
+  Skin3 skin;
+  std::vector<std::int32_t> numbers;
+  for (const Vec3 p : nodes) numbers.push_back(skin.add_node(p));
+  skin.surface.add_cell(type, numbers);
+  return skin;
+}
+Skin3 slave_square(double size = 1) {
+  return facet_of(CellType::QUAD4, {{0, 0, 0}, {0, size, 0}, {size, size, 0}, {size, 0, 0}});
+}
+
+TEST(PairingInSpace, FindsIslandsUnderOneSlaveCell) {
+  std::mt19937 random(10);
+  Skin3 slave = slave_square();
+  Skin3 master = mesh({1, 1, CellType::QUAD4, true, 0, 0.1, 0.3, 0.1, 0.9}, plane(-0.1), random);
+  const Skin3 other = mesh({2, 2, CellType::TRIA3, true, 0, 0.5, 0.75, 0.2, 0.6}, plane(0.05), random);
+  const auto shift = static_cast<std::int32_t>(master.n_nodes());
+  master.coordinates.insert(master.coordinates.end(), other.coordinates.begin(), other.coordinates.end());
+  for (std::size_t c = 0; c < other.surface.size(); ++c) {
+    std::vector<std::int32_t> nodes(other.surface.nodes[c].begin(), other.surface.nodes[c].end());
+    for (std::int32_t& n : nodes) n += shift;
+    master.surface.add_cell(CellType::TRIA3, nodes);
+  }
+  const Pairing found = pair(slave.view(), master.view());
+  EXPECT_EQ(couples(found.cells).size(), 9U);
+  EXPECT_NEAR(forces(slave, master, found.cells).area, 0.2 * 0.8 + 0.25 * 0.4, 1e-14);
+}
+
+TEST(PairingInSpace, NearerMasterHidesTheOther) {
+  std::mt19937 random(11);
+  Skin3 slave = slave_square();
+  Skin3 master = mesh({1, 1, CellType::QUAD4, true, 0, -1, 2, -1, 2}, plane(-0.5), random);
+  const auto shift = static_cast<std::int32_t>(master.n_nodes());
+  for (const auto& [x, y] : {std::pair(0.25, 0.25), std::pair(0.75, 0.25), std::pair(0.5, 0.75)}) master.add_node({x, y, -0.1});
+  master.surface.add_cell(CellType::TRIA3, std::vector<std::int32_t>{shift, shift + 1, shift + 2});
+  const Pairing found = pair(slave.view(), master.view());
+  std::vector<double> area(2, 0.0);
+  for_points(slave, master, found.cells,
+             [&](std::size_t c, double w, const Point3&, const Point3&) { area[found.cells.master[c]] += w; });
+  EXPECT_NEAR(area[1], 0.125, 1e-14);
+  EXPECT_NEAR(area[0], 0.875, 1e-14);
+  EXPECT_EQ(found.count(Rejection::hidden), 1);
+  // two identical masters: one of them
+  Skin3 twice = mesh({1, 1, CellType::QUAD4, true}, plane(-0.5), random);
+  twice.surface.add_cell(CellType::QUAD4,
+                         std::vector<std::int32_t>(twice.surface.nodes[0].begin(), twice.surface.nodes[0].end()));
+  const Pairing once = pair(slave.view(), twice.view());
+  EXPECT_EQ(once.cells.master, std::vector<std::int32_t>{0});
+  EXPECT_NEAR(forces(slave, twice, once.cells).area, 1, 1e-14);
+}
+
+TEST(PairingInSpace, HandlesTJunctionsAndManyMasters) {
+  std::mt19937 random(12);
+  Skin3 slave = mesh({2, 2, CellType::TRIA3, false, 0.3}, plane(0), random);
+  Skin3 master = mesh({3, 1, CellType::QUAD4, true, 0, 0, 1, 0, 0.4}, plane(0), random);
+  const Skin3 other = mesh({50, 40, CellType::QUAD4, true, 0, 0, 1, 0.4, 1}, plane(0), random);
+  const auto shift = static_cast<std::int32_t>(master.n_nodes());
+  master.coordinates.insert(master.coordinates.end(), other.coordinates.begin(), other.coordinates.end());
+  for (std::size_t c = 0; c < other.surface.size(); ++c) {
+    std::vector<std::int32_t> nodes(other.surface.nodes[c].begin(), other.surface.nodes[c].end());
+    for (std::int32_t& n : nodes) n += shift;
+    master.surface.add_cell(CellType::QUAD4, nodes);
+  }
+  const Pairing found = pair(slave.view(), master.view());
+  const Forces f = forces(slave, master, found.cells);
+  EXPECT_NEAR(f.area, 1, 1e-12);
+  EXPECT_LE(largest_difference(f.master, nodal_areas(master)), 1e-12);
+}
+
+TEST(PairingInSpace, CutsNonConvexMastersInTriangles) {
+  Skin3 slave = slave_square();
+  const double z = -0.2;
+  for (int first = 0; first < 4; ++first) {
+    std::vector<Vec3> corners{{0.1, 0.1, z}, {0.9, 0.2, z}, {0.35, 0.3, z}, {0.2, 0.9, z}};
+    std::rotate(corners.begin(), corners.begin() + first, corners.end());
+    Skin3 master = facet_of(CellType::QUAD4, corners);
+    const Pairing found = pair(slave.view(), master.view());
+    // the map of such a quadrangle is folded at its reflex corner: what has no image there is said, not guessed
+    double polygons = 0;
+    for (std::size_t c = 0; c < found.cells.size(); ++c)
+      for (std::int64_t g = found.cells.offset[c]; g < found.cells.offset[c + 1]; ++g) polygons += found.cells.weight[g] * 0.25;
+    double shoelace = 0;
+    for (int i = 0; i < 4; ++i)
+      shoelace += 0.5 * (corners[i].x * corners[(i + 1) % 4].y - corners[i].y * corners[(i + 1) % 4].x);
+    EXPECT_TRUE(found.count(Rejection::no_image) > 0 || std::abs(polygons - shoelace) < 1e-14) << polygons << " " << shoelace;
+    EXPECT_LE(polygons, shoelace + 1e-14);
+  }
+}
+
+TEST(PairingInSpace, NamesEveryReasonOfRejection) {
+  std::mt19937 random(13);
+  Skin3 slave = slave_square();
+  Skin3 back = mesh({1, 1, CellType::QUAD4, false}, plane(-0.1), random);
+  const Pairing away = pair(slave.view(), back.view());
+  EXPECT_EQ(away.cells.size(), 0U);
+  EXPECT_EQ(away.count(Rejection::facing_away), 1);
+
+  Skin3 thin = facet_of(CellType::TRIA3, {{0, 0, -0.1}, {1, 0, -0.1}, {0.5, 1e-15, -0.1}});
+  EXPECT_EQ(pair(slave.view(), thin.view()).count(Rejection::degenerate_master), 1);
+  Skin3 edge = facet_of(CellType::TRIA3, {{-1, -1, 0}, {2, -1, 0}, {0.5, 3e-16, 0}});
+  EXPECT_EQ(pair(slave.view(), edge.view()).count(Rejection::sliver), 1);
+
+  Skin3 good = mesh({1, 1, CellType::QUAD4, true}, plane(-0.1), random);
+  Skin3 nan = good;
+  nan.coordinates[4] = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_EQ(pair(slave.view(), nan.view()).count(Rejection::degenerate_master), 1);
+  const Pairing bad = pair(nan.view(), good.view());
+  EXPECT_EQ(bad.count(Rejection::degenerate_slave), 1);
+  EXPECT_EQ(bad.degenerate_slaves, std::vector<std::int32_t>{0});
+  Skin3 folded = facet_of(CellType::QUAD4, {{0, 0, 0}, {0.2, 0.3, 0}, {1, 1, 0}, {1, 0, 0}});
+  folded.coordinates[3] = 0.9;
+  EXPECT_EQ(pair(folded.view(), good.view()).count(Rejection::degenerate_slave), 1);
+
+  Skin3 chain;
+  chain.surface.add_cell(CellType::SEG2, std::vector<std::int32_t>{chain.add_node({0, 0, 0}), chain.add_node({1, 0, 0})});
+  EXPECT_THROW(pair(slave.view(), chain.view()), std::invalid_argument);
+  Skin3 empty;
+  EXPECT_EQ(pair(slave.view(), empty.view()).cells.size(), 0U);
+  EXPECT_EQ(pair(empty.view(), slave.view()).cells.size(), 0U);
+}
+
+TEST(PairingInSpace, WarpedFacetsApproachFlatOnesContinuously) {
+  // a warp just above and just below what counts as flat
+  std::mt19937 random(14);
+  std::vector<Forces> found;
+  for (const double height : {0.0, 1e-12, 1e-8}) {
+    std::mt19937 same = random;
+    Skin3 slave = mesh({3, 3, CellType::QUAD4, false}, wave(0, height, 0.4), same);
+    Skin3 master = mesh({4, 4, CellType::QUAD4, true}, plane(0), same);
+    found.push_back(forces(slave, master, pair(slave.view(), master.view()).cells));
+    EXPECT_LE(largest_difference(found[0].slave, found.back().slave), 1e-12 + 10 * height * height);
+    EXPECT_LE(largest_difference(found[0].master, found.back().master), 1e-12 + 10 * height);
+  }
+}
+
+TEST(PairingInSpace, CurvedFacetsOfMatchingSkinsCoverEachOther) {
+  // A shell of a sphere on itself: all of it is covered, and the gap is zero. Curved edges along the border are clipped as four
+  // chords, which leave 1/16 of the bulge: with h = 0.2 and a geodesic curvature of tan(0.4), 2/3 h^2 tan(0.4) / 8 / 16 of a
+  // border as long as 4 times the side.
+  std::mt19937 random(15);
+  const Place3 sphere = [](double x, double y) {
+    const double a = 0.8 * (x - 0.5), b = 0.8 * (y - 0.5);
+    return Vec3{std::sin(a), std::cos(a) * std::sin(b), std::cos(a) * std::cos(b)};
+  };
+  for (const CellType type : kinds) {
+    std::mt19937 same = random;
+    Skin3 slave = mesh({4, 4, type, false}, sphere, same, true);
+    same = random;
+    Skin3 master = mesh({4, 4, type, true}, sphere, same, true);
+    const Pairing found = pair(slave.view(), master.view());
+    const Forces f = forces(slave, master, found.cells);
+    const double area = sum(nodal_areas(slave));
+    EXPECT_NEAR(f.area, area, 4 * 2.0 / 3 * 0.04 * std::tan(0.4) / 8 / 16) << catalog::cell(type).name;
+    EXPECT_LE(f.area, (1 + 1e-9) * area) << catalog::cell(type).name;
+    EXPECT_NEAR(f.gap, 0, 1e-10) << catalog::cell(type).name;
+    EXPECT_EQ(found.count(Rejection::no_image), 0);
+  }
+}
+
+TEST(Polygons, SubtractionLeavesWhatIntersectionDoesNotTake) {
+  std::mt19937 random(16);
+  std::uniform_real_distribution<double> uniform(-1, 1);
+  for (int trial = 0; trial < 200; ++trial) {
+    const space::Polygon square{{-1, -1}, {1, -1}, {1, 1}, {-1, 1}};
+    const auto triangle = [&] {
+      std::vector<Vec2> p;
+      for (int i = 0; i < 3; ++i) p.push_back({uniform(random), uniform(random)});
+      if (space::cross(p[1] - p[0], p[2] - p[0]) < 0) std::swap(p[0], p[1]);
+      space::Region region{square, {}};
+      for (int i = 0; i < 3; ++i) {
+        const Vec2 d = p[(i + 1) % 3] - p[i];
+        region.halves.push_back({p[i], {-d.y, d.x}, 0});
+        space::Polygon inside;
+        space::clip(region.polygon, region.halves.back(), inside);
+        region.polygon.swap(inside);
+      }
+      EXPECT_NEAR(space::double_area(region.polygon), space::cross(p[1] - p[0], p[2] - p[0]), 1e-14);
+      return region;
+    };
+    const space::Region a = triangle(), b = triangle();
+    std::vector<space::Region> rest;
+    space::subtract(a, b, 0, rest);
+    double left = space::double_area(space::intersection(a, b).polygon);
+    if (space::separated(a, b)) {
+      EXPECT_LE(left, 1e-15);
+    }
+    for (const space::Region& part : rest) left += space::double_area(part.polygon);
+    EXPECT_NEAR(left, space::double_area(a.polygon), 1e-14);
+  }
+}
+
+TEST(Facets, InverseFindsEveryPointOfConvexFacets) {
+  std::mt19937 random(17);
+  std::uniform_real_distribution<double> uniform(-1, 1);
+  for (const CellType type : kinds) {
+    Skin3 skin = mesh({3, 3, type, true, 0.3}, plane(0), random);
+    for (std::size_t c = 0; c < skin.surface.size(); ++c) {
+      std::vector<Vec3> nodes;
+      for (const std::int32_t n : skin.surface.nodes[c]) nodes.push_back(skin.node(n));
+      const space::Map3 map = space::interpolate(type, nodes);
+      const Family family = catalog::cell(type).family;
+      for (int k = 0; k < 20; ++k) {
+        double xi[2] = {uniform(random), uniform(random)};
+        if (family == Family::TRIA) xi[0] = 0.5 * (1 + xi[0]), xi[1] = 0.5 * (1 + xi[1]) * (1 - xi[0]);
+        const Point3 p = evaluate(skin, static_cast<std::int32_t>(c), xi);
+        EXPECT_LE(space::norm(p.x - map({xi[0], xi[1]}).x), 1e-15);
+        const auto found = space::inverse(space::project(map, {1, 0, 0}, {0, 1, 0}), family, {p.x.x, p.x.y}, 1e-14, 0.25);
+        ASSERT_TRUE(found.has_value());
+        EXPECT_NEAR(found->x, xi[0], 1e-12);
+        EXPECT_NEAR(found->y, xi[1], 1e-12);
+      }
+    }
+  }
+}
+
+}  // namespace
+}  // namespace lacon::test
