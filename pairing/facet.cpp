@@ -78,8 +78,8 @@ std::optional<Vec2> inverse(const Map2& map, Family family, Vec2 y, double toler
       v = w;
       residual = left;
     }
-    if (!better) break;         // round-off
-    if (length <= 1e-9) break;  // quadratic: the next step would be below round-off
+    if (!better) break;                       // round-off
+    if (map.n == 3 || length <= 1e-9) break;  // linear, or quadratic: the next step would be below round-off
   }
   const auto [x, z] = p;
   const bool near =

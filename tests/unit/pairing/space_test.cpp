@@ -363,6 +363,72 @@ TEST(PairingInSpace, TreeEqualsBruteForceOnCurvedSurfaces) {
   }
 }
 
+/// Whether a point of the reference cell lies in a contact cell's polygon.
+bool inside(const ContactCells& cells, std::size_t c, Vec2 p) {
+  bool in = true;
+  const std::int64_t first = cells.vertex_offset[c], n = cells.vertex_offset[c + 1] - first;
+  for (std::int64_t i = 0; i < n; ++i) {
+    const double *a = &cells.vertex[2 * (first + i)], *b = &cells.vertex[2 * (first + (i + 1) % n)];
+    in = in && space::cross(Vec2{b[0] - a[0], b[1] - a[1]}, Vec2{p.x - a[0], p.y - a[1]}) >= 0;
+  }
+  return in;
+}
+
+TEST(PairingInSpace, AgreesWithRaysOnBrokenSurfaces) {
+  // A heap of loose triangles, one above the other, some upside down, some apart, some that overlap the slave body: a ray from
+  // any point of a slave facet meets what pairing says, or nothing.
+  std::mt19937 random(18);
+  std::uniform_real_distribution<double> uniform(0, 1);
+  for (int trial = 0; trial < 30; ++trial) {
+    Skin3 slave = mesh({3, 3, trial % 2 == 0 ? CellType::TRIA3 : CellType::QUAD4, false}, sheared(0), random), master;
+    std::vector<std::array<Vec3, 3>> triangles;
+    for (int t = 0; t < 40; ++t) {
+      const double z = -0.5 + 0.02 * t, x = 1.4 * uniform(random) - 0.2, y = 1.4 * uniform(random) - 0.2;
+      std::array<Vec3, 3> p;
+      std::vector<std::int32_t> nodes;
+      for (Vec3& q : p) {
+        q = {x + 0.6 * uniform(random) - 0.3, y + 0.6 * uniform(random) - 0.3, z + 0.009 * uniform(random)};
+        nodes.push_back(master.add_node(q));
+      }
+      triangles.push_back(p);
+      master.surface.add_cell(CellType::TRIA3, nodes);
+    }
+    PairingOptions brute;
+    brute.brute_force = true;
+    const Pairing found = pair(slave.view(), master.view()), oracle = pair(slave.view(), master.view(), brute);
+    EXPECT_EQ(couples(found.cells), couples(oracle.cells));
+    EXPECT_EQ(found.count(Rejection::hidden), oracle.count(Rejection::hidden));
+    int wrong = 0, hits = 0;
+    for (int ray = 0; ray < 2000; ++ray) {
+      const auto cell = static_cast<std::int32_t>(random() % slave.surface.size());
+      double xi[2] = {uniform(random), uniform(random)};
+      if (slave.surface.types[cell] == CellType::TRIA3)
+        xi[1] *= 1 - xi[0];
+      else
+        xi[0] = 2 * xi[0] - 1, xi[1] = 2 * xi[1] - 1;
+      const Vec3 x = evaluate(slave, cell, xi).x;
+      std::int32_t nearest = -1;
+      double least = std::numeric_limits<double>::infinity();
+      for (std::size_t t = 0; t < triangles.size(); ++t) {
+        const auto& [a, b, c] = triangles[t];
+        const auto area = [](Vec3 p, Vec3 q, Vec3 r) { return (q.x - p.x) * (r.y - p.y) - (q.y - p.y) * (r.x - p.x); };
+        const double all = area(a, b, c), la = area(x, b, c), lb = area(a, x, c), lc = area(a, b, x);
+        if (all <= 0 || la < 0 || lb < 0 || lc < 0) continue;  // upside down, or missed
+        const double z = (la * a.z + lb * b.z + lc * c.z) / all;
+        if (std::abs(z) < least) least = std::abs(z), nearest = static_cast<std::int32_t>(t);
+      }
+      std::int32_t said = -1;
+      int times = 0;
+      for (std::size_t c = 0; c < found.cells.size(); ++c)
+        if (found.cells.slave[c] == cell && inside(found.cells, c, {xi[0], xi[1]})) said = found.cells.master[c], ++times;
+      hits += nearest >= 0;
+      wrong += said != nearest || times > 1;
+    }
+    EXPECT_EQ(wrong, 0) << trial;
+    EXPECT_GT(hits, 200) << trial;
+  }
+}
+
 TEST(PairingInSpace, DoesNotDependOnTheOrderOfCells) {
   std::mt19937 random(9);
   for (int trial = 0; trial < 20; ++trial) {
