@@ -2,6 +2,7 @@
 
 #include <fmt/core.h>
 
+#include <algorithm>
 #include <numeric>
 
 #include "lacon/catalog/messages.hpp"
@@ -43,6 +44,16 @@ std::vector<std::int32_t> chosen(const Mesh& mesh, const Keywords& factor) {
   return cells;
 }
 
+/// The keywords that change the order of cells, and what does it.
+struct Change {
+  const char* keyword;
+  const char* what;
+  std::int64_t (*make)(Mesh&, std::span<const std::int32_t>);
+};
+const Change changes[] = {{"LINE_QUAD", "quadratic", make_quadratic},
+                          {"QUAD_LINE", "linear", make_linear},
+                          {"HEXA20_27", "complete: HEXA27, QUAD9", make_complete}};
+
 }  // namespace
 
 Mesh crea_maillage(const Mesh& mesh, const Keywords& keywords) {
@@ -51,18 +62,14 @@ Mesh crea_maillage(const Mesh& mesh, const Keywords& keywords) {
     const auto occurrences = keywords.factors("DECOUPE_LAC");
     if (occurrences.size() != 1) fail("ORDER_4", {{"keyword", "DECOUPE_LAC"}, {"expected", "given once"}});
     made = cut(mesh, occurrences[0]);
-  } else if (keywords.has("LINE_QUAD") || keywords.has("QUAD_LINE")) {
-    const bool up = keywords.has("LINE_QUAD");
-    const std::string name = up ? "LINE_QUAD" : "QUAD_LINE";
-    refuse_cut_mesh(mesh, name);
-    made = mesh;
-    for (const Keywords& factor : keywords.factors(name)) {
-      const std::vector<std::int32_t> cells = chosen(made, factor);
-      const std::int64_t changed = up ? make_quadratic(made, cells) : make_linear(made, cells);
-      fmt::print("  {}: {} cells became {}\n", name, changed, up ? "quadratic" : "linear");
-    }
   } else {
-    fail("ORDER_2", {{"keyword", "DECOUPE_LAC, LINE_QUAD or QUAD_LINE"}});
+    const auto change =
+        std::find_if(std::begin(changes), std::end(changes), [&](const Change& c) { return keywords.has(c.keyword); });
+    if (change == std::end(changes)) fail("ORDER_2", {{"keyword", "DECOUPE_LAC, LINE_QUAD, QUAD_LINE or HEXA20_27"}});
+    refuse_cut_mesh(mesh, change->keyword);
+    made = mesh;
+    for (const Keywords& factor : keywords.factors(change->keyword))
+      fmt::print("  {}: {} cells became {}\n", change->keyword, change->make(made, chosen(made, factor)), change->what);
   }
   fmt::print("  nodes {:>8} -> {:>8}\n  cells {:>8} -> {:>8}\n", mesh.n_nodes(), made.n_nodes(), mesh.n_cells(),
              made.n_cells());

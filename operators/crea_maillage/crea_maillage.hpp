@@ -5,8 +5,8 @@
 
 namespace lacon {
 
-/// The mesh that the keywords DECOUPE_LAC, LINE_QUAD or QUAD_LINE ask for; prints a summary on stdout. Errors: see
-/// operators/meshing/cut.hpp and order_change.hpp, and ORDER_2 where none of the three is given.
+/// The mesh that the keywords DECOUPE_LAC, LINE_QUAD, QUAD_LINE or HEXA20_27 ask for; prints a summary on stdout. Errors: see
+/// operators/meshing/cut.hpp and order_change.hpp, and ORDER_2 where none of them is given.
 Mesh crea_maillage(const Mesh& mesh, const Keywords& keywords);
 
 }  // namespace lacon

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "lacon/catalog/messages.hpp"
+#include "lacon/elements/reference.hpp"
 
 namespace lacon {
 namespace {
@@ -48,6 +49,72 @@ std::int64_t make_quadratic(Mesh& mesh, std::span<const std::int32_t> cells) {
         nodes.push_back(at->second);
       }
       mesh.types[c] = row.quadratic;
+      ++changed;
+    }
+    connectivity.push_back(nodes);
+  }
+  mesh.cells = std::move(connectivity);
+  return changed;
+}
+
+namespace {
+
+/// The cell of the same family with the most nodes: HEXA27 for a HEXA20.
+const catalog::CellRow& complete_cell(const catalog::CellRow& row) {
+  const catalog::CellRow* most = &row;
+  for (const catalog::CellRow& other : catalog::cells())
+    if (other.linear == row.linear && other.n_nodes > most->n_nodes) most = &other;
+  return *most;
+}
+
+/// The vertices of the face whose middle is the node `local` of a complete cell, sorted; nothing for the centre of a solid.
+std::vector<std::int32_t> face_of(const catalog::CellRow& row, std::span<const std::int32_t> nodes, int local) {
+  std::vector<std::int32_t> vertices;
+  for (const catalog::FacetRow& facet : row.facets)
+    if (facet.nodes.back() == local)
+      for (int v = 0; v < catalog::cell(facet.type).n_vertices; ++v) vertices.push_back(nodes[facet.nodes[v]]);
+  if (vertices.empty() && row.dimension == 2) vertices.assign(nodes.begin(), nodes.begin() + row.n_vertices);
+  std::sort(vertices.begin(), vertices.end());
+  return vertices;
+}
+
+}  // namespace
+
+std::int64_t make_complete(Mesh& mesh, std::span<const std::int32_t> cells) {
+  const std::vector<char> chosen = marked(mesh, cells);
+  std::map<std::vector<std::int32_t>, std::int32_t> middle;
+  for (std::size_t c = 0; c < mesh.n_cells(); ++c) {
+    const catalog::CellRow& row = mesh.row(c);
+    const catalog::CellRow& quadratic = catalog::cell(catalog::cell(row.linear).quadratic);
+    for (int local = quadratic.n_nodes; local < row.n_nodes; ++local)
+      if (const auto face = face_of(row, mesh.cells[c], local); !face.empty()) middle[face] = mesh.cells[c][local];
+  }
+
+  std::int64_t changed = 0;
+  Ragged<std::int32_t> connectivity;
+  for (std::size_t c = 0; c < mesh.n_cells(); ++c) {
+    const catalog::CellRow &row = mesh.row(c), &complete = complete_cell(row);
+    std::vector<std::int32_t> nodes(mesh.cells[c].begin(), mesh.cells[c].end());
+    if (chosen[c] && row.order == 2 && complete.type != row.type) {
+      std::vector<double> shape(row.n_nodes);
+      for (int local = row.n_nodes; local < complete.n_nodes; ++local) {
+        const auto face = face_of(complete, nodes, local);
+        const auto known = face.empty() ? middle.end() : middle.find(face);
+        if (known != middle.end()) {
+          nodes.push_back(known->second);
+          continue;
+        }
+        const auto fresh = static_cast<std::int32_t>(mesh.n_nodes());
+        shape_functions(row.type, complete.nodes.subspan(local * complete.dimension, complete.dimension), shape);
+        for (std::size_t k = 0; k < 3; ++k) {
+          double x = 0;
+          for (int n = 0; n < row.n_nodes; ++n) x += shape[n] * mesh.coordinates[3 * static_cast<std::size_t>(nodes[n]) + k];
+          mesh.coordinates.push_back(x);
+        }
+        if (!face.empty()) middle[face] = fresh;
+        nodes.push_back(fresh);
+      }
+      mesh.types[c] = complete.type;
       ++changed;
     }
     connectivity.push_back(nodes);

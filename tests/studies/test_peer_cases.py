@@ -1,4 +1,4 @@
-"""The peer's cases zzzz383a and ssnp170a: every check OK, none DIFF."""
+"""The peer's cases of cuts and of the patch test in the plane: every check OK, none DIFF."""
 
 import pathlib
 import unittest
@@ -20,6 +20,15 @@ class PeerCases(StudyTest):
     def test_zzzz383a_cuts_a_square_on_two_edges(self):
         self.run_case("zzzz383a", 4)
         self.assertTrue((self.folder / "out.med").exists())
+
+    def test_zzzz383c_cuts_a_cube_of_every_degree(self):
+        self.run_case("zzzz383c", 10)
+
+    def test_zzzz383d_cuts_tetrahedra(self):
+        self.run_case("zzzz383d", 6)
+
+    def test_zzzz383e_cuts_around_a_square(self):
+        self.run_case("zzzz383e", 2)
 
     def test_ssnp170a_patch_test_of_triangles(self):
         run = self.run_case("ssnp170a", 14)

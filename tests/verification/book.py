@@ -94,7 +94,7 @@ def peer_section(runner):
     if not PEER_MESHES.is_dir():
         return "## The peer's cases\n\nNot run: their meshes were not there.\n"
     rows = []
-    for name in ("zzzz383a", "ssnp170a"):
+    for name in ("zzzz383a", "zzzz383c", "zzzz383d", "zzzz383e", "ssnp170a"):
         run = runner.run_study(ROOT / f"tests/studies/{name}.comm", "--checks", "all", "--unit", f"20={PEER_MESHES / name}.mmed",
                                "--unit", f"80={runner.folder / 'out.med'}")
         count = {status: sum(c["status"] == status for c in run.checks) for status in ("OK", "NOOK", "DIFF")}

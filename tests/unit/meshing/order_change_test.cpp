@@ -1,6 +1,7 @@
-// LINE_QUAD and QUAD_LINE.
+// LINE_QUAD, QUAD_LINE and HEXA20_27.
 #include <numeric>
 
+#include "lacon/elements/reference.hpp"
 #include "lacon/operators/crea_maillage/crea_maillage.hpp"
 #include "meshes.hpp"
 
@@ -102,6 +103,65 @@ TEST(LineQuadErrors, a_mesh_that_is_cut_is_refused) {
     const Keywords keywords(nlohmann::json{{name, {{{"TOUT", "OUI"}}}}}, "");
     EXPECT_EQ(error_of([&] { crea_maillage(made, keywords); }).id, "MESH1_12");
   }
+}
+
+/// Two hexahedra side by side, bent, with the face between them and one on the left as QUAD4; quadratic.
+Mesh bent_pair() {
+  Mesh mesh;
+  mesh.dimension = 3;
+  for (int z = 0; z < 2; ++z)
+    for (int y = 0; y < 2; ++y)
+      for (int x = 0; x < 3; ++x)
+        for (const double value : {x + 0.2 * y * z, y + 0.1 * x * x, z + 0.1 * x * y}) mesh.coordinates.push_back(value);
+  const auto node = [](int x, int y, int z) { return x + 3 * (y + 2 * z); };
+  for (int x = 0; x < 2; ++x)
+    mesh.add_cell(CellType::HEXA8, Nodes{node(x, 0, 0), node(x + 1, 0, 0), node(x + 1, 1, 0), node(x, 1, 0), node(x, 0, 1),
+                                         node(x + 1, 0, 1), node(x + 1, 1, 1), node(x, 1, 1)});
+  for (int x = 0; x < 2; ++x) mesh.add_cell(CellType::QUAD4, Nodes{node(x, 0, 0), node(x, 0, 1), node(x, 1, 1), node(x, 1, 0)});
+  make_quadratic(mesh, all_cells(mesh));
+  // a curved edge: the nodes in the middle of faces follow it
+  mesh.coordinates[3 * static_cast<std::size_t>(mesh.cells[2][4])] -= 0.2;
+  return mesh;
+}
+
+// HEXA20_27: 20 and 20 nodes with 8 in common become 27 and 27 with 9 in common; skins share the node of their face, and each
+// new node lies where its cell's own geometry has it.
+TEST(Hexa20To27, gives_each_face_one_node_on_the_cells_own_geometry) {
+  Mesh mesh = bent_pair();
+  const Mesh before = mesh;
+  EXPECT_EQ(mesh.n_nodes(), 32u);
+  EXPECT_EQ(make_complete(mesh, all_cells(mesh)), 4);
+  EXPECT_EQ(mesh.n_nodes(), 45u);
+  for (std::size_t c = 0; c < 4; ++c) {
+    EXPECT_EQ(mesh.types[c], c < 2 ? CellType::HEXA27 : CellType::QUAD9);
+    const catalog::CellRow &row = mesh.row(c), &old = before.row(c);
+    std::vector<double> shape(old.n_nodes);
+    for (int local = 0; local < row.n_nodes; ++local) {
+      shape_functions(old.type, row.nodes.subspan(local * row.dimension, row.dimension), shape);
+      for (std::size_t k = 0; k < 3; ++k) {
+        double x = 0;
+        for (int n = 0; n < old.n_nodes; ++n) x += shape[n] * before.point(before.cells[c][n])[k];
+        EXPECT_NEAR(mesh.point(mesh.cells[c][local])[k], x, 1e-14);
+      }
+    }
+  }
+  const auto has = [&](std::size_t c, std::int32_t node) {
+    return std::count(mesh.cells[c].begin(), mesh.cells[c].end(), node) == 1;
+  };
+  EXPECT_TRUE(has(0, mesh.cells[2][8]));
+  EXPECT_TRUE(has(0, mesh.cells[3][8]));
+  EXPECT_TRUE(has(1, mesh.cells[3][8]));
+  EXPECT_FALSE(has(1, mesh.cells[2][8]));
+}
+
+// By groups: a neighbour that is complete already gives the node of the common face; the others stay as they are.
+TEST(Hexa20To27, by_groups_uses_the_nodes_that_are_there) {
+  Mesh mesh = bent_pair();
+  EXPECT_EQ(make_complete(mesh, Nodes{0}), 1);
+  EXPECT_EQ(mesh.n_nodes(), 39u);
+  EXPECT_EQ(make_complete(mesh, Nodes{1, 3}), 2);
+  EXPECT_EQ(mesh.n_nodes(), 45u);
+  EXPECT_EQ(mesh.types[2], CellType::QUAD8);
 }
 
 }  // namespace
