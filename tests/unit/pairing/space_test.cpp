@@ -283,7 +283,7 @@ TEST(PairingInSpace, PatchEquilibriumOnDistortedQuadrangles) {
 
 TEST(PairingInSpace, TrapezoidsOfTheHexahedronCutAreExact) {
   // E1 to E4 around E5, the skin cut of METHOD.md 1.4: a quadrangle of half the size inside another
-  for (const CellType type : {CellType::QUAD4}) {
+  for (const CellType type : {CellType::QUAD4, CellType::QUAD8, CellType::QUAD9}) {
     Skin3 slave, master;
     for (Skin3* skin : {&slave, &master}) {
       const bool up = skin == &master;
@@ -295,6 +295,10 @@ TEST(PairingInSpace, TrapezoidsOfTheHexahedronCutAreExact) {
       }
       const auto add = [&](std::vector<std::int32_t> nodes) {
         if (!up) std::reverse(nodes.begin(), nodes.end());
+        if (type != CellType::QUAD4)
+          for (int i = 0; i < 4; ++i)
+            nodes.push_back(skin->add_node(0.5 * (skin->node(nodes[i]) + skin->node(nodes[(i + 1) % 4]))));
+        if (type == CellType::QUAD9) nodes.push_back(skin->add_node(0.5 * (skin->node(nodes[4]) + skin->node(nodes[6]))));
         skin->surface.add_cell(type, nodes);
       };
       for (int i = 0; i < 4; ++i) add({outer_nodes[i], outer_nodes[(i + 1) % 4], inner_nodes[(i + 1) % 4], inner_nodes[i]});
