@@ -16,6 +16,7 @@ const char* reason(int error) {
     case LACON_BAD_JACOBIAN: return "the Jacobian is zero, negative or of mixed sign";
     case LACON_BAD_PARAMETER: return "a material parameter is out of its range";
     case LACON_BAD_BATCH: return "the kernel does not serve this kind of element: its catalogue row is wrong";
+    case LACON_BAD_RADIUS: return "it reaches over the axis of revolution: DX is the radius, which must not be negative";
     default: return "the result is not a finite number";
   }
 }

@@ -17,7 +17,7 @@
 extern "C" {
 #endif
 
-#define LACON_ABI 1
+#define LACON_ABI 2
 #define LACON_LANES 8
 
 #if defined(__GNUC__)
@@ -32,7 +32,8 @@ enum lacon_element_error {
   LACON_BAD_JACOBIAN = 1,  /* zero, negative or of mixed sign at the integration points */
   LACON_BAD_PARAMETER = 2, /* a material parameter outside its range */
   LACON_NOT_FINITE = 3,
-  LACON_BAD_BATCH = 4      /* the kernel does not serve elements of this kind: the catalogue row is wrong */
+  LACON_BAD_BATCH = 4,     /* the kernel does not serve elements of this kind: the catalogue row is wrong */
+  LACON_BAD_RADIUS = 5     /* axisymmetry: a node on the wrong side of the axis, or a point on it */
 };
 
 /* Solid elements: stiffness, internal forces, stresses at displacement u. ndof = n_nodes * dimension, node by node. */

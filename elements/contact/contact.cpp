@@ -54,9 +54,18 @@ Vector<D> area_normal(const double* gradient, const double* nodes, int n, double
   }
 }
 
+/// Whether a node of an edge has a negative radius by more than round-off. @param nodes (n, 2)
+bool reaches_over_axis(const double* nodes, int n) {
+  double size = 0, least = nodes[0];
+  for (int i = 0; i < 2 * n; ++i) size = std::fmax(size, std::abs(nodes[i] - nodes[i % 2]));
+  for (int a = 1; a < n; ++a) least = std::fmin(least, nodes[2 * a]);
+  return least < -1e-10 * size;
+}
+
 /// METHOD.md 3.4 and 5.4 (b): at each point the gap g = (x_m - x).n_e; with the measure J of TYPE_JACOBIEN (of the initial
 /// geometry or of the current one, in both) G = sum w J g and C = sum w J (-phi_i n_e on the slave, +phi_j n_e on the master).
-template <int D>
+/// In axisymmetry (METHOD.md 3.9) J has the factor r, the slave's radius in the same geometry: integrals over one radian.
+template <int D, bool axis = false>
 void lac(const lacon_contact_batch* batch) {
   const lacon_contact_batch& b = *batch;
   const int slaves = b.n_slave_nodes, masters = b.n_master_nodes, dofs = (slaves + masters) * D;
@@ -72,7 +81,8 @@ void lac(const lacon_contact_batch* batch) {
     double* coupling = b.coupling ? b.coupling + cell * dofs : nullptr;
     for (int i = 0; coupling && i < dofs; ++i) coupling[i] = 0;
     double gap = 0, measure = 0, current_measure = 0;
-    bool bad = false;
+    bool bad = false, over = false;
+    if constexpr (axis) over = reaches_over_axis(initial, slaves) || reaches_over_axis(current, slaves);
     for (std::int64_t p = b.offset[cell]; p < b.offset[cell + 1]; ++p) {
       const double* shape = b.slave_shape + p * slaves;
       const double* master_shape = b.master_shape + p * masters;
@@ -80,7 +90,7 @@ void lac(const lacon_contact_batch* batch) {
       double scale, scale0;
       Vector<D> n = area_normal<D>(gradient, current, slaves, scale);
       const Vector<D> n0 = area_normal<D>(gradient, initial, slaves, scale0);
-      const double jacobian = std::sqrt(dot<D>(n, n)), jacobian0 = std::sqrt(dot<D>(n0, n0));
+      double jacobian = std::sqrt(dot<D>(n, n)), jacobian0 = std::sqrt(dot<D>(n0, n0));
       bad |= !(jacobian > flat * scale) || !(jacobian0 > flat * scale0);
       double length = jacobian;
       if (normals) {
@@ -90,6 +100,10 @@ void lac(const lacon_contact_batch* batch) {
       }
       for (double& component : n) component /= length;
       const Vector<D> x = interpolate<D>(shape, current, slaves), image = interpolate<D>(master_shape, master, masters);
+      if constexpr (axis) {
+        jacobian *= x[0];
+        jacobian0 *= interpolate<D>(shape, initial, slaves)[0];
+      }
       Vector<D> across;
       for (int i = 0; i < D; ++i) across[i] = image[i] - x[i];
       const double g = dot<D>(across, n), w = b.weight[p] * (b.current_jacobian ? jacobian : jacobian0);
@@ -108,12 +122,13 @@ void lac(const lacon_contact_batch* batch) {
     if (b.measure) b.measure[cell] = measure;
     if (b.current_measure) b.current_measure[cell] = current_measure;
     const bool finite = std::isfinite(gap) && std::isfinite(measure) && std::isfinite(current_measure);
-    b.error[cell] = bad ? LACON_BAD_JACOBIAN : finite ? LACON_FINE : LACON_NOT_FINITE;
+    b.error[cell] = over ? LACON_BAD_RADIUS : bad ? LACON_BAD_JACOBIAN : finite ? LACON_FINE : LACON_NOT_FINITE;
   }
 }
 
 const lacon_kernel kernels[] = {
     {"lac_2d", LACON_CONTACT, nullptr, nullptr, lac<2>, nullptr},
+    {"lac_axis", LACON_CONTACT, nullptr, nullptr, lac<2, true>, nullptr},
     {"lac_3d", LACON_CONTACT, nullptr, nullptr, lac<3>, nullptr},
 };
 const lacon_plugin_table table = {LACON_ABI,

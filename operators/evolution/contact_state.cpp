@@ -20,10 +20,13 @@ void append_points(const Mesh& mesh, std::span<const double> coordinates, std::i
     out.insert(out.end(), coordinates.begin() + 3 * std::ptrdiff_t{node}, coordinates.begin() + 3 * std::ptrdiff_t{node} + dimension);
 }
 
-/// Measure of a skin cell.
+/// The rule that measures a whole skin cell.
+const Rule& measuring_rule(Family family) { return integration_rule(family, family == Family::SEG ? 4 : family == Family::TRIA ? 6 : 9); }
+
+/// Length or area of a skin cell.
 double measure(const Mesh& mesh, std::span<const double> coordinates, std::int32_t cell) {
   const catalog::CellRow& row = mesh.row(cell);
-  const Rule& rule = integration_rule(row.family, row.family == Family::SEG ? 4 : row.family == Family::TRIA ? 6 : 9);
+  const Rule& rule = measuring_rule(row.family);
   std::vector<double> points;
   append_points(mesh, coordinates, cell, 3, points);
   double sum = 0;
@@ -32,6 +35,10 @@ double measure(const Mesh& mesh, std::span<const double> coordinates, std::int32
     sum += rule.weights[p] * std::hypot(n[0], n[1], n[2]);
   }
   return sum;
+}
+
+[[noreturn]] void refuse_slave(std::int32_t cell, std::int32_t error) {
+  fail(error == LACON_BAD_RADIUS ? "EVOLUTION_8" : "EVOLUTION_3", {{"cell", cell_name(cell)}});
 }
 
 }  // namespace
@@ -63,9 +70,10 @@ ContactState::ContactState(const StaticProblem& problem, const ContactTolerances
 
   measure_slaves();
   const NodeCells around(mesh);
+  for (const SlaveElement& slave : contact_.slaves) size_[slave.patch] += measure(mesh, coordinates_, slave.cell);
+  if (mesh.dimension == 3)
+    for (double& size : size_) size = std::sqrt(size);
   for (const SlaveElement& slave : contact_.slaves) {
-    const double area = whole_[slave.patch];
-    size_[slave.patch] = mesh.dimension == 2 ? area : std::sqrt(area);
     // the first sub-cell's body stands for the patch: all its sub-cells come from one body cell
     if (slave.rank > 0) continue;
     std::optional<double> modulus;
@@ -86,9 +94,62 @@ ContactState::ContactState(const StaticProblem& problem, const ContactTolerances
   gap_tolerance_ = tolerances_.gap_round_off * extent;
 }
 
+const lacon_kernel& ContactState::kernel_of(std::int32_t cell) const {
+  const std::int32_t element = problem_.model.element[cell];
+  const catalog::ElementRow* row = element < 0 ? nullptr : problem_.registry->find_element(problem_.model.elements[element]);
+  if (!row) fail("PLUGIN_4", {{"element", element < 0 ? "none, on cell " + cell_name(cell) : problem_.model.elements[element]}});
+  return problem_.registry->kernel(*row, "RIGI_CONT", LACON_CONTACT);
+}
+
 void ContactState::measure_slaves() {
+  const Mesh& mesh = problem_.mesh;
+  const int dimension = problem_.dimension;
   std::fill(whole_.begin(), whole_.end(), 0.0);
-  for (const SlaveElement& slave : contact_.slaves) whole_[slave.patch] += measure(problem_.mesh, coordinates_, slave.cell);
+  std::map<CellType, std::vector<std::int32_t>> by_type;
+  for (std::size_t s = 0; s < contact_.slaves.size(); ++s)
+    by_type[mesh.row(contact_.slaves[s].cell).type].push_back(static_cast<std::int32_t>(s));
+  for (const auto& [type, members] : by_type) {
+    // each cell on itself: the kernel says what its measure is
+    const Tabulation table = tabulate(type, measuring_rule(catalog::cell(type).family));
+    std::vector<std::int64_t> offset{0};
+    std::vector<double> weight, shape, gradient, initial, current, size(members.size());
+    for (const std::int32_t s : members) {
+      append_points(mesh, mesh.coordinates, contact_.slaves[s].cell, dimension, initial);
+      append_points(mesh, coordinates_, contact_.slaves[s].cell, dimension, current);
+      weight.insert(weight.end(), table.weight.begin(), table.weight.end());
+      shape.insert(shape.end(), table.shape.begin(), table.shape.end());
+      gradient.insert(gradient.end(), table.gradient.begin(), table.gradient.end());
+      offset.push_back(static_cast<std::int64_t>(weight.size()));
+    }
+    std::vector<std::int32_t> error(members.size(), LACON_FINE);
+    const lacon_contact_batch batch{.struct_size = sizeof(lacon_contact_batch),
+                                    .n_cells = static_cast<std::int32_t>(members.size()),
+                                    .n_slave_nodes = table.n_nodes,
+                                    .n_master_nodes = table.n_nodes,
+                                    .dimension = dimension,
+                                    .current_jacobian = 1,
+                                    .offset = offset.data(),
+                                    .weight = weight.data(),
+                                    .slave_shape = shape.data(),
+                                    .slave_gradient = gradient.data(),
+                                    .master_shape = shape.data(),
+                                    .slave_initial = initial.data(),
+                                    .slave = current.data(),
+                                    .master = current.data(),
+                                    .slave_normal = nullptr,
+                                    .point_gap = nullptr,
+                                    .gap = nullptr,
+                                    .measure = nullptr,
+                                    .current_measure = size.data(),
+                                    .coupling = nullptr,
+                                    .error = error.data()};
+    kernel_of(contact_.slaves[members.front()].cell).contact(&batch);
+    for (std::size_t i = 0; i < members.size(); ++i) {
+      const SlaveElement& slave = contact_.slaves[members[i]];
+      if (error[i] != LACON_FINE) refuse_slave(slave.cell, error[i]);
+      whole_[slave.patch] += size[i];
+    }
+  }
 }
 
 void ContactState::update_geometry(std::span<const double> displacement) {
@@ -183,13 +244,10 @@ void ContactState::integrate(const Zone& zone, const ContactCells& cells, std::s
                                     .coupling = coupling.data(),
                                     .error = error.data()};
     const std::int32_t first_cell = contact_.slaves[zone.slaves[cells.slave[members.front()]]].cell;
-    const std::int32_t element = problem_.model.element[first_cell];
-    const catalog::ElementRow* row = element < 0 ? nullptr : problem_.registry->find_element(problem_.model.elements[element]);
-    if (!row) fail("PLUGIN_4", {{"element", "none, on cell " + cell_name(first_cell)}});
-    problem_.registry->kernel(*row, "RIGI_CONT", LACON_CONTACT).contact(&batch);
+    kernel_of(first_cell).contact(&batch);
     for (std::size_t i = 0; i < members.size(); ++i) {
       const std::int32_t c = members[i], s = zone.slaves[cells.slave[c]];
-      if (error[i] != LACON_FINE) fail("EVOLUTION_3", {{"cell", cell_name(contact_.slaves[s].cell)}});
+      if (error[i] != LACON_FINE) refuse_slave(contact_.slaves[s].cell, error[i]);
       const std::int32_t patch = contact_.slaves[s].patch;
       gap_[patch] += gap[i];
       weight_[patch] += size[i];

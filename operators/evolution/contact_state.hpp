@@ -91,7 +91,10 @@ class ContactState {
   };
 
   void integrate(const Zone& zone, const ContactCells& cells, std::span<const double> normals);
+  /// Measures of whole patches, in the measure of the kernels' coverage (with r in axisymmetry).
   void measure_slaves();
+  /// The contact kernel of a slave cell's element.
+  const lacon_kernel& kernel_of(std::int32_t cell) const;
 
   const StaticProblem& problem_;
   const Contact& contact_;

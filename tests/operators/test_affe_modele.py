@@ -63,7 +63,7 @@ class AffeModele(OperatorTest):
         self.assertEqual(self.elements()[:2], ["D_PLAN/QUAD4", "D_PLAN/TRIA3"])
 
     def test_an_unknown_modelisation_is_refused_with_the_known_ones(self):
-        run = self.refuses("MODELE_1", [affe(TOUT="OUI", MODELISATION="3D")], "'3D'", "AFFE/MODELISATION")
+        run = self.refuses("MODELE_1", [affe(TOUT="OUI", MODELISATION="COQUE_3D")], "'COQUE_3D'", "AFFE/MODELISATION")
         self.assertIn("D_PLAN", run.messages[0]["do"])
 
     def test_an_occurrence_that_gives_nothing_is_refused(self):

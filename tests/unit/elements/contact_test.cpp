@@ -23,14 +23,11 @@ constexpr double garbage = 7e7;  // what outputs hold before they are computed
 
 std::size_t z(int i) { return static_cast<std::size_t>(i); }
 
-/// The library's kernels by dimension (no row of the catalogue names the 3D one yet: the library is opened beside the
-/// registry).
-const lacon_kernel& contact_kernel(int dimension) {
+/// The kernel of the skins of a modelisation.
+const lacon_kernel& contact_kernel(int dimension, bool axis) {
   static lacon::Registry registry;
-  const lacon_kernel& flat = registry.kernel(*registry.find_element("D_PLAN/SEG2"), "RIGI_CONT", LACON_CONTACT);
-  const lacon_kernel* kernel = dimension == 2 ? &flat : &flat + 1;  // lac_3d follows lac_2d in the table
-  EXPECT_STREQ(kernel->name, dimension == 2 ? "lac_2d" : "lac_3d");
-  return *kernel;
+  const char* const element = dimension == 3 ? "3D/TRIA3" : axis ? "AXIS/SEG2" : "D_PLAN/SEG2";
+  return registry.kernel(*registry.find_element(element), "RIGI_CONT", LACON_CONTACT);
 }
 
 /// One contact cell: a slave and a master cell with points on both.
@@ -39,7 +36,7 @@ struct ContactCell {
   int dimension;
   Numbers weight, slave_xi, master_xi;
   Numbers initial, slave, master, normals;
-  bool current = false;
+  bool current = false, axis = false;
 
   int slaves() const { return lacon::catalog::cell(slave_type).n_nodes; }
   int masters() const { return lacon::catalog::cell(master_type).n_nodes; }
@@ -88,7 +85,7 @@ ContactResult run(const ContactCell& c, int batch_dimension = 0) {
                                   &r.current_measure,
                                   r.coupling.data(),
                                   &r.error};
-  contact_kernel(c.dimension).contact(&batch);
+  contact_kernel(c.dimension, c.axis).contact(&batch);
   return r;
 }
 
@@ -695,6 +692,36 @@ TEST(ContactSystem, MatrixIsTheDerivativeOfTheResidual) {  // C frozen: d(lambda
       EXPECT_EQ(matrix[z(std::max(at, row) * (std::max(at, row) + 1) / 2 + std::min(at, row))], slope);
     }
   EXPECT_EQ(high[z(dofs.multiplier(0))], 0.5);
+}
+
+TEST(LacAxis, WeightsCarryTheRadiusOfTheGeometryOfTypeJacobien) {
+  const auto& rule = lacon::gauss_rule(3);
+  // a ring from r = 1 to 3, its body below, moved outward by 1; the master 0.1 above
+  ContactCell c{CellType::SEG2, CellType::SEG2, 2, rule.weights, rule.points, {}, {3, 0, 1, 0}, {4, 0, 2, 0}, {2, 0.1, 4, 0.1}, {}};
+  for (const double xi : rule.points) c.master_xi.push_back(-xi);
+  c.axis = true;
+  for (const bool current : {false, true}) {
+    c.current = current;
+    const auto r = run(c);
+    EXPECT_EQ(r.error, LACON_FINE);
+    const double inner = current ? 2 : 1, area = current ? 6 : 4;  // int r dr
+    EXPECT_NEAR(r.measure, area, 20 * eps);
+    EXPECT_NEAR(r.current_measure, 6, 20 * eps);
+    EXPECT_NEAR(r.gap, 0.1 * area, 20 * eps);
+    const double outer_share = 2 * inner / 2 + 4.0 / 3, inner_share = area - outer_share;  // int N r dr, r = inner + 2 s
+    const double exact[] = {-outer_share, -inner_share, inner_share, outer_share};
+    for (int node = 0; node < 4; ++node) {
+      EXPECT_NEAR(r.coupling[z(2 * node)], 0, 20 * eps);
+      EXPECT_NEAR(r.coupling[z(2 * node + 1)], exact[node], 20 * eps);
+    }
+  }
+  for (Numbers* x : {&c.initial, &c.slave}) {
+    auto over = c;
+    (x == &c.initial ? over.initial : over.slave)[2] = -0.1;
+    EXPECT_EQ(run(over).error, LACON_BAD_RADIUS);
+    (x == &c.initial ? over.initial : over.slave)[2] = 0;
+    EXPECT_EQ(run(over).error, LACON_FINE);
+  }
 }
 
 }  // namespace

@@ -330,7 +330,7 @@ INSTANTIATE_TEST_SUITE_P(All, PlaneStrain,
 TEST(SolidKernel, RefusesElementsOfAKindThatItDoesNotServe) {
   const auto& kernel = registry().kernel(*registry().find_element("D_PLAN/TRIA3"), "FULL_MECA", LACON_SOLID);
   for (const auto& [nodes, dimension, stress, parameters] :
-       {std::array{27, 3, 6, 2}, {10, 2, 4, 2}, {3, 2, 6, 2}, {3, 2, 4, 1}}) {
+       {std::array{27, 3, 6, 2}, {28, 2, 4, 2}, {3, 2, 6, 2}, {3, 2, 4, 1}}) {
     std::vector<std::int32_t> error(2 * LACON_LANES, 0);
     lacon_solid_batch batch{};
     batch.n_blocks = 2;

@@ -97,7 +97,7 @@ TEST_F(Plugins, SolidKernelSaysWhichParametersItTakes) {
 TEST_F(Plugins, WhatDoesNotExistIsNotFound) {
   Registry registry;
   EXPECT_EQ(registry.find_element("D_PLAN/PYRAM5"), nullptr);
-  EXPECT_EQ(registry.find_element("C_PLAN", lacon::CellType::TRIA3), nullptr);
+  EXPECT_EQ(registry.find_element("NO_PLAN", lacon::CellType::TRIA3), nullptr);
   EXPECT_FALSE(registry.has_kernel(*registry.find_element("D_PLAN/TRIA3"), "RIGI_CONT"));
 }
 
@@ -123,7 +123,7 @@ TEST_F(Plugins, RowsOfAPluginServeItsCells) {
   EXPECT_THAT(element->dofs, testing::ElementsAre("DX", "DY"));
   EXPECT_THAT(element->stress, testing::ElementsAre("SIXX", "SIYY", "SIZZ", "SIXY"));
   EXPECT_STREQ(registry.kernel(*element, "FULL_MECA", LACON_SOLID).name, "plane_strain_small_elastic");
-  EXPECT_THAT(registry.modelisations(), testing::ElementsAre("D_PLAN", "D_TEST"));
+  EXPECT_THAT(registry.modelisations(), testing::IsSupersetOf({"D_PLAN", "D_TEST"}));
 }
 
 TEST_F(Plugins, AreFoundOnThePathAlsoInAFolderOfSeveral) {

@@ -1,0 +1,251 @@
+// Solid and load kernels of every modelisation: what holds for all of them.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <random>
+#include <tuple>
+
+#include "lacon/elements/reference.hpp"
+#include "lacon/elements/registry.hpp"
+
+namespace {
+
+using lacon::CellType;
+using Numbers = std::vector<double>;
+
+constexpr double garbage = 7e7;  // what outputs hold before a kernel runs
+constexpr double young = 2.1e5, poisson = 0.3;
+
+lacon::Registry& registry() {
+  static lacon::Registry all;
+  return all;
+}
+
+std::size_t z(int i) { return static_cast<std::size_t>(i); }
+
+struct Result {
+  Numbers matrix, force, stress;
+  int error = -1;
+};
+
+lacon::Tabulation table_of(const lacon::catalog::ElementRow& row) {
+  return lacon::tabulate(row.cell, lacon::integration_rule(lacon::catalog::cell(row.cell).family, row.points));
+}
+
+/// One element, in every lane. @param x, u (n_nodes, dimension)
+Result run_solid(const lacon::catalog::ElementRow& row, const Numbers& x, const Numbers& u) {
+  const auto table = table_of(row);
+  const auto spread = [](const Numbers& values) {
+    Numbers all;
+    for (const double value : values) all.insert(all.end(), LACON_LANES, value);
+    return all;
+  };
+  const Numbers xs = spread(x), us = spread(u), material = spread({young, poisson});
+  const std::size_t n = x.size();
+  Numbers matrix(n * (n + 1) / 2 * LACON_LANES, garbage), force(n * LACON_LANES, garbage),
+      stress(z(table.n_points) * row.stress.size() * LACON_LANES, garbage);
+  std::vector<std::int32_t> error(LACON_LANES, -1);
+  const lacon_solid_batch batch{sizeof(lacon_solid_batch), 1, table.n_nodes, static_cast<int>(row.dofs.size()), table.n_points,
+                                static_cast<int>(row.stress.size()), 2, table.shape.data(), table.gradient.data(),
+                                table.weight.data(), xs.data(), us.data(), material.data(), matrix.data(), force.data(),
+                                stress.data(), error.data()};
+  registry().kernel(row, "FULL_MECA", LACON_SOLID).solid(&batch);
+  const auto first = [](const Numbers& lanes) {
+    Numbers values;
+    for (std::size_t i = 3; i < lanes.size(); i += LACON_LANES) values.push_back(lanes[i]);  // of lane 3
+    return values;
+  };
+  return {first(matrix), first(force), first(stress), error[3]};
+}
+
+Result run_pressure(const lacon::catalog::ElementRow& row, const Numbers& x, double value) {
+  const auto table = table_of(row);
+  Numbers xs, values(LACON_LANES, value), force(x.size() * LACON_LANES, garbage);
+  for (const double coordinate : x) xs.insert(xs.end(), LACON_LANES, coordinate);
+  std::vector<std::int32_t> error(LACON_LANES, -1);
+  const lacon_load_batch batch{sizeof(lacon_load_batch), 1, table.n_nodes, static_cast<int>(row.dofs.size()), table.n_points,
+                               table.shape.data(), table.gradient.data(), table.weight.data(), xs.data(), values.data(),
+                               force.data(), error.data()};
+  registry().kernel(row, "CHAR_MECA_PRES", LACON_LOAD).load(&batch);
+  Numbers own;
+  for (std::size_t i = 3; i < force.size(); i += LACON_LANES) own.push_back(force[i]);
+  return {{}, own, {}, error[3]};
+}
+
+struct Modelisation : testing::TestWithParam<const lacon::catalog::ElementRow*> {
+  const lacon::catalog::ElementRow& row = *GetParam();
+  const lacon::catalog::CellRow& cell = lacon::catalog::cell(row.cell);
+  const int D = cell.dimension;
+  const bool axis = row.modelisation == "AXIS", plane_stress = row.modelisation == "C_PLAN";
+  /// Straight-sided, its vertices shaken: no parallelogram, no plane face of four vertices. Away from the axis.
+  Numbers x = shaken();
+
+  Numbers shaken() const {
+    std::mt19937 random(7);
+    std::uniform_real_distribution<double> shake(-0.12, 0.12);
+    const auto& linear = lacon::catalog::cell(cell.linear);
+    Numbers vertices(linear.nodes.begin(), linear.nodes.end()), points, shape(z(linear.n_nodes));
+    for (double& coordinate : vertices) coordinate += shake(random);
+    for (int a = 0; a < cell.n_nodes; ++a) {
+      lacon::shape_functions(cell.linear, cell.nodes.subspan(z(a * D), z(D)), shape);
+      for (int i = 0; i < D; ++i) {
+        double value = i == 0 ? 2 : -1;
+        for (int v = 0; v < linear.n_nodes; ++v) value += shape[z(v)] * vertices[z(v * D + i)];
+        points.push_back(value);
+      }
+    }
+    return points;
+  }
+  /// u = gradient x
+  Numbers linear(const double (&gradient)[3][3]) const {
+    Numbers u;
+    for (int a = 0; a < cell.n_nodes; ++a)
+      for (int i = 0; i < D; ++i) {
+        double value = 0;
+        for (int k = 0; k < D; ++k) value += gradient[i][k] * x[z(a * D + k)];
+        u.push_back(value);
+      }
+    return u;
+  }
+};
+
+TEST_P(Modelisation, ConstantStrainGivesTheStressOfHookesLaw) {
+  double g[3][3] = {{1.3e-3, 4e-4, -3e-4}, {8e-4, -0.7e-3, 6e-4}, {-1e-4, 2e-4, 0.5e-3}};
+  if (axis) g[0][1] = 0;  // u_r / r is constant for u_r = c r alone
+  double e[6] = {g[0][0], g[1][1], 0, g[0][1] + g[1][0], g[0][2] + g[2][0], g[1][2] + g[2][1]};
+  if (D == 3) e[2] = g[2][2];
+  if (axis) e[2] = g[0][0];
+  if (plane_stress) e[2] = -poisson / (1 - poisson) * (e[0] + e[1]);
+  const auto result = run_solid(row, x, linear(g));
+  ASSERT_EQ(result.error, LACON_FINE);
+  const double twice_mu = young / (1 + poisson), lambda = twice_mu * poisson / (1 - 2 * poisson);
+  for (std::size_t i = 0; i < result.stress.size(); ++i) {
+    const std::size_t c = i % row.stress.size();
+    const double exact = c < 3 ? lambda * (e[0] + e[1] + e[2]) + twice_mu * e[c] : twice_mu / 2 * e[c];
+    EXPECT_NEAR(result.stress[i], exact, 1e-12 * young * 1e-2) << row.stress[c];
+  }
+}
+
+TEST_P(Modelisation, AHydrostaticStateIsInBalanceWithThePressureOnItsFacets) {
+  // int div(N_a e_i) = boundary int N_a n_i: with every rule exact this is the patch test of any constant stress
+  const double strain = 1e-3, p = -(plane_stress ? young / (1 - poisson)
+                                    : D == 2 && !axis ? young / ((1 + poisson) * (1 - 2 * poisson))
+                                                      : young / (1 - 2 * poisson)) * strain;
+  const auto result = run_solid(row, x, linear({{strain, 0, 0}, {0, strain, 0}, {0, 0, strain}}));
+  ASSERT_EQ(result.error, LACON_FINE);
+  Numbers sum = result.force;
+  for (const auto& facet : cell.facets) {
+    Numbers points;
+    for (const auto a : facet.nodes)
+      for (int i = 0; i < D; ++i) points.push_back(x[z(a * D + i)]);
+    const auto* skin = registry().find_element(row.modelisation, facet.type);
+    ASSERT_NE(skin, nullptr);
+    const auto load = run_pressure(*skin, points, p);
+    ASSERT_EQ(load.error, LACON_FINE);
+    for (std::size_t k = 0; k < facet.nodes.size(); ++k)
+      for (int i = 0; i < D; ++i) sum[z(facet.nodes[k] * D + i)] -= load.force[k * z(D) + z(i)];
+  }
+  double largest = 0;
+  for (const double f : result.force) largest = std::max(largest, std::abs(f));
+  EXPECT_GT(largest, 1);
+  for (const double f : sum) EXPECT_NEAR(f, 0, 1e-12 * std::abs(p) * 10);
+}
+
+TEST_P(Modelisation, RigidMotionsGiveNoForce) {
+  std::vector<Numbers> motions;
+  for (int i = axis ? 1 : 0; i < D; ++i) {
+    Numbers u(x.size(), 0.0);
+    for (std::size_t k = z(i); k < u.size(); k += z(D)) u[k] = 1;
+    motions.push_back(u);
+  }
+  if (!axis) motions.push_back(linear({{0, -1, 0}, {1, 0, 0}, {0, 0, 0}}));
+  if (D == 3) {
+    motions.push_back(linear({{0, 0, 1}, {0, 0, 0}, {-1, 0, 0}}));
+    motions.push_back(linear({{0, 0, 0}, {0, 0, -1}, {0, 1, 0}}));
+  }
+  for (const Numbers& u : motions)
+    for (const double f : run_solid(row, x, u).force) EXPECT_NEAR(f, 0, 1e-12 * young * 10);
+  if (axis) {  // moving away from the axis is none: the hoop is stretched
+    Numbers u(x.size(), 0.0);
+    for (std::size_t k = 0; k < u.size(); k += 2) u[k] = 1;
+    EXPECT_GT(std::abs(run_solid(row, x, u).force[0]), 1e-3 * young);
+  }
+}
+
+TEST_P(Modelisation, StiffnessIsTheDerivativeOfTheForce) {
+  std::mt19937 random(3);
+  std::uniform_real_distribution<double> number(-1, 1);
+  Numbers u(x.size());
+  for (double& value : u) value = number(random);
+  const auto result = run_solid(row, x, u);
+  double largest = 0;
+  for (const double entry : result.matrix) largest = std::max(largest, std::abs(entry));
+  for (std::size_t j = 0; j < u.size(); ++j) {
+    Numbers low = u, high = u;
+    low[j] -= 1;  // forces are linear: a step of 1 has no truncation error
+    high[j] += 1;
+    const auto before = run_solid(row, x, low), after = run_solid(row, x, high);
+    for (std::size_t i = 0; i < u.size(); ++i) {
+      const std::size_t entry = std::max(i, j) * (std::max(i, j) + 1) / 2 + std::min(i, j);
+      EXPECT_NEAR((after.force[i] - before.force[i]) / 2, result.matrix[entry], 1e-12 * largest * 10) << i << ' ' << j;
+    }
+  }
+}
+
+TEST_P(Modelisation, BadCellsAreCaught) {
+  const Numbers zero(x.size(), 0.0);
+  Numbers wrong = x, flat = x;
+  for (std::size_t a = 0; a < cell.mirror.size(); ++a)
+    for (int i = 0; i < D; ++i) wrong[a * z(D) + z(i)] = x[z(cell.mirror[a] * D + i)];
+  EXPECT_EQ(run_solid(row, wrong, zero).error, LACON_BAD_JACOBIAN);
+  for (std::size_t k = z(D - 1); k < flat.size(); k += z(D)) flat[k] = 0.3 * flat[k - 1] + 5;  // all nodes in a plane or line
+  EXPECT_EQ(run_solid(row, flat, zero).error, LACON_BAD_JACOBIAN);
+  Numbers sliver = x;
+  for (std::size_t k = z(D - 1); k < sliver.size(); k += z(D)) sliver[k] *= 1e-6;
+  EXPECT_EQ(run_solid(row, sliver, zero).error, LACON_FINE);
+  Numbers nan = zero;
+  nan[1] = std::nan("");
+  EXPECT_EQ(run_solid(row, x, nan).error, LACON_NOT_FINITE);
+  if (!axis) return;
+  Numbers over = x, touching = x;
+  double least = x[0];
+  for (std::size_t k = 0; k < x.size(); k += 2) least = std::min(least, x[k]);
+  for (std::size_t k = 0; k < x.size(); k += 2) over[k] -= least + 0.01, touching[k] -= least;
+  EXPECT_EQ(run_solid(row, over, zero).error, LACON_BAD_RADIUS);
+  EXPECT_EQ(run_solid(row, touching, zero).error, LACON_FINE);
+}
+
+std::vector<const lacon::catalog::ElementRow*> solids() {
+  std::vector<const lacon::catalog::ElementRow*> rows;
+  for (const auto& row : lacon::catalog::elements())
+    if (row.role == lacon::catalog::Role::solid) rows.push_back(&row);
+  return rows;
+}
+
+INSTANTIATE_TEST_SUITE_P(All, Modelisation, testing::ValuesIn(solids()), [](const auto& row) {
+  std::string name(row.param->name);
+  name[name.find('/')] = '_';
+  return name;
+});
+
+TEST(AxisPressure, IsThatOfOneRadianAndStopsAtTheAxis) {
+  // on a disc of radius 3, body below: f_z sums up to -p r^2 / 2
+  for (const CellType type : {CellType::SEG2, CellType::SEG3}) {
+    const auto& row = *registry().find_element("AXIS", type);
+    const Numbers disc = type == CellType::SEG2 ? Numbers{3, 1, 0, 1} : Numbers{3, 1, 0, 1, 1.5, 1};
+    const auto result = run_pressure(row, disc, 2.0);
+    ASSERT_EQ(result.error, LACON_FINE);
+    double fr = 0, fz = 0;
+    for (std::size_t i = 0; i < result.force.size(); i += 2) {
+      fr += result.force[i];
+      fz += result.force[i + 1];
+    }
+    EXPECT_NEAR(fr, 0, 1e-14);
+    EXPECT_NEAR(fz, -9, 1e-13);
+    Numbers over = disc;
+    over[2] = -0.1;
+    EXPECT_EQ(run_pressure(row, over, 2.0).error, LACON_BAD_RADIUS);
+  }
+}
+
+}  // namespace
