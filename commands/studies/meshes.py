@@ -1,4 +1,4 @@
-"""Meshes of the studies and of the tests: blocks of cells in the plane, put together, written as MED 4.1.
+"""Meshes of the studies and of the tests: blocks of cells in the plane or in space, put together, written as MED 4.1.
 
     body = block("QUAD8", linspace(0, 2, 5), linspace(0, 1, 3), name="BODY", sides={"bottom": "BASE", "top": "LOAD"})
     write_med("mesh.med", union([body, other]))
@@ -16,9 +16,32 @@ CELLS = {
     "QUAD4": ("QU4", 2, "SEG2"), "QUAD8": ("QU8", 2, "SEG3"), "QUAD9": ("QU9", 2, "SEG3"),
 }
 
+#: volume cell -> (name in MED files, the vertices, in the order of catalog/cells.toml, of which each node in MED's order is the mean)
+VOLUMES = {
+    "TETRA4": ("TE4", "0 2 1 3"),
+    "TETRA10": ("T10", "0 2 1 3 02 12 01 03 23 13"),
+    "PENTA6": ("PE6", "0 2 1 3 5 4"),
+    "PENTA15": ("P15", "0 2 1 3 5 4 20 12 01 53 45 34 03 25 14"),
+    "PYRAM5": ("PY5", "0 3 2 1 4"),
+    "PYRAM13": ("P13", "0 3 2 1 4 30 23 12 01 04 34 24 14"),
+    "HEXA8": ("HE8", "0 3 2 1 4 7 6 5"),
+    "HEXA20": ("H20", "0 3 2 1 4 7 6 5 30 23 12 01 74 67 56 45 04 37 26 15"),
+    "HEXA27": ("H27", "0 3 2 1 4 7 6 5 30 23 12 01 74 67 56 45 04 37 26 15 0321 3047 2376 1265 0154 4567 01234567"),
+}
+CELLS.update({kind: (med, 3, "") for kind, (med, _) in VOLUMES.items()})
+
+#: family -> vertices (of a cube, by number as in HEXA8; 8 is its centre) of the cells that a cube is cut into
+CUBE = {
+    "HEXA": ["01234567"],
+    "PENTA": ["013457", "123567"],
+    "PYRAM": ["01238", "04518", "15628", "26738", "37408", "47658"],
+    "TETRA": ["0126", "0236", "0376", "0746", "0456", "0516"],
+}
+CORNERS = ((0, 0, 0), (4, 0, 0), (4, 4, 0), (0, 4, 0), (0, 0, 4), (4, 0, 4), (4, 4, 4), (0, 4, 4), (2, 2, 2))
+
 
 class Mesh:
-    """Points (n, 2); cells by type, (m, n_nodes), 0-based; groups: name -> list of (type, index) or of nodes."""
+    """Points (n, 2 or 3); cells by type, (m, n_nodes), 0-based; groups: name -> list of (type, index) or of nodes."""
 
     def __init__(self, points, cells, cell_groups=None, node_groups=None):
         self.points = np.asarray(points, float)
@@ -27,8 +50,8 @@ class Mesh:
         self.node_groups = node_groups or {}
 
     def nodes_where(self, test):
-        """Nodes for which test(x, y) holds."""
-        return [i for i, (x, y) in enumerate(self.points) if test(x, y)]
+        """Nodes for which test(x, y) or test(x, y, z) holds."""
+        return [i for i, point in enumerate(self.points) if test(*point)]
 
     def n_cells(self):
         return sum(len(rows) for rows in self.cells.values())
@@ -83,6 +106,60 @@ def block(kind, s, t, place=None, name="", sides=None):
     if skins:
         mesh.cells[skin] = np.array(skins)
     mesh.points = np.array(points, float)
+    return mesh
+
+
+def brick(kind, lines, place=None, name="", sides=None, curved=False):
+    """A box of volume cells, each cube of the grid cut into cells of the kind. @param lines three arrays of parameters, increasing
+    @param place maps parameters (r, s, t) to a point and keeps right-handedness; None: the point is (r, s, t)
+    @param sides (axis, end: 0 or 1) -> name of the group of skin cells, whose normals leave the box
+    @param curved put middle nodes by `place`, else into the middle of their vertices"""
+    spots = [[int(v) for v in spot] for spot in VOLUMES[kind][1].split()]
+    family = kind.rstrip("0123456789")
+    size = [len(line) - 1 for line in lines]
+    numbers, points = {}, []
+
+    def position(key):
+        """Of a point of the grid of quarter steps."""
+        at = [line[k // 4] + (line[min(k // 4 + 1, len(line) - 1)] - line[k // 4]) * (k % 4) / 4 for line, k in zip(lines, key)]
+        return np.asarray(place(*at) if place else at, float)
+
+    def node(vertices):
+        """The middle of vertices given on the grid of quarter steps."""
+        key = tuple(sum(v[i] for v in vertices) // len(vertices) for i in range(3))
+        if key not in numbers:
+            numbers[key] = len(points)
+            points.append(position(key) if curved else np.mean([position(v) for v in vertices], axis=0))
+        return numbers[key]
+
+    def facet(vertices, axis, end):
+        """Vertices of a plane facet in turn, seen from outside against the axis, and its middles as the cell's order has them."""
+        u, v = ((axis + 1) % 3, (axis + 2) % 3) if end else ((axis + 2) % 3, (axis + 1) % 3)
+        middle = np.mean(vertices, axis=0)
+        turn = sorted(vertices, key=lambda k: np.arctan2(k[v] - middle[v], k[u] - middle[u]))
+        nodes = [node([k]) for k in turn]
+        if len(spots) > len(spots[0]) and any(len(spot) == 2 for spot in spots):
+            nodes += [node(pair) for pair in zip(turn, turn[1:] + turn[:1])]
+        if kind == "HEXA27":
+            nodes.append(node(turn))
+        quad = len(turn) == 4
+        return f"{'QUAD' if quad else 'TRIA'}{len(nodes)}", nodes
+
+    cells, skins = [], {}
+    members = {group: [] for group in (sides or {}).values()}
+    for base in np.ndindex(*size):
+        for names in CUBE[family]:
+            corner = [tuple(4 * b + c for b, c in zip(base, CORNERS[int(n)])) for n in names]
+            cells.append([node([corner[v] for v in spot]) for spot in spots])
+            for (axis, end), group in (sides or {}).items():
+                on = [k for k in corner if k[axis] == 4 * size[axis] * end]
+                if len(on) >= 3:
+                    skin, nodes = facet(on, axis, end)
+                    members[group].append((skin, len(skins.setdefault(skin, []))))
+                    skins[skin].append(nodes)
+    mesh = Mesh(points, {kind: cells, **skins}, members)
+    if name:
+        mesh.cell_groups[name] = [(kind, c) for c in range(len(cells))]
     return mesh
 
 
@@ -166,8 +243,9 @@ def write_med(path, mesh, name="MESH"):
 
         make("INFOS_GENERALES", MAJ=4, MIN=1, REL=0)
         root = f"ENS_MAA/{name}"
-        axes = "".join(axis.ljust(16) for axis in ("X", "Y"))
-        make(root, DIM=2, ESP=2, REP=0, TYP=0, SRT=0, NXT=-1, NXI=-1, UNT="", UNI=" " * 32, NOM=axes, DES="")
+        space = mesh.points.shape[1]
+        axes = "".join(axis.ljust(16) for axis in "XYZ"[:space])
+        make(root, DIM=space, ESP=space, REP=0, TYP=0, SRT=0, NXT=-1, NXI=-1, UNT="", UNI=" " * 32, NOM=axes, DES="")
         step = f"{root}/-0000000000000000001-0000000000000000001"
         make(step, CGT=1, NDT=-1, NOR=-1, PDT=-1.0, NXT=-1, NXI=-1, PVT=-1, PVI=-1)
         nodes = make(f"{step}/NOE", CGT=1, CGS=1, PFL="MED_NO_PROFILE_INTERNAL")
