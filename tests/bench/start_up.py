@@ -42,7 +42,7 @@ def main():
         write_med(folder / "patch.med", patch.patch_mesh("TRIA3", "QUAD4"))
         ten = folder / "ten.comm"
         ten.write_text("DEBUT()\n" + "".join(f"M{i} = DEFI_MATERIAU(ELAS=_F(E=1.0, NU=0.0))\n" for i in range(8)) + "FIN()\n")
-        parameters = {"PATCH_COUNT": "1", "PATCH_PRESSURE": "25.0", "PATCH_LOWER": "2000.0,0.3", "PATCH_JACOBIAN": "INITIAL",
+        parameters = {"PATCH_COUNT": "1", "PATCH_PRESSURE": "25.0", "PATCH_LOWER": "2000.0,0.3", "PATCH_JACOBIAN": "INITIAL", "PATCH_MODEL": "D_PLAN",
                       "PATCH_TOLERANCE": "1e-10"}
         study = [lacon, SOURCE / "tests/verification/patch_test.comm", "--unit", f"20={folder / 'patch.med'}", "--base", folder / "s.base",
                  "--fresh"]

@@ -54,7 +54,7 @@ def straight(kind, place, s, t):
     return flat
 
 
-def run_patches(test, comm, pairs, pressure=25.0, lower=(YOUNG, POISSON), jacobian="INITIAL", tolerance=1e-10):
+def run_patches(test, comm, pairs, pressure=25.0, lower=(YOUNG, POISSON), jacobian="INITIAL", tolerance=1e-10, model="D_PLAN"):
     """One run of the launcher for all the pairs. @param test a StudyTest @return its run; .checks has CHECKS_A_PAIR a pair"""
     units = []
     for k, pair in enumerate(pairs):
@@ -63,7 +63,7 @@ def run_patches(test, comm, pairs, pressure=25.0, lower=(YOUNG, POISSON), jacobi
             write_med(path, patch_mesh(*pair))
         units += ["--unit", f"{20 + k}={path}"]
     return test.run_study(comm, "--fresh", "--checks", "all", *units, PATCH_COUNT=str(len(pairs)), PATCH_PRESSURE=repr(pressure),
-                          PATCH_LOWER=f"{lower[0]!r},{lower[1]!r}", PATCH_JACOBIAN=jacobian, PATCH_TOLERANCE=repr(tolerance))
+                          PATCH_LOWER=f"{lower[0]!r},{lower[1]!r}", PATCH_JACOBIAN=jacobian, PATCH_MODEL=model, PATCH_TOLERANCE=repr(tolerance))
 
 
 def by_pair(run, count):
