@@ -146,7 +146,7 @@ class Command:
             raise
         if copy:
             copy.unlink()
-        run.written_units |= {k for k, keyword in _unit_numbers(row, keywords) if keyword["unit"] == "out"}
+        run.written_units.update((k, units[k]) for k, keyword in _unit_numbers(row, keywords) if keyword["unit"] == "out")
         if not result:
             return None, outcome
         item = reused or run.base.concept(identifier, label)

@@ -72,12 +72,12 @@ def _run(options, units):
     from .export import read_export
 
     files = [pathlib.Path(name) for name in options.files]
-    named, base, threads = [], options.base, options.threads
+    named, data, base, threads = [], [], options.base, options.threads
     if files[0].suffix == ".export":
         if len(files) > 1:
             messages.fail("STUDY_22", str(files[1]))
         export = read_export(files[0])
-        files, named = export.commands, export.named
+        files, named, data = export.commands, export.named, export.data
         units = {**export.units, **units}
         base = base or export.base
         if threads is None and export.parameters.get("ncpus", "").isdigit():
@@ -85,6 +85,8 @@ def _run(options, units):
     execution.check_files(files)
     base = base or files[0].with_suffix(".base")
     run = study.Study(base, units, options.fresh, threads, options.checks == "all", execution.provided_names())
+    for name in files + named + data:
+        run.protect(name)
     study.current = run
     status, diagnostic = done, ""
     try:

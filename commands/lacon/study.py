@@ -31,7 +31,8 @@ class Study:
         self.ignored_alarms = frozenset()
         self.alarms = 0
         self.checks = []
-        self.written_units = set()
+        self.written_units = {}  #: number -> path
+        self.sources = set()  #: files that the study is made from, and never writes
         self.lost = {}
         self.timings = Timings()
         self.orders = 0  #: number of orders so far
@@ -120,12 +121,14 @@ class Study:
     # ------------------------------------------------------------------------------------------- units
 
     def input_unit(self, number, where):
-        """The file of a unit that a command reads."""
-        if number not in self.units:
+        """The file of a unit that a command reads: one that was given, or that this run wrote."""
+        path = self.units.get(number) or self.written_units.get(number)
+        if path is None:
             fail("COMMAND_4", where, unit=number)
-        path = self.units[number]
         if not os.path.isfile(path) or not os.access(path, os.R_OK):
             fail("COMMAND_5", where, unit=number, file=path)
+        if os.path.realpath(path) not in map(os.path.realpath, self.written_units.values()):
+            self.protect(path)
         return os.path.abspath(path)
 
     def output_unit(self, number, suffix, where):
@@ -134,7 +137,13 @@ class Study:
         folder = os.path.dirname(path)
         if not os.path.isdir(folder) or not os.access(folder, os.W_OK) or os.path.isdir(path):
             fail("COMMAND_8", where, unit=number, file=path)
+        if os.path.realpath(path) in self.sources:
+            fail("COMMAND_12", where, unit=number, file=path)
         return path
+
+    def protect(self, path):
+        """Results never replace this file: it is a datum of the study."""
+        self.sources.add(os.path.realpath(path))
 
     # ------------------------------------------------------------------------------------------- names
 

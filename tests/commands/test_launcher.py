@@ -119,6 +119,22 @@ class Units(LauncherTest):
             run = self.run_study(STUDY + "IMPR_RESU(UNITE=80, RESU=_F(RESULTAT=R))\n", "--unit", f"80={path}")
             self.refused(run, "COMMAND_8", "IMPR_RESU/UNITE, study.comm:12")
 
+    def test_results_never_replace_data(self):
+        kept = (self.work / "mesh.med").read_bytes()
+        for options in ((), ("--unit", "80=mesh.med"), ("--unit", "80=study.comm")):
+            unit = 80 if options else 20
+            run = self.run_study(STUDY + f"IMPR_RESU(UNITE={unit}, RESU=_F(RESULTAT=R))\n", *options)
+            self.refused(run, "COMMAND_12", f"unit {unit}", "IMPR_RESU/UNITE, study.comm:12")
+        self.write("c.comm", "POURSUITE()\nIMPR_RESU(UNITE=20, RESU=_F(RESULTAT=R))\n")
+        self.write("c.export", "F comm c.comm D 1\nF mmed mesh.med D 20\n")
+        self.refused(self.launch("c.export", "--base", "study.base"), "COMMAND_12", "mesh.med")
+        self.assertEqual((self.work / "mesh.med").read_bytes(), kept)
+
+    def test_what_this_run_wrote_may_be_read_and_written_again(self):
+        prints = "IMPR_RESU(UNITE=80, RESU=_F(RESULTAT=R))\n"
+        behaviour = {"impr_resu": {"unit": "80"}}
+        self.ok(self.run_study(STUDY + prints + "N = LIRE_MAILLAGE(UNITE=80)\n" + prints + "FIN()\n", behaviour=behaviour))
+
     def test_paths_are_absolute_in_orders(self):
         self.ok(self.run_study(STUDY + "FIN()\n"))
         order = self.last_order("LIRE_MAILLAGE")
@@ -165,6 +181,17 @@ class Exports(LauncherTest):
         self.write("sub/c.comm", "DEBUT()\nM = LIRE_MAILLAGE()\nFIN()\n")
         self.write("sub/c.export", "F comm c.comm D 1\nF mmed m.med D 20\n")
         self.ok(self.launch("sub/c.export"))
+
+    def test_names_with_spaces(self):
+        self.write("a  study é.comm", "DEBUT()\nM = LIRE_MAILLAGE()\nFIN()\n")
+        (self.work / "a mesh D 3.med").write_text("")
+        self.ok(self.export("F comm a  study é.comm D 1\nF mmed a mesh D 3.med D 20\n"))
+        self.assertEqual(self.last_order("LIRE_MAILLAGE")["units"], {"20": str(self.work / "a mesh D 3.med")})
+
+    def test_the_type_orders_command_files_of_any_name(self):
+        self.write("first.comm", "DEBUT()\nL = 1\nFIN()\n")
+        self.write("second.comm", "POURSUITE()\nassert L == 1\nFIN()\n")
+        self.ok(self.export("F com1 second.comm D 1\nF comm first.comm D 1\n"))
 
     def test_many_continuations_run_in_their_order(self):
         self.write("c.comm", "DEBUT()\nL = [0]\nFIN()\n")
