@@ -13,15 +13,21 @@ constexpr std::size_t batch_blocks = 32;  // blocks a kernel call: results stay 
 
 const char* reason(int error) {
   switch (error) {
-    case LACON_BAD_JACOBIAN: return "the Jacobian is zero, negative or of mixed sign";
-    case LACON_BAD_PARAMETER: return "a material parameter is out of its range";
-    case LACON_BAD_BATCH: return "the kernel does not serve this kind of element: its catalogue row is wrong";
-    case LACON_BAD_RADIUS: return "it reaches over the axis of revolution: DX is the radius, which must not be negative";
-    default: return "the result is not a finite number";
+    case LACON_BAD_JACOBIAN:
+      return "the Jacobian is zero, negative or of mixed sign";
+    case LACON_BAD_PARAMETER:
+      return "a material parameter is out of its range";
+    case LACON_BAD_BATCH:
+      return "the kernel does not serve this kind of element: its catalogue row is wrong";
+    case LACON_BAD_RADIUS:
+      return "it reaches over the axis of revolution: DX is the radius, which must not be negative";
+    default:
+      return "the result is not a finite number";
   }
 }
 
-[[noreturn]] void refuse_elements(const ElementSet& set, std::span<const std::int32_t> errors, std::span<const std::int32_t> cells) {
+[[noreturn]] void refuse_elements(const ElementSet& set, std::span<const std::int32_t> errors,
+                                  std::span<const std::int32_t> cells) {
   std::int64_t count = 0;
   std::size_t first = errors.size();
   for (std::size_t i = 0; i < errors.size(); ++i)
@@ -39,7 +45,11 @@ const char* reason(int error) {
 class Batch {
  public:
   Batch(const ElementSet& set, const Mesh& mesh, std::size_t first, int dimension)
-      : set_(set), mesh_(mesh), first_(first), size_(std::min(set.cells.size() - first, batch_blocks * lanes)), dimension_(dimension) {}
+      : set_(set),
+        mesh_(mesh),
+        first_(first),
+        size_(std::min(set.cells.size() - first, batch_blocks * lanes)),
+        dimension_(dimension) {}
 
   std::size_t size() const { return size_; }
   std::size_t n_blocks() const { return (size_ + lanes - 1) / lanes; }
@@ -54,7 +64,8 @@ class Batch {
       const auto nodes = mesh_.cells[cell(i)];
       double* const block = out.data() + (i / lanes) * n * dimension_ * lanes + i % lanes;
       for (int k = 0; k < n; ++k)
-        for (int d = 0; d < dimension_; ++d) block[(k * dimension_ + d) * lanes] = nodal[static_cast<std::size_t>(nodes[k]) * stride + d];
+        for (int d = 0; d < dimension_; ++d)
+          block[(k * dimension_ + d) * lanes] = nodal[static_cast<std::size_t>(nodes[k]) * stride + d];
     }
   }
   /// (n_blocks, width, lanes) out of values of each cell of the set (cells, width).
@@ -128,7 +139,8 @@ std::vector<ElementSet> solid_sets(const Mesh& mesh, const Model& model, Registr
     }
     while (set.kernel->parameters[set.n_parameters]) ++set.n_parameters;
     for (const std::int32_t cell : set.cells)
-      for (int p = 0; p < set.n_parameters; ++p) set.parameters.push_back(materials.parameter(cell, set.kernel->parameters[p], row->name));
+      for (int p = 0; p < set.n_parameters; ++p)
+        set.parameters.push_back(materials.parameter(cell, set.kernel->parameters[p], row->name));
     sets.push_back(std::move(set));
   }
   return sets;
@@ -142,7 +154,9 @@ std::vector<ElementSet> skin_sets(const Model& model, Registry& registry, std::s
   position.clear();
   for (auto& [element, indices] : by_element) {
     const catalog::ElementRow* row = element < 0 ? nullptr : registry.find_element(model.elements[element]);
-    if (!row) fail("PLUGIN_4", {{"element", element < 0 ? "none, on cell " + cell_name(cells[indices.front()]) : model.elements[element]}});
+    if (!row)
+      fail("PLUGIN_4",
+           {{"element", element < 0 ? "none, on cell " + cell_name(cells[indices.front()]) : model.elements[element]}});
     ElementSet set = make_set(*row, registry, option, LACON_LOAD);
     for (const std::int32_t i : indices) set.cells.push_back(cells[i]);
     sets.push_back(std::move(set));
@@ -151,8 +165,8 @@ std::vector<ElementSet> skin_sets(const Model& model, Registry& registry, std::s
   return sets;
 }
 
-void evaluate_solids(const ElementSet& set, const Mesh& mesh, int dimension, std::span<const double> displacement, bool with_matrix,
-                     const std::function<void(const SolidValues&)>& use) {
+void evaluate_solids(const ElementSet& set, const Mesh& mesh, int dimension, std::span<const double> displacement,
+                     bool with_matrix, const std::function<void(const SolidValues&)>& use) {
   const int ndof = set.n_nodes() * dimension;
   const std::size_t n_lower = static_cast<std::size_t>(ndof) * (ndof + 1) / 2;
   const std::size_t n_stress = static_cast<std::size_t>(set.tabulation.n_points) * set.row->stress.size();

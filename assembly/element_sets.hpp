@@ -44,7 +44,8 @@ class MaterialTable {
 /// Every solid element of the model, by kind; a set for each element row, cells in ascending order.
 std::vector<ElementSet> solid_sets(const Mesh& mesh, const Model& model, Registry& registry, const MaterialTable& materials);
 
-/// These cells (of any skin kind) by kind, with the kernel of `option`. `position` receives for each set the indices into `cells`.
+/// These cells (of any skin kind) by kind, with the kernel of `option`. `position` receives for each set the indices into
+/// `cells`.
 std::vector<ElementSet> skin_sets(const Model& model, Registry& registry, std::string_view option,
                                   std::span<const std::int32_t> cells, std::vector<std::vector<std::int32_t>>& position);
 
@@ -58,8 +59,8 @@ struct SolidValues {
 
 /// Call `use` for each element of a set. @param displacement (n_nodes, dimension) of the mesh
 /// Throws ELEMENT_1 for elements that their kernel refuses.
-void evaluate_solids(const ElementSet& set, const Mesh& mesh, int dimension, std::span<const double> displacement, bool with_matrix,
-                     const std::function<void(const SolidValues&)>& use);
+void evaluate_solids(const ElementSet& set, const Mesh& mesh, int dimension, std::span<const double> displacement,
+                     bool with_matrix, const std::function<void(const SolidValues&)>& use);
 
 /// Call `use(cell, force (n_nodes, dimension))` for each skin element of a set under `value` (of each cell of the set).
 void evaluate_loads(const ElementSet& set, const Mesh& mesh, int dimension, std::span<const double> value,

@@ -15,13 +15,17 @@ namespace lacon {
 namespace {
 
 /// Coordinates of a cell's nodes, (n_nodes, dimension), behind `out`.
-void append_points(const Mesh& mesh, std::span<const double> coordinates, std::int32_t cell, int dimension, std::vector<double>& out) {
+void append_points(const Mesh& mesh, std::span<const double> coordinates, std::int32_t cell, int dimension,
+                   std::vector<double>& out) {
   for (const std::int32_t node : mesh.cells[cell])
-    out.insert(out.end(), coordinates.begin() + 3 * std::ptrdiff_t{node}, coordinates.begin() + 3 * std::ptrdiff_t{node} + dimension);
+    out.insert(out.end(), coordinates.begin() + 3 * std::ptrdiff_t{node},
+               coordinates.begin() + 3 * std::ptrdiff_t{node} + dimension);
 }
 
 /// The rule that measures a whole skin cell.
-const Rule& measuring_rule(Family family) { return integration_rule(family, family == Family::SEG ? 4 : family == Family::TRIA ? 6 : 9); }
+const Rule& measuring_rule(Family family) {
+  return integration_rule(family, family == Family::SEG ? 4 : family == Family::TRIA ? 6 : 9);
+}
 
 /// Length or area of a skin cell.
 double measure(const Mesh& mesh, std::span<const double> coordinates, std::int32_t cell) {
@@ -54,7 +58,8 @@ ContactState::ContactState(const StaticProblem& problem, const ContactTolerances
   rejected_.assign(n_rejections, 0);
 
   std::map<std::int32_t, std::int32_t> slave_of_cell;
-  for (std::size_t s = 0; s < contact_.slaves.size(); ++s) slave_of_cell[contact_.slaves[s].cell] = static_cast<std::int32_t>(s);
+  for (std::size_t s = 0; s < contact_.slaves.size(); ++s)
+    slave_of_cell[contact_.slaves[s].cell] = static_cast<std::int32_t>(s);
   for (const ContactZone& data : contact_.zones) {
     Zone zone{.slaves = {},
               .masters = data.master,
@@ -97,7 +102,8 @@ ContactState::ContactState(const StaticProblem& problem, const ContactTolerances
 const lacon_kernel& ContactState::kernel_of(std::int32_t cell) const {
   const std::int32_t element = problem_.model.element[cell];
   const catalog::ElementRow* row = element < 0 ? nullptr : problem_.registry->find_element(problem_.model.elements[element]);
-  if (!row) fail("PLUGIN_4", {{"element", element < 0 ? "none, on cell " + cell_name(cell) : problem_.model.elements[element]}});
+  if (!row)
+    fail("PLUGIN_4", {{"element", element < 0 ? "none, on cell " + cell_name(cell) : problem_.model.elements[element]}});
   return problem_.registry->kernel(*row, "RIGI_CONT", LACON_CONTACT);
 }
 
@@ -203,7 +209,8 @@ void ContactState::integrate(const Zone& zone, const ContactCells& cells, std::s
     std::vector<double> shape(ns), gradient(static_cast<std::size_t>(ns) * reference), opposite(nm);
     for (const std::int32_t c : members) {
       for (std::int64_t p = cells.offset[c]; p < cells.offset[c + 1]; ++p) {
-        const std::span<const double> xi(cells.slave_point.data() + p * reference, reference), eta(cells.master_point.data() + p * reference, reference);
+        const std::span<const double> xi(cells.slave_point.data() + p * reference, reference),
+            eta(cells.master_point.data() + p * reference, reference);
         shape_functions(kinds.first, xi, shape);
         shape_gradients(kinds.first, xi, gradient);
         shape_functions(kinds.second, eta, opposite);
@@ -213,14 +220,16 @@ void ContactState::integrate(const Zone& zone, const ContactCells& cells, std::s
         weight.push_back(cells.weight[p]);
       }
       offset.push_back(static_cast<std::int64_t>(weight.size()));
-      const std::int32_t slave_cell = contact_.slaves[zone.slaves[cells.slave[c]]].cell, master_cell = zone.masters[cells.master[c]];
+      const std::int32_t slave_cell = contact_.slaves[zone.slaves[cells.slave[c]]].cell,
+                         master_cell = zone.masters[cells.master[c]];
       append_points(mesh, mesh.coordinates, slave_cell, dimension, slave_initial);
       append_points(mesh, coordinates_, slave_cell, dimension, slave);
       append_points(mesh, coordinates_, master_cell, dimension, master);
       if (!normals.empty()) append_points(mesh, normals, slave_cell, dimension, slave_normal);
     }
     const std::size_t width = static_cast<std::size_t>(ns + nm) * dimension;
-    std::vector<double> point_gap(weight.size()), gap(members.size()), size(members.size()), current(members.size()), coupling(members.size() * width);
+    std::vector<double> point_gap(weight.size()), gap(members.size()), size(members.size()), current(members.size()),
+        coupling(members.size() * width);
     std::vector<std::int32_t> error(members.size(), LACON_FINE);
     const lacon_contact_batch batch{.struct_size = sizeof(lacon_contact_batch),
                                     .n_cells = static_cast<std::int32_t>(members.size()),
@@ -253,7 +262,8 @@ void ContactState::integrate(const Zone& zone, const ContactCells& cells, std::s
       weight_[patch] += size[i];
       covered_[patch] += current[i];
       cells_.push_back({s, zone.masters[cells.master[c]], gap[i], static_cast<std::int64_t>(coupling_.size())});
-      coupling_.insert(coupling_.end(), coupling.begin() + static_cast<std::ptrdiff_t>(i * width), coupling.begin() + static_cast<std::ptrdiff_t>((i + 1) * width));
+      coupling_.insert(coupling_.end(), coupling.begin() + static_cast<std::ptrdiff_t>(i * width),
+                       coupling.begin() + static_cast<std::ptrdiff_t>((i + 1) * width));
     }
   }
 }
@@ -296,7 +306,8 @@ std::vector<Coupling> ContactState::couplings() const {
   const auto first_patch = static_cast<std::int32_t>(problem_.mesh.n_nodes());
   for (const Cell& cell : cells_)
     for (const std::int32_t owner : {contact_.slaves[cell.slave].cell, cell.master})
-      for (const std::int32_t node : problem_.mesh.cells[owner]) couplings.push_back({first_patch + contact_.slaves[cell.slave].patch, node});
+      for (const std::int32_t node : problem_.mesh.cells[owner])
+        couplings.push_back({first_patch + contact_.slaves[cell.slave].patch, node});
   return couplings;
 }
 
@@ -325,8 +336,10 @@ void ContactState::assemble(const Patchwise& patches, System& system) const {
       for (int d = 0; d < dimension; ++d) unknowns[dofs.displacement(node, d)] = number * dimension + d;
     }
     // every carrier of the patch is its one equation: summing them up is the tying (METHOD.md 3.6)
-    for (int c = 0; c < static_cast<int>(row->carriers.size()); ++c) unknowns[dofs.multiplier(c)] = system.multiplier(slave.patch);
-    const std::span<const double> coupling(coupling_.data() + cell.coupling, static_cast<std::size_t>(dofs.n_slave_nodes + dofs.n_master_nodes) * dimension);
+    for (int c = 0; c < static_cast<int>(row->carriers.size()); ++c)
+      unknowns[dofs.multiplier(c)] = system.multiplier(slave.patch);
+    const std::span<const double> coupling(coupling_.data() + cell.coupling,
+                                           static_cast<std::size_t>(dofs.n_slave_nodes + dofs.n_master_nodes) * dimension);
     contact_system(dofs, coupling, cell.gap, status == Status::active, patches.lambda[slave.patch], matrix, residual);
     // a locked patch has forces but no row
     if (status == Status::active && locked_[slave.patch]) std::fill(matrix.begin(), matrix.end(), 0.0);
@@ -356,7 +369,8 @@ std::int64_t ContactState::n_constraints(const Patchwise& patches) const {
 
 std::vector<ZoneBalance> ContactState::balance(const Patchwise& patches) const {
   std::vector<ZoneBalance> zones;
-  for (const ContactZone& zone : contact_.zones) zones.push_back({.slave_group = zone.slave_group, .master_group = zone.master_group});
+  for (const ContactZone& zone : contact_.zones)
+    zones.push_back({.slave_group = zone.slave_group, .master_group = zone.master_group});
   for (std::size_t p = 0; p < n_patches(); ++p) {
     if (zone_of_[p] < 0) continue;
     ZoneBalance& zone = zones[zone_of_[p]];

@@ -35,9 +35,9 @@ struct ZoneBalance {
   std::string slave_group, master_group;
   std::int64_t active = 0, open = 0, unpaired = 0;
   std::array<double, 3> on_slave{}, on_master{};  ///< resultants of the contact forces
-  std::array<double, 3> moment{};                 ///< of all contact forces of the zone about the origin: zero where they balance
-  double covered = 0, whole = 0;                  ///< measure of the slave skin, current geometry
-  double work = 0;                                ///< largest |lambda g|: zero where contact and gap exclude each other
+  std::array<double, 3> moment{};  ///< of all contact forces of the zone about the origin: zero where they balance
+  double covered = 0, whole = 0;   ///< measure of the slave skin, current geometry
+  double work = 0;                 ///< largest |lambda g|: zero where contact and gap exclude each other
 };
 
 class ContactState {
@@ -75,7 +75,7 @@ class ContactState {
 
  private:
   struct Zone {
-    std::vector<std::int32_t> slaves;  ///< index into Contact::slaves of each cell of `slave`
+    std::vector<std::int32_t> slaves;   ///< index into Contact::slaves of each cell of `slave`
     std::vector<std::int32_t> masters;  ///< mesh cell of each cell of `master`
     Surface slave, master;
     bool current_jacobian = false;

@@ -121,15 +121,21 @@ StaticProblem read_problem(const Order& order, const Base& base) {
 
   const std::string model_id = keywords.concept_id("MODELE");
   problem.imposed.assign(problem.n_dofs(), 0);
+  std::vector<std::string> seen;
   for (const Keywords& excit : keywords.factors("EXCIT")) {
-    if (base.load(excit.concept_id("CHARGE")).model != model_id)
+    const std::string load_id = excit.concept_id("CHARGE");
+    if (std::find(seen.begin(), seen.end(), load_id) != seen.end())
+      fail("LOAD_3", {{"keyword", excit.path("CHARGE")}, {"load", base.label(load_id)}});
+    seen.push_back(load_id);
+    if (base.load(load_id).model != model_id)
       fail("EVOLUTION_1", {{"first", excit.path("CHARGE")}, {"second", "MODELE"}, {"what", "models"}});
     problem.loads.push_back(read_load(problem, base, excit));
     for (const std::int64_t dof : problem.loads.back().dofs) problem.imposed[dof] = 1;
   }
   if (const auto contact = keywords.optional_concept("CONTACT")) {
     problem.contact = base.contact(*contact);
-    if (problem.contact->model != model_id) fail("EVOLUTION_1", {{"first", "CONTACT"}, {"second", "MODELE"}, {"what", "models"}});
+    if (problem.contact->model != model_id)
+      fail("EVOLUTION_1", {{"first", "CONTACT"}, {"second", "MODELE"}, {"what", "models"}});
   }
   std::vector<std::uint8_t> free(problem.n_dofs());
   for (std::size_t i = 0; i < free.size(); ++i) free[i] = problem.exists[i] && !problem.imposed[i];

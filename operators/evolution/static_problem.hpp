@@ -15,9 +15,9 @@ namespace lacon {
 /// A load and the function of time that multiplies it.
 struct TimedLoad {
   std::string label;
-  std::vector<double> force;         ///< (n_nodes, dimension) at multiplier 1, empty where it is zero
-  std::vector<std::int64_t> dofs;    ///< imposed displacements: node * dimension + component
-  std::vector<double> values;        ///< of `dofs` at multiplier 1
+  std::vector<double> force;       ///< (n_nodes, dimension) at multiplier 1, empty where it is zero
+  std::vector<std::int64_t> dofs;  ///< imposed displacements: node * dimension + component
+  std::vector<double> values;      ///< of `dofs` at multiplier 1
   std::optional<Function> function;
   std::string function_label;
 
@@ -27,22 +27,23 @@ struct TimedLoad {
 struct StaticProblem {
   Mesh mesh;
   Model model;
-  int dimension = 2;                       ///< displacements of a node
-  std::vector<std::string> components;     ///< "DX", "DY"
+  int dimension = 2;                    ///< displacements of a node
+  std::vector<std::string> components;  ///< "DX", "DY"
   std::unique_ptr<Registry> registry;
   std::unique_ptr<MaterialField> material_field;
   std::unique_ptr<MaterialTable> materials;
   std::vector<ElementSet> solids;
   std::vector<TimedLoad> loads;
   std::optional<Contact> contact;
-  std::vector<std::uint8_t> exists;        ///< (n_nodes, dimension): the degree of freedom exists
-  std::vector<std::uint8_t> imposed;       ///< (n_nodes, dimension): a load imposes it
+  std::vector<std::uint8_t> exists;   ///< (n_nodes, dimension): the degree of freedom exists
+  std::vector<std::uint8_t> imposed;  ///< (n_nodes, dimension): a load imposes it
   Numbering numbering;
 
   std::size_t n_dofs() const { return exists.size(); }
   /// External forces at an instant, (n_nodes, dimension).
   std::vector<double> external_force(double instant) const;
-  /// Imposed displacements at an instant, (n_nodes, dimension), 0 where none is. Throws LOAD_1 where two loads contradict each other.
+  /// Imposed displacements at an instant, (n_nodes, dimension), 0 where none is. Throws LOAD_1 where two loads contradict each
+  /// other.
   std::vector<double> imposed_values(double instant) const;
   std::string dof_name(std::int64_t dof) const;  ///< "N12 DX"
 };

@@ -186,6 +186,10 @@ class StatNonLine(OperatorTest):
         self.write_load("load_6", imposed=[(4, "DY", 0.5)])
         self.assert_fails("LOAD_1", "N5 DY", "LOAD_5", "LOAD_6")
 
+    def test_a_load_that_is_named_twice_is_refused(self):
+        """It would count twice, or once, depending on its kind."""
+        self.assert_fails("LOAD_3", "EXCIT[3]/CHARGE", "LOAD_6", loads=["load_5", "load_6", "load_6"])
+
     def test_a_function_outside_its_range_is_refused(self):
         self.write_function("function_10", [0, 0.5], [0, 1])
         self.assert_fails("FUNCTION_1", "FUNCTION_10", "INST = 1",
