@@ -20,8 +20,8 @@ struct ElementRow {
   std::string_view phenomenon;
   CellType cell;
   Role role;
-  int points;                               ///< integration points
-  std::span<const std::string_view> dofs;   ///< of each node
+  int points;                                ///< integration points
+  std::span<const std::string_view> dofs;    ///< of each node
   std::span<const std::string_view> stress;  ///< components at integration points
   std::span<const KernelRow> kernels;
 };

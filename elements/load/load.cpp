@@ -34,11 +34,10 @@ template <int D, bool axis>
     }
     if constexpr (axis)
       for (int l = 0; l < LACON_LANES; ++l)
-        for (int a = 0; a < nodes; ++a)
-          errors.set(l, lanes(x, 2 * a)[l] < -over_axis * std::sqrt(extent[l]), LACON_BAD_RADIUS);
+        for (int a = 0; a < nodes; ++a) errors.set(l, lanes(x, 2 * a)[l] < -over_axis * std::sqrt(extent[l]), LACON_BAD_RADIUS);
     Lanes sum = value;
     for (int p = 0; p < b.n_points; ++p) {
-      Lanes t[D - 1][D] = {};  // tangents
+      Lanes t[D - 1][D] = {};          // tangents
       for (int a = 1; a < nodes; ++a)  // from the first node on: an element far from the origin loses no digits
         for (int i = 0; i < D; ++i) {
           const Lanes side = lanes(x, D * a + i) - lanes(x, i);

@@ -68,8 +68,8 @@ template <Kind K>
   constexpr int D = K == Kind::solid ? 3 : 2, n_stress = K == Kind::solid ? 6 : 4;
   const int nodes = b.n_nodes, dofs = D * nodes, entries = dofs * (dofs + 1) / 2;
   if (b.dimension != D || nodes > max_nodes || b.n_stress != n_stress || b.n_parameters != 2) return lacon::refuse(b);
-  Lanes side[max_nodes * D];       // from the first node on: a cell far from the origin loses no digits
-  Lanes g[max_nodes][D];           // gradients in space
+  Lanes side[max_nodes * D];         // from the first node on: a cell far from the origin loses no digits
+  Lanes g[max_nodes][D];             // gradients in space
   Lanes hoop[axis ? max_nodes : 1];  // N / r
   for (std::int64_t block = 0; block < b.n_blocks; ++block) {
     LaneErrors errors;

@@ -9,9 +9,9 @@ namespace lacon {
 /// @return how many cells changed
 std::int64_t make_quadratic(Mesh& mesh, std::span<const std::int32_t> cells);
 
-/// These quadratic cells get nodes in the middle of faces and in the centre: HEXA20 becomes HEXA27, QUAD8 becomes QUAD9. The new
-/// nodes lie where the cell's own geometry has these points; a face's node is one for all cells that have the face, and a cell
-/// that has it already gives it. New nodes are appended and belong to no group.
+/// These quadratic cells get nodes in the middle of faces and in the centre: HEXA20 becomes HEXA27, QUAD8 becomes QUAD9. The
+/// new nodes lie where the cell's own geometry has these points; a face's node is one for all cells that have the face, and a
+/// cell that has it already gives it. New nodes are appended and belong to no group.
 /// @return how many cells changed
 std::int64_t make_complete(Mesh& mesh, std::span<const std::int32_t> cells);
 

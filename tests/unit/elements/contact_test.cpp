@@ -697,7 +697,8 @@ TEST(ContactSystem, MatrixIsTheDerivativeOfTheResidual) {  // C frozen: d(lambda
 TEST(LacAxis, WeightsCarryTheRadiusOfTheGeometryOfTypeJacobien) {
   const auto& rule = lacon::gauss_rule(3);
   // a ring from r = 1 to 3, its body below, moved outward by 1; the master 0.1 above
-  ContactCell c{CellType::SEG2, CellType::SEG2, 2, rule.weights, rule.points, {}, {3, 0, 1, 0}, {4, 0, 2, 0}, {2, 0.1, 4, 0.1}, {}};
+  ContactCell c{CellType::SEG2, CellType::SEG2,   2, rule.weights, rule.points, {}, {3, 0, 1, 0},
+                {4, 0, 2, 0},   {2, 0.1, 4, 0.1}, {}};
   for (const double xi : rule.points) c.master_xi.push_back(-xi);
   c.axis = true;
   for (const bool current : {false, true}) {

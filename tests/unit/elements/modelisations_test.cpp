@@ -45,10 +45,23 @@ Result run_solid(const lacon::catalog::ElementRow& row, const Numbers& x, const 
   Numbers matrix(n * (n + 1) / 2 * LACON_LANES, garbage), force(n * LACON_LANES, garbage),
       stress(z(table.n_points) * row.stress.size() * LACON_LANES, garbage);
   std::vector<std::int32_t> error(LACON_LANES, -1);
-  const lacon_solid_batch batch{sizeof(lacon_solid_batch), 1, table.n_nodes, static_cast<int>(row.dofs.size()), table.n_points,
-                                static_cast<int>(row.stress.size()), 2, table.shape.data(), table.gradient.data(),
-                                table.weight.data(), xs.data(), us.data(), material.data(), matrix.data(), force.data(),
-                                stress.data(), error.data()};
+  const lacon_solid_batch batch{sizeof(lacon_solid_batch),
+                                1,
+                                table.n_nodes,
+                                static_cast<int>(row.dofs.size()),
+                                table.n_points,
+                                static_cast<int>(row.stress.size()),
+                                2,
+                                table.shape.data(),
+                                table.gradient.data(),
+                                table.weight.data(),
+                                xs.data(),
+                                us.data(),
+                                material.data(),
+                                matrix.data(),
+                                force.data(),
+                                stress.data(),
+                                error.data()};
   registry().kernel(row, "FULL_MECA", LACON_SOLID).solid(&batch);
   const auto first = [](const Numbers& lanes) {
     Numbers values;
@@ -63,9 +76,18 @@ Result run_pressure(const lacon::catalog::ElementRow& row, const Numbers& x, dou
   Numbers xs, values(LACON_LANES, value), force(x.size() * LACON_LANES, garbage);
   for (const double coordinate : x) xs.insert(xs.end(), LACON_LANES, coordinate);
   std::vector<std::int32_t> error(LACON_LANES, -1);
-  const lacon_load_batch batch{sizeof(lacon_load_batch), 1, table.n_nodes, static_cast<int>(row.dofs.size()), table.n_points,
-                               table.shape.data(), table.gradient.data(), table.weight.data(), xs.data(), values.data(),
-                               force.data(), error.data()};
+  const lacon_load_batch batch{sizeof(lacon_load_batch),
+                               1,
+                               table.n_nodes,
+                               static_cast<int>(row.dofs.size()),
+                               table.n_points,
+                               table.shape.data(),
+                               table.gradient.data(),
+                               table.weight.data(),
+                               xs.data(),
+                               values.data(),
+                               force.data(),
+                               error.data()};
   registry().kernel(row, "CHAR_MECA_PRES", LACON_LOAD).load(&batch);
   Numbers own;
   for (std::size_t i = 3; i < force.size(); i += LACON_LANES) own.push_back(force[i]);
@@ -128,9 +150,10 @@ TEST_P(Modelisation, ConstantStrainGivesTheStressOfHookesLaw) {
 
 TEST_P(Modelisation, AHydrostaticStateIsInBalanceWithThePressureOnItsFacets) {
   // int div(N_a e_i) = boundary int N_a n_i: with every rule exact this is the patch test of any constant stress
-  const double strain = 1e-3, p = -(plane_stress ? young / (1 - poisson)
+  const double strain = 1e-3, p = -(plane_stress      ? young / (1 - poisson)
                                     : D == 2 && !axis ? young / ((1 + poisson) * (1 - 2 * poisson))
-                                                      : young / (1 - 2 * poisson)) * strain;
+                                                      : young / (1 - 2 * poisson)) *
+                                  strain;
   const auto result = run_solid(row, x, linear({{strain, 0, 0}, {0, strain, 0}, {0, 0, strain}}));
   ASSERT_EQ(result.error, LACON_FINE);
   Numbers sum = result.force;
