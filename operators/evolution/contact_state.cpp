@@ -47,8 +47,8 @@ double measure(const Mesh& mesh, std::span<const double> coordinates, std::int32
 
 }  // namespace
 
-ContactState::ContactState(const StaticProblem& problem, const ContactTolerances& tolerances)
-    : problem_(problem), contact_(*problem.contact), tolerances_(tolerances), coordinates_(problem.mesh.coordinates) {
+ContactState::ContactState(const StaticProblem& problem)
+    : problem_(problem), contact_(*problem.contact), coordinates_(problem.mesh.coordinates) {
   const Mesh& mesh = problem.mesh;
   const std::size_t n = mesh.patches->size();
   gap_.assign(n, 0.0);
@@ -111,10 +111,11 @@ void ContactState::measure_slaves() {
   const Mesh& mesh = problem_.mesh;
   const int dimension = problem_.dimension;
   std::fill(whole_.begin(), whole_.end(), 0.0);
-  std::map<CellType, std::vector<std::int32_t>> by_type;
+  std::map<std::int32_t, std::vector<std::int32_t>> by_element;  // one kernel, one kind of cell
   for (std::size_t s = 0; s < contact_.slaves.size(); ++s)
-    by_type[mesh.row(contact_.slaves[s].cell).type].push_back(static_cast<std::int32_t>(s));
-  for (const auto& [type, members] : by_type) {
+    by_element[problem_.model.element[contact_.slaves[s].cell]].push_back(static_cast<std::int32_t>(s));
+  for (const auto& [element, members] : by_element) {
+    const CellType type = mesh.types[contact_.slaves[members.front()].cell];
     // each cell on itself: the kernel says what its measure is
     const Tabulation table = tabulate(type, measuring_rule(catalog::cell(type).family));
     std::vector<std::int64_t> offset{0};
@@ -197,12 +198,15 @@ void ContactState::update_geometry(std::span<const double> displacement) {
 void ContactState::integrate(const Zone& zone, const ContactCells& cells, std::span<const double> normals) {
   const Mesh& mesh = problem_.mesh;
   const int dimension = problem_.dimension, reference = dimension - 1;
-  // one kernel call for each pair of kinds
-  std::map<std::pair<CellType, CellType>, std::vector<std::int32_t>> by_kinds;
-  for (std::size_t c = 0; c < cells.size(); ++c)
-    by_kinds[{zone.slave.types[cells.slave[c]], zone.master.types[cells.master[c]]}].push_back(static_cast<std::int32_t>(c));
+  // one kernel call for each slave element (which says the kernel and the kind of cell) and kind of master cell
+  const auto slave_cell_of = [&](std::int32_t c) { return contact_.slaves[zone.slaves[cells.slave[c]]].cell; };
+  std::map<std::pair<std::int32_t, CellType>, std::vector<std::int32_t>> by_kinds;
+  for (std::int32_t c = 0; c < static_cast<std::int32_t>(cells.size()); ++c)
+    by_kinds[{problem_.model.element[slave_cell_of(c)], zone.master.types[cells.master[c]]}].push_back(c);
 
-  for (const auto& [kinds, members] : by_kinds) {
+  for (const auto& [element_and_master, members] : by_kinds) {
+    const std::int32_t first_cell = slave_cell_of(members.front());
+    const std::pair kinds(mesh.types[first_cell], element_and_master.second);
     const int ns = catalog::cell(kinds.first).n_nodes, nm = catalog::cell(kinds.second).n_nodes;
     std::vector<std::int64_t> offset{0};
     std::vector<double> weight, slave_shape, slave_gradient, master_shape, slave_initial, slave, master, slave_normal;
@@ -220,8 +224,7 @@ void ContactState::integrate(const Zone& zone, const ContactCells& cells, std::s
         weight.push_back(cells.weight[p]);
       }
       offset.push_back(static_cast<std::int64_t>(weight.size()));
-      const std::int32_t slave_cell = contact_.slaves[zone.slaves[cells.slave[c]]].cell,
-                         master_cell = zone.masters[cells.master[c]];
+      const std::int32_t slave_cell = slave_cell_of(c), master_cell = zone.masters[cells.master[c]];
       append_points(mesh, mesh.coordinates, slave_cell, dimension, slave_initial);
       append_points(mesh, coordinates_, slave_cell, dimension, slave);
       append_points(mesh, coordinates_, master_cell, dimension, master);
@@ -252,7 +255,6 @@ void ContactState::integrate(const Zone& zone, const ContactCells& cells, std::s
                                     .current_measure = current.data(),
                                     .coupling = coupling.data(),
                                     .error = error.data()};
-    const std::int32_t first_cell = contact_.slaves[zone.slaves[cells.slave[members.front()]]].cell;
     kernel_of(first_cell).contact(&batch);
     for (std::size_t i = 0; i < members.size(); ++i) {
       const std::int32_t c = members[i], s = zone.slaves[cells.slave[c]];

@@ -42,7 +42,7 @@ struct ZoneBalance {
 
 class ContactState {
  public:
-  explicit ContactState(const StaticProblem& problem, const ContactTolerances& tolerances = {});
+  explicit ContactState(const StaticProblem& problem);
 
   /// Pair on the current geometry, integrate gaps and couplings. @param displacement (n_nodes, dimension)
   void update_geometry(std::span<const double> displacement);
@@ -70,7 +70,7 @@ class ContactState {
   std::size_t n_patches() const { return gap_.size(); }
   /// The smallest h of a patch.
   double smallest_patch() const { return *std::min_element(size_.begin(), size_.end()); }
-  /// What pairing rejected, summed over the zones.
+  /// How many couples pairing rejected, for each `Rejection`, summed over the zones.
   std::span<const std::int64_t> rejected() const { return rejected_; }
 
  private:
@@ -98,7 +98,7 @@ class ContactState {
 
   const StaticProblem& problem_;
   const Contact& contact_;
-  ContactTolerances tolerances_;
+  const ContactTolerances tolerances_;
   std::vector<double> coordinates_;  ///< (n_nodes, 3), current
   std::vector<Zone> zones_;
   std::vector<Cell> cells_;

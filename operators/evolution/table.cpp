@@ -114,6 +114,12 @@ void NewtonTable::finish(double instant, int iterations, const StaticState& stat
                   "{:.1e}\n",
                   components(zone.on_slave), components(zone.on_master), norm(sum), norm(zone.moment), zone.work);
     }
+    if (rejections_) {
+      out_ << " pairing rejected:";
+      for (int r = 0; r < n_rejections; ++r)
+        out_ << fmt::format("{} {} {}", r ? "," : "", contact->rejected()[r], rejection_name(static_cast<Rejection>(r)));
+      out_ << '\n';
+    }
   }
   out_.flush();
 }

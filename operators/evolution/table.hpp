@@ -11,7 +11,9 @@ namespace lacon {
 class NewtonTable {
  public:
   /// @param where show at which degree of freedom the residual is largest (AFFICHAGE/INFO_RESIDU)
-  NewtonTable(std::ostream& out, const StaticProblem& problem, bool where) : out_(out), problem_(problem), where_(where) {}
+  /// @param rejections show what pairing rejected, and why (INFO=2)
+  NewtonTable(std::ostream& out, const StaticProblem& problem, bool where, bool rejections)
+      : out_(out), problem_(problem), where_(where), rejections_(rejections) {}
 
   void start(double instant);
   void line(const IterationReport& report);
@@ -24,7 +26,7 @@ class NewtonTable {
 
   std::ostream& out_;
   const StaticProblem& problem_;
-  bool where_;
+  bool where_, rejections_;
 };
 
 }  // namespace lacon

@@ -146,7 +146,7 @@ void stat_non_line(const Order& order, const Base& base) {
   Newton newton(
       problem, criteria_of(single(keywords, "CONVERGENCE")),
       {.memory_margin = static_cast<int>(solver.integer("PCENT_PIVOT")), .residual_tolerance = solver.real("RESI_RELA")});
-  NewtonTable table(std::cout, problem, single(keywords, "AFFICHAGE").yes("INFO_RESIDU"));
+  NewtonTable table(std::cout, problem, single(keywords, "AFFICHAGE").yes("INFO_RESIDU"), keywords.integer("INFO") == 2);
 
   StaticState state = newton.initial_state(), last = state;
   if (const ContactState* contact = newton.contact()) {

@@ -29,13 +29,7 @@ class StatNonLine(OperatorTest):
     def setUp(self):
         super().setUp()
         self.write_mesh("mesh_1", square(-1) + square(0), CELLS, cell_groups={"MASTER": [0], "SLAVE": [1]})
-        with h5py.File(self.path("mesh_1"), "a") as file:
-            patches = file.create_group("patches")
-            patches["zone_group"] = np.array(["SLAVE"], h5py.string_dtype())
-            patches["zone_offset"] = np.array([0, 1], np.int64)
-            patches["kind"] = patches["parent"] = np.array([14], np.int32)
-            for name, members in (("cells", [1]), ("carriers", [12])):
-                write_ragged(patches.create_group(name), "offset", "values", [members])
+        self.write_patches([1], [12])
         self.write_model("model_2", "mesh_1", ["D_PLAN/SEG3", "D_PLAN/QUAD8"], [0, 0, 0, 1, 1])
         self.write_material("material_3", ELAS={"E": E, "NU": NU})
         self.write_material_field("material_field_4", "mesh_1", ["material_3"], [0] * 5)
@@ -43,6 +37,17 @@ class StatNonLine(OperatorTest):
         self.write_load("load_6", pressure=[(2, PRESSURE)])
         self.write_contact("contact_7")
         self.write_list("list_of_reals_8", [0.0, 1.0])
+
+    def write_patches(self, cells, carriers):
+        """One SEG3 and its middle node a patch."""
+        with h5py.File(self.path("mesh_1"), "a") as file:
+            patches = file.create_group("patches")
+            patches["zone_group"] = np.array(["SLAVE"], h5py.string_dtype())
+            patches["zone_offset"] = np.array([0, len(cells)], np.int64)
+            patches["kind"] = np.full(len(cells), 14, np.int32)
+            patches["parent"] = np.array(cells, np.int32)
+            for name, members in (("cells", cells), ("carriers", carriers)):
+                write_ragged(patches.create_group(name), "offset", "values", [[member] for member in members])
 
     def write_load(self, identifier, imposed=(), pressure=(), kind="meca"):
         with self.create(identifier, "load", references=["model_2"], model="model_2", kind=kind) as file:
@@ -56,7 +61,7 @@ class StatNonLine(OperatorTest):
                 file["pressure/cell"] = np.array([cell for cell, _ in pressure], np.int32)
                 file["pressure/value"] = np.array([value for _, value in pressure])
 
-    def write_contact(self, identifier, initial="OUI"):
+    def write_contact(self, identifier, initial="OUI", slave=(1,), master=(0,)):
         with self.create(identifier, "contact", references=["model_2", "mesh_1"], model="model_2", mesh="mesh_1", algorithm="LAC",
                          smoothing=0, verify_normals=1, resi_geom=1e-6) as file:
             zones = file.create_group("zones")
@@ -64,11 +69,11 @@ class StatNonLine(OperatorTest):
                                 ("initial_status", initial)):
                 zones[name] = np.array([value], h5py.string_dtype())
             zones["tolerance"] = np.array([1e-8])
-            for name, members in (("slave", [1]), ("master", [0]), ("patches", [0])):
-                write_ragged(zones.create_group(name), "offset", "values", [members])
-            for name, value in (("cell", 1), ("patch", 0), ("rank", 0)):
-                file[f"slave/{name}"] = np.array([value], np.int32)
-            file["slave/element"] = np.array(["LACS32D"], h5py.string_dtype())
+            for name, members in (("slave", slave), ("master", master), ("patches", range(len(slave)))):
+                write_ragged(zones.create_group(name), "offset", "values", [list(members)])
+            for name, values in (("cell", slave), ("patch", range(len(slave))), ("rank", [0] * len(slave))):
+                file[f"slave/{name}"] = np.array(values, np.int32)
+            file["slave/element"] = np.array(["LACS32D"] * len(slave), h5py.string_dtype())
 
     def write_list(self, identifier, values):
         with self.create(identifier, "list_of_reals") as file:
@@ -134,6 +139,26 @@ class StatNonLine(OperatorTest):
         self.assertAlmostEqual(last["whole"], 1 + EXX, delta=1e-14)
         self.assertAlmostEqual(last["covered"], last["whole"], delta=1e-14)
         self.assertLessEqual(last["largest_lambda_gap"], 1e-8 * PRESSURE)
+
+    def test_what_pairing_rejected_is_shown_on_demand(self):
+        self.assertNotIn("pairing rejected", self.solve().stdout)
+        self.assertIn("pairing rejected: 0 ", self.solve(INFO=2).stdout)
+
+    def test_every_slave_cell_is_integrated_by_the_kernel_of_its_own_element(self):
+        """Two slave cells of one kind, one of them axisymmetric: its measure has the factor r. Everything is held."""
+        shifted = [(x + 1, y) for x, y in square(-1) + square(0)]
+        cells = CELLS[:2] + CELLS[3:] + [(kind, [n + 16 for n in nodes]) for kind, nodes in CELLS[:2] + CELLS[3:]]
+        self.write_mesh("mesh_1", square(-1) + square(0) + shifted, cells)
+        self.write_patches([1, 5], [12, 28])
+        self.write_model("model_2", "mesh_1", ["D_PLAN/SEG3", "AXIS/SEG3", "D_PLAN/QUAD8"], [0, 0, 2, 2, 1, 1, 2, 2])
+        self.write_material_field("material_field_4", "mesh_1", ["material_3"], [0] * 8)
+        self.write_load("load_5", imposed=[(n, component, 0.0) for n in range(32) for component in ("DX", "DY")], kind="cine")
+        self.write_contact("contact_7", slave=[1, 5], master=[0, 4])
+        run = self.solve(loads=["load_5"])
+        self.assertEqual(run.status, 0, run.stderr)
+        with h5py.File(self.path("result_9")) as index:
+            self.assertAlmostEqual(index["parameters/zone_1_whole"][0], 1 + 1.5, delta=1e-14)  # x from 0 to 1; r from 1 to 2
+            self.assertAlmostEqual(index["parameters/zone_1_covered"][0], 1 + 1.5, delta=1e-14)
 
     def test_the_table_has_the_peers_columns_and_counts_negative_pivots(self):
         run = self.solve(AFFICHAGE={"INFO_RESIDU": "OUI"})
