@@ -48,7 +48,12 @@ std::string_view rejection_name(Rejection rejection) {
 Pairing pair(const Surface& slave, const Surface& master, const PairingOptions& options) {
   check(slave, slave.dimension);
   check(master, slave.dimension);
-  return slave.dimension == 2 ? detail::pair_in_plane(slave, master, options) : detail::pair_in_space(slave, master, options);
+  Pairing pairing =
+      slave.dimension == 2 ? detail::pair_in_plane(slave, master, options) : detail::pair_in_space(slave, master, options);
+  std::vector<RejectedCouple>& rejected = pairing.rejected;
+  std::sort(rejected.begin(), rejected.end());  // a search meets couples in its own order, and parts of one several times
+  rejected.erase(std::unique(rejected.begin(), rejected.end()), rejected.end());
+  return pairing;
 }
 
 }  // namespace lacon

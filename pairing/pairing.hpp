@@ -1,7 +1,8 @@
 #pragma once
 // Pairing of two surfaces: which part of which slave cell sees which master cell, and where its integration points go.
 // METHOD.md 3.3 and 3.4.1; what is decided otherwise here, and why, is in README.md.
-#include <array>
+#include <algorithm>
+#include <compare>
 #include <cstdint>
 #include <string_view>
 #include <vector>
@@ -37,18 +38,28 @@ enum class Rejection : std::uint8_t {
   sliver,             ///< smaller than PairingTolerances::sliver
   degenerate_slave,   ///< slave cells (not couples) without a normal: zero length, folded, coordinates not finite
   degenerate_master,  ///< master cells (not couples) of zero length or with coordinates that are not finite
-  no_image            ///< an integration point has no image on the master's normal
+  no_image            ///< an integration point has no image on the master along the slave's normal
 };
 inline constexpr int n_rejections = 6;
 std::string_view rejection_name(Rejection rejection);
 
+/// A couple that pairing gave up, or a part of it. A degenerate cell stands alone: the other one is -1.
+struct RejectedCouple {
+  std::int32_t slave = -1, master = -1;  ///< cells of the two surfaces
+  Rejection reason{};
+
+  auto operator<=>(const RejectedCouple&) const = default;
+};
+
 struct Pairing {
   /// `slave` and `master` number the cells of the two surfaces. Sorted by slave cell, then along it.
   ContactCells cells;
-  std::array<std::int64_t, n_rejections> rejected{};
-  std::vector<std::int32_t> degenerate_slaves;  ///< which cells these are
+  /// Every couple once for each reason; sorted.
+  std::vector<RejectedCouple> rejected;
 
-  std::int64_t count(Rejection rejection) const { return rejected[static_cast<std::size_t>(rejection)]; }
+  std::int64_t count(Rejection reason) const {
+    return std::count_if(rejected.begin(), rejected.end(), [&](const RejectedCouple& r) { return r.reason == reason; });
+  }
 };
 
 /// Pair two surfaces of the same dimension: SEG2 and SEG3 in the plane, TRIA3, TRIA6, QUAD4, QUAD8 and QUAD9 in space. The

@@ -282,8 +282,8 @@ class Overlaps {
       else
         result_.push_back({a, b, intervals[nearest].master});
     }
-    for (const double lost : lost_)
-      if (lost > 2 * sliver) hidden();
+    for (std::size_t i = 0; i < intervals.size(); ++i)
+      if (lost_[i] > 2 * sliver) hidden(intervals[i].master);
     intervals.swap(result_);
   }
 
@@ -300,7 +300,6 @@ Pairing detail::pair_in_plane(const Surface& slave, const Surface& master, const
   const PairingTolerances& tolerances = options.tolerances;
   Pairing pairing;
   pairing.cells.dimension = 2;
-  const auto reject = [&](Rejection reason) { ++pairing.rejected[static_cast<std::size_t>(reason)]; };
 
   const double slave_extent = extent(slave), master_extent = extent(master);
   std::vector<std::int32_t> usable;
@@ -309,7 +308,7 @@ Pairing detail::pair_in_plane(const Surface& slave, const Surface& master, const
     const Vec a = finite(master, cell) ? point(master, master.nodes[cell][0]) : Vec{},
               b = finite(master, cell) ? point(master, master.nodes[cell][1]) : Vec{};
     if (!(norm(b - a) > tolerances.degenerate * master_extent)) {
-      reject(Rejection::degenerate_master);
+      pairing.rejected.push_back({-1, static_cast<std::int32_t>(cell), Rejection::degenerate_master});
       continue;
     }
     Box<2> box = Box<2>::empty();  // of the ends alone: where a normal passes between them decides, not where the cell bulges
@@ -331,10 +330,10 @@ Pairing detail::pair_in_plane(const Surface& slave, const Surface& master, const
     const auto slave_index = static_cast<std::int32_t>(cell);
     const SlaveCell e = finite(slave, cell) ? slave_cell(slave, cell) : SlaveCell{};
     if (degenerate(e, slave, slave_extent, tolerances.degenerate)) {
-      reject(Rejection::degenerate_slave);
-      pairing.degenerate_slaves.push_back(slave_index);
+      pairing.rejected.push_back({slave_index, -1, Rejection::degenerate_slave});
       continue;
     }
+    const auto reject = [&](std::int32_t m, Rejection reason) { pairing.rejected.push_back({slave_index, m, reason}); };
     intervals.clear();
     projections.start(slave_index);
     const auto couple = [&](std::int32_t m) {
@@ -348,7 +347,7 @@ Pairing detail::pair_in_plane(const Surface& slave, const Surface& master, const
             intervals.push_back({a, b, m});
           },
           [&](double a, double b) { away += b - a; });
-      if (away > 2 * tolerances.sliver) reject(Rejection::facing_away);
+      if (away > 2 * tolerances.sliver) reject(m, Rejection::facing_away);
     };
     if (options.brute_force) {
       for (const std::int32_t m : usable) couple(m);
@@ -360,11 +359,11 @@ Pairing detail::pair_in_plane(const Surface& slave, const Surface& master, const
               [](const Interval& i, const Interval& j) { return std::tie(i.a, i.b, i.master) < std::tie(j.a, j.b, j.master); });
     overlaps.resolve(
         intervals, tolerances.sliver, [&](double xi, std::int32_t m) { return image(e, xi, master, m, tolerances).gap; },
-        [&] { reject(Rejection::hidden); });
+        [&](std::int32_t m) { reject(m, Rejection::hidden); });
 
     for (const auto& [a, b, m] : intervals) {
       if (!(b - a > 2 * tolerances.sliver)) {
-        reject(Rejection::sliver);
+        reject(m, Rejection::sliver);
         continue;
       }
       const Rule& rule = gauss_rule(integration_points(slave.types[cell], master.types[m]));
@@ -383,7 +382,7 @@ Pairing detail::pair_in_plane(const Surface& slave, const Surface& master, const
         cells.slave_point.resize(before);
         cells.master_point.resize(before);
         cells.weight.resize(before);
-        reject(Rejection::no_image);
+        reject(m, Rejection::no_image);
         continue;
       }
       cells.slave.push_back(slave_index);

@@ -404,7 +404,6 @@ Pairing detail::pair_in_space(const Surface& slave, const Surface& master, const
   Pairing pairing;
   ContactCells& cells = pairing.cells;
   cells.dimension = 3;
-  const auto reject = [&](Rejection reason) { ++pairing.rejected[static_cast<std::size_t>(reason)]; };
 
   const double slave_extent = extent(slave), master_extent = extent(master);
   std::vector<std::int32_t> usable;
@@ -416,7 +415,7 @@ Pairing detail::pair_in_space(const Surface& slave, const Surface& master, const
     const Facet& f = masters[cell];
     if (!(f.size > tolerances.degenerate * master_extent) || !(norm(f.normal) > 0) ||
         !(std::abs(dot(cross(f.x({0, 0}).d1, f.x({0, 0}).d2), f.normal)) > tolerances.degenerate * f.size * f.size)) {
-      reject(Rejection::degenerate_master);
+      pairing.rejected.push_back({-1, static_cast<std::int32_t>(cell), Rejection::degenerate_master});
       continue;
     }
     Box<3> box = Box<3>::empty();
@@ -435,7 +434,6 @@ Pairing detail::pair_in_space(const Surface& slave, const Surface& master, const
   SlaveFacet e;
   std::vector<Part> parts;
   std::vector<View> views, kept;
-  std::vector<std::int32_t> hidden;
   std::vector<Region> rest;
   Region seen;
   Polygon scratch;
@@ -443,10 +441,10 @@ Pairing detail::pair_in_space(const Surface& slave, const Surface& master, const
     const auto slave_index = static_cast<std::int32_t>(cell);
     e.set(slave, cell, slave_extent, tolerances);
     if (e.degenerate) {
-      reject(Rejection::degenerate_slave);
-      pairing.degenerate_slaves.push_back(slave_index);
+      pairing.rejected.push_back({slave_index, -1, Rejection::degenerate_slave});
       continue;
     }
+    const auto reject = [&](std::int32_t m, Rejection reason) { pairing.rejected.push_back({slave_index, m, reason}); };
     const double sliver = tolerances.sliver * e.chart_area;
     views.clear();
     const auto couple = [&](std::int32_t m) {
@@ -472,8 +470,8 @@ Pairing detail::pair_in_space(const Surface& slave, const Surface& master, const
           away = double_area(seen.polygon) > sliver;
         }
       }
-      if (!couples && away) reject(Rejection::facing_away);
-      if (!couples && !away && thin) reject(Rejection::sliver);
+      if (!couples && away) reject(m, Rejection::facing_away);
+      if (!couples && !away && thin) reject(m, Rejection::sliver);
     };
     if (options.brute_force) {
       for (const std::int32_t m : usable) couple(m);
@@ -490,8 +488,8 @@ Pairing detail::pair_in_space(const Surface& slave, const Surface& master, const
       return found.found ? std::abs(found.gap) : std::numeric_limits<double>::infinity();
     };
     kept.clear();
-    hidden.clear();
     const double overlap = tolerances.overlap * e.chart_area;
+    bool any_hidden = false;
     std::vector<View> todo;
     for (View& first : views) {
       todo.assign(1, std::move(first));
@@ -508,7 +506,8 @@ Pairing detail::pair_in_space(const Surface& slave, const Surface& master, const
           const bool old_wins = old_distance < new_distance || (old_distance == new_distance && kept[k].master < view.master);
           const Region winner = old_wins ? kept[k].region : view.region;
           const View loser = old_wins ? std::move(view) : std::move(kept[k]);
-          hidden.push_back(loser.master);
+          reject(loser.master, Rejection::hidden);
+          any_hidden = true;
           rest.clear();
           subtract(loser.region, winner, sliver, rest);
           if (old_wins) {
@@ -524,12 +523,7 @@ Pairing detail::pair_in_space(const Surface& slave, const Surface& master, const
         if (whole) kept.push_back(std::move(view));
       }
     }
-    if (!hidden.empty()) {
-      std::sort(hidden.begin(), hidden.end());
-      pairing.rejected[static_cast<std::size_t>(Rejection::hidden)] +=
-          std::unique(hidden.begin(), hidden.end()) - hidden.begin();
-      std::sort(kept.begin(), kept.end(), sooner);
-    }
+    if (any_hidden) std::sort(kept.begin(), kept.end(), sooner);
 
     for (const View& view : kept) {
       const Facet& f = masters[view.master];
@@ -561,7 +555,7 @@ Pairing detail::pair_in_space(const Surface& slave, const Surface& master, const
         cells.master_point.resize(2 * before_points);
         cells.weight.resize(before_points);
         cells.vertex.resize(before_vertices);
-        reject(Rejection::no_image);
+        reject(view.master, Rejection::no_image);
         continue;
       }
       cells.slave.push_back(slave_index);

@@ -175,9 +175,11 @@ void ContactState::update_geometry(std::span<const double> displacement) {
     zone.slave.normals = normals;
     const Pairing pairing = pair(zone.slave, zone.master);
     zone.slave.normals = {};
-    for (int r = 0; r < n_rejections; ++r) rejected_[r] += pairing.rejected[r];
-    if (!pairing.degenerate_slaves.empty())
-      fail("EVOLUTION_3", {{"cell", cell_name(contact_.slaves[zone.slaves[pairing.degenerate_slaves.front()]].cell)}});
+    for (const RejectedCouple& couple : pairing.rejected) {
+      if (couple.reason == Rejection::degenerate_slave)
+        fail("EVOLUTION_3", {{"cell", cell_name(contact_.slaves[zone.slaves[couple.slave]].cell)}});
+      ++rejected_[static_cast<std::size_t>(couple.reason)];
+    }
     integrate(zone, pairing.cells, normals);
   }
   for (std::size_t p = 0; p < gap_.size(); ++p) {

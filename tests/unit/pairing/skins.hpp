@@ -82,6 +82,18 @@ inline Skin permuted(const Skin& skin, std::vector<std::int32_t>& order, std::mt
   return other;
 }
 
+/// Rejected couples with the numbers of the surfaces that were permuted.
+inline std::vector<RejectedCouple> renumbered(std::vector<RejectedCouple> rejected,
+                                              const std::vector<std::int32_t>& slave_order,
+                                              const std::vector<std::int32_t>& master_order) {
+  for (RejectedCouple& couple : rejected) {
+    if (couple.slave >= 0) couple.slave = slave_order[couple.slave];
+    if (couple.master >= 0) couple.master = master_order[couple.master];
+  }
+  std::sort(rejected.begin(), rejected.end());
+  return rejected;
+}
+
 /// Position and derivative at a reference point.
 struct Place {
   Point x, dx;
