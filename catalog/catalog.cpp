@@ -4,6 +4,7 @@
 #include "lacon/catalog/contact.hpp"
 #include "lacon/catalog/cuts.hpp"
 #include "lacon/catalog/messages.hpp"
+#include "lacon/catalog/refinements.hpp"
 
 namespace lacon::catalog {
 
@@ -28,6 +29,12 @@ const SlaveRow* find_slave(int kind, int rank) {
 const CutRow* find_cut(CellType skin, CellType body, std::string_view option) {
   for (const CutRow& row : cuts())
     if (row.skin == skin && row.body == body && (row.option.empty() || row.option == option)) return &row;
+  return nullptr;
+}
+
+const RefinementRow* find_refinement(CellType cell) {
+  for (const RefinementRow& row : refinements())
+    if (row.cell == cell) return &row;
   return nullptr;
 }
 

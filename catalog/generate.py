@@ -13,6 +13,7 @@ import sys
 import tomllib
 
 import cuts
+import refinements
 
 
 class CatalogError(Exception):
@@ -52,6 +53,7 @@ def load(folder):
     return {
         "cells": cells,
         "cuts": all_cuts,
+        "refinements": refinements.complete_refinements(read(folder / "refinements.toml")["refinement"], by_name, check),
         "patches": contact["patch"],
         "slaves": contact["slave"],
         "elements": elements,
@@ -207,6 +209,14 @@ def write_cpp(catalog, writer):
         + writer.span("Placement", (f"{{{f}, {writer.integers(own)}}}" for f, own in c["placements"]))
         + f", {writer.integers(c['turned'])}}}" for c in catalog["cuts"]]
 
+    def choices(items):
+        return writer.span("RefinementChoice", (f"{{{c['diagonal'][0]}, {c['diagonal'][1]}, {sub_cells(c['cells'])}}}" for c in items))
+
+    tables["refinements", "RefinementRow"] = [
+        f"{{{kind(r['cell'])}, {writer.integers(w for p in r['weights'] for w in p)}, "
+        f"{writer.span('double', (repr(x) for p in r['points'] for x in p))}, {sub_cells(r['cells'])}, {choices(r['choices'])}}}"
+        for r in catalog["refinements"]]
+
     rows = []
     for e in catalog["elements"]:
         for cell, points in e["points"].items():
@@ -235,7 +245,7 @@ def write_cpp(catalog, writer):
         else:
             body.append(f"std::span<const {row}> {name}() {{ return {{}}; }}")
     includes = "\n".join(f'#include "lacon/catalog/{h}.hpp"' for h in
-                         ("cells", "contact", "cuts", "elements", "keywords", "messages", "quantities"))
+                         ("cells", "contact", "cuts", "elements", "keywords", "messages", "quantities", "refinements"))
     return (f"// Made by catalog/generate.py from the catalogue's TOML: do not edit.\n{includes}\n\nnamespace lacon::catalog {{\n"
             "namespace {\n" + "\n".join(writer.arrays) + "\n}\n\n" + "\n".join(body) + "\n}\n")
 

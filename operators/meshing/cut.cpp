@@ -1,22 +1,19 @@
 #include "lacon/operators/meshing/cut.hpp"
 
 #include <algorithm>
-#include <array>
 #include <map>
 #include <set>
 
 #include "lacon/catalog/cuts.hpp"
 #include "lacon/catalog/messages.hpp"
-#include "lacon/elements/reference.hpp"
 #include "lacon/operators/meshing/body.hpp"
 #include "lacon/operators/meshing/quality.hpp"
+#include "lacon/operators/meshing/subdivision.hpp"
 
 namespace lacon {
 namespace {
 
 using Nodes = std::vector<std::int32_t>;
-
-constexpr std::size_t max_nodes = 27;
 
 /// A slave cell, its body cell before any cut, and the zone it belongs to.
 struct Slave {
@@ -64,21 +61,11 @@ Nodes add_nodes(CellType type, const Nodes& nodes, std::span<const double> point
   const auto d = static_cast<std::size_t>(catalog::cell(type).dimension);
   Nodes added;
   for (std::size_t p = 0; p < points.size() / d; ++p) {
-    std::array<double, max_nodes> shape;
-    shape_functions(type, points.subspan(p * d, d), {shape.data(), nodes.size()});
-    std::array<double, 3> image{};
-    for (std::size_t a = 0; a < nodes.size(); ++a)
-      for (std::size_t k = 0; k < 3; ++k) image[k] += shape[a] * coordinates[3 * static_cast<std::size_t>(nodes[a]) + k];
+    const auto point = image(type, nodes, points.subspan(p * d, d), coordinates);
     added.push_back(static_cast<std::int32_t>(coordinates.size() / 3));
-    coordinates.insert(coordinates.end(), image.begin(), image.end());
+    coordinates.insert(coordinates.end(), point.begin(), point.end());
   }
   return added;
-}
-
-Nodes pick(const Nodes& from, std::span<const std::int8_t> which) {
-  Nodes picked;
-  for (const std::int8_t i : which) picked.push_back(from[static_cast<std::size_t>(i)]);
-  return picked;
 }
 
 void append(Nodes& to, const Nodes& more) { to.insert(to.end(), more.begin(), more.end()); }
@@ -247,14 +234,7 @@ Mesh cut_lac(const Mesh& mesh, std::span<const std::string> groups, std::string_
     });
     replaced_by.push_back(heirs);
   }
-  for (const Group& group : mesh.cell_groups) {
-    Group extended{group.name, {}};
-    for (const std::int32_t member : group.members) {
-      const auto heirs = replaced_by[static_cast<std::size_t>(member)];
-      extended.members.insert(extended.members.end(), heirs.begin(), heirs.end());
-    }
-    done.cell_groups.push_back(std::move(extended));
-  }
+  done.cell_groups = inherited(mesh.cell_groups, replaced_by);
   for (std::size_t p = 0; p < patches.size(); ++p) {
     Nodes own;
     for (const std::int32_t cell : sub_cells[p]) own.push_back(number_of[static_cast<std::size_t>(cell)]);

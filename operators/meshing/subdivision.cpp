@@ -1,0 +1,37 @@
+#include "lacon/operators/meshing/subdivision.hpp"
+
+#include "lacon/elements/reference.hpp"
+
+namespace lacon {
+
+constexpr std::size_t max_nodes = 27;
+
+std::array<double, 3> image(CellType type, std::span<const std::int32_t> nodes, std::span<const double> xi,
+                            std::span<const double> coordinates) {
+  std::array<double, max_nodes> shape;
+  shape_functions(type, xi, {shape.data(), nodes.size()});
+  std::array<double, 3> point{};
+  for (std::size_t a = 0; a < nodes.size(); ++a)
+    for (std::size_t k = 0; k < 3; ++k) point[k] += shape[a] * coordinates[3 * static_cast<std::size_t>(nodes[a]) + k];
+  return point;
+}
+
+std::vector<std::int32_t> pick(std::span<const std::int32_t> from, std::span<const std::int8_t> which) {
+  std::vector<std::int32_t> picked;
+  for (const std::int8_t i : which) picked.push_back(from[static_cast<std::size_t>(i)]);
+  return picked;
+}
+
+std::vector<Group> inherited(std::span<const Group> groups, const Ragged<std::int32_t>& heirs) {
+  std::vector<Group> made;
+  for (const Group& group : groups) {
+    Group& extended = made.emplace_back(Group{group.name, {}});
+    for (const std::int32_t member : group.members) {
+      const auto own = heirs[static_cast<std::size_t>(member)];
+      extended.members.insert(extended.members.end(), own.begin(), own.end());
+    }
+  }
+  return made;
+}
+
+}  // namespace lacon
