@@ -13,4 +13,7 @@ Pairing pair_in_space(const Surface& slave, const Surface& master, const Pairing
 /// All coordinates of a cell, and nodal normals if there are, are finite numbers.
 bool finite(const Surface& surface, std::size_t cell);
 
+/// What PairingOptions::largest_angle asks of -n_e . n_m at least.
+double smallest_cosine(const PairingOptions& options);
+
 }  // namespace lacon::detail

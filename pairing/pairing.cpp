@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <stdexcept>
 #include <string>
 
@@ -37,11 +38,15 @@ bool finite(const Surface& surface, std::size_t cell) {
   });
 }
 
+double smallest_cosine(const PairingOptions& options) {
+  return options.largest_angle < 90 ? std::cos(options.largest_angle * std::numbers::pi / 180) : -1;
+}
+
 }  // namespace detail
 
 std::string_view rejection_name(Rejection rejection) {
-  static constexpr std::string_view names[n_rejections] = {"facing away",       "hidden",  "sliver", "degenerate slave",
-                                                           "degenerate master", "no image"};
+  static constexpr std::string_view names[n_rejections] = {"facing away",       "hidden",   "sliver",  "degenerate slave",
+                                                           "degenerate master", "no image", "too far", "too steep"};
   return names[static_cast<std::size_t>(rejection)];
 }
 

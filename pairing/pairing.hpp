@@ -29,6 +29,14 @@ struct PairingTolerances {
 struct PairingOptions {
   PairingTolerances tolerances;
   bool brute_force = false;  ///< try every couple instead of searching: the oracle of the tests
+  /// Largest |gap| in the middle of what a couple has in common, in diameters of the larger of its two cells (COEF_MULT_APPA);
+  /// not positive: no limit.
+  double distance_limit = -1;
+  /// Largest angle between the slave's normal and the opposite of the master's, in degrees; 90: no limit. A master that is
+  /// nearly parallel to the normal covers next to nothing, with any gap between its ends: a wall beside an edge is not
+  /// contact, whatever side of 90 degrees a deformation puts it on. At the default an error of position grows 57 times in the
+  /// gap.
+  double largest_angle = 89;
 };
 
 /// Why a couple of cells that see each other gives no contact cell, or a smaller one.
@@ -38,9 +46,11 @@ enum class Rejection : std::uint8_t {
   sliver,             ///< smaller than PairingTolerances::sliver
   degenerate_slave,   ///< slave cells (not couples) without a normal: zero length, folded, coordinates not finite
   degenerate_master,  ///< master cells (not couples) of zero length or with coordinates that are not finite
-  no_image            ///< an integration point has no image on the master along the slave's normal
+  no_image,           ///< an integration point has no image on the master along the slave's normal
+  too_far,            ///< beyond PairingOptions::distance_limit
+  too_steep           ///< beyond PairingOptions::largest_angle
 };
-inline constexpr int n_rejections = 6;
+inline constexpr int n_rejections = 8;
 std::string_view rejection_name(Rejection rejection);
 
 /// A couple that pairing gave up, or a part of it. A degenerate cell stands alone: the other one is -1.

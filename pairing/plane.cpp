@@ -323,6 +323,7 @@ Pairing detail::pair_in_plane(const Surface& slave, const Surface& master, const
   }
   const BoxTree<2> tree(std::move(boxes));
 
+  const double smallest_cosine = detail::smallest_cosine(options);
   Projections projections(master.coordinates.size() / 3);
   Overlaps overlaps;
   std::vector<Interval> intervals;
@@ -344,7 +345,18 @@ Pairing detail::pair_in_plane(const Surface& slave, const Surface& master, const
       crossings(
           projections.of(e, master, first), projections.of(e, master, second),
           [&](double a, double b) {
-            intervals.push_back({a, b, m});
+            const double middle = 0.5 * (a + b);
+            const Vec along = point(master, second) - point(master, first), t = e.tangent(middle);
+            const auto far = [&] {
+              const double diameter = std::max(2 * norm(e.x.c[1]), norm(along));
+              return std::abs(image(e, middle, master, m, tolerances).gap) > options.distance_limit * diameter;
+            };
+            if (-dot(t, along) < smallest_cosine * norm(t) * norm(along))
+              reject(m, Rejection::too_steep);
+            else if (options.distance_limit > 0 && far())
+              reject(m, Rejection::too_far);
+            else
+              intervals.push_back({a, b, m});
           },
           [&](double a, double b) { away += b - a; });
       if (away > 2 * tolerances.sliver) reject(m, Rejection::facing_away);

@@ -53,6 +53,14 @@ struct Facet {
   double size = 0;            ///< the longest distance from its first node
   bool straight = true;       ///< edges
   double distortion = 0;
+
+  /// The longest distance between two vertices.
+  double diameter() const {
+    double longest = 0;
+    for (int i = 0; i < n_vertices; ++i)
+      for (int j = 0; j < i; ++j) longest = std::max(longest, norm(nodes[i] - nodes[j]));
+    return longest;
+  }
 };
 
 Facet facet(const Surface& surface, std::size_t cell, double flat) {
@@ -430,6 +438,7 @@ Pairing detail::pair_in_space(const Surface& slave, const Surface& master, const
     boxes.push_back(box);
   }
   const BoxTree<3> tree(std::move(boxes));
+  const double smallest_cosine = detail::smallest_cosine(options);
 
   SlaveFacet e;
   std::vector<Part> parts;
@@ -447,6 +456,13 @@ Pairing detail::pair_in_space(const Surface& slave, const Surface& master, const
     const auto reject = [&](std::int32_t m, Rejection reason) { pairing.rejected.push_back({slave_index, m, reason}); };
     const double sliver = tolerances.sliver * e.chart_area;
     views.clear();
+    // The gap in the middle of a view, or infinity where there is no image.
+    const auto distance = [&](const View& view, Vec2 y) {
+      const SlaveFacet::Place place = e.place(y, tolerances);
+      Target target(masters[view.master], e.f.origin);
+      const Image found = place.found ? image(e, target, place.xi, tolerances) : Image{};
+      return found.found ? std::abs(found.gap) : std::numeric_limits<double>::infinity();
+    };
     const auto couple = [&](std::int32_t m) {
       cut_in_parts(masters[m], e, polygon, parts);
       bool couples = false, away = false, thin = false;
@@ -459,8 +475,11 @@ Pairing detail::pair_in_space(const Surface& slave, const Surface& master, const
             see(e, piece, part, true, seen, scratch);
             const double seen_area = double_area(seen.polygon);
             if (seen_area > sliver) {
-              views.push_back({static_cast<std::int32_t>(p), m, seen});
               couples = true;
+              if (-dot(area, piece.normal) < smallest_cosine * norm(area) * norm(piece.normal))
+                reject(m, Rejection::too_steep);
+              else
+                views.push_back({static_cast<std::int32_t>(p), m, seen});
               continue;
             }
             thin = thin || !seen.polygon.empty();
@@ -478,15 +497,17 @@ Pairing detail::pair_in_space(const Surface& slave, const Surface& master, const
     } else {
       tree.visit([&](const Box<3>& box) { return e.touches(box); }, [&](std::int32_t i) { couple(usable[i]); });
     }
+    if (options.distance_limit > 0)
+      std::erase_if(views, [&](const View& view) {
+        const double diameter = std::max(e.f.diameter(), masters[view.master].diameter());
+        const double gap = distance(view, middle(view.region.polygon));
+        const bool far = std::isfinite(gap) && gap > options.distance_limit * diameter;
+        if (far) reject(view.master, Rejection::too_far);
+        return far;
+      });
     std::sort(views.begin(), views.end(), sooner);
 
     // Where several masters cover a part of the slave, the nearest along the normal keeps it.
-    const auto distance = [&](const View& view, Vec2 y) {
-      const SlaveFacet::Place place = e.place(y, tolerances);
-      Target target(masters[view.master], e.f.origin);
-      const Image found = place.found ? image(e, target, place.xi, tolerances) : Image{};
-      return found.found ? std::abs(found.gap) : std::numeric_limits<double>::infinity();
-    };
     kept.clear();
     const double overlap = tolerances.overlap * e.chart_area;
     bool any_hidden = false;

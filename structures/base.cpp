@@ -321,6 +321,10 @@ const std::pair<const char*, std::string ContactZone::*> zone_texts[] = {
     {"zones/search", &ContactZone::search},
     {"zones/initial_status", &ContactZone::initial_status}};
 
+/// The zone's members that are a number.
+const std::pair<const char*, double ContactZone::*> zone_numbers[] = {{"zones/tolerance", &ContactZone::tolerance},
+                                                                      {"zones/distance_limit", &ContactZone::distance_limit}};
+
 /// The zone's members that are lists of numbers.
 const std::pair<const char*, std::vector<std::int32_t> ContactZone::*> zone_lists[] = {
     {"zones/slave", &ContactZone::slave}, {"zones/master", &ContactZone::master}, {"zones/patches", &ContactZone::patches}};
@@ -336,9 +340,12 @@ Contact Base::contact(std::string_view id) const {
   contact.smoothing = root.integer("smoothing") != 0;
   contact.verify_normals = root.integer("verify_normals") != 0;
   contact.resi_geom = root.real("resi_geom");
-  const auto tolerance = root.read<double>("zones/tolerance");
-  contact.zones.resize(tolerance.size());
-  for (std::size_t z = 0; z < contact.zones.size(); ++z) contact.zones[z].tolerance = tolerance[z];
+  contact.zones.resize(root.read<double>("zones/tolerance").size());
+  for (const auto& [name, member] : zone_numbers) {
+    if (!root.has(name)) continue;  // a base older than the number
+    const auto values = root.read<double>(name);
+    for (std::size_t z = 0; z < contact.zones.size(); ++z) contact.zones[z].*member = values.at(z);
+  }
   for (const auto& [name, member] : zone_texts) {
     const auto values = root.read_strings(name);
     for (std::size_t z = 0; z < contact.zones.size(); ++z) contact.zones[z].*member = values.at(z);
@@ -365,9 +372,11 @@ void Base::store(const Contact& contact) const {
                   root.set("smoothing", std::int64_t{contact.smoothing});
                   root.set("verify_normals", std::int64_t{contact.verify_normals});
                   root.set("resi_geom", contact.resi_geom);
-                  std::vector<double> tolerance;
-                  for (const ContactZone& zone : contact.zones) tolerance.push_back(zone.tolerance);
-                  root.write("zones/tolerance", tolerance);
+                  for (const auto& [name, member] : zone_numbers) {
+                    std::vector<double> values;
+                    for (const ContactZone& zone : contact.zones) values.push_back(zone.*member);
+                    root.write(name, values);
+                  }
                   for (const auto& [name, member] : zone_texts) {
                     std::vector<std::string> values;
                     for (const ContactZone& zone : contact.zones) values.push_back(zone.*member);

@@ -153,6 +153,7 @@ ContactZone make_zone(const Mesh& mesh, const Keywords& keywords) {
   zone.search = keywords.text("TYPE_APPA");
   zone.initial_status = keywords.text("CONTACT_INIT");
   zone.tolerance = keywords.real("RESI_APPA");
+  zone.distance_limit = keywords.real("COEF_MULT_APPA");
   return zone;
 }
 

@@ -66,6 +66,7 @@ ContactState::ContactState(const StaticProblem& problem)
               .slave = surface_of(mesh, data.slave, coordinates_),
               .master = surface_of(mesh, data.master, coordinates_),
               .current_jacobian = data.jacobian == "ACTUALISE",
+              .pairing = {.distance_limit = data.distance_limit},
               .initial_status = data.initial_status};
     for (const std::int32_t cell : data.slave) zone.slaves.push_back(slave_of_cell.at(cell));
     for (const std::int32_t patch : data.patches) zone_of_[patch] = static_cast<std::int32_t>(zones_.size());
@@ -173,7 +174,7 @@ void ContactState::update_geometry(std::span<const double> displacement) {
     std::vector<double> normals;
     if (contact_.smoothing) normals = nodal_normals(zone.slave);
     zone.slave.normals = normals;
-    const Pairing pairing = pair(zone.slave, zone.master);
+    const Pairing pairing = pair(zone.slave, zone.master, zone.pairing);
     zone.slave.normals = {};
     for (const RejectedCouple& couple : pairing.rejected) {
       if (couple.reason == Rejection::degenerate_slave)

@@ -79,6 +79,7 @@ class ContactState {
     std::vector<std::int32_t> masters;  ///< mesh cell of each cell of `master`
     Surface slave, master;
     bool current_jacobian = false;
+    PairingOptions pairing;
     double smallest_edge = 0;
     std::string initial_status;
   };

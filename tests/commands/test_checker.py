@@ -199,7 +199,7 @@ class Completion(unittest.TestCase):
         expected = {"FROTTEMENT": "SANS", "ALGO_RESO_CONT": "NEWTON", "RESI_GEOM": 1e-6, "RESI_CONT": -1.0, "LISSAGE": "NON",
                     "VERI_NORM": "OUI", "CONT_STAT_ELAS": 0}
         self.assertEqual({k: made[k] for k in expected}, expected)
-        of_zone = {**zone, "APPARIEMENT": "MORTAR", "TYPE_APPA": "RAPIDE", "RESI_APPA": 1e-8, "TYPE_JACOBIEN": "INITIAL",
+        of_zone = {**zone, "APPARIEMENT": "MORTAR", "TYPE_APPA": "RAPIDE", "RESI_APPA": 1e-8, "COEF_MULT_APPA": -1.0, "TYPE_JACOBIEN": "INITIAL",
                    "INTEGRATION": "AUTO", "CONTACT_INIT": "INTERPENETRE"}
         self.assertEqual({k: made["ZONE"][0][k] for k in of_zone}, of_zone)
 

@@ -72,7 +72,8 @@ class DefiContact(OperatorTest):
         self.assertEqual(self.slaves(), [(0, 0, 0, "LACS22D"), (1, 0, 1, "LACS22DB"), (2, 1, 0, "LACS22D"), (3, 1, 1, "LACS22DB")])
 
     def test_the_zone_keeps_its_groups_cells_and_options(self):
-        self.define(zone(TYPE_JACOBIEN="ACTUALISE", TYPE_APPA="ROBUSTE", CONTACT_INIT="OUI", RESI_APPA=1e-6), LISSAGE="OUI", RESI_GEOM=1e-3)
+        self.define(zone(TYPE_JACOBIEN="ACTUALISE", TYPE_APPA="ROBUSTE", CONTACT_INIT="OUI", RESI_APPA=1e-6,
+                         COEF_MULT_APPA=2.5), LISSAGE="OUI", RESI_GEOM=1e-3)
         head = self.attributes("contact_3")
         self.assertEqual((head["model"], head["mesh"], head["algorithm"], head["smoothing"], head["resi_geom"], head["verify_normals"]),
                          ("model_2", "mesh_1", "LAC", 1, 1e-3, 1))
@@ -85,6 +86,7 @@ class DefiContact(OperatorTest):
             self.assertEqual(read_ragged(zones["master"]), [[4]])
             self.assertEqual(read_ragged(zones["patches"]), [[0, 1]])
             self.assertEqual(zones["tolerance"][()].tolist(), [1e-6])
+            self.assertEqual(zones["distance_limit"][()].tolist(), [2.5])
 
     def test_defaults_are_those_of_the_peer(self):
         self.define()

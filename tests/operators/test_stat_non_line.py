@@ -61,7 +61,7 @@ class StatNonLine(OperatorTest):
                 file["pressure/cell"] = np.array([cell for cell, _ in pressure], np.int32)
                 file["pressure/value"] = np.array([value for _, value in pressure])
 
-    def write_contact(self, identifier, initial="OUI", slave=(1,), master=(0,)):
+    def write_contact(self, identifier, initial="OUI", slave=(1,), master=(0,), distance_limit=-1.0):
         with self.create(identifier, "contact", references=["model_2", "mesh_1"], model="model_2", mesh="mesh_1", algorithm="LAC",
                          smoothing=0, verify_normals=1, resi_geom=1e-6) as file:
             zones = file.create_group("zones")
@@ -69,6 +69,7 @@ class StatNonLine(OperatorTest):
                                 ("initial_status", initial)):
                 zones[name] = np.array([value], h5py.string_dtype())
             zones["tolerance"] = np.array([1e-8])
+            zones["distance_limit"] = np.array([distance_limit])
             for name, members in (("slave", slave), ("master", master), ("patches", range(len(slave)))):
                 write_ragged(zones.create_group(name), "offset", "values", [list(members)])
             for name, values in (("cell", slave), ("patch", range(len(slave))), ("rank", [0] * len(slave))):
@@ -143,6 +144,19 @@ class StatNonLine(OperatorTest):
     def test_what_pairing_rejected_is_shown_on_demand(self):
         self.assertNotIn("pairing rejected", self.solve().stdout)
         self.assertIn("pairing rejected: 0 ", self.solve(INFO=2).stdout)
+
+    def test_a_master_beyond_the_distance_limit_pairs_with_nothing(self):
+        """The squares stand 0.3 apart, the skins have length 1; everything is held."""
+        self.write_mesh("mesh_1", square(-1) + square(0.3), CELLS, cell_groups={"MASTER": [0], "SLAVE": [1]})
+        self.write_patches([1], [12])
+        self.write_load("load_5", imposed=[(n, component, 0.0) for n in range(16) for component in ("DX", "DY")], kind="cine")
+        for limit, line in ((-1.0, "0 too far"), (0.31, "0 too far"), (0.29, "1 too far")):
+            self.write_contact("contact_7", initial="NON", distance_limit=limit)
+            run = self.solve(loads=["load_5"], INFO=2)
+            self.assertEqual(run.status, 0, run.stderr)
+            self.assertIn(line, run.stdout)
+            open_or_unpaired = "0 open, 1 without" if limit == 0.29 else "1 open, 0 without"
+            self.assertIn(open_or_unpaired, run.stdout)
 
     def test_every_slave_cell_is_integrated_by_the_kernel_of_its_own_element(self):
         """Two slave cells of one kind, one of them axisymmetric: its measure has the factor r. Everything is held."""

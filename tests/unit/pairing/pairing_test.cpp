@@ -382,6 +382,36 @@ TEST(Pairing, NamesDegenerateCellsInsteadOfReturningNumbersThatAreNone) {
   for (const double value : found.cells.master_point) EXPECT_TRUE(std::isfinite(value));
 }
 
+TEST(Pairing, LeavesOutWhatIsFurtherThanTheLimit) {
+  // cells of length 1, a master of length 2 at the distance 1: half a diameter of the larger one, apart or overlapping
+  for (const double side : {-1.0, 1.0}) {
+    Skin slave, master;
+    add_chain(slave, line(0), {0, 1}, Kind::linear);
+    add_chain(master, line(side), {1.5, -0.5}, Kind::linear);
+    const Pairing near = pair(slave.view(), master.view(), {.distance_limit = 0.5001}),
+                  far = pair(slave.view(), master.view(), {.distance_limit = 0.4999});
+    EXPECT_EQ(near.cells.size(), 1u);
+    EXPECT_TRUE(near.rejected.empty());
+    EXPECT_EQ(far.cells.size(), 0u);
+    EXPECT_EQ(far.rejected, (std::vector<RejectedCouple>{{0, 0, Rejection::too_far}}));
+    for (const double none : {-1.0, 0.0})
+      EXPECT_EQ(pair(slave.view(), master.view(), {.distance_limit = none}).cells.size(), 1u);
+  }
+}
+
+TEST(Pairing, LeavesOutWallsBesideAnEdge) {
+  for (const double angle : {0.0, 80.0, 88.9, 89.1, 89.9}) {
+    const double a = angle * std::numbers::pi / 180;
+    Skin slave, master;
+    add_chain(slave, line(0), {0, 1}, Kind::linear);
+    master.add_cell({master.add_node({0.5 + std::cos(a), -0.1 - std::sin(a)}), master.add_node({0.5, -0.1})});
+    const Pairing found = pair(slave.view(), master.view()), all = pair(slave.view(), master.view(), {.largest_angle = 90});
+    EXPECT_EQ(all.cells.size(), 1u) << angle;
+    EXPECT_EQ(found.cells.size(), angle < 89 ? 1u : 0u) << angle;
+    EXPECT_EQ(found.count(Rejection::too_steep), angle < 89 ? 0 : 1) << angle;
+  }
+}
+
 TEST(Pairing, OfNothingIsEmpty) {
   Skin slave, nothing;
   add_chain(slave, line(0), {0, 1}, Kind::linear);

@@ -6,6 +6,7 @@
 #include <functional>
 #include <limits>
 #include <map>
+#include <numbers>
 #include <random>
 
 #include "lacon/elements/reference.hpp"
@@ -566,6 +567,48 @@ TEST(PairingInSpace, NamesEveryReasonOfRejection) {
   Skin3 empty;
   EXPECT_EQ(pair(slave.view(), empty.view()).cells.size(), 0U);
   EXPECT_EQ(pair(empty.view(), slave.view()).cells.size(), 0U);
+}
+
+TEST(PairingInSpace, LeavesOutWhatIsFurtherThanTheLimit) {
+  // squares of side 1 and 2 at the distance 1: in diameters of the larger one, 1 / sqrt(8); a nearer one behind the back of
+  // the slave's body counts by its own distance
+  std::mt19937 random(19);
+  const double relative = 1 / std::sqrt(8.0);
+  for (const double side : {-1.0, 1.0}) {
+    Skin3 slave = slave_square();
+    Skin3 master = mesh({1, 1, CellType::QUAD4, true, 0, -0.5, 1.5, -0.5, 1.5}, plane(side), random);
+    const Pairing near = pair(slave.view(), master.view(), {.distance_limit = relative + 1e-6}),
+                  far = pair(slave.view(), master.view(), {.distance_limit = relative - 1e-6});
+    EXPECT_EQ(near.cells.size(), 1U);
+    EXPECT_TRUE(near.rejected.empty());
+    EXPECT_EQ(far.cells.size(), 0U);
+    EXPECT_EQ(far.rejected, (std::vector<RejectedCouple>{{0, 0, Rejection::too_far}}));
+    for (const double none : {-1.0, 0.0})
+      EXPECT_EQ(pair(slave.view(), master.view(), {.distance_limit = none}).cells.size(), 1U);
+  }
+  // what is too far hides nothing: every couple of a curved skin stands or falls by itself
+  Skin3 slave = mesh({6, 6, CellType::QUAD8, false, 0.2}, wave(0, 0.1, 0), random, true);
+  Skin3 master = mesh({5, 7, CellType::TRIA6, true, 0.2}, wave(-0.05, 0.1, 2), random, true);
+  std::int64_t last = 0;
+  for (const double limit : {0.01, 0.1, 0.3, 10.0}) {
+    const Pairing found = pair(slave.view(), master.view(), {.distance_limit = limit});
+    const auto n = static_cast<std::int64_t>(couples(found.cells).size());
+    EXPECT_GT(n, last);
+    EXPECT_EQ(found.count(Rejection::too_far) > 0, limit < 1);
+    last = n;
+  }
+}
+
+TEST(PairingInSpace, LeavesOutWallsBesideAnEdge) {
+  for (const double angle : {0.0, 80.0, 88.9, 89.1, 89.9}) {
+    const double a = angle * std::numbers::pi / 180, c = std::cos(a), s = std::sin(a), z = -0.1;
+    Skin3 slave = slave_square();
+    Skin3 master = facet_of(CellType::QUAD4, {{0.5, 0, z}, {0.5 + c, 0, z - s}, {0.5 + c, 1, z - s}, {0.5, 1, z}});
+    const Pairing found = pair(slave.view(), master.view()), all = pair(slave.view(), master.view(), {.largest_angle = 90});
+    EXPECT_EQ(all.cells.size(), 1U) << angle;
+    EXPECT_EQ(found.cells.size(), angle < 89 ? 1U : 0U) << angle;
+    EXPECT_EQ(found.count(Rejection::too_steep), angle < 89 ? 0 : 1) << angle;
+  }
 }
 
 TEST(PairingInSpace, WarpedFacetsApproachFlatOnesContinuously) {
