@@ -420,6 +420,11 @@ Function Base::function(std::string_view id) const {
   return function;
 }
 
+Formula Base::formula(std::string_view id) const {
+  const hdf5::Reader root = open_concept(*this, id, "formula");
+  return {root.attribute_strings("parameters"), root.text("expression")};
+}
+
 std::vector<double> Base::list_of_reals(std::string_view id) const {
   return open_concept(*this, id, "list_of_reals").read<double>("values");
 }

@@ -30,6 +30,7 @@ class Base {
   Load load(std::string_view id) const;
   Contact contact(std::string_view id) const;
   Function function(std::string_view id) const;
+  Formula formula(std::string_view id) const;
   std::vector<double> list_of_reals(std::string_view id) const;
   TimeSteps time_steps(std::string_view id) const;  ///< of a time_steps or a list_of_reals
   Result result(std::string_view id) const;

@@ -88,6 +88,12 @@ struct Function {
   double operator()(double at, std::string_view label) const;
 };
 
+/// A Python expression, which only the launcher evaluates.
+struct Formula {
+  std::vector<std::string> parameters;
+  std::string expression;
+};
+
 struct TimeSteps {
   std::vector<double> values;
   bool cut = false;     ///< ACTION='DECOUPE'

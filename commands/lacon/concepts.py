@@ -142,6 +142,10 @@ class Function(Concept):
         """The value at x, a number or an array. @throws AsterError outside its points where they are not prolonged"""
         return self.points().value(x, self.label or self.id)
 
+    def on_arrays(self, x):
+        """The values at an array of points."""
+        return self.points().value(x, self.label or self.id)
+
     def Absc(self):
         return list(self.points().x)
 
@@ -174,6 +178,17 @@ class Formula(Concept):
         if len(values) > len(expression.parameters) or set(point) != set(expression.parameters):
             raise TypeError(f"{self.label or self.id} takes the parameters {', '.join(expression.parameters)}")
         return expression.value(point, self.label or self.id)
+
+    def on_arrays(self, *columns):
+        """The values at points given by an array, or one value for all, of each parameter in their order."""
+        import numpy
+
+        columns = numpy.broadcast_arrays(*map(numpy.asarray, columns))
+        expression = self.expression()
+        if len(columns) != len(expression.parameters):
+            raise TypeError(f"{self.label or self.id} takes the parameters {', '.join(expression.parameters)}")
+        flat = dict(zip(expression.parameters, (c.ravel() for c in columns)))
+        return expression.values_at(flat, columns[0].size, self.label or self.id).reshape(columns[0].shape)
 
     def getVariables(self):
         return list(self.expression().parameters)

@@ -4,7 +4,9 @@ import json
 import os
 import pathlib
 import signal
+import socket
 import sys
+import threading
 import time
 
 from . import concepts, hdf5
@@ -61,19 +63,38 @@ def run(program, made, study):
     sys.stderr.flush()
     start = time.perf_counter()
     quiet = subprocess.PIPE if study.ignored_alarms else None
-    process = subprocess.Popen([executable, order_file, "--status", status_file], env=environment, stderr=quiet, stdin=subprocess.DEVNULL,
-                               pass_fds=(study.base.lock,))  # an operator that outlives the launcher still holds the base
-    try:
-        hdf5.h5py()  # imported while the operator works: checks, functions and FIN need it later
-        if quiet:
-            _forward(process.stderr, study.ignored_alarms)
-        process.wait()
-    except BaseException:
-        process.kill()
-        process.wait()
-        raise
+    ours, theirs = socket.socketpair()  # for formulae
+    environment["LACON_FORMULAS"] = str(theirs.fileno())
+    with ours:
+        with theirs:  # an operator that outlives the launcher still holds the base
+            process = subprocess.Popen([executable, order_file, "--status", status_file], env=environment, stderr=quiet,
+                                       stdin=subprocess.DEVNULL, pass_fds=(study.base.lock, theirs.fileno()))
+        try:
+            hdf5.h5py()  # imported while the operator works: checks, functions and FIN need it later
+            forward = threading.Thread(target=_forward, args=(process.stderr, study.ignored_alarms), daemon=True) if quiet else None
+            if forward:
+                forward.start()
+            with ours.makefile("rwb") as stream:
+                _serve_formulas(stream, study.base)
+            process.wait()
+            if forward:
+                forward.join()
+        except BaseException:
+            process.kill()
+            process.wait()
+            raise
     seconds = time.perf_counter() - start
     return Outcome(process.returncode, *_read_status(status_file, f"{made['command']}, {made['source']}"), seconds)
+
+
+def _serve_formulas(stream, base):
+    """Evaluate formulae for the operator as long as it runs."""
+    from . import formulas
+
+    try:
+        formulas.serve(stream, base)
+    except ConnectionError:
+        pass  # the operator has died: its exit status says so
 
 
 def _read_status(path, where):

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "lacon/catalog/messages.hpp"
@@ -29,10 +30,10 @@ void find_dofs(StaticProblem& problem) {
 TimedLoad read_load(const StaticProblem& problem, const Base& base, const Keywords& excit) {
   const std::string id = excit.concept_id("CHARGE");
   const Load load = base.load(id);
-  TimedLoad timed{.label = base.label(id), .force = {}, .dofs = {}, .values = {}, .function = {}, .function_label = {}};
+  TimedLoad timed{.label = base.label(id), .force = {}, .dofs = {}, .values = {}, .function = {}};
   if (const auto function = excit.optional_concept("FONC_MULT")) {
-    timed.function = base.function(*function);
-    timed.function_label = base.label(*function);
+    timed.function.emplace(base, *function);
+    timed.function->check_parameters(std::array{std::string_view("INST")}, excit.path("FONC_MULT"));
   }
   for (const ImposedDof& imposed : load.imposed) {
     const auto at = std::find(problem.components.begin(), problem.components.end(), imposed.component);

@@ -8,6 +8,7 @@
 #include "lacon/assembly/element_sets.hpp"
 #include "lacon/assembly/numbering.hpp"
 #include "lacon/elements/registry.hpp"
+#include "lacon/operators/program/study_function.hpp"
 #include "lacon/structures/base.hpp"
 
 namespace lacon {
@@ -18,10 +19,9 @@ struct TimedLoad {
   std::vector<double> force;       ///< (n_nodes, dimension) at multiplier 1, empty where it is zero
   std::vector<std::int64_t> dofs;  ///< imposed displacements: node * dimension + component
   std::vector<double> values;      ///< of `dofs` at multiplier 1
-  std::optional<Function> function;
-  std::string function_label;
+  std::optional<StudyFunction> function;
 
-  double multiplier(double instant) const { return function ? (*function)(instant, function_label) : 1.0; }
+  double multiplier(double instant) const { return function ? function->value("INST", instant) : 1.0; }
 };
 
 struct StaticProblem {
