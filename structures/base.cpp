@@ -439,6 +439,15 @@ TimeSteps Base::time_steps(std::string_view id) const {
           .smallest = root.real("smallest")};
 }
 
+// ---------------------------------------------------------------------------------------------- table
+
+Table Base::table(std::string_view id) const { return read_table(open_concept(*this, id, "table")); }
+
+void Base::store(const Table& table) const {
+  store_concept(*this, *order_, concept_file(*this, *order_), "table", {},
+                [&](const hdf5::Group& root) { write_table(root, table); });
+}
+
 // ---------------------------------------------------------------------------------------------- result
 
 Result Base::result(std::string_view id) const {
@@ -462,6 +471,9 @@ Result Base::result(std::string_view id) const {
   }
   const hdf5::Group parameters = root.open("parameters");
   for (const std::string& name : parameters.children()) result.parameters[name] = parameters.read<double>(name);
+  if (root.has("tables"))
+    for (const std::string& name : root.open("tables").children())
+      result.tables[name] = read_table(root.open("tables/" + name));
   return result;
 }
 
@@ -497,6 +509,7 @@ void Base::store(const Result& result) const {
     }
     const hdf5::Group parameters = root.create("parameters");
     for (const auto& [name, values] : result.parameters) parameters.write(name, values);
+    for (const auto& [name, table] : result.tables) write_table(root.create("tables/" + name), table);
   });
 }
 

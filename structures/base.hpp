@@ -9,6 +9,7 @@
 #include "lacon/structures/field.hpp"
 #include "lacon/structures/mesh.hpp"
 #include "lacon/structures/order.hpp"
+#include "lacon/structures/table.hpp"
 
 namespace lacon {
 
@@ -33,6 +34,7 @@ class Base {
   Formula formula(std::string_view id) const;
   std::vector<double> list_of_reals(std::string_view id) const;
   TimeSteps time_steps(std::string_view id) const;  ///< of a time_steps or a list_of_reals
+  Table table(std::string_view id) const;
   Result result(std::string_view id) const;
 
   /// The field of a result at an order; throws RESULT_1 where it has none.
@@ -44,6 +46,7 @@ class Base {
   void store(const MaterialField& field) const;
   void store(const Load& load) const;
   void store(const Contact& contact) const;
+  void store(const Table& table) const;
   void store(const Result& result) const;
 
   /// Store a field file of the order's result and enter it in the index, which store(result) writes last.

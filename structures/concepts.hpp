@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "lacon/structures/mesh.hpp"
+#include "lacon/structures/table.hpp"
 
 namespace lacon {
 
@@ -119,6 +120,7 @@ struct Result {
   std::map<std::string, std::map<std::int64_t, std::string>> fields;
   /// name -> one value for each of `orders`
   std::map<std::string, std::vector<double>> parameters;
+  std::map<std::string, Table> tables;  ///< "OBSERVATION"
 };
 
 }  // namespace lacon

@@ -1,4 +1,4 @@
-"""TEST_RESU: values of results and meshes against references.
+"""TEST_RESU, TEST_TABLE: values of results, meshes and tables against references.
 
 Every check has up to two judgements: against VALE_REFE, the reference, within PRECISION, and against VALE_CALC, another program's
 digits, within TOLE_MACHINE. A missed reference is NOOK; a missed VALE_CALC alone is DIFF, or NOOK with --checks all.
@@ -59,8 +59,16 @@ class Judgement:
                 "judged": self.judged, "met": self.met}
 
 
+class TextJudgement(Judgement):
+    """A text against a text."""
+
+    def __init__(self, value, target, tolerance, criterion):
+        super().__init__(0 if value.strip() == target.strip() else 1, 0, tolerance, criterion)
+        self.target = target
+
+
 def _finite(x):
-    return x if isinstance(x, (int, float)) and math.isfinite(x) else str(x)
+    return x if isinstance(x, (int, str)) or math.isfinite(x) else str(x)
 
 
 def judge_calculated(value, target, tolerance, criterion, magnitude=None):
@@ -91,9 +99,7 @@ def _mesh_check(call, test):
     value = {"NB_MAILLE": mesh.getNumberOfCells, "NB_NOEUD": mesh.getNumberOfNodes,
              "NB_GROUP_MA": lambda: len(mesh.group_names("cells")), "NB_GROUP_NO": lambda: len(mesh.group_names("nodes"))}[test["CARA"]]()
     check = Check(call.where, mesh.label, "", test["CARA"], "", None, test.get("LEGENDE", ""), value)
-    reference = Judgement(value, test["VALE_REFE_I"], 0, "ABSOLU") if "VALE_REFE_I" in test else None
-    check.judge(Judgement(value, test["VALE_CALC_I"], 0, "ABSOLU"), reference, test.get("REFERENCE", ""), call.study.strict_checks)
-    return check
+    return conclude(call, check, test)
 
 
 def _result_check(call, test, path):
@@ -106,15 +112,36 @@ def _result_check(call, test, path):
     if test["NOM_CMP"] not in field.components:
         call.fail("TEST_RESU_4", f"{path}/NOM_CMP", component=test["NOM_CMP"], field=test["NOM_CHAM"], known=", ".join(field.components))
     values, place = _select(call, test, path, field)
-    value = _reduce(values, test.get("TYPE_TEST"))
-    if test["VALE_ABS"] == "OUI":
-        value = abs(value)
+    value = reduce(values, test.get("TYPE_TEST"))
+    return conclude(call, Check(call.where, result.label, test["NOM_CHAM"], test["NOM_CMP"], place, instant, test.get("LEGENDE", ""), value), test)
+
+
+def conclude(call, check, test):
+    """Judge the value of a check as its keywords say: VALE_ABS, then VALE_CALC and VALE_REFE, for integers and texts VALE_CALC_I, VALE_CALC_K.
+
+    Of several references the nearest one counts. @return the check
+    """
+    if test.get("VALE_ABS") == "OUI":
+        check.value = abs(check.value)
+    suffix = next(s for s in ("", "_I", "_K") if "VALE_CALC" + s in test)
     criterion, tolerance = test["CRITERE"][0], test["TOLE_MACHINE"][0]
-    check = Check(call.where, result.label, test["NOM_CHAM"], test["NOM_CMP"], place, instant, test.get("LEGENDE", ""), value)
-    calculated = judge_calculated(value, test["VALE_CALC"], tolerance, criterion, test.get("ORDRE_GRANDEUR"))
-    reference = Judgement(value, test["VALE_REFE"], test["PRECISION"], criterion) if "VALE_REFE" in test else None
+    targets = {name: _nearest_target(check.value, test[name + suffix]) for name in ("VALE_CALC", "VALE_REFE") if name + suffix in test}
+    if suffix == "":
+        calculated = judge_calculated(check.value, targets["VALE_CALC"], tolerance, criterion, test.get("ORDRE_GRANDEUR"))
+        reference = Judgement(check.value, targets["VALE_REFE"], test["PRECISION"], criterion) if "VALE_REFE" in targets else None
+    else:
+        kind = Judgement if suffix == "_I" else TextJudgement
+        calculated, reference = (kind(check.value, targets[n], 0, "ABSOLU") if n in targets else None for n in ("VALE_CALC", "VALE_REFE"))
     check.judge(calculated, reference, test.get("REFERENCE", ""), call.study.strict_checks)
     return check
+
+
+def _nearest_target(value, targets):
+    if not isinstance(targets, list):
+        return targets
+    if isinstance(value, str):
+        return value if value in targets else targets[0]
+    return min(targets, key=lambda target: abs(value - target))
 
 
 def _order(call, test, path):
@@ -206,7 +233,7 @@ def _nodes_of(mesh, cells):
     return numpy.concatenate(parts) if parts else nodes[:0]
 
 
-def _reduce(values, kind):
+def reduce(values, kind):
     import numpy
 
     if kind is None:
@@ -237,7 +264,7 @@ def line(check):
 
 
 def _number(value):
-    return str(value) if isinstance(value, int) else f"{value:.14g}"
+    return f"{value:.14g}" if isinstance(value, float) else str(value)
 
 
 def summary(checks):

@@ -1,6 +1,5 @@
 """The commands as Python callables: check the keywords, then order the operator or do the work here."""
 
-import os
 import time
 
 from . import catalog, checker, concepts, labels, orders, study
@@ -34,7 +33,7 @@ class Call:
 
 def _implementations():
     """command -> function(call) of those that Python does itself"""
-    from . import checks, formulas, functions, lists, materials
+    from . import checks, formulas, functions, lists, materials, table_commands
 
     return {
         "DEBUT": lambda call: call.study.start(call.keywords, call.where, resume=False),
@@ -46,6 +45,10 @@ def _implementations():
         "FORMULE": formulas.formule,
         "DEFI_MATERIAU": materials.defi_materiau,
         "TEST_RESU": checks.test_resu,
+        "CREA_TABLE": table_commands.crea_table,
+        "IMPR_TABLE": table_commands.impr_table,
+        "TEST_TABLE": table_commands.test_table,
+        "RECU_TABLE": table_commands.recu_table,
         "DETRUIRE": _destroy,
     }
 
@@ -90,7 +93,7 @@ class Command:
         if problems:
             raise AsterError(problems)
         label = reused.label if reused else labels.label(frame)
-        if self.name != "TEST_RESU":  # its checks print a line each
+        if not self.name.startswith("TEST_"):  # its checks print a line each
             run.progress(f"{where}: {label + ' = ' if label else ''}{self.name}")
         if "operator" in row:
             result, outcome = self._order(run, row, keywords, where, label, reused)
@@ -162,9 +165,7 @@ class Command:
                 units[number] = run.input_unit(number, place)
             else:
                 suffix = {"MED": ".med", "VTU": ".pvd", "RESULTAT": ".resu"}.get(keywords.get("FORMAT"), "")
-                if number not in run.units and number not in run.written_units:
-                    run.inform("COMMAND_10", place, unit=number, file=os.path.relpath(run.output_unit(number, suffix, place)))
-                units[number] = run.output_unit(number, suffix, place)
+                units[number] = run.announced_output(number, suffix, place)
         return units
 
 

@@ -17,6 +17,9 @@ class Concept:
     def __repr__(self):
         return f"<{self.type} {self.label or self.id}>"
 
+    def __bool__(self):
+        return True  # a table without rows too
+
     def getName(self):
         """The variable it was assigned to."""
         return self.label
@@ -245,7 +248,54 @@ class Result(Concept):
         return self.field(name, index)
 
 
-_types = {c.type: c for c in (Mesh, Model, Material, MaterialField, Load, Contact, ListOfReals, TimeSteps, Function, Formula, Result)}
+class Table(Concept):
+    type = "table"
+
+    def EXTR_TABLE(self, para=None):
+        """Its content, a tables.Table that may be changed; of the columns `para` only, where they are given."""
+        from .tables import read_table
+
+        with self.open() as file:
+            table = read_table(file)
+        table.nom = self.label
+        return table if para is None else table[[para] if isinstance(para, str) else para]
+
+    def __getitem__(self, key):
+        """The cell (column, row), rows counted from 1; None where it is missing."""
+        return self.EXTR_TABLE().cell(*key)
+
+    def __len__(self):
+        return len(self.EXTR_TABLE())
+
+    def getNumberOfLines(self):
+        return len(self)
+
+    def getParameters(self):
+        return self.EXTR_TABLE().para
+
+    def getColumnType(self, name):
+        return self.EXTR_TABLE().kind(name)
+
+    def getValues(self, name):
+        """(numbers of the rows that have the cell, from 1; their values)"""
+        column = enumerate(self.EXTR_TABLE()[name], 1)
+        return tuple(map(list, zip(*((i, v) for i, v in column if v is not None)))) or ([], [])
+
+    def get_nrow(self):
+        return len(self)
+
+    get_nom_para = getParameters
+
+    def TITRE(self):
+        return self.EXTR_TABLE().titr
+
+    def values(self):
+        """column -> list of its cells"""
+        return self.EXTR_TABLE().values()
+
+
+_types = {c.type: c for c in (Mesh, Model, Material, MaterialField, Load, Contact, ListOfReals, TimeSteps, Function, Formula, Result,
+                           Table)}
 
 
 def type_of(identifier):

@@ -141,6 +141,30 @@ class Study:
             fail("COMMAND_12", where, unit=number, file=path)
         return path
 
+    def announced_output(self, number, suffix, where):
+        """As output_unit(); says where the file goes when nobody gave one."""
+        if number in self.written_units:
+            return self.written_units[number]
+        path = self.output_unit(number, suffix, where)
+        if number not in self.units:
+            self.inform("COMMAND_10", where, unit=number, file=os.path.relpath(path))
+        return path
+
+    def write_text(self, number, suffix, where, text):
+        """Write a unit, or add to what this run has written there."""
+        path = self.announced_output(number, suffix, where)
+        try:
+            if number in self.written_units:
+                with open(path, "a", encoding="utf-8") as file:
+                    file.write(text)
+            else:
+                with open(path + ".partial", "w", encoding="utf-8") as file:
+                    file.write(text)
+                os.replace(path + ".partial", path)
+        except OSError:
+            fail("COMMAND_8", where, unit=number, file=path)
+        self.written_units[number] = path
+
     def protect(self, path):
         """Results never replace this file: it is a datum of the study."""
         self.sources.add(os.path.realpath(path))

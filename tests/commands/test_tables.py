@@ -1,0 +1,215 @@
+"""Tables: what the Python class does, how they are stored, and the commands that make, print and check them."""
+
+import io
+import json
+import sys
+import unittest
+
+import h5py
+
+sys.path.insert(0, __file__.rpartition("/")[0] or ".")
+from support import STUDY, LauncherTest  # noqa: E402
+
+from lacon.printing import columns, crossed, number_format  # noqa: E402
+from lacon.tables import Table, read_table, type_of, write_table  # noqa: E402
+
+
+def sample():
+    return Table.of_columns({"N": ("I", [1, 2, 3, 4]), "X": ("R", [0.5, None, -2.0, 0.5]), "S": ("K8", ["A", "B", "A", None])}, "sample")
+
+
+class Class(unittest.TestCase):
+    def test_shape(self):
+        table = sample()
+        self.assertEqual(len(table), 4)
+        self.assertEqual(table.para, ["N", "X", "S"])
+        self.assertEqual(table.type, ["I", "R", "K8"])
+        self.assertEqual(table.values()["X"], [0.5, None, -2.0, 0.5])
+        self.assertEqual([row.get("S") for row in table], ["A", "B", "A", None])
+
+    def test_cells_are_counted_from_one(self):
+        table = sample()
+        self.assertEqual((table["X", 1], table["X", 2], table["N", 4]), (0.5, None, 4))
+        for number in (0, 5, -1):
+            with self.assertRaises(IndexError):
+                table["X", number]
+        with self.assertRaisesRegex(KeyError, "no column Y"):
+            table["Y", 1]
+
+    def test_comparisons(self):
+        table = sample()
+        for found, rows in ((table.X == 0.5, [1, 4]), (table.X != 0.5, [3]), (table.X > 0, [1, 4]), (table.N <= 2, [1, 2]),
+                            (table.S == "A", [1, 3]), (table.S == ["A", "B"], [1, 2, 3]), (table.X.VIDE(), [2]),
+                            (table.X.NON_VIDE(), [1, 3, 4]), (table.X.MAXI(), [1, 4]), (table.X.MINI(), [3]),
+                            (table.X.MAXI_ABS(), [3]), (table.X.MINI_ABS(), [1, 4]), (table.S.REGEXP("^B"), [2]),
+                            ((table.X == 0.5) & (table.S == "A"), [1]), ((table.X < 0) | (table.N == 2), [3, 2])):
+            self.assertEqual(found["N"].values(), rows)
+            self.assertEqual(found.para, table.para)
+
+    def test_sorting_puts_missing_cells_last(self):
+        table = sample()
+        table.sort(["X", "N"], "DECROISSANT")
+        self.assertEqual(table.values()["N"], [4, 1, 3, 2])
+        table.sort("X")
+        self.assertEqual(table.values()["N"], [3, 4, 1, 2])
+
+    def test_changes(self):
+        table = sample()
+        table.append({"N": 5, "NEW": 1.5})
+        self.assertEqual(table.values()["NEW"], [None] * 4 + [1.5])
+        table.fromfunction("TWICE", lambda x: 2 * x, "X")
+        self.assertEqual(table.values()["TWICE"], [1.0, None, -4.0, 1.0, None])
+        table.Renomme("TWICE", "D")
+        del table["S"]
+        self.assertEqual(table.para, ["N", "X", "NEW", "D"])
+        self.assertEqual(table[["N", "D"]].para, ["N", "D"])
+        self.assertEqual(table.Array("N", "X").tolist(), [[1, 0.5], [3, -2], [4, 0.5]])
+
+    def test_types(self):
+        self.assertEqual([type_of(v) for v in ([1, None], [1, 2.0], ["a"], ["a" * 9], ["a" * 80], [], [True])],
+                         ["I", "R", "K8", "K16", "K80", "R", "R"])
+
+    def test_stored_reads_back_the_same(self):
+        for table in (sample(), Table.of_columns({"A": ("R", []), "B": ("K8", [])}), Table()):
+            with h5py.File(io.BytesIO(), "w") as file:
+                write_table(file, table)
+                read = read_table(file)
+            self.assertEqual((read.rows, read.para, read.type, read.titr), (table.rows, table.para, table.type, table.titr))
+
+
+class Printing(unittest.TestCase):
+    def test_columns(self):
+        self.assertEqual(columns(sample()).split("\n"), [
+            "#sample", " N            X S", " 1  5.00000E-01 A", " 2            - B", " 3 -2.00000E+00 A", " 4  5.00000E-01 -"])
+
+    def test_formats(self):
+        self.assertEqual(format(1.5, number_format("1PE16.9")), " 1.500000000E+00")
+        self.assertEqual(format(1.5, number_format("F8.3")), "   1.500")
+        with self.assertRaises(ValueError):
+            number_format("%12.5e")
+
+    def test_crossed(self):
+        table = Table.of_columns({"T": ("R", [0.0, 0.0, 1.0, 1.0]), "P": ("K8", ["A", "B", "A", "B"]), "V": ("I", [1, 2, 3, 4])})
+        self.assertEqual([line.split() for line in crossed(table, ["T", "P", "V"], "3.1F").split("\n")[1:]],
+                         [["T", "A", "B"], ["0.0", "1", "2"], ["1.0", "3", "4"]])
+
+
+TABLE = """
+T = CREA_TABLE(LISTE=(_F(LISTE_R=(1.5, 2.5, -3.0), PARA='V'), _F(LISTE_I=(1, 2, 3), PARA='N'),
+                      _F(LISTE_K=('A', 'B'), PARA='S', NUME_LIGN=(1, 3))), TITRE=('first', 'second'))
+"""
+
+
+class Commands(LauncherTest):
+    def study(self, text, *options, table=TABLE):
+        return self.run_study(f"DEBUT()\n{table}{text}\nFIN()\n", *options)
+
+    def test_created(self):
+        self.ok(self.study("""
+assert len(T) == 3 and T['V', 3] == -3.0 and T['S', 2] is None and T['S', 3] == 'B' and T['N', 1] == 1
+t = T.EXTR_TABLE()
+assert t.type == ['R', 'I', 'K8'] and t.titr == 'first\\nsecond'
+U = CREA_TABLE(**t.dict_CREA_TABLE())
+assert U.EXTR_TABLE().rows == t.rows
+f = DEFI_FONCTION(NOM_PARA='INST', NOM_RESU='P', VALE=(0, 1, 2, 5))
+F = CREA_TABLE(FONCTION=_F(FONCTION=f))
+assert F.values() == {'INST': [0, 2], 'P': [1, 5]}
+G = CREA_TABLE(FONCTION=_F(FONCTION=f, PARA=('T', 'U')))
+assert G.getParameters() == ['T', 'U'] and G.getColumnType('T') == 'R' and G.getValues('U') == ([1, 2], [1, 5])
+"""))
+
+    def test_survives_the_run(self):
+        self.ok(self.study(""))
+        self.ok(self.run_study("POURSUITE()\nassert T['V', 2] == 2.5 and T\nFIN()\n"))
+
+    def test_creation_refused(self):
+        for keywords, word in (("LISTE=(_F(PARA='A', LISTE_R=(1, 2)), _F(PARA='B', LISTE_R=1))", "TABLE_5"),
+                               ("LISTE=(_F(PARA='A', LISTE_R=(1, 2), NUME_LIGN=1))", "TABLE_6"),
+                               ("LISTE=(_F(PARA='A', LISTE_R=1), _F(PARA='A', LISTE_R=2))", "TABLE_7"),
+                               ("LISTE=_F(PARA='A', LISTE_K='123456789', TYPE_K='K8')", "TABLE_8"),
+                               ("LISTE=_F(PARA='A', LISTE_R=1, LISTE_I=1)", "KEYWORD_6"),
+                               ("LISTE=_F(PARA='A', LISTE_R=1), TYPE_TABLE='TABLE_FONCTION'", "KEYWORD_13")):
+            with self.subTest(keywords):
+                self.refused(self.study(f"U = CREA_TABLE({keywords})"), word)
+
+    def test_printed(self):
+        self.ok(self.study("""
+IMPR_TABLE(TABLE=T, UNITE=30, NOM_PARA=('N', 'V'), FORMAT_R='F6.2', SEPARATEUR=';', FILTRE=_F(NOM_PARA='V', CRIT_COMP='GT', VALE=0.),
+           TRI=_F(NOM_PARA='N', ORDRE='DECROISSANT'), TITRE='mine')
+IMPR_TABLE(TABLE=T, UNITE=30, FORMAT='ASTER')
+IMPR_TABLE(TABLE=T, UNITE=31, FORMAT='TABLEAU_CROISE', NOM_PARA=('N', 'S', 'V'))
+IMPR_TABLE(TABLE=T, UNITE=32, PAGINATION='S', NOM_PARA=('S', 'N'), COMMENTAIRE='!')
+""", "--unit", "30=out.txt", "--unit", "31=cross.txt", "--unit", "32=pages.txt"))
+        text = (self.work / "out.txt").read_text()
+        self.assertIn("#mine\n;N;     V\n;2;  2.50\n;1;  1.50\n", text)
+        self.assertIn("#DEBUT_TABLE\n#TITRE first\n#TITRE second\n", text)
+        self.assertTrue(text.endswith("#FIN_TABLE\n"))
+        self.assertIn("A", (self.work / "cross.txt").read_text())
+        pages = (self.work / "pages.txt").read_text()
+        self.assertEqual(pages.count("!LACON CONCEPT T"), 3)
+        self.assertNotIn("#", pages)
+
+    def test_a_new_run_replaces_what_an_older_one_printed(self):
+        for _ in range(2):
+            self.ok(self.study("IMPR_TABLE(TABLE=T, UNITE=30)\nIMPR_TABLE(TABLE=T, UNITE=30)", "--unit", "30=out.txt"))
+        self.assertEqual((self.work / "out.txt").read_text().count("LACON CONCEPT T"), 2)
+
+    def test_what_the_study_reads_is_not_replaced(self):
+        self.refused(self.study("M = LIRE_MAILLAGE(UNITE=20)\nIMPR_TABLE(TABLE=T, UNITE=20)"), "COMMAND_12")
+        self.assertEqual((self.work / "mesh.med").read_bytes(), b"not read by the stand-in")
+
+    def test_printing_refused(self):
+        for keywords, word in (("FORMAT_R='12'", "TABLE_11"), ("NOM_PARA='Q'", "TABLE_1"), ("FILTRE=_F(NOM_PARA='Q', VALE=1.)", "TABLE_1"),
+                               ("FILTRE=_F(NOM_PARA='S', VALE=1.)", "TABLE_2"), ("FILTRE=_F(NOM_PARA='V', CRIT_COMP='LT', VALE=(1., 2.))", "TABLE_3"),
+                               ("FILTRE=_F(NOM_PARA='S', CRIT_COMP='MAXI')", "TABLE_4"), ("FORMAT='TABLEAU_CROISE', NOM_PARA=('N', 'S')", "TABLE_12"),
+                               ("FORMAT='AGRAF'", "KEYWORD_13"), ("FILTRE=_F(NOM_PARA='N', CRIT_COMP='VIDE', VALE=1.)", "KEYWORD_10")):
+            with self.subTest(keywords):
+                self.refused(self.study(f"IMPR_TABLE(TABLE=T, UNITE=30, {keywords})"), word)
+                self.assertFalse((self.work / "study.30.table").exists())
+
+    def test_checked(self):
+        lines = [("NOM_PARA='V', TYPE_TEST='MAX', VALE_CALC=2.5", 2.5), ("NOM_PARA='V', TYPE_TEST='SOMM_ABS', VALE_CALC=7.0", 7.0),
+                 ("NOM_PARA='V', FILTRE=_F(NOM_PARA='S', VALE_K='B'), VALE_CALC=-3.0, VALE_ABS='NON'", -3.0),
+                 ("NOM_PARA='V', FILTRE=_F(NOM_PARA='S', VALE_K='B'), VALE_CALC=3.0, VALE_ABS='OUI'", 3.0),
+                 ("NOM_PARA='V', FILTRE=_F(NOM_PARA='V', VALE=2.5001), VALE_CALC=2.5", 2.5),
+                 ("NOM_PARA='N', FILTRE=_F(NOM_PARA='V', CRIT_COMP='MINI'), VALE_CALC_I=3", 3),
+                 ("NOM_PARA='N', FILTRE=(_F(NOM_PARA='N', CRIT_COMP='NE', VALE_I=(1, 3)), _F(NOM_PARA='S', CRIT_COMP='VIDE')), VALE_CALC_I=2", 2),
+                 ("NOM_PARA='S', FILTRE=_F(NOM_PARA='N', VALE_I=1), VALE_CALC_K='A', VALE_REFE_K='A', REFERENCE='ANALYTIQUE'", "A"),
+                 ("NOM_PARA='V', FILTRE=_F(NOM_PARA='N', VALE_I=1), VALE_CALC=(9.0, 1.5)", 1.5)]
+        run = self.ok(self.study("".join(f"TEST_TABLE(TABLE=T, {line})\n" for line, _ in lines), "--json", "checks.json"))
+        self.assertIn(f"{len(lines)} checks: {len(lines)} OK", run.out)
+        made = json.loads((self.work / "checks.json").read_text())["checks"]
+        self.assertEqual([c["value"] for c in made], [value for _, value in lines])
+        self.assertEqual([c["label"] for c in made], ["T"] * len(lines))
+
+    def test_missed(self):
+        run = self.study("""
+TEST_TABLE(TABLE=T, NOM_PARA='V', TYPE_TEST='MAX', VALE_CALC=2.6)
+TEST_TABLE(TABLE=T, NOM_PARA='V', TYPE_TEST='MAX', VALE_CALC=2.5, VALE_REFE=2.6, REFERENCE='ANALYTIQUE')
+TEST_TABLE(TABLE=T, NOM_PARA='S', FILTRE=_F(NOM_PARA='N', VALE_I=1), VALE_CALC_K='B')
+TEST_TABLE(TABLE=T, NOM_PARA='N', FILTRE=_F(NOM_PARA='N', VALE_I=1), VALE_CALC_I=2)
+""")
+        self.assertEqual((run.status, run.last), (5, "--- DIAGNOSTIC JOB : NOOK_TEST_RESU"))
+        self.assertIn("4 checks: 0 OK, 1 NOOK, 3 DIFF", run.out)
+
+    def test_checks_refused(self):
+        for keywords, word in (("NOM_PARA='V', VALE_CALC=1.5", "TABLE_9"), ("NOM_PARA='Q', VALE_CALC=1.5", "TABLE_1"),
+                               ("NOM_PARA='V', FILTRE=_F(NOM_PARA='N', VALE_I=9), VALE_CALC=1.5", "TABLE_9"),
+                               ("NOM_PARA='V', VALE_CALC_I=1, TYPE_TEST='MAX'", "TABLE_2"), ("NOM_PARA='S', VALE_CALC=1.", "TABLE_2"),
+                               ("NOM_PARA='V'", "KEYWORD_7"), ("NOM_PARA='V', VALE_CALC=1., VALE_REFE=1.", "KEYWORD_10"),
+                               ("NOM_PARA='V', VALE_CALC=1., REFERENCE='ANALYTIQUE'", "KEYWORD_2")):
+            with self.subTest(keywords):
+                self.refused(self.study(f"TEST_TABLE(TABLE=T, {keywords})"), word)
+
+    def test_parameters_of_a_result(self):
+        self.ok(self.run_study(STUDY + """
+P = RECU_TABLE(CO=R, NOM_PARA='INST')
+assert P.values() == {'NUME_ORDRE': [0, 1, 2], 'INST': [0.0, 0.5, 1.0]}
+FIN()
+"""))
+        self.refused(self.run_study("POURSUITE()\nP = RECU_TABLE(CO=R, NOM_PARA='FREQ')\n"), "TABLE_13")
+        self.refused(self.run_study("POURSUITE()\nP = RECU_TABLE(CO=R, NOM_TABLE='OBSERVATION')\n"), "TABLE_10")
+
+
+if __name__ == "__main__":
+    unittest.main()
