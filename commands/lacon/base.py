@@ -120,6 +120,10 @@ class Base:
             item = self._objects[identifier] = concepts.make(self, identifier, label)
         return item
 
+    def enter(self, item):
+        """Make `item` the object of its concept."""
+        self._objects[item.id] = item
+
     def live_objects(self):
         """(id, object) of every concept that Python still holds, in whatever variable."""
         return list(self._objects.items())

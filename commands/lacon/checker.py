@@ -134,6 +134,10 @@ class _Check:
 
     def value(self, path, row, item):
         """One value of a simple keyword, converted."""
+        if row.get("makes"):
+            if not isinstance(item, CO):
+                self.problem("KEYWORD_16" if isinstance(item, Concept) else "KEYWORD_3", path, expected="CO('name')", found=_show(item))
+            return item
         converted = _convert(row["type"], item)
         if converted is None:
             self.problem("KEYWORD_3", path, expected=_expected(row["type"]), found=_show(item))

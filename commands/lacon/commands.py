@@ -92,11 +92,12 @@ class Command:
         reused = self._reuse(row, reuse, given, keywords, where, problems)
         if problems:
             raise AsterError(problems)
-        label = reused.label if reused else labels.label(frame)
+        named = next((keywords[k] for k, keyword in row.get("keyword", {}).items() if keyword.get("makes") and k in keywords), None)
+        label = reused.label if reused else named.name if named else labels.label(frame)
         if not self.name.startswith("TEST_"):  # its checks print a line each
             run.progress(f"{where}: {label + ' = ' if label else ''}{self.name}")
         if "operator" in row:
-            result, outcome = self._order(run, row, keywords, where, label, reused)
+            result, outcome = self._order(run, row, keywords, where, label, reused, named)
             run.timings.add(self.name, where, time.perf_counter() - started, outcome.seconds, outcome.phases)
             run.count_alarms(outcome.messages)
         else:
@@ -121,14 +122,15 @@ class Command:
             problems.append(message("COMMAND_9", place, keyword=holder))
         return reuse if isinstance(reuse, concepts.Concept) else None
 
-    def _order(self, run, row, keywords, where, label, reused):
-        """Have the operator run, and enter its result."""
+    def _order(self, run, row, keywords, where, label, reused, named=None):
+        """Have the operator run, and enter its result: under a new object, `reused`, or the CO object `named`."""
         units = self._units(run, row, keywords, where)
         written = {unit for unit in units if unit in run.written_units}
         result = None
         if "result" in row:
             identifier = reused.id if reused else run.base.new_id(row["result"])
             result = {"id": identifier, "label": label, "reuse": bool(reused)}
+            keywords = {k: {"concept": identifier} if named and v is named else v for k, v in keywords.items()}
         made = orders.order(self.name, run, keywords, where, result, units, written)
         copy = orders.keep_copy(run.base, identifier) if reused else None
         try:
@@ -152,6 +154,9 @@ class Command:
         run.written_units.update((k, units[k]) for k, keyword in _unit_numbers(row, keywords) if keyword["unit"] == "out")
         if not result:
             return None, outcome
+        if named:
+            named.become(run.base, identifier)
+            run.names.publish(label, named)
         item = reused or run.base.concept(identifier, label)
         _enter(run, label, item, where)
         return item, outcome

@@ -313,13 +313,21 @@ def known_type(identifier):
 
 
 class CO:
-    """A name given beforehand to a concept that a command will make."""
+    """A name given beforehand to a concept that a command will make: the object itself becomes that concept."""
 
     def __init__(self, name):
         self.name = str(name)
 
     def __repr__(self):
         return f"CO({self.name!r})"
+
+    def become(self, base, identifier):
+        """Be the concept `identifier` of a base from now on, wherever this object is held."""
+        kind, label = _types[type_of(identifier)], self.name
+        self.__dict__.clear()
+        self.__class__ = kind
+        self.__init__(base, identifier, label)
+        base.enter(self)
 
 
 def _text(value):

@@ -14,7 +14,7 @@ import re
 import sys
 import types
 
-from .concepts import Concept, known_type
+from .concepts import CO, Concept, known_type
 from .messages import message
 
 _atoms = (type(None), bool, int, str)
@@ -128,6 +128,8 @@ def _encode_import(value):
             return {"import": [module, name]}
     if isinstance(value, types.FunctionType):
         raise NotKept("it is a function of the command file, and functions are not saved")
+    if isinstance(value, CO):
+        raise NotKept(f"it is {value!r}, and no command has made its concept")
     if isinstance(value, type):
         raise NotKept("it is a class of the command file, and classes are not saved")
     raise NotKept(f"it is a {type(value).__name__}, and only concepts, numbers, strings, lists, tuples, dicts and arrays are saved")
@@ -186,6 +188,11 @@ class Names:
         missing = object()
         return {k: v for k, v in self.values.items()
                 if not k.startswith("__") and self.provided.get(k, missing) is not v}
+
+    def publish(self, name, concept):
+        """Make the name given with CO() a variable, where the command file has none of that name."""
+        if name.isidentifier():
+            self.values.setdefault(name, concept)
 
     def update_labels(self, base, pending=None):
         """Bring the registry's labels up to date; `pending` = (label, id) of a concept that is not assigned yet.

@@ -21,7 +21,7 @@ sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent))
 import stand_in_server  # noqa: E402
 
 OPERATORS = ("lire_maillage", "modi_maillage", "crea_maillage", "defi_group", "affe_modele", "affe_materiau", "affe_char_cine",
-             "affe_char_meca", "defi_contact", "stat_non_line", "calc_champ", "impr_resu")
+             "affe_char_meca", "defi_contact", "stat_non_line", "calc_champ", "impr_resu", "macr_adap_mail")
 
 #: a study up to a result, for tests that need one
 STUDY = """

@@ -220,7 +220,9 @@ class Completion(unittest.TestCase):
 def sample(row):
     """A value that one keyword accepts."""
     kind = row["type"].partition("|")[0]
-    if "into_from" in row:
+    if row.get("makes"):
+        one = concepts.CO("NAME")
+    elif "into_from" in row:
         one = catalog.lists[row["into_from"]]()[0]
     elif "into" in row:
         one = row["into"][0]
@@ -349,7 +351,7 @@ class Properties(unittest.TestCase):
 
     def test_rows_are_of_the_documented_shape(self):
         known = {"type", "status", "max", "min", "default", "into", "into_from", "elsewhere", "above", "at_least", "below", "at_most",
-                 "unique", "unit", "help", "keyword", "rule", "when"}
+                 "unique", "unit", "makes", "help", "keyword", "rule", "when"}
         types = {"real", "integer", "text", "group_ma", "group_no", "cell", "node", "factor", "concept", *concepts._types}
 
         def visit(path, row):

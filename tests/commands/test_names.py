@@ -52,6 +52,44 @@ class Labels(LauncherTest):
         self.assertIn(": DEFI_MATERIAU", run.out)
         self.assertEqual(set(self.registry()["labels"]), {"A"})
 
+    def test_a_name_given_with_co_becomes_the_concept(self):
+        run = self.ok(self.run_study(STUDY + """
+MA = [M0, None, None]
+kept = {}
+for i in range(2):
+    MA[i + 1] = CO('MA_%d' % (i + 1))
+    kept[i] = MA[i + 1]
+    MACR_ADAP_MAIL(ADAPTATION='RAFFINEMENT_UNIFORME', MAILLAGE_N=MA[i], MAILLAGE_NP1=MA[i + 1])
+    assert MA[i + 1] is kept[i] and MA[i + 1].getNumberOfNodes() == 6
+    C = CREA_MAILLAGE(MAILLAGE=MA[i + 1], LINE_QUAD=_F(TOUT='OUI'))
+MACR_ADAP_MAIL(ADAPTATION='RAFFINEMENT_UNIFORME', MAILLAGE_N=M0, MAILLAGE_NP1=CO('FINE'))
+assert FINE.getNumberOfNodes() == 6 and MA_2 is MA[2]
+DETRUIRE(NOM=FINE)
+FIN()
+"""))
+        self.assertIn("MA_1 = MACR_ADAP_MAIL", run.out)
+        labels = self.registry()["labels"]
+        self.assertTrue({"MA[1]", "MA[2]", "C"} <= set(labels) and "FINE" not in labels, labels)
+        order = self.last_order("MACR_ADAP_MAIL")
+        self.assertEqual(order["keywords"]["MAILLAGE_NP1"], {"concept": order["result"]["id"]})
+        self.ok(self.run_study("POURSUITE()\nassert MA[2].getNumberOfNodes() == 6 and MA_2 is MA[2] and kept[1] is MA[2]\nFIN()\n"))
+
+    def test_a_name_given_with_co_stays_one_when_the_command_fails(self):
+        self.ok(self.run_study(STUDY + """
+N = CO('N')
+try:
+    MACR_ADAP_MAIL(ADAPTATION='RAFFINEMENT_UNIFORME', MAILLAGE_N=M0, MAILLAGE_NP1=N)
+except AsterError:
+    assert isinstance(N, CO)
+FIN()
+""", behaviour={"macr_adap_mail": {"status": 2, "lazy": True}}))
+        self.refused(self.run_study("POURSUITE()\nprint(N)\n"), "STUDY_8", "CO('N')", "no command has made its concept")
+
+    def test_what_is_not_a_new_name_is_refused(self):
+        call = "MACR_ADAP_MAIL(ADAPTATION='RAFFINEMENT_UNIFORME', MAILLAGE_N={}, MAILLAGE_NP1={})"
+        for given, word in ((("M0", "M0"), "KEYWORD_16"), (("M0", "'N'"), "KEYWORD_3"), (("CO('N')", "CO('O')"), "has not been made")):
+            self.refused(self.run_study(STUDY + call.format(*given)), word)
+
     def test_two_names_of_one_concept(self):
         self.assertEqual(self.labels(f"A = {MATERIAL}\nB = A"), {"A": "material_1", "B": "material_1"})
 
