@@ -4,28 +4,63 @@
 
 #include <algorithm>
 #include <numeric>
+#include <set>
 
 #include "lacon/catalog/messages.hpp"
 #include "lacon/operators/crea_maillage/order_change.hpp"
 #include "lacon/operators/meshing/body.hpp"
+#include "lacon/operators/meshing/checks.hpp"
 #include "lacon/operators/meshing/cut.hpp"
+#include "lacon/operators/meshing/quality.hpp"
 
 namespace lacon {
 namespace {
 
-Mesh cut(const Mesh& mesh, const Keywords& factor) {
-  CutReport report;
-  const std::vector<std::string> groups = factor.texts("GROUP_MA_ESCL");
-  const std::string option = factor.text("DECOUPE_HEXA");
-  if (option != "PYRA" && option != "HEXA")
+LacCut cut_of(const Keywords& factor, std::int64_t info) {
+  LacCut cut{.groups = factor.texts("GROUP_MA_ESCL"),
+             .option = factor.text("DECOUPE_HEXA"),
+             .complete_node_groups = factor.yes("GROUP_NO_COMPLET"),
+             .details = info > 1,
+             .keyword = factor.path("GROUP_MA_ESCL")};
+  if (cut.option != "PYRA" && cut.option != "HEXA")
     fail("ORDER_4", {{"keyword", factor.path("DECOUPE_HEXA")}, {"expected", "PYRA or HEXA"}});
-  Mesh made = cut_lac(mesh, groups, option, factor.path("GROUP_MA_ESCL"), report);
-  for (const CutZone& zone : report.zones) {
-    if (zone.turned > 0) inform("DECOUPE_7", {{"count", std::to_string(zone.turned)}, {"group", zone.group}});
-    fmt::print("  zone {:<24} {:>8} macro-elements\n", zone.group, zone.patches);
+  return cut;
+}
+
+void print_counts(const Mesh& before, const Mesh& after) {
+  fmt::print("  nodes {:>8} -> {:>8}\n  cells {:>8} -> {:>8}\n", before.n_nodes(), after.n_nodes(), before.n_cells(),
+             after.n_cells());
+}
+
+/// Below it a cell is named as badly shaped: METHOD.md 1.6 on cells with several slave faces.
+constexpr double poor_quality = 0.1;
+
+/// What the cut does to the shape of cells: a line, with `details` quantiles and the worst cells too.
+void print_quality(const Mesh& before, const CutReport& report, const Mesh& after, bool details) {
+  std::set<std::int32_t> bodies;
+  for (const CutZone& zone : report.zones) bodies.insert(zone.bodies.begin(), zone.bodies.end());
+  const Quality was = quality_of(before, std::vector(bodies.begin(), bodies.end())), is = quality_of(after, report.sub_cells);
+  const auto place = [&](std::int32_t cell) {
+    const std::string groups = groups_with(after, cell);
+    return cell_name(cell) + (groups.empty() ? "" : " (" + groups + ")");
+  };
+  fmt::print("  scaled Jacobian of the cells under the skins: {:.3f} to {:.3f} before the cut, {:.3f} to {:.3f} after it\n",
+             was.least(), was.quantiles.back(), is.least(), is.quantiles.back());
+  if (details) {
+    fmt::print("    {:8} {:>9} {:>8}", "", "cells", "mean");
+    for (const double fraction : Quality::fractions) fmt::print(" {:>6g} %", 100 * fraction);
+    for (const auto& [name, quality] : {std::pair("before", &was), std::pair("after", &is)}) {
+      fmt::print("\n    {:8} {:>9} {:>8.4f}", name, quality->n_cells, quality->mean);
+      for (const double value : quality->quantiles) fmt::print(" {:>8.4f}", value);
+    }
+    fmt::print("\n    the worst after the cut:\n");
+    for (const auto& [value, cell] : is.worst)
+      fmt::print("    {:8.4f}  {} {}\n", value, after.row(static_cast<std::size_t>(cell)).name, place(cell));
   }
-  inform("MESH1_3", {{"nodes", std::to_string(report.new_nodes)}, {"cells", std::to_string(report.new_cells)}});
-  return made;
+  if (is.least() < poor_quality)
+    inform("DECOUPE_9", {{"value", fmt::format("{:.3g}", is.least())},
+                         {"cell", place(is.worst.front().second)},
+                         {"before", fmt::format("{:.3g}", was.least())}});
 }
 
 /// The cells that TOUT or GROUP_MA name.
@@ -56,23 +91,34 @@ const Change changes[] = {{"LINE_QUAD", "quadratic", make_quadratic},
 
 }  // namespace
 
+Mesh cut_and_tell(const Mesh& mesh, const LacCut& cut) {
+  CutReport report;
+  Mesh made = cut_lac(mesh, cut.groups, cut.option, cut.keyword, report);
+  for (const CutZone& zone : report.zones) {
+    if (zone.turned > 0) inform("DECOUPE_7", {{"count", std::to_string(zone.turned)}, {"group", zone.group}});
+    fmt::print("  zone {:<24} {:>8} macro-elements\n", zone.group, zone.patches);
+  }
+  if (cut.complete_node_groups) complete_node_groups(mesh, report, made);
+  inform("MESH1_3", {{"nodes", std::to_string(report.new_nodes)}, {"cells", std::to_string(report.new_cells)}});
+  print_quality(mesh, report, made, cut.details);
+  print_counts(mesh, made);
+  return made;
+}
+
 Mesh crea_maillage(const Mesh& mesh, const Keywords& keywords) {
-  Mesh made;
   if (keywords.has("DECOUPE_LAC")) {
     const auto occurrences = keywords.factors("DECOUPE_LAC");
     if (occurrences.size() != 1) fail("ORDER_4", {{"keyword", "DECOUPE_LAC"}, {"expected", "given once"}});
-    made = cut(mesh, occurrences[0]);
-  } else {
-    const auto change =
-        std::find_if(std::begin(changes), std::end(changes), [&](const Change& c) { return keywords.has(c.keyword); });
-    if (change == std::end(changes)) fail("ORDER_2", {{"keyword", "DECOUPE_LAC, LINE_QUAD, QUAD_LINE or HEXA20_27"}});
-    refuse_cut_mesh(mesh, change->keyword);
-    made = mesh;
-    for (const Keywords& factor : keywords.factors(change->keyword))
-      fmt::print("  {}: {} cells became {}\n", change->keyword, change->make(made, chosen(made, factor)), change->what);
+    return cut_and_tell(mesh, cut_of(occurrences[0], keywords.integer("INFO")));
   }
-  fmt::print("  nodes {:>8} -> {:>8}\n  cells {:>8} -> {:>8}\n", mesh.n_nodes(), made.n_nodes(), mesh.n_cells(),
-             made.n_cells());
+  const auto change =
+      std::find_if(std::begin(changes), std::end(changes), [&](const Change& c) { return keywords.has(c.keyword); });
+  if (change == std::end(changes)) fail("ORDER_2", {{"keyword", "DECOUPE_LAC, LINE_QUAD, QUAD_LINE or HEXA20_27"}});
+  refuse_cut_mesh(mesh, change->keyword);
+  Mesh made = mesh;
+  for (const Keywords& factor : keywords.factors(change->keyword))
+    fmt::print("  {}: {} cells became {}\n", change->keyword, change->make(made, chosen(made, factor)), change->what);
+  print_counts(mesh, made);
   return made;
 }
 

@@ -1,9 +1,24 @@
 #pragma once
 // CREA_MAILLAGE: a mesh from another.
+#include <string>
+#include <vector>
+
 #include "lacon/structures/mesh.hpp"
 #include "lacon/structures/order.hpp"
 
 namespace lacon {
+
+/// What DECOUPE_LAC, or the command line of the tool, asks for.
+struct LacCut {
+  std::vector<std::string> groups;  ///< slave skins, one contact zone each
+  std::string option = "PYRA";      ///< how hexahedra are cut: PYRA or HEXA
+  bool complete_node_groups = false;
+  bool details = false;  ///< more about the cells' quality
+  std::string keyword;   ///< that names the groups, for messages
+};
+
+/// The cut mesh; prints counts and the quality of the cells on stdout. Errors: operators/meshing/cut.hpp.
+Mesh cut_and_tell(const Mesh& mesh, const LacCut& cut);
 
 /// The mesh that the keywords DECOUPE_LAC, LINE_QUAD, QUAD_LINE or HEXA20_27 ask for; prints a summary on stdout. Errors: see
 /// operators/meshing/cut.hpp and order_change.hpp, and ORDER_2 where none of them is given.

@@ -1,8 +1,10 @@
 #include "lacon/operators/crea_maillage/crea_maillage.hpp"
+#include "lacon/operators/crea_maillage/tool.hpp"
 #include "lacon/operators/program/program.hpp"
 
 int main(int argc, char** argv) {
   using namespace lacon;
+  if (!takes_order(argc, argv)) return cut_med_file(argc, argv);
   return run_program(argc, argv, "crea_maillage", "Makes a mesh from another: cut for LAC, linear to quadratic or back",
                      [](const Order& order, const Base& base) {
                        const Mesh mesh = [&] {

@@ -1,7 +1,7 @@
 // LIRE_MAILLAGE: a mesh from a file.
 #include <iostream>
 
-#include "lacon/operators/lire_maillage/orient.hpp"
+#include "lacon/operators/meshing/checks.hpp"
 #include "lacon/operators/program/program.hpp"
 #include "lacon/structures/formats/listing.hpp"
 #include "lacon/structures/formats/med.hpp"

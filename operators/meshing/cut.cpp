@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <map>
 #include <set>
+#include <utility>
 
 #include "lacon/catalog/cuts.hpp"
 #include "lacon/catalog/messages.hpp"
@@ -175,6 +176,8 @@ Nodes cut_slave(Forest& forest, const Slave& slave, const std::string& group, st
   append(on_skin, new_skin);
   append(turned_body, pick(new_skin, cut->turned.subspan(start * new_skin.size(), new_skin.size())));
   append(turned_body, new_body);
+  append(zone.skin_nodes, new_skin);
+  append(zone.body_nodes, new_body);
 
   Nodes sub_cells;
   for (const catalog::SubCell& sub : cut->skin_cells)
@@ -215,9 +218,11 @@ Mesh cut_lac(const Mesh& mesh, std::span<const std::string> groups, std::string_
 
   Forest forest(mesh);
   Ragged<std::int32_t> sub_cells;  // of each patch, as numbers of the forest
-  for (const Slave& slave : slaves)
+  for (const Slave& slave : slaves) {
+    report.zones[slave.zone].bodies.push_back(slave.body);
     sub_cells.push_back(
         cut_slave(forest, slave, groups[slave.zone], option, path, done.coordinates, patches, report.zones[slave.zone]));
+  }
 
   // number what is left: sub-cells in place of the cell they come from
   std::vector<std::int32_t> number_of;  // of a cell of the forest, in the cut mesh
@@ -240,13 +245,43 @@ Mesh cut_lac(const Mesh& mesh, std::span<const std::string> groups, std::string_
     for (const std::int32_t cell : sub_cells[p]) own.push_back(number_of[static_cast<std::size_t>(cell)]);
     patches.cells.push_back(own);
   }
-  for (const CutZone& zone : report.zones) {
+  std::set<std::int32_t> bodies;
+  for (CutZone& zone : report.zones) {
+    std::ranges::sort(zone.bodies);
+    const auto twice = std::ranges::unique(zone.bodies);
+    zone.bodies.erase(twice.begin(), twice.end());
+    bodies.insert(zone.bodies.begin(), zone.bodies.end());
     patches.zone_group.push_back(zone.group);
     patches.zone_offset.push_back(patches.zone_offset.back() + zone.patches);
+  }
+  for (const std::int32_t body : bodies) {
+    const auto heirs = std::as_const(replaced_by)[static_cast<std::size_t>(body)];
+    report.sub_cells.insert(report.sub_cells.end(), heirs.begin(), heirs.end());
   }
   report.new_nodes = static_cast<std::int64_t>(done.n_nodes() - mesh.n_nodes());
   report.new_cells = static_cast<std::int64_t>(done.n_cells() - mesh.n_cells());
   return done;
+}
+
+void complete_node_groups(const Mesh& before, const CutReport& report, Mesh& cut) {
+  std::vector<char> inside;
+  const auto holds = [&](std::span<const std::int32_t> cells) {
+    const std::vector<std::int32_t> nodes = nodes_of_cells(before, cells);
+    return std::ranges::all_of(nodes, [&](std::int32_t node) { return inside[static_cast<std::size_t>(node)] != 0; });
+  };
+  for (std::size_t g = 0; g < before.node_groups.size(); ++g) {
+    inside.assign(before.n_nodes(), 0);
+    for (const std::int32_t node : before.node_groups[g].members) inside[static_cast<std::size_t>(node)] = 1;
+    for (const CutZone& zone : report.zones) {
+      Nodes fresh;
+      if (holds(before.find_cell_group(zone.group)->members)) append(fresh, zone.skin_nodes);
+      if (!fresh.empty() && holds(zone.bodies)) append(fresh, zone.body_nodes);
+      if (fresh.empty()) continue;
+      append(cut.node_groups[g].members, fresh);
+      inform("DECOUPE_8",
+             {{"group", before.node_groups[g].name}, {"skin", zone.group}, {"count", std::to_string(fresh.size())}});
+    }
+  }
 }
 
 }  // namespace lacon

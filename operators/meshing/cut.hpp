@@ -10,13 +10,16 @@ namespace lacon {
 struct CutZone {
   std::string group;
   std::int64_t patches = 0;
-  std::int64_t turned = 0;  ///< slave cells that looked into the body
+  std::int64_t turned = 0;                           ///< slave cells that looked into the body
+  std::vector<std::int32_t> skin_nodes, body_nodes;  ///< the new ones, of the cut mesh
+  std::vector<std::int32_t> bodies;                  ///< body cells under the skin, of the mesh before the cut; sorted
 };
 
 struct CutReport {
   std::vector<CutZone> zones;
   std::int64_t new_nodes = 0;
   std::int64_t new_cells = 0;
+  std::vector<std::int32_t> sub_cells;  ///< what the body cells of all zones have become, of the cut mesh
 };
 
 /// Cut the skins `groups`, one contact zone each, in this order. Sub-cells take the place of the cell they come from, in the
@@ -29,5 +32,10 @@ struct CutReport {
 /// Jacobian).
 Mesh cut_lac(const Mesh& mesh, std::span<const std::string> groups, std::string_view option, std::string_view keyword,
              CutReport& report);
+
+/// The new nodes enter the groups of nodes that they belong to: a group that holds every node of a slave skin gets the skin's
+/// new nodes, and where it also holds every node of the body cells under the skin, those inside too. Informs DECOUPE_8 of each.
+/// @param before the mesh before the cut @param cut the mesh that cut_lac() made of it
+void complete_node_groups(const Mesh& before, const CutReport& report, Mesh& cut);
 
 }  // namespace lacon

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 
 #include "lacon/elements/reference.hpp"
 
@@ -13,21 +14,26 @@ constexpr int max_nodes = 27;
 /// Below it, relative to the cell's greatest Jacobian, a corner counts as flat: round-off of differences of coordinates.
 constexpr double flat_corner = 1e-10;
 
+/// Of the first `dimension` rows and columns.
+double determinant(const std::array<std::array<double, 3>, 3>& t, std::size_t dimension) {
+  if (dimension == 1) return t[0][0];
+  if (dimension == 2) return t[0][0] * t[1][1] - t[0][1] * t[1][0];
+  return t[0][0] * (t[1][1] * t[2][2] - t[1][2] * t[2][1]) - t[0][1] * (t[1][0] * t[2][2] - t[1][2] * t[2][0]) +
+         t[0][2] * (t[1][0] * t[2][1] - t[1][1] * t[2][0]);
+}
+
 double jacobian(CellType type, std::span<const std::int32_t> nodes, std::span<const double> coordinates,
                 std::span<const double> xi) {
   const auto n = nodes.size();
   const auto d = static_cast<std::size_t>(catalog::cell(type).dimension);
   std::array<double, 3 * max_nodes> gradients;
   shape_gradients(type, xi, {gradients.data(), n * d});
-  double j[3][3] = {};
+  std::array<std::array<double, 3>, 3> j{};
   for (std::size_t a = 0; a < n; ++a)
     for (std::size_t i = 0; i < d; ++i)
       for (std::size_t k = 0; k < d; ++k)
         j[i][k] += gradients[a * d + i] * coordinates[3 * static_cast<std::size_t>(nodes[a]) + k];
-  if (d == 1) return j[0][0];
-  if (d == 2) return j[0][0] * j[1][1] - j[0][1] * j[1][0];
-  return j[0][0] * (j[1][1] * j[2][2] - j[1][2] * j[2][1]) - j[0][1] * (j[1][0] * j[2][2] - j[1][2] * j[2][0]) +
-         j[0][2] * (j[1][0] * j[2][1] - j[1][1] * j[2][0]);
+  return determinant(j, d);
 }
 
 std::array<double, 3> centre(const catalog::CellRow& row) {
@@ -60,6 +66,106 @@ JacobianRange jacobian_range(CellType type, std::span<const std::int32_t> nodes,
     range.greatest = std::max(range.greatest, here);
   }
   return range;
+}
+
+namespace {
+
+/// A corner of a cell: its vertex and the edges that leave it, in the order in which their determinant is positive.
+struct Corner {
+  std::int8_t vertex;
+  struct Leg {
+    std::int8_t end, middle;  ///< middle: -1 in a linear cell
+  };
+  std::array<Leg, 3> legs;
+};
+
+/// The corners at which as many edges meet as the cell has dimensions.
+std::vector<Corner> corners_of(const catalog::CellRow& row) {
+  std::vector<Corner> corners;
+  const int d = row.dimension;
+  for (int v = 0; v < row.n_vertices && d > 1; ++v) {
+    Corner corner{static_cast<std::int8_t>(v), {}};
+    int legs = 0;
+    std::array<std::array<double, 3>, 3> tangents{};
+    for (std::size_t e = 0; e < row.edges.size(); ++e) {
+      const auto [first, second] = row.edges[e];
+      if (first != v && second != v) continue;
+      if (legs < d) {
+        const std::int8_t end = first == v ? second : first;
+        corner.legs[legs] = {end, static_cast<std::int8_t>(row.order == 2 ? row.n_vertices + static_cast<int>(e) : -1)};
+        for (int k = 0; k < d; ++k) tangents[legs][k] = row.nodes[end * d + k] - row.nodes[v * d + k];
+      }
+      ++legs;
+    }
+    if (legs != d) continue;
+    if (determinant(tangents, static_cast<std::size_t>(d)) < 0) std::swap(corner.legs[0], corner.legs[1]);
+    corners.push_back(corner);
+  }
+  return corners;
+}
+
+/// The determinant of unit tangents at a corner of the cell of equal edges.
+double ideal_corner(Family family) {
+  switch (family) {
+    case Family::TRIA:
+    case Family::PENTA:
+      return std::sqrt(3.0) / 2;
+    case Family::TETRA:
+    case Family::PYRAM:
+      return std::sqrt(0.5);
+    default:
+      return 1;
+  }
+}
+
+}  // namespace
+
+double scaled_jacobian(CellType type, std::span<const std::int32_t> nodes, std::span<const double> coordinates) {
+  static const auto corners = [] {
+    std::vector<std::vector<Corner>> all;
+    for (const catalog::CellRow& row : catalog::cells()) all.push_back(corners_of(row));
+    return all;
+  }();
+  const catalog::CellRow& row = catalog::cell(type);
+  const auto at = [&](std::int8_t local, int k) { return coordinates[3 * static_cast<std::size_t>(nodes[local]) + k]; };
+  double least = INFINITY;
+  for (const Corner& corner : corners[static_cast<std::size_t>(type)]) {
+    std::array<std::array<double, 3>, 3> tangents{};
+    double lengths = 1;
+    for (int i = 0; i < row.dimension; ++i) {
+      const auto& [end, middle] = corner.legs[i];
+      double square = 0;
+      for (int k = 0; k < row.dimension; ++k) {
+        const double chord = at(end, k) - at(corner.vertex, k);
+        // the tangent of the parabola through three nodes at its first
+        tangents[i][k] = middle < 0 ? chord : 4 * (at(middle, k) - at(corner.vertex, k)) - chord;
+        square += tangents[i][k] * tangents[i][k];
+      }
+      lengths *= std::sqrt(square);
+    }
+    least = std::min(least, lengths > 0 ? determinant(tangents, static_cast<std::size_t>(row.dimension)) / lengths : 0.0);
+  }
+  return least / ideal_corner(row.family);
+}
+
+Quality quality_of(const Mesh& mesh, std::span<const std::int32_t> cells, std::size_t n_worst) {
+  Quality quality{.n_cells = cells.size()};
+  if (cells.empty()) return quality;
+  std::vector<std::pair<double, std::int32_t>> values;
+  values.reserve(cells.size());
+  for (const std::int32_t cell : cells) {
+    const auto c = static_cast<std::size_t>(cell);
+    values.emplace_back(scaled_jacobian(mesh.types[c], mesh.cells[c], mesh.coordinates), cell);
+    quality.mean += values.back().first / static_cast<double>(cells.size());
+  }
+  std::ranges::sort(values);
+  for (std::size_t q = 0; q < quality.quantiles.size(); ++q) {
+    const auto last = static_cast<double>(values.size() - 1);
+    quality.quantiles[q] = values[static_cast<std::size_t>(std::lround(Quality::fractions[q] * last))].first;
+  }
+  values.resize(std::min(n_worst, values.size()));
+  quality.worst = std::move(values);
+  return quality;
 }
 
 bool is_sound(const JacobianRange& range) { return range.greatest > 0 && range.least >= -flat_corner * range.greatest; }

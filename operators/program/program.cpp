@@ -4,6 +4,7 @@
 #include <spdlog/spdlog.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <chrono>
 #include <fstream>
 #include <iostream>
@@ -42,12 +43,10 @@ void write_status(const std::string& file, int status) {
   std::ofstream(file) << json.dump(1) << '\n';
 }
 
-int run(const std::string& file, const Operator& work) {
+/// Do the work, whatever it throws. @return the exit status
+int guarded(const std::function<void()>& work) {
   try {
-    const Order order = read_order(file);
-    outcome.command = order.command;
-    outcome.source = order.source;
-    work(order, Base(order));
+    work();
     return done;
   } catch (const Error& error) {
     print(error.message());
@@ -60,13 +59,10 @@ int run(const std::string& file, const Operator& work) {
   return internal_error;
 }
 
-}  // namespace
-
-int run_program(int argc, char** argv, std::string_view name, std::string_view what_it_does, const Operator& work) {
-  CLI::App app{std::string(what_it_does), std::string(name)};
-  std::string order, status_file;
+/// Read the command line, which adds the options that every program has, then do the work.
+int run(int argc, char** argv, CLI::App& app, const std::function<void()>& work) {
+  std::string status_file;
   bool verbose = false;
-  app.add_option("order", order, "JSON order (docs/structures.md, section 4)")->required();
   app.add_option("--status", status_file, "write the outcome to this JSON file");
   app.add_flag("-v,--verbose", verbose, "log more on stderr");
   app.set_version_flag("--version", LACON_VERSION);
@@ -80,11 +76,35 @@ int run_program(int argc, char** argv, std::string_view name, std::string_view w
   spdlog::set_level(verbose ? spdlog::level::debug : spdlog::level::warn);
   set_message_sink(print);
   const double start = now();
-  const int status = run(order, work);
+  const int status = guarded(work);
   std::cout.flush();
   outcome.seconds.emplace_back("total", now() - start);
   if (!status_file.empty()) write_status(status_file, status);
   return status;
+}
+
+}  // namespace
+
+int run_program(int argc, char** argv, std::string_view name, std::string_view what_it_does, const Operator& work) {
+  CLI::App app{std::string(what_it_does), std::string(name)};
+  std::string file;
+  app.add_option("order", file, "JSON order (docs/structures.md, section 4)")->required();
+  return run(argc, argv, app, [&] {
+    const Order order = read_order(file);
+    outcome.command = order.command;
+    outcome.source = order.source;
+    work(order, Base(order));
+  });
+}
+
+bool takes_order(int argc, char** argv) {
+  return std::any_of(argv + 1, argv + argc, [](std::string_view argument) { return argument.ends_with(".json"); });
+}
+
+int run_tool(int argc, char** argv, CLI::App& app, const std::function<void()>& work) {
+  outcome.command = app.get_name();
+  for (int i = 1; i < argc; ++i) outcome.source += (i > 1 ? " " : "") + std::string(argv[i]);
+  return run(argc, argv, app, work);
 }
 
 Phase::Phase(std::string name) : name_(std::move(name)), start_(now()) {}

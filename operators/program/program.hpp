@@ -7,6 +7,10 @@
 #include "lacon/structures/base.hpp"
 #include "lacon/structures/order.hpp"
 
+namespace CLI {
+class App;
+}
+
 namespace lacon {
 
 enum ExitStatus { done = 0, user_error = 2, solution_failed = 3, internal_error = 4 };
@@ -17,6 +21,13 @@ using Operator = std::function<void(const Order&, const Base&)>;
 /// Run `work` on the order that the command line names. Prints messages on stderr, writes --status FILE, never throws.
 /// @return the exit status of DESIGN.md, "operators/"
 int run_program(int argc, char** argv, std::string_view name, std::string_view what_it_does, const Operator& work);
+
+/// Whether the command line names an order (a file *.json); what also works on files alone is otherwise a tool.
+bool takes_order(int argc, char** argv);
+
+/// Run `work` of a program that takes files instead of an order, once `app` has read its options from the command line.
+/// Messages and exit status as for run_program(); --status and --verbose are there too.
+int run_tool(int argc, char** argv, CLI::App& app, const std::function<void()>& work);
 
 /// The time from construction to destruction goes to the phase `name` of the operator's timings.
 class Phase {

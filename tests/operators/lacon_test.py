@@ -15,6 +15,7 @@ import os
 import pathlib
 import shutil
 import subprocess
+import sys
 import tempfile
 import types
 import unittest
@@ -122,6 +123,36 @@ class OperatorTest(unittest.TestCase):
     def ids(self, run, severities="FSAI"):
         """Identifiers of a run's messages."""
         return [m["id"] for m in run.messages if m["severity"] in severities]
+
+    # ------------------------------------------------------------------------------------------ MED files
+
+    def med_library(self, file):
+        """What the MED library reads."""
+        script = pathlib.Path(__file__).with_name("med_library.py")
+        done = subprocess.run([sys.executable, "-B", script, file], capture_output=True, text=True, timeout=SECONDS,
+                              stdin=subprocess.DEVNULL, check=False)
+        if done.returncode == 77:
+            self.skipTest("python3-med is not installed")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertEqual(done.stderr, "")
+        return json.loads(done.stdout)
+
+    def med_tool(self, *command):
+        """Output of one of the MED tools; they loop on an open input, and complain in French."""
+        if not shutil.which(command[0]):
+            self.skipTest(f"{command[0]} is not installed (libmed-tools)")
+        done = subprocess.run(command, capture_output=True, timeout=SECONDS, stdin=subprocess.DEVNULL, check=False)
+        output = (done.stdout + done.stderr).decode("utf-8", "replace")
+        self.assertEqual(done.returncode, 0, output)
+        self.assertNotIn("Erreur", output)
+        self.assertNotIn("ERREUR", output)
+        return output
+
+    def assert_conforms(self, file):
+        """The MED library's own check accepts the file."""
+        output = self.med_tool("medconforme", str(file))
+        self.assertIn("conforme au format HDF", output)
+        self.assertNotIn("non conforme", output.lower())
 
     # ------------------------------------------------------------------------------------------ making concepts
 

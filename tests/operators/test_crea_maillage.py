@@ -46,6 +46,32 @@ class CreaMaillage(OperatorTest):
         self.assertRegex(run.stdout, r"cells +4 -> +14")
         self.assertEqual(self.read_mesh("mesh_2").patches.zone_group, ["LOW", "TOP"])
 
+    def test_groups_of_nodes_are_completed_on_demand_only(self):
+        self.write_mesh("mesh_1", SQUARE, CELLS, GROUPS, {"CORNERS": [0, 2], "LOW": [1, 0], "WHOLE": [0, 1, 2, 3], "TOP": [2, 3]})
+        self.run_command("CREA_MAILLAGE", self.cut(["LOW"]), "mesh_2")
+        self.assertEqual({name: list(nodes) for name, nodes in self.read_mesh("mesh_2").node_groups.items()},
+                         {"CORNERS": [0, 2], "LOW": [1, 0], "WHOLE": [0, 1, 2, 3], "TOP": [2, 3]})
+        run = self.run_command("CREA_MAILLAGE", self.cut(["LOW"], GROUP_NO_COMPLET="OUI"), "mesh_3")
+        # the skin's nodes are 4 and 5, those inside the body cell 6 and 7
+        self.assertEqual({name: list(nodes) for name, nodes in self.read_mesh("mesh_3").node_groups.items()},
+                         {"CORNERS": [0, 2], "LOW": [1, 0, 4, 5], "WHOLE": [0, 1, 2, 3, 4, 5, 6, 7], "TOP": [2, 3]})
+        self.assertEqual(self.ids(run), ["DECOUPE_8", "DECOUPE_8", "MESH1_3"])
+
+    def test_quality_is_a_line_and_with_info_2_a_table(self):
+        run = self.run_command("CREA_MAILLAGE", self.cut(["LOW"]), "mesh_2")
+        # M6 and M8 have a corner between (0, 1.5) and (1, 1.5)
+        least = 1 / np.hypot(1, 1.5)
+        self.assertRegex(run.stdout, rf"scaled Jacobian .*: 1.000 to 1.000 before the cut, {least:.3f} to 1.000 after it")
+        self.assertNotIn("the worst", run.stdout)
+        run = self.run_command("CREA_MAILLAGE", {**self.cut(["LOW"]), "INFO": 2}, "mesh_3")
+        self.assertRegex(run.stdout, rf"(?s)the worst after the cut:\n +{least:.4f}  QUAD4 M[68] \(BODY\)")
+
+    def test_a_badly_shaped_cell_is_named(self):
+        self.write_mesh("mesh_1", [[0, 0], [300, 0], [300, 3], [0, 3]], CELLS, GROUPS)
+        run = self.run_command("CREA_MAILLAGE", self.cut(["LOW"]), "mesh_2")
+        self.assertEqual(self.ids(run), ["MESH1_3", "DECOUPE_9"])
+        self.assertIn("(BODY), has a scaled Jacobian of 0.015;", run.messages[1]["text"])
+
     def test_line_quad_and_back(self):
         run = self.run_command("CREA_MAILLAGE", {"MAILLAGE": concept("mesh_1"), "LINE_QUAD": [{"TOUT": "OUI"}]}, "mesh_2")
         self.assertEqual(run.status, 0, run.stderr)

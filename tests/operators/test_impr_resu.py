@@ -77,25 +77,7 @@ class ImprResu(OperatorTest):
 
     def library(self, file=None):
         """What the MED library reads."""
-        script = pathlib.Path(__file__).with_name("med_library.py")
-        done = subprocess.run([sys.executable, "-B", script, file or self.file], capture_output=True, text=True, timeout=60,
-                              stdin=subprocess.DEVNULL, check=False)
-        if done.returncode == 77:
-            self.skipTest("python3-med is not installed")
-        self.assertEqual(done.returncode, 0, done.stderr)
-        self.assertEqual(done.stderr, "")
-        return json.loads(done.stdout)
-
-    def tool(self, *command):
-        """Output of one of the MED tools; they loop on an open input, and complain in French."""
-        if not shutil.which(command[0]):
-            self.skipTest(f"{command[0]} is not installed (libmed-tools)")
-        done = subprocess.run(command, capture_output=True, timeout=60, stdin=subprocess.DEVNULL, check=False)
-        text = (done.stdout + done.stderr).decode("utf-8", "replace")
-        self.assertEqual(done.returncode, 0, text)
-        self.assertNotIn("Erreur", text)
-        self.assertNotIn("ERREUR", text)
-        return text
+        return self.med_library(file or self.file)
 
     # ------------------------------------------------------------------------------------------ MED
 
@@ -195,10 +177,8 @@ class ImprResu(OperatorTest):
 
     def test_the_tools_of_med_accept_and_list_the_file(self):
         self.print([self.MA, self.U])
-        conform = self.tool("medconforme", str(self.file))
-        self.assertIn("conforme au format HDF", conform)
-        self.assertNotIn("non conforme", conform.lower())
-        listing = self.tool("mdump4", str(self.file), "NODALE", "FULL_INTERLACE", "LECTURE_EN_TETE_SEULEMENT")
+        self.assert_conforms(self.file)
+        listing = self.med_tool("mdump4", str(self.file), "NODALE", "FULL_INTERLACE", "LECTURE_EN_TETE_SEULEMENT")
         for word in ("<<MA>>", "BODY", "CORNER <&>", "U_______DEPL", "U_______CONT_ELEM", "FIN DU DUMP"):
             self.assertIn(word, listing)
 
@@ -209,7 +189,7 @@ class ImprResu(OperatorTest):
         read = self.library()
         self.assertEqual([m["name"] for m in read["meshes"]], ["MA"])
         self.assertEqual(set(read["fields"]), {"U_______DEPL", "U_______DEPL_LAGS_C", "U_______CONT_ELEM"})
-        self.tool("medconforme", str(self.file))
+        self.assert_conforms(self.file)
 
     def test_a_file_of_an_earlier_run_is_replaced(self):
         self.file.write_text("the file of an earlier run", encoding="utf-8")

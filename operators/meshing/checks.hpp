@@ -1,6 +1,7 @@
 #pragma once
 // Checks of a mesh as it comes from a file.
 #include <cstdint>
+#include <string>
 #include <vector>
 
 #include "lacon/structures/mesh.hpp"
@@ -11,6 +12,9 @@ namespace lacon {
 /// theirs, whatever it is. Informs LIRE_1 of their number; throws LIRE_2 where the Jacobian changes sign inside a cell.
 /// @return the cells that were reversed
 std::vector<std::int32_t> orient_body_cells(Mesh& mesh);
+
+/// The groups that a cell is in, for messages: "BODY, ALL"; empty for none.
+std::string groups_with(const Mesh& mesh, std::int32_t cell);
 
 /// What VERI_MAIL looks at, each told once with LIRE_3 to LIRE_5: nodes of no cell, cells with the same nodes, flat cells,
 /// whose least distance between two vertices is under `flatness` times the greatest.

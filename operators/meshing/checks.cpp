@@ -1,4 +1,4 @@
-#include "lacon/operators/lire_maillage/orient.hpp"
+#include "lacon/operators/meshing/checks.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -11,14 +11,6 @@
 
 namespace lacon {
 namespace {
-
-std::string groups_with(const Mesh& mesh, std::int32_t cell) {
-  std::string names;
-  for (const Group& group : mesh.cell_groups)
-    if (std::find(group.members.begin(), group.members.end(), cell) != group.members.end())
-      names += (names.empty() ? ", of the group " : ", ") + group.name;
-  return names;
-}
 
 std::string number(double value) {
   char text[32];
@@ -41,6 +33,14 @@ void tell(std::string_view id, const std::vector<std::int32_t>& numbers, std::st
 
 }  // namespace
 
+std::string groups_with(const Mesh& mesh, std::int32_t cell) {
+  std::string names;
+  for (const Group& group : mesh.cell_groups)
+    if (std::find(group.members.begin(), group.members.end(), cell) != group.members.end())
+      names += (names.empty() ? "" : ", ") + group.name;
+  return names;
+}
+
 std::vector<std::int32_t> orient_body_cells(Mesh& mesh) {
   std::vector<std::int32_t> reversed, old;
   for (std::size_t c = 0; c < mesh.n_cells(); ++c) {
@@ -50,12 +50,14 @@ std::vector<std::int32_t> orient_body_cells(Mesh& mesh) {
     const JacobianRange range = jacobian_range(row.type, nodes, mesh.coordinates);
     if (is_sound(range)) continue;
     const auto cell = static_cast<std::int32_t>(c);
-    if (!is_sound({-range.greatest, -range.least}))
+    if (!is_sound({-range.greatest, -range.least})) {
+      const std::string groups = groups_with(mesh, cell);
       fail("LIRE_2", {{"cell", cell_name(cell)},
                       {"type", std::string(row.name)},
-                      {"groups", groups_with(mesh, cell)},
+                      {"groups", groups.empty() ? "" : ", of the group " + groups},
                       {"least", number(range.least)},
                       {"greatest", number(range.greatest)}});
+    }
     old.assign(nodes.begin(), nodes.end());
     for (std::size_t j = 0; j < nodes.size(); ++j) nodes[j] = old[static_cast<std::size_t>(row.mirror[j])];
     reversed.push_back(cell);

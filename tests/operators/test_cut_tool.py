@@ -1,0 +1,151 @@
+"""crea_maillage without an order: MED in, MED out."""
+
+import os
+import pathlib
+import subprocess
+import sys
+import unittest
+
+import h5py
+import numpy as np
+
+from lacon_test import BIN, SECONDS, OperatorTest
+
+sys.path.insert(0, str(pathlib.Path(os.environ["LACON_SOURCE_DIR"]) / "commands/studies"))
+from meshes import block, brick, union, write_med  # noqa: E402
+
+LINES = np.linspace(0.0, 1.0, 3)
+
+
+class CutTool(OperatorTest):
+    def setUp(self):
+        super().setUp()
+        self.source, self.out = self.folder / "in.med", self.folder / "out.med"
+
+    def tool(self, *arguments):
+        return subprocess.run([BIN / "crea_maillage", *map(str, arguments)], capture_output=True, text=True, timeout=SECONDS,
+                              stdin=subprocess.DEVNULL, check=False)
+
+    def cut(self, *arguments):
+        done = self.tool(self.source, self.out, *arguments)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        return done
+
+    def refuses(self, identifier, *arguments, words=()):
+        """Status 2, this message, no file but those that were there."""
+        before = self.snapshot()
+        done = self.tool(*arguments)
+        self.assertEqual(done.returncode, 2, done.stdout + done.stderr)
+        self.assertIn(f"<F> <{identifier}>", done.stderr)
+        for word in words:
+            self.assertIn(word, done.stderr)
+        self.assertEqual(self.snapshot(), before)
+
+    def write_brick(self):
+        """2 x 2 x 2 HEXA8 with a slave top, a group of its nodes, one of all nodes, one of some, and an empty group."""
+        mesh = brick("HEXA8", [LINES] * 3, name="BODY", sides={(2, 1): "TOP", (2, 0): "BASE"})
+        mesh.cell_groups["NOTHING"] = []
+        mesh.node_groups = {"N_TOP": mesh.nodes_where(lambda x, y, z: z == 1), "EVERY": list(range(len(mesh.points))),
+                            "EDGE": mesh.nodes_where(lambda x, y, z: z == 1 and x == 0)}
+        write_med(self.source, mesh, "Joint")
+        return mesh
+
+    def read(self):
+        """The file as the MED library sees it, cell groups by name as a set of (MED type, index)."""
+        return self.med_library(self.out)["meshes"]
+
+    def groups(self, kind):
+        """Sizes of the groups of the written file, through LIRE_MAILLAGE."""
+        run = self.run_command("LIRE_MAILLAGE", {"FORMAT": "MED", "UNITE": 20}, "mesh_9", units={20: self.out})
+        self.assertEqual(run.status, 0, run.stderr)
+        mesh = self.read_mesh("mesh_9")
+        return mesh, {name: len(members) for name, members in getattr(mesh, kind).items()}
+
+    def test_cuts_a_file_with_names_and_groups_kept(self):
+        before = self.write_brick()
+        done = self.cut("--slave", "TOP")
+        self.assertRegex(done.stdout, r"zone TOP +4 macro-elements")
+        self.assert_conforms(self.out)
+        [mesh] = self.read()
+        self.assertEqual((mesh["name"], mesh["space"], mesh["dimension"]), ("Joint", 3, 3))
+        # METHOD: each face of a HEXA8 adds one node, three skin cells and four body cells
+        mesh, cells = self.groups("cell_groups")
+        self.assertEqual(cells, {"BODY": 8 + 4 * 4, "TOP": 16, "BASE": 4, "NOTHING": 0})
+        self.assertEqual(len(mesh.coordinates), len(before.points) + 4)
+        np.testing.assert_array_equal(mesh.coordinates[:27], before.points)
+
+    def test_groups_of_nodes_that_hold_the_skin_get_its_nodes(self):
+        self.write_brick()
+        done = self.cut("--slave", "TOP", "--hexa", "HEXA")
+        mesh, sizes = self.groups("node_groups")
+        # HEXA: four nodes on each face, four inside each body cell
+        self.assertEqual(sizes, {"EVERY": 27 + 4 * 8, "N_TOP": 9 + 4 * 4, "EDGE": 3})
+        self.assertTrue(np.all(mesh.coordinates[mesh.node_groups["N_TOP"], 2] == 1))
+        self.assertEqual(done.stderr.count("<DECOUPE_8>"), 2)
+        self.cut("--slave", "TOP", "--hexa", "HEXA", "--keep-node-groups")
+        self.assertEqual(self.groups("node_groups")[1], {"EVERY": 27, "N_TOP": 9, "EDGE": 3})
+
+    def test_two_zones_of_one_body_in_the_plane(self):
+        write_med(self.source, block("QUAD4", LINES, LINES, name="BODY", sides={"top": "TOP", "right": "RIGHT"}))
+        self.cut("--slave", "TOP", "--slave", "RIGHT")
+        self.assert_conforms(self.out)
+        mesh, cells = self.groups("cell_groups")
+        self.assertEqual((mesh.dimension, cells), (2, {"BODY": 4 + 4 * 3, "TOP": 6, "RIGHT": 6}))
+
+    def test_a_skin_that_looks_inward_is_turned_and_told(self):
+        mesh = self.write_brick()
+        mesh.cells["QUAD4"] = mesh.cells["QUAD4"][:, ::-1]
+        write_med(self.source, mesh, "Joint")
+        done = self.cut("--slave", "TOP")
+        self.assertIn("<I> <DECOUPE_7> 4 slave cells of the group 'TOP' looked into their body and were turned", done.stderr)
+        mesh, _ = self.groups("cell_groups")
+        corners = mesh.coordinates[np.array([mesh.cells[c] for c in mesh.cell_groups["TOP"]])]
+        self.assertTrue(np.all(np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])[:, 2] > 0))
+
+    def test_quality_is_reported_on_demand(self):
+        self.write_brick()
+        self.assertNotIn("the worst", self.cut("--slave", "TOP").stdout)
+        # METHOD 1.5: 2 / sqrt(17) in the laterals of a cube cut into hexahedra
+        self.assertRegex(self.cut("--slave", "TOP", "--hexa", "HEXA", "--quality").stdout, r"the worst after the cut:\n +0.4851  HEXA8 M\d+ \(BODY\)")
+
+    def test_chooses_a_mesh_by_name(self):
+        self.write_brick()
+        with h5py.File(self.source, "a") as file:
+            for where in ("ENS_MAA", "FAS"):
+                file.copy(f"{where}/Joint", f"{where}/Another")
+        self.cut("--slave", "TOP", "--mesh", "Joint")
+        self.assertEqual([mesh["name"] for mesh in self.read()], ["Joint"])
+        self.refuses("MED_5", self.source, self.folder / "new.med", "--slave", "TOP", "--mesh", "Joints", words=["Joints", "Another"])
+
+    def test_an_older_file_is_replaced(self):
+        self.write_brick()
+        self.out.write_text("an older file")
+        self.cut("--slave", "TOP")
+        self.assert_conforms(self.out)
+
+    def test_refuses_what_it_cannot_cut_and_writes_nothing(self):
+        self.write_brick()
+        self.refuses("MESH_1", self.source, self.out, "--slave", "TPO", words=["--slave", "'TPO'", "'TOP'", "in.med"])
+        self.refuses("MESH_2", self.source, self.out, "--slave", "NOTHING", words=["'NOTHING'"])
+        self.refuses("DECOUPE_1", self.source, self.out, "--slave", "TOP", "--slave", "TOP", words=["'TOP'"])
+        self.refuses("DECOUPE_4", self.source, self.out, "--slave", "BODY", words=["'BODY'", "HEXA8 M9"])
+        self.refuses("MED_1", self.folder / "none.med", self.out, "--slave", "TOP", words=["none.med"])
+        self.refuses("CUT_1", self.source, self.source, "--slave", "TOP", words=["in.med"])
+        self.refuses("BASE_3", self.source, self.folder / "no/folder/out.med", "--slave", "TOP", words=["no/folder"])
+        self.source.write_text("no mesh")
+        self.refuses("MED_2", self.source, self.out, "--slave", "TOP", words=["in.med"])
+        skins_only = block("QUAD4", LINES, LINES, sides={"top": "TOP"})
+        del skins_only.cells["QUAD4"]
+        write_med(self.source, union([skins_only]))
+        self.refuses("MESH1_2", self.source, self.out, "--slave", "TOP", words=["SEG2 M1", "'TOP'"])
+
+    def test_refuses_a_command_line_without_skin_or_with_another_cut(self):
+        self.write_brick()
+        for arguments in ([self.source, self.out], [self.source, "--slave", "TOP"],
+                          [self.source, self.out, "--slave", "TOP", "--hexa", "TETRA"]):
+            self.assertEqual(self.tool(*arguments).returncode, 2)
+        self.assertFalse(self.out.exists())
+
+
+if __name__ == "__main__":
+    unittest.main()

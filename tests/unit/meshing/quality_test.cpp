@@ -1,0 +1,101 @@
+// The scaled Jacobian: 1 for ideal cells, closed forms for others, and what a cut does to it.
+#include "meshes.hpp"
+
+namespace lacon::test {
+namespace {
+
+double quality(CellType type, const std::vector<double>& coordinates) {
+  Nodes nodes(coordinates.size() / 3);
+  for (std::size_t i = 0; i < nodes.size(); ++i) nodes[i] = static_cast<std::int32_t>(i);
+  return scaled_jacobian(type, nodes, coordinates);
+}
+
+const double h = std::sqrt(0.75);
+
+TEST(Quality, of_cells_of_equal_edges_is_one) {
+  EXPECT_NEAR(quality(CellType::TRIA3, {0, 0, 0, 1, 0, 0, 0.5, h, 0}), 1, 1e-15);
+  EXPECT_NEAR(quality(CellType::QUAD4, {0, 0, 0, 2, 0, 0, 2, 2, 0, 0, 2, 0}), 1, 1e-15);
+  EXPECT_NEAR(quality(CellType::TETRA4, {0, 0, 0, 1, 0, 0, 0.5, h, 0, 0.5, h / 3, std::sqrt(2.0 / 3)}), 1, 1e-15);
+  EXPECT_NEAR(quality(CellType::PYRAM5, {0, 0, 0, 1, 0, 0, 1, 1, 0, 0, 1, 0, 0.5, 0.5, std::sqrt(0.5)}), 1, 1e-15);
+  EXPECT_NEAR(quality(CellType::PENTA6, {0, 0, 0, 1, 0, 0, 0.5, h, 0, 0, 0, 1, 1, 0, 1, 0.5, h, 1}), 1, 1e-15);
+  EXPECT_NEAR(quality(CellType::HEXA8, {0, 0, 0, 3, 0, 0, 3, 3, 0, 0, 3, 0, 0, 0, 3, 3, 0, 3, 3, 3, 3, 0, 3, 3}), 1, 1e-15);
+}
+
+TEST(Quality, does_not_depend_on_size_and_changes_its_sign_with_the_cell) {
+  const double sheared = quality(CellType::QUAD4, {0, 0, 0, 1, 0, 0, 2, 1, 0, 1, 1, 0});
+  EXPECT_NEAR(sheared, std::sqrt(0.5), 1e-15);
+  EXPECT_NEAR(quality(CellType::QUAD4, {0, 0, 0, 1e-3, 0, 0, 2e-3, 1e-3, 0, 1e-3, 1e-3, 0}), sheared, 1e-15);
+  EXPECT_NEAR(quality(CellType::QUAD4, {1, 1, 0, 2, 1, 0, 1, 0, 0, 0, 0, 0}), -sheared, 1e-15);
+  EXPECT_EQ(quality(CellType::TRIA3, {0, 0, 0, 1, 0, 0, 2, 0, 0}), 0);
+  EXPECT_EQ(quality(CellType::TRIA3, {0, 0, 0, 0, 0, 0, 1, 1, 0}), 0);  // an edge of no length
+}
+
+TEST(Quality, of_quadratic_cells_sees_the_bent_edge) {
+  // the lower edge of the unit square bulges by b: its tangents at the ends are (1, 4b), (1, -4b)
+  const double b = 0.1;
+  const std::vector<double> square = {0, 0, 0, 1, 0, 0, 1, 1, 0, 0, 1, 0, 0.5, b, 0, 1, 0.5, 0, 0.5, 1, 0, 0, 0.5, 0};
+  EXPECT_NEAR(quality(CellType::QUAD8, square), 1 / std::hypot(1, 4 * b), 1e-15);
+  std::vector<double> straight = square;
+  straight[13] = 0;
+  EXPECT_NEAR(quality(CellType::QUAD8, straight), 1, 1e-15);
+}
+
+TEST(Quality, of_every_cell_has_the_sign_of_its_volume) {
+  for (const catalog::CellRow& row : catalog::cells()) {
+    if (row.dimension < 2) continue;
+    std::vector<double> coordinates;
+    for (int n = 0; n < row.n_nodes; ++n)
+      for (int k = 0; k < 3; ++k) coordinates.push_back(k < row.dimension ? row.nodes[n * row.dimension + k] : 0);
+    EXPECT_GT(quality(row.type, coordinates), 0.5) << row.name;
+    Nodes nodes(static_cast<std::size_t>(row.n_nodes));
+    for (std::size_t i = 0; i < nodes.size(); ++i) nodes[i] = static_cast<std::int32_t>(i);
+    EXPECT_LT(scaled_jacobian(row.type, mirrored(row.type, nodes), coordinates), 0) << row.name;
+  }
+}
+
+TEST(Quality, of_a_cube_cut_into_hexahedra_is_that_of_the_method) {
+  // METHOD.md 1.5: laterals 2 / sqrt(17), bottom 3 / sqrt(17), centre 1
+  Mesh cube;
+  for (const double z : {0.0, 1.0})
+    for (const auto& [x, y] : {std::pair(0.0, 0.0), std::pair(1.0, 0.0), std::pair(1.0, 1.0), std::pair(0.0, 1.0)})
+      add_node(cube, x, y, z);
+  add(cube, CellType::QUAD4, {4, 5, 6, 7});
+  add(cube, CellType::HEXA8, {0, 1, 2, 3, 4, 5, 6, 7});
+  cube.cell_groups = {{"TOP", {0}}};
+  CutReport report;
+  const Mesh after = cut(cube, {"TOP"}, "HEXA", &report);
+  EXPECT_EQ(report.zones[0].bodies, Nodes{1});
+  ASSERT_EQ(report.sub_cells.size(), 6u);
+  const Quality all = quality_of(after, report.sub_cells, 2);
+  EXPECT_NEAR(all.least(), 2 / std::sqrt(17.0), 1e-14);
+  EXPECT_NEAR(all.quantiles[3], 2 / std::sqrt(17.0), 1e-14);
+  EXPECT_NEAR(all.quantiles.back(), 1, 1e-14);
+  EXPECT_NEAR(all.mean, (4 * 2 / std::sqrt(17.0) + 3 / std::sqrt(17.0) + 1) / 6, 1e-14);
+  ASSERT_EQ(all.worst.size(), 2u);
+  EXPECT_EQ(after.types[static_cast<std::size_t>(all.worst[0].second)], CellType::HEXA8);
+}
+
+TEST(NodeGroups, get_the_new_nodes_of_a_skin_they_hold) {
+  // two squares side by side, both under the skin
+  Mesh mesh;
+  mesh.dimension = 2;
+  for (const double y : {0.0, 1.0})
+    for (const double x : {0.0, 1.0, 2.0}) add_node(mesh, x, y);
+  add(mesh, CellType::SEG2, {4, 3});
+  add(mesh, CellType::SEG2, {5, 4});
+  add(mesh, CellType::QUAD4, {0, 1, 4, 3});
+  add(mesh, CellType::QUAD4, {1, 2, 5, 4});
+  mesh.cell_groups = {{"TOP", {0, 1}}};
+  mesh.node_groups = {{"SKIN", {3, 4, 5}}, {"HALF", {3, 4}}, {"MORE", {5, 4, 3, 0}}, {"ALL", {0, 1, 2, 3, 4, 5}}};
+  CutReport report;
+  Mesh after = cut(mesh, {"TOP"}, "PYRA", &report);
+  complete_node_groups(mesh, report, after);
+  // each face: its two nodes on the skin, then the two inside
+  EXPECT_EQ(after.node_groups[0].members, (Nodes{3, 4, 5, 6, 7, 10, 11}));
+  EXPECT_EQ(after.node_groups[1].members, (Nodes{3, 4}));
+  EXPECT_EQ(after.node_groups[2].members, (Nodes{5, 4, 3, 0, 6, 7, 10, 11}));
+  EXPECT_EQ(after.node_groups[3].members, (Nodes{0, 1, 2, 3, 4, 5, 6, 7, 10, 11, 8, 9, 12, 13}));
+}
+
+}  // namespace
+}  // namespace lacon::test
