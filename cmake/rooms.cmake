@@ -26,5 +26,6 @@ function(lacon_operator name)
   cmake_parse_arguments(OPERATOR "" "" "SOURCES;LINK" ${ARGN})
   add_executable(${name} ${OPERATOR_SOURCES})
   target_link_libraries(${name} PRIVATE ${OPERATOR_LINK} lacon::program)
+  target_link_options(${name} PRIVATE -Wl,--as-needed)  # an operator that does not solve does not load MUMPS
   install(TARGETS ${name} RUNTIME DESTINATION "${CMAKE_INSTALL_BINDIR}")
 endfunction()

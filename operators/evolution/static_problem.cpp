@@ -27,13 +27,13 @@ void find_dofs(StaticProblem& problem) {
   }
 }
 
-TimedLoad read_load(const StaticProblem& problem, const Base& base, const Keywords& excit) {
-  const std::string id = excit.concept_id("CHARGE");
+TimedLoad read_load(const StaticProblem& problem, const Base& base, const std::string& id,
+                    const std::optional<std::string>& function, const std::string& keyword) {
   const Load load = base.load(id);
   TimedLoad timed{.label = base.label(id), .force = {}, .dofs = {}, .values = {}, .function = {}};
-  if (const auto function = excit.optional_concept("FONC_MULT")) {
+  if (function) {
     timed.function.emplace(base, *function);
-    timed.function->check_parameters(std::array{std::string_view("INST")}, excit.path("FONC_MULT"));
+    timed.function->check_parameters(std::array{std::string_view("INST")}, keyword);
   }
   for (const ImposedDof& imposed : load.imposed) {
     const auto at = std::find(problem.components.begin(), problem.components.end(), imposed.component);
@@ -59,6 +59,16 @@ TimedLoad read_load(const StaticProblem& problem, const Base& base, const Keywor
     });
   }
   return timed;
+}
+
+/// A model with its degrees of freedom, before materials and loads.
+StaticProblem read_model(const Order& order, const Base& base, const std::string& model_id) {
+  StaticProblem problem;
+  problem.model = base.model(model_id);
+  problem.mesh = base.mesh(problem.model.mesh);
+  problem.registry = std::make_unique<Registry>(order.plugins);
+  find_dofs(problem);
+  return problem;
 }
 
 }  // namespace
@@ -101,12 +111,9 @@ std::string StaticProblem::dof_name(std::int64_t dof) const {
 }
 
 StaticProblem read_problem(const Order& order, const Base& base) {
-  StaticProblem problem;
   const Keywords& keywords = order.keywords;
-  problem.model = base.model(keywords.concept_id("MODELE"));
-  problem.mesh = base.mesh(problem.model.mesh);
-  problem.registry = std::make_unique<Registry>(order.plugins);
-  find_dofs(problem);
+  const std::string model_id = keywords.concept_id("MODELE");
+  StaticProblem problem = read_model(order, base, model_id);
 
   problem.material_field = std::make_unique<MaterialField>(base.material_field(keywords.concept_id("CHAM_MATER")));
   if (problem.material_field->mesh != problem.model.mesh)
@@ -120,7 +127,6 @@ StaticProblem read_problem(const Order& order, const Base& base) {
   problem.materials = std::make_unique<MaterialTable>(*problem.material_field, std::move(materials), std::move(labels));
   problem.solids = solid_sets(problem.mesh, problem.model, *problem.registry, *problem.materials);
 
-  const std::string model_id = keywords.concept_id("MODELE");
   problem.imposed.assign(problem.n_dofs(), 0);
   std::vector<std::string> seen;
   for (const Keywords& excit : keywords.factors("EXCIT")) {
@@ -130,7 +136,7 @@ StaticProblem read_problem(const Order& order, const Base& base) {
     seen.push_back(load_id);
     if (base.load(load_id).model != model_id)
       fail("EVOLUTION_1", {{"first", excit.path("CHARGE")}, {"second", "MODELE"}, {"what", "models"}});
-    problem.loads.push_back(read_load(problem, base, excit));
+    problem.loads.push_back(read_load(problem, base, load_id, excit.optional_concept("FONC_MULT"), excit.path("FONC_MULT")));
     for (const std::int64_t dof : problem.loads.back().dofs) problem.imposed[dof] = 1;
   }
   if (const auto contact = keywords.optional_concept("CONTACT")) {
@@ -142,6 +148,14 @@ StaticProblem read_problem(const Order& order, const Base& base) {
   for (std::size_t i = 0; i < free.size(); ++i) free[i] = problem.exists[i] && !problem.imposed[i];
   const auto n_patches = problem.contact ? static_cast<std::int64_t>(problem.mesh.patches->size()) : 0;
   problem.numbering = number_equations(static_cast<std::int64_t>(problem.mesh.n_nodes()), problem.dimension, free, n_patches);
+  return problem;
+}
+
+StaticProblem read_loads(const Order& order, const Base& base, const Result& result) {
+  StaticProblem problem = read_model(order, base, result.model);
+  for (const auto& [load, function] : result.loads)
+    problem.loads.push_back(
+        read_load(problem, base, load, function.empty() ? std::nullopt : std::optional(function), "EXCIT/FONC_MULT"));
   return problem;
 }
 

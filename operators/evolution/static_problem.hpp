@@ -51,4 +51,7 @@ struct StaticProblem {
 /// What EXCIT, MODELE, CHAM_MATER and CONTACT of an order name.
 StaticProblem read_problem(const Order& order, const Base& base);
 
+/// The model and the loads that a result was computed with, for external_force(): no materials, contact or equations.
+StaticProblem read_loads(const Order& order, const Base& base, const Result& result);
+
 }  // namespace lacon

@@ -23,7 +23,8 @@ Eigen::MatrixXd shapes_at(CellType type, std::span<const double> points, int n_p
   return values;
 }
 
-/// A field that differs from `from` only in where it lives.
+}  // namespace
+
 Field field_like(const Field& from, std::string name, Location location) {
   Field to;
   to.name = std::move(name);
@@ -35,8 +36,6 @@ Field field_like(const Field& from, std::string name, Location location) {
   to.instant = from.instant;
   return to;
 }
-
-}  // namespace
 
 std::vector<double> extrapolation_matrix(CellType type, int n_points) {
   const catalog::CellRow& cell = catalog::cell(type);
@@ -126,6 +125,40 @@ Field restrict_to_cells(const Field& field, const std::vector<char>& wanted) {
     }
     if (!field.offset.empty()) part.offset.push_back(part.offset.back() + static_cast<std::int64_t>(last - first));
   }
+  return part;
+}
+
+Field restrict_to_nodes(const Field& field, const std::vector<char>& wanted) {
+  Field part = field;
+  part.support.clear();
+  part.values.clear();
+  part.present.clear();
+  const std::size_t width = field.n_components();
+  for (std::size_t i = 0; i < field.support.size(); ++i) {
+    if (!wanted[static_cast<std::size_t>(field.support[i])]) continue;
+    part.support.push_back(field.support[i]);
+    for (std::size_t k = 0; k < width; ++k) {
+      part.values.push_back(field.at(i, k));
+      if (!field.present.empty()) part.present.push_back(field.present[i * width + k]);
+    }
+  }
+  return part;
+}
+
+Field restrict_to_components(const Field& field, const std::vector<std::string>& wanted) {
+  std::vector<std::size_t> kept;
+  for (std::size_t k = 0; k < field.n_components(); ++k)
+    if (std::find(wanted.begin(), wanted.end(), field.components[k]) != wanted.end()) kept.push_back(k);
+  Field part = field;
+  part.components.clear();
+  part.values.clear();
+  part.present.clear();
+  for (const std::size_t k : kept) part.components.push_back(field.components[k]);
+  for (std::size_t row = 0; row < field.n_rows(); ++row)
+    for (const std::size_t k : kept) {
+      part.values.push_back(field.at(row, k));
+      if (!field.present.empty()) part.present.push_back(field.has(row, k) ? 1 : 0);
+    }
   return part;
 }
 

@@ -9,6 +9,9 @@
 
 namespace lacon {
 
+/// A field that differs from `from` only in its name and in where it lives: no support and no values yet.
+Field field_like(const Field& from, std::string name, Location location);
+
 /// The matrix that takes values at the points of a cell's integration rule to values at its nodes, (n_nodes, n_points): the
 /// least-squares fit, all points alike, by the shape functions of the linear cell, evaluated at the nodes. A middle node so has
 /// the mean of its edge's (face's, cell's) vertices. With fewer points than vertices: the mean of the points everywhere. Throws
@@ -25,5 +28,11 @@ Field cell_nodes_to_nodes(const Mesh& mesh, const Field& cells, std::string name
 /// The part of a field of cells (ELGA, ELNO, ELEM) on those of its cells that `wanted` marks; wanted has one entry a cell of
 /// the mesh.
 Field restrict_to_cells(const Field& field, const std::vector<char>& wanted);
+
+/// The part of a field of nodes on those of its nodes that `wanted` marks; wanted has one entry a node of the mesh.
+Field restrict_to_nodes(const Field& field, const std::vector<char>& wanted);
+
+/// The components of this list that the field has, in the field's order.
+Field restrict_to_components(const Field& field, const std::vector<std::string>& wanted);
 
 }  // namespace lacon

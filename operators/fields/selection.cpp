@@ -60,6 +60,21 @@ std::vector<std::int64_t> selected_orders(const Base& base, const Result& result
   return orders;
 }
 
+Result part_of(const Result& result, const std::vector<std::int64_t>& orders) {
+  Result part = result;
+  part.fields.clear();
+  part.orders.clear();
+  part.instants.clear();
+  for (auto& [name, values] : part.parameters) values.clear();
+  for (std::size_t k = 0; k < result.orders.size(); ++k) {
+    if (std::find(orders.begin(), orders.end(), result.orders[k]) == orders.end()) continue;
+    part.orders.push_back(result.orders[k]);
+    part.instants.push_back(result.instants[k]);
+    for (auto& [name, values] : part.parameters) values.push_back(result.parameters.at(name)[k]);
+  }
+  return part;
+}
+
 std::vector<char> selected_cells(const Mesh& mesh, const Keywords& keywords) {
   if (!keywords.has("GROUP_MA")) return std::vector<char>(mesh.n_cells(), 1);
   std::vector<char> wanted(mesh.n_cells(), 0);
@@ -67,6 +82,14 @@ std::vector<char> selected_cells(const Mesh& mesh, const Keywords& keywords) {
     for (const std::int32_t cell : cells_of_group(mesh, group, keywords.path("GROUP_MA")))
       wanted[static_cast<std::size_t>(cell)] = 1;
   return wanted;
+}
+
+std::vector<char> nodes_of_marked_cells(const Mesh& mesh, const std::vector<char>& cells) {
+  std::vector<char> marked(mesh.n_nodes(), 0);
+  for (std::size_t c = 0; c < mesh.n_cells(); ++c)
+    if (cells[c])
+      for (const std::int32_t node : mesh.cells[c]) marked[static_cast<std::size_t>(node)] = 1;
+  return marked;
 }
 
 }  // namespace lacon

@@ -15,7 +15,13 @@ bool names_instants(const Keywords& keywords);
 /// several.
 std::vector<std::int64_t> selected_orders(const Base& base, const Result& result, const Keywords& keywords);
 
+/// The index of a new result: the same calculation, only these of its orders, no fields yet.
+Result part_of(const Result& result, const std::vector<std::int64_t>& orders);
+
 /// One entry a cell of the mesh: not 0 where GROUP_MA means it, or everywhere without GROUP_MA. Throws MESH_1, MESH_2.
 std::vector<char> selected_cells(const Mesh& mesh, const Keywords& keywords);
+
+/// One entry a node of the mesh: 1 where a cell that `cells` marks has it.
+std::vector<char> nodes_of_marked_cells(const Mesh& mesh, const std::vector<char>& cells);
 
 }  // namespace lacon

@@ -20,46 +20,11 @@ std::vector<char> selected_nodes(const Mesh& mesh, const Keywords& keywords, con
   for (const std::string& group : keywords.texts("GROUP_NO"))
     for (const std::int32_t node : nodes_of_group(mesh, group, keywords.path("GROUP_NO")))
       wanted[static_cast<std::size_t>(node)] = 1;
-  if (keywords.has("GROUP_MA"))
-    for (std::size_t c = 0; c < mesh.n_cells(); ++c)
-      if (cells[c])
-        for (const std::int32_t node : mesh.cells[c]) wanted[static_cast<std::size_t>(node)] = 1;
-  return wanted;
-}
-
-Field restrict_to_nodes(const Field& field, const std::vector<char>& wanted) {
-  Field part = field;
-  part.support.clear();
-  part.values.clear();
-  part.present.clear();
-  const std::size_t width = field.n_components();
-  for (std::size_t i = 0; i < field.support.size(); ++i) {
-    if (!wanted[static_cast<std::size_t>(field.support[i])]) continue;
-    part.support.push_back(field.support[i]);
-    for (std::size_t k = 0; k < width; ++k) {
-      part.values.push_back(field.at(i, k));
-      if (!field.present.empty()) part.present.push_back(field.present[i * width + k]);
-    }
+  if (keywords.has("GROUP_MA")) {
+    const std::vector<char> of_cells = nodes_of_marked_cells(mesh, cells);
+    for (std::size_t n = 0; n < wanted.size(); ++n) wanted[n] = wanted[n] || of_cells[n];
   }
-  return part;
-}
-
-/// The components of this list that the field has.
-Field restrict_to_components(const Field& field, const std::vector<std::string>& wanted) {
-  std::vector<std::size_t> kept;
-  for (std::size_t k = 0; k < field.n_components(); ++k)
-    if (std::find(wanted.begin(), wanted.end(), field.components[k]) != wanted.end()) kept.push_back(k);
-  Field part = field;
-  part.components.clear();
-  part.values.clear();
-  part.present.clear();
-  for (const std::size_t k : kept) part.components.push_back(field.components[k]);
-  for (std::size_t row = 0; row < field.n_rows(); ++row)
-    for (const std::size_t k : kept) {
-      part.values.push_back(field.at(row, k));
-      if (!field.present.empty()) part.present.push_back(field.has(row, k) ? 1 : 0);
-    }
-  return part;
+  return wanted;
 }
 
 }  // namespace

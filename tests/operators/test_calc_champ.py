@@ -1,7 +1,9 @@
 """calc_champ alone: a result by hand, fields at nodes out."""
 
+import json
 import unittest
 
+import h5py
 import numpy as np
 from lacon_test import OperatorTest, concept
 
@@ -89,6 +91,15 @@ class CalcChamp(OperatorTest):
     def test_a_result_without_stresses_is_refused(self):
         self.write_result("result_2", "mesh_1", [0.0, 1.0], {}, label="RESU")
         self.refuses("CALCCHAMP_1", {"CONTRAINTE": "SIEF_NOEU"}, "RESU", "SIEF_NOEU")
+        self.refuses("CALCCHAMP_1", {"DEFORMATION": "EPSI_NOEU"}, "DEPL", "EPSI_NOEU")
+        self.refuses("CALCCHAMP_1", {"VARI_INTERNE": "VARI_NOEU"}, "VARI_ELGA")
+
+    def test_internal_variables_go_to_nodes_as_stresses_do(self):
+        variables = {**at_gauss_points(1.0), "quantity": "VARI_R", "components": ["V1", "V2", "V3", "V4"]}
+        self.write_result("result_2", "mesh_1", [0.0, 1.0], {"VARI_ELGA": {1: variables}}, label="RESU")
+        run = self.run_on({"VARI_INTERNE": ["VARI_ELNO", "VARI_NOEU"]})
+        self.assertEqual(run.status, 0, run.stderr)
+        np.testing.assert_allclose(self.read_field("result_2", "VARI_NOEU", 1).values, [stress(x, y, 1.0) for x, y in POINTS], atol=1e-14)
 
     def test_cells_without_stresses_are_refused(self):
         self.refuses("CALCCHAMP_2", {"CONTRAINTE": "SIEF_NOEU", "GROUP_MA": "SKIN"}, "SKIN")
@@ -107,6 +118,112 @@ class CalcChamp(OperatorTest):
             file["values"] = np.array([0.5, 1.0])
         self.run_on({"CONTRAINTE": "SIEF_NOEU", "LIST_INST": concept("list_of_reals_4")})
         self.assertEqual(len(self.read_field("result_2", "SIEF_NOEU", 1).support), 6)
+
+
+#: a distorted cell of each modelisation: points, cell, gradient of a linear displacement u = H x
+SHAPES = {
+    "D_PLAN": ([(0, 0), (1.2, 0.1), (1.0, 1.1), (-0.1, 0.9)], "QUAD4", [[0.02, 0.05], [-0.03, 0.04]]),
+    "C_PLAN": ([(0, 0), (1.2, 0.1), (1.0, 1.1), (-0.1, 0.9)], "QUAD4", [[0.02, 0.05], [-0.03, 0.04]]),
+    "AXIS": ([(1, 0), (2.2, 0.1), (2.0, 1.1), (0.9, 0.9)], "QUAD4", [[0.02, 0.0], [-0.03, 0.04]]),
+    "3D": ([(0, 0, 0), (1.1, 0, 0.1), (0, 0.9, 0), (0.1, 0.2, 1.3)], "TETRA4", [[0.02, 0.05, 0.01], [-0.03, 0.04, 0.02], [0.06, 0, -0.01]]),
+}
+NU = 0.3
+
+
+class Strains(OperatorTest):
+    """A linear displacement has a constant gradient: strains are exact at every point."""
+
+    def calculate(self, modelisation, keywords):
+        points, kind, gradient = SHAPES[modelisation]
+        points, gradient = np.array(points, float), np.array(gradient)
+        dimension = points.shape[1]
+        self.write_mesh("mesh_1", points, [(kind, list(range(4)))])
+        self.write_model("model_2", "mesh_1", [f"{modelisation}/{kind}"], [0], dimension)
+        self.write_material("material_3", ELAS={"E": 1.0, "NU": NU})
+        self.write_material_field("material_field_4", "mesh_1", ["material_3"], [0])
+        displacement = {"quantity": "DEPL_R", "location": "NOEU", "components": ["DX", "DY", "DZ"][:dimension], "support": range(4),
+                        "values": points @ gradient.T}
+        self.write_result("result_5", "mesh_1", [1.0], {"DEPL": {0: displacement}}, model="model_2", material_field="material_field_4")
+        run = self.run_command("CALC_CHAMP", {"RESULTAT": concept("result_5"), **keywords}, result="result_5", reuse=True)
+        self.assertEqual(run.status, 0, run.stderr)
+        h = np.zeros((3, 3))
+        h[:dimension, :dimension] = gradient
+        if modelisation == "AXIS":
+            h[2, 2] = gradient[0, 0]  # u_r = h r
+        small, green = (h + h.T) / 2, (h + h.T + h.T @ h) / 2
+        if modelisation == "C_PLAN":
+            for strain in (small, green):
+                strain[2, 2] = -NU / (1 - NU) * (strain[0, 0] + strain[1, 1])
+        return small, green
+
+    def test_strains_are_exact_in_every_modelisation(self):
+        for modelisation in SHAPES:
+            with self.subTest(modelisation):
+                small, green = self.calculate(modelisation, {"DEFORMATION": ["EPSI_ELGA", "EPSI_NOEU", "EPSG_ELNO", "EPSG_NOEU"]})
+                for name, tensor in (("EPSI_ELGA", small), ("EPSI_NOEU", small), ("EPSG_ELNO", green), ("EPSG_NOEU", green)):
+                    field = self.read_field("result_5", name, 0)
+                    for component, values in zip(field.components, field.values.T):
+                        axes = ["XYZ".index(letter) for letter in component[2:]]
+                        np.testing.assert_allclose(values, tensor[axes[0], axes[1]], rtol=0, atol=1e-15, err_msg=f"{name} {component}")
+
+    def test_invariants_of_strains(self):
+        small, green = self.calculate("3D", {"CRITERES": ["EPEQ_ELGA", "EPGQ_NOEU"]})
+        for name, tensor in (("EPEQ_ELGA", small), ("EPGQ_NOEU", green)):
+            field = self.read_field("result_5", name, 0)
+            got = dict(zip(field.components, field.values[0]))
+            deviator = tensor - np.trace(tensor) / 3 * np.eye(3)
+            self.assertAlmostEqual(got["INVA_2"], np.sqrt(2 / 3 * (deviator**2).sum()), 14)
+            np.testing.assert_allclose([got[f"PRIN_{k}"] for k in (1, 2, 3)], np.linalg.eigvalsh(tensor), atol=1e-15)
+
+    def test_a_cell_turned_inside_out_by_its_displacements_is_refused_where_forces_are_wanted(self):
+        points = np.array(SHAPES["D_PLAN"][0], float)
+        self.write_mesh("mesh_1", points, [("QUAD4", list(range(4)))])
+        self.write_model("model_2", "mesh_1", ["D_PLAN/QUAD4"], [0])
+        displacement = {"quantity": "DEPL_R", "location": "NOEU", "components": ["DX", "DY"], "support": range(4),
+                        "values": points * [-2.0, 0.0]}
+        stress = {"quantity": "SIEF_R", "location": "ELGA", "components": COMPONENTS, "support": [0], "offset": [0, 4], "values": np.ones((4, 4))}
+        self.write_result("result_5", "mesh_1", [1.0], {"DEPL": {0: displacement}, "SIEF_ELGA": {0: stress}}, model="model_2")
+        run = self.run_command("CALC_CHAMP", {"RESULTAT": concept("result_5"), "FORCE": ["FORC_NODA"]}, result="result_5", reuse=True)
+        self.assertEqual(run.status, 0, run.stderr)  # small strains: forces on the initial geometry
+        with h5py.File(self.path("result_5"), "a") as file:
+            file.attrs["behaviour"] = json.dumps([{"RELATION": "ELAS", "DEFORMATION": "GREEN_LAGRANGE"}])
+        self.assert_refuses("FIELDS_4", "CALC_CHAMP", {"RESULTAT": concept("result_5"), "FORCE": ["FORC_NODA"]}, "M1", result="result_5", reuse=True)
+
+
+class Invariants(OperatorTest):
+    def test_invariants_of_stresses_are_those_of_numpy(self):
+        rng = np.random.default_rng(7)
+        tensors = rng.normal(size=(4, 3, 3))
+        tensors = tensors + tensors.transpose(0, 2, 1)
+        tensors[3] = -2.5 * np.eye(3)  # no deviator
+        components = ["SIXX", "SIYY", "SIZZ", "SIXY", "SIXZ", "SIYZ"]
+        values = [[t[0, 0], t[1, 1], t[2, 2], t[0, 1], t[0, 2], t[1, 2]] for t in tensors]
+        self.write_mesh("mesh_1", [(0, 0, 0), (1, 0, 0), (0, 1, 0), (0, 0, 1)], [("TETRA4", [k, (k + 1) % 4, (k + 2) % 4, (k + 3) % 4]) for k in range(4)])
+        stress = {"quantity": "SIEF_R", "location": "ELGA", "components": components, "support": range(4), "offset": range(5), "values": values}
+        self.write_result("result_2", "mesh_1", [0.0], {"SIEF_ELGA": {0: stress}})
+        run = self.run_command("CALC_CHAMP", {"RESULTAT": concept("result_2"), "CRITERES": ["SIEQ_ELGA", "SIEQ_ELNO", "SIEQ_NOEU"],
+                                              "CONTRAINTE": ["SIGM_NOEU"]}, result="result_2", reuse=True)
+        self.assertEqual(run.status, 0, run.stderr)
+        field = self.read_field("result_2", "SIEQ_ELGA", 0)
+        for tensor, row in zip(tensors, field.values):
+            got = dict(zip(field.components, row))
+            principal, deviator = np.linalg.eigvalsh(tensor), tensor - np.trace(tensor) / 3 * np.eye(3)
+            mises = np.sqrt(1.5 * (deviator**2).sum())
+            np.testing.assert_allclose([got["PRIN_1"], got["PRIN_2"], got["PRIN_3"]], principal, atol=1e-14)
+            self.assertAlmostEqual(got["VMIS"], mises, 13)
+            self.assertAlmostEqual(got["TRESCA"], principal[2] - principal[0], 13)
+            self.assertAlmostEqual(got["VMIS_SG"], mises * np.sign(np.trace(tensor)), 13)
+            self.assertAlmostEqual(got["TRSIG"], np.trace(tensor), 13)
+            self.assertAlmostEqual(got["TRIAX"], np.trace(tensor) / 3 / mises if mises > 0 else 0, 12)
+            for k, value in enumerate(principal, 1):
+                vector = np.array([got[f"VECT_{k}_{axis}"] for axis in "XYZ"])
+                np.testing.assert_allclose(tensor @ vector, value * vector, atol=1e-13)
+                self.assertAlmostEqual(np.linalg.norm(vector), 1, 14)
+                self.assertGreater(vector[np.argmax(abs(vector))], 0)
+        # one point a cell: at its nodes the same, at nodes the mean over the four cells (of VMIS, not VMIS of the mean)
+        nodes = self.read_field("result_2", "SIEQ_NOEU", 0)
+        np.testing.assert_allclose(nodes.values, np.tile(field.values.mean(0), (4, 1)), atol=1e-13)
+        np.testing.assert_allclose(self.read_field("result_2", "SIGM_NOEU", 0).values, np.tile(np.mean(values, 0), (4, 1)), atol=1e-14)
 
 
 if __name__ == "__main__":

@@ -1,0 +1,30 @@
+#pragma once
+// Strains at integration points from displacements, and nodal forces from stresses.
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "lacon/operators/fields/cell_points.hpp"
+#include "lacon/structures/field.hpp"
+
+namespace lacon {
+
+enum class Strain {
+  small,          ///< EPSI: (H + H^T) / 2 of the displacement gradient H
+  green_lagrange  ///< EPSG: (H + H^T + H^T H) / 2
+};
+
+/// Strains at the integration points of the body cells that `wanted` marks, components EPXX EPYY EPZZ EPXY (EPXZ EPYZ). EPZZ is
+/// 0 in plane strain, the hoop strain u_r / r in axisymmetry (Green-Lagrange: e + e^2 / 2), and in plane stress that of an
+/// isotropic elastic body, -nu / (1 - nu) (EPXX + EPYY). @param displacement nodal, DX DY (DZ) @param poisson of a cell, asked
+/// in plane stress only
+Field strains(const Mesh& mesh, ModelPoints& points, const Field& displacement, const std::vector<char>& wanted, Strain measure,
+              std::string name, const std::function<double(std::int32_t)>& poisson);
+
+/// Forces at nodes that the stresses do work with, the sum over cells of the integral of B^T sigma; components DX DY (DZ) on
+/// the nodes of these cells. @param stress at integration points, Cauchy @param moved one entry a cell of the mesh, not 0 where
+/// the stresses live on the current geometry (large strains) and not on the initial one @param current (n_nodes, 3)
+Field nodal_forces(const Mesh& mesh, ModelPoints& points, const Field& stress, const std::vector<char>& moved,
+                   std::span<const double> current, std::string name);
+
+}  // namespace lacon
