@@ -99,6 +99,35 @@ double distortion(const Map3& map, Family family, Vec3 normal) {
   return low > 0 ? (high - low) / (high + low) : 1;
 }
 
+std::vector<Vec3> hull(Family family, int degree, const std::function<Vec3(Vec2)>& polynomial) {
+  std::vector<Vec3> net;
+  if (family == Family::TRIA) {
+    const std::span<const Vec2> p = probes(family);
+    for (int i = 0; i < 3; ++i) net.push_back(polynomial(p[i]));
+    for (int i = 0; i < 3 && degree == 2; ++i) net.push_back(2 * polynomial(p[3 + i]) - 0.5 * (net[i] + net[(i + 1) % 3]));
+    return net;
+  }
+  // on a line: from values at degree + 1 equidistant points to coefficients
+  static constexpr double coefficient[4][4][4] = {
+      {},
+      {{1, 0}, {0, 1}},
+      {{1, 0, 0}, {-1. / 2, 2, -1. / 2}, {0, 0, 1}},
+      {{1, 0, 0, 0}, {-5. / 6, 3, -3. / 2, 1. / 3}, {1. / 3, -3. / 2, 3, -5. / 6}, {0, 0, 0, 1}}};
+  const auto& c = coefficient[degree];
+  const int n = degree + 1;
+  std::array<Vec3, 16> value;
+  for (int j = 0; j < n; ++j)
+    for (int i = 0; i < n; ++i) value[j * n + i] = polynomial({2.0 * i / degree - 1, 2.0 * j / degree - 1});
+  for (int j = 0; j < n; ++j)
+    for (int i = 0; i < n; ++i) {
+      Vec3 sum;
+      for (int l = 0; l < n; ++l)
+        for (int k = 0; k < n; ++k) sum = sum + (c[i][k] * c[j][l]) * value[l * n + k];
+      net.push_back(sum);
+    }
+  return net;
+}
+
 std::span<const Vec2> probes(Family family) {
   static constexpr Vec2 triangle[] = {{0, 0}, {1, 0}, {0, 1}, {0.5, 0}, {0.5, 0.5}, {0, 0.5}, {1.0 / 3, 1.0 / 3}};
   static constexpr Vec2 square[] = {{-1, -1}, {1, -1}, {1, 1}, {-1, 1}, {0, -1}, {1, 0}, {0, 1}, {-1, 0}, {0, 0}};

@@ -2,8 +2,10 @@
 // The geometry of a facet as a polynomial of its reference coordinates, in space or projected to a plane.
 #include <array>
 #include <cmath>
+#include <functional>
 #include <optional>
 #include <span>
+#include <vector>
 
 #include "lacon/catalog/cells.hpp"
 #include "lacon/pairing/polygon.hpp"
@@ -69,6 +71,10 @@ std::optional<Vec2> inverse(const Map2& map, Family family, Vec2 y, double toler
 /// How much the Jacobian along `normal` varies, (max - min) / (max + min) over vertices, middles of edges and the middle; 0 for
 /// an affine facet, at least 1 for a folded one.
 double distortion(const Map3& map, Family family, Vec3 normal);
+
+/// Vectors whose convex hull holds every value of a polynomial on the reference cell: its Bernstein coefficients.
+/// @param degree 1 or 2 in both coordinates together on triangles; 1, 2 or 3 in each of them on quadrangles
+std::vector<Vec3> hull(Family family, int degree, const std::function<Vec3(Vec2)>& polynomial);
 
 /// Reference points where a facet is examined: vertices, middles of edges, the middle.
 std::span<const Vec2> probes(Family family);

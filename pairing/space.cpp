@@ -149,7 +149,7 @@ class SlaveFacet {
       }
       nodal_ = interpolate(f.type, std::span<const Vec3>(normals).first(nodes.size()));
     }
-    double turn = 0, bend = 0;
+    double turn = 0;
     for (const Vec2 p : probes(f.family)) {
       const Map3::Value v = f.x(p);
       if (!(dot(cross(v.d1, v.d2), n) > tolerances.degenerate * f.size * f.size)) return;
@@ -172,25 +172,23 @@ class SlaveFacet {
       piece.normal = n;
       pieces.push_back(std::move(piece));
     } else {
-      for (int k = 3; k < f.x.n && !plane; ++k) bend += norm(f.x.c[k]);
-      subdivide(std::clamp(1 + static_cast<int>(std::ceil(8 * std::max(turn, bend / f.size))), 2, 6));
+      // both are the same whichever node is the first
+      double bulge = 0;
+      for (int i = 0; i < f.n_vertices && !plane; ++i)
+        bulge = std::max(bulge, norm(f.nodes[f.n_vertices + i] - 0.5 * (f.nodes[i] + f.nodes[(i + 1) % f.n_vertices])));
+      const double steps = 8 * std::max(turn, 4 * bulge / f.diameter());
+      subdivide(f.family == Family::TRIA ? std::clamp(1 + static_cast<int>(std::ceil(steps)), 2, 6)
+                                         : std::clamp(1 + static_cast<int>(std::ceil(steps / std::numbers::sqrt2)), 2, 4));
     }
     chart_area = 0;
     for (const Piece& piece : pieces) chart_area += double_area(piece.polygon);
-    probe_.clear();
-    for (const Vec2 p : probes(f.family)) probe_.push_back({f.x(p).x, direction(p)});
+    build_walls();
   }
 
   /// The unit normal at a reference point.
   Vec3 direction(Vec2 xi) const {
     if (constant_normal()) return n;
-    Vec3 m;
-    if (smooth_) {
-      m = nodal_(xi).x;
-    } else {
-      const Map3::Value v = f.x(xi);
-      m = cross(v.d1, v.d2);
-    }
+    const Vec3 m = unscaled_direction(xi);
     return (1 / norm(m)) * m;
   }
 
@@ -224,37 +222,53 @@ class SlaveFacet {
     return {piece.polygon[0], {(ds * v.y - dt * u.y) / det, (dt * u.x - ds * v.x) / det}, s[0]};
   }
 
-  /// False only where no normal of the slave meets the box.
+  /// False only where no normal of the slave meets the box. A point q = x(xi) + t m(xi) has the height t = (q - x) . n over x
+  /// if m is scaled to m . n = 1; then m leans by at most `lean_` and q lies at most lean_ |t| beyond the walls around the
+  /// slave.
   bool touches(const Box<3>& box) const {
     const Vec3 centre =
         Vec3{0.5 * (box.low[0] + box.high[0]), 0.5 * (box.low[1] + box.high[1]), 0.5 * (box.low[2] + box.high[2])} - f.origin;
     const Vec3 half{0.5 * (box.high[0] - box.low[0]), 0.5 * (box.high[1] - box.low[1]), 0.5 * (box.high[2] - box.low[2])};
     const auto reach = [&](Vec3 d) { return half.x * std::abs(d.x) + half.y * std::abs(d.y) + half.z * std::abs(d.z); };
-    if (constant) {
-      for (int i = 0; i < f.n_vertices; ++i) {
-        const Vec3 out = cross(f.nodes[(i + 1) % f.n_vertices] - f.nodes[i], n);
-        if (dot(out, centre - f.nodes[i]) > reach(out)) return false;
-      }
-      return true;
-    }
-    // (q - x(xi)) . (w x n(xi)) is 0 on the normal at xi; probes bound it, with a margin for what lies between them
-    for (const Vec3 w : {e1, e2, e1 + e2, e1 - e2}) {
-      double low = std::numeric_limits<double>::infinity(), high = -low, range = 0;
-      for (const auto& [x, m] : probe_) {
-        const Vec3 t = cross(w, m);
-        const double s = dot(centre - x, t);
-        low = std::min(low, s);
-        high = std::max(high, s);
-        range = std::max(range, reach(t));
-      }
-      const double margin = range + 0.25 * (high - low);
-      if (low > margin || high < -margin) return false;
-    }
+    const double leaning = lean_ > 0 ? lean_ * (std::abs(dot(centre, n)) + reach(n) + height_) : 0;
+    for (int i = 0; i < f.n_vertices; ++i)
+      if (dot(walls_[i].out, centre) - reach(walls_[i].out) > walls_[i].offset + leaning) return false;
     return true;
   }
 
  private:
   bool constant_normal() const { return constant && !pieces.empty(); }
+
+  Vec3 unscaled_direction(Vec2 xi) const {
+    if (smooth_) return nodal_(xi).x;
+    const Map3::Value v = f.x(xi);
+    return cross(v.d1, v.d2);
+  }
+
+  void build_walls() {
+    for (int i = 0; i < f.n_vertices; ++i) {
+      const Vec3 out = cross(f.nodes[(i + 1) % f.n_vertices] - f.nodes[i], n);
+      const double length = norm(out);
+      walls_[i] = {length > 0 ? (1 / length) * out : Vec3{}, 0};
+    }
+    lean_ = height_ = 0;
+    if (constant) {
+      for (int i = 0; i < f.n_vertices; ++i)
+        for (int k = 0; k < f.n_vertices; ++k) walls_[i].offset = std::max(walls_[i].offset, dot(walls_[i].out, f.nodes[k]));
+      return;
+    }
+    for (const Vec3 x : hull(f.family, f.order, [&](Vec2 xi) { return f.x(xi).x; })) {
+      for (int i = 0; i < f.n_vertices; ++i) walls_[i].offset = std::max(walls_[i].offset, dot(walls_[i].out, x));
+      height_ = std::max(height_, std::abs(dot(n, x)));
+    }
+    height_ += 0.25 * f.size;
+    const int degree = smooth_ ? f.order : f.family == Family::TRIA ? std::max(1, 2 * f.order - 2) : 2 * f.order - 1;
+    for (const Vec3 m : hull(f.family, degree, [&](Vec2 xi) { return unscaled_direction(xi); })) {
+      const double up = dot(m, n);
+      lean_ = up > 0 ? std::max(lean_, norm(m - up * n) / up) : std::numeric_limits<double>::infinity();
+      if (!(up > 0)) break;
+    }
+  }
 
   void subdivide(int k) {
     const auto vertex = [&](double a, double b) {
@@ -272,17 +286,32 @@ class SlaveFacet {
       }
       pieces.push_back(std::move(piece));
     };
+    if (f.family == Family::TRIA) {
+      for (int j = 0; j < k; ++j)
+        for (int i = 0; i < k - j; ++i) {
+          add(vertex(i, j), vertex(i + 1, j), vertex(i, j + 1));
+          if (i + j + 1 < k) add(vertex(i + 1, j), vertex(i + 1, j + 1), vertex(i, j + 1));
+        }
+      return;
+    }
+    // around the middle of each square: the same pieces whichever node is the first
     for (int j = 0; j < k; ++j)
-      for (int i = 0; i < (f.family == Family::TRIA ? k - j : k); ++i) {
-        add(vertex(i, j), vertex(i + 1, j), vertex(i, j + 1));
-        if (f.family != Family::TRIA || i + j + 1 < k) add(vertex(i + 1, j), vertex(i + 1, j + 1), vertex(i, j + 1));
+      for (int i = 0; i < k; ++i) {
+        const std::array<Vec2, 4> corner{vertex(i, j), vertex(i + 1, j), vertex(i + 1, j + 1), vertex(i, j + 1)};
+        for (int c = 0; c < 4; ++c) add(corner[c], corner[(c + 1) % 4], vertex(i + 0.5, j + 0.5));
       }
   }
 
   bool smooth_ = false;
   Map3 nodal_;
   Map2 chart_;
-  std::vector<std::pair<Vec3, Vec3>> probe_;
+  struct Wall {
+    Vec3 out;       ///< unit, at a right angle to n
+    double offset;  ///< out . x is nowhere larger on the slave
+  };
+  std::array<Wall, 4> walls_;
+  double lean_ = 0;    ///< tangent of the largest angle between a normal and n, or infinity
+  double height_ = 0;  ///< largest |n . x|, and an allowance for what pieces get wrong along the border
 };
 
 /// Where the normal at a point of a slave meets the true master.

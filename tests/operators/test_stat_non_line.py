@@ -158,6 +158,23 @@ class StatNonLine(OperatorTest):
             open_or_unpaired = "0 open, 1 without" if limit == 0.29 else "1 open, 0 without"
             self.assertIn(open_or_unpaired, run.stdout)
 
+    def test_one_slave_cell_over_two_separate_masters_pairs_with_both(self):
+        """Masters under 0 to 0.3 and under 0.6 to 1: covered is 0.7, and the gap is their mean. Everything is held."""
+        below = [(0.3 * x, y - 0.1) for x, y in square(-1)] + [(0.6 + 0.4 * x, y - 0.2) for x, y in square(-1)]
+        cells = [("SEG3", [2, 3, 6]), ("SEG3", [10, 11, 14]), ("SEG3", [16, 17, 20]), ("SEG3", [18, 19, 22]),
+                 ("QUAD8", LOWER), ("QUAD8", UPPER), ("QUAD8", [n + 16 for n in LOWER])]
+        self.write_mesh("mesh_1", below + square(0), cells)
+        self.write_patches([2], [20])
+        self.write_model("model_2", "mesh_1", ["D_PLAN/SEG3", "D_PLAN/QUAD8"], [0, 0, 0, 0, 1, 1, 1])
+        self.write_material_field("material_field_4", "mesh_1", ["material_3"], [0] * 7)
+        self.write_load("load_5", imposed=[(n, component, 0.0) for n in range(24) for component in ("DX", "DY")], kind="cine")
+        self.write_contact("contact_7", initial="NON", slave=[2], master=[0, 1])
+        run = self.solve(loads=["load_5"])
+        self.assertEqual(run.status, 0, run.stderr)
+        contact = self.read_field("result_9", "CONT_ELEM", 1)
+        gap = (0.3 * 0.1 + 0.4 * 0.2) / 0.7
+        np.testing.assert_allclose(contact.values, [[0, 0, gap, 0.7, 0]], rtol=0, atol=1e-14)
+
     def test_every_slave_cell_is_integrated_by_the_kernel_of_its_own_element(self):
         """Two slave cells of one kind, one of them axisymmetric: its measure has the factor r. Everything is held."""
         shifted = [(x + 1, y) for x, y in square(-1) + square(0)]
