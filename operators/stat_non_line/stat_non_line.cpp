@@ -8,6 +8,7 @@
 #include "lacon/catalog/messages.hpp"
 #include "lacon/operators/evolution/archive.hpp"
 #include "lacon/operators/evolution/newton.hpp"
+#include "lacon/operators/evolution/observation.hpp"
 #include "lacon/operators/evolution/table.hpp"
 #include "lacon/operators/evolution/time_stepping.hpp"
 #include "lacon/operators/program/program.hpp"
@@ -46,35 +47,31 @@ TimeSteps steps_of(const Keywords& increment, const Base& base) {
 /// Which instants and fields are kept. The first and the last instant always are.
 class Archiving {
  public:
-  Archiving(const Keywords& keywords, const Base& base)
-      : every_(keywords.has("PAS_ARCH") ? keywords.integer("PAS_ARCH") : 1),
-        listed_(keywords.has("LIST_INST") || keywords.has("INST")),
-        instants_(keywords.has("LIST_INST") ? base.list_of_reals(keywords.concept_id("LIST_INST")) : keywords.reals("INST")),
-        precision_(keywords.real("PRECISION")),
-        relative_(keywords.text("CRITERE") == "RELATIF") {
+  Archiving(const Keywords& keywords, const Base& base) : instants_(keywords, base, "PAS_ARCH") {
     for (const std::string& name : keywords.texts("CHAM_EXCLU")) excluded_.insert(name);
   }
-  bool keeps(double instant, std::int64_t step) const {
-    if (!listed_) return step % every_ == 0;
-    return std::any_of(instants_.begin(), instants_.end(), [&](double listed) {
-      return std::abs(instant - listed) <= precision_ * (relative_ ? std::abs(listed) : 1.0);
-    });
-  }
+  bool keeps(double instant, std::int64_t step) const { return instants_.has(instant, step); }
   bool keeps(const std::string& field) const { return !excluded_.contains(field); }
 
  private:
-  std::int64_t every_;
-  bool listed_;
-  std::vector<double> instants_;
-  double precision_;
-  bool relative_;
+  ChosenInstants instants_;
   std::set<std::string> excluded_;
 };
+
+/// The fields of the instant that was solved last.
+FieldMakers fields_at(const StaticProblem& problem, const StaticState& state, const Newton& newton) {
+  FieldMakers fields;
+  fields["DEPL"] = [&] { return displacement_field(problem, state); };
+  fields["SIEF_ELGA"] = [&] { return stress_field(problem, newton.stresses()); };
+  if (const ContactState* contact = newton.contact())
+    fields["CONT_ELEM"] = [&, contact] { return contact_field(problem, state, *contact); };
+  return fields;
+}
 
 /// The result as it grows.
 class Archive {
  public:
-  Archive(const Order& order, const Base& base, const StaticProblem& problem) : base_(base), problem_(problem) {
+  Archive(const Order& order, const Base& base, const StaticProblem& problem) : base_(base) {
     const Keywords& keywords = order.keywords;
     result_.label = order.result_label;
     result_.model = keywords.concept_id("MODELE");
@@ -86,19 +83,18 @@ class Archive {
     result_.behaviour = keywords.values().value("COMPORTEMENT", nlohmann::json::array()).dump();
   }
 
-  void add(double instant, int iterations, const StaticState& state, const Newton& newton, const Archiving& archiving) {
+  void add(double instant, int iterations, const StaticState& state, const FieldMakers& fields, const ContactState* contact,
+           const Archiving& archiving) {
     const Phase phase("archive");
     const auto number = static_cast<std::int64_t>(result_.orders.size());
-    const auto keep = [&](Field field) {
-      if (!archiving.keeps(field.name)) return;
+    for (const auto& [name, make] : fields) {
+      if (!archiving.keeps(name)) continue;
+      Field field = make();
       field.order = number;
       field.instant = instant;
       base_.add_field(result_, std::move(field));
-    };
-    keep(displacement_field(problem_, state));
-    keep(stress_field(problem_, newton.stresses()));
-    if (const ContactState* contact = newton.contact()) keep(contact_field(problem_, state, *contact));
-    if (const ContactState* contact = newton.contact()) add_balance(contact->balance(state.patches));
+    }
+    if (contact) add_balance(contact->balance(state.patches));
     result_.orders.push_back(number);
     result_.instants.push_back(instant);
     result_.parameters["newton_iterations"].push_back(iterations);
@@ -122,13 +118,15 @@ class Archive {
       put("largest_lambda_gap", zones[z].work);
     }
   }
-  void store() const { base_.store(result_); }
+  void store(const std::optional<Table>& observed) {
+    if (observed) result_.tables["OBSERVATION"] = *observed;
+    base_.store(result_);
+  }
   void discard() const { base_.discard(result_); }
   std::size_t n_instants() const { return result_.orders.size(); }
 
  private:
   const Base& base_;
-  const StaticProblem& problem_;
   Result result_;
 };
 
@@ -157,8 +155,11 @@ void stat_non_line(const Order& order, const Base& base) {
       }
     if (locked) inform("EVOLUTION_6", {{"count", std::to_string(locked)}, {"cell", cell_name(first)}});
   }
+  Observations observations(keywords, base, problem.mesh);
+  const FieldMakers fields = fields_at(problem, state, newton);
+  observations.start(steps.values.front(), fields);
   Archive archive(order, base, problem);
-  archive.add(steps.values.front(), 0, state, newton, archiving);
+  archive.add(steps.values.front(), 0, state, fields, newton.contact(), archiving);
 
   int iterations = 0;
   std::int64_t step = 0;
@@ -175,19 +176,20 @@ void stat_non_line(const Order& order, const Base& base) {
     last = state;
     step += asked;
     if (archiving.keeps(instant, step) || instant == steps.values.back())
-      archive.add(instant, iterations, state, newton, archiving);
+      archive.add(instant, iterations, state, fields, newton.contact(), archiving);
+    observations.observe(instant, step, fields);
   };
   try {
     step_through(steps, solve, go_back, solved);
   } catch (...) {
     // what was computed before the failure is not lost; without it the base stays as it was
     if (archive.n_instants() > 1)
-      archive.store();
+      archive.store(observations.table());
     else
       archive.discard();
     throw;
   }
-  archive.store();
+  archive.store(observations.table());
 }
 
 }  // namespace lacon

@@ -266,6 +266,16 @@ class OperatorTest(unittest.TestCase):
                 types=[names[i] for i in file["cells/type"][()]], cells=read_ragged(file["cells"], "offset", "nodes"),
                 cell_groups=read_groups(file["groups/cells"]), node_groups=read_groups(file["groups/nodes"]), patches=patches)
 
+    def read_table(self, group):
+        """Rows of a table, column -> cell, None where it is missing."""
+        columns = {}
+        for k, name in enumerate(group["columns"].asstr()[:]):
+            data = group[f"values/{k}"]
+            values = (data.asstr()[:] if h5py.check_string_dtype(data.dtype) else data[:]).tolist()
+            there = group[f"present/{k}"][:] if f"present/{k}" in group else [1] * len(values)
+            columns[name] = [v if p else None for v, p in zip(values, there)]
+        return [dict(zip(columns, row)) for row in zip(*columns.values())]
+
     def read_field(self, result, name, order):
         """@return the field file as a namespace: .attributes, .components, .support, .values, .offset and .present (or None)"""
         with h5py.File(self.path(result)) as index:

@@ -25,7 +25,9 @@ BASE = [(n, "DY", 0.0) for n in (0, 1, 4)]
 AXIS = [(n, "DX", 0.0) for n in (0, 3, 7, 8, 11, 15)]
 
 
-class StatNonLine(OperatorTest):
+class TwoSquares(OperatorTest):
+    """The base of these tests, without tests."""
+
     def setUp(self):
         super().setUp()
         self.write_mesh("mesh_1", square(-1) + square(0), CELLS, cell_groups={"MASTER": [0], "SLAVE": [1]})
@@ -102,6 +104,8 @@ class StatNonLine(OperatorTest):
     def assert_fails(self, identifier, *words, status=2, **changes):
         return self.assert_refuses(identifier, "STAT_NON_LINE", self.keywords(**changes), *words, status=status, result="result_9")
 
+
+class StatNonLine(TwoSquares):
     # ------------------------------------------------------------------------------------------ what it computes
 
     def test_two_squares_pressed_together_are_uniform(self):

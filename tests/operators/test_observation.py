@@ -1,0 +1,98 @@
+"""OBSERVATION and SUIVI_DDL of stat_non_line, on the two squares of test_stat_non_line: every value is known in closed form."""
+
+import math
+import unittest
+
+import h5py
+from lacon_test import concept
+from test_stat_non_line import EXX, EYY, NU, PRESSURE, TwoSquares
+
+COLUMNS = ["NOM_OBSERVATION", "TYPE_OBJET", "NUME_REUSE", "NUME_OBSE", "INST", "NOM_CHAM", "EVAL_CHAM", "NOM_CMP", "NOM_VARI", "EVAL_CMP",
+           "NOEUD", "MAILLE", "EVAL_ELGA", "POINT", "SOUS_POINT", "VALE", "NUME_GLOBAL_NOEUD"]
+
+
+class Observation(TwoSquares):
+    def observe(self, *occurrences, **changes):
+        """The table of observations: occurrences are dicts of keywords."""
+        run = self.solve(OBSERVATION=list(occurrences), **changes)
+        self.assertEqual(run.status, 0, run.stderr)
+        with h5py.File(self.path("result_9")) as file:
+            table = self.read_table(file["tables/OBSERVATION"])
+        self.assertEqual(list(table[0]), COLUMNS)
+        return table
+
+    def assert_rows(self, table, names, rows):
+        """The columns `names` of the table, reals to 1e-12."""
+        found = [[row[name] for name in names] for row in table]
+        self.assertEqual(len(found), len(rows), found)
+        for got, expected in zip(found, rows):
+            for a, b in zip(got, expected):
+                self.assertTrue(math.isclose(a, b, abs_tol=1e-11) if isinstance(b, float) else a == b, (got, expected))
+
+    def test_values_at_nodes(self):
+        table = self.observe({"NOM_CHAM": "DEPL", "NOM_CMP": ["DX", "LAGS_C"], "NOEUD": ["N2", "N13"], "INST": [1.0], "OBSE_ETAT_INIT": "NON"})
+        self.assert_rows(table, ["NOM_OBSERVATION", "TYPE_OBJET", "NUME_OBSE", "INST", "EVAL_CHAM", "NOM_CMP", "NOEUD", "NUME_GLOBAL_NOEUD", "VALE"],
+                         [["OBSERVATION_1", "NOEUD", 0, 1.0, "VALE", "DX", "N2", 2, EXX],
+                          ["OBSERVATION_1", "NOEUD", 0, 1.0, "VALE", "DX", "N13", 13, EXX / 2],
+                          ["OBSERVATION_1", "NOEUD", 0, 1.0, "VALE", "LAGS_C", "N13", 13, -PRESSURE]])
+
+    def test_reductions_over_nodes_of_cells(self):
+        occurrences = [{"NOM_CHAM": "DEPL", "NOM_CMP": ["DY"], "GROUP_MA": ["SLAVE"], "EVAL_CHAM": how, "OBSE_ETAT_INIT": "NON"}
+                       for how in ("MIN", "MAX", "MOY", "MINI_ABS", "MAXI_ABS")]
+        occurrences[2] = {**occurrences[2], "GROUP_MA": None, "MAILLE": ["M3"], "TITRE": "upper"}
+        table = self.observe(*[{k: v for k, v in o.items() if v is not None} for o in occurrences])
+        self.assert_rows(table, ["NOM_OBSERVATION", "EVAL_CHAM", "NOEUD", "VALE"],
+                         [["OBSERVATION_1", "MIN", None, EYY], ["OBSERVATION_2", "MAX", None, EYY], ["upper", "MOY", None, 2 * EYY],
+                          ["OBSERVATION_4", "MINI_ABS", None, -EYY], ["OBSERVATION_5", "MAXI_ABS", None, -EYY]])
+
+    def test_fields_on_cells_and_at_points(self):
+        table = self.observe({"NOM_CHAM": "CONT_ELEM", "NOM_CMP": ["PRES", "CONT"], "OBSE_ETAT_INIT": "NON"},
+                             {"NOM_CHAM": "SIEF_ELGA", "NOM_CMP": ["SIYY"], "MAILLE": ["M4"], "POINT": [1, 9], "OBSE_ETAT_INIT": "NON"},
+                             {"NOM_CHAM": "SIEF_ELGA", "NOM_CMP": ["SIZZ"], "EVAL_ELGA": "MAX", "OBSE_ETAT_INIT": "NON"},
+                             {"NOM_CHAM": "SIEF_ELGA", "NOM_CMP": ["SIZZ"], "EVAL_ELGA": "MIN", "EVAL_CHAM": "MOY", "OBSE_ETAT_INIT": "NON"})
+        self.assert_rows(table, ["NOM_OBSERVATION", "MAILLE", "EVAL_ELGA", "POINT", "NOM_CMP", "VALE"],
+                         [["OBSERVATION_1", "M2", None, None, "PRES", -PRESSURE], ["OBSERVATION_1", "M2", None, None, "CONT", 1.0],
+                          ["OBSERVATION_2", "M4", "VALE", 1, "SIYY", -PRESSURE], ["OBSERVATION_2", "M4", "VALE", 9, "SIYY", -PRESSURE],
+                          ["OBSERVATION_3", "M4", "MAX", None, "SIZZ", -NU * PRESSURE], ["OBSERVATION_3", "M5", "MAX", None, "SIZZ", -NU * PRESSURE],
+                          ["OBSERVATION_4", None, "MIN", None, "SIZZ", -NU * PRESSURE]])
+
+    def test_instants(self):
+        self.write_function("function_10", [0.0, 1.0], [0.0, 1.0])
+        self.write_list("list_of_reals_11", [0.0, 0.25, 0.5, 0.75, 1.0])
+        self.write_list("list_of_reals_12", [0.25, 1.0])
+        loads = ["load_5", {"CHARGE": concept("load_6"), "FONC_MULT": concept("function_10")}]
+        what = {"NOM_CHAM": "DEPL", "NOM_CMP": ["LAGS_C"], "EVAL_CHAM": "MIN"}
+        table = self.observe({**what, "TITRE": "all"}, {**what, "PAS_OBSE": 2, "TITRE": "second"}, {**what, "INST": [0.5000000001], "TITRE": "one"},
+                             {**what, "LIST_INST": concept("list_of_reals_12"), "OBSE_ETAT_INIT": "NON", "TITRE": "list"},
+                             loads=loads, INCREMENT={"LIST_INST": concept("list_of_reals_11")})
+        for name, instants in (("all", [0, 0.25, 0.5, 0.75, 1]), ("second", [0, 0.5, 1]), ("one", [0, 0.5]), ("list", [0.25, 1])):
+            rows = [row for row in table if row["NOM_OBSERVATION"] == name]
+            self.assert_rows(rows, ["NUME_OBSE", "INST", "VALE"], [[i, float(t), -PRESSURE * t] for i, t in enumerate(instants)])
+
+    def test_followed_values_are_printed(self):
+        run = self.solve(SUIVI_DDL=[{"NOM_CHAM": "DEPL", "NOM_CMP": ["DY"], "EVAL_CHAM": "MIN"},
+                                    {"NOM_CHAM": "DEPL", "NOM_CMP": ["LAGS_C"], "NOEUD": ["N13"], "TITRE": ["PRESSURE", "HERE"]}])
+        self.assertEqual(run.status, 0, run.stderr)
+        self.assertRegex(run.stdout, rf"SUIVI_1 +DEPL DY MIN {2 * EYY:.9g}\n PRESSURE HERE +DEPL LAGS_C N13 -25\n")
+        with h5py.File(self.path("result_9")) as file:
+            self.assertNotIn("tables", file)
+
+    def test_what_cannot_be_observed_is_refused_before_the_first_instant(self):
+        for identifier, occurrence, words in (
+                ("OBSERVATION_1", {"NOM_CHAM": "SIEF_NOEU", "NOM_CMP": ["SIYY"]}, ["SIEF_NOEU"]),
+                ("OBSERVATION_2", {"NOM_CHAM": "DEPL", "NOM_CMP": ["DZ"]}, ["DZ"]),
+                ("OBSERVATION_3", {"NOM_CHAM": "SIEF_ELGA", "NOM_CMP": ["SIYY"], "NOEUD": ["N1"], "EVAL_ELGA": "MIN"}, ["NOEUD"]),
+                ("OBSERVATION_3", {"NOM_CHAM": "SIEF_ELGA", "NOM_CMP": ["SIYY"]}, ["EVAL_ELGA"]),
+                ("OBSERVATION_3", {"NOM_CHAM": "DEPL", "NOM_CMP": ["DX"], "POINT": [1]}, ["POINT"]),
+                ("OBSERVATION_4", {"NOM_CHAM": "CONT_ELEM", "NOM_CMP": ["PRES"], "MAILLE": ["M4"]}, ["CONT_ELEM"]),
+                ("OBSERVATION_4", {"NOM_CHAM": "DEPL", "NOM_CMP": ["LAGS_C"], "NOEUD": ["N1"], "OBSE_ETAT_INIT": "NON"}, ["DEPL"]),
+                ("OBSERVATION_5", {"NOM_CHAM": "DEPL", "NOM_CMP": ["DX"], "NOEUD": ["N17"]}, ["N17"]),
+                ("OBSERVATION_6", {"NOM_CHAM": "SIEF_ELGA", "NOM_CMP": ["SIYY"], "POINT": [10]}, ["10", "M4", "9"]),
+                ("MESH_1", {"NOM_CHAM": "DEPL", "NOM_CMP": ["DX"], "GROUP_MA": ["SLAV"]}, ["SLAV"])):
+            with self.subTest(identifier):
+                run = self.assert_fails(identifier, *words, OBSERVATION=[occurrence])
+                self.assertNotIn("Instant de calcul", run.stdout)
+
+
+if __name__ == "__main__":
+    unittest.main()
