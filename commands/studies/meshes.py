@@ -30,13 +30,16 @@ VOLUMES = {
 }
 CELLS.update({kind: (med, 3, "") for kind, (med, _) in VOLUMES.items()})
 
-#: family -> vertices (of a cube, by number as in HEXA8; 8 is its centre) of the cells that a cube is cut into
+#: name of a cut -> vertices (of a cube, by number as in HEXA8; 8 is its centre) of the cells that a cube is cut into
 CUBE = {
     "HEXA": ["01234567"],
     "PENTA": ["013457", "123567"],
     "PYRAM": ["01238", "04518", "15628", "26738", "37408", "47658"],
+    "PYRAM/VERTEX": ["15620", "26730", "47650"],  # all apices in one vertex: the faces that meet there are two triangles each
     "TETRA": ["0126", "0236", "0376", "0746", "0456", "0516"],
 }
+#: cuts that fit together only if each cube is the mirror image of its neighbours -> the vertices of a cell seen in a mirror
+MIRRORED = {"PYRAM/VERTEX": (0, 3, 2, 1, 4)}
 CORNERS = ((0, 0, 0), (4, 0, 0), (4, 4, 0), (0, 4, 0), (0, 0, 4), (4, 0, 4), (4, 4, 4), (0, 4, 4), (2, 2, 2))
 
 
@@ -109,13 +112,14 @@ def block(kind, s, t, place=None, name="", sides=None):
     return mesh
 
 
-def brick(kind, lines, place=None, name="", sides=None, curved=False):
+def brick(kind, lines, place=None, name="", sides=None, curved=False, cut=None):
     """A box of volume cells, each cube of the grid cut into cells of the kind. @param lines three arrays of parameters, increasing
     @param place maps parameters (r, s, t) to a point and keeps right-handedness; None: the point is (r, s, t)
     @param sides (axis, end: 0 or 1) -> name of the group of skin cells, whose normals leave the box
-    @param curved put middle nodes by `place`, else into the middle of their vertices"""
+    @param curved put middle nodes by `place`, else into the middle of their vertices
+    @param cut row of CUBE; None: the one of the kind's name"""
     spots = [[int(v) for v in spot] for spot in VOLUMES[kind][1].split()]
-    family = kind.rstrip("0123456789")
+    cut = cut or kind.rstrip("0123456789")
     size = [len(line) - 1 for line in lines]
     numbers, points = {}, []
 
@@ -148,8 +152,11 @@ def brick(kind, lines, place=None, name="", sides=None, curved=False):
     cells, skins = [], {}
     members = {group: [] for group in (sides or {}).values()}
     for base in np.ndindex(*size):
-        for names in CUBE[family]:
-            corner = [tuple(4 * b + c for b, c in zip(base, CORNERS[int(n)])) for n in names]
+        turned = [cut in MIRRORED and b % 2 for b in base]
+        for names in CUBE[cut]:
+            corner = [tuple(4 * b + (4 - c if turn else c) for b, c, turn in zip(base, CORNERS[int(n)], turned)) for n in names]
+            if sum(turned) % 2:
+                corner = [corner[v] for v in MIRRORED[cut]]
             cells.append([node([corner[v] for v in spot]) for spot in spots])
             for (axis, end), group in (sides or {}).items():
                 on = [k for k in corner if k[axis] == 4 * size[axis] * end]
@@ -161,6 +168,22 @@ def brick(kind, lines, place=None, name="", sides=None, curved=False):
     if name:
         mesh.cell_groups[name] = [(kind, c) for c in range(len(cells))]
     return mesh
+
+
+def shaken(lines, amplitude, seed):
+    """A `place` that moves every inner grid point at random; those of a side stay in it, those of an edge on it.
+    @param amplitude in steps of the grid, along each axis; a number or a function of the grid point"""
+    random, moved = np.random.default_rng(seed), {}
+    most = amplitude if callable(amplitude) else lambda at: amplitude
+
+    def place(*at):
+        if at not in moved:
+            steps = [0 if value in (line[0], line[-1]) else min(np.diff(line)[max(np.searchsorted(line, value) - 1, 0):][:2])
+                     for line, value in zip(lines, at)]
+            moved[at] = np.array(at) + most(at) * np.array(steps) * random.uniform(-1, 1, len(at))
+        return moved[at]
+
+    return place
 
 
 def union(meshes):

@@ -8,7 +8,7 @@ import numpy as np
 
 
 class Result:
-    """The result of this label. .points (n, 2), .cells: list of (type, nodes), .groups: name -> cells, .orders, .instants"""
+    """The result of this label. .points (n, 2 or 3), .cells: list of (type, nodes), .groups: name -> cells, .orders, .instants"""
 
     def __init__(self, base, label):
         self.base = pathlib.Path(base)
@@ -18,17 +18,30 @@ class Result:
         self.instants = dict(zip(self.orders, self.index["instant"][()].tolist()))
         with h5py.File(self.base / f"{self.index.attrs['mesh']}.h5", "r") as mesh:
             names = list(mesh["cells"].attrs["types"])
-            self.points = mesh["coordinates"][:, :2]
+            self.points = mesh["coordinates"][:, :mesh.attrs["dimension"]]
             self.cells = list(zip((names[t] for t in mesh["cells/type"][()]), _ragged(mesh["cells"], "nodes")))
             self.groups = dict(zip(mesh["groups/cells/name"].asstr()[()], _ragged(mesh["groups/cells"], "values")))
             self.patches = _ragged(mesh["patches/cells"], "values") if "patches" in mesh else []
 
+    def _file(self, name, order):
+        entry = self.index[f"fields/{name}"]
+        return h5py.File(self.base / entry["file"].asstr()[entry["order"][()].tolist().index(order)], "r")
+
     def field(self, name, order):
         """@return (support, component -> values); rows of nodes or cells"""
-        entry = self.index[f"fields/{name}"]
-        path = entry["file"].asstr()[entry["order"][()].tolist().index(order)]
-        with h5py.File(self.base / path, "r") as file:
+        with self._file(name, order) as file:
             return file["support"][()], dict(zip(file.attrs["components"], file["values"][()].T))
+
+    def where_present(self, name, order, component):
+        """The values of the places where the component exists."""
+        with self._file(name, order) as file:
+            column = list(file.attrs["components"]).index(component)
+            values = file["values"][:, column]
+            return values[file["present"][:, column] != 0] if "present" in file else values
+
+    def parameter(self, name):
+        """One value an instant."""
+        return self.index[f"parameters/{name}"][()]
 
     def at_nodes(self, name, order, component):
         """One value a node, 0 where the field is not."""
