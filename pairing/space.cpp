@@ -426,7 +426,7 @@ int integration_degree(const SlaveFacet& slave, const Facet& master) {
   const double rho = 1 / d + std::sqrt(1 / (d * d) - 1);
   const int degree = polynomial + static_cast<int>(std::ceil(12 * std::numbers::ln10 / std::log(rho)));
   const bool exact = slave.constant && master.straight;
-  return std::clamp(degree, 4, exact ? 19 : 8);
+  return std::clamp(degree, 4, exact ? 31 : 8);
 }
 
 const Rule& triangle_rule(int degree) {

@@ -1,6 +1,8 @@
 #include "lacon/operators/meshing/cut.hpp"
 
 #include <algorithm>
+#include <array>
+#include <cmath>
 #include <map>
 #include <set>
 #include <utility>
@@ -70,6 +72,68 @@ Nodes add_nodes(CellType type, const Nodes& nodes, std::span<const double> point
 }
 
 void append(Nodes& to, const Nodes& more) { to.insert(to.end(), more.begin(), more.end()); }
+
+using Point = std::array<double, 3>;
+
+Point point_of(std::span<const double> coordinates, std::int32_t node) {
+  const auto at = coordinates.subspan(3 * static_cast<std::size_t>(node), 3);
+  return {at[0], at[1], at[2]};
+}
+
+/// How far the mid node of an edge is from the middle of its vertices. @param edge of the cell's row
+Point bulge(const catalog::CellRow& row, std::size_t edge, const Nodes& nodes, std::span<const double> coordinates) {
+  const Point a = point_of(coordinates, nodes[static_cast<std::size_t>(row.edges[edge].first)]),
+              b = point_of(coordinates, nodes[static_cast<std::size_t>(row.edges[edge].second)]),
+              middle = point_of(coordinates, nodes[static_cast<std::size_t>(row.n_vertices) + edge]);
+  return {middle[0] - (a[0] + b[0]) / 2, middle[1] - (a[1] + b[1]) / 2, middle[2] - (a[2] + b[2]) / 2};
+}
+
+double length(Point p) { return std::hypot(p[0], p[1], p[2]); }
+
+constexpr double flat = 1e-9;  ///< a bulge below this fraction of the size of a facet or cell is round-off
+
+/// Whether the mid nodes of a quadratic cell are in the middle of its edges, up to `flat` of the longest.
+bool has_straight_edges(CellType type, const Nodes& nodes, std::span<const double> coordinates) {
+  const catalog::CellRow& row = catalog::cell(type);
+  double longest = 0, largest = 0;
+  for (std::size_t e = 0; e < row.edges.size(); ++e) {
+    const Point a = point_of(coordinates, nodes[static_cast<std::size_t>(row.edges[e].first)]),
+                b = point_of(coordinates, nodes[static_cast<std::size_t>(row.edges[e].second)]);
+    longest = std::max(longest, length({b[0] - a[0], b[1] - a[1], b[2] - a[2]}));
+    largest = std::max(largest, length(bulge(row, e, nodes, coordinates)));
+  }
+  return largest <= flat * longest;
+}
+
+/// Whether the vertices of a facet lie in a plane, up to `flat` of its size.
+bool is_plane(CellType type, const Nodes& nodes, std::span<const double> coordinates) {
+  const Point origin = point_of(coordinates, nodes[0]);
+  const auto from_origin = [&](std::size_t i) {
+    const Point p = point_of(coordinates, nodes[i]);
+    return Point{p[0] - origin[0], p[1] - origin[1], p[2] - origin[2]};
+  };
+  const Point a = from_origin(1), b = from_origin(2);
+  const Point normal{a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
+  const double area = length(normal);
+  for (std::size_t i = 3; i < static_cast<std::size_t>(catalog::cell(type).n_vertices); ++i) {
+    const Point p = from_origin(i);
+    if (std::abs(p[0] * normal[0] + p[1] * normal[1] + p[2] * normal[2]) > flat * std::sqrt(area) * area) return false;
+  }
+  return true;
+}
+
+/// Put the new mid nodes of a sub-cell into the middle of their vertices. A cell with straight edges that is no parallelepiped
+/// bends the straight lines of its reference cell: the isoparametric images would give its sub-cells curved edges, over which
+/// no rule is exact, and its shape is the same without.
+void straighten(CellType type, const Nodes& sub_cell, const Nodes& added, std::vector<double>& coordinates) {
+  const catalog::CellRow& row = catalog::cell(type);
+  for (std::size_t e = 0; e < row.edges.size(); ++e) {
+    const std::int32_t middle = sub_cell[static_cast<std::size_t>(row.n_vertices) + e];
+    if (std::ranges::find(added, middle) == added.end()) continue;
+    const Point shift = bulge(row, e, sub_cell, coordinates);
+    for (std::size_t k = 0; k < 3; ++k) coordinates[3 * static_cast<std::size_t>(middle) + k] -= shift[k];
+  }
+}
 
 /// Every check on the groups and their cells, before anything is cut.
 std::vector<Slave> find_slaves(const Mesh& mesh, std::span<const std::string> groups, const std::string& keyword) {
@@ -178,6 +242,13 @@ Nodes cut_slave(Forest& forest, const Slave& slave, const std::string& group, st
   append(turned_body, new_body);
   append(zone.skin_nodes, new_skin);
   append(zone.body_nodes, new_body);
+  if (catalog::cell(cut->skin).dimension == 2 && catalog::cell(cut->skin).order == 2) {
+    if (has_straight_edges(cut->skin, skin, coordinates) && is_plane(cut->skin, skin, coordinates))
+      for (const catalog::SubCell& sub : cut->skin_cells) straighten(sub.type, pick(on_skin, sub.nodes), new_skin, coordinates);
+    if (has_straight_edges(cut->body, forest.nodes(body), coordinates))
+      for (const catalog::SubCell& sub : cut->body_cells)
+        straighten(sub.type, pick(turned_body, sub.nodes), new_body, coordinates);
+  }
 
   Nodes sub_cells;
   for (const catalog::SubCell& sub : cut->skin_cells)

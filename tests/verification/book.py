@@ -20,6 +20,7 @@ sys.path[:0] = [str(ROOT / "tests/studies"), str(ROOT / "commands/studies/roller
 
 from study_test import PEER_MESHES, StudyTest  # noqa: E402, I001 (it says where meshes.py is)
 import patch  # noqa: E402
+import patch_space  # noqa: E402
 from test_patch import COMM, two_materials  # noqa: E402
 
 PRESSURE = 25.0
@@ -69,6 +70,38 @@ The same with TYPE_JACOBIEN='ACTUALISE': the pressure belongs to the stretched s
 {stretch:.6f} (plane strain, free sideways), so {expected:.12f}.
 
 {table(["cells", "LAGS_C", "error / p"], rows)}
+"""
+
+
+def space_section(runner):
+    """Every pair of facets in space, on plain meshes and on distorted ones."""
+    comm = ROOT / "tests/verification/patch_space.comm"
+    found = {shaking: patch_space.run(runner, comm, patch_space.matrix(shaking=shaking)) for shaking in (False, True)}
+    tables = {}
+    for what in ("pressure", "stress"):
+        cells = [f"{getattr(a, what):.0e}, {getattr(b, what):.0e}" for a, b in zip(found[False], found[True])]
+        n = len(patch_space.MASTERS)
+        tables[what] = table(["slave body", *patch_space.MASTERS], [[slave, *cells[n * k:n * k + n]] for k, slave in enumerate(patch_space.SLAVES)])
+    both = found[False] + found[True]
+    return f"""## Patch test in space
+
+Two unit blocks stacked along the direction (0.48, -0.6, 0.64), meshes that do not match, one material (E = {patch_space.YOUNG:g}, nu =
+{patch_space.POISSON}), pressure {patch_space.PRESSURE:g} on both ends, each block held at single nodes as a statically determinate body; RESI_GLOB_RELA 1e-12.
+Theory: LAGS_C = PRES = -p, sigma = -p n n at every node, u linear. First figure: plain grids. Second figure: inner nodes moved at
+random, in the contact plane by up to {patch_space.SHAKE[0]} of a grid step along each axis (quadrangles of scaled Jacobian down to 0.4), elsewhere by up to {patch_space.SHAKE[1]}.
+Asked for: 1e-10 where facets are affine, 1e-8 elsewhere; the long tests ask the same of coordinates times 1e-3 and 1e3, and of
+TYPE_JACOBIEN='ACTUALISE' (-p A0 / A).
+
+Largest error of LAGS_C and PRES, relative to p; slave body (rows) on the facets of the master (columns):
+
+{tables["pressure"]}
+
+Largest error of the nodal stress n . sigma . n, relative to p:
+
+{tables["stress"]}
+
+Over all {len(both)} studies: displacements within {max(f.displacement for f in both):.0e} of the largest one, the gap within {max(f.gap for f in both):.0e} of the
+height, COEFSURF within {max(f.cover for f in both):.0e}; at most {max(f.iterations for f in both)} iteration(s) after the first.
 """
 
 
@@ -134,7 +167,7 @@ def main():
     runner = StudyTest()
     runner.setUp()
     try:
-        sections = [make(runner) for make in (patch_section, current_section, materials_section, peer_section, roller_section)]
+        sections = [make(runner) for make in (patch_section, current_section, space_section, materials_section, peer_section, roller_section)]
     finally:
         runner.doCleanups()
     text = "# Verification\n\nWritten by `python3 tests/verification/book.py`, which runs the studies; the same studies are tests.\n\n" + "\n".join(sections)
