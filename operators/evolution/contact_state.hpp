@@ -1,5 +1,5 @@
 #pragma once
-// The contact of a computation at the current geometry: contact cells, gaps, statuses, and what they add to the system.
+// The contact of a computation at the current geometry: statuses, and what contact cells add to the system.
 // METHOD.md 3.4 to 3.7 with the conventions of DESIGN.md, section 3.
 #include <algorithm>
 #include <array>
@@ -8,9 +8,9 @@
 #include <string>
 #include <vector>
 
+#include "lacon/operators/evolution/contact_geometry.hpp"
 #include "lacon/operators/evolution/static_problem.hpp"
 #include "lacon/operators/evolution/system.hpp"
-#include "lacon/pairing/pairing.hpp"
 
 namespace lacon {
 
@@ -65,51 +65,25 @@ class ContactState {
   /// Whether every displacement in a patch's row is imposed: its multiplier is then undetermined and keeps its value.
   bool is_locked(std::size_t patch) const { return locked_[patch]; }
 
-  double gap(std::size_t patch) const { return gap_[patch]; }            ///< average, positive when open
-  double coverage(std::size_t patch) const { return coverage_[patch]; }  ///< covered over whole measure, current geometry
-  std::size_t n_patches() const { return gap_.size(); }
+  double gap(std::size_t patch) const { return geometry_.gap(patch); }  ///< average, positive when open
+  double coverage(std::size_t patch) const {
+    return geometry_.coverage(patch);
+  }  ///< covered over whole measure, current geometry
+  std::size_t n_patches() const { return geometry_.n_patches(); }
   /// The smallest h of a patch.
   double smallest_patch() const { return *std::min_element(size_.begin(), size_.end()); }
   /// How many couples pairing rejected, for each `Rejection`, summed over the zones.
-  std::span<const std::int64_t> rejected() const { return rejected_; }
+  std::span<const std::int64_t> rejected() const { return geometry_.rejected(); }
 
  private:
-  struct Zone {
-    std::vector<std::int32_t> slaves;   ///< index into Contact::slaves of each cell of `slave`
-    std::vector<std::int32_t> masters;  ///< mesh cell of each cell of `master`
-    Surface slave, master;
-    bool current_jacobian = false;
-    PairingOptions pairing;
-    double smallest_edge = 0;
-    std::string initial_status;
-  };
-  /// A contact cell with what its kernel gave.
-  struct Cell {
-    std::int32_t slave;   ///< index into Contact::slaves
-    std::int32_t master;  ///< cell of the mesh
-    double gap;
-    std::int64_t coupling;  ///< first entry in coupling_
-  };
-
-  void integrate(const Zone& zone, const ContactCells& cells, std::span<const double> normals);
-  /// Measures of whole patches, in the measure of the kernels' coverage (with r in axisymmetry).
-  void measure_slaves();
-  /// The contact kernel of a slave cell's element.
-  const lacon_kernel& kernel_of(std::int32_t cell) const;
-
   const StaticProblem& problem_;
   const Contact& contact_;
   const ContactTolerances tolerances_;
-  std::vector<double> coordinates_;  ///< (n_nodes, 3), current
-  std::vector<Zone> zones_;
-  std::vector<Cell> cells_;
-  std::vector<double> coupling_;
-  std::vector<double> gap_, weight_, covered_, whole_, coverage_;  ///< of each patch
-  std::vector<double> size_;  ///< h of each patch: |T| in 2D, sqrt |T| in 3D, initial geometry
-  std::vector<double> rho_;   ///< E / h of each patch
-  std::vector<std::int32_t> zone_of_;
+  ContactGeometry geometry_;
+  std::vector<double> smallest_edge_;  ///< of each zone
+  std::vector<double> size_;           ///< h of each patch: |T| in 2D, sqrt |T| in 3D, initial geometry
+  std::vector<double> rho_;            ///< E / h of each patch
   std::vector<bool> locked_;
-  std::vector<std::int64_t> rejected_;
   double gap_tolerance_ = 0;
 };
 

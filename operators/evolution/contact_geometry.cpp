@@ -1,0 +1,233 @@
+#include "lacon/operators/evolution/contact_geometry.hpp"
+
+#include <algorithm>
+#include <map>
+#include <utility>
+
+#include "lacon/catalog/messages.hpp"
+#include "lacon/elements/reference.hpp"
+#include "lacon/pairing/normals.hpp"
+
+namespace lacon {
+namespace {
+
+/// Coordinates of a cell's nodes, (n_nodes, dimension), behind `out`.
+void append_points(const Mesh& mesh, std::span<const double> coordinates, std::int32_t cell, int dimension,
+                   std::vector<double>& out) {
+  for (const std::int32_t node : mesh.cells[cell])
+    out.insert(out.end(), coordinates.begin() + 3 * std::ptrdiff_t{node},
+               coordinates.begin() + 3 * std::ptrdiff_t{node} + dimension);
+}
+
+[[noreturn]] void refuse_slave(std::int32_t cell, std::int32_t error) {
+  fail(error == LACON_BAD_RADIUS ? "EVOLUTION_8" : "EVOLUTION_3", {{"cell", cell_name(cell)}});
+}
+
+}  // namespace
+
+const Rule& measuring_rule(Family family) {
+  return integration_rule(family, family == Family::SEG ? 4 : family == Family::TRIA ? 6 : 9);
+}
+
+ContactGeometry::ContactGeometry(const Mesh& mesh, const Model& model, const Contact& contact, Registry& registry)
+    : mesh_(mesh), model_(model), contact_(contact), registry_(registry), coordinates_(mesh.coordinates) {
+  const std::size_t n = mesh.patches->size();
+  gap_.assign(n, 0.0);
+  weight_ = covered_ = whole_ = coverage_ = gap_;
+  zone_of_.assign(n, -1);
+  rejected_.assign(n_rejections, 0);
+
+  std::map<std::int32_t, std::int32_t> slave_of_cell;
+  for (std::size_t s = 0; s < contact_.slaves.size(); ++s)
+    slave_of_cell[contact_.slaves[s].cell] = static_cast<std::int32_t>(s);
+  for (const ContactZone& data : contact_.zones) {
+    Zone zone{.slaves = {},
+              .masters = data.master,
+              .slave = surface_of(mesh, data.slave, coordinates_),
+              .master = surface_of(mesh, data.master, coordinates_),
+              .current_jacobian = data.jacobian == "ACTUALISE",
+              .pairing = {.distance_limit = data.distance_limit}};
+    for (const std::int32_t cell : data.slave) zone.slaves.push_back(slave_of_cell.at(cell));
+    for (const std::int32_t patch : data.patches) zone_of_[patch] = static_cast<std::int32_t>(zones_.size());
+    zones_.push_back(std::move(zone));
+  }
+
+  measure_slaves();
+}
+
+const lacon_kernel& ContactGeometry::kernel_of(std::int32_t cell) const {
+  const std::int32_t element = model_.element[cell];
+  const catalog::ElementRow* row = element < 0 ? nullptr : registry_.find_element(model_.elements[element]);
+  if (!row) fail("PLUGIN_4", {{"element", element < 0 ? "none, on cell " + cell_name(cell) : model_.elements[element]}});
+  return registry_.kernel(*row, "RIGI_CONT", LACON_CONTACT);
+}
+
+void ContactGeometry::measure_slaves() {
+  const int dimension = mesh_.dimension;
+  std::fill(whole_.begin(), whole_.end(), 0.0);
+  std::map<std::int32_t, std::vector<std::int32_t>> by_element;  // one kernel, one kind of cell
+  for (std::size_t s = 0; s < contact_.slaves.size(); ++s)
+    by_element[model_.element[contact_.slaves[s].cell]].push_back(static_cast<std::int32_t>(s));
+  for (const auto& [element, members] : by_element) {
+    const CellType type = mesh_.types[contact_.slaves[members.front()].cell];
+    // each cell on itself: the kernel says what its measure is
+    const Tabulation table = tabulate(type, measuring_rule(catalog::cell(type).family));
+    std::vector<std::int64_t> offset{0};
+    std::vector<double> weight, shape, gradient, initial, current, size(members.size());
+    for (const std::int32_t s : members) {
+      append_points(mesh_, mesh_.coordinates, contact_.slaves[s].cell, dimension, initial);
+      append_points(mesh_, coordinates_, contact_.slaves[s].cell, dimension, current);
+      weight.insert(weight.end(), table.weight.begin(), table.weight.end());
+      shape.insert(shape.end(), table.shape.begin(), table.shape.end());
+      gradient.insert(gradient.end(), table.gradient.begin(), table.gradient.end());
+      offset.push_back(static_cast<std::int64_t>(weight.size()));
+    }
+    std::vector<std::int32_t> error(members.size(), LACON_FINE);
+    const lacon_contact_batch batch{.struct_size = sizeof(lacon_contact_batch),
+                                    .n_cells = static_cast<std::int32_t>(members.size()),
+                                    .n_slave_nodes = table.n_nodes,
+                                    .n_master_nodes = table.n_nodes,
+                                    .dimension = dimension,
+                                    .current_jacobian = 1,
+                                    .offset = offset.data(),
+                                    .weight = weight.data(),
+                                    .slave_shape = shape.data(),
+                                    .slave_gradient = gradient.data(),
+                                    .master_shape = shape.data(),
+                                    .slave_initial = initial.data(),
+                                    .slave = current.data(),
+                                    .master = current.data(),
+                                    .slave_normal = nullptr,
+                                    .point_gap = nullptr,
+                                    .gap = nullptr,
+                                    .measure = nullptr,
+                                    .current_measure = size.data(),
+                                    .coupling = nullptr,
+                                    .error = error.data()};
+    kernel_of(contact_.slaves[members.front()].cell).contact(&batch);
+    for (std::size_t i = 0; i < members.size(); ++i) {
+      const SlaveElement& slave = contact_.slaves[members[i]];
+      if (error[i] != LACON_FINE) refuse_slave(slave.cell, error[i]);
+      whole_[slave.patch] += size[i];
+    }
+  }
+}
+
+void ContactGeometry::update(std::span<const double> displacement, std::vector<ZonePairing>* records) {
+  const int dimension = mesh_.dimension;
+  for (std::size_t node = 0; node < mesh_.n_nodes(); ++node)
+    for (int d = 0; d < dimension; ++d)
+      coordinates_[3 * node + d] = mesh_.coordinates[3 * node + d] + displacement[node * dimension + d];
+  measure_slaves();
+  cells_.clear();
+  coupling_.clear();
+  std::fill(rejected_.begin(), rejected_.end(), 0);
+  for (std::vector<double>* sums : {&gap_, &weight_, &covered_}) std::fill(sums->begin(), sums->end(), 0.0);
+  if (records) records->clear();
+  for (Zone& zone : zones_) {
+    std::vector<double> normals;
+    if (contact_.smoothing) normals = nodal_normals(zone.slave);
+    zone.slave.normals = normals;
+    Pairing pairing = pair(zone.slave, zone.master, zone.pairing);
+    zone.slave.normals = {};
+    for (const RejectedCouple& couple : pairing.rejected) {
+      if (couple.reason == Rejection::degenerate_slave)
+        fail("EVOLUTION_3", {{"cell", cell_name(contact_.slaves[zone.slaves[couple.slave]].cell)}});
+      ++rejected_[static_cast<std::size_t>(couple.reason)];
+    }
+    ZonePairing* record = nullptr;
+    if (records) {
+      record = &records->emplace_back();
+      record->point_gap.resize(pairing.cells.weight.size());
+      record->measure.resize(pairing.cells.size());
+    }
+    integrate(zone, pairing.cells, normals, record);
+    if (record) record->pairing = std::move(pairing);
+  }
+  for (std::size_t p = 0; p < gap_.size(); ++p) {
+    if (weight_[p] > 0) gap_[p] /= weight_[p];
+    coverage_[p] = whole_[p] > 0 ? covered_[p] / whole_[p] : 0;
+  }
+}
+
+void ContactGeometry::integrate(const Zone& zone, const ContactCells& cells, std::span<const double> normals,
+                                ZonePairing* record) {
+  const int dimension = mesh_.dimension, reference = dimension - 1;
+  // one kernel call for each slave element (which says the kernel and the kind of cell) and kind of master cell
+  const auto slave_cell_of = [&](std::int32_t c) { return contact_.slaves[zone.slaves[cells.slave[c]]].cell; };
+  std::map<std::pair<std::int32_t, CellType>, std::vector<std::int32_t>> by_kinds;
+  for (std::int32_t c = 0; c < static_cast<std::int32_t>(cells.size()); ++c)
+    by_kinds[{model_.element[slave_cell_of(c)], zone.master.types[cells.master[c]]}].push_back(c);
+
+  for (const auto& [element_and_master, members] : by_kinds) {
+    const std::int32_t first_cell = slave_cell_of(members.front());
+    const std::pair kinds(mesh_.types[first_cell], element_and_master.second);
+    const int ns = catalog::cell(kinds.first).n_nodes, nm = catalog::cell(kinds.second).n_nodes;
+    std::vector<std::int64_t> offset{0};
+    std::vector<double> weight, slave_shape, slave_gradient, master_shape, slave_initial, slave, master, slave_normal;
+    std::vector<double> shape(ns), gradient(static_cast<std::size_t>(ns) * reference), opposite(nm);
+    for (const std::int32_t c : members) {
+      for (std::int64_t p = cells.offset[c]; p < cells.offset[c + 1]; ++p) {
+        const std::span<const double> xi(cells.slave_point.data() + p * reference, reference),
+            eta(cells.master_point.data() + p * reference, reference);
+        shape_functions(kinds.first, xi, shape);
+        shape_gradients(kinds.first, xi, gradient);
+        shape_functions(kinds.second, eta, opposite);
+        slave_shape.insert(slave_shape.end(), shape.begin(), shape.end());
+        slave_gradient.insert(slave_gradient.end(), gradient.begin(), gradient.end());
+        master_shape.insert(master_shape.end(), opposite.begin(), opposite.end());
+        weight.push_back(cells.weight[p]);
+      }
+      offset.push_back(static_cast<std::int64_t>(weight.size()));
+      const std::int32_t slave_cell = slave_cell_of(c), master_cell = zone.masters[cells.master[c]];
+      append_points(mesh_, mesh_.coordinates, slave_cell, dimension, slave_initial);
+      append_points(mesh_, coordinates_, slave_cell, dimension, slave);
+      append_points(mesh_, coordinates_, master_cell, dimension, master);
+      if (!normals.empty()) append_points(mesh_, normals, slave_cell, dimension, slave_normal);
+    }
+    const std::size_t width = static_cast<std::size_t>(ns + nm) * dimension;
+    std::vector<double> point_gap(weight.size()), gap(members.size()), size(members.size()), current(members.size()),
+        coupling(members.size() * width);
+    std::vector<std::int32_t> error(members.size(), LACON_FINE);
+    const lacon_contact_batch batch{.struct_size = sizeof(lacon_contact_batch),
+                                    .n_cells = static_cast<std::int32_t>(members.size()),
+                                    .n_slave_nodes = ns,
+                                    .n_master_nodes = nm,
+                                    .dimension = dimension,
+                                    .current_jacobian = zone.current_jacobian,
+                                    .offset = offset.data(),
+                                    .weight = weight.data(),
+                                    .slave_shape = slave_shape.data(),
+                                    .slave_gradient = slave_gradient.data(),
+                                    .master_shape = master_shape.data(),
+                                    .slave_initial = slave_initial.data(),
+                                    .slave = slave.data(),
+                                    .master = master.data(),
+                                    .slave_normal = normals.empty() ? nullptr : slave_normal.data(),
+                                    .point_gap = point_gap.data(),
+                                    .gap = gap.data(),
+                                    .measure = size.data(),
+                                    .current_measure = current.data(),
+                                    .coupling = coupling.data(),
+                                    .error = error.data()};
+    kernel_of(first_cell).contact(&batch);
+    for (std::size_t i = 0; i < members.size(); ++i) {
+      const std::int32_t c = members[i], s = zone.slaves[cells.slave[c]];
+      if (error[i] != LACON_FINE) refuse_slave(contact_.slaves[s].cell, error[i]);
+      const std::int32_t patch = contact_.slaves[s].patch;
+      gap_[patch] += gap[i];
+      weight_[patch] += size[i];
+      covered_[patch] += current[i];
+      if (record) {
+        std::copy(point_gap.begin() + offset[i], point_gap.begin() + offset[i + 1],
+                  record->point_gap.begin() + cells.offset[c]);
+        record->measure[c] = current[i];
+      }
+      cells_.push_back({s, zone.masters[cells.master[c]], gap[i], static_cast<std::int64_t>(coupling_.size())});
+      coupling_.insert(coupling_.end(), coupling.begin() + static_cast<std::ptrdiff_t>(i * width),
+                       coupling.begin() + static_cast<std::ptrdiff_t>((i + 1) * width));
+    }
+  }
+}
+
+}  // namespace lacon

@@ -1,0 +1,87 @@
+#pragma once
+// The contact cells of all zones at a geometry: gaps, couplings and coverage of the patches (METHOD.md 3.4 and 3.5). It knows
+// neither multipliers nor equations, so that a look at the pairing needs no solver.
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "lacon/elements/reference.hpp"
+#include "lacon/elements/registry.hpp"
+#include "lacon/pairing/pairing.hpp"
+#include "lacon/structures/concepts.hpp"
+
+namespace lacon {
+
+/// What pairing found in one zone, for whom wants to look at it.
+struct ZonePairing {
+  Pairing pairing;                ///< cells by their number in the zone
+  std::vector<double> point_gap;  ///< of each integration point
+  std::vector<double> measure;    ///< of each contact cell, current geometry
+};
+
+class ContactGeometry {
+ public:
+  struct Zone {
+    std::vector<std::int32_t> slaves;   ///< index into Contact::slaves of each cell of `slave`
+    std::vector<std::int32_t> masters;  ///< mesh cell of each cell of `master`
+    Surface slave, master;
+    bool current_jacobian = false;
+    PairingOptions pairing;
+  };
+  /// A contact cell with what its kernel gave.
+  struct Cell {
+    std::int32_t slave;   ///< index into Contact::slaves
+    std::int32_t master;  ///< cell of the mesh
+    double gap;
+    std::int64_t coupling;  ///< first entry in coupling()
+  };
+
+  /// On the initial geometry, not yet paired. All arguments must outlive it. Throws EVOLUTION_3 for a slave cell without
+  /// normal, EVOLUTION_8 for one beyond the axis.
+  ContactGeometry(const Mesh& mesh, const Model& model, const Contact& contact, Registry& registry);
+  ContactGeometry(const ContactGeometry&) = delete;
+  ContactGeometry& operator=(const ContactGeometry&) = delete;
+
+  /// Pair on the current geometry, integrate gaps and couplings. @param displacement (n_nodes, mesh.dimension)
+  /// @param records gets one entry a zone. Throws as the constructor.
+  void update(std::span<const double> displacement, std::vector<ZonePairing>* records = nullptr);
+
+  std::span<const double> coordinates() const { return coordinates_; }  ///< (n_nodes, 3), current
+  const std::vector<Zone>& zones() const { return zones_; }
+  const std::vector<Cell>& cells() const { return cells_; }
+  /// For each contact cell: (nodes of the slave, then of the master; dimension)
+  const std::vector<double>& coupling() const { return coupling_; }
+
+  std::size_t n_patches() const { return gap_.size(); }
+  std::int32_t zone_of(std::size_t patch) const { return zone_of_[patch]; }  ///< -1 for none
+  double gap(std::size_t patch) const { return gap_[patch]; }                ///< average, positive when open
+  double covered(std::size_t patch) const { return covered_[patch]; }        ///< measure, current geometry
+  double whole(std::size_t patch) const { return whole_[patch]; }            ///< measure, current geometry
+  double coverage(std::size_t patch) const { return coverage_[patch]; }      ///< covered over whole
+  /// How many couples pairing rejected, for each `Rejection`, summed over the zones.
+  std::span<const std::int64_t> rejected() const { return rejected_; }
+
+ private:
+  void integrate(const Zone& zone, const ContactCells& cells, std::span<const double> normals, ZonePairing* record);
+  /// Measures of whole patches, in the measure of the kernels' coverage (with r in axisymmetry).
+  void measure_slaves();
+  /// The contact kernel of a slave cell's element.
+  const lacon_kernel& kernel_of(std::int32_t cell) const;
+
+  const Mesh& mesh_;
+  const Model& model_;
+  const Contact& contact_;
+  Registry& registry_;
+  std::vector<double> coordinates_;  ///< (n_nodes, 3), current
+  std::vector<Zone> zones_;
+  std::vector<Cell> cells_;
+  std::vector<double> coupling_;
+  std::vector<double> gap_, weight_, covered_, whole_, coverage_;  ///< of each patch
+  std::vector<std::int32_t> zone_of_;
+  std::vector<std::int64_t> rejected_;
+};
+
+/// The rule that measures a whole skin cell.
+const Rule& measuring_rule(Family family);
+
+}  // namespace lacon
