@@ -100,8 +100,41 @@ Factorisation DirectSolver::factorise() {
   }
   if (at(s.mumps.infog, 1) < 0) s.refuse("factorisation");
   Factorisation found{.negative_pivots = at(s.mumps.infog, 12), .null_pivots = {}, .flops = at(s.mumps.rinfog, 3)};
+  const std::int64_t entries = at(s.mumps.infog, 29);  // in millions where negative
+  found.entries = entries < 0 ? -1'000'000 * entries : entries;
   for (int i = 0; i < at(s.mumps.infog, 28); ++i) found.null_pivots.push_back(s.mumps.pivnul_list[i] - 1);
   return found;
+}
+
+void DirectSolver::substitute(std::span<double> right_side) {
+  State& s = *state_;
+  s.mumps.rhs = right_side.data();
+  s.mumps.nrhs = 1;
+  s.call(solve_job);
+  if (at(s.mumps.infog, 1) < 0) s.refuse("solution");
+}
+
+std::vector<double> DirectSolver::substitute(std::span<const std::int64_t> offset, std::span<const std::int32_t> index,
+                                             std::span<const double> value) {
+  State& s = *state_;
+  const std::size_t count = offset.size() - 1;
+  std::vector<double> solution(count * static_cast<std::size_t>(s.matrix->size()));
+  std::vector<MUMPS_INT> start(offset.begin(), offset.end()), row(index.begin(), index.end());
+  for (MUMPS_INT& number : start) ++number;
+  for (MUMPS_INT& number : row) ++number;
+  at(s.mumps.icntl, 20) = 3;  // sparse, and used to skip what stays zero
+  at(s.mumps.icntl, 27) = static_cast<MUMPS_INT>(count);
+  s.mumps.nrhs = static_cast<MUMPS_INT>(count);
+  s.mumps.lrhs = s.mumps.n;
+  s.mumps.rhs = solution.data();
+  s.mumps.nz_rhs = static_cast<MUMPS_INT>(index.size());
+  s.mumps.irhs_ptr = start.data();
+  s.mumps.irhs_sparse = row.data();
+  s.mumps.rhs_sparse = const_cast<double*>(value.data());  // read only
+  s.call(solve_job);
+  at(s.mumps.icntl, 20) = 0;
+  if (at(s.mumps.infog, 1) < 0) s.refuse("solution");
+  return solution;
 }
 
 double DirectSolver::solve(std::span<double> right_side) {
@@ -121,10 +154,7 @@ double DirectSolver::solve(std::span<double> right_side) {
   double error = INFINITY;
   constexpr int most_refinements = 4;
   for (int i = 0; i <= most_refinements; ++i) {
-    s.mumps.rhs = step.data();
-    s.mumps.nrhs = 1;
-    s.call(solve_job);
-    if (at(s.mumps.infog, 1) < 0) s.refuse("solution");
+    substitute(step);
     for (std::size_t k = 0; k < n; ++k) x[k] += step[k];
     s.matrix->multiply(x, residual);
     for (std::size_t k = 0; k < n; ++k) residual[k] = right_side[k] - residual[k];

@@ -20,6 +20,7 @@ struct Factorisation {
   std::int64_t negative_pivots = 0;
   std::vector<std::int64_t> null_pivots;  ///< equations whose pivot is zero: the matrix is singular
   double flops = 0;
+  std::int64_t entries = 0;  ///< of the factor
 };
 
 class DirectSolver {
@@ -37,6 +38,12 @@ class DirectSolver {
   /// @return the relative residual |b - A x| / (|A| |x| + |b|), largest entry
   /// Throws SOLVER_1 (S) where it is above the tolerance.
   double solve(std::span<double> right_side);
+  /// One pair of substitutions, in place: the solution without refinement.
+  void substitute(std::span<double> right_side);
+  /// The same for a block of sparse right sides. @param offset (n + 1), index, value: entries of each
+  /// @return (n, size), one solution after the other
+  std::vector<double> substitute(std::span<const std::int64_t> offset, std::span<const std::int32_t> index,
+                                 std::span<const double> value);
 
  private:
   struct State;

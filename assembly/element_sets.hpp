@@ -21,6 +21,7 @@ struct ElementSet {
   std::vector<std::int32_t> cells;
   std::vector<double> parameters;  ///< (cells, n_parameters), solids only
   int n_parameters = 0;
+  bool linear = true;  ///< the stiffness does not depend on the displacements
 
   int n_nodes() const { return tabulation.n_nodes; }
 };

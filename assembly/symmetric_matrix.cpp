@@ -73,7 +73,12 @@ bool SymmetricMatrix::has_room_for(std::span<const Coupling> couplings) const {
   });
 }
 
-void SymmetricMatrix::set_zero() { std::fill(value_.begin(), value_.end(), 0.0); }
+void SymmetricMatrix::set_zero(std::int64_t first_row) { std::fill(value_.begin() + row_[first_row], value_.end(), 0.0); }
+
+void SymmetricMatrix::copy_rows(const SymmetricMatrix& other, std::int64_t n_rows) {
+  if (row_[n_rows] != other.row_[n_rows]) throw std::logic_error("rows of another pattern");
+  std::copy_n(other.value_.begin(), row_[n_rows], value_.begin());
+}
 
 double& SymmetricMatrix::entry(std::int64_t row, std::int64_t column) {
   if (column > row) std::swap(row, column);

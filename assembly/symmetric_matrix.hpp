@@ -22,7 +22,10 @@ class SymmetricMatrix {
   /// Whether the pattern has room for all these couplings.
   bool has_room_for(std::span<const Coupling> couplings) const;
 
-  void set_zero();
+  /// @param first_row rows before it keep their values
+  void set_zero(std::int64_t first_row = 0);
+  /// Take the values of the first rows from a matrix that has the same pattern there.
+  void copy_rows(const SymmetricMatrix& other, std::int64_t n_rows);
   /// Add an element matrix. @param equations of its degrees of freedom, -1: left out; an equation may stand there more than
   /// once (tied multipliers), and then gets the sum  @param lower (n (n + 1) / 2): lower triangle, row by row
   void add(std::span<const std::int64_t> equations, std::span<const double> lower);

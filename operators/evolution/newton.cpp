@@ -36,7 +36,7 @@ double largest_vector(std::span<const double> values, int dimension) {
 
 }  // namespace
 
-Newton::Newton(const StaticProblem& problem, const NewtonCriteria& criteria, const SolverOptions& solver)
+Newton::Newton(const StaticProblem& problem, const NewtonCriteria& criteria, const SaddlePointOptions& solver)
     : problem_(problem),
       criteria_(criteria),
       elements_(nodes_of_solids(problem)),
@@ -46,8 +46,10 @@ Newton::Newton(const StaticProblem& problem, const NewtonCriteria& criteria, con
     contact_.emplace(problem);
     criteria_.resi_geom = problem.contact->resi_geom;
   }
-  for (const ElementSet& set : problem.solids)
+  for (const ElementSet& set : problem.solids) {
+    linear_ = linear_ && set.linear;
     stresses_.emplace_back(set.cells.size() * set.tabulation.n_points * set.row->stress.size());
+  }
 }
 
 StaticState Newton::initial_state() {
@@ -62,7 +64,8 @@ StaticState Newton::initial_state() {
 }
 
 void Newton::assemble(const StaticState& state) {
-  system_.start(contact_ ? contact_->couplings() : std::vector<Coupling>{});
+  const bool keep_stiffness = linear_ && has_stiffness_;
+  system_.start(contact_ ? contact_->couplings() : std::vector<Coupling>{}, keep_stiffness);
   const int dimension = problem_.dimension;
   {
     const Phase phase("elements");
@@ -70,42 +73,42 @@ void Newton::assemble(const StaticState& state) {
     std::vector<double> sums(problem_.n_dofs(), 0.0);
     for (std::size_t s = 0; s < problem_.solids.size(); ++s) {
       auto stress = stresses_[s].begin();
-      evaluate_solids(problem_.solids[s], problem_.mesh, dimension, state.displacement, true, [&](const SolidValues& element) {
-        unknowns.clear();
-        for (const std::int32_t node : problem_.mesh.cells[element.cell])
-          for (int d = 0; d < dimension; ++d) unknowns.push_back(std::int64_t{node} * dimension + d);
-        system_.add(unknowns, element.matrix, element.force);
-        for (std::size_t i = 0; i < unknowns.size(); ++i) sums[unknowns[i]] += std::abs(element.force[i]);
-        stress = std::copy(element.stress.begin(), element.stress.end(), stress);
-      });
+      evaluate_solids(problem_.solids[s], problem_.mesh, dimension, state.displacement, !keep_stiffness,
+                      [&](const SolidValues& element) {
+                        unknowns.clear();
+                        for (const std::int32_t node : problem_.mesh.cells[element.cell])
+                          for (int d = 0; d < dimension; ++d) unknowns.push_back(std::int64_t{node} * dimension + d);
+                        system_.add(unknowns, element.matrix, element.force);
+                        for (std::size_t i = 0; i < unknowns.size(); ++i) sums[unknowns[i]] += std::abs(element.force[i]);
+                        stress = std::copy(element.stress.begin(), element.stress.end(), stress);
+                      });
     }
     force_scale_ = sums.empty() ? 0 : *std::max_element(sums.begin(), sums.end());
   }
+  if (!keep_stiffness) system_.stiffness_is_complete();
+  has_stiffness_ = true;
   if (contact_) {
     const Phase phase("contact");
     contact_->assemble(state.patches, system_);
   }
 }
 
-void Newton::factorise() {
-  if (system_.take_new_pattern()) {
-    const Phase phase("analysis");
-    solver_.analyse(system_.matrix());
-  }
-  const Phase phase("factorisation");
-  factorisation_ = solver_.factorise();
-  if (factorisation_.null_pivots.empty()) return;
+SolutionReport Newton::solve_system(std::vector<double>& right_side) {
+  SolutionReport report = solver_.solve(system_.matrix(), system_.first_multiplier(), right_side);
+  add_to_phase("analysis", report.analysis_seconds);
+  add_to_phase("factorisation", report.factorisation_seconds);
+  add_to_phase("solution", report.solution_seconds);
+  const std::vector<std::int64_t>& null = report.factorisation.null_pivots;
+  if (null.empty()) return report;
   std::string names;
   constexpr std::size_t most = 5;
   std::size_t shown = 0;
   for (std::size_t dof = 0; dof < problem_.n_dofs() && shown < most; ++dof) {
     const std::int64_t equation = problem_.numbering.equation[dof];
-    const auto& null = factorisation_.null_pivots;
     if (equation < 0 || std::find(null.begin(), null.end(), equation) == null.end()) continue;
     names += (shown++ ? ", " : "") + problem_.dof_name(static_cast<std::int64_t>(dof));
   }
-  fail("SOLVER_3", {{"count", std::to_string(factorisation_.null_pivots.size())},
-                    {"names", names.empty() ? "multipliers of contact" : names}});
+  fail("SOLVER_3", {{"count", std::to_string(null.size())}, {"names", names.empty() ? "multipliers of contact" : names}});
 }
 
 void Newton::judge(const std::vector<double>& external, const StaticState& state, IterationReport& report) {
@@ -171,13 +174,8 @@ int Newton::solve(double instant, StaticState& state, const std::function<void(c
     const auto start = std::chrono::steady_clock::now();
     IterationReport line{.iteration = iteration};
     if (contact_) line.constraints = contact_->n_constraints(state.patches);
-    factorise();
-    line.negative_pivots = factorisation_.negative_pivots;
     std::vector<double> solution = system_.right_side(external, step);
-    {
-      const Phase phase("solution");
-      solver_.solve(solution);
-    }
+    line.solution = solve_system(solution);
     // the increment of all displacements: imposed ones move in the first iteration alone
     std::vector<double> increment = step;
     std::fill(step.begin(), step.end(), 0.0);

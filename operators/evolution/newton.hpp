@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "lacon/assembly/direct_solver.hpp"
+#include "lacon/assembly/saddle_point_solver.hpp"
 #include "lacon/operators/evolution/contact_state.hpp"
 #include "lacon/operators/evolution/static_problem.hpp"
 #include "lacon/operators/evolution/system.hpp"
@@ -31,7 +31,7 @@ struct IterationReport {
   bool geometry_met = true;
   double constraint = 0;  ///< max |g_T| / h
   bool constraint_met = true;
-  std::int64_t negative_pivots = 0;
+  SolutionReport solution;       ///< how the linear system was solved
   std::int64_t constraints = 0;  ///< active patches when the matrix was made: the negative pivots to expect
   double seconds = 0;
 
@@ -46,7 +46,7 @@ struct StaticState {
 
 class Newton {
  public:
-  Newton(const StaticProblem& problem, const NewtonCriteria& criteria, const SolverOptions& solver);
+  Newton(const StaticProblem& problem, const NewtonCriteria& criteria, const SaddlePointOptions& solver);
 
   /// The state before any load: displacements zero, statuses of CONTACT_INIT.
   StaticState initial_state();
@@ -65,7 +65,8 @@ class Newton {
 
  private:
   void assemble(const StaticState& state);
-  void factorise();
+  /// Solve the present system in place.
+  SolutionReport solve_system(std::vector<double>& right_side);
   /// What keeps the last iteration from being the solution, in words.
   std::string unmet_criteria(const IterationReport& line, std::int64_t first_changed) const;
   void judge(const std::vector<double>& external, const StaticState& state, IterationReport& report);
@@ -74,8 +75,9 @@ class Newton {
   NewtonCriteria criteria_;
   Ragged<std::int32_t> elements_;
   System system_;
-  DirectSolver solver_;
-  Factorisation factorisation_;
+  SaddlePointSolver solver_;
+  bool linear_ = true;          ///< the stiffness never changes
+  bool has_stiffness_ = false;  ///< and is in the matrix
   std::optional<ContactState> contact_;
   std::vector<std::vector<double>> stresses_;
   double force_scale_ = 0;    ///< largest sum of |element forces| at a node

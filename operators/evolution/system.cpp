@@ -13,12 +13,9 @@ std::int64_t System::equation(std::int64_t unknown) const {
   return unknown < n_displacements() ? numbering_.equation[unknown] : numbering_.of_patch(unknown - n_displacements());
 }
 
-void System::make_pattern() {
-  matrix_ = std::make_unique<SymmetricMatrix>(numbering_, elements_, couplings_);
-  new_pattern_ = true;
-}
+void System::make_pattern() { matrix_ = std::make_unique<SymmetricMatrix>(numbering_, elements_, couplings_); }
 
-void System::start(std::span<const Coupling> couplings) {
+void System::start(std::span<const Coupling> couplings, bool keep_stiffness) {
   if (!matrix_->has_room_for(couplings)) {
     // the pattern only grows: couples that come back find their room, and the analysis stands
     couplings_.insert(couplings_.end(), couplings.begin(), couplings.end());
@@ -26,11 +23,13 @@ void System::start(std::span<const Coupling> couplings) {
     const auto same = [](const Coupling& x, const Coupling& y) { return x.a == y.a && x.b == y.b; };
     std::sort(couplings_.begin(), couplings_.end(), less);
     couplings_.erase(std::unique(couplings_.begin(), couplings_.end(), same), couplings_.end());
+    const std::unique_ptr<SymmetricMatrix> before = std::move(matrix_);
     make_pattern();
+    if (keep_stiffness) matrix_->copy_rows(*before, first_multiplier());
   }
-  matrix_->set_zero();
+  matrix_->set_zero(keep_stiffness ? first_multiplier() : 0);
   std::fill(residual_.begin(), residual_.end(), 0.0);
-  imposed_terms_.clear();
+  imposed_terms_.resize(keep_stiffness ? n_stiffness_terms_ : 0);
 }
 
 void System::add(std::span<const std::int64_t> unknowns, std::span<const double> lower, std::span<const double> residual) {
@@ -42,6 +41,7 @@ void System::add(std::span<const std::int64_t> unknowns, std::span<const double>
     residual_[unknowns[i]] += residual[i];
     meets_imposed = meets_imposed || equations[i] < 0;
   }
+  if (lower.empty()) return;
   matrix_->add(equations, lower);
   if (!meets_imposed) return;
   for (std::size_t i = 0, at = 0; i < unknowns.size(); ++i)

@@ -3,10 +3,8 @@
 #include <cstdint>
 #include <memory>
 #include <span>
-#include <utility>
 #include <vector>
 
-#include "lacon/assembly/direct_solver.hpp"
 #include "lacon/assembly/symmetric_matrix.hpp"
 
 namespace lacon {
@@ -22,21 +20,24 @@ class System {
   std::int64_t equation(std::int64_t unknown) const;
 
   /// Empty the matrix and the residual, and make room for these couplings.
-  void start(std::span<const Coupling> couplings);
-  /// Add an element. @param lower (n (n + 1) / 2): lower triangle of its matrix  @param residual (n)
+  /// @param keep_stiffness what was added before stiffness_is_complete() stays in the matrix: add() takes residuals alone until
+  /// then
+  void start(std::span<const Coupling> couplings, bool keep_stiffness = false);
+  /// What is added from now on belongs to the multipliers.
+  void stiffness_is_complete() { n_stiffness_terms_ = imposed_terms_.size(); }
+  /// Add an element. @param lower (n (n + 1) / 2): lower triangle of its matrix, or empty  @param residual (n)
   void add(std::span<const std::int64_t> unknowns, std::span<const double> lower, std::span<const double> residual);
   void add_diagonal(std::int64_t unknown, double value);
 
   std::vector<double>& residual() { return residual_; }  ///< (displacements, multipliers)
   const std::vector<double>& residual() const { return residual_; }
   const SymmetricMatrix& matrix() const { return *matrix_; }
+  /// The first equation of a multiplier.
+  std::int64_t first_multiplier() const { return numbering_.first[numbering_.n_nodes]; }
 
   /// The right side -residual + external - K du of the imposed displacements, (n_equations).
   /// @param external, step (n_displacements): external force; change of the imposed displacements, 0 elsewhere
   std::vector<double> right_side(std::span<const double> external, std::span<const double> step) const;
-
-  /// Whether the pattern has changed since the last call.
-  bool take_new_pattern() { return std::exchange(new_pattern_, false); }
 
  private:
   struct ImposedTerm {
@@ -49,9 +50,9 @@ class System {
   const Ragged<std::int32_t>& elements_;
   std::vector<Coupling> couplings_;
   std::unique_ptr<SymmetricMatrix> matrix_;
-  bool new_pattern_ = false;
   std::vector<double> residual_;
   std::vector<ImposedTerm> imposed_terms_;
+  std::size_t n_stiffness_terms_ = 0;  ///< the first of imposed_terms_, which belong to the stiffness
 };
 
 }  // namespace lacon

@@ -35,7 +35,8 @@ const Column columns[] = {
      [](const IterationReport& r, const StaticProblem& p) { return r.worst_dof < 0 ? std::string() : p.dof_name(r.worst_dof); },
      false,
      true},
-    {{"OPTION", "ASSEMBLAGE", ""}, [](const IterationReport&, const StaticProblem&) { return std::string("TANGENTE"); }},
+    {{"OPTION", "ASSEMBLAGE", ""},
+     [](const IterationReport& r, const StaticProblem&) { return std::string(r.solution.factorised ? "TANGENTE" : "-"); }},
     {{"CONTACT", "NEWTON GENE", "VARI. CONT."},
      [](const IterationReport& r, const StaticProblem&) {
        return fmt::format("{} {}", r.status_changes, r.status_changes ? 'X' : ' ');
@@ -49,8 +50,9 @@ const Column columns[] = {
      true},
     {{"SOLVER", "NEGATIVE", "PIVOTS"},
      [](const IterationReport& r, const StaticProblem&) {
-       return r.negative_pivots == r.constraints ? fmt::format("{}", r.negative_pivots)
-                                                 : fmt::format("{} of {}", r.negative_pivots, r.constraints);
+       if (!r.solution.factorised) return std::string("-");
+       const std::int64_t found = r.solution.factorisation.negative_pivots;
+       return found == r.constraints ? fmt::format("{}", found) : fmt::format("{} of {}", found, r.constraints);
      }},
     {{"TIME", "SECONDS", ""}, [](const IterationReport& r, const StaticProblem&) { return fmt::format("{:.4f}", r.seconds); }},
 };

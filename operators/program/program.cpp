@@ -108,6 +108,8 @@ int run_tool(int argc, char** argv, CLI::App& app, const std::function<void()>& 
 }
 
 Phase::Phase(std::string name) : name_(std::move(name)), start_(now()) {}
-Phase::~Phase() { outcome.seconds.emplace_back(std::move(name_), now() - start_); }
+Phase::~Phase() { add_to_phase(std::move(name_), now() - start_); }
+
+void add_to_phase(std::string name, double seconds) { outcome.seconds.emplace_back(std::move(name), seconds); }
 
 }  // namespace lacon

@@ -29,6 +29,9 @@ bool takes_order(int argc, char** argv);
 /// Messages and exit status as for run_program(); --status and --verbose are there too.
 int run_tool(int argc, char** argv, CLI::App& app, const std::function<void()>& work);
 
+/// Add to a phase of the operator's timings.
+void add_to_phase(std::string name, double seconds);
+
 /// The time from construction to destruction goes to the phase `name` of the operator's timings.
 class Phase {
  public:

@@ -141,9 +141,9 @@ void stat_non_line(const Order& order, const Base& base) {
   }();
   const TimeSteps steps = steps_of(single(keywords, "INCREMENT"), base);
   const Archiving archiving(single(keywords, "ARCHIVAGE"), base);
-  Newton newton(
-      problem, criteria_of(single(keywords, "CONVERGENCE")),
-      {.memory_margin = static_cast<int>(solver.integer("PCENT_PIVOT")), .residual_tolerance = solver.real("RESI_RELA")});
+  Newton newton(problem, criteria_of(single(keywords, "CONVERGENCE")),
+                {.direct = {.memory_margin = static_cast<int>(solver.integer("PCENT_PIVOT")),
+                            .residual_tolerance = solver.real("RESI_RELA")}});
   NewtonTable table(std::cout, problem, single(keywords, "AFFICHAGE").yes("INFO_RESIDU"), keywords.integer("INFO") == 2);
 
   StaticState state = newton.initial_state(), last = state;

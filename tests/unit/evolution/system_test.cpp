@@ -3,6 +3,7 @@
 #include <Eigen/Dense>
 #include <random>
 
+#include "lacon/assembly/direct_solver.hpp"
 #include "lacon/operators/evolution/system.hpp"
 
 namespace lacon {
@@ -53,8 +54,6 @@ TEST(System, EliminatesImposedDisplacements) {
   }
   const Eigen::VectorXd expected = full.fullPivLu().solve(b);
 
-  EXPECT_TRUE(system.take_new_pattern());
-  EXPECT_FALSE(system.take_new_pattern());
   DirectSolver solver;
   solver.analyse(system.matrix());
   solver.factorise();
@@ -73,16 +72,41 @@ TEST(System, KeepsItsPatternWhileItHasRoom) {
   Ragged<std::int32_t> elements;
   elements.push_back(std::vector<std::int32_t>{0, 1, 2});
   System system(numbering, elements);
-  system.take_new_pattern();
-  system.start(std::vector<Coupling>{{3, 0}});
-  EXPECT_TRUE(system.take_new_pattern());
-  system.start({});
-  system.start(std::vector<Coupling>{{3, 0}});
-  EXPECT_FALSE(system.take_new_pattern());
-  system.start(std::vector<Coupling>{{3, 2}});
-  EXPECT_TRUE(system.take_new_pattern());
-  system.start(std::vector<Coupling>{{3, 0}, {3, 2}});
-  EXPECT_FALSE(system.take_new_pattern());
+  const auto entries_with = [&](const std::vector<Coupling>& couplings) {
+    system.start(couplings);
+    return system.matrix().n_entries();
+  };
+  const std::int64_t bare = system.matrix().n_entries();
+  EXPECT_EQ(entries_with({{3, 0}}), bare + 1);
+  EXPECT_EQ(entries_with({}), bare + 1);
+  EXPECT_EQ(entries_with({{3, 0}}), bare + 1);
+  EXPECT_EQ(entries_with({{3, 2}}), bare + 2);
+  EXPECT_EQ(entries_with({{3, 0}, {3, 2}}), bare + 2);
+}
+
+// A stiffness that is kept, with rows of a multiplier that change and outgrow the pattern, gives the matrix and the right side
+// of a stiffness that is added anew.
+TEST(System, KeepsItsStiffness) {
+  const Numbering numbering = number_equations(3, 1, std::vector<std::uint8_t>{0, 1, 1}, 1);
+  Ragged<std::int32_t> elements;
+  elements.push_back(std::vector<std::int32_t>{0, 1, 2});
+  const std::vector<std::int64_t> solid{0, 1, 2}, row{0, 2, 3};
+  const std::vector<double> stiffness{4, -1, 5, -2, -3, 6}, force{0.1, 0.2, 0.3}, contact{0, 0, 0, 7, 8, 0}, gap{0.4, 0.5, 0.6};
+  const std::vector<Coupling> first{{3, 1}}, later{{3, 0}, {3, 2}};
+  System kept(numbering, elements), anew(numbering, elements);
+  for (const bool again : {false, true}) {
+    kept.start(again ? later : first, again);
+    anew.start(again ? later : first);
+    kept.add(solid, again ? std::span<const double>() : stiffness, force);
+    anew.add(solid, stiffness, force);
+    kept.stiffness_is_complete();
+    if (again) kept.add(row, contact, gap);
+    if (again) anew.add(row, contact, gap);
+  }
+  ASSERT_EQ(kept.matrix().n_entries(), anew.matrix().n_entries());
+  EXPECT_TRUE(std::equal(kept.matrix().values().begin(), kept.matrix().values().end(), anew.matrix().values().begin()));
+  const std::vector<double> external{1, 2, 3}, step{0.5, 0, 0};
+  EXPECT_EQ(kept.right_side(external, step), anew.right_side(external, step));
 }
 
 }  // namespace

@@ -1,0 +1,331 @@
+#include "lacon/assembly/saddle_point_solver.hpp"
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <numeric>
+#include <utility>
+
+namespace lacon {
+namespace {
+
+using Eigen::Map, Eigen::MatrixXd, Eigen::VectorXd;
+
+// Operations a factor's entry takes: two substitutions, each at memory's speed for one right side and at arithmetic's for a
+// block. Measured against the operations of a factorisation on several machines (docs/performance.md); only their ratio
+// matters.
+constexpr double operations_of_a_solution = 40, operations_in_a_block = 4;
+constexpr int block_size = 64;
+constexpr int least_iterations = 8, most_cycles = 3;
+
+class Stopwatch {
+ public:
+  explicit Stopwatch(double& seconds) : seconds_(seconds), start_(clock::now()) {}
+  ~Stopwatch() { seconds_ += std::chrono::duration<double>(clock::now() - start_).count(); }
+  Stopwatch(const Stopwatch&) = delete;
+  Stopwatch& operator=(const Stopwatch&) = delete;
+
+ private:
+  using clock = std::chrono::steady_clock;
+  double& seconds_;
+  clock::time_point start_;
+};
+
+/// The part of a multiplier's row before its diagonal, and the diagonal.
+struct Row {
+  std::span<const std::int32_t> columns;
+  std::span<const double> values;
+  double diagonal;
+
+  Row(const SymmetricMatrix& matrix, std::int64_t row) : diagonal(matrix.diagonal(row)) {
+    const std::int64_t first = matrix.rows()[row], size = matrix.rows()[row + 1] - first - 1;
+    columns = matrix.columns().subspan(first, size);
+    values = matrix.values().subspan(first, size);
+  }
+  bool is_on() const {
+    return std::any_of(values.begin(), values.end(), [](double v) { return v != 0; });
+  }
+  double times(std::span<const double> x) const {
+    double sum = 0;
+    for (std::size_t k = 0; k < columns.size(); ++k) sum += values[k] * x[columns[k]];
+    return sum;
+  }
+};
+
+double dot(std::span<const std::int32_t> index, std::span<const double> coefficient, std::span<const double> x) {
+  double sum = 0;
+  for (std::size_t k = 0; k < index.size(); ++k) sum += coefficient[k] * x[index[k]];
+  return sum;
+}
+
+/// |a - b|^2 of two sparse vectors with ascending indices.
+double distance_squared(std::span<const std::int32_t> i, std::span<const double> a, std::span<const std::int32_t> j,
+                        std::span<const double> b) {
+  double sum = 0;
+  std::size_t p = 0, q = 0;
+  while (p < i.size() || q < j.size()) {
+    const bool left = q == j.size() || (p < i.size() && i[p] <= j[q]), right = p == i.size() || (q < j.size() && j[q] <= i[p]);
+    const double difference = (left ? a[p] : 0.0) - (right ? b[q] : 0.0);
+    sum += difference * difference;
+    p += left;
+    q += right;
+  }
+  return sum;
+}
+
+bool same(std::span<const double> a, std::span<const double> b) { return std::equal(a.begin(), a.end(), b.begin(), b.end()); }
+
+bool same_stiffness(const SymmetricMatrix& a, const SymmetricMatrix& b, std::int64_t first_multiplier) {
+  if (a.size() != b.size() || a.rows()[first_multiplier] != b.rows()[first_multiplier]) return false;
+  const auto entries = static_cast<std::size_t>(a.rows()[first_multiplier]);
+  return same(a.values().first(entries), b.values().first(entries));
+}
+
+bool same_pattern(const SymmetricMatrix& a, const SymmetricMatrix& b) {
+  return std::equal(a.rows().begin(), a.rows().end(), b.rows().begin(), b.rows().end()) &&
+         std::equal(a.columns().begin(), a.columns().end(), b.columns().begin(), b.columns().end());
+}
+
+}  // namespace
+
+double SaddlePointSolver::solution_cost() const { return operations_of_a_solution * static_cast<double>(factor_.entries); }
+double SaddlePointSolver::column_cost() const { return operations_in_a_block * static_cast<double>(factor_.entries); }
+
+/// The inverse of the base matrix with the switched rows put right.
+///
+/// With the columns q of the base's inverse (Column) and unknowns y, one for each switched row: x = x0 - sum q y, where y is
+/// the multiplier of a row switched on, whose equation is c.x_u + d y = b, and the reaction of one switched off, whose
+/// multiplier must vanish in the base's equations; it is b / d.
+class SaddlePointSolver::Preconditioner {
+ public:
+  Preconditioner(SaddlePointSolver& solver, const SymmetricMatrix& matrix, const Switched& switched)
+      : solver_(solver), matrix_(matrix), rows_(switched.on), n_on_(rows_.size()), scaled_(switched.scaled) {
+    rows_.insert(rows_.end(), switched.off.begin(), switched.off.end());
+    for (const std::int64_t row : rows_) columns_.push_back(&solver.columns_.at(row));
+    const auto size = static_cast<Eigen::Index>(rows_.size());
+    MatrixXd schur(size, size);
+    for (Eigen::Index s = 0; s < size; ++s) {
+      for (Eigen::Index t = 0; t < size; ++t) schur(t, s) = seen_by(t, columns_[s]->inverse);
+      if (is_on(s)) schur(s, s) -= matrix.diagonal(rows_[s]);
+    }
+    scale_ = schur.diagonal().cwiseAbs().cwiseSqrt().cwiseInverse();
+    if (size == 0) return;
+    if (!scale_.allFinite()) {
+      condition_ = 0;
+      return;
+    }
+    factor_.compute(scale_.asDiagonal() * schur * scale_.asDiagonal());
+    condition_ = factor_.rcond();
+  }
+  /// Reciprocal condition number of the Schur complement.
+  double condition() const { return condition_; }
+
+  /// x = P^-1 b in place
+  void apply(std::span<double> x) const {
+    const auto size = static_cast<Eigen::Index>(rows_.size());
+    VectorXd own(size), side(size);
+    for (const std::int64_t row : scaled_) x[row] *= solver_.base_->diagonal(row) / matrix_.diagonal(row);
+    for (Eigen::Index s = 0; s < size; ++s) own[s] = std::exchange(x[rows_[s]], 0.0);
+    solver_.direct_.substitute(x);
+    for (Eigen::Index s = 0; s < size; ++s) side[s] = scale_[s] * (seen_by(s, x) - (is_on(s) ? own[s] : 0.0));
+    if (size) side = scale_.asDiagonal() * factor_.solve(side).eval();
+    Map<VectorXd> solution(x.data(), static_cast<Eigen::Index>(x.size()));
+    for (Eigen::Index s = 0; s < size; ++s)
+      solution -= side[s] * Map<const VectorXd>(columns_[s]->inverse.data(), solution.size());
+    for (Eigen::Index s = 0; s < size; ++s) x[rows_[s]] = is_on(s) ? side[s] : own[s] / matrix_.diagonal(rows_[s]);
+  }
+
+ private:
+  bool is_on(Eigen::Index s) const { return static_cast<std::size_t>(s) < n_on_; }
+  /// What the equation of a switched row sees of x.
+  double seen_by(Eigen::Index s, std::span<const double> x) const {
+    return is_on(s) ? dot(columns_[s]->index, columns_[s]->coefficient, x) : x[rows_[s]];
+  }
+
+  SaddlePointSolver& solver_;
+  const SymmetricMatrix& matrix_;
+  std::vector<std::int64_t> rows_;  ///< switched on, then switched off
+  std::size_t n_on_;
+  std::vector<std::int64_t> scaled_;
+  std::vector<const Column*> columns_;
+  VectorXd scale_;
+  Eigen::PartialPivLU<MatrixXd> factor_;
+  double condition_ = 1;
+};
+
+SolutionReport SaddlePointSolver::solve(const SymmetricMatrix& matrix, std::int64_t first_multiplier,
+                                        std::span<double> right_side) {
+  SolutionReport report;
+  first_multiplier_ = first_multiplier;
+  if (options_.reuse && base_ && same_stiffness(matrix, *base_, first_multiplier) && corrected(matrix, right_side, report))
+    return report;
+
+  columns_.clear();
+  const bool analysed = base_ && same_pattern(matrix, *base_);
+  base_ = matrix;
+  if (!analysed) {
+    const Stopwatch watch(report.analysis_seconds);
+    direct_.analyse(*base_);
+  }
+  {
+    const Stopwatch watch(report.factorisation_seconds);
+    factor_ = report.factorisation = direct_.factorise();
+    report.factorised = true;
+  }
+  if (!factor_.null_pivots.empty()) {
+    base_.reset();
+    return report;
+  }
+  const Stopwatch watch(report.solution_seconds);
+  const std::vector<double> scale = scales(matrix);
+  const auto n = static_cast<Eigen::Index>(scale.size());
+  reference_ =
+      std::max(reference_, Map<const VectorXd>(scale.data(), n).cwiseProduct(Map<VectorXd>(right_side.data(), n)).norm());
+  direct_.solve(right_side);
+  return report;
+}
+
+std::vector<double> SaddlePointSolver::scales(const SymmetricMatrix& matrix) {
+  std::vector<double> scale(matrix.size());
+  for (std::int64_t i = 0; i < first_multiplier_; ++i) scale[i] = 1 / std::sqrt(std::abs(matrix.diagonal(i)));
+  for (std::int64_t i = first_multiplier_; i < matrix.size(); ++i) {
+    const Row row(matrix, i);
+    double flexibility = 0;
+    for (std::size_t k = 0; k < row.columns.size(); ++k)
+      flexibility += row.values[k] * row.values[k] / std::abs(matrix.diagonal(row.columns[k]));
+    // a row that is off is solved exactly: any weight does where it never had coefficients
+    double& known = multiplier_scale_.try_emplace(i, 1 / std::abs(matrix.diagonal(0))).first->second;
+    if (flexibility > 0) known = flexibility;
+    scale[i] = flexibility > 0 ? 1 / std::sqrt(known) : std::sqrt(known) / std::abs(row.diagonal);
+  }
+  return scale;
+}
+
+bool SaddlePointSolver::make_columns(const SymmetricMatrix& matrix, const Switched& switched, SolutionReport& report) {
+  std::vector<std::int64_t> wanted;
+  for (const std::int64_t i : switched.on) {
+    const auto known = columns_.find(i);
+    const Row row(matrix, i);
+    const double size = std::inner_product(row.values.begin(), row.values.end(), row.values.begin(), 0.0);
+    if (known == columns_.end() || distance_squared(row.columns, row.values, known->second.index, known->second.coefficient) >
+                                       options_.drift * options_.drift * size)
+      wanted.push_back(i);
+  }
+  for (const std::int64_t i : switched.off)
+    if (!columns_.contains(i)) wanted.push_back(i);
+  const double cost = static_cast<double>(wanted.size()) * column_cost() + expected_iterations_ * solution_cost();
+  const double memory = static_cast<double>((columns_.size() + wanted.size()) * matrix.size());
+  if (cost > options_.work_limit * factor_.flops || memory > options_.column_memory * static_cast<double>(factor_.entries))
+    return false;
+
+  for (std::size_t first = 0; first < wanted.size(); first += block_size) {
+    const std::size_t count = std::min<std::size_t>(block_size, wanted.size() - first);
+    std::vector<std::int64_t> offset{0};
+    std::vector<std::int32_t> index;
+    std::vector<double> value;
+    for (std::size_t c = first; c < first + count; ++c) {
+      Column& column = columns_[wanted[c]];
+      column = {};
+      if (std::binary_search(switched.on.begin(), switched.on.end(), wanted[c])) {
+        const Row row(matrix, wanted[c]);
+        for (std::size_t k = 0; k < row.columns.size(); ++k) {
+          if (row.values[k] == 0) continue;
+          column.index.push_back(row.columns[k]);
+          column.coefficient.push_back(row.values[k]);
+        }
+        index.insert(index.end(), column.index.begin(), column.index.end());
+        value.insert(value.end(), column.coefficient.begin(), column.coefficient.end());
+      } else {
+        index.push_back(static_cast<std::int32_t>(wanted[c]));
+        value.push_back(1.0);
+      }
+      offset.push_back(static_cast<std::int64_t>(index.size()));
+    }
+    const std::vector<double> inverse = direct_.substitute(offset, index, value);
+    const auto n = static_cast<std::ptrdiff_t>(matrix.size());
+    for (std::size_t c = 0; c < count; ++c)
+      columns_[wanted[first + c]].inverse.assign(inverse.begin() + static_cast<std::ptrdiff_t>(c) * n,
+                                                 inverse.begin() + static_cast<std::ptrdiff_t>(c + 1) * n);
+  }
+  report.columns = static_cast<int>(wanted.size());
+  return true;
+}
+
+bool SaddlePointSolver::corrected(const SymmetricMatrix& matrix, std::span<double> right_side, SolutionReport& report) {
+  const Stopwatch watch(report.solution_seconds);
+  Switched switched;
+  for (std::int64_t i = first_multiplier_; i < matrix.size(); ++i) {
+    const Row row(matrix, i), before(*base_, i);
+    if (!row.columns.empty() && row.columns.back() >= first_multiplier_ && row.values.back() != 0) return false;
+    const bool is_on = row.is_on(), was_on = before.is_on();
+    if (is_on != was_on)
+      (is_on ? switched.on : switched.off).push_back(i);
+    else if (!is_on && row.diagonal != before.diagonal)
+      switched.scaled.push_back(i);
+  }
+  if (!make_columns(matrix, switched, report)) return false;
+  const Preconditioner preconditioner(*this, matrix, switched);
+  if (!(preconditioner.condition() > options_.singular)) return false;
+
+  // GMRES on D A P^-1 D^-1 (D y) = D b with the scales D, x = P^-1 y
+  const auto n = static_cast<Eigen::Index>(matrix.size());
+  const std::vector<double> scales_of_rows = scales(matrix);
+  const Map<const VectorXd> scale(scales_of_rows.data(), n);
+  const VectorXd unscale = scale.cwiseInverse();
+  const Map<const VectorXd> side(right_side.data(), n);
+  VectorXd x = VectorXd::Zero(n), residual = scale.cwiseProduct(side), image(n);
+  const double size = residual.norm();
+  reference_ = std::max(reference_, size);
+  const double goal = std::min(options_.tolerance * reference_, options_.least_gain * size);
+  const int most =
+      std::max(least_iterations, static_cast<int>(std::min(1e3, options_.work_limit * factor_.flops / solution_cost())));
+  std::vector<VectorXd> basis, directions;
+  for (int cycle = 0; cycle < most_cycles && residual.norm() > goal; ++cycle) {
+    basis.assign(1, residual / residual.norm());
+    directions.clear();
+    MatrixXd triangle = MatrixXd::Zero(most + 1, most);
+    VectorXd small = VectorXd::Zero(most + 1);
+    small[0] = residual.norm();
+    std::vector<Eigen::JacobiRotation<double>> rotations;
+    int k = 0;
+    while (k < most && std::abs(small[k]) > 0.5 * goal && report.iterations < most) {
+      VectorXd direction = unscale.cwiseProduct(basis[k]);
+      preconditioner.apply({direction.data(), static_cast<std::size_t>(n)});
+      matrix.multiply({direction.data(), static_cast<std::size_t>(n)}, {image.data(), static_cast<std::size_t>(n)});
+      image.array() *= scale.array();
+      directions.push_back(std::move(direction));
+      const double whole = image.norm();
+      for (int pass = 0; pass < 2; ++pass)  // twice is enough to be orthogonal to round-off
+        for (int i = 0; i <= k; ++i) {
+          const double part = basis[i].dot(image);
+          triangle(i, k) += part;
+          image -= part * basis[i];
+        }
+      triangle(k + 1, k) = image.norm();
+      for (int i = 0; i < k; ++i) triangle.col(k).applyOnTheLeft(i, i + 1, rotations[i].adjoint());
+      Eigen::JacobiRotation<double> rotation;
+      rotation.makeGivens(triangle(k, k), triangle(k + 1, k));
+      const double rest = triangle(k + 1, k);
+      triangle.col(k).applyOnTheLeft(k, k + 1, rotation.adjoint());
+      small.applyOnTheLeft(k, k + 1, rotation.adjoint());
+      rotations.push_back(rotation);
+      ++k;
+      ++report.iterations;
+      if (!(rest > 1e-15 * whole)) break;  // the space holds the solution
+      basis.push_back(image / image.norm());
+    }
+    if (k == 0) break;
+    const VectorXd weights = triangle.topLeftCorner(k, k).triangularView<Eigen::Upper>().solve(small.head(k));
+    if (!weights.allFinite()) return false;
+    for (int i = 0; i < k; ++i) x += weights[i] * directions[i];
+    matrix.multiply({x.data(), static_cast<std::size_t>(n)}, {image.data(), static_cast<std::size_t>(n)});
+    residual = scale.cwiseProduct(side - image);
+  }
+  if (!(residual.norm() <= goal)) return false;
+  expected_iterations_ = report.iterations;
+  std::copy(x.begin(), x.end(), right_side.begin());
+  return true;
+}
+
+}  // namespace lacon

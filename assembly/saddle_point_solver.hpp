@@ -1,0 +1,82 @@
+#pragma once
+// Solves a sequence of saddle-point systems that differ in their multipliers' rows, with few factorisations.
+//
+// The last rows of the matrix belong to multipliers. The block before them, the stiffness, is often the same from one system to
+// the next; then the factor of an earlier matrix serves on. Rows that were switched on or off since are put right exactly by a
+// Schur complement, for which one column of the inverse each is computed and kept. Coefficients that moved with the bodies are
+// left to GMRES, preconditioned with that. A cost model decides when a new factorisation is cheaper; it counts operations, so
+// that the choice is the same in every run.
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "lacon/assembly/direct_solver.hpp"
+#include "lacon/assembly/symmetric_matrix.hpp"
+
+namespace lacon {
+
+struct SaddlePointOptions {
+  SolverOptions direct;
+  bool reuse = true;           ///< false: every matrix is factorised
+  double tolerance = 1e-12;    ///< of GMRES, against the largest right side so far
+  double least_gain = 1e-4;    ///< of GMRES, against the right side itself
+  double singular = 1e-12;     ///< reciprocal condition of the Schur complement below which the matrix is factorised anew
+  double drift = 0.3;          ///< relative change of a row's coefficients above which its column is computed anew
+  double work_limit = 1;       ///< most operations without a new factorisation, of those of a factorisation
+  double column_memory = 0.5;  ///< largest memory of the columns, of the factor's
+};
+
+/// How a system was solved.
+struct SolutionReport {
+  bool factorised = false;
+  Factorisation factorisation;  ///< what the factorisation found, where there was one
+  int columns = 0;              ///< of the inverse, computed anew
+  int iterations = 0;           ///< of GMRES
+  double analysis_seconds = 0, factorisation_seconds = 0, solution_seconds = 0;
+};
+
+class SaddlePointSolver {
+ public:
+  explicit SaddlePointSolver(const SaddlePointOptions& options = {}) : options_(options), direct_(options.direct) {}
+
+  /// Solve A x = b in place. @param first_multiplier rows from here on are multipliers'
+  /// Where the report has null pivots, the matrix is singular and `right_side` is left as it was.
+  /// Throws SOLVER_1, SOLVER_2.
+  SolutionReport solve(const SymmetricMatrix& matrix, std::int64_t first_multiplier, std::span<double> right_side);
+
+ private:
+  /// The part of the inverse that a switched row needs: for a row switched on, of its coefficients; for one switched off, of
+  /// its own unit vector.
+  struct Column {
+    std::vector<std::int32_t> index;
+    std::vector<double> coefficient;
+    std::vector<double> inverse;  ///< (n)
+  };
+  /// Multipliers' rows that are not what they were when the factor was made, ascending.
+  struct Switched {
+    std::vector<std::int64_t> on, off;
+    std::vector<std::int64_t> scaled;  ///< off then and now, with another diagonal
+  };
+  class Preconditioner;
+
+  bool corrected(const SymmetricMatrix& matrix, std::span<double> right_side, SolutionReport& report);
+  bool make_columns(const SymmetricMatrix& matrix, const Switched& switched, SolutionReport& report);
+  /// What makes the residuals of displacements and of multipliers comparable, (n).
+  std::vector<double> scales(const SymmetricMatrix& matrix);
+  double solution_cost() const;
+  double column_cost() const;
+
+  SaddlePointOptions options_;
+  DirectSolver direct_;
+  std::int64_t first_multiplier_ = 0;
+  std::optional<SymmetricMatrix> base_;  ///< the matrix whose factor is kept
+  Factorisation factor_;
+  std::map<std::int64_t, Column> columns_;
+  std::map<std::int64_t, double> multiplier_scale_;  ///< c.c / K of rows when they last had coefficients
+  double reference_ = 0;                             ///< largest right side so far, scaled
+  int expected_iterations_ = 4;
+};
+
+}  // namespace lacon

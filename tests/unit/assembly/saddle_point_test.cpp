@@ -1,0 +1,162 @@
+#include <gtest/gtest.h>
+
+#include <random>
+
+#include "dense.hpp"
+#include "lacon/assembly/saddle_point_solver.hpp"
+
+namespace lacon {
+namespace {
+
+using test::Chain;
+using test::dense;
+
+constexpr int n_nodes = 60, n_rows = 8;
+
+/// A chain held at its first node, with rows of multipliers that are on (coefficients, zero diagonal) or off (diagonal alone).
+struct Sequence {
+  explicit Sequence(bool held_end = true)
+      : chain(n_nodes, n_rows, free(held_end)), matrix(chain.numbering, chain.cliques, couplings()) {
+    fill();
+  }
+  static std::vector<std::uint8_t> free(bool held) {
+    std::vector<std::uint8_t> flags(2 * n_nodes, 1);
+    if (held) flags[0] = flags[1] = 0;
+    return flags;
+  }
+  static std::vector<Coupling> couplings() {
+    std::vector<Coupling> all;
+    for (int r = 0; r < n_rows; ++r)
+      for (int k = 0; k < 3; ++k) all.push_back({n_nodes + r, 3 + 7 * r + 2 * k});
+    return all;
+  }
+  void fill() {
+    matrix.set_zero();
+    test::add_springs(matrix, chain);
+    for (int r = 0; r < n_rows; ++r) {
+      if (!on[r]) {
+        matrix.add_diagonal(chain.numbering.of_patch(r), off);
+        continue;
+      }
+      for (int k = 0; k < 3; ++k) {
+        const std::vector<std::int64_t> equations{chain.numbering.of_patch(r), chain.numbering.of(3 + 7 * r + 2 * k, k % 2)};
+        matrix.add(equations, std::vector<double>{0, (k != 1 ? 0.5 : r % 2 ? -1.0 : 0.7) * (1 + drift * (k + 1)), 0});
+      }
+    }
+  }
+  std::int64_t first_multiplier() const { return chain.numbering.first[n_nodes]; }
+  /// How far the solver is from dense LU, of the largest entry.
+  double error(SaddlePointSolver& solver, SolutionReport& report) {
+    Eigen::VectorXd b = Eigen::VectorXd::Random(matrix.size()), x = b;
+    report = solver.solve(matrix, first_multiplier(), {x.data(), static_cast<std::size_t>(x.size())});
+    const Eigen::VectorXd expected = dense(matrix).fullPivLu().solve(b);
+    return (x - expected).cwiseAbs().maxCoeff() / expected.cwiseAbs().maxCoeff();
+  }
+  Chain chain;
+  SymmetricMatrix matrix;
+  std::array<bool, n_rows> on{};
+  double drift = 0;
+  double off = 1;  ///< diagonal of rows that are off
+};
+
+/// A solver that takes every chance to keep its factor: its cost model would factorise so small a matrix again.
+SaddlePointSolver eager() { return SaddlePointSolver({.work_limit = 1e6, .column_memory = 1e6}); }
+
+// Rows switched on and off, in any order, are solved with the first factor, exactly as by dense LU.
+TEST(SaddlePointSolver, SwitchesRowsWithOneFactor) {
+  Sequence system;
+  SaddlePointSolver solver = eager();
+  SolutionReport report;
+  system.on[2] = system.on[5] = true;
+  system.fill();
+  EXPECT_LE(system.error(solver, report), 1e-11);
+  EXPECT_TRUE(report.factorised);
+  EXPECT_EQ(report.factorisation.negative_pivots, 2);
+  std::mt19937 random(3);
+  for (int round = 0; round < 20; ++round) {
+    for (bool& row : system.on) row = random() % 2;
+    system.off = 1.0 + static_cast<double>(random() % 3);
+    system.fill();
+    EXPECT_LE(system.error(solver, report), 1e-11) << "round " << round;
+    EXPECT_FALSE(report.factorised);
+    EXPECT_LE(report.iterations, 2) << "switching is exact: one application of the preconditioner, one for round-off";
+  }
+}
+
+// Coefficients that drift are left to GMRES: few iterations, to full accuracy; with a large drift columns are made anew.
+TEST(SaddlePointSolver, FollowsDriftingCoefficients) {
+  Sequence system;
+  SaddlePointSolver solver = eager();
+  SolutionReport report;
+  system.on[0] = system.on[1] = system.on[4] = true;
+  system.fill();
+  system.error(solver, report);
+  for (const double drift : {0.01, 0.05, 0.1, 0.5}) {
+    system.drift = drift;
+    for (bool& row : system.on) row = !row;
+    system.fill();
+    EXPECT_LE(system.error(solver, report), 1e-11) << drift;
+    EXPECT_FALSE(report.factorised);
+  }
+}
+
+// A row that had no column yet costs one; one that has does not.
+TEST(SaddlePointSolver, KeepsItsColumns) {
+  Sequence system;
+  SaddlePointSolver solver = eager();
+  SolutionReport report;
+  system.error(solver, report);
+  const auto columns_after = [&](int row, bool on) {
+    system.on[row] = on;
+    system.fill();
+    system.error(solver, report);
+    return report.columns;
+  };
+  EXPECT_EQ(columns_after(1, true), 1);
+  EXPECT_EQ(columns_after(3, true), 1);
+  EXPECT_EQ(columns_after(1, false), 0);
+  EXPECT_EQ(columns_after(1, true), 0);
+}
+
+// Another stiffness needs another factor.
+TEST(SaddlePointSolver, FactorisesWhenTheStiffnessChanges) {
+  Sequence system;
+  SaddlePointSolver solver = eager();
+  SolutionReport report;
+  system.error(solver, report);
+  system.matrix.add_diagonal(7, 0.25);
+  EXPECT_LE(system.error(solver, report), 1e-11);
+  EXPECT_TRUE(report.factorised);
+}
+
+// A chain that its rows alone hold: once they are off, the kept factor must not hide that it floats.
+TEST(SaddlePointSolver, FindsThatABodyCameLoose) {
+  Sequence system(false);
+  for (int r = 0; r < n_rows; ++r) system.on[r] = true;
+  system.fill();
+  SaddlePointSolver solver = eager();
+  SolutionReport report;
+  EXPECT_LE(system.error(solver, report), 1e-11);
+  EXPECT_TRUE(report.factorisation.null_pivots.empty());
+  system.on.fill(false);
+  system.fill();
+  std::vector<double> b(system.matrix.size(), 1.0);
+  report = solver.solve(system.matrix, system.first_multiplier(), b);
+  EXPECT_TRUE(report.factorised);
+  EXPECT_EQ(report.factorisation.null_pivots.size(), 2u);
+}
+
+// The cost model factorises small matrices: that is cheaper than any iteration.
+TEST(SaddlePointSolver, FactorisesSmallMatrices) {
+  Sequence system;
+  SaddlePointSolver solver;
+  SolutionReport report;
+  system.error(solver, report);
+  system.on[0] = true;
+  system.fill();
+  system.error(solver, report);
+  EXPECT_TRUE(report.factorised);
+}
+
+}  // namespace
+}  // namespace lacon
