@@ -1,7 +1,10 @@
 #!/usr/bin/env python3
 """Times whole studies of two stacked blocks: H1 to H4 flat, H1c to H4c curved. No assertion: figures for people.
 
-usage: end_to_end.py BUILD [NAME ...] [--json FILE]      BUILD: build/release; NAME: H1 H1c ... (all by default up to H2)
+usage: end_to_end.py BUILD [NAME ...] [--threads N] [--json FILE]      BUILD: build/release; NAME: H1 H1c ..., by default up to H2c
+
+Prints wall time, largest memory of a process, phases of STAT_NON_LINE, and the ratio to the factorisation of a cube of 32^3 HEXA8 by
+MUMPS and to a copy of memory, both measured in the same run (bench_machine).
 """
 
 import argparse
@@ -45,16 +48,52 @@ def two_blocks(name, kind="HEXA8"):
     return union([bottom, top])
 
 
-def run(lacon, name, folder, threads):
-    """One study: wall seconds, peak memory of its largest process in MB, output."""
+def study(lacon, name, folder, threads):
+    """One study: wall seconds, largest memory of a process (MB), seconds by phase of STAT_NON_LINE, Newton iterations, factorisations."""
     mesh = folder / f"{name}.med"
     if not mesh.exists():
         write_med(mesh, two_blocks(name))
     environment = {**os.environ, "BLOCKS_FLAT": "0" if name.endswith("c") else "1", "BLOCKS_DZ": str(PUSH),
                    "OPENBLAS_NUM_THREADS": str(threads), "OMP_NUM_THREADS": str(threads)}
-    before = time.perf_counter()
-    done = subprocess.run([str(lacon), str(SOURCE / "tests/bench/two_blocks.comm"), "--fresh", "--unit", f"20={mesh}",
-                           "--base", str(folder / f"{name}.base"), "--timings"],
-                          env=environment, capture_output=True, text=True)
-    seconds = time.perf_counter() - before
-    return seconds, done
+    start = time.perf_counter()
+    done = subprocess.run([str(lacon), str(SOURCE / "tests/bench/two_blocks.comm"), "--fresh", "--unit", f"20={mesh}", "--base",
+                           str(folder / f"{name}.base"), "--timings"], env=environment, capture_output=True, text=True)
+    wall = time.perf_counter() - start
+    if done.returncode:
+        sys.exit(f"{name}: exit status {done.returncode}\n{done.stdout[-3000:]}{done.stderr[-3000:]}")
+    lines = re.findall(r"^ \|\s+\d+X?\s*\|.*$", done.stdout, re.MULTILINE)
+    table = done.stdout[done.stdout.index("  STAT_NON_LINE  "):]
+    phases = dict(re.findall(r"^ {6}(\w[\w ]*?)\s+([0-9.]+)$", table.split("  TEST_RESU")[0].split("  FIN ")[0], re.MULTILINE))
+    return {"name": name, "wall": wall, "memory": resource.getrusage(resource.RUSAGE_CHILDREN).ru_maxrss / 1024,
+            "iterations": len(lines), "factorisations": sum("TANGENTE" in line for line in lines),
+            "phases": {phase: float(seconds) for phase, seconds in phases.items()}}
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
+    parser.add_argument("build", type=pathlib.Path)
+    parser.add_argument("names", nargs="*", default=["H1", "H2", "H1c", "H2c"])
+    parser.add_argument("--threads", type=int, default=1)
+    parser.add_argument("--json", type=pathlib.Path)
+    options = parser.parse_args()
+    build = options.build.resolve()
+    machine = json.loads(subprocess.run([str(build / "tests/bench_machine")], check=True, capture_output=True, text=True,
+                                        env={**os.environ, "OPENBLAS_NUM_THREADS": "1"}).stdout)
+    print(f"cube of 32^3 HEXA8: factorised in {machine['factorisation_seconds']:.2f} s at {machine['factorisation_gflops']:.1f} GF/s; "
+          f"dgemm {machine['dgemm_gflops']:.1f} GF/s, copy of memory {machine['copy_gbytes']:.1f} GB/s")
+    head = ["read", "elements", "pairing", "contact", "analysis", "factorisation", "solution", "archive"]
+    print(f"{'':5s} {'wall s':>8s} {'/ cube':>7s} {'MB':>6s} {'Newton':>6s} {'factor':>6s} " + " ".join(f"{phase:>13s}" for phase in head))
+    rows = []
+    with tempfile.TemporaryDirectory() as folder:
+        for name in options.names:
+            row = study(build / "bin/lacon", name, pathlib.Path(folder), options.threads)
+            row["ratio"] = row["wall"] / machine["factorisation_seconds"]
+            rows.append(row)
+            print(f"{name:5s} {row['wall']:8.2f} {row['ratio']:7.2f} {row['memory']:6.0f} {row['iterations']:6d} {row['factorisations']:6d} " +
+                  " ".join(f"{row['phases'].get(phase, 0.0):13.2f}" for phase in head), flush=True)
+    if options.json:
+        options.json.write_text(json.dumps({"machine": machine, "threads": options.threads, "studies": rows}, indent=1))
+
+
+if __name__ == "__main__":
+    main()
