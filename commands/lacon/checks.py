@@ -104,7 +104,7 @@ def _mesh_check(call, test):
 
 def _result_check(call, test, path):
     result = test["RESULTAT"]
-    order, instant = _order(call, test, path)
+    order, instant = order_of(call, test, path)
     field = result.field(test["NOM_CHAM"], order)
     if field is None:
         call.fail("TEST_RESU_3", f"{path}/NOM_CHAM", field=test["NOM_CHAM"], label=result.label, instant=f"{instant:g}",
@@ -144,7 +144,7 @@ def _nearest_target(value, targets):
     return min(targets, key=lambda target: abs(value - target))
 
 
-def _order(call, test, path):
+def order_of(call, test, path):
     """(order number, instant) that INST or NUME_ORDRE names."""
     instants = test["RESULTAT"].instants()
     known = ", ".join(f"{order} (INST {t:g})" for order, t in instants[:12]) + (", ..." if len(instants) > 12 else "")
@@ -176,14 +176,14 @@ def _select(call, test, path, field):
     for keyword, kind in (("NOEUD", "nodes"), ("GROUP_NO", "nodes"), ("MAILLE", "cells"), ("GROUP_MA", "cells")):
         if keyword not in test:
             continue
-        members = _members(call, test, path, mesh, keyword, kind)
+        members = members_of(call, test, path, mesh, keyword, kind)
         words.append(test[keyword])
         if (field.location == "NOEU") == (kind == "nodes"):
             rows &= numpy.isin(owner, members)
         elif field.location == "NOEU":
-            rows &= numpy.isin(owner, _nodes_of(mesh, members))
+            rows &= numpy.isin(owner, nodes_of(mesh, members))
         elif field.location == "ELNO":
-            rows &= numpy.isin(_nodes_of(mesh, field.support), members)
+            rows &= numpy.isin(nodes_of(mesh, field.support), members)
         else:
             call.fail("TEST_RESU_5", f"{path}/{keyword}", keyword=keyword, field=field.name)
     if "POINT" in test:
@@ -205,7 +205,7 @@ def _select(call, test, path, field):
     return values, place
 
 
-def _members(call, test, path, mesh, keyword, kind):
+def members_of(call, test, path, mesh, keyword, kind):
     """0-based numbers of nodes or cells that a keyword names."""
     name = test[keyword]
     if keyword in ("NOEUD", "MAILLE"):
@@ -223,7 +223,7 @@ def _members(call, test, path, mesh, keyword, kind):
     return members
 
 
-def _nodes_of(mesh, cells):
+def nodes_of(mesh, cells):
     """Nodes of cells, one cell after the other."""
     import numpy
 

@@ -33,7 +33,7 @@ class Call:
 
 def _implementations():
     """command -> function(call) of those that Python does itself"""
-    from . import checks, formulas, functions, lists, materials, table_commands
+    from . import checks, formulas, functions, lists, materials, post_releve_t, table_commands
 
     return {
         "DEBUT": lambda call: call.study.start(call.keywords, call.where, resume=False),
@@ -49,6 +49,7 @@ def _implementations():
         "IMPR_TABLE": table_commands.impr_table,
         "TEST_TABLE": table_commands.test_table,
         "RECU_TABLE": table_commands.recu_table,
+        "POST_RELEVE_T": post_releve_t.post_releve_t,
         "DETRUIRE": _destroy,
     }
 

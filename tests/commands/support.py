@@ -94,6 +94,18 @@ class LauncherTest(unittest.TestCase):
         self.assertNotIn("/lacon/", run.err, "the launcher's own files are no concern of the user's")
         return run
 
+    def all_refused(self, prelude, calls):
+        """In one run each call, made after `prelude`, is an error of the user's that names its identifier. @param calls [(call, identifier)]"""
+        tries = "".join(f"""
+try:
+    {call}
+except AsterError as error:
+    assert error.id_message == {identifier!r}, ({call!r}, str(error))
+else:
+    raise AssertionError({call!r})
+""" for call, identifier in calls)
+        return self.ok(self.run_study(f"{prelude}\n{tries}\nFIN()\n"))
+
     def registry(self, base="study.base"):
         return json.loads((self.work / base / "base.json").read_text(encoding="utf-8"))
 

@@ -123,14 +123,15 @@ assert G.getParameters() == ['T', 'U'] and G.getColumnType('T') == 'R' and G.get
         self.ok(self.run_study("POURSUITE()\nassert T['V', 2] == 2.5 and T\nFIN()\n"))
 
     def test_creation_refused(self):
+        calls = []
         for keywords, word in (("LISTE=(_F(PARA='A', LISTE_R=(1, 2)), _F(PARA='B', LISTE_R=1))", "TABLE_5"),
                                ("LISTE=(_F(PARA='A', LISTE_R=(1, 2), NUME_LIGN=1))", "TABLE_6"),
                                ("LISTE=(_F(PARA='A', LISTE_R=1), _F(PARA='A', LISTE_R=2))", "TABLE_7"),
                                ("LISTE=_F(PARA='A', LISTE_K='123456789', TYPE_K='K8')", "TABLE_8"),
                                ("LISTE=_F(PARA='A', LISTE_R=1, LISTE_I=1)", "KEYWORD_6"),
                                ("LISTE=_F(PARA='A', LISTE_R=1), TYPE_TABLE='TABLE_FONCTION'", "KEYWORD_13")):
-            with self.subTest(keywords):
-                self.refused(self.study(f"U = CREA_TABLE({keywords})"), word)
+            calls.append((f"CREA_TABLE({keywords})", word))
+        self.all_refused("DEBUT()", calls)
 
     def test_printed(self):
         self.ok(self.study("""
@@ -159,13 +160,14 @@ IMPR_TABLE(TABLE=T, UNITE=32, PAGINATION='S', NOM_PARA=('S', 'N'), COMMENTAIRE='
         self.assertEqual((self.work / "mesh.med").read_bytes(), b"not read by the stand-in")
 
     def test_printing_refused(self):
+        calls = []
         for keywords, word in (("FORMAT_R='12'", "TABLE_11"), ("NOM_PARA='Q'", "TABLE_1"), ("FILTRE=_F(NOM_PARA='Q', VALE=1.)", "TABLE_1"),
                                ("FILTRE=_F(NOM_PARA='S', VALE=1.)", "TABLE_2"), ("FILTRE=_F(NOM_PARA='V', CRIT_COMP='LT', VALE=(1., 2.))", "TABLE_3"),
                                ("FILTRE=_F(NOM_PARA='S', CRIT_COMP='MAXI')", "TABLE_4"), ("FORMAT='TABLEAU_CROISE', NOM_PARA=('N', 'S')", "TABLE_12"),
                                ("FORMAT='AGRAF'", "KEYWORD_13"), ("FILTRE=_F(NOM_PARA='N', CRIT_COMP='VIDE', VALE=1.)", "KEYWORD_10")):
-            with self.subTest(keywords):
-                self.refused(self.study(f"IMPR_TABLE(TABLE=T, UNITE=30, {keywords})"), word)
-                self.assertFalse((self.work / "study.30.table").exists())
+            calls.append((f"IMPR_TABLE(TABLE=T, UNITE=30, {keywords})", word))
+        self.all_refused(f"DEBUT()\n{TABLE}", calls)
+        self.assertFalse((self.work / "study.30.table").exists())
 
     def test_checked(self):
         lines = [("NOM_PARA='V', TYPE_TEST='MAX', VALE_CALC=2.5", 2.5), ("NOM_PARA='V', TYPE_TEST='SOMM_ABS', VALE_CALC=7.0", 7.0),
@@ -193,13 +195,14 @@ TEST_TABLE(TABLE=T, NOM_PARA='N', FILTRE=_F(NOM_PARA='N', VALE_I=1), VALE_CALC_I
         self.assertIn("4 checks: 0 OK, 1 NOOK, 3 DIFF", run.out)
 
     def test_checks_refused(self):
+        calls = []
         for keywords, word in (("NOM_PARA='V', VALE_CALC=1.5", "TABLE_9"), ("NOM_PARA='Q', VALE_CALC=1.5", "TABLE_1"),
                                ("NOM_PARA='V', FILTRE=_F(NOM_PARA='N', VALE_I=9), VALE_CALC=1.5", "TABLE_9"),
                                ("NOM_PARA='V', VALE_CALC_I=1, TYPE_TEST='MAX'", "TABLE_2"), ("NOM_PARA='S', VALE_CALC=1.", "TABLE_2"),
                                ("NOM_PARA='V'", "KEYWORD_7"), ("NOM_PARA='V', VALE_CALC=1., VALE_REFE=1.", "KEYWORD_10"),
                                ("NOM_PARA='V', VALE_CALC=1., REFERENCE='ANALYTIQUE'", "KEYWORD_2")):
-            with self.subTest(keywords):
-                self.refused(self.study(f"TEST_TABLE(TABLE=T, {keywords})"), word)
+            calls.append((f"TEST_TABLE(TABLE=T, {keywords})", word))
+        self.all_refused(f"DEBUT()\n{TABLE}", calls)
 
     def test_parameters_of_a_result(self):
         self.ok(self.run_study(STUDY + """

@@ -1,0 +1,104 @@
+"""POST_RELEVE_T on the stand-in's result: DX = instant x node number, LAGS_C on N2 and N5; nodes 1 2 3 / 4 5 6 on a grid of unit squares."""
+
+import sys
+import unittest
+
+sys.path.insert(0, __file__.rpartition("/")[0] or ".")
+from support import STUDY, LauncherTest  # noqa: E402
+
+HEAD = ["INTITULE", "RESU", "NOM_CHAM", "NUME_ORDRE", "INST"]
+
+
+class PostReleveT(LauncherTest):
+    def action(self, text, python):
+        """Make T with one ACTION and run `python` on it, after the study was made once."""
+        if not (self.work / "study.base").exists():
+            self.ok(self.run_study(STUDY + "FIN()\n"))
+        return self.run_study(f"POURSUITE()\nT = POST_RELEVE_T(ACTION=_F(INTITULE='it', RESULTAT=R, {text}))\nt = T.EXTR_TABLE()\n{python}\nFIN()\n")
+
+    def test_extraction(self):
+        self.ok(self.action("INST=1.0, GROUP_NO='TOP', NOM_CHAM='DEPL', NOM_CMP=('DX', 'LAGS_C'), OPERATION='EXTRACTION'", f"""
+assert t.para == {HEAD} + ['NOEUD', 'ABSC_CURV', 'COOR_X', 'COOR_Y', 'COOR_Z', 'DX', 'LAGS_C'], t.para
+assert t.type == ['K16', 'K8', 'K16', 'I', 'R', 'K8'] + ['R'] * 6, t.type
+v = t.values()
+assert v['NOEUD'] == ['N4', 'N5', 'N6'] and v['DX'] == [4, 5, 6] and v['LAGS_C'] == [None, -25, None]
+assert v['ABSC_CURV'] == [0, 1, 2] and v['COOR_X'] == [0, 1, 2] and v['COOR_Y'] == [1, 1, 1]
+assert v['INTITULE'] == ['it'] * 3 and v['RESU'] == ['R'] * 3 and v['NUME_ORDRE'] == [2] * 3
+TEST_TABLE(TABLE=T, NOM_PARA='DX', TYPE_TEST='MAX', VALE_CALC=6.0)
+"""))
+
+    def test_nodes_without_the_component_are_left_out(self):
+        self.ok(self.action("NUME_ORDRE=(1, 2), GROUP_MA='BODY', NOM_CHAM='DEPL', NOM_CMP='LAGS_C', OPERATION='EXTRACTION'",
+                            "assert t.values()['NOEUD'] == ['N2', 'N5'] * 2 and t.values()['INST'] == [0.5, 0.5, 1, 1]"))
+
+    def test_all_instants_and_all_components(self):
+        self.ok(self.action("TOUT_ORDRE='OUI', NOEUD=('N3', 'N1'), NOM_CHAM='DEPL', TOUT_CMP='OUI', OPERATION='EXTRACTION'", """
+assert t.values()['DX'] == [0, 0, 1.5, 0.5, 3, 1] and t.values()['NOEUD'] == ['N3', 'N1'] * 3 and t.values()['ABSC_CURV'][1] == 2
+"""))
+
+    def test_values_at_nodes_of_cells_are_averaged(self):
+        self.ok(self.action("INST=1.0, NOEUD=('N1', 'N2', 'N5'), NOM_CHAM='SIEF_ELNO', NOM_CMP='SIYY', OPERATION='EXTRACTION'",
+                            "assert t.values()['SIYY'] == [1, 3.5, 5.5], t"))
+
+    def test_mean_of_a_linear_field_along_a_line(self):
+        self.ok(self.action("INST=1.0, GROUP_NO='TOP', NOM_CHAM='DEPL', NOM_CMP='DX', OPERATION='MOYENNE'", """
+found = dict(zip(t.QUANTITE, t.DX))
+expected = dict(MOMENT_0=5, MOMENT_1=2, MINIMUM=4, MAXIMUM=6, MOYE_INT=4, MOYE_EXT=6)
+assert found.keys() == expected.keys() and all(abs(found[k] - expected[k]) < 1e-14 for k in found), found
+"""))
+
+    def test_moments_of_a_field_with_a_kink(self):
+        self.ok(self.action(
+            "INST=1.0, NOEUD=('N1', 'N2', 'N6', 'N5'), NOM_CHAM='DEPL', NOM_CMP='DX', OPERATION='MOYENNE'", """
+found = dict(zip(t.QUANTITE, t.DX))
+l = 2 + 2**0.5
+xs, fs = [0, 1, 1 + 2**0.5, l], [1, 2, 6, 5]
+import numpy
+s = numpy.linspace(0, l, 2000001)
+f = numpy.interp(s, xs, fs)
+integral = lambda g: ((g[1:] + g[:-1]) / 2 * numpy.diff(s)).sum()
+assert abs(found['MOMENT_0'] - integral(f) / l) < 1e-9 and abs(found['MOMENT_1'] - 12 / l**2 * integral(f * (s - l / 2))) < 1e-9
+"""))
+
+    def test_extremes(self):
+        self.ok(self.action("INST=1.0, GROUP_NO='TOP', NOM_CHAM='DEPL', TOUT_CMP='OUI', OPERATION='EXTREMA'", """
+assert [(r['EXTREMA'], r['NOEUD'], r['CMP'], r['VALE']) for r in t] == [
+    ('MAX', 'N6', 'DX', 6), ('MIN', 'N4', 'DX', 4), ('MAXI_ABS', 'N6', 'DX', 6), ('MINI_ABS', 'N4', 'DX', 4),
+    ('MAX', 'N5', 'LAGS_C', -25), ('MIN', 'N5', 'LAGS_C', -25), ('MAXI_ABS', 'N5', 'LAGS_C', 25), ('MINI_ABS', 'N5', 'LAGS_C', 25)]
+"""))
+
+    def test_arithmetic_mean(self):
+        self.ok(self.action("INST=1.0, GROUP_MA='BODY', NOM_CHAM='DEPL', NOM_CMP='DX', OPERATION='MOYENNE_ARITH'",
+                            "assert t.rows[0]['MOYENNE'] == 3.5 and t.rows[0]['CMP'] == 'DX'"))
+
+    def test_resultant_and_moment(self):
+        self.ok(self.action("INST=1.0, GROUP_NO='TOP', NOM_CHAM='DEPL', RESULTANTE=('DX', 'LAGS_C'), MOMENT=('DRX', 'DRY', 'DRZ'), POINT=(1., 0.), "
+                            "OPERATION='EXTRACTION'", """
+assert t.para[-5:] == ['RESULT_X', 'RESULT_Y', 'MOMENT_X', 'MOMENT_Y', 'MOMENT_Z'] and len(t) == 1
+assert [t.rows[0][n] for n in t.para[-5:]] == [15, -25, 0, 0, -15], t
+"""))
+
+    def test_several_actions(self):
+        self.ok(self.run_study(STUDY + """
+T = POST_RELEVE_T(ACTION=(_F(INTITULE='a', RESULTAT=R, INST=1.0, NOEUD='N1', NOM_CHAM='DEPL', NOM_CMP='DX', OPERATION='EXTRACTION'),
+                          _F(INTITULE='b', RESULTAT=R, INST=1.0, NOEUD='N2', NOM_CHAM='DEPL', NOM_CMP='LAGS_C', OPERATION='EXTRACTION')))
+assert T.values()['DX'] == [1, None] and T.values()['LAGS_C'] == [None, -25]
+FIN()
+"""))
+
+    def test_refused(self):
+        good = {"INST": "1.0", "GROUP_NO": "'TOP'", "NOM_CHAM": "'DEPL'", "NOM_CMP": "'DX'", "OPERATION": "'EXTRACTION'"}
+        calls = []
+        for changes, word in (({"GROUP_NO": "'TOPP'"}, "TEST_RESU_9"), ({"INST": "0.7"}, "TEST_RESU_1"), ({"NOM_CHAM": "'DEPLA'"}, "TEST_RESU_3"),
+                              ({"NOM_CMP": "'DZ'"}, "TEST_RESU_4"), ({"NOM_CHAM": "'SIEF_ELGA'", "NOM_CMP": "'SIYY'"}, "POST_1"),
+                              ({"NOM_CMP": None, "RESULTANTE": "'DX'", "OPERATION": "'EXTREMA'"}, "POST_2"),
+                              ({"NOM_CMP": "'LAGS_C'", "GROUP_NO": "'ONE'"}, "POST_3"),
+                              ({"NOM_CMP": "('DX', 'LAGS_C')", "OPERATION": "'MOYENNE'"}, "POST_4"),
+                              ({"GROUP_NO": "'ONE'", "OPERATION": "'MOYENNE'"}, "POST_5"), ({"REPERE": "'LOCAL'"}, "KEYWORD_13")):
+            given = ", ".join(f"{k}={v}" for k, v in {**good, **changes}.items() if v)
+            calls.append((f"POST_RELEVE_T(ACTION=_F(INTITULE='it', RESULTAT=R, {given}))", word))
+        self.all_refused(STUDY, calls)
+
+
+if __name__ == "__main__":
+    unittest.main()
