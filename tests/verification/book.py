@@ -21,6 +21,7 @@ sys.path[:0] = [str(ROOT / "tests/studies"), str(ROOT / "commands/studies/roller
 from study_test import PEER_MESHES, StudyTest  # noqa: E402, I001 (it says where meshes.py is)
 import patch  # noqa: E402
 import patch_space  # noqa: E402
+import peer_checks  # noqa: E402
 from test_patch import COMM, two_materials  # noqa: E402
 
 PRESSURE = 25.0
@@ -127,15 +128,17 @@ def peer_section(runner):
     if not PEER_MESHES.is_dir():
         return "## The peer's cases\n\nNot run: their meshes were not there.\n"
     rows = []
-    for name in ("zzzz383a", "zzzz383c", "zzzz383d", "zzzz383e", "ssnp170a"):
-        run = runner.run_study(ROOT / f"tests/studies/{name}.comm", "--checks", "all", "--unit", f"20={PEER_MESHES / name}.mmed",
-                               "--unit", f"80={runner.folder / 'out.med'}")
+    for name in ("zzzz383a", "zzzz383c", "zzzz383d", "zzzz383e", "ssnp170a", "ssnp170k", "ssnp170m", "ssnp170p", "ssnp170r", "ssnp170w", "ssnp170z"):
+        comm, meshes = peer_checks.files(name)
+        run = runner.run_study(ROOT / "tests/studies" / comm, *(w for n, f in meshes.items() for w in ("--unit", f"{n}={PEER_MESHES / f}")),
+                               "--unit", f"80={runner.folder / 'out.med'}", CASE=name)
         count = {status: sum(c["status"] == status for c in run.checks) for status in ("OK", "NOOK", "DIFF")}
         worst = max(c["vale_calc"]["error"] for c in run.checks)
         rows.append([name, len(run.checks), *count.values(), f"{worst:.1e}"])
     return f"""## The peer's cases
 
-Every check at the peer's own tolerances, `--checks all`.
+Every check at the peer's own tolerances. OK: reference and VALE_CALC are met; DIFF: the reference is met, the peer's digits are not. In
+ssnp170r, w and z these carry the error of the peer's rule for PYRAM13 (-25.06 to -24.92); here the pressure is -25 to 1e-9.
 
 {table(["case", "checks", "OK", "NOOK", "DIFF", "largest error against VALE_CALC"], rows)}
 """
