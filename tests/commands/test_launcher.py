@@ -229,11 +229,6 @@ assert __name__ == '__main__' and __file__ == 'study.comm'
 import code_aster
 from code_aster.Commands import *
 from code_aster import CA
-try:
-    from code_aster.Utilities import sympy
-    raise RuntimeError('there is no sympy')
-except ImportError:
-    pass
 test = CA.TestCase()
 test.assertEqual(1, 1)
 test.assertAlmostEqual(1.0, 1.0 + 1e-9)
@@ -288,7 +283,7 @@ FIN()
             "format": 1, "command": "CREA_MAILLAGE", "base": str(self.work / "study.base"),
             "result": {"id": "mesh_4", "label": "M", "reuse": False}, "units": {}, "source": "study.comm:6",
             "keywords": {"MAILLAGE": {"concept": "mesh_3"}, "INFO": 1,
-                         "DECOUPE_LAC": [{"GROUP_MA_ESCL": ["SKIN"], "DECOUPE_HEXA": "PYRA"}]}})
+                         "DECOUPE_LAC": [{"GROUP_MA_ESCL": ["SKIN"], "DECOUPE_HEXA": "PYRA", "GROUP_NO_COMPLET": "NON"}]}})
 
     def test_threads(self):
         run = self.run_study("DEBUT()\nM = LIRE_MAILLAGE()\n", "--threads", "2", behaviour={"lire_maillage": {"print": "LACON_THREADS"}})

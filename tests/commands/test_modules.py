@@ -1,0 +1,144 @@
+"""What command files import of code_aster: CA, sympy and the tensors of manufactured solutions, refusals of what is not there."""
+
+import sys
+import unittest
+
+sys.path.insert(0, __file__.rpartition("/")[0] or ".")
+from support import LauncherTest  # noqa: E402
+
+try:
+    import sympy
+except ImportError:
+    sympy = None
+
+#: of code_aster's files: the symbolic way where sympy is there, the literal one otherwise
+EITHER = """
+DEBUT()
+try:
+    from code_aster.Utilities import sympy
+    from code_aster.MacroCommands.Contrib.TensorModule import Tensor, grad
+    X, Y = sympy.symbols('X Y')
+    text = str(grad(Tensor([X**2 * Y, Y]))[0, 1])
+    way = 'symbolic'
+except ImportError:
+    text, way = 'X**2', 'literal'
+f = FORMULE(VALE=text, NOM_PARA=('X', 'Y'))
+assert f(3, 5) == 9
+print('the', way, 'way')
+FIN()
+"""
+
+
+class Modules(LauncherTest):
+    def test_both_ways(self):
+        run = self.ok(self.run_study(EITHER))
+        self.assertIn("symbolic" if sympy else "literal", run.out)
+        (self.work / "sympy.py").write_text("raise ImportError('there is no sympy')")
+        self.assertIn("the literal way", self.ok(self.run_study(EITHER)).out)
+
+    def test_modules_that_are_not_here(self):
+        for statement, word in (("from Utilitai.Table import Table", "Utilitai"), ("import code_aster.Cata.Commands", "code_aster.Cata"),
+                                ("from code_aster.Utilities import logger", "logger"), ("import aster", "aster")):
+            run = self.refused(self.run_study(f"DEBUT()\n{statement}\n"), word, "STUDY_19", "study.comm:2")
+            self.assertNotIn("<frozen", run.err)
+
+    def test_assertions(self):
+        run = self.run_study("""
+from code_aster import CA
+CA.init('--test', ERREUR=_F(ALARME='ALARME'))
+test = CA.TestCase()
+test.assertEqual(1, 1)
+test.assertAlmostEqual(1.0, 1.0 + 1e-9)
+test.assertAlmostEqual(1.0, 1.1, delta=0.2, msg='near')
+test.assertSequenceEqual([1, 2], [1, 2])
+test.assertIsNone(None)
+with test.assertRaises(ValueError):
+    raise ValueError
+with test.assertRaisesRegex(AsterError, 'DEFI_LIST_1'):
+    DEFI_LIST_REEL(VALE=(1., 0.))
+test.assertRaises(KeyError, {}.__getitem__, 1)
+test.printSummary()
+with test.assertRaises(ValueError):
+    pass
+test.assertTrue(False)
+test.printSummary()
+try:
+    test.assertSomething()
+except AttributeError as error:
+    assert 'assertSomething' in str(error)
+CA.close()
+""")
+        self.assertEqual((run.status, run.last), (5, "--- DIAGNOSTIC JOB : NOOK_TEST_RESU"), run.out + run.err)
+        self.assertIn("assertions: 8 checks: 8 OK, 0 NOOK, 0 DIFF", run.out)
+        self.assertIn("assertions: 10 checks: 8 OK, 2 NOOK, 0 DIFF", run.out)
+        self.assertIn("NOOK assertRaises study.comm:16 ValueError not raised", run.out)
+
+
+@unittest.skipUnless(sympy, "sympy is not installed")
+class Tensors(unittest.TestCase):
+    def setUp(self):
+        from lacon import tensors
+
+        self.t = tensors
+        self.X, self.Y, self.Z = sympy.symbols("X Y Z")
+
+    def test_gradient_and_divergence(self):
+        X, Y, Z, t = self.X, self.Y, self.Z, self.t
+        U = t.Tensor([X**2 * Y, X * Z, Y * Z])
+        self.assertEqual(t.grad(U), [[2 * X * Y, X**2, 0], [Z, 0, X], [0, Z, Y]])
+        self.assertEqual(t.div(U), 2 * X * Y + Y)
+        self.assertEqual(t.div(t.grad(U)), t.laplacien(U))
+        self.assertEqual(t.laplacien(U), [2 * Y, 0, 0])
+        self.assertEqual(t.grad(X * Y), [Y, X, 0])
+        self.assertEqual(t.grad(t.Tensor([X * Y, X])), [[Y, X], [1, 0]])  # in the plane
+        self.assertEqual(t.gradS(t.Tensor([X * Y, X])), [[Y, (X + 1) / 2], [(X + 1) / 2, 0]])
+
+    def test_symbols_of_the_file_with_other_assumptions(self):
+        x = sympy.Symbol("X", real=True)
+        self.assertEqual(self.t.grad(self.t.Tensor([x**2, 0, 0]))[0, 0], 2 * x)
+
+    def test_algebra(self):
+        t, X = self.t, self.X
+        A = t.Tensor([[1, X], [0, 2]])
+        self.assertEqual(t.produitSimpleContracte(A, t.inverse(A)), [[1, 0], [0, 1]])
+        self.assertEqual(t.transpose(A), [[1, 0], [X, 2]])
+        self.assertEqual(2 * A - A / 2 + (-A), A / 2)
+        self.assertEqual(X * A, A * X)
+        self.assertEqual(sum([A, A]), 2 * A)
+        self.assertEqual(t.produitSimpleContracte(A, t.Tensor([1, 1])), [1 + X, 2])
+        self.assertEqual(t.produitSimpleContracte(t.Tensor([1, 2]), t.Tensor([3, X])), 3 + 2 * X)
+        self.assertEqual(t.determinant(A), 2)
+        self.assertEqual(t.trace(A), 3)
+        self.assertEqual((A[0, 1], A[1], A.array.shape), (X, t.Tensor([0, 2]), (2, 2)))
+        self.assertNotEqual(A, 2 * A)
+        for bad in (lambda: A * A, lambda: A + 1):
+            with self.assertRaises((TypeError, ValueError)):
+                bad()
+
+    def test_isotropic_elasticity(self):
+        """sigma = lambda tr(e) I + 2 mu e, and a uniaxial stress gives back Young's modulus and Poisson's ratio."""
+        E, nu = sympy.Integer(210), sympy.Rational(3, 10)
+        C = self.t.HookeIsotropic(E, nu)
+        e = sympy.symbols("e")
+        self.assertEqual(C.produitDoubleContracte(self.t.Tensor([[e, 0, 0], [0, -nu * e, 0], [0, 0, -nu * e]])), [[E * e, 0, 0], [0, 0, 0], [0, 0, 0]])
+        shear = C.produitDoubleContracte(self.t.Tensor([[0, e, 0], [e, 0, 0], [0, 0, 0]]))
+        self.assertEqual(shear[0, 1], 2 * e * E / (2 * (1 + nu)))
+        self.assertIs(self.t.HookeTensor.HookeIsotropic, self.t.HookeIsotropic)
+
+    def test_a_manufactured_solution_balances(self):
+        """div(F S) of St-Venant-Kirchhoff against finite differences of the same stress."""
+        t, X, Y, Z = self.t, self.X, self.Y, self.Z
+        U = t.Tensor([X * Y * Z**2 / 5, X**2 / 7, Y * Z / 9])
+        F = t.grad(U) + t.Tensor(sympy.eye(3))
+        strain = (t.produitSimpleContracte(t.transpose(F), F) - t.Tensor(sympy.eye(3))) / 2
+        P = t.produitSimpleContracte(F, t.HookeIsotropic(1, 0).produitDoubleContracte(strain))
+        at = {X: 0.3, Y: -0.4, Z: 0.7}
+        step = 1e-4
+        for i in range(3):
+            difference = sum((float(P[i, j].subs({**at, v: at[v] + step})) - float(P[i, j].subs({**at, v: at[v] - step}))) / (2 * step)
+                             for j, v in enumerate((X, Y, Z)))
+            self.assertAlmostEqual(float(t.div(P)[i].subs(at)), difference, delta=1e-7)
+
+
+if __name__ == "__main__":
+    unittest.main()
