@@ -10,8 +10,9 @@
 namespace lacon {
 namespace {
 
-constexpr int max_nodes = 9;        // of a skin cell
-constexpr double cancelled = 1e-8;  // a mean of unit normals shorter than this has no direction
+constexpr int max_nodes = 9;  // of a skin cell
+constexpr double cancelled =
+    1e-8;  // a mean of unit normals shorter than this has no direction, nor a normal of a cell by its longest
 
 double norm(const std::array<double, 3>& v) { return std::hypot(v[0], v[1], v[2]); }
 
@@ -39,12 +40,16 @@ std::vector<double> nodal_normals(const Surface& surface) {
     points.clear();
     for (const std::int32_t node : nodes)
       points.insert(points.end(), surface.coordinates.begin() + 3 * node, surface.coordinates.begin() + 3 * node + 3);
+    std::array<std::array<double, 3>, max_nodes> at_node;
+    double longest = 0;
     for (std::size_t i = 0; i < nodes.size(); ++i) {
-      const std::array<double, 3> n =
-          cell_normal(surface.types[cell], points, row.nodes.subspan(i * row.dimension, row.dimension));
-      const double length = norm(n);
-      if (!(length > 0)) continue;
-      for (int x = 0; x < 3; ++x) normals[3 * nodes[i] + x] += n[x] / length;
+      at_node[i] = cell_normal(surface.types[cell], points, row.nodes.subspan(i * row.dimension, row.dimension));
+      longest = std::max(longest, norm(at_node[i]));
+    }
+    for (std::size_t i = 0; i < nodes.size(); ++i) {
+      const double length = norm(at_node[i]);
+      if (!(length > cancelled * longest)) continue;  // a corner where the cell has collapsed
+      for (int x = 0; x < 3; ++x) normals[3 * nodes[i] + x] += at_node[i][x] / length;
     }
   }
   std::vector<int> adjacent(surface.coordinates.size() / 3, 0);

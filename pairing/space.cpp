@@ -85,7 +85,8 @@ Facet facet(const Surface& surface, std::size_t cell, double flat) {
     if (f.order < 2) continue;
     const Vec3 d = b - a, m = f.nodes[nv + i] - a;
     const double along = dot(d, m), length2 = dot(d, d);
-    if (!(norm(cross(d, m)) <= flat * length2 && along > 0 && along < length2)) f.straight = false;
+    const bool collapsed = length2 == 0 && dot(m, m) == 0;
+    if (!collapsed && !(norm(cross(d, m)) <= flat * length2 && along > 0 && along < length2)) f.straight = false;
   }
   const double length = norm(area);
   if (length > 0) f.normal = (1 / length) * area;
@@ -149,10 +150,14 @@ class SlaveFacet {
       }
       nodal_ = interpolate(f.type, std::span<const Vec3>(normals).first(nodes.size()));
     }
+    // A corner may have no normal (two nodes in one place, three corners on a line), the middle must.
+    least_ = tolerances.degenerate * (smooth_ ? 1 : f.size * f.size);
     double turn = 0;
-    for (const Vec2 p : probes(f.family)) {
+    const std::span<const Vec2> places = probes(f.family);
+    for (const Vec2 p : places) {
       const Map3::Value v = f.x(p);
-      if (!(dot(cross(v.d1, v.d2), n) > tolerances.degenerate * f.size * f.size)) return;
+      const double jacobian = dot(cross(v.d1, v.d2), n), none = tolerances.degenerate * f.size * f.size;
+      if (!(jacobian > (&p == &places.back() ? none : -none))) return;
       const Vec3 m = direction(p);
       if (!(dot(m, n) > tolerances.degenerate)) return;
       turn = std::max(turn, norm(m - n));
@@ -161,7 +166,11 @@ class SlaveFacet {
     constant = turn <= tolerances.flat && f.straight;
     plane = f.straight;
     // axes that follow an edge: turning the whole mesh turns them too
-    const Vec3 edge = f.nodes[1] - f.nodes[0];
+    Vec3 edge;
+    for (int i = 0; i < f.n_vertices; ++i) {
+      const Vec3 d = f.nodes[(i + 1) % f.n_vertices] - f.nodes[i];
+      if (dot(d, d) > dot(edge, edge)) edge = d;
+    }
     const Vec3 t = edge - dot(edge, n) * n;
     e1 = (1 / norm(t)) * t;
     e2 = cross(n, e1);
@@ -185,11 +194,12 @@ class SlaveFacet {
     build_walls();
   }
 
-  /// The unit normal at a reference point.
+  /// The unit normal at a reference point; the mean one where there is none.
   Vec3 direction(Vec2 xi) const {
     if (constant_normal()) return n;
     const Vec3 m = unscaled_direction(xi);
-    return (1 / norm(m)) * m;
+    const double length = norm(m);
+    return length > least_ ? (1 / length) * m : n;
   }
 
   struct Place {
@@ -209,7 +219,7 @@ class SlaveFacet {
 
   /// The side of an edge of a master on which a normal passes, on a piece.
   HalfPlane side(const Piece& piece, Vec3 a, Vec3 b) const {
-    if (!before(a, b)) return side(piece, b, a).opposite();
+    if (before(b, a)) return side(piece, b, a).opposite();
     if (constant) {
       const Vec2 first{dot(a, e1), dot(a, e2)}, last{dot(b, e1), dot(b, e2)};
       const Vec2 d = last - first;
@@ -265,6 +275,7 @@ class SlaveFacet {
     const int degree = smooth_ ? f.order : f.family == Family::TRIA ? std::max(1, 2 * f.order - 2) : 2 * f.order - 1;
     for (const Vec3 m : hull(f.family, degree, [&](Vec2 xi) { return unscaled_direction(xi); })) {
       const double up = dot(m, n);
+      if (norm(m) <= least_) continue;
       lean_ = up > 0 ? std::max(lean_, norm(m - up * n) / up) : std::numeric_limits<double>::infinity();
       if (!(up > 0)) break;
     }
@@ -284,7 +295,7 @@ class SlaveFacet {
         piece.polygon.push_back(plane ? chart_(xi[i]).x : xi[i]);
         piece.normal = piece.normal + (1.0 / 3) * piece.n[i];
       }
-      pieces.push_back(std::move(piece));
+      if (double_area(piece.polygon) > 0) pieces.push_back(std::move(piece));  // not where the facet has collapsed
     };
     if (f.family == Family::TRIA) {
       for (int j = 0; j < k; ++j)
@@ -303,6 +314,7 @@ class SlaveFacet {
   }
 
   bool smooth_ = false;
+  double least_ = 0;  ///< length of `unscaled_direction` below which there is none
   Map3 nodal_;
   Map2 chart_;
   struct Wall {

@@ -19,6 +19,8 @@ void append_points(const Mesh& mesh, std::span<const double> coordinates, std::i
                coordinates.begin() + 3 * std::ptrdiff_t{node} + dimension);
 }
 
+constexpr double coverage_round_off = 1e-12;  // covered fractions above 1 by no more than this are 1
+
 [[noreturn]] void refuse_slave(std::int32_t cell, std::int32_t error) {
   fail(error == LACON_BAD_RADIUS ? "EVOLUTION_8" : "EVOLUTION_3", {{"cell", cell_name(cell)}});
 }
@@ -26,7 +28,7 @@ void append_points(const Mesh& mesh, std::span<const double> coordinates, std::i
 }  // namespace
 
 const Rule& measuring_rule(Family family) {
-  return integration_rule(family, family == Family::SEG ? 4 : family == Family::TRIA ? 6 : 9);
+  return integration_rule(family, family == Family::SEG ? 4 : family == Family::TRIA ? 16 : 25);
 }
 
 ContactGeometry::ContactGeometry(const Mesh& mesh, const Model& model, const Contact& contact, Registry& registry)
@@ -147,6 +149,8 @@ void ContactGeometry::update(std::span<const double> displacement, std::vector<Z
   for (std::size_t p = 0; p < gap_.size(); ++p) {
     if (weight_[p] > 0) gap_[p] /= weight_[p];
     coverage_[p] = whole_[p] > 0 ? covered_[p] / whole_[p] : 0;
+    // what is above 1 by more is an error of quadrature or of pairing, and shows
+    if (coverage_[p] > 1 && coverage_[p] <= 1 + coverage_round_off) coverage_[p] = 1;
   }
 }
 

@@ -81,7 +81,7 @@ class ContactGeometry {
   std::vector<std::int64_t> rejected_;
 };
 
-/// The rule that measures a whole skin cell.
+/// The rule that measures a whole skin cell, of degree 7 to 9: as fine on curved cells as the points of pairing.
 const Rule& measuring_rule(Family family);
 
 }  // namespace lacon

@@ -712,6 +712,42 @@ TEST(PairingInSpace, NamesEveryReasonOfRejection) {
   EXPECT_EQ(pair(empty.view(), slave.view()).cells.size(), 0U);
 }
 
+TEST(PairingInSpace, IntegratesQuadranglesThatCollapseToATriangle) {
+  // two nodes in one place or three corners on a line, at any corner; flat and warped, straight and quadratic, with normals of
+  // its own or of nodes; as slave and as master
+  std::mt19937 random(24);
+  const std::array<Vec3, 4> repeated{Vec3{0, 0, 0}, {1, 0, 0}, {0.2, 0.9, 0}, {0.2, 0.9, 0}},
+      in_line{Vec3{0, 0, 0}, {1, 0, 0}, {0.6, 0.45, 0}, {0.2, 0.9, 0}};
+  for (const auto& shape : {repeated, in_line})
+    for (const CellType type : {CellType::QUAD4, CellType::QUAD8, CellType::QUAD9})
+      for (int first = 0; first < 4; ++first)
+        for (const double warp : {0.0, 0.05})
+          for (const bool smooth : {false, true})
+            for (const bool as_slave : {true, false}) {
+              std::vector<Vec3> nodes(shape.begin(), shape.end());
+              if (warp > 0) nodes[0].z = nodes[1].z = warp, nodes[2].z = nodes[3].z = -warp;
+              if (warp > 0 && &shape != &repeated) nodes[1].z = -warp;
+              std::rotate(nodes.begin(), nodes.begin() + first, nodes.end());
+              if (as_slave) std::reverse(nodes.begin(), nodes.end());
+              for (int i = 0; i < 4 && type != CellType::QUAD4; ++i) nodes.push_back(0.5 * (nodes[i] + nodes[(i + 1) % 4]));
+              if (type == CellType::QUAD9) nodes.push_back(0.25 * (nodes[0] + nodes[1] + nodes[2] + nodes[3]));
+              Skin3 collapsed = facet_of(type, nodes);
+              Skin3 other = mesh({3, 3, CellType::TRIA3, as_slave, 0.2, -1, 2, -1, 2}, plane(as_slave ? -0.2 : 0.2), random);
+              Skin3 &slave = as_slave ? collapsed : other, &master = as_slave ? other : collapsed;
+              if (smooth) slave.normals = nodal_normals(slave.view());
+              const Pairing found = pair(slave.view(), master.view());
+              const Forces f = forces(slave, master, found.cells);
+              EXPECT_EQ(found.count(Rejection::degenerate_slave) + found.count(Rejection::degenerate_master), 0);
+              EXPECT_EQ(found.count(Rejection::no_image), 0);
+              const double area = as_slave ? sum(nodal_areas(slave)) : 0.45;
+              EXPECT_NEAR(f.area, area, warp > 0 ? 1e-3 * area : 1e-12) << as_slave << first << catalog::cell(type).name;
+              EXPECT_NEAR(sum(f.slave), f.area, 1e-12);
+              EXPECT_NEAR(sum(f.master), f.area, 1e-12);
+              for (const double w : found.cells.weight) EXPECT_GT(w, 0);
+              for (const double v : found.cells.vertex) EXPECT_TRUE(std::abs(v) <= 1 + 1e-6) << v;
+            }
+}
+
 TEST(PairingInSpace, LeavesOutWhatIsFurtherThanTheLimit) {
   // squares of side 1 and 2 at the distance 1: in diameters of the larger one, 1 / sqrt(8); a nearer one behind the back of
   // the slave's body counts by its own distance
