@@ -1,4 +1,4 @@
-"""The launcher: `lacon study.comm --unit 20=mesh.med`, `lacon study.export`, `lacon help DEFI_CONTACT`."""
+"""The launcher: `lacon study.comm --unit 20=mesh.med`, `lacon study.export`, `lacon help DEFI_CONTACT`, `lacon inspect study.base`."""
 
 import pathlib
 import sys
@@ -48,6 +48,10 @@ def main(arguments=None):
         from . import help as catalogue_help
 
         return catalogue_help.run(arguments[1:])
+    if arguments[:1] == ["inspect"]:
+        from . import inspector
+
+        return inspector.run(arguments[1:])
     parser, options = parse(arguments)
     units = units_of(parser, options)
     sys.stdout.reconfigure(line_buffering=sys.stdout.isatty())

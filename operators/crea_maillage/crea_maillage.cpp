@@ -19,7 +19,7 @@ namespace {
 LacCut cut_of(const Keywords& factor, std::int64_t info) {
   LacCut cut{.groups = factor.texts("GROUP_MA_ESCL"),
              .option = factor.text("DECOUPE_HEXA"),
-             .complete_node_groups = factor.yes("GROUP_NO_COMPLET"),
+             .complete_node_groups = factor.has("GROUP_NO_COMPLET") && factor.yes("GROUP_NO_COMPLET"),
              .details = info > 1,
              .keyword = factor.path("GROUP_MA_ESCL")};
   if (cut.option != "PYRA" && cut.option != "HEXA")

@@ -141,6 +141,7 @@ void ContactGeometry::update(std::span<const double> displacement, std::vector<Z
     if (records) {
       record = &records->emplace_back();
       record->point_gap.resize(pairing.cells.weight.size());
+      record->gap.resize(pairing.cells.size());
       record->measure.resize(pairing.cells.size());
     }
     integrate(zone, pairing.cells, normals, record);
@@ -225,6 +226,7 @@ void ContactGeometry::integrate(const Zone& zone, const ContactCells& cells, std
       if (record) {
         std::copy(point_gap.begin() + offset[i], point_gap.begin() + offset[i + 1],
                   record->point_gap.begin() + cells.offset[c]);
+        record->gap[c] = gap[i] / size[i];
         record->measure[c] = current[i];
       }
       cells_.push_back({s, zone.masters[cells.master[c]], gap[i], static_cast<std::int64_t>(coupling_.size())});

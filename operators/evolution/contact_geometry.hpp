@@ -16,6 +16,7 @@ namespace lacon {
 struct ZonePairing {
   Pairing pairing;                ///< cells by their number in the zone
   std::vector<double> point_gap;  ///< of each integration point
+  std::vector<double> gap;        ///< of each contact cell, average
   std::vector<double> measure;    ///< of each contact cell, current geometry
 };
 

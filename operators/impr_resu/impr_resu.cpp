@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cctype>
 #include <map>
 #include <optional>
 #include <sstream>
@@ -10,6 +11,8 @@
 
 #include "lacon/catalog/messages.hpp"
 #include "lacon/elements/reference.hpp"
+#include "lacon/operators/fields/selection.hpp"
+#include "lacon/operators/impr_resu/pairing_view.hpp"
 #include "lacon/structures/formats/listing.hpp"
 #include "lacon/structures/formats/med.hpp"
 #include "lacon/structures/formats/text_file.hpp"
@@ -80,9 +83,70 @@ class Written {
   std::map<std::string, int> count_;
 };
 
-void print_med(const Order& order, const Base& base, Concepts& concepts, const fs::path& file, bool append, Written& written) {
+/// The pairing at an instant of a result, or of a contact before any.
+struct PrintedPairing {
+  std::string label;
+  std::int64_t order = -1;  ///< of a result
+  double instant = 0;
+  PairingView view;
+
+  std::string title() const {
+    return "Pairing of " + label + (order < 0 ? " on the initial geometry" : fmt::format(" at instant {:g}", instant));
+  }
+};
+
+bool means_pairing(const Keywords& one) { return one.has("CONTACT") || (one.has("PAIRING") && one.yes("PAIRING")); }
+
+/// Visit what an occurrence of RESU with CONTACT or PAIRING='OUI' means. Throws IMPR_7 for a result without contact.
+void each_pairing(const Order& order, const Base& base, Concepts& concepts, const Keywords& one,
+                  const std::function<void(PrintedPairing&&)>& visit) {
+  Registry registry(order.plugins);
+  if (one.has("CONTACT")) {
+    const std::string id = one.concept_id("CONTACT");
+    const Contact contact = base.contact(id);
+    visit({base.label(id), -1, 0,
+           view_pairing(concepts.mesh(contact.mesh), base.model(contact.model), contact, registry, {}, nullptr)});
+    return;
+  }
+  const Result& result = concepts.result(one.concept_id("RESULTAT"));
+  if (result.contact.empty()) fail("IMPR_7", {{"keyword", one.path("PAIRING")}, {"label", result.label}});
+  const Contact contact = base.contact(result.contact);
+  const Model model = base.model(contact.model);
+  const Mesh& mesh = concepts.mesh(contact.mesh);
+  for (const std::int64_t number : selected_orders(base, result, one)) {
+    const Field depl = base.field(result, "DEPL", number);
+    std::optional<Field> state;
+    if (const auto files = result.fields.find("CONT_ELEM"); files != result.fields.end() && files->second.contains(number))
+      state = base.field(result, "CONT_ELEM", number);
+    visit({result.label, number, depl.instant,
+           view_pairing(mesh, model, contact, registry, displacement_of(mesh, depl), state ? &*state : nullptr)});
+  }
+}
+
+void append_report(const PrintedPairing& printed, std::vector<std::string>& report) {
+  report.push_back(printed.title());
+  report.insert(report.end(), printed.view.report.begin(), printed.view.report.end());
+}
+
+void print_med(const Order& order, const Base& base, Concepts& concepts, const fs::path& file, bool append, Written& written,
+               std::vector<std::string>& report) {
   write_med(file, append, [&](MedFile& med) {
     for (const Keywords& one : order.keywords.factors("RESU")) {
+      if (means_pairing(one)) {
+        each_pairing(order, base, concepts, one, [&](PrintedPairing&& printed) {
+          for (PairingLayer& layer : printed.view.layers) {
+            const std::string name = med.add_mesh(
+                layer.mesh, printed.label + "_" + layer.name + (printed.order < 0 ? "" : fmt::format("_{}", printed.order)));
+            for (Field& field : layer.fields) {
+              field.instant = printed.instant;
+              med.add_field(layer.mesh, name, field, name + "_" + field.name, printed.order);
+            }
+            written.add("pairing " + layer.name + " of " + printed.label);
+          }
+          append_report(printed, report);
+        });
+        continue;
+      }
       if (one.has("MAILLAGE")) {
         const std::string id = one.concept_id("MAILLAGE");
         written.add("mesh " + med.add_mesh(concepts.mesh(id), base.label(id)));
@@ -106,8 +170,9 @@ void print_med(const Order& order, const Base& base, Concepts& concepts, const f
 }
 
 /// Fields of one mesh at one instant come into one file, whatever occurrences name them.
+/// Each layer of a pairing has a collection of its own, `<stem>_pairs.pvd`.
 fs::path print_vtu(const Order& order, const Base& base, Concepts& concepts, const fs::path& file, bool append,
-                   Written& written) {
+                   Written& written, std::vector<std::string>& report) {
   struct Step {
     std::string label;
     double instant = 0;
@@ -121,7 +186,21 @@ fs::path print_vtu(const Order& order, const Base& base, Concepts& concepts, con
     if (at == labels.end()) return labels.push_back(id), labels.size() - 1;
     return static_cast<std::size_t>(at - labels.begin());
   };
+  std::map<std::string, std::vector<VtuStep>> layers;
   for (const Keywords& one : order.keywords.factors("RESU")) {
+    if (means_pairing(one)) {
+      each_pairing(order, base, concepts, one, [&](PrintedPairing&& printed) {
+        for (PairingLayer& layer : printed.view.layers) {
+          std::vector<NamedField> fields;
+          for (Field& field : layer.fields) fields.push_back({field.name, std::move(field)});
+          std::string name = layer.name;
+          std::ranges::transform(name, name.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+          layers[name].push_back({printed.label, printed.instant, vtu_text(layer.mesh, fields)});
+        }
+        append_report(printed, report);
+      });
+      continue;
+    }
     if (one.has("MAILLAGE")) {
       const std::string id = one.concept_id("MAILLAGE");
       steps[{rank(id), -1}] = {base.label(id), 0, id, {}};
@@ -146,7 +225,11 @@ fs::path print_vtu(const Order& order, const Base& base, Concepts& concepts, con
   std::vector<VtuStep> texts;
   for (const auto& [key, step] : steps)
     texts.push_back({step.label, step.instant, vtu_text(concepts.mesh(step.mesh), step.fields)});
-  return write_vtu(file, append, texts);
+  for (const auto& [name, own] : layers) {
+    const fs::path beside = file.parent_path() / (file.stem().string() + "_" + name + ".pvd");
+    report.push_back(fmt::format("pairing {}: {}", name, write_vtu(beside, append, own).string()));
+  }
+  return texts.empty() && !layers.empty() ? file : write_vtu(file, append, texts);
 }
 
 void print_listing(const Order& order, const Base& base, Concepts& concepts, const fs::path& file, bool append,
@@ -155,6 +238,14 @@ void print_listing(const Order& order, const Base& base, Concepts& concepts, con
   std::error_code error;
   if (append && fs::exists(file, error)) out << read_text(file);
   for (const Keywords& one : order.keywords.factors("RESU")) {
+    if (means_pairing(one)) {
+      each_pairing(order, base, concepts, one, [&](PrintedPairing&& printed) {
+        out << '\n' << printed.title() << '\n';
+        for (const std::string& line : printed.view.report) out << line << '\n';
+        written.add("pairing of " + printed.label);
+      });
+      continue;
+    }
     if (one.has("MAILLAGE")) {
       const std::string id = one.concept_id("MAILLAGE");
       out << "\nmesh " << base.label(id) << '\n';
@@ -188,13 +279,13 @@ std::vector<std::string> impr_resu(const Order& order, const Base& base) {
   const std::string format = order.keywords.text("FORMAT");
   Concepts concepts(base);
   Written written;
+  std::vector<std::string> lines;
   if (format == "MED")
-    print_med(order, base, concepts, file, append, written);
+    print_med(order, base, concepts, file, append, written, lines);
   else if (format == "VTU")
-    file = print_vtu(order, base, concepts, file, append, written);
+    file = print_vtu(order, base, concepts, file, append, written, lines);
   else
     print_listing(order, base, concepts, file, append, written);
-  std::vector<std::string> lines;
   written.lines(file.string(), lines);
   return lines;
 }

@@ -239,6 +239,10 @@ class ImprResu(OperatorTest):
             with self.subTest(identifier):
                 self.refuses(identifier, resu, *words, append=True)
 
+    def test_the_pairing_of_a_result_without_contact_is_refused(self):
+        for form in ("MED", "VTU", "RESULTAT"):
+            self.refuses("IMPR_7", {**self.U, "PAIRING": "OUI"}, "RESU/PAIRING", " U ", form=form)
+
     def test_a_folder_that_cannot_be_written(self):
         self.file = self.folder / "nowhere" / "out.med"
         for form in ("MED", "VTU", "RESULTAT"):
