@@ -176,7 +176,7 @@ class Completion(unittest.TestCase):
         mesh = concept("mesh")
         for groups in ("A", ("A",), ["A"]):
             made = complete("CREA_MAILLAGE", MAILLAGE=mesh, DECOUPE_LAC={"GROUP_MA_ESCL": groups})
-            self.assertEqual(made["DECOUPE_LAC"], [{"GROUP_MA_ESCL": ["A"], "DECOUPE_HEXA": "PYRA", "GROUP_NO_COMPLET": "NON"}])
+            self.assertEqual(made["DECOUPE_LAC"], [{"GROUP_MA_ESCL": ["A"], "DECOUPE_HEXA": "PYRA"}])
         for factor in ({"JUSQU_A": 1, "PAS": 1}, ({"JUSQU_A": 1, "PAS": 1},), [{"JUSQU_A": 1, "PAS": 1}]):
             self.assertEqual(complete("DEFI_LIST_REEL", DEBUT=0, INTERVALLE=factor)["INTERVALLE"], [{"JUSQU_A": 1.0, "PAS": 1.0}])
         for values in ([0, 1], (0, 1), range(2), np.arange(2), np.array([0.0, 1.0], np.float32)):

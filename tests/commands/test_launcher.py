@@ -283,7 +283,7 @@ FIN()
             "format": 1, "command": "CREA_MAILLAGE", "base": str(self.work / "study.base"),
             "result": {"id": "mesh_4", "label": "M", "reuse": False}, "units": {}, "source": "study.comm:6",
             "keywords": {"MAILLAGE": {"concept": "mesh_3"}, "INFO": 1,
-                         "DECOUPE_LAC": [{"GROUP_MA_ESCL": ["SKIN"], "DECOUPE_HEXA": "PYRA", "GROUP_NO_COMPLET": "NON"}]}})
+                         "DECOUPE_LAC": [{"GROUP_MA_ESCL": ["SKIN"], "DECOUPE_HEXA": "PYRA"}]}})
 
     def test_threads(self):
         run = self.run_study("DEBUT()\nM = LIRE_MAILLAGE()\n", "--threads", "2", behaviour={"lire_maillage": {"print": "LACON_THREADS"}})
