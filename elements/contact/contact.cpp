@@ -101,8 +101,9 @@ void lac(const lacon_contact_batch* batch) {
       for (double& component : n) component /= length;
       const Vector<D> x = interpolate<D>(shape, current, slaves), image = interpolate<D>(master_shape, master, masters);
       if constexpr (axis) {
-        jacobian *= x[0];
-        jacobian0 *= interpolate<D>(shape, initial, slaves)[0];
+        // beyond the axis, where an iterate may be on its way, nothing is measured
+        jacobian *= std::fmax(x[0], 0);
+        jacobian0 *= std::fmax(interpolate<D>(shape, initial, slaves)[0], 0);
       }
       Vector<D> across;
       for (int i = 0; i < D; ++i) across[i] = image[i] - x[i];

@@ -1,6 +1,7 @@
 #include "lacon/operators/evolution/contact_geometry.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <map>
 #include <utility>
 
@@ -19,11 +20,8 @@ void append_points(const Mesh& mesh, std::span<const double> coordinates, std::i
                coordinates.begin() + 3 * std::ptrdiff_t{node} + dimension);
 }
 
+constexpr double tolerated_overlap = 0.1;     // of a slave cell's size, beyond the axis: a node there that nothing holds
 constexpr double coverage_round_off = 1e-12;  // covered fractions above 1 by no more than this are 1
-
-[[noreturn]] void refuse_slave(std::int32_t cell, std::int32_t error) {
-  fail(error == LACON_BAD_RADIUS ? "EVOLUTION_8" : "EVOLUTION_3", {{"cell", cell_name(cell)}});
-}
 
 }  // namespace
 
@@ -55,6 +53,28 @@ ContactGeometry::ContactGeometry(const Mesh& mesh, const Model& model, const Con
   }
 
   measure_slaves();
+  check_radii();
+}
+
+void ContactGeometry::note(std::int32_t error, std::int32_t cell) {
+  if (error == LACON_BAD_RADIUS)
+    over_axis_ = cell;
+  else if (error != LACON_FINE)
+    fail("EVOLUTION_3", {{"cell", cell_name(cell)}});
+}
+
+void ContactGeometry::check_radii() const {
+  if (over_axis_) {
+    double least = 0, size = 0;
+    const auto nodes = mesh_.cells[*over_axis_];
+    for (const std::int32_t node : nodes) {
+      const double* const x = coordinates_.data() + 3 * std::ptrdiff_t{node};
+      const double* const first = coordinates_.data() + 3 * std::ptrdiff_t{nodes.front()};
+      least = std::min(least, x[0]);
+      size = std::max(size, std::hypot(x[0] - first[0], x[1] - first[1]));
+    }
+    if (least < -tolerated_overlap * size) fail("EVOLUTION_8", {{"cell", cell_name(*over_axis_)}});
+  }
 }
 
 const lacon_kernel& ContactGeometry::kernel_of(std::int32_t cell) const {
@@ -109,7 +129,7 @@ void ContactGeometry::measure_slaves() {
     kernel_of(contact_.slaves[members.front()].cell).contact(&batch);
     for (std::size_t i = 0; i < members.size(); ++i) {
       const SlaveElement& slave = contact_.slaves[members[i]];
-      if (error[i] != LACON_FINE) refuse_slave(slave.cell, error[i]);
+      note(error[i], slave.cell);
       whole_[slave.patch] += size[i];
     }
   }
@@ -120,6 +140,7 @@ void ContactGeometry::update(std::span<const double> displacement, std::vector<Z
   for (std::size_t node = 0; node < mesh_.n_nodes(); ++node)
     for (int d = 0; d < dimension; ++d)
       coordinates_[3 * node + d] = mesh_.coordinates[3 * node + d] + displacement[node * dimension + d];
+  over_axis_.reset();
   measure_slaves();
   cells_.clear();
   coupling_.clear();
@@ -218,7 +239,7 @@ void ContactGeometry::integrate(const Zone& zone, const ContactCells& cells, std
     kernel_of(first_cell).contact(&batch);
     for (std::size_t i = 0; i < members.size(); ++i) {
       const std::int32_t c = members[i], s = zone.slaves[cells.slave[c]];
-      if (error[i] != LACON_FINE) refuse_slave(contact_.slaves[s].cell, error[i]);
+      note(error[i], contact_.slaves[s].cell);
       const std::int32_t patch = contact_.slaves[s].patch;
       gap_[patch] += gap[i];
       weight_[patch] += size[i];

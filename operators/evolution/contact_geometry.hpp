@@ -2,6 +2,7 @@
 // The contact cells of all zones at a geometry: gaps, couplings and coverage of the patches (METHOD.md 3.4 and 3.5). It knows
 // neither multipliers nor equations, so that a look at the pairing needs no solver.
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -44,8 +45,11 @@ class ContactGeometry {
   ContactGeometry& operator=(const ContactGeometry&) = delete;
 
   /// Pair on the current geometry, integrate gaps and couplings. @param displacement (n_nodes, mesh.dimension)
-  /// @param records gets one entry a zone. Throws as the constructor.
+  /// @param records gets one entry a zone. Throws EVOLUTION_3.
   void update(std::span<const double> displacement, std::vector<ZonePairing>* records = nullptr);
+
+  /// An iterate may reach over the axis of revolution on its way, a solution may not: throws EVOLUTION_8.
+  void check_radii() const;
 
   std::span<const double> coordinates() const { return coordinates_; }  ///< (n_nodes, 3), current
   const std::vector<Zone>& zones() const { return zones_; }
@@ -64,6 +68,8 @@ class ContactGeometry {
 
  private:
   void integrate(const Zone& zone, const ContactCells& cells, std::span<const double> normals, ZonePairing* record);
+  /// What a kernel says of a slave cell.
+  void note(std::int32_t error, std::int32_t cell);
   /// Measures of whole patches, in the measure of the kernels' coverage (with r in axisymmetry).
   void measure_slaves();
   /// The contact kernel of a slave cell's element.
@@ -80,6 +86,7 @@ class ContactGeometry {
   std::vector<double> gap_, weight_, covered_, whole_, coverage_;  ///< of each patch
   std::vector<std::int32_t> zone_of_;
   std::vector<std::int64_t> rejected_;
+  std::optional<std::int32_t> over_axis_;  ///< a slave cell with a negative radius
 };
 
 /// The rule that measures a whole skin cell, of degree 7 to 9: as fine on curved cells as the points of pairing.

@@ -65,6 +65,8 @@ class ContactState {
   /// Whether every displacement in a patch's row is imposed: its multiplier is then undetermined and keeps its value.
   bool is_locked(std::size_t patch) const { return locked_[patch]; }
 
+  /// Throws EVOLUTION_8 where a slave cell reaches over the axis of revolution.
+  void check_radii() const { geometry_.check_radii(); }
   double gap(std::size_t patch) const { return geometry_.gap(patch); }  ///< average, positive when open
   double coverage(std::size_t patch) const {
     return geometry_.coverage(patch);

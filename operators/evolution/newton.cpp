@@ -199,7 +199,10 @@ int Newton::solve(double instant, StaticState& state, const std::function<void(c
     judge(external, state, line);
     line.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     report(line);
-    if (line.converged()) return iteration;
+    if (line.converged()) {
+      if (contact_) contact_->check_radii();
+      return iteration;
+    }
     unmet = unmet_criteria(line, changed);
     if (!std::isfinite(line.maxi)) break;
   }

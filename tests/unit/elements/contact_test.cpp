@@ -723,6 +723,10 @@ TEST(LacAxis, WeightsCarryTheRadiusOfTheGeometryOfTypeJacobien) {
     (x == &c.initial ? over.initial : over.slave)[2] = 0;
     EXPECT_EQ(run(over).error, LACON_FINE);
   }
+  // an iterate may be beyond the axis on its way: it counts nothing there
+  c.slave = {-0.2, 0, -0.1, 0};
+  EXPECT_EQ(run(c).error, LACON_BAD_RADIUS);
+  EXPECT_EQ(run(c).current_measure, 0);
 }
 
 }  // namespace
