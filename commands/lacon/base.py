@@ -155,15 +155,19 @@ class Base:
             if path.name != _orders:
                 _remove(path)
 
-    def write_concept(self, kind, label, command, keywords, fill):
-        """A concept that Python makes itself. `fill(file)` writes what is particular to it. @return its object"""
-        identifier = self.new_id(kind)
+    def write_concept(self, kind, label, command, keywords, fill, reused=None):
+        """A concept that Python makes itself. `fill(file)` writes what is particular to it; it replaces the content of `reused`. @return its object"""
+        identifier = reused.id if reused else self.new_id(kind)
         path = self.path(identifier)
         partial = path.with_name(path.name + ".partial")
+        version = 1
+        if reused:
+            with reused.open() as file:
+                version = int(file.attrs["version"]) + 1
         try:
             with hdf5.h5py().File(partial, "w") as file:
                 attributes = {
-                    "lacon_type": kind, "format": 1, "version": 1, "id": identifier, "label": label, "command": command,
+                    "lacon_type": kind, "format": 1, "version": version, "id": identifier, "label": label, "command": command,
                     "keywords": concepts.dumps(keywords),
                     "references": json.dumps([c.id for c in concepts.concepts_in(keywords)] if kind in ("material", "formula") else []),
                 }

@@ -11,7 +11,7 @@ from .concepts import CO, Concept
 from .messages import message
 
 _names = {"group_ma": "the name of a group of cells", "group_no": "the name of a group of nodes", "cell": "the name of a cell",
-          "node": "the name of a node", "text": "a text", "integer": "an integer", "real": "a number"}
+          "node": "the name of a node", "scalar": "a number or a text", "text": "a text", "integer": "an integer", "real": "a number"}
 
 
 def complete(command, row, given, where=""):
@@ -185,6 +185,8 @@ def _convert(kind, value):
         return float(value) if isinstance(value, (int, float)) and not isinstance(value, bool) and math.isfinite(value) else None
     if kind == "integer":
         return value if isinstance(value, int) and not isinstance(value, bool) else None
+    if kind == "scalar":
+        return value if isinstance(value, str) or _convert("real", value) is not None else None
     if kind in _names:
         return value if isinstance(value, str) and (kind == "text" or value.strip()) else None
     if isinstance(value, Concept) and (kind == "concept" or value.type in kind.split("|")):

@@ -111,7 +111,7 @@ def _result_check(call, test, path):
                   known=", ".join(result.field_names()))
     if test["NOM_CMP"] not in field.components:
         call.fail("TEST_RESU_4", f"{path}/NOM_CMP", component=test["NOM_CMP"], field=test["NOM_CHAM"], known=", ".join(field.components))
-    values, place = _select(call, test, path, field)
+    values, place = select(call, test, path, field)
     value = reduce(values, test.get("TYPE_TEST"))
     return conclude(call, Check(call.where, result.label, test["NOM_CHAM"], test["NOM_CMP"], place, instant, test.get("LEGENDE", ""), value), test)
 
@@ -165,7 +165,7 @@ def order_of(call, test, path):
     return found[0]
 
 
-def _select(call, test, path, field):
+def select(call, test, path, field):
     """(values of the component where the keywords say and it exists, words for the place)."""
     import numpy
 

@@ -16,16 +16,17 @@ class _F(dict):
 class Call:
     """One call of a command, as the functions of python_commands get it."""
 
-    def __init__(self, study, command, keywords, where, label):
+    def __init__(self, study, command, keywords, where, label, reused=None):
         self.study = study
         self.command = command
         self.keywords = keywords
         self.where = where
         self.label = label
+        self.reused = reused
 
     def write(self, kind, fill):
-        """The concept this call makes."""
-        return self.study.base.write_concept(kind, self.label, self.command, self.keywords, fill)
+        """The concept this call makes, or the one it changes in place."""
+        return self.study.base.write_concept(kind, self.label, self.command, self.keywords, fill, self.reused)
 
     def fail(self, identifier, path="", **values):
         fail(identifier, f"{self.command}{'/' + path if path else ''}, {self.where}", **values)
@@ -33,7 +34,7 @@ class Call:
 
 def _implementations():
     """command -> function(call) of those that Python does itself"""
-    from . import checks, formulas, functions, lists, materials, post_releve_t, table_commands
+    from . import calc_table, checks, formulas, function_commands, functions, lists, materials, post_releve_t, table_commands
 
     return {
         "DEBUT": lambda call: call.study.start(call.keywords, call.where, resume=False),
@@ -49,6 +50,11 @@ def _implementations():
         "IMPR_TABLE": table_commands.impr_table,
         "TEST_TABLE": table_commands.test_table,
         "RECU_TABLE": table_commands.recu_table,
+        "CALC_TABLE": calc_table.calc_table,
+        "IMPR_FONCTION": function_commands.impr_fonction,
+        "TEST_FONCTION": function_commands.test_fonction,
+        "RECU_FONCTION": function_commands.recu_fonction,
+        "CALC_FONCTION": function_commands.calc_fonction,
         "POST_RELEVE_T": post_releve_t.post_releve_t,
         "DETRUIRE": _destroy,
     }
@@ -102,7 +108,7 @@ class Command:
             run.timings.add(self.name, where, time.perf_counter() - started, outcome.seconds, outcome.phases)
             run.count_alarms(outcome.messages)
         else:
-            result = implementations()[self.name](Call(run, self.name, keywords, where, label))
+            result = implementations()[self.name](Call(run, self.name, keywords, where, label, reused))
             if result is not None:
                 _enter(run, label, result, where)
             run.timings.add(self.name, where, time.perf_counter() - started)

@@ -7,12 +7,13 @@ from .messages import fail
 
 
 class Piecewise:
-    """Points with x increasing, interpolation of x and y (LIN or LOG), extension on either side."""
+    """Points with x increasing, interpolation of x and y (LIN or LOG), extension on either side, names of x and y."""
 
-    def __init__(self, x, y, interpolation=("LIN", "LIN"), left="EXCLU", right="EXCLU"):
+    def __init__(self, x, y, interpolation=("LIN", "LIN"), left="EXCLU", right="EXCLU", parameter="INST", component="TOUTRESU"):
         self.x, self.y = list(x), list(y)
         self.interpolation = tuple(interpolation)
         self.left, self.right = left, right
+        self.parameter, self.component = parameter, component
 
     def value(self, x, name="function"):
         """@throws AsterError DEFI_FONCTION_3 where x lies outside and the function is not prolonged there"""
@@ -64,14 +65,48 @@ class Piecewise:
 def read_function(concept):
     with concept.open() as file:
         a = file.attrs
-        return Piecewise(file["x"][:].tolist(), file["y"][:].tolist(), list(a["interpolation"]), a["extension_left"], a["extension_right"])
+        return Piecewise(file["x"][:].tolist(), file["y"][:].tolist(), list(a["interpolation"]), a["extension_left"], a["extension_right"],
+                         a["parameter"], a["component"])
+
+
+def make(call, function, path):
+    """The function concept of a Piecewise that a command makes. @throws AsterError DEFI_FONCTION_4"""
+    for values, scale, what in ((function.x, function.interpolation[0], "parameter"), (function.y, function.interpolation[1], "value")):
+        if scale == "LOG" and min(values) <= 0.0:
+            call.fail("DEFI_FONCTION_4", path, what=what, value=f"{min(values):g}")
+
+    def fill(file):
+        from .hdf5 import text_type
+
+        for name, value in (("parameter", function.parameter), ("component", function.component),
+                            ("extension_left", function.left), ("extension_right", function.right)):
+            file.attrs[name] = value
+        file.attrs.create("interpolation", function.interpolation, dtype=text_type())
+        file.create_dataset("x", data=function.x, dtype="f8")
+        file.create_dataset("y", data=function.y, dtype="f8")
+
+    return call.write("function", fill)
+
+
+def described(call, x, y, like=None):
+    """A Piecewise with the rules and names of NOM_PARA, NOM_RESU, INTERPOL, PROL_GAUCHE, PROL_DROITE; without them those of `like`."""
+    k, like = call.keywords, like or Piecewise(x, y)
+    interpolation = k.get("INTERPOL", like.interpolation)
+    return Piecewise(x, y, tuple(interpolation) * 2 if len(interpolation) == 1 else interpolation, k.get("PROL_GAUCHE", like.left),
+                     k.get("PROL_DROITE", like.right), k.get("NOM_PARA", like.parameter), k.get("NOM_RESU", like.component))
 
 
 def defi_fonction(call):
     k = call.keywords
     x, y, path = _points(call)
+    x, y = increasing(call, x, y, k["VERIF"], path)
+    return make(call, described(call, x, y), path)
+
+
+def increasing(call, x, y, check, path):
+    """Points in increasing order: as they are, or sorted where VERIF is 'NON'. @throws AsterError DEFI_FONCTION_1"""
     if any(not a < b for a, b in zip(x, x[1:])):
-        if k["VERIF"] == "CROISSANT":
+        if check == "CROISSANT":
             bad = next(i for i in range(len(x) - 1) if not x[i] < x[i + 1])
             call.fail("DEFI_FONCTION_1", path, first=f"{x[bad]:g}", second=f"{x[bad + 1]:g}")
         order = sorted(range(len(x)), key=lambda i: x[i])
@@ -79,22 +114,7 @@ def defi_fonction(call):
         if any(a == b for a, b in zip(x, x[1:])):
             bad = next(a for a, b in zip(x, x[1:]) if a == b)
             call.fail("DEFI_FONCTION_1", path, first=f"{bad:g}", second=f"{bad:g}")
-    interpolation = k["INTERPOL"] * 2 if len(k["INTERPOL"]) == 1 else k["INTERPOL"]
-    for values, scale, what in ((x, interpolation[0], "parameter"), (y, interpolation[1], "value")):
-        if scale == "LOG" and min(values) <= 0.0:
-            call.fail("DEFI_FONCTION_4", path, what=what, value=f"{min(values):g}")
-
-    def fill(file):
-        from .hdf5 import text_type
-
-        for name, value in (("parameter", k["NOM_PARA"]), ("component", k["NOM_RESU"]),
-                            ("extension_left", k["PROL_GAUCHE"]), ("extension_right", k["PROL_DROITE"])):
-            file.attrs[name] = value
-        file.attrs.create("interpolation", interpolation, dtype=text_type())
-        file.create_dataset("x", data=x, dtype="f8")
-        file.create_dataset("y", data=y, dtype="f8")
-
-    return call.write("function", fill)
+    return x, y
 
 
 def _points(call):

@@ -32,6 +32,7 @@ class Study:
         self.alarms = 0
         self.checks = []
         self.written_units = {}  #: number -> path
+        self.plots = {}  #: (unit, format) -> curves.Plot that this run draws there
         self.sources = set()  #: files that the study is made from, and never writes
         self.lost = {}
         self.timings = Timings()

@@ -77,11 +77,30 @@ def impr_table(call):
         call.fail("TABLE_11", "FORMAT_R", text=k["FORMAT_R"])
     concept = k["TABLE"]
     table = chosen(call, concept.EXTR_TABLE())
+    if k["FORMAT"] in ("XMGRACE", "PNG"):
+        _draw(call, concept, table)
+        return
     if "TITRE" in k:
         table.titr = title(call)
     pages = _pages(call, table, k.get("PAGINATION", ()))
     text = "".join(_page(call, concept.label, page, real) for page in pages)
     call.study.write_text(k["UNITE"], ".resu" if k["UNITE"] == 8 else ".table", f"IMPR_TABLE/UNITE, {call.where}", text)
+
+
+def _draw(call, concept, table):
+    """A curve of each column by the first one."""
+    from .curves import Curve
+    from .function_commands import draw
+
+    if len(table.para) < 2:
+        call.fail("TABLE_12", "NOM_PARA", format=call.keywords["FORMAT"], needed="2 or more", count=len(table.para))
+    for name in table.para:
+        tables.numeric(call, table, name, "NOM_PARA")
+    made = []
+    for name in table.para[1:]:
+        points = table.Array(table.para[0], name).reshape(-1, 2)
+        made.append(Curve(points[:, 0], points[:, 1], (table.para[0], name), f"{concept.label} {name}"))
+    draw(call, made)
 
 
 def _pages(call, table, names):
@@ -145,7 +164,7 @@ def test_table(call):
 def recu_table(call):
     k = call.keywords
     result = k["CO"]
-    table = _kept(call, result, k["NOM_TABLE"]) if "NOM_TABLE" in k else _parameters(call, result, k["NOM_PARA"])
+    table = _kept(call, result, k["NOM_TABLE"]) if "NOM_TABLE" in k else parameters(call, result, k["NOM_PARA"], "NOM_PARA")
     if "TITRE" in k:
         table.titr = title(call)
     return tables.make(call, table)
@@ -160,7 +179,7 @@ def _kept(call, result, name):
         return tables.read_table(kept[name])
 
 
-def _parameters(call, result, names):
+def parameters(call, result, names, path):
     """NUME_ORDRE and the parameters `names` of every order number."""
     with result.open() as file:
         available = {"NUME_ORDRE": ("I", file["order"][:].tolist()), "INST": ("R", file["instant"][:].tolist())}
@@ -168,5 +187,5 @@ def _parameters(call, result, names):
             available[name] = ("R", values[:].tolist())
     for name in names:
         if name not in available:
-            call.fail("TABLE_13", "NOM_PARA", label=result.label, name=name, nearest=nearest(name, available), known=", ".join(available))
+            call.fail("TABLE_13", path, label=result.label, name=name, nearest=nearest(name, available), known=", ".join(available))
     return Table.of_columns({name: available[name] for name in ["NUME_ORDRE", *(n for n in names if n != "NUME_ORDRE")]})

@@ -230,7 +230,7 @@ def sample(row):
         one = (row.get("above", row.get("at_least", 0.0)) + row.get("below", row.get("at_most", 2.0))) / 2
     elif kind == "integer":
         one = int(row.get("at_least", 1))
-    elif kind in ("text", "group_ma", "group_no", "cell", "node"):
+    elif kind in ("text", "scalar", "group_ma", "group_no", "cell", "node"):
         one = "NAME"
     else:
         one = concept("mesh" if kind == "concept" else kind)
@@ -256,6 +256,13 @@ def minimal(row):
                 add(rule["of"][0])
             elif rule["kind"] == "together" and there:
                 for name in rule["of"]:
+                    if name not in given:
+                        add(name)
+        for when in row.get("when", ()):
+            effective = {**{k: keyword["default"] for k, keyword in rows.items() if "default" in keyword}, **given}
+            if (all(effective.get(k) in allowed for k, allowed in when.get("if", {}).items())
+                    and all(k in given for k in when.get("present", ())) and not any(k in given for k in when.get("absent", ()))):
+                for name in when.get("mandatory", ()):
                     if name not in given:
                         add(name)
     return given
@@ -352,7 +359,7 @@ class Properties(unittest.TestCase):
     def test_rows_are_of_the_documented_shape(self):
         known = {"type", "status", "max", "min", "default", "into", "into_from", "elsewhere", "above", "at_least", "below", "at_most",
                  "unique", "unit", "makes", "help", "keyword", "rule", "when"}
-        types = {"real", "integer", "text", "group_ma", "group_no", "cell", "node", "factor", "concept", *concepts._types}
+        types = {"real", "integer", "text", "scalar", "group_ma", "group_no", "cell", "node", "factor", "concept", *concepts._types}
 
         def visit(path, row):
             for name, keyword in row.get("keyword", {}).items():
