@@ -2,6 +2,7 @@ option(LACON_TESTS "Build the tests" ON)
 option(LACON_WARNINGS_AS_ERRORS "Treat warnings as errors" OFF)
 option(LACON_SANITIZE "Build with the address and undefined-behaviour sanitizers" OFF)
 set(LACON_SHARED_CASES "${PROJECT_SOURCE_DIR}/../shared/cases" CACHE PATH "Folder of the peer's test cases (meshes/, checks.csv); tests that need it are skipped where it is missing")
+set(LACON_SHARED_BENCH "${PROJECT_SOURCE_DIR}/../shared/bench" CACHE PATH "Folder of the benchmark study (meshes/t2.med); tests that need it are skipped where it is missing")
 
 set(CMAKE_CXX_STANDARD 20)
 set(CMAKE_CXX_STANDARD_REQUIRED ON)

@@ -68,6 +68,11 @@ FieldMakers fields_at(const StaticProblem& problem, const StaticState& state, co
   return fields;
 }
 
+/// Negative pivots of the last factorisation of an instant, and how many were to be expected; -1 where nothing was factorised.
+struct Pivots {
+  std::int64_t found = -1, expected = -1;
+};
+
 /// The result as it grows.
 class Archive {
  public:
@@ -83,8 +88,8 @@ class Archive {
     result_.behaviour = keywords.values().value("COMPORTEMENT", nlohmann::json::array()).dump();
   }
 
-  void add(double instant, int iterations, const StaticState& state, const FieldMakers& fields, const ContactState* contact,
-           const Archiving& archiving) {
+  void add(double instant, int iterations, const Pivots& pivots, const StaticState& state, const FieldMakers& fields,
+           const ContactState* contact, const Archiving& archiving) {
     const Phase phase("archive");
     const auto number = static_cast<std::int64_t>(result_.orders.size());
     for (const auto& [name, make] : fields) {
@@ -98,6 +103,8 @@ class Archive {
     result_.orders.push_back(number);
     result_.instants.push_back(instant);
     result_.parameters["newton_iterations"].push_back(iterations);
+    result_.parameters["negative_pivots"].push_back(static_cast<double>(pivots.found));
+    result_.parameters["expected_negative_pivots"].push_back(static_cast<double>(pivots.expected));
   }
   /// The proof lines as parameters of the instant: zone_1_slave_force_x, ...
   void add_balance(const std::vector<ZoneBalance>& zones) {
@@ -159,13 +166,18 @@ void stat_non_line(const Order& order, const Base& base) {
   const FieldMakers fields = fields_at(problem, state, newton);
   observations.start(steps.values.front(), fields);
   Archive archive(order, base, problem);
-  archive.add(steps.values.front(), 0, state, fields, newton.contact(), archiving);
+  archive.add(steps.values.front(), 0, {}, state, fields, newton.contact(), archiving);
 
   int iterations = 0;
+  Pivots pivots;
   std::int64_t step = 0;
   const auto solve = [&](double instant) {
     table.start(instant);
-    iterations = newton.solve(instant, state, [&](const IterationReport& report) { table.line(report); });
+    pivots = {};
+    iterations = newton.solve(instant, state, [&](const IterationReport& report) {
+      table.line(report);
+      if (report.solution.factorised) pivots = {report.solution.factorisation.negative_pivots, report.constraints};
+    });
   };
   const auto go_back = [&] {
     state = last;
@@ -176,7 +188,7 @@ void stat_non_line(const Order& order, const Base& base) {
     last = state;
     step += asked;
     if (archiving.keeps(instant, step) || instant == steps.values.back())
-      archive.add(instant, iterations, state, fields, newton.contact(), archiving);
+      archive.add(instant, iterations, pivots, state, fields, newton.contact(), archiving);
     observations.observe(instant, step, fields);
   };
   try {

@@ -76,8 +76,7 @@ The same with TYPE_JACOBIEN='ACTUALISE': the pressure belongs to the stretched s
 
 def space_section(runner):
     """Every pair of facets in space, on plain meshes and on distorted ones."""
-    comm = ROOT / "tests/verification/patch_space.comm"
-    found = {shaking: patch_space.run(runner, comm, patch_space.matrix(shaking=shaking)) for shaking in (False, True)}
+    found = {shaking: patch_space.run(runner, patch_space.matrix(shaking=shaking)) for shaking in (False, True)}
     tables = {}
     for what in ("pressure", "stress"):
         cells = [f"{getattr(a, what):.0e}, {getattr(b, what):.0e}" for a, b in zip(found[False], found[True])]

@@ -5,12 +5,11 @@ sideways: sigma = -p n n everywhere. Each block is held as a statically determin
 """
 
 import itertools
-import json
 import types
 
 import numpy as np
-from meshes import brick, shaken, union, write_med
-from results import Result
+from contact import contact_study, run_contact
+from meshes import brick, shaken, union
 
 PRESSURE, YOUNG, POISSON = 25.0, 200000.0, 0.3
 #: the body of the slave -> (cell, row of meshes.CUBE, axis of the grid along n, DECOUPE_HEXA)
@@ -104,7 +103,7 @@ def held(mesh, name, nodes, free, normal):
 
 
 def study(slave, master, shaking=False, scale=1.0, jacobian="INITIAL", normal=NORMAL):
-    """What patch_space.comm and `figures` need of one patch test."""
+    """What `run` and `figures` need of one patch test."""
     return types.SimpleNamespace(slave=slave, master=master, shaking=shaking, scale=scale, jacobian=jacobian, normal=np.asarray(normal, float))
 
 
@@ -118,20 +117,17 @@ def tolerance(one):
     return 1e-8 if one.slave.endswith("in HEXA") or one.shaking and quadrangles else 1e-10
 
 
-def run(test, comm, studies):
+def run(test, studies):
     """One run of the launcher for all of them. @param test a StudyTest @return for each study its figures: errors of .pressure (LAGS_C and
     PRES), .stress (nodal, along n), all stresses (.stresses), relative to p; .gap, .displacement relative to size and largest
     displacement, .cover, and the number of .iterations"""
-    units, orders = [], []
-    for k, one in enumerate(studies):
+    orders = []
+    for one in studies:
         mesh, supports = stack(one.slave, one.master, one.shaking, one.normal, one.scale)
-        write_med(test.folder / f"{k}.med", mesh)
-        units += ["--unit", f"{20 + k}={test.folder / f'{k}.med'}"]
-        orders.append({"cut": SLAVES[one.slave][3], "supports": supports, "jacobian": one.jacobian, "pressure": PRESSURE})
-    (test.folder / "studies.json").write_text(json.dumps(orders))
-    done = test.run_study(comm, "--fresh", *units, PATCH_STUDIES=str(test.folder / "studies.json"))
-    test.assertEqual(done.status, 0, done.stdout[-3000:] + done.stderr[-3000:])
-    return [figures(Result(test.folder / f"{comm.stem}.base", f"RESU[{k}]"), one) for k, one in enumerate(studies)]
+        orders.append(contact_study(mesh, [{"GROUP_NO": node, **values} for node, values in supports.items()],
+                                    [{"GROUP_MA": ["LOAD", "BASE"], "PRES": PRESSURE}], cut=SLAVES[one.slave][3],
+                                    elastic={"E": YOUNG, "NU": POISSON}, zone={"TYPE_JACOBIEN": one.jacobian}))
+    return [figures(result, one) for result, one in zip(run_contact(test, orders)[1], studies)]
 
 
 def figures(result, one):

@@ -64,11 +64,12 @@ class Patch(StudyTest):
             self.assertLessEqual(patch.worst(found["LAGS_C"], expected), 1e-10 * PRESSURE)
             self.assertGreater(patch.worst(found["LAGS_C"], -PRESSURE), 1e-3 * PRESSURE)
 
-    def test_axisymmetry_is_exact_in_both_measures(self):
-        """Discs against discs: -p, and with ACTUALISE -p A0 / A; JEU and COEFSURF as in the plane (the checks of the study)."""
+    def test_axisymmetry_and_plane_stress_are_exact_in_both_measures(self):
+        """Discs against discs, plates against plates: -p, and with ACTUALISE -p A0 / A; JEU and COEFSURF as in plane strain (the checks of
+        the study)."""
         pairs = [(kind, other) for kind, other in zip(patch.KINDS, patch.KINDS[2:] + patch.KINDS[:2])]
-        for jacobian in ("INITIAL", "ACTUALISE"):
-            self.assert_all_ok(self.run_patches(pairs, pressure=PRESSURE, jacobian=jacobian, model="AXIS"), patch.CHECKS_A_PAIR * len(pairs))
+        for model, jacobian in (("AXIS", "INITIAL"), ("AXIS", "ACTUALISE"), ("C_PLAN", "INITIAL"), ("C_PLAN", "ACTUALISE")):
+            self.assert_all_ok(self.run_patches(pairs, pressure=PRESSURE, jacobian=jacobian, model=model), patch.CHECKS_A_PAIR * len(pairs))
 
     def test_with_two_materials_the_error_is_of_the_order_of_the_strain(self):
         """The lower block stretches more than the upper one: the skins end at different places, apart by the difference of

@@ -11,12 +11,10 @@ from study_test import StudyTest  # noqa: E402
 import patch_space  # noqa: E402, I001 (study_test says where meshes.py is)
 from patch_space import study  # noqa: E402
 
-COMM = pathlib.Path(__file__).resolve().parent / "patch_space.comm"
-
 
 class SpaceTest(StudyTest):
     def assert_exact(self, studies):
-        for one, found in zip(studies, patch_space.run(self, COMM, studies)):
+        for one, found in zip(studies, patch_space.run(self, studies)):
             with self.subTest(slave=one.slave, master=one.master, shaking=one.shaking, scale=one.scale, jacobian=one.jacobian):
                 tolerance = patch_space.tolerance(one)
                 self.assertLessEqual(found.pressure, tolerance)
