@@ -146,7 +146,7 @@ std::vector<ElementSet> solid_sets(const Mesh& mesh, const Model& model, Registr
   return sets;
 }
 
-std::vector<ElementSet> skin_sets(const Model& model, Registry& registry, std::string_view option,
+std::vector<ElementSet> load_sets(const Model& model, Registry& registry, std::string_view option,
                                   std::span<const std::int32_t> cells, std::vector<std::vector<std::int32_t>>& position) {
   std::map<std::int32_t, std::vector<std::int32_t>> by_element;
   for (std::size_t i = 0; i < cells.size(); ++i) by_element[model.element[cells[i]]].push_back(static_cast<std::int32_t>(i));
@@ -210,34 +210,61 @@ void evaluate_solids(const ElementSet& set, const Mesh& mesh, int dimension, std
   }
 }
 
-void evaluate_loads(const ElementSet& set, const Mesh& mesh, int dimension, std::span<const double> value,
-                    const std::function<void(std::int32_t, std::span<const double>)>& use) {
-  const std::size_t ndof = static_cast<std::size_t>(set.n_nodes()) * dimension;
-  std::vector<double> coordinates, values, force, own;
+int n_load_values(const lacon_kernel& kernel) {
+  int count = 0;
+  while (kernel.parameters[count]) ++count;
+  return count;
+}
+
+std::vector<double> integration_points(const ElementSet& set, const Mesh& mesh, std::span<const double> coordinates) {
+  const Tabulation& table = set.tabulation;
+  std::vector<double> points(set.cells.size() * table.n_points * 3, 0.0);
+  std::size_t at = 0;
+  for (const std::int32_t cell : set.cells) {
+    const auto nodes = mesh.cells[cell];
+    for (int p = 0; p < table.n_points; ++p, at += 3)
+      for (int a = 0; a < table.n_nodes; ++a)
+        for (int d = 0; d < 3; ++d)
+          points[at + d] += table.shape[p * table.n_nodes + a] * coordinates[3 * static_cast<std::size_t>(nodes[a]) + d];
+  }
+  return points;
+}
+
+void evaluate_loads(const ElementSet& set, const Mesh& mesh, int dimension, std::span<const double> coordinates,
+                    std::span<const double> values, bool with_matrix, const std::function<void(const LoadValues&)>& use) {
+  const std::size_t ndof = static_cast<std::size_t>(set.n_nodes()) * dimension, n_lower = ndof * (ndof + 1) / 2;
+  const int n_values = n_load_values(*set.kernel), width = set.tabulation.n_points * n_values;
+  std::vector<double> place, value, force, matrix, own_force, own_matrix;
   std::vector<std::int32_t> errors;
   for (std::size_t first = 0; first < set.cells.size(); first += batch_blocks * lanes) {
     const Batch batch(set, mesh, first, dimension);
-    batch.gather(mesh.coordinates, 3, coordinates);
-    batch.gather_cells(value, 1, values);
-    force.resize(batch.n_blocks() * lanes * ndof);
-    errors.assign(batch.n_blocks() * lanes, LACON_FINE);
+    batch.gather(coordinates, 3, place);
+    batch.gather_cells(values, width, value);
+    const std::size_t padded = batch.n_blocks() * lanes;
+    force.resize(padded * ndof);
+    if (with_matrix) matrix.resize(padded * n_lower);
+    errors.assign(padded, LACON_FINE);
     const lacon_load_batch call{.struct_size = sizeof(lacon_load_batch),
                                 .n_blocks = static_cast<std::int32_t>(batch.n_blocks()),
                                 .n_nodes = set.n_nodes(),
                                 .dimension = dimension,
                                 .n_points = set.tabulation.n_points,
+                                .reference_dimension = set.tabulation.dimension,
+                                .n_values = n_values,
                                 .shape = set.tabulation.shape.data(),
                                 .gradient = set.tabulation.gradient.data(),
                                 .weight = set.tabulation.weight.data(),
-                                .coordinates = coordinates.data(),
-                                .value = values.data(),
+                                .coordinates = place.data(),
+                                .value = value.data(),
                                 .force = force.data(),
+                                .matrix = with_matrix ? matrix.data() : nullptr,
                                 .error = errors.data()};
     set.kernel->load(&call);
     batch.check(errors);
     for (std::size_t i = 0; i < batch.size(); ++i) {
-      batch.scatter(force, i, ndof, own);
-      use(batch.cell(i), own);
+      batch.scatter(force, i, ndof, own_force);
+      if (with_matrix) batch.scatter(matrix, i, n_lower, own_matrix);
+      use({batch.cell(i), own_force, own_matrix});
     }
   }
 }

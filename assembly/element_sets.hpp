@@ -45,9 +45,8 @@ class MaterialTable {
 /// Every solid element of the model, by kind; a set for each element row, cells in ascending order.
 std::vector<ElementSet> solid_sets(const Mesh& mesh, const Model& model, Registry& registry, const MaterialTable& materials);
 
-/// These cells (of any skin kind) by kind, with the kernel of `option`. `position` receives for each set the indices into
-/// `cells`.
-std::vector<ElementSet> skin_sets(const Model& model, Registry& registry, std::string_view option,
+/// These cells by kind, with the load kernel of `option`. `position` receives for each set the indices into `cells`.
+std::vector<ElementSet> load_sets(const Model& model, Registry& registry, std::string_view option,
                                   std::span<const std::int32_t> cells, std::vector<std::vector<std::int32_t>>& position);
 
 /// What one solid element gives.
@@ -63,8 +62,23 @@ struct SolidValues {
 void evaluate_solids(const ElementSet& set, const Mesh& mesh, int dimension, std::span<const double> displacement,
                      bool with_matrix, const std::function<void(const SolidValues&)>& use);
 
-/// Call `use(cell, force (n_nodes, dimension))` for each skin element of a set under `value` (of each cell of the set).
-void evaluate_loads(const ElementSet& set, const Mesh& mesh, int dimension, std::span<const double> value,
-                    const std::function<void(std::int32_t, std::span<const double>)>& use);
+/// How many values a load kernel takes at each integration point.
+int n_load_values(const lacon_kernel& kernel);
+
+/// Coordinates of the integration points, (cells, n_points, 3). @param coordinates (n_nodes, 3)
+std::vector<double> integration_points(const ElementSet& set, const Mesh& mesh, std::span<const double> coordinates);
+
+/// What one element under a load gives.
+struct LoadValues {
+  std::int32_t cell;
+  std::span<const double> force;  ///< (n_nodes, dimension)
+  std::span<const double>
+      matrix;  ///< symmetric part of its derivative, lower triangle row by row; empty where it was not wanted
+};
+
+/// Call `use` for each element of a set of load_sets(). @param coordinates (n_nodes, 3) of the mesh, initial or current
+/// @param values (cells, n_points, n_load_values)
+void evaluate_loads(const ElementSet& set, const Mesh& mesh, int dimension, std::span<const double> coordinates,
+                    std::span<const double> values, bool with_matrix, const std::function<void(const LoadValues&)>& use);
 
 }  // namespace lacon

@@ -17,7 +17,7 @@
 extern "C" {
 #endif
 
-#define LACON_ABI 2
+#define LACON_ABI 3
 #define LACON_LANES 8
 
 #if defined(__GNUC__)
@@ -53,17 +53,21 @@ typedef struct lacon_solid_batch {
   int32_t* error;             /* (n_blocks, LANES) */
 } lacon_solid_batch;
 
-/* Skin elements under a load of one value an element. */
+/* Elements (bodies, skins, edges) under a load that has values at each integration point. */
 typedef struct lacon_load_batch {
   uint32_t struct_size;
   int32_t n_blocks;
   int32_t n_nodes, dimension, n_points; /* dimension of the space */
+  int32_t reference_dimension;          /* of the cells */
+  int32_t n_values;                     /* as many as the kernel's `parameters` */
   const double* shape;                  /* (n_points, n_nodes) */
-  const double* gradient;               /* (n_points, n_nodes, dimension - 1) */
+  const double* gradient;               /* (n_points, n_nodes, reference_dimension) */
   const double* weight;                 /* (n_points) */
-  const double* coordinates;            /* (n_blocks, n_nodes, dimension, LANES) */
-  const double* value;                  /* (n_blocks, LANES) */
+  const double* coordinates;            /* (n_blocks, n_nodes, dimension, LANES): initial, or current under a following load */
+  const double* value;                  /* (n_blocks, n_points, n_values, LANES), in the order of the kernel's `parameters` */
   double* force;                        /* (n_blocks, ndof, LANES): external force */
+  double* matrix;                       /* (n_blocks, ndof (ndof + 1) / 2, LANES), pressures only: lower triangle, row by row,
+                                           of the symmetric part of the derivative of the force by the coordinates */
   int32_t* error;                       /* (n_blocks, LANES) */
 } lacon_load_batch;
 
@@ -99,7 +103,7 @@ typedef struct lacon_kernel {
   void (*solid)(const lacon_solid_batch*);
   void (*load)(const lacon_load_batch*);
   void (*contact)(const lacon_contact_batch*);
-  const char* const* parameters; /* solid: material parameters that it takes, "ELAS/E", NULL at the end */
+  const char* const* parameters; /* solid: material parameters that it takes, "ELAS/E"; load: its values, "PRES"; NULL at the end */
 } lacon_kernel;
 
 typedef struct lacon_plugin_table {

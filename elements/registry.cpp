@@ -222,6 +222,7 @@ std::string defect(const lacon_kernel& kernel) {
       if (!kernel.parameters) return name + " has no list of parameters";
       return kernel.solid ? "" : name + " has no function";
     case LACON_LOAD:
+      if (!kernel.parameters) return name + " has no list of values";
       return kernel.load ? "" : name + " has no function";
     case LACON_CONTACT:
       return kernel.contact ? "" : name + " has no function";

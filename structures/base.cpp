@@ -254,57 +254,148 @@ void Base::store(const MaterialField& field) const {
 
 // ---------------------------------------------------------------------------------------------- load
 
+namespace {
+
+/// The lists of a load: group in the file, dataset of its places, member.
+struct LoadGroup {
+  const char* name;
+  const char* place;
+  std::vector<LoadTerm> Load::*terms;
+};
+constexpr LoadGroup load_groups[] = {{"imposed", "node", &Load::imposed},
+                                     {"nodal_force", "node", &Load::nodal},
+                                     {"pressure", "cell", &Load::pressure},
+                                     {"force", "cell", &Load::force},
+                                     {"gravity", "cell", &Load::gravity}};
+
+/// Texts that repeat, as a list of the different ones and a number into it.
+class Names {
+ public:
+  std::int32_t number(const std::string& name) {
+    const auto at = std::find(names_.begin(), names_.end(), name);
+    if (at == names_.end()) names_.push_back(name);
+    return static_cast<std::int32_t>(std::find(names_.begin(), names_.end(), name) - names_.begin());
+  }
+  const std::vector<std::string>& all() const { return names_; }
+
+ private:
+  std::vector<std::string> names_;
+};
+
+/// `value` and, where some are functions, `function` and `function_index`.
+void write_load_values(const hdf5::Group& group, const std::vector<LoadValue>& values) {
+  Names functions;
+  std::vector<double> number;
+  std::vector<std::int32_t> index;
+  for (const LoadValue& v : values) {
+    number.push_back(v.value);
+    index.push_back(v.function.empty() ? -1 : functions.number(v.function));
+  }
+  group.write("value", number);
+  if (functions.all().empty()) return;
+  group.write_strings("function", functions.all());
+  group.write("function_index", index);
+}
+
+std::vector<LoadValue> read_load_values(const hdf5::Group& group) {
+  std::vector<LoadValue> values;
+  for (const double number : group.read<double>("value")) values.push_back({number, ""});
+  if (!group.has("function_index")) return values;
+  const auto functions = group.read_strings("function");
+  const auto index = group.read<std::int32_t>("function_index");
+  for (std::size_t i = 0; i < values.size(); ++i)
+    if (index.at(i) >= 0) values[i].function = functions.at(static_cast<std::size_t>(index[i]));
+  return values;
+}
+
+}  // namespace
+
 Load Base::load(std::string_view id) const {
   const hdf5::Reader root = open_concept(*this, id, "load");
   Load load;
   load.model = root.text("model");
   load.kind = root.text("kind");
-  if (root.has("imposed")) {
-    const hdf5::Group group = root.open("imposed");
+  for (const LoadGroup& kind : load_groups) {
+    if (!root.has(kind.name)) continue;
+    const hdf5::Group group = root.open(kind.name);
     const auto names = group.read_strings("component");
-    const auto node = group.read<std::int32_t>("node"), index = group.read<std::int32_t>("component_index");
-    const auto value = group.read<double>("value");
-    for (std::size_t i = 0; i < node.size(); ++i)
-      load.imposed.push_back({node[i], names.at(static_cast<std::size_t>(index.at(i))), value.at(i)});
+    const auto place = group.read<std::int32_t>(kind.place), index = group.read<std::int32_t>("component_index");
+    const std::vector<LoadValue> values = read_load_values(group);
+    for (std::size_t i = 0; i < place.size(); ++i)
+      (load.*kind.terms).push_back({place[i], names.at(static_cast<std::size_t>(index.at(i))), values.at(i)});
   }
-  if (root.has("pressure")) {
-    const auto cell = root.read<std::int32_t>("pressure/cell");
-    const auto value = root.read<double>("pressure/value");
-    for (std::size_t i = 0; i < cell.size(); ++i) load.pressure.push_back({cell[i], value.at(i)});
+  if (root.has("relations")) {
+    const hdf5::Group group = root.open("relations");
+    const auto names = group.read_strings("component"), source = group.read_strings("source");
+    const auto node = read_ragged<std::int32_t>(group, "offset", "node");
+    const auto index = group.read<std::int32_t>("component_index");
+    const auto coefficient = group.read<double>("coefficient");
+    const std::vector<LoadValue> values = read_load_values(group);
+    for (std::size_t r = 0, at = 0; r < node.size(); ++r) {
+      Relation relation{source.at(r), {}, values.at(r)};
+      for (const std::int32_t n : node[r]) {
+        relation.terms.push_back({n, names.at(static_cast<std::size_t>(index.at(at))), coefficient.at(at)});
+        ++at;
+      }
+      load.relations.push_back(std::move(relation));
+    }
   }
   return load;
 }
 
 void Base::store(const Load& load) const {
-  store_concept(*this, *order_, concept_file(*this, *order_), "load", {load.model}, [&](const hdf5::Group& root) {
+  std::vector<std::string> references{load.model};
+  const auto refer = [&](const LoadValue& value) {
+    if (!value.function.empty() && std::find(references.begin(), references.end(), value.function) == references.end())
+      references.push_back(value.function);
+  };
+  for (const LoadGroup& kind : load_groups)
+    for (const LoadTerm& term : load.*kind.terms) refer(term.value);
+  for (const Relation& relation : load.relations) refer(relation.value);
+  store_concept(*this, *order_, concept_file(*this, *order_), "load", references, [&](const hdf5::Group& root) {
     root.set("model", load.model);
     root.set("kind", load.kind);
-    if (!load.imposed.empty()) {
-      std::vector<std::string> names;
-      std::vector<std::int32_t> node, index;
-      std::vector<double> value;
-      for (const ImposedDof& dof : load.imposed) {
-        auto at = std::find(names.begin(), names.end(), dof.component);
-        if (at == names.end()) at = names.insert(names.end(), dof.component);
-        node.push_back(dof.node);
-        index.push_back(static_cast<std::int32_t>(at - names.begin()));
-        value.push_back(dof.value);
+    for (const LoadGroup& kind : load_groups) {
+      if ((load.*kind.terms).empty()) continue;
+      Names names;
+      std::vector<std::int32_t> place, index;
+      std::vector<LoadValue> values;
+      for (const LoadTerm& term : load.*kind.terms) {
+        place.push_back(term.place);
+        index.push_back(names.number(term.component));
+        values.push_back(term.value);
       }
-      const hdf5::Group group = root.create("imposed");
-      group.write_strings("component", names);
-      group.write("node", node);
+      const hdf5::Group group = root.create(kind.name);
+      group.write_strings("component", names.all());
+      group.write(kind.place, place);
       group.write("component_index", index);
-      group.write("value", value);
+      write_load_values(group, values);
     }
-    if (!load.pressure.empty()) {
-      std::vector<std::int32_t> cell;
-      std::vector<double> value;
-      for (const PressureLoad& pressure : load.pressure) {
-        cell.push_back(pressure.cell);
-        value.push_back(pressure.value);
+    if (!load.relations.empty()) {
+      Names names;
+      Ragged<std::int32_t> node;
+      std::vector<std::int32_t> index;
+      std::vector<double> coefficient;
+      std::vector<std::string> source;
+      std::vector<LoadValue> values;
+      for (const Relation& relation : load.relations) {
+        source.push_back(relation.source);
+        values.push_back(relation.value);
+        for (const RelationTerm& term : relation.terms) {
+          node.values.push_back(term.node);
+          index.push_back(names.number(term.component));
+          coefficient.push_back(term.coefficient);
+        }
+        node.offset.push_back(static_cast<std::int64_t>(node.values.size()));
       }
-      root.write("pressure/cell", cell);
-      root.write("pressure/value", value);
+      const hdf5::Group group = root.create("relations");
+      group.write_strings("source", source);
+      group.write_strings("component", names.all());
+      group.write("offset", node.offset);
+      group.write("node", node.values);
+      group.write("component_index", index);
+      group.write("coefficient", coefficient);
+      write_load_values(group, values);
     }
   });
 }
@@ -458,7 +549,8 @@ Result Base::result(std::string_view id) const {
   result.mesh = root.text("mesh");
   result.material_field = root.text("material_field");
   result.contact = root.text("contact");
-  for (const json& load : json::parse(root.text("loads"))) result.loads.push_back({load.at("load"), load.at("function")});
+  for (const json& load : json::parse(root.text("loads")))
+    result.loads.push_back({load.at("load"), load.at("function"), load.value("type", "FIXE_CSTE")});
   result.behaviour = root.text("behaviour");
   result.orders = root.read<std::int64_t>("order");
   result.instants = root.read<double>("instant");
@@ -481,7 +573,7 @@ void Base::store(const Result& result) const {
   json loads = json::array();
   std::vector<std::string> references{result.model, result.mesh, result.material_field, result.contact};
   for (const ResultLoad& load : result.loads) {
-    loads.push_back({{"load", load.load}, {"function", load.function}});
+    loads.push_back({{"load", load.load}, {"function", load.function}, {"type", load.type}});
     references.push_back(load.load);
     references.push_back(load.function);
   }

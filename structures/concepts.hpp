@@ -32,22 +32,44 @@ struct MaterialField {
   std::vector<std::int32_t> material;  ///< of each cell, -1 for none
 };
 
-struct ImposedDof {
-  std::int32_t node;
-  std::string component;  ///< "DX"
-  double value;
+/// A number, or the value of a function of the study.
+struct LoadValue {
+  double value = 0;      ///< where there is no function
+  std::string function;  ///< id of a function or formula
+
+  bool operator==(const LoadValue&) const = default;
 };
 
-struct PressureLoad {
-  std::int32_t cell;
-  double value;  ///< positive towards the body
+/// One component of a load on a node or a cell.
+struct LoadTerm {
+  std::int32_t place;
+  std::string component;  ///< "DX", "PRES", "FY"
+  LoadValue value;
+};
+
+/// A displacement in a relation.
+struct RelationTerm {
+  std::int32_t node;
+  std::string component;
+  double coefficient;
+};
+
+/// The sum of coefficient * displacement is `value`; it is held by a multiplier of its own.
+struct Relation {
+  std::string source;  ///< the keyword it comes from
+  std::vector<RelationTerm> terms;
+  LoadValue value;
 };
 
 struct Load {
   std::string model;
-  std::string kind;  ///< "cine" or "meca"
-  std::vector<ImposedDof> imposed;
-  std::vector<PressureLoad> pressure;
+  std::string kind;                ///< "cine" or "meca"
+  std::vector<LoadTerm> imposed;   ///< displacements of nodes
+  std::vector<LoadTerm> nodal;     ///< forces on nodes
+  std::vector<LoadTerm> pressure;  ///< PRES (positive towards the body) and CISA_2D (along the tangent) on skin cells
+  std::vector<LoadTerm> force;     ///< FX, FY, FZ on cells, for each unit of their length, area or volume
+  std::vector<LoadTerm> gravity;   ///< FX, FY, FZ on body cells, for each unit of mass
+  std::vector<Relation> relations;
 };
 
 struct ContactZone {
@@ -106,6 +128,7 @@ struct TimeSteps {
 struct ResultLoad {
   std::string load;
   std::string function;  ///< may be empty
+  std::string type;      ///< TYPE_CHARGE: FIXE_CSTE, SUIV
 };
 
 /// The index of a result: which fields it has at which instants.

@@ -28,6 +28,7 @@ class Keywords {
   std::vector<double> reals(std::string_view name) const;
   std::vector<std::int64_t> integers(std::string_view name) const;
   std::vector<std::string> texts(std::string_view name) const;  ///< empty where the keyword is absent
+  bool is_concept(std::string_view name) const { return has(name) && values_.at(std::string(name)).is_object(); }
   std::string concept_id(std::string_view name) const;
   std::optional<std::string> optional_concept(std::string_view name) const;
   std::vector<std::string> concept_ids(std::string_view name) const;

@@ -3,171 +3,179 @@
 #include <fmt/core.h>
 
 #include <algorithm>
-#include <map>
+#include <cmath>
+#include <functional>
 
 #include "lacon/catalog/messages.hpp"
-#include "lacon/catalog/quantities.hpp"
+#include "lacon/operators/affe_char/places.hpp"
 #include "lacon/operators/meshing/skin.hpp"
 
 namespace lacon {
 namespace {
 
-/// Names of the displacements, in the order of the quantity.
-std::span<const std::string_view> displacements() {
-  for (const catalog::QuantityRow& row : catalog::quantities())
-    if (row.name == "DEPL_R") return row.components;
-  return {};
-}
+// ---------------------------------------------------------------------------------------------------- nodes
 
-const catalog::ElementRow* element_of(const Model& model, const Registry& registry, std::size_t cell) {
-  return model.element[cell] < 0 ? nullptr
-                                 : registry.find_element(model.elements[static_cast<std::size_t>(model.element[cell])]);
-}
-
-/// The degrees of freedom of each node: bit i for displacement i.
-std::vector<unsigned> degrees_of_freedom(const Mesh& mesh, const Model& model, const Registry& registry) {
-  const auto names = displacements();
-  std::vector<unsigned> dofs(mesh.n_nodes(), 0);
-  for (std::size_t cell = 0; cell < mesh.n_cells(); ++cell) {
-    const catalog::ElementRow* row = element_of(model, registry, cell);
-    if (!row) continue;
-    unsigned own = 0;
-    for (std::size_t i = 0; i < names.size(); ++i)
-      if (std::find(row->dofs.begin(), row->dofs.end(), names[i]) != row->dofs.end()) own |= 1u << i;
-    for (const std::int32_t node : mesh.cells[cell]) dofs[static_cast<std::size_t>(node)] |= own;
-  }
-  return dofs;
-}
-
-std::string names_of(unsigned dofs) {
-  std::string text;
-  for (std::size_t i = 0; i < displacements().size(); ++i)
-    if (dofs & (1u << i)) text += (text.empty() ? "" : ", ") + std::string(displacements()[i]);
-  return text;
-}
-
-std::int32_t node_of_name(const Mesh& mesh, const std::string& name, const std::string& keyword) {
-  const std::optional<std::int32_t> node = number_of_name(name, 'N', mesh.n_nodes());
-  if (!node)
-    fail("CHARGE_1",
-         {{"keyword", keyword}, {"name", name}, {"last", node_name(static_cast<std::int64_t>(mesh.n_nodes()) - 1)}});
-  return *node;
-}
-
-/// The nodes that an occurrence names, with the keyword that names them.
-struct NamedNodes {
-  std::string source;
-  std::vector<std::int32_t> nodes;
-};
-
-std::vector<NamedNodes> named_nodes(const Mesh& mesh, std::span<const unsigned> dofs, const Keywords& factor) {
-  std::vector<NamedNodes> named;
-  if (factor.has("TOUT")) {
-    NamedNodes all{factor.path("TOUT"), {}};
-    for (std::size_t node = 0; node < dofs.size(); ++node)
-      if (dofs[node]) all.nodes.push_back(static_cast<std::int32_t>(node));
-    named.push_back(std::move(all));
-  }
-  for (const std::string& group : factor.texts("GROUP_MA"))
-    named.push_back({factor.path("GROUP_MA") + " '" + group + "'",
-                     nodes_of_cells(mesh, cells_of_group(mesh, group, factor.path("GROUP_MA")))});
-  for (const std::string& group : factor.texts("GROUP_NO")) {
-    const auto members = nodes_of_group(mesh, group, factor.path("GROUP_NO"));
-    named.push_back({factor.path("GROUP_NO") + " '" + group + "'", {members.begin(), members.end()}});
-  }
-  for (const std::string& name : factor.texts("NOEUD"))
-    named.push_back({factor.path("NOEUD"), {node_of_name(mesh, name, factor.path("NOEUD"))}});
-  return named;
-}
-
-void impose(Load& load, const Mesh& mesh, std::span<const unsigned> dofs, const std::vector<Keywords>& factors) {
-  struct Given {
-    double value;
-    std::string source;
-  };
-  std::map<std::pair<std::int32_t, std::size_t>, Given> given;
+/// Values of every component in `components` that an occurrence gives, on the nodes that it names.
+void load_nodes(const LoadScene& scene, const std::vector<Keywords>& factors, std::span<const std::string_view> components,
+                std::string_view conflict, std::vector<LoadTerm>& terms) {
+  GivenTerms given(scene, conflict, terms);
   for (const Keywords& factor : factors)
-    for (const NamedNodes& named : named_nodes(mesh, dofs, factor))
-      for (const std::int32_t node : named.nodes) {
-        const unsigned own = dofs[static_cast<std::size_t>(node)];
-        if (own == 0) fail("CHARGE_2", {{"keyword", named.source}, {"node", node_name(node)}});
-        for (std::size_t i = 0; i < displacements().size(); ++i) {
-          const std::string component(displacements()[i]);
-          if (!factor.has(component)) continue;
-          if (!(own & (1u << i)))
-            fail("CHARGE_3", {{"keyword", factor.path(component)},
-                              {"node", node_name(node)},
-                              {"component", component},
-                              {"known", names_of(own)}});
-          const double value = factor.real(component);
-          const auto [at, first] = given.try_emplace({node, i}, Given{value, named.source});
-          if (first)
-            load.imposed.push_back({node, component, value});
-          else if (at->second.value != value)
-            fail("CHARGE_4", {{"component", component},
-                              {"node", node_name(node)},
-                              {"first", fmt::format("{:g}", at->second.value)},
-                              {"first_source", at->second.source},
-                              {"second", fmt::format("{:g}", value)},
-                              {"second_source", named.source}});
+    for (const NamedPlaces& named : named_nodes(scene, factor))
+      for (const std::string_view component : components) {
+        if (!factor.has(component)) continue;
+        const LoadValue value = value_of(scene, factor, component);
+        for (const std::int32_t node : named.members) {
+          scene.check_dof(node, "D" + std::string(component.substr(1)), named.source);
+          given.add(node, "the node " + node_name(node), std::string(component), value, named.source);
         }
       }
 }
 
-/// Whether this element takes pressures: its row says so.
-bool takes_pressure(const catalog::ElementRow* row, const Registry& registry) {
-  return row && registry.has_kernel(*row, "CHAR_MECA_PRES");
+constexpr std::string_view translations[] = {"DX", "DY", "DZ"}, forces[] = {"FX", "FY", "FZ"};
+
+// ---------------------------------------------------------------------------------------------------- cells
+
+/// A factor keyword that loads cells.
+struct CellKeyword {
+  const char* keyword;
+  const char* option;      ///< whose kernel does it
+  int space, codimension;  ///< of the cells' elements; space 0: any
+  const char* carrier;     ///< what these cells are
+  std::vector<LoadTerm> Load::*terms;
+};
+const CellKeyword cell_keywords[] = {
+    {"PRES_REP", "CHAR_MECA_PRES", 0, 1, "skin cell", &Load::pressure},
+    {"FORCE_CONTOUR", "CHAR_MECA_FORC", 2, 1, "edge of a plane or axisymmetric body", &Load::force},
+    {"FORCE_FACE", "CHAR_MECA_FORC", 3, 1, "face of a 3D body", &Load::force},
+    {"FORCE_ARETE", "CHAR_MECA_FORC", 3, 2, "edge in 3D", &Load::force},
+    {"FORCE_INTERNE", "CHAR_MECA_FORC", 0, 0, "body cell", &Load::force},
+};
+
+bool fits(const LoadScene& scene, const CellKeyword& kind, std::int32_t cell) {
+  const catalog::ElementRow* row = scene.element(cell);
+  if (!row || !scene.registry.has_kernel(*row, kind.option)) return false;
+  const int space = static_cast<int>(row->dofs.size());
+  return (kind.space == 0 || kind.space == space) && space - catalog::cell(row->cell).dimension == kind.codimension;
 }
 
-void press(Load& load, const Mesh& mesh, const Model& model, const Registry& registry, const Keywords& keywords) {
-  const SkinSides sides(mesh);
-  std::map<std::int32_t, double> given;
-  for (const Keywords& factor : keywords.factors("PRES_REP")) {
-    const double value = factor.real("PRES");
-    const auto press_cells = [&](std::span<const std::int32_t> cells, const std::string& source) {
-      std::vector<std::int32_t> inward, alone;
-      for (const std::int32_t cell : cells) {
-        const auto c = static_cast<std::size_t>(cell);
-        if (!takes_pressure(element_of(model, registry, c), registry))
-          fail("CHARGE_6", {{"keyword", source}, {"cell", cell_name(cell)}, {"type", std::string(mesh.row(c).name)}});
-        const auto [at, first] = given.try_emplace(cell, value);
-        if (at->second != value)
-          fail("CHARGE_5", {{"keyword", source},
-                            {"cell", cell_name(cell)},
-                            {"first", fmt::format("{:g}", at->second)},
-                            {"second", fmt::format("{:g}", value)}});
-        if (!first) continue;
-        load.pressure.push_back({cell, value});
-        const Side side = sides[cell];
-        if (side == Side::inward) inward.push_back(cell);
-        if (side == Side::alone) alone.push_back(cell);
-      }
-      if (!keywords.yes("VERI_NORM")) return;
-      if (!inward.empty())
-        fail("CHARGE_7", {{"keyword", source}, {"count", std::to_string(inward.size())}, {"cell", cell_name(inward.front())}});
-      if (!alone.empty())
-        inform("CHARGE_8", {{"keyword", source}, {"count", std::to_string(alone.size())}, {"cell", cell_name(alone.front())}});
-    };
-    if (factor.has("TOUT")) {
-      std::vector<std::int32_t> cells;
-      for (std::size_t cell = 0; cell < mesh.n_cells(); ++cell)
-        if (takes_pressure(element_of(model, registry, cell), registry)) cells.push_back(static_cast<std::int32_t>(cell));
-      press_cells(cells, factor.path("TOUT"));
+/// Alarms and errors about the side of skin cells under pressure (VERI_NORM).
+class OrientationCheck {
+ public:
+  OrientationCheck(const Mesh& mesh) : sides_(mesh) {}
+  void operator()(std::span<const std::int32_t> cells, const std::string& source) const {
+    std::vector<std::int32_t> inward, alone;
+    for (const std::int32_t cell : cells) {
+      const Side side = sides_[cell];
+      if (side == Side::inward) inward.push_back(cell);
+      if (side == Side::alone) alone.push_back(cell);
     }
-    for (const std::string& group : factor.texts("GROUP_MA"))
-      press_cells(cells_of_group(mesh, group, factor.path("GROUP_MA")), factor.path("GROUP_MA") + " '" + group + "'");
+    if (!inward.empty())
+      fail("CHARGE_7", {{"keyword", source}, {"count", std::to_string(inward.size())}, {"cell", cell_name(inward.front())}});
+    if (!alone.empty())
+      inform("CHARGE_8", {{"keyword", source}, {"count", std::to_string(alone.size())}, {"cell", cell_name(alone.front())}});
+  }
+
+ private:
+  SkinSides sides_;
+};
+
+/// Throws CHARGE_6 where the cell cannot carry the load, CHARGE_9 where its kernel knows no such component.
+void check_cell(const LoadScene& scene, const CellKeyword& kind, std::int32_t cell, const std::string& component,
+                const std::string& source) {
+  if (!fits(scene, kind, cell))
+    fail("CHARGE_6", {{"keyword", source},
+                      {"cell", cell_name(cell)},
+                      {"type", std::string(scene.mesh.row(static_cast<std::size_t>(cell)).name)},
+                      {"carrier", kind.carrier}});
+  const catalog::ElementRow& row = *scene.element(cell);
+  const char* const* values = scene.registry.kernel(row, kind.option, LACON_LOAD).parameters;
+  std::string known;
+  for (; *values; ++values) {
+    if (component == *values) return;
+    known += (known.empty() ? "" : ", ") + std::string(*values);
+  }
+  fail("CHARGE_9", {{"keyword", source},
+                    {"component", component},
+                    {"cell", cell_name(cell)},
+                    {"element", std::string(row.name)},
+                    {"known", known}});
+}
+
+void load_cells(Load& load, const LoadScene& scene, const Keywords& keywords) {
+  GivenTerms pressures(scene, "CHARGE_5", load.pressure), forces_on_cells(scene, "CHARGE_5", load.force);
+  std::optional<OrientationCheck> orientation;
+  for (const CellKeyword& kind : cell_keywords)
+    for (const Keywords& factor : keywords.factors(kind.keyword)) {
+      const bool is_pressure = kind.terms == &Load::pressure;
+      for (const NamedPlaces& named : named_cells(scene, factor, [&](std::int32_t c) { return fits(scene, kind, c); })) {
+        for (const std::string component : {"PRES", "CISA_2D", "FX", "FY", "FZ"}) {
+          if (!factor.has(component)) continue;
+          const LoadValue value = value_of(scene, factor, component);
+          for (const std::int32_t cell : named.members) {
+            check_cell(scene, kind, cell, component, named.source);
+            (is_pressure ? pressures : forces_on_cells)
+                .add(cell, "the cell " + cell_name(cell), component, value, named.source);
+          }
+        }
+        if (!is_pressure || !keywords.yes("VERI_NORM")) continue;
+        if (!orientation) orientation.emplace(scene.mesh);
+        (*orientation)(named.members, named.source);
+      }
+    }
+}
+
+/// PESANTEUR: GRAVITE along DIRECTION on body cells.
+void load_gravity(Load& load, const LoadScene& scene, const Keywords& keywords) {
+  const CellKeyword kind{"PESANTEUR", "CHAR_MECA_FORC", 0, 0, "body cell", &Load::gravity};
+  GivenTerms given(scene, "CHARGE_5", load.gravity);
+  for (const Keywords& factor : keywords.factors(kind.keyword)) {
+    std::vector<double> direction = factor.reals("DIRECTION");
+    const double length = std::hypot(direction[0], direction[1], direction[2]);
+    const auto refuse = [&](const std::string& reason) {
+      fail("CHARGE_10", {{"keyword", factor.path("DIRECTION")}, {"reason", reason}});
+    };
+    if (!(length > 0)) refuse("it has no length");
+    for (double& component : direction) component /= length;
+    for (const NamedPlaces& named : named_cells(scene, factor, [&](std::int32_t c) { return fits(scene, kind, c); }))
+      for (const std::int32_t cell : named.members) {
+        check_cell(scene, kind, cell, "FX", named.source);
+        const catalog::ElementRow& row = *scene.element(cell);
+        if (row.dofs.size() == 2 && direction[2] != 0) refuse("it leaves the plane of the model");
+        if (row.modelisation == "AXIS" && direction[0] != 0) refuse("it is not along the axis of revolution");
+        for (std::size_t d = 0; d < row.dofs.size(); ++d)
+          given.add(cell, "the cell " + cell_name(cell), std::string(forces[d]), {factor.real("GRAVITE") * direction[d], ""},
+                    named.source);
+      }
   }
 }
 
 }  // namespace
 
-Load affe_char(const Mesh& mesh, const Model& model, const Registry& registry, const Keywords& keywords) {
+Load affe_char(const Mesh& mesh, const Model& model, Registry& registry, const Base& base, const Keywords& keywords) {
+  const LoadScene scene = make_scene(mesh, model, registry, base);
   Load load;
   std::vector<Keywords> imposed = keywords.factors("MECA_IMPO");
-  for (Keywords& factor : keywords.factors("DDL_IMPO")) imposed.push_back(std::move(factor));
-  if (!imposed.empty()) impose(load, mesh, degrees_of_freedom(mesh, model, registry), imposed);
-  if (keywords.has("PRES_REP")) press(load, mesh, model, registry, keywords);
-  fmt::print("  {} imposed degrees of freedom, {} cells under pressure\n", load.imposed.size(), load.pressure.size());
+  for (const char* const keyword : {"DDL_IMPO", "FACE_IMPO"})
+    for (Keywords& factor : keywords.factors(keyword)) imposed.push_back(std::move(factor));
+  load_nodes(scene, imposed, translations, "CHARGE_4", load.imposed);
+  load_nodes(scene, keywords.factors("FORCE_NODALE"), forces, "CHARGE_5", load.nodal);
+  load_cells(load, scene, keywords);
+  load_gravity(load, scene, keywords);
+
+  const auto cells = [](const std::vector<LoadTerm>& terms) {
+    std::vector<std::int32_t> places;
+    for (const LoadTerm& term : terms) places.push_back(term.place);
+    std::sort(places.begin(), places.end());
+    return static_cast<std::size_t>(std::unique(places.begin(), places.end()) - places.begin());
+  };
+  const std::tuple<std::size_t, const char*> lines[] = {
+      {load.imposed.size(), "imposed degrees of freedom"}, {cells(load.nodal), "nodes under forces"},
+      {cells(load.pressure), "cells under pressure"},      {cells(load.force), "cells under forces"},
+      {cells(load.gravity), "cells under gravity"},        {load.relations.size(), "relations between displacements"}};
+  std::string text;
+  for (const auto& [count, what] : lines)
+    if (count > 0) text += fmt::format("{}{} {}", text.empty() ? "" : ", ", count, what);
+  fmt::print("  {}\n", text);
   return load;
 }
 

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 
 #include "lacon/catalog/messages.hpp"
@@ -27,38 +26,17 @@ void find_dofs(StaticProblem& problem) {
   }
 }
 
-TimedLoad read_load(const StaticProblem& problem, const Base& base, const std::string& id,
-                    const std::optional<std::string>& function, const std::string& keyword) {
-  const Load load = base.load(id);
-  TimedLoad timed{.label = base.label(id), .force = {}, .dofs = {}, .values = {}, .function = {}};
-  if (function) {
-    timed.function.emplace(base, *function);
-    timed.function->check_parameters(std::array{std::string_view("INST")}, keyword);
+void read_materials(StaticProblem& problem, const Base& base, const std::string& field) {
+  problem.material_field = std::make_unique<MaterialField>(base.material_field(field));
+  if (problem.material_field->mesh != problem.model.mesh)
+    fail("EVOLUTION_1", {{"first", "CHAM_MATER"}, {"second", "MODELE"}, {"what", "meshes"}});
+  std::vector<Material> materials;
+  std::vector<std::string> labels;
+  for (const std::string& id : problem.material_field->materials) {
+    materials.push_back(base.material(id));
+    labels.push_back(base.label(id));
   }
-  for (const ImposedDof& imposed : load.imposed) {
-    const auto at = std::find(problem.components.begin(), problem.components.end(), imposed.component);
-    if (at == problem.components.end())
-      fail("LOAD_2", {{"load", timed.label}, {"component", imposed.component}, {"node", node_name(imposed.node)}});
-    timed.dofs.push_back(std::int64_t{imposed.node} * problem.dimension + (at - problem.components.begin()));
-    timed.values.push_back(imposed.value);
-  }
-  if (load.pressure.empty()) return timed;
-  timed.force.assign(problem.n_dofs(), 0.0);
-  std::vector<std::int32_t> cells;
-  for (const PressureLoad& pressure : load.pressure) cells.push_back(pressure.cell);
-  std::vector<std::vector<std::int32_t>> position;
-  const std::vector<ElementSet> sets = skin_sets(problem.model, *problem.registry, "CHAR_MECA_PRES", cells, position);
-  for (std::size_t s = 0; s < sets.size(); ++s) {
-    std::vector<double> values;
-    for (const std::int32_t i : position[s]) values.push_back(load.pressure[i].value);
-    evaluate_loads(sets[s], problem.mesh, problem.dimension, values, [&](std::int32_t cell, std::span<const double> force) {
-      const auto nodes = problem.mesh.cells[cell];
-      for (std::size_t k = 0; k < nodes.size(); ++k)
-        for (int d = 0; d < problem.dimension; ++d)
-          timed.force[std::int64_t{nodes[k]} * problem.dimension + d] += force[k * problem.dimension + d];
-    });
-  }
-  return timed;
+  problem.materials = std::make_unique<MaterialTable>(*problem.material_field, std::move(materials), std::move(labels));
 }
 
 /// A model with its degrees of freedom, before materials and loads.
@@ -76,9 +54,10 @@ StaticProblem read_model(const Order& order, const Base& base, const std::string
 std::vector<double> StaticProblem::external_force(double instant) const {
   std::vector<double> force(n_dofs(), 0.0);
   for (const TimedLoad& load : loads) {
-    if (load.force.empty()) continue;
+    if (load.cells.empty() && load.nodal_dofs.empty()) continue;
     const double factor = load.multiplier(instant);
-    for (std::size_t i = 0; i < force.size(); ++i) force[i] += factor * load.force[i];
+    const std::vector<double> own = load.force(*this, instant);
+    for (std::size_t i = 0; i < force.size(); ++i) force[i] += factor * own[i];
   }
   return force;
 }
@@ -89,9 +68,10 @@ std::vector<double> StaticProblem::imposed_values(double instant) const {
   for (const TimedLoad& load : loads) {
     if (load.dofs.empty()) continue;
     const double factor = load.multiplier(instant);
+    const std::vector<double> own = load.values.at(instant);
     for (std::size_t i = 0; i < load.dofs.size(); ++i) {
       const std::int64_t dof = load.dofs[i];
-      const double value = factor * load.values[i];
+      const double value = factor * own[i];
       if (by[dof] && std::abs(value - values[dof]) > 1e-12 * std::max(std::abs(value), std::abs(values[dof])))
         fail("LOAD_1", {{"dof", dof_name(dof)},
                         {"first", by[dof]->label},
@@ -115,16 +95,7 @@ StaticProblem read_problem(const Order& order, const Base& base) {
   const std::string model_id = keywords.concept_id("MODELE");
   StaticProblem problem = read_model(order, base, model_id);
 
-  problem.material_field = std::make_unique<MaterialField>(base.material_field(keywords.concept_id("CHAM_MATER")));
-  if (problem.material_field->mesh != problem.model.mesh)
-    fail("EVOLUTION_1", {{"first", "CHAM_MATER"}, {"second", "MODELE"}, {"what", "meshes"}});
-  std::vector<Material> materials;
-  std::vector<std::string> labels;
-  for (const std::string& id : problem.material_field->materials) {
-    materials.push_back(base.material(id));
-    labels.push_back(base.label(id));
-  }
-  problem.materials = std::make_unique<MaterialTable>(*problem.material_field, std::move(materials), std::move(labels));
+  read_materials(problem, base, keywords.concept_id("CHAM_MATER"));
   problem.solids = solid_sets(problem.mesh, problem.model, *problem.registry, *problem.materials);
 
   problem.imposed.assign(problem.n_dofs(), 0);
@@ -136,7 +107,8 @@ StaticProblem read_problem(const Order& order, const Base& base) {
     seen.push_back(load_id);
     if (base.load(load_id).model != model_id)
       fail("EVOLUTION_1", {{"first", excit.path("CHARGE")}, {"second", "MODELE"}, {"what", "models"}});
-    problem.loads.push_back(read_load(problem, base, load_id, excit.optional_concept("FONC_MULT"), excit.path("FONC_MULT")));
+    problem.loads.push_back(read_load(
+        problem, base, {load_id, excit.optional_concept("FONC_MULT").value_or(""), excit.text("TYPE_CHARGE")}, excit.path("")));
     for (const std::int64_t dof : problem.loads.back().dofs) problem.imposed[dof] = 1;
   }
   if (const auto contact = keywords.optional_concept("CONTACT")) {
@@ -153,9 +125,8 @@ StaticProblem read_problem(const Order& order, const Base& base) {
 
 StaticProblem read_loads(const Order& order, const Base& base, const Result& result) {
   StaticProblem problem = read_model(order, base, result.model);
-  for (const auto& [load, function] : result.loads)
-    problem.loads.push_back(
-        read_load(problem, base, load, function.empty() ? std::nullopt : std::optional(function), "EXCIT/FONC_MULT"));
+  if (!result.material_field.empty()) read_materials(problem, base, result.material_field);
+  for (const ResultLoad& load : result.loads) problem.loads.push_back(read_load(problem, base, load, "EXCIT/"));
   return problem;
 }
 

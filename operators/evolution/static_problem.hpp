@@ -8,21 +8,10 @@
 #include "lacon/assembly/element_sets.hpp"
 #include "lacon/assembly/numbering.hpp"
 #include "lacon/elements/registry.hpp"
-#include "lacon/operators/program/study_function.hpp"
+#include "lacon/operators/evolution/loads.hpp"
 #include "lacon/structures/base.hpp"
 
 namespace lacon {
-
-/// A load and the function of time that multiplies it.
-struct TimedLoad {
-  std::string label;
-  std::vector<double> force;       ///< (n_nodes, dimension) at multiplier 1, empty where it is zero
-  std::vector<std::int64_t> dofs;  ///< imposed displacements: node * dimension + component
-  std::vector<double> values;      ///< of `dofs` at multiplier 1
-  std::optional<StudyFunction> function;
-
-  double multiplier(double instant) const { return function ? function->value("INST", instant) : 1.0; }
-};
 
 struct StaticProblem {
   Mesh mesh;
@@ -40,7 +29,7 @@ struct StaticProblem {
   Numbering numbering;
 
   std::size_t n_dofs() const { return exists.size(); }
-  /// External forces at an instant, (n_nodes, dimension).
+  /// Dead external forces at an instant, (n_nodes, dimension).
   std::vector<double> external_force(double instant) const;
   /// Imposed displacements at an instant, (n_nodes, dimension), 0 where none is. Throws LOAD_1 where two loads contradict each
   /// other.
@@ -51,7 +40,7 @@ struct StaticProblem {
 /// What EXCIT, MODELE, CHAM_MATER and CONTACT of an order name.
 StaticProblem read_problem(const Order& order, const Base& base);
 
-/// The model and the loads that a result was computed with, for external_force(): no materials, contact or equations.
+/// The model, materials and loads that a result was computed with, for external_force(): no contact or equations.
 StaticProblem read_loads(const Order& order, const Base& base, const Result& result);
 
 }  // namespace lacon

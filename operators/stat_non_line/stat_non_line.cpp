@@ -84,7 +84,8 @@ class Archive {
     result_.material_field = keywords.concept_id("CHAM_MATER");
     result_.contact = keywords.optional_concept("CONTACT").value_or("");
     for (const Keywords& excit : keywords.factors("EXCIT"))
-      result_.loads.push_back({excit.concept_id("CHARGE"), excit.optional_concept("FONC_MULT").value_or("")});
+      result_.loads.push_back(
+          {excit.concept_id("CHARGE"), excit.optional_concept("FONC_MULT").value_or(""), excit.text("TYPE_CHARGE")});
     result_.behaviour = keywords.values().value("COMPORTEMENT", nlohmann::json::array()).dump();
   }
 

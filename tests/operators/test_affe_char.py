@@ -1,6 +1,7 @@
 """AFFE_CHAR_CINE and AFFE_CHAR_MECA alone, on bases made by hand."""
 
 import h5py
+import numpy as np
 
 from lacon_test import OperatorTest, concept, text
 
@@ -125,6 +126,87 @@ class Loads(OperatorTest):
         self.assertEqual(self.meca(PRES_REP=[{"GROUP_MA": ["TOP"], "PRES": 1.0}]).status, 0)
         self.path("load_4").unlink()
         self.refuses_pressure("CHARGE_7", [{"GROUP_MA": ["INWARD"], "PRES": 1.0}], "M5")
+
+    # ------------------------------------------------------------------------------------------ forces, gravity, functions
+
+    def terms(self, kind, place="cell"):
+        """(place, component) -> value, or the function's id"""
+        with h5py.File(self.path("load_4")) as file:
+            group = file[kind]
+            names = [text(n) for n in group["component"][()]]
+            values = group["value"][()].tolist()
+            if "function" in group:
+                functions = [text(n) for n in group["function"][()]]
+                values = [functions[k] if k >= 0 else v for k, v in zip(group["function_index"][()], values)]
+            return {(int(p), names[c]): v for p, c, v in zip(group[place][()], group["component_index"][()], values)}
+
+    def test_forces_on_edges_bodies_and_nodes(self):
+        run = self.meca(FORCE_CONTOUR=[{"GROUP_MA": ["TOP"], "FX": 1.0, "FY": -2.0}], FORCE_INTERNE=[{"GROUP_MA": ["BODY"], "FY": 3.0}],
+                        FORCE_NODALE=[{"GROUP_NO": ["CORNER"], "FX": 4.0}])
+        self.assertEqual(run.status, 0, run.stderr)
+        self.assertEqual(self.terms("force"), {(2, "FX"): 1, (3, "FX"): 1, (2, "FY"): -2, (3, "FY"): -2, (0, "FY"): 3, (1, "FY"): 3})
+        self.assertEqual(self.terms("nodal_force", "node"), {(0, "FX"): 4})
+        self.assertIn("1 nodes under forces, 4 cells under forces", run.stdout)
+
+    def test_the_side_of_a_skin_is_no_matter_for_forces(self):
+        run = self.meca(FORCE_CONTOUR=[{"GROUP_MA": ["INWARD"], "FX": 1.0}])
+        self.assertEqual((run.status, self.ids(run)), (0, []))
+
+    def test_gravity_along_a_direction_of_any_length(self):
+        self.meca(PESANTEUR=[{"GRAVITE": 10.0, "DIRECTION": [0, -2, 0]}])
+        self.assertEqual(self.terms("gravity"), {(0, "FX"): 0, (0, "FY"): -10, (1, "FX"): 0, (1, "FY"): -10})
+
+    def write_function(self, identifier, parameter):
+        with self.create(identifier, "function", parameter=parameter, component="TOUTRESU", extension_left="EXCLU",
+                         extension_right="EXCLU") as file:
+            file.attrs["interpolation"] = np.array(["LIN", "LIN"], h5py.string_dtype())
+            file["x"], file["y"] = np.array([0.0, 1.0]), np.array([0.0, 1.0])
+
+    def write_formula(self, identifier, *parameters):
+        with self.create(identifier, "formula", expression="0", constants="{}", lost="{}") as file:
+            file.attrs["parameters"] = np.array(parameters, h5py.string_dtype())
+
+    def test_functions_stay_functions(self):
+        self.write_function("function_5", "INST")
+        self.write_formula("formula_6", "X", "Y", "Z", "INST")
+        run = self.run_command("AFFE_CHAR_MECA_F", {
+            "MODELE": concept("model_3"), "DDL_IMPO": [{"GROUP_NO": ["CORNER"], "DX": concept("function_5")}],
+            "PRES_REP": [{"GROUP_MA": ["TOP"], "PRES": concept("formula_6")}],
+            "FORCE_CONTOUR": [{"GROUP_MA": ["TOP"], "FX": concept("formula_6"), "FY": concept("function_5")}]}, result="load_4")
+        self.assertEqual(run.status, 0, run.stderr)
+        self.assertEqual(self.terms("imposed", "node"), {(0, "DX"): "function_5"})
+        self.assertEqual(self.terms("pressure"), {(2, "PRES"): "formula_6", (3, "PRES"): "formula_6"})
+        self.assertEqual(self.terms("force")[2, "FY"], "function_5")
+        self.assertEqual(self.attributes("load_4")["references"], '["model_3","function_5","formula_6"]')
+        run = self.run_command("AFFE_CHAR_CINE_F", {
+            "MODELE": concept("model_3"), "MECA_IMPO": [{"GROUP_NO": ["CORNER"], "DY": concept("formula_6")}]}, result="load_7")
+        self.assertEqual((run.status, self.attributes("load_7")["kind"]), (0, "cine"))
+
+    def test_functions_of_other_parameters_are_refused(self):
+        self.write_function("function_5", "TEMP")
+        self.assert_refuses("FUNCTION_2", "AFFE_CHAR_MECA_F", {"MODELE": concept("model_3"), "PRES_REP": [
+            {"GROUP_MA": ["TOP"], "PRES": concept("function_5")}]}, "TEMP", "FUNCTION_5", "PRES_REP/PRES", result="load_4")
+
+    def test_two_forces_or_functions_for_one_place_are_refused(self):
+        self.write_function("function_5", "INST")
+        self.write_function("function_6", "INST")
+        self.assert_refuses("CHARGE_4", "AFFE_CHAR_CINE_F", {"MODELE": concept("model_3"), "MECA_IMPO": [
+            {"GROUP_NO": ["CORNER"], "DX": concept("function_5")}, {"NOEUD": ["N1"], "DX": concept("function_6")}]},
+            "FUNCTION_5", "FUNCTION_6", "N1", result="load_4")
+        self.refuses("CHARGE_5", {"FORCE_CONTOUR": [{"GROUP_MA": ["TOP"], "FX": 1.0}, {"GROUP_MA": ["TOP"], "FX": 2.0}]}, "M3", "FX")
+        self.refuses("CHARGE_5", {"FORCE_NODALE": [{"NOEUD": ["N1"], "FX": 1.0}, {"GROUP_NO": ["CORNER"], "FX": 2.0}]}, "N1", "FX")
+
+    def refuses(self, identifier, keywords, *words):
+        self.assert_refuses(identifier, "AFFE_CHAR_MECA", {"MODELE": concept("model_3"), **keywords}, *words, result="load_4")
+
+    def test_loads_on_cells_of_another_kind_are_refused(self):
+        self.refuses("CHARGE_6", {"FORCE_FACE": [{"GROUP_MA": ["TOP"], "FX": 1.0}]}, "SEG2", "M3", "face of a 3D body")
+        self.refuses("CHARGE_6", {"FORCE_INTERNE": [{"GROUP_MA": ["TOP"], "FX": 1.0}]}, "M3", "body cell")
+        self.refuses("CHARGE_6", {"PESANTEUR": [{"GROUP_MA": ["TOP"], "GRAVITE": 1.0, "DIRECTION": [0, 1, 0]}]}, "M3")
+        self.refuses("CHARGE_9", {"FORCE_INTERNE": [{"GROUP_MA": ["BODY"], "FZ": 1.0}]}, "FZ", "M1", "FX, FY")
+        self.refuses("CHARGE_3", {"FORCE_NODALE": [{"GROUP_NO": ["CORNER"], "FZ": 1.0}]}, "DZ", "N1")
+        self.refuses("CHARGE_10", {"PESANTEUR": [{"GRAVITE": 1.0, "DIRECTION": [0, 1, 1]}]}, "leaves the plane")
+        self.refuses("CHARGE_10", {"PESANTEUR": [{"GRAVITE": 1.0, "DIRECTION": [0, 0, 0]}]}, "no length")
 
     def test_displacements_and_pressures_share_a_load(self):
         self.meca(DDL_IMPO=[{"GROUP_NO": ["BOTTOM"], "DY": 0.0}], PRES_REP=[{"GROUP_MA": ["TOP"], "PRES": -3.0}])

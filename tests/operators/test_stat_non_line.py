@@ -60,7 +60,9 @@ class TwoSquares(OperatorTest):
                 file["imposed/component_index"] = np.array([names.index(component) for _, component, _ in imposed], np.int32)
                 file["imposed/value"] = np.array([value for _, _, value in imposed])
             if pressure:
+                file["pressure/component"] = np.array(["PRES"], h5py.string_dtype())
                 file["pressure/cell"] = np.array([cell for cell, _ in pressure], np.int32)
+                file["pressure/component_index"] = np.zeros(len(pressure), np.int32)
                 file["pressure/value"] = np.array([value for _, value in pressure])
 
     def write_contact(self, identifier, initial="OUI", slave=(1,), master=(0,), distance_limit=-1.0):
@@ -82,8 +84,8 @@ class TwoSquares(OperatorTest):
         with self.create(identifier, "list_of_reals") as file:
             file["values"] = np.array(values)
 
-    def write_function(self, identifier, x, y):
-        with self.create(identifier, "function", parameter="INST", component="TOUTRESU", extension_left="EXCLU",
+    def write_function(self, identifier, x, y, parameter="INST"):
+        with self.create(identifier, "function", parameter=parameter, component="TOUTRESU", extension_left="EXCLU",
                          extension_right="EXCLU") as file:
             file.attrs["interpolation"] = np.array(["LIN", "LIN"], h5py.string_dtype())
             file["x"], file["y"] = np.array(x), np.array(y)
@@ -211,6 +213,16 @@ class StatNonLine(TwoSquares):
         self.assertEqual(run.status, 0, run.stderr)
         for order, factor in enumerate((0, 1, 0.5)):
             np.testing.assert_allclose(self.read_field("result_9", "CONT_ELEM", order).values[0, 1], -factor * PRESSURE, atol=1e-11)
+
+    def test_a_formula_needs_the_launcher(self):
+        with self.create("formula_10", "formula", expression="INST", constants="{}", lost="{}") as file:
+            file.attrs["parameters"] = np.array(["INST"], h5py.string_dtype())
+        self.assert_fails("FORMULE_6", "FORMULA_10", loads=["load_5", {"CHARGE": concept("load_6"), "FONC_MULT": concept("formula_10")}])
+
+    def test_a_multiplier_of_another_parameter_than_time_is_refused(self):
+        self.write_function("function_10", [0, 1], [0, 1], parameter="X")
+        self.assert_fails("FUNCTION_2", "FUNCTION_10", "depends on X",
+                          loads=["load_5", {"CHARGE": concept("load_6"), "FONC_MULT": concept("function_10")}])
 
     def test_without_contact_one_body_is_pulled(self):
         self.write_load("load_6", imposed=[(n, "DY", 0.01) for n in (10, 11, 14)])

@@ -1,6 +1,7 @@
 // Kernels of solid and load elements.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <functional>
@@ -347,32 +348,56 @@ TEST(SolidKernel, RefusesElementsOfAKindThatItDoesNotServe) {
 // ---------------------------------------------------------------------------------------------------- pressure
 
 struct LoadResult {
-  std::vector<Numbers> force;
+  std::vector<Numbers> force, matrix;
   std::vector<int> error;
 };
 
-LoadResult run_pressure(CellType type, const std::vector<Numbers>& coordinates, const std::vector<Numbers>& values,
-                        int dimension = 2) {
-  const auto& element = *registry().find_element("D_PLAN", type);
-  const auto& kernel = registry().kernel(element, "CHAR_MECA_PRES", LACON_LOAD);
-  const auto table = lacon::tabulate(type, lacon::integration_rule(lacon::Family::SEG, element.points));
-  const Numbers x = in_lanes(coordinates), p = in_lanes(values);
-  std::vector<std::int32_t> error(p.size(), -1);
-  Numbers force(x.size(), garbage);
-  lacon_load_batch batch{sizeof(lacon_load_batch),
-                         static_cast<int>(p.size()) / LACON_LANES,
-                         table.n_nodes,
-                         dimension,
-                         table.n_points,
-                         table.shape.data(),
-                         table.gradient.data(),
-                         table.weight.data(),
-                         x.data(),
-                         p.data(),
-                         force.data(),
-                         error.data()};
+/// The same values at every integration point of each element.
+std::vector<Numbers> at_points(const std::vector<Numbers>& values, int n_points) {
+  std::vector<Numbers> repeated;
+  for (const Numbers& own : values) {
+    repeated.emplace_back();
+    for (int p = 0; p < n_points; ++p) repeated.back().insert(repeated.back().end(), own.begin(), own.end());
+  }
+  return repeated;
+}
+
+/// Runs a load kernel on elements given by coordinates (n_nodes, dimension) and values that are constant in each of them.
+LoadResult run_load(const std::string& name, const std::string& option, const std::vector<Numbers>& coordinates,
+                    const std::vector<Numbers>& values, int dimension) {
+  const auto& element = *registry().find_element(name);
+  const auto& kernel = registry().kernel(element, option, LACON_LOAD);
+  const auto& cell = lacon::catalog::cell(element.cell);
+  const auto table = lacon::tabulate(element.cell, lacon::integration_rule(cell.family, element.points));
+  const Numbers x = in_lanes(coordinates), v = in_lanes(at_points(values, table.n_points));
+  const std::size_t n = coordinates.size(), lanes = (n + LACON_LANES - 1) / LACON_LANES * LACON_LANES,
+                    dofs = coordinates[0].size();
+  std::vector<std::int32_t> error(lanes, -1);
+  Numbers force(x.size(), garbage), matrix(lanes * dofs * (dofs + 1) / 2, garbage);
+  const lacon_load_batch batch{sizeof(lacon_load_batch),
+                               static_cast<int>(lanes) / LACON_LANES,
+                               table.n_nodes,
+                               dimension,
+                               table.n_points,
+                               cell.dimension,
+                               static_cast<int>(values[0].size()),
+                               table.shape.data(),
+                               table.gradient.data(),
+                               table.weight.data(),
+                               x.data(),
+                               v.data(),
+                               force.data(),
+                               matrix.data(),
+                               error.data()};
   kernel.load(&batch);
-  return {out_of_lanes(force, coordinates.size()), {error.begin(), error.begin() + static_cast<long>(coordinates.size())}};
+  return {out_of_lanes(force, n), out_of_lanes(matrix, n), {error.begin(), error.begin() + static_cast<long>(n)}};
+}
+
+/// Pressures on edges, without shear.
+LoadResult run_pressure(CellType type, const std::vector<Numbers>& coordinates, std::vector<Numbers> values,
+                        int dimension = 2) {
+  for (Numbers& value : values) value.push_back(0);
+  return run_load("D_PLAN/" + std::string(lacon::catalog::cell(type).name), "CHAR_MECA_PRES", coordinates, values, dimension);
 }
 
 /// A closed contour of bent edges around a body on its left.
@@ -473,5 +498,142 @@ TEST_P(Pressure, BadElementsAndValuesAreCaughtAndOthersAreNot) {
 
 INSTANTIATE_TEST_SUITE_P(All, Pressure, testing::Values(CellType::SEG2, CellType::SEG3),
                          [](const auto& cell) { return std::string(lacon::catalog::cell(cell.param).name); });
+
+// ---------------------------------------------------------------------------------------------------- every load
+
+/// Coordinates of a cell whose edges and faces are bent; in axisymmetry all radii are positive.
+Numbers bent_cell(const lacon::catalog::ElementRow& row) {
+  const auto& cell = lacon::catalog::cell(row.cell);
+  const int D = static_cast<int>(row.dofs.size());
+  Numbers x;
+  for (int a = 0; a < cell.n_nodes; ++a) {
+    double r[3] = {};
+    for (int k = 0; k < cell.dimension; ++k) r[k] = cell.nodes[z(a * cell.dimension + k)];
+    const double bent[3] = {3 + r[0] + 0.1 * r[1] * r[1] + 0.2 * r[2], r[1] + 0.15 * r[0] * r[0] - 0.1 * r[2] * r[0],
+                            r[2] + 0.2 * r[0] * r[1]};
+    for (int d = 0; d < D; ++d) x.push_back(bent[d]);
+  }
+  return x;
+}
+
+struct EveryLoad : testing::TestWithParam<const lacon::catalog::ElementRow*> {
+  const lacon::catalog::ElementRow& row = *GetParam();
+  const int D = static_cast<int>(row.dofs.size());
+  const bool skin = lacon::catalog::cell(row.cell).dimension == D - 1;
+};
+
+/// A pressure p and a shear c on a flat skin are the traction -p n + c t; nodes weigh alike.
+TEST_P(EveryLoad, PressureAndShearAreATraction) {
+  if (!skin) return;
+  const auto& cell = lacon::catalog::cell(row.cell);
+  // an affine image, in the plane across n: two tangents of different lengths
+  const double t[2][3] = {{0.3, 1.2, 0}, {0.4, -0.1, 0.9}};
+  Numbers x;
+  for (int a = 0; a < cell.n_nodes; ++a)
+    for (int d = 0; d < D; ++d) {
+      double value = d == 0 ? 4 : 0;
+      for (int k = 0; k < D - 1; ++k) value += t[k][d] * cell.nodes[z(a * (D - 1) + k)];
+      x.push_back(value);
+    }
+  const double p = 2.5, c = D == 2 ? -0.7 : 0;
+  Numbers n = D == 2 ? Numbers{t[0][1], -t[0][0]}
+                     : Numbers{t[0][1] * t[1][2] - t[0][2] * t[1][1], t[0][2] * t[1][0] - t[0][0] * t[1][2],
+                               t[0][0] * t[1][1] - t[0][1] * t[1][0]};
+  const double length = std::hypot(n[0], n[1], D == 3 ? n[2] : 0.0),
+               along = std::hypot(t[0][0], t[0][1], D == 3 ? t[0][2] : 0.0);
+  Numbers traction;
+  for (int d = 0; d < D; ++d) traction.push_back(-p * n[z(d)] / length + c * t[0][d] / along);
+  const auto name = std::string(row.name);
+  const auto pressed = run_load(name, "CHAR_MECA_PRES", {x}, {D == 2 ? Numbers{p, c} : Numbers{p}}, D);
+  const auto pulled = run_load(name, "CHAR_MECA_FORC", {x}, {traction}, D);
+  ASSERT_EQ(pressed.error[0] + pulled.error[0], LACON_FINE);
+  for (std::size_t i = 0; i < x.size(); ++i) EXPECT_NEAR(pressed.force[0][i], pulled.force[0][i], 1e-14 * 20);
+}
+
+/// The symmetric part of the derivative of a following pressure, against differences of the force.
+TEST_P(EveryLoad, MatrixOfAPressureIsTheSymmetricPartOfItsDerivative) {
+  if (!skin) return;
+  const Numbers x = bent_cell(row), value = D == 2 ? Numbers{2.5, -0.7} : Numbers{2.5};
+  const std::size_t n = x.size();
+  const double h = 1e-5;
+  std::vector<Numbers> moved;
+  for (std::size_t j = 0; j < n; ++j)
+    for (const double side : {h, -h}) {
+      moved.push_back(x);
+      moved.back()[j] += side;
+    }
+  const auto name = std::string(row.name);
+  const auto at = run_load(name, "CHAR_MECA_PRES", {x}, {value}, D);
+  const auto around = run_load(name, "CHAR_MECA_PRES", moved, std::vector<Numbers>(moved.size(), value), D);
+  ASSERT_EQ(at.error[0], LACON_FINE);
+  const auto derivative = [&](std::size_t i, std::size_t j) {
+    return (around.force[2 * j][i] - around.force[2 * j + 1][i]) / (2 * h);
+  };
+  std::size_t entry = 0;
+  for (std::size_t i = 0; i < n; ++i)
+    for (std::size_t j = 0; j <= i; ++j, ++entry)
+      EXPECT_NEAR(at.matrix[0][entry], (derivative(i, j) + derivative(j, i)) / 2, 1e-8) << i << " " << j;
+}
+
+/// The work of a constant force in a rigid motion is that of its resultant; in axisymmetry it has the factor r.
+TEST_P(EveryLoad, ForcesAddUpToTheMeasureOfTheCell) {
+  const Numbers x = bent_cell(row);
+  Numbers value;
+  for (int d = 0; d < D; ++d) value.push_back(1.5 - d);
+  const auto name = std::string(row.name);
+  const auto result = run_load(name, "CHAR_MECA_FORC", {x}, {value}, D);
+  ASSERT_EQ(result.error[0], LACON_FINE);
+  // the measure by the same rule: from tangents alone
+  const auto& cell = lacon::catalog::cell(row.cell);
+  const auto table = lacon::tabulate(row.cell, lacon::integration_rule(cell.family, row.points));
+  double measure = 0;
+  for (int p = 0; p < table.n_points; ++p) {
+    double t[3][3] = {}, r = 0, gram[3][3] = {};
+    for (int a = 0; a < table.n_nodes; ++a) {
+      r += table.shape[z(p * table.n_nodes + a)] * x[z(a * D)];
+      for (int k = 0; k < cell.dimension; ++k)
+        for (int d = 0; d < D; ++d)
+          t[k][d] += table.gradient[z((p * table.n_nodes + a) * cell.dimension + k)] * x[z(a * D + d)];
+    }
+    for (int k = 0; k < 3; ++k)
+      for (int l = 0; l < 3; ++l) {
+        for (int d = 0; d < D; ++d) gram[k][l] += t[k][d] * t[l][d];
+        if (k == l && k >= cell.dimension) gram[k][l] = 1;
+      }
+    const double determinant = gram[0][0] * (gram[1][1] * gram[2][2] - gram[1][2] * gram[2][1]) -
+                               gram[0][1] * (gram[1][0] * gram[2][2] - gram[1][2] * gram[2][0]) +
+                               gram[0][2] * (gram[1][0] * gram[2][1] - gram[1][1] * gram[2][0]);
+    measure += table.weight[z(p)] * std::sqrt(determinant) * (row.modelisation == "AXIS" ? r : 1);
+  }
+  for (int d = 0; d < D; ++d) {
+    double sum = 0;
+    for (std::size_t i = z(d); i < x.size(); i += z(D)) sum += result.force[0][i];
+    EXPECT_NEAR(sum, value[z(d)] * measure, 1e-13 * 40);
+  }
+}
+
+TEST_P(EveryLoad, BadElementsAndValuesAreCaught) {
+  const Numbers good = bent_cell(row), point(good.size(), 1.7);
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  const auto name = std::string(row.name);
+  const Numbers one(z(D), 1.0);
+  const auto result = run_load(name, "CHAR_MECA_FORC", {good, point, good}, {one, one, Numbers(z(D), nan)}, D);
+  EXPECT_EQ(result.error, (std::vector<int>{LACON_FINE, LACON_BAD_JACOBIAN, LACON_NOT_FINITE}));
+  EXPECT_EQ(run_load(name, "CHAR_MECA_FORC", {good}, {Numbers(z(D) + 1, 1.0)}, D).error[0], LACON_BAD_BATCH);
+}
+
+std::vector<const lacon::catalog::ElementRow*> loaded_rows() {
+  std::vector<const lacon::catalog::ElementRow*> rows;
+  for (const auto& row : lacon::catalog::elements())
+    for (const auto& kernel : row.kernels)
+      if (kernel.option == "CHAR_MECA_FORC") rows.push_back(&row);
+  return rows;
+}
+
+INSTANTIATE_TEST_SUITE_P(All, EveryLoad, testing::ValuesIn(loaded_rows()), [](const auto& row) {
+  std::string name(row.param->name);
+  std::replace(name.begin(), name.end(), '/', '_');
+  return "of_" + name;
+});
 
 }  // namespace

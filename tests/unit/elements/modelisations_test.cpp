@@ -73,20 +73,25 @@ Result run_solid(const lacon::catalog::ElementRow& row, const Numbers& x, const 
 
 Result run_pressure(const lacon::catalog::ElementRow& row, const Numbers& x, double value) {
   const auto table = table_of(row);
-  Numbers xs, values(LACON_LANES, value), force(x.size() * LACON_LANES, garbage);
+  const int n_values = row.dofs.size() == 2 ? 2 : 1;  // pressure, and shear in the plane
+  Numbers xs, values(z(table.n_points * n_values) * LACON_LANES, 0.0), force(x.size() * LACON_LANES, garbage);
   for (const double coordinate : x) xs.insert(xs.end(), LACON_LANES, coordinate);
+  for (int p = 0; p < table.n_points; ++p) std::fill_n(values.begin() + p * n_values * LACON_LANES, LACON_LANES, value);
   std::vector<std::int32_t> error(LACON_LANES, -1);
   const lacon_load_batch batch{sizeof(lacon_load_batch),
                                1,
                                table.n_nodes,
                                static_cast<int>(row.dofs.size()),
                                table.n_points,
+                               table.dimension,
+                               n_values,
                                table.shape.data(),
                                table.gradient.data(),
                                table.weight.data(),
                                xs.data(),
                                values.data(),
                                force.data(),
+                               nullptr,
                                error.data()};
   registry().kernel(row, "CHAR_MECA_PRES", LACON_LOAD).load(&batch);
   Numbers own;

@@ -1,0 +1,131 @@
+#include "lacon/operators/affe_char/places.hpp"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+
+#include "lacon/catalog/messages.hpp"
+#include "lacon/catalog/quantities.hpp"
+#include "lacon/operators/program/study_function.hpp"
+
+namespace lacon {
+
+std::span<const std::string_view> displacements() {
+  for (const catalog::QuantityRow& row : catalog::quantities())
+    if (row.name == "DEPL_R") return row.components;
+  return {};
+}
+
+// ---------------------------------------------------------------------------------------------------- the scene
+
+LoadScene make_scene(const Mesh& mesh, const Model& model, Registry& registry, const Base& base) {
+  LoadScene scene{mesh, model, registry, base, std::vector<unsigned>(mesh.n_nodes(), 0)};
+  const auto names = displacements();
+  for (std::size_t cell = 0; cell < mesh.n_cells(); ++cell) {
+    const catalog::ElementRow* row = scene.element(static_cast<std::int32_t>(cell));
+    if (!row) continue;
+    unsigned own = 0;
+    for (std::size_t i = 0; i < names.size(); ++i)
+      if (std::find(row->dofs.begin(), row->dofs.end(), names[i]) != row->dofs.end()) own |= 1u << i;
+    for (const std::int32_t node : mesh.cells[cell]) scene.dofs[static_cast<std::size_t>(node)] |= own;
+  }
+  return scene;
+}
+
+const catalog::ElementRow* LoadScene::element(std::int32_t cell) const {
+  const std::int32_t number = model.element[static_cast<std::size_t>(cell)];
+  return number < 0 ? nullptr : registry.find_element(model.elements[static_cast<std::size_t>(number)]);
+}
+
+void LoadScene::check_dof(std::int32_t node, std::string_view component, const std::string& source) const {
+  const unsigned own = dofs[static_cast<std::size_t>(node)];
+  if (own == 0) fail("CHARGE_2", {{"keyword", source}, {"node", node_name(node)}});
+  const auto names = displacements();
+  const auto at = std::find(names.begin(), names.end(), component);
+  if (at == names.end() || !(own & (1u << (at - names.begin()))))
+    fail("CHARGE_3",
+         {{"keyword", source}, {"node", node_name(node)}, {"component", std::string(component)}, {"known", names_of(own)}});
+}
+
+std::string LoadScene::names_of(unsigned own) const {
+  std::string text;
+  for (std::size_t i = 0; i < displacements().size(); ++i)
+    if (own & (1u << i)) text += (text.empty() ? "" : ", ") + std::string(displacements()[i]);
+  return text;
+}
+
+// ---------------------------------------------------------------------------------------------------- places
+
+std::vector<NamedPlaces> named_nodes(const LoadScene& scene, const Keywords& factor, const std::string& suffix) {
+  const Mesh& mesh = scene.mesh;
+  std::vector<NamedPlaces> named;
+  if (factor.has("TOUT")) {
+    NamedPlaces all{factor.path("TOUT"), {}};
+    for (std::size_t node = 0; node < scene.dofs.size(); ++node)
+      if (scene.dofs[node]) all.members.push_back(static_cast<std::int32_t>(node));
+    named.push_back(std::move(all));
+  }
+  const std::string group_ma = "GROUP_MA" + suffix, group_no = "GROUP_NO" + suffix, node_keyword = "NOEUD" + suffix;
+  for (const std::string& group : factor.texts(group_ma))
+    named.push_back(
+        {factor.path(group_ma) + " '" + group + "'", nodes_of_cells(mesh, cells_of_group(mesh, group, factor.path(group_ma)))});
+  for (const std::string& group : factor.texts(group_no)) {
+    const auto members = nodes_of_group(mesh, group, factor.path(group_no));
+    named.push_back({factor.path(group_no) + " '" + group + "'", {members.begin(), members.end()}});
+  }
+  for (const std::string& name : factor.texts(node_keyword)) {
+    const std::optional<std::int32_t> node = number_of_name(name, 'N', mesh.n_nodes());
+    if (!node)
+      fail("CHARGE_1", {{"keyword", factor.path(node_keyword)},
+                        {"name", name},
+                        {"last", node_name(static_cast<std::int64_t>(mesh.n_nodes()) - 1)}});
+    named.push_back({factor.path(node_keyword), {*node}});
+  }
+  return named;
+}
+
+std::vector<NamedPlaces> named_cells(const LoadScene& scene, const Keywords& factor,
+                                     const std::function<bool(std::int32_t)>& fits) {
+  std::vector<NamedPlaces> named;
+  if (factor.has("TOUT") || !factor.has("GROUP_MA")) {
+    NamedPlaces all{factor.path("TOUT"), {}};
+    for (std::size_t cell = 0; cell < scene.mesh.n_cells(); ++cell)
+      if (fits(static_cast<std::int32_t>(cell))) all.members.push_back(static_cast<std::int32_t>(cell));
+    named.push_back(std::move(all));
+  }
+  for (const std::string& group : factor.texts("GROUP_MA")) {
+    const auto members = cells_of_group(scene.mesh, group, factor.path("GROUP_MA"));
+    named.push_back({factor.path("GROUP_MA") + " '" + group + "'", {members.begin(), members.end()}});
+  }
+  return named;
+}
+
+// ---------------------------------------------------------------------------------------------------- values
+
+LoadValue value_of(const LoadScene& scene, const Keywords& factor, std::string_view keyword) {
+  if (!factor.is_concept(keyword)) return {factor.real(keyword), ""};
+  const StudyFunction function(scene.base, factor.concept_id(keyword));
+  constexpr std::string_view known[] = {"X", "Y", "Z", "INST"};
+  function.check_parameters(known, factor.path(keyword));
+  return {0.0, function.id()};
+}
+
+std::string show(const LoadScene& scene, const LoadValue& value) {
+  return value.function.empty() ? fmt::format("{:g}", value.value) : scene.base.label(value.function);
+}
+
+bool GivenTerms::add(std::int32_t number, const std::string& place, const std::string& component, const LoadValue& value,
+                     const std::string& source) {
+  const auto [at, first] = given_.try_emplace({number, component}, Given{value, source});
+  if (!first && at->second.value != value)
+    fail(conflict_, {{"component", component},
+                     {"place", place},
+                     {"first", show(scene_, at->second.value)},
+                     {"first_source", at->second.source},
+                     {"second", show(scene_, value)},
+                     {"second_source", source}});
+  if (first) terms_.push_back({number, component, value});
+  return first;
+}
+
+}  // namespace lacon

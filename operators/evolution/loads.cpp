@@ -1,0 +1,183 @@
+#include "lacon/operators/evolution/loads.hpp"
+
+#include <algorithm>
+#include <array>
+#include <set>
+
+#include "lacon/catalog/messages.hpp"
+#include "lacon/operators/evolution/static_problem.hpp"
+
+namespace lacon {
+
+// ---------------------------------------------------------------------------------------------------- values
+
+void TimedValues::set(std::size_t i, std::shared_ptr<const StudyFunction> function, std::span<const double> point) {
+  auto part = std::find_if(parts_.begin(), parts_.end(), [&](const Part& p) { return p.function == function; });
+  if (part == parts_.end()) part = parts_.insert(part, {std::move(function), {}, {}, {}, {}});
+  part->index.push_back(i);
+  part->x.push_back(point[0]);
+  part->y.push_back(point[1]);
+  part->z.push_back(point[2]);
+}
+
+void TimedValues::evaluate(const Part& part, double instant, std::vector<double>& values) {
+  const ParameterValues known[] = {{"X", part.x}, {"Y", part.y}, {"Z", part.z}, {"INST", {&instant, 1}}};
+  const std::vector<double> found = part.function->values(part.index.size(), known);
+  for (std::size_t k = 0; k < found.size(); ++k) values[part.index[k]] = found[k];
+}
+
+void TimedValues::settle() {
+  std::erase_if(parts_, [&](const Part& part) {
+    if (part.function->depends_on("INST")) return false;
+    evaluate(part, 0.0, values_);
+    return true;
+  });
+}
+
+std::vector<double> TimedValues::at(double instant) const {
+  std::vector<double> values = values_;
+  for (const Part& part : parts_) evaluate(part, instant, values);
+  return values;
+}
+
+// ---------------------------------------------------------------------------------------------------- reading
+
+namespace {
+
+/// What a load's terms become, function by function read once.
+class Reader {
+ public:
+  Reader(const StaticProblem& problem, const Base& base, std::string label)
+      : problem_(problem), base_(base), label_(std::move(label)) {}
+
+  void set(TimedValues& values, std::size_t i, const LoadValue& value, std::span<const double> point) {
+    if (value.function.empty()) return values.set(i, value.value);
+    auto& function = functions_[value.function];
+    if (!function) function = std::make_shared<StudyFunction>(base_, value.function);
+    values.set(i, function, point);
+  }
+
+  std::int64_t dof(std::int32_t node, const std::string& component) const {
+    const auto at = std::find(problem_.components.begin(), problem_.components.end(), component);
+    if (at == problem_.components.end())
+      fail("LOAD_2", {{"load", label_}, {"component", component}, {"node", node_name(node)}});
+    return std::int64_t{node} * problem_.dimension + (at - problem_.components.begin());
+  }
+
+  /// Terms on nodes. @param prefix of the components: "D" (DX) or "F" (FX, which acts on DX)
+  TimedValues nodal(const std::vector<LoadTerm>& terms, std::vector<std::int64_t>& dofs) {
+    TimedValues values(terms.size());
+    for (std::size_t i = 0; i < terms.size(); ++i) {
+      dofs.push_back(dof(terms[i].place, "D" + terms[i].component.substr(1)));
+      set(values, i, terms[i].value, problem_.mesh.point(terms[i].place));
+    }
+    values.settle();
+    return values;
+  }
+
+  /// Terms on cells, by kind of cell. @param by_mass the values are for each unit of mass
+  void add_cells(const std::vector<LoadTerm>& terms, std::string_view option, bool by_mass, std::vector<LoadedCells>& all) {
+    std::vector<std::int32_t> cells;
+    for (const LoadTerm& term : terms) cells.push_back(term.place);
+    std::sort(cells.begin(), cells.end());
+    cells.erase(std::unique(cells.begin(), cells.end()), cells.end());
+    std::vector<std::vector<std::int32_t>> position;
+    std::vector<ElementSet> sets = load_sets(problem_.model, *problem_.registry, option, cells, position);
+    std::vector<std::pair<std::size_t, std::size_t>> place(cells.size());  // set and row of each cell
+    for (std::size_t s = 0; s < sets.size(); ++s)
+      for (std::size_t row = 0; row < position[s].size(); ++row) place[position[s][row]] = {s, row};
+    std::vector<std::vector<double>> points;
+    const std::size_t first = all.size();
+    for (ElementSet& set : sets) {
+      points.push_back(integration_points(set, problem_.mesh, problem_.mesh.coordinates));
+      const std::size_t size = set.cells.size() * set.tabulation.n_points * n_load_values(*set.kernel);
+      all.push_back({std::move(set), TimedValues(size)});
+    }
+    for (const LoadTerm& term : terms) {
+      const auto [s, row] = place[std::lower_bound(cells.begin(), cells.end(), term.place) - cells.begin()];
+      LoadedCells& loaded = all[first + s];
+      const int width = n_load_values(*loaded.set.kernel), n_points = loaded.set.tabulation.n_points;
+      int v = 0;
+      while (v < width && term.component != loaded.set.kernel->parameters[v]) ++v;
+      if (v == width)
+        fail("LOAD_4", {{"load", label_}, {"component", term.component}, {"element", std::string(loaded.set.row->name)}});
+      LoadValue value = term.value;
+      if (by_mass) value.value *= density(term.place, *loaded.set.row);
+      for (int p = 0; p < n_points; ++p) {
+        const std::size_t point = row * n_points + p;
+        set(loaded.values, point * width + v, value, std::span(points[s]).subspan(3 * point, 3));
+      }
+    }
+    for (std::size_t s = first; s < all.size(); ++s) all[s].values.settle();
+  }
+
+ private:
+  double density(std::int32_t cell, const catalog::ElementRow& row) const {
+    if (!problem_.materials->has(cell))
+      fail("ELEMENT_2", {{"cell", cell_name(cell)}, {"element", std::string(row.name)}, {"count", "1"}});
+    return problem_.materials->parameter(cell, "ELAS/RHO", row.name);
+  }
+
+  const StaticProblem& problem_;
+  const Base& base_;
+  std::string label_;
+  std::map<std::string, std::shared_ptr<const StudyFunction>> functions_;
+};
+
+bool vary(const TimedLoad& load) {
+  return load.nodal.depends_on_time() ||
+         std::any_of(load.cells.begin(), load.cells.end(), [](const LoadedCells& c) { return c.values.depends_on_time(); });
+}
+
+}  // namespace
+
+std::vector<double> TimedLoad::force(const StaticProblem& problem, double instant) const {
+  if (steady) return *steady;
+  std::vector<double> sum(problem.n_dofs(), 0.0);
+  for (const LoadedCells& loaded : cells)
+    evaluate_loads(loaded.set, problem.mesh, problem.dimension, problem.mesh.coordinates, loaded.values.at(instant), false,
+                   [&](const LoadValues& element) {
+                     std::size_t at = 0;
+                     for (const std::int32_t node : problem.mesh.cells[element.cell])
+                       for (int d = 0; d < problem.dimension; ++d)
+                         sum[std::int64_t{node} * problem.dimension + d] += element.force[at++];
+                   });
+  const std::vector<double> on_nodes = nodal.at(instant);
+  for (std::size_t i = 0; i < nodal_dofs.size(); ++i) sum[nodal_dofs[i]] += on_nodes[i];
+  return sum;
+}
+
+TimedLoad read_load(const StaticProblem& problem, const Base& base, const ResultLoad& excit, const std::string& path) {
+  const Load load = base.load(excit.load);
+  TimedLoad timed;
+  timed.label = base.label(excit.load);
+  if (!excit.function.empty()) {
+    timed.function.emplace(base, excit.function);
+    timed.function->check_parameters(std::array{std::string_view("INST")}, path + "FONC_MULT");
+  }
+  Reader reader(problem, base, timed.label);
+  timed.values = reader.nodal(load.imposed, timed.dofs);
+  timed.nodal = reader.nodal(load.nodal, timed.nodal_dofs);
+  const bool follows = excit.type == "SUIV";
+  if (follows && !(load.nodal.empty() && load.force.empty() && load.gravity.empty() && load.relations.empty()))
+    fail("LOAD_5", {{"keyword", path + "TYPE_CHARGE"}, {"load", timed.label}});
+  reader.add_cells(load.pressure, "CHAR_MECA_PRES", false, follows ? timed.following : timed.cells);
+  reader.add_cells(load.force, "CHAR_MECA_FORC", false, timed.cells);
+  reader.add_cells(load.gravity, "CHAR_MECA_FORC", true, timed.cells);
+  timed.relation_values = TimedValues(load.relations.size());
+  for (std::size_t r = 0; r < load.relations.size(); ++r) {
+    const Relation& relation = load.relations[r];
+    DofRelation row{relation.source, {}, {}};
+    for (const RelationTerm& term : relation.terms) {
+      row.dofs.push_back(reader.dof(term.node, term.component));
+      row.coefficients.push_back(term.coefficient);
+    }
+    reader.set(timed.relation_values, r, relation.value, problem.mesh.point(relation.terms.front().node));
+    timed.relations.push_back(std::move(row));
+  }
+  timed.relation_values.settle();
+  if (!vary(timed) && !(timed.cells.empty() && timed.nodal_dofs.empty())) timed.steady = timed.force(problem, 0.0);
+  return timed;
+}
+
+}  // namespace lacon

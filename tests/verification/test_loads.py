@@ -1,0 +1,244 @@
+"""Loads against closed forms: manufactured solutions that the elements hold exactly, bars under their weight, functions of place and time."""
+
+import os
+import pathlib
+import sys
+import unittest
+
+import numpy as np
+
+sys.path.insert(0, str(pathlib.Path(os.environ["LACON_SOURCE_DIR"]) / "tests/studies"))
+
+from study_test import StudyTest  # noqa: E402, I001 (it says where meshes.py is)
+from meshes import block, brick, write_med  # noqa: E402
+from results import Result  # noqa: E402
+
+YOUNG, POISSON = 2000.0, 0.3
+SIDES_2D = {"left": "LEFT", "right": "RIGHT", "bottom": "BASE", "top": "TOP"}
+SIDES_3D = {(0, 0): "LEFT", (0, 1): "RIGHT", (1, 0): "FRONT", (1, 1): "BACK", (2, 0): "BASE", (2, 1): "TOP"}
+#: outward normals of the sides
+NORMALS_2D = {"LEFT": (-1, 0), "RIGHT": (1, 0), "BASE": (0, -1), "TOP": (0, 1)}
+NORMALS_3D = {"LEFT": (-1, 0, 0), "RIGHT": (1, 0, 0), "FRONT": (0, -1, 0), "BACK": (0, 1, 0), "BASE": (0, 0, -1), "TOP": (0, 0, 1)}
+
+HEAD = f"""
+DEBUT(ERREUR=_F(ALARME="EXCEPTION"))
+TIMES = DEFI_LIST_REEL(VALE=(0.0, 0.5, 1.0))
+MATTER = DEFI_MATERIAU(ELAS=_F(E={YOUNG}, NU={POISSON}, RHO=3.0))
+BAR = DEFI_MATERIAU(ELAS=_F(E={YOUNG}, NU=0.0, RHO=3.0))
+RAMP = DEFI_FONCTION(NOM_PARA="INST", VALE=(0, 0, 1, 1))
+ONE = FORMULE(NOM_PARA="INST", VALE="1.0")
+R = []
+
+def model(unit, modelisation, matter=MATTER):
+    global MESH, MODEL, FIELD
+    MESH = LIRE_MAILLAGE(UNITE=unit)
+    MODEL = AFFE_MODELE(MAILLAGE=MESH, AFFE=_F(TOUT="OUI", PHENOMENE="MECANIQUE", MODELISATION=modelisation))
+    FIELD = AFFE_MATERIAU(MAILLAGE=MESH, AFFE=_F(TOUT="OUI", MATER=matter))
+
+def solve(*loads, **more):
+    R.append(STAT_NON_LINE(MODELE=MODEL, CHAM_MATER=FIELD, EXCIT=[dict(load) for load in loads], INCREMENT=_F(LIST_INST=TIMES),
+                           CONVERGENCE=_F(RESI_GLOB_RELA=1e-10), **more))
+
+def formula(text):
+    return FORMULE(NOM_PARA=("X", "Y", "Z", "INST"), VALE=text)
+
+def only_inst(text):
+    return FORMULE(NOM_PARA="INST", VALE=text)
+"""
+
+
+def flat_block(kind, size=(2.0, 1.0), start=0.0):
+    lines = [np.array([0, 0.4, 1.0]) * size[0] + start, np.array([0, 0.55, 1.0]) * size[1]]
+    return block(kind, *lines, None, "BODY", SIDES_2D)
+
+
+def flat_brick(kind):
+    return brick(kind, (np.array([0, 0.8, 2.0]), np.array([0, 1.0]), np.array([0, 0.6, 1.5])), None, "BODY", SIDES_3D)
+
+
+class LoadTest(StudyTest):
+    def run_text(self, meshes, text):
+        """Run HEAD and text with mesh k on unit 20 + k. @return the run"""
+        units = []
+        for k, mesh in enumerate(meshes):
+            write_med(self.folder / f"{k}.med", mesh)
+            units += ["--unit", f"{20 + k}={self.folder / f'{k}.med'}"]
+        comm = self.folder / "loads.comm"
+        comm.write_text(HEAD + text + "\nFIN()\n")
+        return self.run_study(comm, "--fresh", *units)
+
+    def solved(self, meshes, text):
+        """The results R[0], R[1], ..."""
+        run = self.run_text(meshes, text)
+        self.assertEqual(run.status, 0, run.stdout[-3000:] + run.stderr[-3000:])
+        base = self.folder / "loads.base"
+        return [Result(base, f"R[{k}]") for k in range(text.count("solve("))]
+
+    def displacement(self, result, order, dimension):
+        return np.stack([result.at_nodes("DEPL", order, c) for c in ("DX", "DY", "DZ")[:dimension]], axis=1)
+
+    def assert_near(self, found, exact, tolerance=1e-10):
+        self.assertLessEqual(np.abs(found - exact).max(), tolerance * np.abs(exact).max())
+
+
+class Quadratic:
+    """u_i = x . Q_i x / 2 (times a function of time): the strain is linear in x, the force in the body constant."""
+
+    def __init__(self, dimension, plane_stress=False):
+        rng = np.random.default_rng(dimension)
+        self.q = [0.01 * (a + a.T) for a in rng.uniform(-1, 1, (dimension, dimension, dimension))]
+        self.lame = YOUNG * POISSON / ((1 + POISSON) * ((1 - POISSON) if plane_stress else (1 - 2 * POISSON)))
+        self.shear = YOUNG / (2 * (1 + POISSON))
+        self.dimension = dimension
+
+    def displacement(self, x):
+        return np.stack([np.einsum("ni,ij,nj->n", x, q, x) / 2 for q in self.q], axis=1)
+
+    def texts(self, coefficients):
+        """A linear form of X, Y, Z"""
+        return " + ".join(f"({c!r}) * {name}" for c, name in zip(map(float, coefficients), "XYZ"))
+
+    def displacement_texts(self):
+        return [" + ".join(f"({float(q[i, j]) / 2!r}) * {'XYZ'[i]} * {'XYZ'[j]}" for i in range(self.dimension)
+                           for j in range(self.dimension)) for q in self.q]
+
+    def traction_texts(self, normal):
+        n, q, d = np.array(normal, float), self.q, range(self.dimension)
+        divergence = sum(q[k][k] for k in d)  # as a linear form
+        forms = [self.lame * divergence * n[i] + self.shear * sum((q[i][j] + q[j][i]) * n[j] for j in d) for i in d]
+        return [self.texts(form) for form in forms]
+
+    def body_force(self):
+        d = range(self.dimension)
+        return [-float((self.lame + self.shear) * sum(self.q[k][k, i] for k in d) + self.shear * np.trace(self.q[i])) for i in d]
+
+
+class Manufactured(LoadTest):
+    """FORCE_INTERNE, FORCE_CONTOUR, FORCE_FACE and AFFE_CHAR_CINE_F with formulae of X, Y, Z, INST."""
+
+    def loads(self, exact, normals, surface, time):
+        """Command lines: displacements on LEFT, tractions elsewhere, forces inside, each times `time`."""
+        components = range(exact.dimension)
+
+        def terms(letter, texts):
+            return ", ".join(f"{letter}{'XYZ'[i]}=formula('''({texts[i]}) * ({time})''')" for i in components)
+
+        traction = ", ".join(f"_F(GROUP_MA='{side}', {terms('F', exact.traction_texts(n))})" for side, n in normals.items() if side != "LEFT")
+        return f"""
+H = AFFE_CHAR_CINE_F(MODELE=MODEL, MECA_IMPO=_F(GROUP_MA='LEFT', {terms('D', exact.displacement_texts())}))
+S = AFFE_CHAR_MECA_F(MODELE=MODEL, {surface}=({traction}))
+V = AFFE_CHAR_MECA_F(MODELE=MODEL, FORCE_INTERNE=_F(GROUP_MA='BODY', {terms('F', [repr(f) for f in exact.body_force()])}))
+solve(_F(CHARGE=H), _F(CHARGE=S, FONC_MULT=ONE), _F(CHARGE=V))
+"""
+
+    def test_quadratic_displacements_are_exact_in_the_plane(self):
+        kinds, text, meshes = ("TRIA6", "QUAD8", "QUAD9"), "", []
+        for modelisation in ("D_PLAN", "C_PLAN"):
+            for kind in kinds:
+                text += f"model({20 + len(meshes)}, '{modelisation}')" + self.loads(
+                    Quadratic(2, modelisation == "C_PLAN"), NORMALS_2D, "FORCE_CONTOUR", "INST**2")
+                meshes.append(flat_block(kind))
+        for k, result in enumerate(self.solved(meshes, text)):
+            exact = Quadratic(2, k >= 3).displacement(result.points)
+            for order, factor in ((1, 0.25), (2, 1.0)):
+                self.assert_near(self.displacement(result, order, 2), factor * exact)
+
+    def test_quadratic_displacements_are_exact_in_space(self):
+        kinds, exact = ("TETRA10", "PENTA15", "HEXA20", "HEXA27"), Quadratic(3)
+        meshes = [flat_brick(kind) for kind in kinds]
+        text = "".join(f"model({20 + k}, '3D')" + self.loads(exact, NORMALS_3D, "FORCE_FACE", "2 * INST - 1") for k in range(len(kinds)))
+        for kind, mesh, result in zip(kinds, meshes, self.solved(meshes, text)):
+            with self.subTest(kind):
+                self.assert_near(self.displacement(result, 2, 3), exact.displacement(mesh.points))
+                self.assertLessEqual(np.abs(self.displacement(result, 1, 3)).max(), 1e-12)
+
+    def test_quadratic_displacements_are_exact_in_axisymmetry(self):
+        """u_r = a r2 + b r z, u_z = c r2 + d z2."""
+        a, b, c, d = 0.01, -0.02, 0.015, 0.005
+        lame, shear = YOUNG * POISSON / ((1 + POISSON) * (1 - 2 * POISSON)), YOUNG / (2 * (1 + POISSON))
+        trace = f"({3 * a!r} * X + {2 * b + 2 * d!r} * Y)"
+        radial = f"({lame!r} * {trace} + {2 * shear!r} * ({2 * a!r} * X + {b!r} * Y))"
+        axial = f"({lame!r} * {trace} + {2 * shear * 2 * d!r} * Y)"
+        sheared = f"({shear * (b + 2 * c)!r} * X)"
+        inside = (-(3 * lame + 6 * shear) * a, -(shear * (b + 2 * c) * 2 + lame * (2 * b + 2 * d) + 4 * shear * d))
+        sides = ", ".join(f"_F(GROUP_MA='{side}', FX=formula('{n[0]} * {radial} + {n[1]} * {sheared}'), "
+                          f"FY=formula('{n[0]} * {sheared} + {n[1]} * {axial}'))" for side, n in NORMALS_2D.items() if side != "BASE")
+        kinds, meshes, text = ("TRIA6", "QUAD8", "QUAD9"), [], ""
+        for kind in kinds:
+            text += f"""model({20 + len(meshes)}, 'AXIS')
+H = AFFE_CHAR_CINE_F(MODELE=MODEL, MECA_IMPO=_F(GROUP_MA='BASE', DX=formula('{a!r} * X**2 + {b!r} * X * Y'), DY=formula('{c!r} * X**2')))
+S = AFFE_CHAR_MECA_F(MODELE=MODEL, FORCE_CONTOUR=({sides}))
+V = AFFE_CHAR_MECA(MODELE=MODEL, FORCE_INTERNE=_F(GROUP_MA='BODY', FX={inside[0]!r}, FY={inside[1]!r}))
+solve(_F(CHARGE=H, FONC_MULT=RAMP), _F(CHARGE=S, FONC_MULT=RAMP), _F(CHARGE=V, FONC_MULT=RAMP))
+"""
+            meshes.append(flat_block(kind, start=1.0))
+        for kind, result in zip(kinds, self.solved(meshes, text)):
+            r, z = result.points.T
+            with self.subTest(kind):
+                self.assert_near(self.displacement(result, 2, 2), np.stack([a * r**2 + b * r * z, c * r**2 + d * z**2], axis=1))
+
+
+class Gravity(LoadTest):
+    def test_a_bar_under_its_weight(self):
+        """nu = 0: u = -rho g (L y - y2 / 2) / E along the bar, in every modelisation; FONC_MULT may be a formula."""
+        meshes = [flat_block("QUAD8"), flat_block("TRIA6"), flat_block("QUAD9"), flat_brick("HEXA20"), flat_brick("TETRA10")]
+        text = ""
+        for k, (modelisation, along) in enumerate((("D_PLAN", 1), ("C_PLAN", 1), ("AXIS", 1), ("3D", 2), ("3D", 2))):
+            hold = ", ".join(f"D{c}=0" for c in ("XYZ" if along == 2 else "XY"))
+            text += f"""model({20 + k}, '{modelisation}', BAR)
+H = AFFE_CHAR_CINE(MODELE=MODEL, MECA_IMPO=_F(GROUP_MA='BASE', {hold}))
+G = AFFE_CHAR_MECA(MODELE=MODEL, PESANTEUR=_F(GRAVITE=10.0, DIRECTION=(0, {"0, -7" if along == 2 else "-7, 0"})))
+solve(_F(CHARGE=H), _F(CHARGE=G, FONC_MULT=only_inst('INST**2 if INST > 0 else 0')))
+"""
+        for mesh, result in zip(meshes, self.solved(meshes, text)):
+            dimension = mesh.points.shape[1]
+            y = mesh.points[:, -1]
+            exact = np.zeros_like(mesh.points)
+            exact[:, -1] = -3.0 * 10.0 / YOUNG * (y.max() * y - y**2 / 2)
+            for order, factor in ((1, 0.25), (2, 1.0)):
+                self.assert_near(self.displacement(result, order, dimension), factor * exact)
+
+    def test_a_material_without_density_is_refused(self):
+        run = self.run_text([flat_block("QUAD4")], """
+LIGHT = DEFI_MATERIAU(ELAS=_F(E=1.0, NU=0.0))
+model(20, 'D_PLAN', LIGHT)
+H = AFFE_CHAR_CINE(MODELE=MODEL, MECA_IMPO=_F(GROUP_MA='BASE', DX=0, DY=0))
+G = AFFE_CHAR_MECA(MODELE=MODEL, PESANTEUR=_F(GRAVITE=10.0, DIRECTION=(0, -1, 0)))
+solve(_F(CHARGE=H), _F(CHARGE=G))
+""")
+        self.assertEqual(run.status, 2)
+        self.assertIn("ELAS/RHO", run.stderr)
+
+
+class Equalities(LoadTest):
+    def test_pressure_traction_nodal_forces_and_their_functions_agree(self):
+        """p = 5 on the top of a TRIA6 block: as pressure, as traction, as a function of place, with shear; to the last digits."""
+        mesh = flat_block("TRIA6")
+        push = ["AFFE_CHAR_MECA(MODELE=MODEL, PRES_REP=_F(GROUP_MA='TOP', PRES=5.0, CISA_2D=2.0))",
+                "AFFE_CHAR_MECA(MODELE=MODEL, FORCE_CONTOUR=_F(GROUP_MA='TOP', FX=-2.0, FY=-5.0))",
+                "AFFE_CHAR_MECA_F(MODELE=MODEL, PRES_REP=_F(GROUP_MA='TOP', PRES=formula('5 * Y'), CISA_2D=formula('Y + 1')))",
+                "AFFE_CHAR_MECA_F(MODELE=MODEL, FORCE_CONTOUR=_F(GROUP_MA='TOP', FX=formula('-2 * Y'), FY=only_inst('-5.0')))"]
+        text = "model(20, 'D_PLAN')\nH = AFFE_CHAR_CINE(MODELE=MODEL, MECA_IMPO=_F(GROUP_MA='BASE', DX=0, DY=0))\n"
+        for line in push:
+            text += f"P = {line}\nsolve(_F(CHARGE=H), _F(CHARGE=P, FONC_MULT=RAMP))\n"
+        results = self.solved([mesh], text)
+        first = self.displacement(results[0], 2, 2)
+        for other in results[1:]:
+            self.assert_near(self.displacement(other, 2, 2), first, 1e-13)
+
+    def test_nodal_forces_are_those_of_the_shape_functions(self):
+        """One edge of length 2 under a traction of 3: Simpson's 1/6, 4/6, 1/6 of 6 on its nodes."""
+        mesh = block("QUAD8", np.array([0, 2.0]), np.array([0, 1.0]), None, "BODY", SIDES_2D)
+        for k, node in enumerate(((0, 1), (2, 1), (1, 1))):
+            mesh.node_groups[f"N{k}"] = mesh.nodes_where(lambda x, y, at=node: (x, y) == at)
+        text = "model(20, 'D_PLAN')\nH = AFFE_CHAR_CINE(MODELE=MODEL, MECA_IMPO=_F(GROUP_MA='BASE', DX=0, DY=0))\n"
+        for line in ("FORCE_CONTOUR=_F(GROUP_MA='TOP', FY=3.0)", "FORCE_NODALE=(_F(GROUP_NO=('N0', 'N1'), FY=1.0), _F(GROUP_NO='N2', FY=4.0))"):
+            text += f"P = AFFE_CHAR_MECA(MODELE=MODEL, {line})\nsolve(_F(CHARGE=H), _F(CHARGE=P))\n"
+        one, other = self.solved([mesh], text)
+        self.assert_near(self.displacement(one, 1, 2), self.displacement(other, 1, 2), 1e-13)
+
+
+del LoadTest, StudyTest
+
+if __name__ == "__main__":
+    unittest.main()
