@@ -51,7 +51,7 @@ def run_files(study, files):
     labels.sources.update(sources)
     for path, source in sources:
         values["__file__"] = path
-        _run_file(path, source, values)
+        _run_file(study, path, source, values)
 
 
 def _read(path):
@@ -65,7 +65,7 @@ def _read(path):
         raise Failure(2, "<F>_ERROR") from None
 
 
-def _run_file(path, source, values):
+def _run_file(study, path, source, values):
     folder = os.path.dirname(os.path.abspath(path))
     if folder not in sys.path:
         sys.path.insert(0, folder)
@@ -95,7 +95,7 @@ def _run_file(path, source, values):
         raise Failure(2, "<F>_ERROR") from None
     except NameError as error:
         _print_traceback(error)
-        show(_unknown_name(error, values))
+        show(_unknown_name(error, values, study.killed))
         raise Failure(2, "<F>_ERROR") from None
     except Exception as error:
         _print_traceback(error)
@@ -135,12 +135,15 @@ def _print_traceback(error):
     print("".join(traceback.format_exception_only(error)), end="", file=sys.stderr, flush=True)
 
 
-def _unknown_name(error, values):
+def _unknown_name(error, values, killed):
+    """@param killed the run that this one goes on with was, and saved no plain Python data"""
     from .checker import nearest
 
     name = error.name or ""
     commands = [k for k, v in values.items() if callable(v) and k.isupper() and len(k) > 3]
     close = nearest(name, commands) if name.isupper() else ""
+    if killed and not close:
+        return message("STUDY_24", _place(error), name=name)
     return message("STUDY_20", _place(error), name=name, nearest=close)
 
 

@@ -102,10 +102,29 @@ def _pair(target, value, table):
     elif isinstance(value, ast.IfExp):
         _pair(target, value.body, table)
         _pair(target, value.orelse, table)
+    elif isinstance(value, ast.ListComp) and isinstance(value.elt, ast.Call):
+        _pair(ast.Subscript(target, _counted, ast.Load()), value.elt, table)
+    elif isinstance(value, ast.DictComp):
+        _pair(ast.Subscript(target, value.key, ast.Load()), value.value, table)
     elif isinstance(value, (ast.ListComp, ast.GeneratorExp, ast.Await, ast.BoolOp)):
         for node in ast.walk(value):
             if isinstance(node, ast.Call):
                 _pair(target, node, table)
+
+
+#: the index of an element that a list comprehension is making
+_counted = ast.Constant(...)
+_progress = (None, 0)  # iterator of the comprehension that ran last, elements made so far
+
+
+def _count(frame):
+    """How many elements the comprehension of this frame has made, as text; unknown where Python runs it inside its function."""
+    global _progress
+    iterator = frame.f_locals.get(".0")
+    if iterator is None:
+        return "..."
+    _progress = (iterator, _progress[1] + 1 if _progress[0] is iterator else 0)
+    return str(_progress[1])
 
 
 _plain = (ast.Name, ast.Constant, ast.BinOp, ast.UnaryOp, ast.Tuple, ast.Subscript, ast.Attribute, ast.operator, ast.unaryop,
@@ -127,6 +146,8 @@ def _text(target, frame):
 
 def _index(node, frame):
     """An index as text; only what has no side effect is evaluated."""
+    if node is _counted:
+        return _count(frame)
     if not all(isinstance(part, _plain) for part in ast.walk(node)):
         return "?"
     try:

@@ -35,6 +35,7 @@ class Study:
         self.plots = {}  #: (unit, format) -> curves.Plot that this run draws there
         self.sources = set()  #: files that the study is made from, and never writes
         self.lost = {}
+        self.killed = False  #: the run before this one ended without saving its plain Python data
         self.timings = Timings()
         self.orders = 0  #: number of orders so far
         self._emptied = False
@@ -49,6 +50,8 @@ class Study:
         if self.base is None:
             self.base = Base(self.base_folder, where, make=not resume, fresh=self.fresh and not resume)
             if resume:
+                self.killed = self.base.registry.get("running", False)
+                self.sources.update(self.base.registry.get("sources", ()))
                 self.lost = self.names.restore(self.base)
                 self._explain_lost()
             else:
@@ -56,6 +59,8 @@ class Study:
         elif not resume and self.fresh and not self._emptied:
             fail("STUDY_10", where)
         self._emptied = True
+        self.base.registry["running"] = True
+        self.base.write(where)
         self.open, self.ended = True, ""
         self.alarm_is_error = keywords["ERREUR"][0]["ALARME"] == "EXCEPTION"
         self.ignored_alarms = frozenset(keywords.get("IGNORE_ALARM", ()))
@@ -77,6 +82,7 @@ class Study:
         """Write what a later POURSUITE needs."""
         if self.base is not None:
             self.names.save(self.base)
+            self.base.registry.update(running=False, sources=sorted(self.sources))
             self.base.write()
 
     def close(self):
@@ -167,7 +173,7 @@ class Study:
         self.written_units[number] = path
 
     def protect(self, path):
-        """Results never replace this file: it is a datum of the study."""
+        """Results never replace this file, in this run and in those that go on with it: it is a datum of the study."""
         self.sources.add(os.path.realpath(path))
 
     # ------------------------------------------------------------------------------------------- names

@@ -154,6 +154,13 @@ class Units(LauncherTest):
         self.refused(self.launch("c.export", "--base", "study.base"), "COMMAND_12", "mesh.med")
         self.assertEqual((self.work / "mesh.med").read_bytes(), kept)
 
+    def test_what_an_earlier_run_has_read_is_not_replaced(self):
+        self.ok(self.run_study(STUDY + "FIN()\n"))
+        for _ in range(2):
+            run = self.run_study("POURSUITE()\nIMPR_RESU(UNITE=20, RESU=_F(MAILLAGE=M))\nFIN()\n")
+            self.refused(run, "COMMAND_12", "mesh.med")
+        self.ok(self.run_study("POURSUITE()\nFIN()\nDEBUT()\nFIN()\n"))
+
     def test_what_this_run_wrote_may_be_read_and_written_again(self):
         prints = "IMPR_RESU(UNITE=80, RESU=_F(RESULTAT=R))\n"
         behaviour = {"impr_resu": {"unit": "80"}}

@@ -30,6 +30,18 @@ class Labels(LauncherTest):
         labels = self.labels(f"M = []\nM.append({MATERIAL})\nN = [{MATERIAL} for i in range(2)]")
         self.assertEqual(set(labels), {"M[0]", "N[0]", "N[1]"})
 
+    def test_elements_of_a_comprehension_are_announced_one_by_one(self):
+        run = self.ok(self.run_study(f"DEBUT()\nfor k in range(2):\n    N = [{MATERIAL} for i in range(3) if i != 1]\n"
+                                     f"D = {{'x' + i: {MATERIAL} for i in 'ab'}}\n"
+                                     "F = [FORMULE(NOM_PARA='X', VALE='X * i', i=i) for i in (2, 3)]\nassert F[1](5) == 15\nFIN()\n"))
+        if sys.version_info < (3, 12):
+            self.assertEqual(run.out.count("N[0] = DEFI_MATERIAU"), 2)
+            self.assertEqual(run.out.count("N[1] = DEFI_MATERIAU"), 2)
+            self.assertIn("F[1] = FORMULE", run.out)
+        self.assertIn("D['xa'] = DEFI_MATERIAU", run.out)
+        self.assertIn("D['xb'] = DEFI_MATERIAU", run.out)
+        self.assertEqual(set(self.registry()["labels"]), {"N[0]", "N[1]", "D['xa']", "D['xb']", "F[0]", "F[1]"})
+
     def test_tuples_and_dictionaries(self):
         labels = self.labels(f"A, B = {MATERIAL}, {MATERIAL}\nD = {{'x': {MATERIAL}}}\nT = ({MATERIAL}, [{MATERIAL}])")
         self.assertEqual(set(labels), {"A", "B", "D['x']", "T[0]", "T[1][0]"})
@@ -191,6 +203,11 @@ B = AFFE_MATERIAU(MAILLAGE=LIRE_MAILLAGE(), AFFE=_F(TOUT='OUI', MATER=L[1]))
         self.assertEqual(self.run_study(text).status, -9)
         more = self.write("more.comm", "POURSUITE()\nassert A and M[0]\nA.open(); M[0].open()\nFIN()\n")
         self.ok(self.launch(more.name, "--base", "study.base"))
+
+    def test_data_that_a_killed_run_did_not_save_say_so(self):
+        self.run_study(f"DEBUT()\nx = 5\nA = {MATERIAL}\nimport os\nos.kill(os.getpid(), 9)\n")
+        self.refused(self.run_study("POURSUITE()\nassert A.getType() == 'material'\nprint(x)\n"), "STUDY_24", "'x'", "was killed")
+        self.refused(self.run_study("POURSUITE()\nprint(x)\n"), "STUDY_20")  # this one was not killed
 
     def test_a_killed_run_keeps_the_data_of_the_run_before(self):
         self.ok(self.run_study("DEBUT()\nx = 5\ny = [1, 2]\nz = 1\nw = 1\nFIN()\n"))
