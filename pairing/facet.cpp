@@ -81,11 +81,20 @@ std::optional<Vec2> inverse(const Map2& map, Family family, Vec2 y, double toler
     if (!better) break;                       // round-off
     if (map.n == 3 || length <= 1e-9) break;  // linear, or quadratic: the next step would be below round-off
   }
-  const auto [x, z] = p;
-  const bool near =
-      triangle ? x >= -margin && z >= -margin && x + z <= 1 + margin : std::max(std::abs(x), std::abs(z)) <= 1 + margin;
-  if (!(residual <= tolerance) || !near) return std::nullopt;
+  if (!(residual <= tolerance) || !near_reference_cell(family, p, margin)) return std::nullopt;
   return p;
+}
+
+Inverse::Inverse(const Map2& map, Family family) : map_(map), family_(family) {
+  constexpr double round_off = 1e-13;  // of higher terms, relative to the affine ones
+  const auto size = [](Vec2 v) { return std::abs(v.x) + std::abs(v.y); };
+  double higher = 0;
+  for (int k = 3; k < map.n; ++k) higher += size(map.c[k]);
+  const Vec2 d1 = map.c[1], d2 = map.c[2];
+  jacobian_ = cross(d1, d2);
+  row1_ = {d2.y / jacobian_, -d2.x / jacobian_};
+  row2_ = {-d1.y / jacobian_, d1.x / jacobian_};
+  affine_ = higher <= round_off * (size(d1) + size(d2)) && std::isfinite(size(row1_) + size(row2_));
 }
 
 double distortion(const Map3& map, Family family, Vec3 normal) {

@@ -1,5 +1,6 @@
 #pragma once
 // The geometry of a facet as a polynomial of its reference coordinates, in space or projected to a plane.
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <functional>
@@ -62,11 +63,45 @@ Map3 interpolate(CellType type, std::span<const Vec3> values);
 /// Its components along two directions.
 Map2 project(const Map3& map, Vec3 e1, Vec3 e2);
 
+/// Whether a reference point lies within `margin` of the reference cell.
+inline bool near_reference_cell(Family family, Vec2 p, double margin) {
+  return family == Family::TRIA ? p.x >= -margin && p.y >= -margin && p.x + p.y <= 1 + margin
+                                : std::max(std::abs(p.x), std::abs(p.y)) <= 1 + margin;
+}
+
 /// Where a map takes the value y: Newton's method from the middle of the reference cell, with shorter steps where the residual
 /// would grow.
 /// @param tolerance largest residual, a length. Empty where the method ends elsewhere, or further than `margin` from the
 /// reference cell.
 std::optional<Vec2> inverse(const Map2& map, Family family, Vec2 y, double tolerance, double margin);
+
+/// The inverse of a map of the plane: at once where it is affine, by Newton's method elsewhere.
+class Inverse {
+ public:
+  Inverse() = default;
+  Inverse(const Map2& map, Family family);
+
+  /// As the function above.
+  std::optional<Vec2> operator()(Vec2 y, double tolerance, double margin) const {
+    if (!affine_) return inverse(map_, family_, y, tolerance, margin);
+    const Vec2 r = y - map_.c[0], xi{dot(row1_, r), dot(row2_, r)};
+    if (!near_reference_cell(family_, xi, margin)) return std::nullopt;
+    return xi;
+  }
+  /// The Jacobian at a reference point.
+  double jacobian(Vec2 xi) const {
+    if (affine_) return jacobian_;
+    const Map2::Value v = map_(xi);
+    return cross(v.d1, v.d2);
+  }
+
+ private:
+  Map2 map_;
+  Family family_{};
+  bool affine_ = false;
+  double jacobian_ = 0;
+  Vec2 row1_, row2_;  ///< of the inverse matrix
+};
 
 /// How much the Jacobian along `normal` varies, (max - min) / (max + min) over vertices, middles of edges and the middle; 0 for
 /// an affine facet, at least 1 for a folded one.

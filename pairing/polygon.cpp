@@ -32,10 +32,14 @@ Vec2 middle(const Polygon& polygon) {
   return (1.0 / static_cast<double>(polygon.size())) * sum;
 }
 
-bool separated(const Region& a, const Region& b) {
-  const auto beyond = [](const Region& p, const Region& q) {
+bool separated(const Region& a, const Region& b, double width) {
+  const auto beyond = [width](const Region& p, const Region& q) {
     return std::any_of(p.halves.begin(), p.halves.end(), [&](const HalfPlane& half) {
-      return std::all_of(q.polygon.begin(), q.polygon.end(), [&](Vec2 y) { return half(y) <= 0; });
+      const double most = width * width * dot(half.slope, half.slope);
+      return std::all_of(q.polygon.begin(), q.polygon.end(), [&](Vec2 y) {
+        const double s = half(y);
+        return s <= 0 || s * s <= most;
+      });
     });
   };
   return beyond(a, b) || beyond(b, a);

@@ -45,8 +45,9 @@ struct Region {
   std::vector<HalfPlane> halves;
 };
 
-/// Whether some half-plane of one has all of the other outside. Both are parts of the same polygon.
-bool separated(const Region& a, const Region& b);
+/// Whether some half-plane of one has all of the other outside, or within a strip of `width`. Both are parts of the same
+/// polygon.
+bool separated(const Region& a, const Region& b, double width);
 
 /// The common part.
 Region intersection(const Region& a, const Region& b);

@@ -131,7 +131,8 @@ class SlaveFacet {
   bool degenerate = false, constant = true, plane = true;
   Vec3 n, e1, e2;
   std::vector<Piece> pieces;
-  double chart_area = 0;  ///< twice the area
+  double chart_area = 0;      ///< twice the area
+  double chart_diameter = 0;  ///< at least the largest distance in a piece
 
   void set(const Surface& surface, std::size_t cell, double size, const PairingTolerances& tolerances) {
     pieces.clear();
@@ -175,6 +176,7 @@ class SlaveFacet {
     e1 = (1 / norm(t)) * t;
     e2 = cross(n, e1);
     chart_ = project(f.x, e1, e2);
+    if (plane) from_chart_ = Inverse(chart_, f.family);
     if (constant) {
       Piece piece;
       for (int i = 0; i < f.n_vertices; ++i) piece.polygon.push_back({dot(f.nodes[i], e1), dot(f.nodes[i], e2)});
@@ -191,6 +193,7 @@ class SlaveFacet {
     }
     chart_area = 0;
     for (const Piece& piece : pieces) chart_area += double_area(piece.polygon);
+    chart_diameter = plane ? 2 * f.size : 3;
     build_walls();
   }
 
@@ -211,10 +214,9 @@ class SlaveFacet {
   /// The reference point of a point of the chart.
   Place place(Vec2 y, const PairingTolerances& tolerances) const {
     if (!plane) return {true, y, 1};
-    const std::optional<Vec2> xi = inverse(chart_, f.family, y, tolerances.ray * f.size, tolerances.margin);
+    const std::optional<Vec2> xi = from_chart_(y, tolerances.ray * f.size, tolerances.margin);
     if (!xi) return {};
-    const Map2::Value v = chart_(*xi);
-    return {true, *xi, 1 / cross(v.d1, v.d2)};
+    return {true, *xi, 1 / from_chart_.jacobian(*xi)};
   }
 
   /// The side of an edge of a master on which a normal passes, on a piece.
@@ -317,6 +319,7 @@ class SlaveFacet {
   double least_ = 0;  ///< length of `unscaled_direction` below which there is none
   Map3 nodal_;
   Map2 chart_;
+  Inverse from_chart_;
   struct Wall {
     Vec3 out;       ///< unit, at a right angle to n
     double offset;  ///< out . x is nowhere larger on the slave
@@ -326,48 +329,35 @@ class SlaveFacet {
   double height_ = 0;  ///< largest |n . x|, and an allowance for what pieces get wrong along the border
 };
 
-/// Where the normal at a point of a slave meets the true master.
-struct Image {
-  bool found = false;
-  Vec2 xi;
-  double gap = 0;
-};
-
-/// A master as one slave facet sees it.
+/// A master as one slave facet sees it: where a normal of the slave meets it, and how far away.
 class Target {
  public:
-  Target(const Facet& f, Vec3 slave_origin) : f_(f), x_(f.x) { x_.c[0] = x_.c[0] + (f.origin - slave_origin); }
-
-  Image image(Vec3 x, Vec3 n, Vec3 e1, Vec3 e2, const PairingTolerances& tolerances) {
-    if (!ready_) along_ = project(x_, e1, e2), ready_ = true;
-    const double size = f_.size + std::sqrt(dot(x - x_.c[0], x - x_.c[0]));
-    const std::optional<Vec2> xi =
-        inverse(along_, f_.family, {dot(x, e1), dot(x, e2)}, tolerances.ray * size, tolerances.margin);
-    if (!xi) return {};
-    return {true, *xi, dot(x_(*xi).x - x, n)};
+  Target(const Facet& f, const SlaveFacet& slave) : slave_(slave), family_(f.family), x_(f.x) {
+    x_.c[0] = x_.c[0] + (f.origin - slave.f.origin);
+    size_ = f.size + norm(x_.c[0]) + slave.f.size;
+    if (slave.constant) along_ = Inverse(project(x_, slave.e1, slave.e2), family_);
   }
-  /// As above, for a normal that changes from point to point.
-  Image image(Vec3 x, Vec3 n, const PairingTolerances& tolerances) {
+
+  /// The image of a point of the slave, given in the slave's chart and as a reference point; empty where there is none.
+  std::optional<Vec2> image(Vec2 y, Vec2 xi, const PairingTolerances& tolerances) const {
+    if (slave_.constant) return along_(y, tolerances.ray * size_, tolerances.margin);
+    const Vec3 x = slave_.f.x(xi).x, n = slave_.direction(xi);
     const Vec3 axis = std::abs(n.x) <= std::abs(n.y) && std::abs(n.x) <= std::abs(n.z) ? Vec3{1, 0, 0}
                       : std::abs(n.y) <= std::abs(n.z)                                 ? Vec3{0, 1, 0}
                                                                                        : Vec3{0, 0, 1};
-    const Vec3 t = cross(n, axis), e1 = (1 / norm(t)) * t;
-    ready_ = false;
-    return image(x, n, e1, cross(n, e1), tolerances);
+    const Vec3 t = cross(n, axis), e1 = (1 / norm(t)) * t, e2 = cross(n, e1);
+    return inverse(project(x_, e1, e2), family_, {dot(x, e1), dot(x, e2)}, tolerances.ray * size_, tolerances.margin);
   }
+  /// The gap between a reference point of the slave and its image.
+  double gap(Vec2 xi, Vec2 image) const { return dot(x_(image).x - slave_.f.x(xi).x, slave_.direction(xi)); }
 
  private:
-  const Facet& f_;
+  const SlaveFacet& slave_;
+  Family family_;
   Map3 x_;
-  Map2 along_;
-  bool ready_ = false;
+  Inverse along_;
+  double size_ = 0;  ///< at least the distance between any two points of slave and master
 };
-
-Image image(const SlaveFacet& slave, Target& target, Vec2 xi, const PairingTolerances& tolerances) {
-  const Vec3 x = slave.f.x(xi).x;
-  return slave.constant ? target.image(x, slave.n, slave.e1, slave.e2, tolerances)
-                        : target.image(x, slave.direction(xi), tolerances);
-}
 
 /// Convex parts of a master's outline, as seen along the slave's mean normal.
 void cut_in_parts(const Facet& f, const SlaveFacet& slave, std::vector<Vec3>& polygon, std::vector<Part>& parts) {
@@ -434,7 +424,7 @@ bool sooner(const View& a, const View& b) {
 int integration_degree(const SlaveFacet& slave, const Facet& master) {
   const double d = std::min(0.999, std::max(slave.f.distortion, master.distortion));
   const int polynomial = 2 * std::max(slave.f.order, master.order);
-  if (d <= 0) return std::max(4, polynomial);
+  if (d <= 1e-12) return std::max(4, polynomial);
   const double rho = 1 / d + std::sqrt(1 / (d * d) - 1);
   const int degree = polynomial + static_cast<int>(std::ceil(12 * std::numbers::ln10 / std::log(rho)));
   const bool exact = slave.constant && master.straight;
@@ -500,9 +490,9 @@ Pairing detail::pair_in_space(const Surface& slave, const Surface& master, const
     // The gap in the middle of a view, or infinity where there is no image.
     const auto distance = [&](const View& view, Vec2 y) {
       const SlaveFacet::Place place = e.place(y, tolerances);
-      Target target(masters[view.master], e.f.origin);
-      const Image found = place.found ? image(e, target, place.xi, tolerances) : Image{};
-      return found.found ? std::abs(found.gap) : std::numeric_limits<double>::infinity();
+      const Target target(masters[view.master], e);
+      const std::optional<Vec2> image = place.found ? target.image(y, place.xi, tolerances) : std::nullopt;
+      return image ? std::abs(target.gap(place.xi, *image)) : std::numeric_limits<double>::infinity();
     };
     const auto couple = [&](std::int32_t m) {
       cut_in_parts(masters[m], e, polygon, parts);
@@ -551,6 +541,7 @@ Pairing detail::pair_in_space(const Surface& slave, const Surface& master, const
     // Where several masters cover a part of the slave, the nearest along the normal keeps it.
     kept.clear();
     const double overlap = tolerances.overlap * e.chart_area;
+    const double strip = 0.25 * overlap / e.chart_diameter;  // a common strip of this width is less than `overlap`
     bool any_hidden = false;
     std::vector<View> todo;
     for (View& first : views) {
@@ -560,7 +551,7 @@ Pairing detail::pair_in_space(const Surface& slave, const Surface& master, const
         todo.pop_back();
         bool whole = true;
         for (std::size_t k = 0; k < kept.size() && whole; ++k) {
-          if (kept[k].piece != view.piece || separated(kept[k].region, view.region)) continue;
+          if (kept[k].piece != view.piece || separated(kept[k].region, view.region, strip)) continue;
           const Region both = intersection(kept[k].region, view.region);
           if (double_area(both.polygon) <= overlap) continue;
           const Vec2 y = middle(both.polygon);
@@ -589,7 +580,7 @@ Pairing detail::pair_in_space(const Surface& slave, const Surface& master, const
 
     for (const View& view : kept) {
       const Facet& f = masters[view.master];
-      Target target(f, e.f.origin);
+      const Target target(f, e);
       const Rule& rule = triangle_rule(integration_degree(e, f));
       const std::size_t before_points = cells.weight.size(), before_vertices = cells.vertex.size();
       bool complete = true;
@@ -597,13 +588,14 @@ Pairing detail::pair_in_space(const Surface& slave, const Surface& master, const
         const Vec2 a = view.region.polygon[0], u = view.region.polygon[i - 1] - a, v = view.region.polygon[i] - a;
         const double area = cross(u, v);
         if (!(area > 0)) continue;  // three vertices on a line, to round-off
-        for (int g = 0; g < rule.size() && complete; ++g) {
+        for (int g = 0; g < rule.size(); ++g) {
           const Vec2 y = a + rule.points[2 * g] * u + rule.points[2 * g + 1] * v;
           const SlaveFacet::Place place = e.place(y, tolerances);
-          const Image on_master = place.found ? image(e, target, place.xi, tolerances) : Image{};
-          complete = on_master.found;
+          const std::optional<Vec2> image = place.found ? target.image(y, place.xi, tolerances) : std::nullopt;
+          complete = image.has_value();
+          if (!complete) break;
           cells.slave_point.insert(cells.slave_point.end(), {place.xi.x, place.xi.y});
-          cells.master_point.insert(cells.master_point.end(), {on_master.xi.x, on_master.xi.y});
+          cells.master_point.insert(cells.master_point.end(), {image->x, image->y});
           cells.weight.push_back(area * rule.weights[g] * place.scale);
         }
       }

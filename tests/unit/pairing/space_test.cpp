@@ -852,7 +852,7 @@ TEST(Polygons, SubtractionLeavesWhatIntersectionDoesNotTake) {
     std::vector<space::Region> rest;
     space::subtract(a, b, 0, rest);
     double left = space::double_area(space::intersection(a, b).polygon);
-    if (space::separated(a, b)) {
+    if (space::separated(a, b, 0)) {
       EXPECT_LE(left, 1e-15);
     }
     for (const space::Region& part : rest) left += space::double_area(part.polygon);
@@ -916,6 +916,12 @@ TEST(Facets, InverseFindsEveryPointOfConvexFacets) {
         ASSERT_TRUE(found.has_value());
         EXPECT_NEAR(found->x, xi[0], 1e-12);
         EXPECT_NEAR(found->y, xi[1], 1e-12);
+        const space::Inverse inverse(space::project(map, {1, 0, 0}, {0, 1, 0}), family);
+        const auto same = inverse({p.x.x, p.x.y}, 1e-14, 0.25);
+        ASSERT_TRUE(same.has_value());
+        EXPECT_NEAR(same->x, xi[0], 1e-12);
+        EXPECT_NEAR(same->y, xi[1], 1e-12);
+        EXPECT_NEAR(inverse.jacobian({xi[0], xi[1]}), p.jacobian, 1e-14);
       }
     }
   }
