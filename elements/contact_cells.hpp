@@ -18,6 +18,12 @@ struct ContactCells {
   std::vector<double> vertex;  ///< (vertices, dimension - 1): the clipped polygon in the slave's reference space
 
   std::size_t size() const { return slave.size(); }
+  /// Empty, with the memory kept.
+  void clear() {
+    for (auto* numbers : {&slave, &master}) numbers->clear();
+    for (auto* values : {&slave_point, &master_point, &weight, &vertex}) values->clear();
+    for (auto* offsets : {&offset, &vertex_offset}) offsets->assign(1, 0);
+  }
 };
 
 }  // namespace lacon

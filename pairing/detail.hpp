@@ -4,11 +4,16 @@
 
 namespace lacon::detail {
 
+/// Called behind each slave cell with how many are done; what it finds in the pairing it may take away.
+using EndOfCell = std::function<void(std::size_t)>;
+
 /// Chains of SEG2 and SEG3 in the plane.
-Pairing pair_in_plane(const Surface& slave, const Surface& master, const PairingOptions& options);
+void pair_in_plane(const Surface& slave, const Surface& master, const PairingOptions& options, Pairing& pairing,
+                   const EndOfCell& end_of_cell);
 
 /// TRIA3, TRIA6, QUAD4, QUAD8, QUAD9 in space.
-Pairing pair_in_space(const Surface& slave, const Surface& master, const PairingOptions& options);
+void pair_in_space(const Surface& slave, const Surface& master, const PairingOptions& options, Pairing& pairing,
+                   const EndOfCell& end_of_cell);
 
 /// All coordinates of a cell, and nodal normals if there are, are finite numbers.
 bool finite(const Surface& surface, std::size_t cell);

@@ -51,14 +51,29 @@ std::string_view rejection_name(Rejection rejection) {
 }
 
 Pairing pair(const Surface& slave, const Surface& master, const PairingOptions& options) {
+  Pairing whole;
+  pair_in_blocks(slave, master, options, std::max<std::size_t>(slave.size(), 1),
+                 [&](Pairing& pairing) { whole = std::move(pairing); });
+  return whole;
+}
+
+void pair_in_blocks(const Surface& slave, const Surface& master, const PairingOptions& options, std::size_t block,
+                    const std::function<void(Pairing&)>& take) {
   check(slave, slave.dimension);
   check(master, slave.dimension);
-  Pairing pairing =
-      slave.dimension == 2 ? detail::pair_in_plane(slave, master, options) : detail::pair_in_space(slave, master, options);
-  std::vector<RejectedCouple>& rejected = pairing.rejected;
-  std::sort(rejected.begin(), rejected.end());  // a search meets couples in its own order, and parts of one several times
-  rejected.erase(std::unique(rejected.begin(), rejected.end()), rejected.end());
-  return pairing;
+  Pairing pairing;
+  pairing.cells.dimension = slave.dimension;
+  const detail::EndOfCell end_of_cell = [&](std::size_t done) {
+    if (done % block != 0 && done != slave.size()) return;
+    std::vector<RejectedCouple>& rejected = pairing.rejected;
+    std::sort(rejected.begin(), rejected.end());  // a search meets couples in its own order, and parts of one several times
+    rejected.erase(std::unique(rejected.begin(), rejected.end()), rejected.end());
+    take(pairing);
+    pairing.cells.clear();
+    rejected.clear();
+  };
+  (slave.dimension == 2 ? detail::pair_in_plane : detail::pair_in_space)(slave, master, options, pairing, end_of_cell);
+  if (slave.size() == 0) end_of_cell(0);
 }
 
 }  // namespace lacon

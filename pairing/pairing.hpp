@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <compare>
 #include <cstdint>
+#include <functional>
 #include <string_view>
 #include <vector>
 
@@ -77,6 +78,11 @@ struct Pairing {
 /// never overlap; where masters cover it they leave no gap. Throws std::invalid_argument for other cells and for dimensions
 /// that differ.
 Pairing pair(const Surface& slave, const Surface& master, const PairingOptions& options = {});
+
+/// The same in blocks of slave cells, for memory that does not grow with the skins: `take` gets what pair() would return for
+/// each `block` slave cells in turn, and may take it away. Degenerate masters come with the first block.
+void pair_in_blocks(const Surface& slave, const Surface& master, const PairingOptions& options, std::size_t block,
+                    const std::function<void(Pairing&)>& take);
 
 /// Integration points that pairing places on a contact cell of these two kinds in the plane.
 int integration_points(CellType slave, CellType master);

@@ -296,10 +296,9 @@ class Overlaps {
 
 int integration_points(CellType slave, CellType master) { return slave == CellType::SEG2 && master == CellType::SEG2 ? 3 : 4; }
 
-Pairing detail::pair_in_plane(const Surface& slave, const Surface& master, const PairingOptions& options) {
+void detail::pair_in_plane(const Surface& slave, const Surface& master, const PairingOptions& options, Pairing& pairing,
+                           const EndOfCell& end_of_cell) {
   const PairingTolerances& tolerances = options.tolerances;
-  Pairing pairing;
-  pairing.cells.dimension = 2;
 
   const double slave_extent = extent(slave), master_extent = extent(master);
   std::vector<std::int32_t> usable;
@@ -327,12 +326,12 @@ Pairing detail::pair_in_plane(const Surface& slave, const Surface& master, const
   Projections projections(master.coordinates.size() / 3);
   Overlaps overlaps;
   std::vector<Interval> intervals;
-  for (std::size_t cell = 0; cell < slave.size(); ++cell) {
+  const auto pair_cell = [&](std::size_t cell) {
     const auto slave_index = static_cast<std::int32_t>(cell);
     const SlaveCell e = finite(slave, cell) ? slave_cell(slave, cell) : SlaveCell{};
     if (degenerate(e, slave, slave_extent, tolerances.degenerate)) {
       pairing.rejected.push_back({slave_index, -1, Rejection::degenerate_slave});
-      continue;
+      return;
     }
     const auto reject = [&](std::int32_t m, Rejection reason) { pairing.rejected.push_back({slave_index, m, reason}); };
     intervals.clear();
@@ -403,8 +402,11 @@ Pairing detail::pair_in_plane(const Surface& slave, const Surface& master, const
       cells.vertex.insert(cells.vertex.end(), {a, b});
       cells.vertex_offset.push_back(static_cast<std::int64_t>(cells.vertex.size()));
     }
+  };
+  for (std::size_t cell = 0; cell < slave.size(); ++cell) {
+    pair_cell(cell);
+    end_of_cell(cell + 1);
   }
-  return pairing;
 }
 
 }  // namespace lacon

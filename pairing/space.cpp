@@ -1,5 +1,6 @@
 // Pairing in space.
 #include <algorithm>
+#include <deque>
 #include <limits>
 #include <numbers>
 #include <tuple>
@@ -135,8 +136,8 @@ class SlaveFacet {
   double chart_diameter = 0;  ///< at least the largest distance in a piece
 
   void set(const Surface& surface, std::size_t cell, double size, const PairingTolerances& tolerances) {
-    pieces.clear();
     degenerate = true;
+    constant = false;
     if (!detail::finite(surface, cell)) return;
     f = facet(surface, cell, tolerances.flat);
     n = f.normal;
@@ -178,11 +179,13 @@ class SlaveFacet {
     chart_ = project(f.x, e1, e2);
     if (plane) from_chart_ = Inverse(chart_, f.family);
     if (constant) {
-      Piece piece;
+      pieces.resize(1);
+      Piece& piece = pieces[0];
+      piece.polygon.clear();
       for (int i = 0; i < f.n_vertices; ++i) piece.polygon.push_back({dot(f.nodes[i], e1), dot(f.nodes[i], e2)});
       piece.normal = n;
-      pieces.push_back(std::move(piece));
     } else {
+      pieces.clear();
       // both are the same whichever node is the first
       double bulge = 0;
       for (int i = 0; i < f.n_vertices && !plane; ++i)
@@ -199,7 +202,7 @@ class SlaveFacet {
 
   /// The unit normal at a reference point; the mean one where there is none.
   Vec3 direction(Vec2 xi) const {
-    if (constant_normal()) return n;
+    if (constant) return n;
     const Vec3 m = unscaled_direction(xi);
     const double length = norm(m);
     return length > least_ ? (1 / length) * m : n;
@@ -249,8 +252,6 @@ class SlaveFacet {
   }
 
  private:
-  bool constant_normal() const { return constant && !pieces.empty(); }
-
   Vec3 unscaled_direction(Vec2 xi) const {
     if (smooth_) return nodal_(xi).x;
     const Map3::Value v = f.x(xi);
@@ -413,9 +414,9 @@ struct View {
   Region region;
 };
 
-bool sooner(const View& a, const View& b) {
-  const Vec2 p = middle(a.region.polygon), q = middle(b.region.polygon);
-  return std::tie(a.piece, p.x, p.y, a.master) < std::tie(b.piece, q.x, q.y, b.master);
+bool sooner(const View* a, const View* b) {
+  const Vec2 p = middle(a->region.polygon), q = middle(b->region.polygon);
+  return std::tie(a->piece, p.x, p.y, a->master) < std::tie(b->piece, q.x, q.y, b->master);
 }
 
 /// The degree to which a couple is integrated. The integrand is analytic in the plane; the nearest singularity of an inverse
@@ -438,11 +439,10 @@ const Rule& triangle_rule(int degree) {
 
 }  // namespace
 
-Pairing detail::pair_in_space(const Surface& slave, const Surface& master, const PairingOptions& options) {
+void detail::pair_in_space(const Surface& slave, const Surface& master, const PairingOptions& options, Pairing& pairing,
+                           const EndOfCell& end_of_cell) {
   const PairingTolerances& tolerances = options.tolerances;
-  Pairing pairing;
   ContactCells& cells = pairing.cells;
-  cells.dimension = 3;
 
   const double slave_extent = extent(slave), master_extent = extent(master);
   std::vector<std::int32_t> usable;
@@ -473,20 +473,31 @@ Pairing detail::pair_in_space(const Surface& slave, const Surface& master, const
 
   SlaveFacet e;
   std::vector<Part> parts;
-  std::vector<View> views, kept;
+  std::deque<View> store;  // of views, used again for every slave cell
+  std::size_t n_stored = 0;
+  const auto new_view = [&](std::int32_t piece, std::int32_t m, const Region& region) {
+    if (n_stored == store.size()) store.emplace_back();
+    View& view = store[n_stored++];
+    view.piece = piece;
+    view.master = m;
+    view.region = region;
+    return &view;
+  };
+  std::vector<View*> views, kept, todo;
   std::vector<Region> rest;
   Region seen;
   Polygon scratch;
-  for (std::size_t cell = 0; cell < slave.size(); ++cell) {
+  const auto pair_cell = [&](std::size_t cell) {
     const auto slave_index = static_cast<std::int32_t>(cell);
     e.set(slave, cell, slave_extent, tolerances);
     if (e.degenerate) {
       pairing.rejected.push_back({slave_index, -1, Rejection::degenerate_slave});
-      continue;
+      return;
     }
     const auto reject = [&](std::int32_t m, Rejection reason) { pairing.rejected.push_back({slave_index, m, reason}); };
     const double sliver = tolerances.sliver * e.chart_area;
     views.clear();
+    n_stored = 0;
     // The gap in the middle of a view, or infinity where there is no image.
     const auto distance = [&](const View& view, Vec2 y) {
       const SlaveFacet::Place place = e.place(y, tolerances);
@@ -510,7 +521,7 @@ Pairing detail::pair_in_space(const Surface& slave, const Surface& master, const
               if (-dot(area, piece.normal) < smallest_cosine * norm(area) * norm(piece.normal))
                 reject(m, Rejection::too_steep);
               else
-                views.push_back({static_cast<std::int32_t>(p), m, seen});
+                views.push_back(new_view(static_cast<std::int32_t>(p), m, seen));
               continue;
             }
             thin = thin || !seen.polygon.empty();
@@ -529,11 +540,11 @@ Pairing detail::pair_in_space(const Surface& slave, const Surface& master, const
       tree.visit([&](const Box<3>& box) { return e.touches(box); }, [&](std::int32_t i) { couple(usable[i]); });
     }
     if (options.distance_limit > 0)
-      std::erase_if(views, [&](const View& view) {
-        const double diameter = std::max(e.f.diameter(), masters[view.master].diameter());
-        const double gap = distance(view, middle(view.region.polygon));
+      std::erase_if(views, [&](const View* view) {
+        const double diameter = std::max(e.f.diameter(), masters[view->master].diameter());
+        const double gap = distance(*view, middle(view->region.polygon));
         const bool far = std::isfinite(gap) && gap > options.distance_limit * diameter;
-        if (far) reject(view.master, Rejection::too_far);
+        if (far) reject(view->master, Rejection::too_far);
         return far;
       });
     std::sort(views.begin(), views.end(), sooner);
@@ -543,42 +554,42 @@ Pairing detail::pair_in_space(const Surface& slave, const Surface& master, const
     const double overlap = tolerances.overlap * e.chart_area;
     const double strip = 0.25 * overlap / e.chart_diameter;  // a common strip of this width is less than `overlap`
     bool any_hidden = false;
-    std::vector<View> todo;
-    for (View& first : views) {
-      todo.assign(1, std::move(first));
+    for (View* const first : views) {
+      todo.assign(1, first);
       while (!todo.empty()) {
-        View view = std::move(todo.back());
+        View* const view = todo.back();
         todo.pop_back();
         bool whole = true;
         for (std::size_t k = 0; k < kept.size() && whole; ++k) {
-          if (kept[k].piece != view.piece || separated(kept[k].region, view.region, strip)) continue;
-          const Region both = intersection(kept[k].region, view.region);
+          View* const old = kept[k];
+          if (old->piece != view->piece || separated(old->region, view->region, strip)) continue;
+          const Region both = intersection(old->region, view->region);
           if (double_area(both.polygon) <= overlap) continue;
           const Vec2 y = middle(both.polygon);
-          const double old_distance = distance(kept[k], y), new_distance = distance(view, y);
-          const bool old_wins = old_distance < new_distance || (old_distance == new_distance && kept[k].master < view.master);
-          const Region winner = old_wins ? kept[k].region : view.region;
-          const View loser = old_wins ? std::move(view) : std::move(kept[k]);
+          const double old_distance = distance(*old, y), new_distance = distance(*view, y);
+          const bool old_wins = old_distance < new_distance || (old_distance == new_distance && old->master < view->master);
+          const View &winner = old_wins ? *old : *view, &loser = old_wins ? *view : *old;
           reject(loser.master, Rejection::hidden);
           any_hidden = true;
           rest.clear();
-          subtract(loser.region, winner, sliver, rest);
+          subtract(loser.region, winner.region, sliver, rest);
           if (old_wins) {
-            for (Region& part : rest) todo.push_back({loser.piece, loser.master, std::move(part)});
+            for (const Region& part : rest) todo.push_back(new_view(loser.piece, loser.master, part));
             whole = false;
           } else {
             kept.erase(kept.begin() + static_cast<std::ptrdiff_t>(k));
-            for (Region& part : rest)
-              kept.insert(kept.begin() + static_cast<std::ptrdiff_t>(k++), {loser.piece, loser.master, std::move(part)});
+            for (const Region& part : rest)
+              kept.insert(kept.begin() + static_cast<std::ptrdiff_t>(k++), new_view(loser.piece, loser.master, part));
             --k;  // wraps at 0, and the loop steps back to it
           }
         }
-        if (whole) kept.push_back(std::move(view));
+        if (whole) kept.push_back(view);
       }
     }
     if (any_hidden) std::sort(kept.begin(), kept.end(), sooner);
 
-    for (const View& view : kept) {
+    for (const View* const kept_view : kept) {
+      const View& view = *kept_view;
       const Facet& f = masters[view.master];
       const Target target(f, e);
       const Rule& rule = triangle_rule(integration_degree(e, f));
@@ -617,8 +628,11 @@ Pairing detail::pair_in_space(const Surface& slave, const Surface& master, const
       cells.offset.push_back(static_cast<std::int64_t>(cells.weight.size()));
       cells.vertex_offset.push_back(static_cast<std::int64_t>(cells.vertex.size() / 2));
     }
+  };
+  for (std::size_t cell = 0; cell < slave.size(); ++cell) {
+    pair_cell(cell);
+    end_of_cell(cell + 1);
   }
-  return pairing;
 }
 
 }  // namespace lacon

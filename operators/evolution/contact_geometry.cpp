@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <tuple>
 #include <utility>
 
 #include "lacon/catalog/messages.hpp"
@@ -21,12 +22,16 @@ void append_points(const Mesh& mesh, std::span<const double> coordinates, std::i
 }
 
 constexpr double tolerated_overlap = 0.1;     // of a slave cell's size, beyond the axis: a node there that nothing holds
+constexpr std::size_t block = 256;            // slave cells whose points are in memory at a time
 constexpr double coverage_round_off = 1e-12;  // covered fractions above 1 by no more than this are 1
 
 }  // namespace
 
-const Rule& measuring_rule(Family family) {
-  return integration_rule(family, family == Family::SEG ? 4 : family == Family::TRIA ? 16 : 25);
+const Rule& measuring_rule(CellType type) {
+  const auto& [family, order] = std::tie(catalog::cell(type).family, catalog::cell(type).order);
+  return integration_rule(family, family == Family::SEG    ? 4
+                                  : family == Family::TRIA ? (order == 1 ? 6 : 16)
+                                                           : (order == 1 ? 9 : 25));
 }
 
 ContactGeometry::ContactGeometry(const Mesh& mesh, const Model& model, const Contact& contact, Registry& registry)
@@ -92,45 +97,54 @@ void ContactGeometry::measure_slaves() {
     by_element[model_.element[contact_.slaves[s].cell]].push_back(static_cast<std::int32_t>(s));
   for (const auto& [element, members] : by_element) {
     const CellType type = mesh_.types[contact_.slaves[members.front()].cell];
+    const lacon_kernel& kernel = kernel_of(contact_.slaves[members.front()].cell);
     // each cell on itself: the kernel says what its measure is
-    const Tabulation table = tabulate(type, measuring_rule(catalog::cell(type).family));
+    const Tabulation table = tabulate(type, measuring_rule(type));
     std::vector<std::int64_t> offset{0};
-    std::vector<double> weight, shape, gradient, initial, current, size(members.size());
-    for (const std::int32_t s : members) {
-      append_points(mesh_, mesh_.coordinates, contact_.slaves[s].cell, dimension, initial);
-      append_points(mesh_, coordinates_, contact_.slaves[s].cell, dimension, current);
+    std::vector<double> weight, shape, gradient, initial, current, size(block);
+    std::vector<std::int32_t> error(block);
+    for (std::size_t i = 0; i < std::min(block, members.size()); ++i) {
       weight.insert(weight.end(), table.weight.begin(), table.weight.end());
       shape.insert(shape.end(), table.shape.begin(), table.shape.end());
       gradient.insert(gradient.end(), table.gradient.begin(), table.gradient.end());
       offset.push_back(static_cast<std::int64_t>(weight.size()));
     }
-    std::vector<std::int32_t> error(members.size(), LACON_FINE);
-    const lacon_contact_batch batch{.struct_size = sizeof(lacon_contact_batch),
-                                    .n_cells = static_cast<std::int32_t>(members.size()),
-                                    .n_slave_nodes = table.n_nodes,
-                                    .n_master_nodes = table.n_nodes,
-                                    .dimension = dimension,
-                                    .current_jacobian = 1,
-                                    .offset = offset.data(),
-                                    .weight = weight.data(),
-                                    .slave_shape = shape.data(),
-                                    .slave_gradient = gradient.data(),
-                                    .master_shape = shape.data(),
-                                    .slave_initial = initial.data(),
-                                    .slave = current.data(),
-                                    .master = current.data(),
-                                    .slave_normal = nullptr,
-                                    .point_gap = nullptr,
-                                    .gap = nullptr,
-                                    .measure = nullptr,
-                                    .current_measure = size.data(),
-                                    .coupling = nullptr,
-                                    .error = error.data()};
-    kernel_of(contact_.slaves[members.front()].cell).contact(&batch);
-    for (std::size_t i = 0; i < members.size(); ++i) {
-      const SlaveElement& slave = contact_.slaves[members[i]];
-      note(error[i], slave.cell);
-      whole_[slave.patch] += size[i];
+    for (std::size_t first = 0; first < members.size(); first += block) {
+      const auto some = std::span(members).subspan(first, std::min(block, members.size() - first));
+      initial.clear();
+      current.clear();
+      for (const std::int32_t s : some) {
+        append_points(mesh_, mesh_.coordinates, contact_.slaves[s].cell, dimension, initial);
+        append_points(mesh_, coordinates_, contact_.slaves[s].cell, dimension, current);
+      }
+      std::fill(error.begin(), error.end(), LACON_FINE);
+      const lacon_contact_batch batch{.struct_size = sizeof(lacon_contact_batch),
+                                      .n_cells = static_cast<std::int32_t>(some.size()),
+                                      .n_slave_nodes = table.n_nodes,
+                                      .n_master_nodes = table.n_nodes,
+                                      .dimension = dimension,
+                                      .current_jacobian = 1,
+                                      .offset = offset.data(),
+                                      .weight = weight.data(),
+                                      .slave_shape = shape.data(),
+                                      .slave_gradient = gradient.data(),
+                                      .master_shape = shape.data(),
+                                      .slave_initial = initial.data(),
+                                      .slave = current.data(),
+                                      .master = current.data(),
+                                      .slave_normal = nullptr,
+                                      .point_gap = nullptr,
+                                      .gap = nullptr,
+                                      .measure = nullptr,
+                                      .current_measure = size.data(),
+                                      .coupling = nullptr,
+                                      .error = error.data()};
+      kernel.contact(&batch);
+      for (std::size_t i = 0; i < some.size(); ++i) {
+        const SlaveElement& slave = contact_.slaves[some[i]];
+        note(error[i], slave.cell);
+        whole_[slave.patch] += size[i];
+      }
     }
   }
 }
@@ -151,22 +165,25 @@ void ContactGeometry::update(std::span<const double> displacement, std::vector<Z
     std::vector<double> normals;
     if (contact_.smoothing) normals = nodal_normals(zone.slave);
     zone.slave.normals = normals;
-    Pairing pairing = pair(zone.slave, zone.master, zone.pairing);
+    const auto take = [&](Pairing& pairing) {
+      for (const RejectedCouple& couple : pairing.rejected) {
+        if (couple.reason == Rejection::degenerate_slave)
+          fail("EVOLUTION_3", {{"cell", cell_name(contact_.slaves[zone.slaves[couple.slave]].cell)}});
+        ++rejected_[static_cast<std::size_t>(couple.reason)];
+      }
+      ZonePairing* record = nullptr;
+      if (records) {
+        record = &records->emplace_back();
+        record->point_gap.resize(pairing.cells.weight.size());
+        record->gap.resize(pairing.cells.size());
+        record->measure.resize(pairing.cells.size());
+      }
+      integrate(zone, pairing.cells, normals, record);
+      if (record) record->pairing = std::move(pairing);
+    };
+    // points of one block at a time; a record needs all of them
+    pair_in_blocks(zone.slave, zone.master, zone.pairing, records ? std::max<std::size_t>(zone.slave.size(), 1) : block, take);
     zone.slave.normals = {};
-    for (const RejectedCouple& couple : pairing.rejected) {
-      if (couple.reason == Rejection::degenerate_slave)
-        fail("EVOLUTION_3", {{"cell", cell_name(contact_.slaves[zone.slaves[couple.slave]].cell)}});
-      ++rejected_[static_cast<std::size_t>(couple.reason)];
-    }
-    ZonePairing* record = nullptr;
-    if (records) {
-      record = &records->emplace_back();
-      record->point_gap.resize(pairing.cells.weight.size());
-      record->gap.resize(pairing.cells.size());
-      record->measure.resize(pairing.cells.size());
-    }
-    integrate(zone, pairing.cells, normals, record);
-    if (record) record->pairing = std::move(pairing);
   }
   for (std::size_t p = 0; p < gap_.size(); ++p) {
     if (weight_[p] > 0) gap_[p] /= weight_[p];
@@ -190,21 +207,21 @@ void ContactGeometry::integrate(const Zone& zone, const ContactCells& cells, std
     const std::pair kinds(mesh_.types[first_cell], element_and_master.second);
     const int ns = catalog::cell(kinds.first).n_nodes, nm = catalog::cell(kinds.second).n_nodes;
     std::vector<std::int64_t> offset{0};
-    std::vector<double> weight, slave_shape, slave_gradient, master_shape, slave_initial, slave, master, slave_normal;
-    std::vector<double> shape(ns), gradient(static_cast<std::size_t>(ns) * reference), opposite(nm);
+    for (const std::int32_t c : members) offset.push_back(offset.back() + cells.offset[c + 1] - cells.offset[c]);
+    const auto n_points = static_cast<std::size_t>(offset.back());
+    std::vector<double> weight, slave_initial, slave, master, slave_normal;
+    std::vector<double> slave_shape(n_points * ns), slave_gradient(slave_shape.size() * reference), master_shape(n_points * nm);
+    weight.reserve(n_points);
     for (const std::int32_t c : members) {
       for (std::int64_t p = cells.offset[c]; p < cells.offset[c + 1]; ++p) {
         const std::span<const double> xi(cells.slave_point.data() + p * reference, reference),
             eta(cells.master_point.data() + p * reference, reference);
-        shape_functions(kinds.first, xi, shape);
-        shape_gradients(kinds.first, xi, gradient);
-        shape_functions(kinds.second, eta, opposite);
-        slave_shape.insert(slave_shape.end(), shape.begin(), shape.end());
-        slave_gradient.insert(slave_gradient.end(), gradient.begin(), gradient.end());
-        master_shape.insert(master_shape.end(), opposite.begin(), opposite.end());
+        const std::size_t at = weight.size(), width = static_cast<std::size_t>(ns) * reference;
+        shape_functions(kinds.first, xi, std::span(slave_shape).subspan(at * ns, ns));
+        shape_gradients(kinds.first, xi, std::span(slave_gradient).subspan(at * width, width));
+        shape_functions(kinds.second, eta, std::span(master_shape).subspan(at * nm, nm));
         weight.push_back(cells.weight[p]);
       }
-      offset.push_back(static_cast<std::int64_t>(weight.size()));
       const std::int32_t slave_cell = slave_cell_of(c), master_cell = zone.masters[cells.master[c]];
       append_points(mesh_, mesh_.coordinates, slave_cell, dimension, slave_initial);
       append_points(mesh_, coordinates_, slave_cell, dimension, slave);

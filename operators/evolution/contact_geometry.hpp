@@ -89,7 +89,8 @@ class ContactGeometry {
   std::optional<std::int32_t> over_axis_;  ///< a slave cell with a negative radius
 };
 
-/// The rule that measures a whole skin cell, of degree 7 to 9: as fine on curved cells as the points of pairing.
-const Rule& measuring_rule(Family family);
+/// The rule that measures a whole skin cell: of degree 4 or 5 if it is linear, of 8 or 9, as fine as the points of pairing, if
+/// it may be curved.
+const Rule& measuring_rule(CellType type);
 
 }  // namespace lacon

@@ -17,7 +17,7 @@ namespace {
 /// Length or area of a skin cell, initial geometry.
 double measure(const Mesh& mesh, std::int32_t cell) {
   const catalog::CellRow& row = mesh.row(cell);
-  const Rule& rule = measuring_rule(row.family);
+  const Rule& rule = measuring_rule(row.type);
   std::vector<double> points;
   for (const std::int32_t node : mesh.cells[cell])
     points.insert(points.end(), mesh.point(node).begin(), mesh.point(node).end());
