@@ -618,6 +618,18 @@ Field Base::field(const Result& result, std::string_view name, std::int64_t orde
                     {"known", known.empty() ? "none" : known}});
 }
 
+Field Base::field(std::string_view id) const {
+  open_concept(*this, id, "field");
+  return read_field(file(id));
+}
+
+void Base::store(const Field& field) const {
+  std::vector<std::string> references{field.mesh};
+  references.insert(references.end(), field.functions.begin(), field.functions.end());
+  store_concept(*this, *order_, concept_file(*this, *order_), "field", references,
+                [&](const hdf5::Group& root) { write_field_content(root, field); });
+}
+
 void Base::add_field(Result& result, Field field) const {
   field.mesh = result.mesh;
   // the file of an earlier version stays as it is: a field computed again gets the next free name

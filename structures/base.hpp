@@ -35,6 +35,7 @@ class Base {
   std::vector<double> list_of_reals(std::string_view id) const;
   TimeSteps time_steps(std::string_view id) const;  ///< of a time_steps or a list_of_reals
   Table table(std::string_view id) const;
+  Field field(std::string_view id) const;  ///< a concept of its own
   Result result(std::string_view id) const;
 
   /// The field of a result at an order; throws RESULT_1 where it has none.
@@ -47,6 +48,7 @@ class Base {
   void store(const Load& load) const;
   void store(const Contact& contact) const;
   void store(const Table& table) const;
+  void store(const Field& field) const;
   void store(const Result& result) const;
 
   /// Store a field file of the order's result and enter it in the index, which store(result) writes last.

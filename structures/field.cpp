@@ -37,26 +37,32 @@ Field read_field(const std::filesystem::path& file) {
   field.support = root.read<std::int32_t>("support");
   if (root.has("offset")) field.offset = root.read<std::int64_t>("offset");
   field.values = root.read<double>("values");
+  if (root.has_attribute("functions")) field.functions = root.attribute_strings("functions");
   if (root.has("present")) field.present = root.read<std::uint8_t>("present");
   return field;
+}
+
+void write_field_content(const hdf5::Group& root, const Field& field) {
+  root.set("name", field.name);
+  root.set("quantity", field.quantity);
+  root.set("location", location_name(field.location));
+  root.set("components", field.components);
+  root.set("mesh", field.mesh);
+  root.set("order", field.order);
+  root.set("instant", field.instant);
+  if (!field.functions.empty()) root.set("functions", field.functions);
+  root.write("support", field.support);
+  if (!field.offset.empty()) root.write("offset", field.offset);
+  const std::vector<hsize_t> shape{field.n_rows(), field.n_components()};
+  root.write("values", field.values, shape);
+  if (!field.present.empty()) root.write("present", field.present, shape);
 }
 
 void write_field(const std::filesystem::path& file, const Field& field) {
   hdf5::write_whole(file, [&](const hdf5::Group& root) {
     root.set("lacon_type", "field");
     root.set("format", std::int64_t{1});
-    root.set("name", field.name);
-    root.set("quantity", field.quantity);
-    root.set("location", location_name(field.location));
-    root.set("components", field.components);
-    root.set("mesh", field.mesh);
-    root.set("order", field.order);
-    root.set("instant", field.instant);
-    root.write("support", field.support);
-    if (!field.offset.empty()) root.write("offset", field.offset);
-    const std::vector<hsize_t> shape{field.n_rows(), field.n_components()};
-    root.write("values", field.values, shape);
-    if (!field.present.empty()) root.write("present", field.present, shape);
+    write_field_content(root, field);
   });
 }
 

@@ -10,6 +10,10 @@
 
 namespace lacon {
 
+namespace hdf5 {
+class Group;
+}
+
 /// Where the values of a field live.
 enum class Location {
   nodes,         ///< NOEU: one row a node
@@ -26,11 +30,12 @@ struct Field {
   std::string quantity;  ///< row of catalog/quantities.toml: "DEPL_R"
   Location location = Location::nodes;
   std::vector<std::string> components;
-  std::vector<std::int32_t> support;  ///< nodes or cells on which it lives
-  std::vector<std::int64_t> offset;   ///< ELGA, ELNO: rows of each cell, (n + 1); otherwise empty
-  std::vector<double> values;         ///< (rows, components)
-  std::vector<std::uint8_t> present;  ///< (rows, components), 0 where a component does not exist; empty: everywhere
-  std::string mesh;                   ///< id of the mesh
+  std::vector<std::int32_t> support;   ///< nodes or cells on which it lives
+  std::vector<std::int64_t> offset;    ///< ELGA, ELNO: rows of each cell, (n + 1); otherwise empty
+  std::vector<double> values;          ///< (rows, components)
+  std::vector<std::uint8_t> present;   ///< (rows, components), 0 where a component does not exist; empty: everywhere
+  std::vector<std::string> functions;  ///< of a quantity that ends in _F: ids; `values` are indices into this list
+  std::string mesh;                    ///< id of the mesh
   std::int64_t order = 0;
   double instant = 0;
 
@@ -41,11 +46,15 @@ struct Field {
   bool has(std::size_t row, std::size_t component) const {
     return present.empty() || present[row * components.size() + component] != 0;
   }
+  /// First row of support[i]; of i = support.size(), the end.
+  std::size_t first_row(std::size_t i) const { return offset.empty() ? i : static_cast<std::size_t>(offset[i]); }
   /// Index of a component, or -1.
   int component(std::string_view component_name) const;
 };
 
 Field read_field(const std::filesystem::path& file);
+/// What a file says of the field itself, next to what every file or concept has.
+void write_field_content(const hdf5::Group& root, const Field& field);
 /// Written whole or not at all.
 void write_field(const std::filesystem::path& file, const Field& field);
 

@@ -87,6 +87,9 @@ def test_resu(call):
     made = []
     for i, test in enumerate(call.keywords.get("RESU", ()), 1):
         made.append(_result_check(call, test, f"RESU[{i}]"))
+    for kind in ("CHAM_NO", "CHAM_ELEM"):
+        for i, test in enumerate(call.keywords.get(kind, ()), 1):
+            made.append(_field_check(call, test, kind, f"{kind}[{i}]"))
     for i, test in enumerate(call.keywords.get("MAILLAGE", ()), 1):
         made.append(_mesh_check(call, test))
     for check in made:
@@ -109,11 +112,24 @@ def _result_check(call, test, path):
     if field is None:
         call.fail("TEST_RESU_3", f"{path}/NOM_CHAM", field=test["NOM_CHAM"], label=result.label, instant=f"{instant:g}",
                   known=", ".join(result.field_names()))
+    return _value_check(call, test, path, field, result.label, test["NOM_CHAM"], instant)
+
+
+def _field_check(call, test, kind, path):
+    concept = test["CHAM_GD"]
+    field = concept.content()
+    if (field.location == "NOEU") != (kind == "CHAM_NO") or field.functions:
+        call.fail("TEST_RESU_10", f"{path}/CHAM_GD", label=concept.label, type=field.type(), wanted=kind)
+    return _value_check(call, test, path, field, concept.label, field.type(), None)
+
+
+def _value_check(call, test, path, field, label, name, instant):
+    """A value of a field, wherever the field is from."""
     if test["NOM_CMP"] not in field.components:
-        call.fail("TEST_RESU_4", f"{path}/NOM_CMP", component=test["NOM_CMP"], field=test["NOM_CHAM"], known=", ".join(field.components))
+        call.fail("TEST_RESU_4", f"{path}/NOM_CMP", component=test["NOM_CMP"], field=name, known=", ".join(field.components))
     values, place = select(call, test, path, field)
     value = reduce(values, test.get("TYPE_TEST"))
-    return conclude(call, Check(call.where, result.label, test["NOM_CHAM"], test["NOM_CMP"], place, instant, test.get("LEGENDE", ""), value), test)
+    return conclude(call, Check(call.where, label, name, test["NOM_CMP"], place, instant, test.get("LEGENDE", ""), value), test)
 
 
 def conclude(call, check, test):
@@ -172,7 +188,7 @@ def select(call, test, path, field):
     mesh = field.mesh()
     rows = numpy.ones(len(field.values), bool)
     words = []
-    owner = field.support if field.offset is None else numpy.repeat(field.support, numpy.diff(field.offset))
+    owner, rank = field.rows()
     for keyword, kind in (("NOEUD", "nodes"), ("GROUP_NO", "nodes"), ("MAILLE", "cells"), ("GROUP_MA", "cells")):
         if keyword not in test:
             continue
@@ -189,7 +205,6 @@ def select(call, test, path, field):
     if "POINT" in test:
         if field.offset is None:
             call.fail("TEST_RESU_5", f"{path}/POINT", keyword="POINT", field=field.name)
-        rank = numpy.concatenate([numpy.arange(n) for n in numpy.diff(field.offset)]) if len(owner) else owner
         rows &= rank == test["POINT"] - 1
         words.append(f"point {test['POINT']}")
     column = field.components.index(test["NOM_CMP"])

@@ -31,6 +31,14 @@ class Concept:
     def getType(self):
         return self.type
 
+    def __getattr__(self, name):
+        if name.startswith("_"):
+            raise AttributeError(name)
+        from .checker import nearest
+
+        known = [k for k in dir(type(self)) if not k.startswith("_")]
+        raise AttributeError(f"{self.label or self.id}, a {self.type.replace('_', ' ')}, has no '{name}' here{nearest(name, known)}")
+
     def open(self):
         """Its HDF5 file, open for reading."""
         return self.base.open(self.id)
@@ -72,11 +80,68 @@ class Mesh(Concept):
             groups = file.get(f"groups/{kind}")
             return [] if groups is None else list(groups["name"].asstr()[:])
 
-    def getGroupsOfCells(self):
+    def getGroupsOfCells(self, local=False):
         return self.group_names("cells")
 
-    def getGroupsOfNodes(self):
+    def getGroupsOfNodes(self, local=False):
         return self.group_names("nodes")
+
+    def hasGroupOfCells(self, name, local=False):
+        return name in self.group_names("cells")
+
+    def hasGroupOfNodes(self, name, local=False):
+        return name in self.group_names("nodes")
+
+    def getCells(self, groups=()):
+        """Numbers from 0 of the cells of a group or of several, in the mesh's order; of all without groups."""
+        if not groups:
+            return list(range(self.getNumberOfCells()))
+        return sorted({int(cell) for name in _names(groups) for cell in self._members("cells", name)})
+
+    def getNodes(self, groups=()):
+        """Numbers from 0 of the nodes of groups (of nodes; else of cells: their nodes), in the mesh's order; of all without groups."""
+        if not groups:
+            return list(range(self.getNumberOfNodes()))
+        found = set()
+        for name in _names(groups):
+            if name in self.group_names("nodes"):
+                found.update(self._members("nodes", name).tolist())
+            else:
+                found.update(self.getNodesFromCells(name))
+        return sorted(found)
+
+    def getNodesFromCells(self, groups):
+        connectivity = self.getConnectivity()
+        return sorted({node for cell in self.getCells(groups) for node in connectivity[cell]})
+
+    def _members(self, kind, name):
+        members = self.group(kind, name)
+        if members is None:
+            from .checker import nearest
+
+            known = self.group_names(kind)
+            raise ValueError(f"{self.label or self.id} has no group of {kind} '{name}'{nearest(name, known)}")
+        return members
+
+    def getConnectivity(self):
+        """Nodes of each cell, from 0, in the order of catalog/cells.toml."""
+        with self.open() as file:
+            offset, nodes = file["cells/offset"][:].tolist(), file["cells/nodes"][:].tolist()
+        return [nodes[first:last] for first, last in zip(offset[:-1], offset[1:])]
+
+    def getCellName(self, cell):
+        return f"M{cell + 1}"
+
+    def getNodeName(self, node):
+        return f"N{node + 1}"
+
+    def LIST_GROUP_MA(self):
+        """[(name, number of cells)]"""
+        return [(name, len(self._members("cells", name))) for name in self.group_names("cells")]
+
+    def LIST_GROUP_NO(self):
+        """[(name, number of nodes)]"""
+        return [(name, len(self._members("nodes", name))) for name in self.group_names("nodes")]
 
 
 class Coordinates:
@@ -95,8 +160,31 @@ class Coordinates:
         return self.toNumpy().ravel().tolist()
 
 
+class FieldConcept(Concept):
+    """A field of its own, of CREA_CHAMP; what a field of a result does, it does too."""
+
+    type = "field"
+
+    def content(self):
+        """A fields.Field."""
+        from .fields import read_field
+
+        return read_field(self.base, self.base.path(self.id).relative_to(self.base.folder))
+
+    def __getattr__(self, name):
+        from .fields import Field
+
+        if not name.startswith("_") and callable(getattr(Field, name, None)):
+            return getattr(self.content(), name)
+        return super().__getattr__(name)
+
+
 class Model(Concept):
     type = "model"
+
+    def getMesh(self):
+        with self.open() as file:
+            return self.base.concept(_text(file.attrs["mesh"]))
 
 
 class Material(Concept):
@@ -244,8 +332,51 @@ class Result(Concept):
             path = group["file"].asstr()[orders.index(order)]
         return read_field(self.base, path)
 
-    def getField(self, name, index):
-        return self.field(name, index)
+    def getField(self, name, value=None, para="NUME_ORDRE", crit="RELATIF", prec=1e-6, index=None, **ignored):
+        """The field of an order number, or with para="INST" of an instant. @throws AsterError where there is none"""
+        from .messages import fail
+
+        order = value if index is None else index
+        instants = self.instants()
+        if para == "INST":
+            scale = abs(order) if crit == "RELATIF" else 1.0
+            found = [o for o, t in instants if abs(t - order) <= prec * scale]
+            order = found[0] if len(found) == 1 else f"(INST {order:g})"
+        elif para != "NUME_ORDRE":
+            raise ValueError(f"getField: para is {para!r}; results here know NUME_ORDRE and INST")
+        field = self.field(name, order)
+        if field is None:
+            known = ", ".join(sorted(self.LIST_CHAMPS())) or "none"
+            fail("RESULT_1", "getField", label=self.label, field=name, order=order, known=known)
+        return field
+
+    def getAccessParameters(self):
+        """{"NUME_ORDRE": [...], "INST": [...]}"""
+        instants = self.instants()
+        return {"NUME_ORDRE": [o for o, _ in instants], "INST": [t for _, t in instants]}
+
+    LIST_VARI_ACCES = getAccessParameters
+
+    def LIST_CHAMPS(self):
+        """name of a field -> its order numbers"""
+        with self.open() as file:
+            return {name: file["fields"][name]["order"][:].tolist() for name in file.get("fields", ())}
+
+    def LIST_PARA(self):
+        """Names of its parameters."""
+        with self.open() as file:
+            return ["INST", "NUME_ORDRE", *file.get("parameters", ())]
+
+    def getLastTime(self):
+        return self.instants()[-1][1]
+
+    def getMesh(self):
+        return self.mesh()
+
+    def getModel(self):
+        with self.open() as file:
+            return self.base.concept(_text(file.attrs["model"]))
+
 
 
 class Table(Concept):
@@ -294,7 +425,7 @@ class Table(Concept):
         return self.EXTR_TABLE().values()
 
 
-_types = {c.type: c for c in (Mesh, Model, Material, MaterialField, Load, Contact, ListOfReals, TimeSteps, Function, Formula, Result,
+_types = {c.type: c for c in (Mesh, Model, Material, MaterialField, Load, Contact, FieldConcept, ListOfReals, TimeSteps, Function, Formula, Result,
                            Table)}
 
 
@@ -328,6 +459,10 @@ class CO:
         self.__class__ = kind
         self.__init__(base, identifier, label)
         base.enter(self)
+
+
+def _names(groups):
+    return [groups] if isinstance(groups, str) else list(groups)
 
 
 def _text(value):

@@ -1,4 +1,4 @@
-"""Fields of results, read from their files; docs/structures.md section 3."""
+"""Fields of results and of their own, read from their files; docs/structures.md section 3."""
 
 import json
 
@@ -7,12 +7,13 @@ class Field:
     """A field at one instant.
 
     support (n) node or cell numbers, offset (n + 1) or None, values (r, c), present (r, c) of bool: row r of cell support[i] for
-    offset[i] <= r < offset[i + 1].
+    offset[i] <= r < offset[i + 1]. A field of functions has their ids in `functions`, and indices into that list as values.
     """
 
-    def __init__(self, base, name, mesh, location, components, support, offset, values, present):
+    def __init__(self, base, name, quantity, mesh, location, components, support, offset, values, present, functions=()):
         self.base = base
         self.name = name
+        self.quantity = quantity
         self.mesh_id = mesh
         self.location = location
         self.components = components
@@ -20,44 +21,168 @@ class Field:
         self.offset = offset
         self.values = values
         self.present = present
+        self.functions = functions
 
     def mesh(self):
         return self.base.concept(self.mesh_id)
 
+    def type(self):
+        """"NOEU_DEPL_R\""""
+        return f"{self.location}_{self.quantity}"
+
+    def rows(self):
+        """(owner of each row: node or cell number; its place in it: point, or node of the cell), from 0"""
+        import numpy
+
+        if self.offset is None:
+            return self.support, numpy.zeros(len(self.support), int)
+        counts = numpy.diff(self.offset)
+        return numpy.repeat(self.support, counts), numpy.arange(len(self.values)) - numpy.repeat(self.offset[:-1], counts)
+
     def __repr__(self):
         return f"<field {self.name} ({self.location}) {', '.join(self.components)}>"
 
+    getMesh = mesh
+
+    def getName(self):
+        return self.name
+
+    def getComponents(self):
+        return list(self.components)
+
+    def getNumberOfComponents(self):
+        return len(self.components)
+
+    def getPhysicalQuantity(self):
+        return self.quantity
+
+    def getLocalization(self):
+        return self.location
+
     def toSimpleFieldOnNodes(self):
-        return SimpleField(self, "coordinates")
+        return SimpleField(self, on_nodes=True)
 
     def toSimpleFieldOnCells(self):
-        return SimpleField(self, "cells/type")
+        return SimpleField(self, on_nodes=False)
+
+    def getValuesWithDescription(self, components=(), groups=()):
+        """Values that exist, component after component, of nodes in these groups (of nodes, or of cells: their nodes).
+        @return (values, (numbers of the nodes from 0, names of the components))"""
+        if self.location != "NOEU":
+            raise TypeError(f"getValuesWithDescription is for fields of nodes; {self.name} is one of type {self.type()}")
+        values, (nodes, names) = [], ([], [])
+        for name, rows in self._chosen(components, groups):
+            values += self.values[rows, self.components.index(name)].tolist()
+            nodes += self.support[rows].tolist()
+            names += [name] * len(rows)
+        return values, (nodes, names)
+
+    def getValues(self, components=(), groups=()):
+        """As getValuesWithDescription: the values alone."""
+        import numpy
+
+        parts = [self.values[rows, self.components.index(name)] for name, rows in self._chosen(components, groups)]
+        return numpy.concatenate(parts).tolist() if parts else []
+
+    def EXTR_COMP(self, component=" ", groups=(), topo=0):
+        """code_aster's older way: .valeurs (array); with topo=1 .noeud or .maille, .point, .sous_point (numbers from 1) and .comp."""
+        return Extract(self, self._chosen([component] if component.strip() else (), groups), topo)
+
+    def _chosen(self, components, groups):
+        """[(component, rows of the groups where it exists)]"""
+        import numpy
+
+        names = [components] if isinstance(components, str) else list(components) or self.components
+        groups = [groups] if isinstance(groups, str) else list(groups)
+        owner, _ = self.rows()
+        wanted = numpy.ones(len(owner), bool)
+        if groups:
+            mesh = self.mesh()
+            members = mesh.getNodes(groups) if self.location == "NOEU" else mesh.getCells(groups)
+            wanted = numpy.isin(owner, members)
+        unknown = [name for name in names if name not in self.components]
+        if unknown:
+            raise ValueError(f"{self.name} has no component {unknown[0]}; it has {', '.join(self.components)}")
+        return [(name, numpy.flatnonzero(wanted & self.present[:, self.components.index(name)])) for name in names]
+
+
+class Extract:
+    """What EXTR_COMP returns."""
+
+    def __init__(self, field, chosen, topo):
+        import numpy
+
+        rows = numpy.concatenate([rows for _, rows in chosen]) if chosen else numpy.zeros(0, int)
+        columns = numpy.concatenate([numpy.full(len(rows), field.components.index(name)) for name, rows in chosen]) if chosen else rows
+        self.valeurs = field.values[rows, columns]
+        if topo:
+            owner, place = field.rows()
+            if field.location == "NOEU":
+                self.noeud = (owner[rows] + 1).tolist()
+            else:
+                self.maille = (owner[rows] + 1).tolist()
+                self.point = (place[rows] + 1).tolist()
+                self.sous_point = [1] * len(rows)
+            self.comp = [name for name, rows in chosen for _ in rows]
 
 
 class SimpleField:
-    """A field as two arrays over the whole mesh."""
+    """A field as two arrays: of nodes over the whole mesh, of cells over those that have values."""
 
-    def __init__(self, field, dataset):
+    def __init__(self, field, on_nodes):
         self._field = field
-        self._dataset = dataset
+        if on_nodes != (field.location == "NOEU"):
+            ask, own = ("toSimpleFieldOnNodes", "toSimpleFieldOnCells") if on_nodes else ("toSimpleFieldOnCells", "toSimpleFieldOnNodes")
+            raise TypeError(f"{ask}: {field.name} is a field of type {field.type()}; take {own}")
 
     def getComponents(self):
         return list(self._field.components)
 
-    def getValues(self):
-        """@return (values, mask), both (nodes or points, components); mask is true where the component exists"""
+    def getNumberOfComponents(self):
+        return len(self._field.components)
+
+    def getComponent(self, index):
+        return self._field.components[index]
+
+    def getPhysicalQuantity(self):
+        return self._field.quantity
+
+    def getLocalization(self):
+        return self._field.location
+
+    def getMesh(self):
+        return self._field.mesh()
+
+    def getNumberOfNodes(self):
+        return self._field.mesh().getNumberOfNodes()
+
+    def getNumberOfCells(self):
+        return self._field.mesh().getNumberOfCells()
+
+    def getCellsWithValues(self):
+        """Numbers of the cells whose rows getValues() returns, from 0."""
+        return self._field.support.tolist()
+
+    def getNumberOfPointsOfCell(self, cell):
+        field = self._field
+        at = field.support.tolist().index(cell)
+        return 1 if field.offset is None else int(field.offset[at + 1] - field.offset[at])
+
+    def getValues(self, copy=True):
+        """@return (values, mask), of nodes (nodes of the mesh, components), of cells (points or nodes of cells that have values,
+        components); mask is true where the component exists"""
         import numpy
 
         field = self._field
-        if field.offset is not None:
+        if field.location != "NOEU":
             return field.values, field.present
-        with field.mesh().open() as file:
-            count = file[self._dataset].shape[0]
-        values = numpy.zeros((count, len(field.components)))
+        values = numpy.zeros((self.getNumberOfNodes(), len(field.components)))
         mask = numpy.zeros(values.shape, bool)
         values[field.support] = field.values
         mask[field.support] = field.present
         return values, mask
+
+    toNumpy = getValues
 
 
 def read_field(base, path):
@@ -77,8 +202,10 @@ def read_field(base, path):
             present = file["present"][:].astype(bool)
         else:
             present = numpy.ones(values.shape, bool)
-        components = file.attrs["components"]
-        components = json.loads(components) if isinstance(components, str) else [
-            c.decode() if isinstance(c, bytes) else str(c) for c in components]
-        return Field(base, file.attrs["name"], file.attrs["mesh"], file.attrs["location"], components, file["support"][:],
-                     file["offset"][:] if "offset" in file else None, values, present)
+        return Field(base, file.attrs["name"], file.attrs["quantity"], file.attrs["mesh"], file.attrs["location"], _texts(file, "components"),
+                     file["support"][:], file["offset"][:] if "offset" in file else None, values, present, _texts(file, "functions"))
+
+
+def _texts(file, name):
+    texts = file.attrs.get(name, ())
+    return json.loads(texts) if isinstance(texts, str) else [t.decode() if isinstance(t, bytes) else str(t) for t in texts]

@@ -16,22 +16,6 @@
 namespace lacon {
 namespace {
 
-/// The cells of GROUP_MA, each once; skins only.
-std::vector<std::int32_t> skin_cells(const Mesh& mesh, const Keywords& keywords) {
-  const std::vector<char> wanted = selected_cells(mesh, keywords);
-  std::vector<std::int32_t> cells;
-  for (std::size_t c = 0; c < wanted.size(); ++c) {
-    if (!wanted[c]) continue;
-    if (mesh.row(c).dimension != mesh.dimension - 1)
-      fail("CALCPRES_1", {{"keyword", keywords.path("GROUP_MA")},
-                          {"cell", cell_name(static_cast<std::int64_t>(c))},
-                          {"type", std::string(mesh.row(c).name)},
-                          {"groups", fmt::format("{}", fmt::join(keywords.texts("GROUP_MA"), ", "))}});
-    cells.push_back(static_cast<std::int32_t>(c));
-  }
-  return cells;
-}
-
 /// The name of the field that holds, or gives, the stresses at nodes of an order; empty where there is none.
 std::string stress_name(const Result& result, std::int64_t order) {
   for (const char* name : {"SIEF_NOEU", "SIGM_NOEU", "SIEF_ELGA"}) {
@@ -80,7 +64,7 @@ void calc_pression(const Order& order, const Base& base) {
   if (const auto given = keywords.optional_concept("MAILLAGE"); given && *given != from.mesh)
     fail("CALCPRES_3", {{"mesh", base.label(*given)}, {"label", from.label}, {"own", base.label(from.mesh)}});
   const Mesh mesh = base.mesh(from.mesh);
-  const std::vector<std::int32_t> skin = skin_cells(mesh, keywords);
+  const std::vector<std::int32_t> skin = selected_skin(mesh, keywords);
   const bool deformed = keywords.text("GEOMETRIE") == "DEFORMEE";
 
   std::vector<std::int64_t> orders = selected_orders(base, from, keywords);

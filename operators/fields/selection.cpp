@@ -84,6 +84,21 @@ std::vector<char> selected_cells(const Mesh& mesh, const Keywords& keywords) {
   return wanted;
 }
 
+std::vector<std::int32_t> selected_skin(const Mesh& mesh, const Keywords& keywords) {
+  const std::vector<char> wanted = selected_cells(mesh, keywords);
+  std::vector<std::int32_t> cells;
+  for (std::size_t c = 0; c < wanted.size(); ++c) {
+    if (!wanted[c]) continue;
+    if (mesh.row(c).dimension != mesh.dimension - 1)
+      fail("CALCPRES_1", {{"keyword", keywords.path("GROUP_MA")},
+                          {"cell", cell_name(static_cast<std::int64_t>(c))},
+                          {"type", std::string(mesh.row(c).name)},
+                          {"groups", fmt::format("{}", fmt::join(keywords.texts("GROUP_MA"), ", "))}});
+    cells.push_back(static_cast<std::int32_t>(c));
+  }
+  return cells;
+}
+
 std::vector<char> nodes_of_marked_cells(const Mesh& mesh, const std::vector<char>& cells) {
   std::vector<char> marked(mesh.n_nodes(), 0);
   for (std::size_t c = 0; c < mesh.n_cells(); ++c)

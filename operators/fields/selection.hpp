@@ -21,6 +21,9 @@ Result part_of(const Result& result, const std::vector<std::int64_t>& orders);
 /// One entry a cell of the mesh: not 0 where GROUP_MA means it, or everywhere without GROUP_MA. Throws MESH_1, MESH_2.
 std::vector<char> selected_cells(const Mesh& mesh, const Keywords& keywords);
 
+/// The cells of GROUP_MA, by number; throws CALCPRES_1 for one that is no skin cell.
+std::vector<std::int32_t> selected_skin(const Mesh& mesh, const Keywords& keywords);
+
 /// One entry a node of the mesh: 1 where a cell that `cells` marks has it.
 std::vector<char> nodes_of_marked_cells(const Mesh& mesh, const std::vector<char>& cells);
 

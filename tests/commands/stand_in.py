@@ -47,7 +47,7 @@ def fill_field(name, order_number, instant, location, components, support, value
     path = base / result["id"] / f"{name}_{order_number}.h5"
     path.parent.mkdir(exist_ok=True)
     with h5py.File(path, "w") as file:
-        for key, value in {"lacon_type": "field", "format": 1, "name": name, "location": location, "mesh": mesh_of_model(),
+        for key, value in {"lacon_type": "field", "format": 1, "name": name, "quantity": f"{name}_R", "location": location, "mesh": mesh_of_model(),
                            "order": order_number, "instant": instant}.items():
             file.attrs[key] = value
         file.attrs.create("components", components, dtype=text)

@@ -293,6 +293,11 @@ assert M.getNumberOfNodes() == 6 and M.getNumberOfCells() == 3
 values = M.getCoordinates().getValues()
 assert len(values) == 18 and values[3:6] == [1.0, 0.0, 0.0]
 assert M.getName() == 'M' and M.getGroupsOfCells() == ['SKIN', 'BODY']
+assert M.getConnectivity() == [[0, 1, 4, 3], [1, 2, 5, 4], [0, 1]] and M.getDimension() == 2
+assert M.getCells('BODY') == [0, 1] and M.getCells() == [0, 1, 2] and M.getCells(['SKIN', 'BODY']) == [0, 1, 2]
+assert M.getNodes('TOP') == [3, 4, 5] and M.getNodes('SKIN') == [0, 1] == M.getNodesFromCells('SKIN')
+assert M.hasGroupOfCells('SKIN') and not M.hasGroupOfNodes('SKIN') and M.LIST_GROUP_MA() == [('SKIN', 1), ('BODY', 2)]
+assert M.getCellName(0) == 'M1' and M.getNodeName(3) == 'N4'
 FIN()
 """))
 
@@ -302,7 +307,26 @@ values, mask = R.getField('DEPL', 2).toSimpleFieldOnNodes().getValues()
 assert values.shape == (6, 2) and values[3, 0] == 4.0
 assert mask[:, 0].all() and list(mask[:, 1]) == [False, True, False, False, True, False]
 values, mask = R.getField('CONT_ELEM', 1).toSimpleFieldOnCells().getValues()
-assert values[2, 0] == -12.5 and list(mask[:, 0]) == [False, False, True]
+assert values[0, 0] == -12.5 and mask.all() and R.getField('CONT_ELEM', 1).toSimpleFieldOnCells().getCellsWithValues() == [2]
+assert (R.getField('DEPL', 0.5, 'INST').values == R.getField('DEPL', para='INST', value=0.5).values).all()
+assert R.getField('DEPL', index=1).getPhysicalQuantity() == 'DEPL_R'
+values, (nodes, names) = R.getField('DEPL', 2).getValuesWithDescription('DX', 'TOP')
+assert values == [4.0, 5.0, 6.0] and nodes == [3, 4, 5] and names == ['DX'] * 3
+assert R.getField('DEPL', 2).getValues('DX', ['SKIN']) == [1.0, 2.0]
+part = R.getField('DEPL', 2).EXTR_COMP('LAGS_C', [], 1)
+assert list(part.valeurs) == [-25.0, -25.0] and part.noeud == [2, 5]
+assert R.getAccessParameters() == {'NUME_ORDRE': [0, 1, 2], 'INST': [0.0, 0.5, 1.0]} == R.LIST_VARI_ACCES()
+assert 'DEPL' in R.LIST_CHAMPS() and R.getMesh() is M and R.getModel().getMesh() is M and R.getLastTime() == 1.0
+for wrong, word in ((lambda: R.getField('VITE', 1), 'has no field VITE at order 1'), (lambda: R.getField('DEPL', 0.7, 'INST'), 'INST 0.7'),
+                    (lambda: R.getField('DEPL', 1).toSimpleFieldOnCells(), 'toSimpleFieldOnNodes'),
+                    (lambda: R.getField('DEPL', 1).getValues('DZ'), 'DX, LAGS_C'),
+                    (lambda: M.getCells('BODYY'), 'nearest one is BODY'), (lambda: M.getConnectivities(), "no 'getConnectivities' here")):
+    try:
+        wrong()
+    except (AsterError, AttributeError, TypeError, ValueError) as error:
+        assert word in str(error), error
+    else:
+        raise AssertionError(word)
 assert R.getIndexes() == [0, 1, 2] and R.getTime(1) == 0.5
 FIN()
 """))

@@ -1,0 +1,278 @@
+#include "lacon/operators/post_elem/post_elem.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <memory>
+#include <optional>
+
+#include "lacon/catalog/messages.hpp"
+#include "lacon/operators/fields/extrapolation.hpp"
+#include "lacon/operators/fields/layout.hpp"
+#include "lacon/operators/fields/selection.hpp"
+
+namespace lacon {
+namespace {
+
+using Columns = std::vector<std::pair<std::string, std::string>>;
+
+/// The fields that an occurrence means, one after the other, and the model whose elements integrate them.
+class Subject {
+ public:
+  Subject(const Order& order, const Base& base, const Keywords& keywords) : base_(base), keywords_(keywords) {
+    std::string model_id;
+    if (keywords.has("RESULTAT")) {
+      result_ = base.result(keywords.concept_id("RESULTAT"));
+      model_id = result_->model;
+      name_ = keywords.text("NOM_CHAM");
+      for (const std::int64_t o : selected_orders(base, *result_, keywords))
+        if (const auto files = result_->fields.find(name_);
+            names_instants(keywords) || (files != result_->fields.end() && files->second.contains(o)))
+          orders_.push_back(o);
+      if (orders_.empty())
+        base.field(*result_, name_, result_->orders.empty() ? 0 : result_->orders.back());  // says what there is
+    } else {
+      name_ = base.label(keywords.concept_id("CHAM_GD"));
+      orders_.push_back(0);
+    }
+    if (const auto given = keywords.optional_concept("MODELE")) model_id = *given;
+    if (model_id.empty()) fail("POSTELEM_1", {{"keyword", keywords.path("MODELE")}});
+    model_ = base.model(model_id);
+    mesh_ = base.mesh(model_.mesh);
+    registry_ = std::make_unique<Registry>(order.plugins);
+    points_.emplace(mesh_, model_, *registry_);
+    ground_.emplace(mesh_, *points_);
+  }
+
+  const Keywords& keywords() const { return keywords_; }
+  const Mesh& mesh() const { return mesh_; }
+  const Ground& ground() const { return *ground_; }
+  ModelPoints& points() { return *points_; }
+
+  /// Head of the rows: which field it is.
+  Columns columns() const {
+    if (!result_) return {{"CHAM_GD", "K32"}};
+    return {{"RESULTAT", "K32"}, {"NOM_CHAM", "K16"}, {"NUME_ORDRE", "I"}, {"INST", "R"}};
+  }
+  void each_field(const std::function<void(const Field&, std::vector<Table::Cell>)>& use) const {
+    for (const std::int64_t o : orders_) {
+      const Field field = result_ ? base_.field(*result_, name_, o) : base_.field(keywords_.concept_id("CHAM_GD"));
+      if (field.mesh != model_.mesh)
+        fail("CREACHAMP_5", {{"first", base_.label(model_.mesh)}, {"second", base_.label(field.mesh)}});
+      if (field.quantity.ends_with("_F")) fail("CREACHAMP_12", {{"field", name_}, {"keyword", keywords_.path("CHAM_GD")}});
+      if (result_)
+        use(field, {result_->label, name_, o, field.instant});
+      else
+        use(field, {name_});
+    }
+  }
+
+  /// The components that NOM_CMP names, or all.
+  Field named_components(const Field& field) const {
+    if (!keywords_.has("NOM_CMP")) return field;
+    for (const std::string& component : keywords_.texts("NOM_CMP"))
+      if (field.component(component) < 0)
+        fail("CREACHAMP_14", {{"keyword", keywords_.path("NOM_CMP")},
+                              {"component", component},
+                              {"field", name_},
+                              {"known", fmt::format("{}", fmt::join(field.components, ", "))}});
+    return restrict_to_components(field, keywords_.texts("NOM_CMP"));
+  }
+  /// At integration points, whatever it was.
+  Field at_points(const Field& field) const {
+    return moved_to(*ground_, field, {"", Location::gauss_points, field.quantity}, false);
+  }
+
+  /// "TOUT" with the body cells, or each group with its cells.
+  std::vector<std::pair<std::string, std::vector<char>>> places() const {
+    std::vector<std::pair<std::string, std::vector<char>>> found;
+    if (!keywords_.has("GROUP_MA")) {
+      found.emplace_back("TOUT", std::vector<char>(mesh_.n_cells()));
+      for (std::size_t c = 0; c < mesh_.n_cells(); ++c) found.back().second[c] = points_->is_solid(c);
+    }
+    for (const std::string& group : keywords_.texts("GROUP_MA")) {
+      found.emplace_back(group, std::vector<char>(mesh_.n_cells()));
+      for (const std::int32_t cell : cells_of_group(mesh_, group, keywords_.path("GROUP_MA")))
+        found.back().second[static_cast<std::size_t>(cell)] = 1;
+    }
+    return found;
+  }
+
+  [[noreturn]] void refuse_place(const std::string& place) const {
+    fail("POSTELEM_2", {{"keyword", keywords_.path("GROUP_MA")}, {"place", place}, {"field", name_}});
+  }
+
+ private:
+  const Base& base_;
+  const Keywords& keywords_;
+  std::optional<Result> result_;
+  std::string name_;
+  std::vector<std::int64_t> orders_;
+  Model model_;
+  Mesh mesh_;
+  std::unique_ptr<Registry> registry_;
+  std::optional<ModelPoints> points_;
+  std::optional<Ground> ground_;
+};
+
+/// Call use(row of the field, measure) at every integration point of the marked cells. @return how many cells that is
+std::size_t each_point(Subject& subject, const Field& field, const std::vector<char>& cells,
+                       const std::function<void(std::size_t, double)>& use) {
+  std::size_t count = 0;
+  for (std::size_t i = 0; i < field.support.size(); ++i) {
+    const auto cell = static_cast<std::size_t>(field.support[i]);
+    if (!cells[cell]) continue;
+    ++count;
+    const CellPoints& at = subject.points()(cell, subject.mesh().coordinates);
+    for (int p = 0; p < at.n_points; ++p)
+      use(field.first_row(i) + static_cast<std::size_t>(p), at.measure[static_cast<std::size_t>(p)]);
+  }
+  return count;
+}
+
+Columns joined(Columns first, const Columns& second) {
+  first.insert(first.end(), second.begin(), second.end());
+  return first;
+}
+
+void add_row(Table& table, std::vector<Table::Cell> head, const std::vector<Table::Cell>& values) {
+  head.insert(head.end(), values.begin(), values.end());
+  table.add(std::move(head));
+}
+
+/// The factor of each component's square.
+std::vector<double> norm_factors(const Subject& subject, const Field& field) {
+  const Keywords& keywords = subject.keywords();
+  if (keywords.has("COEF_MULT")) {
+    const std::vector<double> factors = keywords.reals("COEF_MULT");
+    if (factors.size() != field.n_components())
+      fail("CREACHAMP_11", {{"keyword", keywords.path("COEF_MULT")},
+                            {"found", std::to_string(factors.size())},
+                            {"wanted", std::to_string(field.n_components())}});
+    return factors;
+  }
+  std::vector<double> factors(field.n_components(), 1.0);
+  if (keywords.text("TYPE_NORM") == "FROBENIUS")
+    for (std::size_t c = 0; c < factors.size(); ++c)
+      if (const std::string& name = field.components[c]; name.ends_with("XY") || name.ends_with("XZ") || name.ends_with("YZ"))
+        factors[c] = 2.0;
+  return factors;
+}
+
+Table norms(Subject& subject) {
+  Table table = Table::of(joined(subject.columns(), {{"GROUP", "K32"}, {"TYPE_NORM", "K16"}, {"VALE_NORM", "R"}}));
+  const auto places = subject.places();
+  std::vector<char> cells(subject.mesh().n_cells(), 0);
+  for (const auto& [name, marked] : places)
+    for (std::size_t c = 0; c < cells.size(); ++c) cells[c] = cells[c] || marked[c];
+  const std::string group = places.size() == 1 ? places.front().first : "UNION_GROUP_MA";
+  subject.each_field([&](const Field& whole, const std::vector<Table::Cell>& head) {
+    const Field field = subject.at_points(subject.named_components(whole));
+    const std::vector<double> factors = norm_factors(subject, field);
+    double sum = 0;
+    const std::size_t count = each_point(subject, field, cells, [&](std::size_t row, double measure) {
+      for (std::size_t c = 0; c < factors.size(); ++c)
+        if (field.has(row, c)) sum += measure * factors[c] * field.at(row, c) * field.at(row, c);
+    });
+    if (count == 0) subject.refuse_place(group);
+    add_row(table, head, {group, subject.keywords().text("TYPE_NORM"), std::sqrt(sum)});
+  });
+  return table;
+}
+
+Table integrals(Subject& subject) {
+  std::optional<Table> table;
+  subject.each_field([&](const Field& whole, const std::vector<Table::Cell>& head) {
+    const Field field = subject.at_points(subject.named_components(whole));
+    if (!table) {
+      Columns columns = joined(subject.columns(), {{"GROUP_MA", "K32"}, {"VOL", "R"}});
+      for (const char* prefix : {"INTE_", "MOYE_"})
+        for (const std::string& component : field.components) columns.emplace_back(prefix + component, "R");
+      table = Table::of(columns);
+    }
+    for (const auto& [group, cells] : subject.places()) {
+      double volume = 0;
+      std::vector<double> sums(field.n_components(), 0.0);
+      const std::size_t count = each_point(subject, field, cells, [&](std::size_t row, double measure) {
+        volume += measure;
+        for (std::size_t c = 0; c < sums.size(); ++c)
+          if (field.has(row, c)) sums[c] += measure * field.at(row, c);
+      });
+      if (count == 0) subject.refuse_place(group);
+      std::vector<Table::Cell> values{group, volume};
+      values.insert(values.end(), sums.begin(), sums.end());
+      for (const double sum : sums) values.emplace_back(sum / volume);
+      add_row(*table, head, values);
+    }
+  });
+  return *table;
+}
+
+Table extremes(Subject& subject) {
+  std::optional<Table> table;
+  subject.each_field([&](const Field& whole, const std::vector<Table::Cell>& head) {
+    const Field field = subject.named_components(whole);
+    const bool nodal = field.location == Location::nodes;
+    if (!table) {
+      Columns columns = joined(subject.columns(), {{"GROUP_MA", "K32"}});
+      for (const char* which : {"MIN", "MAX"})
+        for (const std::string& component : field.components) {
+          columns.emplace_back(fmt::format("{}_{}", which, component), "R");
+          columns.emplace_back(fmt::format("{}_{}_{}", nodal ? "NO" : "MA", which, component), "K16");
+        }
+      table = Table::of(columns);
+    }
+    for (const auto& [group, cells] : subject.places()) {
+      const std::vector<char> wanted = nodal ? nodes_of_marked_cells(subject.mesh(), cells) : cells;
+      std::vector<Table::Cell> values{group};
+      for (const double sign : {-1.0, 1.0})
+        for (std::size_t c = 0; c < field.n_components(); ++c) {
+          std::optional<double> best;
+          std::int32_t where = 0;
+          for (std::size_t i = 0; i < field.support.size(); ++i)
+            for (std::size_t row = field.first_row(i); row < field.first_row(i + 1); ++row)
+              if (wanted[static_cast<std::size_t>(field.support[i])] && field.has(row, c) &&
+                  (!best || sign * field.at(row, c) > sign * *best)) {
+                best = field.at(row, c);
+                where = field.support[i];
+              }
+          if (!best) subject.refuse_place(group);
+          values.emplace_back(*best);
+          values.emplace_back(nodal ? node_name(where) : cell_name(where));
+        }
+      add_row(*table, head, values);
+    }
+  });
+  return *table;
+}
+
+}  // namespace
+
+void post_elem(const Order& order, const Base& base) {
+  static const std::vector<std::pair<const char*, Table (*)(Subject&)>> kinds{
+      {"NORME", norms}, {"INTEGRALE", integrals}, {"MINMAX", extremes}};
+  std::optional<Table> table;
+  for (const auto& [keyword, make] : kinds)
+    for (const Keywords& one : order.keywords.factors(keyword)) {
+      Subject subject(order, base, one);
+      Table part = make(subject);
+      if (!table) {
+        table = std::move(part);
+        continue;
+      }
+      for (std::size_t c = 0; c < table->columns.size(); ++c)
+        if (part.columns.size() != table->columns.size() || part.columns[c].name != table->columns[c].name)
+          fail("POSTELEM_3", {{"keyword", one.path("")}});
+      for (std::size_t row = 0; row < part.n_rows(); ++row) {
+        std::vector<Table::Cell> cells;
+        for (const Table::Column& column : part.columns) cells.push_back(column.cells[row]);
+        table->add(std::move(cells));
+      }
+    }
+  base.store(*table);
+}
+
+}  // namespace lacon
