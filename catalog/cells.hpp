@@ -30,12 +30,14 @@ struct CellRow {
   int order;                      ///< 1 linear, 2 quadratic
   std::span<const double> nodes;  ///< reference coordinates, (n_nodes, dimension)
   std::span<const EdgeRow> edges;
-  std::span<const FacetRow> facets;              ///< with all nodes of the facet
-  std::span<const std::int8_t> mirror;           ///< node order of the same cell turned inside out
-  std::string_view med_name;                     ///< "HE8"
-  std::span<const std::int8_t> med_permutation;  ///< node j here is node med_permutation[j] in MED
-  int vtk_type;                                  ///< number in VTK files
-  std::span<const std::int8_t> vtk_permutation;  ///< node j here is node vtk_permutation[j] in VTK
+  std::span<const FacetRow> facets;               ///< with all nodes of the facet
+  std::span<const std::int8_t> mirror;            ///< node order of the same cell turned inside out
+  std::string_view med_name;                      ///< "HE8"
+  std::span<const std::int8_t> med_permutation;   ///< node j here is node med_permutation[j] in MED
+  int vtk_type;                                   ///< number in VTK files
+  std::span<const std::int8_t> vtk_permutation;   ///< node j here is node vtk_permutation[j] in VTK
+  int gmsh_type;                                  ///< number in gmsh's .msh files
+  std::span<const std::int8_t> gmsh_permutation;  ///< node j here is node gmsh_permutation[j] in gmsh
   CellType linear;
   CellType quadratic;  ///< the first quadratic cell of the family (QUAD8, HEXA20); itself where there is none
 };

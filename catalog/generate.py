@@ -114,15 +114,15 @@ def complete_cell(row, rows):
     mirror += [node_of_facet[frozenset(flip[v] for v in facet)] for _, facet in facets if node_of_facet]
     mirror += list(range(len(mirror), len(nodes)))
 
-    permutation, vtk_permutation = (
-        [v - 1 for v in row.get(key, range(1, len(nodes) + 1))] for key in ("med_permutation", "vtk_permutation"))
-    for what, order in (("mirror", mirror), ("med_permutation", permutation), ("vtk_permutation", vtk_permutation)):
+    permutations = {key: [v - 1 for v in row.get(key, range(1, len(nodes) + 1))]
+                    for key in ("med_permutation", "vtk_permutation", "gmsh_permutation")}
+    for what, order in (("mirror", mirror), *permutations.items()):
         check(sorted(order) == list(range(len(nodes))), f"cell {row['name']}: {what} is not a permutation")
     same = [r["name"] for r in rows if r.get("linear") == linear["name"]]
     return {
         "name": row["name"], "family": linear["family"], "dimension": dimension, "vertices": len(vertices),
         "order": 2 if adds else 1, "nodes": nodes, "edges": edges, "facets": full_facets, "mirror": mirror, "med": row["med"],
-        "med_permutation": permutation, "vtk": row["vtk"], "vtk_permutation": vtk_permutation,
+        "vtk": row["vtk"], "gmsh": row["gmsh"], **permutations,
         "linear": linear["name"], "quadratic": same[0] if same else row["name"],
     }
 
@@ -173,7 +173,7 @@ def write_cpp(catalog, writer):
             f"{{{kind(c['name'])}, {text(c['name'])}, Family::{c['family']}, {c['dimension']}, {len(c['nodes'])}, {c['vertices']}, "
             f"{c['order']}, {writer.span('double', (repr(x) for n in c['nodes'] for x in n))}, {edges}, {facets}, "
             f"{writer.integers(c['mirror'])}, {text(c['med'])}, {writer.integers(c['med_permutation'])}, "
-            f"{c['vtk']}, {writer.integers(c['vtk_permutation'])}, "
+            f"{c['vtk']}, {writer.integers(c['vtk_permutation'])}, {c['gmsh']}, {writer.integers(c['gmsh_permutation'])}, "
             f"{kind(c['linear'])}, {kind(c['quadratic'])}}}")
     tables["cells", "CellRow"] = rows
 

@@ -61,6 +61,14 @@ void Mesh::add_cell(CellType type, std::span<const std::int32_t> nodes) {
 const Group* Mesh::find_cell_group(std::string_view group_name) const { return find(cell_groups, group_name); }
 const Group* Mesh::find_node_group(std::string_view group_name) const { return find(node_groups, group_name); }
 
+int least_dimension(const Mesh& mesh) {
+  for (std::size_t c = 0; c < mesh.n_cells(); ++c)
+    if (mesh.row(c).dimension == 3) return 3;
+  for (std::size_t n = 0; n < mesh.n_nodes(); ++n)
+    if (mesh.coordinates[3 * n + 2] != 0.0) return 3;
+  return 2;
+}
+
 std::string node_name(std::int64_t node) { return "N" + std::to_string(node + 1); }
 std::string cell_name(std::int64_t cell) { return "M" + std::to_string(cell + 1); }
 

@@ -70,6 +70,9 @@ struct Mesh {
   const Group* find_node_group(std::string_view group_name) const;
 };
 
+/// 2 for a mesh without 3D cells that lies in the plane z = 0, otherwise 3.
+int least_dimension(const Mesh& mesh);
+
 std::string node_name(std::int64_t node);  ///< "N1" for node 0
 std::string cell_name(std::int64_t cell);  ///< "M1" for cell 0
 /// The number behind the name of one of `count` nodes (letter N) or cells (M), 0-based; nothing for any other text.

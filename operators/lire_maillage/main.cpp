@@ -3,6 +3,7 @@
 
 #include "lacon/operators/meshing/checks.hpp"
 #include "lacon/operators/program/program.hpp"
+#include "lacon/structures/formats/gmsh.hpp"
 #include "lacon/structures/formats/listing.hpp"
 #include "lacon/structures/formats/med.hpp"
 
@@ -15,7 +16,8 @@ void read_mesh(const Order& order, const Base& base) {
   const std::filesystem::path file = order.unit(keywords.integer("UNITE"));
   Mesh mesh = [&] {
     const Phase phase("read");
-    return read_med_mesh(file, keywords.has("NOM_MED") ? keywords.text("NOM_MED") : "");
+    return keywords.text("FORMAT") == "GMSH" ? read_gmsh_mesh(file)
+                                             : read_med_mesh(file, keywords.has("NOM_MED") ? keywords.text("NOM_MED") : "");
   }();
   {
     const Phase phase("check");
@@ -32,5 +34,6 @@ void read_mesh(const Order& order, const Base& base) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  return lacon::run_program(argc, argv, "lire_maillage", "Reads a mesh from a MED file (command LIRE_MAILLAGE)", read_mesh);
+  return lacon::run_program(argc, argv, "lire_maillage", "Reads a mesh from a MED or gmsh file (command LIRE_MAILLAGE)",
+                            read_mesh);
 }

@@ -1,8 +1,5 @@
 #include <algorithm>
-#include <cerrno>
 #include <cmath>
-#include <cstdio>
-#include <cstring>
 #include <limits>
 #include <map>
 #include <set>
@@ -11,6 +8,7 @@
 #include "lacon/catalog/messages.hpp"
 #include "lacon/structures/formats/med.hpp"
 #include "lacon/structures/formats/med_layout.hpp"
+#include "lacon/structures/formats/text_file.hpp"
 
 namespace lacon {
 namespace {
@@ -25,18 +23,7 @@ std::string joined(const std::vector<std::string>& names) {
 }
 
 hdf5::Reader open(const fs::path& file) {
-  std::error_code error;
-  const auto refuse = [&](const std::string& reason) { fail("MED_1", {{"file", file.string()}, {"reason", reason}}); };
-  if (!fs::exists(file, error)) refuse("there is no such file");
-  if (fs::is_directory(file, error)) refuse("it is a folder");
-  std::FILE* stream = std::fopen(file.c_str(), "rb");
-  if (!stream) refuse(std::strerror(errno));
-  char signature[8] = {};
-  const std::size_t length = std::fread(signature, 1, sizeof signature, stream);
-  std::fclose(stream);
-  if (length == 0) refuse("it is empty");
-  const bool hdf5_signature = length == 8 && std::memcmp(signature, "\x89HDF\r\n\x1a\n", 8) == 0;
-  if (!hdf5_signature) fail("MED_2", {{"file", file.string()}, {"reason", "it is not an HDF5 file"}});
+  if (first_bytes(file, 8) != "\x89HDF\r\n\x1a\n") fail("MED_2", {{"file", file.string()}, {"reason", "it is not an HDF5 file"}});
   return hdf5::Reader(file);
 }
 
@@ -270,13 +257,7 @@ Mesh MeshReader::read() {
   read_nodes(step, space);
   read_cells(step);
   read_groups();
-  mesh_.dimension = static_cast<int>(space);
-  const auto solid = [](CellType type) { return catalog::cell(type).dimension == 3; };
-  if (space == 3 && std::none_of(mesh_.types.begin(), mesh_.types.end(), solid)) {
-    bool flat = true;
-    for (std::size_t i = 0; i < mesh_.n_nodes(); ++i) flat = flat && mesh_.coordinates[3 * i + 2] == 0.0;
-    if (flat) mesh_.dimension = 2;
-  }
+  mesh_.dimension = space == 2 ? 2 : least_dimension(mesh_);
   return std::move(mesh_);
 }
 

@@ -18,6 +18,20 @@ std::string read_text(const fs::path& file) {
   return {std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>()};
 }
 
+std::string first_bytes(const fs::path& mesh_file, std::size_t count) {
+  std::error_code error;
+  const auto refuse = [&](const std::string& reason) { fail("MED_1", {{"file", mesh_file.string()}, {"reason", reason}}); };
+  if (!fs::exists(mesh_file, error)) refuse("there is no such file");
+  if (fs::is_directory(mesh_file, error)) refuse("it is a folder");
+  std::ifstream stream(mesh_file, std::ios::binary);
+  if (!stream) refuse(std::strerror(errno));
+  std::string bytes(count, '\0');
+  stream.read(bytes.data(), static_cast<std::streamsize>(count));
+  bytes.resize(static_cast<std::size_t>(stream.gcount()));
+  if (bytes.empty()) refuse("it is empty");
+  return bytes;
+}
+
 TextFiles::~TextFiles() {
   std::error_code error;
   for (const auto& [partial, file] : files_) fs::remove(partial, error);

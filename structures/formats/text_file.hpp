@@ -11,6 +11,9 @@ namespace lacon {
 /// The content of a file; throws BASE_2.
 std::string read_text(const std::filesystem::path& file);
 
+/// The first bytes of a mesh file, `count` or fewer; throws MED_1 where there is no such file, or nothing in it.
+std::string first_bytes(const std::filesystem::path& mesh_file, std::size_t count);
+
 /// Files written as `<file>.partial`; commit() gives them their names, in the order of writing. What is not committed
 /// disappears.
 class TextFiles {

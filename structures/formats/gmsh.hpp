@@ -1,0 +1,15 @@
+#pragma once
+// Meshes in gmsh's .msh files: versions 2 and 4.1, ASCII and binary.
+#include <filesystem>
+
+#include "lacon/structures/mesh.hpp"
+
+namespace lacon {
+
+/// Read a mesh from a .msh file. README.md beside says what becomes of physical groups. Cells are numbered by type in the order
+/// of CellType, in file order within a type; nodes in file order. A mesh without 3D cells and with z = 0 everywhere is 2D.
+/// Throws MED_1 (the file cannot be read), GMSH_1 (not a .msh file), GMSH_2 (version), GMSH_3 (damaged), GMSH_4 (a type of cell
+/// that no element uses), GMSH_5 (a cell names a node that is not there), GMSH_6 (partitioned).
+Mesh read_gmsh_mesh(const std::filesystem::path& file);
+
+}  // namespace lacon
