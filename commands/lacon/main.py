@@ -1,9 +1,13 @@
 """The launcher: `lacon study.comm --unit 20=mesh.med`, `lacon study.export`, `lacon help DEFI_CONTACT`, `lacon inspect study.base`."""
+"""The launcher: `lacon study.comm --unit 20=mesh.med`, `lacon study.export`, `lacon help DEFI_CONTACT`, `lacon convert`."""
 
 import pathlib
 import sys
 
 from . import version
+
+#: `lacon NAME ...` that runs no command files: the module whose run(arguments) does it and returns the exit status
+subcommands = {"help": "help", "convert": "convert"}
 
 #: exit statuses, DESIGN.md
 done, user_error, solution_failed, internal_error, check_failed = 0, 2, 3, 4, 5
@@ -44,30 +48,57 @@ def units_of(parser, options):
 def main(arguments=None):
     """@return the exit status"""
     arguments = sys.argv[1:] if arguments is None else arguments
-    if arguments[:1] == ["help"]:
-        from . import help as catalogue_help
+    sys.stdout.reconfigure(line_buffering=sys.stdout.isatty())
+    if arguments and arguments[0] in subcommands:
+        import importlib
 
         return catalogue_help.run(arguments[1:])
     if arguments[:1] == ["inspect"]:
         from . import inspector
 
         return inspector.run(arguments[1:])
+        tool = importlib.import_module(f".{subcommands[arguments[0]]}", __package__)
+        return guarded(lambda: (tool.run(arguments[1:]), ""))[0]
     parser, options = parse(arguments)
     units = units_of(parser, options)
-    sys.stdout.reconfigure(line_buffering=sys.stdout.isatty())
+    status, diagnostic = guarded(lambda: _run(options, units))
+    print(f"--- DIAGNOSTIC JOB : {diagnostic}", flush=True)
+    return status
+
+
+def guarded(work):
+    """What `work` returns, (exit status, words of the diagnosis); errors that it throws are shown."""
     from . import messages
 
     try:
-        status, diagnostic = _run(options, units)
+        return work()
     except messages.AsterError as error:
         for item in error.messages:
             messages.show(item)
-        status, diagnostic = error.status, error.diagnostic
+        return error.status, error.diagnostic
     except FileNotFoundError as error:  # no catalogue: an installation that is not whole
         print(f"<F> <INTERNAL> {error}", file=sys.stderr)
-        status, diagnostic = internal_error, "<F>_ABNORMAL_ABORT"
-    print(f"--- DIAGNOSTIC JOB : {diagnostic}", flush=True)
-    return status
+        return internal_error, "<F>_ABNORMAL_ABORT"
+
+
+def run_study(run, work):
+    """Do `work`, which runs command files of the study `run`, and close its base. @return (exit status, words of the diagnosis)"""
+    from . import execution, messages, study
+
+    study.current = run
+    status, diagnostic = done, ""
+    try:
+        work()
+    except execution.Failure as failure:
+        status, diagnostic = failure.status, failure.diagnostic
+    finally:
+        try:
+            run.close()
+        except messages.AsterError as error:
+            for item in error.messages:
+                messages.show(item)
+            status, diagnostic = error.status, error.diagnostic
+    return status, diagnostic
 
 
 def _run(options, units):
@@ -91,20 +122,12 @@ def _run(options, units):
     run = study.Study(base, units, options.fresh, threads, options.checks == "all", execution.provided_names())
     for name in files + named + data:
         run.protect(name)
-    study.current = run
-    status, diagnostic = done, ""
-    try:
+
+    def work():
         with execution.delivered(named):
             execution.run_files(run, files)
-    except execution.Failure as failure:
-        status, diagnostic = failure.status, failure.diagnostic
-    finally:
-        try:
-            run.close()
-        except messages.AsterError as error:
-            for item in error.messages:
-                messages.show(item)
-            status, diagnostic = error.status, error.diagnostic
+
+    status, diagnostic = run_study(run, work)
     if status == done:
         if any(check.status == "NOOK" for check in run.checks):
             status, diagnostic = check_failed, "NOOK_TEST_RESU"

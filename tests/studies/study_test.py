@@ -36,12 +36,16 @@ class StudyTest(unittest.TestCase):
         """@return .status, .stdout, .stderr, .checks (of --json), .diagnostic (last line)"""
         report = self.folder / "checks.json"
         report.unlink(missing_ok=True)
-        done = subprocess.run([LACON, *map(str, arguments), "--json", report], cwd=self.folder, capture_output=True, text=True,
-                              timeout=SECONDS, stdin=subprocess.DEVNULL, env={**os.environ, **environment})
+        done = self.run_tool(*arguments, "--json", report, **environment)
         checks = json.loads(report.read_text(encoding="utf-8"))["checks"] if report.exists() else None
         lines = done.stdout.strip().splitlines()
         return types.SimpleNamespace(status=done.returncode, stdout=done.stdout, stderr=done.stderr, checks=checks,
                                      diagnostic=lines[-1] if lines else "")
+
+    def run_tool(self, *arguments, **environment):
+        """`lacon convert`, `lacon check` and the like. @return the finished process"""
+        return subprocess.run([LACON, *map(str, arguments)], cwd=self.folder, capture_output=True, text=True, timeout=SECONDS,
+                              stdin=subprocess.DEVNULL, env={**os.environ, **environment})
 
     def run_study(self, comm, *arguments, **environment):
         """Run a command file of the tests with its base in the test's folder."""
