@@ -11,7 +11,7 @@ import pathlib
 import re
 import weakref
 
-from . import concepts, hdf5
+from . import concepts, hdf5, kept
 from .messages import fail
 
 _registry = "base.json"
@@ -22,8 +22,8 @@ _entry = re.compile(r"([a-z_]+_\d+)(\.h5)?(\.partial)?$")
 class Base:
     """An open base. One run at a time: the folder is locked until close()."""
 
-    def __init__(self, folder, where, make, fresh=False):
-        """Open `folder`. `make`: start one where there is none; `fresh`: empty the one that is there."""
+    def __init__(self, folder, where, make, fresh=False, force=False):
+        """Open `folder`. `make`: start one where there is none; `fresh`: empty the one that is there; `force`: take up nothing of it."""
         self.folder = pathlib.Path(os.path.abspath(folder))
         self._made = False
         self._objects = weakref.WeakValueDictionary()
@@ -43,6 +43,7 @@ class Base:
             os.close(self.lock)
             fail("STUDY_5", where, folder=self.folder)
         self.registry = {"format": 1, "next": 1, "labels": {}, "namespace": {}}
+        self.kept = kept.Kept(self, look=not force)
         try:
             if fresh:
                 self._empty()
@@ -68,6 +69,7 @@ class Base:
             if registry["format"] != 1:
                 raise ValueError(f"format {registry['format']}, this version reads format 1")
             {}.update(registry["labels"])
+            {}.update(registry.get("made", {}))
             int(registry["next"])
         except (OSError, ValueError, KeyError, TypeError) as error:
             fail("STUDY_6", where, folder=self.folder, reason=error)
@@ -76,7 +78,7 @@ class Base:
 
     def _empty(self):
         for path in self.folder.iterdir():
-            if path.name.startswith((_registry, _orders)) or _entry.match(path.name):
+            if path.name.startswith((_registry, _orders)) or path.name == kept.folder or _entry.match(path.name):
                 _remove(path)
 
     def write(self, where=""):
@@ -141,6 +143,7 @@ class Base:
         for path in (self.folder / f"{identifier}.h5", self.folder / f"{identifier}.h5.partial", self.folder / identifier):
             _remove(path)
         self._objects.pop(identifier, None)
+        self.kept.forget(identifier)
 
     def give_back(self, identifier):
         """Drop a concept that was not finished; its number, which nobody has seen, is the next one's again."""
@@ -174,11 +177,18 @@ class Base:
                 for name, value in attributes.items():
                     file.attrs[name] = value
                 fill(file)
+            key = kept.file_key(partial)
+            found = self.kept.find(kind, key)
+            if found:
+                partial.unlink()
+                self.give_back(identifier)
+                return self.concept(found, label)
             os.replace(partial, path)
         except OSError as error:
             with contextlib.suppress(OSError):
                 partial.unlink()
             fail("STUDY_3", folder=self.folder, reason=error.strerror or error)
+        self.kept.enter(identifier, key)
         return self.concept(identifier, label)
 
     def ids(self):
@@ -208,6 +218,7 @@ class Base:
         removed = sorted(present - reached)
         for identifier in removed:
             self.drop(identifier)
+        self.kept.clean(reached)
         self._clean_results(reached)
         self.drop_partial()
         return removed
@@ -220,6 +231,7 @@ class Base:
                 with self.open(identifier) as file:
                     for group in (file["fields"].values() if "fields" in file else ()):
                         named.update(group["file"].asstr()[:])
+                named |= self.kept.fields(identifier)
         for folder in self.folder.iterdir():
             if folder.is_dir() and _entry.match(folder.name):
                 if folder.name not in reached:

@@ -139,6 +139,12 @@ class Command:
             result = {"id": identifier, "label": label, "reuse": bool(reused)}
             keywords = {k: {"concept": identifier} if named and v is named else v for k, v in keywords.items()}
         made = orders.order(self.name, run, keywords, where, result, units, written)
+        key = None
+        if result and not any(keyword["unit"] == "out" for _, keyword in _unit_numbers(row, keywords)):
+            key = run.base.kept.order_key(made, orders.operator_folder() / row["operator"], made["units"])
+            found = self._unchanged(run, row["result"], key, where, label, identifier, reused)
+            if found:
+                return found, orders.Outcome(0, [], {}, 0.0)
         copy = orders.keep_copy(run.base, identifier) if reused else None
         try:
             outcome = orders.run(row["operator"], made, run)
@@ -157,7 +163,10 @@ class Command:
             run.base.drop_partial()
             raise
         if copy:
+            run.base.kept.enter_next(identifier, copy, key, outcome.messages)
             copy.unlink()
+        elif result:
+            run.base.kept.enter(identifier, key, outcome.messages)
         run.written_units.update((k, units[k]) for k, keyword in _unit_numbers(row, keywords) if keyword["unit"] == "out")
         if not result:
             return None, outcome
@@ -167,6 +176,20 @@ class Command:
         item = reused or run.base.concept(identifier, label)
         _enter(run, label, item, where)
         return item, outcome
+
+    def _unchanged(self, run, kind, key, where, label, identifier, reused):
+        """The concept, where an earlier run made it from the same; its alarms are said again."""
+        kept = run.base.kept
+        found = identifier if reused and kept.find_next(identifier, key) else kept.find(kind, key) if not reused else None
+        if not found:
+            return None
+        if not reused:
+            run.base.give_back(identifier)
+        run.progress("  unchanged since it was made: kept")
+        run.repeat_alarms(kept.alarms(found), where)
+        item = reused or run.base.concept(found, label)
+        _enter(run, label, item, where)
+        return item
 
     def _units(self, run, row, keywords, where):
         """Files of the units that the keywords name."""

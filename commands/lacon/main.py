@@ -23,6 +23,7 @@ def parse(arguments):
     parser.add_argument("--unit", action="append", default=[], metavar="N=FILE", help="the file of unit N; may be repeated")
     parser.add_argument("--base", metavar="FOLDER", help="folder of the base; otherwise STUDY.base beside the first command file")
     parser.add_argument("--fresh", action="store_true", help="DEBUT empties the base first")
+    parser.add_argument("--force", action="store_true", help="run every operator, also where nothing has changed since its concept was made")
     parser.add_argument("--checks", choices=("all",), help="all: a missed VALE_CALC is NOOK, not DIFF")
     parser.add_argument("--json", metavar="FILE", help="write every check with its figures")
     parser.add_argument("--timings", action="store_true", help="print where the time went")
@@ -119,7 +120,8 @@ def _run(options, units):
             threads = max(1, int(export.parameters["ncpus"]))
     execution.check_files(files)
     base = base or files[0].with_suffix(".base")
-    run = study.Study(base, units, options.fresh, threads, options.checks == "all", execution.provided_names())
+    run = study.Study(base, units, options.fresh, threads, options.checks == "all", execution.provided_names(),
+                      options.force)
     for name in files + named + data:
         run.protect(name)
 

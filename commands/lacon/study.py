@@ -6,7 +6,7 @@ import sys
 
 from . import concepts
 from .base import Base
-from .messages import AsterError, fail, message, show
+from .messages import AsterError, Message, fail, message, show
 from .namespace import Names
 from .timings import Timings
 
@@ -17,10 +17,11 @@ current = None
 class Study:
     """Everything that one call of the launcher shares between its command files."""
 
-    def __init__(self, base_folder, units=None, fresh=False, threads=None, strict_checks=False, provided=None):
+    def __init__(self, base_folder, units=None, fresh=False, threads=None, strict_checks=False, provided=None, force=False):
         self.base_folder = pathlib.Path(base_folder)
         self.units = dict(units or {})  #: number -> path
         self.fresh = fresh
+        self.force = force  #: run every operator, changed or not
         self.threads = threads
         self.strict_checks = strict_checks
         self.names = Names(provided or {})
@@ -48,7 +49,8 @@ class Study:
         if self.open:
             fail("STUDY_9", where, command=name)
         if self.base is None:
-            self.base = Base(self.base_folder, where, make=not resume, fresh=self.fresh and not resume)
+            self.base = Base(self.base_folder, where, make=not resume, fresh=self.fresh and not resume,
+                             force=self.force)
             if resume:
                 self.killed = self.base.registry.get("running", False)
                 self.sources.update(self.base.registry.get("sources", ()))
@@ -117,6 +119,13 @@ class Study:
             return
         show(item)
         self.count_alarms([item])
+
+    def repeat_alarms(self, alarms, where):
+        """Say the alarms of an operator that is not run again. @param alarms as Kept.alarms() gives them"""
+        items = [Message(*alarm, where) for alarm in alarms if alarm[1] not in self.ignored_alarms]
+        for item in items:
+            show(item)
+        self.count_alarms(items)
 
     def count_alarms(self, items):
         """Count alarms that were shown. @throws AsterError where alarms are errors"""
