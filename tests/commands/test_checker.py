@@ -56,7 +56,7 @@ class Mistakes(unittest.TestCase):
         self.one("KEYWORD_11", "DEFI_CONTACT/ZONE[1]/COEF_CONT", "not available", command="DEFI_CONTACT", **self.contact(COEF_CONT=1.0))
 
     def test_a_value_that_only_code_aster_has(self):
-        self.one("KEYWORD_13", "LIRE_MAILLAGE/FORMAT", "GMSH", command="LIRE_MAILLAGE", FORMAT="GMSH")
+        self.one("KEYWORD_13", "LIRE_MAILLAGE/FORMAT", "IDEAS", command="LIRE_MAILLAGE", FORMAT="IDEAS")
 
     def test_a_default_that_only_code_aster_has(self):
         keywords = self.contact()
