@@ -178,7 +178,7 @@ class Base:
                     file.attrs[name] = value
                 fill(file)
             key = kept.file_key(partial)
-            found = self.kept.find(kind, key)
+            found = None if reused else self.kept.find(kind, key)
             if found:
                 partial.unlink()
                 self.give_back(identifier)

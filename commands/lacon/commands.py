@@ -142,9 +142,9 @@ class Command:
         key = None
         if result and not any(keyword["unit"] == "out" for _, keyword in _unit_numbers(row, keywords)):
             key = run.base.kept.order_key(made, orders.operator_folder() / row["operator"], made["units"])
-            found = self._unchanged(run, row["result"], key, where, label, identifier, reused)
+            found = self._unchanged(run, row["result"], key, where, identifier, reused)
             if found:
-                return found, orders.Outcome(0, [], {}, 0.0)
+                return self._result(run, found, label, where, reused, named), orders.Outcome(0, [], {}, 0.0)
         copy = orders.keep_copy(run.base, identifier) if reused else None
         try:
             outcome = orders.run(row["operator"], made, run)
@@ -170,26 +170,31 @@ class Command:
         run.written_units.update((k, units[k]) for k, keyword in _unit_numbers(row, keywords) if keyword["unit"] == "out")
         if not result:
             return None, outcome
+        return self._result(run, identifier, label, where, reused, named), outcome
+
+    def _result(self, run, identifier, label, where, reused, named):
+        """The object of a concept that is there now, in the registry and under the names it was given."""
         if named:
             named.become(run.base, identifier)
             run.names.publish(label, named)
         item = reused or run.base.concept(identifier, label)
         _enter(run, label, item, where)
-        return item, outcome
+        return item
 
-    def _unchanged(self, run, kind, key, where, label, identifier, reused):
-        """The concept, where an earlier run made it from the same; its alarms are said again."""
-        kept = run.base.kept
-        found = identifier if reused and kept.find_next(identifier, key) else kept.find(kind, key) if not reused else None
+    def _unchanged(self, run, kind, key, where, identifier, reused):
+        """The id of the concept, where an earlier run made it from the same; its alarms are said again."""
+        kept, silent = run.base.kept, run.alarm_is_error
+        if reused:
+            found = identifier if kept.find_next(identifier, key, silent) else None
+        else:
+            found = kept.find(kind, key, silent)
         if not found:
             return None
         if not reused:
             run.base.give_back(identifier)
         run.progress("  unchanged since it was made: kept")
         run.repeat_alarms(kept.alarms(found), where)
-        item = reused or run.base.concept(found, label)
-        _enter(run, label, item, where)
-        return item
+        return found
 
     def _units(self, run, row, keywords, where):
         """Files of the units that the keywords name."""

@@ -93,15 +93,18 @@ class Kept:
         """The key of what an order makes, None where there is none. @param files those that it reads"""
         if any(_stat(path) is None for path in (program, *files.values())):
             return None
-        inputs = _concept_ids(order["keywords"])
-        if order["result"]["reuse"]:
-            inputs.append(order["result"]["id"])
+        result, keywords = order["result"], order["keywords"]
+        if result["reuse"]:
+            inputs = [*_concept_ids(keywords), result["id"]]
+        else:  # CO() names the result itself among the keywords
+            keywords = {k: v for k, v in keywords.items() if v != {"concept": result["id"]}}
+            inputs = _concept_ids(keywords)
         reached = self._reached(inputs)
         if reached is None:
             return None
         return _digest({
-            "command": order["command"], "keywords": order["keywords"], "label": order["result"]["label"],
-            "reuse": order["result"]["reuse"], "inputs": reached, "program": _of_file(program), "version": _version(),
+            "command": order["command"], "keywords": keywords, "label": result["label"], "reuse": result["reuse"],
+            "inputs": reached, "program": _of_file(program), "version": _version(),
             "files": {unit: [pathlib.Path(path).stem, _of_file(path)] for unit, path in files.items()},
         })
 

@@ -1,5 +1,4 @@
-"""The launcher: `lacon study.comm --unit 20=mesh.med`, `lacon study.export`, `lacon help DEFI_CONTACT`, `lacon inspect study.base`."""
-"""The launcher: `lacon study.comm --unit 20=mesh.med`, `lacon study.export`, `lacon help DEFI_CONTACT`, `lacon convert`."""
+"""The launcher: `lacon study.comm --unit 20=mesh.med`, `lacon study.export`, and tools: `lacon help DEFI_CONTACT`, `lacon inspect`."""
 
 import pathlib
 import sys
@@ -7,7 +6,7 @@ import sys
 from . import version
 
 #: `lacon NAME ...` that runs no command files: the module whose run(arguments) does it and returns the exit status
-subcommands = {"help": "help", "convert": "convert"}
+subcommands = {"help": "help", "inspect": "inspector", "convert": "convert"}
 
 #: exit statuses, DESIGN.md
 done, user_error, solution_failed, internal_error, check_failed = 0, 2, 3, 4, 5
@@ -53,11 +52,6 @@ def main(arguments=None):
     if arguments and arguments[0] in subcommands:
         import importlib
 
-        return catalogue_help.run(arguments[1:])
-    if arguments[:1] == ["inspect"]:
-        from . import inspector
-
-        return inspector.run(arguments[1:])
         tool = importlib.import_module(f".{subcommands[arguments[0]]}", __package__)
         return guarded(lambda: (tool.run(arguments[1:]), ""))[0]
     parser, options = parse(arguments)

@@ -27,7 +27,7 @@ class Life(LauncherTest):
 
     def test_debut_keeps_what_is_there_until_it_is_assigned_again(self):
         self.ok(self.run_study(f"DEBUT()\nA = {MATERIAL}\nB = {MATERIAL}\nx = 1\nFIN()\n"))
-        self.ok(self.run_study(f"DEBUT()\nA = {MATERIAL.replace('0.3', '0.2')}\nFIN()\n"))
+        self.ok(self.run_study(f"DEBUT()\nA = {MATERIAL.replace('E=1', 'E=2')}\nFIN()\n"))
         self.assertEqual(self.registry()["labels"], {"A": "material_3", "B": "material_2"})
         self.assertEqual(self.entries(), ["material_2", "material_3"])
         self.assertEqual(self.registry()["namespace"]["values"], {}, "plain data of the earlier run is not this run's")

@@ -137,6 +137,13 @@ class Kept(KeptTest):
         labels = self.registry()["labels"]
         self.assertNotEqual(labels["N"], labels["K"])
 
+    def test_a_concept_that_is_named_beforehand(self):
+        text = STUDY + "MACR_ADAP_MAIL(ADAPTATION='RAFFINEMENT_UNIFORME', MAILLAGE_N=M0, MAILLAGE_NP1=CO('FINE'))\nprint('nodes', FINE.getNumberOfNodes())\nFIN()\n"
+        self.assertEqual(self.started(text), ["macr_adap_mail"])
+        self.assertEqual(self.started(text), [])
+        self.assertIn("nodes 6", self.last_run.out)
+        self.assertEqual(self.started(text.replace("MAILLAGE_N=M0", "MAILLAGE_N=M0, GROUP_MA='BODY'")), ["macr_adap_mail"])
+
     def test_a_failed_run_costs_nothing_of_what_was_made(self):
         self.refused(self.run_study(WITH_FIELDS.replace("CALC_CHAMP", "1/0\nCALC_CHAMP")), "STUDY_19")
         self.assertEqual(self.started(WITH_FIELDS), ["impr_resu"])
