@@ -58,7 +58,7 @@ def run_text(study, name, text):
     """Run a text as a command file of that name. @throws Failure, after the reason was printed"""
     study.names.values.update(__name__="__main__", __builtins__=builtins)
     labels.sources[name] = text
-    _run_file(name, text, study.names.values)
+    _run_file(study, name, text, study.names.values)
 
 
 def _read(path):
