@@ -8,6 +8,7 @@
 
 #include "lacon/catalog/messages.hpp"
 #include "lacon/operators/affe_char/places.hpp"
+#include "lacon/operators/affe_char/relations.hpp"
 #include "lacon/operators/meshing/skin.hpp"
 
 namespace lacon {
@@ -161,6 +162,7 @@ Load affe_char(const Mesh& mesh, const Model& model, Registry& registry, const B
   load_nodes(scene, keywords.factors("FORCE_NODALE"), forces, "CHARGE_5", load.nodal);
   load_cells(load, scene, keywords);
   load_gravity(load, scene, keywords);
+  add_relations(load, scene, keywords);
 
   const auto cells = [](const std::vector<LoadTerm>& terms) {
     std::vector<std::int32_t> places;

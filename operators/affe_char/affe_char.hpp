@@ -10,8 +10,8 @@ namespace lacon {
 /// Throws MESH_1, MESH_2, CHARGE_1 (no such node), CHARGE_2 (node without finite element), CHARGE_3 (no such degree of freedom
 /// there), CHARGE_4 and CHARGE_5 (two values for one component), CHARGE_6 (cell that cannot carry the load), CHARGE_7 (skin
 /// that looks into its body, VERI_NORM='OUI'), CHARGE_9 (component that the element does not know), CHARGE_10 (direction of
-/// gravity), FUNCTION_2 (function of another parameter than X, Y, Z, INST). CHARGE_8 alarms for a skin under pressure without
-/// body.
+/// gravity), CHARGE_11 to CHARGE_15 (relations), FUNCTION_2 (function of another parameter than X, Y, Z, INST). CHARGE_8 alarms
+/// for a skin under pressure without body.
 Load affe_char(const Mesh& mesh, const Model& model, Registry& registry, const Base& base, const Keywords& keywords);
 
 }  // namespace lacon

@@ -146,9 +146,10 @@ class Setting {
     }
     return materials_->parameter(cell, "ELAS/NU", points().element(static_cast<std::size_t>(cell))->name);
   }
-  std::vector<double> external_force(double instant) {
+  /// @param displacement (n_nodes, dimension), which following pressures act on
+  std::vector<double> external_force(double instant, std::span<const double> displacement) {
     if (!loads_) loads_ = read_loads(order_, base_, result_);
-    return loads_->external_force(instant);
+    return loads_->external_force(instant, displacement);
   }
 
  private:
@@ -230,8 +231,12 @@ class Instant {
   Field reactions(std::string name) {
     const Mesh& mesh = setting_.mesh();
     Field field = forces(setting_.base().field(setting_.result(), "SIEF_ELGA", order_), std::move(name));
-    const std::vector<double> external = setting_.external_force(field.instant);
     const std::size_t width = field.n_components();
+    const std::vector<double> current = displaced(mesh, (*this)("DEPL"));  // coordinates
+    std::vector<double> displacement;
+    for (std::size_t node = 0; node < mesh.n_nodes(); ++node)
+      for (std::size_t d = 0; d < width; ++d) displacement.push_back(current[3 * node + d] - mesh.coordinates[3 * node + d]);
+    const std::vector<double> external = setting_.external_force(field.instant, displacement);
     for (std::size_t i = 0; i < field.support.size(); ++i)
       for (std::size_t d = 0; d < width; ++d)
         field.at(i, d) -= external[static_cast<std::size_t>(field.support[i]) * width + d];

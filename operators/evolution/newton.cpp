@@ -12,10 +12,15 @@
 namespace lacon {
 namespace {
 
-Ragged<std::int32_t> nodes_of_solids(const StaticProblem& problem) {
+/// Nodes of every element that has a matrix.
+Ragged<std::int32_t> nodes_of_elements(const StaticProblem& problem) {
   Ragged<std::int32_t> nodes;
-  for (const ElementSet& set : problem.solids)
+  const auto add = [&](const ElementSet& set) {
     for (const std::int32_t cell : set.cells) nodes.push_back(problem.mesh.cells[cell]);
+  };
+  for (const ElementSet& set : problem.solids) add(set);
+  for (const TimedLoad& load : problem.loads)
+    for (const LoadedCells& loaded : load.following) add(loaded.set);
   return nodes;
 }
 
@@ -39,13 +44,15 @@ double largest_vector(std::span<const double> values, int dimension) {
 Newton::Newton(const StaticProblem& problem, const NewtonCriteria& criteria, const SaddlePointOptions& solver)
     : problem_(problem),
       criteria_(criteria),
-      elements_(nodes_of_solids(problem)),
+      relations_(problem),
+      elements_(nodes_of_elements(problem)),
       system_(problem.numbering, elements_),
       solver_(solver) {
   if (problem.contact) {
     contact_.emplace(problem);
     criteria_.resi_geom = problem.contact->resi_geom;
   }
+  linear_ = !problem.has_following_loads();
   for (const ElementSet& set : problem.solids) {
     linear_ = linear_ && set.linear;
     stresses_.emplace_back(set.cells.size() * set.tabulation.n_points * set.row->stress.size());
@@ -53,7 +60,7 @@ Newton::Newton(const StaticProblem& problem, const NewtonCriteria& criteria, con
 }
 
 StaticState Newton::initial_state() {
-  StaticState state{std::vector<double>(problem_.n_dofs(), 0.0), {}};
+  StaticState state{std::vector<double>(problem_.n_dofs(), 0.0), {}, std::vector<double>(relations_.size(), 0.0)};
   if (contact_) {
     const Phase phase("pairing");
     contact_->update_geometry(state.displacement);
@@ -65,7 +72,12 @@ StaticState Newton::initial_state() {
 
 void Newton::assemble(const StaticState& state) {
   const bool keep_stiffness = linear_ && has_stiffness_;
-  system_.start(contact_ ? contact_->couplings() : std::vector<Coupling>{}, keep_stiffness);
+  std::vector<Coupling> couplings = relations_.couplings();
+  if (contact_) {
+    const std::vector<Coupling> own = contact_->couplings();
+    couplings.insert(couplings.end(), own.begin(), own.end());
+  }
+  system_.start(couplings, keep_stiffness);
   const int dimension = problem_.dimension;
   {
     const Phase phase("elements");
@@ -85,8 +97,22 @@ void Newton::assemble(const StaticState& state) {
     }
     force_scale_ = sums.empty() ? 0 : *std::max_element(sums.begin(), sums.end());
   }
+  if (instant_ && problem_.has_following_loads()) {
+    external_ = given_;
+    std::vector<double> matrix, nothing;
+    problem_.following_forces(
+        *instant_, state.displacement, true,
+        [&](std::span<const std::int64_t> dofs, std::span<const double> force, std::span<const double> by) {
+          for (std::size_t i = 0; i < dofs.size(); ++i) external_[dofs[i]] += force[i];
+          matrix.assign(by.begin(), by.end());
+          for (double& entry : matrix) entry = -entry;
+          nothing.assign(dofs.size(), 0.0);
+          system_.add(dofs, matrix, nothing);
+        });
+  }
   if (!keep_stiffness) system_.stiffness_is_complete();
   has_stiffness_ = true;
+  relations_.assemble(state.relations, state.displacement, system_);
   if (contact_) {
     const Phase phase("contact");
     contact_->assemble(state.patches, system_);
@@ -108,19 +134,23 @@ SolutionReport Newton::solve_system(std::vector<double>& right_side) {
     if (equation < 0 || std::find(null.begin(), null.end(), equation) == null.end()) continue;
     names += (shown++ ? ", " : "") + problem_.dof_name(static_cast<std::int64_t>(dof));
   }
+  for (std::size_t r = 0; r < relations_.size() && shown < most; ++r)
+    if (std::find(null.begin(), null.end(), system_.equation(relations_.unknown(r, system_))) != null.end())
+      names += (shown++ ? ", " : "") + relations_.name(r);
   fail("SOLVER_3", {{"count", std::to_string(null.size())}, {"names", names.empty() ? "multipliers of contact" : names}});
 }
 
-void Newton::judge(const std::vector<double>& external, const StaticState& state, IterationReport& report) {
+void Newton::judge(const StaticState& state, IterationReport& report) {
   const std::vector<double>& residual = system_.residual();
-  double reference = 0;  // external forces and reactions
+  double reference = 0;  // external forces, reactions and forces of relations
+  for (const double force : relations_.forces(state.relations)) reference = std::max(reference, std::abs(force));
   report.maxi = 0;
   for (std::size_t dof = 0; dof < problem_.n_dofs(); ++dof) {
-    const double unbalanced = std::abs(residual[dof] - external[dof]);
+    const double unbalanced = std::abs(residual[dof] - external_[dof]);
     if (problem_.imposed[dof]) {
       reference = std::max(reference, unbalanced);
     } else if (problem_.exists[dof]) {
-      reference = std::max(reference, std::abs(external[dof]));
+      reference = std::max(reference, std::abs(external_[dof]));
       if (unbalanced > report.maxi || report.worst_dof < 0) {
         report.maxi = unbalanced;
         report.worst_dof = static_cast<std::int64_t>(dof);
@@ -163,7 +193,16 @@ std::string Newton::unmet_criteria(const IterationReport& line, std::int64_t fir
 
 int Newton::solve(double instant, StaticState& state, const std::function<void(const IterationReport&)>& report) {
   const int dimension = problem_.dimension;
-  const std::vector<double> external = problem_.external_force(instant), values = problem_.imposed_values(instant);
+  const std::vector<double> values = problem_.imposed_values(instant), relations = relations_.values(instant, values);
+  instant_ = instant;
+  given_ = problem_.dead_force(instant);
+  given_.resize(problem_.n_dofs() + problem_.n_patches(), 0.0);
+  given_.insert(given_.end(), relations.begin(), relations.end());
+  external_ = given_;
+  problem_.following_forces(instant, state.displacement, false,
+                            [&](std::span<const std::int64_t> dofs, std::span<const double> force, std::span<const double>) {
+                              for (std::size_t i = 0; i < dofs.size(); ++i) external_[dofs[i]] += force[i];
+                            });
   std::vector<double> step(problem_.n_dofs(), 0.0);
   for (std::size_t dof = 0; dof < step.size(); ++dof)
     if (problem_.imposed[dof]) step[dof] = values[dof] - state.displacement[dof];
@@ -173,8 +212,8 @@ int Newton::solve(double instant, StaticState& state, const std::function<void(c
     std::int64_t changed = 0;  // the first patch whose status has changed
     const auto start = std::chrono::steady_clock::now();
     IterationReport line{.iteration = iteration};
-    if (contact_) line.constraints = contact_->n_constraints(state.patches);
-    std::vector<double> solution = system_.right_side(external, step);
+    line.constraints = relations_.n_constraints() + (contact_ ? contact_->n_constraints(state.patches) : 0);
+    std::vector<double> solution = system_.right_side(external_, step);
     line.solution = solve_system(solution);
     // the increment of all displacements: imposed ones move in the first iteration alone
     std::vector<double> increment = step;
@@ -182,6 +221,8 @@ int Newton::solve(double instant, StaticState& state, const std::function<void(c
     for (std::size_t dof = 0; dof < increment.size(); ++dof)
       if (const std::int64_t e = problem_.numbering.equation[dof]; e >= 0) increment[dof] = solution[e];
     for (std::size_t dof = 0; dof < increment.size(); ++dof) state.displacement[dof] += increment[dof];
+    for (std::size_t r = 0; r < relations_.size(); ++r)
+      state.relations[r] += solution[system_.equation(relations_.unknown(r, system_))];
     if (contact_) {
       for (std::size_t p = 0; p < contact_->n_patches(); ++p)
         state.patches.lambda[p] += solution[problem_.numbering.of_patch(static_cast<std::int64_t>(p))];
@@ -196,7 +237,7 @@ int Newton::solve(double instant, StaticState& state, const std::function<void(c
     // likewise displacements that vanish against the patches
     line.geometry =
         moved == 0 ? 0 : moved / std::max(whole, contact_ ? vanishing_displacement * contact_->smallest_patch() : 0.0);
-    judge(external, state, line);
+    judge(state, line);
     line.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     report(line);
     if (line.converged()) {

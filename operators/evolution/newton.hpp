@@ -7,6 +7,7 @@
 
 #include "lacon/assembly/saddle_point_solver.hpp"
 #include "lacon/operators/evolution/contact_state.hpp"
+#include "lacon/operators/evolution/relations.hpp"
 #include "lacon/operators/evolution/static_problem.hpp"
 #include "lacon/operators/evolution/system.hpp"
 
@@ -32,7 +33,7 @@ struct IterationReport {
   double constraint = 0;  ///< max |g_T| / h
   bool constraint_met = true;
   SolutionReport solution;       ///< how the linear system was solved
-  std::int64_t constraints = 0;  ///< active patches when the matrix was made: the negative pivots to expect
+  std::int64_t constraints = 0;  ///< active patches and relations when the matrix was made: the negative pivots to expect
   double seconds = 0;
 
   bool converged() const { return rela_met && maxi_met && geometry_met && constraint_met && status_changes == 0; }
@@ -42,6 +43,7 @@ struct IterationReport {
 struct StaticState {
   std::vector<double> displacement;  ///< (n_nodes, dimension)
   Patchwise patches;
+  std::vector<double> relations;  ///< multipliers of the loads' relations
 };
 
 class Newton {
@@ -69,10 +71,11 @@ class Newton {
   SolutionReport solve_system(std::vector<double>& right_side);
   /// What keeps the last iteration from being the solution, in words.
   std::string unmet_criteria(const IterationReport& line, std::int64_t first_changed) const;
-  void judge(const std::vector<double>& external, const StaticState& state, IterationReport& report);
+  void judge(const StaticState& state, IterationReport& report);
 
   const StaticProblem& problem_;
   NewtonCriteria criteria_;
+  Relations relations_;
   Ragged<std::int32_t> elements_;
   System system_;
   SaddlePointSolver solver_;
@@ -80,8 +83,11 @@ class Newton {
   bool has_stiffness_ = false;  ///< and is in the matrix
   std::optional<ContactState> contact_;
   std::vector<std::vector<double>> stresses_;
-  double force_scale_ = 0;    ///< largest sum of |element forces| at a node
-  double largest_force_ = 0;  ///< largest reference of a residual so far
+  std::optional<double> instant_;  ///< that of the loads
+  std::vector<double> given_;      ///< at that instant: dead forces, and behind them what the multipliers' rows are to be
+  std::vector<double> external_;   ///< the same with following forces at the last evaluation
+  double force_scale_ = 0;         ///< largest sum of |element forces| at a node
+  double largest_force_ = 0;       ///< largest reference of a residual so far
 };
 
 }  // namespace lacon

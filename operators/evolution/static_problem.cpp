@@ -51,7 +51,7 @@ StaticProblem read_model(const Order& order, const Base& base, const std::string
 
 }  // namespace
 
-std::vector<double> StaticProblem::external_force(double instant) const {
+std::vector<double> StaticProblem::dead_force(double instant) const {
   std::vector<double> force(n_dofs(), 0.0);
   for (const TimedLoad& load : loads) {
     if (load.cells.empty() && load.nodal_dofs.empty()) continue;
@@ -60,6 +60,43 @@ std::vector<double> StaticProblem::external_force(double instant) const {
     for (std::size_t i = 0; i < force.size(); ++i) force[i] += factor * own[i];
   }
   return force;
+}
+
+bool StaticProblem::has_following_loads() const {
+  return std::any_of(loads.begin(), loads.end(), [](const TimedLoad& load) { return !load.following.empty(); });
+}
+
+void StaticProblem::following_forces(
+    double instant, std::span<const double> displacement, bool with_matrix,
+    const std::function<void(std::span<const std::int64_t>, std::span<const double>, std::span<const double>)>& use) const {
+  if (!has_following_loads()) return;
+  std::vector<double> coordinates = mesh.coordinates;
+  for (std::size_t node = 0; node < mesh.n_nodes(); ++node)
+    for (int d = 0; d < dimension; ++d) coordinates[3 * node + d] += displacement[node * dimension + d];
+  std::vector<std::int64_t> dofs;
+  for (const TimedLoad& load : loads) {
+    if (load.following.empty()) continue;
+    const double factor = load.multiplier(instant);
+    for (const LoadedCells& loaded : load.following) {
+      std::vector<double> values = loaded.values.at(instant);
+      for (double& value : values) value *= factor;
+      evaluate_loads(loaded.set, mesh, dimension, coordinates, values, with_matrix, [&](const LoadValues& element) {
+        dofs.clear();
+        for (const std::int32_t node : mesh.cells[element.cell])
+          for (int d = 0; d < dimension; ++d) dofs.push_back(std::int64_t{node} * dimension + d);
+        use(dofs, element.force, element.matrix);
+      });
+    }
+  }
+}
+
+std::vector<double> StaticProblem::external_force(double instant, std::span<const double> displacement) const {
+  std::vector<double> sum = dead_force(instant);
+  following_forces(instant, displacement, false,
+                   [&](std::span<const std::int64_t> dofs, std::span<const double> force, std::span<const double>) {
+                     for (std::size_t i = 0; i < dofs.size(); ++i) sum[dofs[i]] += force[i];
+                   });
+  return sum;
 }
 
 std::vector<double> StaticProblem::imposed_values(double instant) const {
@@ -118,8 +155,10 @@ StaticProblem read_problem(const Order& order, const Base& base) {
   }
   std::vector<std::uint8_t> free(problem.n_dofs());
   for (std::size_t i = 0; i < free.size(); ++i) free[i] = problem.exists[i] && !problem.imposed[i];
-  const auto n_patches = problem.contact ? static_cast<std::int64_t>(problem.mesh.patches->size()) : 0;
-  problem.numbering = number_equations(static_cast<std::int64_t>(problem.mesh.n_nodes()), problem.dimension, free, n_patches);
+  std::int64_t n_multipliers = problem.n_patches();
+  for (const TimedLoad& load : problem.loads) n_multipliers += static_cast<std::int64_t>(load.relations.size());
+  problem.numbering =
+      number_equations(static_cast<std::int64_t>(problem.mesh.n_nodes()), problem.dimension, free, n_multipliers);
   return problem;
 }
 

@@ -1,5 +1,6 @@
 #pragma once
 // Everything a quasi-static computation starts from: mesh, elements with materials, loads in time, contact.
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -29,8 +30,18 @@ struct StaticProblem {
   Numbering numbering;
 
   std::size_t n_dofs() const { return exists.size(); }
+  /// Patches that have a multiplier.
+  std::int64_t n_patches() const { return contact ? static_cast<std::int64_t>(mesh.patches->size()) : 0; }
+  bool has_following_loads() const;
   /// Dead external forces at an instant, (n_nodes, dimension).
-  std::vector<double> external_force(double instant) const;
+  std::vector<double> dead_force(double instant) const;
+  /// Call use(degrees of freedom, force, symmetric part of its derivative by them or nothing) for each element under a
+  /// following pressure, on the geometry displaced by (n_nodes, dimension).
+  void following_forces(
+      double instant, std::span<const double> displacement, bool with_matrix,
+      const std::function<void(std::span<const std::int64_t>, std::span<const double>, std::span<const double>)>& use) const;
+  /// Dead and following forces, (n_nodes, dimension).
+  std::vector<double> external_force(double instant, std::span<const double> displacement) const;
   /// Imposed displacements at an instant, (n_nodes, dimension), 0 where none is. Throws LOAD_1 where two loads contradict each
   /// other.
   std::vector<double> imposed_values(double instant) const;

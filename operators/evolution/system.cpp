@@ -58,7 +58,7 @@ std::vector<double> System::right_side(std::span<const double> external, std::sp
   std::vector<double> side(numbering_.n_equations());
   for (std::int64_t unknown = 0; unknown < static_cast<std::int64_t>(residual_.size()); ++unknown)
     if (const std::int64_t e = equation(unknown); e >= 0)
-      side[e] = (unknown < n_displacements() ? external[unknown] : 0.0) - residual_[unknown];
+      side[e] = (unknown < static_cast<std::int64_t>(external.size()) ? external[unknown] : 0.0) - residual_[unknown];
   for (const ImposedTerm& term : imposed_terms_) side[term.equation] -= term.coefficient * step[term.dof];
   return side;
 }

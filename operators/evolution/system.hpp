@@ -9,8 +9,8 @@
 
 namespace lacon {
 
-/// Unknowns are counted as displacements (node * dimension + component) and behind them the multipliers of the patches; only
-/// some of them have an equation.
+/// Unknowns are counted as displacements (node * dimension + component) and behind them the multipliers of the patches, then
+/// those of relations; only some of them have an equation.
 class System {
  public:
   System(const Numbering& numbering, const Ragged<std::int32_t>& elements);
@@ -36,7 +36,8 @@ class System {
   std::int64_t first_multiplier() const { return numbering_.first[numbering_.n_nodes]; }
 
   /// The right side -residual + external - K du of the imposed displacements, (n_equations).
-  /// @param external, step (n_displacements): external force; change of the imposed displacements, 0 elsewhere
+  /// @param external external forces, and behind them what the multipliers' rows are to be; 0 where it ends early
+  /// @param step (n_displacements): change of the imposed displacements, 0 elsewhere
   std::vector<double> right_side(std::span<const double> external, std::span<const double> step) const;
 
  private:

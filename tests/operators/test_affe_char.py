@@ -208,6 +208,73 @@ class Loads(OperatorTest):
         self.refuses("CHARGE_10", {"PESANTEUR": [{"GRAVITE": 1.0, "DIRECTION": [0, 1, 1]}]}, "leaves the plane")
         self.refuses("CHARGE_10", {"PESANTEUR": [{"GRAVITE": 1.0, "DIRECTION": [0, 0, 0]}]}, "no length")
 
+    # ------------------------------------------------------------------------------------------ relations
+
+    def relations(self, n_dofs, dimension):
+        """(rows, n_dofs) coefficients and the values"""
+        with h5py.File(self.path("load_4")) as file:
+            group = file["relations"]
+            offset, nodes, index = group["offset"][()], group["node"][()], group["component_index"][()]
+            names = [text(n) for n in group["component"][()]]
+            rows = np.zeros((len(offset) - 1, n_dofs))
+            for r, (a, b) in enumerate(zip(offset[:-1], offset[1:])):
+                for node, component, coefficient in zip(nodes[a:b], index[a:b], group["coefficient"][a:b]):
+                    rows[r, node * dimension + ("DX", "DY", "DZ").index(names[component])] += coefficient
+            return rows, group["value"][()]
+
+    def test_rigid_bodies_keep_rigid_motions_and_no_others(self):
+        """Relations are independent, and their common null space is that of the rigid motions."""
+        rng = np.random.default_rng(3)
+        shapes = {"plane": rng.uniform(-1, 1, (7, 2)), "space": rng.uniform(-1, 1, (8, 3)) + 100, "two points": np.array([[0.0, 0, 1], [1, 2, 3]]),
+                  "on a line": np.outer([0, 1, 0.3, 2.5], [1, -2, 0.5]) + 3, "in a plane of space": np.outer([0, 1, 2, 0.5], [1, 0, 1]) + [
+                      [0, 0, 0], [0, 1, 0], [0, -1, 0], [0, 2, 0]], "twice the same point": np.array([[0.0, 0], [1, 0], [0, 0], [1, 1]])}
+        for name, points in shapes.items():
+            with self.subTest(name):
+                n, dimension = points.shape
+                element = f"{'D_PLAN' if dimension == 2 else '3D'}/SEG2" if dimension == 2 else "3D/TRIA3"
+                size = 2 if dimension == 2 else 3
+                cells = [("SEG2" if dimension == 2 else "TRIA3", [(k + j) % n for j in range(size)]) for k in range(n)]
+                self.write_mesh("mesh_1", points, cells, cell_groups={"ALL": list(range(n))}, node_groups={"NODES": list(range(n))})
+                self.write_model("model_3", "mesh_1", [element], [0] * n, dimension=dimension)
+                run = self.meca(LIAISON_SOLIDE=[{"GROUP_NO": ["NODES"]}])
+                self.assertEqual(run.status, 0, run.stderr)
+                rows, values = self.relations(n * dimension, dimension)
+                motions = []
+                for d in range(dimension):
+                    motions.append(np.tile(np.eye(dimension)[d], n))
+                for i in range(dimension):
+                    for j in range(i):
+                        spin = np.zeros((dimension, dimension))
+                        spin[i, j], spin[j, i] = 1, -1
+                        motions.append(((points - points[0]) @ spin.T).ravel())
+                rigid = np.linalg.matrix_rank(np.array(motions), tol=1e-9)
+                self.assertEqual(len(rows), n * dimension - rigid)
+                self.assertEqual(np.linalg.matrix_rank(rows / np.abs(rows).max(axis=1)[:, None], tol=1e-9), len(rows))
+                self.assertLessEqual(np.abs(rows @ np.array(motions).T).max(), 1e-12 * np.abs(rows).max() * np.abs(motions).max())
+                self.assertEqual(np.abs(values).max(), 0)
+                self.path("load_4").unlink()
+
+    def test_relations_that_are_wrong_are_refused(self):
+        self.refuses("CHARGE_11", {"LIAISON_DDL": [{"NOEUD": ["N1", "N2"], "DDL": ["DX"], "COEF_MULT": [1.0, 2.0], "COEF_IMPO": 0.0}]}, "LIAISON_DDL/DDL")
+        self.refuses("CHARGE_11", {"LIAISON_DDL": [{"NOEUD": ["N1", "N2"], "DDL": ["DX", "DX"], "COEF_MULT": [1.0], "COEF_IMPO": 0.0}]}, "COEF_MULT")
+        self.refuses("CHARGE_3", {"LIAISON_UNIF": [{"GROUP_NO": ["BOTTOM"], "DDL": ["DZ"]}]}, "DZ", "N1")
+        self.refuses("CHARGE_2", {"LIAISON_UNIF": [{"GROUP_NO": ["CORNER", "ALONE"], "DDL": ["DX"]}]}, "N7")
+        self.refuses("CHARGE_12", {"FACE_IMPO": [{"GROUP_MA": ["BODY"], "DNOR": 0.0}]}, "M1", "no skin cell")
+        sides = {"DDL_1": ["DX"], "COEF_MULT_1": [1.0], "DDL_2": ["DX"], "COEF_MULT_2": [-1.0], "COEF_IMPO": 0.0}
+        self.refuses("CHARGE_13", {"LIAISON_GROUP": [{"GROUP_NO_1": ["BOTTOM"], "GROUP_NO_2": ["CORNER"], **sides}]}, "3 nodes", "1 on the other")
+        self.refuses("CHARGE_13", {"LIAISON_GROUP": [{"GROUP_NO_1": ["BOTTOM"], "GROUP_MA_2": ["TOP"], "TRAN": [9.0, 1.0], **sides}]}, "two nodes")
+        self.write_model("model_3", "mesh_1", ["AXIS/QUAD4", "AXIS/SEG2"], [0, 0, 1, 1, 1, 1, -1, -1])
+        self.refuses("CHARGE_14", {"LIAISON_SOLIDE": [{"GROUP_NO": ["BOTTOM"]}]}, "BOTTOM")
+
+    def test_normals_of_a_bent_side_alarm(self):
+        """The corner's mean normal is 45 degrees from both sides; multiplied by normal displacement it holds neither."""
+        cells = [*CELLS[:7], ("SEG2", [2, 5])]
+        self.write_mesh("mesh_1", COORDINATES, cells, cell_groups={**GROUPS, "BENT": [2, 7]}, node_groups=NODES)
+        run = self.meca(FACE_IMPO=[{"GROUP_MA": ["BENT"], "DNOR": 0.0}])
+        self.assertEqual((run.status, self.ids(run)), (0, ["CHARGE_16"]))
+        rows, _ = self.relations(14, 2)
+        np.testing.assert_allclose(rows[np.abs(rows[:, 10]) > 0][0, 10:12], [0.5**0.5, 0.5**0.5], atol=1e-15)
+
     def test_displacements_and_pressures_share_a_load(self):
         self.meca(DDL_IMPO=[{"GROUP_NO": ["BOTTOM"], "DY": 0.0}], PRES_REP=[{"GROUP_MA": ["TOP"], "PRES": -3.0}])
         self.assertEqual((len(self.imposed()), self.pressure()), (3, {2: -3, 3: -3}))

@@ -37,7 +37,7 @@ def model(unit, modelisation, matter=MATTER):
 
 def solve(*loads, **more):
     R.append(STAT_NON_LINE(MODELE=MODEL, CHAM_MATER=FIELD, EXCIT=[dict(load) for load in loads], INCREMENT=_F(LIST_INST=TIMES),
-                           CONVERGENCE=_F(RESI_GLOB_RELA=1e-10), **more))
+                           CONVERGENCE=_F(RESI_GLOB_RELA=1e-10, ITER_GLOB_MAXI=40), **more))
 
 def formula(text):
     return FORMULE(NOM_PARA=("X", "Y", "Z", "INST"), VALE=text)
@@ -236,6 +236,200 @@ class Equalities(LoadTest):
             text += f"P = AFFE_CHAR_MECA(MODELE=MODEL, {line})\nsolve(_F(CHARGE=H), _F(CHARGE=P))\n"
         one, other = self.solved([mesh], text)
         self.assert_near(self.displacement(one, 1, 2), self.displacement(other, 1, 2), 1e-13)
+
+
+def rotation(dimension):
+    """A rotation that leaves no axis where it was."""
+    a = 0.5
+    plane = np.array([[np.cos(a), -np.sin(a)], [np.sin(a), np.cos(a)]])
+    if dimension == 2:
+        return plane
+    first, second = np.eye(3), np.eye(3)
+    first[:2, :2], second[1:, 1:] = plane, plane
+    return first @ second
+
+
+class Relations(LoadTest):
+    def assert_pivots(self, run, expected):
+        """Every factorisation had as many negative pivots as there are relations: a difference is shown as "3 of 5"."""
+        lines = [line.split("|") for line in run.stdout.splitlines() if line.startswith(" |") and "TANGENTE" in line]
+        self.assertTrue(lines)
+        found = {cell.strip() for line in lines for cell in line if cell.strip() == str(expected) or " of " in cell}
+        self.assertEqual(found, {str(expected)})
+
+    def test_normals_of_tilted_sides_are_held(self):
+        """A block turned in space, its lower sides held along their normals, pressed on top: uniaxial in the turned frame."""
+        meshes, models = [], ("D_PLAN", "D_PLAN", "3D", "3D")
+        for mesh in (flat_block("TRIA3"), flat_block("QUAD8"), flat_brick("HEXA8"), flat_brick("TETRA10")):
+            mesh.straight = mesh.points
+            mesh.points = mesh.points @ rotation(mesh.points.shape[1]).T
+            meshes.append(mesh)
+        text = ""
+        for k, modelisation in enumerate(models):
+            sides = ["BASE", "LEFT"] + ["FRONT"] * (modelisation == "3D")
+            held = ", ".join(f"_F(GROUP_MA='{side}', DNOR=0.0)" for side in sides)
+            text += f"""model({20 + k}, '{modelisation}')
+H = AFFE_CHAR_MECA(MODELE=MODEL, FACE_IMPO=({held}))
+P = AFFE_CHAR_MECA(MODELE=MODEL, PRES_REP=_F(GROUP_MA='TOP', PRES=20.0))
+solve(_F(CHARGE=H), _F(CHARGE=P, FONC_MULT=RAMP))
+"""
+        for mesh, modelisation, result in zip(meshes, models, self.solved(meshes, text)):
+            dimension = mesh.points.shape[1]
+            factor = (1 + POISSON) if modelisation == "D_PLAN" else 1.0
+            strain = np.full(dimension, POISSON * factor * 20.0 / YOUNG)
+            strain[-1] = -(1 - POISSON**2 if modelisation == "D_PLAN" else 1.0) * 20.0 / YOUNG
+            self.assert_near(self.displacement(result, 2, dimension), (mesh.straight * strain) @ rotation(dimension).T)
+
+    def test_normal_and_tangent_that_are_given_are_those_displacements(self):
+        """DNOR and DTAN on one side instead of DX and DY; FONC_MULT and functions of INST multiply both."""
+        mesh = flat_block("QUAD8")
+        sides = ("AFFE_CHAR_MECA_F(MODELE=MODEL, FACE_IMPO=_F(GROUP_MA='RIGHT', DNOR=only_inst('0.1 * INST'), DTAN=only_inst('0.2 * INST')))",
+                 "AFFE_CHAR_MECA(MODELE=MODEL, FACE_IMPO=_F(GROUP_MA='RIGHT', DX=0.1, DY=0.2))",
+                 "AFFE_CHAR_MECA(MODELE=MODEL, FACE_IMPO=_F(GROUP_MA='RIGHT', DNOR=0.1, DTAN=0.2))")
+        text = "model(20, 'D_PLAN')\nH = AFFE_CHAR_CINE(MODELE=MODEL, MECA_IMPO=_F(GROUP_MA='LEFT', DX=0, DY=0))\n"
+        for k, side in enumerate(sides):
+            text += f"S = {side}\nsolve(_F(CHARGE=H), _F(CHARGE=S{'' if k == 0 else ', FONC_MULT=RAMP'}))\n"
+        results = self.solved([mesh], text)
+        for order in (1, 2):
+            exact = self.displacement(results[1], order, 2)
+            for result in (results[0], results[2]):
+                self.assert_near(self.displacement(result, order, 2), exact, 1e-12)
+
+    def test_a_rigid_body_turns_without_stress(self):
+        """LIAISON_SOLIDE on every node leaves rigid motions: three (six) displacements say which one. Stiff as steel."""
+        meshes, text, spins = [flat_block("QUAD8"), flat_brick("HEXA8")], "", []
+        text = "STEEL = DEFI_MATERIAU(ELAS=_F(E=2.1e11, NU=0.3))\n"
+        for k, mesh in enumerate(meshes):
+            dimension = mesh.points.shape[1]
+            corners = [(0.0,) * dimension, (2.0,) + (0.0,) * (dimension - 1), (0.0, 1.0) + (0.0,) * (dimension - 2)]
+            spin = np.array([[0, -0.3], [0.3, 0]]) if dimension == 2 else np.array([[0, -0.3, 0.2], [0.3, 0, 0.1], [-0.2, -0.1, 0]])
+            spins.append(spin)
+            given = [(0, "X"), (0, "Y"), (1, "Y")] if dimension == 2 else [(0, "X"), (0, "Y"), (0, "Z"), (1, "Y"), (1, "Z"), (2, "Z")]
+            for c, corner in enumerate(corners):
+                mesh.node_groups[f"C{c}"] = mesh.nodes_where(lambda *x, at=corner: x == at)
+            imposed = ", ".join(f"_F(GROUP_NO='C{c}', D{axis}={float((spin @ corners[c])['XYZ'.index(axis)])!r})" for c, axis in given)
+            text += f"""model({20 + k}, '{"D_PLAN" if dimension == 2 else "3D"}', STEEL)
+S = AFFE_CHAR_MECA(MODELE=MODEL, LIAISON_SOLIDE=_F(GROUP_MA='BODY'))
+H = AFFE_CHAR_MECA(MODELE=MODEL, DDL_IMPO=({imposed}))
+solve(_F(CHARGE=H, FONC_MULT=RAMP), _F(CHARGE=S))
+"""
+        for mesh, spin, result in zip(meshes, spins, self.solved(meshes, text)):
+            self.assert_near(self.displacement(result, 2, len(spin)), mesh.points @ spin.T)
+
+    def test_a_uniform_displacement_spreads_a_force(self):
+        """One corner of the top is pushed, and all of it goes down alike: nu = 0 leaves the bar's solution; as many negative
+        pivots as relations."""
+        mesh = flat_block("QUAD8")
+        mesh.node_groups["CORNER"] = mesh.nodes_where(lambda x, y: (x, y) == (2.0, 1.0))
+        write_med(self.folder / "0.med", mesh)
+        text = """model(20, 'D_PLAN', BAR)
+H = AFFE_CHAR_CINE(MODELE=MODEL, MECA_IMPO=_F(GROUP_MA='BASE', DX=0, DY=0))
+U = AFFE_CHAR_MECA(MODELE=MODEL, LIAISON_UNIF=_F(GROUP_MA='TOP', DDL='DY'), FORCE_NODALE=_F(GROUP_NO='CORNER', FY=-40.0))
+solve(_F(CHARGE=H), _F(CHARGE=U, FONC_MULT=RAMP))
+"""
+        run = self.run_text([mesh], text)
+        self.assertEqual(run.status, 0, run.stdout[-3000:] + run.stderr[-3000:])
+        self.assert_pivots(run, 4)  # five nodes
+        result = Result(self.folder / "loads.base", "R[0]")
+        self.assert_near(self.displacement(result, 2, 2), np.stack([0 * mesh.points[:, 1], -40 / (YOUNG * 2.0) * mesh.points[:, 1]], axis=1))
+
+    def test_relations_between_two_nodes_and_between_two_sides(self):
+        """LIAISON_DDL against the displacement it amounts to; LIAISON_GROUP between opposite sides: a uniform strain on any mesh."""
+        mesh = flat_block("TRIA6")
+        mesh.node_groups["A"], mesh.node_groups["B"] = (mesh.nodes_where(lambda x, y, at=at: (x, y) == at) for at in ((0, 1), (2, 1)))
+        mesh.node_groups["O"] = mesh.nodes_where(lambda x, y: (x, y) == (0, 0))
+        text = """model(20, 'C_PLAN')
+H = AFFE_CHAR_CINE(MODELE=MODEL, MECA_IMPO=_F(GROUP_MA='BASE', DX=0, DY=0))
+A = AFFE_CHAR_MECA(MODELE=MODEL, DDL_IMPO=(_F(GROUP_NO='A', DY=0.02), _F(GROUP_NO='B', DX=0.03)))
+solve(_F(CHARGE=H), _F(CHARGE=A, FONC_MULT=RAMP))
+A = AFFE_CHAR_MECA_F(MODELE=MODEL, DDL_IMPO=_F(GROUP_NO='A', DY=only_inst('0.02 * INST')),
+                     LIAISON_DDL=_F(GROUP_NO=('A', 'B'), DDL=('DY', 'DX'), COEF_MULT=(3.0, -2.0), COEF_IMPO=only_inst('0.0')))
+solve(_F(CHARGE=H), _F(CHARGE=A))
+L = AFFE_CHAR_MECA(MODELE=MODEL, LIAISON_GROUP=(
+    _F(GROUP_MA_1='LEFT', GROUP_MA_2='RIGHT', TRAN=(2.0, 0.0), DDL_1='DX', COEF_MULT_1=-1.0, DDL_2='DX', COEF_MULT_2=1.0, COEF_IMPO=0.02),
+    _F(GROUP_MA_1='LEFT', GROUP_MA_2='RIGHT', TRAN=(2.0, 0.0), DDL_1='DY', COEF_MULT_1=-1.0, DDL_2='DY', COEF_MULT_2=1.0, COEF_IMPO=0.0)))
+H = AFFE_CHAR_CINE(MODELE=MODEL, MECA_IMPO=(_F(GROUP_MA='BASE', DY=0), _F(GROUP_NO='O', DX=0)))
+solve(_F(CHARGE=H), _F(CHARGE=L, FONC_MULT=RAMP))
+"""
+        one, other, periodic = self.solved([mesh], text)
+        for order in (1, 2):
+            self.assert_near(self.displacement(other, order, 2), self.displacement(one, order, 2), 1e-12)
+        self.assert_near(self.displacement(periodic, 2, 2), mesh.points * (0.01, -POISSON * 0.01))
+
+    def test_imposed_displacements_that_contradict_a_relation_are_refused(self):
+        run = self.run_text([flat_block("QUAD4")], """
+model(20, 'D_PLAN')
+H = AFFE_CHAR_CINE(MODELE=MODEL, MECA_IMPO=(_F(GROUP_MA='BASE', DX=0, DY=0), _F(GROUP_MA='TOP', DX=0, DY=1)))
+U = AFFE_CHAR_MECA(MODELE=MODEL, LIAISON_DDL=_F(NOEUD=('N1', 'N7'), DDL=('DY', 'DY'), COEF_MULT=(1, -1), COEF_IMPO=0))
+solve(_F(CHARGE=H), _F(CHARGE=U))
+""")
+        self.assertEqual(run.status, 2, run.stdout[-2000:])
+        self.assertIn("<LOAD_6> a relation of U (LIAISON_DDL/DDL)", run.stderr)
+
+    def test_relations_that_depend_on_each_other_are_named(self):
+        run = self.run_text([flat_block("QUAD4")], """
+model(20, 'D_PLAN')
+H = AFFE_CHAR_CINE(MODELE=MODEL, MECA_IMPO=_F(GROUP_MA='BASE', DX=0, DY=0))
+U = AFFE_CHAR_MECA(MODELE=MODEL, LIAISON_UNIF=(_F(GROUP_MA='TOP', DDL='DX'), _F(GROUP_MA='TOP', DDL='DX')))
+solve(_F(CHARGE=H), _F(CHARGE=U))
+""")
+        self.assertEqual(run.status, 3, run.stdout[-2000:])
+        self.assertIn("a relation of U (LIAISON_UNIF", run.stderr)
+
+
+class Following(LoadTest):
+    """TYPE_CHARGE='SUIV': pressure on the skin where it is now."""
+
+    def test_pressure_on_a_stretched_top_has_its_present_area(self):
+        """Every node is pulled sideways by 1 + s; nu = 0: u_y = -p (1 + s) y / E, (1 + s)2 in axisymmetry and space."""
+        meshes, stretch = [flat_block("QUAD4"), flat_block("TRIA6", start=1.0), flat_brick("HEXA8"), flat_brick("TETRA10")], 0.5
+        text = ""
+        for k, modelisation in enumerate(("D_PLAN", "AXIS", "3D", "3D")):
+            sideways = f"DX=formula('{stretch} * X * INST')" + (f", DY=formula('{stretch} * Y * INST')" if modelisation == "3D" else "")
+            text += f"""model({20 + k}, '{modelisation}', BAR)
+S = AFFE_CHAR_CINE_F(MODELE=MODEL, MECA_IMPO=_F(TOUT='OUI', {sideways}))
+H = AFFE_CHAR_CINE(MODELE=MODEL, MECA_IMPO=_F(GROUP_MA='BASE', {"DZ" if modelisation == "3D" else "DY"}=0))
+P = AFFE_CHAR_MECA(MODELE=MODEL, PRES_REP=_F(GROUP_MA='TOP', PRES=20.0))
+solve(_F(CHARGE=S), _F(CHARGE=H), _F(CHARGE=P, FONC_MULT=RAMP, TYPE_CHARGE='SUIV'))
+"""
+        for mesh, power, result in zip(meshes, (1, 2, 2, 2), self.solved(meshes, text)):
+            for order, instant in ((1, 0.5), (2, 1.0)):
+                found = self.displacement(result, order, mesh.points.shape[1])[:, -1]
+                self.assert_near(found, -20.0 * instant * (1 + stretch * instant)**power / YOUNG * mesh.points[:, -1])
+
+    def test_reactions_balance_the_pressure_on_the_deformed_skin(self):
+        """A pressure that varies and bends the top: the reactions' sum is int p n over the current edges."""
+        mesh = flat_block("QUAD8", size=(2.0, 2.0))
+        text = """model(20, 'D_PLAN')
+H = AFFE_CHAR_CINE(MODELE=MODEL, MECA_IMPO=_F(GROUP_MA='BASE', DX=0, DY=0))
+P = AFFE_CHAR_MECA_F(MODELE=MODEL, PRES_REP=_F(GROUP_MA='TOP', PRES=formula('50.0 + 150.0 * X')))
+solve(_F(CHARGE=H), _F(CHARGE=P, FONC_MULT=RAMP, TYPE_CHARGE='SUIV'))
+CALC_CHAMP(reuse=R[0], RESULTAT=R[0], FORCE='REAC_NODA')
+"""
+        (result,) = self.solved([mesh], text)
+        self.assertGreater(np.abs(self.displacement(result, 2, 2)).max(), 0.15)
+        current = result.points + self.displacement(result, 2, 2)
+        gauss, weights = np.polynomial.legendre.leggauss(4)
+        force = np.zeros(2)
+        for cell in result.groups["TOP"]:
+            nodes = result.cells[cell][1]
+            for xi, weight in zip(gauss, weights):
+                shape = np.array([xi * (xi - 1) / 2, xi * (xi + 1) / 2, 1 - xi**2])
+                slope = np.array([xi - 0.5, xi + 0.5, -2 * xi])
+                tangent = slope @ current[nodes]
+                pressure = 50 + 150 * (shape @ result.points[nodes, 0])
+                force -= weight * pressure * np.array([tangent[1], -tangent[0]])
+        reactions = np.array([result.at_nodes("REAC_NODA", 2, c).sum() for c in ("DX", "DY")])
+        self.assertLessEqual(np.abs(reactions + force).max(), 1e-8 * np.abs(force).max())
+
+    def test_what_cannot_follow_is_refused(self):
+        run = self.run_text([flat_block("QUAD4")], """
+model(20, 'D_PLAN')
+P = AFFE_CHAR_MECA(MODELE=MODEL, FORCE_CONTOUR=_F(GROUP_MA='TOP', FX=1.0))
+solve(_F(CHARGE=P, TYPE_CHARGE='SUIV'))
+""")
+        self.assertEqual(run.status, 2, run.stdout[-2000:])
+        self.assertIn("<LOAD_5>", run.stderr)
 
 
 del LoadTest, StudyTest

@@ -1,0 +1,311 @@
+#include "lacon/operators/affe_char/relations.hpp"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <map>
+#include <set>
+
+#include "lacon/catalog/messages.hpp"
+#include "lacon/pairing/normals.hpp"
+
+namespace lacon {
+namespace {
+
+using Vector = std::array<double, 3>;
+
+constexpr const char* translation[] = {"DX", "DY", "DZ"};
+constexpr double same_place = 1e-9;  // of the size of a group: points that coincide, points on one line
+
+Vector operator-(const Vector& a, const Vector& b) { return {a[0] - b[0], a[1] - b[1], a[2] - b[2]}; }
+double dot(const Vector& a, const Vector& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
+Vector cross(const Vector& a, const Vector& b) {
+  return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
+}
+double length(const Vector& a) { return std::sqrt(dot(a, a)); }
+Vector unit(const Vector& a) {
+  const double l = length(a);
+  return {a[0] / l, a[1] / l, a[2] / l};
+}
+
+/// Every node that an occurrence names, each once, in the order in which they come.
+std::vector<std::int32_t> distinct_nodes(const std::vector<NamedPlaces>& named) {
+  std::vector<std::int32_t> nodes;
+  std::set<std::int32_t> seen;
+  for (const NamedPlaces& places : named)
+    for (const std::int32_t node : places.members)
+      if (seen.insert(node).second) nodes.push_back(node);
+  return nodes;
+}
+
+/// Enter a relation whose degrees of freedom all exist.
+void add(Load& load, const LoadScene& scene, const std::string& source, std::vector<RelationTerm> terms, LoadValue value) {
+  std::erase_if(terms, [](const RelationTerm& term) { return term.coefficient == 0; });
+  for (const RelationTerm& term : terms) scene.check_dof(term.node, term.component, source);
+  if (!terms.empty()) load.relations.push_back({source, std::move(terms), std::move(value)});
+}
+
+[[noreturn]] void wrong_count(const Keywords& factor, std::string_view keyword, std::size_t found, std::size_t expected) {
+  fail("CHARGE_11",
+       {{"keyword", factor.path(keyword)}, {"found", std::to_string(found)}, {"expected", std::to_string(expected)}});
+}
+
+// ---------------------------------------------------------------------------------------------------- LIAISON_DDL, _UNIF,
+// _GROUP
+
+/// sum of COEF_MULT[i] * DDL[i] of node i = COEF_IMPO
+void link_dofs(Load& load, const LoadScene& scene, const Keywords& factor) {
+  std::vector<std::int32_t> nodes;  // a node may come twice, with two components
+  for (const NamedPlaces& named : named_nodes(scene, factor))
+    nodes.insert(nodes.end(), named.members.begin(), named.members.end());
+  const std::vector<std::string> components = factor.texts("DDL");
+  const std::vector<double> coefficients = factor.reals("COEF_MULT");
+  if (components.size() != nodes.size()) wrong_count(factor, "DDL", components.size(), nodes.size());
+  if (coefficients.size() != nodes.size()) wrong_count(factor, "COEF_MULT", coefficients.size(), nodes.size());
+  std::vector<RelationTerm> terms;
+  for (std::size_t i = 0; i < nodes.size(); ++i) terms.push_back({nodes[i], components[i], coefficients[i]});
+  add(load, scene, factor.path("DDL"), std::move(terms), value_of(scene, factor, "COEF_IMPO"));
+}
+
+/// Every node has the first one's displacement.
+void make_uniform(Load& load, const LoadScene& scene, const Keywords& factor) {
+  const std::vector<std::int32_t> nodes = distinct_nodes(named_nodes(scene, factor));
+  for (const std::string& component : factor.texts("DDL"))
+    for (std::size_t i = 1; i < nodes.size(); ++i)
+      add(load, scene, factor.path("DDL"), {{nodes[0], component, 1.0}, {nodes[i], component, -1.0}}, {});
+}
+
+/// For each node of the first group and the nearest one of the second: the sum over DDL_1 and that over DDL_2 are COEF_IMPO.
+void link_groups(Load& load, const LoadScene& scene, const Keywords& factor) {
+  std::vector<std::int32_t> sides[2];
+  for (int side = 0; side < 2; ++side) {
+    sides[side] = distinct_nodes(named_nodes(scene, factor, side ? "_2" : "_1"));
+    for (const std::string& group : factor.texts("SANS_GROUP_NO"))
+      for (const std::int32_t node : nodes_of_group(scene.mesh, group, factor.path("SANS_GROUP_NO")))
+        std::erase(sides[side], node);
+  }
+  if (sides[0].size() != sides[1].size())
+    fail("CHARGE_13",
+         {{"keyword", factor.path("DDL_1")},
+          {"reason", fmt::format("there are {} nodes on one side and {} on the other", sides[0].size(), sides[1].size())}});
+  std::vector<double> shift = factor.reals("TRAN");
+  shift.resize(3, 0.0);
+  std::set<std::int32_t> taken;
+  for (const std::int32_t node : sides[0]) {
+    const auto at = scene.mesh.point(static_cast<std::size_t>(node));
+    std::int32_t nearest = -1;
+    double least = INFINITY;
+    for (const std::int32_t other : sides[1]) {
+      const auto to = scene.mesh.point(static_cast<std::size_t>(other));
+      const double distance = std::hypot(at[0] + shift[0] - to[0], at[1] + shift[1] - to[1], at[2] + shift[2] - to[2]);
+      if (distance < least) {
+        least = distance;
+        nearest = other;
+      }
+    }
+    if (!taken.insert(nearest).second)
+      fail("CHARGE_13", {{"keyword", factor.path("DDL_1")}, {"reason", node_name(nearest) + " is nearest to two nodes"}});
+    std::vector<RelationTerm> terms;
+    for (int side = 0; side < 2; ++side) {
+      const std::string suffix = side ? "_2" : "_1";
+      const std::vector<std::string> components = factor.texts("DDL" + suffix);
+      const std::vector<double> coefficients = factor.reals("COEF_MULT" + suffix);
+      if (coefficients.size() != components.size())
+        wrong_count(factor, "COEF_MULT" + suffix, coefficients.size(), components.size());
+      for (std::size_t i = 0; i < components.size(); ++i)
+        terms.push_back({side ? nearest : node, components[i], coefficients[i]});
+    }
+    add(load, scene, factor.path("DDL_1"), std::move(terms), value_of(scene, factor, "COEF_IMPO"));
+  }
+}
+
+// ---------------------------------------------------------------------------------------------------- LIAISON_SOLIDE
+
+void make_rigid(Load& load, const LoadScene& scene, const Keywords& factor) {
+  const std::vector<NamedPlaces> named = named_nodes(scene, factor);
+  const std::vector<std::int32_t> nodes = distinct_nodes(named);
+  for (const std::string& element : scene.model.elements)
+    if (const catalog::ElementRow* row = scene.registry.find_element(element); row && row->modelisation == "AXIS")
+      fail("CHARGE_14", {{"keyword", named.front().source}});
+  std::vector<double> points;
+  for (const std::int32_t node : nodes) {
+    const auto at = scene.mesh.point(static_cast<std::size_t>(node));
+    points.insert(points.end(), at.begin(), at.end());
+  }
+  for (std::vector<RelationTerm>& terms : rigid_relations(points, scene.mesh.dimension)) {
+    for (RelationTerm& term : terms) term.node = nodes[static_cast<std::size_t>(term.node)];
+    add(load, scene, named.front().source, std::move(terms), {});
+  }
+}
+
+// ---------------------------------------------------------------------------------------------------- FACE_IMPO
+
+/// Unit normals at the nodes of an occurrence's skin cells: (node, normal).
+std::vector<std::pair<std::int32_t, Vector>> normals_of(const LoadScene& scene, const Keywords& factor) {
+  std::vector<std::int32_t> cells;
+  for (const std::string& group : factor.texts("GROUP_MA"))
+    for (const std::int32_t cell : cells_of_group(scene.mesh, group, factor.path("GROUP_MA"))) {
+      if (catalog::cell(scene.mesh.types[static_cast<std::size_t>(cell)]).dimension != scene.mesh.dimension - 1)
+        fail("CHARGE_12", {{"keyword", factor.path("GROUP_MA") + " '" + group + "'"},
+                           {"reason", "the cell " + cell_name(cell) + " is no skin cell"}});
+      cells.push_back(cell);
+    }
+  std::sort(cells.begin(), cells.end());
+  cells.erase(std::unique(cells.begin(), cells.end()), cells.end());
+  const Surface surface = surface_of(scene.mesh, cells, scene.mesh.coordinates);
+  const std::vector<double> normals = nodal_normals(surface);
+  std::vector<std::pair<std::int32_t, Vector>> found;
+  for (const std::int32_t node : nodes_of_cells(scene.mesh, cells)) {
+    const Vector n{normals[3 * static_cast<std::size_t>(node)], normals[3 * static_cast<std::size_t>(node) + 1],
+                   normals[3 * static_cast<std::size_t>(node) + 2]};
+    if (length(n) == 0)
+      fail("CHARGE_12", {{"keyword", factor.path("GROUP_MA")},
+                         {"reason", "the normals of the cells at the node " + node_name(node) + " cancel"}});
+    found.emplace_back(node, n);
+  }
+  // a normal that stands for cells of different directions holds none of them
+  std::int64_t turned = 0;
+  std::int32_t first = -1;
+  for (const std::int32_t cell : cells) {
+    std::vector<double> points;
+    for (const std::int32_t node : scene.mesh.cells[static_cast<std::size_t>(cell)]) {
+      const auto at = scene.mesh.point(static_cast<std::size_t>(node));
+      points.insert(points.end(), at.begin(), at.end());
+    }
+    const catalog::CellRow& row = scene.mesh.row(static_cast<std::size_t>(cell));
+    for (int k = 0; k < row.n_nodes; ++k) {
+      const auto own = cell_normal(row.type, points, std::span(row.nodes).subspan(k * row.dimension, row.dimension));
+      const double* const mean =
+          normals.data() + 3 * static_cast<std::size_t>(scene.mesh.cells[static_cast<std::size_t>(cell)][k]);
+      if (dot(unit(own), {mean[0], mean[1], mean[2]}) < std::cos(10 * std::acos(-1.0) / 180) && turned++ == 0)
+        first = scene.mesh.cells[static_cast<std::size_t>(cell)][k];
+    }
+  }
+  if (turned)
+    inform("CHARGE_16", {{"keyword", factor.path("GROUP_MA")}, {"count", std::to_string(turned)}, {"node", node_name(first)}});
+  return found;
+}
+
+/// DNOR: u . n, DTAN (in the plane): u . t, with t = n turned by +90 degrees.
+void hold_normal(Load& load, const LoadScene& scene, const Keywords& factor) {
+  if (!factor.has("DNOR") && !factor.has("DTAN")) return;
+  const auto normals = normals_of(scene, factor);
+  for (const char* const keyword : {"DNOR", "DTAN"}) {
+    if (!factor.has(keyword)) continue;
+    const bool tangent = std::string_view(keyword) == "DTAN";
+    if (tangent && scene.mesh.dimension != 2) fail("CHARGE_15", {{"keyword", factor.path(keyword)}});
+    for (const auto& [node, n] : normals) {
+      const Vector along = tangent ? Vector{-n[1], n[0], 0} : n;
+      std::vector<RelationTerm> terms;
+      for (int d = 0; d < scene.mesh.dimension; ++d)
+        terms.push_back({node, translation[d], along[static_cast<std::size_t>(d)]});
+      add(load, scene, factor.path(keyword), std::move(terms), value_of(scene, factor, keyword));
+    }
+  }
+}
+
+}  // namespace
+
+std::vector<std::vector<RelationTerm>> rigid_relations(std::span<const double> points, int dimension) {
+  const auto n = static_cast<std::int32_t>(points.size() / 3);
+  std::vector<std::vector<RelationTerm>> relations;
+  const auto at = [&](std::int32_t i) { return Vector{points[3 * i], points[3 * i + 1], points[3 * i + 2]}; };
+  const auto farthest = [&](const auto& distance) {
+    std::int32_t best = 0;
+    for (std::int32_t i = 1; i < n; ++i)
+      if (distance(i) > distance(best)) best = i;
+    return best;
+  };
+  // displacement u_i = sum over terms; a rotation about each axis is a list of terms of the reference points
+  using Terms = std::vector<RelationTerm>;
+  const auto scaled = [](const Terms& terms, double factor) {
+    Terms result = terms;
+    for (RelationTerm& term : result) term.coefficient *= factor;
+    return result;
+  };
+  const auto append = [](Terms& to, const Terms& terms) { to.insert(to.end(), terms.begin(), terms.end()); };
+  // (u_i - u_0) . direction
+  const auto relative = [&](std::int32_t i, const Vector& direction) {
+    Terms terms;
+    for (int d = 0; d < dimension; ++d) {
+      terms.push_back({i, translation[d], direction[static_cast<std::size_t>(d)]});
+      terms.push_back({0, translation[d], -direction[static_cast<std::size_t>(d)]});
+    }
+    return terms;
+  };
+  // the same degree of freedom once
+  const auto enter = [&](const Terms& terms) {
+    std::map<std::pair<std::int32_t, std::string>, double> sums;
+    double largest = 0;
+    for (const RelationTerm& term : terms) sums[{term.node, term.component}] += term.coefficient;
+    for (const auto& [dof, coefficient] : sums) largest = std::max(largest, std::abs(coefficient));
+    Terms merged;
+    for (const auto& [dof, coefficient] : sums)
+      if (std::abs(coefficient) > 1e-14 * largest) merged.push_back({dof.first, dof.second, coefficient});
+    if (!merged.empty()) relations.push_back(std::move(merged));
+  };
+
+  if (n < 2) return relations;
+  const Vector a = at(0);
+  const std::int32_t b = farthest([&](std::int32_t i) { return length(at(i) - a); });
+  const double size = length(at(b) - a);
+  std::vector<Terms> rotation;  // about the axes below, by the displacements of the reference points
+  std::vector<Vector> axes;
+  std::set<std::int32_t> references{0};
+  if (size > 0) {
+    references.insert(b);
+    const Vector e1 = unit(at(b) - a);
+    enter(relative(b, e1));
+    if (dimension == 2) {
+      axes = {{0, 0, 1}};
+      rotation = {scaled(relative(b, {-e1[1], e1[0], 0}), 1 / size)};
+    } else {
+      const auto off = [&](std::int32_t i) { return length(cross(at(i) - a, e1)); };
+      const std::int32_t c = farthest(off);
+      Vector e2 = std::abs(e1[0]) < 0.9 ? unit(cross(e1, {1, 0, 0})) : unit(cross(e1, {0, 1, 0}));
+      const bool on_a_line = off(c) <= same_place * size;
+      if (!on_a_line) e2 = unit(cross(cross(e1, at(c) - a), e1));
+      const Vector e3 = cross(e1, e2);
+      // u_b - u_0 = size (w3 e2 - w2 e3)
+      axes = {e2, e3};
+      rotation = {scaled(relative(b, e3), -1 / size), scaled(relative(b, e2), 1 / size)};
+      if (!on_a_line) {
+        references.insert(c);
+        // with c - a = p e1 + q e2: (u_c - u_0) = w x (c - a) = -w3 q e1 + w3 p e2 + (w1 q - w2 p) e3
+        const double p = dot(at(c) - a, e1), q = dot(at(c) - a, e2);
+        Terms first = relative(c, e1), second = relative(c, e2), about = relative(c, e3);
+        append(first, scaled(rotation[1], q));
+        append(second, scaled(rotation[1], -p));
+        enter(first);
+        enter(second);
+        append(about, scaled(rotation[0], p));
+        axes.push_back(e1);
+        rotation.push_back(scaled(about, 1 / q));
+      }
+    }
+  }
+  for (std::int32_t i = 1; i < n; ++i) {
+    if (references.contains(i)) continue;
+    for (int d = 0; d < dimension; ++d) {
+      Vector direction{};
+      direction[static_cast<std::size_t>(d)] = 1;
+      Terms terms = relative(i, direction);
+      for (std::size_t r = 0; r < axes.size(); ++r)
+        append(terms, scaled(rotation[r], -dot(cross(axes[r], at(i) - a), direction)));
+      enter(terms);
+    }
+  }
+  return relations;
+}
+
+void add_relations(Load& load, const LoadScene& scene, const Keywords& keywords) {
+  for (const Keywords& factor : keywords.factors("FACE_IMPO")) hold_normal(load, scene, factor);
+  for (const Keywords& factor : keywords.factors("LIAISON_DDL")) link_dofs(load, scene, factor);
+  for (const Keywords& factor : keywords.factors("LIAISON_UNIF")) make_uniform(load, scene, factor);
+  for (const Keywords& factor : keywords.factors("LIAISON_GROUP")) link_groups(load, scene, factor);
+  for (const Keywords& factor : keywords.factors("LIAISON_SOLIDE")) make_rigid(load, scene, factor);
+}
+
+}  // namespace lacon

@@ -1,0 +1,17 @@
+#pragma once
+// Relations between displacements: LIAISON_DDL, LIAISON_UNIF, LIAISON_GROUP, LIAISON_SOLIDE, and DNOR, DTAN of FACE_IMPO.
+#include "lacon/operators/affe_char/places.hpp"
+
+namespace lacon {
+
+/// Append the relations of every such keyword to the load. Throws what names of places and degrees of freedom throw, CHARGE_11
+/// (lists of different lengths), CHARGE_12 (a group without normal), CHARGE_13 (nodes that do not pair), CHARGE_14 (a rigid
+/// body in axisymmetry), CHARGE_15 (DTAN in 3D). CHARGE_16 alarms for normals that turn by more than 10 degrees at a node.
+void add_relations(Load& load, const LoadScene& scene, const Keywords& keywords);
+
+/// The relations that leave these points no other motions than those of a rigid body (small rotations): 2 n - 3 of n different
+/// points in the plane, 3 n - 6 in space, 3 n - 5 on a line in space. Terms: number of a point, component, coefficient.
+/// @param points (n, 3), the plane z = 0 for dimension 2
+std::vector<std::vector<RelationTerm>> rigid_relations(std::span<const double> points, int dimension);
+
+}  // namespace lacon
