@@ -186,6 +186,34 @@ def shaken(lines, amplitude, seed):
     return place
 
 
+def cubes(size, name="", sides=None):
+    """A box of size[0] x size[1] x size[2] unit cubes as HEXA8: as brick() makes it, for meshes of millions of cells.
+    @param sides (axis, end: 0 or 1) -> name of the group of QUAD4, whose normals leave the box"""
+    numbers = np.arange(np.prod(np.add(size, 1))).reshape(np.add(size, 1))
+
+    def corner(offset):
+        return numbers[tuple(slice(o, o + n) for o, n in zip(offset, size))].ravel()
+
+    places = [(0, 0, 0), (1, 0, 0), (1, 1, 0), (0, 1, 0), (0, 0, 1), (1, 0, 1), (1, 1, 1), (0, 1, 1)]
+    order = [int(v) for v in VOLUMES["HEXA8"][1].split()]
+    mesh = Mesh(np.stack(np.meshgrid(*(np.arange(n + 1.0) for n in size), indexing="ij"), axis=-1).reshape(-1, 3),
+                {"HEXA8": np.column_stack([corner(places[v]) for v in order])})
+    if name:
+        mesh.cell_groups[name] = [("HEXA8", c) for c in range(len(mesh.cells["HEXA8"]))]
+    skins = []
+    for (axis, end), group in (sides or {}).items():
+        layer = np.take(numbers, -1 if end else 0, axis=axis)
+        layer = layer if axis != 1 else layer.T  # so that the axes turn to the right about the side's own
+        square = [layer[:-1, :-1], layer[1:, :-1], layer[1:, 1:], layer[:-1, 1:]]
+        rows = np.column_stack([part.ravel() for part in square])[:, slice(None) if end else slice(None, None, -1)]
+        first = sum(map(len, skins))
+        mesh.cell_groups.setdefault(group, []).extend(("QUAD4", c) for c in range(first, first + len(rows)))
+        skins.append(rows)
+    if skins:
+        mesh.cells["QUAD4"] = np.concatenate(skins)
+    return mesh
+
+
 def union(meshes):
     """All of them, not connected; groups of one name are put together."""
     points, cells, cell_groups, node_groups = [], {}, {}, {}

@@ -6,15 +6,48 @@
 
 namespace lacon {
 
-NodeCells::NodeCells(const Mesh& mesh) {
-  cells_.offset.assign(mesh.n_nodes() + 1, 0);
-  cells_.values.resize(mesh.cells.values.size());
-  for (const std::int32_t node : mesh.cells.values) ++cells_.offset[static_cast<std::size_t>(node) + 1];
-  for (std::size_t n = 0; n < mesh.n_nodes(); ++n) cells_.offset[n + 1] += cells_.offset[n];
-  std::vector<std::int64_t> next(cells_.offset.begin(), cells_.offset.end() - 1);
-  for (std::size_t c = 0; c < mesh.n_cells(); ++c)
-    for (const std::int32_t node : mesh.cells[c])
-      cells_.values[static_cast<std::size_t>(next[static_cast<std::size_t>(node)]++)] = static_cast<std::int32_t>(c);
+namespace {
+
+/// The cells around each node of a row. @param row_of the row of a node, -1 for none @param keeps whether a cell counts
+template <class RowOf, class Keeps>
+Ragged<std::int32_t> cells_by_row(const Mesh& mesh, std::size_t n_rows, const RowOf& row_of, const Keeps& keeps) {
+  Ragged<std::int32_t> cells;
+  cells.offset.assign(n_rows + 1, 0);
+  const auto each = [&](const auto& visit) {
+    for (std::size_t c = 0; c < mesh.n_cells(); ++c) {
+      if (!keeps(c)) continue;
+      for (const std::int32_t node : mesh.cells[c])
+        if (const std::int32_t row = row_of(node); row >= 0) visit(c, static_cast<std::size_t>(row));
+    }
+  };
+  each([&](std::size_t, std::size_t row) { ++cells.offset[row + 1]; });
+  for (std::size_t n = 0; n < n_rows; ++n) cells.offset[n + 1] += cells.offset[n];
+  cells.values.resize(static_cast<std::size_t>(cells.offset.back()));
+  std::vector<std::int64_t> next(cells.offset.begin(), cells.offset.end() - 1);
+  each([&](std::size_t c, std::size_t row) {
+    cells.values[static_cast<std::size_t>(next[row]++)] = static_cast<std::int32_t>(c);
+  });
+  return cells;
+}
+
+}  // namespace
+
+NodeCells::NodeCells(const Mesh& mesh)
+    : cells_(cells_by_row(
+          mesh, mesh.n_nodes(), [](std::int32_t node) { return node; }, [](std::size_t) { return true; })) {}
+
+NodeCells::NodeCells(const Mesh& mesh, std::span<const std::int32_t> nodes, int dimension) : row_(mesh.n_nodes(), -1) {
+  std::int32_t n_rows = 0;
+  for (const std::int32_t node : nodes)
+    if (std::int32_t& row = row_[static_cast<std::size_t>(node)]; row < 0) row = n_rows++;
+  cells_ = cells_by_row(
+      mesh, static_cast<std::size_t>(n_rows), [&](std::int32_t node) { return row_[static_cast<std::size_t>(node)]; },
+      [&](std::size_t c) { return mesh.row(c).dimension == dimension; });
+}
+
+std::span<const std::int32_t> NodeCells::operator[](std::size_t node) const {
+  if (row_.empty()) return cells_[node];
+  return row_[node] < 0 ? std::span<const std::int32_t>{} : cells_[static_cast<std::size_t>(row_[node])];
 }
 
 std::optional<FacetMatch> match_facet(CellType type, std::span<const std::int32_t> body, CellType skin_type,

@@ -11,9 +11,12 @@ namespace lacon {
 class NodeCells {
  public:
   explicit NodeCells(const Mesh& mesh);
-  std::span<const std::int32_t> operator[](std::size_t node) const { return cells_[node]; }
+  /// The cells of one dimension around these nodes; other nodes have none.
+  NodeCells(const Mesh& mesh, std::span<const std::int32_t> nodes, int dimension);
+  std::span<const std::int32_t> operator[](std::size_t node) const;
 
  private:
+  std::vector<std::int32_t> row_;  ///< of a node in `cells_`, -1 for none; empty: the node's own number
   Ragged<std::int32_t> cells_;
 };
 

@@ -7,6 +7,7 @@
 #include <string>
 
 #include "lacon/catalog/messages.hpp"
+#include "lacon/operators/meshing/body.hpp"
 #include "lacon/operators/meshing/quality.hpp"
 
 namespace lacon {
@@ -42,7 +43,7 @@ std::string groups_with(const Mesh& mesh, std::int32_t cell) {
 }
 
 std::vector<std::int32_t> orient_body_cells(Mesh& mesh) {
-  std::vector<std::int32_t> reversed, old;
+  std::vector<std::int32_t> reversed;
   for (std::size_t c = 0; c < mesh.n_cells(); ++c) {
     const catalog::CellRow& row = mesh.row(c);
     if (row.dimension != mesh.dimension) continue;
@@ -58,12 +59,23 @@ std::vector<std::int32_t> orient_body_cells(Mesh& mesh) {
                       {"least", number(range.least)},
                       {"greatest", number(range.greatest)}});
     }
-    old.assign(nodes.begin(), nodes.end());
-    for (std::size_t j = 0; j < nodes.size(); ++j) nodes[j] = old[static_cast<std::size_t>(row.mirror[j])];
+    std::ranges::copy(mirrored(row.type, nodes), nodes.begin());
     reversed.push_back(cell);
   }
   tell("LIRE_1", reversed, cell_name);
   return reversed;
+}
+
+void turn_body_cells(Mesh& mesh) {
+  std::vector<std::int32_t> reversed;
+  for (std::size_t c = 0; c < mesh.n_cells(); ++c) {
+    if (mesh.row(c).dimension != mesh.dimension) continue;
+    const std::span<std::int32_t> nodes = mesh.cells[c];
+    if (central_jacobian(mesh.types[c], nodes, mesh.coordinates) >= 0) continue;
+    std::ranges::copy(mirrored(mesh.types[c], nodes), nodes.begin());
+    reversed.push_back(static_cast<std::int32_t>(c));
+  }
+  tell("LIRE_1", reversed, cell_name);
 }
 
 void inspect(const Mesh& mesh, double flatness) {

@@ -13,6 +13,10 @@ namespace lacon {
 /// @return the cells that were reversed
 std::vector<std::int32_t> orient_body_cells(Mesh& mesh);
 
+/// The same by the sign at the centre alone, for who does not compute with the cells: a cell whose Jacobian changes sign inside
+/// is no error.
+void turn_body_cells(Mesh& mesh);
+
 /// The groups that a cell is in, for messages: "BODY, ALL"; empty for none.
 std::string groups_with(const Mesh& mesh, std::int32_t cell);
 

@@ -25,38 +25,58 @@ struct Slave {
   std::size_t zone;
 };
 
-/// Cells while they are cut: a cell that was cut has the sub-cells that replace it. The first ones are those of the mesh.
+/// Cells while they are cut: a cell that was cut has the sub-cells that replace it. The first ones are those of the mesh; only
+/// what changes is kept here.
 class Forest {
  public:
-  explicit Forest(const Mesh& mesh) : types_(mesh.types), children_(mesh.n_cells()) {
-    for (std::size_t c = 0; c < mesh.n_cells(); ++c) nodes_.emplace_back(mesh.cells[c].begin(), mesh.cells[c].end());
+  explicit Forest(const Mesh& mesh) : mesh_(mesh) {}
+
+  CellType type(std::int32_t cell) const { return is_of_mesh(cell) ? mesh_.types[index(cell)] : types_[added(cell)]; }
+  std::span<const std::int32_t> nodes(std::int32_t cell) const {
+    if (!is_of_mesh(cell)) return nodes_[added(cell)];
+    const auto at = turned_.find(cell);
+    return at == turned_.end() ? mesh_.cells[index(cell)] : std::span<const std::int32_t>(at->second);
+  }
+  void turn(std::int32_t cell) {
+    Nodes nodes_now = mirrored(type(cell), nodes(cell));
+    (is_of_mesh(cell) ? turned_[cell] : nodes_[added(cell)]) = std::move(nodes_now);
   }
 
-  CellType type(std::int32_t cell) const { return types_[static_cast<std::size_t>(cell)]; }
-  const Nodes& nodes(std::int32_t cell) const { return nodes_[static_cast<std::size_t>(cell)]; }
-  void turn(std::int32_t cell) { nodes_[static_cast<std::size_t>(cell)] = mirrored(type(cell), nodes(cell)); }
-
   std::int32_t add(CellType type, Nodes nodes, std::int32_t parent) {
-    const auto cell = static_cast<std::int32_t>(types_.size());
+    const auto cell = static_cast<std::int32_t>(size());
     types_.push_back(type);
     nodes_.push_back(std::move(nodes));
-    children_.emplace_back();
-    children_[static_cast<std::size_t>(parent)].push_back(cell);
+    children_[parent].push_back(cell);
     return cell;
   }
 
   /// Visit what is left of a cell after all cuts so far, in order; stops where `visit` returns true, and says whether it did.
   template <class Visit>
   bool leaves(std::int32_t cell, const Visit& visit) const {
-    const auto& children = children_[static_cast<std::size_t>(cell)];
-    if (children.empty()) return visit(cell);
-    return std::any_of(children.begin(), children.end(), [&](std::int32_t child) { return leaves(child, visit); });
+    const auto at = children_.find(cell);
+    if (at == children_.end()) return visit(cell);
+    return std::any_of(at->second.begin(), at->second.end(), [&](std::int32_t child) { return leaves(child, visit); });
+  }
+
+  std::size_t size() const { return mesh_.n_cells() + types_.size(); }
+  /// The cells of the mesh that were cut, ascending.
+  Nodes cut_cells() const {
+    Nodes cells;
+    for (const auto& [cell, children] : children_)
+      if (is_of_mesh(cell)) cells.push_back(cell);
+    return cells;
   }
 
  private:
-  std::vector<CellType> types_;
+  static std::size_t index(std::int32_t cell) { return static_cast<std::size_t>(cell); }
+  bool is_of_mesh(std::int32_t cell) const { return index(cell) < mesh_.n_cells(); }
+  std::size_t added(std::int32_t cell) const { return index(cell) - mesh_.n_cells(); }
+
+  const Mesh& mesh_;
+  std::vector<CellType> types_;  ///< of the cells that were added
   std::vector<Nodes> nodes_;
-  std::vector<Nodes> children_;
+  std::map<std::int32_t, Nodes> turned_;    ///< cells of the mesh whose nodes have another order
+  std::map<std::int32_t, Nodes> children_;  ///< of the cells that were cut
 };
 
 /// Append the images of reference points of a cell (isoparametric, METHOD.md 1.2-3) to the coordinates; returns their numbers.
@@ -81,7 +101,8 @@ Point point_of(std::span<const double> coordinates, std::int32_t node) {
 }
 
 /// How far the mid node of an edge is from the middle of its vertices. @param edge of the cell's row
-Point bulge(const catalog::CellRow& row, std::size_t edge, const Nodes& nodes, std::span<const double> coordinates) {
+Point bulge(const catalog::CellRow& row, std::size_t edge, std::span<const std::int32_t> nodes,
+            std::span<const double> coordinates) {
   const Point a = point_of(coordinates, nodes[static_cast<std::size_t>(row.edges[edge].first)]),
               b = point_of(coordinates, nodes[static_cast<std::size_t>(row.edges[edge].second)]),
               middle = point_of(coordinates, nodes[static_cast<std::size_t>(row.n_vertices) + edge]);
@@ -93,7 +114,7 @@ double length(Point p) { return std::hypot(p[0], p[1], p[2]); }
 constexpr double flat = 1e-9;  ///< a bulge below this fraction of the size of a facet or cell is round-off
 
 /// Whether the mid nodes of a quadratic cell are in the middle of its edges, up to `flat` of the longest.
-bool has_straight_edges(CellType type, const Nodes& nodes, std::span<const double> coordinates) {
+bool has_straight_edges(CellType type, std::span<const std::int32_t> nodes, std::span<const double> coordinates) {
   const catalog::CellRow& row = catalog::cell(type);
   double longest = 0, largest = 0;
   for (std::size_t e = 0; e < row.edges.size(); ++e) {
@@ -138,7 +159,11 @@ void straighten(CellType type, const Nodes& sub_cell, const Nodes& added, std::v
 /// Every check on the groups and their cells, before anything is cut.
 std::vector<Slave> find_slaves(const Mesh& mesh, std::span<const std::string> groups, const std::string& keyword) {
   const int skin_dimension = mesh.dimension - 1;
-  const NodeCells around(mesh);
+  Nodes near;  // the nodes at which body_cells() looks around
+  for (const std::string& name : groups)
+    if (const Group* group = mesh.find_cell_group(name))
+      for (const std::int32_t cell : group->members) near.push_back(mesh.cells[static_cast<std::size_t>(cell)][0]);
+  const NodeCells around(mesh, near, mesh.dimension);
   std::vector<Slave> slaves;
   std::map<std::int32_t, std::size_t> zone_of;                    // of a slave cell
   std::map<std::pair<std::int32_t, int>, std::int32_t> slave_of;  // of a facet of a body cell
@@ -222,7 +247,8 @@ Nodes cut_slave(Forest& forest, const Slave& slave, const std::string& group, st
   // the body cell turned so that its facet lies where the row expects it
   const auto placement = std::ranges::find(cut->placements, match.facet, &catalog::Placement::facet);
   if (placement == cut->placements.end()) refuse("the facet is of another type");
-  const Nodes& skin = forest.nodes(slave.cell);
+  const auto of_cell = forest.nodes(slave.cell);
+  const Nodes skin(of_cell.begin(), of_cell.end());
   Nodes turned_body = pick(forest.nodes(body), placement->nodes);
   const auto n_vertices = cut->facet.size();
   const std::int32_t first = turned_body[static_cast<std::size_t>(cut->facet[0])];
@@ -295,14 +321,34 @@ Mesh cut_lac(const Mesh& mesh, std::span<const std::string> groups, std::string_
         cut_slave(forest, slave, groups[slave.zone], option, path, done.coordinates, patches, report.zones[slave.zone]));
   }
 
-  // number what is left: sub-cells in place of the cell they come from
-  std::vector<std::int32_t> number_of;  // of a cell of the forest, in the cut mesh
-  Ragged<std::int32_t> replaced_by;     // cells of the cut mesh for each cell of the mesh
-  for (std::size_t c = 0; c < mesh.n_cells(); ++c) {
+  // number what is left: sub-cells in place of the cell they come from, runs of other cells as they are
+  std::vector<std::int32_t> number_of(forest.size(), -1);  // of a cell of the forest, in the cut mesh
+  Ragged<std::int32_t> replaced_by;                        // cells of the cut mesh for each cell of the mesh
+  replaced_by.offset.reserve(mesh.n_cells() + 1);
+  replaced_by.values.reserve(forest.size());
+  done.types.reserve(forest.size());
+  done.cells.offset.reserve(forest.size() + 1);
+  done.cells.values.reserve(mesh.cells.values.size() + 8 * (forest.size() - mesh.n_cells()));
+  const auto keep = [&](std::size_t first, std::size_t end) {
+    const auto start = static_cast<std::int32_t>(done.n_cells());
+    const std::int64_t shift = done.cells.offset.back() - mesh.cells.offset[first];
+    done.types.insert(done.types.end(), mesh.types.begin() + static_cast<std::ptrdiff_t>(first),
+                      mesh.types.begin() + static_cast<std::ptrdiff_t>(end));
+    done.cells.values.insert(done.cells.values.end(), mesh.cells.values.begin() + mesh.cells.offset[first],
+                             mesh.cells.values.begin() + mesh.cells.offset[end]);
+    for (std::size_t c = first; c < end; ++c) {
+      done.cells.offset.push_back(mesh.cells.offset[c + 1] + shift);
+      replaced_by.values.push_back(start + static_cast<std::int32_t>(c - first));
+      replaced_by.offset.push_back(static_cast<std::int64_t>(replaced_by.values.size()));
+    }
+  };
+  std::size_t kept = 0;
+  for (const std::int32_t cell : forest.cut_cells()) {
+    keep(kept, static_cast<std::size_t>(cell));
+    kept = static_cast<std::size_t>(cell) + 1;
     Nodes heirs;
-    forest.leaves(static_cast<std::int32_t>(c), [&](std::int32_t leaf) {
+    forest.leaves(cell, [&](std::int32_t leaf) {
       const auto number = static_cast<std::int32_t>(done.n_cells());
-      if (static_cast<std::size_t>(leaf) >= number_of.size()) number_of.resize(static_cast<std::size_t>(leaf) + 1, -1);
       number_of[static_cast<std::size_t>(leaf)] = number;
       heirs.push_back(number);
       done.add_cell(forest.type(leaf), forest.nodes(leaf));
@@ -310,6 +356,7 @@ Mesh cut_lac(const Mesh& mesh, std::span<const std::string> groups, std::string_
     });
     replaced_by.push_back(heirs);
   }
+  keep(kept, mesh.n_cells());
   done.cell_groups = inherited(mesh.cell_groups, replaced_by);
   for (std::size_t p = 0; p < patches.size(); ++p) {
     Nodes own;

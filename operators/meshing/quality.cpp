@@ -9,8 +9,6 @@
 namespace lacon {
 namespace {
 
-constexpr int max_nodes = 27;
-
 /// Below it, relative to the cell's greatest Jacobian, a corner counts as flat: round-off of differences of coordinates.
 constexpr double flat_corner = 1e-10;
 
@@ -22,20 +20,6 @@ double determinant(const std::array<std::array<double, 3>, 3>& t, std::size_t di
          t[0][2] * (t[1][0] * t[2][1] - t[1][1] * t[2][0]);
 }
 
-double jacobian(CellType type, std::span<const std::int32_t> nodes, std::span<const double> coordinates,
-                std::span<const double> xi) {
-  const auto n = nodes.size();
-  const auto d = static_cast<std::size_t>(catalog::cell(type).dimension);
-  std::array<double, 3 * max_nodes> gradients;
-  shape_gradients(type, xi, {gradients.data(), n * d});
-  std::array<std::array<double, 3>, 3> j{};
-  for (std::size_t a = 0; a < n; ++a)
-    for (std::size_t i = 0; i < d; ++i)
-      for (std::size_t k = 0; k < d; ++k)
-        j[i][k] += gradients[a * d + i] * coordinates[3 * static_cast<std::size_t>(nodes[a]) + k];
-  return determinant(j, d);
-}
-
 std::array<double, 3> centre(const catalog::CellRow& row) {
   std::array<double, 3> xi{};
   const auto d = static_cast<std::size_t>(row.dimension);
@@ -44,24 +28,58 @@ std::array<double, 3> centre(const catalog::CellRow& row) {
   return xi;
 }
 
+/// The gradients of a cell's shape functions at its centre, then at its nodes: (1 + n_nodes, n_nodes, dimension).
+std::span<const double> gradients_of(CellType type) {
+  static const auto tables = [] {
+    std::vector<std::vector<double>> all;
+    for (const catalog::CellRow& row : catalog::cells()) {
+      const auto d = static_cast<std::size_t>(row.dimension), n = static_cast<std::size_t>(row.n_nodes);
+      std::vector<double>& table = all.emplace_back((n + 1) * n * d);
+      const std::array<double, 3> middle = centre(row);
+      const double towards_centre = row.family == Family::PYRAM ? 0.1 : 0.0;
+      for (std::size_t point = 0; d > 0 && point <= n; ++point) {
+        std::array<double, 3> xi = middle;
+        if (point > 0)
+          for (std::size_t k = 0; k < d; ++k)
+            xi[k] = (1 - towards_centre) * row.nodes[(point - 1) * d + k] + towards_centre * middle[k];
+        shape_gradients(row.type, {xi.data(), d}, {table.data() + point * n * d, n * d});
+      }
+    }
+    return all;
+  }();
+  return tables[static_cast<std::size_t>(type)];
+}
+
+/// The determinant at one point of gradients_of().
+template <std::size_t d>
+double jacobian(std::span<const std::int32_t> nodes, std::span<const double> coordinates, const double* gradients) {
+  std::array<std::array<double, 3>, 3> j{};
+  for (std::size_t a = 0; a < nodes.size(); ++a) {
+    const double* const x = coordinates.data() + 3 * std::ptrdiff_t{nodes[a]};
+    for (std::size_t i = 0; i < d; ++i)
+      for (std::size_t k = 0; k < d; ++k) j[i][k] += gradients[a * d + i] * x[k];
+  }
+  return determinant(j, d);
+}
+
+double jacobian(CellType type, std::span<const std::int32_t> nodes, std::span<const double> coordinates, std::size_t point) {
+  const int d = catalog::cell(type).dimension;
+  const double* const gradients = gradients_of(type).data() + point * nodes.size() * static_cast<std::size_t>(d);
+  if (d == 3) return jacobian<3>(nodes, coordinates, gradients);
+  return d == 2 ? jacobian<2>(nodes, coordinates, gradients) : jacobian<1>(nodes, coordinates, gradients);
+}
+
 }  // namespace
 
 double central_jacobian(CellType type, std::span<const std::int32_t> nodes, std::span<const double> coordinates) {
-  const std::array<double, 3> xi = centre(catalog::cell(type));
-  return jacobian(type, nodes, coordinates, {xi.data(), static_cast<std::size_t>(catalog::cell(type).dimension)});
+  return jacobian(type, nodes, coordinates, 0);
 }
 
 JacobianRange jacobian_range(CellType type, std::span<const std::int32_t> nodes, std::span<const double> coordinates) {
-  const catalog::CellRow& row = catalog::cell(type);
-  const auto d = static_cast<std::size_t>(row.dimension);
-  const std::array<double, 3> middle = centre(row);
-  const double towards_centre = row.family == Family::PYRAM ? 0.1 : 0.0;
   const double first = central_jacobian(type, nodes, coordinates);
   JacobianRange range{first, first};
-  for (std::size_t a = 0; a < static_cast<std::size_t>(row.n_nodes); ++a) {
-    std::array<double, 3> xi{};
-    for (std::size_t k = 0; k < d; ++k) xi[k] = (1 - towards_centre) * row.nodes[a * d + k] + towards_centre * middle[k];
-    const double here = jacobian(type, nodes, coordinates, {xi.data(), d});
+  for (std::size_t point = 1; point <= nodes.size(); ++point) {
+    const double here = jacobian(type, nodes, coordinates, point);
     range.least = std::min(range.least, here);
     range.greatest = std::max(range.greatest, here);
   }

@@ -98,7 +98,9 @@ int run_program(int argc, char** argv, std::string_view name, std::string_view w
 }
 
 bool takes_order(int argc, char** argv) {
-  return std::any_of(argv + 1, argv + argc, [](std::string_view argument) { return argument.ends_with(".json"); });
+  for (int i = 1; i < argc; ++i)
+    if (std::string_view(argv[i]).ends_with(".json") && std::string_view(argv[i - 1]) != "--status") return true;
+  return false;
 }
 
 int run_tool(int argc, char** argv, CLI::App& app, const std::function<void()>& work) {

@@ -81,12 +81,12 @@ class MeshReader {
   void read_nodes(const H5Group& step, std::int64_t space);
   void read_cells(const H5Group& step);
   void read_groups();
-  std::vector<Group> groups_of(const char* kind, const std::vector<std::int64_t>& family) const;
+  std::vector<Group> groups_of(const char* kind, const std::vector<std::int32_t>& family) const;
 
   const H5Group& root_;
   std::string name_;
   Mesh mesh_;
-  std::vector<std::int64_t> node_family_, cell_family_;
+  std::vector<std::int32_t> node_family_, cell_family_;
 };
 
 /// The computation step of the lowest (NDT, NOR); "no step" (-1, -1) comes before every other.
@@ -140,13 +140,13 @@ void MeshReader::read_nodes(const H5Group& step, std::int64_t space) {
   if (count > std::numeric_limits<std::int32_t>::max() / 4) unsuitable("it has " + std::to_string(count) + " nodes");
   const auto n = static_cast<std::size_t>(count);
   const std::vector<double> values = dataset<double>(nodes, "COO", "nodes", n * static_cast<std::size_t>(space));
-  mesh_.coordinates.assign(3 * n, 0.0);
-  for (std::size_t k = 0; k < static_cast<std::size_t>(space); ++k)
-    for (std::size_t i = 0; i < n; ++i) mesh_.coordinates[3 * i + k] = values[k * n + i];
+  mesh_.coordinates.resize(3 * n);
+  for (std::size_t i = 0; i < n; ++i)
+    for (std::size_t k = 0; k < static_cast<std::size_t>(space); ++k) mesh_.coordinates[3 * i + k] = values[k * n + i];
   for (std::size_t i = 0; i < 3 * n; ++i)
     if (!std::isfinite(mesh_.coordinates[i]))
       fail("MED_9", {{"mesh", name_}, {"file", root_.path().string()}, {"node", std::to_string(i / 3 + 1)}});
-  node_family_ = nodes.has("FAM") ? dataset<std::int64_t>(nodes, "FAM", "nodes", n) : std::vector<std::int64_t>(n, 0);
+  node_family_ = nodes.has("FAM") ? dataset<std::int32_t>(nodes, "FAM", "nodes", n) : std::vector<std::int32_t>(n, 0);
 }
 
 void MeshReader::read_cells(const H5Group& step) {
@@ -163,7 +163,6 @@ void MeshReader::read_cells(const H5Group& step) {
     fail("MED_6", {{"mesh", name_}, {"file", root_.path().string()}, {"type", type}, {"what", what}, {"known", list}});
   }
   const auto n_nodes = static_cast<std::int64_t>(mesh_.n_nodes());
-  std::vector<std::int32_t> nodes;
   for (const catalog::CellRow& row : catalog::cells()) {
     const std::string type(row.med_name);
     if (!all.has(type)) continue;
@@ -175,31 +174,34 @@ void MeshReader::read_cells(const H5Group& step) {
     if (count > std::numeric_limits<std::int32_t>::max() / 32) unsuitable("it has " + std::to_string(count) + " " + where);
     const auto n = static_cast<std::size_t>(count);
     const std::size_t size = static_cast<std::size_t>(row.n_nodes);
-    const std::vector<std::int64_t> connectivity = dataset<std::int64_t>(group, "NOD", where, n * size);
-    const std::vector<std::int64_t> family =
-        group.has("FAM") ? dataset<std::int64_t>(group, "FAM", where, n) : std::vector<std::int64_t>(n, 0);
+    const std::vector<std::int32_t> connectivity = dataset<std::int32_t>(group, "NOD", where, n * size);
+    const std::vector<std::int32_t> family =
+        group.has("FAM") ? dataset<std::int32_t>(group, "FAM", where, n) : std::vector<std::int32_t>(n, 0);
     cell_family_.insert(cell_family_.end(), family.begin(), family.end());
-    nodes.resize(size);
-    for (std::size_t c = 0; c < n; ++c) {
-      for (std::size_t j = 0; j < size; ++j) {
-        const std::int64_t node = connectivity[static_cast<std::size_t>(row.med_permutation[j]) * n + c];
-        if (node < 1 || node > n_nodes)
+    const bool sound =
+        std::all_of(connectivity.begin(), connectivity.end(), [&](std::int32_t node) { return node >= 1 && node <= n_nodes; });
+    for (std::size_t c = 0; !sound && c < n; ++c)
+      for (std::size_t j = 0; j < size; ++j)
+        if (const std::int32_t node = connectivity[static_cast<std::size_t>(row.med_permutation[j]) * n + c];
+            node < 1 || node > n_nodes)
           fail("MED_8", {{"mesh", name_},
                          {"file", root_.path().string()},
                          {"type", type},
                          {"cell", std::to_string(c + 1)},
                          {"node", std::to_string(node)},
                          {"nodes", std::to_string(n_nodes)}});
-        nodes[j] = static_cast<std::int32_t>(node - 1);
-      }
-      mesh_.add_cell(row.type, nodes);
-    }
+    const std::size_t first = mesh_.cells.values.size();
+    mesh_.cells.values.resize(first + n * size);
+    med::each_place(
+        row, n, [&](std::size_t here, std::size_t in_file) { mesh_.cells.values[first + here] = connectivity[in_file] - 1; });
+    mesh_.types.insert(mesh_.types.end(), n, row.type);
+    for (std::size_t c = 1; c <= n; ++c) mesh_.cells.offset.push_back(static_cast<std::int64_t>(first + c * size));
   }
   if (mesh_.n_cells() == 0) damaged("it has no cells");
 }
 
 /// Groups from families. @param family the family number of each entity
-std::vector<Group> MeshReader::groups_of(const char* kind, const std::vector<std::int64_t>& family) const {
+std::vector<Group> MeshReader::groups_of(const char* kind, const std::vector<std::int32_t>& family) const {
   std::map<std::int64_t, std::vector<std::string>> names_of;  // of each family
   std::set<std::int64_t> known{0};
   const std::string path = "FAS/" + name_ + "/" + kind;
@@ -219,22 +221,25 @@ std::vector<Group> MeshReader::groups_of(const char* kind, const std::vector<std
     }
   }
   std::map<std::string, std::vector<std::int32_t>> members;
+  std::map<std::int64_t, std::vector<std::vector<std::int32_t>*>> lists_of;  // of each family
   for (const auto& [number, names] : names_of)
-    for (const std::string& name : names) members[name];
+    for (const std::string& name : std::set(names.begin(), names.end()))  // a family may name a group twice
+      lists_of[number].push_back(&members[name]);
+  std::int64_t last = 0;
+  const std::vector<std::vector<std::int32_t>*>* lists = nullptr;
   for (std::size_t i = 0; i < family.size(); ++i) {
-    if (family[i] == 0) continue;
-    if (!known.contains(family[i]))
-      damaged("it has no family of the number " + std::to_string(family[i]) + ", to which " +
-              (std::string_view(kind) == "NOEUD" ? node_name(static_cast<std::int64_t>(i))
-                                                 : cell_name(static_cast<std::int64_t>(i))) +
-              " belongs");
-    const auto names = names_of.find(family[i]);
-    if (names == names_of.end()) continue;
-    for (const std::string& name : names->second) {
-      std::vector<std::int32_t>& list = members[name];
-      // a family may name a group twice
-      if (list.empty() || list.back() != static_cast<std::int32_t>(i)) list.push_back(static_cast<std::int32_t>(i));
+    if (family[i] != last) {
+      last = family[i];
+      if (!known.contains(last))
+        damaged("it has no family of the number " + std::to_string(last) + ", to which " +
+                (std::string_view(kind) == "NOEUD" ? node_name(static_cast<std::int64_t>(i))
+                                                   : cell_name(static_cast<std::int64_t>(i))) +
+                " belongs");
+      const auto at = lists_of.find(last);
+      lists = at == lists_of.end() || last == 0 ? nullptr : &at->second;
     }
+    if (lists)
+      for (std::vector<std::int32_t>* list : *lists) list->push_back(static_cast<std::int32_t>(i));
   }
   std::vector<Group> groups;
   for (auto& [name, list] : members) groups.push_back({name, std::move(list)});

@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cstdio>
 #include <numeric>
+#include <optional>
 #include <utility>
 
 #include "lacon/catalog/messages.hpp"
@@ -148,23 +149,43 @@ bool same_geometry(const Mesh& a, const Mesh& b) {
 /// @param sign 1 for nodes, -1 for cells @return the family of each entity, empty where all are in none
 std::vector<std::int32_t> write_families(const H5Group& root, const std::string& mesh, const char* kind, int sign,
                                          const std::vector<Group>& groups, std::size_t n_entities) {
-  std::vector<std::vector<std::int32_t>> groups_of(n_entities);
-  for (std::size_t g = 0; g < groups.size(); ++g)
+  // the groups that an entity has been found in so far, as a number of `sets`
+  std::vector<std::vector<std::int32_t>> sets{{}};
+  std::vector<std::int32_t> set_of(n_entities, 0);
+  for (std::size_t g = 0; g < groups.size(); ++g) {
+    const auto own = static_cast<std::int32_t>(g);
+    std::map<std::int32_t, std::int32_t> with_this;  // a set -> the set with this group too
+    std::int32_t last = -1, next = -1;
     for (const std::int32_t member : groups[g].members) {
-      std::vector<std::int32_t>& list = groups_of[static_cast<std::size_t>(member)];
-      if (list.empty() || list.back() != static_cast<std::int32_t>(g)) list.push_back(static_cast<std::int32_t>(g));
+      std::int32_t& set = set_of[static_cast<std::size_t>(member)];
+      if (set != last) {
+        last = set;
+        std::vector<std::int32_t> larger = sets[static_cast<std::size_t>(set)];
+        if (!larger.empty() && larger.back() == own) {
+          next = set;  // named twice
+        } else {
+          const auto [at, is_new] = with_this.try_emplace(set, static_cast<std::int32_t>(sets.size()));
+          larger.push_back(own);
+          if (is_new) sets.push_back(std::move(larger));
+          next = at->second;
+        }
+      }
+      set = next;
     }
-  std::map<std::vector<std::int32_t>, std::int32_t> number{{{}, 0}};
+  }
+  std::vector<std::int32_t> number(sets.size(), 0);  // of the family of a set
   std::vector<std::vector<std::int32_t>> families;
   std::vector<std::int32_t> family(n_entities, 0);
-  const auto enter = [&](const std::vector<std::int32_t>& key) {
-    const auto [at, is_new] = number.try_emplace(key, sign * static_cast<std::int32_t>(families.size() + 1));
-    if (is_new) families.push_back(key);
-    return at->second;
-  };
-  for (std::size_t i = 0; i < n_entities; ++i) family[i] = enter(groups_of[i]);
+  for (std::size_t i = 0; i < n_entities; ++i) {
+    const auto set = static_cast<std::size_t>(set_of[i]);
+    if (set > 0 && number[set] == 0) {
+      families.push_back(sets[set]);
+      number[set] = sign * static_cast<std::int32_t>(families.size());
+    }
+    family[i] = number[set];
+  }
   for (std::size_t g = 0; g < groups.size(); ++g)
-    if (groups[g].members.empty()) enter({static_cast<std::int32_t>(g)});
+    if (groups[g].members.empty()) families.push_back({static_cast<std::int32_t>(g)});
   if (families.empty()) return {};
   const H5Group parent = root.create("FAS/" + mesh + "/" + kind);
   for (std::size_t f = 0; f < families.size(); ++f) {
@@ -214,10 +235,9 @@ void write_mesh(const H5Group& root, const Mesh& mesh, const std::string& name) 
   set_int(nodes, "CGT", 1);
   set_int(nodes, "CGS", 1);
   set_text(nodes, "PFL", med::no_profile);
-  std::vector<double> coordinates;
-  coordinates.reserve(space * mesh.n_nodes());
-  for (std::size_t k = 0; k < space; ++k)
-    for (std::size_t i = 0; i < mesh.n_nodes(); ++i) coordinates.push_back(mesh.coordinates[3 * i + k]);
+  std::vector<double> coordinates(space * mesh.n_nodes());
+  for (std::size_t i = 0; i < mesh.n_nodes(); ++i)
+    for (std::size_t k = 0; k < space; ++k) coordinates[k * mesh.n_nodes() + i] = mesh.coordinates[3 * i + k];
   write_numbers(nodes, "COO", coordinates, mesh.n_nodes());
   if (!node_family.empty()) write_numbers(nodes, "FAM", node_family, mesh.n_nodes());
 
@@ -230,13 +250,16 @@ void write_mesh(const H5Group& root, const Mesh& mesh, const std::string& name) 
     set_int(one, "CGS", 1);
     set_text(one, "PFL", med::no_profile);
     set_int(one, "GEO", row.dimension == 0 ? 1 : 100 * row.dimension + row.n_nodes);
-    std::vector<std::int32_t> connectivity(cells.size() * static_cast<std::size_t>(row.n_nodes)), numbers, family;
-    for (std::size_t c = 0; c < cells.size(); ++c) {
-      const auto own = mesh.cells[static_cast<std::size_t>(cells[c])];
-      for (std::size_t j = 0; j < own.size(); ++j)
-        connectivity[static_cast<std::size_t>(row.med_permutation[j]) * cells.size() + c] = own[j] + 1;
-      numbers.push_back(cells[c] + 1);
-      if (!cell_family.empty()) family.push_back(cell_family[static_cast<std::size_t>(cells[c])]);
+    const auto size = static_cast<std::size_t>(row.n_nodes);
+    std::vector<std::int32_t> connectivity(cells.size() * size), numbers(cells.size()), family;
+    med::each_place(row, cells.size(), [&](std::size_t here, std::size_t in_file) {
+      const std::int64_t first = mesh.cells.offset[static_cast<std::size_t>(cells[here / size])];
+      connectivity[in_file] = mesh.cells.values[static_cast<std::size_t>(first) + here % size] + 1;
+    });
+    std::ranges::transform(cells, numbers.begin(), [](std::int32_t c) { return c + 1; });
+    if (!cell_family.empty()) {
+      family.resize(cells.size());
+      std::ranges::transform(cells, family.begin(), [&](std::int32_t c) { return cell_family[static_cast<std::size_t>(c)]; });
     }
     write_numbers(one, "NOD", connectivity, cells.size());
     write_numbers(one, "NUM", numbers, cells.size());
@@ -329,14 +352,15 @@ MedFile::MedFile(const hdf5::Group& root) : root_(root) {
 
 std::string MedFile::add_mesh(const Mesh& mesh, std::string_view name) {
   check_name(root_, "mesh", name, med::name_length);
-  const Mesh wanted = as_read(mesh);
+  std::optional<Mesh> wanted;
   bool there = false, same = false;
   const std::string chosen = free_name(std::string(name), [&](const std::string& candidate) {
     there = root_.has("ENS_MAA/" + candidate);
     if (!there) return true;
+    if (!wanted) wanted = as_read(mesh);
     const Mesh present = med::read_mesh(root_, candidate);
-    same = same_groups(present.cell_groups, wanted.cell_groups) && same_groups(present.node_groups, wanted.node_groups);
-    return same_geometry(present, wanted);
+    same = same_groups(present.cell_groups, wanted->cell_groups) && same_groups(present.node_groups, wanted->node_groups);
+    return same_geometry(present, *wanted);
   });
   if (there && same) return chosen;
   if (there)

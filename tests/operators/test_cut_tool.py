@@ -1,5 +1,6 @@
 """crea_maillage without an order: MED in, MED out."""
 
+import json
 import os
 import pathlib
 import subprocess
@@ -12,7 +13,7 @@ import numpy as np
 from lacon_test import BIN, SECONDS, OperatorTest
 
 sys.path.insert(0, str(pathlib.Path(os.environ["LACON_SOURCE_DIR"]) / "commands/studies"))
-from meshes import block, brick, union, write_med  # noqa: E402
+from meshes import block, brick, cubes, union, write_med  # noqa: E402
 
 LINES = np.linspace(0.0, 1.0, 3)
 
@@ -102,11 +103,31 @@ class CutTool(OperatorTest):
         corners = mesh.coordinates[np.array([mesh.cells[c] for c in mesh.cell_groups["TOP"]])]
         self.assertTrue(np.all(np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])[:, 2] > 0))
 
+    def test_the_box_of_the_benchmark_is_a_mesh_like_any_other(self):
+        sides = {(axis, end): f"SIDE{axis}{end}" for axis in range(3) for end in (0, 1)}
+        for make in (cubes((2, 3, 4), "BODY", sides), brick("HEXA8", [np.arange(n + 1.0) for n in (2, 3, 4)], name="BODY", sides=sides)):
+            write_med(self.source, make)
+            done = self.cut(*(word for name in sides.values() for word in ("--slave", name)))
+            self.assertNotIn("DECOUPE_7", done.stderr)
+            self.assertNotIn("LIRE_1", done.stderr)
+            mesh, sizes = self.groups("cell_groups")
+            self.assertEqual(sizes["SIDE00"], 12 * 4)
+            self.assertTrue(np.all(mesh.coordinates[np.concatenate([mesh.cells[c] for c in mesh.cell_groups["SIDE11"]]), 1] == 3))
+
     def test_quality_is_reported_on_demand(self):
         self.write_brick()
         self.assertNotIn("the worst", self.cut("--slave", "TOP").stdout)
         # METHOD 1.5: 2 / sqrt(17) in the laterals of a cube cut into hexahedra
         self.assertRegex(self.cut("--slave", "TOP", "--hexa", "HEXA", "--quality").stdout, r"the worst after the cut:\n +0.4851  HEXA8 M\d+ \(BODY\)")
+
+    def test_body_cells_inside_out_are_turned_and_told(self):
+        mesh = self.write_brick()
+        mesh.cells["HEXA8"][3] = mesh.cells["HEXA8"][3][[4, 5, 6, 7, 0, 1, 2, 3]]
+        write_med(self.source, mesh, "Joint")
+        done = self.cut("--slave", "TOP")
+        self.assertRegex(done.stderr, r"<I> <LIRE_1> 1 ")
+        run = self.run_command("LIRE_MAILLAGE", {"FORMAT": "MED", "UNITE": 20}, "mesh_9", units={20: self.out})
+        self.assertEqual((run.status, self.ids(run)), (0, []))
 
     def test_chooses_a_mesh_by_name(self):
         self.write_brick()
@@ -116,6 +137,12 @@ class CutTool(OperatorTest):
         self.cut("--slave", "TOP", "--mesh", "Joint")
         self.assertEqual([mesh["name"] for mesh in self.read()], ["Joint"])
         self.refuses("MED_5", self.source, self.folder / "new.med", "--slave", "TOP", "--mesh", "Joints", words=["Joints", "Another"])
+
+    def test_its_outcome_goes_to_a_file_on_demand(self):
+        self.write_brick()
+        self.cut("--slave", "TOP", "--status", self.folder / "outcome.json")
+        outcome = json.loads((self.folder / "outcome.json").read_text())
+        self.assertEqual((outcome["status"], [m["id"] for m in outcome["messages"]]), (0, ["DECOUPE_8", "DECOUPE_8", "MESH1_3"]))
 
     def test_an_older_file_is_replaced(self):
         self.write_brick()
