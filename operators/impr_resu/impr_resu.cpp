@@ -38,6 +38,24 @@ class Concepts {
     if (is_new) at->second = base_.result(id);
     return at->second;
   }
+  /// RESULTAT, or CHAM_GD as a result whose one field it is, under its own name. Throws CREACHAMP_12 for a field
+  /// of functions.
+  std::pair<std::string, const Result&> source(const Keywords& one) {
+    const std::string id = one.concept_id(one.has("CHAM_GD") ? "CHAM_GD" : "RESULTAT");
+    if (!one.has("CHAM_GD")) return {id, result(id)};
+    auto [at, is_new] = results_.try_emplace(id);
+    if (is_new) {
+      const Field field = base_.field(id);
+      if (field.quantity.ends_with("_F")) fail("CREACHAMP_12", {{"field", base_.label(id)}, {"keyword", one.path("CHAM_GD")}});
+      Result& result = at->second;
+      result.label = base_.label(id);
+      result.mesh = field.mesh;
+      result.orders = {field.order};
+      result.instants = {field.instant};
+      result.fields[result.label][field.order] = base_.file(id).filename().string();
+    }
+    return {id, at->second};
+  }
 
  private:
   const Base& base_;
@@ -152,7 +170,7 @@ void print_med(const Order& order, const Base& base, Concepts& concepts, const f
         written.add("mesh " + med.add_mesh(concepts.mesh(id), base.label(id)));
         continue;
       }
-      const Result& result = concepts.result(one.concept_id("RESULTAT"));
+      const Result& result = concepts.source(one).second;
       const Mesh& mesh = concepts.mesh(result.mesh);
       const std::string mesh_name = med.add_mesh(mesh, base.label(result.mesh));
       each_field(base, result, mesh, one, [&](PrintedField&& printed) {
@@ -207,8 +225,7 @@ fs::path print_vtu(const Order& order, const Base& base, Concepts& concepts, con
       written.add("mesh " + base.label(id));
       continue;
     }
-    const std::string id = one.concept_id("RESULTAT");
-    const Result& result = concepts.result(id);
+    const auto& [id, result] = concepts.source(one);
     each_field(base, result, concepts.mesh(result.mesh), one, [&](PrintedField&& printed) {
       Step& step = steps[{rank(id), printed.field.order}];
       step.label = result.label;
@@ -253,7 +270,7 @@ void print_listing(const Order& order, const Base& base, Concepts& concepts, con
       written.add("mesh " + base.label(id));
       continue;
     }
-    const Result& result = concepts.result(one.concept_id("RESULTAT"));
+    const Result& result = concepts.source(one).second;
     const Mesh& mesh = concepts.mesh(result.mesh);
     FieldListing what;
     what.coordinates = one.yes("IMPR_COOR");
@@ -261,7 +278,8 @@ void print_listing(const Order& order, const Base& base, Concepts& concepts, con
     what.least = one.has("VALE_MIN");
     what.values = !what.greatest && !what.least;
     each_field(base, result, mesh, one, [&](PrintedField&& printed) {
-      list_field(out, mesh, printed.field, "result " + result.label + ", field " + printed.field.name, what);
+      list_field(out, mesh, printed.field,
+                 (one.has("CHAM_GD") ? "field " : "result " + result.label + ", field ") + printed.field.name, what);
       written.add("field " + printed.field.name + " of " + result.label);
     });
   }

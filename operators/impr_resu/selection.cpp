@@ -77,7 +77,8 @@ void each_field(const Base& base, const Result& result, const Mesh& mesh, const 
       if (parts) field = field.location == Location::nodes ? restrict_to_nodes(field, nodes) : restrict_to_cells(field, cells);
       if (field.support.empty()) continue;
       nowhere.erase(names[i]);
-      visit({med_names.empty() ? med_field_name(result.label, names[i]) : med_names[i], std::move(field)});
+      const std::string own = keywords.has("CHAM_GD") ? names[i] : med_field_name(result.label, names[i]);
+      visit({med_names.empty() ? own : med_names[i], std::move(field)});
     }
   }
   for (const std::string& component : wanted)

@@ -1,0 +1,246 @@
+"""crea_champ and post_elem alone: fields by hand in, fields and tables out."""
+
+import types
+import unittest
+
+import h5py
+import numpy as np
+from lacon_test import OperatorTest, concept, text
+
+#: two squares side by side (the right one is wider) and the lower skin of the left one; M4 has no element
+POINTS = np.array([(0, 0), (1, 0), (3, 0), (0, 1), (1, 1), (3, 1)], float)
+CELLS = [("SEG2", [0, 1]), ("QUAD4", [0, 1, 4, 3]), ("QUAD4", [1, 2, 5, 4]), ("SEG2", [1, 2])]
+GROUPS = {"SKIN": [0], "LEFT": [1], "RIGHT": [2], "BODY": [1, 2]}
+GAUSS = [(i, j) for j in (-1 / np.sqrt(3), 1 / np.sqrt(3)) for i in (-1 / np.sqrt(3), 1 / np.sqrt(3))]
+#: integration points of M1 (skin, 2), M2 and M3 (4 each)
+PLACES = np.array([(0.5 - 0.5 / np.sqrt(3), 0), (0.5 + 0.5 / np.sqrt(3), 0)]
+                  + [(0.5 + 0.5 * x, 0.5 + 0.5 * y) for x, y in GAUSS] + [(2 + x, 0.5 + 0.5 * y) for x, y in GAUSS])
+
+
+def linear(points):
+    return 1 + 2 * points[:, 0] - 3 * points[:, 1]
+
+
+class FieldTest(OperatorTest):
+    def setUp(self):
+        super().setUp()
+        self.write_mesh("mesh_1", POINTS, CELLS, cell_groups=GROUPS, node_groups={"ENDS": [0, 2]})
+        self.write_model("model_2", "mesh_1", ["D_PLAN/SEG2", "D_PLAN/QUAD4"], [0, 1, 1, -1])
+
+    def own(self, identifier, kind, components, support, values, offset=None, present=None, mesh="mesh_1", **attributes):
+        """A field concept of type NOEU_DEPL_R."""
+        location, _, quantity = kind.partition("_")
+        with self.create(identifier, "field", references=[mesh], mesh=mesh, location=location, quantity=quantity, order=0, instant=0.0,
+                         name=identifier.upper(), **attributes) as file:
+            file.attrs["components"] = np.array(components, h5py.string_dtype())
+            file["support"] = np.array(support, np.int32)
+            file["values"] = np.asarray(values, float).reshape(-1, len(components))
+            if offset is not None:
+                file["offset"] = np.array(offset, np.int64)
+            if present is not None:
+                file["present"] = np.array(present, np.uint8).reshape(-1, len(components))
+
+    def run_ok(self, command, result, **keywords):
+        run = self.run_command(command, keywords, result=result)
+        self.assertEqual((run.status, run.messages), (0, []), run.stderr)
+
+    def make(self, result, **keywords):
+        """@return the field that CREA_CHAMP makes"""
+        self.run_ok("CREA_CHAMP", result, **keywords)
+        with h5py.File(self.path(result)) as file:
+            self.assertEqual((text(file.attrs["lacon_type"]), text(file.attrs["mesh"])), ("field", "mesh_1"))
+            return types.SimpleNamespace(
+                kind=f"{text(file.attrs['location'])}_{text(file.attrs['quantity'])}", components=[text(c) for c in file.attrs["components"]],
+                support=file["support"][()].tolist(), values=file["values"][()], offset=file["offset"][()].tolist() if "offset" in file else None,
+                present=file["present"][()] if "present" in file else None)
+
+    def table(self, **keywords):
+        """@return column -> list of POST_ELEM's table"""
+        self.run_ok("POST_ELEM", "table_9", **keywords)
+        with h5py.File(self.path("table_9")) as file:
+            return {text(name): file[f"values/{k}"][()] for k, name in enumerate(file["columns"][()])}
+
+    def refuses(self, identifier, *words, command="CREA_CHAMP", **keywords):
+        self.assert_refuses(identifier, command, keywords, *words, result="field_8" if command == "CREA_CHAMP" else "table_9")
+
+
+class CreaChamp(FieldTest):
+    def test_the_geometry_of_a_mesh(self):
+        field = self.make("field_3", OPERATION="EXTR", TYPE_CHAM="NOEU_GEOM_R", NOM_CHAM="GEOMETRIE", MAILLAGE=concept("mesh_1"))
+        self.assertEqual((field.kind, field.components), ("NOEU_GEOM_R", ["X", "Y"]))
+        np.testing.assert_array_equal(field.values, POINTS)
+
+    def test_a_field_of_a_result(self):
+        depl = {"quantity": "DEPL_R", "location": "NOEU", "components": ["DX"], "support": range(6)}
+        self.write_result("result_3", "mesh_1", [0.0, 1.0], {"DEPL": {k: {**depl, "values": np.arange(6) * k} for k in (0, 1)}}, label="RES")
+        which = {"OPERATION": "EXTR", "RESULTAT": concept("result_3"), "NOM_CHAM": "DEPL"}
+        for choice in ({"INST": 1.0}, {"NUME_ORDRE": 1}):
+            field = self.make("field_4", TYPE_CHAM="NOEU_DEPL_R", **which, **choice)
+            np.testing.assert_array_equal(field.values[:, 0], range(6))
+        self.refuses("CREACHAMP_8", "0, 1", TYPE_CHAM="NOEU_DEPL_R", **which)
+        self.refuses("CREACHAMP_9", "NOEU_DEPL_R", "ELGA_SIEF_R", TYPE_CHAM="ELGA_SIEF_R", INST=1.0, **which)
+        self.refuses("FIELDS_2", "0.5", TYPE_CHAM="NOEU_DEPL_R", INST=0.5, **which)
+        self.refuses("RESULT_1", "VITE", "DEPL", TYPE_CHAM="NOEU_DEPL_R", INST=1.0, **{**which, "NOM_CHAM": "VITE"})
+
+    def test_values_on_groups_the_later_one_counts(self):
+        field = self.make("field_3", OPERATION="AFFE", TYPE_CHAM="NOEU_DEPL_R", MAILLAGE=concept("mesh_1"), AFFE=[
+            {"TOUT": "OUI", "NOM_CMP": ["DX"], "VALE": [1.0]}, {"GROUP_MA": "SKIN", "NOM_CMP": ["DX", "DY"], "VALE": [2.0, 3.0]},
+            {"GROUP_NO": "ENDS", "NOM_CMP": ["DY"], "VALE": [4.0]}])
+        np.testing.assert_array_equal(field.values, [(2, 4), (2, 3), (1, 4), (1, 0), (1, 0), (1, 0)])
+        np.testing.assert_array_equal(field.present[:, 1], [1, 1, 1, 0, 0, 0])
+
+    def test_values_at_points_with_zero_elsewhere_or_nowhere(self):
+        given = {"OPERATION": "AFFE", "TYPE_CHAM": "ELGA_NEUT_R", "MODELE": concept("model_2"), "AFFE": {"GROUP_MA": "RIGHT", "NOM_CMP": ["X1"], "VALE": [7.0]}}
+        field = self.make("field_3", **given)
+        self.assertEqual((field.support, field.offset), ([2], [0, 4]))
+        field = self.make("field_4", PROL_ZERO="OUI", **given)
+        self.assertEqual((field.support, field.offset), ([0, 1, 2], [0, 2, 6, 10]))
+        np.testing.assert_array_equal(field.values[:, 0], [0] * 6 + [7] * 4)
+
+    def test_a_function_at_nodes_and_at_points_is_exact_there(self):
+        """A piecewise function needs no launcher; FORMULE: verification/norms."""
+        with self.create("function_5", "function", parameter="X", component="TOUTRESU", extension_left="LINEAIRE", extension_right="LINEAIRE") as file:
+            file.attrs["interpolation"] = np.array(["LIN", "LIN"], h5py.string_dtype())
+            file["x"], file["y"] = np.array([0.0, 1.0]), np.array([5.0, 7.0])
+        self.make("field_3", OPERATION="EXTR", TYPE_CHAM="NOEU_GEOM_R", NOM_CHAM="GEOMETRIE", MAILLAGE=concept("mesh_1"))
+        self.make("field_4", OPERATION="DISC", TYPE_CHAM="ELGA_GEOM_R", MODELE=concept("model_2"), CHAM_GD=concept("field_3"))
+        for where, place, points in (("NOEU", "field_3", POINTS), ("ELGA", "field_4", PLACES)):
+            on = {"MAILLAGE": concept("mesh_1")} if where == "NOEU" else {"MODELE": concept("model_2")}
+            self.make("field_6", OPERATION="AFFE", TYPE_CHAM=f"{where}_NEUT_F", AFFE={"TOUT": "OUI", "NOM_CMP": ["X2"], "VALE_F": [concept("function_5")]}, **on)
+            field = self.make("field_7", OPERATION="EVAL", TYPE_CHAM=f"{where}_NEUT_R", CHAM_F=concept("field_6"), CHAM_PARA=[concept(place)])
+            self.assertEqual((field.kind, field.components), (f"{where}_NEUT_R", ["X2"]))
+            np.testing.assert_allclose(field.values[:, 0], 5 + 2 * points[:, 0], atol=1e-14)
+        self.own("field_3", "NOEU_GEOM_R", ["Y"], range(6), POINTS[:, 1])
+        self.make("field_6", OPERATION="AFFE", TYPE_CHAM="NOEU_NEUT_F", MAILLAGE=concept("mesh_1"), AFFE={"TOUT": "OUI", "NOM_CMP": ["X2"], "VALE_F": [concept("function_5")]})
+        evaluate = {"OPERATION": "EVAL", "TYPE_CHAM": "NOEU_NEUT_R", "CHAM_F": concept("field_6"), "CHAM_PARA": [concept("field_3")]}
+        self.refuses("FUNCTION_2", "X", **evaluate)
+        self.own("field_3", "NOEU_GEOM_R", ["X"], [0, 1], POINTS[:2, 0])
+        self.refuses("CREACHAMP_13", "node N3", **evaluate)
+
+    def test_parts_are_renamed_scaled_and_added(self):
+        self.own("field_3", "NOEU_NEUT_R", ["X1", "X2"], range(6), np.arange(12))
+        self.own("field_4", "NOEU_DEPL_R", ["DX"], [1, 2], [100, 200])
+        field = self.make("field_5", OPERATION="ASSE", TYPE_CHAM="NOEU_DEPL_R", MAILLAGE=concept("mesh_1"), ASSE=[
+            {"TOUT": "OUI", "CHAM_GD": concept("field_3"), "NOM_CMP": ["X1", "X2"], "NOM_CMP_RESU": ["DY", "DX"]},
+            {"GROUP_NO": "ENDS", "CHAM_GD": concept("field_4"), "CUMUL": "OUI", "COEF_R": -1.0},
+            {"GROUP_MA": "SKIN", "CHAM_GD": concept("field_3"), "NOM_CMP": ["X1"], "NOM_CMP_RESU": ["LAGS_C"]}])
+        self.assertEqual(field.components, ["DY", "DX", "LAGS_C"])
+        dx = np.arange(1, 13, 2)
+        np.testing.assert_array_equal(field.values[:, 1], dx - [0, 0, 200, 0, 0, 0])  # N1 is in ENDS, but field_4 is not there
+        np.testing.assert_array_equal(field.values[:, 0], np.arange(0, 12, 2))
+        np.testing.assert_array_equal(field.present[:, 2], [1, 1, 0, 0, 0, 0])
+
+    def test_a_value_of_a_cell_goes_to_all_its_points(self):
+        self.own("field_3", "ELEM_CLAC_R", ["PRES"], [0], [-3.0])
+        field = self.make("field_4", OPERATION="ASSE", TYPE_CHAM="CART_NEUT_R", MAILLAGE=concept("mesh_1"),
+                          ASSE={"GROUP_MA": "SKIN", "CHAM_GD": concept("field_3"), "NOM_CMP": ["PRES"], "NOM_CMP_RESU": ["X1"]})
+        self.assertEqual((field.kind, field.support), ("ELEM_NEUT_R", [0]))
+        field = self.make("field_5", OPERATION="DISC", TYPE_CHAM="ELGA_NEUT_R", MODELE=concept("model_2"), PROL_ZERO="OUI", CHAM_GD=concept("field_4"))
+        np.testing.assert_array_equal(field.values[:, 0], [-3, -3] + [0] * 8)
+
+    def test_a_linear_field_is_exact_wherever_it_goes(self):
+        self.own("field_3", "NOEU_NEUT_R", ["X1"], range(6), linear(POINTS))
+        model, body = concept("model_2"), [n for _, nodes in CELLS[:3] for n in nodes]
+        points = self.make("field_4", OPERATION="DISC", TYPE_CHAM="ELGA_NEUT_R", MODELE=model, CHAM_GD=concept("field_3"))
+        np.testing.assert_allclose(points.values[:, 0], linear(PLACES), atol=1e-14)
+        for source in ("field_3", "field_4"):
+            nodes = self.make("field_5", OPERATION="DISC", TYPE_CHAM="ELNO_NEUT_R", MODELE=model, CHAM_GD=concept(source))
+            np.testing.assert_allclose(nodes.values[:, 0], linear(POINTS[body]), atol=1e-14)
+        back = self.make("field_6", OPERATION="DISC", TYPE_CHAM="NOEU_NEUT_R", MODELE=model, CHAM_GD=concept("field_4"))
+        np.testing.assert_allclose(back.values[:, 0], linear(POINTS), atol=1e-14)
+        middle = self.make("field_7", OPERATION="DISC", TYPE_CHAM="ELEM_NEUT_R", MODELE=model, CHAM_GD=concept("field_4"))
+        np.testing.assert_allclose(middle.values[:, 0], linear(np.array([(0.5, 0), (0.5, 0.5), (2, 0.5)])), atol=1e-14)
+
+    def test_a_cell_whose_nodes_lack_a_component(self):
+        self.own("field_3", "NOEU_NEUT_R", ["X1"], [0, 1, 3, 4], [1, 1, 1, 1])
+        given = {"OPERATION": "DISC", "TYPE_CHAM": "ELGA_NEUT_R", "MODELE": concept("model_2"), "CHAM_GD": concept("field_3")}
+        self.assertEqual(self.make("field_4", **given).support, [0, 1])
+        np.testing.assert_allclose(self.make("field_5", PROL_ZERO="OUI", **given).values[:, 0], [1] * 6 + [0] * 4, atol=1e-15)
+
+    def test_sums_and_normals(self):
+        self.own("field_3", "NOEU_DEPL_R", ["DX"], range(6), np.arange(6))
+        self.own("field_4", "NOEU_DEPL_R", ["DX"], range(6), np.ones(6))
+        both = [{"CHAM_GD": concept("field_3"), "COEF_R": 2.0}, {"CHAM_GD": concept("field_4"), "COEF_R": -1.0}]
+        field = self.make("field_5", OPERATION="COMB", TYPE_CHAM="NOEU_DEPL_R", COMB=both)
+        np.testing.assert_array_equal(field.values[:, 0], 2 * np.arange(6) - 1)
+        self.own("field_4", "NOEU_DEPL_R", ["DX"], [0], [1.0])
+        self.refuses("CREACHAMP_15", "FIELD_4", OPERATION="COMB", TYPE_CHAM="NOEU_DEPL_R", COMB=both)
+        field = self.make("field_6", OPERATION="NORMALE", TYPE_CHAM="NOEU_GEOM_R", MODELE=concept("model_2"), GROUP_MA="SKIN")
+        np.testing.assert_allclose(field.values, [(0, -1), (0, -1)], atol=1e-15)
+
+    def test_refusals(self):
+        mesh = {"MAILLAGE": concept("mesh_1")}
+        affect = {"OPERATION": "AFFE", "AFFE": {"TOUT": "OUI", "NOM_CMP": ["DX"], "VALE": [1.0]}}
+        self.refuses("CREACHAMP_1", "NOEU_DEPL", TYPE_CHAM="NOEU_DEPL", **affect, **mesh)
+        self.refuses("CREACHAMP_1", "SOMM_DEPL_R", TYPE_CHAM="SOMM_DEPL_R", **affect, **mesh)
+        self.refuses("CREACHAMP_2", "DX", TYPE_CHAM="NOEU_SIEF_R", **affect, **mesh)
+        self.refuses("CREACHAMP_3", TYPE_CHAM="ELGA_DEPL_R", **affect, **mesh)
+        self.refuses("CREACHAMP_6", "AFFE", TYPE_CHAM="NOEU_DEPL_R", **affect)
+        self.refuses("CREACHAMP_10", "VALE", TYPE_CHAM="NOEU_DEPL_F", **affect, **mesh)
+        for identifier, change in (("CREACHAMP_11", {"VALE": [1.0, 2.0]}), ("MESH_1", {"TOUT": None, "GROUP_MA": "RIHGT"})):
+            one = {k: v for k, v in {**affect["AFFE"], **change}.items() if v is not None}
+            self.refuses(identifier, TYPE_CHAM="NOEU_DEPL_R", OPERATION="AFFE", AFFE=one, **mesh)
+        self.refuses("CREACHAMP_7", "ELEM_DEPL_R", TYPE_CHAM="ELEM_DEPL_R", OPERATION="AFFE", AFFE={"GROUP_NO": "ENDS", "NOM_CMP": ["DX"], "VALE": [1.0]}, **mesh)
+        self.own("field_3", "ELGA_NEUT_R", ["X1"], [1], np.ones(9), offset=[0, 9])
+        part = {"TOUT": "OUI", "CHAM_GD": concept("field_3")}
+        model = {"MODELE": concept("model_2")}
+        self.refuses("CREACHAMP_4", "M2", TYPE_CHAM="ELGA_NEUT_R", OPERATION="ASSE", ASSE=part, **model)
+        self.refuses("CREACHAMP_9", "ELGA_NEUT_R", TYPE_CHAM="NOEU_NEUT_R", OPERATION="ASSE", ASSE=part, **mesh)
+        self.refuses("CREACHAMP_14", "X7", TYPE_CHAM="ELGA_NEUT_R", OPERATION="ASSE", ASSE={**part, "NOM_CMP": ["X7"]}, **model)
+        self.refuses("CREACHAMP_12", TYPE_CHAM="ELGA_NEUT_R", OPERATION="EVAL", CHAM_F=concept("field_3"), CHAM_PARA=[concept("field_3")])
+        self.write_mesh("mesh_6", POINTS, CELLS, label="OTHER")
+        self.own("field_4", "NOEU_NEUT_R", ["X1"], [0], [1.0], mesh="mesh_6")
+        self.refuses("CREACHAMP_5", "OTHER", TYPE_CHAM="NOEU_NEUT_R", OPERATION="ASSE", ASSE={**part, "CHAM_GD": concept("field_4")}, **model)
+
+
+class PostElem(FieldTest):
+    def test_norms_are_those_of_numpy(self):
+        """Measures of the points: 1/2 on the skin, 1/4 in the left cell, 1/2 in the right one."""
+        values = np.random.default_rng(3).normal(size=(10, 2))
+        self.own("field_3", "ELGA_DEPL_R", ["DX", "DY"], range(3), values, offset=[0, 2, 6, 10])
+        measure = np.array([0.5] * 2 + [0.25] * 4 + [0.5] * 4)
+        squares = measure * (values**2).sum(1)
+        norm = {"TYPE_NORM": "L2", "CHAM_GD": concept("field_3"), "MODELE": concept("model_2")}
+        for place, rows in (({"GROUP_MA": "SKIN"}, slice(0, 2)), ({"GROUP_MA": ["LEFT", "RIGHT"]}, slice(2, 10)), ({"TOUT": "OUI"}, slice(2, 10))):
+            table = self.table(NORME={**norm, **place})
+            self.assertAlmostEqual(table["VALE_NORM"][0], np.sqrt(squares[rows].sum()), 14)
+        table = self.table(NORME={**norm, "TOUT": "OUI", "NOM_CMP": ["DY"], "COEF_MULT": [3.0]})
+        self.assertAlmostEqual(table["VALE_NORM"][0], np.sqrt((3 * measure * values[:, 1]**2)[2:].sum()), 14)
+
+    def test_the_norm_of_a_tensor_counts_both_off_diagonals(self):
+        self.own("field_3", "ELGA_SIEF_R", ["SIXX", "SIYY", "SIXY"], [1], [(1.0, 2.0, 3.0)] * 4, offset=[0, 4])
+        norm = {"CHAM_GD": concept("field_3"), "MODELE": concept("model_2"), "GROUP_MA": "LEFT"}
+        self.assertAlmostEqual(self.table(NORME={**norm, "TYPE_NORM": "L2"})["VALE_NORM"][0], np.sqrt(14), 14)
+        self.assertAlmostEqual(self.table(NORME={**norm, "TYPE_NORM": "FROBENIUS"})["VALE_NORM"][0], np.sqrt(23), 14)
+
+    def test_integrals_of_a_linear_field_are_exact(self):
+        depl = {"quantity": "DEPL_R", "location": "NOEU", "components": ["DX"], "support": range(6), "values": linear(POINTS)}
+        self.write_result("result_3", "mesh_1", [0.0, 1.0], {"DEPL": {k: depl for k in (0, 1)}}, model="model_2")
+        table = self.table(INTEGRALE={"RESULTAT": concept("result_3"), "NOM_CHAM": "DEPL", "GROUP_MA": ["LEFT", "RIGHT", "SKIN"], "INST": [1.0]})
+        middle = linear(np.array([(0.5, 0.5), (2, 0.5), (0.5, 0)]))
+        np.testing.assert_allclose(table["VOL"], [1, 2, 1], atol=1e-14)
+        np.testing.assert_allclose(table["MOYE_DX"], middle, atol=1e-14)
+        np.testing.assert_allclose(table["INTE_DX"], middle * [1, 2, 1], atol=1e-14)
+        self.assertEqual((table["NUME_ORDRE"].tolist(), table["INST"].tolist()), ([1] * 3, [1.0] * 3))
+
+    def test_axisymmetry_integrates_over_one_radian(self):
+        self.write_model("model_2", "mesh_1", ["AXIS/SEG2", "AXIS/QUAD4"], [0, 1, 1, -1])
+        self.own("field_3", "NOEU_DEPL_R", ["DX"], range(6), np.ones(6))
+        table = self.table(INTEGRALE={"CHAM_GD": concept("field_3"), "MODELE": concept("model_2"), "TOUT": "OUI"})
+        self.assertAlmostEqual(table["VOL"][0], 4.5, 13)  # radius 3, height 1
+
+    def test_extreme_values_with_their_places(self):
+        self.own("field_3", "NOEU_DEPL_R", ["DX"], range(6), linear(POINTS))
+        table = self.table(MINMAX={"CHAM_GD": concept("field_3"), "MODELE": concept("model_2"), "GROUP_MA": ["LEFT"]})
+        self.assertEqual((table["MIN_DX"][0], text(table["NO_MIN_DX"][0]), table["MAX_DX"][0], text(table["NO_MAX_DX"][0])), (-2, "N4", 3, "N2"))
+
+    def test_refusals(self):
+        self.own("field_3", "NOEU_DEPL_R", ["DX"], [0, 1, 3, 4], np.ones(4))
+        norm = {"TYPE_NORM": "L2", "CHAM_GD": concept("field_3"), "MODELE": concept("model_2")}
+        self.refuses("POSTELEM_2", "RIGHT", command="POST_ELEM", NORME={**norm, "GROUP_MA": "RIGHT"})
+        self.refuses("CREACHAMP_14", "DZ", command="POST_ELEM", NORME={**norm, "TOUT": "OUI", "NOM_CMP": ["DZ"]})
+        self.refuses("CREACHAMP_11", "COEF_MULT", command="POST_ELEM", NORME={**norm, "TOUT": "OUI", "COEF_MULT": [1.0, 2.0]})
+
+
+if __name__ == "__main__":
+    unittest.main()
