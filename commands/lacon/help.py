@@ -2,7 +2,7 @@
 
 import textwrap
 
-from . import catalog
+from . import catalog, examples
 from .checker import nearest
 
 _types = {"group_ma": "group of cells", "group_no": "group of nodes", "cell": "cell name", "node": "node name", "factor": "_F(...)"}
@@ -36,6 +36,8 @@ def _command(name):
         must = "needed" if row.get("reuse_status") == "mandatory" else "possible"
         yield from _wrap(f"reuse= is {must}: the concept given as {row['reuse']} is changed in place", 2)
     yield from _keywords(row, 2)
+    yield "  the shortest call that is accepted:"
+    yield from textwrap.wrap(examples.text(name), 110, initial_indent="    ", subsequent_indent="        ", break_long_words=False)
     yield ""
 
 
