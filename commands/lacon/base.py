@@ -12,7 +12,7 @@ import re
 import weakref
 
 from . import concepts, hdf5, kept
-from .messages import fail
+from .messages import NeedsRun, fail
 
 _registry = "base.json"
 _orders = "orders.partial"
@@ -44,6 +44,7 @@ class Base:
             fail("STUDY_5", where, folder=self.folder)
         self.registry = {"format": 1, "next": 1, "labels": {}, "namespace": {}}
         self.kept = kept.Kept(self, look=not force)
+        self.unsolved = {}  #: of `lacon check`: id of a concept that is not really made -> its label, where it would be
         try:
             if fresh:
                 self._empty()
@@ -110,6 +111,8 @@ class Base:
         return self.folder / f"{identifier}.h5"
 
     def open(self, identifier):
+        if identifier in self.unsolved:
+            raise NeedsRun(*self.unsolved[identifier])
         try:
             return hdf5.h5py().File(self.path(identifier), "r")
         except OSError as error:

@@ -103,6 +103,8 @@ class Command:
         label = reused.label if reused else named.name if named else labels.label(frame)
         if not self.name.startswith("TEST_"):  # its checks print a line each
             run.progress(f"{where}: {label + ' = ' if label else ''}{self.name}")
+        if run.check and run.check.takes(self.name, row, keywords, where):
+            return self._unsolved(run, row, label, where, reused, named)
         if "operator" in row:
             result, outcome = self._order(run, row, keywords, where, label, reused, named)
             run.timings.add(self.name, where, time.perf_counter() - started, outcome.seconds, outcome.phases)
@@ -180,6 +182,14 @@ class Command:
         item = reused or run.base.concept(identifier, label)
         _enter(run, label, item, where)
         return item
+
+    def _unsolved(self, run, row, label, where, reused, named):
+        """The object of a concept that `lacon check` does not make; nothing for a command without."""
+        if "result" not in row:
+            return None
+        identifier = reused.id if reused else run.base.new_id(row["result"])
+        run.base.unsolved[identifier] = (label or self.name, where)
+        return self._result(run, identifier, label, where, reused, named)
 
     def _unchanged(self, run, kind, key, where, identifier, reused):
         """The id of the concept, where an earlier run made it from the same; its alarms are said again."""

@@ -92,13 +92,13 @@ def _run_file(study, path, source, values):
         raise Failure(error.status, error.diagnostic) from None
     except SystemExit as error:
         if error.code not in (None, 0):
-            show(message("STUDY_17", _place(error), code=error.code))
+            show(message("STUDY_17", place(error), code=error.code))
             raise Failure(2, "<F>_ERROR") from None
     except KeyboardInterrupt as error:
-        show(message("STUDY_18", _place(error)))
+        show(message("STUDY_18", place(error)))
         raise Failure(4, "<F>_ABNORMAL_ABORT") from None
     except namespace.LostName as error:
-        show(error.item._replace(where=_place(error)))
+        show(error.item._replace(where=place(error)))
         raise Failure(2, "<F>_ERROR") from None
     except NameError as error:
         _print_traceback(error)
@@ -106,7 +106,7 @@ def _run_file(study, path, source, values):
         raise Failure(2, "<F>_ERROR") from None
     except Exception as error:
         _print_traceback(error)
-        show(message("STUDY_19", _place(error), kind=type(error).__name__, text=error))
+        show(message("STUDY_19", place(error), kind=type(error).__name__, text=error))
         raise Failure(2, "<F>_ERROR") from None
 
 
@@ -128,7 +128,8 @@ def _user_entries(error):
     return [entry for entry in traceback.extract_tb(error.__traceback__) if not entry.filename.startswith((labels.package, "<frozen"))]
 
 
-def _place(error):
+def place(error):
+    """"study.comm:12": the line of a command file at which an exception was thrown."""
     entries = _user_entries(error)
     return f"{entries[-1].filename}:{entries[-1].lineno}" if entries else ""
 
@@ -150,8 +151,8 @@ def _unknown_name(error, values, killed):
     commands = [k for k, v in values.items() if callable(v) and k.isupper() and len(k) > 3]
     close = nearest(name, commands) if name.isupper() else ""
     if killed and not close:
-        return message("STUDY_24", _place(error), name=name)
-    return message("STUDY_20", _place(error), name=name, nearest=close)
+        return message("STUDY_24", place(error), name=name)
+    return message("STUDY_20", place(error), name=name, nearest=close)
 
 
 @contextlib.contextmanager

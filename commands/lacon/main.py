@@ -6,7 +6,7 @@ import sys
 from . import version
 
 #: `lacon NAME ...` that runs no command files: the module whose run(arguments) does it and returns the exit status
-subcommands = {"help": "help", "inspect": "inspector", "convert": "convert"}
+subcommands = {"help": "help", "inspect": "inspector", "convert": "convert", "check": "check", "new": "starter"}
 
 #: exit statuses, DESIGN.md
 done, user_error, solution_failed, internal_error, check_failed = 0, 2, 3, 4, 5
@@ -28,7 +28,10 @@ def parse(arguments):
     parser.add_argument("--timings", action="store_true", help="print where the time went")
     parser.add_argument("--threads", type=int, metavar="N", help="threads of operators")
     parser.add_argument("--version", action="version", version=f"lacon {version}")
-    return parser, parser.parse_args(arguments)
+    options = parser.parse_args(arguments)
+    if options.threads is not None and options.threads < 1:
+        parser.error("--threads: give a number of at least 1")
+    return parser, options
 
 
 def units_of(parser, options):
@@ -40,8 +43,6 @@ def units_of(parser, options):
         if int(number) in units:
             parser.error(f"--unit {number} is there twice")
         units[int(number)] = path
-    if options.threads is not None and options.threads < 1:
-        parser.error("--threads: give a number of at least 1")
     return units
 
 
@@ -76,6 +77,24 @@ def guarded(work):
         return internal_error, "<F>_ABNORMAL_ABORT"
 
 
+def command_files(names, units):
+    """The command files and what goes with them, named on the command line or by an export file. @return an export.Export"""
+    from . import execution, messages
+    from .export import Export, read_export
+
+    files = [pathlib.Path(name) for name in names]
+    if files[0].suffix == ".export":
+        if len(files) > 1:
+            messages.fail("STUDY_22", str(files[1]))
+        export = read_export(files[0])
+    else:
+        export = Export()
+        export.commands = files
+    export.units = {**export.units, **units}
+    execution.check_files(export.commands)
+    return export
+
+
 def run_study(run, work):
     """Do `work`, which runs command files of the study `run`, and close its base. @return (exit status, words of the diagnosis)"""
     from . import execution, messages, study
@@ -99,29 +118,20 @@ def run_study(run, work):
 def _run(options, units):
     """@return (exit status, words of the diagnosis)"""
     from . import checks, execution, messages, study
-    from .export import read_export
 
-    files = [pathlib.Path(name) for name in options.files]
-    named, data, base, threads = [], [], options.base, options.threads
-    if files[0].suffix == ".export":
-        if len(files) > 1:
-            messages.fail("STUDY_22", str(files[1]))
-        export = read_export(files[0])
-        files, named, data = export.commands, export.named, export.data
-        units = {**export.units, **units}
-        base = base or export.base
-        if threads is None and export.parameters.get("ncpus", "").isdigit():
-            threads = max(1, int(export.parameters["ncpus"]))
-    execution.check_files(files)
-    base = base or files[0].with_suffix(".base")
-    run = study.Study(base, units, options.fresh, threads, options.checks == "all", execution.provided_names(),
+    export = command_files(options.files, units)
+    threads = options.threads
+    if threads is None and export.parameters.get("ncpus", "").isdigit():
+        threads = max(1, int(export.parameters["ncpus"]))
+    base = options.base or export.base or export.commands[0].with_suffix(".base")
+    run = study.Study(base, export.units, options.fresh, threads, options.checks == "all", execution.provided_names(),
                       options.force)
-    for name in files + named + data:
+    for name in export.commands + export.named + export.data:
         run.protect(name)
 
     def work():
-        with execution.delivered(named):
-            execution.run_files(run, files)
+        with execution.delivered(export.named):
+            execution.run_files(run, export.commands)
 
     status, diagnostic = run_study(run, work)
     if status == done:

@@ -35,6 +35,14 @@ def show(item):
     print(item, file=sys.stderr, flush=True)
 
 
+class NeedsRun(BaseException):
+    """`lacon check` has come to a value that only a run can give. No error: a command file does not catch it."""
+
+    def __init__(self, label, made):
+        self.label, self.made = label, made
+        super().__init__(label)
+
+
 class AsterError(Exception):
     """A command failed by the user's doing. A command file may catch it.
 

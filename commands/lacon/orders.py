@@ -72,7 +72,7 @@ def run(program, made, study):
     with ours:
         with theirs:  # an operator that outlives the launcher still holds the base
             process = subprocess.Popen([executable, order_file, "--status", status_file], env=environment, stderr=quiet,
-                                       stdin=subprocess.DEVNULL, pass_fds=(study.base.lock, theirs.fileno()))
+                                       stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL if study.check else None, pass_fds=(study.base.lock, theirs.fileno()))
         try:
             hdf5.h5py()  # imported while the operator works: checks, functions and FIN need it later
             forward = threading.Thread(target=_forward, args=(process.stderr, study.ignored_alarms), daemon=True) if quiet else None

@@ -21,6 +21,7 @@ class Study:
         self.base_folder = pathlib.Path(base_folder)
         self.units = dict(units or {})  #: number -> path
         self.fresh = fresh
+        self.check = None  #: a check.Check, where this run only checks
         self.force = force  #: run every operator, changed or not
         self.threads = threads
         self.strict_checks = strict_checks
@@ -200,4 +201,5 @@ class Study:
         self.base.clean(kept)
 
     def progress(self, text):
-        print(text, flush=sys.stdout.isatty())
+        if self.check is None:
+            print(text, flush=sys.stdout.isatty())
