@@ -74,12 +74,18 @@ double distance_squared(std::span<const std::int32_t> i, std::span<const double>
   return sum;
 }
 
-bool same(std::span<const double> a, std::span<const double> b) { return std::equal(a.begin(), a.end(), b.begin(), b.end()); }
-
-bool same_stiffness(const SymmetricMatrix& a, const SymmetricMatrix& b, std::int64_t first_multiplier) {
-  if (a.size() != b.size() || a.rows()[first_multiplier] != b.rows()[first_multiplier]) return false;
-  const auto entries = static_cast<std::size_t>(a.rows()[first_multiplier]);
-  return same(a.values().first(entries), b.values().first(entries));
+/// The largest change of the stiffness from `base` on, of a row's and a column's diagonal; infinite where the patterns differ.
+double stiffness_change(const SymmetricMatrix& matrix, const SymmetricMatrix& base, std::int64_t first_multiplier) {
+  if (matrix.size() != base.size() || matrix.rows()[first_multiplier] != base.rows()[first_multiplier]) return INFINITY;
+  double largest = 0;  // squared
+  for (std::int64_t row = 0; row < first_multiplier; ++row)
+    for (std::int64_t k = matrix.rows()[row]; k < matrix.rows()[row + 1]; ++k) {
+      const double difference = matrix.values()[k] - base.values()[k];
+      if (difference != 0)
+        largest =
+            std::max(largest, difference * difference / std::abs(base.diagonal(row) * base.diagonal(matrix.columns()[k])));
+    }
+  return std::sqrt(largest);
 }
 
 bool same_pattern(const SymmetricMatrix& a, const SymmetricMatrix& b) {
@@ -158,7 +164,8 @@ SolutionReport SaddlePointSolver::solve(const SymmetricMatrix& matrix, std::int6
                                         std::span<double> right_side) {
   SolutionReport report;
   first_multiplier_ = first_multiplier;
-  if (options_.reuse && base_ && same_stiffness(matrix, *base_, first_multiplier) && corrected(matrix, right_side, report))
+  if (options_.reuse && base_ && stiffness_change(matrix, *base_, first_multiplier) <= options_.stiffness_drift &&
+      corrected(matrix, right_side, report))
     return report;
 
   columns_.clear();

@@ -1,11 +1,11 @@
 #pragma once
 // Solves a sequence of saddle-point systems that differ in their multipliers' rows, with few factorisations.
 //
-// The last rows of the matrix belong to multipliers. The block before them, the stiffness, is often the same from one system to
-// the next; then the factor of an earlier matrix serves on. Rows that were switched on or off since are put right exactly by a
-// Schur complement, for which one column of the inverse each is computed and kept. Coefficients that moved with the bodies are
-// left to GMRES, preconditioned with that. A cost model decides when a new factorisation is cheaper; it counts operations, so
-// that the choice is the same in every run.
+// The last rows of the matrix belong to multipliers. The block before them, the stiffness, is often nearly the same from one
+// system to the next; then the factor of an earlier matrix serves on. Rows that were switched on or off since are put right
+// exactly by a Schur complement, for which one column of the inverse each is computed and kept. Coefficients that moved with
+// the bodies, and a stiffness that changed a little, are left to GMRES, preconditioned with that. A cost model decides when a
+// new factorisation is cheaper; it counts operations, so that the choice is the same in every run.
 #include <cstdint>
 #include <map>
 #include <optional>
@@ -19,13 +19,14 @@ namespace lacon {
 
 struct SaddlePointOptions {
   SolverOptions direct;
-  bool reuse = true;           ///< false: every matrix is factorised
-  double tolerance = 1e-12;    ///< of GMRES, against the largest right side so far
-  double least_gain = 1e-4;    ///< of GMRES, against the right side itself
-  double singular = 1e-12;     ///< reciprocal condition of the Schur complement below which the matrix is factorised anew
-  double drift = 0.3;          ///< relative change of a row's coefficients above which its column is computed anew
-  double work_limit = 1;       ///< most operations without a new factorisation, of those of a factorisation
-  double column_memory = 0.5;  ///< largest memory of the columns, of the factor's
+  bool reuse = true;              ///< false: every matrix is factorised
+  double tolerance = 1e-12;       ///< of GMRES, against the largest right side so far
+  double least_gain = 1e-4;       ///< of GMRES, against the right side itself
+  double singular = 1e-12;        ///< reciprocal condition of the Schur complement below which the matrix is factorised anew
+  double stiffness_drift = 0.02;  ///< largest change of an entry of the stiffness, of its diagonals, that is left to GMRES
+  double drift = 0.3;             ///< relative change of a row's coefficients above which its column is computed anew
+  double work_limit = 1;          ///< most operations without a new factorisation, of those of a factorisation
+  double column_memory = 0.5;     ///< largest memory of the columns, of the factor's
 };
 
 /// How a system was solved.

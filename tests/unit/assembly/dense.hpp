@@ -36,15 +36,16 @@ inline std::vector<double> random_lower(std::size_t n, std::mt19937& random) {
 }
 
 /// Springs along the chain, held at both ends when `held`: positive definite, or with free motions.
-inline void add_springs(SymmetricMatrix& matrix, const Chain& chain) {
+/// @param stiffness of a spring  @param stride every how manieth clique has one
+inline void add_springs(SymmetricMatrix& matrix, const Chain& chain, double stiffness = 1, std::size_t stride = 1) {
   std::vector<double> spring(10, 0.0);
   // two nodes, components x and y each: k (u_a - u_b)^2
   const auto at = [](int i, int j) { return i * (i + 1) / 2 + j; };
   for (int d = 0; d < 2; ++d) {
-    spring[at(d, d)] = spring[at(2 + d, 2 + d)] = 2;
-    spring[at(2 + d, d)] = -2;
+    spring[at(d, d)] = spring[at(2 + d, 2 + d)] = 2 * stiffness;
+    spring[at(2 + d, d)] = -2 * stiffness;
   }
-  for (std::size_t c = 0; c < chain.cliques.size(); ++c) {
+  for (std::size_t c = 0; c < chain.cliques.size(); c += stride) {
     std::vector<std::int64_t> equations;
     for (const std::int32_t node : chain.cliques[c])
       for (int d = 0; d < 2; ++d) equations.push_back(chain.numbering.of(node, d));

@@ -118,6 +118,21 @@ TEST(SaddlePointSolver, KeepsItsColumns) {
   EXPECT_EQ(columns_after(1, true), 0);
 }
 
+// A stiffness that changed a little is left to GMRES.
+TEST(SaddlePointSolver, FollowsASlightlyChangedStiffness) {
+  Sequence system;
+  SaddlePointSolver solver = eager();
+  SolutionReport report;
+  system.on[1] = true;
+  system.fill();
+  system.error(solver, report);
+  system.on[2] = true;
+  system.fill();
+  test::add_springs(system.matrix, system.chain, 0.01, 3);
+  EXPECT_LE(system.error(solver, report), 1e-11);
+  EXPECT_FALSE(report.factorised);
+}
+
 // Another stiffness needs another factor.
 TEST(SaddlePointSolver, FactorisesWhenTheStiffnessChanges) {
   Sequence system;
