@@ -2,6 +2,7 @@
 // The concepts between mesh and result, as docs/structures.md lays them out. Plain data; numbers are 0-based.
 #include <cstdint>
 #include <map>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <variant>
@@ -117,12 +118,39 @@ struct Formula {
   std::string expression;
 };
 
-struct TimeSteps {
-  std::vector<double> values;
+/// What is done with a step that fails: cut into equal parts, again where these fail.
+struct StepCut {
   bool cut = false;     ///< ACTION='DECOUPE'
   int cut_into = 4;     ///< SUBD_PAS
   int cut_levels = 3;   ///< SUBD_NIVEAU
   double smallest = 0;  ///< SUBD_PAS_MINI
+};
+
+/// An event, beside a solution that fails, by which a step counts as failed (DEFI_LIST_INST, ECHEC/EVENEMENT).
+struct StepEvent {
+  std::string event;  ///< RESI_MAXI, DELTA_GRANDEUR
+  double limit = 0;   ///< RESI_GLOB_MAXI, VALE_REF
+  std::string place;  ///< DELTA_GRANDEUR: NOM_CHAM, NOM_CMP, GROUP_NO, ... as JSON
+  StepCut action;
+};
+
+/// How steps grow and shrink between the instants of the list (METHODE='AUTO').
+struct StepAdaptation {
+  std::string event = "SEUIL";           ///< SEUIL, TOUT_INST, AUCUN: when the step is changed
+  int easy_steps = 2;                    ///< SEUIL: after so many steps in a row
+  int easy_iterations = 5;               ///< of at most so many iterations
+  std::string rule = "FIXE";             ///< FIXE, ITER_NEWTON: how
+  double percent = 100;                  ///< FIXE: the step grows by it
+  int reference = 5;                     ///< ITER_NEWTON: the step is multiplied by sqrt(reference / (iterations + 1))
+  double smallest = 1e-12, largest = 0;  ///< of steps; largest 0: no limit
+  std::int64_t most = 1000000;           ///< number of steps
+};
+
+struct TimeSteps {
+  std::vector<double> values;
+  StepCut action;  ///< where the solution fails
+  std::vector<StepEvent> events;
+  std::optional<StepAdaptation> adaptation;
 };
 
 struct ResultLoad {

@@ -37,7 +37,7 @@ def _interval(call, start, interval, path):
 
 def defi_list_inst(call):
     k = call.keywords
-    definition, failure = k["DEFI_LIST"][0], k["ECHEC"][0]
+    definition = k["DEFI_LIST"][0]
     if "LIST_INST" in definition:
         values = definition["LIST_INST"].getValues()
         path = "DEFI_LIST/LIST_INST"
@@ -47,14 +47,44 @@ def defi_list_inst(call):
         _increasing(call, values, path)
     if len(values) < 2:
         call.fail("DEFI_LIST_3", path)
-    if k["METHODE"] == "AUTO":
-        call.study.inform("DEFI_LIST_4", f"DEFI_LIST_INST/METHODE, {call.where}")
+    failures = {}
+    for i, factor in enumerate(k["ECHEC"], 1):
+        if factor["EVENEMENT"] in failures:
+            call.fail("DEFI_LIST_4", f"ECHEC[{i}]/EVENEMENT", event=factor["EVENEMENT"])
+        failures[factor["EVENEMENT"]] = factor
+    solution = failures.pop("ERREUR", {"ACTION": "DECOUPE", "SUBD_PAS": 4, "SUBD_NIVEAU": 3, "SUBD_PAS_MINI": 0.0})
 
     def fill(file):
+        import json
+
         file.create_dataset("values", data=values, dtype="f8")
-        file.attrs["cut"] = int(failure["ACTION"] == "DECOUPE")
-        file.attrs["cut_into"] = failure["SUBD_PAS"]
-        file.attrs["cut_levels"] = failure["SUBD_NIVEAU"]
-        file.attrs["smallest"] = failure["SUBD_PAS_MINI"]
+        for name, value in _action(solution).items():
+            file.attrs[name] = int(value) if name != "smallest" else value
+        if failures:
+            file.attrs["events"] = json.dumps([{"event": event, **_limit(factor), **_action(factor)} for event, factor in failures.items()])
+        if k["METHODE"] == "AUTO":
+            file.attrs["adaptation"] = json.dumps(_adaptation(definition, k["ADAPTATION"][0]))
 
     return call.write("time_steps", fill)
+
+
+def _action(factor):
+    """What is done with a step that fails: docs/structures.md, time_steps."""
+    return {"cut": factor["ACTION"] == "DECOUPE", "cut_into": factor["SUBD_PAS"], "cut_levels": factor["SUBD_NIVEAU"],
+            "smallest": factor["SUBD_PAS_MINI"]}
+
+
+def _limit(factor):
+    """What an event compares, and where it looks."""
+    if factor["EVENEMENT"] == "RESI_MAXI":
+        return {"limit": factor["RESI_GLOB_MAXI"], "place": {}}
+    place = {name: factor[name] for name in ("NOM_CHAM", "NOEUD", "GROUP_NO", "MAILLE", "GROUP_MA") if name in factor}
+    return {"limit": factor["VALE_REF"], "place": {**place, "NOM_CMP": [factor["NOM_CMP"]], "EVAL_CHAM": "VALE", "EVAL_CMP": "VALE",
+                                                   "EVAL_ELGA": "VALE"}}
+
+
+def _adaptation(definition, factor):
+    return {"event": factor["EVENEMENT"], "easy_steps": factor["NB_INCR_SEUIL"],
+            "easy_iterations": factor["VALE_I"] - (factor["CRIT_COMP"] == "LT"), "rule": factor["MODE_CALCUL_TPLUS"],
+            "percent": factor["PCENT_AUGM"], "reference": factor["NB_ITER_NEWTON_REF"], "smallest": definition["PAS_MINI"],
+            "largest": definition.get("PAS_MAXI", 0.0), "most": definition["NB_PAS_MAXI"]}

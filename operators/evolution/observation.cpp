@@ -236,6 +236,24 @@ void Observer::print(std::ostream& out, const std::vector<Value>& values) const 
   out.flush();
 }
 
+// ---------------------------------------------------------------------------------------------- increments
+
+IncrementLimit::IncrementLimit(const StepEvent& event, const Base& base, const Mesh& mesh)
+    : limit_(event.limit), observer_(Keywords(nlohmann::json::parse(event.place), "DEFI_LIST_INST/ECHEC/"), base, mesh, {}) {}
+
+void IncrementLimit::accept(const FieldMakers& fields) { last_ = observer_.look(fields); }
+
+void IncrementLimit::check(const FieldMakers& fields, double instant) const {
+  const std::vector<Observer::Value> now = observer_.look(fields);
+  for (std::size_t i = 0; i < now.size(); ++i)
+    if (const double change = std::abs(now[i].value - last_[i].value); change > limit_)
+      fail("STEP_2", {{"component", now[i].component},
+                      {"node", node_name(now[i].node)},
+                      {"change", fmt::format("{:.6g}", change)},
+                      {"limit", fmt::format("{:.6g}", limit_)},
+                      {"instant", fmt::format("{:.9g}", instant)}});
+}
+
 // ---------------------------------------------------------------------------------------------- all of them
 
 Observations::Observations(const Keywords& keywords, const Base& base, const Mesh& mesh) {

@@ -64,6 +64,20 @@ class Observer {
   std::optional<StudyFunction> formula_;
 };
 
+/// EVENEMENT='DELTA_GRANDEUR' of DEFI_LIST_INST: how much components of DEPL may change in one step.
+class IncrementLimit {
+ public:
+  IncrementLimit(const StepEvent& event, const Base& base, const Mesh& mesh);
+  /// Throws STEP_2 (severity S) where a component has changed by more than VALE_REF since accept().
+  void check(const FieldMakers& fields, double instant) const;
+  void accept(const FieldMakers& fields);
+
+ private:
+  double limit_;
+  Observer observer_;
+  std::vector<Observer::Value> last_;
+};
+
 /// Every OBSERVATION and SUIVI_DDL of a computation, and the table they fill.
 class Observations {
  public:

@@ -2,10 +2,32 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
 namespace lacon {
 namespace {
+
+/// What is done about this failure.
+const StepCut& action_for(const TimeSteps& steps, const Error& error) {
+  for (const StepEvent& event : steps.events)
+    if (error.message().id == (event.event == "RESI_MAXI" ? "STEP_1" : "STEP_2")) return event.action;
+  return steps.action;
+}
+
+/// The length of the parts into which the step to `to` is cut. Called while `error` is handled: throws it on where the step is
+/// not to be cut any more.
+double cut(const StepCut& action, const Error& error, double length, double to, int level, double smallest) {
+  const double part = length / action.cut_into;
+  if (error.message().severity != 'S' || !action.cut || level >= action.cut_levels ||
+      part < std::max(action.smallest, smallest))
+    throw;
+  inform("EVOLUTION_7", {{"instant", fmt::format("{:.9g}", to)},
+                         {"parts", std::to_string(action.cut_into)},
+                         {"level", std::to_string(level + 1)},
+                         {"reason", error.message().text}});
+  return part;
+}
 
 struct Stepper {
   const TimeSteps& steps;
@@ -17,21 +39,75 @@ struct Stepper {
     try {
       solve(to);
     } catch (const Error& error) {
-      const double part = (to - from) / steps.cut_into;
-      if (error.message().severity != 'S' || !steps.cut || level >= steps.cut_levels || part < steps.smallest) throw;
-      inform("EVOLUTION_7", {{"instant", fmt::format("{:.9g}", to)},
-                             {"parts", std::to_string(steps.cut_into)},
-                             {"level", std::to_string(level + 1)},
-                             {"reason", error.message().text}});
+      const StepCut& action = action_for(steps, error);
+      const double part = cut(action, error, to - from, to, level, 0);
       go_back();
-      for (int i = 1; i <= steps.cut_into; ++i) {
-        const bool last = i == steps.cut_into;
+      for (int i = 1; i <= action.cut_into; ++i) {
+        const bool last = i == action.cut_into;
         advance(from + (i - 1) * part, last ? to : from + i * part, level + 1, last && asked);
       }
       return;
     }
     solved(to, asked);
   }
+};
+
+/// Steps of METHODE='AUTO'.
+class AdaptiveStepper {
+ public:
+  AdaptiveStepper(const TimeSteps& steps, const Stepper& stepper, const Iterations& iterations)
+      : steps_(steps),
+        rules_(*steps.adaptation),
+        stepper_(stepper),
+        iterations_(iterations),
+        step_(steps.values[1] - steps.values[0]) {
+    limit();
+  }
+
+  void advance(double from, double target) {
+    for (double at = from; at < target;) {
+      const bool last = at + step_ * (1 + 1e-6) >= target;  // no sliver is left before an instant of the list
+      const double to = last ? target : at + step_;
+      if (++count_ > rules_.most)
+        fail("STEP_3", {{"count", std::to_string(rules_.most)}, {"instant", fmt::format("{:.9g}", at)}});
+      try {
+        stepper_.solve(to);
+      } catch (const Error& error) {
+        step_ = cut(action_for(steps_, error), error, to - at, to, level_, rules_.smallest);
+        ++level_;
+        easy_ = 0;
+        stepper_.go_back();
+        continue;
+      }
+      stepper_.solved(to, last);
+      at = to;
+      level_ = 0;
+      change();
+    }
+  }
+
+ private:
+  /// The length of the next step, after an instant that was solved.
+  void change() {
+    const int iterations = iterations_();
+    easy_ = iterations <= rules_.easy_iterations ? easy_ + 1 : 0;
+    if (rules_.event == "AUCUN" || (rules_.event == "SEUIL" && easy_ < rules_.easy_steps)) return;
+    easy_ = 0;
+    step_ *= rules_.rule == "FIXE" ? 1 + rules_.percent / 100 : std::sqrt(rules_.reference / (iterations + 1.0));
+    limit();
+  }
+  void limit() {
+    if (rules_.largest > 0) step_ = std::min(step_, rules_.largest);
+    step_ = std::max(step_, rules_.smallest);
+  }
+
+  const TimeSteps& steps_;
+  const StepAdaptation& rules_;
+  const Stepper& stepper_;
+  const Iterations& iterations_;
+  double step_;
+  int level_ = 0, easy_ = 0;
+  std::int64_t count_ = 0;
 };
 
 /// Position of an instant in the list, to a relative precision.
@@ -48,8 +124,14 @@ std::size_t check_number(const TimeSteps& steps, std::int64_t number) {
 
 }  // namespace
 
-void step_through(const TimeSteps& steps, const SolveInstant& solve, const GoBack& go_back, const Solved& solved) {
+void step_through(const TimeSteps& steps, const SolveInstant& solve, const GoBack& go_back, const Solved& solved,
+                  const Iterations& iterations) {
   const Stepper stepper{steps, solve, go_back, solved};
+  if (steps.adaptation) {
+    AdaptiveStepper adaptive(steps, stepper, iterations);
+    for (std::size_t i = 1; i < steps.values.size(); ++i) adaptive.advance(steps.values[i - 1], steps.values[i]);
+    return;
+  }
   for (std::size_t i = 1; i < steps.values.size(); ++i) stepper.advance(steps.values[i - 1], steps.values[i], 0, true);
 }
 

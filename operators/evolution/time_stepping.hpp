@@ -17,9 +17,16 @@ using GoBack = std::function<void()>;
 /// Called when an instant is solved. @param asked whether the user asked for it (or a cut made it)
 using Solved = std::function<void(double instant, bool asked)>;
 
+/// Number of iterations that the instant solved last took.
+using Iterations = std::function<int()>;
+
 /// Solve every instant of `steps` behind the first. A step that fails is cut into `cut_into` equal ones, at most `cut_levels`
-/// times over (DEFI_LIST_INST, ECHEC/ACTION='DECOUPE'); the failure that no cut can help is thrown on.
-void step_through(const TimeSteps& steps, const SolveInstant& solve, const GoBack& go_back, const Solved& solved);
+/// times over (DEFI_LIST_INST, ECHEC/ACTION='DECOUPE'); the failure that no cut can help is thrown on. Which action holds is
+/// said by the event: STEP_1 (RESI_MAXI), STEP_2 (DELTA_GRANDEUR), any other failure of the solution.
+/// With `steps.adaptation` (METHODE='AUTO') steps also grow and shrink between the instants of the list, beginning with its
+/// first interval; a step that fails is then cut once, and the shorter one goes on. Throws STEP_3 after too many steps.
+void step_through(const TimeSteps& steps, const SolveInstant& solve, const GoBack& go_back, const Solved& solved,
+                  const Iterations& iterations = {});
 
 /// The instants that INCREMENT asks for, the initial one first: from INST_INIT or NUME_INST_INIT to INST_FIN or NUME_INST_FIN.
 struct Interval {

@@ -1,8 +1,9 @@
 #include "lacon/operators/stat_non_line/stat_non_line.hpp"
 
-#include <algorithm>
-#include <cmath>
+#include <fmt/format.h>
+
 #include <iostream>
+#include <limits>
 #include <set>
 
 #include "lacon/catalog/messages.hpp"
@@ -169,6 +170,15 @@ void stat_non_line(const Order& order, const Base& base) {
   Archive archive(order, base, problem);
   archive.add(steps.values.front(), 0, {}, state, fields, newton.contact(), archiving);
 
+  std::vector<IncrementLimit> increments;
+  double largest_residual = std::numeric_limits<double>::infinity();
+  for (const StepEvent& event : steps.events) {
+    if (event.event == "RESI_MAXI")
+      largest_residual = event.limit;
+    else
+      increments.emplace_back(event, base, problem.mesh).accept(fields);
+  }
+
   int iterations = 0;
   Pivots pivots;
   std::int64_t step = 0;
@@ -177,8 +187,13 @@ void stat_non_line(const Order& order, const Base& base) {
     pivots = {};
     iterations = newton.solve(instant, state, [&](const IterationReport& report) {
       table.line(report);
+      if (report.maxi > largest_residual)
+        fail("STEP_1", {{"residual", fmt::format("{:.6g}", report.maxi)},
+                        {"limit", fmt::format("{:.6g}", largest_residual)},
+                        {"instant", fmt::format("{:.9g}", instant)}});
       if (report.solution.factorised) pivots = {report.solution.factorisation.negative_pivots, report.constraints};
     });
+    for (const IncrementLimit& increment : increments) increment.check(fields, instant);
   };
   const auto go_back = [&] {
     state = last;
@@ -187,13 +202,14 @@ void stat_non_line(const Order& order, const Base& base) {
   const auto solved = [&](double instant, bool asked) {
     table.finish(instant, iterations, state, newton.contact());
     last = state;
+    for (IncrementLimit& increment : increments) increment.accept(fields);
     step += asked;
     if (archiving.keeps(instant, step) || instant == steps.values.back())
       archive.add(instant, iterations, pivots, state, fields, newton.contact(), archiving);
     observations.observe(instant, step, fields);
   };
   try {
-    step_through(steps, solve, go_back, solved);
+    step_through(steps, solve, go_back, solved, [&] { return iterations; });
   } catch (...) {
     // what was computed before the failure is not lost; without it the base stays as it was
     if (archive.n_instants() > 1)

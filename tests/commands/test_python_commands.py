@@ -1,5 +1,6 @@
 """Commands that Python does itself: functions, lists, instants, materials; what their files hold."""
 
+import json
 import sys
 import unittest
 
@@ -146,6 +147,28 @@ class Commands(LauncherTest):
         self.assertEqual([[f.attrs[k] for k in ("cut", "cut_into", "cut_levels", "smallest")] for f in files],
                          [[1, 4, 3, 0.0], [1, 5, 6, 1e-3], [0, 4, 3, 0.0]])
         self.assertEqual(list(files[1]["values"]), [0, 1, 2])
+        self.assertFalse(any("events" in f.attrs for f in files))
+        self.assertEqual(["adaptation" in f.attrs for f in files], [False, False, True])
+
+    def test_events_and_adaptation(self):
+        (file,) = self.make("""DEFI_LIST_INST(METHODE='AUTO', DEFI_LIST=_F(VALE=(0, 1), PAS_MAXI=0.5, PAS_MINI=1e-3, NB_PAS_MAXI=50),
+            ECHEC=(_F(EVENEMENT='RESI_MAXI', RESI_GLOB_MAXI=1e3, ACTION='ARRET'),
+                   _F(EVENEMENT='DELTA_GRANDEUR', NOM_CHAM='DEPL', NOM_CMP='DX', GROUP_NO='TOP', VALE_REF=0.1, SUBD_PAS=3)),
+            ADAPTATION=_F(MODE_CALCUL_TPLUS='ITER_NEWTON', NB_ITER_NEWTON_REF=7, CRIT_COMP='LT', VALE_I=4))""")
+        self.assertEqual([file.attrs[k] for k in ("cut", "cut_into", "cut_levels")], [1, 4, 3])
+        self.assertEqual(json.loads(file.attrs["events"]), [
+            {"event": "RESI_MAXI", "limit": 1e3, "place": {}, "cut": False, "cut_into": 4, "cut_levels": 3, "smallest": 0.0},
+            {"event": "DELTA_GRANDEUR", "limit": 0.1, "cut": True, "cut_into": 3, "cut_levels": 3, "smallest": 0.0,
+             "place": {"NOM_CHAM": "DEPL", "NOM_CMP": ["DX"], "GROUP_NO": ["TOP"], "EVAL_CHAM": "VALE", "EVAL_CMP": "VALE", "EVAL_ELGA": "VALE"}}])
+        self.assertEqual(json.loads(file.attrs["adaptation"]), {
+            "event": "SEUIL", "easy_steps": 2, "easy_iterations": 3, "rule": "ITER_NEWTON", "percent": 100.0, "reference": 7, "smallest": 1e-3,
+            "largest": 0.5, "most": 50})
+
+    def test_refused_events(self):
+        self.refuses("DEFI_LIST_INST(DEFI_LIST=_F(VALE=(0, 1)), ECHEC=(_F(), _F()))", "DEFI_LIST_4", "ERREUR")
+        self.refuses("DEFI_LIST_INST(DEFI_LIST=_F(VALE=(0, 1)), ADAPTATION=_F())", "KEYWORD_10")
+        self.refuses("DEFI_LIST_INST(DEFI_LIST=_F(VALE=(0, 1)), ECHEC=_F(EVENEMENT='RESI_MAXI'))", "KEYWORD_2", "RESI_GLOB_MAXI")
+        self.refuses("DEFI_LIST_INST(DEFI_LIST=_F(VALE=(0, 1)), ECHEC=_F(ACTION='ITER_SUPPL'))", "KEYWORD_13")
 
     def test_refusals(self):
         self.refuses("DEFI_FONCTION(NOM_PARA='INST', VALE=(0, 0, 0, 1))", "DEFI_FONCTION_1", "DEFI_FONCTION/VALE")

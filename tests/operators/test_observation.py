@@ -1,5 +1,6 @@
-"""OBSERVATION and SUIVI_DDL of stat_non_line, on the two squares of test_stat_non_line: every value is known in closed form."""
+"""OBSERVATION, SUIVI_DDL and events of time steps in stat_non_line, on the two squares of test_stat_non_line: every value is known in closed form."""
 
+import json
 import math
 import unittest
 
@@ -92,6 +93,45 @@ class Observation(TwoSquares):
             with self.subTest(identifier):
                 run = self.assert_fails(identifier, *words, OBSERVATION=[occurrence])
                 self.assertNotIn("Instant de calcul", run.stdout)
+
+
+class Events(TwoSquares):
+    """What DEFI_LIST_INST says of steps, on the ramp from 0 to the full pressure: DX of N2 goes from 0 to EXX."""
+
+    def steps(self, adaptation=None, **event):
+        """Solve with one event beside failures. @return the run and its instants"""
+        self.write_function("function_10", [0.0, 1.0], [0.0, 1.0])
+        with self.create("time_steps_11", "time_steps", cut=0, cut_into=4, cut_levels=3, smallest=0.0) as file:
+            file["values"] = [0.0, 1.0] if adaptation is None else [0.0, 0.125, 1.0]
+            if event:
+                file.attrs["events"] = json.dumps([{"place": {}, "cut": True, "cut_into": 4, "cut_levels": 3, "smallest": 0.0, **event}])
+            if adaptation is not None:
+                file.attrs["adaptation"] = json.dumps({"event": "SEUIL", "easy_steps": 1, "easy_iterations": 5, "rule": "FIXE", "percent": 100.0,
+                                                       "reference": 5, "smallest": 1e-12, "largest": 0.0, "most": 100, **adaptation})
+        run = self.solve(loads=["load_5", {"CHARGE": concept("load_6"), "FONC_MULT": concept("function_10")}],
+                         INCREMENT={"LIST_INST": concept("time_steps_11")})
+        if run.status:
+            return run, []
+        with h5py.File(self.path("result_9")) as file:
+            return run, file["instant"][:].tolist()
+
+    def test_large_increments_cut_the_step(self):
+        place = {"NOM_CHAM": "DEPL", "NOM_CMP": ["DX"], "NOEUD": ["N2"], "EVAL_CHAM": "VALE", "EVAL_CMP": "VALE", "EVAL_ELGA": "VALE"}
+        run, instants = self.steps(event="DELTA_GRANDEUR", limit=0.3 * EXX, place=place)
+        self.assertEqual(instants, [0, 0.25, 0.5, 0.75, 1])
+        self.assertEqual(self.ids(run), ["EVOLUTION_7"])
+        self.assertIn("DX at N2", run.messages[0]["text"])
+        self.assertEqual(self.steps(event="DELTA_GRANDEUR", limit=1.1 * EXX, place=place)[1], [0, 1])
+        self.assertEqual(self.steps(event="DELTA_GRANDEUR", limit=0.3 * EXX, place=place, cut=False)[0].status, 3)
+
+    def test_large_residuals_fail_the_step(self):
+        run, _ = self.steps(event="RESI_MAXI", limit=1e-30, cut=False)
+        self.assertEqual((run.status, self.ids(run)), (3, ["STEP_1"]))
+        self.assertEqual(self.steps(event="RESI_MAXI", limit=1e6)[1], [0, 1])
+
+    def test_steps_grow(self):
+        self.assertEqual(self.steps(adaptation={})[1], [0, 0.125, 0.375, 0.875, 1])
+        self.assertEqual(self.steps(adaptation={"largest": 0.5, "percent": 300.0})[1], [0, 0.125, 0.625, 1])
 
 
 if __name__ == "__main__":

@@ -1,5 +1,7 @@
 #include <gmock/gmock.h>
 
+#include <algorithm>
+
 #include "lacon/operators/evolution/time_stepping.hpp"
 
 namespace lacon {
@@ -15,6 +17,7 @@ struct Solver {
   int returns = 0;
   std::vector<double> solved;
   std::vector<bool> asked;
+  int iterations = 0;
 
   void run(const TimeSteps& steps) {
     at = steps.values.front();
@@ -28,7 +31,8 @@ struct Solver {
           at = to;
           solved.push_back(to);
           asked.push_back(was_asked);
-        });
+        },
+        [&] { return iterations; });
   }
 };
 
@@ -43,7 +47,7 @@ TEST(TimeStepping, SolvesEveryInstantOfTheList) {
 // A failing step is cut, its parts again where they fail; the instants that were asked for are met to the bit.
 TEST(TimeStepping, CutsWhatFailsAgainAndAgain) {
   Solver solver{.longest = 0.25};
-  solver.run({.values = {0, 1}, .cut = true, .cut_into = 2, .cut_levels = 3});
+  solver.run({.values = {0, 1}, .action = {.cut = true, .cut_into = 2, .cut_levels = 3}});
   EXPECT_THAT(solver.solved, ElementsAre(DoubleEq(0.25), DoubleEq(0.5), DoubleEq(0.75), 1.0));
   EXPECT_THAT(solver.asked, ElementsAre(false, false, false, true));
   EXPECT_EQ(solver.returns, 3);  // the whole and both halves
@@ -51,13 +55,13 @@ TEST(TimeStepping, CutsWhatFailsAgainAndAgain) {
 
 TEST(TimeStepping, GivesUpBelowTheLastLevel) {
   Solver solver{.longest = 0.1};
-  EXPECT_THROW(solver.run({.values = {0, 1}, .cut = true, .cut_into = 2, .cut_levels = 3}), Error);
+  EXPECT_THROW(solver.run({.values = {0, 1}, .action = {.cut = true, .cut_into = 2, .cut_levels = 3}}), Error);
   EXPECT_TRUE(solver.solved.empty());
 }
 
 TEST(TimeStepping, GivesUpBelowTheSmallestStep) {
   Solver solver{.longest = 0.1};
-  EXPECT_THROW(solver.run({.values = {0, 1}, .cut = true, .cut_into = 2, .cut_levels = 9, .smallest = 0.3}), Error);
+  EXPECT_THROW(solver.run({.values = {0, 1}, .action = {.cut = true, .cut_into = 2, .cut_levels = 9, .smallest = 0.3}}), Error);
   EXPECT_EQ(solver.returns, 1);
 }
 
@@ -69,7 +73,7 @@ TEST(TimeStepping, DoesNotCutWhereTheUserDidNotAskForIt) {
 
 // An error of the user is no reason to try smaller steps.
 TEST(TimeStepping, CutsOnlyFailuresOfTheSolution) {
-  const TimeSteps steps{.values = {0, 1}, .cut = true};
+  const TimeSteps steps{.values = {0, 1}, .action = {.cut = true}};
   int returns = 0;
   EXPECT_THROW(step_through(
                    steps,
@@ -81,10 +85,84 @@ TEST(TimeStepping, CutsOnlyFailuresOfTheSolution) {
   EXPECT_EQ(returns, 0);
 }
 
+// Each event has its own action: the residual's cuts into five where a failed solution would stop.
+TEST(TimeStepping, ActsByTheEvent) {
+  TimeSteps steps{.values = {0, 1}, .action = {.cut = false}};
+  steps.events = {{.event = "RESI_MAXI", .action = {.cut = true, .cut_into = 5}},
+                  {.event = "DELTA_GRANDEUR", .action = {.cut = true, .cut_into = 2}}};
+  for (const auto& [event, parts] : {std::pair("STEP_1", 5), std::pair("STEP_2", 2), std::pair("EVOLUTION_4", 0)}) {
+    int solved = 0;
+    double at = 0;
+    const auto run = [&] {
+      step_through(
+          steps,
+          [&](double to) {
+            if (to - at > 0.9)
+              fail(event, {{"instant", ""},
+                           {"iterations", ""},
+                           {"unmet", ""},
+                           {"residual", ""},
+                           {"limit", ""},
+                           {"component", ""},
+                           {"node", ""},
+                           {"change", ""}});
+          },
+          [] {},
+          [&](double to, bool) {
+            at = to;
+            ++solved;
+          });
+    };
+    if (parts)
+      run();
+    else
+      EXPECT_THROW(run(), Error);
+    EXPECT_EQ(solved, parts) << event;
+  }
+}
+
+/// METHODE='AUTO' from 0 to 16 by way of 1, every step solved in `iterations` if it is not longer than `longest`.
+Solver adapt(StepAdaptation adaptation, int iterations, double longest = 100) {
+  Solver solver{.longest = longest};
+  solver.iterations = iterations;
+  solver.run({.values = {0, 1, 16}, .action = {.cut = true, .cut_into = 2}, .events = {}, .adaptation = adaptation});
+  return solver;
+}
+
+TEST(AdaptiveStepping, DoublesEasySteps) {
+  const Solver solver = adapt({.easy_steps = 1}, 5);
+  EXPECT_THAT(solver.solved, ElementsAre(1.0, 3.0, 7.0, 15.0, 16.0));
+  EXPECT_THAT(solver.asked, ElementsAre(true, false, false, false, true));
+  EXPECT_THAT(adapt({.easy_steps = 2}, 5).solved, ElementsAre(1.0, 2.0, 4.0, 6.0, 10.0, 14.0, 16.0));
+  EXPECT_THAT(adapt({.easy_steps = 2}, 6).solved.size(), 16);  // not easy
+  EXPECT_THAT(adapt({.event = "AUCUN"}, 1).solved.size(), 16);
+}
+
+TEST(AdaptiveStepping, KeepsToItsLimits) {
+  EXPECT_THAT(adapt({.easy_steps = 1, .largest = 2.5}, 1).solved, ElementsAre(1.0, 3.0, 5.5, 8.0, 10.5, 13.0, 15.5, 16.0));
+  EXPECT_THROW(adapt({.event = "AUCUN", .most = 15}, 1), Error);
+  EXPECT_THROW(adapt({.event = "AUCUN", .smallest = 0.3}, 1, 0.25), Error);
+}
+
+TEST(AdaptiveStepping, AimsAtANumberOfIterations) {
+  EXPECT_THAT(adapt({.event = "TOUT_INST", .rule = "ITER_NEWTON", .reference = 4}, 3).solved.size(), 16);  // sqrt(4 / 4)
+  EXPECT_THAT(adapt({.event = "TOUT_INST", .rule = "ITER_NEWTON", .reference = 4}, 0).solved,
+              ElementsAre(1.0, 3.0, 7.0, 15.0, 16.0));  // sqrt(4 / 1)
+}
+
+// A step that fails is cut, and the computation goes on with the shorter one until steps are easy again.
+TEST(AdaptiveStepping, GoesOnWithTheShorterStep) {
+  const Solver solver = adapt({.event = "AUCUN"}, 1, 0.6);
+  EXPECT_EQ(solver.returns, 1);
+  EXPECT_EQ(solver.solved.size(), 32u);
+  EXPECT_DOUBLE_EQ(solver.solved.front(), 0.5);
+  EXPECT_EQ(std::count(solver.asked.begin(), solver.asked.end(), true), 2);
+}
+
 TEST(TimeStepping, RestrictsTheListToAnInterval) {
-  const TimeSteps steps{.values = {0, 1, 2, 3}, .cut = true};
+  const TimeSteps steps{.values = {0, 1, 2, 3}, .action = {.cut = true}};
   EXPECT_THAT(restrict(steps, {.first_instant = 1.0 + 1e-9, .last_number = 2}).values, ElementsAre(1.0, 2.0));
-  EXPECT_TRUE(restrict(steps, {}).cut);
+  EXPECT_TRUE(restrict(steps, {}).action.cut);
   EXPECT_THROW(restrict(steps, {.first_instant = 1.5}), Error);
   EXPECT_THROW(restrict(steps, {.first_number = 4}), Error);
   EXPECT_THROW(restrict(steps, {.first_number = 2, .last_number = 2}), Error);
