@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <map>
 
+#include "lacon/assembly/hardening.hpp"
 #include "lacon/catalog/messages.hpp"
 
 namespace lacon {
@@ -21,17 +22,23 @@ const char* reason(int error) {
       return "the kernel does not serve this kind of element: its catalogue row is wrong";
     case LACON_BAD_RADIUS:
       return "it reaches over the axis of revolution: DX is the radius, which must not be negative";
+    case LACON_INSIDE_OUT:
+      return "the displacement turns it inside out";
+    case LACON_BEYOND_CURVE:
+      return "the hardening curve ends before the strain that is reached";
     default:
       return "the result is not a finite number";
   }
 }
+
+bool refused(std::int32_t error) { return error != LACON_FINE && error != LACON_INSIDE_OUT; }
 
 [[noreturn]] void refuse_elements(const ElementSet& set, std::span<const std::int32_t> errors,
                                   std::span<const std::int32_t> cells) {
   std::int64_t count = 0;
   std::size_t first = errors.size();
   for (std::size_t i = 0; i < errors.size(); ++i)
-    if (errors[i] != LACON_FINE) {
+    if (refused(errors[i])) {
       first = std::min(first, i);
       ++count;
     }
@@ -80,10 +87,13 @@ class Batch {
     const double* const block = values.data() + (i / lanes) * width * lanes + i % lanes;
     for (std::size_t k = 0; k < width; ++k) out[k] = block[k * lanes];
   }
-  void check(std::span<const std::int32_t> errors) const {
+  /// Throws where a kernel refused an element. @return the first that is turned inside out
+  std::optional<std::int32_t> check(std::span<const std::int32_t> errors) const {
     const auto own = errors.first(size_);
-    if (std::all_of(own.begin(), own.end(), [](std::int32_t e) { return e == LACON_FINE; })) return;
-    refuse_elements(set_, own, std::span(set_.cells).subspan(first_, size_));
+    if (std::any_of(own.begin(), own.end(), refused)) refuse_elements(set_, own, std::span(set_.cells).subspan(first_, size_));
+    const auto inverted = std::find(own.begin(), own.end(), LACON_INSIDE_OUT);
+    if (inverted == own.end()) return std::nullopt;
+    return cell(static_cast<std::size_t>(inverted - own.begin()));
   }
 
  private:
@@ -103,44 +113,82 @@ ElementSet make_set(const catalog::ElementRow& row, Registry& registry, std::str
 
 }  // namespace
 
-std::optional<double> MaterialTable::find(std::int32_t cell, std::string_view path) const {
+const std::variant<double, std::string>* MaterialTable::look_up(std::int32_t cell, std::string_view path) const {
   const auto slash = path.find('/');
   const Material& material = materials_[field_->material[cell]];
   const auto law = material.laws.find(std::string(path.substr(0, slash)));
-  if (law == material.laws.end()) return std::nullopt;
+  if (law == material.laws.end()) return nullptr;
   const auto value = law->second.find(std::string(path.substr(slash + 1)));
-  if (value == law->second.end() || !std::holds_alternative<double>(value->second)) return std::nullopt;
-  return std::get<double>(value->second);
+  return value == law->second.end() ? nullptr : &value->second;
 }
 
-double MaterialTable::parameter(std::int32_t cell, std::string_view path, std::string_view element) const {
-  if (const auto value = find(cell, path)) return *value;
-  fail("ELEMENT_3", {{"material", labels_[field_->material[cell]]},
+void MaterialTable::missing(std::int32_t cell, std::string_view path, std::string_view element) const {
+  fail("ELEMENT_3", {{"material", label(cell)},
                      {"cell", cell_name(cell)},
                      {"parameter", std::string(path)},
                      {"element", std::string(element)}});
 }
 
-std::vector<ElementSet> solid_sets(const Mesh& mesh, const Model& model, Registry& registry, const MaterialTable& materials) {
-  std::vector<std::vector<std::int32_t>> cells(model.elements.size());
-  for (std::size_t c = 0; c < mesh.n_cells(); ++c)
-    if (model.element[c] >= 0) cells[model.element[c]].push_back(static_cast<std::int32_t>(c));
-  std::vector<ElementSet> sets;
-  for (std::size_t e = 0; e < cells.size(); ++e) {
-    const catalog::ElementRow* row = registry.find_element(model.elements[e]);
-    if (!row) fail("PLUGIN_4", {{"element", model.elements[e]}});
-    if (row->role != catalog::Role::solid || cells[e].empty()) continue;
-    ElementSet set = make_set(*row, registry, "FULL_MECA", LACON_SOLID);
-    set.cells = std::move(cells[e]);
-    const auto bare = std::count_if(set.cells.begin(), set.cells.end(), [&](std::int32_t c) { return !materials.has(c); });
-    if (bare > 0) {
-      const auto first = std::find_if(set.cells.begin(), set.cells.end(), [&](std::int32_t c) { return !materials.has(c); });
-      fail("ELEMENT_2", {{"cell", cell_name(*first)}, {"element", std::string(row->name)}, {"count", std::to_string(bare)}});
+std::optional<double> MaterialTable::find(std::int32_t cell, std::string_view path) const {
+  const auto* value = look_up(cell, path);
+  if (!value || !std::holds_alternative<double>(*value)) return std::nullopt;
+  return std::get<double>(*value);
+}
+
+double MaterialTable::parameter(std::int32_t cell, std::string_view path, std::string_view element) const {
+  if (const auto value = find(cell, path)) return *value;
+  missing(cell, path, element);
+}
+
+const Function& MaterialTable::function(std::int32_t cell, std::string_view path, std::string_view element) const {
+  const auto* value = look_up(cell, path);
+  const auto* id = value ? std::get_if<std::string>(value) : nullptr;
+  const auto at = id ? functions_.find(*id) : functions_.end();
+  if (at == functions_.end()) missing(cell, path, element);
+  return at->second;
+}
+
+std::vector<ElementSet> solid_sets(const Mesh& mesh, const Model& model, Registry& registry, const MaterialTable& materials,
+                                   const Behaviours& behaviours) {
+  struct Kind {
+    std::int32_t element, behaviour, material;  // material: -1 where it makes no difference
+    auto operator<=>(const Kind&) const = default;
+  };
+  std::map<Kind, std::vector<std::int32_t>> by_kind;
+  std::vector<std::int32_t> bare;  // without material
+  for (std::size_t c = 0; c < mesh.n_cells(); ++c) {
+    const std::int32_t element = model.element[c], behaviour = behaviours.of_cell[c], cell = static_cast<std::int32_t>(c);
+    if (element < 0) continue;
+    const catalog::ElementRow* row = registry.find_element(model.elements[element]);
+    if (!row) fail("PLUGIN_4", {{"element", model.elements[element]}});
+    if (row->role != catalog::Role::solid) continue;
+    if (!registry.has_kernel(*row, behaviours.options[behaviour]))
+      fail("BEHAVIOUR_1",
+           {{"behaviour", behaviours.options[behaviour]}, {"element", std::string(row->name)}, {"cell", cell_name(cell)}});
+    if (!materials.has(cell)) {
+      bare.push_back(cell);
+      continue;
     }
+    const bool takes_curve = registry.kernel(*row, behaviours.options[behaviour], LACON_SOLID).takes_curve;
+    by_kind[{element, behaviour, takes_curve ? materials.of(cell) : -1}].push_back(cell);
+  }
+  if (!bare.empty())
+    fail("ELEMENT_2", {{"cell", cell_name(bare.front())},
+                       {"element", model.elements[model.element[bare.front()]]},
+                       {"count", std::to_string(bare.size())}});
+  std::vector<ElementSet> sets;
+  for (auto& [kind, cells] : by_kind) {
+    const catalog::ElementRow& row = *registry.find_element(model.elements[kind.element]);
+    const std::string& option = behaviours.options[kind.behaviour];
+    ElementSet set = make_set(row, registry, option, LACON_SOLID);
+    set.cells = std::move(cells);
+    set.linear = !set.kernel->nonlinear;
+    if (set.kernel->takes_curve)
+      set.curve = hardening_curve(materials, set.cells.front(), option.substr(0, option.find('/')), row.name);
     while (set.kernel->parameters[set.n_parameters]) ++set.n_parameters;
     for (const std::int32_t cell : set.cells)
       for (int p = 0; p < set.n_parameters; ++p)
-        set.parameters.push_back(materials.parameter(cell, set.kernel->parameters[p], row->name));
+        set.parameters.push_back(materials.parameter(cell, set.kernel->parameters[p], row.name));
     sets.push_back(std::move(set));
   }
   return sets;
@@ -165,22 +213,31 @@ std::vector<ElementSet> load_sets(const Model& model, Registry& registry, std::s
   return sets;
 }
 
-void evaluate_solids(const ElementSet& set, const Mesh& mesh, int dimension, std::span<const double> displacement,
-                     bool with_matrix, const std::function<void(const SolidValues&)>& use) {
+std::optional<std::int32_t> evaluate_solids(const ElementSet& set, const Mesh& mesh, int dimension, const SolidInput& input,
+                                            SolidMatrix wanted, const std::function<void(const SolidValues&)>& use) {
   const int ndof = set.n_nodes() * dimension;
   const std::size_t n_lower = static_cast<std::size_t>(ndof) * (ndof + 1) / 2;
-  const std::size_t n_stress = static_cast<std::size_t>(set.tabulation.n_points) * set.row->stress.size();
-  std::vector<double> coordinates, u, parameters, matrix, force, stress, own_matrix, own_force, own_stress;
+  const std::size_t n_stress = set.n_stress(), n_variables = set.n_variables();
+  const bool with_matrix = wanted != SolidMatrix::none;
+  std::vector<double> coordinates, u, parameters, from, from_stress, from_variable;
+  std::vector<double> matrix, force, stress, variable, own_matrix, own_force, own_stress, own_variable;
   std::vector<std::int32_t> errors;
+  std::optional<std::int32_t> inside_out;
+  // what is left out, or does not exist, is a null pointer
+  const auto pointer = [](std::vector<double>& values, bool given) { return given ? values.data() : nullptr; };
   for (std::size_t first = 0; first < set.cells.size(); first += batch_blocks * lanes) {
     const Batch batch(set, mesh, first, dimension);
     batch.gather(mesh.coordinates, 3, coordinates);
-    batch.gather(displacement, dimension, u);
+    batch.gather(input.displacement, dimension, u);
     batch.gather_cells(set.parameters, set.n_parameters, parameters);
+    if (!input.previous_displacement.empty()) batch.gather(input.previous_displacement, dimension, from);
+    if (!input.previous_stress.empty()) batch.gather_cells(input.previous_stress, n_stress, from_stress);
+    if (!input.previous_variable.empty()) batch.gather_cells(input.previous_variable, n_variables, from_variable);
     const std::size_t padded = batch.n_blocks() * lanes;
     if (with_matrix) matrix.resize(padded * n_lower);
     force.resize(padded * ndof);
     stress.resize(padded * n_stress);
+    variable.resize(padded * n_variables);
     errors.assign(padded, LACON_FINE);
     const lacon_solid_batch call{.struct_size = sizeof(lacon_solid_batch),
                                  .n_blocks = static_cast<std::int32_t>(batch.n_blocks()),
@@ -195,19 +252,30 @@ void evaluate_solids(const ElementSet& set, const Mesh& mesh, int dimension, std
                                  .coordinates = coordinates.data(),
                                  .displacement = u.data(),
                                  .parameter = parameters.data(),
-                                 .matrix = with_matrix ? matrix.data() : nullptr,
+                                 .matrix = pointer(matrix, with_matrix),
                                  .force = force.data(),
                                  .stress = stress.data(),
-                                 .error = errors.data()};
+                                 .error = errors.data(),
+                                 .previous_displacement = pointer(from, !input.previous_displacement.empty()),
+                                 .previous_stress = pointer(from_stress, !input.previous_stress.empty()),
+                                 .previous_variable = pointer(from_variable, !input.previous_variable.empty()),
+                                 .variable = pointer(variable, n_variables > 0),
+                                 .curve = set.curve.data(),
+                                 .n_curve = static_cast<std::int32_t>(set.curve.size() / 3),
+                                 .n_variables = set.kernel->n_variables,
+                                 .elastic_matrix = wanted == SolidMatrix::elastic};
     set.kernel->solid(&call);
-    batch.check(errors);
+    const auto inverted = batch.check(errors);
+    if (!inside_out) inside_out = inverted;
     for (std::size_t i = 0; i < batch.size(); ++i) {
       if (with_matrix) batch.scatter(matrix, i, n_lower, own_matrix);
       batch.scatter(force, i, ndof, own_force);
       batch.scatter(stress, i, n_stress, own_stress);
-      use({batch.cell(i), own_matrix, own_force, own_stress});
+      batch.scatter(variable, i, n_variables, own_variable);
+      use({batch.cell(i), own_matrix, own_force, own_stress, own_variable});
     }
   }
+  return inside_out;
 }
 
 int n_load_values(const lacon_kernel& kernel) {

@@ -2,9 +2,11 @@
 // Loops over elements: cells of one kind gathered into batches for their kernel, results handed back cell by cell.
 #include <cstdint>
 #include <functional>
+#include <map>
 #include <optional>
 #include <span>
 #include <string>
+#include <variant>
 #include <vector>
 
 #include "lacon/elements/reference.hpp"
@@ -21,29 +23,52 @@ struct ElementSet {
   std::vector<std::int32_t> cells;
   std::vector<double> parameters;  ///< (cells, n_parameters), solids only
   int n_parameters = 0;
-  bool linear = true;  ///< the stiffness does not depend on the displacements
+  bool linear = true;         ///< the stiffness does not depend on the displacements
+  std::vector<double> curve;  ///< (points, 3), lacon_solid_batch::curve; of all cells, empty where the kernel takes none
 
   int n_nodes() const { return tabulation.n_nodes; }
+  std::size_t n_stress() const { return static_cast<std::size_t>(tabulation.n_points) * row->stress.size(); }  ///< of a cell
+  std::size_t n_variables() const {
+    return static_cast<std::size_t>(tabulation.n_points) * kernel->n_variables;
+  }  ///< of a cell
 };
 
 /// What a material says about a cell's parameter "ELAS/E"; throws ELEMENT_2, ELEMENT_3.
 class MaterialTable {
  public:
-  MaterialTable(const MaterialField& field, std::vector<Material> materials, std::vector<std::string> labels)
-      : field_(&field), materials_(std::move(materials)), labels_(std::move(labels)) {}
+  /// @param functions those that materials name, by id
+  MaterialTable(const MaterialField& field, std::vector<Material> materials, std::vector<std::string> labels,
+                std::map<std::string, Function> functions = {})
+      : field_(&field), materials_(std::move(materials)), labels_(std::move(labels)), functions_(std::move(functions)) {}
   bool has(std::int32_t cell) const { return field_->material[cell] >= 0; }
+  std::int32_t of(std::int32_t cell) const { return field_->material[cell]; }                    ///< number of its material
+  const std::string& label(std::int32_t cell) const { return labels_[field_->material[cell]]; }  ///< of its material
   double parameter(std::int32_t cell, std::string_view path, std::string_view element) const;
   /// The parameter, or nothing where the cell's material lacks it.
   std::optional<double> find(std::int32_t cell, std::string_view path) const;
+  /// The parameter that is a function; throws ELEMENT_3.
+  const Function& function(std::int32_t cell, std::string_view path, std::string_view element) const;
 
  private:
+  const std::variant<double, std::string>* look_up(std::int32_t cell, std::string_view path) const;
+  [[noreturn]] void missing(std::int32_t cell, std::string_view path, std::string_view element) const;
+
   const MaterialField* field_;
   std::vector<Material> materials_;
   std::vector<std::string> labels_;
+  std::map<std::string, Function> functions_;
 };
 
-/// Every solid element of the model, by kind; a set for each element row, cells in ascending order.
-std::vector<ElementSet> solid_sets(const Mesh& mesh, const Model& model, Registry& registry, const MaterialTable& materials);
+/// The behaviour of cells: options of solid rows, "ELAS/PETIT", and for each cell of the mesh its index among them.
+struct Behaviours {
+  std::vector<std::string> options;
+  std::vector<std::int32_t> of_cell;
+};
+
+/// Every solid element of the model, by kind; a set for each element row and behaviour, and material where the law takes a
+/// curve; cells in ascending order. Throws ELEMENT_2, ELEMENT_3, BEHAVIOUR_1 (no such behaviour of the element).
+std::vector<ElementSet> solid_sets(const Mesh& mesh, const Model& model, Registry& registry, const MaterialTable& materials,
+                                   const Behaviours& behaviours);
 
 /// These cells by kind, with the load kernel of `option`. `position` receives for each set the indices into `cells`.
 std::vector<ElementSet> load_sets(const Model& model, Registry& registry, std::string_view option,
@@ -52,15 +77,27 @@ std::vector<ElementSet> load_sets(const Model& model, Registry& registry, std::s
 /// What one solid element gives.
 struct SolidValues {
   std::int32_t cell;
-  std::span<const double> matrix;  ///< lower triangle, row by row; empty where it was not wanted
-  std::span<const double> force;   ///< (n_nodes, dimension)
-  std::span<const double> stress;  ///< (n_points, n_stress)
+  std::span<const double> matrix;    ///< lower triangle, row by row; empty where it was not wanted
+  std::span<const double> force;     ///< (n_nodes, dimension)
+  std::span<const double> stress;    ///< (n_points, n_stress)
+  std::span<const double> variable;  ///< (n_points, n_variables): internal variables
 };
 
-/// Call `use` for each element of a set. @param displacement (n_nodes, dimension) of the mesh
+enum class SolidMatrix { none, tangent, elastic };
+
+/// What solid elements are evaluated at. Displacements are those of the mesh, (n_nodes, dimension). The last state in
+/// equilibrium may be left empty, which is the natural state; its stresses and variables are those of the set.
+struct SolidInput {
+  std::span<const double> displacement;
+  std::span<const double> previous_displacement;
+  std::span<const double> previous_stress;    ///< (cells, n_points, n_stress)
+  std::span<const double> previous_variable;  ///< (cells, n_points, n_variables)
+};
+
+/// Call `use` for each element of a set. @return the first cell that the displacement turns inside out, if there is one
 /// Throws ELEMENT_1 for elements that their kernel refuses.
-void evaluate_solids(const ElementSet& set, const Mesh& mesh, int dimension, std::span<const double> displacement,
-                     bool with_matrix, const std::function<void(const SolidValues&)>& use);
+std::optional<std::int32_t> evaluate_solids(const ElementSet& set, const Mesh& mesh, int dimension, const SolidInput& input,
+                                            SolidMatrix matrix, const std::function<void(const SolidValues&)>& use);
 
 /// How many values a load kernel takes at each integration point.
 int n_load_values(const lacon_kernel& kernel);

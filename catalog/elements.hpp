@@ -10,7 +10,7 @@ namespace lacon::catalog {
 enum class Role : std::int8_t { solid, skin };
 
 struct KernelRow {
-  std::string_view option;  ///< "FULL_MECA"
+  std::string_view option;  ///< "ELAS/PETIT", "CHAR_MECA_PRES"
   std::string_view kernel;  ///< "plug-in/kernel"
 };
 

@@ -33,10 +33,15 @@ enum lacon_element_error {
   LACON_BAD_PARAMETER = 2, /* a material parameter outside its range */
   LACON_NOT_FINITE = 3,
   LACON_BAD_BATCH = 4,     /* the kernel does not serve elements of this kind: the catalogue row is wrong */
-  LACON_BAD_RADIUS = 5     /* axisymmetry: a node on the wrong side of the axis, or a point on it */
+  LACON_BAD_RADIUS = 5,    /* axisymmetry: a node on the wrong side of the axis, or a point on it */
+  LACON_INSIDE_OUT = 6,    /* the displacement turns the element inside out. Matrix and force hold all the same, the stress does
+                              not: Newton's method may pass through such a state, a solution may not be one */
+  LACON_BEYOND_CURVE = 7   /* the hardening curve ends before the strain that was reached */
 };
 
-/* Solid elements: stiffness, internal forces, stresses at displacement u. ndof = n_nodes * dimension, node by node. */
+/* Solid elements: stiffness, internal forces, stresses at displacement u. ndof = n_nodes * dimension, node by node.
+ * A law with a memory goes from the last state in equilibrium (`previous_...`) to that of u; a law without takes `previous_...`
+ * as a state to start from, and none means the natural state: no displacement, no stress, variables zero. */
 typedef struct lacon_solid_batch {
   uint32_t struct_size;
   int32_t n_blocks;
@@ -51,6 +56,14 @@ typedef struct lacon_solid_batch {
   double* force;              /* (n_blocks, ndof, LANES) */
   double* stress;             /* (n_blocks, n_points, n_stress, LANES) */
   int32_t* error;             /* (n_blocks, LANES) */
+  const double* previous_displacement; /* (n_blocks, n_nodes, dimension, LANES) or NULL */
+  const double* previous_stress;       /* (n_blocks, n_points, n_stress, LANES) or NULL */
+  const double* previous_variable;     /* (n_blocks, n_points, n_variables, LANES) or NULL */
+  double* variable;                    /* (n_blocks, n_points, n_variables, LANES): internal variables */
+  const double* curve;                 /* (n_curve, 3), for all elements: plastic strain p from 0 on, yield stress R(p), slope
+                                          behind p; a last slope that is not a number ends the curve */
+  int32_t n_curve, n_variables;
+  int32_t elastic_matrix; /* 1: the matrix is that of the law's elastic part */
 } lacon_solid_batch;
 
 /* Elements (bodies, skins, edges) under a load that has values at each integration point. */
@@ -104,6 +117,10 @@ typedef struct lacon_kernel {
   void (*load)(const lacon_load_batch*);
   void (*contact)(const lacon_contact_batch*);
   const char* const* parameters; /* solid: material parameters that it takes, "ELAS/E"; load: its values, "PRES"; NULL at the end */
+  int32_t n_variables;           /* solid: internal variables at a point */
+  int32_t nonlinear;             /* solid: 0 if the matrix does not depend on the displacement */
+  int32_t has_memory;            /* solid: 1 if the result depends on the last state in equilibrium */
+  int32_t takes_curve;           /* solid: 1 if it needs the hardening curve */
 } lacon_kernel;
 
 typedef struct lacon_plugin_table {

@@ -1,5 +1,10 @@
-// Solid elements, small strains.
+// Solid elements: a modelisation (Kind), a measure of strain (Measure) and a law, put together in one loop over elements.
+#include "geometry.hpp"
 #include "lacon/elements/lanes.hpp"
+#include "von_mises.hpp"
+
+// lambdas too take the instruction set of the kernel that they are in
+#define LACON_INLINE __attribute__((always_inline))
 
 namespace {
 
@@ -7,70 +12,205 @@ using lacon::clear_lanes;
 using lacon::LaneErrors;
 using lacon::Lanes;
 using lacon::lanes;
+using lacon::solid::at;
+using lacon::solid::components_of;
+using lacon::solid::dimension_of;
+using lacon::solid::Kind;
+using lacon::solid::Map;
+using lacon::solid::max_nodes;
+using lacon::solid::over_axis;
+using lacon::solid::Tangent;
 
-constexpr int max_nodes = 27;
+/// DEFORMATION: small strains (PETIT); small increments of strain on the geometry of u (PETIT_REAC); Green-Lagrange strains and
+/// second Piola-Kirchhoff stresses on the initial geometry (GREEN_LAGRANGE).
+enum class Measure { small, updated, green };
+enum class Law { elastic, von_mises };
 
-// A determinant below this share of the size of its terms is round-off.
-constexpr double flat = 1e-13;
-
-// A node may be this far beyond the axis, as a share of its cell's size.
-constexpr double over_axis = 1e-10;
-
-enum class Kind { plane_strain, plane_stress, axis, solid };
-
-/// d x_i / d xi_r at a point, its determinant and inverse.
-template <int D>
-struct Map {
-  Lanes inverse[D][D], determinant;  ///< inverse[r][i] = d xi_r / d x_i
-
-  /// @param gradient (n_nodes, D), by reference coordinates @param side (n_nodes, D), from the first node on
-  [[gnu::always_inline]] Map(const double* gradient, const Lanes* side, int nodes, LaneErrors& errors) {
-    Lanes j[D][D] = {};
-    for (int a = 1; a < nodes; ++a)
-      for (int i = 0; i < D; ++i)
-        for (int r = 0; r < D; ++r) j[i][r] += gradient[a * D + r] * side[a * D + i];
-    Lanes size;
-    if constexpr (D == 2) {
-      determinant = j[0][0] * j[1][1] - j[0][1] * j[1][0];
-      size = j[0][0] * j[0][0] + j[0][1] * j[0][1] + j[1][0] * j[1][0] + j[1][1] * j[1][1];
-      for (int l = 0; l < LACON_LANES; ++l) errors.set(l, !(determinant[l] > flat * size[l]), LACON_BAD_JACOBIAN);
-      const Lanes scale = 1 / determinant;
-      inverse[0][0] = j[1][1] * scale;
-      inverse[0][1] = -j[0][1] * scale;
-      inverse[1][0] = -j[1][0] * scale;
-      inverse[1][1] = j[0][0] * scale;
-    } else {
-      for (int r = 0; r < 3; ++r)
-        for (int i = 0; i < 3; ++i) {
-          const int r1 = (r + 1) % 3, r2 = (r + 2) % 3, i1 = (i + 1) % 3, i2 = (i + 2) % 3;
-          inverse[r][i] = j[i1][r1] * j[i2][r2] - j[i1][r2] * j[i2][r1];
-        }
-      determinant = j[0][0] * inverse[0][0] + j[1][0] * inverse[0][1] + j[2][0] * inverse[0][2];
-      size = (j[0][0] * j[0][0] + j[1][0] * j[1][0] + j[2][0] * j[2][0]) *
-             (j[0][1] * j[0][1] + j[1][1] * j[1][1] + j[2][1] * j[2][1]) *
-             (j[0][2] * j[0][2] + j[1][2] * j[1][2] + j[2][2] * j[2][2]);  // the square of Hadamard's bound
-      for (int l = 0; l < LACON_LANES; ++l)
-        errors.set(l, !(determinant[l] > 0 && determinant[l] * determinant[l] > flat * flat * size[l]), LACON_BAD_JACOBIAN);
-      const Lanes scale = 1 / determinant;
-      for (int r = 0; r < 3; ++r)
-        for (int i = 0; i < 3; ++i) inverse[r][i] *= scale;
-    }
-  }
+/// What the loop over nodes needs at a point.
+template <Kind K>
+struct Point {
+  static constexpr int D = dimension_of(K), n = components_of(K);
+  Lanes dv;
+  Lanes g[max_nodes][D];                        ///< gradients of the shape functions
+  Lanes hoop[K == Kind::axis ? max_nodes : 1];  ///< N / r
+  Lanes slope[D][D];                            ///< gradient of the displacement that strains are made of
+  Lanes hoop_slope;                             ///< u_r / r
+  Lanes stress[n];                              ///< in equilibrium: Cauchy's; with Green-Lagrange the second Piola-Kirchhoff
+  Tangent<K> tangent;
 };
 
-/// Small strains, isotropic elasticity: sigma = lambda tr(eps) I + 2 mu eps, parameters E and nu. Outputs of an element in
-/// error have no meaning. Stress: SIXX SIYY SIZZ SIXY, in space SIXZ SIYZ too. Plane stress is the law with the lambda that
-/// makes SIZZ zero; in axisymmetry x is the radius r, ZZ the hoop direction with the strain u_r / r, and integrals are those
-/// over one radian.
-template <Kind K>
-[[gnu::always_inline]] inline void small_elastic(const lacon_solid_batch& b) {
+/// The matrix of small strains and of Green-Lagrange strains. The change of strain by node a and direction i is the symmetric
+/// part of F_i (x) g_a, where F_i is row i of the deformation gradient (small strains: of the unit matrix).
+template <Kind K, Measure M, Law L>
+[[gnu::always_inline]] inline void add_matrix(const Point<K>& point, int nodes, double* matrix) {
+  constexpr bool axis = K == Kind::axis, green = M == Measure::green, rank_one = L == Law::von_mises;
+  constexpr int D = dimension_of(K);
+  const Lanes dl = point.dv * point.tangent.lambda, dm = point.dv * point.tangent.mu;
+  Lanes pushed[green ? max_nodes : 1][D];  // F g
+  Lanes left[D][D];                        // F F^T
+  const Lanes stretch = 1 + point.hoop_slope;
+  if constexpr (green) {
+    Lanes f[D][D];
+    for (int i = 0; i < D; ++i)
+      for (int k = 0; k < D; ++k) f[i][k] = point.slope[i][k] + (i == k ? 1.0 : 0.0);
+    for (int i = 0; i < D; ++i)
+      for (int k = 0; k < D; ++k) {
+        left[i][k] = f[i][0] * f[k][0];
+        for (int m = 1; m < D; ++m) left[i][k] += f[i][m] * f[k][m];
+      }
+    for (int a = 0; a < nodes; ++a)
+      for (int i = 0; i < D; ++i) {
+        pushed[a][i] = f[i][0] * point.g[a][0];
+        for (int m = 1; m < D; ++m) pushed[a][i] += f[i][m] * point.g[a][m];
+      }
+  }
+  const Lanes(*const strain)[D] = green ? pushed : point.g;
+  [[maybe_unused]] Lanes with_ring[axis ? max_nodes : 1];
+  if constexpr (axis)
+    for (int a = 0; a < nodes; ++a) with_ring[a] = strain[a][0] + (green ? stretch * point.hoop[a] : point.hoop[a]);
+  const auto trace = [&](int a, int i) LACON_INLINE -> const Lanes& {  // of the change of strain
+    return axis && i == 0 ? with_ring[axis ? a : 0] : strain[a][i];
+  };
+  Lanes along[rank_one ? max_nodes : 1][D];  // the change of strain along the tangent's direction
+  if constexpr (rank_one)
+    for (int a = 0; a < nodes; ++a)
+      for (int i = 0; i < D; ++i) {
+        along[a][i] = point.tangent.direction[at(i, 0)] * point.g[a][0];
+        for (int k = 1; k < D; ++k) along[a][i] += point.tangent.direction[at(i, k)] * point.g[a][k];
+        if (axis && i == 0) along[a][i] += point.tangent.direction[2] * point.hoop[a];
+      }
+  for (int a = 0; a < nodes; ++a) {
+    Lanes la[D], ma[D], drawn[D];  // of the divergence, of the gradient, of the stress
+    for (int i = 0; i < D; ++i) {
+      la[i] = dl * trace(a, i);
+      ma[i] = dm * strain[a][i];
+    }
+    Lanes ga[D];
+    for (int k = 0; k < D; ++k) ga[k] = dm * point.g[a][k];
+    if constexpr (green)
+      for (int k = 0; k < D; ++k) {
+        drawn[k] = point.stress[at(k, 0)] * point.g[a][0];
+        for (int m = 1; m < D; ++m) drawn[k] += point.stress[at(k, m)] * point.g[a][m];
+        drawn[k] *= point.dv;
+      }
+    double* row[D];  // row n starts behind n (n + 1) / 2 entries
+    for (int i = 0; i < D; ++i) row[i] = matrix + (D * a + i) * (D * a + i + 1) / 2 * LACON_LANES;
+    for (int c = 0; c <= a; ++c) {
+      Lanes both = ga[0] * point.g[c][0];
+      for (int k = 1; k < D; ++k) both += ga[k] * point.g[c][k];
+      [[maybe_unused]] Lanes geometric = {};
+      if constexpr (green)
+        for (int k = 0; k < D; ++k) geometric += drawn[k] * point.g[c][k];
+      for (int i = 0; i < D; ++i)
+        for (int k = 0; k < D; ++k) {
+          if (c == a && k > i) continue;
+          Lanes entry = la[i] * trace(c, k) + ma[k] * strain[c][i];
+          if constexpr (green) {
+            entry += left[i][k] * both;
+            if (i == k) entry += geometric;
+          } else if (i == k) {
+            entry += both;
+          }
+          if (axis && i == 0 && k == 0) {
+            const Lanes ring = point.hoop[a] * point.hoop[c];
+            if constexpr (green)
+              entry += (2 * dm * stretch * stretch + point.dv * point.stress[2]) * ring;
+            else
+              entry += 2 * dm * point.hoop[a] * point.hoop[c];
+          }
+          if constexpr (rank_one) entry -= point.dv * point.tangent.rank * along[a][i] * along[c][k];
+          lanes(row[i], D * c + k) += entry;
+        }
+    }
+  }
+}
+
+/// The matrix of PETIT_REAC: the derivative of the force on the geometry of u, which moves with u, made symmetric. The
+/// derivative itself is symmetric only up to terms of the size of the stress; without any of these terms slender bodies
+/// converge badly.
+template <Kind K, Law L>
+[[gnu::always_inline]] inline void add_updated_matrix(const Point<K>& point, int nodes, double* matrix) {
   constexpr bool axis = K == Kind::axis;
-  constexpr int D = K == Kind::solid ? 3 : 2, n_stress = K == Kind::solid ? 6 : 4;
+  constexpr int D = dimension_of(K);
+  const Tangent<K>& tangent = point.tangent;
+  const Lanes(&g)[max_nodes][D] = point.g;
+  // the strain of the step changes by sym(A^T dh), dh the change of displacement's gradient on the geometry of u
+  Lanes shrink[D][D];
+  for (int i = 0; i < D; ++i)
+    for (int k = 0; k < D; ++k) shrink[i][k] = (i == k ? 1.0 : 0.0) - point.slope[i][k];
+  const Lanes hoop_shrink = 1 - point.hoop_slope;
+  Lanes mixed[max_nodes][D], drawn[max_nodes][D];        // A^T g, sigma g
+  Lanes along[max_nodes][D], mixed_along[max_nodes][D];  // direction g, A^T direction g
+  for (int a = 0; a < nodes; ++a) {
+    for (int i = 0; i < D; ++i) {
+      mixed[a][i] = drawn[a][i] = along[a][i] = Lanes{};
+      for (int k = 0; k < D; ++k) {
+        mixed[a][i] += shrink[k][i] * g[a][k];
+        drawn[a][i] += point.stress[at(i, k)] * g[a][k];
+        if (L == Law::von_mises) along[a][i] += tangent.direction[at(i, k)] * g[a][k];
+      }
+    }
+    for (int i = 0; i < D; ++i) {
+      mixed_along[a][i] = Lanes{};
+      for (int k = 0; k < D; ++k) mixed_along[a][i] += shrink[k][i] * along[a][k];
+    }
+    if (axis && L == Law::von_mises) {
+      mixed_along[a][0] += tangent.direction[2] * hoop_shrink * point.hoop[a];
+      along[a][0] += tangent.direction[2] * point.hoop[a];
+    }
+  }
+  Lanes trace[max_nodes][D], mixed_trace[max_nodes][D], whole_drawn[max_nodes][D];  // with the hoop direction
+  for (int a = 0; a < nodes; ++a)
+    for (int i = 0; i < D; ++i) {
+      trace[a][i] = g[a][i];
+      mixed_trace[a][i] = mixed[a][i];
+      whole_drawn[a][i] = drawn[a][i];
+      if (axis && i == 0) {
+        trace[a][0] += point.hoop[a];
+        mixed_trace[a][0] += hoop_shrink * point.hoop[a];
+        whole_drawn[a][0] += point.stress[2] * point.hoop[a];
+      }
+    }
+  // entry += d force (a, i) / d u (c, j) over dv
+  const auto add_derivative = [&](int a, int i, int c, int j, const Lanes& both, Lanes& entry) LACON_INLINE {
+    entry += tangent.lambda * trace[a][i] * mixed_trace[c][j] + tangent.mu * (shrink[i][j] * both + g[c][i] * mixed[a][j]) +
+             whole_drawn[a][i] * trace[c][j] - g[a][j] * drawn[c][i];
+    if (axis && i == 0 && j == 0) entry += (2 * tangent.mu * hoop_shrink - point.stress[2]) * point.hoop[a] * point.hoop[c];
+    if (L == Law::von_mises) entry -= tangent.rank * along[a][i] * mixed_along[c][j];
+  };
+  for (int a = 0; a < nodes; ++a)
+    for (int i = 0; i < D; ++i) {
+      double* row = matrix + (D * a + i) * (D * a + i + 1) / 2 * LACON_LANES;
+      for (int c = 0; c <= a; ++c) {
+        Lanes both = g[a][0] * g[c][0];
+        for (int k = 1; k < D; ++k) both += g[a][k] * g[c][k];
+        for (int j = 0; j < D && (c < a || j <= i); ++j) {
+          Lanes twice = {};
+          add_derivative(a, i, c, j, both, twice);
+          add_derivative(c, j, a, i, both, twice);
+          lanes(row, D * c + j) += point.dv / 2 * twice;
+        }
+      }
+    }
+}
+
+/// Isotropic elasticity sigma = lambda tr(eps) I + 2 mu eps with E and nu, and plasticity upon it. Outputs of an element in
+/// error have no meaning. Stress: Cauchy's, SIXX SIYY SIZZ SIXY, in space SIXZ SIYZ too. Plane stress is the law with the
+/// lambda that makes SIZZ zero; in axisymmetry x is the radius r, ZZ the hoop direction with the strain u_r / r, and integrals
+/// are those over one radian.
+template <Kind K, Measure M, Law L>
+[[gnu::always_inline]] inline void evaluate(const lacon_solid_batch& b) {
+  constexpr bool axis = K == Kind::axis, green = M == Measure::green, updated = M == Measure::updated;
+  constexpr bool plastic = L == Law::von_mises;
+  constexpr int D = dimension_of(K), n_stress = components_of(K), n_variables = plastic ? 2 : 0;
   const int nodes = b.n_nodes, dofs = D * nodes, entries = dofs * (dofs + 1) / 2;
-  if (b.dimension != D || nodes > max_nodes || b.n_stress != n_stress || b.n_parameters != 2) return lacon::refuse(b);
-  Lanes side[max_nodes * D];         // from the first node on: a cell far from the origin loses no digits
-  Lanes g[max_nodes][D];             // gradients in space
-  Lanes hoop[axis ? max_nodes : 1];  // N / r
+  if (b.dimension != D || nodes > max_nodes || b.n_stress != n_stress || b.n_parameters != 2 || b.n_variables != n_variables ||
+      (plastic && b.n_curve < 1))
+    return lacon::refuse(b);
+  Lanes side[max_nodes * D];   // from the first node on: a cell far from the origin loses no digits
+  Lanes moved[max_nodes * D];  // what strains come from: with Green-Lagrange the whole displacement, for they do not add up
+  Lanes current[updated ? max_nodes * D : 1];
+  Point<K> point;
   for (std::int64_t block = 0; block < b.n_blocks; ++block) {
     LaneErrors errors;
     const Lanes young = lanes(b.parameter, 2 * block), nu = lanes(b.parameter, 2 * block + 1);
@@ -80,30 +220,42 @@ template <Kind K>
     const Lanes lambda = K == Kind::plane_stress ? young * nu / ((1 + nu) * (1 - nu)) : young * nu / ((1 + nu) * (1 - 2 * nu));
     const double* x = b.coordinates + block * dofs * LACON_LANES;
     const double* u = b.displacement + block * dofs * LACON_LANES;
+    const double* from = b.previous_displacement ? b.previous_displacement + block * dofs * LACON_LANES : nullptr;
     double* matrix = b.matrix ? b.matrix + block * entries * LACON_LANES : nullptr;
     double* force = b.force ? b.force + block * dofs * LACON_LANES : nullptr;
     if (matrix) clear_lanes(matrix, 0, entries);
     if (force) clear_lanes(force, 0, dofs);
-    for (int i = 0; i < dofs; ++i) side[i] = lanes(x, i) - lanes(x, i % D);
+    const double* place = x;  // where strains and integrals are taken
+    if constexpr (updated) {
+      for (int i = 0; i < dofs; ++i) current[i] = lanes(x, i) + lanes(u, i);
+      place = reinterpret_cast<const double*>(current);
+    }
+    for (int i = 0; i < dofs; ++i) {
+      moved[i] = !green && from ? lanes(u, i) - lanes(from, i) : lanes(u, i);
+      side[i] = lanes(place, i) - lanes(place, i % D);
+    }
     if constexpr (axis)
       for (int l = 0; l < LACON_LANES; ++l) {
         double size = 0;
         for (int i = 0; i < dofs; ++i) size = std::fmax(size, std::abs(side[i][l]));
-        for (int a = 0; a < nodes; ++a) errors.set(l, lanes(x, 2 * a)[l] < -over_axis * size, LACON_BAD_RADIUS);
+        for (int a = 0; a < nodes; ++a) errors.set(l, lanes(place, 2 * a)[l] < -over_axis * size, LACON_BAD_RADIUS);
       }
     Lanes sum = {};
     for (int p = 0; p < b.n_points; ++p) {
       const double* d = b.gradient + p * dofs;
+      const std::int64_t here = block * b.n_points + p;
       const Map<D> map(d, side, nodes, errors);
-      Lanes dv = b.weight[p] * map.determinant;
+      point.dv = b.weight[p] * map.determinant;
       [[maybe_unused]] Lanes per_radius = {};
       if constexpr (axis) {
         Lanes r = {};
-        for (int a = 0; a < nodes; ++a) r += b.shape[p * nodes + a] * lanes(x, 2 * a);
+        for (int a = 0; a < nodes; ++a) r += b.shape[p * nodes + a] * lanes(place, 2 * a);
         for (int l = 0; l < LACON_LANES; ++l) errors.set(l, !(r[l] > 0), LACON_BAD_RADIUS);
         per_radius = 1 / r;
-        dv *= r;
+        point.dv *= r;
       }
+      auto& g = point.g;
+      auto& hoop = point.hoop;
       Lanes e[D][D] = {}, hoop_strain = {};  // e: gradient of the displacement
       for (int a = 0; a < nodes; ++a) {
         for (int i = 0; i < D; ++i) {
@@ -111,80 +263,141 @@ template <Kind K>
           for (int r = 1; r < D; ++r) g[a][i] += d[a * D + r] * map.inverse[r][i];
         }
         for (int i = 0; i < D; ++i)
-          for (int k = 0; k < D; ++k) e[i][k] += lanes(u, a * D + i) * g[a][k];
+          for (int k = 0; k < D; ++k) e[i][k] += moved[a * D + i] * g[a][k];
         if constexpr (axis) {
           hoop[a] = b.shape[p * nodes + a] * per_radius;
-          hoop_strain += hoop[a] * lanes(u, 2 * a);
+          hoop_strain += hoop[a] * moved[2 * a];
         }
       }
-      Lanes trace = e[0][0] + e[1][1] + hoop_strain;
-      if constexpr (D == 3) trace += e[2][2];
-      Lanes s[D][D];
       for (int i = 0; i < D; ++i)
-        for (int k = 0; k < D; ++k) s[i][k] = mu * (e[i][k] + e[k][i]);
-      for (int i = 0; i < D; ++i) s[i][i] += lambda * trace;
-      Lanes out[n_stress] = {s[0][0], s[1][1]};
-      out[3] = s[0][1];
-      if constexpr (D == 3) {
-        out[2] = s[2][2];
-        out[4] = s[0][2];
-        out[5] = s[1][2];
-      } else if constexpr (K != Kind::plane_stress) {
-        out[2] = lambda * trace + 2 * mu * hoop_strain;
+        for (int k = 0; k < D; ++k) point.slope[i][k] = e[i][k];
+      point.hoop_slope = hoop_strain;
+
+      Lanes twice[n_stress] = {};  // the strain
+      for (int i = 0; i < D; ++i)
+        for (int k = i; k < D; ++k) {
+          Lanes& value = twice[at(i, k)];
+          value = e[i][k] + e[k][i];
+          if constexpr (green)
+            for (int m = 0; m < D; ++m) value += e[m][i] * e[m][k];
+        }
+      if constexpr (axis) twice[2] = green ? hoop_strain * (2 + hoop_strain) : 2 * hoop_strain;
+      const Lanes pressure = lambda * (twice[0] + twice[1] + twice[2]) / 2;
+      auto& s = point.stress;
+      for (int i = 0; i < n_stress; ++i) s[i] = i < 3 ? pressure + mu * twice[i] : mu * twice[i];
+      if (!green && b.previous_stress)
+        for (int i = 0; i < n_stress; ++i) s[i] += lanes(b.previous_stress, here * n_stress + i);
+      if constexpr (K == Kind::plane_stress) s[2] = Lanes{};
+      point.tangent.lambda = lambda;
+      point.tangent.mu = mu;
+      if constexpr (plastic) {
+        Lanes strain = b.previous_variable ? lanes(b.previous_variable, here * n_variables) : Lanes{}, flows;
+        lacon::solid::return_to_criterion<K>(s, point.tangent, strain, flows, {b.curve, b.n_curve}, errors);
+        if (b.variable) {
+          lanes(b.variable, here * n_variables) = strain;
+          lanes(b.variable, here * n_variables + 1) = flows;
+        }
+        sum += strain;
+        if (b.elastic_matrix) {
+          point.tangent.lambda = lambda;
+          point.tangent.mu = mu;
+          point.tangent.rank = Lanes{};
+        }
       }
-      sum += dv;
-      for (const Lanes& component : out) sum += component;
-      if (b.stress)
-        for (int i = 0; i < n_stress; ++i) lanes(b.stress, (block * b.n_points + p) * n_stress + i) = out[i];
+
+      sum += point.dv;
+      for (const Lanes& component : s) sum += component;
+      Lanes nominal[D][D];  // what forces are made of: with Green-Lagrange the first Piola-Kirchhoff stress F S
+      for (int i = 0; i < D; ++i)
+        for (int k = 0; k < D; ++k) {
+          nominal[i][k] = s[at(i, k)];
+          if constexpr (green)
+            for (int m = 0; m < D; ++m) nominal[i][k] += e[i][m] * s[at(m, k)];
+        }
+      const Lanes nominal_hoop = green ? (1 + hoop_strain) * s[2] : s[2];
+      if constexpr (green) {
+        Lanes f[D][D], volume;
+        for (int i = 0; i < D; ++i)
+          for (int k = 0; k < D; ++k) f[i][k] = e[i][k] + (i == k ? 1.0 : 0.0);
+        if constexpr (D == 2)
+          volume = (f[0][0] * f[1][1] - f[0][1] * f[1][0]) * (1 + hoop_strain);
+        else
+          volume = f[0][0] * (f[1][1] * f[2][2] - f[1][2] * f[2][1]) - f[0][1] * (f[1][0] * f[2][2] - f[1][2] * f[2][0]) +
+                   f[0][2] * (f[1][0] * f[2][1] - f[1][1] * f[2][0]);
+        for (int l = 0; l < LACON_LANES; ++l) {
+          bool right_way = volume[l] > 0 && (!axis || hoop_strain[l] > -1);
+          if constexpr (K == Kind::plane_stress) {
+            // the strain across, which keeps SIZZ zero
+            const double across = 1 - nu[l] / (1 - nu[l]) * (twice[0][l] + twice[1][l]);
+            right_way = right_way && across > 0;
+            volume[l] *= std::sqrt(across);
+          }
+          errors.set(l, !right_way, LACON_INSIDE_OUT);
+        }
+        if (b.stress) {
+          for (int i = 0; i < D; ++i)
+            for (int k = i; k < D; ++k) {
+              Lanes cauchy = nominal[i][0] * f[k][0];
+              for (int m = 1; m < D; ++m) cauchy += nominal[i][m] * f[k][m];
+              lanes(b.stress, here * n_stress + at(i, k)) = cauchy / volume;
+            }
+          if constexpr (D == 2) lanes(b.stress, here * n_stress + 2) = nominal_hoop * (1 + hoop_strain) / volume;
+        }
+      } else if (b.stress) {
+        for (int i = 0; i < n_stress; ++i) lanes(b.stress, here * n_stress + i) = s[i];
+      }
       if (force)
         for (int a = 0; a < nodes; ++a)
           for (int i = 0; i < D; ++i) {
-            Lanes f = g[a][0] * s[i][0];
-            for (int k = 1; k < D; ++k) f += g[a][k] * s[i][k];
-            if (axis && i == 0) f += hoop[a] * out[2];
-            lanes(force, a * D + i) += dv * f;
+            Lanes f = g[a][0] * nominal[i][0];
+            for (int k = 1; k < D; ++k) f += g[a][k] * nominal[i][k];
+            if (axis && i == 0) f += hoop[a] * nominal_hoop;
+            lanes(force, a * D + i) += point.dv * f;
           }
       if (!matrix) continue;
-      const Lanes dl = dv * lambda, dm = dv * mu;
-      for (int a = 0; a < nodes; ++a) {
-        Lanes la[D], ma[D];  // of the divergence, of the gradient
-        for (int i = 0; i < D; ++i) {
-          la[i] = dl * (axis && i == 0 ? g[a][0] + hoop[a] : g[a][i]);
-          ma[i] = dm * g[a][i];
-        }
-        double* row[D];  // row n starts behind n (n + 1) / 2 entries
-        for (int i = 0; i < D; ++i) row[i] = matrix + (D * a + i) * (D * a + i + 1) / 2 * LACON_LANES;
-        for (int c = 0; c <= a; ++c) {
-          Lanes both = ma[0] * g[c][0];
-          for (int k = 1; k < D; ++k) both += ma[k] * g[c][k];
-          for (int i = 0; i < D; ++i)
-            for (int k = 0; k < D; ++k) {
-              if (c == a && k > i) continue;
-              Lanes entry = la[i] * (axis && k == 0 ? g[c][0] + hoop[c] : g[c][k]) + ma[k] * g[c][i];
-              if (i == k) entry += both;
-              if (axis && i == 0 && k == 0) entry += 2 * dm * hoop[a] * hoop[c];
-              lanes(row[i], D * c + k) += entry;
-            }
-        }
-      }
+      if constexpr (updated)
+        add_updated_matrix<K, L>(point, nodes, matrix);
+      else
+        add_matrix<K, M, L>(point, nodes, matrix);
     }
     errors.check_finite(sum);
     errors.store(b.error, block);
   }
 }
 
-LACON_KERNEL void plane_strain_small_elastic(const lacon_solid_batch* batch) { small_elastic<Kind::plane_strain>(*batch); }
-LACON_KERNEL void plane_stress_small_elastic(const lacon_solid_batch* batch) { small_elastic<Kind::plane_stress>(*batch); }
-LACON_KERNEL void axis_small_elastic(const lacon_solid_batch* batch) { small_elastic<Kind::axis>(*batch); }
-LACON_KERNEL void three_d_small_elastic(const lacon_solid_batch* batch) { small_elastic<Kind::solid>(*batch); }
-
 const char* const isotropic[] = {"ELAS/E", "ELAS/NU", nullptr};
-const lacon_kernel kernels[] = {
-    {"plane_strain_small_elastic", LACON_SOLID, plane_strain_small_elastic, nullptr, nullptr, isotropic},
-    {"plane_stress_small_elastic", LACON_SOLID, plane_stress_small_elastic, nullptr, nullptr, isotropic},
-    {"axis_small_elastic", LACON_SOLID, axis_small_elastic, nullptr, nullptr, isotropic},
-    {"three_d_small_elastic", LACON_SOLID, three_d_small_elastic, nullptr, nullptr, isotropic},
-};
+
+constexpr lacon_kernel row(const char* name, void (*function)(const lacon_solid_batch*), Measure measure, Law law) {
+  const bool plastic = law == Law::von_mises;
+  return {.name = name,
+          .kind = LACON_SOLID,
+          .solid = function,
+          .load = nullptr,
+          .contact = nullptr,
+          .parameters = isotropic,
+          .n_variables = plastic ? 2 : 0,
+          .nonlinear = plastic || measure != Measure::small,
+          .has_memory = plastic || measure == Measure::updated,
+          .takes_curve = plastic};
+}
+
+// a function for each combination: a template cannot be compiled for several instruction sets
+#define LACON_FUNCTION(kind, measure, law)                                     \
+  LACON_KERNEL void kind##_##measure##_##law(const lacon_solid_batch* batch) { \
+    evaluate<Kind::kind, Measure::measure, Law::law>(*batch);                  \
+  }
+#define LACON_ROW(kind, measure, law) row(#kind "_" #measure "_" #law, kind##_##measure##_##law, Measure::measure, Law::law),
+#define LACON_OF_KIND(apply, kind)                                                                                    \
+  apply(kind, small, elastic) apply(kind, updated, elastic) apply(kind, green, elastic) apply(kind, small, von_mises) \
+      apply(kind, updated, von_mises)
+#define LACON_ALL(apply)             \
+  LACON_OF_KIND(apply, plane_strain) \
+  LACON_OF_KIND(apply, plane_stress) \
+  LACON_OF_KIND(apply, axis)         \
+  LACON_OF_KIND(apply, three_d)
+
+LACON_ALL(LACON_FUNCTION)
+const lacon_kernel kernels[] = {LACON_ALL(LACON_ROW)};
 const lacon_plugin_table table = {LACON_ABI,
                                   sizeof(lacon_solid_batch),
                                   sizeof(lacon_load_batch),

@@ -1,8 +1,54 @@
 #include "lacon/operators/evolution/archive.hpp"
 
 #include <algorithm>
+#include <functional>
+#include <span>
 
 namespace lacon {
+namespace {
+
+/// Fill a field at integration points from the values of the solid sets, (cells, points, components of the set). Cells are in
+/// ascending order, whatever set they belong to; a set without components is left out.
+void fill_points(Field& field, const StaticProblem& problem,
+                 const std::function<std::vector<std::string>(const ElementSet&)>& components_of,
+                 const std::function<std::span<const double>(std::size_t)>& values_of) {
+  struct Place {
+    std::int32_t cell;
+    std::size_t set, index;
+  };
+  std::vector<Place> places;
+  std::vector<std::vector<int>> components;  // of each set, in the field
+  for (std::size_t s = 0; s < problem.solids.size(); ++s) {
+    const std::vector<std::string> names = components_of(problem.solids[s]);
+    components.emplace_back();
+    for (const std::string& name : names) {
+      if (field.component(name) < 0) field.components.push_back(name);
+      components.back().push_back(field.component(name));
+    }
+    if (names.empty()) continue;
+    for (std::size_t i = 0; i < problem.solids[s].cells.size(); ++i) places.push_back({problem.solids[s].cells[i], s, i});
+  }
+  std::sort(places.begin(), places.end(), [](const Place& a, const Place& b) { return a.cell < b.cell; });
+  for (const Place& place : places) {
+    const std::vector<int>& own = components[place.set];
+    const std::size_t n_points = problem.solids[place.set].tabulation.n_points;
+    const std::span<const double> values = values_of(place.set).subspan(place.index * n_points * own.size());
+    field.support.push_back(place.cell);
+    for (std::size_t p = 0; p < n_points; ++p) {
+      const std::size_t first = field.values.size();
+      field.values.resize(first + field.n_components(), 0.0);
+      field.present.resize(first + field.n_components(), 0);
+      for (std::size_t k = 0; k < own.size(); ++k) {
+        field.values[first + own[k]] = values[p * own.size() + k];
+        field.present[first + own[k]] = 1;
+      }
+    }
+    field.offset.push_back(field.offset.back() + static_cast<std::int64_t>(n_points));
+  }
+  if (std::all_of(field.present.begin(), field.present.end(), [](std::uint8_t p) { return p != 0; })) field.present.clear();
+}
+
+}  // namespace
 
 Field displacement_field(const StaticProblem& problem, const StaticState& state) {
   Field field{.name = "DEPL", .quantity = "DEPL_R", .location = Location::nodes, .components = problem.components};
@@ -27,37 +73,23 @@ Field displacement_field(const StaticProblem& problem, const StaticState& state)
   return field;
 }
 
-Field stress_field(const StaticProblem& problem, const std::vector<std::vector<double>>& stresses) {
+Field stress_field(const StaticProblem& problem, const StaticState& state) {
   Field field{.name = "SIEF_ELGA", .quantity = "SIEF_R", .location = Location::gauss_points, .offset = {0}};
-  for (const ElementSet& set : problem.solids)
-    for (const std::string_view name : set.row->stress)
-      if (field.component(name) < 0) field.components.emplace_back(name);
-  // cells in ascending order, whatever set they belong to
-  struct Place {
-    std::int32_t cell;
-    std::size_t set, index;
+  fill_points(
+      field, problem,
+      [](const ElementSet& set) { return std::vector<std::string>(set.row->stress.begin(), set.row->stress.end()); },
+      [&](std::size_t s) { return std::span<const double>(state.points[s].stress); });
+  return field;
+}
+
+Field variable_field(const StaticProblem& problem, const StaticState& state) {
+  Field field{.name = "VARI_ELGA", .quantity = "VARI_R", .location = Location::gauss_points, .offset = {0}};
+  const auto names = [](const ElementSet& set) {
+    std::vector<std::string> variables;
+    for (int v = 1; v <= set.kernel->n_variables; ++v) variables.push_back("V" + std::to_string(v));
+    return variables;
   };
-  std::vector<Place> places;
-  for (std::size_t s = 0; s < problem.solids.size(); ++s)
-    for (std::size_t i = 0; i < problem.solids[s].cells.size(); ++i) places.push_back({problem.solids[s].cells[i], s, i});
-  std::sort(places.begin(), places.end(), [](const Place& a, const Place& b) { return a.cell < b.cell; });
-  for (const Place& place : places) {
-    const ElementSet& set = problem.solids[place.set];
-    const std::size_t n_points = set.tabulation.n_points, n_stress = set.row->stress.size();
-    field.support.push_back(place.cell);
-    for (std::size_t p = 0; p < n_points; ++p) {
-      const std::size_t first = field.values.size();
-      field.values.resize(first + field.n_components(), 0.0);
-      field.present.resize(first + field.n_components(), 0);
-      for (std::size_t k = 0; k < n_stress; ++k) {
-        const int c = field.component(set.row->stress[k]);
-        field.values[first + c] = stresses[place.set][(place.index * n_points + p) * n_stress + k];
-        field.present[first + c] = 1;
-      }
-    }
-    field.offset.push_back(field.offset.back() + static_cast<std::int64_t>(n_points));
-  }
-  if (std::all_of(field.present.begin(), field.present.end(), [](std::uint8_t p) { return p != 0; })) field.present.clear();
+  fill_points(field, problem, names, [&](std::size_t s) { return std::span<const double>(state.points[s].variable); });
   return field;
 }
 

@@ -1,5 +1,5 @@
 #pragma once
-// What a computation leaves: the fields DEPL, SIEF_ELGA and CONT_ELEM of an instant (METHOD.md 4).
+// What a computation leaves: the fields DEPL, SIEF_ELGA, VARI_ELGA and CONT_ELEM of an instant (METHOD.md 4).
 #include "lacon/operators/evolution/newton.hpp"
 #include "lacon/structures/base.hpp"
 
@@ -8,7 +8,9 @@ namespace lacon {
 /// Displacements, with LAGS_C on the carriers of the patches, equal on those of one patch.
 Field displacement_field(const StaticProblem& problem, const StaticState& state);
 /// Stresses at the integration points of the solid elements.
-Field stress_field(const StaticProblem& problem, const std::vector<std::vector<double>>& stresses);
+Field stress_field(const StaticProblem& problem, const StaticState& state);
+/// Internal variables V1, V2, ... at the integration points of the cells whose law has them; empty where none has.
+Field variable_field(const StaticProblem& problem, const StaticState& state);
 /// CONT, PRES, JEU, COEFSURF, PRESCOOR on every slave cell, equal in the cells of one patch.
 Field contact_field(const StaticProblem& problem, const StaticState& state, const ContactState& contact);
 

@@ -55,22 +55,23 @@ Newton::Newton(const StaticProblem& problem, const NewtonCriteria& criteria, con
   linear_ = !problem.has_following_loads();
   for (const ElementSet& set : problem.solids) {
     linear_ = linear_ && set.linear;
-    stresses_.emplace_back(set.cells.size() * set.tabulation.n_points * set.row->stress.size());
+    points_.push_back(
+        {std::vector<double>(set.cells.size() * set.n_stress()), std::vector<double>(set.cells.size() * set.n_variables())});
   }
 }
 
 StaticState Newton::initial_state() {
-  StaticState state{std::vector<double>(problem_.n_dofs(), 0.0), {}, std::vector<double>(relations_.size(), 0.0)};
+  StaticState state{std::vector<double>(problem_.n_dofs(), 0.0), {}, std::vector<double>(relations_.size(), 0.0), points_};
   if (contact_) {
     const Phase phase("pairing");
     contact_->update_geometry(state.displacement);
     state.patches = contact_->initial();
   }
-  assemble(state);
+  assemble(state, state, criteria_.matrix);
   return state;
 }
 
-void Newton::assemble(const StaticState& state) {
+void Newton::assemble(const StaticState& state, const StaticState& previous, SolidMatrix wanted) {
   const bool keep_stiffness = linear_ && has_stiffness_;
   std::vector<Coupling> couplings = relations_.couplings();
   if (contact_) {
@@ -83,17 +84,29 @@ void Newton::assemble(const StaticState& state) {
     const Phase phase("elements");
     std::vector<std::int64_t> unknowns;
     std::vector<double> sums(problem_.n_dofs(), 0.0);
+    inside_out_.reset();
     for (std::size_t s = 0; s < problem_.solids.size(); ++s) {
-      auto stress = stresses_[s].begin();
-      evaluate_solids(problem_.solids[s], problem_.mesh, dimension, state.displacement, !keep_stiffness,
-                      [&](const SolidValues& element) {
-                        unknowns.clear();
-                        for (const std::int32_t node : problem_.mesh.cells[element.cell])
-                          for (int d = 0; d < dimension; ++d) unknowns.push_back(std::int64_t{node} * dimension + d);
-                        system_.add(unknowns, element.matrix, element.force);
-                        for (std::size_t i = 0; i < unknowns.size(); ++i) sums[unknowns[i]] += std::abs(element.force[i]);
-                        stress = std::copy(element.stress.begin(), element.stress.end(), stress);
-                      });
+      const ElementSet& set = problem_.solids[s];
+      SolidInput input{.displacement = state.displacement};
+      if (set.kernel->has_memory) {
+        input.previous_displacement = previous.displacement;
+        input.previous_stress = previous.points[s].stress;
+        input.previous_variable = previous.points[s].variable;
+      }
+      auto stress = points_[s].stress.begin(), variable = points_[s].variable.begin();
+      const auto inverted = evaluate_solids(set, problem_.mesh, dimension, input, keep_stiffness ? SolidMatrix::none : wanted,
+                                            [&](const SolidValues& element) {
+                                              unknowns.clear();
+                                              for (const std::int32_t node : problem_.mesh.cells[element.cell])
+                                                for (int d = 0; d < dimension; ++d)
+                                                  unknowns.push_back(std::int64_t{node} * dimension + d);
+                                              system_.add(unknowns, element.matrix, element.force);
+                                              for (std::size_t i = 0; i < unknowns.size(); ++i)
+                                                sums[unknowns[i]] += std::abs(element.force[i]);
+                                              stress = std::copy(element.stress.begin(), element.stress.end(), stress);
+                                              variable = std::copy(element.variable.begin(), element.variable.end(), variable);
+                                            });
+      if (!inside_out_) inside_out_ = inverted;
     }
     force_scale_ = sums.empty() ? 0 : *std::max_element(sums.begin(), sums.end());
   }
@@ -207,6 +220,8 @@ int Newton::solve(double instant, StaticState& state, const std::function<void(c
   for (std::size_t dof = 0; dof < step.size(); ++dof)
     if (problem_.imposed[dof]) step[dof] = values[dof] - state.displacement[dof];
 
+  const StaticState previous = state;
+  if (criteria_.prediction != criteria_.matrix) assemble(state, previous, criteria_.prediction);
   std::string unmet;
   for (int iteration = 0; iteration <= criteria_.iterations; ++iteration) {
     std::int64_t changed = 0;  // the first patch whose status has changed
@@ -232,7 +247,7 @@ int Newton::solve(double instant, StaticState& state, const std::function<void(c
       line.status_changes = contact_->update_statuses(state.patches);
       changed = std::mismatch(before.begin(), before.end(), state.patches.status.begin()).first - before.begin();
     }
-    assemble(state);
+    assemble(state, previous, criteria_.matrix);
     const double moved = largest_vector(increment, dimension), whole = largest_vector(state.displacement, dimension);
     // likewise displacements that vanish against the patches
     line.geometry =
@@ -242,6 +257,8 @@ int Newton::solve(double instant, StaticState& state, const std::function<void(c
     report(line);
     if (line.converged()) {
       if (contact_) contact_->check_radii();
+      if (inside_out_) fail("EVOLUTION_9", {{"instant", fmt::format("{:.9g}", instant)}, {"cell", cell_name(*inside_out_)}});
+      state.points = points_;
       return iteration;
     }
     unmet = unmet_criteria(line, changed);
@@ -256,7 +273,7 @@ void Newton::restart(const StaticState& state) {
     const Phase phase("pairing");
     contact_->update_geometry(state.displacement);
   }
-  assemble(state);
+  assemble(state, state, criteria_.matrix);
 }
 
 }  // namespace lacon

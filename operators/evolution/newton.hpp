@@ -17,8 +17,10 @@ struct NewtonCriteria {
   std::optional<double> resi_glob_rela;
   std::optional<double> resi_glob_maxi;
   double resi_geom = 1e-6;
-  double constraint = 1e-8;  ///< largest |g_T| / h over active patches
-  int iterations = 10;       ///< ITER_GLOB_MAXI
+  double constraint = 1e-8;                       ///< largest |g_T| / h over active patches
+  int iterations = 10;                            ///< ITER_GLOB_MAXI
+  SolidMatrix matrix = SolidMatrix::tangent;      ///< NEWTON/MATRICE
+  SolidMatrix prediction = SolidMatrix::tangent;  ///< NEWTON/PREDICTION: of the first iteration of an instant
 };
 
 /// One line of the Newton table.
@@ -39,11 +41,18 @@ struct IterationReport {
   bool converged() const { return rela_met && maxi_met && geometry_met && constraint_met && status_changes == 0; }
 };
 
-/// All unknowns at an instant.
+/// What the integration points of a solid set hold.
+struct PointValues {
+  std::vector<double> stress;    ///< (cells, points, components)
+  std::vector<double> variable;  ///< (cells, points, internal variables)
+};
+
+/// All unknowns at an instant, and what laws with a memory remember.
 struct StaticState {
   std::vector<double> displacement;  ///< (n_nodes, dimension)
   Patchwise patches;
-  std::vector<double> relations;  ///< multipliers of the loads' relations
+  std::vector<double> relations;    ///< multipliers of the loads' relations
+  std::vector<PointValues> points;  ///< of each solid set
 };
 
 class Newton {
@@ -53,20 +62,19 @@ class Newton {
   /// The state before any load: displacements zero, statuses of CONTACT_INIT.
   StaticState initial_state();
 
-  /// Solve the instant, starting from `state`. Calls `report` for each iteration.
+  /// Solve the instant, starting from `state`, which is in equilibrium. Calls `report` for each iteration.
   /// @return number of iterations. Throws EVOLUTION_4 (not converged), SOLVER_3 (singular), ELEMENT_1 ...: severity S. `state`
   /// is then between two instants.
   int solve(double instant, StaticState& state, const std::function<void(const IterationReport&)>& report);
 
-  /// Stresses at integration points of each solid set at the last evaluation, (cells, points, components).
-  const std::vector<std::vector<double>>& stresses() const { return stresses_; }
   /// The contact at the last evaluation; nullptr without contact.
   const ContactState* contact() const { return contact_ ? &*contact_ : nullptr; }
   /// Go back to a state: contact, stresses and system are those of `state` again, as solve() needs them.
   void restart(const StaticState& state);
 
  private:
-  void assemble(const StaticState& state);
+  /// @param previous the last state in equilibrium
+  void assemble(const StaticState& state, const StaticState& previous, SolidMatrix wanted);
   /// Solve the present system in place.
   SolutionReport solve_system(std::vector<double>& right_side);
   /// What keeps the last iteration from being the solution, in words.
@@ -82,12 +90,13 @@ class Newton {
   bool linear_ = true;          ///< the stiffness never changes
   bool has_stiffness_ = false;  ///< and is in the matrix
   std::optional<ContactState> contact_;
-  std::vector<std::vector<double>> stresses_;
-  std::optional<double> instant_;  ///< that of the loads
-  std::vector<double> given_;      ///< at that instant: dead forces, and behind them what the multipliers' rows are to be
-  std::vector<double> external_;   ///< the same with following forces at the last evaluation
-  double force_scale_ = 0;         ///< largest sum of |element forces| at a node
-  double largest_force_ = 0;       ///< largest reference of a residual so far
+  std::vector<PointValues> points_;         ///< of each solid set at the last evaluation
+  std::optional<std::int32_t> inside_out_;  ///< a cell that the last evaluation found turned inside out
+  std::optional<double> instant_;           ///< that of the loads
+  std::vector<double> given_;     ///< at that instant: dead forces, and behind them what the multipliers' rows are to be
+  std::vector<double> external_;  ///< the same with following forces at the last evaluation
+  double force_scale_ = 0;        ///< largest sum of |element forces| at a node
+  double largest_force_ = 0;      ///< largest reference of a residual so far
 };
 
 }  // namespace lacon

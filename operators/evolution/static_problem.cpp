@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 
 #include "lacon/catalog/messages.hpp"
 
@@ -26,17 +27,37 @@ void find_dofs(StaticProblem& problem) {
   }
 }
 
+/// COMPORTEMENT: a later occurrence wins over an earlier one; cells that none names are elastic with small strains.
+Behaviours read_behaviours(const Mesh& mesh, const Keywords& keywords) {
+  Behaviours behaviours{{"ELAS/PETIT"}, std::vector<std::int32_t>(mesh.n_cells(), 0)};
+  for (const Keywords& factor : keywords.factors("COMPORTEMENT")) {
+    const std::string option = factor.text("RELATION") + "/" + factor.text("DEFORMATION");
+    const auto at = std::find(behaviours.options.begin(), behaviours.options.end(), option);
+    const auto index = static_cast<std::int32_t>(at - behaviours.options.begin());
+    if (at == behaviours.options.end()) behaviours.options.push_back(option);
+    if (!factor.has("GROUP_MA")) std::fill(behaviours.of_cell.begin(), behaviours.of_cell.end(), index);
+    for (const std::string& group : factor.texts("GROUP_MA"))
+      for (const std::int32_t cell : cells_of_group(mesh, group, factor.path("GROUP_MA"))) behaviours.of_cell[cell] = index;
+  }
+  return behaviours;
+}
+
 void read_materials(StaticProblem& problem, const Base& base, const std::string& field) {
   problem.material_field = std::make_unique<MaterialField>(base.material_field(field));
   if (problem.material_field->mesh != problem.model.mesh)
     fail("EVOLUTION_1", {{"first", "CHAM_MATER"}, {"second", "MODELE"}, {"what", "meshes"}});
   std::vector<Material> materials;
   std::vector<std::string> labels;
+  std::map<std::string, Function> functions;
   for (const std::string& id : problem.material_field->materials) {
     materials.push_back(base.material(id));
     labels.push_back(base.label(id));
+    for (const auto& [law, parameters] : materials.back().laws)
+      for (const auto& [name, value] : parameters)
+        if (const auto* function = std::get_if<std::string>(&value)) functions.emplace(*function, base.function(*function));
   }
-  problem.materials = std::make_unique<MaterialTable>(*problem.material_field, std::move(materials), std::move(labels));
+  problem.materials =
+      std::make_unique<MaterialTable>(*problem.material_field, std::move(materials), std::move(labels), std::move(functions));
 }
 
 /// A model with its degrees of freedom, before materials and loads.
@@ -133,7 +154,8 @@ StaticProblem read_problem(const Order& order, const Base& base) {
   StaticProblem problem = read_model(order, base, model_id);
 
   read_materials(problem, base, keywords.concept_id("CHAM_MATER"));
-  problem.solids = solid_sets(problem.mesh, problem.model, *problem.registry, *problem.materials);
+  problem.solids =
+      solid_sets(problem.mesh, problem.model, *problem.registry, *problem.materials, read_behaviours(problem.mesh, keywords));
 
   problem.imposed.assign(problem.n_dofs(), 0);
   std::vector<std::string> seen;

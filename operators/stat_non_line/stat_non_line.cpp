@@ -30,10 +30,14 @@ Keywords single(const Keywords& keywords, std::string_view name) {
   return occurrences.front();
 }
 
-NewtonCriteria criteria_of(const Keywords& convergence) {
+SolidMatrix matrix_of(const std::string& name) { return name == "ELASTIQUE" ? SolidMatrix::elastic : SolidMatrix::tangent; }
+
+NewtonCriteria criteria_of(const Keywords& convergence, const Keywords& newton) {
   return {.resi_glob_rela = optional(convergence, "RESI_GLOB_RELA", &Keywords::real),
           .resi_glob_maxi = optional(convergence, "RESI_GLOB_MAXI", &Keywords::real),
-          .iterations = static_cast<int>(convergence.integer("ITER_GLOB_MAXI"))};
+          .iterations = static_cast<int>(convergence.integer("ITER_GLOB_MAXI")),
+          .matrix = matrix_of(newton.text("MATRICE")),
+          .prediction = matrix_of(newton.text("PREDICTION"))};
 }
 
 TimeSteps steps_of(const Keywords& increment, const Base& base) {
@@ -63,7 +67,9 @@ class Archiving {
 FieldMakers fields_at(const StaticProblem& problem, const StaticState& state, const Newton& newton) {
   FieldMakers fields;
   fields["DEPL"] = [&] { return displacement_field(problem, state); };
-  fields["SIEF_ELGA"] = [&] { return stress_field(problem, newton.stresses()); };
+  fields["SIEF_ELGA"] = [&] { return stress_field(problem, state); };
+  if (Field variables = variable_field(problem, state); !variables.components.empty())
+    fields["VARI_ELGA"] = [&] { return variable_field(problem, state); };
   if (const ContactState* contact = newton.contact())
     fields["CONT_ELEM"] = [&, contact] { return contact_field(problem, state, *contact); };
   return fields;
@@ -150,7 +156,7 @@ void stat_non_line(const Order& order, const Base& base) {
   }();
   const TimeSteps steps = steps_of(single(keywords, "INCREMENT"), base);
   const Archiving archiving(single(keywords, "ARCHIVAGE"), base);
-  Newton newton(problem, criteria_of(single(keywords, "CONVERGENCE")),
+  Newton newton(problem, criteria_of(single(keywords, "CONVERGENCE"), single(keywords, "NEWTON")),
                 {.direct = {.memory_margin = static_cast<int>(solver.integer("PCENT_PIVOT")),
                             .residual_tolerance = solver.real("RESI_RELA")}});
   NewtonTable table(std::cout, problem, single(keywords, "AFFICHAGE").yes("INFO_RESIDU"), keywords.integer("INFO") == 2);

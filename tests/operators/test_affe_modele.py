@@ -55,7 +55,7 @@ class AffeModele(OperatorTest):
         (folder / "plugin.toml").write_text(
             '[[element]]\nmodelisation = "RIGIDE"\nphenomenon = "MECANIQUE"\nrole = "solid"\npoints = { QUAD4 = 4 }\n'
             'dofs = ["DX", "DY"]\nstress = ["SIXX", "SIYY", "SIZZ", "SIXY"]\n'
-            'kernels = { FULL_MECA = "solid/plane_strain_small_elastic" }\n', encoding="utf-8")
+            'kernels = { "ELAS/PETIT" = "solid/plane_strain_small_elastic" }\n', encoding="utf-8")
         self.model(affe(TOUT="OUI"), affe(GROUP_MA=["LEFT"], MODELISATION="RIGIDE"), plugins=[folder.parent])
         self.assertEqual(self.elements()[:2], ["RIGIDE/QUAD4", "D_PLAN/TRIA3"])
         self.path("model_2").unlink()

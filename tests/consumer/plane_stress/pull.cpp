@@ -11,7 +11,7 @@ int main(int argc, char** argv) try {
   lacon::Registry registry(folders);
   const auto* element = registry.find_element("PLANE_STRESS/QUAD4");
   if (!element) return 1;
-  const lacon_kernel& kernel = registry.kernel(*element, "FULL_MECA", LACON_SOLID);
+  const lacon_kernel& kernel = registry.kernel(*element, "ELAS/PETIT", LACON_SOLID);
   const auto table = lacon::tabulate(element->cell, lacon::integration_rule(lacon::Family::QUAD, element->points));
 
   // the unit square, u = (x / 100, 0), in all lanes; E = 300, nu = 0.5

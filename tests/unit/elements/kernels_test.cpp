@@ -56,7 +56,7 @@ struct SolidResult {
 SolidResult run_solid(CellType type, const std::vector<Numbers>& coordinates, const std::vector<Numbers>& displacements,
                       const std::vector<Numbers>& parameters, bool all_outputs = true) {
   const auto& element = *registry().find_element("D_PLAN", type);
-  const auto& kernel = registry().kernel(element, "FULL_MECA", LACON_SOLID);
+  const auto& kernel = registry().kernel(element, "ELAS/PETIT", LACON_SOLID);
   const auto table = lacon::tabulate(type, lacon::integration_rule(lacon::catalog::cell(type).family, element.points));
   const Numbers x = in_lanes(coordinates), u = in_lanes(displacements), p = in_lanes(parameters);
   const std::size_t n = coordinates.size(), lanes = (n + LACON_LANES - 1) / LACON_LANES * LACON_LANES,
@@ -329,7 +329,7 @@ INSTANTIATE_TEST_SUITE_P(All, PlaneStrain,
                          [](const auto& cell) { return std::string(lacon::catalog::cell(cell.param).name); });
 
 TEST(SolidKernel, RefusesElementsOfAKindThatItDoesNotServe) {
-  const auto& kernel = registry().kernel(*registry().find_element("D_PLAN/TRIA3"), "FULL_MECA", LACON_SOLID);
+  const auto& kernel = registry().kernel(*registry().find_element("D_PLAN/TRIA3"), "ELAS/PETIT", LACON_SOLID);
   for (const auto& [nodes, dimension, stress, parameters] :
        {std::array{27, 3, 6, 2}, {28, 2, 4, 2}, {3, 2, 6, 2}, {3, 2, 4, 1}}) {
     std::vector<std::int32_t> error(2 * LACON_LANES, 0);

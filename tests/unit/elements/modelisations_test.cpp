@@ -5,8 +5,7 @@
 #include <random>
 #include <tuple>
 
-#include "lacon/elements/reference.hpp"
-#include "lacon/elements/registry.hpp"
+#include "solids.hpp"
 
 namespace {
 
@@ -16,21 +15,10 @@ using Numbers = std::vector<double>;
 constexpr double garbage = 7e7;  // what outputs hold before a kernel runs
 constexpr double young = 2.1e5, poisson = 0.3;
 
-lacon::Registry& registry() {
-  static lacon::Registry all;
-  return all;
-}
-
-std::size_t z(int i) { return static_cast<std::size_t>(i); }
-
 struct Result {
   Numbers matrix, force, stress;
   int error = -1;
 };
-
-lacon::Tabulation table_of(const lacon::catalog::ElementRow& row) {
-  return lacon::tabulate(row.cell, lacon::integration_rule(lacon::catalog::cell(row.cell).family, row.points));
-}
 
 /// One element, in every lane. @param x, u (n_nodes, dimension)
 Result run_solid(const lacon::catalog::ElementRow& row, const Numbers& x, const Numbers& u) {
@@ -62,7 +50,7 @@ Result run_solid(const lacon::catalog::ElementRow& row, const Numbers& x, const 
                                 force.data(),
                                 stress.data(),
                                 error.data()};
-  registry().kernel(row, "FULL_MECA", LACON_SOLID).solid(&batch);
+  registry().kernel(row, "ELAS/PETIT", LACON_SOLID).solid(&batch);
   const auto first = [](const Numbers& lanes) {
     Numbers values;
     for (std::size_t i = 3; i < lanes.size(); i += LACON_LANES) values.push_back(lanes[i]);  // of lane 3
@@ -104,25 +92,7 @@ struct Modelisation : testing::TestWithParam<const lacon::catalog::ElementRow*> 
   const lacon::catalog::CellRow& cell = lacon::catalog::cell(row.cell);
   const int D = cell.dimension;
   const bool axis = row.modelisation == "AXIS", plane_stress = row.modelisation == "C_PLAN";
-  /// Straight-sided, its vertices shaken: no parallelogram, no plane face of four vertices. Away from the axis.
-  Numbers x = shaken();
-
-  Numbers shaken() const {
-    std::mt19937 random(7);
-    std::uniform_real_distribution<double> shake(-0.12, 0.12);
-    const auto& linear = lacon::catalog::cell(cell.linear);
-    Numbers vertices(linear.nodes.begin(), linear.nodes.end()), points, shape(z(linear.n_nodes));
-    for (double& coordinate : vertices) coordinate += shake(random);
-    for (int a = 0; a < cell.n_nodes; ++a) {
-      lacon::shape_functions(cell.linear, cell.nodes.subspan(z(a * D), z(D)), shape);
-      for (int i = 0; i < D; ++i) {
-        double value = i == 0 ? 2 : -1;
-        for (int v = 0; v < linear.n_nodes; ++v) value += shape[z(v)] * vertices[z(v * D + i)];
-        points.push_back(value);
-      }
-    }
-    return points;
-  }
+  Numbers x = shaken(cell);
   /// u = gradient x
   Numbers linear(const double (&gradient)[3][3]) const {
     Numbers u;
@@ -243,18 +213,7 @@ TEST_P(Modelisation, BadCellsAreCaught) {
   EXPECT_EQ(run_solid(row, touching, zero).error, LACON_FINE);
 }
 
-std::vector<const lacon::catalog::ElementRow*> solids() {
-  std::vector<const lacon::catalog::ElementRow*> rows;
-  for (const auto& row : lacon::catalog::elements())
-    if (row.role == lacon::catalog::Role::solid) rows.push_back(&row);
-  return rows;
-}
-
-INSTANTIATE_TEST_SUITE_P(All, Modelisation, testing::ValuesIn(solids()), [](const auto& row) {
-  std::string name(row.param->name);
-  name[name.find('/')] = '_';
-  return name;
-});
+INSTANTIATE_TEST_SUITE_P(All, Modelisation, testing::ValuesIn(solids()), [](const auto& row) { return test_name(*row.param); });
 
 TEST(AxisPressure, IsThatOfOneRadianAndStopsAtTheAxis) {
   // on a disc of radius 3, body below: f_z sums up to -p r^2 / 2

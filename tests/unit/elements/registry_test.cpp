@@ -62,7 +62,7 @@ std::string row(const std::string& key = "", const std::string& changed = "") {
       {"points", "points = { TRIA3 = 1, QUAD4 = 4 }"},
       {"dofs", "dofs = ['DX', 'DY']"},
       {"stress", "stress = ['SIXX', 'SIYY', 'SIZZ', 'SIXY']"},
-      {"kernels", "kernels = { FULL_MECA = 'solid/plane_strain_small_elastic' }"}};
+      {"kernels", "kernels = { 'ELAS/PETIT' = 'solid/plane_strain_small_elastic' }"}};
   std::string text = "[[element]]\n";
   for (const auto& [name, line] : lines) text += (name == key ? changed : line) + "\n";
   return text;
@@ -75,7 +75,9 @@ TEST_F(Plugins, EveryKernelOfTheCatalogueExists) {
     EXPECT_EQ(registry.find_element(element.name), &element);
     EXPECT_EQ(registry.find_element(element.modelisation, element.cell), &element);
     for (const auto& option : element.kernels) {
-      const auto kind = option.option == "FULL_MECA" ? LACON_SOLID : option.option == "RIGI_CONT" ? LACON_CONTACT : LACON_LOAD;
+      const auto kind = option.option.find('/') != std::string_view::npos ? LACON_SOLID
+                        : option.option == "RIGI_CONT"                    ? LACON_CONTACT
+                                                                          : LACON_LOAD;
       const lacon_kernel& kernel = registry.kernel(element, option.option, kind);
       EXPECT_TRUE(std::string(option.kernel).ends_with(std::string("/") + kernel.name)) << element.name;
       EXPECT_TRUE(registry.has_kernel(element, option.option));
@@ -88,7 +90,7 @@ TEST_F(Plugins, EveryKernelOfTheCatalogueExists) {
 
 TEST_F(Plugins, SolidKernelSaysWhichParametersItTakes) {
   Registry registry;
-  const auto& kernel = registry.kernel(*registry.find_element("D_PLAN/TRIA3"), "FULL_MECA", LACON_SOLID);
+  const auto& kernel = registry.kernel(*registry.find_element("D_PLAN/TRIA3"), "ELAS/PETIT", LACON_SOLID);
   ASSERT_STREQ(kernel.parameters[0], "ELAS/E");
   ASSERT_STREQ(kernel.parameters[1], "ELAS/NU");
   EXPECT_EQ(kernel.parameters[2], nullptr);
@@ -107,7 +109,7 @@ TEST_F(Plugins, AnOptionWithoutKernelOrOfAnotherKindIsRefused) {
   lacon::Message message = message_of([&] { registry.kernel(solid, "RIGI_CONT", LACON_CONTACT); });
   EXPECT_EQ(message.id, "PLUGIN_3");
   EXPECT_THAT(message.text, AllOf(HasSubstr("D_PLAN/TRIA3"), HasSubstr("RIGI_CONT")));
-  message = message_of([&] { registry.kernel(solid, "FULL_MECA", LACON_LOAD); });
+  message = message_of([&] { registry.kernel(solid, "ELAS/PETIT", LACON_LOAD); });
   EXPECT_EQ(message.id, "PLUGIN_3");
   EXPECT_THAT(message.text, AllOf(HasSubstr("libsolid.so"), HasSubstr("solid elements")));
 }
@@ -122,7 +124,7 @@ TEST_F(Plugins, RowsOfAPluginServeItsCells) {
   EXPECT_EQ(element->role, lacon::catalog::Role::solid);
   EXPECT_THAT(element->dofs, testing::ElementsAre("DX", "DY"));
   EXPECT_THAT(element->stress, testing::ElementsAre("SIXX", "SIYY", "SIZZ", "SIXY"));
-  EXPECT_STREQ(registry.kernel(*element, "FULL_MECA", LACON_SOLID).name, "plane_strain_small_elastic");
+  EXPECT_STREQ(registry.kernel(*element, "ELAS/PETIT", LACON_SOLID).name, "plane_strain_small_elastic");
   EXPECT_THAT(registry.modelisations(), testing::IsSupersetOf({"D_PLAN", "D_TEST"}));
 }
 
@@ -185,8 +187,8 @@ TEST_F(Plugins, BadRowsAreRefusedWithFileElementAndReason) {
       {row("dofs", "dofs = ['DX', 'DX']"), "PLUGIN_2", "'DX' twice"},
       {row("stress", "stress = ['SIWW']"), "PLUGIN_2", "'SIWW', which is no component of SIEF_R"},
       {row("kernels"), "PLUGIN_2", "'kernels'"},
-      {row("kernels", "kernels = { FULL_MECA = 'solid' }"), "PLUGIN_2", "'plug-in/kernel'"},
-      {row("kernels", "kernels = { FULL_MECA = 'nowhere/x' }"), "PLUGIN_2", "'nowhere', which was not found"},
+      {row("kernels", "kernels = { 'ELAS/PETIT' = 'solid' }"), "PLUGIN_2", "'plug-in/kernel'"},
+      {row("kernels", "kernels = { 'ELAS/PETIT' = 'nowhere/x' }"), "PLUGIN_2", "'nowhere', which was not found"},
       {row() + "colour = 'blue'\n", "PLUGIN_2", "the key 'colour'"},
       {row() + row(), "PLUGIN_2", "another row has this name"},
       {row("modelisation", "modelisation = 'D_PLAN'"), "PLUGIN_2", "D_PLAN/QUAD4: another row has this name"},
@@ -213,25 +215,26 @@ TEST_F(Plugins, BadLibrariesAreRefusedWithTheirFileWhenAKernelIsAskedFor) {
       {"broken_symbol", "undefined symbol"},
   };
   for (const auto& [name, reason] : cases) {
-    const fs::path plugin = write(name, row("kernels", "kernels = { FULL_MECA = '" + name + "/k' }"));
+    const fs::path plugin = write(name, row("kernels", "kernels = { 'ELAS/PETIT' = '" + name + "/k' }"));
     place_library(name, name);
     Registry registry(std::vector{plugin});  // what nobody uses does no harm
-    const auto message = message_of([&] { registry.kernel(*registry.find_element("D_TEST/TRIA3"), "FULL_MECA", LACON_SOLID); });
+    const auto message =
+        message_of([&] { registry.kernel(*registry.find_element("D_TEST/TRIA3"), "ELAS/PETIT", LACON_SOLID); });
     EXPECT_EQ(message.id, "PLUGIN_1") << name;
     EXPECT_THAT(message.text, AllOf(HasSubstr((plugin / ("lib" + name + ".so")).string()), HasSubstr(reason))) << name;
   }
 }
 
 TEST_F(Plugins, AMissingOrUnreadableLibraryOrKernelIsRefusedWithTheFile) {
-  fs::path plugin = write("empty_one", row("kernels", "kernels = { FULL_MECA = 'empty_one/k' }"));
+  fs::path plugin = write("empty_one", row("kernels", "kernels = { 'ELAS/PETIT' = 'empty_one/k' }"));
   const auto ask = [&] {
     Registry registry(std::vector{plugin});
-    registry.kernel(*registry.find_element("D_TEST/TRIA3"), "FULL_MECA", LACON_SOLID);
+    registry.kernel(*registry.find_element("D_TEST/TRIA3"), "ELAS/PETIT", LACON_SOLID);
   };
   EXPECT_THAT(message_of(ask).text, AllOf(HasSubstr("libempty_one.so"), HasSubstr("No such file")));
   std::ofstream(plugin / "libempty_one.so") << "not a library";
   EXPECT_THAT(message_of(ask).text, AllOf(HasSubstr("libempty_one.so"), HasSubstr("too short")));
-  plugin = write("test_rows", row("kernels", "kernels = { FULL_MECA = 'solid/plane_stress' }"));
+  plugin = write("test_rows", row("kernels", "kernels = { 'ELAS/PETIT' = 'solid/plane_stress' }"));
   const auto message = message_of(ask);
   EXPECT_EQ(message.id, "PLUGIN_3");
   EXPECT_THAT(message.text, AllOf(HasSubstr("libsolid.so"), HasSubstr("'plane_stress'"), HasSubstr("D_TEST/TRIA3")));

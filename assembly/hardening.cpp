@@ -1,0 +1,89 @@
+#include "lacon/assembly/hardening.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "lacon/catalog/messages.hpp"
+
+namespace lacon {
+namespace {
+
+// E of ELAS and the slope of the tension curve's elastic part may differ by this share.
+constexpr double modulus_tolerance = 1e-2;
+
+struct Source {
+  const MaterialTable& materials;
+  std::int32_t cell;
+  std::string_view element;
+
+  double parameter(std::string_view path) const { return materials.parameter(cell, path, element); }
+  [[noreturn]] void refuse(const std::string& reason) const {
+    fail("BEHAVIOUR_2", {{"material", materials.label(cell)}, {"cell", cell_name(cell)}, {"reason", reason}});
+  }
+};
+
+/// ECRO_LINE: the slope of the tension curve behind SY, hence of R(p): E ET / (E - ET).
+std::vector<double> linear(const Source& source) {
+  const double young = source.parameter("ELAS/E"), slope = source.parameter("ECRO_LINE/D_SIGM_EPSI"),
+               yield = source.parameter("ECRO_LINE/SY");
+  if (!(slope < young)) source.refuse(fmt::format("ECRO_LINE/D_SIGM_EPSI, {:g}, must be below ELAS/E, {:g}", slope, young));
+  return {0.0, yield, young * slope / (young - slope)};
+}
+
+/// TRACTION: points (strain, stress) of a tension test, the first of them the elastic limit.
+std::vector<double> tabulated(const Source& source) {
+  const Function& test = source.materials.function(source.cell, "TRACTION/SIGM", source.element);
+  const double young = source.parameter("ELAS/E");
+  if (test.parameter != "EPSI") source.refuse("TRACTION/SIGM must be a function of EPSI, not of " + test.parameter);
+  std::vector<double> strain = test.x, stress = test.y;
+  if (strain.front() == 0 && stress.front() == 0) {
+    strain.erase(strain.begin());
+    stress.erase(stress.begin());
+  }
+  if (strain.empty() || !(strain.front() > 0 && stress.front() > 0))
+    source.refuse("TRACTION/SIGM must start with the elastic limit, a strain and a stress above zero");
+  const double initial = stress.front() / strain.front();
+  if (std::abs(initial - young) > modulus_tolerance * young)
+    source.refuse(fmt::format("the first point of TRACTION/SIGM gives the modulus {:g}, ELAS/E is {:g}", initial, young));
+  std::vector<double> curve;
+  const std::size_t n = strain.size();
+  const auto plastic = [&](std::size_t i) {
+    return i == 0 ? 0.0 : strain[i] - stress[i] / young - (strain[0] - stress[0] / young);
+  };
+  for (std::size_t i = 0; i < n; ++i) {
+    double slope = NAN;  // behind the last point: the curve ends there
+    if (i + 1 < n) {
+      const double step = plastic(i + 1) - plastic(i);
+      if (!(step > 0))
+        source.refuse(fmt::format("between the strains {:g} and {:g} TRACTION/SIGM is not below the elastic slope", strain[i],
+                                  strain[i + 1]));
+      slope = (stress[i + 1] - stress[i]) / step;
+    } else if (test.extension_right == "CONSTANT") {
+      slope = 0;
+    } else if (test.extension_right == "LINEAIRE" && n > 1) {
+      slope = curve.back();
+    }
+    curve.insert(curve.end(), {plastic(i), stress[i], slope});
+  }
+  return curve;
+}
+
+struct Row {
+  std::string_view relation;
+  std::vector<double> (*curve)(const Source&);
+};
+constexpr Row rows[] = {{"VMIS_ISOT_LINE", linear}, {"VMIS_ISOT_TRAC", tabulated}};
+
+}  // namespace
+
+std::vector<double> hardening_curve(const MaterialTable& materials, std::int32_t cell, std::string_view relation,
+                                    std::string_view element) {
+  const Source source{materials, cell, element};
+  const auto row = std::find_if(std::begin(rows), std::end(rows), [&](const Row& r) { return r.relation == relation; });
+  if (row == std::end(rows)) source.refuse("no hardening is known for " + std::string(relation));
+  return row->curve(source);
+}
+
+}  // namespace lacon
