@@ -39,6 +39,38 @@ class Failure(Exception):
         self.status, self.diagnostic = status, diagnostic
 
 
+class TimeOver(BaseException):
+    """The time limit of an export file is over; no exception that a command file may catch by Exception."""
+
+    def __init__(self, seconds):
+        super().__init__(f"{seconds:g} s")
+        self.seconds = seconds
+
+
+@contextlib.contextmanager
+def time_limit(text):
+    """Raise TimeOver after that many seconds, a text as in an export file; what is not a positive number is no limit."""
+    import signal
+
+    def over(*_):
+        raise TimeOver(seconds)
+
+    try:
+        seconds = float(text)
+    except ValueError:
+        seconds = 0.0
+    if not 0.0 < seconds < math.inf:
+        yield
+        return
+    before = signal.signal(signal.SIGALRM, over)
+    signal.setitimer(signal.ITIMER_REAL, seconds)
+    try:
+        yield
+    finally:
+        signal.setitimer(signal.ITIMER_REAL, 0.0)
+        signal.signal(signal.SIGALRM, before)
+
+
 def run_files(study, files):
     """Run the files in one namespace. @throws Failure, after the reason was printed"""
     values = study.names.values
@@ -94,6 +126,9 @@ def _run_file(study, path, source, values):
         if error.code not in (None, 0):
             show(message("STUDY_17", place(error), code=error.code))
             raise Failure(2, "<F>_ERROR") from None
+    except TimeOver as error:
+        show(message("STUDY_25", place(error), seconds=f"{error.seconds:g}"))
+        raise Failure(3, "<S>_CPU_LIMIT") from None
     except KeyboardInterrupt as error:
         show(message("STUDY_18", place(error)))
         raise Failure(4, "<F>_ABNORMAL_ABORT") from None

@@ -130,7 +130,7 @@ def _run(options, units):
         run.protect(name)
 
     def work():
-        with execution.delivered(export.named):
+        with execution.delivered(export.named), execution.time_limit(export.parameters.get("time_limit", "")):
             execution.run_files(run, export.commands)
 
     status, diagnostic = run_study(run, work)

@@ -32,6 +32,12 @@ def nodes(call, k, mesh, path):
     return list(found)
 
 
+def cells(call, k, mesh, path):
+    """0-based numbers of the cells that MAILLE and GROUP_MA name."""
+    return [int(c) for keyword in ("MAILLE", "GROUP_MA") for name in _listed(k.get(keyword, []))
+            for c in members_of(call, {keyword: name}, path, mesh, keyword, "cells")]
+
+
 def field_at(call, result, name, order, instant, path):
     """The field of a result at an order number. @throws AsterError TEST_RESU_3"""
     field = result.field(name, order)
@@ -39,6 +45,22 @@ def field_at(call, result, name, order, instant, path):
         call.fail("TEST_RESU_3", f"{path}/NOM_CHAM", field=name, label=result.label, instant=f"{instant:g}",
                   known=", ".join(result.field_names()))
     return field
+
+
+def fields(call, k, path, column):
+    """(cells that say which one it is, field) of CHAM_GD, or of NOM_CHAM of RESULTAT at each instant that is named.
+
+    @param column name of the cell that holds the result's name. @throws AsterError POST_6 for a field of functions
+    """
+    if "CHAM_GD" in k:
+        field = k["CHAM_GD"].content()
+        if field.functions:
+            call.fail("POST_6", f"{path}/CHAM_GD", label=k["CHAM_GD"].label)
+        yield {"CHAM_GD": ("K8", k["CHAM_GD"].label)}, field
+        return
+    for order, instant in orders(call, k, path):
+        yield ({column: ("K8", k["RESULTAT"].label), "NOM_CHAM": ("K16", k["NOM_CHAM"]), "NUME_ORDRE": ("I", order), "INST": ("R", instant)},
+               field_at(call, k["RESULTAT"], k["NOM_CHAM"], order, instant, path))
 
 
 def at_nodes(call, field, path):

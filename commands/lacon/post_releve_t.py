@@ -15,28 +15,16 @@ def post_releve_t(call):
             frame = _Frame(call, action, path, field)
             made = frame.resultant() if "RESULTANTE" in action else getattr(frame, operation.lower())()
             for row in made:
-                _add(table, {**head, **row})
+                tables.add_row(table, {**head, **row})
     if "TITRE" in call.keywords:
         table.titr = "\n".join(call.keywords["TITRE"])
     return tables.make(call, table)
 
 
-def _add(table, row):
-    """Append cells given as name -> (type, value)."""
-    for name, (kind, _) in row.items():
-        if name not in table.para:
-            table.add_column(name, kind, [])
-    table.append({name: value for name, (_, value) in row.items()})
-
-
 def _fields(call, action, path):
     """(leading cells of its rows, field) of each instant."""
-    title = {"INTITULE": ("K16", action["INTITULE"])}
-    result = action["RESULTAT"]
-    for order, instant in places.orders(call, action, path):
-        head = {**title, "RESU": ("K8", result.label), "NOM_CHAM": ("K16", action["NOM_CHAM"]), "NUME_ORDRE": ("I", order),
-                "INST": ("R", instant)}
-        yield head, places.field_at(call, result, action["NOM_CHAM"], order, instant, path)
+    for head, field in places.fields(call, action, path, "RESU"):
+        yield {"INTITULE": ("K16", action["INTITULE"]), **head}, field
 
 
 class _Frame:

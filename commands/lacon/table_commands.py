@@ -1,6 +1,6 @@
 """CREA_TABLE, IMPR_TABLE, TEST_TABLE, RECU_TABLE."""
 
-from . import checks, printing, tables
+from . import checks, places, printing, tables
 from .checker import nearest
 from .tables import Table
 
@@ -13,6 +13,8 @@ def title(call):
 
 
 def crea_table(call):
+    if "RESU" in call.keywords:
+        return tables.make(call, _of_field(call, call.keywords["RESU"][0], "RESU"))
     columns = _listed(call) if "LISTE" in call.keywords else _points(call.keywords["FONCTION"][0])
     return tables.make(call, Table.of_columns(columns, title(call)))
 
@@ -49,6 +51,50 @@ def _points(factor):
     with concept.open() as file:
         names = factor.get("PARA", [file.attrs["parameter"], file.attrs["component"]])
     return {name: ("R", values) for name, values in zip(names, concept.Valeurs())}
+
+
+def _of_field(call, k, path):
+    """A row for each node, cell, point or node of a cell that has one of the components."""
+    import numpy
+
+    table = Table(titr=title(call))
+    for head, field in places.fields(call, k, path, "RESULTAT"):
+        names = k.get("NOM_CMP", field.components)
+        columns = [places.component(call, field, name, f"{path}/NOM_CMP") for name in names]
+        mesh = field.mesh()
+        owner, place = field.rows()
+        node = owner if field.location == "NOEU" else places.nodes_of(mesh, field.support) if field.location == "ELNO" else None
+        chosen = field.present[:, columns].any(axis=1)
+        if "TOUT" not in k:
+            chosen &= _chosen_rows(call, k, path, mesh, field, owner, node)
+        points = mesh.getCoordinates().toNumpy()
+        for i in numpy.flatnonzero(chosen):
+            row = dict(head)
+            if field.location != "NOEU":
+                row["MAILLE"] = ("K8", f"M{owner[i] + 1}")
+            if field.location == "ELGA":
+                row["POINT"] = ("I", int(place[i]) + 1)
+            if node is not None:
+                row["NOEUD"] = ("K8", f"N{node[i] + 1}")
+                row.update((f"COOR_{axis}", ("R", float(x))) for axis, x in zip("XYZ", points[node[i]]))
+            row.update((name, ("R", float(field.values[i, c]) if field.present[i, c] else None)) for name, c in zip(names, columns))
+            tables.add_row(table, row)
+    if not len(table):
+        call.fail("POST_3", path, field=k.get("NOM_CHAM", "CHAM_GD"), components=", ".join(k.get("NOM_CMP", ["any component"])))
+    return table
+
+
+def _chosen_rows(call, k, path, mesh, field, owner, node):
+    """Which rows of a field NOEUD, GROUP_NO, MAILLE and GROUP_MA mean."""
+    import numpy
+
+    if field.location == "NOEU":
+        return numpy.isin(owner, places.nodes(call, k, mesh, path))
+    rows = numpy.isin(owner, places.cells(call, k, mesh, path)) if {"MAILLE", "GROUP_MA"} & set(k) else numpy.ones(len(owner), bool)
+    at = {keyword: k[keyword] for keyword in ("NOEUD", "GROUP_NO") if keyword in k}
+    if at and node is None:
+        call.fail("TEST_RESU_5", f"{path}/{next(iter(at))}", keyword=next(iter(at)), field=field.name)
+    return rows & numpy.isin(node, places.nodes(call, at, mesh, path)) if at else rows
 
 
 # ---------------------------------------------------------------------------------------------------- IMPR_TABLE

@@ -325,6 +325,14 @@ def numeric(call, table, name, path):
     return column
 
 
+def add_row(table, row):
+    """Append cells given as column -> (type, value); columns that are new are added with their type."""
+    for name, (kind, _) in row.items():
+        if name not in table.para:
+            table.add_column(name, kind, [])
+    table.append({name: value for name, (_, value) in row.items()})
+
+
 # ---------------------------------------------------------------------------------------------------- storage
 
 

@@ -154,6 +154,13 @@ class Units(LauncherTest):
         self.refused(self.launch("c.export", "--base", "study.base"), "COMMAND_12", "mesh.med")
         self.assertEqual((self.work / "mesh.med").read_bytes(), kept)
 
+    def test_the_time_limit_of_an_export_file(self):
+        self.write("slow.comm", "DEBUT()\nL = DEFI_LIST_REEL(VALE=(0., 1.))\ntry:\n    import time\n    time.sleep(60)\nexcept Exception:\n    pass\n")
+        self.write("slow.export", "P time_limit 3\nF comm slow.comm D 1\n")
+        run = self.launch("slow.export")
+        self.refused(run, "STUDY_25", "3 s", "slow.comm:5", status=3, diagnostic="<S>_CPU_LIMIT")
+        self.ok(self.launch(self.write("more.comm", "POURSUITE()\nassert L.getValues() == [0, 1]\nFIN()\n").name, "--base", "slow.base"))
+
     def test_what_an_earlier_run_has_read_is_not_replaced(self):
         self.ok(self.run_study(STUDY + "FIN()\n"))
         for _ in range(2):

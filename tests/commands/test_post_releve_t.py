@@ -78,6 +78,23 @@ assert t.para[-5:] == ['RESULT_X', 'RESULT_Y', 'MOMENT_X', 'MOMENT_Y', 'MOMENT_Z
 assert [t.rows[0][n] for n in t.para[-5:]] == [15, -25, 0, 0, -15], t
 """))
 
+    def test_fields_of_their_own(self):
+        self.ok(self.run_study(STUDY + """
+from lacon import study
+from lacon.hdf5 import text_type
+def fill(file):
+    file.attrs.update(name='NEUT', quantity='NEUT_R', mesh=M.id, location='NOEU')
+    file.attrs.create('components', ['X1'], dtype=text_type())
+    file['support'], file['values'] = [3, 5], [[7.], [9.]]
+F = study.current.base.write_concept('field', 'F', 'CREA_CHAMP', {}, fill)
+t = POST_RELEVE_T(ACTION=_F(INTITULE='it', CHAM_GD=F, GROUP_NO='TOP', TOUT_CMP='OUI', OPERATION='EXTRACTION')).EXTR_TABLE()
+assert t.para == ['INTITULE', 'CHAM_GD', 'NOEUD', 'ABSC_CURV', 'COOR_X', 'COOR_Y', 'COOR_Z', 'X1'] and t.values()['X1'] == [7, 9], t
+assert t.values()['ABSC_CURV'] == [0, 2]
+t = CREA_TABLE(RESU=_F(CHAM_GD=F, NOM_CMP='X1', TOUT='OUI')).EXTR_TABLE()
+assert t.values()['NOEUD'] == ['N4', 'N6'] and t.para[0] == 'CHAM_GD', t
+FIN()
+"""))
+
     def test_several_actions(self):
         self.ok(self.run_study(STUDY + """
 T = POST_RELEVE_T(ACTION=(_F(INTITULE='a', RESULTAT=R, INST=1.0, NOEUD='N1', NOM_CHAM='DEPL', NOM_CMP='DX', OPERATION='EXTRACTION'),

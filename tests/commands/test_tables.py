@@ -204,6 +204,28 @@ TEST_TABLE(TABLE=T, NOM_PARA='N', FILTRE=_F(NOM_PARA='N', VALE_I=1), VALE_CALC_I
             calls.append((f"TEST_TABLE(TABLE=T, {keywords})", word))
         self.all_refused(f"DEBUT()\n{TABLE}", calls)
 
+    def test_created_from_fields(self):
+        self.ok(self.run_study(STUDY + """
+def table(**keywords):
+    return CREA_TABLE(RESU=_F(RESULTAT=R, INST=1.0, **keywords)).EXTR_TABLE()
+t = table(NOM_CHAM='DEPL', TOUT_CMP='OUI', GROUP_NO='TOP')
+assert t.para == ['RESULTAT', 'NOM_CHAM', 'NUME_ORDRE', 'INST', 'NOEUD', 'COOR_X', 'COOR_Y', 'COOR_Z', 'DX', 'LAGS_C'], t.para
+assert t.values()['NOEUD'] == ['N4', 'N5', 'N6'] and t.values()['DX'] == [4, 5, 6] and t.values()['LAGS_C'] == [None, -25, None]
+assert table(NOM_CHAM='DEPL', NOM_CMP='LAGS_C', TOUT='OUI').values()['NOEUD'] == ['N2', 'N5']
+assert table(NOM_CHAM='DEPL', NOM_CMP='DX', GROUP_MA='SKIN').values()['DX'] == [1, 2]
+t = table(NOM_CHAM='SIEF_ELGA', NOM_CMP='SIYY', MAILLE='M2')
+assert t.para[4:] == ['MAILLE', 'POINT', 'SIYY'] and [list(r.values())[4:] for r in t] == [['M2', 1, 3], ['M2', 2, -4]]
+t = table(NOM_CHAM='SIEF_ELNO', NOM_CMP='SIYY', NOEUD='N5')
+assert t.values()['MAILLE'] == ['M1', 'M2'] and t.values()['SIYY'] == [3, 8] and t.values()['COOR_X'] == [1, 1]
+assert table(NOM_CHAM='CONT_ELEM', NOM_CMP='PRES', TOUT='OUI').values()['MAILLE'] == ['M3']
+assert len(CREA_TABLE(RESU=_F(RESULTAT=R, TOUT_ORDRE='OUI', NOM_CHAM='DEPL', NOM_CMP='DX', NOEUD='N1'))) == 3
+FIN()
+"""))
+        self.all_refused("POURSUITE()", [
+            ("CREA_TABLE(RESU=_F(RESULTAT=R, INST=1.0, NOM_CHAM='DEPL', NOM_CMP='LAGS_C', NOEUD='N1'))", "POST_3"),
+            ("CREA_TABLE(RESU=_F(RESULTAT=R, INST=1.0, NOM_CHAM='SIEF_ELGA', NOM_CMP='SIYY', NOEUD='N1'))", "TEST_RESU_5"),
+            ("CREA_TABLE(RESU=_F(RESULTAT=R, INST=1.0, NOM_CMP='DX', NOEUD='N1'))", "KEYWORD_2")])
+
     def test_parameters_of_a_result(self):
         self.ok(self.run_study(STUDY + """
 P = RECU_TABLE(CO=R, NOM_PARA='INST')
