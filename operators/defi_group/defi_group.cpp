@@ -3,6 +3,8 @@
 #include <fmt/core.h>
 
 #include <algorithm>
+#include <array>
+#include <cmath>
 #include <numeric>
 
 #include "lacon/catalog/messages.hpp"
@@ -122,6 +124,106 @@ void keep_types(const Mesh& mesh, const Keywords& factor, Members& members) {
                   [&](std::int32_t c) { return !wanted[static_cast<std::size_t>(mesh.types[static_cast<std::size_t>(c)])]; });
 }
 
+/// POSITION, NUME_INIT and NUME_FIN: a part of the members, in their order.
+void keep_positions(const Keywords& factor, Members& members) {
+  const auto n = static_cast<std::int64_t>(members.size());
+  std::int64_t first = factor.has("NUME_INIT") ? factor.integer("NUME_INIT") : 1;
+  std::int64_t last = factor.has("NUME_FIN") ? factor.integer("NUME_FIN") : n;
+  if (factor.has("POSITION")) {
+    const std::string position = factor.text("POSITION");
+    first = last = position == "INIT" ? 1 : position == "FIN" ? n : (n + 1) / 2;
+  }
+  if (first > last || last > n) {
+    const char* keyword = last > n ? "NUME_FIN" : "NUME_INIT";
+    fail("ORDER_4", {{"keyword", factor.path(keyword)},
+                     {"expected", "a number of the group's " + std::to_string(n) + " members, the first before the last"}});
+  }
+  members = Members(members.begin() + (first - 1), members.begin() + last);
+}
+
+/// Distance from what POINT and VECT_NORMALE describe: a plane, an axis, or a centre.
+class Distance {
+ public:
+  enum class From { plane, axis, centre };
+
+  Distance(const Mesh& mesh, const Keywords& factor, From from) : from_(from), point_(vector(mesh, factor, "POINT")) {
+    if (from == From::centre) return;
+    direction_ = vector(mesh, factor, "VECT_NORMALE");
+    const double length = std::hypot(direction_[0], direction_[1], direction_[2]);
+    if (!(length > 0)) fail("ORDER_4", {{"keyword", factor.path("VECT_NORMALE")}, {"expected", "a vector other than zero"}});
+    for (double& component : direction_) component /= length;
+  }
+
+  double operator()(std::span<const double, 3> x) const {
+    std::array<double, 3> to{};
+    double along = 0;
+    for (std::size_t k = 0; k < 3; ++k) {
+      to[k] = x[k] - point_[k];
+      along += to[k] * direction_[k];
+    }
+    if (from_ == From::plane) return std::abs(along);
+    for (std::size_t k = 0; k < 3; ++k) to[k] -= along * direction_[k];
+    return std::hypot(to[0], to[1], to[2]);
+  }
+
+ private:
+  static std::array<double, 3> vector(const Mesh& mesh, const Keywords& factor, const char* keyword) {
+    const std::vector<double> given = factor.reals(keyword);
+    if (given.size() != static_cast<std::size_t>(mesh.dimension))
+      fail("ORDER_4", {{"keyword", factor.path(keyword)},
+                       {"expected", "as many numbers as the mesh has dimensions, " + std::to_string(mesh.dimension)}});
+    std::array<double, 3> made{};
+    std::ranges::copy(given, made.begin());
+    return made;
+  }
+
+  From from_;
+  std::array<double, 3> point_{}, direction_{};
+};
+
+Distance::From kind_of_place(const std::string& option) {
+  if (option.ends_with("SPHERE")) return Distance::From::centre;
+  return option.ends_with("CYLINDRE") ? Distance::From::axis : Distance::From::plane;
+}
+
+/// The cells of which enough nodes are marked. @param rule AU_MOINS_UN, TOUS or TOUT, MAJORITE, SOMMET (all vertices)
+Members cells_with(const Mesh& mesh, const std::vector<char>& marked, const std::string& rule) {
+  Members found;
+  for (std::size_t c = 0; c < mesh.n_cells(); ++c) {
+    auto own = mesh.cells[c];
+    if (rule == "SOMMET") own = own.first(static_cast<std::size_t>(mesh.row(c).n_vertices));
+    const auto inside = static_cast<std::size_t>(
+        std::ranges::count_if(own, [&](std::int32_t n) { return marked[static_cast<std::size_t>(n)] != 0; }));
+    if (rule == "AU_MOINS_UN" ? inside > 0 : rule == "MAJORITE" ? 2 * inside >= own.size() : inside == own.size())
+      found.push_back(static_cast<std::int32_t>(c));
+  }
+  return found;
+}
+
+Members cells_by_option(const Mesh& mesh, const Keywords& factor) {
+  const std::string option = factor.text("OPTION");
+  std::vector<char> marked(mesh.n_nodes(), 0);
+  if (option == "APPUI") {
+    for (const std::string& group : factor.texts("GROUP_NO"))
+      for (const std::int32_t n : nodes_of_group(mesh, group, factor.path("GROUP_NO"))) marked[static_cast<std::size_t>(n)] = 1;
+    return cells_with(mesh, marked, factor.text("TYPE_APPUI"));
+  }
+  const Distance distance(mesh, factor, kind_of_place(option));
+  const double most = factor.real(option == "BANDE" ? "DIST" : "RAYON");
+  for (std::size_t n = 0; n < mesh.n_nodes(); ++n) marked[n] = distance(mesh.point(n)) <= most;
+  return cells_with(mesh, marked, factor.has("CRIT_NOEUD") ? factor.text("CRIT_NOEUD") : "AU_MOINS_UN");
+}
+
+Members nodes_by_option(const Mesh& mesh, const Keywords& factor) {
+  const std::string option = factor.text("OPTION");
+  const Distance distance(mesh, factor, kind_of_place(option));
+  const double radius = option == "PLAN" ? 0.0 : factor.real("RAYON"), precision = factor.real("PRECISION");
+  Members found;
+  for (std::size_t n = 0; n < mesh.n_nodes(); ++n)
+    if (std::abs(distance(mesh.point(n)) - radius) <= precision) found.push_back(static_cast<std::int32_t>(n));
+  return found;
+}
+
 void create_cell_group(Mesh& mesh, const Keywords& factor, bool alarm) {
   Members members;
   if (const auto found = combined(mesh, cells, factor, mesh.n_cells())) {
@@ -129,9 +231,12 @@ void create_cell_group(Mesh& mesh, const Keywords& factor, bool alarm) {
   } else if (factor.has("TOUT")) {
     members.resize(mesh.n_cells());
     std::iota(members.begin(), members.end(), 0);
+  } else if (factor.has("OPTION")) {
+    members = cells_by_option(mesh, factor);
   } else {
-    fail("ORDER_2", {{"keyword", factor.path("TOUT, MAILLE, GROUP_MA, INTERSEC, UNION or DIFFE")}});
+    fail("ORDER_2", {{"keyword", factor.path("TOUT, MAILLE, GROUP_MA, INTERSEC, UNION, DIFFE or OPTION")}});
   }
+  if (factor.has("GROUP_MA")) keep_positions(factor, members);
   keep_types(mesh, factor, members);
   add_group(mesh, cells, factor.text("NOM"), once(members, mesh.n_cells()), factor.path("NOM"), alarm);
 }
@@ -156,8 +261,11 @@ void create_node_group(Mesh& mesh, const Keywords& factor, bool alarm) {
                 factor.path(factor.has("NOM") ? "NOM" : "GROUP_MA"), alarm);
     return;
   }
-  const auto found = combined(mesh, nodes, factor, mesh.n_nodes());
-  if (!found) fail("ORDER_2", {{"keyword", factor.path("TOUT_GROUP_MA, GROUP_MA, NOEUD, GROUP_NO, INTERSEC, UNION or DIFFE")}});
+  std::optional<Members> found =
+      factor.has("OPTION") ? nodes_by_option(mesh, factor) : combined(mesh, nodes, factor, mesh.n_nodes());
+  if (!found)
+    fail("ORDER_2", {{"keyword", factor.path("TOUT_GROUP_MA, GROUP_MA, NOEUD, GROUP_NO, INTERSEC, UNION, DIFFE or OPTION")}});
+  if (factor.has("GROUP_NO")) keep_positions(factor, *found);
   add_group(mesh, nodes, factor.text("NOM"), once(*found, mesh.n_nodes()), factor.path("NOM"), alarm);
 }
 

@@ -5,10 +5,12 @@
 #include "lacon/catalog/messages.hpp"
 #include "lacon/operators/meshing/body.hpp"
 #include "lacon/operators/meshing/orientation.hpp"
+#include "lacon/operators/modi_maillage/transform.hpp"
 
 namespace lacon {
 
 void modi_maillage(Mesh& mesh, const Keywords& keywords) {
+  if (transform(mesh, keywords)) return;
   refuse_cut_mesh(mesh, "ORIE_PEAU");
   for (const Keywords& factor : keywords.factors("ORIE_PEAU")) {
     std::vector<std::int32_t> inside;

@@ -32,6 +32,45 @@ class DefiGroup(OperatorTest):
         mesh, _ = self.define(DETR_GROUP_MA=[{"NOM": ["LOW", "ONE"]}], DETR_GROUP_NO=[{"NOM": ["END"]}])
         self.assertEqual((list(mesh.cell_groups), list(mesh.node_groups)), (["RIGHT", "BODY", "SKIN"], ["SKIN", "A"]))
 
+    def place(self, kind="CREA_GROUP_MA", **keywords):
+        """Members of a group made by its place on a strip of four squares, nodes 0 to 4 below and 5 to 9 above, cells 0 to 3."""
+        nodes = [[x, y] for y in (0, 1) for x in range(5)]
+        self.write_mesh("mesh_1", nodes, [("QUAD4", [i, i + 1, i + 6, i + 5]) for i in range(4)], {"ROW": [3, 2, 1, 0]}, {"ENDS": [9, 4, 0, 5]})
+        mesh, _ = self.define(**{kind: [{"NOM": "NEW", **keywords}]})
+        return list((mesh.cell_groups if kind == "CREA_GROUP_MA" else mesh.node_groups)["NEW"])
+
+    def test_cells_by_their_place(self):
+        self.assertEqual(self.place(OPTION="SPHERE", POINT=[0.0, 0.0], RAYON=1.1), [0, 1])
+        self.assertEqual(self.place(OPTION="SPHERE", POINT=[0.0, 0.0], RAYON=1.5, CRIT_NOEUD="TOUS"), [0])
+        self.assertEqual(self.place(OPTION="SPHERE", POINT=[0.0, 0.0], RAYON=1.1, CRIT_NOEUD="MAJORITE"), [0])
+        self.assertEqual(self.place(OPTION="BANDE", POINT=[2.0, 5.0], VECT_NORMALE=[3.0, 0.0], DIST=0.1), [1, 2])
+        self.assertEqual(self.place(OPTION="BANDE", POINT=[2.0, 5.0], VECT_NORMALE=[3.0, 0.0], DIST=1.1, CRIT_NOEUD="TOUS"), [1, 2])
+        self.assertEqual(self.place(OPTION="CYLINDRE", POINT=[4.0, 0.0], VECT_NORMALE=[0.0, 1.0], RAYON=0.5), [3])
+
+    def test_cells_on_the_nodes_of_a_group(self):
+        self.assertEqual(self.place(OPTION="APPUI", GROUP_NO=["ENDS"], TYPE_APPUI="AU_MOINS_UN"), [0, 3])
+        self.assertEqual(self.place(OPTION="APPUI", GROUP_NO=["ENDS"], TYPE_APPUI="MAJORITE"), [0, 3])
+
+    def test_nodes_on_surfaces(self):
+        self.assertEqual(self.place("CREA_GROUP_NO", OPTION="PLAN", POINT=[7.0, 1.0], VECT_NORMALE=[0.0, 2.0], PRECISION=1e-6), [5, 6, 7, 8, 9])
+        self.assertEqual(self.place("CREA_GROUP_NO", OPTION="ENV_SPHERE", POINT=[2.0, 0.0], RAYON=2.0, PRECISION=1e-6), [0, 4])
+        self.assertEqual(self.place("CREA_GROUP_NO", OPTION="ENV_CYLINDRE", POINT=[1.0, 9.0], VECT_NORMALE=[0.0, 1.0], RAYON=1.0, PRECISION=0.01),
+                         [0, 2, 5, 7])
+
+    def test_parts_of_a_group_by_position(self):
+        self.assertEqual(self.place(GROUP_MA="ROW", POSITION="INIT"), [3])
+        self.assertEqual(self.place(GROUP_MA="ROW", POSITION="MILIEU"), [2])
+        self.assertEqual(self.place("CREA_GROUP_NO", GROUP_NO="ENDS", POSITION="FIN"), [5])
+        self.assertEqual(self.place(GROUP_MA="ROW", NUME_INIT=2, NUME_FIN=3), [2, 1])
+        self.assertEqual(self.place("CREA_GROUP_NO", GROUP_NO="ENDS", NUME_INIT=3), [0, 5])
+
+    def test_refuses_places_that_are_none(self):
+        for keywords, word in (({"OPTION": "SPHERE", "POINT": [0.0, 0.0, 0.0], "RAYON": 1.0}, "POINT"),
+                               ({"OPTION": "BANDE", "POINT": [0.0, 0.0], "VECT_NORMALE": [0.0, 0.0], "DIST": 1.0}, "VECT_NORMALE"),
+                               ({"GROUP_MA": "LOW", "NUME_INIT": 2}, "NUME_INIT"), ({"GROUP_MA": "LOW", "NUME_FIN": 2}, "NUME_FIN")):
+            with self.subTest(keywords=keywords):
+                self.refuse("ORDER_4", word, CREA_GROUP_MA=[{"NOM": "X", **keywords}])
+
     def test_an_empty_group_is_an_alarm_and_not_made(self):
         mesh, run = self.define(CREA_GROUP_MA=[{"NOM": "X", "INTERSEC": ["LOW", "RIGHT"]}])
         self.assertEqual(self.ids(run), ["GROUPE_3"])

@@ -2,6 +2,8 @@
 
 import unittest
 
+import numpy as np
+
 from lacon_test import OperatorTest, concept
 
 NODES = [[0, 0], [1, 0], [1, 1], [0, 1], [2, 0], [2, 1], [5, 0], [6, 0]]
@@ -31,6 +33,52 @@ class ModiMaillage(OperatorTest):
         self.assertEqual(int(self.attributes("mesh_1")["version"]), 2)
         self.assertRegex(run.stdout, r"LOW +1 cells turned")
         self.assertRegex(run.stdout, r"TOP +0 cells turned")
+
+    def moved(self, mesh="mesh_1", **keywords):
+        run = self.run_command("MODI_MAILLAGE", {"MAILLAGE": concept(mesh), **keywords}, mesh, reuse=True)
+        self.assertEqual(run.status, 0, run.stderr)
+        return self.read_mesh(mesh)
+
+    def test_translation_and_scale_in_the_plane(self):
+        np.testing.assert_array_equal(self.moved(TRANSLATION=[3.0, -1.0]).coordinates[:, :2], np.add(NODES, (3, -1)))
+        np.testing.assert_array_equal(self.moved(ECHELLE=2.0).coordinates[:, :2], 2 * np.add(NODES, (3, -1)))
+        self.assertEqual(self.read_mesh("mesh_1").cells, [nodes for _, nodes in CELLS])
+
+    def test_rotations_one_after_the_other(self):
+        mesh = self.moved(ROTATION=[{"POIN_1": [1.0, 0.0], "ANGLE": 90.0}, {"POIN_1": [0.0, 0.0], "ANGLE": 180.0}])
+        np.testing.assert_allclose(mesh.coordinates[:, :2], [(-1 + y, 1 - x) for x, y in NODES], atol=1e-15)
+
+    def write_tetrahedron(self):
+        points = [[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]]
+        self.write_mesh("mesh_2", points, [("TRIA3", [0, 2, 1]), ("TETRA4", [0, 1, 2, 3])], {"LOW": [0]})
+        return points
+
+    def test_rotation_in_space_about_a_direction_or_through_two_points(self):
+        points = self.write_tetrahedron()
+        mesh = self.moved("mesh_2", ROTATION=[{"POIN_1": [0.0, 0.0, 0.0], "DIR": [2.0, 2.0, 2.0], "ANGLE": 120.0}])  # x to y to z to x
+        np.testing.assert_allclose(mesh.coordinates, [(z, x, y) for x, y, z in points], atol=1e-15)
+        mesh = self.moved("mesh_2", ROTATION=[{"POIN_1": [1.0, 1.0, 1.0], "POIN_2": [0.0, 0.0, 0.0], "ANGLE": 120.0}])
+        np.testing.assert_allclose(mesh.coordinates, points, atol=1e-15)
+
+    def test_a_mirror_keeps_volumes_positive_and_skins_outward(self):
+        points = self.write_tetrahedron()
+        mesh = self.moved("mesh_2", SYMETRIE=[{"POINT": [2.0, 0.0, 0.0], "AXE_1": [0.0, 1.0, 0.0], "AXE_2": [0.0, 0.0, 3.0]}])
+        np.testing.assert_allclose(mesh.coordinates, [(4 - x, y, z) for x, y, z in points], atol=1e-15)
+        a, b, c, d = mesh.coordinates[mesh.cells[1]]
+        self.assertGreater(np.dot(np.cross(b - a, c - a), d - a), 0)
+        a, b, c = mesh.coordinates[mesh.cells[0]]
+        self.assertLess(np.cross(b - a, c - a)[2], 0)
+        plane = self.moved(SYMETRIE=[{"POINT": [0.0, 1.0], "AXE_1": [1.0, 0.0]}])
+        np.testing.assert_allclose(plane.coordinates[:, :2], [(x, 2 - y) for x, y in NODES], atol=1e-15)
+
+    def test_refuses_vectors_of_another_dimension_and_directions_that_are_none(self):
+        self.write_tetrahedron()
+        for mesh, keywords, word in (("mesh_1", {"TRANSLATION": [1.0, 2.0, 3.0]}, "TRANSLATION"), ("mesh_2", {"TRANSLATION": [1.0, 2.0]}, "TRANSLATION"),
+                                     ("mesh_2", {"ROTATION": [{"POIN_1": [0.0, 0.0, 0.0]}]}, "DIR"),
+                                     ("mesh_2", {"ROTATION": [{"POIN_1": [0.0, 0.0, 0.0], "DIR": [0.0, 0.0, 0.0]}]}, "DIR"),
+                                     ("mesh_2", {"SYMETRIE": [{"POINT": [0.0, 0.0, 0.0], "AXE_1": [1.0, 0.0, 0.0], "AXE_2": [2.0, 0.0, 0.0]}]}, "AXE_1")):
+            with self.subTest(keywords=keywords):
+                self.assert_refuses("ORDER_4", "MODI_MAILLAGE", {"MAILLAGE": concept(mesh), **keywords}, word, result=mesh, reuse=True)
 
     def test_leaves_a_lone_cell(self):
         run = self.run_orient({"GROUP_MA_PEAU": ["LONE"]})
