@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <map>
 #include <memory>
 #include <nlohmann/json.hpp>
@@ -14,8 +15,10 @@
 #include "lacon/operators/evolution/static_problem.hpp"
 #include "lacon/operators/fields/criteria.hpp"
 #include "lacon/operators/fields/extrapolation.hpp"
+#include "lacon/operators/fields/layout.hpp"
 #include "lacon/operators/fields/mechanics.hpp"
 #include "lacon/operators/fields/selection.hpp"
+#include "lacon/operators/fields/tensor.hpp"
 
 namespace lacon {
 namespace {
@@ -89,20 +92,32 @@ bool has_field(const Result& result, const std::string& name, std::int64_t order
   return named != result.fields.end() && named->second.contains(order);
 }
 
-/// The cells whose stresses live on the current geometry: those of a DEFORMATION other than PETIT.
-std::vector<char> cells_in_motion(const Mesh& mesh, const Result& result) {
-  std::vector<char> moved(mesh.n_cells(), 0);
-  const auto behaviours = nlohmann::json::parse(result.behaviour);
-  if (!behaviours.is_array()) return moved;
-  for (const auto& one : behaviours) {
-    const char current = one.value("DEFORMATION", "PETIT") != "PETIT";
-    for (std::size_t c = 0; c < moved.size() && !one.contains("GROUP_MA"); ++c) moved[c] = current;
+/// One entry a cell: what its COMPORTEMENT means for fields computed from its stresses and displacements.
+struct Behaviours {
+  std::vector<char> moved;    ///< DEFORMATION other than PETIT: stresses live on the current geometry
+  std::vector<char> green;    ///< GREEN_LAGRANGE
+  std::vector<char> plastic;  ///< RELATION other than ELAS
+};
+
+Behaviours read_behaviours(const Mesh& mesh, const Result& result) {
+  const std::vector<char> none(mesh.n_cells(), 0);
+  Behaviours found{none, none, none};
+  const auto occurrences = nlohmann::json::parse(result.behaviour);
+  if (!occurrences.is_array()) return found;
+  for (const auto& one : occurrences) {
+    const std::string deformation = one.value("DEFORMATION", "PETIT"), relation = one.value("RELATION", "ELAS");
+    const auto set = [&](std::size_t cell) {
+      found.moved[cell] = deformation != "PETIT";
+      found.green[cell] = deformation == "GREEN_LAGRANGE";
+      found.plastic[cell] = relation != "ELAS";
+    };
+    for (std::size_t cell = 0; cell < mesh.n_cells() && !one.contains("GROUP_MA"); ++cell) set(cell);
     if (!one.contains("GROUP_MA")) continue;
     for (const auto& group : one.at("GROUP_MA"))
       for (const std::int32_t cell : cells_of_group(mesh, group.get<std::string>(), "COMPORTEMENT/GROUP_MA"))
-        moved[static_cast<std::size_t>(cell)] = current;
+        set(static_cast<std::size_t>(cell));
   }
-  return moved;
+  return found;
 }
 
 /// What the fields of all instants share.
@@ -121,9 +136,9 @@ class Setting {
   const std::vector<char>& wanted() const { return wanted_; }
   bool has_part() const { return order_.keywords.has("GROUP_MA"); }
   std::string groups() const { return fmt::format("{}", fmt::join(order_.keywords.texts("GROUP_MA"), ", ")); }
-  const std::vector<char>& moved() {
-    if (!moved_) moved_ = cells_in_motion(mesh_, result_);
-    return *moved_;
+  const Behaviours& behaviours() {
+    if (!behaviours_) behaviours_ = read_behaviours(mesh_, result_);
+    return *behaviours_;
   }
   ModelPoints& points() {
     if (!points_) {
@@ -133,7 +148,8 @@ class Setting {
     }
     return *points_;
   }
-  double poisson(std::int32_t cell) {
+  /// "E" or "NU" of a cell's material.
+  double elastic(std::int32_t cell, const char* name) {
     if (!materials_) {
       material_field_ = base_.material_field(result_.material_field);
       std::vector<Material> materials;
@@ -144,7 +160,7 @@ class Setting {
       }
       materials_.emplace(material_field_, std::move(materials), std::move(labels));
     }
-    return materials_->parameter(cell, "ELAS/NU", points().element(static_cast<std::size_t>(cell))->name);
+    return materials_->parameter(cell, std::string("ELAS/") + name, points().element(static_cast<std::size_t>(cell))->name);
   }
   /// @param displacement (n_nodes, dimension), which following pressures act on
   std::vector<double> external_force(double instant, std::span<const double> displacement) {
@@ -158,7 +174,7 @@ class Setting {
   const Result& result_;
   Mesh mesh_;
   std::vector<char> wanted_;
-  std::optional<std::vector<char>> moved_;
+  std::optional<Behaviours> behaviours_;
   Model model_;
   std::unique_ptr<Registry> registry_;
   std::optional<ModelPoints> points_;
@@ -193,12 +209,9 @@ class Instant {
         return field;
       }
       case How::strain:
-      case How::strain_green: {
-        Field field = strains(mesh, setting_.points(), (*this)(row.from), setting_.wanted(),
-                              row.how == How::strain ? Strain::small : Strain::green_lagrange, name,
-                              [&](std::int32_t cell) { return setting_.poisson(cell); });
-        return on_wanted_cells(std::move(field));
-      }
+      case How::strain_green:
+        return on_wanted_cells(
+            strain(row.how == How::strain ? Strain::small : Strain::green_lagrange, setting_.wanted(), name));
       case How::stress_invariants:
         return equivalent_stress((*this)(row.from), name);
       case How::strain_invariants:
@@ -222,9 +235,61 @@ class Instant {
     return std::move(field);
   }
 
+  Field strain(Strain measure, const std::vector<char>& wanted, std::string name) {
+    Field field = strains(setting_.mesh(), setting_.points(), (*this)("DEPL"), wanted, measure, std::move(name),
+                          [&](std::int32_t cell) { return setting_.elastic(cell, "NU"); });
+    const auto is_plastic = [&](std::int32_t cell) {
+      const auto c = static_cast<std::size_t>(cell);
+      return setting_.behaviours().plastic[c] && setting_.points().is_plane_stress(c);
+    };
+    if (std::none_of(field.support.begin(), field.support.end(), is_plastic)) return field;
+    if (measure == Strain::green_lagrange)
+      fail("CALCCHAMP_3", {{"cell", cell_name(*std::find_if(field.support.begin(), field.support.end(), is_plastic))},
+                           {"label", setting_.result().label}});
+    // plastic strain keeps the volume: the trace of the strain is the elastic one, (1 - 2 nu) / E times that of the stress
+    const Field stress = setting_.base().field(setting_.result(), "SIEF_ELGA", order_);
+    const std::vector<std::int64_t> place = places(stress, setting_.mesh().n_cells());
+    const TensorRows tensors(stress, "SI"), own(field, "EP");
+    const auto zz = static_cast<std::size_t>(field.component("EPZZ"));
+    for (std::size_t i = 0; i < field.support.size(); ++i) {
+      const std::int32_t cell = field.support[i];
+      if (!is_plastic(cell) || place[static_cast<std::size_t>(cell)] < 0) continue;
+      const double young = setting_.elastic(cell, "E"), nu = setting_.elastic(cell, "NU");
+      const std::size_t first = stress.first_row(static_cast<std::size_t>(place[static_cast<std::size_t>(cell)]));
+      for (std::size_t row = field.first_row(i); row < field.first_row(i + 1); ++row) {
+        const Eigen::Matrix3d in_plane = own[row];
+        field.at(row, zz) =
+            (1 - 2 * nu) / young * tensors[first + row - field.first_row(i)].trace() - in_plane(0, 0) - in_plane(1, 1);
+      }
+    }
+    return field;
+  }
+
+  /// Of each row of a field of stresses: how thick a plate of thickness 1 is now, sqrt(1 + 2 E_zz) with Green-Lagrange.
+  std::vector<double> thickness(const Field& stress) {
+    const auto changes = [&](std::size_t cell) {
+      return setting_.behaviours().green[cell] && setting_.points().is_plane_stress(cell);
+    };
+    std::vector<char> wanted(setting_.mesh().n_cells(), 0);
+    for (const std::int32_t cell : stress.support)
+      wanted[static_cast<std::size_t>(cell)] = changes(static_cast<std::size_t>(cell));
+    std::vector<double> factors(stress.n_rows(), 1.0);
+    if (std::find(wanted.begin(), wanted.end(), 1) == wanted.end()) return factors;
+    const Field green = strain(Strain::green_lagrange, wanted, "EPSG_ELGA");
+    const std::vector<std::int64_t> place = places(green, wanted.size());
+    const auto zz = static_cast<std::size_t>(green.component("EPZZ"));
+    for (std::size_t i = 0; i < stress.support.size(); ++i) {
+      const std::int64_t at = place[static_cast<std::size_t>(stress.support[i])];
+      for (std::size_t row = stress.first_row(i); at >= 0 && row < stress.first_row(i + 1); ++row)
+        factors[row] =
+            std::sqrt(1 + 2 * green.at(green.first_row(static_cast<std::size_t>(at)) + row - stress.first_row(i), zz));
+    }
+    return factors;
+  }
+
   Field forces(const Field& stress, std::string name) {
-    return nodal_forces(setting_.mesh(), setting_.points(), stress, setting_.moved(),
-                        displaced(setting_.mesh(), (*this)("DEPL")), std::move(name));
+    return nodal_forces(setting_.mesh(), setting_.points(), stress, setting_.behaviours().moved,
+                        displaced(setting_.mesh(), (*this)("DEPL")), thickness(stress), std::move(name));
   }
 
   /// What holds the nodes: forces of all stresses less the loads. With GROUP_MA on the nodes of these cells.

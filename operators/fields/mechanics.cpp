@@ -65,7 +65,7 @@ Field strains(const Mesh& mesh, ModelPoints& points, const Field& displacement, 
 }
 
 Field nodal_forces(const Mesh& mesh, ModelPoints& points, const Field& stress, const std::vector<char>& moved,
-                   std::span<const double> current, std::string name) {
+                   std::span<const double> current, std::span<const double> thickness, std::string name) {
   Field field = field_like(stress, std::move(name), Location::nodes);
   field.quantity = "DEPL_R";
   const int dimension = mesh.dimension;
@@ -78,8 +78,9 @@ Field nodal_forces(const Mesh& mesh, ModelPoints& points, const Field& stress, c
     const CellPoints& at = points(cell, moved[cell] ? current : std::span<const double>(mesh.coordinates));
     const auto nodes = mesh.cells[cell];
     for (int p = 0; p < at.n_points; ++p) {
-      const Eigen::Matrix3d sigma = tensors[static_cast<std::size_t>(stress.offset[i] + p)];
-      const double measure = at.measure[static_cast<std::size_t>(p)];
+      const std::size_t row = stress.first_row(i) + static_cast<std::size_t>(p);
+      const Eigen::Matrix3d sigma = tensors[row];
+      const double measure = at.measure[static_cast<std::size_t>(p)] * thickness[row];
       for (int a = 0; a < at.n_nodes; ++a) {
         double* const node = force.data() + static_cast<std::ptrdiff_t>(nodes[static_cast<std::size_t>(a)]) * dimension;
         for (int d = 0; d < dimension; ++d)

@@ -23,8 +23,9 @@ Field strains(const Mesh& mesh, ModelPoints& points, const Field& displacement, 
 
 /// Forces at nodes that the stresses do work with, the sum over cells of the integral of B^T sigma; components DX DY (DZ) on
 /// the nodes of these cells. @param stress at integration points, Cauchy @param moved one entry a cell of the mesh, not 0 where
-/// the stresses live on the current geometry (large strains) and not on the initial one @param current (n_nodes, 3)
+/// the stresses live on the current geometry (large strains) and not on the initial one @param current (n_nodes, 3) @param
+/// thickness of each row of `stress`, by which its integral is multiplied
 Field nodal_forces(const Mesh& mesh, ModelPoints& points, const Field& stress, const std::vector<char>& moved,
-                   std::span<const double> current, std::string name);
+                   std::span<const double> current, std::span<const double> thickness, std::string name);
 
 }  // namespace lacon

@@ -175,6 +175,25 @@ class Strains(OperatorTest):
             self.assertAlmostEqual(got["INVA_2"], np.sqrt(2 / 3 * (deviator**2).sum()), 14)
             np.testing.assert_allclose([got[f"PRIN_{k}"] for k in (1, 2, 3)], np.linalg.eigvalsh(tensor), atol=1e-15)
 
+    def test_plane_stress_with_plasticity_takes_the_volume_from_the_stresses(self):
+        """Uniaxial tension s: e_zz = -nu s / E - p / 2 with the plastic strain p along x."""
+        young, s, p = 1.0, 0.004, 0.03
+        across = -NU * s / young - p / 2
+        points = np.array(SHAPES["C_PLAN"][0], float)
+        self.write_mesh("mesh_1", points, [("QUAD4", list(range(4)))])
+        self.write_model("model_2", "mesh_1", ["C_PLAN/QUAD4"], [0])
+        self.write_material("material_3", ELAS={"E": young, "NU": NU})
+        self.write_material_field("material_field_4", "mesh_1", ["material_3"], [0])
+        displacement = {"quantity": "DEPL_R", "location": "NOEU", "components": ["DX", "DY"], "support": range(4), "values": points * [s / young + p, across]}
+        stress = {"quantity": "SIEF_R", "location": "ELGA", "components": COMPONENTS, "support": [0], "offset": [0, 4], "values": [(s, 0, 0, 0)] * 4}
+        self.write_result("result_5", "mesh_1", [1.0], {"DEPL": {0: displacement}, "SIEF_ELGA": {0: stress}}, model="model_2", material_field="material_field_4")
+        with h5py.File(self.path("result_5"), "a") as file:
+            file.attrs["behaviour"] = json.dumps([{"RELATION": "VMIS_ISOT_LINE", "DEFORMATION": "PETIT"}])
+        run = self.run_command("CALC_CHAMP", {"RESULTAT": concept("result_5"), "DEFORMATION": ["EPSI_ELGA"]}, result="result_5", reuse=True)
+        self.assertEqual(run.status, 0, run.stderr)
+        np.testing.assert_allclose(self.read_field("result_5", "EPSI_ELGA", 0).values, [(s / young + p, across, across, 0)] * 4, atol=1e-16)
+        self.assert_refuses("CALCCHAMP_3", "CALC_CHAMP", {"RESULTAT": concept("result_5"), "DEFORMATION": ["EPSG_NOEU"]}, "M1", result="result_5", reuse=True)
+
     def test_a_cell_turned_inside_out_by_its_displacements_is_refused_where_forces_are_wanted(self):
         points = np.array(SHAPES["D_PLAN"][0], float)
         self.write_mesh("mesh_1", points, [("QUAD4", list(range(4)))])

@@ -19,12 +19,12 @@ PRESSURE = 20.0
 
 
 class DerivedFields(StudyTest):
-    def figures(self, meshes, models, hold):
+    def figures(self, meshes, models, hold, deformation="PETIT"):
         units = []
         for k, mesh in enumerate(meshes):
             write_med(self.folder / f"{k}.med", mesh)
             units += ["--unit", f"{20 + k}={self.folder / f'{k}.med'}"]
-        run = self.run_study(COMM, *units, STUDY_MODELS=",".join(models), STUDY_HOLD=hold)
+        run = self.run_study(COMM, *units, STUDY_MODELS=",".join(models), STUDY_HOLD=hold, STUDY_DEFORMATION=deformation)
         self.assertEqual(run.status, 0, run.stdout[-4000:] + run.stderr[-4000:])
         return json.loads((self.folder / "derived_fields.json").read_text())
 
@@ -68,6 +68,23 @@ class DerivedFields(StudyTest):
         s = np.array([0, 0.3, 0.62, 1.0])
         meshes = [block(kind, s, s, None, "BODY", {"left": "LEFT", "bottom": "BASE", "top": "LOAD"}) for kind in ("TRIA3", "QUAD8")]
         self.check(self.figures(meshes, ["AXIS"] * 2, "DX LEFT,DY BASE"), area=0.5, axis=1)
+
+    def test_large_strains(self):
+        """Dead pressure of one hundredth of E: forces of Cauchy's stresses on the current geometry balance it, in plane stress with
+        the thickness as it is now, in axisymmetry on the current radius."""
+        s = np.array([0, 0.4, 1.0])
+        sides = {"left": "LEFT", "bottom": "BASE", "top": "LOAD"}
+        flat = [block("QUAD8", s, s, lambda a, b: (a + 0.3 * a * (1 - a) * b * (1 - b), b - 0.3 * b * (1 - b) * a * (1 - a)), "BODY", sides)] * 3
+        models = ["D_PLAN", "C_PLAN", "AXIS"]
+        found = self.figures(flat, models, "DX LEFT,DY BASE", "GREEN_LAGRANGE")
+        found += self.figures([brick("HEXA8", (s, s, s), None, "BODY", {(0, 0): "LEFT", (1, 0): "FRONT", (2, 0): "BASE", (2, 1): "LOAD"})],
+                              ["3D"], "DX LEFT,DY FRONT,DZ BASE", "GREEN_LAGRANGE")
+        for k, (area, axis) in enumerate(((1, 1), (1, 1), (0.5, 1), (1, 2))):
+            for figures, factor in zip(found[2 * k:2 * k + 2], (0.5, 1.0)):
+                with self.subTest(k=k, factor=factor):
+                    size = PRESSURE * area
+                    self.assertLess(figures["free"], 1e-9 * size)
+                    self.assertLess(abs(figures["resultant"][axis] - factor * size), 1e-8 * size)
 
 
 if __name__ == "__main__":
