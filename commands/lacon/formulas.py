@@ -181,8 +181,6 @@ class Expression:
 
 
 def formule(call):
-    from . import namespace
-
     k = call.keywords
     parameters, text = k["NOM_PARA"], k["VALE"].strip().replace("\n", " ")
     for parameter in parameters:
@@ -202,19 +200,26 @@ def formule(call):
 
             call.fail("FORMULE_4", "VALE", name=name, nearest=nearest(name, [*parameters, *call.study.names.user()]))
         expression.values[name] = study[name]
+    return make(call, expression)
+
+
+def make(call, expression):
+    """The formula concept of an expression. What its names stand for is saved with it as far as it can be."""
+    from . import namespace
+
     saved, lost = {}, {}
     for name, value in expression.values.items():
         try:
             saved[name] = namespace.encode(value)
         except (namespace.NotKept, RecursionError) as reason:
             lost[name] = str(reason)
-    call.keywords = {"NOM_PARA": parameters, "VALE": text, **saved}
+    call.keywords = {"NOM_PARA": expression.parameters, "VALE": expression.text, **saved}
 
     def fill(file):
         from .hdf5 import text_type
 
-        file.attrs.create("parameters", parameters, dtype=text_type())
-        file.attrs["expression"] = text
+        file.attrs.create("parameters", expression.parameters, dtype=text_type())
+        file.attrs["expression"] = expression.text
         file.attrs["constants"] = json.dumps(saved)
         file.attrs["lost"] = json.dumps(lost)
 

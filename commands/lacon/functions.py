@@ -1,4 +1,4 @@
-"""DEFI_FONCTION: functions of one parameter by points."""
+"""DEFI_FONCTION, DEFI_CONSTANTE: functions of one parameter by points; DEFI_NAPPE: of two; CALC_FONC_INTERP."""
 
 import bisect
 import math
@@ -131,3 +131,70 @@ def _points(call):
     if len(x) != len(y):
         call.fail("DEFI_FONCTION_5", path, parameters=len(x), values=len(y))
     return x, y, path
+
+
+#: what a constant is a function of
+_any_parameter = "TOUTPARA"
+
+
+def defi_constante(call):
+    k = call.keywords
+    constant = Piecewise([1.0], [k["VALE"]], left="CONSTANT", right="CONSTANT", parameter=_any_parameter, component=k["NOM_RESU"])
+    return make(call, constant, "VALE")
+
+
+def calc_fonc_interp(call):
+    k = call.keywords
+    x = k["LIST_PARA"].getValues() if "LIST_PARA" in k else k["VALE_PARA"]
+    path = "LIST_PARA" if "LIST_PARA" in k else "VALE_PARA"
+    increasing(call, x, x, "CROISSANT", path)
+    function = k["FONCTION"]
+    if function.type == "formula":
+        if len(function.getVariables()) != 1:
+            call.fail("DEFI_FONCTION_6", "FONCTION", label=function.label or function.id, parameters=", ".join(function.getVariables()))
+        like = Piecewise(x, x, parameter=function.getVariables()[0])
+    else:
+        like = function.points()
+    return make(call, described(call, x, [float(y) for y in function.on_arrays(x)], like), path)
+
+
+# ------------------------------------------------------------------------------------------------------ DEFI_NAPPE
+
+
+def defi_nappe(call):
+    """A formula of (NOM_PARA, parameter of the functions) that interpolates between functions."""
+    from . import formulas
+
+    k = call.keywords
+    increasing(call, k["PARA"], k["PARA"], k["VERIF"], "PARA")
+    curves = k.get("FONCTION") or [_curve(call, factor, i) for i, factor in enumerate(k["DEFI_FONCTION"], 1)]
+    if len(curves) != len(k["PARA"]):
+        call.fail("DEFI_FONCTION_5", "PARA", parameters=len(k["PARA"]), values=len(curves))
+    names = {curve.points().parameter for curve in curves} - {_any_parameter}
+    if len(names) != 1 or k["NOM_PARA"] in names:
+        call.fail("DEFI_FONCTION_7", "FONCTION" if "FONCTION" in k else "NOM_PARA_FONC", names=", ".join(sorted(names)) or "none", parameter=k["NOM_PARA"])
+    other = names.pop()
+    text = f"between(({k['NOM_PARA']}, {other}), parameters, curves, interpolation, sides)"
+    values = {"between": between, "parameters": list(k["PARA"]), "curves": list(curves), "interpolation": (tuple(k["INTERPOL"]) * 2)[:2],
+              "sides": (k["PROL_GAUCHE"], k["PROL_DROITE"])}
+    return formulas.make(call, formulas.Expression(text, [k["NOM_PARA"], other], values))
+
+
+def _curve(call, factor, number):
+    """A function concept for one occurrence of DEFI_FONCTION."""
+    from .commands import Call
+
+    keywords = {"NOM_PARA": call.keywords["NOM_PARA_FONC"], "NOM_RESU": call.keywords["NOM_RESU"], "VERIF": "CROISSANT", **factor}
+    return defi_fonction(Call(call.study, call.command, keywords, call.where, f"{call.label}_{number}" if call.label else ""))
+
+
+def between(point, parameters, curves, interpolation, sides):
+    """The value at (parameter, abscissa) between the curves at `parameters`. @throws AsterError DEFI_FONCTION_3 outside"""
+    parameter, x = point
+    if len(curves) == 1:
+        return Piecewise(parameters, [curves[0](x)], interpolation, *sides).value(parameter, "PARA")
+    i = min(max(bisect.bisect_right(parameters, parameter) - 1, 0), len(curves) - 2)
+    ends = [curve(x) for curve in curves[i:i + 2]]
+    local = Piecewise(parameters[i:i + 2], ends, interpolation, sides[0] if i == 0 else "EXCLU",
+                      sides[1] if i == len(curves) - 2 else "EXCLU")
+    return local.value(parameter, "PARA")

@@ -17,6 +17,9 @@ namespace {
 
 static_assert(std::endian::native == std::endian::little, "numbers go over the pipe as they are in memory");
 
+/// What a constant (DEFI_CONSTANTE) is a function of.
+constexpr std::string_view any_parameter = "TOUTPARA";
+
 /// The operator's end of the pipe to the launcher.
 class FormulaPipe {
  public:
@@ -78,7 +81,8 @@ StudyFunction::StudyFunction(const Base& base, std::string_view id) : id_(id), l
     parameters_ = std::get<Formula>(rule_).parameters;
   } else {
     rule_ = base.function(id);
-    parameters_ = {std::get<Function>(rule_).parameter};
+    if (const std::string& parameter = std::get<Function>(rule_).parameter; parameter != any_parameter)
+      parameters_ = {parameter};
   }
 }
 
@@ -110,7 +114,8 @@ std::vector<double> StudyFunction::values(std::size_t n, std::span<const Paramet
   std::vector<double> result;
   if (points == 0) return result;
   if (const Function* function = std::get_if<Function>(&rule_)) {
-    for (std::size_t i = 0; i < points; ++i) result.push_back((*function)(at(0, i), label_));
+    for (std::size_t i = 0; i < points; ++i)
+      result.push_back(columns.empty() ? function->y.front() : (*function)(at(0, i), label_));
   } else {
     std::vector<double> data;
     for (std::size_t column = 0; column < columns.size(); ++column)

@@ -132,5 +132,37 @@ FIN()
         self.ok(self.launch("more.comm", "--base", "study.base"))
 
 
+    def test_functions_of_two_parameters_constants_and_samples(self):
+        """A plane through two lines; LOG between functions; what POURSUITE finds again."""
+        self.ok(self.run_study("""
+DEBUT()
+low = DEFI_FONCTION(NOM_PARA='X', VALE=(0, 0, 1, 1), PROL_DROITE='LINEAIRE')
+high = DEFI_FONCTION(NOM_PARA='X', VALE=(0, 10, 1, 12), PROL_DROITE='LINEAIRE')
+n = DEFI_NAPPE(NOM_PARA='INST', PARA=(0, 2), FONCTION=(low, high), PROL_DROITE='CONSTANT')
+assert (n(0, 0.5), n(2, 0.5), n(1, 0.5), n(5, 0.5)) == (0.5, 11, 5.75, 11) and n.getVariables() == ['INST', 'X']
+m = DEFI_NAPPE(NOM_PARA='INST', PARA=(1, 100), NOM_PARA_FONC='X', INTERPOL='LOG', PROL_GAUCHE='LINEAIRE',
+               DEFI_FONCTION=(_F(VALE=(0, 1, 1, 1)), _F(VALE=(0, 100, 1, 100))))
+assert abs(m(10, 0.3) - 10) < 1e-12 and abs(m(0.1, 0.3) - 0.1) < 1e-12
+c = DEFI_CONSTANTE(VALE=3)
+assert c(7) == 3 and c(-1e9) == 3
+g = FORMULE(NOM_PARA='X', VALE='X**2 + c(X)', c=c)
+s = CALC_FONC_INTERP(FONCTION=g, VALE_PARA=(0, 1, 2), PROL_DROITE='CONSTANT')
+assert s.Valeurs() == [[0, 1, 2], [3, 4, 7]] and s(0.5) == 3.5 and s(9) == 7
+FIN()
+"""))
+        self.write("more.comm", "POURSUITE()\nassert n(1, 0.5) == 5.75 and abs(m(10, 0.3) - 10) < 1e-12 and c(0) == 3\nFIN()\n")
+        self.ok(self.launch("more.comm", "--base", "study.base"))
+
+    def test_functions_of_two_parameters_that_are_wrong(self):
+        for line, *words in (("DEFI_NAPPE(NOM_PARA='INST', PARA=(0, 0), FONCTION=(F, F))", "DEFI_FONCTION_1", "PARA"),
+                             ("DEFI_NAPPE(NOM_PARA='INST', PARA=(0, 1), FONCTION=F)", "DEFI_FONCTION_5"),
+                             ("DEFI_NAPPE(NOM_PARA='X', PARA=(0, 1), FONCTION=(F, F))", "DEFI_FONCTION_7", "another one than X"),
+                             ("DEFI_NAPPE(NOM_PARA='INST', PARA=(0, 1), FONCTION=(F, F))(2, 0)", "DEFI_FONCTION_3"),
+                             ("CALC_FONC_INTERP(FONCTION=FORMULE(NOM_PARA=('X', 'Y'), VALE='X'), VALE_PARA=(0, 1))", "DEFI_FONCTION_6", "X, Y"),
+                             ("CALC_FONC_INTERP(FONCTION=F, VALE_PARA=(1, 0))", "DEFI_FONCTION_1")):
+            with self.subTest(line):
+                self.refused(self.run_study(f"DEBUT()\nF = DEFI_FONCTION(NOM_PARA='X', VALE=(0, 0, 1, 1))\nA = {line}\n", "--fresh"), *words)
+
+
 if __name__ == "__main__":
     unittest.main()

@@ -217,7 +217,9 @@ class Equalities(LoadTest):
         push = ["AFFE_CHAR_MECA(MODELE=MODEL, PRES_REP=_F(GROUP_MA='TOP', PRES=5.0, CISA_2D=2.0))",
                 "AFFE_CHAR_MECA(MODELE=MODEL, FORCE_CONTOUR=_F(GROUP_MA='TOP', FX=-2.0, FY=-5.0))",
                 "AFFE_CHAR_MECA_F(MODELE=MODEL, PRES_REP=_F(GROUP_MA='TOP', PRES=formula('5 * Y'), CISA_2D=formula('Y + 1')))",
-                "AFFE_CHAR_MECA_F(MODELE=MODEL, FORCE_CONTOUR=_F(GROUP_MA='TOP', FX=formula('-2 * Y'), FY=only_inst('-5.0')))"]
+                "AFFE_CHAR_MECA_F(MODELE=MODEL, FORCE_CONTOUR=_F(GROUP_MA='TOP', FX=formula('-2 * Y'), FY=only_inst('-5.0')))",
+                "AFFE_CHAR_MECA_F(MODELE=MODEL, PRES_REP=_F(GROUP_MA='TOP', PRES=DEFI_CONSTANTE(VALE=5.0), CISA_2D=DEFI_NAPPE(NOM_PARA='Y', "
+                "PARA=(0.0, 2.0), NOM_PARA_FONC='X', DEFI_FONCTION=(_F(VALE=(0, 1, 2, 1)), _F(VALE=(0, 3, 2, 3))))))"]
         text = "model(20, 'D_PLAN')\nH = AFFE_CHAR_CINE(MODELE=MODEL, MECA_IMPO=_F(GROUP_MA='BASE', DX=0, DY=0))\n"
         for line in push:
             text += f"P = {line}\nsolve(_F(CHARGE=H), _F(CHARGE=P, FONC_MULT=RAMP))\n"
