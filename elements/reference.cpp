@@ -67,7 +67,7 @@ struct Powers {
       std::copy_n(powers, 3, value[axis]);
       std::copy_n(slopes, 3, slope[axis]);
     }
-    inverse = value[2][1] == 1.0 ? 0.0 : 1 / (1 - value[2][1]);
+    inverse = xi.size() < 3 ? 1 : value[2][1] == 1.0 ? 0.0 : 1 / (1 - value[2][1]);
   }
 
   double operator()(const Term& t) const { return value[0][t.i] * value[1][t.j] * height(t); }
@@ -128,10 +128,12 @@ void shape_functions(CellType type, std::span<const double> xi, std::span<double
   const std::size_t n = space.terms.size();
   assert(values.size() >= n);
   const Powers powers(xi);
-  std::fill_n(values.begin(), n, 0.0);
+  const double* const coefficient = space.coefficient.data();
+  double* const value = values.data();
+  std::fill_n(value, n, 0.0);
   for (std::size_t t = 0; t < n; ++t) {
     const double term = powers(space.terms[t]);
-    for (std::size_t a = 0; a < n; ++a) values[a] += space.coefficient[t * n + a] * term;
+    for (std::size_t a = 0; a < n; ++a) value[a] += coefficient[t * n + a] * term;
   }
 }
 

@@ -22,7 +22,7 @@ double dot(const Vector<D>& a, const Vector<D>& b) {
 
 /// Sum of shape_a nodes_a. @param nodes (n, D)
 template <int D>
-Vector<D> interpolate(const double* shape, const double* nodes, int n) {
+inline Vector<D> interpolate(const double* shape, const double* nodes, int n) {
   Vector<D> value{};
   for (int a = 0; a < n; ++a)
     for (int i = 0; i < D; ++i) value[i] += shape[a] * nodes[a * D + i];
@@ -31,7 +31,7 @@ Vector<D> interpolate(const double* shape, const double* nodes, int n) {
 
 /// The tangent along reference coordinate `axis`, from the first node on: a cell far from the origin loses no digits.
 template <int D>
-Vector<D> tangent(const double* gradient, int axis, const double* nodes, int n) {
+inline Vector<D> tangent(const double* gradient, int axis, const double* nodes, int n) {
   Vector<D> value{};
   for (int a = 1; a < n; ++a)
     for (int i = 0; i < D; ++i) value[i] += gradient[a * (D - 1) + axis] * (nodes[a * D + i] - nodes[i]);
@@ -40,7 +40,7 @@ Vector<D> tangent(const double* gradient, int axis, const double* nodes, int n) 
 
 /// The outward normal of a slave skin at a point, its length being the Jacobian; `scale` gets the size of its terms.
 template <int D>
-Vector<D> area_normal(const double* gradient, const double* nodes, int n, double& scale) {
+inline Vector<D> area_normal(const double* gradient, const double* nodes, int n, double& scale) {
   const Vector<D> t = tangent<D>(gradient, 0, nodes, n);
   if constexpr (D == 2) {
     scale = 0;
@@ -65,10 +65,10 @@ bool reaches_over_axis(const double* nodes, int n) {
 /// METHOD.md 3.4 and 5.4 (b): at each point the gap g = (x_m - x).n_e; with the measure J of TYPE_JACOBIEN (of the initial
 /// geometry or of the current one, in both) G = sum w J g and C = sum w J (-phi_i n_e on the slave, +phi_j n_e on the master).
 /// In axisymmetry (METHOD.md 3.9) J has the factor r, the slave's radius in the same geometry: integrals over one radian.
-template <int D, bool axis = false>
-void lac(const lacon_contact_batch* batch) {
-  const lacon_contact_batch& b = *batch;
-  const int slaves = b.n_slave_nodes, masters = b.n_master_nodes, dofs = (slaves + masters) * D;
+/// @tparam S, M nodes of the slave and of the master where they are known in advance, or 0
+template <int D, bool axis, int S, int M>
+void lac_of(const lacon_contact_batch& b) {
+  const int slaves = S > 0 ? S : b.n_slave_nodes, masters = M > 0 ? M : b.n_master_nodes, dofs = (slaves + masters) * D;
   for (std::int64_t cell = 0; cell < b.n_cells; ++cell) {
     if (b.dimension != D) {
       b.error[cell] = LACON_BAD_BATCH;
@@ -125,6 +125,19 @@ void lac(const lacon_contact_batch* batch) {
     const bool finite = std::isfinite(gap) && std::isfinite(measure) && std::isfinite(current_measure);
     b.error[cell] = over ? LACON_BAD_RADIUS : bad ? LACON_BAD_JACOBIAN : finite ? LACON_FINE : LACON_NOT_FINITE;
   }
+}
+
+/// Loops over nodes of a known number are unrolled: skins of linear cells, the most frequent ones in space.
+template <int D, bool axis = false>
+void lac(const lacon_contact_batch* batch) {
+  const auto nodes = [&](int slaves, int masters) {
+    return batch->n_slave_nodes == slaves && batch->n_master_nodes == masters;
+  };
+  if (D == 3 && nodes(4, 4)) return lac_of<D, axis, 4, 4>(*batch);
+  if (D == 3 && nodes(3, 3)) return lac_of<D, axis, 3, 3>(*batch);
+  if (D == 3 && nodes(3, 4)) return lac_of<D, axis, 3, 4>(*batch);
+  if (D == 3 && nodes(4, 3)) return lac_of<D, axis, 4, 3>(*batch);
+  lac_of<D, axis, 0, 0>(*batch);
 }
 
 const lacon_kernel kernels[] = {
