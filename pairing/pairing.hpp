@@ -38,6 +38,9 @@ struct PairingOptions {
   /// contact, whatever side of 90 degrees a deformation puts it on. At the default an error of position grows 57 times in the
   /// gap.
   double largest_angle = 89;
+  /// In space: integrate every couple to this degree whatever its facets ask for (integration_degree() in
+  /// space.cpp); 0: what they ask for. To measure what a degree leaves.
+  int degree = 0;
 };
 
 /// Why a couple of cells that see each other gives no contact cell, or a smaller one.

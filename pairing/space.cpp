@@ -592,7 +592,7 @@ void detail::pair_in_space(const Surface& slave, const Surface& master, const Pa
       const View& view = *kept_view;
       const Facet& f = masters[view.master];
       const Target target(f, e);
-      const Rule& rule = triangle_rule(integration_degree(e, f));
+      const Rule& rule = triangle_rule(options.degree > 0 ? options.degree : integration_degree(e, f));
       const std::size_t before_points = cells.weight.size(), before_vertices = cells.vertex.size();
       bool complete = true;
       for (std::size_t i = 2; i < view.region.polygon.size() && complete; ++i) {
