@@ -498,6 +498,54 @@ TEST(PairingInSpace, NamesEveryReasonOfRejection) {
   EXPECT_EQ(pair(empty.view(), slave.view()).cells.size(), 0U);
 }
 
+TEST(PairingInSpace, ForcesAndMomentsBalanceOnCurvedSkinsThatDoNotMatch) {
+  // METHOD.md 5.4 (b): lambda C with a pressure of its own for each slave cell, the slave's normal or the interpolated one of
+  // its nodes (LISSAGE); nodal forces on slave and master have no resultant and no moment, to 1e-12 of their size (times a
+  // length)
+  std::mt19937 random(25);
+  std::uniform_real_distribution<double> uniform(0.1, 1);
+  for (int trial = 0; trial < 25; ++trial) {
+    const CellType s = kinds[trial % 5], m = kinds[(trial / 5) % 5];
+    Skin3 slave = mesh({4, 4, s, false, 0.2}, wave(0, 0.06, 0.2 * trial), random, true),
+          master = mesh({3, 5, m, true, 0.2, -0.2, 1.1, -0.1, 1.3}, wave(trial % 3 - 1, 0.05, 0.7), random, true);
+    for (Skin3* skin : {&slave, &master}) Motion{0.3 * trial, 0.4, trial % 2 == 0 ? 1 : 1e3, {0.2, -0.1, 0.3}}(*skin);
+    if (trial % 4 < 2) slave.normals = nodal_normals(slave.view());
+    std::vector<double> lambda;
+    for (std::size_t c = 0; c < slave.surface.size(); ++c) lambda.push_back(-uniform(random));
+    const Pairing found = pair(slave.view(), master.view());
+    std::vector<Vec3> on_slave(slave.n_nodes()), on_master(master.n_nodes());
+    for_points(slave, master, found.cells, [&](std::size_t c, double w, const Point3& x, const Point3& y) {
+      const auto slave_nodes = slave.surface.nodes[found.cells.slave[c]],
+                 master_nodes = master.surface.nodes[found.cells.master[c]];
+      Vec3 n = x.normal;
+      if (!slave.normals.empty()) {
+        n = {};
+        for (std::size_t i = 0; i < x.shape.size(); ++i) {
+          const double* const nodal = &slave.normals[3 * static_cast<std::size_t>(slave_nodes[i])];
+          n = n + x.shape[i] * Vec3{nodal[0], nodal[1], nodal[2]};
+        }
+        n = (1 / space::norm(n)) * n;
+      }
+      const Vec3 f = (lambda[found.cells.slave[c]] * w) * n;  // on the slave: - lambda C = + lambda w phi n
+      for (std::size_t i = 0; i < x.shape.size(); ++i) on_slave[slave_nodes[i]] = on_slave[slave_nodes[i]] + x.shape[i] * f;
+      for (std::size_t i = 0; i < y.shape.size(); ++i) on_master[master_nodes[i]] = on_master[master_nodes[i]] - y.shape[i] * f;
+    });
+    Vec3 force, moment;
+    double size = 0, length = 0;
+    for (const auto& [skin, forces_on] : {std::pair(&slave, &on_slave), std::pair(&master, &on_master)})
+      for (std::size_t i = 0; i < forces_on->size(); ++i) {
+        const Vec3 x = skin->node(static_cast<std::int32_t>(i)), f = (*forces_on)[i];
+        force = force + f;
+        moment = moment + space::cross(x, f);
+        size += space::norm(f);
+        length = std::max(length, space::norm(x));
+      }
+    EXPECT_GT(size, 0.1);
+    EXPECT_LE(space::norm(force), 1e-12 * size) << trial;
+    EXPECT_LE(space::norm(moment), 1e-12 * size * length) << trial;
+  }
+}
+
 TEST(PairingInSpace, IntegratesQuadranglesThatCollapseToATriangle) {
   // two nodes in one place or three corners on a line, at any corner; flat and warped, straight and quadratic, with normals of
   // its own or of nodes; as slave and as master
