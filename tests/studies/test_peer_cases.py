@@ -59,6 +59,9 @@ class PeerCases(StudyTest):
     def test_ssnp170z_prisms_and_pyramids(self):
         self.judge("ssnp170z")
 
+    def test_ssnp173a_nested_spheres(self):
+        self.judge("ssnp173a", exact=None)
+
     def test_an_export_file_runs_the_same_case(self):
         export = self.folder / "zzzz383a.export"
         export.write_text("P time_limit 70\nP memory_limit 524\nP ncpus 1\n"

@@ -141,7 +141,8 @@ def peer_section(runner):
     if not PEER_MESHES.is_dir():
         return "## The peer's cases\n\nNot run: their meshes were not there.\n"
     rows = []
-    for name in ("zzzz383a", "zzzz383c", "zzzz383d", "zzzz383e", "ssnp170a", "ssnp170k", "ssnp170m", "ssnp170p", "ssnp170r", "ssnp170w", "ssnp170z"):
+    for name in ("zzzz383a", "zzzz383c", "zzzz383d", "zzzz383e", "ssnp170a", "ssnp170k", "ssnp170m", "ssnp170p", "ssnp170r", "ssnp170w", "ssnp170z",
+                 "ssnp173a"):
         comm, meshes = peer_checks.files(name)
         run = runner.run_study(ROOT / "tests/studies" / comm, *(w for n, f in meshes.items() for w in ("--unit", f"{n}={PEER_MESHES / f}")),
                                "--unit", f"80={runner.folder / 'out.med'}", CASE=name)
