@@ -16,9 +16,11 @@ BUILD = pathlib.Path(sys.argv[1]).resolve() if len(sys.argv) > 1 else ROOT / "bu
 os.environ.setdefault("LACON_SOURCE_DIR", str(ROOT))
 os.environ.setdefault("LACON_BIN", str(BUILD / "bin"))
 os.environ.setdefault("LACON_SHARED_CASES", str(ROOT.parent / "shared/cases"))
+os.environ.setdefault("LACON_SHARED_BENCH", str(ROOT.parent / "shared/bench"))
 sys.path[:0] = [str(ROOT / "tests/studies"), str(ROOT / "commands/studies/roller_bearing")]
 
 from study_test import PEER_MESHES, StudyTest  # noqa: E402, I001 (it says where meshes.py is)
+import convergence  # noqa: E402
 import patch  # noqa: E402
 import patch_space  # noqa: E402
 import peer_checks  # noqa: E402
@@ -137,6 +139,29 @@ Largest error of PRES relative to p, and in brackets its ratio to the difference
 """
 
 
+def convergence_section(runner):
+    cases = {**convergence.CASES, **convergence.SPACE_CASES}
+    rows = []
+    for name, found in convergence.errors(runner, cases).items():
+        counts = cases[name][1]
+        rows.append([name, ", ".join(map(str, counts)), *(f"{e.mean:.1e} ({e.largest:.1e})" for e in found),
+                     ", ".join(f"{order:.2f}" for order in convergence.orders([e.mean for e in found], counts))])
+    mean, wave = convergence.ring_pressure()
+    return f"""## Curved contact: order of the pressure
+
+Three meshes that do not match, n cells along the slave skin (in space: along each side of a third of it), LISSAGE='OUI'. Error of PRES: root
+of the mean square over the skin, in brackets the largest, relative to the largest pressure. Theory: the error of linear cells falls at least as h,
+that of quadratic ones at least as h^1.5.
+
+Spheres (ssnp173): radii {convergence.INNER:g}, {convergence.MIDDLE:g}, {convergence.OUTER:g}, E = 2000, nu = 0.3, inner pressure {convergence.PRESSURE:g}; Lame's solution
+{convergence.SPHERE:.6f} everywhere. Rings: radii 0.2, 0.6, 1, plane strain, nu = {convergence.RINGS.poisson}, E = 1e9 (linear cells), 1e11 (quadratic cells: at
+1e9 the finite displacements show, p / E = 1e-2), outer pressure 1e7 + 1e5 cos 2a; Lame's and Michell's solutions with a contact without friction,
+{mean:.3f} {wave:+.3f} cos 2a. Chords of linear cells overlap or gape by h^2 / 8 R, which at E = 2000 is a pressure of its own.
+
+{table(["study", "n", "coarse", "middle", "fine", "order of the mean"], rows)}
+"""
+
+
 def peer_section(runner):
     if not PEER_MESHES.is_dir():
         return "## The peer's cases\n\nNot run: their meshes were not there.\n"
@@ -184,7 +209,8 @@ def main():
     runner = StudyTest()
     runner.setUp()
     try:
-        sections = [make(runner) for make in (patch_section, current_section, space_section, degree_section, materials_section, peer_section, roller_section)]
+        sections = [make(runner) for make in (patch_section, current_section, space_section, degree_section, materials_section,
+                                              convergence_section, peer_section, roller_section)]
     finally:
         runner.doCleanups()
     text = "# Verification\n\nWritten by `python3 tests/verification/book.py`, which runs the studies; the same studies are tests.\n\n" + "\n".join(sections)
