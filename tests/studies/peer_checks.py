@@ -7,14 +7,19 @@ import pathlib
 CHECKS = pathlib.Path(os.environ["LACON_SHARED_CASES"]) / "checks.csv"
 
 
-#: case -> (command file, meshes by unit) where they are not CASE.comm and CASE.mmed on unit 20
-OTHERS = {**{case: ("ssnp170_orders.comm", {20: f"{case}.mmed"}) for case in ("ssnp170m", "ssnp170p", "ssnp170r", "ssnp170w")},
-          "ssnp170z": ("ssnp170z.comm", {unit: f"ssnp170z.{unit}" for unit in range(20, 28)})}
+#: case -> (command files, mesh of unit 20) where they are not CASE.comm and CASE.mmed; ssnp170z has a mesh a unit
+OTHERS = {
+    **{case: (["ssnp170_orders.comm"], f"{case}.mmed") for case in ("ssnp170m", "ssnp170p", "ssnp170r", "ssnp170w")},
+    **{case: (["ssnv104.comm"], f"{case}.mmed") for case in ("ssnv104k", "ssnv104n")},
+}
 
 
 def files(case):
-    """Command file and meshes by unit."""
-    return OTHERS.get(case, (f"{case}.comm", {20: f"{case}.mmed"}))
+    """Command files and meshes by unit."""
+    if case == "ssnp170z":
+        return ["ssnp170z.comm"], {unit: f"ssnp170z.{unit}" for unit in range(20, 28)}
+    comms, mesh = OTHERS.get(case, ([f"{case}.comm"], f"{case}.mmed"))
+    return comms, {20: mesh}
 
 
 def rows(case):

@@ -168,8 +168,8 @@ def peer_section(runner):
     rows = []
     for name in ("zzzz383a", "zzzz383c", "zzzz383d", "zzzz383e", "ssnp170a", "ssnp170k", "ssnp170m", "ssnp170p", "ssnp170r", "ssnp170w", "ssnp170z",
                  "ssnp173a"):
-        comm, meshes = peer_checks.files(name)
-        run = runner.run_study(ROOT / "tests/studies" / comm, *(w for n, f in meshes.items() for w in ("--unit", f"{n}={PEER_MESHES / f}")),
+        comms, meshes = peer_checks.files(name)
+        run = runner.run_lacon(*(ROOT / "tests/studies" / comm for comm in comms), "--base", runner.folder / f"{name}.base", *(w for n, f in meshes.items() for w in ("--unit", f"{n}={PEER_MESHES / f}")),
                                "--unit", f"80={runner.folder / 'out.med'}", CASE=name)
         count = {status: sum(c["status"] == status for c in run.checks) for status in ("OK", "NOOK", "DIFF")}
         worst = max(c["vale_calc"]["error"] for c in run.checks)
