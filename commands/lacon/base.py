@@ -24,9 +24,7 @@ class Base:
 
     def __init__(self, folder, where, make, fresh=False, force=False):
         """Open `folder`. `make`: start one where there is none; `fresh`: empty the one that is there; `force`: take up nothing of it."""
-        self.folder = pathlib.Path(os.path.abspath(folder))
-        self._made = False
-        self._objects = weakref.WeakValueDictionary()
+        self._start(folder)
         if not self.folder.exists():
             if not make:
                 fail("STUDY_2", where, folder=self.folder)
@@ -42,9 +40,7 @@ class Base:
         except BlockingIOError:
             os.close(self.lock)
             fail("STUDY_5", where, folder=self.folder)
-        self.registry = {"format": 1, "next": 1, "labels": {}, "namespace": {}}
         self.kept = kept.Kept(self, look=not force)
-        self.unsolved = {}  #: of `lacon check`: id of a concept that is not really made -> its label, where it would be
         try:
             if fresh:
                 self._empty()
@@ -56,6 +52,14 @@ class Base:
         except BaseException:
             self.close()
             raise
+
+    def _start(self, folder):
+        """What every base has, one that is only read too."""
+        self.folder = pathlib.Path(os.path.abspath(folder))
+        self.registry = {"format": 1, "next": 1, "labels": {}, "namespace": {}}
+        self.unsolved = {}  #: of `lacon check`: id of a concept that is not really made -> its label, where it would be
+        self._made = False
+        self._objects = weakref.WeakValueDictionary()
 
     def _check_folder(self, where, make):
         """A folder that is not a base is left alone."""

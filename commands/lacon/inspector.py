@@ -9,7 +9,6 @@ import pathlib
 import subprocess
 import sys
 import tempfile
-import weakref
 
 from . import base, catalog, checker, concepts, hdf5, orders
 from .messages import AsterError, fail, show
@@ -19,8 +18,7 @@ class ReadBase(base.Base):
     """A base that is looked at: not locked, not changed."""
 
     def __init__(self, folder):
-        self.folder = pathlib.Path(os.path.abspath(folder))
-        self._objects = weakref.WeakValueDictionary()
+        self._start(folder)
         if not (self.folder / "base.json").is_file():
             fail("STUDY_2", "lacon inspect", folder=self.folder)
         self._read("lacon inspect")

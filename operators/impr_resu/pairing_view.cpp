@@ -244,8 +244,8 @@ class ZoneView {
   }
 
  private:
-  /// Below it a patch is named as not wholly covered: round-off of polygons.
-  static constexpr double whole_coverage = 1 - 1e-9;
+  /// Below it a patch is named as not wholly covered: the measures of curved facets are those of a quadrature.
+  static constexpr double whole_coverage = 1 - 1e-4;
   static constexpr std::size_t most_patches = 10;
 
   const SlaveElement& slave_of(std::size_t contact_cell) const {
@@ -275,9 +275,16 @@ class ZoneView {
     const auto tell = [&](const SlaveElement& slave, std::string text) {
       if (const auto patch = told.find(slave.patch); patch != told.end()) patch->second.push_back(std::move(text));
     };
+    std::map<std::pair<std::int32_t, std::int32_t>, double> couples;  // a curved slave meets a master in several contact cells
     for (std::size_t c = 0; c < record_.pairing.cells.size(); ++c)
-      tell(slave_of(c), fmt::format("{} on {}: {:.4g} %", cell_name(slave_of(c).cell), cell_name(master_of(c)),
-                                    100 * record_.measure[c] / geometry_.whole(static_cast<std::size_t>(slave_of(c).patch))));
+      couples[{record_.pairing.cells.slave[c], record_.pairing.cells.master[c]}] += record_.measure[c];
+    for (const auto& [couple, measure] : couples) {
+      const SlaveElement& slave =
+          contact_.slaves[static_cast<std::size_t>(zone_.slaves[static_cast<std::size_t>(couple.first)])];
+      tell(slave, fmt::format("{} on {}: {:.4g} %", cell_name(slave.cell),
+                              cell_name(zone_.masters[static_cast<std::size_t>(couple.second)]),
+                              100 * measure / geometry_.whole(static_cast<std::size_t>(slave.patch))));
+    }
     for (const RejectedCouple& couple : record_.pairing.rejected)
       if (couple.slave >= 0 && couple.master >= 0)
         tell(rejected_slave(couple), fmt::format("{} on {}: {}", cell_name(rejected_slave(couple).cell),

@@ -198,6 +198,30 @@ class Inspect(StudyTest):
         self.assertIn("Pairing of RESU at instant 1\n", listing)
         self.assertNotIn("instant 0", listing)
 
+    def test_a_curved_couple_of_many_polygons_is_named_once(self):
+        def bend(x, y, z):
+            return x, y, z + 0.1 * x * x
+
+        def turn(x, y, z):
+            return bend(0.8 * x - 0.6 * y + 0.5, 0.6 * x + 0.8 * y - 0.2, z)
+
+        lines = np.linspace(0, 1, 3)
+        upper = brick("HEXA20", [lines, lines, [0, 1]], place=bend, curved=True, name="UP", sides={(2, 0): "SLAVE", (2, 1): "TOP"})
+        lower = brick("PENTA15", [np.linspace(-0.5, 1.5, 4), np.linspace(-0.5, 1.2, 4), [-1, 0]], place=turn, curved=True, name="LOW",
+                      sides={(2, 1): "MASTER", (2, 0): "BASE"})
+        write_med(self.folder / "in.med", union([upper, lower]))
+        units = [f"--unit={n}={self.folder / name}" for n, name in ((20, "in.med"), (80, "out.med"), (81, "out.vtu"), (8, "out.resu"))]
+        run = self.run_lacon(COMM, "--base", self.folder / "study.base", *units, INSPECT_MODEL="3D")
+        self.assertEqual(run.status, 0, run.stdout + run.stderr)
+        # the masters leave a corner of one patch free, all others are covered
+        [(covered, couples)] = re.findall(r"patch \d+, covered to (\S+) %: (.*)", (self.folder / "out.resu").read_text())
+        parts = re.findall(r"(M\d+ on M\d+): ([\d.e-]+) %", couples)
+        self.assertEqual(len({couple for couple, _ in parts}), len(parts))
+        self.assertAlmostEqual(sum(float(part) for _, part in parts), float(covered), delta=0.005 * (1 + len(parts)))
+        self.assertLess(float(covered), 99)
+        pairs = read_vtu(self.folder / "out_pairs_0002.vtu")
+        self.assertGreater(len(pairs.cells), 2 * len(set(zip(pairs.data["SLAVE"], pairs.data["MASTER"]))))
+
     def test_inspect_writes_both_formats_and_leaves_the_base_alone(self):
         folder = self.study("D_PLAN").folder
         before = content(folder / "study.base")
