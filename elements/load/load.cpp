@@ -194,7 +194,6 @@ LACON_KERNEL void pressure_axis(const lacon_load_batch* batch) { pressure<2, tru
 LACON_KERNEL void pressure_3d(const lacon_load_batch* batch) { pressure<3, false>(*batch); }
 LACON_KERNEL void line_2d(const lacon_load_batch* batch) { force<2, 1, false>(*batch); }
 LACON_KERNEL void line_axis(const lacon_load_batch* batch) { force<2, 1, true>(*batch); }
-LACON_KERNEL void line_3d(const lacon_load_batch* batch) { force<3, 1, false>(*batch); }
 LACON_KERNEL void face_3d(const lacon_load_batch* batch) { force<3, 2, false>(*batch); }
 LACON_KERNEL void volume_2d(const lacon_load_batch* batch) { force<2, 2, false>(*batch); }
 LACON_KERNEL void volume_axis(const lacon_load_batch* batch) { force<2, 2, true>(*batch); }
@@ -215,15 +214,10 @@ constexpr lacon_kernel load_kernel(const char* name, void (*load)(const lacon_lo
 }
 
 const lacon_kernel kernels[] = {
-    load_kernel("pressure_2d", pressure_2d, pressures_2d),
-    load_kernel("pressure_axis", pressure_axis, pressures_2d),
-    load_kernel("pressure_3d", pressure_3d, pressures_3d),
-    load_kernel("line_2d", line_2d, forces_2d),
-    load_kernel("line_axis", line_axis, forces_2d),
-    load_kernel("line_3d", line_3d, forces_3d),
-    load_kernel("face_3d", face_3d, forces_3d),
-    load_kernel("volume_2d", volume_2d, forces_2d),
-    load_kernel("volume_axis", volume_axis, forces_2d),
+    load_kernel("pressure_2d", pressure_2d, pressures_2d), load_kernel("pressure_axis", pressure_axis, pressures_2d),
+    load_kernel("pressure_3d", pressure_3d, pressures_3d), load_kernel("line_2d", line_2d, forces_2d),
+    load_kernel("line_axis", line_axis, forces_2d),        load_kernel("face_3d", face_3d, forces_3d),
+    load_kernel("volume_2d", volume_2d, forces_2d),        load_kernel("volume_axis", volume_axis, forces_2d),
     load_kernel("volume_3d", volume_3d, forces_3d),
 };
 const lacon_plugin_table table = {LACON_ABI,

@@ -48,7 +48,6 @@ const CellKeyword cell_keywords[] = {
     {"PRES_REP", "CHAR_MECA_PRES", 0, 1, "skin cell", &Load::pressure},
     {"FORCE_CONTOUR", "CHAR_MECA_FORC", 2, 1, "edge of a plane or axisymmetric body", &Load::force},
     {"FORCE_FACE", "CHAR_MECA_FORC", 3, 1, "face of a 3D body", &Load::force},
-    {"FORCE_ARETE", "CHAR_MECA_FORC", 3, 2, "edge in 3D", &Load::force},
     {"FORCE_INTERNE", "CHAR_MECA_FORC", 0, 0, "body cell", &Load::force},
 };
 
