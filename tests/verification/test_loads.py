@@ -11,6 +11,7 @@ sys.path.insert(0, str(pathlib.Path(os.environ["LACON_SOURCE_DIR"]) / "tests/stu
 
 from study_test import StudyTest  # noqa: E402, I001 (it says where meshes.py is)
 from meshes import block, brick, write_med  # noqa: E402
+from patch import patch_mesh  # noqa: E402
 from results import Result  # noqa: E402
 
 YOUNG, POISSON = 2000.0, 0.3
@@ -334,6 +335,28 @@ solve(_F(CHARGE=H), _F(CHARGE=U, FONC_MULT=RAMP))
         self.assert_pivots(run, 4)  # five nodes
         result = Result(self.folder / "loads.base", "R[0]")
         self.assert_near(self.displacement(result, 2, 2), np.stack([0 * mesh.points[:, 1], -40 / (YOUNG * 2.0) * mesh.points[:, 1]], axis=1))
+
+    def test_relations_and_contact_stand_in_one_system(self):
+        """The patch test with a top that goes down as one: LAGS_C = -p, negative pivots = active patches + relations."""
+        mesh = patch_mesh("QUAD8", "TRIA6")  # 7 patches; 15 nodes on top
+        text = """
+MESH = LIRE_MAILLAGE(UNITE=20)
+MESH = CREA_MAILLAGE(MAILLAGE=MESH, DECOUPE_LAC=_F(GROUP_MA_ESCL="SLAVE"))
+MODEL = AFFE_MODELE(MAILLAGE=MESH, AFFE=_F(TOUT="OUI", PHENOMENE="MECANIQUE", MODELISATION="D_PLAN"))
+FIELD = AFFE_MATERIAU(MAILLAGE=MESH, AFFE=_F(TOUT="OUI", MATER=MATTER))
+TOUCH = DEFI_CONTACT(MODELE=MODEL, FORMULATION="CONTINUE", ALGO_RESO_GEOM="NEWTON", ALGO_RESO_CONT="NEWTON",
+                     ZONE=_F(GROUP_MA_ESCL="SLAVE", GROUP_MA_MAIT="MASTER", ALGO_CONT="LAC", CONTACT_INIT="OUI"))
+H = AFFE_CHAR_CINE(MODELE=MODEL, MECA_IMPO=(_F(GROUP_MA="AXIS", DX=0), _F(GROUP_MA="BASE", DY=0)))
+U = AFFE_CHAR_MECA(MODELE=MODEL, LIAISON_UNIF=_F(GROUP_MA="LOAD", DDL="DY"))
+P = AFFE_CHAR_MECA(MODELE=MODEL, PRES_REP=_F(GROUP_MA="LOAD", PRES=25.0))
+solve(_F(CHARGE=H), _F(CHARGE=U), _F(CHARGE=P, FONC_MULT=RAMP), CONTACT=TOUCH)
+"""
+        run = self.run_text([mesh], text)
+        self.assertEqual(run.status, 0, run.stdout[-3000:] + run.stderr[-3000:])
+        result = Result(self.folder / "loads.base", "R[0]")
+        support, values = result.field("CONT_ELEM", 2)
+        np.testing.assert_allclose(values["PRES"], -25.0, rtol=1e-9)
+        self.assert_pivots(run, len(support) + 14)
 
     def test_relations_between_two_nodes_and_between_two_sides(self):
         """LIAISON_DDL against the displacement it amounts to; LIAISON_GROUP between opposite sides: a uniform strain on any mesh."""
