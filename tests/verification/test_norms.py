@@ -32,7 +32,7 @@ class Norms(StudyTest):
     def test_the_plane(self):
         """Order p + 1. Errors at the points alone: linear triangles and segments have no point where the error is small."""
         s, t = np.array([0, 0.3, 0.62, 1.0]), np.array([0, 0.45, 1.0])
-        kinds = {"TRIA3": (2, 2), "QUAD4": (2, 2), "TRIA6": (3, 3), "QUAD8": (3, 3)}
+        kinds = {"TRIA3": (2, 2), "QUAD8": (3, 3)}
         found = self.slopes([block(kind, s, t, None, "BODY", {"top": "LOAD"}) for kind in kinds], ["D_PLAN"] * len(kinds), 2)
         for (kind, orders), slopes in zip(kinds.items(), found):
             with self.subTest(cell=kind):
