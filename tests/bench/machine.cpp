@@ -1,6 +1,6 @@
-// The yardsticks of the end-to-end bench, as JSON: dgemm, a copy of memory, and the factorisation by MUMPS of the matrix of a cube of
-// HEXA8 (107 811 displacements for 32 cells an edge) with one thread of this process.
-// usage: bench_machine [cells an edge]
+// The yardsticks of the end-to-end bench, as JSON: dgemm, a copy of memory, and the factorisation by MUMPS of the matrix of a
+// cube of HEXA8 (107 811 displacements for 32 cells an edge) with one thread of this process. usage: bench_machine [cells an
+// edge]
 #include <fmt/format.h>
 
 #include <chrono>
@@ -48,7 +48,8 @@ lacon::SymmetricMatrix cube(const lacon::Numbering& numbering, int n) {
     for (int j = 0; j < n; ++j)
       for (int i = 0; i < n; ++i) {
         std::vector<std::int32_t> nodes;
-        for (int corner = 0; corner < 8; ++corner) nodes.push_back(node(i + (corner & 1), j + (corner >> 1 & 1), k + (corner >> 2)));
+        for (int corner = 0; corner < 8; ++corner)
+          nodes.push_back(node(i + (corner & 1), j + (corner >> 1 & 1), k + (corner >> 2)));
         cells.push_back(nodes);
       }
   lacon::SymmetricMatrix matrix(numbering, cells, {});
