@@ -288,8 +288,7 @@ template <Kind K, Measure M, Law L>
       if (!green && b.previous_stress)
         for (int i = 0; i < n_stress; ++i) s[i] += lanes(b.previous_stress, here * n_stress + i);
       if constexpr (K == Kind::plane_stress) s[2] = Lanes{};
-      point.tangent.lambda = lambda;
-      point.tangent.mu = mu;
+      point.tangent = {lambda, mu};
       if constexpr (plastic) {
         Lanes strain = b.previous_variable ? lanes(b.previous_variable, here * n_variables) : Lanes{}, flows;
         lacon::solid::return_to_criterion<K>(s, point.tangent, strain, flows, {b.curve, b.n_curve}, errors);
@@ -298,11 +297,7 @@ template <Kind K, Measure M, Law L>
           lanes(b.variable, here * n_variables + 1) = flows;
         }
         sum += strain;
-        if (b.elastic_matrix) {
-          point.tangent.lambda = lambda;
-          point.tangent.mu = mu;
-          point.tangent.rank = Lanes{};
-        }
+        if (b.elastic_matrix) point.tangent = {lambda, mu};
       }
 
       sum += point.dv;

@@ -8,6 +8,10 @@
 
 namespace lacon::solid {
 
+// Von Mises stresses this far above the yield stress, as a share of it, are on the criterion: a step of no length does not
+// flow.
+constexpr double on_criterion = 1e-12;
+
 /// How a stress answers to a change of strain: lambda tr(de) I + 2 mu de - rank (direction : de) direction.
 template <Kind K>
 struct Tangent {
@@ -110,7 +114,7 @@ template <Kind K>
   bool any = false;
   for (int l = 0; l < LACON_LANES; ++l) {
     q[l] = std::sqrt(1.5 * square[l]);
-    if (!(q[l] > hardening(p[l]).stress)) continue;
+    if (!(q[l] > (1 + on_criterion) * hardening(p[l]).stress)) continue;
     PlasticStep step;
     if constexpr (K == Kind::plane_stress) {
       const double sum = stress[0][l] + stress[1][l], difference = stress[0][l] - stress[1][l];

@@ -25,6 +25,7 @@ Ragged<std::int32_t> nodes_of_elements(const StaticProblem& problem) {
 }
 
 constexpr double vanishing_force = 1e-6;         // of the largest force so far
+constexpr double gap_share = 1e-2;               // of RESI_GEOM: largest |g_T| / h, 1e-8 by default
 constexpr double vanishing_displacement = 1e-8;  // of the smallest patch
 constexpr double round_off = 1e-15;              // a few units in the last place
 
@@ -51,10 +52,12 @@ Newton::Newton(const StaticProblem& problem, const NewtonCriteria& criteria, con
   if (problem.contact) {
     contact_.emplace(problem);
     criteria_.resi_geom = problem.contact->resi_geom;
+    criteria_.constraint = gap_share * criteria_.resi_geom;
   }
   linear_ = !problem.has_following_loads();
   for (const ElementSet& set : problem.solids) {
     linear_ = linear_ && set.linear;
+    has_memory_ = has_memory_ || set.kernel->has_memory;
     points_.push_back(
         {std::vector<double>(set.cells.size() * set.n_stress()), std::vector<double>(set.cells.size() * set.n_variables())});
   }
@@ -221,7 +224,9 @@ int Newton::solve(double instant, StaticState& state, const std::function<void(c
     if (problem_.imposed[dof]) step[dof] = values[dof] - state.displacement[dof];
 
   const StaticState previous = state;
-  if (criteria_.prediction != criteria_.matrix) assemble(state, previous, criteria_.prediction);
+  // plasticity answers to a step of no length elastically: a body that is unloaded now does not overshoot on the tangent of the
+  // flow that the last instant ended with, which makes Newton's method go to and fro between two states
+  if (has_memory_ || criteria_.prediction != criteria_.matrix) assemble(state, previous, criteria_.prediction);
   std::string unmet;
   for (int iteration = 0; iteration <= criteria_.iterations; ++iteration) {
     std::int64_t changed = 0;  // the first patch whose status has changed

@@ -89,6 +89,7 @@ class Newton {
   SaddlePointSolver solver_;
   bool linear_ = true;          ///< the stiffness never changes
   bool has_stiffness_ = false;  ///< and is in the matrix
+  bool has_memory_ = false;     ///< a law goes from the last state in equilibrium to the present one
   std::optional<ContactState> contact_;
   std::vector<PointValues> points_;         ///< of each solid set at the last evaluation
   std::optional<std::int32_t> inside_out_;  ///< a cell that the last evaluation found turned inside out
