@@ -22,6 +22,8 @@ _entry = re.compile(r"([a-z_]+_\d+)(\.h5)?(\.partial)?$")
 class Base:
     """An open base. One run at a time: the folder is locked until close()."""
 
+    unsolved = ()  #: of `lacon check` a dictionary: id of a concept that is not really made -> its label, where it would be
+
     def __init__(self, folder, where, make, fresh=False, force=False):
         """Open `folder`. `make`: start one where there is none; `fresh`: empty the one that is there; `force`: take up nothing of it."""
         self._start(folder)

@@ -191,7 +191,7 @@ class Command:
         if "result" not in row:
             return None
         identifier = reused.id if reused else run.base.new_id(row["result"])
-        run.base.unsolved[identifier] = (label or self.name, where)
+        run.base.unsolved = {**dict(run.base.unsolved), identifier: (label or self.name, where)}
         return self._result(run, identifier, label, where, reused, named)
 
     def _unchanged(self, run, kind, key, where, identifier, reused):
