@@ -149,6 +149,7 @@ class Command:
             key = run.base.kept.order_key(made, orders.operator_folder() / row["operator"], made["units"])
             found = self._unchanged(run, row["result"], key, where, identifier, reused)
             if found:
+                self._protect_data(run, row, keywords, units)
                 return self._result(run, found, label, where, reused, named), orders.Outcome(0, [], {}, 0.0)
         copy = orders.keep_copy(run.base, identifier) if reused else None
         try:
@@ -172,10 +173,17 @@ class Command:
             copy.unlink()
         elif result:
             run.base.kept.enter(identifier, key, outcome.messages)
+        self._protect_data(run, row, keywords, units)
         run.written_units.update((k, units[k]) for k, keyword in _unit_numbers(row, keywords) if keyword["unit"] == "out")
         if not result:
             return None, outcome
         return self._result(run, identifier, label, where, reused, named), outcome
+
+    def _protect_data(self, run, row, keywords, units):
+        """The files that the command has read are data of the study."""
+        for number, keyword in _unit_numbers(row, keywords):
+            if keyword["unit"] == "in":
+                run.has_read(units[number])
 
     def _result(self, run, identifier, label, where, reused, named):
         """The object of a concept that is there now, in the registry and under the names it was given."""

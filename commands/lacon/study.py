@@ -144,9 +144,12 @@ class Study:
             fail("COMMAND_4", where, unit=number)
         if not os.path.isfile(path) or not os.access(path, os.R_OK):
             fail("COMMAND_5", where, unit=number, file=path)
+        return os.path.abspath(path)
+
+    def has_read(self, path):
+        """A command that ended well has read this file: a datum, unless this run wrote it."""
         if os.path.realpath(path) not in map(os.path.realpath, self.written_units.values()):
             self.protect(path)
-        return os.path.abspath(path)
 
     def output_unit(self, number, suffix, where):
         """The file of a unit that a command writes; beside the command file where none was given."""
