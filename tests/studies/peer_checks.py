@@ -11,6 +11,9 @@ CHECKS = pathlib.Path(os.environ["LACON_SHARED_CASES"]) / "checks.csv"
 OTHERS = {
     **{case: (["ssnp170_orders.comm"], f"{case}.mmed") for case in ("ssnp170m", "ssnp170p", "ssnp170r", "ssnp170w")},
     **{case: (["ssnv104.comm"], f"{case}.mmed") for case in ("ssnv104k", "ssnv104n")},
+    **{case: (["ssnp150.comm", "ssnp150.com1"], mesh) for case, mesh in (("ssnp150c", "ssnp150c.mmed"), ("ssnp150f", "ssnp150e.mmed"))},
+    **{case: (["ssnp165.comm"], "ssnp165a.mmed") for case in ("ssnp165c", "ssnp165e")},
+    **{f"ssnv219{case}": (["ssnv219.comm"], f"ssnv219{mesh}.mmed") for case, mesh in zip("egikl", "edddl")},
 }
 
 
