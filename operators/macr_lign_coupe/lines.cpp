@@ -1,0 +1,169 @@
+#include "lacon/operators/macr_lign_coupe/lines.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <map>
+#include <numbers>
+
+#include "lacon/catalog/messages.hpp"
+
+namespace lacon {
+namespace {
+
+using Eigen::Vector3d;
+
+/// A keyword with as many coordinates as the space has.
+Vector3d coordinates(const Mesh& mesh, const Keywords& line, const char* keyword) {
+  const std::vector<double> given = line.reals(keyword);
+  if (given.size() != static_cast<std::size_t>(mesh.dimension))
+    fail(
+        "LIGNCOUPE_3",
+        {{"keyword", line.path(keyword)}, {"found", std::to_string(given.size())}, {"wanted", std::to_string(mesh.dimension)}});
+  Vector3d point = Vector3d::Zero();
+  std::copy(given.begin(), given.end(), point.data());
+  return point;
+}
+
+LinePoint at(const Vector3d& point, double along) { return {along, {point[0], point[1], point[2]}, {}, {}}; }
+
+std::vector<LinePoint> segment(const Mesh& mesh, const Keywords& line) {
+  const Vector3d first = coordinates(mesh, line, "COOR_ORIG"), last = coordinates(mesh, line, "COOR_EXTR");
+  const std::int64_t n = line.integer("NB_POINTS");
+  std::vector<LinePoint> points;
+  for (std::int64_t i = 0; i < n; ++i) {
+    const double t = static_cast<double>(i) / static_cast<double>(n - 1);
+    points.push_back(at((1 - t) * first + t * last, t * (last - first).norm()));
+  }
+  return points;
+}
+
+std::vector<LinePoint> arc(const Mesh& mesh, const Keywords& line) {
+  const Vector3d centre = coordinates(mesh, line, "CENTRE"), first = coordinates(mesh, line, "COOR_ORIG");
+  Vector3d axis = Vector3d::UnitZ();
+  if (mesh.dimension == 3) {
+    if (!line.has("DNOR")) fail("LIGNCOUPE_8", {{"keyword", line.path("DNOR")}});
+    axis = coordinates(mesh, line, "DNOR");
+  }
+  const Vector3d arm = first - centre;
+  if (axis.norm() == 0 || arm.norm() == 0 || std::abs(axis.normalized().dot(arm)) > 1e-6 * arm.norm())
+    fail("LIGNCOUPE_8", {{"keyword", line.path(mesh.dimension == 3 ? "DNOR" : "CENTRE")}});
+  const double angle = line.real("ANGLE") * std::numbers::pi / 180;
+  const std::int64_t n = line.integer("NB_POINTS");
+  std::vector<LinePoint> points;
+  for (std::int64_t i = 0; i < n; ++i) {
+    const double t = static_cast<double>(i) / static_cast<double>(n - 1);
+    const Vector3d point = centre + Eigen::AngleAxisd(t * angle, axis.normalized()) * arm;
+    points.push_back(at(point, t * std::abs(angle) * arm.norm()));
+  }
+  return points;
+}
+
+/// The nodes of a group of line cells from one end of the chain to the other, in the direction of the first cell.
+std::vector<std::int32_t> chain(const Mesh& mesh, const std::string& group, const std::string& keyword) {
+  const auto cells = cells_of_group(mesh, group, keyword);
+  const auto refuse = [&](std::int32_t cell, const char* why) {
+    fail("LIGNCOUPE_4", {{"keyword", keyword}, {"group", group}, {"cell", cell_name(cell)}, {"why", why}});
+  };
+  std::map<std::int32_t, std::vector<std::size_t>> around;  // vertex -> cells, by place in the group
+  for (std::size_t i = 0; i < cells.size(); ++i) {
+    const auto cell = static_cast<std::size_t>(cells[i]);
+    if (mesh.row(cell).dimension != 1) refuse(cells[i], "is no line cell");
+    for (const std::int32_t vertex : mesh.cells[cell].first(2)) {
+      around[vertex].push_back(i);
+      if (around[vertex].size() > 2) refuse(cells[i], "is at a node where more than two cells meet");
+    }
+  }
+  std::vector<char> used(cells.size(), 0);
+  // nodes beyond `start` when leaving it through `i`, up to an end or a cell that is used
+  const auto walk = [&](std::size_t i, std::int32_t start) {
+    std::vector<std::int32_t> nodes;
+    while (true) {
+      used[i] = 1;
+      const auto own = mesh.cells[static_cast<std::size_t>(cells[i])];
+      const bool forward = own[0] == start;
+      std::vector<std::int32_t> middle(own.begin() + 2, own.end());
+      if (!forward) std::reverse(middle.begin(), middle.end());
+      nodes.insert(nodes.end(), middle.begin(), middle.end());
+      start = own[forward ? 1 : 0];
+      nodes.push_back(start);
+      const auto& next = around.at(start);
+      const auto free = std::find_if(next.begin(), next.end(), [&](std::size_t j) { return !used[j]; });
+      if (free == next.end()) return nodes;
+      i = *free;
+    }
+  };
+  const std::int32_t first = mesh.cells[static_cast<std::size_t>(cells[0])][0];
+  std::vector<std::int32_t> forward = walk(0, first), nodes;
+  const auto& at_first = around.at(first);
+  if (const auto back = std::find_if(at_first.begin(), at_first.end(), [&](std::size_t j) { return !used[j]; });
+      back != at_first.end()) {
+    nodes = walk(*back, first);
+    std::reverse(nodes.begin(), nodes.end());
+  }
+  if (const auto left = std::find(used.begin(), used.end(), 0); left != used.end())
+    refuse(cells[static_cast<std::size_t>(left - used.begin())], "does not hang together with the first one");
+  nodes.push_back(first);
+  nodes.insert(nodes.end(), forward.begin(), forward.end());
+  return nodes;
+}
+
+std::vector<LinePoint> at_nodes(const Mesh& mesh, std::span<const std::int32_t> nodes) {
+  std::vector<LinePoint> points;
+  for (const std::int32_t node : nodes) {
+    const Eigen::Map<const Vector3d> here(mesh.point(static_cast<std::size_t>(node)).data());
+    LinePoint point = at(here, 0);
+    if (!points.empty())
+      point.along = points.back().along + (here - Eigen::Map<const Vector3d>(points.back().position.data())).norm();
+    point.nodes = {node};
+    point.weights = {1.0};
+    points.push_back(std::move(point));
+  }
+  return points;
+}
+
+/// Find the cell of each point.
+void locate(std::vector<LinePoint>& points, const Mesh& mesh, const CellLocator& locator, const Keywords& line) {
+  std::optional<double> limit;
+  if (line.has("DISTANCE_MAX")) limit = line.real("DISTANCE_MAX");
+  const auto show = [&](const LinePoint& point) {
+    return fmt::format("({:.6g})", fmt::join(point.position.begin(), point.position.begin() + mesh.dimension, ", "));
+  };
+  int outside = 0;
+  double furthest = 0;
+  std::string where;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    std::optional<PointInCell> found = locator.find(points[i].position, limit);
+    if (!found)
+      fail("LIGNCOUPE_1", {{"keyword", line.path("TYPE")}, {"number", std::to_string(i + 1)}, {"point", show(points[i])}});
+    const auto cell = static_cast<std::size_t>(found->cell);
+    points[i].nodes.assign(mesh.cells[cell].begin(), mesh.cells[cell].end());
+    points[i].weights = std::move(found->weights);
+    if (!found->outside) continue;
+    ++outside;
+    if (found->distance >= furthest) {
+      furthest = found->distance;
+      where = show(points[i]);
+    }
+  }
+  if (outside > 0 && !limit)
+    inform("LIGNCOUPE_2", {{"keyword", line.path("TYPE")},
+                           {"count", std::to_string(outside)},
+                           {"distance", fmt::format("{:.3g}", furthest)},
+                           {"point", where}});
+}
+
+}  // namespace
+
+std::vector<LinePoint> line_points(const Mesh& mesh, const CellLocator& locator, const Keywords& line) {
+  const std::string type = line.text("TYPE");
+  if (type == "GROUP_NO") return at_nodes(mesh, nodes_of_group(mesh, line.text("GROUP_NO"), line.path("GROUP_NO")));
+  if (type == "GROUP_MA") return at_nodes(mesh, chain(mesh, line.text("GROUP_MA"), line.path("GROUP_MA")));
+  std::vector<LinePoint> points = type == "ARC" ? arc(mesh, line) : segment(mesh, line);
+  locate(points, mesh, locator, line);
+  return points;
+}
+
+}  // namespace lacon

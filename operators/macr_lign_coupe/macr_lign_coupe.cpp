@@ -1,0 +1,231 @@
+#include "lacon/operators/macr_lign_coupe/macr_lign_coupe.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <optional>
+
+#include "lacon/catalog/messages.hpp"
+#include "lacon/operators/fields/layout.hpp"
+#include "lacon/operators/fields/selection.hpp"
+#include "lacon/operators/macr_lign_coupe/lines.hpp"
+
+namespace lacon {
+namespace {
+
+struct Named {
+  std::string name, type;
+  Table::Cell cell;
+};
+using Row = std::vector<Named>;
+
+/// Add a row to a table; a column that it has not yet is missing in the rows before.
+void add_row(Table& table, const Row& row) {
+  const std::size_t n = table.n_rows();
+  for (Table::Column& column : table.columns) column.cells.emplace_back();
+  for (const Named& one : row) {
+    auto column = std::find_if(table.columns.begin(), table.columns.end(), [&](const auto& c) { return c.name == one.name; });
+    if (column == table.columns.end())
+      column = table.columns.insert(column, {one.name, one.type, std::vector<Table::Cell>(n + 1)});
+    column->cells.back() = one.cell;
+  }
+}
+
+/// The fields that the order means.
+struct Subject {
+  std::optional<Result> result;
+  std::string name, mesh;
+  std::vector<std::int64_t> orders{0};
+};
+
+Subject subject_of(const Base& base, const Keywords& keywords) {
+  Subject subject;
+  if (!keywords.has("RESULTAT")) {
+    subject.name = base.label(keywords.concept_id("CHAM_GD"));
+    subject.mesh = base.field(keywords.concept_id("CHAM_GD")).mesh;
+    return subject;
+  }
+  subject.result = base.result(keywords.concept_id("RESULTAT"));
+  subject.mesh = subject.result->mesh;
+  subject.name = keywords.text("NOM_CHAM");
+  subject.orders.clear();
+  const auto files = subject.result->fields.find(subject.name);
+  for (const std::int64_t o : selected_orders(base, *subject.result, keywords))
+    if (names_instants(keywords) || (files != subject.result->fields.end() && files->second.contains(o)))
+      subject.orders.push_back(o);
+  if (subject.orders.empty())
+    base.field(*subject.result, subject.name, subject.result->orders.empty() ? 0 : subject.result->orders.back());  // says why
+  return subject;
+}
+
+/// A node of less weight than this has a part in the value by round-off alone: the point is on a node or a side without it.
+constexpr double weight_of_round_off = 1e-10;
+
+/// A field at the points of a line.
+struct Values {
+  std::vector<std::string> components;
+  std::vector<std::vector<std::optional<double>>> at;  ///< (component, point)
+};
+
+Values interpolate(const Field& field, const std::vector<std::int64_t>& row_of_node, const std::vector<LinePoint>& points,
+                   const std::vector<std::string>& components) {
+  Values values{components, {}};
+  for (const std::string& name : components) {
+    const auto c = static_cast<std::size_t>(field.component(name));
+    std::vector<std::optional<double>>& line = values.at.emplace_back();
+    for (const LinePoint& point : points) {
+      std::optional<double> sum = 0.0;
+      for (std::size_t a = 0; a < point.nodes.size() && sum; ++a) {
+        const std::int64_t row = row_of_node[static_cast<std::size_t>(point.nodes[a])];
+        if (row >= 0 && field.has(static_cast<std::size_t>(row), c))
+          *sum += point.weights[a] * field.at(static_cast<std::size_t>(row), c);
+        else if (std::abs(point.weights[a]) > weight_of_round_off)
+          sum.reset();
+      }
+      line.push_back(sum);
+    }
+  }
+  return values;
+}
+
+void add_values(Table& table, const Row& head, const std::vector<LinePoint>& points, const Values& values) {
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    Row row = head;
+    row.push_back({"ABSC_CURV", "R", points[i].along});
+    for (std::size_t d = 0; d < 3; ++d) row.push_back({fmt::format("COOR_{}", "XYZ"[d]), "R", points[i].position[d]});
+    for (std::size_t c = 0; c < values.components.size(); ++c)
+      row.push_back({values.components[c], "R", values.at[c][i] ? Table::Cell(*values.at[c][i]) : Table::Cell()});
+    add_row(table, row);
+  }
+}
+
+/// The six quantities of one component along a line.
+std::array<double, 6> moments(const std::vector<LinePoint>& points, const std::vector<double>& f) {
+  const double length = points.back().along;
+  double mean = 0, first = 0;
+  for (std::size_t i = 0; i + 1 < points.size(); ++i) {
+    const double step = points[i + 1].along - points[i].along;
+    const double arm = points[i].along - length / 2, next = points[i + 1].along - length / 2;
+    mean += step * (f[i] + f[i + 1]) / 2 / length;
+    // Simpson's rule, exact for the product of two linear functions
+    first += step * (f[i] * arm + f[i + 1] * next + (f[i] + f[i + 1]) * (arm + next)) / 6 * 12 / (length * length);
+  }
+  return {mean,
+          first,
+          *std::min_element(f.begin(), f.end()),
+          *std::max_element(f.begin(), f.end()),
+          mean - first / 2,
+          mean + first / 2};
+}
+
+void add_means(Table& table, const Row& head, const std::vector<LinePoint>& points, const Values& values, const Keywords& line,
+               const std::string& field) {
+  if (points.back().along == 0) fail("LIGNCOUPE_6", {{"keyword", line.path("OPERATION")}});
+  std::vector<std::array<double, 6>> columns;
+  for (std::size_t c = 0; c < values.components.size(); ++c) {
+    std::vector<double> f;
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      if (!values.at[c][i])
+        fail("LIGNCOUPE_7", {{"keyword", line.path("OPERATION")},
+                             {"component", values.components[c]},
+                             {"field", field},
+                             {"number", std::to_string(i + 1)}});
+      f.push_back(*values.at[c][i]);
+    }
+    columns.push_back(moments(points, f));
+  }
+  static constexpr std::array names{"MOMENT_0", "MOMENT_1", "MINIMUM", "MAXIMUM", "MOYE_INT", "MOYE_EXT"};
+  for (std::size_t q = 0; q < names.size(); ++q) {
+    Row row = head;
+    row.push_back({"QUANTITE", "K16", names[q]});
+    for (std::size_t c = 0; c < columns.size(); ++c) row.push_back({values.components[c], "R", columns[c][q]});
+    add_row(table, row);
+  }
+}
+
+/// What the rows of a line are called: INTITULE, the group, or its number.
+std::string title(const Keywords& line, std::size_t number) {
+  for (const char* keyword : {"INTITULE", "GROUP_NO", "GROUP_MA"})
+    if (line.has(keyword)) return line.text(keyword);
+  return fmt::format("l.coupe{}", number);
+}
+
+/// The cells in which points are sought: those of VIS_A_VIS, or all.
+std::vector<std::int32_t> searched_cells(const Mesh& mesh, const Keywords& keywords) {
+  std::vector<std::int32_t> cells;
+  for (const Keywords& facing : keywords.factors("VIS_A_VIS"))
+    for (const std::string& group : facing.texts("GROUP_MA_1")) {
+      const auto members = cells_of_group(mesh, group, facing.path("GROUP_MA_1"));
+      cells.insert(cells.end(), members.begin(), members.end());
+    }
+  if (!keywords.has("VIS_A_VIS")) {
+    cells.resize(mesh.n_cells());
+    std::iota(cells.begin(), cells.end(), 0);
+  }
+  std::sort(cells.begin(), cells.end());
+  return cells;
+}
+
+/// The components of NOM_CMP, of the line or of all lines; without it all.
+std::vector<std::string> wanted_components(const Field& field, const std::string& name, const Keywords& keywords,
+                                           const Keywords& line) {
+  for (const Keywords* given : {&line, &keywords}) {
+    if (!given->has("NOM_CMP")) continue;
+    for (const std::string& component : given->texts("NOM_CMP"))
+      if (field.component(component) < 0)
+        fail("CREACHAMP_14", {{"keyword", given->path("NOM_CMP")},
+                              {"component", component},
+                              {"field", name},
+                              {"known", fmt::format("{}", fmt::join(field.components, ", "))}});
+    return given->texts("NOM_CMP");
+  }
+  return field.components;
+}
+
+}  // namespace
+
+void macr_lign_coupe(const Order& order, const Base& base) {
+  const Keywords& keywords = order.keywords;
+  const Subject subject = subject_of(base, keywords);
+  const Mesh mesh = base.mesh(subject.mesh);
+  const CellLocator locator(mesh, searched_cells(mesh, keywords));
+  Table table;
+  std::size_t number = 0;
+  for (const Keywords& line : keywords.factors("LIGN_COUPE")) {
+    const std::vector<LinePoint> points = line_points(mesh, locator, line);
+    const Row name{{"INTITULE", "K24", title(line, ++number)}};
+    for (const std::int64_t o : subject.orders) {
+      const Field field =
+          subject.result ? base.field(*subject.result, subject.name, o) : base.field(keywords.concept_id("CHAM_GD"));
+      if (field.location != Location::nodes)
+        fail("LIGNCOUPE_5", {{"field", subject.name}, {"location", std::string(location_name(field.location))}});
+      const std::string keyword = subject.result ? "NOM_CHAM" : "CHAM_GD";
+      if (field.quantity.ends_with("_F")) fail("CREACHAMP_12", {{"field", subject.name}, {"keyword", keyword}});
+      Row head = name;
+      if (subject.result)
+        head.insert(head.end(), {{"RESU", "K8", subject.result->label},
+                                 {"NOM_CHAM", "K16", subject.name},
+                                 {"NUME_ORDRE", "I", o},
+                                 {"INST", "R", field.instant}});
+      else
+        head.push_back({"CHAM_GD", "K8", subject.name});
+      const Values values =
+          interpolate(field, places(field, mesh.n_nodes()), points, wanted_components(field, subject.name, keywords, line));
+      if (std::ranges::none_of(
+              values.at, [](const auto& c) { return std::ranges::any_of(c, [](const auto& v) { return v.has_value(); }); }))
+        fail("LIGNCOUPE_9", {{"keyword", line.path("TYPE")},
+                             {"field", subject.name},
+                             {"components", fmt::format("{}", fmt::join(values.components, ", "))}});
+      if (line.text("OPERATION") == "MOYENNE")
+        add_means(table, head, points, values, line, subject.name);
+      else
+        add_values(table, head, points, values);
+    }
+  }
+  base.store(table);
+}
+
+}  // namespace lacon

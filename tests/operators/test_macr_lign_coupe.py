@@ -1,0 +1,171 @@
+"""macr_lign_coupe alone: fields by hand along lines through distorted meshes, against closed forms."""
+
+import math
+import unittest
+
+import h5py
+import numpy as np
+from lacon_test import OperatorTest, concept
+
+HEAD = ["INTITULE", "RESU", "NOM_CHAM", "NUME_ORDRE", "INST"]
+PLACE = ["ABSC_CURV", "COOR_X", "COOR_Y", "COOR_Z"]
+
+
+def bricks(n, seed=2):
+    """n x n x n HEXA8 of the unit cube, inner nodes moved."""
+    random = np.random.default_rng(seed)
+    points, number = [], {}
+    for i, j, k in np.ndindex(n + 1, n + 1, n + 1):
+        inner = all(0 < a < n for a in (i, j, k))
+        number[i, j, k] = len(points)
+        points.append(np.array([i, j, k]) / n + inner * random.uniform(-0.2, 0.2, 3) / n)
+    corners = [(0, 0, 0), (1, 0, 0), (1, 1, 0), (0, 1, 0), (0, 0, 1), (1, 0, 1), (1, 1, 1), (0, 1, 1)]
+    cells = [("HEXA8", [number[i + a, j + b, k + c] for a, b, c in corners]) for i, j, k in np.ndindex(n, n, n)]
+    return np.array(points), cells
+
+
+class MacrLignCoupe(OperatorTest):
+    def write(self, points, cells, values, instants=(0.0, 1.0), present=None, **groups):
+        """MESH, and RESU whose DEPL at order k is (1 + k) times `values`."""
+        points = np.asarray(points, float)
+        self.write_mesh("mesh_1", points, cells, **groups)
+        values = np.asarray(values, float)
+        field = {"quantity": "DEPL_R", "location": "NOEU", "components": ["DX", "DY", "DZ"][:values.shape[1]], "support": range(len(points)),
+                 "present": present}
+        self.write_result("result_2", "mesh_1", instants, {"DEPL": {k: {**field, "values": (1 + k) * values} for k in range(len(instants))}},
+                          label="RESU")
+
+    def plane(self):
+        """Two unit squares side by side, DX = x, and on top of both, not joined, a rectangle with DX = x + 10; DY = x y."""
+        points = [(0, 0), (1, 0), (2, 0), (0, 1), (1, 1), (2, 1), (0, 1), (2, 1), (2, 2), (0, 2)]
+        cells = [("QUAD4", [0, 1, 4, 3]), ("QUAD4", [1, 2, 5, 4]), ("QUAD4", [6, 7, 8, 9]), ("SEG2", [4, 3]), ("SEG2", [5, 4]), ("SEG2", [6, 7]),
+                 ("SEG2", [1, 4])]
+        self.write(points, cells, [(x + 10 * (i > 5), x * y) for i, (x, y) in enumerate(points)], node_groups={"LINE": [0, 1, 2], "ONE": [2]},
+                   cell_groups={"LOW": [0, 1], "UP": [2], "TOP": [3, 4], "APART": [3, 5], "FORK": [3, 4, 6], "ALL": [0, 1, 2]})
+
+    def lines(self, *lines, **keywords):
+        run = self.run_command("MACR_LIGN_COUPE", {**self.subject(keywords), "LIGN_COUPE": list(lines)}, result="table_9", label="T")
+        self.assertEqual(run.status, 0, run.stderr)
+        self.messages = [m["id"] for m in run.messages]
+        with h5py.File(self.base / "table_9.h5") as file:
+            return self.read_table(file)
+
+    def subject(self, keywords):
+        return keywords if "CHAM_GD" in keywords else {"RESULTAT": concept("result_2"), "NOM_CHAM": "DEPL", **keywords}
+
+    def refuses(self, identifier, line, *words, **keywords):
+        self.assert_refuses(identifier, "MACR_LIGN_COUPE", {**self.subject(keywords), "LIGN_COUPE": line}, *words, result="table_9")
+
+    def column(self, rows, name):
+        return [row[name] for row in rows]
+
+    def test_a_linear_field_along_a_segment_through_distorted_bricks(self):
+        points, cells = bricks(4)
+        gradient = np.array([[1.0, -2.0, 0.5], [0.3, 0.0, 4.0], [0.0, 1.0, 1.0]])
+        self.write(points, cells, points @ gradient.T + 0.25)
+        start, end = np.array([0.03, 0.1, 0.0]), np.array([0.9, 0.77, 1.0])
+        rows = self.lines({"NB_POINTS": 17, "COOR_ORIG": [*start], "COOR_EXTR": [*end], "INTITULE": "it"})
+        self.assertEqual(list(rows[0]), [*HEAD, *PLACE, "DX", "DY", "DZ"])
+        self.assertEqual([tuple(rows[i][c] for c in HEAD) for i in (0, 17)], [("it", "RESU", "DEPL", 0, 0.0), ("it", "RESU", "DEPL", 1, 1.0)])
+        expected = start + np.linspace(0, 1, 17)[:, None] * (end - start)
+        for k in (0, 1):
+            own = rows[17 * k:17 * (k + 1)]
+            np.testing.assert_allclose([[row[c] for c in PLACE[1:]] for row in own], expected, atol=1e-15)
+            np.testing.assert_allclose(self.column(own, "ABSC_CURV"), np.linspace(0, 1, 17) * np.linalg.norm(end - start), atol=1e-15)
+            np.testing.assert_allclose([[row[c] for c in ("DX", "DY", "DZ")] for row in own], (1 + k) * (expected @ gradient.T + 0.25), atol=1e-12)
+
+    def test_an_arc_in_space(self):
+        points, cells = bricks(3)
+        self.write(points, cells, points)
+        rows = self.lines({"TYPE": "ARC", "NB_POINTS": 5, "CENTRE": [0.2, 0.2, 0.5], "COOR_ORIG": [0.8, 0.2, 0.5], "ANGLE": 90.0, "DNOR": [0.0, 0.0, 2.0]},
+                          NUME_ORDRE=[0])
+        for row, angle in zip(rows, np.linspace(0, math.pi / 2, 5)):
+            found = [row[c] for c in ("COOR_X", "COOR_Y", "COOR_Z", "DX", "DY", "DZ", "ABSC_CURV")]
+            place = [0.2 + 0.6 * math.cos(angle), 0.2 + 0.6 * math.sin(angle), 0.5]
+            np.testing.assert_allclose(found, [*place, *place, 0.6 * angle], atol=1e-13)
+
+    def test_groups_are_lines_of_nodes(self):
+        self.plane()
+        rows = self.lines({"TYPE": "GROUP_NO", "GROUP_NO": "LINE", "NOM_CMP": ["DX"]}, {"TYPE": "GROUP_MA", "GROUP_MA": "TOP"}, INST=[0.0])
+        self.assertEqual(self.column(rows, "INTITULE"), ["LINE"] * 3 + ["TOP"] * 3)
+        self.assertEqual(self.column(rows, "ABSC_CURV"), [0, 1, 2, 0, 1, 2])
+        self.assertEqual(self.column(rows, "COOR_X"), [0, 1, 2, 2, 1, 0])  # TOP runs as its first cell does
+        self.assertEqual(self.column(rows, "DX"), [0, 1, 2, 2, 1, 0])
+        self.assertEqual(self.column(rows, "DY"), [None] * 3 + [2, 1, 0])
+
+    def test_a_closed_chain_of_quadratic_edges_comes_back(self):
+        points = [(0, 0), (1, 0), (0, 1), (0.5, 0), (0.5, 0.5), (0, 0.5)]
+        cells = [("TRIA6", [0, 1, 2, 3, 4, 5]), ("SEG3", [0, 1, 3]), ("SEG3", [0, 2, 5]), ("SEG3", [1, 2, 4])]
+        self.write(points, cells, points, instants=(0.0,), cell_groups={"AROUND": [1, 2, 3]})
+        rows = self.lines({"TYPE": "GROUP_MA", "GROUP_MA": "AROUND"})
+        self.assertEqual([(r["DX"], r["DY"]) for r in rows], [points[i] for i in (0, 3, 1, 4, 2, 5, 0)])
+        self.assertAlmostEqual(rows[-1]["ABSC_CURV"], 2 + math.sqrt(2), delta=1e-15)
+
+    def test_means_along_a_line(self):
+        self.plane()
+        rows = self.lines({"NB_POINTS": 9, "COOR_ORIG": [0.0, 0.5], "COOR_EXTR": [2.0, 0.5], "OPERATION": "MOYENNE"}, NUME_ORDRE=[1])
+        self.assertEqual(list(rows[0]), [*HEAD, "QUANTITE", "DX", "DY"])
+        self.assertEqual(rows[0]["INTITULE"], "l.coupe1")
+        found = {row["QUANTITE"]: (row["DX"], row["DY"]) for row in rows}
+        for name, (dx, dy) in {"MOMENT_0": (2, 1), "MOMENT_1": (4, 2), "MINIMUM": (0, 0), "MAXIMUM": (4, 2), "MOYE_INT": (0, 0), "MOYE_EXT": (4, 2)}.items():
+            np.testing.assert_allclose(found.pop(name), (dx, dy), atol=1e-14)
+        self.assertEqual(found, {})
+
+    def test_two_sides_of_an_interface(self):
+        self.plane()
+        line = {"NB_POINTS": 3, "COOR_ORIG": [0.0, 1.0], "COOR_EXTR": [2.0, 1.0]}
+        for group, values in (("LOW", [0, 1, 2]), ("UP", [10, 11, 12])):
+            self.assertEqual(self.column(self.lines(line, NUME_ORDRE=[0], VIS_A_VIS={"GROUP_MA_1": group}), "DX"), values)
+
+    def test_a_field_of_its_own_with_a_component_that_some_nodes_lack(self):
+        self.plane()
+        self.write_field("field_3.h5", "NEUT", "NEUT_R", "NOEU", ["X1", "X2"], range(6), [[i, 2 * i] for i in range(6)], "mesh_1",
+                         present=[[1, i != 0] for i in range(6)])
+        with h5py.File(self.base / "field_3.h5", "a") as file:
+            file.attrs.update({"lacon_type": "field", "version": np.int64(1), "id": "field_3", "label": "F", "command": "BY_HAND",
+                               "keywords": "{}", "references": '["mesh_1"]'})
+        rows = self.lines({"NB_POINTS": 3, "COOR_ORIG": [0.5, 0.0], "COOR_EXTR": [1.5, 0.0]}, CHAM_GD=concept("field_3"))
+        self.assertEqual(list(rows[0]), ["INTITULE", "CHAM_GD", *PLACE, "X1", "X2"])
+        np.testing.assert_allclose(self.column(rows, "X1"), [0.5, 1, 1.5], atol=1e-15)
+        # X2 is missing in the first cell, but at the node that it shares with the second
+        self.assertEqual(self.column(rows, "X2")[0], None)
+        np.testing.assert_allclose(self.column(rows, "X2")[1:], [2, 3], atol=1e-14)
+
+    def test_points_outside(self):
+        self.plane()
+        line = {"NB_POINTS": 3, "COOR_ORIG": [0.5, -0.1], "COOR_EXTR": [1.5, -0.1]}
+        rows = self.lines(line, NUME_ORDRE=[0])
+        self.assertEqual(self.messages, ["LIGNCOUPE_2"])
+        np.testing.assert_allclose(self.column(rows, "DX"), [0.5, 1, 1.5], atol=1e-7)
+        self.lines({**line, "DISTANCE_MAX": 0.11})
+        self.assertEqual(self.messages, [])
+        self.refuses("LIGNCOUPE_1", {**line, "DISTANCE_MAX": 0.09}, "the point 1", "(0.5, -0.1)", "LIGN_COUPE/TYPE")
+        self.refuses("LIGNCOUPE_1", {**line, "COOR_EXTR": [1.5, -1.0]}, "the point 2")
+
+    def test_refused(self):
+        self.plane()
+        line = {"NB_POINTS": 3, "COOR_ORIG": [0.0, 0.0], "COOR_EXTR": [2.0, 0.0]}
+        self.refuses("LIGNCOUPE_3", {**line, "COOR_EXTR": [1.0, 0.0, 0.0]}, "COOR_EXTR", "3 coordinates")
+        self.refuses("CREACHAMP_14", {**line, "NOM_CMP": ["DZ"]}, "DZ")
+        self.refuses("MESH_1", {"TYPE": "GROUP_NO", "GROUP_NO": "LINES"}, "LINES")
+        self.refuses("FIELDS_2", line, "0.7", INST=[0.7])
+        self.refuses("RESULT_1", line, "SIEF_NOEU", NOM_CHAM="SIEF_NOEU")
+        for group, why in (("APART", "M6 does not hang together"), ("FORK", "more than two"), ("LOW", "M1 is no line cell")):
+            self.refuses("LIGNCOUPE_4", {"TYPE": "GROUP_MA", "GROUP_MA": group}, group, why)
+        self.refuses("LIGNCOUPE_6", {"TYPE": "GROUP_NO", "GROUP_NO": "ONE", "OPERATION": "MOYENNE"}, "one place")
+        self.refuses("LIGNCOUPE_8", {"TYPE": "ARC", "NB_POINTS": 3, "CENTRE": [0.5, 0.5], "COOR_ORIG": [0.5, 0.5], "ANGLE": 90.0}, "CENTRE")
+
+    def test_fields_that_no_line_meets(self):
+        self.plane()
+        field = {"quantity": "SIEF_R", "components": ["SIXX"]}
+        self.write_result("result_2", "mesh_1", [0.0], {
+            "SIEF_ELNO": {0: {**field, "location": "ELNO", "support": [0], "offset": [0, 4], "values": [[1.0]] * 4}},
+            "SIEF_NOEU": {0: {**field, "location": "NOEU", "support": [0, 1, 3, 4], "values": [[1.0]] * 4}}}, label="RESU")
+        line = {"NB_POINTS": 3, "COOR_ORIG": [0.5, 0.5], "COOR_EXTR": [1.5, 0.5]}
+        self.refuses("LIGNCOUPE_5", line, "ELNO", NOM_CHAM="SIEF_ELNO")
+        self.refuses("LIGNCOUPE_7", {**line, "OPERATION": "MOYENNE"}, "SIXX", "point 3", NOM_CHAM="SIEF_NOEU")
+        self.refuses("LIGNCOUPE_9", {**line, "COOR_ORIG": [1.2, 0.5]}, "SIXX", NOM_CHAM="SIEF_NOEU")
+
+
+if __name__ == "__main__":
+    unittest.main()
