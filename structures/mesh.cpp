@@ -30,8 +30,9 @@ const Group* find(const std::vector<Group>& groups, std::string_view name) {
   return at == groups.end() ? nullptr : &*at;
 }
 
-std::span<const std::int32_t> members(const std::vector<Group>& groups, std::string_view name, std::string_view what,
-                                      std::string_view keyword) {
+/// The members of a group of `groups`. @param others the groups of the other kind, `what` and `other` the names of the kinds
+std::span<const std::int32_t> members(const std::vector<Group>& groups, const std::vector<Group>& others, std::string_view name,
+                                      std::string_view what, std::string_view other, std::string_view keyword) {
   const Group* group = find(groups, name);
   if (!group) {
     std::vector<std::string> names;
@@ -40,10 +41,13 @@ std::span<const std::int32_t> members(const std::vector<Group>& groups, std::str
     const std::string near = nearest_name(name, names);
     std::string known;
     for (const std::string& n : names) known += (known.empty() ? "" : ", ") + n;
+    const std::string hint = find(others, name) ? "; there is a " + std::string(other) + " group of this name"
+                             : near.empty()     ? ""
+                                                : "; did you mean '" + near + "'?";
     fail("MESH_1", {{"keyword", std::string(keyword)},
                     {"what", std::string(what)},
                     {"group", std::string(name)},
-                    {"hint", near.empty() ? "" : "; did you mean '" + near + "'?"},
+                    {"hint", hint},
                     {"known", known.empty() ? "(it has none)" : known}});
   }
   if (group->members.empty())
@@ -93,11 +97,11 @@ std::string nearest_name(std::string_view name, std::span<const std::string> nam
 }
 
 std::span<const std::int32_t> cells_of_group(const Mesh& mesh, std::string_view group, std::string_view keyword) {
-  return members(mesh.cell_groups, group, "cell", keyword);
+  return members(mesh.cell_groups, mesh.node_groups, group, "cell", "node", keyword);
 }
 
 std::span<const std::int32_t> nodes_of_group(const Mesh& mesh, std::string_view group, std::string_view keyword) {
-  return members(mesh.node_groups, group, "node", keyword);
+  return members(mesh.node_groups, mesh.cell_groups, group, "node", "cell", keyword);
 }
 
 std::vector<std::int32_t> nodes_of_cells(const Mesh& mesh, std::span<const std::int32_t> cells) {

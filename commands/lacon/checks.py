@@ -6,6 +6,8 @@ digits, within TOLE_MACHINE. A missed reference is NOOK; a missed VALE_CALC alon
 
 import math
 
+from . import concepts
+
 #: below it VALE_CALC is zero, and a relative judgement has no meaning
 _zero = 1e-16
 
@@ -163,7 +165,7 @@ def _nearest_target(value, targets):
 def order_of(call, test, path):
     """(order number, instant) that INST or NUME_ORDRE names."""
     instants = test["RESULTAT"].instants()
-    known = ", ".join(f"{order} (INST {t:g})" for order, t in instants[:12]) + (", ..." if len(instants) > 12 else "")
+    known = concepts.listed(instants)
     if "NUME_ORDRE" in test:
         found = [(order, t) for order, t in instants if order == test["NUME_ORDRE"]]
         if not found:

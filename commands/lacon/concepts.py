@@ -288,6 +288,11 @@ class Formula(Concept):
         return self.expression().text
 
 
+def listed(instants):
+    """The first order numbers and instants of a result, for messages."""
+    return ", ".join(f"{order} (INST {t:g})" for order, t in instants[:12]) + (", ..." if len(instants) > 12 else "")
+
+
 class Result(Concept):
     type = "result"
 
@@ -346,6 +351,8 @@ class Result(Concept):
             raise ValueError(f"getField: para is {para!r}; results here know NUME_ORDRE and INST")
         field = self.field(name, order)
         if field is None:
+            if isinstance(order, int) and order not in dict(instants):
+                fail("TEST_RESU_1", "getField", label=self.label, what=f"order number {order}", known=listed(instants))
             known = ", ".join(sorted(self.LIST_CHAMPS())) or "none"
             fail("RESULT_1", "getField", label=self.label, field=name, order=order, known=known)
         return field

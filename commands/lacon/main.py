@@ -1,5 +1,6 @@
 """The launcher: `lacon study.comm --unit 20=mesh.med`, `lacon study.export`, and tools: `lacon help DEFI_CONTACT`, `lacon inspect`."""
 
+import os
 import pathlib
 import sys
 
@@ -54,7 +55,13 @@ def main(arguments=None):
         import importlib
 
         tool = importlib.import_module(f".{subcommands[arguments[0]]}", __package__)
-        return guarded(lambda: (tool.run(arguments[1:]), ""))[0]
+        try:
+            status = guarded(lambda: (tool.run(arguments[1:]), ""))[0]
+            sys.stdout.flush()
+            return status
+        except BrokenPipeError:  # `lacon help STAT_NON_LINE | head`: who reads has seen enough
+            os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())  # what is still to be written at exit goes nowhere
+            return done
     parser, options = parse(arguments)
     units = units_of(parser, options)
     status, diagnostic = guarded(lambda: _run(options, units))

@@ -1,7 +1,9 @@
 """The launcher: units, exports, exit statuses, the diagnosis, alarms, exceptions in command files, orders."""
 
 import json
+import os
 import pathlib
+import subprocess
 import sys
 import tempfile
 import unittest
@@ -325,6 +327,7 @@ assert list(part.valeurs) == [-25.0, -25.0] and part.noeud == [2, 5]
 assert R.getAccessParameters() == {'NUME_ORDRE': [0, 1, 2], 'INST': [0.0, 0.5, 1.0]} == R.LIST_VARI_ACCES()
 assert 'DEPL' in R.LIST_CHAMPS() and R.getMesh() is M and R.getModel().getMesh() is M and R.getLastTime() == 1.0
 for wrong, word in ((lambda: R.getField('VITE', 1), 'has no field VITE at order 1'), (lambda: R.getField('DEPL', 0.7, 'INST'), 'INST 0.7'),
+                    (lambda: R.getField('DEPL', 9), 'no order number 9'),
                     (lambda: R.getField('DEPL', 1).toSimpleFieldOnCells(), 'toSimpleFieldOnNodes'),
                     (lambda: R.getField('DEPL', 1).getValues('DZ'), 'DX, LAGS_C'),
                     (lambda: M.getCells('BODYY'), 'nearest one is BODY'), (lambda: M.getConnectivities(), "no 'getConnectivities' here")):
@@ -386,6 +389,12 @@ FIN()
         run = self.launch("help", "MECA_STATIQUE")
         self.assertEqual(run.status, 2)
         self.assertIn("not available", run.out)
+
+    def test_help_into_a_pipe_that_closes(self):
+        shell = f"set -o pipefail; {sys.executable} -m lacon help STAT_NON_LINE AFFE_CHAR_MECA CREA_CHAMP POST_ELEM | true"
+        for _ in range(3):
+            done = subprocess.run(["bash", "-c", shell], env={**os.environ, "PYTHONPATH": str(ROOT / "commands")}, text=True, capture_output=True)
+            self.assertEqual((done.returncode, done.stderr), (0, ""))
 
     def test_help_about_every_command(self):
         from lacon import catalog

@@ -79,7 +79,7 @@ class Loads(OperatorTest):
         for name in ("N8", "N0", "N01", "N-1", "A1", "N1x", "N", "N99999999999999999999"):
             self.refuses_imposed("CHARGE_1", [{"NOEUD": [name], "DX": 0.0}], name)
         self.refuses_imposed("MESH_1", [{"GROUP_MA": ["TOPP"], "DX": 0.0}], "TOPP", "TOP")
-        self.refuses_imposed("MESH_1", [{"GROUP_NO": ["TOP"], "DX": 0.0}], "node", "TOP")
+        self.refuses_imposed("MESH_1", [{"GROUP_NO": ["TOP"], "DX": 0.0}], "no node group 'TOP'; there is a cell group of this name")
         self.refuses_imposed("MESH_2", [{"GROUP_MA": ["EMPTY"], "DX": 0.0}], "EMPTY")
 
     # ------------------------------------------------------------------------------------------ pressures
