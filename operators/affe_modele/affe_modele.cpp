@@ -120,12 +120,14 @@ Model affe_modele(const Mesh& mesh, const Registry& registry, const Keywords& ke
 
   std::map<CellType, std::int64_t> without;
   std::map<std::string, std::int64_t> counts;
+  bool body = false;
   for (std::size_t cell = 0; cell < given.size(); ++cell) {
     if (!given[cell]) {
       ++without[mesh.types[cell]];
       model.element.push_back(-1);
       continue;
     }
+    body = body || given[cell]->role != catalog::Role::skin;
     const std::string name(given[cell]->name);
     auto at = std::find(model.elements.begin(), model.elements.end(), name);
     if (at == model.elements.end()) at = model.elements.insert(at, name);
@@ -133,6 +135,7 @@ Model affe_modele(const Mesh& mesh, const Registry& registry, const Keywords& ke
     ++counts[name];
   }
   for (const auto& [name, count] : counts) fmt::print("  {:<24} {:>9} cells\n", name, count);
+  if (!body) inform("MODELE_7", {{"space", model.dimension == 3 ? "space" : "the plane"}});
   if (!without.empty()) inform("MODELE_5", {{"cells", cell_types(without)}});
   return model;
 }

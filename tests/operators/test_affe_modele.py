@@ -49,6 +49,11 @@ class AffeModele(OperatorTest):
         self.model(affe(GROUP_MA=["LEFT"]), affe(GROUP_MA=["SKIN"]))
         self.assertEqual(self.elements(), ["D_PLAN/QUAD4", None, "D_PLAN/SEG2", "D_PLAN/SEG2", None])
 
+    def test_a_model_without_body_raises_an_alarm(self):
+        for case in (affe(GROUP_MA=["SKIN"]), affe(GROUP_MA=["LEFT", "RIGHT"], MODELISATION="3D")):  # faces of no body
+            self.assertEqual(self.ids(self.model(case), "A"), ["MODELE_7"])
+            self.path("model_2").unlink()
+
     def test_a_plug_in_brings_a_modelisation_and_the_later_occurrence_wins(self):
         folder = self.folder / "plugins" / "stiff"
         folder.mkdir(parents=True)
