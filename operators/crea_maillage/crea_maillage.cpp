@@ -8,6 +8,7 @@
 
 #include "lacon/catalog/messages.hpp"
 #include "lacon/operators/crea_maillage/order_change.hpp"
+#include "lacon/operators/crea_maillage/restriction.hpp"
 #include "lacon/operators/meshing/body.hpp"
 #include "lacon/operators/meshing/checks.hpp"
 #include "lacon/operators/meshing/cut.hpp"
@@ -111,9 +112,15 @@ Mesh crea_maillage(const Mesh& mesh, const Keywords& keywords) {
     if (occurrences.size() != 1) fail("ORDER_4", {{"keyword", "DECOUPE_LAC"}, {"expected", "given once"}});
     return cut_and_tell(mesh, cut_of(occurrences[0], keywords.integer("INFO")));
   }
+  if (keywords.has("RESTREINT")) {
+    refuse_cut_mesh(mesh, "RESTREINT");
+    Mesh made = restricted(mesh, keywords.factors("RESTREINT").at(0));
+    print_counts(mesh, made);
+    return made;
+  }
   const auto change =
       std::find_if(std::begin(changes), std::end(changes), [&](const Change& c) { return keywords.has(c.keyword); });
-  if (change == std::end(changes)) fail("ORDER_2", {{"keyword", "DECOUPE_LAC, LINE_QUAD, QUAD_LINE or HEXA20_27"}});
+  if (change == std::end(changes)) fail("ORDER_2", {{"keyword", "DECOUPE_LAC, LINE_QUAD, QUAD_LINE, HEXA20_27 or RESTREINT"}});
   refuse_cut_mesh(mesh, change->keyword);
   Mesh made = mesh;
   for (const Keywords& factor : keywords.factors(change->keyword))

@@ -57,6 +57,23 @@ class CreaMaillage(OperatorTest):
                          {"CORNERS": [0, 2], "LOW": [1, 0, 4, 5], "WHOLE": [0, 1, 2, 3, 4, 5, 6, 7], "TOP": [2, 3]})
         self.assertEqual(self.ids(run), ["DECOUPE_8", "DECOUPE_8", "MESH1_3"])
 
+    def test_a_part_of_a_mesh_keeps_the_named_groups_or_all_that_are_left(self):
+        self.write_mesh("mesh_1", SQUARE, CELLS, GROUPS, {"CORNERS": [2, 0], "LEFT": [3, 0], "LAST": [3]})
+        part = {"MAILLAGE": concept("mesh_1"), "RESTREINT": {"GROUP_MA": ["TOP", "RIGHT"]}}
+        for more, cell_groups, node_groups in (
+                ({}, {"RIGHT": [0], "TOP": [1]}, {}),
+                ({"TOUT_GROUP_MA": "OUI", "GROUP_NO": ["LAST"]}, {"RIGHT": [0], "TOP": [1], "ALL": [0, 1]}, {"LAST": [2]}),
+                ({"TOUT_GROUP_NO": "OUI"}, {"RIGHT": [0], "TOP": [1]}, {"CORNERS": [1], "LEFT": [2], "LAST": [2]})):
+            run = self.run_command("CREA_MAILLAGE", {**part, "RESTREINT": [{**part["RESTREINT"], **more}]}, "mesh_2")
+            self.assertEqual((run.status, run.messages), (0, []), run.stderr)
+            mesh = self.read_mesh("mesh_2")
+            np.testing.assert_array_equal(mesh.coordinates[:, :2], SQUARE[1:])
+            self.assertEqual((mesh.types, mesh.cells), (["SEG2", "SEG2"], [[0, 1], [2, 1]]))
+            self.assertEqual({name: list(cells) for name, cells in mesh.cell_groups.items()}, cell_groups)
+            self.assertEqual({name: list(nodes) for name, nodes in mesh.node_groups.items()}, node_groups)
+        self.assert_refuses("MESH_1", "CREA_MAILLAGE", {**part, "RESTREINT": [{"GROUP_MA": ["TOPP"]}]}, "TOPP", result="mesh_3")
+        self.assert_refuses("MESH_1", "CREA_MAILLAGE", {**part, "RESTREINT": [{"GROUP_MA": ["TOP"], "GROUP_NO": ["X"]}]}, "X", result="mesh_3")
+
     def test_quality_is_a_line_and_with_info_2_a_table(self):
         run = self.run_command("CREA_MAILLAGE", self.cut(["LOW"]), "mesh_2")
         # M6 and M8 have a corner between (0, 1.5) and (1, 1.5)
