@@ -263,7 +263,8 @@ std::optional<std::int32_t> evaluate_solids(const ElementSet& set, const Mesh& m
                                  .curve = set.curve.data(),
                                  .n_curve = static_cast<std::int32_t>(set.curve.size() / 3),
                                  .n_variables = set.kernel->n_variables,
-                                 .elastic_matrix = wanted == SolidMatrix::elastic};
+                                 .elastic_matrix = wanted == SolidMatrix::elastic,
+                                 .stressless_matrix = wanted == SolidMatrix::stressless};
     set.kernel->solid(&call);
     const auto inverted = batch.check(errors);
     if (!inside_out) inside_out = inverted;

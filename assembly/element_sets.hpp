@@ -83,7 +83,8 @@ struct SolidValues {
   std::span<const double> variable;  ///< (n_points, n_variables): internal variables
 };
 
-enum class SolidMatrix { none, tangent, elastic };
+/// The tangent without the terms of the present stress has no instability but that of the law.
+enum class SolidMatrix { none, tangent, stressless, elastic };
 
 /// What solid elements are evaluated at. Displacements are those of the mesh, (n_nodes, dimension). The last state in
 /// equilibrium may be left empty, which is the natural state; its stresses and variables are those of the set.

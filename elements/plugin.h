@@ -63,7 +63,9 @@ typedef struct lacon_solid_batch {
   const double* curve;                 /* (n_curve, 3), for all elements: plastic strain p from 0 on, yield stress R(p), slope
                                           behind p; a last slope that is not a number ends the curve */
   int32_t n_curve, n_variables;
-  int32_t elastic_matrix; /* 1: the matrix is that of the law's elastic part */
+  int32_t elastic_matrix;    /* 1: the matrix is that of the law's elastic part */
+  int32_t stressless_matrix; /* 1: without the terms by which present stresses turn and move: the matrix is positive semi-definite
+                                unless the law softens */
 } lacon_solid_batch;
 
 /* Elements (bodies, skins, edges) under a load that has values at each integration point. */

@@ -350,7 +350,9 @@ template <Kind K, Measure M, Law L>
             lanes(force, a * D + i) += point.dv * f;
           }
       if (!matrix) continue;
-      if constexpr (updated)
+      if (b.stressless_matrix)
+        for (Lanes& component : s) component = Lanes{};
+      if (updated && !b.stressless_matrix)
         add_updated_matrix<K, L>(point, nodes, matrix);
       else
         add_matrix<K, M, L>(point, nodes, matrix);

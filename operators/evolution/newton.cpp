@@ -70,11 +70,17 @@ StaticState Newton::initial_state() {
     contact_->update_geometry(state.displacement);
     state.patches = contact_->initial();
   }
-  assemble(state, state, criteria_.matrix);
+  assemble(state, state, suited(criteria_.matrix, state));
   return state;
 }
 
+SolidMatrix Newton::suited(SolidMatrix asked, const StaticState& state) const {
+  const bool touches = has_memory_ && contact_ && contact_->n_constraints(state.patches) > 0;
+  return asked == SolidMatrix::tangent && !linear_ && (touches || unstable_) ? SolidMatrix::stressless : asked;
+}
+
 void Newton::assemble(const StaticState& state, const StaticState& previous, SolidMatrix wanted) {
+  present_ = wanted;
   const bool keep_stiffness = linear_ && has_stiffness_;
   std::vector<Coupling> couplings = relations_.couplings();
   if (contact_) {
@@ -226,7 +232,9 @@ int Newton::solve(double instant, StaticState& state, const std::function<void(c
   const StaticState previous = state;
   // plasticity answers to a step of no length elastically: a body that is unloaded now does not overshoot on the tangent of the
   // flow that the last instant ended with, which makes Newton's method go to and fro between two states
-  if (has_memory_ || criteria_.prediction != criteria_.matrix) assemble(state, previous, criteria_.prediction);
+  unstable_ = false;
+  if (const SolidMatrix wanted = suited(criteria_.prediction, state); has_memory_ || wanted != present_)
+    assemble(state, previous, wanted);
   std::string unmet;
   for (int iteration = 0; iteration <= criteria_.iterations; ++iteration) {
     std::int64_t changed = 0;  // the first patch whose status has changed
@@ -235,6 +243,14 @@ int Newton::solve(double instant, StaticState& state, const std::function<void(c
     line.constraints = relations_.n_constraints() + (contact_ ? contact_->n_constraints(state.patches) : 0);
     std::vector<double> solution = system_.right_side(external_, step);
     line.solution = solve_system(solution);
+    // more negative pivots than constraints: beyond a limit point or a bifurcation, from where Newton's step leads anywhere
+    if (present_ == SolidMatrix::tangent && !linear_ && line.solution.factorised &&
+        line.solution.factorisation.negative_pivots > line.constraints) {
+      unstable_ = true;
+      assemble(state, previous, suited(SolidMatrix::tangent, state));
+      solution = system_.right_side(external_, step);
+      line.solution = solve_system(solution);
+    }
     // the increment of all displacements: imposed ones move in the first iteration alone
     std::vector<double> increment = step;
     std::fill(step.begin(), step.end(), 0.0);
@@ -252,7 +268,7 @@ int Newton::solve(double instant, StaticState& state, const std::function<void(c
       line.status_changes = contact_->update_statuses(state.patches);
       changed = std::mismatch(before.begin(), before.end(), state.patches.status.begin()).first - before.begin();
     }
-    assemble(state, previous, criteria_.matrix);
+    assemble(state, previous, suited(criteria_.matrix, state));
     const double moved = largest_vector(increment, dimension), whole = largest_vector(state.displacement, dimension);
     // likewise displacements that vanish against the patches
     line.geometry =
@@ -278,7 +294,7 @@ void Newton::restart(const StaticState& state) {
     const Phase phase("pairing");
     contact_->update_geometry(state.displacement);
   }
-  assemble(state, state, criteria_.matrix);
+  assemble(state, state, suited(criteria_.matrix, state));
 }
 
 }  // namespace lacon

@@ -73,6 +73,12 @@ class Newton {
   void restart(const StaticState& state);
 
  private:
+  /// The matrix to go on with where `asked` is what the user wants. The tangent goes without the terms of the stress
+  /// - in contact, of laws with a memory (PETIT_REAC): when a body turns they are in balance with the terms of contact forces
+  ///   that turn with their surface, and these the linearisation of contact does not have. The exact tangent of Green-Lagrange
+  ///   strains keeps them: there they are worth more than that balance;
+  /// - for the rest of an instant in which it was unstable: without them it leads downhill to a stable equilibrium.
+  SolidMatrix suited(SolidMatrix asked, const StaticState& state) const;
   /// @param previous the last state in equilibrium
   void assemble(const StaticState& state, const StaticState& previous, SolidMatrix wanted);
   /// Solve the present system in place.
@@ -87,9 +93,11 @@ class Newton {
   Ragged<std::int32_t> elements_;
   System system_;
   SaddlePointSolver solver_;
-  bool linear_ = true;          ///< the stiffness never changes
-  bool has_stiffness_ = false;  ///< and is in the matrix
-  bool has_memory_ = false;     ///< a law goes from the last state in equilibrium to the present one
+  bool linear_ = true;                       ///< the stiffness never changes
+  bool has_stiffness_ = false;               ///< and is in the matrix
+  SolidMatrix present_ = SolidMatrix::none;  ///< of which kind that one is
+  bool unstable_ = false;                    ///< the tangent of an iterate of this instant was
+  bool has_memory_ = false;                  ///< a law goes from the last state in equilibrium to the present one
   std::optional<ContactState> contact_;
   std::vector<PointValues> points_;         ///< of each solid set at the last evaluation
   std::optional<std::int32_t> inside_out_;  ///< a cell that the last evaluation found turned inside out

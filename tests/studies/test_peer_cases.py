@@ -11,14 +11,14 @@ HERE = pathlib.Path(__file__).resolve().parent
 
 @unittest.skipUnless(PEER_MESHES.is_dir(), f"the peer's meshes are not in {PEER_MESHES} (set LACON_SHARED_CASES)")
 class PeerCase(StudyTest):
-    def judge(self, case, exact=None):
+    def judge(self, case, exact=None, **environment):
         """Every reference is met, every clean check is OK. @param exact what the patch test gives where the peer's own digits carry the
-        error of its rule for PYRAM13"""
+        error of its rule for PYRAM13  @return the run"""
         comms, meshes = peer_checks.files(case)
         outputs = {unit: self.folder / f"out.{unit}" for unit in (29, 33, 40, 80)}
         units = {**{unit: PEER_MESHES / mesh for unit, mesh in meshes.items()}, **{unit: path for unit, path in outputs.items() if unit not in meshes}}
         run = self.run_lacon(*(HERE / comm for comm in comms), "--base", self.folder / f"{case}.base",
-                             *(word for unit, path in units.items() for word in ("--unit", f"{unit}={path}")), CASE=case)
+                             *(word for unit, path in units.items() for word in ("--unit", f"{unit}={path}")), CASE=case, **environment)
         rows = peer_checks.rows(case)
         self.assertEqual((run.status, len(run.checks or [])), (0, len(rows)), run.stdout[-3000:] + run.stderr[-3000:])
         for row, check in zip(rows, run.checks):
@@ -27,6 +27,7 @@ class PeerCase(StudyTest):
                 if row["clean"] != "1" and exact is not None:
                     theory = 1.0 if row["component"] == "COEFSURF" else exact
                     self.assertLessEqual(abs(check["value"] - theory), 1e-9 * abs(theory))
+        return run
 
 
 class PeerCases(PeerCase):
@@ -70,6 +71,17 @@ class PeerCases(PeerCase):
     def test_ssnv104_hertz(self):
         for case in ("ssnv104k", "ssnv104n"):
             self.judge(case)
+
+    def test_ssnp165_a_half_ring_snaps_open(self):
+        """The peer's digits are those of a residual of 0.5 and of forces that are not conservative: displacements and pressures agree
+        to 1 % of the largest, whatever the residual; no step is cut."""
+        largest = {"DEPL": 12.0, "PRES_NOEU": 120.0}
+        for case, residual in (("ssnp165c", "0.5"), ("ssnp165c", "1e-6"), ("ssnp165e", "0.5")):
+            run = self.judge(case, RESIDUAL=residual)
+            self.assertNotIn("EVOLUTION_7", run.stdout)
+            for row, check in zip(peer_checks.rows(case), run.checks):
+                with self.subTest(case=case, residual=residual, number=row["no"]):
+                    self.assertLessEqual(abs(check["value"] - float(row["vale_calc"])), 0.01 * largest[row["field"]])
 
     def test_an_export_file_runs_the_same_case(self):
         export = self.folder / "zzzz383a.export"

@@ -31,7 +31,7 @@ struct Answer {
 
 /// One element, in every lane. @param x, u (n_nodes, dimension)  @param from the last state; empty vectors: natural
 Answer run(const ElementRow& row, const std::string& option, const Numbers& x, const Numbers& u, const State& from,
-           const Numbers& curve = linear_hardening, bool elastic_matrix = false) {
+           const Numbers& curve = linear_hardening, bool elastic_matrix = false, bool stressless_matrix = false) {
   const auto table = table_of(row);
   const lacon_kernel& kernel = registry().kernel(row, option, LACON_SOLID);
   const auto spread = [](const Numbers& values) {
@@ -72,6 +72,7 @@ Answer run(const ElementRow& row, const std::string& option, const Numbers& x, c
   batch.n_curve = static_cast<int>(curve.size() / 3);
   batch.n_variables = kernel.n_variables;
   batch.elastic_matrix = elastic_matrix;
+  batch.stressless_matrix = stressless_matrix;
   kernel.solid(&batch);
   const auto first = [](const Numbers& lanes) {
     Numbers values;
@@ -464,6 +465,53 @@ TEST(Plasticity, ElasticMatrixIsThatOfElasticity) {
              flowing = run(row, "VMIS_ISOT_LINE/PETIT", x, u, {}, linear_hardening, true);
   for (std::size_t i = 0; i < plain.matrix.size(); ++i) EXPECT_NEAR(flowing.matrix[i], plain.matrix[i], 1e-12 * young);
   EXPECT_GT(flowing.state.variable[0], 0);
+}
+
+/// Deeply compressed, an element buckles by its tangent; the matrix without the terms of the stress is that of small strains on
+/// the geometry of u, which has no negative diagonal.
+TEST(Stressless, MatrixOfTheUpdatedGeometryIsThatOfSmallStrainsThere) {
+  for (const std::string law : {"ELAS", "VMIS_ISOT_LINE"}) {
+    const ElementRow& row = *registry().find_element("D_PLAN/QUAD8");
+    const Numbers x = shaken(lacon::catalog::cell(row.cell));
+    State from = run(row, law + "/PETIT_REAC", x, Numbers(x.size(), 0.0), {}).state;
+    for (double& stress : from.stress) stress = -young;  // of all components
+    if (law != "ELAS") from.stress.assign(from.stress.size(), 0.0);  // does not flow
+    const Numbers u = shaken_displacement(x.size(), 0.05, 1);
+    Numbers there = x;
+    for (std::size_t i = 0; i < x.size(); ++i) there[i] += u[i];
+    from.displacement = u;
+    const auto updated = run(row, law + "/PETIT_REAC", x, u, from, linear_hardening, false, true),
+               tangent = run(row, law + "/PETIT_REAC", x, u, from),
+               small = run(row, "ELAS/PETIT", there, Numbers(x.size(), 0.0), {});
+    double stress_terms = 0;
+    for (std::size_t i = 0; i < small.matrix.size(); ++i) {
+      EXPECT_NEAR(updated.matrix[i], small.matrix[i], 1e-12 * young);
+      stress_terms = std::max(stress_terms, std::abs(tangent.matrix[i] - small.matrix[i]));
+    }
+    if (law == "ELAS") {
+      EXPECT_GT(stress_terms, 0.1 * young);
+    }
+  }
+}
+
+/// Forces do not depend on the kind of matrix, and without stress the tangent of Green-Lagrange strains has no term of it.
+TEST(Stressless, MatrixOfGreenLagrangeIsTheTangentWhereThereIsNoStress) {
+  const ElementRow& row = *registry().find_element("D_PLAN/QUAD8");
+  const Numbers x = shaken(lacon::catalog::cell(row.cell)), u = shaken_displacement(x.size(), 0.05, 3);
+  const double quarter_turn[3][3] = {{-1, -1, 0}, {1, -1, 0}, {0, 0, 0}};
+  const auto matrices = [&](const Numbers& at) {
+    return std::pair(run(row, "ELAS/GREEN_LAGRANGE", x, at, {}),
+                     run(row, "ELAS/GREEN_LAGRANGE", x, at, {}, linear_hardening, false, true));
+  };
+  const auto [turned, turned_stressless] = matrices(linear_field(x, 2, quarter_turn));
+  const auto [bent, bent_stressless] = matrices(u);
+  double stress_terms = 0;
+  for (std::size_t i = 0; i < turned.matrix.size(); ++i) {
+    EXPECT_NEAR(turned_stressless.matrix[i], turned.matrix[i], 1e-12 * young);
+    stress_terms = std::max(stress_terms, std::abs(bent.matrix[i] - bent_stressless.matrix[i]));
+  }
+  EXPECT_GT(stress_terms, 1e-3 * young);
+  EXPECT_EQ(bent.force, bent_stressless.force);
 }
 
 }  // namespace
