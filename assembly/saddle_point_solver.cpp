@@ -12,10 +12,9 @@ namespace {
 
 using Eigen::Map, Eigen::MatrixXd, Eigen::VectorXd;
 
-// Operations a factor's entry takes: two substitutions, each at memory's speed for one right side and at arithmetic's for a
-// block. Measured against the operations of a factorisation on several machines (docs/performance.md); only their ratio
-// matters.
-constexpr double operations_of_a_solution = 40, operations_in_a_block = 4;
+// What an entry of the factor costs, in operations of a factorisation: in the substitutions of one right side, at memory's
+// speed, and in those of a block of sparse ones, at arithmetic's. Measured (docs/performance.md).
+constexpr double operations_of_a_solution = 40, operations_in_a_block = 2.5;
 constexpr int block_size = 64;
 constexpr int least_iterations = 8, most_cycles = 3;
 
@@ -161,11 +160,11 @@ class SaddlePointSolver::Preconditioner {
 };
 
 SolutionReport SaddlePointSolver::solve(const SymmetricMatrix& matrix, std::int64_t first_multiplier,
-                                        std::span<double> right_side) {
+                                        std::span<double> right_side, bool rough) {
   SolutionReport report;
   first_multiplier_ = first_multiplier;
   if (options_.reuse && base_ && stiffness_change(matrix, *base_, first_multiplier) <= options_.stiffness_drift &&
-      corrected(matrix, right_side, report))
+      corrected(matrix, right_side, rough, report))
     return report;
 
   columns_.clear();
@@ -259,7 +258,8 @@ bool SaddlePointSolver::make_columns(const SymmetricMatrix& matrix, const Switch
   return true;
 }
 
-bool SaddlePointSolver::corrected(const SymmetricMatrix& matrix, std::span<double> right_side, SolutionReport& report) {
+bool SaddlePointSolver::corrected(const SymmetricMatrix& matrix, std::span<double> right_side, bool rough,
+                                  SolutionReport& report) {
   const Stopwatch watch(report.solution_seconds);
   Switched switched;
   for (std::int64_t i = first_multiplier_; i < matrix.size(); ++i) {
@@ -284,7 +284,8 @@ bool SaddlePointSolver::corrected(const SymmetricMatrix& matrix, std::span<doubl
   VectorXd x = VectorXd::Zero(n), residual = scale.cwiseProduct(side), image(n);
   const double size = residual.norm();
   reference_ = std::max(reference_, size);
-  const double goal = std::min(options_.tolerance * reference_, options_.least_gain * size);
+  const double full = std::min(options_.tolerance * reference_, options_.least_gain * size);
+  const double goal = rough ? std::max(full, options_.rough_gain * size) : full;
   const int most =
       std::max(least_iterations, static_cast<int>(std::min(1e3, options_.work_limit * factor_.flops / solution_cost())));
   std::vector<VectorXd> basis, directions;
@@ -331,6 +332,7 @@ bool SaddlePointSolver::corrected(const SymmetricMatrix& matrix, std::span<doubl
   }
   if (!(residual.norm() <= goal)) return false;
   expected_iterations_ = report.iterations;
+  report.rough = residual.norm() > full;
   std::copy(x.begin(), x.end(), right_side.begin());
   return true;
 }

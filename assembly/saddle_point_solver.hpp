@@ -22,6 +22,7 @@ struct SaddlePointOptions {
   bool reuse = true;              ///< false: every matrix is factorised
   double tolerance = 1e-12;       ///< of GMRES, against the largest right side so far
   double least_gain = 1e-4;       ///< of GMRES, against the right side itself
+  double rough_gain = 1e-4;       ///< likewise, where a rough solution will do
   double singular = 1e-12;        ///< reciprocal condition of the Schur complement below which the matrix is factorised anew
   double stiffness_drift = 0.02;  ///< largest change of an entry of the stiffness, of its diagonals, that is left to GMRES
   double drift = 0.3;             ///< relative change of a row's coefficients above which its column is computed anew
@@ -35,6 +36,7 @@ struct SolutionReport {
   Factorisation factorisation;  ///< what the factorisation found, where there was one
   int columns = 0;              ///< of the inverse, computed anew
   int iterations = 0;           ///< of GMRES
+  bool rough = false;           ///< GMRES went no further than the rough gain
   double analysis_seconds = 0, factorisation_seconds = 0, solution_seconds = 0;
 };
 
@@ -45,7 +47,9 @@ class SaddlePointSolver {
   /// Solve A x = b in place. @param first_multiplier rows from here on are multipliers'
   /// Where the report has null pivots, the matrix is singular and `right_side` is left as it was.
   /// Throws SOLVER_1, SOLVER_2.
-  SolutionReport solve(const SymmetricMatrix& matrix, std::int64_t first_multiplier, std::span<double> right_side);
+  /// @param rough a solution to the rough gain will do: another one corrects it
+  SolutionReport solve(const SymmetricMatrix& matrix, std::int64_t first_multiplier, std::span<double> right_side,
+                       bool rough = false);
 
  private:
   /// The part of the inverse that a switched row needs: for a row switched on, of its coefficients; for one switched off, of
@@ -62,7 +66,7 @@ class SaddlePointSolver {
   };
   class Preconditioner;
 
-  bool corrected(const SymmetricMatrix& matrix, std::span<double> right_side, SolutionReport& report);
+  bool corrected(const SymmetricMatrix& matrix, std::span<double> right_side, bool rough, SolutionReport& report);
   bool make_columns(const SymmetricMatrix& matrix, const Switched& switched, SolutionReport& report);
   /// What makes the residuals of displacements and of multipliers comparable, (n).
   std::vector<double> scales(const SymmetricMatrix& matrix);

@@ -141,8 +141,8 @@ void Newton::assemble(const StaticState& state, const StaticState& previous, Sol
   }
 }
 
-SolutionReport Newton::solve_system(std::vector<double>& right_side) {
-  SolutionReport report = solver_.solve(system_.matrix(), system_.first_multiplier(), right_side);
+SolutionReport Newton::solve_system(std::vector<double>& right_side, bool rough) {
+  SolutionReport report = solver_.solve(system_.matrix(), system_.first_multiplier(), right_side, rough);
   add_to_phase("analysis", report.analysis_seconds);
   add_to_phase("factorisation", report.factorisation_seconds);
   add_to_phase("solution", report.solution_seconds);
@@ -235,6 +235,7 @@ int Newton::solve(double instant, StaticState& state, const std::function<void(c
   unstable_ = false;
   if (const SolidMatrix wanted = suited(criteria_.prediction, state); has_memory_ || wanted != present_)
     assemble(state, previous, wanted);
+  bool settling = false;  // statuses change from iteration to iteration: a rough solution finds them as well
   std::string unmet;
   for (int iteration = 0; iteration <= criteria_.iterations; ++iteration) {
     std::int64_t changed = 0;  // the first patch whose status has changed
@@ -242,14 +243,15 @@ int Newton::solve(double instant, StaticState& state, const std::function<void(c
     IterationReport line{.iteration = iteration};
     line.constraints = relations_.n_constraints() + (contact_ ? contact_->n_constraints(state.patches) : 0);
     std::vector<double> solution = system_.right_side(external_, step);
-    line.solution = solve_system(solution);
+    const bool rough = settling && iteration < criteria_.iterations;
+    line.solution = solve_system(solution, rough);
     // more negative pivots than constraints: beyond a limit point or a bifurcation, from where Newton's step leads anywhere
     if (present_ == SolidMatrix::tangent && !linear_ && line.solution.factorised &&
         line.solution.factorisation.negative_pivots > line.constraints) {
       unstable_ = true;
       assemble(state, previous, suited(SolidMatrix::tangent, state));
       solution = system_.right_side(external_, step);
-      line.solution = solve_system(solution);
+      line.solution = solve_system(solution, rough);
     }
     // the increment of all displacements: imposed ones move in the first iteration alone
     std::vector<double> increment = step;
@@ -283,6 +285,7 @@ int Newton::solve(double instant, StaticState& state, const std::function<void(c
       return iteration;
     }
     unmet = unmet_criteria(line, changed);
+    settling = line.status_changes > 0;
     if (!std::isfinite(line.maxi)) break;
   }
   fail("EVOLUTION_4",

@@ -38,7 +38,9 @@ struct IterationReport {
   std::int64_t constraints = 0;  ///< active patches and relations when the matrix was made: the negative pivots to expect
   double seconds = 0;
 
-  bool converged() const { return rela_met && maxi_met && geometry_met && constraint_met && status_changes == 0; }
+  bool converged() const {
+    return rela_met && maxi_met && geometry_met && constraint_met && status_changes == 0 && !solution.rough;
+  }
 };
 
 /// What the integration points of a solid set hold.
@@ -81,8 +83,8 @@ class Newton {
   SolidMatrix suited(SolidMatrix asked, const StaticState& state) const;
   /// @param previous the last state in equilibrium
   void assemble(const StaticState& state, const StaticState& previous, SolidMatrix wanted);
-  /// Solve the present system in place.
-  SolutionReport solve_system(std::vector<double>& right_side);
+  /// Solve the present system in place. @param rough a few digits will do
+  SolutionReport solve_system(std::vector<double>& right_side, bool rough);
   /// What keeps the last iteration from being the solution, in words.
   std::string unmet_criteria(const IterationReport& line, std::int64_t first_changed) const;
   void judge(const StaticState& state, IterationReport& report);

@@ -12,7 +12,6 @@ import json
 import os
 import pathlib
 import re
-import resource
 import subprocess
 import sys
 import tempfile
@@ -55,16 +54,21 @@ def study(lacon, name, folder, threads):
         write_med(mesh, two_blocks(name))
     environment = {**os.environ, "BLOCKS_FLAT": "0" if name.endswith("c") else "1", "BLOCKS_DZ": str(PUSH),
                    "OPENBLAS_NUM_THREADS": str(threads), "OMP_NUM_THREADS": str(threads)}
+    command = [lacon, SOURCE / "tests/bench/two_blocks.comm", "--fresh", "--unit", f"20={mesh}", "--base", folder / f"{name}.base",
+               "--timings"]
     start = time.perf_counter()
-    done = subprocess.run([str(lacon), str(SOURCE / "tests/bench/two_blocks.comm"), "--fresh", "--unit", f"20={mesh}", "--base",
-                           str(folder / f"{name}.base"), "--timings"], env=environment, capture_output=True, text=True)
-    wall = time.perf_counter() - start
-    if done.returncode:
-        sys.exit(f"{name}: exit status {done.returncode}\n{done.stdout[-3000:]}{done.stderr[-3000:]}")
-    lines = re.findall(r"^ \|\s+\d+X?\s*\|.*$", done.stdout, re.MULTILINE)
-    table = done.stdout[done.stdout.index("  STAT_NON_LINE  "):]
+    with open(folder / "output", "w+", encoding="utf-8") as output:
+        process = subprocess.Popen([str(word) for word in command], env=environment, stdout=output, stderr=subprocess.STDOUT)
+        _, status, usage = os.wait4(process.pid, 0)  # with the largest memory of the operators that it waited for
+        wall = time.perf_counter() - start
+        output.seek(0)
+        said = output.read()
+    if status:
+        sys.exit(f"{name}: exit status {os.waitstatus_to_exitcode(status)}\n{said[-3000:]}")
+    lines = re.findall(r"^ \|\s+\d+X?\s*\|.*$", said, re.MULTILINE)
+    table = said[said.index("  STAT_NON_LINE  "):]
     phases = dict(re.findall(r"^ {6}(\w[\w ]*?)\s+([0-9.]+)$", table.split("  TEST_RESU")[0].split("  FIN ")[0], re.MULTILINE))
-    return {"name": name, "wall": wall, "memory": resource.getrusage(resource.RUSAGE_CHILDREN).ru_maxrss / 1024,
+    return {"name": name, "wall": wall, "memory": usage.ru_maxrss / 1024,
             "iterations": len(lines), "factorisations": sum("TANGENTE" in line for line in lines),
             "phases": {phase: float(seconds) for phase, seconds in phases.items()}}
 

@@ -100,6 +100,28 @@ TEST(SaddlePointSolver, FollowsDriftingCoefficients) {
   }
 }
 
+// Where a rough solution will do, it is one, and says so.
+TEST(SaddlePointSolver, SolvesRoughlyWhereThatWillDo) {
+  Sequence system;
+  SaddlePointSolver solver = eager();
+  SolutionReport report;
+  system.on[0] = system.on[1] = system.on[4] = true;
+  system.fill();
+  system.error(solver, report);
+  system.drift = 0.1;
+  system.fill();
+  Eigen::VectorXd b = Eigen::VectorXd::Random(system.matrix.size()), x = b;
+  report = solver.solve(system.matrix, system.first_multiplier(), {x.data(), static_cast<std::size_t>(x.size())}, true);
+  EXPECT_TRUE(report.rough);
+  const int few = report.iterations;
+  const double left = (dense(system.matrix) * x - b).norm() / b.norm();
+  EXPECT_LE(left, 1e-2);
+  EXPECT_GE(left, 1e-12);
+  EXPECT_LE(system.error(solver, report), 1e-11);
+  EXPECT_FALSE(report.rough);
+  EXPECT_GT(report.iterations, few);
+}
+
 // A row that had no column yet costs one; one that has does not.
 TEST(SaddlePointSolver, KeepsItsColumns) {
   Sequence system;
