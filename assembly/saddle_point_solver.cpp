@@ -52,7 +52,8 @@ struct Row {
   }
 };
 
-double dot(std::span<const std::int32_t> index, std::span<const double> coefficient, std::span<const double> x) {
+template <class Number>
+double dot(std::span<const std::int32_t> index, std::span<const double> coefficient, std::span<const Number> x) {
   double sum = 0;
   for (std::size_t k = 0; k < index.size(); ++k) sum += coefficient[k] * x[index[k]];
   return sum;
@@ -111,7 +112,7 @@ class SaddlePointSolver::Preconditioner {
     const auto size = static_cast<Eigen::Index>(rows_.size());
     MatrixXd schur(size, size);
     for (Eigen::Index s = 0; s < size; ++s) {
-      for (Eigen::Index t = 0; t < size; ++t) schur(t, s) = seen_by(t, columns_[s]->inverse);
+      for (Eigen::Index t = 0; t < size; ++t) schur(t, s) = seen_by(t, std::span<const float>(columns_[s]->inverse));
       if (is_on(s)) schur(s, s) -= matrix.diagonal(rows_[s]);
     }
     scale_ = schur.diagonal().cwiseAbs().cwiseSqrt().cwiseInverse();
@@ -133,19 +134,21 @@ class SaddlePointSolver::Preconditioner {
     for (const std::int64_t row : scaled_) x[row] *= solver_.base_->diagonal(row) / matrix_.diagonal(row);
     for (Eigen::Index s = 0; s < size; ++s) own[s] = std::exchange(x[rows_[s]], 0.0);
     solver_.direct_.substitute(x);
-    for (Eigen::Index s = 0; s < size; ++s) side[s] = scale_[s] * (seen_by(s, x) - (is_on(s) ? own[s] : 0.0));
+    for (Eigen::Index s = 0; s < size; ++s)
+      side[s] = scale_[s] * (seen_by(s, std::span<const double>(x)) - (is_on(s) ? own[s] : 0.0));
     if (size) side = scale_.asDiagonal() * factor_.solve(side).eval();
     Map<VectorXd> solution(x.data(), static_cast<Eigen::Index>(x.size()));
     for (Eigen::Index s = 0; s < size; ++s)
-      solution -= side[s] * Map<const VectorXd>(columns_[s]->inverse.data(), solution.size());
+      solution -= side[s] * Map<const Eigen::VectorXf>(columns_[s]->inverse.data(), solution.size()).cast<double>();
     for (Eigen::Index s = 0; s < size; ++s) x[rows_[s]] = is_on(s) ? side[s] : own[s] / matrix_.diagonal(rows_[s]);
   }
 
  private:
   bool is_on(Eigen::Index s) const { return static_cast<std::size_t>(s) < n_on_; }
   /// What the equation of a switched row sees of x.
-  double seen_by(Eigen::Index s, std::span<const double> x) const {
-    return is_on(s) ? dot(columns_[s]->index, columns_[s]->coefficient, x) : x[rows_[s]];
+  template <class Number>
+  double seen_by(Eigen::Index s, std::span<const Number> x) const {
+    return is_on(s) ? dot(columns_[s]->index, columns_[s]->coefficient, x) : static_cast<double>(x[rows_[s]]);
   }
 
   SaddlePointSolver& solver_;
@@ -221,7 +224,7 @@ bool SaddlePointSolver::make_columns(const SymmetricMatrix& matrix, const Switch
   for (const std::int64_t i : switched.off)
     if (!columns_.contains(i)) wanted.push_back(i);
   const double cost = static_cast<double>(wanted.size()) * column_cost() + expected_iterations_ * solution_cost();
-  const double memory = static_cast<double>((columns_.size() + wanted.size()) * matrix.size());
+  const double memory = 0.5 * static_cast<double>((columns_.size() + wanted.size()) * matrix.size());  // in doubles
   if (cost > options_.work_limit * factor_.flops || memory > options_.column_memory * static_cast<double>(factor_.entries))
     return false;
 

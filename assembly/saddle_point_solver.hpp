@@ -3,7 +3,7 @@
 //
 // The last rows of the matrix belong to multipliers. The block before them, the stiffness, is often nearly the same from one
 // system to the next; then the factor of an earlier matrix serves on. Rows that were switched on or off since are put right
-// exactly by a Schur complement, for which one column of the inverse each is computed and kept. Coefficients that moved with
+// by a Schur complement, for which one column of the inverse each is computed and kept. Coefficients that moved with
 // the bodies, and a stiffness that changed a little, are left to GMRES, preconditioned with that. A cost model decides when a
 // new factorisation is cheaper; it counts operations, so that the choice is the same in every run.
 #include <cstdint>
@@ -57,7 +57,7 @@ class SaddlePointSolver {
   struct Column {
     std::vector<std::int32_t> index;
     std::vector<double> coefficient;
-    std::vector<double> inverse;  ///< (n)
+    std::vector<float> inverse;  ///< (n); GMRES makes up for the digits, and the memory is half
   };
   /// Multipliers' rows that are not what they were when the factor was made, ascending.
   struct Switched {

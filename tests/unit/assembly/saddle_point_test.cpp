@@ -79,7 +79,7 @@ TEST(SaddlePointSolver, SwitchesRowsWithOneFactor) {
     system.fill();
     EXPECT_LE(system.error(solver, report), 1e-11) << "round " << round;
     EXPECT_FALSE(report.factorised);
-    EXPECT_LE(report.iterations, 2) << "switching is exact: one application of the preconditioner, one for round-off";
+    EXPECT_LE(report.iterations, 4) << "switching is exact but for the single precision of the columns";
   }
 }
 
