@@ -12,7 +12,7 @@ def run(names):
     """Print the list of commands, or the keywords of each named one. @return exit status"""
     if not names:
         for name in catalog.command_names():
-            print(f"{name:16}{catalog.command(name)['help']}")
+            print(f"{name:18}{catalog.command(name)['help']}")
         return 0
     status = 0
     for name in map(str.upper, names):
