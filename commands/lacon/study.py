@@ -175,6 +175,9 @@ class Study:
         path = self.announced_output(number, suffix, where)
         try:
             if number in self.written_units:
+                with open(path, "rb") as file:
+                    if file.read(4) == b"\x89HDF":
+                        fail("COMMAND_13", where, unit=number, file=path)
                 with open(path, "a", encoding="utf-8") as file:
                     file.write(text)
             else:

@@ -124,6 +124,15 @@ class BadInputs(StudyTest):
         self.assertEqual(run.diagnostic, "--- DIAGNOSTIC JOB : <F>_ERROR")
         self.assertEqual(self.units[31].read_text(), "this is no mesh\n")
 
+    def test_a_table_is_not_put_behind_a_med_file(self):
+        self.units[80] = self.folder / "out.med"
+        run = self.run_text("DEBUT()\nM = LIRE_MAILLAGE(UNITE=20); IMPR_RESU(FORMAT='MED', UNITE=80, RESU=_F(MAILLAGE=M))\n"
+                            "T = CREA_TABLE(LISTE=_F(PARA='A', LISTE_R=1.0)); IMPR_TABLE(TABLE=T, UNITE=80)\nFIN()\n")
+        self.assertEqual(run.status, 2, run.stderr)
+        for word in ("<F> <COMMAND_13>", "out.med", "unit 80"):
+            self.assertIn(word, run.stderr)
+        self.assertNotIn(b"\nA", self.units[80].read_bytes()[-200:])
+
     def test_a_base_that_is_not_there_is_not_made_by_a_refused_poursuite(self):
         run = self.run_text("POURSUITE()\nFIN()\n")
         self.assertEqual(run.status, 2)
