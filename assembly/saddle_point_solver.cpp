@@ -115,16 +115,18 @@ class SaddlePointSolver::Preconditioner {
       for (Eigen::Index t = 0; t < size; ++t) schur(t, s) = seen_by(t, std::span<const float>(columns_[s]->inverse));
       if (is_on(s)) schur(s, s) -= matrix.diagonal(rows_[s]);
     }
-    scale_ = schur.diagonal().cwiseAbs().cwiseSqrt().cwiseInverse();
     if (size == 0) return;
-    if (!scale_.allFinite()) {
-      condition_ = 0;
-      return;
+    // scaled by what the diagonal would be, not by what it is: where a body came loose it vanishes
+    scale_.resize(size);
+    for (Eigen::Index s = 0; s < size; ++s) {
+      const double flexibility = solver.multiplier_scale_.at(rows_[s]);
+      scale_[s] = is_on(s) ? 1 / std::sqrt(flexibility) : std::sqrt(flexibility);
     }
-    factor_.compute(scale_.asDiagonal() * schur * scale_.asDiagonal());
-    condition_ = factor_.rcond();
+    schur = (scale_.asDiagonal() * schur * scale_.asDiagonal()).eval();
+    factor_.compute(schur);
+    condition_ = factor_.rcond() * std::min(1.0, schur.cwiseAbs().colwise().sum().maxCoeff());
   }
-  /// Reciprocal condition number of the Schur complement.
+  /// Reciprocal condition number of the Schur complement; 0 where it vanishes.
   double condition() const { return condition_; }
 
   /// x = P^-1 b in place
@@ -275,12 +277,12 @@ bool SaddlePointSolver::corrected(const SymmetricMatrix& matrix, std::span<doubl
       switched.scaled.push_back(i);
   }
   if (!make_columns(matrix, switched, report)) return false;
+  const std::vector<double> scales_of_rows = scales(matrix);
   const Preconditioner preconditioner(*this, matrix, switched);
   if (!(preconditioner.condition() > options_.singular)) return false;
 
   // GMRES on D A P^-1 D^-1 (D y) = D b with the scales D, x = P^-1 y
   const auto n = static_cast<Eigen::Index>(matrix.size());
-  const std::vector<double> scales_of_rows = scales(matrix);
   const Map<const VectorXd> scale(scales_of_rows.data(), n);
   const VectorXd unscale = scale.cwiseInverse();
   const Map<const VectorXd> side(right_side.data(), n);

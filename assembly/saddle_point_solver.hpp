@@ -19,11 +19,12 @@ namespace lacon {
 
 struct SaddlePointOptions {
   SolverOptions direct;
-  bool reuse = true;              ///< false: every matrix is factorised
-  double tolerance = 1e-12;       ///< of GMRES, against the largest right side so far
-  double least_gain = 1e-4;       ///< of GMRES, against the right side itself
-  double rough_gain = 1e-4;       ///< likewise, where a rough solution will do
-  double singular = 1e-12;        ///< reciprocal condition of the Schur complement below which the matrix is factorised anew
+  bool reuse = true;         ///< false: every matrix is factorised
+  double tolerance = 1e-12;  ///< of GMRES, against the largest right side so far
+  double least_gain = 1e-4;  ///< of GMRES, against the right side itself
+  double rough_gain = 1e-4;  ///< likewise, where a rough solution will do
+  double singular = 1e-6;    ///< reciprocal condition of the Schur complement, in single precision, below which the matrix is
+                             ///< factorised anew: a body may have come loose
   double stiffness_drift = 0.02;  ///< largest change of an entry of the stiffness, of its diagonals, that is left to GMRES
   double drift = 0.3;             ///< relative change of a row's coefficients above which its column is computed anew
   double work_limit = 1;          ///< most operations without a new factorisation, of those of a factorisation

@@ -183,6 +183,23 @@ TEST(SaddlePointSolver, FindsThatABodyCameLoose) {
   EXPECT_EQ(report.factorisation.null_pivots.size(), 2u);
 }
 
+// Likewise where no force pulls at what came loose, so that the system has solutions: one row alone held it, in each direction.
+TEST(SaddlePointSolver, FindsALooseBodyThatNothingPulls) {
+  Sequence system(false);
+  system.on[0] = system.on[1] = true;
+  system.fill();
+  SaddlePointSolver solver = eager();
+  SolutionReport report;
+  system.error(solver, report);
+  ASSERT_TRUE(report.factorisation.null_pivots.empty());
+  system.on[1] = false;
+  system.fill();
+  std::vector<double> b(system.matrix.size(), 0.0);
+  report = solver.solve(system.matrix, system.first_multiplier(), b);
+  EXPECT_TRUE(report.factorised);
+  EXPECT_EQ(report.factorisation.null_pivots.size(), 1u);
+}
+
 // The cost model factorises small matrices: that is cheaper than any iteration.
 TEST(SaddlePointSolver, FactorisesSmallMatrices) {
   Sequence system;
