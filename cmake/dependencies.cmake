@@ -15,6 +15,7 @@ function(lacon_find_library target header)
   endforeach()
 endfunction()
 
+find_package(Threads REQUIRED)
 find_package(HDF5 REQUIRED COMPONENTS C)
 find_package(Eigen3 3.4 REQUIRED)
 find_package(nlohmann_json REQUIRED)
