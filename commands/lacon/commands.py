@@ -110,7 +110,7 @@ class Command:
             return self._unsolved(run, row, label, where, reused, named)
         if "operator" in row:
             result, outcome = self._order(run, row, keywords, where, label, reused, named)
-            run.timings.add(self.name, where, time.perf_counter() - started, outcome.seconds, outcome.phases)
+            run.timings.add(self.name, where, time.perf_counter() - started, outcome)
             run.count_alarms(outcome.messages)
         else:
             result = implementations()[self.name](Call(run, self.name, keywords, where, label, reused))
@@ -150,7 +150,7 @@ class Command:
             found = self._unchanged(run, row["result"], key, where, identifier, reused)
             if found:
                 self._protect_data(run, row, keywords, units)
-                return self._result(run, found, label, where, reused, named), orders.Outcome(0, [], {}, 0.0)
+                return self._result(run, found, label, where, reused, named), orders.Outcome(0, [], {}, {}, 0.0)
         copy = orders.keep_copy(run.base, identifier) if reused else None
         try:
             outcome = orders.run(row["operator"], made, run)

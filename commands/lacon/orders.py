@@ -26,10 +26,11 @@ def operator_folder():
 class Outcome:
     """What an operator's process came to."""
 
-    def __init__(self, status, messages, phases, seconds):
+    def __init__(self, status, messages, phases, counts, seconds):
         self.status = status  #: of the process; negative: the signal that ended it
         self.messages = messages
         self.phases = phases  #: name -> seconds, as the operator measured them
+        self.counts = counts  #: name -> how many: factorisations, ...
         self.seconds = seconds  #: wall time of the process
 
 
@@ -116,13 +117,13 @@ def _serve_formulas(stream, base):
 
 
 def _read_status(path, where):
-    """(messages, phases) of what an operator wrote about itself; nothing where it did not come to that."""
+    """(messages, phases, counts) of what an operator wrote about itself; nothing where it did not come to that."""
     try:
         data = json.loads(path.read_text(encoding="utf-8"))
         messages = [Message(m["severity"], m["id"], m["text"], m.get("do", ""), where) for m in data.get("messages", [])]
-        return messages, dict(data.get("seconds", {}))
+        return messages, dict(data.get("seconds", {})), dict(data.get("counts", {}))
     except (OSError, ValueError, KeyError, TypeError):
-        return [], {}
+        return [], {}, {}
 
 
 def _forward(stream, ignored):

@@ -8,21 +8,24 @@ class Timings:
     def __init__(self):
         self._start = time.perf_counter()
         self._before = _age_of_process()
-        self.commands = []  #: (command, where, seconds in all, seconds of the process, phases)
+        self.commands = []  #: (command, where, seconds in all, seconds of the process, phases, counts)
 
-    def add(self, command, where, seconds, process=0.0, phases=None):
-        self.commands.append((command, where, seconds, process, phases or {}))
+    def add(self, command, where, seconds, outcome=None):
+        """@param outcome of the operator (orders.Outcome), if there was one"""
+        self.commands.append((command, where, seconds, *((outcome.seconds, outcome.phases, outcome.counts) if outcome else (0.0, {}, {}))))
 
     def table(self):
         """The report, a text of several lines."""
         total = self._before + time.perf_counter() - self._start
         rows = [("start-up", "", self._before, 0.0, self._before)]
         lines = ["", "Timings, seconds", f"  {'':42} {'all':>8} {'Python':>8} {'operator':>8}"]
-        for command, where, seconds, process, phases in self.commands:
+        for command, where, seconds, process, phases, counts in self.commands:
             rows.append((command, where, seconds - process, process, seconds))
             lines.append(f"  {command + '  ' + where:42} {seconds:8.3f} {seconds - process:8.3f} {process:8.3f}")
             for phase, value in phases.items():
                 lines.append(f"      {phase:38} {'':8} {'':8} {value:8.3f}")
+            if counts:
+                lines.append("      " + ", ".join(f"{name} {value:.6g}" for name, value in counts.items()))
         commands = sum(row[4] for row in rows[1:])
         lines.insert(3, f"  {'start-up of the launcher':42} {self._before:8.3f}")
         lines.append(f"  {'Python between commands, saving':42} {max(0.0, total - self._before - commands):8.3f}")

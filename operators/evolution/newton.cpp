@@ -146,6 +146,11 @@ SolutionReport Newton::solve_system(std::vector<double>& right_side, bool rough)
   add_to_phase("analysis", report.analysis_seconds);
   add_to_phase("factorisation", report.factorisation_seconds);
   add_to_phase("solution", report.solution_seconds);
+  add_to_count("solutions", 1);
+  add_to_count("factorisations", report.factorised ? 1 : 0);
+  add_to_count("Gflop of factorisations", 1e-9 * report.factorisation.flops);
+  add_to_count("columns of the inverse", report.columns);
+  add_to_count("iterations of GMRES", report.iterations);
   const std::vector<std::int64_t>& null = report.factorisation.null_pivots;
   if (null.empty()) return report;
   std::string names;

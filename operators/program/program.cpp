@@ -19,7 +19,7 @@ namespace {
 /// What a run has said and where its time went: one operator is one process.
 struct Outcome {
   std::vector<Message> messages;
-  std::vector<std::pair<std::string, double>> seconds;
+  std::vector<std::pair<std::string, double>> seconds, counts;
   std::string command, source;
 } outcome;
 
@@ -36,10 +36,16 @@ void print(const Message& message) {
 }
 
 void write_status(const std::string& file, int status) {
-  nlohmann::json json{{"status", status}, {"messages", nlohmann::json::array()}, {"seconds", nlohmann::json::object()}};
+  nlohmann::json json{{"status", status}, {"messages", nlohmann::json::array()}};
   for (const Message& m : outcome.messages)
     json["messages"].push_back({{"severity", std::string(1, m.severity)}, {"id", m.id}, {"text", m.text}, {"do", m.advice}});
-  for (const auto& [phase, seconds] : outcome.seconds) json["seconds"][phase] = json["seconds"].value(phase, 0.0) + seconds;
+  const auto sums = [](const std::vector<std::pair<std::string, double>>& rows) {
+    nlohmann::json sum = nlohmann::json::object();
+    for (const auto& [name, value] : rows) sum[name] = sum.value(name, 0.0) + value;
+    return sum;
+  };
+  json["seconds"] = sums(outcome.seconds);
+  json["counts"] = sums(outcome.counts);
   std::ofstream(file) << json.dump(1) << '\n';
 }
 
@@ -113,5 +119,6 @@ Phase::Phase(std::string name) : name_(std::move(name)), start_(now()) {}
 Phase::~Phase() { add_to_phase(std::move(name_), now() - start_); }
 
 void add_to_phase(std::string name, double seconds) { outcome.seconds.emplace_back(std::move(name), seconds); }
+void add_to_count(std::string name, double amount) { outcome.counts.emplace_back(std::move(name), amount); }
 
 }  // namespace lacon

@@ -32,6 +32,9 @@ int run_tool(int argc, char** argv, CLI::App& app, const std::function<void()>& 
 /// Add to a phase of the operator's timings.
 void add_to_phase(std::string name, double seconds);
 
+/// Add to a count that the operator reports beside its timings: factorisations, iterations of GMRES.
+void add_to_count(std::string name, double amount);
+
 /// The time from construction to destruction goes to the phase `name` of the operator's timings.
 class Phase {
  public:

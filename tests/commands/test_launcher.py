@@ -362,7 +362,7 @@ FIN()
 
     def test_timings(self):
         run = self.run_study(STUDY + "FIN()\n", "--timings")
-        for word in ("start-up of the launcher", "STAT_NON_LINE  study.comm:11", "      work", "total"):
+        for word in ("start-up of the launcher", "STAT_NON_LINE  study.comm:11", "      work", "      factorisations 3\n", "total"):
             self.assertIn(word, run.out)
         self.assertTrue(run.last.startswith("--- DIAGNOSTIC"))
 

@@ -97,7 +97,8 @@ class OperatorTest(unittest.TestCase):
         outcome = json.loads(status.read_text(encoding="utf-8"))
         self.assertEqual(outcome["status"], done.returncode)
         return types.SimpleNamespace(status=done.returncode, stdout=done.stdout, stderr=done.stderr,
-                                     messages=outcome["messages"], seconds=outcome["seconds"], order=path)
+                                     messages=outcome["messages"], seconds=outcome["seconds"], counts=outcome["counts"],
+                                     order=path)
 
     def snapshot(self):
         """Every file of the test's folder but the order and the status, with a digest of its content."""

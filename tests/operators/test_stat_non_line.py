@@ -1,5 +1,6 @@
 """stat_non_line alone: two unit squares of one QUAD8 each, the upper (slave) on the lower (master), everything by hand."""
 
+import re
 import unittest
 
 import h5py
@@ -205,6 +206,9 @@ class StatNonLine(TwoSquares):
         self.assertEqual([line[0].strip() for line in lines][0], "0X")
         self.assertTrue(lines[-1][0].strip().isdigit())  # converged: no X
         self.assertEqual({line[8].strip() for line in lines}, {"1"})  # one active patch
+        self.assertEqual(run.counts["factorisations"], len(lines))
+        self.assertEqual(run.counts["solutions"], len(re.findall(r"^ \|\s+\d+X? ", run.stdout, re.MULTILINE)))
+        self.assertGreater(run.counts["Gflop of factorisations"], 0)
 
     def test_loads_follow_their_functions(self):
         self.write_function("function_10", [0, 0.5, 1], [0, 1, 0.5])
