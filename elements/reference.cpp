@@ -12,6 +12,10 @@
 #include <string>
 #include <utility>
 
+#include "lacon/elements/lanes.hpp"
+
+#pragma GCC diagnostic ignored "-Wpsabi"  // vectors are passed between inlined functions alone
+
 namespace lacon {
 namespace {
 
@@ -55,32 +59,41 @@ std::vector<Term> span_of(const catalog::CellRow& cell) {
   return terms;
 }
 
-/// Factors of the terms and their derivatives at a point.
-struct Powers {
-  double value[3][3], slope[3][3];
-  double inverse;  ///< 1 / (1 - z); 0 at a pyramid's apex, where the limit of every x^a y^b / (1 - z), a + b > 1, is 0
+// What follows is compiled without fused multiplications (CMakeLists.txt): one point by itself (Real is double) and eight at a
+// time (Points) get the same bits, whatever the processor.
 
-  explicit Powers(std::span<const double> xi) {
+/// One coordinate of eight points.
+using Points = double __attribute__((vector_size(LACON_LANES * sizeof(double))));
+
+/// Factors of the terms and their derivatives.
+template <class Real>
+struct Powers {
+  Real value[3][3], slope[3][3];
+  Real inverse;  ///< 1 / (1 - z); 0 at a pyramid's apex, where the limit of every x^a y^b / (1 - z), a + b > 1, is 0
+
+  /// @param x (3), zero where the cell has no such coordinate
+  [[gnu::always_inline]] explicit Powers(const Real (&x)[3]) {
+    const Real zero{};
     for (std::size_t axis = 0; axis < 3; ++axis) {
-      const double x = axis < xi.size() ? xi[axis] : 0.0;
-      const double powers[3] = {1, x, x * x}, slopes[3] = {0, 1, 2 * x};
+      const Real powers[3] = {zero + 1.0, x[axis], x[axis] * x[axis]}, slopes[3] = {zero, zero + 1.0, 2 * x[axis]};
       std::copy_n(powers, 3, value[axis]);
       std::copy_n(slopes, 3, slope[axis]);
     }
-    inverse = xi.size() < 3 ? 1 : value[2][1] == 1.0 ? 0.0 : 1 / (1 - value[2][1]);
+    const Real below = 1 - x[2];
+    inverse = below == 0.0 ? zero : 1 / below;
   }
 
-  double operator()(const Term& t) const { return value[0][t.i] * value[1][t.j] * height(t); }
+  [[gnu::always_inline]] Real operator()(const Term& t) const { return value[0][t.i] * value[1][t.j] * height(t); }
 
-  double derivative(const Term& t, int axis) const {
+  [[gnu::always_inline]] Real derivative(const Term& t, std::size_t axis) const {
     if (axis == 0) return slope[0][t.i] * value[1][t.j] * height(t);
     if (axis == 1) return value[0][t.i] * slope[1][t.j] * height(t);
-    const double plane = value[0][t.i] * value[1][t.j];
+    const Real plane = value[0][t.i] * value[1][t.j];
     return t.l ? plane * inverse * (slope[2][t.k] + value[2][t.k] * inverse) : plane * slope[2][t.k];
   }
 
  private:
-  double height(const Term& t) const { return t.l ? value[2][t.k] * inverse : value[2][t.k]; }
+  [[gnu::always_inline]] Real height(const Term& t) const { return t.l ? value[2][t.k] * inverse : value[2][t.k]; }
 };
 
 struct Space {
@@ -95,8 +108,9 @@ Space make_space(const catalog::CellRow& cell) {
     throw std::logic_error("no space of shape functions for the cell " + std::string(cell.name));
   Eigen::MatrixXd at_nodes(n, n);
   for (int a = 0; a < n; ++a) {
-    const Powers powers(
-        cell.nodes.subspan(static_cast<std::size_t>(a * cell.dimension), static_cast<std::size_t>(cell.dimension)));
+    double x[3] = {};
+    std::copy_n(cell.nodes.begin() + a * cell.dimension, cell.dimension, x);
+    const Powers<double> powers(x);
     for (int t = 0; t < n; ++t) at_nodes(a, t) = powers(space.terms[static_cast<std::size_t>(t)]);
   }
   const Eigen::MatrixXd inverse = at_nodes.fullPivLu().inverse();
@@ -121,35 +135,86 @@ const Space& space_of(CellType type) {
   return spaces[static_cast<std::size_t>(type)];
 }
 
-}  // namespace
+/// What is computed of the terms: their values, or their derivatives along each axis.
+enum class Quantity { value, derivative };
 
-void shape_functions(CellType type, std::span<const double> xi, std::span<double> values) {
-  const Space& space = space_of(type);
+template <Quantity Q, class Real>
+[[gnu::always_inline]] inline Real of_term(const Powers<Real>& powers, const Term& term, std::size_t axis) {
+  if constexpr (Q == Quantity::value) return powers(term);
+  return powers.derivative(term, axis);
+}
+
+/// At one point. @param n_axes dimension for derivatives, otherwise 1 @param[out] out (nodes, n_axes)
+template <Quantity Q>
+void at_point(const Space& space, std::size_t dimension, std::size_t n_axes, const double* xi, double* out) {
   const std::size_t n = space.terms.size();
-  assert(values.size() >= n);
-  const Powers powers(xi);
-  const double* const coefficient = space.coefficient.data();
-  double* const value = values.data();
-  std::fill_n(value, n, 0.0);
-  for (std::size_t t = 0; t < n; ++t) {
-    const double term = powers(space.terms[t]);
-    for (std::size_t a = 0; a < n; ++a) value[a] += coefficient[t * n + a] * term;
+  double x[3] = {};
+  std::copy_n(xi, dimension, x);
+  const Powers<double> powers(x);
+  std::fill_n(out, n * n_axes, 0.0);
+  for (std::size_t t = 0; t < n; ++t)
+    for (std::size_t axis = 0; axis < n_axes; ++axis) {
+      const double factor = of_term<Q>(powers, space.terms[t], axis);
+      if (factor == 0.0) continue;
+      for (std::size_t a = 0; a < n; ++a) out[a * n_axes + axis] += space.coefficient[t * n + a] * factor;
+    }
+}
+
+/// At many points. @param xi (n_points, dimension) @param[out] out (n_points, nodes, n_axes)
+template <Quantity Q>
+[[gnu::always_inline]] inline void at_points(const Space& space, std::size_t dimension, std::size_t n_axes,
+                                             std::size_t n_points, const double* xi, double* out) {
+  const std::size_t n = space.terms.size();
+  Points factor[max_nodes];
+  double column[3 * LACON_LANES] = {}, row[LACON_LANES];
+  for (std::size_t first = 0; first < n_points; first += LACON_LANES) {
+    const std::size_t count = std::min<std::size_t>(LACON_LANES, n_points - first);
+    for (std::size_t axis = 0; axis < dimension; ++axis)
+      for (std::size_t lane = 0; lane < count; ++lane)
+        column[axis * LACON_LANES + lane] = xi[(first + lane) * dimension + axis];
+    const Points x[3] = {lanes(column, 0), lanes(column, 1), lanes(column, 2)};
+    const Powers<Points> powers(x);
+    for (std::size_t axis = 0; axis < n_axes; ++axis) {
+      for (std::size_t t = 0; t < n; ++t) factor[t] = of_term<Q>(powers, space.terms[t], axis);
+      for (std::size_t a = 0; a < n; ++a) {
+        Points sum = space.coefficient[a] * factor[0];
+        for (std::size_t t = 1; t < n; ++t) sum += space.coefficient[t * n + a] * factor[t];
+        lanes(row, 0) = sum;
+        double* const to = out + (first * n + a) * n_axes + axis;
+        if (count == LACON_LANES)
+          for (std::size_t lane = 0; lane < LACON_LANES; ++lane) to[lane * n * n_axes] = row[lane];
+        else
+          for (std::size_t lane = 0; lane < count; ++lane) to[lane * n * n_axes] = row[lane];
+      }
+    }
   }
 }
 
-void shape_gradients(CellType type, std::span<const double> xi, std::span<double> gradients) {
+LACON_KERNEL void functions_at(const Space& space, std::size_t dimension, std::size_t n_points, const double* xi, double* out) {
+  at_points<Quantity::value>(space, dimension, 1, n_points, xi, out);
+}
+LACON_KERNEL void gradients_at(const Space& space, std::size_t dimension, std::size_t n_points, const double* xi, double* out) {
+  at_points<Quantity::derivative>(space, dimension, dimension, n_points, xi, out);
+}
+
+}  // namespace
+
+void shape_functions(CellType type, std::span<const double> xi, std::span<double> values) {
+  const auto dimension = static_cast<std::size_t>(catalog::cell(type).dimension);
   const Space& space = space_of(type);
-  const std::size_t n = space.terms.size();
-  const std::size_t dimension = static_cast<std::size_t>(catalog::cell(type).dimension);
-  assert(gradients.size() >= n * dimension);
-  const Powers powers(xi);
-  std::fill_n(gradients.begin(), n * dimension, 0.0);
-  for (std::size_t t = 0; t < n; ++t)
-    for (std::size_t d = 0; d < dimension; ++d) {
-      const double slope = powers.derivative(space.terms[t], static_cast<int>(d));
-      if (slope == 0.0) continue;
-      for (std::size_t a = 0; a < n; ++a) gradients[a * dimension + d] += space.coefficient[t * n + a] * slope;
-    }
+  assert(xi.size() % std::max<std::size_t>(dimension, 1) == 0);
+  if (xi.size() == dimension) return at_point<Quantity::value>(space, dimension, 1, xi.data(), values.data());
+  assert(values.size() * dimension >= xi.size() * space.terms.size());
+  functions_at(space, dimension, xi.size() / dimension, xi.data(), values.data());
+}
+
+void shape_gradients(CellType type, std::span<const double> xi, std::span<double> gradients) {
+  const auto dimension = static_cast<std::size_t>(catalog::cell(type).dimension);
+  const Space& space = space_of(type);
+  assert(xi.size() % std::max<std::size_t>(dimension, 1) == 0);
+  assert(gradients.size() >= xi.size() * space.terms.size());
+  if (xi.size() == dimension) return at_point<Quantity::derivative>(space, dimension, dimension, xi.data(), gradients.data());
+  gradients_at(space, dimension, xi.size() / dimension, xi.data(), gradients.data());
 }
 
 Tabulation tabulate(CellType type, const Rule& rule) {
@@ -165,11 +230,8 @@ Tabulation tabulate(CellType type, const Rule& rule) {
                    std::vector<double>(points * nodes),
                    std::vector<double>(points * nodes * dimension),
                    rule.weights};
-  for (std::size_t p = 0; p < points; ++p) {
-    const std::span<const double> xi = std::span(rule.points).subspan(p * dimension, dimension);
-    shape_functions(type, xi, std::span(table.shape).subspan(p * nodes, nodes));
-    shape_gradients(type, xi, std::span(table.gradient).subspan(p * nodes * dimension, nodes * dimension));
-  }
+  shape_functions(type, rule.points, table.shape);
+  shape_gradients(type, rule.points, table.gradient);
   return table;
 }
 

@@ -7,10 +7,11 @@
 
 namespace lacon {
 
-/// Shape functions at a point. @param xi (dimension) @param[out] values (n_nodes)
+/// Shape functions at any number of points. What a point gets does not depend on the others, to the last bit.
+/// @param xi (n_points, dimension) @param[out] values (n_points, n_nodes)
 void shape_functions(CellType type, std::span<const double> xi, std::span<double> values);
 
-/// Their derivatives. @param[out] gradients (n_nodes, dimension), row-major
+/// Their derivatives. @param[out] gradients (n_points, n_nodes, dimension)
 void shape_gradients(CellType type, std::span<const double> xi, std::span<double> gradients);
 
 /// An integration rule on a reference cell.

@@ -13,12 +13,36 @@
 namespace lacon {
 namespace {
 
-/// Coordinates of a cell's nodes, (n_nodes, dimension), behind `out`.
-void append_points(const Mesh& mesh, std::span<const double> coordinates, std::int32_t cell, int dimension,
-                   std::vector<double>& out) {
+/// Coordinates of a cell's nodes, (n_nodes, dimension), to `out`, which moves behind them.
+void copy_points(const Mesh& mesh, std::span<const double> coordinates, std::int32_t cell, int dimension, double*& out) {
   for (const std::int32_t node : mesh.cells[cell])
-    out.insert(out.end(), coordinates.begin() + 3 * std::ptrdiff_t{node},
-               coordinates.begin() + 3 * std::ptrdiff_t{node} + dimension);
+    out = std::copy_n(coordinates.data() + 3 * std::ptrdiff_t{node}, dimension, out);
+}
+
+/// Some of the contact cells, without their polygons.
+void select(const ContactCells& cells, std::span<const std::int32_t> members, ContactCells& some) {
+  some.clear();
+  some.dimension = cells.dimension;
+  const std::ptrdiff_t reference = cells.dimension - 1;
+  const auto append = [](const std::vector<double>& from, std::ptrdiff_t first, std::ptrdiff_t last, std::vector<double>& to) {
+    to.insert(to.end(), from.begin() + first, from.begin() + last);
+  };
+  for (const std::int32_t c : members) {
+    const std::int64_t first = cells.offset[c], last = cells.offset[c + 1];
+    some.slave.push_back(cells.slave[c]);
+    some.master.push_back(cells.master[c]);
+    append(cells.weight, first, last, some.weight);
+    append(cells.slave_point, first * reference, last * reference, some.slave_point);
+    append(cells.master_point, first * reference, last * reference, some.master_point);
+    some.offset.push_back(static_cast<std::int64_t>(some.weight.size()));
+  }
+}
+
+/// The first `size` numbers of an array that only grows.
+template <class Number>
+std::span<Number> room(std::vector<Number>& numbers, std::size_t size) {
+  if (numbers.size() < size) numbers.resize(size);
+  return {numbers.data(), size};
 }
 
 constexpr double tolerated_overlap = 0.1;     // of a slave cell's size, beyond the axis: a node there that nothing holds
@@ -26,6 +50,18 @@ constexpr std::size_t block = 256;            // slave cells whose points are in
 constexpr double coverage_round_off = 1e-12;  // covered fractions above 1 by no more than this are 1
 
 }  // namespace
+
+/// Contact cells of one slave element (which says the kernel and the kind of cell) and one kind of master cell, for one call of
+/// the kernel, and what it says of them. Its arrays serve one block after another.
+struct ContactGeometry::Alike {
+  std::int32_t element;
+  CellType master_type;
+  std::vector<std::int32_t> members;  ///< contact cells of the block
+  ContactCells some;                  ///< these, where the block has others too
+  std::vector<double> slave_shape, slave_gradient, master_shape, slave_initial, slave, master, slave_normal;
+  std::vector<double> point_gap, gap, measure, current_measure, coupling;
+  std::vector<std::int32_t> error;
+};
 
 const Rule& measuring_rule(CellType type) {
   const auto& [family, order] = std::tie(catalog::cell(type).family, catalog::cell(type).order);
@@ -55,6 +91,10 @@ ContactGeometry::ContactGeometry(const Mesh& mesh, const Model& model, const Con
     for (const std::int32_t cell : data.slave) zone.slaves.push_back(slave_of_cell.at(cell));
     for (const std::int32_t patch : data.patches) zone_of_[patch] = static_cast<std::int32_t>(zones_.size());
     zones_.push_back(std::move(zone));
+  }
+  for (const SlaveElement& slave : contact_.slaves) {
+    const lacon_kernel*& kernel = kernels_[model_.element[slave.cell]];
+    if (!kernel) kernel = &kernel_of(slave.cell);
   }
 
   measure_slaves();
@@ -97,11 +137,12 @@ void ContactGeometry::measure_slaves() {
     by_element[model_.element[contact_.slaves[s].cell]].push_back(static_cast<std::int32_t>(s));
   for (const auto& [element, members] : by_element) {
     const CellType type = mesh_.types[contact_.slaves[members.front()].cell];
-    const lacon_kernel& kernel = kernel_of(contact_.slaves[members.front()].cell);
+    const lacon_kernel& kernel = *kernels_.at(element);
     // each cell on itself: the kernel says what its measure is
     const Tabulation table = tabulate(type, measuring_rule(type));
     std::vector<std::int64_t> offset{0};
-    std::vector<double> weight, shape, gradient, initial, current, size(block);
+    const std::size_t width = static_cast<std::size_t>(table.n_nodes) * dimension;
+    std::vector<double> weight, shape, gradient, initial(block * width), current(block * width), size(block);
     std::vector<std::int32_t> error(block);
     for (std::size_t i = 0; i < std::min(block, members.size()); ++i) {
       weight.insert(weight.end(), table.weight.begin(), table.weight.end());
@@ -111,11 +152,10 @@ void ContactGeometry::measure_slaves() {
     }
     for (std::size_t first = 0; first < members.size(); first += block) {
       const auto some = std::span(members).subspan(first, std::min(block, members.size() - first));
-      initial.clear();
-      current.clear();
+      double *to_initial = initial.data(), *to_current = current.data();
       for (const std::int32_t s : some) {
-        append_points(mesh_, mesh_.coordinates, contact_.slaves[s].cell, dimension, initial);
-        append_points(mesh_, coordinates_, contact_.slaves[s].cell, dimension, current);
+        copy_points(mesh_, mesh_.coordinates, contact_.slaves[s].cell, dimension, to_initial);
+        copy_points(mesh_, coordinates_, contact_.slaves[s].cell, dimension, to_current);
       }
       std::fill(error.begin(), error.end(), LACON_FINE);
       const lacon_contact_batch batch{.struct_size = sizeof(lacon_contact_batch),
@@ -161,6 +201,7 @@ void ContactGeometry::update(std::span<const double> displacement, std::vector<Z
   std::fill(rejected_.begin(), rejected_.end(), 0);
   for (std::vector<double>* sums : {&gap_, &weight_, &covered_}) std::fill(sums->begin(), sums->end(), 0.0);
   if (records) records->clear();
+  std::vector<Alike> groups;
   for (Zone& zone : zones_) {
     std::vector<double> normals;
     if (contact_.smoothing) normals = nodal_normals(zone.slave);
@@ -171,14 +212,9 @@ void ContactGeometry::update(std::span<const double> displacement, std::vector<Z
           fail("EVOLUTION_3", {{"cell", cell_name(contact_.slaves[zone.slaves[couple.slave]].cell)}});
         ++rejected_[static_cast<std::size_t>(couple.reason)];
       }
-      ZonePairing* record = nullptr;
-      if (records) {
-        record = &records->emplace_back();
-        record->point_gap.resize(pairing.cells.weight.size());
-        record->gap.resize(pairing.cells.size());
-        record->measure.resize(pairing.cells.size());
-      }
-      integrate(zone, pairing.cells, normals, record);
+      ZonePairing* const record = records ? &records->emplace_back() : nullptr;
+      integrate(zone, pairing.cells, groups);
+      add(zone, pairing.cells, groups, record);
       if (record) record->pairing = std::move(pairing);
     };
     // points of one block at a time; a record needs all of them
@@ -193,83 +229,103 @@ void ContactGeometry::update(std::span<const double> displacement, std::vector<Z
   }
 }
 
-void ContactGeometry::integrate(const Zone& zone, const ContactCells& cells, std::span<const double> normals,
-                                ZonePairing* record) {
-  const int dimension = mesh_.dimension, reference = dimension - 1;
-  // one kernel call for each slave element (which says the kernel and the kind of cell) and kind of master cell
-  const auto slave_cell_of = [&](std::int32_t c) { return contact_.slaves[zone.slaves[cells.slave[c]]].cell; };
-  std::map<std::pair<std::int32_t, CellType>, std::vector<std::int32_t>> by_kinds;
-  for (std::int32_t c = 0; c < static_cast<std::int32_t>(cells.size()); ++c)
-    by_kinds[{model_.element[slave_cell_of(c)], zone.master.types[cells.master[c]]}].push_back(c);
-
-  for (const auto& [element_and_master, members] : by_kinds) {
-    const std::int32_t first_cell = slave_cell_of(members.front());
-    const std::pair kinds(mesh_.types[first_cell], element_and_master.second);
-    const int ns = catalog::cell(kinds.first).n_nodes, nm = catalog::cell(kinds.second).n_nodes;
-    std::vector<std::int64_t> offset{0};
-    for (const std::int32_t c : members) offset.push_back(offset.back() + cells.offset[c + 1] - cells.offset[c]);
-    const auto n_points = static_cast<std::size_t>(offset.back());
-    std::vector<double> weight, slave_initial, slave, master, slave_normal;
-    std::vector<double> slave_shape(n_points * ns), slave_gradient(slave_shape.size() * reference), master_shape(n_points * nm);
-    weight.reserve(n_points);
-    for (const std::int32_t c : members) {
-      for (std::int64_t p = cells.offset[c]; p < cells.offset[c + 1]; ++p) {
-        const std::span<const double> xi(cells.slave_point.data() + p * reference, reference),
-            eta(cells.master_point.data() + p * reference, reference);
-        const std::size_t at = weight.size(), width = static_cast<std::size_t>(ns) * reference;
-        shape_functions(kinds.first, xi, std::span(slave_shape).subspan(at * ns, ns));
-        shape_gradients(kinds.first, xi, std::span(slave_gradient).subspan(at * width, width));
-        shape_functions(kinds.second, eta, std::span(master_shape).subspan(at * nm, nm));
-        weight.push_back(cells.weight[p]);
-      }
-      const std::int32_t slave_cell = slave_cell_of(c), master_cell = zone.masters[cells.master[c]];
-      append_points(mesh_, mesh_.coordinates, slave_cell, dimension, slave_initial);
-      append_points(mesh_, coordinates_, slave_cell, dimension, slave);
-      append_points(mesh_, coordinates_, master_cell, dimension, master);
-      if (!normals.empty()) append_points(mesh_, normals, slave_cell, dimension, slave_normal);
+void ContactGeometry::integrate(const Zone& zone, const ContactCells& cells, std::vector<Alike>& groups) const {
+  for (Alike& group : groups) group.members.clear();
+  Alike* group = nullptr;
+  for (std::int32_t c = 0; c < static_cast<std::int32_t>(cells.size()); ++c) {
+    const std::int32_t element = model_.element[contact_.slaves[zone.slaves[cells.slave[c]]].cell];
+    const CellType master_type = zone.master.types[cells.master[c]];
+    const auto fits = [&](const Alike& g) { return g.element == element && g.master_type == master_type; };
+    if (!group || !fits(*group)) {
+      const auto found = std::find_if(groups.begin(), groups.end(), fits);
+      group = found == groups.end() ? &groups.emplace_back(Alike{.element = element, .master_type = master_type}) : &*found;
     }
-    const std::size_t width = static_cast<std::size_t>(ns + nm) * dimension;
-    std::vector<double> point_gap(weight.size()), gap(members.size()), size(members.size()), current(members.size()),
-        coupling(members.size() * width);
-    std::vector<std::int32_t> error(members.size(), LACON_FINE);
-    const lacon_contact_batch batch{.struct_size = sizeof(lacon_contact_batch),
-                                    .n_cells = static_cast<std::int32_t>(members.size()),
-                                    .n_slave_nodes = ns,
-                                    .n_master_nodes = nm,
-                                    .dimension = dimension,
-                                    .current_jacobian = zone.current_jacobian,
-                                    .offset = offset.data(),
-                                    .weight = weight.data(),
-                                    .slave_shape = slave_shape.data(),
-                                    .slave_gradient = slave_gradient.data(),
-                                    .master_shape = master_shape.data(),
-                                    .slave_initial = slave_initial.data(),
-                                    .slave = slave.data(),
-                                    .master = master.data(),
-                                    .slave_normal = normals.empty() ? nullptr : slave_normal.data(),
-                                    .point_gap = point_gap.data(),
-                                    .gap = gap.data(),
-                                    .measure = size.data(),
-                                    .current_measure = current.data(),
-                                    .coupling = coupling.data(),
-                                    .error = error.data()};
-    kernel_of(first_cell).contact(&batch);
-    for (std::size_t i = 0; i < members.size(); ++i) {
-      const std::int32_t c = members[i], s = zone.slaves[cells.slave[c]];
-      note(error[i], contact_.slaves[s].cell);
-      const std::int32_t patch = contact_.slaves[s].patch;
-      gap_[patch] += gap[i];
-      weight_[patch] += size[i];
-      covered_[patch] += current[i];
-      if (record) {
-        std::copy(point_gap.begin() + offset[i], point_gap.begin() + offset[i + 1],
-                  record->point_gap.begin() + cells.offset[c]);
-        record->gap[c] = gap[i] / size[i];
-        record->measure[c] = current[i];
-      }
-      cells_.push_back({s, zone.masters[cells.master[c]], gap[i], static_cast<std::int64_t>(coupling_.size())});
-      coupling_.insert(coupling_.end(), coupling.begin() + static_cast<std::ptrdiff_t>(i * width),
-                       coupling.begin() + static_cast<std::ptrdiff_t>((i + 1) * width));
+    group->members.push_back(c);
+  }
+  for (Alike& g : groups) {
+    if (g.members.empty()) continue;
+    const bool all = g.members.size() == cells.size();
+    if (!all) select(cells, g.members, g.some);
+    evaluate(zone, all ? cells : g.some, g);
+  }
+}
+
+void ContactGeometry::evaluate(const Zone& zone, const ContactCells& cells, Alike& group) const {
+  const int dimension = mesh_.dimension;
+  const auto slave_cell = [&](std::size_t c) { return contact_.slaves[zone.slaves[cells.slave[c]]].cell; };
+  const std::size_t n = cells.size(), points = cells.weight.size();
+  const CellType slave_type = mesh_.types[slave_cell(0)];
+  const int ns = catalog::cell(slave_type).n_nodes, nm = catalog::cell(group.master_type).n_nodes;
+
+  shape_functions(slave_type, cells.slave_point, room(group.slave_shape, points * ns));
+  shape_gradients(slave_type, cells.slave_point, room(group.slave_gradient, points * ns * (dimension - 1)));
+  shape_functions(group.master_type, cells.master_point, room(group.master_shape, points * nm));
+
+  const std::span<const double> normals = zone.slave.normals;
+  double *initial = room(group.slave_initial, n * ns * dimension).data(), *slave = room(group.slave, n * ns * dimension).data(),
+         *master = room(group.master, n * nm * dimension).data(),
+         *normal = room(group.slave_normal, normals.empty() ? 0 : n * ns * dimension).data();
+  for (std::size_t c = 0; c < n; ++c) {
+    copy_points(mesh_, mesh_.coordinates, slave_cell(c), dimension, initial);
+    copy_points(mesh_, coordinates_, slave_cell(c), dimension, slave);
+    copy_points(mesh_, coordinates_, zone.masters[cells.master[c]], dimension, master);
+    if (!normals.empty()) copy_points(mesh_, normals, slave_cell(c), dimension, normal);
+  }
+
+  std::fill_n(room(group.error, n).begin(), n, LACON_FINE);
+  const lacon_contact_batch batch{.struct_size = sizeof(lacon_contact_batch),
+                                  .n_cells = static_cast<std::int32_t>(n),
+                                  .n_slave_nodes = ns,
+                                  .n_master_nodes = nm,
+                                  .dimension = dimension,
+                                  .current_jacobian = zone.current_jacobian,
+                                  .offset = cells.offset.data(),
+                                  .weight = cells.weight.data(),
+                                  .slave_shape = group.slave_shape.data(),
+                                  .slave_gradient = group.slave_gradient.data(),
+                                  .master_shape = group.master_shape.data(),
+                                  .slave_initial = group.slave_initial.data(),
+                                  .slave = group.slave.data(),
+                                  .master = group.master.data(),
+                                  .slave_normal = normals.empty() ? nullptr : group.slave_normal.data(),
+                                  .point_gap = room(group.point_gap, points).data(),
+                                  .gap = room(group.gap, n).data(),
+                                  .measure = room(group.measure, n).data(),
+                                  .current_measure = room(group.current_measure, n).data(),
+                                  .coupling = room(group.coupling, n * (ns + nm) * dimension).data(),
+                                  .error = group.error.data()};
+  kernels_.at(group.element)->contact(&batch);
+}
+
+void ContactGeometry::add(const Zone& zone, const ContactCells& cells, const std::vector<Alike>& groups, ZonePairing* record) {
+  if (record) {
+    record->point_gap.resize(cells.weight.size());
+    record->gap.resize(cells.size());
+    record->measure.resize(cells.size());
+  }
+  for (const Alike& group : groups) {
+    if (group.members.empty()) continue;
+    const SlaveElement& first = contact_.slaves[zone.slaves[cells.slave[group.members.front()]]];
+    const std::ptrdiff_t width =
+        std::ptrdiff_t{catalog::cell(mesh_.types[first.cell]).n_nodes + catalog::cell(group.master_type).n_nodes} *
+        mesh_.dimension;
+    auto at = static_cast<std::int64_t>(coupling_.size());
+    coupling_.insert(coupling_.end(), group.coupling.begin(),
+                     group.coupling.begin() + static_cast<std::ptrdiff_t>(group.members.size()) * width);
+    const double* point_gap = group.point_gap.data();
+    for (std::size_t i = 0; i < group.members.size(); ++i, at += width) {
+      const std::int32_t c = group.members[i], s = zone.slaves[cells.slave[c]], patch = contact_.slaves[s].patch;
+      note(group.error[i], contact_.slaves[s].cell);
+      gap_[patch] += group.gap[i];
+      weight_[patch] += group.measure[i];
+      covered_[patch] += group.current_measure[i];
+      cells_.push_back({s, zone.masters[cells.master[c]], group.gap[i], at});
+      if (!record) continue;
+      const std::int64_t n_points = cells.offset[c + 1] - cells.offset[c];
+      std::copy_n(point_gap, n_points, record->point_gap.begin() + cells.offset[c]);
+      point_gap += n_points;
+      record->gap[c] = group.gap[i] / group.measure[i];
+      record->measure[c] = group.current_measure[i];
     }
   }
 }

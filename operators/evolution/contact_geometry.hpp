@@ -2,6 +2,7 @@
 // The contact cells of all zones at a geometry: gaps, couplings and coverage of the patches (METHOD.md 3.4 and 3.5). It knows
 // neither multipliers nor equations, so that a look at the pairing needs no solver.
 #include <cstdint>
+#include <map>
 #include <optional>
 #include <span>
 #include <vector>
@@ -67,7 +68,14 @@ class ContactGeometry {
   std::span<const std::int64_t> rejected() const { return rejected_; }
 
  private:
-  void integrate(const Zone& zone, const ContactCells& cells, std::span<const double> normals, ZonePairing* record);
+  struct Alike;
+  /// Gaps and couplings of the contact cells of a block. @param[in,out] groups gets a group of each kind, some of them perhaps
+  /// empty
+  void integrate(const Zone& zone, const ContactCells& cells, std::vector<Alike>& groups) const;
+  /// The same for cells of one kind.
+  void evaluate(const Zone& zone, const ContactCells& cells, Alike& group) const;
+  /// Sum up what the kernels gave.
+  void add(const Zone& zone, const ContactCells& cells, const std::vector<Alike>& groups, ZonePairing* record);
   /// What a kernel says of a slave cell.
   void note(std::int32_t error, std::int32_t cell);
   /// Measures of whole patches, in the measure of the kernels' coverage (with r in axisymmetry).
@@ -79,7 +87,8 @@ class ContactGeometry {
   const Model& model_;
   const Contact& contact_;
   Registry& registry_;
-  std::vector<double> coordinates_;  ///< (n_nodes, 3), current
+  std::map<std::int32_t, const lacon_kernel*> kernels_;  ///< of the slaves' elements
+  std::vector<double> coordinates_;                      ///< (n_nodes, 3), current
   std::vector<Zone> zones_;
   std::vector<Cell> cells_;
   std::vector<double> coupling_;

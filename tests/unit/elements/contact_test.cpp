@@ -226,7 +226,7 @@ TEST_P(Lac, MeasuresFollowTheKindOfJacobianAndTheCurrentOneIsAlwaysCurrent) {
   for (ContactCell c : variants()) {
     c.slave = c.initial;
     const ContactResult before = run(c);
-    EXPECT_EQ(before.measure, before.current_measure);
+    EXPECT_NEAR(before.measure, before.current_measure, 20 * eps);  // products may be fused with one sum and not the other
     for (double& x : c.slave) x *= 3;
     for (double& x : c.master) x *= 3;
     const ContactResult after = run(c);

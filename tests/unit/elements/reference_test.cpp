@@ -45,6 +45,23 @@ struct NamedCell : testing::TestWithParam<int> {
   }
 };
 
+TEST_P(NamedCell, ManyPointsAtOnceGetTheBitsOfEachByItself) {
+  if (cell().dimension == 0) return;  // one point
+  std::vector<double> all;
+  for (const auto& xi : points()) all.insert(all.end(), xi.begin(), xi.end());
+  const std::size_t n = points().size(), nodes = static_cast<std::size_t>(cell().n_nodes), axes = points()[0].size();
+  for (const std::size_t some : {n, std::size_t{8}, std::size_t{3}, std::size_t{2}}) {
+    std::vector<double> at_once(some * nodes), slopes_at_once(some * nodes * axes);
+    lacon::shape_functions(cell().type, std::span(all).first(some * axes), at_once);
+    lacon::shape_gradients(cell().type, std::span(all).first(some * axes), slopes_at_once);
+    for (std::size_t p = 0; p < some; ++p) {
+      const auto value = values(points()[p]), slope = gradients(points()[p]);
+      for (std::size_t i = 0; i < value.size(); ++i) EXPECT_EQ(at_once[p * value.size() + i], value[i]) << cell().name;
+      for (std::size_t i = 0; i < slope.size(); ++i) EXPECT_EQ(slopes_at_once[p * slope.size() + i], slope[i]) << cell().name;
+    }
+  }
+}
+
 // The functions are sums of at most 27 terms of size at most 1.6^6 / 8, or, in pyramids, 1.6^3 / 0.2.
 constexpr double round_off = 27 * 50 * eps;
 
