@@ -1,15 +1,78 @@
-// Pairing of two flat rectangles by Google Benchmark: linear in the number of facets (time ratio for four times the facets at
-// most 4.6), and microseconds for each contact cell, alone and with gap and both integrals by the contact kernel.
-#include <benchmark/benchmark.h>
-#include <sys/resource.h>
-
+// Pairing by Google Benchmark. Its pieces: polygons clipped, points projected to facets. The whole, on two flat rectangles:
+// linear in the number of facets (time ratio for four times the facets at most 4.6), and microseconds for each contact cell,
+// alone and with gap and both integrals by the contact kernel.
 #include <cmath>
+#include <numbers>
+#include <random>
 
+#include "bench.hpp"
 #include "lacon/operators/evolution/contact_geometry.hpp"
+#include "lacon/pairing/facet.hpp"
+#include "lacon/pairing/polygon.hpp"
 
 namespace {
 
 using namespace lacon;
+
+space::Polygon regular(int vertices, double turn) {
+  space::Polygon polygon;
+  for (int v = 0; v < vertices; ++v) {
+    const double angle = turn + 2 * std::numbers::pi * v / vertices;
+    polygon.push_back({std::cos(angle), std::sin(angle)});
+  }
+  return polygon;
+}
+
+/// Regular polygons by half-planes that pass near their middle, all cut in two.
+void clip(benchmark::State& state) {
+  constexpr int n = 256;
+  std::vector<space::HalfPlane> halves;
+  std::mt19937 random(1);
+  std::uniform_real_distribution<double> angle(0, 2 * std::numbers::pi), off(-0.3, 0.3);
+  for (int i = 0; i < n; ++i) {
+    const double a = angle(random);
+    halves.push_back({{off(random), off(random)}, {std::cos(a), std::sin(a)}, 0});
+  }
+  const space::Polygon polygon = regular(static_cast<int>(state.range(0)), 0.1);
+  space::Polygon inside;
+  for (auto run : state)
+    for (const space::HalfPlane& half : halves) {
+      space::clip(polygon, half, inside);
+      benchmark::DoNotOptimize(inside.data());
+    }
+  bench::report(state, {.items = n});
+}
+BENCHMARK(clip)->Arg(3)->Arg(4)->Arg(8);
+
+/// Points of a facet, a tenth of an edge bent where it can be, back to its reference cell.
+void project(benchmark::State& state, CellType type, double bend) {
+  constexpr int n = 256;
+  const catalog::CellRow& cell = catalog::cell(type);
+  std::mt19937 random(1);
+  std::uniform_real_distribution<double> shake(-bend, bend), inner(0.05, 0.45);
+  std::vector<space::Vec3> nodes;
+  for (int i = 0; i < cell.n_nodes; ++i) {
+    const double* at = cell.nodes.data() + 2 * i;
+    nodes.push_back({at[0] + shake(random), at[1] + shake(random), 0});
+  }
+  const space::Map2 map = space::project(space::interpolate(type, nodes), {1, 0, 0}, {0, 1, 0});
+  const space::Inverse inverse(map, cell.family);
+  std::vector<space::Vec2> points;
+  for (int i = 0; i < n; ++i) points.push_back(map({inner(random), inner(random)}).x);
+  for (auto run : state)
+    for (const space::Vec2 point : points) {
+      const std::optional<space::Vec2> found = inverse(point, 1e-13, 0.25);
+      if (!found) state.SkipWithError("a point has no image");
+      benchmark::DoNotOptimize(found);
+    }
+  bench::report(state, {.items = n});
+}
+BENCHMARK_CAPTURE(project, TRIA3, CellType::TRIA3, 0.1);
+BENCHMARK_CAPTURE(project, QUAD4_parallelogram, CellType::QUAD4, 0.0);
+BENCHMARK_CAPTURE(project, QUAD4, CellType::QUAD4, 0.1);
+BENCHMARK_CAPTURE(project, TRIA6, CellType::TRIA6, 0.05);
+BENCHMARK_CAPTURE(project, QUAD8, CellType::QUAD8, 0.1);
+BENCHMARK_CAPTURE(project, QUAD9, CellType::QUAD9, 0.1);
 
 /// A rectangle of n x n facets as part of a mesh; `up`: its normals look along +z. Inner nodes of triangles and nothing else
 /// lie off the grid, so that all facets are affine.
@@ -68,15 +131,14 @@ struct Skins {
   }
 };
 
-void report(benchmark::State& state, std::size_t facets, std::size_t contact_cells) {
-  rusage usage{};
-  getrusage(RUSAGE_SELF, &usage);
+void report_pairing(benchmark::State& state, std::size_t facets, std::size_t contact_cells) {
   const double runs = static_cast<double>(state.iterations());
+  bench::report(state, {.items = static_cast<double>(contact_cells)});
   state.counters["facets"] = static_cast<double>(facets);
   state.counters["contact_cells"] = static_cast<double>(contact_cells);
   state.counters["per_contact_cell"] =
       benchmark::Counter(runs * static_cast<double>(contact_cells), benchmark::Counter::kIsRate | benchmark::Counter::kInvert);
-  state.counters["peak_MB"] = static_cast<double>(usage.ru_maxrss) / 1024;
+  state.counters["peak_MB"] = bench::peak_megabytes();
   state.SetComplexityN(static_cast<benchmark::IterationCount>(facets));
 }
 
@@ -90,7 +152,7 @@ void pairing_alone(benchmark::State& state) {
     cells = 0;
     pair_in_blocks(slave, master, {}, 256, [&](const Pairing& pairing) { cells += pairing.cells.size(); });
   }
-  report(state, slave.size(), cells);
+  report_pairing(state, slave.size(), cells);
 }
 
 template <CellType type>
@@ -100,7 +162,7 @@ void with_gap_and_integrals(benchmark::State& state) {
   ContactGeometry geometry(skins.mesh, skins.model, skins.contact, registry);
   const std::vector<double> displacement(skins.mesh.coordinates.size(), 0.0);
   for (auto run : state) geometry.update(displacement);
-  report(state, skins.contact.slaves.size(), geometry.cells().size());
+  report_pairing(state, skins.contact.slaves.size(), geometry.cells().size());
 }
 
 void sizes(benchmark::internal::Benchmark* bench) {
@@ -114,5 +176,3 @@ BENCHMARK(with_gap_and_integrals<CellType::QUAD4>)->Apply(sizes);
 BENCHMARK(with_gap_and_integrals<CellType::TRIA3>)->Apply(sizes);
 
 }  // namespace
-
-BENCHMARK_MAIN();
