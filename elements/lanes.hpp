@@ -1,6 +1,6 @@
 #pragma once
 // For kernels: the same quantity of LACON_LANES elements as one value that the compiler keeps in vector registers.
-#include <cmath>
+#include <cstddef>
 #include <cstdint>
 #include <cstring>
 
@@ -16,8 +16,13 @@
 
 namespace lacon {
 
-/// One double for each element of a block.
+/// One double for each element of a block. Arrays of a batch may start anywhere; arrays of a kernel's own are faster where they
+/// start at a cache line: alignas(lane_alignment).
 using Lanes = double __attribute__((vector_size(LACON_LANES * sizeof(double)), aligned(sizeof(double)), may_alias));
+constexpr std::size_t lane_alignment = 64;
+
+/// What a comparison of Lanes gives: all bits set where it holds.
+using LaneMask = decltype(Lanes{} < Lanes{});
 
 /// Item `index` of an array whose fastest index is the lane.
 inline const Lanes& lanes(const double* array, std::int64_t index) {
@@ -32,16 +37,19 @@ inline void clear_lanes(double* array, std::int64_t first, std::int64_t count) {
 
 /// What went wrong in each lane: the first thing that did.
 struct LaneErrors {
-  std::int32_t code[LACON_LANES] = {};
+  LaneMask code = {};
 
-  void set(int lane, bool wrong, std::int32_t error) {
+  [[gnu::always_inline]] void set(const LaneMask& wrong, std::int32_t error) {
+    code = (code == std::int64_t{LACON_FINE}) & wrong ? LaneMask{} + std::int64_t{error} : code;
+  }
+  [[gnu::always_inline]] void set(int lane, bool wrong, std::int32_t error) {
     if (wrong && code[lane] == LACON_FINE) code[lane] = error;
   }
   /// `values` that are not numbers, or not finite.
-  void check_finite(const Lanes& values) {
-    for (int l = 0; l < LACON_LANES; ++l) set(l, !std::isfinite(values[l]), LACON_NOT_FINITE);
+  [[gnu::always_inline]] void check_finite(const Lanes& values) { set(~(values - values == 0), LACON_NOT_FINITE); }
+  [[gnu::always_inline]] void store(std::int32_t* error, std::int64_t block) const {
+    for (int l = 0; l < LACON_LANES; ++l) error[block * LACON_LANES + l] = static_cast<std::int32_t>(code[l]);
   }
-  void store(std::int32_t* error, std::int64_t block) const { std::memcpy(error + block * LACON_LANES, code, sizeof code); }
 };
 
 /// Say of every element of a batch that the kernel does not serve its kind.

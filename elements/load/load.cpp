@@ -1,5 +1,6 @@
 // Loads on elements: pressures on skins, forces on bodies, skins and edges.
 #include <algorithm>
+#include <cmath>
 
 #include "lacon/elements/lanes.hpp"
 
@@ -99,7 +100,7 @@ struct Geometry {
       bound = length2(0) * length2(1);
     }
     take_root(bound);
-    for (int l = 0; l < LACON_LANES; ++l) errors.set(l, !(j[l] > flat * bound[l]), LACON_BAD_JACOBIAN);
+    errors.set(~(j > flat * bound), LACON_BAD_JACOBIAN);
     return j;
   }
 };

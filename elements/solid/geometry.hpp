@@ -35,7 +35,7 @@ struct Map {
     if constexpr (D == 2) {
       determinant = j[0][0] * j[1][1] - j[0][1] * j[1][0];
       size = j[0][0] * j[0][0] + j[0][1] * j[0][1] + j[1][0] * j[1][0] + j[1][1] * j[1][1];
-      for (int l = 0; l < LACON_LANES; ++l) errors.set(l, !(determinant[l] > flat * size[l]), LACON_BAD_JACOBIAN);
+      errors.set(~(determinant > flat * size), LACON_BAD_JACOBIAN);
       const Lanes scale = 1 / determinant;
       inverse[0][0] = j[1][1] * scale;
       inverse[0][1] = -j[0][1] * scale;
@@ -51,8 +51,7 @@ struct Map {
       size = (j[0][0] * j[0][0] + j[1][0] * j[1][0] + j[2][0] * j[2][0]) *
              (j[0][1] * j[0][1] + j[1][1] * j[1][1] + j[2][1] * j[2][1]) *
              (j[0][2] * j[0][2] + j[1][2] * j[1][2] + j[2][2] * j[2][2]);  // the square of Hadamard's bound
-      for (int l = 0; l < LACON_LANES; ++l)
-        errors.set(l, !(determinant[l] > 0 && determinant[l] * determinant[l] > flat * flat * size[l]), LACON_BAD_JACOBIAN);
+      errors.set(~((determinant > 0) & (determinant * determinant > flat * flat * size)), LACON_BAD_JACOBIAN);
       const Lanes scale = 1 / determinant;
       for (int r = 0; r < 3; ++r)
         for (int i = 0; i < 3; ++i) inverse[r][i] *= scale;

@@ -1,4 +1,6 @@
 // Solid elements: a modelisation (Kind), a measure of strain (Measure) and a law, put together in one loop over elements.
+#include <cmath>
+
 #include "geometry.hpp"
 #include "lacon/elements/lanes.hpp"
 #include "von_mises.hpp"
@@ -9,6 +11,7 @@
 namespace {
 
 using lacon::clear_lanes;
+using lacon::lane_alignment;
 using lacon::LaneErrors;
 using lacon::Lanes;
 using lacon::lanes;
@@ -26,6 +29,9 @@ using lacon::solid::Tangent;
 enum class Measure { small, updated, green };
 enum class Law { elastic, von_mises };
 
+/// Where row n of a matrix starts, in numbers: behind n (n + 1) / 2 entries.
+constexpr int start_of_row(int n) { return n * (n + 1) / 2 * LACON_LANES; }
+
 /// What the loop over nodes needs at a point.
 template <Kind K>
 struct Point {
@@ -37,7 +43,55 @@ struct Point {
   Lanes hoop_slope;                             ///< u_r / r
   Lanes stress[n];                              ///< in equilibrium: Cauchy's; with Green-Lagrange the second Piola-Kirchhoff
   Tangent<K> tangent;
+
+  static constexpr int n_slopes = K == Kind::axis ? 3 : D;
+  /// Gradient of shape function a, and behind it in axisymmetry its N / r.
+  [[gnu::always_inline]] const Lanes& slope_of(int a, int i) const { return i < D ? g[a][i] : hoop[K == Kind::axis ? a : 0]; }
 };
+
+// Points whose gradients are kept for add_elastic_matrix: those of QUAD9 and HEXA8 at once, a third of HEXA27's, in the fast
+// cache.
+constexpr int points_at_once = 9;
+
+/// The matrix of small strains where all points have the same moduli. Of nodes a, c the sum over points M = dv G_a (x) G_c of
+/// slopes G is enough: the entries are lambda M_ik + mu M_ki + mu tr(M) delta_ik, with terms of u_r / r in axisymmetry. M stays
+/// in registers while the points pass, so that each entry is written once.
+/// @param first whether what `matrix` held before is overwritten, not added to
+template <Kind K>
+[[gnu::always_inline]] inline void add_elastic_matrix(const Point<K>* points, int n_points, const Lanes& lambda,
+                                                      const Lanes& mu, int nodes, bool first, double* matrix) {
+  constexpr bool axis = K == Kind::axis;
+  constexpr int D = dimension_of(K), S = Point<K>::n_slopes;
+  alignas(lane_alignment) Lanes weighted[points_at_once][S];
+  for (int a = 0; a < nodes; ++a) {
+    for (int p = 0; p < n_points; ++p)
+      for (int i = 0; i < S; ++i) weighted[p][i] = points[p].dv * points[p].slope_of(a, i);
+    double* row[D];
+    for (int i = 0; i < D; ++i) row[i] = matrix + start_of_row(D * a + i);
+    for (int c = 0; c <= a; ++c) {
+      Lanes m[S][S] = {};
+      for (int p = 0; p < n_points; ++p)
+        for (int i = 0; i < S; ++i)
+          for (int k = 0; k < S; ++k) m[i][k] += weighted[p][i] * points[p].slope_of(c, k);
+      Lanes shear = m[0][0];
+      for (int k = 1; k < D; ++k) shear += m[k][k];
+      shear *= mu;
+      for (int i = 0; i < D; ++i)
+        for (int k = 0; k < D; ++k) {
+          if (c == a && k > i) continue;
+          Lanes traces = m[i][k];
+          if (axis && i == 0) traces += m[S - 1][k];
+          if (axis && k == 0) traces += m[i][S - 1];
+          if (axis && i == 0 && k == 0) traces += m[S - 1][S - 1];
+          Lanes entry = lambda * traces + mu * m[k][i];
+          if (i == k) entry += shear;
+          if (axis && i == 0 && k == 0) entry += 2 * mu * m[S - 1][S - 1];
+          Lanes& sum = lanes(row[i], D * c + k);
+          sum = first ? entry : sum + entry;
+        }
+    }
+  }
+}
 
 /// The matrix of small strains and of Green-Lagrange strains. The change of strain by node a and direction i is the symmetric
 /// part of F_i (x) g_a, where F_i is row i of the deformation gradient (small strains: of the unit matrix).
@@ -93,8 +147,8 @@ template <Kind K, Measure M, Law L>
         for (int m = 1; m < D; ++m) drawn[k] += point.stress[at(k, m)] * point.g[a][m];
         drawn[k] *= point.dv;
       }
-    double* row[D];  // row n starts behind n (n + 1) / 2 entries
-    for (int i = 0; i < D; ++i) row[i] = matrix + (D * a + i) * (D * a + i + 1) / 2 * LACON_LANES;
+    double* row[D];
+    for (int i = 0; i < D; ++i) row[i] = matrix + start_of_row(D * a + i);
     for (int c = 0; c <= a; ++c) {
       Lanes both = ga[0] * point.g[c][0];
       for (int k = 1; k < D; ++k) both += ga[k] * point.g[c][k];
@@ -180,7 +234,7 @@ template <Kind K, Law L>
   };
   for (int a = 0; a < nodes; ++a)
     for (int i = 0; i < D; ++i) {
-      double* row = matrix + (D * a + i) * (D * a + i + 1) / 2 * LACON_LANES;
+      double* row = matrix + start_of_row(D * a + i);
       for (int c = 0; c <= a; ++c) {
         Lanes both = g[a][0] * g[c][0];
         for (int k = 1; k < D; ++k) both += g[a][k] * g[c][k];
@@ -202,20 +256,21 @@ template <Kind K, Measure M, Law L>
 [[gnu::always_inline]] inline void evaluate(const lacon_solid_batch& b) {
   constexpr bool axis = K == Kind::axis, green = M == Measure::green, updated = M == Measure::updated;
   constexpr bool plastic = L == Law::von_mises;
+  constexpr bool same_moduli = M == Measure::small && L == Law::elastic;  // at all points
   constexpr int D = dimension_of(K), n_stress = components_of(K), n_variables = plastic ? 2 : 0;
   const int nodes = b.n_nodes, dofs = D * nodes, entries = dofs * (dofs + 1) / 2;
   if (b.dimension != D || nodes > max_nodes || b.n_stress != n_stress || b.n_parameters != 2 || b.n_variables != n_variables ||
       (plastic && b.n_curve < 1))
     return lacon::refuse(b);
-  Lanes side[max_nodes * D];   // from the first node on: a cell far from the origin loses no digits
-  Lanes moved[max_nodes * D];  // what strains come from: with Green-Lagrange the whole displacement, for they do not add up
-  Lanes current[updated ? max_nodes * D : 1];
-  Point<K> point;
+  alignas(lane_alignment) Lanes side[max_nodes * D];  // from the first node on: a cell far from the origin loses no digits
+  // what strains come from: with Green-Lagrange the whole displacement, for they do not add up
+  alignas(lane_alignment) Lanes moved[max_nodes * D];
+  alignas(lane_alignment) Lanes current[updated ? max_nodes * D : 1];
+  alignas(lane_alignment) Point<K> points[same_moduli ? points_at_once : 1];
   for (std::int64_t block = 0; block < b.n_blocks; ++block) {
     LaneErrors errors;
     const Lanes young = lanes(b.parameter, 2 * block), nu = lanes(b.parameter, 2 * block + 1);
-    for (int l = 0; l < LACON_LANES; ++l)
-      errors.set(l, !(young[l] > 0 && std::isfinite(young[l]) && nu[l] > -1 && nu[l] < 0.5), LACON_BAD_PARAMETER);
+    errors.set(~((young > 0) & (young - young == 0) & (nu > -1) & (nu < 0.5)), LACON_BAD_PARAMETER);
     const Lanes mu = young / (2 * (1 + nu));
     const Lanes lambda = K == Kind::plane_stress ? young * nu / ((1 + nu) * (1 - nu)) : young * nu / ((1 + nu) * (1 - 2 * nu));
     const double* x = b.coordinates + block * dofs * LACON_LANES;
@@ -223,7 +278,7 @@ template <Kind K, Measure M, Law L>
     const double* from = b.previous_displacement ? b.previous_displacement + block * dofs * LACON_LANES : nullptr;
     double* matrix = b.matrix ? b.matrix + block * entries * LACON_LANES : nullptr;
     double* force = b.force ? b.force + block * dofs * LACON_LANES : nullptr;
-    if (matrix) clear_lanes(matrix, 0, entries);
+    if (matrix && !same_moduli) clear_lanes(matrix, 0, entries);
     if (force) clear_lanes(force, 0, dofs);
     const double* place = x;  // where strains and integrals are taken
     if constexpr (updated) {
@@ -245,12 +300,14 @@ template <Kind K, Measure M, Law L>
       const double* d = b.gradient + p * dofs;
       const std::int64_t here = block * b.n_points + p;
       const Map<D> map(d, side, nodes, errors);
+      const int kept = same_moduli ? p % points_at_once : 0;
+      Point<K>& point = points[kept];
       point.dv = b.weight[p] * map.determinant;
       [[maybe_unused]] Lanes per_radius = {};
       if constexpr (axis) {
         Lanes r = {};
         for (int a = 0; a < nodes; ++a) r += b.shape[p * nodes + a] * lanes(place, 2 * a);
-        for (int l = 0; l < LACON_LANES; ++l) errors.set(l, !(r[l] > 0), LACON_BAD_RADIUS);
+        errors.set(~(r > 0), LACON_BAD_RADIUS);
         per_radius = 1 / r;
         point.dv *= r;
       }
@@ -310,6 +367,9 @@ template <Kind K, Measure M, Law L>
             for (int m = 0; m < D; ++m) nominal[i][k] += e[i][m] * s[at(m, k)];
         }
       const Lanes nominal_hoop = green ? (1 + hoop_strain) * s[2] : s[2];
+      Lanes weighted[D][D];
+      for (int i = 0; i < D; ++i)
+        for (int k = 0; k < D; ++k) weighted[i][k] = point.dv * nominal[i][k];
       if constexpr (green) {
         Lanes f[D][D], volume;
         for (int i = 0; i < D; ++i)
@@ -344,12 +404,17 @@ template <Kind K, Measure M, Law L>
       if (force)
         for (int a = 0; a < nodes; ++a)
           for (int i = 0; i < D; ++i) {
-            Lanes f = g[a][0] * nominal[i][0];
-            for (int k = 1; k < D; ++k) f += g[a][k] * nominal[i][k];
-            if (axis && i == 0) f += hoop[a] * nominal_hoop;
-            lanes(force, a * D + i) += point.dv * f;
+            Lanes f = g[a][0] * weighted[i][0];
+            for (int k = 1; k < D; ++k) f += g[a][k] * weighted[i][k];
+            if (axis && i == 0) f += hoop[a] * (point.dv * nominal_hoop);
+            lanes(force, a * D + i) += f;
           }
       if (!matrix) continue;
+      if constexpr (same_moduli) {
+        if (kept + 1 == points_at_once || p + 1 == b.n_points)
+          add_elastic_matrix<K>(points, kept + 1, lambda, mu, nodes, p < points_at_once, matrix);
+        continue;
+      }
       if (b.stressless_matrix)
         for (Lanes& component : s) component = Lanes{};
       if (updated && !b.stressless_matrix)
