@@ -16,7 +16,7 @@ function(lacon_find_library target header)
 endfunction()
 
 find_package(Threads REQUIRED)
-find_package(HDF5 REQUIRED COMPONENTS C)
+include(cmake/hdf5.cmake)
 find_package(Eigen3 3.4 REQUIRED)
 find_package(nlohmann_json REQUIRED)
 find_package(tomlplusplus REQUIRED)
