@@ -61,6 +61,7 @@ class Base:
         self.registry = {"format": 1, "next": 1, "labels": {}, "namespace": {}}
         self.unsolved = {}  #: of `lacon check`: id of a concept that is not really made -> its label, where it would be
         self._made = False
+        self._references = {}  #: id -> state of its file, the ids in it
         self._objects = weakref.WeakValueDictionary()
 
     def _check_folder(self, where, make):
@@ -205,15 +206,24 @@ class Base:
         found = []
         for path in self.folder.iterdir():
             match = _entry.match(path.name)
-            if match and not match[3] and concepts.known_type(match[1]) and self.path(match[1]).exists():
+            if match and not match[3] and self.is_there(match[1]):
                 found.append(match[1])
         return found
 
+    def is_there(self, identifier):
+        """A concept has this id, and its file."""
+        return concepts.known_type(identifier) and self.path(identifier).exists()
+
     def references(self, identifier):
         """Ids that a concept's file refers to."""
-        with self.open(identifier) as file:
-            texts = [v for k, v in file.attrs.items() if isinstance(v, str) and k not in ("id", "label", "keywords", "command")]
-        return {word for text in texts for word in re.findall(r"[a-z_]+_\d+", text)}
+        there = os.stat(self.path(identifier))
+        state = there.st_size, there.st_mtime_ns
+        known = self._references.get(identifier)
+        if not known or known[0] != state:
+            with self.open(identifier) as file:
+                texts = [v for k, v in file.attrs.items() if isinstance(v, str) and k not in ("id", "label", "keywords", "command")]
+            known = self._references[identifier] = state, frozenset(word for text in texts for word in re.findall(r"[a-z_]+_\d+", text))
+        return known[1]
 
     def clean(self, keep):
         """Remove every concept that none of the ids `keep` refers to, directly or not, and leftovers. @return removed ids"""

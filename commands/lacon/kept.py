@@ -188,7 +188,7 @@ class Kept:
             return
         alarms = [[m.severity, m.id, m.text, m.do] for m in messages if m.severity == "A"]
         record = {"key": key, "stat": _stat(self.base.path(identifier)), "alarms": alarms,
-                  "references": sorted(self.base.references(identifier) & set(self.base.ids()) - {identifier})}
+                  "references": sorted(i for i in self.base.references(identifier) if i != identifier and self.base.is_there(i))}
         versions = self._made.setdefault(identifier, [])
         versions.append(record)
         self._at[identifier] = len(versions) - 1
@@ -241,6 +241,7 @@ def _listed(value):
     return value.tolist() if hasattr(value, "tolist") else value
 
 
+@functools.cache
 def _steady(expression):
     """The value of an expression depends on its parameters and values alone."""
     names = {node.id for node in ast.walk(ast.parse(expression, mode="eval")) if isinstance(node, ast.Name)}
