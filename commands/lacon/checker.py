@@ -170,6 +170,8 @@ class _Check:
 
 def _items(value):
     """The values of a list-like thing; None for a single value."""
+    if isinstance(value, Concept):
+        return None
     if isinstance(value, (list, tuple, range)):
         return list(value)
     if hasattr(value, "dtype") and getattr(value, "ndim", 0) > 0:
@@ -179,6 +181,8 @@ def _items(value):
 
 def _convert(kind, value):
     """A value as `kind` wants it; None where it is of another type."""
+    if isinstance(value, Concept):
+        return value if kind == "concept" or value.type in kind.split("|") else None
     if hasattr(value, "dtype") and getattr(value, "ndim", 1) == 0:
         value = value.item()
     if kind == "real":
@@ -189,8 +193,6 @@ def _convert(kind, value):
         return value if isinstance(value, str) or _convert("real", value) is not None else None
     if kind in _names:
         return value if isinstance(value, str) and (kind == "text" or value.strip()) else None
-    if isinstance(value, Concept) and (kind == "concept" or value.type in kind.split("|")):
-        return value
     return None
 
 
