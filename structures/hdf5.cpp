@@ -157,28 +157,81 @@ std::vector<std::string> Group::read_strings(std::string_view name) const {
   return texts;
 }
 
-template <class T>
-void Group::write(std::string_view name, std::span<const T> values, std::vector<hsize_t> shape) const {
-  if (shape.empty()) shape = {values.size()};
+Handle Group::new_dataset(std::string_view name, hid_t type, const std::vector<hsize_t>& shape) const {
   const Handle space(H5Screate_simple(static_cast<int>(shape.size()), shape.data(), nullptr), H5Sclose);
   const Handle links(H5Pcreate(H5P_LINK_CREATE), H5Pclose);
   H5Pset_create_intermediate_group(links, 1);
-  const Handle set(H5Dcreate2(id_, zero_ended(name).c_str(), native_type<T>(), space, links, H5P_DEFAULT, H5P_DEFAULT),
-                   H5Dclose);
+  return Handle(H5Dcreate2(id_, zero_ended(name).c_str(), type, space, links, H5P_DEFAULT, H5P_DEFAULT), H5Dclose);
+}
+
+template <class T>
+void Group::write(std::string_view name, std::span<const T> values, std::vector<hsize_t> shape) const {
+  if (shape.empty()) shape = {values.size()};
+  const Handle set = new_dataset(name, native_type<T>(), shape);
   if (set < 0 || (!values.empty() && H5Dwrite(set, native_type<T>(), H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()) < 0))
     refuse("the dataset '" + std::string(name) + "' cannot be written");
+}
+
+namespace {
+
+/// How many rows of `columns` columns of T fill a megabyte.
+template <class T>
+std::size_t rows_of_part(std::size_t columns) {
+  return std::max<std::size_t>(1, (std::size_t{1} << 20) / (columns * sizeof(T)));
+}
+
+/// Select rows of every column in the space of a file. @return the space of these values in memory
+Handle select_rows(hid_t file, std::size_t rows, std::size_t columns, std::size_t first, std::size_t size) {
+  const hsize_t start = first, stride = rows, count = columns, block = size, all = size * columns;
+  if (size < rows) H5Sselect_hyperslab(file, H5S_SELECT_SET, &start, &stride, &count, &block);
+  return Handle(H5Screate_simple(1, &all, nullptr), H5Sclose);
+}
+
+}  // namespace
+
+template <class T>
+void Group::read_columns(std::string_view name, std::size_t columns,
+                         const std::function<void(std::size_t, std::span<const T>)>& visit) const {
+  const std::vector<hsize_t> extents = shape(name);
+  const std::size_t rows = count(extents) / columns;
+  const Handle set(H5Dopen2(id_, zero_ended(name).c_str(), H5P_DEFAULT), H5Dclose);
+  const Handle space(H5Dget_space(set), H5Sclose);
+  const Handle creation(H5Dget_create_plist(set), H5Pclose);
+  const bool in_parts = extents.size() == 1 && H5Pget_layout(creation) == H5D_CONTIGUOUS;
+  const std::size_t step = in_parts ? rows_of_part<T>(columns) : rows;
+  std::vector<T> values;
+  for (std::size_t first = 0; first < rows; first += step) {
+    values.resize(std::min(step, rows - first) * columns);
+    const Handle memory = select_rows(space, rows, columns, first, values.size() / columns);
+    if (H5Dread(set, native_type<T>(), memory, space, H5P_DEFAULT, values.data()) < 0)
+      refuse("the dataset '" + std::string(name) + "' cannot be read");
+    visit(first, values);
+  }
+}
+
+template <class T>
+void Group::write_columns(std::string_view name, std::size_t rows, std::size_t columns,
+                          const std::function<void(std::size_t, std::span<T>)>& fill) const {
+  const Handle set = new_dataset(name, native_type<T>(), {rows * columns});
+  const Handle space(H5Dget_space(set), H5Sclose);
+  const std::size_t step = rows_of_part<T>(columns);
+  std::vector<T> values;
+  bool written = set >= 0;
+  for (std::size_t first = 0; written && first < rows; first += step) {
+    values.resize(std::min(step, rows - first) * columns);
+    fill(first, values);
+    const Handle memory = select_rows(space, rows, columns, first, values.size() / columns);
+    written = H5Dwrite(set, native_type<T>(), memory, space, H5P_DEFAULT, values.data()) >= 0;
+  }
+  if (!written) refuse("the dataset '" + std::string(name) + "' cannot be written");
 }
 
 void Group::write_strings(std::string_view name, const std::vector<std::string>& values) const {
   std::vector<const char*> pointers;
   for (const std::string& value : values) pointers.push_back(value.c_str());
-  const hsize_t size = values.size();
-  const Handle space(H5Screate_simple(1, &size, nullptr), H5Sclose);
-  const Handle links(H5Pcreate(H5P_LINK_CREATE), H5Pclose);
-  H5Pset_create_intermediate_group(links, 1);
   const Handle type = string_type();
-  const Handle set(H5Dcreate2(id_, zero_ended(name).c_str(), type, space, links, H5P_DEFAULT, H5P_DEFAULT), H5Dclose);
-  if (set < 0 || (size > 0 && H5Dwrite(set, type, H5S_ALL, H5S_ALL, small_buffer(), pointers.data()) < 0))
+  const Handle set = new_dataset(name, type, {values.size()});
+  if (set < 0 || (!values.empty() && H5Dwrite(set, type, H5S_ALL, H5S_ALL, small_buffer(), pointers.data()) < 0))
     refuse("the dataset '" + std::string(name) + "' cannot be written");
 }
 
@@ -280,9 +333,13 @@ void Group::set(std::string_view name, const std::vector<std::string>& values) c
     refuse("the attribute '" + std::string(name) + "' cannot be written");
 }
 
-#define LACON_HDF5_TYPE(T)                                                                         \
-  template std::vector<T> Group::read<T>(std::string_view) const;                                  \
-  template void Group::write<T>(std::string_view, std::span<const T>, std::vector<hsize_t>) const; \
+#define LACON_HDF5_TYPE(T)                                                                                 \
+  template std::vector<T> Group::read<T>(std::string_view) const;                                          \
+  template void Group::write<T>(std::string_view, std::span<const T>, std::vector<hsize_t>) const;         \
+  template void Group::read_columns<T>(std::string_view, std::size_t,                                      \
+                                       const std::function<void(std::size_t, std::span<const T>)>&) const; \
+  template void Group::write_columns<T>(std::string_view, std::size_t, std::size_t,                        \
+                                        const std::function<void(std::size_t, std::span<T>)>&) const;      \
   template void Group::set<T>(std::string_view, T) const;
 LACON_HDF5_TYPE(double)
 LACON_HDF5_TYPE(std::int64_t)

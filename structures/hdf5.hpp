@@ -79,6 +79,17 @@ class Group {
   }
   void write_strings(std::string_view name, const std::vector<std::string>& values) const;
 
+  /// A large dataset of `columns` columns of the same length, one behind the other, in parts of rows that stay in the cache:
+  /// `visit(first row, values)` sees these rows column by column, and the number of rows is values.size() / columns. A dataset
+  /// in chunks is one part.
+  template <class T>
+  void read_columns(std::string_view name, std::size_t columns,
+                    const std::function<void(std::size_t first, std::span<const T> values)>& visit) const;
+  /// The same for writing: `fill` sets the values of a part.
+  template <class T>
+  void write_columns(std::string_view name, std::size_t rows, std::size_t columns,
+                     const std::function<void(std::size_t first, std::span<T> values)>& fill) const;
+
   bool has_attribute(std::string_view name) const;
   std::int64_t integer(std::string_view name) const;
   double real(std::string_view name) const;
@@ -95,6 +106,7 @@ class Group {
  protected:
   Group(Handle id, std::filesystem::path path, bool writing);
   [[noreturn]] void refuse(std::string_view what) const;
+  Handle new_dataset(std::string_view name, hid_t type, const std::vector<hsize_t>& shape) const;
 
   Handle id_;
   std::filesystem::path path_;

@@ -4,7 +4,7 @@
 
 #include <algorithm>
 #include <numeric>
-#include <set>
+#include <utility>
 
 #include "lacon/catalog/messages.hpp"
 #include "lacon/operators/crea_maillage/order_change.hpp"
@@ -28,19 +28,18 @@ LacCut cut_of(const Keywords& factor, std::int64_t info) {
   return cut;
 }
 
-void print_counts(const Mesh& before, const Mesh& after) {
-  fmt::print("  nodes {:>8} -> {:>8}\n  cells {:>8} -> {:>8}\n", before.n_nodes(), after.n_nodes(), before.n_cells(),
-             after.n_cells());
+/// @param nodes, cells how many there were
+void print_counts(std::size_t nodes, std::size_t cells, const Mesh& after) {
+  fmt::print("  nodes {:>8} -> {:>8}\n  cells {:>8} -> {:>8}\n", nodes, after.n_nodes(), cells, after.n_cells());
 }
 
 /// Below it a cell is named as badly shaped: METHOD.md 1.6 on cells with several slave faces.
 constexpr double poor_quality = 0.1;
 
 /// What the cut does to the shape of cells: a line, with `details` quantiles and the worst cells too.
-void print_quality(const Mesh& before, const CutReport& report, const Mesh& after, bool details) {
-  std::set<std::int32_t> bodies;
-  for (const CutZone& zone : report.zones) bodies.insert(zone.bodies.begin(), zone.bodies.end());
-  const Quality was = quality_of(before, std::vector(bodies.begin(), bodies.end())), is = quality_of(after, report.sub_cells);
+void print_quality(const CutReport& report, const Mesh& after, bool details) {
+  const Quality& was = report.before;
+  const Quality is = quality_of(after, report.sub_cells);
   const auto place = [&](std::int32_t cell) {
     const std::string groups = groups_with(after, cell);
     return cell_name(cell) + (groups.empty() ? "" : " (" + groups + ")");
@@ -92,41 +91,42 @@ const Change changes[] = {{"LINE_QUAD", "quadratic", make_quadratic},
 
 }  // namespace
 
-Mesh cut_and_tell(const Mesh& mesh, const LacCut& cut) {
+Mesh cut_and_tell(Mesh mesh, const LacCut& cut) {
+  const std::size_t nodes = mesh.n_nodes(), cells = mesh.n_cells();
   CutReport report;
-  Mesh made = cut_lac(mesh, cut.groups, cut.option, cut.keyword, report);
+  Mesh made = cut_lac(std::move(mesh), cut.groups, cut.option, cut.keyword, report);
   for (const CutZone& zone : report.zones) {
     if (zone.turned > 0) inform("DECOUPE_7", {{"count", std::to_string(zone.turned)}, {"group", zone.group}});
     fmt::print("  zone {:<24} {:>8} macro-elements\n", zone.group, zone.patches);
   }
-  if (cut.complete_node_groups) complete_node_groups(mesh, report, made);
+  if (cut.complete_node_groups) complete_node_groups(report, made);
   inform("MESH1_3", {{"nodes", std::to_string(report.new_nodes)}, {"cells", std::to_string(report.new_cells)}});
-  print_quality(mesh, report, made, cut.details);
-  print_counts(mesh, made);
+  print_quality(report, made, cut.details);
+  print_counts(nodes, cells, made);
   return made;
 }
 
-Mesh crea_maillage(const Mesh& mesh, const Keywords& keywords) {
+Mesh crea_maillage(Mesh mesh, const Keywords& keywords) {
+  const std::size_t nodes = mesh.n_nodes(), cells = mesh.n_cells();
   if (keywords.has("DECOUPE_LAC")) {
     const auto occurrences = keywords.factors("DECOUPE_LAC");
     if (occurrences.size() != 1) fail("ORDER_4", {{"keyword", "DECOUPE_LAC"}, {"expected", "given once"}});
-    return cut_and_tell(mesh, cut_of(occurrences[0], keywords.integer("INFO")));
+    return cut_and_tell(std::move(mesh), cut_of(occurrences[0], keywords.integer("INFO")));
   }
   if (keywords.has("RESTREINT")) {
     refuse_cut_mesh(mesh, "RESTREINT");
     Mesh made = restricted(mesh, keywords.factors("RESTREINT").at(0));
-    print_counts(mesh, made);
+    print_counts(nodes, cells, made);
     return made;
   }
   const auto change =
       std::find_if(std::begin(changes), std::end(changes), [&](const Change& c) { return keywords.has(c.keyword); });
   if (change == std::end(changes)) fail("ORDER_2", {{"keyword", "DECOUPE_LAC, LINE_QUAD, QUAD_LINE, HEXA20_27 or RESTREINT"}});
   refuse_cut_mesh(mesh, change->keyword);
-  Mesh made = mesh;
   for (const Keywords& factor : keywords.factors(change->keyword))
-    fmt::print("  {}: {} cells became {}\n", change->keyword, change->make(made, chosen(made, factor)), change->what);
-  print_counts(mesh, made);
-  return made;
+    fmt::print("  {}: {} cells became {}\n", change->keyword, change->make(mesh, chosen(mesh, factor)), change->what);
+  print_counts(nodes, cells, mesh);
+  return mesh;
 }
 
 }  // namespace lacon

@@ -18,10 +18,10 @@ struct LacCut {
 };
 
 /// The cut mesh; prints counts and the quality of the cells on stdout. Errors: operators/meshing/cut.hpp.
-Mesh cut_and_tell(const Mesh& mesh, const LacCut& cut);
+Mesh cut_and_tell(Mesh mesh, const LacCut& cut);
 
 /// The mesh that the keywords DECOUPE_LAC, LINE_QUAD, QUAD_LINE, HEXA20_27 or RESTREINT ask for; prints a summary on stdout.
 /// Errors: see operators/meshing/cut.hpp, order_change.hpp and restriction.hpp, and ORDER_2 where none of them is given.
-Mesh crea_maillage(const Mesh& mesh, const Keywords& keywords);
+Mesh crea_maillage(Mesh mesh, const Keywords& keywords);
 
 }  // namespace lacon

@@ -7,13 +7,13 @@ int main(int argc, char** argv) {
   if (!takes_order(argc, argv)) return cut_med_file(argc, argv);
   return run_program(argc, argv, "crea_maillage", "Makes a mesh from another: cut for LAC, linear to quadratic or back",
                      [](const Order& order, const Base& base) {
-                       const Mesh mesh = [&] {
+                       Mesh mesh = [&] {
                          const Phase phase("read");
                          return base.mesh(order.keywords.concept_id("MAILLAGE"));
                        }();
                        const Mesh made = [&] {
                          const Phase phase("change");
-                         return crea_maillage(mesh, order.keywords);
+                         return crea_maillage(std::move(mesh), order.keywords);
                        }();
                        const Phase phase("write");
                        base.store(made);

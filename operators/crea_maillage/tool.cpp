@@ -54,7 +54,7 @@ int cut_med_file(int argc, char** argv) {
       fmt::print("Mesh '{}' of {}\n", mesh.name, in.string());
       const Phase phase("cut");
       turn_body_cells(mesh);
-      return cut_and_tell(mesh, cut);
+      return cut_and_tell(std::move(mesh), cut);
     }();
     const Phase phase("write");
     write_med(out, false, [&](MedFile& med) { med.add_mesh(made, made.name); });

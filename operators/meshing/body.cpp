@@ -1,6 +1,7 @@
 #include "lacon/operators/meshing/body.hpp"
 
 #include <algorithm>
+#include <ranges>
 
 #include "lacon/catalog/messages.hpp"
 
@@ -8,17 +9,15 @@ namespace lacon {
 
 namespace {
 
-/// The cells around each node of a row. @param row_of the row of a node, -1 for none @param keeps whether a cell counts
-template <class RowOf, class Keeps>
-Ragged<std::int32_t> cells_by_row(const Mesh& mesh, std::size_t n_rows, const RowOf& row_of, const Keeps& keeps) {
+/// The cells around each node of a row. @param row_of the row of a node, -1 for none @param candidates the cells that count
+template <class RowOf, class Candidates>
+Ragged<std::int32_t> cells_by_row(const Mesh& mesh, std::size_t n_rows, const RowOf& row_of, const Candidates& candidates) {
   Ragged<std::int32_t> cells;
   cells.offset.assign(n_rows + 1, 0);
   const auto each = [&](const auto& visit) {
-    for (std::size_t c = 0; c < mesh.n_cells(); ++c) {
-      if (!keeps(c)) continue;
+    for (const std::size_t c : candidates)
       for (const std::int32_t node : mesh.cells[c])
         if (const std::int32_t row = row_of(node); row >= 0) visit(c, static_cast<std::size_t>(row));
-    }
   };
   each([&](std::size_t, std::size_t row) { ++cells.offset[row + 1]; });
   for (std::size_t n = 0; n < n_rows; ++n) cells.offset[n + 1] += cells.offset[n];
@@ -34,15 +33,20 @@ Ragged<std::int32_t> cells_by_row(const Mesh& mesh, std::size_t n_rows, const Ro
 
 NodeCells::NodeCells(const Mesh& mesh)
     : cells_(cells_by_row(
-          mesh, mesh.n_nodes(), [](std::int32_t node) { return node; }, [](std::size_t) { return true; })) {}
+          mesh, mesh.n_nodes(), [](std::int32_t node) { return node; }, std::views::iota(std::size_t{0}, mesh.n_cells()))) {}
 
 NodeCells::NodeCells(const Mesh& mesh, std::span<const std::int32_t> nodes, int dimension) : row_(mesh.n_nodes(), -1) {
   std::int32_t n_rows = 0;
   for (const std::int32_t node : nodes)
     if (std::int32_t& row = row_[static_cast<std::size_t>(node)]; row < 0) row = n_rows++;
-  cells_ = cells_by_row(
-      mesh, static_cast<std::size_t>(n_rows), [&](std::int32_t node) { return row_[static_cast<std::size_t>(node)]; },
-      [&](std::size_t c) { return mesh.row(c).dimension == dimension; });
+  const auto row_of = [&](std::int32_t node) { return row_[static_cast<std::size_t>(node)]; };
+  std::vector<std::size_t> candidates;
+  for (std::size_t c = 0; c < mesh.n_cells(); ++c) {
+    std::int32_t rows = -1;  // stays so where every node has none
+    for (const std::int32_t node : mesh.cells[c]) rows &= row_of(node);
+    if (rows >= 0 && mesh.row(c).dimension == dimension) candidates.push_back(c);
+  }
+  cells_ = cells_by_row(mesh, static_cast<std::size_t>(n_rows), row_of, candidates);
 }
 
 std::span<const std::int32_t> NodeCells::operator[](std::size_t node) const {

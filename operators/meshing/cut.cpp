@@ -4,7 +4,7 @@
 #include <array>
 #include <cmath>
 #include <map>
-#include <set>
+#include <unordered_map>
 #include <utility>
 
 #include "lacon/catalog/cuts.hpp"
@@ -29,24 +29,28 @@ struct Slave {
 /// what changes is kept here.
 class Forest {
  public:
-  explicit Forest(const Mesh& mesh) : mesh_(mesh) {}
+  explicit Forest(const Mesh& mesh) : mesh_(mesh), n_cells_(mesh.n_cells()) {}
 
   CellType type(std::int32_t cell) const { return is_of_mesh(cell) ? mesh_.types[index(cell)] : types_[added(cell)]; }
   std::span<const std::int32_t> nodes(std::int32_t cell) const {
-    if (!is_of_mesh(cell)) return nodes_[added(cell)];
+    if (!is_of_mesh(cell)) return std::as_const(nodes_)[added(cell)];
     const auto at = turned_.find(cell);
     return at == turned_.end() ? mesh_.cells[index(cell)] : std::span<const std::int32_t>(at->second);
   }
   void turn(std::int32_t cell) {
     Nodes nodes_now = mirrored(type(cell), nodes(cell));
-    (is_of_mesh(cell) ? turned_[cell] : nodes_[added(cell)]) = std::move(nodes_now);
+    if (is_of_mesh(cell))
+      turned_[cell] = std::move(nodes_now);
+    else
+      std::ranges::copy(nodes_now, nodes_[added(cell)].begin());
   }
 
-  std::int32_t add(CellType type, Nodes nodes, std::int32_t parent) {
+  /// The sub-cells of a parent are added one behind the other. Spans of nodes do not outlive it.
+  std::int32_t add(CellType type, const Nodes& nodes, std::int32_t parent) {
     const auto cell = static_cast<std::int32_t>(size());
     types_.push_back(type);
-    nodes_.push_back(std::move(nodes));
-    children_[parent].push_back(cell);
+    nodes_.push_back(nodes);
+    children_.try_emplace(parent, Range{cell, cell}).first->second.end = cell + 1;
     return cell;
   }
 
@@ -55,28 +59,35 @@ class Forest {
   bool leaves(std::int32_t cell, const Visit& visit) const {
     const auto at = children_.find(cell);
     if (at == children_.end()) return visit(cell);
-    return std::any_of(at->second.begin(), at->second.end(), [&](std::int32_t child) { return leaves(child, visit); });
+    for (std::int32_t child = at->second.first; child < at->second.end; ++child)
+      if (leaves(child, visit)) return true;
+    return false;
   }
 
-  std::size_t size() const { return mesh_.n_cells() + types_.size(); }
+  std::size_t size() const { return n_cells_ + types_.size(); }
   /// The cells of the mesh that were cut, ascending.
   Nodes cut_cells() const {
     Nodes cells;
     for (const auto& [cell, children] : children_)
       if (is_of_mesh(cell)) cells.push_back(cell);
+    std::ranges::sort(cells);
     return cells;
   }
 
  private:
+  struct Range {
+    std::int32_t first, end;
+  };
   static std::size_t index(std::int32_t cell) { return static_cast<std::size_t>(cell); }
-  bool is_of_mesh(std::int32_t cell) const { return index(cell) < mesh_.n_cells(); }
-  std::size_t added(std::int32_t cell) const { return index(cell) - mesh_.n_cells(); }
+  bool is_of_mesh(std::int32_t cell) const { return index(cell) < n_cells_; }
+  std::size_t added(std::int32_t cell) const { return index(cell) - n_cells_; }
 
   const Mesh& mesh_;
+  std::size_t n_cells_;          ///< of the mesh before the cut
   std::vector<CellType> types_;  ///< of the cells that were added
-  std::vector<Nodes> nodes_;
-  std::map<std::int32_t, Nodes> turned_;    ///< cells of the mesh whose nodes have another order
-  std::map<std::int32_t, Nodes> children_;  ///< of the cells that were cut
+  Ragged<std::int32_t> nodes_;
+  std::unordered_map<std::int32_t, Nodes> turned_;    ///< cells of the mesh whose nodes have another order
+  std::unordered_map<std::int32_t, Range> children_;  ///< of the cells that were cut
 };
 
 /// Append the images of reference points of a cell (isoparametric, METHOD.md 1.2-3) to the coordinates; returns their numbers.
@@ -92,6 +103,12 @@ Nodes add_nodes(CellType type, const Nodes& nodes, std::span<const double> point
 }
 
 void append(Nodes& to, const Nodes& more) { to.insert(to.end(), more.begin(), more.end()); }
+
+void sort_once(Nodes& numbers) {
+  std::ranges::sort(numbers);
+  const auto twice = std::ranges::unique(numbers);
+  numbers.erase(twice.begin(), twice.end());
+}
 
 using Point = std::array<double, 3>;
 
@@ -165,7 +182,7 @@ std::vector<Slave> find_slaves(const Mesh& mesh, std::span<const std::string> gr
       for (const std::int32_t cell : group->members) near.push_back(mesh.cells[static_cast<std::size_t>(cell)][0]);
   const NodeCells around(mesh, near, mesh.dimension);
   std::vector<Slave> slaves;
-  std::map<std::int32_t, std::size_t> zone_of;                    // of a slave cell
+  std::unordered_map<std::int32_t, std::size_t> zone_of;          // of a slave cell
   std::map<std::pair<std::int32_t, int>, std::int32_t> slave_of;  // of a facet of a body cell
   for (std::size_t zone = 0; zone < groups.size(); ++zone) {
     const std::string& group = groups[zone];
@@ -296,108 +313,135 @@ Nodes cut_slave(Forest& forest, const Slave& slave, const std::string& group, st
   return sub_cells;
 }
 
+/// Put what a cell was cut into in its place. The mesh changes in place, back to front: what stays moves once.
+/// @param number_of the numbers that the cells added to the forest get, -1 for those that were cut again
+/// @return the first cell that has taken the place of each cell, as for inherited()
+Nodes replace_cut_cells(Mesh& mesh, const Forest& forest, Nodes& number_of) {
+  const Nodes cut = forest.cut_cells();
+  const std::size_t n = mesh.n_cells();
+  Ragged<std::int32_t> leaves;  // of each cut cell
+  std::int64_t old_end = mesh.cells.offset.back(), end = old_end;
+  for (const std::int32_t cell : cut) {
+    Nodes own;
+    end -= static_cast<std::int64_t>(forest.nodes(cell).size());
+    forest.leaves(cell, [&](std::int32_t leaf) {
+      own.push_back(leaf);
+      end += static_cast<std::int64_t>(forest.nodes(leaf).size());
+      return false;
+    });
+    leaves.push_back(own);
+  }
+  Nodes first_heir(n + 1);
+  std::int32_t next = 0;
+  for (std::size_t c = 0, k = 0; c < n; ++c) {
+    first_heir[c] = next;
+    next += k < cut.size() && static_cast<std::size_t>(cut[k]) == c ? static_cast<std::int32_t>(leaves[k++].size()) : 1;
+  }
+  first_heir[n] = next;
+  const auto new_cell = [&](std::size_t cell) { return static_cast<std::ptrdiff_t>(first_heir[cell]); };
+
+  number_of.assign(forest.size() - n, -1);
+  mesh.types.resize(static_cast<std::size_t>(next));
+  mesh.cells.values.resize(static_cast<std::size_t>(end));
+  std::vector<std::int64_t>& offset = mesh.cells.offset;
+  offset.resize(static_cast<std::size_t>(next) + 1);
+  offset.back() = end;
+  const auto types = mesh.types.begin();
+  const auto values = mesh.cells.values.begin();
+  for (std::size_t k = cut.size(), last = n;; --k) {
+    // the cells between a cut cell and the next, `last`; old numbers are at most the new ones, so nothing unread is overwritten
+    const std::size_t start = k > 0 ? static_cast<std::size_t>(cut[k - 1]) + 1 : 0;
+    const std::int64_t old_start = start < last ? offset[start] : old_end, shift = end - old_end;
+    std::move_backward(types + static_cast<std::ptrdiff_t>(start), types + static_cast<std::ptrdiff_t>(last),
+                       types + new_cell(last));
+    std::move_backward(values + old_start, values + old_end, values + end);
+    for (std::size_t c = last; c-- > start;) offset[static_cast<std::size_t>(new_cell(c))] = offset[c] + shift;
+    old_end = old_start;
+    end = old_start + shift;
+    if (k == 0) return first_heir;
+    // the cut cell
+    last = start - 1;
+    old_end = offset[last];
+    const auto own = leaves[k - 1];
+    for (std::size_t i = own.size(); i-- > 0;) {
+      const auto nodes = forest.nodes(own[i]);
+      end -= static_cast<std::int64_t>(nodes.size());
+      const std::ptrdiff_t number = new_cell(last) + static_cast<std::ptrdiff_t>(i);
+      std::ranges::copy(nodes, values + end);
+      types[number] = forest.type(own[i]);
+      offset[static_cast<std::size_t>(number)] = end;
+      number_of[static_cast<std::size_t>(own[i]) - n] = static_cast<std::int32_t>(number);
+    }
+  }
+}
+
 }  // namespace
 
-Mesh cut_lac(const Mesh& mesh, std::span<const std::string> groups, std::string_view option, std::string_view keyword,
+Mesh cut_lac(Mesh mesh, std::span<const std::string> groups, std::string_view option, std::string_view keyword,
              CutReport& report) {
   refuse_cut_mesh(mesh, keyword);
   const std::string path(keyword);
   const std::vector<Slave> slaves = find_slaves(mesh, groups, path);
 
-  Mesh done;
-  done.name = mesh.name;
-  done.dimension = mesh.dimension;
-  done.coordinates = mesh.coordinates;
-  done.node_groups = mesh.node_groups;
-  Patches& patches = done.patches.emplace();
   report = {};
   for (const std::string& group : groups) report.zones.push_back({group});
+  for (const Slave& slave : slaves) report.zones[slave.zone].bodies.push_back(slave.body);
+  Nodes bodies;
+  for (CutZone& zone : report.zones) {
+    sort_once(zone.bodies);
+    append(bodies, zone.bodies);
+    if (mesh.node_groups.empty()) continue;
+    zone.old_skin_nodes = nodes_of_cells(mesh, mesh.find_cell_group(zone.group)->members);
+    zone.old_body_nodes = nodes_of_cells(mesh, zone.bodies);
+  }
+  sort_once(bodies);
+  report.before = quality_of(mesh, bodies);
 
+  const std::size_t n_nodes = mesh.n_nodes(), n_cells = mesh.n_cells();
+  Patches patches;
   Forest forest(mesh);
   Ragged<std::int32_t> sub_cells;  // of each patch, as numbers of the forest
-  for (const Slave& slave : slaves) {
-    report.zones[slave.zone].bodies.push_back(slave.body);
+  for (const Slave& slave : slaves)
     sub_cells.push_back(
-        cut_slave(forest, slave, groups[slave.zone], option, path, done.coordinates, patches, report.zones[slave.zone]));
-  }
+        cut_slave(forest, slave, groups[slave.zone], option, path, mesh.coordinates, patches, report.zones[slave.zone]));
 
-  // number what is left: sub-cells in place of the cell they come from, runs of other cells as they are
-  std::vector<std::int32_t> number_of(forest.size(), -1);  // of a cell of the forest, in the cut mesh
-  Ragged<std::int32_t> replaced_by;                        // cells of the cut mesh for each cell of the mesh
-  replaced_by.offset.reserve(mesh.n_cells() + 1);
-  replaced_by.values.reserve(forest.size());
-  done.types.reserve(forest.size());
-  done.cells.offset.reserve(forest.size() + 1);
-  done.cells.values.reserve(mesh.cells.values.size() + 8 * (forest.size() - mesh.n_cells()));
-  const auto keep = [&](std::size_t first, std::size_t end) {
-    const auto start = static_cast<std::int32_t>(done.n_cells());
-    const std::int64_t shift = done.cells.offset.back() - mesh.cells.offset[first];
-    done.types.insert(done.types.end(), mesh.types.begin() + static_cast<std::ptrdiff_t>(first),
-                      mesh.types.begin() + static_cast<std::ptrdiff_t>(end));
-    done.cells.values.insert(done.cells.values.end(), mesh.cells.values.begin() + mesh.cells.offset[first],
-                             mesh.cells.values.begin() + mesh.cells.offset[end]);
-    for (std::size_t c = first; c < end; ++c) {
-      done.cells.offset.push_back(mesh.cells.offset[c + 1] + shift);
-      replaced_by.values.push_back(start + static_cast<std::int32_t>(c - first));
-      replaced_by.offset.push_back(static_cast<std::int64_t>(replaced_by.values.size()));
-    }
-  };
-  std::size_t kept = 0;
-  for (const std::int32_t cell : forest.cut_cells()) {
-    keep(kept, static_cast<std::size_t>(cell));
-    kept = static_cast<std::size_t>(cell) + 1;
-    Nodes heirs;
-    forest.leaves(cell, [&](std::int32_t leaf) {
-      const auto number = static_cast<std::int32_t>(done.n_cells());
-      number_of[static_cast<std::size_t>(leaf)] = number;
-      heirs.push_back(number);
-      done.add_cell(forest.type(leaf), forest.nodes(leaf));
-      return false;
-    });
-    replaced_by.push_back(heirs);
-  }
-  keep(kept, mesh.n_cells());
-  done.cell_groups = inherited(mesh.cell_groups, replaced_by);
+  Nodes number_of;
+  const Nodes first_heir = replace_cut_cells(mesh, forest, number_of);
+  mesh.cell_groups = inherited(mesh.cell_groups, first_heir);
   for (std::size_t p = 0; p < patches.size(); ++p) {
     Nodes own;
-    for (const std::int32_t cell : sub_cells[p]) own.push_back(number_of[static_cast<std::size_t>(cell)]);
+    for (const std::int32_t cell : sub_cells[p]) own.push_back(number_of[static_cast<std::size_t>(cell) - n_cells]);
     patches.cells.push_back(own);
   }
-  std::set<std::int32_t> bodies;
-  for (CutZone& zone : report.zones) {
-    std::ranges::sort(zone.bodies);
-    const auto twice = std::ranges::unique(zone.bodies);
-    zone.bodies.erase(twice.begin(), twice.end());
-    bodies.insert(zone.bodies.begin(), zone.bodies.end());
+  for (const CutZone& zone : report.zones) {
     patches.zone_group.push_back(zone.group);
     patches.zone_offset.push_back(patches.zone_offset.back() + zone.patches);
   }
-  for (const std::int32_t body : bodies) {
-    const auto heirs = std::as_const(replaced_by)[static_cast<std::size_t>(body)];
-    report.sub_cells.insert(report.sub_cells.end(), heirs.begin(), heirs.end());
-  }
-  report.new_nodes = static_cast<std::int64_t>(done.n_nodes() - mesh.n_nodes());
-  report.new_cells = static_cast<std::int64_t>(done.n_cells() - mesh.n_cells());
-  return done;
+  for (const std::int32_t body : bodies)
+    for (std::int32_t heir = first_heir[static_cast<std::size_t>(body)]; heir < first_heir[static_cast<std::size_t>(body) + 1];
+         ++heir)
+      report.sub_cells.push_back(heir);
+  report.new_nodes = static_cast<std::int64_t>(mesh.n_nodes() - n_nodes);
+  report.new_cells = static_cast<std::int64_t>(mesh.n_cells() - n_cells);
+  mesh.patches = std::move(patches);
+  return mesh;
 }
 
-void complete_node_groups(const Mesh& before, const CutReport& report, Mesh& cut) {
+void complete_node_groups(const CutReport& report, Mesh& cut) {
   std::vector<char> inside;
-  const auto holds = [&](std::span<const std::int32_t> cells) {
-    const std::vector<std::int32_t> nodes = nodes_of_cells(before, cells);
+  const auto holds = [&](const Nodes& nodes) {
     return std::ranges::all_of(nodes, [&](std::int32_t node) { return inside[static_cast<std::size_t>(node)] != 0; });
   };
-  for (std::size_t g = 0; g < before.node_groups.size(); ++g) {
-    inside.assign(before.n_nodes(), 0);
-    for (const std::int32_t node : before.node_groups[g].members) inside[static_cast<std::size_t>(node)] = 1;
+  for (Group& group : cut.node_groups) {
+    inside.assign(cut.n_nodes(), 0);
+    for (const std::int32_t node : group.members) inside[static_cast<std::size_t>(node)] = 1;
     for (const CutZone& zone : report.zones) {
       Nodes fresh;
-      if (holds(before.find_cell_group(zone.group)->members)) append(fresh, zone.skin_nodes);
-      if (!fresh.empty() && holds(zone.bodies)) append(fresh, zone.body_nodes);
+      if (holds(zone.old_skin_nodes)) append(fresh, zone.skin_nodes);
+      if (!fresh.empty() && holds(zone.old_body_nodes)) append(fresh, zone.body_nodes);
       if (fresh.empty()) continue;
-      append(cut.node_groups[g].members, fresh);
-      inform("DECOUPE_8",
-             {{"group", before.node_groups[g].name}, {"skin", zone.group}, {"count", std::to_string(fresh.size())}});
+      append(group.members, fresh);
+      inform("DECOUPE_8", {{"group", group.name}, {"skin", zone.group}, {"count", std::to_string(fresh.size())}});
     }
   }
 }

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 
+#include "lacon/elements/lanes.hpp"
 #include "lacon/elements/reference.hpp"
 
 namespace lacon {
@@ -13,7 +14,8 @@ namespace {
 constexpr double flat_corner = 1e-10;
 
 /// Of the first `dimension` rows and columns.
-double determinant(const std::array<std::array<double, 3>, 3>& t, std::size_t dimension) {
+template <class Rows>
+double determinant(const Rows& t, std::size_t dimension) {
   if (dimension == 1) return t[0][0];
   if (dimension == 2) return t[0][0] * t[1][1] - t[0][1] * t[1][0];
   return t[0][0] * (t[1][1] * t[2][2] - t[1][2] * t[2][1]) - t[0][1] * (t[1][0] * t[2][2] - t[1][2] * t[2][0]) +
@@ -50,6 +52,19 @@ std::span<const double> gradients_of(CellType type) {
   return tables[static_cast<std::size_t>(type)];
 }
 
+/// The same in space: a mesh has many cells, and this is asked of each.
+LACON_KERNEL double jacobian_in_space(std::span<const std::int32_t> nodes, std::span<const double> coordinates,
+                                      const double* gradients) {
+  using Row = double __attribute__((vector_size(4 * sizeof(double))));  // three count
+  Row j[3] = {};
+  for (std::size_t a = 0; a < nodes.size(); ++a, gradients += 3) {
+    const double* const x = coordinates.data() + 3 * std::ptrdiff_t{nodes[a]};
+    const Row point = {x[0], x[1], x[2], 0};
+    for (std::size_t i = 0; i < 3; ++i) j[i] += gradients[i] * point;
+  }
+  return determinant(j, 3);
+}
+
 /// The determinant at one point of gradients_of().
 template <std::size_t d>
 double jacobian(std::span<const std::int32_t> nodes, std::span<const double> coordinates, const double* gradients) {
@@ -65,7 +80,7 @@ double jacobian(std::span<const std::int32_t> nodes, std::span<const double> coo
 double jacobian(CellType type, std::span<const std::int32_t> nodes, std::span<const double> coordinates, std::size_t point) {
   const int d = catalog::cell(type).dimension;
   const double* const gradients = gradients_of(type).data() + point * nodes.size() * static_cast<std::size_t>(d);
-  if (d == 3) return jacobian<3>(nodes, coordinates, gradients);
+  if (d == 3) return jacobian_in_space(nodes, coordinates, gradients);
   return d == 2 ? jacobian<2>(nodes, coordinates, gradients) : jacobian<1>(nodes, coordinates, gradients);
 }
 

@@ -172,24 +172,19 @@ Mesh refine(const Mesh& mesh, std::span<const std::string> groups, std::string_v
     nodes[c] = points.of(row, mesh.cells[c], used);
   });
 
-  Ragged<std::int32_t> heirs;
+  Nodes first_heir{0};
   for (std::size_t c = 0; c < mesh.n_cells(); ++c) {
-    Nodes own;
-    const auto add = [&](CellType type, std::span<const std::int32_t> cell_nodes) {
-      own.push_back(static_cast<std::int32_t>(done.n_cells()));
-      done.add_cell(type, cell_nodes);
-    };
-    if (!mark[c]) add(mesh.types[c], mesh.cells[c]);
+    if (!mark[c]) done.add_cell(mesh.types[c], mesh.cells[c]);
     for (const catalog::SubCell& sub : sub_cells[c]) {
       const Nodes cell_nodes = pick(nodes[c], sub.nodes);
       if (mesh.row(c).dimension == mesh.dimension && !is_sound(jacobian_range(sub.type, cell_nodes, done.coordinates)))
         fail("RAFFINE_2",
              {{"keyword", path}, {"cell", cell_name(static_cast<std::int64_t>(c))}, {"type", std::string(mesh.row(c).name)}});
-      add(sub.type, cell_nodes);
+      done.add_cell(sub.type, cell_nodes);
     }
-    heirs.push_back(own);
+    first_heir.push_back(static_cast<std::int32_t>(done.n_cells()));
   }
-  done.cell_groups = inherited(mesh.cell_groups, heirs);
+  done.cell_groups = inherited(mesh.cell_groups, first_heir);
 
   std::vector<char> touched(mesh.n_nodes(), 0);
   for (std::size_t c = 0; c < mesh.n_cells(); ++c)

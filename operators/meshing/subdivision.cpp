@@ -22,14 +22,15 @@ std::vector<std::int32_t> pick(std::span<const std::int32_t> from, std::span<con
   return picked;
 }
 
-std::vector<Group> inherited(std::span<const Group> groups, const Ragged<std::int32_t>& heirs) {
+std::vector<Group> inherited(std::span<const Group> groups, std::span<const std::int32_t> first_heir) {
   std::vector<Group> made;
   for (const Group& group : groups) {
     Group& extended = made.emplace_back(Group{group.name, {}});
-    for (const std::int32_t member : group.members) {
-      const auto own = heirs[static_cast<std::size_t>(member)];
-      extended.members.insert(extended.members.end(), own.begin(), own.end());
-    }
+    extended.members.reserve(group.members.size());
+    for (const std::int32_t member : group.members)
+      for (std::int32_t heir = first_heir[static_cast<std::size_t>(member)];
+           heir < first_heir[static_cast<std::size_t>(member) + 1]; ++heir)
+        extended.members.push_back(heir);
   }
   return made;
 }

@@ -14,7 +14,9 @@ std::array<double, 3> image(CellType type, std::span<const std::int32_t> nodes, 
 /// These of the nodes.
 std::vector<std::int32_t> pick(std::span<const std::int32_t> from, std::span<const std::int8_t> which);
 
-/// The groups with, in place of each cell, what replaces it. @param heirs cells of the new mesh for each cell of the old one
-std::vector<Group> inherited(std::span<const Group> groups, const Ragged<std::int32_t>& heirs);
+/// The groups with, in place of each cell, what replaces it.
+/// @param first_heir of each cell of the old mesh, and behind the last: cell c has become the cells first_heir[c] to
+/// first_heir[c + 1] - 1 of the new one
+std::vector<Group> inherited(std::span<const Group> groups, std::span<const std::int32_t> first_heir);
 
 }  // namespace lacon

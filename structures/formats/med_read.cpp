@@ -23,7 +23,8 @@ std::string joined(const std::vector<std::string>& names) {
 }
 
 hdf5::Reader open(const fs::path& file) {
-  if (first_bytes(file, 8) != "\x89HDF\r\n\x1a\n") fail("MED_2", {{"file", file.string()}, {"reason", "it is not an HDF5 file"}});
+  if (first_bytes(file, 8) != "\x89HDF\r\n\x1a\n")
+    fail("MED_2", {{"file", file.string()}, {"reason", "it is not an HDF5 file"}});
   return hdf5::Reader(file);
 }
 
@@ -56,6 +57,9 @@ std::vector<std::string> mesh_names(const H5Group& root) {
   return root.is_group("ENS_MAA") ? root.open("ENS_MAA").children() : std::vector<std::string>{};
 }
 
+/// Capacity for what a cut adds: memory that is not touched costs nothing.
+std::size_t with_room(std::size_t size) { return size + size / 4; }
+
 /// Reads one mesh; knows its name and file for the messages.
 class MeshReader {
  public:
@@ -76,8 +80,10 @@ class MeshReader {
   }
   H5Group first_step(const H5Group& mesh) const;
   H5Group entities(const H5Group& parent, const std::string& name, const std::string& where) const;
-  template <class T>
-  std::vector<T> dataset(const H5Group& group, const std::string& name, const std::string& where, std::size_t size) const;
+  template <class T, class Visit>
+  void dataset(const H5Group& group, const std::string& name, const std::string& where, std::size_t rows, std::size_t columns,
+               const Visit& visit) const;
+  void add_families(const H5Group& group, const std::string& where, std::size_t n, std::vector<std::int32_t>& family) const;
   void read_nodes(const H5Group& step, std::int64_t space);
   void read_cells(const H5Group& step);
   void read_groups();
@@ -115,20 +121,31 @@ H5Group MeshReader::entities(const H5Group& parent, const std::string& name, con
   return group.is_group(med::no_profile) ? group.open(med::no_profile) : std::move(group);
 }
 
-template <class T>
-std::vector<T> MeshReader::dataset(const H5Group& group, const std::string& name, const std::string& where,
-                                   std::size_t size) const {
+/// Read a dataset of `columns` columns by parts: hdf5::Group::read_columns().
+template <class T, class Visit>
+void MeshReader::dataset(const H5Group& group, const std::string& name, const std::string& where, std::size_t rows,
+                         std::size_t columns, const Visit& visit) const {
   try {
     std::size_t found = 1;  // before reading: a spoilt file may claim any size
     for (const hsize_t extent : group.shape(name)) found *= extent;
-    if (found != size)
+    if (found != rows * columns)
       damaged("the dataset " + name + " of its " + where + " has " + std::to_string(found) + " values instead of " +
-              std::to_string(size));
-    return group.read<T>(name);
+              std::to_string(rows * columns));
+    group.read_columns<T>(name, columns, visit);
   } catch (const Error& error) {
     if (error.message().id != "BASE_2") throw;
     damaged("the dataset " + name + " of its " + where + " cannot be read");
   }
+}
+
+/// Append the family of each of `n` entities, 0 where the file has none.
+void MeshReader::add_families(const H5Group& group, const std::string& where, std::size_t n,
+                              std::vector<std::int32_t>& family) const {
+  if (!group.has("FAM")) return family.resize(family.size() + n, 0);
+  dataset<std::int32_t>(group, "FAM", where, n, 1, [&](std::size_t first, std::span<const std::int32_t> part) {
+    if (first == 0) family.reserve(family.size() + n);
+    family.insert(family.end(), part.begin(), part.end());
+  });
 }
 
 void MeshReader::read_nodes(const H5Group& step, std::int64_t space) {
@@ -139,14 +156,19 @@ void MeshReader::read_nodes(const H5Group& step, std::int64_t space) {
   if (count == 0) damaged("it has no nodes");
   if (count > std::numeric_limits<std::int32_t>::max() / 4) unsuitable("it has " + std::to_string(count) + " nodes");
   const auto n = static_cast<std::size_t>(count);
-  const std::vector<double> values = dataset<double>(nodes, "COO", "nodes", n * static_cast<std::size_t>(space));
-  mesh_.coordinates.resize(3 * n);
-  for (std::size_t i = 0; i < n; ++i)
-    for (std::size_t k = 0; k < static_cast<std::size_t>(space); ++k) mesh_.coordinates[3 * i + k] = values[k * n + i];
-  for (std::size_t i = 0; i < 3 * n; ++i)
-    if (!std::isfinite(mesh_.coordinates[i]))
-      fail("MED_9", {{"mesh", name_}, {"file", root_.path().string()}, {"node", std::to_string(i / 3 + 1)}});
-  node_family_ = nodes.has("FAM") ? dataset<std::int32_t>(nodes, "FAM", "nodes", n) : std::vector<std::int32_t>(n, 0);
+  const auto axes = static_cast<std::size_t>(space);
+  dataset<double>(nodes, "COO", "nodes", n, axes, [&](std::size_t first, std::span<const double> part) {
+    if (first == 0) mesh_.coordinates.reserve(with_room(3 * n));
+    const std::size_t here = part.size() / axes;
+    mesh_.coordinates.resize(3 * (first + here));
+    double* const to = mesh_.coordinates.data() + 3 * first;
+    for (std::size_t i = 0; i < here; ++i)
+      for (std::size_t k = 0; k < axes; ++k) to[3 * i + k] = part[k * here + i];
+    for (std::size_t i = 0; i < 3 * here; ++i)
+      if (!std::isfinite(to[i]))
+        fail("MED_9", {{"mesh", name_}, {"file", root_.path().string()}, {"node", std::to_string(first + i / 3 + 1)}});
+  });
+  add_families(nodes, "nodes", n, node_family_);
 }
 
 void MeshReader::read_cells(const H5Group& step) {
@@ -162,7 +184,7 @@ void MeshReader::read_cells(const H5Group& step) {
     const std::string what = type == "POG" || type == "PO2" ? " (polygons)" : type == "POE" ? " (polyhedra)" : "";
     fail("MED_6", {{"mesh", name_}, {"file", root_.path().string()}, {"type", type}, {"what", what}, {"known", list}});
   }
-  const auto n_nodes = static_cast<std::int64_t>(mesh_.n_nodes());
+  const auto n_nodes = static_cast<std::int32_t>(mesh_.n_nodes());
   for (const catalog::CellRow& row : catalog::cells()) {
     const std::string type(row.med_name);
     if (!all.has(type)) continue;
@@ -174,28 +196,30 @@ void MeshReader::read_cells(const H5Group& step) {
     if (count > std::numeric_limits<std::int32_t>::max() / 32) unsuitable("it has " + std::to_string(count) + " " + where);
     const auto n = static_cast<std::size_t>(count);
     const std::size_t size = static_cast<std::size_t>(row.n_nodes);
-    const std::vector<std::int32_t> connectivity = dataset<std::int32_t>(group, "NOD", where, n * size);
-    const std::vector<std::int32_t> family =
-        group.has("FAM") ? dataset<std::int32_t>(group, "FAM", where, n) : std::vector<std::int32_t>(n, 0);
-    cell_family_.insert(cell_family_.end(), family.begin(), family.end());
-    const bool sound =
-        std::all_of(connectivity.begin(), connectivity.end(), [&](std::int32_t node) { return node >= 1 && node <= n_nodes; });
-    for (std::size_t c = 0; !sound && c < n; ++c)
-      for (std::size_t j = 0; j < size; ++j)
-        if (const std::int32_t node = connectivity[static_cast<std::size_t>(row.med_permutation[j]) * n + c];
-            node < 1 || node > n_nodes)
-          fail("MED_8", {{"mesh", name_},
-                         {"file", root_.path().string()},
-                         {"type", type},
-                         {"cell", std::to_string(c + 1)},
-                         {"node", std::to_string(node)},
-                         {"nodes", std::to_string(n_nodes)}});
-    const std::size_t first = mesh_.cells.values.size();
-    mesh_.cells.values.resize(first + n * size);
-    med::each_place(
-        row, n, [&](std::size_t here, std::size_t in_file) { mesh_.cells.values[first + here] = connectivity[in_file] - 1; });
+    dataset<std::int32_t>(group, "NOD", where, n, size, [&](std::size_t first, std::span<const std::int32_t> part) {
+      const std::size_t here = part.size() / size, before = mesh_.cells.values.size();
+      bool sound = true;  // without a branch for each node
+      for (const std::int32_t node : part) sound &= (node >= 1) & (node <= n_nodes);
+      for (std::size_t c = 0; !sound && c < here; ++c)
+        for (std::size_t j = 0; j < size; ++j)
+          if (const std::int32_t node = part[static_cast<std::size_t>(row.med_permutation[j]) * here + c];
+              node < 1 || node > n_nodes)
+            fail("MED_8", {{"mesh", name_},
+                           {"file", root_.path().string()},
+                           {"type", type},
+                           {"cell", std::to_string(first + c + 1)},
+                           {"node", std::to_string(node)},
+                           {"nodes", std::to_string(n_nodes)}});
+      if (first == 0) mesh_.cells.values.reserve(with_room(before + n * size));
+      mesh_.cells.values.resize(before + part.size());
+      std::int32_t* const to = mesh_.cells.values.data() + before;
+      med::each_place(row, here,
+                      [&](std::size_t c, std::size_t j, std::size_t in_file) { to[c * size + j] = part[in_file] - 1; });
+    });
+    add_families(group, where, n, cell_family_);
     mesh_.types.insert(mesh_.types.end(), n, row.type);
-    for (std::size_t c = 1; c <= n; ++c) mesh_.cells.offset.push_back(static_cast<std::int64_t>(first + c * size));
+    mesh_.cells.offset.reserve(with_room(mesh_.cells.offset.size() + n));
+    for (std::size_t c = 0; c < n; ++c) mesh_.cells.offset.push_back(mesh_.cells.offset.back() + row.n_nodes);
   }
   if (mesh_.n_cells() == 0) damaged("it has no cells");
 }

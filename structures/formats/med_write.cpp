@@ -38,10 +38,11 @@ void set_mask(const H5Group& group, const char* name, std::uint32_t value) {
   H5Awrite(attribute, H5T_NATIVE_B32, &value);
 }
 
-/// A dataset of numbers per node or cell, with the attributes that MED gives it.
-template <class T>
-void write_numbers(const H5Group& group, const char* name, const std::vector<T>& values, std::size_t count) {
-  group.write(name, values);
+/// A dataset of `columns` numbers for each of `count` nodes or cells, with the attributes that MED gives it.
+/// @param fill as of hdf5::Group::write_columns()
+template <class T, class Fill>
+void write_numbers(const H5Group& group, const char* name, std::size_t count, std::size_t columns, const Fill& fill) {
+  group.write_columns<T>(name, count, columns, fill);
   const hdf5::Handle set(H5Dopen2(group.id(), name, H5P_DEFAULT), H5Dclose);
   const hdf5::Handle space(H5Screate(H5S_SCALAR), H5Sclose);
   for (const auto& [attribute, value] :
@@ -104,8 +105,18 @@ std::string free_name(const std::string& name, Fits fits) {
 
 /// Cells of each type, in the order of the mesh: what MED keeps together.
 std::map<CellType, std::vector<std::int32_t>> by_type(const Mesh& mesh) {
+  std::map<CellType, std::size_t> counts;
+  for (std::size_t c = 0, end = 0; c < mesh.n_cells(); c = end) {  // a run of one type
+    while (end < mesh.n_cells() && mesh.types[end] == mesh.types[c]) ++end;
+    counts[mesh.types[c]] += end - c;
+  }
   std::map<CellType, std::vector<std::int32_t>> cells;
-  for (std::size_t c = 0; c < mesh.n_cells(); ++c) cells[mesh.types[c]].push_back(static_cast<std::int32_t>(c));
+  for (const auto& [type, count] : counts) cells[type].reserve(count);
+  std::vector<std::int32_t>* list = nullptr;
+  for (std::size_t c = 0; c < mesh.n_cells(); ++c) {
+    if (c == 0 || mesh.types[c] != mesh.types[c - 1]) list = &cells[mesh.types[c]];
+    list->push_back(static_cast<std::int32_t>(c));
+  }
   return cells;
 }
 
@@ -149,6 +160,7 @@ bool same_geometry(const Mesh& a, const Mesh& b) {
 /// @param sign 1 for nodes, -1 for cells @return the family of each entity, empty where all are in none
 std::vector<std::int32_t> write_families(const H5Group& root, const std::string& mesh, const char* kind, int sign,
                                          const std::vector<Group>& groups, std::size_t n_entities) {
+  if (groups.empty()) return {};
   // the groups that an entity has been found in so far, as a number of `sets`
   std::vector<std::vector<std::int32_t>> sets{{}};
   std::vector<std::int32_t> set_of(n_entities, 0);
@@ -235,11 +247,17 @@ void write_mesh(const H5Group& root, const Mesh& mesh, const std::string& name) 
   set_int(nodes, "CGT", 1);
   set_int(nodes, "CGS", 1);
   set_text(nodes, "PFL", med::no_profile);
-  std::vector<double> coordinates(space * mesh.n_nodes());
-  for (std::size_t i = 0; i < mesh.n_nodes(); ++i)
-    for (std::size_t k = 0; k < space; ++k) coordinates[k * mesh.n_nodes() + i] = mesh.coordinates[3 * i + k];
-  write_numbers(nodes, "COO", coordinates, mesh.n_nodes());
-  if (!node_family.empty()) write_numbers(nodes, "FAM", node_family, mesh.n_nodes());
+  write_numbers<double>(nodes, "COO", mesh.n_nodes(), space, [&](std::size_t first, std::span<double> part) {
+    const std::size_t here = part.size() / space;
+    for (std::size_t i = 0; i < here; ++i)
+      for (std::size_t k = 0; k < space; ++k) part[k * here + i] = mesh.coordinates[3 * (first + i) + k];
+  });
+  const auto write_integers = [](const H5Group& parent, const char* dataset, std::size_t count, const auto& of) {
+    write_numbers<std::int32_t>(parent, dataset, count, 1, [&](std::size_t first, std::span<std::int32_t> part) {
+      for (std::size_t i = 0; i < part.size(); ++i) part[i] = of(first + i);
+    });
+  };
+  if (!node_family.empty()) write_integers(nodes, "FAM", mesh.n_nodes(), [&](std::size_t i) { return node_family[i]; });
 
   const H5Group all = step.create("MAI");
   set_int(all, "CGT", 1);
@@ -251,19 +269,14 @@ void write_mesh(const H5Group& root, const Mesh& mesh, const std::string& name) 
     set_text(one, "PFL", med::no_profile);
     set_int(one, "GEO", row.dimension == 0 ? 1 : 100 * row.dimension + row.n_nodes);
     const auto size = static_cast<std::size_t>(row.n_nodes);
-    std::vector<std::int32_t> connectivity(cells.size() * size), numbers(cells.size()), family;
-    med::each_place(row, cells.size(), [&](std::size_t here, std::size_t in_file) {
-      const std::int64_t first = mesh.cells.offset[static_cast<std::size_t>(cells[here / size])];
-      connectivity[in_file] = mesh.cells.values[static_cast<std::size_t>(first) + here % size] + 1;
+    const auto cell = [&of_type = cells](std::size_t i) { return static_cast<std::size_t>(of_type[i]); };
+    write_numbers<std::int32_t>(one, "NOD", cells.size(), size, [&](std::size_t first, std::span<std::int32_t> part) {
+      med::each_place(row, part.size() / size, [&](std::size_t c, std::size_t j, std::size_t in_file) {
+        part[in_file] = mesh.cells.values[static_cast<std::size_t>(mesh.cells.offset[cell(first + c)]) + j] + 1;
+      });
     });
-    std::ranges::transform(cells, numbers.begin(), [](std::int32_t c) { return c + 1; });
-    if (!cell_family.empty()) {
-      family.resize(cells.size());
-      std::ranges::transform(cells, family.begin(), [&](std::int32_t c) { return cell_family[static_cast<std::size_t>(c)]; });
-    }
-    write_numbers(one, "NOD", connectivity, cells.size());
-    write_numbers(one, "NUM", numbers, cells.size());
-    if (!family.empty()) write_numbers(one, "FAM", family, cells.size());
+    write_integers(one, "NUM", cells.size(), [&](std::size_t i) { return static_cast<std::int32_t>(cell(i)) + 1; });
+    if (!cell_family.empty()) write_integers(one, "FAM", cells.size(), [&](std::size_t i) { return cell_family[cell(i)]; });
   }
 }
 

@@ -114,6 +114,53 @@ class CutTool(OperatorTest):
             self.assertEqual(sizes["SIDE00"], 12 * 4)
             self.assertTrue(np.all(mesh.coordinates[np.concatenate([mesh.cells[c] for c in mesh.cell_groups["SIDE11"]]), 1] == 3))
 
+    def test_arrays_of_several_parts(self):
+        """Large arrays are read and written in parts of a megabyte: the last has another length. One in chunks is one part."""
+        size = (66, 65, 64)
+        mesh = cubes(size, "BODY", {(2, 1): "TOP"})
+        n_nodes, n_bodies = len(mesh.points), len(mesh.cells["HEXA8"])
+        self.assertGreater(min(n_nodes, n_bodies), 2**20 / 4)  # families: more than one part of 32-bit integers
+        random = np.random.default_rng(3)
+        mesh.node_groups["SOME_N"] = np.flatnonzero(random.random(n_nodes) < 0.4).tolist()
+        chosen = np.flatnonzero(random.random(n_bodies) < 0.4)
+        mesh.cell_groups["SOME"] = [("HEXA8", c) for c in chosen]
+        write_med(self.source, mesh)
+        under = np.any(mesh.points[mesh.cells["HEXA8"], 2] == size[2], axis=1)
+        written = []
+        for compressed in (False, True):
+            if compressed:
+                with h5py.File(self.source, "a") as file:
+                    step = file["ENS_MAA/MESH/-0000000000000000001-0000000000000000001"]
+                    for where in ("NOE/COO", "NOE/FAM", "MAI/HE8/NOD", "MAI/HE8/FAM"):
+                        values, attributes = step[where][()], dict(step[where].attrs)
+                        del step[where]
+                        step.create_dataset(where, data=values, chunks=(10000,), compression="gzip", compression_opts=1)
+                        step[where].attrs.update(attributes)
+            self.cut("--slave", "TOP")
+            with h5py.File(self.out) as file:
+                step = file["ENS_MAA/MESH/-0000000000000000001-0000000000000000001"]
+                points = step["NOE/COO"][()].reshape(3, -1).T
+                bodies, numbers = step["MAI/HE8/NOD"][()].reshape(8, -1).T - 1, step["MAI/HE8/NUM"][()]
+                families = {kind: {group.attrs["NUM"]: {bytes(name.tolist()).rstrip(b"\0").decode() for name in group["GRO/NOM"][()]}
+                                   for group in file[f"FAS/MESH/{kind}"].values()} for kind in ("NOEUD", "ELEME")}
+                named = {kind: [families[kind].get(number, set()) for number in step[where][()]]
+                         for kind, where in (("NOEUD", "NOE/FAM"), ("ELEME", "MAI/HE8/FAM"))}
+            np.testing.assert_array_equal(points[:n_nodes], mesh.points)
+            np.testing.assert_array_equal(bodies, mesh.cells["HEXA8"][~under])
+            self.assertTrue(np.all(np.diff(numbers) > 0))
+            self.assertEqual([i for i, names in enumerate(named["NOEUD"]) if names], mesh.node_groups["SOME_N"])
+            np.testing.assert_array_equal(np.array(["SOME" in names for names in named["ELEME"]]), np.isin(np.flatnonzero(~under), chosen))
+            self.assertTrue(all("BODY" in names for names in named["ELEME"]))
+            written.append((points, bodies, numbers))
+        for first, second in zip(*written):
+            np.testing.assert_array_equal(first, second)
+        for where, value, identifier, words in (("MAI/HE8/NOD", n_nodes + 1, "MED_8", [f"number {n_bodies} names the node {n_nodes + 1}"]),
+                                                ("NOE/COO", np.inf, "MED_9", [f"N{n_nodes} "])):
+            write_med(self.source, mesh)
+            with h5py.File(self.source, "a") as file:
+                file[f"ENS_MAA/MESH/-0000000000000000001-0000000000000000001/{where}"][-1] = value
+            self.refuses(identifier, self.source, self.folder / "new.med", "--slave", "TOP", words=words)
+
     def test_quality_is_reported_on_demand(self):
         self.write_brick()
         self.assertNotIn("the worst", self.cut("--slave", "TOP").stdout)

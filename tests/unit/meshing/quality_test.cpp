@@ -89,7 +89,7 @@ TEST(NodeGroups, get_the_new_nodes_of_a_skin_they_hold) {
   mesh.node_groups = {{"SKIN", {3, 4, 5}}, {"HALF", {3, 4}}, {"MORE", {5, 4, 3, 0}}, {"ALL", {0, 1, 2, 3, 4, 5}}};
   CutReport report;
   Mesh after = cut(mesh, {"TOP"}, "PYRA", &report);
-  complete_node_groups(mesh, report, after);
+  complete_node_groups(report, after);
   // each face: its two nodes on the skin, then the two inside
   EXPECT_EQ(after.node_groups[0].members, (Nodes{3, 4, 5, 6, 7, 10, 11}));
   EXPECT_EQ(after.node_groups[1].members, (Nodes{3, 4}));
