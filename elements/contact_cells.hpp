@@ -18,6 +18,18 @@ struct ContactCells {
   std::vector<double> vertex;  ///< (vertices, dimension - 1): the clipped polygon in the slave's reference space
 
   std::size_t size() const { return slave.size(); }
+  bool operator==(const ContactCells&) const = default;
+  /// Put others behind.
+  void append(const ContactCells& other) {
+    const auto behind = [](auto& to, const auto& from) { to.insert(to.end(), from.begin(), from.end()); };
+    const auto shifted = [](auto& to, const auto& from) {
+      const std::int64_t shift = to.back();
+      for (std::size_t i = 1; i < from.size(); ++i) to.push_back(shift + from[i]);
+    };
+    behind(slave, other.slave), behind(master, other.master), behind(weight, other.weight), behind(vertex, other.vertex);
+    behind(slave_point, other.slave_point), behind(master_point, other.master_point);
+    shifted(offset, other.offset), shifted(vertex_offset, other.vertex_offset);
+  }
   /// Empty, with the memory kept.
   void clear() {
     for (auto* numbers : {&slave, &master}) numbers->clear();

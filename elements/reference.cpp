@@ -380,6 +380,16 @@ Rule triangle_rule(int n) {
   }
 }
 
+/// Square: Radon's 7 points of degree 5, and products of Gauss rules, m^2 points exact to degree 2 m - 1 in each coordinate.
+Rule square_rule(int n) {
+  if (n == 7) {
+    const double a = std::sqrt(14.0 / 15), b = std::sqrt(3.0 / 5), c = std::sqrt(1.0 / 3), wa = 20.0 / 63, wb = 5.0 / 9;
+    return {2, {-b, -c, b, -c, 0, -a, 0, 0, 0, a, -b, c, b, c}, {wb, wb, wa, 8.0 / 7, wa, wb, wb}};
+  }
+  const int m = static_cast<int>(std::lround(std::sqrt(n)));
+  return m * m == n ? product(gauss_rule(m), gauss_rule(m)) : Rule{};
+}
+
 /// Tetrahedron: degrees 1, 2, 3 (whose central weight is negative) and 5.
 Rule tetrahedron_rule(int n) {
   const double r5 = std::sqrt(5.0), r15 = std::sqrt(15.0);
@@ -415,7 +425,7 @@ Rule pyramid_rule(int n) {
 
 /// The rule, empty where there is none.
 Rule make_rule(Family family, int n) {
-  const int square = static_cast<int>(std::lround(std::sqrt(n))), cube = static_cast<int>(std::lround(std::cbrt(n)));
+  const int cube = static_cast<int>(std::lround(std::cbrt(n)));
   switch (family) {
     case Family::POINT:
       return n == 1 ? Rule{0, {}, {1.0}} : Rule{};
@@ -424,7 +434,7 @@ Rule make_rule(Family family, int n) {
     case Family::TRIA:
       return triangle_rule(n);
     case Family::QUAD:
-      return square * square == n ? product(gauss_rule(square), gauss_rule(square)) : Rule{};
+      return square_rule(n);
     case Family::TETRA:
       return tetrahedron_rule(n);
     case Family::PENTA:

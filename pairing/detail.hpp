@@ -1,19 +1,28 @@
 #pragma once
-// pair() for each dimension of the space; a user calls pair() of pairing.hpp.
+// Pairing for each dimension of the space; a user takes pairing.hpp.
+#include <functional>
+#include <memory>
+
 #include "lacon/pairing/pairing.hpp"
 
 namespace lacon::detail {
 
-/// Called behind each slave cell with how many are done; what it finds in the pairing it may take away.
-using EndOfCell = std::function<void(std::size_t)>;
+/// Pairs one slave cell after another with the masters that it was made for; every thread has its own.
+class CellPairer {
+ public:
+  virtual ~CellPairer() = default;
+  /// Appends what it finds; reasons of rejection in the order of the search, some of them several times.
+  virtual void pair(std::size_t slave_cell, Pairing& found) = 0;
+};
+using MakeCellPairer = std::function<std::unique_ptr<CellPairer>()>;
 
-/// Chains of SEG2 and SEG3 in the plane.
-void pair_in_plane(const Surface& slave, const Surface& master, const PairingOptions& options, Pairing& pairing,
-                   const EndOfCell& end_of_cell);
+/// Chains of SEG2 and SEG3 in the plane. @param[out] rejected degenerate masters. The surfaces must outlive what is returned.
+MakeCellPairer pair_in_plane(const Surface& slave, const Surface& master, const PairingOptions& options,
+                             std::vector<RejectedCouple>& rejected);
 
 /// TRIA3, TRIA6, QUAD4, QUAD8, QUAD9 in space.
-void pair_in_space(const Surface& slave, const Surface& master, const PairingOptions& options, Pairing& pairing,
-                   const EndOfCell& end_of_cell);
+MakeCellPairer pair_in_space(const Surface& slave, const Surface& master, const PairingOptions& options,
+                             std::vector<RejectedCouple>& rejected);
 
 /// All coordinates of a cell, and nodal normals if there are, are finite numbers.
 bool finite(const Surface& surface, std::size_t cell);

@@ -85,8 +85,9 @@ std::optional<Vec2> inverse(const Map2& map, Family family, Vec2 y, double toler
   return p;
 }
 
+constexpr double round_off = 1e-13;  // of higher terms, relative to the affine ones
+
 Inverse::Inverse(const Map2& map, Family family) : map_(map), family_(family) {
-  constexpr double round_off = 1e-13;  // of higher terms, relative to the affine ones
   const auto size = [](Vec2 v) { return std::abs(v.x) + std::abs(v.y); };
   double higher = 0;
   for (int k = 3; k < map.n; ++k) higher += size(map.c[k]);
@@ -95,6 +96,13 @@ Inverse::Inverse(const Map2& map, Family family) : map_(map), family_(family) {
   row1_ = {d2.y / jacobian_, -d2.x / jacobian_};
   row2_ = {-d1.y / jacobian_, d1.x / jacobian_};
   affine_ = higher <= round_off * (size(d1) + size(d2)) && std::isfinite(size(row1_) + size(row2_));
+}
+
+bool is_affine(const Map3& map, Vec3 normal) {
+  double higher = 0;
+  for (int k = 3; k < map.n; ++k) higher += norm(map.c[k]);
+  const double jacobian = dot(cross(map.c[1], map.c[2]), normal);
+  return higher * (norm(map.c[1]) + norm(map.c[2])) <= round_off * jacobian && jacobian > 0;
 }
 
 double distortion(const Map3& map, Family family, Vec3 normal) {

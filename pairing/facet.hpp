@@ -103,6 +103,10 @@ class Inverse {
   Vec2 row1_, row2_;  ///< of the inverse matrix
 };
 
+/// Whether a map is affine to round-off: neither Jacobian nor normal change by more. Never for a map without a Jacobian along
+/// `normal`.
+bool is_affine(const Map3& map, Vec3 normal);
+
 /// How much the Jacobian along `normal` varies, (max - min) / (max + min) over vertices, middles of edges and the middle; 0 for
 /// an affine facet, at least 1 for a folded one.
 double distortion(const Map3& map, Family family, Vec3 normal);

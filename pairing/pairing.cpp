@@ -3,11 +3,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <mutex>
 #include <numbers>
 #include <stdexcept>
 #include <string>
+#include <utility>
 
 #include "lacon/pairing/detail.hpp"
+#include "lacon/structures/parallel.hpp"
 
 namespace lacon {
 namespace {
@@ -50,30 +53,63 @@ std::string_view rejection_name(Rejection rejection) {
   return names[static_cast<std::size_t>(rejection)];
 }
 
-Pairing pair(const Surface& slave, const Surface& master, const PairingOptions& options) {
-  Pairing whole;
-  pair_in_blocks(slave, master, options, std::max<std::size_t>(slave.size(), 1),
-                 [&](Pairing& pairing) { whole = std::move(pairing); });
-  return whole;
+void Pairing::append(const Pairing& other) {
+  cells.append(other.cells);
+  rejected.insert(rejected.end(), other.rejected.begin(), other.rejected.end());
 }
 
-void pair_in_blocks(const Surface& slave, const Surface& master, const PairingOptions& options, std::size_t block,
-                    const std::function<void(Pairing&)>& take) {
+Pairing pair(const Surface& slave, const Surface& master, const PairingOptions& options) {
+  constexpr std::size_t block = 64;  // slave cells that a thread pairs at a time
+  PairingInParts pairing(slave, master, options);
+  std::vector<Pairing> parts(std::max<std::size_t>(n_loop_blocks(slave.size(), block), 1));
+  parts[0].cells.dimension = slave.dimension;
+  if (slave.size() == 0) pairing.pair(0, 0, parts[0]);
+  parallel_for(slave.size(), block, [&](const LoopBlock& cells) { pairing.pair(cells.first, cells.last, parts[cells.index]); });
+  for (std::size_t i = 1; i < parts.size(); ++i) parts[0].append(parts[i]);
+  return std::move(parts[0]);
+}
+
+struct PairingInParts::Implementation {
+  int dimension;
+  std::vector<RejectedCouple> degenerate_masters;
+  detail::MakeCellPairer make;
+  std::mutex mutex;
+  std::vector<std::unique_ptr<detail::CellPairer>> free;  // as many as threads have been here at a time
+
+  std::unique_ptr<detail::CellPairer> take() {
+    const std::lock_guard lock(mutex);
+    if (free.empty()) return make();
+    std::unique_ptr<detail::CellPairer> pairer = std::move(free.back());
+    free.pop_back();
+    return pairer;
+  }
+  void give_back(std::unique_ptr<detail::CellPairer> pairer) {
+    const std::lock_guard lock(mutex);
+    free.push_back(std::move(pairer));
+  }
+};
+
+PairingInParts::PairingInParts(const Surface& slave, const Surface& master, const PairingOptions& options)
+    : implementation_(std::make_unique<Implementation>()) {
   check(slave, slave.dimension);
   check(master, slave.dimension);
-  Pairing pairing;
-  pairing.cells.dimension = slave.dimension;
-  const detail::EndOfCell end_of_cell = [&](std::size_t done) {
-    if (done % block != 0 && done != slave.size()) return;
-    std::vector<RejectedCouple>& rejected = pairing.rejected;
-    std::sort(rejected.begin(), rejected.end());  // a search meets couples in its own order, and parts of one several times
-    rejected.erase(std::unique(rejected.begin(), rejected.end()), rejected.end());
-    take(pairing);
-    pairing.cells.clear();
-    rejected.clear();
-  };
-  (slave.dimension == 2 ? detail::pair_in_plane : detail::pair_in_space)(slave, master, options, pairing, end_of_cell);
-  if (slave.size() == 0) end_of_cell(0);
+  implementation_->dimension = slave.dimension;
+  const auto prepare = slave.dimension == 2 ? detail::pair_in_plane : detail::pair_in_space;
+  implementation_->make = prepare(slave, master, options, implementation_->degenerate_masters);
+}
+
+PairingInParts::~PairingInParts() = default;
+
+void PairingInParts::pair(std::size_t first, std::size_t last, Pairing& found) {
+  found.cells.clear();
+  found.cells.dimension = implementation_->dimension;
+  found.rejected.clear();
+  if (first == 0) found.rejected = implementation_->degenerate_masters;
+  std::unique_ptr<detail::CellPairer> pairer = implementation_->take();
+  for (std::size_t cell = first; cell < last; ++cell) pairer->pair(cell, found);
+  implementation_->give_back(std::move(pairer));
+  std::sort(found.rejected.begin(), found.rejected.end());
+  found.rejected.erase(std::unique(found.rejected.begin(), found.rejected.end()), found.rejected.end());
 }
 
 }  // namespace lacon

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <compare>
 #include <cstdint>
-#include <functional>
+#include <memory>
 #include <string_view>
 #include <vector>
 
@@ -71,6 +71,9 @@ struct Pairing {
   /// Every couple once for each reason; sorted.
   std::vector<RejectedCouple> rejected;
 
+  /// Put another one, of later slave cells, behind.
+  void append(const Pairing& other);
+
   std::int64_t count(Rejection reason) const {
     return std::count_if(rejected.begin(), rejected.end(), [&](const RejectedCouple& r) { return r.reason == reason; });
   }
@@ -82,10 +85,24 @@ struct Pairing {
 /// that differ.
 Pairing pair(const Surface& slave, const Surface& master, const PairingOptions& options = {});
 
-/// The same in blocks of slave cells, for memory that does not grow with the skins: `take` gets what pair() would return for
-/// each `block` slave cells in turn, and may take it away. Degenerate masters come with the first block.
-void pair_in_blocks(const Surface& slave, const Surface& master, const PairingOptions& options, std::size_t block,
-                    const std::function<void(Pairing&)>& take);
+/// The same in parts, for memory that does not grow with the skins and for several threads: masters are examined once, then any
+/// range of slave cells can be paired.
+class PairingInParts {
+ public:
+  /// The surfaces must outlive it, and stay as they are. Throws as pair().
+  PairingInParts(const Surface& slave, const Surface& master, const PairingOptions& options = {});
+  ~PairingInParts();
+  PairingInParts(const PairingInParts&) = delete;
+  PairingInParts& operator=(const PairingInParts&) = delete;
+
+  /// What pair() finds for the slave cells first <= i < last; degenerate masters come with cell 0. Several threads may call
+  /// this at a time. @param[out] found its memory is used again
+  void pair(std::size_t first, std::size_t last, Pairing& found);
+
+ private:
+  struct Implementation;
+  std::unique_ptr<Implementation> implementation_;
+};
 
 /// Integration points that pairing places on a contact cell of these two kinds in the plane.
 int integration_points(CellType slave, CellType master);

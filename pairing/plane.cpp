@@ -2,7 +2,9 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <memory>
 #include <tuple>
+#include <utility>
 
 #include "lacon/elements/reference.hpp"
 #include "lacon/pairing/box_tree.hpp"
@@ -292,44 +294,61 @@ class Overlaps {
   std::vector<Interval> result_;
 };
 
-}  // namespace
+/// The master skin, examined once for all slave cells.
+struct Masters {
+  const Surface &slave, &master;
+  PairingOptions options;
+  double slave_extent = 0, smallest_cosine = -1;
+  std::vector<std::int32_t> usable;  ///< cells that are not degenerate, and what the tree has as items
+  BoxTree<2> tree;
 
-int integration_points(CellType slave, CellType master) { return slave == CellType::SEG2 && master == CellType::SEG2 ? 3 : 4; }
+  Masters(const Surface& slave_skin, const Surface& master_skin, const PairingOptions& pairing_options,
+          std::vector<RejectedCouple>& rejected)
+      : slave(slave_skin),
+        master(master_skin),
+        options(pairing_options),
+        slave_extent(extent(slave_skin)),
+        smallest_cosine(detail::smallest_cosine(pairing_options)),
+        tree(examine(rejected)) {}
 
-void detail::pair_in_plane(const Surface& slave, const Surface& master, const PairingOptions& options, Pairing& pairing,
-                           const EndOfCell& end_of_cell) {
-  const PairingTolerances& tolerances = options.tolerances;
-
-  const double slave_extent = extent(slave), master_extent = extent(master);
-  std::vector<std::int32_t> usable;
-  std::vector<Box<2>> boxes;
-  for (std::size_t cell = 0; cell < master.size(); ++cell) {
-    const Vec a = finite(master, cell) ? point(master, master.nodes[cell][0]) : Vec{},
-              b = finite(master, cell) ? point(master, master.nodes[cell][1]) : Vec{};
-    if (!(norm(b - a) > tolerances.degenerate * master_extent)) {
-      pairing.rejected.push_back({-1, static_cast<std::int32_t>(cell), Rejection::degenerate_master});
-      continue;
+ private:
+  std::vector<Box<2>> examine(std::vector<RejectedCouple>& rejected) {
+    const PairingTolerances& tolerances = options.tolerances;
+    const double size = extent(master);
+    std::vector<Box<2>> boxes;
+    for (std::size_t cell = 0; cell < master.size(); ++cell) {
+      const Vec a = finite(master, cell) ? point(master, master.nodes[cell][0]) : Vec{},
+                b = finite(master, cell) ? point(master, master.nodes[cell][1]) : Vec{};
+      if (!(norm(b - a) > tolerances.degenerate * size)) {
+        rejected.push_back({-1, static_cast<std::int32_t>(cell), Rejection::degenerate_master});
+        continue;
+      }
+      Box<2> box = Box<2>::empty();  // of the ends alone: where a normal passes between them decides, not where the cell bulges
+      box.add(std::array{a.x, a.y}.data());
+      box.add(std::array{b.x, b.y}.data());
+      for (int d = 0; d < 2; ++d) {
+        box.low[d] -= tolerances.box * size;
+        box.high[d] += tolerances.box * size;
+      }
+      usable.push_back(static_cast<std::int32_t>(cell));
+      boxes.push_back(box);
     }
-    Box<2> box = Box<2>::empty();  // of the ends alone: where a normal passes between them decides, not where the cell bulges
-    box.add(std::array{a.x, a.y}.data());
-    box.add(std::array{b.x, b.y}.data());
-    for (int d = 0; d < 2; ++d) {
-      box.low[d] -= tolerances.box * master_extent;
-      box.high[d] += tolerances.box * master_extent;
-    }
-    usable.push_back(static_cast<std::int32_t>(cell));
-    boxes.push_back(box);
+    return boxes;
   }
-  const BoxTree<2> tree(std::move(boxes));
+};
 
-  const double smallest_cosine = detail::smallest_cosine(options);
-  Projections projections(master.coordinates.size() / 3);
-  Overlaps overlaps;
-  std::vector<Interval> intervals;
-  const auto pair_cell = [&](std::size_t cell) {
+class PairerInPlane final : public detail::CellPairer {
+ public:
+  explicit PairerInPlane(std::shared_ptr<const Masters> masters)
+      : masters_(std::move(masters)), projections(masters_->master.coordinates.size() / 3) {}
+
+  void pair(std::size_t cell, Pairing& pairing) override {
+    const Surface &slave = masters_->slave, &master = masters_->master;
+    const PairingOptions& options = masters_->options;
+    const PairingTolerances& tolerances = options.tolerances;
     const auto slave_index = static_cast<std::int32_t>(cell);
     const SlaveCell e = finite(slave, cell) ? slave_cell(slave, cell) : SlaveCell{};
-    if (degenerate(e, slave, slave_extent, tolerances.degenerate)) {
+    if (degenerate(e, slave, masters_->slave_extent, tolerances.degenerate)) {
       pairing.rejected.push_back({slave_index, -1, Rejection::degenerate_slave});
       return;
     }
@@ -350,7 +369,7 @@ void detail::pair_in_plane(const Surface& slave, const Surface& master, const Pa
               const double diameter = std::max(2 * norm(e.x.c[1]), norm(along));
               return std::abs(image(e, middle, master, m, tolerances).gap) > options.distance_limit * diameter;
             };
-            if (-dot(t, along) < smallest_cosine * norm(t) * norm(along))
+            if (-dot(t, along) < masters_->smallest_cosine * norm(t) * norm(along))
               reject(m, Rejection::too_steep);
             else if (options.distance_limit > 0 && far())
               reject(m, Rejection::too_far);
@@ -361,10 +380,11 @@ void detail::pair_in_plane(const Surface& slave, const Surface& master, const Pa
       if (away > 2 * tolerances.sliver) reject(m, Rejection::facing_away);
     };
     if (options.brute_force) {
-      for (const std::int32_t m : usable) couple(m);
+      for (const std::int32_t m : masters_->usable) couple(m);
     } else {
       const Strip strip(e);
-      tree.visit([&](const Box<2>& box) { return strip.touches(box); }, [&](std::int32_t i) { couple(usable[i]); });
+      masters_->tree.visit([&](const Box<2>& box) { return strip.touches(box); },
+                           [&](std::int32_t i) { couple(masters_->usable[i]); });
     }
     std::sort(intervals.begin(), intervals.end(),
               [](const Interval& i, const Interval& j) { return std::tie(i.a, i.b, i.master) < std::tie(j.a, j.b, j.master); });
@@ -402,11 +422,25 @@ void detail::pair_in_plane(const Surface& slave, const Surface& master, const Pa
       cells.vertex.insert(cells.vertex.end(), {a, b});
       cells.vertex_offset.push_back(static_cast<std::int64_t>(cells.vertex.size()));
     }
-  };
-  for (std::size_t cell = 0; cell < slave.size(); ++cell) {
-    pair_cell(cell);
-    end_of_cell(cell + 1);
   }
+
+ private:
+  std::shared_ptr<const Masters> masters_;
+  // used again for every slave cell
+  Projections projections;
+  Overlaps overlaps;
+  std::vector<Interval> intervals;
+};
+
+}  // namespace
+
+int integration_points(CellType slave, CellType master) { return slave == CellType::SEG2 && master == CellType::SEG2 ? 3 : 4; }
+
+detail::MakeCellPairer detail::pair_in_plane(const Surface& slave, const Surface& master, const PairingOptions& options,
+                                             std::vector<RejectedCouple>& rejected) {
+  return [masters = std::make_shared<const Masters>(slave, master, options, rejected)] {
+    return std::make_unique<PairerInPlane>(masters);
+  };
 }
 
 }  // namespace lacon

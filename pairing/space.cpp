@@ -2,13 +2,16 @@
 #include <algorithm>
 #include <deque>
 #include <limits>
+#include <memory>
 #include <numbers>
 #include <tuple>
+#include <utility>
 
 #include "lacon/elements/reference.hpp"
 #include "lacon/pairing/box_tree.hpp"
 #include "lacon/pairing/detail.hpp"
 #include "lacon/pairing/facet.hpp"
+#include "lacon/structures/parallel.hpp"
 
 // The normal of the slave at xi passes a directed edge (a, b) of a master on the side that the sign of
 //     s(xi) = ((b - a) x n(xi)) . (x_e(xi) - a)
@@ -53,6 +56,7 @@ struct Facet {
   Vec3 normal;                ///< mean, unit; 0 for a facet without area
   double size = 0;            ///< the longest distance from its first node
   bool straight = true;       ///< edges
+  bool affine = false;        ///< to round-off
   double distortion = 0;
 
   /// The longest distance between two vertices.
@@ -91,7 +95,8 @@ Facet facet(const Surface& surface, std::size_t cell, double flat) {
   }
   const double length = norm(area);
   if (length > 0) f.normal = (1 / length) * area;
-  f.distortion = distortion(f.x, f.family, f.normal);
+  f.affine = is_affine(f.x, f.normal);
+  f.distortion = f.affine ? 0 : distortion(f.x, f.family, f.normal);
   return f;
 }
 
@@ -155,7 +160,8 @@ class SlaveFacet {
     // A corner may have no normal (two nodes in one place, three corners on a line), the middle must.
     least_ = tolerances.degenerate * (smooth_ ? 1 : f.size * f.size);
     double turn = 0;
-    const std::span<const Vec2> places = probes(f.family);
+    const std::span<const Vec2> all_places = probes(f.family);
+    const auto places = all_places.last(f.affine && !smooth_ ? 1 : all_places.size());
     for (const Vec2 p : places) {
       const Map3::Value v = f.x(p);
       const double jacobian = dot(cross(v.d1, v.d2), n), none = tolerances.degenerate * f.size * f.size;
@@ -246,9 +252,12 @@ class SlaveFacet {
     const Vec3 half{0.5 * (box.high[0] - box.low[0]), 0.5 * (box.high[1] - box.low[1]), 0.5 * (box.high[2] - box.low[2])};
     const auto reach = [&](Vec3 d) { return half.x * std::abs(d.x) + half.y * std::abs(d.y) + half.z * std::abs(d.z); };
     const double leaning = lean_ > 0 ? lean_ * (std::abs(dot(centre, n)) + reach(n) + height_) : 0;
-    for (int i = 0; i < f.n_vertices; ++i)
-      if (dot(walls_[i].out, centre) - reach(walls_[i].out) > walls_[i].offset + leaning) return false;
-    return true;
+    double beyond[4];  // all walls at once: the compiler makes vectors of them
+    for (int i = 0; i < 4; ++i)
+      beyond[i] = walls_.x[i] * centre.x + walls_.y[i] * centre.y + walls_.z[i] * centre.z -
+                  (std::abs(walls_.x[i]) * half.x + std::abs(walls_.y[i]) * half.y + std::abs(walls_.z[i]) * half.z) -
+                  walls_.offset[i];
+    return !(std::max(std::max(beyond[0], beyond[1]), std::max(beyond[2], beyond[3])) > leaning);
   }
 
  private:
@@ -259,19 +268,23 @@ class SlaveFacet {
   }
 
   void build_walls() {
+    walls_ = {};
+    const auto push = [&](Vec3 x) {  // the walls outward, behind x
+      for (int i = 0; i < f.n_vertices; ++i)
+        walls_.offset[i] = std::max(walls_.offset[i], walls_.x[i] * x.x + walls_.y[i] * x.y + walls_.z[i] * x.z);
+    };
     for (int i = 0; i < f.n_vertices; ++i) {
       const Vec3 out = cross(f.nodes[(i + 1) % f.n_vertices] - f.nodes[i], n);
-      const double length = norm(out);
-      walls_[i] = {length > 0 ? (1 / length) * out : Vec3{}, 0};
+      const double length = norm(out), scale = length > 0 ? 1 / length : 0;
+      walls_.x[i] = scale * out.x, walls_.y[i] = scale * out.y, walls_.z[i] = scale * out.z;
     }
     lean_ = height_ = 0;
     if (constant) {
-      for (int i = 0; i < f.n_vertices; ++i)
-        for (int k = 0; k < f.n_vertices; ++k) walls_[i].offset = std::max(walls_[i].offset, dot(walls_[i].out, f.nodes[k]));
+      for (int k = 0; k < f.n_vertices; ++k) push(f.nodes[k]);
       return;
     }
     for (const Vec3 x : hull(f.family, f.order, [&](Vec2 xi) { return f.x(xi).x; })) {
-      for (int i = 0; i < f.n_vertices; ++i) walls_[i].offset = std::max(walls_[i].offset, dot(walls_[i].out, x));
+      push(x);
       height_ = std::max(height_, std::abs(dot(n, x)));
     }
     height_ += 0.25 * f.size;
@@ -321,11 +334,11 @@ class SlaveFacet {
   Map3 nodal_;
   Map2 chart_;
   Inverse from_chart_;
-  struct Wall {
-    Vec3 out;       ///< unit, at a right angle to n
-    double offset;  ///< out . x is nowhere larger on the slave
-  };
-  std::array<Wall, 4> walls_;
+  /// Planes behind which the slave lies; out . x is nowhere larger than `offset` on it. A triangle's fourth one is everywhere.
+  struct Walls {
+    double x[4], y[4], z[4];  ///< out: unit, at a right angle to n
+    double offset[4];
+  } walls_;
   double lean_ = 0;    ///< tangent of the largest angle between a normal and n, or infinity
   double height_ = 0;  ///< largest |n . x|, and an allowance for what pieces get wrong along the border
 };
@@ -419,6 +432,9 @@ bool sooner(const View* a, const View* b) {
   return std::tie(a->piece, p.x, p.y, a->master) < std::tie(b->piece, q.x, q.y, b->master);
 }
 
+/// Whether polygons of a couple are exact.
+bool exact_polygons(const SlaveFacet& slave, const Facet& master) { return slave.constant && master.straight; }
+
 /// The degree to which a couple is integrated. The integrand is analytic in the plane; the nearest singularity of an inverse
 /// map lies at about 1 / distortion, so that a rule of degree d leaves rho^-d with rho as below (METHOD.md 5.4 has measured
 /// figures). Where polygons are themselves approximate a higher degree than 8 serves nothing.
@@ -428,8 +444,7 @@ int integration_degree(const SlaveFacet& slave, const Facet& master) {
   if (d <= 1e-12) return std::max(4, polynomial);
   const double rho = 1 / d + std::sqrt(1 / (d * d) - 1);
   const int degree = polynomial + static_cast<int>(std::ceil(12 * std::numbers::ln10 / std::log(rho)));
-  const bool exact = slave.constant && master.straight;
-  return std::clamp(degree, 4, exact ? 31 : 8);
+  return std::clamp(degree, 4, exact_polygons(slave, master) ? 31 : 8);
 }
 
 const Rule& triangle_rule(int degree) {
@@ -437,59 +452,121 @@ const Rule& triangle_rule(int degree) {
   return integration_rule(Family::TRIA, degree <= 4 ? 6 : degree <= 6 ? 12 : degree <= 8 ? 16 : m * m);
 }
 
-}  // namespace
+/// The rule of the square that is exact for polynomials of this degree on any convex quadrangle: seen from the square they have
+/// the degree in each coordinate, and the Jacobian adds one. That of a parallelogram is constant: there the total degree
+/// counts.
+const Rule& square_rule(int degree, bool parallelogram) {
+  if (parallelogram && degree <= 5) return integration_rule(Family::QUAD, 7);
+  const int m = (degree + 3) / 2;
+  return integration_rule(Family::QUAD, m * m);
+}
 
-void detail::pair_in_space(const Surface& slave, const Surface& master, const PairingOptions& options, Pairing& pairing,
-                           const EndOfCell& end_of_cell) {
-  const PairingTolerances& tolerances = options.tolerances;
-  ContactCells& cells = pairing.cells;
+/// A point of the chart, with its weight there.
+struct ChartPoint {
+  Vec2 y;
+  double weight;
+};
 
-  const double slave_extent = extent(slave), master_extent = extent(master);
-  std::vector<std::int32_t> usable;
-  std::vector<Facet> masters(master.size());
-  std::vector<Box<3>> boxes;
-  std::vector<Vec3> polygon;
-  for (std::size_t cell = 0; cell < master.size(); ++cell) {
-    if (detail::finite(master, cell)) masters[cell] = facet(master, cell, tolerances.flat);
-    const Facet& f = masters[cell];
-    if (!(f.size > tolerances.degenerate * master_extent) || !(norm(f.normal) > 0) ||
-        !(std::abs(dot(cross(f.x({0, 0}).d1, f.x({0, 0}).d2), f.normal)) > tolerances.degenerate * f.size * f.size)) {
-      pairing.rejected.push_back({-1, static_cast<std::int32_t>(cell), Rejection::degenerate_master});
-      continue;
+/// Integration points of a convex polygon. A fan of quadrangles needs fewer points than one of triangles for the same degree,
+/// which is all that counts where the degree is enough; elsewhere smaller triangles are the more accurate ones.
+void place_points(const Polygon& polygon, int degree, bool enough, std::vector<ChartPoint>& points) {
+  constexpr double round_off = 1e-13;
+  points.clear();
+  const Vec2 a = polygon[0];
+  std::size_t i = 1;
+  for (; enough && i + 2 < polygon.size(); i += 2) {
+    const Vec2 b = polygon[i], c = polygon[i + 1], d = polygon[i + 2];
+    const Vec2 middle = 0.25 * ((a + c) + (b + d)), s = 0.25 * ((b - a) + (c - d)), t = 0.25 * ((d - a) + (c - b)),
+               st = 0.25 * ((c - d) - (b - a));
+    const auto size = [](Vec2 v) { return std::abs(v.x) + std::abs(v.y); };
+    const double area = cross(s, t), by_s = cross(s, st), by_t = cross(st, t);
+    if (!(area > 0)) continue;  // four vertices on a line, to round-off
+    const Rule& rule = square_rule(degree, size(st) <= round_off * (size(s) + size(t)));
+    for (int g = 0; g < rule.size(); ++g) {
+      const double x = rule.points[2 * g], y = rule.points[2 * g + 1];
+      points.push_back({middle + x * s + y * t + (x * y) * st, rule.weights[g] * (area + x * by_s + y * by_t)});
     }
-    Box<3> box = Box<3>::empty();
-    outline(f, f.origin, polygon);
-    polygon.push_back(f.x(probes(f.family).back()).x + f.origin);
-    for (const Vec3 p : polygon) box.add(std::array{p.x, p.y, p.z}.data());
-    for (int d = 0; d < 3; ++d) {
-      box.low[d] -= tolerances.box * master_extent;
-      box.high[d] += tolerances.box * master_extent;
-    }
-    usable.push_back(static_cast<std::int32_t>(cell));
-    boxes.push_back(box);
   }
-  const BoxTree<3> tree(std::move(boxes));
-  const double smallest_cosine = detail::smallest_cosine(options);
+  const Rule& rule = triangle_rule(degree);
+  for (; i + 1 < polygon.size(); ++i) {
+    const Vec2 u = polygon[i] - a, v = polygon[i + 1] - a;
+    const double area = cross(u, v);
+    if (!(area > 0)) continue;
+    for (int g = 0; g < rule.size(); ++g)
+      points.push_back({a + rule.points[2 * g] * u + rule.points[2 * g + 1] * v, rule.weights[g] * area});
+  }
+}
 
-  SlaveFacet e;
-  std::vector<Part> parts;
-  std::deque<View> store;  // of views, used again for every slave cell
-  std::size_t n_stored = 0;
-  const auto new_view = [&](std::int32_t piece, std::int32_t m, const Region& region) {
-    if (n_stored == store.size()) store.emplace_back();
-    View& view = store[n_stored++];
-    view.piece = piece;
-    view.master = m;
-    view.region = region;
-    return &view;
-  };
-  std::vector<View*> views, kept, todo;
-  std::vector<Region> rest;
-  Region seen;
-  Polygon scratch;
-  const auto pair_cell = [&](std::size_t cell) {
+/// The master skin, examined once for all slave cells.
+struct Masters {
+  const Surface& slave;
+  PairingOptions options;
+  double slave_extent = 0, smallest_cosine = -1;
+  std::vector<Facet> facets;
+  std::vector<std::int32_t> usable;  ///< cells that are not degenerate, and what the tree has as items
+  BoxTree<3> tree;
+
+  Masters(const Surface& slave_skin, const Surface& master, const PairingOptions& pairing_options,
+          std::vector<RejectedCouple>& rejected)
+      : slave(slave_skin),
+        options(pairing_options),
+        slave_extent(extent(slave_skin)),
+        smallest_cosine(detail::smallest_cosine(pairing_options)),
+        facets(master.size()),
+        tree(examine(master, rejected)) {}
+
+ private:
+  std::vector<Box<3>> examine(const Surface& master, std::vector<RejectedCouple>& rejected) {
+    const PairingTolerances& tolerances = options.tolerances;
+    const double size = extent(master);
+    std::vector<Box<3>> boxes(master.size());
+    std::vector<std::uint8_t> degenerate(master.size());
+    parallel_for(master.size(), block, [&](const LoopBlock& cells) {
+      std::vector<Vec3> polygon;
+      for (std::size_t cell = cells.first; cell < cells.last; ++cell) {
+        if (detail::finite(master, cell)) facets[cell] = facet(master, cell, tolerances.flat);
+        const Facet& f = facets[cell];
+        const Map3::Value at = f.x({0, 0});
+        degenerate[cell] = !(f.size > tolerances.degenerate * size) || !(norm(f.normal) > 0) ||
+                           !(std::abs(dot(cross(at.d1, at.d2), f.normal)) > tolerances.degenerate * f.size * f.size);
+        if (degenerate[cell]) continue;
+        Box<3>& box = boxes[cell] = Box<3>::empty();
+        outline(f, f.origin, polygon);
+        polygon.push_back(f.x(probes(f.family).back()).x + f.origin);
+        for (const Vec3 p : polygon) box.add(std::array{p.x, p.y, p.z}.data());
+        for (int d = 0; d < 3; ++d) {
+          box.low[d] -= tolerances.box * size;
+          box.high[d] += tolerances.box * size;
+        }
+      }
+    });
+    for (std::size_t cell = 0; cell < master.size(); ++cell) {
+      if (degenerate[cell]) {
+        rejected.push_back({-1, static_cast<std::int32_t>(cell), Rejection::degenerate_master});
+        continue;
+      }
+      boxes[usable.size()] = boxes[cell];
+      usable.push_back(static_cast<std::int32_t>(cell));
+    }
+    boxes.resize(usable.size());
+    return boxes;
+  }
+
+  static constexpr std::size_t block = 512;  // facets that a thread examines at a time
+};
+
+class PairerInSpace final : public detail::CellPairer {
+ public:
+  explicit PairerInSpace(std::shared_ptr<const Masters> masters) : masters_(std::move(masters)) {}
+
+  void pair(std::size_t cell, Pairing& pairing) override {
+    const Surface& slave = masters_->slave;
+    const std::vector<Facet>& masters = masters_->facets;
+    const PairingOptions& options = masters_->options;
+    const PairingTolerances& tolerances = options.tolerances;
+    ContactCells& cells = pairing.cells;
     const auto slave_index = static_cast<std::int32_t>(cell);
-    e.set(slave, cell, slave_extent, tolerances);
+    e.set(slave, cell, masters_->slave_extent, tolerances);
     if (e.degenerate) {
       pairing.rejected.push_back({slave_index, -1, Rejection::degenerate_slave});
       return;
@@ -518,10 +595,12 @@ void detail::pair_in_space(const Surface& slave, const Surface& master, const Pa
             const double seen_area = double_area(seen.polygon);
             if (seen_area > sliver) {
               couples = true;
-              if (-dot(area, piece.normal) < smallest_cosine * norm(area) * norm(piece.normal))
+              if (-dot(area, piece.normal) < masters_->smallest_cosine * norm(area) * norm(piece.normal))
                 reject(m, Rejection::too_steep);
-              else
-                views.push_back(new_view(static_cast<std::int32_t>(p), m, seen));
+              else {
+                views.push_back(new_view(static_cast<std::int32_t>(p), m));
+                std::swap(views.back()->region, seen);
+              }
               continue;
             }
             thin = thin || !seen.polygon.empty();
@@ -535,9 +614,10 @@ void detail::pair_in_space(const Surface& slave, const Surface& master, const Pa
       if (!couples && !away && thin) reject(m, Rejection::sliver);
     };
     if (options.brute_force) {
-      for (const std::int32_t m : usable) couple(m);
+      for (const std::int32_t m : masters_->usable) couple(m);
     } else {
-      tree.visit([&](const Box<3>& box) { return e.touches(box); }, [&](std::int32_t i) { couple(usable[i]); });
+      masters_->tree.visit([&](const Box<3>& box) { return e.touches(box); },
+                           [&](std::int32_t i) { couple(masters_->usable[i]); });
     }
     if (options.distance_limit > 0)
       std::erase_if(views, [&](const View* view) {
@@ -574,12 +654,18 @@ void detail::pair_in_space(const Surface& slave, const Surface& master, const Pa
           rest.clear();
           subtract(loser.region, winner.region, sliver, rest);
           if (old_wins) {
-            for (const Region& part : rest) todo.push_back(new_view(loser.piece, loser.master, part));
+            for (Region& part : rest) {
+              todo.push_back(new_view(loser.piece, loser.master));
+              std::swap(todo.back()->region, part);
+            }
             whole = false;
           } else {
             kept.erase(kept.begin() + static_cast<std::ptrdiff_t>(k));
-            for (const Region& part : rest)
-              kept.insert(kept.begin() + static_cast<std::ptrdiff_t>(k++), new_view(loser.piece, loser.master, part));
+            for (Region& part : rest) {
+              View* const left = new_view(loser.piece, loser.master);
+              std::swap(left->region, part);
+              kept.insert(kept.begin() + static_cast<std::ptrdiff_t>(k++), left);
+            }
             --k;  // wraps at 0, and the loop steps back to it
           }
         }
@@ -592,28 +678,29 @@ void detail::pair_in_space(const Surface& slave, const Surface& master, const Pa
       const View& view = *kept_view;
       const Facet& f = masters[view.master];
       const Target target(f, e);
-      const Rule& rule = triangle_rule(options.degree > 0 ? options.degree : integration_degree(e, f));
+      place_points(view.region.polygon, options.degree > 0 ? options.degree : integration_degree(e, f), exact_polygons(e, f),
+                   points);
       const std::size_t before_points = cells.weight.size(), before_vertices = cells.vertex.size();
+      cells.slave_point.resize(2 * (before_points + points.size()));
+      cells.master_point.resize(2 * (before_points + points.size()));
+      cells.weight.resize(before_points + points.size());
       bool complete = true;
-      for (std::size_t i = 2; i < view.region.polygon.size() && complete; ++i) {
-        const Vec2 a = view.region.polygon[0], u = view.region.polygon[i - 1] - a, v = view.region.polygon[i] - a;
-        const double area = cross(u, v);
-        if (!(area > 0)) continue;  // three vertices on a line, to round-off
-        for (int g = 0; g < rule.size(); ++g) {
-          const Vec2 y = a + rule.points[2 * g] * u + rule.points[2 * g + 1] * v;
-          const SlaveFacet::Place place = e.place(y, tolerances);
-          const std::optional<Vec2> image = place.found ? target.image(y, place.xi, tolerances) : std::nullopt;
-          complete = image.has_value();
-          if (!complete) break;
-          cells.slave_point.insert(cells.slave_point.end(), {place.xi.x, place.xi.y});
-          cells.master_point.insert(cells.master_point.end(), {image->x, image->y});
-          cells.weight.push_back(area * rule.weights[g] * place.scale);
-        }
+      std::size_t at = 2 * before_points;
+      for (const auto& [y, weight] : points) {
+        const SlaveFacet::Place place = e.place(y, tolerances);
+        const std::optional<Vec2> image = place.found ? target.image(y, place.xi, tolerances) : std::nullopt;
+        complete = image.has_value();
+        if (!complete) break;
+        cells.slave_point[at] = place.xi.x, cells.slave_point[at + 1] = place.xi.y;
+        cells.master_point[at] = image->x, cells.master_point[at + 1] = image->y;
+        cells.weight[at / 2] = weight * place.scale;
+        at += 2;
       }
       for (const Vec2 y : view.region.polygon) {
         const SlaveFacet::Place place = e.place(y, tolerances);
         complete = complete && place.found;
-        cells.vertex.insert(cells.vertex.end(), {place.xi.x, place.xi.y});
+        cells.vertex.push_back(place.xi.x);
+        cells.vertex.push_back(place.xi.y);
       }
       if (!complete) {
         cells.slave_point.resize(2 * before_points);
@@ -628,11 +715,38 @@ void detail::pair_in_space(const Surface& slave, const Surface& master, const Pa
       cells.offset.push_back(static_cast<std::int64_t>(cells.weight.size()));
       cells.vertex_offset.push_back(static_cast<std::int64_t>(cells.vertex.size() / 2));
     }
-  };
-  for (std::size_t cell = 0; cell < slave.size(); ++cell) {
-    pair_cell(cell);
-    end_of_cell(cell + 1);
   }
+
+ private:
+  View* new_view(std::int32_t piece, std::int32_t m) {
+    if (n_stored == store.size()) store.emplace_back();
+    View& view = store[n_stored++];
+    view.piece = piece;
+    view.master = m;
+    return &view;
+  }
+
+  std::shared_ptr<const Masters> masters_;
+  // used again for every slave cell
+  SlaveFacet e;
+  std::vector<Vec3> polygon;
+  std::vector<Part> parts;
+  std::deque<View> store;
+  std::size_t n_stored = 0;
+  std::vector<View*> views, kept, todo;
+  std::vector<Region> rest;
+  Region seen;
+  Polygon scratch;
+  std::vector<ChartPoint> points;
+};
+
+}  // namespace
+
+detail::MakeCellPairer detail::pair_in_space(const Surface& slave, const Surface& master, const PairingOptions& options,
+                                             std::vector<RejectedCouple>& rejected) {
+  return [masters = std::make_shared<const Masters>(slave, master, options, rejected)] {
+    return std::make_unique<PairerInSpace>(masters);
+  };
 }
 
 }  // namespace lacon

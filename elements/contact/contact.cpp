@@ -43,6 +43,14 @@ LACON_INLINE Vector<3> cross(const Vector<3>& a, const Vector<3>& b) {
   return __builtin_shuffle(a * __builtin_shuffle(b, next) - __builtin_shuffle(a, next) * b, next);
 }
 
+template <int D>
+LACON_INLINE Vector<D> load(const double* x) {
+  if constexpr (D == 2)
+    return Vector<2>{x[0], x[1]};
+  else
+    return Vector<3>{x[0], x[1], x[2], 0.0};
+}
+
 /// The nodes of a cell.
 template <int D>
 struct Nodes {
@@ -51,10 +59,7 @@ struct Nodes {
 
   /// @param nodes (n, D)
   LACON_INLINE Nodes(int count, const double* nodes) : n(count) {
-    for (int a = 0; a < n; ++a) {
-      x[a] = Vector<D>{};
-      for (int i = 0; i < D; ++i) x[a][i] = nodes[a * D + i];
-    }
+    for (int a = 0; a < n; ++a) x[a] = load<D>(nodes + a * D);
   }
   /// Sum of shape_a x_a.
   LACON_INLINE Vector<D> at(const double* shape) const {

@@ -9,6 +9,7 @@
 #include "lacon/catalog/messages.hpp"
 #include "lacon/elements/reference.hpp"
 #include "lacon/pairing/normals.hpp"
+#include "lacon/structures/parallel.hpp"
 
 namespace lacon {
 namespace {
@@ -46,8 +47,17 @@ std::span<Number> room(std::vector<Number>& numbers, std::size_t size) {
 }
 
 constexpr double tolerated_overlap = 0.1;     // of a slave cell's size, beyond the axis: a node there that nothing holds
-constexpr std::size_t block = 256;            // slave cells whose points are in memory at a time
+constexpr std::size_t block = 128;            // slave cells that a thread takes at a time
 constexpr double coverage_round_off = 1e-12;  // covered fractions above 1 by no more than this are 1
+
+/// Room for what is still to come, where an array is nearly full. @param whole size of what came behind `first` in the end,
+/// over its present size
+template <class T>
+void make_room(std::vector<T>& array, std::size_t first, double whole) {
+  const double grown = static_cast<double>(array.size() - first);
+  if (0.8 * static_cast<double>(array.capacity() - first) < grown && whole > 1)
+    array.reserve(first + static_cast<std::size_t>(1.02 * whole * grown));
+}
 
 }  // namespace
 
@@ -61,6 +71,12 @@ struct ContactGeometry::Alike {
   std::vector<double> slave_shape, slave_gradient, master_shape, slave_initial, slave, master, slave_normal;
   std::vector<double> point_gap, gap, measure, current_measure, coupling;
   std::vector<std::int32_t> error;
+};
+
+/// Some slave cells of a zone, as one thread works on them.
+struct ContactGeometry::Block {
+  Pairing pairing;
+  std::vector<Alike> groups;
 };
 
 const Rule& measuring_rule(CellType type) {
@@ -201,24 +217,30 @@ void ContactGeometry::update(std::span<const double> displacement, std::vector<Z
   std::fill(rejected_.begin(), rejected_.end(), 0);
   for (std::vector<double>* sums : {&gap_, &weight_, &covered_}) std::fill(sums->begin(), sums->end(), 0.0);
   if (records) records->clear();
-  std::vector<Alike> groups;
   for (Zone& zone : zones_) {
     std::vector<double> normals;
     if (contact_.smoothing) normals = nodal_normals(zone.slave);
     zone.slave.normals = normals;
-    const auto take = [&](Pairing& pairing) {
-      for (const RejectedCouple& couple : pairing.rejected) {
-        if (couple.reason == Rejection::degenerate_slave)
-          fail("EVOLUTION_3", {{"cell", cell_name(contact_.slaves[zone.slaves[couple.slave]].cell)}});
-        ++rejected_[static_cast<std::size_t>(couple.reason)];
-      }
-      ZonePairing* const record = records ? &records->emplace_back() : nullptr;
-      integrate(zone, pairing.cells, groups);
-      add(zone, pairing.cells, groups, record);
-      if (record) record->pairing = std::move(pairing);
-    };
-    // points of one block at a time; a record needs all of them
-    pair_in_blocks(zone.slave, zone.master, zone.pairing, records ? std::max<std::size_t>(zone.slave.size(), 1) : block, take);
+    // a few blocks for each thread at a time: points of a large skin are never in memory together
+    PairingInParts pairing(zone.slave, zone.master, zone.pairing);
+    ZonePairing* const record = records ? &records->emplace_back() : nullptr;
+    const std::size_t n_blocks = n_loop_blocks(zone.slave.size(), block), threads = n_threads();
+    const std::size_t first_cell = cells_.size(), first_coupling = coupling_.size();
+    std::vector<Block> blocks(std::min(threads == 1 ? 1 : 8 * threads, n_blocks));
+    for (std::size_t done = 0; done < n_blocks; done += blocks.size()) {
+      const std::size_t some = std::min(blocks.size(), n_blocks - done);
+      parallel_for(some, 1, [&](const LoopBlock& one) {
+        Block& b = blocks[one.index];
+        const std::size_t first = (done + one.index) * block;
+        pairing.pair(first, std::min(first + block, zone.slave.size()), b.pairing);
+        integrate(zone, b.pairing.cells, b.groups);
+      });
+      for (std::size_t i = 0; i < some; ++i) add(zone, blocks[i], record);
+      // grown by doubling these arrays would take up to three times their size
+      const double whole = static_cast<double>(n_blocks) / static_cast<double>(done + some);
+      make_room(cells_, first_cell, whole);
+      make_room(coupling_, first_coupling, whole);
+    }
     zone.slave.normals = {};
   }
   for (std::size_t p = 0; p < gap_.size(); ++p) {
@@ -297,13 +319,23 @@ void ContactGeometry::evaluate(const Zone& zone, const ContactCells& cells, Alik
   kernels_.at(group.element)->contact(&batch);
 }
 
-void ContactGeometry::add(const Zone& zone, const ContactCells& cells, const std::vector<Alike>& groups, ZonePairing* record) {
-  if (record) {
-    record->point_gap.resize(cells.weight.size());
-    record->gap.resize(cells.size());
-    record->measure.resize(cells.size());
+void ContactGeometry::add(const Zone& zone, const Block& block_of_zone, ZonePairing* record) {
+  const ContactCells& cells = block_of_zone.pairing.cells;
+  for (const RejectedCouple& couple : block_of_zone.pairing.rejected) {
+    if (couple.reason == Rejection::degenerate_slave)
+      fail("EVOLUTION_3", {{"cell", cell_name(contact_.slaves[zone.slaves[couple.slave]].cell)}});
+    ++rejected_[static_cast<std::size_t>(couple.reason)];
   }
-  for (const Alike& group : groups) {
+  std::size_t recorded_points = 0, recorded = 0;
+  if (record) {
+    recorded_points = record->point_gap.size();
+    recorded = record->gap.size();
+    record->pairing.append(block_of_zone.pairing);
+    record->point_gap.resize(recorded_points + cells.weight.size());
+    record->gap.resize(recorded + cells.size());
+    record->measure.resize(recorded + cells.size());
+  }
+  for (const Alike& group : block_of_zone.groups) {
     if (group.members.empty()) continue;
     const SlaveElement& first = contact_.slaves[zone.slaves[cells.slave[group.members.front()]]];
     const std::ptrdiff_t width =
@@ -322,10 +354,11 @@ void ContactGeometry::add(const Zone& zone, const ContactCells& cells, const std
       cells_.push_back({s, zone.masters[cells.master[c]], group.gap[i], at});
       if (!record) continue;
       const std::int64_t n_points = cells.offset[c + 1] - cells.offset[c];
-      std::copy_n(point_gap, n_points, record->point_gap.begin() + cells.offset[c]);
+      std::copy_n(point_gap, n_points,
+                  record->point_gap.begin() + static_cast<std::ptrdiff_t>(recorded_points) + cells.offset[c]);
       point_gap += n_points;
-      record->gap[c] = group.gap[i] / group.measure[i];
-      record->measure[c] = group.current_measure[i];
+      record->gap[recorded + c] = group.gap[i] / group.measure[i];
+      record->measure[recorded + c] = group.current_measure[i];
     }
   }
 }

@@ -69,13 +69,14 @@ class ContactGeometry {
 
  private:
   struct Alike;
+  struct Block;
   /// Gaps and couplings of the contact cells of a block. @param[in,out] groups gets a group of each kind, some of them perhaps
   /// empty
   void integrate(const Zone& zone, const ContactCells& cells, std::vector<Alike>& groups) const;
   /// The same for cells of one kind.
   void evaluate(const Zone& zone, const ContactCells& cells, Alike& group) const;
   /// Sum up what the kernels gave.
-  void add(const Zone& zone, const ContactCells& cells, const std::vector<Alike>& groups, ZonePairing* record);
+  void add(const Zone& zone, const Block& block_of_zone, ZonePairing* record);
   /// What a kernel says of a slave cell.
   void note(std::int32_t error, std::int32_t cell);
   /// Measures of whole patches, in the measure of the kernels' coverage (with r in axisymmetry).

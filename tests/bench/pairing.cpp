@@ -150,7 +150,12 @@ void pairing_alone(benchmark::State& state) {
   std::size_t cells = 0;
   for (auto run : state) {
     cells = 0;
-    pair_in_blocks(slave, master, {}, 256, [&](const Pairing& pairing) { cells += pairing.cells.size(); });
+    PairingInParts pairing(slave, master);
+    Pairing found;
+    for (std::size_t first = 0; first < slave.size(); first += 128) {
+      pairing.pair(first, std::min(first + 128, slave.size()), found);
+      cells += found.cells.size();
+    }
   }
   report_pairing(state, slave.size(), cells);
 }

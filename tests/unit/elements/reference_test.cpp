@@ -310,14 +310,14 @@ struct RuleCase {
 };
 
 const RuleCase rules[] = {
-    {Family::POINT, 1, 0},  {Family::TRIA, 1, 1},  {Family::TRIA, 3, 2},   {Family::TRIA, 4, 3},
-    {Family::TRIA, 6, 4},   {Family::TRIA, 7, 5},  {Family::TRIA, 9, 5},   {Family::TRIA, 12, 6},
-    {Family::TRIA, 16, 8},  {Family::TRIA, 25, 9}, {Family::TRIA, 64, 15}, {Family::TRIA, 100, 19},
-    {Family::QUAD, 1, 1},   {Family::QUAD, 4, 3},  {Family::QUAD, 9, 5},   {Family::QUAD, 16, 7},
-    {Family::QUAD, 25, 9},  {Family::TETRA, 1, 1}, {Family::TETRA, 4, 2},  {Family::TETRA, 5, 3, false},
-    {Family::TETRA, 15, 5}, {Family::PENTA, 6, 2}, {Family::PENTA, 21, 5}, {Family::PYRAM, 1, 1},
-    {Family::PYRAM, 5, 2},  {Family::PYRAM, 8, 3}, {Family::PYRAM, 27, 5}, {Family::HEXA, 1, 1},
-    {Family::HEXA, 8, 3},   {Family::HEXA, 27, 5}, {Family::HEXA, 64, 7},
+    {Family::POINT, 1, 0},        {Family::TRIA, 1, 1},   {Family::TRIA, 3, 2},   {Family::TRIA, 4, 3},
+    {Family::TRIA, 6, 4},         {Family::TRIA, 7, 5},   {Family::TRIA, 9, 5},   {Family::TRIA, 12, 6},
+    {Family::TRIA, 16, 8},        {Family::TRIA, 25, 9},  {Family::TRIA, 64, 15}, {Family::TRIA, 100, 19},
+    {Family::QUAD, 1, 1},         {Family::QUAD, 4, 3},   {Family::QUAD, 7, 5},   {Family::QUAD, 9, 5},
+    {Family::QUAD, 16, 7},        {Family::QUAD, 25, 9},  {Family::TETRA, 1, 1},  {Family::TETRA, 4, 2},
+    {Family::TETRA, 5, 3, false}, {Family::TETRA, 15, 5}, {Family::PENTA, 6, 2},  {Family::PENTA, 21, 5},
+    {Family::PYRAM, 1, 1},        {Family::PYRAM, 5, 2},  {Family::PYRAM, 8, 3},  {Family::PYRAM, 27, 5},
+    {Family::HEXA, 1, 1},         {Family::HEXA, 8, 3},   {Family::HEXA, 27, 5},  {Family::HEXA, 64, 7},
 };
 
 int dimension_of(Family family) {

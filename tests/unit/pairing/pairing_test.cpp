@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cstdlib>
 #include <limits>
 #include <numbers>
 
@@ -33,6 +34,23 @@ double length(const Skin& skin) {
                       skin.coordinates[3 * nodes[1] + 1] - skin.coordinates[3 * nodes[0] + 1]);
   }
   return sum;
+}
+
+TEST(Pairing, TheBitsDoNotDependOnTheNumberOfThreads) {
+  std::mt19937 random(4);
+  Skin slave, master;
+  const Path wave = [](double x) { return Point{x, 0.05 * std::sin(9 * x)}; };
+  add_chain(slave, wave, scattered(0, 1, 300, random), Kind::mixed, &random);
+  add_chain(master, line(-0.1), scattered(1.2, -0.2, 400, random), Kind::mixed, &random);
+  const Pairing alone = pair(slave.view(), master.view());
+  EXPECT_GT(alone.cells.size(), 500U);
+  for (const char* threads : {"2", "3", "5"}) {
+    setenv("LACON_THREADS", threads, 1);
+    const Pairing found = pair(slave.view(), master.view());
+    unsetenv("LACON_THREADS");
+    EXPECT_TRUE(found.cells == alone.cells) << threads;
+    EXPECT_EQ(found.rejected, alone.rejected) << threads;
+  }
 }
 
 TEST(Pairing, CoversFlatSkinsWithoutGapOrOverlapForRandomMeshes) {

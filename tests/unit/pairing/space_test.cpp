@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
 #include <functional>
 #include <limits>
 #include <map>
@@ -193,6 +194,37 @@ TEST(PairingInSpace, TreeEqualsBruteForceOnCurvedSurfaces) {
     if (slave.normals.empty()) {
       EXPECT_LE(f.off_ray, 1e-10);
     }
+  }
+}
+
+TEST(PairingInSpace, TheBitsDoNotDependOnTheNumberOfThreads) {
+  std::mt19937 random(41);
+  for (const bool curved : {false, true}) {
+    Skin3 slave =
+        mesh({17, 15, curved ? CellType::QUAD8 : CellType::QUAD4, false, 0.2}, wave(0, curved ? 0.03 : 0, 0), random, true);
+    Skin3 master = mesh({16, 19, CellType::TRIA3, true, 0.2, -0.1, 1.2}, wave(-0.1, curved ? 0.03 : 0, 1), random, true);
+    for (double* c : {&slave.coordinates[3 * 50], &master.coordinates[3 * 70]}) *c = std::nan("");  // degenerate cells too
+    const Pairing alone = pair(slave.view(), master.view());
+    EXPECT_GT(alone.cells.size(), 600U);
+    EXPECT_GT(alone.count(Rejection::degenerate_slave), 0);
+    EXPECT_GT(alone.count(Rejection::degenerate_master), 0);
+    for (const char* threads : {"2", "3", "5"}) {
+      setenv("LACON_THREADS", threads, 1);
+      const Pairing found = pair(slave.view(), master.view());
+      unsetenv("LACON_THREADS");
+      EXPECT_TRUE(found.cells == alone.cells) << threads;
+      EXPECT_EQ(found.rejected, alone.rejected) << threads;
+    }
+    // parts of any size make the whole
+    PairingInParts pairing(slave.view(), master.view());
+    Pairing part, whole;
+    whole.cells.dimension = 3;
+    for (std::size_t first = 0, n = 1; first < slave.surface.size(); first += n, n += 7) {
+      pairing.pair(first, std::min(first + n, slave.surface.size()), part);
+      whole.append(part);
+    }
+    EXPECT_TRUE(whole.cells == alone.cells);
+    EXPECT_EQ(whole.rejected, alone.rejected);
   }
 }
 

@@ -1,0 +1,134 @@
+// Gaps, couplings and coverage of a contact zone, from meshes of mixed cells.
+#include "lacon/operators/evolution/contact_geometry.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+#include <random>
+
+namespace lacon {
+namespace {
+
+/// Two skins of n x n and m x m squares, every other one cut in two triangles: the slave above, which looks down, and the
+/// master.
+struct Skins {
+  Mesh mesh;
+  Model model;
+  Contact contact;
+  std::vector<double> displacement;
+
+  Skins(int n, int m, bool smooth) {
+    mesh.dimension = 3;
+    ContactZone zone;
+    zone.slave = add(n, false, 0);
+    zone.master = add(m, true, -0.1);
+    zone.jacobian = "ACTUALISE";
+    mesh.patches.emplace();
+    for (const std::int32_t cell : zone.slave) {
+      const auto patch = static_cast<std::int32_t>(mesh.patches->kind.size());
+      zone.patches.push_back(patch);
+      mesh.patches->kind.push_back(0);
+      contact.slaves.push_back({cell, patch, 0, ""});
+    }
+    contact.smoothing = smooth;
+    contact.zones.push_back(zone);
+    model.elements = {"3D/QUAD4", "3D/TRIA3"};
+    for (const CellType type : mesh.types) model.element.push_back(type == CellType::QUAD4 ? 0 : 1);
+    displacement.assign(mesh.coordinates.size(), 0.0);
+  }
+
+  std::vector<std::int32_t> add(int n, bool up, double z) {
+    const auto first = static_cast<std::int32_t>(mesh.n_nodes());
+    std::vector<std::int32_t> cells;
+    for (int j = 0; j <= n; ++j)
+      for (int i = 0; i <= n; ++i) {
+        const double x = static_cast<double>(i) / n, y = static_cast<double>(j) / n;
+        mesh.coordinates.insert(mesh.coordinates.end(), {x, y, z});
+      }
+    const auto push = [&](std::vector<std::int32_t> nodes) {
+      if (!up) std::reverse(nodes.begin(), nodes.end());
+      cells.push_back(static_cast<std::int32_t>(mesh.types.size()));
+      mesh.types.push_back(nodes.size() == 4 ? CellType::QUAD4 : CellType::TRIA3);
+      mesh.cells.push_back(nodes);
+    };
+    for (int j = 0; j < n; ++j)
+      for (int i = 0; i < n; ++i) {
+        const std::int32_t a = first + j * (n + 1) + i, b = a + 1, c = b + n + 1, d = c - 1;
+        if ((i + j) % 2 == 0) {
+          push({a, b, c, d});
+        } else {
+          push({a, b, c});
+          push({a, c, d});
+        }
+      }
+    return cells;
+  }
+};
+
+/// Everything that an update gives.
+struct Found {
+  std::vector<double> patches, cells, coupling, records;
+  std::vector<std::int64_t> rejected;
+  bool operator==(const Found&) const = default;
+};
+
+Found update(const Skins& skins) {
+  Registry registry;
+  ContactGeometry geometry(skins.mesh, skins.model, skins.contact, registry);
+  std::vector<ZonePairing> records;
+  geometry.update(skins.displacement, &records);
+  Found found;
+  for (std::size_t p = 0; p < geometry.n_patches(); ++p)
+    found.patches.insert(found.patches.end(), {geometry.gap(p), geometry.covered(p), geometry.whole(p), geometry.coverage(p)});
+  for (const ContactGeometry::Cell& cell : geometry.cells())
+    found.cells.insert(found.cells.end(), {static_cast<double>(cell.slave), static_cast<double>(cell.master), cell.gap,
+                                           static_cast<double>(cell.coupling)});
+  found.coupling = geometry.coupling();
+  found.rejected.assign(geometry.rejected().begin(), geometry.rejected().end());
+  EXPECT_EQ(records.size(), 1U);
+  const ZonePairing& record = records.front();
+  EXPECT_EQ(record.gap.size(), record.pairing.cells.size());
+  EXPECT_EQ(record.gap.size(), geometry.cells().size());
+  EXPECT_EQ(record.point_gap.size(), record.pairing.cells.weight.size());
+  for (const std::vector<double>* values : {&record.point_gap, &record.gap, &record.measure, &record.pairing.cells.weight,
+                                            &record.pairing.cells.slave_point, &record.pairing.cells.vertex})
+    found.records.insert(found.records.end(), values->begin(), values->end());
+  return found;
+}
+
+TEST(ContactGeometry, MixedSkinsThatArePlaneAndParallelAreCoveredAndHaveOneGap) {
+  const Found found = update({13, 17, false});
+  for (std::size_t p = 0; p < found.patches.size(); p += 4) {
+    EXPECT_NEAR(found.patches[p], 0.1, 1e-14);      // gap
+    EXPECT_NEAR(found.patches[p + 3], 1.0, 1e-12);  // covered fraction
+  }
+  // sum of C over the nodes of both sides: the slave's area along its normal -e_z is taken away, and given to the master
+  double slave = 0, area = 0;
+  for (std::size_t i = 2; i < found.coupling.size(); i += 3) (found.coupling[i] > 0 ? slave : area) += found.coupling[i];
+  EXPECT_NEAR(slave, 1.0, 1e-12);
+  EXPECT_NEAR(area, -1.0, 1e-12);
+  for (const double gap : std::span(found.records).first(100)) EXPECT_NEAR(gap, 0.1, 1e-14);
+}
+
+TEST(ContactGeometry, TheBitsDoNotDependOnTheNumberOfThreads) {
+  // enough slave cells for several blocks, cells of both kinds in each of them; bent, so that nothing is exact
+  for (const bool smooth : {false, true}) {
+    Skins skins(23, 19, smooth);
+    std::mt19937 random(12);
+    std::uniform_real_distribution<double> uniform(-0.004, 0.004);
+    for (double& u : skins.displacement) u = uniform(random);
+    const Found alone = update(skins);
+    EXPECT_GT(alone.cells.size(), 4 * 1000U);
+    for (const char* threads : {"1", "2", "3", "5"}) {
+      setenv("LACON_THREADS", threads, 1);
+      const Found found = update(skins);
+      unsetenv("LACON_THREADS");
+      EXPECT_TRUE(found == alone) << threads << " threads";
+    }
+  }
+}
+
+}  // namespace
+}  // namespace lacon
