@@ -257,10 +257,13 @@ void ContactGeometry::integrate(const Zone& zone, const ContactCells& cells, std
   for (std::int32_t c = 0; c < static_cast<std::int32_t>(cells.size()); ++c) {
     const std::int32_t element = model_.element[contact_.slaves[zone.slaves[cells.slave[c]]].cell];
     const CellType master_type = zone.master.types[cells.master[c]];
-    const auto fits = [&](const Alike& g) { return g.element == element && g.master_type == master_type; };
-    if (!group || !fits(*group)) {
-      const auto found = std::find_if(groups.begin(), groups.end(), fits);
-      group = found == groups.end() ? &groups.emplace_back(Alike{.element = element, .master_type = master_type}) : &*found;
+    if (!group || group->element != element || group->master_type != master_type) {
+      // in the order of kinds, whatever blocks were there before
+      const auto key = [](const Alike& g) { return std::pair(g.element, g.master_type); };
+      const auto place =
+          std::find_if(groups.begin(), groups.end(), [&](const Alike& g) { return key(g) >= std::pair(element, master_type); });
+      const bool there = place != groups.end() && key(*place) == std::pair(element, master_type);
+      group = &*(there ? place : groups.insert(place, Alike{.element = element, .master_type = master_type}));
     }
     group->members.push_back(c);
   }
