@@ -290,12 +290,12 @@ def summary(checks):
     return f"{len(checks)} checks: " + ", ".join(f"{n} {status}" for status, n in count.items())
 
 
-def write_json(path, checks, diagnostic, status):
-    """Every check with all its figures."""
+def write_json(path, checks, diagnostic, status, timings):
+    """Every check with all its figures, and where the time went."""
     import json
     import os
 
-    data = {"format": 1, "diagnostic": diagnostic, "status": status, "checks": [c.data() for c in checks]}
+    data = {"format": 1, "diagnostic": diagnostic, "status": status, "checks": [c.data() for c in checks], "timings": timings}
     for check in data["checks"]:
         check["value"] = _finite(check["value"])
     partial = f"{path}.partial"

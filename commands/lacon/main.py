@@ -25,7 +25,7 @@ def parse(arguments):
     parser.add_argument("--fresh", action="store_true", help="DEBUT empties the base first")
     parser.add_argument("--force", action="store_true", help="run every operator, also where nothing has changed since its concept was made")
     parser.add_argument("--checks", choices=("all",), help="all: a missed VALE_CALC is NOOK, not DIFF")
-    parser.add_argument("--json", metavar="FILE", help="write every check with its figures")
+    parser.add_argument("--json", metavar="FILE", help="write every check with its figures, and where the time went")
     parser.add_argument("--timings", action="store_true", help="print where the time went")
     parser.add_argument("--threads", type=int, metavar="N", help="threads of operators")
     parser.add_argument("--version", action="version", version=f"lacon {version}")
@@ -150,7 +150,7 @@ def _run(options, units):
         print(checks.summary(run.checks))
     if options.json:
         try:
-            checks.write_json(options.json, run.checks, diagnostic, status)
+            checks.write_json(options.json, run.checks, diagnostic, status, run.timings.data())
         except OSError as error:
             messages.show(messages.message("STUDY_3", options.json, folder=options.json, reason=error.strerror))
             status, diagnostic = status or user_error, diagnostic if status else "<F>_ERROR"

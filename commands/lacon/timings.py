@@ -14,6 +14,11 @@ class Timings:
         """@param outcome of the operator (orders.Outcome), if there was one"""
         self.commands.append((command, where, seconds, *((outcome.seconds, outcome.phases, outcome.counts) if outcome else (0.0, {}, {}))))
 
+    def data(self):
+        """The same for --json: seconds of the launcher before the study, and a dictionary a command."""
+        names = ("command", "where", "seconds", "operator", "phases", "counts")
+        return {"start-up": self._before, "commands": [dict(zip(names, row)) for row in self.commands]}
+
     def table(self):
         """The report, a text of several lines."""
         total = self._before + time.perf_counter() - self._start

@@ -361,10 +361,13 @@ FIN()
         self.assertIn("study.comm:2: M = LIRE_MAILLAGE", run.out)
 
     def test_timings(self):
-        run = self.run_study(STUDY + "FIN()\n", "--timings")
+        run = self.run_study(STUDY + "FIN()\n", "--timings", "--json", "run.json")
         for word in ("start-up of the launcher", "STAT_NON_LINE  study.comm:11", "      work", "      factorisations 3\n", "total"):
             self.assertIn(word, run.out)
         self.assertTrue(run.last.startswith("--- DIAGNOSTIC"))
+        solved = json.loads((self.work / "run.json").read_text())["timings"]["commands"][-2]
+        self.assertEqual((solved["command"], solved["phases"], solved["counts"]), ("STAT_NON_LINE", {"work": 0.001}, {"factorisations": 3}))
+        self.assertGreaterEqual(solved["seconds"], solved["operator"])
 
     def test_version_and_help(self):
         self.assertRegex(self.launch("--version").out, r"^lacon \d+\.\d+\.\d+")
