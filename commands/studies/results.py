@@ -7,21 +7,33 @@ import h5py
 import numpy as np
 
 
-class Result:
-    """The result of this label. .points (n, 2 or 3), .cells: list of (type, nodes), .groups: name -> cells, .orders, .instants"""
+def identifier_of(base, label):
+    """The id of the concept of this label: mesh_3."""
+    return json.loads((pathlib.Path(base) / "base.json").read_text(encoding="utf-8"))["labels"][label]
 
-    def __init__(self, base, label):
-        self.base = pathlib.Path(base)
-        identifier = json.loads((self.base / "base.json").read_text(encoding="utf-8"))["labels"][label]
-        self.index = h5py.File(self.base / identifier / "index.h5", "r")
-        self.orders = self.index["order"][()].tolist()
-        self.instants = dict(zip(self.orders, self.index["instant"][()].tolist()))
-        with h5py.File(self.base / f"{self.index.attrs['mesh']}.h5", "r") as mesh:
+
+class MeshOfBase:
+    """A mesh. .points (n, 2 or 3), .cells: list of (type, nodes), .groups: name -> cells, .patches: sub-cells of each"""
+
+    def __init__(self, path):
+        with h5py.File(path, "r") as mesh:
             names = list(mesh["cells"].attrs["types"])
             self.points = mesh["coordinates"][:, :mesh.attrs["dimension"]]
             self.cells = list(zip((names[t] for t in mesh["cells/type"][()]), _ragged(mesh["cells"], "nodes")))
             self.groups = dict(zip(mesh["groups/cells/name"].asstr()[()], _ragged(mesh["groups/cells"], "values")))
             self.patches = _ragged(mesh["patches/cells"], "values") if "patches" in mesh else []
+
+
+class Result:
+    """The result of this label. .points (n, 2 or 3), .cells: list of (type, nodes), .groups: name -> cells, .orders, .instants"""
+
+    def __init__(self, base, label):
+        self.base = pathlib.Path(base)
+        self.index = h5py.File(self.base / identifier_of(base, label) / "index.h5", "r")
+        self.orders = self.index["order"][()].tolist()
+        self.instants = dict(zip(self.orders, self.index["instant"][()].tolist()))
+        mesh = MeshOfBase(self.base / f"{self.index.attrs['mesh']}.h5")
+        self.points, self.cells, self.groups, self.patches = mesh.points, mesh.cells, mesh.groups, mesh.patches
 
     def _file(self, name, order):
         entry = self.index[f"fields/{name}"]

@@ -1,17 +1,24 @@
 #!/usr/bin/env python3
-"""Times whole studies of two stacked blocks: H1 to H4 flat, H1c to H4c curved. No assertion: figures for people.
+"""Times whole studies of two stacked blocks, and their parts. No assertion: figures for people.
 
-usage: end_to_end.py BUILD [NAME ...] [--threads N] [--json FILE]      BUILD: build/release; NAME: H1 H1c ..., by default up to H2c
+usage: end_to_end.py BUILD [NAME ...]      BUILD: build/release, with the target benches; NAME: H1 to H4 flat, H1c to H4c curved, T2, T3c
+                                           (tetrahedra, from LACON_SHARED_BENCH); by default H1 H2 H1c H2c
+       --all            every one
+       --threads 1 2    of Lacon, one run each; by default 1
+       --parts          the Google Benchmarks as well
+       --no-calculix    even where ccx is installed (Debian: calculix-ccx), leave it out
+       --json FILE      everything that was measured
+       --docs           put it into docs/performance.json, in place of older figures of the same studies, and write the tables and the chart of
+                        docs/performance.md anew from there
 
-Prints wall time, largest memory of a process, phases of STAT_NON_LINE, and the ratio to the factorisation of a cube of 32^3 HEXA8 by
-MUMPS and to a copy of memory, both measured in the same run (bench_machine).
+Times are also given as multiples of the factorisation of a cube of 32^3 HEXA8 by MUMPS, and rates as parts of dgemm and of a copy of memory, all
+measured in the same run (bench_machine).
 """
 
 import argparse
 import json
 import os
 import pathlib
-import re
 import subprocess
 import sys
 import tempfile
@@ -20,19 +27,33 @@ import time
 import numpy as np
 
 SOURCE = pathlib.Path(__file__).resolve().parents[2]
-sys.path.insert(0, str(SOURCE / "commands/studies"))
+sys.path[:0] = [str(SOURCE / "commands/studies"), str(SOURCE / "commands")]
 
+import calculix  # noqa: E402
+import tables  # noqa: E402
+from lacon.orders import openblas_kernel  # noqa: E402
 from meshes import brick, union, write_med  # noqa: E402
+from results import MeshOfBase, Result, identifier_of  # noqa: E402
 
 #: cells along the sides of the bottom block, its height, the same of the top block
 SIZES = {"H1": (15, 8, 12, 6), "H2": (26, 14, 21, 12), "H3": (38, 20, 31, 17), "H4": (48, 26, 39, 22)}
 CURVATURE, PUSH = 0.002, 0.0011
+#: unstructured tetrahedra come from files
+MESHES = pathlib.Path(os.environ.get("LACON_SHARED_BENCH", SOURCE.parent / "shared/bench")) / "meshes"
+NAMES = (*SIZES, *(f"{name}c" for name in SIZES), "T2", "T3c")
+PARTS = ("pairing", "cutting", "stiffness", "algebra")
+#: CalculiX gets so many times the time of Lacon, but at least and at most so many seconds
+PATIENCE, SHORTEST, LONGEST = 20, 60, 600
+
+
+def is_curved(name):
+    return name.endswith("c")
 
 
 def two_blocks(name, kind="HEXA8"):
     """The mesh of a name of SIZES, with a `c` behind it for the curved skin."""
     nb, mb, nt, mt = SIZES[name.rstrip("c")]
-    curvature = CURVATURE if name.endswith("c") else 0.0
+    curvature = CURVATURE if is_curved(name) else 0.0
 
     def above(x, y, z):
         return x, y, z + (1.0 - z) / 0.5 * curvature * (x * x + y * y)
@@ -47,15 +68,23 @@ def two_blocks(name, kind="HEXA8"):
     return union([bottom, top])
 
 
+def mesh_file(name, folder):
+    """The MED file of a study, or None where it is not there."""
+    if name.rstrip("c") not in SIZES:
+        path = MESHES / f"{name.lower()}.med"
+        return path if path.is_file() else None
+    path = folder / f"{name}.med"
+    if not path.exists():
+        write_med(path, two_blocks(name))
+    return path
+
+
 def study(lacon, name, folder, threads):
-    """One study: wall seconds, largest memory of a process (MB), seconds by phase of STAT_NON_LINE, Newton iterations, factorisations."""
-    mesh = folder / f"{name}.med"
-    if not mesh.exists():
-        write_med(mesh, two_blocks(name))
-    environment = {**os.environ, "BLOCKS_FLAT": "0" if name.endswith("c") else "1", "BLOCKS_DZ": str(PUSH),
-                   "OPENBLAS_NUM_THREADS": str(threads), "OMP_NUM_THREADS": str(threads)}
-    command = [lacon, SOURCE / "tests/bench/two_blocks.comm", "--fresh", "--unit", f"20={mesh}", "--base", folder / f"{name}.base",
-               "--timings"]
+    """One run of a study; its base stays in the folder. @return what tables.py shows of it"""
+    mesh, base, report = mesh_file(name, folder), folder / f"{name}.base", folder / "run.json"
+    environment = {**os.environ, "BLOCKS_FLAT": "0" if is_curved(name) else "1", "BLOCKS_DZ": str(PUSH)}
+    command = [lacon, SOURCE / "tests/bench/two_blocks.comm", "--fresh", "--unit", f"20={mesh}", "--base", base, "--json", report,
+               "--threads", threads]
     start = time.perf_counter()
     with open(folder / "output", "w+", encoding="utf-8") as output:
         process = subprocess.Popen([str(word) for word in command], env=environment, stdout=output, stderr=subprocess.STDOUT)
@@ -63,40 +92,126 @@ def study(lacon, name, folder, threads):
         wall = time.perf_counter() - start
         output.seek(0)
         said = output.read()
+    process.returncode = os.waitstatus_to_exitcode(status)
     if status:
-        sys.exit(f"{name}: exit status {os.waitstatus_to_exitcode(status)}\n{said[-3000:]}")
-    lines = re.findall(r"^ \|\s+\d+X?\s*\|.*$", said, re.MULTILINE)
-    table = said[said.index("  STAT_NON_LINE  "):]
-    phases = dict(re.findall(r"^ {6}(\w[\w ]*?)\s+([0-9.]+)$", table.split("  TEST_RESU")[0].split("  FIN ")[0], re.MULTILINE))
-    return {"name": name, "wall": wall, "memory": usage.ru_maxrss / 1024,
-            "iterations": len(lines), "factorisations": sum("TANGENTE" in line for line in lines),
-            "phases": {phase: float(seconds) for phase, seconds in phases.items()}}
+        sys.exit(f"{name}: exit status {process.returncode}\n{said[-3000:]}")
+    commands = json.loads(report.read_text())["timings"]["commands"]
+    solved = next(c for c in commands if c["command"] == "STAT_NON_LINE")
+    result = Result(base, "RESULT")
+    pressures = result.where_present("DEPL", result.orders[-1], "LAGS_C")
+    return {"name": name, "threads": threads, "wall": wall, "memory": usage.ru_maxrss / 1024,
+            "equations": 3 * len(result.points) + len(result.patches), "counts": solved["counts"], "phases": phases_of(commands, wall),
+            "io": files_of(commands, base, mesh), "force": float(result.parameter("zone_1_slave_force_z")[-1]),
+            "pressures": [-float(pressures.max()), -float(pressures.min())]}
+
+
+def phases_of(commands, wall):
+    """Seconds of every phase of a run, which sum up to the whole."""
+    meshing = ("LIRE_MAILLAGE", "MODI_MAILLAGE", "CREA_MAILLAGE")
+    seconds = {"launcher": wall - sum(c["operator"] for c in commands), "mesh": 0.0, "other commands": 0.0}
+    for command in commands:
+        if command["command"] == "STAT_NON_LINE":
+            own = {phase: value for phase, value in command["phases"].items() if phase != "total"}
+            seconds |= own | {"rest": command["operator"] - sum(own.values())}
+        else:
+            seconds["mesh" if command["command"] in meshing else "other commands"] += command["operator"]
+    return seconds
+
+
+def files_of(commands, base, mesh):
+    """Bytes that the commands of the mesh and the archive read and wrote, and the seconds that it took them."""
+    start, cut = ((base / f"{identifier_of(base, label)}.h5").stat().st_size for label in ("START", "MESH"))
+    fields = sum(path.stat().st_size for path in (base / identifier_of(base, "RESULT")).iterdir())
+    moved = {("LIRE_MAILLAGE", "read"): mesh.stat().st_size, ("LIRE_MAILLAGE", "write"): start, ("CREA_MAILLAGE", "read"): start,
+             ("CREA_MAILLAGE", "write"): cut, ("STAT_NON_LINE", "archive"): fields}
+    seconds = sum(c["phases"].get(phase, 0.0) for c in commands for command, phase in moved if c["command"] == command)
+    return {"bytes": sum(moved.values()), "seconds": seconds}
+
+
+def best_study(*arguments):
+    """The fastest of some runs: short ones are repeated."""
+    rows = [study(*arguments)]
+    while len(rows) < 3 and sum(row["wall"] for row in rows) < 5:
+        rows.append(study(*arguments))
+    return min(rows, key=lambda row: row["wall"])
+
+
+def peer(name, folder, wall):
+    """CalculiX on the mesh of a study that was just run. @param wall of Lacon"""
+    base = folder / f"{name}.base"
+    mesh = MeshOfBase(base / f"{identifier_of(base, 'START')}.h5")
+    found = calculix.solve(mesh, folder, PUSH if is_curved(name) else None, min(max(PATIENCE * wall, SHORTEST), LONGEST))
+    return {"name": name, "ratio": found["seconds"] / wall, **found}
+
+
+def parts(build, environment, folder):
+    """Every case of the Google Benchmarks: {"program", "name", counters}, growth rates left out."""
+    rows = []
+    for program in PARTS:
+        executable, out = build / f"tests/bench_{program}", folder / "parts.json"
+        if not executable.exists():
+            print(f"bench_{program} is not there: left out (libbenchmark-dev; cmake --build --preset release --target benches)")
+            continue
+        subprocess.run([executable, f"--benchmark_out={out}", "--benchmark_out_format=json", "--benchmark_min_time=0.2"], check=True,
+                       env=environment, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+        data = json.loads(out.read_text())
+        yardsticks = {name: float(data["context"][name]) for name in ("dgemm_gflops", "copy_gbytes")}
+        rows += [{"program": program, **yardsticks, **{key: value for key, value in case.items() if key in tables.COUNTERS}}
+                 for case in data["benchmarks"] if case["run_type"] == "iteration"]
+    return rows
+
+
+def machine_of(build, environment):
+    """What the machine can do now (bench_machine), and what it is."""
+    done = subprocess.run([build / "tests/bench_machine"], check=True, capture_output=True, text=True, env=environment)
+    with open("/proc/cpuinfo", encoding="ascii", errors="replace") as file:
+        models = [line.partition(":")[2].strip() for line in file if line.startswith("model name")]
+    return {**json.loads(done.stdout), "processor": models[0] if models else "unknown", "cores": os.cpu_count(),
+            "memory_gbytes": os.sysconf("SC_PAGE_SIZE") * os.sysconf("SC_PHYS_PAGES") / 1e9}
 
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
     parser.add_argument("build", type=pathlib.Path)
-    parser.add_argument("names", nargs="*", default=["H1", "H2", "H1c", "H2c"])
-    parser.add_argument("--threads", type=int, default=1)
+    parser.add_argument("names", nargs="*", metavar="NAME", help=f"{' '.join(NAMES)}; by default H1 H2 H1c H2c")
+    parser.add_argument("--all", action="store_true")
+    parser.add_argument("--threads", type=int, nargs="+", default=[1])
+    parser.add_argument("--parts", action="store_true")
+    parser.add_argument("--no-calculix", action="store_true")
     parser.add_argument("--json", type=pathlib.Path)
+    parser.add_argument("--docs", action="store_true")
     options = parser.parse_args()
+    names = NAMES if options.all else options.names or ("H1", "H2", "H1c", "H2c")
+    if unknown := [name for name in names if name not in NAMES]:
+        parser.error(f"{unknown[0]}: the studies are {' '.join(NAMES)}")
     build = options.build.resolve()
-    machine = json.loads(subprocess.run([str(build / "tests/bench_machine")], check=True, capture_output=True, text=True,
-                                        env={**os.environ, "OPENBLAS_NUM_THREADS": "1"}).stdout)
-    print(f"cube of 32^3 HEXA8: factorised in {machine['factorisation_seconds']:.2f} s at {machine['factorisation_gflops']:.1f} GF/s; "
-          f"dgemm {machine['dgemm_gflops']:.1f} GF/s, copy of memory {machine['copy_gbytes']:.1f} GB/s")
-    head = ["read", "elements", "pairing", "contact", "analysis", "factorisation", "solution", "archive"]
-    print(f"{'':5s} {'wall s':>8s} {'/ cube':>7s} {'MB':>6s} {'Newton':>6s} {'factor':>6s} " + " ".join(f"{phase:>13s}" for phase in head))
-    rows = []
+    environment = {**os.environ, "OPENBLAS_NUM_THREADS": "1", **({"OPENBLAS_CORETYPE": openblas_kernel()} if openblas_kernel() else {})}
+    measured = {"machine": machine_of(build, environment), "studies": [], "calculix": [], "parts": []}
+    with_calculix = not options.no_calculix and calculix.program()
+    if not with_calculix:
+        print("CalculiX is left out" + ("" if options.no_calculix else ": no ccx is installed (Debian: calculix-ccx)"))
     with tempfile.TemporaryDirectory() as folder:
-        for name in options.names:
-            row = study(build / "bin/lacon", name, pathlib.Path(folder), options.threads)
-            row["ratio"] = row["wall"] / machine["factorisation_seconds"]
-            rows.append(row)
-            print(f"{name:5s} {row['wall']:8.2f} {row['ratio']:7.2f} {row['memory']:6.0f} {row['iterations']:6d} {row['factorisations']:6d} " +
-                  " ".join(f"{row['phases'].get(phase, 0.0):13.2f}" for phase in head), flush=True)
+        folder = pathlib.Path(folder)
+        if options.parts:
+            measured["parts"] = parts(build, environment, folder)
+        for name in names:
+            if not mesh_file(name, folder):
+                print(f"{name} is left out: no mesh {MESHES / (name.lower() + '.med')} (LACON_SHARED_BENCH)")
+                continue
+            rows = [best_study(build / "bin/lacon", name, folder, threads) for threads in options.threads]
+            measured["studies"] += rows
+            print(*(f"{name}, {row['threads']} thread(s): {row['wall']:.2f} s" for row in rows), sep="\n", flush=True)
+            if with_calculix:
+                measured["calculix"].append(peer(name, folder, rows[0]["wall"]))
+                print(f"{name}, CalculiX: {measured['calculix'][-1]['failure'] or ''} {measured['calculix'][-1]['seconds']:.2f} s", flush=True)
+    for row in measured["studies"] + measured["calculix"]:
+        row["yardsticks"] = {name: measured["machine"][name] for name in ("factorisation_seconds", "dgemm_gflops", "copy_gbytes")}
     if options.json:
-        options.json.write_text(json.dumps({"machine": machine, "threads": options.threads, "studies": rows}, indent=1))
+        options.json.write_text(json.dumps(measured, indent=1) + "\n", encoding="utf-8")
+    if options.docs:
+        tables.write_docs(SOURCE / "docs", measured)
+    for section in tables.sections(measured).values():
+        print("\n" + section)
 
 
 if __name__ == "__main__":
