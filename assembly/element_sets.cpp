@@ -2,15 +2,29 @@
 
 #include <algorithm>
 #include <map>
+#include <memory>
 
 #include "lacon/assembly/hardening.hpp"
 #include "lacon/catalog/messages.hpp"
+#include "lacon/structures/parallel.hpp"
 
 namespace lacon {
 namespace {
 
 constexpr int lanes = LACON_LANES;
-constexpr std::size_t batch_blocks = 32;  // blocks a kernel call: results stay in the cache
+
+/// A number of each lane, at a cache line of its own: kernels read and write arrays that start there faster.
+struct alignas(lanes * sizeof(double)) LaneNumbers {
+  double value[lanes];
+};
+using LaneArray = std::vector<LaneNumbers>;
+double* numbers(LaneArray& array) { return array.empty() ? nullptr : array.front().value; }
+
+/// Elements of a kernel call, a loop block: as many as keep their matrices in the cache.
+std::size_t batch_size(std::size_t matrix_entries) {
+  constexpr std::size_t cache_bytes = 1 << 18, most_blocks = 32;
+  return lanes * std::clamp<std::size_t>(cache_bytes / (matrix_entries * sizeof(LaneNumbers)), 1, most_blocks);
+}
 
 const char* reason(int error) {
   switch (error) {
@@ -51,12 +65,8 @@ bool refused(std::int32_t error) { return error != LACON_FINE && error != LACON_
 /// A batch of cells in lanes: block b, lane l is cells[b * lanes + l]; the last block repeats the last cell.
 class Batch {
  public:
-  Batch(const ElementSet& set, const Mesh& mesh, std::size_t first, int dimension)
-      : set_(set),
-        mesh_(mesh),
-        first_(first),
-        size_(std::min(set.cells.size() - first, batch_blocks * lanes)),
-        dimension_(dimension) {}
+  Batch(const ElementSet& set, const Mesh& mesh, const LoopBlock& cells, int dimension)
+      : set_(set), mesh_(mesh), first_(cells.first), size_(cells.last - cells.first), dimension_(dimension) {}
 
   std::size_t size() const { return size_; }
   std::size_t n_blocks() const { return (size_ + lanes - 1) / lanes; }
@@ -64,28 +74,36 @@ class Batch {
   std::int32_t cell(std::size_t i) const { return set_.cells[index(i)]; }
 
   /// (n_blocks, n_nodes, dimension, lanes) out of nodal values (nodes, stride).
-  void gather(std::span<const double> nodal, int stride, std::vector<double>& out) const {
+  void gather(std::span<const double> nodal, int stride, LaneArray& out) const {
     const int n = set_.n_nodes();
-    out.resize(n_blocks() * n * dimension_ * lanes);
+    out.resize(n_blocks() * n * dimension_);
     for (std::size_t i = 0; i < n_blocks() * lanes; ++i) {
       const auto nodes = mesh_.cells[cell(i)];
-      double* const block = out.data() + (i / lanes) * n * dimension_ * lanes + i % lanes;
+      LaneNumbers* const block = out.data() + (i / lanes) * n * dimension_;
       for (int k = 0; k < n; ++k)
         for (int d = 0; d < dimension_; ++d)
-          block[(k * dimension_ + d) * lanes] = nodal[static_cast<std::size_t>(nodes[k]) * stride + d];
+          block[k * dimension_ + d].value[i % lanes] = nodal[static_cast<std::size_t>(nodes[k]) * stride + d];
     }
   }
   /// (n_blocks, width, lanes) out of values of each cell of the set (cells, width).
-  void gather_cells(std::span<const double> values, int width, std::vector<double>& out) const {
-    out.resize(n_blocks() * width * lanes);
+  void gather_cells(std::span<const double> values, std::size_t width, LaneArray& out) const {
+    out.resize(n_blocks() * width);
     for (std::size_t i = 0; i < n_blocks() * lanes; ++i)
-      for (int k = 0; k < width; ++k) out[((i / lanes) * width + k) * lanes + i % lanes] = values[index(i) * width + k];
+      for (std::size_t k = 0; k < width; ++k) out[i / lanes * width + k].value[i % lanes] = values[index(i) * width + k];
   }
-  /// The `width` values of element i.
-  void scatter(std::span<const double> values, std::size_t i, std::size_t width, std::vector<double>& out) const {
-    out.resize(width);
-    const double* const block = values.data() + (i / lanes) * width * lanes + i % lanes;
-    for (std::size_t k = 0; k < width; ++k) out[k] = block[k * lanes];
+  /// (elements of the batch, width) out of lanes.
+  void scatter(const LaneArray& values, std::size_t width, std::span<double> out) const {
+    for (std::size_t first = 0; first < size_; first += lanes) {
+      const LaneNumbers* const block = values.data() + first / lanes * width;
+      const std::size_t n = std::min<std::size_t>(lanes, size_ - first);
+      double* const elements = out.data() + first * width;
+      for (std::size_t k = 0; k < width; ++k)
+        for (std::size_t l = 0; l < n; ++l) elements[l * width + k] = block[k].value[l];
+    }
+  }
+  void scatter(const LaneArray& values, std::size_t width, std::vector<double>& out) const {
+    out.resize(size_ * width);
+    scatter(values, width, std::span(out));
   }
   /// Throws where a kernel refused an element. @return the first that is turned inside out
   std::optional<std::int32_t> check(std::span<const std::int32_t> errors) const {
@@ -213,70 +231,182 @@ std::vector<ElementSet> load_sets(const Model& model, Registry& registry, std::s
   return sets;
 }
 
-std::optional<std::int32_t> evaluate_solids(const ElementSet& set, const Mesh& mesh, int dimension, const SolidInput& input,
-                                            SolidMatrix wanted, const std::function<void(const SolidValues&)>& use) {
-  const int ndof = set.n_nodes() * dimension;
-  const std::size_t n_lower = static_cast<std::size_t>(ndof) * (ndof + 1) / 2;
-  const std::size_t n_stress = set.n_stress(), n_variables = set.n_variables();
-  const bool with_matrix = wanted != SolidMatrix::none;
-  std::vector<double> coordinates, u, parameters, from, from_stress, from_variable;
-  std::vector<double> matrix, force, stress, variable, own_matrix, own_force, own_stress, own_variable;
-  std::vector<std::int32_t> errors;
-  std::optional<std::int32_t> inside_out;
-  // what is left out, or does not exist, is a null pointer
-  const auto pointer = [](std::vector<double>& values, bool given) { return given ? values.data() : nullptr; };
-  for (std::size_t first = 0; first < set.cells.size(); first += batch_blocks * lanes) {
-    const Batch batch(set, mesh, first, dimension);
-    batch.gather(mesh.coordinates, 3, coordinates);
-    batch.gather(input.displacement, dimension, u);
-    batch.gather_cells(set.parameters, set.n_parameters, parameters);
-    if (!input.previous_displacement.empty()) batch.gather(input.previous_displacement, dimension, from);
-    if (!input.previous_stress.empty()) batch.gather_cells(input.previous_stress, n_stress, from_stress);
-    if (!input.previous_variable.empty()) batch.gather_cells(input.previous_variable, n_variables, from_variable);
-    const std::size_t padded = batch.n_blocks() * lanes;
-    if (with_matrix) matrix.resize(padded * n_lower);
-    force.resize(padded * ndof);
-    stress.resize(padded * n_stress);
-    variable.resize(padded * n_variables);
-    errors.assign(padded, LACON_FINE);
-    const lacon_solid_batch call{.struct_size = sizeof(lacon_solid_batch),
-                                 .n_blocks = static_cast<std::int32_t>(batch.n_blocks()),
-                                 .n_nodes = set.n_nodes(),
-                                 .dimension = dimension,
-                                 .n_points = set.tabulation.n_points,
-                                 .n_stress = static_cast<std::int32_t>(set.row->stress.size()),
-                                 .n_parameters = set.n_parameters,
-                                 .shape = set.tabulation.shape.data(),
-                                 .gradient = set.tabulation.gradient.data(),
-                                 .weight = set.tabulation.weight.data(),
-                                 .coordinates = coordinates.data(),
-                                 .displacement = u.data(),
-                                 .parameter = parameters.data(),
-                                 .matrix = pointer(matrix, with_matrix),
-                                 .force = force.data(),
-                                 .stress = stress.data(),
-                                 .error = errors.data(),
-                                 .previous_displacement = pointer(from, !input.previous_displacement.empty()),
-                                 .previous_stress = pointer(from_stress, !input.previous_stress.empty()),
-                                 .previous_variable = pointer(from_variable, !input.previous_variable.empty()),
-                                 .variable = pointer(variable, n_variables > 0),
-                                 .curve = set.curve.data(),
-                                 .n_curve = static_cast<std::int32_t>(set.curve.size() / 3),
-                                 .n_variables = set.kernel->n_variables,
-                                 .elastic_matrix = wanted == SolidMatrix::elastic,
-                                 .stressless_matrix = wanted == SolidMatrix::stressless};
-    set.kernel->solid(&call);
-    const auto inverted = batch.check(errors);
-    if (!inside_out) inside_out = inverted;
-    for (std::size_t i = 0; i < batch.size(); ++i) {
-      if (with_matrix) batch.scatter(matrix, i, n_lower, own_matrix);
-      batch.scatter(force, i, ndof, own_force);
-      batch.scatter(stress, i, n_stress, own_stress);
-      batch.scatter(variable, i, n_variables, own_variable);
-      use({batch.cell(i), own_matrix, own_force, own_stress, own_variable});
+namespace {
+
+/// One thread's part of a loop over elements, with the batch that it has in hand.
+class ElementBatches {
+ public:
+  ElementBatches(const ElementSet& set, const Mesh& mesh, int dimension, bool with_matrix)
+      : set_(set), mesh_(mesh), dimension_(dimension), with_matrix_(with_matrix) {}
+
+  std::size_t n_dofs() const { return static_cast<std::size_t>(set_.n_nodes()) * dimension_; }
+  std::size_t n_lower() const { return n_dofs() * (n_dofs() + 1) / 2; }
+  std::optional<std::int32_t> inside_out() const { return inside_out_; }  ///< the first such cell of the batch in hand
+
+  void hand_over(const LoopBlock& cells, const std::function<void(const ElementValues&)>& use) const {
+    const std::span<const double> forces = own_force_, matrices = own_matrix_;
+    for (std::size_t i = cells.first; i < cells.last; ++i) {
+      const std::size_t own = i - cells.first;
+      use({set_.cells[i], forces.subspan(own * n_dofs(), n_dofs()),
+           with_matrix_ ? matrices.subspan(own * n_lower(), n_lower()) : matrices});
     }
   }
+
+ protected:
+  void make_room(const Batch& batch) {
+    force_.resize(batch.n_blocks() * n_dofs());
+    if (with_matrix_) matrix_.resize(batch.n_blocks() * n_lower());
+    errors_.assign(batch.n_blocks() * lanes, LACON_FINE);
+  }
+  /// What the kernel has left in force_, matrix_ and errors_.
+  void take_results(const Batch& batch) {
+    inside_out_ = batch.check(errors_);
+    batch.scatter(force_, n_dofs(), own_force_);
+    if (with_matrix_) batch.scatter(matrix_, n_lower(), own_matrix_);
+  }
+
+  const ElementSet& set_;
+  const Mesh& mesh_;
+  int dimension_;
+  bool with_matrix_;
+  LaneArray force_, matrix_;
+  std::vector<std::int32_t> errors_;
+
+ private:
+  std::vector<double> own_force_, own_matrix_;  // element by element
+  std::optional<std::int32_t> inside_out_;
+};
+
+/// Evaluate the elements of a set by workers that copy `first`, and hand them over in turn. @return as evaluate_solids()
+template <class Batches>
+std::optional<std::int32_t> evaluate_in_turn(const ElementSet& set, const Batches& first,
+                                             const std::function<void(const ElementValues&)>& use) {
+  std::optional<std::int32_t> inside_out;
+  parallel_in_turn(set.cells.size(), batch_size(first.n_lower()), [&] {
+    const auto batches = std::make_shared<Batches>(first);
+    return LoopWorker{[batches](const LoopBlock& cells) { batches->evaluate(cells); },
+                      [batches, &use, &inside_out](const LoopBlock& cells) {
+                        if (!inside_out) inside_out = batches->inside_out();
+                        batches->hand_over(cells, use);
+                      }};
+  });
   return inside_out;
+}
+
+class SolidBatches : public ElementBatches {
+ public:
+  SolidBatches(const ElementSet& set, const Mesh& mesh, int dimension, const SolidInput& input, SolidMatrix wanted,
+               const SolidOutput& output)
+      : ElementBatches(set, mesh, dimension, wanted != SolidMatrix::none), input_(input), wanted_(wanted), output_(output) {}
+
+  void evaluate(const LoopBlock& cells) {
+    const Batch batch(set_, mesh_, cells, dimension_);
+    const std::size_t n_stress = set_.n_stress(), n_variables = set_.n_variables();
+    // what is left out, or does not exist, is a null pointer
+    const auto nodal = [&](std::span<const double> values, LaneArray& array) -> const double* {
+      if (values.empty()) return nullptr;
+      batch.gather(values, dimension_, array);
+      return numbers(array);
+    };
+    const auto of_cells = [&](std::span<const double> values, std::size_t width, LaneArray& array) -> const double* {
+      if (values.empty()) return nullptr;
+      batch.gather_cells(values, width, array);
+      return numbers(array);
+    };
+    const auto wanted = [&](std::span<const double> values, std::size_t width, LaneArray& array) -> double* {
+      if (values.empty()) return nullptr;
+      array.resize(batch.n_blocks() * width);
+      return numbers(array);
+    };
+    make_room(batch);
+    batch.gather(mesh_.coordinates, 3, coordinates_);
+    const lacon_solid_batch call{
+        .struct_size = sizeof(lacon_solid_batch),
+        .n_blocks = static_cast<std::int32_t>(batch.n_blocks()),
+        .n_nodes = set_.n_nodes(),
+        .dimension = dimension_,
+        .n_points = set_.tabulation.n_points,
+        .n_stress = static_cast<std::int32_t>(set_.row->stress.size()),
+        .n_parameters = set_.n_parameters,
+        .shape = set_.tabulation.shape.data(),
+        .gradient = set_.tabulation.gradient.data(),
+        .weight = set_.tabulation.weight.data(),
+        .coordinates = numbers(coordinates_),
+        .displacement = nodal(input_.displacement, displacement_),
+        .parameter = of_cells(set_.parameters, static_cast<std::size_t>(set_.n_parameters), parameters_),
+        .matrix = numbers(matrix_),
+        .force = numbers(force_),
+        .stress = wanted(output_.stress, n_stress, stress_),
+        .error = errors_.data(),
+        .previous_displacement = nodal(input_.previous_displacement, from_),
+        .previous_stress = of_cells(input_.previous_stress, n_stress, from_stress_),
+        .previous_variable = of_cells(input_.previous_variable, n_variables, from_variable_),
+        .variable = wanted(output_.variable, n_variables, variable_),
+        .curve = set_.curve.data(),
+        .n_curve = static_cast<std::int32_t>(set_.curve.size() / 3),
+        .n_variables = set_.kernel->n_variables,
+        .elastic_matrix = wanted_ == SolidMatrix::elastic,
+        .stressless_matrix = wanted_ == SolidMatrix::stressless};
+    set_.kernel->solid(&call);
+    take_results(batch);
+    if (call.stress) batch.scatter(stress_, n_stress, output_.stress.subspan(cells.first * n_stress));
+    if (call.variable) batch.scatter(variable_, n_variables, output_.variable.subspan(cells.first * n_variables));
+  }
+
+ private:
+  SolidInput input_;
+  SolidMatrix wanted_;
+  SolidOutput output_;
+  LaneArray coordinates_, displacement_, parameters_, from_, from_stress_, from_variable_, stress_, variable_;
+};
+
+class LoadBatches : public ElementBatches {
+ public:
+  LoadBatches(const ElementSet& set, const Mesh& mesh, int dimension, std::span<const double> coordinates,
+              std::span<const double> values, bool with_matrix)
+      : ElementBatches(set, mesh, dimension, with_matrix), coordinates_(coordinates), values_(values) {}
+
+  void evaluate(const LoopBlock& cells) {
+    const int n_values = n_load_values(*set_.kernel);
+    const Batch batch(set_, mesh_, cells, dimension_);
+    make_room(batch);
+    batch.gather(coordinates_, 3, place_);
+    batch.gather_cells(values_, static_cast<std::size_t>(set_.tabulation.n_points * n_values), value_);
+    const lacon_load_batch call{.struct_size = sizeof(lacon_load_batch),
+                                .n_blocks = static_cast<std::int32_t>(batch.n_blocks()),
+                                .n_nodes = set_.n_nodes(),
+                                .dimension = dimension_,
+                                .n_points = set_.tabulation.n_points,
+                                .reference_dimension = set_.tabulation.dimension,
+                                .n_values = n_values,
+                                .shape = set_.tabulation.shape.data(),
+                                .gradient = set_.tabulation.gradient.data(),
+                                .weight = set_.tabulation.weight.data(),
+                                .coordinates = numbers(place_),
+                                .value = numbers(value_),
+                                .force = numbers(force_),
+                                .matrix = numbers(matrix_),
+                                .error = errors_.data()};
+    set_.kernel->load(&call);
+    take_results(batch);
+  }
+
+ private:
+  std::span<const double> coordinates_, values_;
+  LaneArray place_, value_;
+};
+
+}  // namespace
+
+std::optional<std::int32_t> evaluate_solids(const ElementSet& set, const Mesh& mesh, int dimension, const SolidInput& input,
+                                            SolidMatrix matrix, const SolidOutput& output,
+                                            const std::function<void(const ElementValues&)>& use) {
+  return evaluate_in_turn(set, SolidBatches(set, mesh, dimension, input, matrix, output), use);
+}
+
+void evaluate_loads(const ElementSet& set, const Mesh& mesh, int dimension, std::span<const double> coordinates,
+                    std::span<const double> values, bool with_matrix, const std::function<void(const ElementValues&)>& use) {
+  evaluate_in_turn(set, LoadBatches(set, mesh, dimension, coordinates, values, with_matrix), use);
 }
 
 int n_load_values(const lacon_kernel& kernel) {
@@ -297,45 +427,6 @@ std::vector<double> integration_points(const ElementSet& set, const Mesh& mesh, 
           points[at + d] += table.shape[p * table.n_nodes + a] * coordinates[3 * static_cast<std::size_t>(nodes[a]) + d];
   }
   return points;
-}
-
-void evaluate_loads(const ElementSet& set, const Mesh& mesh, int dimension, std::span<const double> coordinates,
-                    std::span<const double> values, bool with_matrix, const std::function<void(const LoadValues&)>& use) {
-  const std::size_t ndof = static_cast<std::size_t>(set.n_nodes()) * dimension, n_lower = ndof * (ndof + 1) / 2;
-  const int n_values = n_load_values(*set.kernel), width = set.tabulation.n_points * n_values;
-  std::vector<double> place, value, force, matrix, own_force, own_matrix;
-  std::vector<std::int32_t> errors;
-  for (std::size_t first = 0; first < set.cells.size(); first += batch_blocks * lanes) {
-    const Batch batch(set, mesh, first, dimension);
-    batch.gather(coordinates, 3, place);
-    batch.gather_cells(values, width, value);
-    const std::size_t padded = batch.n_blocks() * lanes;
-    force.resize(padded * ndof);
-    if (with_matrix) matrix.resize(padded * n_lower);
-    errors.assign(padded, LACON_FINE);
-    const lacon_load_batch call{.struct_size = sizeof(lacon_load_batch),
-                                .n_blocks = static_cast<std::int32_t>(batch.n_blocks()),
-                                .n_nodes = set.n_nodes(),
-                                .dimension = dimension,
-                                .n_points = set.tabulation.n_points,
-                                .reference_dimension = set.tabulation.dimension,
-                                .n_values = n_values,
-                                .shape = set.tabulation.shape.data(),
-                                .gradient = set.tabulation.gradient.data(),
-                                .weight = set.tabulation.weight.data(),
-                                .coordinates = place.data(),
-                                .value = value.data(),
-                                .force = force.data(),
-                                .matrix = with_matrix ? matrix.data() : nullptr,
-                                .error = errors.data()};
-    set.kernel->load(&call);
-    batch.check(errors);
-    for (std::size_t i = 0; i < batch.size(); ++i) {
-      batch.scatter(force, i, ndof, own_force);
-      if (with_matrix) batch.scatter(matrix, i, n_lower, own_matrix);
-      use({batch.cell(i), own_force, own_matrix});
-    }
-  }
 }
 
 }  // namespace lacon

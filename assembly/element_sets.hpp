@@ -74,13 +74,11 @@ std::vector<ElementSet> solid_sets(const Mesh& mesh, const Model& model, Registr
 std::vector<ElementSet> load_sets(const Model& model, Registry& registry, std::string_view option,
                                   std::span<const std::int32_t> cells, std::vector<std::vector<std::int32_t>>& position);
 
-/// What one solid element gives.
-struct SolidValues {
+/// What one element gives for sums over elements.
+struct ElementValues {
   std::int32_t cell;
-  std::span<const double> matrix;    ///< lower triangle, row by row; empty where it was not wanted
-  std::span<const double> force;     ///< (n_nodes, dimension)
-  std::span<const double> stress;    ///< (n_points, n_stress)
-  std::span<const double> variable;  ///< (n_points, n_variables): internal variables
+  std::span<const double> force;   ///< (n_nodes, dimension)
+  std::span<const double> matrix;  ///< lower triangle, row by row; empty where it was not wanted
 };
 
 /// The tangent without the terms of the present stress has no instability but that of the law.
@@ -95,10 +93,18 @@ struct SolidInput {
   std::span<const double> previous_variable;  ///< (cells, n_points, n_variables)
 };
 
-/// Call `use` for each element of a set. @return the first cell that the displacement turns inside out, if there is one
-/// Throws ELEMENT_1 for elements that their kernel refuses.
+/// Where values at the integration points of the set's cells go; empty: not wanted.
+struct SolidOutput {
+  std::span<double> stress;    ///< (cells, n_points, n_stress)
+  std::span<double> variable;  ///< (cells, n_points, n_variables): internal variables
+};
+
+/// Evaluate the elements of a set, in n_threads() threads, and call `use` for each of them: in their order and one at a time,
+/// so that sums have the same bits for any number of threads. @return the first cell that the displacement turns inside out, if
+/// there is one  Throws ELEMENT_1 for elements that their kernel refuses.
 std::optional<std::int32_t> evaluate_solids(const ElementSet& set, const Mesh& mesh, int dimension, const SolidInput& input,
-                                            SolidMatrix matrix, const std::function<void(const SolidValues&)>& use);
+                                            SolidMatrix matrix, const SolidOutput& output,
+                                            const std::function<void(const ElementValues&)>& use);
 
 /// How many values a load kernel takes at each integration point.
 int n_load_values(const lacon_kernel& kernel);
@@ -106,17 +112,10 @@ int n_load_values(const lacon_kernel& kernel);
 /// Coordinates of the integration points, (cells, n_points, 3). @param coordinates (n_nodes, 3)
 std::vector<double> integration_points(const ElementSet& set, const Mesh& mesh, std::span<const double> coordinates);
 
-/// What one element under a load gives.
-struct LoadValues {
-  std::int32_t cell;
-  std::span<const double> force;  ///< (n_nodes, dimension)
-  std::span<const double>
-      matrix;  ///< symmetric part of its derivative, lower triangle row by row; empty where it was not wanted
-};
-
-/// Call `use` for each element of a set of load_sets(). @param coordinates (n_nodes, 3) of the mesh, initial or current
+/// Call `use` for each element of a set of load_sets(), as evaluate_solids() does; the matrix is the symmetric part of
+/// the force's derivative. @param coordinates (n_nodes, 3) of the mesh, initial or current
 /// @param values (cells, n_points, n_load_values)
 void evaluate_loads(const ElementSet& set, const Mesh& mesh, int dimension, std::span<const double> coordinates,
-                    std::span<const double> values, bool with_matrix, const std::function<void(const LoadValues&)>& use);
+                    std::span<const double> values, bool with_matrix, const std::function<void(const ElementValues&)>& use);
 
 }  // namespace lacon

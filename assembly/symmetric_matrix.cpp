@@ -80,22 +80,36 @@ void SymmetricMatrix::copy_rows(const SymmetricMatrix& other, std::int64_t n_row
   std::copy_n(other.value_.begin(), row_[n_rows], value_.begin());
 }
 
-double& SymmetricMatrix::entry(std::int64_t row, std::int64_t column) {
-  if (column > row) std::swap(row, column);
-  const auto first = column_.begin() + row_[row], last = column_.begin() + row_[row + 1];
-  const auto at = std::lower_bound(first, last, static_cast<std::int32_t>(column));
-  if (at == last || *at != column) throw std::logic_error("an element matrix does not fit the pattern of the matrix");
-  return value_[at - column_.begin()];
-}
-
 void SymmetricMatrix::add(std::span<const std::int64_t> equations, std::span<const double> lower) {
-  std::size_t at = 0;
-  for (std::size_t i = 0; i < equations.size(); ++i)
-    for (std::size_t j = 0; j <= i; ++j, ++at) {
-      if (equations[i] < 0 || equations[j] < 0 || lower[at] == 0) continue;
+  // by ascending equation: each entry then belongs to the row of the later one, and the columns of a row follow each other
+  adding_.clear();
+  for (std::int32_t i = 0; i < static_cast<std::int32_t>(equations.size()); ++i)
+    if (equations[i] >= 0) adding_.push_back({static_cast<std::int32_t>(equations[i]), i, i * (i + 1) / 2, 0});
+  std::sort(adding_.begin(), adding_.end(), [](const Added& a, const Added& b) { return a.equation < b.equation; });
+  for (std::size_t i = 0; i < adding_.size(); ++i) {
+    const Added own = adding_[i];
+    const std::int32_t* const columns = column_.data() + row_[own.equation];
+    double* const values = value_.data() + row_[own.equation];
+    const auto width = static_cast<std::int32_t>(row_[own.equation + 1] - row_[own.equation]);
+    std::int32_t next = 0;  // behind the last column that was found in this row
+    for (std::size_t j = 0; j <= i; ++j) {
+      Added& other = adding_[j];
+      const double value = lower[own.local > other.local ? own.start + other.local : other.start + own.local];
+      // most often it is where it was in the row before, which the same node has, or behind the column before
+      if (other.place >= width || columns[other.place] != other.equation) {
+        if (value == 0) continue;  // needs no place
+        other.place = next;
+        if (next >= width || columns[next] != other.equation) {
+          other.place = static_cast<std::int32_t>(std::lower_bound(columns, columns + width, other.equation) - columns);
+          if (other.place == width || columns[other.place] != other.equation)
+            throw std::logic_error("an element matrix does not fit the pattern of the matrix");
+        }
+      }
       // an entry and its mirror image fall on one diagonal entry where two degrees of freedom share their equation
-      entry(equations[i], equations[j]) += i != j && equations[i] == equations[j] ? 2 * lower[at] : lower[at];
+      values[other.place] += i != j && own.equation == other.equation ? 2 * value : value;
+      next = other.place + 1;
     }
+  }
 }
 
 void SymmetricMatrix::add_diagonal(std::int64_t equation, double value) { value_[row_[equation + 1] - 1] += value; }

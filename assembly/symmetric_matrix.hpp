@@ -46,13 +46,18 @@ class SymmetricMatrix {
   const Numbering& numbering() const { return *numbering_; }
 
  private:
-  double& entry(std::int64_t row, std::int64_t column);
+  /// An equation of an element that add() has in hand.
+  struct Added {
+    std::int32_t equation, local, start;  ///< start: of its row in the element's triangle
+    std::int32_t place;                   ///< in the row where it was met last
+  };
 
   const Numbering* numbering_;
   Ragged<std::int32_t> neighbours_;
   std::vector<std::int64_t> row_;     ///< the diagonal is the last entry of each row
   std::vector<std::int32_t> column_;  ///< ascending in each row
   std::vector<double> value_;
+  std::vector<Added> adding_;
 };
 
 }  // namespace lacon

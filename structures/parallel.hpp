@@ -20,12 +20,21 @@ constexpr std::size_t n_loop_blocks(std::size_t n_items, std::size_t block_size)
 }
 
 /// Call work(block) for each block of `block_size` items; the last block may be shorter. Items of a block do not depend on the
-/// number of threads, the thread that a block falls to and the time when it does depend on chance. So the bits of a result are
+/// number of threads; the thread that a block falls to and the time when it does depend on chance. So the bits of a result are
 /// always the same where a block writes nothing but its own items, or keeps sums in a place of its own, which the caller adds
 /// up in the order of blocks afterwards. `work` sends no messages (inform()): their order would be left to chance.
 ///
 /// An exception ends the loop: the caller gets that of the first block that throws, as from a plain loop. Blocks behind that
 /// one may have been worked on. A loop inside `work` stays in its thread.
 void parallel_for(std::size_t n_items, std::size_t block_size, const std::function<void(const LoopBlock&)>& work);
+
+/// What one thread of a loop does with a block: first `work`, then `in_turn`.
+struct LoopWorker {
+  std::function<void(const LoopBlock&)> work, in_turn;
+};
+
+/// Likewise, with a worker for each thread, whose in_turn(block) is called in the order of blocks and one at a time, while
+/// other threads work on blocks behind it: for sums in one place.
+void parallel_in_turn(std::size_t n_items, std::size_t block_size, const std::function<LoopWorker()>& new_worker);
 
 }  // namespace lacon

@@ -136,7 +136,7 @@ std::vector<double> TimedLoad::force(const StaticProblem& problem, double instan
   std::vector<double> sum(problem.n_dofs(), 0.0);
   for (const LoadedCells& loaded : cells)
     evaluate_loads(loaded.set, problem.mesh, problem.dimension, problem.mesh.coordinates, loaded.values.at(instant), false,
-                   [&](const LoadValues& element) {
+                   [&](const ElementValues& element) {
                      std::size_t at = 0;
                      for (const std::int32_t node : problem.mesh.cells[element.cell])
                        for (int d = 0; d < problem.dimension; ++d)

@@ -102,19 +102,16 @@ void Newton::assemble(const StaticState& state, const StaticState& previous, Sol
         input.previous_stress = previous.points[s].stress;
         input.previous_variable = previous.points[s].variable;
       }
-      auto stress = points_[s].stress.begin(), variable = points_[s].variable.begin();
-      const auto inverted = evaluate_solids(set, problem_.mesh, dimension, input, keep_stiffness ? SolidMatrix::none : wanted,
-                                            [&](const SolidValues& element) {
-                                              unknowns.clear();
-                                              for (const std::int32_t node : problem_.mesh.cells[element.cell])
-                                                for (int d = 0; d < dimension; ++d)
-                                                  unknowns.push_back(std::int64_t{node} * dimension + d);
-                                              system_.add(unknowns, element.matrix, element.force);
-                                              for (std::size_t i = 0; i < unknowns.size(); ++i)
-                                                sums[unknowns[i]] += std::abs(element.force[i]);
-                                              stress = std::copy(element.stress.begin(), element.stress.end(), stress);
-                                              variable = std::copy(element.variable.begin(), element.variable.end(), variable);
-                                            });
+      const SolidOutput output{points_[s].stress, points_[s].variable};
+      const auto add = [&](const ElementValues& element) {
+        unknowns.clear();
+        for (const std::int32_t node : problem_.mesh.cells[element.cell])
+          for (int d = 0; d < dimension; ++d) unknowns.push_back(std::int64_t{node} * dimension + d);
+        system_.add(unknowns, element.matrix, element.force);
+        for (std::size_t i = 0; i < unknowns.size(); ++i) sums[unknowns[i]] += std::abs(element.force[i]);
+      };
+      const auto inverted =
+          evaluate_solids(set, problem_.mesh, dimension, input, keep_stiffness ? SolidMatrix::none : wanted, output, add);
       if (!inside_out_) inside_out_ = inverted;
     }
     force_scale_ = sums.empty() ? 0 : *std::max_element(sums.begin(), sums.end());

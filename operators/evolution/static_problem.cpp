@@ -101,7 +101,7 @@ void StaticProblem::following_forces(
     for (const LoadedCells& loaded : load.following) {
       std::vector<double> values = loaded.values.at(instant);
       for (double& value : values) value *= factor;
-      evaluate_loads(loaded.set, mesh, dimension, coordinates, values, with_matrix, [&](const LoadValues& element) {
+      evaluate_loads(loaded.set, mesh, dimension, coordinates, values, with_matrix, [&](const ElementValues& element) {
         dofs.clear();
         for (const std::int32_t node : mesh.cells[element.cell])
           for (int d = 0; d < dimension; ++d) dofs.push_back(std::int64_t{node} * dimension + d);

@@ -79,10 +79,11 @@ void assemble(benchmark::State& state, CellType type) {
   std::vector<std::int64_t> equations;
   for (auto run : state)
     for (const ElementSet& set : body.sets)
-      evaluate_solids(set, body.mesh, 3, {.displacement = displacement}, SolidMatrix::tangent, [&](const SolidValues& element) {
-        body.equations_of(body.mesh.cells[element.cell], equations);
-        matrix.add(equations, element.matrix);
-      });
+      evaluate_solids(set, body.mesh, 3, {.displacement = displacement}, SolidMatrix::tangent, {},
+                      [&](const ElementValues& element) {
+                        body.equations_of(body.mesh.cells[element.cell], equations);
+                        matrix.add(equations, element.matrix);
+                      });
   bench::report(state, {.items = body.n_elements(), .bytes = 3 * body.matrix_bytes() * body.n_elements()});
 }
 

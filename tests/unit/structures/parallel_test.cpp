@@ -6,6 +6,7 @@
 #include <chrono>
 #include <cmath>
 #include <cstdlib>
+#include <memory>
 #include <numeric>
 #include <stdexcept>
 #include <string>
@@ -75,6 +76,58 @@ TEST_F(Parallel, TheErrorOfTheFirstBlockThatThrowsReachesTheCaller) {
         EXPECT_STREQ(error.what(), "block 7");
       }
       EXPECT_EQ(std::accumulate(done.begin(), done.end(), 0), 7);  // all blocks before it were worked on
+    }
+  }
+}
+
+TEST_F(Parallel, WhatIsDoneInTurnIsDoneInTheOrderOfBlocks) {
+  constexpr std::size_t n = 1000, size = 7;
+  for (const char* threads : {"1", "2", "3", "5"}) {
+    set_threads(threads);
+    std::vector<std::size_t> seen;  // no lock: one at a time
+    std::atomic<int> workers = 0;
+    parallel_in_turn(n, size, [&] {
+      ++workers;
+      const auto own = std::make_shared<std::vector<std::size_t>>();  // of one thread, from work to turn
+      return LoopWorker{[own](const LoopBlock& block) {
+                          own->clear();
+                          for (std::size_t i = block.first; i < block.last; ++i) own->push_back(i);
+                          if (block.index % 5 == 0) std::this_thread::sleep_for(std::chrono::microseconds(50));
+                        },
+                        [own, &seen](const LoopBlock&) { seen.insert(seen.end(), own->begin(), own->end()); }};
+    });
+    std::vector<std::size_t> all(n);
+    std::iota(all.begin(), all.end(), 0);
+    EXPECT_EQ(seen, all) << threads << " threads";
+    EXPECT_EQ(std::to_string(workers), threads);
+  }
+}
+
+TEST_F(Parallel, AfterAnErrorNoLaterBlockHasItsTurn) {
+  for (const char* threads : {"1", "2", "3", "5"}) {
+    for (const bool in_turn : {false, true}) {
+      set_threads(threads);
+      std::vector<std::size_t> seen;
+      const auto fail_from = [](const LoopBlock& block) {
+        if (block.index == 11) std::this_thread::sleep_for(std::chrono::microseconds(200));
+        if (block.index >= 11) throw std::runtime_error("block " + std::to_string(block.index));
+      };
+      const auto worker = [&] {
+        return LoopWorker{[&](const LoopBlock& block) {
+                            if (!in_turn) fail_from(block);
+                          },
+                          [&](const LoopBlock& block) {
+                            if (in_turn) fail_from(block);
+                            seen.push_back(block.index);
+                          }};
+      };
+      try {
+        parallel_in_turn(50, 1, worker);
+        FAIL() << "nothing was thrown";
+      } catch (const std::runtime_error& error) {
+        EXPECT_STREQ(error.what(), "block 11");
+      }
+      EXPECT_EQ(seen.size(), 11u) << threads << " threads";
     }
   }
 }
