@@ -7,6 +7,7 @@
 #include <string>
 
 #include "lacon/catalog/messages.hpp"
+#include "lacon/elements/lanes.hpp"
 #include "lacon/operators/meshing/body.hpp"
 #include "lacon/operators/meshing/quality.hpp"
 
@@ -26,6 +27,67 @@ std::string some(const std::vector<std::int32_t>& numbers, Name name) {
   std::string text;
   for (std::size_t i = 0; i < std::min(shown, numbers.size()); ++i) text += (i ? ", " : "") + name(numbers[i]);
   return text + (numbers.size() > shown ? ", ..." : "");
+}
+
+/// The cells that have the same set of nodes as a cell before them.
+std::vector<std::int32_t> twins(const Mesh& mesh) {
+  // only cells that share their lowest node are compared, and of these those whose sum of scattered node numbers is the same
+  const auto lowest = [&](std::size_t c) { return static_cast<std::size_t>(std::ranges::min(mesh.cells[c])); };
+  const auto digest = [&](std::size_t c) {
+    std::uint64_t sum = 0;
+    for (const std::int32_t node : mesh.cells[c]) {
+      const std::uint64_t scattered = (static_cast<std::uint64_t>(node) + 1) * 0x9E3779B97F4A7C15u;
+      sum += scattered ^ (scattered >> 32);
+    }
+    return sum;
+  };
+  const auto same = [&](std::int32_t a, std::int32_t b) {
+    return std::ranges::is_permutation(mesh.cells[static_cast<std::size_t>(a)], mesh.cells[static_cast<std::size_t>(b)]);
+  };
+  std::vector<std::int32_t> start(mesh.n_nodes() + 1, 0);  // of the cells of each lowest node
+  for (std::size_t c = 0; c < mesh.n_cells(); ++c) ++start[lowest(c)];
+  std::exclusive_scan(start.begin(), start.end(), start.begin(), 0);
+  std::vector<std::pair<std::uint64_t, std::int32_t>> cells(mesh.n_cells());
+  for (std::size_t c = 0; c < mesh.n_cells(); ++c)
+    cells[static_cast<std::size_t>(start[lowest(c)]++)] = {digest(c), static_cast<std::int32_t>(c)};
+  std::vector<std::int32_t> found;
+  for (std::size_t n = 0, first = 0; n < mesh.n_nodes(); ++n) {
+    const auto end = static_cast<std::size_t>(start[n]);  // has moved there
+    std::sort(cells.begin() + static_cast<std::ptrdiff_t>(first), cells.begin() + static_cast<std::ptrdiff_t>(end));
+    for (std::size_t i = first + 1; i < end; ++i)
+      for (std::size_t j = i; j-- > first && cells[j].first == cells[i].first;)
+        if (same(cells[i].second, cells[j].second)) {
+          found.push_back(cells[i].second);
+          break;
+        }
+    first = end;
+  }
+  std::ranges::sort(found);
+  return found;
+}
+
+/// Whether the least distance between two of the vertices is at most `flatness` times the greatest.
+LACON_KERNEL bool is_flat(std::span<const std::int32_t> vertices, std::span<const double> coordinates, double flatness) {
+  double place[3][LACON_LANES];
+  for (std::size_t i = 0; i < LACON_LANES; ++i) {
+    const auto node = static_cast<std::size_t>(vertices[i < vertices.size() ? i : 0]);
+    for (std::size_t k = 0; k < 3; ++k) place[k][i] = coordinates[3 * node + k];
+  }
+  const Lanes x = lanes(place[0], 0), y = lanes(place[1], 0), z = lanes(place[2], 0), rank = {0, 1, 2, 3, 4, 5, 6, 7},
+              infinite = Lanes{} + INFINITY;
+  Lanes least = infinite, greatest = {};
+  for (std::size_t v = 1; v < vertices.size(); ++v) {
+    const Lanes dx = x - x[v], dy = y - y[v], dz = z - z[v], square = dx * dx + dy * dy + dz * dz,
+                before = rank < Lanes{} + static_cast<double>(v) ? square : infinite;  // each pair once, no vertex with itself
+    least = before < least ? before : least;
+    greatest = square > greatest ? square : greatest;
+  }
+  double shortest = INFINITY, longest = 0;
+  for (int i = 0; i < LACON_LANES; ++i) {
+    shortest = std::min(shortest, least[i]);
+    longest = std::max(longest, greatest[i]);
+  }
+  return std::sqrt(shortest) <= flatness * std::sqrt(longest);
 }
 
 void tell(std::string_view id, const std::vector<std::int32_t>& numbers, std::string (*name)(std::int64_t)) {
@@ -79,42 +141,19 @@ void turn_body_cells(Mesh& mesh) {
 }
 
 void inspect(const Mesh& mesh, double flatness) {
-  std::vector<bool> used(mesh.n_nodes(), false);
-  for (const std::int32_t node : mesh.cells.values) used[static_cast<std::size_t>(node)] = true;
+  std::vector<char> used(mesh.n_nodes(), 0);
+  for (const std::int32_t node : mesh.cells.values) used[static_cast<std::size_t>(node)] = 1;
   std::vector<std::int32_t> orphans;
   for (std::size_t i = 0; i < used.size(); ++i)
     if (!used[i]) orphans.push_back(static_cast<std::int32_t>(i));
   tell("LIRE_3", orphans, node_name);
 
-  // cells of one type with the same set of nodes follow each other once sorted
-  std::vector<std::vector<std::int32_t>> sorted(mesh.n_cells());
-  for (std::size_t c = 0; c < mesh.n_cells(); ++c) {
-    sorted[c].assign(mesh.cells[c].begin(), mesh.cells[c].end());
-    std::sort(sorted[c].begin(), sorted[c].end());
-  }
-  std::vector<std::int32_t> order(mesh.n_cells()), twins;
-  std::iota(order.begin(), order.end(), 0);
-  const auto at = [&](std::int32_t c) -> const std::vector<std::int32_t>& { return sorted[static_cast<std::size_t>(c)]; };
-  std::sort(order.begin(), order.end(), [&](std::int32_t a, std::int32_t b) { return at(a) != at(b) ? at(a) < at(b) : a < b; });
-  for (std::size_t i = 1; i < order.size(); ++i)
-    if (at(order[i]) == at(order[i - 1])) twins.push_back(order[i]);
-  std::sort(twins.begin(), twins.end());
-  tell("LIRE_4", twins, cell_name);
+  tell("LIRE_4", twins(mesh), cell_name);
 
   std::vector<std::int32_t> flat;
   for (std::size_t c = 0; c < mesh.n_cells(); ++c) {
     const auto vertices = mesh.cells[c].first(static_cast<std::size_t>(mesh.row(c).n_vertices));
-    double least = INFINITY, greatest = 0;
-    for (std::size_t i = 0; i < vertices.size(); ++i)
-      for (std::size_t j = 0; j < i; ++j) {
-        double square = 0;
-        for (std::size_t k = 0; k < 3; ++k)
-          square += std::pow(
-              mesh.point(static_cast<std::size_t>(vertices[i]))[k] - mesh.point(static_cast<std::size_t>(vertices[j]))[k], 2);
-        least = std::min(least, std::sqrt(square));
-        greatest = std::max(greatest, std::sqrt(square));
-      }
-    if (vertices.size() > 1 && least <= flatness * greatest) flat.push_back(static_cast<std::int32_t>(c));
+    if (vertices.size() > 1 && is_flat(vertices, mesh.coordinates, flatness)) flat.push_back(static_cast<std::int32_t>(c));
   }
   tell("LIRE_5", flat, cell_name);
 }

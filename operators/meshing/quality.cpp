@@ -52,53 +52,51 @@ std::span<const double> gradients_of(CellType type) {
   return tables[static_cast<std::size_t>(type)];
 }
 
-/// The same in space: a mesh has many cells, and this is asked of each.
-LACON_KERNEL double jacobian_in_space(std::span<const std::int32_t> nodes, std::span<const double> coordinates,
-                                      const double* gradients) {
-  using Row = double __attribute__((vector_size(4 * sizeof(double))));  // three count
-  Row j[3] = {};
-  for (std::size_t a = 0; a < nodes.size(); ++a, gradients += 3) {
-    const double* const x = coordinates.data() + 3 * std::ptrdiff_t{nodes[a]};
-    const Row point = {x[0], x[1], x[2], 0};
-    for (std::size_t i = 0; i < 3; ++i) j[i] += gradients[i] * point;
-  }
-  return determinant(j, 3);
-}
+constexpr std::size_t max_nodes = 27;
 
-/// The determinant at one point of gradients_of().
+/// The range of the determinants at the first `n_points` of gradients_of(), in d dimensions.
 template <std::size_t d>
-double jacobian(std::span<const std::int32_t> nodes, std::span<const double> coordinates, const double* gradients) {
-  std::array<std::array<double, 3>, 3> j{};
+[[gnu::always_inline]] inline JacobianRange range_at(std::size_t n_points, std::span<const std::int32_t> nodes,
+                                                     std::span<const double> coordinates, const double* gradients) {
+  using Row = double __attribute__((vector_size(4 * sizeof(double))));  // three count
+  Row x[max_nodes];
   for (std::size_t a = 0; a < nodes.size(); ++a) {
-    const double* const x = coordinates.data() + 3 * std::ptrdiff_t{nodes[a]};
-    for (std::size_t i = 0; i < d; ++i)
-      for (std::size_t k = 0; k < d; ++k) j[i][k] += gradients[a * d + i] * x[k];
+    const double* const of = coordinates.data() + 3 * std::ptrdiff_t{nodes[a]};
+    x[a] = Row{of[0], of[1], of[2], 0};
   }
-  return determinant(j, d);
+  JacobianRange range{INFINITY, -INFINITY};
+  for (std::size_t point = 0; point < n_points; ++point) {
+    Row j[3] = {};
+    for (std::size_t a = 0; a < nodes.size(); ++a, gradients += d)
+      for (std::size_t i = 0; i < d; ++i) j[i] += gradients[i] * x[a];
+    const double here = determinant(j, d);
+    range.least = std::min(range.least, here);
+    range.greatest = std::max(range.greatest, here);
+  }
+  return range;
 }
 
-double jacobian(CellType type, std::span<const std::int32_t> nodes, std::span<const double> coordinates, std::size_t point) {
-  const int d = catalog::cell(type).dimension;
-  const double* const gradients = gradients_of(type).data() + point * nodes.size() * static_cast<std::size_t>(d);
-  if (d == 3) return jacobian_in_space(nodes, coordinates, gradients);
-  return d == 2 ? jacobian<2>(nodes, coordinates, gradients) : jacobian<1>(nodes, coordinates, gradients);
+/// The same: a mesh has many cells, and this is asked of each.
+LACON_KERNEL JacobianRange range_at(int dimension, std::size_t n_points, std::span<const std::int32_t> nodes,
+                                    std::span<const double> coordinates, const double* gradients) {
+  if (dimension == 3) return range_at<3>(n_points, nodes, coordinates, gradients);
+  if (dimension == 2) return range_at<2>(n_points, nodes, coordinates, gradients);
+  return range_at<1>(n_points, nodes, coordinates, gradients);
+}
+
+JacobianRange range_at(CellType type, std::size_t n_points, std::span<const std::int32_t> nodes,
+                       std::span<const double> coordinates) {
+  return range_at(catalog::cell(type).dimension, n_points, nodes, coordinates, gradients_of(type).data());
 }
 
 }  // namespace
 
 double central_jacobian(CellType type, std::span<const std::int32_t> nodes, std::span<const double> coordinates) {
-  return jacobian(type, nodes, coordinates, 0);
+  return range_at(type, 1, nodes, coordinates).least;
 }
 
 JacobianRange jacobian_range(CellType type, std::span<const std::int32_t> nodes, std::span<const double> coordinates) {
-  const double first = central_jacobian(type, nodes, coordinates);
-  JacobianRange range{first, first};
-  for (std::size_t point = 1; point <= nodes.size(); ++point) {
-    const double here = jacobian(type, nodes, coordinates, point);
-    range.least = std::min(range.least, here);
-    range.greatest = std::max(range.greatest, here);
-  }
-  return range;
+  return range_at(type, 1 + nodes.size(), nodes, coordinates);
 }
 
 namespace {
