@@ -7,8 +7,9 @@
 #include "lacon/elements/plugin.h"
 
 // A kernel that is marked so is compiled for several instruction sets; the loader takes the best one that the processor has, by
-// its features: names of processors ("arch=haswell") would leave out all others that have the same.
-#if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__)
+// its features: names of processors ("arch=haswell") would leave out all others that have the same. The thread sanitizer is not
+// ready when the loader chooses.
+#if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__) && !defined(__SANITIZE_THREAD__)
 #define LACON_KERNEL __attribute__((target_clones("default", "arch=x86-64-v3", "arch=x86-64-v4")))
 #else
 #define LACON_KERNEL

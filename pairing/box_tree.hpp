@@ -39,7 +39,12 @@ class BoxTree {
  public:
   explicit BoxTree(std::vector<Box<D>> boxes) : boxes_(std::move(boxes)), items_(boxes_.size()) {
     std::iota(items_.begin(), items_.end(), 0);
-    if (!items_.empty()) build(0, static_cast<std::int32_t>(items_.size()));
+    if (items_.empty()) return;
+    build(0, static_cast<std::int32_t>(items_.size()));
+    std::vector<Box<D>> in_order;  // of the leaves: what a visit reads lies together
+    in_order.reserve(boxes_.size());
+    for (const std::int32_t item : items_) in_order.push_back(boxes_[item]);
+    boxes_ = std::move(in_order);
   }
 
   /// Call `report(item)` for every item whose box `touches(box)`. `touches` must be monotone: true for a box if it is for one
@@ -55,7 +60,7 @@ class BoxTree {
       if (!touches(node.box)) continue;
       if (node.right < 0) {
         for (std::int32_t i = node.first; i < node.last; ++i)
-          if (touches(boxes_[items_[i]])) report(items_[i]);
+          if (touches(boxes_[i])) report(items_[i]);
       } else {
         stack[depth++] = node.right;
         stack[depth++] = static_cast<std::int32_t>(&node - nodes_.data()) + 1;
@@ -92,7 +97,7 @@ class BoxTree {
     return at;
   }
 
-  std::vector<Box<D>> boxes_;
+  std::vector<Box<D>> boxes_;  ///< of the items, by item while the tree is built, in the order of items_ then
   std::vector<std::int32_t> items_;
   std::vector<Node> nodes_;
 };

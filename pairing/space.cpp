@@ -45,43 +45,58 @@ double extent(const Surface& surface) {
   return norm(Vec3{box.high[0] - box.low[0], box.high[1] - box.low[1], box.high[2] - box.low[2]});
 }
 
-/// A facet whose coordinates start at one of its own nodes.
-struct Facet {
+using Nodes = std::array<Vec3, 9>;
+
+/// The nodes of a cell, in coordinates that start at `origin`.
+Nodes nodes_of(const Surface& surface, std::size_t cell, Vec3 origin) {
+  Nodes nodes;
+  std::size_t i = 0;
+  for (const std::int32_t node : surface.nodes[cell]) nodes[i++] = point(surface, node) - origin;
+  return nodes;
+}
+
+/// The longest distance between two of the first nodes.
+double diameter(const Nodes& nodes, int n_vertices) {
+  double longest = 0;
+  for (int i = 0; i < n_vertices; ++i)
+    for (int j = 0; j < i; ++j) longest = std::max(longest, norm(nodes[i] - nodes[j]));
+  return longest;
+}
+
+/// What is kept of every master.
+struct FacetKind {
   CellType type{};
   Family family{};
   int order = 1, n_vertices = 0;
-  Vec3 origin;
-  std::array<Vec3, 9> nodes;  ///< minus origin
-  Map3 x;                     ///< minus origin
-  Vec3 normal;                ///< mean, unit; 0 for a facet without area
-  double size = 0;            ///< the longest distance from its first node
-  bool straight = true;       ///< edges
-  bool affine = false;        ///< to round-off
+  Vec3 normal;           ///< mean, unit; 0 for a facet without area
+  double size = 0;       ///< the longest distance from its first node
+  bool straight = true;  ///< edges
+  bool affine = false;   ///< to round-off
   double distortion = 0;
 
-  /// The longest distance between two vertices.
-  double diameter() const {
-    double longest = 0;
-    for (int i = 0; i < n_vertices; ++i)
-      for (int j = 0; j < i; ++j) longest = std::max(longest, norm(nodes[i] - nodes[j]));
-    return longest;
+  Map3 map(const Nodes& nodes) const {
+    return interpolate(type, std::span<const Vec3>(nodes).first(static_cast<std::size_t>(catalog::cell(type).n_nodes)));
   }
 };
 
+/// A facet whose coordinates start at one of its own nodes.
+struct Facet : FacetKind {
+  Vec3 origin;
+  Nodes nodes;  ///< minus origin
+  Map3 x;       ///< minus origin
+};
+
 Facet facet(const Surface& surface, std::size_t cell, double flat) {
-  const auto nodes = surface.nodes[cell];
   Facet f;
   f.type = surface.types[cell];
   const catalog::CellRow& row = catalog::cell(f.type);
   f.family = row.family;
   f.order = row.order;
   f.n_vertices = row.n_vertices;
-  f.origin = point(surface, nodes[0]);
-  for (std::size_t i = 0; i < nodes.size(); ++i) {
-    f.nodes[i] = point(surface, nodes[i]) - f.origin;
-    f.size = std::max(f.size, norm(f.nodes[i]));
-  }
-  f.x = interpolate(f.type, std::span<const Vec3>(f.nodes).first(nodes.size()));
+  f.origin = point(surface, surface.nodes[cell][0]);
+  f.nodes = nodes_of(surface, cell, f.origin);
+  for (int i = 0; i < row.n_nodes; ++i) f.size = std::max(f.size, norm(f.nodes[i]));
+  f.x = f.map(f.nodes);
   Vec3 area;  // of the outline
   const int nv = f.n_vertices;
   for (int i = 0; i < nv; ++i) {
@@ -109,13 +124,13 @@ struct Part {
 bool before(Vec3 a, Vec3 b) { return std::tie(a.x, a.y, a.z) < std::tie(b.x, b.y, b.z); }
 
 /// The outline of a facet as a polygon: `edge_pieces` pieces for a curved edge, at places that depend on the edge alone.
-void outline(const Facet& f, Vec3 shift, std::vector<Vec3>& polygon) {
+void outline(const FacetKind& f, const Nodes& nodes, std::vector<Vec3>& polygon) {
   polygon.clear();
   for (int i = 0; i < f.n_vertices; ++i) {
-    const Vec3 a = f.nodes[i] + shift, b = f.nodes[(i + 1) % f.n_vertices] + shift;
+    const Vec3 a = nodes[i], b = nodes[(i + 1) % f.n_vertices];
     polygon.push_back(a);
     if (f.straight) continue;
-    const Vec3 m = f.nodes[f.n_vertices + i] + shift;
+    const Vec3 m = nodes[f.n_vertices + i];
     const bool forward = before(a, b);
     const Vec3 first = forward ? a : b, last = forward ? b : a;
     for (int k = 1; k < edge_pieces; ++k) {
@@ -196,7 +211,7 @@ class SlaveFacet {
       double bulge = 0;
       for (int i = 0; i < f.n_vertices && !plane; ++i)
         bulge = std::max(bulge, norm(f.nodes[f.n_vertices + i] - 0.5 * (f.nodes[i] + f.nodes[(i + 1) % f.n_vertices])));
-      const double steps = 8 * std::max(turn, 4 * bulge / f.diameter());
+      const double steps = 8 * std::max(turn, 4 * bulge / diameter(f.nodes, f.n_vertices));
       subdivide(f.family == Family::TRIA ? std::clamp(1 + static_cast<int>(std::ceil(steps)), 2, 6)
                                          : std::clamp(1 + static_cast<int>(std::ceil(steps / std::numbers::sqrt2)), 2, 4));
     }
@@ -346,8 +361,8 @@ class SlaveFacet {
 /// A master as one slave facet sees it: where a normal of the slave meets it, and how far away.
 class Target {
  public:
-  Target(const Facet& f, const SlaveFacet& slave) : slave_(slave), family_(f.family), x_(f.x) {
-    x_.c[0] = x_.c[0] + (f.origin - slave.f.origin);
+  /// @param nodes of the master, from the slave's origin
+  Target(const FacetKind& f, const Nodes& nodes, const SlaveFacet& slave) : slave_(slave), family_(f.family), x_(f.map(nodes)) {
     size_ = f.size + norm(x_.c[0]) + slave.f.size;
     if (slave.constant) along_ = Inverse(project(x_, slave.e1, slave.e2), family_);
   }
@@ -373,11 +388,12 @@ class Target {
   double size_ = 0;  ///< at least the distance between any two points of slave and master
 };
 
-/// Convex parts of a master's outline, as seen along the slave's mean normal.
-void cut_in_parts(const Facet& f, const SlaveFacet& slave, std::vector<Vec3>& polygon, std::vector<Part>& parts) {
+/// Convex parts of a master's outline, as seen along the slave's mean normal. @param nodes of the master, from the slave's
+/// origin
+void cut_in_parts(const FacetKind& f, const Nodes& nodes, const SlaveFacet& slave, std::vector<Vec3>& polygon,
+                  std::vector<Part>& parts) {
   parts.clear();
-  const Vec3 shift = f.origin - slave.f.origin;
-  outline(f, shift, polygon);
+  outline(f, nodes, polygon);
   const std::size_t n = polygon.size();
   if (n == 3) {
     parts.push_back({3, {polygon[0], polygon[1], polygon[2]}});
@@ -398,7 +414,7 @@ void cut_in_parts(const Facet& f, const SlaveFacet& slave, std::vector<Vec3>& po
       for (const std::size_t k : {std::size_t{1}, std::size_t{2}})
         parts.push_back({3, {polygon[reflex], polygon[(reflex + k) % 4], polygon[(reflex + k + 1) % 4]}});
   } else {
-    const Vec3 centre = f.x(probes(f.family).back()).x + shift;
+    const Vec3 centre = f.map(nodes)(probes(f.family).back()).x;
     for (std::size_t i = 0; i < n; ++i) parts.push_back({3, {centre, polygon[i], polygon[(i + 1) % n]}});
   }
 }
@@ -433,12 +449,12 @@ bool sooner(const View* a, const View* b) {
 }
 
 /// Whether polygons of a couple are exact.
-bool exact_polygons(const SlaveFacet& slave, const Facet& master) { return slave.constant && master.straight; }
+bool exact_polygons(const SlaveFacet& slave, const FacetKind& master) { return slave.constant && master.straight; }
 
 /// The degree to which a couple is integrated. The integrand is analytic in the plane; the nearest singularity of an inverse
 /// map lies at about 1 / distortion, so that a rule of degree d leaves rho^-d with rho as below (METHOD.md 5.4 has measured
 /// figures). Where polygons are themselves approximate a higher degree than 8 serves nothing.
-int integration_degree(const SlaveFacet& slave, const Facet& master) {
+int integration_degree(const SlaveFacet& slave, const FacetKind& master) {
   const double d = std::min(0.999, std::max(slave.f.distortion, master.distortion));
   const int polynomial = 2 * std::max(slave.f.order, master.order);
   if (d <= 1e-12) return std::max(4, polynomial);
@@ -499,24 +515,25 @@ void place_points(const Polygon& polygon, int degree, bool enough, std::vector<C
 
 /// The master skin, examined once for all slave cells.
 struct Masters {
-  const Surface& slave;
+  const Surface &slave, &master;
   PairingOptions options;
   double slave_extent = 0, smallest_cosine = -1;
-  std::vector<Facet> facets;
+  std::vector<FacetKind> facets;
   std::vector<std::int32_t> usable;  ///< cells that are not degenerate, and what the tree has as items
   BoxTree<3> tree;
 
-  Masters(const Surface& slave_skin, const Surface& master, const PairingOptions& pairing_options,
+  Masters(const Surface& slave_skin, const Surface& master_skin, const PairingOptions& pairing_options,
           std::vector<RejectedCouple>& rejected)
       : slave(slave_skin),
+        master(master_skin),
         options(pairing_options),
         slave_extent(extent(slave_skin)),
         smallest_cosine(detail::smallest_cosine(pairing_options)),
         facets(master.size()),
-        tree(examine(master, rejected)) {}
+        tree(examine(rejected)) {}
 
  private:
-  std::vector<Box<3>> examine(const Surface& master, std::vector<RejectedCouple>& rejected) {
+  std::vector<Box<3>> examine(std::vector<RejectedCouple>& rejected) {
     const PairingTolerances& tolerances = options.tolerances;
     const double size = extent(master);
     std::vector<Box<3>> boxes(master.size());
@@ -524,16 +541,19 @@ struct Masters {
     parallel_for(master.size(), block, [&](const LoopBlock& cells) {
       std::vector<Vec3> polygon;
       for (std::size_t cell = cells.first; cell < cells.last; ++cell) {
-        if (detail::finite(master, cell)) facets[cell] = facet(master, cell, tolerances.flat);
-        const Facet& f = facets[cell];
+        const Facet f = detail::finite(master, cell) ? facet(master, cell, tolerances.flat) : Facet{};
+        facets[cell] = f;
         const Map3::Value at = f.x({0, 0});
         degenerate[cell] = !(f.size > tolerances.degenerate * size) || !(norm(f.normal) > 0) ||
                            !(std::abs(dot(cross(at.d1, at.d2), f.normal)) > tolerances.degenerate * f.size * f.size);
         if (degenerate[cell]) continue;
         Box<3>& box = boxes[cell] = Box<3>::empty();
-        outline(f, f.origin, polygon);
-        polygon.push_back(f.x(probes(f.family).back()).x + f.origin);
-        for (const Vec3 p : polygon) box.add(std::array{p.x, p.y, p.z}.data());
+        outline(f, f.nodes, polygon);
+        polygon.push_back(f.x(probes(f.family).back()).x);
+        for (const Vec3 p : polygon) {
+          const Vec3 x = p + f.origin;
+          box.add(std::array{x.x, x.y, x.z}.data());
+        }
         for (int d = 0; d < 3; ++d) {
           box.low[d] -= tolerances.box * size;
           box.high[d] += tolerances.box * size;
@@ -561,7 +581,7 @@ class PairerInSpace final : public detail::CellPairer {
 
   void pair(std::size_t cell, Pairing& pairing) override {
     const Surface& slave = masters_->slave;
-    const std::vector<Facet>& masters = masters_->facets;
+    const std::vector<FacetKind>& masters = masters_->facets;
     const PairingOptions& options = masters_->options;
     const PairingTolerances& tolerances = options.tolerances;
     ContactCells& cells = pairing.cells;
@@ -576,14 +596,17 @@ class PairerInSpace final : public detail::CellPairer {
     views.clear();
     n_stored = 0;
     // The gap in the middle of a view, or infinity where there is no image.
+    const auto nodes_of_master = [&](std::int32_t m) {
+      return nodes_of(masters_->master, static_cast<std::size_t>(m), e.f.origin);
+    };
     const auto distance = [&](const View& view, Vec2 y) {
       const SlaveFacet::Place place = e.place(y, tolerances);
-      const Target target(masters[view.master], e);
+      const Target target(masters[view.master], nodes_of_master(view.master), e);
       const std::optional<Vec2> image = place.found ? target.image(y, place.xi, tolerances) : std::nullopt;
       return image ? std::abs(target.gap(place.xi, *image)) : std::numeric_limits<double>::infinity();
     };
     const auto couple = [&](std::int32_t m) {
-      cut_in_parts(masters[m], e, polygon, parts);
+      cut_in_parts(masters[m], nodes_of_master(m), e, polygon, parts);
       bool couples = false, away = false, thin = false;
       for (const Part& part : parts) {
         const Vec3 area = area_vector(part);
@@ -621,9 +644,10 @@ class PairerInSpace final : public detail::CellPairer {
     }
     if (options.distance_limit > 0)
       std::erase_if(views, [&](const View* view) {
-        const double diameter = std::max(e.f.diameter(), masters[view->master].diameter());
+        const double size = std::max(diameter(e.f.nodes, e.f.n_vertices),
+                                     diameter(nodes_of_master(view->master), masters[view->master].n_vertices));
         const double gap = distance(*view, middle(view->region.polygon));
-        const bool far = std::isfinite(gap) && gap > options.distance_limit * diameter;
+        const bool far = std::isfinite(gap) && gap > options.distance_limit * size;
         if (far) reject(view->master, Rejection::too_far);
         return far;
       });
@@ -676,8 +700,8 @@ class PairerInSpace final : public detail::CellPairer {
 
     for (const View* const kept_view : kept) {
       const View& view = *kept_view;
-      const Facet& f = masters[view.master];
-      const Target target(f, e);
+      const FacetKind& f = masters[view.master];
+      const Target target(f, nodes_of_master(view.master), e);
       place_points(view.region.polygon, options.degree > 0 ? options.degree : integration_degree(e, f), exact_polygons(e, f),
                    points);
       const std::size_t before_points = cells.weight.size(), before_vertices = cells.vertex.size();

@@ -50,13 +50,10 @@ constexpr double tolerated_overlap = 0.1;     // of a slave cell's size, beyond 
 constexpr std::size_t block = 128;            // slave cells that a thread takes at a time
 constexpr double coverage_round_off = 1e-12;  // covered fractions above 1 by no more than this are 1
 
-/// Room for what is still to come, where an array is nearly full. @param whole size of what came behind `first` in the end,
-/// over its present size
+/// Room for what is still to come. @param whole what will have come behind `first` in the end, over what has come so far
 template <class T>
 void make_room(std::vector<T>& array, std::size_t first, double whole) {
-  const double grown = static_cast<double>(array.size() - first);
-  if (0.8 * static_cast<double>(array.capacity() - first) < grown && whole > 1)
-    array.reserve(first + static_cast<std::size_t>(1.02 * whole * grown));
+  array.reserve(first + static_cast<std::size_t>(1.05 * whole * static_cast<double>(array.size() - first)));
 }
 
 }  // namespace
@@ -236,10 +233,12 @@ void ContactGeometry::update(std::span<const double> displacement, std::vector<Z
         integrate(zone, b.pairing.cells, b.groups);
       });
       for (std::size_t i = 0; i < some; ++i) add(zone, blocks[i], record);
-      // grown by doubling these arrays would take up to three times their size
-      const double whole = static_cast<double>(n_blocks) / static_cast<double>(done + some);
-      make_room(cells_, first_cell, whole);
-      make_room(coupling_, first_coupling, whole);
+      // grown by doubling alone these arrays would take up to three times their size
+      if (done < n_blocks / 8 && done + some >= n_blocks / 8) {
+        const double whole = static_cast<double>(n_blocks) / static_cast<double>(done + some);
+        make_room(cells_, first_cell, whole);
+        make_room(coupling_, first_coupling, whole);
+      }
     }
     zone.slave.normals = {};
   }

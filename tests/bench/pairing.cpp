@@ -170,8 +170,30 @@ void with_gap_and_integrals(benchmark::State& state) {
   report_pairing(state, skins.contact.slaves.size(), geometry.cells().size());
 }
 
+/// Skins that are no longer what they were: Jacobians that vary along flat facets ask for rules of higher degree, warped facets
+/// for normals that vary.
+enum class Shape { distorted, warped };
+
+template <Shape shape>
+void after_displacement(benchmark::State& state) {
+  const Skins skins(state.range(0), CellType::QUAD4);
+  static Registry registry;
+  ContactGeometry geometry(skins.mesh, skins.model, skins.contact, registry);
+  std::vector<double> displacement;
+  for (std::size_t node = 0; node < skins.mesh.n_nodes(); ++node) {
+    const auto& x = skins.mesh.point(node);
+    const double u = 0.01 * std::sin(3 * x[0] + 2 * x[1]);
+    if (shape == Shape::distorted)
+      displacement.insert(displacement.end(), {u, -u, 0});
+    else
+      displacement.insert(displacement.end(), {0, 0, u});
+  }
+  for (auto run : state) geometry.update(displacement);
+  report_pairing(state, skins.contact.slaves.size(), geometry.cells().size());
+}
+
 void sizes(benchmark::internal::Benchmark* bench) {
-  for (const std::int64_t facets : {10'000, 40'000, 160'000, 640'000}) bench->Arg(facets);
+  for (const std::int64_t facets : {10'000, 40'000, 160'000, 640'000, 1'000'000}) bench->Arg(facets);
   bench->Unit(benchmark::kMillisecond)->Complexity(benchmark::oN);
 }
 
@@ -179,5 +201,7 @@ BENCHMARK(pairing_alone<CellType::QUAD4>)->Apply(sizes);
 BENCHMARK(pairing_alone<CellType::TRIA3>)->Apply(sizes);
 BENCHMARK(with_gap_and_integrals<CellType::QUAD4>)->Apply(sizes);
 BENCHMARK(with_gap_and_integrals<CellType::TRIA3>)->Apply(sizes);
+BENCHMARK(after_displacement<Shape::distorted>)->Arg(10'000)->Unit(benchmark::kMillisecond);
+BENCHMARK(after_displacement<Shape::warped>)->Arg(10'000)->Unit(benchmark::kMillisecond);
 
 }  // namespace
