@@ -74,7 +74,7 @@ def calculix_section(measured):
         ratio = row["seconds"] / ours["wall"]
         if row["failure"]:
             said = f"more than {ratio:.1f}" if row["failure"] == "out of time" else row["failure"]
-            rows.append([row["name"], "-", number(ours["wall"]), number(row["seconds"]), said, number(ours["memory"], 4), number(row["memory"], 4),
+            rows.append([row["name"], "-", number(ours["wall"]), number(row["seconds"]), said, number(ours["memory"], 4), f"{number(row['memory'], 4)} so far",
                          int(ours["counts"]["solutions"]), "-", number(ours["force"], 5), "-", "-"])
         else:
             rows.append([row["name"], number(row["equations"]), number(ours["wall"]), number(row["seconds"]), f"**{ratio:.1f}**",
@@ -141,9 +141,20 @@ def parts_section(measured):
         step = next((step for step in ("G", "M", "k") if value >= {"G": 1e9, "M": 1e6, "k": 1e3}[step]), "")
         return f"{number(value / {'G': 1e9, 'M': 1e6, 'k': 1e3, '': 1}[step])} {step}".rstrip()
 
-    rows = [[case["name"].replace("|", " "), amount(case["items/s"]), rate(case, "GF/s", "of_dgemm"), rate(case, "GB/s", "of_copy"),
-             number(case["peak_MB"]) if "peak_MB" in case else ""] for case in measured["parts"]]
-    return table(["case", "items a second", "GF/s (of dgemm)", "GB/s (of a copy)", "peak, MB"], rows)
+    rows, elements, behaviours = [], {}, []
+    for case in measured["parts"]:
+        if case["program"] == "stiffness":  # "stiffness 3D/HEXA8 ELAS/PETIT": a row an element, a column a behaviour
+            _, element, behaviour = case["name"].split()
+            elements.setdefault(element, {})[behaviour] = f"{amount(case['items/s'])}, {rate(case, 'GF/s', 'of_dgemm')}, {rate(case, 'GB/s', 'of_copy')}"
+            behaviours += [behaviour] * (behaviour not in behaviours)
+        else:
+            rows.append([case["name"], amount(case["items/s"]), rate(case, "GF/s", "of_dgemm"), rate(case, "GB/s", "of_copy"),
+                         number(case["peak_MB"]) if "peak_MB" in case else ""])
+    made = [table(["case", "items a second", "GF/s (of dgemm)", "GB/s (of a copy)", "peak, MB"], rows)] if rows else []
+    if elements:
+        made += ["Stiffness, forces and stresses: elements a second, GF/s (of dgemm), GB/s of matrices (of a copy).",
+                 table(["element", *behaviours], [[element, *(found.get(b, "") for b in behaviours)] for element, found in elements.items()])]
+    return "\n\n".join(made)
 
 
 def machine_section(measured):

@@ -68,7 +68,9 @@ class Tables(unittest.TestCase):
         """Every section has its markers in docs/performance.md."""
         made = measured(*(study(f"H{k}{c}", n) for c in ("", "c") for k, n in enumerate((10000, 50000), 1)))
         made["calculix"] = [{"name": "H1", "seconds": 10.0, "memory": 500.0, "failure": "exit status 1"}]
-        made["parts"] = [{"name": "clip/3", "program": "pairing", "items/s": 2e6, "GF/s": 25.0, "of_dgemm": 0.5}]
+        made["parts"] = [{"name": "clip/3", "program": "pairing", "items/s": 2e6, "GF/s": 25.0, "of_dgemm": 0.5},
+                         {"name": "stiffness 3D/HEXA8 ELAS/PETIT", "program": "stiffness", "items/s": 4e6, "GF/s": 20.0, "of_dgemm": 0.4,
+                          "GB/s": 8.0, "of_copy": 0.4}]
         with tempfile.TemporaryDirectory() as folder:
             docs = pathlib.Path(folder)
             (docs / "performance.md").write_text((ROOT / "docs/performance.md").read_text())
@@ -78,6 +80,7 @@ class Tables(unittest.TestCase):
             tables.write_docs(docs, measured(study("H3", 155000)))  # what is not measured anew stays
             self.assertIn("clip/3", (docs / "performance.md").read_text())
         self.assertIn("| clip/3 | 2.00 M | 25.0 (50 %) |", text)
+        self.assertIn("| 3D/HEXA8 | 4.00 M, 20.0 (40 %), 8.00 (40 %) |", text)
         for content in tables.sections(made).values():
             self.assertIn(content, text)
         with self.assertRaises(ValueError):
