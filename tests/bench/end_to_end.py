@@ -7,6 +7,7 @@ usage: end_to_end.py BUILD [NAME ...]      BUILD: build/release, with the target
        --threads 1 2    of Lacon, one run each; by default 1
        --parts          the Google Benchmarks as well
        --no-calculix    even where ccx is installed (Debian: calculix-ccx), leave it out
+       --patience N     it gets N times the time of Lacon, by default 20; but at least a minute, and at most ten
        --json FILE      everything that was measured
        --docs           put it into docs/performance.json, in place of older figures of the same studies, and write the tables and the chart of
                         docs/performance.md anew from there
@@ -42,8 +43,10 @@ CURVATURE, PUSH = 0.002, 0.0011
 MESHES = pathlib.Path(os.environ.get("LACON_SHARED_BENCH", SOURCE.parent / "shared/bench")) / "meshes"
 NAMES = (*SIZES, *(f"{name}c" for name in SIZES), "T2", "T3c")
 PARTS = ("pairing", "cutting", "stiffness", "algebra")
-#: CalculiX gets so many times the time of Lacon, but at least and at most so many seconds
-PATIENCE, SHORTEST, LONGEST = 20, 60, 600
+#: CalculiX gets at least and at most so many seconds
+SHORTEST, LONGEST = 60, 600
+#: seconds after which the yardsticks are measured again
+STALE = 300
 
 
 def is_curved(name):
@@ -136,11 +139,11 @@ def best_study(*arguments):
     return min(rows, key=lambda row: row["wall"])
 
 
-def peer(name, folder, wall):
-    """CalculiX on the mesh of a study that was just run. @param wall of Lacon"""
+def peer(name, folder, wall, patience):
+    """CalculiX on the mesh of a study that was just run. @param wall of Lacon @param patience how many times that it may take"""
     base = folder / f"{name}.base"
     mesh = MeshOfBase(base / f"{identifier_of(base, 'START')}.h5")
-    found = calculix.solve(mesh, folder, PUSH if is_curved(name) else None, min(max(PATIENCE * wall, SHORTEST), LONGEST))
+    found = calculix.solve(mesh, folder, PUSH if is_curved(name) else None, min(max(patience * wall, SHORTEST), LONGEST))
     return {"name": name, "ratio": found["seconds"] / wall, **found}
 
 
@@ -163,7 +166,10 @@ def parts(build, environment, folder):
 
 def machine_of(build, environment):
     """What the machine can do now (bench_machine), and what it is."""
-    done = subprocess.run([build / "tests/bench_machine"], check=True, capture_output=True, text=True, env=environment)
+    program = build / "tests/bench_machine"
+    if not program.exists():
+        sys.exit(f"{program} is not there: cmake --build --preset release --target benches")
+    done = subprocess.run([program], check=True, capture_output=True, text=True, env=environment)
     with open("/proc/cpuinfo", encoding="ascii", errors="replace") as file:
         models = [line.partition(":")[2].strip() for line in file if line.startswith("model name")]
     return {**json.loads(done.stdout), "processor": models[0] if models else "unknown", "cores": os.cpu_count(),
@@ -178,6 +184,7 @@ def main():
     parser.add_argument("--threads", type=int, nargs="+", default=[1])
     parser.add_argument("--parts", action="store_true")
     parser.add_argument("--no-calculix", action="store_true")
+    parser.add_argument("--patience", type=float, default=20)
     parser.add_argument("--json", type=pathlib.Path)
     parser.add_argument("--docs", action="store_true")
     options = parser.parse_args()
@@ -186,7 +193,7 @@ def main():
         parser.error(f"{unknown[0]}: the studies are {' '.join(NAMES)}")
     build = options.build.resolve()
     environment = {**os.environ, "OPENBLAS_NUM_THREADS": "1", **({"OPENBLAS_CORETYPE": openblas_kernel()} if openblas_kernel() else {})}
-    measured = {"machine": machine_of(build, environment), "studies": [], "calculix": [], "parts": []}
+    measured, measured_at = {"machine": machine_of(build, environment), "studies": [], "calculix": [], "parts": []}, time.monotonic()
     with_calculix = not options.no_calculix and calculix.program()
     if not with_calculix:
         print("CalculiX is left out" + ("" if options.no_calculix else ": no ccx is installed (Debian: calculix-ccx)"))
@@ -198,14 +205,15 @@ def main():
             if not mesh_file(name, folder):
                 print(f"{name} is left out: no mesh {MESHES / (name.lower() + '.med')} (LACON_SHARED_BENCH)")
                 continue
+            if time.monotonic() - measured_at > STALE:
+                measured["machine"], measured_at = machine_of(build, environment), time.monotonic()
+            yardsticks = {key: measured["machine"][key] for key in ("factorisation_seconds", "dgemm_gflops", "copy_gbytes")}
             rows = [best_study(build / "bin/lacon", name, folder, threads) for threads in options.threads]
-            measured["studies"] += rows
+            measured["studies"] += [{**row, "yardsticks": yardsticks} for row in rows]
             print(*(f"{name}, {row['threads']} thread(s): {row['wall']:.2f} s" for row in rows), sep="\n", flush=True)
             if with_calculix:
-                measured["calculix"].append(peer(name, folder, rows[0]["wall"]))
+                measured["calculix"].append({**peer(name, folder, rows[0]["wall"], options.patience), "yardsticks": yardsticks})
                 print(f"{name}, CalculiX: {measured['calculix'][-1]['failure'] or ''} {measured['calculix'][-1]['seconds']:.2f} s", flush=True)
-    for row in measured["studies"] + measured["calculix"]:
-        row["yardsticks"] = {name: measured["machine"][name] for name in ("factorisation_seconds", "dgemm_gflops", "copy_gbytes")}
     if options.json:
         options.json.write_text(json.dumps(measured, indent=1) + "\n", encoding="utf-8")
     if options.docs:
