@@ -7,7 +7,7 @@ usage: end_to_end.py BUILD [NAME ...]      BUILD: build/release, with the target
        --threads 1 2    of Lacon, one run each; by default 1
        --parts          the Google Benchmarks as well
        --no-calculix    even where ccx is installed (Debian: calculix-ccx), leave it out
-       --patience N     it gets N times the time of Lacon, by default 20; but at least a minute, and at most ten
+       --patience N     it gets N times the time of Lacon, by default 20; but at least two minutes, and at most ten
        --json FILE      everything that was measured
        --docs           put it into docs/performance.json, in place of older figures of the same studies, and write the tables and the chart of
                         docs/performance.md anew from there
@@ -44,7 +44,7 @@ MESHES = pathlib.Path(os.environ.get("LACON_SHARED_BENCH", SOURCE.parent / "shar
 NAMES = (*SIZES, *(f"{name}c" for name in SIZES), "T2", "T3c")
 PARTS = ("pairing", "cutting", "stiffness", "algebra")
 #: CalculiX gets at least and at most so many seconds
-SHORTEST, LONGEST = 60, 600
+SHORTEST, LONGEST = 120, 600
 #: seconds after which the yardsticks are measured again
 STALE = 300
 
