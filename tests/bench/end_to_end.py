@@ -5,7 +5,7 @@ usage: end_to_end.py BUILD [NAME ...]      BUILD: build/release, with the target
                                            (tetrahedra, from LACON_SHARED_BENCH); by default H1 H2 H1c H2c
        --all            every one
        --threads 1 2    of Lacon, one run each; by default 1
-       --parts          the Google Benchmarks as well
+       --parts          the Google Benchmarks, start_up.py and cutting.py as well (--all: 5 million cells too)
        --no-calculix    even where ccx is installed (Debian: calculix-ccx), leave it out
        --patience N     it gets N times the time of Lacon, by default 20; but at least two minutes, and at most ten
        --json FILE      everything that was measured
@@ -164,6 +164,16 @@ def parts(build, environment, folder):
     return rows
 
 
+def texts(build, environment, large):
+    """What start_up.py and cutting.py print: name -> text."""
+    def said(script, *arguments):
+        return subprocess.run([sys.executable, SOURCE / "tests/bench" / script, build, *arguments], check=True, capture_output=True, text=True,
+                              env=environment).stdout
+
+    return {"start-up": said("start_up.py").partition("\nWhere one run")[0].strip(),
+            "cutting": "\n\n".join(said("cutting.py", millions).strip() for millions in (("1", "5") if large else ("1",)))}
+
+
 def machine_of(build, environment):
     """What the machine can do now (bench_machine), and what it is."""
     program = build / "tests/bench_machine"
@@ -193,7 +203,7 @@ def main():
         parser.error(f"{unknown[0]}: the studies are {' '.join(NAMES)}")
     build = options.build.resolve()
     environment = {**os.environ, "OPENBLAS_NUM_THREADS": "1", **({"OPENBLAS_CORETYPE": openblas_kernel()} if openblas_kernel() else {})}
-    measured, measured_at = {"machine": machine_of(build, environment), "studies": [], "calculix": [], "parts": []}, time.monotonic()
+    measured, measured_at = {"machine": machine_of(build, environment), "studies": [], "calculix": [], "parts": [], "texts": {}}, time.monotonic()
     with_calculix = not options.no_calculix and calculix.program()
     if not with_calculix:
         print("CalculiX is left out" + ("" if options.no_calculix else ": no ccx is installed (Debian: calculix-ccx)"))
@@ -201,6 +211,7 @@ def main():
         folder = pathlib.Path(folder)
         if options.parts:
             measured["parts"] = parts(build, environment, folder)
+            measured["texts"] = texts(build, environment, options.all)
         for name in names:
             if not mesh_file(name, folder):
                 print(f"{name} is left out: no mesh {MESHES / (name.lower() + '.med')} (LACON_SHARED_BENCH)")

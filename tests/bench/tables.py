@@ -172,6 +172,7 @@ def sections(measured):
         made["calculix"] = calculix_section(measured)
     if measured["parts"]:
         made["parts"] = parts_section(measured)
+    made |= {name: f"```\n{text}\n```" for name, text in measured["texts"].items()}
     return {name: text for name, text in made.items() if text}
 
 
@@ -188,7 +189,7 @@ def merged(old, new):
     def key(row):
         return (row["name"], row.get("threads", 0), row.get("program", ""))
 
-    made = {"machine": new["machine"]}
+    made = {"machine": new["machine"], "texts": old.get("texts", {}) | new["texts"]}
     for kind in ("studies", "calculix", "parts"):
         rows = {key(row): row for row in old.get(kind, [])} | {key(row): row for row in new[kind]}
         made[kind] = list(rows.values())

@@ -28,7 +28,7 @@ def study(name, equations, threads=1):
 
 def measured(*studies):
     machine = {**YARDSTICKS, "processor": "one", "cores": 2, "memory_gbytes": 25.0, "factorisation_gflops": 30.0}
-    return {"machine": machine, "studies": list(studies), "calculix": [], "parts": []}
+    return {"machine": machine, "studies": list(studies), "calculix": [], "parts": [], "texts": {}}
 
 
 def cells_of(text, line):
@@ -68,6 +68,7 @@ class Tables(unittest.TestCase):
         """Every section has its markers in docs/performance.md."""
         made = measured(*(study(f"H{k}{c}", n) for c in ("", "c") for k, n in enumerate((10000, 50000), 1)))
         made["calculix"] = [{"name": "H1", "seconds": 10.0, "memory": 500.0, "failure": "exit status 1"}]
+        made["texts"] = {"start-up": "0.1 s", "cutting": "0.5 s"}
         made["parts"] = [{"name": "clip/3", "program": "pairing", "items/s": 2e6, "GF/s": 25.0, "of_dgemm": 0.5},
                          {"name": "stiffness 3D/HEXA8 ELAS/PETIT", "program": "stiffness", "items/s": 4e6, "GF/s": 20.0, "of_dgemm": 0.4,
                           "GB/s": 8.0, "of_copy": 0.4}]
