@@ -9,7 +9,11 @@ Map3 interpolate(CellType type, std::span<const Vec3> v) {
   Map3 m;
   switch (type) {
     case CellType::TRIA3:
-      return {3, {v[0], v[1] - v[0], v[2] - v[0]}};
+      m.n = 3;
+      m.c[0] = v[0];
+      m.c[1] = v[1] - v[0];
+      m.c[2] = v[2] - v[0];
+      return m;
     case CellType::TRIA6: {
       // differences to the straight facet first, so that mid nodes in the middle give zero to round-off
       const Vec3 b1 = v[3] - 0.5 * (v[0] + v[1]), b2 = v[4] - 0.5 * (v[1] + v[2]), b3 = v[5] - 0.5 * (v[2] + v[0]);
@@ -137,7 +141,7 @@ std::vector<Vec3> hull(Family family, int degree, const std::function<Vec3(Vec2)
     for (int i = 0; i < n; ++i) value[j * n + i] = polynomial({2.0 * i / degree - 1, 2.0 * j / degree - 1});
   for (int j = 0; j < n; ++j)
     for (int i = 0; i < n; ++i) {
-      Vec3 sum;
+      Vec3 sum{};
       for (int l = 0; l < n; ++l)
         for (int k = 0; k < n; ++k) sum = sum + (c[i][k] * c[j][l]) * value[l * n + k];
       net.push_back(sum);

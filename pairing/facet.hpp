@@ -14,7 +14,7 @@
 namespace lacon::space {
 
 struct Vec3 {
-  double x = 0, y = 0, z = 0;
+  double x, y, z;
 };
 inline Vec3 operator+(Vec3 a, Vec3 b) { return {a.x + b.x, a.y + b.y, a.z + b.z}; }
 inline Vec3 operator-(Vec3 a, Vec3 b) { return {a.x - b.x, a.y - b.y, a.z - b.z}; }
@@ -28,7 +28,7 @@ inline double norm(Vec3 a) { return std::sqrt(dot(a, a)); }
 template <class Vec>
 struct FacetMap {
   int n = 0;
-  std::array<Vec, 9> c{};  ///< of 1, xi, eta, xi eta, xi^2, eta^2, xi^2 eta, xi eta^2, xi^2 eta^2
+  std::array<Vec, 9> c;  ///< the first n of them: of 1, xi, eta, xi eta, xi^2, eta^2, xi^2 eta, xi eta^2, xi^2 eta^2
 
   struct Value {
     Vec x, d1, d2;  ///< position, derivatives by xi and by eta
@@ -100,7 +100,7 @@ class Inverse {
   Family family_{};
   bool affine_ = false;
   double jacobian_ = 0;
-  Vec2 row1_, row2_;  ///< of the inverse matrix
+  Vec2 row1_{}, row2_{};  ///< of the inverse matrix
 };
 
 /// Whether a map is affine to round-off: neither Jacobian nor normal change by more. Never for a map without a Jacobian along

@@ -27,7 +27,7 @@ double double_area(const Polygon& polygon) {
 }
 
 Vec2 middle(const Polygon& polygon) {
-  Vec2 sum;
+  Vec2 sum{};
   for (const Vec2 v : polygon) sum = sum + v;
   return (1.0 / static_cast<double>(polygon.size())) * sum;
 }

@@ -6,7 +6,7 @@
 namespace lacon::space {
 
 struct Vec2 {
-  double x = 0, y = 0;
+  double x, y;
 };
 inline Vec2 operator+(Vec2 a, Vec2 b) { return {a.x + b.x, a.y + b.y}; }
 inline Vec2 operator-(Vec2 a, Vec2 b) { return {a.x - b.x, a.y - b.y}; }
@@ -17,7 +17,7 @@ inline double norm(Vec2 a) { return std::sqrt(dot(a, a)); }
 
 /// The points y with s = value + slope . (y - anchor) >= 0.
 struct HalfPlane {
-  Vec2 anchor, slope;
+  Vec2 anchor{}, slope{};
   double value = 0;
 
   double operator()(Vec2 y) const { return value + dot(slope, y - anchor); }

@@ -1,5 +1,6 @@
 // Pairing in space.
 #include <algorithm>
+#include <atomic>
 #include <deque>
 #include <limits>
 #include <memory>
@@ -68,7 +69,7 @@ struct FacetKind {
   CellType type{};
   Family family{};
   int order = 1, n_vertices = 0;
-  Vec3 normal;           ///< mean, unit; 0 for a facet without area
+  Vec3 normal{};         ///< mean, unit; 0 for a facet without area
   double size = 0;       ///< the longest distance from its first node
   bool straight = true;  ///< edges
   bool affine = false;   ///< to round-off
@@ -81,7 +82,7 @@ struct FacetKind {
 
 /// A facet whose coordinates start at one of its own nodes.
 struct Facet : FacetKind {
-  Vec3 origin;
+  Vec3 origin{};
   Nodes nodes;  ///< minus origin
   Map3 x;       ///< minus origin
 };
@@ -97,7 +98,7 @@ Facet facet(const Surface& surface, std::size_t cell, double flat) {
   f.nodes = nodes_of(surface, cell, f.origin);
   for (int i = 0; i < row.n_nodes; ++i) f.size = std::max(f.size, norm(f.nodes[i]));
   f.x = f.map(f.nodes);
-  Vec3 area;  // of the outline
+  Vec3 area{};  // of the outline
   const int nv = f.n_vertices;
   for (int i = 0; i < nv; ++i) {
     const Vec3 a = f.nodes[i], b = f.nodes[(i + 1) % nv];
@@ -143,14 +144,14 @@ void outline(const FacetKind& f, const Nodes& nodes, std::vector<Vec3>& polygon)
 struct Piece {
   Polygon polygon;           ///< in the chart
   std::array<Vec3, 3> x, n;  ///< at its vertices, where the normal is not constant
-  Vec3 normal;               ///< mean
+  Vec3 normal{};             ///< mean
 };
 
 class SlaveFacet {
  public:
   Facet f;
   bool degenerate = false, constant = true, plane = true;
-  Vec3 n, e1, e2;
+  Vec3 n{}, e1{}, e2{};
   std::vector<Piece> pieces;
   double chart_area = 0;      ///< twice the area
   double chart_diameter = 0;  ///< at least the largest distance in a piece
@@ -189,7 +190,7 @@ class SlaveFacet {
     constant = turn <= tolerances.flat && f.straight;
     plane = f.straight;
     // axes that follow an edge: turning the whole mesh turns them too
-    Vec3 edge;
+    Vec3 edge{};
     for (int i = 0; i < f.n_vertices; ++i) {
       const Vec3 d = f.nodes[(i + 1) % f.n_vertices] - f.nodes[i];
       if (dot(d, d) > dot(edge, edge)) edge = d;
@@ -231,7 +232,7 @@ class SlaveFacet {
 
   struct Place {
     bool found = false;
-    Vec2 xi;
+    Vec2 xi{};
     double scale = 1;  ///< area of the reference cell by area of the chart
   };
 
@@ -267,11 +268,8 @@ class SlaveFacet {
     const Vec3 half{0.5 * (box.high[0] - box.low[0]), 0.5 * (box.high[1] - box.low[1]), 0.5 * (box.high[2] - box.low[2])};
     const auto reach = [&](Vec3 d) { return half.x * std::abs(d.x) + half.y * std::abs(d.y) + half.z * std::abs(d.z); };
     const double leaning = lean_ > 0 ? lean_ * (std::abs(dot(centre, n)) + reach(n) + height_) : 0;
-    double beyond[4];  // all walls at once: the compiler makes vectors of them
-    for (int i = 0; i < 4; ++i)
-      beyond[i] = walls_.x[i] * centre.x + walls_.y[i] * centre.y + walls_.z[i] * centre.z -
-                  (std::abs(walls_.x[i]) * half.x + std::abs(walls_.y[i]) * half.y + std::abs(walls_.z[i]) * half.z) -
-                  walls_.offset[i];
+    const FourWalls beyond = walls_.x * centre.x + walls_.y * centre.y + walls_.z * centre.z -
+                             (walls_.ax * half.x + walls_.ay * half.y + walls_.az * half.z) - walls_.offset;
     return !(std::max(std::max(beyond[0], beyond[1]), std::max(beyond[2], beyond[3])) > leaning);
   }
 
@@ -283,7 +281,7 @@ class SlaveFacet {
   }
 
   void build_walls() {
-    walls_ = {};
+    walls_ = Walls{};
     const auto push = [&](Vec3 x) {  // the walls outward, behind x
       for (int i = 0; i < f.n_vertices; ++i)
         walls_.offset[i] = std::max(walls_.offset[i], walls_.x[i] * x.x + walls_.y[i] * x.y + walls_.z[i] * x.z);
@@ -292,6 +290,7 @@ class SlaveFacet {
       const Vec3 out = cross(f.nodes[(i + 1) % f.n_vertices] - f.nodes[i], n);
       const double length = norm(out), scale = length > 0 ? 1 / length : 0;
       walls_.x[i] = scale * out.x, walls_.y[i] = scale * out.y, walls_.z[i] = scale * out.z;
+      walls_.ax[i] = std::abs(walls_.x[i]), walls_.ay[i] = std::abs(walls_.y[i]), walls_.az[i] = std::abs(walls_.z[i]);
     }
     lean_ = height_ = 0;
     if (constant) {
@@ -349,10 +348,13 @@ class SlaveFacet {
   Map3 nodal_;
   Map2 chart_;
   Inverse from_chart_;
+  /// A number of each wall, in vector registers.
+  using FourWalls = double __attribute__((vector_size(4 * sizeof(double)), aligned(sizeof(double))));
   /// Planes behind which the slave lies; out . x is nowhere larger than `offset` on it. A triangle's fourth one is everywhere.
   struct Walls {
-    double x[4], y[4], z[4];  ///< out: unit, at a right angle to n
-    double offset[4];
+    FourWalls x, y, z;     ///< out: unit, at a right angle to n
+    FourWalls ax, ay, az;  ///< |out|
+    FourWalls offset;
   } walls_;
   double lean_ = 0;    ///< tangent of the largest angle between a normal and n, or infinity
   double height_ = 0;  ///< largest |n . x|, and an allowance for what pieces get wrong along the border
@@ -420,7 +422,7 @@ void cut_in_parts(const FacetKind& f, const Nodes& nodes, const SlaveFacet& slav
 }
 
 Vec3 area_vector(const Part& part) {
-  Vec3 sum;
+  Vec3 sum{};
   for (int i = 2; i < part.n; ++i) sum = sum + cross(part.p[i - 1] - part.p[0], part.p[i] - part.p[0]);
   return sum;
 }
@@ -463,18 +465,40 @@ int integration_degree(const SlaveFacet& slave, const FacetKind& master) {
   return std::clamp(degree, 4, exact_polygons(slave, master) ? 31 : 8);
 }
 
+/// Rules by degree: found once, and then without the lock of integration_rule().
+class KnownRules {
+ public:
+  template <class Points>
+  const Rule& get(Family family, int degree, const Points& points) {
+    if (degree < 0 || degree >= size) return integration_rule(family, points());
+    std::atomic<const Rule*>& rule = rules_[static_cast<std::size_t>(degree)];
+    if (!rule) rule = &integration_rule(family, points());
+    return *rule;
+  }
+
+ private:
+  static constexpr int size = 32;
+  std::array<std::atomic<const Rule*>, size> rules_{};
+};
+
 const Rule& triangle_rule(int degree) {
-  const int m = degree / 2 + 1;
-  return integration_rule(Family::TRIA, degree <= 4 ? 6 : degree <= 6 ? 12 : degree <= 8 ? 16 : m * m);
+  static KnownRules rules;
+  return rules.get(Family::TRIA, degree, [&] {
+    const int m = degree / 2 + 1;
+    return degree <= 4 ? 6 : degree <= 6 ? 12 : degree <= 8 ? 16 : m * m;
+  });
 }
 
 /// The rule of the square that is exact for polynomials of this degree on any convex quadrangle: seen from the square they have
 /// the degree in each coordinate, and the Jacobian adds one. That of a parallelogram is constant: there the total degree
 /// counts.
 const Rule& square_rule(int degree, bool parallelogram) {
-  if (parallelogram && degree <= 5) return integration_rule(Family::QUAD, 7);
-  const int m = (degree + 3) / 2;
-  return integration_rule(Family::QUAD, m * m);
+  static KnownRules any, parallelograms;
+  if (parallelogram && degree <= 5) return parallelograms.get(Family::QUAD, degree, [] { return 7; });
+  return any.get(Family::QUAD, degree, [&] {
+    const int m = (degree + 3) / 2;
+    return m * m;
+  });
 }
 
 /// A point of the chart, with its weight there.

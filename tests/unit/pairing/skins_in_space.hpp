@@ -65,8 +65,8 @@ inline Skin3 mesh(const Grid& g, const Place3& place, std::mt19937& random, bool
     std::sort(ends.begin(), ends.end());
     const auto [found, isnew] = mids.try_emplace(ends, 0);
     if (isnew) {
-      Vec2 p;
-      Vec3 x;
+      Vec2 p{};
+      Vec3 x{};
       for (const std::int32_t n : ends) {
         p = p + (1.0 / static_cast<double>(ends.size())) * at[n];
         x = x + (1.0 / static_cast<double>(ends.size())) * skin.node(n);
@@ -114,7 +114,7 @@ inline Skin3 permuted(const Skin3& skin, std::vector<std::int32_t>& order, std::
 /// Rotations about z and x, a scale, a shift.
 struct Motion {
   double angle = 0, tilt = 0, scale = 1;
-  Vec3 shift;
+  Vec3 shift{};
   void operator()(Skin3& skin) const {
     const double c = std::cos(angle), s = std::sin(angle), ct = std::cos(tilt), st = std::sin(tilt);
     for (std::size_t i = 0; i < skin.coordinates.size(); i += 3) {
@@ -128,7 +128,7 @@ struct Motion {
 };
 
 struct Point3 {
-  Vec3 x, normal;
+  Vec3 x{}, normal{};
   double jacobian;
   std::vector<double> shape;
 };

@@ -562,7 +562,7 @@ TEST(PairingInSpace, ForcesAndMomentsBalanceOnCurvedSkinsThatDoNotMatch) {
       for (std::size_t i = 0; i < x.shape.size(); ++i) on_slave[slave_nodes[i]] = on_slave[slave_nodes[i]] + x.shape[i] * f;
       for (std::size_t i = 0; i < y.shape.size(); ++i) on_master[master_nodes[i]] = on_master[master_nodes[i]] - y.shape[i] * f;
     });
-    Vec3 force, moment;
+    Vec3 force{}, moment{};
     double size = 0, length = 0;
     for (const auto& [skin, forces_on] : {std::pair(&slave, &on_slave), std::pair(&master, &on_master)})
       for (std::size_t i = 0; i < forces_on->size(); ++i) {
