@@ -1,11 +1,16 @@
 #include "lacon/assembly/symmetric_matrix.hpp"
 
 #include <algorithm>
+#include <memory>
 #include <stdexcept>
 #include <utility>
 
+#include "lacon/structures/parallel.hpp"
+
 namespace lacon {
 namespace {
+
+constexpr std::size_t vertices_at_once = 2048;  // in one block of a loop
 
 /// The transposed list: for each vertex the cliques it belongs to.
 Ragged<std::int32_t> cliques_of_vertices(std::int64_t n_vertices, const Ragged<std::int32_t>& cliques) {
@@ -20,30 +25,48 @@ Ragged<std::int32_t> cliques_of_vertices(std::int64_t n_vertices, const Ragged<s
   return transposed;
 }
 
+/// The sorted neighbours of each vertex.
 Ragged<std::int32_t> neighbours_of_vertices(std::int64_t n_vertices, const Ragged<std::int32_t>& cliques,
                                             std::span<const Coupling> couplings) {
   const Ragged<std::int32_t> own = cliques_of_vertices(n_vertices, cliques);
-  std::vector<std::vector<std::int32_t>> extra(n_vertices);
+  std::vector<std::vector<std::int32_t>> extra(couplings.empty() ? 0 : n_vertices);
   for (const Coupling& c : couplings) {
     extra[c.a].push_back(c.b);
     extra[c.b].push_back(c.a);
   }
   Ragged<std::int32_t> neighbours;
-  std::vector<std::int32_t> seen(n_vertices, -1), row;
-  for (std::int32_t v = 0; v < n_vertices; ++v) {
-    row.clear();
-    seen[v] = v;
-    const auto take = [&](std::int32_t w) {
-      if (seen[w] == v) return;
-      seen[w] = v;
-      row.push_back(w);
+  neighbours.offset.reserve(n_vertices + 1);
+  struct Rows {
+    std::vector<std::int32_t> seen, values, sizes;
+  };
+  parallel_in_turn(n_vertices, vertices_at_once, [&] {
+    const auto rows = std::make_shared<Rows>();
+    rows->seen.assign(n_vertices, -1);
+    const auto find = [rows, &own, &extra, &cliques](const LoopBlock& block) {
+      rows->values.clear();
+      rows->sizes.clear();
+      for (auto v = static_cast<std::int32_t>(block.first); v < static_cast<std::int32_t>(block.last); ++v) {
+        const std::size_t first = rows->values.size();
+        rows->seen[v] = v;
+        const auto take = [&](std::int32_t w) {
+          if (rows->seen[w] == v) return;
+          rows->seen[w] = v;
+          rows->values.push_back(w);
+        };
+        for (const std::int32_t c : own[v])
+          for (const std::int32_t w : cliques[c]) take(w);
+        if (!extra.empty())
+          for (const std::int32_t w : extra[v]) take(w);
+        std::sort(rows->values.begin() + static_cast<std::ptrdiff_t>(first), rows->values.end());
+        rows->sizes.push_back(static_cast<std::int32_t>(rows->values.size() - first));
+      }
     };
-    for (const std::int32_t c : own[v])
-      for (const std::int32_t w : cliques[c]) take(w);
-    for (const std::int32_t w : extra[v]) take(w);
-    std::sort(row.begin(), row.end());
-    neighbours.push_back(row);
-  }
+    const auto append = [rows, &neighbours](const LoopBlock&) {
+      neighbours.values.insert(neighbours.values.end(), rows->values.begin(), rows->values.end());
+      for (const std::int32_t size : rows->sizes) neighbours.offset.push_back(neighbours.offset.back() + size);
+    };
+    return LoopWorker{find, append};
+  });
   return neighbours;
 }
 
@@ -51,19 +74,34 @@ Ragged<std::int32_t> neighbours_of_vertices(std::int64_t n_vertices, const Ragge
 
 SymmetricMatrix::SymmetricMatrix(const Numbering& numbering, const Ragged<std::int32_t>& cliques,
                                  std::span<const Coupling> couplings)
-    : numbering_(&numbering), neighbours_(neighbours_of_vertices(numbering.n_vertices(), cliques, couplings)), row_{0} {
+    : numbering_(&numbering), neighbours_(neighbours_of_vertices(numbering.n_vertices(), cliques, couplings)) {
   const auto& first = numbering.first;
-  for (std::int64_t v = 0; v < numbering.n_vertices(); ++v)
-    for (std::int64_t row = first[v]; row < first[v + 1]; ++row) {
-      for (const std::int32_t w : neighbours_[v]) {
-        if (w > v) break;
-        for (std::int64_t column = first[w]; column < first[w + 1]; ++column)
-          column_.push_back(static_cast<std::int32_t>(column));
-      }
-      for (std::int64_t column = first[v]; column <= row; ++column) column_.push_back(static_cast<std::int32_t>(column));
-      row_.push_back(static_cast<std::int64_t>(column_.size()));
+  row_.reserve(numbering.n_equations() + 1);
+  row_.push_back(0);
+  for (std::int64_t v = 0; v < numbering.n_vertices(); ++v) {
+    std::int64_t width = 0;  // columns of vertices before v
+    for (const std::int32_t w : neighbours_[v]) {
+      if (w > v) break;
+      width += first[w + 1] - first[w];
     }
-  value_.assign(column_.size(), 0.0);
+    for (std::int64_t row = first[v]; row < first[v + 1]; ++row) row_.push_back(row_.back() + ++width);
+  }
+  column_.resize(row_.back());
+  value_.resize(row_.back());
+  parallel_for(numbering.n_vertices(), vertices_at_once, [&](const LoopBlock& block) {
+    for (std::size_t v = block.first; v < block.last; ++v)
+      for (std::int64_t row = first[v]; row < first[v + 1]; ++row) {
+        auto column = column_.begin() + row_[row];
+        const auto add = [&](std::int64_t from, std::int64_t to) {
+          for (; from < to; ++from) *column++ = static_cast<std::int32_t>(from);
+        };
+        for (const std::int32_t w : neighbours_[v]) {
+          if (w > static_cast<std::int64_t>(v)) break;
+          add(first[w], first[w + 1]);
+        }
+        add(first[v], row + 1);
+      }
+  });
 }
 
 bool SymmetricMatrix::has_room_for(std::span<const Coupling> couplings) const {

@@ -53,7 +53,7 @@ struct Bar : testing::Test {
 
   struct Sums {
     std::vector<double> matrix, force, stress, variable;
-    std::vector<std::int32_t> cells;
+    std::vector<std::int32_t> cells, columns;  // of the matrix: its pattern
     std::optional<std::int32_t> inside_out;
     bool operator==(const Sums&) const = default;
   };
@@ -82,6 +82,7 @@ struct Bar : testing::Test {
       all.variable.insert(all.variable.end(), variable.begin(), variable.end());
     }
     all.matrix.assign(matrix.values().begin(), matrix.values().end());
+    all.columns.assign(matrix.columns().begin(), matrix.columns().end());
     return all;
   }
 };
