@@ -226,7 +226,7 @@ def main():
                 measured["calculix"].append({**peer(name, folder, rows[0]["wall"], options.patience), "yardsticks": yardsticks})
                 print(f"{name}, CalculiX: {measured['calculix'][-1]['failure'] or ''} {measured['calculix'][-1]['seconds']:.2f} s", flush=True)
     if options.json:
-        options.json.write_text(json.dumps(measured, indent=1) + "\n", encoding="utf-8")
+        options.json.write_text(tables.as_json(measured), encoding="utf-8")
     if options.docs:
         tables.write_docs(SOURCE / "docs", measured)
     for section in tables.sections(measured).values():

@@ -198,6 +198,16 @@ def merged(old, new):
     return made
 
 
+def as_json(measured):
+    """With a row a line, so that a new measurement changes its own lines alone."""
+    def of(kind, value):
+        rows = [json.dumps(row) for row in value] if isinstance(value, list) else [f"{json.dumps(k)}: {json.dumps(v)}" for k, v in value.items()]
+        left, right = "[]" if isinstance(value, list) else "{}"
+        return f"{json.dumps(kind)}: {left}\n" + ",\n".join(rows) + f"\n{right}"
+
+    return "{\n" + ",\n".join(of(kind, value) for kind, value in measured.items()) + "\n}\n"
+
+
 def write_docs(docs, measured):
     """Update docs/performance.json, and from it the sections and the chart of docs/performance.md."""
     store, page = docs / "performance.json", docs / "performance.md"
@@ -206,7 +216,7 @@ def write_docs(docs, measured):
     text = page.read_text(encoding="utf-8")
     for name, content in sections(measured).items():
         text = fill(text, name, content)
-    store.write_text(json.dumps(measured, indent=1) + "\n", encoding="utf-8")
+    store.write_text(as_json(measured), encoding="utf-8")
     page.write_text(text, encoding="utf-8")
     chart(measured, docs / "performance.png")
 

@@ -1,5 +1,6 @@
 """What turns measurements into docs/performance.md, and the deck of CalculiX; nothing is timed."""
 
+import json
 import pathlib
 import sys
 import tempfile
@@ -63,6 +64,11 @@ class Tables(unittest.TestCase):
         old, new = measured(study("H1", 10), study("H2c", 20)), measured(study("H2c", 30), study("H2", 40), study("H1", 50, threads=2))
         found = [(row["name"], row["threads"], row["equations"]) for row in tables.merged(old, new)["studies"]]
         self.assertEqual(found, [("H1", 1, 10), ("H1", 2, 50), ("H2", 1, 40), ("H2c", 1, 30)])
+
+    def test_the_json_is_what_was_measured(self):
+        made = measured(study("H1", 10), study("H2", 20))
+        made["texts"] = {"start-up": "two\nlines"}
+        self.assertEqual(json.loads(tables.as_json(made)), made)
 
     def test_sections_fit_the_page(self):
         """Every section has its markers in docs/performance.md."""
