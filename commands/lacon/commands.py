@@ -3,7 +3,7 @@
 import time
 
 from . import catalog, checker, concepts, labels, orders, study
-from .messages import AsterError, InternalError, fail, message
+from .messages import AsterError, InternalError, SolutionError, fail, message
 
 
 class _F(dict):
@@ -161,8 +161,11 @@ class Command:
                 raise InternalError([message("INTERNAL_3", where, program=row["operator"], how=how)])
             if run.alarm_is_error:
                 run.count_alarms(outcome.messages)
-        except BaseException:
-            if copy:
+        except BaseException as error:
+            part = isinstance(error, SolutionError) and row.get("solves") and orders.has_left(run.base, identifier, copy)
+            if part:
+                self._keep_part(run, identifier, label, where, reused, copy)
+            elif copy:
                 orders.put_back(run.base, identifier, copy)
             elif result:
                 run.base.give_back(identifier)
@@ -178,6 +181,17 @@ class Command:
         if not result:
             return None, outcome
         return self._result(run, identifier, label, where, reused, named), outcome
+
+    def _keep_part(self, run, identifier, label, where, reused, copy):
+        """A solution failed on the way: the instants before that are there, under the name that the result was to have."""
+        if copy:
+            run.base.kept.enter_next(identifier, copy, None, ())
+        else:
+            run.base.kept.enter(identifier, None)
+        item = self._result(run, identifier, label, where, reused, None)
+        if label.isidentifier():
+            run.names.values[label] = item
+        run.inform("COMMAND_14", f"{self.name}, {where}", label=label or identifier)
 
     def _protect_data(self, run, row, keywords, units):
         """The files that the command has read are data of the study."""

@@ -175,5 +175,11 @@ def keep_copy(base, identifier):
     return copy
 
 
+def has_left(base, identifier, copy):
+    """An operator that failed has stored the concept, or changed the one that `copy` is of."""
+    path = base.path(identifier)
+    return path.exists() and not (copy and os.stat(path).st_mtime_ns == os.stat(copy).st_mtime_ns)
+
+
 def put_back(base, identifier, copy):
     os.replace(copy, base.path(identifier))

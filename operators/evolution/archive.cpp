@@ -1,8 +1,12 @@
 #include "lacon/operators/evolution/archive.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <functional>
+#include <optional>
 #include <span>
+
+#include "lacon/catalog/messages.hpp"
 
 namespace lacon {
 namespace {
@@ -48,6 +52,45 @@ void fill_points(Field& field, const StaticProblem& problem,
   if (std::all_of(field.present.begin(), field.present.end(), [](std::uint8_t p) { return p != 0; })) field.present.clear();
 }
 
+std::vector<std::string> stress_names(const ElementSet& set) { return {set.row->stress.begin(), set.row->stress.end()}; }
+
+std::vector<std::string> variable_names(const ElementSet& set) {
+  std::vector<std::string> names;
+  for (int v = 1; v <= set.kernel->n_variables; ++v) names.push_back("V" + std::to_string(v));
+  return names;
+}
+
+/// Where a cell or a node is in the support of a field; -1 elsewhere. @param size of the mesh
+std::vector<std::int32_t> places_in(const Field& field, std::size_t size) {
+  std::vector<std::int32_t> place(size, -1);
+  for (std::size_t i = 0; i < field.support.size(); ++i) place[field.support[i]] = static_cast<std::int32_t>(i);
+  return place;
+}
+
+/// The values of one set in a field that fill_points() made: (cells, points, components of the set). Throws EVOLUTION_11.
+std::vector<double> points_of(const Field& field, const std::vector<std::int32_t>& place, const ElementSet& set,
+                              const std::vector<std::string>& names, const std::string& label) {
+  std::vector<double> values;
+  for (const std::int32_t cell : set.cells) {
+    const auto refuse = [&] { fail("EVOLUTION_11", {{"label", label}, {"field", field.name}, {"cell", cell_name(cell)}}); };
+    if (place[cell] < 0) refuse();
+    const std::size_t first = field.first_row(place[cell]), end = field.first_row(place[cell] + 1);
+    if (end - first != static_cast<std::size_t>(set.tabulation.n_points)) refuse();
+    for (std::size_t row = first; row < end; ++row)
+      for (const std::string& name : names) {
+        const int component = field.component(name);
+        if (component < 0 || !field.has(row, component)) refuse();
+        values.push_back(field.at(row, component));
+      }
+  }
+  return values;
+}
+
+bool has_field(const Result& result, const std::string& name, std::int64_t order) {
+  const auto named = result.fields.find(name);
+  return named != result.fields.end() && named->second.contains(order);
+}
+
 }  // namespace
 
 Field displacement_field(const StaticProblem& problem, const StaticState& state) {
@@ -75,21 +118,13 @@ Field displacement_field(const StaticProblem& problem, const StaticState& state)
 
 Field stress_field(const StaticProblem& problem, const StaticState& state) {
   Field field{.name = "SIEF_ELGA", .quantity = "SIEF_R", .location = Location::gauss_points, .offset = {0}};
-  fill_points(
-      field, problem,
-      [](const ElementSet& set) { return std::vector<std::string>(set.row->stress.begin(), set.row->stress.end()); },
-      [&](std::size_t s) { return std::span<const double>(state.points[s].stress); });
+  fill_points(field, problem, stress_names, [&](std::size_t s) { return std::span<const double>(state.points[s].stress); });
   return field;
 }
 
 Field variable_field(const StaticProblem& problem, const StaticState& state) {
   Field field{.name = "VARI_ELGA", .quantity = "VARI_R", .location = Location::gauss_points, .offset = {0}};
-  const auto names = [](const ElementSet& set) {
-    std::vector<std::string> variables;
-    for (int v = 1; v <= set.kernel->n_variables; ++v) variables.push_back("V" + std::to_string(v));
-    return variables;
-  };
-  fill_points(field, problem, names, [&](std::size_t s) { return std::span<const double>(state.points[s].variable); });
+  fill_points(field, problem, variable_names, [&](std::size_t s) { return std::span<const double>(state.points[s].variable); });
   return field;
 }
 
@@ -111,6 +146,55 @@ Field contact_field(const StaticProblem& problem, const StaticState& state, cons
       field.values.push_back(value);
   }
   return field;
+}
+
+StaticState archived_state(const StaticProblem& problem, const Base& base, const Result& result, std::int64_t order) {
+  if (result.mesh != problem.model.mesh)
+    fail("EVOLUTION_1", {{"first", "ETAT_INIT/EVOL_NOLI"}, {"second", "MODELE"}, {"what", "meshes"}});
+  const std::size_t dimension = problem.dimension;
+  StaticState state;
+  state.displacement.assign(problem.n_dofs(), 0.0);
+  const Field moved = base.field(result, "DEPL", order);
+  for (std::size_t d = 0; d < dimension; ++d) {
+    const int component = moved.component(problem.components[d]);
+    for (std::size_t i = 0; component >= 0 && i < moved.support.size(); ++i)
+      if (const std::size_t dof = moved.support[i] * dimension + d; problem.exists[dof])
+        state.displacement[dof] = moved.at(i, component);
+  }
+  const Field stress = base.field(result, "SIEF_ELGA", order);
+  const std::vector<std::int32_t> stress_place = places_in(stress, problem.mesh.n_cells());
+  std::optional<Field> variable;
+  std::vector<std::int32_t> variable_place(problem.mesh.n_cells(), -1);
+  if (has_field(result, "VARI_ELGA", order)) {
+    variable = base.field(result, "VARI_ELGA", order);
+    variable_place = places_in(*variable, problem.mesh.n_cells());
+  }
+  std::int32_t fresh = -1;  // a cell whose law has internal variables now and had none
+  for (const ElementSet& set : problem.solids) {
+    PointValues& points = state.points.emplace_back();
+    points.stress = points_of(stress, stress_place, set, stress_names(set), result.label);
+    const auto starts = [&](std::int32_t cell) { return variable_place[cell] < 0; };
+    if (set.kernel->n_variables > 0 && std::all_of(set.cells.begin(), set.cells.end(), starts)) {
+      points.variable.assign(set.cells.size() * set.n_variables(), 0.0);
+      fresh = set.cells.front();
+    } else if (set.kernel->n_variables > 0) {
+      points.variable = points_of(*variable, variable_place, set, variable_names(set), result.label);
+    }
+  }
+  if (fresh >= 0) inform("EVOLUTION_13", {{"label", result.label}, {"cell", cell_name(fresh)}});
+  if (!problem.contact || !has_field(result, "CONT_ELEM", order)) return state;
+  const Field contact = base.field(result, "CONT_ELEM", order);
+  const std::vector<std::int32_t> place = places_in(contact, problem.mesh.n_cells());
+  state.patches.status.assign(problem.n_patches(), Status::unpaired);
+  state.patches.lambda.assign(problem.n_patches(), 0.0);
+  const int status = contact.component("CONT"), pressure = contact.component("PRES");
+  for (const SlaveElement& slave : problem.contact->slaves) {
+    if (place[slave.cell] < 0)
+      fail("EVOLUTION_11", {{"label", result.label}, {"field", contact.name}, {"cell", cell_name(slave.cell)}});
+    state.patches.status[slave.patch] = static_cast<Status>(std::lround(contact.at(place[slave.cell], status)));
+    state.patches.lambda[slave.patch] = contact.at(place[slave.cell], pressure);
+  }
+  return state;
 }
 
 }  // namespace lacon

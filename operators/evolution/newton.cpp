@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <limits>
 
 #include "lacon/catalog/messages.hpp"
 #include "lacon/operators/program/program.hpp"
@@ -27,6 +28,7 @@ Ragged<std::int32_t> nodes_of_elements(const StaticProblem& problem) {
 constexpr double vanishing_force = 1e-6;         // of the largest force so far
 constexpr double gap_share = 1e-2;               // of RESI_GEOM: largest |g_T| / h, 1e-8 by default
 constexpr double vanishing_displacement = 1e-8;  // of the smallest patch
+constexpr double other_stress = 1e-8;            // of the largest stress: that of another law
 constexpr double round_off = 1e-15;              // a few units in the last place
 
 /// The largest length of a node's vector.
@@ -75,6 +77,7 @@ StaticState Newton::initial_state() {
 }
 
 SolidMatrix Newton::suited(SolidMatrix asked, const StaticState& state) const {
+  if (elastic_ > 0) return SolidMatrix::elastic;
   const bool touches = has_memory_ && contact_ && contact_->n_constraints(state.patches) > 0;
   return asked == SolidMatrix::tangent && !linear_ && (touches || unstable_) ? SolidMatrix::stressless : asked;
 }
@@ -235,10 +238,13 @@ int Newton::solve(double instant, StaticState& state, const std::function<void(c
   // plasticity answers to a step of no length elastically: a body that is unloaded now does not overshoot on the tangent of the
   // flow that the last instant ended with, which makes Newton's method go to and fro between two states
   unstable_ = false;
+  elastic_ = 0;
   if (const SolidMatrix wanted = suited(criteria_.prediction, state); has_memory_ || wanted != present_)
     assemble(state, previous, wanted);
   bool settling = false;  // statuses change from iteration to iteration: a rough solution finds them as well
   std::string unmet;
+  double residual = std::numeric_limits<double>::infinity();
+  int elastic_span = 1;  // twice as long each time that it was not enough
   for (int iteration = 0; iteration <= criteria_.iterations; ++iteration) {
     std::int64_t changed = 0;  // the first patch whose status has changed
     const auto start = std::chrono::steady_clock::now();
@@ -286,12 +292,40 @@ int Newton::solve(double instant, StaticState& state, const std::function<void(c
       state.points = points_;
       return iteration;
     }
+    if (elastic_ > 0) {
+      --elastic_;
+    } else if (has_memory_ && line.maxi > residual) {
+      elastic_ = elastic_span;
+      elastic_span *= 2;
+      assemble(state, previous, suited(criteria_.matrix, state));
+    }
+    residual = line.maxi;
     unmet = unmet_criteria(line, changed);
     settling = line.status_changes > 0;
     if (!std::isfinite(line.maxi)) break;
   }
   fail("EVOLUTION_4",
        {{"instant", fmt::format("{:.9g}", instant)}, {"iterations", std::to_string(criteria_.iterations)}, {"unmet", unmet}});
+}
+
+void Newton::begin(StaticState& state, const std::string& label) {
+  state.relations.assign(relations_.size(), 0.0);
+  if (contact_ && state.patches.status.empty()) {
+    contact_->update_geometry(state.displacement);
+    state.patches = contact_->initial();
+  }
+  restart(state);
+  for (std::size_t s = 0; s < problem_.solids.size(); ++s) {
+    const std::vector<double>&given = state.points[s].stress, &found = points_[s].stress;
+    double largest = 0;
+    for (const double stress : found) largest = std::max(largest, std::abs(stress));
+    for (std::size_t i = 0; i < given.size(); ++i)
+      if (!(std::abs(given[i] - found[i]) <= other_stress * largest))
+        fail("EVOLUTION_10", {{"label", label},
+                              {"cell", cell_name(problem_.solids[s].cells[i / problem_.solids[s].n_stress()])},
+                              {"given", fmt::format("{:.6g}", given[i])},
+                              {"found", fmt::format("{:.6g}", found[i])}});
+  }
 }
 
 void Newton::restart(const StaticState& state) {

@@ -63,6 +63,10 @@ class Newton {
 
   /// The state before any load: displacements zero, statuses of CONTACT_INIT.
   StaticState initial_state();
+  /// Begin with a state of another computation: statuses are those of CONTACT_INIT where `patches` is empty, multipliers of
+  /// relations are found anew. Throws EVOLUTION_10 where its stresses are not those of the laws. @param label of the result it
+  /// comes from
+  void begin(StaticState& state, const std::string& label);
 
   /// Solve the instant, starting from `state`, which is in equilibrium. Calls `report` for each iteration.
   /// @return number of iterations. Throws EVOLUTION_4 (not converged), SOLVER_3 (singular), ELEMENT_1 ...: severity S. `state`
@@ -80,6 +84,8 @@ class Newton {
   ///   that turn with their surface, and these the linearisation of contact does not have. The exact tangent of Green-Lagrange
   ///   strains keeps them: there they are worth more than that balance;
   /// - for the rest of an instant in which it was unstable: without them it leads downhill to a stable equilibrium.
+  /// Where it overshoots (the residual of a law with a memory has grown), the elastic matrix takes its place for some
+  /// iterations: it is an upper bound of any tangent of plastic flow.
   SolidMatrix suited(SolidMatrix asked, const StaticState& state) const;
   /// @param previous the last state in equilibrium
   void assemble(const StaticState& state, const StaticState& previous, SolidMatrix wanted);
@@ -99,6 +105,7 @@ class Newton {
   bool has_stiffness_ = false;               ///< and is in the matrix
   SolidMatrix present_ = SolidMatrix::none;  ///< of which kind that one is
   bool unstable_ = false;                    ///< the tangent of an iterate of this instant was
+  int elastic_ = 0;                          ///< how many iterations go on with the elastic matrix
   bool has_memory_ = false;                  ///< a law goes from the last state in equilibrium to the present one
   std::optional<ContactState> contact_;
   std::vector<PointValues> points_;         ///< of each solid set at the last evaluation

@@ -139,12 +139,21 @@ TimeSteps restrict(const TimeSteps& steps, const Interval& interval) {
   std::size_t first = 0, last = steps.values.size() - 1;
   if (interval.first_instant) first = find_instant(steps, *interval.first_instant, interval.precision);
   if (interval.first_number) first = check_number(steps, *interval.first_number);
+  const bool from_state = interval.initial_state && !interval.first_instant && !interval.first_number;
+  if (from_state) {  // the instants behind it
+    const double initial = *interval.initial_state, least = initial + interval.precision * std::abs(initial);
+    first = static_cast<std::size_t>(std::upper_bound(steps.values.begin(), steps.values.end(), least) - steps.values.begin());
+  }
   if (interval.last_instant) last = find_instant(steps, *interval.last_instant, interval.precision);
   if (interval.last_number) last = check_number(steps, *interval.last_number);
-  if (steps.values.size() < 2 || last <= first) fail("EVOLUTION_5", {{"what", "there is no step to compute"}});
+  if (from_state ? last + 1 <= first : steps.values.size() < 2 || last <= first)
+    fail("EVOLUTION_5",
+         {{"what", from_state ? fmt::format("there is no instant behind that of ETAT_INIT, {:.15g}", *interval.initial_state)
+                              : "there is no step to compute"}});
   TimeSteps part = steps;
   part.values.assign(steps.values.begin() + static_cast<std::ptrdiff_t>(first),
                      steps.values.begin() + static_cast<std::ptrdiff_t>(last) + 1);
+  if (from_state) part.values.insert(part.values.begin(), *interval.initial_state);
   return part;
 }
 

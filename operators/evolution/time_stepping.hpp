@@ -28,8 +28,10 @@ using Iterations = std::function<int()>;
 void step_through(const TimeSteps& steps, const SolveInstant& solve, const GoBack& go_back, const Solved& solved,
                   const Iterations& iterations = {});
 
-/// The instants that INCREMENT asks for, the initial one first: from INST_INIT or NUME_INST_INIT to INST_FIN or NUME_INST_FIN.
+/// The instants that INCREMENT asks for, the initial one first: from INST_INIT or NUME_INST_INIT to INST_FIN or NUME_INST_FIN;
+/// without the former from the instant of the initial state, which need not be in the list.
 struct Interval {
+  std::optional<double> initial_state;
   std::optional<double> first_instant, last_instant;
   std::optional<std::int64_t> first_number, last_number;
   double precision = 1e-6;

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <iostream>
 #include <limits>
 #include <set>
@@ -12,6 +13,7 @@
 #include "lacon/operators/evolution/observation.hpp"
 #include "lacon/operators/evolution/table.hpp"
 #include "lacon/operators/evolution/time_stepping.hpp"
+#include "lacon/operators/fields/selection.hpp"
 #include "lacon/operators/program/program.hpp"
 
 namespace lacon {
@@ -40,13 +42,33 @@ NewtonCriteria criteria_of(const Keywords& convergence, const Keywords& newton) 
           .prediction = matrix_of(newton.text("PREDICTION"))};
 }
 
-TimeSteps steps_of(const Keywords& increment, const Base& base) {
+TimeSteps steps_of(const Keywords& increment, const Base& base, std::optional<double> initial_state) {
   return restrict(base.time_steps(increment.concept_id("LIST_INST")),
-                  {.first_instant = optional(increment, "INST_INIT", &Keywords::real),
+                  {.initial_state = initial_state,
+                   .first_instant = optional(increment, "INST_INIT", &Keywords::real),
                    .last_instant = optional(increment, "INST_FIN", &Keywords::real),
                    .first_number = optional(increment, "NUME_INST_INIT", &Keywords::integer),
                    .last_number = optional(increment, "NUME_INST_FIN", &Keywords::integer),
                    .precision = increment.real("PRECISION")});
+}
+
+/// ETAT_INIT: where a computation starts from another one.
+struct Origin {
+  Result result;
+  std::int64_t order;
+  double instant;
+};
+
+std::optional<Origin> origin_of(const Keywords& keywords, const Base& base) {
+  if (!keywords.has("ETAT_INIT")) return std::nullopt;
+  const Keywords from = single(keywords, "ETAT_INIT");
+  Origin origin{base.result(from.concept_id("EVOL_NOLI")), 0, 0};
+  const std::vector<std::int64_t> orders = selected_orders(base, origin.result, from);
+  origin.order = orders.back();
+  const std::vector<std::int64_t>& all = origin.result.orders;
+  origin.instant = origin.result.instants[std::find(all.begin(), all.end(), origin.order) - all.begin()];
+  if (from.has("INST_ETAT_INIT")) origin.instant = from.real("INST_ETAT_INIT");
+  return origin;
 }
 
 /// Which instants and fields are kept. The first and the last instant always are.
@@ -83,7 +105,8 @@ struct Pivots {
 /// The result as it grows.
 class Archive {
  public:
-  Archive(const Order& order, const Base& base, const StaticProblem& problem) : base_(base) {
+  Archive(const Order& order, const Base& base, const StaticProblem& problem, const std::optional<Origin>& origin)
+      : base_(base) {
     const Keywords& keywords = order.keywords;
     result_.label = order.result_label;
     result_.model = keywords.concept_id("MODELE");
@@ -94,12 +117,47 @@ class Archive {
       result_.loads.push_back(
           {excit.concept_id("CHARGE"), excit.optional_concept("FONC_MULT").value_or(""), excit.text("TYPE_CHARGE")});
     result_.behaviour = keywords.values().value("COMPORTEMENT", nlohmann::json::array()).dump();
+    if (order.reuse || keywords.has("RESULTAT")) go_on(order, origin);
+  }
+
+  /// reuse: take over the instants up to the initial state. Throws EVOLUTION_12.
+  void go_on(const Order& order, const std::optional<Origin>& origin) {
+    const auto refuse = [&](const std::string& reason, const std::string& remedy) {
+      fail("EVOLUTION_12", {{"label", result_.label}, {"reason", reason}, {"remedy", remedy}});
+    };
+    const std::string another = "give the computation a result of its own, without reuse";
+    if (!order.reuse) refuse("RESULTAT without reuse", "give reuse as well, or leave RESULTAT out");
+    if (!origin || single(order.keywords, "ETAT_INIT").concept_id("EVOL_NOLI") != order.result_id)
+      refuse("ETAT_INIT does not start from this result", "give ETAT_INIT=_F(EVOL_NOLI=" + result_.label + ")");
+    const Result& old = origin->result;
+    const auto differs = [&](const std::string& what) {
+      refuse("it was computed with another " + what + ", and has one alone", another);
+    };
+    if (old.model != result_.model) differs("MODELE");
+    if (old.material_field != result_.material_field) differs("CHAM_MATER");
+    if (old.contact != result_.contact) differs("CONTACT");
+    if (old.behaviour != result_.behaviour) differs("COMPORTEMENT");
+    if (!std::equal(
+            old.loads.begin(), old.loads.end(), result_.loads.begin(), result_.loads.end(),
+            [](const auto& a, const auto& b) { return a.load == b.load && a.function == b.function && a.type == b.type; }))
+      differs("EXCIT");
+    std::vector<std::int64_t> orders = old.orders;
+    orders.erase(std::upper_bound(orders.begin(), orders.end(), origin->order), orders.end());
+    if (orders.size() < old.orders.size() && !single(order.keywords, "ARCHIVAGE").has("DETR_NUME_SUIV"))
+      refuse(fmt::format("it has {} instant(s) behind order {}", old.orders.size() - orders.size(), origin->order),
+             "give ARCHIVAGE=_F(DETR_NUME_SUIV='OUI') to remove them, or " + another);
+    const auto fields = old.fields;
+    result_ = part_of(old, orders);
+    for (const auto& [name, files] : fields)
+      for (const auto& [number, file] : files)
+        if (number <= origin->order) result_.fields[name][number] = file;
+    taken_over_ = result_.orders.size();
   }
 
   void add(double instant, int iterations, const Pivots& pivots, const StaticState& state, const FieldMakers& fields,
            const ContactState* contact, const Archiving& archiving) {
     const Phase phase("archive");
-    const auto number = static_cast<std::int64_t>(result_.orders.size());
+    const std::int64_t number = result_.orders.empty() ? 0 : result_.orders.back() + 1;
     for (const auto& [name, make] : fields) {
       if (!archiving.keeps(name)) continue;
       Field field = make();
@@ -108,17 +166,17 @@ class Archive {
       base_.add_field(result_, std::move(field));
     }
     if (contact) add_balance(contact->balance(state.patches));
+    put("newton_iterations", iterations);
+    put("negative_pivots", static_cast<double>(pivots.found));
+    put("expected_negative_pivots", static_cast<double>(pivots.expected));
     result_.orders.push_back(number);
     result_.instants.push_back(instant);
-    result_.parameters["newton_iterations"].push_back(iterations);
-    result_.parameters["negative_pivots"].push_back(static_cast<double>(pivots.found));
-    result_.parameters["expected_negative_pivots"].push_back(static_cast<double>(pivots.expected));
   }
   /// The proof lines as parameters of the instant: zone_1_slave_force_x, ...
   void add_balance(const std::vector<ZoneBalance>& zones) {
     for (std::size_t z = 0; z < zones.size(); ++z) {
       const std::string name = "zone_" + std::to_string(z + 1) + "_";
-      const auto put = [&](const std::string& what, double value) { result_.parameters[name + what].push_back(value); };
+      const auto put = [&](const std::string& what, double value) { this->put(name + what, value); };
       for (int d = 0; d < 3; ++d) {
         const std::string axis(1, "xyz"[d]);
         put("slave_force_" + axis, zones[z].on_slave[d]);
@@ -134,15 +192,35 @@ class Archive {
     }
   }
   void store(const std::optional<Table>& observed) {
-    if (observed) result_.tables["OBSERVATION"] = *observed;
+    if (observed) add_observed(*observed);
     base_.store(result_);
   }
-  void discard() const { base_.discard(result_); }
-  std::size_t n_instants() const { return result_.orders.size(); }
+  void discard() const {
+    if (taken_over_ == 0) base_.discard(result_);
+  }
+  /// Instants of this computation, without its initial state.
+  std::size_t n_solved() const { return result_.orders.size() - std::max<std::size_t>(taken_over_, 1); }
+  /// The initial state is an instant of the result that goes on.
+  bool has_initial_state() const { return taken_over_ > 0; }
 
  private:
+  /// Behind what the result that goes on has observed; NUME_REUSE counts its computations.
+  void add_observed(const Table& observed) {
+    const auto [at, first] = result_.tables.try_emplace("OBSERVATION", observed);
+    if (first) return;
+    for (std::size_t c = 0; c < observed.columns.size(); ++c) {
+      Table::Column& column = at->second.columns[c];
+      std::vector<Table::Cell> cells = observed.columns[c].cells;
+      if (column.name == "NUME_REUSE" && !column.cells.empty())
+        cells.assign(cells.size(), std::get<std::int64_t>(column.cells.back()) + 1);
+      column.cells.insert(column.cells.end(), cells.begin(), cells.end());
+    }
+  }
+  void put(const std::string& parameter, double value) { result_.parameters[parameter].push_back(value); }
+
   const Base& base_;
   Result result_;
+  std::size_t taken_over_ = 0;  ///< instants of a result that goes on
 };
 
 }  // namespace
@@ -154,14 +232,21 @@ void stat_non_line(const Order& order, const Base& base) {
     const Phase phase("read");
     return read_problem(order, base);
   }();
-  const TimeSteps steps = steps_of(single(keywords, "INCREMENT"), base);
+  const std::optional<Origin> origin = origin_of(keywords, base);
+  const TimeSteps steps = steps_of(single(keywords, "INCREMENT"), base, origin ? std::optional(origin->instant) : std::nullopt);
   const Archiving archiving(single(keywords, "ARCHIVAGE"), base);
   Newton newton(problem, criteria_of(single(keywords, "CONVERGENCE"), single(keywords, "NEWTON")),
                 {.direct = {.memory_margin = static_cast<int>(solver.integer("PCENT_PIVOT")),
                             .residual_tolerance = solver.real("RESI_RELA")}});
   NewtonTable table(std::cout, problem, single(keywords, "AFFICHAGE").yes("INFO_RESIDU"), keywords.integer("INFO") == 2);
 
-  StaticState state = newton.initial_state(), last = state;
+  Archive archive(order, base, problem, origin);
+  StaticState state = newton.initial_state();
+  if (origin) {
+    state = archived_state(problem, base, origin->result, origin->order);
+    newton.begin(state, origin->result.label);
+  }
+  StaticState last = state;
   if (const ContactState* contact = newton.contact()) {
     std::int64_t locked = 0, first = -1;
     for (std::size_t p = 0; p < contact->n_patches(); ++p)
@@ -173,8 +258,7 @@ void stat_non_line(const Order& order, const Base& base) {
   Observations observations(keywords, base, problem.mesh);
   const FieldMakers fields = fields_at(problem, state, newton);
   observations.start(steps.values.front(), fields);
-  Archive archive(order, base, problem);
-  archive.add(steps.values.front(), 0, {}, state, fields, newton.contact(), archiving);
+  if (!archive.has_initial_state()) archive.add(steps.values.front(), 0, {}, state, fields, newton.contact(), archiving);
 
   std::vector<IncrementLimit> increments;
   double largest_residual = std::numeric_limits<double>::infinity();
@@ -218,7 +302,7 @@ void stat_non_line(const Order& order, const Base& base) {
     step_through(steps, solve, go_back, solved, [&] { return iterations; });
   } catch (...) {
     // what was computed before the failure is not lost; without it the base stays as it was
-    if (archive.n_instants() > 1)
+    if (archive.n_solved() > 0)
       archive.store(observations.table());
     else
       archive.discard();

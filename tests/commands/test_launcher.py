@@ -127,6 +127,24 @@ FIN()
         self.assertNotIn("KEYWORD_1", run.err)
 
 
+    def test_a_solution_that_stopped_leaves_what_it_had(self):
+        text = STUDY.replace("R = STAT_NON_LINE", "try:\n    R = STAT_NON_LINE") + """
+except ConvergenceError:
+    pass
+CALC_CHAMP(reuse=R, RESULTAT=R, CONTRAINTE='SIEF_NOEU')
+FIN()
+"""
+        failure = {"stat_non_line": {"status": 3, "messages": [said("S", "MECANONLINE9_7")]}}
+        run = self.run_study(text, behaviour=failure)
+        self.ok(run)
+        self.assertIn("COMMAND_14", run.err)
+        # uncaught, it is there for a POURSUITE
+        self.refused(self.run_study(STUDY, "--fresh", behaviour=failure), "COMMAND_14", status=3, diagnostic="<S>_NO_CONVERGENCE")
+        self.ok(self.run_study("POURSUITE()\nCALC_CHAMP(reuse=R, RESULTAT=R, CONTRAINTE='SIEF_NOEU')\nFIN()\n"))
+        # where it left nothing, there is nothing
+        failure["stat_non_line"]["lazy"] = True
+        self.refused(self.run_study(text, "--fresh", behaviour=failure), "STUDY_20", "R")
+
     def test_a_command_file_may_raise_them(self):
         self.refused(self.run_study("DEBUT()\nraise AsterError('not today')\n"), "<F> <USER> not today")
 

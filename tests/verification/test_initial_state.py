@@ -1,0 +1,93 @@
+"""ETAT_INIT: a computation that starts from another one goes on as if there had been no stop."""
+
+import json
+import os
+import pathlib
+import sys
+
+import h5py
+import numpy as np
+
+sys.path.insert(0, str(pathlib.Path(os.environ["LACON_SOURCE_DIR"]) / "tests/studies"))
+
+from study_test import StudyTest  # noqa: E402, I001 (it says where meshes.py is)
+from meshes import block, union, write_med  # noqa: E402
+
+COMM = pathlib.Path(__file__).resolve().parent / "initial_state.comm"
+BEHAVIOURS = ({"RELATION": "ELAS", "DEFORMATION": "PETIT"}, {"RELATION": "ELAS", "DEFORMATION": "GREEN_LAGRANGE"},
+              {"RELATION": "VMIS_ISOT_LINE", "DEFORMATION": "PETIT"}, {"RELATION": "VMIS_ISOT_LINE", "DEFORMATION": "PETIT_REAC"})
+
+
+class InitialState(StudyTest):
+    def setUp(self):
+        super().setUp()
+
+        def place(bottom, width, shift=0.0):
+            return lambda s, t: (shift + width * s, bottom + 50.0 * t)
+
+        upper = block("QUAD8", np.linspace(0, 1, 6), np.linspace(0, 1, 4), place(0.0, 50.0), "UPPER",
+                      {"bottom": "SLAVE", "top": "LOAD", "left": "AXIS"})
+        lower = block("QUAD8", np.linspace(0, 1, 5), np.linspace(0, 1, 4), place(-50.0, 70.0), "LOWER",
+                      {"top": "MASTER", "bottom": "BASE", "left": "AXIS"})
+        write_med(self.folder / "blocks.med", union([upper, lower]))
+
+    def solve(self, behaviour, **environment):
+        return self.run_study(COMM, "--fresh", "--unit", f"20={self.folder / 'blocks.med'}", STATE_BEHAVIOUR=json.dumps(behaviour),
+                              **environment)
+
+    def results(self):
+        """label -> (instants, field -> values at each instant)"""
+        base, found = self.folder / "initial_state.base", {}
+        for path in base.glob("result_*/index.h5"):
+            with h5py.File(path) as index:
+                fields = {}
+                for name, group in index["fields"].items():
+                    fields[name] = [h5py.File(base / file)["values"][()] for file in group["file"].asstr()]
+                parameters = {name: values[()] for name, values in index["parameters"].items()}
+                found[index.attrs["label"]] = index["instant"][()].tolist(), fields, parameters
+        return found
+
+    def test_the_stop_leaves_no_trace(self):
+        for behaviour in BEHAVIOURS:
+            with self.subTest(**behaviour):
+                run = self.solve(behaviour)
+                self.assertEqual(run.status, 0, run.stdout[-3000:] + run.stderr[-3000:])
+                found = self.results()
+                whole = found["WHOLE"][1]
+                self.assertGreater(abs(whole["DEPL"][4] - whole["DEPL"][1]).max(), 0.01)
+                for label, instants in (("SECOND", [2, 3, 4]), ("THIRD", [2, 3, 4]), ("FIRST", [0, 1, 2, 3, 4])):
+                    times, fields, parameters = found[label]
+                    self.assertEqual(times, instants)
+                    self.assertEqual(set(fields), set(whole))
+                    for name, values in fields.items():
+                        scale = max(abs(v).max() for v in whole[name])
+                        for got, expected in zip(values, whole[name][-len(instants):], strict=True):
+                            np.testing.assert_allclose(got, expected, rtol=0, atol=1e-9 * scale, err_msg=f"{label} {name}")
+                    for name, values in parameters.items():
+                        self.assertEqual(len(values), len(instants), name)
+
+    def test_what_cannot_go_on(self):
+        elastic = BEHAVIOURS[0]
+        for second, text in (("dict(CHAM_MATER=OTHER)", "EVOLUTION_10"),
+                             ("dict(INCREMENT=_F(LIST_INST=TIMES, INST_FIN=2.0))", "EVOLUTION_5"),
+                             ("dict(ETAT_INIT=_F(EVOL_NOLI=FIRST, INST=2.5))", "FIELDS_2"),
+                             ("dict(reuse=FIRST, EXCIT=[_F(CHARGE=HOLD), _F(CHARGE=MOVE, FONC_MULT=COURSE)])", "another EXCIT"),
+                             ("dict(reuse=WHOLE, ETAT_INIT=_F(EVOL_NOLI=WHOLE, INST=2.0))", "DETR_NUME_SUIV"),
+                             ("dict(reuse=WHOLE)", "ETAT_INIT=_F(EVOL_NOLI=WHOLE)"),
+                             ("dict(RESULTAT=FIRST)", "without reuse")):
+            with self.subTest(second):
+                run = self.solve(elastic, STATE_SECOND=second)
+                self.assertEqual(run.status, 2, run.stdout[-3000:] + run.stderr[-3000:])
+                self.assertIn(text, run.stderr)
+
+    def test_instants_behind_are_removed_where_this_is_asked_for(self):
+        second = "dict(reuse=WHOLE, ETAT_INIT=_F(EVOL_NOLI=WHOLE, INST=2.0), ARCHIVAGE=_F(DETR_NUME_SUIV='OUI'), INCREMENT=_F(LIST_INST=DEFI_LIST_REEL(VALE=[2.5, 3.0])))"
+        run = self.solve(BEHAVIOURS[0], STATE_SECOND=second)
+        self.assertEqual(run.status, 0, run.stdout[-3000:] + run.stderr[-3000:])
+        self.assertEqual(self.results()["WHOLE"][0], [0, 1, 2, 2.5, 3])
+
+
+if __name__ == "__main__":
+    import unittest
+
+    unittest.main()
