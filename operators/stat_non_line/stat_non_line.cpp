@@ -152,6 +152,8 @@ class Archive {
       for (const auto& [number, file] : files)
         if (number <= origin->order) result_.fields[name][number] = file;
     taken_over_ = result_.orders.size();
+    if (const auto observed = result_.tables.find("OBSERVATION"); observed != result_.tables.end())
+      drop_behind(observed->second, result_.instants.back());
   }
 
   void add(double instant, int iterations, const Pivots& pivots, const StaticState& state, const FieldMakers& fields,
@@ -204,6 +206,17 @@ class Archive {
   bool has_initial_state() const { return taken_over_ > 0; }
 
  private:
+  /// Remove the rows of a table whose INST is behind an instant.
+  static void drop_behind(Table& table, double instant) {
+    const auto named = [](const Table::Column& column) { return column.name == "INST"; };
+    const std::vector<Table::Cell> instants = std::find_if(table.columns.begin(), table.columns.end(), named)->cells;
+    for (Table::Column& column : table.columns) {
+      std::vector<Table::Cell> kept;
+      for (std::size_t row = 0; row < instants.size(); ++row)
+        if (std::get<double>(instants[row]) <= instant) kept.push_back(column.cells[row]);
+      column.cells = std::move(kept);
+    }
+  }
   /// Behind what the result that goes on has observed; NUME_REUSE counts its computations.
   void add_observed(const Table& observed) {
     const auto [at, first] = result_.tables.try_emplace("OBSERVATION", observed);

@@ -81,8 +81,9 @@ class InitialState(StudyTest):
                 self.assertIn(text, run.stderr)
 
     def test_instants_behind_are_removed_where_this_is_asked_for(self):
-        second = "dict(reuse=WHOLE, ETAT_INIT=_F(EVOL_NOLI=WHOLE, INST=2.0), ARCHIVAGE=_F(DETR_NUME_SUIV='OUI'), INCREMENT=_F(LIST_INST=DEFI_LIST_REEL(VALE=[2.5, 3.0])))"
-        run = self.solve(BEHAVIOURS[0], STATE_SECOND=second)
+        second = ("dict(reuse=WHOLE, ETAT_INIT=_F(EVOL_NOLI=WHOLE, INST=2.0), ARCHIVAGE=_F(DETR_NUME_SUIV='OUI'),"
+                  " INCREMENT=_F(LIST_INST=DEFI_LIST_REEL(VALE=[2.5, 3.0])))")
+        run = self.solve(BEHAVIOURS[0], STATE_SECOND=second, STATE_OBSERVED="{'WHOLE': [(0, 1.0), (0, 2.0), (1, 2.5), (1, 3.0)]}")
         self.assertEqual(run.status, 0, run.stdout[-3000:] + run.stderr[-3000:])
         self.assertEqual(self.results()["WHOLE"][0], [0, 1, 2, 2.5, 3])
 
