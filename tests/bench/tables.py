@@ -43,7 +43,7 @@ def series(rows, curved, threads=1):
     """The hexahedral studies of one kind by size, without the smallest, where start-up counts for more than the work."""
     chosen = sorted((row for row in rows if re.fullmatch(r"H\d+" + "c" * curved, row["name"]) and row["threads"] == threads),
                     key=lambda row: row["equations"])
-    return chosen[1:] if len(chosen) > 2 else chosen
+    return chosen[1:]
 
 
 def studies_section(measured):
@@ -130,7 +130,9 @@ def growth_section(measured):
         limit = (memory / per_space) ** (1 / space)
         rows.append([f"{chosen[0]['name']} to {chosen[-1]['name']}", *(f"{exponent:.2f}" for exponent in (time, factor, space)), f"{limit / 1e6:.1f} million",
                      number(per_time * limit**time / 60, 2)])
-    return rows and table(["studies", "wall", "factorisation", "memory", f"equations in {memory:.0f} GB", "that takes, minutes"], rows)
+    if not rows:
+        return "Three sizes of a kind are needed for an exponent; they were not measured."
+    return table(["studies", "wall", "factorisation", "memory", f"equations in {memory:.0f} GB", "that takes, minutes"], rows)
 
 
 def parts_section(measured):
@@ -173,7 +175,7 @@ def sections(measured):
     if measured["parts"]:
         made["parts"] = parts_section(measured)
     made |= {name: f"```\n{text}\n```" for name, text in measured["texts"].items()}
-    return {name: text for name, text in made.items() if text}
+    return made
 
 
 def fill(text, name, content):
