@@ -54,22 +54,36 @@ std::span<const double> gradients_of(CellType type) {
 
 constexpr std::size_t max_nodes = 27;
 
+using Row = double __attribute__((vector_size(4 * sizeof(double))));  ///< three count
+
+/// The determinant in d dimensions. @param place(a, x) sets x to the place of node a
+template <std::size_t d, class Place>
+[[gnu::always_inline]] inline double jacobian(std::size_t n_nodes, const double* gradients, const Place& place) {
+  Row j[3] = {};
+  for (std::size_t a = 0; a < n_nodes; ++a) {
+    Row x;
+    place(a, x);
+    for (std::size_t i = 0; i < d; ++i) j[i] += gradients[d * a + i] * x;
+  }
+  return determinant(j, d);
+}
+
 /// The range of the determinants at the first `n_points` of gradients_of(), in d dimensions.
 template <std::size_t d>
 [[gnu::always_inline]] inline JacobianRange range_at(std::size_t n_points, std::span<const std::int32_t> nodes,
                                                      std::span<const double> coordinates, const double* gradients) {
-  using Row = double __attribute__((vector_size(4 * sizeof(double))));  // three count
-  Row x[max_nodes];
-  for (std::size_t a = 0; a < nodes.size(); ++a) {
+  const auto read = [&](std::size_t a, Row& x) {
     const double* const of = coordinates.data() + 3 * std::ptrdiff_t{nodes[a]};
-    x[a] = Row{of[0], of[1], of[2], 0};
-  }
-  JacobianRange range{INFINITY, -INFINITY};
-  for (std::size_t point = 0; point < n_points; ++point) {
-    Row j[3] = {};
-    for (std::size_t a = 0; a < nodes.size(); ++a, gradients += d)
-      for (std::size_t i = 0; i < d; ++i) j[i] += gradients[i] * x[a];
-    const double here = determinant(j, d);
+    x = Row{of[0], of[1], of[2], 0};
+  };
+  const double first = jacobian<d>(nodes.size(), gradients, read);
+  JacobianRange range{first, first};
+  if (n_points == 1) return range;
+  Row places[max_nodes];
+  for (std::size_t a = 0; a < nodes.size(); ++a) read(a, places[a]);
+  for (std::size_t point = 1; point < n_points; ++point) {
+    gradients += d * nodes.size();
+    const double here = jacobian<d>(nodes.size(), gradients, [&](std::size_t a, Row& x) { x = places[a]; });
     range.least = std::min(range.least, here);
     range.greatest = std::max(range.greatest, here);
   }

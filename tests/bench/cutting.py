@@ -3,9 +3,11 @@
 
 usage: cutting.py BUILD [millions] [runs]      BUILD: build/release
 
-Makes a box of HEXA8 (a million of them, or so many) with a slave skin on its largest side, runs `crea_maillage IN OUT --slave SKIN`, and
-compares with a bare h5py program that reads every array of IN and writes every array of OUT. Prints the best wall and processor time of
-some runs, their ratio, and the tool's peak memory.
+Makes a box of HEXA8 (a million of them, or so many) with a slave skin on its largest side and cuts it both ways: the tool
+`crea_maillage IN OUT --slave SKIN` on MED files, and the operator of CREA_MAILLAGE on the base of a study. Either is compared with a bare
+h5py program that reads every array of its input and writes every array of its output. LIRE_MAILLAGE and IMPR_RESU of the study are there
+too. Every run writes a new file. Prints the best wall and processor time of some runs, their ratio, and the peak memory. Times are of
+the whole process, but of h5py without the start of Python; what starting the tool alone takes is a line of its own.
 """
 
 import json
@@ -46,20 +48,51 @@ write_med(sys.argv[2], cubes((side, side, layers), "BODY", {(2, 1): "TOP", (2, 0
 """
 
 
+STUDY = """
+DEBUT()
+WHOLE = LIRE_MAILLAGE(UNITE=20)
+MESH = CREA_MAILLAGE(MAILLAGE=WHOLE, DECOUPE_LAC=_F(GROUP_MA_ESCL="TOP"))
+IMPR_RESU(UNITE=80, RESU=_F(MAILLAGE=MESH))
+FIN()
+"""
+
+
 def plain(source, out, copy):
-    """(wall, processor) seconds of reading and writing with h5py."""
+    """(wall, processor) seconds of reading `source` and writing what is in `out` with h5py."""
+    copy.unlink(missing_ok=True)
     done = subprocess.run([sys.executable, "-c", PLAIN, source, out, copy], capture_output=True, text=True, check=True)
     return tuple(map(float, done.stdout.split()))
 
 
-def tool(program, source, out, status):
-    """(wall, processor) seconds of the tool, its peak memory in bytes, seconds of its phases."""
+def run(command, out, status, fails=False):
+    """((wall, processor) seconds, peak memory in bytes, seconds of its phases) of a program that writes `out`."""
+    out.unlink(missing_ok=True)
     start = time.perf_counter()
-    process = subprocess.Popen([program, source, out, "--slave", "TOP", "--status", status], stdout=subprocess.DEVNULL)
+    process = subprocess.Popen([*command, "--status", status], stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
     _, code, usage = os.wait4(process.pid, 0)
-    if code:
-        raise SystemExit(f"{program} failed")
-    return (time.perf_counter() - start, usage.ru_utime + usage.ru_stime), usage.ru_maxrss * 1024, json.loads(status.read_text())["seconds"]
+    wall = time.perf_counter() - start
+    if bool(code) != fails:
+        raise SystemExit(f"{' '.join(map(str, command))} failed")
+    return (wall, usage.ru_utime + usage.ru_stime), usage.ru_maxrss * 1024, json.loads(status.read_text())["seconds"]
+
+
+def best(rows):
+    """The least wall and the least processor time."""
+    return tuple(min(times[k] for times in rows) for k in (0, 1))
+
+
+def compare(name, command, source, out, folder, runs):
+    """Print what a program takes beside h5py."""
+    programs, bare = [], []
+    for _ in range(runs):
+        programs.append(run(command, out, folder / "status.json"))
+        bare.append(plain(source, out, folder / "copy.h5"))
+    sizes = [path.stat().st_size / 1e6 for path in (source, out)]
+    ours, theirs = best([p[0] for p in programs]), best(bare)
+    phases = min((p[2] for p in programs), key=lambda seconds: seconds["total"])
+    print(f"{name:28s} {sizes[0]:7.0f} {sizes[1]:7.0f} {ours[0]:8.3f} {theirs[0]:8.3f} {ours[0] / theirs[0]:6.2f} {ours[1]:10.3f} {theirs[1]:8.3f}"
+          f" {ours[1] / theirs[1]:6.2f} {max(p[1] for p in programs) / 1e6:7.0f}  "
+          + ", ".join(f"{phase} {seconds:.3f}" for phase, seconds in phases.items()))
 
 
 def main():
@@ -72,18 +105,22 @@ def main():
         layers = round(millions * 1e6 / side**2)
         # in a process of its own: a child's peak memory starts from its parent's
         subprocess.run([sys.executable, "-c", MAKE, SOURCE / "commands/studies", folder / "in.med", str(side), str(layers)], check=True)
-        tools = [tool(build / "bin/crea_maillage", folder / "in.med", folder / "out.med", folder / "status.json") for _ in range(runs)]
-        bare = [plain(folder / "in.med", folder / "out.med", folder / "copy.h5") for _ in range(runs)]
-        size = [(folder / name).stat().st_size / 1e6 for name in ("in.med", "out.med")]
-        print(f"{side**2 * layers} HEXA8, {side**2} slave QUAD4; {size[0]:.0f} MB in, {size[1]:.0f} MB out; best of {runs} runs")
-        print(f"{'seconds':24s} {'wall':>8s} {'processor':>10s}")
-        best = [[min(times[k] for times in rows) for k in (0, 1)] for rows in ([t[0] for t in tools], bare)]
-        for name, (wall, processor) in zip(("crea_maillage", "h5py, read and write"), best):
-            print(f"{name:24s} {wall:8.2f} {processor:10.2f}")
-        print(f"{'ratio':24s} {best[0][0] / best[1][0]:8.2f} {best[0][1] / best[1][1]:10.2f}")
-        phases = min((t[2] for t in tools), key=lambda seconds: seconds["total"])
-        print("phases, wall: " + ", ".join(f"{name} {seconds:.2f}" for name, seconds in phases.items()))
-        print(f"peak memory {max(t[1] for t in tools) / 1e6:.0f} MB")
+        binaries, base = build / "bin", folder / "study.base"
+        (folder / "study.comm").write_text(STUDY)
+        subprocess.run([binaries / "lacon", folder / "study.comm", "--base", base, "--unit", f"20={folder / 'in.med'}", "--unit", f"80={folder / 'out.med'}"],
+                       env={**os.environ, "LACON_ORDERS": str(folder)}, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, check=True)
+        orders = {path.name.split(".")[0][4:]: path for path in folder.glob("*.order.json")}
+        print(f"{side**2 * layers} HEXA8, {side**2} slave QUAD4; best of {runs} runs; MB, seconds; phases: wall")
+        print(f"{'':28s} {'in':>7s} {'out':>7s} {'wall':>8s} {'h5py':>8s} {'ratio':>6s} {'processor':>10s} {'h5py':>8s} {'ratio':>6s} {'peak':>7s}")
+        med, cut_med = folder / "in.med", folder / "out.med"
+        meshes = [base / json.loads(orders[name].read_text())["result"]["id"] for name in ("lire_maillage", "crea_maillage")]
+        whole, cut = (path.with_suffix(".h5") for path in meshes)
+        compare("crea_maillage IN OUT", [binaries / "crea_maillage", med, cut_med, "--slave", "TOP"], med, cut_med, folder, runs)
+        for name, source, out in (("lire_maillage", med, whole), ("crea_maillage", whole, cut), ("impr_resu", cut, cut_med)):
+            compare(name.upper(), [binaries / name, orders[name]], source, out, folder, runs)
+        starts = [run([binaries / "crea_maillage", folder / "none.med", cut_med, "--slave", "TOP"], cut_med, folder / "status.json", fails=True)[0]
+                  for _ in range(runs)]
+        print(f"{'start of the tool alone':28s} {'':15s} {best(starts)[0]:8.3f} {'':15s} {best(starts)[1]:10.3f}")
 
 
 if __name__ == "__main__":
