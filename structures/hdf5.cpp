@@ -11,8 +11,9 @@
 namespace lacon::hdf5 {
 namespace {
 
-/// HDF5 prints its own error stack unless told not to; our messages name the file and what was wanted. Each open file has half a
-/// megabyte of tables, which the next one takes over where the free lists may hold that much: fresh pages cost more than small files.
+/// HDF5 prints its own error stack unless told not to; our messages name the file and what was wanted. Each open file has half
+/// a megabyte of tables, which the next one takes over where the free lists may hold that much: fresh pages cost more than
+/// small files.
 void prepare() {
   H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
   constexpr int bytes = 4 << 20;
@@ -174,10 +175,11 @@ void Group::write(std::string_view name, std::span<const T> values, std::vector<
 
 namespace {
 
-/// How many rows of `columns` columns of T fill a megabyte.
+/// How many rows of `columns` columns of T fill a megabyte; of no power of two, which would put all columns into the same
+/// places of the cache.
 template <class T>
 std::size_t rows_of_part(std::size_t columns) {
-  return std::max<std::size_t>(1, (std::size_t{1} << 20) / (columns * sizeof(T)));
+  return std::max<std::size_t>(1, 1'000'000 / (columns * sizeof(T)));
 }
 
 /// Select rows of every column in the space of a file. @return the space of these values in memory

@@ -65,6 +65,7 @@ std::optional<FacetMatch> match_facet(CellType type, std::span<const std::int32_
     const catalog::FacetRow& facet = row.facets[f];
     if (static_cast<std::size_t>(catalog::cell(facet.type).n_vertices) != n) continue;
     for (std::size_t start = 0; start < n; ++start) {
+      if (vertex(facet, 0) != skin[start]) continue;
       const auto runs = [&](std::size_t step) {
         for (std::size_t i = 0; i < n; ++i)
           if (vertex(facet, i) != skin[(start + i * step) % n]) return false;

@@ -176,7 +176,7 @@ double scaled_jacobian(CellType type, std::span<const std::int32_t> nodes, std::
   double least = INFINITY;
   for (const Corner& corner : corners[static_cast<std::size_t>(type)]) {
     std::array<std::array<double, 3>, 3> tangents{};
-    double lengths = 1;
+    double squares = 1;  // of the lengths
     for (int i = 0; i < row.dimension; ++i) {
       const auto& [end, middle] = corner.legs[i];
       double square = 0;
@@ -186,9 +186,10 @@ double scaled_jacobian(CellType type, std::span<const std::int32_t> nodes, std::
         tangents[i][k] = middle < 0 ? chord : 4 * (at(middle, k) - at(corner.vertex, k)) - chord;
         square += tangents[i][k] * tangents[i][k];
       }
-      lengths *= std::sqrt(square);
+      squares *= square;
     }
-    least = std::min(least, lengths > 0 ? determinant(tangents, static_cast<std::size_t>(row.dimension)) / lengths : 0.0);
+    least = std::min(least,
+                     squares > 0 ? determinant(tangents, static_cast<std::size_t>(row.dimension)) / std::sqrt(squares) : 0.0);
   }
   return least / ideal_corner(row.family);
 }
@@ -203,12 +204,19 @@ Quality quality_of(const Mesh& mesh, std::span<const std::int32_t> cells, std::s
     values.emplace_back(scaled_jacobian(mesh.types[c], mesh.cells[c], mesh.coordinates), cell);
     quality.mean += values.back().first / static_cast<double>(cells.size());
   }
-  std::ranges::sort(values);
+  const auto worst = values.begin() + static_cast<std::ptrdiff_t>(std::min(n_worst, values.size()));
+  std::partial_sort(values.begin(), worst, values.end());
+  auto sorted = worst;  // what is behind is not less than what is before
   for (std::size_t q = 0; q < quality.quantiles.size(); ++q) {
     const auto last = static_cast<double>(values.size() - 1);
-    quality.quantiles[q] = values[static_cast<std::size_t>(std::lround(Quality::fractions[q] * last))].first;
+    const auto at = values.begin() + std::lround(Quality::fractions[q] * last);
+    if (at >= sorted) {
+      std::nth_element(sorted, at, values.end());
+      sorted = at;
+    }
+    quality.quantiles[q] = at->first;
   }
-  values.resize(std::min(n_worst, values.size()));
+  values.erase(worst, values.end());
   quality.worst = std::move(values);
   return quality;
 }

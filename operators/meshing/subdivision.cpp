@@ -1,5 +1,7 @@
 #include "lacon/operators/meshing/subdivision.hpp"
 
+#include <ranges>
+
 #include "lacon/elements/reference.hpp"
 
 namespace lacon {
@@ -26,11 +28,14 @@ std::vector<Group> inherited(std::span<const Group> groups, std::span<const std:
   std::vector<Group> made;
   for (const Group& group : groups) {
     Group& extended = made.emplace_back(Group{group.name, {}});
-    extended.members.reserve(group.members.size());
+    const auto heirs_of = [&](std::int32_t member) {
+      return std::views::iota(first_heir[static_cast<std::size_t>(member)], first_heir[static_cast<std::size_t>(member) + 1]);
+    };
+    std::size_t count = 0;
+    for (const std::int32_t member : group.members) count += heirs_of(member).size();
+    extended.members.reserve(count);
     for (const std::int32_t member : group.members)
-      for (std::int32_t heir = first_heir[static_cast<std::size_t>(member)];
-           heir < first_heir[static_cast<std::size_t>(member) + 1]; ++heir)
-        extended.members.push_back(heir);
+      for (const std::int32_t heir : heirs_of(member)) extended.members.push_back(heir);
   }
   return made;
 }

@@ -55,16 +55,12 @@ inline std::vector<std::string> read_names(const hdf5::Group& group, std::string
   return names;
 }
 
-/// Visit the connectivity of `n` cells of a type: visit(cell, local node, place in the file, node by node). A block of cells at
-/// a time stays in the cache.
-template <class Visit>
-void each_place(const catalog::CellRow& row, std::size_t n, const Visit& visit) {
-  constexpr std::size_t block = 512;
-  for (std::size_t first = 0; first < n; first += block)
-    for (std::size_t j = 0; j < static_cast<std::size_t>(row.n_nodes); ++j) {
-      const std::size_t column = static_cast<std::size_t>(row.med_permutation[j]) * n;
-      for (std::size_t c = first; c < std::min(n, first + block); ++c) visit(c, j, column + c);
-    }
+/// Where the nodes of `n` cells of a type are in MED's order, node by node: local node j of cell c is at columns(...)[j] + c.
+inline std::array<std::size_t, 27> columns(const catalog::CellRow& row, std::size_t n) {
+  std::array<std::size_t, 27> first{};
+  for (std::size_t j = 0; j < static_cast<std::size_t>(row.n_nodes); ++j)
+    first[j] = static_cast<std::size_t>(row.med_permutation[j]) * n;
+  return first;
 }
 
 /// The mesh of this name of an open MED file; throws MED_6 to MED_10.

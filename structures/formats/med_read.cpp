@@ -2,6 +2,7 @@
 #include <cmath>
 #include <limits>
 #include <map>
+#include <numeric>
 #include <set>
 #include <utility>
 
@@ -68,6 +69,12 @@ class MeshReader {
   Mesh read();
 
  private:
+  /// Groups of nodes or of cells, by name, while they are read; of each family that is there, the groups that it stands for.
+  struct Families {
+    std::map<std::string, std::vector<std::int32_t>> members;
+    std::map<std::int64_t, std::vector<std::vector<std::int32_t>*>> groups_of{{0, {}}};  // 0: in no group
+    std::vector<Group> groups();
+  };
   [[noreturn]] void damaged(const std::string& reason) const {
     fail("MED_7", {{"mesh", name_}, {"file", root_.path().string()}, {"reason", reason}});
   }
@@ -83,16 +90,15 @@ class MeshReader {
   template <class T, class Visit>
   void dataset(const H5Group& group, const std::string& name, const std::string& where, std::size_t rows, std::size_t columns,
                const Visit& visit) const;
-  void add_families(const H5Group& group, const std::string& where, std::size_t n, std::vector<std::int32_t>& family) const;
   void read_nodes(const H5Group& step, std::int64_t space);
   void read_cells(const H5Group& step);
-  void read_groups();
-  std::vector<Group> groups_of(const char* kind, const std::vector<std::int32_t>& family) const;
+  Families families(const char* kind) const;
+  void read_members(const H5Group& group, const std::string& where, std::size_t first, std::size_t n, Families& families) const;
 
   const H5Group& root_;
   std::string name_;
   Mesh mesh_;
-  std::vector<std::int32_t> node_family_, cell_family_;
+  Families node_families_, cell_families_;
 };
 
 /// The computation step of the lowest (NDT, NOR); "no step" (-1, -1) comes before every other.
@@ -138,16 +144,6 @@ void MeshReader::dataset(const H5Group& group, const std::string& name, const st
   }
 }
 
-/// Append the family of each of `n` entities, 0 where the file has none.
-void MeshReader::add_families(const H5Group& group, const std::string& where, std::size_t n,
-                              std::vector<std::int32_t>& family) const {
-  if (!group.has("FAM")) return family.resize(family.size() + n, 0);
-  dataset<std::int32_t>(group, "FAM", where, n, 1, [&](std::size_t first, std::span<const std::int32_t> part) {
-    if (first == 0) family.reserve(family.size() + n);
-    family.insert(family.end(), part.begin(), part.end());
-  });
-}
-
 void MeshReader::read_nodes(const H5Group& step, std::int64_t space) {
   const H5Group nodes = entities(step, "NOE", "nodes");
   if (!nodes.has("COO") || nodes.is_group("COO")) damaged("its nodes have no coordinates");
@@ -168,7 +164,7 @@ void MeshReader::read_nodes(const H5Group& step, std::int64_t space) {
       if (!std::isfinite(to[i]))
         fail("MED_9", {{"mesh", name_}, {"file", root_.path().string()}, {"node", std::to_string(first + i / 3 + 1)}});
   });
-  add_families(nodes, "nodes", n, node_family_);
+  read_members(nodes, "nodes", 0, n, node_families_);
 }
 
 void MeshReader::read_cells(const H5Group& step) {
@@ -198,12 +194,12 @@ void MeshReader::read_cells(const H5Group& step) {
     const std::size_t size = static_cast<std::size_t>(row.n_nodes);
     dataset<std::int32_t>(group, "NOD", where, n, size, [&](std::size_t first, std::span<const std::int32_t> part) {
       const std::size_t here = part.size() / size, before = mesh_.cells.values.size();
+      const auto column = med::columns(row, here);
       bool sound = true;  // without a branch for each node
       for (const std::int32_t node : part) sound &= (node >= 1) & (node <= n_nodes);
       for (std::size_t c = 0; !sound && c < here; ++c)
         for (std::size_t j = 0; j < size; ++j)
-          if (const std::int32_t node = part[static_cast<std::size_t>(row.med_permutation[j]) * here + c];
-              node < 1 || node > n_nodes)
+          if (const std::int32_t node = part[column[j] + c]; node < 1 || node > n_nodes)
             fail("MED_8", {{"mesh", name_},
                            {"file", root_.path().string()},
                            {"type", type},
@@ -212,11 +208,11 @@ void MeshReader::read_cells(const H5Group& step) {
                            {"nodes", std::to_string(n_nodes)}});
       if (first == 0) mesh_.cells.values.reserve(with_room(before + n * size));
       mesh_.cells.values.resize(before + part.size());
-      std::int32_t* const to = mesh_.cells.values.data() + before;
-      med::each_place(row, here,
-                      [&](std::size_t c, std::size_t j, std::size_t in_file) { to[c * size + j] = part[in_file] - 1; });
+      std::int32_t* to = mesh_.cells.values.data() + before;
+      for (std::size_t c = 0; c < here; ++c)
+        for (std::size_t j = 0; j < size; ++j) *to++ = part[column[j] + c] - 1;
     });
-    add_families(group, where, n, cell_family_);
+    read_members(group, where, mesh_.n_cells(), n, cell_families_);
     mesh_.types.insert(mesh_.types.end(), n, row.type);
     mesh_.cells.offset.reserve(with_room(mesh_.cells.offset.size() + n));
     for (std::size_t c = 0; c < n; ++c) mesh_.cells.offset.push_back(mesh_.cells.offset.back() + row.n_nodes);
@@ -224,55 +220,54 @@ void MeshReader::read_cells(const H5Group& step) {
   if (mesh_.n_cells() == 0) damaged("it has no cells");
 }
 
-/// Groups from families. @param family the family number of each entity
-std::vector<Group> MeshReader::groups_of(const char* kind, const std::vector<std::int32_t>& family) const {
-  std::map<std::int64_t, std::vector<std::string>> names_of;  // of each family
-  std::set<std::int64_t> known{0};
+MeshReader::Families MeshReader::families(const char* kind) const {
+  Families families;
   const std::string path = "FAS/" + name_ + "/" + kind;
-  if (root_.is_group(path)) {
-    const H5Group families = root_.open(path);
-    for (const std::string& child : families.children()) {
-      const H5Group one = families.open(child);
-      const std::int64_t number = integer(one, "NUM", "the family '" + child + "'");
-      known.insert(number);
-      if (!one.is_group("GRO")) continue;
-      const H5Group list = one.open("GRO");
-      const std::int64_t count = integer(list, "NBR", "the list of groups of the family '" + child + "'");
-      const std::vector<std::string> names = med::read_names(list, "NOM");
-      if (static_cast<std::int64_t>(names.size()) != count)
-        damaged("the group names of the family '" + child + "' cannot be read");
-      names_of[number] = names;
+  if (!root_.is_group(path)) return families;
+  const H5Group all = root_.open(path);
+  for (const std::string& child : all.children()) {
+    const H5Group one = all.open(child);
+    const std::int64_t number = integer(one, "NUM", "the family '" + child + "'");
+    std::vector<std::vector<std::int32_t>*>& groups = families.groups_of[number];
+    groups.clear();
+    if (!one.is_group("GRO")) continue;
+    const H5Group list = one.open("GRO");
+    const std::int64_t count = integer(list, "NBR", "the list of groups of the family '" + child + "'");
+    const std::vector<std::string> names = med::read_names(list, "NOM");
+    if (static_cast<std::int64_t>(names.size()) != count)
+      damaged("the group names of the family '" + child + "' cannot be read");
+    for (const std::string& name : std::set(names.begin(), names.end())) {  // a family may name a group twice
+      std::vector<std::int32_t>& members = families.members[name];
+      if (number != 0) groups.push_back(&members);
     }
   }
-  std::map<std::string, std::vector<std::int32_t>> members;
-  std::map<std::int64_t, std::vector<std::vector<std::int32_t>*>> lists_of;  // of each family
-  for (const auto& [number, names] : names_of)
-    for (const std::string& name : std::set(names.begin(), names.end()))  // a family may name a group twice
-      lists_of[number].push_back(&members[name]);
-  std::int64_t last = 0;
-  const std::vector<std::vector<std::int32_t>*>* lists = nullptr;
-  for (std::size_t i = 0; i < family.size(); ++i) {
-    if (family[i] != last) {
-      last = family[i];
-      if (!known.contains(last))
-        damaged("it has no family of the number " + std::to_string(last) + ", to which " +
-                (std::string_view(kind) == "NOEUD" ? node_name(static_cast<std::int64_t>(i))
-                                                   : cell_name(static_cast<std::int64_t>(i))) +
-                " belongs");
-      const auto at = lists_of.find(last);
-      lists = at == lists_of.end() || last == 0 ? nullptr : &at->second;
-    }
-    if (lists)
-      for (std::vector<std::int32_t>* list : *lists) list->push_back(static_cast<std::int32_t>(i));
-  }
-  std::vector<Group> groups;
-  for (auto& [name, list] : members) groups.push_back({name, std::move(list)});
-  return groups;
+  return families;
 }
 
-void MeshReader::read_groups() {
-  mesh_.node_groups = groups_of("NOEUD", node_family_);
-  mesh_.cell_groups = groups_of("ELEME", cell_family_);
+/// Put `n` entities, of the numbers from `first` on, into the groups of their families.
+void MeshReader::read_members(const H5Group& group, const std::string& where, std::size_t first, std::size_t n,
+                              Families& families) const {
+  if (!group.has("FAM")) return;
+  dataset<std::int32_t>(group, "FAM", where, n, 1, [&](std::size_t begin, std::span<const std::int32_t> family) {
+    for (std::size_t i = 0, end = 0; i < family.size(); i = end) {  // a run of one family
+      while (end < family.size() && family[end] == family[i]) ++end;
+      const auto number = static_cast<std::int32_t>(first + begin + i);
+      const auto groups = families.groups_of.find(family[i]);
+      if (groups == families.groups_of.end())
+        damaged("it has no family of the number " + std::to_string(family[i]) + ", to which " +
+                (&families == &node_families_ ? node_name(number) : cell_name(number)) + " belongs");
+      for (std::vector<std::int32_t>* members : groups->second) {
+        members->resize(members->size() + end - i);
+        std::iota(members->end() - static_cast<std::ptrdiff_t>(end - i), members->end(), number);
+      }
+    }
+  });
+}
+
+std::vector<Group> MeshReader::Families::groups() {
+  std::vector<Group> all;
+  for (auto& [name, list] : members) all.push_back({name, std::move(list)});
+  return all;
 }
 
 Mesh MeshReader::read() {
@@ -283,9 +278,12 @@ Mesh MeshReader::read() {
   if (group.has_attribute("TYP") && group.integer("TYP") != 0) unsuitable("it is a structured grid");
   if (group.has_attribute("REP") && group.integer("REP") != 0) unsuitable("its coordinates are not Cartesian");
   const H5Group step = first_step(group);
+  node_families_ = families("NOEUD");
+  cell_families_ = families("ELEME");
   read_nodes(step, space);
   read_cells(step);
-  read_groups();
+  mesh_.node_groups = node_families_.groups();
+  mesh_.cell_groups = cell_families_.groups();
   mesh_.dimension = space == 2 ? 2 : least_dimension(mesh_);
   return std::move(mesh_);
 }

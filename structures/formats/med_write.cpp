@@ -105,18 +105,21 @@ std::string free_name(const std::string& name, Fits fits) {
 
 /// Cells of each type, in the order of the mesh: what MED keeps together.
 std::map<CellType, std::vector<std::int32_t>> by_type(const Mesh& mesh) {
+  const auto each_run = [&](const auto& visit) {  // of cells of one type
+    for (std::size_t first = 0, end = 0; first < mesh.n_cells(); first = end) {
+      while (end < mesh.n_cells() && mesh.types[end] == mesh.types[first]) ++end;
+      visit(mesh.types[first], first, end - first);
+    }
+  };
   std::map<CellType, std::size_t> counts;
-  for (std::size_t c = 0, end = 0; c < mesh.n_cells(); c = end) {  // a run of one type
-    while (end < mesh.n_cells() && mesh.types[end] == mesh.types[c]) ++end;
-    counts[mesh.types[c]] += end - c;
-  }
+  each_run([&](CellType type, std::size_t, std::size_t count) { counts[type] += count; });
   std::map<CellType, std::vector<std::int32_t>> cells;
   for (const auto& [type, count] : counts) cells[type].reserve(count);
-  std::vector<std::int32_t>* list = nullptr;
-  for (std::size_t c = 0; c < mesh.n_cells(); ++c) {
-    if (c == 0 || mesh.types[c] != mesh.types[c - 1]) list = &cells[mesh.types[c]];
-    list->push_back(static_cast<std::int32_t>(c));
-  }
+  each_run([&](CellType type, std::size_t first, std::size_t count) {
+    std::vector<std::int32_t>& list = cells[type];
+    list.resize(list.size() + count);
+    std::iota(list.end() - static_cast<std::ptrdiff_t>(count), list.end(), static_cast<std::int32_t>(first));
+  });
   return cells;
 }
 
@@ -187,7 +190,7 @@ std::vector<std::int32_t> write_families(const H5Group& root, const std::string&
   }
   std::vector<std::int32_t> number(sets.size(), 0);  // of the family of a set
   std::vector<std::vector<std::int32_t>> families;
-  std::vector<std::int32_t> family(n_entities, 0);
+  std::vector<std::int32_t>& family = set_of;  // in place
   for (std::size_t i = 0; i < n_entities; ++i) {
     const auto set = static_cast<std::size_t>(set_of[i]);
     if (set > 0 && number[set] == 0) {
@@ -271,9 +274,12 @@ void write_mesh(const H5Group& root, const Mesh& mesh, const std::string& name) 
     const auto size = static_cast<std::size_t>(row.n_nodes);
     const auto cell = [&of_type = cells](std::size_t i) { return static_cast<std::size_t>(of_type[i]); };
     write_numbers<std::int32_t>(one, "NOD", cells.size(), size, [&](std::size_t first, std::span<std::int32_t> part) {
-      med::each_place(row, part.size() / size, [&](std::size_t c, std::size_t j, std::size_t in_file) {
-        part[in_file] = mesh.cells.values[static_cast<std::size_t>(mesh.cells.offset[cell(first + c)]) + j] + 1;
-      });
+      const std::size_t here = part.size() / size;
+      const auto column = med::columns(row, here);
+      for (std::size_t c = 0; c < here; ++c) {
+        const auto own = mesh.cells[cell(first + c)];
+        for (std::size_t j = 0; j < size; ++j) part[column[j] + c] = own[j] + 1;
+      }
     });
     write_integers(one, "NUM", cells.size(), [&](std::size_t i) { return static_cast<std::int32_t>(cell(i)) + 1; });
     if (!cell_family.empty()) write_integers(one, "FAM", cells.size(), [&](std::size_t i) { return cell_family[cell(i)]; });
