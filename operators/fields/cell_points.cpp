@@ -28,6 +28,48 @@ bool ModelPoints::is_solid(std::size_t cell) const {
 bool ModelPoints::is_axisymmetric(std::size_t cell) const { return element(cell)->modelisation.starts_with("AXIS"); }
 bool ModelPoints::is_plane_stress(std::size_t cell) const { return element(cell)->modelisation.starts_with("C_PLAN"); }
 
+namespace {
+
+/// Jacobian and gradients of a body at its points, by matrices of fixed size. @param x (n_nodes, S) @return whether all
+/// Jacobians are positive
+template <int S>
+bool body_points(const Tabulation& table, const double* x, CellPoints& points) {
+  using Matrix = Eigen::Matrix<double, S, S>;
+  using Row = Eigen::Map<const Eigen::Matrix<double, 1, S>>;
+  points.gradient.resize(static_cast<std::size_t>(table.n_points * table.n_nodes * S));
+  bool positive = true;
+  for (int p = 0; p < table.n_points; ++p) {
+    const double* const reference = table.gradient.data() + static_cast<std::ptrdiff_t>(p) * table.n_nodes * S;
+    double* const gradient = points.gradient.data() + static_cast<std::ptrdiff_t>(p) * table.n_nodes * S;
+    Matrix jacobian = Matrix::Zero();
+    for (int a = 0; a < table.n_nodes; ++a) jacobian += Row(x + a * S).transpose() * Row(reference + a * S);
+    const double size = jacobian.determinant();
+    positive = positive && size > 0;
+    const Matrix inverse = jacobian.inverse();
+    for (int a = 0; a < table.n_nodes; ++a)
+      Eigen::Map<Eigen::Matrix<double, 1, S>>(gradient + a * S) = Row(reference + a * S) * inverse;
+    points.measure[static_cast<std::size_t>(p)] = size;
+  }
+  return positive;
+}
+
+/// Length or area of a skin at its points for one of the reference cell. @param x (n_nodes, space)
+void skin_points(const Tabulation& table, const double* x, int space, CellPoints& points) {
+  points.gradient.clear();
+  for (int p = 0; p < table.n_points; ++p) {
+    Eigen::Vector3d tangent[2] = {Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero()};
+    for (int a = 0; a < table.n_nodes; ++a)
+      for (int k = 0; k < table.dimension; ++k)
+        for (int i = 0; i < space; ++i)
+          tangent[k](i) +=
+              x[a * space + i] * table.gradient[static_cast<std::size_t>((p * table.n_nodes + a) * table.dimension + k)];
+    points.measure[static_cast<std::size_t>(p)] =
+        table.dimension == 2 ? tangent[0].cross(tangent[1]).norm() : tangent[0].norm();
+  }
+}
+
+}  // namespace
+
 const CellPoints& ModelPoints::operator()(std::size_t cell, std::span<const double> coordinates) {
   const catalog::ElementRow& row = *element(cell);
   const auto [at, made] = tabulations_.try_emplace(&row);
@@ -35,7 +77,6 @@ const CellPoints& ModelPoints::operator()(std::size_t cell, std::span<const doub
   const Tabulation& table = at->second;
   const auto nodes = mesh_.cells[cell];
   const int n = table.n_nodes, space = static_cast<int>(row.dofs.size());
-  const bool solid = row.role == catalog::Role::solid;
 
   CellPoints& points = points_;
   points.n_points = table.n_points;
@@ -44,32 +85,21 @@ const CellPoints& ModelPoints::operator()(std::size_t cell, std::span<const doub
   points.shape = table.shape;
   points.position.assign(static_cast<std::size_t>(table.n_points) * 3, 0.0);
   points.measure.resize(static_cast<std::size_t>(table.n_points));
-  points.gradient.assign(solid ? static_cast<std::size_t>(table.n_points * n * space) : 0, 0.0);
-
-  using Gradients = Eigen::Map<const Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>>;
-  Eigen::MatrixXd x(space, n);
-  for (int a = 0; a < n; ++a)
-    for (int i = 0; i < space; ++i) x(i, a) = coordinates[static_cast<std::size_t>(nodes[static_cast<std::size_t>(a)] * 3 + i)];
+  x_.clear();
+  for (const std::int32_t node : nodes)
+    for (int i = 0; i < space; ++i) x_.push_back(coordinates[static_cast<std::size_t>(node * 3 + i)]);
+  if (row.role != catalog::Role::solid)
+    skin_points(table, x_.data(), space, points);
+  else if (!(space == 3 ? body_points<3>(table, x_.data(), points) : body_points<2>(table, x_.data(), points)))
+    fail("FIELDS_4", {{"cell", cell_name(static_cast<std::int64_t>(cell))}, {"element", std::string(row.name)}});
+  const bool axis = is_axisymmetric(cell);
   for (int p = 0; p < table.n_points; ++p) {
+    double* const position = points.position.data() + static_cast<std::ptrdiff_t>(3 * p);
     for (int a = 0; a < n; ++a)
       for (int i = 0; i < 3; ++i)
-        points.position[static_cast<std::size_t>(3 * p + i)] +=
-            table.shape[static_cast<std::size_t>(p * n + a)] *
-            coordinates[static_cast<std::size_t>(nodes[static_cast<std::size_t>(a)] * 3 + i)];
-    const Gradients reference(table.gradient.data() + static_cast<std::ptrdiff_t>(p) * n * table.dimension, n, table.dimension);
-    const Eigen::MatrixXd jacobian = x * reference;
-    double size = 0;
-    if (solid) {
-      size = jacobian.determinant();
-      if (!(size > 0))
-        fail("FIELDS_4", {{"cell", cell_name(static_cast<std::int64_t>(cell))}, {"element", std::string(row.name)}});
-      Eigen::Map<Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>>(
-          points.gradient.data() + static_cast<std::ptrdiff_t>(p) * n * space, n, space) = reference * jacobian.inverse();
-    } else {
-      size = std::sqrt((jacobian.transpose() * jacobian).determinant());
-    }
-    const double radius = is_axisymmetric(cell) ? points.position[static_cast<std::size_t>(3 * p)] : 1.0;
-    points.measure[static_cast<std::size_t>(p)] = table.weight[static_cast<std::size_t>(p)] * size * radius;
+        position[i] += table.shape[static_cast<std::size_t>(p * n + a)] *
+                       coordinates[static_cast<std::size_t>(nodes[static_cast<std::size_t>(a)] * 3 + i)];
+    points.measure[static_cast<std::size_t>(p)] *= table.weight[static_cast<std::size_t>(p)] * (axis ? position[0] : 1.0);
   }
   return points;
 }

@@ -21,7 +21,7 @@ struct CellPoints {
   std::vector<double> gradient;  ///< (n_points, n_nodes, dimension) in space; empty for skins
 };
 
-/// Integration points of the finite elements of a model. Refers to what it is made of.
+/// Integration points of the finite elements of a model. Refers to what it is made of. Each thread of a loop needs a copy.
 class ModelPoints {
  public:
   /// Throws PLUGIN_4 for an element that no catalogue has.
@@ -44,6 +44,7 @@ class ModelPoints {
   std::vector<const catalog::ElementRow*> rows_;  ///< of the model's elements
   std::map<const catalog::ElementRow*, Tabulation> tabulations_;
   CellPoints points_;
+  std::vector<double> x_;  ///< (n_nodes, space) of the cell in hand
 };
 
 /// Coordinates displaced by a nodal field (DX, DY, DZ; 0 where it has none), (n_nodes, 3).

@@ -1,11 +1,13 @@
 #include "lacon/operators/fields/criteria.hpp"
 
 #include <Eigen/Eigenvalues>
+#include <algorithm>
 #include <cmath>
 #include <vector>
 
 #include "lacon/operators/fields/extrapolation.hpp"
 #include "lacon/operators/fields/tensor.hpp"
+#include "lacon/structures/parallel.hpp"
 
 namespace lacon {
 namespace {
@@ -65,15 +67,18 @@ Field invariants(const Field& tensors, std::string name, std::string_view prefix
   field.support = tensors.support;
   field.offset = tensors.offset;
   const TensorRows rows(tensors, prefix);
-  bool everywhere = true;
-  for (std::size_t row = 0; row < tensors.n_rows(); ++row) {
-    const bool here = rows.has(row);
-    const std::vector<double> values = here ? row_of(rows[row]) : std::vector<double>(field.n_components(), 0.0);
-    field.values.insert(field.values.end(), values.begin(), values.end());
-    field.present.insert(field.present.end(), values.size(), here);
-    everywhere = everywhere && here;
-  }
-  if (everywhere) field.present.clear();
+  constexpr std::size_t rows_at_once = 4096;
+  const std::size_t width = field.n_components();
+  field.values.assign(tensors.n_rows() * width, 0.0);
+  field.present.assign(tensors.n_rows() * width, 1);
+  parallel_for(tensors.n_rows(), rows_at_once, [&](const LoopBlock& block) {
+    for (std::size_t row = block.first; row < block.last; ++row)
+      if (rows.has(row))
+        std::ranges::copy(row_of(rows[row]), field.values.begin() + static_cast<std::ptrdiff_t>(row * width));
+      else
+        std::fill_n(field.present.begin() + static_cast<std::ptrdiff_t>(row * width), width, 0);
+  });
+  if (std::find(field.present.begin(), field.present.end(), 0) == field.present.end()) field.present.clear();
   return field;
 }
 

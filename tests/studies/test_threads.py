@@ -1,5 +1,5 @@
-"""A study gives the same bits whatever the number of threads of its element loops and of pairing. BLAS has one thread here, as the
-launcher starts it: the sums of a BLAS with several threads are its own affair."""
+"""A study gives the same bits whatever the number of threads of its loops over elements, couples and rows of fields. BLAS has one
+thread here, as the launcher starts it: the sums of a BLAS with several threads are its own affair."""
 
 import unittest
 
@@ -10,6 +10,12 @@ from study_test import SOURCE, StudyTest
 from meshes import brick, union, write_med
 
 STUDY = SOURCE / "tests/bench/two_blocks.comm"
+FIELDS = """
+POURSUITE()
+RESULT = CALC_CHAMP(reuse=RESULT, RESULTAT=RESULT, CONTRAINTE="SIGM_ELNO", CRITERES=("SIEQ_ELGA", "SIEQ_NOEU"), DEFORMATION="EPSI_ELGA",
+                    FORCE=("FORC_NODA", "REAC_NODA"))
+FIN()
+"""
 
 
 def two_blocks():
@@ -41,14 +47,16 @@ def datasets(base):
 class Threads(StudyTest):
     def test_the_bits_do_not_depend_on_their_number(self):
         write_med(self.folder / "blocks.med", two_blocks())
+        (self.folder / "fields.comm").write_text(FIELDS, encoding="utf-8")
         results = {}
         for threads in (1, 2, 3):
             base = self.folder / f"{threads}.base"
-            run = self.run_lacon(STUDY, "--base", base, "--unit", "20=blocks.med", "--threads", threads,
+            run = self.run_lacon(STUDY, "fields.comm", "--base", base, "--unit", "20=blocks.med", "--threads", threads,
                                  BLOCKS_FLAT="0", BLOCKS_DZ="0.0011", OPENBLAS_NUM_THREADS="1")
             self.assertEqual(run.status, 0, run.stdout[-3000:] + run.stderr[-3000:])
             results[threads] = datasets(base)
-        self.assertTrue(any(name.endswith("DEPL_1.h5") for name, _ in results[1]), list(results[1]))
+        for field in ("DEPL", "SIEF_ELGA", "EPSI_ELGA", "SIEQ_NOEU", "FORC_NODA"):
+            self.assertTrue(any(name.endswith(f"{field}_1.h5") for name, _ in results[1]), list(results[1]))
         self.assertGreater(len(results[1]), 50)
         for threads in (2, 3):
             self.assertEqual(results[threads].keys(), results[1].keys())
