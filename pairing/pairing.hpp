@@ -22,6 +22,8 @@ struct PairingTolerances {
   double ray = 1e-11;  ///< an image must lie on the normal of its point to this fraction of the couple's extent
   // in space
   double flat = 1e-10;  ///< a facet is flat, an edge straight, below this turn of the normal or relative bulge
+  /// Below this turn of the normal four triangles of a flat slave are enough: polygons are wrong by a tenth of it, in gaps.
+  double nearly_flat = 1e-3;
   double overlap =
       1e-12;             ///< two masters hide one another where their polygons share more than this fraction of the slave cell
   double margin = 0.25;  ///< an image may lie outside its curved cell by this much of the reference cell

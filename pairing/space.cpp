@@ -150,7 +150,8 @@ struct Piece {
 class SlaveFacet {
  public:
   Facet f;
-  bool degenerate = false, constant = true, plane = true;
+  bool degenerate = false;
+  bool constant = true, nearly_flat = true, plane = true;  ///< one normal, nearly one, straight edges
   Vec3 n{}, e1{}, e2{};
   std::vector<Piece> pieces;
   double chart_area = 0;      ///< twice the area
@@ -188,6 +189,7 @@ class SlaveFacet {
     }
     degenerate = false;
     constant = turn <= tolerances.flat && f.straight;
+    nearly_flat = turn <= tolerances.nearly_flat && f.straight;
     plane = f.straight;
     // axes that follow an edge: turning the whole mesh turns them too
     Vec3 edge{};
@@ -213,8 +215,9 @@ class SlaveFacet {
       for (int i = 0; i < f.n_vertices && !plane; ++i)
         bulge = std::max(bulge, norm(f.nodes[f.n_vertices + i] - 0.5 * (f.nodes[i] + f.nodes[(i + 1) % f.n_vertices])));
       const double steps = 8 * std::max(turn, 4 * bulge / diameter(f.nodes, f.n_vertices));
-      subdivide(f.family == Family::TRIA ? std::clamp(1 + static_cast<int>(std::ceil(steps)), 2, 6)
-                                         : std::clamp(1 + static_cast<int>(std::ceil(steps / std::numbers::sqrt2)), 2, 4));
+      subdivide(nearly_flat                ? 1
+                : f.family == Family::TRIA ? std::clamp(1 + static_cast<int>(std::ceil(steps)), 2, 6)
+                                           : std::clamp(1 + static_cast<int>(std::ceil(steps / std::numbers::sqrt2)), 2, 4));
     }
     chart_area = 0;
     for (const Piece& piece : pieces) chart_area += double_area(piece.polygon);
@@ -450,8 +453,8 @@ bool sooner(const View* a, const View* b) {
   return std::tie(a->piece, p.x, p.y, a->master) < std::tie(b->piece, q.x, q.y, b->master);
 }
 
-/// Whether polygons of a couple are exact.
-bool exact_polygons(const SlaveFacet& slave, const FacetKind& master) { return slave.constant && master.straight; }
+/// Whether polygons of a couple are exact, or nearly so.
+bool exact_polygons(const SlaveFacet& slave, const FacetKind& master) { return slave.nearly_flat && master.straight; }
 
 /// The degree to which a couple is integrated. The integrand is analytic in the plane; the nearest singularity of an inverse
 /// map lies at about 1 / distortion, so that a rule of degree d leaves rho^-d with rho as below (METHOD.md 5.4 has measured

@@ -670,6 +670,21 @@ TEST(PairingInSpace, WarpedFacetsApproachFlatOnesContinuously) {
   }
 }
 
+TEST(PairingInSpace, NearlyFlatTrapezoidsAreIntegratedAsWellAsFlatOnes) {
+  // a warp that is small, but more than what counts as flat: four triangles a facet, and the degree that the distortion asks
+  // for
+  for (const double height : {1e-9, 1e-8}) {
+    Skin3 slave = hexahedron_cut(CellType::QUAD4, false, 0.5), master = hexahedron_cut(CellType::QUAD4, true, 0.4);
+    for (std::size_t i = 2; i < slave.coordinates.size(); i += 12) slave.coordinates[i] += height;  // two corners
+    const Pairing found = pair(slave.view(), master.view());
+    EXPECT_GT(found.cells.size(), pair(hexahedron_cut(CellType::QUAD4, false, 0.5).view(), master.view()).cells.size());
+    const Forces f = forces(slave, master, found.cells);
+    EXPECT_NEAR(f.area, 4, 4e-12);
+    EXPECT_LE(largest_difference(f.slave, nodal_areas(slave)), 4e-10);
+    EXPECT_LE(largest_difference(f.master, nodal_areas(master)), 4e-10 + height);
+  }
+}
+
 TEST(PairingInSpace, CurvedFacetsOfMatchingSkinsCoverEachOther) {
   // A shell of a sphere on itself: all of it is covered, and the gap is zero. Curved edges along the border are clipped as four
   // chords, which leave 1/16 of the bulge: with h = 0.2 and a geodesic curvature of tan(0.4), 2/3 h^2 tan(0.4) / 8 / 16 of a
