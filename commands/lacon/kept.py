@@ -19,6 +19,7 @@ import json
 import os
 import pathlib
 import re
+import sys
 
 from . import catalog, concepts, hdf5, orders, version
 
@@ -104,7 +105,7 @@ class Kept:
             return None
         return _digest({
             "command": order["command"], "keywords": keywords, "label": result["label"], "reuse": result["reuse"],
-            "inputs": reached, "program": _of_file(program), "version": _version(),
+            "inputs": reached, "program": _of_program(program), "version": _version(),
             "files": {unit: [pathlib.Path(path).stem, _of_file(path)] for unit, path in files.items()},
         })
 
@@ -274,6 +275,20 @@ def _of_file(path):
 
 
 @functools.cache
+def _of_program(path):
+    """What tells versions of a program or plug-in apart: the number that the linker gave it, else a digest of its content.
+
+    To read megabytes of a program would take longer than to run a small one.
+    """
+    with open(path, "rb") as file:
+        head = file.read(4096)
+    note = head.find(b"\x03\0\0\0GNU\0") if head.startswith(b"\x7fELF") else -1
+    length = int.from_bytes(head[note - 4:note], sys.byteorder) if note >= 8 else 0
+    number = head[note + 8:note + 8 + length]
+    return number.hex() if 8 <= length == len(number) else _of_file(path)
+
+
+@functools.cache
 def _version():
     """What beside the operator itself decides what it makes: catalogue, plug-ins, the launcher's part in formulae."""
     there = catalog.location()
@@ -281,7 +296,7 @@ def _version():
     roots = filter(None, [*os.environ.get("LACON_PLUGIN_PATH", "").split(":"), orders.operator_folder().parent / "lib" / "lacon" / "plugins"])
     files += [path for root in roots for path in sorted(pathlib.Path(root).rglob("*")) if path.is_file()]
     files.append(pathlib.Path(__file__).with_name("formulas.py"))
-    return [version, *map(_of_file, files)]
+    return [version, *map(_of_program, files)]
 
 
 def _stat(path):
