@@ -1,12 +1,12 @@
 #include "lacon/structures/parallel.hpp"
 
 #include <algorithm>
-#include <atomic>
 #include <charconv>
 #include <condition_variable>
 #include <cstdlib>
 #include <exception>
 #include <functional>
+#include <map>
 #include <mutex>
 #include <string_view>
 #include <system_error>
@@ -44,49 +44,72 @@ void parallel_in_turn(std::size_t n_items, std::size_t block_size, const std::fu
     }
     return;
   }
-  // blocks are taken in ascending order: whichever block throws, all before it have been taken, and are worked on to their end
-  std::atomic<std::size_t> next = 0, end = n_blocks;
-  std::mutex mutex;  // of what follows, and of changes of `end`
+  // A thread whose block has not its turn yet leaves it, with its worker, to whoever brings the turn there, and goes on with
+  // another block and a spare worker. Blocks are taken in ascending order: whichever block throws, all before it have been
+  // taken, and are worked on to their end.
+  std::vector<LoopWorker> workers;
+  while (workers.size() < 2 * threads) workers.push_back(new_worker());
+  std::mutex mutex;  // of all that follows
+  std::condition_variable has_spare;
+  std::vector<const LoopWorker*> spare;
+  for (const LoopWorker& worker : workers) spare.push_back(&worker);
+  std::map<std::size_t, const LoopWorker*> finished;  // by block, waiting for its turn
+  std::size_t next = 0, turn = 0, end = n_blocks;     // end: behind the last block, or the first that threw
+  bool in_turn = false;
   std::exception_ptr first_error;
-  std::size_t turn = 0;
-  std::condition_variable next_turn;
-  const auto wait_for_turn = [&](std::size_t i) {  // false: it does not come, a block before has thrown
-    std::unique_lock lock(mutex);
-    next_turn.wait(lock, [&] { return turn == i || end <= i; });
-    return turn == i;
+  const auto thrown_by = [&](std::size_t i) {
+    if (i >= end) return;
+    end = i;
+    first_error = std::current_exception();
   };
-  const auto take = [&](const LoopWorker& worker) {
+  const auto take = [&] {
     in_loop = true;
-    std::size_t i = n_blocks;
-    try {
-      while ((i = next++) < end) {
-        worker.work(block(i));
-        if (!worker.in_turn) continue;
-        if (!wait_for_turn(i)) break;
-        worker.in_turn(block(i));
-        const std::lock_guard lock(mutex);
+    std::unique_lock lock(mutex);
+    const auto call = [&](const std::function<void(const LoopBlock&)>& part, std::size_t i) {
+      lock.unlock();
+      try {
+        part(block(i));
+        lock.lock();
+      } catch (...) {
+        lock.lock();
+        thrown_by(i);
+      }
+    };
+    while (next < end) {
+      if (spare.empty()) {
+        has_spare.wait(lock);
+        continue;
+      }
+      const LoopWorker* worker = spare.back();
+      spare.pop_back();
+      const std::size_t own = next++;
+      call(worker->work, own);
+      if (!worker->in_turn) {
+        spare.push_back(worker);
+        continue;
+      }
+      finished.emplace(own, worker);
+      for (auto at = finished.find(turn); !in_turn && turn < end && at != finished.end(); at = finished.find(turn)) {
+        worker = at->second;
+        finished.erase(at);
+        in_turn = true;
+        call(worker->in_turn, turn);
+        in_turn = false;
         ++turn;
-        next_turn.notify_all();
+        spare.push_back(worker);
+        has_spare.notify_one();
       }
-    } catch (...) {
-      const std::lock_guard lock(mutex);
-      if (i < end) {
-        end = i;
-        first_error = std::current_exception();
-      }
-      next_turn.notify_all();
     }
+    has_spare.notify_all();  // there is nothing left to wait for
     in_loop = false;
   };
-  std::vector<LoopWorker> workers;
-  while (workers.size() < threads) workers.push_back(new_worker());
   {
     std::vector<std::jthread> others;
     try {
-      while (others.size() + 1 < threads) others.emplace_back(take, std::cref(workers[others.size() + 1]));
+      while (others.size() + 1 < threads) others.emplace_back(take);
     } catch (const std::system_error&) {  // no more threads to be had: those that there are do all the work
     }
-    take(workers.front());
+    take();
   }
   if (first_error) std::rethrow_exception(first_error);
 }

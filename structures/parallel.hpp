@@ -28,7 +28,7 @@ constexpr std::size_t n_loop_blocks(std::size_t n_items, std::size_t block_size)
 /// one may have been worked on. A loop inside `work` stays in its thread.
 void parallel_for(std::size_t n_items, std::size_t block_size, const std::function<void(const LoopBlock&)>& work);
 
-/// What one thread of a loop does with a block: first `work`, then `in_turn`.
+/// What is done with a block: first `work`, then `in_turn`, where it is set.
 struct LoopWorker {
   std::function<void(const LoopBlock&)> work, in_turn;
 };

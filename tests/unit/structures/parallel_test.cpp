@@ -99,7 +99,7 @@ TEST_F(Parallel, WhatIsDoneInTurnIsDoneInTheOrderOfBlocks) {
     std::vector<std::size_t> all(n);
     std::iota(all.begin(), all.end(), 0);
     EXPECT_EQ(seen, all) << threads << " threads";
-    EXPECT_EQ(std::to_string(workers), threads);
+    EXPECT_LE(workers, 2 * std::stoi(threads));
   }
 }
 
