@@ -33,8 +33,9 @@ struct LoopWorker {
   std::function<void(const LoopBlock&)> work, in_turn;
 };
 
-/// Likewise, with a worker for each thread, whose in_turn(block) is called in the order of blocks and one at a time, while
-/// other threads work on blocks behind it: for sums in one place.
+/// Likewise, for sums in one place: in_turn(block) is called in the order of blocks and one at a time, while other threads work
+/// on blocks behind it. It is that of the worker whose work(block) it follows, which keeps the block's results in between, and
+/// may run in another thread. There are two workers a thread.
 void parallel_in_turn(std::size_t n_items, std::size_t block_size, const std::function<LoopWorker()>& new_worker);
 
 }  // namespace lacon
