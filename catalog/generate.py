@@ -59,6 +59,7 @@ def load(folder):
         "elements": elements,
         "quantities": read(folder / "quantities.toml")["quantity"],
         "messages": messages,
+        "instead": read(folder / "instead.toml"),
         "commands": {path.stem.upper(): read(path) for path in sorted((folder / "commands").glob("*.toml"))},
     }
 

@@ -7,6 +7,7 @@ import functools
 import json
 import os
 import pathlib
+import re
 import sys
 
 _package = pathlib.Path(__file__).resolve().parent
@@ -77,6 +78,24 @@ def messages():
     for path in sorted((location() / "messages").glob("*.toml")):
         rows.update(_toml(path))
     return rows
+
+
+@functools.cache
+def _instead():
+    return _json()["instead"] if _is_json() else _toml(location() / "instead.toml")
+
+
+def instead(kind, path, otherwise):
+    """What to use instead of a command, keyword or value (`kind`) of code_aster's that is not here.
+
+    @param path  "DEFI_CONTACT/ZONE[1]/COEF_CONT"; of a value with "=VALUE" behind it
+    """
+    path = re.sub(r"\[\d+\]", "", path)
+    rows = _instead()[kind]
+    found = rows.get(path) or rows.get(path.rpartition("/")[2])
+    if not found:
+        return otherwise
+    return found if found.startswith("leave it out") else f"use {found}"
 
 
 def plugin_folders():

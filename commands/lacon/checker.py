@@ -5,6 +5,7 @@ of a factor keyword that may be repeated are counted from 1.
 """
 
 import math
+import re
 
 from . import catalog
 from .concepts import CO, Concept
@@ -64,7 +65,8 @@ class _Check:
 
     def unknown(self, path, name, row):
         if name in row.get("elsewhere", ()):
-            self.problem("KEYWORD_11", f"{path}/{name}")
+            otherwise = f"remove it: `lacon help {re.match('[A-Z_0-9]*', path)[0]}` says what is available"
+            self.problem("KEYWORD_11", f"{path}/{name}", instead=catalog.instead("keyword", f"{path}/{name}", otherwise))
             return
         self.problem("KEYWORD_1", f"{path}/{name}", nearest=nearest(name, row.get("keyword", {})))
 
@@ -91,7 +93,7 @@ class _Check:
             return [made]
         for item in value if isinstance(value, list) else (value,):
             if item in row.get("elsewhere", ()):
-                self.problem("KEYWORD_13", path, value=_show(item), allowed=_list(row["into"]))
+                self.other_value(path, item, row["into"])
         return list(value) if isinstance(value, list) else value
 
     # ------------------------------------------------------------------------------------------------ one keyword
@@ -151,11 +153,16 @@ class _Check:
             allowed = catalog.lists[row["into_from"]]()
         if allowed is not None and converted not in allowed:
             if converted in row.get("elsewhere", ()):
-                self.problem("KEYWORD_13", path, value=_show(converted), allowed=_list(allowed))
+                self.other_value(path, converted, allowed)
             else:
                 self.problem("KEYWORD_4", path, value=_show(converted), allowed=_list(allowed), nearest=nearest(converted, allowed))
         self.bounds(path, row, converted)
         return converted
+
+    def other_value(self, path, value, allowed):
+        """A value that code_aster has and Lacon has not."""
+        instead = catalog.instead("value", f"{path}={value}", f"give one of: {_list(allowed)}")
+        self.problem("KEYWORD_13", path, value=_show(value), instead=instead)
 
     def bounds(self, path, row, value):
         tests = {"above": (lambda x, b: x > b, "greater than"), "at_least": (lambda x, b: x >= b, "at least"),

@@ -271,7 +271,8 @@ class Unavailable:
 
     def __call__(self, *args, **given):
         frame = labels.user_frame()
-        fail("COMMAND_11", labels.location(frame), command=self.name)
+        instead = catalog.instead("command", self.name, "`lacon help` lists the commands that are")
+        fail("COMMAND_11", labels.location(frame), command=self.name, instead=instead)
 
 
 def all_commands():

@@ -20,6 +20,7 @@ def run(names):
             print("\n".join(_command(name)))
         elif name in catalog.peer_commands():
             print(f"{name} is a command of code_aster that is not available in Lacon")
+            print("  " + catalog.instead("command", name, "there is no counterpart"))
             status = 2
         else:
             print(f"there is no command {name}{nearest(name, catalog.command_names())}")

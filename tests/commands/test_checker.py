@@ -58,6 +58,32 @@ class Mistakes(unittest.TestCase):
     def test_a_value_that_only_code_aster_has(self):
         self.one("KEYWORD_13", "LIRE_MAILLAGE/FORMAT", "IDEAS", command="LIRE_MAILLAGE", FORMAT="IDEAS")
 
+    def test_what_to_use_instead(self):
+        for kind, path, text in (("keyword", "DEFI_CONTACT/ZONE[2]/COEF_CONT", "leave it out: "),  # by its path
+                                 ("keyword", "AFFE_CHAR_MECA/PRES_REP[1]/MAILLE", "use GROUP_MA: "),  # by its name
+                                 ("value", "DEFI_CONTACT/FORMULATION=DISCRETE", "use FORMULATION='CONTINUE'"),
+                                 ("keyword", "DEFI_CONTACT/ZONE[1]/GLISSIERE", "no idea")):
+            self.assertTrue(catalog.instead(kind, path, "no idea").startswith(text), path)
+        (found,) = checker.complete("LIRE_MAILLAGE", catalog.command("LIRE_MAILLAGE"), {"FORMAT": "ASTER"})[1]
+        self.assertTrue(found.do.startswith("use a MED file"), found)
+
+    def test_every_replacement_is_of_something_refused(self):
+        refused, values = set(), set()
+
+        def visit(path, row):
+            for name in row.get("elsewhere", ()):
+                values.add(f"{path}={name}")
+                refused.update((f"{path}/{name}", str(name)))
+            for name, keyword in row.get("keyword", {}).items():
+                visit(f"{path}/{name}", keyword)
+
+        for name in catalog.command_names():
+            visit(name, catalog.command(name))
+        rows = catalog._instead()
+        self.assertEqual(set(rows["command"]) - catalog.peer_commands(), set())
+        self.assertEqual(set(rows["keyword"]) - refused, set())
+        self.assertEqual(set(rows["value"]) - values, set())
+
     def test_a_default_that_only_code_aster_has(self):
         keywords = self.contact()
         del keywords["FORMULATION"]
@@ -393,7 +419,7 @@ C = DEFI_CONTACT(MODELE=MO, FORMULATION='CONTINUE',
 
     def test_unknown_commands(self):
         self.refused(self.run_study("DEBUT()\nX = MECA_STATIQUE(MODELE=1)\n"), "COMMAND_11", "MECA_STATIQUE", "not available in Lacon",
-                     "study.comm:2")
+                     "use STAT_NON_LINE", "study.comm:2")
         self.refused(self.run_study("DEBUT()\nX = LIRE_MALLAGE()\n"), "STUDY_20", "LIRE_MALLAGE", "LIRE_MAILLAGE", "study.comm:2")
 
     def test_keywords_only(self):
