@@ -3,6 +3,10 @@
 #include <algorithm>
 #include <limits>
 
+#include "lacon/elements/lanes.hpp"
+
+#pragma GCC diagnostic ignored "-Wpsabi"  // vectors are passed between inlined functions alone
+
 namespace lacon::space {
 
 Map3 interpolate(CellType type, std::span<const Vec3> v) {
@@ -87,6 +91,116 @@ std::optional<Vec2> inverse(const Map2& map, Family family, Vec2 y, double toler
   }
   if (!(residual <= tolerance) || !near_reference_cell(family, p, margin)) return std::nullopt;
   return p;
+}
+
+namespace {
+
+using Eight = double __attribute__((vector_size(LACON_LANES * sizeof(double))));
+using EightMarks = std::int64_t __attribute__((vector_size(LACON_LANES * sizeof(std::int64_t))));
+
+struct EightVectors {
+  Eight x, y, z;
+};
+[[gnu::always_inline]] inline EightVectors operator-(const EightVectors& a, const EightVectors& b) {
+  return {a.x - b.x, a.y - b.y, a.z - b.z};
+}
+[[gnu::always_inline]] inline EightVectors scaled(const Eight& s, const EightVectors& a) { return {s * a.x, s * a.y, s * a.z}; }
+[[gnu::always_inline]] inline Eight dot(const EightVectors& a, const EightVectors& b) {
+  return a.x * b.x + a.y * b.y + a.z * b.z;
+}
+[[gnu::always_inline]] inline EightVectors cross(const EightVectors& a, const EightVectors& b) {
+  return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
+}
+[[gnu::always_inline]] inline void add(EightVectors& sum, const Eight& s, Vec3 c) {
+  sum.x += s * c.x;
+  sum.y += s * c.y;
+  sum.z += s * c.z;
+}
+[[gnu::always_inline]] inline Eight magnitude(const Eight& a) { return a < 0.0 ? -a : a; }
+
+/// A facet at eight reference points, and how far it is from eight lines there.
+struct EightPoints {
+  EightVectors d1, d2;
+  EightVectors off;  ///< from the facet to the line, at a right angle to it
+  Eight off2;        ///< its square
+
+  [[gnu::always_inline]] EightPoints(const Map3& map, const Eight& xi, const Eight& eta, const EightVectors& x,
+                                     const EightVectors& n) {
+    const Eight zero{}, one = zero + 1.0;
+    EightVectors at{zero, zero, zero};
+    d1 = d2 = at;
+    add(at, one, map.c[0]), add(at, xi, map.c[1]), add(at, eta, map.c[2]);
+    add(d1, one, map.c[1]), add(d2, one, map.c[2]);
+    if (map.n > 3) add(at, xi * eta, map.c[3]), add(d1, eta, map.c[3]), add(d2, xi, map.c[3]);
+    if (map.n > 4) {
+      add(at, xi * xi, map.c[4]), add(at, eta * eta, map.c[5]);
+      add(d1, 2 * xi, map.c[4]), add(d2, 2 * eta, map.c[5]);
+    }
+    if (map.n > 6) {
+      const Eight xx = xi * xi, yy = eta * eta, xy = xi * eta;
+      add(at, xx * eta, map.c[6]), add(at, xi * yy, map.c[7]), add(at, xx * yy, map.c[8]);
+      add(d1, 2 * xy, map.c[6]), add(d1, yy, map.c[7]), add(d1, 2 * xi * yy, map.c[8]);
+      add(d2, xx, map.c[6]), add(d2, 2 * xy, map.c[7]), add(d2, 2 * xx * eta, map.c[8]);
+    }
+    const EightVectors to_line = x - at;
+    off = to_line - scaled(dot(to_line, n), n);
+    off2 = dot(off, off);
+  }
+};
+
+LACON_KERNEL void meet_eight(const Map3& map, double start, const double* lines, double tolerance, double* met) {
+  constexpr int most_steps = 12;  // quadratic convergence needs five or six
+  const EightVectors x{lanes(lines, 0), lanes(lines, 1), lanes(lines, 2)}, n{lanes(lines, 3), lanes(lines, 4), lanes(lines, 5)};
+  const Eight zero{};
+  Eight xi = zero + start, eta = xi;
+  EightPoints now(map, xi, eta, x, n);
+  EightMarks going = now.off2 > 0.0, well = ~going;  // lanes that still move, lanes that have arrived
+  for (int step = 0; step < most_steps; ++step) {
+    const Eight scale = 1 / dot(cross(now.d1, now.d2), n);
+    const Eight by_xi = scale * dot(cross(now.off, now.d2), n), by_eta = scale * dot(cross(now.d1, now.off), n);
+    const Eight a = magnitude(by_xi), b = magnitude(by_eta), length = a > b ? a : b;
+    const EightPoints next(map, xi + by_xi, eta + by_eta, x, n);
+    const EightMarks better = going & (next.off2 < now.off2) & (length <= 2.0), close = length <= 1e-9;
+    well |= going & close;
+    xi = better ? xi + by_xi : xi;
+    eta = better ? eta + by_eta : eta;
+    const auto moved = [&](Eight & old, const Eight& fresh) __attribute__((always_inline)) { old = better ? fresh : old; };
+    for (EightVectors* const v : {&now.d1, &now.d2, &now.off}) {
+      const EightVectors& w = v == &now.d1 ? next.d1 : v == &now.d2 ? next.d2 : next.off;
+      moved(v->x, w.x), moved(v->y, w.y), moved(v->z, w.z);
+    }
+    moved(now.off2, next.off2);
+    going = better & ~close;
+    bool any = false;
+    for (int lane = 0; lane < LACON_LANES; ++lane) any = any || going[lane] != 0;
+    if (!any) break;
+  }
+  lanes(met, 0) = (well & (now.off2 <= tolerance * tolerance)) != 0 ? zero + 1.0 : zero;
+  lanes(met, 1) = xi;
+  lanes(met, 2) = eta;
+  lanes(met, 3) = dot(cross(now.d1, now.d2), n);
+}
+
+}  // namespace
+
+void meet(const Map3& map, Family family, std::span<const Line> lines, double tolerance, double margin,
+          std::span<Meeting> meetings) {
+  const double start = family == Family::TRIA ? 1.0 / 3 : 0;
+  double columns[6 * LACON_LANES], met[4 * LACON_LANES];
+  for (std::size_t first = 0; first < lines.size(); first += LACON_LANES) {
+    const std::size_t count = std::min<std::size_t>(LACON_LANES, lines.size() - first);
+    for (std::size_t lane = 0; lane < LACON_LANES; ++lane) {
+      const auto& [x, n] = lines[first + std::min(lane, count - 1)];
+      const double values[6] = {x.x, x.y, x.z, n.x, n.y, n.z};
+      for (std::size_t i = 0; i < 6; ++i) columns[i * LACON_LANES + lane] = values[i];
+    }
+    meet_eight(map, start, columns, tolerance, met);
+    for (std::size_t lane = 0; lane < count; ++lane) {
+      const auto of_lane = [&](std::size_t i) { return met[i * LACON_LANES + lane]; };
+      const Vec2 xi{of_lane(1), of_lane(2)};
+      meetings[first + lane] = {of_lane(0) != 0 && near_reference_cell(family, xi, margin), xi, of_lane(3)};
+    }
+  }
 }
 
 constexpr double round_off = 1e-13;  // of higher terms, relative to the affine ones

@@ -75,6 +75,24 @@ inline bool near_reference_cell(Family family, Vec2 p, double margin) {
 /// reference cell.
 std::optional<Vec2> inverse(const Map2& map, Family family, Vec2 y, double tolerance, double margin);
 
+/// A line in space.
+struct Line {
+  Vec3 x, n;  ///< a point, the unit direction
+};
+
+/// Where a line meets a facet.
+struct Meeting {
+  bool found;
+  Vec2 xi;
+  double jacobian;  ///< of the facet seen along the line
+};
+
+/// Where many lines meet a facet: Newton's method as in inverse(), without its shorter steps, for eight lines at a time. What a
+/// line gets does not depend on the others. Not found is also what is not straightforward: inverse() may still find it.
+/// @param[out] meetings (lines)
+void meet(const Map3& map, Family family, std::span<const Line> lines, double tolerance, double margin,
+          std::span<Meeting> meetings);
+
 /// The inverse of a map of the plane: at once where it is affine, by Newton's method elsewhere.
 class Inverse {
  public:
@@ -88,6 +106,7 @@ class Inverse {
     if (!near_reference_cell(family_, xi, margin)) return std::nullopt;
     return xi;
   }
+  bool affine() const { return affine_; }
   /// The Jacobian at a reference point.
   double jacobian(Vec2 xi) const {
     if (affine_) return jacobian_;

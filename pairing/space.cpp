@@ -247,6 +247,25 @@ class SlaveFacet {
     return {true, *xi, 1 / from_chart_.jacobian(*xi)};
   }
 
+  /// The mean normal at a point of the mean plane.
+  Line normal_at(Vec2 y) const { return {y.x * e1 + y.y * e2, n}; }
+
+  /// Reference points of many points of the chart. @param lines, meetings used again for every call
+  void places(std::span<const Vec2> y, const PairingTolerances& tolerances, std::vector<Line>& lines,
+              std::vector<Meeting>& meetings, std::vector<Place>& places) const {
+    places.resize(y.size());
+    const bool straightforward = !plane || from_chart_.affine();
+    if (!straightforward) {
+      lines.clear();
+      for (const Vec2 p : y) lines.push_back(normal_at(p));
+      meetings.resize(y.size());
+      meet(f.x, f.family, lines, tolerances.ray * f.size, tolerances.margin, meetings);
+    }
+    for (std::size_t i = 0; i < y.size(); ++i)
+      places[i] = straightforward || !meetings[i].found ? place(y[i], tolerances)
+                                                        : Place{true, meetings[i].xi, 1 / meetings[i].jacobian};
+  }
+
   /// The side of an edge of a master on which a normal passes, on a piece.
   HalfPlane side(const Piece& piece, Vec3 a, Vec3 b) const {
     if (before(b, a)) return side(piece, b, a).opposite();
@@ -382,6 +401,30 @@ class Target {
     const Vec3 t = cross(n, axis), e1 = (1 / norm(t)) * t, e2 = cross(n, e1);
     return inverse(project(x_, e1, e2), family_, {dot(x, e1), dot(x, e2)}, tolerances.ray * size_, tolerances.margin);
   }
+  /// Images of many points. @param lines, meetings used again for every call
+  void images(std::span<const Vec2> y, std::span<const SlaveFacet::Place> places, const PairingTolerances& tolerances,
+              std::vector<Line>& lines, std::vector<Meeting>& meetings, std::vector<Meeting>& images) const {
+    images.resize(y.size());
+    const bool straightforward = slave_.constant && along_.affine();
+    if (!straightforward) {
+      lines.clear();
+      for (std::size_t i = 0; i < y.size(); ++i)
+        if (slave_.constant)
+          lines.push_back(slave_.normal_at(y[i]));
+        else
+          lines.push_back({slave_.f.x(places[i].xi).x, slave_.direction(places[i].xi)});
+      meetings.resize(y.size());
+      meet(x_, family_, lines, tolerances.ray * size_, tolerances.margin, meetings);
+    }
+    for (std::size_t i = 0; i < y.size(); ++i) {
+      if (!straightforward && meetings[i].found) {
+        images[i] = meetings[i];
+        continue;
+      }
+      const std::optional<Vec2> found = places[i].found ? image(y[i], places[i].xi, tolerances) : std::nullopt;
+      images[i] = {found.has_value(), found.value_or(Vec2{}), 0};
+    }
+  }
   /// The gap between a reference point of the slave and its image.
   double gap(Vec2 xi, Vec2 image) const { return dot(x_(image).x - slave_.f.x(xi).x, slave_.direction(xi)); }
 
@@ -504,40 +547,67 @@ const Rule& square_rule(int degree, bool parallelogram) {
   });
 }
 
-/// A point of the chart, with its weight there.
-struct ChartPoint {
-  Vec2 y;
-  double weight;
+/// Points of the chart, with their weights there.
+struct ChartPoints {
+  std::vector<Vec2> y;
+  std::vector<double> weight;
+  Polygon corners;  ///< used again for every polygon
+
+  void add(Vec2 at, double of_it) {
+    y.push_back(at);
+    weight.push_back(of_it);
+  }
 };
 
-/// Integration points of a convex polygon. A fan of quadrangles needs fewer points than one of triangles for the same degree,
-/// which is all that counts where the degree is enough; elsewhere smaller triangles are the more accurate ones.
-void place_points(const Polygon& polygon, int degree, bool enough, std::vector<ChartPoint>& points) {
-  constexpr double round_off = 1e-13;
-  points.clear();
-  const Vec2 a = polygon[0];
-  std::size_t i = 1;
-  for (; enough && i + 2 < polygon.size(); i += 2) {
-    const Vec2 b = polygon[i], c = polygon[i + 1], d = polygon[i + 2];
-    const Vec2 middle = 0.25 * ((a + c) + (b + d)), s = 0.25 * ((b - a) + (c - d)), t = 0.25 * ((d - a) + (c - b)),
-               st = 0.25 * ((c - d) - (b - a));
-    const auto size = [](Vec2 v) { return std::abs(v.x) + std::abs(v.y); };
-    const double area = cross(s, t), by_s = cross(s, st), by_t = cross(st, t);
-    if (!(area > 0)) continue;  // four vertices on a line, to round-off
-    const Rule& rule = square_rule(degree, size(st) <= round_off * (size(s) + size(t)));
-    for (int g = 0; g < rule.size(); ++g) {
-      const double x = rule.points[2 * g], y = rule.points[2 * g + 1];
-      points.push_back({middle + x * s + y * t + (x * y) * st, rule.weights[g] * (area + x * by_s + y * by_t)});
-    }
-  }
-  const Rule& rule = triangle_rule(degree);
-  for (; i + 1 < polygon.size(); ++i) {
-    const Vec2 u = polygon[i] - a, v = polygon[i + 1] - a;
+/// Integration points of a convex polygon: as a quadrangle where it has four corners, which takes fewer points for the same
+/// degree, else on a fan of triangles. Where the degree is not enough (polygons that are approximate) the smaller triangles are
+/// the more accurate ones.
+///
+/// Where edges of slave and master coincide to round-off, vertices come and go: C must not jump by the error of quadrature
+/// there, Newton's method would never end. So vertices that cut off next to nothing are no corners, and have small triangles of
+/// their own; a fan has them by itself.
+void place_points(const Polygon& polygon, int degree, bool enough, ChartPoints& points) {
+  constexpr double round_off = 1e-13, no_area = 1e-15, small = 1e-6;  // the last two: of the area
+  points.y.clear();
+  points.weight.clear();
+  const Rule& triangle = triangle_rule(degree);
+  const auto on_triangle = [&](Vec2 a, Vec2 b, Vec2 c, double least) {
+    const Vec2 u = b - a, v = c - a;
     const double area = cross(u, v);
-    if (!(area > 0)) continue;
-    for (int g = 0; g < rule.size(); ++g)
-      points.push_back({a + rule.points[2 * g] * u + rule.points[2 * g + 1] * v, rule.weights[g] * area});
+    if (!(area > least)) return;
+    for (int g = 0; g < triangle.size(); ++g)
+      points.add(a + triangle.points[2 * g] * u + triangle.points[2 * g + 1] * v, triangle.weights[g] * area);
+  };
+  Polygon& corners = points.corners;
+  if (enough && polygon.size() >= 4) {
+    const double whole = double_area(polygon);
+    corners = polygon;
+    for (std::size_t i = 0; i < corners.size() && corners.size() > 3;) {
+      const Vec2 a = corners[(i + corners.size() - 1) % corners.size()], b = corners[i], c = corners[(i + 1) % corners.size()];
+      if (cross(b - a, c - a) <= small * whole) {
+        on_triangle(a, b, c, no_area * whole);
+        corners.erase(corners.begin() + static_cast<std::ptrdiff_t>(i));
+      } else {
+        ++i;
+      }
+    }
+    if (corners.size() == 4) {
+      const Vec2 a = corners[0], b = corners[1], c = corners[2], d = corners[3];
+      const Vec2 middle = 0.25 * ((a + c) + (b + d)), s = 0.25 * ((b - a) + (c - d)), t = 0.25 * ((d - a) + (c - b)),
+                 st = 0.25 * ((c - d) - (b - a));
+      const auto size = [](Vec2 v) { return std::abs(v.x) + std::abs(v.y); };
+      const double area = cross(s, t), by_s = cross(s, st), by_t = cross(st, t);
+      const Rule& rule = square_rule(degree, size(st) <= round_off * (size(s) + size(t)));
+      for (int g = 0; g < rule.size(); ++g) {
+        const double x = rule.points[2 * g], y = rule.points[2 * g + 1];
+        points.add(middle + x * s + y * t + (x * y) * st, rule.weights[g] * (area + x * by_s + y * by_t));
+      }
+      return;
+    }
+    points.y.clear();
+    points.weight.clear();
   }
+  for (std::size_t i = 2; i < polygon.size(); ++i) on_triangle(polygon[0], polygon[i - 1], polygon[i], 0);
 }
 
 /// The master skin, examined once for all slave cells.
@@ -732,24 +802,23 @@ class PairerInSpace final : public detail::CellPairer {
       place_points(view.region.polygon, options.degree > 0 ? options.degree : integration_degree(e, f), exact_polygons(e, f),
                    points);
       const std::size_t before_points = cells.weight.size(), before_vertices = cells.vertex.size();
-      cells.slave_point.resize(2 * (before_points + points.size()));
-      cells.master_point.resize(2 * (before_points + points.size()));
-      cells.weight.resize(before_points + points.size());
-      bool complete = true;
+      cells.slave_point.resize(2 * (before_points + points.weight.size()));
+      cells.master_point.resize(2 * (before_points + points.weight.size()));
+      cells.weight.resize(before_points + points.weight.size());
+      const std::size_t n_points = points.weight.size();
+      points.y.insert(points.y.end(), view.region.polygon.begin(), view.region.polygon.end());  // vertices behind them
+      e.places(points.y, tolerances, lines, meetings, places);
+      target.images(std::span(points.y).first(n_points), places, tolerances, lines, meetings, images);
+      bool complete = std::all_of(places.begin(), places.end(), [](const SlaveFacet::Place& place) { return place.found; });
       std::size_t at = 2 * before_points;
-      for (const auto& [y, weight] : points) {
-        const SlaveFacet::Place place = e.place(y, tolerances);
-        const std::optional<Vec2> image = place.found ? target.image(y, place.xi, tolerances) : std::nullopt;
-        complete = image.has_value();
-        if (!complete) break;
-        cells.slave_point[at] = place.xi.x, cells.slave_point[at + 1] = place.xi.y;
-        cells.master_point[at] = image->x, cells.master_point[at + 1] = image->y;
-        cells.weight[at / 2] = weight * place.scale;
-        at += 2;
+      for (std::size_t i = 0; i < n_points; ++i, at += 2) {
+        const Vec2 xi = places[i].xi, eta = images[i].xi;
+        complete = complete && images[i].found;
+        cells.slave_point[at] = xi.x, cells.slave_point[at + 1] = xi.y;
+        cells.master_point[at] = eta.x, cells.master_point[at + 1] = eta.y;
+        cells.weight[at / 2] = points.weight[i] * places[i].scale;
       }
-      for (const Vec2 y : view.region.polygon) {
-        const SlaveFacet::Place place = e.place(y, tolerances);
-        complete = complete && place.found;
+      for (const SlaveFacet::Place& place : std::span(places).subspan(n_points)) {
         cells.vertex.push_back(place.xi.x);
         cells.vertex.push_back(place.xi.y);
       }
@@ -788,7 +857,10 @@ class PairerInSpace final : public detail::CellPairer {
   std::vector<Region> rest;
   Region seen;
   Polygon scratch;
-  std::vector<ChartPoint> points;
+  ChartPoints points;
+  std::vector<Line> lines;
+  std::vector<Meeting> meetings, images;
+  std::vector<SlaveFacet::Place> places;
 };
 
 }  // namespace
