@@ -151,12 +151,27 @@ void load_gravity(Load& load, const LoadScene& scene, const Keywords& keywords) 
 
 }  // namespace
 
+namespace {
+
+/// The displacements that an occurrence imposes, and those that LIAISON='ENCASTRE' or BLOCAGE='DEPLACEMENT' hold: all of the
+/// model.
+void add_imposed(std::vector<Keywords>& imposed, const Keywords& factor, int dimension) {
+  imposed.push_back(factor);
+  const std::vector<std::string> held = factor.texts("BLOCAGE");
+  if (!factor.has("LIAISON") && std::find(held.begin(), held.end(), "DEPLACEMENT") == held.end()) return;
+  nlohmann::json values = factor.values();
+  for (int d = 0; d < dimension; ++d) values[std::string(translations[d])] = 0.0;
+  imposed.emplace_back(std::move(values), factor.path(""));
+}
+
+}  // namespace
+
 Load affe_char(const Mesh& mesh, const Model& model, Registry& registry, const Base& base, const Keywords& keywords) {
   const LoadScene scene = make_scene(mesh, model, registry, base);
   Load load;
-  std::vector<Keywords> imposed = keywords.factors("MECA_IMPO");
-  for (const char* const keyword : {"DDL_IMPO", "FACE_IMPO"})
-    for (Keywords& factor : keywords.factors(keyword)) imposed.push_back(std::move(factor));
+  std::vector<Keywords> imposed;
+  for (const char* const keyword : {"MECA_IMPO", "DDL_IMPO", "FACE_IMPO"})
+    for (const Keywords& factor : keywords.factors(keyword)) add_imposed(imposed, factor, model.dimension);
   load_nodes(scene, imposed, translations, "CHARGE_4", load.imposed);
   load_nodes(scene, keywords.factors("FORCE_NODALE"), forces, "CHARGE_5", load.nodal);
   load_cells(load, scene, keywords);

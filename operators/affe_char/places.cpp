@@ -56,6 +56,37 @@ std::string LoadScene::names_of(unsigned own) const {
 
 // ---------------------------------------------------------------------------------------------------- places
 
+namespace {
+
+/// The nodes that a keyword gives by name: N1, N2, ... Throws CHARGE_1.
+std::vector<std::int32_t> nodes_by_name(const LoadScene& scene, const Keywords& factor, const std::string& keyword) {
+  std::vector<std::int32_t> nodes;
+  for (const std::string& name : factor.texts(keyword)) {
+    const std::optional<std::int32_t> node = number_of_name(name, 'N', scene.mesh.n_nodes());
+    if (!node)
+      fail("CHARGE_1", {{"keyword", factor.path(keyword)},
+                        {"name", name},
+                        {"last", node_name(static_cast<std::int64_t>(scene.mesh.n_nodes()) - 1)}});
+    nodes.push_back(*node);
+  }
+  return nodes;
+}
+
+}  // namespace
+
+std::vector<char> nodes_left_out(const LoadScene& scene, const Keywords& factor) {
+  std::vector<char> out(scene.mesh.n_nodes(), 0);
+  const auto leave_out = [&](const auto& nodes) {
+    for (const std::int32_t node : nodes) out[static_cast<std::size_t>(node)] = 1;
+  };
+  for (const std::string& group : factor.texts("SANS_GROUP_MA"))
+    leave_out(nodes_of_cells(scene.mesh, cells_of_group(scene.mesh, group, factor.path("SANS_GROUP_MA"))));
+  for (const std::string& group : factor.texts("SANS_GROUP_NO"))
+    leave_out(nodes_of_group(scene.mesh, group, factor.path("SANS_GROUP_NO")));
+  leave_out(nodes_by_name(scene, factor, "SANS_NOEUD"));
+  return out;
+}
+
 std::vector<NamedPlaces> named_nodes(const LoadScene& scene, const Keywords& factor, const std::string& suffix) {
   const Mesh& mesh = scene.mesh;
   std::vector<NamedPlaces> named;
@@ -73,14 +104,11 @@ std::vector<NamedPlaces> named_nodes(const LoadScene& scene, const Keywords& fac
     const auto members = nodes_of_group(mesh, group, factor.path(group_no));
     named.push_back({factor.path(group_no) + " '" + group + "'", {members.begin(), members.end()}});
   }
-  for (const std::string& name : factor.texts(node_keyword)) {
-    const std::optional<std::int32_t> node = number_of_name(name, 'N', mesh.n_nodes());
-    if (!node)
-      fail("CHARGE_1", {{"keyword", factor.path(node_keyword)},
-                        {"name", name},
-                        {"last", node_name(static_cast<std::int64_t>(mesh.n_nodes()) - 1)}});
-    named.push_back({factor.path(node_keyword), {*node}});
-  }
+  for (const std::int32_t node : nodes_by_name(scene, factor, node_keyword))
+    named.push_back({factor.path(node_keyword), {node}});
+  if (suffix.empty())
+    for (const std::vector<char> out = nodes_left_out(scene, factor); NamedPlaces & places : named)
+      std::erase_if(places.members, [&](std::int32_t node) { return out[static_cast<std::size_t>(node)] != 0; });
   return named;
 }
 

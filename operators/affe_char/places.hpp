@@ -38,7 +38,11 @@ struct NamedPlaces {
   std::vector<std::int32_t> members;
 };
 
-/// TOUT, GROUP_MA, GROUP_NO and NOEUD, whose names may have a suffix (GROUP_NO_1). Throws MESH_1, MESH_2, CHARGE_1.
+/// One entry a node of the mesh: not 0 where SANS_GROUP_MA, SANS_GROUP_NO or SANS_NOEUD leaves it out. Throws as named_nodes().
+std::vector<char> nodes_left_out(const LoadScene& scene, const Keywords& factor);
+
+/// TOUT, GROUP_MA, GROUP_NO and NOEUD, whose names may have a suffix (GROUP_NO_1), without the nodes that are left out. Throws
+/// MESH_1, MESH_2, CHARGE_1.
 std::vector<NamedPlaces> named_nodes(const LoadScene& scene, const Keywords& factor, const std::string& suffix = "");
 
 /// TOUT (or no place at all) and GROUP_MA. @param fits whether a cell of the model can carry the load, for TOUT

@@ -157,7 +157,9 @@ std::vector<std::pair<std::int32_t, Vector>> normals_of(const LoadScene& scene, 
   const Surface surface = surface_of(scene.mesh, cells, scene.mesh.coordinates);
   const std::vector<double> normals = nodal_normals(surface);
   std::vector<std::pair<std::int32_t, Vector>> found;
+  const std::vector<char> out = nodes_left_out(scene, factor);
   for (const std::int32_t node : nodes_of_cells(scene.mesh, cells)) {
+    if (out[static_cast<std::size_t>(node)]) continue;
     const Vector n{normals[3 * static_cast<std::size_t>(node)], normals[3 * static_cast<std::size_t>(node) + 1],
                    normals[3 * static_cast<std::size_t>(node) + 2]};
     if (length(n) == 0)

@@ -57,6 +57,26 @@ class Loads(OperatorTest):
         self.cine({"TOUT": "OUI", "DX": 0.0})
         self.assertEqual(set(self.imposed()), {(n, "DX") for n in range(6)})
 
+    def test_nodes_that_are_left_out(self):
+        self.cine({"TOUT": "OUI", "DX": 0.0})
+        self.meca(DDL_IMPO=[{"GROUP_MA": ["TOP"], "SANS_GROUP_MA": ["BETWEEN"], "DY": 0.0},
+                            {"GROUP_NO": ["BOTTOM"], "SANS_GROUP_NO": ["CORNER"], "SANS_NOEUD": ["N3"], "DX": 0.0}])
+        self.assertEqual(set(self.imposed()), {(5, "DY"), (3, "DY"), (1, "DX")})
+        run = self.meca(DDL_IMPO=[{"GROUP_MA": ["TOP"], "SANS_GROUP_NO": ["NOWHERE"], "DY": 0.0}])
+        self.assertEqual(run.status, 2)
+        self.assertIn("SANS_GROUP_NO", run.stderr)
+        self.meca(FACE_IMPO=[{"GROUP_MA": ["TOP"], "SANS_NOEUD": ["N5"], "DNOR": 0.0}])
+        rows, _ = self.relations(14, 2)
+        self.assertEqual(set(np.nonzero(rows)[1] // 2), {5, 3})
+
+    def test_every_displacement_held(self):
+        for factor in ({"LIAISON": "ENCASTRE"}, {"BLOCAGE": ["DEPLACEMENT", "ROTATION"]}):
+            self.assertEqual(self.meca(DDL_IMPO=[{"GROUP_NO": ["BOTTOM"], **factor}]).status, 0)
+            self.assertEqual(self.imposed(), {(node, component): 0 for node in (0, 1, 2) for component in ("DX", "DY")})
+            run = self.meca(DDL_IMPO=[{"GROUP_NO": ["BOTTOM"], "DX": 1.0, **factor}])
+            self.assertEqual(run.status, 2)
+            self.assertIn("CHARGE_4", run.stderr)
+
     def test_the_same_value_twice_is_one_row(self):
         self.meca(DDL_IMPO=[{"GROUP_MA": ["TOP"], "DX": 0.0}, {"NOEUD": ["N5"], "DX": 0.0}])
         self.assertEqual(len(self.imposed()), 3)
