@@ -647,6 +647,11 @@ Field Base::field(std::string_view id) const {
   return read_field(file(id));
 }
 
+Field Base::field_head(std::string_view id) const {
+  open_concept(*this, id, "field");
+  return read_field_head(file(id));
+}
+
 void Base::store(const Field& field) const {
   std::vector<std::string> references{field.mesh};
   references.insert(references.end(), field.functions.begin(), field.functions.end());

@@ -35,7 +35,8 @@ class Base {
   std::vector<double> list_of_reals(std::string_view id) const;
   TimeSteps time_steps(std::string_view id) const;  ///< of a time_steps or a list_of_reals
   Table table(std::string_view id) const;
-  Field field(std::string_view id) const;  ///< a concept of its own
+  Field field(std::string_view id) const;       ///< a concept of its own
+  Field field_head(std::string_view id) const;  ///< the same without its values: read_field_head()
   Result result(std::string_view id) const;
 
   /// The field of a result at an order; throws RESULT_1 where it has none.

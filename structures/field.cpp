@@ -24,8 +24,9 @@ int Field::component(std::string_view component_name) const {
   return at == components.end() ? -1 : static_cast<int>(at - components.begin());
 }
 
-Field read_field(const std::filesystem::path& file) {
-  const hdf5::Reader root(file);
+namespace {
+
+Field head_of(const hdf5::Group& root) {
   Field field;
   field.name = root.text("name");
   field.quantity = root.text("quantity");
@@ -34,10 +35,20 @@ Field read_field(const std::filesystem::path& file) {
   field.mesh = root.text("mesh");
   field.order = root.integer("order");
   field.instant = root.real("instant");
+  if (root.has_attribute("functions")) field.functions = root.attribute_strings("functions");
+  return field;
+}
+
+}  // namespace
+
+Field read_field_head(const std::filesystem::path& file) { return head_of(hdf5::Reader(file)); }
+
+Field read_field(const std::filesystem::path& file) {
+  const hdf5::Reader root(file);
+  Field field = head_of(root);
   field.support = root.read<std::int32_t>("support");
   if (root.has("offset")) field.offset = root.read<std::int64_t>("offset");
   field.values = root.read<double>("values");
-  if (root.has_attribute("functions")) field.functions = root.attribute_strings("functions");
   if (root.has("present")) field.present = root.read<std::uint8_t>("present");
   return field;
 }

@@ -53,6 +53,8 @@ struct Field {
 };
 
 Field read_field(const std::filesystem::path& file);
+/// Without what grows with the mesh: support, offset, values, present.
+Field read_field_head(const std::filesystem::path& file);
 /// What a file says of the field itself, next to what every file or concept has.
 void write_field_content(const hdf5::Group& root, const Field& field);
 /// Written whole or not at all.

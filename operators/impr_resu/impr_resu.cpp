@@ -45,7 +45,7 @@ class Concepts {
     if (!one.has("CHAM_GD")) return {id, result(id)};
     auto [at, is_new] = results_.try_emplace(id);
     if (is_new) {
-      const Field field = base_.field(id);
+      const Field field = base_.field_head(id);
       if (field.quantity.ends_with("_F")) fail("CREACHAMP_12", {{"field", base_.label(id)}, {"keyword", one.path("CHAM_GD")}});
       Result& result = at->second;
       result.label = base_.label(id);

@@ -56,10 +56,9 @@ class MedFile {
                                      std::int64_t step, const MedRule& rule = {});
 
  private:
-  struct Rows;
   std::string field_group(const std::string& name, std::string_view mesh_name, const std::vector<std::string>& components);
-  void write_entity(const hdf5::Group& step, const std::string& entity, const std::string& profile,
-                    const std::string& localisation, const Rows& rows);
+  hdf5::Group entity(const hdf5::Group& step, const std::string& name, const std::string& profile,
+                     const std::string& localisation);
   std::string profile(const std::string& type, const std::vector<std::int32_t>& numbers);
   std::string localisation(const catalog::CellRow& row, const MedPoints& points);
 

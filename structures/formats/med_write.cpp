@@ -353,13 +353,6 @@ void write_masks(const H5Group& field) {
 
 }  // namespace
 
-/// Values of some nodes, or of some cells of one type, as MED keeps them: component by component.
-struct MedFile::Rows {
-  std::vector<double> values;
-  std::size_t n_entities = 0;
-  std::size_t per_entity = 1;
-};
-
 MedFile::MedFile(const hdf5::Group& root) : root_(root) {
   if (!root_.has("INFOS_GENERALES")) {
     const H5Group about = root_.create("INFOS_GENERALES");
@@ -458,17 +451,16 @@ std::string MedFile::localisation(const catalog::CellRow& row, const MedPoints& 
   return chosen;
 }
 
-void MedFile::write_entity(const hdf5::Group& step, const std::string& entity, const std::string& profile_name,
-                           const std::string& localisation_name, const Rows& rows) {
-  const H5Group group = child(step, entity);
+/// The group, made anew, for the values of some nodes, or of some cells of one type.
+hdf5::Group MedFile::entity(const hdf5::Group& step, const std::string& name, const std::string& profile_name,
+                            const std::string& localisation_name) {
+  const H5Group group = child(step, name);
   set_text(group, "GAU", localisation_name);
   set_text(group, "PFL", profile_name);
   if (group.has(profile_name)) H5Ldelete(group.id(), profile_name.c_str(), H5P_DEFAULT);
-  const H5Group one = group.create(profile_name);
+  H5Group one = group.create(profile_name);
   set_text(one, "GAU", localisation_name);
-  set_int(one, "NBR", static_cast<std::int64_t>(rows.n_entities));
-  set_int(one, "NGA", static_cast<std::int64_t>(rows.per_entity));
-  one.write("CO", rows.values);
+  return one;
 }
 
 std::vector<std::string> MedFile::add_field(const Mesh& mesh, std::string_view mesh_name, const Field& field,
@@ -483,15 +475,22 @@ std::vector<std::string> MedFile::add_field(const Mesh& mesh, std::string_view m
   for (const FieldPart& part : parts_of(field)) {
     // what the rows of this part belong to: entity name -> (number in MED, place in the support)
     std::map<std::pair<std::string, std::size_t>, std::vector<std::pair<std::int32_t, std::size_t>>> members;
+    const bool of_nodes = field.location == Location::nodes;
+    const catalog::CellRow* last = nullptr;  // entities of one kind come in runs
+    std::size_t last_rows = 0;
+    std::vector<std::pair<std::int32_t, std::size_t>>* list = nullptr;
     for (std::size_t i = 0; i < field.support.size(); ++i) {
-      if (offset(i + 1) == offset(i) || !part.rows[offset(i)]) continue;
+      const std::size_t n_rows = offset(i + 1) - offset(i);
+      if (n_rows == 0 || !part.rows[offset(i)]) continue;
       const auto number = static_cast<std::size_t>(field.support[i]);
-      if (field.location == Location::nodes) {
-        members[{"NOE", 1}].emplace_back(field.support[i] + 1, i);
-      } else {
+      const catalog::CellRow* row = of_nodes ? nullptr : &mesh.row(number);
+      if (!list || row != last || n_rows != last_rows) {
         const char* prefix = field.location == Location::cell_nodes ? "NOE." : "MAI.";
-        members[{prefix + std::string(mesh.row(number).med_name), offset(i + 1) - offset(i)}].emplace_back(rank[number] + 1, i);
+        list = &members[{of_nodes ? "NOE" : prefix + std::string(row->med_name), n_rows}];
+        last = row;
+        last_rows = n_rows;
       }
+      list->emplace_back((of_nodes ? field.support[i] : rank[number]) + 1, i);
     }
     std::vector<std::string> labels;
     for (const std::size_t k : part.components) labels.push_back(field.components[k]);
@@ -508,35 +507,37 @@ std::vector<std::string> MedFile::add_field(const Mesh& mesh, std::string_view m
       set_int(made, "ROR", -1);
     }
     const H5Group at = group.open(in_file);
-    for (auto& [key, list] : members) {
-      const auto& [entity, per_entity] = key;
-      std::sort(list.begin(), list.end());
+    for (auto& [key, places] : members) {
+      const auto& [entity_name, per_entity] = key;
+      if (!std::ranges::is_sorted(places)) std::ranges::sort(places);
       const catalog::CellRow* row =
-          entity == "NOE" ? nullptr : &mesh.row(static_cast<std::size_t>(field.support[list.front().second]));
+          of_nodes ? nullptr : &mesh.row(static_cast<std::size_t>(field.support[places.front().second]));
       const std::size_t whole = row ? cells.at(row->type).size() : mesh.n_nodes();
       std::string profile_name(med::no_profile), points_name;
-      if (list.size() != whole) {
+      if (places.size() != whole) {
         std::vector<std::int32_t> numbers;
-        for (const auto& [number, place] : list) numbers.push_back(number);
+        for (const auto& [number, place] : places) numbers.push_back(number);
         profile_name = profile(row ? std::string(row->med_name) : "NOE", numbers);
       }
       if (field.location == Location::gauss_points) {
         if (!rule) throw std::logic_error("a field at integration points needs their rule");
         points_name = localisation(*row, rule(row->type, static_cast<int>(per_entity)));
       }
-      Rows rows{{}, list.size(), per_entity};
-      rows.values.resize(list.size() * per_entity * part.components.size());
-      std::size_t to = 0;
-      for (const std::size_t k : part.components)
-        for (const auto& [number, place] : list) {
-          for (std::size_t p = 0; p < per_entity; ++p) {
-            const std::size_t q =
-                field.location == Location::cell_nodes ? static_cast<std::size_t>(row->med_permutation[p]) : p;
-            rows.values[to + q] = field.at(offset(place) + p, k);
-          }
-          to += per_entity;
-        }
-      write_entity(at, entity, profile_name, points_name, rows);
+      const H5Group one = entity(at, entity_name, profile_name, points_name);
+      set_int(one, "NBR", static_cast<std::int64_t>(places.size()));
+      set_int(one, "NGA", static_cast<std::int64_t>(per_entity));
+      std::vector<std::size_t> own(per_entity);  // of an entity's rows, in the file's order
+      for (std::size_t p = 0; p < per_entity; ++p)
+        own[field.location == Location::cell_nodes ? static_cast<std::size_t>(row->med_permutation[p]) : p] = p;
+      one.write_columns<double>(
+          "CO", places.size() * per_entity, part.components.size(), [&](std::size_t first, std::span<double> values) {
+            const std::size_t here = values.size() / part.components.size();
+            for (std::size_t r = 0; r < here; ++r) {
+              const std::size_t in_field = offset(places[(first + r) / per_entity].second) + own[(first + r) % per_entity];
+              for (std::size_t k = 0; k < part.components.size(); ++k)
+                values[k * here + r] = field.at(in_field, part.components[k]);
+            }
+          });
     }
     write_masks(group);
   }

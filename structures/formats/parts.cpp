@@ -6,6 +6,11 @@ namespace lacon {
 
 std::vector<FieldPart> parts_of(const Field& field) {
   std::vector<FieldPart> parts;
+  if (field.present.empty() && field.n_rows() > 0) {
+    FieldPart& whole = parts.emplace_back(FieldPart{{}, std::vector<std::uint8_t>(field.n_rows(), 1)});
+    for (std::size_t k = 0; k < field.n_components(); ++k) whole.components.push_back(k);
+    return parts;
+  }
   for (std::size_t k = 0; k < field.n_components(); ++k) {
     std::vector<std::uint8_t> rows(field.n_rows());
     for (std::size_t r = 0; r < rows.size(); ++r) rows[r] = field.has(r, k) ? 1 : 0;

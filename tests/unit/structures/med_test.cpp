@@ -2,6 +2,7 @@
 #include <gmock/gmock.h>
 
 #include <fstream>
+#include <numeric>
 
 #include "formats_fixture.hpp"
 #include "lacon/structures/formats/med_layout.hpp"
@@ -446,6 +447,34 @@ TEST_F(MedFields, nodes_of_cells_in_the_node_order_of_med) {
   field.values = {1, 2, 3, 4};
   add(field, "F");
   EXPECT_THAT(values("F" + at_3 + "NOE.TE4" + all), ElementsAre(1, 3, 2, 4));
+}
+
+/// A megabyte holds 20833 rows of six components: the cell that is there when it ends, 2604, is in two parts.
+TEST_F(MedFields, of_several_parts) {
+  constexpr std::size_t n_cells = 6000, n = 8, n_components = 6;
+  mesh = mesh_of(std::vector<CellType>(n_cells, CellType::HEXA8));
+  std::vector<std::int32_t> cells(n_cells);
+  std::iota(cells.rbegin(), cells.rend(), 0);  // from the last to the first
+  Field field = nodal_field(cells, {"SIXX", "SIYY", "SIZZ", "SIXY", "SIXZ", "SIYZ"});
+  field.location = Location::cell_nodes;
+  field.offset = {0};
+  field.values.clear();
+  const auto value = [](std::size_t cell, std::size_t node, std::size_t component) {
+    return static_cast<double>(100 * cell + 10 * node + component);
+  };
+  for (const std::int32_t cell : cells) {
+    field.offset.push_back(field.offset.back() + static_cast<std::int64_t>(n));
+    for (std::size_t j = 0; j < n; ++j)
+      for (std::size_t k = 0; k < n_components; ++k) field.values.push_back(value(static_cast<std::size_t>(cell), j, k));
+  }
+  add(field, "F");
+  const auto& order = catalog::cell(CellType::HEXA8).med_permutation;
+  std::vector<double> expected(field.values.size());
+  for (std::size_t cell = 0; cell < n_cells; ++cell)
+    for (std::size_t j = 0; j < n; ++j)
+      for (std::size_t k = 0; k < n_components; ++k)
+        expected[k * n * n_cells + cell * n + static_cast<std::size_t>(order[j])] = value(cell, j, k);
+  EXPECT_EQ(values("F" + at_3 + "NOE.HE8" + all), expected);
 }
 
 TEST_F(MedFields, integration_points_with_their_localisation) {
