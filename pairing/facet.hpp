@@ -102,11 +102,16 @@ class Inverse {
   /// As the function above.
   std::optional<Vec2> operator()(Vec2 y, double tolerance, double margin) const {
     if (!affine_) return inverse(map_, family_, y, tolerance, margin);
-    const Vec2 r = y - map_.c[0], xi{dot(row1_, r), dot(row2_, r)};
+    const Vec2 xi = of_affine(y);
     if (!near_reference_cell(family_, xi, margin)) return std::nullopt;
     return xi;
   }
   bool affine() const { return affine_; }
+  /// The same where the map is affine, however far outside the reference cell.
+  Vec2 of_affine(Vec2 y) const {
+    const Vec2 r = y - map_.c[0];
+    return {dot(row1_, r), dot(row2_, r)};
+  }
   /// The Jacobian at a reference point.
   double jacobian(Vec2 xi) const {
     if (affine_) return jacobian_;

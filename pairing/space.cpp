@@ -254,16 +254,22 @@ class SlaveFacet {
   void places(std::span<const Vec2> y, const PairingTolerances& tolerances, std::vector<Line>& lines,
               std::vector<Meeting>& meetings, std::vector<Place>& places) const {
     places.resize(y.size());
-    const bool straightforward = !plane || from_chart_.affine();
-    if (!straightforward) {
+    if (!plane) {
+      for (std::size_t i = 0; i < y.size(); ++i) places[i] = place(y[i], tolerances);
+    } else if (from_chart_.affine()) {
+      const double scale = 1 / from_chart_.jacobian({});
+      for (std::size_t i = 0; i < y.size(); ++i) {
+        const Vec2 xi = from_chart_.of_affine(y[i]);
+        places[i] = {near_reference_cell(f.family, xi, tolerances.margin), xi, scale};
+      }
+    } else {
       lines.clear();
       for (const Vec2 p : y) lines.push_back(normal_at(p));
       meetings.resize(y.size());
       meet(f.x, f.family, lines, tolerances.ray * f.size, tolerances.margin, meetings);
+      for (std::size_t i = 0; i < y.size(); ++i)
+        places[i] = meetings[i].found ? Place{true, meetings[i].xi, 1 / meetings[i].jacobian} : place(y[i], tolerances);
     }
-    for (std::size_t i = 0; i < y.size(); ++i)
-      places[i] = straightforward || !meetings[i].found ? place(y[i], tolerances)
-                                                        : Place{true, meetings[i].xi, 1 / meetings[i].jacobian};
   }
 
   /// The side of an edge of a master on which a normal passes, on a piece.
@@ -401,28 +407,28 @@ class Target {
     const Vec3 t = cross(n, axis), e1 = (1 / norm(t)) * t, e2 = cross(n, e1);
     return inverse(project(x_, e1, e2), family_, {dot(x, e1), dot(x, e2)}, tolerances.ray * size_, tolerances.margin);
   }
-  /// Images of many points. @param lines, meetings used again for every call
+  /// Images of many points. @param lines used again for every call
   void images(std::span<const Vec2> y, std::span<const SlaveFacet::Place> places, const PairingTolerances& tolerances,
-              std::vector<Line>& lines, std::vector<Meeting>& meetings, std::vector<Meeting>& images) const {
+              std::vector<Line>& lines, std::vector<Meeting>& images) const {
     images.resize(y.size());
-    const bool straightforward = slave_.constant && along_.affine();
-    if (!straightforward) {
-      lines.clear();
-      for (std::size_t i = 0; i < y.size(); ++i)
-        if (slave_.constant)
-          lines.push_back(slave_.normal_at(y[i]));
-        else
-          lines.push_back({slave_.f.x(places[i].xi).x, slave_.direction(places[i].xi)});
-      meetings.resize(y.size());
-      meet(x_, family_, lines, tolerances.ray * size_, tolerances.margin, meetings);
-    }
-    for (std::size_t i = 0; i < y.size(); ++i) {
-      if (!straightforward && meetings[i].found) {
-        images[i] = meetings[i];
-        continue;
+    if (slave_.constant && along_.affine()) {
+      for (std::size_t i = 0; i < y.size(); ++i) {
+        const Vec2 xi = along_.of_affine(y[i]);
+        images[i] = {places[i].found && near_reference_cell(family_, xi, tolerances.margin), xi, 0};
       }
-      const std::optional<Vec2> found = places[i].found ? image(y[i], places[i].xi, tolerances) : std::nullopt;
-      images[i] = {found.has_value(), found.value_or(Vec2{}), 0};
+      return;
+    }
+    lines.clear();
+    for (std::size_t i = 0; i < y.size(); ++i)
+      if (slave_.constant)
+        lines.push_back(slave_.normal_at(y[i]));
+      else
+        lines.push_back({slave_.f.x(places[i].xi).x, slave_.direction(places[i].xi)});
+    meet(x_, family_, lines, tolerances.ray * size_, tolerances.margin, images);
+    for (std::size_t i = 0; i < y.size(); ++i) {
+      images[i].found = images[i].found && places[i].found;
+      if (images[i].found || !places[i].found) continue;
+      if (const std::optional<Vec2> found = image(y[i], places[i].xi, tolerances)) images[i] = {true, *found, 0};
     }
   }
   /// The gap between a reference point of the slave and its image.
@@ -808,7 +814,7 @@ class PairerInSpace final : public detail::CellPairer {
       const std::size_t n_points = points.weight.size();
       points.y.insert(points.y.end(), view.region.polygon.begin(), view.region.polygon.end());  // vertices behind them
       e.places(points.y, tolerances, lines, meetings, places);
-      target.images(std::span(points.y).first(n_points), places, tolerances, lines, meetings, images);
+      target.images(std::span(points.y).first(n_points), places, tolerances, lines, images);
       bool complete = std::all_of(places.begin(), places.end(), [](const SlaveFacet::Place& place) { return place.found; });
       std::size_t at = 2 * before_points;
       for (std::size_t i = 0; i < n_points; ++i, at += 2) {
