@@ -35,7 +35,8 @@ class _Check:
     def occurrence(self, path, row, given):
         """The keywords of a command, or of one occurrence of a factor keyword."""
         rows = row.get("keyword", {})
-        given = {k: v for k, v in given.items() if v is not None}
+        given = self.renamed(path, row, {k: v for k, v in given.items() if v is not None})
+        refused = any(name in row.get("elsewhere", ()) for name in given)
         values, others = {}, {}
         for name, value in given.items():
             if name in rows:
@@ -60,8 +61,19 @@ class _Check:
             if name in mandatory and name not in given:
                 self.problem("KEYWORD_2", f"{path}/{name}", help=rows[name]["help"])
         for rule in row.get("rule", ()):
-            self.rule(path, rule, given)
+            self.rule(path, rule, given, refused)
         return {**{name: values[name] for name in rows if name in values}, **others}
+
+    def renamed(self, path, row, given):
+        """Keywords that earlier versions of code_aster called otherwise (`formerly`), under their present names."""
+        made = {}
+        for name, value in given.items():
+            now = row.get("formerly", {}).get(name, name)
+            if now in made or (now != name and now in given):
+                self.problem("KEYWORD_6", path, names=", ".join(k for k in given if row.get("formerly", {}).get(k, k) == now))
+            else:
+                made[now] = value
+        return made
 
     def unknown(self, path, name, row):
         if name in row.get("elsewhere", ()):
@@ -75,11 +87,12 @@ class _Check:
                 and all(k in given for k in when.get("present", ()))
                 and not any(k in given for k in when.get("absent", ())))
 
-    def rule(self, path, rule, given):
+    def rule(self, path, rule, given, refused):
+        """@param refused a keyword of code_aster's was refused here: it may be the one that is missed"""
         there = [k for k in rule["of"] if k in given]
         names = ", ".join(rule["of"])
         kind = rule["kind"]
-        if kind in ("exactly_one", "at_least_one") and not there:
+        if kind in ("exactly_one", "at_least_one") and not there and not refused:
             self.problem("KEYWORD_7" if kind == "exactly_one" else "KEYWORD_8", path, names=names)
         elif kind in ("exactly_one", "exclusive") and len(there) > 1:
             self.problem("KEYWORD_6", path, names=", ".join(there))

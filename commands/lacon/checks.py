@@ -93,17 +93,20 @@ def test_resu(call):
         for i, test in enumerate(call.keywords.get(kind, ()), 1):
             made.append(_field_check(call, test, kind, f"{kind}[{i}]"))
     for i, test in enumerate(call.keywords.get("MAILLAGE", ()), 1):
-        made.append(_mesh_check(call, test))
+        made.append(_mesh_check(call, test, f"MAILLAGE[{i}]"))
     for check in made:
         call.study.progress(line(check))
     call.study.checks += made
 
 
-def _mesh_check(call, test):
+def _mesh_check(call, test, path):
     mesh = test["MAILLAGE"]
     value = {"NB_MAILLE": mesh.getNumberOfCells, "NB_NOEUD": mesh.getNumberOfNodes,
-             "NB_GROUP_MA": lambda: len(mesh.group_names("cells")), "NB_GROUP_NO": lambda: len(mesh.group_names("nodes"))}[test["CARA"]]()
-    check = Check(call.where, mesh.label, "", test["CARA"], "", None, test.get("LEGENDE", ""), value)
+             "NB_GROUP_MA": lambda: len(mesh.group_names("cells")), "NB_GROUP_NO": lambda: len(mesh.group_names("nodes")),
+             "NB_MA_GROUP_MA": lambda: len(members_of(call, test, path, mesh, "NOM_GROUP_MA", "cells")),
+             "NB_NO_GROUP_NO": lambda: len(members_of(call, test, path, mesh, "NOM_GROUP_NO", "nodes"))}
+    check = Check(call.where, mesh.label, "", test["CARA"], test.get("NOM_GROUP_MA", test.get("NOM_GROUP_NO", "")), None,
+                  test.get("LEGENDE", ""), value[test["CARA"]]())
     return conclude(call, check, test)
 
 

@@ -97,6 +97,8 @@ class Command:
             fail("STUDY_12" if run.ended else "STUDY_11", where, command=self.name, ended=run.ended)
         if not starts and run.names.update_labels(run.base):
             run.base.write(where)
+        if starts and isinstance(given.get("CODE"), dict):  # until version 14: CODE=_F(NIV_PUB_WEB='INTERNET')
+            given["CODE"] = "OUI"
         reuse = given.pop("reuse", None)
         keywords, problems = checker.complete(self.name, row, given, where)
         reused = self._reuse(row, reuse, given, keywords, where, problems)

@@ -126,12 +126,9 @@ def install(names):
     def close(**keywords):
         return names["FIN"](**keywords)
 
-    for name, function in (("init", init), ("close", close)):
-        setattr(ca, name, function)
-        setattr(root, name, function)
+    ca.init, ca.close = init, close
+    vars(root).update({name: value for name, value in vars(ca).items() if not name.startswith("__")})  # code_aster.TestCase of version 15
     root.CA, root.Commands, root.Utilities = ca, commands, utilities
-    for exception in ("AsterError", "ConvergenceError"):
-        setattr(root, exception, getattr(messages, exception))
     for module in (root, commands, utilities, ca):
         sys.modules[module.__name__] = module
     sys.meta_path.append(_Modules())

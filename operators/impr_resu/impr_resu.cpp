@@ -115,6 +115,9 @@ struct PrintedPairing {
 
 bool means_pairing(const Keywords& one) { return one.has("CONTACT") || (one.has("PAIRING") && one.yes("PAIRING")); }
 
+/// An occurrence of RESU may have fields beside MAILLAGE.
+bool has_fields(const Keywords& one) { return one.has("RESULTAT") || one.has("CHAM_GD"); }
+
 /// Visit what an occurrence of RESU with CONTACT or PAIRING='OUI' means. Throws IMPR_7 for a result without contact.
 void each_pairing(const Order& order, const Base& base, Concepts& concepts, const Keywords& one,
                   const std::function<void(PrintedPairing&&)>& visit) {
@@ -168,7 +171,7 @@ void print_med(const Order& order, const Base& base, Concepts& concepts, const f
       if (one.has("MAILLAGE")) {
         const std::string id = one.concept_id("MAILLAGE");
         written.add("mesh " + med.add_mesh(concepts.mesh(id), base.label(id)));
-        continue;
+        if (!has_fields(one)) continue;
       }
       const Result& result = concepts.source(one).second;
       const Mesh& mesh = concepts.mesh(result.mesh);
@@ -219,7 +222,7 @@ fs::path print_vtu(const Order& order, const Base& base, Concepts& concepts, con
       });
       continue;
     }
-    if (one.has("MAILLAGE")) {
+    if (one.has("MAILLAGE") && !has_fields(one)) {  // files with fields hold their mesh
       const std::string id = one.concept_id("MAILLAGE");
       steps[{rank(id), -1}] = {base.label(id), 0, id, {}};
       written.add("mesh " + base.label(id));
@@ -268,7 +271,7 @@ void print_listing(const Order& order, const Base& base, Concepts& concepts, con
       out << "\nmesh " << base.label(id) << '\n';
       list_mesh(out, concepts.mesh(id), one.yes("INFO_MAILLAGE"));
       written.add("mesh " + base.label(id));
-      continue;
+      if (!has_fields(one)) continue;
     }
     const Result& result = concepts.source(one).second;
     const Mesh& mesh = concepts.mesh(result.mesh);

@@ -55,6 +55,18 @@ class Mistakes(unittest.TestCase):
     def test_a_keyword_that_only_code_aster_has(self):
         self.one("KEYWORD_11", "DEFI_CONTACT/ZONE[1]/COEF_CONT", "not available", command="DEFI_CONTACT", **self.contact(COEF_CONT=1.0))
 
+    def test_a_keyword_that_only_code_aster_has_is_not_missed_as_well(self):
+        self.one("KEYWORD_11", "MODI_MAILLAGE/ORIE_LIGNE", "not available", command="MODI_MAILLAGE", MAILLAGE=concept("mesh"),
+                 ORIE_LIGNE={"GROUP_MA": "A"})
+
+    def test_names_of_earlier_versions(self):
+        mesh = concept("mesh")
+        for old, body in (("ORIE_PEAU_2D", "GROUP_MA_SURF"), ("ORIE_PEAU_3D", "GROUP_MA_VOLU")):
+            self.assertEqual(complete("MODI_MAILLAGE", MAILLAGE=mesh, **{old: {"GROUP_MA": ("A", "B"), body: "C"}}),
+                             complete("MODI_MAILLAGE", MAILLAGE=mesh, ORIE_PEAU={"GROUP_MA_PEAU": ("A", "B"), "GROUP_MA_INTERNE": "C"}))
+        self.one("KEYWORD_6", "MODI_MAILLAGE", "ORIE_PEAU_2D, ORIE_PEAU", command="MODI_MAILLAGE", MAILLAGE=mesh,
+                 ORIE_PEAU_2D={"GROUP_MA": "A"}, ORIE_PEAU={"GROUP_MA_PEAU": "B"})
+
     def test_a_value_that_only_code_aster_has(self):
         self.one("KEYWORD_13", "LIRE_MAILLAGE/FORMAT", "IDEAS", command="LIRE_MAILLAGE", FORMAT="IDEAS")
 
@@ -384,7 +396,7 @@ class Properties(unittest.TestCase):
 
     def test_rows_are_of_the_documented_shape(self):
         known = {"type", "status", "max", "min", "default", "into", "into_from", "elsewhere", "above", "at_least", "below", "at_most",
-                 "unique", "unit", "makes", "help", "keyword", "rule", "when"}
+                 "unique", "unit", "makes", "help", "keyword", "rule", "when", "formerly"}
         types = {"real", "integer", "text", "scalar", "group_ma", "group_no", "cell", "node", "factor", "concept", *concepts._types}
 
         def visit(path, row):
@@ -397,6 +409,8 @@ class Properties(unittest.TestCase):
                 visit(here, keyword)
             names = set(row.get("keyword", {}))
             self.assertFalse(names & set(row.get("elsewhere", ())), path)
+            self.assertFalse((names | set(row.get("elsewhere", ()))) & set(row.get("formerly", {})), path)
+            self.assertLessEqual(set(row.get("formerly", {}).values()), names, path)
             for rule in row.get("rule", ()):
                 self.assertIn(rule["kind"], ("exactly_one", "at_least_one", "exclusive", "together"))
                 self.assertLessEqual(set(rule["of"]), names, path)

@@ -153,9 +153,13 @@ class Readings(LauncherTest):
     def test_meshes(self):
         test = "TEST_RESU(MAILLAGE=({}))\nFIN()\n".format(", ".join(
             f"_F(MAILLAGE=M, CARA='{cara}', VALE_CALC_I={n}, VALE_REFE_I={n}, REFERENCE='ANALYTIQUE')"
-            for cara, n in (("NB_NOEUD", 6), ("NB_MAILLE", 3), ("NB_GROUP_MA", 2), ("NB_GROUP_NO", 2))))
+            for cara, n in (("NB_NOEUD", 6), ("NB_MAILLE", 3), ("NB_GROUP_MA", 2), ("NB_GROUP_NO", 2),
+                            ("NB_MA_GROUP_MA', NOM_GROUP_MA='SKIN", 1), ("NB_NO_GROUP_NO', NOM_GROUP_NO='TOP", 3))))
         run = self.ok(self.run_study(STUDY + test))
         self.assertRegex(run.out, r"(?m)^OK +M +NB_NOEUD +6 +reference +6 ")
+        self.assertRegex(run.out, r"(?m)^OK +M +NB_NO_GROUP_NO TOP +3 +reference +3 ")
+        for given, identifier in (("NB_MA_GROUP_MA", "KEYWORD_2"), ("NB_MA_GROUP_MA', NOM_GROUP_MA='SKINN", "TEST_RESU_9")):
+            self.refused(self.run_study(STUDY + f"TEST_RESU(MAILLAGE=_F(MAILLAGE=M, CARA='{given}', VALE_CALC_I=1))\n"), identifier)
         run = self.run_study(STUDY + "TEST_RESU(MAILLAGE=_F(MAILLAGE=M, CARA='NB_NOEUD', VALE_CALC_I=7))\n")
         self.assertRegex(run.out, r"(?m)^DIFF ")
 

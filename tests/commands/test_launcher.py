@@ -279,7 +279,7 @@ class Exports(LauncherTest):
 class Files(LauncherTest):
     def test_what_a_command_file_finds(self):
         text = """
-DEBUT(CODE='OUI', ERREUR=_F(ALARME='EXCEPTION'), DEBUG=_F(SDVERI='OUI'), INFO=1)
+DEBUT(CODE=_F(NIV_PUB_WEB='INTERNET'), ERREUR=_F(ALARME='EXCEPTION'), DEBUG=_F(SDVERI='OUI'), INFO=1)
 assert cos(pi) == -1 and _F(A=1) == {'A': 1} and _F(A=1)['A'] == 1
 import os
 assert os.environ['MARK'] == 'here'
@@ -287,7 +287,8 @@ assert __name__ == '__main__' and __file__ == 'study.comm'
 import code_aster
 from code_aster.Commands import *
 from code_aster import CA
-test = CA.TestCase()
+assert code_aster.AsterError is CA.AsterError
+test = code_aster.TestCase()
 test.assertEqual(1, 1)
 test.assertAlmostEqual(1.0, 1.0 + 1e-9)
 test.printSummary()

@@ -191,6 +191,17 @@ class ImprResu(OperatorTest):
         self.assertEqual(set(read["fields"]), {"U_______DEPL", "U_______DEPL_LAGS_C", "U_______CONT_ELEM"})
         self.assert_conforms(self.file)
 
+    def test_a_mesh_and_a_result_may_be_one_occurrence(self):
+        both = {**self.MA, **self.U, "NOM_CHAM": ["DEPL"]}
+        self.assertEqual(self.print(both).status, 0)
+        read = self.library()
+        self.assertEqual([m["name"] for m in read["meshes"]], ["MA"])
+        self.assertEqual(set(read["fields"]), {"U_______DEPL", "U_______DEPL_LAGS_C"})
+        self.assertEqual(self.print(both, form="RESULTAT").status, 0)
+        self.assertRegex(self.file.read_text(encoding="utf-8"), r"(?s)^\nmesh MA.*\n\nresult U, field DEPL")
+        self.assertEqual(self.print(both, form="VTU").status, 0)
+        self.assertEqual([name for _, name, _ in self.collection()], ["U"] * 3)
+
     def test_a_file_of_an_earlier_run_is_replaced(self):
         self.file.write_text("the file of an earlier run", encoding="utf-8")
         self.assertEqual(self.print(self.MA).status, 0)
