@@ -8,6 +8,7 @@
 #include <numeric>
 
 #include "lacon/catalog/messages.hpp"
+#include "lacon/operators/meshing/chain.hpp"
 
 namespace lacon {
 namespace {
@@ -214,8 +215,102 @@ Members cells_by_option(const Mesh& mesh, const Keywords& factor) {
   return cells_with(mesh, marked, factor.has("CRIT_NOEUD") ? factor.text("CRIT_NOEUD") : "AU_MOINS_UN");
 }
 
+std::array<double, 3> step(const Mesh& mesh, std::int32_t from, std::int32_t to) {
+  std::array<double, 3> made{};
+  for (std::size_t k = 0; k < 3; ++k)
+    made[k] = mesh.point(static_cast<std::size_t>(to))[k] - mesh.point(static_cast<std::size_t>(from))[k];
+  return made;
+}
+
+/// @param b may be longer: of a vector of the plane nothing is missing
+double dot(std::span<const double> a, std::span<const double> b) {
+  return std::inner_product(a.begin(), a.end(), b.begin(), 0.0);
+}
+
+/// The node at an end of a line: GROUP_NO_ORIG or NOEUD_ORIG for the suffix ORIG, or none.
+std::optional<std::int32_t> end_node(const Mesh& mesh, const Keywords& factor, const std::string& suffix) {
+  if (const std::string keyword = "NOEUD_" + suffix; factor.has(keyword))
+    return number_of(factor.text(keyword), nodes, mesh.n_nodes(), factor.path(keyword));
+  const std::string keyword = "GROUP_NO_" + suffix;
+  if (!factor.has(keyword)) return std::nullopt;
+  const auto members = nodes_of_group(mesh, factor.text(keyword), factor.path(keyword));
+  if (members.size() != 1) fail("ORDER_4", {{"keyword", factor.path(keyword)}, {"expected", "a group of one node"}});
+  return members.front();
+}
+
+/// NOEUD_ORDO: the nodes of line cells in their order, from ORIG; a closed line goes along VECT_ORIE.
+Members nodes_along_cells(const Mesh& mesh, const Keywords& factor) {
+  const std::string group = factor.texts("GROUP_MA").front(), keyword = factor.path("GROUP_MA");
+  if (factor.texts("GROUP_MA").size() > 1) fail("ORDER_4", {{"keyword", keyword}, {"expected", "one group of cells"}});
+  Members line = chain_of_lines(mesh, group, keyword);
+  const std::optional<std::int32_t> first = end_node(mesh, factor, "ORIG"), last = end_node(mesh, factor, "EXTR");
+  const bool closed = line.front() == line.back();
+  if (closed) {
+    line.pop_back();
+    const auto at = std::ranges::find(line, first.value_or(line.front()));
+    std::ranges::rotate(line, at == line.end() ? line.begin() : at);
+    const std::vector<double> along = factor.reals("VECT_ORIE");
+    if (!along.empty() && dot(along, step(mesh, line[0], line[1])) < 0) std::reverse(line.begin() + 1, line.end());
+  } else if ((first && *first == line.back()) || (last && *last == line.front())) {
+    std::ranges::reverse(line);
+  }
+  for (const auto& [node, suffix, end] :
+       {std::tuple(first, "ORIG", line.front()), {last, "EXTR", closed ? line.front() : line.back()}})
+    if (node && *node != end)
+      fail("GROUPE_7", {{"keyword", factor.path((factor.has(std::string("NOEUD_") + suffix) ? "NOEUD_" : "GROUP_NO_") +
+                                                std::string(suffix))},
+                        {"node", node_name(*node)},
+                        {"group", group},
+                        {"first", node_name(line.front())},
+                        {"last", node_name(line.back())}});
+  return line;
+}
+
+/// SEGM_DROI_ORDO: nodes on the segment from ORIG to EXTR in their order.
+Members nodes_along_segment(const Mesh& mesh, const Keywords& factor) {
+  Members members;
+  for (const std::string& group : factor.texts("GROUP_MA"))
+    std::ranges::copy(nodes_of_cells(mesh, cells_of_group(mesh, group, factor.path("GROUP_MA"))), std::back_inserter(members));
+  if (const auto named = factor.has("GROUP_MA") ? std::nullopt : combined(mesh, nodes, factor, mesh.n_nodes()))
+    members = *named;
+  const std::optional<std::int32_t> first = end_node(mesh, factor, "ORIG"), last = end_node(mesh, factor, "EXTR");
+  for (const auto& [node, suffix] : {std::pair(first, "ORIG"), {last, "EXTR"}})
+    if (!node) fail("ORDER_2", {{"keyword", factor.path(std::string("GROUP_NO_") + suffix)}});
+  const std::array<double, 3> whole = step(mesh, *first, *last);
+  const double length = std::sqrt(dot(whole, whole));
+  if (!(length > 0))
+    fail("ORDER_4", {{"keyword", factor.path("GROUP_NO_EXTR")}, {"expected", "another place than that of ORIG"}});
+  const double allowed = factor.real("PRECISION") * (factor.text("CRITERE") == "RELATIF" ? length : 1.0);
+  std::vector<std::pair<double, std::int32_t>> places;
+  double worst = 0;
+  std::int32_t worst_node = -1, away = 0;
+  for (const std::int32_t node : members) {
+    const std::array<double, 3> to = step(mesh, *first, node);
+    const double along = dot(to, whole) / length, nearest = std::clamp(along, 0.0, length);
+    std::array<double, 3> off{};
+    for (std::size_t k = 0; k < 3; ++k) off[k] = to[k] - nearest * whole[k] / length;
+    const double distance = std::sqrt(dot(off, off));
+    away += distance > allowed;
+    if (distance > allowed && distance > worst) worst = distance, worst_node = node;
+    places.emplace_back(along, node);
+  }
+  if (away > 0)
+    fail("GROUPE_8", {{"keyword", factor.path("PRECISION")},
+                      {"count", std::to_string(away)},
+                      {"first", node_name(*first)},
+                      {"last", node_name(*last)},
+                      {"allowed", fmt::format("{:g}", allowed)},
+                      {"node", node_name(worst_node)},
+                      {"distance", fmt::format("{:g}", worst)}});
+  std::ranges::stable_sort(places, {}, &std::pair<double, std::int32_t>::first);
+  std::ranges::transform(places, members.begin(), &std::pair<double, std::int32_t>::second);
+  return members;
+}
+
 Members nodes_by_option(const Mesh& mesh, const Keywords& factor) {
   const std::string option = factor.text("OPTION");
+  if (option == "NOEUD_ORDO") return nodes_along_cells(mesh, factor);
+  if (option == "SEGM_DROI_ORDO") return nodes_along_segment(mesh, factor);
   const Distance distance(mesh, factor, kind_of_place(option));
   const double radius = option == "PLAN" ? 0.0 : factor.real("RAYON"), precision = factor.real("PRECISION");
   Members found;
@@ -251,7 +346,7 @@ void create_node_group(Mesh& mesh, const Keywords& factor, bool alarm) {
     }
     return;
   }
-  if (factor.has("GROUP_MA")) {
+  if (factor.has("GROUP_MA") && !factor.has("OPTION")) {
     const std::vector<std::string> groups = factor.texts("GROUP_MA");
     if (factor.has("NOM") && groups.size() > 1)
       fail("GROUPE_4", {{"keyword", factor.path("NOM")}, {"count", std::to_string(groups.size())}});
@@ -265,7 +360,7 @@ void create_node_group(Mesh& mesh, const Keywords& factor, bool alarm) {
       factor.has("OPTION") ? nodes_by_option(mesh, factor) : combined(mesh, nodes, factor, mesh.n_nodes());
   if (!found)
     fail("ORDER_2", {{"keyword", factor.path("TOUT_GROUP_MA, GROUP_MA, NOEUD, GROUP_NO, INTERSEC, UNION, DIFFE or OPTION")}});
-  if (factor.has("GROUP_NO")) keep_positions(factor, *found);
+  if (factor.has("GROUP_NO") && !factor.has("OPTION")) keep_positions(factor, *found);
   add_group(mesh, nodes, factor.text("NOM"), once(*found, mesh.n_nodes()), factor.path("NOM"), alarm);
 }
 

@@ -4,11 +4,10 @@
 #include <fmt/ranges.h>
 
 #include <Eigen/Geometry>
-#include <algorithm>
-#include <map>
 #include <numbers>
 
 #include "lacon/catalog/messages.hpp"
+#include "lacon/operators/meshing/chain.hpp"
 
 namespace lacon {
 namespace {
@@ -61,55 +60,6 @@ std::vector<LinePoint> arc(const Mesh& mesh, const Keywords& line) {
   return points;
 }
 
-/// The nodes of a group of line cells from one end of the chain to the other, in the direction of the first cell.
-std::vector<std::int32_t> chain(const Mesh& mesh, const std::string& group, const std::string& keyword) {
-  const auto cells = cells_of_group(mesh, group, keyword);
-  const auto refuse = [&](std::int32_t cell, const char* why) {
-    fail("LIGNCOUPE_4", {{"keyword", keyword}, {"group", group}, {"cell", cell_name(cell)}, {"why", why}});
-  };
-  std::map<std::int32_t, std::vector<std::size_t>> around;  // vertex -> cells, by place in the group
-  for (std::size_t i = 0; i < cells.size(); ++i) {
-    const auto cell = static_cast<std::size_t>(cells[i]);
-    if (mesh.row(cell).dimension != 1) refuse(cells[i], "is no line cell");
-    for (const std::int32_t vertex : mesh.cells[cell].first(2)) {
-      around[vertex].push_back(i);
-      if (around[vertex].size() > 2) refuse(cells[i], "is at a node where more than two cells meet");
-    }
-  }
-  std::vector<char> used(cells.size(), 0);
-  // nodes beyond `start` when leaving it through `i`, up to an end or a cell that is used
-  const auto walk = [&](std::size_t i, std::int32_t start) {
-    std::vector<std::int32_t> nodes;
-    while (true) {
-      used[i] = 1;
-      const auto own = mesh.cells[static_cast<std::size_t>(cells[i])];
-      const bool forward = own[0] == start;
-      std::vector<std::int32_t> middle(own.begin() + 2, own.end());
-      if (!forward) std::reverse(middle.begin(), middle.end());
-      nodes.insert(nodes.end(), middle.begin(), middle.end());
-      start = own[forward ? 1 : 0];
-      nodes.push_back(start);
-      const auto& next = around.at(start);
-      const auto free = std::find_if(next.begin(), next.end(), [&](std::size_t j) { return !used[j]; });
-      if (free == next.end()) return nodes;
-      i = *free;
-    }
-  };
-  const std::int32_t first = mesh.cells[static_cast<std::size_t>(cells[0])][0];
-  std::vector<std::int32_t> forward = walk(0, first), nodes;
-  const auto& at_first = around.at(first);
-  if (const auto back = std::find_if(at_first.begin(), at_first.end(), [&](std::size_t j) { return !used[j]; });
-      back != at_first.end()) {
-    nodes = walk(*back, first);
-    std::reverse(nodes.begin(), nodes.end());
-  }
-  if (const auto left = std::find(used.begin(), used.end(), 0); left != used.end())
-    refuse(cells[static_cast<std::size_t>(left - used.begin())], "does not hang together with the first one");
-  nodes.push_back(first);
-  nodes.insert(nodes.end(), forward.begin(), forward.end());
-  return nodes;
-}
-
 std::vector<LinePoint> at_nodes(const Mesh& mesh, std::span<const std::int32_t> nodes) {
   std::vector<LinePoint> points;
   for (const std::int32_t node : nodes) {
@@ -160,7 +110,7 @@ void locate(std::vector<LinePoint>& points, const Mesh& mesh, const CellLocator&
 std::vector<LinePoint> line_points(const Mesh& mesh, const CellLocator& locator, const Keywords& line) {
   const std::string type = line.text("TYPE");
   if (type == "GROUP_NO") return at_nodes(mesh, nodes_of_group(mesh, line.text("GROUP_NO"), line.path("GROUP_NO")));
-  if (type == "GROUP_MA") return at_nodes(mesh, chain(mesh, line.text("GROUP_MA"), line.path("GROUP_MA")));
+  if (type == "GROUP_MA") return at_nodes(mesh, chain_of_lines(mesh, line.text("GROUP_MA"), line.path("GROUP_MA")));
   std::vector<LinePoint> points = type == "ARC" ? arc(mesh, line) : segment(mesh, line);
   locate(points, mesh, locator, line);
   return points;

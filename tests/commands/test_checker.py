@@ -67,6 +67,15 @@ class Mistakes(unittest.TestCase):
         self.one("KEYWORD_6", "MODI_MAILLAGE", "ORIE_PEAU_2D, ORIE_PEAU", command="MODI_MAILLAGE", MAILLAGE=mesh,
                  ORIE_PEAU_2D={"GROUP_MA": "A"}, ORIE_PEAU={"GROUP_MA_PEAU": "B"})
 
+    def test_a_line_of_nodes_has_its_ends(self):
+        line = {"OPTION": "SEGM_DROI_ORDO", "NOM": "A", "PRECISION": 1e-6, "GROUP_MA": "B", "NOEUD_ORIG": "N1", "GROUP_NO_EXTR": "C"}
+        complete("DEFI_GROUP", MAILLAGE=concept("mesh"), CREA_GROUP_NO=line)
+        for left_out, missed in (("NOEUD_ORIG", "NOEUD_ORIG"), ("GROUP_NO_EXTR", "NOEUD_EXTR"), ("GROUP_MA", "GROUP_NO")):
+            self.one("KEYWORD_2", f"DEFI_GROUP/CREA_GROUP_NO[1]/{missed}", command="DEFI_GROUP", MAILLAGE=concept("mesh"),
+                     CREA_GROUP_NO={k: v for k, v in line.items() if k != left_out})
+        self.one("KEYWORD_10", "DEFI_GROUP/CREA_GROUP_NO[1]/GROUP_MA", command="DEFI_GROUP", MAILLAGE=concept("mesh"),
+                 CREA_GROUP_NO={"OPTION": "PLAN", "NOM": "A", "PRECISION": 1e-6, "POINT": (0.0, 0.0), "VECT_NORMALE": (0.0, 1.0), "GROUP_MA": "B"})
+
     def test_a_value_that_only_code_aster_has(self):
         self.one("KEYWORD_13", "LIRE_MAILLAGE/FORMAT", "IDEAS", command="LIRE_MAILLAGE", FORMAT="IDEAS")
 

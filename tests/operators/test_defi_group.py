@@ -57,6 +57,45 @@ class DefiGroup(OperatorTest):
         self.assertEqual(self.place("CREA_GROUP_NO", OPTION="ENV_CYLINDRE", POINT=[1.0, 9.0], VECT_NORMALE=[0.0, 1.0], RAYON=1.0, PRECISION=0.01),
                          [0, 2, 5, 7])
 
+    def line(self, **keywords):
+        """Nodes of a group made on a line of SEG3 from (0, 0) over (2, 0) to (2, 2), whose cells do not follow each other in the mesh, and
+        on a closed one about (10, 0)."""
+        nodes = [[2, 2], [0, 0], [2, 0], [1, 0], [2, 1], [10, 1], [9, 0], [10, -1], [11, 0]]
+        self.write_mesh("mesh_1", nodes, [("SEG3", [2, 0, 4]), ("SEG3", [2, 1, 3]), *(("SEG2", [5 + i, 5 + (i + 1) % 4]) for i in range(4))],
+                        {"BENT": [0, 1], "LEG": [1], "RING": [2, 3, 4, 5], "ONE": [2]}, {"START": [1], "CORNER": [2], "END": [0], "LEGS": [0, 1]})
+        return {"CREA_GROUP_NO": [{"NOM": "NEW", **keywords}]}
+
+    def along(self, **keywords):
+        return list(self.define(**self.line(**keywords))[0].node_groups["NEW"])
+
+    def test_nodes_in_the_order_of_a_line_of_cells(self):
+        self.assertEqual(self.along(OPTION="NOEUD_ORDO", GROUP_MA=["BENT"]), [1, 3, 2, 4, 0])
+        self.assertEqual(self.along(OPTION="NOEUD_ORDO", GROUP_MA=["BENT"], GROUP_NO_ORIG="END"), [0, 4, 2, 3, 1])
+        self.assertEqual(self.along(OPTION="NOEUD_ORDO", GROUP_MA=["BENT"], NOEUD_EXTR="N2"), [0, 4, 2, 3, 1])
+        self.assertEqual(self.along(OPTION="NOEUD_ORDO", GROUP_MA=["BENT"], NOEUD_ORIG="N2", GROUP_NO_EXTR="END"), [1, 3, 2, 4, 0])
+        for direction, order in (([-1.0, 0.5], [7, 6, 5, 8]), ([1.0, 0.5], [7, 8, 5, 6])):
+            self.assertEqual(self.along(OPTION="NOEUD_ORDO", GROUP_MA=["RING"], NOEUD_ORIG="N8", NOEUD_EXTR="N8", VECT_ORIE=direction), order)
+        for identifier, words, keywords in (("GROUPE_7", ("NOEUD_ORIG", "N3", "BENT"), {"GROUP_MA": ["BENT"], "NOEUD_ORIG": "N3"}),
+                                            ("GROUPE_7", ("NOEUD_ORIG", "N1"), {"GROUP_MA": ["RING"], "NOEUD_ORIG": "N1", "NOEUD_EXTR": "N8"}),
+                                            ("GROUPE_7", ("GROUP_NO_EXTR", "N1"), {"GROUP_MA": ["BENT"], "NOEUD_ORIG": "N1", "GROUP_NO_EXTR": "END"}),
+                                            ("ORDER_4", ("GROUP_NO_ORIG", "one node"), {"GROUP_MA": ["BENT"], "GROUP_NO_ORIG": "LEGS"}),
+                                            ("LIGNCOUPE_4", ("M3",), {"GROUP_MA": ["SPLIT"]})):
+            keywords = self.line(OPTION="NOEUD_ORDO", **keywords)
+            self.define(CREA_GROUP_MA=[{"NOM": "SPLIT", "UNION": ["LEG", "ONE"]}])
+            self.refuse(identifier, *words, **keywords)
+
+    def test_nodes_in_the_order_of_a_segment(self):
+        self.assertEqual(self.along(OPTION="SEGM_DROI_ORDO", NOEUD=["N3", "N2", "N4"], GROUP_NO_ORIG="START", GROUP_NO_EXTR="CORNER", PRECISION=1e-9),
+                         [1, 3, 2])
+        self.assertEqual(self.along(OPTION="SEGM_DROI_ORDO", GROUP_MA=["LEG"], NOEUD_ORIG="N3", NOEUD_EXTR="N2", PRECISION=1e-9), [2, 3, 1])
+        bent = {"OPTION": "SEGM_DROI_ORDO", "GROUP_MA": ["BENT"], "NOEUD_ORIG": "N2", "NOEUD_EXTR": "N1"}  # N3 is 2^(1/2) away, half the length
+        self.assertEqual(self.along(PRECISION=0.51, **bent), [1, 3, 2, 4, 0])
+        self.assertEqual(self.along(PRECISION=1.42, CRITERE="ABSOLU", **bent), [1, 3, 2, 4, 0])
+        self.refuse("GROUPE_8", "1 nodes", "N3", "1.41421", **self.line(PRECISION=0.49, **bent))
+        self.refuse("GROUPE_8", "3 nodes", "N3", **self.line(PRECISION=0.1, CRITERE="ABSOLU", **bent))
+        self.refuse("GROUPE_8", "N1", **self.line(PRECISION=1e-6, **{**bent, "NOEUD_EXTR": "N3"}))
+        self.refuse("ORDER_4", "GROUP_NO_EXTR", **self.line(PRECISION=0.1, **{**bent, "NOEUD_EXTR": "N2"}))
+
     def test_parts_of_a_group_by_position(self):
         self.assertEqual(self.place(GROUP_MA="ROW", POSITION="INIT"), [3])
         self.assertEqual(self.place(GROUP_MA="ROW", POSITION="MILIEU"), [2])
