@@ -113,6 +113,12 @@ def _mesh_check(call, test, path):
 def _result_check(call, test, path):
     result = test["RESULTAT"]
     order, instant = order_of(call, test, path)
+    if "PARA" in test:
+        from .table_commands import parameters
+
+        name = test["PARA"]
+        value = next(row[name] for row in parameters(call, result, [name], f"{path}/PARA").rows if row["NUME_ORDRE"] == order)
+        return conclude(call, Check(call.where, result.label, "", name, "", instant, test.get("LEGENDE", ""), value), test)
     field = result.field(test["NOM_CHAM"], order)
     if field is None:
         call.fail("TEST_RESU_3", f"{path}/NOM_CHAM", field=test["NOM_CHAM"], label=result.label, instant=f"{instant:g}",

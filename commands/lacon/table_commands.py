@@ -226,11 +226,13 @@ def _kept(call, result, name):
 
 
 def parameters(call, result, names, path):
-    """NUME_ORDRE and the parameters `names` of every order number."""
+    """NUME_ORDRE and the parameters `names` of every order number. ITER_GLOB is code_aster's name of newton_iterations."""
     with result.open() as file:
         available = {"NUME_ORDRE": ("I", file["order"][:].tolist()), "INST": ("R", file["instant"][:].tolist())}
         for name, values in file.get("parameters", {}).items():
             available[name] = ("R", values[:].tolist())
+    if "newton_iterations" in available:
+        available["ITER_GLOB"] = ("I", [int(n) for n in available["newton_iterations"][1]])
     for name in names:
         if name not in available:
             call.fail("TABLE_13", path, label=result.label, name=name, nearest=nearest(name, available), known=", ".join(available))

@@ -69,6 +69,7 @@ def fill_result(file):
     """Instants 0, 0.5, 1. DEPL: DX = instant x node number, LAGS_C on N2 and N5 only. CONT_ELEM on M3. SIEF_ELGA, SIEF_ELNO on M1, M2."""
     file["order"] = np.arange(3)
     file["instant"] = np.array([0.0, 0.5, 1.0])
+    file["parameters/newton_iterations"] = np.array([0, 2, 3])
     file.attrs["mesh"] = mesh_of_model()
     file.attrs["model"] = order["keywords"]["MODELE"]["concept"]
     names = {}

@@ -94,6 +94,7 @@ class Readings(LauncherTest):
             ("INST=1.0, NOM_CHAM='SIEF_ELGA', NOM_CMP='SIYY', TYPE_TEST='MIN_ABS'", 1.0),
             ("INST=1.0, NOM_CHAM='SIEF_ELNO', NOM_CMP='SIYY', MAILLE='M2', NOEUD='N5'", 8.0),
             ("INST=1.0, NOM_CHAM='SIEF_ELNO', NOM_CMP='SIYY', MAILLE='M2', POINT=2", 6.0),
+            ("NUME_ORDRE=1, PARA='INST'", 0.5),
         ]
         run, made = self.checks(*(f"{place}, VALE_CALC={value}" for place, value in expected))
         self.ok(run)
@@ -150,6 +151,12 @@ class Readings(LauncherTest):
         run, made = self.checks("INST=1.0, NOM_CHAM='BAD', NOM_CMP='X', NOEUD='N1', VALE_CALC=1.0, VALE_REFE=1.0, REFERENCE='ANALYTIQUE'")
         self.assertEqual((run.status, made[0]["status"], made[0]["value"]), (5, "NOOK", "nan"))
 
+    def test_integers_of_an_instant(self):
+        run, made = self.checks("INST=1.0, PARA='ITER_GLOB', VALE_CALC_I=3, VALE_REFE_I=3, REFERENCE='NON_DEFINI'",
+                                "NUME_ORDRE=2, PARA='ITER_GLOB', VALE_CALC=3.0", "NUME_ORDRE=2, PARA='ITER_GLOB', VALE_CALC_I=4")
+        self.assertEqual([(c["status"], c["value"]) for c in made], [("OK", 3), ("OK", 3), ("DIFF", 3)])
+        self.assertRegex(run.out, r"(?m)^OK +R +ITER_GLOB +INST 1 +3 +reference +3 ")
+
     def test_meshes(self):
         test = "TEST_RESU(MAILLAGE=({}))\nFIN()\n".format(", ".join(
             f"_F(MAILLAGE=M, CARA='{cara}', VALE_CALC_I={n}, VALE_REFE_I={n}, REFERENCE='ANALYTIQUE')"
@@ -184,7 +191,12 @@ class Readings(LauncherTest):
                 ("INST=1, NOM_CHAM='DEPL', NOM_CMP='DX', GROUP_NO='TOPP'", "TEST_RESU_9", "nearest one is TOP"),
                 ("INST=1, NOM_CHAM='DEPL', NOM_CMP='DX'", "KEYWORD_8", "TYPE_TEST"),
                 ("NOM_CHAM='DEPL', NOM_CMP='DX', NOEUD='N1'", "KEYWORD_7", "INST"),
-                ("INST=1, NOM_CHAM='DEPL', NOM_CMP='DX', NOEUD='N1', VALE_REFE=1.0", "KEYWORD_9", "REFERENCE")):
+                ("INST=1, NOM_CHAM='DEPL', NOM_CMP='DX', NOEUD='N1', VALE_REFE=1.0", "KEYWORD_2", "REFERENCE"),
+                ("INST=1, NOM_CHAM='DEPL', NOM_CMP='DX', NOEUD='N1', REFERENCE='ANALYTIQUE'", "KEYWORD_2", "VALE_REFE"),
+                ("INST=1, NOM_CHAM='DEPL', NOM_CMP='DX', NOEUD='N1', VALE_CALC_I=1", "KEYWORD_10", "VALE_CALC_I"),
+                ("INST=1, NOM_CHAM='DEPL', PARA='INST'", "KEYWORD_10", "NOM_CHAM"),
+                ("INST=1, NOM_CMP='DX', NOEUD='N1'", "KEYWORD_2", "NOM_CHAM"),
+                ("INST=1, PARA='ITER_GLOBE'", "TABLE_13", "nearest one is ITER_GLOB")):
             with self.subTest(line):
                 run, made = self.checks(line + ", VALE_CALC=1.0")
                 self.refused(run, identifier, word, "check.comm:2")

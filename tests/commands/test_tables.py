@@ -230,6 +230,8 @@ FIN()
         self.ok(self.run_study(STUDY + """
 P = RECU_TABLE(CO=R, NOM_PARA='INST')
 assert P.values() == {'NUME_ORDRE': [0, 1, 2], 'INST': [0.0, 0.5, 1.0]}
+P = RECU_TABLE(CO=R, NOM_PARA='ITER_GLOB')
+assert P.values() == {'NUME_ORDRE': [0, 1, 2], 'ITER_GLOB': [0, 2, 3]}
 FIN()
 """))
         self.refused(self.run_study("POURSUITE()\nP = RECU_TABLE(CO=R, NOM_PARA='FREQ')\n"), "TABLE_13")
