@@ -67,6 +67,10 @@ class Mistakes(unittest.TestCase):
         self.one("KEYWORD_6", "MODI_MAILLAGE", "ORIE_PEAU_2D, ORIE_PEAU", command="MODI_MAILLAGE", MAILLAGE=mesh,
                  ORIE_PEAU_2D={"GROUP_MA": "A"}, ORIE_PEAU={"GROUP_MA_PEAU": "B"})
 
+    def test_the_look_of_a_listing_is_taken_and_changes_nothing(self):
+        complete("IMPR_RESU", FORMAT="RESULTAT", RESU={"RESULTAT": concept("result"), "FORM_TABL": "OUI", "FORMAT_R": "1PE12.5"})
+        self.one("KEYWORD_11", "IMPR_RESU/MODELE", command="IMPR_RESU", MODELE=concept("model"), RESU={"MAILLAGE": concept("mesh")})
+
     def test_a_line_of_nodes_has_its_ends(self):
         line = {"OPTION": "SEGM_DROI_ORDO", "NOM": "A", "PRECISION": 1e-6, "GROUP_MA": "B", "NOEUD_ORIG": "N1", "GROUP_NO_EXTR": "C"}
         complete("DEFI_GROUP", MAILLAGE=concept("mesh"), CREA_GROUP_NO=line)

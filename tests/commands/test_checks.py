@@ -89,6 +89,7 @@ class Readings(LauncherTest):
             ("INST=1.0, NOM_CHAM='CONT_ELEM', NOM_CMP='PRES', GROUP_MA='SKIN'", -25.0),
             ("INST=1.0, NOM_CHAM='CONT_ELEM', NOM_CMP='PRES', MAILLE='M3'", -25.0),
             ("INST=1.0, NOM_CHAM='SIEF_ELGA', NOM_CMP='SIYY', MAILLE='M2', POINT=1", 3.0),
+            ("INST=1.0, NOM_CHAM='SIEF_ELGA', NOM_CMP='SIYY', MAILLE='M2', POINT=1, SOUS_POINT=1", 3.0),
             ("INST=1.0, NOM_CHAM='SIEF_ELGA', NOM_CMP='SIYY', GROUP_MA='BODY', TYPE_TEST='MIN'", -4.0),
             ("INST=1.0, NOM_CHAM='SIEF_ELGA', NOM_CMP='SIYY', TYPE_TEST='MAX_ABS'", 4.0),
             ("INST=1.0, NOM_CHAM='SIEF_ELGA', NOM_CMP='SIYY', TYPE_TEST='MIN_ABS'", 1.0),
