@@ -336,6 +336,27 @@ void create_cell_group(Mesh& mesh, const Keywords& factor, bool alarm) {
   add_group(mesh, cells, factor.text("NOM"), once(members, mesh.n_cells()), factor.path("NOM"), alarm);
 }
 
+/// The nodes of cells, in the mesh's order. @param which TOUS, or their SOMMETs, the MILIEUs of edges, the CENTREs of faces and
+/// cells
+Members nodes_of_cells(const Mesh& mesh, std::span<const std::int32_t> members, const std::string& which) {
+  if (which == "TOUS") return nodes_of_cells(mesh, members);
+  std::vector<char> found(mesh.n_nodes(), 0);
+  for (const std::int32_t c : members) {
+    const catalog::CellRow& row = mesh.row(static_cast<std::size_t>(c));
+    const int edges = static_cast<int>(row.edges.size());
+    const int middles = row.n_vertices, centres = std::min(row.n_nodes, middles + edges);
+    const auto [first, end] = which == "SOMMET"   ? std::pair(0, middles)
+                              : which == "MILIEU" ? std::pair(middles, centres)
+                                                  : std::pair(centres, row.n_nodes);
+    for (int i = first; i < end; ++i)
+      found[static_cast<std::size_t>(mesh.cells[static_cast<std::size_t>(c)][static_cast<std::size_t>(i)])] = 1;
+  }
+  Members kept;
+  for (std::size_t n = 0; n < found.size(); ++n)
+    if (found[n]) kept.push_back(static_cast<std::int32_t>(n));
+  return kept;
+}
+
 void create_node_group(Mesh& mesh, const Keywords& factor, bool alarm) {
   if (factor.has("TOUT_GROUP_MA")) {
     for (const Group& group : std::vector<Group>(mesh.cell_groups)) {
@@ -352,7 +373,8 @@ void create_node_group(Mesh& mesh, const Keywords& factor, bool alarm) {
       fail("GROUPE_4", {{"keyword", factor.path("NOM")}, {"count", std::to_string(groups.size())}});
     for (const std::string& group : groups)
       add_group(mesh, nodes, factor.has("NOM") ? factor.text("NOM") : group,
-                nodes_of_cells(mesh, cells_of_group(mesh, group, factor.path("GROUP_MA"))),
+                nodes_of_cells(mesh, cells_of_group(mesh, group, factor.path("GROUP_MA")),
+                               factor.has("CRIT_NOEUD") ? factor.text("CRIT_NOEUD") : "TOUS"),
                 factor.path(factor.has("NOM") ? "NOM" : "GROUP_MA"), alarm);
     return;
   }

@@ -96,6 +96,16 @@ class DefiGroup(OperatorTest):
         self.refuse("GROUPE_8", "N1", **self.line(PRECISION=1e-6, **{**bent, "NOEUD_EXTR": "N3"}))
         self.refuse("ORDER_4", "GROUP_NO_EXTR", **self.line(PRECISION=0.1, **{**bent, "NOEUD_EXTR": "N2"}))
 
+    def test_vertices_middles_and_centres_of_cells(self):
+        nodes = [[0, 0], [2, 0], [2, 2], [0, 2], [1, 0], [2, 1], [1, 2], [0, 1], [1, 1], [4, 0], [3, 0]]
+        self.write_mesh("mesh_1", nodes, [("QUAD9", [0, 1, 2, 3, 4, 5, 6, 7, 8]), ("SEG3", [1, 9, 10]), ("SEG2", [9, 2])],
+                        {"ALL": [0, 1, 2], "LINES": [1, 2]})
+        wanted = {"SOMMET": [0, 1, 2, 3, 9], "MILIEU": [4, 5, 6, 7, 10], "CENTRE": [8], "TOUS": list(range(11))}
+        mesh, _ = self.define(CREA_GROUP_NO=[{"NOM": which, "GROUP_MA": ["ALL"], "CRIT_NOEUD": which} for which in wanted])
+        self.assertEqual({name: list(members) for name, members in mesh.node_groups.items()}, wanted)
+        _, run = self.define(CREA_GROUP_NO=[{"NOM": "NONE", "GROUP_MA": ["LINES"], "CRIT_NOEUD": "CENTRE"}])
+        self.assertEqual(self.ids(run), ["GROUPE_3"])
+
     def test_parts_of_a_group_by_position(self):
         self.assertEqual(self.place(GROUP_MA="ROW", POSITION="INIT"), [3])
         self.assertEqual(self.place(GROUP_MA="ROW", POSITION="MILIEU"), [2])
