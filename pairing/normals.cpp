@@ -31,8 +31,11 @@ std::array<double, 3> cell_normal(CellType type, std::span<const double> points,
   return {t[1] * s[2] - t[2] * s[1], t[2] * s[0] - t[0] * s[2], t[0] * s[1] - t[1] * s[0]};
 }
 
-std::vector<double> nodal_normals(const Surface& surface) {
-  std::vector<double> normals(surface.coordinates.size(), 0.0);
+namespace {
+
+/// Call visit(node, unit normal) for each corner of each cell; not where a cell has collapsed.
+template <class Visit>
+void for_each_corner(const Surface& surface, Visit visit) {
   std::vector<double> points;
   for (std::size_t cell = 0; cell < surface.size(); ++cell) {
     const catalog::CellRow& row = catalog::cell(surface.types[cell]);
@@ -48,10 +51,20 @@ std::vector<double> nodal_normals(const Surface& surface) {
     }
     for (std::size_t i = 0; i < nodes.size(); ++i) {
       const double length = norm(at_node[i]);
-      if (!(length > cancelled * longest)) continue;  // a corner where the cell has collapsed
-      for (int x = 0; x < 3; ++x) normals[3 * nodes[i] + x] += at_node[i][x] / length;
+      if (!(length > cancelled * longest)) continue;
+      for (double& x : at_node[i]) x /= length;
+      visit(nodes[i], at_node[i]);
     }
   }
+}
+
+}  // namespace
+
+std::vector<double> nodal_normals(const Surface& surface) {
+  std::vector<double> normals(surface.coordinates.size(), 0.0);
+  for_each_corner(surface, [&](std::int32_t node, const std::array<double, 3>& own) {
+    for (int x = 0; x < 3; ++x) normals[3 * node + x] += own[x];
+  });
   std::vector<int> adjacent(surface.coordinates.size() / 3, 0);
   for (const std::int32_t node : surface.nodes.values) ++adjacent[node];
   for (std::size_t node = 0; node < adjacent.size(); ++node) {
@@ -61,6 +74,15 @@ std::vector<double> nodal_normals(const Surface& surface) {
     for (int x = 0; x < 3; ++x) n[x] = has_direction ? n[x] / length : 0;
   }
   return normals;
+}
+
+TurnedNormals turned_normals(const Surface& surface, std::span<const double> normals, double angle) {
+  TurnedNormals turned;
+  for_each_corner(surface, [&](std::int32_t node, const std::array<double, 3>& own) {
+    const double* const n = normals.data() + 3 * node;
+    if (own[0] * n[0] + own[1] * n[1] + own[2] * n[2] < std::cos(angle) && turned.count++ == 0) turned.first = node;
+  });
+  return turned;
 }
 
 double smallest_edge(const Surface& surface) {

@@ -168,25 +168,9 @@ std::vector<std::pair<std::int32_t, Vector>> normals_of(const LoadScene& scene, 
     found.emplace_back(node, n);
   }
   // a normal that stands for cells of different directions holds none of them
-  std::int64_t turned = 0;
-  std::int32_t first = -1;
-  for (const std::int32_t cell : cells) {
-    std::vector<double> points;
-    for (const std::int32_t node : scene.mesh.cells[static_cast<std::size_t>(cell)]) {
-      const auto at = scene.mesh.point(static_cast<std::size_t>(node));
-      points.insert(points.end(), at.begin(), at.end());
-    }
-    const catalog::CellRow& row = scene.mesh.row(static_cast<std::size_t>(cell));
-    for (int k = 0; k < row.n_nodes; ++k) {
-      const auto own = cell_normal(row.type, points, std::span(row.nodes).subspan(k * row.dimension, row.dimension));
-      const double* const mean =
-          normals.data() + 3 * static_cast<std::size_t>(scene.mesh.cells[static_cast<std::size_t>(cell)][k]);
-      if (dot(unit(own), {mean[0], mean[1], mean[2]}) < std::cos(10 * std::acos(-1.0) / 180) && turned++ == 0)
-        first = scene.mesh.cells[static_cast<std::size_t>(cell)][k];
-    }
-  }
-  if (turned)
-    inform("CHARGE_16", {{"keyword", factor.path("GROUP_MA")}, {"count", std::to_string(turned)}, {"node", node_name(first)}});
+  if (const TurnedNormals turned = turned_normals(surface, normals, 10 * std::acos(-1.0) / 180); turned.count)
+    inform("CHARGE_16",
+           {{"keyword", factor.path("GROUP_MA")}, {"count", std::to_string(turned.count)}, {"node", node_name(turned.first)}});
   return found;
 }
 

@@ -3,11 +3,14 @@
 #include <fmt/core.h>
 
 #include <algorithm>
+#include <numbers>
 #include <set>
+#include <utility>
 
 #include "lacon/catalog/contact.hpp"
 #include "lacon/catalog/messages.hpp"
 #include "lacon/operators/meshing/skin.hpp"
+#include "lacon/pairing/normals.hpp"
 
 namespace lacon {
 namespace {
@@ -190,6 +193,17 @@ void check_shared_nodes(const Mesh& mesh, const std::vector<ContactZone>& zones)
     }
 }
 
+/// A mean normal at the corner of a body is that of none of its faces, and contact pushes there in a direction of its own.
+void check_corners(const Mesh& mesh, const ContactZone& zone) {
+  constexpr double corner = 30 * std::numbers::pi / 180;  // from the mean: faces that meet at 120 degrees
+  for (const auto& [cells, group] : {std::pair(zone.slave, zone.slave_group), std::pair(zone.master, zone.master_group)}) {
+    const Surface surface = surface_of(mesh, cells, mesh.coordinates);
+    const TurnedNormals turned = turned_normals(surface, nodal_normals(surface), corner);
+    if (turned.count)
+      inform("CONTACT2_21", {{"group", group}, {"count", std::to_string(turned.count)}, {"node", node_name(turned.first)}});
+  }
+}
+
 }  // namespace
 
 Contact defi_contact(const Mesh& mesh, std::string_view mesh_label, const Model& model, const Registry& registry,
@@ -220,7 +234,10 @@ Contact defi_contact(const Mesh& mesh, std::string_view mesh_label, const Model&
                zone.slave.size(), zone.patches.size(), zone.master_group, zone.master.size());
   }
   check_axisymmetry(model, contact.zones);
-  if (contact.smoothing) check_shared_nodes(mesh, contact.zones);
+  if (contact.smoothing) {
+    check_shared_nodes(mesh, contact.zones);
+    for (const ContactZone& zone : contact.zones) check_corners(mesh, zone);
+  }
   return contact;
 }
 

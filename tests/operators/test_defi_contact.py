@@ -165,6 +165,24 @@ class DefiContact(OperatorTest):
         self.make(groups={**GROUPS, "ESCL": [0, 1, 2]})
         self.refuses("CONTACT4_5", "3 cells", "4 sub-cells")
 
+    def test_corners_of_smoothed_skins_are_named(self):
+        """Two faces that meet in a corner: 25 degrees from the mean normal are a curved skin, 45 are none."""
+        for turn, corner in ((50, False), (90, True)):
+            angle = np.radians(turn)
+            bent = [list(point) for point in COORDINATES]
+            for node, length in ((3, 1), (4, 2)):  # the second patch goes up from N3, still with its body inside
+                bent[node] = [2 + length * np.cos(angle), length * np.sin(angle)]
+            bent[6] = [1.5, 4]
+            with self.subTest(turn=turn):
+                self.make(coordinates=bent)
+                run = self.define(LISSAGE="OUI", VERI_NORM="NON")
+                self.assertEqual(run.status, 0, run.stderr)
+                self.assertEqual("CONTACT2_21" in run.stderr, corner, run.stderr)
+                if corner:
+                    self.assertIn("2 cell(s)", run.stderr)
+                    self.assertIn("N3", run.stderr)
+                self.assertNotIn("CONTACT2_21", self.define(LISSAGE="NON", VERI_NORM="NON").stderr)
+
     def test_smoothing_wants_slave_skins_apart(self):
         self.make(zones=("ESCL_1", "ESCL_2"), zone_offset=(0, 1, 2))
         zones = [zone(GROUP_MA_ESCL="ESCL_1"), zone(GROUP_MA_ESCL="ESCL_2")]
