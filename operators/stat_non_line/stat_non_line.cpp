@@ -313,9 +313,9 @@ void stat_non_line(const Order& order, const Base& base) {
   };
   try {
     step_through(steps, solve, go_back, solved, [&] { return iterations; });
-  } catch (const Error& error) {
-    // what was computed before the failure is not lost; of a solution that failed at once, the initial state
-    if (archive.n_solved() > 0 || (error.message().severity == 'S' && !archive.has_initial_state()))
+  } catch (...) {
+    // what was computed before the failure is not lost; without it the base stays as it was
+    if (archive.n_solved() > 0)
       archive.store(observations.table());
     else
       archive.discard();

@@ -284,7 +284,7 @@ class StatNonLine(TwoSquares):
 
     def test_a_body_that_nothing_holds_is_a_failed_solution(self):
         self.write_load("load_10", imposed=AXIS)
-        self.assert_refused(self.solve(loads=["load_6", "load_10"]), "SOLVER_3", "DY", status=3)
+        self.assert_fails("SOLVER_3", "DY", status=3, loads=["load_6", "load_10"])
 
     def test_a_failure_keeps_what_was_computed_before_it(self):
         self.write_function("function_10", [0, 1, 2], [0, 0, 1])
@@ -301,8 +301,7 @@ class StatNonLine(TwoSquares):
         run = self.solve(INCREMENT={"LIST_INST": concept("time_steps_10")}, CONVERGENCE=UNREACHABLE)  # two levels, then the failure
         self.assertEqual(self.ids(run), ["EVOLUTION_7", "EVOLUTION_7", "EVOLUTION_4"])
         self.assertEqual(run.status, 3)
-        with h5py.File(self.path("result_9")) as index:
-            np.testing.assert_array_equal(index["instant"], [0.0])  # nothing but the initial state
+        self.assertFalse(self.path("result_9").exists())
 
 
 if __name__ == "__main__":
