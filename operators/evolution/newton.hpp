@@ -105,7 +105,7 @@ class Newton {
   bool has_stiffness_ = false;               ///< and is in the matrix
   SolidMatrix present_ = SolidMatrix::none;  ///< of which kind that one is
   bool unstable_ = false;                    ///< the tangent of an iterate of this instant was
-  int elastic_ = 0;                          ///< how many iterations go on with the elastic matrix
+  int elastic_ = 0;                          ///< how many more assemblies take the elastic matrix
   bool has_memory_ = false;                  ///< a law goes from the last state in equilibrium to the present one
   std::optional<ContactState> contact_;
   std::vector<PointValues> points_;         ///< of each solid set at the last evaluation
