@@ -80,6 +80,16 @@ class InitialState(StudyTest):
                 self.assertEqual(run.status, 2, run.stdout[-3000:] + run.stderr[-3000:])
                 self.assertIn(text, run.stderr)
 
+    def test_another_instant_and_a_law_that_remembers_from_now_on(self):
+        second = ("dict(ETAT_INIT=_F(EVOL_NOLI=FIRST, NUME_ORDRE=0, INST_ETAT_INIT=2.5), COMPORTEMENT=_F(RELATION='VMIS_ISOT_LINE'),"
+                  " INCREMENT=_F(LIST_INST=TIMES, INST_FIN=3.0))")
+        run = self.solve(BEHAVIOURS[0], STATE_SECOND=second)
+        self.assertEqual(run.status, 0, run.stdout[-3000:] + run.stderr[-3000:])
+        self.assertIn("EVOLUTION_13", run.stderr)
+        times, fields, _ = self.results()["SECOND"]
+        self.assertEqual(times, [2.5, 3])
+        self.assertGreater(fields["VARI_ELGA"][1].max(), 1e-3)
+
     def test_instants_behind_are_removed_where_this_is_asked_for(self):
         second = ("dict(reuse=WHOLE, ETAT_INIT=_F(EVOL_NOLI=WHOLE, INST=2.0), ARCHIVAGE=_F(DETR_NUME_SUIV='OUI'),"
                   " INCREMENT=_F(LIST_INST=DEFI_LIST_REEL(VALE=[2.5, 3.0])))")
