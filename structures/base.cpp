@@ -22,10 +22,11 @@ void write_ragged(const hdf5::Group& group, const std::string& name, const Ragge
 }
 
 template <class T>
-Ragged<T> read_ragged(const hdf5::Group& group, const std::string& offset, const std::string& values) {
+Ragged<T> read_ragged(const hdf5::Group& group, const std::string& offset, const std::string& values,
+                      std::size_t (*capacity)(std::size_t) = nullptr) {
   Ragged<T> rows;
-  rows.offset = group.read<std::int64_t>(offset);
-  rows.values = group.read<T>(values);
+  rows.offset = group.read<std::int64_t>(offset, capacity);
+  rows.values = group.read<T>(values, capacity);
   bool sound =
       !rows.offset.empty() && rows.offset.front() == 0 && rows.offset.back() == static_cast<std::int64_t>(rows.values.size());
   for (std::size_t i = 1; sound && i < rows.offset.size(); ++i) sound = rows.offset[i] >= rows.offset[i - 1];
@@ -133,7 +134,7 @@ Mesh Base::mesh(std::string_view id) const {
   Mesh mesh;
   mesh.name = root.text("name");
   mesh.dimension = static_cast<int>(root.integer("dimension"));
-  mesh.coordinates = root.read<double>("coordinates");
+  mesh.coordinates = root.read<double>("coordinates", with_room);
   const hdf5::Group cells = root.open("cells");
   std::vector<CellType> types;
   for (const std::string& name : cells.attribute_strings("types")) {
@@ -141,8 +142,10 @@ Mesh Base::mesh(std::string_view id) const {
     if (!type) refuse("there is no cell type " + name);
     types.push_back(*type);
   }
-  mesh.cells = read_ragged<std::int32_t>(cells, "offset", "nodes");
-  for (const std::int8_t code : cells.read<std::int8_t>("type")) {
+  mesh.cells = read_ragged<std::int32_t>(cells, "offset", "nodes", with_room);
+  const std::vector<std::int8_t> codes = cells.read<std::int8_t>("type");
+  mesh.types.reserve(with_room(codes.size()));
+  for (const std::int8_t code : codes) {
     if (code < 0 || static_cast<std::size_t>(code) >= types.size()) refuse("a cell has the type " + std::to_string(code));
     mesh.types.push_back(types[static_cast<std::size_t>(code)]);
   }

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "lacon/catalog/messages.hpp"
+#include "lacon/structures/memory.hpp"
 
 namespace lacon::hdf5 {
 namespace {
@@ -137,8 +138,11 @@ std::vector<hsize_t> Group::shape(std::string_view name) const {
 }
 
 template <class T>
-std::vector<T> Group::read(std::string_view name) const {
-  std::vector<T> values(count(shape(name)));
+std::vector<T> Group::read(std::string_view name, std::size_t (*capacity)(std::size_t)) const {
+  const std::size_t size = count(shape(name));
+  std::vector<T> values;
+  reserve_pages(values, size, capacity ? capacity(size) : size);
+  values.resize(size);
   const Handle set(H5Dopen2(id_, zero_ended(name).c_str(), H5P_DEFAULT), H5Dclose);
   if (!values.empty() && H5Dread(set, native_type<T>(), H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()) < 0)
     refuse("the dataset '" + std::string(name) + "' cannot be read");
@@ -175,11 +179,11 @@ void Group::write(std::string_view name, std::span<const T> values, std::vector<
 
 namespace {
 
-/// How many rows of `columns` columns of T fill a megabyte; of no power of two, which would put all columns into the same
-/// places of the cache.
+/// How many rows of `columns` columns of T fill two megabytes: more leave the cache, with less the page cache takes small
+/// pieces of each column, which is dearer. Of no power of two, which would put all columns into the same places of the cache.
 template <class T>
 std::size_t rows_of_part(std::size_t columns) {
-  return std::max<std::size_t>(1, 1'000'000 / (columns * sizeof(T)));
+  return std::max<std::size_t>(1, 2'000'000 / (columns * sizeof(T)));
 }
 
 /// Select rows of every column in the space of a file. @return the space of these values in memory
@@ -336,7 +340,7 @@ void Group::set(std::string_view name, const std::vector<std::string>& values) c
 }
 
 #define LACON_HDF5_TYPE(T)                                                                                 \
-  template std::vector<T> Group::read<T>(std::string_view) const;                                          \
+  template std::vector<T> Group::read<T>(std::string_view, std::size_t(*)(std::size_t)) const;             \
   template void Group::write<T>(std::string_view, std::span<const T>, std::vector<hsize_t>) const;         \
   template void Group::read_columns<T>(std::string_view, std::size_t,                                      \
                                        const std::function<void(std::size_t, std::span<const T>)>&) const; \

@@ -68,8 +68,9 @@ class Group {
   bool is_group(std::string_view name) const;
 
   std::vector<hsize_t> shape(std::string_view name) const;
+  /// @param capacity that of the vector, given the number of values
   template <class T>
-  std::vector<T> read(std::string_view name) const;
+  std::vector<T> read(std::string_view name, std::size_t (*capacity)(std::size_t) = nullptr) const;
   std::vector<std::string> read_strings(std::string_view name) const;
   template <class T>
   void write(std::string_view name, std::span<const T> values, std::vector<hsize_t> shape = {}) const;

@@ -27,6 +27,10 @@ struct Ragged {
   }
 };
 
+/// Capacity of the arrays of a mesh that is read: what a cut adds goes there in place, and memory that nothing touches costs
+/// nothing.
+constexpr std::size_t with_room(std::size_t size) { return size + size / 4; }
+
 /// A named set of nodes or cells, in the order of the file it came from. A node group and a cell group may share a name.
 struct Group {
   std::string name;
@@ -69,6 +73,15 @@ struct Mesh {
   const Group* find_cell_group(std::string_view group_name) const;
   const Group* find_node_group(std::string_view group_name) const;
 };
+
+/// Cells of consecutive numbers and one type are a run. @param visit(row of the type, first cell, how many)
+template <class Visit>
+void for_each_run(const Mesh& mesh, const Visit& visit) {
+  for (std::size_t first = 0, end = 0; first < mesh.n_cells(); first = end) {
+    while (end < mesh.n_cells() && mesh.types[end] == mesh.types[first]) ++end;
+    visit(mesh.row(first), first, end - first);
+  }
+}
 
 /// 2 for a mesh without 3D cells that lies in the plane z = 0, otherwise 3.
 int least_dimension(const Mesh& mesh);

@@ -186,31 +186,34 @@ def shaken(lines, amplitude, seed):
     return place
 
 
-def cubes(size, name="", sides=None):
-    """A box of size[0] x size[1] x size[2] unit cubes as HEXA8: as brick() makes it, for meshes of millions of cells.
-    @param sides (axis, end: 0 or 1) -> name of the group of QUAD4, whose normals leave the box"""
+def cubes(size, name="", sides=None, kind="HEXA8"):
+    """A box of size[0] x size[1] x size[2] unit cubes as HEXA8, or as six TETRA4 each: as brick() makes it, for meshes of millions
+    of cells. @param sides (axis, end: 0 or 1) -> name of the group of QUAD4 or TRIA3, whose normals leave the box"""
     numbers = np.arange(np.prod(np.add(size, 1))).reshape(np.add(size, 1))
 
     def corner(offset):
         return numbers[tuple(slice(o, o + n) for o, n in zip(offset, size))].ravel()
 
     places = [(0, 0, 0), (1, 0, 0), (1, 1, 0), (0, 1, 0), (0, 0, 1), (1, 0, 1), (1, 1, 1), (0, 1, 1)]
-    order = [int(v) for v in VOLUMES["HEXA8"][1].split()]
+    order = [int(v) for v in VOLUMES[kind][1].split()]
+    parts = [np.column_stack([corner(places[int(part[v])]) for v in order]) for part in CUBE[kind.rstrip("0123456789")]]
     mesh = Mesh(np.stack(np.meshgrid(*(np.arange(n + 1.0) for n in size), indexing="ij"), axis=-1).reshape(-1, 3),
-                {"HEXA8": np.column_stack([corner(places[v]) for v in order])})
+                {kind: np.stack(parts, axis=1).reshape(-1, len(order))})
     if name:
-        mesh.cell_groups[name] = [("HEXA8", c) for c in range(len(mesh.cells["HEXA8"]))]
+        mesh.cell_groups[name] = [(kind, c) for c in range(len(mesh.cells[kind]))]
+    # tetrahedra: the first and the last vertex of a cube are on the diagonals of its faces
+    skin, facets = ("QUAD4", [[0, 1, 2, 3]]) if kind == "HEXA8" else ("TRIA3", [[0, 1, 2], [0, 2, 3]])
     skins = []
     for (axis, end), group in (sides or {}).items():
         layer = np.take(numbers, -1 if end else 0, axis=axis)
         layer = layer if axis != 1 else layer.T  # so that the axes turn to the right about the side's own
         square = [layer[:-1, :-1], layer[1:, :-1], layer[1:, 1:], layer[:-1, 1:]]
-        rows = np.column_stack([part.ravel() for part in square])[:, slice(None) if end else slice(None, None, -1)]
+        rows = np.concatenate([np.column_stack([square[v].ravel() for v in facet]) for facet in facets])
         first = sum(map(len, skins))
-        mesh.cell_groups.setdefault(group, []).extend(("QUAD4", c) for c in range(first, first + len(rows)))
-        skins.append(rows)
+        mesh.cell_groups.setdefault(group, []).extend((skin, c) for c in range(first, first + len(rows)))
+        skins.append(rows if end else rows[:, ::-1])
     if skins:
-        mesh.cells["QUAD4"] = np.concatenate(skins)
+        mesh.cells[skin] = np.concatenate(skins)
     return mesh
 
 

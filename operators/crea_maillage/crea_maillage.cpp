@@ -38,8 +38,7 @@ constexpr double poor_quality = 0.1;
 
 /// What the cut does to the shape of cells: a line, with `details` quantiles and the worst cells too.
 void print_quality(const CutReport& report, const Mesh& after, bool details) {
-  const Quality& was = report.before;
-  const Quality is = quality_of(after, report.sub_cells);
+  const Quality &was = report.before, &is = report.after;
   const auto place = [&](std::int32_t cell) {
     const std::string groups = groups_with(after, cell);
     return cell_name(cell) + (groups.empty() ? "" : " (" + groups + ")");

@@ -1,11 +1,9 @@
 #include "lacon/operators/crea_maillage/tool.hpp"
 
 #include <fmt/core.h>
-#include <malloc.h>
 
 #include <CLI/CLI.hpp>
 #include <filesystem>
-#include <limits>
 
 #include "lacon/catalog/messages.hpp"
 #include "lacon/operators/crea_maillage/crea_maillage.hpp"
@@ -39,9 +37,6 @@ int cut_med_file(int argc, char** argv) {
   app.add_flag("--keep-node-groups", keep_node_groups,
                "groups of nodes stay as they are; otherwise those that hold a whole slave skin get its new nodes");
   app.add_flag("--quality", cut.details, "print quantiles of the cells' quality, and the worst cells");
-  // large arrays come and go: the next takes the pages of the one before, instead of new ones that the system must clear first
-  mallopt(M_MMAP_MAX, 0);
-  mallopt(M_TRIM_THRESHOLD, std::numeric_limits<int>::max());
   return run_tool(argc, argv, app, [&] {
     std::error_code error;
     if (fs::equivalent(in, out, error)) fail("CUT_1", {{"file", in.string()}});

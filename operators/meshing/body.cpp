@@ -4,6 +4,7 @@
 #include <ranges>
 
 #include "lacon/catalog/messages.hpp"
+#include "lacon/structures/known_size.hpp"
 
 namespace lacon {
 
@@ -31,27 +32,39 @@ Ragged<std::int32_t> cells_by_row(const Mesh& mesh, std::size_t n_rows, const Ro
 
 }  // namespace
 
+NodeSet::NodeSet(std::size_t n_nodes, std::span<const std::int32_t> nodes) : bits_(n_nodes / 64 + 1) {
+  for (const std::int32_t node : nodes) bits_[word(node)] |= std::uint64_t{1} << bit(node);
+  for (const std::uint64_t bits : bits_) {
+    before_.push_back(static_cast<std::int32_t>(size_));
+    size_ += static_cast<std::size_t>(std::popcount(bits));
+  }
+}
+
 NodeCells::NodeCells(const Mesh& mesh)
     : cells_(cells_by_row(
           mesh, mesh.n_nodes(), [](std::int32_t node) { return node; }, std::views::iota(std::size_t{0}, mesh.n_cells()))) {}
 
-NodeCells::NodeCells(const Mesh& mesh, std::span<const std::int32_t> nodes, int dimension) : row_(mesh.n_nodes(), -1) {
-  std::int32_t n_rows = 0;
-  for (const std::int32_t node : nodes)
-    if (std::int32_t& row = row_[static_cast<std::size_t>(node)]; row < 0) row = n_rows++;
-  const auto row_of = [&](std::int32_t node) { return row_[static_cast<std::size_t>(node)]; };
+NodeCells::NodeCells(const Mesh& mesh, std::span<const std::int32_t> nodes, int dimension)
+    : nodes_(std::in_place, mesh.n_nodes(), nodes) {
   std::vector<std::size_t> candidates;
-  for (std::size_t c = 0; c < mesh.n_cells(); ++c) {
-    std::int32_t rows = -1;  // stays so where every node has none
-    for (const std::int32_t node : mesh.cells[c]) rows &= row_of(node);
-    if (rows >= 0 && mesh.row(c).dimension == dimension) candidates.push_back(c);
-  }
-  cells_ = cells_by_row(mesh, static_cast<std::size_t>(n_rows), row_of, candidates);
+  for_each_run(mesh, [&](const catalog::CellRow& row, std::size_t first, std::size_t n_cells) {
+    if (row.dimension != dimension) return;
+    with_known_size(static_cast<std::size_t>(row.n_nodes), [&, own = mesh.cells[first].data()](const auto n) {
+      for (std::size_t c = 0; c < n_cells; ++c) {
+        bool near = false;
+        for (std::size_t j = 0; j < n; ++j) near |= nodes_->has(own[c * n + j]);
+        if (near) candidates.push_back(first + c);
+      }
+    });
+  });
+  cells_ = cells_by_row(
+      mesh, nodes_->size(), [&](std::int32_t node) { return nodes_->rank(node); }, candidates);
 }
 
 std::span<const std::int32_t> NodeCells::operator[](std::size_t node) const {
-  if (row_.empty()) return cells_[node];
-  return row_[node] < 0 ? std::span<const std::int32_t>{} : cells_[static_cast<std::size_t>(row_[node])];
+  if (!nodes_) return cells_[node];
+  const std::int32_t row = nodes_->rank(static_cast<std::int32_t>(node));
+  return row < 0 ? std::span<const std::int32_t>{} : cells_[static_cast<std::size_t>(row)];
 }
 
 std::optional<FacetMatch> match_facet(CellType type, std::span<const std::int32_t> body, CellType skin_type,

@@ -1,11 +1,33 @@
 #pragma once
 // Which body cell a skin cell belongs to, and from which side it is seen.
+#include <bit>
 #include <optional>
 #include <vector>
 
 #include "lacon/structures/mesh.hpp"
 
 namespace lacon {
+
+/// Some of the nodes of a mesh, as bits: of a large mesh they stay in the processor's cache.
+class NodeSet {
+ public:
+  NodeSet(std::size_t n_nodes, std::span<const std::int32_t> nodes);
+  bool has(std::int32_t node) const { return (bits_[word(node)] >> bit(node) & 1) != 0; }
+  /// How many of the set have a lower number; -1 for a node that is not in it.
+  std::int32_t rank(std::int32_t node) const {
+    const std::uint64_t lower = bits_[word(node)] & ((std::uint64_t{1} << bit(node)) - 1);
+    return has(node) ? before_[word(node)] + std::popcount(lower) : -1;
+  }
+  std::size_t size() const { return size_; }
+
+ private:
+  static std::size_t word(std::int32_t node) { return static_cast<std::uint32_t>(node) / 64; }
+  static std::uint32_t bit(std::int32_t node) { return static_cast<std::uint32_t>(node) % 64; }
+
+  std::vector<std::uint64_t> bits_;
+  std::vector<std::int32_t> before_;  ///< how many are in the words before each
+  std::size_t size_ = 0;
+};
 
 /// The cells around each node.
 class NodeCells {
@@ -16,7 +38,7 @@ class NodeCells {
   std::span<const std::int32_t> operator[](std::size_t node) const;
 
  private:
-  std::vector<std::int32_t> row_;  ///< of a node in `cells_`, -1 for none; empty: the node's own number
+  std::optional<NodeSet> nodes_;  ///< whose ranks are the rows of `cells_`; nothing: every node's number is its row
   Ragged<std::int32_t> cells_;
 };
 

@@ -129,15 +129,12 @@ std::vector<std::int32_t> orient_body_cells(Mesh& mesh) {
 }
 
 void turn_body_cells(Mesh& mesh) {
-  std::vector<std::int32_t> reversed;
-  for (std::size_t c = 0; c < mesh.n_cells(); ++c) {
-    if (mesh.row(c).dimension != mesh.dimension) continue;
-    const std::span<std::int32_t> nodes = mesh.cells[c];
-    if (central_jacobian(mesh.types[c], nodes, mesh.coordinates) >= 0) continue;
-    std::ranges::copy(mirrored(mesh.types[c], nodes), nodes.begin());
-    reversed.push_back(static_cast<std::int32_t>(c));
+  const std::vector<std::int32_t> inverted = inverted_cells(mesh);
+  for (const std::int32_t cell : inverted) {
+    const auto c = static_cast<std::size_t>(cell);
+    std::ranges::copy(mirrored(mesh.types[c], mesh.cells[c]), mesh.cells[c].begin());
   }
-  tell("LIRE_1", reversed, cell_name);
+  tell("LIRE_1", inverted, cell_name);
 }
 
 void inspect(const Mesh& mesh, double flatness) {

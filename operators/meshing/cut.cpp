@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <map>
 #include <unordered_map>
 #include <utility>
 
@@ -46,7 +45,7 @@ class Forest {
   }
 
   /// The sub-cells of a parent are added one behind the other. Spans of nodes do not outlive it.
-  std::int32_t add(CellType type, const Nodes& nodes, std::int32_t parent) {
+  std::int32_t add(CellType type, const CellNodes& nodes, std::int32_t parent) {
     const auto cell = static_cast<std::int32_t>(size());
     types_.push_back(type);
     nodes_.push_back(nodes);
@@ -65,6 +64,7 @@ class Forest {
   }
 
   std::size_t size() const { return n_cells_ + types_.size(); }
+  bool is_cut(std::int32_t cell) const { return children_.contains(cell); }
   /// The cells of the mesh that were cut, ascending.
   Nodes cut_cells() const {
     Nodes cells;
@@ -91,9 +91,9 @@ class Forest {
 };
 
 /// Append the images of reference points of a cell (isoparametric, METHOD.md 1.2-3) to the coordinates; returns their numbers.
-Nodes add_nodes(CellType type, const Nodes& nodes, std::span<const double> points, std::vector<double>& coordinates) {
+CellNodes add_nodes(CellType type, const CellNodes& nodes, std::span<const double> points, std::vector<double>& coordinates) {
   const auto d = static_cast<std::size_t>(catalog::cell(type).dimension);
-  Nodes added;
+  CellNodes added;
   for (std::size_t p = 0; p < points.size() / d; ++p) {
     const auto point = image(type, nodes, points.subspan(p * d, d), coordinates);
     added.push_back(static_cast<std::int32_t>(coordinates.size() / 3));
@@ -102,12 +102,20 @@ Nodes add_nodes(CellType type, const Nodes& nodes, std::span<const double> point
   return added;
 }
 
-void append(Nodes& to, const Nodes& more) { to.insert(to.end(), more.begin(), more.end()); }
+void append(Nodes& to, std::span<const std::int32_t> more) { to.insert(to.end(), more.begin(), more.end()); }
 
 void sort_once(Nodes& numbers) {
   std::ranges::sort(numbers);
   const auto twice = std::ranges::unique(numbers);
   numbers.erase(twice.begin(), twice.end());
+}
+
+/// A body cell under several slave cells comes once for each.
+std::vector<CellQuality> each_once(std::vector<CellQuality> cells) {
+  std::ranges::sort(cells, {}, &CellQuality::second);
+  const auto twice = std::ranges::unique(cells, {}, &CellQuality::second);
+  cells.erase(twice.begin(), twice.end());
+  return cells;
 }
 
 using Point = std::array<double, 3>;
@@ -144,7 +152,7 @@ bool has_straight_edges(CellType type, std::span<const std::int32_t> nodes, std:
 }
 
 /// Whether the vertices of a facet lie in a plane, up to `flat` of its size.
-bool is_plane(CellType type, const Nodes& nodes, std::span<const double> coordinates) {
+bool is_plane(CellType type, const CellNodes& nodes, std::span<const double> coordinates) {
   const Point origin = point_of(coordinates, nodes[0]);
   const auto from_origin = [&](std::size_t i) {
     const Point p = point_of(coordinates, nodes[i]);
@@ -163,7 +171,7 @@ bool is_plane(CellType type, const Nodes& nodes, std::span<const double> coordin
 /// Put the new mid nodes of a sub-cell into the middle of their vertices. A cell with straight edges that is no parallelepiped
 /// bends the straight lines of its reference cell: the isoparametric images would give its sub-cells curved edges, over which
 /// no rule is exact, and its shape is the same without.
-void straighten(CellType type, const Nodes& sub_cell, const Nodes& added, std::vector<double>& coordinates) {
+void straighten(CellType type, const CellNodes& sub_cell, const CellNodes& added, std::vector<double>& coordinates) {
   const catalog::CellRow& row = catalog::cell(type);
   for (std::size_t e = 0; e < row.edges.size(); ++e) {
     const std::int32_t middle = sub_cell[static_cast<std::size_t>(row.n_vertices) + e];
@@ -173,8 +181,12 @@ void straighten(CellType type, const Nodes& sub_cell, const Nodes& added, std::v
   }
 }
 
+constexpr std::int64_t max_facets = 6;  ///< of a body cell
+
 /// Every check on the groups and their cells, before anything is cut.
-std::vector<Slave> find_slaves(const Mesh& mesh, std::span<const std::string> groups, const std::string& keyword) {
+/// @param quality of the body cells under the skins
+std::vector<Slave> find_slaves(const Mesh& mesh, std::span<const std::string> groups, const std::string& keyword,
+                               std::vector<CellQuality>& quality) {
   const int skin_dimension = mesh.dimension - 1;
   Nodes near;  // the nodes at which body_cells() looks around
   for (const std::string& name : groups)
@@ -182,8 +194,10 @@ std::vector<Slave> find_slaves(const Mesh& mesh, std::span<const std::string> gr
       for (const std::int32_t cell : group->members) near.push_back(mesh.cells[static_cast<std::size_t>(cell)][0]);
   const NodeCells around(mesh, near, mesh.dimension);
   std::vector<Slave> slaves;
-  std::unordered_map<std::int32_t, std::size_t> zone_of;          // of a slave cell
-  std::map<std::pair<std::int32_t, int>, std::int32_t> slave_of;  // of a facet of a body cell
+  std::unordered_map<std::int32_t, std::size_t> zone_of;    // of a slave cell
+  std::unordered_map<std::int64_t, std::int32_t> slave_of;  // of a facet of a body cell
+  zone_of.reserve(near.size());
+  slave_of.reserve(near.size());
   for (std::size_t zone = 0; zone < groups.size(); ++zone) {
     const std::string& group = groups[zone];
     if (std::find(groups.begin(), groups.begin() + static_cast<std::ptrdiff_t>(zone), group) !=
@@ -211,7 +225,7 @@ std::vector<Slave> find_slaves(const Mesh& mesh, std::span<const std::string> gr
                            {"first", cell_name(bodies[0].cell)},
                            {"second", cell_name(bodies[1].cell)}});
       const BodyCell& body = bodies[0];
-      if (const auto [at, fresh] = slave_of.emplace(std::pair(body.cell, body.match.facet), cell); !fresh)
+      if (const auto [at, fresh] = slave_of.emplace(std::int64_t{body.cell} * max_facets + body.match.facet, cell); !fresh)
         fail("DECOUPE_5", {{"keyword", keyword},
                            {"group", group},
                            {"first", cell_name(at->second)},
@@ -224,14 +238,17 @@ std::vector<Slave> find_slaves(const Mesh& mesh, std::span<const std::string> gr
                            {"what", "the body cell " + cell_name(body.cell) + " under the slave cell " + cell_name(cell)},
                            {"type", std::string(mesh.row(b).name)}});
       slaves.push_back({cell, body.cell, zone});
+      quality.emplace_back(scaled_jacobian(mesh.types[b], mesh.cells[b], mesh.coordinates), body.cell);  // while it is at hand
     }
   }
   return slaves;
 }
 
-/// Cut one slave cell and what its body cell has become. @return its sub-cells by rank, as numbers of the forest
-Nodes cut_slave(Forest& forest, const Slave& slave, const std::string& group, std::string_view option,
-                const std::string& keyword, std::vector<double>& coordinates, Patches& patches, CutZone& zone) {
+/// Cut one slave cell and what its body cell has become. @param quality of what the body becomes, by numbers of the forest
+/// @return the sub-cells of the slave cell by rank, as numbers of the forest
+CellNodes cut_slave(Forest& forest, const Slave& slave, const std::string& group, std::string_view option,
+                    const std::string& keyword, std::vector<double>& coordinates, Patches& patches, CutZone& zone,
+                    std::vector<CellQuality>& quality) {
   std::int32_t body = -1;
   FacetMatch match{};
   forest.leaves(slave.body, [&](std::int32_t leaf) {
@@ -264,25 +281,24 @@ Nodes cut_slave(Forest& forest, const Slave& slave, const std::string& group, st
   // the body cell turned so that its facet lies where the row expects it
   const auto placement = std::ranges::find(cut->placements, match.facet, &catalog::Placement::facet);
   if (placement == cut->placements.end()) refuse("the facet is of another type");
-  const auto of_cell = forest.nodes(slave.cell);
-  const Nodes skin(of_cell.begin(), of_cell.end());
-  Nodes turned_body = pick(forest.nodes(body), placement->nodes);
+  const CellNodes skin(forest.nodes(slave.cell));
+  CellNodes turned_body = pick(forest.nodes(body), placement->nodes);
   const auto n_vertices = cut->facet.size();
   const std::int32_t first = turned_body[static_cast<std::size_t>(cut->facet[0])];
   const auto start = static_cast<std::size_t>(
       std::find(skin.begin(), skin.begin() + static_cast<std::ptrdiff_t>(n_vertices), first) - skin.begin());
   const catalog::FacetRow& facet = catalog::cell(forest.type(body)).facets[static_cast<std::size_t>(match.facet)];
-  Nodes of_facet = pick(forest.nodes(body), facet.nodes), of_skin = skin;
+  CellNodes of_facet = pick(forest.nodes(body), facet.nodes), of_skin = skin;
   std::ranges::sort(of_facet);
   std::ranges::sort(of_skin);
-  if (of_facet != of_skin) refuse("they share their vertices, but not their mid nodes");
+  if (!std::ranges::equal(of_facet, of_skin)) refuse("they share their vertices, but not their mid nodes");
 
-  const Nodes new_skin = add_nodes(cut->skin, skin, cut->skin_nodes, coordinates);
-  const Nodes new_body = add_nodes(cut->body, turned_body, cut->body_nodes, coordinates);
-  Nodes on_skin = skin;
-  append(on_skin, new_skin);
-  append(turned_body, pick(new_skin, cut->turned.subspan(start * new_skin.size(), new_skin.size())));
-  append(turned_body, new_body);
+  const CellNodes new_skin = add_nodes(cut->skin, skin, cut->skin_nodes, coordinates);
+  const CellNodes new_body = add_nodes(cut->body, turned_body, cut->body_nodes, coordinates);
+  CellNodes on_skin = skin;
+  on_skin.append(new_skin);
+  turned_body.append(pick(new_skin, cut->turned.subspan(start * new_skin.size(), new_skin.size())));
+  turned_body.append(new_body);
   append(zone.skin_nodes, new_skin);
   append(zone.body_nodes, new_body);
   if (catalog::cell(cut->skin).dimension == 2 && catalog::cell(cut->skin).order == 2) {
@@ -293,19 +309,20 @@ Nodes cut_slave(Forest& forest, const Slave& slave, const std::string& group, st
         straighten(sub.type, pick(turned_body, sub.nodes), new_body, coordinates);
   }
 
-  Nodes sub_cells;
+  CellNodes sub_cells;
   for (const catalog::SubCell& sub : cut->skin_cells)
     sub_cells.push_back(forest.add(sub.type, pick(on_skin, sub.nodes), slave.cell));
   for (const catalog::SubCell& sub : cut->body_cells) {
-    const Nodes own = pick(turned_body, sub.nodes);
+    const CellNodes own = pick(turned_body, sub.nodes);
     if (!is_sound(jacobian_range(sub.type, own, coordinates)))
       fail("DECOUPE_6",
            {{"keyword", keyword},
             {"group", group},
             {"what", "a sub-cell of " + cell_name(slave.body) + ", cut under the slave cell " + cell_name(slave.cell) + ","},
             {"type", std::string(catalog::cell(sub.type).name)}});
-    forest.add(sub.type, own, body);
+    quality.emplace_back(scaled_jacobian(sub.type, own, coordinates), forest.add(sub.type, own, body));
   }
+  if (cut->body_cells.empty()) quality.emplace_back(scaled_jacobian(forest.type(body), forest.nodes(body), coordinates), body);
   patches.kind.push_back(cut->kind);
   patches.parent.push_back(slave.cell);
   patches.carriers.push_back(pick(on_skin, cut->carriers));
@@ -315,14 +332,15 @@ Nodes cut_slave(Forest& forest, const Slave& slave, const std::string& group, st
 
 /// Put what a cell was cut into in its place. The mesh changes in place, back to front: what stays moves once.
 /// @param number_of the numbers that the cells added to the forest get, -1 for those that were cut again
-/// @return the first cell that has taken the place of each cell, as for inherited()
-Nodes replace_cut_cells(Mesh& mesh, const Forest& forest, Nodes& number_of) {
+Heirs replace_cut_cells(Mesh& mesh, const Forest& forest, Nodes& number_of) {
   const Nodes cut = forest.cut_cells();
   const std::size_t n = mesh.n_cells();
+  Heirs heirs;
   Ragged<std::int32_t> leaves;  // of each cut cell
   std::int64_t old_end = mesh.cells.offset.back(), end = old_end;
+  Nodes own;
   for (const std::int32_t cell : cut) {
-    Nodes own;
+    own.clear();
     end -= static_cast<std::int64_t>(forest.nodes(cell).size());
     forest.leaves(cell, [&](std::int32_t leaf) {
       own.push_back(leaf);
@@ -330,47 +348,42 @@ Nodes replace_cut_cells(Mesh& mesh, const Forest& forest, Nodes& number_of) {
       return false;
     });
     leaves.push_back(own);
+    heirs.enter(cell, static_cast<std::int32_t>(own.size()));
   }
-  Nodes first_heir(n + 1);
-  std::int32_t next = 0;
-  for (std::size_t c = 0, k = 0; c < n; ++c) {
-    first_heir[c] = next;
-    next += k < cut.size() && static_cast<std::size_t>(cut[k]) == c ? static_cast<std::int32_t>(leaves[k++].size()) : 1;
-  }
-  first_heir[n] = next;
-  const auto new_cell = [&](std::size_t cell) { return static_cast<std::ptrdiff_t>(first_heir[cell]); };
-
   number_of.assign(forest.size() - n, -1);
-  mesh.types.resize(static_cast<std::size_t>(next));
+  // back to front: `end` and `next`, where the nodes and numbers of what comes behind begin, and old_end, where they began
+  auto next = static_cast<std::size_t>(heirs.of(static_cast<std::int32_t>(n)).first);
+  mesh.types.resize(next);
   mesh.cells.values.resize(static_cast<std::size_t>(end));
   std::vector<std::int64_t>& offset = mesh.cells.offset;
-  offset.resize(static_cast<std::size_t>(next) + 1);
+  offset.resize(next + 1);
   offset.back() = end;
-  const auto types = mesh.types.begin();
-  const auto values = mesh.cells.values.begin();
+  CellType* const types = mesh.types.data();
+  std::int32_t* const values = mesh.cells.values.data();
   for (std::size_t k = cut.size(), last = n;; --k) {
     // the cells between a cut cell and the next, `last`; old numbers are at most the new ones, so nothing unread is overwritten
-    const std::size_t start = k > 0 ? static_cast<std::size_t>(cut[k - 1]) + 1 : 0;
-    const std::int64_t old_start = start < last ? offset[start] : old_end, shift = end - old_end;
-    std::move_backward(types + static_cast<std::ptrdiff_t>(start), types + static_cast<std::ptrdiff_t>(last),
-                       types + new_cell(last));
+    const std::size_t start = k > 0 ? static_cast<std::size_t>(cut[k - 1]) + 1 : 0, count = last - start;
+    const std::int64_t old_start = count > 0 ? offset[start] : old_end, shift = end - old_end;
+    std::move_backward(types + start, types + last, types + next);
     std::move_backward(values + old_start, values + old_end, values + end);
-    for (std::size_t c = last; c-- > start;) offset[static_cast<std::size_t>(new_cell(c))] = offset[c] + shift;
+    next -= count;
+    for (std::size_t c = count; c-- > 0;) offset[next + c] = offset[start + c] + shift;
     old_end = old_start;
     end = old_start + shift;
-    if (k == 0) return first_heir;
+    if (k == 0) return heirs;
     // the cut cell
     last = start - 1;
     old_end = offset[last];
-    const auto own = leaves[k - 1];
-    for (std::size_t i = own.size(); i-- > 0;) {
-      const auto nodes = forest.nodes(own[i]);
+    const auto of_cell = leaves[k - 1];
+    for (std::size_t i = of_cell.size(); i-- > 0;) {
+      const std::int32_t leaf = of_cell[i];
+      const auto nodes = forest.nodes(leaf);
       end -= static_cast<std::int64_t>(nodes.size());
-      const std::ptrdiff_t number = new_cell(last) + static_cast<std::ptrdiff_t>(i);
+      --next;
       std::ranges::copy(nodes, values + end);
-      types[number] = forest.type(own[i]);
-      offset[static_cast<std::size_t>(number)] = end;
-      number_of[static_cast<std::size_t>(own[i]) - n] = static_cast<std::int32_t>(number);
+      types[next] = forest.type(leaf);
+      offset[next] = end;
+      number_of[static_cast<std::size_t>(leaf) - n] = static_cast<std::int32_t>(next);
     }
   }
 }
@@ -381,33 +394,32 @@ Mesh cut_lac(Mesh mesh, std::span<const std::string> groups, std::string_view op
              CutReport& report) {
   refuse_cut_mesh(mesh, keyword);
   const std::string path(keyword);
-  const std::vector<Slave> slaves = find_slaves(mesh, groups, path);
+  std::vector<CellQuality> quality;
+  const std::vector<Slave> slaves = find_slaves(mesh, groups, path, quality);
 
   report = {};
   for (const std::string& group : groups) report.zones.push_back({group});
   for (const Slave& slave : slaves) report.zones[slave.zone].bodies.push_back(slave.body);
-  Nodes bodies;
   for (CutZone& zone : report.zones) {
     sort_once(zone.bodies);
-    append(bodies, zone.bodies);
     if (mesh.node_groups.empty()) continue;
     zone.old_skin_nodes = nodes_of_cells(mesh, mesh.find_cell_group(zone.group)->members);
     zone.old_body_nodes = nodes_of_cells(mesh, zone.bodies);
   }
-  sort_once(bodies);
-  report.before = quality_of(mesh, bodies);
+  report.before = quality_of(each_once(std::move(quality)));
+  quality.clear();
 
   const std::size_t n_nodes = mesh.n_nodes(), n_cells = mesh.n_cells();
   Patches patches;
   Forest forest(mesh);
   Ragged<std::int32_t> sub_cells;  // of each patch, as numbers of the forest
   for (const Slave& slave : slaves)
-    sub_cells.push_back(
-        cut_slave(forest, slave, groups[slave.zone], option, path, mesh.coordinates, patches, report.zones[slave.zone]));
+    sub_cells.push_back(cut_slave(forest, slave, groups[slave.zone], option, path, mesh.coordinates, patches,
+                                  report.zones[slave.zone], quality));
 
   Nodes number_of;
-  const Nodes first_heir = replace_cut_cells(mesh, forest, number_of);
-  mesh.cell_groups = inherited(mesh.cell_groups, first_heir);
+  const Heirs heirs = replace_cut_cells(mesh, forest, number_of);
+  heirs.inherit(mesh.cell_groups);
   for (std::size_t p = 0; p < patches.size(); ++p) {
     Nodes own;
     for (const std::int32_t cell : sub_cells[p]) own.push_back(number_of[static_cast<std::size_t>(cell) - n_cells]);
@@ -417,10 +429,12 @@ Mesh cut_lac(Mesh mesh, std::span<const std::string> groups, std::string_view op
     patches.zone_group.push_back(zone.group);
     patches.zone_offset.push_back(patches.zone_offset.back() + zone.patches);
   }
-  for (const std::int32_t body : bodies)
-    for (std::int32_t heir = first_heir[static_cast<std::size_t>(body)]; heir < first_heir[static_cast<std::size_t>(body) + 1];
-         ++heir)
-      report.sub_cells.push_back(heir);
+  for (auto& [value, cell] : quality)
+    cell = static_cast<std::size_t>(cell) >= n_cells ? number_of[static_cast<std::size_t>(cell) - n_cells]
+           : forest.is_cut(cell)                     ? -1
+                                                     : heirs.of(cell).first;
+  std::erase_if(quality, [](const CellQuality& of) { return of.second < 0; });
+  report.after = quality_of(each_once(std::move(quality)));
   report.new_nodes = static_cast<std::int64_t>(mesh.n_nodes() - n_nodes);
   report.new_cells = static_cast<std::int64_t>(mesh.n_cells() - n_cells);
   mesh.patches = std::move(patches);

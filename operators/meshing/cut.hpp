@@ -22,8 +22,8 @@ struct CutReport {
   std::vector<CutZone> zones;
   std::int64_t new_nodes = 0;
   std::int64_t new_cells = 0;
-  Quality before;                       ///< of the body cells of all zones
-  std::vector<std::int32_t> sub_cells;  ///< what they have become, of the cut mesh
+  Quality before;  ///< of the body cells of all zones, by their numbers in the mesh before the cut
+  Quality after;   ///< of what they have become, by their numbers in the cut mesh
 };
 
 /// Cut the skins `groups`, one contact zone each, in this order. Sub-cells take the place of the cell they come from, in the

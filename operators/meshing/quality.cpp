@@ -6,6 +6,7 @@
 
 #include "lacon/elements/lanes.hpp"
 #include "lacon/elements/reference.hpp"
+#include "lacon/structures/known_size.hpp"
 
 namespace lacon {
 namespace {
@@ -98,6 +99,25 @@ LACON_KERNEL JacobianRange range_at(int dimension, std::size_t n_points, std::sp
   return range_at<1>(n_points, nodes, coordinates, gradients);
 }
 
+/// The cells of a run of one type whose determinant at the centre is negative. @param cells its `n_cells` rows of `n_nodes`
+/// nodes
+/// @param number of its first cell
+LACON_KERNEL void find_inverted(int dimension, std::size_t n_nodes, std::size_t n_cells, const std::int32_t* cells,
+                                std::int32_t number, std::span<const double> coordinates, const double* gradients,
+                                std::vector<std::int32_t>& found) {
+  with_known_size(
+      n_nodes, [&](const auto n) __attribute__((always_inline)) {
+        const auto inverted = [&](std::size_t c) __attribute__((always_inline)) {
+          const std::span<const std::int32_t> nodes(cells + c * n, n);
+          return (dimension == 3 ? range_at<3>(1, nodes, coordinates, gradients)
+                                 : range_at<2>(1, nodes, coordinates, gradients))
+                     .least < 0;
+        };
+        for (std::size_t c = 0; c < n_cells; ++c)
+          if (inverted(c)) found.push_back(number + static_cast<std::int32_t>(c));
+      });
+}
+
 JacobianRange range_at(CellType type, std::size_t n_points, std::span<const std::int32_t> nodes,
                        std::span<const double> coordinates) {
   return range_at(catalog::cell(type).dimension, n_points, nodes, coordinates, gradients_of(type).data());
@@ -107,6 +127,16 @@ JacobianRange range_at(CellType type, std::size_t n_points, std::span<const std:
 
 double central_jacobian(CellType type, std::span<const std::int32_t> nodes, std::span<const double> coordinates) {
   return range_at(type, 1, nodes, coordinates).least;
+}
+
+std::vector<std::int32_t> inverted_cells(const Mesh& mesh) {
+  std::vector<std::int32_t> found;
+  for_each_run(mesh, [&](const catalog::CellRow& row, std::size_t first, std::size_t n_cells) {
+    if (row.dimension == mesh.dimension)
+      find_inverted(row.dimension, static_cast<std::size_t>(row.n_nodes), n_cells, mesh.cells[first].data(),
+                    static_cast<std::int32_t>(first), mesh.coordinates, gradients_of(row.type).data(), found);
+  });
+  return found;
 }
 
 JacobianRange jacobian_range(CellType type, std::span<const std::int32_t> nodes, std::span<const double> coordinates) {
@@ -163,6 +193,28 @@ double ideal_corner(Family family) {
   }
 }
 
+/// The least determinant of the unit tangents at some corners, in d dimensions.
+template <std::size_t d>
+double least_corner(std::span<const Corner> corners, std::span<const std::int32_t> nodes, const double* coordinates) {
+  const auto at = [&](std::int8_t local) { return coordinates + 3 * std::ptrdiff_t{nodes[static_cast<std::size_t>(local)]}; };
+  double least = INFINITY;
+  for (const Corner& corner : corners) {
+    const double* const vertex = at(corner.vertex);
+    double tangents[d][d], squares = 1;  // of the lengths
+    for (std::size_t i = 0; i < d; ++i) {
+      const auto& [end, middle] = corner.legs[i];
+      for (std::size_t k = 0; k < d; ++k) tangents[i][k] = at(end)[k] - vertex[k];
+      if (middle >= 0)  // the tangent of the parabola through three nodes at its first
+        for (std::size_t k = 0; k < d; ++k) tangents[i][k] = 4 * (at(middle)[k] - vertex[k]) - tangents[i][k];
+      double square = 0;
+      for (std::size_t k = 0; k < d; ++k) square += tangents[i][k] * tangents[i][k];
+      squares *= square;
+    }
+    least = std::min(least, squares > 0 ? determinant(tangents, d) / std::sqrt(squares) : 0.0);
+  }
+  return least;
+}
+
 }  // namespace
 
 double scaled_jacobian(CellType type, std::span<const std::int32_t> nodes, std::span<const double> coordinates) {
@@ -172,52 +224,28 @@ double scaled_jacobian(CellType type, std::span<const std::int32_t> nodes, std::
     return all;
   }();
   const catalog::CellRow& row = catalog::cell(type);
-  const auto at = [&](std::int8_t local, int k) { return coordinates[3 * static_cast<std::size_t>(nodes[local]) + k]; };
-  double least = INFINITY;
-  for (const Corner& corner : corners[static_cast<std::size_t>(type)]) {
-    std::array<std::array<double, 3>, 3> tangents{};
-    double squares = 1;  // of the lengths
-    for (int i = 0; i < row.dimension; ++i) {
-      const auto& [end, middle] = corner.legs[i];
-      double square = 0;
-      for (int k = 0; k < row.dimension; ++k) {
-        const double chord = at(end, k) - at(corner.vertex, k);
-        // the tangent of the parabola through three nodes at its first
-        tangents[i][k] = middle < 0 ? chord : 4 * (at(middle, k) - at(corner.vertex, k)) - chord;
-        square += tangents[i][k] * tangents[i][k];
-      }
-      squares *= square;
-    }
-    least = std::min(least,
-                     squares > 0 ? determinant(tangents, static_cast<std::size_t>(row.dimension)) / std::sqrt(squares) : 0.0);
-  }
-  return least / ideal_corner(row.family);
+  const auto least = row.dimension == 3 ? least_corner<3> : least_corner<2>;
+  return least(corners[static_cast<std::size_t>(type)], nodes, coordinates.data()) / ideal_corner(row.family);
 }
 
-Quality quality_of(const Mesh& mesh, std::span<const std::int32_t> cells, std::size_t n_worst) {
+Quality quality_of(std::vector<CellQuality> cells) {
   Quality quality{.n_cells = cells.size()};
   if (cells.empty()) return quality;
-  std::vector<std::pair<double, std::int32_t>> values;
-  values.reserve(cells.size());
-  for (const std::int32_t cell : cells) {
-    const auto c = static_cast<std::size_t>(cell);
-    values.emplace_back(scaled_jacobian(mesh.types[c], mesh.cells[c], mesh.coordinates), cell);
-    quality.mean += values.back().first / static_cast<double>(cells.size());
-  }
-  const auto worst = values.begin() + static_cast<std::ptrdiff_t>(std::min(n_worst, values.size()));
-  std::partial_sort(values.begin(), worst, values.end());
+  for (const auto& [value, cell] : cells) quality.mean += value / static_cast<double>(cells.size());
+  const auto worst = cells.begin() + static_cast<std::ptrdiff_t>(std::min(Quality::n_worst, cells.size()));
+  std::partial_sort(cells.begin(), worst, cells.end());
   auto sorted = worst;  // what is behind is not less than what is before
   for (std::size_t q = 0; q < quality.quantiles.size(); ++q) {
-    const auto last = static_cast<double>(values.size() - 1);
-    const auto at = values.begin() + std::lround(Quality::fractions[q] * last);
+    const auto last = static_cast<double>(cells.size() - 1);
+    const auto at = cells.begin() + std::lround(Quality::fractions[q] * last);
     if (at >= sorted) {
-      std::nth_element(sorted, at, values.end());
+      std::nth_element(sorted, at, cells.end());
       sorted = at;
     }
     quality.quantiles[q] = at->first;
   }
-  values.erase(worst, values.end());
-  quality.worst = std::move(values);
+  cells.erase(worst, cells.end());
+  quality.worst = std::move(cells);
   return quality;
 }
 

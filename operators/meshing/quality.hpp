@@ -24,24 +24,31 @@ bool is_sound(const JacobianRange& range);
 /// The determinant at the centre: its sign says on which side the cell's facets have their outside.
 double central_jacobian(CellType type, std::span<const std::int32_t> nodes, std::span<const double> coordinates);
 
+/// The cells of the space's dimension whose determinant at the centre is negative, ascending.
+std::vector<std::int32_t> inverted_cells(const Mesh& mesh);
+
 /// The scaled Jacobian: at each corner of three edges (two in the plane) the determinant of the edges' unit tangents, over the
 /// one of the ideal cell, whose edges are all equal; the least of all corners. 1 for the ideal cell, 0 for a flat corner,
 /// negative for a corner turned inside out. Mid nodes bend the tangents of quadratic cells. The apex of a pyramid has no value
 /// of its own: the corners of the base say it. For cells of the space's dimension.
 double scaled_jacobian(CellType type, std::span<const std::int32_t> nodes, std::span<const double> coordinates);
 
+/// A cell with its scaled Jacobian.
+using CellQuality = std::pair<double, std::int32_t>;
+
 /// The scaled Jacobians of some cells.
 struct Quality {
   std::size_t n_cells = 0;
   double mean = 0;
   static constexpr std::array<double, 6> fractions{0, 0.01, 0.1, 0.5, 0.9, 1};
-  std::array<double, fractions.size()> quantiles{};    ///< the value below which this fraction of the cells lies
-  std::vector<std::pair<double, std::int32_t>> worst;  ///< value, cell; the least first
+  std::array<double, fractions.size()> quantiles{};  ///< the value below which this fraction of the cells lies
+  static constexpr std::size_t n_worst = 5;
+  std::vector<CellQuality> worst;  ///< the least first
 
   double least() const { return quantiles.front(); }
 };
 
-/// @param n_worst how many cells `worst` names
-Quality quality_of(const Mesh& mesh, std::span<const std::int32_t> cells, std::size_t n_worst = 5);
+/// @param cells each once
+Quality quality_of(std::vector<CellQuality> cells);
 
 }  // namespace lacon

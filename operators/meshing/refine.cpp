@@ -172,19 +172,20 @@ Mesh refine(const Mesh& mesh, std::span<const std::string> groups, std::string_v
     nodes[c] = points.of(row, mesh.cells[c], used);
   });
 
-  Nodes first_heir{0};
+  Heirs heirs;
   for (std::size_t c = 0; c < mesh.n_cells(); ++c) {
     if (!mark[c]) done.add_cell(mesh.types[c], mesh.cells[c]);
     for (const catalog::SubCell& sub : sub_cells[c]) {
-      const Nodes cell_nodes = pick(nodes[c], sub.nodes);
+      const CellNodes cell_nodes = pick(nodes[c], sub.nodes);
       if (mesh.row(c).dimension == mesh.dimension && !is_sound(jacobian_range(sub.type, cell_nodes, done.coordinates)))
         fail("RAFFINE_2",
              {{"keyword", path}, {"cell", cell_name(static_cast<std::int64_t>(c))}, {"type", std::string(mesh.row(c).name)}});
       done.add_cell(sub.type, cell_nodes);
     }
-    first_heir.push_back(static_cast<std::int32_t>(done.n_cells()));
+    if (mark[c]) heirs.enter(static_cast<std::int32_t>(c), static_cast<std::int32_t>(sub_cells[c].size()));
   }
-  done.cell_groups = inherited(mesh.cell_groups, first_heir);
+  done.cell_groups = mesh.cell_groups;
+  heirs.inherit(done.cell_groups);
 
   std::vector<char> touched(mesh.n_nodes(), 0);
   for (std::size_t c = 0; c < mesh.n_cells(); ++c)

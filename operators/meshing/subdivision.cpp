@@ -1,6 +1,7 @@
 #include "lacon/operators/meshing/subdivision.hpp"
 
-#include <ranges>
+#include <algorithm>
+#include <limits>
 
 #include "lacon/elements/reference.hpp"
 
@@ -18,26 +19,51 @@ std::array<double, 3> image(CellType type, std::span<const std::int32_t> nodes, 
   return point;
 }
 
-std::vector<std::int32_t> pick(std::span<const std::int32_t> from, std::span<const std::int8_t> which) {
-  std::vector<std::int32_t> picked;
+CellNodes pick(std::span<const std::int32_t> from, std::span<const std::int8_t> which) {
+  CellNodes picked;
   for (const std::int8_t i : which) picked.push_back(from[static_cast<std::size_t>(i)]);
   return picked;
 }
 
-std::vector<Group> inherited(std::span<const Group> groups, std::span<const std::int32_t> first_heir) {
-  std::vector<Group> made;
-  for (const Group& group : groups) {
-    Group& extended = made.emplace_back(Group{group.name, {}});
-    const auto heirs_of = [&](std::int32_t member) {
-      return std::views::iota(first_heir[static_cast<std::size_t>(member)], first_heir[static_cast<std::size_t>(member) + 1]);
-    };
-    std::size_t count = 0;
-    for (const std::int32_t member : group.members) count += heirs_of(member).size();
-    extended.members.reserve(count);
-    for (const std::int32_t member : group.members)
-      for (const std::int32_t heir : heirs_of(member)) extended.members.push_back(heir);
+Heirs::Gap Heirs::gap_of(std::int32_t cell, std::size_t guess) const {
+  const auto gap = [&](std::size_t i) {
+    return Gap{i, i > 0 ? replaced_[i - 1] : -1, i < replaced_.size() ? replaced_[i] : std::numeric_limits<std::int32_t>::max()};
+  };
+  if (const Gap guessed = gap(guess); guessed.below < cell && cell <= guessed.end) return guessed;
+  return gap(static_cast<std::size_t>(std::ranges::lower_bound(replaced_, cell) - replaced_.begin()));
+}
+
+Heirs::Range Heirs::of(std::int32_t cell) const {
+  const Gap gap = gap_of(cell, 0);
+  return {cell + shift_[gap.index], cell < gap.end ? 1 : 1 + added_at_end(gap)};
+}
+
+void Heirs::inherit(std::span<Group> groups) const {
+  for (Group& group : groups) {
+    std::vector<std::int32_t>& members = group.members;
+    // most groups ascend, so that the next gap is the next guess
+    std::size_t n = members.size(), end = n, guess = 0;
+    for (std::size_t i = 0; i < n;) {
+      const Gap gap = gap_of(members[i], guess);
+      while (i < n && gap.has_inside(members[i])) ++i;
+      if (i < n && members[i] == gap.end) {
+        end += static_cast<std::size_t>(added_at_end(gap));
+        ++i;
+      }
+      guess = std::min(gap.index + 1, replaced_.size());
+    }
+    members.resize(end);
+    while (n > 0) {  // back to front: nothing unread is overwritten
+      const Gap gap = gap_of(members[n - 1], guess);
+      const std::int32_t shift = shift_[gap.index];
+      if (members[n - 1] == gap.end) {
+        --n;
+        for (std::int32_t heir = gap.end + shift + added_at_end(gap); heir >= gap.end + shift; --heir) members[--end] = heir;
+      }
+      while (n > 0 && gap.has_inside(members[n - 1])) members[--end] = members[--n] + shift;
+      guess = gap.index - (gap.index > 0 ? 1 : 0);
+    }
   }
-  return made;
 }
 
 }  // namespace lacon

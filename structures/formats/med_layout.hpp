@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "lacon/structures/hdf5.hpp"
+#include "lacon/structures/known_size.hpp"
 #include "lacon/structures/mesh.hpp"
 
 namespace lacon::med {
@@ -62,6 +63,11 @@ inline std::array<std::size_t, 27> columns(const catalog::CellRow& row, std::siz
     first[j] = static_cast<std::size_t>(row.med_permutation[j]) * n;
   return first;
 }
+
+/// Nodes or cells of consecutive numbers.
+struct Run {
+  std::int32_t first, size;
+};
 
 /// The mesh of this name of an open MED file; throws MED_6 to MED_10.
 Mesh read_mesh(const hdf5::Group& root, const std::string& name);

@@ -10,6 +10,7 @@
 #include "lacon/structures/formats/med.hpp"
 #include "lacon/structures/formats/med_layout.hpp"
 #include "lacon/structures/formats/text_file.hpp"
+#include "lacon/structures/memory.hpp"
 
 namespace lacon {
 namespace {
@@ -58,9 +59,6 @@ std::vector<std::string> mesh_names(const H5Group& root) {
   return root.is_group("ENS_MAA") ? root.open("ENS_MAA").children() : std::vector<std::string>{};
 }
 
-/// Capacity for what a cut adds: memory that is not touched costs nothing.
-std::size_t with_room(std::size_t size) { return size + size / 4; }
-
 /// Reads one mesh; knows its name and file for the messages.
 class MeshReader {
  public:
@@ -71,9 +69,9 @@ class MeshReader {
  private:
   /// Groups of nodes or of cells, by name, while they are read; of each family that is there, the groups that it stands for.
   struct Families {
-    std::map<std::string, std::vector<std::int32_t>> members;
-    std::map<std::int64_t, std::vector<std::vector<std::int32_t>*>> groups_of{{0, {}}};  // 0: in no group
-    std::vector<Group> groups();
+    std::map<std::string, std::vector<med::Run>> members;
+    std::map<std::int64_t, std::vector<std::vector<med::Run>*>> groups_of{{0, {}}};  // 0: in no group
+    std::vector<Group> groups() const;
   };
   [[noreturn]] void damaged(const std::string& reason) const {
     fail("MED_7", {{"mesh", name_}, {"file", root_.path().string()}, {"reason", reason}});
@@ -154,12 +152,14 @@ void MeshReader::read_nodes(const H5Group& step, std::int64_t space) {
   const auto n = static_cast<std::size_t>(count);
   const auto axes = static_cast<std::size_t>(space);
   dataset<double>(nodes, "COO", "nodes", n, axes, [&](std::size_t first, std::span<const double> part) {
-    if (first == 0) mesh_.coordinates.reserve(with_room(3 * n));
+    if (first == 0) reserve_pages(mesh_.coordinates, 3 * n, with_room(3 * n));
     const std::size_t here = part.size() / axes;
     mesh_.coordinates.resize(3 * (first + here));
     double* const to = mesh_.coordinates.data() + 3 * first;
-    for (std::size_t i = 0; i < here; ++i)
-      for (std::size_t k = 0; k < axes; ++k) to[3 * i + k] = part[k * here + i];
+    with_known_size(axes, [&](const auto n_axes) {
+      for (std::size_t i = 0; i < here; ++i)
+        for (std::size_t k = 0; k < n_axes; ++k) to[3 * i + k] = part[k * here + i];
+    });
     for (std::size_t i = 0; i < 3 * here; ++i)
       if (!std::isfinite(to[i]))
         fail("MED_9", {{"mesh", name_}, {"file", root_.path().string()}, {"node", std::to_string(first + i / 3 + 1)}});
@@ -195,8 +195,9 @@ void MeshReader::read_cells(const H5Group& step) {
     dataset<std::int32_t>(group, "NOD", where, n, size, [&](std::size_t first, std::span<const std::int32_t> part) {
       const std::size_t here = part.size() / size, before = mesh_.cells.values.size();
       const auto column = med::columns(row, here);
-      bool sound = true;  // without a branch for each node
-      for (const std::int32_t node : part) sound &= (node >= 1) & (node <= n_nodes);
+      std::uint32_t largest = 0;  // of node - 1, where those below 1 are huge: all at once in vector registers
+      for (const std::int32_t node : part) largest = std::max(largest, static_cast<std::uint32_t>(node) - 1);
+      const bool sound = largest < static_cast<std::uint32_t>(n_nodes);
       for (std::size_t c = 0; !sound && c < here; ++c)
         for (std::size_t j = 0; j < size; ++j)
           if (const std::int32_t node = part[column[j] + c]; node < 1 || node > n_nodes)
@@ -206,16 +207,21 @@ void MeshReader::read_cells(const H5Group& step) {
                            {"cell", std::to_string(first + c + 1)},
                            {"node", std::to_string(node)},
                            {"nodes", std::to_string(n_nodes)}});
-      if (first == 0) mesh_.cells.values.reserve(with_room(before + n * size));
+      if (first == 0) reserve_pages(mesh_.cells.values, before + n * size, with_room(before + n * size));
       mesh_.cells.values.resize(before + part.size());
-      std::int32_t* to = mesh_.cells.values.data() + before;
-      for (std::size_t c = 0; c < here; ++c)
-        for (std::size_t j = 0; j < size; ++j) *to++ = part[column[j] + c] - 1;
+      std::int32_t* const to = mesh_.cells.values.data() + before;
+      with_known_size(size, [&](const auto columns) {
+        for (std::size_t c = 0; c < here; ++c)
+          for (std::size_t j = 0; j < columns; ++j) to[c * columns + j] = part[column[j] + c] - 1;
+      });
     });
     read_members(group, where, mesh_.n_cells(), n, cell_families_);
     mesh_.types.insert(mesh_.types.end(), n, row.type);
-    mesh_.cells.offset.reserve(with_room(mesh_.cells.offset.size() + n));
-    for (std::size_t c = 0; c < n; ++c) mesh_.cells.offset.push_back(mesh_.cells.offset.back() + row.n_nodes);
+    std::vector<std::int64_t>& offset = mesh_.cells.offset;
+    std::int64_t end = offset.back();
+    reserve_pages(offset, offset.size() + n, with_room(offset.size() + n));
+    offset.resize(offset.size() + n);
+    for (auto own = offset.end() - static_cast<std::ptrdiff_t>(n); own != offset.end(); ++own) *own = end += row.n_nodes;
   }
   if (mesh_.n_cells() == 0) damaged("it has no cells");
 }
@@ -228,7 +234,7 @@ MeshReader::Families MeshReader::families(const char* kind) const {
   for (const std::string& child : all.children()) {
     const H5Group one = all.open(child);
     const std::int64_t number = integer(one, "NUM", "the family '" + child + "'");
-    std::vector<std::vector<std::int32_t>*>& groups = families.groups_of[number];
+    std::vector<std::vector<med::Run>*>& groups = families.groups_of[number];
     groups.clear();
     if (!one.is_group("GRO")) continue;
     const H5Group list = one.open("GRO");
@@ -237,7 +243,7 @@ MeshReader::Families MeshReader::families(const char* kind) const {
     if (static_cast<std::int64_t>(names.size()) != count)
       damaged("the group names of the family '" + child + "' cannot be read");
     for (const std::string& name : std::set(names.begin(), names.end())) {  // a family may name a group twice
-      std::vector<std::int32_t>& members = families.members[name];
+      std::vector<med::Run>& members = families.members[name];
       if (number != 0) groups.push_back(&members);
     }
   }
@@ -256,17 +262,21 @@ void MeshReader::read_members(const H5Group& group, const std::string& where, st
       if (groups == families.groups_of.end())
         damaged("it has no family of the number " + std::to_string(family[i]) + ", to which " +
                 (&families == &node_families_ ? node_name(number) : cell_name(number)) + " belongs");
-      for (std::vector<std::int32_t>* members : groups->second) {
-        members->resize(members->size() + end - i);
-        std::iota(members->end() - static_cast<std::ptrdiff_t>(end - i), members->end(), number);
-      }
+      for (std::vector<med::Run>* members : groups->second) members->push_back({number, static_cast<std::int32_t>(end - i)});
     }
   });
 }
 
-std::vector<Group> MeshReader::Families::groups() {
+std::vector<Group> MeshReader::Families::groups() const {
   std::vector<Group> all;
-  for (auto& [name, list] : members) all.push_back({name, std::move(list)});
+  for (const auto& [name, runs] : members) {
+    std::size_t size = 0;
+    for (const med::Run& run : runs) size += static_cast<std::size_t>(run.size);
+    std::vector<std::int32_t>& list = all.emplace_back(Group{name, {}}).members;
+    reserve_pages(list, size, with_room(size));
+    for (const med::Run& run : runs)
+      for (std::int32_t i = 0; i < run.size; ++i) list.push_back(run.first + i);
+  }
   return all;
 }
 

@@ -103,25 +103,44 @@ std::string free_name(const std::string& name, Fits fits) {
 
 // ---------------------------------------------------------------------------------------------- meshes
 
-/// Cells of each type, in the order of the mesh: what MED keeps together.
-std::map<CellType, std::vector<std::int32_t>> by_type(const Mesh& mesh) {
-  const auto each_run = [&](const auto& visit) {  // of cells of one type
-    for (std::size_t first = 0, end = 0; first < mesh.n_cells(); first = end) {
-      while (end < mesh.n_cells() && mesh.types[end] == mesh.types[first]) ++end;
-      visit(mesh.types[first], first, end - first);
-    }
-  };
-  std::map<CellType, std::size_t> counts;
-  each_run([&](CellType type, std::size_t, std::size_t count) { counts[type] += count; });
-  std::map<CellType, std::vector<std::int32_t>> cells;
-  for (const auto& [type, count] : counts) cells[type].reserve(count);
-  each_run([&](CellType type, std::size_t first, std::size_t count) {
-    std::vector<std::int32_t>& list = cells[type];
-    list.resize(list.size() + count);
-    std::iota(list.end() - static_cast<std::ptrdiff_t>(count), list.end(), static_cast<std::int32_t>(first));
+/// Cells of one type, in the order of the mesh.
+struct CellList {
+  std::vector<med::Run> runs;
+  std::size_t size = 0;
+};
+
+/// The cells of each type: what MED keeps together.
+std::map<CellType, CellList> by_type(const Mesh& mesh) {
+  std::map<CellType, CellList> cells;
+  for_each_run(mesh, [&](const catalog::CellRow& row, std::size_t first, std::size_t size) {
+    CellList& list = cells[row.type];
+    list.runs.push_back({static_cast<std::int32_t>(first), static_cast<std::int32_t>(size)});
+    list.size += size;
   });
   return cells;
 }
+
+/// Goes through the cells of a list in its order, some at a time.
+class CellCursor {
+ public:
+  explicit CellCursor(const CellList& cells) : run_(cells.runs.begin()) {}
+
+  /// The next `n` cells as runs. @param visit(place among them, first cell, how many)
+  template <class Visit>
+  void next(std::size_t n, const Visit& visit) {
+    for (std::size_t place = 0; place < n;) {
+      const std::size_t size = std::min(n - place, static_cast<std::size_t>(run_->size) - done_);
+      visit(place, static_cast<std::size_t>(run_->first) + done_, size);
+      place += size;
+      done_ += size;
+      if (done_ == static_cast<std::size_t>(run_->size)) ++run_, done_ = 0;
+    }
+  }
+
+ private:
+  std::vector<med::Run>::const_iterator run_;
+  std::size_t done_ = 0;  ///< of this run
+};
 
 /// The mesh as it will be read back: cells sorted by type, groups by name.
 Mesh as_read(const Mesh& mesh) {
@@ -130,10 +149,12 @@ Mesh as_read(const Mesh& mesh) {
   sorted.coordinates = mesh.coordinates;
   std::vector<std::int32_t> number(mesh.n_cells());
   for (const auto& [type, cells] : by_type(mesh))
-    for (const std::int32_t c : cells) {
-      number[static_cast<std::size_t>(c)] = static_cast<std::int32_t>(sorted.n_cells());
-      sorted.add_cell(type, mesh.cells[static_cast<std::size_t>(c)]);
-    }
+    CellCursor(cells).next(cells.size, [&](std::size_t, std::size_t first, std::size_t size) {
+      for (std::size_t c = first; c < first + size; ++c) {
+        number[c] = static_cast<std::int32_t>(sorted.n_cells());
+        sorted.add_cell(mesh.types[c], mesh.cells[c]);
+      }
+    });
   const auto tidy = [](std::vector<Group> groups) {
     for (Group& group : groups) {
       std::sort(group.members.begin(), group.members.end());
@@ -252,15 +273,16 @@ void write_mesh(const H5Group& root, const Mesh& mesh, const std::string& name) 
   set_text(nodes, "PFL", med::no_profile);
   write_numbers<double>(nodes, "COO", mesh.n_nodes(), space, [&](std::size_t first, std::span<double> part) {
     const std::size_t here = part.size() / space;
-    for (std::size_t i = 0; i < here; ++i)
-      for (std::size_t k = 0; k < space; ++k) part[k * here + i] = mesh.coordinates[3 * (first + i) + k];
-  });
-  const auto write_integers = [](const H5Group& parent, const char* dataset, std::size_t count, const auto& of) {
-    write_numbers<std::int32_t>(parent, dataset, count, 1, [&](std::size_t first, std::span<std::int32_t> part) {
-      for (std::size_t i = 0; i < part.size(); ++i) part[i] = of(first + i);
+    const double* const from = mesh.coordinates.data() + 3 * first;
+    with_known_size(space, [&](const auto n_axes) {
+      for (std::size_t i = 0; i < here; ++i)
+        for (std::size_t k = 0; k < n_axes; ++k) part[k * here + i] = from[3 * i + k];
     });
-  };
-  if (!node_family.empty()) write_integers(nodes, "FAM", mesh.n_nodes(), [&](std::size_t i) { return node_family[i]; });
+  });
+  if (!node_family.empty())
+    write_numbers<std::int32_t>(nodes, "FAM", mesh.n_nodes(), 1, [&](std::size_t first, std::span<std::int32_t> part) {
+      std::copy_n(node_family.begin() + static_cast<std::ptrdiff_t>(first), part.size(), part.begin());
+    });
 
   const H5Group all = step.create("MAI");
   set_int(all, "CGT", 1);
@@ -272,17 +294,28 @@ void write_mesh(const H5Group& root, const Mesh& mesh, const std::string& name) 
     set_text(one, "PFL", med::no_profile);
     set_int(one, "GEO", row.dimension == 0 ? 1 : 100 * row.dimension + row.n_nodes);
     const auto size = static_cast<std::size_t>(row.n_nodes);
-    const auto cell = [&of_type = cells](std::size_t i) { return static_cast<std::size_t>(of_type[i]); };
-    write_numbers<std::int32_t>(one, "NOD", cells.size(), size, [&](std::size_t first, std::span<std::int32_t> part) {
-      const std::size_t here = part.size() / size;
-      const auto column = med::columns(row, here);
-      for (std::size_t c = 0; c < here; ++c) {
-        const auto own = mesh.cells[cell(first + c)];
-        for (std::size_t j = 0; j < size; ++j) part[column[j] + c] = own[j] + 1;
-      }
-    });
-    write_integers(one, "NUM", cells.size(), [&](std::size_t i) { return static_cast<std::int32_t>(cell(i)) + 1; });
-    if (!cell_family.empty()) write_integers(one, "FAM", cells.size(), [&](std::size_t i) { return cell_family[cell(i)]; });
+    write_numbers<std::int32_t>(one, "NOD", cells.size, size,
+                                [&, cursor = CellCursor(cells)](std::size_t, std::span<std::int32_t> part) mutable {
+                                  const auto column = med::columns(row, part.size() / size);
+                                  cursor.next(part.size() / size, [&](std::size_t place, std::size_t first, std::size_t n) {
+                                    const std::int32_t* const nodes_of_run = mesh.cells[first].data();
+                                    with_known_size(size, [&](const auto n_columns) {
+                                      for (std::size_t c = 0; c < n; ++c)
+                                        for (std::size_t j = 0; j < n_columns; ++j)
+                                          part[column[j] + place + c] = nodes_of_run[c * n_columns + j] + 1;
+                                    });
+                                  });
+                                });
+    const auto write_integers = [&](const char* dataset, const auto& of) {
+      write_numbers<std::int32_t>(one, dataset, cells.size, 1,
+                                  [&, cursor = CellCursor(cells)](std::size_t, std::span<std::int32_t> part) mutable {
+                                    cursor.next(part.size(), [&](std::size_t place, std::size_t first, std::size_t n) {
+                                      for (std::size_t i = 0; i < n; ++i) part[place + i] = of(first + i);
+                                    });
+                                  });
+    };
+    write_integers("NUM", [](std::size_t cell) { return static_cast<std::int32_t>(cell) + 1; });
+    if (!cell_family.empty()) write_integers("FAM", [&](std::size_t cell) { return cell_family[cell]; });
   }
 }
 
@@ -466,10 +499,12 @@ hdf5::Group MedFile::entity(const hdf5::Group& step, const std::string& name, co
 std::vector<std::string> MedFile::add_field(const Mesh& mesh, std::string_view mesh_name, const Field& field,
                                             std::string_view name, std::int64_t step, const MedRule& rule) {
   std::vector<std::string> names;
-  const std::map<CellType, std::vector<std::int32_t>> cells = by_type(mesh);
+  const std::map<CellType, CellList> cells = by_type(mesh);
   std::vector<std::int32_t> rank(mesh.n_cells());  // of each cell among those of its type
   for (const auto& [type, list] : cells)
-    for (std::size_t i = 0; i < list.size(); ++i) rank[static_cast<std::size_t>(list[i])] = static_cast<std::int32_t>(i);
+    CellCursor(list).next(list.size, [&](std::size_t place, std::size_t first, std::size_t n) {
+      for (std::size_t i = 0; i < n; ++i) rank[first + i] = static_cast<std::int32_t>(place + i);
+    });
   const auto offset = [&](std::size_t i) { return field.offset.empty() ? i : static_cast<std::size_t>(field.offset[i]); };
 
   for (const FieldPart& part : parts_of(field)) {
@@ -512,7 +547,7 @@ std::vector<std::string> MedFile::add_field(const Mesh& mesh, std::string_view m
       if (!std::ranges::is_sorted(places)) std::ranges::sort(places);
       const catalog::CellRow* row =
           of_nodes ? nullptr : &mesh.row(static_cast<std::size_t>(field.support[places.front().second]));
-      const std::size_t whole = row ? cells.at(row->type).size() : mesh.n_nodes();
+      const std::size_t whole = row ? cells.at(row->type).size : mesh.n_nodes();
       std::string profile_name(med::no_profile), points_name;
       if (places.size() != whole) {
         std::vector<std::int32_t> numbers;

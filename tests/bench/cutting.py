@@ -4,8 +4,8 @@
 usage: cutting.py BUILD [millions] [runs]      BUILD: build/release
 
 Makes a box of HEXA8 (a million of them, or so many) with a slave skin on its largest side and cuts it both ways: the tool
-`crea_maillage IN OUT --slave SKIN` on MED files, and the operator of CREA_MAILLAGE on the base of a study. Either is compared with a bare
-h5py program that reads every array of its input and writes every array of its output. LIRE_MAILLAGE and IMPR_RESU of the study are there
+`crea_maillage IN OUT --slave SKIN` on MED files, and the operator of CREA_MAILLAGE on the base of a study. The tool cuts a box of as many
+TETRA4 too. Each is compared with a bare h5py program that reads every array of its input and writes every array of its output. LIRE_MAILLAGE and IMPR_RESU of the study are there
 too. Every run writes a new file. Prints the best wall and processor time of some runs, their ratio, and the peak memory. Times are of
 the whole process, but of h5py without the start of Python; what starting the tool alone takes is a line of its own.
 """
@@ -43,8 +43,8 @@ MAKE = """
 import sys
 sys.path.insert(0, sys.argv[1])
 from meshes import cubes, write_med
-side, layers = map(int, sys.argv[3:])
-write_med(sys.argv[2], cubes((side, side, layers), "BODY", {(2, 1): "TOP", (2, 0): "BASE"}))
+side, layers = map(int, sys.argv[3:5])
+write_med(sys.argv[2], cubes((side, side, layers), "BODY", {(2, 1): "TOP", (2, 0): "BASE"}, kind=sys.argv[5]))
 """
 
 
@@ -95,22 +95,28 @@ def compare(name, command, source, out, folder, runs):
           + ", ".join(f"{phase} {seconds:.3f}" for phase, seconds in phases.items()))
 
 
+def make_box(file, cells, kind, in_a_cube):
+    """Write a box of about `cells` cells, `in_a_cube` in each of its cubes. @return what is in it, for people"""
+    side = round((cells / in_a_cube) ** (1 / 3))
+    layers = round(cells / in_a_cube / side**2)
+    # in a process of its own: a child's peak memory starts from its parent's
+    subprocess.run([sys.executable, "-c", MAKE, SOURCE / "commands/studies", file, str(side), str(layers), kind], check=True)
+    return f"{in_a_cube * side**2 * layers} {kind}, {side**2} squares of the slave skin"
+
+
 def main():
     build = pathlib.Path(sys.argv[1]).resolve()
     millions = float(sys.argv[2]) if len(sys.argv) > 2 else 1.0
     runs = int(sys.argv[3]) if len(sys.argv) > 3 else 3
     with tempfile.TemporaryDirectory() as folder:
         folder = pathlib.Path(folder)
-        side = round((millions * 1e6) ** (1 / 3))
-        layers = round(millions * 1e6 / side**2)
-        # in a process of its own: a child's peak memory starts from its parent's
-        subprocess.run([sys.executable, "-c", MAKE, SOURCE / "commands/studies", folder / "in.med", str(side), str(layers)], check=True)
+        boxes = [make_box(folder / "in.med", millions * 1e6, "HEXA8", 1), make_box(folder / "tetra.med", millions * 1e6, "TETRA4", 6)]
         binaries, base = build / "bin", folder / "study.base"
         (folder / "study.comm").write_text(STUDY)
         subprocess.run([binaries / "lacon", folder / "study.comm", "--base", base, "--unit", f"20={folder / 'in.med'}", "--unit", f"80={folder / 'out.med'}"],
                        env={**os.environ, "LACON_ORDERS": str(folder)}, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, check=True)
         orders = {path.name.split(".")[0][4:]: path for path in folder.glob("*.order.json")}
-        print(f"{side**2 * layers} HEXA8, {side**2} slave QUAD4; best of {runs} runs; MB, seconds; phases: wall")
+        print(f"{'; '.join(boxes)}\nbest of {runs} runs; MB, seconds; phases: wall")
         print(f"{'':28s} {'in':>7s} {'out':>7s} {'wall':>8s} {'h5py':>8s} {'ratio':>6s} {'processor':>10s} {'h5py':>8s} {'ratio':>6s} {'peak':>7s}")
         med, cut_med = folder / "in.med", folder / "out.med"
         meshes = [base / json.loads(orders[name].read_text())["result"]["id"] for name in ("lire_maillage", "crea_maillage")]
@@ -118,6 +124,8 @@ def main():
         compare("crea_maillage IN OUT", [binaries / "crea_maillage", med, cut_med, "--slave", "TOP"], med, cut_med, folder, runs)
         for name, source, out in (("lire_maillage", med, whole), ("crea_maillage", whole, cut), ("impr_resu", cut, cut_med)):
             compare(name.upper(), [binaries / name, orders[name]], source, out, folder, runs)
+        compare("crea_maillage, TETRA4", [binaries / "crea_maillage", folder / "tetra.med", cut_med, "--slave", "TOP"], folder / "tetra.med",
+                cut_med, folder, runs)
         starts = [run([binaries / "crea_maillage", folder / "none.med", cut_med, "--slave", "TOP"], cut_med, folder / "status.json", fails=True)[0]
                   for _ in range(runs)]
         print(f"{'start of the tool alone':28s} {'':15s} {best(starts)[0]:8.3f} {'':15s} {best(starts)[1]:10.3f}")

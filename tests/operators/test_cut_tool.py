@@ -1,5 +1,6 @@
 """crea_maillage without an order: MED in, MED out."""
 
+import itertools
 import json
 import os
 import pathlib
@@ -105,21 +106,25 @@ class CutTool(OperatorTest):
 
     def test_the_box_of_the_benchmark_is_a_mesh_like_any_other(self):
         sides = {(axis, end): f"SIDE{axis}{end}" for axis in range(3) for end in (0, 1)}
-        for make in (cubes((2, 3, 4), "BODY", sides), brick("HEXA8", [np.arange(n + 1.0) for n in (2, 3, 4)], name="BODY", sides=sides)):
-            write_med(self.source, make)
+        for kind, make in itertools.product(("HEXA8", "TETRA4"), (cubes, brick)):
+            if make is cubes:
+                box = cubes((2, 3, 4), "BODY", sides, kind)
+            else:
+                box = brick(kind, [np.arange(n + 1.0) for n in (2, 3, 4)], name="BODY", sides=sides)
+            write_med(self.source, box)
             done = self.cut(*(word for name in sides.values() for word in ("--slave", name)))
             self.assertNotIn("DECOUPE_7", done.stderr)
             self.assertNotIn("LIRE_1", done.stderr)
             mesh, sizes = self.groups("cell_groups")
-            self.assertEqual(sizes["SIDE00"], 12 * 4)
+            self.assertEqual(sizes["SIDE00"], 12 * 4 if kind == "HEXA8" else 24 * 3)
             self.assertTrue(np.all(mesh.coordinates[np.concatenate([mesh.cells[c] for c in mesh.cell_groups["SIDE11"]]), 1] == 3))
 
     def test_arrays_of_several_parts(self):
-        """Large arrays are read and written in parts of a megabyte: the last has another length. One in chunks is one part."""
-        size = (66, 65, 64)
+        """Large arrays are read and written in parts of two megabytes: the last has another length. One in chunks is one part."""
+        size = (82, 81, 80)
         mesh = cubes(size, "BODY", {(2, 1): "TOP"})
         n_nodes, n_bodies = len(mesh.points), len(mesh.cells["HEXA8"])
-        self.assertGreater(min(n_nodes, n_bodies), 2**20 / 4)  # families: more than one part of 32-bit integers
+        self.assertGreater(min(n_nodes, n_bodies), 2**21 / 4)  # families: more than one part of 32-bit integers
         random = np.random.default_rng(3)
         mesh.node_groups["SOME_N"] = np.flatnonzero(random.random(n_nodes) < 0.4).tolist()
         chosen = np.flatnonzero(random.random(n_bodies) < 0.4)

@@ -65,13 +65,15 @@ TEST(Quality, of_a_cube_cut_into_hexahedra_is_that_of_the_method) {
   CutReport report;
   const Mesh after = cut(cube, {"TOP"}, "HEXA", &report);
   EXPECT_EQ(report.zones[0].bodies, Nodes{1});
-  ASSERT_EQ(report.sub_cells.size(), 6u);
-  const Quality all = quality_of(after, report.sub_cells, 2);
+  EXPECT_EQ(report.before.n_cells, 1u);
+  EXPECT_NEAR(report.before.mean, 1, 1e-14);
+  const Quality& all = report.after;
+  EXPECT_EQ(all.n_cells, 6u);
   EXPECT_NEAR(all.least(), 2 / std::sqrt(17.0), 1e-14);
   EXPECT_NEAR(all.quantiles[3], 2 / std::sqrt(17.0), 1e-14);
   EXPECT_NEAR(all.quantiles.back(), 1, 1e-14);
   EXPECT_NEAR(all.mean, (4 * 2 / std::sqrt(17.0) + 3 / std::sqrt(17.0) + 1) / 6, 1e-14);
-  ASSERT_EQ(all.worst.size(), 2u);
+  ASSERT_EQ(all.worst.size(), 5u);
   EXPECT_EQ(after.types[static_cast<std::size_t>(all.worst[0].second)], CellType::HEXA8);
 }
 
