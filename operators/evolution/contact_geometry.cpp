@@ -9,6 +9,7 @@
 #include "lacon/catalog/messages.hpp"
 #include "lacon/elements/reference.hpp"
 #include "lacon/pairing/normals.hpp"
+#include "lacon/structures/memory.hpp"
 #include "lacon/structures/parallel.hpp"
 
 namespace lacon {
@@ -53,7 +54,8 @@ constexpr double coverage_round_off = 1e-12;  // covered fractions above 1 by no
 /// Room for what is still to come. @param whole what will have come behind `first` in the end, over what has come so far
 template <class T>
 void make_room(std::vector<T>& array, std::size_t first, double whole) {
-  array.reserve(first + static_cast<std::size_t>(1.05 * whole * static_cast<double>(array.size() - first)));
+  const double more = whole * static_cast<double>(array.size() - first);
+  reserve_pages(array, first + static_cast<std::size_t>(more), first + static_cast<std::size_t>(1.05 * more));
 }
 
 }  // namespace

@@ -159,8 +159,8 @@ def parts(build, environment, folder):
                        env=environment, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
         data = json.loads(out.read_text())
         yardsticks = {name: float(data["context"][name]) for name in ("dgemm_gflops", "copy_gbytes")}
-        rows += [{"program": program, **yardsticks, **{key: value for key, value in case.items() if key in tables.COUNTERS}}
-                 for case in data["benchmarks"] if case["run_type"] == "iteration"]
+        rows += [{"program": program, **yardsticks, **{key: value for key, value in case.items() if key in tables.COUNTERS},
+                  "name": case["name"].partition("/min_time")[0]} for case in data["benchmarks"] if case["run_type"] == "iteration"]
     return rows
 
 
