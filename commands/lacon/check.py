@@ -11,7 +11,7 @@ import tempfile
 
 from . import concepts
 
-_always = ("DEBUT", "POURSUITE", "FIN", "DETRUIRE")
+_always = ("DEBUT", "POURSUITE", "FIN", "DETRUIRE", "INCLUDE", "DEFI_FICHIER")
 
 
 class Check:

@@ -34,12 +34,15 @@ class Call:
 
 def _implementations():
     """command -> function(call) of those that Python does itself"""
-    from . import calc_table, checks, formulas, function_commands, functions, lists, materials, post_releve_t, table_commands
+    from . import calc_table, checks, files, formulas, function_commands, functions, lists, materials, post_releve_t, table_commands
 
     return {
         "DEBUT": lambda call: call.study.start(call.keywords, call.where, resume=False),
         "POURSUITE": lambda call: call.study.start(call.keywords, call.where, resume=True),
         "FIN": lambda call: call.study.finish(call.where),
+        "INCLUDE": files.include,
+        "DEFI_FICHIER": files.defi_fichier,
+        "INFO_EXEC_ASTER": files.info_exec_aster,
         "DEFI_FONCTION": functions.defi_fonction,
         "DEFI_CONSTANTE": functions.defi_constante,
         "DEFI_NAPPE": functions.defi_nappe,
@@ -116,7 +119,7 @@ class Command:
             run.count_alarms(outcome.messages)
         else:
             result = implementations()[self.name](Call(run, self.name, keywords, where, label, reused))
-            if result is not None:
+            if isinstance(result, concepts.Concept):
                 _enter(run, label, result, where)
             run.timings.add(self.name, where, time.perf_counter() - started)
         return result

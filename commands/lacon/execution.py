@@ -93,15 +93,33 @@ def run_text(study, name, text):
     _run_file(study, name, text, study.names.values)
 
 
+def include(path, values):
+    """Run a file with the names of the study. @throws AsterError where it is not Python; what its commands throw"""
+    path, source = _read(path)
+    labels.sources[path] = source
+    exec(_compiled(path, source), values)
+
+
 def _read(path):
+    """@return (path, text). @throws AsterError where it is no text"""
     import tokenize
 
     try:
         with tokenize.open(path) as file:
             return str(path), file.read()
     except (SyntaxError, UnicodeDecodeError) as error:
-        show(message("STUDY_16", str(path), reason=error))
-        raise Failure(2, "<F>_ERROR") from None
+        fail("STUDY_16", str(path), reason=error)
+
+
+def _compiled(path, source):
+    try:
+        with warnings.catch_warnings():
+            # titles hold escapes that Python does not know; they are no concern of the user's
+            warnings.simplefilter("ignore", SyntaxWarning)
+            warnings.simplefilter("ignore", DeprecationWarning)
+            return compile(ast.parse(source, path), path, "exec")
+    except SyntaxError as error:
+        fail("STUDY_16", f"{error.filename}:{error.lineno}", reason=error.msg)
 
 
 def _run_file(study, path, source, values):
@@ -109,16 +127,7 @@ def _run_file(study, path, source, values):
     if folder not in sys.path:
         sys.path.insert(0, folder)
     try:
-        with warnings.catch_warnings():
-            # titles hold escapes that Python does not know; they are no concern of the user's
-            warnings.simplefilter("ignore", SyntaxWarning)
-            warnings.simplefilter("ignore", DeprecationWarning)
-            code = compile(ast.parse(source, path), path, "exec")
-    except SyntaxError as error:
-        show(message("STUDY_16", f"{error.filename}:{error.lineno}", reason=error.msg))
-        raise Failure(2, "<F>_ERROR") from None
-    try:
-        exec(code, values)
+        exec(_compiled(path, source), values)
     except AsterError as error:
         _report(error)
         raise Failure(error.status, error.diagnostic) from None

@@ -66,13 +66,29 @@ class TestCase:
         study.current.progress(f"assertions: {checks.summary(self._checks)}")
 
 
+class OtherFailure(messages.SolutionError):
+    """What code_aster tells apart in an `except` and Lacon never raises: laws are integrated exactly, contact has no loop of its own."""
+
+
+#: code_aster's names of exceptions in CA and libaster, and those of its module aster, for versions before 15
+_exceptions = {
+    "AsterError": messages.AsterError, "AsterException": messages.AsterError, "ConvergenceError": messages.ConvergenceError,
+    "SolverError": messages.SolutionError, "IntegrationError": OtherFailure, "ContactError": OtherFailure, "TimeLimitError": OtherFailure,
+    "SolutionError": messages.SolutionError, "InternalError": messages.InternalError}
+_former_exceptions = {
+    "error": messages.AsterError, "FatalError": messages.AsterError, "NonConvergenceError": messages.ConvergenceError,
+    "MatriceSinguliereError": messages.SolutionError, **dict.fromkeys(
+        ("EchecComportementError", "BoucleContactError", "BoucleGeometrieError", "TraitementContactError", "MatriceContactSinguliereError",
+         "ArretCPUError"), OtherFailure)}
+
+
 class _Modules:
     """Finds the modules of code_aster that are made when they are imported, and says so for those that Lacon does not have."""
 
     _tensors = "code_aster.MacroCommands.Contrib."
     made = {"code_aster.MacroCommands", "code_aster.MacroCommands.Contrib", _tensors + "TensorModule", _tensors + "HookeTensor"}
-    missing = {"code_aster", "Accas", "Cata", "Contrib", "Execution", "Macro", "Messages", "Miss", "Noyau", "Utilitai", "aster", "aster_core",
-               "aster_fonctions", "libaster", "run_aster"}
+    missing = {"code_aster", "Contrib", "Execution", "Macro", "Messages", "Miss", "Noyau", "Utilitai", "aster_core",
+               "aster_fonctions", "run_aster"}
 
     def find_spec(self, name, path=None, target=None):
         import importlib.machinery
@@ -102,22 +118,23 @@ def _utility(name):
     return sympy
 
 
+def _module(name, content):
+    """Make a module importable. What it does not have is refused by name."""
+    module = types.ModuleType(name)
+    vars(module).update(content)
+    module.__all__ = sorted(content)
+
+    def missing(attribute):
+        raise AttributeError(f"{name} has no {attribute} in Lacon")
+
+    module.__getattr__ = missing
+    sys.modules[name] = module
+    return module
+
+
 def install(names):
     """Make the modules importable. `names`: every command, _F and CO."""
-    root = types.ModuleType("code_aster", "The commands of Lacon under code_aster's name.")
-    root.__path__ = []
-    commands = types.ModuleType("code_aster.Commands")
-    vars(commands).update(names)
-    commands.__all__ = sorted(names)
-    utilities = types.ModuleType("code_aster.Utilities")
-    utilities.__getattr__ = _utility
-    utilities.__all__ = []
-    ca = types.ModuleType("code_aster.CA")
-    ca.TestCase = TestCase
-    for exception in (messages.AsterError, messages.ConvergenceError, messages.SolutionError, messages.InternalError):
-        setattr(ca, exception.__name__, exception)
-    ca.SolverError = messages.SolutionError
-    ca.AsterException = messages.AsterError
+    syntax = {name: names[name] for name in ("_F", "CO")}
 
     def init(*options, **keywords):
         keywords.pop("CODE", None)
@@ -126,10 +143,23 @@ def install(names):
     def close(**keywords):
         return names["FIN"](**keywords)
 
-    ca.init, ca.close = init, close
-    vars(root).update({name: value for name, value in vars(ca).items() if not name.startswith("__")})  # code_aster.TestCase of version 15
-    root.CA, root.Commands, root.Utilities = ca, commands, utilities
-    for module in (root, commands, utilities, ca):
-        sys.modules[module.__name__] = module
+    ca = _module("code_aster.CA", {**_exceptions, "TestCase": TestCase, "init": init, "close": close})
+    commands = _module("code_aster.Commands", names)
+    utilities = _module("code_aster.Utilities", {})
+    utilities.__getattr__ = _utility
+    # until version 14
+    cata = _module("code_aster.Cata", {})
+    cata.Syntax, cata.Commands = _module("code_aster.Cata.Syntax", syntax), _module("code_aster.Cata.Commands", names)
+    former = _module("Cata", {})
+    former.cata = _module("Cata.cata", names)
+    _module("Accas", syntax)
+    _module("aster", _former_exceptions)
+    _module("libaster", _exceptions)
+    root = types.ModuleType("code_aster", "The commands of Lacon under code_aster's name.")
+    vars(root).update({name: vars(ca)[name] for name in ca.__all__})  # code_aster.TestCase of version 15
+    root.CA, root.Commands, root.Utilities, root.Cata = ca, commands, utilities, cata
+    sys.modules["code_aster"] = root
+    for package in (root, cata, former):
+        package.__path__ = []
     sys.meta_path.append(_Modules())
     return ca

@@ -34,6 +34,7 @@ class Study:
         self.alarms = 0
         self.checks = []
         self.written_units = {}  #: number -> path
+        self.earlier_units = {}  #: number -> (file, file written) before DEFI_FICHIER gave it another one; None: none
         self.plots = {}  #: (unit, format) -> curves.Plot that this run draws there
         self.sources = set()  #: files that the study is made from, and never writes
         self.lost = {}
@@ -187,6 +188,25 @@ class Study:
         except OSError:
             fail("COMMAND_8", where, unit=number, file=path)
         self.written_units[number] = path
+
+    def associate(self, number, path, append):
+        """Give a unit another file, which is written anew unless `append`, until release()."""
+        self.earlier_units.setdefault(number, (self.units.get(number), self.written_units.pop(number, None)))
+        self.units[number] = path
+        self.written_units.pop(number, None)
+        if append and os.path.isfile(path):
+            self.written_units[number] = os.path.abspath(path)
+
+    def release(self, number):
+        """The unit has the file again that it had before associate()."""
+        for units, before in zip((self.units, self.written_units), self.earlier_units.pop(number, ())):
+            units.pop(number, None)
+            if before is not None:
+                units[number] = before
+
+    def free_unit(self):
+        """A unit that has no file."""
+        return next((n for n in range(99, 0, -1) if n not in self.units and n not in self.written_units), None)
 
     def protect(self, path):
         """Results never replace this file, in this run and in those that go on with it: it is a datum of the study."""

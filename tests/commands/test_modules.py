@@ -37,10 +37,39 @@ class Modules(LauncherTest):
         self.assertIn("the literal way", self.ok(self.run_study(EITHER)).out)
 
     def test_modules_that_are_not_here(self):
-        for statement, word in (("from Utilitai.Table import Table", "Utilitai"), ("import code_aster.Cata.Commands", "code_aster.Cata"),
-                                ("from code_aster.Utilities import logger", "logger"), ("import aster", "aster")):
+        for statement, word in (("from Utilitai.Table import Table", "Utilitai"), ("import code_aster.Supervis", "code_aster.Supervis"),
+                                ("from code_aster.Utilities import logger", "logger"), ("import aster; aster.onFatalError()", "onFatalError"),
+                                ("from code_aster import CA; CA.Mesh()", "Mesh")):
             run = self.refused(self.run_study(f"DEBUT()\n{statement}\n"), word, "STUDY_19", "study.comm:2")
             self.assertNotIn("<frozen", run.err)
+
+    def test_headers_of_versions_12_to_16(self):
+        for header, end in (
+                ("DEBUT(CODE=_F(NIV_PUB_WEB='INTERNET'), PAR_LOT='NON', MEMOIRE=_F(TAILLE_BLOC=800.), DEBUG=_F(SDVERI='OUI', JXVERI='OUI'))", "FIN()"),
+                ("from Cata.cata import *\nfrom Accas import _F\nDEBUT()", "FIN(FORMAT_HDF='OUI')"),
+                ("from code_aster.Cata.Syntax import _F, CO\nfrom code_aster.Cata.Commands import DEBUT, FIN\nDEBUT(ERREUR=_F(ERREUR_F='ABORT'))", "FIN()"),
+                ("import code_aster\nfrom code_aster.Commands import *\ncode_aster.init('--test')", "code_aster.close()"),
+                ("from code_aster import CA\nfrom code_aster.Commands import *\nCA.init('--test', ERREUR=_F(ALARME='EXCEPTION'))", "CA.close()")):
+            self.ok(self.run_study(f"# coding=utf-8\n{header}\nL = DEFI_LIST_REEL(VALE=(0., 1.))\n{end}\n"))
+
+    def test_exceptions_under_all_their_names(self):
+        self.ok(self.run_study("""
+import aster, libaster
+from code_aster import CA
+DEBUT()
+for kind in (aster.error, aster.FatalError, libaster.AsterError, CA.AsterError):
+    for other in (aster.NonConvergenceError, CA.IntegrationError, CA.ContactError, aster.BoucleContactError, libaster.TimeLimitError, kind):
+        try:
+            DEFI_LIST_REEL(VALE=(1., 0.))
+        except other as error:
+            assert other is kind and error.id_message == 'DEFI_LIST_1'
+            break
+        except kind:
+            pass
+    else:
+        raise SystemExit(1)
+FIN()
+"""))
 
     def test_assertions(self):
         run = self.run_study("""
