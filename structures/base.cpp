@@ -531,6 +531,7 @@ TimeSteps Base::time_steps(std::string_view id) const {
                              .cut_into = static_cast<int>(root.integer("cut_into")),
                              .cut_levels = static_cast<int>(root.integer("cut_levels")),
                              .smallest = root.real("smallest")},
+                  .more_iterations = root.has_attribute("more_iterations") ? root.integer("more_iterations") : 0,
                   .events = {},
                   .adaptation = {}};
   if (root.has_attribute("events"))

@@ -128,7 +128,7 @@ struct StepCut {
 
 /// An event, beside a solution that fails, by which a step counts as failed (DEFI_LIST_INST, ECHEC/EVENEMENT).
 struct StepEvent {
-  std::string event;  ///< RESI_MAXI, DELTA_GRANDEUR
+  std::string event;  ///< RESI_MAXI, DIVE_RESI, DELTA_GRANDEUR
   double limit = 0;   ///< RESI_GLOB_MAXI, VALE_REF
   std::string place;  ///< DELTA_GRANDEUR: NOM_CHAM, NOM_CMP, GROUP_NO, ... as JSON
   StepCut action;
@@ -148,7 +148,8 @@ struct StepAdaptation {
 
 struct TimeSteps {
   std::vector<double> values;
-  StepCut action;  ///< where the solution fails
+  StepCut action;                    ///< where the solution fails
+  std::int64_t more_iterations = 0;  ///< PCENT_ITER_PLUS: percent of ITER_GLOB_MAXI that are allowed before that
   std::vector<StepEvent> events;
   std::optional<StepAdaptation> adaptation;
 };

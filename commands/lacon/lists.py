@@ -51,6 +51,8 @@ def defi_list_inst(call):
     for i, factor in enumerate(k["ECHEC"], 1):
         if factor["EVENEMENT"] in failures:
             call.fail("DEFI_LIST_4", f"ECHEC[{i}]/EVENEMENT", event=factor["EVENEMENT"])
+        if factor["ACTION"] == "ITER_SUPPL" and factor["EVENEMENT"] != "ERREUR":
+            call.fail("DEFI_LIST_5", f"ECHEC[{i}]/ACTION", event=factor["EVENEMENT"])
         failures[factor["EVENEMENT"]] = factor
     solution = failures.pop("ERREUR", {"ACTION": "DECOUPE", "SUBD_PAS": 4, "SUBD_NIVEAU": 3, "SUBD_PAS_MINI": 0.0})
 
@@ -60,6 +62,7 @@ def defi_list_inst(call):
         file.create_dataset("values", data=values, dtype="f8")
         for name, value in _action(solution).items():
             file.attrs[name] = int(value) if name != "smallest" else value
+        file.attrs["more_iterations"] = solution.get("PCENT_ITER_PLUS", 0)
         if failures:
             file.attrs["events"] = json.dumps([{"event": event, **_limit(factor), **_action(factor)} for event, factor in failures.items()])
         if k["METHODE"] == "AUTO":
@@ -70,14 +73,14 @@ def defi_list_inst(call):
 
 def _action(factor):
     """What is done with a step that fails: docs/structures.md, time_steps."""
-    return {"cut": factor["ACTION"] == "DECOUPE", "cut_into": factor["SUBD_PAS"], "cut_levels": factor["SUBD_NIVEAU"],
+    return {"cut": factor["ACTION"] != "ARRET", "cut_into": factor["SUBD_PAS"], "cut_levels": factor["SUBD_NIVEAU"],
             "smallest": factor["SUBD_PAS_MINI"]}
 
 
 def _limit(factor):
     """What an event compares, and where it looks."""
-    if factor["EVENEMENT"] == "RESI_MAXI":
-        return {"limit": factor["RESI_GLOB_MAXI"], "place": {}}
+    if factor["EVENEMENT"] in ("RESI_MAXI", "DIVE_RESI"):
+        return {"limit": factor.get("RESI_GLOB_MAXI", 0.0), "place": {}}
     place = {name: factor[name] for name in ("NOM_CHAM", "NOEUD", "GROUP_NO", "MAILLE", "GROUP_MA") if name in factor}
     return {"limit": factor["VALE_REF"], "place": {**place, "NOM_CMP": [factor["NOM_CMP"]], "EVAL_CHAM": "VALE", "EVAL_CMP": "VALE",
                                                    "EVAL_ELGA": "VALE"}}

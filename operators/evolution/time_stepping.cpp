@@ -4,14 +4,18 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
+#include <map>
 
 namespace lacon {
 namespace {
 
 /// What is done about this failure.
 const StepCut& action_for(const TimeSteps& steps, const Error& error) {
+  static const std::map<std::string, std::string, std::less<>> messages{
+      {"RESI_MAXI", "STEP_1"}, {"DELTA_GRANDEUR", "STEP_2"}, {"DIVE_RESI", "STEP_4"}};
   for (const StepEvent& event : steps.events)
-    if (error.message().id == (event.event == "RESI_MAXI" ? "STEP_1" : "STEP_2")) return event.action;
+    if (error.message().id == messages.at(event.event)) return event.action;
   return steps.action;
 }
 

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <iostream>
 #include <limits>
 #include <set>
@@ -248,7 +249,9 @@ void stat_non_line(const Order& order, const Base& base) {
   const std::optional<Origin> origin = origin_of(keywords, base);
   const TimeSteps steps = steps_of(single(keywords, "INCREMENT"), base, origin ? std::optional(origin->instant) : std::nullopt);
   const Archiving archiving(single(keywords, "ARCHIVAGE"), base);
-  Newton newton(problem, criteria_of(single(keywords, "CONVERGENCE"), single(keywords, "NEWTON")),
+  NewtonCriteria criteria = criteria_of(single(keywords, "CONVERGENCE"), single(keywords, "NEWTON"));
+  criteria.iterations += static_cast<int>(criteria.iterations * steps.more_iterations / 100);
+  Newton newton(problem, criteria,
                 {.direct = {.memory_margin = static_cast<int>(solver.integer("PCENT_PIVOT")),
                             .residual_tolerance = solver.real("RESI_RELA")}});
   NewtonTable table(std::cout, problem, single(keywords, "AFFICHAGE").yes("INFO_RESIDU"), keywords.integer("INFO") == 2);
@@ -275,9 +278,12 @@ void stat_non_line(const Order& order, const Base& base) {
 
   std::vector<IncrementLimit> increments;
   double largest_residual = std::numeric_limits<double>::infinity();
+  bool may_diverge = true;
   for (const StepEvent& event : steps.events) {
     if (event.event == "RESI_MAXI")
       largest_residual = event.limit;
+    else if (event.event == "DIVE_RESI")
+      may_diverge = false;
     else
       increments.emplace_back(event, base, problem.mesh).accept(fields);
   }
@@ -288,12 +294,18 @@ void stat_non_line(const Order& order, const Base& base) {
   const auto solve = [&](double instant) {
     table.start(instant);
     pivots = {};
+    std::array<double, 2> before{};  // residuals of the last iterations, the latest first
     iterations = newton.solve(instant, state, [&](const IterationReport& report) {
       table.line(report);
       if (report.maxi > largest_residual)
         fail("STEP_1", {{"residual", fmt::format("{:.6g}", report.maxi)},
                         {"limit", fmt::format("{:.6g}", largest_residual)},
                         {"instant", fmt::format("{:.9g}", instant)}});
+      if (!may_diverge && report.iteration >= 2 && std::min(report.maxi, before[0]) > before[1])
+        fail("STEP_4", {{"residual", fmt::format("{:.6g}", report.maxi)},
+                        {"before", fmt::format("{:.6g}, {:.6g}", before[1], before[0])},
+                        {"instant", fmt::format("{:.9g}", instant)}});
+      before = {report.maxi, before[0]};
       if (report.solution.factorised) pivots = {report.solution.factorisation.negative_pivots, report.constraints};
     });
     for (const IncrementLimit& increment : increments) increment.check(fields, instant);

@@ -164,11 +164,23 @@ class Commands(LauncherTest):
             "event": "SEUIL", "easy_steps": 2, "easy_iterations": 3, "rule": "ITER_NEWTON", "percent": 100.0, "reference": 7, "smallest": 1e-3,
             "largest": 0.5, "most": 50})
 
+    def test_more_iterations_and_halves(self):
+        files = self.make("DEFI_LIST_INST(DEFI_LIST=_F(VALE=(0, 1)), ECHEC=_F(ACTION='ITER_SUPPL', SUBD_METHODE='AUTO', SUBD_PAS_MINI=1e-3))",
+                          "DEFI_LIST_INST(DEFI_LIST=_F(VALE=(0, 1)), ECHEC=_F(ACTION='ITER_SUPPL', PCENT_ITER_PLUS=80, SUBD_PAS=3))",
+                          "DEFI_LIST_INST(DEFI_LIST=_F(VALE=(0, 1)), ECHEC=_F(EVENEMENT='DIVE_RESI', ACTION='DECOUPE', SUBD_PAS=5))")
+        self.assertEqual([[f.attrs[k] for k in ("cut", "cut_into", "cut_levels", "smallest", "more_iterations")] for f in files],
+                         [[1, 2, 10, 1e-3, 50], [1, 3, 3, 0.0, 80], [1, 4, 3, 0.0, 0]])
+        self.assertEqual(json.loads(files[2].attrs["events"]), [
+            {"event": "DIVE_RESI", "limit": 0.0, "place": {}, "cut": True, "cut_into": 5, "cut_levels": 3, "smallest": 0.0}])
+
     def test_refused_events(self):
         self.refuses("DEFI_LIST_INST(DEFI_LIST=_F(VALE=(0, 1)), ECHEC=(_F(), _F()))", "DEFI_LIST_4", "ERREUR")
         self.refuses("DEFI_LIST_INST(DEFI_LIST=_F(VALE=(0, 1)), ADAPTATION=_F())", "KEYWORD_10")
         self.refuses("DEFI_LIST_INST(DEFI_LIST=_F(VALE=(0, 1)), ECHEC=_F(EVENEMENT='RESI_MAXI'))", "KEYWORD_2", "RESI_GLOB_MAXI")
-        self.refuses("DEFI_LIST_INST(DEFI_LIST=_F(VALE=(0, 1)), ECHEC=_F(ACTION='ITER_SUPPL'))", "KEYWORD_13")
+        self.refuses("DEFI_LIST_INST(DEFI_LIST=_F(VALE=(0, 1)), ECHEC=_F(EVENEMENT='DIVE_RESI', ACTION='ITER_SUPPL'))", "DEFI_LIST_5", "DIVE_RESI")
+        self.refuses("DEFI_LIST_INST(DEFI_LIST=_F(VALE=(0, 1)), ECHEC=_F(ACTION='DECOUPE', PCENT_ITER_PLUS=50))", "KEYWORD_10")
+        self.refuses("DEFI_LIST_INST(DEFI_LIST=_F(VALE=(0, 1)), ECHEC=_F(SUBD_METHODE='AUTO', SUBD_PAS=4))", "KEYWORD_10")
+        self.refuses("DEFI_LIST_INST(DEFI_LIST=_F(VALE=(0, 1)), ECHEC=_F(ACTION='CONTINUE'))", "KEYWORD_13")
 
     def test_refusals(self):
         self.refuses("DEFI_FONCTION(NOM_PARA='INST', VALE=(0, 0, 0, 1))", "DEFI_FONCTION_1", "DEFI_FONCTION/VALE")

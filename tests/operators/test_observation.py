@@ -98,10 +98,10 @@ class Observation(TwoSquares):
 class Events(TwoSquares):
     """What DEFI_LIST_INST says of steps, on the ramp from 0 to the full pressure: DX of N2 goes from 0 to EXX."""
 
-    def steps(self, adaptation=None, **event):
+    def steps(self, adaptation=None, convergence=None, more_iterations=0, **event):
         """Solve with one event beside failures. @return the run and its instants"""
         self.write_function("function_10", [0.0, 1.0], [0.0, 1.0])
-        with self.create("time_steps_11", "time_steps", cut=0, cut_into=4, cut_levels=3, smallest=0.0) as file:
+        with self.create("time_steps_11", "time_steps", cut=0, cut_into=4, cut_levels=3, smallest=0.0, more_iterations=more_iterations) as file:
             file["values"] = [0.0, 1.0] if adaptation is None else [0.0, 0.125, 1.0]
             if event:
                 file.attrs["events"] = json.dumps([{"place": {}, "cut": True, "cut_into": 4, "cut_levels": 3, "smallest": 0.0, **event}])
@@ -109,7 +109,7 @@ class Events(TwoSquares):
                 file.attrs["adaptation"] = json.dumps({"event": "SEUIL", "easy_steps": 1, "easy_iterations": 5, "rule": "FIXE", "percent": 100.0,
                                                        "reference": 5, "smallest": 1e-12, "largest": 0.0, "most": 100, **adaptation})
         run = self.solve(loads=["load_5", {"CHARGE": concept("load_6"), "FONC_MULT": concept("function_10")}],
-                         INCREMENT={"LIST_INST": concept("time_steps_11")})
+                         INCREMENT={"LIST_INST": concept("time_steps_11")}, **({"CONVERGENCE": convergence} if convergence else {}))
         if run.status:
             return run, []
         with h5py.File(self.path("result_9")) as file:
@@ -128,6 +128,18 @@ class Events(TwoSquares):
         run, _ = self.steps(event="RESI_MAXI", limit=1e-30, cut=False)
         self.assertEqual((run.status, self.ids(run)), (3, ["STEP_1"]))
         self.assertEqual(self.steps(event="RESI_MAXI", limit=1e6)[1], [0, 1])
+
+    def test_residuals_that_grow_fail_the_step(self):
+        """Nothing meets 1e-30: residuals wander at round-off, and some time two are above the one before them."""
+        endless = {"RESI_GLOB_MAXI": 1e-30, "ITER_GLOB_MAXI": 200}
+        run, _ = self.steps(convergence=endless, event="DIVE_RESI", limit=0.0, cut=False)
+        self.assertEqual((run.status, self.ids(run)), (3, ["STEP_4"]))
+        self.assertEqual(self.steps(event="DIVE_RESI", limit=0.0)[1], [0, 1])
+
+    def test_more_iterations(self):
+        for more, most in ((0, 6), (50, 9), (25, 7)):
+            run, _ = self.steps(convergence={"RESI_GLOB_MAXI": 1e-30, "ITER_GLOB_MAXI": 6}, more_iterations=more, event="RESI_MAXI", limit=1e9)
+            self.assertIn(f"{most} iterations", run.messages[-1]["text"])
 
     def test_steps_grow(self):
         self.assertEqual(self.steps(adaptation={})[1], [0, 0.125, 0.375, 0.875, 1])

@@ -89,8 +89,10 @@ TEST(TimeStepping, CutsOnlyFailuresOfTheSolution) {
 TEST(TimeStepping, ActsByTheEvent) {
   TimeSteps steps{.values = {0, 1}, .action = {.cut = false}};
   steps.events = {{.event = "RESI_MAXI", .action = {.cut = true, .cut_into = 5}},
-                  {.event = "DELTA_GRANDEUR", .action = {.cut = true, .cut_into = 2}}};
-  for (const auto& [event, parts] : {std::pair("STEP_1", 5), std::pair("STEP_2", 2), std::pair("EVOLUTION_4", 0)}) {
+                  {.event = "DELTA_GRANDEUR", .action = {.cut = true, .cut_into = 2}},
+                  {.event = "DIVE_RESI", .action = {.cut = true, .cut_into = 3}}};
+  for (const auto& [event, parts] :
+       {std::pair("STEP_1", 5), std::pair("STEP_2", 2), std::pair("STEP_4", 3), std::pair("EVOLUTION_4", 0)}) {
     int solved = 0;
     double at = 0;
     const auto run = [&] {
@@ -105,7 +107,8 @@ TEST(TimeStepping, ActsByTheEvent) {
                            {"limit", ""},
                            {"component", ""},
                            {"node", ""},
-                           {"change", ""}});
+                           {"change", ""},
+                           {"before", ""}});
           },
           [] {},
           [&](double to, bool) {
