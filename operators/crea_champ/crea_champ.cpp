@@ -5,7 +5,9 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <functional>
+#include <limits>
 #include <map>
 #include <memory>
 
@@ -134,6 +136,58 @@ Field geometry(const Mesh& mesh, std::vector<std::int32_t> nodes, std::span<cons
   return field;
 }
 
+/// Calls use(row, component) for every value that exists.
+void each_value(const Field& field, const std::function<void(std::size_t, std::size_t)>& use) {
+  for (std::size_t row = 0; row < field.n_rows(); ++row)
+    for (std::size_t c = 0; c < field.n_components(); ++c)
+      if (field.has(row, c)) use(row, c);
+}
+
+/// What TYPE_MAXI compares: one measure a value, the largest of which counts.
+std::vector<double> measures(const Field& field, const std::string& kind) {
+  std::vector<double> found(field.values.size());
+  const double sign = kind.starts_with("MINI") ? -1 : 1;
+  for (std::size_t k = 0; k < found.size(); ++k)
+    found[k] = sign * (kind.ends_with("_ABS") ? std::abs(field.values[k]) : field.values[k]);
+  if (kind != "NORM_TRAN") return found;
+  for (std::size_t row = 0; row < field.n_rows(); ++row) {
+    double square = 0;
+    for (const char* axis : {"DX", "DY", "DZ"})
+      if (const int c = field.component(axis); c >= 0 && field.has(row, static_cast<std::size_t>(c)))
+        square += field.at(row, static_cast<std::size_t>(c)) * field.at(row, static_cast<std::size_t>(c));
+    std::fill_n(found.begin() + static_cast<std::ptrdiff_t>(row * field.n_components()), field.n_components(), square);
+  }
+  return found;
+}
+
+/// The extreme of each value over the instants, the first of several.
+Field extreme(Task& task, const Result& result, const std::vector<std::int64_t>& orders, const std::string& name) {
+  const std::string kind = task.keywords().text("TYPE_MAXI");
+  const bool instants = task.keywords().text("TYPE_RESU") == "INST";
+  Field best = task.base().field(result, name, orders.empty() ? 0 : orders.front());
+  if (kind == "NORM_TRAN" && best.component("DX") < 0)
+    fail("CREACHAMP_14", {{"keyword", "TYPE_MAXI"},
+                          {"component", "DX"},
+                          {"field", name},
+                          {"known", fmt::format("{}", fmt::join(best.components, ", "))}});
+  std::vector<double> largest(best.values.size(), -std::numeric_limits<double>::infinity());
+  best.present.assign(best.values.size(), 0);
+  for (const std::int64_t order : orders) {
+    const Field field = task.base().field(result, name, order);
+    if (field.components != best.components || field.support != best.support || field.offset != best.offset)
+      fail("CREACHAMP_16", {{"field", name}, {"label", result.label}, {"order", std::to_string(order)}});
+    const std::vector<double> measure = measures(field, kind);
+    each_value(field, [&](std::size_t row, std::size_t c) {
+      const std::size_t k = row * field.n_components() + c;
+      if (best.present[k] && !(measure[k] > largest[k])) return;
+      largest[k] = measure[k];
+      best.values[k] = instants ? field.instant : kind.ends_with("_ABS") ? std::abs(field.values[k]) : field.values[k];
+      set_present(best, row, c);
+    });
+  }
+  return best;
+}
+
 Field extract(Task& task) {
   const Keywords& keywords = task.keywords();
   const std::string name = keywords.text("NOM_CHAM");
@@ -146,13 +200,14 @@ Field extract(Task& task) {
   } else {
     const Result result = task.base().result(keywords.concept_id("RESULTAT"));
     std::vector<std::int64_t> orders;
-    if (keywords.has("INST") || keywords.has("NUME_ORDRE"))
+    if (names_instants(keywords))
       orders = selected_orders(task.base(), result, keywords);
     else if (const auto files = result.fields.find(name); files != result.fields.end())
       for (const auto& [order, file] : files->second) orders.push_back(order);
-    if (orders.size() > 1)
+    if (orders.size() > 1 && !keywords.has("TYPE_MAXI"))
       fail("CREACHAMP_8", {{"field", name}, {"label", result.label}, {"orders", fmt::format("{}", fmt::join(orders, ", "))}});
-    field = task.base().field(result, name, orders.empty() ? 0 : orders.front());
+    field = keywords.has("TYPE_MAXI") ? extreme(task, result, orders, name)
+                                      : task.base().field(result, name, orders.empty() ? 0 : orders.front());
     task.ground(field.mesh);
   }
   check_type(field, task.type());

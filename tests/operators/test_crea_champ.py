@@ -82,6 +82,28 @@ class CreaChamp(FieldTest):
         self.refuses("FIELDS_2", "0.5", TYPE_CHAM="NOEU_DEPL_R", INST=0.5, **which)
         self.refuses("RESULT_1", "VITE", "DEPL", TYPE_CHAM="NOEU_DEPL_R", INST=1.0, **{**which, "NOM_CHAM": "VITE"})
 
+    def test_extremes_over_instants(self):
+        """DX = (2, -1) at node 1 and 4 at node 2 grow, turn and vanish; LAGS_C is there at node 2 and from the second instant on alone."""
+        depl = {"quantity": "DEPL_R", "location": "NOEU", "components": ["DX", "DY", "LAGS_C"], "support": [0, 1]}
+        values = [[(0, 0, 0), (4, 0, 0)], [(2, 1, 0), (4, -3, -5)], [(-1, -4, 0), (0, 0, -25)]]
+        present = [[(1, 1, 0), (1, 1, 0)], [(1, 1, 0), (1, 1, 1)], [(1, 1, 0), (1, 1, 1)]]
+        self.write_result("result_3", "mesh_1", [0.0, 0.5, 1.0], {"DEPL": {k: {**depl, "values": np.array(values[k], float), "present": np.array(present[k], np.uint8)}
+                                                                          for k in range(3)}}, label="RES")
+        what = {"OPERATION": "EXTR", "RESULTAT": concept("result_3"), "NOM_CHAM": "DEPL", "TYPE_CHAM": "NOEU_DEPL_R"}
+        for kind, extremes, instants, choice in (
+                ("MAXI", [(2, 1), (4, 0, -5)], [(0.5, 0.5), (0, 0, 0.5)], {"TOUT_ORDRE": "OUI"}),
+                ("MINI", [(-1, -4), (0, -3, -25)], [(1, 1), (1, 0.5, 1)], {}),
+                ("MAXI_ABS", [(2, 4), (4, 3, 25)], [(0.5, 1), (0, 0.5, 1)], {"INST": [0.0, 0.5, 1.0]}),
+                ("MINI_ABS", [(0, 0), (0, 0, 5)], [(0, 0), (1, 0, 0.5)], {"NUME_ORDRE": [0, 1, 2]}),
+                ("NORM_TRAN", [(-1, -4), (4, -3, -5)], [(1, 1), (0.5, 0.5, 0.5)], {}),
+                ("MAXI", [(2, 1), (4, 0, -5)], [(0.5, 0.5), (0.5, 1, 0.5)], {"INST": [0.5, 1.0]})):
+            for resu, expected in (("VALE", extremes), ("INST", instants)):
+                with self.subTest(kind=kind, resu=resu):
+                    field = self.make("field_4", TYPE_MAXI=kind, TYPE_RESU=resu, **what, **choice)
+                    np.testing.assert_array_equal(field.present, [(1, 1, 0), (1, 1, 1)])
+                    np.testing.assert_array_equal(field.values[field.present > 0], [x for row in expected for x in row])
+        self.refuses("FIELDS_2", "0.7", TYPE_MAXI="MAXI", TYPE_RESU="VALE", INST=[0.7], **what)
+
     def test_values_on_groups_the_later_one_counts(self):
         field = self.make("field_3", OPERATION="AFFE", TYPE_CHAM="NOEU_DEPL_R", MAILLAGE=concept("mesh_1"), AFFE=[
             {"TOUT": "OUI", "NOM_CMP": ["DX"], "VALE": [1.0]}, {"GROUP_MA": "SKIN", "NOM_CMP": ["DX", "DY"], "VALE": [2.0, 3.0]},
