@@ -99,7 +99,10 @@ def _complete(row, cells, check, skin_name, body_name, kind):
     corners = facet_corners(body)
     check(facet in corners, f"{name}: {row['facet']} is not a facet seen from outside")
     placements = []
-    turns = list(rotations(body))
+    named_turns = [[v - 1 for v in turn] for turn in row.get("turns", [])]
+    order_of = lambda turn: turn[:body["vertices"]]  # noqa: E731
+    turns = sorted(rotations(body), key=lambda turn: order_of(turn) not in named_turns)
+    check(all(order_of(turn) in named_turns for turn in turns[:len(named_turns)]), f"{name}: turns: not orders of the body turned")
     for index, (facet_type, _) in enumerate(body["facets"]):
         if facet_type == skin_name:
             order = next((t for t in turns if {t[v] for v in facet} == set(corners[index])), None)
@@ -151,6 +154,10 @@ def _complete(row, cells, check, skin_name, body_name, kind):
     first_new = len(body_nodes.points)
     for text, at in row.get("body_nodes", {}).items():
         body_number[text] = body_nodes.add(exact([at])[0])
+    for text in row.get("quadratic_body_nodes", []) if quadratic else []:
+        point = middle(*(body_nodes.points[body_number[end]] for end in text.split("-")))
+        check(body_nodes.find(point) is None, f"{name}: the body node {text} is there twice")
+        body_nodes.add(point)
     body_cells = number_cells(row.get("body_cells", []), body_number, body_nodes, True)
     new_body = body_nodes.points[first_new:]
     used = {n for _, own in skin_cells for n in own}

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "lacon/catalog/messages.hpp"
+#include "lacon/structures/files.hpp"
 #include "lacon/structures/memory.hpp"
 
 namespace lacon::hdf5 {
@@ -387,6 +388,7 @@ Reader::Reader(const std::filesystem::path& file) : Group({}, file, false) {
 void write_whole(const std::filesystem::path& file, const std::function<void(const Group&)>& write,
                  const std::filesystem::path& copy_of) {
   prepare();
+  check_replaceable(file);
   const std::filesystem::path partial = file.string() + ".partial";
   std::error_code error;
   if (!copy_of.empty()) {

@@ -156,7 +156,9 @@ class Study:
         """The file of a unit that a command writes; beside the command file where none was given."""
         path = os.path.abspath(self.units.get(number, self.base_folder.parent / f"{self.base_folder.stem}.{number}{suffix}"))
         folder = os.path.dirname(path)
-        if not os.path.isdir(folder) or not os.access(folder, os.W_OK) or os.path.isdir(path):
+        # written whole by renaming, which would replace a device such as /dev/null
+        is_other = os.path.exists(path) and not os.path.isfile(path)
+        if not os.path.isdir(folder) or not os.access(folder, os.W_OK) or is_other:
             fail("COMMAND_8", where, unit=number, file=path)
         if os.path.realpath(path) in self.sources:
             fail("COMMAND_12", where, unit=number, file=path)

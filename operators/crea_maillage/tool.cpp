@@ -9,6 +9,7 @@
 #include "lacon/operators/crea_maillage/crea_maillage.hpp"
 #include "lacon/operators/meshing/checks.hpp"
 #include "lacon/operators/program/program.hpp"
+#include "lacon/structures/files.hpp"
 #include "lacon/structures/formats/med.hpp"
 
 namespace lacon {
@@ -40,6 +41,7 @@ int cut_med_file(int argc, char** argv) {
   return run_tool(argc, argv, app, [&] {
     std::error_code error;
     if (fs::equivalent(in, out, error)) fail("CUT_1", {{"file", in.string()}});
+    check_replaceable(out);  // before the work
     cut.complete_node_groups = !keep_node_groups;
     const Mesh made = [&] {
       Mesh mesh = [&] {

@@ -235,7 +235,7 @@ std::vector<Slave> find_slaves(const Mesh& mesh, std::span<const std::string> gr
       if (!is_sound(jacobian_range(mesh.types[b], mesh.cells[b], mesh.coordinates)))
         fail("DECOUPE_6", {{"keyword", keyword},
                            {"group", group},
-                           {"what", "the body cell " + cell_name(body.cell) + " under the slave cell " + cell_name(cell)},
+                           {"what", "the body cell " + cell_name(body.cell) + " under the slave cell " + cell_name(cell) + ","},
                            {"type", std::string(mesh.row(b).name)}});
       slaves.push_back({cell, body.cell, zone});
       quality.emplace_back(scaled_jacobian(mesh.types[b], mesh.cells[b], mesh.coordinates), body.cell);  // while it is at hand

@@ -7,6 +7,7 @@
 #include <system_error>
 
 #include "lacon/catalog/messages.hpp"
+#include "lacon/structures/files.hpp"
 
 namespace lacon {
 
@@ -38,6 +39,7 @@ TextFiles::~TextFiles() {
 }
 
 void TextFiles::write(const fs::path& file, std::string_view text) {
+  check_replaceable(file);
   const fs::path partial = file.string() + ".partial";
   std::ofstream stream(partial, std::ios::binary | std::ios::trunc);
   if (stream) files_.emplace_back(partial, file);

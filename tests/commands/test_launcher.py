@@ -159,7 +159,8 @@ class Units(LauncherTest):
         self.assertEqual(self.entries(), [])
 
     def test_an_output_that_cannot_be_written(self):
-        for path in ("nowhere/out.med", "mesh.med/out.med", "."):
+        os.mkfifo(self.work / "pipe")
+        for path in ("nowhere/out.med", "mesh.med/out.med", ".", "pipe"):
             run = self.run_study(STUDY + "IMPR_RESU(UNITE=80, RESU=_F(RESULTAT=R))\n", "--unit", f"80={path}")
             self.refused(run, "COMMAND_8", "IMPR_RESU/UNITE, study.comm:12")
 

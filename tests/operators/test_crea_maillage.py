@@ -131,7 +131,7 @@ class CreaMaillage(OperatorTest):
 
     def test_refuses_a_bad_body_cell(self):
         self.write_mesh("mesh_5", [[0, 0], [3, 0], [0.5, 0.5], [0, 3]], [("SEG2", [0, 1]), ("QUAD4", [0, 1, 2, 3])], {"LOW": [0]})
-        self.assert_refuses("DECOUPE_6", "CREA_MAILLAGE", self.cut(["LOW"], "mesh_5"), "M2", result="mesh_6")
+        self.assert_refuses("DECOUPE_6", "CREA_MAILLAGE", self.cut(["LOW"], "mesh_5"), "M2 under the slave cell M1, a QUAD4, has", result="mesh_6")
 
     def test_refuses_a_mesh_that_is_cut(self):
         self.run_command("CREA_MAILLAGE", self.cut(["LOW"]), "mesh_2")

@@ -211,6 +211,10 @@ class CutTool(OperatorTest):
         self.refuses("MED_1", self.folder / "none.med", self.out, "--slave", "TOP", words=["none.med"])
         self.refuses("CUT_1", self.source, self.source, "--slave", "TOP", words=["in.med"])
         self.refuses("BASE_3", self.source, self.folder / "no/folder/out.med", "--slave", "TOP", words=["no/folder"])
+        self.refuses("BASE_3", self.source, self.folder, "--slave", "TOP", words=["folder"])
+        os.mkfifo(self.folder / "pipe")  # as /dev/null: renaming a whole file would put it in its place
+        self.refuses("BASE_3", self.source, self.folder / "pipe", "--slave", "TOP", words=["pipe", "not a file"])
+        self.assertTrue((self.folder / "pipe").is_fifo())
         self.source.write_text("no mesh")
         self.refuses("MED_2", self.source, self.out, "--slave", "TOP", words=["in.med"])
         skins_only = block("QUAD4", LINES, LINES, sides={"top": "TOP"})

@@ -1,0 +1,21 @@
+#include "lacon/structures/files.hpp"
+
+#include <system_error>
+
+#include "lacon/catalog/messages.hpp"
+
+namespace lacon {
+
+namespace fs = std::filesystem;
+
+void check_replaceable(const fs::path& file) {
+  const auto refuse = [&](const std::string& reason) { fail("BASE_3", {{"file", file.string()}, {"reason", reason}}); };
+  std::error_code error;
+  const fs::path folder = file.has_parent_path() ? file.parent_path() : fs::path(".");
+  if (!fs::is_directory(folder, error)) refuse("there is no folder '" + folder.string() + "'");
+  const fs::file_status found = fs::status(file, error);
+  if (fs::is_directory(found)) refuse("it is a folder");
+  if (fs::exists(found) && !fs::is_regular_file(found)) refuse("it is a device, or something else that is not a file");
+}
+
+}  // namespace lacon
