@@ -6,12 +6,15 @@ Reads the base, and never changes it.
 import json
 import os
 import pathlib
+import re
 import subprocess
 import sys
 import tempfile
 
 from . import base, catalog, checker, concepts, hdf5, orders
 from .messages import AsterError, fail, show
+
+_layer = re.compile(r"pairing_(pairs|skins|points|rejected)(_\d+\.vtu|\.pvd)")
 
 
 class ReadBase(base.Base):
@@ -38,10 +41,10 @@ def run(arguments):
         "fraction of their patches, integration points with their gap, rejected couples with the reason.")
     parser.add_argument("base", metavar="BASE", help="folder of the base, STUDY.base")
     parser.add_argument("--result", metavar="LABEL", help="a result with contact, or a contact (then before any instant); otherwise the only one")
-    parser.add_argument("--instant", metavar="T", default="last", help="an instant of the result, 'last' (default) or 'all'")
+    parser.add_argument("--instant", metavar="T", help="an instant of the result, 'last' (default) or 'all'")
     parser.add_argument("--out", metavar="FOLDER", help="where the files go; otherwise BASE without its suffix and with _pairing")
     options = parser.parse_args(arguments)
-    if options.instant not in ("last", "all"):
+    if options.instant not in (None, "last", "all"):
         try:
             options.instant = float(options.instant)
         except ValueError:
@@ -50,7 +53,9 @@ def run(arguments):
         shelf = ReadBase(options.base)
         chosen = choose(shelf, options.result)
         folder = pathlib.Path(options.out or shelf.folder.with_name(shelf.folder.stem + "_pairing").name)
-        return write(shelf, resu(chosen, options.instant), folder)
+        if chosen.type == "contact" and options.instant is not None:
+            fail("INSPECT_3", "lacon inspect --instant", label=chosen.label)
+        return write(shelf, resu(chosen, "last" if options.instant is None else options.instant), folder)
     except AsterError as error:
         for item in error.messages:
             show(item)
@@ -90,12 +95,13 @@ def resu(chosen, instant):
 
 
 def write(shelf, occurrence, folder):
-    """Both files, by two orders of IMPR_RESU. @return exit status"""
+    """Both files, by two orders of IMPR_RESU; what an earlier look left in the folder goes. @return exit status"""
     hdf5.h5py()
     try:
         folder.mkdir(parents=True, exist_ok=True)
     except OSError as error:
         fail("STUDY_3", "lacon inspect --out", folder=folder, reason=error.strerror)
+    earlier = {path: path.stat().st_ino for path in folder.iterdir() if _layer.fullmatch(path.name)}
     for number, (form, name) in enumerate((("VTU", "pairing.vtu"), ("MED", "pairing.med"))):
         keywords, problems = checker.complete("IMPR_RESU", catalog.command("IMPR_RESU"),
                                               {"FORMAT": form, "UNITE": 80, "RESU": occurrence}, "lacon inspect")
@@ -115,5 +121,8 @@ def write(shelf, occurrence, folder):
         for line in done.stdout.splitlines():  # the second file has the same to say
             if number == 0 or not line.startswith(("Pairing of", "  ")):
                 print(os.path.relpath(line) if os.path.isabs(line) else line)
+    for path, inode in earlier.items():
+        if path.stat().st_ino == inode:  # not replaced: a layer or an instant that there is no more
+            path.unlink()
     sys.stdout.flush()
     return 0

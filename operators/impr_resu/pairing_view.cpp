@@ -152,10 +152,9 @@ class ZoneView {
   void draw_skins(Drawing& drawing, const std::map<std::int32_t, std::array<double, 2>>& state) const {
     std::vector<double> slave_couples(zone_.slaves.size()), master_couples(zone_.masters.size());
     std::vector<double> slave_rejected = slave_couples, master_rejected = master_couples;
-    const ContactCells& cells = record_.pairing.cells;
-    for (std::size_t c = 0; c < cells.size(); ++c) {
-      ++slave_couples[static_cast<std::size_t>(cells.slave[c])];
-      ++master_couples[static_cast<std::size_t>(cells.master[c])];
+    for (const auto& [couple, measure] : couples()) {
+      ++slave_couples[static_cast<std::size_t>(couple.first)];
+      ++master_couples[static_cast<std::size_t>(couple.second)];
     }
     for (const RejectedCouple& couple : record_.pairing.rejected) {
       if (couple.slave >= 0) ++slave_rejected[static_cast<std::size_t>(couple.slave)];
@@ -263,6 +262,15 @@ class ZoneView {
   }
   std::string name(const char* role) const { return fmt::format("{}_{}", role, number_ + 1); }
 
+  /// (slave, master), numbers of the zone, and what they have in common: a curved slave meets a master in several contact
+  /// cells.
+  std::map<std::pair<std::int32_t, std::int32_t>, double> couples() const {
+    std::map<std::pair<std::int32_t, std::int32_t>, double> measures;
+    const ContactCells& cells = record_.pairing.cells;
+    for (std::size_t c = 0; c < cells.size(); ++c) measures[{cells.slave[c], cells.master[c]}] += record_.measure[c];
+    return measures;
+  }
+
   /// The patches that are not wholly covered, the least covered first.
   void report_patches(std::vector<std::string>& lines) const {
     std::vector<std::int32_t> partial;
@@ -275,10 +283,7 @@ class ZoneView {
     const auto tell = [&](const SlaveElement& slave, std::string text) {
       if (const auto patch = told.find(slave.patch); patch != told.end()) patch->second.push_back(std::move(text));
     };
-    std::map<std::pair<std::int32_t, std::int32_t>, double> couples;  // a curved slave meets a master in several contact cells
-    for (std::size_t c = 0; c < record_.pairing.cells.size(); ++c)
-      couples[{record_.pairing.cells.slave[c], record_.pairing.cells.master[c]}] += record_.measure[c];
-    for (const auto& [couple, measure] : couples) {
+    for (const auto& [couple, measure] : couples()) {
       const SlaveElement& slave =
           contact_.slaves[static_cast<std::size_t>(zone_.slaves[static_cast<std::size_t>(couple.first)])];
       tell(slave, fmt::format("{} on {}: {:.4g} %", cell_name(slave.cell),

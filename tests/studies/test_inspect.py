@@ -220,7 +220,11 @@ class Inspect(StudyTest):
         self.assertAlmostEqual(sum(float(part) for _, part in parts), float(covered), delta=0.005 * (1 + len(parts)))
         self.assertLess(float(covered), 99)
         pairs = read_vtu(self.folder / "out_pairs_0002.vtu")
-        self.assertGreater(len(pairs.cells), 2 * len(set(zip(pairs.data["SLAVE"], pairs.data["MASTER"]))))
+        met = set(zip(pairs.data["SLAVE"], pairs.data["MASTER"]))
+        self.assertGreater(len(pairs.cells), 2 * len(met))
+        skins = read_vtu(self.folder / "out_skins_0002.vtu")
+        for cell, couples in zip(skins.data["CELL"], skins.data["COUPLES"]):
+            self.assertEqual(couples, sum(cell in couple for couple in met))
 
     def test_inspect_writes_both_formats_and_leaves_the_base_alone(self):
         folder = self.study("D_PLAN").folder
@@ -240,9 +244,21 @@ class Inspect(StudyTest):
         self.assertEqual(content(folder / "first")["pairing_pairs_0001.vtu"], content(folder)["out_pairs_0001.vtu"])
         self.assertEqual(content(folder / "study.base"), before)
 
+    def test_inspect_leaves_nothing_of_an_earlier_look(self):
+        folder = self.study("D_PLAN").folder
+        self.assertEqual(self.inspect(folder, "--instant", "all", "--out", "look").returncode, 0)
+        (folder / "look/pairing_rejected_0009.vtu").write_text("of another study")
+        (folder / "look/pairing_of_mine.vtu").write_text("no layer")
+        self.assertIn("at instant 0\n", self.inspect(folder, "--instant", "0", "--out", "look").stdout)
+        self.assertEqual(self.inspect(folder, "--result", "CONTACT", "--out", "look").returncode, 0)
+        layers = ("pairs", "skins", "points", "rejected")
+        self.assertEqual(set(content(folder / "look")), {"pairing.med", "pairing_of_mine.vtu", *(f"pairing_{name}.pvd" for name in layers),
+                                                         *(f"pairing_{name}_0001.vtu" for name in layers)})
+
     def test_inspect_refuses_what_is_not_there(self):
         folder = self.study("D_PLAN").folder
-        for arguments, words in ((["--result", "RESUL"], ["INSPECT_1", "'RESUL'", "CONTACT, RESU"]), (["--instant", "0.5"], ["FIELDS_2", "0.5"])):
+        for arguments, words in ((["--result", "RESUL"], ["INSPECT_1", "'RESUL'", "CONTACT, RESU"]), (["--instant", "0.5"], ["FIELDS_2", "0.5"]),
+                                 (["--result", "CONTACT", "--instant", "1"], ["INSPECT_3", "'CONTACT'"])):
             done = self.inspect(folder, *arguments)
             self.assertEqual(done.returncode, 2, done.stderr)
             for word in words:
