@@ -182,6 +182,16 @@ std::int64_t ContactState::n_constraints(const Patchwise& patches) const {
   return count;
 }
 
+HeldOverlap ContactState::held_overlap() const {
+  HeldOverlap overlap;
+  for (std::size_t p = 0; p < n_patches(); ++p) {
+    if (!locked_[p] || coverage(p) < tolerances_.least_coverage || gap(p) >= -tolerances_.held_overlap * size_[p]) continue;
+    ++overlap.count;
+    if (gap(p) < overlap.gap) overlap.deepest = p, overlap.gap = gap(p);
+  }
+  return overlap;
+}
+
 std::vector<ZoneBalance> ContactState::balance(const Patchwise& patches) const {
   std::vector<ZoneBalance> zones;
   for (const ContactZone& zone : contact_.zones)

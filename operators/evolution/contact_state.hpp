@@ -28,6 +28,7 @@ struct ContactTolerances {
   double initial_gap = 1e-6;        ///< CONTACT_INIT='INTERPENETRE': largest gap, over the smallest edge
   double lambda_round_off = 1e-10;  ///< of the largest |lambda|: below it a sign means nothing
   double gap_round_off = 1e-14;     ///< of the size of the mesh
+  double held_overlap = 1e-6;       ///< of h: an overlap of a locked patch that is worth an alarm
 };
 
 /// What the contact of a zone does at an instant: the figures by which a user trusts it.
@@ -38,6 +39,13 @@ struct ZoneBalance {
   std::array<double, 3> moment{};  ///< of all contact forces of the zone about the origin: zero where they balance
   double covered = 0, whole = 0;   ///< measure of the slave skin, current geometry
   double work = 0;                 ///< largest |lambda g|: zero where contact and gap exclude each other
+};
+
+/// Locked patches that lie inside their master: no pressure can part them.
+struct HeldOverlap {
+  std::int64_t count = 0;
+  std::size_t deepest = 0;  ///< patch
+  double gap = 0;           ///< of it
 };
 
 class ContactState {
@@ -64,6 +72,8 @@ class ContactState {
   std::int64_t n_constraints(const Patchwise& patches) const;
   /// Whether every displacement in a patch's row is imposed: its multiplier is then undetermined and keeps its value.
   bool is_locked(std::size_t patch) const { return locked_[patch]; }
+
+  HeldOverlap held_overlap() const;
 
   /// Throws EVOLUTION_8 where a slave cell reaches over the axis of revolution.
   void check_radii() const { geometry_.check_radii(); }

@@ -316,6 +316,12 @@ void stat_non_line(const Order& order, const Base& base) {
   };
   const auto solved = [&](double instant, bool asked) {
     table.finish(instant, iterations, state, newton.contact());
+    if (const ContactState* contact = newton.contact())
+      if (const HeldOverlap overlap = contact->held_overlap(); overlap.count > 0)
+        inform("EVOLUTION_14", {{"count", std::to_string(overlap.count)},
+                                {"instant", fmt::format("{:.9g}", instant)},
+                                {"cell", cell_name(problem.mesh.patches->cells[overlap.deepest].front())},
+                                {"gap", fmt::format("{:.6g}", overlap.gap)}});
     last = state;
     for (IncrementLimit& increment : increments) increment.accept(fields);
     step += asked;

@@ -182,6 +182,17 @@ class StatNonLine(TwoSquares):
         gap = (0.3 * 0.1 + 0.4 * 0.2) / 0.7
         np.testing.assert_allclose(contact.values, [[0, 0, gap, 0.7, 0]], rtol=0, atol=1e-14)
 
+    def test_an_overlap_that_is_imposed_is_an_alarm(self):
+        """Everything is held: of the two squares that overlap, that touch and that stand apart only the first pair is named."""
+        self.write_load("load_5", imposed=[(n, component, 0.0) for n in range(16) for component in ("DX", "DY")], kind="cine")
+        for gap in (-0.125, 0.0, 0.125):
+            self.write_mesh("mesh_1", square(-1) + square(gap), CELLS, cell_groups={"MASTER": [0], "SLAVE": [1]})
+            self.write_patches([1], [12])
+            run = self.solve(loads=["load_5"])
+            self.assertEqual(run.status, 0, run.stderr)
+            self.assertEqual("<A> <EVOLUTION_14> at the instant 1 1 patch(es)" in run.stderr, gap < 0, run.stderr)
+            self.assertEqual("slave cell M2 with the gap -0.125" in run.stderr, gap < 0, run.stderr)
+
     def test_every_slave_cell_is_integrated_by_the_kernel_of_its_own_element(self):
         """Two slave cells of one kind, one of them axisymmetric: its measure has the factor r. Everything is held."""
         shifted = [(x + 1, y) for x, y in square(-1) + square(0)]
