@@ -67,17 +67,7 @@ class Task {
 
   /// One entry a node or cell: 1 where an occurrence means it.
   std::vector<char> selected(const Keywords& factor) {
-    const Mesh& mesh = ground().mesh();
-    const bool nodal = type_.location == Location::nodes;
-    if (factor.has("GROUP_NO") && !nodal) fail("CREACHAMP_7", {{"keyword", factor.path("GROUP_NO")}, {"type", type_.text}});
-    const std::vector<char> cells = selected_cells(mesh, factor);
-    if (!nodal) return cells;
-    std::vector<char> nodes(mesh.n_nodes(), factor.has("TOUT"));
-    if (factor.has("GROUP_MA")) nodes = nodes_of_marked_cells(mesh, cells);
-    for (const std::string& group : factor.texts("GROUP_NO"))
-      for (const std::int32_t node : nodes_of_group(mesh, group, factor.path("GROUP_NO")))
-        nodes[static_cast<std::size_t>(node)] = 1;
-    return nodes;
+    return selected_places(ground().mesh(), factor, type_.location, type_.text);
   }
 
  private:

@@ -107,4 +107,17 @@ std::vector<char> nodes_of_marked_cells(const Mesh& mesh, const std::vector<char
   return marked;
 }
 
+std::vector<char> selected_places(const Mesh& mesh, const Keywords& keywords, Location location, const std::string& name) {
+  const bool nodal = location == Location::nodes;
+  if (keywords.has("GROUP_NO") && !nodal) fail("CREACHAMP_7", {{"keyword", keywords.path("GROUP_NO")}, {"type", name}});
+  const std::vector<char> cells = selected_cells(mesh, keywords);
+  if (!nodal) return cells;
+  std::vector<char> nodes(mesh.n_nodes(), keywords.has("TOUT") || (!keywords.has("GROUP_MA") && !keywords.has("GROUP_NO")));
+  if (keywords.has("GROUP_MA")) nodes = nodes_of_marked_cells(mesh, cells);
+  for (const std::string& group : keywords.texts("GROUP_NO"))
+    for (const std::int32_t node : nodes_of_group(mesh, group, keywords.path("GROUP_NO")))
+      nodes[static_cast<std::size_t>(node)] = 1;
+  return nodes;
+}
+
 }  // namespace lacon

@@ -27,4 +27,9 @@ std::vector<std::int32_t> selected_skin(const Mesh& mesh, const Keywords& keywor
 /// One entry a node of the mesh: 1 where a cell that `cells` marks has it.
 std::vector<char> nodes_of_marked_cells(const Mesh& mesh, const std::vector<char>& cells);
 
+/// One entry a node (of a field of nodes) or cell of the mesh: not 0 where TOUT, GROUP_MA (with its nodes) or GROUP_NO means
+/// it; everywhere without these. Throws MESH_1, MESH_2, CREACHAMP_7 for nodes of a field of cells. @param name of the field or
+/// its type
+std::vector<char> selected_places(const Mesh& mesh, const Keywords& keywords, Location location, const std::string& name);
+
 }  // namespace lacon
