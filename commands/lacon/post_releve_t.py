@@ -1,6 +1,6 @@
 """POST_RELEVE_T: values of fields at nodes, their means, extremes and resultants, as a table."""
 
-from . import places, tables
+from . import axes, places, tables
 from .tables import Table
 
 
@@ -11,6 +11,8 @@ def post_releve_t(call):
         operation = action["OPERATION"]
         if "RESULTANTE" in action and operation != "EXTRACTION":
             call.fail("POST_2", f"{path}/RESULTANTE", operation=operation)
+        if "DIRECTION" in action and not any(action["DIRECTION"]):
+            call.fail("POST_8", f"{path}/DIRECTION")
         for head, field in _fields(call, action, path):
             frame = _Frame(call, action, path, field)
             made = frame.resultant() if "RESULTANTE" in action else getattr(frame, operation.lower())()
@@ -34,17 +36,38 @@ class _Frame:
         mesh = field.mesh()
         self.call, self.action, self.path, self.field = call, action, path, field
         values, there = places.at_nodes(call, field, path)
-        named = "NOM_CMP" in action
-        wanted = action["NOM_CMP"] if named else field.components if "RESULTANTE" not in action else action["RESULTANTE"]
-        keyword = "NOM_CMP" if named else "RESULTANTE"
+        keyword = next((k for k in ("NOM_CMP", "RESULTANTE") if k in action), "")
+        wanted = action[keyword] if keyword else field.components
         columns = [places.component(call, field, name, f"{path}/{keyword}") for name in wanted]
         nodes = [n for n in places.nodes(call, action, mesh, path) if there[n, columns].any()]
         if not nodes:
             call.fail("POST_3", path, field=field.name, components=", ".join(wanted))
         self.names, self.nodes = wanted, nodes
-        self.values, self.there = values[nodes][:, columns], there[nodes][:, columns]
         self.points = mesh.getCoordinates().toNumpy()[nodes]
+        own = values[nodes]
+        if action["REPERE"] != "GLOBAL":
+            own = axes.turned(field.components, own, axes.at(call, action, path, self.points, mesh.getDimension() == 2))
+        self.values, self.there = own[:, columns], there[nodes][:, columns]
         self.all_values, self.all_there = values, there
+        self._derive()
+
+    def _derive(self):
+        """Put what INVARIANT, ELEM_PRINCIPAUX or TRAC_DIR asks for in the place of the components."""
+        import numpy
+
+        action, values = self.action, numpy.where(self.there, self.values, 0.0)
+        keyword = next((k for k in ("INVARIANT", "ELEM_PRINCIPAUX", "TRAC_DIR") if k in action), None)
+        if keyword is None:
+            return
+        if keyword == "TRAC_DIR":
+            made = axes.traces(self.names, values, action["DIRECTION"])
+        else:
+            of = axes.invariants if keyword == "INVARIANT" else axes.principals
+            made = next((of(given) for _, given in axes.tensors(self.names, values)), {})
+        if not made:
+            self.call.fail("POST_7", f"{self.path}/{keyword}", field=self.field.name, components=", ".join(self.names))
+        self.names, self.values = list(made), numpy.column_stack(list(made.values()))
+        self.there = numpy.repeat(self.there.any(axis=1)[:, None], len(made), axis=1)
 
     def extraction(self):
         """A row a node."""

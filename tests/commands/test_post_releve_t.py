@@ -78,6 +78,60 @@ assert t.para[-5:] == ['RESULT_X', 'RESULT_Y', 'MOMENT_X', 'MOMENT_Y', 'MOMENT_Z
 assert [t.rows[0][n] for n in t.para[-5:]] == [15, -25, 0, 0, -15], t
 """))
 
+    def field(self, quantity, components, values):
+        """Python that makes a field F of its own at nodes 4, 5 and 6, at (0, 1), (1, 1) and (2, 1)."""
+        return f"""
+from lacon import study
+from lacon.hdf5 import text_type
+def fill(file):
+    file.attrs.update(name='F', quantity='{quantity}', mesh=M.id, location='NOEU')
+    file.attrs.create('components', {components}, dtype=text_type())
+    file['support'], file['values'] = [3, 4, 5], {values}
+F = study.current.base.write_concept('field', 'F', 'CREA_CHAMP', {{}}, fill)
+def table(**more):
+    keywords = dict(NOM_CMP={components}) if not {{'INVARIANT', 'ELEM_PRINCIPAUX'}} & set(more) else {{}}
+    return POST_RELEVE_T(ACTION=_F(INTITULE='it', CHAM_GD=F, GROUP_NO='TOP', **{{'OPERATION': 'EXTRACTION', **keywords, **more}})).EXTR_TABLE()
+def near(found, expected):
+    import numpy
+    assert numpy.allclose(found, expected, rtol=0, atol=1e-13), (found, expected)
+"""
+
+    def test_vectors_in_other_axes(self):
+        """u = (x, y), which is r e_r about the origin."""
+        r = [1, 2**0.5, 5**0.5]
+        self.ok(self.run_study(STUDY + self.field("DEPL_R", ["DX", "DY"], [[0.0, 1.0], [1.0, 1.0], [2.0, 1.0]]) + f"""
+t = table(REPERE='POLAIRE')
+near(t.DX, {r}); near(t.DY, [0, 0, 0])
+t = table(REPERE='CYLINDRIQUE', ORIGINE=(1., 0.), AXE_Z=(0., 0., 1.))  # (1, 0) + r e_r
+near(t.DX, [1 / 2**0.5, 1, 3 / 2**0.5]); near(t.DY, [-1 / 2**0.5, -1, -1 / 2**0.5])
+t = table(REPERE='UTILISATEUR', ANGL_NAUT=90.)
+near(t.DX, [1, 1, 1]); near(t.DY, [0, -1, -2])
+t = table(REPERE='POLAIRE', OPERATION='MOYENNE_ARITH')
+near(t.MOYENNE[1], 0)
+t = table(TRAC_DIR='OUI', DIRECTION=(3., 4.))
+near(t.TRAC_DIR, [.8, 1.4, 2.])
+t = table(REPERE='POLAIRE', ORIGINE=(1., 1.))  # node 5 is on the axis
+near([a * a + b * b for a, b in zip(t.DX, t.DY)], [1, 2, 5])
+FIN()
+"""))
+
+    def test_tensors(self):
+        names = ["SIXX", "SIYY", "SIZZ", "SIXY"]
+        self.ok(self.run_study(STUDY + self.field("SIEF_R", names, [[3.0, 3.0, 10.0, 2.0], [5.0, 0.0, 0.0, 0.0], [0.0, 0.0, 0.0, 7.0]]) + """
+t = table(INVARIANT='OUI')
+near(t.VMIS, [(.5 * (4**2 + 5**2 + 9**2))**.5, 5, 7 * 3**.5]); near(t.TRESCA, [9, 5, 14]); near(t.TRACE, [16, 5, 0]); near(t.DETER, [50, 0, 0])
+t = table(ELEM_PRINCIPAUX='OUI')
+near(t.PRIN_1, [1, 0, -7]); near(t.PRIN_2, [5, 0, 0]); near(t.PRIN_3, [10, 5, 7])
+near([t.VECT_2_X[0], t.VECT_2_Y[0], t.VECT_3_Z[0]], [.5**.5, .5**.5, 1])
+t = table(TRAC_DIR='OUI', DIRECTION=(0., 2.))
+near(t.TR_DIR_1, [2, 0, 7]); near(t.TR_DIR_2, [3, 0, 0]); near(t.TR_DIR_3, [0, 0, 0])
+t = table(REPERE='UTILISATEUR', ANGL_NAUT=45.)
+near(t.SIXX, [5, 2.5, 7]); near(t.SIYY, [1, 2.5, -7]); near(t.SIZZ, [10, 0, 0]); near(t.SIXY, [0, -2.5, 0])
+t = table(INVARIANT='OUI', OPERATION='EXTREMA')
+assert [(r['EXTREMA'], r['NOEUD'], r['CMP']) for r in t][0] == ('MAX', 'N6', 'VMIS')
+FIN()
+"""))
+
     def test_fields_of_their_own(self):
         self.ok(self.run_study(STUDY + """
 from lacon import study
@@ -111,7 +165,11 @@ FIN()
                               ({"NOM_CMP": None, "RESULTANTE": "'DX'", "OPERATION": "'EXTREMA'"}, "POST_2"),
                               ({"NOM_CMP": "'LAGS_C'", "GROUP_NO": "'ONE'"}, "POST_3"),
                               ({"NOM_CMP": "('DX', 'LAGS_C')", "OPERATION": "'MOYENNE'"}, "POST_4"),
-                              ({"GROUP_NO": "'ONE'", "OPERATION": "'MOYENNE'"}, "POST_5"), ({"REPERE": "'LOCAL'"}, "KEYWORD_13")):
+                              ({"GROUP_NO": "'ONE'", "OPERATION": "'MOYENNE'"}, "POST_5"), ({"REPERE": "'LOCAL'"}, "KEYWORD_13"),
+                              ({"REPERE": "'UTILISATEUR'"}, "KEYWORD_2"), ({"ORIGINE": "(0., 0.)"}, "KEYWORD_10"),
+                              ({"NOM_CMP": None, "INVARIANT": "'OUI'"}, "POST_7"), ({"TRAC_DIR": "'OUI'"}, "KEYWORD_9"),
+                              ({"TRAC_DIR": "'OUI'", "DIRECTION": "(0., 0.)"}, "POST_8"), ({"TRAC_NOR": "'OUI'"}, "KEYWORD_11"),
+                              ({"NOM_CMP": None, "RESULTANTE": "'DX'", "REPERE": "'POLAIRE'"}, "KEYWORD_10")):
             given = ", ".join(f"{k}={v}" for k, v in {**good, **changes}.items() if v)
             calls.append((f"POST_RELEVE_T(ACTION=_F(INTITULE='it', RESULTAT=R, {given}))", word))
         self.all_refused(STUDY, calls)
