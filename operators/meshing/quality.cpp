@@ -154,27 +154,27 @@ struct Corner {
   std::array<Leg, 3> legs;
 };
 
-/// The corners at which as many edges meet as the cell has dimensions.
+/// The corners of a cell; at the apex of a pyramid, where one edge more meets than a cell has dimensions, one without each.
 std::vector<Corner> corners_of(const catalog::CellRow& row) {
   std::vector<Corner> corners;
-  const int d = row.dimension;
+  const auto d = static_cast<std::size_t>(row.dimension);
   for (int v = 0; v < row.n_vertices && d > 1; ++v) {
-    Corner corner{static_cast<std::int8_t>(v), {}};
-    int legs = 0;
-    std::array<std::array<double, 3>, 3> tangents{};
-    for (std::size_t e = 0; e < row.edges.size(); ++e) {
-      const auto [first, second] = row.edges[e];
-      if (first != v && second != v) continue;
-      if (legs < d) {
-        const std::int8_t end = first == v ? second : first;
-        corner.legs[legs] = {end, static_cast<std::int8_t>(row.order == 2 ? row.n_vertices + static_cast<int>(e) : -1)};
-        for (int k = 0; k < d; ++k) tangents[legs][k] = row.nodes[end * d + k] - row.nodes[v * d + k];
+    std::vector<Corner::Leg> legs;
+    for (std::size_t e = 0; e < row.edges.size(); ++e)
+      if (const auto [a, b] = row.edges[e]; a == v || b == v)
+        legs.push_back({a == v ? b : a, static_cast<std::int8_t>(row.order == 2 ? row.n_vertices + static_cast<int>(e) : -1)});
+    for (std::size_t first = 0; first < (legs.size() > d ? legs.size() : 1); ++first) {
+      Corner corner{static_cast<std::int8_t>(v), {}};
+      std::array<std::array<double, 3>, 3> tangents{};
+      for (std::size_t i = 0; i < d; ++i) {
+        corner.legs[i] = legs[(first + i) % legs.size()];
+        for (std::size_t k = 0; k < d; ++k)
+          tangents[i][k] =
+              row.nodes[static_cast<std::size_t>(corner.legs[i].end) * d + k] - row.nodes[static_cast<std::size_t>(v) * d + k];
       }
-      ++legs;
+      if (determinant(tangents, d) < 0) std::swap(corner.legs[0], corner.legs[1]);
+      corners.push_back(corner);
     }
-    if (legs != d) continue;
-    if (determinant(tangents, static_cast<std::size_t>(d)) < 0) std::swap(corner.legs[0], corner.legs[1]);
-    corners.push_back(corner);
   }
   return corners;
 }

@@ -28,9 +28,9 @@ double central_jacobian(CellType type, std::span<const std::int32_t> nodes, std:
 std::vector<std::int32_t> inverted_cells(const Mesh& mesh);
 
 /// The scaled Jacobian: at each corner of three edges (two in the plane) the determinant of the edges' unit tangents, over the
-/// one of the ideal cell, whose edges are all equal; the least of all corners. 1 for the ideal cell, 0 for a flat corner,
-/// negative for a corner turned inside out. Mid nodes bend the tangents of quadratic cells. The apex of a pyramid has no value
-/// of its own: the corners of the base say it. For cells of the space's dimension.
+/// one of the ideal cell, whose edges are all equal; the least of all corners. 1 for the ideal cell, less for others with
+/// straight edges, 0 for a flat corner, negative for a corner turned inside out. Mid nodes bend the tangents of quadratic
+/// cells. At the apex of a pyramid every three of the four edges count. For cells of the space's dimension.
 double scaled_jacobian(CellType type, std::span<const std::int32_t> nodes, std::span<const double> coordinates);
 
 /// A cell with its scaled Jacobian.

@@ -1,4 +1,6 @@
 // The scaled Jacobian: 1 for ideal cells, closed forms for others, and what a cut does to it.
+#include <random>
+
 #include "meshes.hpp"
 
 namespace lacon::test {
@@ -19,6 +21,31 @@ TEST(Quality, of_cells_of_equal_edges_is_one) {
   EXPECT_NEAR(quality(CellType::PYRAM5, {0, 0, 0, 1, 0, 0, 1, 1, 0, 0, 1, 0, 0.5, 0.5, std::sqrt(0.5)}), 1, 1e-15);
   EXPECT_NEAR(quality(CellType::PENTA6, {0, 0, 0, 1, 0, 0, 0.5, h, 0, 0, 0, 1, 1, 0, 1, 0.5, h, 1}), 1, 1e-15);
   EXPECT_NEAR(quality(CellType::HEXA8, {0, 0, 0, 3, 0, 0, 3, 3, 0, 0, 3, 0, 0, 0, 3, 3, 0, 3, 3, 3, 3, 0, 3, 3}), 1, 1e-15);
+}
+
+// Without its apex, a needle would be better than the ideal pyramid: its base has right angles on all sides.
+TEST(Quality, of_a_pyramid_sees_its_apex) {
+  const auto of_height = [](double z) { return quality(CellType::PYRAM5, {0, 0, 0, 1, 0, 0, 1, 1, 0, 0, 1, 0, 0.5, 0.5, z}); };
+  for (const double z : {0.1, 0.5, 1.0, 3.0, 30.0}) {
+    const double edge = std::hypot(z, std::sqrt(0.5));  // any three edges at the apex span the volume z / 6
+    EXPECT_NEAR(of_height(z), std::sqrt(2.0) * std::min(z / edge, z / (edge * edge * edge)), 1e-14);
+  }
+}
+
+TEST(Quality, of_straight_cells_is_one_at_most) {
+  std::mt19937 random(7);
+  std::normal_distribution<double> shift(0, 0.2);
+  for (const catalog::CellRow& row : catalog::cells()) {
+    if (row.dimension < 2 || row.order == 2) continue;
+    for (int sample = 0; sample < 2000; ++sample) {
+      std::vector<double> coordinates;
+      for (int n = 0; n < row.n_nodes; ++n)
+        for (int k = 0; k < 3; ++k)
+          coordinates.push_back(
+              k < row.dimension ? row.nodes[n * row.dimension + k] * (k == 2 ? 0.5 + sample % 4 : 1) + shift(random) : 0);
+      EXPECT_LE(quality(row.type, coordinates), 1 + 1e-14) << row.name;
+    }
+  }
 }
 
 TEST(Quality, does_not_depend_on_size_and_changes_its_sign_with_the_cell) {
