@@ -1,11 +1,34 @@
 #include "lacon/operators/modi_maillage/modi_maillage.hpp"
+
+#include "lacon/catalog/messages.hpp"
+#include "lacon/operators/fields/cell_points.hpp"
 #include "lacon/operators/program/program.hpp"
+
+namespace {
+
+/// DEFORME: the nodes move by a field of displacements on this mesh.
+void deform(lacon::Mesh& mesh, const lacon::Keywords& factor, const lacon::Base& base, const std::string& mesh_id) {
+  const lacon::Field displacement = base.field(factor.concept_id("DEPL"));
+  const std::string label = base.label(factor.concept_id("DEPL"));
+  if (displacement.mesh != mesh_id)
+    lacon::fail("CREACHAMP_5", {{"first", base.label(mesh_id)}, {"second", base.label(displacement.mesh)}});
+  if (displacement.location != lacon::Location::nodes || displacement.quantity != "DEPL_R")
+    lacon::fail("CREACHAMP_9",
+                {{"field", label},
+                 {"type", std::string(lacon::location_name(displacement.location)) + "_" + displacement.quantity},
+                 {"wanted", "NOEU_DEPL_R"}});
+  mesh.coordinates = lacon::displaced(mesh, displacement);
+}
+
+}  // namespace
 
 int main(int argc, char** argv) {
   using namespace lacon;
-  return run_program(argc, argv, "modi_maillage", "Changes a mesh in place: orients skins outward",
+  return run_program(argc, argv, "modi_maillage", "Changes a mesh in place: orients skins outward, moves nodes",
                      [](const Order& order, const Base& base) {
-                       Mesh mesh = base.mesh(order.keywords.concept_id("MAILLAGE"));
+                       const std::string id = order.keywords.concept_id("MAILLAGE");
+                       Mesh mesh = base.mesh(id);
+                       for (const Keywords& factor : order.keywords.factors("DEFORME")) deform(mesh, factor, base, id);
                        modi_maillage(mesh, order.keywords);
                        base.store(mesh);
                      });

@@ -2,6 +2,7 @@
 
 import unittest
 
+import h5py
 import numpy as np
 
 from lacon_test import OperatorTest, concept
@@ -79,6 +80,25 @@ class ModiMaillage(OperatorTest):
                                      ("mesh_2", {"SYMETRIE": [{"POINT": [0.0, 0.0, 0.0], "AXE_1": [1.0, 0.0, 0.0], "AXE_2": [2.0, 0.0, 0.0]}]}, "AXE_1")):
             with self.subTest(keywords=keywords):
                 self.assert_refuses("ORDER_4", "MODI_MAILLAGE", {"MAILLAGE": concept(mesh), **keywords}, word, result=mesh, reuse=True)
+
+    def test_nodes_move_by_their_displacements(self):
+        def write(identifier, mesh="mesh_1", location="NOEU", quantity="DEPL_R"):
+            with self.create(identifier, "field", references=[mesh], mesh=mesh, location=location, quantity=quantity, order=0, instant=0.0, name="U") as file:
+                file.attrs["components"] = np.array(["DX", "DY", "LAGS_C"], h5py.string_dtype())
+                file["support"], file["values"] = np.array([2, 6], np.int32), np.array([(0.5, -0.25, 9), (1, 2, 9)], float)
+                file["present"] = np.array([(1, 1, 1), (1, 0, 1)], np.uint8)
+
+        write("field_4")
+        expected = np.array(NODES, float)
+        expected[2] += (0.5, -0.25)
+        expected[6] += (1, 0)
+        np.testing.assert_array_equal(self.moved(DEFORME={"OPTION": "TRAN", "DEPL": concept("field_4")}).coordinates[:, :2], expected)
+        self.write_tetrahedron()
+        write("field_5", mesh="mesh_2")
+        write("field_6", quantity="GEOM_R")
+        for identifier, field in (("CREACHAMP_5", "field_5"), ("CREACHAMP_9", "field_6")):
+            self.assert_refuses(identifier, "MODI_MAILLAGE", {"MAILLAGE": concept("mesh_1"), "DEFORME": {"OPTION": "TRAN", "DEPL": concept(field)}},
+                                result="mesh_1", reuse=True)
 
     def test_leaves_a_lone_cell(self):
         run = self.run_orient({"GROUP_MA_PEAU": ["LONE"]})
