@@ -136,7 +136,8 @@ Point bulge(const catalog::CellRow& row, std::size_t edge, std::span<const std::
 
 double length(Point p) { return std::hypot(p[0], p[1], p[2]); }
 
-constexpr double flat = 1e-9;  ///< a bulge below this fraction of the size of a facet or cell is round-off
+/// A bulge below this fraction of the size of a facet or cell is round-off, also that of a file with seven or eight digits.
+constexpr double flat = 1e-6;
 
 /// Whether the mid nodes of a quadratic cell are in the middle of its edges, up to `flat` of the longest.
 bool has_straight_edges(CellType type, std::span<const std::int32_t> nodes, std::span<const double> coordinates) {
