@@ -124,6 +124,7 @@ Mesh crea_maillage(Mesh mesh, const Keywords& keywords) {
   refuse_cut_mesh(mesh, change->keyword);
   for (const Keywords& factor : keywords.factors(change->keyword))
     fmt::print("  {}: {} cells became {}\n", change->keyword, change->make(mesh, chosen(mesh, factor)), change->what);
+  tell_what_hangs(mesh);
   print_counts(nodes, cells, mesh);
   return mesh;
 }

@@ -163,4 +163,38 @@ std::int64_t make_linear(Mesh& mesh, std::span<const std::int32_t> cells) {
   return changed;
 }
 
+void tell_what_hangs(const Mesh& mesh) {
+  struct Neighbours {
+    std::int32_t without = -1, with = -1;  ///< the first cell that has no middle node, and that has one
+  };
+  std::map<std::vector<std::int32_t>, Neighbours> by_vertices;
+  for (std::size_t c = 0; c < mesh.n_cells(); ++c) {
+    const catalog::CellRow& row = mesh.row(c);
+    const auto enter = [&](std::vector<std::int32_t> vertices, bool has_middle) {
+      std::ranges::sort(vertices);
+      Neighbours& both = by_vertices[std::move(vertices)];
+      std::int32_t& own = has_middle ? both.with : both.without;
+      if (own < 0) own = static_cast<std::int32_t>(c);
+    };
+    const auto nodes = mesh.cells[c];
+    const auto at = [&](int local) { return nodes[static_cast<std::size_t>(local)]; };
+    if (row.dimension < mesh.dimension - 1) continue;  // lines in space carry neither volume nor skin
+    for (const auto& [first, second] : row.edges) enter({at(first), at(second)}, row.order == 2);
+    if (row.dimension == 2 && row.n_vertices == 4) enter({at(0), at(1), at(2), at(3)}, row.n_nodes == 9);
+    if (row.dimension == 3)
+      for (const catalog::FacetRow& facet : row.facets)
+        if (catalog::cell(facet.type).n_vertices == 4)
+          enter({at(facet.nodes[0]), at(facet.nodes[1]), at(facet.nodes[2]), at(facet.nodes[3])}, facet.nodes.size() == 9);
+  }
+  std::int64_t count = 0;
+  Neighbours first;
+  for (const auto& [vertices, both] : by_vertices)
+    if (both.with >= 0 && both.without >= 0 && count++ == 0) first = both;
+  if (count > 0)
+    inform("ORDRE_3",
+           {{"count", std::to_string(count)},
+            {"with", std::string(mesh.row(static_cast<std::size_t>(first.with)).name) + " " + cell_name(first.with)},
+            {"without", std::string(mesh.row(static_cast<std::size_t>(first.without)).name) + " " + cell_name(first.without)}});
+}
+
 }  // namespace lacon

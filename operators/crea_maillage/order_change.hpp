@@ -20,4 +20,8 @@ std::int64_t make_complete(Mesh& mesh, std::span<const std::int32_t> cells);
 /// @return how many cells changed
 std::int64_t make_linear(Mesh& mesh, std::span<const std::int32_t> cells);
 
+/// Inform (ORDRE_3) of edges and faces that have a node in their middle in one body or skin cell and none in another: the mesh
+/// does not conform there.
+void tell_what_hangs(const Mesh& mesh);
+
 }  // namespace lacon

@@ -164,4 +164,24 @@ TEST(Hexa20To27, by_groups_uses_the_nodes_that_are_there) {
   EXPECT_EQ(mesh.types[2], CellType::QUAD8);
 }
 
+// A part of a conforming mesh that changes leaves nodes in the middle of its neighbours' edges or faces: they are counted.
+TEST(OrderChange, tells_what_hangs) {
+  const auto told = [](const Mesh& mesh) {
+    const Listener listener;
+    tell_what_hangs(mesh);
+    return Listener::heard().empty() ? std::string() : Listener::heard()[0].text;
+  };
+  Mesh mesh = bent_pair();
+  EXPECT_EQ(told(mesh), "");
+  make_complete(mesh, Nodes{0, 2});
+  EXPECT_THAT(told(mesh), testing::HasSubstr("1 edges or faces"));  // the face between the two, which the QUAD8 M4 has too
+  EXPECT_THAT(told(mesh), testing::HasSubstr("between HEXA27 M1 and HEXA20 M2"));
+  make_complete(mesh, Nodes{1, 3});
+  EXPECT_EQ(told(mesh), "");
+  make_linear(mesh, Nodes{1, 3});
+  EXPECT_THAT(told(mesh), testing::HasSubstr("5 edges or faces"));  // and the four edges around it
+  make_linear(mesh, all_cells(mesh));
+  EXPECT_EQ(told(mesh), "");
+}
+
 }  // namespace
