@@ -42,11 +42,15 @@ def tensors(components, values):
     return found
 
 
-def turned(components, values, axes):
-    """The values (n, components) with vectors and tensors in other axes (n, 3, 3), whose rows are unit vectors."""
+def turned(components, values, there, axes):
+    """The values (n, components) with vectors and tensors in other axes (n, 3, 3), whose rows are unit vectors.
+    @return (values, there); a vector or tensor that is not whole has no components in other axes"""
     import numpy
 
-    values = values.copy()
+    values, there = values.copy(), there.copy()
+    for columns, _ in [*vectors(components, values), *tensors(components, values)]:
+        columns = [c for c in columns if c >= 0]
+        there[:, columns] = there[:, columns].all(axis=1)[:, None]
     for columns, given in vectors(components, values):
         made = numpy.einsum("nij,nj->ni", axes, given)
         for axis, column in enumerate(columns):
@@ -57,7 +61,7 @@ def turned(components, values, axes):
         for column, (_, i, j) in zip(columns, _tensor):
             if column >= 0:
                 values[:, column] = made[:, i, j]
-    return values
+    return values, there
 
 
 def at(call, k, path, points, plane):

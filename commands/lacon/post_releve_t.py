@@ -44,10 +44,11 @@ class _Frame:
             call.fail("POST_3", path, field=field.name, components=", ".join(wanted))
         self.names, self.nodes = wanted, nodes
         self.points = mesh.getCoordinates().toNumpy()[nodes]
-        own = values[nodes]
+        own, own_there = values[nodes], there[nodes]
         if action["REPERE"] != "GLOBAL":
-            own = axes.turned(field.components, own, axes.at(call, action, path, self.points, mesh.getDimension() == 2))
-        self.values, self.there = own[:, columns], there[nodes][:, columns]
+            own, own_there = axes.turned(field.components, own, own_there,
+                                         axes.at(call, action, path, self.points, mesh.getDimension() == 2))
+        self.values, self.there = own[:, columns], own_there[:, columns]
         self.all_values, self.all_there = values, there
         self._derive()
 
@@ -67,7 +68,7 @@ class _Frame:
         if not made:
             self.call.fail("POST_7", f"{self.path}/{keyword}", field=self.field.name, components=", ".join(self.names))
         self.names, self.values = list(made), numpy.column_stack(list(made.values()))
-        self.there = numpy.repeat(self.there.any(axis=1)[:, None], len(made), axis=1)
+        self.there = numpy.repeat(self.there.all(axis=1)[:, None], len(made), axis=1)
 
     def extraction(self):
         """A row a node."""

@@ -9,6 +9,7 @@
 #include <optional>
 
 #include "lacon/catalog/messages.hpp"
+#include "lacon/operators/fields/axes.hpp"
 #include "lacon/operators/fields/layout.hpp"
 #include "lacon/operators/fields/selection.hpp"
 #include "lacon/operators/macr_lign_coupe/lines.hpp"
@@ -64,29 +65,72 @@ Subject subject_of(const Base& base, const Keywords& keywords) {
 /// A node of less weight than this has a part in the value by round-off alone: the point is on a node or a side without it.
 constexpr double weight_of_round_off = 1e-10;
 
+/// The value of a component at a point; nothing where a node that it needs lacks it.
+std::optional<double> value_at(const Field& field, const std::vector<std::int64_t>& row_of_node, const LinePoint& point,
+                               std::size_t component) {
+  double sum = 0;
+  for (std::size_t a = 0; a < point.nodes.size(); ++a) {
+    const std::int64_t row = row_of_node[static_cast<std::size_t>(point.nodes[a])];
+    if (row >= 0 && field.has(static_cast<std::size_t>(row), component))
+      sum += point.weights[a] * field.at(static_cast<std::size_t>(row), component);
+    else if (std::abs(point.weights[a]) > weight_of_round_off)
+      return std::nullopt;
+  }
+  return sum;
+}
+
+/// The field in the axes of REPERE at the points of a line: a row of nodes stands for them.
+Field turned(const Mesh& mesh, const Keywords& line, const Field& field, const std::vector<LinePoint>& points) {
+  Field made = field;
+  made.support.clear();
+  made.values.clear();
+  made.present.clear();
+  const std::vector<std::int64_t> row_of_node = places(field, mesh.n_nodes());
+  const Frame frame(mesh, line, line.text("REPERE") == "CYLINDRIQUE");
+  const std::vector<Turned> parts = turned_components(field);
+  std::size_t lost = 0;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    made.support.push_back(static_cast<std::int32_t>(i));
+    for (std::size_t c = 0; c < field.n_components(); ++c) {
+      const std::optional<double> value = value_at(field, row_of_node, points[i], c);
+      made.values.push_back(value.value_or(0.0));
+      made.present.push_back(value.has_value());
+    }
+    const Eigen::Matrix3d axes = frame.at(Eigen::Map<const Eigen::Vector3d>(points[i].position.data()), lost);
+    for (const Turned& part : parts) {
+      const auto lacks = [&](int c) { return c >= 0 && !made.has(i, static_cast<std::size_t>(c)); };
+      if (std::ranges::none_of(part.column, lacks)) {
+        turn(made, i, part, axes);
+        continue;
+      }
+      for (const int c : part.column)  // a vector that is not whole has no components in other axes
+        if (c >= 0) made.present[i * made.n_components() + static_cast<std::size_t>(c)] = 0;
+    }
+  }
+  if (lost) inform("MODIREPERE_4", {{"count", std::to_string(lost)}});
+  return made;
+}
+
 /// A field at the points of a line.
 struct Values {
   std::vector<std::string> components;
   std::vector<std::vector<std::optional<double>>> at;  ///< (component, point)
 };
 
-Values interpolate(const Field& field, const std::vector<std::int64_t>& row_of_node, const std::vector<LinePoint>& points,
+Values interpolate(const Mesh& mesh, const Keywords& line, const Field& field, const std::vector<LinePoint>& points,
                    const std::vector<std::string>& components) {
   Values values{components, {}};
+  const bool global = line.text("REPERE") == "GLOBAL";
+  const std::vector<std::int64_t> row_of_node = places(field, mesh.n_nodes());
+  const Field own = global ? Field() : turned(mesh, line, field, points);
   for (const std::string& name : components) {
     const auto c = static_cast<std::size_t>(field.component(name));
-    std::vector<std::optional<double>>& line = values.at.emplace_back();
-    for (const LinePoint& point : points) {
-      std::optional<double> sum = 0.0;
-      for (std::size_t a = 0; a < point.nodes.size() && sum; ++a) {
-        const std::int64_t row = row_of_node[static_cast<std::size_t>(point.nodes[a])];
-        if (row >= 0 && field.has(static_cast<std::size_t>(row), c))
-          *sum += point.weights[a] * field.at(static_cast<std::size_t>(row), c);
-        else if (std::abs(point.weights[a]) > weight_of_round_off)
-          sum.reset();
-      }
-      line.push_back(sum);
-    }
+    std::vector<std::optional<double>>& column = values.at.emplace_back();
+    for (std::size_t i = 0; i < points.size(); ++i)
+      if (global)
+        column.push_back(value_at(field, row_of_node, points[i], c));
+      else
+        column.push_back(own.has(i, c) ? std::optional(own.at(i, c)) : std::nullopt);
   }
   return values;
 }
@@ -212,8 +256,7 @@ void macr_lign_coupe(const Order& order, const Base& base) {
                                  {"INST", "R", field.instant}});
       else
         head.push_back({"CHAM_GD", "K8", subject.name});
-      const Values values =
-          interpolate(field, places(field, mesh.n_nodes()), points, wanted_components(field, subject.name, keywords, line));
+      const Values values = interpolate(mesh, line, field, points, wanted_components(field, subject.name, keywords, line));
       if (std::ranges::none_of(
               values.at, [](const auto& c) { return std::ranges::any_of(c, [](const auto& v) { return v.has_value(); }); }))
         fail("LIGNCOUPE_9", {{"keyword", line.path("TYPE")},

@@ -115,6 +115,14 @@ near([a * a + b * b for a, b in zip(t.DX, t.DY)], [1, 2, 5])
 FIN()
 """))
 
+    def test_a_vector_that_is_not_whole_has_no_components_in_other_axes(self):
+        self.ok(self.run_study(STUDY + self.field("DEPL_R", ["DX", "DY"], [[0.0, 1.0], [1.0, 1.0], [2.0, 1.0]]).replace(
+            "F = study", "    file['present'] = [[1, 1], [1, 0], [1, 1]]\nF = study") + """
+t = table(REPERE='UTILISATEUR', ANGL_NAUT=90.)
+assert [x is None for x in t.DX] == [False, True, False] and [x is None for x in t.DY] == [False, True, False], t
+FIN()
+"""))
+
     def test_tensors(self):
         names = ["SIXX", "SIYY", "SIZZ", "SIXY"]
         self.ok(self.run_study(STUDY + self.field("SIEF_R", names, [[3.0, 3.0, 10.0, 2.0], [5.0, 0.0, 0.0, 0.0], [0.0, 0.0, 0.0, 7.0]]) + """

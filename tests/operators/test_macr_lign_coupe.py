@@ -74,6 +74,30 @@ class MacrLignCoupe(OperatorTest):
             np.testing.assert_allclose(self.column(own, "ABSC_CURV"), np.linspace(0, 1, 17) * np.linalg.norm(end - start), atol=1e-15)
             np.testing.assert_allclose([[row[c] for c in ("DX", "DY", "DZ")] for row in own], (1 + k) * (expected @ gradient.T + 0.25), atol=1e-12)
 
+    def test_other_axes_at_the_points_of_the_line(self):
+        """u = x, which is r e_r + z e_z about the third axis."""
+        points, cells = bricks(2)
+        self.write(points, cells, points)
+        line = {"NB_POINTS": 5, "COOR_ORIG": [0.1, 0.9, 0.2], "COOR_EXTR": [0.8, 0.3, 0.6]}
+        cylinder = {**line, "REPERE": "CYLINDRIQUE", "ORIGINE": [0.0, 0.0, 7.0], "AXE_Z": [0.0, 0.0, 3.0]}
+        for row in self.lines(cylinder, NUME_ORDRE=[0]):
+            x, y, z = (row[c] for c in PLACE[1:])
+            np.testing.assert_allclose([row[c] for c in ("DX", "DY", "DZ")], [math.hypot(x, y), z, 0], atol=1e-14)
+        for row in self.lines({**line, "REPERE": "UTILISATEUR", "ANGL_NAUT": [90.0], "NOM_CMP": ["DY"]}, NUME_ORDRE=[0]):
+            self.assertEqual(list(row)[-2:], ["COOR_Z", "DY"])
+            self.assertAlmostEqual(row["DY"], -row["COOR_X"], 14)
+        found = self.lines({**cylinder, "OPERATION": "MOYENNE", "NOM_CMP": ["DZ"]}, NUME_ORDRE=[0])
+        np.testing.assert_allclose(self.column(found, "DZ"), [0] * 6, atol=1e-13)
+        self.lines({**cylinder, "COOR_ORIG": [0.0, 0.0, 0.5]}, NUME_ORDRE=[0])
+        self.assertEqual(self.messages, ["MODIREPERE_4"])
+        self.refuses("ORDER_4", {**cylinder, "AXE_Z": [0.0, 0.0, 0.0]}, "AXE_Z")
+
+    def test_axes_of_a_vector_that_is_not_whole_leave_it_out(self):
+        self.write([(0, 0), (1, 0), (1, 1), (0, 1)], [("QUAD4", [0, 1, 2, 3])], [(1, 2)] * 4, present=np.array([(1, 1), (1, 0), (1, 1), (1, 1)], np.uint8))
+        rows = self.lines({"NB_POINTS": 2, "COOR_ORIG": [1.0, 0.0], "COOR_EXTR": [1.0, 1.0], "REPERE": "UTILISATEUR", "ANGL_NAUT": [90.0]}, NUME_ORDRE=[0])
+        self.assertEqual([rows[0]["DX"], rows[0]["DY"]], [None, None])
+        np.testing.assert_allclose([rows[1]["DX"], rows[1]["DY"]], [2, -1], atol=1e-15)
+
     def test_an_arc_in_space(self):
         points, cells = bricks(3)
         self.write(points, cells, points)
