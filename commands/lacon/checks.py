@@ -307,8 +307,10 @@ def write_json(path, checks, diagnostic, status, timings):
     data = {"format": 1, "diagnostic": diagnostic, "status": status, "checks": [c.data() for c in checks], "timings": timings}
     for check in data["checks"]:
         check["value"] = _finite(check["value"])
-    partial = f"{path}.partial"
+    is_device = os.path.exists(path) and not os.path.isfile(path)  # as /dev/stdout, which a renamed file would replace
+    partial = path if is_device else f"{path}.partial"
     with open(partial, "w", encoding="utf-8") as file:
         json.dump(data, file, indent=1, ensure_ascii=False)
         file.write("\n")
-    os.replace(partial, path)
+    if not is_device:
+        os.replace(partial, path)

@@ -2,6 +2,7 @@
 
 import json
 import math
+import os
 import sys
 import unittest
 
@@ -205,6 +206,11 @@ class Readings(LauncherTest):
 
     def test_a_json_that_cannot_be_written(self):
         self.refused(self.run_study("DEBUT()\nFIN()\n", "--json", "nowhere/checks.json"), "STUDY_3", "nowhere/checks.json")
+
+    def test_a_device_for_the_figures_stays_one(self):
+        (self.work / "sink").symlink_to(os.devnull)
+        self.ok(self.run_study("DEBUT()\nFIN()\n", "--json", "sink"))
+        self.assertTrue((self.work / "sink").is_char_device())
 
 
 if __name__ == "__main__":
