@@ -182,6 +182,14 @@ void straighten(CellType type, const CellNodes& sub_cell, const CellNodes& added
   }
 }
 
+/// What a slave skin of this mesh is made of, for a message.
+std::string skin_cells(const Mesh& mesh) {
+  if (mesh.dimension == 2) return "segments (SEG2, SEG3)";
+  const std::string faces = "faces (TRIA3, TRIA6, QUAD4, QUAD8, QUAD9)";
+  const bool is_solid = std::ranges::any_of(mesh.types, [](CellType type) { return catalog::cell(type).dimension == 3; });
+  return is_solid ? faces : faces + " of 3D cells, and there are none: a plane mesh is one of 2D only where every z is 0";
+}
+
 constexpr std::int64_t max_facets = 6;  ///< of a body cell
 
 /// Every check on the groups and their cells, before anything is cut.
@@ -207,12 +215,11 @@ std::vector<Slave> find_slaves(const Mesh& mesh, std::span<const std::string> gr
     for (const std::int32_t cell : cells_of_group(mesh, group, keyword)) {
       const auto c = static_cast<std::size_t>(cell);
       if (mesh.row(c).dimension != skin_dimension)
-        fail("DECOUPE_4",
-             {{"keyword", keyword},
-              {"group", group},
-              {"cell", cell_name(cell)},
-              {"type", std::string(mesh.row(c).name)},
-              {"skin", skin_dimension == 1 ? "segments (SEG2, SEG3)" : "faces (TRIA3, TRIA6, QUAD4, QUAD8, QUAD9)"}});
+        fail("DECOUPE_4", {{"keyword", keyword},
+                           {"group", group},
+                           {"cell", cell_name(cell)},
+                           {"type", std::string(mesh.row(c).name)},
+                           {"skin", skin_cells(mesh)}});
       if (const auto [at, fresh] = zone_of.emplace(cell, zone); !fresh)
         fail("DECOUPE_2", {{"keyword", keyword}, {"cell", cell_name(cell)}, {"first", groups[at->second]}, {"second", group}});
       const std::vector<BodyCell> bodies = body_cells(mesh, around, c);

@@ -215,6 +215,10 @@ class CutTool(OperatorTest):
         os.mkfifo(self.folder / "pipe")  # as /dev/null: renaming a whole file would put it in its place
         self.refuses("BASE_3", self.source, self.folder / "pipe", "--slave", "TOP", words=["pipe", "not a file"])
         self.assertTrue((self.folder / "pipe").is_fifo())
+        plane = block("QUAD4", LINES, LINES, sides={"top": "TOP"})
+        plane.points = np.column_stack([plane.points, np.full(len(plane.points), 5.0)])
+        write_med(self.source, plane)
+        self.refuses("DECOUPE_4", self.source, self.out, "--slave", "TOP", words=["SEG2 M1", "only where every z is 0"])
         self.source.write_text("no mesh")
         self.refuses("MED_2", self.source, self.out, "--slave", "TOP", words=["in.med"])
         skins_only = block("QUAD4", LINES, LINES, sides={"top": "TOP"})
