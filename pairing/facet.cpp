@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <utility>
 
 #include "lacon/elements/lanes.hpp"
 
@@ -63,9 +64,13 @@ Map2 project(const Map3& map, Vec3 e1, Vec3 e2) {
   return p;
 }
 
-std::optional<Vec2> inverse(const Map2& map, Family family, Vec2 y, double tolerance, double margin) {
-  const bool triangle = family == Family::TRIA;
-  Vec2 p = triangle ? Vec2{1.0 / 3, 1.0 / 3} : Vec2{0, 0};
+namespace {
+
+/// Jacobian over that in the middle: below it a place is behind a fold. A corner where it is zero, and round-off, is not.
+constexpr double behind_fold = -1e-9;
+
+/// Newton's method from a reference point. @return the point, and how far its image is from y
+std::pair<Vec2, double> approach(const Map2& map, Vec2 p, Vec2 y) {
   Map2::Value v = map(p);
   double residual = norm(y - v.x);
   for (int iteration = 0; iteration < 60 && residual > 0; ++iteration) {
@@ -89,8 +94,30 @@ std::optional<Vec2> inverse(const Map2& map, Family family, Vec2 y, double toler
     if (!better) break;                       // round-off
     if (map.n == 3 || length <= 1e-9) break;  // linear, or quadratic: the next step would be below round-off
   }
-  if (!(residual <= tolerance) || !near_reference_cell(family, p, margin)) return std::nullopt;
-  return p;
+  return {p, residual};
+}
+
+}  // namespace
+
+std::optional<Vec2> inverse(const Map2& map, Family family, Vec2 y, double tolerance, double margin) {
+  const std::span<const Vec2> starts = probes(family);
+  const auto jacobian = [&](Vec2 p) {
+    const Map2::Value v = map(p);
+    return cross(v.d1, v.d2);
+  };
+  const double middle = jacobian(starts.back());
+  const auto found = [&](Vec2 start) -> std::optional<Vec2> {
+    const auto [p, residual] = approach(map, start, y);
+    const bool there = residual <= tolerance && near_reference_cell(family, p, margin) &&
+                       (map.n <= 4 || jacobian(p) * middle >= behind_fold * middle * middle);
+    return there ? std::optional(p) : std::nullopt;
+  };
+  if (const std::optional<Vec2> p = found(starts.back())) return p;
+  // a strongly bent map is folded close to its cell: the way from the middle may end there, or behind the fold
+  if (map.n > 4)
+    for (const Vec2 start : starts.first(starts.size() - 1))
+      if (const std::optional<Vec2> p = found(start)) return p;
+  return std::nullopt;
 }
 
 namespace {
@@ -155,6 +182,7 @@ LACON_KERNEL void meet_eight(const Map3& map, double start, const double* lines,
   Eight xi = zero + start, eta = xi;
   EightPoints now(map, xi, eta, x, n);
   EightMarks going = now.off2 > 0.0, well = ~going;  // lanes that still move, lanes that have arrived
+  const Eight middle = dot(cross(now.d1, now.d2), n);
   for (int step = 0; step < most_steps; ++step) {
     const Eight scale = 1 / dot(cross(now.d1, now.d2), n);
     const Eight by_xi = scale * dot(cross(now.off, now.d2), n), by_eta = scale * dot(cross(now.d1, now.off), n);
@@ -175,10 +203,12 @@ LACON_KERNEL void meet_eight(const Map3& map, double start, const double* lines,
     for (int lane = 0; lane < LACON_LANES; ++lane) any = any || going[lane] != 0;
     if (!any) break;
   }
+  const Eight jacobian = dot(cross(now.d1, now.d2), n);
+  if (map.n > 4) well &= jacobian * middle >= behind_fold * middle * middle;
   lanes(met, 0) = (well & (now.off2 <= tolerance * tolerance)) != 0 ? zero + 1.0 : zero;
   lanes(met, 1) = xi;
   lanes(met, 2) = eta;
-  lanes(met, 3) = dot(cross(now.d1, now.d2), n);
+  lanes(met, 3) = jacobian;
 }
 
 }  // namespace
@@ -204,6 +234,7 @@ void meet(const Map3& map, Family family, std::span<const Line> lines, double to
 }
 
 constexpr double round_off = 1e-13;  // of higher terms, relative to the affine ones
+constexpr double bent = 1e-3;        // of quadratic terms: below it a map is inverted as a bilinear one
 
 Inverse::Inverse(const Map2& map, Family family) : map_(map), family_(family) {
   const auto size = [](Vec2 v) { return std::abs(v.x) + std::abs(v.y); };
@@ -231,7 +262,11 @@ double distortion(const Map3& map, Family family, Vec3 normal) {
     low = std::min(low, jacobian);
     high = std::max(high, jacobian);
   }
-  return low > 0 ? (high - low) / (high + low) : 1;
+  if (!(low > 0)) return 1;
+  const double d = (high - low) / (high + low);
+  double quadratic = 0;
+  for (int k = family == Family::TRIA ? 3 : 4; k < map.n; ++k) quadratic += norm(map.c[k]);
+  return quadratic <= bent * (norm(map.c[1]) + norm(map.c[2])) ? d : 2 * d / (1 + d * d);
 }
 
 std::vector<Vec3> hull(Family family, int degree, const std::function<Vec3(Vec2)>& polynomial) {

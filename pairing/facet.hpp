@@ -131,8 +131,10 @@ class Inverse {
 /// `normal`.
 bool is_affine(const Map3& map, Vec3 normal);
 
-/// How much the Jacobian along `normal` varies, (max - min) / (max + min) over vertices, middles of edges and the middle; 0 for
-/// an affine facet, at least 1 for a folded one.
+/// One over the distance of the nearest singularity of the inverse map, for a facet that reaches from -1 to 1; 0 for an affine
+/// facet, 1 for a folded one. With d = (max J - min J) / (max J + min J) of the Jacobian along `normal` over vertices, middles
+/// of edges and the middle, it is d for a bilinear map, J = 1 + d s, whose inverse has a pole at 1 / d; a quadratic one, x = s
+/// + d s^2 / 2, has a branch point where J = 0, and that place is (d + 1 / d) / 2 in x.
 double distortion(const Map3& map, Family family, Vec3 normal);
 
 /// Vectors whose convex hull holds every value of a polynomial on the reference cell: its Bernstein coefficients.

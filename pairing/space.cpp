@@ -505,8 +505,10 @@ bool sooner(const View* a, const View* b) {
 /// Whether polygons of a couple are exact, or nearly so.
 bool exact_polygons(const SlaveFacet& slave, const FacetKind& master) { return slave.nearly_flat && master.straight; }
 
+constexpr int largest_degree = 61;  ///< of a rule of 32 points each way, on squares and on triangles
+
 /// The degree to which a couple is integrated. The integrand is analytic in the plane; the nearest singularity of an inverse
-/// map lies at about 1 / distortion, so that a rule of degree d leaves rho^-d with rho as below (METHOD.md 5.4 has measured
+/// map lies at about 1 / distortion, so that a rule of degree p leaves rho^-p with rho as below (METHOD.md 5.4 has measured
 /// figures). Where polygons are themselves approximate a higher degree than 8 serves nothing.
 int integration_degree(const SlaveFacet& slave, const FacetKind& master) {
   const double d = std::min(0.999, std::max(slave.f.distortion, master.distortion));
@@ -514,7 +516,7 @@ int integration_degree(const SlaveFacet& slave, const FacetKind& master) {
   if (d <= 1e-12) return std::max(4, polynomial);
   const double rho = 1 / d + std::sqrt(1 / (d * d) - 1);
   const int degree = polynomial + static_cast<int>(std::ceil(12 * std::numbers::ln10 / std::log(rho)));
-  return std::clamp(degree, 4, exact_polygons(slave, master) ? 31 : 8);
+  return std::clamp(degree, 4, exact_polygons(slave, master) ? largest_degree : 8);
 }
 
 /// Rules by degree: found once, and then without the lock of integration_rule().
@@ -529,7 +531,7 @@ class KnownRules {
   }
 
  private:
-  static constexpr int size = 32;
+  static constexpr int size = largest_degree + 1;
   std::array<std::atomic<const Rule*>, size> rules_{};
 };
 

@@ -139,15 +139,19 @@ double length(Point p) { return std::hypot(p[0], p[1], p[2]); }
 /// A bulge below this fraction of the size of a facet or cell is round-off, also that of a file with seven or eight digits.
 constexpr double flat = 1e-6;
 
-/// Whether the mid nodes of a quadratic cell are in the middle of its edges, up to `flat` of the longest.
+/// Whether the mid nodes of a quadratic cell are on the straight lines between their vertices, up to `flat` of the longest
+/// edge.
 bool has_straight_edges(CellType type, std::span<const std::int32_t> nodes, std::span<const double> coordinates) {
   const catalog::CellRow& row = catalog::cell(type);
   double longest = 0, largest = 0;
   for (std::size_t e = 0; e < row.edges.size(); ++e) {
     const Point a = point_of(coordinates, nodes[static_cast<std::size_t>(row.edges[e].first)]),
                 b = point_of(coordinates, nodes[static_cast<std::size_t>(row.edges[e].second)]);
-    longest = std::max(longest, length({b[0] - a[0], b[1] - a[1], b[2] - a[2]}));
-    largest = std::max(largest, length(bulge(row, e, nodes, coordinates)));
+    const Point d{b[0] - a[0], b[1] - a[1], b[2] - a[2]}, off = bulge(row, e, nodes, coordinates);
+    const double along = (off[0] * d[0] + off[1] * d[1] + off[2] * d[2]) / (d[0] * d[0] + d[1] * d[1] + d[2] * d[2]);
+    if (!(std::abs(along) < 0.25)) return false;  // an edge that is folded, or without length
+    longest = std::max(longest, length(d));
+    largest = std::max(largest, length({off[0] - along * d[0], off[1] - along * d[1], off[2] - along * d[2]}));
   }
   return largest <= flat * longest;
 }

@@ -52,9 +52,23 @@ def uneven(n, shift):
     return lines + shift * lines * (1 - lines)
 
 
-def stack(slave, master, shaking=False, normal=NORMAL, scale=1.0, seed=2):
-    """The two unit blocks, slave above. @param shaking moves inner nodes by SHAKE @return (mesh, supports: group of one node ->
-    component -> displacement)"""
+def slide(mesh, most, seed):
+    """Moves mid nodes of skin cells along their straight edges by up to `most` of the edge, middles of QUAD9 by half as much in the facet."""
+    random, moved = np.random.default_rng(seed), {}
+    for kind in ("TRIA6", "QUAD8", "QUAD9"):
+        for nodes in mesh.cells.get(kind, []):
+            n = 3 if kind == "TRIA6" else 4
+            edges = np.roll(mesh.points[nodes[:n]], -1, axis=0) - mesh.points[nodes[:n]]
+            for k, node in enumerate(nodes[n:]):
+                by = most * random.uniform(-1, 1) * edges[k] if k < n else most * random.uniform(-0.5, 0.5, 2) @ edges[:2]
+                moved.setdefault(node, mesh.points[node] + by)
+    for node, point in moved.items():
+        mesh.points[node] = point
+
+
+def stack(slave, master, shaking=False, normal=NORMAL, scale=1.0, seed=2, sliding=0.0):
+    """The two unit blocks, slave above. @param shaking moves inner nodes by SHAKE @param sliding see slide() @return (mesh, supports:
+    group of one node -> component -> displacement)"""
 
     def body(kind, cut, axis, lines, seed, name, sides):
         order = [(axis + 1) % 3, (axis + 2) % 3, axis]
@@ -64,6 +78,7 @@ def stack(slave, master, shaking=False, normal=NORMAL, scale=1.0, seed=2):
         place = shaken(grid, lambda at: SHAKE[0 if at[axis] == 0 else 1], seed) if shaking else None
         mesh = brick(kind, grid, place, name, {(axis, end): group for end, group in sides.items()}, cut=cut)
         mesh.points = mesh.points[:, order]
+        slide(mesh, sliding, seed)
         return mesh
 
     kind, cut, axis, _ = SLAVES[slave]
@@ -102,9 +117,10 @@ def held(mesh, name, nodes, free, normal):
     return supports
 
 
-def study(slave, master, shaking=False, scale=1.0, jacobian="INITIAL", normal=NORMAL):
+def study(slave, master, shaking=False, scale=1.0, jacobian="INITIAL", normal=NORMAL, sliding=0.0):
     """What `run` and `figures` need of one patch test."""
-    return types.SimpleNamespace(slave=slave, master=master, shaking=shaking, scale=scale, jacobian=jacobian, normal=np.asarray(normal, float))
+    return types.SimpleNamespace(slave=slave, master=master, shaking=shaking, scale=scale, jacobian=jacobian, normal=np.asarray(normal, float),
+                                 sliding=sliding)
 
 
 def matrix(**parameters):
@@ -114,7 +130,7 @@ def matrix(**parameters):
 def tolerance(one):
     """Of pressures and stresses, relative: 1e-10 where facets are affine, 1e-8 where they are not."""
     quadrangles = "QUAD" in one.master or not one.slave.startswith(ALWAYS_AFFINE)
-    return 1e-8 if one.slave.endswith("in HEXA") or one.shaking and quadrangles else 1e-10
+    return 1e-8 if one.slave.endswith("in HEXA") or one.sliding or one.shaking and quadrangles else 1e-10
 
 
 def run(test, studies):
@@ -123,7 +139,7 @@ def run(test, studies):
     displacement, .cover, and the number of .iterations"""
     orders = []
     for one in studies:
-        mesh, supports = stack(one.slave, one.master, one.shaking, one.normal, one.scale)
+        mesh, supports = stack(one.slave, one.master, one.shaking, one.normal, one.scale, sliding=one.sliding)
         orders.append(contact_study(mesh, [{"GROUP_NO": node, **values} for node, values in supports.items()],
                                     [{"GROUP_MA": ["LOAD", "BASE"], "PRES": PRESSURE}], cut=SLAVES[one.slave][3],
                                     elastic={"E": YOUNG, "NU": POISSON}, zone={"TYPE_JACOBIEN": one.jacobian}))

@@ -268,6 +268,43 @@ TEST_P(StraightEdges, of_a_distorted_quadratic_cell_stay_straight) {
 INSTANTIATE_TEST_SUITE_P(Cuts, StraightEdges, testing::Bool(),
                          [](const auto& row) { return row.param ? "in_single_precision" : "in_double_precision"; });
 
+// Mid nodes that are on their straight edges but not in the middle stay where they are; the new ones are in the middle all the
+// same, and the sub-cells fill the cell.
+TEST(Cuts, of_a_cell_with_mid_nodes_off_the_middle_have_straight_edges) {
+  for (const auto& [body, skin, option] : {std::tuple{CellType::HEXA20, CellType::QUAD8, "PYRA"},
+                                           {CellType::HEXA20, CellType::QUAD8, "HEXA"},
+                                           {CellType::PENTA15, CellType::QUAD8, "PYRA"},
+                                           {CellType::PYRAM13, CellType::QUAD8, "PYRA"}}) {
+    Mesh mesh = one_cell(body, skin, 0);
+    mesh.cell_groups[0].members.resize(1);
+    for (std::size_t c = 0; c < mesh.n_cells(); ++c) {
+      const catalog::CellRow& row = mesh.row(c);
+      const auto at = [&](int i) { return mesh.coordinates.data() + 3 * static_cast<std::size_t>(mesh.cells[c][i]); };
+      for (std::size_t e = 0; e < row.edges.size(); ++e) {
+        auto [first, second] = std::pair(at(row.edges[e].first), at(row.edges[e].second));
+        if (std::lexicographical_compare(second, second + 3, first, first + 3)) std::swap(first, second);  // the edge has one
+        for (int k = 0; k < 3; ++k) at(row.n_vertices + static_cast<int>(e))[k] = 0.45 * first[k] + 0.55 * second[k];
+      }
+    }
+    const Mesh made = cut(mesh, {"SKIN"}, option);
+    expect_sound_cut(mesh, made, {"SKIN"});
+    for (std::size_t c = 0; c < made.n_cells(); ++c) {
+      const catalog::CellRow& row = made.row(c);
+      const auto nodes = made.cells[c];
+      for (std::size_t e = 0; e < row.edges.size(); ++e) {
+        const auto middle = static_cast<std::size_t>(nodes[row.n_vertices + static_cast<int>(e)]);
+        if (middle < mesh.n_nodes()) continue;
+        for (std::size_t k = 0; k < 3; ++k)
+          EXPECT_NEAR(made.point(middle)[k],
+                      (made.point(static_cast<std::size_t>(nodes[row.edges[e].first]))[k] +
+                       made.point(static_cast<std::size_t>(nodes[row.edges[e].second]))[k]) /
+                          2,
+                      1e-15);
+      }
+    }
+  }
+}
+
 // METHOD.md 1.2-4, -5: sub-cells stand where the cell stood, in the list and in every group; node groups stay.
 TEST(Cuts, replace_cells_in_place) {
   const Mesh mesh = block(CellType::TRIA3, 2, 1, 1);  // skin cells 0 to 5, body 6 to 9

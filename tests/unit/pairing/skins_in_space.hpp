@@ -99,6 +99,25 @@ inline Skin3 mesh(const Grid& g, const Place3& place, std::mt19937& random, bool
   return skin;
 }
 
+/// Moves mid nodes along their straight edges by up to `most` of the edge, middles of QUAD9 by as much in the facet.
+inline void slide_mid_nodes(Skin3& skin, double most, std::mt19937& random) {
+  std::uniform_real_distribution<double> uniform(-most, most);
+  std::map<std::int32_t, Vec3> moved;
+  for (std::size_t c = 0; c < skin.surface.size(); ++c) {
+    const auto nodes = skin.surface.nodes[c];
+    const int n = catalog::cell(skin.surface.types[c]).n_vertices;
+    const auto edge = [&](int i) { return skin.node(nodes[(i + 1) % n]) - skin.node(nodes[i]); };
+    for (int i = n; i < static_cast<int>(nodes.size()); ++i) {
+      const Vec3 by = i < 2 * n ? uniform(random) * edge(i - n) : uniform(random) * edge(0) + uniform(random) * edge(1);
+      moved.try_emplace(nodes[i], skin.node(nodes[i]) + by);
+    }
+  }
+  for (const auto& [node, p] : moved) {
+    double* const q = skin.coordinates.data() + 3 * static_cast<std::size_t>(node);
+    q[0] = p.x, q[1] = p.y, q[2] = p.z;
+  }
+}
+
 /// Every cell by itself and cell order mixed: cell i of the result is cell order[i].
 inline Skin3 permuted(const Skin3& skin, std::vector<std::int32_t>& order, std::mt19937& random) {
   order.resize(skin.surface.size());

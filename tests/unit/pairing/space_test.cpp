@@ -68,6 +68,24 @@ TEST(PairingInSpace, PatchEquilibriumOnDistortedQuadrangles) {
     }
 }
 
+TEST(PairingInSpace, PatchEquilibriumWhereMidNodesAreOffTheMiddle) {
+  // edges are straight and polygons exact, but the inverse of a quadratic map has a branch point near the facet
+  std::mt19937 random(8);
+  const CellType quadratic[] = {CellType::TRIA6, CellType::QUAD8, CellType::QUAD9};
+  for (int trial = 0; trial < 5; ++trial)
+    for (const CellType s : quadratic)
+      for (const CellType m : quadratic) {
+        Skin3 slave = mesh({2, 3, s, false, 0.15}, plane(0), random), master = mesh({3, 2, m, true, 0.15}, plane(0), random);
+        slide_mid_nodes(slave, 0.12, random), slide_mid_nodes(master, 0.12, random);
+        const Pairing found = pair(slave.view(), master.view());
+        const Forces f = forces(slave, master, found.cells);
+        EXPECT_NEAR(f.area, 1, 1e-12);
+        EXPECT_LE(largest_difference(f.slave, nodal_areas(slave)), 1e-10);
+        EXPECT_LE(largest_difference(f.master, nodal_areas(master)), 1e-10);
+        EXPECT_EQ(found.count(Rejection::no_image), 0);
+      }
+}
+
 TEST(PairingInSpace, TrapezoidsOfTheHexahedronCutAreExact) {
   for (const CellType type : {CellType::QUAD4, CellType::QUAD8, CellType::QUAD9}) {
     Skin3 slave = hexahedron_cut(type, false, 0.5), master = hexahedron_cut(type, true, 0.4);
@@ -776,6 +794,39 @@ TEST(Facets, HullHoldsEveryValueAndTouchesAtTheCorners) {
                                     [&](Vec3 v) { return std::abs(v.x - polynomial(space::probes(family)[k]).x) < 1e-14; }));
         }
       }
+}
+
+TEST(Facets, InverseFindsEveryPointOfStronglyBentFacets) {
+  // the map is one to one on the cell, and folded close to it: Newton's way from the middle may end at the fold
+  std::mt19937 random(18);
+  std::uniform_real_distribution<double> uniform(-1, 1);
+  int facets = 0;
+  for (const CellType type : {CellType::TRIA6, CellType::QUAD8, CellType::QUAD9})
+    for (int trial = 0; trial < 40; ++trial) {
+      Skin3 skin = mesh({3, 3, type, true, 0.3}, plane(0), random);
+      slide_mid_nodes(skin, 0.2, random);
+      const Family family = catalog::cell(type).family;
+      const Rule& grid = integration_rule(family, 100);
+      for (std::size_t c = 0; c < skin.surface.size(); ++c) {
+        std::vector<Vec3> nodes;
+        for (const std::int32_t n : skin.surface.nodes[c]) nodes.push_back(skin.node(n));
+        const space::Map2 map = space::project(space::interpolate(type, nodes), {1, 0, 0}, {0, 1, 0});
+        const auto jacobian = [&](Vec2 p) { return space::cross(map(p).d1, map(p).d2); };
+        bool sound = true;
+        for (const Vec2 p : space::probes(family)) sound = sound && jacobian(p) > 1e-3;
+        for (int g = 0; g < grid.size(); ++g) sound = sound && jacobian({grid.points[2 * g], grid.points[2 * g + 1]}) > 1e-3;
+        if (!sound) continue;
+        ++facets;
+        for (int g = 0; g < grid.size(); ++g) {
+          const Vec2 xi{grid.points[2 * g], grid.points[2 * g + 1]};
+          const auto found = space::inverse(map, family, map(xi).x, 1e-14, 0.25);
+          ASSERT_TRUE(found.has_value());
+          EXPECT_NEAR(found->x, xi.x, 1e-9);
+          EXPECT_NEAR(found->y, xi.y, 1e-9);
+        }
+      }
+    }
+  EXPECT_GT(facets, 500);
 }
 
 TEST(Facets, InverseFindsEveryPointOfConvexFacets) {
