@@ -3,8 +3,6 @@
 MODI_REPERE does the same to whole fields (operators/modi_repere), with the same axes.
 """
 
-from .messages import fail
-
 #: components of tensors, in the order of catalog/quantities.toml
 _tensor = (("XX", 0, 0), ("YY", 1, 1), ("ZZ", 2, 2), ("XY", 0, 1), ("XZ", 0, 2), ("YZ", 1, 2))
 _vectors, _tensors = ("D", "F", "V"), ("SI", "EP")
@@ -76,7 +74,7 @@ def at(call, k, path, points, plane):
     line = numpy.array([0.0, 0.0, 1.0])
     if k["REPERE"] == "CYLINDRIQUE" and not plane:
         if "AXE_Z" not in k or not any(k["AXE_Z"]):
-            fail("KEYWORD_2", f"{call.command}/{path}, {call.where}", path=f"{call.command}/{path}/AXE_Z")
+            call.fail("POST_8", f"{path}/AXE_Z")
         line = numpy.array(k["AXE_Z"]) / numpy.linalg.norm(k["AXE_Z"])
     radial = points - origin
     radial -= numpy.outer(radial @ line, line)

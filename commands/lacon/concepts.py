@@ -129,6 +129,16 @@ class Mesh(Concept):
             offset, nodes = file["cells/offset"][:].tolist(), file["cells/nodes"][:].tolist()
         return [nodes[first:last] for first, last in zip(offset[:-1], offset[1:])]
 
+    def getCellTypeName(self, cell):
+        """"TRIA6\""""
+        from .fields import texts
+
+        with self.open() as file:
+            return texts(file["cells"], "types")[file["cells/type"][cell]]
+
+    def isParallel(self):
+        return False
+
     def getCellName(self, cell):
         return f"M{cell + 1}"
 
@@ -154,6 +164,11 @@ class Coordinates:
         """(n, 3) array"""
         with self._mesh.open() as file:
             return file["coordinates"][:]
+
+    def __getitem__(self, node):
+        """[x, y, z] of a node, counted from 0"""
+        with self._mesh.open() as file:
+            return file["coordinates"][node].tolist()
 
     def getValues(self):
         """x1, y1, z1, x2, ... as a list"""
@@ -373,6 +388,20 @@ class Result(Concept):
         """Names of its parameters."""
         with self.open() as file:
             return ["INST", "NUME_ORDRE", *file.get("parameters", ())]
+
+    def _names_at(self, on_nodes):
+        orders = self.LIST_CHAMPS()
+        return [name for name in orders if (self.field(name, orders[name][0]).location == "NOEU") == on_nodes]
+
+    def getFieldsOnNodesRealNames(self):
+        return self._names_at(True)
+
+    def getFieldsOnCellsRealNames(self):
+        return self._names_at(False)
+
+    def getMaterialField(self):
+        with self.open() as file:
+            return self.base.concept(_text(file.attrs["material_field"]))
 
     def getLastTime(self):
         return self.instants()[-1][1]

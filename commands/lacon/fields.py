@@ -59,6 +59,17 @@ class Field:
     def getLocalization(self):
         return self.location
 
+    def norm(self, kind="NORM_2", components=()):
+        """Of the values that exist, of these components or of all: the sum of magnitudes (NORM_1), the root of the sum of squares (NORM_2) or the largest
+        magnitude (NORM_INFINITY)."""
+        import numpy
+
+        orders = {"NORM_1": 1, "NORM_2": 2, "NORM_INFINITY": numpy.inf}
+        if kind not in orders:
+            raise ValueError(f"norm: {kind!r} is none of {', '.join(orders)}")
+        values = self.getValues(components)
+        return float(numpy.linalg.norm(values, orders[kind])) if values else 0.0
+
     def toSimpleFieldOnNodes(self):
         return SimpleField(self, on_nodes=True)
 
@@ -202,10 +213,11 @@ def read_field(base, path):
             present = file["present"][:].astype(bool)
         else:
             present = numpy.ones(values.shape, bool)
-        return Field(base, file.attrs["name"], file.attrs["quantity"], file.attrs["mesh"], file.attrs["location"], _texts(file, "components"),
-                     file["support"][:], file["offset"][:] if "offset" in file else None, values, present, _texts(file, "functions"))
+        return Field(base, file.attrs["name"], file.attrs["quantity"], file.attrs["mesh"], file.attrs["location"], texts(file, "components"),
+                     file["support"][:], file["offset"][:] if "offset" in file else None, values, present, texts(file, "functions"))
 
 
-def _texts(file, name):
-    texts = file.attrs.get(name, ())
-    return json.loads(texts) if isinstance(texts, str) else [t.decode() if isinstance(t, bytes) else str(t) for t in texts]
+def texts(file, name):
+    """A list of texts that an attribute of a file or group holds."""
+    found = file.attrs.get(name, ())
+    return json.loads(found) if isinstance(found, str) else [t.decode() if isinstance(t, bytes) else str(t) for t in found]

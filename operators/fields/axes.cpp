@@ -23,14 +23,15 @@ constexpr double on_axis = 1e-10;  // of the distance from the origin of the mes
 Vector vector(const Keywords& keywords, const char* keyword, int least) {
   const std::vector<double> given = keywords.reals(keyword);
   if (given.size() < static_cast<std::size_t>(least))
-    fail("ORDER_4", {{"keyword", keywords.path(keyword)}, {"expected", fmt::format("{} numbers", least)}});
+    fail("MODIREPERE_5", {{"keyword", keywords.path(keyword)}, {"expected", fmt::format("{} numbers", least)}});
   Vector made = Vector::Zero();
   for (std::size_t k = 0; k < given.size() && k < 3; ++k) made[static_cast<Eigen::Index>(k)] = given[k];
   return made;
 }
 
 Vector unit(const Keywords& keywords, const char* keyword, const Vector& given) {
-  if (!(given.norm() > 0)) fail("ORDER_4", {{"keyword", keywords.path(keyword)}, {"expected", "a direction that is not zero"}});
+  if (!(given.norm() > 0))
+    fail("MODIREPERE_5", {{"keyword", keywords.path(keyword)}, {"expected", "a direction that is not zero"}});
   return given.normalized();
 }
 
@@ -63,8 +64,8 @@ Frame::Frame(const Mesh& mesh, const Keywords& keywords, bool cylindrical) : pla
     axes_.row(2) = x.cross(Vector(axes_.row(1)));
   }
   if (plane_ && std::abs(axes_(2, 2) - 1) > 1e-12)
-    fail("ORDER_4", {{"keyword", keywords.path(keywords.has("ANGL_NAUT") ? "ANGL_NAUT" : "VECT_Y")},
-                     {"expected", "axes that leave the plane where it is: one angle, or VECT_Y at the left of VECT_X"}});
+    fail("MODIREPERE_5", {{"keyword", keywords.path(keywords.has("ANGL_NAUT") ? "ANGL_NAUT" : "VECT_Y")},
+                          {"expected", "axes that leave the plane where it is: one angle, or VECT_Y at the left of VECT_X"}});
 }
 
 Axes Frame::at(const Vector& place, std::size_t& lost) const {

@@ -16,7 +16,7 @@ class Frame {
  public:
   /// @param keywords where the axes are given: of `cylindrical` ones ORIGINE and in space AXE_Z (X radial, Y along the axis, Z
   /// tangential; in the plane X radial, Y tangential), else ANGL_NAUT in degrees (about Z, the new Y, the new X), or VECT_X and
-  /// a vector VECT_Y in the new plane of X and Y. Throws ORDER_4 where they are missing or are no axes.
+  /// a vector VECT_Y in the new plane of X and Y. Throws MODIREPERE_5 where they are missing or are no axes.
   Frame(const Mesh& mesh, const Keywords& keywords, bool cylindrical);
 
   bool depends_on_place() const { return origin_.has_value(); }

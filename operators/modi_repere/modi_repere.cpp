@@ -19,8 +19,8 @@ namespace {
 /// The components that an occurrence of MODI_CHAM means. @param dimension of the mesh
 Turned turned(const Field& field, const Keywords& keywords, int dimension) {
   if (!keywords.text("TYPE_CHAM").ends_with(fmt::format("{}D", dimension)))
-    fail("ORDER_4", {{"keyword", keywords.path("TYPE_CHAM")},
-                     {"expected", fmt::format("VECT_{0}D or TENS_{0}D, as the mesh has {0} dimensions", dimension)}});
+    fail("MODIREPERE_5", {{"keyword", keywords.path("TYPE_CHAM")},
+                          {"expected", fmt::format("VECT_{0}D or TENS_{0}D, as the mesh has {0} dimensions", dimension)}});
   const bool tensor = keywords.text("TYPE_CHAM").starts_with("TENS");
   const auto wanted = static_cast<std::size_t>(!tensor ? dimension : dimension == 2 ? 4 : 6);
   const std::vector<std::string> names = keywords.texts("NOM_CMP");

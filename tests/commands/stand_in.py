@@ -72,6 +72,7 @@ def fill_result(file):
     file["parameters/newton_iterations"] = np.array([0, 2, 3])
     file.attrs["mesh"] = mesh_of_model()
     file.attrs["model"] = order["keywords"]["MODELE"]["concept"]
+    file.attrs["material_field"] = order["keywords"].get("CHAM_MATER", {}).get("concept", "")
     names = {}
     for k, t in enumerate((0.0, 0.5, 1.0)):
         nodes = range(6)

@@ -326,6 +326,7 @@ assert M.getConnectivity() == [[0, 1, 4, 3], [1, 2, 5, 4], [0, 1]] and M.getDime
 assert M.getCells('BODY') == [0, 1] and M.getCells() == [0, 1, 2] and M.getCells(['SKIN', 'BODY']) == [0, 1, 2]
 assert M.getNodes('TOP') == [3, 4, 5] and M.getNodes('SKIN') == [0, 1] == M.getNodesFromCells('SKIN')
 assert M.hasGroupOfCells('SKIN') and not M.hasGroupOfNodes('SKIN') and M.LIST_GROUP_MA() == [('SKIN', 1), ('BODY', 2)]
+assert M.getCoordinates()[4] == [1.0, 1.0, 0.0] and M.isParallel() is False
 assert M.getCellName(0) == 'M1' and M.getNodeName(3) == 'N4'
 FIN()
 """))
@@ -342,6 +343,9 @@ assert R.getField('DEPL', index=1).getPhysicalQuantity() == 'DEPL_R'
 values, (nodes, names) = R.getField('DEPL', 2).getValuesWithDescription('DX', 'TOP')
 assert values == [4.0, 5.0, 6.0] and nodes == [3, 4, 5] and names == ['DX'] * 3
 assert R.getField('DEPL', 2).getValues('DX', ['SKIN']) == [1.0, 2.0]
+field = R.getField('DEPL', 2)
+assert field.norm('NORM_1', 'DX') == 21 and field.norm('NORM_INFINITY') == 25 and abs(field.norm('NORM_2', ['LAGS_C']) - 25 * 2**0.5) < 1e-13
+assert 'DEPL' in R.getFieldsOnNodesRealNames() and 'CONT_ELEM' in R.getFieldsOnCellsRealNames() and R.getMaterialField() is CM
 part = R.getField('DEPL', 2).EXTR_COMP('LAGS_C', [], 1)
 assert list(part.valeurs) == [-25.0, -25.0] and part.noeud == [2, 5]
 assert R.getAccessParameters() == {'NUME_ORDRE': [0, 1, 2], 'INST': [0.0, 0.5, 1.0]} == R.LIST_VARI_ACCES()
@@ -349,7 +353,7 @@ assert 'DEPL' in R.LIST_CHAMPS() and R.getMesh() is M and R.getModel().getMesh()
 for wrong, word in ((lambda: R.getField('VITE', 1), 'has no field VITE at order 1'), (lambda: R.getField('DEPL', 0.7, 'INST'), 'INST 0.7'),
                     (lambda: R.getField('DEPL', 9), 'no order number 9'),
                     (lambda: R.getField('DEPL', 1).toSimpleFieldOnCells(), 'toSimpleFieldOnNodes'),
-                    (lambda: R.getField('DEPL', 1).getValues('DZ'), 'DX, LAGS_C'),
+                    (lambda: R.getField('DEPL', 1).getValues('DZ'), 'DX, LAGS_C'), (lambda: field.norm('NORM_3'), 'NORM_INFINITY'),
                     (lambda: M.getCells('BODYY'), 'nearest one is BODY'), (lambda: M.getConnectivities(), "no 'getConnectivities' here")):
     try:
         wrong()

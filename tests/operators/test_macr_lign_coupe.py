@@ -90,7 +90,7 @@ class MacrLignCoupe(OperatorTest):
         np.testing.assert_allclose(self.column(found, "DZ"), [0] * 6, atol=1e-13)
         self.lines({**cylinder, "COOR_ORIG": [0.0, 0.0, 0.5]}, NUME_ORDRE=[0])
         self.assertEqual(self.messages, ["MODIREPERE_4"])
-        self.refuses("ORDER_4", {**cylinder, "AXE_Z": [0.0, 0.0, 0.0]}, "AXE_Z")
+        self.refuses("MODIREPERE_5", {**cylinder, "AXE_Z": [0.0, 0.0, 0.0]}, "AXE_Z")
 
     def test_axes_of_a_vector_that_is_not_whole_leave_it_out(self):
         self.write([(0, 0), (1, 0), (1, 1), (0, 1)], [("QUAD4", [0, 1, 2, 3])], [(1, 2)] * 4, present=np.array([(1, 1), (1, 0), (1, 1), (1, 1)], np.uint8))

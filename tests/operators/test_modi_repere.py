@@ -117,9 +117,9 @@ class ModiRepere(OperatorTest):
         self.write("mesh_3", {"DEPL": self.field("NOEU", VECTOR, np.zeros((4, 4))), "SIEF_ELEM": cells, "PART": partly})
         axis = {"ORIGINE": [0.0, 0.0, 0.0], "AXE_Z": [0.0, 0.0, 1.0]}
         for identifier, word, name, kind, repere, affe, more in (
-                ("ORDER_4", "VECT_3D", "DEPL", "VECT_2D", "CYLINDRIQUE", axis, {}), ("ORDER_4", "ORIGINE", "DEPL", "VECT_3D", "CYLINDRIQUE", {"ANGL_NAUT": [1.0]}, {}),
-                ("ORDER_4", "AXE_Z", "DEPL", "VECT_3D", "CYLINDRIQUE", {"ORIGINE": [0.0, 0.0, 0.0]}, {}),
-                ("ORDER_4", "VECT_Y", "DEPL", "VECT_3D", "UTILISATEUR", {"VECT_X": [1.0, 0.0, 0.0], "VECT_Y": [2.0, 0.0, 0.0]}, {}),
+                ("MODIREPERE_5", "VECT_3D", "DEPL", "VECT_2D", "CYLINDRIQUE", axis, {}), ("MODIREPERE_5", "ORIGINE", "DEPL", "VECT_3D", "CYLINDRIQUE", {"ANGL_NAUT": [1.0]}, {}),
+                ("MODIREPERE_5", "AXE_Z", "DEPL", "VECT_3D", "CYLINDRIQUE", {"ORIGINE": [0.0, 0.0, 0.0]}, {}),
+                ("MODIREPERE_5", "VECT_Y", "DEPL", "VECT_3D", "UTILISATEUR", {"VECT_X": [1.0, 0.0, 0.0], "VECT_Y": [2.0, 0.0, 0.0]}, {}),
                 ("MODIREPERE_1", "TENS_3D", "DEPL", "TENS_3D", "CYLINDRIQUE", axis, {}), ("CREACHAMP_14", "DW", "DEPL", "VECT_3D", "CYLINDRIQUE", axis, {"NOM_CMP": ["DX", "DY", "DW"]}),
                 ("MODIREPERE_2", "SIEF_ELEM", "SIEF_ELEM", "TENS_3D", "CYLINDRIQUE", axis, {}), ("MODIREPERE_3", "PART", "PART", "VECT_3D", "CYLINDRIQUE", axis, {}),
                 ("CREACHAMP_7", "SIEF_ELEM", "SIEF_ELEM", "TENS_3D", "UTILISATEUR", {"ANGL_NAUT": [1.0], "GROUP_NO": "ENDS"}, {}),
