@@ -106,7 +106,4 @@ class PairingInParts {
   std::unique_ptr<Implementation> implementation_;
 };
 
-/// Integration points that pairing places on a contact cell of these two kinds in the plane.
-int integration_points(CellType slave, CellType master);
-
 }  // namespace lacon

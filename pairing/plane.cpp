@@ -3,6 +3,7 @@
 #include <cmath>
 #include <limits>
 #include <memory>
+#include <numbers>
 #include <tuple>
 #include <utility>
 
@@ -337,6 +338,22 @@ struct Masters {
   }
 };
 
+/// How many points a contact cell gets. Where the master's mid node is not over the middle of its chord, but off by d / 4 of
+/// the chord, the image is no polynomial of the slave's coordinate: its inverse map has a branch point (distortion() in
+/// facet.hpp), and n points leave d^2n. On an arc d is zero.
+int integration_points(const Surface& slave, std::size_t cell, const Surface& master, std::int32_t m) {
+  const int least = slave.types[cell] == CellType::SEG2 && master.types[m] == CellType::SEG2 ? 3 : 4;
+  if (master.types[m] == CellType::SEG2) return least;
+  constexpr int polynomial = 5, most = 32;
+  const auto nodes = master.nodes[m];
+  const Vec a = point(master, nodes[0]), b = point(master, nodes[1]), chord = 0.5 * (b - a),
+            bulge = point(master, nodes[2]) - 0.5 * (a + b);
+  const double d = std::min(0.999, 2 * std::abs(dot(chord, bulge)) / dot(chord, chord));
+  if (!(d > 1e-12)) return least;
+  const double degree = polynomial + std::ceil(12 * std::numbers::ln10 / -std::log(d));
+  return std::clamp(static_cast<int>(0.5 * (degree + 2)), least, most);
+}
+
 class PairerInPlane final : public detail::CellPairer {
  public:
   explicit PairerInPlane(std::shared_ptr<const Masters> masters)
@@ -397,7 +414,7 @@ class PairerInPlane final : public detail::CellPairer {
         reject(m, Rejection::sliver);
         continue;
       }
-      const Rule& rule = gauss_rule(integration_points(slave.types[cell], master.types[m]));
+      const Rule& rule = gauss_rule(integration_points(slave, cell, master, m));
       ContactCells& cells = pairing.cells;
       const std::size_t before = cells.weight.size();
       bool complete = true;
@@ -433,8 +450,6 @@ class PairerInPlane final : public detail::CellPairer {
 };
 
 }  // namespace
-
-int integration_points(CellType slave, CellType master) { return slave == CellType::SEG2 && master == CellType::SEG2 ? 3 : 4; }
 
 detail::MakeCellPairer detail::pair_in_plane(const Surface& slave, const Surface& master, const PairingOptions& options,
                                              std::vector<RejectedCouple>& rejected) {

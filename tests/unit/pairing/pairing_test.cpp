@@ -110,6 +110,43 @@ TEST(Pairing, IntegratesMasterShapeFunctionsExactlyOnStraightSkins) {
     }
 }
 
+TEST(Pairing, IntegratesMasterShapeFunctionsWhereMidNodesAreOffTheMiddle) {
+  // The same with mid nodes anywhere on their straight cells. There J = h (1 + d s) / 2, and the integrals are exact by
+  // Simpson.
+  std::mt19937 random(5);
+  std::uniform_real_distribution<double> by(-0.15, 0.15);  // of the cell
+  for (const Kind slave_kind : {Kind::linear, Kind::quadratic}) {
+    Skin slave, master;
+    add_chain(slave, line(0), scattered(-0.5, 1.5, 7, random), slave_kind);
+    add_chain(master, line(-0.1), scattered(1, 0, 9, random), Kind::quadratic);
+    for (Skin* skin : {&slave, &master})
+      for (std::size_t c = 0; c < skin->surface.size(); ++c) {
+        const auto nodes = skin->surface.nodes[c];
+        if (nodes.size() == 3)
+          skin->coordinates[3 * nodes[2]] += by(random) * (skin->coordinates[3 * nodes[1]] - skin->coordinates[3 * nodes[0]]);
+      }
+    const Pairing found = pair(slave.view(), master.view());
+    std::vector<double> force(master.coordinates.size() / 3, 0.0), expected(force);
+    for (std::size_t c = 0; c < found.cells.size(); ++c)
+      for (std::int64_t g = found.cells.offset[c]; g < found.cells.offset[c + 1]; ++g) {
+        const std::int32_t m = found.cells.master[c];
+        const std::vector<double> phi = shape(CellType::SEG3, found.cells.master_point[g]);
+        for (std::size_t i = 0; i < phi.size(); ++i)
+          force[master.surface.nodes[m][i]] +=
+              found.cells.weight[g] * sample(slave, master, found.cells, c, g).jacobian * phi[i];
+      }
+    for (std::size_t m = 0; m < master.surface.size(); ++m) {
+      const auto nodes = master.surface.nodes[m];
+      const auto x = [&](int i) { return master.coordinates[3 * nodes[i]]; };
+      const auto jacobian = [&](double s) { return std::abs(0.5 * (x(1) - x(0)) + s * (x(0) + x(1) - 2 * x(2))); };
+      expected[nodes[0]] += jacobian(-1) / 3;
+      expected[nodes[1]] += jacobian(1) / 3;
+      expected[nodes[2]] += 4 * jacobian(0) / 3;
+    }
+    for (std::size_t i = 0; i < force.size(); ++i) EXPECT_NEAR(force[i], expected[i], 1e-12);
+  }
+}
+
 /// Curved, broken, folded chains on both sides, some pieces with their back turned.
 void scatter_pieces(Skin& slave, Skin& master, std::mt19937& random, bool smooth) {
   std::uniform_real_distribution<double> unit(0, 1);
