@@ -21,7 +21,8 @@ struct PairingTolerances {
       1e-12;  ///< boxes of the search tree grow by this fraction of the master surface: round-off must not hide a couple
   double ray = 1e-11;  ///< an image must lie on the normal of its point to this fraction of the couple's extent
   // in space
-  double flat = 1e-10;  ///< a facet is flat, an edge straight, below this turn of the normal or relative bulge
+  double flat = 1e-10;     ///< a facet is flat below this turn of the normal
+  double straight = 1e-6;  ///< an edge is straight below this bulge over its length: also in a file of seven or eight digits
   /// Below this turn of the normal four triangles of a flat slave are enough: polygons are wrong by a tenth of it, in gaps.
   double nearly_flat = 1e-3;
   double overlap =

@@ -87,7 +87,7 @@ struct Facet : FacetKind {
   Map3 x;       ///< minus origin
 };
 
-Facet facet(const Surface& surface, std::size_t cell, double flat) {
+Facet facet(const Surface& surface, std::size_t cell, double straight) {
   Facet f;
   f.type = surface.types[cell];
   const catalog::CellRow& row = catalog::cell(f.type);
@@ -107,7 +107,7 @@ Facet facet(const Surface& surface, std::size_t cell, double flat) {
     const Vec3 d = b - a, m = f.nodes[nv + i] - a;
     const double along = dot(d, m), length2 = dot(d, d);
     const bool collapsed = length2 == 0 && dot(m, m) == 0;
-    if (!collapsed && !(norm(cross(d, m)) <= flat * length2 && along > 0 && along < length2)) f.straight = false;
+    if (!collapsed && !(norm(cross(d, m)) <= straight * length2 && along > 0 && along < length2)) f.straight = false;
   }
   const double length = norm(area);
   if (length > 0) f.normal = (1 / length) * area;
@@ -161,7 +161,7 @@ class SlaveFacet {
     degenerate = true;
     constant = false;
     if (!detail::finite(surface, cell)) return;
-    f = facet(surface, cell, tolerances.flat);
+    f = facet(surface, cell, tolerances.straight);
     n = f.normal;
     if (!(f.size > tolerances.degenerate * size)) return;
     smooth_ = !surface.normals.empty();
@@ -646,7 +646,7 @@ struct Masters {
     parallel_for(master.size(), block, [&](const LoopBlock& cells) {
       std::vector<Vec3> polygon;
       for (std::size_t cell = cells.first; cell < cells.last; ++cell) {
-        const Facet f = detail::finite(master, cell) ? facet(master, cell, tolerances.flat) : Facet{};
+        const Facet f = detail::finite(master, cell) ? facet(master, cell, tolerances.straight) : Facet{};
         facets[cell] = f;
         const Map3::Value at = f.x({0, 0});
         degenerate[cell] = !(f.size > tolerances.degenerate * size) || !(norm(f.normal) > 0) ||
