@@ -120,6 +120,20 @@ void check_sides(const SkinSides& sides, std::span<const std::int32_t> cells, co
     inform("CONTACT2_20", {{"where", where}, {"count", number(alone.size())}, {"cell", cell_name(alone.front())}});
 }
 
+/// A body that AFFE_MODELE forgot leaves its skin without stiffness: the matrix would be singular, without a word of why.
+void check_bodies(const Model& model, const SkinSides& sides, std::span<const std::int32_t> cells, const std::string& where) {
+  std::vector<std::pair<std::int32_t, std::int32_t>> bare;  // skin cell, body cell
+  for (const std::int32_t cell : cells) {
+    const std::vector<BodyCell> bodies = sides.bodies(cell);
+    const auto has_element = [&](const BodyCell& body) { return model.element[static_cast<std::size_t>(body.cell)] >= 0; };
+    if (!bodies.empty() && std::ranges::none_of(bodies, has_element)) bare.emplace_back(cell, bodies.front().cell);
+  }
+  if (bare.empty()) return;
+  const auto [skin, body] = bare.front();
+  inform("CONTACT2_22",
+         {{"where", where}, {"count", number(bare.size())}, {"cell", cell_name(skin)}, {"body", cell_name(body)}});
+}
+
 /// The slave group holds the sub-cells of its patches, all of them and no others.
 void check_patches(const Patches& patches, const ContactZone& zone, const std::string& keyword) {
   std::vector<std::int32_t> in_patches, in_group = zone.slave;
@@ -226,6 +240,7 @@ Contact defi_contact(const Mesh& mesh, std::string_view mesh_label, const Model&
                                                 std::tuple("GROUP_MA_MAIT", zone.master_group, zone.master)}) {
       const std::string where = factor.path(keyword) + " '" + group + "'";
       check_elements(mesh, model, registry, cells, where);
+      check_bodies(model, sides, cells, where);
       if (contact.verify_normals) check_sides(sides, cells, where, group);
     }
     add_slaves(contact, zone, mesh);

@@ -16,6 +16,10 @@ class SkinSides {
  public:
   explicit SkinSides(const Mesh& mesh) : mesh_(mesh), around_(mesh) {}
   Side operator[](std::int32_t skin_cell) const;
+  /// The cells that have it as a facet.
+  std::vector<BodyCell> bodies(std::int32_t skin_cell) const {
+    return body_cells(mesh_, around_, static_cast<std::size_t>(skin_cell));
+  }
 
  private:
   const Mesh& mesh_;

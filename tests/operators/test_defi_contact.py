@@ -215,6 +215,15 @@ class DefiContact(OperatorTest):
         self.path("contact_3").unlink()
         self.assertEqual(self.ids(self.define(zone(GROUP_MA_MAIT="LOOSE"), VERI_NORM="NON")), [])
 
+    def test_a_body_that_is_not_in_the_model_alarms(self):
+        for bodies, words in ((range(8, 14), ("GROUP_MA_ESCL", "GROUP_MA_MAIT")), ((13,), ("GROUP_MA_MAIT",)), ((), ())):
+            self.make(of_cell=[-1 if c in bodies else element for c, element in enumerate(OF_CELL)])
+            run = self.define()
+            self.assertEqual((run.status, self.ids(run)), (0, ["CONTACT2_22"] * len(words)), bodies)
+            for message, word in zip(run.messages, words):
+                self.assertIn(word, message["text"])
+            self.path("contact_3").unlink()
+
     def test_groups_must_exist_and_have_cells(self):
         self.refuses("MESH_1", "MAIF", "MAIT", zones=[zone(GROUP_MA_MAIT="MAIF")])
         self.refuses("MESH_2", "EMPTY", zones=[zone(GROUP_MA_MAIT="EMPTY")])
