@@ -110,14 +110,6 @@ void sort_once(Nodes& numbers) {
   numbers.erase(twice.begin(), twice.end());
 }
 
-/// A body cell under several slave cells comes once for each.
-std::vector<CellQuality> each_once(std::vector<CellQuality> cells) {
-  std::ranges::sort(cells, {}, &CellQuality::second);
-  const auto twice = std::ranges::unique(cells, {}, &CellQuality::second);
-  cells.erase(twice.begin(), twice.end());
-  return cells;
-}
-
 using Point = std::array<double, 3>;
 
 Point point_of(std::span<const double> coordinates, std::int32_t node) {
@@ -256,7 +248,7 @@ std::vector<Slave> find_slaves(const Mesh& mesh, std::span<const std::string> gr
   return slaves;
 }
 
-/// Cut one slave cell and what its body cell has become. @param quality of what the body becomes, by numbers of the forest
+/// Cut one slave cell and what its body cell has become. @param quality of the sub-cells of the body, by numbers of the forest
 /// @return the sub-cells of the slave cell by rank, as numbers of the forest
 CellNodes cut_slave(Forest& forest, const Slave& slave, const std::string& group, std::string_view option,
                     const std::string& keyword, std::vector<double>& coordinates, Patches& patches, CutZone& zone,
@@ -334,7 +326,6 @@ CellNodes cut_slave(Forest& forest, const Slave& slave, const std::string& group
             {"type", std::string(catalog::cell(sub.type).name)}});
     quality.emplace_back(scaled_jacobian(sub.type, own, coordinates), forest.add(sub.type, own, body));
   }
-  if (cut->body_cells.empty()) quality.emplace_back(scaled_jacobian(forest.type(body), forest.nodes(body), coordinates), body);
   patches.kind.push_back(cut->kind);
   patches.parent.push_back(slave.cell);
   patches.carriers.push_back(pick(on_skin, cut->carriers));
@@ -418,8 +409,11 @@ Mesh cut_lac(Mesh mesh, std::span<const std::string> groups, std::string_view op
     zone.old_skin_nodes = nodes_of_cells(mesh, mesh.find_cell_group(zone.group)->members);
     zone.old_body_nodes = nodes_of_cells(mesh, zone.bodies);
   }
-  report.before = quality_of(each_once(std::move(quality)));
-  quality.clear();
+  std::ranges::sort(quality, {}, &CellQuality::second);
+  const auto twice = std::ranges::unique(quality, {}, &CellQuality::second);  // a body cell under several slave cells
+  quality.erase(twice.begin(), twice.end());
+  report.before = quality_of(quality);
+  std::vector<CellQuality> of_sub_cells;
 
   const std::size_t n_nodes = mesh.n_nodes(), n_cells = mesh.n_cells();
   Patches patches;
@@ -427,7 +421,7 @@ Mesh cut_lac(Mesh mesh, std::span<const std::string> groups, std::string_view op
   Ragged<std::int32_t> sub_cells;  // of each patch, as numbers of the forest
   for (const Slave& slave : slaves)
     sub_cells.push_back(cut_slave(forest, slave, groups[slave.zone], option, path, mesh.coordinates, patches,
-                                  report.zones[slave.zone], quality));
+                                  report.zones[slave.zone], of_sub_cells));
 
   Nodes number_of;
   const Heirs heirs = replace_cut_cells(mesh, forest, number_of);
@@ -441,12 +435,13 @@ Mesh cut_lac(Mesh mesh, std::span<const std::string> groups, std::string_view op
     patches.zone_group.push_back(zone.group);
     patches.zone_offset.push_back(patches.zone_offset.back() + zone.patches);
   }
-  for (auto& [value, cell] : quality)
-    cell = static_cast<std::size_t>(cell) >= n_cells ? number_of[static_cast<std::size_t>(cell) - n_cells]
-           : forest.is_cut(cell)                     ? -1
-                                                     : heirs.of(cell).first;
-  std::erase_if(quality, [](const CellQuality& of) { return of.second < 0; });
-  report.after = quality_of(each_once(std::move(quality)));
+  std::vector<CellQuality> after;
+  for (const auto& [value, cell] : quality)
+    if (!forest.is_cut(cell)) after.emplace_back(value, heirs.of(cell).first);
+  for (const auto& [value, cell] : of_sub_cells)
+    if (const std::int32_t number = number_of[static_cast<std::size_t>(cell) - n_cells]; number >= 0)
+      after.emplace_back(value, number);
+  report.after = quality_of(std::move(after));
   report.new_nodes = static_cast<std::int64_t>(mesh.n_nodes() - n_nodes);
   report.new_cells = static_cast<std::int64_t>(mesh.n_cells() - n_cells);
   mesh.patches = std::move(patches);

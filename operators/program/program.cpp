@@ -35,7 +35,8 @@ void print(const Message& message) {
   outcome.messages.push_back(message);
 }
 
-void write_status(const std::string& file, int status) {
+/// @return whether the file could be written
+bool write_status(const std::string& file, int status) {
   nlohmann::json json{{"status", status}, {"messages", nlohmann::json::array()}};
   for (const Message& m : outcome.messages)
     json["messages"].push_back({{"severity", std::string(1, m.severity)}, {"id", m.id}, {"text", m.text}, {"do", m.advice}});
@@ -46,7 +47,9 @@ void write_status(const std::string& file, int status) {
   };
   json["seconds"] = sums(outcome.seconds);
   json["counts"] = sums(outcome.counts);
-  std::ofstream(file) << json.dump(1) << '\n';
+  std::ofstream out(file);
+  out << json.dump(1) << '\n' << std::flush;
+  return out.good();
 }
 
 /// Do the work, whatever it throws. @return the exit status
@@ -85,8 +88,9 @@ int run(int argc, char** argv, CLI::App& app, const std::function<void()>& work)
   const int status = guarded(work);
   std::cout.flush();
   outcome.seconds.emplace_back("total", now() - start);
-  if (!status_file.empty()) write_status(status_file, status);
-  return status;
+  if (status_file.empty() || write_status(status_file, status)) return status;
+  print(message("BASE_3", {{"file", status_file}, {"reason", "--status: the file cannot be written"}}));
+  return status == done ? static_cast<int>(user_error) : status;
 }
 
 }  // namespace

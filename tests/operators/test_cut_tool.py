@@ -196,6 +196,12 @@ class CutTool(OperatorTest):
         outcome = json.loads((self.folder / "outcome.json").read_text())
         self.assertEqual((outcome["status"], [m["id"] for m in outcome["messages"]]), (0, ["DECOUPE_8", "DECOUPE_8", "MESH1_3"]))
 
+    def test_an_outcome_that_cannot_be_written_is_told(self):
+        self.write_brick()
+        done = self.tool(self.source, self.out, "--slave", "TOP", "--status", self.source.parent / "nowhere/status.json")
+        self.assertEqual(done.returncode, 2)
+        self.assertRegex(done.stderr, r"<F> <BASE_3> .*nowhere/status\.json")
+
     def test_an_older_file_is_replaced(self):
         self.write_brick()
         self.out.write_text("an older file")
