@@ -1,6 +1,7 @@
 #include "lacon/operators/crea_maillage/order_change.hpp"
 
 #include <algorithm>
+#include <array>
 #include <map>
 #include <utility>
 
@@ -164,28 +165,36 @@ std::int64_t make_linear(Mesh& mesh, std::span<const std::int32_t> cells) {
 }
 
 void tell_what_hangs(const Mesh& mesh) {
+  /// Edges and quadrangular faces of a kind of cell. @param use(local vertices, has a node in its middle)
+  const auto each = [&](const catalog::CellRow& row, const auto& use) {
+    if (row.dimension < mesh.dimension - 1) return;  // lines in space carry neither volume nor skin
+    for (const auto& [first, second] : row.edges) use(std::array{first, second}, row.order == 2);
+    if (row.dimension == 2 && row.n_vertices == 4) use(std::array<std::int8_t, 4>{0, 1, 2, 3}, row.n_nodes == 9);
+    if (row.dimension == 3)
+      for (const catalog::FacetRow& facet : row.facets)
+        if (catalog::cell(facet.type).n_vertices == 4) use(facet.nodes.first(4), facet.nodes.size() == 9);
+  };
+  // without, with: most meshes have one of the two alone, and need no search
+  std::array<bool, 2> edges{}, faces{};
+  const auto kind = [&](const auto& vertices) -> std::array<bool, 2>& { return vertices.size() == 2 ? edges : faces; };
+  for_each_run(mesh, [&](const catalog::CellRow& row, std::size_t, std::size_t) {
+    each(row, [&](const auto& vertices, bool has_middle) { kind(vertices)[has_middle] = true; });
+  });
+
   struct Neighbours {
     std::int32_t without = -1, with = -1;  ///< the first cell that has no middle node, and that has one
   };
   std::map<std::vector<std::int32_t>, Neighbours> by_vertices;
-  for (std::size_t c = 0; c < mesh.n_cells(); ++c) {
-    const catalog::CellRow& row = mesh.row(c);
-    const auto enter = [&](std::vector<std::int32_t> vertices, bool has_middle) {
-      std::ranges::sort(vertices);
-      Neighbours& both = by_vertices[std::move(vertices)];
+  for (std::size_t c = 0; c < mesh.n_cells(); ++c)
+    each(mesh.row(c), [&](const auto& vertices, bool has_middle) {
+      if (const auto& [without, with] = kind(vertices); !without || !with) return;
+      std::vector<std::int32_t> nodes;
+      for (const std::int8_t v : vertices) nodes.push_back(mesh.cells[c][static_cast<std::size_t>(v)]);
+      std::ranges::sort(nodes);
+      Neighbours& both = by_vertices[std::move(nodes)];
       std::int32_t& own = has_middle ? both.with : both.without;
       if (own < 0) own = static_cast<std::int32_t>(c);
-    };
-    const auto nodes = mesh.cells[c];
-    const auto at = [&](int local) { return nodes[static_cast<std::size_t>(local)]; };
-    if (row.dimension < mesh.dimension - 1) continue;  // lines in space carry neither volume nor skin
-    for (const auto& [first, second] : row.edges) enter({at(first), at(second)}, row.order == 2);
-    if (row.dimension == 2 && row.n_vertices == 4) enter({at(0), at(1), at(2), at(3)}, row.n_nodes == 9);
-    if (row.dimension == 3)
-      for (const catalog::FacetRow& facet : row.facets)
-        if (catalog::cell(facet.type).n_vertices == 4)
-          enter({at(facet.nodes[0]), at(facet.nodes[1]), at(facet.nodes[2]), at(facet.nodes[3])}, facet.nodes.size() == 9);
-  }
+    });
   std::int64_t count = 0;
   Neighbours first;
   for (const auto& [vertices, both] : by_vertices)
