@@ -8,7 +8,8 @@
 namespace lacon {
 
 /// Unknowns hang on vertices: vertex v < n_nodes is node v with its displacements, vertex n_nodes + p is the multiplier of
-/// patch p, and behind the patches there may be multipliers of relations. All LAGS_C carriers of a patch are that one equation (METHOD.md 3.6).
+/// patch p, and behind the patches there may be multipliers of relations. All LAGS_C carriers of a patch are that one equation
+/// (METHOD.md 3.6).
 struct Numbering {
   std::int64_t n_nodes = 0;
   int n_components = 0;             ///< displacements of a node

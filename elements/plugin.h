@@ -32,11 +32,11 @@ enum lacon_element_error {
   LACON_BAD_JACOBIAN = 1,  /* zero, negative or of mixed sign at the integration points */
   LACON_BAD_PARAMETER = 2, /* a material parameter outside its range */
   LACON_NOT_FINITE = 3,
-  LACON_BAD_BATCH = 4,     /* the kernel does not serve elements of this kind: the catalogue row is wrong */
-  LACON_BAD_RADIUS = 5,    /* axisymmetry: a node on the wrong side of the axis, or a point on it */
-  LACON_INSIDE_OUT = 6,    /* the displacement turns the element inside out. Matrix and force hold all the same, the stress does
-                              not: Newton's method may pass through such a state, a solution may not be one */
-  LACON_BEYOND_CURVE = 7   /* the hardening curve ends before the strain that was reached */
+  LACON_BAD_BATCH = 4,   /* the kernel does not serve elements of this kind: the catalogue row is wrong */
+  LACON_BAD_RADIUS = 5,  /* axisymmetry: a node on the wrong side of the axis, or a point on it */
+  LACON_INSIDE_OUT = 6,  /* the displacement turns the element inside out. Matrix and force hold all the same, the stress does
+                            not: Newton's method may pass through such a state, a solution may not be one */
+  LACON_BEYOND_CURVE = 7 /* the hardening curve ends before the strain that was reached */
 };
 
 /* Solid elements: stiffness, internal forces, stresses at displacement u. ndof = n_nodes * dimension, node by node.
@@ -46,16 +46,16 @@ typedef struct lacon_solid_batch {
   uint32_t struct_size;
   int32_t n_blocks;
   int32_t n_nodes, dimension, n_points, n_stress, n_parameters;
-  const double* shape;        /* (n_points, n_nodes) */
-  const double* gradient;     /* (n_points, n_nodes, dimension), by reference coordinates */
-  const double* weight;       /* (n_points), of the reference cell */
-  const double* coordinates;  /* (n_blocks, n_nodes, dimension, LANES), initial */
-  const double* displacement; /* (n_blocks, n_nodes, dimension, LANES) */
-  const double* parameter;    /* (n_blocks, n_parameters, LANES), in the order of the kernel's `parameters` */
-  double* matrix;             /* (n_blocks, ndof (ndof + 1) / 2, LANES): lower triangle, row by row */
-  double* force;              /* (n_blocks, ndof, LANES) */
-  double* stress;             /* (n_blocks, n_points, n_stress, LANES) */
-  int32_t* error;             /* (n_blocks, LANES) */
+  const double* shape;                 /* (n_points, n_nodes) */
+  const double* gradient;              /* (n_points, n_nodes, dimension), by reference coordinates */
+  const double* weight;                /* (n_points), of the reference cell */
+  const double* coordinates;           /* (n_blocks, n_nodes, dimension, LANES), initial */
+  const double* displacement;          /* (n_blocks, n_nodes, dimension, LANES) */
+  const double* parameter;             /* (n_blocks, n_parameters, LANES), in the order of the kernel's `parameters` */
+  double* matrix;                      /* (n_blocks, ndof (ndof + 1) / 2, LANES): lower triangle, row by row */
+  double* force;                       /* (n_blocks, ndof, LANES) */
+  double* stress;                      /* (n_blocks, n_points, n_stress, LANES) */
+  int32_t* error;                      /* (n_blocks, LANES) */
   const double* previous_displacement; /* (n_blocks, n_nodes, dimension, LANES) or NULL */
   const double* previous_stress;       /* (n_blocks, n_points, n_stress, LANES) or NULL */
   const double* previous_variable;     /* (n_blocks, n_points, n_variables, LANES) or NULL */
@@ -64,8 +64,8 @@ typedef struct lacon_solid_batch {
                                           behind p; a last slope that is not a number ends the curve */
   int32_t n_curve, n_variables;
   int32_t elastic_matrix;    /* 1: the matrix is that of the law's elastic part */
-  int32_t stressless_matrix; /* 1: without the terms by which present stresses turn and move: the matrix is positive semi-definite
-                                unless the law softens */
+  int32_t stressless_matrix; /* 1: without the terms by which present stresses turn and move: the matrix is positive
+                                semi-definite unless the law softens */
 } lacon_solid_batch;
 
 /* Elements (bodies, skins, edges) under a load that has values at each integration point. */
@@ -118,7 +118,7 @@ typedef struct lacon_kernel {
   void (*solid)(const lacon_solid_batch*);
   void (*load)(const lacon_load_batch*);
   void (*contact)(const lacon_contact_batch*);
-  const char* const* parameters; /* solid: material parameters that it takes, "ELAS/E"; load: its values, "PRES"; NULL at the end */
+  const char* const* parameters; /* solid: its material parameters, "ELAS/E"; load: its values, "PRES"; NULL at the end */
   int32_t n_variables;           /* solid: internal variables at a point */
   int32_t nonlinear;             /* solid: 0 if the matrix does not depend on the displacement */
   int32_t has_memory;            /* solid: 1 if the result depends on the last state in equilibrium */
@@ -127,7 +127,9 @@ typedef struct lacon_kernel {
 
 typedef struct lacon_plugin_table {
   uint32_t abi; /* LACON_ABI */
-  uint32_t solid_batch_size, load_batch_size, contact_batch_size; /* sizeof of the structs it was built with */
+
+  /* sizeof of the structs it was built with */
+  uint32_t solid_batch_size, load_batch_size, contact_batch_size;
   const char* name;
   int32_t n_kernels;
   const lacon_kernel* kernels;

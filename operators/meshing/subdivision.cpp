@@ -27,7 +27,8 @@ CellNodes pick(std::span<const std::int32_t> from, std::span<const std::int8_t> 
 
 Heirs::Gap Heirs::gap_of(std::int32_t cell, std::size_t guess) const {
   const auto gap = [&](std::size_t i) {
-    return Gap{i, i > 0 ? replaced_[i - 1] : -1, i < replaced_.size() ? replaced_[i] : std::numeric_limits<std::int32_t>::max()};
+    return Gap{i, i > 0 ? replaced_[i - 1] : -1,
+               i < replaced_.size() ? replaced_[i] : std::numeric_limits<std::int32_t>::max()};
   };
   if (const Gap guessed = gap(guess); guessed.below < cell && cell <= guessed.end) return guessed;
   return gap(static_cast<std::size_t>(std::ranges::lower_bound(replaced_, cell) - replaced_.begin()));
