@@ -2,6 +2,7 @@
 #include <cmath>
 #include <cstdint>
 
+#include "lacon/elements/axis.hpp"
 #include "lacon/elements/lanes.hpp"
 
 #pragma GCC diagnostic ignored "-Wpsabi"  // vectors are passed between inlined functions alone
@@ -100,14 +101,6 @@ LACON_INLINE Vector<D> area_normal(const double* gradient, const Edges<D>& edges
   }
 }
 
-/// Whether a node of an edge has a negative radius by more than round-off. @param nodes (n, 2)
-bool reaches_over_axis(const double* nodes, int n) {
-  double size = 0, least = nodes[0];
-  for (int i = 0; i < 2 * n; ++i) size = std::fmax(size, std::abs(nodes[i] - nodes[i % 2]));
-  for (int a = 1; a < n; ++a) least = std::fmin(least, nodes[2 * a]);
-  return least < -1e-10 * size;
-}
-
 /// METHOD.md 3.4 and 5.4 (b): at each point the gap g = (x_m - x).n_e; with the measure J of TYPE_JACOBIEN (of the initial
 /// geometry or of the current one, in both) G = sum w J g and C = sum w J (-phi_i n_e on the slave, +phi_j n_e on the master).
 /// In axisymmetry (METHOD.md 3.9) J has the factor r, the slave's radius in the same geometry: integrals over one radian.
@@ -131,7 +124,9 @@ LACON_INLINE void lac_of(const lacon_contact_batch& b) {
     for (int a = 0; a < masters; ++a) on_master[a] = Vector<D>{};
     double gap = 0, measure = 0, current_measure = 0;
     bool bad = false, over = false;
-    if constexpr (axis) over = reaches_over_axis(initial_nodes, slaves) || reaches_over_axis(current_nodes, slaves);
+    if constexpr (axis)
+      over = lacon::reaches_over_axis(slaves, [&](int i) { return initial_nodes[i]; }) ||
+             lacon::displaced_reaches_over_axis(slaves, [&](int i) { return current_nodes[i]; });
     for (std::int64_t p = b.offset[cell]; p < b.offset[cell + 1]; ++p) {
       const double* shape = b.slave_shape + p * slaves;
       const double* master_shape = b.master_shape + p * masters;

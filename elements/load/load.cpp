@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "lacon/elements/axis.hpp"
 #include "lacon/elements/lanes.hpp"
 
 namespace {
@@ -16,9 +17,6 @@ using lacon::lanes;
 
 // A Jacobian below this share of what the element's size allows is round-off.
 constexpr double flat = 1e-13;
-
-// A node may be this far beyond the axis, as a share of its element's size.
-constexpr double over_axis = 1e-10;
 
 [[gnu::always_inline]] inline void take_root(Lanes& x) {
   for (int l = 0; l < LACON_LANES; ++l) x[l] = std::sqrt(x[l]);
@@ -39,10 +37,9 @@ struct Geometry {
       const Lanes side = lanes(x, i) - lanes(x, i % D);
       extent += side * side;
     }
-    if constexpr (axis)
+    if constexpr (axis)  // whether these are coordinates of the mesh or displaced ones is not said
       for (int l = 0; l < LACON_LANES; ++l)
-        for (int a = 0; a < b.n_nodes; ++a)
-          errors.set(l, lanes(x, 2 * a)[l] < -over_axis * std::sqrt(extent[l]), LACON_BAD_RADIUS);
+        errors.set(l, lacon::displaced_reaches_over_axis(b.n_nodes, [&](int i) { return lanes(x, i)[l]; }), LACON_BAD_RADIUS);
   }
 
   [[gnu::always_inline]] double shape(int p, int a) const { return b.shape[p * b.n_nodes + a]; }
@@ -59,6 +56,7 @@ struct Geometry {
     if constexpr (axis) {
       r = Lanes{};
       for (int a = 0; a < b.n_nodes; ++a) r += shape(p, a) * lanes(x, 2 * a);
+      r = r < 0 ? Lanes{} : r;
     }
   }
   [[gnu::always_inline]] Lanes length2(int k) const {

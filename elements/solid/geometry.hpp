@@ -9,9 +9,6 @@ constexpr int max_nodes = 27;
 // A determinant below this share of the size of its terms is round-off.
 constexpr double flat = 1e-13;
 
-// A node may be this far beyond the axis, as a share of its cell's size.
-constexpr double over_axis = 1e-10;
-
 enum class Kind { plane_strain, plane_stress, axis, three_d };
 
 constexpr int dimension_of(Kind kind) { return kind == Kind::three_d ? 3 : 2; }

@@ -2,6 +2,7 @@
 #include <cmath>
 
 #include "geometry.hpp"
+#include "lacon/elements/axis.hpp"
 #include "lacon/elements/lanes.hpp"
 #include "von_mises.hpp"
 
@@ -21,7 +22,6 @@ using lacon::solid::dimension_of;
 using lacon::solid::Kind;
 using lacon::solid::Map;
 using lacon::solid::max_nodes;
-using lacon::solid::over_axis;
 using lacon::solid::Tangent;
 
 /// DEFORMATION: small strains (PETIT); small increments of strain on the geometry of u (PETIT_REAC); Green-Lagrange strains and
@@ -290,11 +290,8 @@ template <Kind K, Measure M, Law L>
       side[i] = lanes(place, i) - lanes(place, i % D);
     }
     if constexpr (axis)
-      for (int l = 0; l < LACON_LANES; ++l) {
-        double size = 0;
-        for (int i = 0; i < dofs; ++i) size = std::fmax(size, std::abs(side[i][l]));
-        for (int a = 0; a < nodes; ++a) errors.set(l, lanes(place, 2 * a)[l] < -over_axis * size, LACON_BAD_RADIUS);
-      }
+      for (int l = 0; l < LACON_LANES; ++l)
+        errors.set(l, lacon::reaches_over_axis(nodes, [&](int i) { return lanes(x, i)[l]; }), LACON_BAD_RADIUS);
     Lanes sum = {};
     for (int p = 0; p < b.n_points; ++p) {
       const double* d = b.gradient + p * dofs;

@@ -47,7 +47,6 @@ std::span<Number> room(std::vector<Number>& numbers, std::size_t size) {
   return {numbers.data(), size};
 }
 
-constexpr double tolerated_overlap = 0.1;     // of a slave cell's size, beyond the axis: a node there that nothing holds
 constexpr std::size_t block = 128;            // slave cells that a thread takes at a time
 constexpr double coverage_round_off = 1e-12;  // covered fractions above 1 by no more than this are 1
 
@@ -124,17 +123,7 @@ void ContactGeometry::note(std::int32_t error, std::int32_t cell) {
 }
 
 void ContactGeometry::check_radii() const {
-  if (over_axis_) {
-    double least = 0, size = 0;
-    const auto nodes = mesh_.cells[*over_axis_];
-    for (const std::int32_t node : nodes) {
-      const double* const x = coordinates_.data() + 3 * std::ptrdiff_t{node};
-      const double* const first = coordinates_.data() + 3 * std::ptrdiff_t{nodes.front()};
-      least = std::min(least, x[0]);
-      size = std::max(size, std::hypot(x[0] - first[0], x[1] - first[1]));
-    }
-    if (least < -tolerated_overlap * size) fail("EVOLUTION_8", {{"cell", cell_name(*over_axis_)}});
-  }
+  if (over_axis_) fail("EVOLUTION_8", {{"cell", cell_name(*over_axis_)}});
 }
 
 const lacon_kernel& ContactGeometry::kernel_of(std::int32_t cell) const {
