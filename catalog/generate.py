@@ -220,11 +220,13 @@ def write_cpp(catalog, writer):
 
     rows = []
     for e in catalog["elements"]:
+        in_plane = e["role"] == "solid" and e["geometry"] == "plane"
+        check(("stress_state" in e) == in_plane, f"elements: {e['modelisation']}: solids in the plane have a stress_state, others none")
         for cell, points in e["points"].items():
             check(cell in names, f"elements: {e['modelisation']} names the cell {cell}")
             kernels = writer.span("KernelRow", (f"{{{text(o)}, {text(k)}}}" for o, k in e["kernels"].items()))
             rows.append(f"{{{text(e['modelisation'] + '/' + cell)}, {text(e['modelisation'])}, {text(e['phenomenon'])}, {kind(cell)}, "
-                        f"Role::{e['role']}, {points}, {writer.strings(e['dofs'])}, {writer.strings(e['stress'])}, {kernels}}}")
+                        f"Role::{e['role']}, Geometry::{e['geometry']}, StressState::{e.get('stress_state', 'full')}, {points}, {writer.strings(e['dofs'])}, {writer.strings(e['stress'])}, {kernels}}}")
     tables["elements", "ElementRow"] = rows
 
     tables["quantities", "QuantityRow"] = [

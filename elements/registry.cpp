@@ -99,7 +99,8 @@ class RowReader {
   RowReader(const fs::path& file, const toml::table& table) : file_(file), table_(table) {
     element_ = "in line " + std::to_string(table.source().begin.line);
     element_ = text("modelisation");
-    const std::set<std::string_view> known = {"modelisation", "phenomenon", "role", "points", "dofs", "stress", "kernels"};
+    const std::set<std::string_view> known = {"modelisation", "phenomenon", "role",   "geometry", "stress_state",
+                                              "points",       "dofs",       "stress", "kernels"};
     for (const auto& [key, value] : table)
       if (!known.contains(key.str())) fail_row("it has the key " + in_quotes(key.str()) + ", which no element has");
   }
@@ -110,8 +111,16 @@ class RowReader {
 
   /// Rows for each cell that the table names in `points`.
   void read(const std::vector<Plugin>& plugins, std::vector<std::unique_ptr<OwnedRow>>& rows) {
-    const std::string role = text("role");
-    if (role != "solid" && role != "skin") fail_row("its role " + in_quotes(role) + " is neither 'solid' nor 'skin'");
+    const catalog::Role role = choice<catalog::Role>("role", {{"solid", catalog::Role::solid}, {"skin", catalog::Role::skin}});
+    const auto geometry = choice<catalog::Geometry>(
+        "geometry",
+        {{"plane", catalog::Geometry::plane}, {"axis", catalog::Geometry::axis}, {"space", catalog::Geometry::space}});
+    catalog::StressState state = catalog::StressState::full;
+    if (role == catalog::Role::solid && geometry == catalog::Geometry::plane)
+      state = choice<catalog::StressState>("stress_state", {{"plane_strain", catalog::StressState::plane_strain},
+                                                            {"plane_stress", catalog::StressState::plane_stress}});
+    else if (table_.contains("stress_state"))
+      fail_row("it has a 'stress_state', which solids in the plane alone have");
     const toml::table* points = table_["points"].as_table();
     if (!points || points->empty()) fail_row("it lacks the table 'points' (cell = number of integration points)");
     const std::string modelisation = element_;
@@ -126,12 +135,17 @@ class RowReader {
                     owned->keep(modelisation),
                     owned->keep(text("phenomenon")),
                     *cell,
-                    role == "solid" ? catalog::Role::solid : catalog::Role::skin,
+                    role,
+                    geometry,
+                    state,
                     rule_size(*cell, value),
                     {},
                     {},
                     {}};
+      if (catalog::cell(*cell).dimension + (role == catalog::Role::skin ? 1 : 0) != catalog::dimension_of(geometry))
+        fail_row("a cell of this dimension is no " + text("role") + " of its geometry");
       owned->dofs = components("dofs", "DEPL_R", *owned);
+      check_displacements(owned->dofs, geometry);
       owned->stress = components("stress", "SIEF_R", *owned);
       read_kernels(plugins, *owned);
       owned->row.dofs = owned->dofs;
@@ -146,6 +160,27 @@ class RowReader {
     const std::optional<std::string> value = table_[key].value_exact<std::string>();
     if (!value || value->empty()) fail_row("it lacks the text " + in_quotes(key));
     return *value;
+  }
+
+  template <class Value>
+  Value choice(std::string_view key, std::initializer_list<std::pair<std::string_view, Value>> choices) const {
+    const std::string given = text(key);
+    std::string known;
+    for (const auto& [name, value] : choices) {
+      if (name == given) return value;
+      known += (known.empty() ? "" : ", ") + in_quotes(name);
+    }
+    fail_row("its " + std::string(key) + " " + in_quotes(given) + " is none of " + known);
+  }
+
+  /// Kernels, loads and contact take the first unknowns of a node for its displacement.
+  void check_displacements(std::span<const std::string_view> dofs, catalog::Geometry geometry) const {
+    constexpr std::string_view displacements[] = {"DX", "DY", "DZ"};
+    const std::span wanted = std::span(displacements).first(static_cast<std::size_t>(catalog::dimension_of(geometry)));
+    std::string names;
+    for (const std::string_view name : wanted) names += (names.empty() ? "" : ", ") + in_quotes(name);
+    if (!std::ranges::equal(dofs, wanted))
+      fail_row("its 'dofs' are not the displacements of its geometry, " + names + ", in this order");
   }
 
   int rule_size(CellType cell, const toml::node& node) const {

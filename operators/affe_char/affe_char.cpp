@@ -54,7 +54,7 @@ const CellKeyword cell_keywords[] = {
 bool fits(const LoadScene& scene, const CellKeyword& kind, std::int32_t cell) {
   const catalog::ElementRow* row = scene.element(cell);
   if (!row || !scene.registry.has_kernel(*row, kind.option)) return false;
-  const int space = static_cast<int>(row->dofs.size());
+  const int space = catalog::dimension_of(row->geometry);
   return (kind.space == 0 || kind.space == space) && space - catalog::cell(row->cell).dimension == kind.codimension;
 }
 
@@ -140,9 +140,9 @@ void load_gravity(Load& load, const LoadScene& scene, const Keywords& keywords) 
       for (const std::int32_t cell : named.members) {
         check_cell(scene, kind, cell, "FX", named.source);
         const catalog::ElementRow& row = *scene.element(cell);
-        if (row.dofs.size() == 2 && direction[2] != 0) refuse("it leaves the plane of the model");
-        if (row.modelisation == "AXIS" && direction[0] != 0) refuse("it is not along the axis of revolution");
-        for (std::size_t d = 0; d < row.dofs.size(); ++d)
+        if (row.geometry != catalog::Geometry::space && direction[2] != 0) refuse("it leaves the plane of the model");
+        if (row.geometry == catalog::Geometry::axis && direction[0] != 0) refuse("it is not along the axis of revolution");
+        for (std::size_t d = 0; d < static_cast<std::size_t>(catalog::dimension_of(row.geometry)); ++d)
           given.add(cell, "the cell " + cell_name(cell), std::string(forces[d]), {factor.real("GRAVITE") * direction[d], ""},
                     named.source);
       }

@@ -127,7 +127,7 @@ void make_rigid(Load& load, const LoadScene& scene, const Keywords& factor) {
   const std::vector<NamedPlaces> named = named_nodes(scene, factor);
   const std::vector<std::int32_t> nodes = distinct_nodes(named);
   for (const std::string& element : scene.model.elements)
-    if (const catalog::ElementRow* row = scene.registry.find_element(element); row && row->modelisation == "AXIS")
+    if (const catalog::ElementRow* row = scene.registry.find_element(element); row && row->geometry == catalog::Geometry::axis)
       fail("CHARGE_14", {{"keyword", named.front().source}});
   std::vector<double> points;
   for (const std::int32_t node : nodes) {

@@ -26,11 +26,6 @@ std::string cell_types(const std::map<CellType, std::int64_t>& counts) {
   return join(parts);
 }
 
-/// Dimension of the space an element lives in: that of a body cell, one more than that of a skin cell.
-int space_of(const catalog::ElementRow& row) {
-  return catalog::cell(row.cell).dimension + (row.role == catalog::Role::skin ? 1 : 0);
-}
-
 /// The row of each cell type under a modelisation, or nullptr.
 std::vector<const catalog::ElementRow*> rows_of(const Registry& registry, const std::string& modelisation,
                                                 const std::string& keyword) {
@@ -99,9 +94,9 @@ Model affe_modele(const Mesh& mesh, const Registry& registry, const Keywords& ke
         fail("MODELE_6", {{"keyword", factor.path("PHENOMENE")},
                           {"modelisation", modelisation},
                           {"phenomenon", std::string(row->phenomenon)}});
-      if (model.dimension != 0 && model.dimension != space_of(*row))
+      if (model.dimension != 0 && model.dimension != catalog::dimension_of(row->geometry))
         fail("MODELE_4", {{"keyword", factor.path("MODELISATION")}, {"cell", cell_name(cell)}});
-      model.dimension = space_of(*row);
+      model.dimension = catalog::dimension_of(row->geometry);
       model.phenomenon = phenomenon;
       if (model.dimension == 2) check_plane(mesh, cell, modelisation, extent);
       given[static_cast<std::size_t>(cell)] = row;

@@ -86,18 +86,16 @@ void check_elements(const Mesh& mesh, const Model& model, const Registry& regist
 }
 
 /// Contact of a ring (weights with r) and of a plate in one computation has no meaning: all skins are axisymmetric, or none.
-void check_axisymmetry(const Model& model, const std::vector<ContactZone>& zones) {
+void check_axisymmetry(const Model& model, const Registry& registry, const std::vector<ContactZone>& zones) {
   std::int32_t with = -1, without = -1;  // a cell of either kind
-  for (const ContactZone& zone : zones)
-    for (const auto* cells : {&zone.slave, &zone.master})
-      for (const std::int32_t cell : *cells) {
-        const std::string& name = model.elements[static_cast<std::size_t>(model.element[static_cast<std::size_t>(cell)])];
-        (name.starts_with("AXIS") ? with : without) = cell;
-      }
-  if (with < 0 || without < 0) return;
-  const auto element = [&](std::int32_t cell) {
+  const auto element = [&](std::int32_t cell) -> const std::string& {
     return model.elements[static_cast<std::size_t>(model.element[static_cast<std::size_t>(cell)])];
   };
+  for (const ContactZone& zone : zones)
+    for (const auto* cells : {&zone.slave, &zone.master})
+      for (const std::int32_t cell : *cells)
+        (registry.find_element(element(cell))->geometry == catalog::Geometry::axis ? with : without) = cell;
+  if (with < 0 || without < 0) return;
   fail("LAC_6", {{"with", cell_name(with)},
                  {"with_element", element(with)},
                  {"without", cell_name(without)},
@@ -248,7 +246,7 @@ Contact defi_contact(const Mesh& mesh, std::string_view mesh_label, const Model&
     fmt::print("  zone {}: slave {} ({} cells, {} patches), master {} ({} cells)\n", contact.zones.size(), zone.slave_group,
                zone.slave.size(), zone.patches.size(), zone.master_group, zone.master.size());
   }
-  check_axisymmetry(model, contact.zones);
+  check_axisymmetry(model, registry, contact.zones);
   if (contact.smoothing) {
     check_shared_nodes(mesh, contact.zones);
     for (const ContactZone& zone : contact.zones) check_corners(mesh, zone);

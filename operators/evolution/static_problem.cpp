@@ -11,14 +11,14 @@
 namespace lacon {
 namespace {
 
-/// The degrees of freedom that the elements' nodes have; every element of a model has the same components.
+/// The degrees of freedom that the elements' nodes have: of every element the displacements of the model's space.
 void find_dofs(StaticProblem& problem) {
   for (const std::string& name : problem.model.elements) {
     const catalog::ElementRow* row = problem.registry->find_element(name);
     if (!row) fail("PLUGIN_4", {{"element", name}});
-    if (problem.components.empty()) problem.components.assign(row->dofs.begin(), row->dofs.end());
+    problem.components.assign(row->dofs.begin(), row->dofs.end());
   }
-  problem.dimension = static_cast<int>(problem.components.size());
+  problem.dimension = problem.model.dimension;
   problem.exists.assign(problem.mesh.n_nodes() * problem.dimension, 0);
   for (std::size_t c = 0; c < problem.mesh.n_cells(); ++c) {
     if (problem.model.element[c] < 0) continue;

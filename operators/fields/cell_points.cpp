@@ -24,9 +24,10 @@ bool ModelPoints::is_solid(std::size_t cell) const {
   return row && row->role == catalog::Role::solid;
 }
 
-// modelisations are told apart by code_aster's names for them, which plug-ins keep
-bool ModelPoints::is_axisymmetric(std::size_t cell) const { return element(cell)->modelisation.starts_with("AXIS"); }
-bool ModelPoints::is_plane_stress(std::size_t cell) const { return element(cell)->modelisation.starts_with("C_PLAN"); }
+bool ModelPoints::is_axisymmetric(std::size_t cell) const { return element(cell)->geometry == catalog::Geometry::axis; }
+bool ModelPoints::is_plane_stress(std::size_t cell) const {
+  return element(cell)->stress_state == catalog::StressState::plane_stress;
+}
 
 namespace {
 
@@ -76,7 +77,7 @@ const CellPoints& ModelPoints::operator()(std::size_t cell, std::span<const doub
   if (made) at->second = tabulate(row.cell, integration_rule(catalog::cell(row.cell).family, row.points));
   const Tabulation& table = at->second;
   const auto nodes = mesh_.cells[cell];
-  const int n = table.n_nodes, space = static_cast<int>(row.dofs.size());
+  const int n = table.n_nodes, space = catalog::dimension_of(row.geometry);
 
   CellPoints& points = points_;
   points.n_points = table.n_points;

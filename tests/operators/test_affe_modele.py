@@ -58,7 +58,8 @@ class AffeModele(OperatorTest):
         folder = self.folder / "plugins" / "stiff"
         folder.mkdir(parents=True)
         (folder / "plugin.toml").write_text(
-            '[[element]]\nmodelisation = "RIGIDE"\nphenomenon = "MECANIQUE"\nrole = "solid"\npoints = { QUAD4 = 4 }\n'
+            '[[element]]\nmodelisation = "RIGIDE"\nphenomenon = "MECANIQUE"\nrole = "solid"\n'
+            'geometry = "plane"\nstress_state = "plane_strain"\npoints = { QUAD4 = 4 }\n'
             'dofs = ["DX", "DY"]\nstress = ["SIXX", "SIYY", "SIZZ", "SIXY"]\n'
             'kernels = { "ELAS/PETIT" = "solid/plane_strain_small_elastic" }\n', encoding="utf-8")
         self.model(affe(TOUT="OUI"), affe(GROUP_MA=["LEFT"], MODELISATION="RIGIDE"), plugins=[folder.parent])

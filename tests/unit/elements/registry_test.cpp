@@ -59,6 +59,8 @@ std::string row(const std::string& key = "", const std::string& changed = "") {
       {"modelisation", "modelisation = 'D_TEST'"},
       {"phenomenon", "phenomenon = 'MECANIQUE'"},
       {"role", "role = 'solid'"},
+      {"geometry", "geometry = 'plane'"},
+      {"stress_state", "stress_state = 'plane_strain'"},
       {"points", "points = { TRIA3 = 1, QUAD4 = 4 }"},
       {"dofs", "dofs = ['DX', 'DY']"},
       {"stress", "stress = ['SIXX', 'SIYY', 'SIZZ', 'SIXY']"},
@@ -122,6 +124,8 @@ TEST_F(Plugins, RowsOfAPluginServeItsCells) {
   EXPECT_EQ(element->name, "D_TEST/QUAD4");
   EXPECT_EQ(element->points, 4);
   EXPECT_EQ(element->role, lacon::catalog::Role::solid);
+  EXPECT_EQ(element->geometry, lacon::catalog::Geometry::plane);
+  EXPECT_EQ(element->stress_state, lacon::catalog::StressState::plane_strain);
   EXPECT_THAT(element->dofs, testing::ElementsAre("DX", "DY"));
   EXPECT_THAT(element->stress, testing::ElementsAre("SIXX", "SIYY", "SIZZ", "SIXY"));
   EXPECT_STREQ(registry.kernel(*element, "ELAS/PETIT", LACON_SOLID).name, "plane_strain_small_elastic");
@@ -173,7 +177,14 @@ TEST_F(Plugins, BadRowsAreRefusedWithFileElementAndReason) {
       {"element = 3", "PLUGIN_1", "'element' is not a list"},
       {"[cell]\nname = 'x'", "PLUGIN_1", "'cell' is not a list"},
       {row("modelisation"), "PLUGIN_2", "element in line 1: it lacks the text 'modelisation'"},
-      {row("role", "role = 'shell'"), "PLUGIN_2", "'shell' is neither"},
+      {row("role", "role = 'shell'"), "PLUGIN_2", "its role 'shell' is none of 'solid', 'skin'"},
+      {row("geometry"), "PLUGIN_2", "it lacks the text 'geometry'"},
+      {row("geometry", "geometry = 'sphere'"), "PLUGIN_2", "its geometry 'sphere' is none of 'plane', 'axis', 'space'"},
+      {row("geometry", "geometry = 'space'"), "PLUGIN_2", "it has a 'stress_state', which solids in the plane alone have"},
+      {row("stress_state"), "PLUGIN_2", "it lacks the text 'stress_state'"},
+      {row("stress_state", "stress_state = 'flat'"), "PLUGIN_2", "'flat' is none of 'plane_strain', 'plane_stress'"},
+      {row("points", "points = { HEXA8 = 8 }"), "PLUGIN_2",
+       "D_TEST/HEXA8: a cell of this dimension is no solid of its geometry"},
       {row("points"), "PLUGIN_2", "'points'"},
       {row("points", "points = {}"), "PLUGIN_2", "'points'"},
       {row("points", "points = { TRIA7 = 1 }"), "PLUGIN_2", "D_TEST/TRIA7: the cell 'TRIA7' does not exist"},
@@ -185,6 +196,8 @@ TEST_F(Plugins, BadRowsAreRefusedWithFileElementAndReason) {
       {row("dofs", "dofs = ['DX', 3]"), "PLUGIN_2", "'dofs' names ''"},
       {row("dofs", "dofs = ['DX', 'DW']"), "PLUGIN_2", "'DW', which is no component of DEPL_R"},
       {row("dofs", "dofs = ['DX', 'DX']"), "PLUGIN_2", "'DX' twice"},
+      {row("dofs", "dofs = ['DY', 'DX']"), "PLUGIN_2", "its geometry, 'DX', 'DY', in this order"},
+      {row("dofs", "dofs = ['DX']"), "PLUGIN_2", "its geometry, 'DX', 'DY', in this order"},
       {row("stress", "stress = ['SIWW']"), "PLUGIN_2", "'SIWW', which is no component of SIEF_R"},
       {row("kernels"), "PLUGIN_2", "'kernels'"},
       {row("kernels", "kernels = { 'ELAS/PETIT' = 'solid' }"), "PLUGIN_2", "'plug-in/kernel'"},
