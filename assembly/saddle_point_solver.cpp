@@ -7,6 +7,8 @@
 #include <numeric>
 #include <utility>
 
+#include "lacon/assembly/gmres.hpp"
+
 namespace lacon {
 namespace {
 
@@ -16,7 +18,7 @@ using Eigen::Map, Eigen::MatrixXd, Eigen::VectorXd;
 // speed, and in those of a block of sparse ones, at arithmetic's. Measured (docs/performance.md).
 constexpr double operations_of_a_solution = 40, operations_in_a_block = 2.5;
 constexpr int block_size = 64;
-constexpr int least_iterations = 8, most_cycles = 3;
+constexpr int least_iterations = 8;
 
 class Stopwatch {
  public:
@@ -95,6 +97,9 @@ bool same_pattern(const SymmetricMatrix& a, const SymmetricMatrix& b) {
 
 }  // namespace
 
+SaddlePointSolver::SaddlePointSolver(std::unique_ptr<Engine> engine, const SaddlePointOptions& options)
+    : options_(options), engine_(std::move(engine)), substitution_(dynamic_cast<FactorEngine*>(engine_.get())) {}
+
 double SaddlePointSolver::solution_cost() const { return operations_of_a_solution * static_cast<double>(factor_.entries); }
 double SaddlePointSolver::column_cost() const { return operations_in_a_block * static_cast<double>(factor_.entries); }
 
@@ -135,7 +140,7 @@ class SaddlePointSolver::Preconditioner {
     VectorXd own(size), side(size);
     for (const std::int64_t row : scaled_) x[row] *= solver_.base_->diagonal(row) / matrix_.diagonal(row);
     for (Eigen::Index s = 0; s < size; ++s) own[s] = std::exchange(x[rows_[s]], 0.0);
-    solver_.direct_.substitute(x);
+    solver_.substitution_->substitute(x);
     for (Eigen::Index s = 0; s < size; ++s)
       side[s] = scale_[s] * (seen_by(s, std::span<const double>(x)) - (is_on(s) ? own[s] : 0.0));
     if (size) side = scale_.asDiagonal() * factor_.solve(side).eval();
@@ -168,32 +173,33 @@ SolutionReport SaddlePointSolver::solve(const SymmetricMatrix& matrix, std::int6
                                         std::span<double> right_side, bool rough) {
   SolutionReport report;
   first_multiplier_ = first_multiplier;
-  if (options_.reuse && base_ && stiffness_change(matrix, *base_, first_multiplier) <= options_.stiffness_drift &&
+  if (options_.reuse && substitution_ && kept_ == Kept::factor &&
+      stiffness_change(matrix, *base_, first_multiplier) <= options_.stiffness_drift &&
       corrected(matrix, right_side, rough, report))
     return report;
 
+  // what is thrown from here on leaves a solver that keeps nothing
+  const bool analysed = kept_ != Kept::nothing && same_pattern(matrix, *base_);
+  kept_ = Kept::nothing;
   columns_.clear();
-  const bool analysed = base_ && same_pattern(matrix, *base_);
   base_ = matrix;
   if (!analysed) {
     const Stopwatch watch(report.analysis_seconds);
-    direct_.analyse(*base_);
+    engine_->analyse(*base_);
   }
   {
     const Stopwatch watch(report.factorisation_seconds);
-    factor_ = report.factorisation = direct_.factorise();
+    factor_ = report.factorisation = engine_->factorise(*base_);
     report.factorised = true;
   }
-  if (!factor_.null_pivots.empty()) {
-    base_.reset();
-    return report;
-  }
+  kept_ = factor_.null_pivots.empty() ? Kept::factor : Kept::analysis;
+  if (kept_ == Kept::analysis) return report;
   const Stopwatch watch(report.solution_seconds);
   const std::vector<double> scale = scales(matrix);
   const auto n = static_cast<Eigen::Index>(scale.size());
   reference_ =
       std::max(reference_, Map<const VectorXd>(scale.data(), n).cwiseProduct(Map<VectorXd>(right_side.data(), n)).norm());
-  direct_.solve(right_side);
+  engine_->solve(right_side);
   return report;
 }
 
@@ -235,9 +241,9 @@ bool SaddlePointSolver::make_columns(const SymmetricMatrix& matrix, const Switch
     std::vector<std::int64_t> offset{0};
     std::vector<std::int32_t> index;
     std::vector<double> value;
+    std::vector<Column> made(count);
     for (std::size_t c = first; c < first + count; ++c) {
-      Column& column = columns_[wanted[c]];
-      column = {};
+      Column& column = made[c - first];
       if (std::binary_search(switched.on.begin(), switched.on.end(), wanted[c])) {
         const Row row(matrix, wanted[c]);
         for (std::size_t k = 0; k < row.columns.size(); ++k) {
@@ -253,11 +259,13 @@ bool SaddlePointSolver::make_columns(const SymmetricMatrix& matrix, const Switch
       }
       offset.push_back(static_cast<std::int64_t>(index.size()));
     }
-    const std::vector<double> inverse = direct_.substitute(offset, index, value);
+    const std::vector<double> inverse = substitution_->substitute(offset, index, value);
     const auto n = static_cast<std::ptrdiff_t>(matrix.size());
-    for (std::size_t c = 0; c < count; ++c)
-      columns_[wanted[first + c]].inverse.assign(inverse.begin() + static_cast<std::ptrdiff_t>(c) * n,
-                                                 inverse.begin() + static_cast<std::ptrdiff_t>(c + 1) * n);
+    for (std::size_t c = 0; c < count; ++c) {
+      made[c].inverse.assign(inverse.begin() + static_cast<std::ptrdiff_t>(c) * n,
+                             inverse.begin() + static_cast<std::ptrdiff_t>(c + 1) * n);
+      columns_.insert_or_assign(wanted[first + c], std::move(made[c]));
+    }
   }
   report.columns = static_cast<int>(wanted.size());
   return true;
@@ -281,64 +289,22 @@ bool SaddlePointSolver::corrected(const SymmetricMatrix& matrix, std::span<doubl
   const Preconditioner preconditioner(*this, matrix, switched);
   if (!(preconditioner.condition() > options_.singular)) return false;
 
-  // GMRES on D A P^-1 D^-1 (D y) = D b with the scales D, x = P^-1 y
   const auto n = static_cast<Eigen::Index>(matrix.size());
-  const Map<const VectorXd> scale(scales_of_rows.data(), n);
-  const VectorXd unscale = scale.cwiseInverse();
-  const Map<const VectorXd> side(right_side.data(), n);
-  VectorXd x = VectorXd::Zero(n), residual = scale.cwiseProduct(side), image(n);
-  const double size = residual.norm();
+  const VectorXd scaled = Map<const VectorXd>(scales_of_rows.data(), n).cwiseProduct(Map<VectorXd>(right_side.data(), n));
+  const double size = scaled.norm();
   reference_ = std::max(reference_, size);
   const double full = std::min(options_.tolerance * reference_, options_.least_gain * size);
   const double goal = rough ? std::max(full, options_.rough_gain * size) : full;
   const int most =
       std::max(least_iterations, static_cast<int>(std::min(1e3, options_.work_limit * factor_.flops / solution_cost())));
-  std::vector<VectorXd> basis, directions;
-  for (int cycle = 0; cycle < most_cycles && residual.norm() > goal; ++cycle) {
-    basis.assign(1, residual / residual.norm());
-    directions.clear();
-    MatrixXd triangle = MatrixXd::Zero(most + 1, most);
-    VectorXd small = VectorXd::Zero(most + 1);
-    small[0] = residual.norm();
-    std::vector<Eigen::JacobiRotation<double>> rotations;
-    int k = 0;
-    while (k < most && std::abs(small[k]) > 0.5 * goal && report.iterations < most) {
-      VectorXd direction = unscale.cwiseProduct(basis[k]);
-      preconditioner.apply({direction.data(), static_cast<std::size_t>(n)});
-      matrix.multiply({direction.data(), static_cast<std::size_t>(n)}, {image.data(), static_cast<std::size_t>(n)});
-      image.array() *= scale.array();
-      directions.push_back(std::move(direction));
-      const double whole = image.norm();
-      for (int pass = 0; pass < 2; ++pass)  // twice is enough to be orthogonal to round-off
-        for (int i = 0; i <= k; ++i) {
-          const double part = basis[i].dot(image);
-          triangle(i, k) += part;
-          image -= part * basis[i];
-        }
-      triangle(k + 1, k) = image.norm();
-      for (int i = 0; i < k; ++i) triangle.col(k).applyOnTheLeft(i, i + 1, rotations[i].adjoint());
-      Eigen::JacobiRotation<double> rotation;
-      rotation.makeGivens(triangle(k, k), triangle(k + 1, k));
-      const double rest = triangle(k + 1, k);
-      triangle.col(k).applyOnTheLeft(k, k + 1, rotation.adjoint());
-      small.applyOnTheLeft(k, k + 1, rotation.adjoint());
-      rotations.push_back(rotation);
-      ++k;
-      ++report.iterations;
-      if (!(rest > 1e-15 * whole)) break;  // the space holds the solution
-      basis.push_back(image / image.norm());
-    }
-    if (k == 0) break;
-    const VectorXd weights = triangle.topLeftCorner(k, k).triangularView<Eigen::Upper>().solve(small.head(k));
-    if (!weights.allFinite()) return false;
-    for (int i = 0; i < k; ++i) x += weights[i] * directions[i];
-    matrix.multiply({x.data(), static_cast<std::size_t>(n)}, {image.data(), static_cast<std::size_t>(n)});
-    residual = scale.cwiseProduct(side - image);
-  }
-  if (!(residual.norm() <= goal)) return false;
-  expected_iterations_ = report.iterations;
-  report.rough = residual.norm() > full;
-  std::copy(x.begin(), x.end(), right_side.begin());
+  const GmresResult found = gmres([&](std::span<const double> x, std::span<double> y) { matrix.multiply(x, y); },
+                                  [&](std::span<double> x) { preconditioner.apply(x); }, scales_of_rows, right_side,
+                                  {.goal = goal, .iterations = most});
+  report.iterations = found.iterations;
+  if (!(found.residual <= goal)) return false;
+  expected_iterations_ = found.iterations;
+  report.rough = found.residual > full;
+  std::copy(found.x.begin(), found.x.end(), right_side.begin());
   return true;
 }
 

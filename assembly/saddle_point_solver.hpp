@@ -8,17 +8,17 @@
 // new factorisation is cheaper; it counts operations, so that the choice is the same in every run.
 #include <cstdint>
 #include <map>
+#include <memory>
 #include <optional>
 #include <span>
 #include <vector>
 
-#include "lacon/assembly/direct_solver.hpp"
+#include "lacon/assembly/engine.hpp"
 #include "lacon/assembly/symmetric_matrix.hpp"
 
 namespace lacon {
 
 struct SaddlePointOptions {
-  SolverOptions direct;
   bool reuse = true;         ///< false: every matrix is factorised
   double tolerance = 1e-12;  ///< of GMRES, against the largest right side so far
   double least_gain = 1e-4;  ///< of GMRES, against the right side itself
@@ -43,7 +43,8 @@ struct SolutionReport {
 
 class SaddlePointSolver {
  public:
-  explicit SaddlePointSolver(const SaddlePointOptions& options = {}) : options_(options), direct_(options.direct) {}
+  /// With an engine that keeps no factor (FactorEngine), every matrix is factorised.
+  explicit SaddlePointSolver(std::unique_ptr<Engine> engine, const SaddlePointOptions& options = {});
 
   /// Solve A x = b in place. @param first_multiplier rows from here on are multipliers'
   /// Where the report has null pivots, the matrix is singular and `right_side` is left as it was.
@@ -66,6 +67,8 @@ class SaddlePointSolver {
     std::vector<std::int64_t> scaled;  ///< off then and now, with another diagonal
   };
   class Preconditioner;
+  /// What of the engine's work stands.
+  enum class Kept { nothing, analysis, factor };
 
   bool corrected(const SymmetricMatrix& matrix, std::span<double> right_side, bool rough, SolutionReport& report);
   bool make_columns(const SymmetricMatrix& matrix, const Switched& switched, SolutionReport& report);
@@ -75,9 +78,11 @@ class SaddlePointSolver {
   double column_cost() const;
 
   SaddlePointOptions options_;
-  DirectSolver direct_;
+  std::unique_ptr<Engine> engine_;
+  FactorEngine* substitution_;  ///< the same, where it keeps a factor
   std::int64_t first_multiplier_ = 0;
-  std::optional<SymmetricMatrix> base_;  ///< the matrix whose factor is kept
+  Kept kept_ = Kept::nothing;
+  std::optional<SymmetricMatrix> base_;  ///< the matrix that this is of
   Factorisation factor_;
   std::map<std::int64_t, Column> columns_;
   std::map<std::int64_t, double> multiplier_scale_;  ///< c.c / K of rows when they last had coefficients

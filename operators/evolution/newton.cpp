@@ -44,13 +44,13 @@ double largest_vector(std::span<const double> values, int dimension) {
 
 }  // namespace
 
-Newton::Newton(const StaticProblem& problem, const NewtonCriteria& criteria, const SaddlePointOptions& solver)
+Newton::Newton(const StaticProblem& problem, const NewtonCriteria& criteria, std::unique_ptr<Engine> engine)
     : problem_(problem),
       criteria_(criteria),
       relations_(problem),
       elements_(nodes_of_elements(problem)),
       system_(problem.numbering, elements_),
-      solver_(solver) {
+      solver_(std::move(engine)) {
   if (problem.contact) {
     contact_.emplace(problem);
     criteria_.resi_geom = problem.contact->resi_geom;

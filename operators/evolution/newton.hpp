@@ -1,6 +1,7 @@
 #pragma once
 // Newton's method for one instant: equilibrium, geometry, contact and behaviour in one loop (METHOD.md 3.2, 5.3).
 #include <functional>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -59,7 +60,7 @@ struct StaticState {
 
 class Newton {
  public:
-  Newton(const StaticProblem& problem, const NewtonCriteria& criteria, const SaddlePointOptions& solver);
+  Newton(const StaticProblem& problem, const NewtonCriteria& criteria, std::unique_ptr<Engine> engine);
 
   /// The state before any load: displacements zero, statuses of CONTACT_INIT.
   StaticState initial_state();

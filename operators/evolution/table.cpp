@@ -50,9 +50,9 @@ const Column columns[] = {
      true},
     {{"SOLVER", "NEGATIVE", "PIVOTS"},
      [](const IterationReport& r, const StaticProblem&) {
-       if (!r.solution.factorised) return std::string("-");
-       const std::int64_t found = r.solution.factorisation.negative_pivots;
-       return found == r.constraints ? fmt::format("{}", found) : fmt::format("{} of {}", found, r.constraints);
+       const std::optional<std::int64_t>& found = r.solution.factorisation.negative_pivots;
+       if (!found) return std::string("-");
+       return *found == r.constraints ? fmt::format("{}", *found) : fmt::format("{} of {}", *found, r.constraints);
      }},
     {{"TIME", "SECONDS", ""}, [](const IterationReport& r, const StaticProblem&) { return fmt::format("{:.4f}", r.seconds); }},
 };

@@ -8,6 +8,7 @@
 #include <limits>
 #include <set>
 
+#include "lacon/assembly/mumps_engine.hpp"
 #include "lacon/catalog/messages.hpp"
 #include "lacon/operators/evolution/archive.hpp"
 #include "lacon/operators/evolution/newton.hpp"
@@ -252,8 +253,8 @@ void stat_non_line(const Order& order, const Base& base) {
   NewtonCriteria criteria = criteria_of(single(keywords, "CONVERGENCE"), single(keywords, "NEWTON"));
   criteria.iterations += static_cast<int>(criteria.iterations * steps.more_iterations / 100);
   Newton newton(problem, criteria,
-                {.direct = {.memory_margin = static_cast<int>(solver.integer("PCENT_PIVOT")),
-                            .residual_tolerance = solver.real("RESI_RELA")}});
+                std::make_unique<MumpsEngine>(MumpsOptions{.memory_margin = static_cast<int>(solver.integer("PCENT_PIVOT")),
+                                                           .residual_tolerance = solver.real("RESI_RELA")}));
   NewtonTable table(std::cout, problem, single(keywords, "AFFICHAGE").yes("INFO_RESIDU"), keywords.integer("INFO") == 2);
 
   Archive archive(order, base, problem, origin);
@@ -306,7 +307,7 @@ void stat_non_line(const Order& order, const Base& base) {
                         {"before", fmt::format("{:.6g}, {:.6g}", before[1], before[0])},
                         {"instant", fmt::format("{:.9g}", instant)}});
       before = {report.maxi, before[0]};
-      if (report.solution.factorised) pivots = {report.solution.factorisation.negative_pivots, report.constraints};
+      if (const auto& found = report.solution.factorisation.negative_pivots) pivots = {*found, report.constraints};
     });
     for (const IncrementLimit& increment : increments) increment.check(fields, instant);
   };

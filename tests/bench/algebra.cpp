@@ -3,8 +3,8 @@
 #include <numeric>
 
 #include "bench.hpp"
-#include "lacon/assembly/direct_solver.hpp"
 #include "lacon/assembly/element_sets.hpp"
+#include "lacon/assembly/mumps_engine.hpp"
 #include "yardsticks.hpp"
 
 namespace {
@@ -91,34 +91,34 @@ void assemble(benchmark::State& state, CellType type) {
 struct Cube {
   Numbering numbering;
   SymmetricMatrix matrix;
-  DirectSolver solver;
+  MumpsEngine engine;
 
   explicit Cube(const benchmark::State& state)
       : numbering(bench::cube_numbering(static_cast<int>(state.range(0)))),
         matrix(bench::cube_matrix(numbering, static_cast<int>(state.range(0)))) {
-    solver.analyse(matrix);
+    engine.analyse(matrix);
   }
   double size() const { return static_cast<double>(matrix.size()); }
 };
 
 void analyse(benchmark::State& state) {
   Cube cube(state);
-  for (auto run : state) cube.solver.analyse(cube.matrix);
+  for (auto run : state) cube.engine.analyse(cube.matrix);
   bench::report(state, {.items = cube.size()});
 }
 
 void factor(benchmark::State& state) {
   Cube cube(state);
   Factorisation found;
-  for (auto run : state) found = cube.solver.factorise();
+  for (auto run : state) found = cube.engine.factorise(cube.matrix);
   bench::report(state, {.items = cube.size(), .flops = found.flops});
 }
 
 void substitute(benchmark::State& state) {
   Cube cube(state);
-  const Factorisation found = cube.solver.factorise();
+  const Factorisation found = cube.engine.factorise(cube.matrix);
   std::vector<double> side(static_cast<std::size_t>(cube.matrix.size()), 1.0);
-  for (auto run : state) cube.solver.substitute(side);
+  for (auto run : state) cube.engine.substitute(side);
   // every entry of the factor is used twice: forward and backward
   bench::report(state, {.items = cube.size(),
                         .flops = 4.0 * static_cast<double>(found.entries),

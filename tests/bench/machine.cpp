@@ -5,7 +5,7 @@
 
 #include <cstdlib>
 
-#include "lacon/assembly/direct_solver.hpp"
+#include "lacon/assembly/mumps_engine.hpp"
 #include "yardsticks.hpp"
 
 using namespace lacon;
@@ -15,12 +15,12 @@ int main(int argc, char** argv) {
   const double dgemm = bench::dgemm_gflops(), copy = bench::copy_gbytes();
   const Numbering numbering = bench::cube_numbering(n);
   const SymmetricMatrix matrix = bench::cube_matrix(numbering, n);
-  DirectSolver solver;
-  const double analysis = bench::seconds([&] { solver.analyse(matrix); });
+  MumpsEngine engine;
+  const double analysis = bench::seconds([&] { engine.analyse(matrix); });
   Factorisation found;
-  const double factorisation = bench::seconds([&] { found = solver.factorise(); });
+  const double factorisation = bench::seconds([&] { found = engine.factorise(matrix); });
   std::vector<double> side(matrix.size(), 1.0);
-  const double substitution = bench::seconds([&] { solver.substitute(side); });
+  const double substitution = bench::seconds([&] { engine.substitute(side); });
   fmt::print(
       R"({{"equations": {}, "dgemm_gflops": {:.2f}, "copy_gbytes": {:.2f}, "analysis_seconds": {:.3f}, "factorisation_seconds": {:.3f}, "factorisation_gflops": {:.2f}, "factor_entries": {}, "substitution_seconds": {:.4f}}})"
       "\n",

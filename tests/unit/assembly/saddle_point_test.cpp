@@ -1,9 +1,12 @@
 #include <gtest/gtest.h>
 
+#include <functional>
 #include <random>
 
 #include "dense.hpp"
+#include "lacon/assembly/mumps_engine.hpp"
 #include "lacon/assembly/saddle_point_solver.hpp"
+#include "lacon/catalog/messages.hpp"
 
 namespace lacon {
 namespace {
@@ -28,6 +31,11 @@ struct Sequence {
     std::vector<Coupling> all;
     for (int r = 0; r < n_rows; ++r)
       for (int k = 0; k < 3; ++k) all.push_back({n_nodes + r, 3 + 7 * r + 2 * k});
+    return all;
+  }
+  static std::vector<Coupling> more_couplings() {
+    std::vector<Coupling> all = couplings();
+    for (int r = 0; r < n_rows; ++r) all.push_back({n_nodes + r, 40 + r});
     return all;
   }
   void fill() {
@@ -60,7 +68,9 @@ struct Sequence {
 };
 
 /// A solver that takes every chance to keep its factor: its cost model would factorise so small a matrix again.
-SaddlePointSolver eager() { return SaddlePointSolver({.work_limit = 1e6, .column_memory = 1e6}); }
+SaddlePointSolver eager(std::unique_ptr<Engine> engine = std::make_unique<MumpsEngine>()) {
+  return SaddlePointSolver(std::move(engine), {.work_limit = 1e6, .column_memory = 1e6});
+}
 
 // Rows switched on and off, in any order, are solved with the first factor, exactly as by dense LU.
 TEST(SaddlePointSolver, SwitchesRowsWithOneFactor) {
@@ -200,10 +210,150 @@ TEST(SaddlePointSolver, FindsALooseBodyThatNothingPulls) {
   EXPECT_EQ(report.factorisation.null_pivots.size(), 1u);
 }
 
+/// MUMPS, but for one call that fails. Works on nothing that a failure has left behind.
+class FailingEngine : public FactorEngine {
+ public:
+  enum Call { none, analysis, factorisation, solution, substitution, block };
+
+  void analyse(const SymmetricMatrix& matrix) override {
+    ready_ = none;
+    fail_at(analysis);
+    engine_.analyse(matrix);
+    ready_ = analysis;
+  }
+  Factorisation factorise(const SymmetricMatrix& matrix) override {
+    require(analysis);
+    ready_ = none;
+    fail_at(factorisation);
+    const Factorisation found = engine_.factorise(matrix);
+    ready_ = factorisation;
+    return found;
+  }
+  double solve(std::span<double> right_side) override {
+    require(factorisation);
+    fail_at(solution);
+    return engine_.solve(right_side);
+  }
+  void substitute(std::span<double> right_side) override {
+    require(factorisation);
+    fail_at(substitution);
+    engine_.substitute(right_side);
+  }
+  std::vector<double> substitute(std::span<const std::int64_t> offset, std::span<const std::int32_t> index,
+                                 std::span<const double> value) override {
+    require(factorisation);
+    fail_at(block);
+    return engine_.substitute(offset, index, value);
+  }
+
+  Call next = none;  ///< fails when it comes
+
+ private:
+  void fail_at(Call call) {
+    if (next == call) {
+      next = none;
+      fail("SOLVER_2", {{"phase", "test"}, {"equations", "0"}});
+    }
+  }
+  void require(Call done) const {
+    if (ready_ < done) throw std::logic_error("an engine that failed is used on");
+  }
+
+  MumpsEngine engine_;
+  Call ready_ = none;  ///< the last of analysis and factorisation that stands
+};
+
+// Wherever the engine fails between two solutions (a step is cut and tried again), the error comes through, the right side is
+// as it was, and the next solution is right, of the same matrix and of the one before.
+TEST(SaddlePointSolver, GoesOnAfterAFailure) {
+  struct Way {
+    FailingEngine::Call call;
+    const char* what;
+    std::function<void(Sequence&)> change;
+  };
+  const Way ways[] = {
+      {FailingEngine::analysis, "another pattern",
+       [](Sequence& system) {
+         system.matrix = SymmetricMatrix(system.chain.numbering, system.chain.cliques, Sequence::more_couplings());
+         system.fill();
+         system.matrix.add_diagonal(7, 0.25);
+       }},
+      {FailingEngine::factorisation, "another stiffness", [](Sequence& system) { system.matrix.add_diagonal(7, 0.25); }},
+      {FailingEngine::solution, "another stiffness", [](Sequence& system) { system.matrix.add_diagonal(7, 0.25); }},
+      {FailingEngine::block, "switched rows", [](Sequence& system) { system.on[1] = system.on[6] = true, system.fill(); }},
+      {FailingEngine::substitution, "moved coefficients", [](Sequence& system) { system.drift = 0.05, system.fill(); }},
+  };
+  for (const Way& way : ways)
+    for (const bool back : {false, true}) {
+      SCOPED_TRACE(way.what + std::string(back ? ", and back" : ""));
+      Sequence system;
+      system.on[2] = true;
+      system.fill();
+      auto owned = std::make_unique<FailingEngine>();
+      FailingEngine& engine = *owned;
+      SaddlePointSolver solver = eager(std::move(owned));
+      SolutionReport report;
+      EXPECT_LE(system.error(solver, report), 1e-11);
+      const SymmetricMatrix before = system.matrix;
+      way.change(system);
+      engine.next = way.call;
+      std::vector<double> side(system.matrix.size(), 1.0);
+      EXPECT_THROW(solver.solve(system.matrix, system.first_multiplier(), side), Error);
+      EXPECT_EQ(engine.next, FailingEngine::none) << "the call did not come";
+      EXPECT_EQ(side, std::vector<double>(side.size(), 1.0));
+      if (back) system.matrix = before;
+      EXPECT_LE(system.error(solver, report), 1e-11);
+      EXPECT_LE(system.error(solver, report), 1e-11);
+    }
+}
+
+/// An engine without factor and inertia, which gives up where it is told to.
+class IterativeEngine : public Engine {
+ public:
+  void analyse(const SymmetricMatrix& matrix) override { engine_.analyse(matrix); }
+  Factorisation factorise(const SymmetricMatrix& matrix) override {
+    engine_.factorise(matrix);
+    return {};
+  }
+  double solve(std::span<double> right_side) override {
+    if (stagnates) throw Error({.severity = 'S', .id = "TEST_1", .text = "no progress in 30 iterations", .advice = ""});
+    return engine_.solve(right_side);
+  }
+  bool stagnates = false;
+
+ private:
+  MumpsEngine engine_;
+};
+
+// An engine that keeps no factor is made ready for every matrix; why it fails is what the caller hears.
+TEST(SaddlePointSolver, TakesEnginesWithoutFactor) {
+  Sequence system;
+  auto owned = std::make_unique<IterativeEngine>();
+  IterativeEngine& engine = *owned;
+  SaddlePointSolver solver = eager(std::move(owned));
+  SolutionReport report;
+  for (int row = 0; row < 3; ++row) {
+    system.on[row] = true;
+    system.fill();
+    EXPECT_LE(system.error(solver, report), 1e-11);
+    EXPECT_TRUE(report.factorised);
+    EXPECT_EQ(report.factorisation.negative_pivots, std::nullopt);
+  }
+  engine.stagnates = true;
+  try {
+    system.error(solver, report);
+    FAIL() << "an engine that fails was taken to succeed";
+  } catch (const Error& error) {
+    EXPECT_EQ(error.message().text, "no progress in 30 iterations");
+  }
+  engine.stagnates = false;
+  EXPECT_LE(system.error(solver, report), 1e-11);
+}
+
 // The cost model factorises small matrices: that is cheaper than any iteration.
 TEST(SaddlePointSolver, FactorisesSmallMatrices) {
   Sequence system;
-  SaddlePointSolver solver;
+  SaddlePointSolver solver(std::make_unique<MumpsEngine>());
   SolutionReport report;
   system.error(solver, report);
   system.on[0] = true;

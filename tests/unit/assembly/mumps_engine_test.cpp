@@ -1,7 +1,7 @@
 #include <gtest/gtest.h>
 
 #include "dense.hpp"
-#include "lacon/assembly/direct_solver.hpp"
+#include "lacon/assembly/mumps_engine.hpp"
 #include "lacon/catalog/messages.hpp"
 
 namespace lacon {
@@ -30,55 +30,55 @@ struct SaddlePoint {
 };
 
 // The solution of a saddle-point system is that of dense LU, and the inertia counts the multipliers.
-TEST(DirectSolver, SolvesSaddlePoints) {
+TEST(MumpsEngine, SolvesSaddlePoints) {
   SaddlePoint system;
-  DirectSolver solver;
-  solver.analyse(system.matrix);
-  const Factorisation found = solver.factorise();
+  MumpsEngine engine;
+  engine.analyse(system.matrix);
+  const Factorisation found = engine.factorise(system.matrix);
   EXPECT_EQ(found.negative_pivots, 2);
   EXPECT_TRUE(found.null_pivots.empty());
   Eigen::VectorXd b = Eigen::VectorXd::Random(system.matrix.size()), x = b;
-  EXPECT_LE(solver.solve({x.data(), static_cast<std::size_t>(x.size())}), 1e-15);
+  EXPECT_LE(engine.solve({x.data(), static_cast<std::size_t>(x.size())}), 1e-15);
   const Eigen::VectorXd expected = dense(system.matrix).fullPivLu().solve(b);
   EXPECT_LE((x - expected).cwiseAbs().maxCoeff(), 1e-11 * expected.cwiseAbs().maxCoeff());
 }
 
 // New values on the same pattern need no new analysis.
-TEST(DirectSolver, FactorisesAgainOnTheSamePattern) {
+TEST(MumpsEngine, FactorisesAgainOnTheSamePattern) {
   SaddlePoint system;
-  DirectSolver solver;
-  solver.analyse(system.matrix);
-  solver.factorise();
+  MumpsEngine engine;
+  engine.analyse(system.matrix);
+  engine.factorise(system.matrix);
   system.matrix.add_diagonal(system.chain.numbering.of_patch(0), 3.0);
-  EXPECT_EQ(solver.factorise().negative_pivots, 1);
+  EXPECT_EQ(engine.factorise(system.matrix).negative_pivots, 1);
   Eigen::VectorXd b = Eigen::VectorXd::Ones(system.matrix.size()), x = b;
-  solver.solve({x.data(), static_cast<std::size_t>(x.size())});
+  engine.solve({x.data(), static_cast<std::size_t>(x.size())});
   EXPECT_LE((dense(system.matrix) * x - b).cwiseAbs().maxCoeff(), 1e-12);
 }
 
 // A chain that nothing holds has one free motion in each direction: both are found.
-TEST(DirectSolver, FindsFreeMotions) {
+TEST(MumpsEngine, FindsFreeMotions) {
   const Chain chain(25);
   SymmetricMatrix matrix(chain.numbering, chain.cliques, {});
   test::add_springs(matrix, chain);
-  DirectSolver solver;
-  solver.analyse(matrix);
-  const Factorisation found = solver.factorise();
+  MumpsEngine engine;
+  engine.analyse(matrix);
+  const Factorisation found = engine.factorise(matrix);
   ASSERT_EQ(found.null_pivots.size(), 2u);
   EXPECT_NE(found.null_pivots[0] % 2, found.null_pivots[1] % 2);
 }
 
 // A solution that is not one is refused: the right side of a singular system outside its range.
-TEST(DirectSolver, RefusesABadSolution) {
+TEST(MumpsEngine, RefusesABadSolution) {
   const Chain chain(25);
   SymmetricMatrix matrix(chain.numbering, chain.cliques, {});
   test::add_springs(matrix, chain);
-  DirectSolver solver({.residual_tolerance = 1e-10});
-  solver.analyse(matrix);
-  solver.factorise();
+  MumpsEngine engine({.residual_tolerance = 1e-10});
+  engine.analyse(matrix);
+  engine.factorise(matrix);
   std::vector<double> b(matrix.size(), 1.0);
   try {
-    solver.solve(b);
+    engine.solve(b);
     FAIL() << "a system without solution was solved";
   } catch (const Error& error) {
     EXPECT_EQ(error.message().id, "SOLVER_1");

@@ -1,4 +1,4 @@
-#include "lacon/assembly/direct_solver.hpp"
+#include "lacon/assembly/mumps_engine.hpp"
 
 #include <dmumps_c.h>
 #include <fmt/format.h>
@@ -30,10 +30,10 @@ double largest(std::span<const double> values) {
 
 }  // namespace
 
-struct DirectSolver::State {
-  SolverOptions options;
+struct MumpsEngine::State {
+  MumpsOptions options;
   DMUMPS_STRUC_C mumps{};
-  const SymmetricMatrix* matrix = nullptr;
+  const SymmetricMatrix* matrix = nullptr;  ///< whose factor is kept
   std::vector<MUMPS_INT> row, column;
   std::vector<MUMPS_INT> place;
 
@@ -48,7 +48,7 @@ struct DirectSolver::State {
   }
 };
 
-DirectSolver::DirectSolver(const SolverOptions& options) : state_(std::make_unique<State>()) {
+MumpsEngine::MumpsEngine(const MumpsOptions& options) : state_(std::make_unique<State>()) {
   state_->options = options;
   DMUMPS_STRUC_C& mumps = state_->mumps;
   mumps.sym = 2;  // general symmetric: multipliers make the matrix indefinite
@@ -64,11 +64,11 @@ DirectSolver::DirectSolver(const SolverOptions& options) : state_(std::make_uniq
   at(mumps.cntl, 3) = options.singular_pivot;
 }
 
-DirectSolver::~DirectSolver() { state_->call(end); }
+MumpsEngine::~MumpsEngine() { state_->call(end); }
 
-void DirectSolver::analyse(const SymmetricMatrix& matrix) {
+void MumpsEngine::analyse(const SymmetricMatrix& matrix) {
   State& s = *state_;
-  s.matrix = &matrix;
+  s.matrix = nullptr;
   s.row.clear();
   s.column.clear();
   for (std::int64_t row = 0; row < matrix.size(); ++row)
@@ -84,13 +84,15 @@ void DirectSolver::analyse(const SymmetricMatrix& matrix) {
   s.mumps.irn = s.row.data();
   s.mumps.jcn = s.column.data();
   s.mumps.perm_in = s.place.data();
+  s.mumps.a = nullptr;  // no values yet
   s.call(analyse_job);
   if (at(s.mumps.infog, 1) < 0) s.refuse("analysis");
 }
 
-Factorisation DirectSolver::factorise() {
+Factorisation MumpsEngine::factorise(const SymmetricMatrix& matrix) {
   State& s = *state_;
-  s.mumps.a = const_cast<double*>(s.matrix->values().data());  // read only
+  s.matrix = &matrix;
+  s.mumps.a = const_cast<double*>(matrix.values().data());  // read only
   s.call(factorise_job);
   // -8, -9: delayed pivots took more memory than foreseen
   for (int margin = 2 * s.options.memory_margin; (at(s.mumps.infog, 1) == -8 || at(s.mumps.infog, 1) == -9) && margin < 2000;
@@ -106,7 +108,7 @@ Factorisation DirectSolver::factorise() {
   return found;
 }
 
-void DirectSolver::substitute(std::span<double> right_side) {
+void MumpsEngine::substitute(std::span<double> right_side) {
   State& s = *state_;
   s.mumps.rhs = right_side.data();
   s.mumps.nrhs = 1;
@@ -114,8 +116,8 @@ void DirectSolver::substitute(std::span<double> right_side) {
   if (at(s.mumps.infog, 1) < 0) s.refuse("solution");
 }
 
-std::vector<double> DirectSolver::substitute(std::span<const std::int64_t> offset, std::span<const std::int32_t> index,
-                                             std::span<const double> value) {
+std::vector<double> MumpsEngine::substitute(std::span<const std::int64_t> offset, std::span<const std::int32_t> index,
+                                            std::span<const double> value) {
   State& s = *state_;
   const std::size_t count = offset.size() - 1;
   std::vector<double> solution(count * static_cast<std::size_t>(s.matrix->size()));
@@ -137,7 +139,7 @@ std::vector<double> DirectSolver::substitute(std::span<const std::int64_t> offse
   return solution;
 }
 
-double DirectSolver::solve(std::span<double> right_side) {
+double MumpsEngine::solve(std::span<double> right_side) {
   State& s = *state_;
   const std::size_t n = right_side.size();
   std::vector<double> x(n, 0.0), step(right_side.begin(), right_side.end()), residual(n), best(n);

@@ -1,0 +1,47 @@
+#pragma once
+// What a linear solver is to the rest of Lacon: a pattern, then values, then right sides. MUMPS is one engine
+// (mumps_engine.hpp).
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "lacon/assembly/symmetric_matrix.hpp"
+
+namespace lacon {
+
+/// What a factorisation found.
+struct Factorisation {
+  std::optional<std::int64_t> negative_pivots;  ///< the inertia, where the engine knows it
+  std::vector<std::int64_t> null_pivots;        ///< equations whose pivot is zero: the matrix is singular
+  double flops = 0;
+  std::int64_t entries = 0;  ///< of the factor
+};
+
+/// Solves with one matrix at a time, which has at least one equation. Whatever it throws, an analysis starts it afresh.
+class Engine {
+ public:
+  virtual ~Engine() = default;
+
+  /// Symbolic work for the pattern of a matrix.
+  virtual void analyse(const SymmetricMatrix& matrix) = 0;
+  /// Make ready to solve with a matrix of the analysed pattern: factorise it, or set up what iterations need. The matrix must
+  /// stay as it is while it is solved with. Throws SOLVER_2 (no memory).
+  virtual Factorisation factorise(const SymmetricMatrix& matrix) = 0;
+  /// Solve in place. @return the relative residual |b - A x| / (|A| |x| + |b|), largest entry
+  /// Throws SOLVER_1, or another error of severity S that says why there is no solution; `right_side` is then as it was.
+  virtual double solve(std::span<double> right_side) = 0;
+};
+
+/// An engine that keeps a factor, with which one substitution is cheap and a block of sparse right sides is cheaper still.
+class FactorEngine : public Engine {
+ public:
+  /// One pair of substitutions, in place: the solution without refinement.
+  virtual void substitute(std::span<double> right_side) = 0;
+  /// The same for a block of sparse right sides. @param offset (n + 1), index, value: entries of each
+  /// @return (n, size), one solution after the other
+  virtual std::vector<double> substitute(std::span<const std::int64_t> offset, std::span<const std::int32_t> index,
+                                         std::span<const double> value) = 0;
+};
+
+}  // namespace lacon
