@@ -172,6 +172,7 @@ class SaddlePointSolver::Preconditioner {
 SolutionReport SaddlePointSolver::solve(const SymmetricMatrix& matrix, std::int64_t first_multiplier,
                                         std::span<double> right_side, bool rough) {
   SolutionReport report;
+  if (matrix.size() == 0) return report;  // every displacement is imposed
   first_multiplier_ = first_multiplier;
   if (options_.reuse && substitution_ && kept_ == Kept::factor &&
       stiffness_change(matrix, *base_, first_multiplier) <= options_.stiffness_drift &&

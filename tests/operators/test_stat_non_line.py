@@ -252,6 +252,40 @@ class StatNonLine(TwoSquares):
         np.testing.assert_allclose(stress[:, 1], E / (1 - NU * NU) * 0.01, rtol=1e-12)
         np.testing.assert_allclose(self.read_field("result_9", "SIEF_ELGA", 1).values[:9], 0, atol=1e-12)
 
+    def pull_with_every_displacement_imposed(self, iterations=0, **changes):
+        """Both squares follow u = 0.01 y, v = 0.02 y at each node: no equation is left. The stress is Hooke's."""
+        points = np.array(square(-1) + square(0))
+        imposed = [(n, component, factor * points[n, 1]) for n in range(16) for component, factor in (("DX", 0.01), ("DY", 0.02))]
+        self.write_load("load_5", imposed=imposed, kind="cine")
+        run = self.solve(**changes)
+        self.assertEqual(run.status, 0, run.stderr)
+        with h5py.File(self.path("result_9")) as index:
+            np.testing.assert_array_equal(index["parameters/newton_iterations"], [0, iterations])
+        field = self.read_field("result_9", "DEPL", 1).values
+        np.testing.assert_array_equal(field[:, :2], np.outer(points[:, 1], (0.01, 0.02)))
+        volume, shear = E * NU / ((1 + NU) * (1 - 2 * NU)), E / (1 + NU)
+        stress = [volume * 0.02, (volume + shear) * 0.02, volume * 0.02, shear * 0.005]
+        np.testing.assert_allclose(self.read_field("result_9", "SIEF_ELGA", 1).values, [stress] * 18, rtol=0, atol=1e-12 * E)
+
+    def test_where_every_displacement_is_imposed_nothing_is_left_to_solve(self):
+        self.pull_with_every_displacement_imposed(CONTACT=None, loads=["load_5"])
+        self.pull_with_every_displacement_imposed(CONTACT=None, loads=["load_5", "load_6"])
+
+    def test_every_displacement_imposed_and_a_relation_between_them(self):
+        """Between nodes 4 and 9, which are one point: it holds already, and is no equation either."""
+        self.write_load("load_10", imposed=())
+        with h5py.File(self.path("load_10"), "a") as file:
+            relations = file.create_group("relations")
+            write_ragged(relations, "offset", "node", [[3, 8]])
+            relations["component"] = np.array(["DX"], h5py.string_dtype())
+            relations["component_index"], relations["coefficient"] = np.zeros(2, np.int32), np.array([1.0, -1.0])
+            relations["value"], relations["source"] = np.array([0.0]), np.array(["LIAISON_DDL[1]"], h5py.string_dtype())
+        self.pull_with_every_displacement_imposed(CONTACT=None, loads=["load_5", "load_10"])
+
+    def test_every_displacement_imposed_and_contact(self):
+        """The patch is locked: one iteration more sees that the contact's geometry rests."""
+        self.pull_with_every_displacement_imposed(iterations=1, loads=["load_5"])
+
     def test_only_what_archivage_asks_for_is_kept(self):
         self.write_list("list_of_reals_8", [0.0, 0.25, 0.5, 0.75, 1.0])
         run = self.solve(ARCHIVAGE={"PAS_ARCH": 3, "CHAM_EXCLU": ["SIEF_ELGA"]})

@@ -350,6 +350,18 @@ TEST(SaddlePointSolver, TakesEnginesWithoutFactor) {
   EXPECT_LE(system.error(solver, report), 1e-11);
 }
 
+// Where every displacement is imposed there is nothing to solve, whatever the engine.
+TEST(SaddlePointSolver, SolvesNoEquations) {
+  const Chain chain(3, 0, std::vector<std::uint8_t>(6, 0));
+  const SymmetricMatrix matrix(chain.numbering, chain.cliques, {});
+  SaddlePointSolver solver = eager();
+  for (int round = 0; round < 2; ++round) {
+    const SolutionReport report = solver.solve(matrix, 0, {});
+    EXPECT_FALSE(report.factorised);
+    EXPECT_TRUE(report.factorisation.null_pivots.empty());
+  }
+}
+
 // The cost model factorises small matrices: that is cheaper than any iteration.
 TEST(SaddlePointSolver, FactorisesSmallMatrices) {
   Sequence system;
