@@ -42,7 +42,7 @@ struct PairingOptions {
   /// gap.
   double largest_angle = 89;
   /// In space: integrate every couple to this degree whatever its facets ask for (integration_degree() in
-  /// space.cpp); 0: what they ask for. To measure what a degree leaves.
+  /// chart_points.hpp); 0: what they ask for. To measure what a degree leaves.
   int degree = 0;
 };
 

@@ -4,13 +4,14 @@
 #include <limits>
 #include <memory>
 #include <numbers>
+#include <optional>
 #include <tuple>
 #include <utility>
 
 #include "lacon/elements/reference.hpp"
-#include "lacon/pairing/box_tree.hpp"
-#include "lacon/pairing/detail.hpp"
+#include "lacon/pairing/masters.hpp"
 #include "lacon/pairing/polynomial.hpp"
+#include "lacon/structures/vector.hpp"
 
 // Everything rests on one function. T(xi) is the slave's tangent, or what is at a right angle to its interpolated nodal
 // normal; for a point q
@@ -23,26 +24,20 @@
 namespace lacon {
 namespace {
 
-struct Vec {
-  double x = 0, y = 0;
-};
-Vec operator+(Vec a, Vec b) { return {a.x + b.x, a.y + b.y}; }
-Vec operator-(Vec a, Vec b) { return {a.x - b.x, a.y - b.y}; }
-Vec operator*(double s, Vec a) { return {s * a.x, s * a.y}; }
-double dot(Vec a, Vec b) { return a.x * b.x + a.y * b.y; }
-double norm(Vec a) { return std::hypot(a.x, a.y); }
+/// Of a vector, without squares that overflow.
+double length(Vec2 a) { return std::hypot(a.x, a.y); }
 
 /// A polynomial of degree 2 in the plane.
 struct Curve {
   int degree = 1;
-  std::array<Vec, 3> c{};
-  Vec operator()(double xi) const { return c[0] + xi * (c[1] + xi * c[2]); }
+  std::array<Vec2, 3> c{};
+  Vec2 operator()(double xi) const { return c[0] + xi * (c[1] + xi * c[2]); }
 };
 
 /// Through the values at -1 and 1 and, in a quadratic cell, at 0.
-Curve interpolate(std::span<const Vec> values) {
-  const Vec mean = 0.5 * (values[0] + values[1]);
-  const Vec slope = 0.5 * (values[1] - values[0]);
+Curve interpolate(std::span<const Vec2> values) {
+  const Vec2 mean = 0.5 * (values[0] + values[1]);
+  const Vec2 slope = 0.5 * (values[1] - values[0]);
   if (values.size() == 2) return {1, {mean, slope, {}}};
   return {2, {values[2], slope, mean - values[2]}};
 }
@@ -70,30 +65,21 @@ std::array<double, Polynomial::max_degree + 1> bernstein(const Polynomial& p) {
   return b;
 }
 
-Vec point(const Surface& surface, std::int32_t node) {
+Vec2 point(const Surface& surface, std::int32_t node) {
   return {surface.coordinates[3 * node], surface.coordinates[3 * node + 1]};
 }
 
 using detail::finite;
 
-double extent(const Surface& surface) {
-  Box<2> box = Box<2>::empty();
-  for (std::size_t cell = 0; cell < surface.size(); ++cell)
-    if (finite(surface, cell))
-      for (const std::int32_t node : surface.nodes[cell]) box.add(surface.coordinates.data() + 3 * node);
-  return surface.size() == 0 || !(box.low[0] <= box.high[0]) ? 0
-                                                             : std::hypot(box.high[0] - box.low[0], box.high[1] - box.low[1]);
-}
-
 /// A slave cell, in coordinates whose origin is its middle: differences of large coordinates are taken once, and exactly alike
 /// for every master.
 struct SlaveCell {
-  Vec origin;
+  Vec2 origin;
   Curve x;               ///< x_e - origin
   Curve tangent;         ///< T; (T_y, -T_x) points along the outward normal
   Polynomial x_tangent;  ///< x . T
 
-  Polynomial ahead(Vec q) const {
+  Polynomial ahead(Vec2 q) const {
     const Curve constant{0, {q - origin, {}, {}}};
     Polynomial f = x_tangent;
     const Polynomial qt = constant * tangent;
@@ -104,7 +90,7 @@ struct SlaveCell {
 
 SlaveCell slave_cell(const Surface& surface, std::size_t cell) {
   const auto nodes = surface.nodes[cell];
-  std::array<Vec, 3> x, t;
+  std::array<Vec2, 3> x, t;
   SlaveCell slave;
   slave.origin = 0.5 * (point(surface, nodes[0]) + point(surface, nodes[1]));
   for (std::size_t i = 0; i < nodes.size(); ++i) x[i] = point(surface, nodes[i]) - slave.origin;
@@ -121,10 +107,10 @@ SlaveCell slave_cell(const Surface& surface, std::size_t cell) {
 
 bool degenerate(const SlaveCell& slave, const Surface& surface, double size, double tolerance) {
   const Curve derivative{slave.x.degree - 1, {slave.x.c[1], 2.0 * slave.x.c[2], {}}};
-  const double length = std::max(norm(slave.x.c[1]), norm(slave.x.c[2]));
-  if (!(length > tolerance * size)) return true;
+  const double longest = std::max(length(slave.x.c[1]), length(slave.x.c[2]));
+  if (!(longest > tolerance * size)) return true;
   const auto vanishes = [&](const Curve& c, double scale) { return !(minimum(c * c) > tolerance * tolerance * scale * scale); };
-  return vanishes(derivative, length) || (!surface.normals.empty() && vanishes(slave.tangent, 1));
+  return vanishes(derivative, longest) || (!surface.normals.empty() && vanishes(slave.tangent, 1));
 }
 
 /// Which boxes may hold a point that a normal of the slave cell passes: none of those that lie ahead, or behind, of all of
@@ -154,7 +140,7 @@ class Strip {
   }
 
  private:
-  Vec origin_;
+  Vec2 origin_;
   int n_;
   std::array<double, 5> tx_, ty_, offset_;
 };
@@ -223,15 +209,15 @@ struct Image {
 /// normal, but for round-off: then the end itself is the image, moved by one step of Newton's method.
 Image image(const SlaveCell& slave, double xi, const Surface& master, std::int32_t cell, const PairingTolerances& tolerances) {
   const auto nodes = master.nodes[cell];
-  const Vec x = slave.x(xi), t = slave.tangent(xi);
-  std::array<Vec, 3> points;
-  double size = norm(x);
+  const Vec2 x = slave.x(xi), t = slave.tangent(xi);
+  std::array<Vec2, 3> points;
+  double size = length(x);
   for (std::size_t i = 0; i < nodes.size(); ++i) {
     points[i] = point(master, nodes[i]) - slave.origin - x;
-    size = std::max(size, norm(points[i]));
+    size = std::max(size, length(points[i]));
   }
   const Curve curve = interpolate(std::span(points).first(nodes.size()));
-  const Polynomial h = curve * Curve{0, {(1 / norm(t)) * t, {}, {}}};
+  const Polynomial h = curve * Curve{0, {(1 / length(t)) * t, {}, {}}};
   const SignChanges zero = sign_changes(h);
   Image image;
   if (zero.n > 0) {
@@ -242,8 +228,8 @@ Image image(const SlaveCell& slave, double xi, const Surface& master, std::int32
     image.xi = end + (std::abs(step) <= tolerances.ray ? step : 0);
   }
   image.found = std::abs(h(image.xi)) <= tolerances.ray * size;
-  const Vec d = curve(image.xi);
-  image.gap = (d.x * t.y - d.y * t.x) / norm(t);
+  const Vec2 d = curve(image.xi);
+  image.gap = (d.x * t.y - d.y * t.x) / length(t);
   return image;
 }
 
@@ -295,48 +281,19 @@ class Overlaps {
   std::vector<Interval> result_;
 };
 
-/// The master skin, examined once for all slave cells.
-struct Masters {
-  const Surface &slave, &master;
-  PairingOptions options;
-  double slave_extent = 0, smallest_cosine = -1;
-  std::vector<std::int32_t> usable;  ///< cells that are not degenerate, and what the tree has as items
-  BoxTree<2> tree;
+/// The box of a master's ends, for where a normal passes between them decides, not where the cell bulges; nothing for a
+/// degenerate one.
+std::optional<Box<2>> box_of_ends(const Surface& master, std::size_t cell, double size, const PairingTolerances& tolerances) {
+  if (!finite(master, cell)) return std::nullopt;
+  const Vec2 a = point(master, master.nodes[cell][0]), b = point(master, master.nodes[cell][1]);
+  if (!(length(b - a) > tolerances.degenerate * size)) return std::nullopt;
+  Box<2> box = Box<2>::empty();
+  box.add(std::array{a.x, a.y}.data());
+  box.add(std::array{b.x, b.y}.data());
+  return box;
+}
 
-  Masters(const Surface& slave_skin, const Surface& master_skin, const PairingOptions& pairing_options,
-          std::vector<RejectedCouple>& rejected)
-      : slave(slave_skin),
-        master(master_skin),
-        options(pairing_options),
-        slave_extent(extent(slave_skin)),
-        smallest_cosine(detail::smallest_cosine(pairing_options)),
-        tree(examine(rejected)) {}
-
- private:
-  std::vector<Box<2>> examine(std::vector<RejectedCouple>& rejected) {
-    const PairingTolerances& tolerances = options.tolerances;
-    const double size = extent(master);
-    std::vector<Box<2>> boxes;
-    for (std::size_t cell = 0; cell < master.size(); ++cell) {
-      const Vec a = finite(master, cell) ? point(master, master.nodes[cell][0]) : Vec{},
-                b = finite(master, cell) ? point(master, master.nodes[cell][1]) : Vec{};
-      if (!(norm(b - a) > tolerances.degenerate * size)) {
-        rejected.push_back({-1, static_cast<std::int32_t>(cell), Rejection::degenerate_master});
-        continue;
-      }
-      Box<2> box = Box<2>::empty();  // of the ends alone: where a normal passes between them decides, not where the cell bulges
-      box.add(std::array{a.x, a.y}.data());
-      box.add(std::array{b.x, b.y}.data());
-      for (int d = 0; d < 2; ++d) {
-        box.low[d] -= tolerances.box * size;
-        box.high[d] += tolerances.box * size;
-      }
-      usable.push_back(static_cast<std::int32_t>(cell));
-      boxes.push_back(box);
-    }
-    return boxes;
-  }
-};
+using MastersInPlane = detail::Masters<2>;
 
 /// How many points a contact cell gets. Where the master's mid node is not over the middle of its chord, but off by d / 4 of
 /// the chord, the image is no polynomial of the slave's coordinate: its inverse map has a branch point (distortion() in
@@ -346,8 +303,8 @@ int integration_points(const Surface& slave, std::size_t cell, const Surface& ma
   if (master.types[m] == CellType::SEG2) return least;
   constexpr int polynomial = 5, most = 32;
   const auto nodes = master.nodes[m];
-  const Vec a = point(master, nodes[0]), b = point(master, nodes[1]), chord = 0.5 * (b - a),
-            bulge = point(master, nodes[2]) - 0.5 * (a + b);
+  const Vec2 a = point(master, nodes[0]), b = point(master, nodes[1]), chord = 0.5 * (b - a),
+             bulge = point(master, nodes[2]) - 0.5 * (a + b);
   const double d = std::min(0.999, 2 * std::abs(dot(chord, bulge)) / dot(chord, chord));
   if (!(d > 1e-12)) return least;
   const double degree = polynomial + std::ceil(12 * std::numbers::ln10 / -std::log(d));
@@ -356,7 +313,7 @@ int integration_points(const Surface& slave, std::size_t cell, const Surface& ma
 
 class PairerInPlane final : public detail::CellPairer {
  public:
-  explicit PairerInPlane(std::shared_ptr<const Masters> masters)
+  explicit PairerInPlane(std::shared_ptr<const MastersInPlane> masters)
       : masters_(std::move(masters)), projections(masters_->master.coordinates.size() / 3) {}
 
   void pair(std::size_t cell, Pairing& pairing) override {
@@ -381,12 +338,12 @@ class PairerInPlane final : public detail::CellPairer {
           projections.of(e, master, first), projections.of(e, master, second),
           [&](double a, double b) {
             const double middle = 0.5 * (a + b);
-            const Vec along = point(master, second) - point(master, first), t = e.tangent(middle);
+            const Vec2 along = point(master, second) - point(master, first), t = e.tangent(middle);
             const auto far = [&] {
-              const double diameter = std::max(2 * norm(e.x.c[1]), norm(along));
+              const double diameter = std::max(2 * length(e.x.c[1]), length(along));
               return std::abs(image(e, middle, master, m, tolerances).gap) > options.distance_limit * diameter;
             };
-            if (-dot(t, along) < masters_->smallest_cosine * norm(t) * norm(along))
+            if (-dot(t, along) < masters_->smallest_cosine * length(t) * length(along))
               reject(m, Rejection::too_steep);
             else if (options.distance_limit > 0 && far())
               reject(m, Rejection::too_far);
@@ -396,13 +353,8 @@ class PairerInPlane final : public detail::CellPairer {
           [&](double a, double b) { away += b - a; });
       if (away > 2 * tolerances.sliver) reject(m, Rejection::facing_away);
     };
-    if (options.brute_force) {
-      for (const std::int32_t m : masters_->usable) couple(m);
-    } else {
-      const Strip strip(e);
-      masters_->tree.visit([&](const Box<2>& box) { return strip.touches(box); },
-                           [&](std::int32_t i) { couple(masters_->usable[i]); });
-    }
+    const Strip strip(e);
+    masters_->visit([&](const Box<2>& box) { return strip.touches(box); }, couple);
     std::sort(intervals.begin(), intervals.end(),
               [](const Interval& i, const Interval& j) { return std::tie(i.a, i.b, i.master) < std::tie(j.a, j.b, j.master); });
     overlaps.resolve(
@@ -442,7 +394,7 @@ class PairerInPlane final : public detail::CellPairer {
   }
 
  private:
-  std::shared_ptr<const Masters> masters_;
+  std::shared_ptr<const MastersInPlane> masters_;
   // used again for every slave cell
   Projections projections;
   Overlaps overlaps;
@@ -453,7 +405,10 @@ class PairerInPlane final : public detail::CellPairer {
 
 detail::MakeCellPairer detail::pair_in_plane(const Surface& slave, const Surface& master, const PairingOptions& options,
                                              std::vector<RejectedCouple>& rejected) {
-  return [masters = std::make_shared<const Masters>(slave, master, options, rejected)] {
+  const auto examine = [&master, tolerances = options.tolerances](std::size_t cell, double size) {
+    return box_of_ends(master, cell, size, tolerances);
+  };
+  return [masters = std::make_shared<const MastersInPlane>(slave, master, options, rejected, examine)] {
     return std::make_unique<PairerInPlane>(masters);
   };
 }

@@ -1,19 +1,10 @@
 #pragma once
 // Convex polygons of a plane: cut by half-planes, subtracted, measured.
-#include <cmath>
 #include <vector>
 
-namespace lacon::space {
+#include "lacon/structures/vector.hpp"
 
-struct Vec2 {
-  double x, y;
-};
-inline Vec2 operator+(Vec2 a, Vec2 b) { return {a.x + b.x, a.y + b.y}; }
-inline Vec2 operator-(Vec2 a, Vec2 b) { return {a.x - b.x, a.y - b.y}; }
-inline Vec2 operator*(double s, Vec2 a) { return {s * a.x, s * a.y}; }
-inline double dot(Vec2 a, Vec2 b) { return a.x * b.x + a.y * b.y; }
-inline double cross(Vec2 a, Vec2 b) { return a.x * b.y - a.y * b.x; }
-inline double norm(Vec2 a) { return std::sqrt(dot(a, a)); }
+namespace lacon::space {
 
 /// The points y with s = value + slope . (y - anchor) >= 0.
 struct HalfPlane {

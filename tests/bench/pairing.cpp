@@ -50,18 +50,18 @@ void project(benchmark::State& state, CellType type, double bend) {
   const catalog::CellRow& cell = catalog::cell(type);
   std::mt19937 random(1);
   std::uniform_real_distribution<double> shake(-bend, bend), inner(0.05, 0.45);
-  std::vector<space::Vec3> nodes;
+  std::vector<Vec3> nodes;
   for (int i = 0; i < cell.n_nodes; ++i) {
     const double* at = cell.nodes.data() + 2 * i;
     nodes.push_back({at[0] + shake(random), at[1] + shake(random), 0});
   }
   const space::Map2 map = space::project(space::interpolate(type, nodes), {1, 0, 0}, {0, 1, 0});
   const space::Inverse inverse(map, cell.family);
-  std::vector<space::Vec2> points;
+  std::vector<Vec2> points;
   for (int i = 0; i < n; ++i) points.push_back(map({inner(random), inner(random)}).x);
   for (auto run : state)
-    for (const space::Vec2 point : points) {
-      const std::optional<space::Vec2> found = inverse(point, 1e-13, 0.25);
+    for (const Vec2 point : points) {
+      const std::optional<Vec2> found = inverse(point, 1e-13, 0.25);
       if (!found) state.SkipWithError("a point has no image");
       benchmark::DoNotOptimize(found);
     }

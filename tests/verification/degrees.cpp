@@ -20,7 +20,7 @@ double scaled_jacobian(const Skin3& skin) {
     for (int i = 0; i < 4; ++i) {
       const auto at = [&](int k) { return skin.node(skin.surface.nodes[c][k % 4]); };
       const Vec3 a = at(i + 1) - at(i), b = at(i + 3) - at(i);
-      least = std::min(least, std::abs(space::cross(a, b).z) / (space::norm(a) * space::norm(b)));
+      least = std::min(least, std::abs(cross(a, b).z) / (norm(a) * norm(b)));
     }
   return least;
 }

@@ -14,8 +14,6 @@
 
 namespace lacon::test {
 
-using space::Vec2;
-using space::Vec3;
 using Place3 = std::function<Vec3(double, double)>;
 
 struct Skin3 {
@@ -167,7 +165,7 @@ inline Point3 evaluate(const Skin3& skin, std::int32_t cell, const double* xi) {
   }
   const auto n = cell_normal(type, points, std::span(xi, 2));
   p.normal = {n[0], n[1], n[2]};
-  p.jacobian = space::norm(p.normal);
+  p.jacobian = norm(p.normal);
   p.normal = (1 / p.jacobian) * p.normal;
   return p;
 }
@@ -212,8 +210,8 @@ inline Forces forces(const Skin3& slave, const Skin3& master, const ContactCells
   for_points(slave, master, cells, [&](std::size_t c, double w, const Point3& x, const Point3& y) {
     const Vec3 d = y.x - x.x;
     f.area += w;
-    f.gap += w * space::dot(d, x.normal);
-    f.off_ray = std::max(f.off_ray, space::norm(space::cross(d, x.normal)));
+    f.gap += w * dot(d, x.normal);
+    f.off_ray = std::max(f.off_ray, norm(cross(d, x.normal)));
     for (std::size_t i = 0; i < x.shape.size(); ++i) f.slave[slave.surface.nodes[cells.slave[c]][i]] += w * x.shape[i];
     for (std::size_t i = 0; i < y.shape.size(); ++i) f.master[master.surface.nodes[cells.master[c]][i]] += w * y.shape[i];
   });

@@ -144,7 +144,7 @@ std::vector<Row> rows(const Skin3& slave, const Skin3& master, const ContactCell
     const auto on_slave = slave.surface.nodes[cells.slave[c]], on_master = master.surface.nodes[cells.master[c]];
     for (std::size_t i = 0; i < x.shape.size(); ++i) row.entries[{'s', on_slave[i]}] += w * x.shape[i];
     for (std::size_t i = 0; i < y.shape.size(); ++i) row.entries[{'m', on_master[i]}] += w * y.shape[i];
-    row.gap += w * space::dot(y.x - x.x, x.normal);
+    row.gap += w * dot(y.x - x.x, x.normal);
     row.area += w;
   });
   for (Row& row : found)
@@ -266,7 +266,7 @@ bool inside(const ContactCells& cells, std::size_t c, Vec2 p) {
   const std::int64_t first = cells.vertex_offset[c], n = cells.vertex_offset[c + 1] - first;
   for (std::int64_t i = 0; i < n; ++i) {
     const double *a = &cells.vertex[2 * (first + i)], *b = &cells.vertex[2 * (first + (i + 1) % n)];
-    in = in && space::cross(Vec2{b[0] - a[0], b[1] - a[1]}, Vec2{p.x - a[0], p.y - a[1]}) >= 0;
+    in = in && cross(Vec2{b[0] - a[0], b[1] - a[1]}, Vec2{p.x - a[0], p.y - a[1]}) >= 0;
   }
   return in;
 }
@@ -588,7 +588,7 @@ TEST(PairingInSpace, ForcesAndMomentsBalanceOnCurvedSkinsThatDoNotMatch) {
           const double* const nodal = &slave.normals[3 * static_cast<std::size_t>(slave_nodes[i])];
           n = n + x.shape[i] * Vec3{nodal[0], nodal[1], nodal[2]};
         }
-        n = (1 / space::norm(n)) * n;
+        n = (1 / norm(n)) * n;
       }
       const Vec3 f = (lambda[found.cells.slave[c]] * w) * n;  // on the slave: - lambda C = + lambda w phi n
       for (std::size_t i = 0; i < x.shape.size(); ++i) on_slave[slave_nodes[i]] = on_slave[slave_nodes[i]] + x.shape[i] * f;
@@ -600,13 +600,13 @@ TEST(PairingInSpace, ForcesAndMomentsBalanceOnCurvedSkinsThatDoNotMatch) {
       for (std::size_t i = 0; i < forces_on->size(); ++i) {
         const Vec3 x = skin->node(static_cast<std::int32_t>(i)), f = (*forces_on)[i];
         force = force + f;
-        moment = moment + space::cross(x, f);
-        size += space::norm(f);
-        length = std::max(length, space::norm(x));
+        moment = moment + cross(x, f);
+        size += norm(f);
+        length = std::max(length, norm(x));
       }
     EXPECT_GT(size, 0.1);
-    EXPECT_LE(space::norm(force), 1e-12 * size) << trial;
-    EXPECT_LE(space::norm(moment), 1e-12 * size * length) << trial;
+    EXPECT_LE(norm(force), 1e-12 * size) << trial;
+    EXPECT_LE(norm(moment), 1e-12 * size * length) << trial;
   }
 }
 
@@ -749,7 +749,7 @@ TEST(Polygons, SubtractionLeavesWhatIntersectionDoesNotTake) {
     const auto triangle = [&] {
       std::vector<Vec2> p;
       for (int i = 0; i < 3; ++i) p.push_back({uniform(random), uniform(random)});
-      if (space::cross(p[1] - p[0], p[2] - p[0]) < 0) std::swap(p[0], p[1]);
+      if (cross(p[1] - p[0], p[2] - p[0]) < 0) std::swap(p[0], p[1]);
       space::Region region{square, {}};
       for (int i = 0; i < 3; ++i) {
         const Vec2 d = p[(i + 1) % 3] - p[i];
@@ -758,7 +758,7 @@ TEST(Polygons, SubtractionLeavesWhatIntersectionDoesNotTake) {
         space::clip(region.polygon, region.halves.back(), inside);
         region.polygon.swap(inside);
       }
-      EXPECT_NEAR(space::double_area(region.polygon), space::cross(p[1] - p[0], p[2] - p[0]), 1e-14);
+      EXPECT_NEAR(space::double_area(region.polygon), cross(p[1] - p[0], p[2] - p[0]), 1e-14);
       return region;
     };
     const space::Region a = triangle(), b = triangle();
@@ -825,7 +825,7 @@ TEST(Facets, InverseFindsEveryPointOfStronglyBentFacets) {
         std::vector<Vec3> nodes;
         for (const std::int32_t n : skin.surface.nodes[c]) nodes.push_back(skin.node(n));
         const space::Map2 map = space::project(space::interpolate(type, nodes), {1, 0, 0}, {0, 1, 0});
-        const auto jacobian = [&](Vec2 p) { return space::cross(map(p).d1, map(p).d2); };
+        const auto jacobian = [&](Vec2 p) { return cross(map(p).d1, map(p).d2); };
         bool sound = true;
         for (const Vec2 p : space::probes(family)) sound = sound && jacobian(p) > 1e-3;
         for (int g = 0; g < grid.size(); ++g) sound = sound && jacobian({grid.points[2 * g], grid.points[2 * g + 1]}) > 1e-3;
@@ -857,7 +857,7 @@ TEST(Facets, InverseFindsEveryPointOfConvexFacets) {
         double xi[2] = {uniform(random), uniform(random)};
         if (family == Family::TRIA) xi[0] = 0.5 * (1 + xi[0]), xi[1] = 0.5 * (1 + xi[1]) * (1 - xi[0]);
         const Point3 p = evaluate(skin, static_cast<std::int32_t>(c), xi);
-        EXPECT_LE(space::norm(p.x - map({xi[0], xi[1]}).x), 1e-15);
+        EXPECT_LE(norm(p.x - map({xi[0], xi[1]}).x), 1e-15);
         const auto found = space::inverse(space::project(map, {1, 0, 0}, {0, 1, 0}), family, {p.x.x, p.x.y}, 1e-14, 0.25);
         ASSERT_TRUE(found.has_value());
         EXPECT_NEAR(found->x, xi[0], 1e-12);

@@ -1,0 +1,86 @@
+#pragma once
+// The master skin, examined once for all slave cells: what the plane and space have in common of it.
+#include <cmath>
+#include <cstdint>
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include "lacon/pairing/box_tree.hpp"
+#include "lacon/pairing/detail.hpp"
+#include "lacon/structures/parallel.hpp"
+
+namespace lacon::detail {
+
+/// The diagonal of the box around a skin, but for cells that are not finite.
+template <int D>
+double extent(const Surface& surface) {
+  Box<D> box = Box<D>::empty();
+  for (std::size_t cell = 0; cell < surface.size(); ++cell)
+    if (finite(surface, cell))
+      for (const std::int32_t node : surface.nodes[cell])
+        box.add(surface.coordinates.data() + 3 * static_cast<std::size_t>(node));
+  if (!(box.low[0] <= box.high[0])) return 0;
+  double sum = 0;
+  for (int d = 0; d < D; ++d) sum += (box.high[d] - box.low[d]) * (box.high[d] - box.low[d]);
+  return std::sqrt(sum);
+}
+
+template <int D>
+struct Masters {
+  const Surface &slave, &master;
+  PairingOptions options;
+  double slave_extent = 0, smallest_cosine = -1;
+  std::vector<std::int32_t> usable;  ///< cells that are not degenerate, and what the tree has as items
+  BoxTree<D> tree;
+
+  /// @param examine(cell, extent of the skin): the box of what a normal may pass, or nothing for a degenerate cell; every
+  /// thread has a copy of its own
+  template <class Examine>
+  Masters(const Surface& slave_skin, const Surface& master_skin, const PairingOptions& pairing_options,
+          std::vector<RejectedCouple>& rejected, const Examine& examine)
+      : slave(slave_skin),
+        master(master_skin),
+        options(pairing_options),
+        slave_extent(extent<D>(slave_skin)),
+        smallest_cosine(detail::smallest_cosine(pairing_options)),
+        tree(boxes_of_usable(rejected, examine)) {}
+
+  /// Call couple(cell) for every master whose box `touches(box)`, or for all of them.
+  template <class Touches, class Couple>
+  void visit(const Touches& touches, const Couple& couple) const {
+    if (options.brute_force)
+      for (const std::int32_t m : usable) couple(m);
+    else
+      tree.visit(touches, [&](std::int32_t i) { couple(usable[static_cast<std::size_t>(i)]); });
+  }
+
+ private:
+  template <class Examine>
+  std::vector<Box<D>> boxes_of_usable(std::vector<RejectedCouple>& rejected, const Examine& examine) {
+    const double size = extent<D>(master), margin = options.tolerances.box * size;
+    std::vector<std::optional<Box<D>>> found(master.size());
+    parallel_for(master.size(), block, [&](const LoopBlock& cells) {
+      Examine own = examine;
+      for (std::size_t cell = cells.first; cell < cells.last; ++cell) found[cell] = own(cell, size);
+    });
+    std::vector<Box<D>> boxes;
+    for (std::size_t cell = 0; cell < master.size(); ++cell) {
+      if (!found[cell]) {
+        rejected.push_back({-1, static_cast<std::int32_t>(cell), Rejection::degenerate_master});
+        continue;
+      }
+      Box<D>& box = boxes.emplace_back(*found[cell]);
+      for (int d = 0; d < D; ++d) {
+        box.low[d] -= margin;
+        box.high[d] += margin;
+      }
+      usable.push_back(static_cast<std::int32_t>(cell));
+    }
+    return boxes;
+  }
+
+  static constexpr std::size_t block = 512;  // cells that a thread examines at a time
+};
+
+}  // namespace lacon::detail

@@ -1,0 +1,75 @@
+#include "lacon/pairing/skin_facet.hpp"
+
+#include <algorithm>
+
+namespace lacon::space {
+namespace {
+
+Vec3 point(const Surface& surface, std::int32_t node) {
+  return vector_at(surface.coordinates.data() + 3 * static_cast<std::size_t>(node));
+}
+
+constexpr int edge_pieces = 4;  // of a curved edge
+
+}  // namespace
+
+Nodes nodes_of(const Surface& surface, std::size_t cell, Vec3 origin) {
+  Nodes nodes;
+  std::size_t i = 0;
+  for (const std::int32_t node : surface.nodes[cell]) nodes[i++] = point(surface, node) - origin;
+  return nodes;
+}
+
+double diameter(const Nodes& nodes, int n_vertices) {
+  double longest = 0;
+  for (int i = 0; i < n_vertices; ++i)
+    for (int j = 0; j < i; ++j) longest = std::max(longest, norm(nodes[i] - nodes[j]));
+  return longest;
+}
+
+Facet facet(const Surface& surface, std::size_t cell, double straight) {
+  Facet f;
+  f.type = surface.types[cell];
+  const catalog::CellRow& row = catalog::cell(f.type);
+  f.family = row.family;
+  f.order = row.order;
+  f.n_vertices = row.n_vertices;
+  f.origin = point(surface, surface.nodes[cell][0]);
+  f.nodes = nodes_of(surface, cell, f.origin);
+  for (int i = 0; i < row.n_nodes; ++i) f.size = std::max(f.size, norm(f.nodes[i]));
+  f.x = f.map(f.nodes);
+  Vec3 area{};  // of the outline
+  const int nv = f.n_vertices;
+  for (int i = 0; i < nv; ++i) {
+    const Vec3 a = f.nodes[i], b = f.nodes[(i + 1) % nv];
+    area = area + cross(a, b);
+    if (f.order < 2) continue;
+    const Vec3 d = b - a, m = f.nodes[nv + i] - a;
+    const double along = dot(d, m), length2 = dot(d, d);
+    const bool collapsed = length2 == 0 && dot(m, m) == 0;
+    if (!collapsed && !(norm(cross(d, m)) <= straight * length2 && along > 0 && along < length2)) f.straight = false;
+  }
+  const double length = norm(area);
+  if (length > 0) f.normal = (1 / length) * area;
+  f.affine = is_affine(f.x, f.normal);
+  f.distortion = f.affine ? 0 : distortion(f.x, f.family, f.normal);
+  return f;
+}
+
+void outline(const FacetKind& f, const Nodes& nodes, std::vector<Vec3>& polygon) {
+  polygon.clear();
+  for (int i = 0; i < f.n_vertices; ++i) {
+    const Vec3 a = nodes[i], b = nodes[(i + 1) % f.n_vertices];
+    polygon.push_back(a);
+    if (f.straight) continue;
+    const Vec3 m = nodes[f.n_vertices + i];
+    const bool forward = before(a, b);
+    const Vec3 first = forward ? a : b, last = forward ? b : a;
+    for (int k = 1; k < edge_pieces; ++k) {
+      const double t = static_cast<double>(forward ? k : edge_pieces - k) / edge_pieces;
+      polygon.push_back(((1 - t) * (1 - 2 * t)) * first + (t * (2 * t - 1)) * last + (4 * t * (1 - t)) * m);
+    }
+  }
+}
+
+}  // namespace lacon::space

@@ -1,0 +1,53 @@
+#pragma once
+// A facet of a skin in space, as pairing keeps it.
+#include <array>
+#include <span>
+#include <tuple>
+#include <vector>
+
+#include "lacon/pairing/facet.hpp"
+#include "lacon/pairing/surface.hpp"
+
+namespace lacon::space {
+
+using Nodes = std::array<Vec3, 9>;
+
+/// The nodes of a cell, in coordinates that start at `origin`.
+Nodes nodes_of(const Surface& surface, std::size_t cell, Vec3 origin);
+
+/// The longest distance between two of the first nodes.
+double diameter(const Nodes& nodes, int n_vertices);
+
+/// What is kept of every master.
+struct FacetKind {
+  CellType type{};
+  Family family{};
+  int order = 1, n_vertices = 0;
+  Vec3 normal{};         ///< mean, unit; 0 for a facet without area
+  double size = 0;       ///< the longest distance from its first node
+  bool straight = true;  ///< edges
+  bool affine = false;   ///< to round-off
+  double distortion = 0;
+
+  Map3 map(const Nodes& nodes) const {
+    return interpolate(type, std::span<const Vec3>(nodes).first(static_cast<std::size_t>(catalog::cell(type).n_nodes)));
+  }
+};
+
+/// A facet whose coordinates start at one of its own nodes.
+struct Facet : FacetKind {
+  Vec3 origin{};
+  Nodes nodes;  ///< minus origin
+  Map3 x;       ///< minus origin
+};
+
+/// @param straight largest bulge of a straight edge over its length
+Facet facet(const Surface& surface, std::size_t cell, double straight);
+
+/// An order of points: an edge is followed from its earlier end, whichever facet asks.
+inline bool before(Vec3 a, Vec3 b) { return std::tie(a.x, a.y, a.z) < std::tie(b.x, b.y, b.z); }
+
+/// The outline of a facet as a polygon: a curved edge in pieces, at places that depend on the edge alone.
+void outline(const FacetKind& f, const Nodes& nodes, std::vector<Vec3>& polygon);
+
+}  // namespace lacon::space

@@ -1,0 +1,127 @@
+#pragma once
+// A slave cell in space, ready to be cut: its chart, the convex pieces of it, and the normals over them.
+//
+// The chart of a facet with straight edges is its mean plane. If it is flat and has one normal, the side on which a normal
+// passes an edge of a master is an affine function there: one piece, and exact polygons. Otherwise it is interpolated on a grid
+// of triangles. A facet with curved edges has its reference cell as chart.
+#include <array>
+#include <cmath>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "lacon/pairing/box_tree.hpp"
+#include "lacon/pairing/pairing.hpp"
+#include "lacon/pairing/skin_facet.hpp"
+
+namespace lacon::space {
+
+struct Piece {
+  Polygon polygon;           ///< in the chart
+  std::array<Vec3, 3> x, n;  ///< at its vertices, where the normal is not constant
+  Vec3 normal{};             ///< mean
+};
+
+class SlaveFacet {
+ public:
+  Facet f;
+  bool degenerate = false;
+  bool constant = true, nearly_flat = true, plane = true;  ///< one normal, nearly one, straight edges
+  Vec3 n{}, e1{}, e2{};
+  std::vector<Piece> pieces;
+  double chart_area = 0;      ///< twice the area
+  double chart_diameter = 0;  ///< at least the largest distance in a piece
+
+  /// Examine a slave cell; `degenerate` says whether it cannot be paired. @param size the extent of its skin
+  void set(const Surface& surface, std::size_t cell, double size, const PairingTolerances& tolerances);
+
+  /// The unit normal at a reference point; the mean one where there is none.
+  Vec3 direction(Vec2 xi) const {
+    if (constant) return n;
+    const Vec3 m = unscaled_direction(xi);
+    const double length = norm(m);
+    return length > least_ ? (1 / length) * m : n;
+  }
+
+  struct Place {
+    bool found = false;
+    Vec2 xi{};
+    double scale = 1;  ///< area of the reference cell by area of the chart
+  };
+
+  /// The reference point of a point of the chart.
+  Place place(Vec2 y, const PairingTolerances& tolerances) const {
+    if (!plane) return {true, y, 1};
+    const std::optional<Vec2> xi = from_chart_(y, tolerances.ray * f.size, tolerances.margin);
+    if (!xi) return {};
+    return {true, *xi, 1 / from_chart_.jacobian(*xi)};
+  }
+
+  /// The mean normal at a point of the mean plane.
+  Line normal_at(Vec2 y) const { return {y.x * e1 + y.y * e2, n}; }
+
+  /// Reference points of many points of the chart. @param lines, meetings used again for every call
+  void places(std::span<const Vec2> y, const PairingTolerances& tolerances, std::vector<Line>& lines,
+              std::vector<Meeting>& meetings, std::vector<Place>& places) const;
+
+  /// The side of an edge of a master on which a normal passes, on a piece.
+  HalfPlane side(const Piece& piece, Vec3 a, Vec3 b) const {
+    if (before(b, a)) return side(piece, b, a).opposite();
+    if (constant) {
+      const Vec2 first{dot(a, e1), dot(a, e2)}, last{dot(b, e1), dot(b, e2)};
+      const Vec2 d = last - first;
+      return {first, {d.y, -d.x}, 0};
+    }
+    std::array<double, 3> s;
+    for (int k = 0; k < 3; ++k) s[k] = dot(cross(b - a, piece.n[k]), piece.x[k] - a);
+    const Vec2 u = piece.polygon[1] - piece.polygon[0], v = piece.polygon[2] - piece.polygon[0];
+    const double ds = s[1] - s[0], dt = s[2] - s[0], det = cross(u, v);
+    return {piece.polygon[0], {(ds * v.y - dt * u.y) / det, (dt * u.x - ds * v.x) / det}, s[0]};
+  }
+
+  /// False only where no normal of the slave meets the box. A point q = x(xi) + t m(xi) has the height t = (q - x) . n over x
+  /// if m is scaled to m . n = 1; then m leans by at most `lean_` and q lies at most lean_ |t| beyond the walls around the
+  /// slave.
+  bool touches(const Box<3>& box) const {
+    const Vec3 centre =
+        Vec3{0.5 * (box.low[0] + box.high[0]), 0.5 * (box.low[1] + box.high[1]), 0.5 * (box.low[2] + box.high[2])} - f.origin;
+    const Vec3 half{0.5 * (box.high[0] - box.low[0]), 0.5 * (box.high[1] - box.low[1]), 0.5 * (box.high[2] - box.low[2])};
+    const auto reach = [&](Vec3 d) { return half.x * std::abs(d.x) + half.y * std::abs(d.y) + half.z * std::abs(d.z); };
+    const double leaning = lean_ > 0 ? lean_ * (std::abs(dot(centre, n)) + reach(n) + height_) : 0;
+    const FourWalls beyond = walls_.x * centre.x + walls_.y * centre.y + walls_.z * centre.z -
+                             (walls_.ax * half.x + walls_.ay * half.y + walls_.az * half.z) - walls_.offset;
+    return !(std::max(std::max(beyond[0], beyond[1]), std::max(beyond[2], beyond[3])) > leaning);
+  }
+
+ private:
+  Vec3 unscaled_direction(Vec2 xi) const {
+    if (smooth_) return nodal_(xi).x;
+    const Map3::Value v = f.x(xi);
+    return cross(v.d1, v.d2);
+  }
+
+  void take_normals(const Surface& surface, std::size_t cell);
+  std::optional<double> largest_turn(const PairingTolerances& tolerances) const;
+  void set_chart();
+  void set_pieces(double turn);
+  void subdivide(int k);
+  void set_walls();
+
+  bool smooth_ = false;
+  double least_ = 0;  ///< length of `unscaled_direction` below which there is none
+  Map3 nodal_;
+  Map2 chart_;
+  Inverse from_chart_;
+  /// A number of each wall, in vector registers.
+  using FourWalls = double __attribute__((vector_size(4 * sizeof(double)), aligned(sizeof(double))));
+  /// Planes behind which the slave lies; out . x is nowhere larger than `offset` on it. A triangle's fourth one is everywhere.
+  struct Walls {
+    FourWalls x, y, z;     ///< out: unit, at a right angle to n
+    FourWalls ax, ay, az;  ///< |out|
+    FourWalls offset;
+  } walls_;
+  double lean_ = 0;    ///< tangent of the largest angle between a normal and n, or infinity
+  double height_ = 0;  ///< largest |n . x|, and an allowance for what pieces get wrong along the border
+};
+
+}  // namespace lacon::space

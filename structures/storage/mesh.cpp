@@ -1,0 +1,106 @@
+#include "lacon/structures/storage/storage.hpp"
+
+#include "lacon/structures/storage/pieces.hpp"
+
+namespace lacon::storage {
+namespace {
+
+void write_groups(const hdf5::Group& root, const std::string& name, const std::vector<Group>& groups) {
+  std::vector<std::string> names;
+  Ragged<std::int32_t> members;
+  for (const Group& g : groups) {
+    names.push_back(g.name);
+    members.push_back(g.members);
+  }
+  root.write_strings(name + "/name", names);
+  write_ragged(root, name, members);
+}
+
+std::vector<Group> read_groups(const hdf5::Group& root, const std::string& name, std::size_t n_entities) {
+  std::vector<Group> groups;
+  if (!root.has(name)) return groups;
+  const std::vector<std::string> names = root.read_strings(name + "/name");
+  const auto members = read_ragged<std::int32_t>(root, name);
+  if (members.size() != names.size()) refuse(root, "'" + name + "' is inconsistent");
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    for (const std::int32_t m : members[i])
+      if (m < 0 || static_cast<std::size_t>(m) >= n_entities)
+        refuse(root, "the group '" + names[i] + "' names member " + std::to_string(m));
+    groups.push_back({names[i], {members[i].begin(), members[i].end()}});
+  }
+  return groups;
+}
+
+}  // namespace
+
+Mesh read_mesh(const hdf5::Group& root) {
+  Mesh mesh;
+  mesh.name = root.text("name");
+  mesh.dimension = static_cast<int>(root.integer("dimension"));
+  mesh.coordinates = root.read<double>("coordinates", with_room);
+  const hdf5::Group cells = root.open("cells");
+  std::vector<CellType> types;
+  for (const std::string& name : cells.attribute_strings("types")) {
+    const auto type = catalog::find_cell(name);
+    if (!type) refuse(root, "there is no cell type " + name);
+    types.push_back(*type);
+  }
+  mesh.cells = read_ragged<std::int32_t>(cells, "offset", "nodes", with_room);
+  const std::vector<std::int8_t> codes = cells.read<std::int8_t>("type");
+  mesh.types.reserve(with_room(codes.size()));
+  for (const std::int8_t code : codes) {
+    if (code < 0 || static_cast<std::size_t>(code) >= types.size()) refuse(root, "a cell has the type " + std::to_string(code));
+    mesh.types.push_back(types[static_cast<std::size_t>(code)]);
+  }
+  if (mesh.types.size() != mesh.cells.size()) refuse(root, "'cells/type' does not fit 'cells/offset'");
+  for (std::size_t c = 0; c < mesh.n_cells(); ++c) {
+    if (mesh.cells[c].size() != static_cast<std::size_t>(mesh.row(c).n_nodes))
+      refuse(root, "cell " + cell_name(static_cast<std::int64_t>(c)) + " has a wrong number of nodes");
+    for (const std::int32_t n : mesh.cells[c])
+      if (n < 0 || static_cast<std::size_t>(n) >= mesh.n_nodes())
+        refuse(root, "cell " + cell_name(static_cast<std::int64_t>(c)) + " names a node that does not exist");
+  }
+  mesh.cell_groups = read_groups(root, "groups/cells", mesh.n_cells());
+  mesh.node_groups = read_groups(root, "groups/nodes", mesh.n_nodes());
+  if (root.has("patches")) {
+    const hdf5::Group group = root.open("patches");
+    Patches& patches = mesh.patches.emplace();
+    patches.zone_group = group.read_strings("zone_group");
+    patches.zone_offset = group.read<std::int64_t>("zone_offset");
+    patches.kind = group.read<std::int32_t>("kind");
+    patches.parent = group.read<std::int32_t>("parent");
+    patches.cells = read_ragged<std::int32_t>(group, "cells");
+    patches.carriers = read_ragged<std::int32_t>(group, "carriers");
+  }
+  return mesh;
+}
+
+void write(const hdf5::Group& root, const Mesh& mesh) {
+  root.set("name", mesh.name);
+  root.set("dimension", std::int64_t{mesh.dimension});
+  root.write("coordinates", mesh.coordinates, {mesh.n_nodes(), 3});
+  const hdf5::Group cells = root.create("cells");
+  std::vector<std::string> names;
+  for (const catalog::CellRow& row : catalog::cells()) names.emplace_back(row.name);
+  cells.set("types", names);
+  std::vector<std::int8_t> codes;
+  for (const CellType type : mesh.types) codes.push_back(static_cast<std::int8_t>(type));
+  cells.write("type", codes);
+  cells.write("offset", mesh.cells.offset);
+  cells.write("nodes", mesh.cells.values);
+  write_groups(root, "groups/cells", mesh.cell_groups);
+  write_groups(root, "groups/nodes", mesh.node_groups);
+  if (mesh.patches) {
+    const hdf5::Group group = root.create("patches");
+    group.write_strings("zone_group", mesh.patches->zone_group);
+    group.write("zone_offset", mesh.patches->zone_offset);
+    group.write("kind", mesh.patches->kind);
+    group.write("parent", mesh.patches->parent);
+    write_ragged(group, "cells", mesh.patches->cells);
+    write_ragged(group, "carriers", mesh.patches->carriers);
+  }
+}
+
+std::vector<std::string> references(const Mesh&) { return {}; }
+
+}  // namespace lacon::storage

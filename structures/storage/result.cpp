@@ -1,0 +1,74 @@
+#include "lacon/structures/storage/storage.hpp"
+
+#include <nlohmann/json.hpp>
+
+namespace lacon::storage {
+
+using nlohmann::json;
+
+Result read_result(const hdf5::Group& root) {
+  Result result;
+  result.label = root.text("label");
+  result.model = root.text("model");
+  result.mesh = root.text("mesh");
+  result.material_field = root.text("material_field");
+  result.contact = root.text("contact");
+  for (const json& load : json::parse(root.text("loads")))
+    result.loads.push_back({load.at("load"), load.at("function"), load.value("type", "FIXE_CSTE")});
+  result.behaviour = root.text("behaviour");
+  result.orders = root.read<std::int64_t>("order");
+  result.instants = root.read<double>("instant");
+  const hdf5::Group fields = root.open("fields");
+  for (const std::string& name : fields.children()) {
+    const hdf5::Group field = fields.open(name);
+    const auto orders = field.read<std::int64_t>("order");
+    const auto files = field.read_strings("file");
+    for (std::size_t i = 0; i < orders.size(); ++i) result.fields[name][orders[i]] = files.at(i);
+  }
+  const hdf5::Group parameters = root.open("parameters");
+  for (const std::string& name : parameters.children()) result.parameters[name] = parameters.read<double>(name);
+  if (root.has("tables"))
+    for (const std::string& name : root.open("tables").children())
+      result.tables[name] = read_table(root.open("tables/" + name));
+  return result;
+}
+
+void write(const hdf5::Group& root, const Result& result) {
+  root.set("model", result.model);
+  root.set("mesh", result.mesh);
+  root.set("material_field", result.material_field);
+  root.set("contact", result.contact);
+  json loads = json::array();
+  for (const ResultLoad& load : result.loads)
+    loads.push_back({{"load", load.load}, {"function", load.function}, {"type", load.type}});
+  root.set("loads", loads.dump());
+  root.set("behaviour", result.behaviour);
+  root.write("order", result.orders);
+  root.write("instant", result.instants);
+  const hdf5::Group fields = root.create("fields");
+  for (const auto& [name, files] : result.fields) {
+    const hdf5::Group field = fields.create(name);
+    std::vector<std::int64_t> orders;
+    std::vector<std::string> paths;
+    for (const auto& [order, file] : files) {
+      orders.push_back(order);
+      paths.push_back(file);
+    }
+    field.write("order", orders);
+    field.write_strings("file", paths);
+  }
+  const hdf5::Group parameters = root.create("parameters");
+  for (const auto& [name, values] : result.parameters) parameters.write(name, values);
+  for (const auto& [name, table] : result.tables) write_table(root.create("tables/" + name), table);
+}
+
+std::vector<std::string> references(const Result& result) {
+  std::vector<std::string> references{result.model, result.mesh, result.material_field, result.contact};
+  for (const ResultLoad& load : result.loads) {
+    references.push_back(load.load);
+    references.push_back(load.function);
+  }
+  return references;
+}
+
+}  // namespace lacon::storage

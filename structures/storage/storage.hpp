@@ -1,0 +1,42 @@
+#pragma once
+// How each concept lies in its file, docs/structures.md section 2: a reader and a writer for each, in a file of their own.
+// Tables and fields have theirs beside their data (table.hpp, field.hpp). A reader takes the root of a file of the right type,
+// and throws BASE_2 where what it finds is not sound.
+#include <string>
+#include <vector>
+
+#include "lacon/structures/concepts.hpp"
+#include "lacon/structures/hdf5.hpp"
+#include "lacon/structures/mesh.hpp"
+
+namespace lacon::storage {
+
+Mesh read_mesh(const hdf5::Group& root);
+Model read_model(const hdf5::Group& root);
+Material read_material(const hdf5::Group& root);
+MaterialField read_material_field(const hdf5::Group& root);
+Load read_load(const hdf5::Group& root);
+Contact read_contact(const hdf5::Group& root);
+Function read_function(const hdf5::Group& root);
+Formula read_formula(const hdf5::Group& root);
+std::vector<double> read_list_of_reals(const hdf5::Group& root);
+TimeSteps read_time_steps(const hdf5::Group& root);
+Result read_result(const hdf5::Group& root);
+
+/// What a file says of the concept itself, next to what every concept has.
+void write(const hdf5::Group& root, const Mesh& mesh);
+void write(const hdf5::Group& root, const Model& model);
+void write(const hdf5::Group& root, const MaterialField& field);
+void write(const hdf5::Group& root, const Load& load);
+void write(const hdf5::Group& root, const Contact& contact);
+void write(const hdf5::Group& root, const Result& result);
+
+/// Ids of the concepts that this one refers to; an empty one refers to nothing.
+std::vector<std::string> references(const Mesh& mesh);
+std::vector<std::string> references(const Model& model);
+std::vector<std::string> references(const MaterialField& field);
+std::vector<std::string> references(const Load& load);
+std::vector<std::string> references(const Contact& contact);
+std::vector<std::string> references(const Result& result);
+
+}  // namespace lacon::storage
