@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-#include "lacon/assembly/symmetric_matrix.hpp"
+#include "lacon/assembly/sparse_matrix.hpp"
 
 namespace lacon {
 
@@ -24,10 +24,10 @@ class Engine {
   virtual ~Engine() = default;
 
   /// Symbolic work for the pattern of a matrix.
-  virtual void analyse(const SymmetricMatrix& matrix) = 0;
+  virtual void analyse(const SparseMatrix& matrix) = 0;
   /// Make ready to solve with a matrix of the analysed pattern: factorise it, or set up what iterations need. The matrix must
   /// stay as it is while it is solved with. Throws SOLVER_2 (no memory).
-  virtual Factorisation factorise(const SymmetricMatrix& matrix) = 0;
+  virtual Factorisation factorise(const SparseMatrix& matrix) = 0;
   /// Solve in place. @return the relative residual |b - A x| / (|A| |x| + |b|), largest entry
   /// Throws SOLVER_1, or another error of severity S that says why there is no solution; `right_side` is then as it was.
   virtual double solve(std::span<double> right_side) = 0;

@@ -33,10 +33,31 @@ double largest(std::span<const double> values) {
 struct MumpsEngine::State {
   MumpsOptions options;
   DMUMPS_STRUC_C mumps{};
-  const SymmetricMatrix* matrix = nullptr;  ///< whose factor is kept
+  const SparseMatrix* matrix = nullptr;  ///< whose factor is kept
   std::vector<MUMPS_INT> row, column;
   std::vector<MUMPS_INT> place;
 
+  explicit State(const MumpsOptions& given) : options(given) { begin(true); }
+  ~State() { call(end); }
+  State(const State&) = delete;
+  State& operator=(const State&) = delete;
+
+  void begin(bool symmetric) {
+    mumps = {};
+    mumps.sym = symmetric ? 2 : 0;  // general symmetric: multipliers make the matrix indefinite
+    mumps.par = 1;
+    mumps.comm_fortran = mumps_communicator;
+    call(start);
+    for (int stream = 1; stream <= 3; ++stream) at(mumps.icntl, stream) = 0;
+    at(mumps.icntl, 4) = 0;
+    if (!symmetric) at(mumps.icntl, 6) = 0;  // the pattern is symmetric: no columns to exchange
+    at(mumps.icntl, 7) = 1;                  // our own order, in perm_in
+    at(mumps.icntl, 13) = 1;                 // no parallel root: the inertia is exact
+    at(mumps.icntl, 14) = options.memory_margin;
+    at(mumps.icntl, 24) = 1;  // report null pivots instead of stopping
+    at(mumps.cntl, 3) = options.singular_pivot;
+  }
+  bool is_symmetric() const { return mumps.sym == 2; }
   void call(int job) {
     mumps.job = job;
     dmumps_c(&mumps);
@@ -48,27 +69,16 @@ struct MumpsEngine::State {
   }
 };
 
-MumpsEngine::MumpsEngine(const MumpsOptions& options) : state_(std::make_unique<State>()) {
-  state_->options = options;
-  DMUMPS_STRUC_C& mumps = state_->mumps;
-  mumps.sym = 2;  // general symmetric: multipliers make the matrix indefinite
-  mumps.par = 1;
-  mumps.comm_fortran = mumps_communicator;
-  state_->call(start);
-  for (int stream = 1; stream <= 3; ++stream) at(mumps.icntl, stream) = 0;
-  at(mumps.icntl, 4) = 0;
-  at(mumps.icntl, 7) = 1;   // our own order, in perm_in
-  at(mumps.icntl, 13) = 1;  // no parallel root: the inertia is exact
-  at(mumps.icntl, 14) = options.memory_margin;
-  at(mumps.icntl, 24) = 1;  // report null pivots instead of stopping
-  at(mumps.cntl, 3) = options.singular_pivot;
-}
+MumpsEngine::MumpsEngine(const MumpsOptions& options) : state_(std::make_unique<State>(options)) {}
+MumpsEngine::~MumpsEngine() = default;
 
-MumpsEngine::~MumpsEngine() { state_->call(end); }
-
-void MumpsEngine::analyse(const SymmetricMatrix& matrix) {
+void MumpsEngine::analyse(const SparseMatrix& matrix) {
   State& s = *state_;
   s.matrix = nullptr;
+  if (matrix.is_symmetric() != s.is_symmetric()) {
+    s.call(end);
+    s.begin(matrix.is_symmetric());
+  }
   s.row.clear();
   s.column.clear();
   for (std::int64_t row = 0; row < matrix.size(); ++row)
@@ -89,7 +99,7 @@ void MumpsEngine::analyse(const SymmetricMatrix& matrix) {
   if (at(s.mumps.infog, 1) < 0) s.refuse("analysis");
 }
 
-Factorisation MumpsEngine::factorise(const SymmetricMatrix& matrix) {
+Factorisation MumpsEngine::factorise(const SparseMatrix& matrix) {
   State& s = *state_;
   s.matrix = &matrix;
   s.mumps.a = const_cast<double*>(matrix.values().data());  // read only
@@ -101,7 +111,8 @@ Factorisation MumpsEngine::factorise(const SymmetricMatrix& matrix) {
     s.call(factorise_job);
   }
   if (at(s.mumps.infog, 1) < 0) s.refuse("factorisation");
-  Factorisation found{.negative_pivots = at(s.mumps.infog, 12), .null_pivots = {}, .flops = at(s.mumps.rinfog, 3)};
+  Factorisation found{.negative_pivots = {}, .null_pivots = {}, .flops = at(s.mumps.rinfog, 3)};
+  if (s.is_symmetric()) found.negative_pivots = at(s.mumps.infog, 12);
   const std::int64_t entries = at(s.mumps.infog, 29);  // in millions where negative
   found.entries = entries < 0 ? -1'000'000 * entries : entries;
   for (int i = 0; i < at(s.mumps.infog, 28); ++i) found.null_pivots.push_back(s.mumps.pivnul_list[i] - 1);
@@ -143,16 +154,7 @@ double MumpsEngine::solve(std::span<double> right_side) {
   State& s = *state_;
   const std::size_t n = right_side.size();
   std::vector<double> x(n, 0.0), step(right_side.begin(), right_side.end()), residual(n), best(n);
-  double norm = 0;  // largest row sum of |A|
-  {
-    std::vector<double> sums(n, 0.0);
-    for (std::int64_t row = 0; row < s.matrix->size(); ++row)
-      for (std::int64_t k = s.matrix->rows()[row]; k < s.matrix->rows()[row + 1]; ++k) {
-        sums[row] += std::abs(s.matrix->values()[k]);
-        if (s.matrix->columns()[k] != row) sums[s.matrix->columns()[k]] += std::abs(s.matrix->values()[k]);
-      }
-    norm = largest(sums);
-  }
+  const double norm = s.matrix->norm();
   double error = INFINITY;
   constexpr int most_refinements = 4;
   for (int i = 0; i <= most_refinements; ++i) {

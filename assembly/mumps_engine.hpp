@@ -1,5 +1,5 @@
 #pragma once
-// MUMPS for symmetric indefinite matrices, in the order of METIS.
+// MUMPS, in the order of METIS: for symmetric indefinite matrices, whose inertia it knows, and for general ones.
 #include <memory>
 
 #include "lacon/assembly/engine.hpp"
@@ -19,8 +19,8 @@ class MumpsEngine : public FactorEngine {
   MumpsEngine(const MumpsEngine&) = delete;
   MumpsEngine& operator=(const MumpsEngine&) = delete;
 
-  void analyse(const SymmetricMatrix& matrix) override;
-  Factorisation factorise(const SymmetricMatrix& matrix) override;
+  void analyse(const SparseMatrix& matrix) override;
+  Factorisation factorise(const SparseMatrix& matrix) override;
   /// Refined until the residual is at round-off or stops falling. Throws SOLVER_1 where it is above the tolerance.
   double solve(std::span<double> right_side) override;
   void substitute(std::span<double> right_side) override;

@@ -9,7 +9,7 @@
 
 namespace lacon {
 
-std::vector<std::int32_t> elimination_order(const SymmetricMatrix& matrix) {
+std::vector<std::int32_t> elimination_order(const SparseMatrix& matrix) {
   const Numbering& numbering = matrix.numbering();
   const Ragged<std::int32_t>& graph = matrix.neighbours();
   const std::int64_t n_vertices = numbering.n_vertices();

@@ -33,13 +33,13 @@ class Stopwatch {
   clock::time_point start_;
 };
 
-/// The part of a multiplier's row before its diagonal, and the diagonal.
+/// The part of a multiplier's row before its diagonal, and the diagonal; of a symmetric matrix.
 struct Row {
   std::span<const std::int32_t> columns;
   std::span<const double> values;
   double diagonal;
 
-  Row(const SymmetricMatrix& matrix, std::int64_t row) : diagonal(matrix.diagonal(row)) {
+  Row(const SparseMatrix& matrix, std::int64_t row) : diagonal(matrix.diagonal(row)) {
     const std::int64_t first = matrix.rows()[row], size = matrix.rows()[row + 1] - first - 1;
     columns = matrix.columns().subspan(first, size);
     values = matrix.values().subspan(first, size);
@@ -47,10 +47,10 @@ struct Row {
   bool is_on() const {
     return std::any_of(values.begin(), values.end(), [](double v) { return v != 0; });
   }
-  double times(std::span<const double> x) const {
-    double sum = 0;
-    for (std::size_t k = 0; k < columns.size(); ++k) sum += values[k] * x[columns[k]];
-    return sum;
+  bool meets_multipliers(std::int64_t first_multiplier) const {
+    for (std::size_t k = columns.size(); k-- > 0 && columns[k] >= first_multiplier;)
+      if (values[k] != 0) return true;
+    return false;
   }
 };
 
@@ -77,7 +77,7 @@ double distance_squared(std::span<const std::int32_t> i, std::span<const double>
 }
 
 /// The largest change of the stiffness from `base` on, of a row's and a column's diagonal; infinite where the patterns differ.
-double stiffness_change(const SymmetricMatrix& matrix, const SymmetricMatrix& base, std::int64_t first_multiplier) {
+double stiffness_change(const SparseMatrix& matrix, const SparseMatrix& base, std::int64_t first_multiplier) {
   if (matrix.size() != base.size() || matrix.rows()[first_multiplier] != base.rows()[first_multiplier]) return INFINITY;
   double largest = 0;  // squared
   for (std::int64_t row = 0; row < first_multiplier; ++row)
@@ -90,8 +90,9 @@ double stiffness_change(const SymmetricMatrix& matrix, const SymmetricMatrix& ba
   return std::sqrt(largest);
 }
 
-bool same_pattern(const SymmetricMatrix& a, const SymmetricMatrix& b) {
-  return std::equal(a.rows().begin(), a.rows().end(), b.rows().begin(), b.rows().end()) &&
+bool same_pattern(const SparseMatrix& a, const SparseMatrix& b) {
+  return a.is_symmetric() == b.is_symmetric() &&
+         std::equal(a.rows().begin(), a.rows().end(), b.rows().begin(), b.rows().end()) &&
          std::equal(a.columns().begin(), a.columns().end(), b.columns().begin(), b.columns().end());
 }
 
@@ -110,7 +111,7 @@ double SaddlePointSolver::column_cost() const { return operations_in_a_block * s
 /// multiplier must vanish in the base's equations; it is b / d.
 class SaddlePointSolver::Preconditioner {
  public:
-  Preconditioner(SaddlePointSolver& solver, const SymmetricMatrix& matrix, const Switched& switched)
+  Preconditioner(SaddlePointSolver& solver, const SparseMatrix& matrix, const Switched& switched)
       : solver_(solver), matrix_(matrix), rows_(switched.on), n_on_(rows_.size()), scaled_(switched.scaled) {
     rows_.insert(rows_.end(), switched.off.begin(), switched.off.end());
     for (const std::int64_t row : rows_) columns_.push_back(&solver.columns_.at(row));
@@ -159,7 +160,7 @@ class SaddlePointSolver::Preconditioner {
   }
 
   SaddlePointSolver& solver_;
-  const SymmetricMatrix& matrix_;
+  const SparseMatrix& matrix_;
   std::vector<std::int64_t> rows_;  ///< switched on, then switched off
   std::size_t n_on_;
   std::vector<std::int64_t> scaled_;
@@ -169,12 +170,12 @@ class SaddlePointSolver::Preconditioner {
   double condition_ = 1;
 };
 
-SolutionReport SaddlePointSolver::solve(const SymmetricMatrix& matrix, std::int64_t first_multiplier,
-                                        std::span<double> right_side, bool rough) {
+SolutionReport SaddlePointSolver::solve(const SparseMatrix& matrix, std::int64_t first_multiplier, std::span<double> right_side,
+                                        bool rough) {
   SolutionReport report;
   if (matrix.size() == 0) return report;  // every displacement is imposed
   first_multiplier_ = first_multiplier;
-  if (options_.reuse && substitution_ && kept_ == Kept::factor &&
+  if (options_.reuse && substitution_ && kept_ == Kept::factor && matrix.is_symmetric() && base_->is_symmetric() &&
       stiffness_change(matrix, *base_, first_multiplier) <= options_.stiffness_drift &&
       corrected(matrix, right_side, rough, report))
     return report;
@@ -196,15 +197,17 @@ SolutionReport SaddlePointSolver::solve(const SymmetricMatrix& matrix, std::int6
   kept_ = factor_.null_pivots.empty() ? Kept::factor : Kept::analysis;
   if (kept_ == Kept::analysis) return report;
   const Stopwatch watch(report.solution_seconds);
-  const std::vector<double> scale = scales(matrix);
-  const auto n = static_cast<Eigen::Index>(scale.size());
-  reference_ =
-      std::max(reference_, Map<const VectorXd>(scale.data(), n).cwiseProduct(Map<VectorXd>(right_side.data(), n)).norm());
+  if (matrix.is_symmetric()) {
+    const std::vector<double> scale = scales(matrix);
+    const auto n = static_cast<Eigen::Index>(scale.size());
+    reference_ =
+        std::max(reference_, Map<const VectorXd>(scale.data(), n).cwiseProduct(Map<VectorXd>(right_side.data(), n)).norm());
+  }
   engine_->solve(right_side);
   return report;
 }
 
-std::vector<double> SaddlePointSolver::scales(const SymmetricMatrix& matrix) {
+std::vector<double> SaddlePointSolver::scales(const SparseMatrix& matrix) {
   std::vector<double> scale(matrix.size());
   for (std::int64_t i = 0; i < first_multiplier_; ++i) scale[i] = 1 / std::sqrt(std::abs(matrix.diagonal(i)));
   for (std::int64_t i = first_multiplier_; i < matrix.size(); ++i) {
@@ -220,7 +223,7 @@ std::vector<double> SaddlePointSolver::scales(const SymmetricMatrix& matrix) {
   return scale;
 }
 
-bool SaddlePointSolver::make_columns(const SymmetricMatrix& matrix, const Switched& switched, SolutionReport& report) {
+bool SaddlePointSolver::make_columns(const SparseMatrix& matrix, const Switched& switched, SolutionReport& report) {
   std::vector<std::int64_t> wanted;
   for (const std::int64_t i : switched.on) {
     const auto known = columns_.find(i);
@@ -272,13 +275,13 @@ bool SaddlePointSolver::make_columns(const SymmetricMatrix& matrix, const Switch
   return true;
 }
 
-bool SaddlePointSolver::corrected(const SymmetricMatrix& matrix, std::span<double> right_side, bool rough,
+bool SaddlePointSolver::corrected(const SparseMatrix& matrix, std::span<double> right_side, bool rough,
                                   SolutionReport& report) {
   const Stopwatch watch(report.solution_seconds);
   Switched switched;
   for (std::int64_t i = first_multiplier_; i < matrix.size(); ++i) {
     const Row row(matrix, i), before(*base_, i);
-    if (!row.columns.empty() && row.columns.back() >= first_multiplier_ && row.values.back() != 0) return false;
+    if (row.meets_multipliers(first_multiplier_)) return false;
     const bool is_on = row.is_on(), was_on = before.is_on();
     if (is_on != was_on)
       (is_on ? switched.on : switched.off).push_back(i);

@@ -5,7 +5,8 @@
 // system to the next; then the factor of an earlier matrix serves on. Rows that were switched on or off since are put right
 // by a Schur complement, for which one column of the inverse each is computed and kept. Coefficients that moved with
 // the bodies, and a stiffness that changed a little, are left to GMRES, preconditioned with that. A cost model decides when a
-// new factorisation is cheaper; it counts operations, so that the choice is the same in every run.
+// new factorisation is cheaper; it counts operations, so that the choice is the same in every run. A matrix that is not
+// symmetric is factorised each time.
 #include <cstdint>
 #include <map>
 #include <memory>
@@ -14,7 +15,7 @@
 #include <vector>
 
 #include "lacon/assembly/engine.hpp"
-#include "lacon/assembly/symmetric_matrix.hpp"
+#include "lacon/assembly/sparse_matrix.hpp"
 
 namespace lacon {
 
@@ -50,7 +51,7 @@ class SaddlePointSolver {
   /// Where the report has null pivots, the matrix is singular and `right_side` is left as it was.
   /// Throws SOLVER_1, SOLVER_2.
   /// @param rough a solution to the rough gain will do: another one corrects it
-  SolutionReport solve(const SymmetricMatrix& matrix, std::int64_t first_multiplier, std::span<double> right_side,
+  SolutionReport solve(const SparseMatrix& matrix, std::int64_t first_multiplier, std::span<double> right_side,
                        bool rough = false);
 
  private:
@@ -70,10 +71,10 @@ class SaddlePointSolver {
   /// What of the engine's work stands.
   enum class Kept { nothing, analysis, factor };
 
-  bool corrected(const SymmetricMatrix& matrix, std::span<double> right_side, bool rough, SolutionReport& report);
-  bool make_columns(const SymmetricMatrix& matrix, const Switched& switched, SolutionReport& report);
+  bool corrected(const SparseMatrix& matrix, std::span<double> right_side, bool rough, SolutionReport& report);
+  bool make_columns(const SparseMatrix& matrix, const Switched& switched, SolutionReport& report);
   /// What makes the residuals of displacements and of multipliers comparable, (n).
-  std::vector<double> scales(const SymmetricMatrix& matrix);
+  std::vector<double> scales(const SparseMatrix& matrix);
   double solution_cost() const;
   double column_cost() const;
 
@@ -82,7 +83,7 @@ class SaddlePointSolver {
   FactorEngine* substitution_;  ///< the same, where it keeps a factor
   std::int64_t first_multiplier_ = 0;
   Kept kept_ = Kept::nothing;
-  std::optional<SymmetricMatrix> base_;  ///< the matrix that this is of
+  std::optional<SparseMatrix> base_;  ///< the matrix that this is of
   Factorisation factor_;
   std::map<std::int64_t, Column> columns_;
   std::map<std::int64_t, double> multiplier_scale_;  ///< c.c / K of rows when they last had coefficients

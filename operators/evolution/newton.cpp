@@ -132,7 +132,7 @@ void Newton::assemble(const StaticState& state, const StaticState& previous, Sol
           system_.add(dofs, matrix, nothing);
         });
   }
-  if (!keep_stiffness) system_.stiffness_is_complete();
+  if (linear_ && !keep_stiffness) system_.stiffness_is_complete();
   has_stiffness_ = true;
   relations_.assemble(state.relations, state.displacement, system_);
   if (contact_) {

@@ -4,7 +4,8 @@
 
 namespace lacon {
 
-System::System(const Numbering& numbering, const Ragged<std::int32_t>& elements) : numbering_(numbering), elements_(elements) {
+System::System(const Numbering& numbering, const Ragged<std::int32_t>& elements, Symmetry symmetry)
+    : numbering_(numbering), elements_(elements), symmetry_(symmetry) {
   residual_.assign(numbering.equation.size() + (numbering.n_vertices() - numbering.n_nodes), 0.0);
   make_pattern();
 }
@@ -13,9 +14,12 @@ std::int64_t System::equation(std::int64_t unknown) const {
   return unknown < n_displacements() ? numbering_.equation[unknown] : numbering_.of_patch(unknown - n_displacements());
 }
 
-void System::make_pattern() { matrix_ = std::make_unique<SymmetricMatrix>(numbering_, elements_, couplings_); }
+void System::make_pattern() { matrix_ = std::make_unique<SparseMatrix>(numbering_, elements_, couplings_, symmetry_); }
 
 void System::start(std::span<const Coupling> couplings, bool keep_stiffness) {
+  if (keep_stiffness) matrix_->restore(stiffness_);
+  if (!keep_stiffness) stiffness_.clear();
+  is_complete_ = keep_stiffness;
   if (!matrix_->has_room_for(couplings)) {
     // the pattern only grows: couples that come back find their room, and the analysis stands
     couplings_.insert(couplings_.end(), couplings.begin(), couplings.end());
@@ -23,33 +27,68 @@ void System::start(std::span<const Coupling> couplings, bool keep_stiffness) {
     const auto same = [](const Coupling& x, const Coupling& y) { return x.a == y.a && x.b == y.b; };
     std::sort(couplings_.begin(), couplings_.end(), less);
     couplings_.erase(std::unique(couplings_.begin(), couplings_.end(), same), couplings_.end());
-    const std::unique_ptr<SymmetricMatrix> before = std::move(matrix_);
+    const std::unique_ptr<SparseMatrix> before = std::move(matrix_);
     make_pattern();
     if (keep_stiffness) matrix_->copy_rows(*before, first_multiplier());
+    stiffness_.clear();
   }
   matrix_->set_zero(keep_stiffness ? first_multiplier() : 0);
   std::fill(residual_.begin(), residual_.end(), 0.0);
   imposed_terms_.resize(keep_stiffness ? n_stiffness_terms_ : 0);
 }
 
-void System::add(std::span<const std::int64_t> unknowns, std::span<const double> lower, std::span<const double> residual) {
-  thread_local std::vector<std::int64_t> equations;
-  equations.resize(unknowns.size());
-  bool meets_imposed = false;
-  for (std::size_t i = 0; i < unknowns.size(); ++i) {
-    equations[i] = equation(unknowns[i]);
-    residual_[unknowns[i]] += residual[i];
-    meets_imposed = meets_imposed || equations[i] < 0;
+void System::stiffness_is_complete() {
+  n_stiffness_terms_ = imposed_terms_.size();
+  is_complete_ = true;
+}
+
+bool System::couples_displacements(std::span<const std::int64_t> unknowns, std::span<const double> lower) const {
+  for (std::size_t i = 0, at = 0; i < unknowns.size(); ++i)
+    for (std::size_t j = 0; j <= i; ++j, ++at)
+      if (lower[at] != 0 && unknowns[i] < n_displacements() && unknowns[j] < n_displacements()) return true;
+  return false;
+}
+
+void System::save_stiffness() {
+  if (stiffness_.empty()) {
+    const auto values = matrix_->values().first(matrix_->rows()[first_multiplier()]);
+    stiffness_.assign(values.begin(), values.end());
   }
+}
+
+bool System::enter(std::span<const std::int64_t> unknowns, std::span<const double> residual) {
+  equations_.resize(unknowns.size());
+  for (std::size_t i = 0; i < unknowns.size(); ++i) {
+    equations_[i] = equation(unknowns[i]);
+    residual_[unknowns[i]] += residual[i];
+  }
+  return std::any_of(equations_.begin(), equations_.end(), [](std::int64_t e) { return e < 0; });
+}
+
+void System::add(std::span<const std::int64_t> unknowns, std::span<const double> lower, std::span<const double> residual) {
+  const bool meets_imposed = enter(unknowns, residual);
   if (lower.empty()) return;
-  matrix_->add(equations, lower);
+  if (is_complete_ && (!matrix_->is_symmetric() || couples_displacements(unknowns, lower))) save_stiffness();
+  matrix_->add(equations_, lower);
   if (!meets_imposed) return;
   for (std::size_t i = 0, at = 0; i < unknowns.size(); ++i)
     for (std::size_t j = 0; j <= i; ++j, ++at) {
-      if (lower[at] == 0 || (equations[i] < 0) == (equations[j] < 0)) continue;
-      const bool first_free = equations[i] >= 0;
-      imposed_terms_.push_back({first_free ? equations[i] : equations[j], first_free ? unknowns[j] : unknowns[i], lower[at]});
+      if (lower[at] == 0 || (equations_[i] < 0) == (equations_[j] < 0)) continue;
+      const bool first_free = equations_[i] >= 0;
+      imposed_terms_.push_back({first_free ? equations_[i] : equations_[j], first_free ? unknowns[j] : unknowns[i], lower[at]});
     }
+}
+
+void System::add_unsymmetric(std::span<const std::int64_t> unknowns, std::span<const double> matrix,
+                             std::span<const double> residual) {
+  const bool meets_imposed = enter(unknowns, residual);
+  if (is_complete_) save_stiffness();
+  matrix_->add_unsymmetric(equations_, matrix);
+  if (!meets_imposed) return;
+  for (std::size_t i = 0, at = 0; i < unknowns.size(); ++i)
+    for (std::size_t j = 0; j < unknowns.size(); ++j, ++at)
+      if (matrix[at] != 0 && equations_[i] >= 0 && equations_[j] < 0)
+        imposed_terms_.push_back({equations_[i], unknowns[j], matrix[at]});
 }
 
 void System::add_diagonal(std::int64_t unknown, double value) { matrix_->add_diagonal(equation(unknown), value); }

@@ -5,7 +5,7 @@
 #include <span>
 #include <vector>
 
-#include "lacon/assembly/symmetric_matrix.hpp"
+#include "lacon/assembly/sparse_matrix.hpp"
 
 namespace lacon {
 
@@ -13,25 +13,28 @@ namespace lacon {
 /// those of relations; only some of them have an equation.
 class System {
  public:
-  System(const Numbering& numbering, const Ragged<std::int32_t>& elements);
+  System(const Numbering& numbering, const Ragged<std::int32_t>& elements, Symmetry symmetry = Symmetry::symmetric);
 
   std::int64_t n_displacements() const { return static_cast<std::int64_t>(numbering_.equation.size()); }
   std::int64_t multiplier(std::int64_t patch) const { return n_displacements() + patch; }
   std::int64_t equation(std::int64_t unknown) const;
 
   /// Empty the matrix and the residual, and make room for these couplings.
-  /// @param keep_stiffness what was added before stiffness_is_complete() stays in the matrix: add() takes residuals alone until
-  /// then
+  /// @param keep_stiffness what was added before stiffness_is_complete() stays in the matrix, and what was added behind it is
+  /// gone: add() takes residuals alone of what belongs to the stiffness
   void start(std::span<const Coupling> couplings, bool keep_stiffness = false);
-  /// What is added from now on belongs to the multipliers.
-  void stiffness_is_complete() { n_stiffness_terms_ = imposed_terms_.size(); }
+  /// What the matrix holds now may be kept by the next start().
+  void stiffness_is_complete();
   /// Add an element. @param lower (n (n + 1) / 2): lower triangle of its matrix, or empty  @param residual (n)
   void add(std::span<const std::int64_t> unknowns, std::span<const double> lower, std::span<const double> residual);
+  /// The same of one whose matrix is not symmetric, to a general system. @param matrix (n, n), row by row
+  void add_unsymmetric(std::span<const std::int64_t> unknowns, std::span<const double> matrix,
+                       std::span<const double> residual);
   void add_diagonal(std::int64_t unknown, double value);
 
   std::vector<double>& residual() { return residual_; }  ///< (displacements, multipliers)
   const std::vector<double>& residual() const { return residual_; }
-  const SymmetricMatrix& matrix() const { return *matrix_; }
+  const SparseMatrix& matrix() const { return *matrix_; }
   /// The first equation of a multiplier.
   std::int64_t first_multiplier() const { return numbering_.first[numbering_.n_nodes]; }
 
@@ -46,14 +49,24 @@ class System {
     double coefficient;
   };
   void make_pattern();
+  /// Add a residual, and set `equations_`. @return whether some of the unknowns are imposed
+  bool enter(std::span<const std::int64_t> unknowns, std::span<const double> residual);
+  /// Whether an element matrix has entries between displacements.
+  bool couples_displacements(std::span<const std::int64_t> unknowns, std::span<const double> lower) const;
+  /// Before an element whose rows are those of displacements is added: remember the stiffness that it is added to.
+  void save_stiffness();
 
   const Numbering& numbering_;
   const Ragged<std::int32_t>& elements_;
+  Symmetry symmetry_;
   std::vector<Coupling> couplings_;
-  std::unique_ptr<SymmetricMatrix> matrix_;
+  std::unique_ptr<SparseMatrix> matrix_;
   std::vector<double> residual_;
   std::vector<ImposedTerm> imposed_terms_;
-  std::size_t n_stiffness_terms_ = 0;  ///< the first of imposed_terms_, which belong to the stiffness
+  std::size_t n_stiffness_terms_ = 0;    ///< the first of imposed_terms_, which belong to the stiffness
+  bool is_complete_ = false;             ///< the stiffness, which may be kept
+  std::vector<double> stiffness_;        ///< its values, where others were added to them
+  std::vector<std::int64_t> equations_;  ///< of the element that is added
 };
 
 }  // namespace lacon

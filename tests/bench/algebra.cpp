@@ -53,14 +53,14 @@ struct Body {
 void pattern(benchmark::State& state, CellType type) {
   const Body body(type, static_cast<int>(state.range(0)));
   std::int64_t entries = 0;
-  for (auto run : state) entries = SymmetricMatrix(body.numbering, body.cliques, {}).n_entries();
+  for (auto run : state) entries = SparseMatrix(body.numbering, body.cliques, {}).n_entries();
   bench::report(state, {.items = body.n_elements(), .bytes = 12.0 * static_cast<double>(entries)});
 }
 
 /// One element matrix into all places: read, the sum read and written.
 void add(benchmark::State& state, CellType type) {
   const Body body(type, static_cast<int>(state.range(0)));
-  SymmetricMatrix matrix(body.numbering, body.cliques, {});
+  SparseMatrix matrix(body.numbering, body.cliques, {});
   const std::vector<double> lower(static_cast<std::size_t>(body.matrix_bytes() / sizeof(double)), 1.0);
   std::vector<std::int64_t> equations;
   for (auto run : state)
@@ -74,7 +74,7 @@ void add(benchmark::State& state, CellType type) {
 /// The loop of a Newton iteration: kernels, and their matrices into the sum (LACON_THREADS threads).
 void assemble(benchmark::State& state, CellType type) {
   const Body body(type, static_cast<int>(state.range(0)));
-  SymmetricMatrix matrix(body.numbering, body.cliques, {});
+  SparseMatrix matrix(body.numbering, body.cliques, {});
   const std::vector<double> displacement(body.mesh.coordinates.size(), 0.0);
   std::vector<std::int64_t> equations;
   for (auto run : state)
@@ -90,7 +90,7 @@ void assemble(benchmark::State& state, CellType type) {
 /// The matrix of a cube of n^3 HEXA8, analysed where that is not what is measured.
 struct Cube {
   Numbering numbering;
-  SymmetricMatrix matrix;
+  SparseMatrix matrix;
   MumpsEngine engine;
 
   explicit Cube(const benchmark::State& state)

@@ -14,7 +14,7 @@ int main(int argc, char** argv) {
   const int n = argc > 1 ? std::atoi(argv[1]) : 32;
   const double dgemm = bench::dgemm_gflops(), copy = bench::copy_gbytes();
   const Numbering numbering = bench::cube_numbering(n);
-  const SymmetricMatrix matrix = bench::cube_matrix(numbering, n);
+  const SparseMatrix matrix = bench::cube_matrix(numbering, n);
   MumpsEngine engine;
   const double analysis = bench::seconds([&] { engine.analyse(matrix); });
   Factorisation found;

@@ -51,7 +51,7 @@ Numbering cube_numbering(int n) {
   return number_equations(n_nodes, 3, std::vector<std::uint8_t>(3 * n_nodes, 1), 0);
 }
 
-SymmetricMatrix cube_matrix(const Numbering& numbering, int n) {
+SparseMatrix cube_matrix(const Numbering& numbering, int n) {
   Ragged<std::int32_t> cells;
   const auto node = [n](int i, int j, int k) { return (k * (n + 1) + j) * (n + 1) + i; };
   for (int k = 0; k < n; ++k)
@@ -62,7 +62,7 @@ SymmetricMatrix cube_matrix(const Numbering& numbering, int n) {
           nodes.push_back(node(i + (corner & 1), j + (corner >> 1 & 1), k + (corner >> 2)));
         cells.push_back(nodes);
       }
-  SymmetricMatrix matrix(numbering, cells, {});
+  SparseMatrix matrix(numbering, cells, {});
   std::vector<double> lower;
   for (int i = 0; i < 24; ++i)
     for (int j = 0; j <= i; ++j) lower.push_back(i == j ? 8.0 : i % 3 == j % 3 ? -1.0 : 0.01);

@@ -3,7 +3,7 @@
 // factorise.
 #include <functional>
 
-#include "lacon/assembly/symmetric_matrix.hpp"
+#include "lacon/assembly/sparse_matrix.hpp"
 
 namespace lacon::bench {
 
@@ -21,6 +21,6 @@ double copy_gbytes();
 Numbering cube_numbering(int n);
 
 /// The pattern of elasticity on that cube (nodes of a cell are coupled), positive definite values.
-SymmetricMatrix cube_matrix(const Numbering& numbering, int n);
+SparseMatrix cube_matrix(const Numbering& numbering, int n);
 
 }  // namespace lacon::bench

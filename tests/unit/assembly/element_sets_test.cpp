@@ -7,7 +7,7 @@
 #include <cstdlib>
 #include <random>
 
-#include "lacon/assembly/symmetric_matrix.hpp"
+#include "lacon/assembly/sparse_matrix.hpp"
 #include "lacon/catalog/messages.hpp"
 
 namespace {
@@ -61,7 +61,7 @@ struct Bar : testing::Test {
   Sums sums(const std::vector<ElementSet>& sets, SolidMatrix wanted = SolidMatrix::tangent) const {
     const Numbering numbering = number_equations(static_cast<std::int64_t>(mesh.n_nodes()), 3,
                                                  std::vector<std::uint8_t>(mesh.coordinates.size(), 1), 0);
-    SymmetricMatrix matrix(numbering, mesh.cells, {});
+    SparseMatrix matrix(numbering, mesh.cells, {});
     Sums all;
     all.force.assign(displacement.size(), 0.0);
     std::vector<std::int64_t> equations;

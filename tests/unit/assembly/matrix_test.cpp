@@ -23,10 +23,10 @@ TEST(Numbering, LeavesOutWhatIsImposed) {
 }
 
 // The sum of element matrices is what dense addition gives, with equations left out and in any order.
-TEST(SymmetricMatrix, AssemblesAsDenseAdditionDoes) {
+TEST(SparseMatrix, AssemblesAsDenseAdditionDoes) {
   std::mt19937 random(7);
   const Chain chain(6, 0, {1, 1, 0, 1, 1, 1, 1, 0, 1, 1, 1, 1});
-  SymmetricMatrix matrix(chain.numbering, chain.cliques, {});
+  SparseMatrix matrix(chain.numbering, chain.cliques, {});
   Eigen::MatrixXd expected = Eigen::MatrixXd::Zero(matrix.size(), matrix.size());
   for (std::size_t c = 0; c < chain.cliques.size(); ++c) {
     std::vector<std::int64_t> equations;
@@ -45,11 +45,11 @@ TEST(SymmetricMatrix, AssemblesAsDenseAdditionDoes) {
 }
 
 // Two degrees of freedom with one equation (tied multipliers): R^T A R with the identification R.
-TEST(SymmetricMatrix, AddsUpTiedDegreesOfFreedom) {
+TEST(SparseMatrix, AddsUpTiedDegreesOfFreedom) {
   std::mt19937 random(3);
   const Chain chain(2, 1);
   const std::vector<Coupling> couplings{{2, 0}, {2, 1}};
-  SymmetricMatrix matrix(chain.numbering, chain.cliques, couplings);
+  SparseMatrix matrix(chain.numbering, chain.cliques, couplings);
   const std::vector<std::int64_t> equations{0, 4, 1, 4};
   const std::vector<double> lower = test::random_lower(4, random);
   matrix.add(equations, lower);
@@ -61,10 +61,10 @@ TEST(SymmetricMatrix, AddsUpTiedDegreesOfFreedom) {
   EXPECT_LE((dense(matrix) - expected).cwiseAbs().maxCoeff(), 4e-16);
 }
 
-TEST(SymmetricMatrix, MultipliesBySymmetry) {
+TEST(SparseMatrix, MultipliesBySymmetry) {
   std::mt19937 random(5);
   const Chain chain(5);
-  SymmetricMatrix matrix(chain.numbering, chain.cliques, {});
+  SparseMatrix matrix(chain.numbering, chain.cliques, {});
   test::add_springs(matrix, chain);
   Eigen::VectorXd x = Eigen::VectorXd::Random(matrix.size()), y(matrix.size());
   matrix.multiply({x.data(), static_cast<std::size_t>(x.size())}, {y.data(), static_cast<std::size_t>(y.size())});
@@ -72,20 +72,88 @@ TEST(SymmetricMatrix, MultipliesBySymmetry) {
 }
 
 // A pattern knows what fits into it: the analysis may stand exactly then.
-TEST(SymmetricMatrix, KnowsItsRoom) {
+TEST(SparseMatrix, KnowsItsRoom) {
   const Chain chain(4, 1);
   const std::vector<Coupling> couplings{{4, 0}};
-  const SymmetricMatrix matrix(chain.numbering, chain.cliques, couplings);
+  const SparseMatrix matrix(chain.numbering, chain.cliques, couplings);
   EXPECT_TRUE(matrix.has_room_for(couplings));
   EXPECT_TRUE(matrix.has_room_for(std::vector<Coupling>{{1, 2}, {0, 4}}));
   EXPECT_FALSE(matrix.has_room_for(std::vector<Coupling>{{4, 3}}));
 }
 
+// The same of unsymmetric element matrices, with symmetric ones among them, tied degrees of freedom and equations left out:
+// R^T A R with the identification R.
+TEST(SparseMatrix, AssemblesUnsymmetricMatrices) {
+  std::mt19937 random(17);
+  const Chain chain(5, 2, {1, 1, 0, 1, 1, 1, 1, 0, 1, 1});
+  const std::vector<Coupling> couplings{{5, 0}, {5, 4}, {6, 5}, {4, 0}};
+  SparseMatrix matrix(chain.numbering, chain.cliques, couplings, Symmetry::general);
+  Eigen::MatrixXd expected = Eigen::MatrixXd::Zero(matrix.size(), matrix.size());
+  const auto add = [&](const std::vector<std::int64_t>& equations, bool symmetric) {
+    const auto n = static_cast<Eigen::Index>(equations.size());
+    const std::vector<double> values = symmetric ? test::random_lower(equations.size(), random)
+                                                 : test::random_values(equations.size() * equations.size(), random);
+    symmetric ? matrix.add(equations, values) : matrix.add_unsymmetric(equations, values);
+    for (Eigen::Index i = 0; i < n; ++i)
+      for (Eigen::Index j = 0; j < n; ++j)
+        if (equations[i] >= 0 && equations[j] >= 0)
+          expected(equations[i], equations[j]) +=
+              values[symmetric ? std::max(i, j) * (std::max(i, j) + 1) / 2 + std::min(i, j) : i * n + j];
+  };
+  const auto [patch, other] = std::pair(chain.numbering.of_patch(0), chain.numbering.of_patch(1));
+  for (const bool symmetric : {false, true}) {
+    add({chain.numbering.of(1, 1), chain.numbering.of(0, 0), chain.numbering.of(1, 0)}, symmetric);
+    add({patch, chain.numbering.of(4, 0), patch, chain.numbering.of(0, 1)}, symmetric);
+    add({patch, other}, symmetric);
+  }
+  matrix.add_diagonal(3, 0.5);
+  expected(3, 3) += 0.5;
+  EXPECT_LE((dense(matrix) - expected).cwiseAbs().maxCoeff(), 1e-15);
+  for (std::int64_t e = 0; e < matrix.size(); ++e) EXPECT_EQ(matrix.diagonal(e), dense(matrix)(e, e));
+  EXPECT_NEAR(matrix.norm(), dense(matrix).cwiseAbs().rowwise().sum().maxCoeff(), 1e-14);
+  Eigen::VectorXd x = Eigen::VectorXd::Random(matrix.size()), y(matrix.size());
+  matrix.multiply({x.data(), static_cast<std::size_t>(x.size())}, {y.data(), static_cast<std::size_t>(y.size())});
+  EXPECT_LE((y - expected * x).cwiseAbs().maxCoeff(), 1e-14);
+}
+
+// Nodes and patches meet in the matrix wherever a coupling says so, in either order; what it grows by is zero at first, and the
+// symmetric half has no more entries than the lower triangle.
+TEST(SparseMatrix, GrowsByCouplesOfAnyVertices) {
+  std::mt19937 random(19);
+  const Chain chain(6, 3);
+  const std::vector<Coupling> all{{6, 0}, {0, 5}, {8, 6}, {2, 7}, {5, 2}, {4, 4}};
+  for (const Symmetry symmetry : {Symmetry::symmetric, Symmetry::general}) {
+    SparseMatrix before(chain.numbering, chain.cliques, {}, symmetry);
+    test::add_springs(before, chain);
+    for (std::size_t count = 1; count <= all.size(); ++count) {
+      const std::span<const Coupling> couplings(all.data(), count);
+      const bool had_room = before.has_room_for(couplings);
+      EXPECT_EQ(had_room, all[count - 1].a == all[count - 1].b);
+      SparseMatrix matrix(chain.numbering, chain.cliques, couplings, symmetry);
+      EXPECT_TRUE(matrix.has_room_for(couplings));
+      EXPECT_EQ(matrix.n_entries() == before.n_entries(), had_room);
+      matrix.copy_rows(before, matrix.size());
+      EXPECT_EQ((dense(matrix) - dense(before)).cwiseAbs().maxCoeff(), 0.0);
+      std::vector<std::int64_t> equations;
+      for (const std::int32_t v : {all[count - 1].a, all[count - 1].b}) equations.push_back(chain.numbering.first[v]);
+      EXPECT_NO_THROW(matrix.add(equations, test::random_lower(2, random)));
+      before = matrix;
+    }
+    if (!before.is_symmetric()) continue;
+    const SparseMatrix general(chain.numbering, chain.cliques, all, Symmetry::general);
+    EXPECT_EQ(2 * before.n_entries(), general.n_entries() + before.size());
+  }
+}
+
 // An element that does not fit is a defect of the caller, never a wrong entry.
-TEST(SymmetricMatrix, RefusesWhatItHasNoRoomFor) {
+TEST(SparseMatrix, RefusesWhatItHasNoRoomFor) {
   const Chain chain(4);
-  SymmetricMatrix matrix(chain.numbering, chain.cliques, {});
+  SparseMatrix matrix(chain.numbering, chain.cliques, {});
   EXPECT_THROW(matrix.add(std::vector<std::int64_t>{0, 7}, std::vector<double>{1, 1, 1}), std::logic_error);
+  EXPECT_THROW(matrix.add_unsymmetric(std::vector<std::int64_t>{0, 1}, std::vector<double>{1, 1, 1, 1}), std::logic_error);
+  SparseMatrix smaller(chain.numbering, Ragged<std::int32_t>(), {});
+  test::add_springs(matrix, chain);
+  EXPECT_THROW(smaller.copy_rows(matrix, smaller.size()), std::logic_error);
 }
 
 // Every equation has one place, and a multiplier comes behind all nodes of its row.
@@ -94,7 +162,7 @@ TEST(Ordering, PutsMultipliersBehindTheirNodes) {
   std::vector<Coupling> couplings;
   for (std::int32_t p = 0; p < 3; ++p)
     for (std::int32_t k = 0; k < 5; ++k) couplings.push_back({40 + p, 12 * p + k});
-  const SymmetricMatrix matrix(chain.numbering, chain.cliques, couplings);
+  const SparseMatrix matrix(chain.numbering, chain.cliques, couplings);
   const std::vector<std::int32_t> order = elimination_order(matrix);
   std::vector<std::int32_t> sorted = order;
   std::sort(sorted.begin(), sorted.end());

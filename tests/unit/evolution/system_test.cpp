@@ -9,8 +9,11 @@
 namespace lacon {
 namespace {
 
-// Solving with imposed displacements eliminated is solving the full system with their rows replaced by u = value.
-TEST(System, EliminatesImposedDisplacements) {
+// Solving with imposed displacements eliminated is solving the full system with their rows replaced by u = value: symmetric,
+// and general with elements of both kinds.
+class Elimination : public testing::TestWithParam<Symmetry> {};
+
+TEST_P(Elimination, IsThatOfTheFullSystem) {
   std::mt19937 random(11);
   std::uniform_real_distribution<double> uniform(-1, 1);
   const std::vector<std::uint8_t> free{1, 0, 1, 1, 0, 1};  // three nodes, two displacements
@@ -18,28 +21,29 @@ TEST(System, EliminatesImposedDisplacements) {
   Ragged<std::int32_t> elements;
   elements.push_back(std::vector<std::int32_t>{0, 1});
   elements.push_back(std::vector<std::int32_t>{1, 2});
-  System system(numbering, elements);
+  System system(numbering, elements, GetParam());
   system.start(std::vector<Coupling>{{3, 0}, {3, 2}, {0, 2}});
 
   Eigen::MatrixXd full = Eigen::MatrixXd::Zero(7, 7);
   Eigen::VectorXd internal = Eigen::VectorXd::Zero(7);
-  const auto add = [&](const std::vector<std::int64_t>& unknowns) {
+  const auto add = [&](const std::vector<std::int64_t>& unknowns, bool symmetric) {
     const std::size_t n = unknowns.size();
-    std::vector<double> lower(n * (n + 1) / 2), force(n);
+    std::vector<double> values, force(n);
     for (double& v : force) v = uniform(random);
-    for (std::size_t i = 0, at = 0; i < n; ++i) {
+    for (std::size_t i = 0; i < n; ++i) {
       internal(unknowns[i]) += force[i];
-      for (std::size_t j = 0; j <= i; ++j, ++at) {
-        lower[at] = uniform(random) + (i == j ? 5 : 0);
-        full(unknowns[i], unknowns[j]) += lower[at];
-        if (i != j) full(unknowns[j], unknowns[i]) += lower[at];
+      for (std::size_t j = 0; j < (symmetric ? i + 1 : n); ++j) {
+        values.push_back(uniform(random) + (i == j ? 5 : 0));
+        full(unknowns[i], unknowns[j]) += values.back();
+        if (symmetric && i != j) full(unknowns[j], unknowns[i]) += values.back();
       }
     }
-    system.add(unknowns, lower, force);
+    symmetric ? system.add(unknowns, values, force) : system.add_unsymmetric(unknowns, values, force);
   };
-  add({0, 1, 2, 3});
-  add({2, 3, 4, 5});
-  add({0, 1, 4, 5, 6});  // a contact row: node 0, node 2, the multiplier
+  const bool symmetric = GetParam() == Symmetry::symmetric;
+  add({0, 1, 2, 3}, true);
+  add({2, 3, 4, 5}, symmetric);
+  add({0, 1, 4, 5, 6}, symmetric);  // a contact row: node 0, node 2, the multiplier
 
   std::vector<double> external(6), step(6, 0.0);
   for (double& v : external) v = uniform(random);
@@ -65,6 +69,8 @@ TEST(System, EliminatesImposedDisplacements) {
     }
   }
 }
+
+INSTANTIATE_TEST_SUITE_P(System, Elimination, testing::Values(Symmetry::symmetric, Symmetry::general));
 
 // Couplings that come and go leave the pattern as it is; new ones make it grow.
 TEST(System, KeepsItsPatternWhileItHasRoom) {
@@ -107,6 +113,51 @@ TEST(System, KeepsItsStiffness) {
   EXPECT_TRUE(std::equal(kept.matrix().values().begin(), kept.matrix().values().end(), anew.matrix().values().begin()));
   const std::vector<double> external{1, 2, 3}, step{0.5, 0, 0};
   EXPECT_EQ(kept.right_side(external, step), anew.right_side(external, step));
+}
+
+// The same where what comes and goes couples displacements too (a consistent tangent of contact), and is not symmetric
+// (friction): the stiffness stays what it is, in any pattern.
+TEST(System, KeepsItsStiffnessUnderCouplesOfNodes) {
+  std::mt19937 random(31);
+  std::uniform_real_distribution<double> uniform(-1, 1);
+  const Numbering numbering = number_equations(4, 1, std::vector<std::uint8_t>{0, 1, 1, 1}, 2);
+  Ragged<std::int32_t> elements;
+  elements.push_back(std::vector<std::int32_t>{0, 1});
+  elements.push_back(std::vector<std::int32_t>{2, 3});
+  const std::vector<double> stiffness{4, -1, 5}, force{0.1, 0.2};
+  for (const Symmetry symmetry : {Symmetry::symmetric, Symmetry::general}) {
+    const bool symmetric = symmetry == Symmetry::symmetric;
+    System kept(numbering, elements, symmetry), anew(numbering, elements, symmetry);
+    for (int round = 0; round < 12; ++round) {
+      std::vector<std::int64_t> unknowns;  // of a contact cell: two or more displacements, a multiplier
+      for (std::int64_t node = 0; node < 4; ++node)
+        if (random() % 2) unknowns.push_back(node);
+      unknowns.push_back(4 + round % 2);
+      std::vector<Coupling> couplings;
+      for (const std::int64_t a : unknowns)
+        for (const std::int64_t b : unknowns)
+          if (a > b) couplings.push_back({static_cast<std::int32_t>(a), static_cast<std::int32_t>(b)});
+      const std::size_t n = unknowns.size();
+      std::vector<double> matrix(symmetric ? n * (n + 1) / 2 : n * n), residual(n);
+      for (double& v : matrix) v = uniform(random);
+      for (double& v : residual) v = uniform(random);
+      for (System* system : {&kept, &anew}) {
+        const bool keep = system == &kept && round > 0;
+        system->start(couplings, keep);
+        for (std::size_t c = 0; c < elements.size(); ++c)
+          system->add(std::vector<std::int64_t>(elements[c].begin(), elements[c].end()),
+                      keep ? std::span<const double>() : stiffness, force);
+        if (!keep) system->stiffness_is_complete();
+        if (round % 3 == 2) continue;  // open
+        symmetric ? system->add(unknowns, matrix, residual) : system->add_unsymmetric(unknowns, matrix, residual);
+      }
+      ASSERT_EQ(kept.matrix().n_entries(), anew.matrix().n_entries());
+      EXPECT_TRUE(std::equal(kept.matrix().values().begin(), kept.matrix().values().end(), anew.matrix().values().begin()))
+          << "round " << round;
+      const std::vector<double> external{1, 2, 3, 4}, step{0.5, 0, 0, 0};
+      EXPECT_EQ(kept.right_side(external, step), anew.right_side(external, step));
+    }
+  }
 }
 
 }  // namespace

@@ -1,7 +1,9 @@
-#include "lacon/assembly/symmetric_matrix.hpp"
+#include "lacon/assembly/sparse_matrix.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <memory>
+#include <numeric>
 #include <stdexcept>
 #include <utility>
 
@@ -72,19 +74,27 @@ Ragged<std::int32_t> neighbours_of_vertices(std::int64_t n_vertices, const Ragge
 
 }  // namespace
 
-SymmetricMatrix::SymmetricMatrix(const Numbering& numbering, const Ragged<std::int32_t>& cliques,
-                                 std::span<const Coupling> couplings)
-    : numbering_(&numbering), neighbours_(neighbours_of_vertices(numbering.n_vertices(), cliques, couplings)) {
+SparseMatrix::SparseMatrix(const Numbering& numbering, const Ragged<std::int32_t>& cliques, std::span<const Coupling> couplings,
+                           Symmetry symmetry)
+    : numbering_(&numbering),
+      symmetry_(symmetry),
+      neighbours_(neighbours_of_vertices(numbering.n_vertices(), cliques, couplings)) {
   const auto& first = numbering.first;
   row_.reserve(numbering.n_equations() + 1);
   row_.push_back(0);
+  // neighbours of v whose columns come before its own
+  const auto before = [&](std::int64_t v) {
+    const auto row = neighbours_[v];
+    return row.first(std::lower_bound(row.begin(), row.end(), v) - row.begin());
+  };
+  const auto behind = [&](std::int64_t v) { return neighbours_[v].subspan(before(v).size()); };
+  const auto n_equations = [&](std::span<const std::int32_t> vertices) {
+    return std::accumulate(vertices.begin(), vertices.end(), std::int64_t{0},
+                           [&](std::int64_t sum, std::int32_t w) { return sum + first[w + 1] - first[w]; });
+  };
   for (std::int64_t v = 0; v < numbering.n_vertices(); ++v) {
-    std::int64_t width = 0;  // columns of vertices before v
-    for (const std::int32_t w : neighbours_[v]) {
-      if (w > v) break;
-      width += first[w + 1] - first[w];
-    }
-    for (std::int64_t row = first[v]; row < first[v + 1]; ++row) row_.push_back(row_.back() + ++width);
+    const std::int64_t width = n_equations(is_symmetric() ? before(v) : neighbours_[v]), own = first[v + 1] - first[v];
+    for (std::int64_t i = 1; i <= own; ++i) row_.push_back(row_.back() + width + (is_symmetric() ? i : own));
   }
   column_.resize(row_.back());
   value_.resize(row_.back());
@@ -95,31 +105,42 @@ SymmetricMatrix::SymmetricMatrix(const Numbering& numbering, const Ragged<std::i
         const auto add = [&](std::int64_t from, std::int64_t to) {
           for (; from < to; ++from) *column++ = static_cast<std::int32_t>(from);
         };
-        for (const std::int32_t w : neighbours_[v]) {
-          if (w > static_cast<std::int64_t>(v)) break;
-          add(first[w], first[w + 1]);
-        }
-        add(first[v], row + 1);
+        for (const std::int32_t w : before(v)) add(first[w], first[w + 1]);
+        add(first[v], is_symmetric() ? row + 1 : first[v + 1]);
+        if (is_symmetric()) continue;
+        for (const std::int32_t w : behind(v)) add(first[w], first[w + 1]);
       }
   });
 }
 
-bool SymmetricMatrix::has_room_for(std::span<const Coupling> couplings) const {
+bool SparseMatrix::has_room_for(std::span<const Coupling> couplings) const {
   return std::all_of(couplings.begin(), couplings.end(), [&](const Coupling& c) {
     const auto row = neighbours_[c.a];
-    return std::binary_search(row.begin(), row.end(), c.b);
+    return c.a == c.b || std::binary_search(row.begin(), row.end(), c.b);
   });
 }
 
-void SymmetricMatrix::set_zero(std::int64_t first_row) { std::fill(value_.begin() + row_[first_row], value_.end(), 0.0); }
+void SparseMatrix::set_zero(std::int64_t first_row) { std::fill(value_.begin() + row_[first_row], value_.end(), 0.0); }
 
-void SymmetricMatrix::copy_rows(const SymmetricMatrix& other, std::int64_t n_rows) {
-  if (row_[n_rows] != other.row_[n_rows]) throw std::logic_error("rows of another pattern");
-  std::copy_n(other.value_.begin(), row_[n_rows], value_.begin());
+void SparseMatrix::restore(std::span<const double> values) { std::copy(values.begin(), values.end(), value_.begin()); }
+
+void SparseMatrix::copy_rows(const SparseMatrix& other, std::int64_t n_rows) {
+  for (std::int64_t row = 0; row < n_rows; ++row) {
+    std::int64_t k = other.row_[row];
+    const std::int64_t last = other.row_[row + 1];
+    for (std::int64_t own = row_[row]; own < row_[row + 1]; ++own) {
+      const bool known = k < last && other.column_[k] == column_[own];
+      value_[own] = known ? other.value_[k] : 0;
+      k += known;
+    }
+    if (k < last) throw std::logic_error("rows of another pattern");
+  }
 }
 
-void SymmetricMatrix::add(std::span<const std::int64_t> equations, std::span<const double> lower) {
-  // by ascending equation: each entry then belongs to the row of the later one, and the columns of a row follow each other
+template <bool lower, class Value>
+void SparseMatrix::add_rows(std::span<const std::int64_t> equations, const Value& value) {
+  // by ascending equation: each entry of a triangle then belongs to the row of the later one, and the columns of a row follow
+  // each other
   adding_.clear();
   for (std::int32_t i = 0; i < static_cast<std::int32_t>(equations.size()); ++i)
     if (equations[i] >= 0) adding_.push_back({static_cast<std::int32_t>(equations[i]), i, i * (i + 1) / 2, 0});
@@ -130,12 +151,12 @@ void SymmetricMatrix::add(std::span<const std::int64_t> equations, std::span<con
     double* const values = value_.data() + row_[own.equation];
     const auto width = static_cast<std::int32_t>(row_[own.equation + 1] - row_[own.equation]);
     std::int32_t next = 0;  // behind the last column that was found in this row
-    for (std::size_t j = 0; j <= i; ++j) {
+    for (std::size_t j = 0; j < (lower ? i + 1 : adding_.size()); ++j) {
       Added& other = adding_[j];
-      const double value = lower[own.local > other.local ? own.start + other.local : other.start + own.local];
+      const double part = value(own, other);
       // most often it is where it was in the row before, which the same node has, or behind the column before
       if (other.place >= width || columns[other.place] != other.equation) {
-        if (value == 0) continue;  // needs no place
+        if (part == 0) continue;  // needs no place
         other.place = next;
         if (next >= width || columns[next] != other.equation) {
           other.place = static_cast<std::int32_t>(std::lower_bound(columns, columns + width, other.equation) - columns);
@@ -144,16 +165,40 @@ void SymmetricMatrix::add(std::span<const std::int64_t> equations, std::span<con
         }
       }
       // an entry and its mirror image fall on one diagonal entry where two degrees of freedom share their equation
-      values[other.place] += i != j && own.equation == other.equation ? 2 * value : value;
+      values[other.place] += lower && i != j && own.equation == other.equation ? 2 * part : part;
       next = other.place + 1;
     }
   }
 }
 
-void SymmetricMatrix::add_diagonal(std::int64_t equation, double value) { value_[row_[equation + 1] - 1] += value; }
+void SparseMatrix::add(std::span<const std::int64_t> equations, std::span<const double> lower) {
+  const auto value = [lower](const Added& own, const Added& other) {
+    return lower[own.local > other.local ? own.start + other.local : other.start + own.local];
+  };
+  is_symmetric() ? add_rows<true>(equations, value) : add_rows<false>(equations, value);
+}
 
-void SymmetricMatrix::multiply(std::span<const double> x, std::span<double> y) const {
+void SparseMatrix::add_unsymmetric(std::span<const std::int64_t> equations, std::span<const double> values) {
+  if (is_symmetric()) throw std::logic_error("an unsymmetric element matrix for a symmetric matrix");
+  add_rows<false>(equations,
+                  [&](const Added& own, const Added& other) { return values[own.local * equations.size() + other.local]; });
+}
+
+std::int64_t SparseMatrix::diagonal_place(std::int64_t equation) const {
+  if (is_symmetric()) return row_[equation + 1] - 1;
+  const auto row = column_.begin() + row_[equation];
+  return std::lower_bound(row, column_.begin() + row_[equation + 1], equation) - column_.begin();
+}
+
+void SparseMatrix::add_diagonal(std::int64_t equation, double value) { value_[diagonal_place(equation)] += value; }
+
+void SparseMatrix::multiply(std::span<const double> x, std::span<double> y) const {
   std::fill(y.begin(), y.end(), 0.0);
+  if (!is_symmetric()) {
+    for (std::int64_t row = 0; row < size(); ++row)
+      for (std::int64_t k = row_[row]; k < row_[row + 1]; ++k) y[row] += value_[k] * x[column_[k]];
+    return;
+  }
   for (std::int64_t row = 0; row < size(); ++row) {
     double sum = 0;
     const std::int64_t last = row_[row + 1] - 1;
@@ -163,6 +208,16 @@ void SymmetricMatrix::multiply(std::span<const double> x, std::span<double> y) c
     }
     y[row] += sum + value_[last] * x[row];
   }
+}
+
+double SparseMatrix::norm() const {
+  std::vector<double> sums(size(), 0.0);
+  for (std::int64_t row = 0; row < size(); ++row)
+    for (std::int64_t k = row_[row]; k < row_[row + 1]; ++k) {
+      sums[row] += std::abs(value_[k]);
+      if (is_symmetric() && column_[k] != row) sums[column_[k]] += std::abs(value_[k]);
+    }
+  return sums.empty() ? 0 : *std::max_element(sums.begin(), sums.end());
 }
 
 }  // namespace lacon

@@ -1,5 +1,5 @@
 #pragma once
-// A symmetric sparse matrix: its pattern from a graph of vertices, its lower triangle row by row.
+// A sparse matrix, row by row: its pattern from a graph of vertices; where it is symmetric, its lower triangle alone.
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -14,32 +14,43 @@ struct Coupling {
   std::int32_t a, b;
 };
 
-class SymmetricMatrix {
+enum class Symmetry { symmetric, general };
+
+class SparseMatrix {
  public:
-  /// The pattern in which the vertices of each clique (an element's nodes) and of each coupling meet.
-  SymmetricMatrix(const Numbering& numbering, const Ragged<std::int32_t>& cliques, std::span<const Coupling> couplings);
+  /// The pattern in which the vertices of each clique (an element's nodes) and of each coupling (of nodes, of multipliers, or
+  /// of one with the other) meet. It is symmetric, whatever the values are.
+  SparseMatrix(const Numbering& numbering, const Ragged<std::int32_t>& cliques, std::span<const Coupling> couplings,
+               Symmetry symmetry = Symmetry::symmetric);
 
   /// Whether the pattern has room for all these couplings.
   bool has_room_for(std::span<const Coupling> couplings) const;
 
   /// @param first_row rows before it keep their values
   void set_zero(std::int64_t first_row = 0);
-  /// Take the values of the first rows from a matrix that has the same pattern there.
-  void copy_rows(const SymmetricMatrix& other, std::int64_t n_rows);
+  /// Give the first rows the values that values() had there.
+  void restore(std::span<const double> values);
+  /// Take the values of the first rows from a matrix whose pattern there is a part of this one's; what is new is zero.
+  void copy_rows(const SparseMatrix& other, std::int64_t n_rows);
   /// Add an element matrix. @param equations of its degrees of freedom, -1: left out; an equation may stand there more than
   /// once (tied multipliers), and then gets the sum  @param lower (n (n + 1) / 2): lower triangle, row by row
   void add(std::span<const std::int64_t> equations, std::span<const double> lower);
+  /// The same of one that is not symmetric, to a general matrix. @param values (n, n), row by row
+  void add_unsymmetric(std::span<const std::int64_t> equations, std::span<const double> values);
   void add_diagonal(std::int64_t equation, double value);
 
+  bool is_symmetric() const { return symmetry_ == Symmetry::symmetric; }
   std::int64_t size() const { return static_cast<std::int64_t>(row_.size()) - 1; }
   std::int64_t n_entries() const { return row_.back(); }
   std::span<const std::int64_t> rows() const { return row_; }  ///< (size + 1)
   std::span<const std::int32_t> columns() const { return column_; }
   std::span<const double> values() const { return value_; }
-  double diagonal(std::int64_t equation) const { return value_[row_[equation + 1] - 1]; }
+  double diagonal(std::int64_t equation) const { return value_[diagonal_place(equation)]; }
 
   /// y = A x
   void multiply(std::span<const double> x, std::span<double> y) const;
+  /// The largest sum of magnitudes in a row of the whole matrix.
+  double norm() const;
 
   /// The graph behind the pattern: neighbours of each vertex, without itself.
   const Ragged<std::int32_t>& neighbours() const { return neighbours_; }
@@ -51,10 +62,15 @@ class SymmetricMatrix {
     std::int32_t equation, local, start;  ///< start: of its row in the element's triangle
     std::int32_t place;                   ///< in the row where it was met last
   };
+  /// Add value(i, j) of every two equations in hand, of those up to the diagonal where `lower`.
+  template <bool lower, class Value>
+  void add_rows(std::span<const std::int64_t> equations, const Value& value);
+  std::int64_t diagonal_place(std::int64_t equation) const;
 
   const Numbering* numbering_;
+  Symmetry symmetry_;
   Ragged<std::int32_t> neighbours_;
-  std::vector<std::int64_t> row_;     ///< the diagonal is the last entry of each row
+  std::vector<std::int64_t> row_;     ///< where the matrix is symmetric, the diagonal is the last entry of each row
   std::vector<std::int32_t> column_;  ///< ascending in each row
   std::vector<double> value_;
   std::vector<Added> adding_;
