@@ -32,7 +32,7 @@ sys.path[:0] = [str(SOURCE / "commands/studies"), str(SOURCE / "commands")]
 
 import calculix  # noqa: E402
 import tables  # noqa: E402
-from lacon.orders import openblas_kernel  # noqa: E402
+from lacon.base.orders import openblas_kernel  # noqa: E402
 from meshes import brick, union, write_med  # noqa: E402
 from results import MeshOfBase, Result, identifier_of  # noqa: E402
 

@@ -11,8 +11,9 @@ import unittest.mock
 sys.path.insert(0, __file__.rpartition("/")[0] or ".")
 from support import STUDY, LauncherTest  # noqa: E402
 
-from lacon import catalog, checker, concepts  # noqa: E402
-from lacon.messages import AsterError  # noqa: E402
+from lacon.core import catalog, checker, concepts, plugins  # noqa: E402
+from lacon.core.messages import AsterError  # noqa: E402
+from lacon.objects.kinds import kinds  # noqa: E402
 
 
 class FakeBase:
@@ -20,7 +21,7 @@ class FakeBase:
 
 
 def concept(kind):
-    return concepts.make(FakeBase(), f"{kind}_1", kind.upper())
+    return kinds[kind](FakeBase(), f"{kind}_1", kind.upper())
 
 
 def problems(command, **keywords):
@@ -155,16 +156,16 @@ class Mistakes(unittest.TestCase):
             rows.write_text('[[element]]\nmodelisation = "MY_MODEL"\n')
             for path in (folder, f"{folder}/mine"):
                 with unittest.mock.patch.dict(os.environ, LACON_PLUGIN_PATH=f":{path}"):
-                    catalog.modelisations.cache_clear()
+                    plugins.modelisations.cache_clear()
                     self.assertEqual(problems("AFFE_MODELE", MAILLAGE=concept("mesh"), AFFE=affe), [])
                     self.assertEqual(problems("AFFE_MODELE", MAILLAGE=concept("mesh"), AFFE={**affe, "MODELISATION": "D_PLAN"}), [])
             rows.write_text("[[element]\n")
             with unittest.mock.patch.dict(os.environ, LACON_PLUGIN_PATH=folder):
-                catalog.modelisations.cache_clear()
-                catalog._toml.cache_clear()
+                plugins.modelisations.cache_clear()
+                catalog.toml.cache_clear()
                 with self.assertRaisesRegex(AsterError, "PLUGIN_1.*plugin.toml"):
                     problems("AFFE_MODELE", MAILLAGE=concept("mesh"), AFFE=affe)
-        catalog.modelisations.cache_clear()
+        plugins.modelisations.cache_clear()
         self.assertEqual(problems("AFFE_MODELE", MAILLAGE=concept("mesh"), AFFE=affe)[0][0], "KEYWORD_4")
 
     def test_out_of_range(self):
@@ -274,7 +275,7 @@ def sample(row):
     if row.get("makes"):
         one = concepts.CO("NAME")
     elif "into_from" in row:
-        one = catalog.lists[row["into_from"]]()[0]
+        one = plugins.lists[row["into_from"]]()[0]
     elif "into" in row:
         one = row["into"][0]
     elif kind == "real":
@@ -410,7 +411,7 @@ class Properties(unittest.TestCase):
     def test_rows_are_of_the_documented_shape(self):
         known = {"type", "status", "max", "min", "default", "into", "into_from", "elsewhere", "above", "at_least", "below", "at_most",
                  "unique", "unit", "makes", "help", "keyword", "rule", "when", "formerly"}
-        types = {"real", "integer", "text", "scalar", "group_ma", "group_no", "cell", "node", "factor", "concept", *concepts._types}
+        types = {"real", "integer", "text", "scalar", "group_ma", "group_no", "cell", "node", "factor", "concept", *kinds}
 
         def visit(path, row):
             for name, keyword in row.get("keyword", {}).items():

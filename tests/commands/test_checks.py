@@ -9,7 +9,7 @@ import unittest
 sys.path.insert(0, __file__.rpartition("/")[0] or ".")
 from support import STUDY, LauncherTest  # noqa: E402
 
-from lacon.checks import Check, Judgement, judge_calculated  # noqa: E402
+from lacon.commands.checks import Check, Judgement, judge_calculated  # noqa: E402
 
 
 class Rules(unittest.TestCase):

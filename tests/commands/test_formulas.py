@@ -12,9 +12,9 @@ import numpy as np
 sys.path.insert(0, __file__.rpartition("/")[0] or ".")
 from support import LauncherTest  # noqa: E402
 
-from lacon import formulas  # noqa: E402
-from lacon.formulas import Expression  # noqa: E402
-from lacon.messages import AsterError  # noqa: E402
+from lacon.base import expressions  # noqa: E402
+from lacon.base.expressions import Expression  # noqa: E402
+from lacon.core.messages import AsterError  # noqa: E402
 
 X = np.linspace(-2, 3, 101)
 Y = np.linspace(1, 2, 101)
@@ -93,7 +93,7 @@ class Questions(unittest.TestCase):
     def ask(self, expression, parameters, columns):
         ours, theirs = socket.socketpair()
         with theirs, ours.makefile("rwb") as stream:
-            server = threading.Thread(target=formulas.serve, args=(theirs.makefile("rwb"), Base(expression)))
+            server = threading.Thread(target=expressions.serve, args=(theirs.makefile("rwb"), Base(expression)))
             server.start()
             count = len(columns[0]) if columns else 1
             stream.write(json.dumps({"formula": "formula_1", "parameters": parameters, "count": count}).encode() + b"\n")

@@ -6,7 +6,7 @@ import unittest
 sys.path.insert(0, __file__.rpartition("/")[0] or ".")
 from support import STUDY, LauncherTest  # noqa: E402
 
-from lacon.curves import Curve, Plot, _mathematics, _tick, columns  # noqa: E402
+from lacon.tables.curves import Curve, Plot, _mathematics, _tick, columns  # noqa: E402
 
 FUNCTIONS = """
 DEBUT()

@@ -11,7 +11,7 @@ import unittest
 sys.path.insert(0, __file__.rpartition("/")[0] or ".")
 from support import ROOT, STUDY, LauncherTest  # noqa: E402
 
-from lacon import orders  # noqa: E402
+from lacon.base import orders  # noqa: E402
 
 
 def said(severity, identifier="MODELE1_63"):
@@ -424,7 +424,7 @@ FIN()
             self.assertEqual((done.returncode, done.stderr), (0, ""))
 
     def test_help_about_every_command(self):
-        from lacon import catalog
+        from lacon.core import catalog
 
         run = self.launch("help", *catalog.command_names())
         self.assertEqual(run.status, 0)
@@ -445,11 +445,11 @@ class Sources(unittest.TestCase):
         import re
         import string
 
-        from lacon import catalog
+        from lacon.core import catalog
 
         known = catalog.messages()
         used = set()
-        for path in sorted((ROOT / "commands" / "lacon").glob("*.py")):
+        for path in sorted((ROOT / "commands" / "lacon").rglob("*.py")):
             for node in ast.walk(ast.parse(path.read_text())):
                 if not isinstance(node, ast.Call):
                     continue
@@ -463,7 +463,7 @@ class Sources(unittest.TestCase):
                     gaps = {g for key in ("text", "do") for _, g, _, _ in string.Formatter().parse(known[identifier][key]) if g}
                     given = {k.arg for k in node.keywords} | {"path"}
                     self.assertLessEqual(gaps, given, f"{path.name}: {identifier}")
-        mine = catalog._toml(ROOT / "catalog" / "messages" / "commands.toml")
+        mine = catalog.toml(ROOT / "catalog" / "messages" / "commands.toml")
         self.assertEqual(set(mine) - used, set(), "messages that nothing raises")
 
 

@@ -106,7 +106,7 @@ CA.close()
 @unittest.skipUnless(sympy, "sympy is not installed")
 class Tensors(unittest.TestCase):
     def setUp(self):
-        from lacon import tensors
+        from lacon.peer import tensors
 
         self.t = tensors
         self.X, self.Y, self.Z = sympy.symbols("X Y Z")

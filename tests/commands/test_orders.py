@@ -9,7 +9,8 @@ import unittest
 sys.path.insert(0, __file__.rpartition("/")[0] or ".")
 import support  # noqa: E402,F401  (the path of the package)
 
-from lacon import catalog, checker, examples  # noqa: E402
+from lacon.core import catalog, checker  # noqa: E402
+from lacon.tools import examples  # noqa: E402
 
 ORDERS, MUTATIONS = 12, 40  # of each command
 

@@ -81,13 +81,13 @@ assert [t.rows[0][n] for n in t.para[-5:]] == [15, -25, 0, 0, -15], t
     def field(self, quantity, components, values):
         """Python that makes a field F of its own at nodes 4, 5 and 6, at (0, 1), (1, 1) and (2, 1)."""
         return f"""
-from lacon import study
-from lacon.hdf5 import text_type
+from lacon.core import current
+from lacon.core.hdf5 import text_type
 def fill(file):
     file.attrs.update(name='F', quantity='{quantity}', mesh=M.id, location='NOEU')
     file.attrs.create('components', {components}, dtype=text_type())
     file['support'], file['values'] = [3, 4, 5], {values}
-F = study.current.base.write_concept('field', 'F', 'CREA_CHAMP', {{}}, fill)
+F = current.study.base.write_concept('field', 'F', 'CREA_CHAMP', {{}}, fill)
 def table(**more):
     keywords = dict(NOM_CMP={components}) if not {{'INVARIANT', 'ELEM_PRINCIPAUX'}} & set(more) else {{}}
     return POST_RELEVE_T(ACTION=_F(INTITULE='it', CHAM_GD=F, GROUP_NO='TOP', **{{'OPERATION': 'EXTRACTION', **keywords, **more}})).EXTR_TABLE()
@@ -117,7 +117,7 @@ FIN()
 
     def test_a_vector_that_is_not_whole_has_no_components_in_other_axes(self):
         self.ok(self.run_study(STUDY + self.field("DEPL_R", ["DX", "DY"], [[0.0, 1.0], [1.0, 1.0], [2.0, 1.0]]).replace(
-            "F = study", "    file['present'] = [[1, 1], [1, 0], [1, 1]]\nF = study") + """
+            "F = current", "    file['present'] = [[1, 1], [1, 0], [1, 1]]\nF = current") + """
 t = table(REPERE='UTILISATEUR', ANGL_NAUT=90.)
 assert [x is None for x in t.DX] == [False, True, False] and [x is None for x in t.DY] == [False, True, False], t
 FIN()
@@ -142,13 +142,13 @@ FIN()
 
     def test_fields_of_their_own(self):
         self.ok(self.run_study(STUDY + """
-from lacon import study
-from lacon.hdf5 import text_type
+from lacon.core import current
+from lacon.core.hdf5 import text_type
 def fill(file):
     file.attrs.update(name='NEUT', quantity='NEUT_R', mesh=M.id, location='NOEU')
     file.attrs.create('components', ['X1'], dtype=text_type())
     file['support'], file['values'] = [3, 5], [[7.], [9.]]
-F = study.current.base.write_concept('field', 'F', 'CREA_CHAMP', {}, fill)
+F = current.study.base.write_concept('field', 'F', 'CREA_CHAMP', {}, fill)
 t = POST_RELEVE_T(ACTION=_F(INTITULE='it', CHAM_GD=F, GROUP_NO='TOP', TOUT_CMP='OUI', OPERATION='EXTRACTION')).EXTR_TABLE()
 assert t.para == ['INTITULE', 'CHAM_GD', 'NOEUD', 'ABSC_CURV', 'COOR_X', 'COOR_Y', 'COOR_Z', 'X1'] and t.values()['X1'] == [7, 9], t
 assert t.values()['ABSC_CURV'] == [0, 2]

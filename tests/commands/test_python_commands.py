@@ -9,8 +9,8 @@ import h5py
 sys.path.insert(0, __file__.rpartition("/")[0] or ".")
 from support import LauncherTest  # noqa: E402
 
-from lacon.functions import Piecewise  # noqa: E402
-from lacon.messages import AsterError  # noqa: E402
+from lacon.base.functions import Piecewise  # noqa: E402
+from lacon.core.messages import AsterError  # noqa: E402
 
 
 class Functions(unittest.TestCase):

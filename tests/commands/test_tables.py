@@ -10,8 +10,9 @@ import h5py
 sys.path.insert(0, __file__.rpartition("/")[0] or ".")
 from support import STUDY, LauncherTest  # noqa: E402
 
-from lacon.printing import columns, crossed, number_format  # noqa: E402
-from lacon.tables import Table, read_table, type_of, write_table  # noqa: E402
+from lacon.tables.printing import columns, number_format  # noqa: E402
+from lacon.tables.storage import read_table, write_table  # noqa: E402
+from lacon.tables.table import Table, crossed, type_of  # noqa: E402
 
 
 def sample():
@@ -90,7 +91,7 @@ class Printing(unittest.TestCase):
 
     def test_crossed(self):
         table = Table.of_columns({"T": ("R", [0.0, 0.0, 1.0, 1.0]), "P": ("K8", ["A", "B", "A", "B"]), "V": ("I", [1, 2, 3, 4])})
-        self.assertEqual([line.split() for line in crossed(table, ["T", "P", "V"], "3.1F").split("\n")[1:]],
+        self.assertEqual([line.split() for line in columns(crossed(table, ["T", "P", "V"], "3.1F"), "3.1F").split("\n")[1:]],
                          [["T", "A", "B"], ["0.0", "1", "2"], ["1.0", "3", "4"]])
 
 

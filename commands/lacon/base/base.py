@@ -1,0 +1,292 @@
+"""A base: the folder of a study's concepts and its registry, docs/structures.md section 1.
+
+The registry is replaced as a whole, after the concept it names is there: a killed run loses nothing that was done.
+"""
+
+import contextlib
+import fcntl
+import json
+import os
+import pathlib
+import re
+import shutil
+import weakref
+
+from ..core.concepts import concepts_in, dumps, type_of
+from ..core.late import h5py
+from ..core.messages import NeedsRun, fail
+from . import contents, kept
+
+_registry = "base.json"
+_orders = "orders.partial"
+_entry = re.compile(r"([a-z_]+_\d+)(\.h5)?(\.partial)?$")
+
+
+class Base:
+    """An open base. One run at a time: the folder is locked until close()."""
+
+    unsolved = ()  #: of `lacon check` a dictionary: id of a concept that is not really made -> its label, where it would be
+
+    def __init__(self, folder, kinds, where, make, fresh=False, force=False):
+        """Open `folder`. `make`: start one where there is none; `fresh`: empty the one that is there; `force`: take up nothing of it.
+
+        @param kinds type of a concept -> class of its objects
+        """
+        self._start(folder, kinds)
+        if not self.folder.exists():
+            if not make:
+                fail("STUDY_2", where, folder=self.folder)
+            try:
+                self.folder.mkdir()
+            except OSError as error:
+                fail("STUDY_3", where, folder=self.folder, reason=error.strerror)
+            self._made = True
+        self._check_folder(where, make)
+        try:
+            self.lock = os.open(self.folder, os.O_RDONLY)
+            fcntl.flock(self.lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        except BlockingIOError:
+            os.close(self.lock)
+            fail("STUDY_5", where, folder=self.folder)
+        self.kept = kept.Kept(self, look=not force)
+        try:
+            if fresh:
+                self._empty()
+            elif (self.folder / _registry).exists():
+                self._read(where)
+            elif not make:
+                fail("STUDY_2", where, folder=self.folder)
+            self.write(where)
+        except BaseException:
+            self.close()
+            raise
+
+    def _start(self, folder, kinds):
+        """What every base has, one that is only read too."""
+        self.kinds = kinds
+        self.folder = pathlib.Path(os.path.abspath(folder))
+        self.registry = {"format": 1, "next": 1, "labels": {}, "namespace": {}}
+        self.unsolved = {}  #: of `lacon check`: id of a concept that is not really made -> its label, where it would be
+        self._made = False
+        self._references = {}  #: id -> state of its file, the ids in it
+        self._objects = weakref.WeakValueDictionary()
+
+    def _check_folder(self, where, make):
+        """A folder that is not a base is left alone."""
+        if not self.folder.is_dir():
+            fail("STUDY_4", where, folder=self.folder)
+        if not (self.folder / _registry).exists() and any(self.folder.iterdir()):
+            fail("STUDY_4", where, folder=self.folder)
+
+    def _read(self, where):
+        try:
+            registry = json.loads((self.folder / _registry).read_text(encoding="utf-8"))
+            if registry["format"] != 1:
+                raise ValueError(f"format {registry['format']}, this version reads format 1")
+            {}.update(registry["labels"])
+            {}.update(registry.get("made", {}))
+            int(registry["next"])
+        except (OSError, ValueError, KeyError, TypeError) as error:
+            fail("STUDY_6", where, folder=self.folder, reason=error)
+        registry.setdefault("namespace", {})
+        self.registry = registry
+
+    def _empty(self):
+        for path in self.folder.iterdir():
+            if path.name.startswith((_registry, _orders)) or path.name == kept.folder or _entry.match(path.name):
+                _remove(path)
+
+    def write(self, where=""):
+        """Replace the registry."""
+        partial = self.folder / (_registry + ".partial")
+        try:
+            partial.write_text(json.dumps(self.registry), encoding="ascii")
+            os.replace(partial, self.folder / _registry)
+        except OSError as error:
+            fail("STUDY_3", where, folder=self.folder, reason=error.strerror)
+
+    def orders(self):
+        """Folder of orders and of what operators say about them, there while a run lasts."""
+        folder = self.folder / _orders
+        folder.mkdir(exist_ok=True)
+        return folder
+
+    def close(self):
+        """The run is over: remove its orders, let others in."""
+        _remove(self.folder / _orders)
+        os.close(self.lock)
+
+    # ------------------------------------------------------------------------------------------- concepts
+
+    def path(self, identifier):
+        """File of a concept; of a result, its index."""
+        if type_of(identifier) == "result":
+            return self.folder / identifier / "index.h5"
+        return self.folder / f"{identifier}.h5"
+
+    def open(self, identifier):
+        if identifier in self.unsolved:
+            raise NeedsRun(*self.unsolved[identifier])
+        try:
+            return h5py.File(self.path(identifier), "r")
+        except OSError as error:
+            fail("STUDY_7", file=self.path(identifier), reason=error)
+
+    def concept(self, identifier, label=""):
+        """The object of an id, the same one as long as anything holds it."""
+        item = self._objects.get(identifier)
+        if item is None:
+            item = self._objects[identifier] = self.kinds[type_of(identifier)](self, identifier, label)
+        return item
+
+    def enter(self, item):
+        """Make `item` the object of its concept."""
+        self._objects[item.id] = item
+
+    def live_objects(self):
+        """(id, object) of every concept that Python still holds, in whatever variable."""
+        return list(self._objects.items())
+
+    def new_id(self, kind):
+        """An id that no concept has; it counts once the registry is written."""
+        number = self.registry["next"]
+        while any((self.folder / name).exists() for name in (f"{kind}_{number}.h5", f"{kind}_{number}")):
+            number += 1
+        self.registry["next"] = number + 1
+        return f"{kind}_{number}"
+
+    def drop(self, identifier):
+        """Remove what is there of a concept that was not finished, or that nothing refers to."""
+        for path in (self.folder / f"{identifier}.h5", self.folder / f"{identifier}.h5.partial", self.folder / identifier):
+            _remove(path)
+        self._objects.pop(identifier, None)
+        self.kept.forget(identifier)
+
+    def give_back(self, identifier):
+        """Drop a concept that was not finished; its number, which nobody has seen, is the next one's again."""
+        self.drop(identifier)
+        number = int(identifier.rpartition("_")[2])
+        if number == self.registry["next"] - 1:
+            self.registry["next"] = number
+
+    def drop_partial(self):
+        """Remove what killed operators left."""
+        for path in list(self.folder.rglob("*.partial")):
+            if path.name != _orders:
+                _remove(path)
+
+    def write_concept(self, kind, label, command, keywords, fill, reused=None):
+        """A concept that Python makes itself. `fill(file)` writes what is particular to it; it replaces the content of `reused`. @return its object"""
+        identifier = reused.id if reused else self.new_id(kind)
+        path = self.path(identifier)
+        partial = path.with_name(path.name + ".partial")
+        version = 1
+        if reused:
+            with reused.open() as file:
+                version = int(file.attrs["version"]) + 1
+        try:
+            with h5py.File(partial, "w") as file:
+                attributes = {
+                    "lacon_type": kind, "format": 1, "version": version, "id": identifier, "label": label, "command": command,
+                    "keywords": dumps(keywords),
+                    "references": json.dumps([c.id for c in concepts_in(keywords)] if kind in ("material", "formula") else []),
+                }
+                for name, value in attributes.items():
+                    file.attrs[name] = value
+                fill(file)
+            key = kept.file_key(partial)
+            found = None if reused else self.kept.find(kind, key)
+            if found:
+                partial.unlink()
+                self.give_back(identifier)
+                return self.concept(found, label)
+            os.replace(partial, path)
+        except OSError as error:
+            with contextlib.suppress(OSError):
+                partial.unlink()
+            fail("STUDY_3", folder=self.folder, reason=error.strerror or error)
+        self.kept.enter(identifier, key)
+        return self.concept(identifier, label)
+
+    def ids(self):
+        """Ids of all concepts that are there."""
+        found = []
+        for path in self.folder.iterdir():
+            match = _entry.match(path.name)
+            if match and not match[3] and self.is_there(match[1]):
+                found.append(match[1])
+        return found
+
+    def is_there(self, identifier):
+        """A concept has this id, and its file."""
+        kind, _, number = identifier.rpartition("_")
+        return kind in self.kinds and number.isdigit() and self.path(identifier).exists()
+
+    def references(self, identifier):
+        """Ids that a concept's file refers to."""
+        there = os.stat(self.path(identifier))
+        state = there.st_size, there.st_mtime_ns
+        known = self._references.get(identifier)
+        if not known or known[0] != state:
+            with self.open(identifier) as file:
+                texts = [v for k, v in file.attrs.items() if isinstance(v, str) and k not in ("id", "label", "keywords", "command")]
+            known = self._references[identifier] = state, frozenset(word for text in texts for word in re.findall(r"[a-z_]+_\d+", text))
+        return known[1]
+
+    def clean(self, keep):
+        """Remove every concept that none of the ids `keep` refers to, directly or not, and leftovers. @return removed ids"""
+        present = set(self.ids())
+        reached, queue = set(), [i for i in keep if i in present]
+        while queue:
+            identifier = queue.pop()
+            if identifier not in reached:
+                reached.add(identifier)
+                queue += [i for i in self.references(identifier) if i in present]
+        removed = sorted(present - reached)
+        for identifier in removed:
+            self.drop(identifier)
+        self.kept.clean(reached)
+        self._clean_results(reached)
+        self.drop_partial()
+        return removed
+
+    def _clean_results(self, reached):
+        """Remove folders without index and field files that no index names."""
+        named = set()
+        for identifier in reached:
+            if type_of(identifier) == "result":
+                with self.open(identifier) as file:
+                    named |= contents.field_files(file)
+                named |= self.kept.fields(identifier)
+        for folder in self.folder.iterdir():
+            if folder.is_dir() and _entry.match(folder.name):
+                if folder.name not in reached:
+                    _remove(folder)
+                    continue
+                for path in folder.glob("*.h5"):
+                    if path.name != "index.h5" and f"{folder.name}/{path.name}" not in named:
+                        _remove(path)
+
+
+class ReadBase(Base):
+    """A base that is looked at: not locked, not changed."""
+
+    def __init__(self, folder, kinds, where):
+        """@throws AsterError STUDY_2, STUDY_6"""
+        self._start(folder, kinds)
+        if not (self.folder / _registry).is_file():
+            fail("STUDY_2", where, folder=self.folder)
+        self._read(where)
+
+    def labelled(self, kind):
+        """label -> concept, of the concepts of a type that are there."""
+        return {label: self.concept(identifier, label) for label, identifier in self.registry["labels"].items()
+                if type_of(identifier) == kind and self.path(identifier).exists()}
+
+
+def _remove(path):
+    if path.is_dir() and not path.is_symlink():
+        shutil.rmtree(path)
+    else:
+        with contextlib.suppress(FileNotFoundError):
+            path.unlink()

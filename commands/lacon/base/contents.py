@@ -1,0 +1,104 @@
+"""What the files of concepts hold (docs/structures.md, sections 2 and 3), as arrays and plain Python. Each function takes an open HDF5 file.
+
+The one place that knows the layout on reading: for the objects of a command file, the tools and studies of their own.
+"""
+
+from ..core.hdf5 import ragged, text, texts
+from ..core.late import numpy
+
+# ---------------------------------------------------------------------------------------------------- mesh
+
+
+def dimension(mesh):
+    """2 or 3"""
+    return int(mesh.attrs["dimension"])
+
+
+def points(mesh):
+    """Coordinates of the nodes, (n, 3)."""
+    return mesh["coordinates"][:]
+
+
+def number_of_nodes(mesh):
+    return mesh["coordinates"].shape[0]
+
+
+def number_of_cells(mesh):
+    return mesh["cells/type"].shape[0]
+
+
+def cell_types(mesh):
+    """(names of the types that the mesh has, index of each cell's type in them)"""
+    return texts(mesh["cells"], "types"), mesh["cells/type"][:]
+
+
+def connectivity(mesh):
+    """(offset, nodes): those of cell c are nodes[offset[c]:offset[c + 1]], in the order of catalog/cells.toml."""
+    return mesh["cells/offset"][:], mesh["cells/nodes"][:]
+
+
+def nodes_of(mesh, cells):
+    """Nodes of cells, one cell after the other."""
+    offset, nodes = connectivity(mesh)
+    parts = [nodes[offset[c]:offset[c + 1]] for c in cells]
+    return numpy.concatenate(parts) if parts else nodes[:0]
+
+
+def group_names(mesh, kind):
+    """Names of the groups of "cells" or of "nodes"."""
+    groups = mesh.get(f"groups/{kind}")
+    return [] if groups is None else list(groups["name"].asstr()[:])
+
+
+def group(mesh, kind, name):
+    """Members of a group, from 0; nothing where there is no such group."""
+    names = group_names(mesh, kind)
+    if name not in names:
+        return None
+    groups, k = mesh[f"groups/{kind}"], names.index(name)
+    return groups["values"][groups["offset"][k]:groups["offset"][k + 1]]
+
+
+def groups(mesh, kind):
+    """name -> members, from 0"""
+    return dict(zip(group_names(mesh, kind), ragged(mesh[f"groups/{kind}"]))) if f"groups/{kind}" in mesh else {}
+
+
+def patches(mesh):
+    """The skin cells of each patch of a cut mesh."""
+    return ragged(mesh["patches/cells"]) if "patches" in mesh else []
+
+
+# ---------------------------------------------------------------------------------------------------- result
+
+
+def instants(result):
+    """[(order number, instant)]"""
+    return list(zip(result["order"][:].tolist(), result["instant"][:].tolist()))
+
+
+def fields(result):
+    """name of a field -> its order numbers"""
+    return {name: result["fields"][name]["order"][:].tolist() for name in sorted(result.get("fields", ()))}
+
+
+def field_file(result, name, order):
+    """The file of a field, relative to the base; nothing where there is none."""
+    entry = result.get(f"fields/{name}")
+    orders = [] if entry is None else entry["order"][:].tolist()
+    return entry["file"].asstr()[orders.index(order)] if order in orders else None
+
+
+def field_files(result):
+    """Every field file that the index of a result names."""
+    return {path for entry in result.get("fields", {}).values() for path in entry["file"].asstr()[:]}
+
+
+def parameters(result):
+    """name -> one value an instant"""
+    return {name: values[:] for name, values in result.get("parameters", {}).items()}
+
+
+def reference(concept, name):
+    """The id of the concept that another one refers to as `name`: "mesh", "model", "material_field", "contact"; empty where it refers to none."""
+    return text(concept.attrs.get(name, ""))

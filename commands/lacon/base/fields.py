@@ -1,0 +1,54 @@
+"""Fields of results and of their own, read from their files; docs/structures.md section 3."""
+
+from ..core.hdf5 import text, texts
+from ..core.late import h5py, numpy
+from ..core.messages import fail
+
+
+class FieldData:
+    """A field at one instant.
+
+    support (n) node or cell numbers, offset (n + 1) or None, values (r, c), present (r, c) of bool: row r of cell support[i] for
+    offset[i] <= r < offset[i + 1]. A field of functions has their ids in `functions`, and indices into that list as values.
+    """
+
+    def __init__(self, file):
+        self.name, self.quantity, self.location = (text(file.attrs[key]) for key in ("name", "quantity", "location"))
+        self.mesh_id = text(file.attrs["mesh"])
+        self.components, self.functions = texts(file, "components"), texts(file, "functions")
+        self.support = file["support"][:]
+        self.offset = file["offset"][:] if "offset" in file else None
+        self.values = file["values"][:]
+        self.present = file["present"][:].astype(bool) if "present" in file else numpy.ones(self.values.shape, bool)
+
+    def type(self):
+        """"NOEU_DEPL_R\""""
+        return f"{self.location}_{self.quantity}"
+
+    def rows(self):
+        """(owner of each row: node or cell number; its place in it: point, or node of the cell), from 0"""
+        if self.offset is None:
+            return self.support, numpy.zeros(len(self.support), int)
+        counts = numpy.diff(self.offset)
+        return numpy.repeat(self.support, counts), numpy.arange(len(self.values)) - numpy.repeat(self.offset[:-1], counts)
+
+    def on_nodes(self, count):
+        """(values, mask) over all `count` nodes of the mesh; mask is true where the component exists."""
+        values = numpy.zeros((count, len(self.components)))
+        mask = numpy.zeros(values.shape, bool)
+        values[self.support], mask[self.support] = self.values, self.present
+        return values, mask
+
+    def component(self, name):
+        """(owners, values) of the rows where a component exists."""
+        column = self.components.index(name)
+        rows = self.present[:, column]
+        return self.rows()[0][rows], self.values[rows, column]
+
+
+def open_field(folder, path):
+    """A field's file, `path` relative to the base. @throws AsterError STUDY_7"""
+    try:
+        return h5py.File(folder / path, "r")
+    except OSError as error:
+        fail("STUDY_7", file=folder / path, reason=error)

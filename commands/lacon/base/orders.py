@@ -1,0 +1,178 @@
+"""Orders: one command with complete keywords, handed to the executable of its operator; docs/structures.md section 4."""
+
+import functools
+import json
+import os
+import shutil
+import signal
+import socket
+import sys
+import threading
+import time
+
+from ..core import late
+from ..core.concepts import to_json
+from ..core.messages import AsterError, ConvergenceError, InternalError, Message, SolutionError, message
+from ..core.plugins import operator_folder
+from . import expressions
+
+#: messages of a solution that failed in the linear solver; any other is one of Newton's method
+_linear_solver = ("FACTOR", "SINGULAR", "SOLVER")
+
+
+class Outcome:
+    """What an operator's process came to."""
+
+    def __init__(self, status, messages, phases, counts, seconds):
+        self.status = status  #: of the process; negative: the signal that ended it
+        self.messages = messages
+        self.phases = phases  #: name -> seconds, as the operator measured them
+        self.counts = counts  #: name -> how many: factorisations, ...
+        self.seconds = seconds  #: wall time of the process
+
+
+def order(command, study, keywords, where, result=None, units=None, written=()):
+    """The order as JSON. `result`: {"id", "label", "reuse"}; `units`: number -> path."""
+    made = {"format": 1, "command": command, "base": str(study.base.folder)}
+    if result:
+        made["result"] = result
+    made["units"] = {str(k): str(v) for k, v in (units or {}).items()}
+    if written:
+        made["append"] = sorted(str(unit) for unit in written)
+    made["source"] = where
+    made["keywords"] = to_json(keywords)
+    return made
+
+
+def run(program, made, study):
+    """Start the operator on the order and wait for it. @return its Outcome. @throws InternalError where it does not exist"""
+    import subprocess  # start-up: a study without operators
+
+    executable = operator_folder() / program
+    if not os.access(executable, os.X_OK):
+        raise InternalError([message("INTERNAL_2", made["source"], program=program, folder=operator_folder())])
+    order_file, status_file = study.order_files(made["command"])
+    status_file.unlink(missing_ok=True)
+    order_file.write_text(json.dumps(made, ensure_ascii=False, indent=1), encoding="utf-8")
+    environment = dict(os.environ)
+    environment.setdefault("OPENBLAS_NUM_THREADS", "1")  # fronts are small: more threads of BLAS only slow each other down
+    kernel = openblas_kernel()
+    if kernel:
+        environment.setdefault("OPENBLAS_CORETYPE", kernel)
+    if study.threads:
+        environment["LACON_THREADS"] = environment["OMP_NUM_THREADS"] = str(study.threads)
+    sys.stdout.flush()
+    sys.stderr.flush()
+    start = time.perf_counter()
+    quiet = subprocess.PIPE if study.ignored_alarms else None
+    ours, theirs = socket.socketpair()  # for formulae
+    environment["LACON_FORMULAS"] = str(theirs.fileno())
+    with ours:
+        with theirs:  # an operator that outlives the launcher still holds the base
+            process = subprocess.Popen([executable, order_file, "--status", status_file], env=environment, stderr=quiet,
+                                       stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL if study.check else None, pass_fds=(study.base.lock, theirs.fileno()))
+        try:
+            late.load()  # while the operator works: checks, functions and FIN need it later
+            forward = threading.Thread(target=_forward, args=(process.stderr, study.ignored_alarms), daemon=True) if quiet else None
+            if forward:
+                forward.start()
+            with ours.makefile("rwb") as stream:
+                _serve_formulas(stream, study.base)
+            process.wait()
+            if forward:
+                forward.join()
+        except BaseException:
+            process.kill()
+            process.wait()
+            raise
+    seconds = time.perf_counter() - start
+    return Outcome(process.returncode, *_read_status(status_file, f"{made['command']}, {made['source']}"), seconds)
+
+
+@functools.cache
+def openblas_kernel(processors="/proc/cpuinfo"):
+    """The kernel for a processor that OpenBLAS (0.3.21) takes for an older one: AMD's from family 26 on have AVX-512 and get AVX2."""
+    try:
+        with open(processors, encoding="ascii", errors="replace") as file:
+            first = file.read(8192).partition("\n\n")[0]
+    except OSError:
+        return None
+    facts = {key.strip(): value.strip() for key, _, value in (line.partition(":") for line in first.splitlines())}
+    new = facts.get("vendor_id") == "AuthenticAMD" and facts.get("cpu family", "").isdigit() and int(facts["cpu family"]) >= 26
+    complete = {"avx512f", "avx512cd", "avx512bw", "avx512dq", "avx512vl"} <= set(facts.get("flags", "").split())
+    return "SkylakeX" if new and complete else None
+
+
+def _serve_formulas(stream, base):
+    """Evaluate formulae for the operator as long as it runs."""
+    try:
+        expressions.serve(stream, base)
+    except ConnectionError:
+        pass  # the operator has died: its exit status says so
+
+
+def _read_status(path, where):
+    """(messages, phases, counts) of what an operator wrote about itself; nothing where it did not come to that."""
+    try:
+        data = json.loads(path.read_text(encoding="utf-8"))
+        messages = [Message(m["severity"], m["id"], m["text"], m.get("do", ""), where) for m in data.get("messages", [])]
+        return messages, dict(data.get("seconds", {})), dict(data.get("counts", {}))
+    except (OSError, ValueError, KeyError, TypeError):
+        return [], {}, {}
+
+
+def _forward(stream, ignored):
+    """Hand on what an operator says, without the alarms that the user does not want to see."""
+    hidden = False
+    for raw in stream:
+        line = raw.decode(errors="replace")
+        if line.startswith("<"):
+            hidden = line.startswith("<A>") and any(f"<{identifier}>" in line for identifier in ignored)
+        elif not line.startswith("    "):
+            hidden = False
+        if not hidden:
+            sys.stderr.write(line)
+    sys.stderr.flush()
+
+
+def raise_failure(outcome, program, where):
+    """The Python exception of an operator that did not end with 0."""
+    fatal = [m for m in outcome.messages if m.severity in "FS"]
+    if outcome.status == 2:
+        raise AsterError(fatal or [message("COMMAND_6", where, program=program)], shown=bool(fatal))
+    if outcome.status == 3:
+        items = fatal or [message("COMMAND_7", where, program=program)]
+        linear = any(m.id.startswith(_linear_solver) for m in items)
+        raise (SolutionError if linear else ConvergenceError)(items, shown=bool(fatal))
+    if outcome.status < 0:
+        try:
+            name = signal.Signals(-outcome.status).name
+        except ValueError:
+            name = f"signal {-outcome.status}"
+        raise InternalError([message("INTERNAL_3", where, program=program, how=f"it was ended by {name}")])
+    if fatal and outcome.status == 4:
+        raise InternalError(fatal, shown=True)
+    raise InternalError([message("INTERNAL_3", where, program=program, how=f"its exit status is {outcome.status}")])
+
+
+def keep_copy(base, identifier):
+    """A second link to a concept that `reuse=` is about to change; give it to put_back or throw_away."""
+    path = base.path(identifier)
+    copy = path.with_name(path.name + ".before.partial")
+    if copy.exists():
+        copy.unlink()
+    try:
+        os.link(path, copy)
+    except OSError:
+        shutil.copy2(path, copy)
+    return copy
+
+
+def has_left(base, identifier, copy):
+    """An operator that failed has stored the concept, or changed the one that `copy` is of."""
+    path = base.path(identifier)
+    return path.exists() and not (copy and os.stat(path).st_mtime_ns == os.stat(copy).st_mtime_ns)
+
+
+def put_back(base, identifier, copy):
+    os.replace(copy, base.path(identifier))

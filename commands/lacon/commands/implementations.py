@@ -1,0 +1,28 @@
+"""Which module does which command; in it the function of the command's name, in small letters, takes a Call."""
+
+import importlib
+
+_families = {
+    "begin_end": ("DEBUT", "POURSUITE", "FIN", "DETRUIRE"),
+    "files": ("INCLUDE", "DEFI_FICHIER", "INFO_EXEC_ASTER"),
+    "functions": ("DEFI_FONCTION", "DEFI_CONSTANTE", "DEFI_NAPPE", "CALC_FONC_INTERP"),
+    "lists": ("DEFI_LIST_REEL", "DEFI_LIST_INST"),
+    "formulas": ("FORMULE",),
+    "materials": ("DEFI_MATERIAU",),
+    "test_resu": ("TEST_RESU",),
+    "table_commands": ("CREA_TABLE", "IMPR_TABLE", "TEST_TABLE", "RECU_TABLE"),
+    "calc_table": ("CALC_TABLE",),
+    "function_commands": ("IMPR_FONCTION", "TEST_FONCTION", "RECU_FONCTION", "CALC_FONCTION"),
+    "post_releve_t": ("POST_RELEVE_T",),
+}
+_home = {command: family for family, commands in _families.items() for command in commands}
+
+
+def commands():
+    """Every command that Python does itself."""
+    return tuple(_home)
+
+
+def implementation(command):
+    """The function(call) of a command. Its module is imported when it is first called: a study uses few of them."""
+    return getattr(importlib.import_module(f".{_home[command]}", __package__), command.lower())

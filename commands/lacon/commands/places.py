@@ -1,0 +1,204 @@
+"""Where and when a command looks at a result: INST, NUME_ORDRE, TOUT_ORDRE, LIST_INST; nodes and cells; values of fields there."""
+
+from ..base import contents
+from ..core.concepts import listed
+from ..core.late import numpy
+from ..core.nearest import nearest
+from ..tables.table import Table
+
+# ---------------------------------------------------------------------------------------------------- instants
+
+
+def order_of(call, test, path):
+    """(order number, instant) that INST or NUME_ORDRE names."""
+    instants = test["RESULTAT"].instants()
+    known = listed(instants)
+    if "NUME_ORDRE" in test:
+        found = [(order, t) for order, t in instants if order == test["NUME_ORDRE"]]
+        if not found:
+            call.fail("TEST_RESU_1", f"{path}/NUME_ORDRE", what=f"order number {test['NUME_ORDRE']}", label=test["RESULTAT"].label, known=known)
+        return found[0]
+    wanted = test["INST"]
+    tolerance = test["TOLE_MACHINE"][1] if len(test["TOLE_MACHINE"]) > 1 else 1e-6
+    kind = test["CRITERE"][1] if len(test["CRITERE"]) > 1 else "RELATIF"
+    scale = abs(wanted) if kind == "RELATIF" and wanted else 1.0
+    found = [(order, t) for order, t in instants if abs(t - wanted) <= tolerance * scale]
+    if not found:
+        call.fail("TEST_RESU_1", f"{path}/INST", what=f"instant {wanted:g}", label=test["RESULTAT"].label, known=known)
+    if len(found) > 1:
+        call.fail("TEST_RESU_2", f"{path}/INST", instant=f"{wanted:g}", found=", ".join(f"{t:.10g}" for _, t in found))
+    return found[0]
+
+
+def orders(call, k, path):
+    """[(order number, instant)] that the keywords name, increasing; all of them without any."""
+    result = k["RESULTAT"]
+    instants = result.instants()
+    if "NUME_ORDRE" in k:
+        wanted = [{"NUME_ORDRE": number} for number in _listed(k["NUME_ORDRE"])]
+    elif "INST" in k or "LIST_INST" in k:
+        wanted = [{"INST": t} for t in (k["LIST_INST"].getValues() if "LIST_INST" in k else _listed(k["INST"]))]
+    else:
+        return instants
+    tolerance = {"RESULTAT": result, "TOLE_MACHINE": [0.0, k["PRECISION"]], "CRITERE": ["RELATIF", k["CRITERE"]]}
+    return sorted({order_of(call, {**one, **tolerance}, path) for one in wanted})
+
+
+def _listed(value):
+    return value if isinstance(value, list) else [value]
+
+
+def parameters(call, result, names, path):
+    """NUME_ORDRE and the parameters `names` of every order number. ITER_GLOB is code_aster's name of newton_iterations."""
+    with result.open() as file:
+        there = contents.instants(file)
+        available = {"NUME_ORDRE": ("I", [order for order, _ in there]), "INST": ("R", [t for _, t in there])}
+        available.update((name, ("R", values.tolist())) for name, values in contents.parameters(file).items())
+    if "newton_iterations" in available:
+        available["ITER_GLOB"] = ("I", [int(n) for n in available["newton_iterations"][1]])
+    for name in names:
+        if name not in available:
+            call.fail("TABLE_13", path, label=result.label, name=name, nearest=nearest(name, available), known=", ".join(available))
+    return Table.of_columns({name: available[name] for name in ["NUME_ORDRE", *(n for n in names if n != "NUME_ORDRE")]})
+
+
+# ---------------------------------------------------------------------------------------------------- nodes and cells
+
+
+def members_of(call, test, path, mesh, keyword, kind):
+    """0-based numbers of nodes or cells that a keyword names."""
+    name = test[keyword]
+    if keyword in ("NOEUD", "MAILLE"):
+        count = mesh.getNumberOfNodes() if kind == "nodes" else mesh.getNumberOfCells()
+        letter = "N" if kind == "nodes" else "M"
+        if name[:1] == letter and name[1:].isdigit() and 1 <= int(name[1:]) <= count:
+            return [int(name[1:]) - 1]
+        call.fail("TEST_RESU_8", f"{path}/{keyword}", name=name, what="node" if kind == "nodes" else "cell", letter=letter, count=count)
+    members = mesh.group(kind, name)
+    if members is None:
+        known = mesh.group_names(kind)
+        call.fail("TEST_RESU_9", f"{path}/{keyword}", name=name, what=kind, known=", ".join(known) or "none", nearest=nearest(name, known))
+    return members
+
+
+def nodes(call, k, mesh, path):
+    """0-based numbers of the nodes that NOEUD, GROUP_NO, MAILLE and GROUP_MA name, in their order, each once."""
+    found = {}
+    for keyword, kind in (("NOEUD", "nodes"), ("GROUP_NO", "nodes"), ("MAILLE", "cells"), ("GROUP_MA", "cells")):
+        for name in _listed(k.get(keyword, [])):
+            members = members_of(call, {keyword: name}, path, mesh, keyword, kind)
+            found.update(dict.fromkeys(int(n) for n in (members if kind == "nodes" else sorted(set(mesh.nodes_of(members))))))
+    return list(found)
+
+
+def cells(call, k, mesh, path):
+    """0-based numbers of the cells that MAILLE and GROUP_MA name."""
+    return [int(c) for keyword in ("MAILLE", "GROUP_MA") for name in _listed(k.get(keyword, []))
+            for c in members_of(call, {keyword: name}, path, mesh, keyword, "cells")]
+
+
+# ---------------------------------------------------------------------------------------------------- fields
+
+
+def field_at(call, result, name, order, instant, path):
+    """The field of a result at an order number. @throws AsterError TEST_RESU_3"""
+    field = result.field(name, order)
+    if field is None:
+        call.fail("TEST_RESU_3", f"{path}/NOM_CHAM", field=name, label=result.label, instant=f"{instant:g}",
+                  known=", ".join(result.field_names()))
+    return field
+
+
+def fields(call, k, path, column):
+    """(cells that say which one it is, field) of CHAM_GD, or of NOM_CHAM of RESULTAT at each instant that is named.
+
+    @param column name of the cell that holds the result's name. @throws AsterError POST_6 for a field of functions
+    """
+    if "CHAM_GD" in k:
+        field = k["CHAM_GD"].content()
+        if field.functions:
+            call.fail("POST_6", f"{path}/CHAM_GD", label=k["CHAM_GD"].label)
+        yield {"CHAM_GD": ("K8", k["CHAM_GD"].label)}, field
+        return
+    for order, instant in orders(call, k, path):
+        yield ({column: ("K8", k["RESULTAT"].label), "NOM_CHAM": ("K16", k["NOM_CHAM"]), "NUME_ORDRE": ("I", order), "INST": ("R", instant)},
+               field_at(call, k["RESULTAT"], k["NOM_CHAM"], order, instant, path))
+
+
+def at_nodes(call, field, path):
+    """(values, mask) of a field over all nodes of its mesh, (nodes, components); of a field at cells' nodes the mean over the cells.
+
+    @throws AsterError POST_1 where the field does not live on nodes
+    """
+    if field.location == "NOEU":
+        return field.on_nodes(field.mesh().getNumberOfNodes())
+    if field.location != "ELNO":
+        call.fail("POST_1", f"{path}/NOM_CHAM", field=field.name, location=field.location)
+    mesh = field.mesh()
+    owner = mesh.nodes_of(field.support)
+    sums = numpy.zeros((mesh.getNumberOfNodes(), len(field.components)))
+    counts = numpy.zeros(sums.shape, int)
+    numpy.add.at(sums, owner, numpy.where(field.present, field.values, 0.0))
+    numpy.add.at(counts, owner, field.present)
+    return sums / numpy.maximum(counts, 1), counts > 0
+
+
+def component(call, field, name, path):
+    """Index of a component. @throws AsterError TEST_RESU_4"""
+    if name not in field.components:
+        call.fail("TEST_RESU_4", path, component=name, field=field.name, known=", ".join(field.components))
+    return field.components.index(name)
+
+
+def curved_abscissa(points):
+    """Length along the points, one after the other, from the first; points (n, 3)."""
+    return numpy.concatenate([[0.0], numpy.cumsum(numpy.linalg.norm(numpy.diff(points, axis=0), axis=1))]) if len(points) else points[:, 0]
+
+
+# ---------------------------------------------------------------------------------------------------- one value
+
+
+def select(call, test, path, field):
+    """(values of the component where the keywords say and it exists, words for the place)."""
+    mesh = field.mesh()
+    rows = numpy.ones(len(field.values), bool)
+    words = []
+    owner, rank = field.rows()
+    for keyword, kind in (("NOEUD", "nodes"), ("GROUP_NO", "nodes"), ("MAILLE", "cells"), ("GROUP_MA", "cells")):
+        if keyword not in test:
+            continue
+        members = members_of(call, test, path, mesh, keyword, kind)
+        words.append(test[keyword])
+        if (field.location == "NOEU") == (kind == "nodes"):
+            rows &= numpy.isin(owner, members)
+        elif field.location == "NOEU":
+            rows &= numpy.isin(owner, mesh.nodes_of(members))
+        elif field.location == "ELNO":
+            rows &= numpy.isin(mesh.nodes_of(field.support), members)
+        else:
+            call.fail("TEST_RESU_5", f"{path}/{keyword}", keyword=keyword, field=field.name)
+    if "POINT" in test:
+        if field.offset is None:
+            call.fail("TEST_RESU_5", f"{path}/POINT", keyword="POINT", field=field.name)
+        rows &= rank == test["POINT"] - 1
+        words.append(f"point {test['POINT']}")
+    column = field.components.index(test["NOM_CMP"])
+    rows &= field.present[:, column]
+    values = field.values[rows, column]
+    place = " ".join(words)
+    if len(values) == 0:
+        call.fail("TEST_RESU_6", path, component=test["NOM_CMP"], field=field.name, place=place or "the whole mesh")
+    if "TYPE_TEST" in test:
+        place = f"{test['TYPE_TEST']} {place}".strip()
+    elif len(values) > 1:
+        call.fail("TEST_RESU_7", path, count=len(values), field=field.name, place=place)
+    return values, place
+
+
+def reduce(values, kind):
+    if kind is None:
+        return float(values[0])
+    if kind in ("MAX", "MIN"):
+        return float(numpy.max(values) if kind == "MAX" else numpy.min(values))
+    magnitude = numpy.abs(values)
+    return float({"SOMM": values.sum, "SOMM_ABS": magnitude.sum, "MAX_ABS": magnitude.max, "MIN_ABS": magnitude.min}[kind]())

@@ -1,0 +1,138 @@
+"""POST_RELEVE_T: values of fields at nodes, their means, extremes and resultants, as a table."""
+
+from ..core.late import numpy
+from ..tables import storage
+from ..tables.table import Table
+from . import axes, places
+
+
+def post_releve_t(call):
+    table = Table()
+    for i, action in enumerate(call.keywords["ACTION"], 1):
+        path = f"ACTION[{i}]"
+        operation = action["OPERATION"]
+        if "RESULTANTE" in action and operation != "EXTRACTION":
+            call.fail("POST_2", f"{path}/RESULTANTE", operation=operation)
+        if "DIRECTION" in action and not any(action["DIRECTION"]):
+            call.fail("POST_8", f"{path}/DIRECTION")
+        for head, field in _fields(call, action, path):
+            frame = _Frame(call, action, path, field)
+            made = frame.resultant() if "RESULTANTE" in action else getattr(frame, operation.lower())()
+            for row in made:
+                table.add_row({**head, **row})
+    if "TITRE" in call.keywords:
+        table.titr = "\n".join(call.keywords["TITRE"])
+    return storage.make(call, table)
+
+
+def _fields(call, action, path):
+    """(leading cells of its rows, field) of each instant."""
+    for head, field in places.fields(call, action, path, "RESU"):
+        yield {"INTITULE": ("K16", action["INTITULE"]), **head}, field
+
+
+class _Frame:
+    """A field at the nodes of one ACTION."""
+
+    def __init__(self, call, action, path, field):
+        mesh = field.mesh()
+        self.call, self.action, self.path, self.field = call, action, path, field
+        values, there = places.at_nodes(call, field, path)
+        keyword = next((k for k in ("NOM_CMP", "RESULTANTE") if k in action), "")
+        wanted = action[keyword] if keyword else field.components
+        columns = [places.component(call, field, name, f"{path}/{keyword}") for name in wanted]
+        nodes = [n for n in places.nodes(call, action, mesh, path) if there[n, columns].any()]
+        if not nodes:
+            call.fail("POST_3", path, field=field.name, components=", ".join(wanted))
+        self.names, self.nodes = wanted, nodes
+        self.points = mesh.getCoordinates().toNumpy()[nodes]
+        own, own_there = values[nodes], there[nodes]
+        if action["REPERE"] != "GLOBAL":
+            own, own_there = axes.turned(field.components, own, own_there,
+                                         axes.at(call, action, path, self.points, mesh.getDimension() == 2))
+        self.values, self.there = own[:, columns], own_there[:, columns]
+        self.all_values, self.all_there = values, there
+        self._derive()
+
+    def _derive(self):
+        """Put what INVARIANT, ELEM_PRINCIPAUX or TRAC_DIR asks for in the place of the components."""
+        action, values = self.action, numpy.where(self.there, self.values, 0.0)
+        keyword = next((k for k in ("INVARIANT", "ELEM_PRINCIPAUX", "TRAC_DIR") if k in action), None)
+        if keyword is None:
+            return
+        if keyword == "TRAC_DIR":
+            made = axes.traces(self.names, values, action["DIRECTION"])
+        else:
+            of = axes.invariants if keyword == "INVARIANT" else axes.principals
+            made = next((of(given) for _, given in axes.tensors(self.names, values)), {})
+        if not made:
+            self.call.fail("POST_7", f"{self.path}/{keyword}", field=self.field.name, components=", ".join(self.names))
+        self.names, self.values = list(made), numpy.column_stack(list(made.values()))
+        self.there = numpy.repeat(self.there.all(axis=1)[:, None], len(made), axis=1)
+
+    def extraction(self):
+        """A row a node."""
+        along = places.curved_abscissa(self.points)
+        for i, node in enumerate(self.nodes):
+            row = {"NOEUD": ("K8", f"N{node + 1}"), "ABSC_CURV": ("R", float(along[i]))}
+            row.update((f"COOR_{axis}", ("R", float(x))) for axis, x in zip("XYZ", self.points[i]))
+            row.update((name, ("R", float(self.values[i, k]) if self.there[i, k] else None)) for k, name in enumerate(self.names))
+            yield row
+
+    def _of_component(self, k):
+        return self.values[self.there[:, k], k]
+
+    def extrema(self):
+        """Four rows a component."""
+        for k, name in enumerate(self.names):
+            rows = numpy.flatnonzero(self.there[:, k])
+            if not len(rows):
+                continue
+            values = self.values[rows, k]
+            for what, at, value in (("MAX", values.argmax(), values.max()), ("MIN", values.argmin(), values.min()),
+                                    ("MAXI_ABS", abs(values).argmax(), abs(values).max()), ("MINI_ABS", abs(values).argmin(), abs(values).min())):
+                yield {"EXTREMA": ("K8", what), "NOEUD": ("K8", f"N{self.nodes[rows[at]] + 1}"), "CMP": ("K8", name), "VALE": ("R", float(value))}
+
+    def moyenne_arith(self):
+        """A row a component: the mean over the nodes."""
+        for k, name in enumerate(self.names):
+            if self.there[:, k].any():
+                yield {"CMP": ("K8", name), "MOYENNE": ("R", float(self._of_component(k).mean()))}
+
+    def moyenne(self):
+        """Six rows: mean along the line of nodes, first moment, extremes, and the ends of the straight line with the same two moments.
+
+        MOMENT_0 = 1/l int f ds, MOMENT_1 = 12/l^2 int f (s - l/2) ds, f linear between nodes; ends MOMENT_0 -+ MOMENT_1/2.
+        """
+        s = places.curved_abscissa(self.points)
+        if not self.there.all():
+            self.call.fail("POST_4", self.path, node=f"N{self.nodes[int(numpy.flatnonzero(~self.there.all(axis=1))[0])] + 1}", field=self.field.name)
+        if s[-1] == 0.0:
+            self.call.fail("POST_5", self.path)
+        step = numpy.diff(s)[:, None]
+        f, arm = self.values, (s - s[-1] / 2)[:, None]
+        mean = (step * (f[1:] + f[:-1]) / 2).sum(axis=0) / s[-1]
+        # Simpson's rule, exact for the product of two linear functions
+        middle = (f[1:] + f[:-1]) * (arm[1:] + arm[:-1])
+        first = 12 / s[-1] ** 2 * (step * (f[1:] * arm[1:] + f[:-1] * arm[:-1] + middle) / 6).sum(axis=0)
+        for what, row in (("MOMENT_0", mean), ("MOMENT_1", first), ("MINIMUM", f.min(axis=0)), ("MAXIMUM", f.max(axis=0)),
+                          ("MOYE_INT", mean - first / 2), ("MOYE_EXT", mean + first / 2)):
+            yield {"QUANTITE": ("K16", what), **{name: ("R", float(v)) for name, v in zip(self.names, row)}}
+
+    def resultant(self):
+        """One row: sums of the components RESULTANTE and, with MOMENT, moments about POINT; MOMENT's own components are added."""
+        action = self.action
+        sums = numpy.where(self.there, self.values, 0.0).sum(axis=0)
+        row = {f"RESULT_{axis}": ("R", float(v)) for axis, v in zip("XYZ", sums)}
+        if "MOMENT" in action:
+            forces = numpy.zeros((len(self.nodes), 3))
+            forces[:, :len(self.names)] = numpy.where(self.there, self.values, 0.0)
+            point = numpy.zeros(3)
+            point[:len(action["POINT"])] = action["POINT"]
+            moment = numpy.cross(self.points - point, forces).sum(axis=0)
+            for k, name in enumerate(action["MOMENT"]):
+                if name in self.field.components:
+                    column = self.field.components.index(name)
+                    moment[k] += self.all_values[self.nodes, column][self.all_there[self.nodes, column]].sum()
+            row.update((f"MOMENT_{axis}", ("R", float(v))) for axis, v in zip("XYZ", moment))
+        return [row]

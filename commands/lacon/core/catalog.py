@@ -1,0 +1,114 @@
+"""The catalogue at run time: one installed JSON, or the TOML rows of the source tree where there is none.
+
+Both give the same dictionaries; catalog/generate.py makes the one from the other.
+"""
+
+import functools
+import json
+import os
+import pathlib
+import re
+import sys
+
+_home = pathlib.Path(__file__).resolve().parent
+
+
+def _candidates():
+    """Where a catalogue may be: what the user says, then beside the launcher (installed, build tree), then the source tree."""
+    said = os.environ.get("LACON_CATALOG")
+    if said:
+        yield pathlib.Path(said)
+        return
+    launcher = pathlib.Path(os.path.realpath(sys.argv[0])).parent.parent
+    yield launcher / "share" / "lacon" / "catalog.json"
+    yield launcher / "generated" / "catalog.json"
+    yield _home.parents[2] / "catalog.json"
+    yield _home.parents[2] / "catalog"
+
+
+@functools.cache
+def location():
+    """Path of the JSON file or of the folder of TOML rows. @throws FileNotFoundError"""
+    tried = list(_candidates())
+    for path in tried:
+        if path.exists():
+            return path
+    raise FileNotFoundError("no catalogue at " + ", ".join(map(str, tried)))
+
+
+@functools.cache
+def _json():
+    with open(location(), encoding="utf-8") as file:
+        return json.load(file)
+
+
+@functools.cache
+def toml(path):
+    """The rows of a file."""
+    import tomllib  # start-up: installed and in the build tree the catalogue is one JSON
+
+    with open(path, "rb") as file:
+        return tomllib.load(file)
+
+
+def _is_json():
+    return location().is_file()
+
+
+@functools.cache
+def command_names():
+    """Every command of the catalogue, in alphabetical order."""
+    if _is_json():
+        return tuple(sorted(_json()["commands"]))
+    return tuple(sorted(path.stem.upper() for path in (location() / "commands").glob("*.toml")))
+
+
+def command(name):
+    """The rows of one command."""
+    if _is_json():
+        return _json()["commands"][name]
+    return toml(location() / "commands" / f"{name.lower()}.toml")
+
+
+@functools.cache
+def messages():
+    """identifier -> {severity, text, do}"""
+    if _is_json():
+        return _json()["messages"]
+    rows = {}
+    for path in sorted((location() / "messages").glob("*.toml")):
+        rows.update(toml(path))
+    return rows
+
+
+@functools.cache
+def _instead():
+    return _json()["instead"] if _is_json() else toml(location() / "instead.toml")
+
+
+def instead(kind, path, otherwise):
+    """What to use instead of a command, keyword or value (`kind`) of code_aster's that is not here.
+
+    @param path  "DEFI_CONTACT/ZONE[1]/COEF_CONT"; of a value with "=VALUE" behind it
+    """
+    path = re.sub(r"\[\d+\]", "", path)
+    rows = _instead()[kind]
+    found = rows.get(path) or rows.get(path.rpartition("/")[2])
+    if not found:
+        return otherwise
+    return found if found.startswith("leave it out") else f"use {found}"
+
+
+def elements():
+    """Rows of the finite elements that come with Lacon."""
+    if _is_json():
+        return list(_json()["elements"])
+    return [row for path in sorted((location() / "elements").glob("*.toml")) for row in toml(path)["element"]]
+
+
+@functools.cache
+def peer_commands():
+    """Names of code_aster's commands that Lacon does not have."""
+    with open(_home / "peer_commands.txt", encoding="utf-8") as file:
+        names = {word for line in file if not line.startswith("#") for word in line.split()}
+    return frozenset(names - set(command_names()))

@@ -1,0 +1,245 @@
+"""Keywords of one command against the catalogue: what is wrong with them, and the complete set.
+
+Every problem of a call is found, not only the first. Paths are those of messages: DEFI_CONTACT/ZONE[1]/GROUP_MA_ESCL; occurrences
+of a factor keyword that may be repeated are counted from 1.
+"""
+
+import math
+import re
+
+from . import catalog, plugins
+from .concepts import CO, Concept
+from .messages import message
+from .nearest import nearest
+
+_names = {"group_ma": "the name of a group of cells", "group_no": "the name of a group of nodes", "cell": "the name of a cell",
+          "node": "the name of a node", "scalar": "a number or a text", "text": "a text", "integer": "an integer", "real": "a number"}
+
+
+def complete(command, row, given, where=""):
+    """@return (keywords with every default, in the order of the catalogue; problems, a list of messages)"""
+    check = _Check(where)
+    keywords = check.occurrence(command, row, given)
+    return keywords, check.problems
+
+
+class _Check:
+    def __init__(self, where):
+        self.where = where
+        self.problems = []
+
+    def problem(self, identifier, path, **values):
+        self.problems.append(message(identifier, f"{path}, {self.where}" if self.where else path, path=path, **values))
+
+    # -------------------------------------------------------------------------------------- one set of keywords
+
+    def occurrence(self, path, row, given):
+        """The keywords of a command, or of one occurrence of a factor keyword."""
+        rows = row.get("keyword", {})
+        given = self.renamed(path, row, {k: v for k, v in given.items() if v is not None})
+        refused = any(name in row.get("elsewhere", ()) for name in given)
+        values, others = {}, {}
+        for name, value in given.items():
+            if name in rows:
+                values[name] = self.keyword(f"{path}/{name}", rows[name], value)
+            elif "others" in row and name not in row.get("elsewhere", ()):
+                others[name] = value
+            else:
+                self.unknown(path, name, row)
+        for name, keyword in rows.items():
+            if name not in given and "default" in keyword:
+                values[name] = self.default(f"{path}/{name}", keyword)
+        mandatory = {k for k, keyword in rows.items() if keyword.get("status") == "mandatory"}
+        for when in row.get("when", ()):
+            if self.holds(when, values, given):
+                for name, default in when.get("default", {}).items():
+                    values.setdefault(name, default)
+                mandatory |= set(when.get("mandatory", ()))
+                for name in when.get("forbidden", ()):
+                    if name in given:
+                        self.problem("KEYWORD_10", f"{path}/{name}", condition=condition(when))
+        for name in rows:
+            if name in mandatory and name not in given:
+                self.problem("KEYWORD_2", f"{path}/{name}", help=rows[name]["help"])
+        for rule in row.get("rule", ()):
+            self.rule(path, rule, given, refused)
+        return {**{name: values[name] for name in rows if name in values}, **others}
+
+    def renamed(self, path, row, given):
+        """Keywords that earlier versions of code_aster called otherwise (`formerly`), under their present names."""
+        made = {}
+        for name, value in given.items():
+            now = row.get("formerly", {}).get(name, name)
+            if now in made or (now != name and now in given):
+                self.problem("KEYWORD_6", path, names=", ".join(k for k in given if row.get("formerly", {}).get(k, k) == now))
+            else:
+                made[now] = value
+        return made
+
+    def unknown(self, path, name, row):
+        if name in row.get("elsewhere", ()):
+            otherwise = f"remove it: `lacon help {re.match('[A-Z_0-9]*', path)[0]}` says what is available"
+            self.problem("KEYWORD_11", f"{path}/{name}", instead=catalog.instead("keyword", f"{path}/{name}", otherwise))
+            return
+        self.problem("KEYWORD_1", f"{path}/{name}", nearest=nearest(name, row.get("keyword", {})))
+
+    def holds(self, when, values, given):
+        return (all(values.get(k) in allowed for k, allowed in when.get("if", {}).items())
+                and all(k in given for k in when.get("present", ()))
+                and not any(k in given for k in when.get("absent", ())))
+
+    def rule(self, path, rule, given, refused):
+        """@param refused a keyword of code_aster's was refused here: it may be the one that is missed"""
+        there = [k for k in rule["of"] if k in given]
+        names = ", ".join(rule["of"])
+        kind = rule["kind"]
+        if kind in ("exactly_one", "at_least_one") and not there and not refused:
+            self.problem("KEYWORD_7" if kind == "exactly_one" else "KEYWORD_8", path, names=names)
+        elif kind in ("exactly_one", "exclusive") and len(there) > 1:
+            self.problem("KEYWORD_6", path, names=", ".join(there))
+        elif kind == "together" and there and len(there) < len(rule["of"]):
+            self.problem("KEYWORD_9", path, there=", ".join(there), missing=", ".join(k for k in rule["of"] if k not in given))
+
+    def default(self, path, row):
+        value = row["default"]
+        if row["type"] == "factor":
+            made = self.occurrence(path, row, value)
+            return [made]
+        for item in value if isinstance(value, list) else (value,):
+            if item in row.get("elsewhere", ()):
+                self.other_value(path, item, row["into"])
+        return list(value) if isinstance(value, list) else value
+
+    # ------------------------------------------------------------------------------------------------ one keyword
+
+    def keyword(self, path, row, value):
+        if row["type"] == "factor":
+            return self.factor(path, row, value)
+        many = row.get("max", 1) != 1
+        items = _items(value)
+        if items is None:
+            items = [value]
+        if not self.cardinality(path, row, len(items)):
+            return value
+        checked = [self.value(path, row, item) for item in items]
+        if row.get("unique"):
+            seen = []
+            for item in checked:
+                if item in seen:
+                    self.problem("KEYWORD_12", path, value=_show(item))
+                seen.append(item)
+        return checked if many else checked[0]
+
+    def factor(self, path, row, value):
+        items = [value] if isinstance(value, dict) else list(value) if isinstance(value, (list, tuple)) else None
+        if items is None or not all(isinstance(item, dict) for item in items):
+            self.problem("KEYWORD_3", path, expected="_F(...), or a list of them", found=_show(value))
+            return []
+        if not self.cardinality(path, row, len(items)):
+            return []
+        repeated = row.get("max", 1) != 1
+        return [self.occurrence(f"{path}[{i}]" if repeated else path, row, item) for i, item in enumerate(items, 1)]
+
+    def cardinality(self, path, row, count):
+        low, high = row.get("min", 1), row.get("max", 1)
+        if count < low or (high != "many" and count > high):
+            allowed = f"{low}" if high == low else f"{low} or more" if high == "many" else f"{low} to {high}"
+            self.problem("KEYWORD_5", path, count=count, allowed=allowed)
+            return False
+        return True
+
+    def value(self, path, row, item):
+        """One value of a simple keyword, converted."""
+        if row.get("makes"):
+            if not isinstance(item, CO):
+                self.problem("KEYWORD_16" if isinstance(item, Concept) else "KEYWORD_3", path, expected="CO('name')", found=_show(item))
+            return item
+        converted = _convert(row["type"], item)
+        if converted is None:
+            self.problem("KEYWORD_3", path, expected=_expected(row["type"]), found=_show(item))
+            return item
+        if isinstance(converted, Concept):
+            if converted.destroyed:
+                self.problem("KEYWORD_14", path, label=converted.label or converted.id, place=converted.destroyed)
+            return converted
+        allowed = row.get("into")
+        if "into_from" in row:
+            allowed = plugins.lists[row["into_from"]]()
+        if allowed is not None and converted not in allowed:
+            if converted in row.get("elsewhere", ()):
+                self.other_value(path, converted, allowed)
+            else:
+                self.problem("KEYWORD_4", path, value=_show(converted), allowed=_list(allowed), nearest=nearest(converted, allowed))
+        self.bounds(path, row, converted)
+        return converted
+
+    def other_value(self, path, value, allowed):
+        """A value that code_aster has and Lacon has not."""
+        instead = catalog.instead("value", f"{path}={value}", f"give one of: {_list(allowed)}")
+        self.problem("KEYWORD_13", path, value=_show(value), instead=instead)
+
+    def bounds(self, path, row, value):
+        tests = {"above": (lambda x, b: x > b, "greater than"), "at_least": (lambda x, b: x >= b, "at least"),
+                 "below": (lambda x, b: x < b, "less than"), "at_most": (lambda x, b: x <= b, "at most")}
+        for key, (holds, words) in tests.items():
+            if key in row and not holds(value, row[key]):
+                self.problem("KEYWORD_15", path, value=_show(value), bound=f"{words} {row[key]:g}")
+
+
+# ------------------------------------------------------------------------------------------------------- values
+
+
+def _items(value):
+    """The values of a list-like thing; None for a single value."""
+    if isinstance(value, Concept):
+        return None
+    if isinstance(value, (list, tuple, range)):
+        return list(value)
+    if hasattr(value, "dtype") and getattr(value, "ndim", 0) > 0:
+        return value.ravel().tolist()
+    return None
+
+
+def _convert(kind, value):
+    """A value as `kind` wants it; None where it is of another type."""
+    if isinstance(value, Concept):
+        return value if kind == "concept" or value.type in kind.split("|") else None
+    if hasattr(value, "dtype") and getattr(value, "ndim", 1) == 0:
+        value = value.item()
+    if kind == "real":
+        return float(value) if isinstance(value, (int, float)) and not isinstance(value, bool) and math.isfinite(value) else None
+    if kind == "integer":
+        return value if isinstance(value, int) and not isinstance(value, bool) else None
+    if kind == "scalar":
+        return value if isinstance(value, str) or _convert("real", value) is not None else None
+    if kind in _names:
+        return value if isinstance(value, str) and (kind == "text" or value.strip()) else None
+    return None
+
+
+def _expected(kind):
+    if kind in _names:
+        return _names[kind]
+    if kind == "concept":
+        return "a concept"
+    return " or ".join(("an " if k[0] in "aeiou" else "a ") + k.replace("_", " ") for k in kind.split("|"))
+
+
+def _show(value):
+    if isinstance(value, Concept):
+        return f"{value.label or 'a concept'} (a {value.type.replace('_', ' ')})"
+    if isinstance(value, CO):
+        return f"{value.name!r}, a name whose concept has not been made"
+    text = repr(value)
+    return text if len(text) <= 60 else text[:57] + "..."
+
+
+def _list(values):
+    return ", ".join(map(str, values))
+
+
+def condition(when):
+    parts = [f"{k}={' or '.join(map(repr, v))}" for k, v in when.get("if", {}).items()]
+    parts += list(when.get("present", ()))
+    parts += [f"no {k}" for k in when.get("absent", ())]
+    return " and ".join(parts)

@@ -1,0 +1,4 @@
+"""The run of this process: commands, messages and the assertions of a command file ask for it."""
+
+#: a run.study.Study; nothing where no command file runs
+study = None

@@ -1,0 +1,157 @@
+"""Where a command was called from, and the variable its concept goes to.
+
+A command looks outward from the frame that called it to the assignment it is part of. Python 3.11 says which expression a frame
+is executing; the syntax tree of the file, read once, says what that expression is assigned to. Command files themselves run as
+they are, so that tracebacks name the user's own lines.
+"""
+
+import ast
+import itertools
+import os
+import sys
+
+#: the launcher's own folder, spelled as in the file names of its frames
+package = os.path.dirname(os.path.dirname(sys._getframe().f_code.co_filename)) + os.sep
+_tables = {}
+
+#: file name -> source of the command files of this run
+sources = {}
+
+
+def user_frame():
+    """The innermost frame of a command file or of what it imports."""
+    frame = sys._getframe(1)
+    while frame is not None and frame.f_code.co_filename.startswith((package, "<formula>")):
+        frame = frame.f_back
+    return frame
+
+
+def location(frame):
+    """"study.comm:12"; empty without frame."""
+    return f"{frame.f_code.co_filename}:{frame.f_lineno}" if frame else ""
+
+
+def label(frame):
+    """The variable that the call which `frame` is executing is assigned to, "M" or "M[0]"; empty where there is none.
+
+    A call that is returned by a function takes the variable of that function's own call; an argument of another call has none.
+    """
+    while frame is not None:
+        code = frame.f_code
+        if not code.co_filename.startswith(package):
+            table = _table(code.co_filename)
+            position = _position(frame)
+            if position in table:
+                target = table[position]
+                return _text(target, frame) if target is not None else ""
+            if code.co_name == "<module>":
+                return ""
+        frame = frame.f_back
+    return ""
+
+
+def _position(frame):
+    return next(itertools.islice(frame.f_code.co_positions(), frame.f_lasti // 2, None), None)
+
+
+def _table(filename):
+    """Position (line, end line, column, end column) of a call -> its target, a syntax node or None for an argument."""
+    if filename not in _tables:
+        table = {}
+        try:
+            tree = ast.parse(_source(filename))
+        except (OSError, SyntaxError, ValueError):
+            tree = ast.Module([], [])
+        for node in ast.walk(tree):
+            if isinstance(node, ast.Assign):
+                _pair(node.targets[0], node.value, table)
+            elif isinstance(node, (ast.AnnAssign, ast.NamedExpr)) and node.value is not None:
+                _pair(node.target, node.value, table)
+        _tables[filename] = table
+    return _tables[filename]
+
+
+def _source(filename):
+    """The text of a file; of a module that a command file imports, in its own encoding."""
+    if filename in sources:
+        return sources[filename]
+    with open(filename, "rb") as file:
+        return file.read()
+
+
+def _pair(target, value, table):
+    """Enter the calls of `value`, which is assigned to `target`."""
+    if isinstance(value, ast.Call):
+        table[value.lineno, value.end_lineno, value.col_offset, value.end_col_offset] = target
+        for argument in itertools.chain(value.args, (k.value for k in value.keywords)):
+            for node in ast.walk(argument):
+                if isinstance(node, ast.Call):
+                    table[node.lineno, node.end_lineno, node.col_offset, node.end_col_offset] = None
+    elif isinstance(value, (ast.Tuple, ast.List)):
+        if isinstance(target, (ast.Tuple, ast.List)):
+            if len(target.elts) == len(value.elts) and not any(isinstance(t, ast.Starred) for t in target.elts):
+                for t, v in zip(target.elts, value.elts):
+                    _pair(t, v, table)
+        else:
+            for i, v in enumerate(value.elts):
+                _pair(ast.Subscript(target, ast.Constant(i), ast.Load()), v, table)
+    elif isinstance(value, ast.Dict):
+        for k, v in zip(value.keys, value.values):
+            if k is not None:
+                _pair(ast.Subscript(target, k, ast.Load()), v, table)
+    elif isinstance(value, ast.IfExp):
+        _pair(target, value.body, table)
+        _pair(target, value.orelse, table)
+    elif isinstance(value, ast.ListComp) and isinstance(value.elt, ast.Call):
+        _pair(ast.Subscript(target, _counted, ast.Load()), value.elt, table)
+    elif isinstance(value, ast.DictComp):
+        _pair(ast.Subscript(target, value.key, ast.Load()), value.value, table)
+    elif isinstance(value, (ast.ListComp, ast.GeneratorExp, ast.Await, ast.BoolOp)):
+        for node in ast.walk(value):
+            if isinstance(node, ast.Call):
+                _pair(target, node, table)
+
+
+#: the index of an element that a list comprehension is making
+_counted = ast.Constant(...)
+_progress = (None, 0)  # iterator of the comprehension that ran last, elements made so far
+
+
+def _count(frame):
+    """How many elements the comprehension of this frame has made, as text; unknown where Python runs it inside its function."""
+    global _progress
+    iterator = frame.f_locals.get(".0")
+    if iterator is None:
+        return "..."
+    _progress = (iterator, _progress[1] + 1 if _progress[0] is iterator else 0)
+    return str(_progress[1])
+
+
+_plain = (ast.Name, ast.Constant, ast.BinOp, ast.UnaryOp, ast.Tuple, ast.Subscript, ast.Attribute, ast.operator, ast.unaryop,
+          ast.expr_context, ast.Slice)
+
+
+def _text(target, frame):
+    """"M[0]": a target with the values of its indices."""
+    if isinstance(target, ast.Name):
+        return target.id
+    if isinstance(target, ast.Attribute):
+        return f"{_text(target.value, frame)}.{target.attr}"
+    if isinstance(target, ast.Starred):
+        return _text(target.value, frame)
+    if isinstance(target, ast.Subscript):
+        return f"{_text(target.value, frame)}[{_index(target.slice, frame)}]"
+    return ""
+
+
+def _index(node, frame):
+    """An index as text; only what has no side effect is evaluated."""
+    if node is _counted:
+        return _count(frame)
+    if not all(isinstance(part, _plain) for part in ast.walk(node)):
+        return "?"
+    try:
+        value = eval(compile(ast.fix_missing_locations(ast.Expression(node)), "<index>", "eval"), frame.f_globals, frame.f_locals)
+        return repr(value)
+    except Exception:
+        return "?"

@@ -1,0 +1,175 @@
+"""Fields as a command file sees them."""
+
+from ..base.fields import FieldData, open_field
+from ..core.concepts import Concept
+from ..core.late import numpy
+
+
+class Field(FieldData):
+    """A field at one instant, with the methods of code_aster's fields."""
+
+    def __init__(self, base, path):
+        """@param path of its file, relative to the base"""
+        with open_field(base.folder, path) as file:
+            super().__init__(file)
+        self.base = base
+
+    def mesh(self):
+        return self.base.concept(self.mesh_id)
+
+    def __repr__(self):
+        return f"<field {self.name} ({self.location}) {', '.join(self.components)}>"
+
+    getMesh = mesh
+
+    def getName(self):
+        return self.name
+
+    def getComponents(self):
+        return list(self.components)
+
+    def getNumberOfComponents(self):
+        return len(self.components)
+
+    def getPhysicalQuantity(self):
+        return self.quantity
+
+    def getLocalization(self):
+        return self.location
+
+    def norm(self, kind="NORM_2", components=()):
+        """Of the values that exist, of these components or of all: the sum of magnitudes (NORM_1), the root of the sum of squares (NORM_2) or the largest
+        magnitude (NORM_INFINITY)."""
+        orders = {"NORM_1": 1, "NORM_2": 2, "NORM_INFINITY": numpy.inf}
+        if kind not in orders:
+            raise ValueError(f"norm: {kind!r} is none of {', '.join(orders)}")
+        values = self.getValues(components)
+        return float(numpy.linalg.norm(values, orders[kind])) if values else 0.0
+
+    def toSimpleFieldOnNodes(self):
+        return SimpleField(self, on_nodes=True)
+
+    def toSimpleFieldOnCells(self):
+        return SimpleField(self, on_nodes=False)
+
+    def getValuesWithDescription(self, components=(), groups=()):
+        """Values that exist, component after component, of nodes in these groups (of nodes, or of cells: their nodes).
+        @return (values, (numbers of the nodes from 0, names of the components))"""
+        if self.location != "NOEU":
+            raise TypeError(f"getValuesWithDescription is for fields of nodes; {self.name} is one of type {self.type()}")
+        values, (nodes, names) = [], ([], [])
+        for name, rows in self._chosen(components, groups):
+            values += self.values[rows, self.components.index(name)].tolist()
+            nodes += self.support[rows].tolist()
+            names += [name] * len(rows)
+        return values, (nodes, names)
+
+    def getValues(self, components=(), groups=()):
+        """As getValuesWithDescription: the values alone."""
+        parts = [self.values[rows, self.components.index(name)] for name, rows in self._chosen(components, groups)]
+        return numpy.concatenate(parts).tolist() if parts else []
+
+    def EXTR_COMP(self, component=" ", groups=(), topo=0):
+        """code_aster's older way: .valeurs (array); with topo=1 .noeud or .maille, .point, .sous_point (numbers from 1) and .comp."""
+        return Extract(self, self._chosen([component] if component.strip() else (), groups), topo)
+
+    def _chosen(self, components, groups):
+        """[(component, rows of the groups where it exists)]"""
+        names = [components] if isinstance(components, str) else list(components) or self.components
+        groups = [groups] if isinstance(groups, str) else list(groups)
+        owner, _ = self.rows()
+        wanted = numpy.ones(len(owner), bool)
+        if groups:
+            mesh = self.mesh()
+            members = mesh.getNodes(groups) if self.location == "NOEU" else mesh.getCells(groups)
+            wanted = numpy.isin(owner, members)
+        unknown = [name for name in names if name not in self.components]
+        if unknown:
+            raise ValueError(f"{self.name} has no component {unknown[0]}; it has {', '.join(self.components)}")
+        return [(name, numpy.flatnonzero(wanted & self.present[:, self.components.index(name)])) for name in names]
+
+
+class Extract:
+    """What EXTR_COMP returns."""
+
+    def __init__(self, field, chosen, topo):
+        rows = numpy.concatenate([rows for _, rows in chosen]) if chosen else numpy.zeros(0, int)
+        columns = numpy.concatenate([numpy.full(len(rows), field.components.index(name)) for name, rows in chosen]) if chosen else rows
+        self.valeurs = field.values[rows, columns]
+        if topo:
+            owner, place = field.rows()
+            if field.location == "NOEU":
+                self.noeud = (owner[rows] + 1).tolist()
+            else:
+                self.maille = (owner[rows] + 1).tolist()
+                self.point = (place[rows] + 1).tolist()
+                self.sous_point = [1] * len(rows)
+            self.comp = [name for name, rows in chosen for _ in rows]
+
+
+class SimpleField:
+    """A field as two arrays: of nodes over the whole mesh, of cells over those that have values."""
+
+    def __init__(self, field, on_nodes):
+        self._field = field
+        if on_nodes != (field.location == "NOEU"):
+            ask, own = ("toSimpleFieldOnNodes", "toSimpleFieldOnCells") if on_nodes else ("toSimpleFieldOnCells", "toSimpleFieldOnNodes")
+            raise TypeError(f"{ask}: {field.name} is a field of type {field.type()}; take {own}")
+
+    def getComponents(self):
+        return list(self._field.components)
+
+    def getNumberOfComponents(self):
+        return len(self._field.components)
+
+    def getComponent(self, index):
+        return self._field.components[index]
+
+    def getPhysicalQuantity(self):
+        return self._field.quantity
+
+    def getLocalization(self):
+        return self._field.location
+
+    def getMesh(self):
+        return self._field.mesh()
+
+    def getNumberOfNodes(self):
+        return self._field.mesh().getNumberOfNodes()
+
+    def getNumberOfCells(self):
+        return self._field.mesh().getNumberOfCells()
+
+    def getCellsWithValues(self):
+        """Numbers of the cells whose rows getValues() returns, from 0."""
+        return self._field.support.tolist()
+
+    def getNumberOfPointsOfCell(self, cell):
+        field = self._field
+        at = field.support.tolist().index(cell)
+        return 1 if field.offset is None else int(field.offset[at + 1] - field.offset[at])
+
+    def getValues(self, copy=True):
+        """@return (values, mask), of nodes (nodes of the mesh, components), of cells (points or nodes of cells that have values,
+        components); mask is true where the component exists"""
+        field = self._field
+        if field.location != "NOEU":
+            return field.values, field.present
+        return field.on_nodes(self.getNumberOfNodes())
+
+    toNumpy = getValues
+
+
+class FieldConcept(Concept):
+    """A field of its own, of CREA_CHAMP; what a field of a result does, it does too."""
+
+    type = "field"
+
+    def content(self):
+        """A Field."""
+        return Field(self.base, self.base.path(self.id).relative_to(self.base.folder))
+
+    def __getattr__(self, name):
+        if not name.startswith("_") and callable(getattr(Field, name, None)):
+            return getattr(self.content(), name)
+        return super().__getattr__(name)

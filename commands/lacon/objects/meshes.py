@@ -1,0 +1,137 @@
+"""Meshes and models as a command file sees them."""
+
+from ..base import contents
+from ..core.concepts import Concept
+from ..core.nearest import nearest
+
+
+class Mesh(Concept):
+    type = "mesh"
+
+    def _read(self, what, *arguments):
+        """What a function of contents.py finds in its file."""
+        with self.open() as file:
+            return what(file, *arguments)
+
+    def getNumberOfNodes(self):
+        return self._read(contents.number_of_nodes)
+
+    def getNumberOfCells(self):
+        return self._read(contents.number_of_cells)
+
+    def getDimension(self):
+        return self._read(contents.dimension)
+
+    def getCoordinates(self):
+        return Coordinates(self)
+
+    def group(self, kind, name):
+        """Members of a group, 0-based; None where there is no such group. `kind` is "cells" or "nodes"."""
+        return self._read(contents.group, kind, name)
+
+    def group_names(self, kind):
+        return self._read(contents.group_names, kind)
+
+    def nodes_of(self, cells):
+        """Nodes of cells, one cell after the other."""
+        return self._read(contents.nodes_of, cells)
+
+    def getGroupsOfCells(self, local=False):
+        return self.group_names("cells")
+
+    def getGroupsOfNodes(self, local=False):
+        return self.group_names("nodes")
+
+    def hasGroupOfCells(self, name, local=False):
+        return name in self.group_names("cells")
+
+    def hasGroupOfNodes(self, name, local=False):
+        return name in self.group_names("nodes")
+
+    def getCells(self, groups=()):
+        """Numbers from 0 of the cells of a group or of several, in the mesh's order; of all without groups."""
+        if not groups:
+            return list(range(self.getNumberOfCells()))
+        return sorted({int(cell) for name in _names(groups) for cell in self._members("cells", name)})
+
+    def getNodes(self, groups=()):
+        """Numbers from 0 of the nodes of groups (of nodes; else of cells: their nodes), in the mesh's order; of all without groups."""
+        if not groups:
+            return list(range(self.getNumberOfNodes()))
+        found = set()
+        for name in _names(groups):
+            if name in self.group_names("nodes"):
+                found.update(self._members("nodes", name).tolist())
+            else:
+                found.update(self.getNodesFromCells(name))
+        return sorted(found)
+
+    def getNodesFromCells(self, groups):
+        connectivity = self.getConnectivity()
+        return sorted({node for cell in self.getCells(groups) for node in connectivity[cell]})
+
+    def _members(self, kind, name):
+        members = self.group(kind, name)
+        if members is None:
+            known = self.group_names(kind)
+            raise ValueError(f"{self.label or self.id} has no group of {kind} '{name}'{nearest(name, known)}")
+        return members
+
+    def getConnectivity(self):
+        """Nodes of each cell, from 0, in the order of catalog/cells.toml."""
+        offset, nodes = (part.tolist() for part in self._read(contents.connectivity))
+        return [nodes[first:last] for first, last in zip(offset[:-1], offset[1:])]
+
+    def getCellTypeName(self, cell):
+        """"TRIA6\""""
+        names, types = self._read(contents.cell_types)
+        return names[types[cell]]
+
+    def isParallel(self):
+        return False
+
+    def getCellName(self, cell):
+        return f"M{cell + 1}"
+
+    def getNodeName(self, node):
+        return f"N{node + 1}"
+
+    def LIST_GROUP_MA(self):
+        """[(name, number of cells)]"""
+        return [(name, len(self._members("cells", name))) for name in self.group_names("cells")]
+
+    def LIST_GROUP_NO(self):
+        """[(name, number of nodes)]"""
+        return [(name, len(self._members("nodes", name))) for name in self.group_names("nodes")]
+
+
+class Coordinates:
+    """What Mesh.getCoordinates() returns."""
+
+    def __init__(self, mesh):
+        self._mesh = mesh
+
+    def toNumpy(self):
+        """(n, 3) array"""
+        return self._mesh._read(contents.points)
+
+    def __getitem__(self, node):
+        """[x, y, z] of a node, counted from 0"""
+        with self._mesh.open() as file:
+            return file["coordinates"][node].tolist()
+
+    def getValues(self):
+        """x1, y1, z1, x2, ... as a list"""
+        return self.toNumpy().ravel().tolist()
+
+
+class Model(Concept):
+    type = "model"
+
+    def getMesh(self):
+        with self.open() as file:
+            return self.base.concept(contents.reference(file, "mesh"))
+
+
+def _names(groups):
+    return [groups] if isinstance(groups, str) else list(groups)

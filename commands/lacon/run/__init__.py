@@ -1,0 +1,1 @@
+"""A run: command files, the study that they share, calls of commands, export files, timings."""

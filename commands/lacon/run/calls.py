@@ -1,0 +1,218 @@
+"""The commands as a command file calls them: check the keywords, then order the operator or do the work here."""
+
+import time
+
+from ..base import orders
+from ..commands.call import Call
+from ..commands.implementations import implementation
+from ..core import catalog, checker, current, labels, plugins
+from ..core.concepts import CO, Concept, _F
+from ..core.messages import AsterError, InternalError, SolutionError, fail, message
+
+
+class Command:
+    """A command of the catalogue."""
+
+    def __init__(self, name):
+        self.name = name
+        self.__name__ = name
+
+    def __repr__(self):
+        return f"<command {self.name}>"
+
+    @property
+    def __doc__(self):
+        return catalog.command(self.name)["help"]
+
+    def __call__(self, *args, **given):
+        started = time.perf_counter()
+        run = current.study
+        if run is None:
+            raise RuntimeError("commands run in a command file: lacon study.comm")
+        frame = labels.user_frame()
+        where = labels.location(frame)
+        row = catalog.command(self.name)
+        if args:
+            fail("COMMAND_1", f"{self.name}, {where}", command=self.name)
+        starts = self.name in ("DEBUT", "POURSUITE")
+        if not starts and not run.open:
+            fail("STUDY_12" if run.ended else "STUDY_11", where, command=self.name, ended=run.ended)
+        if not starts and run.names.update_labels(run.base):
+            run.base.write(where)
+        if starts and isinstance(given.get("CODE"), dict):  # until version 14: CODE=_F(NIV_PUB_WEB='INTERNET')
+            given["CODE"] = "OUI"
+        reuse = given.pop("reuse", None)
+        keywords, problems = checker.complete(self.name, row, given, where)
+        reused = self._reuse(row, reuse, given, keywords, where, problems)
+        if problems:
+            raise AsterError(problems)
+        named = next((keywords[k] for k, keyword in row.get("keyword", {}).items() if keyword.get("makes") and k in keywords), None)
+        label = reused.label if reused else named.name if named else labels.label(frame)
+        if not self.name.startswith("TEST_"):  # its checks print a line each
+            run.progress(f"{where}: {label + ' = ' if label else ''}{self.name}")
+        if run.check and run.check.takes(self.name, row, keywords, where):
+            return self._unsolved(run, row, label, where, reused, named)
+        if "operator" in row:
+            result, outcome = self._order(run, row, keywords, where, label, reused, named)
+            run.timings.add(self.name, where, time.perf_counter() - started, outcome)
+            run.count_alarms(outcome.messages)
+        else:
+            result = implementation(self.name)(Call(run, self.name, keywords, where, label, reused))
+            if isinstance(result, Concept):
+                _enter(run, label, result, where)
+            run.timings.add(self.name, where, time.perf_counter() - started)
+        return result
+
+    def _reuse(self, row, reuse, given, keywords, where, problems):
+        """The concept to enrich, or nothing."""
+        path = f"{self.name}/reuse"
+        place = f"{path}, {where}"
+        holder = row.get("reuse")
+        if reuse is None:
+            if row.get("reuse_status") == "mandatory":
+                problems.append(message("COMMAND_2", place, keyword=holder))
+            return None
+        if holder is None:
+            problems.append(message("COMMAND_3", place, command=self.name))
+        elif keywords.get(holder) is not reuse and holder in given:
+            problems.append(message("COMMAND_9", place, keyword=holder))
+        return reuse if isinstance(reuse, Concept) else None
+
+    def _order(self, run, row, keywords, where, label, reused, named=None):
+        """Have the operator run, and enter its result: under a new object, `reused`, or the CO object `named`."""
+        units = self._units(run, row, keywords, where)
+        written = {unit for unit in units if unit in run.written_units}
+        result = None
+        if "result" in row:
+            identifier = reused.id if reused else run.base.new_id(row["result"])
+            result = {"id": identifier, "label": label, "reuse": bool(reused)}
+            keywords = {k: {"concept": identifier} if named and v is named else v for k, v in keywords.items()}
+        made = orders.order(self.name, run, keywords, where, result, units, written)
+        key = None
+        if result and not any(keyword["unit"] == "out" for _, keyword in _unit_numbers(row, keywords)):
+            key = run.base.kept.order_key(made, plugins.operator_folder() / row["operator"], made["units"])
+            found = self._unchanged(run, row["result"], key, where, identifier, reused)
+            if found:
+                self._protect_data(run, row, keywords, units)
+                return self._result(run, found, label, where, reused, named), orders.Outcome(0, [], {}, {}, 0.0)
+        copy = orders.keep_copy(run.base, identifier) if reused else None
+        try:
+            outcome = orders.run(row["operator"], made, run)
+            if outcome.status != 0:
+                orders.raise_failure(outcome, row["operator"], where)
+            if result and not run.base.path(identifier).exists():
+                how = f"it ended well, and the concept {identifier} is not there"
+                raise InternalError([message("INTERNAL_3", where, program=row["operator"], how=how)])
+            if run.alarm_is_error:
+                run.count_alarms(outcome.messages)
+        except BaseException as error:
+            part = isinstance(error, SolutionError) and row.get("solves") and orders.has_left(run.base, identifier, copy)
+            if part:
+                self._keep_part(run, identifier, label, where, reused, copy)
+            elif copy:
+                orders.put_back(run.base, identifier, copy)
+            elif result:
+                run.base.give_back(identifier)
+            run.base.drop_partial()
+            raise
+        if copy:
+            run.base.kept.enter_next(identifier, copy, key, outcome.messages)
+            copy.unlink()
+        elif result:
+            run.base.kept.enter(identifier, key, outcome.messages)
+        self._protect_data(run, row, keywords, units)
+        run.written_units.update((k, units[k]) for k, keyword in _unit_numbers(row, keywords) if keyword["unit"] == "out")
+        if not result:
+            return None, outcome
+        return self._result(run, identifier, label, where, reused, named), outcome
+
+    def _keep_part(self, run, identifier, label, where, reused, copy):
+        """A solution failed on the way: the instants before that are there, under the name that the result was to have."""
+        if copy:
+            run.base.kept.enter_next(identifier, copy, None, ())
+        else:
+            run.base.kept.enter(identifier, None)
+        item = self._result(run, identifier, label, where, reused, None)
+        if label.isidentifier():
+            run.names.values[label] = item
+        run.inform("COMMAND_14", f"{self.name}, {where}", label=label or identifier)
+
+    def _protect_data(self, run, row, keywords, units):
+        """The files that the command has read are data of the study."""
+        for number, keyword in _unit_numbers(row, keywords):
+            if keyword["unit"] == "in":
+                run.has_read(units[number])
+
+    def _result(self, run, identifier, label, where, reused, named):
+        """The object of a concept that is there now, in the registry and under the names it was given."""
+        if named:
+            named.become(run.base, identifier)
+            run.names.publish(label, named)
+        item = reused or run.base.concept(identifier, label)
+        _enter(run, label, item, where)
+        return item
+
+    def _unsolved(self, run, row, label, where, reused, named):
+        """The object of a concept that `lacon check` does not make; nothing for a command without."""
+        if "result" not in row:
+            return None
+        identifier = reused.id if reused else run.base.new_id(row["result"])
+        run.base.unsolved = {**dict(run.base.unsolved), identifier: (label or self.name, where)}
+        return self._result(run, identifier, label, where, reused, named)
+
+    def _unchanged(self, run, kind, key, where, identifier, reused):
+        """The id of the concept, where an earlier run made it from the same; its alarms are said again."""
+        kept, silent = run.base.kept, run.alarm_is_error
+        if reused:
+            found = identifier if kept.find_next(identifier, key, silent) else None
+        else:
+            found = kept.find(kind, key, silent)
+        if not found:
+            return None
+        if not reused:
+            run.base.give_back(identifier)
+        run.progress("  unchanged since it was made: kept")
+        run.repeat_alarms(kept.alarms(found), where)
+        return found
+
+    def _units(self, run, row, keywords, where):
+        """Files of the units that the keywords name."""
+        units = {}
+        for number, keyword in _unit_numbers(row, keywords):
+            place = f"{self.name}/UNITE, {where}"
+            if keyword["unit"] == "in":
+                units[number] = run.input_unit(number, place)
+            else:
+                suffix = {"MED": ".med", "VTU": ".pvd", "RESULTAT": ".resu"}.get(keywords.get("FORMAT"), "")
+                units[number] = run.announced_output(number, suffix, place)
+        return units
+
+
+def _unit_numbers(row, keywords):
+    return [(keywords[name], keyword) for name, keyword in row.get("keyword", {}).items() if "unit" in keyword and name in keywords]
+
+
+def _enter(run, label, item, where):
+    """Enter a concept that is there now in the registry, under the variable it is about to be assigned to."""
+    run.names.update_labels(run.base, (label, item.id))
+    run.base.write(where)
+
+
+class Unavailable:
+    """A command of code_aster that Lacon does not have."""
+
+    def __init__(self, name):
+        self.name = name
+
+    def __call__(self, *args, **given):
+        frame = labels.user_frame()
+        instead = catalog.instead("command", self.name, "`lacon help` lists the commands that are")
+        fail("COMMAND_11", labels.location(frame), command=self.name, instead=instead)
+
+
+def all_commands():
+    """name -> callable: every command, and every name of code_aster's that is not one here."""
+    names = {name: Unavailable(name) for name in catalog.peer_commands()}
+    names.update((name, Command(name)) for name in catalog.command_names())
+    names.update(_F=_F, CO=CO)
+    return names

@@ -1,0 +1,219 @@
+"""Runs command files: Python files that find every command in their namespace."""
+
+import ast
+import builtins
+import contextlib
+import math
+import os
+import shutil
+import signal
+import sys
+import tokenize
+import traceback
+import warnings
+
+from ..base import names as namespace
+from ..core import labels, messages
+from ..core.messages import AsterError, fail, message, show
+from ..core.nearest import nearest
+from ..peer import modules
+from .calls import all_commands
+
+
+def provided_names():
+    """What a command file finds without importing it: mathematics, every command, _F, CO, CA, the exceptions of commands."""
+    names = {k: v for k, v in vars(math).items() if not k.startswith("_")}
+    commands = all_commands()
+    names.update(commands)
+    names["CA"] = modules.install(commands)
+    names["AsterError"] = messages.AsterError
+    names["ConvergenceError"] = messages.ConvergenceError
+    return names
+
+
+def check_files(files):
+    """@throws AsterError where a command file cannot be read, before anything runs"""
+    for path in files:
+        if not os.path.isfile(path) or not os.access(path, os.R_OK):
+            fail("STUDY_14", str(path), file=path, reason="there is no such file" if not os.path.exists(path) else "not a readable file")
+
+
+class Failure(Exception):
+    """A command file stopped: exit status, words of the diagnosis."""
+
+    def __init__(self, status, diagnostic):
+        self.status, self.diagnostic = status, diagnostic
+
+
+class TimeOver(BaseException):
+    """The time limit of an export file is over; no exception that a command file may catch by Exception."""
+
+    def __init__(self, seconds):
+        super().__init__(f"{seconds:g} s")
+        self.seconds = seconds
+
+
+@contextlib.contextmanager
+def time_limit(text):
+    """Raise TimeOver after that many seconds, a text as in an export file; what is not a positive number is no limit."""
+    def over(*_):
+        raise TimeOver(seconds)
+
+    try:
+        seconds = float(text)
+    except ValueError:
+        seconds = 0.0
+    if not 0.0 < seconds < math.inf:
+        yield
+        return
+    before = signal.signal(signal.SIGALRM, over)
+    signal.setitimer(signal.ITIMER_REAL, seconds)
+    try:
+        yield
+    finally:
+        signal.setitimer(signal.ITIMER_REAL, 0.0)
+        signal.signal(signal.SIGALRM, before)
+
+
+def run_files(study, files):
+    """Run the files in one namespace. @throws Failure, after the reason was printed"""
+    values = study.names.values
+    values["__name__"] = "__main__"
+    values["__builtins__"] = builtins
+    sources = [_read(path) for path in files]
+    if "POURSUITE" in sources[0][1] or "--continue" in sources[0][1]:
+        # a name that the saved study lost is explained where it is first used
+        values["__builtins__"] = namespace.Builtins({})
+    labels.sources.update(sources)
+    for path, source in sources:
+        values["__file__"] = path
+        _run_file(study, path, source, values)
+
+
+def run_text(study, name, text):
+    """Run a text as a command file of that name. @throws Failure, after the reason was printed"""
+    study.names.values.update(__name__="__main__", __builtins__=builtins)
+    labels.sources[name] = text
+    _run_file(study, name, text, study.names.values)
+
+
+def include(path, values):
+    """Run a file with the names of the study. @throws AsterError where it is not Python; what its commands throw"""
+    path, source = _read(path)
+    labels.sources[path] = source
+    exec(_compiled(path, source), values)
+
+
+def _read(path):
+    """@return (path, text). @throws AsterError where it is no text"""
+    try:
+        with tokenize.open(path) as file:
+            return str(path), file.read()
+    except (SyntaxError, UnicodeDecodeError) as error:
+        fail("STUDY_16", str(path), reason=error)
+
+
+def _compiled(path, source):
+    try:
+        with warnings.catch_warnings():
+            # titles hold escapes that Python does not know; they are no concern of the user's
+            warnings.simplefilter("ignore", SyntaxWarning)
+            warnings.simplefilter("ignore", DeprecationWarning)
+            return compile(ast.parse(source, path), path, "exec")
+    except SyntaxError as error:
+        fail("STUDY_16", f"{error.filename}:{error.lineno}", reason=error.msg)
+
+
+def _run_file(study, path, source, values):
+    folder = os.path.dirname(os.path.abspath(path))
+    if folder not in sys.path:
+        sys.path.insert(0, folder)
+    try:
+        exec(_compiled(path, source), values)
+    except AsterError as error:
+        _report(error)
+        raise Failure(error.status, error.diagnostic) from None
+    except SystemExit as error:
+        if error.code not in (None, 0):
+            show(message("STUDY_17", place(error), code=error.code))
+            raise Failure(2, "<F>_ERROR") from None
+    except TimeOver as error:
+        show(message("STUDY_25", place(error), seconds=f"{error.seconds:g}"))
+        raise Failure(3, "<S>_CPU_LIMIT") from None
+    except KeyboardInterrupt as error:
+        show(message("STUDY_18", place(error)))
+        raise Failure(4, "<F>_ABNORMAL_ABORT") from None
+    except namespace.LostName as error:
+        show(error.item._replace(where=place(error)))
+        raise Failure(2, "<F>_ERROR") from None
+    except NameError as error:
+        _print_traceback(error)
+        show(_unknown_name(error, values, study.killed))
+        raise Failure(2, "<F>_ERROR") from None
+    except Exception as error:
+        _print_traceback(error)
+        show(message("STUDY_19", place(error), kind=type(error).__name__, text=error))
+        raise Failure(2, "<F>_ERROR") from None
+
+
+def _report(error):
+    """Why a command failed and where the study stopped."""
+    if not error.shown:  # by the operator, which knows the line from its order
+        for item in error.messages:
+            show(item)
+    entries = _user_entries(error)
+    if len(entries) > 1:  # called through the user's own functions
+        lines = [f"    called from {entry.filename}:{entry.lineno}" for entry in reversed(entries[:-1])]
+        print("\n".join(lines), file=sys.stderr, flush=True)
+
+
+def _user_entries(error):
+    """The traceback without the frames of this package."""
+    return [entry for entry in traceback.extract_tb(error.__traceback__) if not entry.filename.startswith((labels.package, "<frozen"))]
+
+
+def place(error):
+    """"study.comm:12": the line of a command file at which an exception was thrown."""
+    entries = _user_entries(error)
+    return f"{entries[-1].filename}:{entries[-1].lineno}" if entries else ""
+
+
+def _print_traceback(error):
+    sys.stdout.flush()
+    print("Traceback (most recent call last):", file=sys.stderr)
+    print("".join(traceback.format_list(_user_entries(error))), end="", file=sys.stderr)
+    print("".join(traceback.format_exception_only(error)), end="", file=sys.stderr, flush=True)
+
+
+def _unknown_name(error, values, killed):
+    """@param killed the run that this one goes on with was, and saved no plain Python data"""
+    name = error.name or ""
+    commands = [k for k, v in values.items() if callable(v) and k.isupper() and len(k) > 3]
+    close = nearest(name, commands) if name.isupper() else ""
+    if killed and not close:
+        return message("STUDY_24", place(error), name=name)
+    return message("STUDY_20", place(error), name=name, nearest=close)
+
+
+@contextlib.contextmanager
+def delivered(files):
+    """Files that the study reads under their own name lie in the working folder while it runs."""
+    placed = []
+    try:
+        for path in files:
+            if not path.is_file():
+                fail("STUDY_14", str(path), file=path, reason="there is no such file")
+            target = os.path.abspath(path.name)
+            if os.path.exists(target):
+                if not os.path.samefile(path, target):
+                    fail("STUDY_21", str(path), file=path, target=target)
+                continue
+            shutil.copyfile(path, target)
+            placed.append(target)
+        if os.getcwd() not in sys.path:
+            sys.path.insert(0, os.getcwd())
+        yield
+    finally:
+        for target in placed:
+            with contextlib.suppress(OSError):
+                os.unlink(target)

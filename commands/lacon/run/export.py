@@ -1,0 +1,68 @@
+"""Export files: which command files, data files and results a study has.
+
+`F type name D|R unit` (D a datum, R a result, DR both; a name may hold spaces); `comm` files run in order, first comm, then com1,
+com2, ...; type `nom`, or unit 0, is a file that must lie in the working folder under its own name; type `base` is the folder of the
+base. `P name value` are parameters.
+"""
+
+import pathlib
+import re
+
+from ..core.messages import fail
+
+
+#: type, name, use and unit of a file; the name is all that lies between
+FILE = re.compile(r"[FR]\s+(\S+)\s+(\S.*?)\s+([DRC]+)\s+(\d+)")
+
+
+class Export:
+    def __init__(self):
+        self.commands = []
+        self.units = {}
+        self.data = []  #: files of units that are not to be written
+        self.named = []  #: files that the command file reads under their own name
+        self.base = None
+        self.parameters = {}
+
+
+def read_export(path):
+    """@throws AsterError STUDY_13 where a line is not of the format"""
+    path = pathlib.Path(path)
+    export = Export()
+    commands = []
+    try:
+        lines = path.read_text(encoding="utf-8", errors="replace").splitlines()
+    except OSError as error:
+        fail("STUDY_14", str(path), file=path, reason=error.strerror)
+    for number, line in enumerate(lines, 1):
+        words = line.split()
+        if not words or words[0].startswith("#") or words[0] in ("A", "N"):
+            continue
+        if words[0] == "P" and len(words) >= 2:
+            export.parameters[words[1]] = " ".join(words[2:])
+            continue
+        match = FILE.fullmatch(line.strip())
+        if not match:
+            fail("STUDY_13", f"{path}:{number}", line=line.strip())
+        kind, name, use, unit = match[1], path.parent / match[2], match[3], int(match[4])
+        if kind == "comm" or re.fullmatch(r"com\d+", kind):
+            commands.append((_rank(kind, name), name))
+        elif kind in ("base", "bhdf"):
+            export.base = name
+        elif kind == "nom" or (unit == 0 and "D" in use):
+            export.named.append(name)
+        elif unit:
+            export.units[unit] = name
+            if "R" not in use:
+                export.data.append(name)
+    export.commands = [name for _, name in sorted(commands, key=lambda ranked: ranked[0])]
+    if not commands:
+        fail("STUDY_15", str(path), file=path)
+    return export
+
+
+def _rank(kind, path):
+    """comm first, then com1, com2, ... in the order of their numbers, which the type says, or else the suffix; others stay where they are
+    (sorted() is stable)."""
+    match = re.fullmatch(r"com(\d+)", kind) or re.fullmatch(r"\.com(\d+)", path.suffix)
+    return int(match[1]) if match else 0

@@ -1,0 +1,236 @@
+"""A run: its base, its names, its files, and what DEBUT, POURSUITE and FIN do to them."""
+
+import os
+import pathlib
+import sys
+
+from ..base.base import Base
+from ..base.names import Names
+from ..core.concepts import Concept
+from ..core.messages import AsterError, Message, fail, message, show
+from ..objects.kinds import kinds
+from . import execution
+from .timings import Timings
+
+
+class Study:
+    """Everything that one call of the launcher shares between its command files."""
+
+    def __init__(self, base_folder, units=None, fresh=False, threads=None, strict_checks=False, provided=None, force=False):
+        self.base_folder = pathlib.Path(base_folder)
+        self.units = dict(units or {})  #: number -> path
+        self.fresh = fresh
+        self.check = None  #: a tools.check.Check, where this run only checks
+        self.force = force  #: run every operator, changed or not
+        self.threads = threads
+        self.strict_checks = strict_checks
+        self.names = Names(provided or {})
+        self.base = None
+        self.open = False  #: between DEBUT or POURSUITE and FIN
+        self.ended = ""  #: where FIN was
+        self.alarm_is_error = False
+        self.ignored_alarms = frozenset()
+        self.alarms = 0
+        self.checks = []
+        self.written_units = {}  #: number -> path
+        self.earlier_units = {}  #: number -> (file, file written) before DEFI_FICHIER gave it another one; None: none
+        self.plots = {}  #: (unit, format) -> tables.curves.Plot that this run draws there
+        self.sources = set()  #: files that the study is made from, and never writes
+        self.lost = {}
+        self.killed = False  #: the run before this one ended without saving its plain Python data
+        self.timings = Timings()
+        self.orders = 0  #: number of orders so far
+        self._emptied = False
+
+    # ------------------------------------------------------------------------------------------- life
+
+    def start(self, keywords, where, resume):
+        """DEBUT, or with `resume` POURSUITE."""
+        name = "POURSUITE" if resume else "DEBUT"
+        if self.open:
+            fail("STUDY_9", where, command=name)
+        if self.base is None:
+            self.base = Base(self.base_folder, kinds, where, make=not resume, fresh=self.fresh and not resume,
+                             force=self.force)
+            if resume:
+                self.killed = self.base.registry.get("running", False)
+                self.sources.update(self.base.registry.get("sources", ()))
+                self.lost = self.names.restore(self.base)
+                self._explain_lost()
+            else:
+                self.names.forget_data(self.base)
+        elif not resume and self.fresh and not self._emptied:
+            fail("STUDY_10", where)
+        self._emptied = True
+        self.base.registry["running"] = True
+        self.base.write(where)
+        self.open, self.ended = True, ""
+        self.alarm_is_error = keywords["ERREUR"][0]["ALARME"] == "EXCEPTION"
+        self.ignored_alarms = frozenset(keywords.get("IGNORE_ALARM", ()))
+
+    def _explain_lost(self):
+        builtins = self.names.values.get("__builtins__")
+        if hasattr(builtins, "lost"):
+            builtins.lost.update(self.lost)
+
+    def finish(self, where):
+        """FIN: save; remove what neither a name, nor a concept, nor a live Python object refers to."""
+        self.save()
+        keep = set(self.base.registry["labels"].values())
+        keep |= {i for i, item in self.base.live_objects() if not item.destroyed}
+        self.base.clean(keep)
+        self.open, self.ended = False, where
+
+    def save(self):
+        """Write what a later POURSUITE needs."""
+        if self.base is not None:
+            self.names.save(self.base)
+            self.base.registry.update(running=False, sources=sorted(self.sources))
+            self.base.write()
+
+    def close(self):
+        """The end of the run, whatever brought it: save, and after FIN remove what no name refers to any more."""
+        try:
+            if self.base is not None:
+                self.save()
+                if self.ended:
+                    self.base.clean(set(self.base.registry["labels"].values()))
+        finally:
+            if self.base is not None:
+                self.base.close()
+                self.base = None
+
+    def order_files(self, command):
+        """Where the next order and its outcome go: in the base while the run lasts, or where LACON_ORDERS says, to stay."""
+        if os.environ.get("LACON_ORDERS"):
+            folder = pathlib.Path(os.environ["LACON_ORDERS"])
+            folder.mkdir(parents=True, exist_ok=True)
+        else:
+            folder = self.base.orders()
+        self.orders += 1
+        stem = f"{self.orders:03d}-{command.lower()}"
+        return folder / f"{stem}.order.json", folder / f"{stem}.status.json"
+
+    # ------------------------------------------------------------------------------------------- messages
+
+    def inform(self, identifier, where="", **values):
+        """An alarm or an information from the Python side."""
+        item = message(identifier, where, **values)
+        if item.id in self.ignored_alarms:
+            return
+        show(item)
+        self.count_alarms([item])
+
+    def repeat_alarms(self, alarms, where):
+        """Say the alarms of an operator that is not run again. @param alarms as Kept.alarms() gives them"""
+        items = [Message(*alarm, where) for alarm in alarms if alarm[1] not in self.ignored_alarms]
+        for item in items:
+            show(item)
+        self.count_alarms(items)
+
+    def count_alarms(self, items):
+        """Count alarms that were shown. @throws AsterError where alarms are errors"""
+        alarms = [m for m in items if m.severity == "A" and m.id not in self.ignored_alarms]
+        self.alarms += len(alarms)
+        if alarms and self.alarm_is_error:
+            raise AsterError([m._replace(severity="F") for m in alarms], shown=False)
+
+    # ------------------------------------------------------------------------------------------- units
+
+    def input_unit(self, number, where):
+        """The file of a unit that a command reads: one that was given, or that this run wrote."""
+        path = self.units.get(number) or self.written_units.get(number)
+        if path is None:
+            fail("COMMAND_4", where, unit=number)
+        if not os.path.isfile(path) or not os.access(path, os.R_OK):
+            fail("COMMAND_5", where, unit=number, file=path)
+        return os.path.abspath(path)
+
+    def has_read(self, path):
+        """A command that ended well has read this file: a datum, unless this run wrote it."""
+        if os.path.realpath(path) not in map(os.path.realpath, self.written_units.values()):
+            self.protect(path)
+
+    def output_unit(self, number, suffix, where):
+        """The file of a unit that a command writes; beside the command file where none was given."""
+        path = os.path.abspath(self.units.get(number, self.base_folder.parent / f"{self.base_folder.stem}.{number}{suffix}"))
+        folder = os.path.dirname(path)
+        # written whole by renaming, which would replace a device such as /dev/null
+        is_other = os.path.exists(path) and not os.path.isfile(path)
+        if not os.path.isdir(folder) or not os.access(folder, os.W_OK) or is_other:
+            fail("COMMAND_8", where, unit=number, file=path)
+        if os.path.realpath(path) in self.sources:
+            fail("COMMAND_12", where, unit=number, file=path)
+        return path
+
+    def announced_output(self, number, suffix, where):
+        """As output_unit(); says where the file goes when nobody gave one."""
+        if number in self.written_units:
+            return self.written_units[number]
+        path = self.output_unit(number, suffix, where)
+        if number not in self.units:
+            self.inform("COMMAND_10", where, unit=number, file=os.path.relpath(path))
+        return path
+
+    def write_text(self, number, suffix, where, text):
+        """Write a unit, or add to what this run has written there."""
+        path = self.announced_output(number, suffix, where)
+        try:
+            if number in self.written_units:
+                with open(path, "rb") as file:
+                    if file.read(4) == b"\x89HDF":
+                        fail("COMMAND_13", where, unit=number, file=path)
+                with open(path, "a", encoding="utf-8") as file:
+                    file.write(text)
+            else:
+                with open(path + ".partial", "w", encoding="utf-8") as file:
+                    file.write(text)
+                os.replace(path + ".partial", path)
+        except OSError:
+            fail("COMMAND_8", where, unit=number, file=path)
+        self.written_units[number] = path
+
+    def associate(self, number, path, append):
+        """Give a unit another file, which is written anew unless `append`, until release()."""
+        self.earlier_units.setdefault(number, (self.units.get(number), self.written_units.pop(number, None)))
+        self.units[number] = path
+        self.written_units.pop(number, None)
+        if append and os.path.isfile(path):
+            self.written_units[number] = os.path.abspath(path)
+
+    def release(self, number):
+        """The unit has the file again that it had before associate()."""
+        for units, before in zip((self.units, self.written_units), self.earlier_units.pop(number, ())):
+            units.pop(number, None)
+            if before is not None:
+                units[number] = before
+
+    def free_unit(self):
+        """A unit that has no file."""
+        return next((n for n in range(99, 0, -1) if n not in self.units and n not in self.written_units), None)
+
+    def protect(self, path):
+        """Results never replace this file, in this run and in those that go on with it: it is a datum of the study."""
+        self.sources.add(os.path.realpath(path))
+
+    # ------------------------------------------------------------------------------------------- names
+
+    def destroy(self, items, where):
+        """DETRUIRE: take concepts out of the study and out of its names."""
+        for item in items:
+            item.destroyed = where
+        for name, value in list(self.names.user().items()):
+            if isinstance(value, Concept) and value.destroyed:
+                del self.names.values[name]
+        self.names.update_labels(self.base)
+        self.base.write(where)
+        kept = set(self.base.registry["labels"].values()) | {i for i, item in self.base.live_objects() if not item.destroyed}
+        self.base.clean(kept)
+
+    def include(self, path):
+        """Run a file with the names of this study, as if it stood where it is called."""
+        execution.include(path, self.names.values)
+
+    def progress(self, text):
+        if self.check is None:
+            print(text, flush=sys.stdout.isatty())

@@ -1,0 +1,51 @@
+"""FILTRE, and columns that keywords name."""
+
+from ..core.nearest import nearest
+
+
+def filtered(call, table, factors, path="FILTRE"):
+    """The rows that every FILTRE lets pass, one filter after the other. @throws AsterError TABLE_1, TABLE_2, TABLE_3"""
+    for i, factor in enumerate(factors, 1):
+        place = f"{path}[{i}]"
+        name, criterion = factor["NOM_PARA"], factor["CRIT_COMP"]
+        column = column_of(call, table, name, f"{place}/NOM_PARA")
+        key = next((k for k in ("VALE", "VALE_I", "VALE_K") if k in factor), None)
+        if key is None:
+            if criterion.endswith("_ABS") or criterion in ("MAXI", "MINI"):
+                numeric(call, table, name, f"{place}/NOM_PARA")
+                if not column.values():
+                    table = column.NON_VIDE()
+                    continue
+            table = getattr(column, criterion)()
+            continue
+        if (key == "VALE_K") != (table.kind(name)[0] == "K"):
+            call.fail("TABLE_2", f"{place}/{key}", keyword=key, column=name, kind=table.kind(name),
+                      wanted="VALE_K" if table.kind(name)[0] == "K" else "VALE or VALE_I")
+        targets = factor[key]
+        if criterion in ("EQ", "NE"):
+            tolerance = factor["PRECISION"] if key == "VALE" else 0.0
+            compare = column.equal if criterion == "EQ" else column.different
+            table = compare(targets, tolerance, factor["CRITERE"] == "RELATIF")
+            continue
+        if len(targets) > 1:
+            call.fail("TABLE_3", f"{place}/{key}", criterion=criterion)
+        if criterion == "REGEXP":
+            table = column.REGEXP(targets[0])
+        else:
+            table = {"LT": column.__lt__, "LE": column.__le__, "GT": column.__gt__, "GE": column.__ge__}[criterion](targets[0])
+    return table
+
+
+def column_of(call, table, name, path):
+    """@throws AsterError TABLE_1"""
+    if name not in table.para:
+        call.fail("TABLE_1", path, name=name, nearest=nearest(name, table.para), known=", ".join(table.para) or "none")
+    return table[name]
+
+
+def numeric(call, table, name, path):
+    """A column of numbers. @throws AsterError TABLE_1, TABLE_4"""
+    column = column_of(call, table, name, path)
+    if table.kind(name)[0] == "K":
+        call.fail("TABLE_4", path, name=name)
+    return column

@@ -1,0 +1,115 @@
+"""`lacon inspect BASE`: what sees what in a contact, at an instant or before any, as VTU and MED files and as a few lines.
+
+Reads the base, and never changes it.
+"""
+
+import argparse
+import json
+import os
+import pathlib
+import re
+import subprocess
+import sys
+import tempfile
+
+from ..base import contents
+from ..base.base import ReadBase
+from ..core import catalog, checker, plugins
+from ..core.concepts import to_json
+from ..core.messages import AsterError, fail, show
+from ..objects.kinds import kinds
+
+_layer = re.compile(r"pairing_(pairs|skins|points|rejected)(_\d+\.vtu|\.pvd)")
+
+
+def run(arguments):
+    """@return exit status"""
+    parser = argparse.ArgumentParser(
+        prog="lacon inspect", description="Writes the pairing of a contact: polygons of the contact cells, skins with the covered "
+        "fraction of their patches, integration points with their gap, rejected couples with the reason.")
+    parser.add_argument("base", metavar="BASE", help="folder of the base, STUDY.base")
+    parser.add_argument("--result", metavar="LABEL", help="a result with contact, or a contact (then before any instant); otherwise the only one")
+    parser.add_argument("--instant", metavar="T", help="an instant of the result, 'last' (default) or 'all'")
+    parser.add_argument("--out", metavar="FOLDER", help="where the files go; otherwise BASE without its suffix and with _pairing")
+    options = parser.parse_args(arguments)
+    if options.instant not in (None, "last", "all"):
+        try:
+            options.instant = float(options.instant)
+        except ValueError:
+            parser.error(f"--instant {options.instant}: give a number, last or all")
+    try:
+        shelf = ReadBase(options.base, kinds, "lacon inspect")
+        chosen = choose(shelf, options.result)
+        folder = pathlib.Path(options.out or shelf.folder.with_name(shelf.folder.stem + "_pairing").name)
+        if chosen.type == "contact" and options.instant is not None:
+            fail("INSPECT_3", "lacon inspect --instant", label=chosen.label)
+        return write(shelf, resu(chosen, "last" if options.instant is None else options.instant), folder)
+    except AsterError as error:
+        for item in error.messages:
+            show(item)
+        return error.status
+
+
+def choose(shelf, label):
+    """The result or contact that is meant."""
+    results = {name: item for name, item in shelf.labelled("result").items() if contact_of(item)}
+    contacts = shelf.labelled("contact")
+    known = {**contacts, **results}
+    if label:
+        if label not in known:
+            fail("INSPECT_1", f"lacon inspect --result {label}", label=label, known=", ".join(known) or "none")
+        return known[label]
+    candidates = results or contacts
+    if len(candidates) != 1:
+        fail("INSPECT_2", "lacon inspect", count=len(candidates) or "no", known=", ".join(known) or "none")
+    return next(iter(candidates.values()))
+
+
+def contact_of(result):
+    with result.open() as file:
+        return contents.reference(file, "contact")
+
+
+def resu(chosen, instant):
+    """The occurrence of RESU that is meant."""
+    if chosen.type == "contact":
+        return {"CONTACT": chosen}
+    if instant == "all":
+        return {"RESULTAT": chosen, "PAIRING": "OUI"}
+    if instant == "last":
+        with chosen.open() as file:
+            return {"RESULTAT": chosen, "PAIRING": "OUI", "NUME_ORDRE": [int(file["order"][-1])]}
+    return {"RESULTAT": chosen, "PAIRING": "OUI", "INST": [instant]}
+
+
+def write(shelf, occurrence, folder):
+    """Both files, by two orders of IMPR_RESU; what an earlier look left in the folder goes. @return exit status"""
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        fail("STUDY_3", "lacon inspect --out", folder=folder, reason=error.strerror)
+    earlier = {path: path.stat().st_ino for path in folder.iterdir() if _layer.fullmatch(path.name)}
+    for number, (form, name) in enumerate((("VTU", "pairing.vtu"), ("MED", "pairing.med"))):
+        keywords, problems = checker.complete("IMPR_RESU", catalog.command("IMPR_RESU"),
+                                              {"FORMAT": form, "UNITE": 80, "RESU": occurrence}, "lacon inspect")
+        if problems:
+            raise AsterError(problems)
+        made = {"format": 1, "command": "IMPR_RESU", "base": str(shelf.folder), "units": {"80": os.path.abspath(folder / name)},
+                "source": "lacon inspect", "keywords": to_json(keywords)}
+        with tempfile.TemporaryDirectory(prefix="lacon_inspect_") as scratch:
+            order = pathlib.Path(scratch) / "order.json"
+            order.write_text(json.dumps(made, ensure_ascii=False), encoding="utf-8")
+            done = subprocess.run([plugins.operator_folder() / "impr_resu", order], stdout=subprocess.PIPE, stdin=subprocess.DEVNULL,
+                                  text=True, check=False)
+        if done.returncode:
+            if not any(folder.iterdir()):
+                folder.rmdir()
+            return done.returncode if done.returncode > 0 else 4
+        for line in done.stdout.splitlines():  # the second file has the same to say
+            if number == 0 or not line.startswith(("Pairing of", "  ")):
+                print(os.path.relpath(line) if os.path.isabs(line) else line)
+    for path, inode in earlier.items():
+        if path.stat().st_ino == inode:  # not replaced: a layer or an instant that there is no more
+            path.unlink()
+    sys.stdout.flush()
+    return 0

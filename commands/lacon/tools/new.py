@@ -1,0 +1,215 @@
+"""`lacon new mesh.med`: a starter study written from a mesh's groups, to be corrected by its user.
+
+Bodies are the groups of cells of the mesh's dimension, skins those of one dimension less. Two skins that lie close to each other on parts
+of the mesh that are not connected make a contact pair, the finer one as slave. What is a guess says so in the file.
+"""
+
+import argparse
+import os
+import pathlib
+import re
+import tempfile
+
+from ..base import contents
+from ..core.late import numpy
+from ..run import execution, launch
+from ..run.study import Study
+from .convert import read_formats
+
+_near = 2.0  # skins are a pair where a node of one is nearer to the other than this many lengths of its cells
+_share = 0.25  # and where that holds for this part of the nodes
+_sample = 1500  # nodes of a skin that are looked at
+
+
+class Skin:
+    """A group of skin cells: nodes' coordinates, part of the mesh, length of a cell."""
+
+    def __init__(self, name, points, part, length):
+        self.name, self.points, self.part, self.length = name, points, part, length
+
+    def plane(self):
+        """(axis, coordinate) of the coordinate plane it lies in; nothing where it lies in none"""
+        spread = self.points.max(axis=0) - self.points.min(axis=0)
+        for axis in range(3):
+            if spread[axis] <= 1e-6 * max(spread.max(), 1e-300) and spread.max() > 0:
+                return "XYZ"[axis], float(self.points[:, axis].mean())
+        return None
+
+    def words(self):
+        at = self.plane()
+        return f"plane {at[0]} = {at[1]:.6g}" if at else "curved or inclined"
+
+
+class MeshGroups:
+    """What a starter needs to know of a mesh: reads the concept's file."""
+
+    def __init__(self, mesh):
+        with mesh.open() as file:
+            self.dimension = contents.dimension(file)
+            self.points = contents.points(file)
+            types, kind = contents.cell_types(file)
+            offset, nodes = contents.connectivity(file)
+            members = contents.groups(file, "cells")
+        of_family = {"POI": 0, "SEG": 1, "TRIA": 2, "QUAD": 2}
+        dimension = numpy.array([of_family.get(re.match("[A-Z]*", t)[0], 3) for t in types])[kind]
+        self._part = self._parts(offset, nodes, dimension == self.dimension)
+        cells = lambda group: numpy.concatenate([nodes[offset[c]:offset[c + 1]] for c in group])  # noqa: E731
+        self.bodies, self.skins = {}, []
+        for name, group in members.items():
+            if len(group) and (dimension[group] == self.dimension).all():
+                self.bodies[name] = set(self._part[cells(group)].tolist())
+            elif len(group) and (dimension[group] == self.dimension - 1).all():
+                own = numpy.unique(cells(group))
+                first = nodes[offset[group]], nodes[offset[group] + 1]
+                length = float(numpy.linalg.norm(self.points[first[0]] - self.points[first[1]], axis=1).mean())
+                parts = numpy.unique(self._part[own])
+                self.skins.append(Skin(name, self.points[own], int(parts[0]) if len(parts) == 1 else -1, length))
+
+    def _parts(self, offset, nodes, body):
+        """The connected part of each node, by its lowest node; -1 where no body cell has the node."""
+        label = numpy.arange(len(self.points))
+        cell = numpy.repeat(numpy.arange(len(body)), numpy.diff(offset))
+        inside = body[cell]
+        cell, nodes = cell[inside], nodes[inside]
+        while len(nodes):
+            least = numpy.full(len(body), len(label))
+            numpy.minimum.at(least, cell, label[nodes])
+            new = label.copy()
+            numpy.minimum.at(new, nodes, least[cell])
+            new = new[new]
+            if (new == label).all():
+                break
+            label = new
+        used = numpy.zeros(len(label), bool)
+        used[nodes] = True
+        return numpy.where(used, label, -1)
+
+    def pairs(self):
+        """[(slave, master)] of skins that face each other on different parts, the closest first; each skin once."""
+        found = []
+        for i, a in enumerate(self.skins):
+            for b in self.skins[i + 1:]:
+                if a.part != b.part and (a.part >= 0 or b.part >= 0):
+                    share = max(_closeness(a, b), _closeness(b, a))
+                    if share >= _share:
+                        slave, master = (a, b) if b.part < 0 or (a.part >= 0 and a.length <= b.length) else (b, a)
+                        found.append((share, slave, master))
+        taken, pairs = set(), []
+        for _, slave, master in sorted(found, key=lambda row: -row[0]):
+            if slave.name not in taken and master.name not in taken:
+                taken |= {slave.name, master.name}
+                pairs.append((slave, master))
+        return pairs
+
+
+def _closeness(a, b):
+    """The part of a's nodes that are near a node of b."""
+    p, q = (s.points[:: max(1, len(s.points) // _sample)] for s in (a, b))
+    limit = _near * max(a.length, b.length)
+    near = sum(int((((row[:, None, :] - q[None, :, :]) ** 2).sum(axis=2).min(axis=1) <= limit * limit).sum())
+               for row in numpy.array_split(p, max(1, len(p) // 100)))
+    return near / len(p)
+
+
+def study(groups, mesh_file, read_format):
+    """The text of the starter study."""
+    pairs = groups.pairs()
+    in_contact = {skin.name for pair in pairs for skin in pair}
+    free = [skin for skin in groups.skins if skin.name not in in_contact]
+    axis = "XYZ"[groups.dimension - 1]
+    flat = [skin for skin in free if skin.plane() and skin.plane()[0] == axis and skin.part >= 0]
+    held = min(flat, key=lambda skin: skin.plane()[1], default=None)
+    pressed = max((skin for skin in flat if skin is not held), key=lambda skin: skin.plane()[1], default=None)
+    degrees = ["DX", "DY", "DZ"][:groups.dimension]
+    fixed = ", ".join(f"{d}=0.0" for d in degrees)
+    modelisation = "3D" if groups.dimension == 3 else "D_PLAN"
+    lines = [
+        f"# A contact study of {mesh_file}, written by `lacon new`: a beginning. What is marked CHOOSE is a guess.",
+        "#", f"#   lacon check THIS_FILE --unit 20={mesh_file}",
+        f"#   lacon THIS_FILE --unit 20={mesh_file} --unit 80=result.med", "#",
+        f"# Bodies: {', '.join(groups.bodies) or 'the mesh has no group of body cells'}",
+        "# Skins:", *[f"#   {skin.name}: {skin.words()}{'' if skin.part >= 0 else ', on no body or on several'}" for skin in groups.skins], "",
+        "DEBUT()", "", f"MESH = LIRE_MAILLAGE(UNITE=20, FORMAT={read_format!r})"]
+    skins = tuple(skin.name for skin in groups.skins if skin.part >= 0)
+    if skins:
+        lines += [f"MESH = MODI_MAILLAGE(reuse=MESH, MAILLAGE=MESH, ORIE_PEAU=_F(GROUP_MA_PEAU={skins!r}))"]
+    cut = "MESH"
+    if pairs:
+        cut = "CUT"
+        lines += ["", "# the slave skins are cut into macro-elements: all of them in one command",
+                  f"CUT = CREA_MAILLAGE(MAILLAGE=MESH, DECOUPE_LAC=_F(GROUP_MA_ESCL={tuple(slave.name for slave, _ in pairs)!r}))"]
+    else:
+        lines += ["", "# no two skins of different bodies lie close to each other: CHOOSE a slave and a master, and add",
+                  "#   CUT = CREA_MAILLAGE(MAILLAGE=MESH, DECOUPE_LAC=_F(GROUP_MA_ESCL='SLAVE'))",
+                  "#   CONTACT = DEFI_CONTACT(MODELE=MODEL, FORMULATION='CONTINUE', ALGO_RESO_GEOM='NEWTON', ALGO_RESO_CONT='NEWTON',",
+                  "#                          ZONE=_F(APPARIEMENT='MORTAR', ALGO_CONT='LAC', GROUP_MA_ESCL='SLAVE', GROUP_MA_MAIT='MASTER'))"]
+    plane = "" if groups.dimension == 3 else "  # CHOOSE: D_PLAN, C_PLAN or AXIS"
+    lines += ["", f"MODEL = AFFE_MODELE(MAILLAGE={cut}, AFFE=_F(TOUT='OUI', PHENOMENE='MECANIQUE', MODELISATION={modelisation!r})){plane}",
+              "", "STEEL = DEFI_MATERIAU(ELAS=_F(E=210000.0, NU=0.3))  # CHOOSE; one AFFE for each material, by GROUP_MA",
+              f"MATTER = AFFE_MATERIAU(MAILLAGE={cut}, AFFE=_F(TOUT='OUI', MATER=STEEL))", ""]
+    if held:
+        lines += [f"# CHOOSE what is held; {held.name} is the lowest plane skin without contact",
+                  f"HELD = AFFE_CHAR_CINE(MODELE=MODEL, MECA_IMPO=_F(GROUP_MA={held.name!r}, {fixed}))"]
+    else:
+        whole = next(iter(groups.bodies), None)
+        where = f"GROUP_MA={whole!r}" if whole else "TOUT='OUI'"
+        lines += ["# CHOOSE what is held: no skin is plainly a support, so this holds a whole body",
+                  f"HELD = AFFE_CHAR_CINE(MODELE=MODEL, MECA_IMPO=_F({where}, {fixed}))"]
+    excit = ["_F(CHARGE=HELD)"]
+    if pressed:
+        lines += [f"# CHOOSE the loads; {pressed.name} is the highest plane skin without contact",
+                  f"LOAD = AFFE_CHAR_MECA(MODELE=MODEL, PRES_REP=_F(GROUP_MA={pressed.name!r}, PRES=1.0))",
+                  "RAMP = DEFI_FONCTION(NOM_PARA='INST', VALE=(0.0, 0.0, 1.0, 1.0))"]
+        excit.append("_F(CHARGE=LOAD, FONC_MULT=RAMP)")
+    else:
+        lines += ["# CHOOSE the loads: LOAD = AFFE_CHAR_MECA(MODELE=MODEL, PRES_REP=_F(GROUP_MA='...', PRES=1.0)), and name it in EXCIT"]
+    if len(groups.bodies) > 1 or pairs:
+        lines += ["# each body must be held against rigid motion, by supports or by friction-free contact that closes"]
+    lines += [""]
+    if pairs:
+        zone = [f"    _F(APPARIEMENT='MORTAR', ALGO_CONT='LAC', GROUP_MA_ESCL={slave.name!r}, GROUP_MA_MAIT={master.name!r}),"
+                for slave, master in pairs]
+        lines += ["# CHOOSE: the slave is the skin with the finer mesh; swap the names here and in DECOUPE_LAC for the other way round",
+                  "CONTACT = DEFI_CONTACT(MODELE=MODEL, FORMULATION='CONTINUE', ALGO_RESO_GEOM='NEWTON', ALGO_RESO_CONT='NEWTON', ZONE=(",
+                  *zone, "))", ""]
+    lines += ["STEPS = DEFI_LIST_REEL(DEBUT=0.0, INTERVALLE=_F(JUSQU_A=1.0, NOMBRE=1))",
+              "TIMES = DEFI_LIST_INST(DEFI_LIST=_F(LIST_INST=STEPS), ECHEC=_F(EVENEMENT='ERREUR', ACTION='DECOUPE'))",
+              "RESULT = STAT_NON_LINE(MODELE=MODEL, CHAM_MATER=MATTER,", f"                       EXCIT=({', '.join(excit)},),",
+              *(["                       CONTACT=CONTACT,"] if pairs else []),
+              "                       COMPORTEMENT=_F(TOUT='OUI', RELATION='ELAS', DEFORMATION='PETIT'),",
+              "                       INCREMENT=_F(LIST_INST=TIMES),",
+              "                       CONVERGENCE=_F(RESI_GLOB_RELA=1.0e-6, ITER_GLOB_MAXI=50))", "",
+              "RESULT = CALC_CHAMP(reuse=RESULT, RESULTAT=RESULT, CONTRAINTE='SIEF_NOEU')",
+              "IMPR_RESU(FORMAT='MED', UNITE=80, RESU=_F(RESULTAT=RESULT))", "", "FIN()", ""]
+    return "\n".join(lines)
+
+
+def run(arguments):
+    """@return exit status"""
+    parser = argparse.ArgumentParser(prog="lacon new", description="Writes a starter study from a mesh's groups.")
+    parser.add_argument("mesh", metavar="MESH", help=f"the mesh: {', '.join(read_formats)}")
+    parser.add_argument("--out", metavar="FILE", help="the command file to write, which must not be there; otherwise MESH.comm")
+    options = parser.parse_args(arguments)
+    source = pathlib.Path(options.mesh)
+    if source.suffix.lower() not in read_formats:
+        parser.error(f"{source}: a file named {', '.join(read_formats)} is needed")
+    target = pathlib.Path(options.out or source.with_suffix(".comm").name)
+    if target.exists():
+        parser.error(f"{target} is there already: give another name with --out, or remove it")
+    form = read_formats[source.suffix.lower()]
+    with tempfile.TemporaryDirectory(prefix="lacon_new_") as folder:
+        this = Study(pathlib.Path(folder) / "new.base", {20: str(source)}, provided=execution.provided_names())
+        made = []
+
+        def work():
+            execution.run_text(this, "lacon new", f"DEBUT()\nMESH = LIRE_MAILLAGE(UNITE=20, FORMAT={form!r})\n")
+            made.append(study(MeshGroups(this.names.values["MESH"]), os.fspath(source), form))
+
+        status, _ = launch.run_study(this, work)
+    if status == launch.done:
+        try:
+            target.write_text(made[0], encoding="utf-8")
+        except OSError as error:
+            parser.error(f"{target}: {error.strerror}")
+        print(f"{target}: a starter study; look for CHOOSE in it, then: lacon check {target} --unit 20={source}")
+    return status
