@@ -1,7 +1,6 @@
 #include "lacon/operators/program/program.hpp"
 
-#include <spdlog/sinks/stdout_sinks.h>
-#include <spdlog/spdlog.h>
+#include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
@@ -12,6 +11,7 @@
 #include <vector>
 
 #include "lacon/catalog/messages.hpp"
+#include "lacon/operators/program/blas.hpp"
 
 namespace lacon {
 namespace {
@@ -21,6 +21,7 @@ struct Outcome {
   std::vector<Message> messages;
   std::vector<std::pair<std::string, double>> seconds, counts;
   std::string command, source;
+  bool verbose = false;
 } outcome;
 
 double now() { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
@@ -47,6 +48,8 @@ bool write_status(const std::string& file, int status) {
   };
   json["seconds"] = sums(outcome.seconds);
   json["counts"] = sums(outcome.counts);
+  if (const std::optional<Blas> blas = present_blas())
+    json["blas"] = {{"library", blas->library}, {"kernel", blas->kernel}, {"threads", blas->threads}};
   std::ofstream out(file);
   out << json.dump(1) << '\n' << std::flush;
   return out.good();
@@ -68,21 +71,24 @@ int guarded(const std::function<void()>& work) {
   return internal_error;
 }
 
+std::string version() {
+  const std::optional<Blas> blas = present_blas();
+  return LACON_VERSION +
+         (blas ? fmt::format("\n{}, kernel {}, {} thread(s)", blas->library, blas->kernel, blas->threads) : std::string());
+}
+
 /// Read the command line, which adds the options that every program has, then do the work.
 int run(int argc, char** argv, CLI::App& app, const std::function<void()>& work) {
+  set_up_blas(argv);
   std::string status_file;
-  bool verbose = false;
   app.add_option("--status", status_file, "write the outcome to this JSON file");
-  app.add_flag("-v,--verbose", verbose, "log more on stderr");
-  app.set_version_flag("--version", LACON_VERSION);
+  app.add_flag("-v,--verbose", outcome.verbose, "say on stderr how long each phase took, and what was counted");
+  app.set_version_flag("--version", version);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
     return app.exit(error) == 0 ? done : user_error;
   }
-  spdlog::set_default_logger(spdlog::stderr_logger_st("lacon"));
-  spdlog::set_pattern("%v");
-  spdlog::set_level(verbose ? spdlog::level::debug : spdlog::level::warn);
   set_message_sink(print);
   const double start = now();
   const int status = guarded(work);
@@ -122,7 +128,13 @@ int run_tool(int argc, char** argv, CLI::App& app, const std::function<void()>& 
 Phase::Phase(std::string name) : name_(std::move(name)), start_(now()) {}
 Phase::~Phase() { add_to_phase(std::move(name_), now() - start_); }
 
-void add_to_phase(std::string name, double seconds) { outcome.seconds.emplace_back(std::move(name), seconds); }
-void add_to_count(std::string name, double amount) { outcome.counts.emplace_back(std::move(name), amount); }
+void add_to_phase(std::string name, double seconds) {
+  if (outcome.verbose && seconds > 0) fmt::print(stderr, "    {:<24} {:12.6f} s\n", name, seconds);
+  outcome.seconds.emplace_back(std::move(name), seconds);
+}
+void add_to_count(std::string name, double amount) {
+  if (outcome.verbose && amount != 0) fmt::print(stderr, "    {:<24} {:12.6g}\n", name, amount);
+  outcome.counts.emplace_back(std::move(name), amount);
+}
 
 }  // namespace lacon

@@ -85,19 +85,19 @@ class OperatorTest(unittest.TestCase):
             order["plugins"] = [str(path) for path in plugins]
         return self.run_order(row["operator"], order, environment)
 
-    def run_order(self, operator, order, environment=None):
+    def run_order(self, operator, order, environment=None, options=()):
         """Run an operator on an order (a dictionary, or text as it is)."""
         path = self.folder / "order.json"
         path.write_text(order if isinstance(order, str) else json.dumps(order, indent=1), encoding="utf-8")
         status = self.folder / "status.json"
         status.unlink(missing_ok=True)
-        done = subprocess.run([BIN / operator, path, "--status", status], capture_output=True, text=True, timeout=SECONDS,
+        done = subprocess.run([BIN / operator, path, "--status", status, *options], capture_output=True, text=True, timeout=SECONDS,
                               stdin=subprocess.DEVNULL, env={**os.environ, **(environment or {})})
         self.assertTrue(status.exists(), f"{operator} wrote no status, exit {done.returncode}\n{done.stderr}")
         outcome = json.loads(status.read_text(encoding="utf-8"))
         self.assertEqual(outcome["status"], done.returncode)
         return types.SimpleNamespace(status=done.returncode, stdout=done.stdout, stderr=done.stderr,
-                                     messages=outcome["messages"], seconds=outcome["seconds"], counts=outcome["counts"],
+                                     messages=outcome["messages"], seconds=outcome["seconds"], counts=outcome["counts"], blas=outcome.get("blas"),
                                      order=path)
 
     def snapshot(self):

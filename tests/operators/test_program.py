@@ -1,0 +1,88 @@
+"""What every operator's command line has: --version, --verbose, and the kernels of OpenBLAS that it chooses at its start."""
+
+import os
+import pathlib
+import re
+import subprocess
+import unittest
+from unittest import mock
+
+from lacon_test import BIN
+from test_stat_non_line import TwoSquares
+
+UNKNOWN_PROCESSOR = pathlib.Path(os.environ.get("LACON_BINARY_DIR", "build/release")).resolve() / "tests/unknown_processor.so"
+
+
+def processor():
+    """(maker, flags) of the first processor."""
+    text = pathlib.Path("/proc/cpuinfo").read_text(encoding="utf-8").partition("\n\n")[0]
+    facts = {key.strip(): value.strip() for key, _, value in (line.partition(":") for line in text.splitlines())}
+    return facts.get("vendor_id"), set(facts.get("flags", "").split())
+
+
+def newest_kernel():
+    """The newest of OpenBLAS's kernels that the processor has all instructions for; None where that is the oldest."""
+    maker, flags = processor()
+    for kernel, needs in (("SkylakeX", "avx512f avx512cd avx512bw avx512dq avx512vl"), ("Zen" if maker == "AuthenticAMD" else "Haswell", "avx2 fma"),
+                          ("Sandybridge", "avx"), ("Nehalem", "sse4_2")):
+        if set(needs.split()) <= flags:
+            return kernel
+    return None
+
+
+class Program(TwoSquares):
+    def setUp(self):
+        super().setUp()
+        self.enterContext(mock.patch.dict(os.environ))
+        for name in ("OPENBLAS_CORETYPE", "OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS"):
+            os.environ.pop(name, None)
+
+    def calculates_with(self, **environment):
+        """(what the outcome says of OpenBLAS, kernels of the processes that were started)"""
+        with mock.patch.dict(os.environ, {"OPENBLAS_VERBOSE": "2", **environment}):
+            run = self.solve()
+        self.assertEqual(run.status, 0, run.stderr)
+        return run.blas, re.findall(r"^Core: (\w+)$", run.stderr, re.MULTILINE)
+
+    def test_the_kernel_that_a_user_has_set_stands(self):
+        blas, kernels = self.calculates_with(OPENBLAS_CORETYPE="Prescott")
+        self.assertEqual((blas["kernel"], kernels), ("Prescott", ["Prescott"]))
+
+    def test_a_processor_that_openblas_knows_needs_one_process(self):
+        blas, kernels = self.calculates_with()
+        self.assertEqual(kernels[-1], blas["kernel"])
+        self.assertLessEqual(len(kernels), 2)
+
+    @unittest.skipUnless(newest_kernel(), "the processor has nothing newer than SSE3")
+    @unittest.skipUnless(UNKNOWN_PROCESSOR.exists(), "built with the address sanitizer")
+    def test_on_a_processor_that_openblas_does_not_know_the_newest_kernel_is_taken(self):
+        _, kernels = self.calculates_with(LD_PRELOAD=str(UNKNOWN_PROCESSOR))
+        self.assertEqual((len(kernels), kernels[-1]), (2, newest_kernel()))
+        _, kernels = self.calculates_with(LD_PRELOAD=str(UNKNOWN_PROCESSOR), OPENBLAS_CORETYPE="Nehalem")
+        self.assertEqual(kernels, ["Nehalem"])
+
+    def test_openblas_has_one_thread_unless_the_user_says_otherwise(self):
+        self.assertEqual(self.calculates_with()[0]["threads"], 1)
+        if os.cpu_count() > 1:
+            self.assertEqual(self.calculates_with(OPENBLAS_NUM_THREADS="2")[0]["threads"], 2)
+
+    def test_the_version_says_what_it_calculates_with(self):
+        run = subprocess.run([BIN / "stat_non_line", "--version"], capture_output=True, text=True, timeout=10, check=True)
+        self.assertRegex(run.stdout, r"\A\d+\.\d+\.\d+\nOpenBLAS \d+\.\d+\.\d+, kernel \w+, 1 thread\(s\)\n\Z")
+        run = subprocess.run([BIN / "affe_modele", "--version"], capture_output=True, text=True, timeout=10, check=True)
+        self.assertRegex(run.stdout, r"\A\d+\.\d+\.\d+\n\Z")
+
+    def test_verbose_says_phases_and_counts(self):
+        quiet = self.solve()
+        self.assertEqual(quiet.stderr, "")
+        run = self.run_order("stat_non_line", quiet.order.read_text(encoding="utf-8"), options=["--verbose"])
+        self.assertEqual((run.status, run.stdout.count("\n")), (0, quiet.stdout.count("\n")))
+        said = re.findall(r"^    (\S.*?) +([\d.e+-]+)( s)?$", run.stderr, re.MULTILINE)
+        self.assertEqual(len(said), run.stderr.count("\n"), run.stderr)
+        for name in ("read", "pairing", "elements", "factorisation"):
+            self.assertAlmostEqual(sum(float(value) for what, value, unit in said if what == name and unit), run.seconds[name], delta=1e-4)
+        self.assertEqual(sum(float(value) for what, value, unit in said if what == "solutions" and not unit), run.counts["solutions"])
+
+
+if __name__ == "__main__":
+    unittest.main()
