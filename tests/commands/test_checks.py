@@ -104,6 +104,14 @@ class Readings(LauncherTest):
         self.assertEqual({c["status"] for c in made}, {"OK"})
         self.assertIn(f"{len(expected)} checks: {len(expected)} OK, 0 NOOK, 0 DIFF", run.out)
 
+    def test_vale_abs_compares_magnitudes(self):
+        """LAGS_C is -25, and so may the references be; a magnitude that differs is missed."""
+        place = "INST=1.0, NOM_CHAM='DEPL', NOM_CMP='LAGS_C', NOEUD='N2', VALE_ABS='OUI', REFERENCE='ANALYTIQUE'"
+        run, made = self.checks(f"{place}, VALE_CALC=-25.0, VALE_REFE=-25.0", f"{place}, VALE_CALC=-25.0, VALE_REFE=25.0",
+                                f"{place}, VALE_CALC=25.0, VALE_REFE=-25.0", f"{place}, VALE_CALC=25.0, VALE_REFE=-24.0")
+        self.assertEqual([c["status"] for c in made], ["OK", "OK", "OK", "NOOK"], run.out)
+        self.assertEqual([(c["value"], c["vale_refe"]["value"]) for c in made], [(25.0, 25.0)] * 3 + [(25.0, 24.0)])
+
     def test_the_json_has_every_figure(self):
         _, made = self.checks("INST=1.0, NOM_CHAM='DEPL', NOM_CMP='DX', NOEUD='N4', VALE_CALC=4.1, VALE_REFE=5.0, REFERENCE='ANALYTIQUE',"
                               "PRECISION=0.01, LEGENDE='a word'")

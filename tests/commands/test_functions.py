@@ -66,10 +66,11 @@ assert line.Ordo() == [2, 2]
     def test_checks(self):
         run = self.study("""
 TEST_FONCTION(VALEUR=(_F(FONCTION=f, VALE_PARA=2., VALE_CALC=5.0, VALE_REFE=5.001, REFERENCE='ANALYTIQUE'),
-                      _F(FONCTION=two, VALE_PARA=(2., 3.), VALE_CALC=6.0), _F(FONCTION=quadratic, VALE_PARA=3., VALE_CALC=9.5)))
+                      _F(FONCTION=two, VALE_PARA=(2., 3.), VALE_CALC=6.0), _F(FONCTION=quadratic, VALE_PARA=3., VALE_CALC=9.5),
+                      _F(FONCTION=f, VALE_PARA=2., VALE_CALC=-5.0, VALE_ABS='OUI')))
 """)
         self.assertEqual((run.status, run.last), (0, "--- DIAGNOSTIC JOB : OK"))
-        self.assertIn("3 checks: 2 OK, 0 NOOK, 1 DIFF", run.out)
+        self.assertIn("4 checks: 3 OK, 0 NOOK, 1 DIFF", run.out)
         self.assertIn("X 2, Y 3", run.out)
 
     def test_calculated_tables(self):

@@ -78,6 +78,21 @@ assert t.para[-5:] == ['RESULT_X', 'RESULT_Y', 'MOMENT_X', 'MOMENT_Y', 'MOMENT_Z
 assert [t.rows[0][n] for n in t.para[-5:]] == [15, -25, 0, 0, -15], t
 """))
 
+    def test_a_resultant_has_the_names_of_its_components(self):
+        """Without MOMENT; with it each component is of the axis that its name ends in: u = (0, 0, 3) at (0, 1), (1, 1), (2, 1) turns about X and Y."""
+        self.ok(self.action("INST=1.0, GROUP_NO='TOP', NOM_CHAM='DEPL', RESULTANTE=('LAGS_C', 'DX'), OPERATION='EXTRACTION'", """
+assert t.para[-2:] == ['LAGS_C', 'DX'] and [t.rows[0][n] for n in t.para[-2:]] == [-25, 15] and len(t) == 1, t
+"""))
+        self.ok(self.run_study(STUDY + self.field("DEPL_R", ["DX", "DY", "DZ"], [[0.0, 0.0, 3.0]] * 3) + """
+def resultant(**more):
+    return table(NOM_CMP=None, RESULTANTE='DZ', **more)
+t = resultant()
+assert t.para[-1] == 'DZ' and t.DZ == [9.0] and not any(name.startswith('RESULT') for name in t.para), t
+t = resultant(MOMENT=('DRX', 'DRY', 'DRZ'), POINT=(0.0, 0.0))
+assert t.para[-4:] == ['RESULT_Z', 'MOMENT_X', 'MOMENT_Y', 'MOMENT_Z'] and [t.rows[0][n] for n in t.para[-4:]] == [9, 9, -9, 0], t
+FIN()
+"""))
+
     def field(self, quantity, components, values):
         """Python that makes a field F of its own at nodes 4, 5 and 6, at (0, 1), (1, 1) and (2, 1)."""
         return f"""

@@ -86,13 +86,14 @@ def judge_calculated(value, target, tolerance, criterion, magnitude=None):
 
 
 def conclude(call, check, test):
-    """Judge the value of a check as its keywords say: VALE_ABS, then VALE_CALC and VALE_REFE, for integers and texts VALE_CALC_I, VALE_CALC_K.
+    """Judge the value of a check as its keywords say: against VALE_CALC and VALE_REFE, for integers and texts VALE_CALC_I, VALE_CALC_K.
 
-    Of several references the nearest one counts. @return the check
+    VALE_ABS compares magnitudes: of the value and of what it is compared with. Of several references the nearest one counts. @return the check
     """
-    if test.get("VALE_ABS") == "OUI":
-        check.value = abs(check.value)
     suffix = next(s for s in ("", "_I", "_K") if "VALE_CALC" + s in test)
+    if test.get("VALE_ABS") == "OUI" and suffix != "_K":
+        check.value = abs(check.value)
+        test = {**test, **{key: _magnitudes(test[key]) for key in ("VALE_CALC" + suffix, "VALE_REFE" + suffix) if key in test}}
     criterion, tolerance = test["CRITERE"][0], test["TOLE_MACHINE"][0]
     targets = {name: _nearest_target(check.value, test[name + suffix]) for name in ("VALE_CALC", "VALE_REFE") if name + suffix in test}
     if suffix == "":
@@ -103,6 +104,10 @@ def conclude(call, check, test):
         calculated, reference = (kind(check.value, targets[n], 0, "ABSOLU") if n in targets else None for n in ("VALE_CALC", "VALE_REFE"))
     check.judge(calculated, reference, test.get("REFERENCE", ""), call.study.strict_checks)
     return check
+
+
+def _magnitudes(targets):
+    return list(map(abs, targets)) if isinstance(targets, list) else abs(targets)
 
 
 def _nearest_target(value, targets):

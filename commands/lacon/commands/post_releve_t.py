@@ -120,19 +120,26 @@ class _Frame:
             yield {"QUANTITE": ("K16", what), **{name: ("R", float(v)) for name, v in zip(self.names, row)}}
 
     def resultant(self):
-        """One row: sums of the components RESULTANTE and, with MOMENT, moments about POINT; MOMENT's own components are added."""
+        """One row: sums of the components RESULTANTE under their names; with MOMENT under those of axes, with moments about POINT, to which
+        MOMENT's own components are added."""
         action = self.action
-        sums = numpy.where(self.there, self.values, 0.0).sum(axis=0)
-        row = {f"RESULT_{axis}": ("R", float(v)) for axis, v in zip("XYZ", sums)}
-        if "MOMENT" in action:
-            forces = numpy.zeros((len(self.nodes), 3))
-            forces[:, :len(self.names)] = numpy.where(self.there, self.values, 0.0)
-            point = numpy.zeros(3)
-            point[:len(action["POINT"])] = action["POINT"]
-            moment = numpy.cross(self.points - point, forces).sum(axis=0)
-            for k, name in enumerate(action["MOMENT"]):
-                if name in self.field.components:
-                    column = self.field.components.index(name)
-                    moment[k] += self.all_values[self.nodes, column][self.all_there[self.nodes, column]].sum()
-            row.update((f"MOMENT_{axis}", ("R", float(v))) for axis, v in zip("XYZ", moment))
-        return [row]
+        given = numpy.where(self.there, self.values, 0.0)
+        sums = [("R", float(v)) for v in given.sum(axis=0)]
+        if "MOMENT" not in action:
+            return [dict(zip(self.names, sums))]
+        along = _axes(self.names)
+        forces, point = numpy.zeros((len(self.nodes), 3)), numpy.zeros(3)
+        forces[:, along] = given
+        point[:len(action["POINT"])] = action["POINT"]
+        moment = numpy.cross(self.points - point, forces).sum(axis=0)
+        for k, name in zip(_axes(action["MOMENT"]), action["MOMENT"]):
+            if name in self.field.components:
+                column = self.field.components.index(name)
+                moment[k] += self.all_values[self.nodes, column][self.all_there[self.nodes, column]].sum()
+        return [{**{f"RESULT_{'XYZ'[k]}": v for k, v in zip(along, sums)}, **{f"MOMENT_{axis}": ("R", float(v)) for axis, v in zip("XYZ", moment)}}]
+
+
+def _axes(names):
+    """Indices of the axes that the names of components end in; where they do not say, X, Y, Z in this order."""
+    said = ["XYZ".find(name[-1]) for name in names]
+    return said if -1 not in said and len(set(said)) == len(said) else list(range(len(names)))
