@@ -8,10 +8,26 @@ import sys
 from . import version
 from .commands import checks
 from .core import messages
+from .core.plugins import operator_folder
 from .run import execution, launch, study
 
 #: `lacon NAME ...` that is no study: modules of tools/
 tools = ("help", "inspect", "convert", "check", "new")
+
+
+class _Version(argparse.Action):
+    """Print the version; the operator that solves tells its library, kernel and threads."""
+
+    def __call__(self, parser, *_):
+        import subprocess  # start-up: any run
+
+        print(f"lacon {version}")
+        try:
+            said = subprocess.run([operator_folder() / "stat_non_line", "--version"], capture_output=True, text=True, check=True).stdout
+            print(said.partition("\n")[2], end="")
+        except (OSError, subprocess.SubprocessError):
+            pass  # a launcher without operators has a version too
+        parser.exit()
 
 
 def parse(arguments):
@@ -26,8 +42,9 @@ def parse(arguments):
     parser.add_argument("--checks", choices=("all",), help="all: a missed VALE_CALC is NOOK, not DIFF")
     parser.add_argument("--json", metavar="FILE", help="write every check with its figures, and where the time went")
     parser.add_argument("--timings", action="store_true", help="print where the time went")
+    parser.add_argument("--verbose", action="store_true", help="operators say each phase with its time, and each count, as they come")
     parser.add_argument("--threads", type=int, metavar="N", help="threads of operators")
-    parser.add_argument("--version", action="version", version=f"lacon {version}")
+    parser.add_argument("--version", action=_Version, nargs=0, help="print the version, and what operators calculate with")
     options = parser.parse_args(arguments)
     if options.threads is not None and options.threads < 1:
         parser.error("--threads: give a number of at least 1")
@@ -62,7 +79,7 @@ def _run(options, units):
         threads = max(1, int(export.parameters["ncpus"]))
     base = options.base or export.base or export.commands[0].with_suffix(".base")
     run = study.Study(base, export.units, options.fresh, threads, options.checks == "all", execution.provided_names(),
-                      options.force)
+                      options.force, options.verbose)
     for name in export.commands + export.named + export.data:
         run.protect(name)
 

@@ -129,11 +129,11 @@ Phase::Phase(std::string name) : name_(std::move(name)), start_(now()) {}
 Phase::~Phase() { add_to_phase(std::move(name_), now() - start_); }
 
 void add_to_phase(std::string name, double seconds) {
-  if (outcome.verbose && seconds > 0) fmt::print(stderr, "    {:<24} {:12.6f} s\n", name, seconds);
+  if (outcome.verbose && seconds > 0) fmt::print(stderr, "  {:<24} {:12.6f} s\n", name, seconds);
   outcome.seconds.emplace_back(std::move(name), seconds);
 }
 void add_to_count(std::string name, double amount) {
-  if (outcome.verbose && amount != 0) fmt::print(stderr, "    {:<24} {:12.6g}\n", name, amount);
+  if (outcome.verbose && amount != 0) fmt::print(stderr, "  {:<24} {:12.6g}\n", name, amount);
   outcome.counts.emplace_back(std::move(name), amount);
 }
 

@@ -10,6 +10,7 @@
 #include <string>
 
 #include "lacon/operators/crea_maillage/order_change.hpp"
+#include "lacon/operators/program/blas.hpp"
 #include "yardsticks.hpp"
 
 namespace lacon::bench {
@@ -110,6 +111,7 @@ Mesh box(CellType type, int n, int layers) {
 
 int main(int argc, char** argv) {
   using namespace lacon::bench;
+  lacon::set_up_blas(argv);
   benchmark::Initialize(&argc, argv);
   if (benchmark::ReportUnrecognizedArguments(argc, argv)) return 2;
   dgemm = dgemm_gflops();

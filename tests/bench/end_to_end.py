@@ -32,7 +32,6 @@ sys.path[:0] = [str(SOURCE / "commands/studies"), str(SOURCE / "commands")]
 
 import calculix  # noqa: E402
 import tables  # noqa: E402
-from lacon.base.orders import openblas_kernel  # noqa: E402
 from meshes import brick, union, write_med  # noqa: E402
 from results import MeshOfBase, Result, identifier_of  # noqa: E402
 
@@ -147,7 +146,7 @@ def peer(name, folder, wall, patience):
     return {"name": name, "ratio": found["seconds"] / wall, **found}
 
 
-def parts(build, environment, folder):
+def parts(build, folder):
     """Every case of the Google Benchmarks: {"program", "name", counters}, growth rates left out."""
     rows = []
     for program in PARTS:
@@ -156,7 +155,7 @@ def parts(build, environment, folder):
             print(f"bench_{program} is not there: left out (libbenchmark-dev; cmake --build --preset release --target benches)")
             continue
         subprocess.run([executable, f"--benchmark_out={out}", "--benchmark_out_format=json", "--benchmark_min_time=0.2"], check=True,
-                       env=environment, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+                       stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
         data = json.loads(out.read_text())
         yardsticks = {name: float(data["context"][name]) for name in ("dgemm_gflops", "copy_gbytes")}
         rows += [{"program": program, **yardsticks, **{key: value for key, value in case.items() if key in tables.COUNTERS},
@@ -164,22 +163,21 @@ def parts(build, environment, folder):
     return rows
 
 
-def texts(build, environment, large):
+def texts(build, large):
     """What start_up.py and cutting.py print: name -> text."""
     def said(script, *arguments):
-        return subprocess.run([sys.executable, SOURCE / "tests/bench" / script, build, *arguments], check=True, capture_output=True, text=True,
-                              env=environment).stdout
+        return subprocess.run([sys.executable, SOURCE / "tests/bench" / script, build, *arguments], check=True, capture_output=True, text=True).stdout
 
     return {"start-up": said("start_up.py").partition("\nWhere one run")[0].strip(),
             "cutting": "\n\n".join(said("cutting.py", millions).strip() for millions in (("1", "5") if large else ("1",)))}
 
 
-def machine_of(build, environment):
+def machine_of(build):
     """What the machine can do now (bench_machine), and what it is."""
     program = build / "tests/bench_machine"
     if not program.exists():
         sys.exit(f"{program} is not there: cmake --build --preset release --target benches")
-    done = subprocess.run([program], check=True, capture_output=True, text=True, env=environment)
+    done = subprocess.run([program], check=True, capture_output=True, text=True)
     with open("/proc/cpuinfo", encoding="ascii", errors="replace") as file:
         models = [line.partition(":")[2].strip() for line in file if line.startswith("model name")]
     return {**json.loads(done.stdout), "processor": models[0] if models else "unknown", "cores": os.cpu_count(),
@@ -202,22 +200,21 @@ def main():
     if unknown := [name for name in names if name not in NAMES]:
         parser.error(f"{unknown[0]}: the studies are {' '.join(NAMES)}")
     build = options.build.resolve()
-    environment = {**os.environ, "OPENBLAS_NUM_THREADS": "1", **({"OPENBLAS_CORETYPE": openblas_kernel()} if openblas_kernel() else {})}
-    measured, measured_at = {"machine": machine_of(build, environment), "studies": [], "calculix": [], "parts": [], "texts": {}}, time.monotonic()
+    measured, measured_at = {"machine": machine_of(build), "studies": [], "calculix": [], "parts": [], "texts": {}}, time.monotonic()
     with_calculix = not options.no_calculix and calculix.program()
     if not with_calculix:
         print("CalculiX is left out" + ("" if options.no_calculix else ": no ccx is installed (Debian: calculix-ccx)"))
     with tempfile.TemporaryDirectory() as folder:
         folder = pathlib.Path(folder)
         if options.parts:
-            measured["parts"] = parts(build, environment, folder)
-            measured["texts"] = texts(build, environment, options.all)
+            measured["parts"] = parts(build, folder)
+            measured["texts"] = texts(build, options.all)
         for name in names:
             if not mesh_file(name, folder):
                 print(f"{name} is left out: no mesh {MESHES / (name.lower() + '.med')} (LACON_SHARED_BENCH)")
                 continue
             if time.monotonic() - measured_at > STALE:
-                measured["machine"], measured_at = machine_of(build, environment), time.monotonic()
+                measured["machine"], measured_at = machine_of(build), time.monotonic()
             yardsticks = {key: measured["machine"][key] for key in ("factorisation_seconds", "dgemm_gflops", "copy_gbytes")}
             rows = [best_study(build / "bin/lacon", name, folder, threads) for threads in options.threads]
             measured["studies"] += [{**row, "yardsticks": yardsticks} for row in rows]

@@ -1,16 +1,18 @@
 // The yardsticks of the end-to-end bench, as JSON: dgemm, a copy of memory, and the factorisation by MUMPS of the matrix of a
-// cube of HEXA8 (107 811 displacements for 32 cells an edge) with one thread of this process. usage: bench_machine [cells an
-// edge]
+// cube of HEXA8 (107 811 displacements for 32 cells an edge), with the kernel and the threads that an operator takes. usage:
+// bench_machine [cells an edge]
 #include <fmt/format.h>
 
 #include <cstdlib>
 
 #include "lacon/assembly/mumps_engine.hpp"
+#include "lacon/operators/program/blas.hpp"
 #include "yardsticks.hpp"
 
 using namespace lacon;
 
 int main(int argc, char** argv) {
+  set_up_blas(argv);
   const int n = argc > 1 ? std::atoi(argv[1]) : 32;
   const double dgemm = bench::dgemm_gflops(), copy = bench::copy_gbytes();
   const Numbering numbering = bench::cube_numbering(n);

@@ -2,40 +2,16 @@
 
 import json
 import os
-import pathlib
 import subprocess
 import sys
-import tempfile
 import unittest
 
 sys.path.insert(0, __file__.rpartition("/")[0] or ".")
 from support import ROOT, STUDY, LauncherTest  # noqa: E402
 
-from lacon.base import orders  # noqa: E402
-
 
 def said(severity, identifier="MODELE1_63"):
     return {"severity": severity, "id": identifier, "text": "something to say", "do": "nothing"}
-
-
-class Processors(unittest.TestCase):
-    """OpenBLAS is told its kernel where it does not know the processor."""
-
-    def kernel(self, family, flags, vendor="AuthenticAMD"):
-        with tempfile.TemporaryDirectory() as folder:
-            path = pathlib.Path(folder) / "cpuinfo"
-            path.write_text(f"processor\t: 0\nvendor_id\t: {vendor}\ncpu family\t: {family}\nflags\t\t: {flags}\n\nprocessor\t: 1\n")
-            return orders.openblas_kernel(str(path))
-
-    def test_new_processors(self):
-        complete = "fpu avx2 avx512f avx512cd avx512bw avx512dq avx512vl"
-        self.assertEqual(self.kernel(26, complete), "SkylakeX")
-        self.assertIsNone(self.kernel(25, complete), "known to OpenBLAS")
-        self.assertIsNone(self.kernel(26, "fpu avx2"), "no AVX-512")
-        self.assertIsNone(self.kernel(6, complete, "GenuineIntel"), "known to OpenBLAS")
-
-    def test_unknown_system(self):
-        self.assertIsNone(orders.openblas_kernel("/there/is/no/such/file"))
 
 
 class Endings(LauncherTest):
@@ -396,7 +372,7 @@ FIN()
     def test_version_and_help(self):
         self.assertRegex(self.launch("--version").out, r"^lacon \d+\.\d+\.\d+")
         help_text = self.launch("--help").out
-        for word in ("--unit", "--base", "--fresh", "--checks", "--json", "--timings", "--threads", "Exit status"):
+        for word in ("--unit", "--base", "--fresh", "--checks", "--json", "--timings", "--verbose", "--threads", "Exit status"):
             self.assertIn(word, help_text)
 
     def test_help_about_commands(self):

@@ -72,12 +72,17 @@ class Program(TwoSquares):
         run = subprocess.run([BIN / "affe_modele", "--version"], capture_output=True, text=True, timeout=10, check=True)
         self.assertRegex(run.stdout, r"\A\d+\.\d+\.\d+\n\Z")
 
+    def test_the_launcher_says_so_too(self):
+        own = subprocess.run([BIN / "stat_non_line", "--version"], capture_output=True, text=True, timeout=10, check=True)
+        run = subprocess.run([BIN / "lacon", "--version"], capture_output=True, text=True, timeout=10, check=True)
+        self.assertEqual(run.stdout, f"lacon {own.stdout}")
+
     def test_verbose_says_phases_and_counts(self):
         quiet = self.solve()
         self.assertEqual(quiet.stderr, "")
         run = self.run_order("stat_non_line", quiet.order.read_text(encoding="utf-8"), options=["--verbose"])
         self.assertEqual((run.status, run.stdout.count("\n")), (0, quiet.stdout.count("\n")))
-        said = re.findall(r"^    (\S.*?) +([\d.e+-]+)( s)?$", run.stderr, re.MULTILINE)
+        said = re.findall(r"^  (\S.*?) +([\d.e+-]+)( s)?$", run.stderr, re.MULTILINE)
         self.assertEqual(len(said), run.stderr.count("\n"), run.stderr)
         for name in ("read", "pairing", "elements", "factorisation"):
             self.assertAlmostEqual(sum(float(value) for what, value, unit in said if what == name and unit), run.seconds[name], delta=1e-4)

@@ -1,6 +1,5 @@
 """Orders: one command with complete keywords, handed to the executable of its operator; docs/structures.md section 4."""
 
-import functools
 import json
 import os
 import shutil
@@ -55,10 +54,7 @@ def run(program, made, study):
     status_file.unlink(missing_ok=True)
     order_file.write_text(json.dumps(made, ensure_ascii=False, indent=1), encoding="utf-8")
     environment = dict(os.environ)
-    environment.setdefault("OPENBLAS_NUM_THREADS", "1")  # fronts are small: more threads of BLAS only slow each other down
-    kernel = openblas_kernel()
-    if kernel:
-        environment.setdefault("OPENBLAS_CORETYPE", kernel)
+    environment.setdefault("OPENBLAS_NUM_THREADS", "1")  # the operator takes one thread of OpenBLAS: no others are started
     if study.threads:
         environment["LACON_THREADS"] = environment["OMP_NUM_THREADS"] = str(study.threads)
     sys.stdout.flush()
@@ -69,7 +65,8 @@ def run(program, made, study):
     environment["LACON_FORMULAS"] = str(theirs.fileno())
     with ours:
         with theirs:  # an operator that outlives the launcher still holds the base
-            process = subprocess.Popen([executable, order_file, "--status", status_file], env=environment, stderr=quiet,
+            arguments = [executable, order_file, "--status", status_file, *(["--verbose"] if study.verbose else [])]
+            process = subprocess.Popen(arguments, env=environment, stderr=quiet,
                                        stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL if study.check else None, pass_fds=(study.base.lock, theirs.fileno()))
         try:
             late.load()  # while the operator works: checks, functions and FIN need it later
@@ -87,20 +84,6 @@ def run(program, made, study):
             raise
     seconds = time.perf_counter() - start
     return Outcome(process.returncode, *_read_status(status_file, f"{made['command']}, {made['source']}"), seconds)
-
-
-@functools.cache
-def openblas_kernel(processors="/proc/cpuinfo"):
-    """The kernel for a processor that OpenBLAS (0.3.21) takes for an older one: AMD's from family 26 on have AVX-512 and get AVX2."""
-    try:
-        with open(processors, encoding="ascii", errors="replace") as file:
-            first = file.read(8192).partition("\n\n")[0]
-    except OSError:
-        return None
-    facts = {key.strip(): value.strip() for key, _, value in (line.partition(":") for line in first.splitlines())}
-    new = facts.get("vendor_id") == "AuthenticAMD" and facts.get("cpu family", "").isdigit() and int(facts["cpu family"]) >= 26
-    complete = {"avx512f", "avx512cd", "avx512bw", "avx512dq", "avx512vl"} <= set(facts.get("flags", "").split())
-    return "SkylakeX" if new and complete else None
 
 
 def _serve_formulas(stream, base):

@@ -16,13 +16,14 @@ from .timings import Timings
 class Study:
     """Everything that one call of the launcher shares between its command files."""
 
-    def __init__(self, base_folder, units=None, fresh=False, threads=None, strict_checks=False, provided=None, force=False):
+    def __init__(self, base_folder, units=None, fresh=False, threads=None, strict_checks=False, provided=None, force=False, verbose=False):
         self.base_folder = pathlib.Path(base_folder)
         self.units = dict(units or {})  #: number -> path
         self.fresh = fresh
         self.check = None  #: a tools.check.Check, where this run only checks
         self.force = force  #: run every operator, changed or not
         self.threads = threads
+        self.verbose = verbose  #: operators say their phases and counts as they come
         self.strict_checks = strict_checks
         self.names = Names(provided or {})
         self.base = None
