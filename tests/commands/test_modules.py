@@ -144,6 +144,51 @@ class Tensors(unittest.TestCase):
             with self.assertRaises((TypeError, ValueError)):
                 bad()
 
+    def test_every_function_is_a_method(self):
+        t, X, Y = self.t, self.X, self.Y
+        A, u = t.Tensor([[2 + X**2, Y], [1, 3]]), t.Tensor([X * Y, X])
+        for name in ("transpose", "inverse", "trace", "determinant", "diagonal", "norm", "grad", "div", "laplacien"):
+            self.assertEqual(getattr(A, name)(), getattr(t, name)(A), name)
+        self.assertEqual(u.gradS(), t.gradS(u))
+        self.assertEqual((A.T.dot(u), A @ u, A.diagonal()), (t.produitSimpleContracte(t.transpose(A), u), A.produitSimpleContracte(u), [2 + X**2, 3]))
+        self.assertEqual(A.produitDoubleContracte(A.inverse().T), 2)
+        self.assertEqual(u.produitTensoriel(u).trace(), u.dot(u))
+
+    def test_tensors_of_rank_0_are_expressions(self):
+        """What products and invariants give has .array, works with numbers, expressions, tensors and sympy's functions, and prints as a formula."""
+        t, X, Y = self.t, self.X, self.Y
+        u = t.Tensor([X, Y])
+        square = u.dot(u)
+        self.assertEqual((type(square), square.rank, square.array.item(), str(square)), (t.Tensor, 0, X**2 + Y**2, "X**2 + Y**2"))
+        for found, expected in ((square * square, (X**2 + Y**2)**2), (square / square, 1), (square + square - X, 2 * X**2 + 2 * Y**2 - X),
+                                (1 - square, 1 - X**2 - Y**2), (X * square, X**3 + X * Y**2), (X / square, X / (X**2 + Y**2)),
+                                (square**2, square * square), (sympy.sqrt(square), u.norm()), (t.sqrt(square), u.norm()),
+                                (square.diff(X), 2 * X), (sympy.diff(square, Y), 2 * Y), (square.subs(X, 0), Y**2), (t.grad(square)[1], 2 * Y)):
+            self.assertEqual(t.Tensor(found), expected)
+        for found in (square * u, u * square):
+            self.assertEqual(found, [X**3 + X * Y**2, X**2 * Y + Y**3])
+        self.assertEqual(u / u.norm() * u.norm(), u)
+        self.assertEqual(float(t.Tensor([3, 4]).norm()), 5.0)
+        for bad in (lambda: u / u, lambda: float(u), lambda: u.transposed(), lambda: u**2, lambda: square + u):
+            with self.assertRaises((AttributeError, TypeError, ValueError)):
+                bad()
+
+    def test_square_roots_of_symmetric_tensors(self):
+        """The root of C = F'F against its definition and against the principal values: full, in blocks, with equal principal values."""
+        import numpy
+
+        t, X, Y, Z = self.t, self.X, self.Y, self.Z
+        at = {X: 0.3, Y: 0.2, Z: 0.4}
+        F = t.Tensor(sympy.eye(3)) + t.grad(t.Tensor([X * Y / 5, X**2 / 3, X * Y * Z / 4]))
+        flat = t.Tensor(sympy.eye(3)) + t.grad(t.Tensor([X * Y / 5, X**2 / 3, Z]))
+        for C in (F.T.dot(F), flat.T.dot(flat), t.Tensor([[4, 0], [0, X**2]]), t.Tensor([[2.0, 1.0, 1.0], [1.0, 2.0, 1.0], [1.0, 1.0, 2.0]])):
+            root, given = (numpy.array(sympy.Matrix(tensor.array).subs(at).evalf(), float) for tensor in (C.sqrt(), C))
+            numpy.testing.assert_allclose(root @ root, given, rtol=0, atol=1e-12)
+            numpy.testing.assert_allclose(root, root.T, rtol=0, atol=1e-12)
+            self.assertGreater(numpy.linalg.eigvalsh(root)[0], 0)
+        with self.assertRaises(ValueError):
+            F.sqrt()
+
     def test_isotropic_elasticity(self):
         """sigma = lambda tr(e) I + 2 mu e, and a uniaxial stress gives back Young's modulus and Poisson's ratio."""
         E, nu = sympy.Integer(210), sympy.Rational(3, 10)

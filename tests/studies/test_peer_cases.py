@@ -1,6 +1,7 @@
 """The peer's cases: every check with a reference OK; those that theory decides not even DIFF."""
 
 import pathlib
+import re
 import unittest
 
 import peer_checks
@@ -91,6 +92,25 @@ class PeerCases(PeerCase):
         run = self.run_lacon(export, "--base", self.folder / "study.base", "--checks", "all")
         self.assert_all_ok(run, 4)
         self.assertTrue((self.folder / "out.med").exists())
+
+
+    def test_manufactured_solutions_are_the_same_with_and_without_sympy(self):
+        """Formulae that the tensors of the peer's files derive, and literal ones: errors on the first two meshes."""
+        without = self.folder / "without"
+        without.mkdir()
+        (without / "sympy.py").write_text("raise ImportError('not installed')\n")
+        for case in ("ssnp150c", "ssnv219i"):
+            comms, meshes = peer_checks.files(case)
+            found = []
+            for path in ("", str(without)):
+                run = self.run_lacon(*(HERE / comm for comm in comms), "--base", self.folder / "study.base", "--fresh",
+                                     *(word for unit, mesh in meshes.items() for word in ("--unit", f"{unit}={PEER_MESHES / mesh}")),
+                                     CASE=case, MESHES="2", PYTHONPATH=path)
+                self.assertEqual(run.status, 0, run.stdout[-3000:] + run.stderr[-3000:])
+                found.append([float(word) for word in re.findall(r"[\d.e+-]+", re.search(f"ERRORS {case} (.*)", run.stdout)[1])])
+            self.assertEqual(len(found[0]), 4)
+            for derived, literal in zip(*found):
+                self.assertLessEqual(abs(derived - literal), 1e-9 * abs(literal), case)
 
 
 class LongPeerCases(PeerCase):
