@@ -266,6 +266,10 @@ class Inspect(StudyTest):
             self.assertFalse((folder / "study_pairing").exists())
         done = self.inspect(self.folder)
         self.assertEqual((done.returncode, "<STUDY_2>" in done.stderr), (2, True), done.stderr)
+        (self.folder / "study.comm").write_text("DEBUT()\nFIN()\n")
+        self.assertEqual(self.run_lacon("study.comm").status, 0)
+        done = self.inspect(self.folder)
+        self.assertEqual((done.returncode, "<INSPECT_4>" in done.stderr), (2, True), done.stderr)
 
 
 if __name__ == "__main__":

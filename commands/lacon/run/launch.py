@@ -1,14 +1,11 @@
-"""What the launcher and its tools share: the files of a study, a run from its beginning to its end, exit statuses."""
+"""What the launcher and its tools share: the files of a study, a run from its beginning to its end; and what `lacon study.comm` does."""
 
 import pathlib
-import sys
 
-from ..core import current, messages
-from . import execution
+from ..commands import checks
+from ..core import current, messages, outcome
+from . import execution, study
 from .export import Export, read_export
-
-#: exit statuses
-done, user_error, solution_failed, internal_error, check_failed = 0, 2, 3, 4, 5
 
 
 def units_of(parser, options):
@@ -21,19 +18,6 @@ def units_of(parser, options):
             parser.error(f"--unit {number} is there twice")
         units[int(number)] = path
     return units
-
-
-def guarded(work):
-    """What `work` returns, (exit status, words of the diagnosis); errors that it throws are shown."""
-    try:
-        return work()
-    except messages.AsterError as error:
-        for item in error.messages:
-            messages.show(item)
-        return error.status, error.diagnostic
-    except FileNotFoundError as error:  # no catalogue: an installation that is not whole
-        print(f"<F> <INTERNAL> {error}", file=sys.stderr)
-        return internal_error, "<F>_ABNORMAL_ABORT"
 
 
 def command_files(names, units):
@@ -54,7 +38,7 @@ def command_files(names, units):
 def run_study(run, work):
     """Do `work`, which runs command files of the study `run`, and close its base. @return (exit status, words of the diagnosis)"""
     current.study = run
-    status, diagnostic = done, ""
+    status, diagnostic = outcome.done, ""
     try:
         work()
     except execution.Failure as failure:
@@ -66,4 +50,39 @@ def run_study(run, work):
             for item in error.messages:
                 messages.show(item)
             status, diagnostic = error.status, error.diagnostic
+    return status, diagnostic
+
+
+def run_command_line(options, units):
+    """`lacon study.comm` with its options. @return (exit status, words of the diagnosis)"""
+    export = command_files(options.files, units)
+    threads = options.threads
+    if threads is None and export.parameters.get("ncpus", "").isdigit():
+        threads = max(1, int(export.parameters["ncpus"]))
+    base = options.base or export.base or export.commands[0].with_suffix(".base")
+    run = study.Study(base, export.units, options.fresh, threads, options.checks == "all", execution.provided_names(),
+                      options.force, options.verbose)
+    for name in export.commands + export.named + export.data:
+        run.protect(name)
+
+    def work():
+        with execution.delivered(export.named), execution.time_limit(export.parameters.get("time_limit", "")):
+            execution.run_files(run, export.commands)
+
+    status, diagnostic = run_study(run, work)
+    if status == outcome.done:
+        if any(check.status == "NOOK" for check in run.checks):
+            status, diagnostic = outcome.check_failed, "NOOK_TEST_RESU"
+        else:
+            diagnostic = "<A>_ALARM" if run.alarms else "OK"
+    if run.checks:
+        print(checks.summary(run.checks))
+    if options.json:
+        try:
+            checks.write_json(options.json, run.checks, diagnostic, status, run.timings.data())
+        except OSError as error:
+            messages.show(messages.message("STUDY_3", options.json, folder=options.json, reason=error.strerror))
+            status, diagnostic = status or outcome.user_error, diagnostic if status else "<F>_ERROR"
+    if options.timings:
+        print(run.timings.table())
     return status, diagnostic

@@ -10,7 +10,7 @@ import os
 import pathlib
 import tempfile
 
-from ..core import current, messages
+from ..core import current, messages, outcome
 from ..core.concepts import concepts_in
 from ..run import execution, launch, study
 
@@ -59,7 +59,7 @@ def run(arguments):
                 stopped.append((needed, execution.place(needed)))
 
         status, _ = launch.run_study(this, work)
-    if status != launch.done:
+    if status != outcome.done:
         return status
     words = [f"{os.path.relpath(options.files[0])}: {this.check.commands} commands are right"]
     if this.check.unsolved:

@@ -55,13 +55,15 @@ def choose(shelf, label):
     results = {name: item for name, item in shelf.labelled("result").items() if contact_of(item)}
     contacts = shelf.labelled("contact")
     known = {**contacts, **results}
+    if not known:
+        fail("INSPECT_4", "lacon inspect")
     if label:
         if label not in known:
-            fail("INSPECT_1", f"lacon inspect --result {label}", label=label, known=", ".join(known) or "none")
+            fail("INSPECT_1", f"lacon inspect --result {label}", label=label, known=", ".join(known))
         return known[label]
     candidates = results or contacts
     if len(candidates) != 1:
-        fail("INSPECT_2", "lacon inspect", count=len(candidates) or "no", known=", ".join(known) or "none")
+        fail("INSPECT_2", "lacon inspect", count=len(candidates), known=", ".join(known))
     return next(iter(candidates.values()))
 
 

@@ -11,6 +11,7 @@ import re
 import tempfile
 
 from ..base import contents
+from ..core import outcome
 from ..core.late import numpy
 from ..run import execution, launch
 from ..run.study import Study
@@ -206,7 +207,7 @@ def run(arguments):
             made.append(study(MeshGroups(this.names.values["MESH"]), os.fspath(source), form))
 
         status, _ = launch.run_study(this, work)
-    if status == launch.done:
+    if status == outcome.done:
         try:
             target.write_text(made[0], encoding="utf-8")
         except OSError as error:
