@@ -9,6 +9,7 @@ import unittest
 
 SOURCE = pathlib.Path(os.environ["LACON_SOURCE_DIR"])
 FLOORS = {"catalog": 0, "structures": 1, "elements": 2, "pairing": 3, "assembly": 3, "operators": 4}
+TOP = (*FLOORS, "commands", "tests", "docs", "cmake")
 #: the folders that operators share, from the ground up
 SHARED = ["program", "meshing", "fields", "contact", "evolution"]
 
@@ -72,18 +73,37 @@ class House(unittest.TestCase):
         missing = [room for room in rooms if (SOURCE / room).is_dir() and not (SOURCE / room / "README.md").exists()]
         self.assertEqual(missing, [])
 
+    def test_files_that_are_named_exist(self):
+        """In pages and comments: by their path from the top folder, in pages also by links and names alone."""
+        tracked = self.tracked()
+        names = {path.name for path in tracked}
+        generated = pathlib.Path(os.environ["LACON_BINARY_DIR"]) / "generated/lacon"
+        wrong = set()
+        for path in tracked:
+            text = path.read_text(errors="replace")
+            told = re.findall(rf"(?<![\w./])((?:{'|'.join(TOP)})/[\w./-]*\.(?:cpp|hpp|h|py|toml|md|comm))\b", text)
+            missing = [name for name in told if not (SOURCE / name).exists() and not (generated / name).exists()]
+            if path.suffix == ".md":
+                missing += [link for link in re.findall(r"\]\(([^)#:]+)[)#]", text) if not (path.parent / link).exists()]
+                missing += [name for name in re.findall(r"`([\w-]+\.(?:cpp|hpp|h|py))`", text) if name not in names]
+            wrong |= {f"{path.relative_to(SOURCE)}: {name}" for name in missing}
+        self.assertEqual(sorted(wrong), [])
+
     def test_nothing_names_a_machine(self):
-        tracked = subprocess.run(["git", "ls-files"], cwd=SOURCE, capture_output=True, text=True, check=False)
-        if tracked.returncode:
-            self.skipTest("not a git checkout")
         wrong = []
-        for name in tracked.stdout.split("\n"):
-            path = SOURCE / name
-            if path.suffix in (".png", ".med", ".mmed") or not path.is_file() or path == pathlib.Path(__file__):
-                continue
-            for found in re.findall(r"/(?:work|root|home)/\w+|/tmp/brief", path.read_text(errors="replace")):
-                wrong.append(f"{name}: {found}")
+        for path in self.tracked():
+            if path != pathlib.Path(__file__):
+                wrong += [f"{path.relative_to(SOURCE)}: {found}"
+                          for found in re.findall(r"/(?:work|root|home)/\w+|/tmp/brief", path.read_text(errors="replace"))]
         self.assertEqual(wrong, [])
+
+    def tracked(self):
+        """The files of the project that are text."""
+        listed = subprocess.run(["git", "ls-files"], cwd=SOURCE, capture_output=True, text=True, check=False)
+        if listed.returncode:
+            self.skipTest("not a git checkout")
+        paths = [SOURCE / name for name in listed.stdout.splitlines()]
+        return [path for path in paths if path.is_file() and path.suffix not in (".png", ".med", ".mmed")]
 
 
 if __name__ == "__main__":
