@@ -4,7 +4,6 @@
 #include <map>
 #include <memory>
 
-#include "lacon/assembly/hardening.hpp"
 #include "lacon/catalog/messages.hpp"
 #include "lacon/structures/parallel.hpp"
 
@@ -125,46 +124,12 @@ ElementSet make_set(const catalog::ElementRow& row, Registry& registry, std::str
   ElementSet set;
   set.row = &row;
   set.kernel = &registry.kernel(row, option, kind);
+  set.option = option;
   set.tabulation = tabulate(row.cell, integration_rule(catalog::cell(row.cell).family, row.points));
   return set;
 }
 
 }  // namespace
-
-const std::variant<double, std::string>* MaterialTable::look_up(std::int32_t cell, std::string_view path) const {
-  const auto slash = path.find('/');
-  const Material& material = materials_[field_->material[cell]];
-  const auto law = material.laws.find(std::string(path.substr(0, slash)));
-  if (law == material.laws.end()) return nullptr;
-  const auto value = law->second.find(std::string(path.substr(slash + 1)));
-  return value == law->second.end() ? nullptr : &value->second;
-}
-
-void MaterialTable::missing(std::int32_t cell, std::string_view path, std::string_view element) const {
-  fail("ELEMENT_3", {{"material", label(cell)},
-                     {"cell", cell_name(cell)},
-                     {"parameter", std::string(path)},
-                     {"element", std::string(element)}});
-}
-
-std::optional<double> MaterialTable::find(std::int32_t cell, std::string_view path) const {
-  const auto* value = look_up(cell, path);
-  if (!value || !std::holds_alternative<double>(*value)) return std::nullopt;
-  return std::get<double>(*value);
-}
-
-double MaterialTable::parameter(std::int32_t cell, std::string_view path, std::string_view element) const {
-  if (const auto value = find(cell, path)) return *value;
-  missing(cell, path, element);
-}
-
-const Function& MaterialTable::function(std::int32_t cell, std::string_view path, std::string_view element) const {
-  const auto* value = look_up(cell, path);
-  const auto* id = value ? std::get_if<std::string>(value) : nullptr;
-  const auto at = id ? functions_.find(*id) : functions_.end();
-  if (at == functions_.end()) missing(cell, path, element);
-  return at->second;
-}
 
 std::vector<ElementSet> solid_sets(const Mesh& mesh, const Model& model, Registry& registry, const MaterialTable& materials,
                                    const Behaviours& behaviours) {
@@ -201,9 +166,12 @@ std::vector<ElementSet> solid_sets(const Mesh& mesh, const Model& model, Registr
     ElementSet set = make_set(row, registry, option, LACON_SOLID);
     set.cells = std::move(cells);
     set.linear = !set.kernel->nonlinear;
-    if (set.kernel->takes_curve)
-      set.curve = hardening_curve(materials, set.cells.front(), option.substr(0, option.find('/')), row.name);
-    while (set.kernel->parameters[set.n_parameters]) ++set.n_parameters;
+    if (set.kernel->takes_curve) {
+      const catalog::RelationRow* relation = registry.find_relation(option.substr(0, option.find('/')));
+      set.curve = hardening_curve(materials, set.cells.front(), relation ? relation->hardening : "", row.name);
+    }
+    set.n_parameters = n_names(set.kernel->parameters);
+    set.n_point_variables = n_names(set.kernel->variables);
     for (const std::int32_t cell : set.cells)
       for (int p = 0; p < set.n_parameters; ++p)
         set.parameters.push_back(materials.parameter(cell, set.kernel->parameters[p], row.name));
@@ -344,7 +312,7 @@ class SolidBatches : public ElementBatches {
         .variable = wanted(output_.variable, n_variables, variable_),
         .curve = set_.curve.data(),
         .n_curve = static_cast<std::int32_t>(set_.curve.size() / 3),
-        .n_variables = set_.kernel->n_variables,
+        .n_variables = set_.n_point_variables,
         .elastic_matrix = wanted_ == SolidMatrix::elastic,
         .stressless_matrix = wanted_ == SolidMatrix::stressless};
     set_.kernel->solid(&call);
@@ -409,11 +377,7 @@ void evaluate_loads(const ElementSet& set, const Mesh& mesh, int dimension, std:
   evaluate_in_turn(set, LoadBatches(set, mesh, dimension, coordinates, values, with_matrix), use);
 }
 
-int n_load_values(const lacon_kernel& kernel) {
-  int count = 0;
-  while (kernel.parameters[count]) ++count;
-  return count;
-}
+int n_load_values(const lacon_kernel& kernel) { return n_names(kernel.parameters); }
 
 std::vector<double> integration_points(const ElementSet& set, const Mesh& mesh, std::span<const double> coordinates) {
   const Tabulation& table = set.tabulation;

@@ -2,13 +2,12 @@
 // Loops over elements: cells of one kind gathered into batches for their kernel, results handed back cell by cell.
 #include <cstdint>
 #include <functional>
-#include <map>
 #include <optional>
 #include <span>
 #include <string>
-#include <variant>
 #include <vector>
 
+#include "lacon/elements/material.hpp"
 #include "lacon/elements/reference.hpp"
 #include "lacon/elements/registry.hpp"
 #include "lacon/structures/concepts.hpp"
@@ -19,44 +18,17 @@ namespace lacon {
 struct ElementSet {
   const catalog::ElementRow* row = nullptr;
   const lacon_kernel* kernel = nullptr;
+  std::string option;  ///< of the kernel: "ELAS/PETIT", "CHAR_MECA_PRES"
   Tabulation tabulation;
   std::vector<std::int32_t> cells;
-  std::vector<double> parameters;  ///< (cells, n_parameters), solids only
-  int n_parameters = 0;
-  bool linear = true;         ///< the stiffness does not depend on the displacements
+  std::vector<double> parameters;               ///< (cells, n_parameters), solids only
+  int n_parameters = 0, n_point_variables = 0;  ///< n_point_variables: internal variables of a point
+  bool linear = true;                           ///< the stiffness does not depend on the displacements
   std::vector<double> curve;  ///< (points, 3), lacon_solid_batch::curve; of all cells, empty where the kernel takes none
 
   int n_nodes() const { return tabulation.n_nodes; }
-  std::size_t n_stress() const { return static_cast<std::size_t>(tabulation.n_points) * row->stress.size(); }  ///< of a cell
-  std::size_t n_variables() const {
-    return static_cast<std::size_t>(tabulation.n_points) * kernel->n_variables;
-  }  ///< of a cell
-};
-
-/// What a material says about a cell's parameter "ELAS/E"; throws ELEMENT_2, ELEMENT_3.
-class MaterialTable {
- public:
-  /// @param functions those that materials name, by id
-  MaterialTable(const MaterialField& field, std::vector<Material> materials, std::vector<std::string> labels,
-                std::map<std::string, Function> functions = {})
-      : field_(&field), materials_(std::move(materials)), labels_(std::move(labels)), functions_(std::move(functions)) {}
-  bool has(std::int32_t cell) const { return field_->material[cell] >= 0; }
-  std::int32_t of(std::int32_t cell) const { return field_->material[cell]; }                    ///< number of its material
-  const std::string& label(std::int32_t cell) const { return labels_[field_->material[cell]]; }  ///< of its material
-  double parameter(std::int32_t cell, std::string_view path, std::string_view element) const;
-  /// The parameter, or nothing where the cell's material lacks it.
-  std::optional<double> find(std::int32_t cell, std::string_view path) const;
-  /// The parameter that is a function; throws ELEMENT_3.
-  const Function& function(std::int32_t cell, std::string_view path, std::string_view element) const;
-
- private:
-  const std::variant<double, std::string>* look_up(std::int32_t cell, std::string_view path) const;
-  [[noreturn]] void missing(std::int32_t cell, std::string_view path, std::string_view element) const;
-
-  const MaterialField* field_;
-  std::vector<Material> materials_;
-  std::vector<std::string> labels_;
-  std::map<std::string, Function> functions_;
+  std::size_t n_stress() const { return static_cast<std::size_t>(tabulation.n_points) * row->stress.size(); }    ///< of a cell
+  std::size_t n_variables() const { return static_cast<std::size_t>(tabulation.n_points * n_point_variables); }  ///< of a cell
 };
 
 /// The behaviour of cells: options of solid rows, "ELAS/PETIT", and for each cell of the mesh its index among them.

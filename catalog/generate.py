@@ -57,6 +57,7 @@ def load(folder):
         "patches": contact["patch"],
         "slaves": contact["slave"],
         "elements": elements,
+        **read(folder / "behaviours.toml"),
         "quantities": read(folder / "quantities.toml")["quantity"],
         "messages": messages,
         "instead": read(folder / "instead.toml"),
@@ -229,6 +230,15 @@ def write_cpp(catalog, writer):
                         f"Role::{e['role']}, Geometry::{e['geometry']}, StressState::{e.get('stress_state', 'full')}, {points}, {writer.strings(e['dofs'])}, {writer.strings(e['stress'])}, {kernels}}}")
     tables["elements", "ElementRow"] = rows
 
+    relations, deformations = ({row["name"] for row in catalog[kind]} for kind in ("relation", "deformation"))
+    for option in {option for e in catalog["elements"] for option in e["kernels"] if "/" in option}:
+        relation, deformation = option.split("/")
+        check(relation in relations and deformation in deformations, f"elements: there is no behaviour {option}")
+    tables["relations", "RelationRow"] = [
+        f"{{{text(r['name'])}, {text(r.get('hardening', ''))}, TransverseStrain::{r.get('transverse_strain', 'unknown')}}}"
+        for r in catalog["relation"]]
+    tables["deformations", "DeformationRow"] = [
+        f"{{{text(d['name'])}, StressGeometry::{d['stress_geometry']}, StrainMeasure::{d['strain']}}}" for d in catalog["deformation"]]
     tables["quantities", "QuantityRow"] = [
         f"{{{text(q['name'])}, {writer.strings(q['components'])}}}" for q in catalog["quantities"]]
     tables["messages", "MessageRow"] = [
@@ -248,7 +258,7 @@ def write_cpp(catalog, writer):
         else:
             body.append(f"std::span<const {row}> {name}() {{ return {{}}; }}")
     includes = "\n".join(f'#include "lacon/catalog/{h}.hpp"' for h in
-                         ("cells", "contact", "cuts", "elements", "keywords", "messages", "quantities", "refinements"))
+                         ("behaviours", "cells", "contact", "cuts", "elements", "keywords", "messages", "quantities", "refinements"))
     return (f"// Made by catalog/generate.py from the catalogue's TOML: do not edit.\n{includes}\n\nnamespace lacon::catalog {{\n"
             "namespace {\n" + "\n".join(writer.arrays) + "\n}\n\n" + "\n".join(body) + "\n}\n")
 

@@ -17,7 +17,7 @@
 extern "C" {
 #endif
 
-#define LACON_ABI 3
+#define LACON_ABI 4
 #define LACON_LANES 8
 
 #if defined(__GNUC__)
@@ -119,7 +119,7 @@ typedef struct lacon_kernel {
   void (*load)(const lacon_load_batch*);
   void (*contact)(const lacon_contact_batch*);
   const char* const* parameters; /* solid: its material parameters, "ELAS/E"; load: its values, "PRES"; NULL at the end */
-  int32_t n_variables;           /* solid: internal variables at a point */
+  const char* const* variables;  /* solid: names of the internal variables at a point, NULL at the end; or NULL: none */
   int32_t nonlinear;             /* solid: 0 if the matrix does not depend on the displacement */
   int32_t has_memory;            /* solid: 1 if the result depends on the last state in equilibrium */
   int32_t takes_curve;           /* solid: 1 if it needs the hardening curve */

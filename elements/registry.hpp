@@ -7,20 +7,21 @@
 #include <string_view>
 #include <vector>
 
+#include "lacon/catalog/behaviours.hpp"
 #include "lacon/catalog/elements.hpp"
 #include "lacon/elements/plugin.h"
 
 namespace lacon {
 
-/// Kernels by name and element rows by name. Built-in rows come from the catalogue, others from the plugin.toml of plug-ins.
+/// Kernels and rows by name. Built-in rows come from the catalogue, others from the plugin.toml of plug-ins.
 /// Not for several threads at once; the kernels that it hands out are, and live as long as the registry.
 class Registry {
  public:
   /// Looks in `folders`, then LACON_PLUGIN_PATH (separated by colons), then the folder installed beside the executable,
   /// <executable>/../../lib/lacon/plugins. Each of them is a plug-in, or holds plug-ins. A library is opened when one of its
   /// kernels is first asked for. Throws PLUGIN_1 (with the file) for a folder without plug-in, a bad plugin.toml, or a name
-  /// that is there twice, PLUGIN_2 for a row that names a cell, rule, component or plug-in that does not exist, or is there
-  /// already.
+  /// that is there twice, PLUGIN_2 for a row that names a cell, rule, component, behaviour or plug-in that does not exist, or
+  /// is there already.
   explicit Registry(std::span<const std::filesystem::path> folders = {});
   ~Registry();
   Registry(const Registry&) = delete;
@@ -31,6 +32,9 @@ class Registry {
   /// The row of a cell under a modelisation, or nullptr.
   const catalog::ElementRow* find_element(std::string_view modelisation, CellType cell) const;
   std::vector<std::string> modelisations() const;
+  /// The row of a RELATION or DEFORMATION of COMPORTEMENT, or nullptr.
+  const catalog::RelationRow* find_relation(std::string_view name) const;
+  const catalog::DeformationRow* find_deformation(std::string_view name) const;
 
   /// The kernel that serves an option of an element. Throws PLUGIN_3 where no row, plug-in or kernel serves it or the kernel is
   /// of another kind than the caller's, PLUGIN_1 for a library that cannot be opened or was built for another ABI.
@@ -41,5 +45,8 @@ class Registry {
   struct State;
   std::unique_ptr<State> state_;
 };
+
+/// How many names there are in a list of plugin.h, which ends with NULL and may be NULL itself.
+int n_names(const char* const* names);
 
 }  // namespace lacon

@@ -425,6 +425,7 @@ template <Kind K, Measure M, Law L>
 }
 
 const char* const isotropic[] = {"ELAS/E", "ELAS/NU", nullptr};
+const char* const plastic_variables[] = {"EPSPEQ", "INDIPLAS", nullptr};  // cumulated plastic strain; 1 where it grows
 
 constexpr lacon_kernel row(const char* name, void (*function)(const lacon_solid_batch*), Measure measure, Law law) {
   const bool plastic = law == Law::von_mises;
@@ -434,7 +435,7 @@ constexpr lacon_kernel row(const char* name, void (*function)(const lacon_solid_
           .load = nullptr,
           .contact = nullptr,
           .parameters = isotropic,
-          .n_variables = plastic ? 2 : 0,
+          .variables = plastic ? plastic_variables : nullptr,
           .nonlinear = plastic || measure != Measure::small,
           .has_memory = plastic || measure == Measure::updated,
           .takes_curve = plastic};

@@ -12,6 +12,7 @@
 #include <optional>
 
 #include "lacon/catalog/messages.hpp"
+#include "lacon/operators/evolution/behaviours.hpp"
 #include "lacon/operators/evolution/static_problem.hpp"
 #include "lacon/operators/fields/criteria.hpp"
 #include "lacon/operators/fields/extrapolation.hpp"
@@ -93,29 +94,24 @@ bool has_field(const Result& result, const std::string& name, std::int64_t order
 }
 
 /// One entry a cell: what its COMPORTEMENT means for fields computed from its stresses and displacements.
-struct Behaviours {
-  std::vector<char> moved;    ///< DEFORMATION other than PETIT: stresses live on the current geometry
-  std::vector<char> green;    ///< GREEN_LAGRANGE
-  std::vector<char> plastic;  ///< RELATION other than ELAS
+struct CellBehaviours {
+  std::vector<char> moved;  ///< stresses live on the displaced geometry
+  std::vector<char> green;  ///< Green-Lagrange strains
+  std::vector<const catalog::RelationRow*> relation;
 };
 
-Behaviours read_behaviours(const Mesh& mesh, const Result& result) {
-  const std::vector<char> none(mesh.n_cells(), 0);
-  Behaviours found{none, none, none};
-  const auto occurrences = nlohmann::json::parse(result.behaviour);
-  if (!occurrences.is_array()) return found;
-  for (const auto& one : occurrences) {
-    const std::string deformation = one.value("DEFORMATION", "PETIT"), relation = one.value("RELATION", "ELAS");
-    const auto set = [&](std::size_t cell) {
-      found.moved[cell] = deformation != "PETIT";
-      found.green[cell] = deformation == "GREEN_LAGRANGE";
-      found.plastic[cell] = relation != "ELAS";
-    };
-    for (std::size_t cell = 0; cell < mesh.n_cells() && !one.contains("GROUP_MA"); ++cell) set(cell);
-    if (!one.contains("GROUP_MA")) continue;
-    for (const auto& group : one.at("GROUP_MA"))
-      for (const std::int32_t cell : cells_of_group(mesh, group.get<std::string>(), "COMPORTEMENT/GROUP_MA"))
-        set(static_cast<std::size_t>(cell));
+CellBehaviours behaviours_of(const Mesh& mesh, const Result& result, const Registry& registry) {
+  std::vector<Keywords> occurrences;
+  for (const auto& occurrence : nlohmann::json::parse(result.behaviour)) occurrences.emplace_back(occurrence, "COMPORTEMENT/");
+  const Behaviours behaviours = read_behaviours(mesh, occurrences);
+  std::vector<BehaviourRows> known;
+  for (const std::string& option : behaviours.options) known.push_back(behaviour_rows(registry, option));
+  CellBehaviours found;
+  for (const std::int32_t behaviour : behaviours.of_cell) {
+    const auto& [relation, deformation] = known[static_cast<std::size_t>(behaviour)];
+    found.moved.push_back(deformation.stress_geometry == catalog::StressGeometry::displaced);
+    found.green.push_back(deformation.strain == catalog::StrainMeasure::green_lagrange);
+    found.relation.push_back(&relation);
   }
   return found;
 }
@@ -136,15 +132,14 @@ class Setting {
   const std::vector<char>& wanted() const { return wanted_; }
   bool has_part() const { return order_.keywords.has("GROUP_MA"); }
   std::string groups() const { return fmt::format("{}", fmt::join(order_.keywords.texts("GROUP_MA"), ", ")); }
-  const Behaviours& behaviours() {
-    if (!behaviours_) behaviours_ = read_behaviours(mesh_, result_);
+  const CellBehaviours& behaviours() {
+    if (!behaviours_) behaviours_ = behaviours_of(mesh_, result_, registry());
     return *behaviours_;
   }
   ModelPoints& points() {
     if (!points_) {
       model_ = base_.model(result_.model);
-      registry_ = std::make_unique<Registry>(order_.plugins);
-      points_.emplace(mesh_, model_, *registry_);
+      points_.emplace(mesh_, model_, registry());
     }
     return *points_;
   }
@@ -169,12 +164,17 @@ class Setting {
   }
 
  private:
+  const Registry& registry() {
+    if (!registry_) registry_ = std::make_unique<Registry>(order_.plugins);
+    return *registry_;
+  }
+
   const Order& order_;
   const Base& base_;
   const Result& result_;
   Mesh mesh_;
   std::vector<char> wanted_;
-  std::optional<Behaviours> behaviours_;
+  std::optional<CellBehaviours> behaviours_;
   Model model_;
   std::unique_ptr<Registry> registry_;
   std::optional<ModelPoints> points_;
@@ -238,10 +238,16 @@ class Instant {
   Field strain(Strain measure, const std::vector<char>& wanted, std::string name) {
     Field field = strains(setting_.mesh(), setting_.points(), (*this)("DEPL"), wanted, measure, std::move(name),
                           [&](std::int32_t cell) { return setting_.elastic(cell, "NU"); });
-    const auto is_plastic = [&](std::int32_t cell) {
+    const auto across = [&](std::int32_t cell, catalog::TransverseStrain follows) {
       const auto c = static_cast<std::size_t>(cell);
-      return setting_.behaviours().plastic[c] && setting_.points().is_plane_stress(c);
+      return setting_.points().is_plane_stress(c) && setting_.behaviours().relation[c]->transverse_strain == follows;
     };
+    for (const std::int32_t cell : field.support)
+      if (across(cell, catalog::TransverseStrain::unknown))
+        fail("CALCCHAMP_4", {{"cell", cell_name(cell)},
+                             {"label", setting_.result().label},
+                             {"relation", std::string(setting_.behaviours().relation[static_cast<std::size_t>(cell)]->name)}});
+    const auto is_plastic = [&](std::int32_t cell) { return across(cell, catalog::TransverseStrain::isochoric); };
     if (std::none_of(field.support.begin(), field.support.end(), is_plastic)) return field;
     if (measure == Strain::green_lagrange)
       fail("CALCCHAMP_3", {{"cell", cell_name(*std::find_if(field.support.begin(), field.support.end(), is_plastic))},

@@ -56,7 +56,7 @@ std::vector<std::string> stress_names(const ElementSet& set) { return {set.row->
 
 std::vector<std::string> variable_names(const ElementSet& set) {
   std::vector<std::string> names;
-  for (int v = 1; v <= set.kernel->n_variables; ++v) names.push_back("V" + std::to_string(v));
+  for (int v = 1; v <= set.n_point_variables; ++v) names.push_back("V" + std::to_string(v));
   return names;
 }
 
@@ -174,10 +174,10 @@ StaticState archived_state(const StaticProblem& problem, const Base& base, const
     PointValues& points = state.points.emplace_back();
     points.stress = points_of(stress, stress_place, set, stress_names(set), result.label);
     const auto starts = [&](std::int32_t cell) { return variable_place[cell] < 0; };
-    if (set.kernel->n_variables > 0 && std::all_of(set.cells.begin(), set.cells.end(), starts)) {
+    if (set.n_point_variables > 0 && std::all_of(set.cells.begin(), set.cells.end(), starts)) {
       points.variable.assign(set.cells.size() * set.n_variables(), 0.0);
       fresh = set.cells.front();
-    } else if (set.kernel->n_variables > 0) {
+    } else if (set.n_point_variables > 0) {
       points.variable = points_of(*variable, variable_place, set, variable_names(set), result.label);
     }
   }

@@ -7,6 +7,7 @@
 #include <map>
 
 #include "lacon/catalog/messages.hpp"
+#include "lacon/operators/evolution/behaviours.hpp"
 
 namespace lacon {
 namespace {
@@ -27,21 +28,6 @@ void find_dofs(StaticProblem& problem) {
   }
 }
 
-/// COMPORTEMENT: a later occurrence wins over an earlier one; cells that none names are elastic with small strains.
-Behaviours read_behaviours(const Mesh& mesh, const Keywords& keywords) {
-  Behaviours behaviours{{"ELAS/PETIT"}, std::vector<std::int32_t>(mesh.n_cells(), 0)};
-  for (const Keywords& factor : keywords.factors("COMPORTEMENT")) {
-    const std::string option = factor.text("RELATION") + "/" + factor.text("DEFORMATION");
-    const auto at = std::find(behaviours.options.begin(), behaviours.options.end(), option);
-    const auto index = static_cast<std::int32_t>(at - behaviours.options.begin());
-    if (at == behaviours.options.end()) behaviours.options.push_back(option);
-    if (!factor.has("GROUP_MA")) std::fill(behaviours.of_cell.begin(), behaviours.of_cell.end(), index);
-    for (const std::string& group : factor.texts("GROUP_MA"))
-      for (const std::int32_t cell : cells_of_group(mesh, group, factor.path("GROUP_MA"))) behaviours.of_cell[cell] = index;
-  }
-  return behaviours;
-}
-
 void read_materials(StaticProblem& problem, const Base& base, const std::string& field) {
   problem.material_field = std::make_unique<MaterialField>(base.material_field(field));
   if (problem.material_field->mesh != problem.model.mesh)
@@ -58,6 +44,20 @@ void read_materials(StaticProblem& problem, const Base& base, const std::string&
   }
   problem.materials =
       std::make_unique<MaterialTable>(*problem.material_field, std::move(materials), std::move(labels), std::move(functions));
+}
+
+/// Say what V1, V2 of VARI_ELGA are under each behaviour that has internal variables.
+void name_variables(const std::vector<ElementSet>& solids) {
+  std::vector<std::pair<std::string, std::string>> said;
+  for (const ElementSet& set : solids) {
+    std::string names;
+    for (int v = 0; v < set.n_point_variables; ++v)
+      names += fmt::format("{}V{} = {}", v ? ", " : "", v + 1, set.kernel->variables[v]);
+    const std::pair text(set.option, names);
+    if (names.empty() || std::find(said.begin(), said.end(), text) != said.end()) continue;
+    inform("BEHAVIOUR_4", {{"behaviour", set.option}, {"names", names}});
+    said.push_back(text);
+  }
 }
 
 /// A model with its degrees of freedom, before materials and loads.
@@ -154,8 +154,9 @@ StaticProblem read_problem(const Order& order, const Base& base) {
   StaticProblem problem = read_model(order, base, model_id);
 
   read_materials(problem, base, keywords.concept_id("CHAM_MATER"));
-  problem.solids =
-      solid_sets(problem.mesh, problem.model, *problem.registry, *problem.materials, read_behaviours(problem.mesh, keywords));
+  problem.solids = solid_sets(problem.mesh, problem.model, *problem.registry, *problem.materials,
+                              read_behaviours(problem.mesh, keywords.factors("COMPORTEMENT")));
+  name_variables(problem.solids);
 
   problem.imposed.assign(problem.n_dofs(), 0);
   std::vector<std::string> seen;

@@ -156,17 +156,58 @@ class Mistakes(unittest.TestCase):
             rows.write_text('[[element]]\nmodelisation = "MY_MODEL"\n')
             for path in (folder, f"{folder}/mine"):
                 with unittest.mock.patch.dict(os.environ, LACON_PLUGIN_PATH=f":{path}"):
-                    plugins.modelisations.cache_clear()
+                    plugins.brought.cache_clear()
                     self.assertEqual(problems("AFFE_MODELE", MAILLAGE=concept("mesh"), AFFE=affe), [])
                     self.assertEqual(problems("AFFE_MODELE", MAILLAGE=concept("mesh"), AFFE={**affe, "MODELISATION": "D_PLAN"}), [])
             rows.write_text("[[element]\n")
             with unittest.mock.patch.dict(os.environ, LACON_PLUGIN_PATH=folder):
-                plugins.modelisations.cache_clear()
+                plugins.brought.cache_clear()
                 catalog.toml.cache_clear()
                 with self.assertRaisesRegex(AsterError, "PLUGIN_1.*plugin.toml"):
                     problems("AFFE_MODELE", MAILLAGE=concept("mesh"), AFFE=affe)
-        plugins.modelisations.cache_clear()
+        plugins.brought.cache_clear()
         self.assertEqual(problems("AFFE_MODELE", MAILLAGE=concept("mesh"), AFFE=affe)[0][0], "KEYWORD_4")
+
+    def test_laws_and_material_keywords_of_plug_ins(self):
+        law = """[[relation]]
+name = "MY_LAW"
+[[deformation]]
+name = "MY_STRAIN"
+[material.MINE]
+type = "factor"
+help = "my law"
+[material.MINE.keyword]
+YC = { type = "real", default = 1.0, above = 0.0, help = "energy" }
+"""
+        elastic = {"E": 1, "NU": 0.3}
+        solve = {"MODELE": concept("model"), "CHAM_MATER": concept("material_field"), "INCREMENT": {"LIST_INST": concept("list_of_reals")}}
+
+        def behaviour(**given):
+            return [p for p in problems("STAT_NON_LINE", **solve, COMPORTEMENT=given) if "COMPORTEMENT" in p[1]]
+
+        with tempfile.TemporaryDirectory() as folder, unittest.mock.patch.dict(os.environ, LACON_PLUGIN_PATH=folder):
+            rows = pathlib.Path(folder) / "plugin.toml"
+            self.addCleanup(plugins.brought.cache_clear)
+
+            def write(text):
+                rows.write_text(text)
+                plugins.brought.cache_clear()
+                catalog.toml.cache_clear()
+
+            write(law)
+            row = plugins.command("DEFI_MATERIAU")
+            keywords, found = checker.complete("DEFI_MATERIAU", row, {"ELAS": elastic, "MINE": {}})
+            self.assertEqual((found, keywords["MINE"][0]["YC"]), ([], 1.0))
+            self.assertEqual(checker.complete("DEFI_MATERIAU", row, {"ELAS": elastic, "MINE": {"YC": -1.0}})[1][0].id, "KEYWORD_15")
+            self.assertNotIn("MINE", catalog.command("DEFI_MATERIAU")["keyword"])
+            self.assertEqual(behaviour(RELATION="MY_LAW", DEFORMATION="MY_STRAIN"), [])
+            self.assertEqual(behaviour(RELATION="ELAS", DEFORMATION="PETIT"), [])
+            self.assertEqual([p[0] for p in behaviour(RELATION="HIS_LAW", DEFORMATION="HIS_STRAIN")], ["KEYWORD_4"] * 2)
+            for wrong, reason in ((law.replace("MINE", "ELAS"), "another keyword"), (law.replace('help = "my law"\n', ""), "lacks"),
+                                  (law.replace('type = "real"', 'kind = "real"'), "material MINE/YC")):
+                write(wrong)
+                with self.assertRaisesRegex(AsterError, f"PLUGIN_2.*plugin.toml.*{reason}"):
+                    plugins.command("DEFI_MATERIAU")
 
     def test_out_of_range(self):
         self.one("KEYWORD_15", "DEFI_MATERIAU/ELAS/NU", "less than 0.5", command="DEFI_MATERIAU", ELAS={"E": 1, "NU": 0.5})

@@ -1,4 +1,4 @@
-"""A plug-in outside the tree: built against the installed package, found, run; and refused, with its file, where it is wrong."""
+"""Plug-ins outside the tree: built against the installed package, found, run; and refused, with their file, where they are wrong."""
 
 import os
 import pathlib
@@ -12,9 +12,11 @@ import h5py
 import numpy as np
 
 HERE = pathlib.Path(__file__).resolve().parent
-sys.path.insert(0, str(HERE.parent / "operators"))
+sys.path[:0] = [str(HERE.parent / "operators"), str(HERE.parent.parent / "commands/studies")]
 import lacon_test  # noqa: E402
 from lacon_test import concept  # noqa: E402
+from meshes import block, write_med  # noqa: E402
+from results import Result  # noqa: E402
 
 made = {}  # by setUpModule: the folders that every test uses
 
@@ -25,25 +27,28 @@ def run(*command, **options):
 
 
 def setUpModule():
-    """Install the package into a folder of its own and build the plug-in against it."""
+    """Install the package into a folder of its own and build the plug-ins against it."""
     folder = tempfile.TemporaryDirectory(prefix="lacon_consumer_")
     unittest.addModuleCleanup(folder.cleanup)
     root = pathlib.Path(folder.name)
-    prefix, build = root / "prefix", root / "build"
+    prefix, build, laws = root / "prefix", root / "build", root / "laws"
     flags = "-fsanitize=address,undefined" if os.environ["LACON_SANITIZE"] == "ON" else ""
     cmake = os.environ["LACON_CMAKE"]
+    settings = [f"-DCMAKE_PREFIX_PATH={prefix}", f"-DCMAKE_CXX_FLAGS={flags}", f"-DCMAKE_BUILD_TYPE={os.environ['LACON_BUILD_TYPE']}",
+                f"-DCMAKE_CXX_COMPILER={os.environ['LACON_CXX']}", f"-DCMAKE_INSTALL_PREFIX={prefix}"]
     for command in (
         [cmake, "--install", os.environ["LACON_BINARY_DIR"], "--prefix", prefix],
-        [cmake, "-G", "Ninja", "-S", HERE / "plane_stress", "-B", build, f"-DCMAKE_PREFIX_PATH={prefix}", f"-DCMAKE_CXX_FLAGS={flags}",
-         f"-DCMAKE_BUILD_TYPE={os.environ['LACON_BUILD_TYPE']}", f"-DCMAKE_CXX_COMPILER={os.environ['LACON_CXX']}",
-         f"-DCMAKE_INSTALL_PREFIX={prefix}"],
+        [cmake, "-G", "Ninja", "-S", HERE / "plane_stress", "-B", build, *settings],
         [cmake, "--build", build],
+        [cmake, "-G", "Ninja", "-S", HERE / "laws", "-B", laws, *settings],
+        [cmake, "--build", laws],
     ):
         done = run(*command)
         if done.returncode:
             raise AssertionError(f"{command} failed:\n{done.stdout[-4000:]}\n{done.stderr[-4000:]}")
     shutil.copy(build / "pull", prefix / "bin/pull")  # beside the operators: it finds the built-in plug-ins as they do
-    made.update(root=root, prefix=prefix, build=build, plugin=build / "lib/lacon/plugins/plane_stress")
+    made.update(root=root, prefix=prefix, build=build, plugin=build / "lib/lacon/plugins/plane_stress",
+                laws=laws / "lib/lacon/plugins/laws")
 
 
 def copy_of_plugin(name="plane_stress"):
@@ -193,6 +198,85 @@ class Operators(lacon_test.OperatorTest):
         keywords, folder = self.prepare("PLANE_STRESS"), plugin_of_another_abi()
         self.assert_refuses("PLUGIN_1", "STAT_NON_LINE", keywords, str(folder / "libplane_stress.so"), "ABI", result="result_8",
                             environment=self.path_of(folder))
+
+
+class Laws(lacon_test.OperatorTest):
+    """The installed launcher with a plug-in that brings laws: a square of plane strain, stretched along x by u_x = strain x."""
+
+    LAMBDA, MU, YC = 60.0, 40.0, 0.5
+    STRAINS = (0.02, 0.04, 0.01)  # stretched, further, and partly released
+
+    STUDY = """
+DEBUT(ERREUR=_F(ALARME="EXCEPTION"))
+MESH = LIRE_MAILLAGE(UNITE=20)
+MODEL = AFFE_MODELE(MAILLAGE=MESH, AFFE=_F(TOUT="OUI", PHENOMENE="MECANIQUE", MODELISATION="D_PLAN"))
+MATTER = DEFI_MATERIAU(ELAS=_F(E=104.0, NU=0.3), LAME=_F(LAMBDA={0.LAMBDA}, MU={0.MU}), DAMAGE=_F(YC={0.YC}))
+FIELD = AFFE_MATERIAU(MAILLAGE=MESH, AFFE=_F(TOUT="OUI", MATER=MATTER))
+TIMES = DEFI_LIST_REEL(VALE=(0.0, 1.0, 2.0, 3.0))
+PATH = DEFI_FONCTION(NOM_PARA="INST", VALE=(0.0, 0.0, 1.0, {1[0]}, 2.0, {1[1]}, 3.0, {1[2]}))
+HELD = AFFE_CHAR_CINE(MODELE=MODEL, MECA_IMPO=(_F(GROUP_MA="LEFT", DX=0), _F(GROUP_MA="BASE", DY=0), _F(GROUP_MA="TOP", DY=0)))
+PULLED = AFFE_CHAR_CINE(MODELE=MODEL, MECA_IMPO=_F(GROUP_MA="RIGHT", DX=1))
+R = STAT_NON_LINE(MODELE=MODEL, CHAM_MATER=FIELD, INCREMENT=_F(LIST_INST=TIMES), COMPORTEMENT=_F({2}),
+                  EXCIT=(_F(CHARGE=HELD), _F(CHARGE=PULLED, FONC_MULT=PATH)))
+CALC_CHAMP(reuse=R, RESULTAT=R, DEFORMATION="EPSI_ELGA", FORCE="REAC_NODA")
+FIN()
+"""
+
+    def launch(self, *arguments):
+        return run(made["prefix"] / "bin/lacon", *arguments, cwd=self.folder, env={**os.environ, "LACON_PLUGIN_PATH": str(made["laws"])})
+
+    def study(self, behaviour):
+        """@return the launcher's process; the base is study.base"""
+        write_med(self.folder / "mesh.med", block("QUAD8", np.array([0, 0.4, 1.0]), np.array([0, 0.7, 1.0]), None, "BODY",
+                                                  {"left": "LEFT", "right": "RIGHT", "bottom": "BASE", "top": "TOP"}))
+        (self.folder / "study.comm").write_text(self.STUDY.format(self, self.STRAINS, behaviour), encoding="utf-8")
+        return self.launch("study.comm", "--unit", "20=mesh.med", "--base", "study.base", "--fresh")
+
+    def stresses(self, behaviour):
+        """At each instant SIXX, which is the same at every point."""
+        done = self.study(behaviour)
+        self.assertEqual(done.returncode, 0, done.stdout[-3000:] + done.stderr[-3000:])
+        result, found = Result(self.folder / "study.base", "R"), []
+        for order in (1, 2, 3):
+            stress = result.field("SIEF_ELGA", order)[1]["SIXX"]
+            np.testing.assert_allclose(stress, stress[0], rtol=1e-10)
+            found.append(stress[0])
+        return np.array(found), result, done.stderr
+
+    def test_an_elastic_law_with_a_keyword_of_its_own(self):
+        for deformation in ("PETIT", "INFINITESIMAL"):
+            stress, _, _ = self.stresses(f"RELATION='ELAS_LAME', DEFORMATION='{deformation}'")
+            np.testing.assert_allclose(stress, (self.LAMBDA + 2 * self.MU) * np.array(self.STRAINS), rtol=1e-10)
+
+    def test_a_law_with_internal_variables_remembers_and_names_them(self):
+        stress, result, said = self.stresses("RELATION='DAMAGE'")
+        strain = np.array(self.STRAINS)
+        kappa = np.maximum.accumulate((self.LAMBDA + 2 * self.MU) * strain**2 / 2)
+        np.testing.assert_allclose(stress, self.YC / (self.YC + kappa) * (self.LAMBDA + 2 * self.MU) * strain, rtol=1e-10)
+        for order in (1, 2, 3):
+            values = result.field("VARI_ELGA", order)[1]
+            np.testing.assert_allclose(values["V1"], kappa[order - 1], rtol=1e-10)
+            np.testing.assert_allclose(values["V2"], kappa[order - 1] / (self.YC + kappa[order - 1]), rtol=1e-10)
+        self.assertIn("DAMAGE/PETIT in VARI_ELGA: V1 = KAPPA, V2 = ENDO", said)
+
+    def test_the_launcher_knows_the_law_and_its_keywords(self):
+        material, solver = self.launch("help", "DEFI_MATERIAU").stdout, self.launch("help", "STAT_NON_LINE").stdout
+        for text in ("LAME", "LAMBDA", "YC", "energy density at which half of the stiffness is left", "default 1.0"):
+            self.assertIn(text, material)
+        for text in ("ELAS_LAME", "DAMAGE", "INFINITESIMAL"):
+            self.assertIn(text, solver)
+
+    def test_a_keyword_that_the_law_lacks_and_a_law_that_the_element_lacks_are_refused(self):
+        self.addCleanup(setattr, Laws, "STUDY", Laws.STUDY)
+        study = Laws.STUDY
+        Laws.STUDY = study.replace("LAME=_F(", "LAME=_F(NU=0.3, ")
+        done = self.study("RELATION='DAMAGE'")
+        self.assertEqual(done.returncode, 2, done.stderr)
+        self.assertIn("LAME/NU", done.stderr.replace("[1]", ""))
+        Laws.STUDY = study
+        done = self.study("RELATION='DAMAGE', DEFORMATION='INFINITESIMAL'")
+        self.assertEqual(done.returncode, 2, done.stderr)
+        self.assertIn("<BEHAVIOUR_1> there is no DAMAGE/INFINITESIMAL", done.stderr)
 
 
 if __name__ == "__main__":

@@ -106,6 +106,11 @@ def elements():
     return [row for path in sorted((location() / "elements").glob("*.toml")) for row in toml(path)["element"]]
 
 
+def behaviours(kind):
+    """Rows of behaviours.toml. @param kind "relation" or "deformation" """
+    return _json()[kind] if _is_json() else toml(location() / "behaviours.toml")[kind]
+
+
 @functools.cache
 def peer_commands():
     """Names of code_aster's commands that Lacon does not have."""

@@ -27,20 +27,62 @@ def plugin_folders():
 
 
 @functools.cache
+def brought():
+    """What each plugin.toml says: [(path, tables)]."""
+    found = []
+    for path in (folder / "plugin.toml" for folder in plugin_folders()):
+        try:
+            found.append((path, catalog.toml(path)))
+        except (ValueError, OSError) as error:  # tomllib's own is a ValueError
+            fail("PLUGIN_1", file=path, reason=error)
+    return found
+
+
+def _names(built_in, kind, key):
+    """What `key` says in the rows of the catalogue and in the [[kind]] tables of the plug-ins."""
+    rows = [*built_in, *(row for _, tables in brought() for row in tables.get(kind, []))]
+    return tuple(dict.fromkeys(row[key] for row in rows if key in row))
+
+
 def modelisations():
-    """Names of the modelisations that the element catalogue and the plug-ins bring."""
-    rows = catalog.elements()
-    for folder in plugin_folders():
-        rows += _rows(folder / "plugin.toml")
-    return tuple(dict.fromkeys(row["modelisation"] for row in rows))
+    return _names(catalog.elements(), "element", "modelisation")
 
 
-def _rows(path):
-    try:
-        return catalog.toml(path).get("element", [])
-    except (ValueError, OSError) as error:  # tomllib's own is a ValueError
-        fail("PLUGIN_1", file=path, reason=error)
+def relations():
+    return _names(catalog.behaviours("relation"), "relation", "name")
 
 
-#: `into_from` of a keyword row -> the allowed values
-lists = {"modelisations": modelisations}
+def deformations():
+    return _names(catalog.behaviours("deformation"), "deformation", "name")
+
+
+#: `into_from` of a keyword row -> the allowed values: names of rows of the catalogue and of the plug-ins
+lists = {"modelisations": modelisations, "relations": relations, "deformations": deformations}
+
+
+def materials():
+    """Keywords of DEFI_MATERIAU that plug-ins bring, [material.KEYWORD]: name -> row. @throws PLUGIN_2 for one that is there already"""
+    known = catalog.command("DEFI_MATERIAU")["keyword"]
+    found = {}
+    for path, tables in brought():
+        for name, row in tables.get("material", {}).items():
+            if name in known or name in found:
+                fail("PLUGIN_2", file=path, row=f"material {name}", reason="another keyword of DEFI_MATERIAU has this name")
+            if not isinstance(row, dict) or row.get("type") != "factor" or "help" not in row or not isinstance(row.get("keyword"), dict):
+                fail("PLUGIN_2", file=path, row=f"material {name}", reason="it lacks type = \"factor\", 'help' or the table 'keyword'")
+            for keyword, own in row["keyword"].items():
+                if not isinstance(own, dict) or "type" not in own or "help" not in own:
+                    fail("PLUGIN_2", file=path, row=f"material {name}/{keyword}", reason="it lacks 'type' or 'help'")
+            found[name] = row
+    return found
+
+
+#: `keyword_from` of a command -> the keywords that plug-ins add to it
+_keywords = {"materials": materials}
+
+
+def command(name):
+    """The rows of one command, with the keywords that plug-ins bring."""
+    row = catalog.command(name)
+    added = _keywords[row["keyword_from"]]() if "keyword_from" in row else {}
+    return {**row, "keyword": {**row["keyword"], **added}} if added else row

@@ -31,7 +31,7 @@ class Command:
             raise RuntimeError("commands run in a command file: lacon study.comm")
         frame = labels.user_frame()
         where = labels.location(frame)
-        row = catalog.command(self.name)
+        row = plugins.command(self.name)
         if args:
             fail("COMMAND_1", f"{self.name}, {where}", command=self.name)
         starts = self.name in ("DEBUT", "POURSUITE")

@@ -1,6 +1,6 @@
 """An order that the checker accepts, made from a command's rows alone: the example of `lacon help`, and where property tests start."""
 
-from ..core import catalog, plugins
+from ..core import plugins
 from ..core.concepts import CO, Concept
 
 _names = {"group_ma": "GROUP", "group_no": "NODES", "cell": "M1", "node": "N1", "text": "text"}
@@ -92,7 +92,7 @@ def within(keyword, number):
 
 def text(command):
     """The example of a command, lines of a command file."""
-    row = catalog.command(command)
+    row = plugins.command(command)
     keywords = minimal(row)
     head = ""
     if "result" in row and not any(row["keyword"][k].get("makes") for k in keywords):

@@ -31,7 +31,7 @@ def run(names):
 
 
 def _command(name):
-    row = catalog.command(name)
+    row = plugins.command(name)
     result = f" -> {row['result'].replace('_', ' ')}" if "result" in row else ""
     yield f"{name}{result}"
     yield from _wrap(row["help"], 2)

@@ -44,7 +44,7 @@ Answer run(const ElementRow& row, const std::string& option, const Numbers& x, c
   const std::size_t n = x.size(), points = z(table.n_points);
   Numbers matrix(n * (n + 1) / 2 * LACON_LANES, garbage), force(n * LACON_LANES, garbage),
       stress(points * row.stress.size() * LACON_LANES, garbage),
-      variable(points * z(kernel.n_variables) * LACON_LANES, garbage);
+      variable(points * z(lacon::n_names(kernel.variables)) * LACON_LANES, garbage);
   std::vector<std::int32_t> error(LACON_LANES, -1);
   lacon_solid_batch batch{};
   batch.struct_size = sizeof batch;
@@ -70,7 +70,7 @@ Answer run(const ElementRow& row, const std::string& option, const Numbers& x, c
   batch.variable = variable.data();
   batch.curve = curve.data();
   batch.n_curve = static_cast<int>(curve.size() / 3);
-  batch.n_variables = kernel.n_variables;
+  batch.n_variables = lacon::n_names(kernel.variables);
   batch.elastic_matrix = elastic_matrix;
   batch.stressless_matrix = stressless_matrix;
   kernel.solid(&batch);

@@ -214,6 +214,79 @@ TEST_F(Plugins, BadRowsAreRefusedWithFileElementAndReason) {
   }
 }
 
+/// A law that a plug-in brings for a built-in modelisation, with `changed` in place of the line that starts so.
+std::string law(const std::string& key = "", const std::string& changed = "") {
+  const std::pair<std::string, std::string> lines[] = {
+      {"[[relation]]", "[[relation]]"},
+      {"name", "name = 'SOFT'"},
+      {"help", "help = 'a soft law'"},
+      {"hardening", "hardening = 'TRACTION'"},
+      {"transverse_strain", "transverse_strain = 'elastic'"},
+      {"[[deformation]]", "[[deformation]]"},
+      {"name_of_deformation", "name = 'LARGE'"},
+      {"help_of_deformation", "help = 'large strains'"},
+      {"stress_geometry", "stress_geometry = 'displaced'"},
+      {"strain", "strain = 'green_lagrange'"},
+      {"[[law]]", "[[law]]"},
+      {"relation", "relation = 'SOFT'"},
+      {"deformation", "deformation = 'LARGE'"},
+      {"kernels", "kernels = { D_PLAN = 'solid/plane_strain_green_elastic' }"}};
+  std::string text;
+  for (const auto& [name, line] : lines) text += (name == key ? changed : line) + "\n";
+  return text;
+}
+
+TEST_F(Plugins, LawsOfAPluginServeTheBodiesOfAModelisation) {
+  Registry registry(std::vector{write("test_law", law() + "[material.SOFT]\ntype = 'factor'\n")});
+  const auto* relation = registry.find_relation("SOFT");
+  ASSERT_NE(relation, nullptr);
+  EXPECT_EQ(relation->hardening, "TRACTION");
+  EXPECT_EQ(relation->transverse_strain, lacon::catalog::TransverseStrain::elastic);
+  const auto* deformation = registry.find_deformation("LARGE");
+  ASSERT_NE(deformation, nullptr);
+  EXPECT_EQ(deformation->stress_geometry, lacon::catalog::StressGeometry::displaced);
+  EXPECT_EQ(deformation->strain, lacon::catalog::StrainMeasure::green_lagrange);
+  for (const char* body : {"D_PLAN/TRIA3", "D_PLAN/QUAD9"})
+    EXPECT_STREQ(registry.kernel(*registry.find_element(body), "SOFT/LARGE", LACON_SOLID).name, "plane_strain_green_elastic");
+  EXPECT_FALSE(registry.has_kernel(*registry.find_element("D_PLAN/SEG2"), "SOFT/LARGE"));
+  EXPECT_FALSE(registry.has_kernel(*registry.find_element("C_PLAN/TRIA3"), "SOFT/LARGE"));
+  EXPECT_EQ(registry.find_relation("HARD"), nullptr);
+  EXPECT_EQ(registry.find_deformation("SOFT"), nullptr);
+  for (const auto& built_in : lacon::catalog::elements())
+    for (const auto& kernel : built_in.kernels)
+      if (const std::size_t slash = kernel.option.find('/'); slash != std::string_view::npos) {
+        EXPECT_NE(registry.find_relation(kernel.option.substr(0, slash)), nullptr) << kernel.option;
+        EXPECT_NE(registry.find_deformation(kernel.option.substr(slash + 1)), nullptr) << kernel.option;
+      }
+}
+
+TEST_F(Plugins, BadLawsAreRefusedWithFileAndReason) {
+  const std::pair<std::string, std::string> cases[] = {
+      {law("name"), "relation in line 1: it lacks the text 'name'"},
+      {law("help"), "relation SOFT: it lacks the text 'help'"},
+      {law("name", "name = 'ELAS'"), "relation ELAS: another row has this name"},
+      {law("transverse_strain", "transverse_strain = 'none'"), "'none' is none of 'elastic', 'isochoric'"},
+      {law("name_of_deformation", "name = 'PETIT'"), "deformation PETIT: another row has this name"},
+      {law("stress_geometry"), "deformation LARGE: it lacks the text 'stress_geometry'"},
+      {law("strain", "strain = 'huge'"), "'huge' is none of 'small', 'green_lagrange'"},
+      {law("relation", "relation = 'HARD'"), "law HARD/LARGE: there is no relation 'HARD'"},
+      {law("deformation", "deformation = 'HUGE'"), "law SOFT/HUGE: there is no deformation 'HUGE'"},
+      {law("kernels"), "law SOFT/LARGE: it lacks the table 'kernels' (modelisation"},
+      {law("kernels", "kernels = { D_NONE = 'solid/x' }"), "there is no modelisation 'D_NONE'"},
+      {law("kernels", "kernels = { D_PLAN = 'nowhere/x' }"), "'nowhere', which was not found"},
+      {law() + "[[law]]\nrelation = 'ELAS'\ndeformation = 'PETIT'\nkernels = { D_PLAN = 'solid/x' }\n",
+       "law ELAS/PETIT: 'D_PLAN' has a kernel for it already"},
+      {row("kernels", "kernels = { 'SOFT/PETIT' = 'solid/plane_strain_small_elastic' }"),
+       "its option 'SOFT/PETIT' names no behaviour: there is no relation 'SOFT'"},
+  };
+  for (const auto& [rows, reason] : cases) {
+    const fs::path plugin = write("test_bad", rows);
+    const auto message = message_of([&] { Registry registry(std::vector{plugin}); });
+    EXPECT_EQ(message.id, "PLUGIN_2") << rows;
+    EXPECT_THAT(message.text, AllOf(HasSubstr((plugin / "plugin.toml").string()), HasSubstr(reason))) << rows;
+  }
+}
+
 TEST_F(Plugins, BadLibrariesAreRefusedWithTheirFileWhenAKernelIsAskedFor) {
   const std::pair<std::string, std::string> cases[] = {
       {"broken_no_entry", "no function lacon_plugin"},

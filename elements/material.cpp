@@ -1,4 +1,4 @@
-#include "lacon/assembly/hardening.hpp"
+#include "lacon/elements/material.hpp"
 
 #include <fmt/format.h>
 
@@ -71,18 +71,53 @@ std::vector<double> tabulated(const Source& source) {
 }
 
 struct Row {
-  std::string_view relation;
+  std::string_view keyword;
   std::vector<double> (*curve)(const Source&);
 };
-constexpr Row rows[] = {{"VMIS_ISOT_LINE", linear}, {"VMIS_ISOT_TRAC", tabulated}};
+constexpr Row rows[] = {{"ECRO_LINE", linear}, {"TRACTION", tabulated}};
 
 }  // namespace
 
-std::vector<double> hardening_curve(const MaterialTable& materials, std::int32_t cell, std::string_view relation,
+const std::variant<double, std::string>* MaterialTable::look_up(std::int32_t cell, std::string_view path) const {
+  const auto slash = path.find('/');
+  const Material& material = materials_[field_->material[cell]];
+  const auto law = material.laws.find(std::string(path.substr(0, slash)));
+  if (law == material.laws.end()) return nullptr;
+  const auto value = law->second.find(std::string(path.substr(slash + 1)));
+  return value == law->second.end() ? nullptr : &value->second;
+}
+
+void MaterialTable::missing(std::int32_t cell, std::string_view path, std::string_view element) const {
+  fail("ELEMENT_3", {{"material", label(cell)},
+                     {"cell", cell_name(cell)},
+                     {"parameter", std::string(path)},
+                     {"element", std::string(element)}});
+}
+
+std::optional<double> MaterialTable::find(std::int32_t cell, std::string_view path) const {
+  const auto* value = look_up(cell, path);
+  if (!value || !std::holds_alternative<double>(*value)) return std::nullopt;
+  return std::get<double>(*value);
+}
+
+double MaterialTable::parameter(std::int32_t cell, std::string_view path, std::string_view element) const {
+  if (const auto value = find(cell, path)) return *value;
+  missing(cell, path, element);
+}
+
+const Function& MaterialTable::function(std::int32_t cell, std::string_view path, std::string_view element) const {
+  const auto* value = look_up(cell, path);
+  const auto* id = value ? std::get_if<std::string>(value) : nullptr;
+  const auto at = id ? functions_.find(*id) : functions_.end();
+  if (at == functions_.end()) missing(cell, path, element);
+  return at->second;
+}
+
+std::vector<double> hardening_curve(const MaterialTable& materials, std::int32_t cell, std::string_view keyword,
                                     std::string_view element) {
   const Source source{materials, cell, element};
-  const auto row = std::find_if(std::begin(rows), std::end(rows), [&](const Row& r) { return r.relation == relation; });
-  if (row == std::end(rows)) source.refuse("no hardening is known for " + std::string(relation));
+  const auto row = std::find_if(std::begin(rows), std::end(rows), [&](const Row& r) { return r.keyword == keyword; });
+  if (row == std::end(rows)) source.refuse("no hardening curve can be had from the keyword '" + std::string(keyword) + "'");
   return row->curve(source);
 }
 

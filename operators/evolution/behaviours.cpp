@@ -1,0 +1,32 @@
+#include "lacon/operators/evolution/behaviours.hpp"
+
+#include <algorithm>
+
+#include "lacon/catalog/messages.hpp"
+
+namespace lacon {
+
+Behaviours read_behaviours(const Mesh& mesh, const std::vector<Keywords>& occurrences) {
+  Behaviours behaviours{{"ELAS/PETIT"}, std::vector<std::int32_t>(mesh.n_cells(), 0)};
+  for (const Keywords& factor : occurrences) {
+    const std::string option = factor.text("RELATION") + "/" + factor.text("DEFORMATION");
+    const auto at = std::find(behaviours.options.begin(), behaviours.options.end(), option);
+    const auto index = static_cast<std::int32_t>(at - behaviours.options.begin());
+    if (at == behaviours.options.end()) behaviours.options.push_back(option);
+    if (!factor.has("GROUP_MA")) std::fill(behaviours.of_cell.begin(), behaviours.of_cell.end(), index);
+    for (const std::string& group : factor.texts("GROUP_MA"))
+      for (const std::int32_t cell : cells_of_group(mesh, group, factor.path("GROUP_MA")))
+        behaviours.of_cell[static_cast<std::size_t>(cell)] = index;
+  }
+  return behaviours;
+}
+
+BehaviourRows behaviour_rows(const Registry& registry, std::string_view option) {
+  const std::size_t slash = option.find('/');
+  const catalog::RelationRow* relation = registry.find_relation(option.substr(0, slash));
+  const catalog::DeformationRow* deformation = registry.find_deformation(option.substr(slash + 1));
+  if (!relation || !deformation) fail("BEHAVIOUR_3", {{"behaviour", std::string(option)}});
+  return {*relation, *deformation};
+}
+
+}  // namespace lacon

@@ -1,0 +1,23 @@
+#pragma once
+// COMPORTEMENT: which law and measure of strain cells have, and what the catalogue knows of them.
+#include <string_view>
+#include <vector>
+
+#include "lacon/assembly/element_sets.hpp"
+#include "lacon/elements/registry.hpp"
+#include "lacon/structures/mesh.hpp"
+#include "lacon/structures/order.hpp"
+
+namespace lacon {
+
+/// A later occurrence wins over an earlier one; cells that none names are elastic with small strains.
+Behaviours read_behaviours(const Mesh& mesh, const std::vector<Keywords>& occurrences);
+
+/// The rows behind "VMIS_ISOT_LINE/PETIT". Throws BEHAVIOUR_3 where neither the catalogue nor a plug-in has them.
+struct BehaviourRows {
+  const catalog::RelationRow& relation;
+  const catalog::DeformationRow& deformation;
+};
+BehaviourRows behaviour_rows(const Registry& registry, std::string_view option);
+
+}  // namespace lacon
