@@ -15,6 +15,11 @@
 #define LACON_KERNEL
 #endif
 
+// What a kernel calls is inlined into it, so that it takes the kernel's instruction set: functions, and lambdas (behind their
+// parameters).
+#define LACON_INLINE [[gnu::always_inline]] inline
+#define LACON_INLINE_LAMBDA __attribute__((always_inline))
+
 namespace lacon {
 
 /// One double for each element of a block. Arrays of a batch may start anywhere; arrays of a kernel's own are faster where they
@@ -40,15 +45,15 @@ inline void clear_lanes(double* array, std::int64_t first, std::int64_t count) {
 struct LaneErrors {
   LaneMask code = {};
 
-  [[gnu::always_inline]] void set(const LaneMask& wrong, std::int32_t error) {
+  LACON_INLINE void set(const LaneMask& wrong, std::int32_t error) {
     code = (code == std::int64_t{LACON_FINE}) & wrong ? LaneMask{} + std::int64_t{error} : code;
   }
-  [[gnu::always_inline]] void set(int lane, bool wrong, std::int32_t error) {
+  LACON_INLINE void set(int lane, bool wrong, std::int32_t error) {
     if (wrong && code[lane] == LACON_FINE) code[lane] = error;
   }
   /// `values` that are not numbers, or not finite.
-  [[gnu::always_inline]] void check_finite(const Lanes& values) { set(~(values - values == 0), LACON_NOT_FINITE); }
-  [[gnu::always_inline]] void store(std::int32_t* error, std::int64_t block) const {
+  LACON_INLINE void check_finite(const Lanes& values) { set(~(values - values == 0), LACON_NOT_FINITE); }
+  LACON_INLINE void store(std::int32_t* error, std::int64_t block) const {
     for (int l = 0; l < LACON_LANES; ++l) error[block * LACON_LANES + l] = static_cast<std::int32_t>(code[l]);
   }
 };

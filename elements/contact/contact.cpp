@@ -7,8 +7,6 @@
 
 #pragma GCC diagnostic ignored "-Wpsabi"  // vectors are passed between inlined functions alone
 
-#define LACON_INLINE [[gnu::always_inline]] inline
-
 namespace {
 
 constexpr int max_nodes = 9;

@@ -18,7 +18,7 @@ using lacon::lanes;
 // A Jacobian below this share of what the element's size allows is round-off.
 constexpr double flat = 1e-13;
 
-[[gnu::always_inline]] inline void take_root(Lanes& x) {
+LACON_INLINE void take_root(Lanes& x) {
   for (int l = 0; l < LACON_LANES; ++l) x[l] = std::sqrt(x[l]);
 }
 
@@ -31,7 +31,7 @@ struct Geometry {
   Lanes t[R][D] = {};  // tangents at a point
   Lanes r = {};        // radius at a point, 1 away from axisymmetry
 
-  [[gnu::always_inline]] Geometry(const lacon_load_batch& batch, std::int64_t block, LaneErrors& errors)
+  LACON_INLINE Geometry(const lacon_load_batch& batch, std::int64_t block, LaneErrors& errors)
       : b(batch), x(batch.coordinates + block * D * batch.n_nodes * LACON_LANES) {
     for (int i = 0; i < D * b.n_nodes; ++i) {
       const Lanes side = lanes(x, i) - lanes(x, i % D);
@@ -42,10 +42,10 @@ struct Geometry {
         errors.set(l, lacon::displaced_reaches_over_axis(b.n_nodes, [&](int i) { return lanes(x, i)[l]; }), LACON_BAD_RADIUS);
   }
 
-  [[gnu::always_inline]] double shape(int p, int a) const { return b.shape[p * b.n_nodes + a]; }
-  [[gnu::always_inline]] double gradient(int p, int a, int k) const { return b.gradient[(p * b.n_nodes + a) * R + k]; }
+  LACON_INLINE double shape(int p, int a) const { return b.shape[p * b.n_nodes + a]; }
+  LACON_INLINE double gradient(int p, int a, int k) const { return b.gradient[(p * b.n_nodes + a) * R + k]; }
 
-  [[gnu::always_inline]] void go_to(int p) {
+  LACON_INLINE void go_to(int p) {
     for (int k = 0; k < R; ++k)
       for (int i = 0; i < D; ++i) {
         t[k][i] = Lanes{};
@@ -59,13 +59,13 @@ struct Geometry {
       r = r < 0 ? Lanes{} : r;
     }
   }
-  [[gnu::always_inline]] Lanes length2(int k) const {
+  LACON_INLINE Lanes length2(int k) const {
     Lanes sum = {};
     for (int i = 0; i < D; ++i) sum += t[k][i] * t[k][i];
     return sum;
   }
   /// The normal of a skin, as long as the Jacobian: (t_y, -t_x) of an edge (its body on the left), t x s of a face.
-  [[gnu::always_inline]] void normal(Lanes (&n)[D]) const {
+  LACON_INLINE void normal(Lanes (&n)[D]) const {
     if constexpr (D == 2) {
       n[0] = t[0][1];
       n[1] = -t[0][0];
@@ -74,7 +74,7 @@ struct Geometry {
     }
   }
   /// Length, area or volume for one of the reference cell.
-  [[gnu::always_inline]] Lanes jacobian(LaneErrors& errors) const {
+  LACON_INLINE Lanes jacobian(LaneErrors& errors) const {
     Lanes j, bound = extent;
     if constexpr (R == D) {
       if constexpr (D == 2) {
@@ -106,7 +106,7 @@ struct Geometry {
 /// Pressure p on a skin whose normal n leaves the body, positive towards the body, and in the plane a shear c along its tangent
 /// t: f_a = int N_a (-p n + c t). In axisymmetry the integral has the factor r: it is that over one radian.
 template <int D, bool axis>
-[[gnu::always_inline]] inline void pressure(const lacon_load_batch& b) {
+LACON_INLINE void pressure(const lacon_load_batch& b) {
   constexpr int n_values = D == 2 ? 2 : 1;
   const int nodes = b.n_nodes, dofs = D * nodes, n_lower = dofs * (dofs + 1) / 2;
   if (b.dimension != D || b.reference_dimension != D - 1 || b.n_values != n_values) return lacon::refuse(b);
@@ -135,7 +135,7 @@ template <int D, bool axis>
       if (!matrix) continue;
       // the derivative of f_a,i by x_c,j is N_a times what this adds
       const Lanes weight = b.weight[p] * g.r;
-      const auto add = [&](Lanes & sum_of, double factor, int i, int c, int j) __attribute__((always_inline)) {
+      const auto add = [&](Lanes& sum_of, double factor, int i, int c, int j) LACON_INLINE_LAMBDA {
         if constexpr (D == 2) {
           const Lanes density_by_tangent = i == j ? lanes(value, 1) : i == 0 ? -lanes(value, 0) : lanes(value, 0);
           sum_of += factor * g.gradient(p, c, 0) * weight * density_by_tangent;
@@ -162,7 +162,7 @@ template <int D, bool axis>
 
 /// A force for each unit of length, area or volume: f_a = int N_a f; in axisymmetry that over one radian.
 template <int D, int R, bool axis>
-[[gnu::always_inline]] inline void force(const lacon_load_batch& b) {
+LACON_INLINE void force(const lacon_load_batch& b) {
   const int nodes = b.n_nodes, dofs = D * nodes;
   if (b.dimension != D || b.reference_dimension != R || b.n_values != D) return lacon::refuse(b);
   for (std::int64_t block = 0; block < b.n_blocks; ++block) {

@@ -23,7 +23,7 @@ struct Map {
   Lanes inverse[D][D], determinant;  ///< inverse[r][i] = d xi_r / d x_i
 
   /// @param gradient (n_nodes, D), by reference coordinates @param side (n_nodes, D), from the first node on
-  [[gnu::always_inline]] Map(const double* gradient, const Lanes* side, int nodes, LaneErrors& errors) {
+  LACON_INLINE Map(const double* gradient, const Lanes* side, int nodes, LaneErrors& errors) {
     Lanes j[D][D] = {};
     for (int a = 1; a < nodes; ++a)
       for (int i = 0; i < D; ++i)

@@ -6,9 +6,6 @@
 #include "lacon/elements/lanes.hpp"
 #include "von_mises.hpp"
 
-// lambdas too take the instruction set of the kernel that they are in
-#define LACON_INLINE __attribute__((always_inline))
-
 namespace {
 
 using lacon::clear_lanes;
@@ -29,6 +26,9 @@ using lacon::solid::Tangent;
 enum class Measure { small, updated, green };
 enum class Law { elastic, von_mises };
 
+const char* const plastic_variables[] = {"EPSPEQ", "INDIPLAS", nullptr};  // cumulated plastic strain; 1 where it grows
+constexpr int n_plastic_variables = 2;
+
 /// Where row n of a matrix starts, in numbers: behind n (n + 1) / 2 entries.
 constexpr int start_of_row(int n) { return n * (n + 1) / 2 * LACON_LANES; }
 
@@ -46,7 +46,7 @@ struct Point {
 
   static constexpr int n_slopes = K == Kind::axis ? 3 : D;
   /// Gradient of shape function a, and behind it in axisymmetry its N / r.
-  [[gnu::always_inline]] const Lanes& slope_of(int a, int i) const { return i < D ? g[a][i] : hoop[K == Kind::axis ? a : 0]; }
+  LACON_INLINE const Lanes& slope_of(int a, int i) const { return i < D ? g[a][i] : hoop[K == Kind::axis ? a : 0]; }
 };
 
 // Points whose gradients are kept for add_elastic_matrix: those of QUAD9 and HEXA8 at once, a third of HEXA27's, in the fast
@@ -58,8 +58,8 @@ constexpr int points_at_once = 9;
 /// in registers while the points pass, so that each entry is written once.
 /// @param first whether what `matrix` held before is overwritten, not added to
 template <Kind K>
-[[gnu::always_inline]] inline void add_elastic_matrix(const Point<K>* points, int n_points, const Lanes& lambda,
-                                                      const Lanes& mu, int nodes, bool first, double* matrix) {
+LACON_INLINE void add_elastic_matrix(const Point<K>* points, int n_points, const Lanes& lambda, const Lanes& mu, int nodes,
+                                     bool first, double* matrix) {
   constexpr bool axis = K == Kind::axis;
   constexpr int D = dimension_of(K), S = Point<K>::n_slopes;
   alignas(lane_alignment) Lanes weighted[points_at_once][S];
@@ -96,7 +96,7 @@ template <Kind K>
 /// The matrix of small strains and of Green-Lagrange strains. The change of strain by node a and direction i is the symmetric
 /// part of F_i (x) g_a, where F_i is row i of the deformation gradient (small strains: of the unit matrix).
 template <Kind K, Measure M, Law L>
-[[gnu::always_inline]] inline void add_matrix(const Point<K>& point, int nodes, double* matrix) {
+LACON_INLINE void add_matrix(const Point<K>& point, int nodes, double* matrix) {
   constexpr bool axis = K == Kind::axis, green = M == Measure::green, rank_one = L == Law::von_mises;
   constexpr int D = dimension_of(K);
   const Lanes dl = point.dv * point.tangent.lambda, dm = point.dv * point.tangent.mu;
@@ -122,7 +122,7 @@ template <Kind K, Measure M, Law L>
   [[maybe_unused]] Lanes with_ring[axis ? max_nodes : 1];
   if constexpr (axis)
     for (int a = 0; a < nodes; ++a) with_ring[a] = strain[a][0] + (green ? stretch * point.hoop[a] : point.hoop[a]);
-  const auto trace = [&](int a, int i) LACON_INLINE -> const Lanes& {  // of the change of strain
+  const auto trace = [&](int a, int i) LACON_INLINE_LAMBDA -> const Lanes& {  // of the change of strain
     return axis && i == 0 ? with_ring[axis ? a : 0] : strain[a][i];
   };
   Lanes along[rank_one ? max_nodes : 1][D];  // the change of strain along the tangent's direction
@@ -183,7 +183,7 @@ template <Kind K, Measure M, Law L>
 /// derivative itself is symmetric only up to terms of the size of the stress; without any of these terms slender bodies
 /// converge badly.
 template <Kind K, Law L>
-[[gnu::always_inline]] inline void add_updated_matrix(const Point<K>& point, int nodes, double* matrix) {
+LACON_INLINE void add_updated_matrix(const Point<K>& point, int nodes, double* matrix) {
   constexpr bool axis = K == Kind::axis;
   constexpr int D = dimension_of(K);
   const Tangent<K>& tangent = point.tangent;
@@ -226,7 +226,7 @@ template <Kind K, Law L>
       }
     }
   // entry += d force (a, i) / d u (c, j) over dv
-  const auto add_derivative = [&](int a, int i, int c, int j, const Lanes& both, Lanes& entry) LACON_INLINE {
+  const auto add_derivative = [&](int a, int i, int c, int j, const Lanes& both, Lanes& entry) LACON_INLINE_LAMBDA {
     entry += tangent.lambda * trace[a][i] * mixed_trace[c][j] + tangent.mu * (shrink[i][j] * both + g[c][i] * mixed[a][j]) +
              whole_drawn[a][i] * trace[c][j] - g[a][j] * drawn[c][i];
     if (axis && i == 0 && j == 0) entry += (2 * tangent.mu * hoop_shrink - point.stress[2]) * point.hoop[a] * point.hoop[c];
@@ -248,39 +248,30 @@ template <Kind K, Law L>
     }
 }
 
-/// Isotropic elasticity sigma = lambda tr(eps) I + 2 mu eps with E and nu, and plasticity upon it. Outputs of an element in
-/// error have no meaning. Stress: Cauchy's, SIXX SIYY SIZZ SIXY, in space SIXZ SIYZ too. Plane stress is the law with the
-/// lambda that makes SIZZ zero; in axisymmetry x is the radius r, ZZ the hoop direction with the strain u_r / r, and integrals
-/// are those over one radian.
-template <Kind K, Measure M, Law L>
-[[gnu::always_inline]] inline void evaluate(const lacon_solid_batch& b) {
-  constexpr bool axis = K == Kind::axis, green = M == Measure::green, updated = M == Measure::updated;
-  constexpr bool plastic = L == Law::von_mises;
-  constexpr bool same_moduli = M == Measure::small && L == Law::elastic;  // at all points
-  constexpr int D = dimension_of(K), n_stress = components_of(K), n_variables = plastic ? 2 : 0;
-  const int nodes = b.n_nodes, dofs = D * nodes, entries = dofs * (dofs + 1) / 2;
-  if (b.dimension != D || nodes > max_nodes || b.n_stress != n_stress || b.n_parameters != 2 || b.n_variables != n_variables ||
-      (plastic && b.n_curve < 1))
-    return lacon::refuse(b);
-  alignas(lane_alignment) Lanes side[max_nodes * D];  // from the first node on: a cell far from the origin loses no digits
-  // what strains come from: with Green-Lagrange the whole displacement, for they do not add up
+/// A block of elements: what holds at all of its points.
+template <Kind K, Measure M>
+struct Block {
+  static constexpr int D = dimension_of(K);
+  static constexpr bool updated = M == Measure::updated, green = M == Measure::green;
+
+  const double* place;                                ///< coordinates where strains and integrals are taken
+  Lanes lambda, mu, nu;                               ///< plane stress: the lambda that makes SIZZ zero
+  alignas(lane_alignment) Lanes side[max_nodes * D];  ///< from the first node on: a cell far from the origin loses no digits
+  /// What strains come from: with Green-Lagrange the whole displacement, for they do not add up.
   alignas(lane_alignment) Lanes moved[max_nodes * D];
   alignas(lane_alignment) Lanes current[updated ? max_nodes * D : 1];
-  alignas(lane_alignment) Point<K> points[same_moduli ? points_at_once : 1];
-  for (std::int64_t block = 0; block < b.n_blocks; ++block) {
-    LaneErrors errors;
-    const Lanes young = lanes(b.parameter, 2 * block), nu = lanes(b.parameter, 2 * block + 1);
+
+  LACON_INLINE void read(const lacon_solid_batch& b, std::int64_t block, LaneErrors& errors) {
+    const int nodes = b.n_nodes, dofs = D * nodes;
+    const Lanes young = lanes(b.parameter, 2 * block);
+    nu = lanes(b.parameter, 2 * block + 1);
     errors.set(~((young > 0) & (young - young == 0) & (nu > -1) & (nu < 0.5)), LACON_BAD_PARAMETER);
-    const Lanes mu = young / (2 * (1 + nu));
-    const Lanes lambda = K == Kind::plane_stress ? young * nu / ((1 + nu) * (1 - nu)) : young * nu / ((1 + nu) * (1 - 2 * nu));
+    mu = young / (2 * (1 + nu));
+    lambda = K == Kind::plane_stress ? young * nu / ((1 + nu) * (1 - nu)) : young * nu / ((1 + nu) * (1 - 2 * nu));
     const double* x = b.coordinates + block * dofs * LACON_LANES;
     const double* u = b.displacement + block * dofs * LACON_LANES;
     const double* from = b.previous_displacement ? b.previous_displacement + block * dofs * LACON_LANES : nullptr;
-    double* matrix = b.matrix ? b.matrix + block * entries * LACON_LANES : nullptr;
-    double* force = b.force ? b.force + block * dofs * LACON_LANES : nullptr;
-    if (matrix && !same_moduli) clear_lanes(matrix, 0, entries);
-    if (force) clear_lanes(force, 0, dofs);
-    const double* place = x;  // where strains and integrals are taken
+    place = x;
     if constexpr (updated) {
       for (int i = 0; i < dofs; ++i) current[i] = lanes(x, i) + lanes(u, i);
       place = reinterpret_cast<const double*>(current);
@@ -289,143 +280,213 @@ template <Kind K, Measure M, Law L>
       moved[i] = !green && from ? lanes(u, i) - lanes(from, i) : lanes(u, i);
       side[i] = lanes(place, i) - lanes(place, i % D);
     }
-    if constexpr (axis)
+    if constexpr (K == Kind::axis)
       for (int l = 0; l < LACON_LANES; ++l)
         errors.set(l, lacon::reaches_over_axis(nodes, [&](int i) { return lanes(x, i)[l]; }), LACON_BAD_RADIUS);
+  }
+};
+
+/// Measure and gradients at point p, and the gradient of the displacement.
+template <Kind K, Measure M>
+LACON_INLINE void take_gradients(const lacon_solid_batch& b, int p, const Block<K, M>& block, Point<K>& point,
+                                 LaneErrors& errors) {
+  constexpr bool axis = K == Kind::axis;
+  constexpr int D = dimension_of(K);
+  const int nodes = b.n_nodes;
+  const double* d = b.gradient + p * nodes * D;
+  const Map<D> map(d, block.side, nodes, errors);
+  point.dv = b.weight[p] * map.determinant;
+  [[maybe_unused]] Lanes per_radius = {};
+  if constexpr (axis) {
+    Lanes r = {};
+    for (int a = 0; a < nodes; ++a) r += b.shape[p * nodes + a] * lanes(block.place, 2 * a);
+    errors.set(~(r > 0), LACON_BAD_RADIUS);
+    per_radius = 1 / r;
+    point.dv *= r;
+  }
+  Lanes slope[D][D] = {}, hoop_slope = {};
+  for (int a = 0; a < nodes; ++a) {
+    for (int i = 0; i < D; ++i) {
+      point.g[a][i] = d[a * D] * map.inverse[0][i];
+      for (int r = 1; r < D; ++r) point.g[a][i] += d[a * D + r] * map.inverse[r][i];
+    }
+    for (int i = 0; i < D; ++i)
+      for (int k = 0; k < D; ++k) slope[i][k] += block.moved[a * D + i] * point.g[a][k];
+    if constexpr (axis) {
+      point.hoop[a] = b.shape[p * nodes + a] * per_radius;
+      hoop_slope += point.hoop[a] * block.moved[2 * a];
+    }
+  }
+  for (int i = 0; i < D; ++i)
+    for (int k = 0; k < D; ++k) point.slope[i][k] = slope[i][k];
+  point.hoop_slope = hoop_slope;
+}
+
+/// Twice the strain, or its increment.
+template <Kind K, Measure M>
+LACON_INLINE void take_strain(const Point<K>& point, Lanes (&twice)[components_of(K)]) {
+  constexpr bool green = M == Measure::green;
+  constexpr int D = dimension_of(K);
+  if constexpr (D == 2) twice[2] = Lanes{};
+  for (int i = 0; i < D; ++i)
+    for (int k = i; k < D; ++k) {
+      Lanes& value = twice[at(i, k)];
+      value = point.slope[i][k] + point.slope[k][i];
+      if constexpr (green)
+        for (int m = 0; m < D; ++m) value += point.slope[m][i] * point.slope[m][k];
+    }
+  if constexpr (K == Kind::axis) twice[2] = green ? point.hoop_slope * (2 + point.hoop_slope) : 2 * point.hoop_slope;
+}
+
+/// The law: stress and tangent at a point. @param here its number among those of the batch
+/// @param sum gets everything that must be finite
+template <Kind K, Measure M, Law L>
+LACON_INLINE void take_stress(const lacon_solid_batch& b, std::int64_t here, const Block<K, M>& block,
+                              const Lanes (&twice)[components_of(K)], Point<K>& point, Lanes& sum, LaneErrors& errors) {
+  constexpr int n_stress = components_of(K);
+  const Lanes pressure = block.lambda * (twice[0] + twice[1] + twice[2]) / 2;
+  auto& s = point.stress;
+  for (int i = 0; i < n_stress; ++i) s[i] = i < 3 ? pressure + block.mu * twice[i] : block.mu * twice[i];
+  if (M != Measure::green && b.previous_stress)
+    for (int i = 0; i < n_stress; ++i) s[i] += lanes(b.previous_stress, here * n_stress + i);
+  if constexpr (K == Kind::plane_stress) s[2] = Lanes{};
+  point.tangent = {block.lambda, block.mu};
+  if constexpr (L == Law::von_mises) {
+    Lanes strain = b.previous_variable ? lanes(b.previous_variable, here * n_plastic_variables) : Lanes{}, flows;
+    lacon::solid::return_to_criterion<K>(s, point.tangent, strain, flows, {b.curve, b.n_curve}, errors);
+    if (b.variable) {
+      lanes(b.variable, here * n_plastic_variables) = strain;
+      lanes(b.variable, here * n_plastic_variables + 1) = flows;
+    }
+    sum += strain;
+    if (b.elastic_matrix) point.tangent = {block.lambda, block.mu};
+  }
+  sum += point.dv;
+  for (const Lanes& component : s) sum += component;
+}
+
+/// What forces are made of: with Green-Lagrange the first Piola-Kirchhoff stress F S.
+template <Kind K>
+struct NominalStress {
+  static constexpr int D = dimension_of(K);
+  Lanes value[D][D], hoop;
+
+  LACON_INLINE NominalStress(const Point<K>& point, bool green) {
+    for (int i = 0; i < D; ++i)
+      for (int k = 0; k < D; ++k) {
+        value[i][k] = point.stress[at(i, k)];
+        if (green)
+          for (int m = 0; m < D; ++m) value[i][k] += point.slope[i][m] * point.stress[at(m, k)];
+      }
+    hoop = green ? (1 + point.hoop_slope) * point.stress[2] : point.stress[2];
+  }
+};
+
+/// Green-Lagrange: whether the element is turned inside out, and Cauchy's stress F S F^T / det F. In plane stress det F has the
+/// stretch across, which keeps SIZZ zero.
+template <Kind K>
+LACON_INLINE void take_cauchy_stress(const Point<K>& point, const NominalStress<K>& nominal,
+                                     const Lanes (&twice)[components_of(K)], const Lanes& nu, double* stress,
+                                     LaneErrors& errors) {
+  constexpr int D = dimension_of(K);
+  Lanes f[D][D], volume;
+  for (int i = 0; i < D; ++i)
+    for (int k = 0; k < D; ++k) f[i][k] = point.slope[i][k] + (i == k ? 1.0 : 0.0);
+  if constexpr (D == 2)
+    volume = (f[0][0] * f[1][1] - f[0][1] * f[1][0]) * (1 + point.hoop_slope);
+  else
+    volume = f[0][0] * (f[1][1] * f[2][2] - f[1][2] * f[2][1]) - f[0][1] * (f[1][0] * f[2][2] - f[1][2] * f[2][0]) +
+             f[0][2] * (f[1][0] * f[2][1] - f[1][1] * f[2][0]);
+  for (int l = 0; l < LACON_LANES; ++l) {
+    bool right_way = volume[l] > 0 && (K != Kind::axis || point.hoop_slope[l] > -1);
+    if constexpr (K == Kind::plane_stress) {
+      const double across = 1 - nu[l] / (1 - nu[l]) * (twice[0][l] + twice[1][l]);
+      right_way = right_way && across > 0;
+      volume[l] *= std::sqrt(across);
+    }
+    errors.set(l, !right_way, LACON_INSIDE_OUT);
+  }
+  if (!stress) return;
+  for (int i = 0; i < D; ++i)
+    for (int k = i; k < D; ++k) {
+      Lanes cauchy = nominal.value[i][0] * f[k][0];
+      for (int m = 1; m < D; ++m) cauchy += nominal.value[i][m] * f[k][m];
+      lanes(stress, at(i, k)) = cauchy / volume;
+    }
+  if constexpr (D == 2) lanes(stress, 2) = nominal.hoop * (1 + point.hoop_slope) / volume;
+}
+
+template <Kind K>
+LACON_INLINE void add_force(const Point<K>& point, const NominalStress<K>& nominal, int nodes, double* force) {
+  constexpr int D = dimension_of(K);
+  Lanes weighted[D][D];
+  for (int i = 0; i < D; ++i)
+    for (int k = 0; k < D; ++k) weighted[i][k] = point.dv * nominal.value[i][k];
+  for (int a = 0; a < nodes; ++a)
+    for (int i = 0; i < D; ++i) {
+      Lanes f = point.g[a][0] * weighted[i][0];
+      for (int k = 1; k < D; ++k) f += point.g[a][k] * weighted[i][k];
+      if (K == Kind::axis && i == 0) f += point.hoop[a] * (point.dv * nominal.hoop);
+      lanes(force, a * D + i) += f;
+    }
+}
+
+/// Isotropic elasticity sigma = lambda tr(eps) I + 2 mu eps with E and nu, and plasticity upon it. Outputs of an element in
+/// error have no meaning. Stress: Cauchy's, SIXX SIYY SIZZ SIXY, in space SIXZ SIYZ too. In axisymmetry x is the radius r, ZZ
+/// the hoop direction with the strain u_r / r, and integrals are those over one radian.
+template <Kind K, Measure M, Law L>
+LACON_INLINE void evaluate(const lacon_solid_batch& b) {
+  constexpr bool green = M == Measure::green, plastic = L == Law::von_mises;
+  constexpr bool same_moduli = M == Measure::small && L == Law::elastic;  // at all points
+  constexpr int D = dimension_of(K), n_stress = components_of(K), n_variables = plastic ? n_plastic_variables : 0;
+  const int nodes = b.n_nodes, dofs = D * nodes, entries = dofs * (dofs + 1) / 2;
+  if (b.dimension != D || nodes > max_nodes || b.n_stress != n_stress || b.n_parameters != 2 || b.n_variables != n_variables ||
+      (plastic && b.n_curve < 1))
+    return lacon::refuse(b);
+  Block<K, M> block;
+  alignas(lane_alignment) Point<K> points[same_moduli ? points_at_once : 1];
+  for (std::int64_t index = 0; index < b.n_blocks; ++index) {
+    LaneErrors errors;
+    block.read(b, index, errors);
+    double* matrix = b.matrix ? b.matrix + index * entries * LACON_LANES : nullptr;
+    double* force = b.force ? b.force + index * dofs * LACON_LANES : nullptr;
+    if (matrix && !same_moduli) clear_lanes(matrix, 0, entries);
+    if (force) clear_lanes(force, 0, dofs);
     Lanes sum = {};
     for (int p = 0; p < b.n_points; ++p) {
-      const double* d = b.gradient + p * dofs;
-      const std::int64_t here = block * b.n_points + p;
-      const Map<D> map(d, side, nodes, errors);
+      const std::int64_t here = index * b.n_points + p;
       const int kept = same_moduli ? p % points_at_once : 0;
       Point<K>& point = points[kept];
-      point.dv = b.weight[p] * map.determinant;
-      [[maybe_unused]] Lanes per_radius = {};
-      if constexpr (axis) {
-        Lanes r = {};
-        for (int a = 0; a < nodes; ++a) r += b.shape[p * nodes + a] * lanes(place, 2 * a);
-        errors.set(~(r > 0), LACON_BAD_RADIUS);
-        per_radius = 1 / r;
-        point.dv *= r;
-      }
-      auto& g = point.g;
-      auto& hoop = point.hoop;
-      Lanes e[D][D] = {}, hoop_strain = {};  // e: gradient of the displacement
-      for (int a = 0; a < nodes; ++a) {
-        for (int i = 0; i < D; ++i) {
-          g[a][i] = d[a * D] * map.inverse[0][i];
-          for (int r = 1; r < D; ++r) g[a][i] += d[a * D + r] * map.inverse[r][i];
-        }
-        for (int i = 0; i < D; ++i)
-          for (int k = 0; k < D; ++k) e[i][k] += moved[a * D + i] * g[a][k];
-        if constexpr (axis) {
-          hoop[a] = b.shape[p * nodes + a] * per_radius;
-          hoop_strain += hoop[a] * moved[2 * a];
-        }
-      }
-      for (int i = 0; i < D; ++i)
-        for (int k = 0; k < D; ++k) point.slope[i][k] = e[i][k];
-      point.hoop_slope = hoop_strain;
-
-      Lanes twice[n_stress] = {};  // the strain
-      for (int i = 0; i < D; ++i)
-        for (int k = i; k < D; ++k) {
-          Lanes& value = twice[at(i, k)];
-          value = e[i][k] + e[k][i];
-          if constexpr (green)
-            for (int m = 0; m < D; ++m) value += e[m][i] * e[m][k];
-        }
-      if constexpr (axis) twice[2] = green ? hoop_strain * (2 + hoop_strain) : 2 * hoop_strain;
-      const Lanes pressure = lambda * (twice[0] + twice[1] + twice[2]) / 2;
-      auto& s = point.stress;
-      for (int i = 0; i < n_stress; ++i) s[i] = i < 3 ? pressure + mu * twice[i] : mu * twice[i];
-      if (!green && b.previous_stress)
-        for (int i = 0; i < n_stress; ++i) s[i] += lanes(b.previous_stress, here * n_stress + i);
-      if constexpr (K == Kind::plane_stress) s[2] = Lanes{};
-      point.tangent = {lambda, mu};
-      if constexpr (plastic) {
-        Lanes strain = b.previous_variable ? lanes(b.previous_variable, here * n_variables) : Lanes{}, flows;
-        lacon::solid::return_to_criterion<K>(s, point.tangent, strain, flows, {b.curve, b.n_curve}, errors);
-        if (b.variable) {
-          lanes(b.variable, here * n_variables) = strain;
-          lanes(b.variable, here * n_variables + 1) = flows;
-        }
-        sum += strain;
-        if (b.elastic_matrix) point.tangent = {lambda, mu};
-      }
-
-      sum += point.dv;
-      for (const Lanes& component : s) sum += component;
-      Lanes nominal[D][D];  // what forces are made of: with Green-Lagrange the first Piola-Kirchhoff stress F S
-      for (int i = 0; i < D; ++i)
-        for (int k = 0; k < D; ++k) {
-          nominal[i][k] = s[at(i, k)];
-          if constexpr (green)
-            for (int m = 0; m < D; ++m) nominal[i][k] += e[i][m] * s[at(m, k)];
-        }
-      const Lanes nominal_hoop = green ? (1 + hoop_strain) * s[2] : s[2];
-      Lanes weighted[D][D];
-      for (int i = 0; i < D; ++i)
-        for (int k = 0; k < D; ++k) weighted[i][k] = point.dv * nominal[i][k];
-      if constexpr (green) {
-        Lanes f[D][D], volume;
-        for (int i = 0; i < D; ++i)
-          for (int k = 0; k < D; ++k) f[i][k] = e[i][k] + (i == k ? 1.0 : 0.0);
-        if constexpr (D == 2)
-          volume = (f[0][0] * f[1][1] - f[0][1] * f[1][0]) * (1 + hoop_strain);
-        else
-          volume = f[0][0] * (f[1][1] * f[2][2] - f[1][2] * f[2][1]) - f[0][1] * (f[1][0] * f[2][2] - f[1][2] * f[2][0]) +
-                   f[0][2] * (f[1][0] * f[2][1] - f[1][1] * f[2][0]);
-        for (int l = 0; l < LACON_LANES; ++l) {
-          bool right_way = volume[l] > 0 && (!axis || hoop_strain[l] > -1);
-          if constexpr (K == Kind::plane_stress) {
-            // the strain across, which keeps SIZZ zero
-            const double across = 1 - nu[l] / (1 - nu[l]) * (twice[0][l] + twice[1][l]);
-            right_way = right_way && across > 0;
-            volume[l] *= std::sqrt(across);
-          }
-          errors.set(l, !right_way, LACON_INSIDE_OUT);
-        }
-        if (b.stress) {
-          for (int i = 0; i < D; ++i)
-            for (int k = i; k < D; ++k) {
-              Lanes cauchy = nominal[i][0] * f[k][0];
-              for (int m = 1; m < D; ++m) cauchy += nominal[i][m] * f[k][m];
-              lanes(b.stress, here * n_stress + at(i, k)) = cauchy / volume;
-            }
-          if constexpr (D == 2) lanes(b.stress, here * n_stress + 2) = nominal_hoop * (1 + hoop_strain) / volume;
-        }
-      } else if (b.stress) {
-        for (int i = 0; i < n_stress; ++i) lanes(b.stress, here * n_stress + i) = s[i];
-      }
-      if (force)
-        for (int a = 0; a < nodes; ++a)
-          for (int i = 0; i < D; ++i) {
-            Lanes f = g[a][0] * weighted[i][0];
-            for (int k = 1; k < D; ++k) f += g[a][k] * weighted[i][k];
-            if (axis && i == 0) f += hoop[a] * (point.dv * nominal_hoop);
-            lanes(force, a * D + i) += f;
-          }
+      Lanes twice[n_stress];  // the strain
+      take_gradients<K, M>(b, p, block, point, errors);
+      take_strain<K, M>(point, twice);
+      take_stress<K, M, L>(b, here, block, twice, point, sum, errors);
+      const NominalStress<K> nominal(point, green);
+      double* const stress = b.stress ? b.stress + here * n_stress * LACON_LANES : nullptr;
+      if constexpr (green)
+        take_cauchy_stress<K>(point, nominal, twice, block.nu, stress, errors);
+      else if (stress)
+        for (int i = 0; i < n_stress; ++i) lanes(stress, i) = point.stress[i];
+      if (force) add_force<K>(point, nominal, nodes, force);
       if (!matrix) continue;
       if constexpr (same_moduli) {
         if (kept + 1 == points_at_once || p + 1 == b.n_points)
-          add_elastic_matrix<K>(points, kept + 1, lambda, mu, nodes, p < points_at_once, matrix);
+          add_elastic_matrix<K>(points, kept + 1, block.lambda, block.mu, nodes, p < points_at_once, matrix);
         continue;
       }
       if (b.stressless_matrix)
-        for (Lanes& component : s) component = Lanes{};
-      if (updated && !b.stressless_matrix)
+        for (Lanes& component : point.stress) component = Lanes{};
+      if (M == Measure::updated && !b.stressless_matrix)
         add_updated_matrix<K, L>(point, nodes, matrix);
       else
         add_matrix<K, M, L>(point, nodes, matrix);
     }
     errors.check_finite(sum);
-    errors.store(b.error, block);
+    errors.store(b.error, index);
   }
 }
 
 const char* const isotropic[] = {"ELAS/E", "ELAS/NU", nullptr};
-const char* const plastic_variables[] = {"EPSPEQ", "INDIPLAS", nullptr};  // cumulated plastic strain; 1 where it grows
 
 constexpr lacon_kernel row(const char* name, void (*function)(const lacon_solid_batch*), Measure measure, Law law) {
   const bool plastic = law == Law::von_mises;

@@ -100,8 +100,8 @@ inline PlasticStep plane_return(const PlaneTrial& trial, double p, const Hardeni
 /// @param stress in: elastic trial, out: the law's answer  @param tangent in: elastic, out: consistent
 /// @param p cumulated plastic strain, in and out  @param flows 1 where it has grown
 template <Kind K>
-[[gnu::always_inline]] inline void return_to_criterion(Lanes (&stress)[components_of(K)], Tangent<K>& tangent, Lanes& p,
-                                                       Lanes& flows, const Hardening& hardening, LaneErrors& errors) {
+LACON_INLINE void return_to_criterion(Lanes (&stress)[components_of(K)], Tangent<K>& tangent, Lanes& p, Lanes& flows,
+                                      const Hardening& hardening, LaneErrors& errors) {
   constexpr int n = components_of(K);
   flows = Lanes{};
   Lanes deviator[n], square = {};
