@@ -12,6 +12,8 @@ FLOORS = {"catalog": 0, "structures": 1, "elements": 2, "pairing": 3, "assembly"
 TOP = (*FLOORS, "commands", "tests", "docs", "cmake")
 #: the folders that operators share, from the ground up
 SHARED = ["program", "meshing", "fields", "contact", "evolution"]
+#: lines of a C++ file of a room: what is longer is two things
+LONGEST = 500
 
 
 def sources():
@@ -67,6 +69,10 @@ class House(unittest.TestCase):
     def test_mains_are_short(self):
         for main in (SOURCE / "operators").glob("*/main.cpp"):
             self.assertLess(len(main.read_text().splitlines()), 60, main)
+
+    def test_no_file_of_a_room_is_long(self):
+        long = [f"{path.relative_to(SOURCE)}: {n} lines" for _, path in sources() if (n := len(path.read_text().splitlines())) > LONGEST]
+        self.assertEqual(long, [])
 
     def test_every_room_has_a_page(self):
         rooms = [*FLOORS, "commands", "tests", *(f"operators/{name}" for name in SHARED)]
