@@ -8,7 +8,7 @@ import tempfile
 import unittest
 
 sys.path.insert(0, __file__.rpartition("/")[0] or ".")
-from support import STUDY, LauncherTest  # noqa: E402
+from support import ROOT, STUDY, LauncherTest  # noqa: E402
 
 #: operators of STUDY, in order
 ALL = ["lire_maillage", "crea_maillage", "affe_modele", "affe_materiau", "affe_char_cine", "stat_non_line"]
@@ -115,6 +115,29 @@ class Kept(KeptTest):
         self.assertEqual(self.started(WITH_FIELDS, environment=environment), ["impr_resu"])
         (folder / "libmine.so").write_bytes(b"kernels")
         self.assertEqual(self.started(WITH_FIELDS, environment=environment), everything)
+
+    def test_plugins_are_those_that_the_operators_find(self):
+        """Beside LACON_BIN, not beside the launcher; a folder that is no plug-in does not count."""
+        folder = self.bin.parent / "lib/lacon/plugins/mine"
+        folder.mkdir(parents=True)
+        (folder / "notes.txt").write_text("no plug-in", encoding="utf-8")
+        self.assertEqual(self.started(WITH_FIELDS), ["impr_resu"])
+        (folder / "libmine.so").write_bytes(b"kernels")
+        self.assertEqual(self.started(WITH_FIELDS), [*ALL, "calc_champ", "impr_resu"])
+        (folder / "plugin.toml").write_text('[[element]]\nmodelisation = "MY_MODEL"\n', encoding="utf-8")
+        self.ok(self.run_study(WITH_FIELDS.replace("'D_PLAN'", "'MY_MODEL'")))
+
+    def test_the_launchers_part_in_formulae(self):
+        """Each module that evaluates them, and the functions that they call."""
+        copy = self.folder / "copy"
+        shutil.copytree(ROOT / "commands" / "lacon", copy / "lacon", ignore=shutil.ignore_patterns("__pycache__"))
+        environment = {"PYTHONPATH": str(copy), "LACON_CATALOG": os.environ.get("LACON_CATALOG", str(ROOT / "catalog"))}
+        self.started(WITH_FIELDS, environment=environment)
+        self.assertEqual(self.started(WITH_FIELDS, environment=environment), ["impr_resu"])
+        for name in ("base/expressions.py", "base/functions.py", "base/names.py", "objects/functions.py"):
+            with open(copy / "lacon" / name, "a", encoding="utf-8") as file:
+                file.write("\n# another version\n")
+            self.assertEqual(self.started(WITH_FIELDS, environment=environment), [*ALL, "calc_champ", "impr_resu"], name)
 
     def test_a_concept_that_was_lost_or_touched(self):
         mesh = self.work / "study.base" / f"{self.registry()['labels']['M']}.h5"

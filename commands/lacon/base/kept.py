@@ -291,14 +291,17 @@ def _of_program(path):
     return number.hex() if 8 <= length == len(number) else _of_file(path)
 
 
+#: packages of the launcher that have a part in what an operator makes: they evaluate its formulae, and the functions in them
+_evaluating = ("base", "objects")
+
+
 @functools.cache
 def _version():
     """What beside the operator itself decides what it makes: catalogue, plug-ins, the launcher's part in formulae."""
     there = catalog.location()
     files = [there] if there.is_file() else sorted(there.rglob("*.toml"))
-    roots = filter(None, [*os.environ.get("LACON_PLUGIN_PATH", "").split(":"), plugins.operator_folder().parent / "lib" / "lacon" / "plugins"])
-    files += [path for root in roots for path in sorted(pathlib.Path(root).rglob("*")) if path.is_file()]
-    files.append(pathlib.Path(__file__).with_name("expressions.py"))
+    files += [path for folder in plugins.plugin_folders() for path in sorted(folder.rglob("*")) if path.is_file()]
+    files += [path for package in _evaluating for path in sorted((pathlib.Path(__file__).parents[1] / package).glob("*.py"))]
     return [version, *map(_of_program, files)]
 
 

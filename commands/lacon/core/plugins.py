@@ -16,21 +16,26 @@ def operator_folder():
 
 
 def plugin_folders():
-    """Plug-in folders of LACON_PLUGIN_PATH and of the installation: each entry is one, or holds some."""
-    installed = pathlib.Path(os.path.realpath(sys.argv[0])).parent.parent / "lib" / "lacon" / "plugins"
-    for entry in [*filter(None, os.environ.get("LACON_PLUGIN_PATH", "").split(os.pathsep)), installed]:
-        folder = pathlib.Path(entry)
-        if (folder / "plugin.toml").is_file():
+    """Plug-in folders in the order in which operators look for them (elements/registry.cpp): LACON_PLUGIN_PATH, then beside the operators'
+    own folder; each entry is a plug-in, or holds some."""
+    program = pathlib.Path(os.path.realpath(operator_folder() / "affe_modele"))  # an operator goes by where its file is, links followed
+    for entry in [*filter(None, os.environ.get("LACON_PLUGIN_PATH", "").split(":")), program.parents[1] / "lib" / "lacon" / "plugins"]:
+        folder = pathlib.Path(os.path.realpath(entry))
+        if _is_plugin(folder):
             yield folder
         elif folder.is_dir():
-            yield from sorted(path.parent for path in folder.glob("*/plugin.toml"))
+            yield from sorted(filter(_is_plugin, folder.iterdir()))
+
+
+def _is_plugin(folder):
+    return (folder / "plugin.toml").exists() or (folder / f"lib{folder.name}.so").exists()
 
 
 @functools.cache
 def brought():
     """What each plugin.toml says: [(path, tables)]."""
     found = []
-    for path in (folder / "plugin.toml" for folder in plugin_folders()):
+    for path in filter(pathlib.Path.exists, (folder / "plugin.toml" for folder in plugin_folders())):
         try:
             found.append((path, catalog.toml(path)))
         except (ValueError, OSError) as error:  # tomllib's own is a ValueError
