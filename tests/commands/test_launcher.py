@@ -46,7 +46,7 @@ class Endings(LauncherTest):
         self.ends(self.run_study(STUDY, behaviour=behaviour), 3, "<S>_NO_CONVERGENCE")
 
     def test_singular_matrix(self):
-        self.ends(self.run_study(STUDY, behaviour={"stat_non_line": {"status": 3, "messages": [said("S", "FACTOR_11")]}}), 3, "<S>_ERROR")
+        self.ends(self.run_study(STUDY, behaviour={"stat_non_line": {"status": 3, "messages": [said("S", "SOLVER_1")]}}), 3, "<S>_ERROR")
 
     def test_internal_error(self):
         for behaviour in ({"status": 4}, {"status": 77}, {"kill": 6}):
@@ -416,6 +416,13 @@ FIN()
 
 
 class Sources(unittest.TestCase):
+    def test_messages_of_the_linear_solver_are_those_of_the_catalogue(self):
+        from lacon.base import orders
+        from lacon.core import catalog
+
+        named = [name for name, row in catalog.messages().items() if row["severity"] == "S" and name.startswith(orders.linear_solver)]
+        self.assertIn("SOLVER_1", named)
+
     def test_every_message_that_is_raised_exists_with_its_gaps(self):
         import ast
         import re

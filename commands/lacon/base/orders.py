@@ -15,8 +15,8 @@ from ..core.messages import AsterError, ConvergenceError, InternalError, Message
 from ..core.plugins import operator_folder
 from . import expressions
 
-#: messages of a solution that failed in the linear solver; any other is one of Newton's method
-_linear_solver = ("FACTOR", "SINGULAR", "SOLVER")
+#: what messages of a solution that failed in the linear solver begin with; any other is one of Newton's method
+linear_solver = "SOLVER_"
 
 
 class Outcome:
@@ -125,7 +125,7 @@ def raise_failure(outcome, program, where):
         raise AsterError(fatal or [message("COMMAND_6", where, program=program)], shown=bool(fatal))
     if outcome.status == 3:
         items = fatal or [message("COMMAND_7", where, program=program)]
-        linear = any(m.id.startswith(_linear_solver) for m in items)
+        linear = any(m.id.startswith(linear_solver) for m in items)
         raise (SolutionError if linear else ConvergenceError)(items, shown=bool(fatal))
     if outcome.status < 0:
         try:
