@@ -18,7 +18,8 @@ struct Factorisation {
   std::int64_t entries = 0;  ///< of the factor
 };
 
-/// Solves with one matrix at a time, which has at least one equation. Whatever it throws, an analysis starts it afresh.
+/// Solves with one matrix at a time, which has at least one equation. After an error in analyse() or factorise() an analysis
+/// starts it afresh; one in a solution leaves the factor as it was.
 class Engine {
  public:
   virtual ~Engine() = default;

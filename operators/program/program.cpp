@@ -109,6 +109,7 @@ int run_program(int argc, char** argv, std::string_view name, std::string_view w
     const Order order = read_order(file);
     outcome.command = order.command;
     outcome.source = order.source;
+    if (outcome.verbose) fmt::print(stderr, "{}, {}\n", outcome.command, outcome.source);
     work(order, Base(order));
   });
 }

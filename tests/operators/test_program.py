@@ -83,7 +83,8 @@ class Program(TwoSquares):
         run = self.run_order("stat_non_line", quiet.order.read_text(encoding="utf-8"), options=["--verbose"])
         self.assertEqual((run.status, run.stdout.count("\n")), (0, quiet.stdout.count("\n")))
         said = re.findall(r"^  (\S.*?) +([\d.e+-]+)( s)?$", run.stderr, re.MULTILINE)
-        self.assertEqual(len(said), run.stderr.count("\n"), run.stderr)
+        self.assertEqual(len(said) + 1, run.stderr.count("\n"), run.stderr)
+        self.assertTrue(run.stderr.startswith("STAT_NON_LINE, study.comm:1\n"), run.stderr)
         for name in ("read", "pairing", "elements", "factorisation"):
             self.assertAlmostEqual(sum(float(value) for what, value, unit in said if what == name and unit), run.seconds[name], delta=1e-4)
         self.assertEqual(sum(float(value) for what, value, unit in said if what == "solutions" and not unit), run.counts["solutions"])
