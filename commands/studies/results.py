@@ -1,15 +1,21 @@
-"""A result of a base, read with h5py alone (docs/structures.md)."""
+"""A result of a base, read by the launcher's own reader (commands/lacon/base), without its commands."""
 
-import json
 import pathlib
+import sys
 
 import h5py
 import numpy as np
 
+sys.path.append(str(pathlib.Path(__file__).resolve().parents[1]))
+
+from lacon.base import contents  # noqa: E402
+from lacon.base.base import ReadBase  # noqa: E402
+from lacon.base.fields import FieldData, open_field  # noqa: E402
+
 
 def identifier_of(base, label):
     """The id of the concept of this label: mesh_3."""
-    return json.loads((pathlib.Path(base) / "base.json").read_text(encoding="utf-8"))["labels"][label]
+    return ReadBase(base, "results.py").registry["labels"][label]
 
 
 class MeshOfBase:
@@ -17,43 +23,39 @@ class MeshOfBase:
 
     def __init__(self, path):
         with h5py.File(path, "r") as mesh:
-            names = list(mesh["cells"].attrs["types"])
-            self.points = mesh["coordinates"][:, :mesh.attrs["dimension"]]
-            self.cells = list(zip((names[t] for t in mesh["cells/type"][()]), _ragged(mesh["cells"], "nodes")))
-            self.groups = dict(zip(mesh["groups/cells/name"].asstr()[()], _ragged(mesh["groups/cells"], "values")))
-            self.patches = _ragged(mesh["patches/cells"], "values") if "patches" in mesh else []
+            self.points = contents.points(mesh)[:, :contents.dimension(mesh)]
+            self.cells = contents.cells(mesh)
+            self.groups = contents.groups(mesh, "cells")
+            self.patches = contents.patches(mesh)
 
 
 class Result:
     """The result of this label. .points (n, 2 or 3), .cells: list of (type, nodes), .groups: name -> cells, .orders, .instants"""
 
     def __init__(self, base, label):
-        self.base = pathlib.Path(base)
-        self.index = h5py.File(self.base / identifier_of(base, label) / "index.h5", "r")
-        self.orders = self.index["order"][()].tolist()
-        self.instants = dict(zip(self.orders, self.index["instant"][()].tolist()))
-        mesh = MeshOfBase(self.base / f"{self.index.attrs['mesh']}.h5")
+        self.base = ReadBase(base, "results.py")
+        self.index = self.base.open(self.base.registry["labels"][label])
+        self.instants = dict(contents.instants(self.index))
+        self.orders = list(self.instants)
+        mesh = MeshOfBase(self.base.path(contents.reference(self.index, "mesh")))
         self.points, self.cells, self.groups, self.patches = mesh.points, mesh.cells, mesh.groups, mesh.patches
 
-    def _file(self, name, order):
-        entry = self.index[f"fields/{name}"]
-        return h5py.File(self.base / entry["file"].asstr()[entry["order"][()].tolist().index(order)], "r")
+    def _field(self, name, order):
+        with open_field(self.base.folder, contents.field_file(self.index, name, order)) as file:
+            return FieldData(file)
 
     def field(self, name, order):
         """@return (support, component -> values); rows of nodes or cells"""
-        with self._file(name, order) as file:
-            return file["support"][()], dict(zip(file.attrs["components"], file["values"][()].T))
+        field = self._field(name, order)
+        return field.support, dict(zip(field.components, field.values.T))
 
     def where_present(self, name, order, component):
         """The values of the places where the component exists."""
-        with self._file(name, order) as file:
-            column = list(file.attrs["components"]).index(component)
-            values = file["values"][:, column]
-            return values[file["present"][:, column] != 0] if "present" in file else values
+        return self._field(name, order).component(component)[1]
 
     def parameter(self, name):
         """One value an instant."""
-        return self.index[f"parameters/{name}"][()]
+        return contents.parameters(self.index)[name]
 
     def at_nodes(self, name, order, component):
         """One value a node, 0 where the field is not."""
@@ -66,8 +68,3 @@ class Result:
         """cell -> value"""
         support, values = self.field(name, order)
         return dict(zip(support.tolist(), values[component].tolist()))
-
-
-def _ragged(group, values):
-    offset, items = group["offset"][()], group[values][()]
-    return [items[a:b] for a, b in zip(offset[:-1], offset[1:])]

@@ -271,8 +271,8 @@ class Base:
 class ReadBase(Base):
     """A base that is looked at: not locked, not changed."""
 
-    def __init__(self, folder, kinds, where):
-        """@throws AsterError STUDY_2, STUDY_6"""
+    def __init__(self, folder, where, kinds=()):
+        """@param kinds as of Base; without them for who reads files alone. @throws AsterError STUDY_2, STUDY_6"""
         self._start(folder, kinds)
         if not (self.folder / _registry).is_file():
             fail("STUDY_2", where, folder=self.folder)

@@ -37,6 +37,12 @@ def connectivity(mesh):
     return mesh["cells/offset"][:], mesh["cells/nodes"][:]
 
 
+def cells(mesh):
+    """[(name of its type, nodes)]"""
+    names, types = cell_types(mesh)
+    return list(zip((names[t] for t in types), ragged(mesh["cells"], "nodes")))
+
+
 def nodes_of(mesh, cells):
     """Nodes of cells, one cell after the other."""
     offset, nodes = connectivity(mesh)

@@ -38,7 +38,7 @@ def run(arguments):
         except ValueError:
             parser.error(f"--instant {options.instant}: give a number, last or all")
     try:
-        shelf = ReadBase(options.base, kinds, "lacon inspect")
+        shelf = ReadBase(options.base, "lacon inspect", kinds)
         chosen = choose(shelf, options.result)
         folder = pathlib.Path(options.out or shelf.folder.with_name(shelf.folder.stem + "_pairing").name)
         if chosen.type == "contact" and options.instant is not None:
