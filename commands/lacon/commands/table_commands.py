@@ -51,8 +51,7 @@ def _listed(call):
 
 def _points(factor):
     concept = factor["FONCTION"]
-    with concept.open() as file:
-        names = factor.get("PARA", [file.attrs["parameter"], file.attrs["component"]])
+    names = factor.get("PARA", [concept.points().parameter, concept.points().component])
     return {name: ("R", values) for name, values in zip(names, concept.Valeurs())}
 
 
