@@ -112,6 +112,14 @@ std::vector<std::string> Keywords::texts(std::string_view name) const {
 
 std::string Keywords::concept_id(std::string_view name) const { return id_of(value(name), path(name)); }
 
+std::optional<double> Keywords::optional_real(std::string_view name) const {
+  return has(name) ? std::optional(real(name)) : std::nullopt;
+}
+
+std::optional<std::int64_t> Keywords::optional_integer(std::string_view name) const {
+  return has(name) ? std::optional(integer(name)) : std::nullopt;
+}
+
 std::optional<std::string> Keywords::optional_concept(std::string_view name) const {
   if (!has(name)) return std::nullopt;
   return concept_id(name);
@@ -132,6 +140,12 @@ std::vector<Keywords> Keywords::factors(std::string_view name) const {
   for (std::size_t i = 0; i < list.size(); ++i)
     occurrences.emplace_back(list[i], path(name) + (list.size() > 1 ? "[" + std::to_string(i + 1) + "]/" : "/"));
   return occurrences;
+}
+
+Keywords Keywords::factor(std::string_view name) const {
+  const std::vector<Keywords> occurrences = factors(name);
+  if (occurrences.size() != 1) fail("ORDER_4", {{"keyword", path(name)}, {"expected", "given once"}});
+  return occurrences.front();
 }
 
 std::filesystem::path Order::unit(std::int64_t number) const {

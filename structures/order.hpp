@@ -30,10 +30,14 @@ class Keywords {
   std::vector<std::string> texts(std::string_view name) const;  ///< empty where the keyword is absent
   bool is_concept(std::string_view name) const { return has(name) && values_.at(std::string(name)).is_object(); }
   std::string concept_id(std::string_view name) const;
+  std::optional<double> optional_real(std::string_view name) const;
+  std::optional<std::int64_t> optional_integer(std::string_view name) const;
   std::optional<std::string> optional_concept(std::string_view name) const;
   std::vector<std::string> concept_ids(std::string_view name) const;
   /// Every occurrence of a factor keyword; empty where it is absent.
   std::vector<Keywords> factors(std::string_view name) const;
+  /// The one occurrence of a factor keyword whose defaults the launcher fills in. Throws ORDER_4 where there is another number.
+  Keywords factor(std::string_view name) const;
 
   std::string path(std::string_view name) const { return prefix_ + std::string(name); }
   const nlohmann::json& values() const { return values_; }

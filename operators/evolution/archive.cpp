@@ -1,200 +1,162 @@
 #include "lacon/operators/evolution/archive.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
-#include <cmath>
-#include <functional>
-#include <optional>
-#include <span>
+#include <array>
 
 #include "lacon/catalog/messages.hpp"
+#include "lacon/operators/fields/selection.hpp"
+#include "lacon/operators/program/program.hpp"
 
 namespace lacon {
 namespace {
 
-/// Fill a field at integration points from the values of the solid sets, (cells, points, components of the set). Cells are in
-/// ascending order, whatever set they belong to; a set without components is left out.
-void fill_points(Field& field, const StaticProblem& problem,
-                 const std::function<std::vector<std::string>(const ElementSet&)>& components_of,
-                 const std::function<std::span<const double>(std::size_t)>& values_of) {
-  struct Place {
-    std::int32_t cell;
-    std::size_t set, index;
-  };
-  std::vector<Place> places;
-  std::vector<std::vector<int>> components;  // of each set, in the field
-  for (std::size_t s = 0; s < problem.solids.size(); ++s) {
-    const std::vector<std::string> names = components_of(problem.solids[s]);
-    components.emplace_back();
-    for (const std::string& name : names) {
-      if (field.component(name) < 0) field.components.push_back(name);
-      components.back().push_back(field.component(name));
-    }
-    if (names.empty()) continue;
-    for (std::size_t i = 0; i < problem.solids[s].cells.size(); ++i) places.push_back({problem.solids[s].cells[i], s, i});
+/// Remove the rows of a table whose INST is behind an instant.
+void drop_behind(Table& table, double instant) {
+  const auto named = [](const Table::Column& column) { return column.name == "INST"; };
+  const std::vector<Table::Cell> instants = std::find_if(table.columns.begin(), table.columns.end(), named)->cells;
+  for (Table::Column& column : table.columns) {
+    std::vector<Table::Cell> kept;
+    for (std::size_t row = 0; row < instants.size(); ++row)
+      if (std::get<double>(instants[row]) <= instant) kept.push_back(column.cells[row]);
+    column.cells = std::move(kept);
   }
-  std::sort(places.begin(), places.end(), [](const Place& a, const Place& b) { return a.cell < b.cell; });
-  for (const Place& place : places) {
-    const std::vector<int>& own = components[place.set];
-    const std::size_t n_points = problem.solids[place.set].tabulation.n_points;
-    const std::span<const double> values = values_of(place.set).subspan(place.index * n_points * own.size());
-    field.support.push_back(place.cell);
-    for (std::size_t p = 0; p < n_points; ++p) {
-      const std::size_t first = field.values.size();
-      field.values.resize(first + field.n_components(), 0.0);
-      field.present.resize(first + field.n_components(), 0);
-      for (std::size_t k = 0; k < own.size(); ++k) {
-        field.values[first + own[k]] = values[p * own.size() + k];
-        field.present[first + own[k]] = 1;
-      }
-    }
-    field.offset.push_back(field.offset.back() + static_cast<std::int64_t>(n_points));
-  }
-  if (std::all_of(field.present.begin(), field.present.end(), [](std::uint8_t p) { return p != 0; })) field.present.clear();
-}
-
-std::vector<std::string> stress_names(const ElementSet& set) { return {set.row->stress.begin(), set.row->stress.end()}; }
-
-std::vector<std::string> variable_names(const ElementSet& set) {
-  std::vector<std::string> names;
-  for (int v = 1; v <= set.n_point_variables; ++v) names.push_back("V" + std::to_string(v));
-  return names;
-}
-
-/// Where a cell or a node is in the support of a field; -1 elsewhere. @param size of the mesh
-std::vector<std::int32_t> places_in(const Field& field, std::size_t size) {
-  std::vector<std::int32_t> place(size, -1);
-  for (std::size_t i = 0; i < field.support.size(); ++i) place[field.support[i]] = static_cast<std::int32_t>(i);
-  return place;
-}
-
-/// The values of one set in a field that fill_points() made: (cells, points, components of the set). Throws EVOLUTION_11.
-std::vector<double> points_of(const Field& field, const std::vector<std::int32_t>& place, const ElementSet& set,
-                              const std::vector<std::string>& names, const std::string& label) {
-  std::vector<double> values;
-  for (const std::int32_t cell : set.cells) {
-    const auto refuse = [&] { fail("EVOLUTION_11", {{"label", label}, {"field", field.name}, {"cell", cell_name(cell)}}); };
-    if (place[cell] < 0) refuse();
-    const std::size_t first = field.first_row(place[cell]), end = field.first_row(place[cell] + 1);
-    if (end - first != static_cast<std::size_t>(set.tabulation.n_points)) refuse();
-    for (std::size_t row = first; row < end; ++row)
-      for (const std::string& name : names) {
-        const int component = field.component(name);
-        if (component < 0 || !field.has(row, component)) refuse();
-        values.push_back(field.at(row, component));
-      }
-  }
-  return values;
-}
-
-bool has_field(const Result& result, const std::string& name, std::int64_t order) {
-  const auto named = result.fields.find(name);
-  return named != result.fields.end() && named->second.contains(order);
 }
 
 }  // namespace
 
-Field displacement_field(const StaticProblem& problem, const StaticState& state) {
-  Field field{.name = "DEPL", .quantity = "DEPL_R", .location = Location::nodes, .components = problem.components};
-  if (problem.contact) field.components.emplace_back("LAGS_C");
-  const std::size_t width = field.components.size(), dimension = problem.dimension;
-  std::vector<std::int32_t> row(problem.mesh.n_nodes(), -1);
-  for (std::size_t node = 0; node < problem.mesh.n_nodes(); ++node) {
-    if (!problem.exists[node * dimension]) continue;
-    row[node] = static_cast<std::int32_t>(field.support.size());
-    field.support.push_back(static_cast<std::int32_t>(node));
-    for (std::size_t c = 0; c < width; ++c) {
-      field.values.push_back(c < dimension ? state.displacement[node * dimension + c] : 0.0);
-      if (problem.contact) field.present.push_back(c < dimension);
+ArchiveChoice::ArchiveChoice(const Keywords& keywords, const Base& base) : instants_(keywords, base, "PAS_ARCH") {
+  for (const std::string& name : keywords.texts("CHAM_EXCLU")) excluded_.insert(name);
+}
+
+Archive::Archive(const Order& order, const Base& base, const Present& present, const std::optional<Origin>& origin,
+                 const Observations& observations)
+    : base_(base),
+      present_(present),
+      fields_(fields_of(present)),
+      observations_(observations),
+      choice_(order.keywords.factor("ARCHIVAGE"), base) {
+  const Keywords& keywords = order.keywords;
+  result_.label = order.result_label;
+  result_.model = keywords.concept_id("MODELE");
+  result_.mesh = present.problem.model.mesh;
+  result_.material_field = keywords.concept_id("CHAM_MATER");
+  result_.contact = keywords.optional_concept("CONTACT").value_or("");
+  for (const Keywords& excit : keywords.factors("EXCIT"))
+    result_.loads.push_back(
+        {excit.concept_id("CHARGE"), excit.optional_concept("FONC_MULT").value_or(""), excit.text("TYPE_CHARGE")});
+  result_.behaviour = keywords.values().value("COMPORTEMENT", nlohmann::json::array()).dump();
+  if (order.reuse || keywords.has("RESULTAT")) go_on(order, origin);
+}
+
+void Archive::go_on(const Order& order, const std::optional<Origin>& origin) {
+  const auto refuse = [&](const std::string& reason, const std::string& remedy) {
+    fail("EVOLUTION_12", {{"label", result_.label}, {"reason", reason}, {"remedy", remedy}});
+  };
+  const std::string another = "give the computation a result of its own, without reuse";
+  if (!order.reuse) refuse("RESULTAT without reuse", "give reuse as well, or leave RESULTAT out");
+  if (!origin || order.keywords.factor("ETAT_INIT").concept_id("EVOL_NOLI") != order.result_id)
+    refuse("ETAT_INIT does not start from this result", "give ETAT_INIT=_F(EVOL_NOLI=" + result_.label + ")");
+  const Result& old = origin->result;
+  const auto differs = [&](const std::string& what) {
+    refuse("it was computed with another " + what + ", and has one alone", another);
+  };
+  if (old.model != result_.model) differs("MODELE");
+  if (old.material_field != result_.material_field) differs("CHAM_MATER");
+  if (old.contact != result_.contact) differs("CONTACT");
+  if (old.behaviour != result_.behaviour) differs("COMPORTEMENT");
+  if (!std::equal(
+          old.loads.begin(), old.loads.end(), result_.loads.begin(), result_.loads.end(),
+          [](const auto& a, const auto& b) { return a.load == b.load && a.function == b.function && a.type == b.type; }))
+    differs("EXCIT");
+  std::vector<std::int64_t> orders = old.orders;
+  orders.erase(std::upper_bound(orders.begin(), orders.end(), origin->order), orders.end());
+  if (orders.size() < old.orders.size() && !order.keywords.factor("ARCHIVAGE").has("DETR_NUME_SUIV"))
+    refuse(fmt::format("it has {} instant(s) behind order {}", old.orders.size() - orders.size(), origin->order),
+           "give ARCHIVAGE=_F(DETR_NUME_SUIV='OUI') to remove them, or " + another);
+  const auto fields = old.fields;
+  result_ = part_of(old, orders);
+  for (const auto& [name, files] : fields)
+    for (const auto& [number, file] : files)
+      if (number <= origin->order) result_.fields[name][number] = file;
+  taken_over_ = result_.orders.size();
+  if (const auto observed = result_.tables.find("OBSERVATION"); observed != result_.tables.end())
+    drop_behind(observed->second, result_.instants.back());
+}
+
+void Archive::start(double instant) {
+  if (taken_over_ == 0) add(instant, 0);  // otherwise the initial state is an instant of the result that goes on
+}
+
+void Archive::begin(double /*instant*/) { pivots_ = {}; }
+
+void Archive::iterate(double /*instant*/, const IterationReport& report) {
+  if (const auto& found = report.solution.factorisation.negative_pivots) pivots_ = {*found, report.constraints};
+}
+
+void Archive::accept(const SolvedInstant& solved) {
+  if (choice_.keeps(solved.instant, solved.step) || solved.last) add(solved.instant, solved.iterations);
+}
+
+void Archive::end(bool completed) {
+  if (completed || n_solved() > 0) {
+    if (const auto& observed = observations_.table()) add_observed(*observed);
+    base_.store(result_);
+  } else if (taken_over_ == 0) {
+    base_.discard(result_);
+  }
+}
+
+void Archive::add(double instant, int iterations) {
+  const Phase phase("archive");
+  const std::int64_t number = result_.orders.empty() ? 0 : result_.orders.back() + 1;
+  for (const auto& [name, make] : fields_) {
+    if (!choice_.keeps(name)) continue;
+    Field field = make();
+    field.order = number;
+    field.instant = instant;
+    base_.add_field(result_, std::move(field));
+  }
+  if (present_.contact) add_balance(present_.contact->balance(present_.state.patches));
+  put("newton_iterations", iterations);
+  put("negative_pivots", static_cast<double>(pivots_.found));
+  put("expected_negative_pivots", static_cast<double>(pivots_.expected));
+  result_.orders.push_back(number);
+  result_.instants.push_back(instant);
+}
+
+/// The proof lines as parameters of the instant: zone_1_slave_force_x, ...
+void Archive::add_balance(const std::vector<ZoneBalance>& zones) {
+  for (std::size_t z = 0; z < zones.size(); ++z) {
+    const std::string name = "zone_" + std::to_string(z + 1) + "_";
+    const auto put = [&](const std::string& what, double value) { this->put(name + what, value); };
+    for (int d = 0; d < 3; ++d) {
+      const std::string axis(1, "xyz"[d]);
+      put("slave_force_" + axis, zones[z].on_slave[d]);
+      put("master_force_" + axis, zones[z].on_master[d]);
+      put("moment_" + axis, zones[z].moment[d]);
     }
+    put("active", static_cast<double>(zones[z].active));
+    put("open", static_cast<double>(zones[z].open));
+    put("unpaired", static_cast<double>(zones[z].unpaired));
+    put("covered", zones[z].covered);
+    put("whole", zones[z].whole);
+    put("largest_lambda_gap", zones[z].work);
   }
-  if (problem.contact)
-    for (std::size_t p = 0; p < problem.mesh.patches->size(); ++p)
-      for (const std::int32_t node : problem.mesh.patches->carriers[p]) {
-        field.at(row[node], dimension) = state.patches.lambda[p];
-        field.present[row[node] * width + dimension] = 1;
-      }
-  return field;
 }
 
-Field stress_field(const StaticProblem& problem, const StaticState& state) {
-  Field field{.name = "SIEF_ELGA", .quantity = "SIEF_R", .location = Location::gauss_points, .offset = {0}};
-  fill_points(field, problem, stress_names, [&](std::size_t s) { return std::span<const double>(state.points[s].stress); });
-  return field;
-}
-
-Field variable_field(const StaticProblem& problem, const StaticState& state) {
-  Field field{.name = "VARI_ELGA", .quantity = "VARI_R", .location = Location::gauss_points, .offset = {0}};
-  fill_points(field, problem, variable_names, [&](std::size_t s) { return std::span<const double>(state.points[s].variable); });
-  return field;
-}
-
-Field contact_field(const StaticProblem& problem, const StaticState& state, const ContactState& contact) {
-  Field field{.name = "CONT_ELEM",
-              .quantity = "CLAC_R",
-              .location = Location::cells,
-              .components = {"CONT", "PRES", "JEU", "COEFSURF", "PRESCOOR"}};
-  std::vector<SlaveElement> slaves = problem.contact->slaves;
-  std::sort(slaves.begin(), slaves.end(), [](const SlaveElement& a, const SlaveElement& b) { return a.cell < b.cell; });
-  for (const SlaveElement& slave : slaves) {
-    const std::size_t p = slave.patch;
-    const Status status = state.patches.status[p];
-    const bool paired = status != Status::unpaired;
-    const double pressure = paired ? state.patches.lambda[p] : 0, coverage = paired ? contact.coverage(p) : 0;
-    field.support.push_back(slave.cell);
-    for (const double value :
-         {static_cast<double>(status), pressure, paired ? contact.gap(p) : -1.0, coverage, coverage * pressure})
-      field.values.push_back(value);
+/// Behind what the result that goes on has observed; NUME_REUSE counts its computations.
+void Archive::add_observed(const Table& observed) {
+  const auto [at, first] = result_.tables.try_emplace("OBSERVATION", observed);
+  if (first) return;
+  for (std::size_t c = 0; c < observed.columns.size(); ++c) {
+    Table::Column& column = at->second.columns[c];
+    std::vector<Table::Cell> cells = observed.columns[c].cells;
+    if (column.name == "NUME_REUSE" && !column.cells.empty())
+      cells.assign(cells.size(), std::get<std::int64_t>(column.cells.back()) + 1);
+    column.cells.insert(column.cells.end(), cells.begin(), cells.end());
   }
-  return field;
-}
-
-StaticState archived_state(const StaticProblem& problem, const Base& base, const Result& result, std::int64_t order) {
-  if (result.mesh != problem.model.mesh)
-    fail("EVOLUTION_1", {{"first", "ETAT_INIT/EVOL_NOLI"}, {"second", "MODELE"}, {"what", "meshes"}});
-  const std::size_t dimension = problem.dimension;
-  StaticState state;
-  state.displacement.assign(problem.n_dofs(), 0.0);
-  const Field moved = base.field(result, "DEPL", order);
-  for (std::size_t d = 0; d < dimension; ++d) {
-    const int component = moved.component(problem.components[d]);
-    for (std::size_t i = 0; component >= 0 && i < moved.support.size(); ++i)
-      if (const std::size_t dof = moved.support[i] * dimension + d; problem.exists[dof])
-        state.displacement[dof] = moved.at(i, component);
-  }
-  const Field stress = base.field(result, "SIEF_ELGA", order);
-  const std::vector<std::int32_t> stress_place = places_in(stress, problem.mesh.n_cells());
-  std::optional<Field> variable;
-  std::vector<std::int32_t> variable_place(problem.mesh.n_cells(), -1);
-  if (has_field(result, "VARI_ELGA", order)) {
-    variable = base.field(result, "VARI_ELGA", order);
-    variable_place = places_in(*variable, problem.mesh.n_cells());
-  }
-  std::int32_t fresh = -1;  // a cell whose law has internal variables now and had none
-  for (const ElementSet& set : problem.solids) {
-    PointValues& points = state.points.emplace_back();
-    points.stress = points_of(stress, stress_place, set, stress_names(set), result.label);
-    const auto starts = [&](std::int32_t cell) { return variable_place[cell] < 0; };
-    if (set.n_point_variables > 0 && std::all_of(set.cells.begin(), set.cells.end(), starts)) {
-      points.variable.assign(set.cells.size() * set.n_variables(), 0.0);
-      fresh = set.cells.front();
-    } else if (set.n_point_variables > 0) {
-      points.variable = points_of(*variable, variable_place, set, variable_names(set), result.label);
-    }
-  }
-  if (fresh >= 0) inform("EVOLUTION_13", {{"label", result.label}, {"cell", cell_name(fresh)}});
-  if (!problem.contact || !has_field(result, "CONT_ELEM", order)) return state;
-  const Field contact = base.field(result, "CONT_ELEM", order);
-  const std::vector<std::int32_t> place = places_in(contact, problem.mesh.n_cells());
-  state.patches.status.assign(problem.n_patches(), Status::unpaired);
-  state.patches.lambda.assign(problem.n_patches(), 0.0);
-  const int status = contact.component("CONT"), pressure = contact.component("PRES");
-  for (const SlaveElement& slave : problem.contact->slaves) {
-    if (place[slave.cell] < 0)
-      fail("EVOLUTION_11", {{"label", result.label}, {"field", contact.name}, {"cell", cell_name(slave.cell)}});
-    state.patches.status[slave.patch] = static_cast<Status>(std::lround(contact.at(place[slave.cell], status)));
-    state.patches.lambda[slave.patch] = contact.at(place[slave.cell], pressure);
-  }
-  return state;
 }
 
 }  // namespace lacon

@@ -1,22 +1,64 @@
 #pragma once
-// What a computation leaves: the fields DEPL, SIEF_ELGA, VARI_ELGA and CONT_ELEM of an instant (METHOD.md 4); and what another
-// one takes up from there.
-#include "lacon/operators/evolution/newton.hpp"
-#include "lacon/structures/base.hpp"
+// The result of a computation as it grows: fields and parameters of the instants that are kept.
+#include <optional>
+#include <set>
+#include <string>
+
+#include "lacon/operators/evolution/evolution.hpp"
+#include "lacon/operators/evolution/observation.hpp"
+#include "lacon/operators/evolution/origin.hpp"
+#include "lacon/operators/evolution/state_fields.hpp"
 
 namespace lacon {
 
-/// Displacements, with LAGS_C on the carriers of the patches, equal on those of one patch.
-Field displacement_field(const StaticProblem& problem, const StaticState& state);
-/// Stresses at the integration points of the solid elements.
-Field stress_field(const StaticProblem& problem, const StaticState& state);
-/// Internal variables V1, V2, ... at the integration points of the cells whose law has them; empty where none has.
-Field variable_field(const StaticProblem& problem, const StaticState& state);
-/// CONT, PRES, JEU, COEFSURF, PRESCOOR on every slave cell, equal in the cells of one patch.
-Field contact_field(const StaticProblem& problem, const StaticState& state, const ContactState& contact);
+/// ARCHIVAGE: which instants and fields are kept. The first and the last instant always are.
+class ArchiveChoice {
+ public:
+  ArchiveChoice(const Keywords& keywords, const Base& base);
+  bool keeps(double instant, std::int64_t step) const { return instants_.has(instant, step); }
+  bool keeps(const std::string& field) const { return !excluded_.contains(field); }
 
-/// The state that a result holds at an order. Its patches are empty where the result is without contact. Throws EVOLUTION_1
-/// where it lives on another mesh, RESULT_1 where a field is missing, EVOLUTION_11 where a cell has other points or components.
-StaticState archived_state(const StaticProblem& problem, const Base& base, const Result& result, std::int64_t order);
+ private:
+  ChosenInstants instants_;
+  std::set<std::string> excluded_;
+};
+
+class Archive : public EvolutionObserver {
+ public:
+  /// With `reuse` the instants of the result up to the initial state are taken over: throws EVOLUTION_12 where that cannot be.
+  /// @param observations whose table is stored with the result; all arguments must outlive it
+  Archive(const Order& order, const Base& base, const Present& present, const std::optional<Origin>& origin,
+          const Observations& observations);
+
+  void start(double instant) override;
+  void begin(double instant) override;
+  void iterate(double instant, const IterationReport& report) override;
+  void accept(const SolvedInstant& solved) override;
+  /// What was computed before a failure is not lost; without any of it the base stays as it was.
+  void end(bool completed) override;
+
+ private:
+  /// Negative pivots of the last factorisation of an instant, and how many were to be expected; -1 where nothing was
+  /// factorised.
+  struct Pivots {
+    std::int64_t found = -1, expected = -1;
+  };
+  void go_on(const Order& order, const std::optional<Origin>& origin);
+  void add(double instant, int iterations);
+  void add_balance(const std::vector<ZoneBalance>& zones);
+  void add_observed(const Table& observed);
+  void put(const std::string& parameter, double value) { result_.parameters[parameter].push_back(value); }
+  /// Instants of this computation, without its initial state.
+  std::size_t n_solved() const { return result_.orders.size() - std::max<std::size_t>(taken_over_, 1); }
+
+  const Base& base_;
+  Present present_;
+  FieldMakers fields_;
+  const Observations& observations_;
+  ArchiveChoice choice_;
+  Pivots pivots_;
+  Result result_;
+  std::size_t taken_over_ = 0;  ///< instants of a result that goes on
+};
 
 }  // namespace lacon

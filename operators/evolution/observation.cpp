@@ -236,27 +236,10 @@ void Observer::print(std::ostream& out, const std::vector<Value>& values) const 
   out.flush();
 }
 
-// ---------------------------------------------------------------------------------------------- increments
-
-IncrementLimit::IncrementLimit(const StepEvent& event, const Base& base, const Mesh& mesh)
-    : limit_(event.limit), observer_(Keywords(nlohmann::json::parse(event.place), "DEFI_LIST_INST/ECHEC/"), base, mesh, {}) {}
-
-void IncrementLimit::accept(const FieldMakers& fields) { last_ = observer_.look(fields); }
-
-void IncrementLimit::check(const FieldMakers& fields, double instant) const {
-  const std::vector<Observer::Value> now = observer_.look(fields);
-  for (std::size_t i = 0; i < now.size(); ++i)
-    if (const double change = std::abs(now[i].value - last_[i].value); change > limit_)
-      fail("STEP_2", {{"component", now[i].component},
-                      {"node", node_name(now[i].node)},
-                      {"change", fmt::format("{:.6g}", change)},
-                      {"limit", fmt::format("{:.6g}", limit_)},
-                      {"instant", fmt::format("{:.9g}", instant)}});
-}
-
 // ---------------------------------------------------------------------------------------------- all of them
 
-Observations::Observations(const Keywords& keywords, const Base& base, const Mesh& mesh) {
+Observations::Observations(const Keywords& keywords, const Base& base, const Mesh& mesh, FieldMakers fields)
+    : fields_(std::move(fields)) {
   const auto named = [](const Keywords& occurrence, const std::string& otherwise) {
     const std::vector<std::string> title = occurrence.texts("TITRE");
     return title.empty() ? otherwise : fmt::format("{}", fmt::join(title, " "));
@@ -289,26 +272,26 @@ Observations::Observations(const Keywords& keywords, const Base& base, const Mes
                         {"NUME_GLOBAL_NOEUD", "I"}});
 }
 
-void Observations::record(Watch& watch, double instant, const FieldMakers& fields) {
-  const std::vector<Observer::Value> values = watch.observer.look(fields);
+void Observations::record(Watch& watch, double instant) {
+  const std::vector<Observer::Value> values = watch.observer.look(fields_);
   if (watch.instants)
     watch.observer.add_rows(*table_, values, watch.count++, instant);
   else
     watch.observer.print(std::cout, values);
 }
 
-void Observations::start(double instant, const FieldMakers& fields) {
+void Observations::start(double instant) {
   for (Watch& watch : watches_) {
     if (watch.initial)
-      record(watch, instant, fields);
+      record(watch, instant);
     else if (!watch.observer.has_formula())  // which need not have a value before any load
-      watch.observer.look(fields);
+      watch.observer.look(fields_);
   }
 }
 
-void Observations::observe(double instant, std::int64_t step, const FieldMakers& fields) {
+void Observations::accept(const SolvedInstant& solved) {
   for (Watch& watch : watches_)
-    if (!watch.instants || watch.instants->has(instant, step)) record(watch, instant, fields);
+    if (!watch.instants || watch.instants->has(solved.instant, solved.step)) record(watch, solved.instant);
 }
 
 }  // namespace lacon

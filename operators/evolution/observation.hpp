@@ -7,13 +7,12 @@
 #include <string>
 #include <vector>
 
+#include "lacon/operators/evolution/evolution.hpp"
+#include "lacon/operators/evolution/state_fields.hpp"
 #include "lacon/operators/program/study_function.hpp"
 #include "lacon/structures/base.hpp"
 
 namespace lacon {
-
-/// The fields of the current instant by name, each made when it is asked for.
-using FieldMakers = std::map<std::string, std::function<Field()>>;
 
 /// The instants that INST, LIST_INST (with PRECISION and CRITERE) or every so many steps name.
 class ChosenInstants {
@@ -64,28 +63,15 @@ class Observer {
   std::optional<StudyFunction> formula_;
 };
 
-/// EVENEMENT='DELTA_GRANDEUR' of DEFI_LIST_INST: how much components of DEPL may change in one step.
-class IncrementLimit {
- public:
-  IncrementLimit(const StepEvent& event, const Base& base, const Mesh& mesh);
-  /// Throws STEP_2 (severity S) where a component has changed by more than VALE_REF since accept().
-  void check(const FieldMakers& fields, double instant) const;
-  void accept(const FieldMakers& fields);
-
- private:
-  double limit_;
-  Observer observer_;
-  std::vector<Observer::Value> last_;
-};
-
 /// Every OBSERVATION and SUIVI_DDL of a computation, and the table they fill.
-class Observations {
+class Observations : public EvolutionObserver {
  public:
-  Observations(const Keywords& keywords, const Base& base, const Mesh& mesh);
+  /// @param fields of the present instant
+  Observations(const Keywords& keywords, const Base& base, const Mesh& mesh, FieldMakers fields);
 
   /// Look at the initial state: fills in rows where OBSE_ETAT_INIT says so, and refuses at once what cannot be looked at.
-  void start(double instant, const FieldMakers& fields);
-  void observe(double instant, std::int64_t step, const FieldMakers& fields);
+  void start(double instant) override;
+  void accept(const SolvedInstant& solved) override;
   /// The table, nothing without OBSERVATION.
   const std::optional<Table>& table() const { return table_; }
 
@@ -96,8 +82,9 @@ class Observations {
     bool initial;
     std::int64_t count = 0;
   };
-  void record(Watch& watch, double instant, const FieldMakers& fields);
+  void record(Watch& watch, double instant);
 
+  FieldMakers fields_;
   std::vector<Watch> watches_;
   std::optional<Table> table_;
 };

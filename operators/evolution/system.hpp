@@ -17,6 +17,10 @@ class System {
 
   std::int64_t n_displacements() const { return static_cast<std::int64_t>(numbering_.equation.size()); }
   std::int64_t multiplier(std::int64_t patch) const { return n_displacements() + patch; }
+  /// Of a vertex of the numbering: a node's displacement, or a multiplier.
+  std::int64_t unknown(std::int64_t vertex, int component) const {
+    return vertex < numbering_.n_nodes ? vertex * numbering_.n_components + component : multiplier(vertex - numbering_.n_nodes);
+  }
   std::int64_t equation(std::int64_t unknown) const;
 
   /// Empty the matrix and the residual, and make room for these couplings.

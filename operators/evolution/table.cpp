@@ -70,60 +70,64 @@ std::vector<const Column*> shown(const StaticProblem& problem, bool where) {
 
 std::string NewtonTable::components(const std::array<double, 3>& vector) const {
   std::string text;
-  for (int d = 0; d < problem_.dimension; ++d) text += fmt::format("{}{:.6g}", d ? ", " : "(", vector[d]);
+  for (int d = 0; d < present_.problem.dimension; ++d) text += fmt::format("{}{:.6g}", d ? ", " : "(", vector[d]);
   return text + ")";
 }
 
-void NewtonTable::rule() { out_ << ' ' << std::string(shown(problem_, where_).size() * (width + 1) + 1, '-') << '\n'; }
+void NewtonTable::rule() { out_ << ' ' << std::string(shown(present_.problem, where_).size() * (width + 1) + 1, '-') << '\n'; }
 
-void NewtonTable::start(double instant) {
+void NewtonTable::begin(double instant) {
   out_ << fmt::format("\n Instant de calcul: {:.12e}\n", instant);
   rule();
   for (int i = 0; i < 3; ++i) {
     out_ << " |";
-    for (const Column* column : shown(problem_, where_)) out_ << fmt::format("{:^{}}|", column->title[i], width);
+    for (const Column* column : shown(present_.problem, where_)) out_ << fmt::format("{:^{}}|", column->title[i], width);
     out_ << '\n';
   }
   rule();
   out_.flush();
 }
 
-void NewtonTable::line(const IterationReport& report) {
+void NewtonTable::iterate(double /*instant*/, const IterationReport& report) {
   out_ << " |";
-  for (const Column* column : shown(problem_, where_))
-    out_ << fmt::format("{:>{}}|", column->value(report, problem_) + " ", width);
+  for (const Column* column : shown(present_.problem, where_))
+    out_ << fmt::format("{:>{}}|", column->value(report, present_.problem) + " ", width);
   out_ << std::endl;  // as it goes: a long computation shows where it is
 }
 
-void NewtonTable::finish(double instant, int iterations, const StaticState& state, const ContactState* contact) {
+void NewtonTable::accept(const SolvedInstant& solved) {
   rule();
-  out_ << fmt::format(" Converged at the instant {:.9g} with {} iteration(s)\n", instant, iterations);
-  if (contact) {
-    double least = std::numeric_limits<double>::infinity(), most = -least;
-    for (std::size_t p = 0; p < contact->n_patches(); ++p) {
-      if (state.patches.status[p] != Status::active) continue;
-      least = std::min(least, state.patches.lambda[p]);
-      most = std::max(most, state.patches.lambda[p]);
-    }
-    if (least <= most) out_ << fmt::format(" LAGS_C of the patches in contact from {:.9g} to {:.9g}\n", least, most);
-    for (const ZoneBalance& zone : contact->balance(state.patches)) {
-      std::array<double, 3> sum;
-      for (int d = 0; d < 3; ++d) sum[d] = zone.on_slave[d] + zone.on_master[d];
-      out_ << fmt::format(" {} on {}: {} patches in contact, {} open, {} without master; covered {:.6g} of {:.6g}\n",
-                          zone.slave_group, zone.master_group, zone.active, zone.open, zone.unpaired, zone.covered, zone.whole)
-           << fmt::format(
-                  "   force on the slave {}, on the master {}, sum {:.1e}, moment of both {:.1e}; largest |LAGS_C x JEU| "
-                  "{:.1e}\n",
-                  components(zone.on_slave), components(zone.on_master), norm(sum), norm(zone.moment), zone.work);
-    }
-    if (rejections_) {
-      out_ << " pairing rejected:";
-      for (int r = 0; r < n_rejections; ++r)
-        out_ << fmt::format("{} {} {}", r ? "," : "", contact->rejected()[r], rejection_name(static_cast<Rejection>(r)));
-      out_ << '\n';
-    }
-  }
+  out_ << fmt::format(" Converged at the instant {:.9g} with {} iteration(s)\n", solved.instant, solved.iterations);
+  if (present_.contact) prove(*present_.contact);
   out_.flush();
+}
+
+void NewtonTable::prove(const ContactState& contact) {
+  const Patchwise& patches = present_.state.patches;
+  double least = std::numeric_limits<double>::infinity(), most = -least;
+  for (std::size_t p = 0; p < contact.n_patches(); ++p) {
+    if (patches.status[p] != Status::active) continue;
+    least = std::min(least, patches.lambda[p]);
+    most = std::max(most, patches.lambda[p]);
+  }
+  if (least <= most) out_ << fmt::format(" LAGS_C of the patches in contact from {:.9g} to {:.9g}\n", least, most);
+  for (const ZoneBalance& zone : contact.balance(patches)) {
+    std::array<double, 3> sum;
+    for (int d = 0; d < 3; ++d) sum[d] = zone.on_slave[d] + zone.on_master[d];
+    out_ << fmt::format(" {} on {}: {} patches in contact, {} open, {} without master; covered {:.6g} of {:.6g}\n",
+                        zone.slave_group, zone.master_group, zone.active, zone.open, zone.unpaired, zone.covered, zone.whole)
+         << fmt::format(
+                "   force on the slave {}, on the master {}, sum {:.1e}, moment of both {:.1e}; largest |LAGS_C x JEU| "
+                "{:.1e}\n",
+                components(zone.on_slave), components(zone.on_master), norm(sum), norm(zone.moment), zone.work);
+  }
+  if (rejections_) {
+    out_ << " pairing rejected:";
+    for (int r = 0; r < n_rejections; ++r)
+      out_ << fmt::format("{} {} {}", r ? "," : "", contact.geometry().rejected()[r],
+                          rejection_name(static_cast<Rejection>(r)));
+    out_ << '\n';
+  }
 }
 
 }  // namespace lacon

@@ -4,28 +4,30 @@
 #include <ostream>
 #include <string>
 
-#include "lacon/operators/evolution/newton.hpp"
+#include "lacon/operators/evolution/evolution.hpp"
+#include "lacon/operators/evolution/state_fields.hpp"
 
 namespace lacon {
 
-class NewtonTable {
+class NewtonTable : public EvolutionObserver {
  public:
   /// @param where show at which degree of freedom the residual is largest (AFFICHAGE/INFO_RESIDU)
   /// @param rejections show what pairing rejected, and why (INFO=2)
-  NewtonTable(std::ostream& out, const StaticProblem& problem, bool where, bool rejections)
-      : out_(out), problem_(problem), where_(where), rejections_(rejections) {}
+  NewtonTable(std::ostream& out, const Present& present, bool where, bool rejections)
+      : out_(out), present_(present), where_(where), rejections_(rejections) {}
 
-  void start(double instant);
-  void line(const IterationReport& report);
+  void begin(double instant) override;
+  void iterate(double instant, const IterationReport& report) override;
   /// The proof lines: what each zone transmits, and that it balances.
-  void finish(double instant, int iterations, const StaticState& state, const ContactState* contact);
+  void accept(const SolvedInstant& solved) override;
 
  private:
   void rule();
+  void prove(const ContactState& contact);
   std::string components(const std::array<double, 3>& vector) const;
 
   std::ostream& out_;
-  const StaticProblem& problem_;
+  Present present_;
   bool where_, rejections_;
 };
 

@@ -11,8 +11,8 @@
 
 #include "lacon/catalog/messages.hpp"
 #include "lacon/elements/reference.hpp"
+#include "lacon/operators/contact/pairing_view.hpp"
 #include "lacon/operators/fields/selection.hpp"
-#include "lacon/operators/impr_resu/pairing_view.hpp"
 #include "lacon/structures/formats/listing.hpp"
 #include "lacon/structures/formats/med.hpp"
 #include "lacon/structures/formats/text_file.hpp"

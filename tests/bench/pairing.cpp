@@ -6,7 +6,7 @@
 #include <random>
 
 #include "bench.hpp"
-#include "lacon/operators/evolution/contact_geometry.hpp"
+#include "lacon/operators/contact/contact_geometry.hpp"
 #include "lacon/pairing/facet.hpp"
 #include "lacon/pairing/polygon.hpp"
 

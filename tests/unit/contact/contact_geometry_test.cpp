@@ -1,5 +1,5 @@
 // Gaps, couplings and coverage of a contact zone, from meshes of mixed cells.
-#include "lacon/operators/evolution/contact_geometry.hpp"
+#include "lacon/operators/contact/contact_geometry.hpp"
 
 #include <gtest/gtest.h>
 

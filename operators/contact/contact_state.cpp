@@ -1,8 +1,7 @@
-#include "lacon/operators/evolution/contact_state.hpp"
+#include "lacon/operators/contact/contact_state.hpp"
 
 #include <algorithm>
 #include <cmath>
-#include <map>
 #include <optional>
 
 #include "lacon/catalog/contact.hpp"
@@ -31,11 +30,9 @@ double measure(const Mesh& mesh, std::int32_t cell) {
 
 }  // namespace
 
-ContactState::ContactState(const StaticProblem& problem)
-    : problem_(problem),
-      contact_(*problem.contact),
-      geometry_(problem.mesh, problem.model, *problem.contact, *problem.registry) {
-  const Mesh& mesh = problem.mesh;
+ContactState::ContactState(const Mesh& mesh, const Model& model, const Contact& contact, Registry& registry,
+                           ContactBodies bodies)
+    : mesh_(mesh), contact_(contact), geometry_(mesh, model, contact, registry), free_(std::move(bodies.free)) {
   size_.assign(mesh.patches->size(), 0.0);
   rho_ = size_;
   locked_.assign(size_.size(), false);
@@ -51,7 +48,7 @@ ContactState::ContactState(const StaticProblem& problem)
     if (slave.rank > 0) continue;
     std::optional<double> modulus;
     for (const BodyCell& body : body_cells(mesh, around, slave.cell))
-      if (problem.materials->has(body.cell)) modulus = problem.materials->find(body.cell, "ELAS/E");
+      if (const auto own = bodies.modulus(body.cell)) modulus = own;
     if (!modulus) fail("EVOLUTION_2", {{"cell", cell_name(slave.cell)}});
     rho_[slave.patch] = *modulus / size_[slave.patch];
   }
@@ -68,27 +65,28 @@ ContactState::ContactState(const StaticProblem& problem)
 }
 
 void ContactState::update_geometry(std::span<const double> displacement) {
-  const int dimension = problem_.dimension;
+  const int dimension = mesh_.dimension;
   geometry_.update(displacement);
 
   std::fill(locked_.begin(), locked_.end(), true);
   for (const ContactGeometry::Cell& cell : geometry_.cells()) {
     std::int64_t at = cell.coupling;
     for (const std::int32_t owner : {contact_.slaves[cell.slave].cell, cell.master})
-      for (const std::int32_t node : problem_.mesh.cells[owner])
+      for (const std::int32_t node : mesh_.cells[owner])
         for (int d = 0; d < dimension; ++d, ++at)
-          if (geometry_.coupling()[at] != 0 && problem_.numbering.of(node, d) >= 0)
+          if (geometry_.coupling()[at] != 0 && free_[static_cast<std::size_t>(node) * dimension + d])
             locked_[contact_.slaves[cell.slave].patch] = false;
   }
 }
 
 Patchwise ContactState::initial() const {
-  Patchwise patches{std::vector<Status>(n_patches(), Status::unpaired), std::vector<double>(n_patches(), 0.0)};
+  Patchwise patches(n_patches());
   for (std::size_t p = 0; p < n_patches(); ++p) {
-    if (geometry_.zone_of(p) < 0 || coverage(p) <= tolerances_.unpaired) continue;
+    if (geometry_.zone_of(p) < 0 || geometry_.coverage(p) <= tolerances_.unpaired) continue;
     const std::int32_t zone = geometry_.zone_of(p);
     const std::string& asked = contact_.zones[zone].initial_status;
-    const bool touches = gap(p) <= tolerances_.initial_gap * smallest_edge_[zone] && coverage(p) >= tolerances_.least_coverage;
+    const bool touches = geometry_.gap(p) <= tolerances_.initial_gap * smallest_edge_[zone] &&
+                         geometry_.coverage(p) >= tolerances_.least_coverage;
     const bool active = asked == "OUI" || (asked == "INTERPENETRE" && touches);
     patches.status[p] = active ? Status::active : Status::open;
   }
@@ -102,12 +100,13 @@ std::int64_t ContactState::update_statuses(Patchwise& patches) const {
   for (std::size_t p = 0; p < n_patches(); ++p) {
     Status& status = patches.status[p];
     Status next = Status::unpaired;
-    if (geometry_.zone_of(p) >= 0 && coverage(p) > tolerances_.unpaired) {
-      const double test = patches.lambda[p] + rho_[p] * gap(p);
+    if (geometry_.zone_of(p) >= 0 && geometry_.coverage(p) > tolerances_.unpaired) {
+      const double test = patches.lambda[p] + rho_[p] * geometry_.gap(p);
       const double round_off = tolerances_.lambda_round_off * largest + rho_[p] * gap_tolerance_;
       // inside the round-off of lambda and g a patch stays what it is: touching and unloaded, it must not flicker
       const bool was_active = status == Status::active;
-      const bool active = (was_active ? test <= round_off : test < -round_off) && coverage(p) >= tolerances_.least_coverage;
+      const bool active =
+          (was_active ? test <= round_off : test < -round_off) && geometry_.coverage(p) >= tolerances_.least_coverage;
       next = active ? Status::active : Status::open;
     }
     changes += next != status;
@@ -116,28 +115,28 @@ std::int64_t ContactState::update_statuses(Patchwise& patches) const {
   return changes;
 }
 
-std::vector<Coupling> ContactState::couplings() const {
-  std::vector<Coupling> couplings;
-  const auto first_patch = static_cast<std::int32_t>(problem_.mesh.n_nodes());
+std::vector<std::pair<std::int64_t, std::int64_t>> ContactState::coupled_vertices() const {
+  std::vector<std::pair<std::int64_t, std::int64_t>> couples;
+  const auto first_patch = static_cast<std::int64_t>(mesh_.n_nodes());
   for (const ContactGeometry::Cell& cell : geometry_.cells())
     for (const std::int32_t owner : {contact_.slaves[cell.slave].cell, cell.master})
-      for (const std::int32_t node : problem_.mesh.cells[owner])
-        couplings.push_back({first_patch + contact_.slaves[cell.slave].patch, node});
-  return couplings;
+      for (const std::int32_t node : mesh_.cells[owner])
+        couples.emplace_back(first_patch + contact_.slaves[cell.slave].patch, node);
+  return couples;
 }
 
-void ContactState::assemble(const Patchwise& patches, System& system) const {
-  const Mesh& mesh = problem_.mesh;
-  const int dimension = problem_.dimension;
-  std::vector<bool> has_row(n_patches(), false);
-  std::vector<std::int64_t> unknowns;
+void ContactState::evaluate(const Patchwise& patches, const std::function<void(const ContactTerm&)>& use) const {
+  const int dimension = mesh_.dimension;
+  const auto first_patch = static_cast<std::int64_t>(mesh_.n_nodes());
+  std::vector<bool> has_row(n_patches(), false), keeps_multiplier(n_patches(), false);
+  std::vector<ContactUnknown> unknowns;
   std::vector<double> matrix, residual;
   for (const ContactGeometry::Cell& cell : geometry_.cells()) {
     const SlaveElement& slave = contact_.slaves[cell.slave];
     const Status status = patches.status[slave.patch];
     if (status == Status::unpaired) continue;
-    const catalog::SlaveRow* row = catalog::find_slave(mesh.patches->kind[slave.patch], slave.rank);
-    const auto slave_nodes = mesh.cells[slave.cell], master_nodes = mesh.cells[cell.master];
+    const catalog::SlaveRow* row = catalog::find_slave(mesh_.patches->kind[slave.patch], slave.rank);
+    const auto slave_nodes = mesh_.cells[slave.cell], master_nodes = mesh_.cells[cell.master];
     const ContactCellDofs dofs{.n_slave_nodes = static_cast<int>(slave_nodes.size()),
                                .n_master_nodes = static_cast<int>(master_nodes.size()),
                                .dimension = dimension,
@@ -148,31 +147,38 @@ void ContactState::assemble(const Patchwise& patches, System& system) const {
     residual.assign(size, 0.0);
     for (int node = 0; node < dofs.n_slave_nodes + dofs.n_master_nodes; ++node) {
       const std::int64_t number = node < dofs.n_slave_nodes ? slave_nodes[node] : master_nodes[node - dofs.n_slave_nodes];
-      for (int d = 0; d < dimension; ++d) unknowns[dofs.displacement(node, d)] = number * dimension + d;
+      for (int d = 0; d < dimension; ++d) unknowns[dofs.displacement(node, d)] = {number, d};
     }
     // every carrier of the patch is its one equation: summing them up is the tying (METHOD.md 3.6)
     for (int c = 0; c < static_cast<int>(row->carriers.size()); ++c)
-      unknowns[dofs.multiplier(c)] = system.multiplier(slave.patch);
+      unknowns[dofs.multiplier(c)] = {first_patch + slave.patch, 0};
     const std::span<const double> coupling(geometry_.coupling().data() + cell.coupling,
                                            static_cast<std::size_t>(dofs.n_slave_nodes + dofs.n_master_nodes) * dimension);
     contact_system(dofs, coupling, cell.gap, status == Status::active, patches.lambda[slave.patch], matrix, residual);
     // a locked patch has forces but no row
-    if (status == Status::active && locked_[slave.patch]) std::fill(matrix.begin(), matrix.end(), 0.0);
-    system.add(unknowns, matrix, residual);
-    has_row[slave.patch] = true;
+    if (status == Status::active && locked_[slave.patch]) {
+      std::fill(matrix.begin(), matrix.end(), 0.0);
+      for (int c = 0; c < static_cast<int>(row->carriers.size()); ++c) residual[dofs.multiplier(c)] = 0;
+      keeps_multiplier[slave.patch] = true;
+    } else {
+      has_row[slave.patch] = true;
+    }
+    use({unknowns, matrix, residual});
   }
+  // the multiplier of an unpaired patch goes to zero
+  constexpr double one = 1;
   for (std::size_t p = 0; p < n_patches(); ++p) {
-    const std::int64_t unknown = system.multiplier(static_cast<std::int64_t>(p));
-    if (has_row[p] && !(patches.status[p] == Status::active && locked_[p])) continue;
-    system.add_diagonal(unknown, 1.0);
-    system.residual()[unknown] = has_row[p] ? 0.0 : patches.lambda[p];  // locked: lambda stays; unpaired: it goes to zero
+    if (has_row[p]) continue;
+    const ContactUnknown unknown{first_patch + static_cast<std::int64_t>(p), 0};
+    const double left = keeps_multiplier[p] ? 0 : patches.lambda[p];
+    use({{&unknown, 1}, {&one, 1}, {&left, 1}});
   }
 }
 
 double ContactState::constraint_residual(const Patchwise& patches) const {
   double largest = 0;
   for (std::size_t p = 0; p < n_patches(); ++p)
-    if (patches.status[p] == Status::active && !locked_[p]) largest = std::max(largest, std::abs(gap(p)) / size_[p]);
+    if (patches.status[p] == Status::active && !locked_[p]) largest = std::max(largest, std::abs(geometry_.gap(p)) / size_[p]);
   return largest;
 }
 
@@ -185,11 +191,44 @@ std::int64_t ContactState::n_constraints(const Patchwise& patches) const {
 HeldOverlap ContactState::held_overlap() const {
   HeldOverlap overlap;
   for (std::size_t p = 0; p < n_patches(); ++p) {
-    if (!locked_[p] || coverage(p) < tolerances_.least_coverage || gap(p) >= -tolerances_.held_overlap * size_[p]) continue;
+    if (!locked_[p] || geometry_.coverage(p) < tolerances_.least_coverage ||
+        geometry_.gap(p) >= -tolerances_.held_overlap * size_[p])
+      continue;
     ++overlap.count;
-    if (gap(p) < overlap.gap) overlap.deepest = p, overlap.gap = gap(p);
+    if (geometry_.gap(p) < overlap.gap) overlap.deepest = p, overlap.gap = geometry_.gap(p);
   }
   return overlap;
+}
+
+namespace {
+
+/// Call use(node, slave or not, force) for each node of a contact cell; the force on a body is -lambda C.
+template <class Use>
+void for_each_force(const Mesh& mesh, const Contact& contact, const ContactGeometry& geometry,
+                    const ContactGeometry::Cell& cell, double lambda, Use use) {
+  std::int64_t at = cell.coupling;
+  for (const bool slave : {true, false})
+    for (const std::int32_t node : mesh.cells[slave ? contact.slaves[cell.slave].cell : cell.master]) {
+      std::array<double, 3> force{};
+      for (int d = 0; d < mesh.dimension; ++d) force[d] = -lambda * geometry.coupling()[at++];
+      use(node, slave, force);
+    }
+}
+
+}  // namespace
+
+std::vector<double> ContactState::forces(const Patchwise& patches) const {
+  std::vector<double> sum(free_.size(), 0.0);
+  const int dimension = mesh_.dimension;
+  for (const ContactGeometry::Cell& cell : geometry_.cells()) {
+    const std::int32_t patch = contact_.slaves[cell.slave].patch;
+    if (patches.status[patch] != Status::active) continue;
+    for_each_force(mesh_, contact_, geometry_, cell, patches.lambda[patch],
+                   [&](std::int32_t node, bool, const std::array<double, 3>& force) {
+                     for (int d = 0; d < dimension; ++d) sum[static_cast<std::size_t>(node) * dimension + d] += force[d];
+                   });
+  }
+  return sum;
 }
 
 std::vector<ZoneBalance> ContactState::balance(const Patchwise& patches) const {
@@ -204,24 +243,20 @@ std::vector<ZoneBalance> ContactState::balance(const Patchwise& patches) const {
     zone.unpaired += patches.status[p] == Status::unpaired;
     zone.covered += geometry_.covered(p);
     zone.whole += geometry_.whole(p);
-    zone.work = std::max(zone.work, std::abs(patches.lambda[p] * gap(p)));
+    zone.work = std::max(zone.work, std::abs(patches.lambda[p] * geometry_.gap(p)));
   }
-  const int dimension = problem_.dimension;
   for (const ContactGeometry::Cell& cell : geometry_.cells()) {
     const std::int32_t patch = contact_.slaves[cell.slave].patch;
     if (patches.status[patch] != Status::active) continue;
     ZoneBalance& zone = zones[geometry_.zone_of(patch)];
-    std::int64_t at = cell.coupling;
-    for (const bool slave : {true, false})
-      for (const std::int32_t node : problem_.mesh.cells[slave ? contact_.slaves[cell.slave].cell : cell.master]) {
-        std::array<double, 3> f{};  // the force on a node is -lambda C
-        for (int d = 0; d < dimension; ++d) f[d] = -patches.lambda[patch] * geometry_.coupling()[at++];
-        const double* const x = geometry_.coordinates().data() + 3 * std::ptrdiff_t{node};
-        for (int d = 0; d < 3; ++d) {
-          (slave ? zone.on_slave : zone.on_master)[d] += f[d];
-          zone.moment[d] += x[(d + 1) % 3] * f[(d + 2) % 3] - x[(d + 2) % 3] * f[(d + 1) % 3];
-        }
-      }
+    for_each_force(mesh_, contact_, geometry_, cell, patches.lambda[patch],
+                   [&](std::int32_t node, bool slave, const std::array<double, 3>& f) {
+                     const double* const x = geometry_.coordinates().data() + 3 * std::ptrdiff_t{node};
+                     for (int d = 0; d < 3; ++d) {
+                       (slave ? zone.on_slave : zone.on_master)[d] += f[d];
+                       zone.moment[d] += x[(d + 1) % 3] * f[(d + 2) % 3] - x[(d + 2) % 3] * f[(d + 1) % 3];
+                     }
+                   });
   }
   return zones;
 }

@@ -1,4 +1,4 @@
-#include "lacon/operators/evolution/contact_geometry.hpp"
+#include "lacon/operators/contact/contact_geometry.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -45,6 +45,18 @@ template <class Number>
 std::span<Number> room(std::vector<Number>& numbers, std::size_t size) {
   if (numbers.size() < size) numbers.resize(size);
   return {numbers.data(), size};
+}
+
+/// A batch without arrays: those that are not given are not wanted.
+lacon_contact_batch batch_of(std::size_t n_cells, int n_slave_nodes, int n_master_nodes, int dimension, bool current_jacobian) {
+  lacon_contact_batch batch{};
+  batch.struct_size = sizeof(batch);
+  batch.n_cells = static_cast<std::int32_t>(n_cells);
+  batch.n_slave_nodes = n_slave_nodes;
+  batch.n_master_nodes = n_master_nodes;
+  batch.dimension = dimension;
+  batch.current_jacobian = current_jacobian ? 1 : 0;
+  return batch;
 }
 
 constexpr std::size_t block = 128;            // slave cells that a thread takes at a time
@@ -162,27 +174,15 @@ void ContactGeometry::measure_slaves() {
         copy_points(mesh_, coordinates_, contact_.slaves[s].cell, dimension, to_current);
       }
       std::fill(error.begin(), error.end(), LACON_FINE);
-      const lacon_contact_batch batch{.struct_size = sizeof(lacon_contact_batch),
-                                      .n_cells = static_cast<std::int32_t>(some.size()),
-                                      .n_slave_nodes = table.n_nodes,
-                                      .n_master_nodes = table.n_nodes,
-                                      .dimension = dimension,
-                                      .current_jacobian = 1,
-                                      .offset = offset.data(),
-                                      .weight = weight.data(),
-                                      .slave_shape = shape.data(),
-                                      .slave_gradient = gradient.data(),
-                                      .master_shape = shape.data(),
-                                      .slave_initial = initial.data(),
-                                      .slave = current.data(),
-                                      .master = current.data(),
-                                      .slave_normal = nullptr,
-                                      .point_gap = nullptr,
-                                      .gap = nullptr,
-                                      .measure = nullptr,
-                                      .current_measure = size.data(),
-                                      .coupling = nullptr,
-                                      .error = error.data()};
+      lacon_contact_batch batch = batch_of(some.size(), table.n_nodes, table.n_nodes, dimension, true);
+      batch.offset = offset.data();
+      batch.weight = weight.data();
+      batch.slave_shape = batch.master_shape = shape.data();
+      batch.slave_gradient = gradient.data();
+      batch.slave_initial = initial.data();
+      batch.slave = batch.master = current.data();
+      batch.current_measure = size.data();
+      batch.error = error.data();
       kernel.contact(&batch);
       for (std::size_t i = 0; i < some.size(); ++i) {
         const SlaveElement& slave = contact_.slaves[some[i]];
@@ -288,27 +288,22 @@ void ContactGeometry::evaluate(const Zone& zone, const ContactCells& cells, Alik
   }
 
   std::fill_n(room(group.error, n).begin(), n, LACON_FINE);
-  const lacon_contact_batch batch{.struct_size = sizeof(lacon_contact_batch),
-                                  .n_cells = static_cast<std::int32_t>(n),
-                                  .n_slave_nodes = ns,
-                                  .n_master_nodes = nm,
-                                  .dimension = dimension,
-                                  .current_jacobian = zone.current_jacobian,
-                                  .offset = cells.offset.data(),
-                                  .weight = cells.weight.data(),
-                                  .slave_shape = group.slave_shape.data(),
-                                  .slave_gradient = group.slave_gradient.data(),
-                                  .master_shape = group.master_shape.data(),
-                                  .slave_initial = group.slave_initial.data(),
-                                  .slave = group.slave.data(),
-                                  .master = group.master.data(),
-                                  .slave_normal = normals.empty() ? nullptr : group.slave_normal.data(),
-                                  .point_gap = room(group.point_gap, points).data(),
-                                  .gap = room(group.gap, n).data(),
-                                  .measure = room(group.measure, n).data(),
-                                  .current_measure = room(group.current_measure, n).data(),
-                                  .coupling = room(group.coupling, n * (ns + nm) * dimension).data(),
-                                  .error = group.error.data()};
+  lacon_contact_batch batch = batch_of(n, ns, nm, dimension, zone.current_jacobian);
+  batch.offset = cells.offset.data();
+  batch.weight = cells.weight.data();
+  batch.slave_shape = group.slave_shape.data();
+  batch.slave_gradient = group.slave_gradient.data();
+  batch.master_shape = group.master_shape.data();
+  batch.slave_initial = group.slave_initial.data();
+  batch.slave = group.slave.data();
+  batch.master = group.master.data();
+  batch.slave_normal = normals.empty() ? nullptr : group.slave_normal.data();
+  batch.point_gap = room(group.point_gap, points).data();
+  batch.gap = room(group.gap, n).data();
+  batch.measure = room(group.measure, n).data();
+  batch.current_measure = room(group.current_measure, n).data();
+  batch.coupling = room(group.coupling, n * (ns + nm) * dimension).data();
+  batch.error = group.error.data();
   kernels_.at(group.element)->contact(&batch);
 }
 

@@ -1,26 +1,20 @@
 #pragma once
-// The contact of a computation at the current geometry: statuses, and what contact cells add to the system.
-// METHOD.md 3.4 to 3.7 with the conventions of DESIGN.md, section 3.
+// Contact of a computation at a geometry: the statuses of the patches, the rows of their multipliers, and the figures by which
+// a user trusts them (METHOD.md 3.6, 3.7). It knows neither loads nor equations: what it adds is handed to whoever numbers
+// unknowns.
 #include <algorithm>
 #include <array>
-#include <cstdint>
+#include <functional>
+#include <optional>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
-#include "lacon/operators/evolution/contact_geometry.hpp"
-#include "lacon/operators/evolution/static_problem.hpp"
-#include "lacon/operators/evolution/system.hpp"
+#include "lacon/operators/contact/contact_geometry.hpp"
+#include "lacon/operators/contact/patches.hpp"
 
 namespace lacon {
-
-enum class Status : std::int8_t { unpaired = -1, open = 0, active = 1 };
-
-/// Statuses and multipliers of the patches: what a time step starts from and what is restored when it is cut.
-struct Patchwise {
-  std::vector<Status> status;
-  std::vector<double> lambda;
-};
 
 struct ContactTolerances {
   double unpaired = 1e-14;          ///< covered fraction of a patch below which it has no master
@@ -48,9 +42,31 @@ struct HeldOverlap {
   double gap = 0;           ///< of it
 };
 
+/// What contact needs to know of the bodies under the skins.
+struct ContactBodies {
+  /// Young's modulus of a cell, or nothing where it has no elastic material.
+  std::function<std::optional<double>(std::int32_t cell)> modulus;
+  std::vector<std::uint8_t> free;  ///< (n_nodes, dimension): 1 where a displacement is an unknown
+};
+
+/// An unknown of contact: vertex v < n_nodes is node v with its displacements, vertex n_nodes + p is patch p with its
+/// multipliers (assembly/numbering.hpp).
+struct ContactUnknown {
+  std::int64_t vertex;
+  int component;
+};
+
+/// What one contact cell, or a patch without any, adds to the system.
+struct ContactTerm {
+  std::span<const ContactUnknown> unknowns;  ///< (n)
+  std::span<const double> matrix;            ///< (n (n + 1) / 2): lower triangle, row by row
+  std::span<const double> residual;          ///< (n)
+};
+
 class ContactState {
  public:
-  explicit ContactState(const StaticProblem& problem);
+  /// All arguments must outlive it. Throws EVOLUTION_2 for a slave body without modulus, and what ContactGeometry throws.
+  ContactState(const Mesh& mesh, const Model& model, const Contact& contact, Registry& registry, ContactBodies bodies);
 
   /// Pair on the current geometry, integrate gaps and couplings. @param displacement (n_nodes, dimension)
   void update_geometry(std::span<const double> displacement);
@@ -59,10 +75,12 @@ class ContactState {
   /// Statuses from lambda + rho g. @return how many have changed
   std::int64_t update_statuses(Patchwise& patches) const;
 
-  /// Pairs of vertices that the multipliers' rows couple.
-  std::vector<Coupling> couplings() const;
-  /// Add contact forces and the multipliers' rows.
-  void assemble(const Patchwise& patches, System& system) const;
+  /// Pairs of vertices that the multipliers' rows couple: patch and node.
+  std::vector<std::pair<std::int64_t, std::int64_t>> coupled_vertices() const;
+  /// Call `use` for all that adds to contact forces and the multipliers' rows.
+  void evaluate(const Patchwise& patches, const std::function<void(const ContactTerm&)>& use) const;
+  /// Contact forces on the bodies, (n_nodes, dimension): -lambda C.
+  std::vector<double> forces(const Patchwise& patches) const;
 
   /// Largest |g_T| / h over the active patches that have an equation.
   double constraint_residual(const Patchwise& patches) const;
@@ -72,26 +90,19 @@ class ContactState {
   std::int64_t n_constraints(const Patchwise& patches) const;
   /// Whether every displacement in a patch's row is imposed: its multiplier is then undetermined and keeps its value.
   bool is_locked(std::size_t patch) const { return locked_[patch]; }
-
   HeldOverlap held_overlap() const;
 
-  /// Throws EVOLUTION_8 where a slave cell reaches over the axis of revolution.
-  void check_radii() const { geometry_.check_radii(); }
-  double gap(std::size_t patch) const { return geometry_.gap(patch); }  ///< average, positive when open
-  double coverage(std::size_t patch) const {
-    return geometry_.coverage(patch);
-  }  ///< covered over whole measure, current geometry
+  const ContactGeometry& geometry() const { return geometry_; }
   std::size_t n_patches() const { return geometry_.n_patches(); }
   /// The smallest h of a patch.
   double smallest_patch() const { return *std::min_element(size_.begin(), size_.end()); }
-  /// How many couples pairing rejected, for each `Rejection`, summed over the zones.
-  std::span<const std::int64_t> rejected() const { return geometry_.rejected(); }
 
  private:
-  const StaticProblem& problem_;
+  const Mesh& mesh_;
   const Contact& contact_;
   const ContactTolerances tolerances_;
   ContactGeometry geometry_;
+  std::vector<std::uint8_t> free_;
   std::vector<double> smallest_edge_;  ///< of each zone
   std::vector<double> size_;           ///< h of each patch: |T| in 2D, sqrt |T| in 3D, initial geometry
   std::vector<double> rho_;            ///< E / h of each patch

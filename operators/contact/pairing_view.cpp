@@ -1,4 +1,4 @@
-#include "lacon/operators/impr_resu/pairing_view.hpp"
+#include "lacon/operators/contact/pairing_view.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -10,7 +10,7 @@
 #include <numeric>
 
 #include "lacon/elements/reference.hpp"
-#include "lacon/operators/evolution/contact_geometry.hpp"
+#include "lacon/operators/contact/contact_geometry.hpp"
 
 namespace lacon {
 namespace {

@@ -1,0 +1,34 @@
+#pragma once
+// What each patch carries from instant to instant. A quantity is one row here: its start (zero), its place in CONT_ELEM, where
+// it is archived and found again, and whether it is an unknown follow from the row.
+#include <cstdint>
+#include <vector>
+
+namespace lacon {
+
+enum class Status : std::int8_t { unpaired = -1, open = 0, active = 1 };
+
+/// Statuses and quantities of the patches: what a time step starts from and what is restored when it is cut.
+struct Patchwise {
+  std::vector<Status> status;
+  std::vector<double> lambda;  ///< LAGS_C: the pressure, negative in compression
+
+  Patchwise() = default;
+  explicit Patchwise(std::size_t n_patches);
+};
+
+struct PatchQuantity {
+  const char* component;                   ///< of CONT_ELEM
+  std::vector<double> Patchwise::*values;  ///< (n_patches)
+  bool multiplier;                         ///< an unknown: it has an equation, the next one of the patch's vertex
+};
+
+inline constexpr PatchQuantity patch_quantities[] = {
+    {.component = "PRES", .values = &Patchwise::lambda, .multiplier = true},
+};
+
+inline Patchwise::Patchwise(std::size_t n_patches) : status(n_patches, Status::unpaired) {
+  for (const PatchQuantity& quantity : patch_quantities) (this->*quantity.values).assign(n_patches, 0.0);
+}
+
+}  // namespace lacon

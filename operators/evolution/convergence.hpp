@@ -1,0 +1,63 @@
+#pragma once
+// When an instant is solved: the criteria of CONVERGENCE and of contact, judged on figures alone (METHOD.md 3.2).
+#include <cstdint>
+#include <optional>
+#include <string>
+
+#include "lacon/assembly/saddle_point_solver.hpp"
+
+namespace lacon {
+
+struct ConvergenceCriteria {
+  std::optional<double> resi_glob_rela;
+  std::optional<double> resi_glob_maxi;
+  double resi_geom = 1e-6;
+  double constraint = 1e-8;  ///< largest |g_T| / h over active patches
+};
+
+/// The forces of a state, as figures; largest entries, those of displacements.
+struct ForceFigures {
+  double unbalanced = 0;        ///< what is left of forces that should be in balance
+  std::int64_t worst_dof = -1;  ///< where
+  double significant = 0;       ///< what is left where it is more than round-off, below which no iteration gets
+  /// External forces, reactions, forces of relations and of contact: what a residual is measured against.
+  double reference = 0;
+};
+
+/// The displacements of an iteration, as figures.
+struct MotionFigures {
+  double increment = 0;  ///< the largest vector of a node
+  double whole = 0;      ///< likewise, of the whole displacement
+  double vanishing = 0;  ///< below it a displacement is none
+};
+
+/// One line of the Newton table.
+struct IterationReport {
+  int iteration = 0;
+  double rela = 0, maxi = 0;
+  bool rela_met = true, maxi_met = true;
+  std::int64_t worst_dof = -1;  ///< where the residual is largest
+  std::int64_t status_changes = 0;
+  double geometry = 0;  ///< max |du| / max |u|
+  bool geometry_met = true;
+  double constraint = 0;  ///< max |g_T| / h
+  bool constraint_met = true;
+  SolutionReport solution;       ///< how the linear system was solved
+  std::int64_t constraints = 0;  ///< active patches and relations when the matrix was made: the negative pivots to expect
+  double seconds = 0;
+
+  bool converged() const {
+    return rela_met && maxi_met && geometry_met && constraint_met && status_changes == 0 && !solution.rough;
+  }
+};
+
+/// RESI_GLOB_RELA and RESI_GLOB_MAXI: fills in rela, maxi and whether they are met. The relative residual is measured against
+/// the present equilibrium alone, whatever iterates or instants before it were; where its forces vanish, what round-off leaves
+/// of them is no residual. One that is not a number meets nothing.
+void judge_forces(const ConvergenceCriteria& criteria, const ForceFigures& forces, IterationReport& report);
+
+/// RESI_GEOM and the gaps of active patches: fills in geometry, constraint and whether they are met.
+void judge_contact(const ConvergenceCriteria& criteria, const MotionFigures& motion, double constraint,
+                   IterationReport& report);
+
+}  // namespace lacon

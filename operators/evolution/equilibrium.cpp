@@ -1,0 +1,243 @@
+#include "lacon/operators/evolution/equilibrium.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "lacon/operators/program/program.hpp"
+
+namespace lacon {
+namespace {
+
+constexpr double vanishing_displacement = 1e-8;  // of the smallest patch, or of the mesh
+constexpr double round_off = 1e-15;              // a few units in the last place
+
+/// Nodes of every element that has a matrix.
+Ragged<std::int32_t> nodes_of_elements(const StaticProblem& problem) {
+  Ragged<std::int32_t> nodes;
+  const auto add = [&](const ElementSet& set) {
+    for (const std::int32_t cell : set.cells) nodes.push_back(problem.mesh.cells[cell]);
+  };
+  for (const ElementSet& set : problem.solids) add(set);
+  for (const TimedLoad& load : problem.loads)
+    for (const LoadedCells& loaded : load.following) add(loaded.set);
+  return nodes;
+}
+
+ContactBodies bodies_of(const StaticProblem& problem) {
+  ContactBodies bodies{.modulus = [&problem](std::int32_t cell) -> std::optional<double> {
+                         return problem.materials->has(cell) ? problem.materials->find(cell, "ELAS/E") : std::nullopt;
+                       },
+                       .free = {}};
+  for (const std::int64_t equation : problem.numbering.equation) bodies.free.push_back(equation >= 0);
+  return bodies;
+}
+
+/// The largest length of a node's vector.
+double largest_vector(std::span<const double> values, int dimension) {
+  double largest = 0;
+  for (std::size_t i = 0; i + dimension <= values.size(); i += dimension) {
+    double square = 0;
+    for (int d = 0; d < dimension; ++d) square += values[i + d] * values[i + d];
+    largest = std::max(largest, square);
+  }
+  return std::sqrt(largest);
+}
+
+double largest_entry(std::span<const double> values) {
+  double largest = 0;
+  for (const double value : values) largest = std::max(largest, std::abs(value));
+  return largest;
+}
+
+}  // namespace
+
+Equilibrium::Equilibrium(const StaticProblem& problem)
+    : problem_(problem),
+      relations_(problem),
+      elements_(nodes_of_elements(problem)),
+      system_(problem.numbering, elements_),
+      extent_(largest_entry(problem.mesh.coordinates)) {
+  if (problem.contact) contact_.emplace(problem.mesh, problem.model, *problem.contact, *problem.registry, bodies_of(problem));
+  linear_ = !problem.has_following_loads();
+  for (const ElementSet& set : problem.solids) {
+    linear_ = linear_ && set.linear;
+    has_memory_ = has_memory_ || set.kernel->has_memory;
+    points_.push_back(
+        {std::vector<double>(set.cells.size() * set.n_stress()), std::vector<double>(set.cells.size() * set.n_variables())});
+  }
+}
+
+StaticState Equilibrium::natural_state() const {
+  StaticState state;
+  state.displacement.assign(problem_.n_dofs(), 0.0);
+  state.relations.assign(relations_.size(), 0.0);
+  for (const ElementSet& set : problem_.solids)
+    state.points.push_back({std::vector<double>(set.cells.size() * set.n_stress(), 0.0),
+                            std::vector<double>(set.cells.size() * set.n_variables(), 0.0)});
+  return state;
+}
+
+std::vector<double> Equilibrium::load(double instant, const StaticState& state) {
+  const std::vector<double> values = problem_.imposed_values(instant), relations = relations_.values(instant, values);
+  instant_ = instant;
+  given_ = problem_.dead_force(instant);
+  given_.resize(problem_.n_dofs() + problem_.n_patches(), 0.0);
+  given_.insert(given_.end(), relations.begin(), relations.end());
+  external_ = given_;
+  problem_.following_forces(instant, state.displacement, false,
+                            [&](std::span<const std::int64_t> dofs, std::span<const double> force, std::span<const double>) {
+                              for (std::size_t i = 0; i < dofs.size(); ++i) external_[dofs[i]] += force[i];
+                            });
+  std::vector<double> step(problem_.n_dofs(), 0.0);
+  for (std::size_t dof = 0; dof < step.size(); ++dof)
+    if (problem_.imposed[dof]) step[dof] = values[dof] - state.displacement[dof];
+  return step;
+}
+
+void Equilibrium::pair(std::span<const double> displacement) {
+  if (!contact_) return;
+  const Phase phase("pairing");
+  contact_->update_geometry(displacement);
+}
+
+void Equilibrium::assemble(const StaticState& state, const StaticState& previous, SolidMatrix wanted) {
+  matrix_ = wanted;
+  const bool keeps_stiffness = linear_ && has_stiffness_;
+  start(keeps_stiffness);
+  add_solids(state, previous, keeps_stiffness ? SolidMatrix::none : wanted);
+  add_following_loads(state);
+  if (linear_ && !keeps_stiffness) system_.stiffness_is_complete();
+  has_stiffness_ = true;
+  relations_.assemble(state.relations, state.displacement, system_);
+  add_contact(state);
+}
+
+void Equilibrium::start(bool keeps_stiffness) {
+  std::vector<Coupling> couplings = relations_.couplings();
+  if (contact_)
+    for (const auto& [patch, node] : contact_->coupled_vertices())
+      couplings.push_back({static_cast<std::int32_t>(patch), static_cast<std::int32_t>(node)});
+  system_.start(couplings, keeps_stiffness);
+}
+
+void Equilibrium::add_solids(const StaticState& state, const StaticState& previous, SolidMatrix wanted) {
+  const Phase phase("elements");
+  const int dimension = problem_.dimension;
+  std::vector<std::int64_t> unknowns;
+  cell_inside_out_.reset();
+  for (std::size_t s = 0; s < problem_.solids.size(); ++s) {
+    const ElementSet& set = problem_.solids[s];
+    SolidInput input{.displacement = state.displacement};
+    if (set.kernel->has_memory) {
+      input.previous_displacement = previous.displacement;
+      input.previous_stress = previous.points[s].stress;
+      input.previous_variable = previous.points[s].variable;
+    }
+    const SolidOutput output{points_[s].stress, points_[s].variable};
+    const auto add = [&](const ElementValues& element) {
+      unknowns.clear();
+      for (const std::int32_t node : problem_.mesh.cells[element.cell])
+        for (int d = 0; d < dimension; ++d) unknowns.push_back(system_.unknown(node, d));
+      system_.add(unknowns, element.matrix, element.force);
+    };
+    const auto inverted = evaluate_solids(set, problem_.mesh, dimension, input, wanted, output, add);
+    if (!cell_inside_out_) cell_inside_out_ = inverted;
+  }
+}
+
+void Equilibrium::add_following_loads(const StaticState& state) {
+  if (!instant_ || !problem_.has_following_loads()) return;
+  external_ = given_;
+  std::vector<double> matrix, nothing;
+  problem_.following_forces(*instant_, state.displacement, true,
+                            [&](std::span<const std::int64_t> dofs, std::span<const double> force, std::span<const double> by) {
+                              for (std::size_t i = 0; i < dofs.size(); ++i) external_[dofs[i]] += force[i];
+                              matrix.assign(by.begin(), by.end());
+                              for (double& entry : matrix) entry = -entry;
+                              nothing.assign(dofs.size(), 0.0);
+                              system_.add(dofs, matrix, nothing);
+                            });
+}
+
+void Equilibrium::add_contact(const StaticState& state) {
+  if (!contact_) return;
+  const Phase phase("contact");
+  std::vector<std::int64_t> unknowns;
+  contact_->evaluate(state.patches, [&](const ContactTerm& term) {
+    unknowns.clear();
+    for (const ContactUnknown& unknown : term.unknowns) unknowns.push_back(system_.unknown(unknown.vertex, unknown.component));
+    system_.add(unknowns, term.matrix, term.residual);
+  });
+}
+
+std::vector<double> Equilibrium::add(std::span<const double> solution, std::span<const double> step, StaticState& state) const {
+  std::vector<double> increment(step.begin(), step.end());
+  for (std::size_t dof = 0; dof < increment.size(); ++dof)
+    if (const std::int64_t e = problem_.numbering.equation[dof]; e >= 0) increment[dof] = solution[e];
+  for (std::size_t dof = 0; dof < increment.size(); ++dof) state.displacement[dof] += increment[dof];
+  for (std::size_t r = 0; r < relations_.size(); ++r)
+    state.relations[r] += solution[system_.equation(relations_.unknown(r, system_))];
+  if (!contact_) return increment;
+  int multiplier = 0;
+  for (const PatchQuantity& quantity : patch_quantities) {
+    if (!quantity.multiplier) continue;
+    std::vector<double>& values = state.patches.*quantity.values;
+    for (std::size_t p = 0; p < values.size(); ++p)
+      values[p] += solution[problem_.numbering.of_patch(static_cast<std::int64_t>(p)) + multiplier];
+    ++multiplier;
+  }
+  return increment;
+}
+
+ForceFigures Equilibrium::forces(const StaticState& state, const StaticState& previous) const {
+  const std::vector<double>& residual = system_.residual();
+  ForceFigures figures{.reference = largest_entry(relations_.forces(state.relations))};
+  if (contact_) figures.reference = std::max(figures.reference, largest_entry(contact_->forces(state.patches)));
+  // displacements that went to zero leave the round-off of those before them; a body that turns has that of its turn
+  const double moved = std::max({largest_vector(state.displacement, problem_.dimension),
+                                 largest_vector(previous.displacement, problem_.dimension), vanishing_displacement * extent_});
+  for (std::size_t dof = 0; dof < problem_.n_dofs(); ++dof) {
+    const double unbalanced = std::abs(residual[dof] - external_[dof]);
+    if (problem_.imposed[dof]) {
+      figures.reference = std::max(figures.reference, unbalanced);
+    } else if (const std::int64_t equation = problem_.numbering.equation[dof]; equation >= 0) {
+      figures.reference = std::max(figures.reference, std::abs(external_[dof]));
+      if (std::isnan(unbalanced))
+        return {.unbalanced = unbalanced, .worst_dof = static_cast<std::int64_t>(dof), .significant = unbalanced};
+      if (unbalanced > figures.unbalanced || figures.worst_dof < 0) {
+        figures.unbalanced = unbalanced;
+        figures.worst_dof = static_cast<std::int64_t>(dof);
+      }
+      if (unbalanced > round_off * std::abs(system_.matrix().diagonal(equation)) * moved)
+        figures.significant = std::max(figures.significant, unbalanced);
+    }
+  }
+  return figures;
+}
+
+MotionFigures Equilibrium::motion(std::span<const double> increment, const StaticState& state) const {
+  return {.increment = largest_vector(increment, problem_.dimension),
+          .whole = largest_vector(state.displacement, problem_.dimension),
+          .vanishing = contact_ ? vanishing_displacement * contact_->smallest_patch() : 0.0};
+}
+
+std::int64_t Equilibrium::n_constraints(const StaticState& state) const {
+  return relations_.n_constraints() + (contact_ ? contact_->n_constraints(state.patches) : 0);
+}
+
+std::string Equilibrium::names(std::span<const std::int64_t> equations) const {
+  std::string names;
+  constexpr std::size_t most = 5;
+  std::size_t shown = 0;
+  const auto among = [&](std::int64_t equation) {
+    return equation >= 0 && std::find(equations.begin(), equations.end(), equation) != equations.end();
+  };
+  for (std::size_t dof = 0; dof < problem_.n_dofs() && shown < most; ++dof)
+    if (among(problem_.numbering.equation[dof]))
+      names += (shown++ ? ", " : "") + problem_.dof_name(static_cast<std::int64_t>(dof));
+  for (std::size_t r = 0; r < relations_.size() && shown < most; ++r)
+    if (among(system_.equation(relations_.unknown(r, system_)))) names += (shown++ ? ", " : "") + relations_.name(r);
+  return names.empty() ? "multipliers of contact" : names;
+}
+
+}  // namespace lacon

@@ -1,0 +1,92 @@
+#pragma once
+// The equilibrium of bodies, loads and contact at a state: forces, matrix, and what the integration points hold
+// (METHOD.md 5.3).
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "lacon/operators/contact/contact_state.hpp"
+#include "lacon/operators/evolution/convergence.hpp"
+#include "lacon/operators/evolution/relations.hpp"
+#include "lacon/operators/evolution/static_problem.hpp"
+#include "lacon/operators/evolution/system.hpp"
+
+namespace lacon {
+
+/// What the integration points of a solid set hold.
+struct PointValues {
+  std::vector<double> stress;    ///< (cells, points, components)
+  std::vector<double> variable;  ///< (cells, points, internal variables)
+};
+
+/// All unknowns at an instant, and what laws with a memory remember.
+struct StaticState {
+  std::vector<double> displacement;  ///< (n_nodes, dimension)
+  Patchwise patches;
+  std::vector<double> relations;    ///< multipliers of the loads' relations
+  std::vector<PointValues> points;  ///< of each solid set
+};
+
+class Equilibrium {
+ public:
+  explicit Equilibrium(const StaticProblem& problem);
+  Equilibrium(const Equilibrium&) = delete;
+  Equilibrium& operator=(const Equilibrium&) = delete;
+
+  /// Displacements, multipliers, stresses and variables zero; no statuses.
+  StaticState natural_state() const;
+  /// Take the loads of an instant. Throws LOAD_1, LOAD_6 where they contradict each other.
+  /// @return the change of the imposed displacements, (n_nodes, dimension), 0 elsewhere
+  std::vector<double> load(double instant, const StaticState& state);
+  /// Contact cells at these displacements; nothing without contact. @param displacement (n_nodes, dimension)
+  void pair(std::span<const double> displacement);
+  /// Forces, matrix, stresses and variables at a state that is paired. @param previous the last one in equilibrium
+  void assemble(const StaticState& state, const StaticState& previous, SolidMatrix wanted);
+
+  /// Add a solution of the system to a state. @param step of the imposed displacements
+  /// @return the increment of all displacements, (n_nodes, dimension)
+  std::vector<double> add(std::span<const double> solution, std::span<const double> step, StaticState& state) const;
+  /// The right side of the system, (n_equations). @param step of the imposed displacements
+  std::vector<double> right_side(std::span<const double> step) const { return system_.right_side(external_, step); }
+
+  /// What the last assembly says of the balance of `state`.
+  ForceFigures forces(const StaticState& state, const StaticState& previous) const;
+  MotionFigures motion(std::span<const double> increment, const StaticState& state) const;
+  /// Active patches and relations that have an equation: the negative pivots of a stable equilibrium.
+  std::int64_t n_constraints(const StaticState& state) const;
+  bool touches(const StaticState& state) const { return contact_ && contact_->n_constraints(state.patches) > 0; }
+  /// The unknowns of these equations in words, the first few.
+  std::string names(std::span<const std::int64_t> equations) const;
+
+  const System& system() const { return system_; }
+  const ContactState* contact() const { return contact_ ? &*contact_ : nullptr; }
+  const std::vector<PointValues>& points() const { return points_; }                ///< at the last assembly
+  SolidMatrix matrix() const { return matrix_; }                                    ///< of the last assembly
+  std::optional<std::int32_t> cell_inside_out() const { return cell_inside_out_; }  ///< that the last assembly found
+  bool is_linear() const { return linear_; }                                        ///< the stiffness never changes
+  bool has_memory() const { return has_memory_; }                                   ///< a law has
+
+ private:
+  void start(bool keeps_stiffness);
+  void add_solids(const StaticState& state, const StaticState& previous, SolidMatrix wanted);
+  void add_following_loads(const StaticState& state);
+  void add_contact(const StaticState& state);
+
+  const StaticProblem& problem_;
+  Relations relations_;
+  Ragged<std::int32_t> elements_;  ///< nodes of each element that has a matrix
+  System system_;
+  std::optional<ContactState> contact_;
+  bool linear_ = true, has_memory_ = false;
+  bool has_stiffness_ = false;              ///< a linear stiffness is in the matrix
+  SolidMatrix matrix_ = SolidMatrix::none;  ///< of which kind it is
+  std::vector<PointValues> points_;
+  std::optional<std::int32_t> cell_inside_out_;
+  std::optional<double> instant_;  ///< that of the loads
+  std::vector<double> given_;      ///< at that instant: dead forces, and behind them what the multipliers' rows are to be
+  std::vector<double> external_;   ///< the same with following forces at the last evaluation
+  double extent_ = 0;              ///< largest coordinate of the mesh
+};
+
+}  // namespace lacon

@@ -1,0 +1,187 @@
+#include "lacon/operators/evolution/state_fields.hpp"
+
+#include <algorithm>
+#include <functional>
+#include <optional>
+#include <span>
+
+#include "lacon/catalog/messages.hpp"
+#include "lacon/operators/contact/contact_field.hpp"
+
+namespace lacon {
+namespace {
+
+/// Fill a field at integration points from the values of the solid sets, (cells, points, components of the set). Cells are in
+/// ascending order, whatever set they belong to; a set without components is left out.
+void fill_points(Field& field, const StaticProblem& problem,
+                 const std::function<std::vector<std::string>(const ElementSet&)>& components_of,
+                 const std::function<std::span<const double>(std::size_t)>& values_of) {
+  struct Place {
+    std::int32_t cell;
+    std::size_t set, index;
+  };
+  std::vector<Place> places;
+  std::vector<std::vector<int>> components;  // of each set, in the field
+  for (std::size_t s = 0; s < problem.solids.size(); ++s) {
+    const std::vector<std::string> names = components_of(problem.solids[s]);
+    components.emplace_back();
+    for (const std::string& name : names) {
+      if (field.component(name) < 0) field.components.push_back(name);
+      components.back().push_back(field.component(name));
+    }
+    if (names.empty()) continue;
+    for (std::size_t i = 0; i < problem.solids[s].cells.size(); ++i) places.push_back({problem.solids[s].cells[i], s, i});
+  }
+  std::sort(places.begin(), places.end(), [](const Place& a, const Place& b) { return a.cell < b.cell; });
+  for (const Place& place : places) {
+    const std::vector<int>& own = components[place.set];
+    const std::size_t n_points = problem.solids[place.set].tabulation.n_points;
+    const std::span<const double> values = values_of(place.set).subspan(place.index * n_points * own.size());
+    field.support.push_back(place.cell);
+    for (std::size_t p = 0; p < n_points; ++p) {
+      const std::size_t first = field.values.size();
+      field.values.resize(first + field.n_components(), 0.0);
+      field.present.resize(first + field.n_components(), 0);
+      for (std::size_t k = 0; k < own.size(); ++k) {
+        field.values[first + own[k]] = values[p * own.size() + k];
+        field.present[first + own[k]] = 1;
+      }
+    }
+    field.offset.push_back(field.offset.back() + static_cast<std::int64_t>(n_points));
+  }
+  if (std::all_of(field.present.begin(), field.present.end(), [](std::uint8_t p) { return p != 0; })) field.present.clear();
+}
+
+std::vector<std::string> stress_names(const ElementSet& set) { return {set.row->stress.begin(), set.row->stress.end()}; }
+
+std::vector<std::string> variable_names(const ElementSet& set) {
+  std::vector<std::string> names;
+  for (int v = 1; v <= set.n_point_variables; ++v) names.push_back("V" + std::to_string(v));
+  return names;
+}
+
+/// Where a cell or a node is in the support of a field; -1 elsewhere. @param size of the mesh
+std::vector<std::int32_t> places_in(const Field& field, std::size_t size) {
+  std::vector<std::int32_t> place(size, -1);
+  for (std::size_t i = 0; i < field.support.size(); ++i) place[field.support[i]] = static_cast<std::int32_t>(i);
+  return place;
+}
+
+/// The values of one set in a field that fill_points() made: (cells, points, components of the set). Throws EVOLUTION_11.
+std::vector<double> points_of(const Field& field, const std::vector<std::int32_t>& place, const ElementSet& set,
+                              const std::vector<std::string>& names, const std::string& label) {
+  std::vector<double> values;
+  for (const std::int32_t cell : set.cells) {
+    const auto refuse = [&] { fail("EVOLUTION_11", {{"label", label}, {"field", field.name}, {"cell", cell_name(cell)}}); };
+    if (place[cell] < 0) refuse();
+    const std::size_t first = field.first_row(place[cell]), end = field.first_row(place[cell] + 1);
+    if (end - first != static_cast<std::size_t>(set.tabulation.n_points)) refuse();
+    for (std::size_t row = first; row < end; ++row)
+      for (const std::string& name : names) {
+        const int component = field.component(name);
+        if (component < 0 || !field.has(row, component)) refuse();
+        values.push_back(field.at(row, component));
+      }
+  }
+  return values;
+}
+
+bool has_variables(const StaticProblem& problem) {
+  return std::any_of(problem.solids.begin(), problem.solids.end(),
+                     [](const ElementSet& set) { return set.n_point_variables > 0; });
+}
+
+bool has_field(const Result& result, const std::string& name, std::int64_t order) {
+  const auto named = result.fields.find(name);
+  return named != result.fields.end() && named->second.contains(order);
+}
+
+}  // namespace
+
+FieldMakers fields_of(const Present& present) {
+  const StaticProblem& problem = present.problem;
+  const StaticState& state = present.state;
+  FieldMakers fields;
+  fields["DEPL"] = [&] { return displacement_field(problem, state); };
+  fields["SIEF_ELGA"] = [&] { return stress_field(problem, state); };
+  if (has_variables(problem)) fields["VARI_ELGA"] = [&] { return variable_field(problem, state); };
+  if (const ContactState* contact = present.contact)
+    fields["CONT_ELEM"] = [&, contact] { return contact_field(*problem.contact, contact->geometry(), state.patches); };
+  return fields;
+}
+
+Field displacement_field(const StaticProblem& problem, const StaticState& state) {
+  Field field{.name = "DEPL", .quantity = "DEPL_R", .location = Location::nodes, .components = problem.components};
+  if (problem.contact) field.components.emplace_back("LAGS_C");
+  const std::size_t width = field.components.size(), dimension = problem.dimension;
+  std::vector<std::int32_t> row(problem.mesh.n_nodes(), -1);
+  for (std::size_t node = 0; node < problem.mesh.n_nodes(); ++node) {
+    if (!problem.exists[node * dimension]) continue;
+    row[node] = static_cast<std::int32_t>(field.support.size());
+    field.support.push_back(static_cast<std::int32_t>(node));
+    for (std::size_t c = 0; c < width; ++c) {
+      field.values.push_back(c < dimension ? state.displacement[node * dimension + c] : 0.0);
+      if (problem.contact) field.present.push_back(c < dimension);
+    }
+  }
+  if (problem.contact)
+    for (std::size_t p = 0; p < problem.mesh.patches->size(); ++p)
+      for (const std::int32_t node : problem.mesh.patches->carriers[p]) {
+        field.at(row[node], dimension) = state.patches.lambda[p];
+        field.present[row[node] * width + dimension] = 1;
+      }
+  return field;
+}
+
+Field stress_field(const StaticProblem& problem, const StaticState& state) {
+  Field field{.name = "SIEF_ELGA", .quantity = "SIEF_R", .location = Location::gauss_points, .offset = {0}};
+  fill_points(field, problem, stress_names, [&](std::size_t s) { return std::span<const double>(state.points[s].stress); });
+  return field;
+}
+
+Field variable_field(const StaticProblem& problem, const StaticState& state) {
+  Field field{.name = "VARI_ELGA", .quantity = "VARI_R", .location = Location::gauss_points, .offset = {0}};
+  fill_points(field, problem, variable_names, [&](std::size_t s) { return std::span<const double>(state.points[s].variable); });
+  return field;
+}
+
+StaticState archived_state(const StaticProblem& problem, const Base& base, const Result& result, std::int64_t order) {
+  if (result.mesh != problem.model.mesh)
+    fail("EVOLUTION_1", {{"first", "ETAT_INIT/EVOL_NOLI"}, {"second", "MODELE"}, {"what", "meshes"}});
+  const std::size_t dimension = problem.dimension;
+  StaticState state;
+  state.displacement.assign(problem.n_dofs(), 0.0);
+  const Field moved = base.field(result, "DEPL", order);
+  for (std::size_t d = 0; d < dimension; ++d) {
+    const int component = moved.component(problem.components[d]);
+    for (std::size_t i = 0; component >= 0 && i < moved.support.size(); ++i)
+      if (const std::size_t dof = moved.support[i] * dimension + d; problem.exists[dof])
+        state.displacement[dof] = moved.at(i, component);
+  }
+  const Field stress = base.field(result, "SIEF_ELGA", order);
+  const std::vector<std::int32_t> stress_place = places_in(stress, problem.mesh.n_cells());
+  std::optional<Field> variable;
+  std::vector<std::int32_t> variable_place(problem.mesh.n_cells(), -1);
+  if (has_field(result, "VARI_ELGA", order)) {
+    variable = base.field(result, "VARI_ELGA", order);
+    variable_place = places_in(*variable, problem.mesh.n_cells());
+  }
+  std::int32_t fresh = -1;  // a cell whose law has internal variables now and had none
+  for (const ElementSet& set : problem.solids) {
+    PointValues& points = state.points.emplace_back();
+    points.stress = points_of(stress, stress_place, set, stress_names(set), result.label);
+    const auto starts = [&](std::int32_t cell) { return variable_place[cell] < 0; };
+    if (set.n_point_variables > 0 && std::all_of(set.cells.begin(), set.cells.end(), starts)) {
+      points.variable.assign(set.cells.size() * set.n_variables(), 0.0);
+      fresh = set.cells.front();
+    } else if (set.n_point_variables > 0) {
+      points.variable = points_of(*variable, variable_place, set, variable_names(set), result.label);
+    }
+  }
+  if (fresh >= 0) inform("EVOLUTION_13", {{"label", result.label}, {"cell", cell_name(fresh)}});
+  if (!problem.contact || !has_field(result, "CONT_ELEM", order)) return state;
+  state.patches = patches_of(base.field(result, "CONT_ELEM", order), problem.mesh, *problem.contact, result.label);
+  return state;
+}
+
+}  // namespace lacon

@@ -1,0 +1,35 @@
+#pragma once
+// The fields of an instant: DEPL, SIEF_ELGA, VARI_ELGA, CONT_ELEM (METHOD.md 4); and the state that a result holds in them.
+#include <functional>
+#include <map>
+#include <string>
+
+#include "lacon/operators/evolution/equilibrium.hpp"
+#include "lacon/structures/base.hpp"
+
+namespace lacon {
+
+/// What observers of a computation look at: the instant that was solved last, or the one that is being solved.
+struct Present {
+  const StaticProblem& problem;
+  const StaticState& state;
+  const ContactState* contact;  ///< nullptr without contact
+};
+
+/// Fields by name, each made when it is asked for.
+using FieldMakers = std::map<std::string, std::function<Field()>>;
+/// Those that this computation has. What `present` refers to must outlive them.
+FieldMakers fields_of(const Present& present);
+
+/// Displacements, with LAGS_C on the carriers of the patches, equal on those of one patch.
+Field displacement_field(const StaticProblem& problem, const StaticState& state);
+/// Stresses at the integration points of the solid elements.
+Field stress_field(const StaticProblem& problem, const StaticState& state);
+/// Internal variables V1, V2, ... at the integration points of the cells whose law has them; empty where none has.
+Field variable_field(const StaticProblem& problem, const StaticState& state);
+
+/// The state that a result holds at an order. Its patches are empty where the result is without contact. Throws EVOLUTION_1
+/// where it lives on another mesh, RESULT_1 where a field is missing, EVOLUTION_11 where a cell has other points or components.
+StaticState archived_state(const StaticProblem& problem, const Base& base, const Result& result, std::int64_t order);
+
+}  // namespace lacon

@@ -1,0 +1,60 @@
+#include "lacon/operators/evolution/step_events.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "lacon/catalog/messages.hpp"
+
+namespace lacon {
+
+StepEvents::StepEvents(const std::vector<StepEvent>& events, const Base& base, const Mesh& mesh, FieldMakers fields)
+    : fields_(std::move(fields)) {
+  for (const StepEvent& event : events) {
+    if (event.event == "RESI_MAXI")
+      largest_residual_ = event.limit;
+    else if (event.event == "DIVE_RESI")
+      may_diverge_ = false;
+    else
+      increments_.push_back(
+          {event.limit, Observer(Keywords(nlohmann::json::parse(event.place), "DEFI_LIST_INST/ECHEC/"), base, mesh, {}), {}});
+  }
+}
+
+void StepEvents::start(double /*instant*/) { remember(); }
+
+void StepEvents::begin(double /*instant*/) { before_ = {}; }
+
+void StepEvents::iterate(double instant, const IterationReport& report) {
+  if (largest_residual_ && report.maxi > *largest_residual_)
+    fail("STEP_1", {{"residual", fmt::format("{:.6g}", report.maxi)},
+                    {"limit", fmt::format("{:.6g}", *largest_residual_)},
+                    {"instant", fmt::format("{:.9g}", instant)}});
+  if (!may_diverge_ && report.iteration >= 2 && std::min(report.maxi, before_[0]) > before_[1])
+    fail("STEP_4", {{"residual", fmt::format("{:.6g}", report.maxi)},
+                    {"before", fmt::format("{:.6g}, {:.6g}", before_[1], before_[0])},
+                    {"instant", fmt::format("{:.9g}", instant)}});
+  before_ = {report.maxi, before_[0]};
+}
+
+void StepEvents::judge(double instant) {
+  for (const IncrementLimit& increment : increments_) {
+    const std::vector<Observer::Value> now = increment.observer.look(fields_);
+    for (std::size_t i = 0; i < now.size(); ++i)
+      if (const double change = std::abs(now[i].value - increment.last[i].value); change > increment.limit)
+        fail("STEP_2", {{"component", now[i].component},
+                        {"node", node_name(now[i].node)},
+                        {"change", fmt::format("{:.6g}", change)},
+                        {"limit", fmt::format("{:.6g}", increment.limit)},
+                        {"instant", fmt::format("{:.9g}", instant)}});
+  }
+}
+
+void StepEvents::accept(const SolvedInstant& /*solved*/) { remember(); }
+
+void StepEvents::remember() {
+  for (IncrementLimit& increment : increments_) increment.last = increment.observer.look(fields_);
+}
+
+}  // namespace lacon
