@@ -28,7 +28,7 @@ def run(*command, **options):
 
 def setUpModule():
     """Install the package into a folder of its own and build the plug-ins against it."""
-    folder = tempfile.TemporaryDirectory(prefix="lacon_consumer_")
+    folder = tempfile.TemporaryDirectory(prefix="lacon consumer ")  # a space in its name, as folders of users have
     unittest.addModuleCleanup(folder.cleanup)
     root = pathlib.Path(folder.name)
     prefix, build, laws = root / "prefix", root / "build", root / "laws"
@@ -92,6 +92,13 @@ class Program(unittest.TestCase):
             self.assertTrue((self.prefix / f"lib/lacon/plugins/{name}/lib{name}.so").is_file(), name)
         for header in ("elements/plugin.h", "elements/lanes.hpp", "elements/registry.hpp", "catalog/cell_type.hpp"):
             self.assertTrue((self.prefix / "include/lacon" / header).is_file(), header)
+
+    def test_a_program_reads_meshes(self):
+        """HDF5 comes with all that it needs, also in a folder whose name has a space, where h5cc cannot be asked."""
+        mesh = made["root"] / "mesh.med"
+        write_med(mesh, block("QUAD4", np.linspace(0, 1, 4), np.linspace(0, 1, 3)))
+        done = run(self.build / "count_nodes", mesh)
+        self.assertEqual((done.returncode, done.stdout), (0, "12\n"), done.stderr)
 
     def test_it_is_found_by_folder_and_by_path(self):
         self.assert_stresses(self.pull(self.plugin))
