@@ -1,0 +1,223 @@
+// Statuses, rows and forces of one patch over one master, in the plane.
+#include "lacon/operators/contact/contact_state.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <map>
+
+#include "lacon/catalog/messages.hpp"
+#include "lacon/operators/contact/contact_field.hpp"
+
+namespace lacon {
+namespace {
+
+constexpr double young = 1000.0;
+
+/// A slave SEG3 of length 1 above a master SEG3 that reaches beyond it, each on a QUAD8; the slave's nodes are 8 to 15.
+struct Touching : testing::Test {
+  Mesh mesh;
+  Model model;
+  Contact contact;
+  Registry registry;
+  std::optional<double> modulus = young;
+  std::vector<std::uint8_t> free = std::vector<std::uint8_t>(32, 1);
+  std::vector<double> displacement = std::vector<double>(32, 0.0);
+
+  Touching() {
+    mesh.dimension = 2;
+    constexpr double corner[8][2] = {{0, 0}, {1, 0}, {1, 1}, {0, 1}, {0.5, 0}, {1, 0.5}, {0.5, 1}, {0, 0.5}};
+    for (const auto& [x, y] : corner) mesh.coordinates.insert(mesh.coordinates.end(), {2 * x - 0.5, y - 1, 0.0});
+    for (const auto& [x, y] : corner) mesh.coordinates.insert(mesh.coordinates.end(), {x, y, 0.0});
+    mesh.add_cell(CellType::SEG3, std::vector<std::int32_t>{2, 3, 6});
+    mesh.add_cell(CellType::SEG3, std::vector<std::int32_t>{8, 9, 12});
+    for (const std::int32_t first : {0, 8}) {
+      std::vector<std::int32_t> nodes;
+      for (std::int32_t i = 0; i < 8; ++i) nodes.push_back(first + i);
+      mesh.add_cell(CellType::QUAD8, nodes);
+    }
+    Patches& patches = mesh.patches.emplace();
+    patches.kind = {14};
+    patches.cells.push_back(std::vector<std::int32_t>{1});
+    patches.carriers.push_back(std::vector<std::int32_t>{12});
+    model.dimension = 2;
+    model.elements = {"D_PLAN/SEG3", "D_PLAN/QUAD8"};
+    model.element = {0, 0, 1, 1};
+    contact.zones.push_back({.slave_group = "SLAVE",
+                             .master_group = "MASTER",
+                             .slave = {1},
+                             .master = {0},
+                             .patches = {0},
+                             .jacobian = "INITIAL",
+                             .search = "RAPIDE",
+                             .initial_status = "INTERPENETRE"});
+    contact.slaves.push_back({1, 0, 0, "LACS32D"});
+  }
+
+  ContactState state() {
+    return {mesh, model, contact, registry, {.modulus = [this](std::int32_t) { return modulus; }, .free = free}};
+  }
+  /// Lift the upper body.
+  void lift(double height) {
+    for (std::size_t node = 8; node < 16; ++node) displacement[2 * node + 1] = height;
+  }
+  /// What evaluate() adds, summed up: the residual of each unknown (vertex, component).
+  static std::map<std::pair<std::int64_t, int>, double> residuals(const ContactState& state, const Patchwise& patches) {
+    std::map<std::pair<std::int64_t, int>, double> sums;
+    state.evaluate(patches, [&](const ContactTerm& term) {
+      for (std::size_t i = 0; i < term.unknowns.size(); ++i)
+        sums[{term.unknowns[i].vertex, term.unknowns[i].component}] += term.residual[i];
+    });
+    return sums;
+  }
+};
+
+TEST_F(Touching, TheInitialStatusIsWhatTheZoneAsksFor) {
+  struct Case {
+    const char* asked;
+    double height;
+    Status expected;
+  };
+  for (const auto& [asked, height, expected] :
+       {Case{"INTERPENETRE", 0, Status::active}, Case{"INTERPENETRE", -0.1, Status::active},
+        Case{"INTERPENETRE", 0.1, Status::open}, Case{"OUI", 0.1, Status::active}, Case{"NON", -0.1, Status::open}}) {
+    contact.zones[0].initial_status = asked;
+    ContactState now = state();
+    lift(height);
+    now.update_geometry(displacement);
+    EXPECT_EQ(now.initial().status[0], expected) << asked << ' ' << height;
+    EXPECT_EQ(now.initial().lambda[0], 0);
+  }
+}
+
+TEST_F(Touching, APatchIsActiveWherePressureOrOverlapSaysSo) {
+  ContactState now = state();
+  // rho = E / h = 1000: lambda + rho g <= 0 (METHOD.md 3.7)
+  struct Case {
+    double lambda, gap;
+    Status expected;
+  };
+  for (const auto& [lambda, gap, expected] :
+       {Case{-1, 0, Status::active}, Case{0, -0.01, Status::active}, Case{-1, 0.01, Status::open},
+        Case{-20, 0.01, Status::active}, Case{5, -0.001, Status::open}, Case{5, -0.01, Status::active}}) {
+    lift(gap);
+    now.update_geometry(displacement);
+    EXPECT_NEAR(now.geometry().gap(0), gap, 1e-15);
+    for (const Status before : {Status::active, Status::open}) {
+      Patchwise patches(1);
+      patches.status[0] = before;
+      patches.lambda[0] = lambda;
+      EXPECT_EQ(now.update_statuses(patches), before != expected) << lambda << ' ' << gap;
+      EXPECT_EQ(patches.status[0], expected) << lambda << ' ' << gap;
+    }
+  }
+}
+
+TEST_F(Touching, TouchingAndUnloadedAPatchStaysWhatItIs) {
+  ContactState now = state();
+  now.update_geometry(displacement);
+  for (const Status before : {Status::active, Status::open}) {
+    Patchwise patches(1);
+    patches.status[0] = before;
+    EXPECT_EQ(now.update_statuses(patches), 0);
+    EXPECT_EQ(patches.status[0], before);
+  }
+}
+
+TEST_F(Touching, WithoutMasterItIsUnpairedAndItsMultiplierGoesToZero) {
+  ContactState now = state();
+  for (std::size_t node = 8; node < 16; ++node) displacement[2 * node] = 10;
+  now.update_geometry(displacement);
+  Patchwise patches(1);
+  patches.status[0] = Status::active;
+  patches.lambda[0] = -3;
+  EXPECT_EQ(now.update_statuses(patches), 1);
+  EXPECT_EQ(patches.status[0], Status::unpaired);
+  const auto sums = residuals(now, patches);
+  ASSERT_EQ(sums.size(), 1U);
+  EXPECT_EQ(sums.at({16, 0}), -3);  // the patch's vertex is behind the nodes
+  EXPECT_TRUE(now.coupled_vertices().empty());
+}
+
+TEST_F(Touching, ForcesOnBothBodiesAreThePressureAndBalance) {
+  ContactState now = state();
+  lift(-0.01);
+  now.update_geometry(displacement);
+  Patchwise patches(1);
+  patches.status[0] = Status::active;
+  patches.lambda[0] = -6;
+  const auto sums = residuals(now, patches);
+  const std::vector<double> forces = now.forces(patches);
+  double slave = 0, master = 0;
+  for (std::int64_t node = 0; node < 16; ++node)
+    for (int d = 0; d < 2; ++d) {
+      const auto sum = sums.find({node, d});
+      // residuals are of internal forces: contact pushes the other way
+      EXPECT_NEAR(forces[static_cast<std::size_t>(2 * node + d)], sum == sums.end() ? 0.0 : -sum->second, 1e-14);
+      if (d == 1) (node < 8 ? master : slave) += forces[static_cast<std::size_t>(2 * node + d)];
+    }
+  EXPECT_NEAR(slave, 6, 1e-13);  // pressure 6 on a length of 1 lifts the slave
+  EXPECT_NEAR(master, -6, 1e-13);
+  EXPECT_NEAR(sums.at({16, 0}), -0.01, 1e-15);  // G of the active patch
+  const ZoneBalance balance = now.balance(patches).front();
+  EXPECT_NEAR(balance.on_slave[1], 6, 1e-13);
+  EXPECT_NEAR(balance.on_slave[1] + balance.on_master[1], 0, 1e-13);
+  EXPECT_NEAR(balance.moment[2], 0, 1e-13);
+  EXPECT_EQ(balance.active, 1);
+  EXPECT_NEAR(balance.covered, 1, 1e-14);
+  EXPECT_NEAR(now.constraint_residual(patches), 0.01, 1e-15);
+  EXPECT_EQ(now.n_constraints(patches), 1);
+}
+
+TEST_F(Touching, APatchWhoseDisplacementsAreAllImposedIsLockedAndKeepsItsMultiplier) {
+  std::fill(free.begin(), free.end(), 0);
+  ContactState now = state();
+  lift(-0.01);
+  now.update_geometry(displacement);
+  EXPECT_TRUE(now.is_locked(0));
+  Patchwise patches(1);
+  patches.status[0] = Status::active;
+  patches.lambda[0] = -6;
+  EXPECT_EQ(now.n_constraints(patches), 0);
+  EXPECT_EQ(residuals(now, patches).at({16, 0}), 0);
+  EXPECT_EQ(now.held_overlap().count, 1);
+  EXPECT_NEAR(now.held_overlap().gap, -0.01, 1e-15);
+  free[2 * 9] = 1;  // sideways only: the row of a flat patch does not meet it
+  ContactState sideways = state();
+  sideways.update_geometry(displacement);
+  EXPECT_TRUE(sideways.is_locked(0));
+  free[2 * 9 + 1] = 1;
+  ContactState freed = state();
+  freed.update_geometry(displacement);
+  EXPECT_FALSE(freed.is_locked(0));
+}
+
+TEST_F(Touching, ABodyWithoutModulusIsRefused) {
+  modulus.reset();
+  try {
+    state();
+    FAIL() << "rho needs a modulus";
+  } catch (const Error& error) {
+    EXPECT_EQ(error.message().id, "EVOLUTION_2");
+  }
+}
+
+TEST_F(Touching, ContElemHoldsWhatThePatchesCarry) {
+  ContactState now = state();
+  lift(-0.01);
+  now.update_geometry(displacement);
+  Patchwise patches(1);
+  patches.status[0] = Status::active;
+  patches.lambda[0] = -6;
+  const Field field = contact_field(contact, now.geometry(), patches);
+  EXPECT_EQ(field.components, (std::vector<std::string>{"CONT", "PRES", "JEU", "COEFSURF", "PRESCOOR"}));
+  const Patchwise read = patches_of(field, mesh, contact, "RESU");
+  EXPECT_EQ(read.status, patches.status);
+  EXPECT_EQ(read.lambda, patches.lambda);
+  Field elsewhere = field;
+  elsewhere.support = {0};
+  EXPECT_THROW(patches_of(elsewhere, mesh, contact, "RESU"), Error);
+}
+
+}  // namespace
+}  // namespace lacon

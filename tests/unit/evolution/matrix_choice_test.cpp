@@ -1,0 +1,60 @@
+// Which matrix an iteration goes on with.
+#include "lacon/operators/evolution/matrix_choice.hpp"
+
+#include <gtest/gtest.h>
+
+namespace lacon {
+namespace {
+
+MatrixChoice started(bool linear, bool has_memory) {
+  MatrixChoice choice(linear, has_memory);
+  choice.start_instant();
+  return choice;
+}
+
+TEST(MatrixChoice, TheTangentGoesWithoutStressWhereALawWithMemoryTouches) {
+  for (const bool linear : {false, true})
+    for (const bool memory : {false, true})
+      for (const bool touches : {false, true}) {
+        const MatrixChoice choice = started(linear, memory);
+        const SolidMatrix expected = !linear && memory && touches ? SolidMatrix::stressless : SolidMatrix::tangent;
+        EXPECT_EQ(choice.suited(SolidMatrix::tangent, touches), expected) << linear << memory << touches;
+        EXPECT_EQ(choice.suited(SolidMatrix::elastic, touches), SolidMatrix::elastic);
+      }
+}
+
+TEST(MatrixChoice, AnUnstableTangentIsLeftForTheRestOfTheInstant) {
+  MatrixChoice choice = started(false, false);
+  EXPECT_FALSE(choice.note_pivots(SolidMatrix::tangent, 3, 3));
+  EXPECT_FALSE(choice.note_pivots(SolidMatrix::stressless, 4, 3));  // which has no instability but that of the law
+  EXPECT_EQ(choice.suited(SolidMatrix::tangent, false), SolidMatrix::tangent);
+  EXPECT_TRUE(choice.note_pivots(SolidMatrix::tangent, 4, 3));
+  EXPECT_EQ(choice.suited(SolidMatrix::tangent, false), SolidMatrix::stressless);
+  EXPECT_FALSE(choice.note_residual(1));
+  EXPECT_EQ(choice.suited(SolidMatrix::tangent, false), SolidMatrix::stressless);
+  choice.start_instant();
+  EXPECT_EQ(choice.suited(SolidMatrix::tangent, false), SolidMatrix::tangent);
+}
+
+TEST(MatrixChoice, AResidualThatGrowsBringsTheElasticMatrixEachTimeForTwiceAsLong) {
+  MatrixChoice choice = started(false, true);
+  const auto elastic = [&] { return choice.suited(SolidMatrix::tangent, false) == SolidMatrix::elastic; };
+  EXPECT_FALSE(choice.note_residual(5));
+  EXPECT_FALSE(choice.note_residual(4));
+  EXPECT_FALSE(elastic());
+  EXPECT_TRUE(choice.note_residual(6));  // for one iteration
+  EXPECT_TRUE(elastic());
+  EXPECT_FALSE(choice.note_residual(3));
+  EXPECT_FALSE(elastic());
+  EXPECT_TRUE(choice.note_residual(7));  // for two
+  EXPECT_FALSE(choice.note_residual(9));
+  EXPECT_TRUE(elastic());
+  EXPECT_FALSE(choice.note_residual(1));
+  EXPECT_FALSE(elastic());
+  MatrixChoice without = started(false, false);
+  EXPECT_FALSE(without.note_residual(1));
+  EXPECT_FALSE(without.note_residual(2));
+}
+
+}  // namespace
+}  // namespace lacon

@@ -1,0 +1,124 @@
+// One instant: two squares pressed together, and a body at large strains.
+#include "lacon/operators/evolution/newton.hpp"
+
+#include <gtest/gtest.h>
+
+#include "lacon/assembly/mumps_engine.hpp"
+#include "lacon/catalog/messages.hpp"
+#include "lacon/operators/evolution/state_fields.hpp"
+#include "two_squares.hpp"
+
+namespace lacon {
+namespace {
+
+using namespace test;
+
+Newton newton(const StaticProblem& problem, double tolerance, int iterations = 20) {
+  return {problem,
+          {.criteria = {.resi_glob_rela = tolerance, .resi_glob_maxi = {}}, .iterations = iterations},
+          std::make_unique<MumpsEngine>()};
+}
+
+constexpr double exx = poisson * (1 + poisson) * pressure / young, eyy = -(1 - poisson * poisson) * pressure / young;
+
+void expect_uniform(const StaticProblem& problem, const StaticState& state) {
+  for (std::size_t node = 0; node < problem.mesh.n_nodes(); ++node) {
+    EXPECT_NEAR(state.displacement[2 * node], exx * problem.mesh.coordinates[3 * node], 1e-14);
+    EXPECT_NEAR(state.displacement[2 * node + 1], eyy * (problem.mesh.coordinates[3 * node + 1] + 1), 1e-14);
+  }
+  EXPECT_NEAR(state.patches.lambda[0], -pressure, 1e-11);
+}
+
+TEST(Newton, SquaresPressedTogetherAreUniform) {
+  const StaticProblem problem = pressed_squares();
+  Newton solver = newton(problem, 1e-12);
+  StaticState state = solver.initial_state();
+  EXPECT_EQ(state.patches.status[0], Status::active);  // touching: INTERPENETRE
+  std::vector<IterationReport> lines;
+  const int iterations = solver.solve(1.0, state, [&](const IterationReport& line) { lines.push_back(line); });
+  EXPECT_EQ(static_cast<int>(lines.size()), iterations + 1);
+  EXPECT_TRUE(lines.back().converged());
+  expect_uniform(problem, state);
+  EXPECT_EQ(solver.equilibrium().n_constraints(state), 1);
+}
+
+TEST(Newton, GoingBackLeavesNoTrace) {
+  const StaticProblem problem = pressed_squares();
+  Newton solver = newton(problem, 1e-12);
+  const StaticState start = solver.initial_state();
+  StaticState once = start, again = start;
+  solver.solve(1.0, once, [](const IterationReport&) {});
+  // given up in the middle: what the user's limit throws, for one
+  EXPECT_THROW(solver.solve(1.0, once, [](const IterationReport&) { throw std::runtime_error("enough"); }), std::runtime_error);
+  solver.restart(start);
+  solver.solve(1.0, again, [](const IterationReport&) {});
+  expect_uniform(problem, again);
+}
+
+TEST(Newton, ConvergesQuadraticallyAtLargeStrains) {
+  StaticProblem problem = two_squares("ELAS/GREEN_LAGRANGE", false);
+  problem.loads.push_back(hold(bottom, 1));
+  problem.loads.push_back(hold(bottom, 0));
+  problem.loads.push_back(hold({8, 9, 12}, 0));
+  problem.loads.push_back(hold({8, 9, 12}, 1));
+  problem.loads.push_back(press(problem, -0.2 * young, false));
+  number(problem);
+  Newton solver = newton(problem, 1e-13);
+  StaticState state = solver.initial_state();
+  std::vector<double> residuals;
+  solver.solve(1.0, state, [&](const IterationReport& line) { residuals.push_back(line.rela); });
+  // the last three above round-off
+  while (residuals.size() > 3 && residuals.back() < 1e-12) residuals.pop_back();
+  ASSERT_GE(residuals.size(), 3U);
+  const double* const last = residuals.data() + residuals.size() - 3;
+  EXPECT_GE(std::log(last[2] / last[1]) / std::log(last[1] / last[0]), 1.7) << last[0] << ' ' << last[1] << ' ' << last[2];
+}
+
+TEST(Newton, SaysWhatIsNotMetAndWhatIsLoose) {
+  StaticProblem problem = pressed_squares("ELAS/GREEN_LAGRANGE");
+  Newton hurried = newton(problem, 1e-30, 1);
+  StaticState state = hurried.initial_state();
+  try {
+    hurried.solve(1.0, state, [](const IterationReport&) {});
+    FAIL() << "nothing falls below 1e-30";
+  } catch (const Error& error) {
+    EXPECT_EQ(error.message().id, "EVOLUTION_4");
+    EXPECT_NE(error.message().text.find("RESI_GLOB_RELA"), std::string::npos) << error.message().text;
+  }
+  StaticProblem loose = two_squares("ELAS/PETIT", false);
+  loose.loads.push_back(hold(bottom, 1));
+  loose.loads.push_back(hold(axis, 0));
+  number(loose);
+  Newton solver = newton(loose, 1e-6);
+  StaticState rest = solver.initial_state();
+  try {
+    solver.solve(1.0, rest, [](const IterationReport&) {});
+    FAIL() << "the upper square is held by nothing";
+  } catch (const Error& error) {
+    EXPECT_EQ(error.message().id, "SOLVER_3");
+    EXPECT_NE(error.message().text.find("DY"), std::string::npos) << error.message().text;
+  }
+}
+
+TEST(StateFields, AreTheStateThatTheyCameFrom) {
+  const StaticProblem problem = pressed_squares("VMIS_ISOT_LINE/PETIT");
+  Newton solver = newton(problem, 1e-10);
+  StaticState state = solver.initial_state();
+  solver.solve(1.0, state, [](const IterationReport&) {});
+  const FieldMakers fields = fields_of({problem, state, solver.contact()});
+  const Field moved = fields.at("DEPL")();
+  EXPECT_EQ(moved.components, (std::vector<std::string>{"DX", "DY", "LAGS_C"}));
+  for (std::size_t row = 0; row < moved.support.size(); ++row) {
+    for (std::size_t d = 0; d < 2; ++d)
+      EXPECT_EQ(moved.at(row, d), state.displacement[2 * static_cast<std::size_t>(moved.support[row]) + d]);
+    EXPECT_EQ(moved.has(row, 2), moved.support[row] == 12);  // the carrier alone
+  }
+  EXPECT_EQ(fields.at("SIEF_ELGA")().n_rows(), 18U);
+  const Field variables = fields.at("VARI_ELGA")();
+  EXPECT_GT(variables.at(0, 0), 0);  // it flows: 25 above 10
+  EXPECT_FALSE(fields_of({pressed_squares(), state, nullptr}).contains("VARI_ELGA"));
+  EXPECT_TRUE(fields.contains("CONT_ELEM"));
+}
+
+}  // namespace
+}  // namespace lacon
