@@ -24,6 +24,23 @@ int Field::component(std::string_view component_name) const {
   return at == components.end() ? -1 : static_cast<int>(at - components.begin());
 }
 
+std::optional<Extreme> find_extreme(const Field& field, std::size_t component, bool greatest,
+                                    const std::function<bool(std::size_t)>& wanted) {
+  std::optional<Extreme> best;
+  for (const Field::Presence looked_at : {Field::there, Field::stand_in}) {
+    for (std::size_t i = 0; i < field.support.size(); ++i) {
+      if (!wanted(i)) continue;
+      for (std::size_t row = field.first_row(i); row < field.first_row(i + 1); ++row) {
+        const double value = field.at(row, component);
+        if (field.presence(row, component) != looked_at) continue;
+        if (!best || (greatest ? value > best->value : value < best->value)) best = {value, i, row};
+      }
+    }
+    if (best) break;
+  }
+  return best;
+}
+
 namespace {
 
 Field head_of(const hdf5::Group& root) {

@@ -2,7 +2,9 @@
 // A field on nodes, cells, or integration points, on the whole mesh or a part of it.
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <limits>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -26,6 +28,13 @@ std::string_view location_name(Location location);  ///< "NOEU", "ELGA", "ELNO",
 Location find_location(std::string_view name);
 
 struct Field {
+  /// What `present` says of a value.
+  enum Presence : std::uint8_t {
+    absent = 0,   ///< there is none
+    there = 1,    ///< as any other
+    stand_in = 2  ///< shown and read at its place, but no part of extrema, sums, means and norms: JEU = -1 without a master
+  };
+
   std::string name;      ///< "DEPL"
   std::string quantity;  ///< row of catalog/quantities.toml: "DEPL_R"
   Location location = Location::nodes;
@@ -33,7 +42,7 @@ struct Field {
   std::vector<std::int32_t> support;   ///< nodes or cells on which it lives
   std::vector<std::int64_t> offset;    ///< ELGA, ELNO: rows of each cell, (n + 1); otherwise empty
   std::vector<double> values;          ///< (rows, components)
-  std::vector<std::uint8_t> present;   ///< (rows, components), 0 where a component does not exist; empty: everywhere
+  std::vector<std::uint8_t> present;   ///< (rows, components) of Presence; empty: all are there
   std::vector<std::string> functions;  ///< of a quantity that ends in _F: ids; `values` are indices into this list
   std::string mesh;                    ///< id of the mesh
   std::int64_t order = 0;
@@ -43,14 +52,26 @@ struct Field {
   std::size_t n_rows() const { return components.empty() ? 0 : values.size() / components.size(); }
   double& at(std::size_t row, std::size_t component) { return values[row * components.size() + component]; }
   double at(std::size_t row, std::size_t component) const { return values[row * components.size() + component]; }
-  bool has(std::size_t row, std::size_t component) const {
-    return present.empty() || present[row * components.size() + component] != 0;
+  Presence presence(std::size_t row, std::size_t component) const {
+    return present.empty() ? there : static_cast<Presence>(present[row * components.size() + component]);
   }
+  bool has(std::size_t row, std::size_t component) const { return presence(row, component) != absent; }
+  /// Whether a value enters extrema, sums, means and norms.
+  bool counts(std::size_t row, std::size_t component) const { return presence(row, component) == there; }
   /// First row of support[i]; of i = support.size(), the end.
   std::size_t first_row(std::size_t i) const { return offset.empty() ? i : static_cast<std::size_t>(offset[i]); }
   /// Index of a component, or -1.
   int component(std::string_view component_name) const;
 };
+
+/// The first of several greatest (or least) values of a component. Stand-ins are looked at only where nothing else is.
+struct Extreme {
+  double value;
+  std::size_t place, row;  ///< index into Field::support, row of it
+};
+/// @param wanted(place) of what places. Empty where the component has no value there
+std::optional<Extreme> find_extreme(const Field& field, std::size_t component, bool greatest,
+                                    const std::function<bool(std::size_t)>& wanted);
 
 Field read_field(const std::filesystem::path& file);
 /// Without what grows with the mesh: support, offset, values, present.

@@ -21,7 +21,10 @@ Field contact_field(const Contact& contact, const ContactGeometry& geometry, con
     for (const PatchQuantity& quantity : patch_quantities) field.values.push_back(paired ? (patches.*quantity.values)[p] : 0);
     const double pressure = paired ? patches.lambda[p] : 0, coverage = paired ? geometry.coverage(p) : 0;
     field.values.insert(field.values.end(), {paired ? geometry.gap(p) : -1.0, coverage, coverage * pressure});
+    for (const std::string& component : field.components)  // JEU is -1 where there is no gap
+      field.present.push_back(paired || component != "JEU" ? Field::there : Field::stand_in);
   }
+  if (std::count(field.present.begin(), field.present.end(), Field::stand_in) == 0) field.present.clear();
   return field;
 }
 

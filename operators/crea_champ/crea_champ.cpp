@@ -86,8 +86,8 @@ std::string place_name(const Field& field, std::size_t i) {
   return field.location == Location::nodes ? "node " + node_name(field.support[i]) : "cell " + cell_name(field.support[i]);
 }
 
-void set_present(Field& field, std::size_t row, std::size_t component) {
-  field.present[row * field.n_components() + component] = 1;
+void set_presence(Field& field, std::size_t row, std::size_t component, Field::Presence presence = Field::there) {
+  field.present[row * field.n_components() + component] = presence;
 }
 
 [[noreturn]] void refuse_type(const Field& field, const FieldType& wanted) {
@@ -102,7 +102,7 @@ void check_type(const Field& field, const FieldType& wanted) {
 
 /// What is made piece by piece: 0 on all the model where that is asked for, else without what nothing was said about.
 Field finished(const Task& task, Field&& field) {
-  if (task.zero_elsewhere()) field.present.assign(field.present.size(), 1);
+  if (task.zero_elsewhere()) zero_where_absent(field);
   return without_empty_rows(field);
 }
 
@@ -150,7 +150,7 @@ std::vector<double> measures(const Field& field, const std::string& kind) {
   return found;
 }
 
-/// The extreme of each value over the instants, the first of several.
+/// The extreme of each value over the instants, the first of several; a stand-in only where it is one at every instant.
 Field extreme(Task& task, const Result& result, const std::vector<std::int64_t>& orders, const std::string& name) {
   const std::string kind = task.keywords().text("TYPE_MAXI");
   const bool instants = task.keywords().text("TYPE_RESU") == "INST";
@@ -169,10 +169,11 @@ Field extreme(Task& task, const Result& result, const std::vector<std::int64_t>&
     const std::vector<double> measure = measures(field, kind);
     each_value(field, [&](std::size_t row, std::size_t c) {
       const std::size_t k = row * field.n_components() + c;
-      if (best.present[k] && !(measure[k] > largest[k])) return;
+      const Field::Presence presence = field.presence(row, c), so_far = static_cast<Field::Presence>(best.present[k]);
+      if (so_far == presence ? !(measure[k] > largest[k]) : so_far == Field::there) return;
       largest[k] = measure[k];
       best.values[k] = instants ? field.instant : kind.ends_with("_ABS") ? std::abs(field.values[k]) : field.values[k];
-      set_present(best, row, c);
+      set_presence(best, row, c, presence);
     });
   }
   return best;
@@ -238,7 +239,7 @@ Field affect(Task& task) {
         for (std::size_t k = 0; k < components.size(); ++k) {
           const std::size_t c = column(field, components[k]);
           field.at(row, c) = values[k];
-          set_present(field, row, c);
+          set_presence(field, row, c);
         }
     }
   }
@@ -274,6 +275,7 @@ Field evaluate(Task& task) {
       parameters.try_emplace(field.components[c], Parameter{&field, c, places(field, count)});
 
   Field result = functions;
+  std::vector<std::size_t> stand_ins;  // values of `result` that come of one
   result.functions.clear();
   result.quantity = task.type().quantity;
   for (const std::string& name : result.components) check_component(task.type(), name, "CHAM_F");
@@ -300,6 +302,7 @@ Field evaluate(Task& task) {
                                     {"parameter", function.parameters()[p]},
                                     {"place", place_name(functions, i)}});
             columns[p].push_back(parameter.field->at(source, parameter.component));
+            if (!parameter.field->counts(source, parameter.component)) stand_ins.push_back(row * result.n_components() + c);
           }
         }
     std::vector<ParameterValues> values;
@@ -307,6 +310,8 @@ Field evaluate(Task& task) {
     const std::vector<double> found = function.values(cells.size(), values);
     for (std::size_t k = 0; k < cells.size(); ++k) result.at(cells[k].first, cells[k].second) = found[k];
   }
+  if (!stand_ins.empty() && result.present.empty()) result.present.assign(result.values.size(), Field::there);
+  for (const std::size_t k : stand_ins) result.present[k] = Field::stand_in;
   return result;
 }
 
@@ -364,8 +369,9 @@ Field assemble(Task& task) {
         for (const auto& [component, name] : parts[f].columns) {
           const std::size_t source = one_row ? first : first + k, row = field.first_row(i) + k, c = column(field, name);
           if (!from.has(source, component)) continue;
+          const bool adds_to_stand_in = adds && field.presence(row, c) == Field::stand_in;
           field.at(row, c) = (adds ? field.at(row, c) : 0.0) + factor * from.at(source, component);
-          set_present(field, row, c);
+          set_presence(field, row, c, adds_to_stand_in ? Field::stand_in : from.presence(source, component));
         }
     }
   }
@@ -378,7 +384,15 @@ Field discretise(Task& task) {
   return moved_to(task.ground(), from, task.type(), task.zero_elsewhere());
 }
 
-/// The fields of COMB must have the first one's quantity, location, components and rows.
+bool exist_alike(const Field& a, const Field& b) {
+  if (a.present == b.present) return true;
+  for (std::size_t row = 0; row < a.n_rows(); ++row)
+    for (std::size_t c = 0; c < a.n_components(); ++c)
+      if (a.has(row, c) != b.has(row, c)) return false;
+  return true;
+}
+
+/// The fields of COMB must have the first one's quantity, location, components and rows. With a stand-in a sum is one.
 Field combine(Task& task) {
   Field sum;
   bool first = true;
@@ -393,8 +407,10 @@ Field combine(Task& task) {
       continue;
     }
     if (field.location != sum.location || field.quantity != sum.quantity || field.components != sum.components ||
-        field.support != sum.support || field.offset != sum.offset || field.present != sum.present)
+        field.support != sum.support || field.offset != sum.offset || !exist_alike(field, sum))
       fail("CREACHAMP_15", {{"keyword", one.path("CHAM_GD")}, {"field", field.name}, {"first", sum.name}});
+    if (sum.present.empty()) sum.present = field.present;
+    for (std::size_t k = 0; k < field.present.size(); ++k) sum.present[k] = std::max(sum.present[k], field.present[k]);
     for (std::size_t k = 0; k < sum.values.size(); ++k) sum.values[k] += factor * field.values[k];
   }
   return sum;

@@ -42,19 +42,24 @@ double reduce(const std::string& how, const std::vector<double>& values) {
   return std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());  // MOY
 }
 
-/// One value for each component, in the order in which they appear; its place is `place`.
+/// One value for each component, in the order in which they appear; its place is `place`. Stand-ins only where nothing else is.
 std::vector<Observer::Value> reduce_by_component(const std::string& how, const std::vector<Observer::Value>& values,
                                                  Observer::Value place) {
-  std::vector<std::pair<std::string, std::vector<double>>> columns;
+  struct Column {
+    std::string component;
+    std::vector<double> values, stand_ins;
+  };
+  std::vector<Column> columns;
   for (const Observer::Value& value : values) {
-    auto column = std::find_if(columns.begin(), columns.end(), [&](const auto& c) { return c.first == value.component; });
-    if (column == columns.end()) column = columns.insert(columns.end(), {value.component, {}});
-    column->second.push_back(value.value);
+    auto column = std::find_if(columns.begin(), columns.end(), [&](const Column& c) { return c.component == value.component; });
+    if (column == columns.end()) column = columns.insert(columns.end(), {value.component, {}, {}});
+    (value.presence == Field::stand_in ? column->stand_ins : column->values).push_back(value.value);
   }
   std::vector<Observer::Value> reduced;
-  for (const auto& [component, column] : columns) {
-    place.component = component;
-    place.value = reduce(how, column);
+  for (const Column& column : columns) {
+    place.component = column.component;
+    place.presence = column.values.empty() ? Field::stand_in : Field::there;
+    place.value = reduce(how, column.values.empty() ? column.stand_ins : column.values);
     reduced.push_back(place);
   }
   return reduced;
@@ -128,6 +133,7 @@ void Observer::collect_row(const Field& field, const std::vector<std::size_t>& c
       values.push_back(place);
       values.back().component = field.components[component];
       values.back().value = field.at(row, component);
+      values.back().presence = field.presence(row, component);
     }
 }
 
@@ -143,6 +149,8 @@ std::vector<Observer::Value> Observer::of_formula(const std::vector<Value>& valu
     made.push_back(values[i * width]);
     made.back().component.clear();
     made.back().value = results[i];
+    for (std::size_t k = 0; k < width; ++k)
+      if (values[i * width + k].presence == Field::stand_in) made.back().presence = Field::stand_in;
   }
   return made;
 }

@@ -39,6 +39,7 @@ class Observer {
     std::string component;  ///< empty for a formula
     std::int32_t node = -1, cell = -1, point = -1;
     double value;
+    Field::Presence presence = Field::there;
   };
   /// Values at the current instant. Throws OBSERVATION_1 to OBSERVATION_4 where the field has not what is looked at.
   std::vector<Value> look(const FieldMakers& fields) const;

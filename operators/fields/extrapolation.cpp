@@ -97,7 +97,7 @@ Field cell_nodes_to_nodes(const Mesh& mesh, const Field& cells, std::string name
       const std::size_t from = static_cast<std::size_t>(cells.offset[i]) + a;
       const auto to = static_cast<std::size_t>(row_of[static_cast<std::size_t>(members[a])]);
       for (std::size_t c = 0; c < n_components; ++c)
-        if (cells.has(from, c)) {
+        if (cells.counts(from, c)) {
           nodes.at(to, c) += cells.at(from, c);
           ++count[to * n_components + c];
         }
@@ -157,7 +157,7 @@ Field restrict_to_components(const Field& field, const std::vector<std::string>&
   for (std::size_t row = 0; row < field.n_rows(); ++row)
     for (const std::size_t k : kept) {
       part.values.push_back(field.at(row, k));
-      if (!field.present.empty()) part.present.push_back(field.has(row, k) ? 1 : 0);
+      if (!field.present.empty()) part.present.push_back(field.presence(row, k));
     }
   return part;
 }

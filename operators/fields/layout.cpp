@@ -53,7 +53,7 @@ class CellNodes {
       const bool nodal = field_.location == Location::nodes;
       const std::int64_t at = place_[nodal ? static_cast<std::size_t>(nodes[a]) : cell];
       const std::size_t row = at < 0 ? 0 : field_.first_row(static_cast<std::size_t>(at)) + (nodal ? 0 : a);
-      const bool here = at >= 0 && field_.has(row, component);
+      const bool here = at >= 0 && field_.counts(row, component);
       found.values.push_back(here ? field_.at(row, component) : 0.0);
       found.whole = found.whole && here;
     }
@@ -66,9 +66,9 @@ class CellNodes {
   std::vector<std::int64_t> place_;
 };
 
-void put(Field& field, std::size_t row, std::size_t component, double value) {
+void put(Field& field, std::size_t row, std::size_t component, double value, Field::Presence presence = Field::there) {
   field.at(row, component) = value;
-  field.present[row * field.n_components() + component] = 1;
+  field.present[row * field.n_components() + component] = presence;
 }
 
 double dot(const double* first, const std::vector<double>& second) {
@@ -96,7 +96,7 @@ void from_nodes(const Ground& ground, const Field& field, Field& to) {
   }
 }
 
-/// Values of cells to each of their rows; those of their points to one mean.
+/// Values of cells to each of their rows; those of their points to one mean. A single stand-in stays one.
 void from_cells(const Mesh& mesh, const Field& field, Field& to) {
   const std::vector<std::int64_t> place = places(field, mesh.n_cells());
   for (std::size_t i = 0; i < to.support.size(); ++i) {
@@ -106,13 +106,13 @@ void from_cells(const Mesh& mesh, const Field& field, Field& to) {
                       last = field.first_row(static_cast<std::size_t>(at) + 1);
     for (std::size_t c = 0; c < field.n_components(); ++c) {
       double sum = 0;
-      bool whole = first < last;
+      Field::Presence presence = last == first + 1 ? field.presence(first, c) : last > first ? Field::there : Field::absent;
       for (std::size_t row = first; row < last; ++row) {
         sum += field.at(row, c);
-        whole = whole && field.has(row, c);
+        if (last > first + 1 && !field.counts(row, c)) presence = Field::absent;
       }
-      for (std::size_t row = to.first_row(i); whole && row < to.first_row(i + 1); ++row)
-        put(to, row, c, sum / static_cast<double>(last - first));
+      for (std::size_t row = to.first_row(i); presence != Field::absent && row < to.first_row(i + 1); ++row)
+        put(to, row, c, sum / static_cast<double>(last - first), presence);
     }
   }
 }
@@ -130,7 +130,7 @@ void same_rows(const Ground& ground, const Field& field, Field& to) {
     for (std::size_t row = to.first_row(i); row < to.first_row(i + 1); ++row)
       for (std::size_t c = 0; c < field.n_components(); ++c)
         if (const std::size_t source = first + row - to.first_row(i); field.has(source, c))
-          put(to, row, c, field.at(source, c));
+          put(to, row, c, field.at(source, c), field.presence(source, c));
   }
 }
 
@@ -194,6 +194,11 @@ Field empty_field(const Ground& ground, const FieldType& type, std::vector<std::
   return field;
 }
 
+void zero_where_absent(Field& field) {
+  std::replace(field.present.begin(), field.present.end(), static_cast<std::uint8_t>(Field::absent),
+               static_cast<std::uint8_t>(Field::there));
+}
+
 Field without_empty_rows(const Field& field) {
   Field part = field_like(field, field.name, field.location);
   part.functions = field.functions;
@@ -209,7 +214,8 @@ Field without_empty_rows(const Field& field) {
     part.present.insert(part.present.end(), field.present.begin() + first, field.present.begin() + last);
     if (!field.offset.empty()) part.offset.push_back(part.offset.back() + field.offset[i + 1] - field.offset[i]);
   }
-  if (std::all_of(part.present.begin(), part.present.end(), [](std::uint8_t p) { return p != 0; })) part.present.clear();
+  if (std::all_of(part.present.begin(), part.present.end(), [](std::uint8_t p) { return p == Field::there; }))
+    part.present.clear();
   return part;
 }
 
@@ -237,7 +243,7 @@ Field moved_to(const Ground& ground, const Field& field, const FieldType& type, 
   } else {
     from_cells(ground.mesh(), field, to);
   }
-  if (zero_elsewhere) to.present.assign(to.present.size(), 1);
+  if (zero_elsewhere) zero_where_absent(to);
   return without_empty_rows(to);
 }
 

@@ -46,6 +46,9 @@ class Ground {
 /// A field on all of `ground` with these components, 0 and nowhere present.
 Field empty_field(const Ground& ground, const FieldType& type, std::vector<std::string> components);
 
+/// What is not there becomes 0, which exists.
+void zero_where_absent(Field& field);
+
 /// Without rows and components that are nowhere present.
 Field without_empty_rows(const Field& field);
 

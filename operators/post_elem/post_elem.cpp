@@ -175,7 +175,7 @@ Table norms(Subject& subject) {
     double sum = 0;
     const std::size_t count = each_point(subject, field, cells, [&](std::size_t row, double measure) {
       for (std::size_t c = 0; c < factors.size(); ++c)
-        if (field.has(row, c)) sum += measure * factors[c] * field.at(row, c) * field.at(row, c);
+        if (field.counts(row, c)) sum += measure * factors[c] * field.at(row, c) * field.at(row, c);
     });
     if (count == 0) subject.refuse_place(group);
     add_row(table, head, {group, subject.keywords().text("TYPE_NORM"), std::sqrt(sum)});
@@ -195,16 +195,22 @@ Table integrals(Subject& subject) {
     }
     for (const auto& [group, cells] : subject.places()) {
       double volume = 0;
-      std::vector<double> sums(field.n_components(), 0.0);
+      std::vector<double> sums(field.n_components(), 0.0), left_out(field.n_components(), 0.0);
       const std::size_t count = each_point(subject, field, cells, [&](std::size_t row, double measure) {
         volume += measure;
         for (std::size_t c = 0; c < sums.size(); ++c)
-          if (field.has(row, c)) sums[c] += measure * field.at(row, c);
+          if (field.counts(row, c))
+            sums[c] += measure * field.at(row, c);
+          else if (field.has(row, c))
+            left_out[c] += measure;
       });
       if (count == 0) subject.refuse_place(group);
       std::vector<Table::Cell> values{group, volume};
       values.insert(values.end(), sums.begin(), sums.end());
-      for (const double sum : sums) values.emplace_back(sum / volume);
+      for (std::size_t c = 0; c < sums.size(); ++c) {
+        const double over = volume - left_out[c];
+        values.push_back(over > 0 ? Table::Cell(sums[c] / over) : Table::Cell());
+      }
       add_row(*table, head, values);
     }
   });
@@ -228,20 +234,13 @@ Table extremes(Subject& subject) {
     for (const auto& [group, cells] : subject.places()) {
       const std::vector<char> wanted = nodal ? nodes_of_marked_cells(subject.mesh(), cells) : cells;
       std::vector<Table::Cell> values{group};
-      for (const double sign : {-1.0, 1.0})
+      for (const bool greatest : {false, true})
         for (std::size_t c = 0; c < field.n_components(); ++c) {
-          std::optional<double> best;
-          std::int32_t where = 0;
-          for (std::size_t i = 0; i < field.support.size(); ++i)
-            for (std::size_t row = field.first_row(i); row < field.first_row(i + 1); ++row)
-              if (wanted[static_cast<std::size_t>(field.support[i])] && field.has(row, c) &&
-                  (!best || sign * field.at(row, c) > sign * *best)) {
-                best = field.at(row, c);
-                where = field.support[i];
-              }
+          const std::optional<Extreme> best = find_extreme(
+              field, c, greatest, [&](std::size_t i) { return wanted[static_cast<std::size_t>(field.support[i])] != 0; });
           if (!best) subject.refuse_place(group);
-          values.emplace_back(*best);
-          values.emplace_back(nodal ? node_name(where) : cell_name(where));
+          values.emplace_back(best->value);
+          values.emplace_back(nodal ? node_name(field.support[best->place]) : cell_name(field.support[best->place]));
         }
       add_row(*table, head, values);
     }

@@ -47,17 +47,10 @@ void each_row(const Field& field, Visit visit) {
 
 void list_extreme(std::ostream& out, const Mesh& mesh, const Field& field, const char* what, bool greatest) {
   const RowName name{mesh, field};
-  for (std::size_t k = 0; k < field.n_components(); ++k) {
-    double extreme = 0;
-    std::string where;
-    each_row(field, [&](std::size_t i, std::size_t row) {
-      const double value = field.at(row, k);
-      if (!field.has(row, k) || (!where.empty() && (greatest ? value <= extreme : value >= extreme))) return;
-      extreme = value;
-      where = name(i, row);
-    });
-    if (!where.empty()) fmt::print(out, "  {} {:<8} {:>20.12E}  at {}\n", what, field.components[k], extreme, where);
-  }
+  for (std::size_t k = 0; k < field.n_components(); ++k)
+    if (const std::optional<Extreme> found = find_extreme(field, k, greatest, [](std::size_t) { return true; }))
+      fmt::print(out, "  {} {:<8} {:>20.12E}  at {}\n", what, field.components[k], found->value,
+                 name(found->place, found->row));
 }
 
 }  // namespace

@@ -66,7 +66,8 @@ def mesh_of_model():
 
 
 def fill_result(file):
-    """Instants 0, 0.5, 1. DEPL: DX = instant x node number, LAGS_C on N2 and N5 only. CONT_ELEM on M3. SIEF_ELGA, SIEF_ELNO on M1, M2."""
+    """Instants 0, 0.5, 1. DEPL: DX = instant x node number, LAGS_C on N2 and N5 only. CONT_ELEM on M3. SIEF_ELGA, SIEF_ELNO on M1, M2.
+    STAND_IN: JEU = -1, 0.25, 0.5, the first of which stands in for no gap."""
     file["order"] = np.arange(3)
     file["instant"] = np.array([0.0, 0.5, 1.0])
     file["parameters/newton_iterations"] = np.array([0, 2, 3])
@@ -84,6 +85,8 @@ def fill_result(file):
             "SIEF_ELGA", k, t, "ELGA", ["SIYY"], [0, 1], [[1], [-2], [3], [-4]], offset=[0, 2, 4]))
         names.setdefault("SIEF_ELNO", []).append(fill_field(
             "SIEF_ELNO", k, t, "ELNO", ["SIYY"], [0, 1], [[i] for i in range(1, 9)], offset=[0, 4, 8]))
+        names.setdefault("STAND_IN", []).append(fill_field(
+            "STAND_IN", k, t, "ELEM", ["JEU"], [0, 1, 2], [[-1], [0.25], [0.5]], present=[[2], [1], [1]]))
         names.setdefault("BAD", []).append(fill_field("BAD", k, t, "NOEU", ["X"], [0], [[float("nan")]]))
     for name, files in names.items():
         group = file.create_group(f"fields/{name}")

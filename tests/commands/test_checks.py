@@ -96,6 +96,11 @@ class Readings(LauncherTest):
             ("INST=1.0, NOM_CHAM='SIEF_ELGA', NOM_CMP='SIYY', TYPE_TEST='MIN_ABS'", 1.0),
             ("INST=1.0, NOM_CHAM='SIEF_ELNO', NOM_CMP='SIYY', MAILLE='M2', NOEUD='N5'", 8.0),
             ("INST=1.0, NOM_CHAM='SIEF_ELNO', NOM_CMP='SIYY', MAILLE='M2', POINT=2", 6.0),
+            # what stands in for no value is no extreme, nor a part of a sum, but where nothing else is
+            ("INST=1.0, NOM_CHAM='STAND_IN', NOM_CMP='JEU', MAILLE='M1'", -1.0),
+            ("INST=1.0, NOM_CHAM='STAND_IN', NOM_CMP='JEU', TYPE_TEST='MIN'", 0.25),
+            ("INST=1.0, NOM_CHAM='STAND_IN', NOM_CMP='JEU', TYPE_TEST='SOMM_ABS'", 0.75),
+            ("INST=1.0, NOM_CHAM='STAND_IN', NOM_CMP='JEU', MAILLE='M1', TYPE_TEST='MIN'", -1.0),
             ("NUME_ORDRE=1, PARA='INST'", 0.5),
         ]
         run, made = self.checks(*(f"{place}, VALE_CALC={value}" for place, value in expected))

@@ -320,6 +320,7 @@ values, (nodes, names) = R.getField('DEPL', 2).getValuesWithDescription('DX', 'T
 assert values == [4.0, 5.0, 6.0] and nodes == [3, 4, 5] and names == ['DX'] * 3
 assert R.getField('DEPL', 2).getValues('DX', ['SKIN']) == [1.0, 2.0]
 field = R.getField('DEPL', 2)
+assert R.getField('STAND_IN', 2).norm('NORM_1') == 0.75 and R.getField('STAND_IN', 2).getValues() == [-1, 0.25, 0.5]
 assert field.norm('NORM_1', 'DX') == 21 and field.norm('NORM_INFINITY') == 25 and abs(field.norm('NORM_2', ['LAGS_C']) - 25 * 2**0.5) < 1e-13
 assert 'DEPL' in R.getFieldsOnNodesRealNames() and 'CONT_ELEM' in R.getFieldsOnCellsRealNames() and R.getMaterialField() is CM
 part = R.getField('DEPL', 2).EXTR_COMP('LAGS_C', [], 1)

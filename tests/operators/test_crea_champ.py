@@ -104,6 +104,27 @@ class CreaChamp(FieldTest):
                     np.testing.assert_array_equal(field.values[field.present > 0], [x for row in expected for x in row])
         self.refuses("FIELDS_2", "0.7", TYPE_MAXI="MAXI", TYPE_RESU="VALE", INST=[0.7], **what)
 
+    def test_what_stands_in_for_no_value_stays_one(self):
+        """JEU = -1 without a gap (2 of `present`): copied as such, the extreme only where there never is a gap, no part of means at nodes."""
+        gaps, present = ([(-1,), (-1,)], [(0.5,), (-1,)]), ([(2,), (2,)], [(1,), (2,)])
+        contact = {"quantity": "CLAC_R", "location": "ELEM", "components": ["JEU"], "support": [1, 2]}
+        self.write_result("result_3", "mesh_1", [0.0, 1.0], {"CONT_ELEM": {k: {**contact, "values": np.array(gaps[k], float), "present": np.array(present[k], np.uint8)}
+                                                                           for k in (0, 1)}}, label="RES", model="model_2")
+        what = {"OPERATION": "EXTR", "RESULTAT": concept("result_3"), "NOM_CHAM": "CONT_ELEM", "TYPE_CHAM": "ELEM_CLAC_R"}
+        least = self.make("field_4", TYPE_MAXI="MINI", TYPE_RESU="VALE", **what)
+        last = self.make("field_5", INST=[1.0], **what)
+        for field in (least, last):
+            self.assertEqual((field.values.tolist(), field.present.tolist()), ([[0.5], [-1]], [[1], [2]]))
+        self.make("field_6", INST=[0.0], **what)
+        total = self.make("field_7", OPERATION="COMB", TYPE_CHAM="ELEM_CLAC_R",
+                          COMB=[{"CHAM_GD": concept("field_5"), "COEF_R": 1.0}, {"CHAM_GD": concept("field_6"), "COEF_R": 1.0}])
+        self.assertEqual(total.present.tolist(), [[2], [2]])
+        where = {"OPERATION": "DISC", "CHAM_GD": concept("field_5"), "MODELE": concept("model_2")}
+        cell_nodes = self.make("field_8", TYPE_CHAM="ELNO_CLAC_R", **where)
+        self.assertEqual((cell_nodes.values.ravel().tolist(), cell_nodes.present.ravel().tolist()), ([0.5] * 4 + [-1] * 4, [1] * 4 + [2] * 4))
+        nodes = self.make("field_9", TYPE_CHAM="NOEU_CLAC_R", **where)
+        self.assertEqual((nodes.support, nodes.values.ravel().tolist()), ([0, 1, 3, 4], [0.5] * 4))
+
     def test_values_on_groups_the_later_one_counts(self):
         field = self.make("field_3", OPERATION="AFFE", TYPE_CHAM="NOEU_DEPL_R", MAILLAGE=concept("mesh_1"), AFFE=[
             {"TOUT": "OUI", "NOM_CMP": ["DX"], "VALE": [1.0]}, {"GROUP_MA": "SKIN", "NOM_CMP": ["DX", "DY"], "VALE": [2.0, 3.0]},
@@ -255,6 +276,22 @@ class PostElem(FieldTest):
         self.own("field_3", "NOEU_DEPL_R", ["DX"], range(6), linear(POINTS))
         table = self.table(MINMAX={"CHAM_GD": concept("field_3"), "MODELE": concept("model_2"), "GROUP_MA": ["LEFT"]})
         self.assertEqual((table["MIN_DX"][0], text(table["NO_MIN_DX"][0]), table["MAX_DX"][0], text(table["NO_MAX_DX"][0])), (-2, "N4", 3, "N2"))
+
+    def test_what_stands_in_for_no_value_is_left_out(self):
+        """JEU = -1 where there is no gap: not the least one, nor a part of means and norms; where nothing else is it shows."""
+        self.own("field_3", "ELEM_CLAC_R", ["PRES", "JEU"], range(3), [(0, -1), (0, -1), (-25, 0.5)], present=[(1, 2), (1, 2), (1, 1)])
+        of = {"CHAM_GD": concept("field_3"), "MODELE": concept("model_2")}
+        table = self.table(MINMAX={**of, "TOUT": "OUI"})
+        self.assertEqual((table["MIN_JEU"][0], text(table["MA_MIN_JEU"][0]), table["MAX_JEU"][0], table["MAX_PRES"][0]), (0.5, "M3", 0.5, 0))
+        table = self.table(MINMAX={**of, "GROUP_MA": ["LEFT"]})
+        self.assertEqual((table["MIN_JEU"][0], table["MAX_JEU"][0]), (-1, -1))
+        table = self.table(INTEGRALE={**of, "GROUP_MA": ["LEFT", "RIGHT", "BODY"]})
+        np.testing.assert_allclose(table["VOL"], [1, 2, 3], atol=1e-14)
+        np.testing.assert_allclose(table["INTE_JEU"], [0, 1, 1], atol=1e-14)
+        np.testing.assert_allclose(table["MOYE_JEU"][1:], [0.5, 0.5], atol=1e-14)
+        np.testing.assert_allclose(table["MOYE_PRES"], [0, -25, -50 / 3], atol=1e-13)
+        norm = self.table(NORME={**of, "TYPE_NORM": "L2", "TOUT": "OUI", "NOM_CMP": ["JEU"]})["VALE_NORM"]
+        self.assertAlmostEqual(norm[0], np.sqrt(2) / 2, 14)
 
     def test_refusals(self):
         self.own("field_3", "NOEU_DEPL_R", ["DX"], [0, 1, 3, 4], np.ones(4))

@@ -34,7 +34,7 @@ class Statuses(StudyTest):
         return path
 
     def solve(self, mesh, path, initial="INTERPENETRE", **environment):
-        """@return for each instant the components of CONT_ELEM, and the iterations"""
+        """@return for each instant the components of CONT_ELEM, what is present of them, and the least gap that was observed"""
         run = self.run_study(COMM, "--fresh", "--unit", f"20={mesh}", STATUS_PATH=" ".join(map(str, path)), STATUS_INIT=initial,
                              **environment)
         self.assertEqual(run.status, 0, run.stdout[-3000:] + run.stderr[-3000:])
@@ -42,9 +42,13 @@ class Statuses(StudyTest):
         (index_path,) = base.glob("result_*/index.h5")
         steps = []
         with h5py.File(index_path) as index:
-            for file in index["fields/CONT_ELEM/file"].asstr():
+            observed = index["tables/OBSERVATION"]
+            least = observed[f"values/{list(observed['columns'].asstr()).index('VALE')}"][()]
+            for file, gap in zip(index["fields/CONT_ELEM/file"].asstr(), least, strict=True):
                 with h5py.File(base / file) as field:
-                    steps.append(dict(zip(field.attrs["components"], field["values"][()].T)))
+                    steps.append({**dict(zip(field.attrs["components"], field["values"][()].T)), "least": gap})
+                    if "present" in field:
+                        steps[-1]["present"] = field["present"][()]
         return steps
 
     def test_pressed_released_drawn_apart_and_pressed_again(self):
@@ -105,6 +109,9 @@ class Statuses(StudyTest):
         np.testing.assert_array_equal(status[4:], -1)
         np.testing.assert_array_equal(gap[4:], -1)
         np.testing.assert_array_equal(status[:4], 1)
+        # the gap alone stands in for none there, and is not the least one
+        self.assertEqual(step["least"], gap[:4].min())
+        np.testing.assert_array_equal(step["present"], np.where((step["CONT"] == -1)[:, None] & (np.arange(5) == 2), 2, 1))
 
 
 if __name__ == "__main__":

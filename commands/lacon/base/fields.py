@@ -9,7 +9,8 @@ class FieldData:
     """A field at one instant.
 
     support (n) node or cell numbers, offset (n + 1) or None, values (r, c), present (r, c) of bool: row r of cell support[i] for
-    offset[i] <= r < offset[i + 1]. A field of functions has their ids in `functions`, and indices into that list as values.
+    offset[i] <= r < offset[i + 1]. `counted` (r, c) of bool: of what is present the values that enter extrema, sums, means and
+    norms. A field of functions has their ids in `functions`, and indices into that list as values.
     """
 
     def __init__(self, file):
@@ -19,7 +20,8 @@ class FieldData:
         self.support = file["support"][:]
         self.offset = file["offset"][:] if "offset" in file else None
         self.values = file["values"][:]
-        self.present = file["present"][:].astype(bool) if "present" in file else numpy.ones(self.values.shape, bool)
+        presence = file["present"][:] if "present" in file else numpy.ones(self.values.shape, numpy.uint8)
+        self.present, self.counted = presence != 0, presence == 1
 
     def type(self):
         """"NOEU_DEPL_R\""""

@@ -138,8 +138,8 @@ def at_nodes(call, field, path):
     owner = mesh.nodes_of(field.support)
     sums = numpy.zeros((mesh.getNumberOfNodes(), len(field.components)))
     counts = numpy.zeros(sums.shape, int)
-    numpy.add.at(sums, owner, numpy.where(field.present, field.values, 0.0))
-    numpy.add.at(counts, owner, field.present)
+    numpy.add.at(sums, owner, numpy.where(field.counted, field.values, 0.0))
+    numpy.add.at(counts, owner, field.counted)
     return sums / numpy.maximum(counts, 1), counts > 0
 
 
@@ -184,6 +184,9 @@ def select(call, test, path, field):
         words.append(f"point {test['POINT']}")
     column = field.components.index(test["NOM_CMP"])
     rows &= field.present[:, column]
+    counted = rows & field.counted[:, column]
+    if "TYPE_TEST" in test and counted.any():
+        rows = counted
     values = field.values[rows, column]
     place = " ".join(words)
     if len(values) == 0:

@@ -43,8 +43,9 @@ class Field(FieldData):
         orders = {"NORM_1": 1, "NORM_2": 2, "NORM_INFINITY": numpy.inf}
         if kind not in orders:
             raise ValueError(f"norm: {kind!r} is none of {', '.join(orders)}")
-        values = self.getValues(components)
-        return float(numpy.linalg.norm(values, orders[kind])) if values else 0.0
+        parts = [self.values[self.counted[:, column], column] for column in map(self.components.index, self._names(components))]
+        values = numpy.concatenate(parts)
+        return float(numpy.linalg.norm(values, orders[kind])) if len(values) else 0.0
 
     def toSimpleFieldOnNodes(self):
         return SimpleField(self, on_nodes=True)
@@ -73,9 +74,16 @@ class Field(FieldData):
         """code_aster's older way: .valeurs (array); with topo=1 .noeud or .maille, .point, .sous_point (numbers from 1) and .comp."""
         return Extract(self, self._chosen([component] if component.strip() else (), groups), topo)
 
+    def _names(self, components):
+        names = [components] if isinstance(components, str) else list(components) or self.components
+        unknown = [name for name in names if name not in self.components]
+        if unknown:
+            raise ValueError(f"{self.name} has no component {unknown[0]}; it has {', '.join(self.components)}")
+        return names
+
     def _chosen(self, components, groups):
         """[(component, rows of the groups where it exists)]"""
-        names = [components] if isinstance(components, str) else list(components) or self.components
+        names = self._names(components)
         groups = [groups] if isinstance(groups, str) else list(groups)
         owner, _ = self.rows()
         wanted = numpy.ones(len(owner), bool)
@@ -83,9 +91,6 @@ class Field(FieldData):
             mesh = self.mesh()
             members = mesh.getNodes(groups) if self.location == "NOEU" else mesh.getCells(groups)
             wanted = numpy.isin(owner, members)
-        unknown = [name for name in names if name not in self.components]
-        if unknown:
-            raise ValueError(f"{self.name} has no component {unknown[0]}; it has {', '.join(self.components)}")
         return [(name, numpy.flatnonzero(wanted & self.present[:, self.components.index(name)])) for name in names]
 
 
