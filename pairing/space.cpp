@@ -56,18 +56,6 @@ struct MastersInSpace {
   }
 };
 
-/// What of a piece sees the front of a part, or its back.
-void see(const SlaveFacet& slave, const Piece& piece, const Part& part, bool front, Region& seen, Polygon& scratch) {
-  seen.polygon = piece.polygon;
-  seen.halves.clear();
-  for (int i = 0; i < part.n && !seen.polygon.empty(); ++i) {
-    const HalfPlane half = slave.side(piece, part.p[i], part.p[(i + 1) % part.n]);
-    seen.halves.push_back(front ? half : half.opposite());
-    clip(seen.polygon, seen.halves.back(), scratch);
-    seen.polygon.swap(scratch);
-  }
-}
-
 /// A part of a slave cell that sees one master.
 struct View {
   std::int32_t piece, master;

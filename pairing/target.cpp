@@ -73,4 +73,15 @@ void cut_in_parts(const FacetKind& f, const Nodes& nodes, const SlaveFacet& slav
   }
 }
 
+void see(const SlaveFacet& slave, const Piece& piece, const Part& part, bool front, Region& seen, Polygon& scratch) {
+  seen.polygon = piece.polygon;
+  seen.halves.clear();
+  for (int i = 0; i < part.n && !seen.polygon.empty(); ++i) {
+    const HalfPlane half = slave.side(piece, part.p[i], part.p[(i + 1) % part.n]);
+    seen.halves.push_back(front ? half : half.opposite());
+    clip(seen.polygon, seen.halves.back(), scratch);
+    seen.polygon.swap(scratch);
+  }
+}
+
 }  // namespace lacon::space

@@ -49,4 +49,7 @@ inline Vec3 area_vector(const Part& part) {
   return sum;
 }
 
+/// What of a piece sees the front of a part, or its back.
+void see(const SlaveFacet& slave, const Piece& piece, const Part& part, bool front, Region& seen, Polygon& scratch);
+
 }  // namespace lacon::space
