@@ -110,10 +110,13 @@ class Behaviours(StudyTest):
         self.assertEqual(len(histories), len(cases), printed[:4000])
         for case, residuals in zip(cases, histories):
             with self.subTest(**case):
-                tail = [r for r in residuals if 1e-13 < r < 0.5]
-                orders = [math.log(tail[i + 1] / tail[i]) / math.log(tail[i] / tail[i - 1]) for i in range(1, len(tail) - 1)]
                 print(case["model"], case["relation"], case["deformation"], " ".join(f"{r:.1e}" for r in residuals))
-                self.assertGreater(max(orders[-2:]), 1.5, residuals)
+                # residuals are relative, and the constant of the quadratic term is less than 1 (0.05 to 0.42): every one counts that
+                # is near the solution and above round-off
+                near = [pair for pair in zip(residuals, residuals[1:]) if pair[0] < 0.05]
+                self.assertGreaterEqual(len(near), 2, residuals)
+                for before, after in near:
+                    self.assertLess(after, before**2 + 1e-13, residuals)
 
 
 if __name__ == "__main__":
