@@ -12,21 +12,6 @@ namespace {
 
 constexpr std::size_t cells_at_once = 256;  // in one block of a loop
 
-constexpr const char* displacement_names[] = {"DX", "DY", "DZ"};
-
-/// (n_nodes of the mesh, dimension), 0 where the field has none.
-std::vector<double> nodal_vectors(const Mesh& mesh, const Field& field, int dimension) {
-  std::vector<double> values(mesh.n_nodes() * static_cast<std::size_t>(dimension), 0.0);
-  for (int d = 0; d < dimension; ++d) {
-    const int column = field.component(displacement_names[d]);
-    if (column < 0) continue;
-    for (std::size_t i = 0; i < field.support.size(); ++i)
-      if (field.has(i, static_cast<std::size_t>(column)))
-        values[static_cast<std::size_t>(field.support[i] * dimension + d)] = field.at(i, static_cast<std::size_t>(column));
-  }
-  return values;
-}
-
 }  // namespace
 
 Field strains(const Mesh& mesh, ModelPoints& points, const Field& displacement, const std::vector<char>& wanted, Strain measure,
@@ -38,7 +23,7 @@ Field strains(const Mesh& mesh, ModelPoints& points, const Field& displacement, 
   const int dimension = mesh.dimension;
   const std::size_t width = dimension == 3 ? 6 : 4;
   for (std::size_t k = 0; k < width; ++k) field.components.push_back("EP" + std::string(tensor_axes[k].name));
-  const std::vector<double> u = nodal_vectors(mesh, displacement, dimension);
+  const std::vector<double> u = nodal_displacements(mesh, displacement, dimension);
   std::vector<double> nu;  // of each cell in plane stress, for it may have to be read
   for (std::size_t cell = 0; cell < mesh.n_cells(); ++cell) {
     if (!wanted[cell] || !points.is_solid(cell)) continue;

@@ -1,7 +1,6 @@
 #include "lacon/operators/meshing/cut.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <unordered_map>
 #include <utility>
@@ -11,6 +10,7 @@
 #include "lacon/operators/meshing/body.hpp"
 #include "lacon/operators/meshing/quality.hpp"
 #include "lacon/operators/meshing/subdivision.hpp"
+#include "lacon/structures/vector.hpp"
 
 namespace lacon {
 namespace {
@@ -110,23 +110,18 @@ void sort_once(Nodes& numbers) {
   numbers.erase(twice.begin(), twice.end());
 }
 
-using Point = std::array<double, 3>;
-
-Point point_of(std::span<const double> coordinates, std::int32_t node) {
-  const auto at = coordinates.subspan(3 * static_cast<std::size_t>(node), 3);
-  return {at[0], at[1], at[2]};
+Vec3 point_of(std::span<const double> coordinates, std::int32_t node) {
+  return vector_at(coordinates.data() + 3 * static_cast<std::size_t>(node));
 }
 
 /// How far the mid node of an edge is from the middle of its vertices. @param edge of the cell's row
-Point bulge(const catalog::CellRow& row, std::size_t edge, std::span<const std::int32_t> nodes,
-            std::span<const double> coordinates) {
-  const Point a = point_of(coordinates, nodes[static_cast<std::size_t>(row.edges[edge].first)]),
-              b = point_of(coordinates, nodes[static_cast<std::size_t>(row.edges[edge].second)]),
-              middle = point_of(coordinates, nodes[static_cast<std::size_t>(row.n_vertices) + edge]);
-  return {middle[0] - (a[0] + b[0]) / 2, middle[1] - (a[1] + b[1]) / 2, middle[2] - (a[2] + b[2]) / 2};
+Vec3 bulge(const catalog::CellRow& row, std::size_t edge, std::span<const std::int32_t> nodes,
+           std::span<const double> coordinates) {
+  const Vec3 a = point_of(coordinates, nodes[static_cast<std::size_t>(row.edges[edge].first)]),
+             b = point_of(coordinates, nodes[static_cast<std::size_t>(row.edges[edge].second)]),
+             middle = point_of(coordinates, nodes[static_cast<std::size_t>(row.n_vertices) + edge]);
+  return middle - 0.5 * (a + b);
 }
-
-double length(Point p) { return std::hypot(p[0], p[1], p[2]); }
 
 /// A bulge below this fraction of the size of a facet or cell is round-off, also that of a file with seven or eight digits.
 constexpr double flat = 1e-6;
@@ -137,31 +132,25 @@ bool has_straight_edges(CellType type, std::span<const std::int32_t> nodes, std:
   const catalog::CellRow& row = catalog::cell(type);
   double longest = 0, largest = 0;
   for (std::size_t e = 0; e < row.edges.size(); ++e) {
-    const Point a = point_of(coordinates, nodes[static_cast<std::size_t>(row.edges[e].first)]),
-                b = point_of(coordinates, nodes[static_cast<std::size_t>(row.edges[e].second)]);
-    const Point d{b[0] - a[0], b[1] - a[1], b[2] - a[2]}, off = bulge(row, e, nodes, coordinates);
-    const double along = (off[0] * d[0] + off[1] * d[1] + off[2] * d[2]) / (d[0] * d[0] + d[1] * d[1] + d[2] * d[2]);
+    const Vec3 a = point_of(coordinates, nodes[static_cast<std::size_t>(row.edges[e].first)]),
+               b = point_of(coordinates, nodes[static_cast<std::size_t>(row.edges[e].second)]);
+    const Vec3 d = b - a, off = bulge(row, e, nodes, coordinates);
+    const double along = dot(off, d) / dot(d, d);
     if (!(std::abs(along) < 0.25)) return false;  // an edge that is folded, or without length
-    longest = std::max(longest, length(d));
-    largest = std::max(largest, length({off[0] - along * d[0], off[1] - along * d[1], off[2] - along * d[2]}));
+    longest = std::max(longest, norm(d));
+    largest = std::max(largest, norm(off - along * d));
   }
   return largest <= flat * longest;
 }
 
 /// Whether the vertices of a facet lie in a plane, up to `flat` of its size.
 bool is_plane(CellType type, const CellNodes& nodes, std::span<const double> coordinates) {
-  const Point origin = point_of(coordinates, nodes[0]);
-  const auto from_origin = [&](std::size_t i) {
-    const Point p = point_of(coordinates, nodes[i]);
-    return Point{p[0] - origin[0], p[1] - origin[1], p[2] - origin[2]};
-  };
-  const Point a = from_origin(1), b = from_origin(2);
-  const Point normal{a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
-  const double area = length(normal);
-  for (std::size_t i = 3; i < static_cast<std::size_t>(catalog::cell(type).n_vertices); ++i) {
-    const Point p = from_origin(i);
-    if (std::abs(p[0] * normal[0] + p[1] * normal[1] + p[2] * normal[2]) > flat * std::sqrt(area) * area) return false;
-  }
+  const Vec3 origin = point_of(coordinates, nodes[0]);
+  const auto from_origin = [&](std::size_t i) { return point_of(coordinates, nodes[i]) - origin; };
+  const Vec3 normal = cross(from_origin(1), from_origin(2));
+  const double area = norm(normal);
+  for (std::size_t i = 3; i < static_cast<std::size_t>(catalog::cell(type).n_vertices); ++i)
+    if (std::abs(dot(from_origin(i), normal)) > flat * std::sqrt(area) * area) return false;
   return true;
 }
 
@@ -173,8 +162,9 @@ void straighten(CellType type, const CellNodes& sub_cell, const CellNodes& added
   for (std::size_t e = 0; e < row.edges.size(); ++e) {
     const std::int32_t middle = sub_cell[static_cast<std::size_t>(row.n_vertices) + e];
     if (std::ranges::find(added, middle) == added.end()) continue;
-    const Point shift = bulge(row, e, sub_cell, coordinates);
-    for (std::size_t k = 0; k < 3; ++k) coordinates[3 * static_cast<std::size_t>(middle) + k] -= shift[k];
+    const Vec3 shift = bulge(row, e, sub_cell, coordinates);
+    double* const at = coordinates.data() + 3 * static_cast<std::size_t>(middle);
+    at[0] -= shift.x, at[1] -= shift.y, at[2] -= shift.z;
   }
 }
 
