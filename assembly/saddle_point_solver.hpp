@@ -53,6 +53,8 @@ class SaddlePointSolver {
   /// @param rough a solution to the rough gain will do: another one corrects it
   SolutionReport solve(const SparseMatrix& matrix, std::int64_t first_multiplier, std::span<double> right_side,
                        bool rough = false);
+  /// Right sides so far were those of a computation that failed: they say nothing of how exact the next solution has to be.
+  void forget_right_sides() { reference_ = 0; }
 
  private:
   /// The part of the inverse that a switched row needs: for a row switched on, of its coefficients; for one switched off, of

@@ -58,6 +58,7 @@ void Newton::begin(StaticState& state, const std::string& label) {
 
 void Newton::restart(const StaticState& state) {
   choice_.start_instant();
+  solver_.forget_right_sides();
   equilibrium_.pair(state.displacement);
   assemble(state, state, options_.matrix);
 }

@@ -110,6 +110,23 @@ TEST(SaddlePointSolver, FollowsDriftingCoefficients) {
   }
 }
 
+// A right side of a step that failed, 1e17 times as large, is no measure of those behind it.
+TEST(SaddlePointSolver, ForgetsTheRightSidesOfAFailedStep) {
+  Sequence system;
+  SaddlePointSolver solver = eager();
+  SolutionReport report;
+  system.on[0] = system.on[1] = system.on[4] = true;
+  system.fill();
+  Eigen::VectorXd huge = 1e17 * Eigen::VectorXd::Random(system.matrix.size());
+  solver.solve(system.matrix, system.first_multiplier(), {huge.data(), static_cast<std::size_t>(huge.size())});
+  system.drift = 0.1;
+  system.fill();
+  EXPECT_GT(system.error(solver, report), 1e-9);  // GMRES goes no further than it has to
+  solver.forget_right_sides();
+  EXPECT_LE(system.error(solver, report), 1e-11);
+  EXPECT_FALSE(report.factorised);
+}
+
 // Where a rough solution will do, it is one, and says so.
 TEST(SaddlePointSolver, SolvesRoughlyWhereThatWillDo) {
   Sequence system;
