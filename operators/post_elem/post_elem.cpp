@@ -209,7 +209,10 @@ Table integrals(Subject& subject) {
       values.insert(values.end(), sums.begin(), sums.end());
       for (std::size_t c = 0; c < sums.size(); ++c) {
         const double over = volume - left_out[c];
-        values.push_back(over > 0 ? Table::Cell(sums[c] / over) : Table::Cell());
+        if (over > 0)
+          values.emplace_back(sums[c] / over);
+        else
+          values.emplace_back();
       }
       add_row(*table, head, values);
     }
