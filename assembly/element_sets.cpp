@@ -213,9 +213,13 @@ class ElementBatches {
 
   void hand_over(const LoopBlock& cells, const std::function<void(const ElementValues&)>& use) const {
     const std::span<const double> forces = own_force_, matrices = own_matrix_;
+    std::vector<std::int64_t> dofs;
     for (std::size_t i = cells.first; i < cells.last; ++i) {
       const std::size_t own = i - cells.first;
-      use({set_.cells[i], forces.subspan(own * n_dofs(), n_dofs()),
+      dofs.clear();
+      for (const std::int32_t node : mesh_.cells[set_.cells[i]])
+        for (int d = 0; d < dimension_; ++d) dofs.push_back(std::int64_t{node} * dimension_ + d);
+      use({set_.cells[i], dofs, forces.subspan(own * n_dofs(), n_dofs()),
            with_matrix_ ? matrices.subspan(own * n_lower(), n_lower()) : matrices});
     }
   }

@@ -49,8 +49,9 @@ std::vector<ElementSet> load_sets(const Model& model, Registry& registry, std::s
 /// What one element gives for sums over elements.
 struct ElementValues {
   std::int32_t cell;
-  std::span<const double> force;   ///< (n_nodes, dimension)
-  std::span<const double> matrix;  ///< lower triangle, row by row; empty where it was not wanted
+  std::span<const std::int64_t> dofs;  ///< (n_nodes, dimension): node * dimension + component
+  std::span<const double> force;       ///< (n_nodes, dimension)
+  std::span<const double> matrix;      ///< lower triangle, row by row; empty where it was not wanted
 };
 
 /// The tangent without the terms of the present stress has no instability but that of the law.

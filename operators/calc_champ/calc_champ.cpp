@@ -20,6 +20,7 @@
 #include "lacon/operators/fields/mechanics.hpp"
 #include "lacon/operators/fields/selection.hpp"
 #include "lacon/operators/fields/tensor.hpp"
+#include "lacon/structures/displacement.hpp"
 
 namespace lacon {
 namespace {
@@ -303,11 +304,8 @@ class Instant {
     const Mesh& mesh = setting_.mesh();
     Field field = forces(setting_.base().field(setting_.result(), "SIEF_ELGA", order_), std::move(name));
     const std::size_t width = field.n_components();
-    const std::vector<double> current = displaced(mesh, (*this)("DEPL"));  // coordinates
-    std::vector<double> displacement;
-    for (std::size_t node = 0; node < mesh.n_nodes(); ++node)
-      for (std::size_t d = 0; d < width; ++d) displacement.push_back(current[3 * node + d] - mesh.coordinates[3 * node + d]);
-    const std::vector<double> external = setting_.external_force(field.instant, displacement);
+    const std::vector<double> displacement = nodal_displacements(mesh, (*this)("DEPL"), static_cast<int>(width)),
+                              external = setting_.external_force(field.instant, displacement);
     for (std::size_t i = 0; i < field.support.size(); ++i)
       for (std::size_t d = 0; d < width; ++d)
         field.at(i, d) -= external[static_cast<std::size_t>(field.support[i]) * width + d];

@@ -7,11 +7,11 @@
 #include <algorithm>
 
 #include "lacon/catalog/messages.hpp"
-#include "lacon/operators/fields/cell_points.hpp"
 #include "lacon/operators/fields/extrapolation.hpp"
 #include "lacon/operators/fields/selection.hpp"
 #include "lacon/operators/fields/tensor.hpp"
 #include "lacon/pairing/normals.hpp"
+#include "lacon/structures/displacement.hpp"
 
 namespace lacon {
 namespace {

@@ -9,6 +9,7 @@
 #include "lacon/catalog/messages.hpp"
 #include "lacon/elements/reference.hpp"
 #include "lacon/pairing/normals.hpp"
+#include "lacon/structures/displacement.hpp"
 #include "lacon/structures/memory.hpp"
 #include "lacon/structures/parallel.hpp"
 
@@ -194,10 +195,7 @@ void ContactGeometry::measure_slaves() {
 }
 
 void ContactGeometry::update(std::span<const double> displacement, std::vector<ZonePairing>* records) {
-  const int dimension = mesh_.dimension;
-  for (std::size_t node = 0; node < mesh_.n_nodes(); ++node)
-    for (int d = 0; d < dimension; ++d)
-      coordinates_[3 * node + d] = mesh_.coordinates[3 * node + d] + displacement[node * dimension + d];
+  displace(mesh_, displacement, mesh_.dimension, coordinates_);
   over_axis_.reset();
   measure_slaves();
   cells_.clear();

@@ -317,17 +317,6 @@ class ZoneView {
 
 }  // namespace
 
-std::vector<double> displacement_of(const Mesh& mesh, const Field& depl) {
-  const auto dimension = static_cast<std::size_t>(mesh.dimension);
-  std::vector<double> displacement(mesh.n_nodes() * dimension, 0.0);
-  for (std::size_t d = 0; d < dimension; ++d) {
-    const int component = depl.component(std::array{"DX", "DY", "DZ"}[d]);
-    for (std::size_t i = 0; component >= 0 && i < depl.support.size(); ++i)
-      displacement[static_cast<std::size_t>(depl.support[i]) * dimension + d] = depl.at(i, static_cast<std::size_t>(component));
-  }
-  return displacement;
-}
-
 PairingView view_pairing(const Mesh& mesh, const Model& model, const Contact& contact, Registry& registry,
                          std::span<const double> displacement, const Field* cont_elem) {
   ContactGeometry geometry(mesh, model, contact, registry);

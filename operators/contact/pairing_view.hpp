@@ -42,7 +42,4 @@ struct PairingView {
 PairingView view_pairing(const Mesh& mesh, const Model& model, const Contact& contact, Registry& registry,
                          std::span<const double> displacement, const Field* cont_elem);
 
-/// DEPL as (n_nodes, mesh.dimension), 0 where it does not live.
-std::vector<double> displacement_of(const Mesh& mesh, const Field& depl);
-
 }  // namespace lacon

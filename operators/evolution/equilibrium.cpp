@@ -122,8 +122,6 @@ void Equilibrium::start(bool keeps_stiffness) {
 
 void Equilibrium::add_solids(const StaticState& state, const StaticState& previous, SolidMatrix wanted) {
   const Phase phase("elements");
-  const int dimension = problem_.dimension;
-  std::vector<std::int64_t> unknowns;
   cell_inside_out_.reset();
   for (std::size_t s = 0; s < problem_.solids.size(); ++s) {
     const ElementSet& set = problem_.solids[s];
@@ -134,13 +132,8 @@ void Equilibrium::add_solids(const StaticState& state, const StaticState& previo
       input.previous_variable = previous.points[s].variable;
     }
     const SolidOutput output{points_[s].stress, points_[s].variable};
-    const auto add = [&](const ElementValues& element) {
-      unknowns.clear();
-      for (const std::int32_t node : problem_.mesh.cells[element.cell])
-        for (int d = 0; d < dimension; ++d) unknowns.push_back(system_.unknown(node, d));
-      system_.add(unknowns, element.matrix, element.force);
-    };
-    const auto inverted = evaluate_solids(set, problem_.mesh, dimension, input, wanted, output, add);
+    const auto add = [&](const ElementValues& element) { system_.add(element.dofs, element.matrix, element.force); };
+    const auto inverted = evaluate_solids(set, problem_.mesh, problem_.dimension, input, wanted, output, add);
     if (!cell_inside_out_) cell_inside_out_ = inverted;
   }
 }

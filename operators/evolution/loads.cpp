@@ -137,10 +137,7 @@ std::vector<double> TimedLoad::force(const StaticProblem& problem, double instan
   for (const LoadedCells& loaded : cells)
     evaluate_loads(loaded.set, problem.mesh, problem.dimension, problem.mesh.coordinates, loaded.values.at(instant), false,
                    [&](const ElementValues& element) {
-                     std::size_t at = 0;
-                     for (const std::int32_t node : problem.mesh.cells[element.cell])
-                       for (int d = 0; d < problem.dimension; ++d)
-                         sum[std::int64_t{node} * problem.dimension + d] += element.force[at++];
+                     for (std::size_t i = 0; i < element.dofs.size(); ++i) sum[element.dofs[i]] += element.force[i];
                    });
   const std::vector<double> on_nodes = nodal.at(instant);
   for (std::size_t i = 0; i < nodal_dofs.size(); ++i) sum[nodal_dofs[i]] += on_nodes[i];

@@ -8,6 +8,7 @@
 
 #include "lacon/catalog/messages.hpp"
 #include "lacon/operators/evolution/behaviours.hpp"
+#include "lacon/structures/displacement.hpp"
 
 namespace lacon {
 namespace {
@@ -91,22 +92,16 @@ void StaticProblem::following_forces(
     double instant, std::span<const double> displacement, bool with_matrix,
     const std::function<void(std::span<const std::int64_t>, std::span<const double>, std::span<const double>)>& use) const {
   if (!has_following_loads()) return;
-  std::vector<double> coordinates = mesh.coordinates;
-  for (std::size_t node = 0; node < mesh.n_nodes(); ++node)
-    for (int d = 0; d < dimension; ++d) coordinates[3 * node + d] += displacement[node * dimension + d];
-  std::vector<std::int64_t> dofs;
+  std::vector<double> coordinates;
+  displace(mesh, displacement, dimension, coordinates);
   for (const TimedLoad& load : loads) {
     if (load.following.empty()) continue;
     const double factor = load.multiplier(instant);
     for (const LoadedCells& loaded : load.following) {
       std::vector<double> values = loaded.values.at(instant);
       for (double& value : values) value *= factor;
-      evaluate_loads(loaded.set, mesh, dimension, coordinates, values, with_matrix, [&](const ElementValues& element) {
-        dofs.clear();
-        for (const std::int32_t node : mesh.cells[element.cell])
-          for (int d = 0; d < dimension; ++d) dofs.push_back(std::int64_t{node} * dimension + d);
-        use(dofs, element.force, element.matrix);
-      });
+      evaluate_loads(loaded.set, mesh, dimension, coordinates, values, with_matrix,
+                     [&](const ElementValues& element) { use(element.dofs, element.force, element.matrix); });
     }
   }
 }

@@ -105,22 +105,4 @@ const CellPoints& ModelPoints::operator()(std::size_t cell, std::span<const doub
   return points;
 }
 
-std::vector<double> nodal_displacements(const Mesh& mesh, const Field& field, int dimension) {
-  std::vector<double> values(mesh.n_nodes() * static_cast<std::size_t>(dimension), 0.0);
-  for (int d = 0; d < dimension; ++d) {
-    const int column = field.component(displacement_names[d]);
-    if (column < 0) continue;
-    for (std::size_t i = 0; i < field.support.size(); ++i)
-      if (field.has(i, static_cast<std::size_t>(column)))
-        values[static_cast<std::size_t>(field.support[i] * dimension + d)] = field.at(i, static_cast<std::size_t>(column));
-  }
-  return values;
-}
-
-std::vector<double> displaced(const Mesh& mesh, const Field& displacement) {
-  std::vector<double> coordinates = nodal_displacements(mesh, displacement, 3);
-  for (std::size_t k = 0; k < coordinates.size(); ++k) coordinates[k] += mesh.coordinates[k];
-  return coordinates;
-}
-
 }  // namespace lacon

@@ -47,12 +47,4 @@ class ModelPoints {
   std::vector<double> x_;  ///< (n_nodes, space) of the cell in hand
 };
 
-inline constexpr const char* displacement_names[] = {"DX", "DY", "DZ"};
-
-/// DX, DY, DZ of a nodal field on all nodes, 0 where it has none, (n_nodes, dimension).
-std::vector<double> nodal_displacements(const Mesh& mesh, const Field& field, int dimension);
-
-/// Coordinates displaced by a nodal field, (n_nodes, 3).
-std::vector<double> displaced(const Mesh& mesh, const Field& displacement);
-
 }  // namespace lacon

@@ -5,12 +5,15 @@
 
 #include "lacon/operators/fields/extrapolation.hpp"
 #include "lacon/operators/fields/tensor.hpp"
+#include "lacon/structures/displacement.hpp"
 #include "lacon/structures/parallel.hpp"
 
 namespace lacon {
 namespace {
 
 constexpr std::size_t cells_at_once = 256;  // in one block of a loop
+
+constexpr const char* displacement_names[] = {"DX", "DY", "DZ"};
 
 }  // namespace
 

@@ -13,6 +13,7 @@
 #include "lacon/elements/reference.hpp"
 #include "lacon/operators/contact/pairing_view.hpp"
 #include "lacon/operators/fields/selection.hpp"
+#include "lacon/structures/displacement.hpp"
 #include "lacon/structures/formats/listing.hpp"
 #include "lacon/structures/formats/med.hpp"
 #include "lacon/structures/formats/text_file.hpp"
@@ -140,7 +141,8 @@ void each_pairing(const Order& order, const Base& base, Concepts& concepts, cons
     if (const auto files = result.fields.find("CONT_ELEM"); files != result.fields.end() && files->second.contains(number))
       state = base.field(result, "CONT_ELEM", number);
     visit({result.label, number, depl.instant,
-           view_pairing(mesh, model, contact, registry, displacement_of(mesh, depl), state ? &*state : nullptr)});
+           view_pairing(mesh, model, contact, registry, nodal_displacements(mesh, depl, mesh.dimension),
+                        state ? &*state : nullptr)});
   }
 }
 

@@ -1,8 +1,8 @@
 #include "lacon/operators/modi_maillage/modi_maillage.hpp"
 
 #include "lacon/catalog/messages.hpp"
-#include "lacon/operators/fields/cell_points.hpp"
 #include "lacon/operators/program/program.hpp"
+#include "lacon/structures/displacement.hpp"
 
 namespace {
 

@@ -1,0 +1,21 @@
+#pragma once
+// Displacements of nodes out of a field, and where nodes are then.
+#include <span>
+#include <vector>
+
+#include "lacon/structures/field.hpp"
+#include "lacon/structures/mesh.hpp"
+
+namespace lacon {
+
+/// DX, DY, DZ of a field of nodes as (n_nodes of the mesh, dimension), 0 where it has none.
+std::vector<double> nodal_displacements(const Mesh& mesh, const Field& field, int dimension);
+
+/// Coordinates of the mesh and displacements (n_nodes, dimension), added up: (n_nodes, 3).
+/// @param coordinates to be overwritten, so that a caller may keep its memory
+void displace(const Mesh& mesh, std::span<const double> displacement, int dimension, std::vector<double>& coordinates);
+
+/// Coordinates displaced by a field of nodes, (n_nodes, 3).
+std::vector<double> displaced(const Mesh& mesh, const Field& field);
+
+}  // namespace lacon

@@ -1,0 +1,38 @@
+// Displacements of nodes out of a field.
+#include "lacon/structures/displacement.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace {
+
+using testing::ElementsAre;
+
+/// Three nodes; the field lives on the last two, and the second has no DY.
+struct Displacement : testing::Test {
+  lacon::Mesh mesh;
+  lacon::Field field;
+  Displacement() {
+    mesh.dimension = 2;
+    mesh.coordinates = {0, 0, 0, 1, 0, 0, 0, 1, 0};
+    field.components = {"DY", "LAGS_C", "DX"};
+    field.support = {1, 2};
+    field.values = {7, 9, 0.5, 0.25, 9, -0.5};
+    field.present = {0, 1, 1, 1, 1, 1};
+  }
+};
+
+TEST_F(Displacement, IsZeroWhereTheFieldHasNone) {
+  EXPECT_THAT(lacon::nodal_displacements(mesh, field, 2), ElementsAre(0, 0, 0.5, 0, -0.5, 0.25));
+  EXPECT_THAT(lacon::nodal_displacements(mesh, field, 3), ElementsAre(0, 0, 0, 0.5, 0, 0, -0.5, 0.25, 0));
+}
+
+TEST_F(Displacement, MovesCoordinates) {
+  const std::vector<double> moved = {0, 0, 0, 1.5, 0, 0, -0.5, 1.25, 0};
+  EXPECT_EQ(lacon::displaced(mesh, field), moved);
+  std::vector<double> coordinates = {5};
+  lacon::displace(mesh, lacon::nodal_displacements(mesh, field, 2), 2, coordinates);
+  EXPECT_EQ(coordinates, moved);
+}
+
+}  // namespace
