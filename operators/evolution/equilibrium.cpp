@@ -98,6 +98,8 @@ void Equilibrium::pair(std::span<const double> displacement) {
   if (!contact_) return;
   const Phase phase("pairing");
   contact_->update_geometry(displacement);
+  add_to_count("pairings", 1);
+  add_to_count("contact cells", static_cast<double>(contact_->geometry().cells().size()));
 }
 
 void Equilibrium::assemble(const StaticState& state, const StaticState& previous, SolidMatrix wanted) {

@@ -120,6 +120,9 @@ std::vector<double> Newton::solve_system(std::span<const double> step, bool roug
   std::vector<double> solution = equilibrium_.right_side(step);
   line.solution = solver_.solve(system.matrix(), system.first_multiplier(), solution, rough);
   const SolutionReport& report = line.solution;
+  add_to_phase("analysis", report.analysis_seconds);
+  add_to_phase("factorisation", report.factorisation_seconds);
+  add_to_phase("solution", report.solution_seconds);
   add_to_count("solutions", 1);
   add_to_count("factorisations", report.factorised ? 1 : 0);
   add_to_count("Gflop of factorisations", 1e-9 * report.factorisation.flops);
