@@ -192,6 +192,21 @@ std::int64_t SparseMatrix::diagonal_place(std::int64_t equation) const {
 
 void SparseMatrix::add_diagonal(std::int64_t equation, double value) { value_[diagonal_place(equation)] += value; }
 
+std::vector<SparseMatrix::RowSize> SparseMatrix::row_sizes(std::int64_t n) const {
+  std::vector<RowSize> sizes(static_cast<std::size_t>(n));
+  const auto count = [&](std::int64_t row, double value) {
+    sizes[static_cast<std::size_t>(row)].sum += std::abs(value);
+    ++sizes[static_cast<std::size_t>(row)].entries;
+  };
+  for (std::int64_t row = 0; row < n; ++row)
+    for (std::int64_t k = row_[row]; k < row_[row + 1]; ++k) {
+      if (column_[k] >= n) continue;
+      count(row, value_[k]);
+      if (is_symmetric() && column_[k] != row) count(column_[k], value_[k]);
+    }
+  return sizes;
+}
+
 void SparseMatrix::multiply(std::span<const double> x, std::span<double> y) const {
   std::fill(y.begin(), y.end(), 0.0);
   if (!is_symmetric()) {

@@ -49,6 +49,13 @@ class SparseMatrix {
 
   /// y = A x
   void multiply(std::span<const double> x, std::span<double> y) const;
+  /// How large a row is: the sum of |a_ij|, and how many entries it has.
+  struct RowSize {
+    double sum = 0;
+    std::int32_t entries = 0;
+  };
+  /// Of the rows of the leading n x n block.
+  std::vector<RowSize> row_sizes(std::int64_t n) const;
   /// The largest sum of magnitudes in a row of the whole matrix.
   double norm() const;
 

@@ -100,7 +100,7 @@ void Archive::accept(const SolvedInstant& solved) {
 }
 
 void Archive::end(bool completed) {
-  if (completed || n_solved() > 0) {
+  if (completed || has_solved()) {
     if (const auto& observed = observations_.table()) add_observed(*observed);
     base_.store(result_);
   } else if (taken_over_ == 0) {

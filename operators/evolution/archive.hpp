@@ -48,8 +48,8 @@ class Archive : public EvolutionObserver {
   void add_balance(const std::vector<ZoneBalance>& zones);
   void add_observed(const Table& observed);
   void put(const std::string& parameter, double value) { result_.parameters[parameter].push_back(value); }
-  /// Instants of this computation, without its initial state.
-  std::size_t n_solved() const { return result_.orders.size() - std::max<std::size_t>(taken_over_, 1); }
+  /// Whether there are instants of this computation behind its initial state.
+  bool has_solved() const { return result_.orders.size() > std::max<std::size_t>(taken_over_, 1); }
 
   const Base& base_;
   Present present_;

@@ -8,8 +8,8 @@ void judge_forces(const ConvergenceCriteria& criteria, const ForceFigures& force
   report.maxi = forces.unbalanced;
   report.worst_dof = forces.worst_dof;
   report.rela =
-      forces.significant > 0 && std::isfinite(forces.significant) ? forces.significant / forces.reference : forces.significant;
-  report.rela_met = !criteria.resi_glob_rela || report.rela <= *criteria.resi_glob_rela;
+      forces.unbalanced > 0 && std::isfinite(forces.unbalanced) ? forces.unbalanced / forces.reference : forces.unbalanced;
+  report.rela_met = !criteria.resi_glob_rela || report.rela <= *criteria.resi_glob_rela || forces.significant == 0;
   report.maxi_met = !criteria.resi_glob_maxi || report.maxi <= *criteria.resi_glob_maxi;
 }
 

@@ -53,7 +53,7 @@ struct IterationReport {
 
 /// RESI_GLOB_RELA and RESI_GLOB_MAXI: fills in rela, maxi and whether they are met. The relative residual is measured against
 /// the present equilibrium alone, whatever iterates or instants before it were; where its forces vanish, what round-off leaves
-/// of them is no residual. One that is not a number meets nothing.
+/// of them meets it whatever it is of nothing. What is not finite meets nothing.
 void judge_forces(const ConvergenceCriteria& criteria, const ForceFigures& forces, IterationReport& report);
 
 /// RESI_GEOM and the gaps of active patches: fills in geometry, constraint and whether they are met.

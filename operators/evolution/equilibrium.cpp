@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "lacon/operators/program/program.hpp"
 
@@ -9,7 +10,9 @@ namespace lacon {
 namespace {
 
 constexpr double vanishing_displacement = 1e-8;  // of the smallest patch, or of the mesh
-constexpr double round_off = 1e-15;              // a few units in the last place
+// A sum of n terms is off by about sqrt(n) units of round-off of each (Higham, Mary, A new approach to probabilistic rounding
+// error analysis, 2019).
+constexpr double round_off = std::numeric_limits<double>::epsilon();
 
 /// Nodes of every element that has a matrix.
 Ragged<std::int32_t> nodes_of_elements(const StaticProblem& problem) {
@@ -191,19 +194,21 @@ ForceFigures Equilibrium::forces(const StaticState& state, const StaticState& pr
   // displacements that went to zero leave the round-off of those before them; a body that turns has that of its turn
   const double moved = std::max({largest_vector(state.displacement, problem_.dimension),
                                  largest_vector(previous.displacement, problem_.dimension), vanishing_displacement * extent_});
+  const std::vector<SparseMatrix::RowSize> rows = system_.matrix().row_sizes(system_.first_multiplier());
   for (std::size_t dof = 0; dof < problem_.n_dofs(); ++dof) {
     const double unbalanced = std::abs(residual[dof] - external_[dof]);
     if (problem_.imposed[dof]) {
       figures.reference = std::max(figures.reference, unbalanced);
     } else if (const std::int64_t equation = problem_.numbering.equation[dof]; equation >= 0) {
       figures.reference = std::max(figures.reference, std::abs(external_[dof]));
-      if (std::isnan(unbalanced))
+      if (!std::isfinite(unbalanced))
         return {.unbalanced = unbalanced, .worst_dof = static_cast<std::int64_t>(dof), .significant = unbalanced};
       if (unbalanced > figures.unbalanced || figures.worst_dof < 0) {
         figures.unbalanced = unbalanced;
         figures.worst_dof = static_cast<std::int64_t>(dof);
       }
-      if (unbalanced > round_off * std::abs(system_.matrix().diagonal(equation)) * moved)
+      const SparseMatrix::RowSize& row = rows[static_cast<std::size_t>(equation)];
+      if (unbalanced > round_off * std::sqrt(row.entries) * row.sum * moved)
         figures.significant = std::max(figures.significant, unbalanced);
     }
   }

@@ -6,7 +6,7 @@ import unittest
 import numpy as np
 from load_study import LoadTest, flat_block
 
-from meshes import block, union  # noqa: I001 (load_study says where it is)
+from meshes import block, brick, union  # noqa: I001 (load_study says where it is)
 from results import Result
 
 LENGTH, PRESSURE = 100.0, 0.0833
@@ -87,6 +87,20 @@ R.append(STAT_NON_LINE(MODELE=MODEL, CHAM_MATER=FIELD, EXCIT=(_F(CHARGE=HOLD), _
                 # a load of a hundred millionth is solved to its own digits; to so small a load every law answers linearly
                 linear = 1e8 * moved[2] if linear is None else linear
                 self.assert_near(1e8 * moved[2], linear, 1e-5)
+
+    def test_a_body_that_turns_without_strain_converges(self):
+        """All forces are round-off, of rows of stiff thin cells too: HEXA20 that are nearly incompressible, turned by 80 degrees."""
+        lines = np.linspace(0, 1, 4), np.linspace(0, 0.5, 3), np.array([0, 0.001, 0.5])
+        turn = ", ".join(f"D{a}=FORMULE(NOM_PARA=('X', 'Y', 'INST'), VALE='{text}')" for a, text in (
+            ("X", "X * (cos(1.4 * INST) - 1) - Y * sin(1.4 * INST)"), ("Y", "X * sin(1.4 * INST) + Y * (cos(1.4 * INST) - 1)")))
+        run = self.run_text([brick("HEXA20", lines, None, "BODY", {(0, 0): "LEFT"})], f"""
+model(20, "3D", DEFI_MATERIAU(ELAS=_F(E=2000.0, NU=0.499)))
+TURN = AFFE_CHAR_CINE_F(MODELE=MODEL, MECA_IMPO=_F(GROUP_MA="LEFT", DZ=FORMULE(NOM_PARA="INST", VALE="0.0"), {turn}))
+R.append(STAT_NON_LINE(MODELE=MODEL, CHAM_MATER=FIELD, EXCIT=_F(CHARGE=TURN),
+                       COMPORTEMENT=_F(RELATION="ELAS", DEFORMATION="GREEN_LAGRANGE"), INCREMENT=_F(LIST_INST=TIMES),
+                       CONVERGENCE=_F(RESI_GLOB_RELA=1e-6, ITER_GLOB_MAXI=12)))
+""")
+        self.assertEqual(run.status, 0, run.stdout[-3000:] + run.stderr[-2000:])
 
     def test_an_isostatic_press_fit_is_measured_against_its_contact_forces(self):
         """Two rings, one pressed into the other, held by nothing that reacts: the forces between them are the only ones.

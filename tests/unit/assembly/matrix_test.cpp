@@ -171,5 +171,30 @@ TEST(Ordering, PutsMultipliersBehindTheirNodes) {
     for (int d = 0; d < 2; ++d) EXPECT_GT(order[chain.numbering.of_patch(c.a - 40)], order[chain.numbering.of(c.b, d)]);
 }
 
+// The sizes of rows are those of the dense matrix, of its leading block alone, stored in halves or whole.
+TEST(SparseMatrix, KnowsHowLargeItsRowsAre) {
+  const std::vector<Coupling> couplings{{4, 0}, {4, 2}, {0, 3}};
+  for (const Symmetry symmetry : {Symmetry::symmetric, Symmetry::general}) {
+    const Chain chain(4, 1);
+    SparseMatrix matrix(chain.numbering, chain.cliques, couplings, symmetry);
+    std::mt19937 random(4);
+    for (std::size_t c = 0; c < chain.cliques.size(); ++c) {
+      std::vector<std::int64_t> equations;
+      for (const std::int32_t v : chain.cliques[c])
+        for (std::int64_t e = chain.numbering.first[v]; e < chain.numbering.first[v + 1]; ++e) equations.push_back(e);
+      matrix.add(equations, test::random_lower(equations.size(), random));
+    }
+    const std::int64_t n = chain.numbering.first[4];
+    const Eigen::MatrixXd block = dense(matrix).topLeftCorner(n, n);
+    const std::vector<SparseMatrix::RowSize> sizes = matrix.row_sizes(n);
+    ASSERT_EQ(static_cast<std::int64_t>(sizes.size()), n);
+    for (std::int64_t row = 0; row < n; ++row) {
+      EXPECT_NEAR(sizes[row].sum, block.row(row).cwiseAbs().sum(), 1e-14);
+      EXPECT_GE(sizes[row].entries, (block.row(row).array() != 0).count());
+      EXPECT_LE(sizes[row].entries, n);
+    }
+  }
+}
+
 }  // namespace
 }  // namespace lacon

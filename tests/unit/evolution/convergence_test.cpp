@@ -30,6 +30,7 @@ TEST(Convergence, TheRelativeResidualIsThatOfThePresentReference) {
 TEST(Convergence, RoundOffIsNoRelativeResidual) {
   const ConvergenceCriteria criteria{.resi_glob_rela = 1e-6, .resi_glob_maxi = {}};
   EXPECT_TRUE(judged(criteria, {.unbalanced = 1e-20, .significant = 0, .reference = 0}).converged());
+  EXPECT_TRUE(judged(criteria, {.unbalanced = 1e-20, .significant = 0, .reference = 1e-20}).converged());
   // but what is more than round-off, against nothing, is infinitely large
   const IterationReport left = judged(criteria, {.unbalanced = 1e-3, .significant = 1e-3, .reference = 0});
   EXPECT_TRUE(std::isinf(left.rela));
