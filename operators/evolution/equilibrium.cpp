@@ -208,7 +208,8 @@ ForceFigures Equilibrium::forces(const StaticState& state, const StaticState& pr
         figures.worst_dof = static_cast<std::int64_t>(dof);
       }
       const SparseMatrix::RowSize& row = rows[static_cast<std::size_t>(equation)];
-      if (unbalanced > round_off * std::sqrt(row.entries) * row.sum * moved)
+      const double noise = round_off * std::sqrt(row.entries) * row.sum * moved;
+      if (!(unbalanced <= noise) || !std::isfinite(noise))  // displacements that overflow excuse nothing
         figures.significant = std::max(figures.significant, unbalanced);
     }
   }

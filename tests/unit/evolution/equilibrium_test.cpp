@@ -177,6 +177,9 @@ TEST(Equilibrium, WhatRoundOffLeavesIsNotSignificant) {
   EXPECT_GT(equilibrium.forces(state, state).significant, 0);
   EXPECT_EQ(equilibrium.forces(state, before).significant, 0);  // the digits that a displacement of 100 leaves behind
   EXPECT_GT(equilibrium.forces(state, before).unbalanced, 0);
+  StaticState overflowed = state;
+  overflowed.displacement[0] = 1e200;  // its square is not finite
+  EXPECT_GT(equilibrium.forces(state, overflowed).significant, 0);
 }
 
 }  // namespace
