@@ -7,6 +7,7 @@
 
 #include "lacon/catalog/messages.hpp"
 #include "lacon/operators/contact/contact_field.hpp"
+#include "lacon/structures/displacement.hpp"
 
 namespace lacon {
 namespace {
@@ -148,16 +149,10 @@ Field variable_field(const StaticProblem& problem, const StaticState& state) {
 StaticState archived_state(const StaticProblem& problem, const Base& base, const Result& result, std::int64_t order) {
   if (result.mesh != problem.model.mesh)
     fail("EVOLUTION_1", {{"first", "ETAT_INIT/EVOL_NOLI"}, {"second", "MODELE"}, {"what", "meshes"}});
-  const std::size_t dimension = problem.dimension;
   StaticState state;
-  state.displacement.assign(problem.n_dofs(), 0.0);
-  const Field moved = base.field(result, "DEPL", order);
-  for (std::size_t d = 0; d < dimension; ++d) {
-    const int component = moved.component(problem.components[d]);
-    for (std::size_t i = 0; component >= 0 && i < moved.support.size(); ++i)
-      if (const std::size_t dof = moved.support[i] * dimension + d; problem.exists[dof])
-        state.displacement[dof] = moved.at(i, component);
-  }
+  state.displacement = nodal_displacements(problem.mesh, base.field(result, "DEPL", order), problem.dimension);
+  for (std::size_t dof = 0; dof < problem.n_dofs(); ++dof)
+    if (!problem.exists[dof]) state.displacement[dof] = 0;
   const Field stress = base.field(result, "SIEF_ELGA", order);
   const std::vector<std::int32_t> stress_place = places_in(stress, problem.mesh.n_cells());
   std::optional<Field> variable;
