@@ -1,0 +1,112 @@
+"""Bodies of the studies: small meshes whose skins, BODY_SKIN, meet, and whose other sides are held or driven: BODY_BASE."""
+
+import math
+
+import numpy as np
+from meshes import block, brick, union, weld
+
+
+def lines(first, last, cells):
+    return np.linspace(first, last, cells + 1)
+
+
+def slab(kind, name, x, y, cells, top=None, skin="top", sides=None):
+    """A block whose skin is its top (or its bottom). @param x, y (first, last) @param cells (along x, along y)
+    @param top the top's height (the bottom's, where that is the skin) as a function of x, in place of the end of y"""
+    base = "bottom" if skin == "top" else "top"
+
+    def place(a, b):
+        low, high = y
+        if top:
+            low, high = (low, top(a)) if skin == "top" else (top(a), high)
+        return a, low + b * (high - low)
+
+    return block(kind, lines(*x, cells[0]), lines(0, 1, cells[1]), place, name, {skin: f"{name}_SKIN", base: f"{name}_BASE", **(sides or {})})
+
+
+def round_tool(kind, name, radius, centre, cells, angle=75.0):
+    """A body whose skin is an arc of this angle on both sides of its lowest point; its top is flat. @param cells (along the arc, through the body)"""
+    most = math.radians(angle)
+
+    def place(s, t):
+        low = np.array([math.sin(most * s), -math.cos(most * s)])
+        high = np.array([s * math.sin(most), 0.3])
+        return tuple(np.asarray(centre) + radius * ((1 - t) * low + t * high))
+
+    return block(kind, lines(-1, 1, cells[0]), lines(0, 1, cells[1]), place, name, {"bottom": f"{name}_SKIN", "top": f"{name}_BASE"})
+
+
+def tip(kind, name, half_width, cells):
+    """A body that ends below in a tip of two flanks of 45 degrees, at the origin."""
+    return slab(kind, name, (-half_width, half_width), (0, 1.5 * half_width), cells, top=abs, skin="bottom")
+
+
+def polygon(kind, name, sides, centre, cells, hub=0.4):
+    """A regular polygon of circumradius 1, a side of it below, around a round hub that is its base. @param cells (a side, through the body)"""
+    step = 2 * math.pi / sides
+
+    def place(t, a):
+        outer = math.cos(step / 2) / math.cos((a + math.pi / 2 + step / 2) % step - step / 2)
+        radius = hub + t * (outer - hub)
+        return centre[0] + radius * math.cos(a), centre[1] + radius * math.sin(a)
+
+    start = -math.pi / 2 - step / 2
+    ring = block(kind, lines(0, 1, cells[1]), lines(start, start + 2 * math.pi, sides * cells[0]), place, name,
+                 {"right": f"{name}_SKIN", "left": f"{name}_BASE"})
+    return weld(ring)
+
+
+def arch(kind, name, radii, cells):
+    """Half a ring over the axis y = 0, its feet the base. @param cells (around, through)"""
+    return block(kind, lines(*radii, cells[1]), lines(0, math.pi, cells[0]), lambda r, a: (r * math.cos(a), r * math.sin(a)), name,
+                 {"right": f"{name}_SKIN", "bottom": f"{name}_BASE", "top": f"{name}_BASE"})
+
+
+def half_disc(kind, name, radius, height, n):
+    """The half x > 0 of a disc of centre (0, height): a square core, and three sectors around it of n cells each (n through the core's half).
+    Groups BODY_LOW, BODY_HIGH (skins of 45 degrees from the axis), BODY_AXIS."""
+    core = 0.45 * radius
+
+    def ring(edge, first, last):
+        """From a side of the core to an arc. @param edge point of the core at the parameter 0..1; first, last degrees"""
+        def place(r, s):
+            angle = math.radians(first + s * (last - first))
+            return tuple((1 - r) * np.asarray(edge(s)) + r * radius * np.array([math.cos(angle), math.sin(angle)]) + [0, height])
+        return place
+
+    through = lines(0, 1, n)
+    parts = [
+        block(kind, lines(0, core, n), lines(-core, core, 2 * n), lambda x, y: (x, y + height), name, {"left": f"{name}_AXIS"}),
+        block(kind, through, lines(0, 1, 2 * n), ring(lambda s: (core, core * (2 * s - 1)), -45, 45), name, {}),
+        block(kind, through, through, ring(lambda s: (core * (1 - s), core), 45, 90), name, {"right": f"{name}_HIGH", "top": f"{name}_AXIS"}),
+        block(kind, through, through, ring(lambda s: (core * s, -core), -90, -45), name, {"right": f"{name}_LOW", "bottom": f"{name}_AXIS"}),
+    ]
+    return weld(union(parts))
+
+
+def turned(mesh, degrees):
+    """The mesh turned about the origin."""
+    a = math.radians(degrees)
+    mesh.points = mesh.points @ np.array([[math.cos(a), math.sin(a)], [-math.sin(a), math.cos(a)]])
+    return mesh
+
+
+def slab_in_space(kind, name, x, y, z, cells):
+    """A box whose skin is its top."""
+    return brick(kind, [lines(*ends, n) for ends, n in zip((x, y, z), cells)], None, name, {(2, 1): f"{name}_SKIN", (2, 0): f"{name}_BASE"})
+
+
+def round_tool_in_space(kind, name, radius, centre, cells, ball):
+    """A body whose skin is part of a sphere (`ball`), or of a cylinder along y of width 2 radius; its top is flat."""
+    most = math.radians(40)
+
+    def place(r, s, t):
+        low = np.array([math.tan(most * r), math.tan(most * s) if ball else 0.0, -1.0])
+        low /= np.linalg.norm(low)
+        if not ball:
+            low[1] = s
+        high = np.array([0.8 * r, 0.8 * s if ball else s, 0.0])
+        return np.asarray(centre) + radius * ((1 - t) * low + t * high)
+
+    return brick(kind, [lines(-1, 1, cells[0]), lines(-1, 1, cells[1]), lines(0, 1, cells[2])], place, name,
+                 {(2, 0): f"{name}_SKIN", (2, 1): f"{name}_BASE"}, curved=True)

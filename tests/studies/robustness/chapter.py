@@ -1,0 +1,119 @@
+"""The chapter of the verification book: the table before and now, and a picture for each row.
+
+    chapter.py [FIGURES.json]    puts it into docs/verification.md, from figures that run.py has kept; without them it runs the table
+"""
+
+import json
+import pathlib
+import re
+import shutil
+import sys
+import tempfile
+
+from run import HERE, LACON, ROOT, missed, run
+from studies import ROWS, studies
+
+TITLE = "## Difficult studies"
+
+#: row -> (words of the names of studies that are drawn)
+DRAWN = {
+    "hertz": ("30 QUAD8 PETIT tool", "30 QUAD8 GREEN slab"), "ironing": ("10 width 1, QUAD8 GREEN slab", "40 width 1.5, QUAD4 PETIT slab"),
+    "overhang": ("20 QUAD4 PETIT lower", "20 QUAD8 GREEN upper"), "arch": ("x10 QUAD4 GREEN arch", "x10 QUAD8 GREEN plate"),
+    "polygon": ("QUAD4 slab", "QUAD8 wheel"), "plastic": ("round 5, QUAD4 PETIT, slab", "flat 5, QUAD8 PETIT, slab"),
+    "tips": ("tip QUAD4 PETIT slab", "groove QUAD8 GREEN tool", "wedge QUAD4 GREEN tool"),
+    "contrast": ("1e+06 QUAD4 PETIT tool", "1e-06 QUAD4 PETIT tool"),
+    "space": ("sphere HEXA8 GREEN slab", "sphere HEXA20 GREEN tool", "half-cylinder TETRA10 GREEN slab"),
+    "difficult": ("die QUAD4 PETIT_REAC block", "beams QUAD8 GREEN upper", "stack AXIS QUAD8 GREEN above"),
+    "corner": ("QUAD4 GREEN tool", "QUAD8 GREEN plate"), "cycle": ("10 QUAD4 lower",),
+}
+
+
+def figures_of_table():
+    """Run every study. @return name -> figures"""
+    found = {}
+    for row in ROWS:
+        for study in studies(row):
+            folder = pathlib.Path(tempfile.mkdtemp(prefix="lacon_robustness_"))
+            found[f"{row}/{study.name}"] = run(study, LACON, folder)
+            shutil.rmtree(folder, ignore_errors=True)
+    return found
+
+
+def draw_row(row, path):
+    """@return whether there was something to draw"""
+    from pictures import draw
+
+    folders, panels = [], []
+    for words in DRAWN.get(row, ()):
+        study = next(study for study in studies(row) if all(word in study.name for word in words.split()))
+        folders.append(pathlib.Path(tempfile.mkdtemp(prefix="lacon_robustness_")))
+        if run(study, LACON, folders[-1])["accepted"]:
+            panels.append((study, folders[-1] / "study.base"))
+    if panels:
+        draw(panels, path)
+    for folder in folders:
+        shutil.rmtree(folder, ignore_errors=True)
+    return bool(panels)
+
+
+def spread(values, form="{:g}"):
+    low, high = min(values), max(values)
+    return form.format(low) if low == high else f"{form.format(low)} to {form.format(high)}"
+
+
+def summary(row, figures):
+    """Cells of a table: finished of all, cuts, iterations a step and lost ones, the row's own measure."""
+    found = [figures[f"{row}/{study.name}"] for study in studies(row) if f"{row}/{study.name}" in figures]
+    done = [one for one in found if one["status"] == "finished"]
+    measures = [key for key in ("Fx/Fy", "ripple", "lost work") if any(key in one for one in done)]
+    told = "; ".join(f"{key} {spread([one[key] for one in done if key in one], '{:.1e}')}" for key in measures)
+    return [f"{len(done)} of {len(found)}", sum(one["cuts"] for one in found), spread([one["iterations"] for one in done]) if done else "-",
+            spread([one["per step"] for one in done], "{:.1f}") if done else "-", sum(one["lost"] for one in found), told or "-"]
+
+
+def asked_of(row):
+    """In words."""
+    words = {"; ".join(f"{key} <= {most:g}" for key, most in study.asked.items()) for study in studies(row)}
+    return " / ".join(sorted(words, key=lambda text: [float(number) for number in re.findall(r"[\d.e-]+$", text)]))
+
+
+def section(figures=None):
+    """The chapter's text; draws its pictures into docs/."""
+    figures, before = figures or figures_of_table(), json.loads((HERE / "before.json").read_text())
+    lines, pictures = [], []
+    for row, (what, _) in ROWS.items():
+        if not any(name.startswith(f"{row}/") for name in figures):
+            continue
+        for when, known in (("before", before), ("now", figures)):
+            kept = [f"{row}/{study.name}" for study in studies(row) if not missed(study, known[f"{row}/{study.name}"])]
+            lines.append([what if when == "before" else "", when, *summary(row, known), len(kept), asked_of(row) if when == "before" else ""])
+        if draw_row(row, ROOT / f"docs/robustness_{row}.png"):
+            pictures.append(f"![{what}](robustness_{row}.png)")
+    head = ["studies", "", "finished", "cuts", "iterations of those that did", "of a step", "lost", "measured", "as asked", "asked of each"]
+    table = "\n".join("| " + " | ".join(map(str, line)) + " |" for line in [head, ["---"] * len(head), *lines])
+    return f"""{TITLE}
+
+`tests/studies/robustness`: deep, sliding, edged, plastic bodies, of very different stiffness, or held by contact alone; plane ones with both orders,
+PETIT and GREEN_LAGRANGE (plastic ones PETIT and PETIT_REAC), either side slave. ITER_GLOB_MAXI is 60, all other criteria and keywords of
+Newton's method are defaults. An iteration is a solution of the linear system; lost ones belong to steps that were cut or never solved, and
+count in what is asked. "Before": contact forces along the slave's normal, frozen.
+
+{table}
+
+Pictures: deformed, without magnification; red the contact pressure of the slave's patches, at the instant that is pressed most.
+
+{chr(10).join(pictures)}
+"""
+
+
+def main():
+    figures = json.loads(pathlib.Path(sys.argv[1]).read_text()) if len(sys.argv) > 1 else None
+    book = ROOT / "docs/verification.md"
+    text = book.read_text(encoding="utf-8")
+    chapter = section(figures)
+    old = re.search(rf"^{TITLE}\n.*?(?=^## |\Z)", text, re.MULTILINE | re.DOTALL)
+    book.write_text(text[:old.start()] + chapter + text[old.end():] if old else text.rstrip("\n") + "\n\n" + chapter, encoding="utf-8")
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,45 @@
+"""The table of difficult studies: what is asked of each (studies.py) holds."""
+
+import pathlib
+import sys
+import unittest
+
+HERE = pathlib.Path(__file__).resolve().parent
+sys.path[:0] = [str(HERE), str(HERE.parent)]
+
+from study_test import LACON, StudyTest  # noqa: E402, I001 (it says where meshes.py is)
+from run import chosen, count, missed, run  # noqa: E402
+
+#: seconds each, one or more of a row
+SHORT = ["arch/x10, QUAD8 GREEN", "contrast/1e-06 QUAD4 PETIT tool", "contrast/1e+06 QUAD8 GREEN slab"]
+
+TABLE = """
+ Instant de calcul: 1.000000000000e+00
+ |   0X          | 1.0 X |
+ |   1           | 1.0   |
+ Converged at the instant 1 with 1 iteration(s)
+ Instant de calcul: 2.000000000000e+00
+ |   0X          | 1.0 X |
+ |   1X          | 1.0 X |
+ |   2X          | 1.0 X |
+<I> <EVOLUTION_7> the step to the instant 2 is cut into 4 (level 1): EVOLUTION_4
+ Instant de calcul: 1.250000000000e+00
+ |   0           | 1.0   |
+ Converged at the instant 1.25 with 0 iteration(s)
+"""
+
+
+class Driver(unittest.TestCase):
+    def test_iterations_of_steps_that_were_cut_are_lost(self):
+        self.assertEqual(count(TABLE, ""), {"accepted": 2, "cuts": 1, "iterations": 3, "lost": 3, "of steps": [2, 1]})
+
+    def test_names_are_unique(self):
+        names = [name for name, _ in chosen([])]
+        self.assertEqual(len(names), len(set(names)))
+
+
+class Short(StudyTest):
+    def test_holds(self):
+        for name, study in chosen(SHORT):
+            with self.subTest(name):
+                self.assertEqual(missed(study, run(study, LACON, self.folder)), [])
