@@ -1,6 +1,7 @@
 #include "lacon/assembly/element_sets.hpp"
 
 #include <algorithm>
+#include <array>
 #include <map>
 #include <memory>
 
@@ -64,25 +65,22 @@ bool refused(std::int32_t error) { return error != LACON_FINE && error != LACON_
 /// A batch of cells in lanes: block b, lane l is cells[b * lanes + l]; the last block repeats the last cell.
 class Batch {
  public:
-  Batch(const ElementSet& set, const Mesh& mesh, const LoopBlock& cells, int dimension)
-      : set_(set), mesh_(mesh), first_(cells.first), size_(cells.last - cells.first), dimension_(dimension) {}
+  Batch(const ElementSet& set, const Mesh& mesh, const LoopBlock& cells)
+      : set_(set), mesh_(mesh), first_(cells.first), size_(cells.last - cells.first) {}
 
   std::size_t size() const { return size_; }
   std::size_t n_blocks() const { return (size_ + lanes - 1) / lanes; }
   std::size_t index(std::size_t i) const { return first_ + std::min(i, size_ - 1); }
   std::int32_t cell(std::size_t i) const { return set_.cells[index(i)]; }
 
-  /// (n_blocks, n_nodes, dimension, lanes) out of nodal values (nodes, stride).
-  void gather(std::span<const double> nodal, int stride, LaneArray& out) const {
-    const int n = set_.n_nodes();
-    out.resize(n_blocks() * n * dimension_);
-    for (std::size_t i = 0; i < n_blocks() * lanes; ++i) {
-      const auto nodes = mesh_.cells[cell(i)];
-      LaneNumbers* const block = out.data() + (i / lanes) * n * dimension_;
-      for (int k = 0; k < n; ++k)
-        for (int d = 0; d < dimension_; ++d)
-          block[k * dimension_ + d].value[i % lanes] = nodal[static_cast<std::size_t>(nodes[k]) * stride + d];
-    }
+  /// The kernel's unknowns, (n_blocks, n_nodes, n_unknowns, lanes), out of those of the mesh.
+  void gather_unknowns(std::span<const double> nodal, LaneArray& out) const {
+    gather(nodal, set_.n_components, set_.columns, out);
+  }
+  /// (n_blocks, n_nodes, dimension, lanes) out of (nodes, 3).
+  void gather_points(std::span<const double> points, LaneArray& out) const {
+    constexpr std::array axes{0, 1, 2};
+    gather(points, 3, std::span(axes).first(static_cast<std::size_t>(set_.dimension())), out);
   }
   /// (n_blocks, width, lanes) out of values of each cell of the set (cells, width).
   void gather_cells(std::span<const double> values, std::size_t width, LaneArray& out) const {
@@ -114,22 +112,50 @@ class Batch {
   }
 
  private:
+  /// (n_blocks, n_nodes, columns, lanes) out of some columns of nodal values (nodes, stride).
+  void gather(std::span<const double> nodal, int stride, std::span<const int> columns, LaneArray& out) const {
+    const std::size_t n = static_cast<std::size_t>(set_.n_nodes()), width = columns.size();
+    out.resize(n_blocks() * n * width);
+    for (std::size_t i = 0; i < n_blocks() * lanes; ++i) {
+      const auto nodes = mesh_.cells[cell(i)];
+      LaneNumbers* const block = out.data() + (i / lanes) * n * width;
+      for (std::size_t k = 0; k < n; ++k)
+        for (std::size_t c = 0; c < width; ++c)
+          block[k * width + c].value[i % lanes] = nodal[static_cast<std::size_t>(nodes[k]) * stride + columns[c]];
+    }
+  }
+
   const ElementSet& set_;
   const Mesh& mesh_;
   std::size_t first_, size_;
-  int dimension_;
 };
 
-ElementSet make_set(const catalog::ElementRow& row, Registry& registry, std::string_view option, lacon_kernel_kind kind) {
+/// @param unknowns of node_unknowns()
+ElementSet make_set(const catalog::ElementRow& row, Registry& registry, std::string_view option, lacon_kernel_kind kind,
+                    std::span<const std::string> unknowns) {
   ElementSet set;
   set.row = &row;
   set.kernel = &registry.kernel(row, option, kind);
   set.option = option;
   set.tabulation = tabulate(row.cell, integration_rule(catalog::cell(row.cell).family, row.points));
+  set.n_components = static_cast<int>(unknowns.size());
+  for (const std::string_view own : unknowns_of(row, *set.kernel))
+    set.columns.push_back(static_cast<int>(std::find(unknowns.begin(), unknowns.end(), own) - unknowns.begin()));
   return set;
 }
 
 }  // namespace
+
+std::vector<std::string> node_unknowns(const Model& model, const Registry& registry) {
+  std::vector<std::string> unknowns;
+  for (const std::string& name : model.elements) {
+    const catalog::ElementRow* row = registry.find_element(name);
+    if (!row) fail("PLUGIN_4", {{"element", name}});
+    for (const std::string_view dof : row->dofs)  // displacements first, the same of every element
+      if (std::find(unknowns.begin(), unknowns.end(), dof) == unknowns.end()) unknowns.emplace_back(dof);
+  }
+  return unknowns;
+}
 
 std::vector<ElementSet> solid_sets(const Mesh& mesh, const Model& model, Registry& registry, const MaterialTable& materials,
                                    const Behaviours& behaviours) {
@@ -159,11 +185,12 @@ std::vector<ElementSet> solid_sets(const Mesh& mesh, const Model& model, Registr
     fail("ELEMENT_2", {{"cell", cell_name(bare.front())},
                        {"element", model.elements[model.element[bare.front()]]},
                        {"count", std::to_string(bare.size())}});
+  const std::vector<std::string> unknowns = node_unknowns(model, registry);
   std::vector<ElementSet> sets;
   for (auto& [kind, cells] : by_kind) {
     const catalog::ElementRow& row = *registry.find_element(model.elements[kind.element]);
     const std::string& option = behaviours.options[kind.behaviour];
-    ElementSet set = make_set(row, registry, option, LACON_SOLID);
+    ElementSet set = make_set(row, registry, option, LACON_SOLID, unknowns);
     set.cells = std::move(cells);
     set.linear = !set.kernel->nonlinear;
     if (set.kernel->takes_curve) {
@@ -184,6 +211,7 @@ std::vector<ElementSet> load_sets(const Model& model, Registry& registry, std::s
                                   std::span<const std::int32_t> cells, std::vector<std::vector<std::int32_t>>& position) {
   std::map<std::int32_t, std::vector<std::int32_t>> by_element;
   for (std::size_t i = 0; i < cells.size(); ++i) by_element[model.element[cells[i]]].push_back(static_cast<std::int32_t>(i));
+  const std::vector<std::string> unknowns = node_unknowns(model, registry);
   std::vector<ElementSet> sets;
   position.clear();
   for (auto& [element, indices] : by_element) {
@@ -191,7 +219,7 @@ std::vector<ElementSet> load_sets(const Model& model, Registry& registry, std::s
     if (!row)
       fail("PLUGIN_4",
            {{"element", element < 0 ? "none, on cell " + cell_name(cells[indices.front()]) : model.elements[element]}});
-    ElementSet set = make_set(*row, registry, option, LACON_LOAD);
+    ElementSet set = make_set(*row, registry, option, LACON_LOAD, unknowns);
     for (const std::int32_t i : indices) set.cells.push_back(cells[i]);
     sets.push_back(std::move(set));
     position.push_back(std::move(indices));
@@ -204,10 +232,10 @@ namespace {
 /// One thread's part of a loop over elements, with the batch that it has in hand.
 class ElementBatches {
  public:
-  ElementBatches(const ElementSet& set, const Mesh& mesh, int dimension, bool with_matrix)
-      : set_(set), mesh_(mesh), dimension_(dimension), with_matrix_(with_matrix) {}
+  ElementBatches(const ElementSet& set, const Mesh& mesh, bool with_matrix)
+      : set_(set), mesh_(mesh), with_matrix_(with_matrix) {}
 
-  std::size_t n_dofs() const { return static_cast<std::size_t>(set_.n_nodes()) * dimension_; }
+  std::size_t n_dofs() const { return static_cast<std::size_t>(set_.n_nodes()) * set_.columns.size(); }
   std::size_t n_lower() const { return n_dofs() * (n_dofs() + 1) / 2; }
   std::optional<std::int32_t> inside_out() const { return inside_out_; }  ///< the first such cell of the batch in hand
 
@@ -218,7 +246,7 @@ class ElementBatches {
       const std::size_t own = i - cells.first;
       dofs.clear();
       for (const std::int32_t node : mesh_.cells[set_.cells[i]])
-        for (int d = 0; d < dimension_; ++d) dofs.push_back(std::int64_t{node} * dimension_ + d);
+        for (const int column : set_.columns) dofs.push_back(std::int64_t{node} * set_.n_components + column);
       use({set_.cells[i], dofs, forces.subspan(own * n_dofs(), n_dofs()),
            with_matrix_ ? matrices.subspan(own * n_lower(), n_lower()) : matrices});
     }
@@ -239,7 +267,6 @@ class ElementBatches {
 
   const ElementSet& set_;
   const Mesh& mesh_;
-  int dimension_;
   bool with_matrix_;
   LaneArray force_, matrix_;
   std::vector<std::int32_t> errors_;
@@ -267,17 +294,16 @@ std::optional<std::int32_t> evaluate_in_turn(const ElementSet& set, const Batche
 
 class SolidBatches : public ElementBatches {
  public:
-  SolidBatches(const ElementSet& set, const Mesh& mesh, int dimension, const SolidInput& input, SolidMatrix wanted,
-               const SolidOutput& output)
-      : ElementBatches(set, mesh, dimension, wanted != SolidMatrix::none), input_(input), wanted_(wanted), output_(output) {}
+  SolidBatches(const ElementSet& set, const Mesh& mesh, const SolidInput& input, SolidMatrix wanted, const SolidOutput& output)
+      : ElementBatches(set, mesh, wanted != SolidMatrix::none), input_(input), wanted_(wanted), output_(output) {}
 
   void evaluate(const LoopBlock& cells) {
-    const Batch batch(set_, mesh_, cells, dimension_);
+    const Batch batch(set_, mesh_, cells);
     const std::size_t n_stress = set_.n_stress(), n_variables = set_.n_variables();
     // what is left out, or does not exist, is a null pointer
     const auto nodal = [&](std::span<const double> values, LaneArray& array) -> const double* {
       if (values.empty()) return nullptr;
-      batch.gather(values, dimension_, array);
+      batch.gather_unknowns(values, array);
       return numbers(array);
     };
     const auto of_cells = [&](std::span<const double> values, std::size_t width, LaneArray& array) -> const double* {
@@ -291,12 +317,12 @@ class SolidBatches : public ElementBatches {
       return numbers(array);
     };
     make_room(batch);
-    batch.gather(mesh_.coordinates, 3, coordinates_);
+    batch.gather_points(mesh_.coordinates, coordinates_);
     const lacon_solid_batch call{
         .struct_size = sizeof(lacon_solid_batch),
         .n_blocks = static_cast<std::int32_t>(batch.n_blocks()),
         .n_nodes = set_.n_nodes(),
-        .dimension = dimension_,
+        .dimension = set_.dimension(),
         .n_points = set_.tabulation.n_points,
         .n_stress = static_cast<std::int32_t>(set_.row->stress.size()),
         .n_parameters = set_.n_parameters,
@@ -318,7 +344,8 @@ class SolidBatches : public ElementBatches {
         .n_curve = static_cast<std::int32_t>(set_.curve.size() / 3),
         .n_variables = set_.n_point_variables,
         .elastic_matrix = wanted_ == SolidMatrix::elastic,
-        .stressless_matrix = wanted_ == SolidMatrix::stressless};
+        .stressless_matrix = wanted_ == SolidMatrix::stressless,
+        .n_unknowns = set_.n_unknowns()};
     set_.kernel->solid(&call);
     take_results(batch);
     if (call.stress) batch.scatter(stress_, n_stress, output_.stress.subspan(cells.first * n_stress));
@@ -334,20 +361,20 @@ class SolidBatches : public ElementBatches {
 
 class LoadBatches : public ElementBatches {
  public:
-  LoadBatches(const ElementSet& set, const Mesh& mesh, int dimension, std::span<const double> coordinates,
-              std::span<const double> values, bool with_matrix)
-      : ElementBatches(set, mesh, dimension, with_matrix), coordinates_(coordinates), values_(values) {}
+  LoadBatches(const ElementSet& set, const Mesh& mesh, std::span<const double> coordinates, std::span<const double> values,
+              bool with_matrix)
+      : ElementBatches(set, mesh, with_matrix), coordinates_(coordinates), values_(values) {}
 
   void evaluate(const LoopBlock& cells) {
     const int n_values = n_load_values(*set_.kernel);
-    const Batch batch(set_, mesh_, cells, dimension_);
+    const Batch batch(set_, mesh_, cells);
     make_room(batch);
-    batch.gather(coordinates_, 3, place_);
+    batch.gather_points(coordinates_, place_);
     batch.gather_cells(values_, static_cast<std::size_t>(set_.tabulation.n_points * n_values), value_);
     const lacon_load_batch call{.struct_size = sizeof(lacon_load_batch),
                                 .n_blocks = static_cast<std::int32_t>(batch.n_blocks()),
                                 .n_nodes = set_.n_nodes(),
-                                .dimension = dimension_,
+                                .dimension = set_.dimension(),
                                 .n_points = set_.tabulation.n_points,
                                 .reference_dimension = set_.tabulation.dimension,
                                 .n_values = n_values,
@@ -358,7 +385,8 @@ class LoadBatches : public ElementBatches {
                                 .value = numbers(value_),
                                 .force = numbers(force_),
                                 .matrix = numbers(matrix_),
-                                .error = errors_.data()};
+                                .error = errors_.data(),
+                                .n_unknowns = set_.n_unknowns()};
     set_.kernel->load(&call);
     take_results(batch);
   }
@@ -370,15 +398,15 @@ class LoadBatches : public ElementBatches {
 
 }  // namespace
 
-std::optional<std::int32_t> evaluate_solids(const ElementSet& set, const Mesh& mesh, int dimension, const SolidInput& input,
+std::optional<std::int32_t> evaluate_solids(const ElementSet& set, const Mesh& mesh, const SolidInput& input,
                                             SolidMatrix matrix, const SolidOutput& output,
                                             const std::function<void(const ElementValues&)>& use) {
-  return evaluate_in_turn(set, SolidBatches(set, mesh, dimension, input, matrix, output), use);
+  return evaluate_in_turn(set, SolidBatches(set, mesh, input, matrix, output), use);
 }
 
-void evaluate_loads(const ElementSet& set, const Mesh& mesh, int dimension, std::span<const double> coordinates,
+void evaluate_loads(const ElementSet& set, const Mesh& mesh, std::span<const double> coordinates,
                     std::span<const double> values, bool with_matrix, const std::function<void(const ElementValues&)>& use) {
-  evaluate_in_turn(set, LoadBatches(set, mesh, dimension, coordinates, values, with_matrix), use);
+  evaluate_in_turn(set, LoadBatches(set, mesh, coordinates, values, with_matrix), use);
 }
 
 int n_load_values(const lacon_kernel& kernel) { return n_names(kernel.parameters); }

@@ -25,11 +25,19 @@ struct ElementSet {
   int n_parameters = 0, n_point_variables = 0;  ///< n_point_variables: internal variables of a point
   bool linear = true;                           ///< the stiffness does not depend on the displacements
   std::vector<double> curve;  ///< (points, 3), lacon_solid_batch::curve; of all cells, empty where the kernel takes none
+  int n_components = 0;       ///< width of arrays (n_nodes of the mesh, n_components): what node_unknowns() lists
+  std::vector<int> columns;   ///< of such arrays: where they hold each of the kernel's unknowns
 
+  int dimension() const { return catalog::dimension_of(row->geometry); }  ///< of the space
+  int n_unknowns() const { return static_cast<int>(columns.size()); }     ///< of a node
   int n_nodes() const { return tabulation.n_nodes; }
   std::size_t n_stress() const { return static_cast<std::size_t>(tabulation.n_points) * row->stress.size(); }    ///< of a cell
   std::size_t n_variables() const { return static_cast<std::size_t>(tabulation.n_points * n_point_variables); }  ///< of a cell
 };
+
+/// The unknowns of the model's nodes, of which a node may have some alone: the displacements, and behind them the others in the
+/// order in which elements bring them. Nodal arrays hold them node by node. Throws PLUGIN_4.
+std::vector<std::string> node_unknowns(const Model& model, const Registry& registry);
 
 /// The behaviour of cells: options of solid rows, "ELAS/PETIT", and for each cell of the mesh its index among them.
 struct Behaviours {
@@ -49,16 +57,17 @@ std::vector<ElementSet> load_sets(const Model& model, Registry& registry, std::s
 /// What one element gives for sums over elements.
 struct ElementValues {
   std::int32_t cell;
-  std::span<const std::int64_t> dofs;  ///< (n_nodes, dimension): node * dimension + component
-  std::span<const double> force;       ///< (n_nodes, dimension)
+  std::span<const std::int64_t> dofs;  ///< (n_nodes, n_unknowns): node * n_components + column
+  std::span<const double> force;       ///< (n_nodes, n_unknowns)
   std::span<const double> matrix;      ///< lower triangle, row by row; empty where it was not wanted
 };
 
 /// The tangent without the terms of the present stress has no instability but that of the law.
 enum class SolidMatrix { none, tangent, stressless, elastic };
 
-/// What solid elements are evaluated at. Displacements are those of the mesh, (n_nodes, dimension). The last state in
-/// equilibrium may be left empty, which is the natural state; its stresses and variables are those of the set.
+/// What solid elements are evaluated at. Displacements, with the other unknowns behind them, are those of the mesh, (n_nodes,
+/// n_components). The last state in equilibrium may be left empty, which is the natural state; its stresses and variables are
+/// those of the set.
 struct SolidInput {
   std::span<const double> displacement;
   std::span<const double> previous_displacement;
@@ -75,7 +84,7 @@ struct SolidOutput {
 /// Evaluate the elements of a set, in n_threads() threads, and call `use` for each of them: in their order and one at a time,
 /// so that sums have the same bits for any number of threads. @return the first cell that the displacement turns inside out, if
 /// there is one  Throws ELEMENT_1 for elements that their kernel refuses.
-std::optional<std::int32_t> evaluate_solids(const ElementSet& set, const Mesh& mesh, int dimension, const SolidInput& input,
+std::optional<std::int32_t> evaluate_solids(const ElementSet& set, const Mesh& mesh, const SolidInput& input,
                                             SolidMatrix matrix, const SolidOutput& output,
                                             const std::function<void(const ElementValues&)>& use);
 
@@ -88,7 +97,7 @@ std::vector<double> integration_points(const ElementSet& set, const Mesh& mesh, 
 /// Call `use` for each element of a set of load_sets(), as evaluate_solids() does; the matrix is the symmetric part of
 /// the force's derivative. @param coordinates (n_nodes, 3) of the mesh, initial or current
 /// @param values (cells, n_points, n_load_values)
-void evaluate_loads(const ElementSet& set, const Mesh& mesh, int dimension, std::span<const double> coordinates,
+void evaluate_loads(const ElementSet& set, const Mesh& mesh, std::span<const double> coordinates,
                     std::span<const double> values, bool with_matrix, const std::function<void(const ElementValues&)>& use);
 
 }  // namespace lacon

@@ -17,7 +17,7 @@
 extern "C" {
 #endif
 
-#define LACON_ABI 4
+#define LACON_ABI 5
 #define LACON_LANES 8
 
 #if defined(__GNUC__)
@@ -39,7 +39,8 @@ enum lacon_element_error {
   LACON_BEYOND_CURVE = 7 /* the hardening curve ends before the strain that was reached */
 };
 
-/* Solid elements: stiffness, internal forces, stresses at displacement u. ndof = n_nodes * dimension, node by node.
+/* Solid elements: stiffness, internal forces, stresses at displacement u. ndof = n_nodes * n_unknowns, node by node: the
+ * displacements, unless the kernel names its `unknowns`, whose values u then holds.
  * A law with a memory goes from the last state in equilibrium (`previous_...`) to that of u; a law without takes `previous_...`
  * as a state to start from, and none means the natural state: no displacement, no stress, variables zero. */
 typedef struct lacon_solid_batch {
@@ -50,13 +51,13 @@ typedef struct lacon_solid_batch {
   const double* gradient;              /* (n_points, n_nodes, dimension), by reference coordinates */
   const double* weight;                /* (n_points), of the reference cell */
   const double* coordinates;           /* (n_blocks, n_nodes, dimension, LANES), initial */
-  const double* displacement;          /* (n_blocks, n_nodes, dimension, LANES) */
+  const double* displacement;          /* (n_blocks, n_nodes, n_unknowns, LANES): u */
   const double* parameter;             /* (n_blocks, n_parameters, LANES), in the order of the kernel's `parameters` */
   double* matrix;                      /* (n_blocks, ndof (ndof + 1) / 2, LANES): lower triangle, row by row */
   double* force;                       /* (n_blocks, ndof, LANES) */
   double* stress;                      /* (n_blocks, n_points, n_stress, LANES) */
   int32_t* error;                      /* (n_blocks, LANES) */
-  const double* previous_displacement; /* (n_blocks, n_nodes, dimension, LANES) or NULL */
+  const double* previous_displacement; /* (n_blocks, n_nodes, n_unknowns, LANES) or NULL */
   const double* previous_stress;       /* (n_blocks, n_points, n_stress, LANES) or NULL */
   const double* previous_variable;     /* (n_blocks, n_points, n_variables, LANES) or NULL */
   double* variable;                    /* (n_blocks, n_points, n_variables, LANES): internal variables */
@@ -66,9 +67,10 @@ typedef struct lacon_solid_batch {
   int32_t elastic_matrix;    /* 1: the matrix is that of the law's elastic part */
   int32_t stressless_matrix; /* 1: without the terms by which present stresses turn and move: the matrix is positive
                                 semi-definite unless the law softens */
+  int32_t n_unknowns;        /* of a node: as many as the kernel's `unknowns` */
 } lacon_solid_batch;
 
-/* Elements (bodies, skins, edges) under a load that has values at each integration point. */
+/* Elements (bodies, skins, edges) under a load that has values at each integration point. ndof = n_nodes * n_unknowns. */
 typedef struct lacon_load_batch {
   uint32_t struct_size;
   int32_t n_blocks;
@@ -82,8 +84,10 @@ typedef struct lacon_load_batch {
   const double* value;                  /* (n_blocks, n_points, n_values, LANES), in the order of the kernel's `parameters` */
   double* force;                        /* (n_blocks, ndof, LANES): external force */
   double* matrix;                       /* (n_blocks, ndof (ndof + 1) / 2, LANES), pressures only: lower triangle, row by row,
-                                           of the symmetric part of the derivative of the force by the coordinates */
+                                           of the symmetric part of the derivative of the force by the coordinates, zero
+                                           for unknowns that are no displacements */
   int32_t* error;                       /* (n_blocks, LANES) */
+  int32_t n_unknowns;                   /* of a node: as many as the kernel's `unknowns` */
 } lacon_load_batch;
 
 /* Contact cells, one for each couple (slave cell, master cell) of one pair of kinds; not in lanes, for the number of points
@@ -123,6 +127,8 @@ typedef struct lacon_kernel {
   int32_t nonlinear;             /* solid: 0 if the matrix does not depend on the displacement */
   int32_t has_memory;            /* solid: 1 if the result depends on the last state in equilibrium */
   int32_t takes_curve;           /* solid: 1 if it needs the hardening curve */
+  const char* const* unknowns;   /* solid, load: its unknowns at each node, "DX", "TEMP", some of its elements' `dofs`, NULL at
+                                    the end; or NULL: the displacements */
 } lacon_kernel;
 
 typedef struct lacon_plugin_table {

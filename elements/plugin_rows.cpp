@@ -136,14 +136,17 @@ class ElementReader : TableReader {
     return catalog::StressState::full;
   }
 
-  /// Kernels, loads and contact take the first unknowns of a node for its displacement.
+  /// Kernels, loads and contact take the first unknowns of a node for its displacement. LAGS_C is no unknown of an element.
   void check_displacements(std::span<const std::string_view> dofs, catalog::Geometry geometry) const {
     constexpr std::string_view displacements[] = {"DX", "DY", "DZ"};
     const std::span wanted = std::span(displacements).first(static_cast<std::size_t>(catalog::dimension_of(geometry)));
     std::string names;
     for (const std::string_view name : wanted) names += (names.empty() ? "" : ", ") + in_quotes(name);
-    if (!std::ranges::equal(dofs, wanted))
-      fail_row("its 'dofs' are not the displacements of its geometry, " + names + ", in this order");
+    if (dofs.size() < wanted.size() || !std::ranges::equal(dofs.first(wanted.size()), wanted))
+      fail_row("its 'dofs' do not begin with the displacements of its geometry, " + names + ", in this order");
+    for (const std::string_view other : dofs.subspan(wanted.size()))
+      if (other == "DZ" || other == "LAGS_C")
+        fail_row("its 'dofs' name " + in_quotes(other) + ", which is no unknown of elements of its geometry");
   }
 
   int rule_size(CellType cell, const toml::node& node) const {

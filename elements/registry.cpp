@@ -74,6 +74,11 @@ fs::path folder_beside_executable() {
 std::string defect(const lacon_kernel& kernel) {
   if (!kernel.name || !*kernel.name) return "one of its kernels has no name";
   const std::string name = "its kernel " + in_quotes(kernel.name);
+  const std::vector<std::string_view> unknowns(kernel.unknowns, kernel.unknowns + n_names(kernel.unknowns));
+  if (kernel.unknowns && unknowns.empty()) return name + " has an empty list of unknowns";
+  for (const std::string_view unknown : unknowns)
+    if (std::count(unknowns.begin(), unknowns.end(), unknown) > 1)
+      return name + " names the unknown " + in_quotes(unknown) + " twice";
   switch (kernel.kind) {
     case LACON_SOLID:
       if (!kernel.parameters) return name + " has no list of parameters";
@@ -279,9 +284,19 @@ const lacon_kernel& Registry::kernel(const catalog::ElementRow& element, std::st
     if (kernel.kind != kind)
       throw reasoned("the kernel " + in_quotes(found) + " of '" + plugin->library_file().string() + "' is for " +
                      kind_name(kernel.kind) + ", not for " + kind_name(kind));
+    for (const std::string_view unknown : unknowns_of(element, kernel))
+      if (std::find(element.dofs.begin(), element.dofs.end(), unknown) == element.dofs.end())
+        throw reasoned("the kernel " + in_quotes(found) + " of '" + plugin->library_file().string() + "' works on " +
+                       in_quotes(unknown) + ", which is none of the element's 'dofs'");
     return kernel;
   }
   throw reasoned("the plug-in '" + plugin->library_file().string() + "' has no kernel " + in_quotes(kernel_name));
+}
+
+std::vector<std::string_view> unknowns_of(const catalog::ElementRow& element, const lacon_kernel& kernel) {
+  if (kernel.unknowns) return {kernel.unknowns, kernel.unknowns + n_names(kernel.unknowns)};
+  const auto displacements = element.dofs.first(static_cast<std::size_t>(catalog::dimension_of(element.geometry)));
+  return {displacements.begin(), displacements.end()};
 }
 
 int n_names(const char* const* names) {

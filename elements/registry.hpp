@@ -36,8 +36,9 @@ class Registry {
   const catalog::RelationRow* find_relation(std::string_view name) const;
   const catalog::DeformationRow* find_deformation(std::string_view name) const;
 
-  /// The kernel that serves an option of an element. Throws PLUGIN_3 where no row, plug-in or kernel serves it or the kernel is
-  /// of another kind than the caller's, PLUGIN_1 for a library that cannot be opened or was built for another ABI.
+  /// The kernel that serves an option of an element. Throws PLUGIN_3 where no row, plug-in or kernel serves it, or the kernel
+  /// is of another kind than the caller's or works on unknowns that the element lacks; PLUGIN_1 for a library that cannot be
+  /// opened or was built for another ABI.
   const lacon_kernel& kernel(const catalog::ElementRow& element, std::string_view option, lacon_kernel_kind kind);
   bool has_kernel(const catalog::ElementRow& element, std::string_view option) const;
 
@@ -45,6 +46,9 @@ class Registry {
   struct State;
   std::unique_ptr<State> state_;
 };
+
+/// The unknowns of each node that a kernel works on for an element: those that it names, or the displacements.
+std::vector<std::string_view> unknowns_of(const catalog::ElementRow& element, const lacon_kernel& kernel);
 
 /// How many names there are in a list of plugin.h, which ends with NULL and may be NULL itself.
 int n_names(const char* const* names);

@@ -1,6 +1,7 @@
 #pragma once
-// Displacements of nodes out of a field, and where nodes are then.
+// Displacements and other unknowns of nodes out of a field, and where nodes are then.
 #include <span>
+#include <string>
 #include <vector>
 
 #include "lacon/structures/field.hpp"
@@ -8,12 +9,16 @@
 
 namespace lacon {
 
+/// These components of a field of nodes as (n_nodes of the mesh, components), 0 where it has none.
+std::vector<double> nodal_values(const Mesh& mesh, const Field& field, std::span<const std::string> components);
+
 /// DX, DY, DZ of a field of nodes as (n_nodes of the mesh, dimension), 0 where it has none.
 std::vector<double> nodal_displacements(const Mesh& mesh, const Field& field, int dimension);
 
-/// Coordinates of the mesh and displacements (n_nodes, dimension), added up: (n_nodes, 3).
+/// Coordinates of the mesh and displacements, added up: (n_nodes, 3).
+/// @param values (n_nodes, n): the first `dimension` of the n values of a node are its displacements
 /// @param coordinates to be overwritten, so that a caller may keep its memory
-void displace(const Mesh& mesh, std::span<const double> displacement, int dimension, std::vector<double>& coordinates);
+void displace(const Mesh& mesh, std::span<const double> values, int dimension, std::vector<double>& coordinates);
 
 /// Coordinates displaced by a field of nodes, (n_nodes, 3).
 std::vector<double> displaced(const Mesh& mesh, const Field& field);

@@ -16,7 +16,7 @@ namespace {
 
 // ---------------------------------------------------------------------------------------------------- nodes
 
-/// Values of every component in `components` that an occurrence gives, on the nodes that it names.
+/// Values of every component in `components` that an occurrence gives, on the nodes that it names. A force FX acts on DX.
 void load_nodes(const LoadScene& scene, const std::vector<Keywords>& factors, std::span<const std::string_view> components,
                 std::string_view conflict, std::vector<LoadTerm>& terms) {
   GivenTerms given(scene, conflict, terms);
@@ -26,7 +26,9 @@ void load_nodes(const LoadScene& scene, const std::vector<Keywords>& factors, st
         if (!factor.has(component)) continue;
         const LoadValue value = value_of(scene, factor, component);
         for (const std::int32_t node : named.members) {
-          scene.check_dof(node, "D" + std::string(component.substr(1)), named.source);
+          std::string dof(component);
+          if (dof.front() == 'F') dof.front() = 'D';
+          scene.check_dof(node, dof, named.source);
           given.add(node, "the node " + node_name(node), std::string(component), value, named.source);
         }
       }
@@ -172,7 +174,7 @@ Load affe_char(const Mesh& mesh, const Model& model, Registry& registry, const B
   std::vector<Keywords> imposed;
   for (const char* const keyword : {"MECA_IMPO", "DDL_IMPO", "FACE_IMPO"})
     for (const Keywords& factor : keywords.factors(keyword)) add_imposed(imposed, factor, model.dimension);
-  load_nodes(scene, imposed, translations, "CHARGE_4", load.imposed);
+  load_nodes(scene, imposed, unknowns(), "CHARGE_4", load.imposed);
   load_nodes(scene, keywords.factors("FORCE_NODALE"), forces, "CHARGE_5", load.nodal);
   load_cells(load, scene, keywords);
   load_gravity(load, scene, keywords);

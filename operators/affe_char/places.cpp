@@ -10,7 +10,7 @@
 
 namespace lacon {
 
-std::span<const std::string_view> displacements() {
+std::span<const std::string_view> unknowns() {
   for (const catalog::QuantityRow& row : catalog::quantities())
     if (row.name == "DEPL_R") return row.components;
   return {};
@@ -20,7 +20,7 @@ std::span<const std::string_view> displacements() {
 
 LoadScene make_scene(const Mesh& mesh, const Model& model, Registry& registry, const Base& base) {
   LoadScene scene{mesh, model, registry, base, std::vector<unsigned>(mesh.n_nodes(), 0)};
-  const auto names = displacements();
+  const auto names = unknowns();
   for (std::size_t cell = 0; cell < mesh.n_cells(); ++cell) {
     const catalog::ElementRow* row = scene.element(static_cast<std::int32_t>(cell));
     if (!row) continue;
@@ -40,7 +40,7 @@ const catalog::ElementRow* LoadScene::element(std::int32_t cell) const {
 void LoadScene::check_dof(std::int32_t node, std::string_view component, const std::string& source) const {
   const unsigned own = dofs[static_cast<std::size_t>(node)];
   if (own == 0) fail("CHARGE_2", {{"keyword", source}, {"node", node_name(node)}});
-  const auto names = displacements();
+  const auto names = unknowns();
   const auto at = std::find(names.begin(), names.end(), component);
   if (at == names.end() || !(own & (1u << (at - names.begin()))))
     fail("CHARGE_3",
@@ -49,8 +49,8 @@ void LoadScene::check_dof(std::int32_t node, std::string_view component, const s
 
 std::string LoadScene::names_of(unsigned own) const {
   std::string text;
-  for (std::size_t i = 0; i < displacements().size(); ++i)
-    if (own & (1u << i)) text += (text.empty() ? "" : ", ") + std::string(displacements()[i]);
+  for (std::size_t i = 0; i < unknowns().size(); ++i)
+    if (own & (1u << i)) text += (text.empty() ? "" : ", ") + std::string(unknowns()[i]);
   return text;
 }
 

@@ -17,20 +17,20 @@ struct LoadScene {
   const Model& model;
   Registry& registry;
   const Base& base;
-  std::vector<unsigned> dofs;  ///< of each node: bit i for displacement i of displacements()
+  std::vector<unsigned> dofs;  ///< of each node: bit i for unknown i of unknowns()
 
   /// The element of a cell, or nullptr.
   const catalog::ElementRow* element(std::int32_t cell) const;
-  /// Throws CHARGE_2 where the node has no element, CHARGE_3 where it lacks the displacement.
+  /// Throws CHARGE_2 where the node has no element, CHARGE_3 where it lacks the unknown.
   void check_dof(std::int32_t node, std::string_view component, const std::string& source) const;
-  /// Every displacement that a node of the model has, by name.
+  /// Every unknown that a node of the model has, by name.
   std::string names_of(unsigned dofs) const;
 };
 
 LoadScene make_scene(const Mesh& mesh, const Model& model, Registry& registry, const Base& base);
 
-/// Names of the displacements, in the order of the quantity: DX, DY, DZ first.
-std::span<const std::string_view> displacements();
+/// Names of what nodes may have for unknowns, in the order of the quantity: DX, DY, DZ first.
+std::span<const std::string_view> unknowns();
 
 /// Nodes, or cells, with the keyword that names them.
 struct NamedPlaces {

@@ -158,7 +158,7 @@ class Setting {
     }
     return materials_->parameter(cell, std::string("ELAS/") + name, points().element(static_cast<std::size_t>(cell))->name);
   }
-  /// @param displacement (n_nodes, dimension), which following pressures act on
+  /// @param displacement (n_nodes, dimension), which following pressures act on @return (n_nodes, n_components)
   std::vector<double> external_force(double instant, std::span<const double> displacement) {
     if (!loads_) loads_ = read_loads(order_, base_, result_);
     return loads_->external_force(instant, displacement);
@@ -306,9 +306,10 @@ class Instant {
     const std::size_t width = field.n_components();
     const std::vector<double> displacement = nodal_displacements(mesh, (*this)("DEPL"), static_cast<int>(width)),
                               external = setting_.external_force(field.instant, displacement);
+    const std::size_t n_unknowns = external.size() / mesh.n_nodes();  // of a node, displacements first
     for (std::size_t i = 0; i < field.support.size(); ++i)
       for (std::size_t d = 0; d < width; ++d)
-        field.at(i, d) -= external[static_cast<std::size_t>(field.support[i]) * width + d];
+        field.at(i, d) -= external[static_cast<std::size_t>(field.support[i]) * n_unknowns + d];
     return setting_.has_part() ? restrict_to_nodes(field, nodes_of_marked_cells(mesh, setting_.wanted())) : field;
   }
 

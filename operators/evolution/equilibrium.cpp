@@ -31,16 +31,17 @@ ContactBodies bodies_of(const StaticProblem& problem) {
                          return problem.materials->has(cell) ? problem.materials->find(cell, "ELAS/E") : std::nullopt;
                        },
                        .free = {}};
-  for (const std::int64_t equation : problem.numbering.equation) bodies.free.push_back(equation >= 0);
+  for (std::int64_t node = 0; node < problem.numbering.n_nodes; ++node)
+    for (int d = 0; d < problem.dimension; ++d) bodies.free.push_back(problem.numbering.of(node, d) >= 0);
   return bodies;
 }
 
-/// The largest length of a node's vector.
-double largest_vector(std::span<const double> values, int dimension) {
+/// The longest displacement of a node. @param values (n_nodes, n_components)
+double longest_displacement(std::span<const double> values, const StaticProblem& problem) {
   double largest = 0;
-  for (std::size_t i = 0; i + dimension <= values.size(); i += dimension) {
+  for (std::size_t i = 0; i < values.size(); i += problem.components.size()) {
     double square = 0;
-    for (int d = 0; d < dimension; ++d) square += values[i + d] * values[i + d];
+    for (int d = 0; d < problem.dimension; ++d) square += values[i + d] * values[i + d];
     largest = std::max(largest, square);
   }
   return std::sqrt(largest);
@@ -138,7 +139,7 @@ void Equilibrium::add_solids(const StaticState& state, const StaticState& previo
     }
     const SolidOutput output{points_[s].stress, points_[s].variable};
     const auto add = [&](const ElementValues& element) { system_.add(element.dofs, element.matrix, element.force); };
-    const auto inverted = evaluate_solids(set, problem_.mesh, problem_.dimension, input, wanted, output, add);
+    const auto inverted = evaluate_solids(set, problem_.mesh, input, wanted, output, add);
     if (!cell_inside_out_) cell_inside_out_ = inverted;
   }
 }
@@ -192,8 +193,8 @@ ForceFigures Equilibrium::forces(const StaticState& state, const StaticState& pr
   ForceFigures figures{.reference = largest_entry(relations_.forces(state.relations))};
   if (contact_) figures.reference = std::max(figures.reference, largest_entry(contact_->forces(state.patches)));
   // displacements that went to zero leave the round-off of those before them; a body that turns has that of its turn
-  const double moved = std::max({largest_vector(state.displacement, problem_.dimension),
-                                 largest_vector(previous.displacement, problem_.dimension), vanishing_displacement * extent_});
+  const double moved = std::max({longest_displacement(state.displacement, problem_),
+                                 longest_displacement(previous.displacement, problem_), vanishing_displacement * extent_});
   const std::vector<SparseMatrix::RowSize> rows = system_.matrix().row_sizes(system_.first_multiplier());
   for (std::size_t dof = 0; dof < problem_.n_dofs(); ++dof) {
     const double unbalanced = std::abs(residual[dof] - external_[dof]);
@@ -217,8 +218,8 @@ ForceFigures Equilibrium::forces(const StaticState& state, const StaticState& pr
 }
 
 MotionFigures Equilibrium::motion(std::span<const double> increment, const StaticState& state) const {
-  return {.increment = largest_vector(increment, problem_.dimension),
-          .whole = largest_vector(state.displacement, problem_.dimension),
+  return {.increment = longest_displacement(increment, problem_),
+          .whole = longest_displacement(state.displacement, problem_),
           .vanishing = contact_ ? vanishing_displacement * contact_->smallest_patch() : 0.0};
 }
 

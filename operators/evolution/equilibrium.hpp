@@ -22,7 +22,7 @@ struct PointValues {
 
 /// All unknowns at an instant, and what laws with a memory remember.
 struct StaticState {
-  std::vector<double> displacement;  ///< (n_nodes, dimension)
+  std::vector<double> displacement;  ///< (n_nodes, n_components), with the other unknowns of each node behind it
   Patchwise patches;
   std::vector<double> relations;    ///< multipliers of the loads' relations
   std::vector<PointValues> points;  ///< of each solid set
@@ -37,15 +37,15 @@ class Equilibrium {
   /// Displacements, multipliers, stresses and variables zero; no statuses.
   StaticState natural_state() const;
   /// Take the loads of an instant. Throws LOAD_1, LOAD_6 where they contradict each other.
-  /// @return the change of the imposed displacements, (n_nodes, dimension), 0 elsewhere
+  /// @return the change of what is imposed, (n_nodes, n_components), 0 elsewhere
   std::vector<double> load(double instant, const StaticState& state);
-  /// Contact cells at these displacements; nothing without contact. @param displacement (n_nodes, dimension)
+  /// Contact cells at these displacements; nothing without contact. @param displacement (n_nodes, n_components)
   void pair(std::span<const double> displacement);
   /// Forces, matrix, stresses and variables at a state that is paired. @param previous the last one in equilibrium
   void assemble(const StaticState& state, const StaticState& previous, SolidMatrix wanted);
 
   /// Add a solution of the system to a state. @param step of the imposed displacements
-  /// @return the increment of all displacements, (n_nodes, dimension)
+  /// @return the increment of all unknowns of nodes, (n_nodes, n_components)
   std::vector<double> add(std::span<const double> solution, std::span<const double> step, StaticState& state) const;
   /// The right side of the system, (n_equations). @param step of the imposed displacements
   std::vector<double> right_side(std::span<const double> step) const { return system_.right_side(external_, step); }

@@ -61,14 +61,16 @@ class Reader {
     const auto at = std::find(problem_.components.begin(), problem_.components.end(), component);
     if (at == problem_.components.end())
       fail("LOAD_2", {{"load", label_}, {"component", component}, {"node", node_name(node)}});
-    return std::int64_t{node} * problem_.dimension + (at - problem_.components.begin());
+    return std::int64_t{node} * problem_.n_components() + (at - problem_.components.begin());
   }
 
-  /// Terms on nodes. @param prefix of the components: "D" (DX) or "F" (FX, which acts on DX)
+  /// Terms on nodes: unknowns that are imposed, or forces, of which FX acts on DX.
   TimedValues nodal(const std::vector<LoadTerm>& terms, std::vector<std::int64_t>& dofs) {
     TimedValues values(terms.size());
     for (std::size_t i = 0; i < terms.size(); ++i) {
-      dofs.push_back(dof(terms[i].place, "D" + terms[i].component.substr(1)));
+      std::string component = terms[i].component;
+      if (component.front() == 'F') component.front() = 'D';
+      dofs.push_back(dof(terms[i].place, component));
       set(values, i, terms[i].value, problem_.mesh.point(terms[i].place));
     }
     values.settle();
@@ -135,7 +137,7 @@ std::vector<double> TimedLoad::force(const StaticProblem& problem, double instan
   if (steady) return *steady;
   std::vector<double> sum(problem.n_dofs(), 0.0);
   for (const LoadedCells& loaded : cells)
-    evaluate_loads(loaded.set, problem.mesh, problem.dimension, problem.mesh.coordinates, loaded.values.at(instant), false,
+    evaluate_loads(loaded.set, problem.mesh, problem.mesh.coordinates, loaded.values.at(instant), false,
                    [&](const ElementValues& element) {
                      for (std::size_t i = 0; i < element.dofs.size(); ++i) sum[element.dofs[i]] += element.force[i];
                    });

@@ -63,16 +63,16 @@ struct TimedLoad {
   std::optional<StudyFunction> function;
   std::vector<LoadedCells> cells;        ///< dead: on the initial geometry
   std::vector<LoadedCells> following;    ///< pressures on the current geometry (TYPE_CHARGE='SUIV')
-  std::vector<std::int64_t> nodal_dofs;  ///< forces on nodes: node * dimension + component
+  std::vector<std::int64_t> nodal_dofs;  ///< forces on nodes: node * n_components + component
   TimedValues nodal;                     ///< of `nodal_dofs`
-  std::vector<std::int64_t> dofs;        ///< imposed displacements
+  std::vector<std::int64_t> dofs;        ///< imposed displacements and other unknowns
   TimedValues values;                    ///< of `dofs`
   std::vector<DofRelation> relations;
   TimedValues relation_values;
-  std::optional<std::vector<double>> steady;  ///< the dead forces at multiplier 1, (n_nodes, dimension), unless they vary
+  std::optional<std::vector<double>> steady;  ///< the dead forces at multiplier 1, (n_nodes, n_components), unless they vary
 
   double multiplier(double instant) const { return function ? function->value("INST", instant) : 1.0; }
-  /// Dead forces at multiplier 1, (n_nodes, dimension).
+  /// Dead forces at multiplier 1, (n_nodes, n_components).
   std::vector<double> force(const StaticProblem& problem, double instant) const;
 };
 

@@ -35,7 +35,7 @@ std::vector<Coupling> Relations::couplings() const {
   for (std::size_t r = 0; r < relations_.size(); ++r)
     for (const std::int64_t dof : relations_[r].row->dofs)
       couplings.push_back({static_cast<std::int32_t>(first + static_cast<std::int64_t>(r)),
-                           static_cast<std::int32_t>(dof / problem_.dimension)});
+                           static_cast<std::int32_t>(dof / problem_.n_components())});
   return couplings;
 }
 

@@ -22,9 +22,9 @@ class Relations {
   std::vector<Coupling> couplings() const;
   /// Add multiplier * coefficient to the forces and the sum of coefficient * displacement to the multipliers' rows.
   void assemble(std::span<const double> multipliers, std::span<const double> displacement, System& system) const;
-  /// Forces of the multipliers, (n_nodes, dimension).
+  /// Forces of the multipliers, (n_nodes, n_components).
   std::vector<double> forces(std::span<const double> multipliers) const;
-  /// What each relation is to be at an instant. @param imposed (n_nodes, dimension), StaticProblem::imposed_values
+  /// What each relation is to be at an instant. @param imposed (n_nodes, n_components), StaticProblem::imposed_values
   /// Throws LOAD_6 where imposed displacements contradict it.
   std::vector<double> values(double instant, std::span<const double> imposed) const;
 

@@ -12,6 +12,11 @@
 namespace lacon {
 namespace {
 
+/// A field that has all of its values says so by an empty mask.
+void clear_if_whole(Field& field) {
+  if (std::all_of(field.present.begin(), field.present.end(), [](std::uint8_t p) { return p != 0; })) field.present.clear();
+}
+
 /// Fill a field at integration points from the values of the solid sets, (cells, points, components of the set). Cells are in
 /// ascending order, whatever set they belong to; a set without components is left out.
 void fill_points(Field& field, const StaticProblem& problem,
@@ -50,7 +55,7 @@ void fill_points(Field& field, const StaticProblem& problem,
     }
     field.offset.push_back(field.offset.back() + static_cast<std::int64_t>(n_points));
   }
-  if (std::all_of(field.present.begin(), field.present.end(), [](std::uint8_t p) { return p != 0; })) field.present.clear();
+  clear_if_whole(field);
 }
 
 std::vector<std::string> stress_names(const ElementSet& set) { return {set.row->stress.begin(), set.row->stress.end()}; }
@@ -114,23 +119,24 @@ FieldMakers fields_of(const Present& present) {
 Field displacement_field(const StaticProblem& problem, const StaticState& state) {
   Field field{.name = "DEPL", .quantity = "DEPL_R", .location = Location::nodes, .components = problem.components};
   if (problem.contact) field.components.emplace_back("LAGS_C");
-  const std::size_t width = field.components.size(), dimension = problem.dimension;
+  const std::size_t width = field.components.size(), own = problem.components.size();
   std::vector<std::int32_t> row(problem.mesh.n_nodes(), -1);
   for (std::size_t node = 0; node < problem.mesh.n_nodes(); ++node) {
-    if (!problem.exists[node * dimension]) continue;
+    if (!problem.exists[node * own]) continue;
     row[node] = static_cast<std::int32_t>(field.support.size());
     field.support.push_back(static_cast<std::int32_t>(node));
     for (std::size_t c = 0; c < width; ++c) {
-      field.values.push_back(c < dimension ? state.displacement[node * dimension + c] : 0.0);
-      if (problem.contact) field.present.push_back(c < dimension);
+      field.values.push_back(c < own ? state.displacement[node * own + c] : 0.0);
+      field.present.push_back(c < own && problem.exists[node * own + c]);
     }
   }
   if (problem.contact)
     for (std::size_t p = 0; p < problem.mesh.patches->size(); ++p)
       for (const std::int32_t node : problem.mesh.patches->carriers[p]) {
-        field.at(row[node], dimension) = state.patches.lambda[p];
-        field.present[row[node] * width + dimension] = 1;
+        field.at(row[node], own) = state.patches.lambda[p];
+        field.present[row[node] * width + own] = 1;
       }
+  clear_if_whole(field);
   return field;
 }
 
@@ -150,7 +156,7 @@ StaticState archived_state(const StaticProblem& problem, const Base& base, const
   if (result.mesh != problem.model.mesh)
     fail("EVOLUTION_1", {{"first", "ETAT_INIT/EVOL_NOLI"}, {"second", "MODELE"}, {"what", "meshes"}});
   StaticState state;
-  state.displacement = nodal_displacements(problem.mesh, base.field(result, "DEPL", order), problem.dimension);
+  state.displacement = nodal_values(problem.mesh, base.field(result, "DEPL", order), problem.components);
   for (std::size_t dof = 0; dof < problem.n_dofs(); ++dof)
     if (!problem.exists[dof]) state.displacement[dof] = 0;
   const Field stress = base.field(result, "SIEF_ELGA", order);

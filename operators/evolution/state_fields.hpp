@@ -21,7 +21,7 @@ using FieldMakers = std::map<std::string, std::function<Field()>>;
 /// Those that this computation has. What `present` refers to must outlive them.
 FieldMakers fields_of(const Present& present);
 
-/// Displacements, with LAGS_C on the carriers of the patches, equal on those of one patch.
+/// Displacements and the other unknowns of nodes, with LAGS_C on the carriers of the patches, equal on those of one patch.
 Field displacement_field(const StaticProblem& problem, const StaticState& state);
 /// Stresses at the integration points of the solid elements.
 Field stress_field(const StaticProblem& problem, const StaticState& state);

@@ -13,19 +13,21 @@
 namespace lacon {
 namespace {
 
-/// The degrees of freedom that the elements' nodes have: of every element the displacements of the model's space.
+/// The degrees of freedom that the elements' nodes have.
 void find_dofs(StaticProblem& problem) {
-  for (const std::string& name : problem.model.elements) {
-    const catalog::ElementRow* row = problem.registry->find_element(name);
-    if (!row) fail("PLUGIN_4", {{"element", name}});
-    problem.components.assign(row->dofs.begin(), row->dofs.end());
-  }
+  const std::vector<std::string>& all = problem.components = node_unknowns(problem.model, *problem.registry);
   problem.dimension = problem.model.dimension;
-  problem.exists.assign(problem.mesh.n_nodes() * problem.dimension, 0);
+  problem.exists.assign(problem.mesh.n_nodes() * all.size(), 0);
+  std::vector<std::vector<std::size_t>> columns;  // of each element
+  for (const std::string& name : problem.model.elements) {
+    columns.emplace_back();
+    for (const std::string_view dof : problem.registry->find_element(name)->dofs)
+      columns.back().push_back(static_cast<std::size_t>(std::find(all.begin(), all.end(), dof) - all.begin()));
+  }
   for (std::size_t c = 0; c < problem.mesh.n_cells(); ++c) {
     if (problem.model.element[c] < 0) continue;
     for (const std::int32_t node : problem.mesh.cells[c])
-      std::fill_n(problem.exists.begin() + static_cast<std::ptrdiff_t>(node) * problem.dimension, problem.dimension, 1);
+      for (const std::size_t column : columns[problem.model.element[c]]) problem.exists[node * all.size() + column] = 1;
   }
 }
 
@@ -100,7 +102,7 @@ void StaticProblem::following_forces(
     for (const LoadedCells& loaded : load.following) {
       std::vector<double> values = loaded.values.at(instant);
       for (double& value : values) value *= factor;
-      evaluate_loads(loaded.set, mesh, dimension, coordinates, values, with_matrix,
+      evaluate_loads(loaded.set, mesh, coordinates, values, with_matrix,
                      [&](const ElementValues& element) { use(element.dofs, element.force, element.matrix); });
     }
   }
@@ -140,7 +142,7 @@ std::vector<double> StaticProblem::imposed_values(double instant) const {
 }
 
 std::string StaticProblem::dof_name(std::int64_t dof) const {
-  return node_name(dof / dimension) + " " + components[dof % dimension];
+  return node_name(dof / n_components()) + " " + components[dof % n_components()];
 }
 
 StaticProblem read_problem(const Order& order, const Base& base) {
@@ -176,7 +178,7 @@ StaticProblem read_problem(const Order& order, const Base& base) {
   std::int64_t n_multipliers = problem.n_patches();
   for (const TimedLoad& load : problem.loads) n_multipliers += static_cast<std::int64_t>(load.relations.size());
   problem.numbering =
-      number_equations(static_cast<std::int64_t>(problem.mesh.n_nodes()), problem.dimension, free, n_multipliers);
+      number_equations(static_cast<std::int64_t>(problem.mesh.n_nodes()), problem.n_components(), free, n_multipliers);
   return problem;
 }
 

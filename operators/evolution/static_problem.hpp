@@ -17,33 +17,34 @@ namespace lacon {
 struct StaticProblem {
   Mesh mesh;
   Model model;
-  int dimension = 2;                    ///< displacements of a node
-  std::vector<std::string> components;  ///< "DX", "DY"
+  int dimension = 2;                    ///< of the space
+  std::vector<std::string> components;  ///< node_unknowns(): "DX", "DY", "TEMP"
   std::unique_ptr<Registry> registry;
   std::unique_ptr<MaterialField> material_field;
   std::unique_ptr<MaterialTable> materials;
   std::vector<ElementSet> solids;
   std::vector<TimedLoad> loads;
   std::optional<Contact> contact;
-  std::vector<std::uint8_t> exists;   ///< (n_nodes, dimension): the degree of freedom exists
-  std::vector<std::uint8_t> imposed;  ///< (n_nodes, dimension): a load imposes it
+  std::vector<std::uint8_t> exists;   ///< (n_nodes, n_components): the degree of freedom exists
+  std::vector<std::uint8_t> imposed;  ///< (n_nodes, n_components): a load imposes it
   Numbering numbering;
 
+  int n_components() const { return static_cast<int>(components.size()); }
   std::size_t n_dofs() const { return exists.size(); }
   /// Patches that have a multiplier.
   std::int64_t n_patches() const { return contact ? static_cast<std::int64_t>(mesh.patches->size()) : 0; }
   bool has_following_loads() const;
-  /// Dead external forces at an instant, (n_nodes, dimension).
+  /// Dead external forces at an instant, (n_nodes, n_components).
   std::vector<double> dead_force(double instant) const;
   /// Call use(degrees of freedom, force, symmetric part of its derivative by them or nothing) for each element under a
-  /// following pressure, on the geometry displaced by (n_nodes, dimension).
+  /// following pressure, on the displaced geometry. @param displacement (n_nodes, dimension or more), displacements first
   void following_forces(
       double instant, std::span<const double> displacement, bool with_matrix,
       const std::function<void(std::span<const std::int64_t>, std::span<const double>, std::span<const double>)>& use) const;
-  /// Dead and following forces, (n_nodes, dimension).
+  /// Dead and following forces, (n_nodes, n_components).
   std::vector<double> external_force(double instant, std::span<const double> displacement) const;
-  /// Imposed displacements at an instant, (n_nodes, dimension), 0 where none is. Throws LOAD_1 where two loads contradict each
-  /// other.
+  /// Imposed displacements and other unknowns at an instant, (n_nodes, n_components), 0 where none is. Throws LOAD_1 where two
+  /// loads contradict each other.
   std::vector<double> imposed_values(double instant) const;
   std::string dof_name(std::int64_t dof) const;  ///< "N12 DX"
 };

@@ -11,7 +11,7 @@ System::System(const Numbering& numbering, const Ragged<std::int32_t>& elements,
 }
 
 std::int64_t System::equation(std::int64_t unknown) const {
-  return unknown < n_displacements() ? numbering_.equation[unknown] : numbering_.of_patch(unknown - n_displacements());
+  return unknown < n_nodal() ? numbering_.equation[unknown] : numbering_.of_patch(unknown - n_nodal());
 }
 
 void System::make_pattern() { matrix_ = std::make_unique<SparseMatrix>(numbering_, elements_, couplings_, symmetry_); }
@@ -42,10 +42,10 @@ void System::stiffness_is_complete() {
   is_complete_ = true;
 }
 
-bool System::couples_displacements(std::span<const std::int64_t> unknowns, std::span<const double> lower) const {
+bool System::couples_nodes(std::span<const std::int64_t> unknowns, std::span<const double> lower) const {
   for (std::size_t i = 0, at = 0; i < unknowns.size(); ++i)
     for (std::size_t j = 0; j <= i; ++j, ++at)
-      if (lower[at] != 0 && unknowns[i] < n_displacements() && unknowns[j] < n_displacements()) return true;
+      if (lower[at] != 0 && unknowns[i] < n_nodal() && unknowns[j] < n_nodal()) return true;
   return false;
 }
 
@@ -68,7 +68,7 @@ bool System::enter(std::span<const std::int64_t> unknowns, std::span<const doubl
 void System::add(std::span<const std::int64_t> unknowns, std::span<const double> lower, std::span<const double> residual) {
   const bool meets_imposed = enter(unknowns, residual);
   if (lower.empty()) return;
-  if (is_complete_ && (!matrix_->is_symmetric() || couples_displacements(unknowns, lower))) save_stiffness();
+  if (is_complete_ && (!matrix_->is_symmetric() || couples_nodes(unknowns, lower))) save_stiffness();
   matrix_->add(equations_, lower);
   if (!meets_imposed) return;
   for (std::size_t i = 0, at = 0; i < unknowns.size(); ++i)

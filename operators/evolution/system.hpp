@@ -9,15 +9,15 @@
 
 namespace lacon {
 
-/// Unknowns are counted as displacements (node * dimension + component) and behind them the multipliers of the patches, then
-/// those of relations; only some of them have an equation.
+/// Unknowns are counted as those of nodes (node * n_components + component, displacements first) and behind them the
+/// multipliers of the patches, then those of relations; only some of them have an equation.
 class System {
  public:
   System(const Numbering& numbering, const Ragged<std::int32_t>& elements, Symmetry symmetry = Symmetry::symmetric);
 
-  std::int64_t n_displacements() const { return static_cast<std::int64_t>(numbering_.equation.size()); }
-  std::int64_t multiplier(std::int64_t patch) const { return n_displacements() + patch; }
-  /// Of a vertex of the numbering: a node's displacement, or a multiplier.
+  std::int64_t n_nodal() const { return static_cast<std::int64_t>(numbering_.equation.size()); }
+  std::int64_t multiplier(std::int64_t patch) const { return n_nodal() + patch; }
+  /// Of a vertex of the numbering: a node's, or a multiplier.
   std::int64_t unknown(std::int64_t vertex, int component) const {
     return vertex < numbering_.n_nodes ? vertex * numbering_.n_components + component : multiplier(vertex - numbering_.n_nodes);
   }
@@ -36,7 +36,7 @@ class System {
                        std::span<const double> residual);
   void add_diagonal(std::int64_t unknown, double value);
 
-  std::vector<double>& residual() { return residual_; }  ///< (displacements, multipliers)
+  std::vector<double>& residual() { return residual_; }  ///< (unknowns of nodes, multipliers)
   const std::vector<double>& residual() const { return residual_; }
   const SparseMatrix& matrix() const { return *matrix_; }
   /// The first equation of a multiplier.
@@ -44,7 +44,7 @@ class System {
 
   /// The right side -residual + external - K du of the imposed displacements, (n_equations).
   /// @param external external forces, and behind them what the multipliers' rows are to be; 0 where it ends early
-  /// @param step (n_displacements): change of the imposed displacements, 0 elsewhere
+  /// @param step (n_nodal): change of what is imposed, 0 elsewhere
   std::vector<double> right_side(std::span<const double> external, std::span<const double> step) const;
 
  private:
@@ -55,9 +55,9 @@ class System {
   void make_pattern();
   /// Add a residual, and set `equations_`. @return whether some of the unknowns are imposed
   bool enter(std::span<const std::int64_t> unknowns, std::span<const double> residual);
-  /// Whether an element matrix has entries between displacements.
-  bool couples_displacements(std::span<const std::int64_t> unknowns, std::span<const double> lower) const;
-  /// Before an element whose rows are those of displacements is added: remember the stiffness that it is added to.
+  /// Whether an element matrix has entries between unknowns of nodes.
+  bool couples_nodes(std::span<const std::int64_t> unknowns, std::span<const double> lower) const;
+  /// Before an element whose rows are those of nodes is added: remember the stiffness that it is added to.
   void save_stiffness();
 
   const Numbering& numbering_;

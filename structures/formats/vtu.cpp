@@ -86,11 +86,34 @@ void write_groups(std::ostream& out, const char* keyword, const std::vector<Grou
   }
 }
 
+/// The parts of a field with their names. Displacements are an array of their own, for viewers take three components for a
+/// vector.
+std::vector<std::pair<std::string, FieldPart>> arrays_of(const Field& field, const std::string& name) {
+  std::vector<std::pair<std::string, FieldPart>> arrays;
+  for (const FieldPart& part : parts_of(field)) {
+    const auto moves = [&](std::size_t k) {
+      const std::string& component = field.components[k];
+      return component == "DX" || component == "DY" || component == "DZ";
+    };
+    FieldPart displacements{{}, part.rows}, others{{}, part.rows};
+    for (const std::size_t k : part.components) (moves(k) ? displacements : others).components.push_back(k);
+    std::string own = part_name(field, part, name);
+    if (displacements.components.empty() || others.components.empty()) {
+      arrays.emplace_back(std::move(own), part);
+      continue;
+    }
+    arrays.emplace_back(own, std::move(displacements));
+    for (const std::size_t k : others.components) own += "_" + field.components[k];
+    arrays.emplace_back(std::move(own), std::move(others));
+  }
+  return arrays;
+}
+
 /// The arrays of one field over `n` nodes or cells.
 void write_field(std::ostream& out, const NamedField& named, std::size_t n) {
   const Field& field = named.field;
   const bool mean = !field.offset.empty();
-  for (const FieldPart& part : parts_of(field)) {
+  for (const auto& [own_name, part] : arrays_of(field, named.name)) {
     std::vector<std::string> components;
     for (const std::size_t k : part.components) components.push_back(field.components[k]);
     const std::size_t n_own = components.size();
@@ -110,7 +133,7 @@ void write_field(std::ostream& out, const NamedField& named, std::size_t n) {
         values[at * width + k] = sum / static_cast<double>(end - first);
       }
     }
-    const std::string name = part_name(field, part, named.name) + (mean ? "_MEAN" : "");
+    const std::string name = own_name + (mean ? "_MEAN" : "");
     write_array(out, name, values, components);
     if (std::find(exists.begin(), exists.end(), 0) != exists.end()) write_array(out, name + "_EXISTS", exists);
   }

@@ -79,7 +79,7 @@ void assemble(benchmark::State& state, CellType type) {
   std::vector<std::int64_t> equations;
   for (auto run : state)
     for (const ElementSet& set : body.sets)
-      evaluate_solids(set, body.mesh, 3, {.displacement = displacement}, SolidMatrix::tangent, {},
+      evaluate_solids(set, body.mesh, {.displacement = displacement}, SolidMatrix::tangent, {},
                       [&](const ElementValues& element) {
                         body.equations_of(body.mesh.cells[element.cell], equations);
                         matrix.add(equations, element.matrix);

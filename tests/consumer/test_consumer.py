@@ -15,8 +15,10 @@ HERE = pathlib.Path(__file__).resolve().parent
 sys.path[:0] = [str(HERE.parent / "operators"), str(HERE.parent.parent / "commands/studies")]
 import lacon_test  # noqa: E402
 from lacon_test import concept  # noqa: E402
-from meshes import block, write_med  # noqa: E402
+from meshes import block, union, weld, write_med  # noqa: E402
 from results import Result  # noqa: E402
+
+SIDES = {"left": "LEFT", "right": "RIGHT", "bottom": "BASE", "top": "TOP"}
 
 made = {}  # by setUpModule: the folders that every test uses
 
@@ -31,7 +33,8 @@ def setUpModule():
     folder = tempfile.TemporaryDirectory(prefix="lacon consumer ")  # a space in its name, as folders of users have
     unittest.addModuleCleanup(folder.cleanup)
     root = pathlib.Path(folder.name)
-    prefix, build, laws = root / "prefix", root / "build", root / "laws"
+    prefix, build = root / "prefix", root / "build"
+    others = {name: root / name for name in ("laws", "voids")}
     flags = "-fsanitize=address,undefined" if os.environ["LACON_SANITIZE"] == "ON" else ""
     cmake = os.environ["LACON_CMAKE"]
     settings = [f"-DCMAKE_PREFIX_PATH={prefix}", f"-DCMAKE_CXX_FLAGS={flags}", f"-DCMAKE_BUILD_TYPE={os.environ['LACON_BUILD_TYPE']}",
@@ -40,15 +43,15 @@ def setUpModule():
         [cmake, "--install", os.environ["LACON_BINARY_DIR"], "--prefix", prefix],
         [cmake, "-G", "Ninja", "-S", HERE / "plane_stress", "-B", build, *settings],
         [cmake, "--build", build],
-        [cmake, "-G", "Ninja", "-S", HERE / "laws", "-B", laws, *settings],
-        [cmake, "--build", laws],
+        *([cmake, "-G", "Ninja", "-S", HERE / name, "-B", folder, *settings] for name, folder in others.items()),
+        *([cmake, "--build", folder] for folder in others.values()),
     ):
         done = run(*command)
         if done.returncode:
             raise AssertionError(f"{command} failed:\n{done.stdout[-4000:]}\n{done.stderr[-4000:]}")
     shutil.copy(build / "pull", prefix / "bin/pull")  # beside the operators: it finds the built-in plug-ins as they do
     made.update(root=root, prefix=prefix, build=build, plugin=build / "lib/lacon/plugins/plane_stress",
-                laws=laws / "lib/lacon/plugins/laws")
+                **{name: folder / "lib/lacon/plugins" / name for name, folder in others.items()})
 
 
 def copy_of_plugin(name="plane_stress"):
@@ -207,9 +210,25 @@ class Operators(lacon_test.OperatorTest):
                             environment=self.path_of(folder))
 
 
-class Laws(lacon_test.OperatorTest):
+class Launched(lacon_test.OperatorTest):
+    """The installed launcher with the plug-in `plugin`."""
+
+    plugin = ""
+
+    def launch(self, *arguments):
+        return run(made["prefix"] / "bin/lacon", *arguments, cwd=self.folder, env={**os.environ, "LACON_PLUGIN_PATH": str(made[self.plugin])})
+
+    def launch_study(self, mesh, text):
+        """@return the launcher's process; the base is study.base"""
+        write_med(self.folder / "mesh.med", mesh)
+        (self.folder / "study.comm").write_text(text, encoding="utf-8")
+        return self.launch("study.comm", "--unit", "20=mesh.med", "--base", "study.base", "--fresh")
+
+
+class Laws(Launched):
     """The installed launcher with a plug-in that brings laws: a square of plane strain, stretched along x by u_x = strain x."""
 
+    plugin = "laws"
     LAMBDA, MU, YC = 60.0, 40.0, 0.5
     STRAINS = (0.02, 0.04, 0.01)  # stretched, further, and partly released
 
@@ -229,15 +248,10 @@ CALC_CHAMP(reuse=R, RESULTAT=R, DEFORMATION="EPSI_ELGA", FORCE="REAC_NODA")
 FIN()
 """
 
-    def launch(self, *arguments):
-        return run(made["prefix"] / "bin/lacon", *arguments, cwd=self.folder, env={**os.environ, "LACON_PLUGIN_PATH": str(made["laws"])})
-
     def study(self, behaviour):
         """@return the launcher's process; the base is study.base"""
-        write_med(self.folder / "mesh.med", block("QUAD8", np.array([0, 0.4, 1.0]), np.array([0, 0.7, 1.0]), None, "BODY",
-                                                  {"left": "LEFT", "right": "RIGHT", "bottom": "BASE", "top": "TOP"}))
-        (self.folder / "study.comm").write_text(self.STUDY.format(self, self.STRAINS, behaviour), encoding="utf-8")
-        return self.launch("study.comm", "--unit", "20=mesh.med", "--base", "study.base", "--fresh")
+        mesh = block("QUAD8", np.array([0, 0.4, 1.0]), np.array([0, 0.7, 1.0]), None, "BODY", SIDES)
+        return self.launch_study(mesh, self.STUDY.format(self, self.STRAINS, behaviour))
 
     def stresses(self, behaviour):
         """At each instant SIXX, which is the same at every point."""
@@ -284,6 +298,81 @@ FIN()
         done = self.study("RELATION='DAMAGE', DEFORMATION='INFINITESIMAL'")
         self.assertEqual(done.returncode, 2, done.stderr)
         self.assertIn("<BEHAVIOUR_1> there is no DAMAGE/INFINITESIMAL", done.stderr)
+
+
+class Unknowns(Launched):
+    """Nodes with a PHI beside their displacements, in the part VOIDS of a layer: u_y = 0 everywhere, pulled along x by PULL."""
+
+    plugin = "voids"
+    B, XI, ALPHA, PULL = 20.0, 50.0, 2.0, 7.0
+    STIFF = 140.0  # lambda + 2 mu
+    # sigma = STIFF u' + B phi = PULL and ALPHA phi'' = XI phi + B u': far from what holds phi it is UNIFORM
+    OF_VOIDS = XI - B**2 / STIFF
+    UNIFORM = -B * PULL / (STIFF * OF_VOIDS)
+
+    STUDY = """
+DEBUT(ERREUR=_F(ALARME="EXCEPTION"))
+MESH = LIRE_MAILLAGE(UNITE=20)
+MODEL = AFFE_MODELE(MAILLAGE=MESH, AFFE=(_F(TOUT="OUI", PHENOMENE="MECANIQUE", MODELISATION="D_PLAN"),
+                                         _F(GROUP_MA=("VOIDS", "LEFT"), PHENOMENE="MECANIQUE", MODELISATION="D_VOIDS")))
+MATTER = DEFI_MATERIAU(ELAS=_F(E=104.0, NU=0.3), VOIDS=_F(B={0.B}, XI={0.XI}, ALPHA={0.ALPHA}))
+FIELD = AFFE_MATERIAU(MAILLAGE=MESH, AFFE=_F(TOUT="OUI", MATER=MATTER))
+TIMES = DEFI_LIST_REEL(VALE=(0.0, 1.0, 2.0))
+RAMP = DEFI_FONCTION(NOM_PARA="INST", VALE=(0.0, 0.0, 2.0, 1.0))
+LAYER = AFFE_CHAR_CINE(MODELE=MODEL, MECA_IMPO=(_F(GROUP_MA="LEFT", DX=0), _F(GROUP_MA=("BASE", "TOP"), DY=0)))
+PULLED = AFFE_CHAR_MECA(MODELE=MODEL, PRES_REP=_F(GROUP_MA="RIGHT", PRES=-{0.PULL}))
+{1}
+R = STAT_NON_LINE(MODELE=MODEL, CHAM_MATER=FIELD, INCREMENT=_F(LIST_INST=TIMES),
+                  EXCIT=(_F(CHARGE=LAYER), _F(CHARGE=PULLED, FONC_MULT=RAMP), {2}))
+AGAIN = STAT_NON_LINE(MODELE=MODEL, CHAM_MATER=FIELD, INCREMENT=_F(LIST_INST=TIMES), ETAT_INIT=_F(EVOL_NOLI=R, INST=1.0),
+                      EXCIT=(_F(CHARGE=LAYER), _F(CHARGE=PULLED, FONC_MULT=RAMP), {2}))
+CALC_CHAMP(reuse=R, RESULTAT=R, FORCE="REAC_NODA")
+FIN()
+"""
+
+    def result(self, x, plain=(), load="", excit=""):
+        """@param x grid lines of the part with voids @param plain those of a part without behind it @param load, excit held PHI"""
+        parts = [block("QUAD8", np.array(s), np.array([0, 0.3, 1.0]), None, name, {**SIDES, "right": right, "left": left})
+                 for s, name, left, right in ((x, "VOIDS", "LEFT", "JOINT" if plain else "RIGHT"), (plain, "PLAIN", "JOINT", "RIGHT")) if len(s)]
+        done = self.launch_study(weld(union(parts)), self.STUDY.format(self, load, excit))
+        self.assertEqual(done.returncode, 0, done.stdout[-3000:] + done.stderr[-3000:])
+        return Result(self.folder / "study.base", "R")
+
+    def test_it_takes_part_where_its_elements_are_and_is_nowhere_else(self):
+        """Without anything that holds PHI it is uniform, which any mesh represents."""
+        result = self.result([0, 0.4, 1.0], plain=(1.0, 1.5, 2.0))
+        inside = result.points[:, 0] <= 1 + 1e-12
+        for label in ("R", "AGAIN"):
+            result = Result(self.folder / "study.base", label)
+            x, last = result.points[:, 0], result.orders[-1]
+            np.testing.assert_allclose(result.where_present("DEPL", last, "PHI"), np.full(inside.sum(), self.UNIFORM), rtol=1e-10)
+            exact = self.PULL / self.STIFF * x - self.B * self.UNIFORM / self.STIFF * np.minimum(x, 1)
+            np.testing.assert_allclose(result.at_nodes("DEPL", last, "DX"), exact, rtol=1e-10, atol=1e-12)
+            np.testing.assert_allclose(result.field("SIEF_ELGA", last)[1]["SIXX"], self.PULL, rtol=1e-10)
+        result = Result(self.folder / "study.base", "R")
+        held = result.at_nodes("REAC_NODA", 2, "DX")
+        np.testing.assert_allclose([held[x == 0].sum(), np.abs(held[x > 0]).max()], [-self.PULL, 0], atol=1e-10)
+
+    def test_where_it_is_held_it_forms_boundary_layers(self):
+        """phi = UNIFORM (1 - cosh(k (x - 1/2)) / cosh(k / 2)) between x = 0 and 1, where DDL_IMPO holds it: errors go as h^3."""
+        k = np.sqrt(self.OF_VOIDS / self.ALPHA)
+        errors = []
+        for n in (8, 16):
+            result = self.result(np.linspace(0, 1, n + 1), load="HELD = AFFE_CHAR_MECA(MODELE=MODEL, DDL_IMPO=_F(GROUP_MA=('LEFT', 'RIGHT'), PHI=0))",
+                                 excit="_F(CHARGE=HELD)")
+            x = result.points[:, 0]
+            phi = self.UNIFORM * (1 - np.cosh(k * (x - 0.5)) / np.cosh(k / 2))
+            errors.append(np.abs(result.at_nodes("DEPL", 2, "PHI") - phi).max() / abs(self.UNIFORM))
+            longer = (self.PULL - self.B * self.UNIFORM * (1 - np.tanh(k / 2) / (k / 2))) / self.STIFF
+            np.testing.assert_allclose(result.at_nodes("DEPL", 2, "DX")[x == 1], longer, rtol=(k / n)**4)
+        self.assertLess(errors[1], (k / 16)**3)
+        self.assertGreater(errors[0] / errors[1], 2**2.8)
+
+    def test_elements_without_it_refuse_it(self):
+        done = self.launch_study(block("QUAD8", np.array([0, 1.0]), np.array([0, 1.0]), None, "PLAIN", SIDES), self.STUDY.replace(
+            '("VOIDS", "LEFT")', '"LEFT"').format(self, "HELD = AFFE_CHAR_MECA(MODELE=MODEL, DDL_IMPO=_F(GROUP_MA='RIGHT', PHI=0))", "_F(CHARGE=HELD)"))
+        self.assertEqual(done.returncode, 2, done.stderr)
+        self.assertIn("<CHARGE_3>", done.stderr)
 
 
 if __name__ == "__main__":

@@ -319,6 +319,20 @@ class ImprResu(OperatorTest):
         self.assertEqual(cells["GROUP_MA BODY"].tolist(), [0, 1, 0, 1])
         self.assertEqual(nodes["GROUP_NO CORNER <&>"].tolist(), [0, 0, 0, 0, 0, 1])
 
+    def test_vtu_keeps_displacements_apart_from_other_unknowns(self):
+        """Three components would be a vector that bodies are displaced by."""
+        values = np.arange(24.0).reshape(6, 4)
+        present = np.ones((6, 4), int)
+        present[2:, 3] = 0
+        self.write_result("result_4", "mesh_1", INSTANTS[:1], {"DEPL": {0: {
+            "quantity": "DEPL_R", "location": "NOEU", "components": ["DX", "DY", "PHI", "LAGS_C"], "support": range(6), "values": values,
+            "present": present}}}, label="V")
+        self.assertEqual(self.print({"RESULTAT": concept("result_4")}, "VTU").status, 0)
+        nodes = self.vtu(self.collection()[0][2])["PointData"]
+        np.testing.assert_array_equal(nodes["DEPL"], np.column_stack([values[:, :2], np.zeros(6)]))
+        np.testing.assert_array_equal(nodes["DEPL_PHI"], values[:, 2])
+        np.testing.assert_array_equal(nodes["DEPL_LAGS_C"], [3, 7] + [np.nan] * 4)
+
     def test_vtu_of_several_commands_share_the_list(self):
         self.print(self.MA, "VTU")
         self.print({**self.U, "NUME_ORDRE": [2]}, "VTU", append=True)

@@ -67,7 +67,7 @@ struct Bar : testing::Test {
     std::vector<std::int64_t> equations;
     for (const ElementSet& set : sets) {
       std::vector<double> stress(set.cells.size() * set.n_stress()), variable(set.cells.size() * set.n_variables());
-      const auto inside_out = evaluate_solids(set, mesh, 3, {.displacement = displacement}, wanted, {stress, variable},
+      const auto inside_out = evaluate_solids(set, mesh, {.displacement = displacement}, wanted, {stress, variable},
                                               [&](const ElementValues& element) {
                                                 equations.clear();
                                                 for (const std::int32_t node : mesh.cells[element.cell])

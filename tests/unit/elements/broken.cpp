@@ -5,6 +5,8 @@ namespace {
 
 [[maybe_unused]] void nothing(const lacon_solid_batch*) {}
 [[maybe_unused]] const char* const none[] = {nullptr};
+[[maybe_unused]] const char* const twice[] = {"DX", "DY", "DX", nullptr};
+[[maybe_unused]] const char* const foreign[] = {"DX", "DY", "TEMP", nullptr};
 
 [[maybe_unused]] const lacon_kernel kernels[] = {{
 #if defined(BROKEN_UNNAMED)
@@ -15,6 +17,10 @@ namespace {
     "k", 9, nothing, nullptr, nullptr, none
 #elif defined(BROKEN_PARAMETERS)
     "k", LACON_SOLID, nothing, nullptr, nullptr, nullptr
+#elif defined(BROKEN_TWICE)
+    "k", LACON_SOLID, nothing, nullptr, nullptr, none, nullptr, 0, 0, 0, twice
+#elif defined(BROKEN_FOREIGN)
+    "k", LACON_SOLID, nothing, nullptr, nullptr, none, nullptr, 0, 0, 0, foreign
 #else
     "k", LACON_SOLID, nothing, nullptr, nullptr, none
 #endif

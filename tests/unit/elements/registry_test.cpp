@@ -17,6 +17,7 @@ namespace {
 namespace fs = std::filesystem;
 using lacon::Registry;
 using testing::AllOf;
+using testing::ElementsAre;
 using testing::HasSubstr;
 
 /// A folder for plug-ins that goes away at the end.
@@ -126,8 +127,8 @@ TEST_F(Plugins, RowsOfAPluginServeItsCells) {
   EXPECT_EQ(element->role, lacon::catalog::Role::solid);
   EXPECT_EQ(element->geometry, lacon::catalog::Geometry::plane);
   EXPECT_EQ(element->stress_state, lacon::catalog::StressState::plane_strain);
-  EXPECT_THAT(element->dofs, testing::ElementsAre("DX", "DY"));
-  EXPECT_THAT(element->stress, testing::ElementsAre("SIXX", "SIYY", "SIZZ", "SIXY"));
+  EXPECT_THAT(element->dofs, ElementsAre("DX", "DY"));
+  EXPECT_THAT(element->stress, ElementsAre("SIXX", "SIYY", "SIZZ", "SIXY"));
   EXPECT_STREQ(registry.kernel(*element, "ELAS/PETIT", LACON_SOLID).name, "plane_strain_small_elastic");
   EXPECT_THAT(registry.modelisations(), testing::IsSupersetOf({"D_PLAN", "D_TEST"}));
 }
@@ -198,6 +199,9 @@ TEST_F(Plugins, BadRowsAreRefusedWithFileElementAndReason) {
       {row("dofs", "dofs = ['DX', 'DX']"), "PLUGIN_2", "'DX' twice"},
       {row("dofs", "dofs = ['DY', 'DX']"), "PLUGIN_2", "its geometry, 'DX', 'DY', in this order"},
       {row("dofs", "dofs = ['DX']"), "PLUGIN_2", "its geometry, 'DX', 'DY', in this order"},
+      {row("dofs", "dofs = ['TEMP', 'DX', 'DY']"), "PLUGIN_2", "its geometry, 'DX', 'DY', in this order"},
+      {row("dofs", "dofs = ['DX', 'DY', 'DZ']"), "PLUGIN_2", "'DZ', which is no unknown of elements of its geometry"},
+      {row("dofs", "dofs = ['DX', 'DY', 'LAGS_C']"), "PLUGIN_2", "'LAGS_C', which is no unknown of elements"},
       {row("stress", "stress = ['SIWW']"), "PLUGIN_2", "'SIWW', which is no component of SIEF_R"},
       {row("kernels"), "PLUGIN_2", "'kernels'"},
       {row("kernels", "kernels = { 'ELAS/PETIT' = 'solid' }"), "PLUGIN_2", "'plug-in/kernel'"},
@@ -299,6 +303,7 @@ TEST_F(Plugins, BadLibrariesAreRefusedWithTheirFileWhenAKernelIsAskedFor) {
       {"broken_kind", "of the unknown kind 9"},
       {"broken_parameters", "no list of parameters"},
       {"broken_symbol", "undefined symbol"},
+      {"broken_twice", "'k' names the unknown 'DX' twice"},
   };
   for (const auto& [name, reason] : cases) {
     const fs::path plugin = write(name, row("kernels", "kernels = { 'ELAS/PETIT' = '" + name + "/k' }"));
@@ -309,6 +314,29 @@ TEST_F(Plugins, BadLibrariesAreRefusedWithTheirFileWhenAKernelIsAskedFor) {
     EXPECT_EQ(message.id, "PLUGIN_1") << name;
     EXPECT_THAT(message.text, AllOf(HasSubstr((plugin / ("lib" + name + ".so")).string()), HasSubstr(reason))) << name;
   }
+}
+
+TEST_F(Plugins, AKernelWorksOnUnknownsOfItsElement) {
+  const std::string kernels =
+      "kernels = { 'ELAS/PETIT' = 'broken_foreign/k', 'ELAS/PETIT_REAC' = 'solid/plane_strain_updated_elastic' }";
+  fs::path plugin = write("broken_foreign", row("kernels", kernels));
+  place_library("broken_foreign", "broken_foreign");
+  {
+    Registry registry(std::vector{plugin});
+    const auto message =
+        message_of([&] { registry.kernel(*registry.find_element("D_TEST/TRIA3"), "ELAS/PETIT", LACON_SOLID); });
+    EXPECT_EQ(message.id, "PLUGIN_3");
+    EXPECT_THAT(message.text,
+                AllOf(HasSubstr("libbroken_foreign.so"), HasSubstr("'TEMP', which is none of the element's 'dofs'")));
+  }
+  std::string wide = row("kernels", kernels);
+  wide.replace(wide.find("'DY']"), 5, "'DY', 'PSI', 'TEMP']");
+  plugin = write("broken_foreign", wide);
+  Registry registry(std::vector{plugin});
+  const auto& element = *registry.find_element("D_TEST/TRIA3");
+  EXPECT_THAT(lacon::unknowns_of(element, registry.kernel(element, "ELAS/PETIT", LACON_SOLID)),
+              ElementsAre("DX", "DY", "TEMP"));
+  EXPECT_THAT(lacon::unknowns_of(element, registry.kernel(element, "ELAS/PETIT_REAC", LACON_SOLID)), ElementsAre("DX", "DY"));
 }
 
 TEST_F(Plugins, AMissingOrUnreadableLibraryOrKernelIsRefusedWithTheFile) {

@@ -2,6 +2,9 @@
 #include "lacon/operators/evolution/newton.hpp"
 
 #include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <filesystem>
 
 #include "lacon/assembly/mumps_engine.hpp"
 #include "lacon/catalog/messages.hpp"
@@ -40,6 +43,41 @@ TEST(Newton, SquaresPressedTogetherAreUniform) {
   EXPECT_TRUE(lines.back().converged());
   expect_uniform(problem, state);
   EXPECT_EQ(solver.equilibrium().n_constraints(state), 1);
+}
+
+/// What elements, pressures, contact and the criteria make of displacements does not depend on what stands beside them.
+TEST(Newton, UnknownsBesideTheDisplacementsChangeNothing) {
+  const std::filesystem::path folder = std::filesystem::temp_directory_path() / ("lacon_wide_" + std::to_string(::getpid()));
+  for (const char* option : {"ELAS/PETIT", "ELAS/GREEN_LAGRANGE"})
+    for (const bool following : {false, true}) {
+      const StaticProblem narrow = pressed_squares(option, following), wide = wide_squares(folder, option, following);
+      EXPECT_EQ(wide.components, (std::vector<std::string>{"DX", "DY", "TEMP"}));
+      EXPECT_EQ(wide.dof_name(8), "N3 TEMP");
+      EXPECT_EQ(wide.numbering.n_equations(), narrow.numbering.n_equations());
+      Newton of_narrow = newton(narrow, 1e-12), of_wide = newton(wide, 1e-12);
+      StaticState state = of_narrow.initial_state(), with_more = of_wide.initial_state();
+      std::vector<IterationReport> lines, more_lines;
+      of_narrow.solve(1.0, state, [&](const IterationReport& line) { lines.push_back(line); });
+      of_wide.solve(1.0, with_more, [&](const IterationReport& line) { more_lines.push_back(line); });
+      ASSERT_EQ(lines.size(), more_lines.size());
+      for (std::size_t i = 0; i < lines.size(); ++i) {
+        EXPECT_EQ(lines[i].maxi, more_lines[i].maxi);
+        EXPECT_EQ(lines[i].rela, more_lines[i].rela);
+        EXPECT_EQ(lines[i].geometry, more_lines[i].geometry);
+      }
+      for (std::size_t node = 0; node < narrow.mesh.n_nodes(); ++node) {
+        for (std::size_t d = 0; d < 2; ++d)
+          EXPECT_EQ(state.displacement[2 * node + d], with_more.displacement[3 * node + d]) << node;
+        EXPECT_EQ(with_more.displacement[3 * node + 2], temperature);
+      }
+      EXPECT_EQ(state.patches.lambda, with_more.patches.lambda);
+      const Field moved = displacement_field(wide, with_more);
+      EXPECT_EQ(moved.components, (std::vector<std::string>{"DX", "DY", "TEMP", "LAGS_C"}));
+      EXPECT_EQ(moved.at(12, 2), temperature);
+      EXPECT_EQ(moved.at(12, 3), state.patches.lambda[0]);
+      EXPECT_FALSE(moved.has(11, 3));
+    }
+  std::filesystem::remove_all(folder);
 }
 
 TEST(Newton, GoingBackLeavesNoTrace) {

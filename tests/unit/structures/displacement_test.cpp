@@ -33,6 +33,14 @@ TEST_F(Displacement, MovesCoordinates) {
   std::vector<double> coordinates = {5};
   lacon::displace(mesh, lacon::nodal_displacements(mesh, field, 2), 2, coordinates);
   EXPECT_EQ(coordinates, moved);
+  const std::vector<std::string> unknowns = {"DX", "DY", "LAGS_C", "TEMP"};  // more than coordinates
+  lacon::displace(mesh, lacon::nodal_values(mesh, field, unknowns), 2, coordinates);
+  EXPECT_EQ(coordinates, moved);
+}
+
+TEST_F(Displacement, StandsBesideOtherUnknowns) {
+  const std::vector<std::string> unknowns = {"DX", "DY", "LAGS_C", "TEMP"};
+  EXPECT_THAT(lacon::nodal_values(mesh, field, unknowns), ElementsAre(0, 0, 0, 0, 0.5, 0, 9, 0, -0.5, 0.25, 9, 0));
 }
 
 }  // namespace
