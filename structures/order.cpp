@@ -94,6 +94,14 @@ std::vector<double> Keywords::reals(std::string_view name) const {
   return items;
 }
 
+Vec3 Keywords::vector(std::string_view name, int dimension) const {
+  std::vector<double> given = reals(name);
+  if (given.size() != static_cast<std::size_t>(dimension))
+    wrong_type(path(name), "as many numbers as the mesh has dimensions, " + std::to_string(dimension));
+  given.resize(3, 0.0);
+  return vector_at(given.data());
+}
+
 std::vector<std::int64_t> Keywords::integers(std::string_view name) const {
   std::vector<std::int64_t> items;
   if (has(name))

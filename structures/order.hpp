@@ -11,6 +11,8 @@
 #include <string_view>
 #include <vector>
 
+#include "lacon/structures/vector.hpp"
+
 namespace lacon {
 
 /// The keywords of a command, or of one occurrence of a factor keyword. Getters throw ORDER_2 where a keyword is missing and
@@ -26,6 +28,8 @@ class Keywords {
   std::string text(std::string_view name) const;
   bool yes(std::string_view name) const { return text(name) == "OUI"; }
   std::vector<double> reals(std::string_view name) const;
+  /// A vector of a plane or of space; throws ORDER_4 where it has not as many numbers as the mesh has dimensions.
+  Vec3 vector(std::string_view name, int dimension) const;
   std::vector<std::int64_t> integers(std::string_view name) const;
   std::vector<std::string> texts(std::string_view name) const;  ///< empty where the keyword is absent
   bool is_concept(std::string_view name) const { return has(name) && values_.at(std::string(name)).is_object(); }

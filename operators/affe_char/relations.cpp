@@ -3,32 +3,21 @@
 #include <fmt/core.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <map>
 #include <set>
 
 #include "lacon/catalog/messages.hpp"
 #include "lacon/pairing/normals.hpp"
+#include "lacon/structures/vector.hpp"
 
 namespace lacon {
 namespace {
 
-using Vector = std::array<double, 3>;
-
 constexpr const char* translation[] = {"DX", "DY", "DZ"};
 constexpr double same_place = 1e-9;  // of the size of a group: points that coincide, points on one line
 
-Vector operator-(const Vector& a, const Vector& b) { return {a[0] - b[0], a[1] - b[1], a[2] - b[2]}; }
-double dot(const Vector& a, const Vector& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
-Vector cross(const Vector& a, const Vector& b) {
-  return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
-}
-double length(const Vector& a) { return std::sqrt(dot(a, a)); }
-Vector unit(const Vector& a) {
-  const double l = length(a);
-  return {a[0] / l, a[1] / l, a[2] / l};
-}
+Vec3 unit(Vec3 a) { return a / norm(a); }
 
 /// Every node that an occurrence names, each once, in the order in which they come.
 std::vector<std::int32_t> distinct_nodes(const std::vector<NamedPlaces>& named) {
@@ -143,7 +132,7 @@ void make_rigid(Load& load, const LoadScene& scene, const Keywords& factor) {
 // ---------------------------------------------------------------------------------------------------- FACE_IMPO
 
 /// Unit normals at the nodes of an occurrence's skin cells: (node, normal).
-std::vector<std::pair<std::int32_t, Vector>> normals_of(const LoadScene& scene, const Keywords& factor) {
+std::vector<std::pair<std::int32_t, Vec3>> normals_of(const LoadScene& scene, const Keywords& factor) {
   std::vector<std::int32_t> cells;
   for (const std::string& group : factor.texts("GROUP_MA"))
     for (const std::int32_t cell : cells_of_group(scene.mesh, group, factor.path("GROUP_MA"))) {
@@ -156,13 +145,12 @@ std::vector<std::pair<std::int32_t, Vector>> normals_of(const LoadScene& scene, 
   cells.erase(std::unique(cells.begin(), cells.end()), cells.end());
   const Surface surface = surface_of(scene.mesh, cells, scene.mesh.coordinates);
   const std::vector<double> normals = nodal_normals(surface);
-  std::vector<std::pair<std::int32_t, Vector>> found;
+  std::vector<std::pair<std::int32_t, Vec3>> found;
   const std::vector<char> out = nodes_left_out(scene, factor);
   for (const std::int32_t node : nodes_of_cells(scene.mesh, cells)) {
     if (out[static_cast<std::size_t>(node)]) continue;
-    const Vector n{normals[3 * static_cast<std::size_t>(node)], normals[3 * static_cast<std::size_t>(node) + 1],
-                   normals[3 * static_cast<std::size_t>(node) + 2]};
-    if (length(n) == 0)
+    const Vec3 n = vector_at(normals.data() + 3 * static_cast<std::size_t>(node));
+    if (norm(n) == 0)
       fail("CHARGE_12", {{"keyword", factor.path("GROUP_MA")},
                          {"reason", "the normals of the cells at the node " + node_name(node) + " cancel"}});
     found.emplace_back(node, n);
@@ -183,10 +171,9 @@ void hold_normal(Load& load, const LoadScene& scene, const Keywords& factor) {
     const bool tangent = std::string_view(keyword) == "DTAN";
     if (tangent && scene.mesh.dimension != 2) fail("CHARGE_15", {{"keyword", factor.path(keyword)}});
     for (const auto& [node, n] : normals) {
-      const Vector along = tangent ? Vector{-n[1], n[0], 0} : n;
+      const Vec3 direction = tangent ? Vec3{-n.y, n.x, 0} : n;
       std::vector<RelationTerm> terms;
-      for (int d = 0; d < scene.mesh.dimension; ++d)
-        terms.push_back({node, translation[d], along[static_cast<std::size_t>(d)]});
+      for (int d = 0; d < scene.mesh.dimension; ++d) terms.push_back({node, translation[d], component(direction, d)});
       add(load, scene, factor.path(keyword), std::move(terms), value_of(scene, factor, keyword));
     }
   }
@@ -197,7 +184,7 @@ void hold_normal(Load& load, const LoadScene& scene, const Keywords& factor) {
 std::vector<std::vector<RelationTerm>> rigid_relations(std::span<const double> points, int dimension) {
   const auto n = static_cast<std::int32_t>(points.size() / 3);
   std::vector<std::vector<RelationTerm>> relations;
-  const auto at = [&](std::int32_t i) { return Vector{points[3 * i], points[3 * i + 1], points[3 * i + 2]}; };
+  const auto at = [&](std::int32_t i) { return vector_at(points.data() + 3 * std::ptrdiff_t{i}); };
   const auto farthest = [&](const auto& distance) {
     std::int32_t best = 0;
     for (std::int32_t i = 1; i < n; ++i)
@@ -213,11 +200,11 @@ std::vector<std::vector<RelationTerm>> rigid_relations(std::span<const double> p
   };
   const auto append = [](Terms& to, const Terms& terms) { to.insert(to.end(), terms.begin(), terms.end()); };
   // (u_i - u_0) . direction
-  const auto relative = [&](std::int32_t i, const Vector& direction) {
+  const auto relative = [&](std::int32_t i, Vec3 direction) {
     Terms terms;
     for (int d = 0; d < dimension; ++d) {
-      terms.push_back({i, translation[d], direction[static_cast<std::size_t>(d)]});
-      terms.push_back({0, translation[d], -direction[static_cast<std::size_t>(d)]});
+      terms.push_back({i, translation[d], component(direction, d)});
+      terms.push_back({0, translation[d], -component(direction, d)});
     }
     return terms;
   };
@@ -234,26 +221,26 @@ std::vector<std::vector<RelationTerm>> rigid_relations(std::span<const double> p
   };
 
   if (n < 2) return relations;
-  const Vector a = at(0);
-  const std::int32_t b = farthest([&](std::int32_t i) { return length(at(i) - a); });
-  const double size = length(at(b) - a);
+  const Vec3 a = at(0);
+  const std::int32_t b = farthest([&](std::int32_t i) { return norm(at(i) - a); });
+  const double size = norm(at(b) - a);
   std::vector<Terms> rotation;  // about the axes below, by the displacements of the reference points
-  std::vector<Vector> axes;
+  std::vector<Vec3> axes;
   std::set<std::int32_t> references{0};
   if (size > 0) {
     references.insert(b);
-    const Vector e1 = unit(at(b) - a);
+    const Vec3 e1 = unit(at(b) - a);
     enter(relative(b, e1));
     if (dimension == 2) {
       axes = {{0, 0, 1}};
-      rotation = {scaled(relative(b, {-e1[1], e1[0], 0}), 1 / size)};
+      rotation = {scaled(relative(b, {-e1.y, e1.x, 0}), 1 / size)};
     } else {
-      const auto off = [&](std::int32_t i) { return length(cross(at(i) - a, e1)); };
+      const auto off = [&](std::int32_t i) { return norm(cross(at(i) - a, e1)); };
       const std::int32_t c = farthest(off);
-      Vector e2 = std::abs(e1[0]) < 0.9 ? unit(cross(e1, {1, 0, 0})) : unit(cross(e1, {0, 1, 0}));
+      Vec3 e2 = std::abs(e1.x) < 0.9 ? unit(cross(e1, {1, 0, 0})) : unit(cross(e1, {0, 1, 0}));
       const bool on_a_line = off(c) <= same_place * size;
       if (!on_a_line) e2 = unit(cross(cross(e1, at(c) - a), e1));
-      const Vector e3 = cross(e1, e2);
+      const Vec3 e3 = cross(e1, e2);
       // u_b - u_0 = size (w3 e2 - w2 e3)
       axes = {e2, e3};
       rotation = {scaled(relative(b, e3), -1 / size), scaled(relative(b, e2), 1 / size)};
@@ -275,8 +262,7 @@ std::vector<std::vector<RelationTerm>> rigid_relations(std::span<const double> p
   for (std::int32_t i = 1; i < n; ++i) {
     if (references.contains(i)) continue;
     for (int d = 0; d < dimension; ++d) {
-      Vector direction{};
-      direction[static_cast<std::size_t>(d)] = 1;
+      const Vec3 direction{d == 0 ? 1.0 : 0.0, d == 1 ? 1.0 : 0.0, d == 2 ? 1.0 : 0.0};
       Terms terms = relative(i, direction);
       for (std::size_t r = 0; r < axes.size(); ++r)
         append(terms, scaled(rotation[r], -dot(cross(axes[r], at(i) - a), direction)));

@@ -3,12 +3,12 @@
 #include <fmt/core.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <numeric>
 
 #include "lacon/catalog/messages.hpp"
 #include "lacon/operators/meshing/chain.hpp"
+#include "lacon/structures/vector.hpp"
 
 namespace lacon {
 namespace {
@@ -147,39 +147,25 @@ class Distance {
  public:
   enum class From { plane, axis, centre };
 
-  Distance(const Mesh& mesh, const Keywords& factor, From from) : from_(from), point_(vector(mesh, factor, "POINT")) {
+  Distance(const Mesh& mesh, const Keywords& factor, From from) : from_(from), point_(factor.vector("POINT", mesh.dimension)) {
     if (from == From::centre) return;
-    direction_ = vector(mesh, factor, "VECT_NORMALE");
-    const double length = std::hypot(direction_[0], direction_[1], direction_[2]);
+    direction_ = factor.vector("VECT_NORMALE", mesh.dimension);
+    const double length = std::hypot(direction_.x, direction_.y, direction_.z);
     if (!(length > 0)) fail("ORDER_4", {{"keyword", factor.path("VECT_NORMALE")}, {"expected", "a vector other than zero"}});
-    for (double& component : direction_) component /= length;
+    direction_ = direction_ / length;
   }
 
   double operator()(std::span<const double, 3> x) const {
-    std::array<double, 3> to{};
-    double along = 0;
-    for (std::size_t k = 0; k < 3; ++k) {
-      to[k] = x[k] - point_[k];
-      along += to[k] * direction_[k];
-    }
-    if (from_ == From::plane) return std::abs(along);
-    for (std::size_t k = 0; k < 3; ++k) to[k] -= along * direction_[k];
-    return std::hypot(to[0], to[1], to[2]);
+    const Vec3 to = vector_at(x.data()) - point_;
+    const double height = dot(to, direction_);
+    if (from_ == From::plane) return std::abs(height);
+    const Vec3 off = to - height * direction_;
+    return std::hypot(off.x, off.y, off.z);
   }
 
  private:
-  static std::array<double, 3> vector(const Mesh& mesh, const Keywords& factor, const char* keyword) {
-    const std::vector<double> given = factor.reals(keyword);
-    if (given.size() != static_cast<std::size_t>(mesh.dimension))
-      fail("ORDER_4", {{"keyword", factor.path(keyword)},
-                       {"expected", "as many numbers as the mesh has dimensions, " + std::to_string(mesh.dimension)}});
-    std::array<double, 3> made{};
-    std::ranges::copy(given, made.begin());
-    return made;
-  }
-
   From from_;
-  std::array<double, 3> point_{}, direction_{};
+  Vec3 point_, direction_{};
 };
 
 Distance::From kind_of_place(const std::string& option) {
@@ -215,16 +201,9 @@ Members cells_by_option(const Mesh& mesh, const Keywords& factor) {
   return cells_with(mesh, marked, factor.has("CRIT_NOEUD") ? factor.text("CRIT_NOEUD") : "AU_MOINS_UN");
 }
 
-std::array<double, 3> step(const Mesh& mesh, std::int32_t from, std::int32_t to) {
-  std::array<double, 3> made{};
-  for (std::size_t k = 0; k < 3; ++k)
-    made[k] = mesh.point(static_cast<std::size_t>(to))[k] - mesh.point(static_cast<std::size_t>(from))[k];
-  return made;
-}
-
-/// @param b may be longer: of a vector of the plane nothing is missing
-double dot(std::span<const double> a, std::span<const double> b) {
-  return std::inner_product(a.begin(), a.end(), b.begin(), 0.0);
+Vec3 step(const Mesh& mesh, std::int32_t from, std::int32_t to) {
+  return vector_at(mesh.point(static_cast<std::size_t>(to)).data()) -
+         vector_at(mesh.point(static_cast<std::size_t>(from)).data());
 }
 
 /// The node at an end of a line: GROUP_NO_ORIG or NOEUD_ORIG for the suffix ORIG, or none.
@@ -249,8 +228,9 @@ Members nodes_along_cells(const Mesh& mesh, const Keywords& factor) {
     line.pop_back();
     const auto at = std::ranges::find(line, first.value_or(line.front()));
     std::ranges::rotate(line, at == line.end() ? line.begin() : at);
-    const std::vector<double> along = factor.reals("VECT_ORIE");
-    if (!along.empty() && dot(along, step(mesh, line[0], line[1])) < 0) std::reverse(line.begin() + 1, line.end());
+    std::vector<double> leaving = factor.reals("VECT_ORIE");
+    leaving.resize(3, 0.0);  // none, or one of the plane, is given
+    if (dot(vector_at(leaving.data()), step(mesh, line[0], line[1])) < 0) std::reverse(line.begin() + 1, line.end());
   } else if ((first && *first == line.back()) || (last && *last == line.front())) {
     std::ranges::reverse(line);
   }
@@ -276,8 +256,8 @@ Members nodes_along_segment(const Mesh& mesh, const Keywords& factor) {
   const std::optional<std::int32_t> first = end_node(mesh, factor, "ORIG"), last = end_node(mesh, factor, "EXTR");
   for (const auto& [node, suffix] : {std::pair(first, "ORIG"), {last, "EXTR"}})
     if (!node) fail("ORDER_2", {{"keyword", factor.path(std::string("GROUP_NO_") + suffix)}});
-  const std::array<double, 3> whole = step(mesh, *first, *last);
-  const double length = std::sqrt(dot(whole, whole));
+  const Vec3 whole = step(mesh, *first, *last);
+  const double length = norm(whole);
   if (!(length > 0))
     fail("ORDER_4", {{"keyword", factor.path("GROUP_NO_EXTR")}, {"expected", "another place than that of ORIG"}});
   const double allowed = factor.real("PRECISION") * (factor.text("CRITERE") == "RELATIF" ? length : 1.0);
@@ -285,11 +265,9 @@ Members nodes_along_segment(const Mesh& mesh, const Keywords& factor) {
   double worst = 0;
   std::int32_t worst_node = -1, away = 0;
   for (const std::int32_t node : members) {
-    const std::array<double, 3> to = step(mesh, *first, node);
+    const Vec3 to = step(mesh, *first, node);
     const double along = dot(to, whole) / length, nearest = std::clamp(along, 0.0, length);
-    std::array<double, 3> off{};
-    for (std::size_t k = 0; k < 3; ++k) off[k] = to[k] - nearest * whole[k] / length;
-    const double distance = std::sqrt(dot(off, off));
+    const double distance = norm(to - nearest * whole / length);
     away += distance > allowed;
     if (distance > allowed && distance > worst) worst = distance, worst_node = node;
     places.emplace_back(along, node);

@@ -15,17 +15,10 @@ namespace {
   fail("ORDER_4", {{"keyword", keywords.path(keyword)}, {"expected", expected}});
 }
 
-Vec3 vector(const Mesh& mesh, const Keywords& keywords, const char* keyword) {
-  const std::vector<double> given = keywords.reals(keyword);
-  if (given.size() != static_cast<std::size_t>(mesh.dimension))
-    refuse(keywords, keyword, "as many numbers as the mesh has dimensions, " + std::to_string(mesh.dimension));
-  return {given[0], given[1], given.size() > 2 ? given[2] : 0};
-}
-
 Vec3 unit(const Keywords& keywords, const char* keyword, Vec3 given) {
   const double length = norm(given);
   if (!(length > 0)) refuse(keywords, keyword, "a direction: not zero, and not parallel to the other one");
-  return {given.x / length, given.y / length, given.z / length};
+  return given / length;
 }
 
 template <class Move>
@@ -39,12 +32,12 @@ void each_node(Mesh& mesh, const Move& move) {
 
 /// Rodrigues' formula about the axis through `from`.
 void rotate(Mesh& mesh, const Keywords& factor) {
-  const Vec3 from = vector(mesh, factor, "POIN_1");
+  const Vec3 from = factor.vector("POIN_1", mesh.dimension);
   Vec3 axis{0, 0, 1};
   if (mesh.dimension == 3) {
     const char* keyword = factor.has("POIN_2") ? "POIN_2" : "DIR";
     if (!factor.has(keyword)) refuse(factor, "DIR", "given, or POIN_2, for a mesh of three dimensions");
-    axis = vector(mesh, factor, keyword);
+    axis = factor.vector(keyword, mesh.dimension);
     if (factor.has("POIN_2")) axis = axis - from;
     axis = unit(factor, keyword, axis);
   }
@@ -56,11 +49,11 @@ void rotate(Mesh& mesh, const Keywords& factor) {
 }
 
 void mirror(Mesh& mesh, const Keywords& factor) {
-  const Vec3 point = vector(mesh, factor, "POINT"), first = vector(mesh, factor, "AXE_1");
+  const Vec3 point = factor.vector("POINT", mesh.dimension), first = factor.vector("AXE_1", mesh.dimension);
   Vec3 second{0, 0, 1};
   if (mesh.dimension == 3) {
     if (!factor.has("AXE_2")) refuse(factor, "AXE_2", "given, for a mesh of three dimensions");
-    second = vector(mesh, factor, "AXE_2");
+    second = factor.vector("AXE_2", mesh.dimension);
   }
   const Vec3 normal = unit(factor, "AXE_1", cross(first, second));
   each_node(mesh, [&](Vec3 x) { return x - (2 * dot(normal, x - point)) * normal; });
@@ -72,7 +65,7 @@ void mirror(Mesh& mesh, const Keywords& factor) {
 
 bool transform(Mesh& mesh, const Keywords& keywords) {
   if (keywords.has("TRANSLATION")) {
-    const Vec3 by = vector(mesh, keywords, "TRANSLATION");
+    const Vec3 by = keywords.vector("TRANSLATION", mesh.dimension);
     each_node(mesh, [&](Vec3 x) { return x + by; });
     return true;
   }
