@@ -64,7 +64,7 @@ def arch(kind, name, radii, cells):
 
 def half_disc(kind, name, radius, height, n):
     """The half x > 0 of a disc of centre (0, height): a square core, and three sectors around it of n cells each (n through the core's half).
-    Groups BODY_LOW, BODY_HIGH (skins of 45 degrees from the axis), BODY_AXIS."""
+    Groups BODY_LOW, BODY_HIGH (skins of 45 degrees from the axis), and AXIS."""
     core = 0.45 * radius
 
     def ring(edge, first, last):
@@ -76,10 +76,10 @@ def half_disc(kind, name, radius, height, n):
 
     through = lines(0, 1, n)
     parts = [
-        block(kind, lines(0, core, n), lines(-core, core, 2 * n), lambda x, y: (x, y + height), name, {"left": f"{name}_AXIS"}),
+        block(kind, lines(0, core, n), lines(-core, core, 2 * n), lambda x, y: (x, y + height), name, {"left": "AXIS"}),
         block(kind, through, lines(0, 1, 2 * n), ring(lambda s: (core, core * (2 * s - 1)), -45, 45), name, {}),
-        block(kind, through, through, ring(lambda s: (core * (1 - s), core), 45, 90), name, {"right": f"{name}_HIGH", "top": f"{name}_AXIS"}),
-        block(kind, through, through, ring(lambda s: (core * s, -core), -90, -45), name, {"right": f"{name}_LOW", "bottom": f"{name}_AXIS"}),
+        block(kind, through, through, ring(lambda s: (core * (1 - s), core), 45, 90), name, {"right": f"{name}_HIGH", "top": "AXIS"}),
+        block(kind, through, through, ring(lambda s: (core * s, -core), -90, -45), name, {"right": f"{name}_LOW", "bottom": "AXIS"}),
     ]
     return weld(union(parts))
 
@@ -91,9 +91,23 @@ def turned(mesh, degrees):
     return mesh
 
 
-def slab_in_space(kind, name, x, y, z, cells):
-    """A box whose skin is its top."""
-    return brick(kind, [lines(*ends, n) for ends, n in zip((x, y, z), cells)], None, name, {(2, 1): f"{name}_SKIN", (2, 0): f"{name}_BASE"})
+def slab_in_space(kind, name, x, y, z, cells, skin="top", sides=None):
+    """A box whose skin is its top, or its bottom."""
+    end = int(skin == "top")
+    return brick(kind, [lines(*ends, n) for ends, n in zip((x, y, z), cells)], None, name,
+                 {(2, end): f"{name}_SKIN", (2, 1 - end): f"{name}_BASE", **(sides or {})})
+
+
+def quarter_of_a_lens(kind, name, height, n, sides):
+    """The part x, y > 0 of a body that ends below and above in spheres of radius 1 and centre (0, 0, height). Groups BODY_LOW, BODY_HIGH."""
+    most = math.radians(35)
+
+    def place(r, s, t):
+        high = np.array([math.tan(most * r), math.tan(most * s), 1.0])
+        high /= np.linalg.norm(high)
+        return high * [1, 1, 2 * t - 1] + [0, 0, height]
+
+    return brick(kind, [lines(0, 1, n)] * 3, place, name, {(2, 0): f"{name}_LOW", (2, 1): f"{name}_HIGH", **sides}, curved=True)
 
 
 def round_tool_in_space(kind, name, radius, centre, cells, ball):

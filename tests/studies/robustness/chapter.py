@@ -17,7 +17,7 @@ TITLE = "## Difficult studies"
 
 #: row -> (words of the names of studies that are drawn)
 DRAWN = {
-    "hertz": ("30 QUAD8 PETIT tool", "30 QUAD8 GREEN slab"), "ironing": ("10 width 1, QUAD8 GREEN slab", "40 width 1.5, QUAD4 PETIT slab"),
+    "hertz": ("30 QUAD8 PETIT tool", "30 QUAD8 GREEN slab"), "ironing": ("10 width 2, QUAD8 GREEN slab", "40 width 3, QUAD4 PETIT slab"),
     "overhang": ("20 QUAD4 PETIT lower", "20 QUAD8 GREEN upper"), "arch": ("x10 QUAD4 GREEN arch", "x10 QUAD8 GREEN plate"),
     "polygon": ("QUAD4 slab", "QUAD8 wheel"), "plastic": ("round 5, QUAD4 PETIT, slab", "flat 5, QUAD8 PETIT, slab"),
     "tips": ("tip QUAD4 PETIT slab", "groove QUAD8 GREEN tool", "wedge QUAD4 GREEN tool"),
