@@ -17,9 +17,10 @@ os.environ.setdefault("LACON_SOURCE_DIR", str(ROOT))
 os.environ.setdefault("LACON_BIN", str(BUILD / "bin"))
 os.environ.setdefault("LACON_SHARED_CASES", str(ROOT.parent / "shared/cases"))
 os.environ.setdefault("LACON_SHARED_BENCH", str(ROOT.parent / "shared/bench"))
-sys.path[:0] = [str(ROOT / "tests/studies"), str(ROOT / "commands/studies/roller_bearing")]
+sys.path[:0] = [str(ROOT / "tests/studies"), str(ROOT / "tests/studies/robustness"), str(ROOT / "commands/studies/roller_bearing")]
 
 from study_test import PEER_MESHES, StudyTest  # noqa: E402, I001 (it says where meshes.py is)
+import chapter  # noqa: E402
 import convergence  # noqa: E402
 import orders  # noqa: E402
 import patch  # noqa: E402
@@ -240,12 +241,17 @@ pressure for the force that was found; the half-width is known to a patch.
 """
 
 
+def robustness_section(runner):
+    return chapter.section()
+
+
 def main():
     runner = StudyTest()
     runner.setUp()
     try:
         sections = [make(runner) for make in (patch_section, current_section, space_section, degree_section, materials_section,
-                                              convergence_section, peer_section, orders_section, roller_section)]
+                                              convergence_section, peer_section, orders_section, roller_section,
+                                              robustness_section)]
     finally:
         runner.doCleanups()
     text = "# Verification\n\nWritten by `python3 tests/verification/book.py`, which runs the studies; the same studies are tests.\n\n" + "\n".join(sections)
