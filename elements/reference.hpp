@@ -14,6 +14,10 @@ void shape_functions(CellType type, std::span<const double> xi, std::span<double
 /// Their derivatives. @param[out] gradients (n_points, n_nodes, dimension)
 void shape_gradients(CellType type, std::span<const double> xi, std::span<double> gradients);
 
+/// All their partial derivatives of an order at one point of a skin's reference cell. @param xi (dimension), at most 2
+/// @param[out] derivatives (n_nodes, order + 1) on surfaces: column k by k times eta and the rest xi; (n_nodes) on lines
+void shape_derivatives(CellType type, std::span<const double> xi, int order, std::span<double> derivatives);
+
 /// An integration rule on a reference cell.
 struct Rule {
   int dimension = 0;

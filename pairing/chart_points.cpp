@@ -4,6 +4,7 @@
 #include <array>
 #include <atomic>
 #include <cmath>
+#include <limits>
 #include <numbers>
 
 #include "lacon/elements/reference.hpp"
@@ -60,7 +61,7 @@ int integration_degree(const SlaveFacet& slave, const FacetKind& master) {
   return std::clamp(degree, 4, exact_polygons(slave, master) ? largest_degree : 8);
 }
 
-void place_points(const Polygon& polygon, int degree, bool enough, ChartPoints& points) {
+void place_points(const Polygon& polygon, int degree, bool enough, bool traced, ChartPoints& points) {
   constexpr double round_off = 1e-13, no_area = 1e-15, small = 1e-6;  // the last two: of the area
   points.y.clear();
   points.weight.clear();
@@ -73,7 +74,7 @@ void place_points(const Polygon& polygon, int degree, bool enough, ChartPoints& 
       points.add(a + triangle.points[2 * g] * u + triangle.points[2 * g + 1] * v, triangle.weights[g] * area);
   };
   Polygon& corners = points.corners;
-  if (enough && polygon.size() >= 4) {
+  if (enough && !traced && polygon.size() >= 4) {
     const double whole = double_area(polygon);
     corners = polygon;
     for (std::size_t i = 0; i < corners.size() && corners.size() > 3;) {
@@ -101,7 +102,14 @@ void place_points(const Polygon& polygon, int degree, bool enough, ChartPoints& 
     points.y.clear();
     points.weight.clear();
   }
-  for (std::size_t i = 2; i < polygon.size(); ++i) on_triangle(polygon[0], polygon[i - 1], polygon[i], 0);
+  points.fan.clear();
+  for (std::size_t i = 2; i < polygon.size(); ++i) {
+    const std::size_t before = points.weight.size();
+    on_triangle(polygon[0], polygon[i - 1], polygon[i], traced ? -std::numeric_limits<double>::infinity() : 0);
+    for (std::size_t g = 0; before + g < points.weight.size(); ++g)
+      points.fan.push_back(
+          {static_cast<std::int32_t>(i), triangle.points[2 * g], triangle.points[2 * g + 1], triangle.weights[g]});
+  }
 }
 
 }  // namespace lacon::space

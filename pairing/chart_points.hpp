@@ -1,5 +1,6 @@
 #pragma once
 // Integration points of what a slave facet and a master have in common.
+#include <cstdint>
 #include <vector>
 
 #include "lacon/pairing/slave_facet.hpp"
@@ -18,6 +19,13 @@ int integration_degree(const SlaveFacet& slave, const FacetKind& master);
 struct ChartPoints {
   std::vector<Vec2> y;
   std::vector<double> weight;
+  /// Where there is nothing but a fan: in the triangle of the vertices 0, last - 1 and last, at these coordinates.
+  struct InFan {
+    std::int32_t last;
+    double r, s;
+    double weight;  ///< of the rule
+  };
+  std::vector<InFan> fan;
   Polygon corners;  ///< used again for every polygon
 
   void add(Vec2 at, double of_it) {
@@ -33,6 +41,7 @@ struct ChartPoints {
 /// Where edges of slave and master coincide to round-off, vertices come and go: C must not jump by the error of quadrature
 /// there, Newton's method would never end. So vertices that cut off next to nothing are no corners, and have small triangles of
 /// their own; a fan has them by itself.
-void place_points(const Polygon& polygon, int degree, bool enough, ChartPoints& points);
+/// @param traced nothing but a fan, and all of its triangles: those without area too, for they may get one
+void place_points(const Polygon& polygon, int degree, bool enough, bool traced, ChartPoints& points);
 
 }  // namespace lacon::space

@@ -55,6 +55,7 @@ std::string_view rejection_name(Rejection rejection) {
 
 void Pairing::append(const Pairing& other) {
   cells.append(other.cells);
+  traces.insert(traces.end(), other.traces.begin(), other.traces.end());
   rejected.insert(rejected.end(), other.rejected.begin(), other.rejected.end());
 }
 
@@ -102,6 +103,7 @@ PairingInParts::~PairingInParts() = default;
 
 void PairingInParts::pair(std::size_t first, std::size_t last, Pairing& found) {
   found.cells.clear();
+  found.traces.clear();
   found.cells.dimension = implementation_->dimension;
   found.rejected.clear();
   if (first == 0) found.rejected = implementation_->degenerate_masters;

@@ -2,6 +2,7 @@
 // Pairing of two surfaces: which part of which slave cell sees which master cell, and where its integration points go.
 // METHOD.md 3.3 and 3.4.1; what is decided otherwise here, and why, is in README.md.
 #include <algorithm>
+#include <array>
 #include <compare>
 #include <cstdint>
 #include <memory>
@@ -17,6 +18,9 @@ namespace lacon {
 struct PairingTolerances {
   double sliver = 1e-14;      ///< a contact cell is dropped below this fraction of its slave cell
   double degenerate = 1e-12;  ///< a cell is degenerate whose tangent is shorter than this, relative to its surface or to itself
+  /// Of the slave cell: a line of a master that lies this near to an edge of the slave does not move what it bounds. The edge
+  /// does: between both nothing is integrated, and whatever lies on their other side sees the edge too.
+  double coincident = 1e-12;
   double box =
       1e-12;  ///< boxes of the search tree grow by this fraction of the master surface: round-off must not hide a couple
   double ray = 1e-11;  ///< an image must lie on the normal of its point to this fraction of the couple's extent
@@ -28,6 +32,28 @@ struct PairingTolerances {
   double overlap =
       1e-12;             ///< two masters hide one another where their polygons share more than this fraction of the slave cell
   double margin = 0.25;  ///< an image may lie outside its curved cell by this much of the reference cell
+};
+
+/// In space: how the polygon of a contact cell hangs on the nodes, for whoever differentiates it. It lies in a triangle of the
+/// slave's chart; places in it are barycentric coordinates of the second and third vertex.
+struct PolygonTrace {
+  /// What an edge lies on: an edge of the triangle, or the side on which the slave's normals pass a line of a master.
+  struct Line {
+    std::int32_t master = -1;  ///< cell of the master surface; -1: the triangle's own edge, from vertex `edge` on
+    int edge = 0;
+    std::array<double, 2> from{}, to{};  ///< reference coordinates of the line's ends on the master
+  };
+  bool plane = true;                                ///< the chart is the slave's mean plane, otherwise its reference cell
+  std::array<std::array<double, 2>, 3> triangle{};  ///< reference coordinates of its vertices on the slave
+  std::vector<std::array<double, 2>> vertex;        ///< of the polygon
+  std::vector<Line> line;                           ///< from each vertex to the next
+  /// Of each integration point: it lies in the triangle of the vertices 0, last - 1 and last, at these coordinates.
+  struct Point {
+    std::int32_t last;
+    double r, s;
+    double weight;  ///< of the rule: the point's own is this times the area of that triangle, which may be zero
+  };
+  std::vector<Point> point;
 };
 
 struct PairingOptions {
@@ -44,6 +70,7 @@ struct PairingOptions {
   /// In space: integrate every couple to this degree whatever its facets ask for (integration_degree() in
   /// chart_points.hpp); 0: what they ask for. To measure what a degree leaves.
   int degree = 0;
+  bool traced = false;  ///< in space: give the traces too. Flat slaves are then cut as those that are nearly flat
 };
 
 /// Why a couple of cells that see each other gives no contact cell, or a smaller one.
@@ -71,6 +98,7 @@ struct RejectedCouple {
 struct Pairing {
   /// `slave` and `master` number the cells of the two surfaces. Sorted by slave cell, then along it.
   ContactCells cells;
+  std::vector<PolygonTrace> traces;  ///< of each contact cell, where PairingOptions::traced asks for them
   /// Every couple once for each reason; sorted.
   std::vector<RejectedCouple> rejected;
 

@@ -149,6 +149,7 @@ class Strip {
 struct Interval {
   double a, b;
   std::int32_t master;
+  std::int32_t node_a, node_b;  ///< whose normals end it; -1: the slave itself ends there
 };
 
 /// Sign changes of f_q by node, computed once for each slave cell.
@@ -175,18 +176,21 @@ class Projections {
   std::vector<SignChanges> found_;
 };
 
-/// Call facing(a, b) and away(a, b) for the parts of [-1, 1] on which the normal crosses a master whose ends are `first` and
-/// `second`.
+/// Call facing(a, b, end_a, end_b) and away(a, b) for the parts of [-1, 1] on which the normal crosses a master whose ends are
+/// `first` and `second`; end_a and end_b say at which of its ends (0, 1) a and b are normals, or -1.
 template <class Facing, class Away>
 void crossings(const SignChanges& first, const SignChanges& second, const Facing& facing, const Away& away) {
   bool s1 = first.positive, s2 = second.positive;
   double a = -1;
+  int end_a = -1;
   for (int i = 0, j = 0;;) {
     const double next1 = i < first.n ? first.at[i] : 1, next2 = j < second.n ? second.at[j] : 1;
     const double b = std::min(next1, next2);
-    if (b > a && s1 && !s2) facing(a, b);
+    const int end_b = i < first.n && next1 <= next2 ? 0 : j < second.n ? 1 : -1;
+    if (b > a && s1 && !s2) facing(a, b, end_a, end_b);
     if (b > a && !s1 && s2) away(a, b);
     a = b;
+    end_a = end_b;
     if (i < first.n && next1 <= next2) {
       s1 = !s1;
       ++i;
@@ -248,12 +252,12 @@ class Overlaps {
     if (!any) return;
     breaks_.clear();
     result_.clear();
-    for (const Interval& i : intervals) breaks_.insert(breaks_.end(), {i.a, i.b});
-    std::sort(breaks_.begin(), breaks_.end());
-    breaks_.erase(std::unique(breaks_.begin(), breaks_.end()), breaks_.end());
+    for (const Interval& i : intervals) breaks_.insert(breaks_.end(), {Break{i.a, i.node_a}, Break{i.b, i.node_b}});
+    std::sort(breaks_.begin(), breaks_.end(), [](Break x, Break y) { return std::tie(x.at, x.node) < std::tie(y.at, y.node); });
+    breaks_.erase(std::unique(breaks_.begin(), breaks_.end(), [](Break x, Break y) { return x.at == y.at; }), breaks_.end());
     lost_.assign(intervals.size(), 0.0);
     for (std::size_t k = 0; k + 1 < breaks_.size(); ++k) {
-      const double a = breaks_[k], b = breaks_[k + 1];
+      const double a = breaks_[k].at, b = breaks_[k + 1].at;
       const auto covers = [&](const Interval& i) { return i.a <= a && i.b >= b; };
       const auto n = std::count_if(intervals.begin(), intervals.end(), covers);
       if (n == 0) continue;
@@ -266,10 +270,12 @@ class Overlaps {
         }
       for (std::size_t i = 0; i < intervals.size(); ++i)
         if (i != nearest && covers(intervals[i])) lost_[i] += b - a;
-      if (!result_.empty() && result_.back().b == a && result_.back().master == intervals[nearest].master)
+      if (!result_.empty() && result_.back().b == a && result_.back().master == intervals[nearest].master) {
         result_.back().b = b;
-      else
-        result_.push_back({a, b, intervals[nearest].master});
+        result_.back().node_b = breaks_[k + 1].node;
+      } else {
+        result_.push_back({a, b, intervals[nearest].master, breaks_[k].node, breaks_[k + 1].node});
+      }
     }
     for (std::size_t i = 0; i < intervals.size(); ++i)
       if (lost_[i] > 2 * sliver) hidden(intervals[i].master);
@@ -277,7 +283,12 @@ class Overlaps {
   }
 
  private:
-  std::vector<double> breaks_, lost_;
+  struct Break {
+    double at;
+    std::int32_t node;
+  };
+  std::vector<Break> breaks_;
+  std::vector<double> lost_;
   std::vector<Interval> result_;
 };
 
@@ -333,10 +344,11 @@ class PairerInPlane final : public detail::CellPairer {
       const std::int32_t first = master.nodes[m][0], second = master.nodes[m][1];
       projections.of(e, master, first);  // both before a reference is kept: the second may move the first
       projections.of(e, master, second);
+      const auto node_of = [&](int end) { return end < 0 ? -1 : end == 0 ? first : second; };
       double away = 0;
       crossings(
           projections.of(e, master, first), projections.of(e, master, second),
-          [&](double a, double b) {
+          [&](double a, double b, int end_a, int end_b) {
             const double middle = 0.5 * (a + b);
             const Vec2 along = point(master, second) - point(master, first), t = e.tangent(middle);
             const auto far = [&] {
@@ -348,7 +360,7 @@ class PairerInPlane final : public detail::CellPairer {
             else if (options.distance_limit > 0 && far())
               reject(m, Rejection::too_far);
             else
-              intervals.push_back({a, b, m});
+              intervals.push_back({a, b, m, node_of(end_a), node_of(end_b)});
           },
           [&](double a, double b) { away += b - a; });
       if (away > 2 * tolerances.sliver) reject(m, Rejection::facing_away);
@@ -361,7 +373,7 @@ class PairerInPlane final : public detail::CellPairer {
         intervals, tolerances.sliver, [&](double xi, std::int32_t m) { return image(e, xi, master, m, tolerances).gap; },
         [&](std::int32_t m) { reject(m, Rejection::hidden); });
 
-    for (const auto& [a, b, m] : intervals) {
+    for (const auto& [a, b, m, node_a, node_b] : intervals) {
       if (!(b - a > 2 * tolerances.sliver)) {
         reject(m, Rejection::sliver);
         continue;
@@ -389,6 +401,8 @@ class PairerInPlane final : public detail::CellPairer {
       cells.master.push_back(m);
       cells.offset.push_back(static_cast<std::int64_t>(cells.weight.size()));
       cells.vertex.insert(cells.vertex.end(), {a, b});
+      cells.vertex_node.push_back(a > -1 + tolerances.coincident ? node_a : -1);
+      cells.vertex_node.push_back(b < 1 - tolerances.coincident ? node_b : -1);
       cells.vertex_offset.push_back(static_cast<std::int64_t>(cells.vertex.size()));
     }
   }

@@ -1,5 +1,6 @@
 #pragma once
 // Convex polygons of a plane: cut by half-planes, subtracted, measured.
+#include <cstdint>
 #include <vector>
 
 #include "lacon/structures/vector.hpp"
@@ -10,9 +11,10 @@ namespace lacon::space {
 struct HalfPlane {
   Vec2 anchor{}, slope{};
   double value = 0;
+  std::int32_t line = -1;  ///< of whoever asked for it: what bounds it
 
   double operator()(Vec2 y) const { return value + dot(slope, y - anchor); }
-  HalfPlane opposite() const { return {anchor, -1.0 * slope, -value}; }
+  HalfPlane opposite() const { return {anchor, -1.0 * slope, -value, line}; }
 };
 
 /// Vertices of a convex polygon, counter-clockwise.

@@ -72,4 +72,15 @@ void outline(const FacetKind& f, const Nodes& nodes, std::vector<Vec3>& polygon)
   }
 }
 
+void outline_places(const FacetKind& f, std::vector<Vec2>& places) {
+  places.clear();
+  const std::span<const double> nodes = catalog::cell(f.type).nodes;
+  for (int i = 0; i < f.n_vertices; ++i) {
+    const int next = (i + 1) % f.n_vertices;
+    const Vec2 a{nodes[2 * i], nodes[2 * i + 1]}, b{nodes[2 * next], nodes[2 * next + 1]};
+    for (int k = 0; k < (f.straight ? 1 : edge_pieces); ++k)
+      places.push_back(a + (static_cast<double>(k) / edge_pieces) * (b - a));
+  }
+}
+
 }  // namespace lacon::space

@@ -49,5 +49,7 @@ inline bool before(Vec3 a, Vec3 b) { return std::tie(a.x, a.y, a.z) < std::tie(b
 
 /// The outline of a facet as a polygon: a curved edge in pieces, at places that depend on the edge alone.
 void outline(const FacetKind& f, const Nodes& nodes, std::vector<Vec3>& polygon);
+/// The reference coordinates of its vertices.
+void outline_places(const FacetKind& f, std::vector<Vec2>& places);
 
 }  // namespace lacon::space

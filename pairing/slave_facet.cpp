@@ -9,7 +9,8 @@
 
 namespace lacon::space {
 
-void SlaveFacet::set(const Surface& surface, std::size_t cell, double size, const PairingTolerances& tolerances) {
+void SlaveFacet::set(const Surface& surface, std::size_t cell, double size, const PairingTolerances& tolerances,
+                     bool in_triangles) {
   degenerate = true;
   constant = false;
   if (!detail::finite(surface, cell)) return;
@@ -22,7 +23,7 @@ void SlaveFacet::set(const Surface& surface, std::size_t cell, double size, cons
   const std::optional<double> turn = largest_turn(tolerances);
   if (!turn) return;
   degenerate = false;
-  constant = *turn <= tolerances.flat && f.straight;
+  constant = *turn <= tolerances.flat && f.straight && !in_triangles;
   nearly_flat = *turn <= tolerances.nearly_flat && f.straight;
   plane = f.straight;
   set_chart();
@@ -104,6 +105,7 @@ void SlaveFacet::subdivide(int k) {
     Piece piece;
     const std::array<Vec2, 3> xi{a, b, c};
     for (int i = 0; i < 3; ++i) {
+      piece.xi[i] = xi[i];
       piece.x[i] = f.x(xi[i]).x;
       piece.n[i] = direction(xi[i]);
       piece.polygon.push_back(plane ? chart_(xi[i]).x : xi[i]);

@@ -19,6 +19,7 @@ namespace lacon::space {
 struct Piece {
   Polygon polygon;           ///< in the chart
   std::array<Vec3, 3> x, n;  ///< at its vertices, where the normal is not constant
+  std::array<Vec2, 3> xi;    ///< likewise
   Vec3 normal{};             ///< mean
 };
 
@@ -33,7 +34,9 @@ class SlaveFacet {
   double chart_diameter = 0;  ///< at least the largest distance in a piece
 
   /// Examine a slave cell; `degenerate` says whether it cannot be paired. @param size the extent of its skin
-  void set(const Surface& surface, std::size_t cell, double size, const PairingTolerances& tolerances);
+  /// @param in_triangles one flat piece will not do, as for a facet that is nearly flat
+  void set(const Surface& surface, std::size_t cell, double size, const PairingTolerances& tolerances,
+           bool in_triangles = false);
 
   /// The unit normal at a reference point; the mean one where there is none.
   Vec3 direction(Vec2 xi) const {

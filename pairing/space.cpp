@@ -74,7 +74,8 @@ class PairerInSpace final : public detail::CellPairer {
   void pair(std::size_t cell, Pairing& found) override {
     slave_ = static_cast<std::int32_t>(cell);
     found_ = &found;
-    e.set(masters_->skin.slave, cell, masters_->skin.slave_extent, tolerances());
+    e.set(masters_->skin.slave, cell, masters_->skin.slave_extent, tolerances(), options().traced);
+    edges_.clear();
     if (e.degenerate) {
       reject(-1, Rejection::degenerate_slave);
       return;
@@ -112,6 +113,7 @@ class PairerInSpace final : public detail::CellPairer {
 
   void look_at(std::int32_t m) {
     cut_in_parts(master(m), nodes_of_master(m), e, polygon, parts);
+    if (options().traced) name_edges(m);
     bool couples = false, away = false, thin = false;
     for (const Part& part : parts) {
       const Vec3 area = area_vector(part);
@@ -139,6 +141,23 @@ class PairerInSpace final : public detail::CellPairer {
     }
     if (!couples && away) reject(m, Rejection::facing_away);
     if (!couples && !away && thin) reject(m, Rejection::sliver);
+  }
+
+  /// Remember the edges of the parts of a master, and let their half-planes know them.
+  void name_edges(std::int32_t m) {
+    const FacetKind& f = master(m);
+    outline_places(f, outline_places_);
+    const Vec2 centre = probes(f.family).back();
+    const auto place = [&](const Part& part, int i) {
+      const std::int32_t at = part.place[static_cast<std::size_t>(i % part.n)];
+      const Vec2 eta = at < 0 ? centre : outline_places_[static_cast<std::size_t>(at)];
+      return std::array{eta.x, eta.y};
+    };
+    for (Part& part : parts)
+      for (int i = 0; i < part.n; ++i) {
+        part.line[static_cast<std::size_t>(i)] = static_cast<std::int32_t>(edges_.size());
+        edges_.push_back({.master = m, .edge = 0, .from = place(part, i), .to = place(part, i + 1)});
+      }
   }
 
   /// |gap| at a point of a view, or infinity where there is no image.
@@ -215,7 +234,7 @@ class PairerInSpace final : public detail::CellPairer {
     const FacetKind& f = master(view.master);
     const Target target(f, nodes_of_master(view.master), e);
     place_points(view.region.polygon, options().degree > 0 ? options().degree : integration_degree(e, f), exact_polygons(e, f),
-                 points);
+                 options().traced, points);
     const std::size_t n_points = points.weight.size();
     points.y.insert(points.y.end(), view.region.polygon.begin(), view.region.polygon.end());  // vertices behind them
     e.places(points.y, tolerances(), lines, meetings, places);
@@ -226,6 +245,40 @@ class PairerInSpace final : public detail::CellPairer {
       return;
     }
     append_cell(view.master, n_points);
+    if (options().traced) trace(view);
+  }
+
+  /// What the polygon of a view hangs on.
+  void trace(const View& view) {
+    const Piece& piece = e.pieces[static_cast<std::size_t>(view.piece)];
+    const Polygon &corners = view.region.polygon, &triangle = piece.polygon;
+    PolygonTrace& trace = found_->traces.emplace_back();
+    trace.plane = e.plane;
+    for (std::size_t k = 0; k < 3; ++k) trace.triangle[k] = {piece.xi[k].x, piece.xi[k].y};
+    const auto within = [](Vec2 y, Vec2 origin, Vec2 u, Vec2 v) {
+      const double area = cross(u, v);
+      return area == 0 ? std::array{0.0, 0.0} : std::array{cross(y - origin, v) / area, cross(u, y - origin) / area};
+    };
+    for (const Vec2 y : corners)
+      trace.vertex.push_back(within(y, triangle[0], triangle[1] - triangle[0], triangle[2] - triangle[0]));
+    for (std::size_t k = 0; k < corners.size(); ++k) {
+      const Vec2 from = corners[k], to = corners[(k + 1) % corners.size()];
+      // the line that both ends are nearest to
+      double least = std::numeric_limits<double>::infinity();
+      PolygonTrace::Line& line = trace.line.emplace_back();
+      for (int i = 0; i < 3; ++i) {
+        const Vec2 along = triangle[(static_cast<std::size_t>(i) + 1) % 3] - triangle[static_cast<std::size_t>(i)],
+                   a = triangle[static_cast<std::size_t>(i)];
+        const double distance = std::max(std::abs(cross(along, from - a)), std::abs(cross(along, to - a))) / norm(along);
+        if (distance < least) least = distance, line = {.master = -1, .edge = i};
+      }
+      if (least <= tolerances().coincident * e.chart_diameter) continue;
+      for (const HalfPlane& half : view.region.halves) {
+        const double distance = std::max(std::abs(half(from)), std::abs(half(to))) / norm(half.slope);
+        if (distance < least) least = distance, line = edges_[static_cast<std::size_t>(half.line)];
+      }
+    }
+    for (const ChartPoints::InFan& point : points.fan) trace.point.push_back({point.last, point.r, point.s, point.weight});
   }
 
   /// @param n_points of `places`, the others are vertices
@@ -271,6 +324,8 @@ class PairerInSpace final : public detail::CellPairer {
   std::vector<Line> lines;
   std::vector<Meeting> meetings, images;
   std::vector<SlaveFacet::Place> places;
+  std::vector<PolygonTrace::Line> edges_;  ///< of masters that were looked at, where traces are wanted
+  std::vector<Vec2> outline_places_;
 };
 
 }  // namespace

@@ -47,10 +47,15 @@ void Target::images(std::span<const Vec2> y, std::span<const SlaveFacet::Place> 
 void cut_in_parts(const FacetKind& f, const Nodes& nodes, const SlaveFacet& slave, std::vector<Vec3>& polygon,
                   std::vector<Part>& parts) {
   parts.clear();
+  const auto add = [&](std::size_t i, std::size_t j, std::size_t k) {
+    parts.push_back({3,
+                     {polygon[i], polygon[j], polygon[k]},
+                     {static_cast<std::int32_t>(i), static_cast<std::int32_t>(j), static_cast<std::int32_t>(k)}});
+  };
   outline(f, nodes, polygon);
   const std::size_t n = polygon.size();
   if (n == 3) {
-    parts.push_back({3, {polygon[0], polygon[1], polygon[2]}});
+    parts.push_back({3, {polygon[0], polygon[1], polygon[2]}, {0, 1, 2}});
   } else if (n == 4) {
     // a corner that turns the other way is where a diagonal must start
     std::array<double, 4> corner;
@@ -63,13 +68,16 @@ void cut_in_parts(const FacetKind& f, const Nodes& nodes, const SlaveFacet& slav
     for (std::size_t i = 1; i < 4; ++i)
       if (corner[i] * sum < corner[reflex] * sum) reflex = i;
     if (slave.constant && corner[reflex] * sum >= 0)
-      parts.push_back({4, {polygon[0], polygon[1], polygon[2], polygon[3]}});
+      parts.push_back({4, {polygon[0], polygon[1], polygon[2], polygon[3]}, {0, 1, 2, 3}});
     else
-      for (const std::size_t k : {std::size_t{1}, std::size_t{2}})
-        parts.push_back({3, {polygon[reflex], polygon[(reflex + k) % 4], polygon[(reflex + k + 1) % 4]}});
+      for (const std::size_t k : {std::size_t{1}, std::size_t{2}}) add(reflex, (reflex + k) % 4, (reflex + k + 1) % 4);
   } else {
     const Vec3 centre = f.map(nodes)(probes(f.family).back()).x;
-    for (std::size_t i = 0; i < n; ++i) parts.push_back({3, {centre, polygon[i], polygon[(i + 1) % n]}});
+    for (std::size_t i = 0; i < n; ++i) {
+      add(i, i, (i + 1) % n);
+      parts.back().p[0] = centre;
+      parts.back().place[0] = -1;
+    }
   }
 }
 
@@ -77,7 +85,8 @@ void see(const SlaveFacet& slave, const Piece& piece, const Part& part, bool fro
   seen.polygon = piece.polygon;
   seen.halves.clear();
   for (int i = 0; i < part.n && !seen.polygon.empty(); ++i) {
-    const HalfPlane half = slave.side(piece, part.p[i], part.p[(i + 1) % part.n]);
+    HalfPlane half = slave.side(piece, part.p[i], part.p[(i + 1) % part.n]);
+    half.line = part.line[static_cast<std::size_t>(i)];
     seen.halves.push_back(front ? half : half.opposite());
     clip(seen.polygon, seen.halves.back(), scratch);
     seen.polygon.swap(scratch);

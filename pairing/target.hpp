@@ -35,6 +35,8 @@ class Target {
 struct Part {
   int n = 0;
   std::array<Vec3, 4> p;
+  std::array<std::int32_t, 4> place;                    ///< in the outline; -1: the middle of the facet
+  std::array<std::int32_t, 4> line = {-1, -1, -1, -1};  ///< HalfPlane::line of each edge
 };
 
 /// Convex parts of a master's outline, as seen along the slave's mean normal. @param nodes of the master, from the slave's
