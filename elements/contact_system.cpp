@@ -10,8 +10,8 @@ int ContactCellDofs::displacement(int node, int component) const {
   return node * dimension + static_cast<int>(before) + component;
 }
 
-void contact_system(const ContactCellDofs& dofs, std::span<const double> coupling, double gap, bool active, double lambda,
-                    std::span<double> matrix, std::span<double> residual) {
+void contact_system(const ContactCellDofs& dofs, std::span<const double> coupling, std::span<const double> curvature,
+                    double gap, bool active, double lambda, std::span<double> matrix, std::span<double> residual) {
   [[maybe_unused]] const int size = dofs.size();
   const int nodes = dofs.n_slave_nodes + dofs.n_master_nodes, carriers = static_cast<int>(dofs.carriers.size());
   assert(static_cast<int>(coupling.size()) >= nodes * dofs.dimension);
@@ -36,6 +36,14 @@ void contact_system(const ContactCellDofs& dofs, std::span<const double> couplin
       residual[static_cast<std::size_t>(at)] = lambda * c;
       for (int l = 0; l < carriers; ++l) entry(dofs.multiplier(l), at) = share * c;
     }
+  if (curvature.empty()) return;
+  const int n = nodes * dofs.dimension;
+  assert(static_cast<int>(curvature.size()) >= n * n);
+  for (int i = 0; i < n; ++i)
+    for (int j = 0; j <= i; ++j)
+      entry(dofs.displacement(i / dofs.dimension, i % dofs.dimension),
+            dofs.displacement(j / dofs.dimension, j % dofs.dimension)) =
+          lambda * curvature[static_cast<std::size_t>(i * n + j)];
 }
 
 }  // namespace lacon

@@ -6,7 +6,7 @@
 namespace lacon {
 
 /// The degrees of freedom of a contact cell: slave nodes one by one, each with its displacements and then its LAGS_C if it is a
-/// carrier; then master nodes with their displacements.
+/// carrier; then all other nodes with their displacements.
 struct ContactCellDofs {
   int n_slave_nodes = 0, n_master_nodes = 0, dimension = 2;
   std::span<const std::int8_t>
@@ -25,9 +25,10 @@ struct ContactCellDofs {
 /// displacement rows with lambda times the whole coupling; an inactive one has 1 / n on the diagonal and lambda / n in the
 /// residual of each carrier. Once the carriers share one equation, sums over the cells of a patch give the rows C_T du = -G_T
 /// of METHOD.md (D).
-/// @param coupling (nodes, dimension) C of the cell, slave nodes first  @param gap G of the cell
+/// @param coupling (nodes, dimension) C of the cell, slave nodes first  @param curvature (nodes dimension, the same): the
+/// second derivative of G, which an active cell adds with the factor lambda; or empty  @param gap G of the cell
 /// @param[out] matrix (size (size + 1) / 2): lower triangle, row by row  @param[out] residual (size)
-void contact_system(const ContactCellDofs& dofs, std::span<const double> coupling, double gap, bool active, double lambda,
-                    std::span<double> matrix, std::span<double> residual);
+void contact_system(const ContactCellDofs& dofs, std::span<const double> coupling, std::span<const double> curvature,
+                    double gap, bool active, double lambda, std::span<double> matrix, std::span<double> residual);
 
 }  // namespace lacon

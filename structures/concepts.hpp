@@ -95,6 +95,7 @@ struct Contact {
   std::string model, mesh;
   std::string algorithm = "LAC";
   bool smoothing = false;
+  bool frozen_gap = false;  ///< VARIATION_JEU='FIGEE': forces along the slave's normal, not the derivative of the gap
   bool verify_normals = true;
   double resi_geom = 1e-6;
   std::vector<ContactZone> zones;

@@ -119,6 +119,8 @@ ContactGeometry::ContactGeometry(const Mesh& mesh, const Model& model, const Con
     for (const std::int32_t patch : data.patches) zone_of_[patch] = static_cast<std::int32_t>(zones_.size());
     zones_.push_back(std::move(zone));
   }
+  if (contact.smoothing && !contact.frozen_gap)
+    for (const Zone& zone : zones_) normal_variations_.emplace_back(zone.slave);
   for (const SlaveElement& slave : contact_.slaves) {
     const lacon_kernel*& kernel = kernels_[model_.element[slave.cell]];
     if (!kernel) kernel = &kernel_of(slave.cell);
@@ -203,10 +205,12 @@ void ContactGeometry::update(std::span<const double> displacement, std::vector<Z
   std::fill(rejected_.begin(), rejected_.end(), 0);
   for (std::vector<double>* sums : {&gap_, &weight_, &covered_}) std::fill(sums->begin(), sums->end(), 0.0);
   if (records) records->clear();
+  normals_.resize(zones_.size());
   for (Zone& zone : zones_) {
-    std::vector<double> normals;
-    if (contact_.smoothing) normals = nodal_normals(zone.slave);
-    zone.slave.normals = normals;
+    const auto z = static_cast<std::size_t>(&zone - zones_.data());
+    zone.slave.normals = {};
+    if (contact_.smoothing) normals_[z] = nodal_normals(zone.slave);
+    zone.slave.normals = normals_[z];
     // a few blocks for each thread at a time: points of a large skin are never in memory together
     PairingInParts pairing(zone.slave, zone.master, zone.pairing);
     ZonePairing* const record = records ? &records->emplace_back() : nullptr;
@@ -229,7 +233,6 @@ void ContactGeometry::update(std::span<const double> displacement, std::vector<Z
         make_room(coupling_, first_coupling, whole);
       }
     }
-    zone.slave.normals = {};
   }
   for (std::size_t p = 0; p < gap_.size(); ++p) {
     if (weight_[p] > 0) gap_[p] /= weight_[p];

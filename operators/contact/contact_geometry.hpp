@@ -9,6 +9,8 @@
 
 #include "lacon/elements/reference.hpp"
 #include "lacon/elements/registry.hpp"
+#include "lacon/operators/contact/gap_variation.hpp"
+#include "lacon/operators/contact/normal_variation.hpp"
 #include "lacon/pairing/pairing.hpp"
 #include "lacon/structures/concepts.hpp"
 
@@ -38,6 +40,13 @@ class ContactGeometry {
     double gap;
     std::int64_t coupling;  ///< first entry in coupling()
   };
+  /// The derivatives of a contact cell's integrated gap by the nodes that it depends on.
+  struct Variation {
+    std::int32_t slave = -1;          ///< index into Contact::slaves
+    std::vector<std::int32_t> nodes;  ///< those of the slave skin first
+    int n_slave_nodes = 0;            ///< of these: the slave cell's own come first
+    GapVariation of_gap;              ///< (nodes, dimension)
+  };
 
   /// On the initial geometry, not yet paired. All arguments must outlive it. Throws EVOLUTION_3 for a slave cell without
   /// normal, EVOLUTION_8 for one beyond the axis.
@@ -48,6 +57,11 @@ class ContactGeometry {
   /// Pair on the current geometry, integrate gaps and couplings. @param displacement (n_nodes, mesh.dimension)
   /// @param records gets one entry a zone. Throws EVOLUTION_3.
   void update(std::span<const double> displacement, std::vector<ZonePairing>* records = nullptr);
+
+  /// The derivatives of the contact cells of some patches at the geometry of the last update(), in the order of slave cells;
+  /// with VARIATION_JEU='FIGEE' its couplings.
+  /// @param order of the derivatives wanted of each patch: 0 (none of its cells), 1, 2
+  std::vector<Variation> vary(std::span<const std::int8_t> order) const;
 
   /// An iterate may reach over the axis of revolution on its way, a solution may not: throws EVOLUTION_8.
   void check_radii() const;
@@ -75,6 +89,9 @@ class ContactGeometry {
   void integrate(const Zone& zone, const ContactCells& cells, std::vector<Alike>& groups) const;
   /// The same for cells of one kind.
   void evaluate(const Zone& zone, const ContactCells& cells, Alike& group) const;
+  Variation frozen_variation(const Cell& cell) const;
+  /// One of the contact cells of a zone, paired with traces.
+  Variation variation(std::size_t zone, const Pairing& found, std::size_t place, bool second) const;
   /// Sum up what the kernels gave.
   void add(const Zone& zone, const Block& block_of_zone, ZonePairing* record);
   /// What a kernel says of a slave cell.
@@ -91,6 +108,8 @@ class ContactGeometry {
   std::map<std::int32_t, const lacon_kernel*> kernels_;  ///< of the slaves' elements
   std::vector<double> coordinates_;                      ///< (n_nodes, 3), current
   std::vector<Zone> zones_;
+  std::vector<std::vector<double>> normals_;  ///< of each zone, at the nodes (LISSAGE)
+  std::vector<NormalVariation> normal_variations_;
   std::vector<Cell> cells_;
   std::vector<double> coupling_;
   std::vector<double> gap_, weight_, covered_, whole_, coverage_;  ///< of each patch

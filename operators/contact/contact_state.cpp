@@ -67,6 +67,7 @@ ContactState::ContactState(const Mesh& mesh, const Model& model, const Contact& 
 void ContactState::update_geometry(std::span<const double> displacement) {
   const int dimension = mesh_.dimension;
   geometry_.update(displacement);
+  variations_.clear();
 
   std::fill(locked_.begin(), locked_.end(), true);
   for (const ContactGeometry::Cell& cell : geometry_.cells()) {
@@ -115,6 +116,14 @@ std::int64_t ContactState::update_statuses(Patchwise& patches) const {
   return changes;
 }
 
+void ContactState::linearise(const Patchwise& patches, bool second) {
+  second_ = second && !contact_.frozen_gap;
+  std::vector<std::int8_t> order(n_patches(), 0);
+  for (std::size_t p = 0; p < n_patches(); ++p)
+    if (patches.status[p] == Status::active) order[p] = second_ && patches.lambda[p] != 0 ? 2 : 1;
+  variations_ = geometry_.vary(order);
+}
+
 std::vector<std::pair<std::int64_t, std::int64_t>> ContactState::coupled_vertices() const {
   std::vector<std::pair<std::int64_t, std::int64_t>> couples;
   const auto first_patch = static_cast<std::int64_t>(mesh_.n_nodes());
@@ -122,6 +131,14 @@ std::vector<std::pair<std::int64_t, std::int64_t>> ContactState::coupled_vertice
     for (const std::int32_t owner : {contact_.slaves[cell.slave].cell, cell.master})
       for (const std::int32_t node : mesh_.cells[owner])
         couples.emplace_back(first_patch + contact_.slaves[cell.slave].patch, node);
+  for (const ContactGeometry::Variation& variation : variations_) {
+    const std::vector<std::int32_t>& nodes = variation.nodes;
+    for (std::size_t i = 0; i < nodes.size(); ++i) {
+      couples.emplace_back(first_patch + contact_.slaves[variation.slave].patch, nodes[i]);
+      for (std::size_t j = 0; second_ && j < i; ++j)
+        if (nodes[i] != nodes[j]) couples.emplace_back(nodes[i], nodes[j]);
+    }
+  }
   return couples;
 }
 
@@ -131,41 +148,37 @@ void ContactState::evaluate(const Patchwise& patches, const std::function<void(c
   std::vector<bool> has_row(n_patches(), false), keeps_multiplier(n_patches(), false);
   std::vector<ContactUnknown> unknowns;
   std::vector<double> matrix, residual;
-  for (const ContactGeometry::Cell& cell : geometry_.cells()) {
-    const SlaveElement& slave = contact_.slaves[cell.slave];
-    const Status status = patches.status[slave.patch];
-    if (status == Status::unpaired) continue;
+  for (const ContactGeometry::Variation& variation : variations_) {
+    const SlaveElement& slave = contact_.slaves[variation.slave];
     const catalog::SlaveRow* row = catalog::find_slave(mesh_.patches->kind[slave.patch], slave.rank);
-    const auto slave_nodes = mesh_.cells[slave.cell], master_nodes = mesh_.cells[cell.master];
-    const ContactCellDofs dofs{.n_slave_nodes = static_cast<int>(slave_nodes.size()),
-                               .n_master_nodes = static_cast<int>(master_nodes.size()),
+    const std::vector<std::int32_t>& nodes = variation.nodes;
+    const int n_slave_nodes = static_cast<int>(mesh_.cells[slave.cell].size());
+    const ContactCellDofs dofs{.n_slave_nodes = n_slave_nodes,
+                               .n_master_nodes = static_cast<int>(nodes.size()) - n_slave_nodes,
                                .dimension = dimension,
                                .carriers = row->carriers};
     const std::size_t size = dofs.size();
     unknowns.resize(size);
     matrix.assign(size * (size + 1) / 2, 0.0);
     residual.assign(size, 0.0);
-    for (int node = 0; node < dofs.n_slave_nodes + dofs.n_master_nodes; ++node) {
-      const std::int64_t number = node < dofs.n_slave_nodes ? slave_nodes[node] : master_nodes[node - dofs.n_slave_nodes];
-      for (int d = 0; d < dimension; ++d) unknowns[dofs.displacement(node, d)] = {number, d};
-    }
+    for (int node = 0; node < static_cast<int>(nodes.size()); ++node)
+      for (int d = 0; d < dimension; ++d) unknowns[dofs.displacement(node, d)] = {nodes[node], d};
     // every carrier of the patch is its one equation: summing them up is the tying (METHOD.md 3.6)
-    for (int c = 0; c < static_cast<int>(row->carriers.size()); ++c)
-      unknowns[dofs.multiplier(c)] = {first_patch + slave.patch, 0};
-    const std::span<const double> coupling(geometry_.coupling().data() + cell.coupling,
-                                           static_cast<std::size_t>(dofs.n_slave_nodes + dofs.n_master_nodes) * dimension);
-    contact_system(dofs, coupling, cell.gap, status == Status::active, patches.lambda[slave.patch], matrix, residual);
+    for (int l = 0; l < static_cast<int>(row->carriers.size()); ++l)
+      unknowns[dofs.multiplier(l)] = {first_patch + slave.patch, 0};
+    const GapVariation& of_gap = variation.of_gap;
+    contact_system(dofs, of_gap.gradient, of_gap.hessian, of_gap.gap, true, patches.lambda[slave.patch], matrix, residual);
     // a locked patch has forces but no row
-    if (status == Status::active && locked_[slave.patch]) {
+    if (locked_[slave.patch]) {
       std::fill(matrix.begin(), matrix.end(), 0.0);
-      for (int c = 0; c < static_cast<int>(row->carriers.size()); ++c) residual[dofs.multiplier(c)] = 0;
+      for (int l = 0; l < static_cast<int>(row->carriers.size()); ++l) residual[dofs.multiplier(l)] = 0;
       keeps_multiplier[slave.patch] = true;
     } else {
       has_row[slave.patch] = true;
     }
     use({unknowns, matrix, residual});
   }
-  // the multiplier of an unpaired patch goes to zero
+  // the multiplier of a patch without contact goes to zero
   constexpr double one = 1;
   for (std::size_t p = 0; p < n_patches(); ++p) {
     if (has_row[p]) continue;
@@ -202,17 +215,15 @@ HeldOverlap ContactState::held_overlap() const {
 
 namespace {
 
-/// Call use(node, slave or not, force) for each node of a contact cell; the force on a body is -lambda C.
+/// Call use(node, slave or not, force) for each node that a contact cell pushes; the force on a body is -lambda dG/du.
 template <class Use>
-void for_each_force(const Mesh& mesh, const Contact& contact, const ContactGeometry& geometry,
-                    const ContactGeometry::Cell& cell, double lambda, Use use) {
-  std::int64_t at = cell.coupling;
-  for (const bool slave : {true, false})
-    for (const std::int32_t node : mesh.cells[slave ? contact.slaves[cell.slave].cell : cell.master]) {
-      std::array<double, 3> force{};
-      for (int d = 0; d < mesh.dimension; ++d) force[d] = -lambda * geometry.coupling()[at++];
-      use(node, slave, force);
-    }
+void for_each_force(const ContactGeometry::Variation& variation, int dimension, double lambda, Use use) {
+  std::size_t at = 0;
+  for (std::size_t i = 0; i < variation.nodes.size(); ++i) {
+    std::array<double, 3> force{};
+    for (int d = 0; d < dimension; ++d) force[d] = -lambda * variation.of_gap.gradient[at++];
+    use(variation.nodes[i], static_cast<int>(i) < variation.n_slave_nodes, force);
+  }
 }
 
 }  // namespace
@@ -220,14 +231,11 @@ void for_each_force(const Mesh& mesh, const Contact& contact, const ContactGeome
 std::vector<double> ContactState::forces(const Patchwise& patches) const {
   std::vector<double> sum(free_.size(), 0.0);
   const int dimension = mesh_.dimension;
-  for (const ContactGeometry::Cell& cell : geometry_.cells()) {
-    const std::int32_t patch = contact_.slaves[cell.slave].patch;
-    if (patches.status[patch] != Status::active) continue;
-    for_each_force(mesh_, contact_, geometry_, cell, patches.lambda[patch],
+  for (const ContactGeometry::Variation& variation : variations_)
+    for_each_force(variation, dimension, patches.lambda[contact_.slaves[variation.slave].patch],
                    [&](std::int32_t node, bool, const std::array<double, 3>& force) {
                      for (int d = 0; d < dimension; ++d) sum[static_cast<std::size_t>(node) * dimension + d] += force[d];
                    });
-  }
   return sum;
 }
 
@@ -245,11 +253,10 @@ std::vector<ZoneBalance> ContactState::balance(const Patchwise& patches) const {
     zone.whole += geometry_.whole(p);
     zone.work = std::max(zone.work, std::abs(patches.lambda[p] * geometry_.gap(p)));
   }
-  for (const ContactGeometry::Cell& cell : geometry_.cells()) {
-    const std::int32_t patch = contact_.slaves[cell.slave].patch;
-    if (patches.status[patch] != Status::active) continue;
+  for (const ContactGeometry::Variation& variation : variations_) {
+    const std::int32_t patch = contact_.slaves[variation.slave].patch;
     ZoneBalance& zone = zones[geometry_.zone_of(patch)];
-    for_each_force(mesh_, contact_, geometry_, cell, patches.lambda[patch],
+    for_each_force(variation, mesh_.dimension, patches.lambda[patch],
                    [&](std::int32_t node, bool slave, const std::array<double, 3>& f) {
                      const double* const x = geometry_.coordinates().data() + 3 * std::ptrdiff_t{node};
                      for (int d = 0; d < 3; ++d) {

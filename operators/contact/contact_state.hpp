@@ -75,11 +75,15 @@ class ContactState {
   /// Statuses from lambda + rho g. @return how many have changed
   std::int64_t update_statuses(Patchwise& patches) const;
 
-  /// Pairs of vertices that the multipliers' rows couple: patch and node.
+  /// Differentiate the gaps of active patches at the present geometry, for what follows.
+  /// @param second whether evaluate() is to have the second derivatives, lambda d2G/du2, in its matrix
+  void linearise(const Patchwise& patches, bool second);
+
+  /// Pairs of vertices that contact couples: patch and node, and nodes that meet in second derivatives.
   std::vector<std::pair<std::int64_t, std::int64_t>> coupled_vertices() const;
   /// Call `use` for all that adds to contact forces and the multipliers' rows.
   void evaluate(const Patchwise& patches, const std::function<void(const ContactTerm&)>& use) const;
-  /// Contact forces on the bodies, (n_nodes, dimension): -lambda C.
+  /// Contact forces on the bodies, (n_nodes, dimension): -lambda dG/du.
   std::vector<double> forces(const Patchwise& patches) const;
 
   /// Largest |g_T| / h over the active patches that have an equation.
@@ -107,6 +111,8 @@ class ContactState {
   std::vector<double> size_;           ///< h of each patch: |T| in 2D, sqrt |T| in 3D, initial geometry
   std::vector<double> rho_;            ///< E / h of each patch
   std::vector<bool> locked_;
+  std::vector<ContactGeometry::Variation> variations_;  ///< of contact cells of active patches
+  bool second_ = false;                                 ///< they have second derivatives
   double gap_tolerance_ = 0;
 };
 

@@ -109,6 +109,10 @@ void Equilibrium::pair(std::span<const double> displacement) {
 void Equilibrium::assemble(const StaticState& state, const StaticState& previous, SolidMatrix wanted) {
   matrix_ = wanted;
   const bool keeps_stiffness = linear_ && has_stiffness_;
+  if (contact_) {
+    const Phase phase("contact");
+    contact_->linearise(state.patches, true);
+  }
   start(keeps_stiffness);
   add_solids(state, previous, keeps_stiffness ? SolidMatrix::none : wanted);
   add_following_loads(state);

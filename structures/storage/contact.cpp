@@ -31,6 +31,7 @@ Contact read_contact(const hdf5::Group& root) {
   contact.mesh = root.text("mesh");
   contact.algorithm = root.text("algorithm");
   contact.smoothing = root.integer("smoothing") != 0;
+  contact.frozen_gap = root.has_attribute("frozen_gap") && root.integer("frozen_gap") != 0;  // a base may be older
   contact.verify_normals = root.integer("verify_normals") != 0;
   contact.resi_geom = root.real("resi_geom");
   contact.zones.resize(root.read<double>("zones/tolerance").size());
@@ -61,6 +62,7 @@ void write(const hdf5::Group& root, const Contact& contact) {
   root.set("mesh", contact.mesh);
   root.set("algorithm", contact.algorithm);
   root.set("smoothing", std::int64_t{contact.smoothing});
+  root.set("frozen_gap", std::int64_t{contact.frozen_gap});
   root.set("verify_normals", std::int64_t{contact.verify_normals});
   root.set("resi_geom", contact.resi_geom);
   for (const auto& [name, member] : zone_numbers) {

@@ -74,15 +74,17 @@ class PeerCases(PeerCase):
             self.judge(case)
 
     def test_ssnp165_a_half_ring_snaps_open(self):
-        """The peer's digits are those of a residual of 0.5 and of forces that are not conservative: displacements and pressures agree
-        to 1 % of the largest, whatever the residual; no step is cut."""
+        """The peer's digits are those of a residual of 0.5 and of forces that do not derive from the gap: displacements and pressures
+        agree to 1 % of the largest with the frozen gap, whatever the residual, and no step is cut; to 6 % with its derivative."""
         largest = {"DEPL": 12.0, "PRES_NOEU": 120.0}
-        for case, residual in (("ssnp165c", "0.5"), ("ssnp165c", "1e-6"), ("ssnp165e", "0.5")):
-            run = self.judge(case, RESIDUAL=residual)
-            self.assertNotIn("EVOLUTION_7", run.stdout)
+        for case, residual, gap, share in (("ssnp165c", "0.5", "FIGEE", 0.01), ("ssnp165c", "1e-6", "FIGEE", 0.01),
+                                           ("ssnp165e", "0.5", "FIGEE", 0.01), ("ssnp165c", "0.5", "EXACTE", 0.06)):
+            run = self.judge(case, RESIDUAL=residual, GAP=gap)
+            if gap == "FIGEE":
+                self.assertNotIn("EVOLUTION_7", run.stdout)
             for row, check in zip(peer_checks.rows(case), run.checks):
-                with self.subTest(case=case, residual=residual, number=row["no"]):
-                    self.assertLessEqual(abs(check["value"] - float(row["vale_calc"])), 0.01 * largest[row["field"]])
+                with self.subTest(case=case, residual=residual, gap=gap, number=row["no"]):
+                    self.assertLessEqual(abs(check["value"] - float(row["vale_calc"])), share * largest[row["field"]])
 
     def test_an_export_file_runs_the_same_case(self):
         export = self.folder / "zzzz383a.export"
@@ -110,7 +112,8 @@ class PeerCases(PeerCase):
                 found.append([float(word) for word in re.findall(r"[\d.e+-]+", re.search(f"ERRORS {case} (.*)", run.stdout)[1])])
             self.assertEqual(len(found[0]), 4)
             for derived, literal in zip(*found):
-                self.assertLessEqual(abs(derived - literal), 1e-9 * abs(literal), case)
+                # errors of displacements and pressures of size 1: Newton's last correction is what is left between two runs
+                self.assertLessEqual(abs(derived - literal), 1e-9 * max(1, abs(literal)), case)
 
 
 class LongPeerCases(PeerCase):

@@ -187,9 +187,9 @@ def peer_section(runner):
 
 Every check at the peer's own tolerances. OK: reference and VALE_CALC are met; DIFF: the reference is met, or there is none, and the peer's digits are not. In
 ssnp170r, w and z these carry the error of the peer's rule for PYRAM13 (-25.06 to -24.92); here the pressure is -25 to 1e-9. The half ring (ssnp165) has no
-reference: its displacements and pressures are within 1 % of the largest of their kind, 12 and 120; with the residual at 1e-6 they are the same. What is left is the
-contact matrix alone: the peer integrates the master's side on the master's facets with the master's normals, so that its forces on slave and master do not balance where
-facets are not parallel; here one set of points and normals serves both (METHOD.md 5.4 b). With the peer's matrix put in by way of trial (2D, linear edges), all 30 values
+reference: its displacements and pressures are within 6 % of the largest of their kind, 12 and 120, and within 1 % with VARIATION_JEU='FIGEE'; with the residual at 1e-6 they
+are the same. What is left is the forces of contact alone: here they are the derivative of the gap (METHOD.md 5.4 c), on facets that slide far and are not parallel. The peer integrates the master's side on the
+master's facets with the master's normals, so that its forces on slave and master do not balance. With the peer's matrix put in by way of trial (2D, linear edges), all 30 values
 of ssnp165c came out as the peer's to 4e-12 of their size, and the forces on slave and master differed by up to 1.0 % of the load. Distances from theory
 are relative to it. ssnp150 and ssnv219: the next section.
 

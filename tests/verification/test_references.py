@@ -132,7 +132,7 @@ R.append(STAT_NON_LINE(MODELE=MODEL, CHAM_MATER=FIELD, EXCIT=_F(CHARGE=HOLD), CO
         pressure = max(map(abs, result.on_cells("CONT_ELEM", 1, "PRES").values()))
         # what the pressure on an edge of length 1/4 gives the node in its middle, for one radian
         largest = pressure * 2 / 3 / 4 * 2.025
-        for _, _, rela, maxi in lines(run)[:2]:
+        for _, _, rela, maxi in lines(run)[-2:]:  # while the rings overlap the gap's derivative has more than the pressure
             self.assertAlmostEqual(maxi / rela / largest, 1, delta=0.02)
 
 

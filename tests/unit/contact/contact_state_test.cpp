@@ -62,7 +62,8 @@ struct Touching : testing::Test {
     for (std::size_t node = 8; node < 16; ++node) displacement[2 * node + 1] = height;
   }
   /// What evaluate() adds, summed up: the residual of each unknown (vertex, component).
-  static std::map<std::pair<std::int64_t, int>, double> residuals(const ContactState& state, const Patchwise& patches) {
+  static std::map<std::pair<std::int64_t, int>, double> residuals(ContactState& state, const Patchwise& patches) {
+    state.linearise(patches, false);
     std::map<std::pair<std::int64_t, int>, double> sums;
     state.evaluate(patches, [&](const ContactTerm& term) {
       for (std::size_t i = 0; i < term.unknowns.size(); ++i)

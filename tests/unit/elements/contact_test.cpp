@@ -579,7 +579,7 @@ Assembled assemble(int kind, const Macro& macro, const std::vector<Numbers>& let
     for (int a = 0; a <= nodes; ++a)
       for (int i = 0; i < dimension; ++i) coupling.push_back((a < nodes ? letters[e][z(a)] : -7.0) * std::pow(10, i));
     Numbers matrix(z(dofs.size() * (dofs.size() + 1) / 2), garbage), residual(z(dofs.size()), garbage);
-    lacon::contact_system(dofs, coupling, gap[0], active, lambda, matrix, residual);
+    lacon::contact_system(dofs, coupling, {}, gap[0], active, lambda, matrix, residual);
     const auto entry = [&](int i, int j) { return matrix[z(std::max(i, j) * (std::max(i, j) + 1) / 2 + std::min(i, j))]; };
     sum.gap += gap[0];
     std::vector<int> multipliers;
@@ -682,8 +682,8 @@ TEST(ContactSystem, MatrixIsTheDerivativeOfTheResidual) {  // C frozen: d(lambda
   const lacon::ContactCellDofs dofs{2, 2, 2, carriers};
   const Numbers coupling = {1, 2, 3, 4, 5, 6, 7, 8};
   Numbers matrix(45), low(9), high(9);
-  contact_system(dofs, coupling, 0.5, true, -3, matrix, low);
-  contact_system(dofs, coupling, 0.5, true, -2, matrix, high);
+  contact_system(dofs, coupling, {}, 0.5, true, -3, matrix, low);
+  contact_system(dofs, coupling, {}, 0.5, true, -2, matrix, high);
   for (int node = 0; node < 4; ++node)
     for (int i = 0; i < 2; ++i) {
       const int at = dofs.displacement(node, i), row = dofs.multiplier(0);

@@ -1,0 +1,102 @@
+// The variation of a contact cell in the plane.
+#include <vector>
+
+#include "lacon/operators/contact/cell_variation.hpp"
+
+namespace lacon::variations {
+namespace {
+
+/// Where an end of an interval goes, which the normal through a node q cuts off: the zero xi of
+/// f = (q - x(xi)) . T(xi), T at a right angle to the normal.
+class EndVariation {
+ public:
+  EndVariation(const ContactCellGeometry& cell, const ContactCellGeometry::End& end, int n_variables) : row_(n_variables) {
+    row_.setZero();
+    if (end.node < 0) return;
+    const int slaves = catalog::cell(cell.slave).n_nodes, masters = catalog::cell(cell.master).n_nodes;
+    const Shapes<2> phi(cell.slave, &end.at);
+    const Interpolated<2> slave(phi, cell.slave_nodes.data());
+    const bool smooth = !cell.slave_normals.empty();
+    // T, its slope and its curvature
+    std::array<Vector<2>, 3> t = {slave.d[0], slave.dd[0][0], Vector<2>::Zero()};
+    if (smooth) {
+      const Interpolated<2> normal(phi, cell.slave_normals.data());
+      t = {along(normal.x), along(normal.d[0]), along(normal.dd[0][0])};
+    }
+    const int other = end.node - slaves - masters;
+    const double* const node =
+        other >= 0 ? cell.other_nodes.data() + 2 * other : cell.master_nodes.data() + 2 * (end.node - slaves);
+    const Vector<2> q(node[0], node[1]), apart = q - slave.x;
+    const double slope = apart.dot(t[1]) - slave.d[0].dot(t[0]);
+    // where the slave's normals meet, an end has no place of its own
+    if (!(std::abs(slope) > least_slope * slave.d[0].norm() * t[0].norm())) return;
+
+    Rows<2> dq = Rows<2>::Zero(2, n_variables), dx = dq, ddx = dq, dt = dq, ddt = dq;  // dd: of the slope
+    for (int d = 0; d < 2; ++d) dq(d, 2 * end.node + d) = 1;
+    for (int a = 0; a < phi.n; ++a)
+      for (int d = 0; d < 2; ++d) {
+        dx(d, 2 * a + d) = phi.value[static_cast<std::size_t>(a)];
+        ddx(d, 2 * a + d) = phi.slope(a, 0);
+        if (smooth) {  // T = (-N_y, N_x)
+          const int normal = 2 * (cell.n_nodes() + a) + (1 - d);
+          dt(d, normal) = (d == 0 ? -1 : 1) * phi.value[static_cast<std::size_t>(a)];
+          ddt(d, normal) = (d == 0 ? -1 : 1) * phi.slope(a, 0);
+        } else {
+          dt(d, 2 * a + d) = phi.slope(a, 0);
+          ddt(d, 2 * a + d) = phi.bend(a, 0, 0);
+        }
+      }
+    row_ = -(t[0].transpose() * (dq - dx) + apart.transpose() * dt) / slope;
+    // d2f at a given place of the end, and what the place itself adds
+    const Rows<2> moved = dq - dx - slave.d[0] * row_, turned = dt + t[1] * row_;
+    const auto part = [&](double factor, const Row& first, const Row& second) {
+      products_.push_back({-factor / slope, first, second});
+    };
+    for (int d = 0; d < 2; ++d) part(2, moved.row(d), turned.row(d));
+    part(1, row_, Row(2 * apart.transpose() * ddt + apart.dot(t[2]) * row_));
+    part(-1, row_, Row(2 * t[0].transpose() * ddx + slave.dd[0][0].dot(t[0]) * row_));
+  }
+
+  const Row& row() const { return row_; }
+  /// Add factor times the second derivative.
+  void add_second(double factor, QuadraticForm& form) const {
+    for (const Product& product : products_) form.add(factor * product.factor, product.first, product.second);
+  }
+
+ private:
+  static constexpr double least_slope = 1e-9;
+  struct Product {
+    double factor;
+    Row first, second;
+  };
+  static Vector<2> along(const Vector<2>& normal) { return {-normal[1], normal[0]}; }
+
+  Row row_;
+  std::vector<Product> products_;
+};
+
+}  // namespace
+
+void vary_in_plane(const ContactCellGeometry& cell, bool second, GapVariation& variation) {
+  const int n = cell.n_unknowns();
+  CellVariation<2> sum(cell, 2, second);
+  const auto& [from, to] = cell.ends;
+  const double width = to.at - from.at;
+  for (std::size_t p = 0; p < cell.weight.size(); ++p) {
+    const double share = (cell.slave_point[p] - from.at) / width, weight = cell.weight[p];
+    Row dxi = Row::Zero(sum.n_variables()), dweight = dxi;
+    dxi[n] = 1 - share, dxi[n + 1] = share;
+    dweight[n] = -weight / width, dweight[n + 1] = weight / width;
+    sum.add_point(sum.on_slave(&cell.slave_point[p], dxi), &cell.master_point[p], weight, dweight);
+  }
+  // the corners as functions of the unknowns
+  const std::array ends = {EndVariation(cell, from, sum.n_variables()), EndVariation(cell, to, sum.n_variables())};
+  Eigen::MatrixXd corners(2, n);
+  for (int k = 0; k < 2; ++k) corners.row(k) = ends[static_cast<std::size_t>(k)].row().head(n);
+  if (second)
+    for (int k = 0; k < 2; ++k) ends[static_cast<std::size_t>(k)].add_second(sum.gradient()[n + k], sum.form());
+  variation.gap = sum.gap();
+  chain_corners(sum.gradient(), corners, n, second ? &sum.form() : nullptr, variation);
+}
+
+}  // namespace lacon::variations
