@@ -34,7 +34,8 @@ ContactState::ContactState(const Mesh& mesh, const Model& model, const Contact& 
                            ContactBodies bodies)
     : mesh_(mesh), contact_(contact), geometry_(mesh, model, contact, registry), free_(std::move(bodies.free)) {
   size_.assign(mesh.patches->size(), 0.0);
-  rho_ = size_;
+  own_ = rho_ = size_;
+  flexibility_.assign(mesh.n_cells(), 0.0);
   locked_.assign(size_.size(), false);
   for (const ContactGeometry::Zone& zone : geometry_.zones())
     smallest_edge_.push_back(std::min(smallest_edge(zone.slave), smallest_edge(zone.master)));
@@ -43,15 +44,22 @@ ContactState::ContactState(const Mesh& mesh, const Model& model, const Contact& 
   for (const SlaveElement& slave : contact_.slaves) size_[slave.patch] += measure(mesh, slave.cell);
   if (mesh.dimension == 3)
     for (double& size : size_) size = std::sqrt(size);
+  const auto modulus_below = [&](std::int32_t cell) {
+    std::optional<double> modulus;
+    for (const BodyCell& body : body_cells(mesh, around, cell))
+      if (const auto own = bodies.modulus(body.cell)) modulus = own;
+    return modulus;
+  };
   for (const SlaveElement& slave : contact_.slaves) {
     // the first sub-cell's body stands for the patch: all its sub-cells come from one body cell
     if (slave.rank > 0) continue;
-    std::optional<double> modulus;
-    for (const BodyCell& body : body_cells(mesh, around, slave.cell))
-      if (const auto own = bodies.modulus(body.cell)) modulus = own;
+    const std::optional<double> modulus = modulus_below(slave.cell);
     if (!modulus) fail("EVOLUTION_2", {{"cell", cell_name(slave.cell)}});
-    rho_[slave.patch] = *modulus / size_[slave.patch];
+    own_[slave.patch] = 1 / *modulus;
   }
+  for (const ContactZone& zone : contact_.zones)
+    for (const std::int32_t cell : zone.master)
+      if (const std::optional<double> modulus = modulus_below(cell)) flexibility_[cell] = 1 / *modulus;
   double extent = 0;
   for (int d = 0; d < mesh.dimension; ++d) {
     double low = INFINITY, high = -INFINITY;
@@ -70,7 +78,10 @@ void ContactState::update_geometry(std::span<const double> displacement) {
   variations_.clear();
 
   std::fill(locked_.begin(), locked_.end(), true);
+  std::vector<double> softest(n_patches(), 0.0);  // 1 / E of the softest body that a patch faces
   for (const ContactGeometry::Cell& cell : geometry_.cells()) {
+    double& master = softest[contact_.slaves[cell.slave].patch];
+    master = std::max(master, flexibility_[cell.master]);
     std::int64_t at = cell.coupling;
     for (const std::int32_t owner : {contact_.slaves[cell.slave].cell, cell.master})
       for (const std::int32_t node : mesh_.cells[owner])
@@ -78,6 +89,9 @@ void ContactState::update_geometry(std::span<const double> displacement) {
           if (geometry_.coupling()[at] != 0 && free_[static_cast<std::size_t>(node) * dimension + d])
             locked_[contact_.slaves[cell.slave].patch] = false;
   }
+  // a pressure on a patch of size h moves either body by about h / E: if rho were that of the stiffer one alone, the error of a
+  // gap by its linearisation would hide any pressure, and statuses alternate
+  for (std::size_t p = 0; p < n_patches(); ++p) rho_[p] = 1 / (size_[p] * (own_[p] + softest[p]));
 }
 
 Patchwise ContactState::initial() const {

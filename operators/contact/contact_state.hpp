@@ -109,7 +109,9 @@ class ContactState {
   std::vector<std::uint8_t> free_;
   std::vector<double> smallest_edge_;  ///< of each zone
   std::vector<double> size_;           ///< h of each patch: |T| in 2D, sqrt |T| in 3D, initial geometry
-  std::vector<double> rho_;            ///< E / h of each patch
+  std::vector<double> flexibility_;    ///< 1 / E of the body below each cell of a master skin, 0 elsewhere
+  std::vector<double> own_;            ///< likewise of each patch
+  std::vector<double> rho_;            ///< stiffness of both bodies, in series, under a pressure on each patch
   std::vector<bool> locked_;
   std::vector<ContactGeometry::Variation> variations_;  ///< of contact cells of active patches
   bool second_ = false;                                 ///< they have second derivatives

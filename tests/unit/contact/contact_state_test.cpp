@@ -20,7 +20,8 @@ struct Touching : testing::Test {
   Model model;
   Contact contact;
   Registry registry;
-  std::optional<double> modulus = young;
+  std::optional<double> modulus = young;         ///< of the slave's body
+  std::optional<double> master_modulus = young;  ///< of the master's
   std::vector<std::uint8_t> free = std::vector<std::uint8_t>(32, 1);
   std::vector<double> displacement = std::vector<double>(32, 0.0);
 
@@ -55,7 +56,8 @@ struct Touching : testing::Test {
   }
 
   ContactState state() {
-    return {mesh, model, contact, registry, {.modulus = [this](std::int32_t) { return modulus; }, .free = free}};
+    const auto of_body = [this](std::int32_t cell) { return cell == 2 ? master_modulus : modulus; };
+    return {mesh, model, contact, registry, {.modulus = of_body, .free = free}};
   }
   /// Lift the upper body.
   void lift(double height) {
@@ -93,14 +95,14 @@ TEST_F(Touching, TheInitialStatusIsWhatTheZoneAsksFor) {
 
 TEST_F(Touching, APatchIsActiveWherePressureOrOverlapSaysSo) {
   ContactState now = state();
-  // rho = E / h = 1000: lambda + rho g <= 0 (METHOD.md 3.7)
+  // rho = E / 2 h = 500, both bodies give way: lambda + rho g <= 0 (METHOD.md 3.7)
   struct Case {
     double lambda, gap;
     Status expected;
   };
   for (const auto& [lambda, gap, expected] :
        {Case{-1, 0, Status::active}, Case{0, -0.01, Status::active}, Case{-1, 0.01, Status::open},
-        Case{-20, 0.01, Status::active}, Case{5, -0.001, Status::open}, Case{5, -0.01, Status::active}}) {
+        Case{-20, 0.01, Status::active}, Case{3, -0.005, Status::open}, Case{3, -0.01, Status::active}}) {
     lift(gap);
     now.update_geometry(displacement);
     EXPECT_NEAR(now.geometry().gap(0), gap, 1e-15);
@@ -111,6 +113,40 @@ TEST_F(Touching, APatchIsActiveWherePressureOrOverlapSaysSo) {
       EXPECT_EQ(now.update_statuses(patches), before != expected) << lambda << ' ' << gap;
       EXPECT_EQ(patches.status[0], expected) << lambda << ' ' << gap;
     }
+  }
+}
+
+TEST_F(Touching, StatusesCompareAPressureWithTheStiffnessOfBothBodiesInSeries) {
+  constexpr double gap = 1e-3;
+  for (const double contrast : {1e-6, 1e-3, 1.0, 1e3, 1e6})
+    for (const bool stiff_slave : {false, true}) {
+      (stiff_slave ? modulus : master_modulus) = young * contrast;
+      (stiff_slave ? master_modulus : modulus) = young;
+      ContactState now = state();
+      lift(gap);
+      now.update_geometry(displacement);
+      const double border = -gap / (1 / (young * contrast) + 1 / young);  // the pressure that closes this gap of h = 1
+      for (const double factor : {0.99, 1.01}) {
+        Patchwise patches(1);
+        patches.status[0] = Status::active;
+        patches.lambda[0] = factor * border;
+        now.update_statuses(patches);
+        EXPECT_EQ(patches.status[0], factor > 1 ? Status::active : Status::open) << contrast << ' ' << factor;
+      }
+    }
+}
+
+TEST_F(Touching, AMasterWithoutBodyIsRigid) {
+  master_modulus.reset();
+  ContactState now = state();
+  lift(0.01);
+  now.update_geometry(displacement);
+  Patchwise patches(1);
+  patches.status[0] = Status::active;
+  for (const double lambda : {-9.9, -10.1}) {
+    patches.lambda[0] = lambda;
+    now.update_statuses(patches);
+    EXPECT_EQ(patches.status[0], lambda < -10 ? Status::active : Status::open);
   }
 }
 
