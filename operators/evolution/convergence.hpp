@@ -46,9 +46,9 @@ struct IterationReport {
   std::int64_t constraints = 0;  ///< active patches and relations when the matrix was made: the negative pivots to expect
   double seconds = 0;
 
-  bool converged() const {
-    return rela_met && maxi_met && geometry_met && constraint_met && status_changes == 0 && !solution.rough;
-  }
+  /// With the statuses that the patches have.
+  bool in_equilibrium() const { return rela_met && maxi_met && geometry_met && constraint_met && !solution.rough; }
+  bool converged() const { return in_equilibrium() && status_changes == 0; }
 };
 
 /// RESI_GLOB_RELA and RESI_GLOB_MAXI: fills in rela, maxi and whether they are met. The relative residual is measured against

@@ -106,15 +106,15 @@ void Equilibrium::pair(std::span<const double> displacement) {
   add_to_count("contact cells", static_cast<double>(contact_->geometry().cells().size()));
 }
 
-void Equilibrium::assemble(const StaticState& state, const StaticState& previous, SolidMatrix wanted) {
+void Equilibrium::assemble(const StaticState& state, const StaticState& previous, NewtonMatrix wanted) {
   matrix_ = wanted;
   const bool keeps_stiffness = linear_ && has_stiffness_;
   if (contact_) {
     const Phase phase("contact");
-    contact_->linearise(state.patches, true);
+    contact_->linearise(state.patches, wanted.curved);
   }
   start(keeps_stiffness);
-  add_solids(state, previous, keeps_stiffness ? SolidMatrix::none : wanted);
+  add_solids(state, previous, keeps_stiffness ? SolidMatrix::none : wanted.solid);
   add_following_loads(state);
   if (linear_ && !keeps_stiffness) system_.stiffness_is_complete();
   has_stiffness_ = true;

@@ -8,6 +8,7 @@
 
 #include "lacon/operators/contact/contact_state.hpp"
 #include "lacon/operators/evolution/convergence.hpp"
+#include "lacon/operators/evolution/matrix_choice.hpp"
 #include "lacon/operators/evolution/relations.hpp"
 #include "lacon/operators/evolution/static_problem.hpp"
 #include "lacon/operators/evolution/system.hpp"
@@ -42,7 +43,7 @@ class Equilibrium {
   /// Contact cells at these displacements; nothing without contact. @param displacement (n_nodes, n_components)
   void pair(std::span<const double> displacement);
   /// Forces, matrix, stresses and variables at a state that is paired. @param previous the last one in equilibrium
-  void assemble(const StaticState& state, const StaticState& previous, SolidMatrix wanted);
+  void assemble(const StaticState& state, const StaticState& previous, NewtonMatrix wanted);
 
   /// Add a solution of the system to a state. @param step of the imposed displacements
   /// @return the increment of all unknowns of nodes, (n_nodes, n_components)
@@ -56,13 +57,15 @@ class Equilibrium {
   /// Active patches and relations that have an equation: the negative pivots of a stable equilibrium.
   std::int64_t n_constraints(const StaticState& state) const;
   bool touches(const StaticState& state) const { return contact_ && contact_->n_constraints(state.patches) > 0; }
+  /// Whether the gaps of active patches have second derivatives.
+  bool curves(const StaticState& state) const { return touches(state) && !problem_.contact->frozen_gap; }
   /// The unknowns of these equations in words, the first few.
   std::string names(std::span<const std::int64_t> equations) const;
 
   const System& system() const { return system_; }
   const ContactState* contact() const { return contact_ ? &*contact_ : nullptr; }
   const std::vector<PointValues>& points() const { return points_; }                ///< at the last assembly
-  SolidMatrix matrix() const { return matrix_; }                                    ///< of the last assembly
+  NewtonMatrix matrix() const { return matrix_; }                                   ///< of the last assembly
   std::optional<std::int32_t> cell_inside_out() const { return cell_inside_out_; }  ///< that the last assembly found
   bool is_linear() const { return linear_; }                                        ///< the stiffness never changes
   bool has_memory() const { return has_memory_; }                                   ///< a law has
@@ -79,8 +82,8 @@ class Equilibrium {
   System system_;
   std::optional<ContactState> contact_;
   bool linear_ = true, has_memory_ = false;
-  bool has_stiffness_ = false;              ///< a linear stiffness is in the matrix
-  SolidMatrix matrix_ = SolidMatrix::none;  ///< of which kind it is
+  bool has_stiffness_ = false;                       ///< a linear stiffness is in the matrix
+  NewtonMatrix matrix_{.solid = SolidMatrix::none};  ///< of which kind it is
   std::vector<PointValues> points_;
   std::optional<std::int32_t> cell_inside_out_;
   std::optional<double> instant_;  ///< that of the loads

@@ -6,19 +6,24 @@ namespace lacon {
 
 void MatrixChoice::start_instant() {
   unstable_ = false;
-  elastic_ = 0;
-  elastic_span_ = 1;
+  flat_ = elastic_ = {};
   residual_ = std::numeric_limits<double>::infinity();
 }
 
-SolidMatrix MatrixChoice::suited(SolidMatrix asked, bool touches) const {
-  if (elastic_ > 0) return SolidMatrix::elastic;
-  if (asked != SolidMatrix::tangent || linear_) return asked;
-  return (has_memory_ && touches) || unstable_ ? SolidMatrix::stressless : asked;
+NewtonMatrix MatrixChoice::suited(SolidMatrix asked, bool touches) const {
+  const bool flat = flat_.left > 0;
+  if (elastic_.left > 0) return {SolidMatrix::elastic, !flat};
+  if (asked != SolidMatrix::tangent || linear_) return {asked, !flat};
+  return {(has_memory_ && touches) || unstable_ || flat ? SolidMatrix::stressless : asked, !flat};
 }
 
-bool MatrixChoice::note_pivots(SolidMatrix present, std::int64_t negative, std::int64_t constraints) {
-  if (present != SolidMatrix::tangent || linear_ || negative <= constraints) return false;
+bool MatrixChoice::note_pivots(NewtonMatrix present, bool curves, std::int64_t negative, std::int64_t constraints) {
+  if (negative <= constraints) return false;
+  if (present.curved && curves) {
+    flat_.begin();
+    return true;
+  }
+  if (present.solid != SolidMatrix::tangent || linear_) return false;
   unstable_ = true;
   return true;
 }
@@ -26,14 +31,13 @@ bool MatrixChoice::note_pivots(SolidMatrix present, std::int64_t negative, std::
 bool MatrixChoice::note_residual(double residual) {
   const bool grows = has_memory_ && residual > residual_;
   residual_ = residual;
-  if (elastic_ > 0) {
-    --elastic_;
-    return false;
+  const bool curved_again = flat_.left > 0 && --flat_.left == 0;
+  if (elastic_.left > 0) {
+    --elastic_.left;
+    return curved_again;
   }
-  if (!grows) return false;
-  elastic_ = elastic_span_;
-  elastic_span_ *= 2;
-  return true;
+  if (grows) elastic_.begin();
+  return grows || curved_again;
 }
 
 }  // namespace lacon

@@ -6,11 +6,20 @@
 
 namespace lacon {
 
-/// The matrix to go on with where the user asks for one. The tangent goes without the terms of the stress
-/// - in contact, of laws with a memory (PETIT_REAC): when a body turns they are in balance with the terms of contact forces
-///   that turn with their surface, and these the linearisation of contact does not have. The exact tangent of Green-Lagrange
-///   strains keeps them: there they are worth more than that balance;
-/// - for the rest of an instant in which it was unstable: without them it leads downhill to a stable equilibrium.
+/// A matrix of Newton's method.
+struct NewtonMatrix {
+  SolidMatrix solid = SolidMatrix::tangent;
+  bool curved = true;  ///< with the second derivatives of gaps
+  bool operator==(const NewtonMatrix&) const = default;
+};
+
+/// The matrix to go on with where the user asks for one. In contact the tangent of laws with a memory goes without the terms of
+/// the stress: that of PETIT_REAC is made symmetric, and what this leaves of them is no help where bodies turn and touch
+/// (peer's half ring: 646 solutions without, 718 with them). Far from the solution the consistent matrix may be unstable:
+/// - without contact, the tangent goes without the terms of the stress for the rest of the instant: that leads downhill to a
+///   stable equilibrium;
+/// - in contact, both the terms of the stress and the second derivatives of gaps are left out for some iterations. They go
+///   together: when a body turns they are in balance. Near the solution the consistent matrix is worth more.
 /// Where it overshoots (the residual of a law with a memory has grown), the elastic matrix takes its place for some
 /// iterations: it is an upper bound of any tangent of plastic flow.
 class MatrixChoice {
@@ -19,19 +28,28 @@ class MatrixChoice {
   MatrixChoice(bool linear, bool has_memory) : linear_(linear), has_memory_(has_memory) {}
 
   void start_instant();
-  SolidMatrix suited(SolidMatrix asked, bool touches) const;
+  NewtonMatrix suited(SolidMatrix asked, bool touches) const;
   /// More negative pivots than constraints: beyond a limit point or a bifurcation, from where a step of the tangent leads
-  /// anywhere. @return whether the matrix has to be another one
-  bool note_pivots(SolidMatrix present, std::int64_t negative, std::int64_t constraints);
+  /// anywhere. @param curves gaps of active patches have second derivatives @return whether the matrix has to be another one
+  bool note_pivots(NewtonMatrix present, bool curves, std::int64_t negative, std::int64_t constraints);
   /// After an iteration that did not solve the instant. @return whether the matrix has to be another one
   bool note_residual(double residual);
 
  private:
+  /// Iterations with another matrix, twice as many each time that they were not enough.
+  struct Span {
+    int left = 0, next = 1;
+    void begin() {
+      left = next;
+      next *= 2;
+    }
+  };
+
   bool linear_, has_memory_;
   bool unstable_ = false;  ///< the tangent of an iterate of this instant was
-  int elastic_ = 0;        ///< how many more iterations take the elastic matrix
-  int elastic_span_ = 1;   ///< twice as long each time that it was not enough
-  double residual_ = 0;    ///< of the last iteration
+  Span flat_;              ///< without terms of stress and second derivatives of gaps
+  Span elastic_;
+  double residual_ = 0;  ///< of the last iteration
 };
 
 }  // namespace lacon

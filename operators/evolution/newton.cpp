@@ -67,6 +67,7 @@ int Newton::solve(double instant, StaticState& state, const std::function<void(c
   const StaticState previous = state;
   std::vector<double> step = equilibrium_.load(instant, state);
   choice_.start_instant();
+  statuses_.start_instant();
   // plasticity answers to a step of no length elastically: a body that is unloaded now does not overshoot on the tangent of the
   // flow that the last instant ended with, which makes Newton's method go to and fro between two states
   if (equilibrium_.has_memory() || choice_.suited(options_.prediction, equilibrium_.touches(state)) != equilibrium_.matrix())
@@ -80,14 +81,15 @@ int Newton::solve(double instant, StaticState& state, const std::function<void(c
     const bool rough = settling && iteration < options_.iterations;
     std::vector<double> solution = solve_system(step, rough, line);
     const auto& negative = line.solution.factorisation.negative_pivots;
-    if (negative && choice_.note_pivots(equilibrium_.matrix(), *negative, line.constraints)) {
+    if (negative && choice_.note_pivots(equilibrium_.matrix(), equilibrium_.curves(state), *negative, line.constraints)) {
       assemble(state, previous, SolidMatrix::tangent);
       solution = solve_system(step, rough, line);
     }
     const std::vector<double> increment = equilibrium_.add(solution, step, state);
     std::fill(step.begin(), step.end(), 0.0);  // imposed displacements move in the first iteration alone
     equilibrium_.pair(state.displacement);
-    const std::size_t first_changed = update_contact(state, line);
+    const std::vector<Status> before = state.patches.status, wanted = wanted_statuses(state, line);
+    state.patches.status = statuses_.next(before, wanted);
     assemble(state, previous, options_.matrix);
     judge_forces(options_.criteria, equilibrium_.forces(state, previous), line);
     if (contact())
@@ -102,9 +104,16 @@ int Newton::solve(double instant, StaticState& state, const std::function<void(c
       state.points = equilibrium_.points();
       return iteration;
     }
-    if (choice_.note_residual(line.maxi)) assemble(state, previous, options_.matrix);
-    unmet = unmet_criteria(line, first_changed);
-    settling = line.status_changes > 0;
+    const auto first_changed = std::mismatch(before.begin(), before.end(), wanted.begin()).first - before.begin();
+    unmet = unmet_criteria(line, static_cast<std::size_t>(first_changed));
+    settling = line.status_changes > 0 && !statuses_.keeps();
+    bool other_matrix = choice_.note_residual(line.maxi);
+    if (statuses_.keeps() && line.status_changes > 0 && line.in_equilibrium()) {
+      state.patches.status = statuses_.change(state.patches.status, wanted);
+      other_matrix = true;
+      fail_if_endless(instant);
+    }
+    if (other_matrix) assemble(state, previous, options_.matrix);
     if (!std::isfinite(line.maxi)) break;
   }
   fail("EVOLUTION_4",
@@ -133,13 +142,24 @@ std::vector<double> Newton::solve_system(std::span<const double> step, bool roug
   return solution;
 }
 
-std::size_t Newton::update_contact(StaticState& state, IterationReport& line) {
-  if (!contact()) return 0;
+std::vector<Status> Newton::wanted_statuses(const StaticState& state, IterationReport& line) const {
+  if (!contact()) return {};
   const Phase phase("pairing");
-  const std::vector<Status> before = state.patches.status;
-  line.status_changes = contact()->update_statuses(state.patches);
-  const auto changed = std::mismatch(before.begin(), before.end(), state.patches.status.begin()).first;
-  return static_cast<std::size_t>(changed - before.begin());
+  Patchwise patches = state.patches;
+  line.status_changes = contact()->update_statuses(patches);
+  return patches.status;
+}
+
+void Newton::fail_if_endless(double instant) const {
+  if (statuses_.endless().empty()) return;
+  constexpr std::size_t most = 4;
+  std::string cells;
+  for (std::size_t i = 0; i < std::min(most, statuses_.endless().size()); ++i)
+    cells += (i ? ", " : "") + cell_name(problem_.mesh.patches->cells[statuses_.endless()[i]].front());
+  fail("EVOLUTION_15", {{"instant", fmt::format("{:.9g}", instant)},
+                        {"count", std::to_string(statuses_.endless().size())},
+                        {"cells", cells + (statuses_.endless().size() > most ? ", ..." : "")},
+                        {"period", std::to_string(statuses_.period())}});
 }
 
 std::string Newton::unmet_criteria(const IterationReport& line, std::size_t first_changed) const {

@@ -8,6 +8,7 @@
 #include "lacon/assembly/saddle_point_solver.hpp"
 #include "lacon/operators/evolution/equilibrium.hpp"
 #include "lacon/operators/evolution/matrix_choice.hpp"
+#include "lacon/operators/evolution/status_rule.hpp"
 
 namespace lacon {
 
@@ -31,8 +32,8 @@ class Newton {
   void begin(StaticState& state, const std::string& label);
 
   /// Solve the instant, starting from `state`, which is in equilibrium. Calls `report` for each iteration.
-  /// @return number of iterations. Throws EVOLUTION_4 (not converged), SOLVER_3 (singular), ELEMENT_1 ...: severity S. `state`
-  /// is then between two instants.
+  /// @return number of iterations. Throws EVOLUTION_4 (not converged), EVOLUTION_15, SOLVER_3 (singular), ELEMENT_1 ...:
+  /// severity S. `state` is then between two instants.
   int solve(double instant, StaticState& state, const std::function<void(const IterationReport&)>& report);
   /// Go back to a state: contact, stresses and system are those of `state` again, as solve() needs them.
   void restart(const StaticState& state);
@@ -45,8 +46,11 @@ class Newton {
   void assemble(const StaticState& state, const StaticState& previous, SolidMatrix asked);
   /// The solution of the present system. @param rough a few digits will do. Throws SOLVER_3.
   std::vector<double> solve_system(std::span<const double> step, bool rough, IterationReport& line);
-  /// New statuses of the patches at the state's geometry. @return the first patch whose status has changed
-  std::size_t update_contact(StaticState& state, IterationReport& line);
+  /// What pressures and gaps ask for at the state's geometry, in `line` how many patches want to change; nothing without
+  /// contact.
+  std::vector<Status> wanted_statuses(const StaticState& state, IterationReport& line) const;
+  /// Throws EVOLUTION_15 where no statuses satisfy all patches.
+  void fail_if_endless(double instant) const;
   /// What keeps the last iteration from being the solution, in words.
   std::string unmet_criteria(const IterationReport& line, std::size_t first_changed) const;
 
@@ -54,6 +58,7 @@ class Newton {
   NewtonOptions options_;
   Equilibrium equilibrium_;
   MatrixChoice choice_;
+  StatusRule statuses_;
   SaddlePointSolver solver_;
 };
 

@@ -21,7 +21,7 @@ struct Evaluation {
 };
 Evaluation evaluate(Equilibrium& equilibrium, const StaticProblem& problem, const StaticState& state) {
   equilibrium.pair(state.displacement);
-  equilibrium.assemble(state, state, SolidMatrix::tangent);
+  equilibrium.assemble(state, state, {});
   const std::vector<double> none(problem.n_dofs(), 0.0), side = equilibrium.right_side(none);
   return {-Eigen::Map<const Eigen::VectorXd>(side.data(), static_cast<Eigen::Index>(side.size())),
           dense(equilibrium.system().matrix())};
@@ -83,7 +83,7 @@ TEST(Equilibrium, ARelationHasAMultiplierWhoseRowIsItsDerivative) {
   Equilibrium equilibrium(problem);
   StaticState state = equilibrium.natural_state();
   const std::vector<double> step = equilibrium.load(1.0, state);
-  equilibrium.assemble(state, state, SolidMatrix::tangent);
+  equilibrium.assemble(state, state, {});
   EXPECT_DOUBLE_EQ(equilibrium.right_side(step)[equilibrium.system().first_multiplier()], 0.125);
 }
 
@@ -152,7 +152,7 @@ TEST(Equilibrium, TheReferenceCountsLoadsReactionsAndContact) {
   ASSERT_EQ(state.patches.status[0], Status::active);
   state.patches.lambda[0] = -1000 * pressure;
   equilibrium.load(1.0, state);
-  equilibrium.assemble(state, state, SolidMatrix::tangent);
+  equilibrium.assemble(state, state, {});
   const ForceFigures figures = equilibrium.forces(state, state);
   // Simpson's rule: two thirds of a uniform pressure are the middle node's
   EXPECT_NEAR(figures.reference, 2.0 / 3 * 1000 * pressure, 1e-9 * pressure);
@@ -173,7 +173,7 @@ TEST(Equilibrium, WhatRoundOffLeavesIsNotSignificant) {
     return moved;
   }();
   state.displacement[10] = 1e-16;
-  equilibrium.assemble(state, state, SolidMatrix::tangent);
+  equilibrium.assemble(state, state, {});
   EXPECT_GT(equilibrium.forces(state, state).significant, 0);
   EXPECT_EQ(equilibrium.forces(state, before).significant, 0);  // the digits that a displacement of 100 leaves behind
   EXPECT_GT(equilibrium.forces(state, before).unbalanced, 0);
