@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <map>
+#include <numeric>
 #include <tuple>
 #include <utility>
 
@@ -101,7 +103,7 @@ ContactGeometry::ContactGeometry(const Mesh& mesh, const Model& model, const Con
     : mesh_(mesh), model_(model), contact_(contact), registry_(registry), coordinates_(mesh.coordinates) {
   const std::size_t n = mesh.patches->size();
   gap_.assign(n, 0.0);
-  weight_ = covered_ = whole_ = coverage_ = gap_;
+  weight_ = covered_ = whole_ = coverage_ = smallest_gap_ = gap_;
   zone_of_.assign(n, -1);
   rejected_.assign(n_rejections, 0);
 
@@ -204,6 +206,7 @@ void ContactGeometry::update(std::span<const double> displacement, std::vector<Z
   coupling_.clear();
   std::fill(rejected_.begin(), rejected_.end(), 0);
   for (std::vector<double>* sums : {&gap_, &weight_, &covered_}) std::fill(sums->begin(), sums->end(), 0.0);
+  std::fill(smallest_gap_.begin(), smallest_gap_.end(), std::numeric_limits<double>::infinity());
   if (records) records->clear();
   normals_.resize(zones_.size());
   for (Zone& zone : zones_) {
@@ -341,11 +344,13 @@ void ContactGeometry::add(const Zone& zone, const Block& block_of_zone, ZonePair
       weight_[patch] += group.measure[i];
       covered_[patch] += group.current_measure[i];
       cells_.push_back({s, zone.masters[cells.master[c]], group.gap[i], at});
-      if (!record) continue;
       const std::int64_t n_points = cells.offset[c + 1] - cells.offset[c];
-      std::copy_n(point_gap, n_points,
+      const double* const first_gap = std::exchange(point_gap, point_gap + n_points);
+      smallest_gap_[patch] = std::accumulate(first_gap, point_gap, smallest_gap_[patch],
+                                             [](double least, double gap) { return std::min(least, gap); });
+      if (!record) continue;
+      std::copy_n(first_gap, n_points,
                   record->point_gap.begin() + static_cast<std::ptrdiff_t>(recorded_points) + cells.offset[c]);
-      point_gap += n_points;
       record->gap[recorded + c] = group.gap[i] / group.measure[i];
       record->measure[recorded + c] = group.current_measure[i];
     }

@@ -75,9 +75,11 @@ class ContactGeometry {
   std::size_t n_patches() const { return gap_.size(); }
   std::int32_t zone_of(std::size_t patch) const { return zone_of_[patch]; }  ///< -1 for none
   double gap(std::size_t patch) const { return gap_[patch]; }                ///< average, positive when open
-  double covered(std::size_t patch) const { return covered_[patch]; }        ///< measure, current geometry
-  double whole(std::size_t patch) const { return whole_[patch]; }            ///< measure, current geometry
-  double coverage(std::size_t patch) const { return coverage_[patch]; }      ///< covered over whole
+  /// At an integration point, infinite without any.
+  double smallest_gap(std::size_t patch) const { return smallest_gap_[patch]; }
+  double covered(std::size_t patch) const { return covered_[patch]; }    ///< measure, current geometry
+  double whole(std::size_t patch) const { return whole_[patch]; }        ///< measure, current geometry
+  double coverage(std::size_t patch) const { return coverage_[patch]; }  ///< covered over whole
   /// How many couples pairing rejected, for each `Rejection`, summed over the zones.
   std::span<const std::int64_t> rejected() const { return rejected_; }
 
@@ -112,7 +114,7 @@ class ContactGeometry {
   std::vector<NormalVariation> normal_variations_;
   std::vector<Cell> cells_;
   std::vector<double> coupling_;
-  std::vector<double> gap_, weight_, covered_, whole_, coverage_;  ///< of each patch
+  std::vector<double> gap_, weight_, covered_, whole_, coverage_, smallest_gap_;  ///< of each patch
   std::vector<std::int32_t> zone_of_;
   std::vector<std::int64_t> rejected_;
   std::optional<std::int32_t> over_axis_;  ///< a slave cell with a negative radius

@@ -227,6 +227,17 @@ HeldOverlap ContactState::held_overlap() const {
   return overlap;
 }
 
+std::optional<PiercedPatch> ContactState::pierced(std::int32_t zone, const Patchwise& patches) const {
+  std::optional<PiercedPatch> worst;
+  for (std::size_t p = 0; p < n_patches(); ++p) {
+    if (geometry_.zone_of(p) != zone || locked_[p] || geometry_.coverage(p) < tolerances_.least_coverage) continue;
+    const double depth = -geometry_.smallest_gap(p) / size_[p];
+    if (depth < (patches.status[p] == Status::active ? tolerances_.pierced : tolerances_.pierced_open)) continue;
+    if (!worst || depth > worst->depth) worst = PiercedPatch{p, depth, geometry_.gap(p)};
+  }
+  return worst;
+}
+
 namespace {
 
 /// Call use(node, slave or not, force) for each node that a contact cell pushes; the force on a body is -lambda dG/du.

@@ -23,6 +23,8 @@ struct ContactTolerances {
   double lambda_round_off = 1e-10;  ///< of the largest |lambda|: below it a sign means nothing
   double gap_round_off = 1e-14;     ///< of the size of the mesh
   double held_overlap = 1e-6;       ///< of h: an overlap of a locked patch that is worth an alarm
+  double pierced = 0.05;            ///< of h: likewise of points of another active patch, whose average is closed
+  double pierced_open = 0.02;       ///< of h: of points of an open patch, which nothing keeps out of the master
 };
 
 /// What the contact of a zone does at an instant: the figures by which a user trusts it.
@@ -40,6 +42,13 @@ struct HeldOverlap {
   std::int64_t count = 0;
   std::size_t deepest = 0;  ///< patch
   double gap = 0;           ///< of it
+};
+
+/// Points of a patch that lie inside its master although its gap, an average, is closed or open.
+struct PiercedPatch {
+  std::size_t patch;
+  double depth;  ///< of its deepest point, over h
+  double gap;    ///< average
 };
 
 /// What contact needs to know of the bodies under the skins.
@@ -95,6 +104,8 @@ class ContactState {
   /// Whether every displacement in a patch's row is imposed: its multiplier is then undetermined and keeps its value.
   bool is_locked(std::size_t patch) const { return locked_[patch]; }
   HeldOverlap held_overlap() const;
+  /// Of a zone the patch that is pierced deepest, over its size, where that is worth an alarm.
+  std::optional<PiercedPatch> pierced(std::int32_t zone, const Patchwise& patches) const;
 
   const ContactGeometry& geometry() const { return geometry_; }
   std::size_t n_patches() const { return geometry_.n_patches(); }

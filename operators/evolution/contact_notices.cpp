@@ -27,6 +27,25 @@ void ContactNotices::accept(const SolvedInstant& solved) {
                             {"instant", fmt::format("{:.9g}", solved.instant)},
                             {"cell", first_cell(overlap.deepest)},
                             {"gap", fmt::format("{:.6g}", overlap.gap)}});
+  const ContactState& contact = *present_.contact;
+  for (std::int32_t zone = 0; zone < static_cast<std::int32_t>(contact.geometry().zones().size()); ++zone) {
+    const std::optional<PiercedPatch> pierced = contact.pierced(zone, present_.state.patches);
+    if (!pierced) continue;
+    const auto before = pierced_.find(zone);
+    if (before == pierced_.end() || pierced->depth > before->second.worst.depth) pierced_[zone] = {solved.instant, *pierced};
+  }
+}
+
+void ContactNotices::end(bool /*completed*/) {
+  for (const auto& [zone, pierced] : pierced_) {
+    const ContactZone& names = present_.problem.contact->zones[zone];
+    inform("EVOLUTION_16", {{"slave", names.slave_group},
+                            {"master", names.master_group},
+                            {"cell", first_cell(pierced.worst.patch)},
+                            {"instant", fmt::format("{:.9g}", pierced.instant)},
+                            {"percent", fmt::format("{:.3g}", 100 * pierced.worst.depth)},
+                            {"gap", fmt::format("{:.3g}", pierced.worst.gap)}});
+  }
 }
 
 }  // namespace lacon

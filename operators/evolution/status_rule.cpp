@@ -21,7 +21,7 @@ std::vector<Status> StatusRule::next(const std::vector<Status>& now, const std::
     if (active_.empty()) active_.push_back(active(now));
     std::vector<bool> set = active(wanted);
     if (set == active_.back()) return wanted;
-    keeps_ = std::find(active_.begin(), active_.end(), set) != active_.end();
+    keeps_ = std::count(active_.begin(), active_.end(), set) >= 2;
     active_.push_back(std::move(set));
     if (!keeps_) return wanted;
     fewest_ = std::numeric_limits<std::size_t>::max();

@@ -8,8 +8,9 @@
 
 namespace lacon {
 
-/// A patch takes the status that pressure and gap ask for, in every iteration, until a set of active patches comes back: the
-/// iterations then go round. From there on a set is kept until its equilibrium is found. At each such equilibrium all patches
+/// A patch takes the status that pressure and gap ask for, in every iteration, until a set of active patches comes back for
+/// the second time: the iterations then go round (once it may come back by chance, far from the solution). From there on a set
+/// is kept until its equilibrium is found. At each such equilibrium all patches
 /// change that are to, while they become fewer; when they do not, the last of them alone does, until they are fewer than ever
 /// before. For a convex problem (P-matrix) this comes to an end after finitely many sets (Murty 1974; Judice and Pires 1994).
 /// Where the problem is not, an equilibrium whose patches have changed one by one may come back: no status satisfies them.

@@ -8,7 +8,10 @@ HERE = pathlib.Path(__file__).resolve().parent
 sys.path[:0] = [str(HERE), str(HERE.parent)]
 
 from study_test import LACON, StudyTest  # noqa: E402, I001 (it says where meshes.py is)
+from bodies import round_tool, slab  # noqa: E402
+from meshes import union  # noqa: E402
 from run import chosen, count, missed, run  # noqa: E402
+from studies import Study, elastic, held, path, zone  # noqa: E402
 
 #: seconds each, one or more of a row
 SHORT = ["arch/x10, QUAD8 GREEN", "arch/x10, QUAD4 PETIT", "contrast/1e-06 QUAD4 PETIT", "contrast/1e+06 QUAD8 GREEN"]
@@ -43,6 +46,21 @@ class Short(StudyTest):
         for name, study in chosen(SHORT):
             with self.subTest(name):
                 self.assertEqual(missed(study, run(study, LACON, self.folder)), [])
+
+
+class Pierced(StudyTest):
+    def test_a_round_body_that_a_coarse_slave_lets_through_is_told(self):
+        """Pressed by 6 % of its radius into the middle of a cell: the average gap there is 1 / 6 (2 / 3) ** 2 - 0.06 > 0, and no force acts."""
+        for cells, told in ((3, True), (31, False)):
+            mesh = union([round_tool("QUAD4", "TOOL", 1.0, (0, 1), (36, 10)), slab("QUAD4", "SLAB", (-2, 2), (-2, 0), (cells, 4))])
+            study = Study(name="coarse", mesh=mesh, materials={"TOOL": elastic(1e3), "SLAB": elastic(1e3)}, zones=[zone("TOOL", "SLAB", 1)],
+                          moves=[held("SLAB"), path("TOOL", [(0, 0), (1, 0)], [(0, 0), (1, -0.06)])], steps=1)
+            figures = run(study, LACON, self.folder)
+            self.assertEqual(figures["status"], "finished")
+            self.assertEqual("EVOLUTION_16" in figures.get("alarms", []), told, cells)
+            if told:
+                alarm = (self.folder / "err").read_text()
+                self.assertIn("of SLAB_SKIN lie inside TOOL_SKIN by 4.4", alarm)  # 0.06 / (4 / 3), less what is between two nodes of the tool
 
 
 class Table(StudyTest):

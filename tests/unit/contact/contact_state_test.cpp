@@ -229,6 +229,32 @@ TEST_F(Touching, APatchWhoseDisplacementsAreAllImposedIsLockedAndKeepsItsMultipl
   EXPECT_FALSE(freed.is_locked(0));
 }
 
+TEST_F(Touching, PointsInsideTheMasterAreToldEarlierWhereNothingPushesThemOut) {
+  ContactState now = state();
+  for (const bool active : {false, true})
+    for (const double depth : {-0.3, 0.01, 0.03, 0.06}) {
+      lift(-depth);
+      now.update_geometry(displacement);
+      EXPECT_NEAR(now.geometry().smallest_gap(0), -depth, 1e-15);
+      Patchwise patches(1);
+      patches.status[0] = active ? Status::active : Status::open;
+      const std::optional<PiercedPatch> pierced = now.pierced(0, patches);
+      ASSERT_EQ(pierced.has_value(), depth > (active ? 0.05 : 0.02)) << active << ' ' << depth;
+      EXPECT_NEAR(pierced ? pierced->depth : depth, depth, 1e-14);  // h = 1
+    }
+  // turned: open in the average, one end inside
+  lift(0.1);
+  displacement[2 * 9 + 1] = -0.1;
+  displacement[2 * 12 + 1] = 0;
+  displacement[2 * 8 + 1] = 0.1 + 0.02;
+  now.update_geometry(displacement);
+  EXPECT_GT(now.geometry().gap(0), 0);
+  EXPECT_LT(now.geometry().smallest_gap(0), -0.05);
+  const std::optional<PiercedPatch> pierced = now.pierced(0, Patchwise(1));
+  ASSERT_TRUE(pierced);
+  EXPECT_EQ(pierced->gap, now.geometry().gap(0));
+}
+
 TEST_F(Touching, ABodyWithoutModulusIsRefused) {
   modulus.reset();
   try {

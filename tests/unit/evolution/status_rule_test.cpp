@@ -93,6 +93,9 @@ TEST(StatusRule, StatusesThatComeBackWaitForTheEquilibrium) {
   EXPECT_EQ(rule.next({A, O, O}, {O, A, O}), (Statuses{O, A, O}));
   EXPECT_EQ(rule.next({O, A, O}, {O, A, O}), (Statuses{O, A, O}));
   EXPECT_FALSE(rule.keeps());  // it stands
+  EXPECT_EQ(rule.next({O, A, O}, {A, O, O}), (Statuses{A, O, O}));
+  EXPECT_EQ(rule.next({A, O, O}, {O, A, O}), (Statuses{O, A, O}));
+  EXPECT_FALSE(rule.keeps());  // each came back once
   EXPECT_EQ(rule.next({O, A, O}, {A, O, O}), (Statuses{O, A, O}));
   EXPECT_TRUE(rule.keeps());
   EXPECT_EQ(rule.next({O, A, O}, {U, A, A}), (Statuses{U, A, O}));  // without master there is no gap to be judged by
@@ -108,7 +111,7 @@ TEST(StatusRule, PatchesThatNothingSatisfiesAreNamed) {
     statuses[1] = statuses[1] == A ? O : A;
     return statuses;
   };
-  for (int iteration = 0; iteration < 2; ++iteration) now = rule.next(now, other(now));
+  for (int iteration = 0; iteration < 4; ++iteration) now = rule.next(now, other(now));
   ASSERT_TRUE(rule.keeps());
   for (int equilibrium = 0; equilibrium < 4; ++equilibrium) {
     EXPECT_EQ(rule.endless().empty(), true) << equilibrium;
