@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
 
 #include "lacon/operators/program/program.hpp"
 
@@ -190,6 +191,16 @@ std::vector<double> Equilibrium::add(std::span<const double> solution, std::span
     ++multiplier;
   }
   return increment;
+}
+
+double Equilibrium::power(std::span<const double> solution) const {
+  const std::vector<double> unbalanced = right_side(std::vector<double>(problem_.n_dofs(), 0.0));
+  return std::inner_product(unbalanced.begin(), unbalanced.begin() + system_.first_multiplier(), solution.begin(), 0.0);
+}
+
+bool Equilibrium::flows() const {
+  return std::any_of(problem_.solids.begin(), problem_.solids.end(),
+                     [](const ElementSet& set) { return set.n_variables() > 0; });
 }
 
 ForceFigures Equilibrium::forces(const StaticState& state, const StaticState& previous) const {

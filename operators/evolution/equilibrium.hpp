@@ -51,6 +51,9 @@ class Equilibrium {
   /// The right side of the system, (n_equations). @param step of the imposed displacements
   std::vector<double> right_side(std::span<const double> step) const { return system_.right_side(external_, step); }
 
+  /// Power of the unbalanced forces of the last assembly along a solution of the system.
+  double power(std::span<const double> solution) const;
+
   /// What the last assembly says of the balance of `state`.
   ForceFigures forces(const StaticState& state, const StaticState& previous) const;
   MotionFigures motion(std::span<const double> increment, const StaticState& state) const;
@@ -69,6 +72,7 @@ class Equilibrium {
   std::optional<std::int32_t> cell_inside_out() const { return cell_inside_out_; }  ///< that the last assembly found
   bool is_linear() const { return linear_; }                                        ///< the stiffness never changes
   bool has_memory() const { return has_memory_; }                                   ///< a law has
+  bool flows() const;                                                               ///< a law has internal variables
 
  private:
   void start(bool keeps_stiffness);

@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "lacon/catalog/messages.hpp"
+#include "lacon/operators/evolution/line_search.hpp"
 #include "lacon/operators/program/program.hpp"
 
 namespace lacon {
@@ -85,9 +86,12 @@ int Newton::solve(double instant, StaticState& state, const std::function<void(c
       assemble(state, previous, SolidMatrix::tangent);
       solution = solve_system(step, rough, line);
     }
-    const std::vector<double> increment = equilibrium_.add(solution, step, state);
+    std::vector<double> increment = equilibrium_.add(solution, step, state);
     std::fill(step.begin(), step.end(), 0.0);  // imposed displacements move in the first iteration alone
-    equilibrium_.pair(state.displacement);
+    if (iteration > 0 && equilibrium_.flows())
+      shorten(solution, previous, state, increment);
+    else
+      equilibrium_.pair(state.displacement);
     const std::vector<Status> before = state.patches.status, wanted = wanted_statuses(state, line);
     state.patches.status = statuses_.next(before, wanted);
     assemble(state, previous, options_.matrix);
@@ -140,6 +144,24 @@ std::vector<double> Newton::solve_system(std::span<const double> step, bool roug
   const std::vector<std::int64_t>& null = report.factorisation.null_pivots;
   if (!null.empty()) fail("SOLVER_3", {{"count", std::to_string(null.size())}, {"names", equilibrium_.names(null)}});
   return solution;
+}
+
+void Newton::shorten(std::span<const double> solution, const StaticState& previous, StaticState& state,
+                     std::vector<double>& increment) {
+  const std::vector<double> at_rest(increment.size(), 0.0);
+  double reached = 1;
+  part_of_increment(equilibrium_.power(solution), [&](double part) {
+    if (part != reached) {
+      std::vector<double> back(solution.begin(), solution.end());
+      for (double& value : back) value *= part - reached;
+      const std::vector<double> moved = equilibrium_.add(back, at_rest, state);
+      for (std::size_t i = 0; i < moved.size(); ++i) increment[i] += moved[i];
+      reached = part;
+    }
+    equilibrium_.pair(state.displacement);
+    equilibrium_.assemble(state, previous, {SolidMatrix::none, false});
+    return equilibrium_.power(solution);
+  });
 }
 
 std::vector<Status> Newton::wanted_statuses(const StaticState& state, IterationReport& line) const {

@@ -2,6 +2,7 @@
 // Newton's method for one instant: equilibrium, geometry, contact and behaviour in one loop (METHOD.md 3.2, 5.3).
 #include <functional>
 #include <memory>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -51,6 +52,10 @@ class Newton {
   std::vector<Status> wanted_statuses(const StaticState& state, IterationReport& line) const;
   /// Throws EVOLUTION_15 where no statuses satisfy all patches.
   void fail_if_endless(double instant) const;
+  /// Go back along an increment that goes too far (line_search.hpp); the geometry is paired where it ends.
+  /// @param solution that `state` has moved by  @param increment of all unknowns of nodes, shortened as well
+  void shorten(std::span<const double> solution, const StaticState& previous, StaticState& state,
+               std::vector<double>& increment);
   /// What keeps the last iteration from being the solution, in words.
   std::string unmet_criteria(const IterationReport& line, std::size_t first_changed) const;
 
