@@ -47,8 +47,6 @@ class Short(StudyTest):
             with self.subTest(name):
                 self.assertEqual(missed(study, run(study, LACON, self.folder)), [])
 
-
-class Pierced(StudyTest):
     def test_a_round_body_that_a_coarse_slave_lets_through_is_told(self):
         """Pressed by 6 % of its radius into the middle of a cell: the average gap there is 1 / 6 (2 / 3) ** 2 - 0.06 > 0, and no force acts."""
         for cells, told in ((3, True), (31, False)):
