@@ -24,7 +24,7 @@ struct ContactTolerances {
   double gap_round_off = 1e-14;     ///< of the size of the mesh
   double held_overlap = 1e-6;       ///< of h: an overlap of a locked patch that is worth an alarm
   double pierced = 0.05;            ///< of h: likewise of points of another active patch, whose average is closed
-  double pierced_open = 0.02;       ///< of h: of points of an open patch, which nothing keeps out of the master
+  double pierced_open = 0.04;       ///< of h: of points of an open patch, which nothing keeps out of the master
 };
 
 /// What the contact of a zone does at an instant: the figures by which a user trusts it.

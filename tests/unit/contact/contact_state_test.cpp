@@ -232,14 +232,14 @@ TEST_F(Touching, APatchWhoseDisplacementsAreAllImposedIsLockedAndKeepsItsMultipl
 TEST_F(Touching, PointsInsideTheMasterAreToldEarlierWhereNothingPushesThemOut) {
   ContactState now = state();
   for (const bool active : {false, true})
-    for (const double depth : {-0.3, 0.01, 0.03, 0.06}) {
+    for (const double depth : {-0.3, 0.03, 0.045, 0.06}) {
       lift(-depth);
       now.update_geometry(displacement);
       EXPECT_NEAR(now.geometry().smallest_gap(0), -depth, 1e-15);
       Patchwise patches(1);
       patches.status[0] = active ? Status::active : Status::open;
       const std::optional<PiercedPatch> pierced = now.pierced(0, patches);
-      ASSERT_EQ(pierced.has_value(), depth > (active ? 0.05 : 0.02)) << active << ' ' << depth;
+      ASSERT_EQ(pierced.has_value(), depth > (active ? 0.05 : 0.04)) << active << ' ' << depth;
       EXPECT_NEAR(pierced ? pierced->depth : depth, depth, 1e-14);  // h = 1
     }
   // turned: open in the average, one end inside
