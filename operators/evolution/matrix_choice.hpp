@@ -14,8 +14,8 @@ struct NewtonMatrix {
 };
 
 /// The matrix to go on with where the user asks for one. In contact the tangent of laws with a memory goes without the terms of
-/// the stress: that of PETIT_REAC is made symmetric, and what this leaves of them is no help where bodies turn and touch
-/// (peer's half ring: 646 solutions without, 718 with them). Far from the solution the consistent matrix may be unstable:
+/// the stress: that of PETIT_REAC is made symmetric, and what this leaves of them is no help where bodies turn and touch. Far
+/// from the solution the consistent matrix may be unstable:
 /// - without contact, the tangent goes without the terms of the stress for the rest of the instant: that leads downhill to a
 ///   stable equilibrium;
 /// - in contact, both the terms of the stress and the second derivatives of gaps are left out for some iterations. They go

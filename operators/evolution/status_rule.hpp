@@ -1,7 +1,6 @@
 #pragma once
 // Which statuses an iteration of Newton's method goes on with.
-#include <cstdint>
-#include <string>
+#include <cstddef>
 #include <vector>
 
 #include "lacon/operators/contact/patches.hpp"
@@ -10,10 +9,10 @@ namespace lacon {
 
 /// A patch takes the status that pressure and gap ask for, in every iteration, until a set of active patches comes back for
 /// the second time: the iterations then go round (once it may come back by chance, far from the solution). From there on a set
-/// is kept until its equilibrium is found. At each such equilibrium all patches
-/// change that are to, while they become fewer; when they do not, the last of them alone does, until they are fewer than ever
-/// before. For a convex problem (P-matrix) this comes to an end after finitely many sets (Murty 1974; Judice and Pires 1994).
-/// Where the problem is not, an equilibrium whose patches have changed one by one may come back: no status satisfies them.
+/// is kept until its equilibrium is found. At each such equilibrium all patches change that are to, while they become fewer;
+/// when they do not, the last of them alone does, until they are fewer than ever before. For a convex problem (P-matrix) this
+/// comes to an end after finitely many sets (Murty 1974; Judice and Pires 1994). Where the problem is not, an equilibrium whose
+/// patches have changed one by one may come back: no status satisfies them.
 class StatusRule {
  public:
   void start_instant();

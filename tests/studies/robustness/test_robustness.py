@@ -59,12 +59,3 @@ class Short(StudyTest):
             if told:
                 alarm = (self.folder / "err").read_text()
                 self.assertIn("of SLAB_SKIN lie inside TOOL_SKIN by 4.4", alarm)  # 0.06 / (4 / 3), less what is between two nodes of the tool
-
-
-class Table(StudyTest):
-    """The whole of it, many minutes: what is asked may only be asked of a formulation that gives it."""
-
-    def test_holds(self):
-        for name, study in chosen([]):
-            with self.subTest(name):
-                self.assertEqual(missed(study, run(study, LACON, self.folder)), [])

@@ -23,15 +23,139 @@ double asymmetry(const std::vector<double>& matrix, std::size_t n) {
   return largest;
 }
 
-/// A slave cell over a chain of masters, in the plane: a part of a large arc over a wavy line, any nodes moved at random.
-struct InPlane {
+/// A slave skin over a master skin, all cells of a skin of one kind, and what vary_gap() says of it.
+struct Skins {
+  int dimension;
   CellType slave_type, master_type;
   bool axis, current, smooth;
-  std::vector<double> coordinates, initial;
+  std::vector<double> coordinates, initial;  ///< (n_nodes, 3)
   std::vector<std::vector<std::int32_t>> slaves, masters;
 
+  /// The sum over all contact cells.
+  struct Sum {
+    double gap = 0;
+    std::vector<double> gradient, hessian;  ///< by (n_nodes, 3)
+  };
+
+  std::size_t size() const { return coordinates.size(); }
+
+  Sum evaluate(bool second) const {
+    Surface slave{.dimension = dimension, .types = {}, .nodes = {}, .coordinates = coordinates, .normals = {}}, master = slave;
+    for (const auto& cell : slaves) slave.add_cell(slave_type, cell);
+    for (const auto& cell : masters) master.add_cell(master_type, cell);
+    std::vector<double> normals;
+    if (smooth) normals = nodal_normals(slave);
+    slave.normals = normals;
+    const NormalVariation of_normals(slave);
+    // images to round-off: differences divide their error by the step
+    const Pairing found = pair(slave, master, {.tolerances = {.ray = 1e-14}, .traced = dimension == 3});
+    Sum sum{0, std::vector<double>(size()), std::vector<double>(second ? size() * size() : 0)};
+    for (std::size_t c = 0; c < found.cells.size(); ++c) add(found, c, normals, slave, of_normals, second, sum);
+    return sum;
+  }
+
+ private:
+  void add(const Pairing& found, std::size_t c, const std::vector<double>& normals, const Surface& slave,
+           const NormalVariation& of_normals, bool second, Sum& sum) const {
+    const ContactCells& cells = found.cells;
+    const auto d = static_cast<std::size_t>(dimension), reference = d - 1;
+    std::vector<std::int32_t> nodes = slaves[static_cast<std::size_t>(cells.slave[c])];
+    const auto& others = masters[static_cast<std::size_t>(cells.master[c])];
+    const std::size_t ns = nodes.size();
+    nodes.insert(nodes.end(), others.begin(), others.end());
+    const std::size_t known = nodes.size();
+    ContactCellGeometry cell{
+        .slave = slave_type, .master = master_type, .dimension = dimension, .axis = axis, .current_jacobian = current};
+    const auto local = [&](std::int32_t node) {
+      auto at = std::find(nodes.begin() + static_cast<long>(ns), nodes.end(), node);
+      if (at == nodes.end()) at = nodes.insert(at, node);
+      return static_cast<int>(at - nodes.begin());
+    };
+    if (dimension == 2) {
+      for (std::size_t k = 0; k < 2; ++k) {
+        const std::int32_t node = cells.vertex_node[2 * c + k];
+        cell.ends[k] = {cells.vertex[2 * c + k], node < 0 ? -1 : local(node)};
+      }
+    } else {
+      cell.trace = &found.traces[c];
+      for (const PolygonTrace::Line& line : cell.trace->line) {
+        auto& own = cell.lines.emplace_back();
+        if (line.master < 0) continue;
+        own.type = master_type;
+        std::size_t a = 0;
+        for (const std::int32_t node : masters[static_cast<std::size_t>(line.master)]) own.node[a++] = local(node);
+      }
+    }
+    const auto values = [&](const std::vector<double>& of, std::size_t count) {
+      std::vector<double> taken;
+      for (std::size_t i = 0; i < count; ++i)
+        for (std::size_t k = 0; k < d; ++k) taken.push_back(of[3 * static_cast<std::size_t>(nodes[i]) + k]);
+      return taken;
+    };
+    const std::vector<double> now = values(coordinates, nodes.size()), before = values(initial, ns),
+                              at_nodes = smooth ? values(normals, ns) : std::vector<double>();
+    cell.slave_initial = before;
+    cell.slave_nodes = std::span(now).first(d * ns);
+    cell.master_nodes = std::span(now).subspan(d * ns, d * (known - ns));
+    cell.other_nodes = std::span(now).subspan(d * known);
+    cell.slave_normals = at_nodes;
+    const auto first = static_cast<std::size_t>(cells.offset[c]), count = static_cast<std::size_t>(cells.offset[c + 1]) - first;
+    cell.slave_point = std::span(cells.slave_point).subspan(reference * first, reference * count);
+    cell.master_point = std::span(cells.master_point).subspan(reference * first, reference * count);
+    cell.weight = std::span(cells.weight).subspan(first, count);
+    GapVariation variation;
+    vary_gap(cell, second, variation);
+    if (smooth) {
+      std::vector<std::int32_t> around = nodes;
+      of_normals.append_nodes_around(slave, std::span(nodes).first(ns), around);
+      of_normals.apply(slave, nodes, static_cast<int>(ns), around, variation);
+      nodes = around;
+    }
+    sum.gap += variation.gap;
+    const auto global = [&](std::size_t i) { return 3 * static_cast<std::size_t>(nodes[i / d]) + i % d; };
+    const std::size_t m = variation.gradient.size();
+    for (std::size_t i = 0; i < m; ++i) {
+      sum.gradient[global(i)] += variation.gradient[i];
+      for (std::size_t j = 0; second && j < m; ++j) sum.hessian[global(i) * size() + global(j)] += variation.hessian[i * m + j];
+    }
+  }
+};
+
+double largest_of(const std::vector<double>& values) {
+  double largest = 0;
+  for (const double value : values) largest = std::max(largest, std::abs(value));
+  return largest;
+}
+
+/// Where both bodies move together G is what it was: forces and moments balance, and a rotation W x turns the forces, H W x = W
+/// dG.
+void expect_rigid_motions_change_nothing(const Skins& skins, const Skins::Sum& at, const std::string& what) {
+  const std::size_t n = skins.size();
+  const double largest = largest_of(at.gradient), largest_second = largest_of(at.hessian);
+  for (std::size_t k = 0; k < 3; ++k) {
+    const std::size_t p = (k + 1) % 3, q = (k + 2) % 3;
+    double force = 0, moment = 0;
+    for (std::size_t i = 0; i < n; i += 3) {
+      force += at.gradient[i + k];
+      moment += skins.coordinates[i + p] * at.gradient[i + q] - skins.coordinates[i + q] * at.gradient[i + p];
+    }
+    EXPECT_NEAR(force, 0, 1e-12 * largest) << what;
+    if (skins.dimension == 2 && k < 2) continue;  // out of the plane
+    EXPECT_NEAR(moment, 0, 1e-12 * largest) << what;
+    for (std::size_t j = 0; j < n; ++j) {
+      double turned = 0;
+      for (std::size_t i = 0; i < n; i += 3)
+        turned += at.hessian[j * n + i + q] * skins.coordinates[i + p] - at.hessian[j * n + i + p] * skins.coordinates[i + q];
+      const double expected = j % 3 == q ? at.gradient[j - q + p] : j % 3 == p ? -at.gradient[j - p + q] : 0;
+      EXPECT_NEAR(turned, expected, 1e-11 * largest_second) << what;
+    }
+  }
+}
+
+/// A slave cell over a chain of masters, in the plane: a part of a large arc over a wavy line, any nodes moved at random.
+struct InPlane : Skins {
   InPlane(CellType slave, CellType master, bool on_axis, bool actual, bool smoothing, unsigned seed)
-      : slave_type(slave), master_type(master), axis(on_axis), current(actual), smooth(smoothing) {
+      : Skins{2, slave, master, on_axis, actual, smoothing, {}, {}, {}, {}} {
     std::mt19937 random(seed);
     std::uniform_real_distribution<double> uniform(-0.04, 0.04);
     const auto chain = [&](CellType type, int n, double from, double to, double height, auto& cells) {
@@ -50,80 +174,10 @@ struct InPlane {
     chain(slave, 2, 1.0, 2.0, 0.3, slaves);
     // outward is to the right of a chain: the master below is followed backward, and ends over the second slave cell
     chain(master, 5, 1.87, 0.6, 0.15, masters);
+    chain(master, 1, 1.62, 1.37, 0.2, masters);  // nearer: it hides a part of the others
     initial = coordinates;
     for (double& x : initial) x += uniform(random);
     for (std::size_t i = 2; i < coordinates.size(); i += 3) coordinates[i] = initial[i] = 0;
-  }
-
-  struct Sum {
-    double gap = 0;
-    std::vector<double> gradient, hessian;
-  };
-
-  Sum evaluate(bool second) const {
-    Surface slave{.dimension = 2, .types = {}, .nodes = {}, .coordinates = coordinates, .normals = {}}, master = slave;
-    for (const auto& cell : slaves) slave.add_cell(slave_type, cell);
-    for (const auto& cell : masters) master.add_cell(master_type, cell);
-    std::vector<double> normals;
-    if (smooth) normals = nodal_normals(slave);
-    slave.normals = normals;
-    const NormalVariation of_normals(slave);
-    const ContactCells cells = pair(slave, master).cells;
-    const std::size_t n = coordinates.size() / 3;
-    Sum sum{0, std::vector<double>(2 * n), std::vector<double>(4 * n * n)};
-    GapVariation variation;
-    for (std::size_t c = 0; c < cells.size(); ++c) {
-      std::vector<std::int32_t> nodes = slaves[static_cast<std::size_t>(cells.slave[c])];
-      const auto& others = masters[static_cast<std::size_t>(cells.master[c])];
-      const std::size_t ns = nodes.size();
-      nodes.insert(nodes.end(), others.begin(), others.end());
-      const std::size_t known = nodes.size();
-      ContactCellGeometry cell{.slave = slave_type, .master = master_type, .axis = axis, .current_jacobian = current};
-      for (std::size_t k = 0; k < 2; ++k) {
-        const std::int32_t node = cells.vertex_node[2 * c + k];
-        cell.ends[k] = {cells.vertex[2 * c + k], -1};
-        if (node < 0) continue;
-        auto at = std::find(nodes.begin() + static_cast<long>(ns), nodes.end(), node);
-        if (at == nodes.end()) at = nodes.insert(nodes.end(), node);
-        cell.ends[k].node = static_cast<int>(at - nodes.begin());
-      }
-      std::vector<double> now, before, at_nodes;
-      for (const std::int32_t node : nodes)
-        for (int d = 0; d < 2; ++d) {
-          now.push_back(coordinates[static_cast<std::size_t>(3 * node + d)]);
-          before.push_back(initial[static_cast<std::size_t>(3 * node + d)]);
-        }
-      const std::span<const double> all(now);
-      cell.slave_initial = std::span(before).first(2 * ns);
-      cell.slave_nodes = all.first(2 * ns);
-      cell.master_nodes = all.subspan(2 * ns, 2 * (known - ns));
-      cell.other_nodes = all.subspan(2 * known);
-      const auto first = static_cast<std::size_t>(cells.offset[c]),
-                 count = static_cast<std::size_t>(cells.offset[c + 1]) - first;
-      cell.slave_point = std::span(cells.slave_point).subspan(first, count);
-      cell.master_point = std::span(cells.master_point).subspan(first, count);
-      cell.weight = std::span(cells.weight).subspan(first, count);
-      for (std::size_t i = 0; smooth && i < ns; ++i)
-        at_nodes.insert(at_nodes.end(),
-                        {normals[static_cast<std::size_t>(3 * nodes[i])], normals[static_cast<std::size_t>(3 * nodes[i] + 1)]});
-      cell.slave_normals = at_nodes;
-      vary_gap(cell, second, variation);
-      if (smooth) {
-        std::vector<std::int32_t> around = nodes;
-        of_normals.append_nodes_around(slave, std::span(nodes).first(ns), around);
-        of_normals.apply(slave, nodes, static_cast<int>(ns), around, variation);
-        nodes = around;
-      }
-      sum.gap += variation.gap;
-      const auto global = [&](std::size_t i) { return static_cast<std::size_t>(2 * nodes[i / 2]) + i % 2; };
-      const std::size_t m = variation.gradient.size();
-      for (std::size_t i = 0; i < m; ++i) {
-        sum.gradient[global(i)] += variation.gradient[i];
-        for (std::size_t j = 0; second && j < m; ++j)
-          sum.hessian[global(i) * 2 * n + global(j)] += variation.hessian[i * m + j];
-      }
-    }
-    return sum;
   }
 };
 
@@ -136,39 +190,35 @@ TEST(GapVariation, DerivativesInThePlaneAreThoseOfDifferences) {
         for (const bool current : {false, true})
           for (const bool smooth : {false, true}) {
             InPlane skins(slave, master, axis, current, smooth, ++seed);
-            const InPlane::Sum at = skins.evaluate(true);
-            const std::size_t n = at.gradient.size();
-            double largest = 0, largest_second = 0;
-            for (const double g : at.gradient) largest = std::max(largest, std::abs(g));
-            for (const double h : at.hessian) largest_second = std::max(largest_second, std::abs(h));
+            const std::string what = "seed " + std::to_string(seed);
+            const Skins::Sum at = skins.evaluate(true);
+            const double largest = largest_of(at.gradient), largest_second = largest_of(at.hessian);
             EXPECT_GT(largest, 0.1);
             EXPECT_GT(largest_second, 0.1);
-            for (std::size_t i = 0; i < n; ++i) {
-              double& x = skins.coordinates[3 * (i / 2) + i % 2];
+            if (!axis) expect_rigid_motions_change_nothing(skins, at, what);
+            for (std::size_t i = 0; i < skins.size(); ++i) {
+              if (i % 3 == 2) continue;
+              double& x = skins.coordinates[i];
               const double middle = x;
               x = middle + step;
-              const InPlane::Sum ahead = skins.evaluate(false);
+              const Skins::Sum ahead = skins.evaluate(false);
               x = middle - step;
-              const InPlane::Sum behind = skins.evaluate(false);
+              const Skins::Sum behind = skins.evaluate(false);
               x = middle;
-              EXPECT_NEAR(at.gradient[i], (ahead.gap - behind.gap) / (2 * step), 1e-7 * largest) << i << " of seed " << seed;
-              for (std::size_t j = 0; j < n; ++j)
-                EXPECT_NEAR(at.hessian[i * n + j], (ahead.gradient[j] - behind.gradient[j]) / (2 * step), 1e-7 * largest_second)
-                    << i << ' ' << j << " of seed " << seed;
+              EXPECT_NEAR(at.gradient[i], (ahead.gap - behind.gap) / (2 * step), 1e-7 * largest) << i << ' ' << what;
+              for (std::size_t j = 0; j < skins.size(); ++j)
+                EXPECT_NEAR(at.hessian[i * skins.size() + j], (ahead.gradient[j] - behind.gradient[j]) / (2 * step),
+                            1e-7 * largest_second)
+                    << i << ' ' << j << ' ' << what;
             }
           }
 }
 
 /// A slave cell, with its neighbour, over masters that reach beyond it on some sides only; in space.
-struct InSpace {
-  CellType slave_type, master_type;
-  bool current, smooth;
-  std::vector<double> coordinates, initial;
-  std::vector<std::vector<std::int32_t>> slaves, masters;
-
+struct InSpace : Skins {
   /// @param bend how far nodes are moved at random, and how much the surfaces are curved
   InSpace(CellType slave, CellType master, bool actual, bool smoothing, double bend, unsigned seed)
-      : slave_type(slave), master_type(master), current(actual), smooth(smoothing) {
+      : Skins{3, slave, master, false, actual, smoothing, {}, {}, {}, {}} {
     std::mt19937 random(seed);
     std::uniform_real_distribution<double> uniform(-1, 1);
     const auto skin = [&](CellType type, double x0, double y0, double dx, double dy, int nx, bool up, double z, auto& cells) {
@@ -205,80 +255,6 @@ struct InSpace {
     initial = coordinates;
     for (double& x : initial) x += 0.05 * uniform(random);
   }
-
-  struct Sum {
-    double gap = 0;
-    std::vector<double> gradient, hessian;
-  };
-
-  Sum evaluate(bool second) const {
-    Surface slave{.dimension = 3, .types = {}, .nodes = {}, .coordinates = coordinates, .normals = {}}, master = slave;
-    for (const auto& cell : slaves) slave.add_cell(slave_type, cell);
-    for (const auto& cell : masters) master.add_cell(master_type, cell);
-    std::vector<double> normals;
-    if (smooth) normals = nodal_normals(slave);
-    slave.normals = normals;
-    const NormalVariation of_normals(slave);
-    const Pairing found = pair(slave, master, {.tolerances = {.ray = 1e-14}, .traced = true});
-    const ContactCells& cells = found.cells;
-    const std::size_t n = coordinates.size();
-    Sum sum{0, std::vector<double>(n), std::vector<double>(second ? n * n : 0)};
-    GapVariation variation;
-    for (std::size_t c = 0; c < cells.size(); ++c) {
-      std::vector<std::int32_t> nodes = slaves[static_cast<std::size_t>(cells.slave[c])];
-      const auto& others = masters[static_cast<std::size_t>(cells.master[c])];
-      const std::size_t ns = nodes.size();
-      nodes.insert(nodes.end(), others.begin(), others.end());
-      const std::size_t known = nodes.size();
-      ContactCellGeometry cell{.slave = slave_type, .master = master_type, .dimension = 3, .current_jacobian = current};
-      cell.trace = &found.traces[c];
-      for (const PolygonTrace::Line& line : cell.trace->line) {
-        auto& own = cell.lines.emplace_back();
-        if (line.master < 0) continue;
-        own.type = master_type;
-        const auto& drawn_on = masters[static_cast<std::size_t>(line.master)];
-        for (std::size_t a = 0; a < drawn_on.size(); ++a) {
-          auto at = std::find(nodes.begin() + static_cast<long>(ns), nodes.end(), drawn_on[a]);
-          if (at == nodes.end()) at = nodes.insert(at, drawn_on[a]);
-          own.node[a] = static_cast<int>(at - nodes.begin());
-        }
-      }
-      std::vector<double> now, before, at_nodes;
-      for (const std::int32_t node : nodes)
-        for (int d = 0; d < 3; ++d) {
-          now.push_back(coordinates[static_cast<std::size_t>(3 * node + d)]);
-          before.push_back(initial[static_cast<std::size_t>(3 * node + d)]);
-        }
-      for (std::size_t i = 0; smooth && i < ns; ++i)
-        for (int d = 0; d < 3; ++d) at_nodes.push_back(normals[static_cast<std::size_t>(3 * nodes[i] + d)]);
-      const std::span<const double> all(now);
-      cell.slave_initial = std::span(before).first(3 * ns);
-      cell.slave_nodes = all.first(3 * ns);
-      cell.master_nodes = all.subspan(3 * ns, 3 * (known - ns));
-      cell.other_nodes = all.subspan(3 * known);
-      cell.slave_normals = at_nodes;
-      const auto first = static_cast<std::size_t>(cells.offset[c]),
-                 count = static_cast<std::size_t>(cells.offset[c + 1]) - first;
-      cell.slave_point = std::span(cells.slave_point).subspan(2 * first, 2 * count);
-      cell.master_point = std::span(cells.master_point).subspan(2 * first, 2 * count);
-      cell.weight = std::span(cells.weight).subspan(first, count);
-      vary_gap(cell, second, variation);
-      if (smooth) {
-        std::vector<std::int32_t> around = nodes;
-        of_normals.append_nodes_around(slave, std::span(nodes).first(ns), around);
-        of_normals.apply(slave, nodes, static_cast<int>(ns), around, variation);
-        nodes = around;
-      }
-      sum.gap += variation.gap;
-      const auto global = [&](std::size_t i) { return static_cast<std::size_t>(3 * nodes[i / 3]) + i % 3; };
-      const std::size_t m = variation.gradient.size();
-      for (std::size_t i = 0; i < m; ++i) {
-        sum.gradient[global(i)] += variation.gradient[i];
-        for (std::size_t j = 0; second && j < m; ++j) sum.hessian[global(i) * n + global(j)] += variation.hessian[i * m + j];
-      }
-    }
-    return sum;
-  }
 };
 
 TEST(GapVariation, DerivativesInSpaceAreThoseOfDifferences) {
@@ -290,11 +266,9 @@ TEST(GapVariation, DerivativesInSpaceAreThoseOfDifferences) {
     for (const CellType master : kinds) {
       const bool smooth = ++seed % 3 == 0;
       InSpace skins(slave, master, seed % 4 < 2, smooth, 0.03, seed);
-      const InSpace::Sum at = skins.evaluate(true);
+      const Skins::Sum at = skins.evaluate(true);
       const std::size_t n = at.gradient.size();
-      double largest = 0, largest_second = 0;
-      for (const double g : at.gradient) largest = std::max(largest, std::abs(g));
-      for (const double h : at.hessian) largest_second = std::max(largest_second, std::abs(h));
+      const double largest = largest_of(at.gradient), largest_second = largest_of(at.hessian);
       EXPECT_GT(largest, 0.02);
       EXPECT_GT(largest_second, 0.02);
       EXPECT_LT(asymmetry(at.hessian, n), 1e-12 * largest_second);
@@ -306,12 +280,11 @@ TEST(GapVariation, DerivativesInSpaceAreThoseOfDifferences) {
         const std::vector<double> middle = skins.coordinates;
         const auto moved = [&](double by) {
           for (std::size_t i = 0; i < n; ++i) skins.coordinates[i] = middle[i] + by * along[i];
-          const InSpace::Sum sum = skins.evaluate(false);
+          const Skins::Sum sum = skins.evaluate(false);
           skins.coordinates = middle;
           return sum;
         };
-        const InSpace::Sum ahead = moved(step), behind = moved(-step), far_ahead = moved(4 * step),
-                           far_behind = moved(-4 * step);
+        const Skins::Sum ahead = moved(step), behind = moved(-step), far_ahead = moved(4 * step), far_behind = moved(-4 * step);
         const std::string what = std::string(catalog::cell(slave).name) + " over " + std::string(catalog::cell(master).name) +
                                  (smooth ? ", smooth, " : ", ") + std::to_string(seed);
         // where a corner passes an edge on the way, or two lines are nearly one, differences say nothing: they are not the
