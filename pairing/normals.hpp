@@ -1,11 +1,11 @@
 #pragma once
 // Normals at the nodes of a surface, and its smallest edge.
-#include <array>
 #include <cstdint>
 #include <span>
 #include <vector>
 
 #include "lacon/pairing/surface.hpp"
+#include "lacon/structures/vector.hpp"
 
 namespace lacon {
 
@@ -22,7 +22,7 @@ struct TurnedNormals {
 TurnedNormals turned_normals(const Surface& surface, std::span<const double> normals, double angle);
 
 /// Outward normal of a skin cell at a reference point, as long as the Jacobian there. @param points (n_nodes, 3) of the cell
-std::array<double, 3> cell_normal(CellType type, std::span<const double> points, std::span<const double> xi);
+Vec3 cell_normal(CellType type, std::span<const double> points, std::span<const double> xi);
 
 /// The shortest distance between the ends of an edge; 0 for a surface without cells.
 double smallest_edge(const Surface& surface);

@@ -13,18 +13,17 @@
 namespace lacon {
 namespace {
 
-/// Length or area of a skin cell, initial geometry.
-double measure(const Mesh& mesh, std::int32_t cell) {
+/// Length or area of a skin cell at the initial geometry: a size, without the radius that weighs coverage in axisymmetry.
+double extent(const Mesh& mesh, std::int32_t cell) {
   const catalog::CellRow& row = mesh.row(cell);
   const Rule& rule = measuring_rule(row.type);
   std::vector<double> points;
   for (const std::int32_t node : mesh.cells[cell])
     points.insert(points.end(), mesh.point(node).begin(), mesh.point(node).end());
   double sum = 0;
-  for (int p = 0; p < rule.size(); ++p) {
-    const auto n = cell_normal(row.type, points, std::span(rule.points).subspan(p * rule.dimension, rule.dimension));
-    sum += rule.weights[p] * std::hypot(n[0], n[1], n[2]);
-  }
+  for (int p = 0; p < rule.size(); ++p)
+    sum += rule.weights[p] *
+           norm(cell_normal(row.type, points, std::span(rule.points).subspan(p * rule.dimension, rule.dimension)));
   return sum;
 }
 
@@ -41,7 +40,7 @@ ContactState::ContactState(const Mesh& mesh, const Model& model, const Contact& 
     smallest_edge_.push_back(std::min(smallest_edge(zone.slave), smallest_edge(zone.master)));
 
   const NodeCells around(mesh);
-  for (const SlaveElement& slave : contact_.slaves) size_[slave.patch] += measure(mesh, slave.cell);
+  for (const SlaveElement& slave : contact_.slaves) size_[slave.patch] += extent(mesh, slave.cell);
   if (mesh.dimension == 3)
     for (double& size : size_) size = std::sqrt(size);
   const auto modulus_below = [&](std::int32_t cell) {
@@ -243,11 +242,10 @@ namespace {
 /// Call use(node, slave or not, force) for each node that a contact cell pushes; the force on a body is -lambda dG/du.
 template <class Use>
 void for_each_force(const ContactGeometry::Variation& variation, int dimension, double lambda, Use use) {
-  std::size_t at = 0;
   for (std::size_t i = 0; i < variation.nodes.size(); ++i) {
-    std::array<double, 3> force{};
-    for (int d = 0; d < dimension; ++d) force[d] = -lambda * variation.of_gap.gradient[at++];
-    use(variation.nodes[i], static_cast<int>(i) < variation.n_slave_nodes, force);
+    const double* const gradient = variation.of_gap.gradient.data() + i * static_cast<std::size_t>(dimension);
+    const Vec3 of_node = {gradient[0], gradient[1], dimension == 3 ? gradient[2] : 0};
+    use(variation.nodes[i], static_cast<int>(i) < variation.n_slave_nodes, -lambda * of_node);
   }
 }
 
@@ -258,8 +256,9 @@ std::vector<double> ContactState::forces(const Patchwise& patches) const {
   const int dimension = mesh_.dimension;
   for (const ContactGeometry::Variation& variation : variations_)
     for_each_force(variation, dimension, patches.lambda[contact_.slaves[variation.slave].patch],
-                   [&](std::int32_t node, bool, const std::array<double, 3>& force) {
-                     for (int d = 0; d < dimension; ++d) sum[static_cast<std::size_t>(node) * dimension + d] += force[d];
+                   [&](std::int32_t node, bool, Vec3 force) {
+                     for (int d = 0; d < dimension; ++d)
+                       sum[static_cast<std::size_t>(node) * dimension + d] += component(force, d);
                    });
   return sum;
 }
@@ -281,14 +280,12 @@ std::vector<ZoneBalance> ContactState::balance(const Patchwise& patches) const {
   for (const ContactGeometry::Variation& variation : variations_) {
     const std::int32_t patch = contact_.slaves[variation.slave].patch;
     ZoneBalance& zone = zones[geometry_.zone_of(patch)];
-    for_each_force(variation, mesh_.dimension, patches.lambda[patch],
-                   [&](std::int32_t node, bool slave, const std::array<double, 3>& f) {
-                     const double* const x = geometry_.coordinates().data() + 3 * std::ptrdiff_t{node};
-                     for (int d = 0; d < 3; ++d) {
-                       (slave ? zone.on_slave : zone.on_master)[d] += f[d];
-                       zone.moment[d] += x[(d + 1) % 3] * f[(d + 2) % 3] - x[(d + 2) % 3] * f[(d + 1) % 3];
-                     }
-                   });
+    for_each_force(variation, mesh_.dimension, patches.lambda[patch], [&](std::int32_t node, bool slave, Vec3 force) {
+      Vec3& resultant = slave ? zone.on_slave : zone.on_master;
+      resultant = resultant + force;
+      const Vec3 lever = vector_at(geometry_.coordinates().data() + 3 * std::ptrdiff_t{node});
+      zone.moment = zone.moment + cross(lever, force);
+    });
   }
   return zones;
 }

@@ -13,6 +13,7 @@
 
 #include "lacon/operators/contact/contact_geometry.hpp"
 #include "lacon/operators/contact/patches.hpp"
+#include "lacon/structures/vector.hpp"
 
 namespace lacon {
 
@@ -31,10 +32,10 @@ struct ContactTolerances {
 struct ZoneBalance {
   std::string slave_group, master_group;
   std::int64_t active = 0, open = 0, unpaired = 0;
-  std::array<double, 3> on_slave{}, on_master{};  ///< resultants of the contact forces
-  std::array<double, 3> moment{};  ///< of all contact forces of the zone about the origin: zero where they balance
-  double covered = 0, whole = 0;   ///< measure of the slave skin, current geometry
-  double work = 0;                 ///< largest |lambda g|: zero where contact and gap exclude each other
+  Vec3 on_slave{}, on_master{};   ///< resultants of the contact forces
+  Vec3 moment{};                  ///< of all contact forces of the zone about the origin: zero where they balance
+  double covered = 0, whole = 0;  ///< measure of the slave skin, current geometry
+  double work = 0;                ///< largest |lambda g|: zero where contact and gap exclude each other
 };
 
 /// Locked patches that lie inside their master: no pressure can part them.

@@ -11,11 +11,10 @@
 
 #include "lacon/elements/reference.hpp"
 #include "lacon/operators/contact/contact_geometry.hpp"
+#include "lacon/structures/vector.hpp"
 
 namespace lacon {
 namespace {
-
-using Point = std::array<double, 3>;
 
 /// A layer while it is drawn: cells with their own nodes, and a value of some fields for each.
 class Drawing {
@@ -27,11 +26,11 @@ class Drawing {
   using Values = std::vector<std::pair<const char*, double>>;
 
   /// @param group that the cell enters @param values a field that one cell has and another has not does not live there
-  void add(CellType type, std::span<const Point> points, const std::string& group, const Values& values) {
+  void add(CellType type, std::span<const Vec3> points, const std::string& group, const Values& values) {
     std::vector<std::int32_t> nodes;
-    for (const Point& point : points) {
+    for (const Vec3& point : points) {
       nodes.push_back(static_cast<std::int32_t>(layer_.mesh.n_nodes()));
-      layer_.mesh.coordinates.insert(layer_.mesh.coordinates.end(), point.begin(), point.end());
+      layer_.mesh.coordinates.insert(layer_.mesh.coordinates.end(), {point.x, point.y, point.z});
     }
     const auto cell = static_cast<std::int32_t>(layer_.mesh.n_cells());
     layer_.mesh.add_cell(type, nodes);
@@ -68,32 +67,28 @@ class Places {
  public:
   Places(const Mesh& mesh, std::span<const double> coordinates) : mesh_(mesh), coordinates_(coordinates) {}
 
-  std::vector<Point> nodes(std::int32_t cell) const {
-    std::vector<Point> points;
-    for (const std::int32_t node : mesh_.cells[static_cast<std::size_t>(cell)]) {
-      const double* const x = coordinates_.data() + 3 * std::ptrdiff_t{node};
-      points.push_back({x[0], x[1], x[2]});
-    }
+  std::vector<Vec3> nodes(std::int32_t cell) const {
+    std::vector<Vec3> points;
+    for (const std::int32_t node : mesh_.cells[static_cast<std::size_t>(cell)])
+      points.push_back(vector_at(coordinates_.data() + 3 * std::ptrdiff_t{node}));
     return points;
   }
   /// The image of a reference point.
-  Point at(std::int32_t cell, std::span<const double> xi) const {
-    const std::vector<Point> corners = nodes(cell);
+  Vec3 at(std::int32_t cell, std::span<const double> xi) const {
+    const std::vector<Vec3> corners = nodes(cell);
     std::vector<double> shape(corners.size());
     shape_functions(mesh_.types[static_cast<std::size_t>(cell)], xi, shape);
-    Point image{};
-    for (std::size_t a = 0; a < corners.size(); ++a)
-      for (std::size_t k = 0; k < 3; ++k) image[k] += shape[a] * corners[a][k];
+    Vec3 image{};
+    for (std::size_t a = 0; a < corners.size(); ++a) image = image + shape[a] * corners[a];
     return image;
   }
   /// The mean of the vertices.
-  Point middle(std::int32_t cell) const {
-    const std::vector<Point> corners = nodes(cell);
+  Vec3 middle(std::int32_t cell) const {
+    const std::vector<Vec3> corners = nodes(cell);
     const auto n = static_cast<std::size_t>(mesh_.row(static_cast<std::size_t>(cell)).n_vertices);
-    Point mean{};
-    for (std::size_t a = 0; a < n; ++a)
-      for (std::size_t k = 0; k < 3; ++k) mean[k] += corners[a][k] / static_cast<double>(n);
-    return mean;
+    Vec3 sum{};
+    for (std::size_t a = 0; a < n; ++a) sum = sum + corners[a];
+    return sum / static_cast<double>(n);
   }
 
  private:
@@ -121,7 +116,7 @@ class ZoneView {
       const SlaveElement& slave = slave_of(c);
       const auto first = static_cast<std::size_t>(cells.vertex_offset[c]),
                  end = static_cast<std::size_t>(cells.vertex_offset[c + 1]);
-      std::vector<Point> corners;
+      std::vector<Vec3> corners;
       for (std::size_t v = first; v < end; ++v)
         corners.push_back(places_.at(slave.cell, std::span(cells.vertex).subspan(v * reference, reference)));
       const Drawing::Values values = {
@@ -190,8 +185,8 @@ class ZoneView {
     for (std::size_t c = 0; c < cells.size(); ++c) {
       const SlaveElement& slave = slave_of(c);
       for (auto p = static_cast<std::size_t>(cells.offset[c]); p < static_cast<std::size_t>(cells.offset[c + 1]); ++p) {
-        const Point x = places_.at(slave.cell, std::span(cells.slave_point).subspan(p * reference, reference));
-        const Point image = places_.at(master_of(c), std::span(cells.master_point).subspan(p * reference, reference));
+        const Vec3 x = places_.at(slave.cell, std::span(cells.slave_point).subspan(p * reference, reference));
+        const Vec3 image = places_.at(master_of(c), std::span(cells.master_point).subspan(p * reference, reference));
         drawing.add(CellType::POI1, {&x, 1}, name("POINTS"),
                     {{"ZONE", number_ + 1.0},
                      {"PATCH", slave.patch + 1.0},
@@ -199,7 +194,8 @@ class ZoneView {
                      {"MASTER", master_of(c) + 1.0},
                      {"GAP", record_.point_gap[p]},
                      {"WEIGHT", cells.weight[p]}});
-        const std::array way = {image[0] - x[0], image[1] - x[1], image[2] - x[2]};
+        const Vec3 difference = image - x;
+        const std::array way = {difference.x, difference.y, difference.z};
         drawing.put_last("TO_MASTER", components, std::span(way).first(components.size()));
       }
     }
@@ -207,7 +203,7 @@ class ZoneView {
 
   void draw_rejected(Drawing& drawing) const {
     for (const RejectedCouple& couple : record_.pairing.rejected) {
-      std::vector<Point> ends;
+      std::vector<Vec3> ends;
       Drawing::Values values = {{"ZONE", number_ + 1.0}};
       if (couple.slave >= 0) {
         ends.push_back(places_.middle(rejected_slave(couple).cell));

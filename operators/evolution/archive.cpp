@@ -133,9 +133,9 @@ void Archive::add_balance(const std::vector<ZoneBalance>& zones) {
     const auto put = [&](const std::string& what, double value) { this->put(name + what, value); };
     for (int d = 0; d < 3; ++d) {
       const std::string axis(1, "xyz"[d]);
-      put("slave_force_" + axis, zones[z].on_slave[d]);
-      put("master_force_" + axis, zones[z].on_master[d]);
-      put("moment_" + axis, zones[z].moment[d]);
+      put("slave_force_" + axis, component(zones[z].on_slave, d));
+      put("master_force_" + axis, component(zones[z].on_master, d));
+      put("moment_" + axis, component(zones[z].moment, d));
     }
     put("active", static_cast<double>(zones[z].active));
     put("open", static_cast<double>(zones[z].open));

@@ -57,8 +57,6 @@ const Column columns[] = {
     {{"TIME", "SECONDS", ""}, [](const IterationReport& r, const StaticProblem&) { return fmt::format("{:.4f}", r.seconds); }},
 };
 
-double norm(const std::array<double, 3>& v) { return std::hypot(v[0], v[1], v[2]); }
-
 std::vector<const Column*> shown(const StaticProblem& problem, bool where) {
   std::vector<const Column*> list;
   for (const Column& column : columns)
@@ -68,9 +66,9 @@ std::vector<const Column*> shown(const StaticProblem& problem, bool where) {
 
 }  // namespace
 
-std::string NewtonTable::components(const std::array<double, 3>& vector) const {
+std::string NewtonTable::components(Vec3 vector) const {
   std::string text;
-  for (int d = 0; d < present_.problem.dimension; ++d) text += fmt::format("{}{:.6g}", d ? ", " : "(", vector[d]);
+  for (int d = 0; d < present_.problem.dimension; ++d) text += fmt::format("{}{:.6g}", d ? ", " : "(", component(vector, d));
   return text + ")";
 }
 
@@ -112,14 +110,13 @@ void NewtonTable::prove(const ContactState& contact) {
   }
   if (least <= most) out_ << fmt::format(" LAGS_C of the patches in contact from {:.9g} to {:.9g}\n", least, most);
   for (const ZoneBalance& zone : contact.balance(patches)) {
-    std::array<double, 3> sum;
-    for (int d = 0; d < 3; ++d) sum[d] = zone.on_slave[d] + zone.on_master[d];
     out_ << fmt::format(" {} on {}: {} patches in contact, {} open, {} without master; covered {:.6g} of {:.6g}\n",
                         zone.slave_group, zone.master_group, zone.active, zone.open, zone.unpaired, zone.covered, zone.whole)
          << fmt::format(
                 "   force on the slave {}, on the master {}, sum {:.1e}, moment of both {:.1e}; largest |LAGS_C x JEU| "
                 "{:.1e}\n",
-                components(zone.on_slave), components(zone.on_master), norm(sum), norm(zone.moment), zone.work);
+                components(zone.on_slave), components(zone.on_master), norm(zone.on_slave + zone.on_master), norm(zone.moment),
+                zone.work);
   }
   if (rejections_) {
     out_ << " pairing rejected:";

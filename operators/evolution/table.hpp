@@ -24,7 +24,7 @@ class NewtonTable : public EvolutionObserver {
  private:
   void rule();
   void prove(const ContactState& contact);
-  std::string components(const std::array<double, 3>& vector) const;
+  std::string components(Vec3 vector) const;
 
   std::ostream& out_;
   Present present_;

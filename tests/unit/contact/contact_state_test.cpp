@@ -197,9 +197,9 @@ TEST_F(Touching, ForcesOnBothBodiesAreThePressureAndBalance) {
   EXPECT_NEAR(master, -6, 1e-13);
   EXPECT_NEAR(sums.at({16, 0}), -0.01, 1e-15);  // G of the active patch
   const ZoneBalance balance = now.balance(patches).front();
-  EXPECT_NEAR(balance.on_slave[1], 6, 1e-13);
-  EXPECT_NEAR(balance.on_slave[1] + balance.on_master[1], 0, 1e-13);
-  EXPECT_NEAR(balance.moment[2], 0, 1e-13);
+  EXPECT_NEAR(balance.on_slave.y, 6, 1e-13);
+  EXPECT_NEAR(balance.on_slave.y + balance.on_master.y, 0, 1e-13);
+  EXPECT_NEAR(balance.moment.z, 0, 1e-13);
   EXPECT_EQ(balance.active, 1);
   EXPECT_NEAR(balance.covered, 1, 1e-14);
   EXPECT_NEAR(now.constraint_residual(patches), 0.01, 1e-15);

@@ -119,7 +119,10 @@ TEST(NodalNormals, AreZeroWhereTheyCancelAndOffTheSurface) {
 TEST(NodalNormals, LeaveASkinInSpace) {
   const std::vector<double> square{0, 0, 1, 2, 0, 1, 2, 2, 1, 0, 2, 1};
   const std::array<double, 2> middle{0, 0};
-  EXPECT_EQ(cell_normal(CellType::QUAD4, square, middle), (std::array<double, 3>{0, 0, 1}));
+  const Vec3 normal = cell_normal(CellType::QUAD4, square, middle);
+  EXPECT_EQ(normal.x, 0);
+  EXPECT_EQ(normal.y, 0);
+  EXPECT_EQ(normal.z, 1);
 }
 
 TEST(SmallestEdge, IsMeasuredBetweenEnds) {

@@ -163,8 +163,7 @@ inline Point3 evaluate(const Skin3& skin, std::int32_t cell, const double* xi) {
     const Vec3 q = skin.node(nodes[i]);
     points.insert(points.end(), {q.x, q.y, q.z});
   }
-  const auto n = cell_normal(type, points, std::span(xi, 2));
-  p.normal = {n[0], n[1], n[2]};
+  p.normal = cell_normal(type, points, std::span(xi, 2));
   p.jacobian = norm(p.normal);
   p.normal = (1 / p.jacobian) * p.normal;
   return p;
