@@ -37,7 +37,7 @@ def parse(arguments):
     parser.add_argument("--base", metavar="FOLDER", help="folder of the base; otherwise STUDY.base beside the first command file")
     parser.add_argument("--fresh", action="store_true", help="DEBUT empties the base first")
     parser.add_argument("--force", action="store_true", help="run every operator, also where nothing has changed since its concept was made")
-    parser.add_argument("--checks", choices=("all",), help="all: a missed VALE_CALC is NOOK, not DIFF")
+    parser.add_argument("--checks", choices=("all",), help="all: a VALE_CALC missed beside a reference that is met is NOOK, not DIFF")
     parser.add_argument("--json", metavar="FILE", help="write every check with its figures, and where the time went")
     parser.add_argument("--timings", action="store_true", help="print where the time went")
     parser.add_argument("--verbose", action="store_true", help="operators say each phase with its time, and each count, as they come")

@@ -55,7 +55,7 @@ class Rules(unittest.TestCase):
     def test_statuses(self):
         self.assertEqual(self.status(1.0, None), "OK")
         self.assertEqual(self.status(1.0, 1.0), "OK")
-        self.assertEqual(self.status(1.1, None), "DIFF")
+        self.assertEqual(self.status(1.1, None), "NOOK")
         self.assertEqual(self.status(1.1, 1.0), "DIFF")
         self.assertEqual(self.status(1.0, 1.1), "NOOK")
         self.assertEqual(self.status(1.1, 1.1), "NOOK")
@@ -126,8 +126,13 @@ class Readings(LauncherTest):
             "vale_calc": {"value": 4.1, "error": abs(4.0 - 4.1) / 4.1, "tolerance": 1e-6, "criterion": "RELATIF", "judged": True, "met": False},
             "vale_refe": {"value": 5.0, "error": 0.2, "tolerance": 0.01, "criterion": "RELATIF", "judged": True, "met": False}}])
 
+    def test_digits_without_a_reference_are_the_reference(self):
+        run, made = self.checks("INST=1.0, NOM_CHAM='DEPL', NOM_CMP='DX', NOEUD='N4', VALE_CALC=7.2")
+        self.assertEqual((run.status, run.last, made[0]["status"]), (5, "--- DIAGNOSTIC JOB : NOOK_TEST_RESU", "NOOK"))
+        self.assertRegex(run.out, r"(?m)^NOOK .*VALE_CALC +7.2 ")
+
     def test_diff_is_no_failure_and_checks_all_makes_it_one(self):
-        line = "INST=1.0, NOM_CHAM='DEPL', NOM_CMP='DX', NOEUD='N4', VALE_CALC=4.1"
+        line = "INST=1.0, NOM_CHAM='DEPL', NOM_CMP='DX', NOEUD='N4', VALE_CALC=4.1, VALE_REFE=4.0, REFERENCE='ANALYTIQUE'"
         run, made = self.checks(line)
         self.ok(run)
         self.assertEqual(made[0]["status"], "DIFF")
@@ -158,7 +163,7 @@ class Readings(LauncherTest):
     def test_zero_and_its_order_of_magnitude(self):
         place = "INST=1.0, NOM_CHAM='CONT_ELEM', NOM_CMP='JEU', MAILLE='M3', VALE_CALC=0.0, CRITERE='ABSOLU'"
         run, made = self.checks(place, place + ", ORDRE_GRANDEUR=1.0, VALE_REFE=0.0, REFERENCE='ANALYTIQUE'", place + ", ORDRE_GRANDEUR=1e-6")
-        self.assertEqual([c["status"] for c in made], ["OK", "OK", "DIFF"])
+        self.assertEqual([c["status"] for c in made], ["OK", "OK", "NOOK"])
         self.assertIn("not judged", run.out)
         self.assertEqual([c["vale_calc"]["tolerance"] for c in made[1:]], [1e-6, 1e-12])
 
@@ -169,7 +174,7 @@ class Readings(LauncherTest):
     def test_integers_of_an_instant(self):
         run, made = self.checks("INST=1.0, PARA='ITER_GLOB', VALE_CALC_I=3, VALE_REFE_I=3, REFERENCE='NON_DEFINI'",
                                 "NUME_ORDRE=2, PARA='ITER_GLOB', VALE_CALC=3.0", "NUME_ORDRE=2, PARA='ITER_GLOB', VALE_CALC_I=4")
-        self.assertEqual([(c["status"], c["value"]) for c in made], [("OK", 3), ("OK", 3), ("DIFF", 3)])
+        self.assertEqual([(c["status"], c["value"]) for c in made], [("OK", 3), ("OK", 3), ("NOOK", 3)])
         self.assertRegex(run.out, r"(?m)^OK +R +ITER_GLOB +INST 1 +3 +reference +3 ")
 
     def test_meshes(self):
@@ -183,12 +188,12 @@ class Readings(LauncherTest):
         for given, identifier in (("NB_MA_GROUP_MA", "KEYWORD_2"), ("NB_MA_GROUP_MA', NOM_GROUP_MA='SKINN", "TEST_RESU_9")):
             self.refused(self.run_study(STUDY + f"TEST_RESU(MAILLAGE=_F(MAILLAGE=M, CARA='{given}', VALE_CALC_I=1))\n"), identifier)
         run = self.run_study(STUDY + "TEST_RESU(MAILLAGE=_F(MAILLAGE=M, CARA='NB_NOEUD', VALE_CALC_I=7))\n")
-        self.assertRegex(run.out, r"(?m)^DIFF ")
+        self.assertRegex(run.out, r"(?m)^NOOK ")
 
     def test_lines_are_aligned(self):
         run, _ = self.checks(*(f"INST=1.0, NOM_CHAM='{f}', NOM_CMP='{c}', TYPE_TEST='{t}', VALE_CALC=1" for f, c, t in
                                (("DEPL", "LAGS_C", "MIN"), ("CONT_ELEM", "PRES", "SOMM_ABS"), ("SIEF_ELGA", "SIYY", "MAX"))))
-        lines = [line for line in run.out.splitlines() if line.startswith(("OK", "DIFF"))]
+        lines = [line for line in run.out.splitlines() if line.startswith(("OK", "NOOK"))]
         self.assertEqual(len({line.index("VALE_CALC") for line in lines}), 1, lines)
 
     def test_refusals(self):

@@ -66,7 +66,7 @@ assert line.Ordo() == [2, 2]
     def test_checks(self):
         run = self.study("""
 TEST_FONCTION(VALEUR=(_F(FONCTION=f, VALE_PARA=2., VALE_CALC=5.0, VALE_REFE=5.001, REFERENCE='ANALYTIQUE'),
-                      _F(FONCTION=two, VALE_PARA=(2., 3.), VALE_CALC=6.0), _F(FONCTION=quadratic, VALE_PARA=3., VALE_CALC=9.5),
+                      _F(FONCTION=two, VALE_PARA=(2., 3.), VALE_CALC=6.0), _F(FONCTION=quadratic, VALE_PARA=3., VALE_CALC=9.5, VALE_REFE=9.0, REFERENCE='ANALYTIQUE', PRECISION=0.1),
                       _F(FONCTION=f, VALE_PARA=2., VALE_CALC=-5.0, VALE_ABS='OUI')))
 """)
         self.assertEqual((run.status, run.last), (0, "--- DIAGNOSTIC JOB : OK"))

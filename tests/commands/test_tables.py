@@ -196,7 +196,7 @@ TEST_TABLE(TABLE=T, NOM_PARA='S', FILTRE=_F(NOM_PARA='N', VALE_I=1), VALE_CALC_K
 TEST_TABLE(TABLE=T, NOM_PARA='N', FILTRE=_F(NOM_PARA='N', VALE_I=1), VALE_CALC_I=2)
 """)
         self.assertEqual((run.status, run.last), (5, "--- DIAGNOSTIC JOB : NOOK_TEST_RESU"))
-        self.assertIn("4 checks: 0 OK, 1 NOOK, 3 DIFF", run.out)
+        self.assertIn("4 checks: 0 OK, 4 NOOK, 0 DIFF", run.out)
 
     def test_checks_refused(self):
         calls = []

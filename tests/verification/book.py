@@ -185,8 +185,8 @@ def peer_section(runner):
         rows.append([name, len(run.checks), *count.values(), *(f"{max(found):.1e}" if found else "-" for found in (own, peers)), f"{worst:.1e}"])
     return f"""## The peer's cases
 
-Every check at the peer's own tolerances. OK: reference and VALE_CALC are met; DIFF: the reference is met, or there is none, and the peer's digits are not. In
-ssnp170r, w and z these carry the error of the peer's rule for PYRAM13 (-25.06 to -24.92); here the pressure is -25 to 1e-9. The half ring (ssnp165) has no
+Every check at the peer's own tolerances. OK: reference and VALE_CALC are met; DIFF: the reference is met and the peer's digits are not; NOOK: they are not,
+and there is no reference. In ssnp170r, w and z these carry the error of the peer's rule for PYRAM13 (-25.06 to -24.92); here the pressure is -25 to 1e-9. The half ring (ssnp165) has no
 reference: its displacements and pressures are within 6 % of the largest of their kind, 12 and 120, and within 1 % with VARIATION_JEU='FIGEE'; with the residual at 1e-6 they
 are the same. What is left is the forces of contact alone: here they are the derivative of the gap (METHOD.md 5.4 c), on facets that slide far and are not parallel. The peer integrates the master's side on the
 master's facets with the master's normals, so that its forces on slave and master do not balance. With the peer's matrix put in by way of trial (2D, linear edges), all 30 values

@@ -1,7 +1,8 @@
 """How values are judged against references, and what is said about it: the checks of TEST_RESU, TEST_TABLE, TEST_FONCTION and assertions.
 
 Every check has up to two judgements: against VALE_REFE, the reference, within PRECISION, and against VALE_CALC, another program's
-digits, within TOLE_MACHINE. A missed reference is NOOK; a missed VALE_CALC alone is DIFF, or NOOK with --checks all.
+digits, within TOLE_MACHINE. What is missed is NOOK; but a VALE_CALC that is missed beside a reference that is met is DIFF, unless
+--checks all asks for both.
 """
 
 import json
@@ -25,12 +26,10 @@ class Check:
     def judge(self, calculated, reference, source, strict):
         """`calculated`, `reference`: Judgement; `reference` may be None."""
         self.calculated, self.reference, self.source = calculated, reference, source
-        if reference is not None and not reference.met:
-            self.status = "NOOK"
-        elif not calculated.met:
-            self.status = "NOOK" if strict else "DIFF"
+        if (calculated if reference is None else reference).met:
+            self.status = "OK" if calculated.met else "NOOK" if strict else "DIFF"
         else:
-            self.status = "OK"
+            self.status = "NOOK"
 
     def decisive(self):
         """The judgement that its line shows: the one that was missed, else the reference where there is one."""
