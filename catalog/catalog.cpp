@@ -5,6 +5,7 @@
 #include "lacon/catalog/cuts.hpp"
 #include "lacon/catalog/messages.hpp"
 #include "lacon/catalog/refinements.hpp"
+#include "lacon/catalog/text.hpp"
 
 namespace lacon::catalog {
 
@@ -59,7 +60,7 @@ std::string fill(std::string_view text, std::string_view id, std::initializer_li
     const auto value = std::find_if(values.begin(), values.end(), [&](const MessageValue& v) { return v.first == name; });
     if (value == values.end())
       throw std::logic_error("message " + std::string(id) + " misses a value for {" + std::string(name) + "}");
-    filled += value->second;
+    filled += as_utf8(value->second);  // damaged names too are text that can be shown
     at = end + 1;
   }
   return filled;

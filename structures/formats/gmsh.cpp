@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "lacon/catalog/messages.hpp"
+#include "lacon/structures/formats/file_names.hpp"
 #include "lacon/structures/formats/text_file.hpp"
 
 namespace lacon {
@@ -136,8 +137,9 @@ class GmshReader {
     const double version = source_.text_real();
     const std::int64_t mode = source_.text_integer(), real_size = source_.text_integer();
     source_.rest_of_line();
-    version_4_ = version >= 4.1;
-    if (!(version >= 2 && version < 3) && !(version >= 4.1 && version < 5))
+    version_4_ = version >= 4;
+    version_4_0_ = version_4_ && version < 4.1;
+    if (!(version >= 2 && version < 3) && !(version >= 4 && version < 5))
       fail("GMSH_2", {{"file", source_.file()}, {"version", std::to_string(version).substr(0, 3)}});
     source_.binary = mode != 0;
     if (source_.binary && (real_size != 8 || source_.integer() != 1))
@@ -160,7 +162,7 @@ class GmshReader {
     for (std::size_t i = 0; i < n; ++i) {
       const int dimension = static_cast<int>(source_.text_integer());
       const std::int64_t tag = source_.text_integer();
-      names_[{dimension, tag}] = source_.quoted();
+      names_[{dimension, tag}] = file_names_.read(source_.quoted());
     }
   }
 
@@ -170,7 +172,7 @@ class GmshReader {
     for (int dimension = 0; dimension < 4; ++dimension)
       for (std::size_t i = 0; i < n[dimension]; ++i) {
         const std::int64_t tag = source_.integer();
-        for (int k = 0; k < (dimension == 0 ? 3 : 6); ++k) source_.real();
+        for (int k = 0; k < (dimension == 0 && !version_4_0_ ? 3 : 6); ++k) source_.real();
         auto& groups = physical_of_[{dimension, tag}];
         const std::size_t n_groups = source_.count(source_.size(), 2);
         for (std::size_t g = 0; g < n_groups; ++g) groups.push_back(std::abs(source_.integer()));
@@ -198,17 +200,28 @@ class GmshReader {
     }
   }
 
-  void nodes_4() {
+  /// How many blocks of nodes or cells follow: behind it are their counts, and from 4.1 on the least and largest tags.
+  std::size_t blocks_4() {
     const std::size_t blocks = source_.count(source_.size(), 4);
-    for (int k = 0; k < 3; ++k) source_.size();
+    for (int k = 0; k < (version_4_0_ ? 1 : 3); ++k) source_.size();
+    return blocks;
+  }
+  Entity entity_4() {
+    const std::int64_t first = source_.integer(), second = source_.integer();
+    return version_4_0_ ? Entity(static_cast<int>(second), first) : Entity(static_cast<int>(first), second);
+  }
+  std::int64_t tag_4() { return version_4_0_ ? source_.integer() : source_.size(); }
+
+  void nodes_4() {
+    const std::size_t blocks = blocks_4();
     for (std::size_t block = 0; block < blocks; ++block) {
-      const std::int64_t dimension = source_.integer();
-      source_.integer();  // tag
+      const std::int64_t dimension = entity_4().first;
       const bool parametric = source_.integer() != 0;
       const std::size_t n = source_.count(source_.size(), 8);
-      std::vector<std::int64_t> tags;
-      for (std::size_t i = 0; i < n; ++i) tags.push_back(source_.size());
-      for (const std::int64_t tag : tags) {
+      std::vector<std::int64_t> tags;  // in 4.0 each before its coordinates
+      for (std::size_t i = 0; i < n && !version_4_0_; ++i) tags.push_back(source_.size());
+      for (std::size_t i = 0; i < n; ++i) {
+        const std::int64_t tag = version_4_0_ ? source_.integer() : tags[i];
         const double x = source_.real(), y = source_.real(), z = source_.real();
         for (std::int64_t k = 0; parametric && k < dimension; ++k) source_.real();
         add_node(tag, x, y, z);
@@ -255,16 +268,14 @@ class GmshReader {
   }
 
   void elements_4() {
-    const std::size_t blocks = source_.count(source_.size(), 4);
-    for (int k = 0; k < 3; ++k) source_.size();
+    const std::size_t blocks = blocks_4();
     for (std::size_t block = 0; block < blocks; ++block) {
-      const int dimension = static_cast<int>(source_.integer());
-      const std::int64_t entity = source_.integer();
+      const Entity entity = entity_4();
       const catalog::CellRow& row = row_of(source_.integer());
       const std::size_t n = source_.count(source_.size(), 4);
       for (std::size_t i = 0; i < n; ++i) {
-        const std::int64_t tag = source_.size();
-        add_cell(row, tag, physical_of_[{dimension, entity}], [&] { return source_.size(); });
+        const std::int64_t tag = tag_4();
+        add_cell(row, tag, physical_of_[entity], [&] { return tag_4(); });
       }
     }
   }
@@ -275,7 +286,8 @@ class GmshReader {
   }
 
   Source& source_;
-  bool version_4_ = false;
+  FileNames file_names_;
+  bool version_4_ = false, version_4_0_ = false;
   std::map<Entity, std::string> names_;                      ///< of physical groups
   std::map<Entity, std::vector<std::int64_t>> physical_of_;  ///< groups of each geometrical entity
   std::unordered_map<std::int64_t, std::int32_t> number_;    ///< of a node by its tag
@@ -285,6 +297,7 @@ class GmshReader {
 };
 
 Mesh GmshReader::finish(std::string name) {
+  file_names_.tell(source_.file());
   Mesh mesh;
   mesh.name = std::move(name);
   mesh.coordinates = std::move(coordinates_);

@@ -7,6 +7,8 @@
 #include <utility>
 
 #include "lacon/catalog/messages.hpp"
+#include "lacon/catalog/text.hpp"
+#include "lacon/structures/formats/file_names.hpp"
 #include "lacon/structures/formats/med.hpp"
 #include "lacon/structures/formats/med_layout.hpp"
 #include "lacon/structures/formats/text_file.hpp"
@@ -90,11 +92,12 @@ class MeshReader {
                const Visit& visit) const;
   void read_nodes(const H5Group& step, std::int64_t space);
   void read_cells(const H5Group& step);
-  Families families(const char* kind) const;
+  Families families(const char* kind);
   void read_members(const H5Group& group, const std::string& where, std::size_t first, std::size_t n, Families& families) const;
 
   const H5Group& root_;
   std::string name_;
+  FileNames file_names_;
   Mesh mesh_;
   Families node_families_, cell_families_;
 };
@@ -226,7 +229,7 @@ void MeshReader::read_cells(const H5Group& step) {
   if (mesh_.n_cells() == 0) damaged("it has no cells");
 }
 
-MeshReader::Families MeshReader::families(const char* kind) const {
+MeshReader::Families MeshReader::families(const char* kind) {
   Families families;
   const std::string path = "FAS/" + name_ + "/" + kind;
   if (!root_.is_group(path)) return families;
@@ -242,7 +245,9 @@ MeshReader::Families MeshReader::families(const char* kind) const {
     const std::vector<std::string> names = med::read_names(list, "NOM");
     if (static_cast<std::int64_t>(names.size()) != count)
       damaged("the group names of the family '" + child + "' cannot be read");
-    for (const std::string& name : std::set(names.begin(), names.end())) {  // a family may name a group twice
+    std::set<std::string> own;  // a family may name a group twice
+    for (const std::string& name : names) own.insert(file_names_.read(name));
+    for (const std::string& name : own) {
       std::vector<med::Run>& members = families.members[name];
       if (number != 0) groups.push_back(&members);
     }
@@ -282,7 +287,7 @@ std::vector<Group> MeshReader::Families::groups() const {
 
 Mesh MeshReader::read() {
   const H5Group group = root_.open("ENS_MAA/" + name_);
-  mesh_.name = name_;
+  mesh_.name = file_names_.read(name_);
   const std::int64_t space = integer(group, "ESP", "it");
   if (space != 2 && space != 3) unsuitable("its points have " + std::to_string(space) + " coordinates");
   if (group.has_attribute("TYP") && group.integer("TYP") != 0) unsuitable("it is a structured grid");
@@ -295,6 +300,7 @@ Mesh MeshReader::read() {
   mesh_.node_groups = node_families_.groups();
   mesh_.cell_groups = cell_families_.groups();
   mesh_.dimension = space == 2 ? 2 : least_dimension(mesh_);
+  file_names_.tell(root_.path());
   return std::move(mesh_);
 }
 
@@ -332,7 +338,9 @@ Mesh read_med_mesh(const fs::path& file, std::string_view name) {
     if (known.size() > 1)
       inform("MED_11",
              {{"file", file.string()}, {"count", std::to_string(known.size())}, {"known", joined(known)}, {"mesh", chosen}});
-  } else if (std::find(known.begin(), known.end(), chosen) == known.end()) {
+  } else if (const auto at = std::ranges::find(known, chosen, as_utf8); at != known.end()) {
+    chosen = *at;
+  } else {
     fail("MED_5", {{"file", file.string()}, {"mesh", chosen}, {"known", joined(known)}});
   }
   return med::read_mesh(root, chosen);

@@ -49,8 +49,8 @@ std::string escaped(std::string_view text) {
       case '"':
         safe += "&quot;";
         break;
-      default:
-        safe += c;
+      default:  // XML has no place for control characters, not even as references
+        safe += static_cast<unsigned char>(c) < 0x20 ? '?' : c;
     }
   }
   return safe;

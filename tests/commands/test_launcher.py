@@ -186,6 +186,12 @@ class Units(LauncherTest):
         orders = sorted(self.orders.glob("*impr_resu.order.json"))
         self.assertEqual([json.loads(p.read_text()).get("append") for p in orders], [None, ["80"]])
 
+    def test_paths_that_are_not_utf_8_are_refused_by_name(self):
+        path = os.fsdecode(b"k\xf6rper.msh")
+        self.refused(self.run_study("DEBUT()\nFIN()\n", "--unit", f"21={path}"), "STUDY_26", "rper.msh", "UTF-8")
+        self.refused(self.run_study("DEBUT()\nFIN()\n", "--base", self.work / os.fsdecode(b"b\xe4se")), "STUDY_26", "se")
+        self.assertEqual([name for name in os.listdir(self.work) if "base" in name], [])
+
     def test_bad_options(self):
         self.write("study.comm", "DEBUT()\n")
         for options in (("--unit", "mesh.med"), ("--unit", "0=a"), ("--unit", "20=a", "--unit", "20=b"), ("--threads", "0"), ("--nope",)):

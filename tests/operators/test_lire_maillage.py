@@ -12,7 +12,7 @@ from lacon_test import CELLS, SHARED_CASES, OperatorTest
 STEP = "-0000000000000000001-0000000000000000001"
 
 
-def write_med(path, coordinates, cells, cell_groups=(), mesh="MESH", integers=np.int32, version=(3, 2, 1)):
+def write_med(path, coordinates, cells, cell_groups=(), mesh="MESH", integers=np.int32, version=(3, 2, 1), encoding="utf-8"):
     """A small MED file. @param cells name of a type -> list of node lists, 0-based, in *MED's* order
     @param cell_groups list of (family, type, members, group names)"""
     coordinates = np.asarray(coordinates, float)
@@ -20,14 +20,15 @@ def write_med(path, coordinates, cells, cell_groups=(), mesh="MESH", integers=np
         about = file.create_group("INFOS_GENERALES")
         for name, value in zip(("MAJ", "MIN", "REL"), version):
             about.attrs[name] = np.int32(value)
-        head = file.create_group(f"ENS_MAA/{mesh}")
+        head = file.create_group("ENS_MAA").create_group(mesh.encode(encoding))
         for name, value in {"DIM": 2, "ESP": coordinates.shape[1], "REP": 0, "TYP": 0}.items():
             head.attrs[name] = np.int32(value)
         step = head.create_group(STEP)
         step.attrs["NDT"] = step.attrs["NOR"] = np.int32(-1)
         nodes = step.create_dataset("NOE/COO", data=coordinates.T.ravel())
         nodes.attrs["NBR"] = np.int32(len(coordinates))
-        file.create_group(f"FAS/{mesh}/FAMILLE_ZERO").attrs["NUM"] = np.int32(0)
+        families = file.create_group("FAS").create_group(mesh.encode(encoding))
+        families.create_group("FAMILLE_ZERO").attrs["NUM"] = np.int32(0)
         for kind, rows in cells.items():
             where = step.create_group(f"MAI/{CELLS[kind]['med']}")
             where.create_dataset("NOD", data=(np.array(rows).T.ravel() + 1).astype(integers)).attrs["NBR"] = np.int32(len(rows))
@@ -35,10 +36,10 @@ def write_med(path, coordinates, cells, cell_groups=(), mesh="MESH", integers=np
             for number, of, members, names in cell_groups:
                 if of == kind:
                     family[members] = number
-                    group = file.create_group(f"FAS/{mesh}/ELEME/FAM_{number}")
+                    group = families.create_group(f"ELEME/FAM_{number}")
                     group.attrs["NUM"] = np.int32(number)
                     group.create_group("GRO").attrs["NBR"] = np.int32(len(names))
-                    rows_of_names = np.array([list(name.encode().ljust(80, b"\0")) for name in names], np.int8)
+                    rows_of_names = np.array([list(name.encode(encoding).ljust(80, b"\0")) for name in names], np.int8)
                     item = h5py.h5t.array_create(h5py.h5t.STD_I8LE, (80,))
                     space = h5py.h5s.create_simple((len(names),))
                     data = h5py.h5d.create(group["GRO"].id, b"NOM", item, space)
@@ -127,6 +128,17 @@ class LireMaillage(OperatorTest):
         self.assertIn("X from 0 to 1", self.read(INFO=2).stdout)
 
     # ------------------------------------------------------------------------------------------ what it refuses
+
+    def test_names_that_are_not_utf_8_are_latin_1(self):
+        for encoding, ids in (("utf-8", []), ("latin-1", ["FORMAT_1"])):
+            write_med(self.file, SQUARE, {"QUAD4": [[0, 1, 2, 3]]}, [(-1, "QUAD4", [0], ["Körper", "plain"])], "Gerät", encoding=encoding)
+            for chosen in ({}, {"NOM_MED": "Gerät"}):
+                with self.subTest(encoding=encoding, **chosen):
+                    run = self.read(**chosen)
+                    self.assertEqual((run.status, self.ids(run)), (0, ids), run.stderr)
+                    mesh = self.read_mesh("mesh_1")
+                    self.assertEqual((mesh.name, list(mesh.cell_groups)), ("Gerät", ["Körper", "plain"]))
+            self.refuses("MED_5", "'Gerät'", "'other'", NOM_MED="other")
 
     def test_missing_file(self):
         self.refuses("MED_1", str(self.file), "no such file")

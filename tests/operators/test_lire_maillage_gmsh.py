@@ -1,4 +1,4 @@
-"""LIRE_MAILLAGE(FORMAT='GMSH'): .msh files written here, version 2.2 and 4.1, as text and as bytes."""
+"""LIRE_MAILLAGE(FORMAT='GMSH'): .msh files written here, version 2.2, 4.0 and 4.1, as text and as bytes."""
 
 import struct
 import unittest
@@ -46,8 +46,8 @@ class Writer:
             self.content += struct.pack("<i", 1) + b"\n"
         self.content += b"$EndMeshFormat\n"
 
-    def text(self, text):
-        self.content += text.encode()
+    def text(self, text, encoding="utf-8"):
+        self.content += text.encode(encoding)
 
     def numbers(self, kinds, *values):
         """@param kinds of the values: i integer, Q size, d real"""
@@ -56,20 +56,23 @@ class Writer:
         else:
             self.content += (" ".join(f"{v:.17g}" if k == "d" else str(v) for k, v in zip(kinds, values)) + "\n").encode()
 
-    def names(self, names):
+    def names(self, names, encoding="utf-8"):
         if names:
             rows = "".join(f'{dimension} {tag} "{name}"\n' for dimension, tag, name in names)
-            self.text(f"$PhysicalNames\n{len(names)}\n{rows}$EndPhysicalNames\n")
+            self.text(f"$PhysicalNames\n{len(names)}\n{rows}$EndPhysicalNames\n", encoding)
 
     def section(self, name):
         self.text(f"$End{name}\n" if self.content.endswith(b"\n") and not self.binary else f"\n$End{name}\n")
 
 
-def write_msh(path, version, binary, nodes, cells, names=()):
+def write_msh(path, version, binary, nodes, cells, names=(), encoding="utf-8"):
     """@param nodes {tag: point} @param cells list of (type, physical groups, node tags)"""
     out = Writer(version, binary)
-    out.names(names)
-    (write_4 if version == "4.1" else write_2)(out, nodes, cells)
+    out.names(names, encoding)
+    if version == "2.2":
+        write_2(out, nodes, cells)
+    else:
+        write_4(out, nodes, cells, before_1=version == "4")
     path.write_bytes(out.content)
 
 
@@ -86,15 +89,25 @@ def write_2(out, nodes, cells):
     out.section("Elements")
 
 
-def write_4(out, nodes, cells):
-    """Every cell on a geometrical entity of its own, numbered from 100; nodes in two blocks, the second with parameters."""
+def write_4(out, nodes, cells, before_1):
+    """Every cell on a geometrical entity of its own, numbered from 100; nodes in two blocks, the second with parameters.
+
+    @param before_1 as version 4.0: points have boxes, entities go by tag and dimension, tags are integers beside their nodes, no extremes
+    """
+    def entity(dimension, tag):
+        return (tag, dimension) if before_1 else (dimension, tag)
+
+    def counts(*values):
+        out.numbers("Q" * len(values[:2 if before_1 else 4]), *values[:2 if before_1 else 4])
+
+    kind_of_tags = "i" if before_1 else "Q"
     of = {d: [i for i, (kind, _, _) in enumerate(cells) if CELLS[kind]["dimension"] == d] for d in range(4)}
     out.text("$Entities\n")
     out.numbers("QQQQ", *(len(of[d]) for d in range(4)))
     for d in range(4):
         for i in of[d]:
             groups = cells[i][1]
-            box = [0.0] * (3 if d == 0 else 6)
+            box = [0.0] * (3 if d == 0 and not before_1 else 6)
             bounding = [1, -2] if d else []
             end = [len(bounding), *bounding] if d else []
             out.numbers("i" + "d" * len(box) + "Q" + "i" * len(groups) + ("Qii" if d else ""), 100 + i, *box, len(groups), *groups, *end)
@@ -102,24 +115,24 @@ def write_4(out, nodes, cells):
     out.text("$Nodes\n")
     tags = list(nodes)
     half = len(tags) // 2
-    out.numbers("QQQQ", 2, len(tags), min(tags), max(tags))
+    counts(2, len(tags), min(tags), max(tags))
     for block, parametric in ((tags[:half], 0), (tags[half:], 1)):
-        out.numbers("iiiQ", 2, 1, parametric, len(block))
-        for tag in block:
+        out.numbers("iiiQ", *entity(2, 1), parametric, len(block))
+        for tag in [] if before_1 else block:
             out.numbers("Q", tag)
         for tag in block:
-            extra = [0.25, 0.75] if parametric else []
-            out.numbers("ddd" + "d" * len(extra), *nodes[tag], *extra)
+            values = [*nodes[tag], *([0.25, 0.75] if parametric else [])]
+            out.numbers("i" * before_1 + "d" * len(values), *([tag] if before_1 else []), *values)
     out.section("Nodes")
     out.text("$Elements\n")
-    out.numbers("QQQQ", len(cells), len(cells), 1, len(cells))
+    counts(len(cells), len(cells), 1, len(cells))
     for i, (kind, _, own) in enumerate(cells):
-        out.numbers("iiiQ", CELLS[kind]["dimension"], 100 + i, GMSH[kind][0], 1)
-        out.numbers("Q" * (1 + len(own)), i + 1, *own)
+        out.numbers("iiiQ", *entity(CELLS[kind]["dimension"], 100 + i), GMSH[kind][0], 1)
+        out.numbers(kind_of_tags * (1 + len(own)), i + 1, *own)
     out.section("Elements")
 
 
-FORMATS = [("2.2", False), ("2.2", True), ("4.1", False), ("4.1", True)]
+FORMATS = [(version, binary) for version in ("2.2", "4", "4.1") for binary in (False, True)]
 #: tags of nodes are neither consecutive nor sorted
 SQUARE = {40: (0, 0, 0), 7: (2, 0, 0), 12: (4, 0, 0), 3: (4, 2, 0), 99: (2, 2, 0), 5: (0, 2, 0)}
 PLANE = [("QUAD4", [1], [40, 7, 99, 5]), ("SEG2", [3], [40, 7]), ("QUAD4", [1, 2], [7, 12, 3, 99]), ("SEG2", [3, 4], [7, 12]),
@@ -177,6 +190,17 @@ class LireMaillageGmsh(OperatorTest):
                                  {"Body": [4, 5], "Right half": [5], "Low": [1, 2], "GM4": [2], "Corner": [0], "Nobody": []})
                 self.assertEqual({name: list(members) for name, members in mesh.node_groups.items()}, {"Corner": [0]})
 
+    def test_names_that_are_not_utf_8_are_latin_1(self):
+        names = [(2, 1, "Körper"), (1, 3, "Fläche §")]
+        for version, binary in FORMATS:
+            for encoding, ids in (("utf-8", []), ("latin-1", ["FORMAT_1"])):
+                write_msh(self.file, version, binary, SQUARE, PLANE, names, encoding)
+                with self.subTest(version=version, binary=binary, encoding=encoding):
+                    run = self.read()
+                    self.assertEqual((run.status, [i for i in self.ids(run) if i == "FORMAT_1"]), (0, ids), run.stderr)
+                    self.assertEqual([name for name in self.read_mesh("mesh_1").cell_groups if not name.startswith("GM")], ["Fläche §", "Körper"])
+                    self.assertEqual("'Fläche §', 'Körper'" in run.stderr, bool(ids))
+
     def test_a_clockwise_body_is_turned(self):
         write_msh(self.file, "2.2", False, SQUARE, [("QUAD4", [1], [40, 5, 99, 7])])
         self.assertEqual(self.ids(self.read()), ["LIRE_1", "LIRE_3"])
@@ -201,7 +225,7 @@ class LireMaillageGmsh(OperatorTest):
     def test_refuses_other_versions_types_and_partitions(self):
         write_msh(self.file, "2.2", False, SQUARE, PLANE)
         text = self.file.read_text(encoding="ascii")
-        for old, new, identifier, word in (("2.2 0 8", "4 0 8", "GMSH_2", "4.0"), ("2.2 0 8", "1 0 8", "GMSH_2", "1.0"),
+        for old, new, identifier, word in (("2.2 0 8", "5 0 8", "GMSH_2", "5.0"), ("2.2 0 8", "1 0 8", "GMSH_2", "1.0"),
                                            ("1 3 2 1 7 40 7 99 5", "1 14 2 1 7 40 7 99 5", "GMSH_4", "14-node pyramid"),
                                            ("1 3 2 1 7 40 7 99 5", "1 92 2 1 7 40 7 99 5", "GMSH_4", "92"),
                                            ("1 3 2 1 7 40 7 99 5", "1 3 4 1 7 2 1 40 7 99 5", "GMSH_6", "partitioned")):

@@ -1,6 +1,7 @@
 """`lacon convert`: a mesh from gmsh's format to MED and VTU, with its groups."""
 
 import unittest
+from xml.etree import ElementTree
 
 import h5py
 from study_test import StudyTest
@@ -43,6 +44,14 @@ class Convert(StudyTest):
         self.assertEqual(done.returncode, 0, done.stderr)
         self.assertIn("GROUP_MA Low", (self.folder / "plate_0001.vtu").read_text(encoding="ascii"))
         self.assertEqual(sorted(path.name for path in self.folder.iterdir()), ["plate.med", "plate.msh", "plate.pvd", "plate_0001.vtu"])
+
+    def test_latin_1_and_control_characters_become_names_that_every_program_reads(self):
+        (self.folder / "plate.msh").write_bytes(PLATE.replace("Low", "Fläche <1>").replace("Body", "a\x01b").encode("latin-1"))
+        done = self.run_tool("convert", "plate.msh", "plate.vtu")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertIn("FORMAT_1", done.stderr)
+        arrays = [array.get("Name") for array in ElementTree.parse(self.folder / "plate_0001.vtu").iter("DataArray")]
+        self.assertLessEqual({"GROUP_MA Fläche <1>", "GROUP_MA a?b"}, set(arrays))
 
     def test_refusals(self):
         (self.folder / "broken.msh").write_text(PLATE.replace("$EndNodes", ""), encoding="ascii")

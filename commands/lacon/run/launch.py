@@ -1,5 +1,6 @@
 """What the launcher and its tools share: the files of a study, a run from its beginning to its end; and what `lacon study.comm` does."""
 
+import os
 import pathlib
 
 from ..commands import checks
@@ -35,6 +36,15 @@ def command_files(names, units):
     return export
 
 
+def _is_text(path):
+    """Whether a path is UTF-8, in which orders name it; Python keeps other bytes as lone surrogates."""
+    try:
+        str(path).encode()
+    except UnicodeEncodeError:
+        return False
+    return True
+
+
 def run_study(run, work):
     """Do `work`, which runs command files of the study `run`, and close its base. @return (exit status, words of the diagnosis)"""
     current.study = run
@@ -60,6 +70,9 @@ def run_command_line(options, units):
     if threads is None and export.parameters.get("ncpus", "").isdigit():
         threads = max(1, int(export.parameters["ncpus"]))
     base = options.base or export.base or export.commands[0].with_suffix(".base")
+    for path in (os.getcwd(), base, *export.commands, *export.units.values()):
+        if not _is_text(path):
+            messages.fail("STUDY_26", path=path)
     run = study.Study(base, export.units, options.fresh, threads, options.checks == "all", execution.provided_names(),
                       options.force, options.verbose)
     for name in export.commands + export.named + export.data:
