@@ -41,6 +41,17 @@ bool finite(const Surface& surface, std::size_t cell) {
   });
 }
 
+bool within_limits(const PairingOptions& options, double largest_gap, double diameter) {
+  const auto within = [&](double limit, double more) { return !(limit > 0) || largest_gap <= limit * diameter + more; };
+  return within(options.distance_limit, 0) && within(options.depth_limit, options.motion);
+}
+
+std::optional<Rejection> beyond_limits(const PairingOptions& options, double gap, double diameter) {
+  if (options.distance_limit > 0 && std::abs(gap) > options.distance_limit * diameter) return Rejection::too_far;
+  if (options.depth_limit > 0 && -gap > options.depth_limit * diameter + options.motion) return Rejection::too_deep;
+  return std::nullopt;
+}
+
 double smallest_cosine(const PairingOptions& options) {
   return options.largest_angle < 90 ? std::cos(options.largest_angle * std::numbers::pi / 180) : -1;
 }
@@ -49,7 +60,8 @@ double smallest_cosine(const PairingOptions& options) {
 
 std::string_view rejection_name(Rejection rejection) {
   static constexpr std::string_view names[n_rejections] = {"facing away",       "hidden",   "sliver",  "degenerate slave",
-                                                           "degenerate master", "no image", "too far", "too steep"};
+                                                           "degenerate master", "no image", "too far", "too steep",
+                                                           "too deep"};
   return names[static_cast<std::size_t>(rejection)];
 }
 

@@ -62,6 +62,10 @@ struct PairingOptions {
   /// Largest |gap| in the middle of what a couple has in common, in diameters of the larger of its two cells (COEF_MULT_APPA);
   /// not positive: no limit.
   double distance_limit = -1;
+  /// Likewise of an overlap alone, behind which normals reach through a body; not positive: no limit.
+  double depth_limit = -1;
+  double motion =
+      0;  ///< by how much more cells may overlap than `depth_limit` says: what they have moved since they were apart
   /// Largest angle between the slave's normal and the opposite of the master's, in degrees; 90: no limit. A master that is
   /// nearly parallel to the normal covers next to nothing, with any gap between its ends: a wall beside an edge is not
   /// contact, whatever side of 90 degrees a deformation puts it on. At the default an error of position grows 57 times in the
@@ -82,9 +86,10 @@ enum class Rejection : std::uint8_t {
   degenerate_master,  ///< master cells (not couples) of zero length or with coordinates that are not finite
   no_image,           ///< an integration point has no image on the master along the slave's normal
   too_far,            ///< beyond PairingOptions::distance_limit
-  too_steep           ///< beyond PairingOptions::largest_angle
+  too_steep,          ///< beyond PairingOptions::largest_angle
+  too_deep            ///< beyond PairingOptions::depth_limit
 };
-inline constexpr int n_rejections = 8;
+inline constexpr int n_rejections = 9;
 std::string_view rejection_name(Rejection rejection);
 
 /// A couple that pairing gave up, or a part of it. A degenerate cell stands alone: the other one is -1.

@@ -351,14 +351,17 @@ class PairerInPlane final : public detail::CellPairer {
           [&](double a, double b, int end_a, int end_b) {
             const double middle = 0.5 * (a + b);
             const Vec2 along = point(master, second) - point(master, first), t = e.tangent(middle);
-            const auto far = [&] {
-              const double diameter = std::max(2 * length(e.x.c[1]), length(along));
-              return std::abs(image(e, middle, master, m, tolerances).gap) > options.distance_limit * diameter;
+            const auto beyond_limits = [&]() -> std::optional<Rejection> {
+              const double own = 2 * length(e.x.c[1]), other = length(along), diameter = std::max(own, other);
+              // the way from x_e to its image by the middle of the slave and an end of the master, both of which may bulge
+              const double largest = length(point(master, first) - e.origin) + own + 1.5 * other;
+              if (detail::within_limits(options, largest, diameter)) return std::nullopt;
+              return detail::beyond_limits(options, image(e, middle, master, m, tolerances).gap, diameter);
             };
             if (-dot(t, along) < masters_->smallest_cosine * length(t) * length(along))
               reject(m, Rejection::too_steep);
-            else if (options.distance_limit > 0 && far())
-              reject(m, Rejection::too_far);
+            else if (const auto limit = beyond_limits())
+              reject(m, *limit);
             else
               intervals.push_back({a, b, m, node_of(end_a), node_of(end_b)});
           },

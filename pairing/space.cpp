@@ -160,23 +160,27 @@ class PairerInSpace final : public detail::CellPairer {
       }
   }
 
-  /// |gap| at a point of a view, or infinity where there is no image.
-  double distance(const View& view, Vec2 y) const {
+  /// The gap at a point of a view, or infinity where there is no image.
+  double gap(const View& view, Vec2 y) const {
     const SlaveFacet::Place place = e.place(y, tolerances());
     const Target target(master(view.master), nodes_of_master(view.master), e);
     const std::optional<Vec2> image = place.found ? target.image(y, place.xi, tolerances()) : std::nullopt;
-    return image ? std::abs(target.gap(place.xi, *image)) : std::numeric_limits<double>::infinity();
+    return image ? target.gap(place.xi, *image) : std::numeric_limits<double>::infinity();
   }
 
   void drop_far_views() {
-    if (!(options().distance_limit > 0)) return;
+    const double own = diameter(e.f.nodes, e.f.n_vertices);
     std::erase_if(views, [&](const View* view) {
-      const double size = std::max(diameter(e.f.nodes, e.f.n_vertices),
-                                   diameter(nodes_of_master(view->master), master(view->master).n_vertices));
-      const double gap = distance(*view, middle(view->region.polygon));
-      const bool far = std::isfinite(gap) && gap > options().distance_limit * size;
-      if (far) reject(view->master, Rejection::too_far);
-      return far;
+      const Nodes nodes = nodes_of_master(view->master);
+      const double other = diameter(nodes, master(view->master).n_vertices), size = std::max(own, other);
+      // the way from x_e to its image by the first nodes; a quadratic cell may bulge
+      const auto reach = [](const FacetKind& f) { return (f.order == 1 ? 1 : 1.25) * f.size; };
+      const double largest = norm(nodes[0] - e.f.nodes[0]) + reach(e.f) + reach(master(view->master));
+      if (detail::within_limits(options(), largest, size)) return false;
+      const double found = gap(*view, middle(view->region.polygon));
+      const auto limit = std::isfinite(found) ? detail::beyond_limits(options(), found, size) : std::nullopt;
+      if (limit) reject(view->master, *limit);
+      return limit.has_value();
     });
   }
 
@@ -207,7 +211,7 @@ class PairerInSpace final : public detail::CellPairer {
       const Region both = intersection(old.region, view.region);
       if (double_area(both.polygon) <= overlap) continue;
       const Vec2 y = middle(both.polygon);
-      const double old_distance = distance(old, y), new_distance = distance(view, y);
+      const double old_distance = std::abs(gap(old, y)), new_distance = std::abs(gap(view, y));
       const bool old_wins = old_distance < new_distance || (old_distance == new_distance && old.master < view.master);
       const View &winner = old_wins ? old : view, &loser = old_wins ? view : old;
       reject(loser.master, Rejection::hidden);

@@ -81,7 +81,7 @@ struct ContactZone {
   std::string search;                       ///< RAPIDE, ROBUSTE
   std::string initial_status;               ///< INTERPENETRE, OUI, NON
   double tolerance = 1e-8;                  ///< RESI_APPA
-  double distance_limit = -1;               ///< COEF_MULT_APPA; not positive: none
+  double distance_limit = -1;               ///< COEF_MULT_APPA; not positive: that of overlaps alone
 };
 
 struct SlaveElement {

@@ -62,7 +62,10 @@ lacon_contact_batch batch_of(std::size_t n_cells, int n_slave_nodes, int n_maste
   return batch;
 }
 
-constexpr std::size_t block = 128;            // slave cells that a thread takes at a time
+constexpr std::size_t block = 128;  // slave cells that a thread takes at a time
+// Bodies that are pressed on one another overlap by a fraction of a facet, coarse curved skins and press fits by one or two.
+// What is deeper a normal meets beyond the body: the far side of a skin that is slave as a whole, the end of another body.
+constexpr double deepest_overlap = 4;         // diameters of the larger cell of a couple
 constexpr double coverage_round_off = 1e-12;  // covered fractions above 1 by no more than this are 1
 
 /// Room for what is still to come. @param whole what will have come behind `first` in the end, over what has come so far
@@ -100,7 +103,12 @@ const Rule& measuring_rule(CellType type) {
 }
 
 ContactGeometry::ContactGeometry(const Mesh& mesh, const Model& model, const Contact& contact, Registry& registry)
-    : mesh_(mesh), model_(model), contact_(contact), registry_(registry), coordinates_(mesh.coordinates) {
+    : mesh_(mesh),
+      model_(model),
+      contact_(contact),
+      registry_(registry),
+      coordinates_(mesh.coordinates),
+      rest_(mesh.coordinates) {
   const std::size_t n = mesh.patches->size();
   gap_.assign(n, 0.0);
   weight_ = covered_ = whole_ = coverage_ = smallest_gap_ = gap_;
@@ -111,12 +119,13 @@ ContactGeometry::ContactGeometry(const Mesh& mesh, const Model& model, const Con
   for (std::size_t s = 0; s < contact_.slaves.size(); ++s)
     slave_of_cell[contact_.slaves[s].cell] = static_cast<std::int32_t>(s);
   for (const ContactZone& data : contact_.zones) {
-    Zone zone{.slaves = {},
-              .masters = data.master,
-              .slave = surface_of(mesh, data.slave, coordinates_),
-              .master = surface_of(mesh, data.master, coordinates_),
-              .current_jacobian = data.jacobian == "ACTUALISE",
-              .pairing = {.distance_limit = data.distance_limit}};
+    Zone zone{
+        .slaves = {},
+        .masters = data.master,
+        .slave = surface_of(mesh, data.slave, coordinates_),
+        .master = surface_of(mesh, data.master, coordinates_),
+        .current_jacobian = data.jacobian == "ACTUALISE",
+        .pairing = {.distance_limit = data.distance_limit, .depth_limit = data.distance_limit > 0 ? -1 : deepest_overlap}};
     for (const std::int32_t cell : data.slave) zone.slaves.push_back(slave_of_cell.at(cell));
     for (const std::int32_t patch : data.patches) zone_of_[patch] = static_cast<std::int32_t>(zones_.size());
     zones_.push_back(std::move(zone));
@@ -198,6 +207,23 @@ void ContactGeometry::measure_slaves() {
   }
 }
 
+void ContactGeometry::rest_at(std::span<const double> displacement) { displace(mesh_, displacement, mesh_.dimension, rest_); }
+
+double ContactGeometry::motion(const Zone& zone) const {
+  double sum = 0;
+  for (const Surface* const skin : {&zone.slave, &zone.master}) {
+    double longest = 0;
+    for (std::size_t cell = 0; cell < skin->size(); ++cell)
+      for (const std::int32_t node : skin->nodes[cell]) {
+        const double *const now = coordinates_.data() + 3 * std::ptrdiff_t{node}, *const then =
+                                                                                      now - coordinates_.data() + rest_.data();
+        longest = std::max(longest, std::hypot(now[0] - then[0], now[1] - then[1], now[2] - then[2]));
+      }
+    sum += longest;
+  }
+  return sum;
+}
+
 void ContactGeometry::update(std::span<const double> displacement, std::vector<ZonePairing>* records) {
   displace(mesh_, displacement, mesh_.dimension, coordinates_);
   over_axis_.reset();
@@ -205,6 +231,7 @@ void ContactGeometry::update(std::span<const double> displacement, std::vector<Z
   cells_.clear();
   coupling_.clear();
   std::fill(rejected_.begin(), rejected_.end(), 0);
+  too_deep_.assign(zones_.size(), {});
   for (std::vector<double>* sums : {&gap_, &weight_, &covered_}) std::fill(sums->begin(), sums->end(), 0.0);
   std::fill(smallest_gap_.begin(), smallest_gap_.end(), std::numeric_limits<double>::infinity());
   if (records) records->clear();
@@ -212,6 +239,7 @@ void ContactGeometry::update(std::span<const double> displacement, std::vector<Z
   for (Zone& zone : zones_) {
     const auto z = static_cast<std::size_t>(&zone - zones_.data());
     zone.slave.normals = {};
+    zone.pairing.motion = motion(zone);
     if (contact_.smoothing) normals_[z] = nodal_normals(zone.slave);
     zone.slave.normals = normals_[z];
     // a few blocks for each thread at a time: points of a large skin are never in memory together
@@ -317,6 +345,9 @@ void ContactGeometry::add(const Zone& zone, const Block& block_of_zone, ZonePair
     if (couple.reason == Rejection::degenerate_slave)
       fail("EVOLUTION_3", {{"cell", cell_name(contact_.slaves[zone.slaves[couple.slave]].cell)}});
     ++rejected_[static_cast<std::size_t>(couple.reason)];
+    if (couple.reason != Rejection::too_deep) continue;
+    TooDeep& deep = too_deep_[static_cast<std::size_t>(&zone - zones_.data())];
+    if (deep.count++ == 0) deep.slave = contact_.slaves[zone.slaves[couple.slave]].cell;
   }
   std::size_t recorded_points = 0, recorded = 0;
   if (record) {

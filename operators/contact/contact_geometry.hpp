@@ -40,6 +40,11 @@ class ContactGeometry {
     double gap;
     std::int64_t coupling;  ///< first entry in coupling()
   };
+  /// Couples of a zone that were left out for being too deep.
+  struct TooDeep {
+    std::int64_t count = 0;
+    std::int32_t slave = -1;  ///< cell of the mesh, of the first of them
+  };
   /// The derivatives of a contact cell's integrated gap by the nodes that it depends on.
   struct Variation {
     std::int32_t slave = -1;          ///< index into Contact::slaves
@@ -53,6 +58,12 @@ class ContactGeometry {
   ContactGeometry(const Mesh& mesh, const Model& model, const Contact& contact, Registry& registry);
   ContactGeometry(const ContactGeometry&) = delete;
   ContactGeometry& operator=(const ContactGeometry&) = delete;
+
+  /// The displacement of the last state in equilibrium; at first the bodies are at their initial places. Cells of the bodies
+  /// may overlap by what they have moved since, however deep that is, and by no more than some facets else (unless
+  /// COEF_MULT_APPA gives a limit): further off a normal has left the body on its other side. @param displacement (n_nodes,
+  /// mesh.dimension)
+  void rest_at(std::span<const double> displacement);
 
   /// Pair on the current geometry, integrate gaps and couplings. @param displacement (n_nodes, mesh.dimension)
   /// @param records gets one entry a zone. Throws EVOLUTION_3.
@@ -82,6 +93,7 @@ class ContactGeometry {
   double coverage(std::size_t patch) const { return coverage_[patch]; }  ///< covered over whole
   /// How many couples pairing rejected, for each `Rejection`, summed over the zones.
   std::span<const std::int64_t> rejected() const { return rejected_; }
+  const TooDeep& too_deep(std::size_t zone) const { return too_deep_[zone]; }
 
  private:
   struct Alike;
@@ -98,6 +110,8 @@ class ContactGeometry {
   void add(const Zone& zone, const Block& block_of_zone, ZonePairing* record);
   /// What a kernel says of a slave cell.
   void note(std::int32_t error, std::int32_t cell);
+  /// By how much the two skins of a zone have come nearer since they were at rest, at most.
+  double motion(const Zone& zone) const;
   /// Measures of whole patches, in the measure of the kernels' coverage (with r in axisymmetry).
   void measure_slaves();
   /// The contact kernel of a slave cell's element.
@@ -109,6 +123,7 @@ class ContactGeometry {
   Registry& registry_;
   std::map<std::int32_t, const lacon_kernel*> kernels_;  ///< of the slaves' elements
   std::vector<double> coordinates_;                      ///< (n_nodes, 3), current
+  std::vector<double> rest_;                             ///< likewise, at rest
   std::vector<Zone> zones_;
   std::vector<std::vector<double>> normals_;  ///< of each zone, at the nodes (LISSAGE)
   std::vector<NormalVariation> normal_variations_;
@@ -117,6 +132,7 @@ class ContactGeometry {
   std::vector<double> gap_, weight_, covered_, whole_, coverage_, smallest_gap_;  ///< of each patch
   std::vector<std::int32_t> zone_of_;
   std::vector<std::int64_t> rejected_;
+  std::vector<TooDeep> too_deep_;          ///< of each zone
   std::optional<std::int32_t> over_axis_;  ///< a slave cell with a negative radius
 };
 

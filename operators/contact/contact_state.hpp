@@ -78,6 +78,8 @@ class ContactState {
   /// All arguments must outlive it. Throws EVOLUTION_2 for a slave body without modulus, and what ContactGeometry throws.
   ContactState(const Mesh& mesh, const Model& model, const Contact& contact, Registry& registry, ContactBodies bodies);
 
+  /// ContactGeometry::rest_at
+  void rest_at(std::span<const double> displacement) { geometry_.rest_at(displacement); }
   /// Pair on the current geometry, integrate gaps and couplings. @param displacement (n_nodes, dimension)
   void update_geometry(std::span<const double> displacement);
   /// Statuses at the first instant (METHOD.md 3.7), multipliers zero.

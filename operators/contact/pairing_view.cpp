@@ -318,7 +318,9 @@ PairingView view_pairing(const Mesh& mesh, const Model& model, const Contact& co
   ContactGeometry geometry(mesh, model, contact, registry);
   const std::vector<double> nowhere(mesh.n_nodes() * static_cast<std::size_t>(mesh.dimension), 0.0);
   std::vector<ZonePairing> records;
-  geometry.update(displacement.empty() ? nowhere : displacement, &records);
+  if (displacement.empty()) displacement = nowhere;
+  geometry.rest_at(displacement);
+  geometry.update(displacement, &records);
 
   std::map<std::int32_t, std::array<double, 2>> state;
   if (cont_elem) {

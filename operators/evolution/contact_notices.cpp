@@ -10,13 +10,29 @@ std::string ContactNotices::first_cell(std::size_t patch) const {
   return cell_name(present_.problem.mesh.patches->cells[patch].front());
 }
 
-void ContactNotices::start(double /*instant*/) {
+void ContactNotices::tell_what_is_too_deep(double instant) {
+  const ContactGeometry& geometry = present_.contact->geometry();
+  for (std::size_t zone = 0; zone < geometry.zones().size(); ++zone) {
+    const ContactGeometry::TooDeep& deep = geometry.too_deep(zone);
+    if (deep.count == 0 || !too_deep_.insert(zone).second) continue;
+    const ContactZone& names = present_.problem.contact->zones[zone];
+    inform("EVOLUTION_17", {{"slave", names.slave_group},
+                            {"master", names.master_group},
+                            {"count", std::to_string(deep.count)},
+                            {"cell", cell_name(deep.slave)},
+                            {"instant", fmt::format("{:.9g}", instant)},
+                            {"limit", fmt::format("{:g}", geometry.zones()[zone].pairing.depth_limit)}});
+  }
+}
+
+void ContactNotices::start(double instant) {
   const ContactState* const contact = present_.contact;
   if (!contact) return;
   std::int64_t locked = 0;
   std::size_t first = 0;
   for (std::size_t p = 0; p < contact->n_patches(); ++p)
     if (contact->geometry().coverage(p) > 0 && contact->is_locked(p) && locked++ == 0) first = p;
+  tell_what_is_too_deep(instant);
   if (locked) inform("EVOLUTION_6", {{"count", std::to_string(locked)}, {"cell", first_cell(first)}});
 }
 
@@ -27,6 +43,7 @@ void ContactNotices::accept(const SolvedInstant& solved) {
                             {"instant", fmt::format("{:.9g}", solved.instant)},
                             {"cell", first_cell(overlap.deepest)},
                             {"gap", fmt::format("{:.6g}", overlap.gap)}});
+  tell_what_is_too_deep(solved.instant);
   const ContactState& contact = *present_.contact;
   for (std::int32_t zone = 0; zone < static_cast<std::int32_t>(contact.geometry().zones().size()); ++zone) {
     const std::optional<PiercedPatch> pierced = contact.pierced(zone, present_.state.patches);

@@ -1,6 +1,7 @@
 #pragma once
 // What a user should know of the contact of a computation while it goes.
 #include <map>
+#include <set>
 
 #include "lacon/operators/evolution/evolution.hpp"
 #include "lacon/operators/evolution/state_fields.hpp"
@@ -11,9 +12,9 @@ class ContactNotices : public EvolutionObserver {
  public:
   explicit ContactNotices(const Present& present) : present_(present) {}
 
-  /// EVOLUTION_6: patches that no displacement can move.
+  /// EVOLUTION_6: patches that no displacement can move; EVOLUTION_17.
   void start(double instant) override;
-  /// EVOLUTION_14: such patches inside their master.
+  /// EVOLUTION_14: such patches inside their master; EVOLUTION_17.
   void accept(const SolvedInstant& solved) override;
   /// EVOLUTION_16: of each zone the patch that its master has pierced deepest.
   void end(bool completed) override;
@@ -24,9 +25,12 @@ class ContactNotices : public EvolutionObserver {
     PiercedPatch worst;
   };
   std::string first_cell(std::size_t patch) const;
+  /// EVOLUTION_17: couples of each zone that overlap too deep to be taken for contact, once a zone.
+  void tell_what_is_too_deep(double instant);
 
   Present present_;
   std::map<std::int32_t, Pierced> pierced_;  ///< by zone
+  std::set<std::size_t> too_deep_;           ///< zones of which it has been told
 };
 
 }  // namespace lacon

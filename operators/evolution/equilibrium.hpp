@@ -42,6 +42,10 @@ class Equilibrium {
   std::vector<double> load(double instant, const StaticState& state);
   /// Contact cells at these displacements; nothing without contact. @param displacement (n_nodes, n_components)
   void pair(std::span<const double> displacement);
+  /// The displacement of the last state in equilibrium, from which contact goes on.
+  void rest_at(std::span<const double> displacement) {
+    if (contact_) contact_->rest_at(displacement);
+  }
   /// Forces, matrix, stresses and variables at a state that is paired. @param previous the last one in equilibrium
   void assemble(const StaticState& state, const StaticState& previous, NewtonMatrix wanted);
 

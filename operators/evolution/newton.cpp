@@ -40,6 +40,7 @@ StaticState Newton::initial_state() {
 void Newton::begin(StaticState& state, const std::string& label) {
   state.relations = equilibrium_.natural_state().relations;
   if (contact() && state.patches.status.empty()) {
+    equilibrium_.rest_at(state.displacement);
     equilibrium_.pair(state.displacement);
     state.patches = contact()->initial();
   }
@@ -60,12 +61,14 @@ void Newton::begin(StaticState& state, const std::string& label) {
 void Newton::restart(const StaticState& state) {
   choice_.start_instant();
   solver_.forget_right_sides();
+  equilibrium_.rest_at(state.displacement);
   equilibrium_.pair(state.displacement);
   assemble(state, state, options_.matrix);
 }
 
 int Newton::solve(double instant, StaticState& state, const std::function<void(const IterationReport&)>& report) {
   const StaticState previous = state;
+  equilibrium_.rest_at(previous.displacement);
   std::vector<double> step = equilibrium_.load(instant, state);
   choice_.start_instant();
   statuses_.start_instant();

@@ -14,7 +14,7 @@ from run import chosen, count, missed, run  # noqa: E402
 from studies import Study, elastic, held, path, zone  # noqa: E402
 
 #: seconds each, one or more of a row
-SHORT = ["arch/x10, QUAD8 GREEN", "arch/x10, QUAD4 PETIT", "plastic/flat 1, QUAD8", "plastic/round 5, QUAD4", "contrast/1e-06 QUAD4 PETIT", "contrast/1e+06 QUAD8 GREEN"]
+SHORT = ["arch/x10, QUAD8 GREEN", "arch/x10, QUAD4 PETIT", "plastic/flat 1, QUAD8", "plastic/round 5, QUAD4", "contrast/1e-06 QUAD4 PETIT", "contrast/1e+06 QUAD8 GREEN", "difficult/beams QUAD8 PETIT"]
 
 TABLE = """
  Instant de calcul: 1.000000000000e+00
@@ -59,3 +59,16 @@ class Short(StudyTest):
             if told:
                 alarm = (self.folder / "err").read_text()
                 self.assertIn("of SLAB_SKIN lie inside TOOL_SKIN by 4.4", alarm)  # 0.06 / (4 / 3), less what is between two nodes of the tool
+
+    def test_whole_skins_meet_where_they_face_each_other_only(self):
+        """A block on a larger one, all of both skins in the zone: normals of far sides reach the other body through their own."""
+        sides = {"left": "TOOL_SKIN", "right": "TOOL_SKIN"}
+        for kind in ("QUAD4", "QUAD8"):
+            mesh = union([slab(kind, "TOOL", (-0.5, 0.5), (0, 1), (9, 9), skin="bottom", sides=sides),
+                          slab(kind, "SLAB", (-1, 1), (-1, 0), (14, 7), sides={"left": "SLAB_SKIN", "right": "SLAB_SKIN"})])
+            for body in ("TOOL", "SLAB"):
+                mesh.cell_groups[f"{body}_SKIN"] += mesh.cell_groups[f"{body}_BASE"]
+            study = Study(name="whole skins", mesh=mesh, materials={"TOOL": elastic(1e3), "SLAB": elastic(1e3)}, zones=[zone("TOOL", "SLAB", 0)],
+                          moves=[held("SLAB"), path("TOOL", [(0, 0), (4, 0)], [(0, 0), (4, -0.1)])], steps=4, asked={"per step": 4})
+            self.assertEqual(missed(study, run(study, LACON, self.folder)), [], kind)
+            self.assertIn("<I> <EVOLUTION_17>", "".join((self.folder / name).read_text() for name in ("out", "err")))

@@ -454,6 +454,23 @@ TEST(Pairing, LeavesOutWhatIsFurtherThanTheLimit) {
   }
 }
 
+TEST(Pairing, LeavesOutOverlapsThatAreDeeperThanTheLimitAndTheMotion) {
+  // as above; the outward normal of the slave points to y < 0
+  for (const double side : {-1.0, 1.0}) {
+    Skin slave, master;
+    add_chain(slave, line(0), {0, 1}, Kind::linear);
+    add_chain(master, line(side), {1.5, -0.5}, Kind::linear);
+    const auto rejected = [&](double limit, double motion) {
+      return pair(slave.view(), master.view(), {.depth_limit = limit, .motion = motion}).rejected;
+    };
+    const std::vector<RejectedCouple> none, deep{{0, 0, Rejection::too_deep}};
+    EXPECT_EQ(rejected(0.4999, 0), side > 0 ? deep : none);
+    EXPECT_EQ(rejected(0.4, 0.1999), side > 0 ? deep : none);
+    EXPECT_EQ(rejected(0.4, 0.2001), none);
+    EXPECT_EQ(rejected(0.5001, 0), none);
+  }
+}
+
 TEST(Pairing, LeavesOutWallsBesideAnEdge) {
   for (const double angle : {0.0, 80.0, 88.9, 89.1, 89.9}) {
     const double a = angle * std::numbers::pi / 180;

@@ -676,6 +676,24 @@ TEST(PairingInSpace, LeavesOutWhatIsFurtherThanTheLimit) {
   }
 }
 
+TEST(PairingInSpace, LeavesOutOverlapsThatAreDeeperThanTheLimitAndTheMotion) {
+  // as above; the outward normal of the slave points to z < 0
+  std::mt19937 random(19);
+  const double size = std::sqrt(8.0);
+  for (const double side : {-1.0, 1.0}) {
+    Skin3 slave = slave_square();
+    Skin3 master = mesh({1, 1, CellType::QUAD4, true, 0, -0.5, 1.5, -0.5, 1.5}, plane(side), random);
+    const auto rejected = [&](double limit, double motion) {
+      return pair(slave.view(), master.view(), {.depth_limit = limit, .motion = motion}).rejected;
+    };
+    const std::vector<RejectedCouple> none, deep{{0, 0, Rejection::too_deep}};
+    EXPECT_EQ(rejected(1 / size - 1e-6, 0), side > 0 ? deep : none);
+    EXPECT_EQ(rejected(0.5 / size, 0.5 - 1e-6), side > 0 ? deep : none);
+    EXPECT_EQ(rejected(0.5 / size, 0.5 + 1e-6), none);
+    EXPECT_EQ(rejected(1 / size + 1e-6, 0), none);
+  }
+}
+
 TEST(PairingInSpace, LeavesOutWallsBesideAnEdge) {
   for (const double angle : {0.0, 80.0, 88.9, 89.1, 89.9}) {
     const double a = angle * std::numbers::pi / 180, c = std::cos(a), s = std::sin(a), z = -0.1;
