@@ -2,167 +2,268 @@
 // What the integration points of a contact cell add to the derivatives of its integrated gap, in the plane and in space.
 #include <array>
 #include <cmath>
+#include <tuple>
 #include <utility>
 
 #include "lacon/operators/contact/gap_variation.hpp"
 #include "lacon/operators/contact/variations.hpp"
 
-// First the variables of a contact cell: its unknowns, and behind them the corners of its polygon in the slave's reference
-// cell. At an integration point everything is a function of these; derivatives by them are rows, second derivatives sums of
-// products of rows. In the end the corners are themselves functions of the unknowns.
-//
-// At a point, with x_m(eta) = x(xi) + g n: a variation R = dx_m - dx - g dn at fixed eta gives
-//     dg = a . R,   d eta^i = -b^i . R,   with a . tau_i = 0, a . n = 1 and b^i . tau_j = 1 if i = j, b^i . n = 0,
-// and the next one
-//     d2g = a . (tau_ij d eta^i d eta^j + 2 dtau_i d eta^i - d2x - 2 dg dn - g d2n).
+// The variables of points: slave, master, nodal normals, and behind them the corners of the polygon in the slave's chart, which
+// in the end are themselves functions of all unknowns. At a point the integrand is
+//     h = k g,   k = J r / (A . m),   y(eta) = x(xi) + g n(xi),
+// J the measure, r the radius (1 but in axisymmetry), A the area normal, m the mean normal of a plane chart (A . m is 1
+// elsewhere), n the direction of N, which is A or interpolates nodal normals. With the multiplier k a of the last equation,
+// a . y_i = 0 and a . n = 1,
+//     dh  = g dk + k a . (dy - dx - g dn)                          at fixed eta,
+//     d2h = g d2k + 2 dk dg + k a . (d2y - d2x - 2 dg dn - g d2n)  where eta moves, but for d2eta,
+// so that first derivatives are sums over nodes, and only second ones need rows, of the few quantities that move at a point:
+//     dg = a . R,   d eta^i = -b^i . R,   R = dy - dx - g dn,   b^i . y_j = 1 if i = j, b^i . n = 0.
+// Of a direction, d2n = (d2N - n (n . d2N)) / L - n |dn|^2 - 2 dn dL / L, and |N| has d2L = n . d2N + L |dn|^2.
 
 namespace lacon::variations {
 
-/// The variables of a cell, and what adds up over its integration points.
+/// How many columns of each kind there are: the unknowns of points leave others out, and have corners.
+struct Columns {
+  Eigen::Index skins, others, normals, corners;
+  Eigen::Index of_points() const { return skins + normals + corners; }
+  Eigen::Index unknowns() const { return skins + others + normals; }
+  Eigen::Index first_corner() const { return skins + normals; }
+};
+
+/// What adds up over the integration points of a cell: G = scale * sum over simplices of part * sum over points of rule * h.
 template <int D>
 class CellVariation {
   static constexpr int R = D - 1;
-  static constexpr int products_of_a_point = D == 2 ? 24 : 64;
 
  public:
-  /// @param n_corners reference coordinates of corners, behind the unknowns
+  /// @param n_corners coordinates of corners
   CellVariation(const ContactCellGeometry& cell, int n_corners, bool second)
       : cell_(cell),
-        slaves_(catalog::cell(cell.slave).n_nodes),
-        masters_(catalog::cell(cell.master).n_nodes),
-        first_normal_(cell.n_nodes() * D),
-        n_(cell.n_unknowns() + n_corners),
-        second_(second),
-        gradient_(Row::Zero(n_)),
-        form_(n_, second ? products_of_a_point * static_cast<Eigen::Index>(cell.weight.size()) + 64 : 0) {}
+        first_master_(D * catalog::cell(cell.slave).n_nodes),
+        columns_{first_master_ + D * catalog::cell(cell.master).n_nodes, static_cast<Eigen::Index>(cell.other_nodes.size()),
+                 static_cast<Eigen::Index>(cell.slave_normals.size()), n_corners},
+        gradient_(Row::Zero(columns_.of_points())),
+        of_simplex_(gradient_),
+        form_(second ? columns_.of_points() : 0) {
+    for (Vector<3>& v : cross_) v.setZero();
+  }
 
-  int n_variables() const { return n_; }
+  const Columns& columns() const { return columns_; }
   double gap() const { return gap_; }
-  const Row& gradient() const { return gradient_; }
+  Row& gradient() { return gradient_; }  ///< of G by the variables of points
+  /// Likewise by all unknowns, at fixed corners.
+  Row by_unknowns() const {
+    Row row = Row::Zero(columns_.unknowns());
+    row.head(columns_.skins) = gradient_.head(columns_.skins);
+    row.tail(columns_.normals) = gradient_.segment(columns_.skins, columns_.normals);
+    return row;
+  }
   QuadraticForm& form() { return form_; }
 
-  /// A place on the slave, which may move in its reference cell, with derivatives.
+  /// A place on the slave.
   struct OnSlave {
     const double* xi;
     Shapes<D> phi;
     Interpolated<D> at;
     AreaNormal<D> area;
-    Rows<R> dxi;
-    Rows<D> dx, darea;
-    std::array<Rows<D>, R> bare_dt, dt;  ///< of the tangents: at a fixed reference point, and where it moves
   };
-  /// @param dxi derivatives of the reference coordinates
-  OnSlave on_slave(const double* xi, const Rows<R>& dxi) const {
+  OnSlave on_slave(const double* xi) const {
     const Shapes<D> phi(cell_.slave, xi);
     const Interpolated<D> at(phi, cell_.slave_nodes.data());
-    OnSlave point{xi, phi, at, AreaNormal<D>(at), dxi, interpolate(phi, 0, phi.value.data(), 1), {}, {}, {}};
-    for (int i = 0; i < R; ++i) {
-      point.dx.noalias() += at.d[i] * dxi.row(i);
-      point.bare_dt[i] = interpolate(phi, 0, phi.gradient.data() + i, R);
-      point.dt[i] = point.bare_dt[i];
-      for (int j = 0; j < R; ++j) point.dt[i].noalias() += at.dd[i][j] * dxi.row(j);
-    }
-    point.darea = area_normal_rows<D>(at.d, point.dt);
-    return point;
+    return {xi, phi, at, AreaNormal<D>(at)};
   }
 
-  /// The gap times the measure at an integration point, and how it changes where the reference coordinates alone do.
+  /// h at a point, and its derivative by what it is made of.
   struct Integrand {
+    Shapes<D> psi;
+    Interpolated<D> master;
+    Interpolated<D> nodal;  ///< normals; nothing that means anything without
     double value = 0;
-    Vector<R> slope = Vector<R>::Zero();
+    Vector<D> of_place, of_area, of_normal, of_image, of_mean;  ///< x, A, nodal N, y, m
+    Vector<R> slope;                                            ///< where the reference coordinates alone change
+    // of what second derivatives are made
+    Vector<D> n{}, a{};
+    std::array<Vector<D>, R> b{};
+    double g = 0, k = 0, length = 1, jacobian = 0, radius = 1, lift = 1;
+    Vector<D> mean = Vector<D>::Zero();
+    Vector<R> jacobian_slope = Vector<R>::Zero(), radius_slope = Vector<R>::Zero();  ///< of the initial geometry
+    Eigen::Matrix<double, R, R> jacobian_second = Eigen::Matrix<double, R, R>::Zero(), radius_second = jacobian_second;
   };
-
-  /// Add an integration point, but for second derivatives of its reference coordinates and of its weight.
-  /// @param weight in the reference cell, and its derivatives
-  Integrand add_point(const OnSlave& point, const double* eta, double weight, const Row& dweight) {
-    const auto& [xi, phi, slave, area, dxi, dx, darea, bare_dt, dt] = point;
+  /// @param mean the mean normal of a plane chart @return a value of 0 beyond the axis, where an iterate may be on its way
+  Integrand integrand(const OnSlave& point, const double* eta, const Vector<D>* mean = nullptr) const {
+    const auto& [xi, phi, slave, area] = point;
     const Shapes<D> psi(cell_.master, eta);
-    const Interpolated<D> master(psi, cell_.master_nodes.data());
-    const bool smooth = !cell_.slave_normals.empty();
-    Vector<D> normal = area.n;
-    std::array<Vector<D>, R> normal_slope = area.d;
-    Rows<D> dnormal = darea;
-    if (smooth) {
-      const Interpolated<D> nodal(phi, cell_.slave_normals.data());
-      normal = nodal.x;
-      normal_slope = nodal.d;
-      dnormal = interpolate(phi, first_normal_, phi.value.data(), 1);
-      for (int i = 0; i < R; ++i) dnormal.noalias() += nodal.d[i] * dxi.row(i);
-    }
-    const double length = normal.norm();
-    const Vector<D> n = normal / length;
-    const Row stretch = n.transpose() * dnormal / length;  // of the normal's length
-    const Rows<D> dn = dnormal / length - n * stretch;
+    Integrand f{.psi = psi,
+                .master = Interpolated<D>(psi, cell_.master_nodes.data()),
+                .nodal = Interpolated<D>(phi, is_smooth() ? cell_.slave_normals.data() : cell_.slave_nodes.data())};
+    const Vector<D>& normal = is_smooth() ? f.nodal.x : area.n;
+    f.length = normal.norm();
+    f.n = normal / f.length;
+    f.g = (f.master.x - slave.x).dot(f.n);
+    std::tie(f.a, f.b) = dual(f.master.d, f.n);
+    f.of_mean.setZero(), f.of_area.setZero(), f.of_normal.setZero(), f.of_place.setZero(), f.of_image.setZero();
+    f.slope.setZero();
+    measure(point, f);
+    if (!(f.radius > 0)) return f;
+    f.lift = mean ? area.n.dot(*mean) : 1;
+    f.k = f.jacobian * f.radius / f.lift;
+    f.value = f.k * f.g;
 
-    // the master: where the image moves, and the gap
-    const double g = (master.x - slave.x).dot(n);
-    const auto [a, b] = dual(master.d, n);
-    Rows<D> apart = interpolate(psi, slaves_ * D, psi.value.data(), 1);
-    apart.noalias() -= dx + g * dn;
-    const Row dg = a.transpose() * apart;
-    Rows<R> deta;
-    deta.resize(R, n_);
-    for (int i = 0; i < R; ++i) deta.row(i).noalias() = -b[i].transpose() * apart;
+    f.of_image = f.k * f.a;
+    f.of_place = -f.of_image;
+    (is_smooth() ? f.of_normal : f.of_area) = -f.value / f.length * (f.a - f.n);
+    if (cell_.current_jacobian) {
+      f.of_area += f.g * f.radius / f.lift / f.jacobian * area.n;
+      if (cell_.axis) f.of_place[0] += f.g * f.jacobian;
+    }
+    if (mean) {
+      f.mean = *mean;
+      f.of_area -= f.value / f.lift * *mean;
+      f.of_mean = -f.value / f.lift * area.n;
+    }
+    for (int i = 0; i < R; ++i) {
+      f.slope[i] = f.of_place.dot(slave.d[i]) + f.of_area.dot(area.d[i]) +
+                   f.g / f.lift * (f.jacobian_slope[i] * f.radius + f.jacobian * f.radius_slope[i]);
+      if (is_smooth()) f.slope[i] += f.of_normal.dot(f.nodal.d[i]);
+    }
+    return f;
+  }
+
+  /// Points of another simplex follow. @param part its measure
+  void start_simplex(double scale, double part) {
+    scale_ = scale;
+    part_ = part;
+    value_ = 0;
+    of_simplex_.setZero();
+  }
+  /// What the points of the simplex add to h, by the variables of points: for what else hangs on them.
+  Row& of_simplex() { return of_simplex_; }
+  /// What products of a point are multiplied with.
+  double factor(double rule) const { return scale_ * part_ * rule; }
+
+  /// Add a point, but for what its reference coordinates do. @param of_place the derivative by x
+  void add_point(const OnSlave& point, const Integrand& f, double rule, const Vector<D>& of_place) {
+    value_ += rule * f.value;
+    const std::array<Vector<D>, R> of_tangent = of_tangents<D>(point.at.d, f.of_area);
+    for (int a = 0; a < point.phi.n; ++a) {
+      Vector<D> of_node = value(point.phi, a) * of_place;
+      for (int i = 0; i < R; ++i) of_node += point.phi.slope(a, i) * of_tangent[i];
+      of_simplex_.template segment<D>(D * a) += rule * of_node.transpose();
+      if (is_smooth())
+        of_simplex_.template segment<D>(columns_.skins + D * a) += rule * value(point.phi, a) * f.of_normal.transpose();
+    }
+    for (int a = 0; a < f.psi.n; ++a)
+      of_simplex_.template segment<D>(first_master_ + D * a) += rule * value(f.psi, a) * f.of_image.transpose();
+  }
+
+  /// Add its second derivatives, but for those of its reference coordinates.
+  /// @param dxi derivatives of these  @param turned_mean A . dm, with a plane chart
+  void add_second_of_point(const OnSlave& point, const Integrand& f, double rule, const Vector<D>& of_place, const Rows<R>& dxi,
+                           const Row* turned_mean = nullptr) {
+    const auto& [xi, phi, slave, area] = point;
+    const double w = factor(rule);
+    if (w == 0) return;
+    const Direction normal = direction(point, f, is_smooth(), dxi);
+    // the image and the gap: R = dy - dx - g dn
+    const Eigen::Index n = columns_.of_points();
+    Row dg = Row::Zero(n), sideways = Row::Zero(n);  // a . dn
+    Rows<R> deta = Rows<R>::Zero(R, n);
+    const auto apart = [&](const Vector<D>& along, auto row) {
+      for (int a = 0; a < phi.n; ++a) row.template segment<D>(D * a) -= value(phi, a) * along.transpose();
+      for (int a = 0; a < f.psi.n; ++a) row.template segment<D>(first_master_ + D * a) += value(f.psi, a) * along.transpose();
+      for (int i = 0; i < R; ++i)
+        row -= along.dot(slave.d[i]) * dxi.row(i) + f.g * along.dot(normal.across[i]) * normal.turn.row(i);
+    };
+    apart(f.a, dg.row(0));
+    for (int i = 0; i < R; ++i) {
+      apart(-f.b[i], deta.row(i));
+      sideways += f.a.dot(normal.across[i]) * normal.turn.row(i);
+    }
 
     // the measure
-    const Measure of_area = measure(slave, area, darea, dx, dxi, xi);
-    if (!(of_area.radius > 0)) return {};  // beyond the axis, where an iterate may be on its way, nothing is measured
-    const double j = of_area.jacobian * of_area.radius;
-
-    gap_ += weight * j * g;
-    gradient_ += (weight * j) * dg + (g * j) * dweight +
-                 (weight * g) * (of_area.radius * of_area.djacobian + of_area.jacobian * of_area.dradius);
-    if (!second_) return {};
-
-    Integrand integrand{j * g, {}};
-    for (int i = 0; i < R; ++i) {
-      const Vector<D> turn = (normal_slope[i] - n * n.dot(normal_slope[i])) / length;
-      integrand.slope[i] = j * a.dot(-slave.d[i] - g * turn) + g * of_area.slope[i];
+    Row djacobian = Row::Zero(n), dradius = Row::Zero(n), dk;
+    double of_turn = f.value;  // of |dn|^2
+    if (cell_.current_jacobian) {
+      const double of_area_turn = f.g * f.radius / f.lift * f.jacobian;
+      if (is_smooth()) {
+        const Direction of_area = direction(point, f, false, dxi);
+        djacobian = f.jacobian * of_area.stretch;
+        for (int i = 0; i < R; ++i) form_.add(w * of_area_turn, of_area.turn.row(i), of_area.turn.row(i));
+      } else {
+        djacobian = f.jacobian * normal.stretch;
+        of_turn += of_area_turn;
+      }
+    } else {
+      for (int i = 0; i < R; ++i) djacobian += f.jacobian_slope[i] * dxi.row(i);
+    }
+    dk = f.radius / f.lift * djacobian;
+    if (cell_.axis) {
+      if (cell_.current_jacobian)
+        for (int a = 0; a < phi.n; ++a) dradius[D * a] = value(phi, a);
+      for (int i = 0; i < R; ++i) dradius += (cell_.current_jacobian ? slave.d[i][0] : f.radius_slope[i]) * dxi.row(i);
+      dk += f.jacobian * dradius;
+      form_.add(2 * w * f.g, djacobian, dradius);
+    }
+    if (turned_mean) {
+      Row dlift = *turned_mean;
+      along_area(point, f.mean, dxi, dlift.row(0));
+      dk -= f.k / f.lift * dlift;
+      form_.add(-2 * w * f.g / f.lift, dlift, dk);
     }
 
-    // second derivatives: of the products, then of each factor
-    const double r = of_area.radius, jac = of_area.jacobian;
-    form_.add(2.0, dweight, Row(j * dg + g * (r * of_area.djacobian + jac * of_area.dradius)));
-    form_.add(2.0 * weight, dg, Row(r * of_area.djacobian + jac * of_area.dradius));
-    form_.add(2.0 * weight * g, of_area.djacobian, of_area.dradius);
-    const double of_g = weight * j;
+    form_.add(2 * w, dg, dk - f.k * sideways);
+    form_.add(2 * w * f.value, normal.stretch, sideways);
+    for (int i = 0; i < R; ++i) form_.add(w * of_turn, normal.turn.row(i), normal.turn.row(i));
     for (int i = 0; i < R; ++i) {
       // the image slides along a master that bends and turns
-      Row along = 2.0 * a.transpose() * interpolate(psi, slaves_ * D, psi.gradient.data() + i, R);
-      for (int k = 0; k < R; ++k) along += a.dot(master.dd[i][k]) * deta.row(k);
-      form_.add(of_g, deta.row(i), along);
+      Row along = Row::Zero(n);
+      for (int a = 0; a < f.psi.n; ++a)
+        along.template segment<D>(first_master_ + D * a) = 2 * f.psi.slope(a, i) * f.of_image.transpose();
+      for (int k = 0; k < R; ++k) along += f.of_image.dot(f.master.dd[i][k]) * deta.row(k);
+      form_.add(w, deta.row(i), along);
     }
-    add_second_of_place(-of_g * a, point);  // the point slides along the slave
-    form_.add(-2.0 * of_g, dg, Row(a.transpose() * dn));
-    // d2n = (d2N - n (n . d2N)) / L - n |dn|^2 - 2 dn (dL / L), and a . n = 1
-    form_.add(2.0 * of_g * g, stretch, Row(a.transpose() * dn));
-    for (int i = 0; i < D; ++i) form_.add(of_g * g, dn.row(i), dn.row(i));
-    const Vector<D> of_normal = -of_g * g / length * (a - n);
-    if (smooth)
-      add_second_of_nodal_normal(of_normal, phi, dxi);
-    else
-      add_second_of_area_normal(of_normal, point);
-    add_second_of_measure(weight * g, of_area, point);
-    return integrand;
+    add_second_where_it_slides(point, f, w, of_place, dxi);
+  }
+
+  /// v . dN of the area normal, to be added to a row.
+  void along_area(const OnSlave& point, const Vector<D>& v, const Rows<R>& dxi, auto row) const {
+    const std::array<Vector<D>, R> of_tangent = of_tangents<D>(point.at.d, v);
+    for (int a = 0; a < point.phi.n; ++a)
+      for (int i = 0; i < R; ++i) row.template segment<D>(D * a) += point.phi.slope(a, i) * of_tangent[i].transpose();
+    for (int i = 0; i < R; ++i) row += v.dot(point.area.d[i]) * dxi.row(i);
+  }
+
+  /// The points of the simplex are done. @param dpart by the variables of points  @return what the second derivative of its
+  /// measure is multiplied with
+  double end_simplex(const Row& dpart) {
+    gap_ += scale_ * part_ * value_;
+    gradient_ += scale_ * (part_ * of_simplex_ + value_ * dpart);
+    if (form_.size() > 0) form_.add(2 * scale_, dpart, of_simplex_);
+    return scale_ * value_;
+  }
+
+  /// In space: add v . (dp x dq), p and q sums of the slave's nodes. @param p, q factors of the nodes
+  void add_cross(const Vector<3>& v, const double* p, int p_stride, const double* q, int q_stride) {
+    static_assert(D == 3);
+    const int n = catalog::cell(cell_.slave).n_nodes;
+    for (int a = 0; a < n; ++a)
+      for (int b = 0; b < n; ++b)
+        cross_[static_cast<std::size_t>(a * max_skin_nodes + b)] += p[a * p_stride] * q[b * q_stride] * v;
+  }
+
+  /// The second derivatives of G by the variables of points, (points, points).
+  Eigen::MatrixXd second_by_points() {
+    if constexpr (D == 3) {
+      const int n = catalog::cell(cell_.slave).n_nodes;
+      for (int a = 0; a < n; ++a)
+        for (int b = 0; b < n; ++b) form_.add_cross_of_nodes(cross_[static_cast<std::size_t>(a * max_skin_nodes + b)], a, b);
+    }
+    return form_.matrix();
   }
 
  private:
-  struct Measure {
-    double jacobian, radius = 1;
-    Row djacobian, dradius;
-    Eigen::Matrix<double, R, R> second = Eigen::Matrix<double, R, R>::Zero();  ///< of an initial Jacobian by xi
-    Eigen::Matrix<double, R, R> radius_second = Eigen::Matrix<double, R, R>::Zero();
-    Vector<R> slope = Vector<R>::Zero();  ///< of the Jacobian with the radius, where the reference coordinates alone change
-  };
-
-  /// Rows of the sum of factors times nodal vectors. @param first variable of the first node  @param factor of node a:
-  /// factor[a * stride]
-  Rows<D> interpolate(const Shapes<D>& shapes, int first, const double* factor, int stride) const {
-    Rows<D> rows = Rows<D>::Zero(D, n_);
-    for (int a = 0; a < shapes.n; ++a)
-      for (int d = 0; d < D; ++d) rows(d, first + a * D + d) = factor[a * stride];
-    return rows;
-  }
+  static double value(const Shapes<D>& shapes, int node) { return shapes.value[static_cast<std::size_t>(node)]; }
+  bool is_smooth() const { return columns_.normals > 0; }
 
   /// a and b of the head of the file.
   static std::pair<Vector<D>, std::array<Vector<D>, R>> dual(const std::array<Vector<D>, R>& tau, const Vector<D>& n) {
@@ -175,115 +276,99 @@ class CellVariation {
     }
   }
 
-  Measure measure(const Interpolated<D>& slave, const AreaNormal<D>& area, const Rows<D>& darea, const Rows<D>& dx,
-                  const Rows<R>& dxi, const double* xi) const {
-    Measure m;
-    m.dradius = Row::Zero(n_);
+  /// Jacobian and radius.
+  void measure(const OnSlave& point, Integrand& f) const {
     if (cell_.current_jacobian) {
-      m.jacobian = area.n.norm();
-      m.djacobian = area.n.transpose() * darea / m.jacobian;
-      for (int i = 0; i < R; ++i) m.slope[i] = area.n.dot(area.d[i]) / m.jacobian;
-      if (cell_.axis) {
-        m.radius = slave.x[0];
-        m.dradius = dx.row(0);
-        for (int i = 0; i < R; ++i) m.slope[i] = m.slope[i] * m.radius + m.jacobian * slave.d[i][0];
-      }
-      return m;
-    }
-    const Shapes<D> phi(cell_.slave, xi);
-    const Interpolated<D> initial(phi, cell_.slave_initial.data());
-    const AreaNormal<D> area0(initial);
-    m.jacobian = area0.n.norm();
-    m.djacobian = Row::Zero(n_);
-    Vector<R> slope;
-    for (int i = 0; i < R; ++i) {
-      slope[i] = area0.n.dot(area0.d[i]) / m.jacobian;
-      m.djacobian += slope[i] * dxi.row(i);
-    }
-    for (int i = 0; i < R; ++i)
-      for (int k = 0; k < R; ++k)
-        m.second(i, k) = (area0.n.dot(area0.dd[i][k]) + area0.d[i].dot(area0.d[k]) - slope[i] * slope[k]) / m.jacobian;
-    m.slope = slope;
-    if (cell_.axis) {
-      m.radius = initial.x[0];
-      for (int i = 0; i < R; ++i) {
-        m.slope[i] = slope[i] * m.radius + m.jacobian * initial.d[i][0];
-        m.dradius += initial.d[i][0] * dxi.row(i);
-        for (int k = 0; k < R; ++k) m.radius_second(i, k) = initial.dd[i][k][0];
-      }
-    }
-    return m;
-  }
-
-  /// Add factor . d2N of N = sum of shape functions times nodal normals.
-  void add_second_of_nodal_normal(const Vector<D>& factor, const Shapes<D>& phi, const Rows<R>& dxi) {
-    const Interpolated<D> nodal(phi, cell_.slave_normals.data());
-    for (int i = 0; i < R; ++i) {
-      Row row = 2.0 * factor.transpose() * interpolate(phi, first_normal_, phi.gradient.data() + i, R);
-      for (int k = 0; k < R; ++k) row += factor.dot(nodal.dd[i][k]) * dxi.row(k);
-      form_.add(1.0, dxi.row(i), row);
-    }
-  }
-
-  /// Add factor . d2t of tangent i where the reference coordinates change linearly.
-  void add_second_of_tangent(int i, const Vector<D>& factor, const OnSlave& point) {
-    constexpr int stride = R == 1 ? 1 : 3;
-    for (int j = 0; j < R; ++j) {
-      Row row = 2.0 * factor.transpose() * interpolate(point.phi, 0, point.phi.curvature.data() + i + j, stride);
-      for (int k = 0; k < R; ++k) row += factor.dot(point.at.ddd[i + j + k]) * point.dxi.row(k);
-      form_.add(1.0, point.dxi.row(j), row);
-    }
-  }
-
- public:
-  /// Likewise factor . d2N of the area normal.
-  void add_second_of_area_normal(const Vector<D>& factor, const OnSlave& point) {
-    if constexpr (D == 2) {
-      add_second_of_tangent(0, Vector<2>(-factor[1], factor[0]), point);
-    } else {
-      add_second_of_tangent(0, point.at.d[1].cross(factor), point);
-      add_second_of_tangent(1, factor.cross(point.at.d[0]), point);
-      form_.add_cross(2.0 * factor, point.dt[0], point.dt[1]);
-    }
-  }
-
-  /// Likewise factor . d2x.
-  void add_second_of_place(const Vector<D>& factor, const OnSlave& point) {
-    for (int i = 0; i < R; ++i) {
-      Row slide = 2.0 * factor.transpose() * point.bare_dt[i];
-      for (int k = 0; k < R; ++k) slide += factor.dot(point.at.dd[i][k]) * point.dxi.row(k);
-      form_.add(1.0, point.dxi.row(i), slide);
-    }
-  }
-
- private:
-  /// Add factor * (jacobian d2 radius + radius d2 jacobian).
-  void add_second_of_measure(double factor, const Measure& m, const OnSlave& point) {
-    if (cell_.current_jacobian) {
-      const double by = factor * m.radius / m.jacobian;
-      for (int i = 0; i < D; ++i) form_.add(by, point.darea.row(i), point.darea.row(i));
-      form_.add(-by, m.djacobian, m.djacobian);
-      add_second_of_area_normal(by * point.area.n, point);
-      if (cell_.axis) add_second_of_place(factor * m.jacobian * Vector<D>::Unit(0), point);
+      f.jacobian = point.area.n.norm();
+      if (cell_.axis) f.radius = point.at.x[0];
       return;
     }
+    const Interpolated<D> initial(point.phi, cell_.slave_initial.data());
+    const AreaNormal<D> area(initial);
+    f.jacobian = area.n.norm();
+    for (int i = 0; i < R; ++i) f.jacobian_slope[i] = area.n.dot(area.d[i]) / f.jacobian;
     for (int i = 0; i < R; ++i)
       for (int k = 0; k < R; ++k)
-        form_.add(factor * (m.radius * m.second(i, k) + m.jacobian * m.radius_second(i, k)), point.dxi.row(i),
-                  point.dxi.row(k));
+        f.jacobian_second(i, k) = (area.n.dot(AreaNormal<D>::second(initial, i, k)) + area.d[i].dot(area.d[k]) -
+                                   f.jacobian_slope[i] * f.jacobian_slope[k]) /
+                                  f.jacobian;
+    if (!cell_.axis) return;
+    f.radius = initial.x[0];
+    for (int i = 0; i < R; ++i) {
+      f.radius_slope[i] = initial.d[i][0];
+      for (int k = 0; k < R; ++k) f.radius_second(i, k) = initial.dd[i][k][0];
+    }
+  }
+
+  /// How the direction of a normal moves: along unit vectors at a right angle to it, and its relative length.
+  struct Direction {
+    std::array<Vector<D>, R> across;
+    Rows<R> turn;
+    Row stretch;
+  };
+  /// @param nodal of nodal normals, or of the area normal
+  Direction direction(const OnSlave& point, const Integrand& f, bool nodal, const Rows<R>& dxi) const {
+    const Vector<D>& whole = nodal ? f.nodal.x : point.area.n;
+    const double length = whole.norm();
+    const Vector<D> n = whole / length;
+    Direction direction{across(n), Rows<R>::Zero(R, columns_.of_points()), Row::Zero(columns_.of_points())};
+    const auto along = [&](const Vector<D>& v, auto row) {
+      if (!nodal) return along_area(point, v, dxi, row);
+      for (int a = 0; a < point.phi.n; ++a)
+        row.template segment<D>(columns_.skins + D * a) += value(point.phi, a) * v.transpose();
+      for (int i = 0; i < R; ++i) row += v.dot(f.nodal.d[i]) * dxi.row(i);
+    };
+    for (int i = 0; i < R; ++i) along(direction.across[i] / length, direction.turn.row(i));
+    along(n / length, direction.stretch.row(0));
+    return direction;
+  }
+  static std::array<Vector<D>, R> across(const Vector<D>& n) {
+    if constexpr (D == 2) {
+      return {Vector<2>(-n[1], n[0])};
+    } else {
+      const Vector<3> first = n.unitOrthogonal();
+      return {first, n.cross(first)};
+    }
+  }
+
+  /// The second derivatives of x, of both normals and of an initial measure where the reference coordinates change linearly.
+  void add_second_where_it_slides(const OnSlave& point, const Integrand& f, double w, const Vector<D>& of_place,
+                                  const Rows<R>& dxi) {
+    const auto& [xi, phi, slave, area] = point;
+    const std::array<Vector<D>, R> of_tangent = of_tangents<D>(slave.d, f.of_area);
+    for (int j = 0; j < R; ++j) {
+      Row row = Row::Zero(columns_.of_points());
+      for (int a = 0; a < phi.n; ++a) {
+        Vector<D> of_node = phi.slope(a, j) * of_place;
+        for (int i = 0; i < R; ++i) of_node += phi.bend(a, i, j) * of_tangent[i];
+        if constexpr (D == 3)
+          of_node += phi.slope(a, 1) * f.of_area.cross(slave.dd[0][j]) + phi.slope(a, 0) * slave.dd[1][j].cross(f.of_area);
+        row.template segment<D>(D * a) = 2 * of_node.transpose();
+        if (is_smooth()) row.template segment<D>(columns_.skins + D * a) = 2 * phi.slope(a, j) * f.of_normal.transpose();
+      }
+      for (int k = 0; k < R; ++k) {
+        double bent = of_place.dot(slave.dd[j][k]) + f.of_area.dot(AreaNormal<D>::second(slave, j, k));
+        if (is_smooth()) bent += f.of_normal.dot(f.nodal.dd[j][k]);
+        bent += f.g / f.lift * (f.radius * f.jacobian_second(j, k) + f.jacobian * f.radius_second(j, k));
+        row += bent * dxi.row(k);
+      }
+      form_.add(w, dxi.row(j), row);
+    }
+    if constexpr (D == 3) add_cross(2 * w * f.of_area, phi.gradient.data(), R, phi.gradient.data() + 1, R);
   }
 
   const ContactCellGeometry& cell_;
-  int slaves_, masters_, first_normal_, n_;
-  bool second_;
-  double gap_ = 0;
-  Row gradient_;
+  Eigen::Index first_master_;
+  Columns columns_;
+  double gap_ = 0, scale_ = 1, part_ = 0, value_ = 0;  ///< the latter: h summed up over the simplex
+  Row gradient_, of_simplex_;
   QuadraticForm form_;
+  std::array<Vector<3>, D == 3 ? max_skin_nodes * max_skin_nodes : 1> cross_;  ///< factors of dx_a x dx_b
 };
 
-/// Derivatives by variables of which the last ones are corners, as derivatives by the first ones.
-/// @param corners (corners, variables): derivatives of the corners  @param form what second derivatives are made of
-void chain_corners(const Row& gradient, const Eigen::MatrixXd& corners, int n_unknowns, const QuadraticForm* form,
+/// The second derivatives by the unknowns, from those by the variables of points, of which the last ones are corners.
+/// @param corners (corners, unknowns): derivatives of the corners  @param form what their second derivatives add, by unknowns
+void chain_corners(const Eigen::MatrixXd& by_points, const Columns& columns, const Matrix& corners, QuadraticForm& form,
                    GapVariation& variation);
 
 void vary_in_plane(const ContactCellGeometry& cell, bool second, GapVariation& variation);

@@ -10,8 +10,7 @@ namespace {
 /// f = (q - x(xi)) . T(xi), T at a right angle to the normal.
 class EndVariation {
  public:
-  EndVariation(const ContactCellGeometry& cell, const ContactCellGeometry::End& end, int n_variables) : row_(n_variables) {
-    row_.setZero();
+  EndVariation(const ContactCellGeometry& cell, const ContactCellGeometry::End& end, Eigen::Index n) : row_(Row::Zero(n)) {
     if (end.node < 0) return;
     const int slaves = catalog::cell(cell.slave).n_nodes, masters = catalog::cell(cell.master).n_nodes;
     const Shapes<2> phi(cell.slave, &end.at);
@@ -31,7 +30,7 @@ class EndVariation {
     // where the slave's normals meet, an end has no place of its own
     if (!(std::abs(slope) > least_slope * slave.d[0].norm() * t[0].norm())) return;
 
-    Rows<2> dq = Rows<2>::Zero(2, n_variables), dx = dq, ddx = dq, dt = dq, ddt = dq;  // dd: of the slope
+    Rows<2> dq = Rows<2>::Zero(2, n), dx = dq, ddx = dq, dt = dq, ddt = dq;  // dd: of the slope
     for (int d = 0; d < 2; ++d) dq(d, 2 * end.node + d) = 1;
     for (int a = 0; a < phi.n; ++a)
       for (int d = 0; d < 2; ++d) {
@@ -78,25 +77,37 @@ class EndVariation {
 }  // namespace
 
 void vary_in_plane(const ContactCellGeometry& cell, bool second, GapVariation& variation) {
-  const int n = cell.n_unknowns();
   CellVariation<2> sum(cell, 2, second);
+  const Columns& columns = sum.columns();
+  const Eigen::Index n = columns.unknowns(), corner = columns.first_corner();
   const auto& [from, to] = cell.ends;
   const double width = to.at - from.at;
+  Row dxi = Row::Zero(columns.of_points()), dwidth = dxi;
+  dwidth[corner] = -1, dwidth[corner + 1] = 1;
+  sum.start_simplex(1, width);
   for (std::size_t p = 0; p < cell.weight.size(); ++p) {
-    const double share = (cell.slave_point[p] - from.at) / width, weight = cell.weight[p];
-    Row dxi = Row::Zero(sum.n_variables()), dweight = dxi;
-    dxi[n] = 1 - share, dxi[n + 1] = share;
-    dweight[n] = -weight / width, dweight[n + 1] = weight / width;
-    sum.add_point(sum.on_slave(&cell.slave_point[p], dxi), &cell.master_point[p], weight, dweight);
+    const double share = (cell.slave_point[p] - from.at) / width, rule = cell.weight[p] / width;
+    const CellVariation<2>::OnSlave point = sum.on_slave(&cell.slave_point[p]);
+    const CellVariation<2>::Integrand h = sum.integrand(point, &cell.master_point[p]);
+    if (!(h.radius > 0)) continue;
+    dxi[corner] = 1 - share, dxi[corner + 1] = share;
+    sum.add_point(point, h, rule, h.of_place);
+    sum.of_simplex() += rule * h.slope[0] * dxi;
+    if (second) sum.add_second_of_point(point, h, rule, h.of_place, dxi);
   }
+  sum.end_simplex(dwidth);
   // the corners as functions of the unknowns
-  const std::array ends = {EndVariation(cell, from, sum.n_variables()), EndVariation(cell, to, sum.n_variables())};
-  Eigen::MatrixXd corners(2, n);
-  for (int k = 0; k < 2; ++k) corners.row(k) = ends[static_cast<std::size_t>(k)].row().head(n);
-  if (second)
-    for (int k = 0; k < 2; ++k) ends[static_cast<std::size_t>(k)].add_second(sum.gradient()[n + k], sum.form());
+  const std::array ends = {EndVariation(cell, from, n), EndVariation(cell, to, n)};
+  Matrix corners(2, n);
+  for (int k = 0; k < 2; ++k) corners.row(k) = ends[static_cast<std::size_t>(k)].row();
+  const Row gradient = sum.by_unknowns() + sum.gradient().segment<2>(corner) * corners;
   variation.gap = sum.gap();
-  chain_corners(sum.gradient(), corners, n, second ? &sum.form() : nullptr, variation);
+  variation.gradient.assign(gradient.data(), gradient.data() + n);
+  variation.hessian.clear();
+  if (!second) return;
+  QuadraticForm form(n);
+  for (int k = 0; k < 2; ++k) ends[static_cast<std::size_t>(k)].add_second(sum.gradient()[corner + k], form);
+  chain_corners(sum.second_by_points(), columns, corners, form, variation);
 }
 
 }  // namespace lacon::variations

@@ -6,12 +6,18 @@
 
 namespace lacon {
 
-Eigen::MatrixXd variations::QuadraticForm::matrix() const {
-  const auto n = static_cast<int>(n_);
-  Eigen::MatrixXd sum = Eigen::MatrixXd::Zero(n_, n_);
+void variations::QuadraticForm::sum_up() {
+  const auto n = static_cast<int>(size());
   if (count_ > 0)  // the rows of both are columns to a library that goes column by column
     cblas_dsyr2k(CblasColMajor, CblasLower, CblasNoTrans, n, static_cast<int>(count_), 0.5, left_.data(), n, right_.data(), n,
-                 0.0, sum.data(), n);
+                 1.0, sum_.data(), n);
+  count_ = 0;
+}
+
+Eigen::MatrixXd variations::QuadraticForm::matrix() {
+  sum_up();
+  Eigen::MatrixXd sum = 0.5 * (sparse_ + sparse_.transpose());
+  sum.triangularView<Eigen::Lower>() += sum_;
   sum.triangularView<Eigen::StrictlyUpper>() = sum.transpose();
   return sum;
 }
@@ -24,18 +30,20 @@ int ContactCellGeometry::n_unknowns() const {
   return n_nodes() * dimension + (slave_normals.empty() ? 0 : catalog::cell(slave).n_nodes * dimension);
 }
 
-void variations::chain_corners(const Row& gradient, const Eigen::MatrixXd& corners, int n_unknowns, const QuadraticForm* form,
-                               GapVariation& variation) {
-  const int n = n_unknowns;
-  const Eigen::Index n_corners = corners.rows();
-  const Row by_nodes = gradient.head(n) + gradient.segment(n, n_corners) * corners;
-  variation.gradient.assign(by_nodes.data(), by_nodes.data() + n);
-  variation.hessian.clear();
-  if (!form) return;
-  const Eigen::MatrixXd all = form->matrix();
-  const Eigen::MatrixXd mixed = all.block(0, n, n, n_corners) * corners;
-  const Eigen::MatrixXd hessian = all.topLeftCorner(n, n) + mixed + mixed.transpose() +
-                                  corners.transpose() * all.block(n, n, n_corners, n_corners) * corners;
+void variations::chain_corners(const Eigen::MatrixXd& by_points, const Columns& columns, const Matrix& corners,
+                               QuadraticForm& form, GapVariation& variation) {
+  const auto& [skins, others, normals, n_corners] = columns;
+  const Eigen::Index n = columns.unknowns(), behind = skins + others;
+  Matrix mixed = Matrix::Zero(n_corners, n);
+  mixed.leftCols(skins) = by_points.block(columns.first_corner(), 0, n_corners, skins);
+  mixed.rightCols(normals) = by_points.block(columns.first_corner(), skins, n_corners, normals);
+  const Matrix right = 2 * mixed + by_points.bottomRightCorner(n_corners, n_corners) * corners;
+  for (Eigen::Index k = 0; k < n_corners; ++k) form.add(1, corners.row(k), right.row(k));
+  Eigen::MatrixXd hessian = form.matrix();
+  hessian.topLeftCorner(skins, skins) += by_points.topLeftCorner(skins, skins);
+  hessian.block(behind, 0, normals, skins) += by_points.block(skins, 0, normals, skins);
+  hessian.block(0, behind, skins, normals) += by_points.block(0, skins, skins, normals);
+  hessian.block(behind, behind, normals, normals) += by_points.block(skins, skins, normals, normals);
   variation.hessian.assign(hessian.data(), hessian.data() + n * n);
 }
 

@@ -14,22 +14,22 @@ constexpr int max_skin_nodes = 9;
 
 template <int D>
 using Vector = Eigen::Matrix<double, D, 1>;
-/// Derivatives of a vector of N numbers by all variables: slave, master, others, normals, corners.
-constexpr int max_variables = 256;
+/// Derivatives of a vector of N numbers by some variables.
 template <int N>
-using Rows = Eigen::Matrix<double, N, Eigen::Dynamic, Eigen::RowMajor, N, max_variables>;
+using Rows = Eigen::Matrix<double, N, Eigen::Dynamic, Eigen::RowMajor>;
 using Row = Rows<1>;
+using Matrix = Rows<Eigen::Dynamic>;
 
 /// A quadratic form of the variables as a sum of products.
 class QuadraticForm {
  public:
-  /// @param expected how many products there may be
-  explicit QuadraticForm(Eigen::Index n, Eigen::Index expected = 64) : n_(n) { reserve(expected); }
+  explicit QuadraticForm(Eigen::Index n) : sum_(Eigen::MatrixXd::Zero(n, n)), sparse_(Matrix::Zero(n, n)) {}
   /// Add factor * first(d) * second(d).
   template <class First, class Second>
   void add(double factor, const First& first, const Second& second) {
     if (factor == 0) return;
-    if (count_ == left_.rows()) reserve(2 * count_ + 64);
+    if (left_.rows() == 0) left_.resize(at_once, sum_.cols()), right_.resize(at_once, sum_.cols());
+    if (count_ == at_once) sum_up();
     left_.row(count_) = factor * first;
     right_.row(count_) = second;
     ++count_;
@@ -43,17 +43,28 @@ class QuadraticForm {
       add(-factor[i], first.row(k), second.row(j));
     }
   }
+  /// Add factor . (dx_a x dx_b), the variables being coordinates of nodes.
+  void add_cross_of_nodes(const Vector<3>& factor, int a, int b) {
+    for (int i = 0; i < 3; ++i) {
+      const int j = (i + 1) % 3, k = (i + 2) % 3;
+      sparse_(3 * a + j, 3 * b + k) += factor[i];
+      sparse_(3 * a + k, 3 * b + j) -= factor[i];
+    }
+  }
+  Eigen::Index size() const { return sum_.rows(); }
+  /// What is multiplied by variable i, to be added to.
+  auto of(Eigen::Index i) { return sparse_.row(i); }
   /// The symmetric matrix H with d.H.d of the form.
-  Eigen::MatrixXd matrix() const;
+  Eigen::MatrixXd matrix();
 
  private:
-  void reserve(Eigen::Index rows) {
-    left_.conservativeResize(rows, n_);
-    right_.conservativeResize(rows, n_);
-  }
+  static constexpr Eigen::Index at_once = 128;  // products
+  void sum_up();
 
-  Eigen::Index n_, count_ = 0;
-  Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor> left_, right_;
+  Eigen::MatrixXd sum_;  ///< of products summed up: the lower triangle of their symmetric matrix
+  Matrix sparse_;
+  Eigen::Index count_ = 0;
+  Matrix left_, right_;  ///< of products still to be summed up
 };
 
 /// Shape functions of a skin cell at a point, with their derivatives.
@@ -70,8 +81,16 @@ struct Shapes {
     const std::span<const double> at(xi, static_cast<std::size_t>(R));
     shape_functions(type, at, value);
     shape_gradients(type, at, gradient);
-    shape_derivatives(type, at, 2, curvature);
-    shape_derivatives(type, at, 3, third);
+    const catalog::CellRow& cell = catalog::cell(type);
+    const auto count = static_cast<std::size_t>(n);
+    if (cell.order > 1 || cell.family == Family::QUAD)
+      shape_derivatives(type, at, 2, curvature);
+    else
+      std::fill_n(curvature.begin(), 3 * count, 0.0);
+    if (cell.order > 1 && cell.family == Family::QUAD)
+      shape_derivatives(type, at, 3, third);
+    else
+      std::fill_n(third.begin(), 4 * count, 0.0);
   }
   double slope(int node, int i) const { return gradient[static_cast<std::size_t>(node * R + i)]; }
   double bend(int node, int i, int j) const { return curvature[static_cast<std::size_t>(node * (R == 1 ? 1 : 3) + i + j)]; }
@@ -110,30 +129,53 @@ struct Interpolated {
 /// The vector at a right angle to the tangent that points out of the body.
 inline Vector<2> out_of(const Vector<2>& t) { return {t[1], -t[0]}; }
 
+/// What factor . N is to each tangent, N the area normal.
+template <int D>
+std::array<Vector<D>, D - 1> of_tangents(const std::array<Vector<D>, D - 1>& t, const Vector<D>& factor) {
+  if constexpr (D == 2)
+    return {Vector<2>(-factor[1], factor[0])};
+  else
+    return {t[1].cross(factor), factor.cross(t[0])};
+}
+
 /// The area normal of a skin at a point, with derivatives by the reference coordinates where only these move.
 template <int D>
 struct AreaNormal {
   static constexpr int R = D - 1;
   Vector<D> n;
   std::array<Vector<D>, R> d;
-  std::array<std::array<Vector<D>, R>, R> dd;
 
   explicit AreaNormal(const Interpolated<D>& skin) {
     if constexpr (D == 2) {
       n = out_of(skin.d[0]);
       d[0] = out_of(skin.dd[0][0]);
-      dd[0][0] = out_of(skin.ddd[0]);
     } else {
       const auto& [t, s] = skin.d;
       n = t.cross(s);
       for (int i = 0; i < R; ++i) d[i] = skin.dd[0][i].cross(s) + t.cross(skin.dd[1][i]);
-      for (int i = 0; i < R; ++i)
-        for (int j = 0; j < R; ++j)
-          dd[i][j] = skin.dd[0][i].cross(skin.dd[1][j]) + skin.dd[0][j].cross(skin.dd[1][i]) + skin.ddd[i + j].cross(s) +
-                     t.cross(skin.ddd[i + j + 1]);
+    }
+  }
+  /// The second derivative by the reference coordinates i and j.
+  static Vector<D> second(const Interpolated<D>& skin, int i, int j) {
+    if constexpr (D == 2) {
+      return out_of(skin.ddd[0]);
+    } else {
+      const auto& [t, s] = skin.d;
+      return skin.dd[0][i].cross(skin.dd[1][j]) + skin.dd[0][j].cross(skin.dd[1][i]) + skin.ddd[i + j].cross(s) +
+             t.cross(skin.ddd[i + j + 1]);
     }
   }
 };
+
+/// v x rows. @param rows (3, n)
+inline Rows<3> cross(const Vector<3>& v, const Rows<3>& rows) {
+  Rows<3> product(3, rows.cols());
+  for (int i = 0; i < 3; ++i) {
+    const int j = (i + 1) % 3, k = (i + 2) % 3;
+    product.row(i) = v[j] * rows.row(k) - v[k] * rows.row(j);
+  }
+  return product;
+}
 
 /// Derivatives of the area normal by those of the tangents. @tparam RowsOfTangent (D, n)
 template <int D, class RowsOfTangent>

@@ -1,6 +1,6 @@
 // Pairing by Google Benchmark. Its pieces: polygons clipped, points projected to facets. The whole, on two flat rectangles:
 // linear in the number of facets (time ratio for four times the facets at most 4.6), and microseconds for each contact cell,
-// alone and with gap and both integrals by the contact kernel.
+// alone, with gap and both integrals by the contact kernel, and once more with traces and derivatives of gaps.
 #include <cmath>
 #include <numbers>
 #include <random>
@@ -192,6 +192,24 @@ void after_displacement(benchmark::State& state) {
   report_pairing(state, skins.contact.slaves.size(), geometry.cells().size());
 }
 
+/// Contact cells once more, with traces, and derivatives of their gaps: first ones, or second ones too.
+template <CellType type, int order, bool warped>
+void with_derivatives(benchmark::State& state) {
+  const Skins skins(state.range(0), type);
+  static Registry registry;
+  ContactGeometry geometry(skins.mesh, skins.model, skins.contact, registry);
+  std::vector<double> displacement(skins.mesh.coordinates.size(), 0.0);
+  for (std::size_t node = 0; warped && node < skins.mesh.n_nodes(); ++node) {
+    const auto& x = skins.mesh.point(node);
+    displacement[3 * node + 2] = 0.01 * std::sin(3 * x[0] + 2 * x[1]);
+  }
+  geometry.update(displacement);
+  const std::vector<std::int8_t> orders(geometry.n_patches(), order);
+  std::size_t cells = 0;
+  for (auto run : state) cells = geometry.vary(orders).size();
+  report_pairing(state, skins.contact.slaves.size(), cells);
+}
+
 void sizes(benchmark::internal::Benchmark* bench) {
   for (const std::int64_t facets : {10'000, 40'000, 160'000, 640'000, 1'000'000}) bench->Arg(facets);
   bench->Unit(benchmark::kMillisecond)->Complexity(benchmark::oN);
@@ -204,5 +222,11 @@ BENCHMARK(with_gap_and_integrals<CellType::QUAD4>)->Apply(sizes);
 BENCHMARK(with_gap_and_integrals<CellType::TRIA3>)->Apply(sizes);
 BENCHMARK(after_displacement<Shape::distorted>)->Arg(10'000)->Unit(benchmark::kMillisecond);
 BENCHMARK(after_displacement<Shape::warped>)->Arg(10'000)->Unit(benchmark::kMillisecond);
+BENCHMARK(with_derivatives<CellType::QUAD4, 1, false>)->Arg(10'000)->Unit(benchmark::kMillisecond);
+BENCHMARK(with_derivatives<CellType::QUAD4, 2, false>)->Arg(10'000)->Unit(benchmark::kMillisecond);
+BENCHMARK(with_derivatives<CellType::QUAD4, 1, true>)->Arg(10'000)->Unit(benchmark::kMillisecond);
+BENCHMARK(with_derivatives<CellType::QUAD4, 2, true>)->Arg(10'000)->Unit(benchmark::kMillisecond);
+BENCHMARK(with_derivatives<CellType::TRIA3, 1, false>)->Arg(10'000)->Unit(benchmark::kMillisecond);
+BENCHMARK(with_derivatives<CellType::TRIA3, 2, false>)->Arg(10'000)->Unit(benchmark::kMillisecond);
 
 }  // namespace
