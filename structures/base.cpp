@@ -110,12 +110,10 @@ void write_head(const hdf5::Group& root, const Order& order, std::string_view ty
   root.set("references", list.dump());
 }
 
-/// Write the order's result as a concept in one file, with the next version where it enriches an existing one.
+/// Write the order's result as a concept in one file.
 template <class Write>
-void store_in(const std::filesystem::path& file, const Base& base, const Order& order, std::string_view type,
+void store_in(const std::filesystem::path& file, std::int64_t version, const Order& order, std::string_view type,
               const std::vector<std::string>& references, Write write) {
-  std::int64_t version = 1;
-  if (order.reuse) version = hdf5::Reader(base.file(order.result_id)).integer("version") + 1;
   hdf5::write_whole(file, [&](const hdf5::Group& root) {
     write_head(root, order, type, version, references);
     write(root);
@@ -126,11 +124,15 @@ std::filesystem::path concept_file(const Base& base, const Order& order) { retur
 
 template <class Concept>
 void store_concept(const Base& base, const Order& order, std::string_view type, const Concept& content) {
-  store_in(concept_file(base, order), base, order, type, storage::references(content),
+  store_in(concept_file(base, order), base.next_version(), order, type, storage::references(content),
            [&](const hdf5::Group& root) { storage::write(root, content); });
 }
 
 }  // namespace
+
+std::int64_t Base::next_version() const {
+  return order_->reuse ? hdf5::Reader(file(order_->result_id)).integer("version") + 1 : 1;
+}
 
 void Base::store(const Mesh& mesh) const { store_concept(*this, *order_, "mesh", mesh); }
 
@@ -143,20 +145,21 @@ void Base::store(const Load& load) const { store_concept(*this, *order_, "load",
 void Base::store(const Contact& contact) const { store_concept(*this, *order_, "contact", contact); }
 
 void Base::store(const Table& table) const {
-  store_in(concept_file(*this, *order_), *this, *order_, "table", {},
+  store_in(concept_file(*this, *order_), next_version(), *order_, "table", {},
            [&](const hdf5::Group& root) { write_table(root, table); });
 }
 
 void Base::store(const Field& field) const {
   std::vector<std::string> references{field.mesh};
   references.insert(references.end(), field.functions.begin(), field.functions.end());
-  store_in(concept_file(*this, *order_), *this, *order_, "field", references,
+  store_in(concept_file(*this, *order_), next_version(), *order_, "field", references,
            [&](const hdf5::Group& root) { write_field_content(root, field); });
 }
 
 void Base::store(const Result& result) const {
   std::filesystem::create_directories(folder_ / order_->result_id);
-  store_in(folder_ / order_->result_id / "index.h5", *this, *order_, "result", storage::references(result),
+  const std::int64_t version = result.version > 0 ? result.version : next_version();
+  store_in(folder_ / order_->result_id / "index.h5", version, *order_, "result", storage::references(result),
            [&](const hdf5::Group& root) { storage::write(root, result); });
 }
 

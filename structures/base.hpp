@@ -50,9 +50,13 @@ class Base {
   void store(const Contact& contact) const;
   void store(const Table& table) const;
   void store(const Field& field) const;
+  /// The index of a result, behind the fields that it names. It may be stored again as the result grows: who reads it finds the
+  /// one or the other.
   void store(const Result& result) const;
+  /// The version that an index has that is stored now.
+  std::int64_t next_version() const;
 
-  /// Store a field file of the order's result and enter it in the index, which store(result) writes last.
+  /// Store a field file of the order's result and enter it in the index, which store(result) writes.
   void add_field(Result& result, Field field) const;
   /// Remove the field files of a result that will not be stored.
   void discard(const Result& result) const;

@@ -174,6 +174,8 @@ struct Result {
   /// name -> one value for each of `orders`
   std::map<std::string, std::vector<double>> parameters;
   std::map<std::string, Table> tables;  ///< "OBSERVATION"
+  bool complete = true;                 ///< the computation came to its end
+  std::int64_t version = 0;             ///< with which the index is stored, where it grows; 0: the one after that in the base
 };
 
 }  // namespace lacon

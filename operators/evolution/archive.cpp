@@ -39,6 +39,7 @@ Archive::Archive(const Order& order, const Base& base, const Present& present, c
       choice_(order.keywords.factor("ARCHIVAGE"), base) {
   const Keywords& keywords = order.keywords;
   result_.label = order.result_label;
+  result_.version = base.next_version();
   result_.model = keywords.concept_id("MODELE");
   result_.mesh = present.problem.model.mesh;
   result_.material_field = keywords.concept_id("CHAM_MATER");
@@ -76,7 +77,9 @@ void Archive::go_on(const Order& order, const std::optional<Origin>& origin) {
     refuse(fmt::format("it has {} instant(s) behind order {}", old.orders.size() - orders.size(), origin->order),
            "give ARCHIVAGE=_F(DETR_NUME_SUIV='OUI') to remove them, or " + another);
   const auto fields = old.fields;
+  const std::int64_t version = result_.version;
   result_ = part_of(old, orders);
+  result_.version = version;
   for (const auto& [name, files] : fields)
     for (const auto& [number, file] : files)
       if (number <= origin->order) result_.fields[name][number] = file;
@@ -96,16 +99,25 @@ void Archive::iterate(double /*instant*/, const IterationReport& report) {
 }
 
 void Archive::accept(const SolvedInstant& solved) {
-  if (choice_.keeps(solved.instant, solved.step) || solved.last) add(solved.instant, solved.iterations);
+  if (!choice_.keeps(solved.instant, solved.step) && !solved.last) return;
+  add(solved.instant, solved.iterations);
+  store(false);
 }
 
 void Archive::end(bool completed) {
-  if (completed || has_solved()) {
-    if (const auto& observed = observations_.table()) add_observed(*observed);
-    base_.store(result_);
-  } else if (taken_over_ == 0) {
+  if (completed)
+    store(true);
+  else if (!stored_ && taken_over_ == 0)
     base_.discard(result_);
-  }
+}
+
+void Archive::store(bool complete) {
+  const Phase phase("archive");
+  Result result = result_;
+  result.complete = complete;
+  if (const auto& observed = observations_.table()) add_observed(result, *observed);
+  base_.store(result);
+  stored_ = true;
 }
 
 void Archive::add(double instant, int iterations) {
@@ -147,8 +159,8 @@ void Archive::add_balance(const std::vector<ZoneBalance>& zones) {
 }
 
 /// Behind what the result that goes on has observed; NUME_REUSE counts its computations.
-void Archive::add_observed(const Table& observed) {
-  const auto [at, first] = result_.tables.try_emplace("OBSERVATION", observed);
+void Archive::add_observed(Result& result, const Table& observed) {
+  const auto [at, first] = result.tables.try_emplace("OBSERVATION", observed);
   if (first) return;
   for (std::size_t c = 0; c < observed.columns.size(); ++c) {
     Table::Column& column = at->second.columns[c];

@@ -1,5 +1,6 @@
 #pragma once
-// The result of a computation as it grows: fields and parameters of the instants that are kept.
+// The result of a computation as it grows: fields and parameters of the instants that are kept. From the first solved instant
+// on its index is in the base, and replaced with each further one, so that whatever ends the computation loses none of them.
 #include <optional>
 #include <set>
 #include <string>
@@ -34,7 +35,7 @@ class Archive : public EvolutionObserver {
   void begin(double instant) override;
   void iterate(double instant, const IterationReport& report) override;
   void accept(const SolvedInstant& solved) override;
-  /// What was computed before a failure is not lost; without any of it the base stays as it was.
+  /// Where no instant was kept before a failure, the base stays as it was.
   void end(bool completed) override;
 
  private:
@@ -45,12 +46,10 @@ class Archive : public EvolutionObserver {
   };
   void go_on(const Order& order, const std::optional<Origin>& origin);
   void add(double instant, int iterations);
+  void store(bool complete);
   void add_balance(const std::vector<ZoneBalance>& zones);
-  void add_observed(const Table& observed);
+  static void add_observed(Result& result, const Table& observed);
   void put(const std::string& parameter, double value) { result_.parameters[parameter].push_back(value); }
-  /// Whether there are instants of this computation behind its initial state.
-  bool has_solved() const { return result_.orders.size() > std::max<std::size_t>(taken_over_, 1); }
-
   const Base& base_;
   Present present_;
   FieldMakers fields_;
@@ -59,6 +58,7 @@ class Archive : public EvolutionObserver {
   Pivots pivots_;
   Result result_;
   std::size_t taken_over_ = 0;  ///< instants of a result that goes on
+  bool stored_ = false;         ///< an index with instants of this computation is in the base
 };
 
 }  // namespace lacon

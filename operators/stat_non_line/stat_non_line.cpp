@@ -89,7 +89,8 @@ void stat_non_line(const Order& order, const Base& base) {
   NewtonTable table(std::cout, present, keywords.factor("AFFICHAGE").yes("INFO_RESIDU"), keywords.integer("INFO") == 2);
   StepEvents events(steps.events, base, problem.mesh, fields_of(present));
   ContactNotices notices(present);
-  const std::array<EvolutionObserver*, 5> observers{&table, &events, &notices, &archive, &observations};
+  // what is told as converged is in the base
+  const std::array<EvolutionObserver*, 5> observers{&observations, &archive, &table, &events, &notices};
   evolve(steps, solver, observers);
 }
 

@@ -16,6 +16,7 @@ Result read_result(const hdf5::Group& root) {
   for (const json& load : json::parse(root.text("loads")))
     result.loads.push_back({load.at("load"), load.at("function"), load.value("type", "FIXE_CSTE")});
   result.behaviour = root.text("behaviour");
+  if (root.has_attribute("complete")) result.complete = root.integer("complete") != 0;
   result.orders = root.read<std::int64_t>("order");
   result.instants = root.read<double>("instant");
   const hdf5::Group fields = root.open("fields");
@@ -43,6 +44,7 @@ void write(const hdf5::Group& root, const Result& result) {
     loads.push_back({{"load", load.load}, {"function", load.function}, {"type", load.type}});
   root.set("loads", loads.dump());
   root.set("behaviour", result.behaviour);
+  root.set("complete", std::int64_t{result.complete});
   root.write("order", result.orders);
   root.write("instant", result.instants);
   const hdf5::Group fields = root.create("fields");

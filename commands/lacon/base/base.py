@@ -16,6 +16,7 @@ from ..core.concepts import concepts_in, dumps, type_of
 from ..core.late import h5py
 from ..core.messages import NeedsRun, fail
 from . import contents, kept
+from .unfinished import Unfinished
 
 _registry = "base.json"
 _orders = "orders.partial"
@@ -49,6 +50,7 @@ class Base:
             os.close(self.lock)
             fail("STUDY_5", where, folder=self.folder)
         self.kept = kept.Kept(self, look=not force)
+        self.unfinished = Unfinished(self)
         try:
             if fresh:
                 self._empty()
@@ -161,6 +163,7 @@ class Base:
             _remove(path)
         self._objects.pop(identifier, None)
         self.kept.forget(identifier)
+        self.unfinished.end(identifier)
 
     def give_back(self, identifier):
         """Drop a concept that was not finished; its number, which nobody has seen, is the next one's again."""

@@ -83,6 +83,11 @@ def instants(result):
     return list(zip(result["order"][:].tolist(), result["instant"][:].tolist()))
 
 
+def is_complete(result):
+    """Its computation came to its end."""
+    return bool(result.attrs.get("complete", 1))
+
+
 def fields(result):
     """name of a field -> its order numbers"""
     return {name: result["fields"][name]["order"][:].tolist() for name in sorted(result.get("fields", ()))}

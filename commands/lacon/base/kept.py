@@ -172,6 +172,17 @@ class Kept:
         self.forget(identifier)
         self._add(identifier, key, messages)
 
+    def hold(self, identifier):
+        """The file of a concept is about to be replaced, perhaps by one that is not whole: the version that it holds stays in kept/."""
+        there = _stat(self.base.path(identifier))
+        for at, record in enumerate(self._made.get(identifier, ())):
+            if record["stat"] == there:
+                _link(self.base.path(identifier), self._copy(identifier, at))
+
+    def leave(self, identifier):
+        """What a concept holds now is none of its versions, which stay for a run that makes them again."""
+        self._at[identifier] = -1
+
     def enter_next(self, identifier, before, key, messages):
         """Remember a new version of a concept. @param before a copy of the file of the version before, which goes to kept/"""
         versions = self._made.get(identifier, [])

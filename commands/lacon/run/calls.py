@@ -7,7 +7,7 @@ from ..commands.call import Call
 from ..commands.implementations import implementation
 from ..core import catalog, checker, current, labels, plugins
 from ..core.concepts import CO, Concept, _F
-from ..core.messages import AsterError, InternalError, SolutionError, fail, message
+from ..core.messages import AsterError, InternalError, fail, message
 
 
 class Command:
@@ -96,6 +96,11 @@ class Command:
                 self._protect_data(run, row, keywords, units)
                 return self._result(run, found, label, where, reused, named), orders.Outcome(0, [], {}, {}, 0.0)
         copy = orders.keep_copy(run.base, identifier) if reused else None
+        grows, ended_well = row.get("solves"), False
+        if grows:
+            if reused:
+                run.base.kept.hold(identifier)
+            run.base.unfinished.begin(identifier, label, key, where)
         try:
             outcome = orders.run(row["operator"], made, run)
             if outcome.status != 0:
@@ -103,14 +108,15 @@ class Command:
             if result and not run.base.path(identifier).exists():
                 how = f"it ended well, and the concept {identifier} is not there"
                 raise InternalError([message("INTERNAL_3", where, program=row["operator"], how=how)])
+            ended_well = True
             if run.alarm_is_error:
                 run.count_alarms(outcome.messages)
-        except BaseException as error:
-            part = isinstance(error, SolutionError) and row.get("solves") and orders.has_left(run.base, identifier, copy)
-            if part:
-                self._keep_part(run, identifier, label, where, reused, copy)
+        except BaseException:
+            if grows and not ended_well and orders.has_left(run.base, identifier, copy):
+                self._keep_part(run, identifier, label, where, reused)
             elif copy:
                 orders.put_back(run.base, identifier, copy)
+                run.base.unfinished.end(identifier)
             elif result:
                 run.base.give_back(identifier)
             run.base.drop_partial()
@@ -120,18 +126,17 @@ class Command:
             copy.unlink()
         elif result:
             run.base.kept.enter(identifier, key, outcome.messages)
+        if grows:
+            run.base.unfinished.end(identifier)
         self._protect_data(run, row, keywords, units)
         run.written_units.update((k, units[k]) for k, keyword in _unit_numbers(row, keywords) if keyword["unit"] == "out")
         if not result:
             return None, outcome
         return self._result(run, identifier, label, where, reused, named), outcome
 
-    def _keep_part(self, run, identifier, label, where, reused, copy):
-        """A solution failed on the way: the instants before that are there, under the name that the result was to have."""
-        if copy:
-            run.base.kept.enter_next(identifier, copy, None, ())
-        else:
-            run.base.kept.enter(identifier, None)
+    def _keep_part(self, run, identifier, label, where, reused):
+        """A computation ended on the way: the instants before that are there, under the name that the result was to have."""
+        run.base.kept.leave(identifier)
         item = self._result(run, identifier, label, where, reused, None)
         if label.isidentifier():
             run.names.values[label] = item

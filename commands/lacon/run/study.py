@@ -58,6 +58,8 @@ class Study:
                 self.sources.update(self.base.registry.get("sources", ()))
                 self.lost = self.names.restore(self.base)
                 self._explain_lost()
+                for label, instant, made in self.base.unfinished.found():
+                    self.inform("STUDY_31", where, label=label, instant=f"{instant:.9g}", made=made)
             else:
                 self.names.forget_data(self.base)
         elif not resume and self.fresh and not self._emptied:
@@ -226,6 +228,7 @@ class Study:
         self.names.update_labels(self.base)
         self.base.write(where)
         kept = set(self.base.registry["labels"].values()) | {i for i, item in self.base.live_objects() if not item.destroyed}
+        kept |= self.base.unfinished.ids() - {item.id for item in items}
         self.base.clean(kept)
 
     def include(self, path):

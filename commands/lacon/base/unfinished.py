@@ -1,0 +1,41 @@
+"""Results whose computation has begun and not come to its end. Their index grows with each instant that is archived: whatever ends the run,
+they are found under the variable they were to go to.
+
+Registry, key "unfinished": id -> {"label", "key": that of the order, see kept.py, "where"}.
+"""
+
+from . import contents
+
+
+class Unfinished:
+    """The entries of one open base."""
+
+    def __init__(self, base):
+        self.base = base
+
+    @property
+    def _entries(self):
+        return self.base.registry.setdefault("unfinished", {})
+
+    def begin(self, identifier, label, key, where):
+        self._entries[identifier] = {"label": label, "key": key, "where": where}
+        self.base.write(where)
+
+    def end(self, identifier):
+        """The computation is at its end, or nothing is left of it."""
+        self._entries.pop(identifier, None)
+
+    def ids(self):
+        return set(self._entries)
+
+    def labels(self):
+        """label -> id of those that have instants"""
+        return {entry["label"]: identifier for identifier, entry in self._entries.items()
+                if entry["label"] and self.base.path(identifier).exists()}
+
+    def found(self):
+        """(label, last instant, where it was computed) of those that a study finds again."""
+        for label, identifier in self.labels().items():
+            with self.base.open(identifier) as file:
+                if not contents.is_complete(file):
+                    yield label, contents.instants(file)[-1][1], self._entries[identifier]["where"]
