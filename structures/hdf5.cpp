@@ -29,6 +29,21 @@ Handle small_buffer() {
   return transfer;
 }
 
+/// `what`, and what the system said when HDF5's last call failed: ", No space left on device".
+std::string with_system_reason(std::string_view what) {
+  std::string reason;
+  const auto find = [](unsigned, const H5E_error2_t* error, void* to) -> herr_t {
+    static constexpr std::string_view before = "error message = '";
+    const std::string_view text = error->desc ? error->desc : "";
+    const std::size_t at = text.find(before), first = at + before.size();
+    if (at == std::string_view::npos) return 0;
+    *static_cast<std::string*>(to) = ": " + std::string(text.substr(first, text.find('\'', first) - first));
+    return 1;
+  };
+  H5Ewalk2(H5E_DEFAULT, H5E_WALK_UPWARD, find, &reason);
+  return std::string(what) + reason;
+}
+
 std::string zero_ended(std::string_view name) { return std::string(name); }
 
 Handle string_type() {
@@ -86,7 +101,7 @@ Group::Group(Handle id, std::filesystem::path path, bool writing)
     : id_(std::move(id)), path_(std::move(path)), writing_(writing) {}
 
 void Group::refuse(std::string_view what) const {
-  fail(writing_ ? "BASE_3" : "BASE_2", {{"file", path_.string()}, {"reason", std::string(what)}});
+  fail(writing_ ? "BASE_3" : "BASE_2", {{"file", path_.string()}, {"reason", with_system_reason(what)}});
 }
 
 bool Group::has(std::string_view name) const {
@@ -401,12 +416,12 @@ void write_whole(const std::filesystem::path& file, const std::function<void(con
     Handle opened(copy_of.empty() ? H5Fcreate(partial.c_str(), H5F_ACC_TRUNC, creation, H5P_DEFAULT)
                                   : H5Fopen(partial.c_str(), H5F_ACC_RDWR, H5P_DEFAULT),
                   H5Fclose);
-    if (opened < 0) cannot_write(file, "the file '" + partial.string() + "' cannot be made");
+    if (opened < 0) cannot_write(file, with_system_reason("the file '" + partial.string() + "' cannot be made"));
     {
       const Writer root(Handle(H5Gopen2(opened, "/", H5P_DEFAULT), H5Gclose), file);
       write(root);
     }
-    if (H5Fflush(opened, H5F_SCOPE_LOCAL) < 0) cannot_write(file, "the disk may be full");
+    if (H5Fflush(opened, H5F_SCOPE_LOCAL) < 0) cannot_write(file, with_system_reason("it cannot be ended"));
     opened = Handle();
     std::filesystem::rename(partial, file, error);
     if (error) cannot_write(file, error.message());

@@ -13,6 +13,7 @@ import shutil
 import weakref
 
 from ..core.concepts import concepts_in, dumps, type_of
+from ..core.files import write_whole
 from ..core.late import h5py
 from ..core.messages import NeedsRun, fail
 from . import contents, kept
@@ -74,10 +75,10 @@ class Base:
         self._objects = weakref.WeakValueDictionary()
 
     def _check_folder(self, where, make):
-        """A folder that is not a base is left alone."""
+        """A folder that is not a base is left alone; one that a full disk kept from having a registry is one."""
         if not self.folder.is_dir():
             fail("STUDY_4", where, folder=self.folder)
-        if not (self.folder / _registry).exists() and any(self.folder.iterdir()):
+        if not (self.folder / _registry).exists() and not all(path.name.startswith((_registry, _orders)) for path in self.folder.iterdir()):
             fail("STUDY_4", where, folder=self.folder)
 
     def _read(self, where):
@@ -100,10 +101,8 @@ class Base:
 
     def write(self, where=""):
         """Replace the registry."""
-        partial = self.folder / (_registry + ".partial")
         try:
-            partial.write_text(json.dumps(self.registry), encoding="ascii")
-            os.replace(partial, self.folder / _registry)
+            write_whole(self.folder / _registry, json.dumps(self.registry))
         except OSError as error:
             fail("STUDY_3", where, folder=self.folder, reason=error.strerror)
 
@@ -188,7 +187,8 @@ class Base:
             with reused.open() as file:
                 version = int(file.attrs["version"]) + 1
         try:
-            with h5py.File(partial, "w") as file:
+            # in memory first: HDF5 does not survive a disk that is full
+            with h5py.File(partial, "w", driver="core", backing_store=False) as file:
                 attributes = {
                     "lacon_type": kind, "format": 1, "version": version, "id": identifier, "label": label, "command": command,
                     "keywords": dumps(keywords),
@@ -197,6 +197,9 @@ class Base:
                 for name, value in attributes.items():
                     file.attrs[name] = value
                 fill(file)
+                file.flush()
+                image = file.id.get_file_image()
+            partial.write_bytes(image)
             key = kept.file_key(partial)
             found = None if reused else self.kept.find(kind, key)
             if found:

@@ -11,7 +11,7 @@ import time
 
 from ..core import late
 from ..core.concepts import to_json
-from ..core.messages import AsterError, ConvergenceError, InternalError, Message, SolutionError, message
+from ..core.messages import AsterError, ConvergenceError, InternalError, Message, SolutionError, fail, message
 from ..core.plugins import operator_folder
 from . import expressions
 
@@ -50,9 +50,12 @@ def run(program, made, study):
     executable = operator_folder() / program
     if not os.access(executable, os.X_OK):
         raise InternalError([message("INTERNAL_2", made["source"], program=program, folder=operator_folder())])
-    order_file, status_file = study.order_files(made["command"])
-    status_file.unlink(missing_ok=True)
-    order_file.write_text(json.dumps(made, ensure_ascii=False, indent=1), encoding="utf-8")
+    try:
+        order_file, status_file = study.order_files(made["command"])
+        status_file.unlink(missing_ok=True)
+        order_file.write_text(json.dumps(made, ensure_ascii=False, indent=1), encoding="utf-8")
+    except OSError as error:
+        fail("STUDY_3", made["source"], folder=study.base.folder, reason=error.strerror)
     environment = dict(os.environ)
     environment.setdefault("OPENBLAS_NUM_THREADS", "1")  # the operator takes one thread of OpenBLAS: no others are started
     if study.threads:

@@ -7,7 +7,8 @@ digits, within TOLE_MACHINE. What is missed is NOOK; but a VALE_CALC that is mis
 
 import json
 import math
-import os
+
+from ..core.files import write_whole
 
 #: below it VALE_CALC is zero, and a relative judgement has no meaning
 _zero = 1e-16
@@ -151,10 +152,4 @@ def write_json(path, checks, diagnostic, status, timings):
     data = {"format": 1, "diagnostic": diagnostic, "status": status, "checks": [c.data() for c in checks], "timings": timings}
     for check in data["checks"]:
         check["value"] = _finite(check["value"])
-    is_device = os.path.exists(path) and not os.path.isfile(path)  # as /dev/stdout, which a renamed file would replace
-    partial = path if is_device else f"{path}.partial"
-    with open(partial, "w", encoding="utf-8") as file:
-        json.dump(data, file, indent=1, ensure_ascii=False)
-        file.write("\n")
-    if not is_device:
-        os.replace(partial, path)
+    write_whole(path, json.dumps(data, indent=1, ensure_ascii=False) + "\n")

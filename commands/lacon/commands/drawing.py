@@ -1,7 +1,6 @@
 """Curves on the unit of a command: FORMAT='XMGRACE' and 'PNG'."""
 
-import os
-
+from ..core.files import whole
 from ..tables.curves import Plot
 
 
@@ -16,12 +15,12 @@ def draw(call, made):
     plot.describe(k)
     plot.curves += made
     try:
-        if png:
-            plot.png(path + ".partial")
-        else:
-            with open(path + ".partial", "w", encoding="utf-8") as file:
-                file.write(plot.xmgrace())
-        os.replace(path + ".partial", path)
+        with whole(path) as partial:
+            if png:
+                plot.png(partial)
+            else:
+                with open(partial, "w", encoding="utf-8") as file:
+                    file.write(plot.xmgrace())
     except ImportError:
         vars(plot).update(before)
         call.fail("FUNCTION_10", "FORMAT")

@@ -7,6 +7,7 @@ import sys
 from ..base.base import Base
 from ..base.names import Names
 from ..core.concepts import Concept
+from ..core.files import write_whole
 from ..core.messages import AsterError, Message, fail, message, show
 from ..objects.kinds import kinds
 from . import execution
@@ -186,9 +187,7 @@ class Study:
                 with open(path, "a", encoding="utf-8") as file:
                     file.write(text)
             else:
-                with open(path + ".partial", "w", encoding="utf-8") as file:
-                    file.write(text)
-                os.replace(path + ".partial", path)
+                write_whole(path, text)
         except OSError:
             fail("COMMAND_8", where, unit=number, file=path)
         self.written_units[number] = path

@@ -1,0 +1,29 @@
+"""Files that are written wholly or not at all."""
+
+import contextlib
+import os
+
+
+@contextlib.contextmanager
+def whole(path):
+    """`with whole(path) as partial:` write the file `partial`; behind it, the file has its name. Whatever goes wrong removes it and goes on.
+
+    A device, as /dev/stdout, which a renamed file would replace, is written itself.
+    """
+    if os.path.exists(path) and not os.path.isfile(path):
+        yield path
+        return
+    partial = f"{path}.partial"
+    try:
+        yield partial
+        os.replace(partial, path)
+    except BaseException:
+        with contextlib.suppress(OSError):
+            os.unlink(partial)
+        raise
+
+
+def write_whole(path, text):
+    """A text file in UTF-8. @throws OSError"""
+    with whole(path) as partial, open(partial, "w", encoding="utf-8") as file:
+        file.write(text)
