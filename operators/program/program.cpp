@@ -12,6 +12,7 @@
 
 #include "lacon/catalog/messages.hpp"
 #include "lacon/operators/program/blas.hpp"
+#include "lacon/operators/program/ending.hpp"
 
 namespace lacon {
 namespace {
@@ -90,6 +91,7 @@ int run(int argc, char** argv, CLI::App& app, const std::function<void()>& work)
     return app.exit(error) == 0 ? done : user_error;
   }
   set_message_sink(print);
+  end_with_launcher();
   const double start = now();
   const int status = guarded(work);
   std::cout.flush();

@@ -7,10 +7,12 @@
 #include "lacon/assembly/mumps_engine.hpp"
 #include "lacon/operators/evolution/archive.hpp"
 #include "lacon/operators/evolution/contact_notices.hpp"
+#include "lacon/operators/evolution/interruption.hpp"
 #include "lacon/operators/evolution/newton.hpp"
 #include "lacon/operators/evolution/step_events.hpp"
 #include "lacon/operators/evolution/table.hpp"
 #include "lacon/operators/evolution/time_stepping.hpp"
+#include "lacon/operators/program/ending.hpp"
 #include "lacon/operators/program/program.hpp"
 
 namespace lacon {
@@ -89,8 +91,10 @@ void stat_non_line(const Order& order, const Base& base) {
   NewtonTable table(std::cout, present, keywords.factor("AFFICHAGE").yes("INFO_RESIDU"), keywords.integer("INFO") == 2);
   StepEvents events(steps.events, base, problem.mesh, fields_of(present));
   ContactNotices notices(present);
+  Interruption interruption;
+  wait_with_ending();
   // what is told as converged is in the base
-  const std::array<EvolutionObserver*, 5> observers{&observations, &archive, &table, &events, &notices};
+  const std::array<EvolutionObserver*, 6> observers{&observations, &archive, &table, &events, &notices, &interruption};
   evolve(steps, solver, observers);
 }
 

@@ -74,17 +74,17 @@ class Life(LauncherTest):
         handle = os.open(self.work / "study.base", os.O_RDONLY)
         fcntl.flock(handle, fcntl.LOCK_EX)
         try:
-            self.refused(self.run_study("DEBUT()\n"), "STUDY_5")
+            self.refused(self.run_study("DEBUT()\n"), "STUDY_5", "its process is not known")
         finally:
             os.close(handle)
 
-    def test_an_operator_that_outlives_the_launcher_holds_the_base(self):
+    def test_an_operator_that_does_not_end_with_the_launcher_holds_the_base(self):
         program = self.bin / "lire_maillage"
         program.write_text(f"#!{sys.executable}\nimport os, signal, sys, time\nos.kill(os.getppid(), signal.SIGKILL)\n"
                            "open(sys.argv[1] + '.pid', 'w').write(str(os.getpid()))\ntime.sleep(30)\n")
         self.assertEqual(self.run_study("DEBUT()\nM = LIRE_MAILLAGE()\n", output=False).status, -signal.SIGKILL)
         try:
-            self.refused(self.run_study("DEBUT()\n"), "STUDY_5")
+            self.refused(self.run_study("DEBUT()\n"), "STUDY_5", "process ", "since 20")
         finally:
             deadline = time.monotonic() + 20
             while not (found := list(self.orders.glob("*.pid"))) and time.monotonic() < deadline:

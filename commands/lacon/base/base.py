@@ -10,6 +10,7 @@ import os
 import pathlib
 import re
 import shutil
+import time
 import weakref
 
 from ..core.concepts import concepts_in, dumps, type_of
@@ -21,6 +22,8 @@ from .unfinished import Unfinished
 
 _registry = "base.json"
 _orders = "orders.partial"
+#: seconds after which an operator whose launcher is gone has ended
+patience = 3.0
 _entry = re.compile(r"([a-z_]+_\d+)(\.h5)?(\.partial)?$")
 
 
@@ -44,12 +47,7 @@ class Base:
                 fail("STUDY_3", where, folder=self.folder, reason=error.strerror)
             self._made = True
         self._check_folder(where, make)
-        try:
-            self.lock = os.open(self.folder, os.O_RDONLY)
-            fcntl.flock(self.lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
-        except BlockingIOError:
-            os.close(self.lock)
-            fail("STUDY_5", where, folder=self.folder)
+        self._take(where)
         self.kept = kept.Kept(self, look=not force)
         self.unfinished = Unfinished(self)
         try:
@@ -63,6 +61,36 @@ class Base:
         except BaseException:
             self.close()
             raise
+
+    def _take(self, where):
+        """Lock the folder. Where the launcher that holds it is gone, its operator ends within a moment."""
+        self.lock = os.open(self.folder, os.O_RDONLY)
+        until = time.monotonic() + patience
+        while True:
+            try:
+                fcntl.flock(self.lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
+                return
+            except BlockingIOError:
+                holder = self._holder()
+                if time.monotonic() < until and holder and not _is_alive(holder["process"]):
+                    time.sleep(0.05)
+                    continue
+                os.close(self.lock)
+                who = f"process {holder['process']}, since {holder['since']}" if holder else "its process is not known"
+                fail("STUDY_5", where, folder=self.folder, who=who)
+
+    def _holder(self):
+        """{"process", "since"} of the run that is under way, as it has entered itself."""
+        try:
+            holder = json.loads((self.folder / _registry).read_text(encoding="utf-8"))["running"]
+            return {"process": int(holder["process"]), "since": str(holder["since"])}
+        except (OSError, ValueError, KeyError, TypeError):
+            return None
+
+    def hold(self, where):
+        """Enter this run as the one that is under way."""
+        self.registry["running"] = {"process": os.getpid(), "since": time.strftime("%Y-%m-%d %H:%M:%S")}
+        self.write(where)
 
     def _start(self, folder, kinds):
         """What every base has, one that is only read too."""
@@ -288,6 +316,16 @@ class ReadBase(Base):
         """label -> concept, of the concepts of a type that are there."""
         return {label: self.concept(identifier, label) for label, identifier in self.registry["labels"].items()
                 if type_of(identifier) == kind and self.path(identifier).exists()}
+
+
+def _is_alive(process):
+    try:
+        os.kill(process, 0)
+    except ProcessLookupError:
+        return False
+    except PermissionError:
+        pass  # another user's
+    return True
 
 
 def _remove(path):

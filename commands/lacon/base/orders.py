@@ -15,6 +15,8 @@ from ..core.messages import AsterError, ConvergenceError, InternalError, Message
 from ..core.plugins import operator_folder
 from . import expressions
 
+#: seconds that an operator has to end; it needs less
+patience = 1.8
 #: what messages of a solution that failed in the linear solver begin with; any other is one of Newton's method
 linear_solver = "SOLVER_"
 
@@ -65,9 +67,9 @@ def run(program, made, study):
     start = time.perf_counter()
     quiet = subprocess.PIPE if study.ignored_alarms else None
     ours, theirs = socket.socketpair()  # for formulae
-    environment["LACON_FORMULAS"] = str(theirs.fileno())
+    environment.update(LACON_FORMULAS=str(theirs.fileno()), LACON_LAUNCHER=str(os.getpid()))
     with ours:
-        with theirs:  # an operator that outlives the launcher still holds the base
+        with theirs:  # an operator that ends a moment after the launcher still holds the base
             arguments = [executable, order_file, "--status", status_file, *(["--verbose"] if study.verbose else [])]
             process = subprocess.Popen(arguments, env=environment, stderr=quiet,
                                        stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL if study.check else None, pass_fds=(study.base.lock, theirs.fileno()))
@@ -82,11 +84,24 @@ def run(program, made, study):
             if forward:
                 forward.join()
         except BaseException:
-            process.kill()
-            process.wait()
+            _end(process)
             raise
     seconds = time.perf_counter() - start
     return Outcome(process.returncode, *_read_status(status_file, f"{made['command']}, {made['source']}"), seconds)
+
+
+def _end(process):
+    """End an operator: it stores or gives up what it has in hand, for which it has no more than a moment."""
+    import subprocess  # start-up: see run()
+
+    process.terminate()
+    try:
+        process.wait(patience)
+    except subprocess.TimeoutExpired:
+        pass
+    finally:
+        process.kill()
+        process.wait()
 
 
 def _serve_formulas(stream, base):

@@ -8,6 +8,7 @@ import os
 import shutil
 import signal
 import sys
+import sysconfig
 import tokenize
 import traceback
 import warnings
@@ -51,6 +52,30 @@ class TimeOver(BaseException):
     def __init__(self, seconds):
         super().__init__(f"{seconds:g} s")
         self.seconds = seconds
+
+
+class Ended(BaseException):
+    """A signal ends the run; no exception that a command file may catch by Exception."""
+
+    def __init__(self, number):
+        super().__init__(signal.Signals(number).name)
+
+
+@contextlib.contextmanager
+def signals():
+    """Raise Ended at the signals that ask a run to end; one that is ignored (nohup) stays so."""
+    def end(number, _):
+        raise Ended(number)
+
+    before = {number: signal.getsignal(number) for number in (signal.SIGTERM, signal.SIGHUP, signal.SIGINT)}
+    for number, handler in before.items():
+        if handler is not signal.SIG_IGN:
+            signal.signal(number, end)
+    try:
+        yield
+    finally:
+        for number, handler in before.items():
+            signal.signal(number, handler)
 
 
 @contextlib.contextmanager
@@ -140,8 +165,8 @@ def _run_file(study, path, source, values):
     except TimeOver as error:
         show(message("STUDY_25", place(error), seconds=f"{error.seconds:g}"))
         raise Failure(3, "<S>_CPU_LIMIT") from None
-    except KeyboardInterrupt as error:
-        show(message("STUDY_18", place(error)))
+    except Ended as error:
+        show(message("STUDY_18", place(error), signal=error))
         raise Failure(4, "<F>_ABNORMAL_ABORT") from None
     except namespace.LostName as error:
         show(error.item._replace(where=place(error)))
@@ -172,9 +197,13 @@ def _user_entries(error):
     return [entry for entry in traceback.extract_tb(error.__traceback__) if not entry.filename.startswith((labels.package, "<frozen"))]
 
 
+#: where the modules of Python and its packages are
+_libraries = tuple(set(sysconfig.get_paths().values()))
+
+
 def place(error):
-    """"study.comm:12": the line of a command file at which an exception was thrown."""
-    entries = _user_entries(error)
+    """"study.comm:12": the line of a command file at which an exception was thrown, or at which it called what has thrown it."""
+    entries = [entry for entry in _user_entries(error) if not entry.filename.startswith(_libraries)]
     return f"{entries[-1].filename}:{entries[-1].lineno}" if entries else ""
 
 

@@ -79,7 +79,7 @@ def run_command_line(options, units):
         run.protect(name)
 
     def work():
-        with execution.delivered(export.named), execution.time_limit(export.parameters.get("time_limit", "")):
+        with execution.signals(), execution.delivered(export.named), execution.time_limit(export.parameters.get("time_limit", "")):
             execution.run_files(run, export.commands)
 
     status, diagnostic = run_study(run, work)

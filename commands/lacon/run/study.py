@@ -55,7 +55,7 @@ class Study:
             self.base = Base(self.base_folder, kinds, where, make=not resume, fresh=self.fresh and not resume,
                              force=self.force)
             if resume:
-                self.killed = self.base.registry.get("running", False)
+                self.killed = bool(self.base.registry.get("running"))
                 self.sources.update(self.base.registry.get("sources", ()))
                 self.lost = self.names.restore(self.base)
                 self._explain_lost()
@@ -66,8 +66,7 @@ class Study:
         elif not resume and self.fresh and not self._emptied:
             fail("STUDY_10", where)
         self._emptied = True
-        self.base.registry["running"] = True
-        self.base.write(where)
+        self.base.hold(where)
         self.open, self.ended = True, ""
         self.alarm_is_error = keywords["ERREUR"][0]["ALARME"] == "EXCEPTION"
         self.ignored_alarms = frozenset(keywords.get("IGNORE_ALARM", ()))

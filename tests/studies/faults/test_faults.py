@@ -4,9 +4,11 @@ command file run again computes what is missing to the same bits."""
 import os
 import pathlib
 import re
+import shutil
 import signal
 import subprocess
 import sys
+import time
 import unittest
 
 import h5py
@@ -152,6 +154,72 @@ class Kept(FaultTest):
                     for entry in file["fields"].values():
                         self.assertTrue(all((self.folder / "s.base" / name).is_file() for name in entry["file"].asstr()[:]))
         self.assertEqual((run.returncode, most), (0, INSTANTS + 1))
+
+
+class Ends(FaultTest):
+    """No operator outlives its launcher, and both end within two seconds."""
+
+    MOMENT = 2.0
+
+    def is_alive(self, process):
+        try:
+            return pathlib.Path(f"/proc/{process}/stat").read_text().rpartition(")")[2].split()[0] != "Z"
+        except OSError:
+            return False
+
+    def ended_by(self, number, whom=lambda run: run.pid, how=os.kill):
+        """A run that gets a signal after two instants; no operator is left. @return its exit status, what it said"""
+        run = self.start("s.base", start_new_session=True)
+        text = self.until(run, 2)
+        operator, start = operator_of(run.pid), time.monotonic()
+        how(whom(run), number)
+        text += run.communicate(timeout=SECONDS)[0]
+        while self.is_alive(operator) and time.monotonic() < start + SECONDS:
+            time.sleep(0.01)
+        self.assertLess(time.monotonic() - start, self.MOMENT)
+        self.assertEqual(self.instants("s.base")[:2], converged(text)[:2])
+        return run.returncode, text
+
+    def test_the_launcher_is_killed(self):
+        self.assertEqual(self.ended_by(signal.SIGKILL)[0], -signal.SIGKILL)
+
+    def test_the_launcher_is_asked_to_end(self):
+        for number in (signal.SIGTERM, signal.SIGINT, signal.SIGHUP):
+            status, text = self.ended_by(number)
+            self.assertEqual(status, 4, text)
+            self.assertIn(f"<F> <STUDY_18> the run was ended by {number.name}\n    where: {STUDY}:", text)
+            self.assertIn("COMMAND_14", text)
+            shutil.rmtree(self.folder / "s.base")
+
+    def test_both_are_interrupted(self):
+        """As by Ctrl-C in a terminal."""
+        status, text = self.ended_by(signal.SIGINT, lambda run: os.getpgid(run.pid), os.killpg)
+        self.assertEqual(status, 4, text)
+        self.assertIn(f"<F> <STUDY_18> the run was ended by SIGINT\n    where: {STUDY}:", text)
+
+    def test_the_time_limit_is_over(self):
+        (self.folder / "s.export").write_text(f"P time_limit 2.5\nF comm {STUDY} D 1\nF libr {self.folder}/stack.med D 20\n", encoding="utf-8")
+        self.environment["FAULTS_LAW"] = "VMIS_ISOT_LINE"
+        write_med(self.folder / "stack.med", stack(8))
+        run = self.run_tool("s.export", "--base", "s.base", FAULTS_LAW="VMIS_ISOT_LINE")
+        self.assertEqual(run.returncode, 3, run.stdout[-2000:] + run.stderr)
+        self.assertIn(f"<S> <STUDY_25> the time limit of 2.5 s is over\n    where: {STUDY}:", run.stderr)
+
+    def test_who_uses_the_base(self):
+        run = self.start("s.base")
+        self.until(run, 1)
+        other = self.run_tool(*self.command("s.base")[1:])
+        self.assertEqual(other.returncode, 2, other.stdout)
+        self.assertIn(f"in use by another run: process {run.pid}, since 20", other.stderr)
+        self.assertEqual(run.wait(SECONDS), 0, run.communicate())
+        run.stdout.close()
+
+    def test_the_next_run_waits_for_the_operator_of_one_that_was_killed(self):
+        run = self.start("s.base")
+        self.until(run, 1)
+        run.kill()
+        run.communicate()
+        self.whole("s.base")
 
 
 if __name__ == "__main__":
