@@ -87,7 +87,7 @@ void write_field_content(const hdf5::Group& root, const Field& field) {
 }
 
 void write_field(const std::filesystem::path& file, const Field& field) {
-  hdf5::write_whole(file, [&](const hdf5::Group& root) {
+  hdf5::write_sealed(file, [&](const hdf5::Group& root) {
     root.set("lacon_type", "field");
     root.set("format", std::int64_t{1});
     write_field_content(root, field);

@@ -9,6 +9,7 @@
 #include "lacon/catalog/messages.hpp"
 #include "lacon/structures/files.hpp"
 #include "lacon/structures/memory.hpp"
+#include "lacon/structures/seal.hpp"
 
 namespace lacon::hdf5 {
 namespace {
@@ -381,27 +382,9 @@ class Writer : public Group {
   Writer(Handle root, const std::filesystem::path& path) : Group(std::move(root), path, true) {}
 };
 
-}  // namespace
-
-Reader::Reader(const std::filesystem::path& file) : Group({}, file, false) {
-  prepare();
-  file_ = Handle(H5Fopen(file.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), H5Fclose);
-  if (file_ < 0) {
-    std::error_code error;
-    if (!std::filesystem::exists(file, error)) refuse("there is no such file");
-    if (std::filesystem::is_directory(file, error)) refuse("it is a folder");
-    if (std::FILE* stream = std::fopen(file.c_str(), "rb"))
-      std::fclose(stream);
-    else
-      refuse(std::strerror(errno));
-    if (H5Fis_hdf5(file.c_str()) <= 0) refuse("it is not an HDF5 file");
-    refuse("HDF5 cannot open it: it may be cut off, or open elsewhere for writing");
-  }
-  id_ = Handle(H5Gopen2(file_, "/", H5P_DEFAULT), H5Gclose);
-}
-
-void write_whole(const std::filesystem::path& file, const std::function<void(const Group&)>& write,
-                 const std::filesystem::path& copy_of) {
+/// Create `file` as write_whole() does; `finish` has its way with the partial file before that gets its name.
+void write_partial(const std::filesystem::path& file, const std::function<void(const Group&)>& write,
+                   const std::filesystem::path& copy_of, void (*finish)(const std::filesystem::path&)) {
   prepare();
   check_replaceable(file);
   const std::filesystem::path partial = file.string() + ".partial";
@@ -423,12 +406,42 @@ void write_whole(const std::filesystem::path& file, const std::function<void(con
     }
     if (H5Fflush(opened, H5F_SCOPE_LOCAL) < 0) cannot_write(file, with_system_reason("it cannot be ended"));
     opened = Handle();
+    finish(partial);
     std::filesystem::rename(partial, file, error);
     if (error) cannot_write(file, error.message());
   } catch (...) {
     std::filesystem::remove(partial, error);
     throw;
   }
+}
+
+}  // namespace
+
+Reader::Reader(const std::filesystem::path& file) : Group({}, file, false) {
+  prepare();
+  check_seal(file);
+  file_ = Handle(H5Fopen(file.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), H5Fclose);
+  if (file_ < 0) {
+    std::error_code error;
+    if (!std::filesystem::exists(file, error)) refuse("there is no such file");
+    if (std::filesystem::is_directory(file, error)) refuse("it is a folder");
+    if (std::FILE* stream = std::fopen(file.c_str(), "rb"))
+      std::fclose(stream);
+    else
+      refuse(std::strerror(errno));
+    if (H5Fis_hdf5(file.c_str()) <= 0) refuse("it is not an HDF5 file");
+    refuse("HDF5 cannot open it: it may be cut off, or open elsewhere for writing");
+  }
+  id_ = Handle(H5Gopen2(file_, "/", H5P_DEFAULT), H5Gclose);
+}
+
+void write_whole(const std::filesystem::path& file, const std::function<void(const Group&)>& write,
+                 const std::filesystem::path& copy_of) {
+  write_partial(file, write, copy_of, [](const std::filesystem::path&) {});
+}
+
+void write_sealed(const std::filesystem::path& file, const std::function<void(const Group&)>& write) {
+  write_partial(file, write, {}, seal);
 }
 
 }  // namespace lacon::hdf5

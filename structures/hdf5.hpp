@@ -114,7 +114,8 @@ class Group {
   bool writing_ = false;
 };
 
-/// Open for reading; throws BASE_2 where the file is missing or is not HDF5.
+/// Open for reading; throws BASE_2 where the file is missing or is not HDF5, BASE_5 where it is not what its seal says
+/// (seal.hpp).
 class Reader : public Group {
  public:
   explicit Reader(const std::filesystem::path& file);
@@ -127,5 +128,7 @@ class Reader : public Group {
 /// With `copy_of` the new file starts as a copy of that one. Throws BASE_3.
 void write_whole(const std::filesystem::path& file, const std::function<void(const Group&)>& write,
                  const std::filesystem::path& copy_of = {});
+/// The same for a file of a base, which is sealed.
+void write_sealed(const std::filesystem::path& file, const std::function<void(const Group&)>& write);
 
 }  // namespace lacon::hdf5

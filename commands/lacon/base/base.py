@@ -17,7 +17,7 @@ from ..core.concepts import concepts_in, dumps, type_of
 from ..core.files import write_whole
 from ..core.late import h5py
 from ..core.messages import NeedsRun, fail
-from . import contents, kept
+from . import contents, kept, seal
 from .unfinished import Unfinished
 
 _registry = "base.json"
@@ -157,7 +157,7 @@ class Base:
         if identifier in self.unsolved:
             raise NeedsRun(*self.unsolved[identifier])
         try:
-            return h5py.File(self.path(identifier), "r")
+            return seal.open_checked(self.path(identifier))
         except OSError as error:
             fail("STUDY_7", file=self.path(identifier), reason=error)
 
@@ -227,7 +227,7 @@ class Base:
                 fill(file)
                 file.flush()
                 image = file.id.get_file_image()
-            partial.write_bytes(image)
+            partial.write_bytes(image + seal.of(image))
             key = kept.file_key(partial)
             found = None if reused else self.kept.find(kind, key)
             if found:

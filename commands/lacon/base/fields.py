@@ -1,8 +1,9 @@
 """Fields of results and of their own, read from their files; docs/structures.md section 3."""
 
 from ..core.hdf5 import text, texts
-from ..core.late import h5py, numpy
+from ..core.late import numpy
 from ..core.messages import fail
+from . import seal
 
 
 class FieldData:
@@ -51,6 +52,6 @@ class FieldData:
 def open_field(folder, path):
     """A field's file, `path` relative to the base. @throws AsterError STUDY_7"""
     try:
-        return h5py.File(folder / path, "r")
+        return seal.open_checked(folder / path)
     except OSError as error:
         fail("STUDY_7", file=folder / path, reason=error)

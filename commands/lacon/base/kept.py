@@ -8,7 +8,8 @@ is there already, the concept that is there keeps its id.
 `reuse=` makes versions of one id. Each keeps its file (a hard link in the folder kept/ of the base) as long as the concept is there, so
 that a later run can go back to the first and forward again from it.
 
-Registry, key "made": id -> list of versions, each {"key", "stat" (size and time of its file), "references", "alarms"}.
+Registry, key "made": id -> list of versions, each {"key", "stat" (size and time of its file), "fields" (the same of
+each field file of a result), "references", "alarms"}.
 """
 
 import ast
@@ -25,8 +26,7 @@ import sys
 from .. import version
 from ..core import catalog, plugins
 from ..core.concepts import type_of
-from ..core.late import h5py
-from . import contents, names
+from . import contents, names, seal
 
 #: of the base: versions of concepts that were changed in place
 folder = "kept"
@@ -154,16 +154,16 @@ class Kept:
         """Put a version of a concept in its place. @return false where its files are not as they were left"""
         record, path = self._made[identifier][at], self.base.path(identifier)
         source = path if _stat(path) == record["stat"] else self._copy(identifier, at)
-        if _stat(source) != record["stat"] or not self._whole(identifier, source):
+        if _stat(source) != record["stat"] or self._field_stats(identifier, source) != record.get("fields"):
             return False
         if source != path:
             _link(source, path)
         self._at[identifier] = at
         return True
 
-    def _whole(self, identifier, path):
-        """Every field file of a result is there."""
-        return all((self.base.folder / name).is_file() for name in _fields(path)) if type_of(identifier) == "result" else True
+    def _field_stats(self, identifier, path):
+        """Size and time of each field file that a version of a result names; None for another concept."""
+        return {name: _stat(self.base.folder / name) for name in _fields(path)} if type_of(identifier) == "result" else None
 
     # ------------------------------------------------------------------------------------------- entering
 
@@ -202,8 +202,9 @@ class Kept:
         if key is None:
             return
         alarms = [[m.severity, m.id, m.text, m.do] for m in messages if m.severity == "A"]
+        fields = self._field_stats(identifier, self.base.path(identifier))
         record = {"key": key, "stat": _stat(self.base.path(identifier)), "alarms": alarms,
-                  "references": sorted(i for i in self.base.references(identifier) if i != identifier and self.base.is_there(i))}
+                  **({"fields": fields} if fields is not None else {}), "references": sorted(i for i in self.base.references(identifier) if i != identifier and self.base.is_there(i))}
         versions = self._made.setdefault(identifier, [])
         versions.append(record)
         self._at[identifier] = len(versions) - 1
@@ -246,7 +247,7 @@ def file_key(path):
             digest.update(f"{name}:{item.dtype}{item.shape};".encode())
             digest.update(value.tobytes() if hasattr(value, "tobytes") and not value.dtype.hasobject else repr(_listed(value)).encode())
 
-    with h5py.File(path, "r") as file:
+    with seal.open_checked(path) as file:
         attributes("", file)
         file.visititems(visit)
     return digest.hexdigest()
@@ -329,7 +330,7 @@ def _fields(index):
     """Field files that an index of a result names."""
     if not index.is_file():
         return set()
-    with h5py.File(index, "r") as file:
+    with seal.open_checked(index) as file:
         return contents.field_files(file)
 
 

@@ -1,0 +1,54 @@
+"""Seals of the files of a base, docs/structures.md section 1: what `structures/seal.cpp` is for operators."""
+
+import struct
+
+from ..core.late import h5py, numpy
+from ..core.messages import fail
+
+_mark = b"LACONSUM"
+_length = 32
+_part = 1 << 23  #: bytes at a time
+
+_known = {}  #: path -> the state of the file that was looked at last
+
+
+class _Sums:
+    def __init__(self):
+        self.sum = self.sum_of_sums = numpy.uint64(0)
+
+    def add(self, content):
+        """@param content bytes; of a whole number of words but for the last ones"""
+        words = numpy.frombuffer(content + bytes(-len(content) % 8), "<u8")
+        with numpy.errstate(over="ignore"):
+            ranks = numpy.arange(len(words), 0, -1, dtype=numpy.uint64)
+            self.sum_of_sums += numpy.uint64(len(words)) * self.sum + (ranks * words).sum(dtype=numpy.uint64)
+            self.sum += words.sum(dtype=numpy.uint64)
+
+    def seal(self, length):
+        return _mark + struct.pack("<QQQ", length, int(self.sum), int(self.sum_of_sums))
+
+
+def of(content):
+    """The seal of the content of a file."""
+    sums = _Sums()
+    sums.add(content)
+    return sums.seal(len(content))
+
+
+def open_checked(path):
+    """An h5py.File to be read, whose content is that of its seal. @throws AsterError BASE_5, OSError"""
+    with open(path, "rb") as file:
+        length = file.seek(0, 2) - _length
+        file.seek(max(length, 0))
+        found = file.read()
+        about = path.stat()
+        state = about.st_ino, about.st_size, about.st_mtime_ns
+        if found.startswith(_mark) and _known.get(path) != state:
+            sums = _Sums()
+            file.seek(0)
+            for first in range(0, length, _part):
+                sums.add(file.read(min(_part, length - first)))
+            if found != sums.seal(length):
+                fail("BASE_5", file=path)
+            _known[path] = state
+    return h5py.File(path, "r")

@@ -1,0 +1,92 @@
+"""Files of a base that have changed since they were written: whoever reads them says so, and nothing crashes."""
+
+import pathlib
+import random
+import subprocess
+import sys
+
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1]))
+
+from study_test import LACON  # noqa: E402, I001
+
+from .small_study import SmallStudy  # noqa: E402
+
+
+class Damaged(SmallStudy):
+    def setUp(self):
+        super().setUp()
+        self.orders = self.folder / "orders"
+        run = self.run_small("small", LACON_ORDERS=str(self.orders))
+        self.assertEqual(run.returncode, 0, run.stderr)
+        self.base = self.folder / "small.base"
+
+    def readers(self):
+        """(file of the base, order of an operator that reads it whole)"""
+        pairs = []
+        for order in sorted(self.orders.glob("*.order.json")):
+            program, text = order.name.split(".")[0].partition("-")[2], order.read_text(encoding="utf-8")
+            for path in sorted(self.base.rglob("*.h5")):
+                concept = path.relative_to(self.base).parts[0].removesuffix(".h5")
+                named = f'"{concept}"' in text.split('"keywords"')[1] and path.parent.name != "kept"
+                if named and (path.name == "index.h5" or path.parent == self.base or program == "impr_resu"):
+                    pairs.append((path, LACON.parent / program, order))
+        return pairs
+
+    def damage(self, number, seed):
+        """`number` files, each read when one or several of its bytes have changed, or its end is missing."""
+        chance = random.Random(seed)
+        pairs = self.readers()
+        self.assertGreater(len(pairs), 20)
+        for _ in range(number):
+            path, program, order = chance.choice(pairs)
+            sound = path.read_bytes()
+            spoilt = bytearray(sound)
+            if chance.random() < 0.2:
+                del spoilt[chance.randrange(8, len(spoilt)):]
+            else:
+                for _ in range(chance.choice((1, 1, 4, 16))):
+                    spoilt[chance.randrange(len(spoilt) - 32)] ^= chance.randrange(1, 256)  # the last 32 are the seal itself
+            path.write_bytes(spoilt)
+            with self.subTest(file=path.name, program=program.name, seed=seed):
+                run = subprocess.run([program, order], capture_output=True, text=True, errors="replace", timeout=60, check=False)
+                self.assertEqual(run.returncode, 2, run.stderr)
+                self.assertRegex(run.stderr, r"<F> <BASE_[25]>")
+                self.assertIn(path.name, run.stderr)
+            path.write_bytes(sound)
+
+
+class Short(Damaged):
+    def test_operators_refuse_them(self):
+        self.damage(60, seed=1)
+
+    def test_the_launcher_refuses_them(self):
+        check = "POURSUITE()\nTEST_RESU(RESU=_F(RESULTAT=RESULT, NUME_ORDRE=3, NOM_CHAM='DEPL', NOM_CMP='DZ', TYPE_TEST='MIN', VALE_CALC=-0.01))\nFIN()\n"
+        (self.folder / "check.comm").write_text(check, encoding="utf-8")
+        (field,) = self.base.glob("result_*/DEPL_3.h5")
+        sound = field.read_bytes()
+        for spoilt in (sound[:600] + b"\xff" * 8 + sound[608:], sound[:1000]):
+            field.write_bytes(spoilt)
+            run = self.run_tool("check.comm", "--base", self.base)
+            self.assertEqual(run.returncode, 2, run.stdout + run.stderr)
+            self.assertRegex(run.stderr, r"<F> <(BASE_5|STUDY_7)> .*DEPL_3.h5")
+
+    def test_a_result_with_a_field_that_was_touched_is_made_again(self):
+        for cut, change in ((1000, b""), (-1, b"\xff")):
+            (field,) = self.base.glob("result_*/DEPL_2*.h5")
+            field.write_bytes(field.read_bytes()[:cut] + change)
+            run = self.run_small("small")
+            self.assertEqual(run.returncode, 0, run.stdout + run.stderr)
+            self.assertNotRegex(run.stdout, r"RESULT = STAT_NON_LINE.*\n.*kept")
+            again = self.run_small("small")
+            self.assertRegex(again.stdout, r"RESULT = STAT_NON_LINE.*\n.*kept")
+
+    def test_a_file_that_a_tool_changed_has_no_seal_and_is_read(self):
+        mesh = self.base / "mesh_1.h5"
+        mesh.write_bytes(mesh.read_bytes()[:-32])
+        order = next(order for path, program, order in self.readers() if path == mesh and program.name == "crea_maillage")
+        self.assertEqual(subprocess.run([LACON.parent / "crea_maillage", order], capture_output=True, check=False).returncode, 0)
+
+
+class Long(Damaged):
+    def test_operators_refuse_them(self):
+        self.damage(2000, seed=2)

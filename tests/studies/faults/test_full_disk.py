@@ -1,0 +1,70 @@
+"""A disk that fills up at any moment of a study: a clear error, nothing half-written, and the same command file again comes to the same end."""
+
+import os
+import pathlib
+import re
+import struct
+import sys
+
+import h5py
+
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1]))
+
+from test_threads import datasets  # noqa: E402, I001
+
+from .small_study import SmallStudy  # noqa: E402
+
+SHIM = pathlib.Path(os.environ["LACON_BINARY_DIR"]).resolve() / "tests/full_disk.so"
+PLENTY = 1 << 40
+def first_name(file):
+    """What was begun twice has another number, result_12, and a field of another name, SIGM_NOEU_0_2.h5."""
+    return re.sub(r"(_\d+)_\d+(?=\.h5$)", r"\1", re.sub(r"result_\d+", "result", file))
+
+
+def fields(base):
+    """What a base holds, without the names of files, which the index of a result and its copy in kept/ know."""
+    return {(first_name(file), name): value for (file, name), value in datasets(base).items()
+            if not (file.endswith("index.h5") or file.startswith("kept/"))}
+
+
+class FullDisk(SmallStudy):
+    def run_on_disk(self, name, left):
+        """Run the study on a disk that takes `left` bytes more. @return the run"""
+        (self.folder / "left").write_bytes(struct.pack("<q", left))
+        return self.run_small(name, LD_PRELOAD=str(SHIM), LACON_TEST_DISK=str(self.folder / "left"))
+
+    def files(self, name):
+        return {str(path.relative_to(self.folder)) for path in self.folder.rglob("*") if path.relative_to(self.folder).parts[0].startswith(name)}
+
+    def fill(self, levels):
+        """The study on disks that are full after a share of what it writes, and again with room enough."""
+        whole = self.run_on_disk("whole", PLENTY)
+        self.assertEqual(whole.returncode, 0, whole.stderr)
+        needed = PLENTY - struct.unpack("<q", (self.folder / "left").read_bytes())[0]
+        expected = fields(self.folder / "whole.base")
+        self.assertGreater(len(expected), 50)
+        for number, share in enumerate(levels):
+            name = f"part{number}_"
+            with self.subTest(share=share, bytes=int(share * needed)):
+                run = self.run_on_disk(name, int(share * needed))
+                self.assertEqual((run.returncode, run.stdout.splitlines()[-1]), (2, "--- DIAGNOSTIC JOB : <F>_ERROR"), run.stdout + run.stderr)
+                self.assertIn("No space left on device", run.stderr)
+                self.assertNotIn("Traceback", run.stderr)
+                self.assertEqual([file for file in self.files(name) if ".partial" in file and ".base/" not in file], [])
+                for path in self.folder.glob(f"{name}*.rmed"):
+                    h5py.File(path).close()  # whole, or not there
+                again = self.run_small(name)
+                self.assertEqual(again.returncode, 0, again.stdout + again.stderr)
+                found = fields(self.folder / f"{name}.base")
+                self.assertEqual([key for key in found.keys() | expected.keys() if found.get(key) != expected.get(key)], [])
+                self.assertEqual({first_name(file.replace(name, "whole")) for file in self.files(name)}, set(map(first_name, self.files("whole"))))
+
+
+class Short(FullDisk):
+    def test_the_same_command_again_comes_to_the_same_end(self):
+        self.fill([0, 0.002, 0.05, 0.3, 0.48, 0.98])
+
+
+class Long(FullDisk):
+    def test_the_same_command_again_comes_to_the_same_end(self):
+        self.fill([level / 64 for level in range(64)])

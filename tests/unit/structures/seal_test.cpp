@@ -1,0 +1,77 @@
+// Seals: every small damage is seen, wherever it is.
+#include "lacon/structures/seal.hpp"
+
+#include <gtest/gtest.h>
+
+#include <fstream>
+#include <random>
+#include <sstream>
+#include <string>
+
+#include "lacon/catalog/messages.hpp"
+
+namespace {
+
+struct Sealed : testing::Test {
+  std::filesystem::path file = testing::TempDir() + "lacon_seal_test";
+  std::string whole;
+
+  ~Sealed() override { std::filesystem::remove(file); }
+
+  void write(const std::string& bytes) const { std::ofstream(file, std::ios::binary) << bytes; }
+  void make(std::size_t length) {
+    std::mt19937 chance(static_cast<unsigned>(length));
+    std::string content(length, '\0');
+    for (char& c : content) c = static_cast<char>(chance());
+    write(content);
+    lacon::seal(file);
+    std::ostringstream bytes;
+    bytes << std::ifstream(file, std::ios::binary).rdbuf();
+    whole = bytes.str();
+    ASSERT_EQ(whole.size(), length + 32);
+    EXPECT_EQ(whole.substr(0, length), content);
+    lacon::check_seal(file);
+  }
+  void refused(const std::string& bytes, const std::string& what) const {
+    write(bytes);
+    try {
+      lacon::check_seal(file);
+      ADD_FAILURE() << what;
+    } catch (const lacon::Error& error) {
+      EXPECT_EQ(error.message().id, "BASE_5") << what;
+    }
+  }
+};
+
+TEST_F(Sealed, AByteThatChangesIsSeen) {
+  for (const std::size_t length : {1, 7, 8, 100}) {
+    make(length);
+    for (std::size_t at = 0; at < whole.size(); ++at) {
+      if (at >= length && at < length + 8) continue;  // the mark: without it there is no seal
+      std::string spoilt = whole;
+      spoilt[at] = static_cast<char>(spoilt[at] ^ 0x10);
+      refused(spoilt, std::to_string(length) + " " + std::to_string(at));
+    }
+  }
+}
+
+TEST_F(Sealed, WordsThatChangePlacesAreSeen) {
+  make(1 << 19);  // more than one part of reading
+  std::string spoilt = whole;
+  std::swap_ranges(spoilt.begin() + 800, spoilt.begin() + 808, spoilt.begin() + (1 << 18) + 16);
+  refused(spoilt, "two words");
+}
+
+TEST_F(Sealed, ContentThatIsLostInTheMiddleIsSeen) {
+  make(4096);
+  refused(whole.substr(0, 1000) + whole.substr(2000), "cut");
+}
+
+TEST_F(Sealed, AFileWithoutSealPasses) {
+  for (const char* content : {"", "short", "a file that is longer than any seal would be, and has none"}) {
+    write(content);
+    EXPECT_NO_THROW(lacon::check_seal(file)) << content;
+  }
+}
+
+}  // namespace
