@@ -250,7 +250,7 @@ std::vector<std::string> MedFile::add_field(const Mesh& mesh, std::string_view m
         points_name = localisation(*row, rule(row->type, static_cast<int>(per_entity)));
       }
       const H5Group one = entity(at, entity_name, profile_name, points_name);
-      set_int(one, "NBR", static_cast<std::int64_t>(places.size()));
+      set_int(one, "NBR", static_cast<std::int64_t>(whole));  // of all entities, also where a profile picks some
       set_int(one, "NGA", static_cast<std::int64_t>(per_entity));
       std::vector<std::size_t> own(per_entity);  // of an entity's rows, in the file's order
       for (std::size_t p = 0; p < per_entity; ++p)

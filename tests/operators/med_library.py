@@ -75,7 +75,11 @@ def read_field(file, at):
                     members = MEDINT([0] * profile_size)
                     MEDprofileRd(file, profile, members)
                     members = list(members)
-                values[label] = {"values": list(data), "profile": members, "points": points, "localisation": localisation.strip()}
+                whole = first(MEDfieldnValueWithProfile(file, name, number, order, entity, geometry, p, e.MED_GLOBAL_STMODE))
+                on_all = MEDFLOAT([0.0] * whole * points * size)
+                MEDfieldValueWithProfileRd(file, name, number, order, entity, geometry, e.MED_GLOBAL_STMODE, profile,
+                                           e.MED_FULL_INTERLACE, e.MED_ALL_CONSTITUENT, on_all)
+                values[label] = {"global": list(on_all), "values": list(data), "profile": members, "points": points, "localisation": localisation.strip()}
         found["steps"].append({"order": number, "instant": instant, "values": values})
     return name, found
 

@@ -146,6 +146,35 @@ class ImprResu(OperatorTest):
         corners = fields["U_______SIEF_ELNO"]["steps"][0]["values"]["NOE.QU4"]
         self.assertEqual((corners["profile"], corners["points"], corners["values"]), ([2], 4, [1.0, 2.0, 3.0, 4.0]))
 
+    def test_parts_are_placed_on_the_whole_mesh_by_the_library_and_by_meshio(self):
+        """The storage that is asked for as MED_GLOBAL_STMODE: a value's place is the number of its node or cell in the whole mesh."""
+        self.assertEqual(self.print(self.U).status, 0)
+        fields = self.library()["fields"]
+        parts = 0
+        for field in fields.values():
+            for step in field["steps"]:
+                for entity, read in step["values"].items():
+                    size = len(field["components"]) * read["points"]
+                    count = {"NOE": 6, "QU4": 2, "SE2": 1}[entity.rpartition(".")[2]]
+                    members = np.array(read["profile"] or range(1, count + 1)) - 1
+                    whole = np.reshape(read["global"], (-1, size))
+                    self.assertGreater(len(whole), members.max())
+                    np.testing.assert_array_equal(whole[members], np.reshape(read["values"], (-1, size)))
+                    parts += read["profile"] is not None
+        self.assertGreater(parts, 3)
+
+    def test_meshio_reads_a_field_on_a_part(self):
+        """Of nodes: meshio takes a field of cells only where every type of cells has it."""
+        try:
+            import meshio
+        except ImportError:
+            self.skipTest("python3-meshio is not installed")
+        self.assertEqual(self.print({**self.U, "NOM_CHAM": ["DEPL"], "NUME_ORDRE": [2]}).status, 0)
+        read = meshio.read(self.file)
+        np.testing.assert_array_equal(read.point_data["U_______DEPL"], displacement(2)["values"][:, :2])
+        np.testing.assert_array_equal(read.point_data["U_______DEPL_LAGS_C"][:2].ravel(), [-25.0, -50.0])
+        self.assertTrue(np.isnan(read.point_data["U_______DEPL_LAGS_C"][2:]).all())
+
     def test_integration_points_are_those_of_the_reference_cell(self):
         self.print({**self.U, "NOM_CHAM": ["SIEF_ELGA"]})
         with h5py.File(self.file) as file:
