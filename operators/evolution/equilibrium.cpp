@@ -3,8 +3,10 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <map>
 #include <numeric>
 
+#include "lacon/operators/evolution/bodies.hpp"
 #include "lacon/operators/program/program.hpp"
 
 namespace lacon {
@@ -242,6 +244,11 @@ std::int64_t Equilibrium::n_constraints(const StaticState& state) const {
   return relations_.n_constraints() + (contact_ ? contact_->n_constraints(state.patches) : 0);
 }
 
+std::string Equilibrium::place(std::int64_t dof) const {
+  const auto node = static_cast<std::int32_t>(dof / problem_.n_components());
+  return problem_.dof_name(dof) + " of " + Bodies(problem_.mesh).name_at(node);
+}
+
 std::string Equilibrium::names(std::span<const std::int64_t> equations) const {
   std::string names;
   constexpr std::size_t most = 5;
@@ -249,9 +256,13 @@ std::string Equilibrium::names(std::span<const std::int64_t> equations) const {
   const auto among = [&](std::int64_t equation) {
     return equation >= 0 && std::find(equations.begin(), equations.end(), equation) != equations.end();
   };
-  for (std::size_t dof = 0; dof < problem_.n_dofs() && shown < most; ++dof)
+  const Bodies bodies(problem_.mesh);
+  std::map<std::int32_t, std::int64_t> first_of;  // of each body that is loose
+  for (std::size_t dof = 0; dof < problem_.n_dofs(); ++dof)
     if (among(problem_.numbering.equation[dof]))
-      names += (shown++ ? ", " : "") + problem_.dof_name(static_cast<std::int64_t>(dof));
+      first_of.emplace(bodies.of(static_cast<std::int32_t>(dof / problem_.components.size())), static_cast<std::int64_t>(dof));
+  for (const auto& [body, dof] : first_of)
+    if (shown < most) names += (shown++ ? ", " : "") + problem_.dof_name(dof) + " of " + bodies.name_at(body);
   for (std::size_t r = 0; r < relations_.size() && shown < most; ++r)
     if (among(system_.equation(relations_.unknown(r, system_)))) names += (shown++ ? ", " : "") + relations_.name(r);
   return names.empty() ? "multipliers of contact" : names;

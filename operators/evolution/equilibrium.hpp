@@ -66,7 +66,9 @@ class Equilibrium {
   bool touches(const StaticState& state) const { return contact_ && contact_->n_constraints(state.patches) > 0; }
   /// Whether the gaps of active patches have second derivatives.
   bool curves(const StaticState& state) const { return touches(state) && !problem_.contact->frozen_gap; }
-  /// The unknowns of these equations in words, the first few.
+  /// A degree of freedom and its body in words: "N12 DX of TOOL".
+  std::string place(std::int64_t dof) const;
+  /// The unknowns of these equations in words: the first of each body, and relations.
   std::string names(std::span<const std::int64_t> equations) const;
 
   const System& system() const { return system_; }

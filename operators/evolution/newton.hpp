@@ -9,6 +9,7 @@
 #include "lacon/assembly/saddle_point_solver.hpp"
 #include "lacon/operators/evolution/equilibrium.hpp"
 #include "lacon/operators/evolution/matrix_choice.hpp"
+#include "lacon/operators/evolution/residual_course.hpp"
 #include "lacon/operators/evolution/status_rule.hpp"
 
 namespace lacon {
@@ -18,6 +19,7 @@ struct NewtonOptions {
   int iterations = 10;                            ///< ITER_GLOB_MAXI
   SolidMatrix matrix = SolidMatrix::tangent;      ///< NEWTON/MATRICE
   SolidMatrix prediction = SolidMatrix::tangent;  ///< NEWTON/PREDICTION: of the first iteration of an instant
+  bool cuts = false;                              ///< a step that fails is cut: no message advises it
 };
 
 class Newton {
@@ -33,8 +35,8 @@ class Newton {
   void begin(StaticState& state, const std::string& label);
 
   /// Solve the instant, starting from `state`, which is in equilibrium. Calls `report` for each iteration.
-  /// @return number of iterations. Throws EVOLUTION_4 (not converged), EVOLUTION_15, SOLVER_3 (singular), ELEMENT_1 ...:
-  /// severity S. `state` is then between two instants.
+  /// @return number of iterations. Throws an InstantFailure: EVOLUTION_4 (not converged), EVOLUTION_15, EVOLUTION_18 (cells
+  /// that are no cells any more), SOLVER_3 (singular) ..., severity S. `state` is then between two instants.
   int solve(double instant, StaticState& state, const std::function<void(const IterationReport&)>& report);
   /// Go back to a state: contact, stresses and system are those of `state` again, as solve() needs them.
   void restart(const StaticState& state);
@@ -44,6 +46,7 @@ class Newton {
   const ContactState* contact() const { return equilibrium_.contact(); }
 
  private:
+  int iterate(double instant, StaticState& state, const std::function<void(const IterationReport&)>& report);
   void assemble(const StaticState& state, const StaticState& previous, SolidMatrix asked);
   /// The solution of the present system. @param rough a few digits will do. Throws SOLVER_3.
   std::vector<double> solve_system(std::span<const double> step, bool rough, IterationReport& line);
@@ -56,14 +59,20 @@ class Newton {
   /// @param solution that `state` has moved by  @param increment of all unknowns of nodes, shortened as well
   void shorten(std::span<const double> solution, const StaticState& previous, StaticState& state,
                std::vector<double>& increment);
+  /// Throws EVOLUTION_4. @param line the last iteration  @param changing a patch that changes its status in it, if any does
+  [[noreturn]] void fail_to_converge(double instant, const IterationReport& line, std::size_t changing) const;
   /// What keeps the last iteration from being the solution, in words.
-  std::string unmet_criteria(const IterationReport& line, std::size_t first_changed) const;
+  std::string unmet_criteria(const IterationReport& line, std::size_t changing) const;
+  /// The one thing to do about it that fits.
+  std::string remedy(const IterationReport& line, double excess) const;
 
   const StaticProblem& problem_;
   NewtonOptions options_;
   Equilibrium equilibrium_;
   MatrixChoice choice_;
   StatusRule statuses_;
+  ResidualCourse course_;  ///< of the instant
+  int settled_ = 0;        ///< iterations in a row in which no status has changed
   SaddlePointSolver solver_;
 };
 
