@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <set>
 
 #include "lacon/catalog/messages.hpp"
 #include "lacon/operators/evolution/bodies.hpp"
@@ -104,19 +105,19 @@ int Newton::iterate(double instant, StaticState& state, const std::function<void
   if (equilibrium_.has_memory() || choice_.suited(options_.prediction, equilibrium_.touches(state)) != equilibrium_.matrix())
     assemble(state, previous, options_.prediction);
   bool settling = false;  // statuses change from iteration to iteration: a rough solution finds them as well
-  settled_ = 0;
+  settled_ = times_held_ = 0;
   IterationReport line;
   std::size_t changing = 0;
   for (int iteration = 0; iteration <= options_.iterations; ++iteration) {
     const auto start = std::chrono::steady_clock::now();
     line = {.iteration = iteration};
-    line.constraints = equilibrium_.n_constraints(state);
     const bool rough = settling && iteration < options_.iterations;
-    std::vector<double> solution = solve_system(step, rough, line);
+    const SolidMatrix asked = iteration == 0 ? options_.prediction : options_.matrix;
+    std::vector<double> solution = solve_system(state, previous, asked, step, rough, line);
     const auto& negative = line.solution.factorisation.negative_pivots;
     if (negative && choice_.note_pivots(equilibrium_.matrix(), equilibrium_.curves(state), *negative, line.constraints)) {
       assemble(state, previous, SolidMatrix::tangent);
-      solution = solve_system(step, rough, line);
+      solution = solve_system(state, previous, SolidMatrix::tangent, step, rough, line);
     }
     std::vector<double> increment = equilibrium_.add(solution, step, state);
     std::fill(step.begin(), step.end(), 0.0);  // imposed displacements move in the first iteration alone
@@ -160,25 +161,57 @@ void Newton::assemble(const StaticState& state, const StaticState& previous, Sol
   equilibrium_.assemble(state, previous, choice_.suited(asked, equilibrium_.touches(state)));
 }
 
-std::vector<double> Newton::solve_system(std::span<const double> step, bool rough, IterationReport& line) {
+std::vector<double> Newton::solve_system(StaticState& state, const StaticState& previous, SolidMatrix asked,
+                                         std::span<const double> step, bool rough, IterationReport& line) {
   const System& system = equilibrium_.system();
-  std::vector<double> solution = equilibrium_.right_side(step);
-  line.solution = solver_.solve(system.matrix(), system.first_multiplier(), solution, rough);
-  const SolutionReport& report = line.solution;
-  add_to_phase("analysis", report.analysis_seconds);
-  add_to_phase("factorisation", report.factorisation_seconds);
-  add_to_phase("solution", report.solution_seconds);
-  add_to_count("solutions", 1);
-  add_to_count("factorisations", report.factorised ? 1 : 0);
-  add_to_count("Gflop of factorisations", 1e-9 * report.factorisation.flops);
-  add_to_count("columns of the inverse", report.columns);
-  add_to_count("iterations of GMRES", report.iterations);
-  const std::vector<std::int64_t>& null = report.factorisation.null_pivots;
-  // the first matrix of an instant is that of the state before
-  if (!null.empty())
-    throw InstantFailure(message("SOLVER_3", {{"count", std::to_string(null.size())}, {"names", equilibrium_.names(null)}}),
-                         {.depends_on_step = line.iteration > 0});
-  return solution;
+  for (bool sprung = false;; sprung = times_held_ > 1) {
+    line.constraints = equilibrium_.n_constraints(state);
+    std::vector<double> solution = equilibrium_.right_side(step);
+    line.solution = solver_.solve(system.matrix(), system.first_multiplier(), solution, rough);
+    const SolutionReport& report = line.solution;
+    add_to_phase("analysis", report.analysis_seconds);
+    add_to_phase("factorisation", report.factorisation_seconds);
+    add_to_phase("solution", report.solution_seconds);
+    add_to_count("solutions", 1);
+    add_to_count("factorisations", report.factorised ? 1 : 0);
+    add_to_count("Gflop of factorisations", 1e-9 * report.factorisation.flops);
+    add_to_count("columns of the inverse", report.columns);
+    add_to_count("iterations of GMRES", report.iterations);
+    const std::vector<std::int64_t>& null = report.factorisation.null_pivots;
+    if (null.empty()) return solution;
+    // the first matrix of an instant is that of the state before
+    if (sprung || !hold_loose_bodies(null, state, previous, asked))
+      throw InstantFailure(message("SOLVER_3", {{"count", std::to_string(null.size())}, {"names", equilibrium_.names(null)}}),
+                           {.depends_on_step = line.iteration > 0});
+  }
+}
+
+bool Newton::hold_loose_bodies(std::span<const std::int64_t> null_pivots, StaticState& state, const StaticState& previous,
+                               SolidMatrix asked) {
+  const std::vector<std::int64_t> dofs = equilibrium_.dofs_of(null_pivots);
+  if (!contact() || dofs.size() < null_pivots.size()) return false;
+  const Bodies bodies(problem_.mesh);
+  std::set<std::int32_t> loose, near;
+  for (const std::int64_t dof : dofs) loose.insert(bodies.of(static_cast<std::int32_t>(dof / problem_.n_components())));
+  const auto held = contact()->nearest_to_hold(state.patches, loose, [&](std::int32_t node) { return bodies.of(node); });
+  for (const auto& [patch, node] : held) near.insert(bodies.of(node));
+  if (near != loose) return false;
+  if (++times_held_ > 1) {
+    equilibrium_.hold(dofs);
+    return true;
+  }
+  for (const auto& [patch, node] : held) {
+    state.patches.status[patch] = Status::active;
+    if (!told_.insert(patch).second) continue;
+    const ContactZone& zone = problem_.contact->zones[contact()->geometry().zone_of(patch)];
+    inform("EVOLUTION_20", {{"body", bodies.name_at(node)},
+                            {"cell", cell_name(problem_.mesh.patches->cells[patch].front())},
+                            {"slave", zone.slave_group},
+                            {"master", zone.master_group},
+                            {"gap", fmt::format("{:.3g}", contact()->geometry().gap(patch))}});
+  }
+  assemble(state, previous, asked);
+  return true;
 }
 
 void Newton::shorten(std::span<const double> solution, const StaticState& previous, StaticState& state,

@@ -2,6 +2,7 @@
 // Newton's method for one instant: equilibrium, geometry, contact and behaviour in one loop (METHOD.md 3.2, 5.3).
 #include <functional>
 #include <memory>
+#include <set>
 #include <span>
 #include <string>
 #include <vector>
@@ -48,8 +49,15 @@ class Newton {
  private:
   int iterate(double instant, StaticState& state, const std::function<void(const IterationReport&)>& report);
   void assemble(const StaticState& state, const StaticState& previous, SolidMatrix asked);
-  /// The solution of the present system. @param rough a few digits will do. Throws SOLVER_3.
-  std::vector<double> solve_system(std::span<const double> step, bool rough, IterationReport& line);
+  /// The solution of the present system. @param rough a few digits will do. Where bodies are loose that are near to others,
+  /// patches of `state` take contact first. Throws SOLVER_3.
+  std::vector<double> solve_system(StaticState& state, const StaticState& previous, SolidMatrix asked,
+                                   std::span<const double> step, bool rough, IterationReport& line);
+  /// Hold bodies that are loose and near to others: at first the nearest patches take contact, and EVOLUTION_20 says so. Where
+  /// they are pulled and open again, nothing presses on the bodies: springs keep them where they are, in the matrix alone.
+  /// @return whether all of them are held
+  bool hold_loose_bodies(std::span<const std::int64_t> null_pivots, StaticState& state, const StaticState& previous,
+                         SolidMatrix asked);
   /// What pressures and gaps ask for at the state's geometry, in `line` how many patches want to change; nothing without
   /// contact.
   std::vector<Status> wanted_statuses(const StaticState& state, IterationReport& line) const;
@@ -71,8 +79,10 @@ class Newton {
   Equilibrium equilibrium_;
   MatrixChoice choice_;
   StatusRule statuses_;
-  ResidualCourse course_;  ///< of the instant
-  int settled_ = 0;        ///< iterations in a row in which no status has changed
+  std::set<std::size_t> told_;  ///< patches that EVOLUTION_20 was about
+  ResidualCourse course_;       ///< of the instant
+  int times_held_ = 0;          ///< in this instant: loose bodies
+  int settled_ = 0;             ///< iterations in a row in which no status has changed
   SaddlePointSolver solver_;
 };
 
