@@ -42,15 +42,17 @@ class CellVariation {
         first_master_(D * catalog::cell(cell.slave).n_nodes),
         columns_{first_master_ + D * catalog::cell(cell.master).n_nodes, static_cast<Eigen::Index>(cell.other_nodes.size()),
                  static_cast<Eigen::Index>(cell.slave_normals.size()), n_corners},
-        gradient_(Row::Zero(columns_.of_points())),
+        gradient_(PointRow::Zero(columns_.of_points())),
         of_simplex_(gradient_),
+        slave_shapes_(cell.slave, cell.slave_point),
+        master_shapes_(cell.master, cell.master_point),
         form_(second ? columns_.of_points() : 0) {
     for (Vector<3>& v : cross_) v.setZero();
   }
 
   const Columns& columns() const { return columns_; }
   double gap() const { return gap_; }
-  Row& gradient() { return gradient_; }  ///< of G by the variables of points
+  PointRow& gradient() { return gradient_; }  ///< of G by the variables of points
   /// Likewise by all unknowns, at fixed corners.
   Row by_unknowns() const {
     Row row = Row::Zero(columns_.unknowns());
@@ -60,24 +62,23 @@ class CellVariation {
   }
   QuadraticForm& form() { return form_; }
 
-  /// A place on the slave.
+  /// An integration point on the slave.
   struct OnSlave {
-    const double* xi;
+    std::size_t number;
     Shapes<D> phi;
     Interpolated<D> at;
     AreaNormal<D> area;
+
+    OnSlave(std::size_t p, const ShapeTable<D>& table, int order, const double* nodes)
+        : number(p), phi(table, p, order), at(phi, nodes), area(at) {}
   };
-  OnSlave on_slave(const double* xi) const {
-    const Shapes<D> phi(cell_.slave, xi);
-    const Interpolated<D> at(phi, cell_.slave_nodes.data());
-    return {xi, phi, at, AreaNormal<D>(at)};
-  }
+  OnSlave on_slave(std::size_t p) const { return {p, slave_shapes_, is_second() ? 3 : 2, cell_.slave_nodes.data()}; }
 
   /// h at a point, and its derivative by what it is made of.
   struct Integrand {
     Shapes<D> psi;
     Interpolated<D> master;
-    Interpolated<D> nodal;  ///< normals; nothing that means anything without
+    Interpolated<D> nodal;  ///< normals
     double value = 0;
     Vector<D> of_place, of_area, of_normal, of_image, of_mean;  ///< x, A, nodal N, y, m
     Vector<R> slope;                                            ///< where the reference coordinates alone change
@@ -88,14 +89,14 @@ class CellVariation {
     Vector<D> mean = Vector<D>::Zero();
     Vector<R> jacobian_slope = Vector<R>::Zero(), radius_slope = Vector<R>::Zero();  ///< of the initial geometry
     Eigen::Matrix<double, R, R> jacobian_second = Eigen::Matrix<double, R, R>::Zero(), radius_second = jacobian_second;
+
+    Integrand(Shapes<D> shapes, const double* master_nodes) : psi(shapes), master(psi, master_nodes) {}
   };
   /// @param mean the mean normal of a plane chart @return a value of 0 beyond the axis, where an iterate may be on its way
-  Integrand integrand(const OnSlave& point, const double* eta, const Vector<D>* mean = nullptr) const {
-    const auto& [xi, phi, slave, area] = point;
-    const Shapes<D> psi(cell_.master, eta);
-    Integrand f{.psi = psi,
-                .master = Interpolated<D>(psi, cell_.master_nodes.data()),
-                .nodal = Interpolated<D>(phi, is_smooth() ? cell_.slave_normals.data() : cell_.slave_nodes.data())};
+  Integrand integrand(const OnSlave& point, const Vector<D>* mean = nullptr) const {
+    const auto& [number, phi, slave, area] = point;
+    Integrand f(Shapes<D>(master_shapes_, number, is_second() ? 2 : 1), cell_.master_nodes.data());
+    if (is_smooth()) f.nodal = Interpolated<D>(phi, cell_.slave_normals.data());
     const Vector<D>& normal = is_smooth() ? f.nodal.x : area.n;
     f.length = normal.norm();
     f.n = normal / f.length;
@@ -137,7 +138,7 @@ class CellVariation {
     of_simplex_.setZero();
   }
   /// What the points of the simplex add to h, by the variables of points: for what else hangs on them.
-  Row& of_simplex() { return of_simplex_; }
+  PointRow& of_simplex() { return of_simplex_; }
   /// What products of a point are multiplied with.
   double factor(double rule) const { return scale_ * part_ * rule; }
 
@@ -158,16 +159,16 @@ class CellVariation {
 
   /// Add its second derivatives, but for those of its reference coordinates.
   /// @param dxi derivatives of these  @param turned_mean A . dm, with a plane chart
-  void add_second_of_point(const OnSlave& point, const Integrand& f, double rule, const Vector<D>& of_place, const Rows<R>& dxi,
-                           const Row* turned_mean = nullptr) {
-    const auto& [xi, phi, slave, area] = point;
+  void add_second_of_point(const OnSlave& point, const Integrand& f, double rule, const Vector<D>& of_place,
+                           const PointRows<R>& dxi, const PointRow* turned_mean = nullptr) {
+    const auto& [number, phi, slave, area] = point;
     const double w = factor(rule);
     if (w == 0) return;
     const Direction normal = direction(point, f, is_smooth(), dxi);
     // the image and the gap: R = dy - dx - g dn
     const Eigen::Index n = columns_.of_points();
-    Row dg = Row::Zero(n), sideways = Row::Zero(n);  // a . dn
-    Rows<R> deta = Rows<R>::Zero(R, n);
+    PointRow dg = PointRow::Zero(n), sideways = PointRow::Zero(n);  // a . dn
+    PointRows<R> deta = PointRows<R>::Zero(R, n);
     const auto apart = [&](const Vector<D>& along, auto row) {
       for (int a = 0; a < phi.n; ++a) row.template segment<D>(D * a) -= value(phi, a) * along.transpose();
       for (int a = 0; a < f.psi.n; ++a) row.template segment<D>(first_master_ + D * a) += value(f.psi, a) * along.transpose();
@@ -181,7 +182,7 @@ class CellVariation {
     }
 
     // the measure
-    Row djacobian = Row::Zero(n), dradius = Row::Zero(n), dk;
+    PointRow djacobian = PointRow::Zero(n), dradius = PointRow::Zero(n), dk;
     double of_turn = f.value;  // of |dn|^2
     if (cell_.current_jacobian) {
       const double of_area_turn = f.g * f.radius / f.lift * f.jacobian;
@@ -205,7 +206,7 @@ class CellVariation {
       form_.add(2 * w * f.g, djacobian, dradius);
     }
     if (turned_mean) {
-      Row dlift = *turned_mean;
+      PointRow dlift = *turned_mean;
       along_area(point, f.mean, dxi, dlift.row(0));
       dk -= f.k / f.lift * dlift;
       form_.add(-2 * w * f.g / f.lift, dlift, dk);
@@ -216,7 +217,7 @@ class CellVariation {
     for (int i = 0; i < R; ++i) form_.add(w * of_turn, normal.turn.row(i), normal.turn.row(i));
     for (int i = 0; i < R; ++i) {
       // the image slides along a master that bends and turns
-      Row along = Row::Zero(n);
+      PointRow along = PointRow::Zero(n);
       for (int a = 0; a < f.psi.n; ++a)
         along.template segment<D>(first_master_ + D * a) = 2 * f.psi.slope(a, i) * f.of_image.transpose();
       for (int k = 0; k < R; ++k) along += f.of_image.dot(f.master.dd[i][k]) * deta.row(k);
@@ -226,7 +227,7 @@ class CellVariation {
   }
 
   /// v . dN of the area normal, to be added to a row.
-  void along_area(const OnSlave& point, const Vector<D>& v, const Rows<R>& dxi, auto row) const {
+  void along_area(const OnSlave& point, const Vector<D>& v, const PointRows<R>& dxi, auto row) const {
     const std::array<Vector<D>, R> of_tangent = of_tangents<D>(point.at.d, v);
     for (int a = 0; a < point.phi.n; ++a)
       for (int i = 0; i < R; ++i) row.template segment<D>(D * a) += point.phi.slope(a, i) * of_tangent[i].transpose();
@@ -235,10 +236,10 @@ class CellVariation {
 
   /// The points of the simplex are done. @param dpart by the variables of points  @return what the second derivative of its
   /// measure is multiplied with
-  double end_simplex(const Row& dpart) {
+  double end_simplex(const PointRow& dpart) {
     gap_ += scale_ * part_ * value_;
     gradient_ += scale_ * (part_ * of_simplex_ + value_ * dpart);
-    if (form_.size() > 0) form_.add(2 * scale_, dpart, of_simplex_);
+    if (is_second()) form_.add(2 * scale_, dpart, of_simplex_);
     return scale_ * value_;
   }
 
@@ -264,6 +265,7 @@ class CellVariation {
  private:
   static double value(const Shapes<D>& shapes, int node) { return shapes.value[static_cast<std::size_t>(node)]; }
   bool is_smooth() const { return columns_.normals > 0; }
+  bool is_second() const { return form_.size() > 0; }
 
   /// a and b of the head of the file.
   static std::pair<Vector<D>, std::array<Vector<D>, R>> dual(const std::array<Vector<D>, R>& tau, const Vector<D>& n) {
@@ -287,7 +289,7 @@ class CellVariation {
     const AreaNormal<D> area(initial);
     f.jacobian = area.n.norm();
     for (int i = 0; i < R; ++i) f.jacobian_slope[i] = area.n.dot(area.d[i]) / f.jacobian;
-    for (int i = 0; i < R; ++i)
+    for (int i = 0; i < R && is_second(); ++i)
       for (int k = 0; k < R; ++k)
         f.jacobian_second(i, k) = (area.n.dot(AreaNormal<D>::second(initial, i, k)) + area.d[i].dot(area.d[k]) -
                                    f.jacobian_slope[i] * f.jacobian_slope[k]) /
@@ -303,15 +305,15 @@ class CellVariation {
   /// How the direction of a normal moves: along unit vectors at a right angle to it, and its relative length.
   struct Direction {
     std::array<Vector<D>, R> across;
-    Rows<R> turn;
-    Row stretch;
+    PointRows<R> turn;
+    PointRow stretch;
   };
   /// @param nodal of nodal normals, or of the area normal
-  Direction direction(const OnSlave& point, const Integrand& f, bool nodal, const Rows<R>& dxi) const {
+  Direction direction(const OnSlave& point, const Integrand& f, bool nodal, const PointRows<R>& dxi) const {
     const Vector<D>& whole = nodal ? f.nodal.x : point.area.n;
     const double length = whole.norm();
     const Vector<D> n = whole / length;
-    Direction direction{across(n), Rows<R>::Zero(R, columns_.of_points()), Row::Zero(columns_.of_points())};
+    Direction direction{across(n), PointRows<R>::Zero(R, columns_.of_points()), PointRow::Zero(columns_.of_points())};
     const auto along = [&](const Vector<D>& v, auto row) {
       if (!nodal) return along_area(point, v, dxi, row);
       for (int a = 0; a < point.phi.n; ++a)
@@ -333,11 +335,11 @@ class CellVariation {
 
   /// The second derivatives of x, of both normals and of an initial measure where the reference coordinates change linearly.
   void add_second_where_it_slides(const OnSlave& point, const Integrand& f, double w, const Vector<D>& of_place,
-                                  const Rows<R>& dxi) {
-    const auto& [xi, phi, slave, area] = point;
+                                  const PointRows<R>& dxi) {
+    const auto& [number, phi, slave, area] = point;
     const std::array<Vector<D>, R> of_tangent = of_tangents<D>(slave.d, f.of_area);
     for (int j = 0; j < R; ++j) {
-      Row row = Row::Zero(columns_.of_points());
+      PointRow row = PointRow::Zero(columns_.of_points());
       for (int a = 0; a < phi.n; ++a) {
         Vector<D> of_node = phi.slope(a, j) * of_place;
         for (int i = 0; i < R; ++i) of_node += phi.bend(a, i, j) * of_tangent[i];
@@ -361,7 +363,8 @@ class CellVariation {
   Eigen::Index first_master_;
   Columns columns_;
   double gap_ = 0, scale_ = 1, part_ = 0, value_ = 0;  ///< the latter: h summed up over the simplex
-  Row gradient_, of_simplex_;
+  PointRow gradient_, of_simplex_;
+  ShapeTable<D> slave_shapes_, master_shapes_;
   QuadraticForm form_;
   std::array<Vector<3>, D == 3 ? max_skin_nodes * max_skin_nodes : 1> cross_;  ///< factors of dx_a x dx_b
 };

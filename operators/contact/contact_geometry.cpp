@@ -111,7 +111,8 @@ ContactGeometry::ContactGeometry(const Mesh& mesh, const Model& model, const Con
       rest_(mesh.coordinates) {
   const std::size_t n = mesh.patches->size();
   gap_.assign(n, 0.0);
-  weight_ = covered_ = whole_ = coverage_ = smallest_gap_ = gap_;
+  weight_ = covered_ = whole_ = coverage_ = smallest_gap_ = largest_gap_ = gap_;
+  straight_.assign(n, 1);
   zone_of_.assign(n, -1);
   rejected_.assign(n_rejections, 0);
 
@@ -234,6 +235,8 @@ void ContactGeometry::update(std::span<const double> displacement, std::vector<Z
   too_deep_.assign(zones_.size(), {});
   for (std::vector<double>* sums : {&gap_, &weight_, &covered_}) std::fill(sums->begin(), sums->end(), 0.0);
   std::fill(smallest_gap_.begin(), smallest_gap_.end(), std::numeric_limits<double>::infinity());
+  std::fill(largest_gap_.begin(), largest_gap_.end(), -std::numeric_limits<double>::infinity());
+  std::fill(straight_.begin(), straight_.end(), 1);
   if (records) records->clear();
   normals_.resize(zones_.size());
   for (Zone& zone : zones_) {
@@ -360,10 +363,9 @@ void ContactGeometry::add(const Zone& zone, const Block& block_of_zone, ZonePair
   }
   for (const Alike& group : block_of_zone.groups) {
     if (group.members.empty()) continue;
-    const SlaveElement& first = contact_.slaves[zone.slaves[cells.slave[group.members.front()]]];
+    const CellType slave_type = mesh_.types[contact_.slaves[zone.slaves[cells.slave[group.members.front()]]].cell];
     const std::ptrdiff_t width =
-        std::ptrdiff_t{catalog::cell(mesh_.types[first.cell]).n_nodes + catalog::cell(group.master_type).n_nodes} *
-        mesh_.dimension;
+        std::ptrdiff_t{catalog::cell(slave_type).n_nodes + catalog::cell(group.master_type).n_nodes} * mesh_.dimension;
     auto at = static_cast<std::int64_t>(coupling_.size());
     coupling_.insert(coupling_.end(), group.coupling.begin(),
                      group.coupling.begin() + static_cast<std::ptrdiff_t>(group.members.size()) * width);
@@ -377,8 +379,11 @@ void ContactGeometry::add(const Zone& zone, const Block& block_of_zone, ZonePair
       cells_.push_back({s, zone.masters[cells.master[c]], group.gap[i], at});
       const std::int64_t n_points = cells.offset[c + 1] - cells.offset[c];
       const double* const first_gap = std::exchange(point_gap, point_gap + n_points);
-      smallest_gap_[patch] = std::accumulate(first_gap, point_gap, smallest_gap_[patch],
-                                             [](double least, double gap) { return std::min(least, gap); });
+      for (const double gap : std::span(first_gap, point_gap)) {
+        smallest_gap_[patch] = std::min(smallest_gap_[patch], gap);
+        largest_gap_[patch] = std::max(largest_gap_[patch], gap);
+      }
+      if (catalog::cell(slave_type).order > 1 || catalog::cell(group.master_type).order > 1) straight_[patch] = 0;
       if (!record) continue;
       std::copy_n(first_gap, n_points,
                   record->point_gap.begin() + static_cast<std::ptrdiff_t>(recorded_points) + cells.offset[c]);

@@ -45,7 +45,7 @@ class ContactGeometry {
     std::int64_t count = 0;
     std::int32_t slave = -1;  ///< cell of the mesh, of the first of them
   };
-  /// The derivatives of a contact cell's integrated gap by the nodes that it depends on.
+  /// The derivatives of the integrated gap of one contact cell, or of all of a slave cell, by the nodes that it depends on.
   struct Variation {
     std::int32_t slave = -1;          ///< index into Contact::slaves
     std::vector<std::int32_t> nodes;  ///< those of the slave skin first
@@ -69,8 +69,8 @@ class ContactGeometry {
   /// @param records gets one entry a zone. Throws EVOLUTION_3.
   void update(std::span<const double> displacement, std::vector<ZonePairing>* records = nullptr);
 
-  /// The derivatives of the contact cells of some patches at the geometry of the last update(), in the order of slave cells;
-  /// with VARIATION_JEU='FIGEE' its couplings.
+  /// The derivatives of the contact cells of some patches at the geometry of the last update(); its couplings with
+  /// VARIATION_JEU='FIGEE', and where they are the first derivatives because slave and masters coincide.
   /// @param order of the derivatives wanted of each patch: 0 (none of its cells), 1, 2
   std::vector<Variation> vary(std::span<const std::int8_t> order) const;
 
@@ -103,6 +103,9 @@ class ContactGeometry {
   void integrate(const Zone& zone, const ContactCells& cells, std::vector<Alike>& groups) const;
   /// The same for cells of one kind.
   void evaluate(const Zone& zone, const ContactCells& cells, Alike& group) const;
+  /// Whether a patch and its masters are one surface: gaps are zero all over, so that neither borders nor turning normals
+  /// change their integral.
+  bool coincides(std::size_t patch) const;
   Variation frozen_variation(const Cell& cell) const;
   /// One of the contact cells of a zone, paired with traces.
   Variation variation(std::size_t zone, const Pairing& found, std::size_t place, bool second) const;
@@ -129,7 +132,8 @@ class ContactGeometry {
   std::vector<NormalVariation> normal_variations_;
   std::vector<Cell> cells_;
   std::vector<double> coupling_;
-  std::vector<double> gap_, weight_, covered_, whole_, coverage_, smallest_gap_;  ///< of each patch
+  std::vector<double> gap_, weight_, covered_, whole_, coverage_, smallest_gap_, largest_gap_;  ///< of each patch
+  std::vector<std::uint8_t> straight_;  ///< likewise: no cell is of the second order
   std::vector<std::int32_t> zone_of_;
   std::vector<std::int64_t> rejected_;
   std::vector<TooDeep> too_deep_;          ///< of each zone

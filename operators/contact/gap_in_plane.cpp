@@ -82,13 +82,13 @@ void vary_in_plane(const ContactCellGeometry& cell, bool second, GapVariation& v
   const Eigen::Index n = columns.unknowns(), corner = columns.first_corner();
   const auto& [from, to] = cell.ends;
   const double width = to.at - from.at;
-  Row dxi = Row::Zero(columns.of_points()), dwidth = dxi;
+  PointRow dxi = PointRow::Zero(columns.of_points()), dwidth = dxi;
   dwidth[corner] = -1, dwidth[corner + 1] = 1;
   sum.start_simplex(1, width);
   for (std::size_t p = 0; p < cell.weight.size(); ++p) {
     const double share = (cell.slave_point[p] - from.at) / width, rule = cell.weight[p] / width;
-    const CellVariation<2>::OnSlave point = sum.on_slave(&cell.slave_point[p]);
-    const CellVariation<2>::Integrand h = sum.integrand(point, &cell.master_point[p]);
+    const CellVariation<2>::OnSlave point = sum.on_slave(p);
+    const CellVariation<2>::Integrand h = sum.integrand(point);
     if (!(h.radius > 0)) continue;
     dxi[corner] = 1 - share, dxi[corner + 1] = share;
     sum.add_point(point, h, rule, h.of_place);

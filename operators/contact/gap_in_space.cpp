@@ -35,16 +35,16 @@ class PlaneChart {
     if (!second) return;
     of_corner_.resize(cell.trace->vertex.size());
     for (auto& of : of_corner_) of[0].setZero(), of[1].setZero();
-    by_c_[0] = by_c_[1] = by_mean_ = Rows<3>::Zero(3, sum.columns().of_points());
+    by_c_[0] = by_c_[1] = by_mean_ = PointRows<3>::Zero(3, sum.columns().of_points());
   }
 
   double area() const { return area_; }
   const Vector<3>& mean() const { return mean_; }
 
   /// Add a point. @param b its place  @param at corners of its triangle, by number  @param share of them
-  void add_point(const Cell::OnSlave& point, const double* eta, double rule, const Vector<2>& b, const std::array<int, 3>& at,
+  void add_point(const Cell::OnSlave& point, double rule, const Vector<2>& b, const std::array<int, 3>& at,
                  const std::array<double, 3>& share, bool second) {
-    const Cell::Integrand h = sum_.integrand(point, eta, &mean_);
+    const Cell::Integrand h = sum_.integrand(point, &mean_);
     Eigen::Matrix2d m;
     for (int i = 0; i < 2; ++i)
       for (int j = 0; j < 2; ++j) m(i, j) = c_[static_cast<std::size_t>(i)].dot(point.at.d[static_cast<std::size_t>(j)]);
@@ -66,8 +66,8 @@ class PlaneChart {
     if (!second) return;
 
     // c . (dx - dy) + (x - y) . dc = 0
-    Rows<2> dxi = Rows<2>::Zero(2, sum_.columns().of_points());
-    Rows<3> moved = Rows<3>::Zero(3, dxi.cols());  // dx - dy
+    PointRows<2> dxi = PointRows<2>::Zero(2, sum_.columns().of_points());
+    PointRows<3> moved = PointRows<3>::Zero(3, dxi.cols());  // dx - dy
     for (int a = 0; a < n_; ++a) {
       const auto node = static_cast<std::size_t>(a);
       const double left =
@@ -85,7 +85,7 @@ class PlaneChart {
       }
     dxi = (-inverse * dxi).eval();
     for (int i = 0; i < 2; ++i) moved += point.at.d[static_cast<std::size_t>(i)] * dxi.row(i);
-    Row turned_mean = Row::Zero(dxi.cols());  // A . dm
+    PointRow turned_mean = PointRow::Zero(dxi.cols());  // A . dm
     const Vector<3> by_first = c_[1].cross(point.area.n), by_second = point.area.n.cross(c_[0]);
     for (int a = 0; a < n_; ++a)
       turned_mean.segment<3>(3 * a) =
@@ -116,7 +116,7 @@ class PlaneChart {
   /// All simplices are done: what the area of the triangle adds, and second derivatives of the chart.
   void end(bool second) {
     const double whole = sum_.gap() / area_;
-    Row darea = Row::Zero(sum_.columns().of_points());
+    PointRow darea = PointRow::Zero(sum_.columns().of_points());
     const std::array<Vector<3>, 2> by_e = {e_[1].cross(mean_), mean_.cross(e_[0])},
                                    by_c = {c_[1].cross(facet_), facet_.cross(c_[0])};
     for (std::size_t a = 0; a < static_cast<std::size_t>(n_); ++a)
@@ -162,8 +162,8 @@ class PlaneChart {
   std::array<Vector<3>, 2> of_directions_ = {Vector<3>::Zero(), Vector<3>::Zero()}, of_sides_ = of_directions_;
   Vector<3> of_origin_ = Vector<3>::Zero(), of_mean_ = Vector<3>::Zero();
   // factors in second derivatives, of all points: of dc, dm, dc x dc, and of each corner times de
-  std::array<Rows<3>, 2> by_c_;
-  Rows<3> by_mean_;
+  std::array<PointRows<3>, 2> by_c_;
+  PointRows<3> by_mean_;
   Vector<3> second_of_mean_ = Vector<3>::Zero();
   std::vector<std::array<Vector<3>, 2>> of_corner_;
 };
@@ -201,24 +201,23 @@ void vary_in_space(const ContactCellGeometry& cell, bool second, GapVariation& v
       const auto& [triangle, r, s, rule] = trace.point[p];
       const std::array<double, 3> share = {1 - r - s, r, s};
       const Vector<2> b = share[0] * place[0] + share[1] * place[1] + share[2] * place[2];
-      const CellVariation<3>::OnSlave point = sum.on_slave(cell.slave_point.data() + 2 * p);
-      const double* const eta = cell.master_point.data() + 2 * p;
+      const CellVariation<3>::OnSlave point = sum.on_slave(p);
       if (plane) {
-        plane->add_point(point, eta, rule, b, at, share, second);
+        plane->add_point(point, rule, b, at, share, second);
         continue;
       }
-      const CellVariation<3>::Integrand h = sum.integrand(point, eta);
+      const CellVariation<3>::Integrand h = sum.integrand(point);
       sum.add_point(point, h, rule, h.of_place);
       const Vector<2> of_b = rule * sides.transpose() * h.slope;
       for (std::size_t k = 0; k < 3; ++k) sum.of_simplex().segment<2>(corner + 2 * at[k]) += share[k] * of_b.transpose();
       if (!second) continue;
-      Rows<2> dxi = Rows<2>::Zero(2, columns.of_points());
+      PointRows<2> dxi = PointRows<2>::Zero(2, columns.of_points());
       for (std::size_t k = 0; k < 3; ++k) dxi.middleCols<2>(corner + 2 * at[k]) += share[k] * sides;
       sum.add_second_of_point(point, h, rule, h.of_place, dxi);
     }
     if (plane) plane->end_simplex();
     // twice the area of the triangle is the sum of place[k] x place[k + 1]
-    Row dpart = Row::Zero(columns.of_points());
+    PointRow dpart = PointRow::Zero(columns.of_points());
     for (std::size_t k = 0; k < 3; ++k) {
       const Vector<2> side = place[(k + 1) % 3] - place[(k + 2) % 3];
       dpart.segment<2>(corner + 2 * at[k]) = Vector<2>(side[1], -side[0]).transpose();

@@ -1,40 +1,91 @@
 // The derivatives of the contact cells of a zone, from a pairing that says what polygons hang on.
 #include <algorithm>
+#include <cmath>
 
 #include "lacon/operators/contact/contact_geometry.hpp"
 #include "lacon/structures/parallel.hpp"
 
 namespace lacon {
+namespace {
+
+/// The contact cells of a slave cell as one: in space a curved one has dozens, of the same nodes but for a few.
+ContactGeometry::Variation sum_of(std::span<const ContactGeometry::Variation> cells, int dimension) {
+  ContactGeometry::Variation sum;
+  if (cells.empty()) return sum;
+  sum.slave = cells[0].slave;
+  sum.n_slave_nodes = cells[0].n_slave_nodes;  // all begin with the same ones
+  sum.nodes.assign(cells[0].nodes.begin(), cells[0].nodes.begin() + sum.n_slave_nodes);
+  // a node of both skins counts twice
+  const auto find = [&](std::int32_t node) { return std::find(sum.nodes.begin() + sum.n_slave_nodes, sum.nodes.end(), node); };
+  for (const ContactGeometry::Variation& cell : cells)
+    for (const std::int32_t node : std::span(cell.nodes).subspan(static_cast<std::size_t>(sum.n_slave_nodes)))
+      if (find(node) == sum.nodes.end()) sum.nodes.push_back(node);
+  const auto d = static_cast<std::size_t>(dimension), n = sum.nodes.size() * d;
+  sum.of_gap.gradient.assign(n, 0.0);
+  sum.of_gap.hessian.assign(cells[0].of_gap.hessian.empty() ? 0 : n * n, 0.0);
+  std::vector<std::size_t> place;
+  for (const ContactGeometry::Variation& cell : cells) {
+    place.clear();
+    for (std::size_t i = 0; i < cell.nodes.size(); ++i) {
+      const bool of_slave = i < static_cast<std::size_t>(sum.n_slave_nodes);
+      const std::size_t at = of_slave ? i : static_cast<std::size_t>(find(cell.nodes[i]) - sum.nodes.begin());
+      for (std::size_t k = 0; k < d; ++k) place.push_back(d * at + k);
+    }
+    sum.of_gap.gap += cell.of_gap.gap;
+    const std::vector<double>&gradient = cell.of_gap.gradient, &hessian = cell.of_gap.hessian;
+    for (std::size_t i = 0; i < place.size(); ++i) {
+      sum.of_gap.gradient[place[i]] += gradient[i];
+      for (std::size_t j = 0; j < place.size() && !hessian.empty(); ++j)
+        sum.of_gap.hessian[place[i] * n + place[j]] += hessian[i * place.size() + j];
+    }
+  }
+  return sum;
+}
+
+}  // namespace
 
 std::vector<ContactGeometry::Variation> ContactGeometry::vary(std::span<const std::int8_t> order) const {
   std::vector<Variation> all;
-  if (contact_.frozen_gap) {
-    for (const Cell& cell : cells_)
-      if (order[contact_.slaves[cell.slave].patch] > 0) all.push_back(frozen_variation(cell));
-    return all;
-  }
+  std::vector<std::int8_t> left(order.begin(), order.end());
+  for (std::size_t p = 0; p < left.size(); ++p)
+    if (contact_.frozen_gap || (left[p] == 1 && coincides(p))) left[p] = 0;
+  for (const Cell& cell : cells_)
+    if (const std::int32_t patch = contact_.slaves[cell.slave].patch; order[patch] > left[patch])
+      all.push_back(frozen_variation(cell));
+  if (contact_.frozen_gap) return all;
   for (std::size_t z = 0; z < zones_.size(); ++z) {
     const Zone& zone = zones_[z];
     std::vector<std::size_t> slaves;  // cells of the zone
     for (std::size_t i = 0; i < zone.slaves.size(); ++i)
-      if (order[contact_.slaves[zone.slaves[i]].patch] > 0) slaves.push_back(i);
+      if (left[contact_.slaves[zone.slaves[i]].patch] > 0) slaves.push_back(i);
     if (slaves.empty()) continue;
     PairingOptions options = zone.pairing;
     options.traced = true;
     PairingInParts pairing(zone.slave, zone.master, options);
-    std::vector<std::vector<Variation>> found(slaves.size());
+    const std::size_t before = all.size();
+    all.resize(before + slaves.size());
     constexpr std::size_t block = 4;  // slave cells that a thread takes at a time
     parallel_for(slaves.size(), block, [&](const LoopBlock& some) {
       Pairing pairs;
+      std::vector<Variation> found;
       for (std::size_t i = some.first; i < some.last; ++i) {
         pairing.pair(slaves[i], slaves[i] + 1, pairs);
         const bool second = order[contact_.slaves[zone.slaves[slaves[i]]].patch] > 1;
-        for (std::size_t c = 0; c < pairs.cells.size(); ++c) found[i].push_back(variation(z, pairs, c, second));
+        found.clear();
+        for (std::size_t c = 0; c < pairs.cells.size(); ++c) found.push_back(variation(z, pairs, c, second));
+        all[before + i] = sum_of(found, mesh_.dimension);
       }
     });
-    for (std::vector<Variation>& of_cell : found) std::move(of_cell.begin(), of_cell.end(), std::back_inserter(all));
+    std::erase_if(all, [](const Variation& variation) { return variation.slave < 0; });  // slave cells without a master
   }
   return all;
+}
+
+bool ContactGeometry::coincides(std::size_t patch) const {
+  constexpr double round_off = 1e-12;  // of the patch: what this leaves of a gap changes forces as much
+  const double size = mesh_.dimension == 3 ? std::sqrt(whole_[patch]) : whole_[patch];
+  return straight_[patch] != 0 && !contact_.smoothing && smallest_gap_[patch] >= -round_off * size &&
+         largest_gap_[patch] <= round_off * size;
 }
 
 ContactGeometry::Variation ContactGeometry::frozen_variation(const Cell& cell) const {

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <span>
+#include <vector>
 
 #include "lacon/elements/reference.hpp"
 
@@ -19,6 +20,11 @@ template <int N>
 using Rows = Eigen::Matrix<double, N, Eigen::Dynamic, Eigen::RowMajor>;
 using Row = Rows<1>;
 using Matrix = Rows<Eigen::Dynamic>;
+/// Derivatives by the variables of integration points: slave, master, nodal normals, corners. Without memory of their own.
+constexpr int max_point_variables = 256;
+template <int N>
+using PointRows = Eigen::Matrix<double, N, Eigen::Dynamic, Eigen::RowMajor, N, max_point_variables>;
+using PointRow = PointRows<1>;
 
 /// A quadratic form of the variables as a sum of products.
 class QuadraticForm {
@@ -58,7 +64,7 @@ class QuadraticForm {
   Eigen::MatrixXd matrix();
 
  private:
-  static constexpr Eigen::Index at_once = 128;  // products
+  static constexpr Eigen::Index at_once = 64;  // products
   void sum_up();
 
   Eigen::MatrixXd sum_;  ///< of products summed up: the lower triangle of their symmetric matrix
@@ -67,35 +73,65 @@ class QuadraticForm {
   Matrix left_, right_;  ///< of products still to be summed up
 };
 
-/// Shape functions of a skin cell at a point, with their derivatives.
+/// Shape functions and gradients of a skin cell at many points: all at once, which takes less.
+template <int D>
+struct ShapeTable {
+  CellType type;
+  std::span<const double> xi;
+  std::vector<double> value, gradient;
+  std::array<double, max_skin_nodes * 3> curvature;  ///< of a cell of the first order: everywhere the same
+
+  /// @param points (n, D - 1)
+  ShapeTable(CellType of, std::span<const double> points) : type(of), xi(points) {
+    const catalog::CellRow& cell = catalog::cell(type);
+    const auto n = static_cast<std::size_t>(cell.n_nodes);
+    value.resize(xi.size() / (D - 1) * n), gradient.resize(xi.size() * n);
+    if (xi.empty()) return;
+    shape_functions(type, xi, value);
+    shape_gradients(type, xi, gradient);
+    if (cell.order == 1) shape_derivatives(type, xi.first(D - 1), 2, curvature);
+  }
+};
+
+/// Shape functions of a skin cell at a point, with their derivatives to an order.
 template <int D>
 struct Shapes {
   static constexpr int R = D - 1;
-  int n;
+  int n, order;
   std::array<double, max_skin_nodes> value;
   std::array<double, max_skin_nodes * R> gradient;
   std::array<double, max_skin_nodes * 3> curvature;  ///< all of an order, as shape_derivatives() has them
   std::array<double, max_skin_nodes * 4> third;
 
-  Shapes(CellType type, const double* xi) : n(catalog::cell(type).n_nodes) {
+  Shapes(CellType type, const double* xi) : Shapes(type, 3) {
     const std::span<const double> at(xi, static_cast<std::size_t>(R));
     shape_functions(type, at, value);
     shape_gradients(type, at, gradient);
-    const catalog::CellRow& cell = catalog::cell(type);
+    if (order > 1) shape_derivatives(type, at, 2, curvature);
+    if (order > 2) shape_derivatives(type, at, 3, third);
+  }
+  Shapes(const ShapeTable<D>& table, std::size_t point, int wanted) : Shapes(table.type, wanted) {
     const auto count = static_cast<std::size_t>(n);
-    if (cell.order > 1 || cell.family == Family::QUAD)
-      shape_derivatives(type, at, 2, curvature);
-    else
-      std::fill_n(curvature.begin(), 3 * count, 0.0);
-    if (cell.order > 1 && cell.family == Family::QUAD)
-      shape_derivatives(type, at, 3, third);
-    else
-      std::fill_n(third.begin(), 4 * count, 0.0);
+    const std::span<const double> at = table.xi.subspan(R * point, R);
+    std::copy_n(table.value.begin() + static_cast<std::ptrdiff_t>(count * point), count, value.begin());
+    std::copy_n(table.gradient.begin() + static_cast<std::ptrdiff_t>(R * count * point), R * count, gradient.begin());
+    if (catalog::cell(table.type).order == 1)
+      std::copy_n(table.curvature.begin(), (R == 1 ? 1 : 3) * count, curvature.begin());
+    else if (order > 1)
+      shape_derivatives(table.type, at, 2, curvature);
+    if (order > 2) shape_derivatives(table.type, at, 3, third);
   }
   double slope(int node, int i) const { return gradient[static_cast<std::size_t>(node * R + i)]; }
-  double bend(int node, int i, int j) const { return curvature[static_cast<std::size_t>(node * (R == 1 ? 1 : 3) + i + j)]; }
-  double twist(int node, int i, int j, int k) const {
-    return third[static_cast<std::size_t>(node * (R == 1 ? 1 : 4) + i + j + k)];
+  double bend(int node, int i, int j) const {
+    return order > 1 ? curvature[static_cast<std::size_t>(node * (R == 1 ? 1 : 3) + i + j)] : 0;
+  }
+
+ private:
+  /// Orders that vanish everywhere are as good as not wanted.
+  Shapes(CellType type, int wanted) {
+    const catalog::CellRow& cell = catalog::cell(type);
+    n = cell.n_nodes;
+    order = std::min(wanted, cell.family != Family::QUAD ? cell.order : cell.order == 1 ? 2 : 3);
   }
 };
 
@@ -108,21 +144,22 @@ struct Interpolated {
   std::array<std::array<Vector<D>, R>, R> dd;
   std::array<Vector<D>, 4> ddd;  ///< by k times eta and the rest xi
 
+  Interpolated() = default;
   Interpolated(const Shapes<D>& shapes, const double* nodes) {
-    for (Vector<D>& third : ddd) third.setZero();
-    for (int i = 0; i < R; ++i) {
-      d[i].setZero();
-      for (int j = 0; j < R; ++j) dd[i][j].setZero();
-    }
+    constexpr int n_second = R == 1 ? 1 : 3, n_third = R == 1 ? 1 : 4;
+    std::array<Vector<D>, n_second> second;
+    d.fill(x), second.fill(x), ddd.fill(x);  // zero
     for (int a = 0; a < shapes.n; ++a) {
       const Eigen::Map<const Vector<D>> node(nodes + a * D);
       x += shapes.value[static_cast<std::size_t>(a)] * node;
-      for (int i = 0; i < R; ++i) {
-        d[i] += shapes.slope(a, i) * node;
-        for (int j = 0; j < R; ++j) dd[i][j] += shapes.bend(a, i, j) * node;
-      }
-      for (int k = 0; k <= 3 * (R - 1); ++k) ddd[k] += shapes.third[static_cast<std::size_t>(a * (R == 1 ? 1 : 4) + k)] * node;
+      for (int i = 0; i < R; ++i) d[i] += shapes.slope(a, i) * node;
+      for (int i = 0; i < n_second && shapes.order > 1; ++i)
+        second[i] += shapes.curvature[static_cast<std::size_t>(a * n_second + i)] * node;
+      for (int i = 0; i < n_third && shapes.order > 2; ++i)
+        ddd[i] += shapes.third[static_cast<std::size_t>(a * n_third + i)] * node;
     }
+    for (int i = 0; i < R; ++i)
+      for (int j = 0; j < R; ++j) dd[i][j] = second[i + j];
   }
 };
 
@@ -168,8 +205,9 @@ struct AreaNormal {
 };
 
 /// v x rows. @param rows (3, n)
-inline Rows<3> cross(const Vector<3>& v, const Rows<3>& rows) {
-  Rows<3> product(3, rows.cols());
+template <class ThreeRows>
+ThreeRows cross(const Vector<3>& v, const ThreeRows& rows) {
+  ThreeRows product(3, rows.cols());
   for (int i = 0; i < 3; ++i) {
     const int j = (i + 1) % 3, k = (i + 2) % 3;
     product.row(i) = v[j] * rows.row(k) - v[k] * rows.row(j);

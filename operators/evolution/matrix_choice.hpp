@@ -22,18 +22,24 @@ struct NewtonMatrix {
 ///   together: when a body turns they are in balance. Near the solution the consistent matrix is worth more.
 /// Where it overshoots (the residual of a law with a memory has grown), the elastic matrix takes its place for some
 /// iterations: it is an upper bound of any tangent of plastic flow.
+/// In space second derivatives of gaps cost as much as a part of a factorisation, and fill it: they wait until they are worth
+/// it. Without them residuals fall by a constant ratio, the pressure over the stiffness of the body times how much surfaces
+/// bend and slide; where it is small, as between nearly flat skins, their iterations are no fewer.
 class MatrixChoice {
  public:
   /// @param linear the stiffness never changes  @param has_memory a law goes from the last state in equilibrium to the present
-  MatrixChoice(bool linear, bool has_memory) : linear_(linear), has_memory_(has_memory) {}
+  /// @param in_space second derivatives of gaps wait
+  MatrixChoice(bool linear, bool has_memory, bool in_space = false)
+      : linear_(linear), has_memory_(has_memory), waits_(in_space) {}
 
   void start_instant();
   NewtonMatrix suited(SolidMatrix asked, bool touches) const;
   /// More negative pivots than constraints: beyond a limit point or a bifurcation, from where a step of the tangent leads
   /// anywhere. @param curves gaps of active patches have second derivatives @return whether the matrix has to be another one
   bool note_pivots(NewtonMatrix present, bool curves, std::int64_t negative, std::int64_t constraints);
-  /// After an iteration that did not solve the instant. @return whether the matrix has to be another one
-  bool note_residual(double residual);
+  /// After an iteration that did not solve the instant. @param curved gaps have second derivatives, and no status changed
+  /// @return whether the matrix has to be another one
+  bool note_residual(double residual, bool curved = false);
 
  private:
   /// Iterations with another matrix, twice as many each time that they were not enough.
@@ -46,10 +52,12 @@ class MatrixChoice {
   };
 
   bool linear_, has_memory_;
+  bool waits_;             ///< for a residual that falls slowly with the second derivatives of gaps
   bool unstable_ = false;  ///< the tangent of an iterate of this instant was
   Span flat_;              ///< without terms of stress and second derivatives of gaps
   Span elastic_;
   double residual_ = 0;  ///< of the last iteration
+  bool curved_ = false;  ///< as note_residual() was told of it
 };
 
 }  // namespace lacon

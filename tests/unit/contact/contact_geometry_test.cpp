@@ -130,5 +130,43 @@ TEST(ContactGeometry, TheBitsDoNotDependOnTheNumberOfThreads) {
   }
 }
 
+/// First derivatives of the gaps of all patches, (patches, nodes, 3).
+std::vector<double> derivatives(const Skins& skins, std::int8_t order) {
+  Registry registry;
+  ContactGeometry geometry(skins.mesh, skins.model, skins.contact, registry);
+  geometry.update(skins.displacement);
+  std::vector<double> sum(geometry.n_patches() * skins.mesh.coordinates.size());
+  for (const ContactGeometry::Variation& variation : geometry.vary(std::vector<std::int8_t>(geometry.n_patches(), order))) {
+    const auto patch = static_cast<std::size_t>(skins.contact.slaves[static_cast<std::size_t>(variation.slave)].patch);
+    for (std::size_t i = 0; i < variation.of_gap.gradient.size(); ++i)
+      sum[patch * skins.mesh.coordinates.size() + 3 * static_cast<std::size_t>(variation.nodes[i / 3]) + i % 3] +=
+          variation.of_gap.gradient[i];
+  }
+  return sum;
+}
+
+TEST(ContactGeometry, WhereSlaveAndMasterCoincideCouplingsAreTheDerivativesOfGaps) {
+  for (const double gap : {0.0, 0.01}) {
+    Skins skins(5, 7, false);
+    for (std::size_t i = 2; i < skins.displacement.size(); i += 3)
+      skins.displacement[i] = skins.mesh.coordinates[i] < 0 ? 0.1 - gap : 0;
+    const std::vector<double> first = derivatives(skins, 1), with_second = derivatives(skins, 2);
+    skins.contact.frozen_gap = true;
+    const std::vector<double> couplings = derivatives(skins, 1);
+    double apart = 0, frozen = 0, largest = 0;
+    for (std::size_t i = 0; i < first.size(); ++i) {
+      apart = std::max(apart, std::abs(first[i] - with_second[i]));
+      frozen = std::max(frozen, std::abs(first[i] - couplings[i]));
+      largest = std::max(largest, std::abs(first[i]));
+    }
+    EXPECT_LT(apart, 1e-12 * largest) << gap;
+    // elsewhere the gap's share turns with the slave
+    if (gap == 0)
+      EXPECT_EQ(frozen, 0);
+    else
+      EXPECT_GT(frozen, 1e-4 * largest);
+  }
+}
+
 }  // namespace
 }  // namespace lacon

@@ -78,5 +78,26 @@ TEST(MatrixChoice, AResidualThatGrowsBringsTheElasticMatrixEachTimeForTwiceAsLon
   EXPECT_FALSE(without.note_residual(2));
 }
 
+TEST(MatrixChoice, InSpaceSecondDerivativesOfGapsWaitForAResidualThatFallsSlowlyAtStatusesThatStay) {
+  MatrixChoice choice(false, false, true);
+  choice.start_instant();
+  const auto curved = [&] { return choice.suited(SolidMatrix::tangent, true).curved; };
+  EXPECT_FALSE(curved());
+  EXPECT_EQ(choice.suited(SolidMatrix::tangent, true).solid, SolidMatrix::tangent);
+  EXPECT_FALSE(choice.note_residual(1, true));
+  EXPECT_FALSE(choice.note_residual(0.04, true));
+  EXPECT_FALSE(choice.note_residual(0.03, false));  // a status changed
+  EXPECT_FALSE(choice.note_residual(0.02, true));
+  choice.start_instant();
+  EXPECT_FALSE(choice.note_residual(0.01, true));  // nothing before to compare with
+  EXPECT_FALSE(curved());
+  EXPECT_TRUE(choice.note_residual(0.001, true));
+  EXPECT_TRUE(curved());
+  choice.start_instant();
+  EXPECT_TRUE(curved());  // from then on
+  EXPECT_FALSE(choice.note_residual(1, true));
+  EXPECT_FALSE(choice.note_residual(0.9, true));
+}
+
 }  // namespace
 }  // namespace lacon
