@@ -229,7 +229,7 @@ Contact defi_contact(const Mesh& mesh, std::string_view mesh_label, const Model&
   contact.mesh = model.mesh;
   contact.smoothing = keywords.yes("LISSAGE");
   const std::string variation = keywords.text("VARIATION_JEU");
-  contact.frozen_gap = variation == "FIGEE" || (variation == "AUTO" && mesh.dimension == 3);
+  contact.frozen_gap = variation == "FIGEE";
   contact.verify_normals = keywords.yes("VERI_NORM");
   contact.resi_geom = keywords.real("RESI_GEOM");
   const SkinSides sides(mesh);
