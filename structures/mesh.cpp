@@ -41,9 +41,10 @@ std::span<const std::int32_t> members(const std::vector<Group>& groups, const st
     const std::string near = nearest_name(name, names);
     std::string known;
     for (const std::string& n : names) known += (known.empty() ? "" : ", ") + n;
-    const std::string hint = find(others, name) ? "; there is a " + std::string(other) + " group of this name"
-                             : near.empty()     ? ""
-                                                : "; did you mean '" + near + "'?";
+    const std::string hint = find(others, name) ? "; there is a " + std::string(other) + " group of this name, which " +
+                                                      (other == "node" ? "GROUP_NO" : "GROUP_MA") + " takes"
+                             : near.empty() ? ""
+                                            : "; did you mean '" + near + "'?";
     fail("MESH_1", {{"keyword", std::string(keyword)},
                     {"what", std::string(what)},
                     {"group", std::string(name)},

@@ -192,8 +192,12 @@ fs::path write_vtu(const fs::path& file, bool append, const std::vector<VtuStep>
   for (const VtuStep& step : steps) {
     const fs::path own = fmt::format("{}_{:04}.vtu", stem.string(), ++number);
     files.write(own, step.text);
-    list += fmt::format("    <DataSet timestep=\"{:.17g}\" group=\"\" part=\"0\" name=\"{}\" file=\"{}\"/>\n", step.instant,
-                        escaped(step.name), escaped(own.filename().string()));
+    // of data sets of one instant and one part ParaView shows one alone
+    const std::string instant = fmt::format("timestep=\"{:.17g}\"", step.instant);
+    int part = 0;
+    for (std::size_t at = list.find(instant); at != std::string::npos; at = list.find(instant, at + 1)) ++part;
+    list += fmt::format("    <DataSet {} group=\"\" part=\"{}\" name=\"{}\" file=\"{}\"/>\n", instant, part, escaped(step.name),
+                        escaped(own.filename().string()));
   }
   files.write(collection, list + std::string(tail));
   files.commit();

@@ -30,6 +30,13 @@ class Check(LauncherTest):
         self.assertEqual(self.operators(), ["lire_maillage", "crea_maillage", "affe_modele", "affe_materiau", "affe_char_cine"])
         self.assertNotIn("at work", run.out)
 
+    def test_lines_of_several_files_say_which(self):
+        self.write("first.comm", STUDY)
+        self.write("second.comm", REST + "FIN()\n")
+        run = self.launch("check", "first.comm", "second.comm", "--unit", "20=mesh.med")
+        self.assertIn("first.comm, second.comm: 14 commands are right", run.out)
+        self.assertIn("STAT_NON_LINE (first.comm:11), CALC_CHAMP (second.comm:1), IMPR_RESU (second.comm:2), TEST_RESU (second.comm:3)", run.out)
+
     def test_up_to_a_value_that_only_a_run_can_give(self):
         text = STUDY + REST + "T = RECU_TABLE(CO=R, NOM_TABLE='OBSERVATION')\ntry:\n    n = T['VALE', 1]\nexcept Exception:\n    n = 0\nFIN(NO_SUCH=1)\n"
         run = self.check(text)

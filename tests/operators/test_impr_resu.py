@@ -303,6 +303,11 @@ class ImprResu(OperatorTest):
         self.assertEqual((root.tag, root.get("type")), ("VTKFile", "Collection"))
         return [(float(d.get("timestep")), d.get("name"), self.folder / d.get("file")) for d in root.iter("DataSet")]
 
+    def parts(self):
+        """[(time, part)] of the .pvd: ParaView shows one data set of each pair."""
+        root = xml.etree.ElementTree.parse(self.file.with_suffix(".pvd")).getroot()
+        return [(float(d.get("timestep")), int(d.get("part"))) for d in root.iter("DataSet")]
+
     def vtu(self, file):
         """Section -> name -> array of a .vtu; lengths are checked against what the file says."""
         root = xml.etree.ElementTree.parse(file).getroot()
@@ -367,6 +372,8 @@ class ImprResu(OperatorTest):
         self.print({**self.U, "NUME_ORDRE": [2]}, "VTU", append=True)
         self.assertEqual([(time, name) for time, name, _ in self.collection()], [(0.0, "MA"), (1.0, "U")])
         self.assertEqual(len({file for _, _, file in self.collection()}), 2)
+        self.print({**self.U, "NOM_CHAM": ["CONT_ELEM"], "NUME_ORDRE": [2]}, "VTU", append=True)
+        self.assertEqual(self.parts(), [(0.0, 0), (1.0, 0), (1.0, 1)])
 
     def test_vtu_cells_have_the_node_order_of_vtk(self):
         """Mid nodes lie on the edges (of a HEXA27 also in the faces) that VTK's documentation of its cells lists."""

@@ -76,8 +76,9 @@ def members_of(call, test, path, mesh, keyword, kind):
         call.fail("TEST_RESU_8", f"{path}/{keyword}", name=name, what="node" if kind == "nodes" else "cell", letter=letter, count=count)
     members = mesh.group(kind, name)
     if members is None:
-        known = mesh.group_names(kind)
-        call.fail("TEST_RESU_9", f"{path}/{keyword}", name=name, what=kind, known=", ".join(known) or "none", nearest=nearest(name, known))
+        known, (other, give) = mesh.group_names(kind), {"nodes": ("cells", "GROUP_MA"), "cells": ("nodes", "GROUP_NO")}[kind]
+        hint = f"; there is a group of {other} of this name, which {give} takes" if mesh.group(other, name) is not None else nearest(name, known)
+        call.fail("TEST_RESU_9", f"{path}/{keyword}", name=name, what=kind, known=", ".join(known) or "none", nearest=hint)
     return members
 
 

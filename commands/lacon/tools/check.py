@@ -61,9 +61,10 @@ def run(arguments):
         status, _ = launch.run_study(this, work)
     if status != outcome.done:
         return status
-    words = [f"{os.path.relpath(options.files[0])}: {this.check.commands} commands are right"]
+    words = [f"{', '.join(map(os.path.relpath, options.files))}: {this.check.commands} commands are right"]
     if this.check.unsolved:
-        seen = dict.fromkeys(f"{command} (line {where.rpartition(':')[2]})" for command, where in this.check.unsolved)
+        one_file = len({where.rpartition(":")[0] for _, where in this.check.unsolved}) == 1 == len(export.commands)
+        seen = dict.fromkeys(f"{command} ({'line ' + where.rpartition(':')[2] if one_file else where})" for command, where in this.check.unsolved)
         words.append("by their keywords alone: " + ", ".join(seen))
     for needed, place in stopped:
         words.append(f"checked up to {place}: it needs what {needed.label} holds, which only a run can give ({needed.label} is made at {needed.made})")
