@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <optional>
 
 #include "lacon/catalog/contact.hpp"
@@ -224,6 +225,34 @@ HeldOverlap ContactState::held_overlap() const {
     if (geometry_.gap(p) < overlap.gap) overlap.deepest = p, overlap.gap = geometry_.gap(p);
   }
   return overlap;
+}
+
+std::vector<std::pair<std::size_t, std::int32_t>> ContactState::nearest_to_hold(
+    const Patchwise& patches, const std::set<std::int32_t>& loose,
+    const std::function<std::int32_t(std::int32_t node)>& body_of) const {
+  struct Hold {
+    bool there = false;
+    std::optional<std::size_t> nearest;
+    std::int32_t node = -1;
+  };
+  std::map<std::pair<std::int32_t, std::int32_t>, Hold> holds;  // by zone and body
+  for (const ContactGeometry::Cell& cell : geometry_.cells()) {
+    const auto patch = static_cast<std::size_t>(contact_.slaves[cell.slave].patch);
+    for (const std::int32_t owner : {contact_.slaves[cell.slave].cell, cell.master}) {
+      const std::int32_t node = mesh_.cells[owner][0], body = body_of(node);
+      if (!loose.contains(body)) continue;
+      Hold& hold = holds[{geometry_.zone_of(patch), body}];
+      if (patches.status[patch] == Status::active) hold.there = true;
+      if (geometry_.coverage(patch) < tolerances_.least_coverage ||
+          geometry_.gap(patch) > tolerances_.holding_gap * size_[patch])
+        continue;
+      if (!hold.nearest || geometry_.gap(patch) < geometry_.gap(*hold.nearest)) hold.nearest = patch, hold.node = node;
+    }
+  }
+  std::vector<std::pair<std::size_t, std::int32_t>> found;
+  for (const auto& [where, hold] : holds)
+    if (!hold.there && hold.nearest) found.emplace_back(*hold.nearest, hold.node);
+  return found;
 }
 
 std::optional<PiercedPatch> ContactState::pierced(std::int32_t zone, const Patchwise& patches) const {

@@ -6,6 +6,7 @@
 #include <array>
 #include <functional>
 #include <optional>
+#include <set>
 #include <span>
 #include <string>
 #include <utility>
@@ -23,6 +24,7 @@ struct ContactTolerances {
   double initial_gap = 1e-6;        ///< CONTACT_INIT='INTERPENETRE': largest gap, over the smallest edge
   double lambda_round_off = 1e-10;  ///< of the largest |lambda|: below it a sign means nothing
   double gap_round_off = 1e-14;     ///< of the size of the mesh
+  double holding_gap = 0.5;         ///< of h: average gap up to which a patch may hold a body that is loose otherwise
   double held_overlap = 1e-6;       ///< of h: an overlap of a locked patch that is worth an alarm
   double pierced = 0.05;            ///< of h: likewise of points of another active patch, whose average is closed
   double pierced_open = 0.04;       ///< of h: of points of an open patch, which nothing keeps out of the master
@@ -107,6 +109,11 @@ class ContactState {
   /// Whether every displacement in a patch's row is imposed: its multiplier is then undetermined and keeps its value.
   bool is_locked(std::size_t patch) const { return locked_[patch]; }
   HeldOverlap held_overlap() const;
+  /// For each of some loose bodies, in each zone where no patch holds it: the patch that is nearest to its master, within
+  /// ContactTolerances::holding_gap, and a node of the body. @param loose bodies, numbered as body_of(node) does
+  std::vector<std::pair<std::size_t, std::int32_t>> nearest_to_hold(
+      const Patchwise& patches, const std::set<std::int32_t>& loose,
+      const std::function<std::int32_t(std::int32_t node)>& body_of) const;
   /// Of a zone the patch that is pierced deepest, over its size, where that is worth an alarm.
   std::optional<PiercedPatch> pierced(std::int32_t zone, const Patchwise& patches) const;
 

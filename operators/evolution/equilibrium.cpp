@@ -3,8 +3,11 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <map>
 #include <numeric>
+#include <set>
 
+#include "lacon/operators/evolution/bodies.hpp"
 #include "lacon/operators/program/program.hpp"
 
 namespace lacon {
@@ -174,6 +177,11 @@ void Equilibrium::add_contact(const StaticState& state) {
   });
 }
 
+void Equilibrium::hold(std::span<const std::int64_t> dofs) {
+  const std::vector<SparseMatrix::RowSize> rows = system_.matrix().row_sizes(system_.first_multiplier());
+  for (const std::int64_t dof : dofs) system_.add_diagonal(dof, rows[static_cast<std::size_t>(system_.equation(dof))].sum);
+}
+
 std::vector<double> Equilibrium::add(std::span<const double> solution, std::span<const double> step, StaticState& state) const {
   std::vector<double> increment(step.begin(), step.end());
   for (std::size_t dof = 0; dof < increment.size(); ++dof)
@@ -242,18 +250,33 @@ std::int64_t Equilibrium::n_constraints(const StaticState& state) const {
   return relations_.n_constraints() + (contact_ ? contact_->n_constraints(state.patches) : 0);
 }
 
+std::string Equilibrium::place(std::int64_t dof) const {
+  const auto node = static_cast<std::int32_t>(dof / problem_.n_components());
+  return problem_.dof_name(dof) + " of " + Bodies(problem_.mesh).name_at(node);
+}
+
+std::vector<std::int64_t> Equilibrium::dofs_of(std::span<const std::int64_t> equations) const {
+  const std::set<std::int64_t> among(equations.begin(), equations.end());
+  std::vector<std::int64_t> dofs;
+  for (std::size_t dof = 0; dof < problem_.n_dofs(); ++dof)
+    if (problem_.numbering.equation[dof] >= 0 && among.contains(problem_.numbering.equation[dof]))
+      dofs.push_back(static_cast<std::int64_t>(dof));
+  return dofs;
+}
+
 std::string Equilibrium::names(std::span<const std::int64_t> equations) const {
   std::string names;
   constexpr std::size_t most = 5;
   std::size_t shown = 0;
-  const auto among = [&](std::int64_t equation) {
-    return equation >= 0 && std::find(equations.begin(), equations.end(), equation) != equations.end();
-  };
-  for (std::size_t dof = 0; dof < problem_.n_dofs() && shown < most; ++dof)
-    if (among(problem_.numbering.equation[dof]))
-      names += (shown++ ? ", " : "") + problem_.dof_name(static_cast<std::int64_t>(dof));
+  const Bodies bodies(problem_.mesh);
+  std::map<std::int32_t, std::int64_t> first_of;  // of each body that is loose
+  for (const std::int64_t dof : dofs_of(equations))
+    first_of.emplace(bodies.of(static_cast<std::int32_t>(dof / problem_.n_components())), dof);
+  for (const auto& [body, dof] : first_of)
+    if (shown < most) names += (shown++ ? ", " : "") + problem_.dof_name(dof) + " of " + bodies.name_at(body);
   for (std::size_t r = 0; r < relations_.size() && shown < most; ++r)
-    if (among(system_.equation(relations_.unknown(r, system_)))) names += (shown++ ? ", " : "") + relations_.name(r);
+    if (std::count(equations.begin(), equations.end(), system_.equation(relations_.unknown(r, system_))) > 0)
+      names += (shown++ ? ", " : "") + relations_.name(r);
   return names.empty() ? "multipliers of contact" : names;
 }
 

@@ -49,6 +49,9 @@ class Equilibrium {
   /// Forces, matrix, stresses and variables at a state that is paired. @param previous the last one in equilibrium
   void assemble(const StaticState& state, const StaticState& previous, NewtonMatrix wanted);
 
+  /// Put a spring to each of these degrees of freedom into the matrix, about as stiff as what is around it: an increment meets
+  /// it, forces and the equilibrium know nothing of it.
+  void hold(std::span<const std::int64_t> dofs);
   /// Add a solution of the system to a state. @param step of the imposed displacements
   /// @return the increment of all unknowns of nodes, (n_nodes, n_components)
   std::vector<double> add(std::span<const double> solution, std::span<const double> step, StaticState& state) const;
@@ -66,7 +69,11 @@ class Equilibrium {
   bool touches(const StaticState& state) const { return contact_ && contact_->n_constraints(state.patches) > 0; }
   /// Whether the gaps of active patches have second derivatives.
   bool curves(const StaticState& state) const { return touches(state) && !problem_.contact->frozen_gap; }
-  /// The unknowns of these equations in words, the first few.
+  /// A degree of freedom and its body in words: "N12 DX of TOOL".
+  std::string place(std::int64_t dof) const;
+  /// The degrees of freedom of nodes among the unknowns of these equations, ascending.
+  std::vector<std::int64_t> dofs_of(std::span<const std::int64_t> equations) const;
+  /// The unknowns of these equations in words: the first of each body, and relations.
   std::string names(std::span<const std::int64_t> equations) const;
 
   const System& system() const { return system_; }

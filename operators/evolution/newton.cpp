@@ -5,16 +5,30 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <set>
 
 #include "lacon/catalog/messages.hpp"
+#include "lacon/operators/evolution/bodies.hpp"
+#include "lacon/operators/evolution/instant_failure.hpp"
 #include "lacon/operators/evolution/line_search.hpp"
 #include "lacon/operators/program/program.hpp"
 
 namespace lacon {
 namespace {
 
-constexpr double gap_share = 1e-2;     // of RESI_GEOM: largest |g_T| / h, 1e-8 by default
+constexpr double gap_share = 1e-2;  // of RESI_GEOM: largest |g_T| / h, 1e-8 by default
+constexpr double worse = 1.2;       // a residual that changes by this factor an iteration diverges
+constexpr double no_better = 0.97;  // or does not fall
+constexpr double near_round_off = 1e-9;
+constexpr int settled = 4;  // iterations without a change of status after which a ratio is that of the residual alone
 constexpr double other_stress = 1e-8;  // of the largest stress: that of another law
+
+const char* const cut_the_step =
+    "let DEFI_LIST_INST cut the step: INCREMENT takes its list, and it cuts a step that fails by default";
+const char* const coarser_load =
+    "the bodies may not bear this load (a limit point, buckling, cells too coarse for what bends there): look at the last "
+    "instant that was "
+    "solved, refine there, or drive by a displacement instead of a force";
 
 }  // namespace
 
@@ -67,6 +81,20 @@ void Newton::restart(const StaticState& state) {
 }
 
 int Newton::solve(double instant, StaticState& state, const std::function<void(const IterationReport&)>& report) {
+  course_.start();
+  try {
+    return iterate(instant, state, report);
+  } catch (const Error& error) {
+    // the state before was computed: what is wrong with a cell now, the iterations have done
+    if (error.message().id != "ELEMENT_1" && error.message().id != "EVOLUTION_3") throw;
+    throw InstantFailure(message("EVOLUTION_18", {{"instant", fmt::format("{:.9g}", instant)},
+                                                  {"reason", error.message().text + course_.words()},
+                                                  {"remedy", options_.cuts ? coarser_load : cut_the_step}}),
+                         {});
+  }
+}
+
+int Newton::iterate(double instant, StaticState& state, const std::function<void(const IterationReport&)>& report) {
   const StaticState previous = state;
   equilibrium_.rest_at(previous.displacement);
   std::vector<double> step = equilibrium_.load(instant, state);
@@ -77,17 +105,19 @@ int Newton::solve(double instant, StaticState& state, const std::function<void(c
   if (equilibrium_.has_memory() || choice_.suited(options_.prediction, equilibrium_.touches(state)) != equilibrium_.matrix())
     assemble(state, previous, options_.prediction);
   bool settling = false;  // statuses change from iteration to iteration: a rough solution finds them as well
-  std::string unmet;
+  settled_ = times_held_ = 0;
+  IterationReport line;
+  std::size_t changing = 0;
   for (int iteration = 0; iteration <= options_.iterations; ++iteration) {
     const auto start = std::chrono::steady_clock::now();
-    IterationReport line{.iteration = iteration};
-    line.constraints = equilibrium_.n_constraints(state);
+    line = {.iteration = iteration};
     const bool rough = settling && iteration < options_.iterations;
-    std::vector<double> solution = solve_system(step, rough, line);
+    const SolidMatrix asked = iteration == 0 ? options_.prediction : options_.matrix;
+    std::vector<double> solution = solve_system(state, previous, asked, step, rough, line);
     const auto& negative = line.solution.factorisation.negative_pivots;
     if (negative && choice_.note_pivots(equilibrium_.matrix(), equilibrium_.curves(state), *negative, line.constraints)) {
       assemble(state, previous, SolidMatrix::tangent);
-      solution = solve_system(step, rough, line);
+      solution = solve_system(state, previous, SolidMatrix::tangent, step, rough, line);
     }
     std::vector<double> increment = equilibrium_.add(solution, step, state);
     std::fill(step.begin(), step.end(), 0.0);  // imposed displacements move in the first iteration alone
@@ -104,6 +134,8 @@ int Newton::solve(double instant, StaticState& state, const std::function<void(c
                     line);
     line.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     report(line);
+    course_.add(line.maxi);
+    settled_ = line.status_changes > 0 ? 0 : settled_ + 1;
     if (line.converged()) {
       if (contact()) contact()->geometry().check_radii();
       if (const auto cell = equilibrium_.cell_inside_out())
@@ -111,8 +143,7 @@ int Newton::solve(double instant, StaticState& state, const std::function<void(c
       state.points = equilibrium_.points();
       return iteration;
     }
-    const auto first_changed = std::mismatch(before.begin(), before.end(), wanted.begin()).first - before.begin();
-    unmet = unmet_criteria(line, static_cast<std::size_t>(first_changed));
+    changing = static_cast<std::size_t>(std::mismatch(before.begin(), before.end(), wanted.begin()).first - before.begin());
     settling = line.status_changes > 0 && !statuses_.keeps();
     bool other_matrix = choice_.note_residual(line.maxi, line.status_changes == 0 && equilibrium_.curves(state));
     if (statuses_.keeps() && line.status_changes > 0 && line.in_equilibrium()) {
@@ -123,30 +154,64 @@ int Newton::solve(double instant, StaticState& state, const std::function<void(c
     if (other_matrix) assemble(state, previous, options_.matrix);
     if (!std::isfinite(line.maxi)) break;
   }
-  fail("EVOLUTION_4",
-       {{"instant", fmt::format("{:.9g}", instant)}, {"iterations", std::to_string(options_.iterations)}, {"unmet", unmet}});
+  fail_to_converge(instant, line, changing);
 }
 
 void Newton::assemble(const StaticState& state, const StaticState& previous, SolidMatrix asked) {
   equilibrium_.assemble(state, previous, choice_.suited(asked, equilibrium_.touches(state)));
 }
 
-std::vector<double> Newton::solve_system(std::span<const double> step, bool rough, IterationReport& line) {
+std::vector<double> Newton::solve_system(StaticState& state, const StaticState& previous, SolidMatrix asked,
+                                         std::span<const double> step, bool rough, IterationReport& line) {
   const System& system = equilibrium_.system();
-  std::vector<double> solution = equilibrium_.right_side(step);
-  line.solution = solver_.solve(system.matrix(), system.first_multiplier(), solution, rough);
-  const SolutionReport& report = line.solution;
-  add_to_phase("analysis", report.analysis_seconds);
-  add_to_phase("factorisation", report.factorisation_seconds);
-  add_to_phase("solution", report.solution_seconds);
-  add_to_count("solutions", 1);
-  add_to_count("factorisations", report.factorised ? 1 : 0);
-  add_to_count("Gflop of factorisations", 1e-9 * report.factorisation.flops);
-  add_to_count("columns of the inverse", report.columns);
-  add_to_count("iterations of GMRES", report.iterations);
-  const std::vector<std::int64_t>& null = report.factorisation.null_pivots;
-  if (!null.empty()) fail("SOLVER_3", {{"count", std::to_string(null.size())}, {"names", equilibrium_.names(null)}});
-  return solution;
+  for (bool sprung = false;; sprung = times_held_ > 1) {
+    line.constraints = equilibrium_.n_constraints(state);
+    std::vector<double> solution = equilibrium_.right_side(step);
+    line.solution = solver_.solve(system.matrix(), system.first_multiplier(), solution, rough);
+    const SolutionReport& report = line.solution;
+    add_to_phase("analysis", report.analysis_seconds);
+    add_to_phase("factorisation", report.factorisation_seconds);
+    add_to_phase("solution", report.solution_seconds);
+    add_to_count("solutions", 1);
+    add_to_count("factorisations", report.factorised ? 1 : 0);
+    add_to_count("Gflop of factorisations", 1e-9 * report.factorisation.flops);
+    add_to_count("columns of the inverse", report.columns);
+    add_to_count("iterations of GMRES", report.iterations);
+    const std::vector<std::int64_t>& null = report.factorisation.null_pivots;
+    if (null.empty()) return solution;
+    // the first matrix of an instant is that of the state before
+    if (sprung || !hold_loose_bodies(null, state, previous, asked))
+      throw InstantFailure(message("SOLVER_3", {{"count", std::to_string(null.size())}, {"names", equilibrium_.names(null)}}),
+                           {.depends_on_step = line.iteration > 0});
+  }
+}
+
+bool Newton::hold_loose_bodies(std::span<const std::int64_t> null_pivots, StaticState& state, const StaticState& previous,
+                               SolidMatrix asked) {
+  const std::vector<std::int64_t> dofs = equilibrium_.dofs_of(null_pivots);
+  if (!contact() || dofs.size() < null_pivots.size()) return false;
+  const Bodies bodies(problem_.mesh);
+  std::set<std::int32_t> loose, near;
+  for (const std::int64_t dof : dofs) loose.insert(bodies.of(static_cast<std::int32_t>(dof / problem_.n_components())));
+  const auto held = contact()->nearest_to_hold(state.patches, loose, [&](std::int32_t node) { return bodies.of(node); });
+  for (const auto& [patch, node] : held) near.insert(bodies.of(node));
+  if (near != loose) return false;
+  if (++times_held_ > 1) {
+    equilibrium_.hold(dofs);
+    return true;
+  }
+  for (const auto& [patch, node] : held) {
+    state.patches.status[patch] = Status::active;
+    if (!told_.insert(patch).second) continue;
+    const ContactZone& zone = problem_.contact->zones[contact()->geometry().zone_of(patch)];
+    inform("EVOLUTION_20", {{"body", bodies.name_at(node)},
+                            {"cell", cell_name(problem_.mesh.patches->cells[patch].front())},
+                            {"slave", zone.slave_group},
+                            {"master", zone.master_group},
+                            {"gap", fmt::format("{:.3g}", contact()->geometry().gap(patch))}});
+  }
+  assemble(state, previous, asked);
+  return true;
 }
 
 void Newton::shorten(std::span<const double> solution, const StaticState& previous, StaticState& state,
@@ -181,25 +246,63 @@ void Newton::fail_if_endless(double instant) const {
   std::string cells;
   for (std::size_t i = 0; i < std::min(most, statuses_.endless().size()); ++i)
     cells += (i ? ", " : "") + cell_name(problem_.mesh.patches->cells[statuses_.endless()[i]].front());
-  fail("EVOLUTION_15", {{"instant", fmt::format("{:.9g}", instant)},
-                        {"count", std::to_string(statuses_.endless().size())},
-                        {"cells", cells + (statuses_.endless().size() > most ? ", ..." : "")},
-                        {"period", std::to_string(statuses_.period())}});
+  throw InstantFailure(message("EVOLUTION_15", {{"instant", fmt::format("{:.9g}", instant)},
+                                                {"count", std::to_string(statuses_.endless().size())},
+                                                {"cells", cells + (statuses_.endless().size() > most ? ", ..." : "")},
+                                                {"period", std::to_string(statuses_.period())}}),
+                       {.depends_on_step = false});
 }
 
-std::string Newton::unmet_criteria(const IterationReport& line, std::size_t first_changed) const {
+void Newton::fail_to_converge(double instant, const IterationReport& line, std::size_t changing) const {
+  const ConvergenceCriteria& asked = options_.criteria;
+  const double excess = std::max(asked.resi_glob_rela ? line.rela / *asked.resi_glob_rela : 0,
+                                 asked.resi_glob_maxi ? line.maxi / *asked.resi_glob_maxi : 0);
+  std::string why = unmet_criteria(line, changing) + course_.words();
+  if (const auto cell = equilibrium_.cell_inside_out())
+    why += fmt::format("; cell {} of {} is turned inside out", cell_name(*cell),
+                       Bodies(problem_.mesh).name_at(problem_.mesh.cells[*cell][0]));
+  throw InstantFailure(message("EVOLUTION_4", {{"instant", fmt::format("{:.9g}", instant)},
+                                               {"iterations", std::to_string(options_.iterations)},
+                                               {"unmet", why},
+                                               {"remedy", remedy(line, excess)}}),
+                       {.ratio = settled_ >= settled ? course_.ratio() : std::nullopt, .excess = excess});
+}
+
+std::string Newton::remedy(const IterationReport& line, double excess) const {
+  const double ratio = course_.ratio().value_or(1);
+  const bool diverges = !course_.finite() || ratio > worse || equilibrium_.cell_inside_out();
+  // more iterations, where a few times as many come to the end
+  if (settled_ >= settled && ratio < no_better && !diverges) {
+    const double more = excess > 1 ? std::ceil(std::log(excess) / -std::log(ratio)) : settled;
+    if (more <= 2.0 * options_.iterations)
+      return fmt::format("allow more iterations: the residual comes to its end within {} (CONVERGENCE/ITER_GLOB_MAXI)",
+                         options_.iterations + static_cast<int>(more) + 1);
+  }
+  if (settled_ >= settled && line.rela < near_round_off)
+    return "ask for less: what is left is near the round-off of the forces (CONVERGENCE/RESI_GLOB_RELA, RESI_GLOB_MAXI)";
+  if (!options_.cuts) return cut_the_step;
+  if (diverges) return coarser_load;
+  if (line.status_changes > 0)
+    return "refine the slave skin around that cell, or make the other skin the slave: its patches are too coarse for what "
+           "happens there";
+  return "look in the table from which iteration on the residual does not fall, and in the mesh at the node where it is "
+         "largest "
+         "(AFFICHAGE/INFO_RESIDU)";
+}
+
+std::string Newton::unmet_criteria(const IterationReport& line, std::size_t changing) const {
   std::string text;
   const auto add = [&](bool met, const std::string& what) {
     if (!met) text += (text.empty() ? "" : ", ") + what;
   };
-  const std::string where = line.worst_dof < 0 ? "" : " at " + problem_.dof_name(line.worst_dof);
+  const std::string where = line.worst_dof < 0 ? "" : " at " + equilibrium_.place(line.worst_dof);
   add(line.rela_met, fmt::format("RESI_GLOB_RELA {:.1e}{}", line.rela, where));
   add(line.maxi_met, fmt::format("RESI_GLOB_MAXI {:.1e}{}", line.maxi, where));
   add(line.geometry_met, fmt::format("RESI_GEOM {:.1e}", line.geometry));
   add(line.constraint_met, fmt::format("max. gap / size {:.1e}", line.constraint));
   if (line.status_changes)
     add(false, fmt::format("{} patch(es) changing status, the first at slave cell {}", line.status_changes,
-                           cell_name(problem_.mesh.patches->cells[first_changed].front())));
+                           cell_name(problem_.mesh.patches->cells[changing].front())));
   return text;
 }
 

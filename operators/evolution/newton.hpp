@@ -2,6 +2,7 @@
 // Newton's method for one instant: equilibrium, geometry, contact and behaviour in one loop (METHOD.md 3.2, 5.3).
 #include <functional>
 #include <memory>
+#include <set>
 #include <span>
 #include <string>
 #include <vector>
@@ -9,6 +10,7 @@
 #include "lacon/assembly/saddle_point_solver.hpp"
 #include "lacon/operators/evolution/equilibrium.hpp"
 #include "lacon/operators/evolution/matrix_choice.hpp"
+#include "lacon/operators/evolution/residual_course.hpp"
 #include "lacon/operators/evolution/status_rule.hpp"
 
 namespace lacon {
@@ -18,6 +20,7 @@ struct NewtonOptions {
   int iterations = 10;                            ///< ITER_GLOB_MAXI
   SolidMatrix matrix = SolidMatrix::tangent;      ///< NEWTON/MATRICE
   SolidMatrix prediction = SolidMatrix::tangent;  ///< NEWTON/PREDICTION: of the first iteration of an instant
+  bool cuts = false;                              ///< a step that fails is cut: no message advises it
 };
 
 class Newton {
@@ -33,8 +36,8 @@ class Newton {
   void begin(StaticState& state, const std::string& label);
 
   /// Solve the instant, starting from `state`, which is in equilibrium. Calls `report` for each iteration.
-  /// @return number of iterations. Throws EVOLUTION_4 (not converged), EVOLUTION_15, SOLVER_3 (singular), ELEMENT_1 ...:
-  /// severity S. `state` is then between two instants.
+  /// @return number of iterations. Throws an InstantFailure: EVOLUTION_4 (not converged), EVOLUTION_15, EVOLUTION_18 (cells
+  /// that are no cells any more), SOLVER_3 (singular) ..., severity S. `state` is then between two instants.
   int solve(double instant, StaticState& state, const std::function<void(const IterationReport&)>& report);
   /// Go back to a state: contact, stresses and system are those of `state` again, as solve() needs them.
   void restart(const StaticState& state);
@@ -44,9 +47,17 @@ class Newton {
   const ContactState* contact() const { return equilibrium_.contact(); }
 
  private:
+  int iterate(double instant, StaticState& state, const std::function<void(const IterationReport&)>& report);
   void assemble(const StaticState& state, const StaticState& previous, SolidMatrix asked);
-  /// The solution of the present system. @param rough a few digits will do. Throws SOLVER_3.
-  std::vector<double> solve_system(std::span<const double> step, bool rough, IterationReport& line);
+  /// The solution of the present system. @param rough a few digits will do. Where bodies are loose that are near to others,
+  /// patches of `state` take contact first. Throws SOLVER_3.
+  std::vector<double> solve_system(StaticState& state, const StaticState& previous, SolidMatrix asked,
+                                   std::span<const double> step, bool rough, IterationReport& line);
+  /// Hold bodies that are loose and near to others: at first the nearest patches take contact, and EVOLUTION_20 says so. Where
+  /// they are pulled and open again, nothing presses on the bodies: springs keep them where they are, in the matrix alone.
+  /// @return whether all of them are held
+  bool hold_loose_bodies(std::span<const std::int64_t> null_pivots, StaticState& state, const StaticState& previous,
+                         SolidMatrix asked);
   /// What pressures and gaps ask for at the state's geometry, in `line` how many patches want to change; nothing without
   /// contact.
   std::vector<Status> wanted_statuses(const StaticState& state, IterationReport& line) const;
@@ -56,14 +67,22 @@ class Newton {
   /// @param solution that `state` has moved by  @param increment of all unknowns of nodes, shortened as well
   void shorten(std::span<const double> solution, const StaticState& previous, StaticState& state,
                std::vector<double>& increment);
+  /// Throws EVOLUTION_4. @param line the last iteration  @param changing a patch that changes its status in it, if any does
+  [[noreturn]] void fail_to_converge(double instant, const IterationReport& line, std::size_t changing) const;
   /// What keeps the last iteration from being the solution, in words.
-  std::string unmet_criteria(const IterationReport& line, std::size_t first_changed) const;
+  std::string unmet_criteria(const IterationReport& line, std::size_t changing) const;
+  /// The one thing to do about it that fits.
+  std::string remedy(const IterationReport& line, double excess) const;
 
   const StaticProblem& problem_;
   NewtonOptions options_;
   Equilibrium equilibrium_;
   MatrixChoice choice_;
   StatusRule statuses_;
+  std::set<std::size_t> told_;  ///< patches that EVOLUTION_20 was about
+  ResidualCourse course_;       ///< of the instant
+  int times_held_ = 0;          ///< in this instant: loose bodies
+  int settled_ = 0;             ///< iterations in a row in which no status has changed
   SaddlePointSolver solver_;
 };
 

@@ -91,7 +91,10 @@ void System::add_unsymmetric(std::span<const std::int64_t> unknowns, std::span<c
         imposed_terms_.push_back({equations_[i], unknowns[j], matrix[at]});
 }
 
-void System::add_diagonal(std::int64_t unknown, double value) { matrix_->add_diagonal(equation(unknown), value); }
+void System::add_diagonal(std::int64_t unknown, double value) {
+  if (is_complete_ && unknown < n_nodal()) save_stiffness();
+  matrix_->add_diagonal(equation(unknown), value);
+}
 
 std::vector<double> System::right_side(std::span<const double> external, std::span<const double> step) const {
   std::vector<double> side(numbering_.n_equations());

@@ -7,6 +7,8 @@
 #include <functional>
 #include <map>
 
+#include "lacon/operators/evolution/instant_failure.hpp"
+
 namespace lacon {
 namespace {
 
@@ -19,13 +21,35 @@ const StepCut& action_for(const TimeSteps& steps, const Error& error) {
   return steps.action;
 }
 
+/// What is known of a failure; of some nothing but their message.
+FailureNature nature_of(const Error& error) {
+  const auto* const known = dynamic_cast<const InstantFailure*>(&error);
+  return known ? known->nature() : FailureNature{};
+}
+
+constexpr double same_ratio = 0.05;  // of the logarithm of ratios
+
+/// Why no cut helps, or nothing. Where a step and its parts have residuals that fall by the same ratio, a part of them has
+/// 1 / cut_into of the whole's after as many iterations.
+std::optional<std::string> in_vain(const FailureNature& now, const FailureNature& before, const StepCut& action, int level) {
+  if (!now.depends_on_step) return "what fails does not depend on its length";
+  if (!now.ratio || !before.ratio || std::abs(std::log(*now.ratio / *before.ratio)) > same_ratio) return std::nullopt;
+  if (now.excess <= std::pow(action.cut_into, action.cut_levels - level)) return std::nullopt;
+  return fmt::format("its residual changes by the same factor, {:.2g}, as that of the step that it was cut from", *now.ratio);
+}
+
 /// The length of the parts into which the step to `to` is cut. Called while `error` is handled: throws it on where the step is
-/// not to be cut any more.
-double cut(const StepCut& action, const Error& error, double length, double to, int level, double smallest) {
+/// not to be cut any more. @param before the failure of the step that it was cut from
+double cut(const StepCut& action, const Error& error, const FailureNature& before, double length, double to, int level,
+           double smallest) {
   const double part = length / action.cut_into;
   if (error.message().severity != 'S' || !action.cut || level >= action.cut_levels ||
       part < std::max(action.smallest, smallest))
     throw;
+  if (const auto reason = in_vain(nature_of(error), before, action, level)) {
+    inform("EVOLUTION_19", {{"instant", fmt::format("{:.9g}", to)}, {"reason", *reason}});
+    throw;
+  }
   inform("EVOLUTION_7", {{"instant", fmt::format("{:.9g}", to)},
                          {"parts", std::to_string(action.cut_into)},
                          {"level", std::to_string(level + 1)},
@@ -39,16 +63,18 @@ struct Stepper {
   const GoBack& go_back;
   const Solved& solved;
 
-  void advance(double from, double to, int level, bool asked) const {
+  /// @param before the failure of the step that this one is a part of
+  void advance(double from, double to, int level, bool asked, const FailureNature& before) const {
     try {
       solve(to);
     } catch (const Error& error) {
       const StepCut& action = action_for(steps, error);
-      const double part = cut(action, error, to - from, to, level, 0);
+      const double part = cut(action, error, before, to - from, to, level, 0);
+      const FailureNature failure = nature_of(error);
       go_back();
       for (int i = 1; i <= action.cut_into; ++i) {
         const bool last = i == action.cut_into;
-        advance(from + (i - 1) * part, last ? to : from + i * part, level + 1, last && asked);
+        advance(from + (i - 1) * part, last ? to : from + i * part, level + 1, last && asked, failure);
       }
       return;
     }
@@ -77,7 +103,9 @@ class AdaptiveStepper {
       try {
         stepper_.solve(to);
       } catch (const Error& error) {
-        step_ = cut(action_for(steps_, error), error, to - at, to, level_, rules_.smallest);
+        step_ = cut(action_for(steps_, error), error, level_ > 0 ? failure_ : FailureNature{}, to - at, to, level_,
+                    rules_.smallest);
+        failure_ = nature_of(error);
         ++level_;
         easy_ = 0;
         stepper_.go_back();
@@ -111,6 +139,7 @@ class AdaptiveStepper {
   const Iterations& iterations_;
   double step_;
   int level_ = 0, easy_ = 0;
+  FailureNature failure_;  ///< of the step that was cut last
   std::int64_t count_ = 0;
 };
 
@@ -136,7 +165,7 @@ void step_through(const TimeSteps& steps, const SolveInstant& solve, const GoBac
     for (std::size_t i = 1; i < steps.values.size(); ++i) adaptive.advance(steps.values[i - 1], steps.values[i]);
     return;
   }
-  for (std::size_t i = 1; i < steps.values.size(); ++i) stepper.advance(steps.values[i - 1], steps.values[i], 0, true);
+  for (std::size_t i = 1; i < steps.values.size(); ++i) stepper.advance(steps.values[i - 1], steps.values[i], 0, true, {});
 }
 
 TimeSteps restrict(const TimeSteps& steps, const Interval& interval) {

@@ -21,7 +21,8 @@ using Solved = std::function<void(double instant, bool asked)>;
 using Iterations = std::function<int()>;
 
 /// Solve every instant of `steps` behind the first. A step that fails is cut into `cut_into` equal ones, at most `cut_levels`
-/// times over (DEFI_LIST_INST, ECHEC/ACTION='DECOUPE'); the failure that no cut can help is thrown on. Which action holds is
+/// times over (DEFI_LIST_INST, ECHEC/ACTION='DECOUPE'); the failure that no cut can help (InstantFailure) is thrown on, and
+/// EVOLUTION_19 says why. Which action holds is
 /// said by the event: STEP_1 (RESI_MAXI), STEP_2 (DELTA_GRANDEUR), STEP_4 (DIVE_RESI), any other failure of the solution.
 /// With `steps.adaptation` (METHODE='AUTO') steps also grow and shrink between the instants of the list, beginning with its
 /// first interval; a step that fails is then cut once, and the shorter one goes on. Throws STEP_3 after too many steps.

@@ -26,7 +26,8 @@ NewtonOptions newton_options(const Keywords& convergence, const Keywords& newton
                        .resi_glob_maxi = convergence.optional_real("RESI_GLOB_MAXI")},
           .iterations = iterations + static_cast<int>(iterations * steps.more_iterations / 100),
           .matrix = matrix_of(newton.text("MATRICE")),
-          .prediction = matrix_of(newton.text("PREDICTION"))};
+          .prediction = matrix_of(newton.text("PREDICTION")),
+          .cuts = steps.action.cut};
 }
 
 std::unique_ptr<Engine> engine_of(const Keywords& solver) {

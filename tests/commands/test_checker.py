@@ -451,7 +451,7 @@ class Properties(unittest.TestCase):
 
     def test_rows_are_of_the_documented_shape(self):
         known = {"type", "status", "max", "min", "default", "into", "into_from", "elsewhere", "above", "at_least", "below", "at_most",
-                 "unique", "unit", "makes", "help", "keyword", "rule", "when", "formerly"}
+                 "unique", "unit", "makes", "help", "keyword", "rule", "when", "formerly", "example"}
         types = {"real", "integer", "text", "scalar", "group_ma", "group_no", "cell", "node", "factor", "concept", *kinds}
 
         def visit(path, row):

@@ -34,15 +34,55 @@ class New(StudyTest):
         self.assertEqual(done.returncode, 0, done.stderr)
         text = self.assert_checked()
         self.assertIn("GROUP_MA_ESCL='FINE', GROUP_MA_MAIT='COARSE'", text)
-        self.assertIn("MECA_IMPO=_F(GROUP_MA='BASE', DX=0.0, DY=0.0)", text)
+        self.assertIn("MECA_IMPO=(_F(GROUP_MA='BASE', DX=0.0, DY=0.0), _F(GROUP_MA='SIDE_1', DX=0.0), _F(GROUP_MA='SIDE_2', DX=0.0))", text)
         self.assertIn("PRES_REP=_F(GROUP_MA='LOAD', PRES=1.0)", text)
         self.assertIn("# Bodies: LOWER, UPPER", text)
-        # with the sides on rollers it is a patch test, and runs
-        (self.folder / "study.comm").write_text(text.replace("GROUP_MA='BASE', DX=0.0, DY=0.0)", "GROUP_MA='BASE', DY=0.0), ")
-                                                .replace("DY=0.0), )", "DY=0.0), _F(GROUP_MA=('SIDE_1', 'SIDE_2'), DX=0.0)))")
-                                                .replace("MECA_IMPO=_F", "MECA_IMPO=(_F"), encoding="utf-8")
-        run = self.run_lacon("study.comm", "--unit", "20=mesh.med", "--unit", "80=result.med")
+        self.assert_runs()
+
+    def assert_runs(self):
+        run = self.run_lacon("mesh.comm", "--unit", "20=mesh.med", "--unit", "80=result.med")
         self.assertEqual(run.status, 0, run.stdout[-2000:] + run.stderr)
+
+    def test_a_flat_skin_meets_the_round_skin_opposite_and_not_the_symmetry_beside_it(self):
+        """Half a roller on half a plate: the axis of symmetry of one comes down to the skin of the other, both end in the point that touches."""
+        def roller(s, t):
+            angle, radius = s * np.pi / 2, 1 + 3 * t
+            return radius * np.sin(angle), 4 - radius * np.cos(angle)
+
+        upper = block("QUAD4", lines(16, 0), lines(6, 0), place=roller, name="ROLLER", sides={"top": "ROUND", "left": "SYM_1", "right": "MIDDLE"})
+        lower = block("QUAD4", lines(8, 0, 4.0), lines(4, -2, 2.0), name="PLATE", sides={"top": "FLAT", "left": "SYM_2", "bottom": "BASE"})
+        self.assertEqual(self.new(union([upper, lower])).returncode, 0)
+        text = self.assert_checked()
+        self.assertIn("GROUP_MA_ESCL='ROUND', GROUP_MA_MAIT='FLAT'", text)
+        self.assertEqual(text.count("ALGO_CONT='LAC'"), 1)
+        self.assertIn("ROUND: curved", text)
+        self.assertIn("_F(GROUP_MA='SYM_1', DX=0.0), _F(GROUP_MA='SYM_2', DX=0.0)", text)
+
+    def test_symmetry_planes_of_two_bodies_are_no_contact(self):
+        """Coarse blocks in space: rows of cells of the planes X = 0 and Y = 0 touch over the skins that meet."""
+        below = brick("HEXA8", [lines(2, 0), lines(2, 0), lines(1, 0)], name="LOWER", sides={(0, 0): "X_1", (1, 0): "Y_1", (2, 1): "TOP", (2, 0): "BASE"})
+        above = brick("HEXA8", [lines(3, 0), lines(3, 0), lines(1, 1)], name="UPPER", sides={(0, 0): "X_2", (1, 0): "Y_2", (2, 0): "SOLE", (2, 1): "LOAD"})
+        self.assertEqual(self.new(union([below, above])).returncode, 0)
+        text = self.assert_checked()
+        self.assertIn("GROUP_MA_ESCL='SOLE', GROUP_MA_MAIT='TOP'", text)
+        self.assertEqual(text.count("ALGO_CONT='LAC'"), 1)
+        self.assert_runs()
+
+    def test_the_skin_itself_is_taken_before_the_whole_boundary(self):
+        mesh = plate()
+        skins = {group: members for group, members in mesh.cell_groups.items() if group in ("FINE", "LOAD", "SIDE_1")}
+        mesh.cell_groups["ALL_OF_UPPER"] = sorted(cell for members in skins.values() for cell in members)
+        self.assertEqual(self.new(mesh).returncode, 0)
+        self.assertIn("GROUP_MA_ESCL='FINE', GROUP_MA_MAIT='COARSE'", self.assert_checked())
+
+    def test_the_call_that_help_shows_is_accepted(self):
+        call = self.run_tool("help", "DEFI_CONTACT").stdout.partition("accepted:")[2]
+        self.assertEqual(self.new(plate()).returncode, 0)
+        text = self.assert_checked()
+        first, last = text.index("CONTACT = "), text.index("STEPS = ")
+        shown = " ".join(call.split()).replace("=MODELE", "=MODEL").replace("MAIT='GROUP'", "MAIT='COARSE'").replace("ESCL='GROUP'", "ESCL='FINE'")
+        (self.folder / "mesh.comm").write_text(text[:first] + shown + "\n" + text[last:], encoding="utf-8")
+        self.assert_runs()
 
     def test_without_a_pair_the_file_says_what_to_add(self):
         done = self.new(brick("HEXA8", [lines(1, 0), lines(1, 0), lines(1, 0)], name="BODY", sides={(2, 0): "LOW"}), "--out", "one.comm")

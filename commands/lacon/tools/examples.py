@@ -29,7 +29,7 @@ def close(row, given):
             given[name] = value(keywords[name], name)
 
     for name, keyword in keywords.items():
-        if keyword.get("status") == "mandatory" or keyword.get("default") in keyword.get("elsewhere", ()):
+        if keyword.get("status") == "mandatory" or "example" in keyword or keyword.get("default") in keyword.get("elsewhere", ()):
             add(name)
     for rule in row.get("rule", ()):
         if rule["kind"] in ("exactly_one", "at_least_one") and not any(k in given for k in rule["of"]):
@@ -68,6 +68,8 @@ def value(keyword, name=""):
 
 def single(keyword, i=0, name=""):
     """The i-th of several values; different ones for different i, where the rows allow any."""
+    if "example" in keyword:
+        return keyword["example"]
     kind = keyword["type"].split("|")[0]
     allowed = plugins.lists[keyword["into_from"]]() if "into_from" in keyword else keyword.get("into")
     if allowed:

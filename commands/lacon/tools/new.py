@@ -1,7 +1,8 @@
 """`lacon new mesh.med`: a starter study written from a mesh's groups, to be corrected by its user.
 
-Bodies are the groups of cells of the mesh's dimension, skins those of one dimension less. Two skins that lie close to each other on parts
-of the mesh that are not connected make a contact pair, the finer one as slave. What is a guess says so in the file.
+Bodies are the groups of cells of the mesh's dimension, skins those of one dimension less. Two skins that face each other closely on parts of
+the mesh that are not connected make a contact pair, the finer one as slave. Plane skins at the zero of an axis are taken for symmetries. What
+is a guess says so in the file.
 """
 
 import argparse
@@ -17,21 +18,24 @@ from ..run import execution, launch
 from ..run.study import Study
 from .convert import read_formats
 
-_near = 2.0  # skins are a pair where a node of one is nearer to the other than this many lengths of its cells
-_share = 0.25  # and where that holds for this part of the nodes
-_sample = 1500  # nodes of a skin that are looked at
+_near = 2.0  # skins are a pair where a cell of one is nearer to a cell of the other than this many of their lengths
+_facing = -0.7  # and their outward normals have at most this product
+_share = 0.25  # and where that holds for this part of the cells
+_sample = 1500  # cells of a skin that are looked at
 
 
 class Skin:
-    """A group of skin cells: nodes' coordinates, part of the mesh, length of a cell."""
+    """A group of skin cells: dimension of the mesh, nodes' coordinates, part of the mesh, length of a cell; middles and outward
+    unit normals of cells that stand for all, and how far they are apart."""
 
-    def __init__(self, name, points, part, length):
-        self.name, self.points, self.part, self.length = name, points, part, length
+    def __init__(self, name, dimension, points, part, length, spacing, middles, normals):
+        self.name, self.dimension, self.points, self.part, self.length = name, dimension, points, part, length
+        self.spacing, self.middles, self.normals = spacing, middles, normals
 
     def plane(self):
         """(axis, coordinate) of the coordinate plane it lies in; nothing where it lies in none"""
         spread = self.points.max(axis=0) - self.points.min(axis=0)
-        for axis in range(3):
+        for axis in range(self.dimension):
             if spread[axis] <= 1e-6 * max(spread.max(), 1e-300) and spread.max() > 0:
                 return "XYZ"[axis], float(self.points[:, axis].mean())
         return None
@@ -51,9 +55,12 @@ class MeshGroups:
             types, kind = contents.cell_types(file)
             offset, nodes = contents.connectivity(file)
             members = contents.groups(file, "cells")
+        self._offset, self._nodes = offset, nodes
         of_family = {"POI": 0, "SEG": 1, "TRIA": 2, "QUAD": 2}
         dimension = numpy.array([of_family.get(re.match("[A-Z]*", t)[0], 3) for t in types])[kind]
-        self._part = self._parts(offset, nodes, dimension == self.dimension)
+        self._body = dimension == self.dimension
+        self._part = self._parts(offset, nodes, self._body)
+        self._around = self._cells_around()
         cells = lambda group: numpy.concatenate([nodes[offset[c]:offset[c + 1]] for c in group])  # noqa: E731
         self.bodies, self.skins = {}, []
         for name, group in members.items():
@@ -64,7 +71,10 @@ class MeshGroups:
                 first = nodes[offset[group]], nodes[offset[group] + 1]
                 length = float(numpy.linalg.norm(self.points[first[0]] - self.points[first[1]], axis=1).mean())
                 parts = numpy.unique(self._part[own])
-                self.skins.append(Skin(name, self.points[own], int(parts[0]) if len(parts) == 1 else -1, length))
+                step = -(-len(group) // _sample)
+                some, spacing = group[::step], length * step ** (1 / (self.dimension - 1))
+                self.skins.append(Skin(name, self.dimension, self.points[own], int(parts[0]) if len(parts) == 1 else -1, length, spacing,
+                                       *self._faces([nodes[offset[c]:offset[c + 1]] for c in some])))
 
     def _parts(self, offset, nodes, body):
         """The connected part of each node, by its lowest node; -1 where no body cell has the node."""
@@ -85,16 +95,41 @@ class MeshGroups:
         used[nodes] = True
         return numpy.where(used, label, -1)
 
+    def _cells_around(self):
+        """(offset, body cells) of the nodes."""
+        cell = numpy.repeat(numpy.arange(len(self._body)), numpy.diff(self._offset))
+        inside = self._body[cell]
+        order = numpy.argsort(self._nodes[inside], kind="stable")
+        first = numpy.searchsorted(self._nodes[inside][order], numpy.arange(len(self.points) + 1))
+        return first, cell[inside][order]
+
+    def _faces(self, faces):
+        """Middles of skin cells and their unit normals, away from the body cell that they bound; 0 where they bound none."""
+        middles, normals = numpy.zeros((len(faces), 3)), numpy.zeros((len(faces), 3))
+        first, cells = self._around
+        for i, face in enumerate(faces):
+            middles[i] = self.points[face].mean(axis=0)
+            bodies = set.intersection(*(set(cells[first[n]:first[n + 1]].tolist()) for n in face))
+            if not bodies:
+                continue
+            inside = self.points[self._nodes[self._offset[min(bodies)]:self._offset[min(bodies) + 1]]].mean(axis=0)
+            one = self.points[face[1]] - self.points[face[0]]
+            normal = (one[1], -one[0], 0.0) if self.dimension == 2 else numpy.cross(one, self.points[face[2]] - self.points[face[0]])
+            length = numpy.linalg.norm(normal)
+            if length > 0:
+                normals[i] = numpy.array(normal) / length * (1.0 if numpy.dot(normal, middles[i] - inside) > 0 else -1.0)
+        return middles, normals
+
     def pairs(self):
         """[(slave, master)] of skins that face each other on different parts, the closest first; each skin once."""
         found = []
         for i, a in enumerate(self.skins):
             for b in self.skins[i + 1:]:
                 if a.part != b.part and (a.part >= 0 or b.part >= 0):
-                    share = max(_closeness(a, b), _closeness(b, a))
-                    if share >= _share:
+                    shares = _closeness(a, b), _closeness(b, a)
+                    if max(shares) >= _share:
                         slave, master = (a, b) if b.part < 0 or (a.part >= 0 and a.length <= b.length) else (b, a)
-                        found.append((share, slave, master))
+                        found.append((sum(shares), slave, master))  # a group of more than the facing skin has a smaller sum
         taken, pairs = set(), []
         for _, slave, master in sorted(found, key=lambda row: -row[0]):
             if slave.name not in taken and master.name not in taken:
@@ -104,12 +139,13 @@ class MeshGroups:
 
 
 def _closeness(a, b):
-    """The part of a's nodes that are near a node of b."""
-    p, q = (s.points[:: max(1, len(s.points) // _sample)] for s in (a, b))
-    limit = _near * max(a.length, b.length)
-    near = sum(int((((row[:, None, :] - q[None, :, :]) ** 2).sum(axis=2).min(axis=1) <= limit * limit).sum())
-               for row in numpy.array_split(p, max(1, len(p) // 100)))
-    return near / len(p)
+    """The part of a's cells that are near a cell of b which looks towards them."""
+    limit = _near * max(a.spacing, b.spacing)
+    near = 0
+    for rows in numpy.array_split(numpy.arange(len(a.middles)), max(1, len(a.middles) // 100)):
+        square = ((a.middles[rows, None, :] - b.middles[None, :, :]) ** 2).sum(axis=2)
+        near += int(((square <= limit * limit) & (a.normals[rows] @ b.normals.T <= _facing)).any(axis=1).sum())
+    return near / len(a.middles)
 
 
 def study(groups, mesh_file, read_format):
@@ -120,6 +156,8 @@ def study(groups, mesh_file, read_format):
     axis = "XYZ"[groups.dimension - 1]
     flat = [skin for skin in free if skin.plane() and skin.plane()[0] == axis and skin.part >= 0]
     held = min(flat, key=lambda skin: skin.plane()[1], default=None)
+    size = numpy.ptp(groups.points, axis=0).max()
+    mirrors = [skin for skin in free if skin.plane() and skin.plane()[0] != axis and abs(skin.plane()[1]) <= 1e-6 * size]
     pressed = max((skin for skin in flat if skin is not held), key=lambda skin: skin.plane()[1], default=None)
     degrees = ["DX", "DY", "DZ"][:groups.dimension]
     fixed = ", ".join(f"{d}=0.0" for d in degrees)
@@ -148,14 +186,27 @@ def study(groups, mesh_file, read_format):
     lines += ["", f"MODEL = AFFE_MODELE(MAILLAGE={cut}, AFFE=_F(TOUT='OUI', PHENOMENE='MECANIQUE', MODELISATION={modelisation!r})){plane}",
               "", "STEEL = DEFI_MATERIAU(ELAS=_F(E=210000.0, NU=0.3))  # CHOOSE; one AFFE for each material, by GROUP_MA",
               f"MATTER = AFFE_MATERIAU(MAILLAGE={cut}, AFFE=_F(TOUT='OUI', MATER=STEEL))", ""]
+    imposed, why = [], []
     if held:
-        lines += [f"# CHOOSE what is held; {held.name} is the lowest plane skin without contact",
-                  f"HELD = AFFE_CHAR_CINE(MODELE=MODEL, MECA_IMPO=_F(GROUP_MA={held.name!r}, {fixed}))"]
-    else:
+        imposed.append(f"_F(GROUP_MA={held.name!r}, {fixed})")
+        why.append(f"{held.name} is the lowest plane skin without contact")
+    for skin in mirrors:
+        imposed.append(f"_F(GROUP_MA={skin.name!r}, D{skin.plane()[0]}=0.0)")
+        why.append(f"{skin.name}, at {skin.plane()[0]} = 0, looks like a symmetry")
+    if pressed:  # what is pressed alone may glide away
+        mirrored = {skin.plane()[0] for skin in mirrors if skin.part in (pressed.part, -1)}
+        across = [f"D{a}=0.0" for a in "XYZ"[:groups.dimension - 1] if a not in mirrored]
+        if across:
+            imposed.append(f"_F(GROUP_MA={pressed.name!r}, {', '.join(across)})")
+            why.append(f"{pressed.name}, which is pressed, keeps its place across")
+    if not imposed:
+        lowest = min(free, key=lambda skin: skin.points[:, groups.dimension - 1].mean(), default=None)
         whole = next(iter(groups.bodies), None)
-        where = f"GROUP_MA={whole!r}" if whole else "TOUT='OUI'"
-        lines += ["# CHOOSE what is held: no skin is plainly a support, so this holds a whole body",
-                  f"HELD = AFFE_CHAR_CINE(MODELE=MODEL, MECA_IMPO=_F({where}, {fixed}))"]
+        where = f"GROUP_MA={lowest.name!r}" if lowest else f"GROUP_MA={whole!r}" if whole else "TOUT='OUI'"
+        imposed.append(f"_F({where}, {fixed})")
+        why.append(f"no skin is plainly a support; {lowest.name} is the lowest one without contact" if lowest else "no skin is a support, so this holds a whole body")
+    lines += [f"# CHOOSE what is held: {'; '.join(why)}",
+              f"HELD = AFFE_CHAR_CINE(MODELE=MODEL, MECA_IMPO={imposed[0] if len(imposed) == 1 else '(' + ', '.join(imposed) + ')'})"]
     excit = ["_F(CHARGE=HELD)"]
     if pressed:
         lines += [f"# CHOOSE the loads; {pressed.name} is the highest plane skin without contact",

@@ -14,7 +14,8 @@ from run import chosen, count, missed, run  # noqa: E402
 from studies import Study, elastic, held, path, zone  # noqa: E402
 
 #: seconds each, one or more of a row
-SHORT = ["arch/x10, QUAD8 GREEN", "arch/x10, QUAD4 PETIT", "plastic/flat 1, QUAD8", "plastic/round 5, QUAD4", "contrast/1e-06 QUAD4 PETIT", "contrast/1e+06 QUAD8 GREEN", "difficult/beams QUAD8 PETIT"]
+SHORT = ["arch/x10, QUAD8 GREEN", "arch/x10, QUAD4 PETIT", "plastic/flat 1, QUAD8", "plastic/round 5, QUAD4", "contrast/1e-06 QUAD4 PETIT", "contrast/1e+06 QUAD8 GREEN", "difficult/beams QUAD8 PETIT",
+         "difficult/stack D_PLAN QUAD8 GREEN", "difficult/stack 3D HEXA8 PETIT"]
 
 TABLE = """
  Instant de calcul: 1.000000000000e+00

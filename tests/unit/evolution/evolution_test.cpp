@@ -24,7 +24,7 @@ class Solver : public InstantSolver {
     present_ = instant;
     for (int i = 0; i < 2; ++i) report({.iteration = i});
     if (instant - accepted_ > longest_ * (1 + 1e-12))
-      fail("EVOLUTION_4", {{"instant", "1"}, {"iterations", "2"}, {"unmet", ""}});
+      fail("EVOLUTION_4", {{"instant", "1"}, {"iterations", "2"}, {"unmet", ""}, {"remedy", ""}});
     return 1;
   }
   void accept() override {

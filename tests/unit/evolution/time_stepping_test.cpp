@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "lacon/operators/evolution/instant_failure.hpp"
 #include "lacon/operators/evolution/time_stepping.hpp"
 
 namespace lacon {
@@ -24,7 +25,8 @@ struct Solver {
     step_through(
         steps,
         [&](double to) {
-          if (to - at > longest * (1 + 1e-12)) fail("EVOLUTION_4", {{"instant", ""}, {"iterations", ""}, {"unmet", ""}});
+          if (to - at > longest * (1 + 1e-12))
+            fail("EVOLUTION_4", {{"instant", ""}, {"iterations", ""}, {"unmet", ""}, {"remedy", ""}});
         },
         [&] { ++returns; },
         [&](double to, bool was_asked) {
@@ -71,6 +73,34 @@ TEST(TimeStepping, DoesNotCutWhereTheUserDidNotAskForIt) {
   EXPECT_EQ(solver.returns, 0);
 }
 
+/// How often a step of length 1 is cut, into 4 and 3 times over at most, whose failures at level 0, 1, 2, 3 these are.
+int cuts(const std::vector<FailureNature>& failures) {
+  int returns = 0;
+  EXPECT_THROW(step_through(
+                   {.values = {0, 1}, .action = {.cut = true, .cut_into = 4, .cut_levels = 3}},
+                   [&](double) {
+                     throw InstantFailure({.severity = 'S', .id = "EVOLUTION_4", .text = "", .advice = ""},
+                                          failures.at(returns));
+                   },
+                   [&] { ++returns; }, [](double, bool) {}),
+               Error);
+  return returns;
+}
+
+// A singular matrix, statuses that no set satisfies; a residual that falls by the same ratio, and would need more cuts than are
+// left.
+TEST(TimeStepping, CutsNothingInVain) {
+  const FailureNature unknown{}, of_any_step{.depends_on_step = false}, slow{.ratio = 0.74, .excess = 1e3},
+      nearly{.ratio = 0.73, .excess = 15};
+  EXPECT_EQ(cuts({unknown, unknown, unknown, unknown}), 3);
+  EXPECT_EQ(cuts({of_any_step}), 0);
+  EXPECT_EQ(cuts({unknown, of_any_step}), 1);
+  EXPECT_EQ(cuts({slow, slow}), 1);
+  EXPECT_EQ(cuts({unknown, slow, slow}), 2);
+  EXPECT_EQ(cuts({slow, {.ratio = 0.5, .excess = 1e3}, {.ratio = 0.2, .excess = 1e3}, unknown}), 3);  // shorter steps do better
+  EXPECT_EQ(cuts({slow, nearly, unknown, unknown}), 3);  // two more cuts leave 15 / 4^2 of it
+}
+
 // An error of the user is no reason to try smaller steps.
 TEST(TimeStepping, CutsOnlyFailuresOfTheSolution) {
   const TimeSteps steps{.values = {0, 1}, .action = {.cut = true}};
@@ -103,6 +133,7 @@ TEST(TimeStepping, ActsByTheEvent) {
               fail(event, {{"instant", ""},
                            {"iterations", ""},
                            {"unmet", ""},
+                           {"remedy", ""},
                            {"residual", ""},
                            {"limit", ""},
                            {"component", ""},

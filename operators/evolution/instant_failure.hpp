@@ -1,0 +1,27 @@
+#pragma once
+// What a driver should know of an instant that failed, to judge whether a shorter step may help.
+#include <optional>
+#include <utility>
+
+#include "lacon/catalog/messages.hpp"
+
+namespace lacon {
+
+struct FailureNature {
+  bool depends_on_step = true;  ///< false: a shorter step meets the same
+  /// By which factor the residual changed at last from iteration to iteration, where nothing but it was unsettled.
+  std::optional<double> ratio;
+  double excess = 0;  ///< the residual over what is asked
+};
+
+/// Thrown for a failure of which more is known than its message.
+class InstantFailure : public Error {
+ public:
+  InstantFailure(Message message, FailureNature nature) : Error(std::move(message)), nature_(nature) {}
+  const FailureNature& nature() const { return nature_; }
+
+ private:
+  FailureNature nature_;
+};
+
+}  // namespace lacon

@@ -1,0 +1,36 @@
+#include "lacon/operators/evolution/residual_course.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace lacon {
+
+bool ResidualCourse::finite() const {
+  return std::all_of(residuals_.begin(), residuals_.end(), [](double residual) { return std::isfinite(residual); });
+}
+
+std::optional<double> ResidualCourse::ratio() const {
+  const std::size_t n = residuals_.size(), steps = std::min<std::size_t>(3, n - std::min<std::size_t>(n, 1));
+  if (steps == 0 || !(residuals_[n - 1 - steps] > 0) || !finite()) return std::nullopt;
+  return std::pow(residuals_[n - 1] / residuals_[n - 1 - steps], 1.0 / static_cast<double>(steps));
+}
+
+std::optional<double> ResidualCourse::order() const {
+  const std::size_t n = residuals_.size();
+  if (n < 3 || !finite() || !(residuals_[n - 1] > 0)) return std::nullopt;
+  const double last = residuals_[n - 1] / residuals_[n - 2], before = residuals_[n - 2] / residuals_[n - 3];
+  if (!(last < 1) || !(before < 1)) return std::nullopt;
+  return std::log(last) / std::log(before);
+}
+
+std::string ResidualCourse::words() const {
+  if (!finite()) return "; the residual has left the range of numbers";
+  const std::optional<double> changes = ratio(), falls = order();
+  if (!changes) return "";
+  return fmt::format("; the residual changes by the factor {:.2g} an iteration{}", *changes,
+                     falls ? fmt::format(" (order {:.2g})", *falls) : "");
+}
+
+}  // namespace lacon
