@@ -232,11 +232,11 @@ namespace {
 /// One thread's part of a loop over elements, with the batch that it has in hand.
 class ElementBatches {
  public:
-  ElementBatches(const ElementSet& set, const Mesh& mesh, bool with_matrix)
-      : set_(set), mesh_(mesh), with_matrix_(with_matrix) {}
+  ElementBatches(const ElementSet& set, const Mesh& mesh, bool with_matrix, bool symmetric = true)
+      : set_(set), mesh_(mesh), with_matrix_(with_matrix), symmetric_(symmetric) {}
 
   std::size_t n_dofs() const { return static_cast<std::size_t>(set_.n_nodes()) * set_.columns.size(); }
-  std::size_t n_lower() const { return n_dofs() * (n_dofs() + 1) / 2; }
+  std::size_t n_entries() const { return symmetric_ ? n_dofs() * (n_dofs() + 1) / 2 : n_dofs() * n_dofs(); }  ///< of a matrix
   std::optional<std::int32_t> inside_out() const { return inside_out_; }  ///< the first such cell of the batch in hand
 
   void hand_over(const LoopBlock& cells, const std::function<void(const ElementValues&)>& use) const {
@@ -248,26 +248,26 @@ class ElementBatches {
       for (const std::int32_t node : mesh_.cells[set_.cells[i]])
         for (const int column : set_.columns) dofs.push_back(std::int64_t{node} * set_.n_components + column);
       use({set_.cells[i], dofs, forces.subspan(own * n_dofs(), n_dofs()),
-           with_matrix_ ? matrices.subspan(own * n_lower(), n_lower()) : matrices});
+           with_matrix_ ? matrices.subspan(own * n_entries(), n_entries()) : matrices, symmetric_});
     }
   }
 
  protected:
   void make_room(const Batch& batch) {
     force_.resize(batch.n_blocks() * n_dofs());
-    if (with_matrix_) matrix_.resize(batch.n_blocks() * n_lower());
+    if (with_matrix_) matrix_.resize(batch.n_blocks() * n_entries());
     errors_.assign(batch.n_blocks() * lanes, LACON_FINE);
   }
   /// What the kernel has left in force_, matrix_ and errors_.
   void take_results(const Batch& batch) {
     inside_out_ = batch.check(errors_);
     batch.scatter(force_, n_dofs(), own_force_);
-    if (with_matrix_) batch.scatter(matrix_, n_lower(), own_matrix_);
+    if (with_matrix_) batch.scatter(matrix_, n_entries(), own_matrix_);
   }
 
   const ElementSet& set_;
   const Mesh& mesh_;
-  bool with_matrix_;
+  bool with_matrix_, symmetric_;
   LaneArray force_, matrix_;
   std::vector<std::int32_t> errors_;
 
@@ -281,7 +281,7 @@ template <class Batches>
 std::optional<std::int32_t> evaluate_in_turn(const ElementSet& set, const Batches& first,
                                              const std::function<void(const ElementValues&)>& use) {
   std::optional<std::int32_t> inside_out;
-  parallel_in_turn(set.cells.size(), batch_size(first.n_lower()), [&] {
+  parallel_in_turn(set.cells.size(), batch_size(first.n_entries()), [&] {
     const auto batches = std::make_shared<Batches>(first);
     return LoopWorker{[batches](const LoopBlock& cells) { batches->evaluate(cells); },
                       [batches, &use, &inside_out](const LoopBlock& cells) {
@@ -295,7 +295,10 @@ std::optional<std::int32_t> evaluate_in_turn(const ElementSet& set, const Batche
 class SolidBatches : public ElementBatches {
  public:
   SolidBatches(const ElementSet& set, const Mesh& mesh, const SolidInput& input, SolidMatrix wanted, const SolidOutput& output)
-      : ElementBatches(set, mesh, wanted != SolidMatrix::none), input_(input), wanted_(wanted), output_(output) {}
+      : ElementBatches(set, mesh, wanted != SolidMatrix::none, wanted != SolidMatrix::whole || !set.kernel->unsymmetric),
+        input_(input),
+        wanted_(wanted),
+        output_(output) {}
 
   void evaluate(const LoopBlock& cells) {
     const Batch batch(set_, mesh_, cells);
@@ -332,7 +335,7 @@ class SolidBatches : public ElementBatches {
         .coordinates = numbers(coordinates_),
         .displacement = nodal(input_.displacement, displacement_),
         .parameter = of_cells(set_.parameters, static_cast<std::size_t>(set_.n_parameters), parameters_),
-        .matrix = numbers(matrix_),
+        .matrix = symmetric_ ? numbers(matrix_) : nullptr,
         .force = numbers(force_),
         .stress = wanted(output_.stress, n_stress, stress_),
         .error = errors_.data(),
@@ -345,7 +348,8 @@ class SolidBatches : public ElementBatches {
         .n_variables = set_.n_point_variables,
         .elastic_matrix = wanted_ == SolidMatrix::elastic,
         .stressless_matrix = wanted_ == SolidMatrix::stressless,
-        .n_unknowns = set_.n_unknowns()};
+        .n_unknowns = set_.n_unknowns(),
+        .whole_matrix = symmetric_ ? nullptr : numbers(matrix_)};
     set_.kernel->solid(&call);
     take_results(batch);
     if (call.stress) batch.scatter(stress_, n_stress, output_.stress.subspan(cells.first * n_stress));

@@ -59,11 +59,13 @@ struct ElementValues {
   std::int32_t cell;
   std::span<const std::int64_t> dofs;  ///< (n_nodes, n_unknowns): node * n_components + column
   std::span<const double> force;       ///< (n_nodes, n_unknowns)
-  std::span<const double> matrix;      ///< lower triangle, row by row; empty where it was not wanted
+  std::span<const double> matrix;      ///< row by row, empty where it was not wanted
+  bool symmetric = true;               ///< the matrix is a lower triangle, otherwise it is square
 };
 
-/// The tangent without the terms of the present stress has no instability but that of the law.
-enum class SolidMatrix { none, tangent, stressless, elastic };
+/// The tangent is the symmetric part of the force's derivative, the whole one the derivative where the kernel has one that is
+/// not symmetric. The tangent without the terms of the present stress has no instability but that of the law.
+enum class SolidMatrix { none, tangent, stressless, elastic, whole };
 
 /// What solid elements are evaluated at. Displacements, with the other unknowns behind them, are those of the mesh, (n_nodes,
 /// n_components). The last state in equilibrium may be left empty, which is the natural state; its stresses and variables are

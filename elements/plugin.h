@@ -17,7 +17,7 @@
 extern "C" {
 #endif
 
-#define LACON_ABI 5
+#define LACON_ABI 6
 #define LACON_LANES 8
 
 #if defined(__GNUC__)
@@ -68,6 +68,8 @@ typedef struct lacon_solid_batch {
   int32_t stressless_matrix; /* 1: without the terms by which present stresses turn and move: the matrix is positive
                                 semi-definite unless the law softens */
   int32_t n_unknowns;        /* of a node: as many as the kernel's `unknowns` */
+  double* whole_matrix; /* (n_blocks, ndof, ndof, LANES), row by row: the tangent of an `unsymmetric` kernel as it is, where
+                           `matrix` has its symmetric part */
 } lacon_solid_batch;
 
 /* Elements (bodies, skins, edges) under a load that has values at each integration point. ndof = n_nodes * n_unknowns. */
@@ -129,6 +131,7 @@ typedef struct lacon_kernel {
   int32_t takes_curve;           /* solid: 1 if it needs the hardening curve */
   const char* const* unknowns;   /* solid, load: its unknowns at each node, "DX", "TEMP", some of its elements' `dofs`, NULL at
                                     the end; or NULL: the displacements */
+  int32_t unsymmetric;           /* solid: 1 if its tangent is not symmetric, and `whole_matrix` may be asked for */
 } lacon_kernel;
 
 typedef struct lacon_plugin_table {

@@ -207,7 +207,7 @@ LACON_INLINE void add_force(const Point<K>& point, const NominalStress<K>& nomin
 /// the hoop direction with the strain u_r / r, and integrals are those over one radian.
 template <Kind K, Measure M, Law L>
 LACON_INLINE void evaluate(const lacon_solid_batch& b) {
-  constexpr bool green = M == Measure::green, plastic = L == Law::von_mises;
+  constexpr bool green = M == Measure::green, updated = M == Measure::updated, plastic = L == Law::von_mises;
   constexpr bool same_moduli = M == Measure::small && L == Law::elastic;  // at all points
   constexpr int D = dimension_of(K), n_stress = components_of(K), n_variables = plastic ? n_plastic_variables : 0;
   const int nodes = b.n_nodes, dofs = D * nodes, entries = dofs * (dofs + 1) / 2;
@@ -221,7 +221,9 @@ LACON_INLINE void evaluate(const lacon_solid_batch& b) {
     block.read(b, index, errors);
     double* matrix = b.matrix ? b.matrix + index * entries * LACON_LANES : nullptr;
     double* force = b.force ? b.force + index * dofs * LACON_LANES : nullptr;
+    double* whole = updated && b.whole_matrix ? b.whole_matrix + index * dofs * dofs * LACON_LANES : nullptr;
     if (matrix && !same_moduli) clear_lanes(matrix, 0, entries);
+    if (whole) clear_lanes(whole, 0, dofs * dofs);
     if (force) clear_lanes(force, 0, dofs);
     Lanes sum = {};
     for (int p = 0; p < b.n_points; ++p) {
@@ -239,6 +241,7 @@ LACON_INLINE void evaluate(const lacon_solid_batch& b) {
       else if (stress)
         for (int i = 0; i < n_stress; ++i) lanes(stress, i) = point.stress[i];
       if (force) add_force<K>(point, nominal, nodes, force);
+      if (whole) add_updated_matrix<K, L, true>(point, nodes, whole);
       if (!matrix) continue;
       if constexpr (same_moduli) {
         if (kept + 1 == points_at_once || p + 1 == b.n_points)
@@ -247,8 +250,8 @@ LACON_INLINE void evaluate(const lacon_solid_batch& b) {
       }
       if (b.stressless_matrix)
         for (Lanes& component : point.stress) component = Lanes{};
-      if (M == Measure::updated && !b.stressless_matrix)
-        add_updated_matrix<K, L>(point, nodes, matrix);
+      if (updated && !b.stressless_matrix)
+        add_updated_matrix<K, L, false>(point, nodes, matrix);
       else
         add_matrix<K, M, L>(point, nodes, matrix);
     }
@@ -270,7 +273,9 @@ constexpr lacon_kernel row(const char* name, void (*function)(const lacon_solid_
           .variables = plastic ? plastic_variables : nullptr,
           .nonlinear = plastic || measure != Measure::small,
           .has_memory = plastic || measure == Measure::updated,
-          .takes_curve = plastic};
+          .takes_curve = plastic,
+          .unknowns = nullptr,
+          .unsymmetric = measure == Measure::updated};
 }
 
 // a function for each combination: a template cannot be compiled for several instruction sets

@@ -160,10 +160,10 @@ LACON_INLINE void add_matrix(const Point<K>& point, int nodes, double* matrix) {
   }
 }
 
-/// The matrix of PETIT_REAC: the derivative of the force on the geometry of u, which moves with u, made symmetric. The
-/// derivative itself is symmetric only up to terms of the size of the stress; without any of these terms slender bodies
-/// converge badly.
-template <Kind K, Law L>
+/// The matrix of PETIT_REAC: the derivative of the force on the geometry of u, which moves with u. It is symmetric only up to
+/// terms of the size of the stress.
+/// @tparam whole the derivative itself, (ndof, ndof); else the lower triangle of its symmetric part
+template <Kind K, Law L, bool whole>
 LACON_INLINE void add_updated_matrix(const Point<K>& point, int nodes, double* matrix) {
   constexpr bool axis = K == Kind::axis;
   constexpr int D = dimension_of(K);
@@ -215,15 +215,15 @@ LACON_INLINE void add_updated_matrix(const Point<K>& point, int nodes, double* m
   };
   for (int a = 0; a < nodes; ++a)
     for (int i = 0; i < D; ++i) {
-      double* row = matrix + start_of_row(D * a + i);
-      for (int c = 0; c <= a; ++c) {
+      double* row = matrix + (whole ? (D * a + i) * D * nodes * LACON_LANES : start_of_row(D * a + i));
+      for (int c = 0; c < (whole ? nodes : a + 1); ++c) {
         Lanes both = g[a][0] * g[c][0];
         for (int k = 1; k < D; ++k) both += g[a][k] * g[c][k];
-        for (int j = 0; j < D && (c < a || j <= i); ++j) {
-          Lanes twice = {};
-          add_derivative(a, i, c, j, both, twice);
-          add_derivative(c, j, a, i, both, twice);
-          lanes(row, D * c + j) += point.dv / 2 * twice;
+        for (int j = 0; j < D && (whole || c < a || j <= i); ++j) {
+          Lanes entry = {};
+          add_derivative(a, i, c, j, both, entry);
+          if (!whole) add_derivative(c, j, a, i, both, entry);
+          lanes(row, D * c + j) += (whole ? point.dv : point.dv / 2) * entry;
         }
       }
     }

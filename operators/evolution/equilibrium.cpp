@@ -30,6 +30,15 @@ Ragged<std::int32_t> nodes_of_elements(const StaticProblem& problem) {
   return nodes;
 }
 
+/// In the plane laws whose tangent is not symmetric have a matrix that is not, where gaps are derived exactly: one half is
+/// worth little without the other. In space its factorisations, twice as long and each for one system, take more than it saves.
+Symmetry symmetry_of(const StaticProblem& problem) {
+  const bool exact_gap = problem.dimension == 2 && problem.contact && !problem.contact->frozen_gap;
+  const bool unsymmetric =
+      std::any_of(problem.solids.begin(), problem.solids.end(), [](const ElementSet& set) { return set.kernel->unsymmetric; });
+  return exact_gap && unsymmetric ? Symmetry::general : Symmetry::symmetric;
+}
+
 ContactBodies bodies_of(const StaticProblem& problem) {
   ContactBodies bodies{.modulus = [&problem](std::int32_t cell) -> std::optional<double> {
                          return problem.materials->has(cell) ? problem.materials->find(cell, "ELAS/E") : std::nullopt;
@@ -63,7 +72,7 @@ Equilibrium::Equilibrium(const StaticProblem& problem)
     : problem_(problem),
       relations_(problem),
       elements_(nodes_of_elements(problem)),
-      system_(problem.numbering, elements_),
+      system_(problem.numbering, elements_, symmetry_of(problem)),
       extent_(largest_entry(problem.mesh.coordinates)) {
   if (problem.contact) contact_.emplace(problem.mesh, problem.model, *problem.contact, *problem.registry, bodies_of(problem));
   linear_ = !problem.has_following_loads();
@@ -146,7 +155,12 @@ void Equilibrium::add_solids(const StaticState& state, const StaticState& previo
       input.previous_variable = previous.points[s].variable;
     }
     const SolidOutput output{points_[s].stress, points_[s].variable};
-    const auto add = [&](const ElementValues& element) { system_.add(element.dofs, element.matrix, element.force); };
+    const auto add = [&](const ElementValues& element) {
+      if (element.symmetric)
+        system_.add(element.dofs, element.matrix, element.force);
+      else
+        system_.add_unsymmetric(element.dofs, element.matrix, element.force);
+    };
     const auto inverted = evaluate_solids(set, problem_.mesh, input, wanted, output, add);
     if (!cell_inside_out_) cell_inside_out_ = inverted;
   }
@@ -206,9 +220,14 @@ double Equilibrium::power(std::span<const double> solution) const {
   return std::inner_product(unbalanced.begin(), unbalanced.begin() + system_.first_multiplier(), solution.begin(), 0.0);
 }
 
-bool Equilibrium::flows() const {
+bool Equilibrium::has_variables() const {
   return std::any_of(problem_.solids.begin(), problem_.solids.end(),
                      [](const ElementSet& set) { return set.n_variables() > 0; });
+}
+
+bool Equilibrium::flows(const StaticState& previous) const {
+  return !std::equal(points_.begin(), points_.end(), previous.points.begin(),
+                     [](const PointValues& now, const PointValues& before) { return now.variable == before.variable; });
 }
 
 ForceFigures Equilibrium::forces(const StaticState& state, const StaticState& previous) const {

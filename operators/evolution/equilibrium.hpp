@@ -83,7 +83,10 @@ class Equilibrium {
   std::optional<std::int32_t> cell_inside_out() const { return cell_inside_out_; }  ///< that the last assembly found
   bool is_linear() const { return linear_; }                                        ///< the stiffness never changes
   bool has_memory() const { return has_memory_; }                                   ///< a law has
-  bool flows() const;                                                               ///< a law has internal variables
+  bool is_symmetric() const { return system_.matrix().is_symmetric(); }
+  bool has_variables() const;  ///< a law has internal variables
+  /// Whether internal variables of the last assembly are not those of the last state in equilibrium: the law flows.
+  bool flows(const StaticState& previous) const;
 
  private:
   void start(bool keeps_stiffness);

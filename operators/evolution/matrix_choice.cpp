@@ -1,6 +1,7 @@
 #include "lacon/operators/evolution/matrix_choice.hpp"
 
 #include <limits>
+#include <utility>
 
 namespace lacon {
 namespace {
@@ -8,21 +9,24 @@ namespace {
 /// Of a residual: what an iteration without the second derivatives of gaps may leave. From 1 to 1e-6 this takes an iteration
 /// or two more than quadratic convergence.
 constexpr double quick = 0.05;
+/// Unbalanced forces, of the largest force of the equilibrium.
+constexpr double far_from_balance = 1;
 
 }  // namespace
 
 void MatrixChoice::start_instant() {
-  unstable_ = false;
+  unstable_ = far_ = false;
   flat_ = elastic_ = {};
   residual_ = std::numeric_limits<double>::infinity();
   curved_ = false;
 }
 
 NewtonMatrix MatrixChoice::suited(SolidMatrix asked, bool touches) const {
-  const bool flat = waits_ || flat_.left > 0;
+  const bool unsafe = flat_.left > 0 || far_, flat = waits_ || unsafe;
   if (elastic_.left > 0) return {SolidMatrix::elastic, !flat};
-  if (asked != SolidMatrix::tangent || linear_) return {asked, !flat};
-  return {(has_memory_ && touches) || unstable_ || flat_.left > 0 ? SolidMatrix::stressless : asked, !flat};
+  if (asked != SolidMatrix::tangent || traits_.linear) return {asked, !flat};
+  if (!traits_.symmetric && !flat) return {SolidMatrix::whole, true};
+  return {(traits_.has_memory && touches) || unstable_ || unsafe ? SolidMatrix::stressless : asked, !flat};
 }
 
 bool MatrixChoice::note_pivots(NewtonMatrix present, bool curves, std::int64_t negative, std::int64_t constraints) {
@@ -31,24 +35,28 @@ bool MatrixChoice::note_pivots(NewtonMatrix present, bool curves, std::int64_t n
     flat_.begin();
     return true;
   }
-  if (present.solid != SolidMatrix::tangent || linear_) return false;
+  if (present.solid != SolidMatrix::tangent || traits_.linear) return false;
   unstable_ = true;
   return true;
 }
 
-bool MatrixChoice::note_residual(double residual, bool curved) {
-  const bool grows = has_memory_ && residual > residual_;
-  const bool slow = waits_ && curved && curved_ && residual > quick * residual_;
+bool MatrixChoice::note_residual(const Unbalance& unbalance) {
+  const bool grows = unbalance.in_flow && unbalance.largest > residual_;
+  const bool curved = unbalance.curved && !unbalance.statuses_change;
+  const bool slow = waits_ && curved && curved_ && unbalance.largest > quick * residual_;
   if (slow) waits_ = false;
-  residual_ = residual;
+  residual_ = unbalance.largest;
   curved_ = curved;
+  const bool far = unbalance.share > far_from_balance || (unbalance.in_flow && unbalance.statuses_change);
+  const bool was_far = std::exchange(far_, far && !traits_.symmetric);
   const bool curved_again = slow || (flat_.left > 0 && --flat_.left == 0);
+  const bool other = curved_again || far_ != was_far;
   if (elastic_.left > 0) {
     --elastic_.left;
-    return curved_again;
+    return other;
   }
   if (grows) elastic_.begin();
-  return grows || curved_again;
+  return grows || other;
 }
 
 }  // namespace lacon

@@ -13,33 +13,49 @@ struct NewtonMatrix {
   bool operator==(const NewtonMatrix&) const = default;
 };
 
-/// The matrix to go on with where the user asks for one. In contact the tangent of laws with a memory goes without the terms of
-/// the stress: that of PETIT_REAC is made symmetric, and what this leaves of them is no help where bodies turn and touch. Far
-/// from the solution the consistent matrix may be unstable:
+/// What a problem says of its matrices.
+struct MatrixTraits {
+  bool linear = false;      ///< the stiffness never changes
+  bool has_memory = false;  ///< a law goes from the last state in equilibrium to the present
+  bool symmetric = true;    ///< otherwise the matrix may be that of an unsymmetric tangent, as it is
+  bool in_space = false;    ///< second derivatives of gaps wait
+};
+
+/// The unbalanced forces that an iteration leaves.
+struct Unbalance {
+  double largest = 0;
+  double share = 0;              ///< the same over the largest force of the equilibrium
+  bool in_flow = false;          ///< a law flows
+  bool statuses_change = false;  ///< stresses are still those of other contacts
+  bool curved = false;           ///< gaps have second derivatives
+};
+
+/// The matrix to go on with where the user asks for one. A tangent that is not symmetric (PETIT_REAC) is taken as it is where
+/// the problem's matrix may be. Otherwise, in contact, the tangent of laws with a memory goes without the terms of the stress:
+/// made symmetric, what this leaves of them is no help where bodies turn and touch. Far from the solution the consistent matrix
+/// may be unstable, which a symmetric one tells by its pivots:
 /// - without contact, the tangent goes without the terms of the stress for the rest of the instant: that leads downhill to a
 ///   stable equilibrium;
 /// - in contact, both the terms of the stress and the second derivatives of gaps are left out for some iterations. They go
 ///   together: when a body turns they are in balance. Near the solution the consistent matrix is worth more.
-/// Where it overshoots (the residual of a law with a memory has grown), the elastic matrix takes its place for some
-/// iterations: it is an upper bound of any tangent of plastic flow.
+/// One that is not symmetric has no such sign: both are left out behind an iteration that leaves forces unbalanced by more than
+/// the largest of them, or contacts that change on bodies that flow.
+/// Where the matrix overshoots (the residual has grown while a law flows), the elastic one takes its place for some iterations:
+/// it is an upper bound of any tangent of plastic flow.
 /// In space second derivatives of gaps cost as much as a part of a factorisation, and fill it: they wait until they are worth
 /// it. Without them residuals fall by a constant ratio, the pressure over the stiffness of the body times how much surfaces
 /// bend and slide; where it is small, as between nearly flat skins, their iterations are no fewer.
 class MatrixChoice {
  public:
-  /// @param linear the stiffness never changes  @param has_memory a law goes from the last state in equilibrium to the present
-  /// @param in_space second derivatives of gaps wait
-  MatrixChoice(bool linear, bool has_memory, bool in_space = false)
-      : linear_(linear), has_memory_(has_memory), waits_(in_space) {}
+  explicit MatrixChoice(const MatrixTraits& traits) : traits_(traits), waits_(traits.in_space) {}
 
   void start_instant();
   NewtonMatrix suited(SolidMatrix asked, bool touches) const;
   /// More negative pivots than constraints: beyond a limit point or a bifurcation, from where a step of the tangent leads
   /// anywhere. @param curves gaps of active patches have second derivatives @return whether the matrix has to be another one
   bool note_pivots(NewtonMatrix present, bool curves, std::int64_t negative, std::int64_t constraints);
-  /// After an iteration that did not solve the instant. @param curved gaps have second derivatives, and no status changed
-  /// @return whether the matrix has to be another one
-  bool note_residual(double residual, bool curved = false);
+  /// After an iteration that did not solve the instant. @return whether the matrix has to be another one
+  bool note_residual(const Unbalance& unbalance);
 
  private:
   /// Iterations with another matrix, twice as many each time that they were not enough.
@@ -51,13 +67,14 @@ class MatrixChoice {
     }
   };
 
-  bool linear_, has_memory_;
+  MatrixTraits traits_;
   bool waits_;             ///< for a residual that falls slowly with the second derivatives of gaps
   bool unstable_ = false;  ///< the tangent of an iterate of this instant was
   Span flat_;              ///< without terms of stress and second derivatives of gaps
+  bool far_ = false;       ///< likewise, of a matrix that is not symmetric
   Span elastic_;
   double residual_ = 0;  ///< of the last iteration
-  bool curved_ = false;  ///< as note_residual() was told of it
+  bool curved_ = false;  ///< its gaps had second derivatives, and no status changed
 };
 
 }  // namespace lacon

@@ -36,7 +36,10 @@ Newton::Newton(const StaticProblem& problem, const NewtonOptions& options, std::
     : problem_(problem),
       options_(options),
       equilibrium_(problem),
-      choice_(equilibrium_.is_linear(), equilibrium_.has_memory(), problem.dimension == 3),
+      choice_({.linear = equilibrium_.is_linear(),
+               .has_memory = equilibrium_.has_memory(),
+               .symmetric = equilibrium_.is_symmetric(),
+               .in_space = problem.dimension == 3}),
       solver_(std::move(engine)) {
   if (!problem.contact) return;
   options_.criteria.resi_geom = problem.contact->resi_geom;
@@ -121,7 +124,7 @@ int Newton::iterate(double instant, StaticState& state, const std::function<void
     }
     std::vector<double> increment = equilibrium_.add(solution, step, state);
     std::fill(step.begin(), step.end(), 0.0);  // imposed displacements move in the first iteration alone
-    if (iteration > 0 && equilibrium_.flows())
+    if (iteration > 0 && equilibrium_.has_variables())
       shorten(solution, previous, state, increment);
     else
       equilibrium_.pair(state.displacement);
@@ -145,7 +148,11 @@ int Newton::iterate(double instant, StaticState& state, const std::function<void
     }
     changing = static_cast<std::size_t>(std::mismatch(before.begin(), before.end(), wanted.begin()).first - before.begin());
     settling = line.status_changes > 0 && !statuses_.keeps();
-    bool other_matrix = choice_.note_residual(line.maxi, line.status_changes == 0 && equilibrium_.curves(state));
+    bool other_matrix = choice_.note_residual({.largest = line.maxi,
+                                               .share = line.rela,
+                                               .in_flow = equilibrium_.flows(previous),
+                                               .statuses_change = line.status_changes > 0,
+                                               .curved = equilibrium_.curves(state)});
     if (statuses_.keeps() && line.status_changes > 0 && line.in_equilibrium()) {
       state.patches.status = statuses_.change(state.patches.status, wanted);
       other_matrix = true;
@@ -217,6 +224,7 @@ bool Newton::hold_loose_bodies(std::span<const std::int64_t> null_pivots, Static
 void Newton::shorten(std::span<const double> solution, const StaticState& previous, StaticState& state,
                      std::vector<double>& increment) {
   const std::vector<double> at_rest(increment.size(), 0.0);
+  bool flows = equilibrium_.flows(previous);
   double reached = 1;
   part_of_increment(equilibrium_.power(solution), [&](double part) {
     if (part != reached) {
@@ -228,7 +236,8 @@ void Newton::shorten(std::span<const double> solution, const StaticState& previo
     }
     equilibrium_.pair(state.displacement);
     equilibrium_.assemble(state, previous, {SolidMatrix::none, false});
-    return equilibrium_.power(solution);
+    flows = flows || equilibrium_.flows(previous);
+    return flows ? equilibrium_.power(solution) : 0;
   });
 }
 

@@ -6,8 +6,8 @@
 namespace lacon {
 namespace {
 
-MatrixChoice started(bool linear, bool has_memory) {
-  MatrixChoice choice(linear, has_memory);
+MatrixChoice started(const MatrixTraits& traits) {
+  MatrixChoice choice(traits);
   choice.start_instant();
   return choice;
 }
@@ -18,7 +18,7 @@ TEST(MatrixChoice, TheTangentGoesWithoutStressWhereALawWithMemoryTouches) {
   for (const bool linear : {false, true})
     for (const bool memory : {false, true})
       for (const bool touches : {false, true}) {
-        const MatrixChoice choice = started(linear, memory);
+        const MatrixChoice choice = started({.linear = linear, .has_memory = memory});
         const SolidMatrix expected = !linear && memory && touches ? SolidMatrix::stressless : SolidMatrix::tangent;
         EXPECT_EQ(choice.suited(SolidMatrix::tangent, touches), (NewtonMatrix{expected, true})) << linear << memory << touches;
         EXPECT_EQ(choice.suited(SolidMatrix::elastic, touches), (NewtonMatrix{SolidMatrix::elastic, true}));
@@ -27,13 +27,13 @@ TEST(MatrixChoice, TheTangentGoesWithoutStressWhereALawWithMemoryTouches) {
 
 TEST(MatrixChoice, WithoutContactAnUnstableTangentIsLeftForTheRestOfTheInstant) {
   constexpr NewtonMatrix stressless{.solid = SolidMatrix::stressless, .curved = true};
-  MatrixChoice choice = started(false, false);
+  MatrixChoice choice = started({});
   EXPECT_FALSE(choice.note_pivots(consistent, false, 3, 3));
   EXPECT_FALSE(choice.note_pivots(stressless, false, 4, 3));  // which has no instability but that of the law
   EXPECT_EQ(choice.suited(SolidMatrix::tangent, false), consistent);
   EXPECT_TRUE(choice.note_pivots(consistent, false, 4, 3));
   EXPECT_EQ(choice.suited(SolidMatrix::tangent, false), stressless);
-  EXPECT_FALSE(choice.note_residual(1));
+  EXPECT_FALSE(choice.note_residual({.largest = 1}));
   EXPECT_EQ(choice.suited(SolidMatrix::tangent, false), stressless);
   choice.start_instant();
   EXPECT_EQ(choice.suited(SolidMatrix::tangent, false), consistent);
@@ -43,60 +43,89 @@ TEST(MatrixChoice, InContactStressAndCurvatureAreLeftOutTogetherEachTimeForTwice
   for (const bool linear : {false, true}) {
     // a linear stiffness has no terms of stress
     const NewtonMatrix flat{.solid = linear ? SolidMatrix::tangent : SolidMatrix::stressless, .curved = false};
-    MatrixChoice choice = started(linear, false);
+    MatrixChoice choice = started({.linear = linear});
     EXPECT_FALSE(choice.note_pivots(consistent, true, 3, 3));
     EXPECT_TRUE(choice.note_pivots(consistent, true, 4, 3));  // for one iteration
     EXPECT_EQ(choice.suited(SolidMatrix::tangent, false), flat);
     EXPECT_FALSE(choice.note_pivots(flat, true, 4, 3));  // there is nothing left to leave out
-    EXPECT_TRUE(choice.note_residual(1));
+    EXPECT_TRUE(choice.note_residual({.largest = 1}));
     EXPECT_EQ(choice.suited(SolidMatrix::tangent, false), consistent);
     EXPECT_TRUE(choice.note_pivots(consistent, true, 4, 3));  // for two
-    EXPECT_FALSE(choice.note_residual(1));
+    EXPECT_FALSE(choice.note_residual({.largest = 1}));
     EXPECT_EQ(choice.suited(SolidMatrix::tangent, false), flat);
-    EXPECT_TRUE(choice.note_residual(1));
+    EXPECT_TRUE(choice.note_residual({.largest = 1}));
     EXPECT_EQ(choice.suited(SolidMatrix::tangent, false), consistent);
   }
 }
 
-TEST(MatrixChoice, AResidualThatGrowsBringsTheElasticMatrixEachTimeForTwiceAsLong) {
-  MatrixChoice choice = started(false, true);
-  const auto elastic = [&] { return choice.suited(SolidMatrix::tangent, false).solid == SolidMatrix::elastic; };
-  EXPECT_FALSE(choice.note_residual(5));
-  EXPECT_FALSE(choice.note_residual(4));
-  EXPECT_FALSE(elastic());
-  EXPECT_TRUE(choice.note_residual(6));  // for one iteration
-  EXPECT_TRUE(elastic());
-  EXPECT_FALSE(choice.note_residual(3));
-  EXPECT_FALSE(elastic());
-  EXPECT_TRUE(choice.note_residual(7));  // for two
-  EXPECT_FALSE(choice.note_residual(9));
-  EXPECT_TRUE(elastic());
-  EXPECT_FALSE(choice.note_residual(1));
-  EXPECT_FALSE(elastic());
-  MatrixChoice without = started(false, false);
-  EXPECT_FALSE(without.note_residual(1));
-  EXPECT_FALSE(without.note_residual(2));
+TEST(MatrixChoice, ATangentThatIsNotSymmetricIsTakenAsItIs) {
+  for (const bool touches : {false, true}) {
+    const MatrixChoice choice = started({.has_memory = true, .symmetric = false});
+    EXPECT_EQ(choice.suited(SolidMatrix::tangent, touches), (NewtonMatrix{SolidMatrix::whole, true}));
+    EXPECT_EQ(choice.suited(SolidMatrix::elastic, touches), (NewtonMatrix{SolidMatrix::elastic, true}));
+  }
+}
+
+TEST(MatrixChoice, FarFromBalanceStressAndCurvatureAreLeftOutOfAMatrixWithoutInertia) {
+  constexpr NewtonMatrix whole{.solid = SolidMatrix::whole, .curved = true},
+      flat{.solid = SolidMatrix::stressless, .curved = false};
+  MatrixChoice choice = started({.has_memory = true, .symmetric = false});
+  EXPECT_FALSE(choice.note_residual({.largest = 9, .share = 0.9}));
+  EXPECT_EQ(choice.suited(SolidMatrix::tangent, true), whole);
+  EXPECT_TRUE(choice.note_residual({.largest = 11, .share = 1.1}));
+  EXPECT_EQ(choice.suited(SolidMatrix::tangent, true), flat);
+  EXPECT_FALSE(choice.note_residual({.largest = 12, .share = 1.2}));  // it is that already
+  EXPECT_TRUE(choice.note_residual({.largest = 9, .share = 0.9}));
+  EXPECT_EQ(choice.suited(SolidMatrix::tangent, true), whole);
+  EXPECT_TRUE(choice.note_residual({.largest = 11, .share = 1.1}));
+  choice.start_instant();
+  EXPECT_EQ(choice.suited(SolidMatrix::tangent, true), whole);
+  EXPECT_FALSE(choice.note_residual({.largest = 9, .share = 0.9, .statuses_change = true}));
+  EXPECT_TRUE(choice.note_residual({.largest = 8, .share = 0.8, .in_flow = true, .statuses_change = true}));
+  EXPECT_EQ(choice.suited(SolidMatrix::tangent, true), flat);
+  MatrixChoice symmetric = started({.has_memory = true});
+  EXPECT_FALSE(symmetric.note_residual({.largest = 11, .share = 1.1}));
+}
+
+TEST(MatrixChoice, AResidualThatGrowsInFlowBringsTheElasticMatrixEachTimeForTwiceAsLong) {
+  for (const bool symmetric : {true, false}) {
+    MatrixChoice choice = started({.has_memory = true, .symmetric = symmetric});
+    const auto elastic = [&] { return choice.suited(SolidMatrix::tangent, false).solid == SolidMatrix::elastic; };
+    EXPECT_FALSE(choice.note_residual({.largest = 5, .in_flow = true}));
+    EXPECT_FALSE(choice.note_residual({.largest = 4, .in_flow = true}));
+    EXPECT_FALSE(elastic());
+    EXPECT_TRUE(choice.note_residual({.largest = 6, .in_flow = true}));  // for one iteration
+    EXPECT_TRUE(elastic());
+    EXPECT_FALSE(choice.note_residual({.largest = 3, .in_flow = true}));
+    EXPECT_FALSE(elastic());
+    EXPECT_TRUE(choice.note_residual({.largest = 7, .in_flow = true}));  // for two
+    EXPECT_FALSE(choice.note_residual({.largest = 9, .in_flow = true}));
+    EXPECT_TRUE(elastic());
+    EXPECT_FALSE(choice.note_residual({.largest = 1, .in_flow = true}));
+    EXPECT_FALSE(elastic());
+    EXPECT_FALSE(choice.note_residual({.largest = 2}));  // nothing flows: the tangent is elastic as it is
+    EXPECT_FALSE(elastic());
+  }
 }
 
 TEST(MatrixChoice, InSpaceSecondDerivativesOfGapsWaitForAResidualThatFallsSlowlyAtStatusesThatStay) {
-  MatrixChoice choice(false, false, true);
-  choice.start_instant();
+  MatrixChoice choice = started({.in_space = true});
   const auto curved = [&] { return choice.suited(SolidMatrix::tangent, true).curved; };
   EXPECT_FALSE(curved());
   EXPECT_EQ(choice.suited(SolidMatrix::tangent, true).solid, SolidMatrix::tangent);
-  EXPECT_FALSE(choice.note_residual(1, true));
-  EXPECT_FALSE(choice.note_residual(0.04, true));
-  EXPECT_FALSE(choice.note_residual(0.03, false));  // a status changed
-  EXPECT_FALSE(choice.note_residual(0.02, true));
+  EXPECT_FALSE(choice.note_residual({.largest = 1, .curved = true}));
+  EXPECT_FALSE(choice.note_residual({.largest = 0.04, .curved = true}));
+  EXPECT_FALSE(choice.note_residual({.largest = 0.03, .statuses_change = true, .curved = true}));  // a status changed
+  EXPECT_FALSE(choice.note_residual({.largest = 0.02, .curved = true}));
   choice.start_instant();
-  EXPECT_FALSE(choice.note_residual(0.01, true));  // nothing before to compare with
+  EXPECT_FALSE(choice.note_residual({.largest = 0.01, .curved = true}));  // nothing before to compare with
   EXPECT_FALSE(curved());
-  EXPECT_TRUE(choice.note_residual(0.001, true));
+  EXPECT_TRUE(choice.note_residual({.largest = 0.001, .curved = true}));
   EXPECT_TRUE(curved());
   choice.start_instant();
   EXPECT_TRUE(curved());  // from then on
-  EXPECT_FALSE(choice.note_residual(1, true));
-  EXPECT_FALSE(choice.note_residual(0.9, true));
+  EXPECT_FALSE(choice.note_residual({.largest = 1, .curved = true}));
+  EXPECT_FALSE(choice.note_residual({.largest = 0.9, .curved = true}));
 }
 
 }  // namespace
