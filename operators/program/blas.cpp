@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cstdlib>
+#include <new>
 
 namespace lacon {
 namespace {
@@ -80,6 +81,17 @@ void set_up_blas(char** argv) {
   }
   if (!std::getenv("OPENBLAS_NUM_THREADS"))
     if (void (*const set_threads)(int) = openblas<void(int)>("openblas_set_num_threads")) set_threads(1);
+}
+
+void reserve_blas_memory() {
+  void* (*const take)(int) = openblas<void*(int)>("blas_memory_alloc");
+  void (*const give_back)(void*) = openblas<void(void*)>("blas_memory_free");  // it stays OpenBLAS's, for its next product
+  if (!take || !give_back) return;
+  constexpr std::size_t more_than_it_takes = std::size_t{160} << 20;
+  void* const probe = std::malloc(more_than_it_takes);
+  if (!probe) throw std::bad_alloc();
+  std::free(probe);
+  give_back(take(0));
 }
 
 std::optional<Blas> present_blas() {

@@ -65,7 +65,8 @@ int guarded(const std::function<void()>& work) {
     print(error.message());
     return error.message().severity == 'S' ? solution_failed : user_error;
   } catch (const std::bad_alloc&) {
-    print(message("INTERNAL_1", {{"reason", "the memory is used up"}}));
+    print(message("MEMORY_1"));
+    return solution_failed;
   } catch (const std::exception& error) {
     print(message("INTERNAL_1", {{"reason", error.what()}}));
   }

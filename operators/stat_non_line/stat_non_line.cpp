@@ -12,6 +12,7 @@
 #include "lacon/operators/evolution/step_events.hpp"
 #include "lacon/operators/evolution/table.hpp"
 #include "lacon/operators/evolution/time_stepping.hpp"
+#include "lacon/operators/program/blas.hpp"
 #include "lacon/operators/program/ending.hpp"
 #include "lacon/operators/program/program.hpp"
 
@@ -75,6 +76,7 @@ class QuasiStatic : public InstantSolver {
 }  // namespace
 
 void stat_non_line(const Order& order, const Base& base) {
+  reserve_blas_memory();
   const Keywords& keywords = order.keywords;
   const StaticProblem problem = [&] {
     const Phase phase("read");
