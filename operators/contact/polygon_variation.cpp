@@ -1,13 +1,17 @@
 #include "lacon/operators/contact/polygon_variation.hpp"
 
-#include <algorithm>
+#include <cmath>
+#include <tuple>
 
 namespace lacon::variations {
 namespace {
 
-/// Two lines that meet at a smaller angle (its sine) have no corner that moves by itself: edges of slave and master that
-/// coincide.
+/// Two lines that meet at a smaller angle (its sine) coincide: their corner goes with one of them.
 constexpr double least_angle = 1e-6;
+/// A line that coincides with an edge of the triangle, and meets another line this near to it (in barycentric coordinates), is
+/// that edge there: what meets moves in one way in all polygons around, whichever of the two bounds them. In symmetric meshes
+/// edges of slaves do lie on lines of masters, as near as iterates are symmetric.
+constexpr double on_edge = 1e-9;
 
 }  // namespace
 
@@ -19,22 +23,16 @@ PolygonVariation::PolygonVariation(const ContactCellGeometry& cell, bool second)
       second_(second),
       vertices_{vertex_at(0), vertex_at(1), vertex_at(2)} {
   for (std::size_t k = 0; k < trace_.line.size(); ++k) lines_.push_back(line(k));
+  for (int k = 0; k < 3; ++k) lines_.push_back({.l = Vector<3>::Unit(k)});  // the triangle's edges
   for (std::size_t k = 0; k < trace_.vertex.size(); ++k) take_corner(k);
-  tie_corners();
 }
 
 void PolygonVariation::add_gradient(const Row& of_corners, Row& gradient) {
   std::vector<Vector<2>> of_corner;
   for (std::size_t k = 0; k < corners_.size(); ++k)
     of_corner.emplace_back(of_corners.segment<2>(2 * static_cast<int>(k)).transpose());
-  for (std::size_t k = 0; k < corners_.size(); ++k)
-    if (const Corner& tied = corners_[k]; tied.between) {
-      of_corner[tied.between->first] += (1 - tied.share) * of_corner[k];
-      of_corner[tied.between->second] += tied.share * of_corner[k];
-    }
   for (std::size_t k = 0; k < corners_.size(); ++k) {
     Corner& corner = corners_[k];
-    if (!corner.free) continue;
     corner.of_equations = -corner.inverse.transpose() * of_corner[k];
     for (int i = 0; i < 2; ++i) lines_[corner.lines[static_cast<std::size_t>(i)]].of_l += corner.of_equations[i] * corner.b;
   }
@@ -157,37 +155,39 @@ void PolygonVariation::take_corner(std::size_t k) {
   const auto& [b1, b2] = trace_.vertex[k];
   corner.b = {1 - b1 - b2, b1, b2};
   if (second_) corner.row = Rows<2>::Zero(2, n_);
-  Eigen::Matrix2d j;
-  for (int i = 0; i < 2; ++i) {
-    const Vector<3>& l = lines_[corner.lines[static_cast<std::size_t>(i)]].l;
-    j(i, 0) = l[1] - l[0], j(i, 1) = l[2] - l[0];
+  const auto slope = [&](std::size_t line) {  // by the last two coordinates
+    const Vector<3>& l = lines_[line].l;
+    return Vector<2>(l[1] - l[0], l[2] - l[0]);
+  };
+  const auto sine = [&](std::size_t first, std::size_t behind) {
+    const Vector<2> u = slope(first), v = slope(behind);
+    return std::abs(u[0] * v[1] - u[1] * v[0]) / (u.norm() * v.norm());
+  };
+  for (std::size_t edge = 0; edge < 3; ++edge) {
+    if (std::abs(corner.b[static_cast<int>(edge)]) > on_edge) continue;
+    for (std::size_t& line : corner.lines)
+      if (lines_[line].moves && sine(line, n + edge) <= least_angle) line = n + edge;
   }
-  const double determinant = j.determinant();
-  corner.free = std::abs(determinant) > least_angle * j.row(0).norm() * j.row(1).norm();
-  if (!corner.free) return;
-  corner.inverse = j.inverse();
+  Eigen::Matrix2d j;
+  for (int i = 0; i < 2; ++i) j.row(i) = slope(corner.lines[static_cast<std::size_t>(i)]).transpose();
+  if (sine(corner.lines[0], corner.lines[1]) > least_angle) {
+    corner.inverse = j.inverse();
+  } else {
+    // at a right angle to one of them, the same in all polygons that meet here: the triangle's own edge, which stays
+    const auto rank = [&](int i) {
+      const std::size_t line = corner.lines[static_cast<std::size_t>(i)];
+      const PolygonTrace::Line given = lines_[line].moves ? trace_.line[line] : PolygonTrace::Line{};
+      return std::tuple(given.master, given.from, given.to);
+    };
+    const int i = rank(0) <= rank(1) ? 0 : 1;
+    corner.inverse.setZero();
+    if (const double length = j.row(i).norm(); length > 0) corner.inverse.col(i) = j.row(i).transpose() / (length * length);
+  }
   for (int i = 0; i < 2; ++i) {
     const CuttingLine& own = lines_[corner.lines[static_cast<std::size_t>(i)]];
     if (!own.moves) continue;
     corner.moves = true;
     if (second_) corner.row.noalias() -= corner.inverse.col(i) * (corner.b.transpose() * own.dl);
-  }
-}
-
-void PolygonVariation::tie_corners() {
-  const std::size_t n = corners_.size();
-  for (std::size_t k = 0; k < n; ++k) {
-    if (corners_[k].free) continue;
-    std::size_t before = (k + n - 1) % n, behind = (k + 1) % n;
-    while (before != k && !corners_[before].free) before = (before + n - 1) % n;
-    while (behind != k && !corners_[behind].free) behind = (behind + 1) % n;
-    if (before == k) continue;  // nothing moves
-    const Vector<3> whole = corners_[behind].b - corners_[before].b;
-    const double length2 = whole.squaredNorm();
-    Corner& tied = corners_[k];
-    tied.between = {before, behind};
-    tied.share = length2 > 0 ? std::clamp(whole.dot(tied.b - corners_[before].b) / length2, 0.0, 1.0) : 0;
-    if (second_) tied.row = (1 - tied.share) * corners_[before].row + tied.share * corners_[behind].row;
   }
 }
 

@@ -1,8 +1,6 @@
 #pragma once
 // The polygon of a contact cell in space as a function of the nodes.
 #include <array>
-#include <optional>
-#include <utility>
 #include <vector>
 
 #include "lacon/operators/contact/gap_variation.hpp"
@@ -60,9 +58,7 @@ class PolygonVariation {
     std::array<std::size_t, 2> lines{};  ///< that meet here
     Eigen::Matrix2d inverse;             ///< of J, by which both equations depend on the last two coordinates
     Rows<2> row;
-    bool moves = false, free = true;
-    std::optional<std::pair<std::size_t, std::size_t>> between;  ///< corners that carry it along
-    double share = 0;
+    bool moves = false;
     Vector<2> of_equations = Vector<2>::Zero();  ///< factors of d2(l . b)
   };
 
@@ -76,9 +72,6 @@ class PolygonVariation {
   CuttingLine line(std::size_t k) const;
 
   void take_corner(std::size_t k);
-
-  /// A corner of two lines that coincide goes with its neighbours.
-  void tie_corners();
 
   /// Add sum of_l_k d2 s_k, but for d2n. With S = sum of_l n, Q = sum of_l dn it is 2 (dq - dp) . (sum of_l (dn x (x - p) +
   /// n x dx) - S x dp) - 2 dp . ((q - p) x Q), and the factor of dn x dx, which a vertex sums up.

@@ -168,5 +168,33 @@ TEST(ContactGeometry, WhereSlaveAndMasterCoincideCouplingsAreTheDerivativesOfGap
   }
 }
 
+TEST(ContactGeometry, DerivativesDoNotJumpWhereEdgesOfSlavesLieOnLinesOfMasters) {
+  Skins skins(6, 6, false);
+  std::vector<double>& u = skins.displacement;
+  for (std::size_t i = 0; i < u.size(); i += 3) {
+    const double x = skins.mesh.coordinates[i], y = skins.mesh.coordinates[i + 1];
+    if (skins.mesh.coordinates[i + 2] == 0) continue;
+    // masters twice as large, warped: lines and diagonals of both skins lie one over the other
+    u[i] = x - 0.5, u[i + 1] = y - 0.5, u[i + 2] = 0.02 * std::sin(5 * x * y + 1);
+  }
+  const auto sum_over_patches = [&] {
+    const std::vector<double> of_patches = derivatives(skins, 1);
+    std::vector<double> sum(u.size());
+    for (std::size_t i = 0; i < of_patches.size(); ++i) sum[i % u.size()] += of_patches[i];
+    return sum;
+  };
+  const std::vector<double> at = sum_over_patches(), middle = u;
+  double largest = 0;
+  for (const double derivative : at) largest = std::max(largest, std::abs(derivative));
+  std::mt19937 random(7);
+  for (const double shake : {1e-14, 1e-13, 1e-12, 1e-11, 1e-10, 1e-9, 1e-8}) {
+    std::uniform_real_distribution<double> uniform(-shake, shake);
+    for (std::size_t i = 0; i < u.size(); ++i) u[i] = middle[i] + uniform(random);
+    const std::vector<double> beside = sum_over_patches();
+    for (std::size_t i = 0; i < u.size(); ++i)
+      EXPECT_NEAR(beside[i], at[i], (1e-10 + 1e3 * shake) * largest) << shake << ' ' << i;
+  }
+}
+
 }  // namespace
 }  // namespace lacon
