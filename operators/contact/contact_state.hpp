@@ -104,6 +104,10 @@ class ContactState {
   double constraint_residual(const Patchwise& patches) const;
   /// Forces and statuses of each zone.
   std::vector<ZoneBalance> balance(const Patchwise& patches) const;
+  /// The strain that the pressure on a patch makes in the bodies under it: |lambda| times their flexibility.
+  double strain(std::size_t patch, const Patchwise& patches) const {
+    return rho_[patch] > 0 ? std::abs(patches.lambda[patch]) / (rho_[patch] * size_[patch]) : 0;
+  }
   /// Active patches that have an equation: the number of negative pivots to expect.
   std::int64_t n_constraints(const Patchwise& patches) const;
   /// Whether every displacement in a patch's row is imposed: its multiplier is then undetermined and keeps its value.

@@ -25,6 +25,28 @@ void ContactNotices::tell_what_is_too_deep(double instant) {
   }
 }
 
+void ContactNotices::tell_what_nothing_presses(double instant) {
+  if (free_.empty()) return;
+  const ContactState& contact = *present_.contact;
+  const Mesh& mesh = present_.problem.mesh;
+  std::map<std::int32_t, double> strain;  // of each body: the largest pressure on it over the modulus of the softer side
+  const auto press = [&](std::int32_t cell, double value) {
+    double& largest = strain[bodies_.of(mesh.cells[static_cast<std::size_t>(cell)][0])];
+    largest = std::max(largest, value);
+  };
+  for (const ContactGeometry::Cell& cell : contact.geometry().cells()) {
+    const SlaveElement& slave = present_.problem.contact->slaves[cell.slave];
+    if (present_.state.patches.status[slave.patch] != Status::active) continue;
+    const double value = contact.strain(static_cast<std::size_t>(slave.patch), present_.state.patches);
+    press(slave.cell, value);
+    press(cell.master, value);
+  }
+  constexpr double round_off = 1e-12;
+  for (const auto& [body, largest] : strain)
+    if (largest <= round_off && free_.erase(body) > 0)
+      inform("EVOLUTION_23", {{"body", bodies_.name_at(body)}, {"instant", fmt::format("{:.9g}", instant)}});
+}
+
 void ContactNotices::start(double instant) {
   const ContactState* const contact = present_.contact;
   if (!contact) return;
@@ -44,6 +66,7 @@ void ContactNotices::accept(const SolvedInstant& solved) {
                             {"cell", first_cell(overlap.deepest)},
                             {"gap", fmt::format("{:.6g}", overlap.gap)}});
   tell_what_is_too_deep(solved.instant);
+  tell_what_nothing_presses(solved.instant);
   const ContactState& contact = *present_.contact;
   for (std::int32_t zone = 0; zone < static_cast<std::int32_t>(contact.geometry().zones().size()); ++zone) {
     const std::optional<PiercedPatch> pierced = contact.pierced(zone, present_.state.patches);

@@ -4,17 +4,19 @@
 #include <set>
 
 #include "lacon/operators/evolution/evolution.hpp"
+#include "lacon/operators/evolution/free_bodies.hpp"
 #include "lacon/operators/evolution/state_fields.hpp"
 
 namespace lacon {
 
 class ContactNotices : public EvolutionObserver {
  public:
-  explicit ContactNotices(const Present& present) : present_(present) {}
+  explicit ContactNotices(const Present& present)
+      : present_(present), bodies_(present.problem.mesh), free_(free_bodies(present.problem, bodies_)) {}
 
   /// EVOLUTION_6: patches that no displacement can move; EVOLUTION_17.
   void start(double instant) override;
-  /// EVOLUTION_14: such patches inside their master; EVOLUTION_17.
+  /// EVOLUTION_14: such patches inside their master; EVOLUTION_17; EVOLUTION_23: bodies that lie on others without a pressure.
   void accept(const SolvedInstant& solved) override;
   /// EVOLUTION_16: of each zone the patch that its master has pierced deepest.
   void end(bool completed) override;
@@ -28,7 +30,12 @@ class ContactNotices : public EvolutionObserver {
   /// EVOLUTION_17: couples of each zone that overlap too deep to be taken for contact, once a zone.
   void tell_what_is_too_deep(double instant);
 
+  /// EVOLUTION_23, once a body.
+  void tell_what_nothing_presses(double instant);
+
   Present present_;
+  Bodies bodies_;
+  std::set<std::int32_t> free_;              ///< bodies that are held by contact alone, and of which nothing was told
   std::map<std::int32_t, Pierced> pierced_;  ///< by zone
   std::set<std::size_t> too_deep_;           ///< zones of which it has been told
 };

@@ -131,6 +131,14 @@ class StatNonLine(TwoSquares):
         np.testing.assert_array_equal(contact.support, [1])
         np.testing.assert_allclose(contact.values, [[1, -PRESSURE, 0, 1, -PRESSURE]], atol=1e-11)
 
+    def test_a_body_that_lies_on_another_and_that_nothing_presses_is_told(self):
+        """Its place is one of many: whatever lifts it is an equilibrium too. One that a displacement holds has a place."""
+        run = self.solve(loads=["load_5"])
+        self.assertEqual((run.status, self.ids(run)), (0, ["EVOLUTION_23"]), run.stderr)
+        self.assertIn("at the instant 1 nothing presses the body of M5", run.stderr)
+        self.write_load("load_10", imposed=[(15, "DY", 0.0)], kind="cine")
+        self.assertEqual(self.ids(self.solve(loads=["load_5", "load_10"])), [])
+
     def test_the_proof_lines_say_what_the_zone_transmits(self):
         """Pressure times length on the slave, its opposite on the master, no moment; printed, and stored for each instant."""
         run = self.solve()
