@@ -192,7 +192,8 @@ void after_displacement(benchmark::State& state) {
   report_pairing(state, skins.contact.slaves.size(), geometry.cells().size());
 }
 
-/// Contact cells once more, with traces, and derivatives of their gaps: first ones, or second ones too.
+/// Contact cells once more, with traces, and derivatives of their gaps, summed up for each slave cell: first ones, or second
+/// ones too.
 template <CellType type, int order, bool warped>
 void with_derivatives(benchmark::State& state) {
   const Skins skins(state.range(0), type);
