@@ -27,9 +27,9 @@ struct TriangleVertex {
 
 /// A line that cuts the triangle: coefficients l with l . b = 0 on it.
 struct CuttingLine {
-  Vector<3> l;
+  Vector<3> l = Vector<3>::Zero();
   bool moves = false;
-  Vector<3> from, along;                        ///< p and q - p
+  Vector<3> from = l, along = l;                ///< p and q - p
   int n_nodes = 0;                              ///< of the cell that it is drawn on
   std::array<int, max_skin_nodes> column{};     ///< of these
   std::array<double, max_skin_nodes> p{}, q{};  ///< factors of these

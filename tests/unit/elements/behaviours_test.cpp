@@ -157,10 +157,12 @@ void Derivative::check(double size) const {
       ASSERT_NEAR(at.whole_matrix[i * n + j], derivative[j][i], 2e-8 * largest) << i << ' ' << j;
       ASSERT_NEAR(at.whole_matrix[j * n + i], derivative[i][j], 2e-8 * largest) << j << ' ' << i;
     }
-  if (moves && size > 0.01)
+  if (moves && size > 0.01) {
     EXPECT_GT(asymmetry, 1e-3 * largest) << "nothing that symmetry would not give is tested";
-  else if (!moves)
+  }
+  if (!moves) {
     EXPECT_LT(asymmetry, 4e-8 * largest);
+  }
 }
 
 TEST_P(Derivative, OfTheForceIsTheMatrix) { check(0.05); }
