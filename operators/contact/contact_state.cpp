@@ -8,6 +8,7 @@
 #include "lacon/catalog/contact.hpp"
 #include "lacon/catalog/messages.hpp"
 #include "lacon/elements/contact_system.hpp"
+#include "lacon/operators/contact/facets.hpp"
 #include "lacon/operators/meshing/body.hpp"
 #include "lacon/pairing/normals.hpp"
 
@@ -253,6 +254,33 @@ std::vector<std::pair<std::size_t, std::int32_t>> ContactState::nearest_to_hold(
   for (const auto& [where, hold] : holds)
     if (!hold.there && hold.nearest) found.emplace_back(*hold.nearest, hold.node);
   return found;
+}
+
+std::optional<FacetOverlap> ContactState::facet_overlap(std::int32_t number) const {
+  const ContactGeometry::Zone& zone = geometry_.zones()[number];
+  std::map<std::int32_t, double> missing;  // of each cell of both skins
+  const auto examine = [&](const Surface& skin, const auto& cell_of) {
+    const std::vector<double> bulge = missing_bulge(skin);
+    for (std::size_t i = 0; i < bulge.size(); ++i) missing[cell_of(i)] = bulge[i];
+  };
+  examine(zone.slave, [&](std::size_t i) { return contact_.slaves[zone.slaves[i]].cell; });
+  examine(zone.master, [&](std::size_t i) { return zone.masters[i]; });
+  std::vector<double> explained(n_patches(), 0.0);
+  for (const ContactGeometry::Cell& cell : geometry_.cells()) {
+    const SlaveElement& slave = contact_.slaves[cell.slave];
+    if (geometry_.zone_of(slave.patch) != number) continue;
+    explained[slave.patch] = std::max(explained[slave.patch], missing[slave.cell] + missing[cell.master]);
+  }
+  std::optional<FacetOverlap> worst;
+  for (std::size_t p = 0; p < n_patches(); ++p) {
+    const double depth = -geometry_.gap(p) / size_[p];
+    if (geometry_.zone_of(p) != number || geometry_.coverage(p) < tolerances_.least_coverage ||
+        depth < tolerances_.facet_overlap)
+      continue;
+    if (-geometry_.gap(p) > tolerances_.facets * explained[p]) return std::nullopt;
+    if (!worst || depth > worst->depth) worst = FacetOverlap{p, depth};
+  }
+  return worst;
 }
 
 std::optional<PiercedPatch> ContactState::pierced(std::int32_t zone, const Patchwise& patches) const {

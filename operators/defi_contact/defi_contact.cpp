@@ -232,6 +232,7 @@ Contact defi_contact(const Mesh& mesh, std::string_view mesh_label, const Model&
   contact.frozen_gap = variation == "FIGEE";
   contact.verify_normals = keywords.yes("VERI_NORM");
   contact.resi_geom = keywords.real("RESI_GEOM");
+  contact.elastic_iterations = keywords.integer("CONT_STAT_ELAS");
   const SkinSides sides(mesh);
   for (const Keywords& factor : factors) {
     const ContactZone zone = make_zone(mesh, factor);

@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "lacon/catalog/messages.hpp"
 
 namespace lacon {
@@ -55,6 +57,16 @@ void ContactNotices::start(double instant) {
   for (std::size_t p = 0; p < contact->n_patches(); ++p)
     if (contact->geometry().coverage(p) > 0 && contact->is_locked(p) && locked++ == 0) first = p;
   tell_what_is_too_deep(instant);
+  const std::vector<double>& moved = present_.state.displacement;
+  const bool initial = std::all_of(moved.begin(), moved.end(), [](double value) { return value == 0; });
+  for (std::int32_t zone = 0; initial && zone < static_cast<std::int32_t>(contact->geometry().zones().size()); ++zone)
+    if (const std::optional<FacetOverlap> overlap = contact->facet_overlap(zone)) {
+      const ContactZone& names = present_.problem.contact->zones[zone];
+      inform("EVOLUTION_22", {{"slave", names.slave_group},
+                              {"master", names.master_group},
+                              {"cell", first_cell(overlap->patch)},
+                              {"percent", fmt::format("{:.2g}", 100 * overlap->depth)}});
+    }
   if (locked) inform("EVOLUTION_6", {{"count", std::to_string(locked)}, {"cell", first_cell(first)}});
 }
 

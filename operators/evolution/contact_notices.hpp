@@ -14,7 +14,8 @@ class ContactNotices : public EvolutionObserver {
   explicit ContactNotices(const Present& present)
       : present_(present), bodies_(present.problem.mesh), free_(free_bodies(present.problem, bodies_)) {}
 
-  /// EVOLUTION_6: patches that no displacement can move; EVOLUTION_17.
+  /// EVOLUTION_6: patches that no displacement can move; EVOLUTION_17; EVOLUTION_22: patches that overlap because
+  /// their skins have facets.
   void start(double instant) override;
   /// EVOLUTION_14: such patches inside their master; EVOLUTION_17; EVOLUTION_23: bodies that lie on others without a pressure.
   void accept(const SolvedInstant& solved) override;

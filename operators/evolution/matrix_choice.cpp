@@ -16,6 +16,7 @@ constexpr double far_from_balance = 1;
 
 void MatrixChoice::start_instant() {
   unstable_ = far_ = false;
+  settled_ = traits_.settling;
   flat_ = elastic_ = {};
   residual_ = std::numeric_limits<double>::infinity();
   curved_ = false;
@@ -23,7 +24,7 @@ void MatrixChoice::start_instant() {
 
 NewtonMatrix MatrixChoice::suited(SolidMatrix asked, bool touches) const {
   const bool unsafe = flat_.left > 0 || far_, flat = waits_ || unsafe;
-  if (elastic_.left > 0) return {SolidMatrix::elastic, !flat};
+  if (elastic_.left > 0 || (!traits_.linear && settled_ < traits_.settling)) return {SolidMatrix::elastic, !flat};
   if (asked != SolidMatrix::tangent || traits_.linear) return {asked, !flat};
   if (!traits_.symmetric && !flat) return {SolidMatrix::whole, true};
   return {(traits_.has_memory && touches) || unstable_ || unsafe ? SolidMatrix::stressless : asked, !flat};

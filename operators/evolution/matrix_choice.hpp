@@ -15,10 +15,11 @@ struct NewtonMatrix {
 
 /// What a problem says of its matrices.
 struct MatrixTraits {
-  bool linear = false;      ///< the stiffness never changes
-  bool has_memory = false;  ///< a law goes from the last state in equilibrium to the present
-  bool symmetric = true;    ///< otherwise the matrix may be that of an unsymmetric tangent, as it is
-  bool in_space = false;    ///< second derivatives of gaps wait
+  bool linear = false;        ///< the stiffness never changes
+  bool has_memory = false;    ///< a law goes from the last state in equilibrium to the present
+  bool symmetric = true;      ///< otherwise the matrix may be that of an unsymmetric tangent, as it is
+  bool in_space = false;      ///< second derivatives of gaps wait
+  std::int64_t settling = 0;  ///< CONT_STAT_ELAS: iterations without change of status before which the matrix is elastic
 };
 
 /// The unbalanced forces that an iteration leaves.
@@ -41,7 +42,8 @@ struct Unbalance {
 /// One that is not symmetric has no such sign: both are left out behind an iteration that leaves forces unbalanced by more than
 /// the largest of them, or contacts that change on bodies that flow.
 /// Where the matrix overshoots (the residual has grown while a law flows), the elastic one takes its place for some iterations:
-/// it is an upper bound of any tangent of plastic flow.
+/// it is an upper bound of any tangent of plastic flow. So it does as long as statuses change, where the user wants that
+/// (CONT_STAT_ELAS).
 /// In space second derivatives of gaps cost as much as a part of a factorisation, and fill it: they wait until they are worth
 /// it. Without them residuals fall by a constant ratio, the pressure over the stiffness of the body times how much surfaces
 /// bend and slide; where it is small, as between nearly flat skins, their iterations are no fewer.
@@ -54,6 +56,9 @@ class MatrixChoice {
   /// More negative pivots than constraints: beyond a limit point or a bifurcation, from where a step of the tangent leads
   /// anywhere. @param curves gaps of active patches have second derivatives @return whether the matrix has to be another one
   bool note_pivots(NewtonMatrix present, bool curves, std::int64_t negative, std::int64_t constraints);
+  /// How many patches an iteration has changed, before its matrix is made. @param flows a law does: the elastic matrix is
+  /// another
+  void note_statuses(std::int64_t changes, bool flows) { settled_ = changes > 0 && flows ? 0 : settled_ + 1; }
   /// After an iteration that did not solve the instant. @return whether the matrix has to be another one
   bool note_residual(const Unbalance& unbalance);
 
@@ -68,10 +73,11 @@ class MatrixChoice {
   };
 
   MatrixTraits traits_;
-  bool waits_;             ///< for a residual that falls slowly with the second derivatives of gaps
-  bool unstable_ = false;  ///< the tangent of an iterate of this instant was
-  Span flat_;              ///< without terms of stress and second derivatives of gaps
-  bool far_ = false;       ///< likewise, of a matrix that is not symmetric
+  std::int64_t settled_ = 0;  ///< iterations without change of status
+  bool waits_;                ///< for a residual that falls slowly with the second derivatives of gaps
+  bool unstable_ = false;     ///< the tangent of an iterate of this instant was
+  Span flat_;                 ///< without terms of stress and second derivatives of gaps
+  bool far_ = false;          ///< likewise, of a matrix that is not symmetric
   Span elastic_;
   double residual_ = 0;  ///< of the last iteration
   bool curved_ = false;  ///< its gaps had second derivatives, and no status changed

@@ -10,7 +10,6 @@
 #include "lacon/catalog/messages.hpp"
 #include "lacon/operators/evolution/bodies.hpp"
 #include "lacon/operators/evolution/instant_failure.hpp"
-#include "lacon/operators/evolution/line_search.hpp"
 #include "lacon/operators/program/program.hpp"
 
 namespace lacon {
@@ -39,7 +38,8 @@ Newton::Newton(const StaticProblem& problem, const NewtonOptions& options, std::
       choice_({.linear = equilibrium_.is_linear(),
                .has_memory = equilibrium_.has_memory(),
                .symmetric = equilibrium_.is_symmetric(),
-               .in_space = problem.dimension == 3}),
+               .in_space = problem.dimension == 3,
+               .settling = problem.contact ? problem.contact->elastic_iterations : 0}),
       solver_(std::move(engine)) {
   if (!problem.contact) return;
   options_.criteria.resi_geom = problem.contact->resi_geom;
@@ -103,9 +103,11 @@ int Newton::iterate(double instant, StaticState& state, const std::function<void
   std::vector<double> step = equilibrium_.load(instant, state);
   choice_.start_instant();
   statuses_.start_instant();
+  if (options_.extrapolates) extrapolate(instant, state, step);
   // plasticity answers to a step of no length elastically: a body that is unloaded now does not overshoot on the tangent of the
   // flow that the last instant ended with, which makes Newton's method go to and fro between two states
-  if (equilibrium_.has_memory() || choice_.suited(options_.prediction, equilibrium_.touches(state)) != equilibrium_.matrix())
+  if (equilibrium_.has_memory() || state.displacement != previous.displacement ||
+      choice_.suited(options_.prediction, equilibrium_.touches(state)) != equilibrium_.matrix())
     assemble(state, previous, options_.prediction);
   bool settling = false;  // statuses change from iteration to iteration: a rough solution finds them as well
   settled_ = times_held_ = 0;
@@ -124,12 +126,13 @@ int Newton::iterate(double instant, StaticState& state, const std::function<void
     }
     std::vector<double> increment = equilibrium_.add(solution, step, state);
     std::fill(step.begin(), step.end(), 0.0);  // imposed displacements move in the first iteration alone
-    if (iteration > 0 && equilibrium_.has_variables())
+    if (iteration > 0 && (options_.line_search || equilibrium_.has_variables()))
       shorten(solution, previous, state, increment);
     else
       equilibrium_.pair(state.displacement);
     const std::vector<Status> before = state.patches.status, wanted = wanted_statuses(state, line);
     state.patches.status = statuses_.next(before, wanted);
+    choice_.note_statuses(line.status_changes, equilibrium_.flows(previous));
     assemble(state, previous, options_.matrix);
     judge_forces(options_.criteria, equilibrium_.forces(state, previous), line);
     if (contact())
@@ -144,6 +147,11 @@ int Newton::iterate(double instant, StaticState& state, const std::function<void
       if (const auto cell = equilibrium_.cell_inside_out())
         fail("EVOLUTION_9", {{"instant", fmt::format("{:.9g}", instant)}, {"cell", cell_name(*cell)}});
       state.points = equilibrium_.points();
+      if (options_.extrapolates)
+        motion_ = {!motion_                                ? options_.start
+                   : motion_->end == previous.displacement ? motion_->to
+                                                           : motion_->from,
+                   instant, previous.displacement, state.displacement};
       return iteration;
     }
     changing = static_cast<std::size_t>(std::mismatch(before.begin(), before.end(), wanted.begin()).first - before.begin());
@@ -226,7 +234,7 @@ void Newton::shorten(std::span<const double> solution, const StaticState& previo
   const std::vector<double> at_rest(increment.size(), 0.0);
   bool flows = equilibrium_.flows(previous);
   double reached = 1;
-  part_of_increment(equilibrium_.power(solution), [&](double part) {
+  const auto power = [&](double part) {
     if (part != reached) {
       std::vector<double> back(solution.begin(), solution.end());
       for (double& value : back) value *= part - reached;
@@ -237,8 +245,22 @@ void Newton::shorten(std::span<const double> solution, const StaticState& previo
     equilibrium_.pair(state.displacement);
     equilibrium_.assemble(state, previous, {SolidMatrix::none, false});
     flows = flows || equilibrium_.flows(previous);
-    return flows ? equilibrium_.power(solution) : 0;
-  });
+    return options_.line_search || flows ? equilibrium_.power(solution) : 0;
+  };
+  const double start = equilibrium_.power(solution);
+  if (options_.line_search)
+    part_without_power(*options_.line_search, start, power);
+  else
+    part_of_increment(start, power);
+}
+
+void Newton::extrapolate(double instant, StaticState& state, std::vector<double>& step) {
+  if (!motion_ || motion_->end != state.displacement || !(motion_->to > motion_->from)) return;
+  const double factor = (instant - motion_->to) / (motion_->to - motion_->from);
+  for (std::size_t dof = 0; dof < step.size(); ++dof)
+    state.displacement[dof] += problem_.imposed[dof] ? step[dof] : factor * (motion_->end[dof] - motion_->start[dof]);
+  std::fill(step.begin(), step.end(), 0.0);
+  equilibrium_.pair(state.displacement);
 }
 
 std::vector<Status> Newton::wanted_statuses(const StaticState& state, IterationReport& line) const {

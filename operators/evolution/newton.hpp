@@ -9,6 +9,7 @@
 
 #include "lacon/assembly/saddle_point_solver.hpp"
 #include "lacon/operators/evolution/equilibrium.hpp"
+#include "lacon/operators/evolution/line_search.hpp"
 #include "lacon/operators/evolution/matrix_choice.hpp"
 #include "lacon/operators/evolution/residual_course.hpp"
 #include "lacon/operators/evolution/status_rule.hpp"
@@ -20,7 +21,10 @@ struct NewtonOptions {
   int iterations = 10;                            ///< ITER_GLOB_MAXI
   SolidMatrix matrix = SolidMatrix::tangent;      ///< NEWTON/MATRICE
   SolidMatrix prediction = SolidMatrix::tangent;  ///< NEWTON/PREDICTION: of the first iteration of an instant
-  bool cuts = false;                              ///< a step that fails is cut: no message advises it
+  bool extrapolates = false;  ///< PREDICTION='EXTRAPOLE': an instant starts where the motion of the last one leads to
+  double start = 0;           ///< the instant of the initial state
+  std::optional<LineSearch> line_search;  ///< RECH_LINEAIRE
+  bool cuts = false;                      ///< a step that fails is cut: no message advises it
 };
 
 class Newton {
@@ -63,6 +67,9 @@ class Newton {
   std::vector<Status> wanted_statuses(const StaticState& state, IterationReport& line) const;
   /// Throws EVOLUTION_15 where no statuses satisfy all patches.
   void fail_if_endless(double instant) const;
+  /// Go on from `state` by the motion of the last instant, in proportion to the step, and to what is imposed.
+  /// @param[in,out] step of imposed displacements, none where that is done
+  void extrapolate(double instant, StaticState& state, std::vector<double>& step);
   /// Go back along an increment that goes too far (line_search.hpp); the geometry is paired where it ends.
   /// @param solution that `state` has moved by  @param increment of all unknowns of nodes, shortened as well
   void shorten(std::span<const double> solution, const StaticState& previous, StaticState& state,
@@ -79,6 +86,12 @@ class Newton {
   Equilibrium equilibrium_;
   MatrixChoice choice_;
   StatusRule statuses_;
+  /// The instant that was solved last.
+  struct Motion {
+    double from, to;
+    std::vector<double> start, end;  ///< displacements
+  };
+  std::optional<Motion> motion_;
   std::set<std::size_t> told_;  ///< patches that EVOLUTION_20 was about
   ResidualCourse course_;       ///< of the instant
   int times_held_ = 0;          ///< in this instant: loose bodies

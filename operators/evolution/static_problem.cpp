@@ -145,6 +145,32 @@ std::string StaticProblem::dof_name(std::int64_t dof) const {
   return node_name(dof / n_components()) + " " + components[dof % n_components()];
 }
 
+namespace {
+
+constexpr double nearly_incompressible =
+    0.49;  // bulk over shear modulus 50: fully integrated linear cells bend far too stiffly
+
+/// EVOLUTION_21: linear cells, without plane stress, of a material that hardly changes its volume.
+void warn_of_locking(const StaticProblem& problem) {
+  std::int64_t count = 0;
+  std::int32_t first = -1;
+  double largest = 0;
+  for (const ElementSet& set : problem.solids) {
+    if (catalog::cell(set.row->cell).order > 1 || set.row->stress_state == catalog::StressState::plane_stress) continue;
+    for (const std::int32_t cell : set.cells) {
+      const double poisson = problem.materials->find(cell, "ELAS/NU").value_or(0);
+      if (poisson <= nearly_incompressible) continue;
+      if (count++ == 0) first = cell;
+      largest = std::max(largest, poisson);
+    }
+  }
+  if (count > 0)
+    inform("EVOLUTION_21",
+           {{"count", std::to_string(count)}, {"cell", cell_name(first)}, {"value", fmt::format("{:g}", largest)}});
+}
+
+}  // namespace
+
 StaticProblem read_problem(const Order& order, const Base& base) {
   const Keywords& keywords = order.keywords;
   const std::string model_id = keywords.concept_id("MODELE");
@@ -154,6 +180,7 @@ StaticProblem read_problem(const Order& order, const Base& base) {
   problem.solids = solid_sets(problem.mesh, problem.model, *problem.registry, *problem.materials,
                               read_behaviours(problem.mesh, keywords.factors("COMPORTEMENT")));
   name_variables(problem.solids);
+  warn_of_locking(problem);
 
   problem.imposed.assign(problem.n_dofs(), 0);
   std::vector<std::string> seen;

@@ -21,13 +21,30 @@ namespace {
 
 SolidMatrix matrix_of(const std::string& name) { return name == "ELASTIQUE" ? SolidMatrix::elastic : SolidMatrix::tangent; }
 
-NewtonOptions newton_options(const Keywords& convergence, const Keywords& newton, const TimeSteps& steps) {
+std::optional<LineSearch> line_search_of(const Keywords& keywords) {
+  if (!keywords.has("RECH_LINEAIRE")) return std::nullopt;
+  const Keywords search = keywords.factor("RECH_LINEAIRE");
+  return LineSearch{.keeps_bracket = search.text("METHODE") == "MIXTE",
+                    .accepted = search.real("RESI_LINE_RELA"),
+                    .iterations = static_cast<int>(search.integer("ITER_LINE_MAXI")),
+                    .least = search.real("RHO_MIN"),
+                    .most = search.real("RHO_MAX"),
+                    .excluded = search.real("RHO_EXCL")};
+}
+
+NewtonOptions newton_options(const Keywords& keywords, const TimeSteps& steps) {
+  const Keywords convergence = keywords.factor("CONVERGENCE"), newton = keywords.factor("NEWTON");
+  const SolidMatrix matrix = matrix_of(newton.text("MATRICE"));
+  const std::string prediction = newton.text("PREDICTION");
   const auto iterations = static_cast<int>(convergence.integer("ITER_GLOB_MAXI"));
   return {.criteria = {.resi_glob_rela = convergence.optional_real("RESI_GLOB_RELA"),
                        .resi_glob_maxi = convergence.optional_real("RESI_GLOB_MAXI")},
           .iterations = iterations + static_cast<int>(iterations * steps.more_iterations / 100),
-          .matrix = matrix_of(newton.text("MATRICE")),
-          .prediction = matrix_of(newton.text("PREDICTION")),
+          .matrix = matrix,
+          .prediction = prediction == "EXTRAPOLE" ? matrix : matrix_of(prediction),
+          .extrapolates = prediction == "EXTRAPOLE",
+          .start = steps.values.front(),
+          .line_search = line_search_of(keywords),
           .cuts = steps.action.cut};
 }
 
@@ -84,8 +101,7 @@ void stat_non_line(const Order& order, const Base& base) {
   }();
   const std::optional<Origin> origin = origin_of(keywords, base);
   const TimeSteps steps = steps_of(keywords.factor("INCREMENT"), base, origin);
-  QuasiStatic solver(problem, newton_options(keywords.factor("CONVERGENCE"), keywords.factor("NEWTON"), steps),
-                     engine_of(keywords.factor("SOLVEUR")));
+  QuasiStatic solver(problem, newton_options(keywords, steps), engine_of(keywords.factor("SOLVEUR")));
   const Present present = solver.present(problem);
   Observations observations(keywords, base, problem.mesh, fields_of(present));
   Archive archive(order, base, present, origin, observations);

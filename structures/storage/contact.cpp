@@ -34,6 +34,7 @@ Contact read_contact(const hdf5::Group& root) {
   contact.frozen_gap = root.has_attribute("frozen_gap") && root.integer("frozen_gap") != 0;  // a base may be older
   contact.verify_normals = root.integer("verify_normals") != 0;
   contact.resi_geom = root.real("resi_geom");
+  if (root.has_attribute("elastic_iterations")) contact.elastic_iterations = root.integer("elastic_iterations");
   contact.zones.resize(root.read<double>("zones/tolerance").size());
   for (const auto& [name, member] : zone_numbers) {
     if (!root.has(name)) continue;  // a base older than the number
@@ -65,6 +66,7 @@ void write(const hdf5::Group& root, const Contact& contact) {
   root.set("frozen_gap", std::int64_t{contact.frozen_gap});
   root.set("verify_normals", std::int64_t{contact.verify_normals});
   root.set("resi_geom", contact.resi_geom);
+  root.set("elastic_iterations", contact.elastic_iterations);
   for (const auto& [name, member] : zone_numbers) {
     std::vector<double> values;
     for (const ContactZone& zone : contact.zones) values.push_back(zone.*member);

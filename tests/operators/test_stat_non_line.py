@@ -339,6 +339,24 @@ class StatNonLine(TwoSquares):
         self.write_load("load_10", imposed=AXIS)
         self.assert_fails("SOLVER_3", "DY", status=3, loads=["load_6", "load_10"])
 
+    def test_line_search_and_extrapolation_lead_to_the_same_solution(self):
+        """A pressure that grows in four equal steps to large strains: extrapolated instants start nearer to their end."""
+        self.write_function("function_10", [0, 4], [0, 8])
+        self.write_list("list_of_reals_8", [0.0, 1.0, 2.0, 3.0, 4.0])
+        iterations, ends = {}, {}
+        searched = {"METHODE": "CORDE", "RESI_LINE_RELA": 0.1, "ITER_LINE_MAXI": 3, "RHO_MIN": 1e-2, "RHO_MAX": 10.0, "RHO_EXCL": 0.9e-2}
+        for name, more in {"plain": {}, "EXTRAPOLE": {"NEWTON": {"PREDICTION": "EXTRAPOLE"}}, "CORDE": {"RECH_LINEAIRE": searched},
+                           "MIXTE": {"RECH_LINEAIRE": {**searched, "METHODE": "MIXTE"}}}.items():
+            run = self.solve(loads=["load_5", {"CHARGE": concept("load_6"), "FONC_MULT": concept("function_10")}],
+                             COMPORTEMENT={"RELATION": "ELAS", "DEFORMATION": "GREEN_LAGRANGE", "TOUT": "OUI"}, **more)
+            self.assertEqual((run.status, run.messages), (0, []), run.stderr)
+            iterations[name] = [int(words.split()[0]) for words in run.stdout.split(" with ") if words.split()[1:2] == ["iteration(s)"]]
+            ends[name] = self.read_field("result_9", "DEPL", 4).values
+        for name, values in ends.items():
+            np.testing.assert_allclose(values, ends["plain"], atol=1e-10, err_msg=name)
+        self.assertEqual(iterations["EXTRAPOLE"][0], iterations["plain"][0])  # nothing has moved before the first step
+        self.assertLess(sum(iterations["EXTRAPOLE"]), sum(iterations["plain"]))
+
     def test_a_failure_keeps_what_was_computed_before_it(self):
         self.write_function("function_10", [0, 1, 2], [0, 0, 1])
         self.write_list("list_of_reals_8", [0.0, 1.0, 2.0])

@@ -1,5 +1,6 @@
 """The table of difficult studies: what is asked of each (studies.py) holds."""
 
+import math
 import pathlib
 import sys
 import unittest
@@ -8,8 +9,8 @@ HERE = pathlib.Path(__file__).resolve().parent
 sys.path[:0] = [str(HERE), str(HERE.parent)]
 
 from study_test import LACON, StudyTest  # noqa: E402, I001 (it says where meshes.py is)
-from bodies import round_tool, slab  # noqa: E402
-from meshes import union  # noqa: E402
+from bodies import lines, round_tool, slab  # noqa: E402
+from meshes import block, union  # noqa: E402
 from run import chosen, count, missed, run  # noqa: E402
 from studies import Study, elastic, held, path, zone  # noqa: E402
 
@@ -73,3 +74,26 @@ class Short(StudyTest):
                           moves=[held("SLAB"), path("TOOL", [(0, 0), (4, 0)], [(0, 0), (4, -0.1)])], steps=4, asked={"per step": 4})
             self.assertEqual(missed(study, run(study, LACON, self.folder)), [], kind)
             self.assertIn("<I> <EVOLUTION_17>", "".join((self.folder / name).read_text() for name in ("out", "err")))
+
+    def test_overlap_of_facets_is_told(self):
+        """Half rings, one in the other, whose arcs have the same radius: chords of 9 degrees overlap arcs by 1 - cos 4.5 degrees = 0.0031."""
+        def ring(kind, name, radii, cells, skin, base):
+            return block(kind, lines(*radii, 2), lines(0, math.pi, cells), lambda r, a: (r * math.cos(a), r * math.sin(a)), name,
+                         {skin: f"{name}_SKIN", base: f"{name}_BASE"})
+
+        for outer, radius, told in (("QUAD4", 1.0, True), ("QUAD8", 1.0, False), ("QUAD4", 0.95, False)):  # the last one overlaps truly
+            mesh = union([ring("QUAD8", "INNER", (0.5, 1.0), 24, "right", "left"), ring(outer, "OUTER", (radius, 1.5), 20, "left", "right")])
+            study = Study(name="rings", mesh=mesh, materials={"INNER": elastic(1e3), "OUTER": elastic(1e3)}, zones=[zone("INNER", "OUTER", 0)],
+                          moves=[held("INNER"), held("OUTER")], steps=1)
+            figures = run(study, LACON, self.folder)
+            self.assertEqual(figures["status"], "finished")
+            self.assertEqual("EVOLUTION_22" in figures.get("alarms", []), told, (outer, radius))
+
+    def test_linear_cells_of_a_material_without_change_of_volume_are_told(self):
+        for kind, poisson, told in (("QUAD4", 0.4999, True), ("QUAD4", 0.49, False), ("QUAD8", 0.4999, False)):
+            mesh = union([slab(kind, "TOOL", (-0.5, 0.5), (0, 1), (3, 3), skin="bottom"), slab(kind, "SLAB", (-1, 1), (-1, 0), (4, 4))])
+            study = Study(name="locking", mesh=mesh, materials={"TOOL": elastic(1e3, poisson), "SLAB": elastic(1e3)}, steps=1,
+                          zones=[zone("TOOL", "SLAB", 0)], moves=[held("SLAB"), path("TOOL", [(0, 0), (1, 0)], [(0, 0), (1, -0.01)])])
+            figures = run(study, LACON, self.folder)
+            self.assertEqual(figures["status"], "finished")
+            self.assertEqual("EVOLUTION_21" in figures.get("alarms", []), told, (kind, poisson))

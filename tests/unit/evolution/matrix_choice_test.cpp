@@ -25,6 +25,22 @@ TEST(MatrixChoice, TheTangentGoesWithoutStressWhereALawWithMemoryTouches) {
       }
 }
 
+TEST(MatrixChoice, WhereTheUserWantsItTheMatrixOfWhatFlowsIsElasticUntilStatusesHaveSettled) {
+  for (const bool linear : {false, true}) {
+    MatrixChoice choice = started({.linear = linear, .has_memory = true, .settling = 2});
+    const auto is_elastic = [&] { return choice.suited(SolidMatrix::tangent, true).solid == SolidMatrix::elastic; };
+    EXPECT_FALSE(is_elastic());
+    choice.note_statuses(3, false);
+    EXPECT_FALSE(is_elastic());
+    for (const std::int64_t changes : {3, 0, 1, 0}) {
+      choice.note_statuses(changes, true);
+      EXPECT_EQ(is_elastic(), !linear);  // a stiffness that never changes stays
+    }
+    choice.note_statuses(0, true);
+    EXPECT_FALSE(is_elastic());
+  }
+}
+
 TEST(MatrixChoice, WithoutContactAnUnstableTangentIsLeftForTheRestOfTheInstant) {
   constexpr NewtonMatrix stressless{.solid = SolidMatrix::stressless, .curved = true};
   MatrixChoice choice = started({});
