@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "lacon/assembly/gmres.hpp"
+#include "lacon/structures/hdf5.hpp"
 
 namespace lacon {
 namespace {
@@ -184,6 +185,7 @@ SolutionReport SaddlePointSolver::solve(const SparseMatrix& matrix, std::int64_t
   const bool analysed = kept_ != Kept::nothing && same_pattern(matrix, *base_);
   kept_ = Kept::nothing;
   columns_.clear();
+  blocks_.clear();
   base_ = matrix;
   if (!analysed) {
     const Stopwatch watch(report.analysis_seconds);
@@ -193,6 +195,7 @@ SolutionReport SaddlePointSolver::solve(const SparseMatrix& matrix, std::int64_t
     const Stopwatch watch(report.factorisation_seconds);
     factor_ = report.factorisation = engine_->factorise(*base_);
     report.factorised = true;
+    ++factorisations_;
   }
   kept_ = factor_.null_pivots.empty() ? Kept::factor : Kept::analysis;
   if (kept_ == Kept::analysis) return report;
@@ -241,38 +244,48 @@ bool SaddlePointSolver::make_columns(const SparseMatrix& matrix, const Switched&
     return false;
 
   for (std::size_t first = 0; first < wanted.size(); first += block_size) {
-    const std::size_t count = std::min<std::size_t>(block_size, wanted.size() - first);
-    std::vector<std::int64_t> offset{0};
-    std::vector<std::int32_t> index;
-    std::vector<double> value;
-    std::vector<Column> made(count);
-    for (std::size_t c = first; c < first + count; ++c) {
-      Column& column = made[c - first];
-      if (std::binary_search(switched.on.begin(), switched.on.end(), wanted[c])) {
+    Block block;
+    for (std::size_t c = first; c < std::min(first + block_size, wanted.size()); ++c) {
+      block.rows.push_back(wanted[c]);
+      block.on.push_back(std::binary_search(switched.on.begin(), switched.on.end(), wanted[c]));
+      if (block.on.back()) {
         const Row row(matrix, wanted[c]);
         for (std::size_t k = 0; k < row.columns.size(); ++k) {
           if (row.values[k] == 0) continue;
-          column.index.push_back(row.columns[k]);
-          column.coefficient.push_back(row.values[k]);
+          block.index.push_back(row.columns[k]);
+          block.value.push_back(row.values[k]);
         }
-        index.insert(index.end(), column.index.begin(), column.index.end());
-        value.insert(value.end(), column.coefficient.begin(), column.coefficient.end());
       } else {
-        index.push_back(static_cast<std::int32_t>(wanted[c]));
-        value.push_back(1.0);
+        block.index.push_back(static_cast<std::int32_t>(wanted[c]));
+        block.value.push_back(1.0);
       }
-      offset.push_back(static_cast<std::int64_t>(index.size()));
+      block.offset.push_back(static_cast<std::int64_t>(block.index.size()));
     }
-    const std::vector<double> inverse = substitution_->substitute(offset, index, value);
-    const auto n = static_cast<std::ptrdiff_t>(matrix.size());
-    for (std::size_t c = 0; c < count; ++c) {
-      made[c].inverse.assign(inverse.begin() + static_cast<std::ptrdiff_t>(c) * n,
-                             inverse.begin() + static_cast<std::ptrdiff_t>(c + 1) * n);
-      columns_.insert_or_assign(wanted[first + c], std::move(made[c]));
-    }
+    compute(std::move(block));
   }
   report.columns = static_cast<int>(wanted.size());
   return true;
+}
+
+void SaddlePointSolver::compute(Block block) {
+  const std::vector<double> inverse = substitution_->substitute(block.offset, block.index, block.value);
+  const std::int64_t number = blocks_.empty() ? 0 : blocks_.rbegin()->first + 1;
+  const auto n = static_cast<std::ptrdiff_t>(base_->size());
+  for (std::size_t c = 0; c < block.rows.size(); ++c) {
+    const auto at = static_cast<std::ptrdiff_t>(c);
+    Column column{.index = {}, .coefficient = {}, .inverse = {}, .block = number};
+    column.inverse.assign(inverse.begin() + at * n, inverse.begin() + (at + 1) * n);
+    if (block.on[c]) {
+      column.index.assign(block.index.begin() + block.offset[c], block.index.begin() + block.offset[c + 1]);
+      column.coefficient.assign(block.value.begin() + block.offset[c], block.value.begin() + block.offset[c + 1]);
+    }
+    columns_.insert_or_assign(block.rows[c], std::move(column));
+  }
+  blocks_.emplace(number, std::move(block));
+  std::erase_if(blocks_, [&](const auto& entry) {
+    return std::none_of(entry.second.rows.begin(), entry.second.rows.end(),
+                        [&](std::int64_t row) { return columns_.at(row).block == entry.first; });
+  });
 }
 
 bool SaddlePointSolver::corrected(const SparseMatrix& matrix, std::span<double> right_side, bool rough,
@@ -310,6 +323,80 @@ bool SaddlePointSolver::corrected(const SparseMatrix& matrix, std::span<double> 
   report.rough = found.residual > full;
   std::copy(found.x.begin(), found.x.end(), right_side.begin());
   return true;
+}
+
+// ---------------------------------------------------------------------------------------------- another process goes on
+
+void SaddlePointSolver::save(const hdf5::Group& group) const {
+  group.set("reference", reference_);
+  group.set("factorisations", factorisations_);
+  group.set("expected_iterations", static_cast<std::int64_t>(expected_iterations_));
+  std::vector<std::int64_t> rows;
+  std::vector<double> scales;
+  for (const auto& [row, scale] : multiplier_scale_) {
+    rows.push_back(row);
+    scales.push_back(scale);
+  }
+  group.write("scale/row", rows);
+  group.write("scale/value", scales);
+  std::vector<std::int64_t> first_row{0}, first_entry{0}, of_rows, offset;
+  std::vector<std::uint8_t> on;
+  std::vector<std::int32_t> index;
+  std::vector<double> value;
+  for (const auto& [number, block] : blocks_) {
+    of_rows.insert(of_rows.end(), block.rows.begin(), block.rows.end());
+    on.insert(on.end(), block.on.begin(), block.on.end());
+    offset.insert(offset.end(), block.offset.begin() + 1, block.offset.end());
+    index.insert(index.end(), block.index.begin(), block.index.end());
+    value.insert(value.end(), block.value.begin(), block.value.end());
+    first_row.push_back(static_cast<std::int64_t>(of_rows.size()));
+    first_entry.push_back(static_cast<std::int64_t>(index.size()));
+  }
+  group.write("columns/first_row", first_row);
+  group.write("columns/first_entry", first_entry);
+  group.write("columns/row", of_rows);
+  group.write("columns/on", on);
+  group.write("columns/offset", offset);
+  group.write("columns/index", index);
+  group.write("columns/value", value);
+}
+
+void SaddlePointSolver::save_base(const hdf5::Group& group) const {
+  group.set("symmetric", std::int64_t{base_->is_symmetric()});
+  group.write("offset", base_->neighbours().offset);
+  group.write("neighbours", base_->neighbours().values);
+  group.write("values", base_->values());
+}
+
+void SaddlePointSolver::resume(const hdf5::Group& group, const hdf5::Group* base, const Numbering& numbering) {
+  reference_ = group.real("reference");
+  factorisations_ = group.integer("factorisations");
+  expected_iterations_ = static_cast<int>(group.integer("expected_iterations"));
+  const auto rows = group.read<std::int64_t>("scale/row");
+  const auto scales = group.read<double>("scale/value");
+  for (std::size_t i = 0; i < rows.size(); ++i) multiplier_scale_[rows[i]] = scales.at(i);
+  if (!base) return;
+  base_.emplace(Ragged<std::int32_t>{base->read<std::int64_t>("offset"), base->read<std::int32_t>("neighbours")}, numbering,
+                base->integer("symmetric") ? Symmetry::symmetric : Symmetry::general);
+  base_->restore(base->read<double>("values"));
+  engine_->analyse(*base_);
+  factor_ = engine_->factorise(*base_);
+  kept_ = Kept::factor;
+  const auto first_row = group.read<std::int64_t>("columns/first_row"),
+             first_entry = group.read<std::int64_t>("columns/first_entry");
+  const auto of_rows = group.read<std::int64_t>("columns/row"), offset = group.read<std::int64_t>("columns/offset");
+  const auto on = group.read<std::uint8_t>("columns/on");
+  const auto index = group.read<std::int32_t>("columns/index");
+  const auto value = group.read<double>("columns/value");
+  for (std::size_t b = 0; b + 1 < first_row.size(); ++b) {
+    Block block;
+    block.rows.assign(of_rows.begin() + first_row[b], of_rows.begin() + first_row[b + 1]);
+    block.on.assign(on.begin() + first_row[b], on.begin() + first_row[b + 1]);
+    block.offset.insert(block.offset.end(), offset.begin() + first_row[b], offset.begin() + first_row[b + 1]);
+    block.index.assign(index.begin() + first_entry[b], index.begin() + first_entry[b + 1]);
+    block.value.assign(value.begin() + first_entry[b], value.begin() + first_entry[b + 1]);
+    compute(std::move(block));
+  }
 }
 
 }  // namespace lacon

@@ -17,6 +17,10 @@
 #include "lacon/assembly/engine.hpp"
 #include "lacon/assembly/sparse_matrix.hpp"
 
+namespace lacon::hdf5 {
+class Group;
+}
+
 namespace lacon {
 
 struct SaddlePointOptions {
@@ -56,6 +60,15 @@ class SaddlePointSolver {
   /// Right sides so far were those of a computation that failed: they say nothing of how exact the next solution has to be.
   void forget_right_sides() { reference_ = 0; }
 
+  /// What later solutions depend on, for another process that goes on with the same bits: what save_base() saves and, in
+  /// save(), how it is used. The base is large and changes only where base_number() does; 0: there is none.
+  void save(const hdf5::Group& group) const;
+  void save_base(const hdf5::Group& group) const;
+  std::int64_t base_number() const { return kept_ == Kept::factor ? factorisations_ : 0; }
+  /// Of a solver that has solved nothing yet. @param base what save_base() made; nullptr where base_number() was 0
+  /// Throws BASE_2, SOLVER_2.
+  void resume(const hdf5::Group& group, const hdf5::Group* base, const Numbering& numbering);
+
  private:
   /// The part of the inverse that a switched row needs: for a row switched on, of its coefficients; for one switched off, of
   /// its own unit vector.
@@ -63,6 +76,15 @@ class SaddlePointSolver {
     std::vector<std::int32_t> index;
     std::vector<double> coefficient;
     std::vector<float> inverse;  ///< (n); GMRES makes up for the digits, and the memory is half
+    std::int64_t block = 0;      ///< in which it was computed
+  };
+  /// Columns that were computed together: their bits may depend on their company.
+  struct Block {
+    std::vector<std::int64_t> rows;
+    std::vector<std::uint8_t> on;  ///< whether each was switched on
+    std::vector<std::int64_t> offset{0};
+    std::vector<std::int32_t> index;  ///< right sides: entries offset[c] to offset[c + 1] of column c
+    std::vector<double> value;
   };
   /// Multipliers' rows that are not what they were when the factor was made, ascending.
   struct Switched {
@@ -75,6 +97,7 @@ class SaddlePointSolver {
 
   bool corrected(const SparseMatrix& matrix, std::span<double> right_side, bool rough, SolutionReport& report);
   bool make_columns(const SparseMatrix& matrix, const Switched& switched, SolutionReport& report);
+  void compute(Block block);
   /// What makes the residuals of displacements and of multipliers comparable, (n).
   std::vector<double> scales(const SparseMatrix& matrix);
   double solution_cost() const;
@@ -87,7 +110,9 @@ class SaddlePointSolver {
   Kept kept_ = Kept::nothing;
   std::optional<SparseMatrix> base_;  ///< the matrix that this is of
   Factorisation factor_;
+  std::int64_t factorisations_ = 0;  ///< so far
   std::map<std::int64_t, Column> columns_;
+  std::map<std::int64_t, Block> blocks_;             ///< those that some of the columns are from, by number
   std::map<std::int64_t, double> multiplier_scale_;  ///< c.c / K of rows when they last had coefficients
   double reference_ = 0;                             ///< largest right side so far, scaled
   int expected_iterations_ = 4;

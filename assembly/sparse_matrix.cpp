@@ -76,9 +76,10 @@ Ragged<std::int32_t> neighbours_of_vertices(std::int64_t n_vertices, const Ragge
 
 SparseMatrix::SparseMatrix(const Numbering& numbering, const Ragged<std::int32_t>& cliques, std::span<const Coupling> couplings,
                            Symmetry symmetry)
-    : numbering_(&numbering),
-      symmetry_(symmetry),
-      neighbours_(neighbours_of_vertices(numbering.n_vertices(), cliques, couplings)) {
+    : SparseMatrix(neighbours_of_vertices(numbering.n_vertices(), cliques, couplings), numbering, symmetry) {}
+
+SparseMatrix::SparseMatrix(Ragged<std::int32_t> neighbours, const Numbering& numbering, Symmetry symmetry)
+    : numbering_(&numbering), symmetry_(symmetry), neighbours_(std::move(neighbours)) {
   const auto& first = numbering.first;
   row_.reserve(numbering.n_equations() + 1);
   row_.push_back(0);

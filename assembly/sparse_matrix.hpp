@@ -18,6 +18,8 @@ enum class Symmetry { symmetric, general };
 
 class SparseMatrix {
  public:
+  /// The pattern in which neighbouring vertices meet. @param neighbours of each vertex, ascending, without itself
+  SparseMatrix(Ragged<std::int32_t> neighbours, const Numbering& numbering, Symmetry symmetry);
   /// The pattern in which the vertices of each clique (an element's nodes) and of each coupling (of nodes, of multipliers, or
   /// of one with the other) meet. It is symmetric, whatever the values are.
   SparseMatrix(const Numbering& numbering, const Ragged<std::int32_t>& cliques, std::span<const Coupling> couplings,
@@ -28,7 +30,7 @@ class SparseMatrix {
 
   /// @param first_row rows before it keep their values
   void set_zero(std::int64_t first_row = 0);
-  /// Give the first rows the values that values() had there.
+  /// Give the first rows, or all of them, the values that values() had there.
   void restore(std::span<const double> values);
   /// Take the values of the first rows from a matrix whose pattern there is a part of this one's; what is new is zero.
   void copy_rows(const SparseMatrix& other, std::int64_t n_rows);

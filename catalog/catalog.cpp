@@ -79,5 +79,6 @@ void fail(std::string_view id, std::initializer_list<MessageValue> values) { thr
 void set_message_sink(MessageSink new_sink) { sink = new_sink ? new_sink : ignore; }
 
 void inform(std::string_view id, std::initializer_list<MessageValue> values) { sink(message(id, values)); }
+void inform(const Message& said) { sink(said); }
 
 }  // namespace lacon

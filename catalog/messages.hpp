@@ -43,6 +43,7 @@ void set_message_sink(MessageSink sink);
 
 /// Send an alarm (A) or an information (I) to the sink.
 void inform(std::string_view id, std::initializer_list<MessageValue> values = {});
+void inform(const Message& said);
 
 }  // namespace lacon
 

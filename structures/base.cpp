@@ -114,7 +114,7 @@ void write_head(const hdf5::Group& root, const Order& order, std::string_view ty
 template <class Write>
 void store_in(const std::filesystem::path& file, std::int64_t version, const Order& order, std::string_view type,
               const std::vector<std::string>& references, Write write) {
-  hdf5::write_sealed(file, [&](const hdf5::Group& root) {
+  (type == "result" ? hdf5::write_sealed_at_once : hdf5::write_sealed)(file, [&](const hdf5::Group& root) {
     write_head(root, order, type, version, references);
     write(root);
   });

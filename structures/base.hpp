@@ -56,6 +56,8 @@ class Base {
   /// The version that an index has that is stored now.
   std::int64_t next_version() const;
 
+  /// The folder of the order's result.
+  std::filesystem::path result_folder() const { return folder_ / order_->result_id; }
   /// Store a field file of the order's result and enter it in the index, which store(result) writes.
   void add_field(Result& result, Field field) const;
   /// Remove the field files of a result that will not be stored.

@@ -384,7 +384,7 @@ class Writer : public Group {
 
 /// Create `file` as write_whole() does; `finish` has its way with the partial file before that gets its name.
 void write_partial(const std::filesystem::path& file, const std::function<void(const Group&)>& write,
-                   const std::filesystem::path& copy_of, void (*finish)(const std::filesystem::path&)) {
+                   const std::filesystem::path& copy_of, void (*finish)(const std::filesystem::path&), bool small = false) {
   prepare();
   check_replaceable(file);
   const std::filesystem::path partial = file.string() + ".partial";
@@ -396,7 +396,10 @@ void write_partial(const std::filesystem::path& file, const std::function<void(c
   try {
     const Handle creation(H5Pcreate(H5P_FILE_CREATE), H5Pclose);
     H5Pset_link_creation_order(creation, H5P_CRT_ORDER_TRACKED | H5P_CRT_ORDER_INDEXED);
-    Handle opened(copy_of.empty() ? H5Fcreate(partial.c_str(), H5F_ACC_TRUNC, creation, H5P_DEFAULT)
+    const Handle access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose);
+    constexpr std::size_t growth = 1 << 18;
+    if (small) H5Pset_fapl_core(access, growth, true);
+    Handle opened(copy_of.empty() ? H5Fcreate(partial.c_str(), H5F_ACC_TRUNC, creation, access)
                                   : H5Fopen(partial.c_str(), H5F_ACC_RDWR, H5P_DEFAULT),
                   H5Fclose);
     if (opened < 0) cannot_write(file, with_system_reason("the file '" + partial.string() + "' cannot be made"));
@@ -442,6 +445,10 @@ void write_whole(const std::filesystem::path& file, const std::function<void(con
 
 void write_sealed(const std::filesystem::path& file, const std::function<void(const Group&)>& write) {
   write_partial(file, write, {}, seal);
+}
+
+void write_sealed_at_once(const std::filesystem::path& file, const std::function<void(const Group&)>& write) {
+  write_partial(file, write, {}, seal, true);
 }
 
 }  // namespace lacon::hdf5

@@ -130,5 +130,7 @@ void write_whole(const std::filesystem::path& file, const std::function<void(con
                  const std::filesystem::path& copy_of = {});
 /// The same for a file of a base, which is sealed.
 void write_sealed(const std::filesystem::path& file, const std::function<void(const Group&)>& write);
+/// The same of many small things, which are put together in memory: a call of the system for each would take longer.
+void write_sealed_at_once(const std::filesystem::path& file, const std::function<void(const Group&)>& write);
 
 }  // namespace lacon::hdf5

@@ -173,6 +173,7 @@ Order parse_order(const json& order, const std::string& file) {
       parsed.result_id = order["result"].at("id").get<std::string>();
       parsed.result_label = order["result"].value("label", parsed.result_id);
       parsed.reuse = order["result"].value("reuse", false);
+      parsed.resume = order["result"].value("resume", false);
     }
     const json units = order.value("units", json::object());  // named: items() refers to it
     for (const auto& [unit, path] : units.items()) parsed.units[std::stoi(unit)] = path.get<std::string>();

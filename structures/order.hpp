@@ -58,6 +58,7 @@ struct Order {
   std::filesystem::path base;
   std::string result_id, result_label;  ///< empty for a command without result
   bool reuse = false;
+  bool resume = false;  ///< go on with a computation of this result that was ended, where its restart record is there
   std::map<int, std::filesystem::path> units;
   std::set<int> append;  ///< units whose file goes on; any other that is there is replaced
   std::vector<std::filesystem::path> plugins;

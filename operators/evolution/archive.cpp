@@ -8,6 +8,7 @@
 #include "lacon/catalog/messages.hpp"
 #include "lacon/operators/fields/selection.hpp"
 #include "lacon/operators/program/program.hpp"
+#include "lacon/structures/storage/storage.hpp"
 
 namespace lacon {
 namespace {
@@ -31,7 +32,7 @@ ArchiveChoice::ArchiveChoice(const Keywords& keywords, const Base& base) : insta
 }
 
 Archive::Archive(const Order& order, const Base& base, const Present& present, const std::optional<Origin>& origin,
-                 const Observations& observations)
+                 const Observations& observations, bool resumes)
     : base_(base),
       present_(present),
       fields_(fields_of(present)),
@@ -48,7 +49,7 @@ Archive::Archive(const Order& order, const Base& base, const Present& present, c
     result_.loads.push_back(
         {excit.concept_id("CHARGE"), excit.optional_concept("FONC_MULT").value_or(""), excit.text("TYPE_CHARGE")});
   result_.behaviour = keywords.values().value("COMPORTEMENT", nlohmann::json::array()).dump();
-  if (order.reuse || keywords.has("RESULTAT")) go_on(order, origin);
+  if (!resumes && (order.reuse || keywords.has("RESULTAT"))) go_on(order, origin);
 }
 
 void Archive::go_on(const Order& order, const std::optional<Origin>& origin) {
@@ -104,6 +105,24 @@ void Archive::accept(const SolvedInstant& solved) {
   store(false);
 }
 
+void Archive::save(const hdf5::Group& group) const {
+  group.set("label", result_.label);
+  group.set("version", result_.version);
+  group.set("taken_over", static_cast<std::int64_t>(taken_over_));
+  storage::write(group, result_);
+}
+
+void Archive::resume(const hdf5::Group& group) {
+  result_ = storage::read_result(group);
+  result_.version = group.integer("version");
+  const hdf5::Reader found(base_.result_folder() / "index.h5");
+  if (found.integer("version") == result_.version) there_ = found.shape("order").at(0);
+  taken_over_ = static_cast<std::size_t>(group.integer("taken_over"));
+  inform("EVOLUTION_32", {{"label", result_.label}, {"instant", fmt::format("{:.9g}", result_.instants.back())}});
+  stored_ = true;
+  store(false);
+}
+
 void Archive::end(bool completed) {
   if (completed)
     store(true);
@@ -112,6 +131,7 @@ void Archive::end(bool completed) {
 }
 
 void Archive::store(bool complete) {
+  if (result_.orders.size() < there_) return;
   const Phase phase("archive");
   Result result = result_;
   result.complete = complete;

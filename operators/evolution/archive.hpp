@@ -28,13 +28,19 @@ class Archive : public EvolutionObserver {
  public:
   /// With `reuse` the instants of the result up to the initial state are taken over: throws EVOLUTION_12 where that cannot be.
   /// @param observations whose table is stored with the result; all arguments must outlive it
+  /// @param resumes resume() follows, which knows what was taken over
   Archive(const Order& order, const Base& base, const Present& present, const std::optional<Origin>& origin,
-          const Observations& observations);
+          const Observations& observations, bool resumes = false);
 
   void start(double instant) override;
   void begin(double instant) override;
   void iterate(double instant, const IterationReport& report) override;
   void accept(const SolvedInstant& solved) override;
+  /// The result as it is, with what this computation has taken over.
+  void save(const hdf5::Group& group) const override;
+  void resume(const hdf5::Group& group) override;
+  /// Whether this instant is the last that is kept.
+  bool ends_with(double instant) const { return !result_.instants.empty() && result_.instants.back() == instant; }
   /// Where no instant was kept before a failure, the base stays as it was.
   void end(bool completed) override;
 
@@ -58,6 +64,7 @@ class Archive : public EvolutionObserver {
   Pivots pivots_;
   Result result_;
   std::size_t taken_over_ = 0;  ///< instants of a result that goes on
+  std::size_t there_ = 0;       ///< instants in the index of a computation that goes on: it does not get fewer
   bool stored_ = false;         ///< an index with instants of this computation is in the base
 };
 

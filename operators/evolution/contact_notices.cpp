@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "lacon/catalog/messages.hpp"
+#include "lacon/structures/hdf5.hpp"
 
 namespace lacon {
 
@@ -98,6 +99,37 @@ void ContactNotices::end(bool /*completed*/) {
                             {"percent", fmt::format("{:.3g}", 100 * pierced.worst.depth)},
                             {"gap", fmt::format("{:.3g}", pierced.worst.gap)}});
   }
+}
+
+void ContactNotices::save(const hdf5::Group& group) const {
+  std::vector<std::int64_t> zones, patches;
+  std::vector<double> instants, depths, gaps;
+  for (const auto& [zone, pierced] : pierced_) {
+    zones.push_back(zone);
+    patches.push_back(static_cast<std::int64_t>(pierced.worst.patch));
+    instants.push_back(pierced.instant);
+    depths.push_back(pierced.worst.depth);
+    gaps.push_back(pierced.worst.gap);
+  }
+  group.write("pierced/zone", zones);
+  group.write("pierced/patch", patches);
+  group.write("pierced/instant", instants);
+  group.write("pierced/depth", depths);
+  group.write("pierced/gap", gaps);
+  group.write("free", std::vector<std::int32_t>(free_.begin(), free_.end()));
+  group.write("too_deep", std::vector<std::int64_t>(too_deep_.begin(), too_deep_.end()));
+}
+
+void ContactNotices::resume(const hdf5::Group& group) {
+  const auto zones = group.read<std::int64_t>("pierced/zone"), patches = group.read<std::int64_t>("pierced/patch");
+  const auto instants = group.read<double>("pierced/instant"), depths = group.read<double>("pierced/depth"),
+             gaps = group.read<double>("pierced/gap");
+  for (std::size_t i = 0; i < zones.size(); ++i)
+    pierced_[static_cast<std::int32_t>(zones[i])] = {instants.at(i),
+                                                     {static_cast<std::size_t>(patches.at(i)), depths.at(i), gaps.at(i)}};
+  const auto free = group.read<std::int32_t>("free");
+  free_ = {free.begin(), free.end()};
+  for (const std::int64_t zone : group.read<std::int64_t>("too_deep")) too_deep_.insert(static_cast<std::size_t>(zone));
 }
 
 }  // namespace lacon

@@ -21,6 +21,8 @@ class ContactNotices : public EvolutionObserver {
   void accept(const SolvedInstant& solved) override;
   /// EVOLUTION_16: of each zone the patch that its master has pierced deepest.
   void end(bool completed) override;
+  void save(const hdf5::Group& group) const override;
+  void resume(const hdf5::Group& group) override;
 
  private:
   struct Pierced {

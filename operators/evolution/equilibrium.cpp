@@ -9,6 +9,7 @@
 
 #include "lacon/operators/evolution/bodies.hpp"
 #include "lacon/operators/program/program.hpp"
+#include "lacon/structures/hdf5.hpp"
 
 namespace lacon {
 namespace {
@@ -297,6 +298,26 @@ std::string Equilibrium::names(std::span<const std::int64_t> equations) const {
     if (std::count(equations.begin(), equations.end(), system_.equation(relations_.unknown(r, system_))) > 0)
       names += (shown++ ? ", " : "") + relations_.name(r);
   return names.empty() ? "multipliers of contact" : names;
+}
+
+void Equilibrium::save(const hdf5::Group& group) const {
+  group.set("solid_matrix", static_cast<std::int64_t>(matrix_.solid));
+  group.set("curved_matrix", std::int64_t{matrix_.curved});
+  if (instant_) group.set("instant", *instant_);
+  std::vector<std::int32_t> couplings;
+  for (const Coupling& coupling : system_.couplings()) couplings.insert(couplings.end(), {coupling.a, coupling.b});
+  group.write("couplings", couplings);
+}
+
+void Equilibrium::resume(const hdf5::Group& group, const StaticState& state, std::span<const double> rest) {
+  const auto saved = group.read<std::int32_t>("couplings");
+  std::vector<Coupling> couplings;
+  for (std::size_t i = 0; i + 1 < saved.size(); i += 2) couplings.push_back({saved[i], saved[i + 1]});
+  system_.start(couplings, linear_ && has_stiffness_);
+  if (group.has_attribute("instant")) load(group.real("instant"), state);
+  rest_at(rest);
+  pair(state.displacement);
+  assemble(state, state, {static_cast<SolidMatrix>(group.integer("solid_matrix")), group.integer("curved_matrix") != 0});
 }
 
 }  // namespace lacon

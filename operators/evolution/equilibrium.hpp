@@ -13,6 +13,10 @@
 #include "lacon/operators/evolution/static_problem.hpp"
 #include "lacon/operators/evolution/system.hpp"
 
+namespace lacon::hdf5 {
+class Group;
+}
+
 namespace lacon {
 
 /// What the integration points of a solid set hold.
@@ -52,6 +56,12 @@ class Equilibrium {
   /// Put a spring to each of these degrees of freedom into the matrix, about as stiff as what is around it: an increment meets
   /// it, forces and the equilibrium know nothing of it.
   void hold(std::span<const std::int64_t> dofs);
+
+  /// What the next instant depends on beside the state, for another process that goes on with the same bits.
+  void save(const hdf5::Group& group) const;
+  /// Be as save() left it. @param state solved last  @param rest displacements at the instant before
+  void resume(const hdf5::Group& group, const StaticState& state, std::span<const double> rest);
+
   /// Add a solution of the system to a state. @param step of the imposed displacements
   /// @return the increment of all unknowns of nodes, (n_nodes, n_components)
   std::vector<double> add(std::span<const double> solution, std::span<const double> step, StaticState& state) const;

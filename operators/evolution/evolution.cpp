@@ -1,31 +1,56 @@
 #include "lacon/operators/evolution/evolution.hpp"
 
+#include <fmt/format.h>
+
 #include "lacon/operators/evolution/time_stepping.hpp"
 
 namespace lacon {
 
-void evolve(const TimeSteps& steps, InstantSolver& solver, std::span<EvolutionObserver* const> observers) {
+void evolve(const TimeSteps& steps, InstantSolver& solver, std::span<EvolutionObserver* const> observers, const Course& past) {
   const auto tell = [&](const auto& what) {
     for (EvolutionObserver* const observer : observers) what(*observer);
   };
-  int iterations = 0;
+  Course course;
   std::int64_t step = 0;
-  const auto solve = [&](double instant) {
-    tell([&](EvolutionObserver& o) { o.begin(instant); });
-    iterations = solver.solve(
-        instant, [&](const IterationReport& report) { tell([&](EvolutionObserver& o) { o.iterate(instant, report); }); });
-    tell([&](EvolutionObserver& o) { o.judge(instant); });
+  const auto is_past = [&] { return course.size() <= past.size(); };
+  // the steps are chosen again from what became of them
+  const auto repeat = [&](double instant) {
+    course.push_back(past[course.size()]);
+    const Attempt& attempt = course.back();
+    if (attempt.instant != instant)
+      fail("EVOLUTION_31", {{"reason", fmt::format("its steps are others, {:.9g} for {:.9g}", attempt.instant, instant)}});
+    if (attempt.failure) throw *attempt.failure;
   };
-  const auto go_back = [&] { solver.go_back(); };
+  const auto attempt = [&](double instant) {
+    course.push_back({.instant = instant, .iterations = 0, .failure = {}});
+    tell([&](EvolutionObserver& o) { o.begin(instant); });
+    try {
+      course.back().iterations = solver.solve(
+          instant, [&](const IterationReport& report) { tell([&](EvolutionObserver& o) { o.iterate(instant, report); }); });
+      tell([&](EvolutionObserver& o) { o.judge(instant); });
+    } catch (const Error& error) {
+      course.back().failure.emplace(error.message(), nature_of(error));
+      throw;
+    }
+  };
+  const auto solve = [&](double instant) { course.size() < past.size() ? repeat(instant) : attempt(instant); };
+  const auto go_back = [&] {
+    if (!is_past()) solver.go_back();
+  };
   const auto solved = [&](double instant, bool asked) {
-    solver.accept();
     step += asked;
-    const SolvedInstant now{.instant = instant, .step = step, .last = instant == steps.values.back(), .iterations = iterations};
+    if (is_past()) return;
+    solver.accept();
+    const SolvedInstant now{.instant = instant,
+                            .step = step,
+                            .last = instant == steps.values.back(),
+                            .iterations = course.back().iterations,
+                            .course = &course};
     tell([&](EvolutionObserver& o) { o.accept(now); });
   };
   try {
-    tell([&](EvolutionObserver& o) { o.start(steps.values.front()); });
-    step_through(steps, solve, go_back, solved, [&] { return iterations; });
+    if (past.empty()) tell([&](EvolutionObserver& o) { o.start(steps.values.front()); });
+    step_through(steps, solve, go_back, solved, [&] { return course.back().iterations; });
   } catch (...) {
     tell([&](EvolutionObserver& o) { o.end(false); });
     throw;

@@ -24,4 +24,10 @@ class InstantFailure : public Error {
   FailureNature nature_;
 };
 
+/// What is known of a failure; of some nothing but their message.
+inline FailureNature nature_of(const Error& error) {
+  const auto* const known = dynamic_cast<const InstantFailure*>(&error);
+  return known ? known->nature() : FailureNature{};
+}
+
 }  // namespace lacon

@@ -52,6 +52,9 @@ class MatrixChoice {
   explicit MatrixChoice(const MatrixTraits& traits) : traits_(traits), waits_(traits.in_space) {}
 
   void start_instant();
+  /// All that lasts longer than an instant: whether second derivatives of gaps wait.
+  bool waits() const { return waits_; }
+  void set_waits(bool waits) { waits_ = waits; }
   NewtonMatrix suited(SolidMatrix asked, bool touches) const;
   /// More negative pivots than constraints: beyond a limit point or a bifurcation, from where a step of the tangent leads
   /// anywhere. @param curves gaps of active patches have second derivatives @return whether the matrix has to be another one

@@ -11,6 +11,7 @@
 #include "lacon/operators/evolution/bodies.hpp"
 #include "lacon/operators/evolution/instant_failure.hpp"
 #include "lacon/operators/program/program.hpp"
+#include "lacon/structures/hdf5.hpp"
 
 namespace lacon {
 namespace {
@@ -81,6 +82,31 @@ void Newton::restart(const StaticState& state) {
   equilibrium_.rest_at(state.displacement);
   equilibrium_.pair(state.displacement);
   assemble(state, state, options_.matrix);
+}
+
+void Newton::save(const hdf5::Group& group) const {
+  group.set("waits", std::int64_t{choice_.waits()});
+  group.write("told", std::vector<std::int64_t>(told_.begin(), told_.end()));
+  if (motion_) {
+    const hdf5::Group motion = group.create("motion");
+    motion.set("from", motion_->from);
+    motion.set("to", motion_->to);
+    motion.write("start", motion_->start);
+    motion.write("end", motion_->end);
+  }
+  equilibrium_.save(group.create("equilibrium"));
+  solver_.save(group.create("solver"));
+}
+
+void Newton::resume(const hdf5::Group& group, const hdf5::Group* base, const StaticState& state, std::span<const double> rest) {
+  choice_.set_waits(group.integer("waits") != 0);
+  for (const std::int64_t patch : group.read<std::int64_t>("told")) told_.insert(static_cast<std::size_t>(patch));
+  if (group.has("motion")) {
+    const hdf5::Group motion = group.open("motion");
+    motion_ = {motion.real("from"), motion.real("to"), motion.read<double>("start"), motion.read<double>("end")};
+  }
+  equilibrium_.resume(group.open("equilibrium"), state, rest);
+  solver_.resume(group.open("solver"), base, problem_.numbering);
 }
 
 int Newton::solve(double instant, StaticState& state, const std::function<void(const IterationReport&)>& report) {

@@ -46,6 +46,11 @@ class Newton {
   /// Go back to a state: contact, stresses and system are those of `state` again, as solve() needs them.
   void restart(const StaticState& state);
 
+  /// For another process that goes on with the same bits: Equilibrium::save(), SaddlePointSolver::save().
+  void save(const hdf5::Group& group) const;
+  void resume(const hdf5::Group& group, const hdf5::Group* base, const StaticState& state, std::span<const double> rest);
+
+  const SaddlePointSolver& solver() const { return solver_; }
   const Equilibrium& equilibrium() const { return equilibrium_; }
   /// The contact at the last evaluation; nullptr without contact.
   const ContactState* contact() const { return equilibrium_.contact(); }

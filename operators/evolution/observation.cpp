@@ -9,6 +9,7 @@
 #include <numeric>
 
 #include "lacon/catalog/messages.hpp"
+#include "lacon/structures/hdf5.hpp"
 
 namespace lacon {
 
@@ -300,6 +301,19 @@ void Observations::start(double instant) {
 void Observations::accept(const SolvedInstant& solved) {
   for (Watch& watch : watches_)
     if (!watch.instants || watch.instants->has(solved.instant, solved.step)) record(watch, solved.instant);
+}
+
+void Observations::save(const hdf5::Group& group) const {
+  std::vector<std::int64_t> counts;
+  for (const Watch& watch : watches_) counts.push_back(watch.count);
+  group.write("count", counts);
+  if (table_) write_table(group.create("table"), *table_);
+}
+
+void Observations::resume(const hdf5::Group& group) {
+  const auto counts = group.read<std::int64_t>("count");
+  for (std::size_t w = 0; w < watches_.size(); ++w) watches_[w].count = counts.at(w);
+  if (table_) table_ = read_table(group.open("table"));
 }
 
 }  // namespace lacon

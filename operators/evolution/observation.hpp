@@ -73,6 +73,8 @@ class Observations : public EvolutionObserver {
   /// Look at the initial state: fills in rows where OBSE_ETAT_INIT says so, and refuses at once what cannot be looked at.
   void start(double instant) override;
   void accept(const SolvedInstant& solved) override;
+  void save(const hdf5::Group& group) const override;
+  void resume(const hdf5::Group& group) override;
   /// The table, nothing without OBSERVATION.
   const std::optional<Table>& table() const { return table_; }
 

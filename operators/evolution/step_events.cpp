@@ -53,6 +53,8 @@ void StepEvents::judge(double instant) {
 
 void StepEvents::accept(const SolvedInstant& /*solved*/) { remember(); }
 
+void StepEvents::resume(const hdf5::Group& /*group*/) { remember(); }
+
 void StepEvents::remember() {
   for (IncrementLimit& increment : increments_) increment.last = increment.observer.look(fields_);
 }

@@ -21,6 +21,7 @@ class StepEvents : public EvolutionObserver {
   /// Throws STEP_2 (DELTA_GRANDEUR) where a component has changed by more than VALE_REF since the last accepted instant.
   void judge(double instant) override;
   void accept(const SolvedInstant& solved) override;
+  void resume(const hdf5::Group& group) override;
 
  private:
   struct IncrementLimit {

@@ -29,6 +29,8 @@ class System {
   void start(std::span<const Coupling> couplings, bool keep_stiffness = false);
   /// What the matrix holds now may be kept by the next start().
   void stiffness_is_complete();
+  /// Couplings that start() has made room for so far. The order of elimination depends on them.
+  std::span<const Coupling> couplings() const { return couplings_; }
   /// Add an element. @param lower (n (n + 1) / 2): lower triangle of its matrix, or empty  @param residual (n)
   void add(std::span<const std::int64_t> unknowns, std::span<const double> lower, std::span<const double> residual);
   /// The same of one whose matrix is not symmetric, to a general system. @param matrix (n, n), row by row

@@ -21,12 +21,6 @@ const StepCut& action_for(const TimeSteps& steps, const Error& error) {
   return steps.action;
 }
 
-/// What is known of a failure; of some nothing but their message.
-FailureNature nature_of(const Error& error) {
-  const auto* const known = dynamic_cast<const InstantFailure*>(&error);
-  return known ? known->nature() : FailureNature{};
-}
-
 constexpr double same_ratio = 0.05;  // of the logarithm of ratios
 
 /// Why no cut helps, or nothing. Where a step and its parts have residuals that fall by the same ratio, a part of them has
@@ -143,16 +137,19 @@ class AdaptiveStepper {
   std::int64_t count_ = 0;
 };
 
+constexpr const char* from_the_list = "give instants that are in the list, the first before the last";
+
 /// Position of an instant in the list, to a relative precision.
 std::size_t find_instant(const TimeSteps& steps, double instant, double precision) {
   for (std::size_t i = 0; i < steps.values.size(); ++i)
     if (std::abs(steps.values[i] - instant) <= precision * std::max(std::abs(instant), precision)) return i;
-  fail("EVOLUTION_5", {{"what", fmt::format("the instant {:.15g} is not in the list", instant)}});
+  fail("EVOLUTION_5", {{"what", fmt::format("the instant {:.15g} is not in the list", instant)}, {"remedy", from_the_list}});
 }
 
 std::size_t check_number(const TimeSteps& steps, std::int64_t number) {
   if (number >= 0 && static_cast<std::size_t>(number) < steps.values.size()) return static_cast<std::size_t>(number);
-  fail("EVOLUTION_5", {{"what", fmt::format("there is no number {} in a list of {} instants", number, steps.values.size())}});
+  fail("EVOLUTION_5", {{"what", fmt::format("there is no number {} in a list of {} instants", number, steps.values.size())},
+                       {"remedy", from_the_list}});
 }
 
 }  // namespace
@@ -179,10 +176,14 @@ TimeSteps restrict(const TimeSteps& steps, const Interval& interval) {
   }
   if (interval.last_instant) last = find_instant(steps, *interval.last_instant, interval.precision);
   if (interval.last_number) last = check_number(steps, *interval.last_number);
-  if (from_state ? last + 1 <= first : steps.values.size() < 2 || last <= first)
+  if (from_state && last + 1 <= first)
     fail("EVOLUTION_5",
-         {{"what", from_state ? fmt::format("there is no instant behind that of ETAT_INIT, {:.15g}", *interval.initial_state)
-                              : "there is no step to compute"}});
+         {{"what", fmt::format("there is no instant behind that of ETAT_INIT, {:.15g}", *interval.initial_state)},
+          {"remedy",
+           "the result that ETAT_INIT names may have come to its end in a run before: leave this command out, take a list that "
+           "goes further, or name an earlier instant (ETAT_INIT/INST; with reuse also ARCHIVAGE/DETR_NUME_SUIV)"}});
+  if (!from_state && (steps.values.size() < 2 || last <= first))
+    fail("EVOLUTION_5", {{"what", "there is no step to compute"}, {"remedy", from_the_list}});
   TimeSteps part = steps;
   part.values.assign(steps.values.begin() + static_cast<std::ptrdiff_t>(first),
                      steps.values.begin() + static_cast<std::ptrdiff_t>(last) + 1);

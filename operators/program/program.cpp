@@ -129,6 +129,8 @@ int run_tool(int argc, char** argv, CLI::App& app, const std::function<void()>& 
   return run(argc, argv, app, work);
 }
 
+const std::vector<Message>& messages_so_far() { return outcome.messages; }
+
 Phase::Phase(std::string name) : name_(std::move(name)), start_(now()) {}
 Phase::~Phase() { add_to_phase(std::move(name_), now() - start_); }
 

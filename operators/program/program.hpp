@@ -3,7 +3,9 @@
 #include <functional>
 #include <string>
 #include <string_view>
+#include <vector>
 
+#include "lacon/catalog/messages.hpp"
 #include "lacon/structures/base.hpp"
 #include "lacon/structures/order.hpp"
 
@@ -28,6 +30,9 @@ bool takes_order(int argc, char** argv);
 /// Run `work` of a program that takes files instead of an order, once `app` has read its options from the command line.
 /// Messages and exit status as for run_program(); --status and --verbose are there too.
 int run_tool(int argc, char** argv, CLI::App& app, const std::function<void()>& work);
+
+/// What this program has said so far.
+const std::vector<Message>& messages_so_far();
 
 /// Add to a phase of the operator's timings.
 void add_to_phase(std::string name, double seconds);

@@ -9,6 +9,7 @@
 #include "lacon/operators/evolution/contact_notices.hpp"
 #include "lacon/operators/evolution/interruption.hpp"
 #include "lacon/operators/evolution/newton.hpp"
+#include "lacon/operators/evolution/restart.hpp"
 #include "lacon/operators/evolution/step_events.hpp"
 #include "lacon/operators/evolution/table.hpp"
 #include "lacon/operators/evolution/time_stepping.hpp"
@@ -53,9 +54,9 @@ std::unique_ptr<Engine> engine_of(const Keywords& solver) {
                                                     .residual_tolerance = solver.real("RESI_RELA")});
 }
 
-TimeSteps steps_of(const Keywords& increment, const Base& base, const std::optional<Origin>& origin) {
+TimeSteps steps_of(const Keywords& increment, const Base& base, std::optional<double> origin) {
   return restrict(base.time_steps(increment.concept_id("LIST_INST")),
-                  {.initial_state = origin ? std::optional(origin->instant) : std::nullopt,
+                  {.initial_state = origin,
                    .first_instant = increment.optional_real("INST_INIT"),
                    .last_instant = increment.optional_real("INST_FIN"),
                    .first_number = increment.optional_integer("NUME_INST_INIT"),
@@ -78,16 +79,32 @@ class QuasiStatic : public InstantSolver {
   int solve(double instant, const std::function<void(const IterationReport&)>& report) override {
     return newton_.solve(instant, state_, report);
   }
-  void accept() override { last_ = state_; }
+  void accept() override {
+    rest_ = std::move(last_.displacement);
+    last_ = state_;
+  }
   void go_back() override {
     state_ = last_;
     newton_.restart(state_);
+  }
+  void save(const hdf5::Group& group) const override {
+    write(group.create("state"), state_);
+    group.write("rest", rest_);
+    newton_.save(group);
+  }
+  std::int64_t number_of_base() const override { return newton_.solver().base_number(); }
+  void save_base(const hdf5::Group& group) const override { newton_.solver().save_base(group); }
+  void resume(const hdf5::Group& group, const hdf5::Group* base) override {
+    state_ = last_ = read_state(group.open("state"));
+    rest_ = group.read<double>("rest");
+    newton_.resume(group, base, state_, rest_);
   }
   Present present(const StaticProblem& problem) const { return {problem, state_, newton_.contact()}; }
 
  private:
   Newton newton_;
   StaticState state_, last_;
+  std::vector<double> rest_;  ///< displacements at the instant before the last
 };
 
 }  // namespace
@@ -99,22 +116,28 @@ void stat_non_line(const Order& order, const Base& base) {
     const Phase phase("read");
     return read_problem(order, base);
   }();
-  const std::optional<Origin> origin = origin_of(keywords, base);
-  const TimeSteps steps = steps_of(keywords.factor("INCREMENT"), base, origin);
+  const std::optional<hdf5::Reader> record = restart_record(order, base);
+  const std::optional<Origin> origin = record ? std::nullopt : origin_of(keywords, base);
+  const std::optional<double> begins = record ? origin_in(*record) : origin ? std::optional(origin->instant) : std::nullopt;
+  const TimeSteps steps = steps_of(keywords.factor("INCREMENT"), base, begins);
   QuasiStatic solver(problem, newton_options(keywords, steps), engine_of(keywords.factor("SOLVEUR")));
   const Present present = solver.present(problem);
   Observations observations(keywords, base, problem.mesh, fields_of(present));
-  Archive archive(order, base, present, origin, observations);
+  Archive archive(order, base, present, origin, observations, record.has_value());
   if (origin) solver.begin(archived_state(problem, base, origin->result, origin->order), origin->result.label);
 
   NewtonTable table(std::cout, present, keywords.factor("AFFICHAGE").yes("INFO_RESIDU"), keywords.integer("INFO") == 2);
   StepEvents events(steps.events, base, problem.mesh, fields_of(present));
   ContactNotices notices(present);
+  RestartRecord restart(base, begins, solver, archive,
+                        {{"archive", &archive}, {"events", &events}, {"notices", &notices}, {"observations", &observations}});
   Interruption interruption;
   wait_with_ending();
+  const Course past = record ? restart.go_on(*record) : Course();
   // what is told as converged is in the base
-  const std::array<EvolutionObserver*, 6> observers{&observations, &archive, &table, &events, &notices, &interruption};
-  evolve(steps, solver, observers);
+  const std::array<EvolutionObserver*, 7> observers{&observations, &notices, &archive,     &restart,
+                                                    &table,        &events,  &interruption};
+  evolve(steps, solver, observers, past);
 }
 
 }  // namespace lacon

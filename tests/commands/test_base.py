@@ -3,12 +3,13 @@
 import fcntl
 import os
 import signal
+import subprocess
 import sys
 import time
 import unittest
 
 sys.path.insert(0, __file__.rpartition("/")[0] or ".")
-from support import STUDY, LauncherTest  # noqa: E402
+from support import ROOT, STUDY, LauncherTest  # noqa: E402
 
 MATERIAL = "DEFI_MATERIAU(ELAS=_F(E=1, NU=0))"
 
@@ -68,6 +69,30 @@ class Life(LauncherTest):
             (self.work / "study.base" / "base.json").write_text(text)
             self.refused(self.run_study("DEBUT()\n"), "STUDY_6")
             self.assertEqual((self.work / "study.base" / "base.json").read_text(), text)
+
+    def test_a_folder_that_is_not_a_base_is_not_emptied(self):
+        """Its base.json is another program's, and so are the rest of its files, whatever their names are."""
+        other = self.work / "other"
+        (other / "run_1").mkdir(parents=True)
+        for text in ('{"name": "other"}', "{", "[1]"):
+            (other / "base.json").write_text(text)
+            self.refused(self.run_study("DEBUT()\nFIN()\n", "--base", other, "--fresh"), "STUDY_4", "is not a base")
+            self.assertEqual((other / "base.json").read_text(), text)
+            self.assertTrue((other / "run_1").is_dir())
+
+    def test_a_disk_that_can_only_be_read(self):
+        """A mount of its own, where the system lets us make one."""
+        self.ok(self.run_study("DEBUT()\nFIN()\n"))
+        mount = ["unshare", "-rm", "sh", "-c", 'mount --bind . . && cd "$PWD" && mount -o remount,bind,ro "$PWD" && cd "$PWD" && exec "$@"', "sh"]
+        if subprocess.run([*mount, "true"], cwd=self.work, capture_output=True).returncode:
+            self.skipTest("no mounts here")
+        for options in ((), ("--fresh",), ("--base", "new")):
+            env = {**os.environ, "PYTHONPATH": str(ROOT / "commands"), "LACON_BIN": str(self.bin), "PYTHONDONTWRITEBYTECODE": "1"}
+            run = subprocess.run([*mount, sys.executable, "-m", "lacon", "study.comm", *options], cwd=self.work, env=env, capture_output=True, text=True)
+            self.assertEqual(run.returncode, 2, run.stdout + run.stderr)
+            self.assertIn("<STUDY_3>", run.stderr)
+            self.assertIn("Read-only file system", run.stderr)
+            self.assertNotIn("Traceback", run.stderr)
 
     def test_two_runs_at_once(self):
         self.ok(self.run_study("DEBUT()\nFIN()\n"))

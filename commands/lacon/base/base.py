@@ -22,6 +22,7 @@ from .unfinished import Unfinished
 
 _registry = "base.json"
 _orders = "orders.partial"
+_no_registry = (OSError, ValueError, KeyError, TypeError)  #: what reading a file that is none throws
 #: seconds after which an operator whose launcher is gone has ended
 patience = 3.0
 _entry = re.compile(r"([a-z_]+_\d+)(\.h5)?(\.partial)?$")
@@ -46,7 +47,7 @@ class Base:
             except OSError as error:
                 fail("STUDY_3", where, folder=self.folder, reason=error.strerror)
             self._made = True
-        self._check_folder(where, make)
+        self._check_folder(where, fresh)
         self._take(where)
         self.kept = kept.Kept(self, look=not force)
         self.unfinished = Unfinished(self)
@@ -55,6 +56,7 @@ class Base:
                 self._empty()
             elif (self.folder / _registry).exists():
                 self._read(where)
+                self.registry["labels"].update(self.unfinished.labels())
             elif not make:
                 fail("STUDY_2", where, folder=self.folder)
             self.write(where)
@@ -63,7 +65,7 @@ class Base:
             raise
 
     def _take(self, where):
-        """Lock the folder. Where the launcher that holds it is gone, its operator ends within a moment."""
+        """Lock the folder. A launcher that has said its end lets it go within a moment, and so does the operator of one that is gone."""
         self.lock = os.open(self.folder, os.O_RDONLY)
         until = time.monotonic() + patience
         while True:
@@ -72,7 +74,7 @@ class Base:
                 return
             except BlockingIOError:
                 holder = self._holder()
-                if time.monotonic() < until and holder and not _is_alive(holder["process"]):
+                if time.monotonic() < until and not (holder and _is_alive(holder["process"])):
                     time.sleep(0.05)
                     continue
                 os.close(self.lock)
@@ -102,25 +104,35 @@ class Base:
         self._references = {}  #: id -> state of its file, the ids in it
         self._objects = weakref.WeakValueDictionary()
 
-    def _check_folder(self, where, make):
-        """A folder that is not a base is left alone; one that a full disk kept from having a registry is one."""
+    def _check_folder(self, where, fresh):
+        """A folder that is not a base is left alone; one that a full disk kept from having a registry is one. One that is to be emptied
+        has to show a registry of ours."""
         if not self.folder.is_dir():
             fail("STUDY_4", where, folder=self.folder)
+        if fresh and (self.folder / _registry).exists():
+            try:
+                self._registry_there()
+            except _no_registry:
+                fail("STUDY_4", where, folder=self.folder)
         if not (self.folder / _registry).exists() and not all(path.name.startswith((_registry, _orders)) for path in self.folder.iterdir()):
             fail("STUDY_4", where, folder=self.folder)
 
+    def _registry_there(self):
+        """The registry in the folder. @throws one of _no_registry"""
+        registry = json.loads((self.folder / _registry).read_text(encoding="utf-8"))
+        if registry["format"] != 1:
+            raise ValueError(f"format {registry['format']}, this version reads format 1")
+        {}.update(registry["labels"])
+        {}.update(registry.get("made", {}))
+        int(registry["next"])
+        return registry
+
     def _read(self, where):
         try:
-            registry = json.loads((self.folder / _registry).read_text(encoding="utf-8"))
-            if registry["format"] != 1:
-                raise ValueError(f"format {registry['format']}, this version reads format 1")
-            {}.update(registry["labels"])
-            {}.update(registry.get("made", {}))
-            int(registry["next"])
-        except (OSError, ValueError, KeyError, TypeError) as error:
+            self.registry = self._registry_there()
+        except _no_registry as error:
             fail("STUDY_6", where, folder=self.folder, reason=error)
-        registry.setdefault("namespace", {})
-        self.registry = registry
+        self.registry.setdefault("namespace", {})
 
     def _empty(self):
         for path in self.folder.iterdir():
@@ -142,7 +154,8 @@ class Base:
 
     def close(self):
         """The run is over: remove its orders, let others in."""
-        _remove(self.folder / _orders)
+        with contextlib.suppress(OSError):  # what cannot be written has been said
+            _remove(self.folder / _orders)
         os.close(self.lock)
 
     # ------------------------------------------------------------------------------------------- concepts
@@ -293,7 +306,7 @@ class Base:
                     named |= contents.field_files(file)
                 named |= self.kept.fields(identifier)
         for folder in self.folder.iterdir():
-            if folder.is_dir() and _entry.match(folder.name):
+            if folder.is_dir() and _entry.match(folder.name) and folder.name not in self.unfinished.ids():
                 if folder.name not in reached:
                     _remove(folder)
                     continue

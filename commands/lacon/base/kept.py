@@ -56,8 +56,8 @@ class Kept:
         if identifier in self._at:
             at = self._at[identifier]
             return versions[at] if at >= 0 else None
-        there = _stat(self.base.path(identifier))  # a run that was killed may have left any of them
-        return next((record for record in versions if record["stat"] == there), None)
+        at = self._in_force(identifier, versions)  # a run that was killed may have left any of them
+        return None if at is None else versions[at]
 
     def _reached(self, identifiers):
         """{id: key} of these concepts and of all that they refer to. @return nothing where a key is not known"""
@@ -111,6 +111,30 @@ class Kept:
             "inputs": reached, "program": _of_program(program), "version": _version(),
             "files": {unit: [pathlib.Path(path).stem, _of_file(path)] for unit, path in files.items()},
         })
+
+    def stand(self):
+        """id -> the version that its file holds."""
+        return {identifier: at for identifier, versions in self._made.items()
+                if (at := self._in_force(identifier, versions)) is not None}
+
+    def _in_force(self, identifier, versions):
+        there = _stat(self.base.path(identifier))
+        return next((at for at, record in enumerate(versions) if record["stat"] == there), None)
+
+    def key_of_change(self, identifier, make_key):
+        """The key of an order that changes a concept. Where a run of the same command files was ended in this order, or behind it, the
+        concept goes back to what it was before, so that the order finds what it has made, or begun."""
+        if self.look and identifier not in self._at:
+            versions, begun = self._made.get(identifier, ()), self.base.registry.get("begun", {}).get("at", {}).get(identifier)
+            before = self.base.unfinished.version(identifier)
+            if begun is not None and begun + 1 < len(versions):
+                before.append((begun, versions[begun + 1]["key"]))
+            for at, wanted in before:
+                self._at[identifier] = at
+                if wanted is not None and make_key() == wanted and self._restore(identifier, at):
+                    return wanted
+                del self._at[identifier]
+        return make_key()
 
     # ------------------------------------------------------------------------------------------- finding
 
@@ -173,11 +197,14 @@ class Kept:
         self._add(identifier, key, messages)
 
     def hold(self, identifier):
-        """The file of a concept is about to be replaced, perhaps by one that is not whole: the version that it holds stays in kept/."""
-        there = _stat(self.base.path(identifier))
-        for at, record in enumerate(self._made.get(identifier, ())):
-            if record["stat"] == there:
-                _link(self.base.path(identifier), self._copy(identifier, at))
+        """The file of a concept is about to be replaced, perhaps by one that is not whole: the version that it holds stays in kept/.
+
+        @return its number, nothing for one whose making is not known
+        """
+        at = self._in_force(identifier, self._made.get(identifier, ()))
+        if at is not None:
+            _link(self.base.path(identifier), self._copy(identifier, at))
+        return at
 
     def leave(self, identifier):
         """What a concept holds now is none of its versions, which stay for a run that makes them again."""

@@ -254,7 +254,6 @@ class Names:
 
     def restore(self, base):
         """Bring back what an earlier run saved. @return names that could not be, with the reason"""
-        base.registry["labels"].update(base.unfinished.labels())
         labels, space = base.registry["labels"], base.registry["namespace"]
         lost = dict(space.get("lost", {}))
         for label, identifier in labels.items():

@@ -1,9 +1,10 @@
 """Results whose computation has begun and not come to its end. Their index grows with each instant that is archived: whatever ends the run,
-they are found under the variable they were to go to.
+they are found under the variable they were to go to; and an operator that gets the same order goes on from their restart record.
 
-Registry, key "unfinished": id -> {"label", "key": that of the order, see kept.py, "where"}.
+Registry, key "unfinished": id -> {"label", "key": that of the order, see kept.py, "at": the version that it enriches, "where"}.
 """
 
+from ..core.concepts import type_of
 from . import contents
 
 
@@ -17,13 +18,24 @@ class Unfinished:
     def _entries(self):
         return self.base.registry.setdefault("unfinished", {})
 
-    def begin(self, identifier, label, key, where):
-        self._entries[identifier] = {"label": label, "key": key, "where": where}
+    def begin(self, identifier, label, key, at, where):
+        self._entries[identifier] = {"label": label, "key": key, "at": at, "where": where}
         self.base.write(where)
 
     def end(self, identifier):
         """The computation is at its end, or nothing is left of it."""
         self._entries.pop(identifier, None)
+
+    def find(self, kind, key):
+        """The id of the one that an order of this key has begun; nothing where there is none, or nothing is taken up."""
+        if key is None or not self.base.kept.look:
+            return None
+        return next((i for i, entry in self._entries.items() if type_of(i) == kind and entry["key"] == key), None)
+
+    def version(self, identifier):
+        """(version that it enriches, key of the order), nothing where there is none"""
+        entry = self._entries.get(identifier, {})
+        return [(entry["at"], entry["key"])] if entry.get("at") is not None else []
 
     def ids(self):
         return set(self._entries)

@@ -90,17 +90,20 @@ class Command:
         made = orders.order(self.name, run, keywords, where, result, units, written)
         key = None
         if result and not any(keyword["unit"] == "out" for _, keyword in _unit_numbers(row, keywords)):
-            key = run.base.kept.order_key(made, plugins.operator_folder() / row["operator"], made["units"])
+            def make_key():
+                return run.base.kept.order_key(made, plugins.operator_folder() / row["operator"], made["units"])
+
+            key = run.base.kept.key_of_change(identifier, make_key) if reused else make_key()
             found = self._unchanged(run, row["result"], key, where, identifier, reused)
             if found:
                 self._protect_data(run, row, keywords, units)
                 return self._result(run, found, label, where, reused, named), orders.Outcome(0, [], {}, {}, 0.0)
-        copy = orders.keep_copy(run.base, identifier) if reused else None
         grows, ended_well = row.get("solves"), False
         if grows:
-            if reused:
-                run.base.kept.hold(identifier)
-            run.base.unfinished.begin(identifier, label, key, where)
+            identifier = self._resume(run, row["result"], key, identifier, reused, result)
+        copy = orders.keep_copy(run.base, identifier) if reused else None
+        if grows:
+            run.base.unfinished.begin(identifier, label, key, run.base.kept.hold(identifier) if reused else None, where)
         try:
             outcome = orders.run(row["operator"], made, run)
             if outcome.status != 0:
@@ -116,7 +119,8 @@ class Command:
                 self._keep_part(run, identifier, label, where, reused)
             elif copy:
                 orders.put_back(run.base, identifier, copy)
-                run.base.unfinished.end(identifier)
+                if not result.get("resume"):
+                    run.base.unfinished.end(identifier)
             elif result:
                 run.base.give_back(identifier)
             run.base.drop_partial()
@@ -133,6 +137,16 @@ class Command:
         if not result:
             return None, outcome
         return self._result(run, identifier, label, where, reused, named), outcome
+
+    def _resume(self, run, kind, key, identifier, reused, result):
+        """Have the operator go on where a run with the same order was ended. @return the id of the concept"""
+        found = run.base.unfinished.find(kind, key)
+        if found is None or (reused and found != identifier):
+            return identifier
+        if not reused:
+            run.base.give_back(identifier)
+        result.update(id=found, resume=True)
+        return found
 
     def _keep_part(self, run, identifier, label, where, reused):
         """A computation ended on the way: the instants before that are there, under the name that the result was to have."""

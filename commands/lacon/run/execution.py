@@ -176,9 +176,17 @@ def _run_file(study, path, source, values):
         show(_unknown_name(error, values, study.killed))
         raise Failure(2, "<F>_ERROR") from None
     except Exception as error:
+        if _is_in(study.base_folder, error):
+            show(message("STUDY_3", place(error), folder=error.filename, reason=error.strerror))
+            raise Failure(2, "<F>_ERROR") from None
         _print_traceback(error)
         show(message("STUDY_19", place(error), kind=type(error).__name__, text=error))
         raise Failure(2, "<F>_ERROR") from None
+
+
+def _is_in(base, error):
+    """A file of the base cannot be written, removed, linked: a disk that is full, or read-only."""
+    return isinstance(error, OSError) and isinstance(error.filename, (str, os.PathLike)) and os.path.abspath(error.filename).startswith(os.path.abspath(base))
 
 
 def _report(error):

@@ -75,6 +75,7 @@ def run_command_line(options, units):
             messages.fail("STUDY_26", path=path)
     run = study.Study(base, export.units, options.fresh, threads, options.checks == "all", execution.provided_names(),
                       options.force, options.verbose)
+    run.files = [os.path.realpath(name) for name in export.commands]
     for name in export.commands + export.named + export.data:
         run.protect(name)
 

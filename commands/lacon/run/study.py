@@ -20,6 +20,7 @@ class Study:
     def __init__(self, base_folder, units=None, fresh=False, threads=None, strict_checks=False, provided=None, force=False, verbose=False):
         self.base_folder = pathlib.Path(base_folder)
         self.units = dict(units or {})  #: number -> path
+        self.files = []  #: command files of the run
         self.fresh = fresh
         self.check = None  #: a tools.check.Check, where this run only checks
         self.force = force  #: run every operator, changed or not
@@ -56,6 +57,8 @@ class Study:
                              force=self.force)
             if resume:
                 self.killed = bool(self.base.registry.get("running"))
+                if self.base.registry.get("begun", {}).get("files") != self.files:  # otherwise they are run again after an error
+                    self.base.registry["begun"] = {"files": self.files, "at": self.base.kept.stand()}
                 self.sources.update(self.base.registry.get("sources", ()))
                 self.lost = self.names.restore(self.base)
                 self._explain_lost()
@@ -63,6 +66,7 @@ class Study:
                     self.inform("STUDY_31", where, label=label, instant=f"{instant:.9g}", made=made)
             else:
                 self.names.forget_data(self.base)
+                self.base.registry.pop("begun", None)
         elif not resume and self.fresh and not self._emptied:
             fail("STUDY_10", where)
         self._emptied = True
@@ -78,6 +82,7 @@ class Study:
 
     def finish(self, where):
         """FIN: save; remove what neither a name, nor a concept, nor a live Python object refers to."""
+        self.base.registry.pop("begun", None)
         self.save()
         keep = set(self.base.registry["labels"].values())
         keep |= {i for i, item in self.base.live_objects() if not item.destroyed}

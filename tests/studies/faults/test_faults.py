@@ -1,6 +1,7 @@
 """A computation that is ended in its middle, whatever ends it: the instants that were told as converged are in the base, and the same
 command file run again computes what is missing to the same bits."""
 
+import json
 import os
 import pathlib
 import re
@@ -18,7 +19,7 @@ HERE = pathlib.Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parent))
 
 from study_test import LACON, SECONDS, StudyTest  # noqa: E402, I001 (it says where meshes.py is)
-from meshes import block, union, write_med  # noqa: E402
+from meshes import block, brick, union, write_med  # noqa: E402
 
 STUDY = HERE / "study.comm"
 INSTANTS = 20
@@ -37,6 +38,21 @@ def stack(fineness):
         block("QUAD8", lines(0, 3, 3 * fineness + 1), lines(0, 1, 2 * fineness), name="MIDDLE",
               sides={"bottom": "SOLE", "top": "TABLE", "left": "LEFT", "right": "RIGHT"}),
         block("QUAD8", lines(1, 2.2, 2 * fineness), lines(0, 1, 2 * fineness), place=foot, name="UPPER", sides={"bottom": "FOOT", "top": "TOP"})])
+
+
+def stack_in_space(fineness):
+    """The same of HEXA8, a half wide."""
+    def body(name, sides, sizes, first, last, bottom, place=None):
+        lines = [np.linspace(first, last, sizes[0] + 1), np.linspace(bottom, bottom + 1, sizes[1] + 1), np.linspace(0, 0.5, sizes[2] + 1)]
+        return brick("HEXA8", lines, name=name, place=place, sides={**sides, (2, 0): "FRONT"})
+
+    def foot(x, y, z):
+        return x, y + (2 - y) * 0.08 * (x - 1.6) ** 2, z
+
+    return union([
+        body("LOWER", {(1, 0): "BASE", (1, 1): "GROUND"}, (4 * fineness, 2 * fineness, fineness), 0, 4, -1),
+        body("MIDDLE", {(1, 0): "SOLE", (1, 1): "TABLE", (0, 0): "LEFT", (0, 1): "RIGHT"}, (3 * fineness + 1, 2 * fineness, fineness + 1), 0, 3, 0),
+        body("UPPER", {(1, 0): "FOOT", (1, 1): "TOP"}, (2 * fineness, 2 * fineness, fineness), 1, 2.2, 1, foot)])
 
 
 def converged(text):
@@ -93,13 +109,25 @@ class FaultTest(StudyTest):
             return [f"{instant:.9g}" for instant in file["instant"][1:]]
 
 
+def children_of(process):
+    """Processes that a process has started and not yet taken leave of."""
+    try:
+        return [int(child) for task in pathlib.Path(f"/proc/{process}/task").iterdir() for child in (task / "children").read_text().split()]
+    except OSError:
+        return []
+
+
 def operator_of(launcher):
-    """Process id of the operator that a launcher has started."""
-    for task in pathlib.Path(f"/proc/{launcher}/task").iterdir():
-        for child in (task / "children").read_text().split():
-            if "stat_non_line" in pathlib.Path(f"/proc/{child}/comm").read_text():
-                return int(child)
-    raise AssertionError("no operator")
+    """The operator that a launcher has started."""
+    (operator,) = children_of(launcher)
+    return operator
+
+
+def is_alive(process):
+    try:
+        return pathlib.Path(f"/proc/{process}/stat").read_text().rpartition(")")[2].split()[0] != "Z"
+    except OSError:
+        return False
 
 
 class Kept(FaultTest):
@@ -161,12 +189,6 @@ class Ends(FaultTest):
 
     MOMENT = 2.0
 
-    def is_alive(self, process):
-        try:
-            return pathlib.Path(f"/proc/{process}/stat").read_text().rpartition(")")[2].split()[0] != "Z"
-        except OSError:
-            return False
-
     def ended_by(self, number, whom=lambda run: run.pid, how=os.kill):
         """A run that gets a signal after two instants; no operator is left. @return its exit status, what it said"""
         run = self.start("s.base", start_new_session=True)
@@ -174,7 +196,7 @@ class Ends(FaultTest):
         operator, start = operator_of(run.pid), time.monotonic()
         how(whom(run), number)
         text += run.communicate(timeout=SECONDS)[0]
-        while self.is_alive(operator) and time.monotonic() < start + SECONDS:
+        while is_alive(operator) and time.monotonic() < start + SECONDS:
             time.sleep(0.01)
         self.assertLess(time.monotonic() - start, self.MOMENT)
         self.assertEqual(self.instants("s.base")[:2], converged(text)[:2])
@@ -206,6 +228,7 @@ class Ends(FaultTest):
         self.assertIn(f"<S> <STUDY_25> the time limit of 2.5 s is over\n    where: {STUDY}:", run.stderr)
 
     def test_who_uses_the_base(self):
+        write_med(self.folder / "stack.med", stack(6))
         run = self.start("s.base")
         self.until(run, 1)
         other = self.run_tool(*self.command("s.base")[1:])
@@ -220,6 +243,176 @@ class Ends(FaultTest):
         run.kill()
         run.communicate()
         self.whole("s.base")
+
+
+def content_of(base):
+    """Everything that the one result of a base holds: (field, order) -> its arrays; parameters, instants and tables of its index."""
+    found = {}
+    (path,) = base.glob("result_*/index.h5")
+    with h5py.File(path) as index:
+        assert index.attrs["complete"] == 1
+        for name, entry in index["fields"].items():
+            for order, file in zip(entry["order"][:], entry["file"].asstr()[:]):
+                with h5py.File(base / file) as field:
+                    found[name, int(order)] = {key: field[key][:].tobytes() for key in field}
+        for name in ("order", "instant"):
+            found[name] = index[name][:].tobytes()
+        for name, values in index["parameters"].items():
+            found["parameter", name] = values[:].tobytes()
+        if "tables" in index:
+            index["tables"].visititems(lambda name, item: found.update({("table", name): item[:].tolist()}) if isinstance(item, h5py.Dataset) else None)
+    return found
+
+
+class GoesOn(FaultTest):
+    """The same command file again goes on behind the last archived instant, to the bits of a run that nothing disturbed."""
+
+    def check(self, *stops, law="ELAS", model="D_PLAN", **keywords):
+        """Undisturbed, and ended behind these numbers of instants each time. @return what both whole runs said"""
+        self.environment = {"FAULTS_LAW": law, "FAULTS_MODEL": model, "FAULTS_ORDERS": json.dumps(keywords), "LACON_RESTART_ALWAYS": "1"}
+        undisturbed = self.whole("whole.base")
+        expected = content_of(self.folder / "whole.base")
+        told = 0
+        for stop in stops:
+            run = self.start("s.base")
+            self.until(run, stop - told)
+            os.kill(operator_of(run.pid), signal.SIGKILL)
+            text = run.communicate(timeout=SECONDS)[0]
+            self.assertEqual(run.returncode, 4, text)
+            told = len(self.instants("s.base"))
+        text = self.whole("s.base")
+        self.assertIn("RESULT goes on behind the instant", text)
+        found = content_of(self.folder / "s.base")
+        self.assertEqual(sorted(map(str, found)), sorted(map(str, expected)))
+        self.assertEqual([key for key in expected if found[key] != expected[key]], [])
+        self.assertEqual([path.name for path in self.index("s.base").parent.glob("restart*")], [])
+        return undisturbed, text
+
+    def test_elastic_bodies(self):
+        _, text = self.check(3, 9, 17)
+        self.assertLess(len(converged(text)), 4)
+
+    def test_plastic_bodies(self):
+        self.check(2, 8, 15, law="VMIS_ISOT_LINE")
+
+    def test_a_matrix_that_is_not_symmetric(self):
+        self.check(4, 12, COMPORTEMENT=[{"TOUT": "OUI", "RELATION": "VMIS_ISOT_LINE", "DEFORMATION": "PETIT_REAC"}])
+
+    def test_instants_that_begin_where_the_last_motion_leads_to(self):
+        self.check(4, 12, NEWTON={"PREDICTION": "EXTRAPOLE"})
+
+    def test_a_factor_that_serves_for_many_instants(self):
+        """Without the pressure that follows the stiffness never changes: GMRES and columns of the inverse make up for contact."""
+        write_med(self.folder / "stack.med", stack_in_space(4))
+        loads = [{"CHARGE": "HOLD"}, {"CHARGE": "MOVE"}, {"CHARGE": "GRIP"}]
+        text, _ = self.check(4, 11, 12, model="3D", EXCIT=loads)
+        self.assertGreater(len(re.findall(r"\| +- \| .* - \|", text)), 5, "factors that were used again")
+
+    def test_a_record_that_lies_behind(self):
+        """Instants that take no time do not all get a record: some are computed again, and none is out of the index meanwhile."""
+        self.environment = {"FAULTS_LAW": "VMIS_ISOT_LINE"}
+        run = self.start("s.base")
+        text = self.until(run, 10)
+        os.kill(operator_of(run.pid), signal.SIGKILL)
+        text += run.communicate(timeout=SECONDS)[0]
+        for _ in range(2):  # the second time it is ended before it has come to where it was
+            run = self.start("s.base")
+            again = self.until(run, 1)
+            self.assertEqual(self.instants("s.base")[:10], converged(text)[:10])
+            run.send_signal(signal.SIGTERM)
+            run.communicate(timeout=SECONDS)
+        self.assertEqual(self.instants("s.base")[:10], converged(text)[:10])
+        again = self.whole("s.base")
+        self.assertGreater(len(converged(again)), 0)
+        self.whole("whole.base")
+        self.assertEqual(content_of(self.folder / "whole.base"), content_of(self.folder / "s.base"))
+
+    def test_steps_that_grow(self):
+        self.check(5, 12, law="VMIS_ISOT_LINE", INCREMENT={"LIST_INST": "STEPS"})
+
+    def test_steps_that_are_cut(self):
+        """Behind the instant 0.3 the upper body moves too far in a step, by 0.0029 where 0.002 is allowed: some ends come between two parts."""
+        text, _ = self.check(8, 11, 18, law="VMIS_ISOT_LINE", INCREMENT={"LIST_INST": "CUTS"})
+        self.assertEqual((text.count("EVOLUTION_7"), len(converged(text))), (14, INSTANTS + 14))
+
+    def test_few_instants_are_archived(self):
+        """One in four, of the others nothing is there: they are computed again."""
+        _, text = self.check(6, law="VMIS_ISOT_LINE", ARCHIVAGE={"PAS_ARCH": 4, "CHAM_EXCLU": "SIEF_ELGA"})
+        self.assertEqual(len(converged(text)), INSTANTS - 4)
+
+    def test_observations_go_on(self):
+        watch = {"NOM_CHAM": "DEPL", "NOM_CMP": "DY", "GROUP_MA": "TOP", "EVAL_CHAM": "MIN"}
+        self.check(7, OBSERVATION=watch)
+
+    def test_a_run_may_start_over(self):
+        run = self.start("s.base")
+        self.until(run, 3)
+        run.kill()
+        run.communicate()
+        self.assertEqual(len(converged(self.whole("s.base", "--force"))), INSTANTS)
+
+
+MORE = """
+POURSUITE()
+assert len(RESULT.getAccessParameters()["INST"]) >= 11
+RESULT = STAT_NON_LINE(
+    reuse=RESULT, RESULTAT=RESULT, MODELE=MODEL, CHAM_MATER=MATTER, CONTACT=CONTACT,
+    EXCIT=(_F(CHARGE=HOLD), _F(CHARGE=MOVE), _F(CHARGE=GRIP), _F(CHARGE=BLOW, TYPE_CHARGE="SUIV")),
+    COMPORTEMENT=(_F(TOUT="OUI", RELATION="ELAS"), _F(GROUP_MA="MIDDLE", RELATION=law)), ETAT_INIT=_F(EVOL_NOLI=RESULT),
+    INCREMENT=_F(LIST_INST=TIMES), CONVERGENCE=_F(ITER_GLOB_MAXI=40),
+)
+{then}
+FIN()
+"""
+
+
+class Pursued(FaultTest):
+    """A file that goes on with a result (reuse=) is run again after an error behind that, or in its middle."""
+
+    def setUp(self):
+        super().setUp()
+        half = {"FAULTS_LAW": "VMIS_ISOT_LINE", "FAULTS_ORDERS": json.dumps({"INCREMENT": {"LIST_INST": "TIMES", "INST_FIN": 0.5}})}
+        self.environment = {**half, "LACON_RESTART_ALWAYS": "1"}
+        self.whole("s.base")
+        shutil.copytree(self.folder / "s.base", self.folder / "whole.base")
+        self.assertEqual(self.more("whole.base").returncode, 0)
+
+    def write_more(self, then):
+        (self.folder / "more.comm").write_text(MORE.format(then=then), encoding="utf-8")
+
+    def more(self, base, then=""):
+        self.write_more(then)
+        return self.run_tool("more.comm", "--base", base)
+
+    def test_an_error_behind_it(self):
+        first = self.more("s.base", "1 / 0")
+        self.assertEqual((first.returncode, len(converged(first.stdout))), (2, 10), first.stdout[-2000:] + first.stderr)
+        for then in ("1 / 0", ""):
+            again = self.more("s.base", then)
+            self.assertEqual((again.returncode, len(converged(again.stdout))), (2 if then else 0, 0), again.stdout[-2000:] + again.stderr)
+            self.assertNotIn("EVOLUTION_5", again.stderr)
+            self.assertIn("unchanged since it was made: kept", again.stdout)
+        self.assertEqual(content_of(self.folder / "s.base"), content_of(self.folder / "whole.base"))
+
+    def test_killed_in_its_middle(self):
+        self.write_more("")
+        run = subprocess.Popen([LACON, "more.comm", "--base", "s.base"], cwd=self.folder, env={**os.environ, **self.environment}, text=True,
+                               stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.STDOUT)
+        self.until(run, 4)
+        run.kill()
+        run.communicate()
+        self.assertEqual(self.instants("s.base")[:14], self.instants("whole.base")[:14])
+        again = self.more("s.base")
+        self.assertEqual(again.returncode, 0, again.stdout[-2000:] + again.stderr)
+        self.assertIn("goes on behind the instant", again.stderr)
+        self.assertEqual(content_of(self.folder / "s.base"), content_of(self.folder / "whole.base"))
+
+    def test_the_remedy_where_the_order_is_another_one(self):
+        self.more("s.base", "1 / 0")
+        (self.folder / "more.comm").write_text(MORE.format(then="").replace("MAXI=40", "MAXI=41"), encoding="utf-8")
+        again = self.run_tool("more.comm", "--base", "s.base")
+        self.assertIn("there is no instant behind that of ETAT_INIT, 1", again.stderr)
+        self.assertIn("leave this command out", again.stderr)
 
 
 if __name__ == "__main__":
