@@ -248,8 +248,9 @@ class Continued(KeptTest):
     def test_a_later_run_goes_on_from_what_is_there(self):
         more = "POURSUITE()\nCALC_CHAMP(reuse=R, RESULTAT=R, CONTRAINTE='SIEF_NOEU')\nFIN()\n"
         self.assertEqual(self.started(more, "--base", "study.base", name="more.comm"), ["calc_champ"])
-        self.assertEqual(self.started(self.first), [])
         self.assertEqual(self.started(more, "--base", "study.base", name="more.comm"), ["calc_champ"])
+        self.assertEqual(self.started(self.first), [])
+        self.assertEqual(self.started(more, "--base", "study.base", name="more.comm"), [])  # what it made of the same R is there
 
     def test_a_killed_run_between_versions(self):
         run = self.run_study(STUDY + "import os\nos._exit(9)\n")  # R is what it was before CALC_CHAMP

@@ -16,15 +16,17 @@ class Unfinished:
 
     @property
     def _entries(self):
-        return self.base.registry.setdefault("unfinished", {})
+        return self.base.registry.get("unfinished", {})  # without any the registry of a base is what it was before
 
     def begin(self, identifier, label, key, at, where):
-        self._entries[identifier] = {"label": label, "key": key, "at": at, "where": where}
+        self.base.registry.setdefault("unfinished", {})[identifier] = {"label": label, "key": key, "at": at, "where": where}
         self.base.write(where)
 
     def end(self, identifier):
         """The computation is at its end, or nothing is left of it."""
         self._entries.pop(identifier, None)
+        if not self._entries:
+            self.base.registry.pop("unfinished", None)
 
     def find(self, kind, key):
         """The id of the one that an order of this key has begun; nothing where there is none, or nothing is taken up."""

@@ -93,6 +93,9 @@ class Study:
         """Write what a later POURSUITE needs."""
         if self.base is not None:
             self.names.save(self.base)
+            begun, stand = self.base.registry.get("begun", {}).get("at", {}), self.base.kept.stand()
+            if all(stand.get(identifier) == at for identifier, at in begun.items()):  # nothing that these files changed is to be taken back
+                self.base.registry.pop("begun", None)
             self.base.registry.update(running=False, sources=sorted(self.sources))
             self.base.write()
 
