@@ -2,6 +2,7 @@
 #include "lacon/structures/seal.hpp"
 
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <fstream>
 #include <random>
@@ -13,7 +14,7 @@
 namespace {
 
 struct Sealed : testing::Test {
-  std::filesystem::path file = testing::TempDir() + "lacon_seal_test";
+  std::filesystem::path file = testing::TempDir() + "lacon_seal_test_" + std::to_string(getpid());
   std::string whole;
 
   ~Sealed() override { std::filesystem::remove(file); }
