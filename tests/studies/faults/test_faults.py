@@ -228,7 +228,7 @@ class Ends(FaultTest):
         self.assertIn(f"<S> <STUDY_25> the time limit of 1.5 s is over\n    where: {STUDY}:", run.stderr)
 
     def test_who_uses_the_base(self):
-        write_med(self.folder / "stack.med", stack(6))
+        write_med(self.folder / "stack.med", stack(9))
         run = self.start("s.base")
         self.until(run, 1)
         other = self.run_tool(*self.command("s.base")[1:])
