@@ -42,7 +42,7 @@ class Damaged(SmallStudy):
             sound = path.read_bytes()
             spoilt = bytearray(sound)
             if chance.random() < 0.2:
-                del spoilt[chance.randrange(8, len(spoilt)):]
+                del spoilt[chance.randrange(8, len(spoilt) - 32):]  # some of the content, and the seal
             else:
                 for _ in range(chance.choice((1, 1, 4, 16))):
                     spoilt[chance.randrange(len(spoilt) - 32)] ^= chance.randrange(1, 256)  # the last 32 are the seal itself
