@@ -98,8 +98,8 @@ struct Contact {
   bool frozen_gap = false;  ///< VARIATION_JEU='FIGEE': forces along the slave's normal, not the derivative of the gap
   bool verify_normals = true;
   double resi_geom = 1e-6;
-  std::int64_t elastic_iterations =
-      0;  ///< CONT_STAT_ELAS: iterations without change of status before which the matrix is elastic
+  /// CONT_STAT_ELAS: how many iterations without a change of status the matrix stays elastic for
+  std::int64_t elastic_iterations = 0;
   std::vector<ContactZone> zones;
   std::vector<SlaveElement> slaves;  ///< zone by zone
 };

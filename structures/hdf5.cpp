@@ -30,7 +30,7 @@ Handle small_buffer() {
   return transfer;
 }
 
-/// `what`, and what the system said when HDF5's last call failed: ", No space left on device".
+/// `what`, and what the system said when HDF5's last call failed: ": No space left on device".
 std::string with_system_reason(std::string_view what) {
   std::string reason;
   const auto find = [](unsigned, const H5E_error2_t* error, void* to) -> herr_t {

@@ -86,7 +86,7 @@ class Base:
         try:
             holder = json.loads((self.folder / _registry).read_text(encoding="utf-8"))["running"]
             return {"process": int(holder["process"]), "since": str(holder["since"])}
-        except (OSError, ValueError, KeyError, TypeError):
+        except _no_registry:
             return None
 
     def hold(self, where):
