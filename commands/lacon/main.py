@@ -10,7 +10,7 @@ from .core import outcome
 from .core.plugins import operator_folder
 
 #: `lacon NAME ...` that is no study: modules of tools/
-tools = ("help", "inspect", "convert", "check", "new")
+tools = ("help", "inspect", "convert", "check", "new", "plot", "watch")
 
 
 class _Version(argparse.Action):
@@ -28,25 +28,32 @@ class _Version(argparse.Action):
         parser.exit()
 
 
-def parse(arguments):
-    parser = argparse.ArgumentParser(
+def parser():
+    """Of the command line of a study."""
+    made = argparse.ArgumentParser(
         prog="lacon", description="Runs code_aster command files with the operators of Lacon.",
-        epilog="lacon help: all commands; lacon help COMMAND: its keywords. Tools, each with --help: lacon inspect, convert, check, new. Exit status: 0 done, 2 user's error, 3 the solution failed, 4 internal error, 5 a check is NOOK.")
-    parser.add_argument("files", nargs="+", metavar="FILE", help="command files, in order, or one export file")
-    parser.add_argument("--unit", action="append", default=[], metavar="N=FILE", help="the file of unit N; may be repeated")
-    parser.add_argument("--base", metavar="FOLDER", help="folder of the base; otherwise STUDY.base beside the first command file")
-    parser.add_argument("--fresh", action="store_true", help="DEBUT empties the base first")
-    parser.add_argument("--force", action="store_true", help="run every operator, also where nothing has changed since its concept was made")
-    parser.add_argument("--checks", choices=("all",), help="all: a VALE_CALC missed beside a reference that is met is NOOK, not DIFF")
-    parser.add_argument("--json", metavar="FILE", help="write every check with its figures, and where the time went")
-    parser.add_argument("--timings", action="store_true", help="print where the time went")
-    parser.add_argument("--verbose", action="store_true", help="operators say each phase with its time, and each count, as they come")
-    parser.add_argument("--threads", type=int, metavar="N", help="threads of operators")
-    parser.add_argument("--version", action=_Version, nargs=0, help="print the version, and what operators calculate with")
-    options = parser.parse_args(arguments)
+        epilog="lacon help: all commands; lacon help COMMAND: its keywords. Tools, each with --help: lacon inspect, convert, check, new, plot, watch. Exit status: 0 done, 2 user's error, 3 the solution failed, 4 internal error, 5 a check is NOOK.")
+    made.add_argument("files", nargs="+", metavar="FILE", help="command files, in order, or one export file")
+    made.add_argument("--unit", action="append", default=[], metavar="N=FILE", help="the file of unit N; may be repeated")
+    made.add_argument("--base", metavar="FOLDER", help="folder of the base; otherwise STUDY.base beside the first command file")
+    made.add_argument("--fresh", action="store_true", help="DEBUT empties the base first")
+    made.add_argument("--force", action="store_true", help="run every operator, also where nothing has changed since its concept was made")
+    made.add_argument("--checks", choices=("all",), help="all: a VALE_CALC missed beside a reference that is met is NOOK, not DIFF")
+    made.add_argument("--json", metavar="FILE", help="write every check with its figures, and where the time went")
+    made.add_argument("--timings", action="store_true", help="print where the time went")
+    made.add_argument("--verbose", action="store_true", help="operators say each phase with its time, and each count, as they come")
+    made.add_argument("--threads", type=int, metavar="N", help="threads of operators")
+    made.add_argument("--version", action=_Version, nargs=0, help="print the version, and what operators calculate with")
+    return made
+
+
+def parse(arguments):
+    """(the parser, its options)"""
+    asked = parser()
+    options = asked.parse_args(arguments)
     if options.threads is not None and options.threads < 1:
-        parser.error("--threads: give a number of at least 1")
-    return parser, options
+        asked.error("--threads: give a number of at least 1")
+    return asked, options
 
 
 def main(arguments=None):
@@ -62,9 +69,9 @@ def main(arguments=None):
         except BrokenPipeError:  # `lacon help STAT_NON_LINE | head`: who reads has seen enough
             os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())  # what is still to be written at exit goes nowhere
             return outcome.done
-    parser, options = parse(arguments)
+    asked, options = parse(arguments)
     launch = importlib.import_module(".run.launch", __package__)  # --help, --version, help and inspect start without
-    units = launch.units_of(parser, options)
+    units = launch.units_of(asked, options)
     status, diagnostic = outcome.guarded(lambda: launch.run_command_line(options, units))
     print(f"--- DIAGNOSTIC JOB : {diagnostic}", flush=True)
     return status

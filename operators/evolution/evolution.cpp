@@ -2,9 +2,16 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "lacon/operators/evolution/time_stepping.hpp"
 
 namespace lacon {
+
+double reached(const Course& course, double begins) {
+  const auto solved = std::find_if(course.rbegin(), course.rend(), [](const Attempt& a) { return !a.failure; });
+  return solved == course.rend() ? begins : solved->instant;
+}
 
 void evolve(const TimeSteps& steps, InstantSolver& solver, std::span<EvolutionObserver* const> observers, const Course& past) {
   const auto tell = [&](const auto& what) {

@@ -23,6 +23,8 @@ struct Attempt {
   std::optional<InstantFailure> failure;
 };
 using Course = std::vector<Attempt>;
+/// The instant that the last attempt without failure has solved, or the one before all attempts.
+double reached(const Course& course, double begins);
 
 struct SolvedInstant {
   double instant = 0;

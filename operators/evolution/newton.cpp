@@ -208,6 +208,7 @@ std::vector<double> Newton::solve_system(StaticState& state, const StaticState& 
   for (bool sprung = false;; sprung = times_held_ > 1) {
     line.constraints = equilibrium_.n_constraints(state);
     std::vector<double> solution = equilibrium_.right_side(step);
+    begin_phase("linear system");
     line.solution = solver_.solve(system.matrix(), system.first_multiplier(), solution, rough);
     const SolutionReport& report = line.solution;
     add_to_phase("analysis", report.analysis_seconds);

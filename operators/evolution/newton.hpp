@@ -50,6 +50,8 @@ class Newton {
   void save(const hdf5::Group& group) const;
   void resume(const hdf5::Group& group, const hdf5::Group* base, const StaticState& state, std::span<const double> rest);
 
+  /// With those of the problem's contact.
+  const ConvergenceCriteria& criteria() const { return options_.criteria; }
   const SaddlePointSolver& solver() const { return solver_; }
   const Equilibrium& equilibrium() const { return equilibrium_; }
   /// The contact at the last evaluation; nullptr without contact.

@@ -13,6 +13,7 @@
 #include "lacon/catalog/messages.hpp"
 #include "lacon/operators/program/blas.hpp"
 #include "lacon/operators/program/ending.hpp"
+#include "lacon/operators/program/terminal.hpp"
 
 namespace lacon {
 namespace {
@@ -23,12 +24,14 @@ struct Outcome {
   std::vector<std::pair<std::string, double>> seconds, counts;
   std::string command, source;
   bool verbose = false;
+  std::function<void(const std::string&)> phase_watch;
 } outcome;
 
 double now() { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
 
 void print(const Message& message) {
   std::cout.flush();
+  hide_terminal_line();
   std::cerr << '<' << message.severity << "> <" << message.id << "> " << message.text << '\n';
   if (message.severity != 'I') {
     if (!outcome.command.empty()) std::cerr << "    where: " << outcome.command << ", " << outcome.source << '\n';
@@ -93,9 +96,11 @@ int run(int argc, char** argv, CLI::App& app, const std::function<void()>& work)
   }
   set_message_sink(print);
   end_with_launcher();
+  set_up_terminal_line();
   const double start = now();
   const int status = guarded(work);
   std::cout.flush();
+  hide_terminal_line();
   outcome.seconds.emplace_back("total", now() - start);
   if (status_file.empty() || write_status(status_file, status)) return status;
   print(message("BASE_3", {{"file", status_file}, {"reason", "--status: the file cannot be written"}}));
@@ -131,7 +136,13 @@ int run_tool(int argc, char** argv, CLI::App& app, const std::function<void()>& 
 
 const std::vector<Message>& messages_so_far() { return outcome.messages; }
 
-Phase::Phase(std::string name) : name_(std::move(name)), start_(now()) {}
+void watch_phases(std::function<void(const std::string&)> watch) { outcome.phase_watch = std::move(watch); }
+
+void begin_phase(const std::string& name) {
+  if (outcome.phase_watch) outcome.phase_watch(name);
+}
+
+Phase::Phase(std::string name) : name_(std::move(name)), start_(now()) { begin_phase(name_); }
 Phase::~Phase() { add_to_phase(std::move(name_), now() - start_); }
 
 void add_to_phase(std::string name, double seconds) {

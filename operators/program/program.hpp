@@ -34,6 +34,11 @@ int run_tool(int argc, char** argv, CLI::App& app, const std::function<void()>& 
 /// What this program has said so far.
 const std::vector<Message>& messages_so_far();
 
+/// From now on `watch` is told the name of each phase that begins.
+void watch_phases(std::function<void(const std::string&)> watch);
+
+/// A phase begins whose time will be added when it is known; a Phase says it by itself.
+void begin_phase(const std::string& name);
 /// Add to a phase of the operator's timings.
 void add_to_phase(std::string name, double seconds);
 

@@ -8,7 +8,9 @@
 #include "lacon/operators/evolution/archive.hpp"
 #include "lacon/operators/evolution/contact_notices.hpp"
 #include "lacon/operators/evolution/interruption.hpp"
+#include "lacon/operators/evolution/journal.hpp"
 #include "lacon/operators/evolution/newton.hpp"
+#include "lacon/operators/evolution/progress.hpp"
 #include "lacon/operators/evolution/restart.hpp"
 #include "lacon/operators/evolution/step_events.hpp"
 #include "lacon/operators/evolution/table.hpp"
@@ -99,6 +101,7 @@ class QuasiStatic : public InstantSolver {
     rest_ = group.read<double>("rest");
     newton_.resume(group, base, state_, rest_);
   }
+  const ConvergenceCriteria& criteria() const { return newton_.criteria(); }
   Present present(const StaticProblem& problem) const { return {problem, state_, newton_.contact()}; }
 
  private:
@@ -134,9 +137,11 @@ void stat_non_line(const Order& order, const Base& base) {
   Interruption interruption;
   wait_with_ending();
   const Course past = record ? restart.go_on(*record) : Course();
+  Journal journal(base.result_folder(), steps, reached(past, steps.values.front()), solver.criteria(), present);
+  Progress progress(steps.values);
   // what is told as converged is in the base
-  const std::array<EvolutionObserver*, 7> observers{&observations, &notices, &archive,     &restart,
-                                                    &table,        &events,  &interruption};
+  const std::array<EvolutionObserver*, 9> observers{&observations, &notices, &archive,  &restart,     &table,
+                                                    &journal,      &events,  &progress, &interruption};
   evolve(steps, solver, observers, past);
 }
 

@@ -324,6 +324,12 @@ class ReadBase(Base):
         if not (self.folder / _registry).is_file():
             fail("STUDY_2", where, folder=self.folder)
         self._read(where)
+        self.unfinished = Unfinished(self)
+
+    def running(self):
+        """{"process", "since"} of the run that is under way now; nothing where there is none."""
+        holder = self._holder()
+        return holder if holder and _is_alive(holder["process"]) else None
 
     def labelled(self, kind):
         """label -> concept, of the concepts of a type that are there."""

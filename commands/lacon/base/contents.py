@@ -75,6 +75,14 @@ def patches(mesh):
     return ragged(mesh["patches/cells"]) if "patches" in mesh else []
 
 
+def patch_zones(mesh):
+    """[(slave group, number of its first patch, number behind its last one)] of a cut mesh."""
+    if "patches" not in mesh:
+        return []
+    offset = mesh["patches/zone_offset"][:].tolist()
+    return list(zip(mesh["patches/zone_group"].asstr()[:], offset[:-1], offset[1:]))
+
+
 # ---------------------------------------------------------------------------------------------------- result
 
 
@@ -98,6 +106,12 @@ def field_file(result, name, order):
     entry = result.get(f"fields/{name}")
     orders = [] if entry is None else entry["order"][:].tolist()
     return entry["file"].asstr()[orders.index(order)] if order in orders else None
+
+
+def field_files_by_order(result, name):
+    """order number -> the file of a field, relative to the base"""
+    entry = result[f"fields/{name}"]
+    return dict(zip(entry["order"][:].tolist(), entry["file"].asstr()[:]))
 
 
 def field_files(result):

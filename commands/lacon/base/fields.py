@@ -42,6 +42,14 @@ class FieldData:
         values[self.support], mask[self.support] = self.values, self.present
         return values, mask
 
+    def magnitude(self, component, count):
+        """Of a field of nodes one value for each of `count` nodes: a component, or the root of the sum of the squares of all; nan where it is not."""
+        values, mask = self.on_nodes(count)
+        if component is not None:
+            column = self.components.index(component)
+            return numpy.where(mask[:, column], values[:, column], numpy.nan)
+        return numpy.where(mask.any(axis=1), numpy.linalg.norm(values, axis=1), numpy.nan)
+
     def component(self, name):
         """(owners, values) of the rows where a component exists."""
         column = self.components.index(name)

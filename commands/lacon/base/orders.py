@@ -1,10 +1,12 @@
 """Orders: one command with complete keywords, handed to the executable of its operator; docs/structures.md section 4."""
 
+import contextlib
 import json
 import os
 import shutil
 import signal
 import socket
+import stat
 import sys
 import threading
 import time
@@ -19,6 +21,8 @@ from . import expressions
 patience = 1.8
 #: what messages of a solution that failed in the linear solver begin with; any other is one of Newton's method
 linear_solver = "SOLVER_"
+#: takes away the line of a terminal in which it stands
+_empty_line = b"\r\033[K"
 
 
 class Outcome:
@@ -68,14 +72,16 @@ def run(program, made, study):
     quiet = subprocess.PIPE if study.ignored_alarms else None
     ours, theirs = socket.socketpair()  # for formulae
     environment.update(LACON_FORMULAS=str(theirs.fileno()), LACON_LAUNCHER=str(os.getpid()))
-    with ours:
+    with ours, _terminal(study) as terminal:
+        environment.update({"LACON_TERMINAL": str(terminal)} if terminal else {})
         with theirs:  # an operator that ends a moment after the launcher still holds the base
             arguments = [executable, order_file, "--status", status_file, *(["--verbose"] if study.verbose else [])]
             process = subprocess.Popen(arguments, env=environment, stderr=quiet,
-                                       stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL if study.check else None, pass_fds=(study.base.lock, theirs.fileno()))
+                                       stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL if study.check else None,
+                                       pass_fds=(study.base.lock, theirs.fileno(), *([terminal] if terminal else [])))
         try:
             late.load()  # while the operator works: checks, functions and FIN need it later
-            forward = threading.Thread(target=_forward, args=(process.stderr, study.ignored_alarms), daemon=True) if quiet else None
+            forward = threading.Thread(target=_forward, args=(process.stderr, study.ignored_alarms, terminal), daemon=True) if quiet else None
             if forward:
                 forward.start()
             with ours.makefile("rwb") as stream:
@@ -86,8 +92,27 @@ def run(program, made, study):
         except BaseException:
             _end(process)
             raise
+        finally:
+            if terminal and process.returncode:  # an operator that was killed leaves its line
+                with contextlib.suppress(OSError):  # the terminal is gone
+                    os.write(terminal, _empty_line)
     seconds = time.perf_counter() - start
     return Outcome(process.returncode, *_read_status(status_file, f"{made['command']}, {made['source']}"), seconds)
+
+
+@contextlib.contextmanager
+def _terminal(study):
+    """A file for the line that says where an operator is, on the terminal of who waits for it; nothing where there is none, where the
+    output goes on into a pipe, or tells each phase anyway."""
+    shown = sys.stderr.isatty() and os.environ.get("TERM", "dumb") != "dumb" and not study.verbose and not study.check
+    if not shown or stat.S_ISFIFO(os.fstat(sys.stdout.fileno()).st_mode):
+        yield None
+        return
+    number = os.dup(sys.stderr.fileno())
+    try:
+        yield number
+    finally:
+        os.close(number)
 
 
 def _end(process):
@@ -122,9 +147,9 @@ def _read_status(path, where):
         return [], {}, {}
 
 
-def _forward(stream, ignored):
+def _forward(stream, ignored, terminal):
     """Hand on what an operator says, without the alarms that the user does not want to see."""
-    hidden = False
+    hidden, empty_line = False, _empty_line.decode() if terminal else ""
     for raw in stream:
         line = raw.decode(errors="replace")
         if line.startswith("<"):
@@ -132,7 +157,7 @@ def _forward(stream, ignored):
         elif not line.startswith("    "):
             hidden = False
         if not hidden:
-            sys.stderr.write(line)
+            sys.stderr.write(empty_line + line)
     sys.stderr.flush()
 
 

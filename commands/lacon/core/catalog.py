@@ -8,6 +8,7 @@ import json
 import os
 import pathlib
 import re
+import shutil
 import sys
 
 _home = pathlib.Path(__file__).resolve().parent
@@ -23,6 +24,11 @@ def _candidates():
     yield launcher / "share" / "lacon" / "catalog.json"
     yield launcher / "generated" / "catalog.json"
     yield _home.parents[2] / "catalog.json"
+    in_path = shutil.which("lacon")  # `import lacon` from the sources
+    if in_path:
+        built = pathlib.Path(os.path.realpath(in_path)).parent.parent
+        yield built / "share" / "lacon" / "catalog.json"
+        yield built / "generated" / "catalog.json"
     yield _home.parents[2] / "catalog"
 
 
@@ -97,6 +103,14 @@ def instead(kind, path, otherwise):
     if not found:
         return otherwise
     return found if found.startswith("leave it out") else f"use {found}"
+
+
+@functools.cache
+def cells():
+    """name of a cell type -> its row, with what catalog/generate.py derives. @throws FileNotFoundError where the catalogue is not built"""
+    if not _is_json():
+        raise FileNotFoundError(f"{location()} holds the rows alone: build Lacon, or let LACON_CATALOG name catalog.json")
+    return {row["name"]: row for row in _json()["cells"]}
 
 
 def elements():

@@ -37,13 +37,19 @@ class Check:
         return True
 
 
+def parser():
+    """Of its command line."""
+    made = argparse.ArgumentParser(prog="lacon check", description="Checks command files without solving; the study's base is left alone.")
+    made.add_argument("files", nargs="+", metavar="FILE", help="command files, in order, or one export file")
+    made.add_argument("--unit", action="append", default=[], metavar="N=FILE", help="the file of unit N; may be repeated")
+    return made
+
+
 def run(arguments):
     """@return exit status"""
-    parser = argparse.ArgumentParser(prog="lacon check", description="Checks command files without solving; the study's base is left alone.")
-    parser.add_argument("files", nargs="+", metavar="FILE", help="command files, in order, or one export file")
-    parser.add_argument("--unit", action="append", default=[], metavar="N=FILE", help="the file of unit N; may be repeated")
-    options = parser.parse_args(arguments)
-    export = launch.command_files(options.files, launch.units_of(parser, options))
+    asked = parser()
+    options = asked.parse_args(arguments)
+    export = launch.command_files(options.files, launch.units_of(asked, options))
     stopped = []
     with tempfile.TemporaryDirectory(prefix="lacon_check_") as folder:
         this = study.Study(pathlib.Path(folder) / "check.base", export.units, provided=execution.provided_names())

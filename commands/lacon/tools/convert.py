@@ -19,20 +19,26 @@ FIN()
 """
 
 
+def parser():
+    """Of its command line."""
+    made = argparse.ArgumentParser(prog="lacon convert", description="Writes a mesh in another format.")
+    made.add_argument("source", metavar="MESH", help=f"the mesh: {', '.join(read_formats)}")
+    made.add_argument("target", metavar="FILE", help=f"the file to write: {', '.join(write_formats)}; it is replaced where it is there")
+    return made
+
+
 def run(arguments):
     """@return exit status"""
-    parser = argparse.ArgumentParser(prog="lacon convert", description="Writes a mesh in another format.")
-    parser.add_argument("source", metavar="MESH", help=f"the mesh: {', '.join(read_formats)}")
-    parser.add_argument("target", metavar="FILE", help=f"the file to write: {', '.join(write_formats)}; it is replaced where it is there")
-    options = parser.parse_args(arguments)
+    asked = parser()
+    options = asked.parse_args(arguments)
     formats = []
     for path, known in ((options.source, read_formats), (options.target, write_formats)):
         suffix = pathlib.Path(path).suffix.lower()
         if suffix not in known:
-            parser.error(f"{path}: a file named {', '.join(known)} is needed")
+            asked.error(f"{path}: a file named {', '.join(known)} is needed")
         formats.append(known[suffix])
     if os.path.exists(options.target) and os.path.exists(options.source) and os.path.samefile(options.source, options.target):
-        parser.error(f"{options.target}: it is the mesh itself")
+        asked.error(f"{options.target}: it is the mesh itself")
     stem = pathlib.Path(options.source).stem
     provided = execution.provided_names()
     name = stem if stem.isidentifier() and not keyword.iskeyword(stem) and stem not in provided else "MESH"

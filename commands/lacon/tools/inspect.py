@@ -22,21 +22,27 @@ from ..objects.kinds import kinds
 _layer = re.compile(r"pairing_(pairs|skins|points|rejected)(_\d+\.vtu|\.pvd)")
 
 
-def run(arguments):
-    """@return exit status"""
-    parser = argparse.ArgumentParser(
+def parser():
+    """Of its command line."""
+    made = argparse.ArgumentParser(
         prog="lacon inspect", description="Writes the pairing of a contact: polygons of the contact cells, skins with the covered "
         "fraction of their patches, integration points with their gap, rejected couples with the reason.")
-    parser.add_argument("base", metavar="BASE", help="folder of the base, STUDY.base")
-    parser.add_argument("--result", metavar="LABEL", help="a result with contact, or a contact (then before any instant); otherwise the only one")
-    parser.add_argument("--instant", metavar="T", help="an instant of the result, 'last' (default) or 'all'")
-    parser.add_argument("--out", metavar="FOLDER", help="where the files go; otherwise BASE without its suffix and with _pairing")
-    options = parser.parse_args(arguments)
+    made.add_argument("base", metavar="BASE", help="folder of the base, STUDY.base")
+    made.add_argument("--result", metavar="LABEL", help="a result with contact, or a contact (then before any instant); otherwise the only one")
+    made.add_argument("--instant", metavar="T", help="an instant of the result, 'last' (default) or 'all'")
+    made.add_argument("--out", metavar="FOLDER", help="where the files go; otherwise BASE without its suffix and with _pairing")
+    return made
+
+
+def run(arguments):
+    """@return exit status"""
+    asked = parser()
+    options = asked.parse_args(arguments)
     if options.instant not in (None, "last", "all"):
         try:
             options.instant = float(options.instant)
         except ValueError:
-            parser.error(f"--instant {options.instant}: give a number, last or all")
+            asked.error(f"--instant {options.instant}: give a number, last or all")
     try:
         shelf = ReadBase(options.base, "lacon inspect", kinds)
         chosen = choose(shelf, options.result)

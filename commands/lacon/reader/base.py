@@ -1,0 +1,99 @@
+"""A base that is looked at: `lacon.open("study.base")`."""
+
+import pathlib
+import time
+
+from ..base.base import ReadBase
+from ..core.concepts import type_of
+from ..core.messages import AsterError, fail
+from .mesh import Mesh
+from .result import Result
+
+_tries, _pause = 20, 0.01  # while a run replaces the registry
+
+
+class Base:
+    """The meshes and results of a base by the variable of the study, base["MESH"]; also of a run in progress: what is there is looked up each time."""
+
+    def __init__(self, folder):
+        self.folder = pathlib.Path(folder)
+        self._meshes = {}
+        self._registered()
+
+    def _registered(self):
+        """The registry as it is now. @throws AsterError STUDY_2, STUDY_6"""
+        for left in reversed(range(_tries)):
+            try:
+                return ReadBase(self.folder, "lacon")
+            except AsterError:
+                if not left or not self.folder.is_dir():
+                    raise
+                time.sleep(_pause)
+        raise AssertionError
+
+    def _labels(self, kind):
+        base = self._registered()
+        labels = {**base.registry["labels"], **base.unfinished.labels()}
+        return base, {label: i for label, i in labels.items() if type_of(i) == kind and base.path(i).exists()}
+
+    @property
+    def running(self):
+        """{"process", "since"} of the run that uses the base now; None where there is none."""
+        return self._registered().running()
+
+    @property
+    def meshes(self):
+        """label -> Mesh"""
+        base, labels = self._labels("mesh")
+        return {label: self._mesh(base, identifier, label) for label, identifier in labels.items()}
+
+    @property
+    def results(self):
+        """label -> Result, those in progress among them"""
+        base, labels = self._labels("result")
+        return {label: Result(_Files(self, base), identifier, label) for label, identifier in labels.items()}
+
+    def __getitem__(self, label):
+        """The mesh or result of a label. @throws AsterError READER_1"""
+        for kind in ("mesh", "result"):
+            base, labels = self._labels(kind)
+            if label in labels:
+                return self._mesh(base, labels[label], label) if kind == "mesh" else Result(_Files(self, base), labels[label], label)
+        fail("READER_1", "lacon", label=label, folder=self.folder, known=", ".join([*self.meshes, *self.results]) or "none")
+        raise AssertionError
+
+    def only_result(self, label=None):
+        """The result of this label, or the one that there is. @throws AsterError READER_1, READER_5"""
+        if label:
+            return self[label]
+        results = self.results
+        if len(results) != 1:
+            fail("READER_5", "lacon", folder=self.folder, count=len(results), known=", ".join(results) or "none")
+        return next(iter(results.values()))
+
+    def __repr__(self):
+        return f"<base {self.folder}: meshes {', '.join(self.meshes) or 'none'}; results {', '.join(self.results) or 'none'}>"
+
+    def _mesh(self, base, identifier, label):
+        """The same object as long as the file is the same."""
+        state = identifier, base.path(identifier).stat().st_mtime_ns
+        if state not in self._meshes:
+            self._meshes[state] = Mesh(lambda: base.open(identifier), label)
+        return self._meshes[state]
+
+
+class _Files:
+    """What a Result reads from."""
+
+    def __init__(self, shown, base):
+        self._shown, self._base = shown, base
+        self.folder, self.open = base.folder, base.open
+
+    def mesh_of(self, identifier):
+        labels = {i: label for label, i in self._base.registry["labels"].items()}
+        return self._shown._mesh(self._base, identifier, labels.get(identifier, identifier))
+
+
+def open_base(folder):
+    """The base of a study, `study.base`. @throws AsterError STUDY_2 where there is none, STUDY_6 where it cannot be read"""
+    return Base(folder)

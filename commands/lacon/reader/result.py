@@ -1,0 +1,197 @@
+"""A result of a base as arrays: fields, contact of the patches, iterations."""
+
+from functools import cached_property
+
+from ..base import contents
+from ..base.fields import FieldData, open_field
+from ..base.journal import read_journal
+from ..core.late import numpy
+from ..core.messages import fail
+from . import pictures
+from .mesh import as_picture
+
+
+class Field(FieldData):
+    """A field at one instant. `support` (n) numbers of nodes or cells, `values` (r, components), `present` (r, components), `location` NOEU, ELGA,
+    ELNO or ELEM, `offset` (n + 1) the rows of each cell at ELGA and ELNO; field["DX"] are the values of a component, nan where it does not exist."""
+
+    def __init__(self, file, order, instant):
+        super().__init__(file)
+        self.order, self.instant = order, instant
+
+    def __repr__(self):
+        return f"<field {self.name} ({self.location}) at INST {self.instant:g}: {', '.join(self.components)}; {len(self.support)} places>"
+
+    def __getitem__(self, component):
+        if component not in self.components:
+            raise KeyError(f"{self.name} has no component {component}; it has {', '.join(self.components)}")
+        column = self.components.index(component)
+        return numpy.where(self.present[:, column], self.values[:, column], numpy.nan)
+
+
+class Patches:
+    """The contact at one instant, one row a patch: `pressure` (positive where bodies press on each other), `gap` (nan where there is no master),
+    `status` (1 in contact, 0 open, -1 without master), `coverage` (part of the patch that has a master), `zone` (number, from 0), `area` (length
+    in the plane), `centre` (p, 3); `groups` the slave group of each zone."""
+
+    def __init__(self, mesh, field):
+        self.instant = field.instant
+        self.groups = [group for group, _, _ in mesh.patch_zones]
+        first = numpy.array([cells[0] for cells in mesh.patches])
+        rows = numpy.searchsorted(field.support, first)
+        value = {name: column[rows] for name, column in zip(field.components, field.values.T)}
+        self.status = value["CONT"].astype(int)
+        self.pressure = -value["PRES"]
+        self.gap = numpy.where(self.status < 0, numpy.nan, value["JEU"])
+        self.coverage = value["COEFSURF"]
+        self.zone = numpy.repeat(numpy.arange(len(mesh.patch_zones)), [last - start for _, start, last in mesh.patch_zones])
+        measured = [_measure(mesh, cells) for cells in mesh.patches]
+        self.area = numpy.array([area for area, _ in measured])
+        self.centre = numpy.array([centre for _, centre in measured]).reshape(-1, 3)
+
+    def __len__(self):
+        return len(self.status)
+
+    def __repr__(self):
+        return f"<{len(self)} patches at INST {self.instant:g}, {(self.status == 1).sum()} in contact>"
+
+
+def _measure(mesh, cells):
+    """(length or area, centre) of skin cells, by their vertices."""
+    total, moment = 0.0, numpy.zeros(3)
+    for corners in mesh.polygons(cells):
+        points = mesh.points[corners]
+        if len(points) == 2:
+            parts = [(numpy.linalg.norm(points[1] - points[0]), points.mean(axis=0))]
+        else:
+            parts = [(numpy.linalg.norm(numpy.cross(points[i] - points[0], points[i + 1] - points[0])) / 2, points[[0, i, i + 1]].mean(axis=0))
+                     for i in range(1, len(points) - 1)]
+        for area, centre in parts:
+            total, moment = total + area, moment + area * centre
+    return total, moment / total if total else moment
+
+
+class Result:
+    """A result, also of a computation in progress: what was asked for once stays as it was then; take it from the base again for later instants.
+
+    `label` the variable of the study, `orders` and `instants` (k), `complete` whether its computation has come to its end, `mesh`, `fields` name ->
+    instants that have it, `parameters` name -> (k).
+    """
+
+    def __init__(self, base, identifier, label):
+        self._base, self._id, self.label = base, identifier, label
+        with base.open(identifier) as file:
+            pairs = contents.instants(file)
+            self.orders, self.instants = [order for order, _ in pairs], numpy.array([instant for _, instant in pairs])
+            self.complete = contents.is_complete(file)
+            self._fields = {name: contents.field_files_by_order(file, name) for name in contents.fields(file)}
+            self.parameters = contents.parameters(file)
+            self._mesh_id = contents.reference(file, "mesh")
+
+    def __repr__(self):
+        more = "" if self.complete else ", not complete"
+        return f"<result {self.label}: {len(self.orders)} instants to INST {self.instants[-1]:g}{more}; fields {', '.join(self._fields)}>"
+
+    @cached_property
+    def mesh(self):
+        return self._base.mesh_of(self._mesh_id)
+
+    @property
+    def fields(self):
+        of_order = dict(zip(self.orders, self.instants.tolist()))
+        return {name: [of_order[order] for order in files] for name, files in self._fields.items()}
+
+    @cached_property
+    def journal(self):
+        """The iterations, a base.journal.Journal; None where they were not written down."""
+        return read_journal(self._base, self._id)
+
+    def order_of(self, instant=None, order=None):
+        """The order number of an instant, the last one by default. @throws AsterError READER_2"""
+        if order is None and instant is None:
+            return self.orders[-1]
+        if order is None:
+            nearest = int(numpy.argmin(abs(self.instants - instant)))
+            if abs(self.instants[nearest] - instant) <= 1e-6 * max(abs(self.instants).max(), 1e-300):
+                return self.orders[nearest]
+        elif order in self.orders:
+            return order
+        asked = f"order {order}" if instant is None else f"INST {instant:g}"
+        fail("READER_2", "lacon", label=self.label, asked=asked, known=", ".join(f"{t:g}" for t in self.instants))
+        raise AssertionError
+
+    def field(self, name, instant=None, order=None):
+        """A Field at an instant or an order number, the last one by default. @throws AsterError READER_2, RESULT_1"""
+        order = self.order_of(instant, order)
+        path = self._fields.get(name, {}).get(order)
+        if path is None:
+            fail("RESULT_1", "lacon", label=self.label, field=name, order=order, known=", ".join(self._fields) or "none")
+        with open_field(self._base.folder, path) as file:
+            return Field(file, order, float(self.instants[self.orders.index(order)]))
+
+    def displacements(self, instant=None, order=None):
+        """(nodes of the mesh, 3)"""
+        field = self.field("DEPL", instant, order)
+        found = numpy.zeros((len(self.mesh.points), 3))
+        for column, name in enumerate(("DX", "DY", "DZ")):
+            if name in field.components:
+                values = field.values[:, field.components.index(name)]
+                found[field.support, column] = numpy.where(field.present[:, field.components.index(name)], values, 0.0)
+        return found
+
+    def contact(self, instant=None, order=None):
+        """The Patches at an instant; None where the computation is without contact."""
+        return Patches(self.mesh, self.field("CONT_ELEM", instant, order)) if "CONT_ELEM" in self._fields else None
+
+    def to_meshio(self, instant=None, order=None):
+        """A meshio.Mesh on the deformed points: fields of nodes as point data, those of cells as cell data, nan where they are not."""
+        order = self.order_of(instant, order)
+        made = self.mesh.to_meshio(self.mesh.points + self.displacements(order=order))
+        for name in self._fields:
+            if order not in self._fields[name]:
+                continue
+            field = self.field(name, order=order)
+            if field.location == "NOEU":
+                made.point_data[name] = _spread(field, len(self.mesh.points))
+            elif field.location == "ELEM":
+                whole = _spread(field, len(self.mesh.cell_types))
+                made.cell_data[name] = [whole[numbers] for numbers, _ in self.mesh.cells.values()]
+        return made
+
+    def plot(self, instant=None, order=None, scale=1.0, field=None, component=None):
+        """A picture of the deformed mesh, coloured by a field at nodes (the magnitude of its components where none is named; by default that of the
+        displacements): a matplotlib figure. @param scale of the displacements"""
+        order = self.order_of(instant, order)
+        moved = self.displacements(order=order)
+        if field is None:
+            values, name = numpy.linalg.norm(moved, axis=1), "|DEPL|"
+        else:
+            values, name = self.field(field, order=order).magnitude(component, len(moved)), f"{field} {component or 'magnitude'}"
+        title = f"{self.label}, INST {self.instants[self.orders.index(order)]:g}" + (f", displacements x {scale:g}" if scale != 1.0 else "")
+        return pictures.bodies(self.mesh.points + scale * moved, self.mesh.dimension, self.mesh.boundary, values, name, title)
+
+    def plot_pressure(self, instant=None, order=None):
+        """A picture of the contact pressure of every zone. @throws AsterError READER_3 without contact"""
+        if "CONT_ELEM" not in self._fields:
+            fail("READER_3", "lacon", label=self.label)
+        order = self.order_of(instant, order)
+        patches = self.contact(order=order)
+        outlines = [self.mesh.polygons(cells) for cells in self.mesh.patches]
+        return pictures.pressure(self.mesh.points + self.displacements(order=order), self.mesh.dimension, outlines, patches,
+                                 f"{self.label}, INST {patches.instant:g}: contact pressure")
+
+    def plot_convergence(self):
+        """A picture of residuals and changes of contact over the iterations. @throws AsterError READER_4 without journal"""
+        if self.journal is None:
+            fail("READER_4", "lacon", label=self.label)
+        return pictures.convergence(self.journal, f"{self.label}: Newton's method")
+
+    def _repr_png_(self):
+        return as_picture(self.plot())
+
+
+def _spread(field, count):
+    """The values over all nodes or cells of the mesh, nan where the field is not."""
+    whole = numpy.full((count, len(field.components)), numpy.nan)
+    whole[field.support] = numpy.where(field.present, field.values, numpy.nan)
+    return whole

@@ -1,0 +1,69 @@
+"""`lacon plot BASE`: pictures for papers, and for who has no browser: the mesh, the contact pressure, the convergence, as PNG and SVG.
+
+Reads the base, and never changes it.
+"""
+
+import argparse
+import os
+import pathlib
+
+from ..core import outcome
+from ..core.messages import AsterError, fail, show
+from ..reader.base import open_base
+
+formats = ("png", "svg")
+
+
+def parser():
+    """Of its command line."""
+    made = argparse.ArgumentParser(
+        prog="lacon plot", description="Draws the deformed mesh, the contact pressure and the convergence of a result, as NAME_mesh, NAME_pressure and "
+        "NAME_convergence, each as PNG and SVG; also of a run in progress.")
+    made.add_argument("base", metavar="BASE", help="folder of the base, STUDY.base")
+    made.add_argument("--result", metavar="LABEL", help="the result; otherwise the only one")
+    made.add_argument("--instant", type=float, metavar="T", help="an instant of the result; otherwise the last one")
+    made.add_argument("--field", metavar="NAME", help="colours of the mesh: a field at nodes, SIEF_NOEU; otherwise the displacements")
+    made.add_argument("--component", metavar="NAME", help="a component of the field; otherwise its magnitude")
+    made.add_argument("--scale", type=float, default=1.0, metavar="X", help="of the displacements; 1 by default")
+    made.add_argument("--format", action="append", choices=formats, help="one of them alone; may be repeated")
+    made.add_argument("--dpi", type=float, default=150.0, help="of PNG files; 150 by default")
+    made.add_argument("--out", metavar="NAME", help="what the files' names begin with, a folder among it; otherwise the name of the study")
+    return made
+
+
+def run(arguments):
+    """@return exit status"""
+    asked = parser()
+    options = asked.parse_args(arguments)
+    base = open_base(options.base)
+    stem = pathlib.Path(options.out or base.folder.resolve().stem)
+    result = base.only_result(options.result)
+    pictures = {"mesh": lambda: result.plot(options.instant, scale=options.scale, field=checked(result, options), component=options.component),
+                "pressure": lambda: result.plot_pressure(options.instant), "convergence": result.plot_convergence}
+    for name, draw in pictures.items():
+        try:
+            figure = draw()
+        except AsterError as error:
+            if error.id_message not in ("READER_3", "READER_4"):
+                raise
+            show(error.messages[0]._replace(severity="I"))  # a result without contact, or without journal, has the other pictures
+            continue
+        for suffix in options.format or formats:
+            path = stem.with_name(f"{stem.name}_{name}.{suffix}")
+            try:
+                stem.parent.mkdir(parents=True, exist_ok=True)
+                figure.savefig(path, dpi=options.dpi)
+            except OSError as error:
+                fail("STUDY_3", "lacon plot --out", folder=path, reason=error.strerror)
+            print(os.path.relpath(path))
+    return outcome.done
+
+
+def checked(result, options):
+    """The field that is meant. @throws AsterError PLOT_1"""
+    if options.field is None:
+        return None
+    field = result.field(options.field, options.instant)
+    if field.location != "NOEU" or (options.component and options.component not in field.components):
+        fail("PLOT_1", f"lacon plot --field {options.field}", field=options.field, location=field.location, components=", ".join(field.components))
+    return options.field

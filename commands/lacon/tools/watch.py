@@ -1,0 +1,168 @@
+"""`lacon watch BASE`: the Newton curves of a computation in progress, in another terminal than its own. It ends when the run ends.
+
+Reads the base, and never changes it: the registry says which computation is under way, the journal of its result what its iterations are.
+"""
+
+import argparse
+import math
+import os
+import shutil
+import sys
+import time
+
+from ..base.base import ReadBase
+from ..base.journal import name as journal_name
+from ..base.journal import read_journal
+from ..core import outcome
+from ..core.concepts import type_of
+from ..core.messages import AsterError, fail
+from .chart import chart, columns_of
+
+_home, _rest, _line = "\033[H", "\033[J", "\033[K"  #: of a terminal: go to its corner, empty what is behind, the rest of a line
+_widest = 8  #: dots from one iteration to the next, at most
+_patience = 20  #: tries while the registry is being replaced
+
+
+def parser():
+    """Of its command line."""
+    made = argparse.ArgumentParser(
+        prog="lacon watch", description="Shows how Newton's method of a computation in progress goes on: residuals and changes of contact, iteration by "
+        "iteration. Ends when the run ends. Into a pipe or a file it writes what it shows last.")
+    made.add_argument("base", metavar="BASE", help="folder of the base, STUDY.base")
+    made.add_argument("--once", action="store_true", help="show what is there now, and end")
+    made.add_argument("--every", type=float, default=1.0, metavar="SECONDS", help="how often it looks; 1 by default")
+    return made
+
+
+def run(arguments):
+    """@return exit status"""
+    asked = parser()
+    options = asked.parse_args(arguments)
+    if not options.every > 0.0:
+        asked.error(f"--every {options.every:g}: give a number of seconds above 0")
+    draws = sys.stdout.isatty() and not options.once
+    try:
+        last = follow(options, draws)
+    except KeyboardInterrupt:  # who looks on has seen enough: the computation goes on
+        return outcome.done
+    if not draws:
+        print("\n".join(last))
+    return outcome.done
+
+
+def follow(options, draws):
+    """Look on until the run ends, or once. @return the last frame"""
+    emptied = False
+    while True:
+        base = _open(options.base)
+        running = base.running()
+        size = shutil.get_terminal_size()
+        lines = frame(base, running, size.columns, size.lines)
+        if draws:
+            sys.stdout.write((_home if emptied else _home + _rest) + "".join(line + _line + "\n" for line in lines) + _rest)
+            sys.stdout.flush()
+            emptied = True
+        if options.once or not running:
+            return lines
+        time.sleep(options.every)
+
+
+def _open(folder):
+    """The base as it is now; its run replaces the registry while we read."""
+    for left in reversed(range(_patience)):
+        try:
+            return ReadBase(folder, "lacon watch")
+        except AsterError:
+            if not left or not os.path.isdir(folder):
+                raise
+            time.sleep(0.01)
+    raise AssertionError
+
+
+def chosen(base):
+    """(id, label, where) of the computation to look at: the one that is under way, otherwise that of the newest journal. @throws AsterError WATCH_1"""
+    for identifier, entry in base.registry.get("unfinished", {}).items():
+        if (base.folder / identifier / journal_name).exists():
+            return identifier, entry["label"], entry["where"]
+    journals = sorted(base.folder.glob(f"*/{journal_name}"), key=lambda path: path.stat().st_mtime)
+    results = [path.parent.name for path in journals if type_of(path.parent.name) == "result"]
+    if not results:
+        return None
+    labels = {identifier: label for label, identifier in base.registry["labels"].items()}
+    return results[-1], labels.get(results[-1], ""), ""
+
+
+def frame(base, running, width, height):
+    """What is shown now, lines of text that fit into the window."""
+    state = f"running since {running['since'].partition(' ')[2]} (process {running['process']})" if running else "not running"
+    computation = chosen(base)
+    if computation is None:
+        if not running:
+            fail("WATCH_1", "lacon watch", folder=base.folder)
+        return [f"{base.folder.name}: {state}", "", "no computation has come to an iteration yet"]
+    identifier, label, where = computation
+    journal = read_journal(base, identifier)
+    lines = [f"{base.folder.name}: {label or identifier}{', ' + where if where else ''}; {state}", progress(journal, running), ""]
+    rows = max((height - len(lines) - 6) // (3 if journal.patches else 1), 3)
+    shown = journal.iterations()[-columns_of(width):]
+    lines += residuals(journal, shown, width, 2 * rows if journal.patches else rows)
+    if journal.patches:
+        lines += statuses(journal, shown, width, rows)
+    first = f" {shown[0][0].instant:.6g}" if shown else ""
+    return [line[:width] for line in lines] + ["".ljust(11) + f"{len(shown)} iterations from the instant{first} on; dots upright: another instant"[:width - 11]]
+
+
+def progress(journal, running):
+    """"INST 0.4  iteration 3  35 % of the instants  1 min 20 s, about 2 min 30 s left\""""
+    if not journal.attempts:
+        return "the first instant has begun" if not journal.ended else "no instant was tried"
+    attempt, reached = journal.attempts[-1], journal.share(journal.reached())
+    words = [f"INST {attempt.instant:.6g}", f"iteration {len(attempt.iterations)}", f"{math.floor(100 * reached)} % of the instants"]
+    if journal.ended:
+        return "  ".join([*words, in_words(journal.now), "complete" if journal.completed else "ended before the last instant"])
+    gone = time.time() - journal.since if running else journal.now
+    left = journal.seconds_left()
+    words.append(in_words(gone) + (f", about {in_words(left)} left" if left is not None and running else ""))
+    return "  ".join(words + ([] if running else ["ended on the way"]))
+
+
+def in_words(seconds):
+    """"1 min 20 s", two units at most."""
+    whole = round(max(seconds, 0.0))
+    if whole < 60:
+        return f"{whole} s"
+    return f"{whole // 60} min {whole % 60} s" if whole < 3600 else f"{whole // 3600} h {whole % 3600 // 60} min"
+
+
+def curves(shown, width, value):
+    """(one list of dots an instant, where another one begins) of a value of the iterations."""
+    step = max(min(_widest, columns_of(width) // max(len(shown), 1)), 1)
+    found, marks = [], []
+    for i, (attempt, line) in enumerate(shown):
+        if i == 0 or attempt is not shown[i - 1][0]:
+            found.append([])
+            marks += [i * step - step // 2] if i else []
+        found[-1].append((i * step, line[value]))
+    return found, marks
+
+
+def residuals(journal, shown, width, rows):
+    """RESI_GLOB_RELA, or where it is not asked for RESI_GLOB_MAXI, on a logarithmic scale."""
+    kind = "rela" if journal.limits.get("rela") is not None else "maxi"
+    values = [line[kind] for _, line in shown]
+    limit = journal.limits.get(kind)
+    known = [v for v in [*values, limit or 0.0] if math.isfinite(v) and v > 0.0] or [1.0]
+    lower, upper = (10.0 ** edge(math.log10(pick(known))) for edge, pick in ((math.floor, min), (math.ceil, max)))
+    last = f", now {values[-1]:.2e}" if values else ""
+    title = f"RESI_GLOB_{kind.upper()}{last}{f', asked for {limit:.0e} (dashed)' if limit else ''}"
+    drawn, marks = curves(shown, width, kind)
+    return [" " * 11 + title, *chart(drawn, width, rows, lower, max(upper, 10.0 * lower), log=True, level=limit, marks=marks)]
+
+
+def statuses(journal, shown, width, rows):
+    """How many patches change between contact and no contact."""
+    values = [line["changes"] for _, line in shown]
+    active = f", {shown[-1][1]['active']} of {journal.patches} patches are in contact" if shown else ""
+    title = f"patches that change{f', now {values[-1]}' if values else ''}{active}"
+    drawn, marks = curves(shown, width, "changes")
+    return [" " * 11 + title, *chart(drawn, width, rows, 0, max([*values, 1]), marks=marks)]
