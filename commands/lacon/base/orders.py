@@ -77,7 +77,7 @@ def run(program, made, study):
         with theirs:  # an operator that ends a moment after the launcher still holds the base
             arguments = [executable, order_file, "--status", status_file, *(["--verbose"] if study.verbose else [])]
             process = subprocess.Popen(arguments, env=environment, stderr=quiet,
-                                       stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL if study.check else None,
+                                       stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL if study.check or study.quiet else None,
                                        pass_fds=(study.base.lock, theirs.fileno(), *([terminal] if terminal else [])))
         try:
             late.load()  # while the operator works: checks, functions and FIN need it later

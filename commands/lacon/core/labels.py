@@ -7,6 +7,7 @@ they are, so that tracebacks name the user's own lines.
 
 import ast
 import itertools
+import linecache
 import os
 import sys
 
@@ -72,9 +73,11 @@ def _table(filename):
 
 
 def _source(filename):
-    """The text of a file; of a module that a command file imports, in its own encoding."""
+    """The text of a file; of a module that a command file imports, in its own encoding; of a cell of a notebook."""
     if filename in sources:
         return sources[filename]
+    if not os.path.exists(filename):
+        return "".join(linecache.getlines(filename))
     with open(filename, "rb") as file:
         return file.read()
 

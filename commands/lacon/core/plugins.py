@@ -3,16 +3,27 @@
 import functools
 import os
 import pathlib
+import shutil
 import sys
 
 from . import catalog
 from .messages import fail
 
 
+@functools.cache
+def _beside():
+    """The folder of the launcher that runs; of `import lacon` the one that belongs to the package, or that is in PATH."""
+    launcher = pathlib.Path(os.path.realpath(sys.argv[0])).parent
+    package = pathlib.Path(__file__).resolve().parents[1]
+    in_path = shutil.which("lacon")
+    others = [package.parents[3] / "bin", *([pathlib.Path(os.path.realpath(in_path)).parent] if in_path else [])]
+    return next((folder for folder in (launcher, *others) if (folder / "affe_modele").exists()), launcher)
+
+
 def operator_folder():
     """Where the operators' executables are: LACON_BIN, or beside the launcher."""
     said = os.environ.get("LACON_BIN")
-    return pathlib.Path(said) if said else pathlib.Path(os.path.realpath(sys.argv[0])).parent
+    return pathlib.Path(said) if said else _beside()
 
 
 def plugin_folders():

@@ -10,6 +10,7 @@ _ink, _pale, _line = "#1d2733", "#8c98a5", "#3b4753"
 _colours = "viridis"  # its order survives printing in grey and every kind of colour blindness
 _contact = ("#0072b2", "#d55e00", "#009e73", "#cc79a7", "#56b4e9", "#e69f00")  # Okabe and Ito's, told apart by everyone
 _light = (0.35, -0.45, 0.82)  # where light comes from, seen by who looks
+_uniform = 1e-6  # differences below this part of the values are round-off, and no colours
 _vectors = 20000  # faces beyond which an SVG holds them as an image
 
 
@@ -99,7 +100,10 @@ def _colour(figure, axes, collection, values, name, shade):
 
     finite = values[numpy.isfinite(values)]
     low, high = (finite.min(), finite.max()) if len(finite) else (0.0, 1.0)
-    norm = matplotlib.colors.Normalize(low, high if high > low else low + max(abs(low), 1.0) * 1e-6)
+    least = _uniform * max(abs(low), abs(high)) or 1.0
+    if high - low < least:
+        low, high = (low + high - least) / 2.0, (low + high + least) / 2.0
+    norm = matplotlib.colors.Normalize(low, high)
     mapped = matplotlib.colormaps[_colours]
     colours = mapped(norm(values))
     colours[~numpy.isfinite(values)] = (0.85, 0.85, 0.85, 1.0)

@@ -26,6 +26,7 @@ class Study:
         self.force = force  #: run every operator, changed or not
         self.threads = threads
         self.verbose = verbose  #: operators say their phases and counts as they come
+        self.quiet = False  #: of what is not a message nothing is printed
         self.strict_checks = strict_checks
         self.names = Names(provided or {})
         self.base = None
@@ -242,5 +243,5 @@ class Study:
         execution.include(path, self.names.values)
 
     def progress(self, text):
-        if self.check is None:
+        if self.check is None and not self.quiet:
             print(text, flush=sys.stdout.isatty())

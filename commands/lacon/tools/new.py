@@ -1,4 +1,5 @@
-"""`lacon new mesh.med`: a starter study written from a mesh's groups, to be corrected by its user.
+"""`lacon new mesh.med`: a starter study written from a mesh's groups, to be corrected by its user; `lacon new --template hertz`: a study of the
+templates, which runs as it is (tools/templates.py).
 
 Bodies are the groups of cells of the mesh's dimension, skins those of one dimension less. Two skins that face each other closely on parts of
 the mesh that are not connected make a contact pair, the finer one as slave. Plane skins at the zero of an axis are taken for symmetries. What
@@ -16,6 +17,7 @@ from ..core import outcome
 from ..core.late import numpy
 from ..run import execution, launch
 from ..run.study import Study
+from . import templates
 from .convert import read_formats
 
 _near = 2.0  # skins are a pair where a cell of one is nearer to a cell of the other than this many of their lengths
@@ -236,18 +238,30 @@ def study(groups, mesh_file, read_format):
     return "\n".join(lines)
 
 
+def parser():
+    """Of its command line."""
+    made = argparse.ArgumentParser(prog="lacon new", description="Writes a starter study from a mesh's groups, or a template that runs as it is.",
+                                     formatter_class=argparse.RawDescriptionHelpFormatter,
+                                     epilog="templates:\n" + "\n".join(f"  {name:15} {words}" for name, words in templates.known().items()))
+    which = made.add_mutually_exclusive_group(required=True)
+    which.add_argument("mesh", metavar="MESH", nargs="?", help=f"the mesh: {', '.join(read_formats)}")
+    which.add_argument("--template", metavar="NAME", help="one of those below: a folder with the command file and the script of its mesh")
+    made.add_argument("--out", metavar="FILE", help="the command file or the folder to write, which must not be there; otherwise MESH.comm or NAME")
+    return made
+
+
 def run(arguments):
     """@return exit status"""
-    parser = argparse.ArgumentParser(prog="lacon new", description="Writes a starter study from a mesh's groups.")
-    parser.add_argument("mesh", metavar="MESH", help=f"the mesh: {', '.join(read_formats)}")
-    parser.add_argument("--out", metavar="FILE", help="the command file to write, which must not be there; otherwise MESH.comm")
-    options = parser.parse_args(arguments)
+    asked = parser()
+    options = asked.parse_args(arguments)
+    if options.template:
+        return templates.write(options.template, options.out)
     source = pathlib.Path(options.mesh)
     if source.suffix.lower() not in read_formats:
-        parser.error(f"{source}: a file named {', '.join(read_formats)} is needed")
+        asked.error(f"{source}: a file named {', '.join(read_formats)} is needed")
     target = pathlib.Path(options.out or source.with_suffix(".comm").name)
     if target.exists():
-        parser.error(f"{target} is there already: give another name with --out, or remove it")
+        asked.error(f"{target} is there already: give another name with --out, or remove it")
     form = read_formats[source.suffix.lower()]
     with tempfile.TemporaryDirectory(prefix="lacon_new_") as folder:
         this = Study(pathlib.Path(folder) / "new.base", {20: str(source)}, provided=execution.provided_names())
@@ -262,6 +276,6 @@ def run(arguments):
         try:
             target.write_text(made[0], encoding="utf-8")
         except OSError as error:
-            parser.error(f"{target}: {error.strerror}")
+            asked.error(f"{target}: {error.strerror}")
         print(f"{target}: a starter study; look for CHOOSE in it, then: lacon check {target} --unit 20={source}")
     return status
