@@ -74,6 +74,37 @@ def plugin_of_another_abi():
     return folder
 
 
+class Installed(unittest.TestCase):
+    """What an installation has beside programs and headers; nothing of the build tree is named."""
+
+    def setUp(self):
+        self.folder = pathlib.Path(tempfile.mkdtemp(dir=made["root"]))
+        self.environment = {k: v for k, v in os.environ.items() if not k.startswith("LACON_")}
+
+    def python(self, home, text):
+        done = run(sys.executable, "-c", text, cwd=self.folder, env={**self.environment, "PYTHONPATH": str(made["prefix"] / home)})
+        self.assertEqual(done.returncode, 0, done.stderr)
+        return done.stdout.split()
+
+    def test_a_template_runs_and_python_reads_its_base(self):
+        done = run(made["prefix"] / "bin/lacon", "new", "--template", "several_zones", cwd=self.folder, env=self.environment)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        done = run(made["prefix"] / "bin/lacon", "several_zones.comm", cwd=self.folder / "several_zones", env=self.environment)
+        self.assertEqual(done.returncode, 0, done.stdout[-2000:] + done.stderr)
+        ask = "import lacon; print(len(lacon.open('several_zones/several_zones.base')['RESULT'].contact()))"
+        for home in ("share/lacon/python", "lib/python3/dist-packages"):
+            self.assertEqual(self.python(home, ask), ["41"])
+
+    def test_python_runs_studies_with_the_operators_of_its_installation(self):
+        found = self.python("share/lacon/python", "from lacon.core import plugins; print(plugins.operator_folder())")
+        self.assertEqual(" ".join(found), str(made["prefix"].resolve() / "bin"))
+
+    def test_there_are_completion_and_man_pages(self):
+        for path in ("share/bash-completion/completions/lacon", "share/zsh/vendor-completions/_lacon", "share/man/man1/lacon.1", "share/man/man1/lacon-watch.1",
+                     "share/man/man7/lacon-DEFI_CONTACT.7", "share/lacon/python/lacon/py.typed", "share/lacon/python/lacon/__init__.pyi"):
+            self.assertTrue((made["prefix"] / path).is_file(), path)
+
+
 class Program(unittest.TestCase):
     """A program of one's own that links the package."""
 

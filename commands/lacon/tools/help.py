@@ -46,21 +46,26 @@ def _command(name):
 
 def _keywords(row, indent):
     for name, keyword in row.get("keyword", {}).items():
-        yield " " * indent + f"{name}  {_kind(keyword)}"
+        yield " " * indent + f"{name}  {kind(keyword)}"
         yield from _wrap(keyword["help"], indent + 4)
         yield from _keywords(keyword, indent + 4)
+    for rule in rules(row):
+        yield from _wrap(rule, indent)
+
+
+def rules(row):
+    """What holds between the keywords of a command or of a factor keyword, in words."""
     for rule in row.get("rule", ()):
         words = {"exactly_one": "exactly one of", "at_least_one": "at least one of", "exclusive": "at most one of",
                  "together": "all or none of"}[rule["kind"]]
-        yield from _wrap(f"{words}: {', '.join(rule['of'])}", indent)
+        yield f"{words}: {', '.join(rule['of'])}"
     for when in row.get("when", ()):
-        yield from _wrap(_when(when), indent)
+        yield _when(when)
 
 
-def _kind(row):
+def kind(row):
     """"integer, mandatory, at least 1" and the like."""
-    kind = " or ".join(_types.get(k, k.replace("_", " ")) for k in row["type"].split("|"))
-    words = [kind]
+    words = [" or ".join(_types.get(k, k.replace("_", " ")) for k in row["type"].split("|"))]
     most = row.get("max", 1)
     if most != 1:
         words.append("one or many" if most == "many" else f"up to {most}")

@@ -1,0 +1,15 @@
+# The Debian package: ./commands/package makes it, for the Debian that it is built on.
+set(CPACK_GENERATOR DEB)
+set(CPACK_PACKAGE_NAME lacon)
+set(CPACK_PACKAGE_CONTACT "The Lacon project <lacon@localhost>")
+set(CPACK_PACKAGE_DESCRIPTION_SUMMARY "Contact mechanics by the Local Average Contact method")
+set(CPACK_PACKAGE_DESCRIPTION "Runs code_aster command files with contact between deformable bodies: a mortar method with one constant pressure
+for each small patch of the slave skin. With the launcher, the operators, the Python module, plug-in headers, man pages and shell completion.")
+set(CPACK_PACKAGING_INSTALL_PREFIX /usr)
+set(CPACK_STRIP_FILES ON)
+set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
+set(CPACK_DEBIAN_PACKAGE_SECTION science)
+set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)
+set(CPACK_DEBIAN_PACKAGE_DEPENDS "python3 (>= 3.11), python3-numpy, python3-h5py")
+set(CPACK_DEBIAN_PACKAGE_RECOMMENDS "python3-matplotlib, python3-meshio")
+include(CPack)
