@@ -7,6 +7,7 @@
 #include "lacon/catalog/messages.hpp"
 #include "lacon/catalog/quantities.hpp"
 #include "lacon/operators/program/study_function.hpp"
+#include "lacon/structures/names.hpp"
 
 namespace lacon {
 
@@ -62,7 +63,7 @@ namespace {
 std::vector<std::int32_t> nodes_by_name(const LoadScene& scene, const Keywords& factor, const std::string& keyword) {
   std::vector<std::int32_t> nodes;
   for (const std::string& name : factor.texts(keyword)) {
-    const std::optional<std::int32_t> node = number_of_name(name, 'N', scene.mesh.n_nodes());
+    const std::optional<std::int32_t> node = find_by_name(scene.mesh, name, Entity::node);
     if (!node)
       fail("CHARGE_1", {{"keyword", factor.path(keyword)},
                         {"name", name},

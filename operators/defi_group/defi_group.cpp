@@ -8,6 +8,7 @@
 
 #include "lacon/catalog/messages.hpp"
 #include "lacon/operators/meshing/chain.hpp"
+#include "lacon/structures/names.hpp"
 #include "lacon/structures/vector.hpp"
 
 namespace lacon {
@@ -28,8 +29,9 @@ const Kind cells{"cell", 'M', "DETR_GROUP_MA", &Mesh::cell_groups, cells_of_grou
 const Kind nodes{"node", 'N', "DETR_GROUP_NO", &Mesh::node_groups, nodes_of_group};
 
 /// The number behind `M12`, 0-based.
-std::int32_t number_of(std::string_view name, const Kind& kind, std::size_t count, const std::string& keyword) {
-  const std::optional<std::int32_t> number = number_of_name(name, kind.letter, count);
+std::int32_t number_of(const Mesh& mesh, std::string_view name, const Kind& kind, std::size_t count,
+                       const std::string& keyword) {
+  const std::optional<std::int32_t> number = find_by_name(mesh, name, kind.letter == 'N' ? Entity::node : Entity::cell);
   if (!number)
     fail("GROUPE_2", {{"keyword", keyword},
                       {"what", std::string(kind.name)},
@@ -75,7 +77,8 @@ std::optional<Members> combined(const Mesh& mesh, const Kind& kind, const Keywor
   const char* copy = kind.letter == 'M' ? "GROUP_MA" : "GROUP_NO";
   if (factor.has(by_name)) {
     Members members;
-    for (const std::string& name : factor.texts(by_name)) members.push_back(number_of(name, kind, count, factor.path(by_name)));
+    for (const std::string& name : factor.texts(by_name))
+      members.push_back(number_of(mesh, name, kind, count, factor.path(by_name)));
     return members;
   }
   if (factor.has(copy)) return group(factor.text(copy), copy);
@@ -209,7 +212,7 @@ Vec3 step(const Mesh& mesh, std::int32_t from, std::int32_t to) {
 /// The node at an end of a line: GROUP_NO_ORIG or NOEUD_ORIG for the suffix ORIG, or none.
 std::optional<std::int32_t> end_node(const Mesh& mesh, const Keywords& factor, const std::string& suffix) {
   if (const std::string keyword = "NOEUD_" + suffix; factor.has(keyword))
-    return number_of(factor.text(keyword), nodes, mesh.n_nodes(), factor.path(keyword));
+    return number_of(mesh, factor.text(keyword), nodes, mesh.n_nodes(), factor.path(keyword));
   const std::string keyword = "GROUP_NO_" + suffix;
   if (!factor.has(keyword)) return std::nullopt;
   const auto members = nodes_of_group(mesh, factor.text(keyword), factor.path(keyword));

@@ -10,6 +10,7 @@
 
 #include "lacon/catalog/messages.hpp"
 #include "lacon/structures/hdf5.hpp"
+#include "lacon/structures/names.hpp"
 
 namespace lacon {
 
@@ -66,10 +67,10 @@ std::vector<Observer::Value> reduce_by_component(const std::string& how, const s
   return reduced;
 }
 
-/// One entry for each of `count` nodes or cells: not 0 where the keyword names it.
-void mark_names(const Keywords& keywords, std::string_view keyword, char letter, std::vector<char>& marked) {
+/// One entry for each node (letter N) or cell (M): not 0 where the keyword names it.
+void mark_names(const Mesh& mesh, const Keywords& keywords, std::string_view keyword, char letter, std::vector<char>& marked) {
   for (const std::string& name : keywords.texts(keyword)) {
-    const auto number = number_of_name(name, letter, marked.size());
+    const auto number = find_by_name(mesh, name, letter == 'N' ? Entity::node : Entity::cell);
     if (!number)
       fail("OBSERVATION_5", {{"keyword", keywords.path(keyword)},
                              {"name", name},
@@ -85,8 +86,8 @@ Observer::Observer(const Keywords& keywords, const Base& base, const Mesh& mesh,
     : keywords_(keywords), name_(std::move(name)), nodes_(mesh.n_nodes(), 0), cells_(mesh.n_cells(), 0) {
   const bool somewhere =
       keywords.has("NOEUD") || keywords.has("GROUP_NO") || keywords.has("MAILLE") || keywords.has("GROUP_MA");
-  mark_names(keywords, "NOEUD", 'N', nodes_);
-  mark_names(keywords, "MAILLE", 'M', cells_);
+  mark_names(mesh, keywords, "NOEUD", 'N', nodes_);
+  mark_names(mesh, keywords, "MAILLE", 'M', cells_);
   for (const std::string& group : keywords.texts("GROUP_NO"))
     for (const std::int32_t node : nodes_of_group(mesh, group, keywords.path("GROUP_NO"))) nodes_[node] = 1;
   for (const std::string& group : keywords.texts("GROUP_MA"))

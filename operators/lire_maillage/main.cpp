@@ -5,6 +5,7 @@
 #include "lacon/operators/program/program.hpp"
 #include "lacon/structures/formats/gmsh.hpp"
 #include "lacon/structures/formats/listing.hpp"
+#include "lacon/structures/formats/mail.hpp"
 #include "lacon/structures/formats/med.hpp"
 
 namespace {
@@ -16,8 +17,10 @@ void read_mesh(const Order& order, const Base& base) {
   const std::filesystem::path file = order.unit(keywords.integer("UNITE"));
   Mesh mesh = [&] {
     const Phase phase("read");
-    return keywords.text("FORMAT") == "GMSH" ? read_gmsh_mesh(file)
-                                             : read_med_mesh(file, keywords.has("NOM_MED") ? keywords.text("NOM_MED") : "");
+    const std::string format = keywords.text("FORMAT");
+    if (format == "GMSH") return read_gmsh_mesh(file);
+    if (format == "ASTER") return read_mail_mesh(file);
+    return read_med_mesh(file, keywords.has("NOM_MED") ? keywords.text("NOM_MED") : "");
   }();
   {
     const Phase phase("check");
@@ -34,6 +37,6 @@ void read_mesh(const Order& order, const Base& base) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  return lacon::run_program(argc, argv, "lire_maillage", "Reads a mesh from a MED or gmsh file (command LIRE_MAILLAGE)",
+  return lacon::run_program(argc, argv, "lire_maillage", "Reads a mesh from a MED, gmsh or .mail file (command LIRE_MAILLAGE)",
                             read_mesh);
 }

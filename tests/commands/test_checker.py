@@ -90,8 +90,8 @@ class Mistakes(unittest.TestCase):
                                  ("value", "DEFI_CONTACT/FORMULATION=DISCRETE", "use FORMULATION='CONTINUE'"),
                                  ("keyword", "DEFI_CONTACT/ZONE[1]/GLISSIERE", "no idea")):
             self.assertTrue(catalog.instead(kind, path, "no idea").startswith(text), path)
-        (found,) = checker.complete("LIRE_MAILLAGE", catalog.command("LIRE_MAILLAGE"), {"FORMAT": "ASTER"})[1]
-        self.assertTrue(found.do.startswith("use a MED file"), found)
+        (found,) = checker.complete("LIRE_MAILLAGE", catalog.command("LIRE_MAILLAGE"), {"FORMAT": "IDEAS"})[1]
+        self.assertTrue(found.do.startswith("use a MED or gmsh file"), found)
 
     def test_every_replacement_is_of_something_refused(self):
         refused, values = set(), set()

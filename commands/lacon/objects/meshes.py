@@ -1,5 +1,7 @@
 """Meshes and models as a command file sees them."""
 
+import re
+
 from ..base import contents
 from ..core.concepts import Concept
 from ..core.nearest import nearest
@@ -35,6 +37,11 @@ class Mesh(Concept):
     def nodes_of(self, cells):
         """Nodes of cells, one cell after the other."""
         return self._read(contents.nodes_of, cells)
+
+    def node_counts(self, cells):
+        """How many nodes each of some cells has."""
+        offset, _ = self._read(contents.connectivity)
+        return offset[cells + 1] - offset[cells]
 
     def getGroupsOfCells(self, local=False):
         return self.group_names("cells")
@@ -95,6 +102,15 @@ class Mesh(Concept):
 
     def getNodeName(self, node):
         return f"N{node + 1}"
+
+    def number_of(self, kind, name):
+        """The node or cell of this name, counted from 0; None where there is none: the one member of a group of the name, or N12, NO12; M12, MA12."""
+        own = self.group(kind, name)
+        if own is not None and len(own) == 1:
+            return int(own[0])
+        count = self.getNumberOfNodes() if kind == "nodes" else self.getNumberOfCells()
+        number = re.fullmatch({"nodes": "NO?", "cells": "MA?"}[kind] + "([1-9][0-9]*)", name)
+        return int(number[1]) - 1 if number and int(number[1]) <= count else None
 
     def LIST_GROUP_MA(self):
         """[(name, number of cells)]"""
