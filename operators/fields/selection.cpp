@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "lacon/catalog/messages.hpp"
 
@@ -12,15 +13,22 @@ namespace lacon {
 namespace {
 
 /// The order whose instant is `instant`. A relative precision of an instant 0 means exactly 0, as with the peer.
-std::int64_t order_at(const Result& result, double instant, double tolerance, const std::string& keyword) {
+/// @param lenient an instant that is not there is nothing, with an alarm
+std::optional<std::int64_t> order_at(const Result& result, double instant, double tolerance, const std::string& keyword,
+                                     bool lenient) {
   std::vector<std::int64_t> found;
   for (std::size_t k = 0; k < result.orders.size(); ++k)
     if (std::abs(result.instants[k] - instant) <= tolerance) found.push_back(result.orders[k]);
-  if (found.empty())
-    fail("FIELDS_2", {{"keyword", keyword},
-                      {"label", result.label},
-                      {"instant", fmt::format("{}", instant)},
-                      {"known", fmt::format("{}", fmt::join(result.instants, ", "))}});
+  if (found.empty()) {
+    const Message missing =
+        message(lenient ? "FIELDS_5" : "FIELDS_2", {{"keyword", keyword},
+                                                    {"label", result.label},
+                                                    {"instant", fmt::format("{}", instant)},
+                                                    {"known", fmt::format("{}", fmt::join(result.instants, ", "))}});
+    if (!lenient) throw Error(missing);
+    inform(missing);
+    return std::nullopt;
+  }
   if (found.size() > 1)
     fail("FIELDS_3", {{"keyword", keyword},
                       {"label", result.label},
@@ -51,9 +59,13 @@ std::vector<std::int64_t> selected_orders(const Base& base, const Result& result
     const std::vector<double> instants = list ? base.list_of_reals(keywords.concept_id("LIST_INST")) : keywords.reals("INST");
     const double precision = keywords.real("PRECISION");
     const bool relative = keywords.text("CRITERE") == "RELATIF";
+    const auto find = [&](double instant, bool lenient) {
+      return order_at(result, instant, relative ? precision * std::abs(instant) : precision,
+                      keywords.path(list ? "LIST_INST" : "INST"), lenient);
+    };
     for (const double instant : instants)
-      orders.push_back(order_at(result, instant, relative ? precision * std::abs(instant) : precision,
-                                keywords.path(list ? "LIST_INST" : "INST")));
+      if (const auto order = find(instant, list)) orders.push_back(*order);
+    if (orders.empty()) find(instants.front(), false);
   }
   std::sort(orders.begin(), orders.end());
   orders.erase(std::unique(orders.begin(), orders.end()), orders.end());

@@ -11,8 +11,8 @@ namespace lacon {
 bool names_instants(const Keywords& keywords);
 
 /// The orders of the result that NUME_ORDRE, INST or LIST_INST (with PRECISION and CRITERE) name; all of them without these.
-/// Throws FIELDS_1 for an order, FIELDS_2 for an instant that the result does not have, FIELDS_3 for an instant that is
-/// several.
+/// Instants of LIST_INST that the result does not have are told (FIELDS_5), unless it has none of them. Throws FIELDS_1 for an
+/// order, FIELDS_2 for an instant that the result does not have, FIELDS_3 for an instant that is several.
 std::vector<std::int64_t> selected_orders(const Base& base, const Result& result, const Keywords& keywords);
 
 /// The index of a new result: the same calculation, only these of its orders, no fields yet.

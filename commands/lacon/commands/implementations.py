@@ -13,6 +13,7 @@ _families = {
     "table_commands": ("CREA_TABLE", "IMPR_TABLE", "TEST_TABLE", "RECU_TABLE"),
     "calc_table": ("CALC_TABLE",),
     "function_commands": ("IMPR_FONCTION", "TEST_FONCTION", "RECU_FONCTION", "CALC_FONCTION"),
+    "reading": ("LIRE_TABLE", "LIRE_FONCTION"),
     "post_releve_t": ("POST_RELEVE_T",),
 }
 _home = {command: family for family, commands in _families.items() for command in commands}
@@ -21,6 +22,11 @@ _home = {command: family for family, commands in _families.items() for command i
 def commands():
     """Every command that Python does itself."""
     return tuple(_home)
+
+
+def home(command):
+    """The module that does a command."""
+    return _home[command]
 
 
 def implementation(command):

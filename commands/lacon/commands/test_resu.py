@@ -52,8 +52,8 @@ def _field_check(call, test, kind, path):
 
 def _value_check(call, test, path, field, label, name, instant):
     """A value of a field, wherever the field is from."""
-    if test["NOM_CMP"] not in field.components:
+    if test.get("NOM_CMP", field.components[0]) not in field.components:
         call.fail("TEST_RESU_4", f"{path}/NOM_CMP", component=test["NOM_CMP"], field=name, known=", ".join(field.components))
     values, place = places.select(call, test, path, field)
     value = places.reduce(values, test.get("TYPE_TEST"))
-    return checks.conclude(call, checks.Check(call.where, label, name, test["NOM_CMP"], place, instant, test.get("LEGENDE", ""), value), test)
+    return checks.conclude(call, checks.Check(call.where, label, name, test.get("NOM_CMP", ""), place, instant, test.get("LEGENDE", ""), value), test)

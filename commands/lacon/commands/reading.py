@@ -1,0 +1,175 @@
+"""LIRE_TABLE, LIRE_FONCTION: tables and functions from text files."""
+
+import re
+
+from ..base.functions import Piecewise
+from ..tables import storage
+from ..tables.table import Table, type_of
+from . import functions
+
+_missing = "-"
+
+
+def _lines(call):
+    """(the file of UNITE, its lines)"""
+    path = call.study.input_unit(call.keywords["UNITE"], f"{call.command}/UNITE, {call.where}")
+    with open(path, encoding="utf-8", errors="replace") as file:
+        lines = file.read().splitlines()
+    call.study.has_read(path)
+    return path, lines
+
+
+def _number(text):
+    """A number as Fortran or anyone writes it; None for any other text."""
+    try:
+        return float(re.sub("[dD]", "e", text))
+    except ValueError:
+        return None
+
+
+def _words(line, separator):
+    """Cells of a line; blanks count as one separator."""
+    return line.split() if separator is None else [cell.strip() for cell in line.strip().removesuffix(separator).split(separator)]
+
+
+# ---------------------------------------------------------------------------------------------------- LIRE_TABLE
+
+
+def lire_table(call):
+    k = call.keywords
+    path, lines = _lines(call)
+    numbered = list(enumerate(lines, 1))
+    blocks = _between_marks(call, path, numbered) if k["FORMAT"] == "ASTER" else _paragraphs(numbered)
+    if k["NUME_TABLE"] > len(blocks):
+        call.fail("TABLE_15", "NUME_TABLE", file=path, count=len(blocks), format=k["FORMAT"])
+    table = _table(call, path, blocks[k["NUME_TABLE"] - 1])
+    if "TITRE" in k:
+        table.titr = "\n".join(k["TITRE"])
+    return storage.make(call, table)
+
+
+def _between_marks(call, path, lines):
+    """Lines between #DEBUT_TABLE and #FIN_TABLE, table by table."""
+    blocks, block = [], None
+    for number, line in lines:
+        word = line.strip()
+        if word == "#DEBUT_TABLE":
+            block = []
+        elif word == "#FIN_TABLE" and block is not None:
+            blocks.append(block)
+            block = None
+        elif block is not None:
+            block.append((number, line))
+    if block is not None:
+        call.fail("TABLE_14", "UNITE", file=path, line=len(lines), reason="the file ends before #FIN_TABLE")
+    return blocks
+
+
+def _paragraphs(lines):
+    """Lines between empty lines; comments alone are no table."""
+    blocks = [[]]
+    for number, line in lines:
+        if line.strip().strip("#"):
+            blocks[-1].append((number, line))
+        elif not line.strip() and blocks[-1]:
+            blocks.append([])
+    return [block for block in blocks if any(not line.strip().startswith("#") for _, line in block)]
+
+
+def _table(call, path, lines):
+    """A line of names, in FORMAT='ASTER' one of types, rows."""
+    k = call.keywords
+    separator = k["SEPARATEUR"].strip() or None
+    marked = k["FORMAT"] == "ASTER"
+    title = [line.strip()[len("#TITRE "):] for _, line in lines if line.strip().startswith("#TITRE ")]
+    rows = [(number, _words(line, separator)) for number, line in lines if line.strip() and not line.strip().startswith("#")]
+    if len(rows) < (2 if marked else 1):
+        call.fail("TABLE_14", "UNITE", file=path, line=lines[-1][0] if lines else 1, reason="a table begins with the names of its columns"
+                  + (" and their types" if marked else ""))
+    names = _unique(call, rows[0][1])
+    kinds = rows[1][1] if marked else []
+    body = rows[2 if marked else 1:]
+    for number, cells in ([rows[1]] if marked else []) + body:
+        if len(cells) != len(names):
+            call.fail("TABLE_14", "UNITE", file=path, line=number, reason=f"{len(cells)} cells for {len(names)} columns")
+    for kind in kinds:
+        if kind not in ("I", "R") and not re.fullmatch("K(8|16|24|32|80)", kind):
+            call.fail("TABLE_14", "UNITE", file=path, line=rows[1][0], reason=f"'{kind}' is no type of a column: I, R, K8 to K80")
+    columns = {}
+    for c, name in enumerate(names):
+        texts = [(number, cells[c]) for number, cells in body]
+        columns[name] = _column(call, path, texts, kinds[c] if marked else None)
+    return Table.of_columns(columns, "\n".join(title))
+
+
+def _column(call, path, texts, kind):
+    """(type, values); the type follows from the texts where it is not given."""
+    there = [text for _, text in texts if text != _missing]
+    if kind is None:
+        if not all(_number(text) is not None for text in there):
+            kind = type_of(there)
+        else:
+            kind = "I" if there and all(re.fullmatch("[+-]?[0-9]+", text) for text in there) else "R"
+    values = []
+    for number, text in texts:
+        if text == _missing:
+            values.append(None)
+        elif kind[0] == "K":
+            values.append(text)
+        elif _number(text) is None or (kind == "I" and not _number(text).is_integer()):
+            call.fail("TABLE_14", "UNITE", file=path, line=number, reason=f"'{text}' is no {'integer' if kind == 'I' else 'number'}")
+        else:
+            values.append(int(_number(text)) if kind == "I" else _number(text))
+    return kind, values
+
+
+def _unique(call, names):
+    """Names of columns; with RENOMME_PARA='UNIQUE' a name that was there gets a number."""
+    found = []
+    for name in names:
+        if name in found and call.keywords.get("RENOMME_PARA") != "UNIQUE":
+            call.fail("TABLE_7", "RENOMME_PARA", name=name)
+        number = 1
+        given = name
+        while name in found:
+            name, number = f"{given}_{number}", number + 1
+        found.append(name)
+    return found
+
+
+# ---------------------------------------------------------------------------------------------------- LIRE_FONCTION
+
+
+def lire_fonction(call):
+    k = call.keywords
+    path, lines = _lines(call)
+    blocks = _blocks(lines, {"None": None}.get(k["SEPAR"], k["SEPAR"]))
+    x, y = (_of_block(call, path, blocks, keyword) for keyword in ("INDIC_PARA", "INDIC_RESU"))
+    if len(x) != len(y):
+        call.fail("DEFI_FONCTION_5", "INDIC_RESU", parameters=len(x), values=len(y))
+    x, y = functions.increasing(call, x, y, k["VERIF"], "INDIC_PARA")
+    like = Piecewise(x, y, parameter=k["NOM_PARA"], component=k["NOM_RESU"])
+    return functions.make(call, functions.described(call, x, y, like), "UNITE")
+
+
+def _blocks(lines, separator):
+    """Lines of numbers one behind the other are a block; any other line separates blocks."""
+    blocks, open_block = [], False
+    for line in lines:
+        row = [_number(word) for word in _words(line, separator)]
+        is_row = bool(row) and None not in row
+        if is_row and not open_block:
+            blocks.append([])
+        if is_row:
+            blocks[-1].append(row)
+        open_block = is_row
+    return blocks
+
+
+def _of_block(call, path, blocks, keyword):
+    """A column of numbers that (block, column) names, from 1."""
+    block, column = call.keywords[keyword]
+    if block > len(blocks) or any(column > len(row) for row in blocks[block - 1]):
+        sizes = "; ".join(f"block {i}: {min(map(len, b))} columns, {len(b)} lines" for i, b in enumerate(blocks, 1)) or "no numbers"
+        call.fail("FUNCTION_16", keyword, file=path, block=block, column=column, known=sizes)
+    return [row[column - 1] for row in blocks[block - 1]]
