@@ -4,8 +4,53 @@
 #include <cmath>
 
 #include "lacon/catalog/messages.hpp"
+#include "lacon/pairing/normals.hpp"
 
 namespace lacon {
+namespace {
+
+/// The patches around each node of the slave skins.
+struct PatchesAround {
+  std::vector<std::int32_t> nodes;  ///< by number
+  Ragged<std::size_t> patches;      ///< of each node
+
+  PatchesAround(const Mesh& mesh, const Contact& contact) {
+    std::vector<std::pair<std::int32_t, std::size_t>> pairs;
+    for (const SlaveElement& slave : contact.slaves)
+      for (const std::int32_t node : mesh.cells[slave.cell]) pairs.emplace_back(node, slave.patch);
+    std::sort(pairs.begin(), pairs.end());
+    pairs.erase(std::unique(pairs.begin(), pairs.end()), pairs.end());
+    for (const auto& [node, patch] : pairs) {
+      if (nodes.empty() || nodes.back() != node) {
+        nodes.push_back(node);
+        patches.offset.push_back(patches.offset.back());
+      }
+      patches.values.push_back(patch);
+      ++patches.offset.back();
+    }
+  }
+};
+
+/// The mean of what `value` says of some patches, weighted with their measures.
+template <class Value>
+double mean(const ContactGeometry& geometry, std::span<const std::size_t> around, const Value& value) {
+  double sum = 0, measure = 0;
+  for (const std::size_t p : around) sum += geometry.whole(p) * value(p), measure += geometry.whole(p);
+  return measure > 0 ? sum / measure : 0;
+}
+
+/// Outward unit normals of all slave skins at the nodes, (n_nodes, 3); zero elsewhere.
+std::vector<double> slave_normals(const Mesh& mesh, const ContactGeometry& geometry) {
+  std::vector<double> normals(3 * mesh.n_nodes(), 0.0);
+  for (const ContactGeometry::Zone& zone : geometry.zones()) {
+    const std::vector<double> own = nodal_normals(zone.slave);
+    for (std::size_t i = 0; i < own.size(); ++i)
+      if (own[i] != 0) normals[i] = own[i];
+  }
+  return normals;
+}
+
+}  // namespace
 
 Field contact_field(const Contact& contact, const ContactGeometry& geometry, const Patchwise& patches) {
   Field field{.name = "CONT_ELEM", .quantity = "CLAC_R", .location = Location::cells, .components = {"CONT"}};
@@ -23,6 +68,52 @@ Field contact_field(const Contact& contact, const ContactGeometry& geometry, con
     field.values.insert(field.values.end(), {paired ? geometry.gap(p) : -1.0, coverage, coverage * pressure});
     for (const std::string& component : field.components)  // JEU is -1 where there is no gap
       field.present.push_back(paired || component != "JEU" ? Field::there : Field::stand_in);
+  }
+  if (std::count(field.present.begin(), field.present.end(), Field::stand_in) == 0) field.present.clear();
+  return field;
+}
+
+std::vector<std::pair<std::int32_t, double>> nodal_pressures(const Mesh& mesh, const Contact& contact,
+                                                             const ContactGeometry& geometry, const Patchwise& patches) {
+  const PatchesAround around(mesh, contact);
+  std::vector<std::pair<std::int32_t, double>> pressures;
+  for (std::size_t i = 0; i < around.nodes.size(); ++i)
+    pressures.emplace_back(around.nodes[i],
+                           mean(geometry, around.patches[i], [&](std::size_t p) { return patches.lambda[p]; }));
+  return pressures;
+}
+
+Field nodal_contact_field(const Mesh& mesh, const Contact& contact, const ContactState& state, const Patchwise& patches) {
+  Field field{.name = "CONT_NOEU", .quantity = "INFC_R", .location = Location::nodes, .components = {"CONT", "JEU", "PRES"}};
+  const int dimension = mesh.dimension;
+  for (const char* vector : {"RN", "R", "V"}) {
+    if (*vector == 'R') field.components.emplace_back(vector);
+    for (int d = 0; d < dimension; ++d) field.components.push_back(std::string(vector) + "XYZ"[d]);
+  }
+  const ContactGeometry& geometry = state.geometry();
+  const std::vector<double> forces = state.forces(patches), normals = slave_normals(mesh, geometry);
+  const PatchesAround around(mesh, contact);
+  field.support = around.nodes;
+  for (std::size_t i = 0; i < around.nodes.size(); ++i) {
+    const std::span<const std::size_t> all = around.patches[i];
+    std::vector<std::size_t> paired;
+    for (const std::size_t p : all)
+      if (patches.status[p] != Status::unpaired) paired.push_back(p);
+    const bool active = std::ranges::any_of(all, [&](std::size_t p) { return patches.status[p] == Status::active; });
+    field.values.push_back(active ? 2.0 : paired.empty() ? -1.0 : 0.0);
+    field.values.push_back(paired.empty() ? -1.0 : mean(geometry, paired, [&](std::size_t p) { return geometry.gap(p); }));
+    field.values.push_back(mean(geometry, all, [&](std::size_t p) { return patches.lambda[p]; }));
+    const std::size_t node = static_cast<std::size_t>(around.nodes[i]);
+    const std::span<const double> force(forces.data() + node * dimension, dimension);
+    double square = 0;
+    for (const double f : force) square += f * f;
+    for (int with_friction = 0; with_friction < 2; ++with_friction) {
+      field.values.push_back(std::sqrt(square));
+      field.values.insert(field.values.end(), force.begin(), force.end());
+    }
+    field.values.insert(field.values.end(), normals.begin() + 3 * node, normals.begin() + 3 * node + dimension);
+    for (const std::string& component : field.components)
+      field.present.push_back(component == "JEU" && paired.empty() ? Field::stand_in : Field::there);
   }
   if (std::count(field.present.begin(), field.present.end(), Field::stand_in) == 0) field.present.clear();
   return field;

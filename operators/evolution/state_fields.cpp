@@ -14,7 +14,8 @@ namespace {
 
 /// A field that has all of its values says so by an empty mask.
 void clear_if_whole(Field& field) {
-  if (std::all_of(field.present.begin(), field.present.end(), [](std::uint8_t p) { return p != 0; })) field.present.clear();
+  if (std::all_of(field.present.begin(), field.present.end(), [](std::uint8_t p) { return p == Field::there; }))
+    field.present.clear();
 }
 
 /// Fill a field at integration points from the values of the solid sets, (cells, points, components of the set). Cells are in
@@ -108,15 +109,18 @@ FieldMakers fields_of(const Present& present) {
   const StaticProblem& problem = present.problem;
   const StaticState& state = present.state;
   FieldMakers fields;
-  fields["DEPL"] = [&] { return displacement_field(problem, state); };
+  const ContactState* const contact = present.contact;
+  fields["DEPL"] = [&, contact] { return displacement_field(problem, state, contact); };
   fields["SIEF_ELGA"] = [&] { return stress_field(problem, state); };
   if (has_variables(problem)) fields["VARI_ELGA"] = [&] { return variable_field(problem, state); };
-  if (const ContactState* contact = present.contact)
+  if (contact) {
     fields["CONT_ELEM"] = [&, contact] { return contact_field(*problem.contact, contact->geometry(), state.patches); };
+    fields["CONT_NOEU"] = [&, contact] { return nodal_contact_field(problem.mesh, *problem.contact, *contact, state.patches); };
+  }
   return fields;
 }
 
-Field displacement_field(const StaticProblem& problem, const StaticState& state) {
+Field displacement_field(const StaticProblem& problem, const StaticState& state, const ContactState* contact) {
   Field field{.name = "DEPL", .quantity = "DEPL_R", .location = Location::nodes, .components = problem.components};
   if (problem.contact) field.components.emplace_back("LAGS_C");
   const std::size_t width = field.components.size(), own = problem.components.size();
@@ -130,6 +134,11 @@ Field displacement_field(const StaticProblem& problem, const StaticState& state)
       field.present.push_back(c < own && problem.exists[node * own + c]);
     }
   }
+  if (contact)
+    for (const auto& [node, pressure] : nodal_pressures(problem.mesh, *problem.contact, contact->geometry(), state.patches)) {
+      field.at(row[node], own) = pressure;
+      field.present[row[node] * width + own] = Field::stand_in;
+    }
   if (problem.contact)
     for (std::size_t p = 0; p < problem.mesh.patches->size(); ++p)
       for (const std::int32_t node : problem.mesh.patches->carriers[p]) {

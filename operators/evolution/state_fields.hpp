@@ -1,5 +1,6 @@
 #pragma once
-// The fields of an instant: DEPL, SIEF_ELGA, VARI_ELGA, CONT_ELEM (METHOD.md 4); and the state that a result holds in them.
+// The fields of an instant: DEPL, SIEF_ELGA, VARI_ELGA, CONT_ELEM (METHOD.md 4), CONT_NOEU; and the state that a result holds
+// in them.
 #include <functional>
 #include <map>
 #include <string>
@@ -22,7 +23,8 @@ using FieldMakers = std::map<std::string, std::function<Field()>>;
 FieldMakers fields_of(const Present& present);
 
 /// Displacements and the other unknowns of nodes, with LAGS_C on the carriers of the patches, equal on those of one patch.
-Field displacement_field(const StaticProblem& problem, const StaticState& state);
+/// @param contact makes stand-ins of LAGS_C at the other nodes of the slave skins: nodal_pressures()
+Field displacement_field(const StaticProblem& problem, const StaticState& state, const ContactState* contact = nullptr);
 /// Stresses at the integration points of the solid elements.
 Field stress_field(const StaticProblem& problem, const StaticState& state);
 /// Internal variables V1, V2, ... at the integration points of the cells whose law has them; empty where none has.

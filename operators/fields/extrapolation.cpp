@@ -94,7 +94,7 @@ Field cell_nodes_to_nodes(const Mesh& mesh, const Field& cells, std::string name
   for (std::size_t i = 0; i < cells.support.size(); ++i) {
     const auto members = mesh.cells[static_cast<std::size_t>(cells.support[i])];
     for (std::size_t a = 0; a < members.size(); ++a) {
-      const std::size_t from = static_cast<std::size_t>(cells.offset[i]) + a;
+      const std::size_t from = cells.offset.empty() ? i : static_cast<std::size_t>(cells.offset[i]) + a;
       const auto to = static_cast<std::size_t>(row_of[static_cast<std::size_t>(members[a])]);
       for (std::size_t c = 0; c < n_components; ++c)
         if (cells.counts(from, c)) {

@@ -21,8 +21,8 @@ std::vector<double> extrapolation_matrix(CellType type, int n_points);
 /// Values at the nodes of each cell (ELNO) from values at its integration points (ELGA): the same cells, components, instant.
 Field gauss_points_to_cell_nodes(const Mesh& mesh, const Field& points, std::string name);
 
-/// Values at nodes (NOEU) from values at the nodes of cells (ELNO): the arithmetic mean over the cells of the field that share
-/// the node and have the component there. Nodes by number.
+/// Values at nodes (NOEU) from values at the nodes of cells (ELNO) or of cells (ELEM): the arithmetic mean over the cells of
+/// the field that share the node and have the component there. Nodes by number.
 Field cell_nodes_to_nodes(const Mesh& mesh, const Field& cells, std::string name);
 
 /// The part of a field of cells (ELGA, ELNO, ELEM) on those of its cells that `wanted` marks; wanted has one entry a cell of

@@ -10,6 +10,7 @@
 
 #include "lacon/catalog/messages.hpp"
 #include "lacon/operators/fields/axes.hpp"
+#include "lacon/operators/fields/extrapolation.hpp"
 #include "lacon/operators/fields/layout.hpp"
 #include "lacon/operators/fields/selection.hpp"
 #include "lacon/operators/macr_lign_coupe/lines.hpp"
@@ -242,12 +243,12 @@ void macr_lign_coupe(const Order& order, const Base& base) {
     const std::vector<LinePoint> points = line_points(mesh, locator, line);
     const Row name{{"INTITULE", "K24", title(line, ++number)}};
     for (const std::int64_t o : subject.orders) {
-      const Field field =
-          subject.result ? base.field(*subject.result, subject.name, o) : base.field(keywords.concept_id("CHAM_GD"));
-      if (field.location != Location::nodes)
+      Field field = subject.result ? base.field(*subject.result, subject.name, o) : base.field(keywords.concept_id("CHAM_GD"));
+      if (field.location == Location::gauss_points)
         fail("LIGNCOUPE_5", {{"field", subject.name}, {"location", std::string(location_name(field.location))}});
       const std::string keyword = subject.result ? "NOM_CHAM" : "CHAM_GD";
       if (field.quantity.ends_with("_F")) fail("CREACHAMP_12", {{"field", subject.name}, {"keyword", keyword}});
+      if (field.location != Location::nodes) field = cell_nodes_to_nodes(mesh, field, field.name);
       Row head = name;
       if (subject.result)
         head.insert(head.end(), {{"RESU", "K8", subject.result->label},

@@ -36,6 +36,19 @@ TEST_TABLE(TABLE=T, NOM_PARA='DX', TYPE_TEST='MAX', VALE_CALC=6.0)
 assert t.values()['DX'] == [0, 0, 1.5, 0.5, 3, 1] and t.values()['NOEUD'] == ['N3', 'N1'] * 3 and t.values()['ABSC_CURV'][1] == 2
 """))
 
+    def test_instants_of_a_list_that_are_not_there_are_told(self):
+        run = self.action("LIST_INST=DEFI_LIST_REEL(VALE=(0.5, 0.7, 1.0)), NOEUD='N1', NOM_CHAM='DEPL', NOM_CMP='DX', OPERATION='EXTRACTION'",
+                          "assert t.values()['INST'] == [0.5, 1.0], t")
+        self.assertEqual(run.status, 0, run.err)
+        self.assertIn("<A> <FIELDS_5>", run.err)
+        self.assertIn("no instant 0.7", run.err)
+        self.refused(self.action("LIST_INST=DEFI_LIST_REEL(VALE=(0.2, 0.7)), NOEUD='N1', NOM_CHAM='DEPL', NOM_CMP='DX', OPERATION='EXTRACTION'", ""),
+                     "TEST_RESU_1", "0.2")
+
+    def test_fields_of_cells_are_averaged_at_their_nodes(self):
+        self.ok(self.action("INST=1.0, NOEUD=('N1', 'N2', 'N3'), NOM_CHAM='STAND_IN', NOM_CMP='JEU', OPERATION='EXTRACTION'",
+                            "assert t.values()['JEU'] == [0.5, 0.375, 0.25], t"))  # the first cell's value stands in for none
+
     def test_values_at_nodes_of_cells_are_averaged(self):
         self.ok(self.action("INST=1.0, NOEUD=('N1', 'N2', 'N5'), NOM_CHAM='SIEF_ELNO', NOM_CMP='SIYY', OPERATION='EXTRACTION'",
                             "assert t.values()['SIYY'] == [1, 3.5, 5.5], t"))

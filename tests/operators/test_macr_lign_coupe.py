@@ -155,6 +155,16 @@ class MacrLignCoupe(OperatorTest):
         self.assertEqual(self.column(rows, "X2")[0], None)
         np.testing.assert_allclose(self.column(rows, "X2")[1:], [2, 3], atol=1e-14)
 
+    def test_fields_of_cells_are_means_at_their_nodes(self):
+        self.plane()
+        field = {"quantity": "SIEF_R", "components": ["SIXX"]}
+        self.write_result("result_2", "mesh_1", [0.0], {
+            "CONT_ELEM": {0: {**field, "location": "ELEM", "support": [0, 1], "values": [[1.0], [3.0]]}},
+            "SIEF_ELNO": {0: {**field, "location": "ELNO", "support": [0, 1], "offset": [0, 4, 8], "values": [[1.0]] * 4 + [[3.0]] * 4}}}, label="RESU")
+        for name in ("CONT_ELEM", "SIEF_ELNO"):
+            rows = self.lines({"NB_POINTS": 5, "COOR_ORIG": [0.0, 0.5], "COOR_EXTR": [2.0, 0.5]}, NOM_CHAM=name)
+            np.testing.assert_allclose(self.column(rows, "SIXX"), [1, 1.5, 2, 2.5, 3], atol=1e-14)  # 2 at the nodes that both share
+
     def test_points_outside(self):
         self.plane()
         line = {"NB_POINTS": 3, "COOR_ORIG": [0.5, -0.1], "COOR_EXTR": [1.5, -0.1]}
@@ -165,6 +175,19 @@ class MacrLignCoupe(OperatorTest):
         self.assertEqual(self.messages, [])
         self.refuses("LIGNCOUPE_1", {**line, "DISTANCE_MAX": 0.09}, "the point 1", "(0.5, -0.1)", "LIGN_COUPE/TYPE")
         self.refuses("LIGNCOUPE_1", {**line, "COOR_EXTR": [1.5, -1.0]}, "the point 2")
+
+    def test_instants_of_a_list_that_are_not_there_are_told(self):
+        self.plane()
+        line = {"NB_POINTS": 2, "COOR_ORIG": [0.5, 0.5], "COOR_EXTR": [1.5, 0.5]}
+        for values, orders, told in (([0.0, 0.5, 1.0], [0, 1], ["FIELDS_5"]), ([1.0], [1], [])):
+            with self.create("list_of_reals_3", "list_of_reals") as file:
+                file["values"] = np.array(values)
+            rows = self.lines(line, LIST_INST=concept("list_of_reals_3"))
+            self.assertEqual(self.column(rows, "NUME_ORDRE")[::2], orders)
+            self.assertEqual(self.messages, told)
+        with self.create("list_of_reals_3", "list_of_reals") as file:
+            file["values"] = np.array([0.25, 0.5])
+        self.refuses("FIELDS_2", line, "0.25", LIST_INST=concept("list_of_reals_3"))
 
     def test_refused(self):
         self.plane()
@@ -183,10 +206,10 @@ class MacrLignCoupe(OperatorTest):
         self.plane()
         field = {"quantity": "SIEF_R", "components": ["SIXX"]}
         self.write_result("result_2", "mesh_1", [0.0], {
-            "SIEF_ELNO": {0: {**field, "location": "ELNO", "support": [0], "offset": [0, 4], "values": [[1.0]] * 4}},
+            "SIEF_ELGA": {0: {**field, "location": "ELGA", "support": [0], "offset": [0, 4], "values": [[1.0]] * 4}},
             "SIEF_NOEU": {0: {**field, "location": "NOEU", "support": [0, 1, 3, 4], "values": [[1.0]] * 4}}}, label="RESU")
         line = {"NB_POINTS": 3, "COOR_ORIG": [0.5, 0.5], "COOR_EXTR": [1.5, 0.5]}
-        self.refuses("LIGNCOUPE_5", line, "ELNO", NOM_CHAM="SIEF_ELNO")
+        self.refuses("LIGNCOUPE_5", line, "ELGA", NOM_CHAM="SIEF_ELGA")
         self.refuses("LIGNCOUPE_7", {**line, "OPERATION": "MOYENNE"}, "SIXX", "point 3", NOM_CHAM="SIEF_NOEU")
         self.refuses("LIGNCOUPE_9", {**line, "COOR_ORIG": [1.2, 0.5]}, "SIXX", NOM_CHAM="SIEF_NOEU")
 

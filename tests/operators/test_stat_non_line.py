@@ -120,7 +120,9 @@ class StatNonLine(TwoSquares):
         np.testing.assert_array_equal(field.support, range(16))
         np.testing.assert_allclose(field.values[:, 0], EXX * points[:, 0], atol=1e-14)
         np.testing.assert_allclose(field.values[:, 1], EYY * (points[:, 1] + 1), atol=1e-14)
-        np.testing.assert_array_equal(np.flatnonzero(field.present[:, 2]), [12])  # the carrier alone
+        np.testing.assert_array_equal(np.flatnonzero(field.present[:, 2] == 1), [12])  # the carrier alone
+        np.testing.assert_array_equal(np.flatnonzero(field.present[:, 2] == 2), [8, 9])  # the others of the skin stand in
+        np.testing.assert_allclose(field.values[[8, 9], 2], -PRESSURE, atol=1e-11)
         self.assertAlmostEqual(field.values[12, 2], -PRESSURE, delta=1e-11)
         stress = self.read_field("result_9", "SIEF_ELGA", 1)
         np.testing.assert_array_equal(stress.support, [3, 4])
@@ -130,6 +132,13 @@ class StatNonLine(TwoSquares):
         self.assertEqual(contact.components, ["CONT", "PRES", "JEU", "COEFSURF", "PRESCOOR"])
         np.testing.assert_array_equal(contact.support, [1])
         np.testing.assert_allclose(contact.values, [[1, -PRESSURE, 0, 1, -PRESSURE]], atol=1e-11)
+        nodes = self.read_field("result_9", "CONT_NOEU", 1)
+        np.testing.assert_array_equal(nodes.support, [8, 9, 12])
+        force = PRESSURE * np.array([1 / 6, 1 / 6, 2 / 3])  # on the slave, upwards: shape functions of a SEG3 over its length 1
+        expected = {"CONT": 2, "JEU": 0, "PRES": -PRESSURE, "RN": force, "RNX": 0, "RNY": force, "R": force, "RX": 0, "RY": force, "VX": 0, "VY": -1}
+        self.assertEqual(nodes.components, list(expected))
+        for column, values in enumerate(expected.values()):
+            np.testing.assert_allclose(nodes.values[:, column], values, atol=1e-11)
 
     def test_a_body_that_lies_on_another_and_that_nothing_presses_is_told(self):
         """Its place is one of many: whatever lifts it is an equilibrium too. One that a displacement holds has a place."""
@@ -300,7 +309,7 @@ class StatNonLine(TwoSquares):
         self.assertEqual(run.status, 0, run.stderr)
         with h5py.File(self.path("result_9")) as index:
             np.testing.assert_array_equal(index["instant"], [0.0, 0.75, 1.0])  # the last one always
-            self.assertEqual(sorted(index["fields"]), ["CONT_ELEM", "DEPL"])
+            self.assertEqual(sorted(index["fields"]), ["CONT_ELEM", "CONT_NOEU", "DEPL"])
             np.testing.assert_array_equal(index["fields/DEPL/order"], [0, 1, 2])
 
     # ------------------------------------------------------------------------------------------ what it refuses

@@ -35,11 +35,11 @@ class FieldData:
         counts = numpy.diff(self.offset)
         return numpy.repeat(self.support, counts), numpy.arange(len(self.values)) - numpy.repeat(self.offset[:-1], counts)
 
-    def on_nodes(self, count):
-        """(values, mask) over all `count` nodes of the mesh; mask is true where the component exists."""
+    def on_nodes(self, count, counted=False):
+        """(values, mask) over all `count` nodes of the mesh; mask is true where the component exists, or where it is counted."""
         values = numpy.zeros((count, len(self.components)))
         mask = numpy.zeros(values.shape, bool)
-        values[self.support], mask[self.support] = self.values, self.present
+        values[self.support], mask[self.support] = self.values, self.counted if counted else self.present
         return values, mask
 
     def magnitude(self, component, count):

@@ -19,10 +19,7 @@ def order_of(call, test, path):
             call.fail("TEST_RESU_1", f"{path}/NUME_ORDRE", what=f"order number {test['NUME_ORDRE']}", label=test["RESULTAT"].label, known=known)
         return found[0]
     wanted = test["INST"]
-    tolerance = test["TOLE_MACHINE"][1] if len(test["TOLE_MACHINE"]) > 1 else 1e-6
-    kind = test["CRITERE"][1] if len(test["CRITERE"]) > 1 else "RELATIF"
-    scale = abs(wanted) if kind == "RELATIF" and wanted else 1.0
-    found = [(order, t) for order, t in instants if abs(t - wanted) <= tolerance * scale]
+    found = _near(instants, test)
     if not found:
         call.fail("TEST_RESU_1", f"{path}/INST", what=f"instant {wanted:g}", label=test["RESULTAT"].label, known=known)
     if len(found) > 1:
@@ -30,8 +27,18 @@ def order_of(call, test, path):
     return found[0]
 
 
+def _near(instants, test):
+    """[(order number, instant)] at INST, within the second values of TOLE_MACHINE and CRITERE."""
+    wanted = test["INST"]
+    tolerance = test["TOLE_MACHINE"][1] if len(test["TOLE_MACHINE"]) > 1 else 1e-6
+    kind = test["CRITERE"][1] if len(test["CRITERE"]) > 1 else "RELATIF"
+    scale = abs(wanted) if kind == "RELATIF" and wanted else 1.0
+    return [(order, t) for order, t in instants if abs(t - wanted) <= tolerance * scale]
+
+
 def orders(call, k, path):
-    """[(order number, instant)] that the keywords name, increasing; all of them without any."""
+    """[(order number, instant)] that the keywords name, increasing; all of them without any. Of LIST_INST those that are there, with an
+    alarm FIELDS_5 for each of the others unless none is."""
     result = k["RESULTAT"]
     instants = result.instants()
     if "NUME_ORDRE" in k:
@@ -41,6 +48,13 @@ def orders(call, k, path):
     else:
         return instants
     tolerance = {"RESULTAT": result, "TOLE_MACHINE": [0.0, k["PRECISION"]], "CRITERE": ["RELATIF", k["CRITERE"]]}
+    if "LIST_INST" in k:
+        missing = [one for one in wanted if not _near(instants, {**one, **tolerance})]
+        if len(missing) < len(wanted):
+            wanted = [one for one in wanted if one not in missing]
+            for one in missing:
+                call.study.inform("FIELDS_5", f"{call.command}, {call.where}", keyword=f"{path}/LIST_INST", label=result.label,
+                                  instant=f"{one['INST']:g}", known=listed(instants))
     return sorted({order_of(call, {**one, **tolerance}, path) for one in wanted})
 
 
@@ -69,10 +83,10 @@ def members_of(call, test, path, mesh, keyword, kind):
     """0-based numbers of nodes or cells that a keyword names."""
     name = test[keyword]
     if keyword in ("NOEUD", "MAILLE"):
-        count = mesh.getNumberOfNodes() if kind == "nodes" else mesh.getNumberOfCells()
-        letter = "N" if kind == "nodes" else "M"
-        if name[:1] == letter and name[1:].isdigit() and 1 <= int(name[1:]) <= count:
-            return [int(name[1:]) - 1]
+        number = mesh.number_of(kind, name)
+        if number is not None:
+            return [number]
+        count, letter = (mesh.getNumberOfNodes(), "N") if kind == "nodes" else (mesh.getNumberOfCells(), "M")
         call.fail("TEST_RESU_8", f"{path}/{keyword}", name=name, what="node" if kind == "nodes" else "cell", letter=letter, count=count)
     members = mesh.group(kind, name)
     if members is None:
@@ -127,20 +141,24 @@ def fields(call, k, path, column):
 
 
 def at_nodes(call, field, path):
-    """(values, mask) of a field over all nodes of its mesh, (nodes, components); of a field at cells' nodes the mean over the cells.
+    """(values, mask) of a field over all nodes of its mesh, (nodes, components); of a field of cells, or at their nodes, the mean over the
+    cells around a node.
 
-    @throws AsterError POST_1 where the field does not live on nodes
+    @throws AsterError POST_1 where the field has values at integration points alone
     """
     if field.location == "NOEU":
         return field.on_nodes(field.mesh().getNumberOfNodes())
-    if field.location != "ELNO":
+    if field.location == "ELGA":
         call.fail("POST_1", f"{path}/NOM_CHAM", field=field.name, location=field.location)
     mesh = field.mesh()
     owner = mesh.nodes_of(field.support)
+    rows = numpy.arange(len(field.values))
+    if field.location == "ELEM":
+        rows = numpy.repeat(rows, mesh.node_counts(field.support))
     sums = numpy.zeros((mesh.getNumberOfNodes(), len(field.components)))
     counts = numpy.zeros(sums.shape, int)
-    numpy.add.at(sums, owner, numpy.where(field.counted, field.values, 0.0))
-    numpy.add.at(counts, owner, field.counted)
+    numpy.add.at(sums, owner, numpy.where(field.counted, field.values, 0.0)[rows])
+    numpy.add.at(counts, owner, field.counted[rows])
     return sums / numpy.maximum(counts, 1), counts > 0
 
 
@@ -160,7 +178,7 @@ def curved_abscissa(points):
 
 
 def select(call, test, path, field):
-    """(values of the component where the keywords say and it exists, words for the place)."""
+    """(values of the component, or without NOM_CMP of all, where the keywords say and they exist; words for the place)."""
     mesh = field.mesh()
     rows = numpy.ones(len(field.values), bool)
     words = []
@@ -183,15 +201,16 @@ def select(call, test, path, field):
             call.fail("TEST_RESU_5", f"{path}/POINT", keyword="POINT", field=field.name)
         rows &= rank == test["POINT"] - 1
         words.append(f"point {test['POINT']}")
-    column = field.components.index(test["NOM_CMP"])
-    rows &= field.present[:, column]
-    counted = rows & field.counted[:, column]
-    if "TYPE_TEST" in test and counted.any():
-        rows = counted
-    values = field.values[rows, column]
+    columns = [field.components.index(test["NOM_CMP"])] if "NOM_CMP" in test else range(len(field.components))
+    values = []
+    for column in columns:
+        there = rows & field.present[:, column]
+        counted = there & field.counted[:, column]
+        values.append(field.values[counted if "TYPE_TEST" in test and counted.any() else there, column])
+    values = numpy.concatenate(values)
     place = " ".join(words)
     if len(values) == 0:
-        call.fail("TEST_RESU_6", path, component=test["NOM_CMP"], field=field.name, place=place or "the whole mesh")
+        call.fail("TEST_RESU_6", path, component=test.get("NOM_CMP", "any component"), field=field.name, place=place or "the whole mesh")
     if "TYPE_TEST" in test:
         place = f"{test['TYPE_TEST']} {place}".strip()
     elif len(values) > 1:

@@ -50,6 +50,8 @@ class _Frame:
         if action["REPERE"] != "GLOBAL":
             own, own_there = axes.turned(field.components, own, own_there,
                                          axes.at(call, action, path, self.points, mesh.getDimension() == 2))
+        if action["OPERATION"] in ("EXTREMA", "MOYENNE_ARITH") or "RESULTANTE" in action:
+            own_there &= _entering(field, nodes, there[nodes])
         self.values, self.there = own[:, columns], own_there[:, columns]
         self.all_values, self.all_there = values, there
         self._derive()
@@ -137,6 +139,14 @@ class _Frame:
                 column = self.field.components.index(name)
                 moment[k] += self.all_values[self.nodes, column][self.all_there[self.nodes, column]].sum()
         return [{**{f"RESULT_{'XYZ'[k]}": v for k, v in zip(along, sums)}, **{f"MOMENT_{axis}": ("R", float(v)) for axis, v in zip("XYZ", moment)}}]
+
+
+def _entering(field, nodes, there):
+    """Which values at nodes enter sums, means and extremes: stand-ins (LAGS_C beside its carriers) only where nothing else is."""
+    if field.location != "NOEU":
+        return there
+    _, counted = field.on_nodes(field.mesh().getNumberOfNodes(), counted=True)
+    return numpy.where(counted[nodes].any(axis=0), counted[nodes], there)
 
 
 def _axes(names):

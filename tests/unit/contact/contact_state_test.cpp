@@ -282,5 +282,66 @@ TEST_F(Touching, ContElemHoldsWhatThePatchesCarry) {
   EXPECT_THROW(patches_of(elsewhere, mesh, contact, "RESU"), Error);
 }
 
+TEST_F(Touching, ContNoeuHoldsWhatThePatchesAroundANodeCarryAndTheForceOnIt) {
+  // a second patch beside the first, half as wide: the cells are SEG3 8 9 12 (x from 0 to 1) and 9 17 18 (x from 1 to 1.5)
+  for (const double x : {1.0, 1.5, 1.25}) mesh.coordinates.insert(mesh.coordinates.end(), {x, 0.0, 0.0});
+  free.resize(38, 1);
+  displacement.resize(38, 0.0);
+  mesh.add_cell(CellType::SEG3, std::vector<std::int32_t>{9, 17, 18});
+  mesh.add_cell(CellType::QUAD8, std::vector<std::int32_t>{9, 17, 10, 11, 18, 13, 14, 15});
+  mesh.patches->kind.push_back(14);
+  mesh.patches->cells.push_back(std::vector<std::int32_t>{4});
+  mesh.patches->carriers.push_back(std::vector<std::int32_t>{18});
+  model.element = {0, 0, 1, 1, 0, 1};
+  contact.zones[0].slave = {1, 4};
+  contact.zones[0].patches = {0, 1};
+  contact.slaves.push_back({4, 1, 0, "LACS32D"});
+  ContactState now = state();
+  now.update_geometry(displacement);
+  Patchwise patches(2);
+  patches.status = {Status::active, Status::open};
+  patches.lambda = {-6, 0};
+  now.linearise(patches, false);
+  const Field field = nodal_contact_field(mesh, contact, now, patches);
+  EXPECT_EQ(field.components,
+            (std::vector<std::string>{"CONT", "JEU", "PRES", "RN", "RNX", "RNY", "R", "RX", "RY", "VX", "VY"}));
+  ASSERT_EQ(field.support, (std::vector<std::int32_t>{8, 9, 12, 17, 18}));
+  const auto at = [&](std::size_t row, const char* component) {
+    return field.at(row, static_cast<std::size_t>(field.component(component)));
+  };
+  // means weighted with the measures 1 and 1/2
+  const double pressure[5] = {-6, -4, -6, 0, 0};
+  double force = 0;
+  for (std::size_t row = 0; row < 5; ++row) {
+    EXPECT_NEAR(at(row, "PRES"), pressure[row], 1e-14) << row;
+    EXPECT_EQ(at(row, "CONT"), pressure[row] != 0 ? 2 : 0) << row;
+    EXPECT_NEAR(at(row, "JEU"), 0, 1e-15);
+    EXPECT_NEAR(at(row, "VX"), 0, 1e-15);
+    EXPECT_NEAR(at(row, "VY"), -1, 1e-15);
+    EXPECT_NEAR(at(row, "RN"), std::abs(at(row, "RNY")), 1e-14);
+    EXPECT_EQ(at(row, "RY"), at(row, "RNY"));
+    force += at(row, "RNY");
+  }
+  EXPECT_NEAR(force, 6, 1e-13);                   // 6 over a length of 1, upwards on the slave
+  EXPECT_NEAR(at(2, "RNY"), 6 * 2.0 / 3, 1e-13);  // quadratic shape functions: 1/6, 2/3, 1/6
+  const auto stand_in = nodal_pressures(mesh, contact, now.geometry(), patches);
+  ASSERT_EQ(stand_in.size(), 5U);
+  EXPECT_EQ(stand_in[1].first, 9);
+  EXPECT_NEAR(stand_in[1].second, -4, 1e-14);
+}
+
+TEST_F(Touching, ANodeWithoutAnyMasterHasAStandInForItsGap) {
+  ContactState now = state();
+  Patchwise patches(1);
+  patches.status[0] = Status::unpaired;
+  const Field field = nodal_contact_field(mesh, contact, now, patches);
+  for (std::size_t row = 0; row < 3; ++row) {
+    EXPECT_EQ(field.at(row, 0), -1);
+    EXPECT_EQ(field.at(row, 1), -1);
+    EXPECT_EQ(field.presence(row, 1), Field::stand_in);
+    EXPECT_EQ(field.presence(row, 2), Field::there);
+  }
+}
+
 }  // namespace
 }  // namespace lacon

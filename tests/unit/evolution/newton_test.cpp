@@ -150,13 +150,17 @@ TEST(StateFields, AreTheStateThatTheyCameFrom) {
   for (std::size_t row = 0; row < moved.support.size(); ++row) {
     for (std::size_t d = 0; d < 2; ++d)
       EXPECT_EQ(moved.at(row, d), state.displacement[2 * static_cast<std::size_t>(moved.support[row]) + d]);
-    EXPECT_EQ(moved.has(row, 2), moved.support[row] == 12);  // the carrier alone
+    const std::int32_t node = moved.support[row];
+    EXPECT_EQ(moved.counts(row, 2), node == 12);                                 // the carrier alone
+    EXPECT_EQ(moved.has(row, 2), node == 8 || node == 9 || node == 12) << node;  // the others of the skin stand in
+    if (moved.has(row, 2)) EXPECT_EQ(moved.at(row, 2), state.patches.lambda[0]);
   }
   EXPECT_EQ(fields.at("SIEF_ELGA")().n_rows(), 18U);
   const Field variables = fields.at("VARI_ELGA")();
   EXPECT_GT(variables.at(0, 0), 0);  // it flows: 25 above 10
   EXPECT_FALSE(fields_of({pressed_squares(), state, nullptr}).contains("VARI_ELGA"));
   EXPECT_TRUE(fields.contains("CONT_ELEM"));
+  EXPECT_TRUE(fields.contains("CONT_NOEU"));
 }
 
 }  // namespace
