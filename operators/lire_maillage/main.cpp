@@ -7,6 +7,7 @@
 #include "lacon/structures/formats/listing.hpp"
 #include "lacon/structures/formats/mail.hpp"
 #include "lacon/structures/formats/med.hpp"
+#include "lacon/structures/formats/text_file.hpp"
 
 namespace {
 
@@ -18,7 +19,8 @@ void read_mesh(const Order& order, const Base& base) {
   Mesh mesh = [&] {
     const Phase phase("read");
     const std::string format = keywords.text("FORMAT");
-    if (format == "GMSH") return read_gmsh_mesh(file);
+    const bool after_pre_gmsh = format == "ASTER" && first_bytes(file, 1) == "$";
+    if (format == "GMSH" || after_pre_gmsh) return read_gmsh_mesh(file);
     if (format == "ASTER") return read_mail_mesh(file);
     return read_med_mesh(file, keywords.has("NOM_MED") ? keywords.text("NOM_MED") : "");
   }();

@@ -5,6 +5,7 @@
 #include <memory>
 
 #include "lacon/assembly/mumps_engine.hpp"
+#include "lacon/catalog/messages.hpp"
 #include "lacon/operators/evolution/archive.hpp"
 #include "lacon/operators/evolution/contact_notices.hpp"
 #include "lacon/operators/evolution/interruption.hpp"
@@ -52,6 +53,7 @@ NewtonOptions newton_options(const Keywords& keywords, const TimeSteps& steps) {
 }
 
 std::unique_ptr<Engine> engine_of(const Keywords& solver) {
+  if (const std::string method = solver.text("METHODE"); method != "MUMPS") inform("EVOLUTION_24", {{"method", method}});
   return std::make_unique<MumpsEngine>(MumpsOptions{.memory_margin = static_cast<int>(solver.integer("PCENT_PIVOT")),
                                                     .residual_tolerance = solver.real("RESI_RELA")});
 }

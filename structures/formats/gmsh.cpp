@@ -45,9 +45,9 @@ class Source {
     return {};
   }
 
-  /// Go behind `$End<section>`.
+  /// Go behind `$End<section>`, in version 1 `$END<SECTION>`.
   void skip_section() {
-    const std::string end = "$End" + section_;
+    const std::string end = (section_ == "NOD" || section_ == "ELM" ? "$END" : "$End") + section_;
     const std::size_t at = text_.find(end, position_);
     if (at == std::string::npos) damaged("it has no end, " + end);
     position_ = at + end.size();
@@ -126,12 +126,15 @@ class GmshReader {
       if (section == "Entities") entities();
       if (section == "Nodes") nodes = true, version_4_ ? nodes_4() : nodes_2();
       if (section == "Elements") elements = true, version_4_ ? elements_4() : elements_2();
+      if (section == "NOD") nodes = true, nodes_2();  // of version 1, as text in version 2
+      if (section == "ELM") elements = true, elements_1();
       source_.skip_section();
     }
     if (!nodes) source_.damaged("the file has no section $Nodes");
     if (!elements || cells_.empty()) source_.damaged("the file has no cells");
   }
 
+  /// What goes before the sections of a file of version 2 or later; version 1 has nothing.
   void head() {
     if (source_.next_section() != "MeshFormat") fail("GMSH_1", {{"file", source_.file()}});
     const double version = source_.text_real();
@@ -244,6 +247,21 @@ class GmshReader {
     for (int j = 0; j < row.n_nodes; ++j) nodes_.push_back(next());
   }
 
+  void elements_1() {
+    const std::size_t n = source_.count(source_.text_integer(), 8);
+    for (std::size_t i = 0; i < n; ++i) {
+      const std::int64_t tag = source_.integer();
+      const catalog::CellRow& row = row_of(source_.integer());
+      const std::int64_t physical = source_.integer();
+      source_.integer();  // the geometrical entity
+      if (const std::int64_t n_nodes = source_.integer(); n_nodes != row.n_nodes)
+        source_.damaged("the " + std::string(row.name) + " " + std::to_string(tag) + " has " + std::to_string(n_nodes) +
+                        " nodes");
+      add_cell(row, tag, physical != 0 ? std::vector<std::int64_t>{std::abs(physical)} : std::vector<std::int64_t>{},
+               [&] { return source_.integer(); });
+    }
+  }
+
   void elements_2() {
     std::size_t n = source_.count(source_.text_integer(), 8);
     if (source_.binary) source_.rest_of_line();
@@ -349,7 +367,7 @@ Mesh read_gmsh_mesh(const fs::path& file) {
   if (!first_bytes(file, 11).starts_with("$")) fail("GMSH_1", {{"file", file.string()}});
   Source source(file.string(), read_text(file));
   GmshReader reader(source);
-  reader.head();
+  if (!first_bytes(file, 4).starts_with("$NOD")) reader.head();
   reader.read();
   return reader.finish(file.stem().string());
 }

@@ -1,5 +1,5 @@
 #pragma once
-// Meshes in gmsh's .msh files: versions 2, 4.0 and 4.1, ASCII and binary.
+// Meshes in gmsh's .msh files: versions 1 (ASCII), 2, 4.0 and 4.1, ASCII and binary.
 #include <filesystem>
 
 #include "lacon/structures/mesh.hpp"

@@ -46,7 +46,7 @@ inline std::vector<std::string> read_names(const hdf5::Group& group, std::string
   std::size_t width = H5Tget_size(type);
   std::vector<char> bytes(rows * width);
   if (rows == 0 || H5Dread(set, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, bytes.data()) < 0) return names;
-  if (width == 1) width = group_name_length;  // one long row of bytes
+  if (width == 1 || (rows == 1 && width > group_name_length)) width = group_name_length;  // one long row of bytes
   for (std::size_t at = 0; at + width <= bytes.size(); at += width) {
     std::string text(bytes.data() + at, width);
     text = text.substr(0, text.find('\0'));

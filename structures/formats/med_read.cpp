@@ -49,7 +49,7 @@ hdf5::Reader open_med(const fs::path& file) {
     if (!about.has_attribute(part))
       fail("MED_2", {{"file", file.string()}, {"reason", "its INFOS_GENERALES do not say the version"}});
   const std::int64_t major = about.integer("MAJ");
-  if (major != 3 && major != 4) {
+  if (major < 2 || major > 4) {
     const std::string version =
         std::to_string(major) + "." + std::to_string(about.integer("MIN")) + "." + std::to_string(about.integer("REL"));
     fail("MED_3", {{"file", file.string()}, {"version", version}});
@@ -64,7 +64,8 @@ std::vector<std::string> mesh_names(const H5Group& root) {
 /// Reads one mesh; knows its name and file for the messages.
 class MeshReader {
  public:
-  MeshReader(const H5Group& root, std::string name) : root_(root), name_(std::move(name)) {}
+  MeshReader(const H5Group& root, std::string name)
+      : root_(root), name_(std::move(name)), version_(root.open("INFOS_GENERALES").integer("MAJ")) {}
 
   Mesh read();
 
@@ -90,6 +91,9 @@ class MeshReader {
   template <class T, class Visit>
   void dataset(const H5Group& group, const std::string& name, const std::string& where, std::size_t rows, std::size_t columns,
                const Visit& visit) const;
+  std::size_t size_of(const H5Group& group, const char* dataset) const;
+  std::int64_t rows_of(const H5Group& group, const char* dataset, std::size_t columns) const;
+  std::size_t columns_of_cells(const H5Group& group, std::size_t n, std::size_t n_nodes) const;
   void read_nodes(const H5Group& step, std::int64_t space);
   void read_cells(const H5Group& step);
   Families families(const char* kind);
@@ -97,6 +101,7 @@ class MeshReader {
 
   const H5Group& root_;
   std::string name_;
+  std::int64_t version_;  ///< 2: no computation steps, families of nodes and cells side by side
   FileNames file_names_;
   Mesh mesh_;
   Families node_families_, cell_families_;
@@ -104,6 +109,7 @@ class MeshReader {
 
 /// The computation step of the lowest (NDT, NOR); "no step" (-1, -1) comes before every other.
 H5Group MeshReader::first_step(const H5Group& mesh) const {
+  if (version_ == 2) return root_.open("ENS_MAA/" + name_);
   std::string first;
   std::pair<std::int64_t, std::int64_t> lowest;
   for (const std::string& child : mesh.children()) {
@@ -145,10 +151,28 @@ void MeshReader::dataset(const H5Group& group, const std::string& name, const st
   }
 }
 
+/// How many columns NOD has: a column a node; the first files of version 2 have one more behind these for some types.
+std::size_t MeshReader::columns_of_cells(const H5Group& group, std::size_t n, std::size_t n_nodes) const {
+  if (version_ != 2 || n == 0) return n_nodes;
+  return size_of(group, "NOD") == n * (n_nodes + 1) ? n_nodes + 1 : n_nodes;
+}
+
+std::size_t MeshReader::size_of(const H5Group& group, const char* dataset) const {
+  std::size_t found = 1;
+  for (const hsize_t extent : group.shape(dataset)) found *= extent;
+  return found;
+}
+
+/// The attribute NBR of a dataset; where version 2 lacks it, by the dataset's size.
+std::int64_t MeshReader::rows_of(const H5Group& group, const char* dataset, std::size_t columns) const {
+  const std::int64_t said = med::dataset_integer(group, dataset, "NBR");
+  return said < 0 && version_ == 2 ? static_cast<std::int64_t>(size_of(group, dataset) / columns) : said;
+}
+
 void MeshReader::read_nodes(const H5Group& step, std::int64_t space) {
   const H5Group nodes = entities(step, "NOE", "nodes");
   if (!nodes.has("COO") || nodes.is_group("COO")) damaged("its nodes have no coordinates");
-  std::int64_t count = med::dataset_integer(nodes, "COO", "NBR");
+  std::int64_t count = rows_of(nodes, "COO", static_cast<std::size_t>(space));
   if (count < 0) damaged("the dataset COO of its nodes has no attribute NBR");
   if (count == 0) damaged("it has no nodes");
   if (count > std::numeric_limits<std::int32_t>::max() / 4) unsuitable("it has " + std::to_string(count) + " nodes");
@@ -190,13 +214,15 @@ void MeshReader::read_cells(const H5Group& step) {
     const std::string where = "cells " + type;
     const H5Group group = entities(all, type, where);
     if (!group.has("NOD") || group.is_group("NOD")) damaged("its " + where + " have no nodal connectivity (NOD)");
-    const std::int64_t count = med::dataset_integer(group, "NOD", "NBR");
+    const std::int64_t count = rows_of(group, "NOD", static_cast<std::size_t>(row.n_nodes));
     if (count < 0) damaged("the dataset NOD of its " + where + " has no attribute NBR");
     if (count > std::numeric_limits<std::int32_t>::max() / 32) unsuitable("it has " + std::to_string(count) + " " + where);
     const auto n = static_cast<std::size_t>(count);
-    const std::size_t size = static_cast<std::size_t>(row.n_nodes);
-    dataset<std::int32_t>(group, "NOD", where, n, size, [&](std::size_t first, std::span<const std::int32_t> part) {
-      const std::size_t here = part.size() / size, before = mesh_.cells.values.size();
+    const std::size_t size = static_cast<std::size_t>(row.n_nodes), stored = columns_of_cells(group, n, size);
+    dataset<std::int32_t>(group, "NOD", where, n, stored, [&](std::size_t first, std::span<const std::int32_t> all_columns) {
+      const std::size_t here = all_columns.size() / stored;
+      const std::span<const std::int32_t> part = all_columns.first(here * size);
+      const std::size_t before = mesh_.cells.values.size();
       const auto column = med::columns(row, here);
       std::uint32_t largest = 0;  // of node - 1, where those below 1 are huge: all at once in vector registers
       for (const std::int32_t node : part) largest = std::max(largest, static_cast<std::uint32_t>(node) - 1);
@@ -231,12 +257,14 @@ void MeshReader::read_cells(const H5Group& step) {
 
 MeshReader::Families MeshReader::families(const char* kind) {
   Families families;
-  const std::string path = "FAS/" + name_ + "/" + kind;
-  if (!root_.is_group(path)) return families;
-  const H5Group all = root_.open(path);
+  const std::string both = "FAS/" + name_, path = both + "/" + kind;
+  const bool mixed = version_ == 2 && !root_.is_group(path) && root_.is_group(both);
+  if (!mixed && !root_.is_group(path)) return families;
+  const H5Group all = root_.open(mixed ? both : path);
   for (const std::string& child : all.children()) {
     const H5Group one = all.open(child);
     const std::int64_t number = integer(one, "NUM", "the family '" + child + "'");
+    if (mixed && (number > 0) != (std::string_view(kind) == "NOEUD")) continue;  // those of nodes are positive
     std::vector<std::vector<med::Run>*>& groups = families.groups_of[number];
     groups.clear();
     if (!one.is_group("GRO")) continue;
@@ -288,7 +316,7 @@ std::vector<Group> MeshReader::Families::groups() const {
 Mesh MeshReader::read() {
   const H5Group group = root_.open("ENS_MAA/" + name_);
   mesh_.name = file_names_.read(name_);
-  const std::int64_t space = integer(group, "ESP", "it");
+  const std::int64_t space = integer(group, version_ == 2 && !group.has_attribute("ESP") ? "DIM" : "ESP", "it");
   if (space != 2 && space != 3) unsuitable("its points have " + std::to_string(space) + " coordinates");
   if (group.has_attribute("TYP") && group.integer("TYP") != 0) unsuitable("it is a structured grid");
   if (group.has_attribute("REP") && group.integer("REP") != 0) unsuitable("its coordinates are not Cartesian");

@@ -50,6 +50,30 @@ def write_med(path, coordinates, cells, cell_groups=(), mesh="MESH", integers=np
 SQUARE = [[0, 0], [1, 0], [1, 1], [0, 1]]
 
 
+def write_med_2(path, minor, surplus=0):
+    """SQUARE as two TRIA3 and a SEG2 as MED 2 has it: no computation step, DIM instead of ESP, families of both kinds side by side, names of groups in
+    one text. @param surplus columns behind the nodes of the SEG2"""
+    with h5py.File(path, "w") as file:
+        about = file.create_group("INFOS_GENERALES")
+        for name, value in zip(("MAJ", "MIN", "REL"), (2, minor, 2)):
+            about.attrs[name] = np.int32(value)
+        mesh = file.create_group("ENS_MAA/OLD")
+        mesh.attrs["DIM"] = np.int32(2)
+        mesh.create_dataset("NOE/COO", data=np.array(SQUARE, float).T.ravel()).attrs["NBR"] = np.int32(4)
+        mesh["NOE/FAM"] = np.array([0, 0, 3, 0], np.int32)
+        mesh.create_dataset("MAI/TR3/NOD", data=np.array([[1, 2, 3], [1, 3, 4]], np.int32).T.ravel()).attrs["NBR"] = np.int32(2)
+        mesh["MAI/TR3/FAM"] = np.array([-1, -1], np.int32)
+        mesh.create_dataset("MAI/SE2/NOD", data=np.array([1, 2] + [0] * surplus, np.int32)).attrs["NBR"] = np.int32(1)
+        mesh["MAI/SE2/FAM"] = np.array([-2], np.int32)
+        for name, number, groups in (("FAMILLE_0", 0, []), ("FAMILLE_NOEUD_3", 3, ["TIP"]), ("FAMILLE_ELEMENT_1", -1, ["BODY"]),
+                                     ("FAMILLE_ELEMENT_2", -2, ["BOTTOM", "BOTH"])):
+            family = file.create_group(f"FAS/OLD/{name}")
+            family.attrs["NUM"] = np.int32(number)
+            if groups:
+                family.create_group("GRO").attrs["NBR"] = np.int32(len(groups))
+                family["GRO"].create_dataset("NOM", data=np.bytes_("".join(group.ljust(80) for group in groups)))
+
+
 class LireMaillage(OperatorTest):
     def setUp(self):
         super().setUp()
@@ -81,6 +105,17 @@ class LireMaillage(OperatorTest):
         self.assertEqual(json.loads(attributes["keywords"])["UNITE"], 20)
         for line in ("Mesh MA", "nodes                              4", "TRIA3                            2", "BODY"):
             self.assertIn(line, run.stdout)
+
+    def test_files_of_version_2(self):
+        for minor, surplus in ((3, 0), (1, 1)):
+            write_med_2(self.file, minor, surplus)
+            run = self.read()
+            self.assertEqual((run.status, self.ids(run)), (0, []), run.stderr)
+            mesh = self.read_mesh("mesh_1")
+            self.assertEqual((mesh.dimension, mesh.types, mesh.cells), (2, ["SEG2", "TRIA3", "TRIA3"], [[0, 1], [0, 1, 2], [0, 2, 3]]))
+            np.testing.assert_array_equal(mesh.coordinates[:, :2], SQUARE)
+            self.assertEqual({name: list(members) for name, members in mesh.cell_groups.items()}, {"BODY": [1, 2], "BOTTOM": [0], "BOTH": [0]})
+            self.assertEqual({name: list(members) for name, members in mesh.node_groups.items()}, {"TIP": [2]})
 
     def test_a_mesh_is_chosen_by_its_name(self):
         write_med(self.file, SQUARE, {"QUAD4": [[0, 1, 2, 3]]}, mesh="ONE")

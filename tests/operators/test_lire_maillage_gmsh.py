@@ -67,6 +67,9 @@ class Writer:
 
 def write_msh(path, version, binary, nodes, cells, names=(), encoding="utf-8"):
     """@param nodes {tag: point} @param cells list of (type, physical groups, node tags)"""
+    if version == "1":
+        write_1(path, nodes, cells)
+        return
     out = Writer(version, binary)
     out.names(names, encoding)
     if version == "2.2":
@@ -74,6 +77,14 @@ def write_msh(path, version, binary, nodes, cells, names=(), encoding="utf-8"):
     else:
         write_4(out, nodes, cells, before_1=version == "4")
     path.write_bytes(out.content)
+
+
+def write_1(path, nodes, cells):
+    """As gmsh before version 2: groups by number alone, a cell once for each of them."""
+    rows = [(kind, group, own) for kind, groups, own in cells for group in groups or [0]]
+    path.write_text("\n".join([
+        "$NOD", str(len(nodes)), *(f"{tag} " + " ".join(f"{x:.17g}" for x in point) for tag, point in nodes.items()), "$ENDNOD", "$ELM", str(len(rows)),
+        *(f"{tag} {GMSH[kind][0]} {group} 7 {len(own)} " + " ".join(map(str, own)) for tag, (kind, group, own) in enumerate(rows, 1)), "$ENDELM", ""]))
 
 
 def write_2(out, nodes, cells):
@@ -152,7 +163,7 @@ class LireMaillageGmsh(OperatorTest):
         self.assert_refuses(identifier, "LIRE_MAILLAGE", {"FORMAT": "GMSH"}, *words, result="mesh_1", units={20: self.file})
 
     def test_every_cell_has_its_nodes_at_their_places(self):
-        for version, binary in FORMATS:
+        for version, binary in [*FORMATS, ("1", False)]:
             nodes, cells = {}, []
             for k, name in enumerate(GMSH):
                 own = []
@@ -189,6 +200,21 @@ class LireMaillageGmsh(OperatorTest):
                 self.assertEqual({name: list(members) for name, members in mesh.cell_groups.items()},
                                  {"Body": [4, 5], "Right half": [5], "Low": [1, 2], "GM4": [2], "Corner": [0], "Nobody": []})
                 self.assertEqual({name: list(members) for name, members in mesh.node_groups.items()}, {"Corner": [0]})
+
+    def test_version_1_has_groups_by_number_and_is_read_behind_pre_gmsh_too(self):
+        write_msh(self.file, "1", False, SQUARE, PLANE)
+        for wanted in ("GMSH", "ASTER"):
+            run = self.read(FORMAT=wanted)
+            self.assertEqual(run.status, 0, run.stderr)
+            mesh = self.read_mesh("mesh_1")
+            self.assertEqual(mesh.cells, [[0], [0, 1], [1, 2], [0, 1, 4], [0, 1, 4, 5], [1, 2, 3, 4]])
+            self.assertTrue(all(name.startswith("GM") for name in mesh.cell_groups), mesh.cell_groups)
+            self.assertEqual(sorted(len(members) for members in mesh.cell_groups.values()), [1, 1, 1, 2, 2])
+        content = self.file.read_text()
+        for text, words in ((content[:content.index("$ENDNOD")], ("NOD", "$ENDNOD")), (content[:content.index("$ENDELM")], ("ELM", "$ENDELM")),
+                            (content.replace(" 7 2 ", " 7 3 ", 1), ("ELM", "has 3 nodes"))):
+            self.file.write_text(text)
+            self.refuses("GMSH_3", *words)
 
     def test_names_that_are_not_utf_8_are_latin_1(self):
         names = [(2, 1, "Körper"), (1, 3, "Fläche §")]

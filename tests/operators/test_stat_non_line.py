@@ -312,6 +312,14 @@ class StatNonLine(TwoSquares):
             self.assertEqual(sorted(index["fields"]), ["CONT_ELEM", "CONT_NOEU", "DEPL"])
             np.testing.assert_array_equal(index["fields/DEPL/order"], [0, 1, 2])
 
+    def test_any_solver_is_mumps_and_says_so(self):
+        self.assertEqual(self.solve().status, 0)
+        expected = self.read_field("result_9", "DEPL", 1).values
+        run = self.solve(SOLVEUR={"METHODE": "GCPC", "PRE_COND": "LDLT_INC", "RESI_RELA": 1e-8})
+        self.assertEqual((run.status, self.ids(run)), (0, ["EVOLUTION_24"]), run.stderr)
+        self.assertIn("METHODE='GCPC'", run.stderr)
+        np.testing.assert_array_equal(self.read_field("result_9", "DEPL", 1).values, expected)
+
     # ------------------------------------------------------------------------------------------ what it refuses
 
     def test_an_order_that_lacks_a_keyword_is_refused(self):

@@ -39,6 +39,14 @@ def defi_fichier(call):
     return number
 
 
+def pre_gmsh(call):
+    """UNITE_MAILLAGE is gmsh's file from now on: LIRE_MAILLAGE, asked for code_aster's text, sees what it is."""
+    k = call.keywords
+    path = call.study.input_unit(k["UNITE_GMSH"], f"PRE_GMSH/UNITE_GMSH, {call.where}")
+    call.study.protect(path)
+    call.study.associate(k["UNITE_MAILLAGE"], path, append=False)
+
+
 def _unit_of(call, path):
     """The unit that DEFI_FICHIER gave this file."""
     run = call.study

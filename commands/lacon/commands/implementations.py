@@ -4,7 +4,7 @@ import importlib
 
 _families = {
     "begin_end": ("DEBUT", "POURSUITE", "FIN", "DETRUIRE"),
-    "files": ("INCLUDE", "DEFI_FICHIER", "INFO_EXEC_ASTER"),
+    "files": ("INCLUDE", "DEFI_FICHIER", "INFO_EXEC_ASTER", "PRE_GMSH"),
     "functions": ("DEFI_FONCTION", "DEFI_CONSTANTE", "DEFI_NAPPE", "CALC_FONC_INTERP"),
     "lists": ("DEFI_LIST_REEL", "DEFI_LIST_INST"),
     "formulas": ("FORMULE",),
