@@ -34,7 +34,8 @@ def fill_mesh(file):
     file["coordinates"] = np.array([[0, 0, 0], [1, 0, 0], [2, 0, 0], [0, 1, 0], [1, 1, 0], [2, 1, 0]], float)
     file.attrs["dimension"] = 2
     cells = file.create_group("cells")
-    cells["type"] = np.zeros(3, np.int8)
+    cells.attrs.create("types", ["QUAD4", "SEG2"], dtype=text)
+    cells["type"] = np.array([0, 0, 1], np.int8)
     cells["offset"] = np.array([0, 4, 8, 10])
     cells["nodes"] = np.array([0, 1, 4, 3, 1, 2, 5, 4, 0, 1], np.int32)
     for kind, groups in (("cells", {"SKIN": [2], "BODY": [0, 1]}), ("nodes", {"ONE": [3], "TOP": [3, 4, 5]})):

@@ -45,6 +45,7 @@ check(CALC_FONCTION(ASSE=_F(FONCTION=(late, f), SURCHARGE='GAUCHE')), [0, 1, 3, 
 M = CALC_FONCTION(MAX=_F(FONCTION=(f, g)))
 assert M.EXTR_TABLE().rows[0] == {'FONCTION': 'f', 'TYPE': 'MAX', 'INST': 3, 'U': 9} and len(M) == 4, M.EXTR_TABLE()
 h = CALC_FONCTION(COMB=_F(FONCTION=f, COEF=1.), PROL_DROITE='LINEAIRE', NOM_RESU='V')
+assert h.Parametres() == {'INTERPOL': ['LIN', 'LIN'], 'NOM_PARA': 'INST', 'NOM_RESU': 'V', 'PROL_GAUCHE': 'EXCLU', 'PROL_DROITE': 'LINEAIRE'} and h.size() == 3
 assert h(4) == 13 and f(4) == 9 and CALC_FONCTION(ABS=_F(FONCTION=f))(4) == 9
 """))
 

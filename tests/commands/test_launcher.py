@@ -310,6 +310,7 @@ assert M.getNodes('TOP') == [3, 4, 5] and M.getNodes('SKIN') == [0, 1] == M.getN
 assert M.hasGroupOfCells('SKIN') and not M.hasGroupOfNodes('SKIN') and M.LIST_GROUP_MA() == [('SKIN', 1), ('BODY', 2)]
 assert M.getCoordinates()[4] == [1.0, 1.0, 0.0] and M.isParallel() is False
 assert M.getCellName(0) == 'M1' and M.getNodeName(3) == 'N4'
+assert M.getMinMaxEdgeSizes('BODY') == (1.0, 1.0) == M.getMinMaxEdgeSizes(['SKIN', 'BODY']) and not M.isQuadratic()
 FIN()
 """))
 
@@ -344,7 +345,7 @@ for wrong, word in ((lambda: R.getField('VITE', 1), 'has no field VITE at order 
         assert word in str(error), error
     else:
         raise AssertionError(word)
-assert R.getIndexes() == [0, 1, 2] and R.getTime(1) == 0.5
+assert R.getIndexes() == [0, 1, 2] == R.getRanks() and R.getTime(1) == 0.5 == R.getTimeValue(1)
 FIN()
 """))
 

@@ -54,6 +54,16 @@ class Class(unittest.TestCase):
         table.sort("X")
         self.assertEqual(table.values()["N"], [3, 4, 1, 2])
 
+    def test_columns_in_order_and_crossed(self):
+        table = Table.of_columns({"T": ("R", [0.0, 1.0]), "E": ("R", [None, None]), "N": ("I", [1, 2])})
+        self.assertEqual(table.SansColonneVide().para, ["T", "N"])
+        table.OrdreColonne("N")
+        self.assertEqual((table.para, table.type), (["N", "T", "E"], ["I", "R", "R"]))
+        across = Table.of_columns({"X": ("I", [1, 1, 2]), "Y": ("K8", ["A", "B", "A"]), "V": ("R", [1.0, 2.0, 3.0])}).Croise()
+        self.assertEqual(across.values(), {"X": [1, 2], "A": [1.0, 3.0], "B": [2.0, None]})
+        with self.assertRaisesRegex(TypeError, "three columns"):
+            table[["N"]].Croise()
+
     def test_changes(self):
         table = sample()
         table.append({"N": 5, "NEW": 1.5})

@@ -113,6 +113,15 @@ def cells():
     return {row["name"]: row for row in _json()["cells"]}
 
 
+@functools.cache
+def edges(cell):
+    """Pairs of vertices, from 0, of the edges of a cell type."""
+    if _is_json():
+        return [pair[:2] for pair in next(row["edges"] for row in _json()["cells"] if row["name"] == cell)]
+    rows = {row["name"]: row for row in toml(location() / "cells.toml")["cell"]}
+    return [[a - 1, b - 1] for a, b in rows[rows[cell].get("linear", cell)].get("edges", ())]
+
+
 def elements():
     """Rows of the finite elements that come with Lacon."""
     if _is_json():

@@ -87,11 +87,12 @@ class Field(FieldData):
         groups = [groups] if isinstance(groups, str) else list(groups)
         owner, _ = self.rows()
         wanted = numpy.ones(len(owner), bool)
+        there = self.present if groups or self.location != "NOEU" else self.counted  # a node that is named has its stand-in too
         if groups:
             mesh = self.mesh()
             members = mesh.getNodes(groups) if self.location == "NOEU" else mesh.getCells(groups)
             wanted = numpy.isin(owner, members)
-        return [(name, numpy.flatnonzero(wanted & self.present[:, self.components.index(name)])) for name in names]
+        return [(name, numpy.flatnonzero(wanted & there[:, self.components.index(name)])) for name in names]
 
 
 class Extract:

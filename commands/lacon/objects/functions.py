@@ -50,6 +50,15 @@ class Function(Concept):
     def getValues(self):
         return self.Absc() + self.Ordo()
 
+    def size(self):
+        return len(self.points().x)
+
+    def Parametres(self):
+        """Its rules and names, as keywords of DEFI_FONCTION."""
+        points = self.points()
+        return {"INTERPOL": list(points.interpolation), "NOM_PARA": points.parameter, "NOM_RESU": points.component,
+                "PROL_GAUCHE": points.left, "PROL_DROITE": points.right}
+
 
 class Formula(Concept):
     type = "formula"
@@ -80,6 +89,9 @@ class Formula(Concept):
 
     def getVariables(self):
         return list(self.expression().parameters)
+
+    def Parametres(self):
+        return {"NOM_PARA": self.getVariables()}
 
     def getExpression(self):
         return self.expression().text

@@ -3,8 +3,13 @@
 import re
 
 from ..base import contents
+from ..core import catalog
 from ..core.concepts import Concept
+from ..core.late import numpy
 from ..core.nearest import nearest
+
+
+_linear = {"POI1", "SEG2", "TRIA3", "QUAD4", "TETRA4", "PENTA6", "PYRAM5", "HEXA8"}
 
 
 class Mesh(Concept):
@@ -93,6 +98,22 @@ class Mesh(Concept):
         """"TRIA6\""""
         names, types = self._read(contents.cell_types)
         return names[types[cell]]
+
+    def getMinMaxEdgeSizes(self, groups):
+        """(least, greatest) distance between the ends of the edges of the cells of a group or of several."""
+        names, types = self._read(contents.cell_types)
+        offset, nodes = self._read(contents.connectivity)
+        points = self.getCoordinates().toNumpy()
+        lengths = [numpy.linalg.norm(points[nodes[offset[cell] + a]] - points[nodes[offset[cell] + b]])
+                   for cell in self.getCells(groups) for a, b in catalog.edges(names[types[cell]])]
+        if not lengths:
+            raise ValueError(f"getMinMaxEdgeSizes: the cells of {groups} have no edges")
+        return float(min(lengths)), float(max(lengths))
+
+    def isQuadratic(self):
+        """Whether it has cells of the second order."""
+        names, types = self._read(contents.cell_types)
+        return any(names[t] not in _linear for t in set(types.tolist()))
 
     def isParallel(self):
         return False

@@ -21,11 +21,15 @@ class Result(Concept):
     def getNumberOfIndexes(self):
         return len(self.instants())
 
+    getRanks, getNumberOfRanks = getIndexes, getNumberOfIndexes  # before version 16
+
     def getLastIndex(self):
         return self.instants()[-1][0]
 
     def getTime(self, index):
         return dict(self.instants())[index]
+
+    getTimeValue = getTime
 
     def field_names(self):
         return list(self.LIST_CHAMPS())

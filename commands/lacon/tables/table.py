@@ -261,6 +261,24 @@ class Table:
             values.append(None if any(a is None for a in arguments) else function(*arguments))
         self.add_column(name, type_of(values), values)
 
+    def SansColonneVide(self, names=()):
+        """The table without the columns (of `names`, or of all) that have no cell."""
+        asked = names or self.para
+        return self[[name for name in self.para if name not in asked or any(row.get(name) is not None for row in self.rows)]]
+
+    def OrdreColonne(self, names):
+        """Put some columns first, in this order."""
+        first = [self._known(name) for name in ([names] if isinstance(names, str) else names)]
+        order = first + [name for name in self.para if name not in first]
+        self.type = [self.kind(name) for name in order]
+        self.para = order
+
+    def Croise(self):
+        """The third column by the first (down) and the second (across)."""
+        if len(self.para) != 3:
+            raise TypeError(f"Croise: a table of three columns is needed; this one has {', '.join(self.para)}")
+        return crossed(self, self.para)
+
     def __or__(self, other):
         """Rows of either, in the order of this one, then the other's."""
         made = self.copy()
