@@ -7,7 +7,7 @@ import unittest
 from pathlib import Path
 
 ROOT = Path(os.environ["LACON_SOURCE_DIR"])
-SCRIPTS = ["commands/check", "commands/demo", "commands/package", "commands/setup.sh", ".ci/run"]
+SCRIPTS = ["commands/check", "commands/demo", "commands/package", "commands/docs", "commands/setup.sh", ".ci/run"]
 
 
 def package_names():
