@@ -14,11 +14,13 @@ stop() {
 # The names in packages.txt.
 package_names() { sed -e 's/#.*//' -e 's/[[:space:]]//g' -e '/^$/d' "$root/commands/packages.txt"; }
 
-# The names that dpkg does not know as installed.
+# The names that dpkg does not know as installed. A nodejs that is not Debian's brings npm itself, and Debian's does not go beside it.
 missing_packages() {
   local name
   for name in $(package_names); do
-    [[ $(dpkg-query -W -f='${db:Status-Status}' "$name" 2>/dev/null) == installed ]] || echo "$name"
+    [[ $(dpkg-query -W -f='${db:Status-Status}' "$name" 2>/dev/null) == installed ]] && continue
+    [[ $name == npm ]] && command -v npm >/dev/null && continue
+    echo "$name"
   done
 }
 

@@ -8,7 +8,7 @@ import unittest
 
 LAUNCHER = pathlib.Path(os.environ["LACON_SOURCE_DIR"]) / "commands" / "lacon"
 #: from the ground up; below them is the package itself, above them main.py
-PACKAGES = ("core", "base", "reader", "tables", "objects", "commands", "peer", "run", "tools")
+PACKAGES = ("core", "base", "reader", "tables", "objects", "commands", "peer", "run", "report", "tools")
 
 
 def module_name(path):

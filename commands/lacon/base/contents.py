@@ -83,6 +83,15 @@ def patch_zones(mesh):
     return list(zip(mesh["patches/zone_group"].asstr()[:], offset[:-1], offset[1:]))
 
 
+# ---------------------------------------------------------------------------------------------------- contact
+
+
+def contact_zones(contact):
+    """[(slave group, master group, slave cells, master cells)] of a contact"""
+    zones = contact["zones"]
+    return list(zip(zones["slave_group"].asstr()[:], zones["master_group"].asstr()[:], ragged(zones["slave"]), ragged(zones["master"])))
+
+
 # ---------------------------------------------------------------------------------------------------- result
 
 

@@ -2,7 +2,7 @@
 
 from functools import cached_property
 
-from ..base import contents
+from ..base import command_files, contents
 from ..base.fields import FieldData, open_field
 from ..base.journal import read_journal
 from ..core.late import numpy
@@ -87,6 +87,7 @@ class Result:
             self._fields = {name: contents.field_files_by_order(file, name) for name in contents.fields(file)}
             self.parameters = contents.parameters(file)
             self._mesh_id = contents.reference(file, "mesh")
+            self._contact_id = contents.reference(file, "contact")
 
     def __repr__(self):
         more = "" if self.complete else ", not complete"
@@ -105,6 +106,27 @@ class Result:
     def journal(self):
         """The iterations, a base.journal.Journal; None where they were not written down."""
         return read_journal(self._base, self._id)
+
+    @property
+    def commands(self):
+        """[{"name", "text"}] of the command files that it was computed by."""
+        return command_files.known(self._base, self._id)
+
+    @cached_property
+    def zones(self):
+        """[(slave group, master group, slave cells, master cells)] of its contact."""
+        if not self._contact_id:
+            return []
+        with self._base.open(self._contact_id) as file:
+            return contents.contact_zones(file)
+
+    def field_orders(self, name):
+        """The order numbers at which a field is."""
+        return list(self._fields[name])
+
+    def bytes_of_field(self, name):
+        """What its last file takes."""
+        return (self._base.folder / list(self._fields[name].values())[-1]).stat().st_size
 
     def order_of(self, instant=None, order=None):
         """The order number of an instant, the last one by default. @throws AsterError READER_2"""

@@ -2,7 +2,7 @@
 
 import time
 
-from ..base import orders
+from ..base import command_files, orders
 from ..commands.call import Call
 from ..commands.implementations import implementation
 from ..core import catalog, checker, current, labels, plugins
@@ -104,6 +104,7 @@ class Command:
         copy = orders.keep_copy(run.base, identifier) if reused else None
         if grows:
             run.base.unfinished.begin(identifier, label, key, run.base.kept.hold(identifier) if reused else None, where)
+            command_files.keep(run.base, identifier, run.texts)
         try:
             outcome = orders.run(row["operator"], made, run)
             if outcome.status != 0:

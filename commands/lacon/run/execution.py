@@ -106,6 +106,7 @@ def run_files(study, files):
     values["__name__"] = "__main__"
     values["__builtins__"] = builtins
     sources = [_read(path) for path in files]
+    study.texts = [(os.path.basename(path), text) for path, text in sources]
     if "POURSUITE" in sources[0][1] or "--continue" in sources[0][1]:
         # a name that the saved study lost is explained where it is first used
         values["__builtins__"] = namespace.Builtins({})

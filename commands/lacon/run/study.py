@@ -21,6 +21,7 @@ class Study:
         self.base_folder = pathlib.Path(base_folder)
         self.units = dict(units or {})  #: number -> path
         self.files = []  #: command files of the run
+        self.texts = []  #: (name, text) of those that are run
         self.fresh = fresh
         self.check = None  #: a tools.check.Check, where this run only checks
         self.force = force  #: run every operator, changed or not

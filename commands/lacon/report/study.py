@@ -1,0 +1,266 @@
+"""A result as its page shows it: which instants and fields are drawn, the contact of each instant, the run."""
+
+import os
+import platform
+import time
+
+from .. import version
+from ..base import contents
+from ..core.late import numpy
+from . import proofs
+from .packing import Packing
+from .surface import Drawing
+
+_largest_page = 14e6  #: bytes that the fields of the page may take, about
+_read = 700e6  #: bytes of field files that are read for it
+_deflated = 0.8  #: of a number of 16 bits, with what base64 adds
+_most_courses = 400  #: instants whose contact is followed
+_most_components = 12  #: of a field: internal variables may be many
+_shown = ("DEPL", "SIEF_NOEU", "SIEQ_NOEU", "SIEF_ELNO", "SIEF_ELGA")  #: fields that come first
+_places = {"NOEU": "", "ELEM": ", by cell", "ELGA": ", mean of each cell's points", "ELNO": ", mean at the nodes"}
+_contact = ("pressure", "gap", "status", "coverage")
+
+
+def make(base, result):
+    """@param base reader.Base, result reader.Result  @return (what the page is told, Packing)"""
+    return _Page(base, result).made()
+
+
+class _Page:
+    def __init__(self, base, result):
+        self.base, self.result, self.mesh = base, result, result.mesh
+        self.packing = Packing()
+        self.zones = result.zones
+        self.drawing = Drawing(self.mesh, self.zones)
+        self.notes = []
+        self.fields = {name: self._head(name) for name in result.fields if name != "CONT_ELEM"}
+        self.fields = {name: head for name, head in self.fields.items() if head}
+        self.drawn = self._instants()
+
+    def made(self):
+        started = time.perf_counter()
+        points = self.mesh.points[self.drawing.nodes]
+        middle = (points.min(axis=0) + points.max(axis=0)) / 2
+        add, skins = self.packing.add, self.drawing.facet_skins
+        fields = [self._field(name) for name in sorted(self.fields, key=_rank)]
+        contact, courses = self._contact()
+        if contact:
+            fields.insert(0, contact)
+        told = {
+            "title": f"{self.result.label} of {self.base.folder.name}", "label": self.result.label, "base": self.base.folder.name,
+            "subtitle": self._subtitle(), "dimension": self.mesh.dimension,
+            "size": float(numpy.linalg.norm(numpy.ptp(points, axis=0))), "points": add(points - middle, "f4"),
+            "nodes": add(self.drawing.nodes + 1, "i4"), "facet_cells": add(numpy.where(skins >= 0, skins, self.drawing.facet_cells) + 1, "i4"),
+            "facet_patches": add(self.drawing.facet_patches, "i4"), "surfaces": [self._surface(s) for s in self.drawing.surfaces],
+            "parts": self.drawing.parts, "fields": fields, "instants": self.result.instants.tolist(), "drawn": self.drawn,
+            "first": _first(fields), "zones": courses, "patch_areas": self._areas.tolist() if contact else [],
+            "iterations": numpy.asarray(self.result.parameters.get("newton_iterations", [])).tolist(), "proofs": self._proofs,
+            "journal": self._journal(), "commands": self.result.commands, "run": self._run(started), "notes": self.notes}
+        return told, self.packing
+
+    # ------------------------------------------------------------------------------------------- what is drawn
+
+    def _head(self, name):
+        """(location, components) of a field that can be drawn; nothing otherwise."""
+        order = self.result.orders[-1]
+        files = self.result.field_orders(name)
+        field = self.result.field(name, order=order if order in files else files[-1])
+        if field.functions or not len(field.support):
+            return None
+        components = [c for c in field.components if c != "LAGS_C"][:_most_components]
+        if len(components) < len([c for c in field.components if c != "LAGS_C"]):
+            self.notes.append(f"Of {name} the first {_most_components} of {len(field.components)} components are here.")
+        return field.location, components
+
+    def _instants(self):
+        """Which instants are drawn: all, or so many of them that the page stays small, the first and the last among them."""
+        count = len(self.result.orders)
+        numbers = sum(len(components) * (len(self.drawing.nodes) if location in ("NOEU", "ELNO") else len(self.drawing.facet_cells))
+                      for location, components in self.fields.values())
+        most = min(_largest_page / max(1.0, 2 * _deflated * numbers), _read / max(1.0, self._bytes_of_an_instant()))
+        chosen = min(count, max(1, int(most)))
+        if chosen < count:
+            self.notes.append(f"{chosen} of {count} instants are drawn, so that the page stays small; curves and tables have all of them.")
+        return numpy.unique(numpy.rint(numpy.linspace(count - 1, 0, chosen)).astype(int)).tolist()
+
+    def _bytes_of_an_instant(self):
+        return sum(self.result.bytes_of_field(name) for name in self.fields)
+
+    def _surface(self, surface):
+        told = {key: surface[key] for key in ("name", "kind", "zone", "part")}
+        for key in ("triangles", "triangle_facets", "quads", "quad_facets", "edges", "segments", "segment_facets"):
+            if key in surface:
+                told[key] = self.packing.add(surface[key], "u4" if not key.endswith("facets") else "i4")
+        return told
+
+    def _field(self, name):
+        location, components = self.fields[name]
+        on_nodes = location in ("NOEU", "ELNO")
+        instants = {}
+        for index in self.drawn:
+            order = self.result.orders[index]
+            if order not in self.result.field_orders(name):
+                continue
+            field = self.result.field(name, order=order)
+            values = numpy.column_stack([field[c] if c in field.components else numpy.full(len(field.values), numpy.nan) for c in components])
+            stored, ranges = self.packing.add_quantised(self._placed(field, values))
+            instants[index] = {"values": stored, "ranges": ranges}
+        return {"name": name, "title": name + _places[location], "kind": "node" if on_nodes else "facet", "components": components, "instants": instants}
+
+    def _placed(self, field, values):
+        """The rows of a field at the drawn nodes or facets, nan elsewhere."""
+        nodes, cells = len(self.mesh.points), len(self.mesh.cell_types)
+        if field.location == "NOEU":
+            return _spread(nodes, field.support, values)[self.drawing.nodes]
+        if field.location == "ELEM":
+            whole = _spread(cells, field.support, values)
+            return whole[numpy.where((self.drawing.facet_skins >= 0) & numpy.isnan(whole[self.drawing.facet_cells]).all(axis=1), self.drawing.facet_skins,
+                                     self.drawing.facet_cells)]
+        if field.location == "ELGA":
+            means = _means(field.offset, values)
+            return _spread(cells, field.support, means)[self.drawing.facet_cells]
+        offset, members = self.mesh.connectivity
+        cell, place = field.rows()
+        inside = place < (offset[cell + 1] - offset[cell])
+        node = members[offset[cell[inside]] + place[inside]]
+        whole = numpy.full((nodes, values.shape[1]), numpy.nan)
+        for c in range(values.shape[1]):
+            known = numpy.isfinite(values[inside, c])
+            count = numpy.bincount(node[known], minlength=nodes)
+            total = numpy.bincount(node[known], values[inside, c][known], minlength=nodes)
+            with numpy.errstate(invalid="ignore"):
+                whole[:, c] = numpy.where(count > 0, total / count, numpy.nan)
+        return whole[self.drawing.nodes]
+
+    # ------------------------------------------------------------------------------------------- contact
+
+    def _contact(self):
+        """(the field of the patches, or nothing; what the page is told of each zone). Makes the proof lines too."""
+        count = len(self.result.orders)
+        followed = set(numpy.unique(numpy.rint(numpy.linspace(0, count - 1, min(count, _most_courses))).astype(int)).tolist()) | set(self.drawn)
+        courses = [{"slave": slave, "master": master, "course": []} for slave, master, _, _ in self.zones]
+        instants, self._proofs = {}, []
+        journal = self.result.journal
+        with_patches = bool(self.zones) and "CONT_ELEM" in self.result.fields
+        for index, order in enumerate(self.result.orders):
+            patches = None
+            if with_patches and index in followed and order in self.result.field_orders("CONT_ELEM"):
+                patches = self.result.contact(order=order)
+                patches.space = self.mesh.dimension == 3
+                self._areas = patches.area
+                if index in self.drawn:
+                    values = numpy.array([patches.pressure, patches.gap, patches.status, patches.coverage])
+                    instants[index] = {"values": self.packing.add(values, "f4")}
+            for number, zone in enumerate(courses):
+                zone["course"].append(self._figures(index, number, patches))
+            self._proofs.append([] if index == 0 and count > 1 else
+                                proofs.of_instant(index, self.result.parameters, self.zones, _newton_of(journal, self.result.instants[index]), patches))
+        if not instants:
+            return None, courses
+        return {"name": "CONT_ELEM", "title": "Contact", "kind": "patch", "exact": True, "components": list(_contact), "instants": instants}, courses
+
+    def _figures(self, index, number, patches):
+        """Of a zone at an instant."""
+        value = {name: float(values[index]) for name, values in self.result.parameters.items()}
+        start = f"zone_{number + 1}_"
+        if start + "active" not in value:
+            return {}
+        told = {name: value[start + name] for name in ("active", "open", "unpaired", "covered")}
+        told["force"] = [value[f"{start}slave_force_{axis}"] for axis in "xyz"[:self.mesh.dimension]]
+        if start + "dissipated" in value:
+            told["dissipated"] = value[start + "dissipated"]
+        if patches is not None:
+            active = (patches.zone == number) & (patches.status == 1)
+            told["area"] = float((patches.area * patches.coverage)[active].sum())
+            told["largest"] = float(patches.pressure[active].max(initial=0.0))
+        return told
+
+    # ------------------------------------------------------------------------------------------- the run
+
+    def _journal(self):
+        journal = self.result.journal
+        if journal is None:
+            return None
+        rows = []
+        for number, attempt in enumerate(journal.attempts):
+            rows += [{"attempt": number, **{key: _finite(line[key]) for key in ("rela", "maxi", "geometry", "changes", "active") if key in line}}
+                     for line in attempt.iterations]
+        if len(rows) > 5000:
+            self.notes.append(f"The curves of Newton's method have the last 5000 of {len(rows)} iterations.")
+        return {"limits": journal.limits, "patches": journal.patches, "rows": rows[-5000:]}
+
+    def _subtitle(self):
+        nodes, cells = len(self.mesh.points), sum(len(numbers) for numbers, _ in self.mesh.cells_of_dimension(self.mesh.dimension).values())
+        words = [f"{nodes} nodes, {cells} cells in {len(self.drawing.parts)} bodies"]
+        if self.zones:
+            words.append(f"{len(self.mesh.patches)} patches in {len(self.zones)} contact zone{'s' * (len(self.zones) > 1)}")
+        words.append(f"{len(self.result.orders)} instants to {self.result.instants[-1]:g}")
+        if not self.result.complete:
+            words.append("the computation is under way" if self.base.running else "the computation has not come to its end")
+        return "; ".join(words)
+
+    def _run(self, started):
+        journal = self.result.journal
+        study = [("Base", str(self.base.folder)), ("Result", self.result.label), ("Mesh", self.mesh.label)]
+        machine = [("Lacon", version), ("Python", platform.python_version()), ("Processor", _processor()), ("Cores", str(os.cpu_count())),
+                   ("System", f"{platform.system()} {platform.release()}")]
+        totals = []
+        if journal is not None:
+            rows = [line for _, line in journal.iterations()]
+            totals += [("in all", f"{journal.now:.4g} s"), ("iterations", f"{len(rows)} in {len(journal.attempts)} instants tried"),
+                       ("factorisations", str(sum(bool(line.get("factorised")) for line in rows)))]
+        page = [("made", time.strftime("%Y-%m-%d %H:%M")), ("instants drawn", f"{len(self.drawn)} of {len(self.result.orders)}"),
+                ("fields", "16 bits a number, contact 32"), ("made in", f"{time.perf_counter() - started:.2f} s")]
+        return {"study": study, "machine": machine, "totals": totals, "phases": {}, "page": page}
+
+
+def _rank(name):
+    return (_shown.index(name) if name in _shown else len(_shown), name)
+
+
+def _first(fields):
+    """What the page shows first."""
+    names = [field["name"] for field in fields]
+    for name, component in (("SIEF_NOEU", "mises"), ("SIEF_ELNO", "mises"), ("SIEF_ELGA", "mises"), ("DEPL", "magnitude")):
+        if name in names:
+            return {"field": name, "component": component}
+    return {"field": names[0] if names else "", "component": ""}
+
+
+def _spread(count, support, values):
+    whole = numpy.full((count, values.shape[1]), numpy.nan)
+    whole[support] = values
+    return whole
+
+
+def _means(offset, values):
+    """Of the rows of each cell; nan where there are none."""
+    counts = numpy.diff(offset)
+    means = numpy.full((len(counts), values.shape[1]), numpy.nan)
+    filled = counts > 0
+    if filled.any():
+        means[filled] = numpy.add.reduceat(values, offset[:-1][filled], axis=0) / counts[filled, None]
+    return means
+
+
+def _newton_of(journal, instant):
+    """(limits, iterations) of the attempt that solved an instant; nothing where there is none."""
+    if journal is None:
+        return None
+    for attempt in reversed(journal.attempts):
+        if attempt.solved and attempt.iterations and abs(attempt.instant - instant) <= 1e-9 * max(abs(instant), 1e-300):
+            return journal.limits, attempt.iterations
+    return None
+
+
+def _finite(x):
+    """A number that JSON has."""
+    return x if isinstance(x, (int, bool)) or numpy.isfinite(x) else None
+
+
+def _processor():
+    try:
+        with open("/proc/cpuinfo", encoding="utf-8", errors="replace") as file:
+            return next(line.partition(":")[2].strip() for line in file if line.startswith("model name"))
+    except (OSError, StopIteration):
+        return platform.processor() or platform.machine()

@@ -1,0 +1,64 @@
+"""`lacon report BASE`: one HTML file of a result, to look at in a browser, offline; also of a run in progress."""
+
+import argparse
+import json
+import pathlib
+import webbrowser
+
+from ..core import outcome, plugins
+from ..core.files import write_whole
+from ..core.messages import AsterError, fail, show
+from ..reader.base import open_base
+from ..report import study
+
+_marker = "<!--STUDY-->"
+
+
+def parser():
+    """What it is called with."""
+    made = argparse.ArgumentParser(
+        prog="lacon report", description="Writes one HTML file that shows a result: the deformed bodies in 3D with every field, the contact patch by patch, "
+        "curves of Newton's method and of the contact, what the result may be trusted for, times and the command file.")
+    made.add_argument("base", metavar="BASE", help="folder of the base, STUDY.base")
+    made.add_argument("--result", metavar="LABEL", help="the result; otherwise the only one")
+    made.add_argument("--out", metavar="FILE", help="the file to write, which is replaced; otherwise BASE without its suffix and with .html")
+    made.add_argument("--open", action="store_true", help="show it in the browser")
+    return made
+
+
+def run(arguments):
+    """@return exit status"""
+    options = parser().parse_args(arguments)
+    try:
+        page = template()
+        base = open_base(options.base)
+        told, packing = study.make(base, base.only_result(options.result))
+        target = pathlib.Path(options.out or base.folder.with_suffix(".html").name)
+        try:
+            write_whole(target, filled(page, told, packing))
+        except OSError as error:
+            fail("STUDY_3", "lacon report --out", folder=target, reason=error.strerror)
+    except AsterError as error:
+        for item in error.messages:
+            show(item)
+        return error.status
+    print(f"{target}: {target.stat().st_size / 1e6:.1f} MB, {len(told['drawn'])} instants, {len(told['fields'])} fields")
+    if options.open:
+        webbrowser.open(target.resolve().as_uri())
+    return outcome.done
+
+
+def template():
+    """The page without a study, made where npm is when Lacon is built. @throws AsterError REPORT_1 where it was not"""
+    root = plugins.operator_folder().parent
+    for path in (root / "share" / "lacon" / "report.html", root / "generated" / "report.html"):
+        if path.exists():
+            return path.read_text(encoding="utf-8")
+    fail("REPORT_1", "lacon report")
+    raise AssertionError
+
+
+def filled(page, told, packing):
+    """The page with a study."""
+    text = json.dumps(told, allow_nan=False).replace("<", "\\u003c")
+    return page.replace(_marker, f'<script type="application/json" id="study">{text}</script>\n{packing.elements()}', 1)

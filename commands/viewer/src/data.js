@@ -1,0 +1,80 @@
+// What `lacon report` has put into the page: one text of JSON and arrays, each deflated by itself, unpacked when they are asked for.
+
+export const study = JSON.parse(document.getElementById("study").textContent);
+
+const types = {u1: Uint8Array, u2: Uint16Array, i4: Int32Array, u4: Uint32Array, f4: Float32Array};
+const unpacked = new Map();
+
+async function inflate(text) {
+  const bytes = Uint8Array.from(atob(text), (c) => c.charCodeAt(0));
+  const stream = new Blob([bytes]).stream().pipeThrough(new DecompressionStream("deflate"));
+  return new Uint8Array(await new Response(stream).arrayBuffer());
+}
+
+/** The first bytes of all numbers come first, then the second ones: so they deflate better. */
+function unshuffle(bytes, size) {
+  if (size === 1) return bytes;
+  const count = bytes.length / size;
+  const whole = new Uint8Array(bytes.length);
+  for (let b = 0; b < size; ++b)
+    for (let i = 0, from = b * count, to = b; i < count; ++i, ++from, to += size) whole[to] = bytes[from];
+  return whole;
+}
+
+async function unpack({id, type}) {
+  const bytes = await inflate(document.getElementById(`array-${id}`).textContent);
+  const whole = unshuffle(bytes, types[type].BYTES_PER_ELEMENT);
+  return new types[type](whole.buffer, 0, whole.length / types[type].BYTES_PER_ELEMENT);
+}
+
+/** The typed array of a reference {id, type}. @return a promise */
+export function array(reference) {
+  if (!unpacked.has(reference.id)) unpacked.set(reference.id, unpack(reference));
+  return unpacked.get(reference.id);
+}
+
+const absent = 65535;
+
+/** The components of a field at an instant: one Float32Array each, NaN where there is no value. */
+export async function values(field, instant) {
+  const stored = field.instants[instant];
+  if (!stored) return null;
+  const raw = await array(stored.values);
+  const count = raw.length / field.components.length;
+  return field.components.map((_, c) => {
+    const part = raw.subarray(c * count, (c + 1) * count);
+    if (field.exact) return part;
+    const [low, high] = stored.ranges[c];
+    const step = (high - low) / (absent - 1);
+    return Float32Array.from(part, (q) => (q === absent ? NaN : low + q * step));
+  });
+}
+
+const tensor = ["SIXX", "SIYY", "SIZZ", "SIXY", "SIXZ", "SIYZ"];
+
+/** What a field can be coloured by: its components, and what is made of them: [{name, label, of(components)}]. */
+export function quantities(field) {
+  const at = (name) => field.components.indexOf(name);
+  const found = field.components.map((name, c) => ({name, label: field.labels?.[c] ?? name, unit: field.units?.[c] ?? "", of: (all) => all[c]}));
+  const vector = ["DX", "DY", "DZ"].map(at).filter((c) => c >= 0);
+  if (field.name === "DEPL" && vector.length > 1)
+    found.unshift({name: "magnitude", label: "magnitude", of: (all) => combine(vector.map((c) => all[c]), (v) => Math.hypot(...v))});
+  const stress = tensor.map(at);
+  if (field.name.startsWith("SIEF") && stress.slice(0, 4).every((c) => c >= 0))
+    found.unshift({name: "mises", label: "von Mises", of: (all) => combine(stress.map((c) => (c < 0 ? null : all[c])), mises)});
+  return found;
+}
+
+function mises([xx, yy, zz, xy, xz, yz]) {
+  return Math.sqrt(0.5 * ((xx - yy) ** 2 + (yy - zz) ** 2 + (zz - xx) ** 2) + 3 * (xy * xy + xz * xz + yz * yz));
+}
+
+function combine(parts, make) {
+  const made = new Float32Array(parts.find((part) => part).length);
+  const row = new Array(parts.length);
+  for (let i = 0; i < made.length; ++i) {
+    for (let k = 0; k < parts.length; ++k) row[k] = parts[k] ? parts[k][i] : 0;
+    made[i] = make(row);
+  }
+  return made;
+}

@@ -1,0 +1,421 @@
+// The page of `lacon report`: what is chosen, and who shows it.
+import {chart, number} from "./charts.js";
+import {at as colourAt, css, diverging, maps, series as colours, statuses} from "./colours.js";
+import {quantities, study, values} from "./data.js";
+import {element, showCurves, showFigures, showProofs, showRun, showZones} from "./panels.js";
+import {Scene} from "./scene.js";
+
+const $ = (id) => document.getElementById(id);
+const inputs = ["field", "component", "map", "range", "low", "high", "magnify", "opacity", "edges", "zone", "opening", "instant"];
+const control = Object.fromEntries(inputs.map((id) => [id, $(id)]));
+
+let scene = null;
+let shown = {kind: "none", values: null};
+let picked = null;
+let drawing = 0;
+
+// ---------------------------------------------------------------------------------------------------- theme
+
+function theme() {
+  const style = getComputedStyle(document.documentElement);
+  const rgb = (name) => style.getPropertyValue(name).trim().match(/[0-9a-f]{2}/gi).slice(0, 3).map((c) => parseInt(c, 16) / 255);
+  scene?.setTheme({background: rgb("--view"), ink: rgb("--ink")});
+  if (scene) scene.ink = rgb("--ink");
+}
+
+function startTheme() {
+  const dark = matchMedia("(prefers-color-scheme: dark)");
+  const set = (name) => {
+    document.documentElement.dataset.theme = name;
+    theme();
+    scene?.render();
+  };
+  set(dark.matches ? "dark" : "light");
+  dark.addEventListener("change", () => set(dark.matches ? "dark" : "light"));
+  $("theme").addEventListener("click", () => set(document.documentElement.dataset.theme === "dark" ? "light" : "dark"));
+  let before = "light";
+  addEventListener("beforeprint", () => {
+    before = document.documentElement.dataset.theme;
+    set("light");
+  });
+  addEventListener("afterprint", () => set(before));
+}
+
+// ---------------------------------------------------------------------------------------------------- choices
+
+/** The instants that are drawn: indices into study.instants. */
+const drawn = study.drawn;
+const now = () => drawn[Number(control.instant.value)];
+const field = () => study.fields.find(({name}) => name === control.field.value);
+const quantity = () => quantities(field()).find(({name}) => name === control.component.value);
+
+const options = (select, rows) => select.replaceChildren(...rows.map(([value, text]) => element("option", {value, textContent: text})));
+
+function fillControls() {
+  options(control.field, study.fields.map(({name, title}) => [name, title]));
+  options(control.map, [...Object.keys(maps)].map((name) => [name, name]));
+  options(control.zone, study.zones.map(({slave, master}, z) => [z, `${z + 1}: ${slave} on ${master}`]));
+  $("book").hidden = !study.zones.length;
+  control.instant.max = drawn.length - 1;
+  control.instant.value = drawn.length - 1;
+  $("time").hidden = drawn.length < 2;
+  control.field.value = study.first.field;
+  fillComponents(study.first.component);
+  $("parts").replaceChildren(...(study.parts.length > 1 ? study.parts.map((name, part) => {
+    const box = element("input", {type: "checkbox", checked: true});
+    box.addEventListener("change", () => {
+      scene.see.hidden[box.checked ? "delete" : "add"](part);
+      scene.applyLook();
+      scene.render();
+    });
+    return element("label", {className: "check"}, box, ` ${name}`);
+  }) : []));
+}
+
+function fillComponents(wanted) {
+  if (!field()) return;
+  const list = quantities(field());
+  options(control.component, list.map(({name, label}) => [name, label]));
+  control.component.value = list.some(({name}) => name === wanted) ? wanted : list[0].name;
+  chooseMap();
+}
+
+/** What has both signs is best seen about zero. */
+function chooseMap() {
+  control.map.value = quantity().name === "gap" ? diverging : "viridis";
+  control.map.disabled = quantity().name === "status";
+}
+
+// ---------------------------------------------------------------------------------------------------- drawing
+
+function rangeOf(list) {
+  let low = Infinity, high = -Infinity;
+  for (const v of list) {
+    if (v < low) low = v;
+    if (v > high) high = v;
+  }
+  return low <= high ? [low, high] : [0, 1];
+}
+
+async function valuesAt(instant) {
+  const all = await values(field(), instant);
+  return all && quantity().of(all);
+}
+
+async function range(own) {
+  if (control.range.value === "own") return [Number(control.low.value), Number(control.high.value)];
+  let found = rangeOf(own ?? []);
+  if (control.range.value === "all")
+    for (const instant of drawn) {
+      const other = await valuesAt(instant);
+      if (!other) continue;
+      const [low, high] = rangeOf(other);
+      found = [Math.min(found[0], low), Math.max(found[1], high)];
+    }
+  if (control.map.value === diverging) {
+    const most = Math.max(Math.abs(found[0]), Math.abs(found[1]));
+    found = [-most, most];
+  }
+  [control.low.value, control.high.value] = found.map((x) => Number(x.toPrecision(6)));
+  return found;
+}
+
+/** Draw what is chosen; the latest choice wins. */
+async function draw() {
+  const mine = ++drawing;
+  const instant = now();
+  const displacement = study.fields.find(({name}) => name === "DEPL");
+  const moved = displacement ? await values(displacement, instant) : null;
+  const vector = moved && ["DX", "DY", "DZ"].map((name) => displacement.components.indexOf(name)).filter((c) => c >= 0).map((c) => moved[c]);
+  const own = field() ? await valuesAt(instant) : null;
+  const limits = await range(own);
+  if (mine !== drawing) return;
+  const map = quantity()?.name === "status" ? "status" : control.map.value;
+  scene.setMap(map, limits);
+  scene.colour(field()?.kind, own);
+  scene.deform(vector, Number(control.magnify.value));
+  shown = {kind: field()?.kind, values: own, vector, limits, map};
+  showScale(own);
+  $("instant-value").textContent = `instant ${number(study.instants[instant], 9)}  (${Number(control.instant.value) + 1} of ${drawn.length})`;
+  control.instant.setAttribute("aria-valuetext", `instant ${number(study.instants[instant], 9)}`);
+  showPicked();
+  scene.render();
+  document.body.dataset.drawn = String(mine);
+}
+
+async function drawAll() {
+  await draw();
+  showProofs(now());
+  showZones(now());
+  showCurves(now(), (instant) => {
+    const nearest = drawn.reduce((best, d, i) => (Math.abs(d - instant) < Math.abs(drawn[best] - instant) ? i : best), 0);
+    control.instant.value = nearest;
+    drawAll();
+  }, await alongSkins());
+}
+
+function showScale(own) {
+  const name = field() ? `${field().title}, ${quantity().label}` : "";
+  if (!own) {
+    $("scale").replaceChildren(element("b", {textContent: name ? `${name}: not kept at this instant` : "no field"}));
+    return;
+  }
+  const {limits, map} = shown;
+  if (map === "status") {
+    const keys = statuses.map(({name: word, colour}) => element("span", {}, element("i", {style: `background:${css(colour)}`}), word));
+    $("scale").replaceChildren(element("b", {textContent: name}), element("div", {className: "keys"}, ...keys));
+    return;
+  }
+  const steps = Array.from({length: 33}, (_, i) => css(colourAt(map, i / 32))).join(",");
+  const marks = [0, 0.25, 0.5, 0.75, 1].map((x) => element("span", {textContent: number(limits[0] + x * (limits[1] - limits[0]), 3)}));
+  $("scale").replaceChildren(element("b", {textContent: name}), element("div", {className: "bar", style: `background:linear-gradient(90deg,${steps})`}),
+    element("div", {className: "ticks"}, ...marks));
+}
+
+/** In the plane: pressure and gap over the length of each slave skin. */
+async function alongSkins() {
+  if (study.dimension !== 2 || !study.zones.length) return [];
+  const contact = study.fields.find(({kind}) => kind === "patch");
+  const all = contact && (await values(contact, now()));
+  if (!all) return [];
+  const column = (name) => all[contact.components.indexOf(name)];
+  const curves = {pressure: [], gap: []};
+  for (const surface of scene.surfaces) {
+    if (surface.meta.kind !== "slave") continue;
+    const steps = {pressure: [], gap: []};
+    const {ends, facets} = surface;
+    const order = followed(ends);
+    let length = 0;
+    for (const i of order) {
+      const [a, b] = [3 * ends[2 * i], 3 * ends[2 * i + 1]];
+      const step = Math.hypot(scene.initial[b] - scene.initial[a], scene.initial[b + 1] - scene.initial[a + 1]);
+      for (const s of [length, length + step])
+        for (const name of ["pressure", "gap"]) steps[name].push([s, column(name)[scene.facetPatch[facets[i]]]]);
+      length += step;
+    }
+    const zone = study.zones[surface.meta.zone];
+    for (const name of ["pressure", "gap"])
+      curves[name].push({name: `${zone.slave} on ${zone.master}`, colour: colours[surface.meta.zone % colours.length], points: steps[name]});
+  }
+  return [["pressure", "Contact pressure along the slave skins"], ["gap", "Gap along the slave skins"]].map(([name, title]) =>
+    chart({title: `${title}, instant ${number(study.instants[now()], 9)}`, x: "length along the skin, from its end", y: name, series: curves[name]}));
+}
+
+/** The segments of a skin one behind the other. */
+function followed(ends) {
+  const from = new Map(), into = new Set();
+  for (let i = 0; i < ends.length / 2; ++i) {
+    from.set(ends[2 * i], i);
+    into.add(ends[2 * i + 1]);
+  }
+  const order = [], done = new Set();
+  const walk = (node) => {
+    for (let i = from.get(node); i !== undefined && !done.has(i); i = from.get(ends[2 * i + 1])) {
+      done.add(i);
+      order.push(i);
+    }
+  };
+  for (const node of from.keys()) if (!into.has(node)) walk(node);
+  for (const node of from.keys()) walk(node);
+  return order;
+}
+
+// ---------------------------------------------------------------------------------------------------- picking
+
+function pickAt(x, y) {
+  const hit = scene.pick(x, y);
+  picked = hit && {facet: hit.facet, node: scene.nodeAt(hit), zone: hit.surface.meta.zone, kind: hit.surface.meta.kind, name: hit.surface.meta.name};
+  showPicked();
+  scene.render();
+}
+
+/** Cells of the base are named from 1 on. */
+async function showPicked() {
+  if (!picked) {
+    scene.mark([]);
+    showFigures();
+    return;
+  }
+  const {facet, node, zone, kind, name} = picked;
+  const patch = scene.facetPatch[facet];
+  const pairs = [["on", name], ["cell", `M${scene.facetCell[facet]}`], ["nearest node", `N${scene.nodes[node]}`]];
+  const own = {node, facet, patch}[shown.kind];
+  if (shown.values && own >= 0) pairs.push([`${quantity().label} (${field().name})`, number(shown.values[own], 6)]);
+  if (shown.vector) pairs.push(["displacement", shown.vector.map((v) => number(v[node])).join(", ")]);
+  if (kind !== "slave" || patch < 0) {
+    scene.mark([{kind: "patch", wanted: {facets: new Set([facet])}}]);
+    showFigures(`Cell M${scene.facetCell[facet]}`, pairs);
+    return;
+  }
+  const contact = study.fields.find(({kind: of}) => of === "patch");
+  const all = contact && (await values(contact, now()));
+  if (all) {
+    const value = (what) => all[contact.components.indexOf(what)][patch];
+    const state = statuses.find((s) => s.value === value("status"));
+    pairs.unshift(["status", state?.name ?? "–"], ["pressure", number(value("pressure"), 6)], ["gap", number(value("gap"), 4)],
+      ["covered", `${(100 * value("coverage")).toFixed(1)} %`], [study.dimension === 3 ? "area" : "length", number(study.patch_areas[patch], 5)]);
+  }
+  const masters = scene.mastersOf(patch, zone);
+  const facets = new Set();
+  scene.facetPatch.forEach((p, f) => {
+    if (p === patch) facets.add(f);
+  });
+  scene.mark([{kind: "masters", wanted: {facets: new Set(masters.map((m) => m.facet)), onSkins: true}}, {kind: "patch", wanted: {facets, onSkins: true}}]);
+  showFigures(`Patch ${patch + 1}, zone ${zone + 1}`, pairs, masters);
+  scene.render();
+}
+
+function startPicking() {
+  let down = null;
+  $("canvas").addEventListener("pointerdown", (event) => (down = [event.clientX, event.clientY]), true);
+  $("canvas").addEventListener("pointerup", (event) => {
+    const box = $("canvas").getBoundingClientRect();
+    if (down && Math.hypot(event.clientX - down[0], event.clientY - down[1]) < 5) pickAt(event.clientX - box.left, event.clientY - box.top);
+    down = null;
+  }, true);
+}
+
+// ---------------------------------------------------------------------------------------------------- keys, buttons, time
+
+let playing = null;
+function play() {
+  const stop = playing !== null;
+  clearInterval(playing);
+  playing = stop ? null : setInterval(() => step(1, true), 600);
+  $("play").textContent = stop ? "▶" : "❚❚";
+  $("play").ariaLabel = stop ? "Play" : "Pause";
+}
+
+function step(by, around = false) {
+  const next = Number(control.instant.value) + by;
+  control.instant.value = around ? next % drawn.length : Math.min(Math.max(next, 0), drawn.length - 1);
+  return drawAll();
+}
+
+function openBook(opening) {
+  control.opening.value = opening;
+  scene.openBook(study.zones.length ? Number(control.zone.value) : -1, Number(control.opening.value));
+  showPicked();
+  scene.render();
+}
+
+const keys = {
+  ArrowLeft: () => scene.turn(-5, 0), ArrowRight: () => scene.turn(5, 0), ArrowUp: () => scene.turn(0, 5), ArrowDown: () => scene.turn(0, -5),
+  "+": () => scene.zoom(1.15), "=": () => scene.zoom(1.15), "-": () => scene.zoom(1 / 1.15), f: () => scene.fit(), x: () => scene.lookAlong("x"), y: () => scene.lookAlong("y"),
+  z: () => scene.lookAlong("z"), 3: () => scene.lookAlong("3D"), "[": () => step(-1), "]": () => step(1), " ": play,
+  o: () => study.zones.length && openBook(Number(control.opening.value) > 0 ? 0 : 1),
+  Enter: () => pickAt($("canvas").clientWidth / 2, $("canvas").clientHeight / 2),
+};
+
+function startKeys() {
+  for (const kind of ["keydown", "keypress", "keyup"])
+    addEventListener(kind, (event) => {
+      if (event.target.closest("input, select, textarea, button, a, summary")) return;
+      event.stopPropagation(); // vtk.js has keys of its own
+      if (kind !== "keydown" || event.ctrlKey || event.metaKey || event.altKey) return;
+      const arrows = event.key.startsWith("Arrow") || event.key === " " || event.key === "Enter";
+      if (arrows && document.activeElement !== $("view")) return; // they move the page
+      const act = keys[event.key.length === 1 ? event.key.toLowerCase() : event.key];
+      if (!act) return;
+      event.preventDefault();
+      act();
+    }, true);
+}
+
+/** @param share 0: bodies are solid, 1: they are not there */
+function seeThrough(share) {
+  control.opacity.value = share;
+  scene.see.opacity = 1 - share;
+  scene.applyLook();
+}
+
+function startControls() {
+  control.field.addEventListener("change", () => {
+    fillComponents(control.component.value);
+    if (field().kind === "patch" && study.dimension === 3 && control.opacity.value === "0") seeThrough(0.75); // skins lie between bodies
+    draw();
+  });
+  control.component.addEventListener("change", () => {
+    chooseMap();
+    draw();
+  });
+  for (const id of ["map", "low", "high", "magnify"]) control[id].addEventListener("change", draw);
+  control.range.addEventListener("change", () => {
+    $("own-range").hidden = control.range.value !== "own";
+    draw();
+  });
+  control.instant.addEventListener("input", drawAll);
+  control.opacity.addEventListener("input", () => {
+    seeThrough(Number(control.opacity.value));
+    scene.render();
+  });
+  control.edges.addEventListener("change", () => {
+    scene.see.edges = control.edges.checked;
+    scene.applyLook();
+    scene.render();
+  });
+  control.zone.addEventListener("change", () => openBook(Number(control.opening.value)));
+  control.opening.addEventListener("input", () => openBook(Number(control.opening.value)));
+  $("play").addEventListener("click", play);
+  $("print").addEventListener("click", () => print());
+  const views = study.dimension === 2 ? [["fit", () => scene.fit()]] : [["x", () => scene.lookAlong("x")], ["y", () => scene.lookAlong("y")], ["z", () => scene.lookAlong("z")],
+    ["3D", () => scene.lookAlong("3D")], ["fit", () => scene.fit()]];
+  $("views").replaceChildren(...views.map(([name, act]) => {
+    const button = element("button", {type: "button", textContent: name, title: name === "fit" ? "Show all (F)" : `Look from ${name}`});
+    button.addEventListener("click", act);
+    return button;
+  }));
+}
+
+// ---------------------------------------------------------------------------------------------------- start
+
+/** All that is chosen as at the beginning. */
+async function restart() {
+  picked = null;
+  fillControls();
+  for (const id of ["range", "magnify", "edges"]) control[id][id === "edges" ? "checked" : "value"] = {range: "instant", magnify: 1, edges: true}[id];
+  Object.assign(scene.see, {edges: true, hidden: new Set()});
+  seeThrough(field()?.kind === "patch" && study.dimension === 3 ? 0.75 : 0);
+  scene.hold = true; // one picture, when all is in place
+  openBook(0);
+  await drawAll();
+  scene.hold = false;
+  scene.lookAlong("3D");
+}
+
+function failed(reason) {
+  const told = element("p", {id: "failure", role: "alert", textContent: `The picture cannot be drawn: ${reason}. A browser with WebGL 2 is needed; tables and curves below are complete.`});
+  document.querySelector("main").before(told);
+  $("look").hidden = true;
+}
+
+async function start() {
+  document.title = `${study.label}: ${study.base}`;
+  $("title").textContent = `${study.title}`;
+  $("subtitle").textContent = study.subtitle;
+  $("hint").textContent = study.dimension === 2 ? "drag moves, wheel zooms, click picks" : "drag turns, Shift-drag moves, wheel zooms, click picks";
+  fillControls();
+  startTheme();
+  showFigures();
+  showRun();
+  try {
+    scene = await Scene.create($("canvas"));
+  } catch (error) {
+    failed(error.message);
+    showProofs(drawn.at(-1));
+    showZones(drawn.at(-1));
+    showCurves(drawn.at(-1), () => {}, []);
+    return;
+  }
+  theme();
+  startControls();
+  startKeys();
+  startPicking();
+  scene.hold = true;
+  scene.resize();
+  await restart();
+  document.body.dataset.ready = "yes";
+  window.lacon = {scene, study, restart}; // for tests and the curious
+}
+
+start();
