@@ -16,7 +16,7 @@ import weakref
 from ..core.concepts import concepts_in, dumps, type_of
 from ..core.files import write_whole
 from ..core.late import h5py
-from ..core.messages import NeedsRun, fail
+from ..core.messages import AsterError, NeedsRun, fail
 from . import contents, kept, seal
 from .unfinished import Unfinished
 
@@ -25,6 +25,7 @@ _orders = "orders.partial"
 _no_registry = (OSError, ValueError, KeyError, TypeError)  #: what reading a file that is none throws
 #: seconds after which an operator whose launcher is gone has ended
 patience = 3.0
+_tries, _pause = 20, 0.01  # seconds, until a folder that a run has just made is a base
 _entry = re.compile(r"([a-z_]+_\d+)(\.h5)?(\.partial)?$")
 
 
@@ -335,6 +336,18 @@ class ReadBase(Base):
         """label -> concept, of the concepts of a type that are there."""
         return {label: self.concept(identifier, label) for label, identifier in self.registry["labels"].items()
                 if type_of(identifier) == kind and self.path(identifier).exists()}
+
+
+def look_into(folder, where):
+    """The base as it is now, to be read; its run may be about to make it. @throws AsterError as ReadBase"""
+    for _ in range(_tries):
+        try:
+            return ReadBase(folder, where)
+        except AsterError:
+            if not os.path.isdir(folder):
+                raise
+            time.sleep(_pause)
+    return ReadBase(folder, where)
 
 
 def _is_alive(process):

@@ -1,15 +1,12 @@
 """A base that is looked at: `lacon.open("study.base")`."""
 
 import pathlib
-import time
 
-from ..base.base import ReadBase
+from ..base.base import look_into
 from ..core.concepts import type_of
-from ..core.messages import AsterError, fail
+from ..core.messages import fail
 from .mesh import Mesh
 from .result import Result
-
-_tries, _pause = 20, 0.01  # while a run replaces the registry
 
 
 class Base:
@@ -21,15 +18,8 @@ class Base:
         self._registered()
 
     def _registered(self):
-        """The registry as it is now. @throws AsterError STUDY_2, STUDY_6"""
-        for left in reversed(range(_tries)):
-            try:
-                return ReadBase(self.folder, "lacon")
-            except AsterError:
-                if not left or not self.folder.is_dir():
-                    raise
-                time.sleep(_pause)
-        raise AssertionError
+        """The base as it is now. @throws AsterError STUDY_2, STUDY_6"""
+        return look_into(self.folder, "lacon")
 
     def _labels(self, kind):
         base = self._registered()

@@ -5,22 +5,20 @@ Reads the base, and never changes it: the registry says which computation is und
 
 import argparse
 import math
-import os
 import shutil
 import sys
 import time
 
-from ..base.base import ReadBase
+from ..base.base import look_into
 from ..base.journal import name as journal_name
 from ..base.journal import read_journal
 from ..core import outcome
 from ..core.concepts import type_of
-from ..core.messages import AsterError, fail
+from ..core.messages import fail
 from .chart import chart, columns_of
 
 _home, _rest, _line = "\033[H", "\033[J", "\033[K"  #: of a terminal: go to its corner, empty what is behind, the rest of a line
 _widest = 8  #: dots from one iteration to the next, at most
-_patience = 20  #: tries while the registry is being replaced
 
 
 def parser():
@@ -54,7 +52,7 @@ def follow(options, draws):
     """Look on until the run ends, or once. @return the last frame"""
     emptied = False
     while True:
-        base = _open(options.base)
+        base = look_into(options.base, "lacon watch")
         running = base.running()
         size = shutil.get_terminal_size()
         lines = frame(base, running, size.columns, size.lines)
@@ -67,20 +65,8 @@ def follow(options, draws):
         time.sleep(options.every)
 
 
-def _open(folder):
-    """The base as it is now; its run replaces the registry while we read."""
-    for left in reversed(range(_patience)):
-        try:
-            return ReadBase(folder, "lacon watch")
-        except AsterError:
-            if not left or not os.path.isdir(folder):
-                raise
-            time.sleep(0.01)
-    raise AssertionError
-
-
 def chosen(base):
-    """(id, label, where) of the computation to look at: the one that is under way, otherwise that of the newest journal. @throws AsterError WATCH_1"""
+    """(id, label, where) of the computation to look at: the one that is under way, otherwise that of the newest journal; nothing where there is none"""
     for identifier, entry in base.registry.get("unfinished", {}).items():
         if (base.folder / identifier / journal_name).exists():
             return identifier, entry["label"], entry["where"]
