@@ -79,13 +79,18 @@ const FieldRow& row_of(std::string_view name) {
   return *std::find_if(rows.begin(), rows.end(), [&](const FieldRow& row) { return row.name == name; });
 }
 
+/// Whether a result has no internal variables because its laws have none: it has V1 = 0 then, as code_aster's.
+bool has_zero_variables(const Result& result, std::string_view name) {
+  return name == "VARI_ELGA" && !result.fields.contains(std::string(name));
+}
+
 /// The fields of the result that a field is computed from in the end.
-std::vector<std::string> roots_of(std::string_view name) {
+std::vector<std::string> roots_of(const Result& result, std::string_view name) {
   std::vector<std::string> roots;
   const FieldRow* row = &row_of(name);
   if (name == "REAC_NODA" || name == "FORC_NODA") roots.emplace_back("DEPL");
   while (!row->from.empty()) row = &row_of(row->from);
-  roots.emplace_back(row->name);
+  roots.emplace_back(has_zero_variables(result, row->name) ? "SIEF_ELGA" : row->name);
   return roots;
 }
 
@@ -201,7 +206,15 @@ class Instant {
     std::string name(row.name);
     switch (row.how) {
       case How::archived: {
-        Field field = setting_.base().field(setting_.result(), name, order_);
+        const bool zero = has_zero_variables(setting_.result(), name);
+        Field field = setting_.base().field(setting_.result(), zero ? "SIEF_ELGA" : name, order_);
+        if (zero) {
+          field.name = name;
+          field.quantity = "VARI_R";
+          field.components = {"V1"};
+          field.values.assign(field.offset.empty() ? 0 : static_cast<std::size_t>(field.offset.back()), 0.0);
+          field.present.clear();
+        }
         return field.location == Location::nodes ? field : on_wanted_cells(std::move(field));
       }
       case How::same: {
@@ -333,7 +346,7 @@ void calc_champ(const Order& order, const Base& base) {
   std::vector<std::pair<std::int64_t, std::string>> fields;
   for (const std::int64_t o : orders)
     for (const std::string& name : asked) {
-      const std::vector<std::string> roots = roots_of(name);
+      const std::vector<std::string> roots = roots_of(from, name);
       const auto missing =
           std::find_if(roots.begin(), roots.end(), [&](const auto& root) { return !has_field(from, root, o); });
       if (missing == roots.end())
@@ -347,7 +360,8 @@ void calc_champ(const Order& order, const Base& base) {
   for (const auto& [o, name] : fields) {
     if (!instant || instant->first != o) instant.emplace(o, Instant(setting, o));
     // what is archived is in a result that is enriched already, on all cells
-    if (!order.reuse || row_of(name).how != How::archived) base.add_field(to, instant->second(name));
+    if (!order.reuse || row_of(name).how != How::archived || has_zero_variables(from, name))
+      base.add_field(to, instant->second(name));
   }
   base.store(to);
 }

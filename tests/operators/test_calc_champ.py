@@ -92,7 +92,7 @@ class CalcChamp(OperatorTest):
         self.write_result("result_2", "mesh_1", [0.0, 1.0], {}, label="RESU")
         self.refuses("CALCCHAMP_1", {"CONTRAINTE": "SIEF_NOEU"}, "RESU", "SIEF_NOEU")
         self.refuses("CALCCHAMP_1", {"DEFORMATION": "EPSI_NOEU"}, "DEPL", "EPSI_NOEU")
-        self.refuses("CALCCHAMP_1", {"VARI_INTERNE": "VARI_NOEU"}, "VARI_ELGA")
+        self.refuses("CALCCHAMP_1", {"VARI_INTERNE": "VARI_NOEU"}, "SIEF_ELGA", "VARI_NOEU")
 
     def test_internal_variables_go_to_nodes_as_stresses_do(self):
         variables = {**at_gauss_points(1.0), "quantity": "VARI_R", "components": ["V1", "V2", "V3", "V4"]}
@@ -100,6 +100,16 @@ class CalcChamp(OperatorTest):
         run = self.run_on({"VARI_INTERNE": ["VARI_ELNO", "VARI_NOEU"]})
         self.assertEqual(run.status, 0, run.stderr)
         np.testing.assert_allclose(self.read_field("result_2", "VARI_NOEU", 1).values, [stress(x, y, 1.0) for x, y in POINTS], atol=1e-14)
+
+    def test_a_result_whose_laws_have_no_internal_variables_has_zeros(self):
+        run = self.run_on({"VARI_INTERNE": ["VARI_ELGA", "VARI_ELNO", "VARI_NOEU"], "NUME_ORDRE": [1]})
+        self.assertEqual(run.status, 0, run.stderr)
+        for name, like in (("VARI_ELGA", "SIEF_ELGA"), ("VARI_ELNO", ""), ("VARI_NOEU", "")):
+            field = self.read_field("result_2", name, 1)
+            self.assertEqual((field.components, field.quantity if hasattr(field, "quantity") else "VARI_R"), (["V1"], "VARI_R"))
+            self.assertTrue(len(field.values) and (field.values == 0).all())
+            if like:
+                np.testing.assert_array_equal(field.support, self.read_field("result_2", like, 1).support)
 
     def test_cells_without_stresses_are_refused(self):
         self.refuses("CALCCHAMP_2", {"CONTRAINTE": "SIEF_NOEU", "GROUP_MA": "SKIN"}, "SKIN")
