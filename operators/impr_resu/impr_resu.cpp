@@ -14,7 +14,9 @@
 #include "lacon/operators/contact/pairing_view.hpp"
 #include "lacon/operators/fields/selection.hpp"
 #include "lacon/structures/displacement.hpp"
+#include "lacon/structures/formats/gmsh.hpp"
 #include "lacon/structures/formats/listing.hpp"
+#include "lacon/structures/formats/mail.hpp"
 #include "lacon/structures/formats/med.hpp"
 #include "lacon/structures/formats/text_file.hpp"
 #include "lacon/structures/formats/vtu.hpp"
@@ -293,6 +295,41 @@ void print_listing(const Order& order, const Base& base, Concepts& concepts, con
   files.commit();
 }
 
+/// One mesh as code_aster's text, or as gmsh's with the fields that live on it; what this run wrote to a .msh file stays before
+/// its further fields. Throws IMPR_8 for fields as code_aster's text, and for a second mesh.
+void print_mesh_file(const Order& order, const Base& base, Concepts& concepts, const fs::path& file, bool append,
+                     Written& written) {
+  const bool gmsh = order.keywords.text("FORMAT") == "GMSH";
+  std::error_code error;
+  const bool goes_on = gmsh && append && fs::exists(file, error);
+  std::string mesh_id, text = goes_on ? read_text(file) : "";
+  for (const Keywords& one : order.keywords.factors("RESU")) {
+    const auto refuse = [&](const char* keyword, const char* what) {
+      fail("IMPR_8", {{"keyword", one.path(keyword)}, {"what", what}});
+    };
+    if (means_pairing(one)) refuse(one.has("CONTACT") ? "CONTACT" : "PAIRING", "a pairing");
+    const char* const source = one.has("CHAM_GD") ? "CHAM_GD" : one.has("RESULTAT") ? "RESULTAT" : "MAILLAGE";
+    if (!gmsh && has_fields(one)) refuse(source, "fields");
+    const std::string id = has_fields(one) ? concepts.source(one).second.mesh : one.concept_id("MAILLAGE");
+    const Mesh& mesh = concepts.mesh(id);
+    if (!mesh_id.empty() && mesh_id != id) refuse(source, "a second mesh");
+    if (mesh_id.empty() && !goes_on) {
+      text += gmsh ? gmsh_mesh_text(mesh) : mail_text(mesh, base.label(id));
+      written.add("mesh " + base.label(id));
+    }
+    mesh_id = id;
+    if (!has_fields(one)) continue;
+    const Result& result = concepts.source(one).second;
+    each_field(base, result, mesh, one, [&](PrintedField&& printed) {
+      text += gmsh_field_text(mesh, printed.field, printed.field.name);
+      written.add("field " + printed.field.name + " of " + result.label);
+    });
+  }
+  TextFiles files;
+  files.write(file, text);
+  files.commit();
+}
+
 }  // namespace
 
 std::vector<std::string> impr_resu(const Order& order, const Base& base) {
@@ -307,6 +344,8 @@ std::vector<std::string> impr_resu(const Order& order, const Base& base) {
     print_med(order, base, concepts, file, append, written, lines);
   else if (format == "VTU")
     file = print_vtu(order, base, concepts, file, append, written, lines);
+  else if (format == "GMSH" || format == "ASTER")
+    print_mesh_file(order, base, concepts, file, append, written);
   else
     print_listing(order, base, concepts, file, append, written);
   written.lines(file.string(), lines);

@@ -1,7 +1,9 @@
 #pragma once
 // Meshes in gmsh's .msh files: versions 1 (ASCII), 2, 4.0 and 4.1, ASCII and binary.
 #include <filesystem>
+#include <string>
 
+#include "lacon/structures/field.hpp"
 #include "lacon/structures/mesh.hpp"
 
 namespace lacon {
@@ -11,5 +13,12 @@ namespace lacon {
 /// Throws MED_1 (the file cannot be read), GMSH_1 (not a .msh file), GMSH_2 (version), GMSH_3 (damaged), GMSH_4 (a type of cell
 /// that no element uses), GMSH_5 (a cell names a node that is not there), GMSH_6 (partitioned).
 Mesh read_gmsh_mesh(const std::filesystem::path& file);
+
+/// The text of a .msh file of version 2.2: groups of cells are physical groups, groups of nodes are not written.
+std::string gmsh_mesh_text(const Mesh& mesh);
+
+/// Sections to put behind that text: a view of the vector DX, DY, DZ where there is one, and of each other component,
+/// `<name>_<component>`. Values at integration points become their mean in the cell, `<name>_<component>_MEAN`.
+std::string gmsh_field_text(const Mesh& mesh, const Field& field, const std::string& name);
 
 }  // namespace lacon

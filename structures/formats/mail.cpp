@@ -328,6 +328,13 @@ void MailReader::add_named(std::vector<Group>& groups, const std::vector<std::st
   std::ranges::sort(groups, {}, &Group::name);
 }
 
+/// A name as one word.
+std::string one_word(std::string name) {
+  for (char& c : name)
+    if (c == ' ' || c == '\t' || c == '%' || c == '=') c = '_';
+  return name;
+}
+
 /// Words in lines of eight.
 void append_words(std::string& text, std::size_t count, const auto& word) {
   for (std::size_t i = 0; i < count; ++i) text += (i % 8 == 0 ? "\n " : " ") + word(i);
@@ -361,12 +368,12 @@ std::string mail_text(const Mesh& mesh, const std::string& title) {
     text += "\nFINSF\n";
   });
   for (const Group& group : mesh.node_groups) {
-    text += "GROUP_NO\n " + group.name;
+    text += "GROUP_NO\n " + one_word(group.name);
     append_words(text, group.members.size(), [&](std::size_t i) { return node_name(group.members[i]); });
     text += "\nFINSF\n";
   }
   for (const Group& group : mesh.cell_groups) {
-    text += "GROUP_MA\n " + group.name;
+    text += "GROUP_MA\n " + one_word(group.name);
     append_words(text, group.members.size(), [&](std::size_t i) { return cell_name(group.members[i]); });
     text += "\nFINSF\n";
   }

@@ -14,7 +14,8 @@ namespace lacon {
 /// no element uses), MAIL_3 (a cell or a group names what is not there).
 Mesh read_mail_mesh(const std::filesystem::path& file);
 
-/// The text of a .mail file of a mesh, with the names N1, N2, ... and M1, M2, ... @param title one line
+/// The text of a .mail file of a mesh, with the names N1, N2, ... and M1, M2, ...; in names of groups, which are
+/// one word there, '_' stands for blanks, '%' and '='. @param title one line
 std::string mail_text(const Mesh& mesh, const std::string& title);
 
 }  // namespace lacon

@@ -81,6 +81,52 @@ class ImprResu(OperatorTest):
 
     # ------------------------------------------------------------------------------------------ MED
 
+    # ------------------------------------------------------------------------------------------ gmsh's and code_aster's text
+
+    def read_back(self, form):
+        """The mesh that LIRE_MAILLAGE finds in the file."""
+        run = self.run_command("LIRE_MAILLAGE", {"FORMAT": form}, result="mesh_9", label="BACK", units={20: self.file})
+        self.assertEqual(run.status, 0, run.stderr)
+        return self.read_mesh("mesh_9")
+
+    def test_meshes_come_back_from_the_texts_of_gmsh_and_code_aster(self):
+        mesh = self.read_mesh("mesh_1")
+        def words(groups):
+            return {name.replace(" ", "_"): members for name, members in groups.items()}
+
+        for form, node_groups in (("GMSH", {}), ("ASTER", words(mesh.node_groups))):
+            self.assertEqual(self.print(self.MA, form).status, 0)
+            back = self.read_back(form)
+            np.testing.assert_array_equal(back.coordinates, mesh.coordinates)
+            cells = [(kind, list(nodes)) for kind, nodes in zip(mesh.types, mesh.cells)]
+            found = [(kind, list(nodes)) for kind, nodes in zip(back.types, back.cells)]
+            self.assertEqual(sorted(found), sorted(cells))
+            by_cell = {name: sorted(found[m] for m in members) for name, members in back.cell_groups.items()}
+            groups = words(mesh.cell_groups) if form == "ASTER" else mesh.cell_groups
+            self.assertEqual({name: members for name, members in by_cell.items() if members},
+                             {name: sorted(cells[m] for m in members) for name, members in groups.items() if len(members)})
+            self.assertEqual({n: list(m) for n, m in back.node_groups.items()}, {n: list(m) for n, m in node_groups.items()})
+
+    def test_fields_for_gmsh_are_views_behind_their_mesh(self):
+        self.assertEqual(self.print({**self.U, "NOM_CHAM": ["DEPL", "CONT_ELEM", "SIEF_ELGA", "SIEF_ELNO"], "NUME_ORDRE": [2]}, "GMSH").status, 0)
+        views = {}
+        lines = self.file.read_text().splitlines()
+        for at, line in enumerate(lines):
+            if line.endswith("Data") and not line.startswith("$End"):
+                count = int(lines[at + 8])
+                self.assertEqual((float(lines[at + 4]), int(lines[at + 6])), (INSTANTS[2], 2))
+                views[lines[at + 2].strip('"')] = (line, int(lines[at + 7]), [[float(v) for v in row.split()] for row in lines[at + 9:at + 9 + count]])
+        depl = displacement(2)
+        self.assertEqual(set(views), {"DEPL", "DEPL_LAGS_C", "CONT_ELEM_CONT", "CONT_ELEM_PRES", "SIEF_ELGA_SIXX_MEAN", "SIEF_ELGA_SIYY_MEAN", "SIEF_ELNO_SIXX"})
+        self.assertEqual(views["DEPL"], ("$NodeData", 3, [[n + 1, *depl["values"][n][:2], 0.0] for n in range(6)]))
+        self.assertEqual([row[0] for row in views["DEPL_LAGS_C"][2]], [1, 2])
+        self.assertEqual(views["CONT_ELEM_PRES"], ("$ElementData", 1, [[1, -50.0]]))
+        points = np.asarray(stress_at_points(2)["values"], float).reshape(2, -1, 2)
+        self.assertEqual(views["SIEF_ELGA_SIYY_MEAN"][2], [[c + 1, v] for c, v in zip((1, 3), points.mean(axis=1)[:, 1])])
+        self.assertEqual(views["SIEF_ELNO_SIXX"], ("$ElementNodeData", 1, [[4, 4, 1.0, 2.0, 3.0, 4.0]]))
+        self.assertEqual(len(self.read_back("GMSH").cells), len(MESH_CELLS))
+        self.refuses("IMPR_8", self.U, "RESU/RESULTAT", form="ASTER")
+
     def test_mesh_is_read_back_by_the_library_and_by_lire_maillage(self):
         run = self.print(self.MA)
         self.assertEqual(run.status, 0, run.stderr)
