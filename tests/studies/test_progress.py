@@ -90,7 +90,7 @@ class OnATerminal(ProgressTest):
         """What a line that is taken away has stood on begins in the first column."""
         text = self.on_terminal(LACON, "study.comm", "--unit", "20=mesh.med")
         lines = re.findall(re.escape(EMPTY) + r"(INST [^\r]*)", text)
-        self.assertTrue(any(re.match(r"INST 0\.5  iteration \d+  \S.* 25 % of the instants  \d+ s, about \d+ s left$", line) for line in lines), lines)
+        self.assertTrue(any(re.match(r"INST 0\.5  iteration \d+  \S.* 25 % of the instants  \d.*, about \d.* left$", line) for line in lines), lines)
         self.assertEqual({line.split()[1] for line in lines}, {"0.25", "0.5", "0.75", "1"})
         stays = re.sub(r"INST [^\r\n]*(?=\r)", "", text.replace("\r\n", "\n")).replace(EMPTY, "")
         stays = "".join(line for line in stays.splitlines(keepends=True) if not line.startswith("<I>"))
