@@ -121,8 +121,8 @@ std::int64_t ContactState::update_statuses(Patchwise& patches) const {
       const double round_off = tolerances_.lambda_round_off * largest + rho_[p] * gap_tolerance_;
       // inside the round-off of lambda and g a patch stays what it is: touching and unloaded, it must not flicker
       const bool was_active = status == Status::active;
-      const bool active =
-          (was_active ? test <= round_off : test < -round_off) && geometry_.coverage(p) >= tolerances_.least_coverage;
+      const bool active = was_active ? test <= round_off && geometry_.coverage(p) >= tolerances_.least_coverage
+                                     : test < -round_off && geometry_.coverage(p) >= tolerances_.taking_coverage;
       next = active ? Status::active : Status::open;
     }
     changes += next != status;

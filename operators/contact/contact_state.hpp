@@ -21,6 +21,7 @@ namespace lacon {
 struct ContactTolerances {
   double unpaired = 1e-14;          ///< covered fraction of a patch below which it has no master
   double least_coverage = 1e-5;     ///< covered fraction that an active patch needs
+  double taking_coverage = 2e-2;    ///< and one that takes contact
   double initial_gap = 1e-6;        ///< CONTACT_INIT='INTERPENETRE': largest gap, over the smallest edge
   double lambda_round_off = 1e-10;  ///< of the largest |lambda|: below it a sign means nothing
   double gap_round_off = 1e-14;     ///< of the size of the mesh

@@ -116,6 +116,26 @@ TEST_F(Touching, APatchIsActiveWherePressureOrOverlapSaysSo) {
   }
 }
 
+TEST_F(Touching, ToTakeContactAPatchIsCoveredByMoreThanToKeepIt) {
+  ContactState now = state();
+  struct Case {
+    double coverage;
+    Status before, expected;
+  };
+  for (const auto& [coverage, before, expected] :
+       {Case{0.03, Status::open, Status::active}, Case{0.01, Status::open, Status::open},
+        Case{0.01, Status::unpaired, Status::open}, Case{0.01, Status::active, Status::active},
+        Case{1e-6, Status::active, Status::open}}) {
+    lift(-0.1);  // inside the master, which ends at x = 1.5
+    for (std::size_t node = 8; node < 16; ++node) displacement[2 * node] = 1.5 - coverage;
+    now.update_geometry(displacement);
+    Patchwise patches(1);
+    patches.status[0] = before;
+    now.update_statuses(patches);
+    EXPECT_EQ(patches.status[0], expected) << coverage;
+  }
+}
+
 TEST_F(Touching, StatusesCompareAPressureWithTheStiffnessOfBothBodiesInSeries) {
   constexpr double gap = 1e-3;
   for (const double contrast : {1e-6, 1e-3, 1.0, 1e3, 1e6})
