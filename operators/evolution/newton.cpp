@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <map>
 #include <set>
 
 #include "lacon/catalog/messages.hpp"
@@ -150,6 +151,8 @@ int Newton::iterate(double instant, StaticState& state, const std::function<void
       assemble(state, previous, SolidMatrix::tangent);
       solution = solve_system(state, previous, SolidMatrix::tangent, step, rough, line);
     }
+    if (course_.period())  // iterates that go to and fro between two states: what they jump over lies between them
+      for (double& value : solution) value *= 0.5;
     std::vector<double> increment = equilibrium_.add(solution, step, state);
     std::fill(step.begin(), step.end(), 0.0);  // imposed displacements move in the first iteration alone
     if (iteration > 0 && (options_.line_search || equilibrium_.has_variables()))
@@ -157,7 +160,10 @@ int Newton::iterate(double instant, StaticState& state, const std::function<void
     else
       equilibrium_.pair(state.displacement);
     const std::vector<Status> before = state.patches.status, wanted = wanted_statuses(state, line);
-    state.patches.status = statuses_.next(before, wanted);
+    // what imposed displacements alone have parted, the next iteration may bring together again: it starts from bodies that
+    // touch
+    const bool waits = iteration == 0 && parts_a_zone(before, wanted);
+    state.patches.status = waits ? before : statuses_.next(before, wanted);
     choice_.note_statuses(line.status_changes, equilibrium_.flows(previous));
     assemble(state, previous, options_.matrix);
     judge_forces(options_.criteria, equilibrium_.forces(state, previous), line);
@@ -166,7 +172,7 @@ int Newton::iterate(double instant, StaticState& state, const std::function<void
                     line);
     line.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     report(line);
-    course_.add(line.maxi);
+    course_.add(line.maxi, line.worst_dof);
     settled_ = line.status_changes > 0 ? 0 : settled_ + 1;
     if (line.converged()) {
       if (contact()) contact()->geometry().check_radii();
@@ -298,17 +304,37 @@ std::vector<Status> Newton::wanted_statuses(const StaticState& state, IterationR
   return patches.status;
 }
 
+bool Newton::parts_a_zone(const std::vector<Status>& before, const std::vector<Status>& wanted) const {
+  std::map<std::int32_t, bool> stays;  // of the zones that touched
+  for (std::size_t p = 0; p < before.size(); ++p)
+    if (before[p] == Status::active) stays.try_emplace(contact()->geometry().zone_of(p), false);
+  for (std::size_t p = 0; p < wanted.size(); ++p)
+    if (const auto zone = stays.find(contact()->geometry().zone_of(p)); zone != stays.end() && wanted[p] == Status::active)
+      zone->second = true;
+  return std::ranges::any_of(stays, [](const auto& zone) { return !zone.second; });
+}
+
 void Newton::fail_if_endless(double instant) const {
-  if (statuses_.endless().empty()) return;
-  constexpr std::size_t most = 4;
-  std::string cells;
-  for (std::size_t i = 0; i < std::min(most, statuses_.endless().size()); ++i)
-    cells += (i ? ", " : "") + cell_name(problem_.mesh.patches->cells[statuses_.endless()[i]].front());
+  if (!statuses_.endless()) return;
+  const auto& [patches, period] = *statuses_.endless();
   throw InstantFailure(message("EVOLUTION_15", {{"instant", fmt::format("{:.9g}", instant)},
-                                                {"count", std::to_string(statuses_.endless().size())},
-                                                {"cells", cells + (statuses_.endless().size() > most ? ", ..." : "")},
-                                                {"period", std::to_string(statuses_.period())}}),
+                                                {"count", std::to_string(patches.size())},
+                                                {"cells", cells_of(patches)},
+                                                {"period", std::to_string(period)}}),
                        {.depends_on_step = false});
+}
+
+std::string Newton::cells_of(const std::vector<std::size_t>& patches) const {
+  constexpr std::size_t most = 4;
+  std::map<std::int32_t, std::string> of_zone;
+  for (std::size_t i = 0; i < std::min(most, patches.size()); ++i) {
+    std::string& cells = of_zone[contact()->geometry().zone_of(patches[i])];
+    cells += (cells.empty() ? "" : ", ") + cell_name(problem_.mesh.patches->cells[patches[i]].front());
+  }
+  std::string text;
+  for (const auto& [zone, cells] : of_zone)
+    text += fmt::format("{}{} of {}", text.empty() ? "" : ", ", cells, problem_.contact->zones[zone].slave_group);
+  return text + (patches.size() > most ? ", ..." : "");
 }
 
 void Newton::fail_to_converge(double instant, const IterationReport& line, std::size_t changing) const {
@@ -316,6 +342,12 @@ void Newton::fail_to_converge(double instant, const IterationReport& line, std::
   const double excess = std::max(asked.resi_glob_rela ? line.rela / *asked.resi_glob_rela : 0,
                                  asked.resi_glob_maxi ? line.maxi / *asked.resi_glob_maxi : 0);
   std::string why = unmet_criteria(line, changing) + course_.words();
+  if (const auto& round = statuses_.round())
+    why += fmt::format(
+        "; statuses went round, {} patch(es) at slave cells {} with a period of {} sets, and are kept until their equilibrium "
+        "is "
+        "found",
+        round->patches.size(), cells_of(round->patches), round->period);
   if (const auto cell = equilibrium_.cell_inside_out())
     why += fmt::format("; cell {} of {} is turned inside out", cell_name(*cell),
                        Bodies(problem_.mesh).name_at(problem_.mesh.cells[*cell][0]));
@@ -323,14 +355,14 @@ void Newton::fail_to_converge(double instant, const IterationReport& line, std::
                                                {"iterations", std::to_string(options_.iterations)},
                                                {"unmet", why},
                                                {"remedy", remedy(line, excess)}}),
-                       {.ratio = settled_ >= settled ? course_.ratio() : std::nullopt, .excess = excess});
+                       {.ratio = settled_ >= settled && !course_.period() ? course_.ratio() : std::nullopt, .excess = excess});
 }
 
 std::string Newton::remedy(const IterationReport& line, double excess) const {
   const double ratio = course_.ratio().value_or(1);
   const bool diverges = !course_.finite() || ratio > worse || equilibrium_.cell_inside_out();
   // more iterations, where a few times as many come to the end
-  if (settled_ >= settled && ratio < no_better && !diverges) {
+  if (settled_ >= settled && ratio < no_better && !diverges && !course_.period()) {
     const double more = excess > 1 ? std::ceil(std::log(excess) / -std::log(ratio)) : settled;
     if (more <= 2.0 * options_.iterations)
       return fmt::format("allow more iterations: the residual comes to its end within {} (CONVERGENCE/ITER_GLOB_MAXI)",
@@ -340,9 +372,11 @@ std::string Newton::remedy(const IterationReport& line, double excess) const {
     return "ask for less: what is left is near the round-off of the forces (CONVERGENCE/RESI_GLOB_RELA, RESI_GLOB_MAXI)";
   if (!options_.cuts) return cut_the_step;
   if (diverges) return coarser_load;
-  if (line.status_changes > 0)
+  if (line.status_changes > 0 || statuses_.round())
     return "refine the slave skin around that cell, or make the other skin the slave: its patches are too coarse for what "
            "happens there";
+  if (course_.period() && !options_.line_search)
+    return "let a line search shorten the increments that lead from one state to the other (RECH_LINEAIRE=_F())";
   return "look in the table from which iteration on the residual does not fall, and in the mesh at the node where it is "
          "largest "
          "(AFFICHAGE/INFO_RESIDU)";
@@ -353,7 +387,8 @@ std::string Newton::unmet_criteria(const IterationReport& line, std::size_t chan
   const auto add = [&](bool met, const std::string& what) {
     if (!met) text += (text.empty() ? "" : ", ") + what;
   };
-  const std::string where = line.worst_dof < 0 ? "" : " at " + equilibrium_.place(line.worst_dof);
+  std::string where = line.worst_dof < 0 ? "" : " at " + equilibrium_.place(line.worst_dof);
+  if (line.worst_dof >= 0 && course_.stays() > 2) where += fmt::format(" (largest there in the last {})", course_.stays());
   add(line.rela_met, fmt::format("RESI_GLOB_RELA {:.1e}{}", line.rela, where));
   add(line.maxi_met, fmt::format("RESI_GLOB_MAXI {:.1e}{}", line.maxi, where));
   add(line.geometry_met, fmt::format("RESI_GEOM {:.1e}", line.geometry));

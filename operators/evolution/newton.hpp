@@ -72,6 +72,10 @@ class Newton {
   /// What pressures and gaps ask for at the state's geometry, in `line` how many patches want to change; nothing without
   /// contact.
   std::vector<Status> wanted_statuses(const StaticState& state, IterationReport& line) const;
+  /// Whether a zone that touches would do so nowhere.
+  bool parts_a_zone(const std::vector<Status>& before, const std::vector<Status>& wanted) const;
+  /// Slave cells of patches, the first ones, with the skin they belong to.
+  std::string cells_of(const std::vector<std::size_t>& patches) const;
   /// Throws EVOLUTION_15 where no statuses satisfy all patches.
   void fail_if_endless(double instant) const;
   /// Go on from `state` by the motion of the last instant, in proportion to the step, and to what is imposed.

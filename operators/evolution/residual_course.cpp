@@ -6,6 +6,18 @@
 #include <cmath>
 
 namespace lacon {
+namespace {
+
+constexpr double same = 1e-2;   // of a residual: the one of a period before
+constexpr double other = 1e-1;  // and what differs within a period
+
+}  // namespace
+
+void ResidualCourse::add(double residual, std::int64_t place) {
+  residuals_.push_back(residual);
+  stays_ = place == place_ ? stays_ + 1 : 1;
+  place_ = place;
+}
 
 bool ResidualCourse::finite() const {
   return std::all_of(residuals_.begin(), residuals_.end(), [](double residual) { return std::isfinite(residual); });
@@ -25,8 +37,20 @@ std::optional<double> ResidualCourse::order() const {
   return std::log(last) / std::log(before);
 }
 
+std::optional<std::size_t> ResidualCourse::period() const {
+  for (std::size_t period = 2; 2 * period <= residuals_.size(); ++period) {
+    const auto last = residuals_.end() - static_cast<std::ptrdiff_t>(period);
+    const bool again = std::equal(last, residuals_.end(), last - static_cast<std::ptrdiff_t>(period),
+                                  [](double now, double before) { return std::abs(now - before) <= same * before; });
+    const auto [least, most] = std::minmax_element(last, residuals_.end());
+    if (again && *most > (1 + other) * *least) return period;
+  }
+  return std::nullopt;
+}
+
 std::string ResidualCourse::words() const {
   if (!finite()) return "; the residual has left the range of numbers";
+  if (const auto again = period()) return fmt::format("; the residual goes round with a period of {} iterations", *again);
   const std::optional<double> changes = ratio(), falls = order();
   if (!changes) return "";
   return fmt::format("; the residual changes by the factor {:.2g} an iteration{}", *changes,

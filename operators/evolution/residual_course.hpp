@@ -1,5 +1,6 @@
 #pragma once
 // How the residual of an instant changes from iteration to iteration, and what that says of a failure.
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <vector>
@@ -8,19 +9,26 @@ namespace lacon {
 
 class ResidualCourse {
  public:
-  void start() { residuals_.clear(); }
-  void add(double residual) { residuals_.push_back(residual); }
+  void start() { *this = {}; }
+  /// @param place where it is largest
+  void add(double residual, std::int64_t place = -1);
   bool finite() const;
   /// By which factor it has changed in an iteration, the geometric mean of the last three at most; nothing before there are
   /// two.
   std::optional<double> ratio() const;
   /// Observed order of the last three, where they fall.
   std::optional<double> order() const;
-  /// Both in words, with a semicolon before them; empty before there are any.
+  /// After how many iterations residuals come back, two whole periods long; nothing where they do not.
+  std::optional<std::size_t> period() const;
+  /// In how many iterations up to the last it has been largest at the same place.
+  int stays() const { return stays_; }
+  /// How it changes in words, with a semicolon before them; empty before it has.
   std::string words() const;
 
  private:
   std::vector<double> residuals_;
+  std::int64_t place_ = -1;
+  int stays_ = 0;
 };
 
 }  // namespace lacon

@@ -12,6 +12,20 @@ std::vector<bool> active(const std::vector<Status>& statuses) {
   return set;
 }
 
+using Sets = std::vector<std::vector<bool>>;
+
+/// The sets behind the last one that was the same as that at the end.
+std::optional<StatusCycle> cycle(const Sets& sets) {
+  const auto before = std::find(sets.rbegin() + 1, sets.rend(), sets.back());
+  if (before == sets.rend()) return std::nullopt;
+  StatusCycle cycle{.patches = {}, .period = static_cast<std::size_t>(before - sets.rbegin())};
+  for (std::size_t p = 0; p < sets.back().size(); ++p)
+    if (std::any_of(sets.rbegin(), before, [&](const std::vector<bool>& set) { return set[p] != sets.back()[p]; }))
+      cycle.patches.push_back(p);
+  if (cycle.patches.empty()) return std::nullopt;  // one that lost its master has opened: no other set
+  return cycle;
+}
+
 }  // namespace
 
 void StatusRule::start_instant() { *this = {}; }
@@ -24,6 +38,7 @@ std::vector<Status> StatusRule::next(const std::vector<Status>& now, const std::
     keeps_ = std::count(active_.begin(), active_.end(), set) >= 2;
     active_.push_back(std::move(set));
     if (!keeps_) return wanted;
+    round_ = cycle(active_);
     fewest_ = std::numeric_limits<std::size_t>::max();
   }
   // without master a patch has no gap to be judged by
@@ -46,16 +61,7 @@ std::vector<Status> StatusRule::change(const std::vector<Status>& now, const std
     return wanted;
   }
   single_.push_back(active(now));
-  const std::vector<bool>& last = single_.back();
-  for (std::size_t first = 0; first + 1 < single_.size(); ++first) {
-    if (single_[first] != last) continue;
-    period_ = single_.size() - 1 - first;
-    for (std::size_t p = 0; p < last.size(); ++p)
-      if (std::any_of(single_.begin() + static_cast<std::ptrdiff_t>(first), single_.end(),
-                      [&](const std::vector<bool>& set) { return set[p] != last[p]; }))
-        endless_.push_back(p);
-    break;
-  }
+  endless_ = cycle(single_);
   std::vector<Status> changed = now;
   changed[changing.back()] = wanted[changing.back()];
   return changed;

@@ -1,11 +1,18 @@
 #pragma once
 // Which statuses an iteration of Newton's method goes on with.
 #include <cstddef>
+#include <optional>
 #include <vector>
 
 #include "lacon/operators/contact/patches.hpp"
 
 namespace lacon {
+
+/// Sets of active patches that come back.
+struct StatusCycle {
+  std::vector<std::size_t> patches;  ///< that change in it
+  std::size_t period = 0;            ///< after how many sets they come back
+};
 
 /// A patch takes the status that pressure and gap ask for, in every iteration, until a set of active patches comes back for
 /// the second time: the iterations then go round (once it may come back by chance, far from the solution). From there on a set
@@ -24,17 +31,17 @@ class StatusRule {
   /// The equilibrium of statuses that were kept is found, and patches want others.
   std::vector<Status> change(const std::vector<Status>& now, const std::vector<Status>& wanted);
 
-  /// Patches that take part in what repeats, and after how many sets it does; empty as long as nothing does for good.
-  const std::vector<std::size_t>& endless() const { return endless_; }
-  std::size_t period() const { return period_; }
+  /// What statuses went round in before they were kept.
+  const std::optional<StatusCycle>& round() const { return round_; }
+  /// What repeats for good: equilibria whose patches change one by one.
+  const std::optional<StatusCycle>& endless() const { return endless_; }
 
  private:
   bool keeps_ = false;
   std::vector<std::vector<bool>> active_;  ///< sets of active patches that there were, while statuses do not wait
   std::vector<std::vector<bool>> single_;  ///< those in equilibrium from which one patch has changed, since fewest_ fell
   std::size_t fewest_ = 0;                 ///< patches that were to change at an equilibrium
-  std::vector<std::size_t> endless_;
-  std::size_t period_ = 0;
+  std::optional<StatusCycle> round_, endless_;
 };
 
 }  // namespace lacon

@@ -31,5 +31,23 @@ TEST(ResidualCourse, SaysBothInWords) {
   EXPECT_EQ(course({1, std::nan("")}).words(), "; the residual has left the range of numbers");
 }
 
+TEST(ResidualCourse, KnowsWhatComesBack) {
+  EXPECT_EQ(course({9, 1, 2, 1, 2}).period(), 2U);
+  EXPECT_EQ(course({9, 1, 2, 3, 1.001, 2, 3}).period(), 3U);
+  EXPECT_FALSE(course({1, 2, 1}).period());        // not twice yet
+  EXPECT_FALSE(course({1, 1, 1, 1, 1}).period());  // it stands
+  EXPECT_FALSE(course({8, 4, 2, 1}).period());
+  EXPECT_EQ(course({9, 1, 2, 1, 2}).words(), "; the residual goes round with a period of 2 iterations");
+}
+
+TEST(ResidualCourse, CountsForHowLongItIsLargestAtOnePlace) {
+  ResidualCourse course;
+  for (const std::int64_t place : {7, 3, 3, 3}) course.add(1, place);
+  EXPECT_EQ(course.stays(), 3);
+  course.start();
+  course.add(1, 3);
+  EXPECT_EQ(course.stays(), 1);
+}
+
 }  // namespace
 }  // namespace lacon

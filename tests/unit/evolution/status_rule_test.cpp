@@ -81,7 +81,7 @@ TEST(StatusRule, AConvexProblemEndsWherePlainChangesGoRound) {
       const Statuses next = rule.next(now, wanted);
       rounds += rule.keeps() && !kept;
       now = rule.keeps() ? rule.change(now, wanted) : next;
-      ASSERT_TRUE(rule.endless().empty()) << sample;
+      ASSERT_FALSE(rule.endless()) << sample;
     }
     EXPECT_TRUE(solved) << sample;
   }
@@ -98,6 +98,9 @@ TEST(StatusRule, StatusesThatComeBackWaitForTheEquilibrium) {
   EXPECT_FALSE(rule.keeps());  // each came back once
   EXPECT_EQ(rule.next({O, A, O}, {A, O, O}), (Statuses{O, A, O}));
   EXPECT_TRUE(rule.keeps());
+  ASSERT_TRUE(rule.round());
+  EXPECT_EQ(rule.round()->patches, (std::vector<std::size_t>{0, 1}));
+  EXPECT_EQ(rule.round()->period, 2U);
   EXPECT_EQ(rule.next({O, A, O}, {U, A, A}), (Statuses{U, A, O}));  // without master there is no gap to be judged by
   EXPECT_EQ(rule.next({U, A, O}, {A, A, O}), (Statuses{O, A, O}));
   rule.start_instant();
@@ -114,11 +117,12 @@ TEST(StatusRule, PatchesThatNothingSatisfiesAreNamed) {
   for (int iteration = 0; iteration < 4; ++iteration) now = rule.next(now, other(now));
   ASSERT_TRUE(rule.keeps());
   for (int equilibrium = 0; equilibrium < 4; ++equilibrium) {
-    EXPECT_EQ(rule.endless().empty(), true) << equilibrium;
+    EXPECT_FALSE(rule.endless()) << equilibrium;
     now = rule.change(now, other(now));
   }
-  EXPECT_EQ(rule.endless(), std::vector<std::size_t>{1});
-  EXPECT_EQ(rule.period(), 2U);
+  ASSERT_TRUE(rule.endless());
+  EXPECT_EQ(rule.endless()->patches, std::vector<std::size_t>{1});
+  EXPECT_EQ(rule.endless()->period, 2U);
 }
 
 }  // namespace
