@@ -22,6 +22,7 @@ sys.path[:0] = [str(ROOT / "tests/studies"), str(ROOT / "tests/studies/robustnes
 from study_test import PEER_MESHES, StudyTest  # noqa: E402, I001 (it says where meshes.py is)
 import chapter  # noqa: E402
 import convergence  # noqa: E402
+import hertz_axis  # noqa: E402
 import orders  # noqa: E402
 import patch  # noqa: E402
 import patch_space  # noqa: E402
@@ -241,6 +242,10 @@ pressure for the force that was found; the half-width is known to a patch.
 """
 
 
+def hertz_section(runner):
+    return hertz_axis.section(runner)
+
+
 def robustness_section(runner):
     return chapter.section()
 
@@ -250,7 +255,7 @@ def main():
     runner.setUp()
     try:
         sections = [make(runner) for make in (patch_section, current_section, space_section, degree_section, materials_section,
-                                              convergence_section, peer_section, orders_section, roller_section,
+                                              convergence_section, peer_section, orders_section, roller_section, hertz_section,
                                               robustness_section)]
     finally:
         runner.doCleanups()
