@@ -39,9 +39,27 @@ class Modules(LauncherTest):
     def test_modules_that_are_not_here(self):
         for statement, word in (("from Utilitai.Table import Table", "Utilitai"), ("import code_aster.Supervis", "code_aster.Supervis"),
                                 ("from code_aster.Utilities import logger", "logger"), ("import aster; aster.onFatalError()", "onFatalError"),
-                                ("from code_aster import CA; CA.Mesh()", "Mesh")):
+                                ("from code_aster import CA; CA.Model()", "Model")):
             run = self.refused(self.run_study(f"DEBUT()\n{statement}\n"), word, "STUDY_19", "study.comm:2")
             self.assertNotIn("<frozen", run.err)
+
+    def test_a_mesh_that_is_read_into(self):
+        self.ok(self.run_study("""
+from code_aster import CA
+CA.init()
+mesh = CA.Mesh()
+try:
+    mesh.getNumberOfNodes()
+except AttributeError as error:
+    assert 'readMedFile' in str(error)
+mesh.readMedFile('fort.20')
+again = CA.Mesh()
+again.readMedFile('mesh.med')
+assert mesh.getNumberOfCells() == 3 == again.getNumberOfCells() and mesh is not again
+MO = AFFE_MODELE(MAILLAGE=mesh, AFFE=_F(TOUT='OUI', PHENOMENE='MECANIQUE', MODELISATION='D_PLAN'))
+assert MO.getMesh() is mesh and mesh.getName() == 'mesh'
+CA.close()
+"""))
 
     def test_headers_of_versions_12_to_16(self):
         for header, end in (

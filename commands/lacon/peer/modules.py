@@ -7,6 +7,7 @@ import types
 
 from ..commands import checks
 from ..core import current, labels, messages
+from .meshes import NewMesh
 
 
 class TestCase:
@@ -137,7 +138,7 @@ def install(names):
     def close(**keywords):
         return names["FIN"](**keywords)
 
-    ca = _module("code_aster.CA", {**_exceptions, "TestCase": TestCase, "init": init, "close": close})
+    ca = _module("code_aster.CA", {**_exceptions, "TestCase": TestCase, "init": init, "close": close, "Mesh": lambda: NewMesh(names)})
     commands = _module("code_aster.Commands", names)
     utilities = _module("code_aster.Utilities", {})
     utilities.__getattr__ = _utility
