@@ -45,6 +45,14 @@ class Convert(StudyTest):
         self.assertIn("GROUP_MA Low", (self.folder / "plate_0001.vtu").read_text(encoding="ascii"))
         self.assertEqual(sorted(path.name for path in self.folder.iterdir()), ["plate.med", "plate.msh", "plate.pvd", "plate_0001.vtu"])
 
+    def test_to_code_asters_text_and_back_to_gmsh(self):
+        for source, target in (("plate.msh", "plate.mail"), ("plate.mail", "back.msh"), ("back.msh", "back.mail")):
+            done = self.run_tool("convert", source, target)
+            self.assertEqual(done.returncode, 0, done.stderr)
+        first, last = ((self.folder / name).read_text(encoding="ascii") for name in ("plate.mail", "back.mail"))
+        self.assertEqual(first.partition("FINSF")[2], last.partition("FINSF")[2])  # all but the title
+        self.assertIn("GROUP_MA\n Low\n M1\nFINSF", first)
+
     def test_latin_1_and_control_characters_become_names_that_every_program_reads(self):
         (self.folder / "plate.msh").write_bytes(PLATE.replace("Low", "Fläche <1>").replace("Body", "a\x01b").encode("latin-1"))
         done = self.run_tool("convert", "plate.msh", "plate.vtu")
@@ -56,7 +64,7 @@ class Convert(StudyTest):
     def test_refusals(self):
         (self.folder / "broken.msh").write_text(PLATE.replace("$EndNodes", ""), encoding="ascii")
         for arguments, word in ((("broken.msh", "out.med"), "GMSH_3"), (("nowhere.msh", "out.med"), "nowhere.msh"),
-                                (("plate.msh", "plate.msh"), ".med"), (("plate.unv", "out.med"), ".msh")):
+                                (("plate.msh", "plate.msh"), "it is the mesh itself"), (("plate.unv", "out.med"), ".msh")):
             with self.subTest(arguments=arguments):
                 done = self.run_tool("convert", *arguments)
                 self.assertEqual(done.returncode, 2)

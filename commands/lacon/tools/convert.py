@@ -9,8 +9,8 @@ import tempfile
 from ..run import execution, launch, study
 
 #: what a file's suffix says: the FORMAT of LIRE_MAILLAGE, that of IMPR_RESU
-read_formats = {".med": "MED", ".mmed": "MED", ".msh": "GMSH"}
-write_formats = {".med": "MED", ".pvd": "VTU", ".vtu": "VTU"}
+read_formats = {".med": "MED", ".mmed": "MED", ".msh": "GMSH", ".mail": "ASTER"}
+write_formats = {".med": "MED", ".pvd": "VTU", ".vtu": "VTU", ".msh": "GMSH", ".mail": "ASTER"}
 
 _study = """DEBUT()
 {name} = LIRE_MAILLAGE(UNITE=20, FORMAT='{read}')
