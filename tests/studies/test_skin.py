@@ -42,7 +42,7 @@ class Skin(StudyTest):
         (self.folder / "blocks.mail").write_text(mail(mesh, {corner: "CORNER"}))
         outputs = [f"--unit={unit}={self.folder / name}" for unit, name in ((20, "blocks.mail"), (61, "skin.csv"), (80, "skin.med"))]
         run = self.run_study(COMM, "--checks", "all", *outputs)
-        self.assert_all_ok(run, 17)
+        self.assert_all_ok(run, 19)
         self.assertIn("MAIL_5", run.stderr)
         with h5py.File(self.folder / "skin.med") as file:
             self.assertIn("R_______CONT_NOEU", file["CHA"])
