@@ -22,6 +22,7 @@ sys.path[:0] = [str(ROOT / "tests/studies"), str(ROOT / "tests/studies/robustnes
 from study_test import PEER_MESHES, StudyTest  # noqa: E402, I001 (it says where meshes.py is)
 import chapter  # noqa: E402
 import convergence  # noqa: E402
+import hertz  # noqa: E402
 import hertz_axis  # noqa: E402
 import orders  # noqa: E402
 import patch  # noqa: E402
@@ -220,6 +221,26 @@ does ssnv219k, whose window follows the peer's rule for PYRAM13 (with the exact 
 """
 
 
+def hertz_meshes_section(runner):
+    rows = []
+    for model, found in hertz.errors(runner).items():
+        for cells, (here, theory) in zip(hertz.MESHES, found):
+            rows.append([hertz.MODELS[model], cells, *(f"{getattr(here, name):.4g} ({100 * (getattr(here, name) / getattr(theory, name) - 1):+.2f} %)"
+                                                       for name in ("pressure", "radius", "approach"))])
+    return f"""## Contacts of Hertz on three meshes
+
+A paraboloid on a half space (AXIS) and a parabolic cylinder on one (D_PLAN), radius {hertz.RADIUS:g}, both of E = {hertz.YOUNG:g}, nu = {hertz.POISSON}; QUAD8, bodies
+{hertz.EXTENT / hertz.HALF_WIDTH:g} times as large as the contact, three meshes with as many cells along its radius as the second column says. Radius: where the line through the squares of
+the pressures of patches over their squared distances from the axis comes to zero. Approach: of the points on the axis, one in each body,
+{hertz.DEPTH / hertz.HALF_WIDTH:g} radii deep; theory: the strains below a pressure of Hertz, integrated. In brackets the distance from theory for the force that was found; what
+the ends of the bodies do is 1 / {hertz.EXTENT / hertz.HALF_WIDTH:g} in the plane.
+
+{table(["", "cells", "largest pressure", "radius or half width", "approach"], rows)}
+
+On the peer's spheres of Hertz (ssnv104k, n) the section on its cases compares both with theory.
+"""
+
+
 def roller_section(runner):
     from report import Result, summary
 
@@ -255,8 +276,8 @@ def main():
     runner.setUp()
     try:
         sections = [make(runner) for make in (patch_section, current_section, space_section, degree_section, materials_section,
-                                              convergence_section, peer_section, orders_section, roller_section, hertz_section,
-                                              robustness_section)]
+                                              convergence_section, peer_section, orders_section, hertz_meshes_section, roller_section,
+                                              hertz_section, robustness_section)]
     finally:
         runner.doCleanups()
     text = "# Verification\n\nWritten by `python3 tests/verification/book.py`, which runs the studies; the same studies are tests.\n\n" + "\n".join(sections)
