@@ -1,8 +1,7 @@
 // Solid elements: a modelisation (Kind), a measure of strain (Measure) and a law, put together in one loop over elements.
 #include <cmath>
 
-#include "geometry.hpp"
-#include "lacon/elements/axis.hpp"
+#include "block.hpp"
 #include "lacon/elements/lanes.hpp"
 #include "stiffness.hpp"
 #include "von_mises.hpp"
@@ -15,83 +14,6 @@ using lacon::lane_alignment;
 using lacon::LaneErrors;
 using lacon::Lanes;
 using lacon::lanes;
-
-const char* const plastic_variables[] = {"EPSPEQ", "INDIPLAS", nullptr};  // cumulated plastic strain; 1 where it grows
-constexpr int n_plastic_variables = 2;
-
-/// A block of elements: what holds at all of its points.
-template <Kind K, Measure M>
-struct Block {
-  static constexpr int D = dimension_of(K);
-  static constexpr bool updated = M == Measure::updated, green = M == Measure::green;
-
-  const double* place;                                ///< coordinates where strains and integrals are taken
-  Lanes lambda, mu, nu;                               ///< plane stress: the lambda that makes SIZZ zero
-  alignas(lane_alignment) Lanes side[max_nodes * D];  ///< from the first node on: a cell far from the origin loses no digits
-  /// What strains come from: with Green-Lagrange the whole displacement, for they do not add up.
-  alignas(lane_alignment) Lanes moved[max_nodes * D];
-  alignas(lane_alignment) Lanes current[updated ? max_nodes * D : 1];
-
-  LACON_INLINE void read(const lacon_solid_batch& b, std::int64_t block, LaneErrors& errors) {
-    const int nodes = b.n_nodes, dofs = D * nodes;
-    const Lanes young = lanes(b.parameter, 2 * block);
-    nu = lanes(b.parameter, 2 * block + 1);
-    errors.set(~((young > 0) & (young - young == 0) & (nu > -1) & (nu < 0.5)), LACON_BAD_PARAMETER);
-    mu = young / (2 * (1 + nu));
-    lambda = K == Kind::plane_stress ? young * nu / ((1 + nu) * (1 - nu)) : young * nu / ((1 + nu) * (1 - 2 * nu));
-    const double* x = b.coordinates + block * dofs * LACON_LANES;
-    const double* u = b.displacement + block * dofs * LACON_LANES;
-    const double* from = b.previous_displacement ? b.previous_displacement + block * dofs * LACON_LANES : nullptr;
-    place = x;
-    if constexpr (updated) {
-      for (int i = 0; i < dofs; ++i) current[i] = lanes(x, i) + lanes(u, i);
-      place = reinterpret_cast<const double*>(current);
-    }
-    for (int i = 0; i < dofs; ++i) {
-      moved[i] = !green && from ? lanes(u, i) - lanes(from, i) : lanes(u, i);
-      side[i] = lanes(place, i) - lanes(place, i % D);
-    }
-    if constexpr (K == Kind::axis)
-      for (int l = 0; l < LACON_LANES; ++l)
-        errors.set(l, lacon::reaches_over_axis(nodes, [&](int i) { return lanes(x, i)[l]; }), LACON_BAD_RADIUS);
-  }
-};
-
-/// Measure and gradients at point p, and the gradient of the displacement.
-template <Kind K, Measure M>
-LACON_INLINE void take_gradients(const lacon_solid_batch& b, int p, const Block<K, M>& block, Point<K>& point,
-                                 LaneErrors& errors) {
-  constexpr bool axis = K == Kind::axis;
-  constexpr int D = dimension_of(K);
-  const int nodes = b.n_nodes;
-  const double* d = b.gradient + p * nodes * D;
-  const Map<D> map(d, block.side, nodes, errors);
-  point.dv = b.weight[p] * map.determinant;
-  [[maybe_unused]] Lanes per_radius = {};
-  if constexpr (axis) {
-    Lanes r = {};
-    for (int a = 0; a < nodes; ++a) r += b.shape[p * nodes + a] * lanes(block.place, 2 * a);
-    errors.set(~(r > 0), LACON_BAD_RADIUS);
-    per_radius = 1 / r;
-    point.dv *= r;
-  }
-  Lanes slope[D][D] = {}, hoop_slope = {};
-  for (int a = 0; a < nodes; ++a) {
-    for (int i = 0; i < D; ++i) {
-      point.g[a][i] = d[a * D] * map.inverse[0][i];
-      for (int r = 1; r < D; ++r) point.g[a][i] += d[a * D + r] * map.inverse[r][i];
-    }
-    for (int i = 0; i < D; ++i)
-      for (int k = 0; k < D; ++k) slope[i][k] += block.moved[a * D + i] * point.g[a][k];
-    if constexpr (axis) {
-      point.hoop[a] = b.shape[p * nodes + a] * per_radius;
-      hoop_slope += point.hoop[a] * block.moved[2 * a];
-    }
-  }
-  for (int i = 0; i < D; ++i)
-    for (int k = 0; k < D; ++k) point.slope[i][k] = slope[i][k];
-  point.hoop_slope = hoop_slope;
-}
 
 /// Twice the strain, or its increment.
 template <Kind K, Measure M>

@@ -12,6 +12,9 @@ namespace lacon::solid {
 // flow.
 constexpr double on_criterion = 1e-12;
 
+inline const char* const plastic_variables[] = {"EPSPEQ", "INDIPLAS", nullptr};  // cumulated plastic strain; 1 where it grows
+constexpr int n_plastic_variables = 2;
+
 /// How a stress answers to a change of strain: lambda tr(de) I + 2 mu de - rank (direction : de) direction.
 template <Kind K>
 struct Tangent {
