@@ -138,7 +138,14 @@ void Base::store(const Mesh& mesh) const { store_concept(*this, *order_, "mesh",
 
 void Base::store(const Model& model) const { store_concept(*this, *order_, "model", model); }
 
-void Base::store(const MaterialField& field) const { store_concept(*this, *order_, "material_field", field); }
+void Base::store(const MaterialField& field) const {
+  std::vector<std::string> references = storage::references(field);
+  for (const Keywords& temperature : order_->keywords.factors("AFFE_VARC"))  // which its readers find among its keywords
+    for (const char* const keyword : {"CHAM_GD", "EVOL", "FONC_INST"})
+      references.push_back(temperature.optional_concept(keyword).value_or(""));
+  store_in(concept_file(*this, *order_), next_version(), *order_, "material_field", references,
+           [&](const hdf5::Group& root) { storage::write(root, field); });
+}
 
 void Base::store(const Load& load) const { store_concept(*this, *order_, "load", load); }
 

@@ -34,6 +34,7 @@ void load_nodes(const LoadScene& scene, const std::vector<Keywords>& factors, st
       }
 }
 
+constexpr std::string_view angular_velocity[] = {"WX", "WY", "WZ"}, axis_point[] = {"X", "Y", "Z"};  // of ROTATION
 constexpr std::string_view translations[] = {"DX", "DY", "DZ"}, forces[] = {"FX", "FY", "FZ"};
 
 // ---------------------------------------------------------------------------------------------------- cells
@@ -151,6 +152,37 @@ void load_gravity(Load& load, const LoadScene& scene, const Keywords& keywords) 
   }
 }
 
+/// ROTATION: bodies that turn round an axis; in the plane it is normal to it, in axisymmetry that of revolution.
+void load_rotation(Load& load, const LoadScene& scene, const Keywords& keywords) {
+  const CellKeyword kind{"ROTATION", "CHAR_MECA_FORC", 0, 0, "body cell", &Load::gravity};
+  GivenTerms given(scene, "CHARGE_5", load.gravity);
+  for (const Keywords& factor : keywords.factors(kind.keyword)) {
+    const std::vector<double> along = factor.reals("AXE");
+    std::vector<double> centre = factor.reals("CENTRE");
+    centre.resize(3, 0.0);
+    const double length = std::hypot(along[0], along[1], along[2]);
+    const auto refuse = [&](const std::string& keyword, const std::string& reason) {
+      fail("CHARGE_10", {{"keyword", factor.path(keyword)}, {"reason", reason}});
+    };
+    if (!(length > 0)) refuse("AXE", "it has no length");
+    for (const NamedPlaces& named : named_cells(scene, factor, [&](std::int32_t c) { return fits(scene, kind, c); }))
+      for (const std::int32_t cell : named.members) {
+        check_cell(scene, kind, cell, "FX", named.source);
+        const catalog::Geometry geometry = scene.element(cell)->geometry;
+        if (geometry == catalog::Geometry::plane && (along[0] != 0 || along[1] != 0))
+          refuse("AXE", "it is not normal to the plane of the model");
+        if (geometry == catalog::Geometry::axis && (along[0] != 0 || along[2] != 0))
+          refuse("AXE", "it is not the axis of revolution");
+        if (geometry == catalog::Geometry::axis && centre[0] != 0) refuse("CENTRE", "it is not on the axis of revolution");
+        for (std::size_t d = 0; d < 3; ++d) {
+          given.add(cell, "the cell " + cell_name(cell), std::string(angular_velocity[d]),
+                    {factor.real("VITESSE") * along[d] / length, ""}, named.source);
+          given.add(cell, "the cell " + cell_name(cell), std::string(axis_point[d]), {centre[d], ""}, named.source);
+        }
+      }
+  }
+}
+
 }  // namespace
 
 namespace {
@@ -178,6 +210,7 @@ Load affe_char(const Mesh& mesh, const Model& model, Registry& registry, const B
   load_nodes(scene, keywords.factors("FORCE_NODALE"), forces, "CHARGE_5", load.nodal);
   load_cells(load, scene, keywords);
   load_gravity(load, scene, keywords);
+  load_rotation(load, scene, keywords);
   add_relations(load, scene, keywords);
 
   const auto cells = [](const std::vector<LoadTerm>& terms) {
@@ -186,10 +219,12 @@ Load affe_char(const Mesh& mesh, const Model& model, Registry& registry, const B
     std::sort(places.begin(), places.end());
     return static_cast<std::size_t>(std::unique(places.begin(), places.end()) - places.begin());
   };
-  const std::tuple<std::size_t, const char*> lines[] = {
-      {load.imposed.size(), "imposed degrees of freedom"}, {cells(load.nodal), "nodes under forces"},
-      {cells(load.pressure), "cells under pressure"},      {cells(load.force), "cells under forces"},
-      {cells(load.gravity), "cells under gravity"},        {load.relations.size(), "relations between displacements"}};
+  const std::tuple<std::size_t, const char*> lines[] = {{load.imposed.size(), "imposed degrees of freedom"},
+                                                        {cells(load.nodal), "nodes under forces"},
+                                                        {cells(load.pressure), "cells under pressure"},
+                                                        {cells(load.force), "cells under forces"},
+                                                        {cells(load.gravity), "cells under gravity or in rotation"},
+                                                        {load.relations.size(), "relations between displacements"}};
   std::string text;
   for (const auto& [count, what] : lines)
     if (count > 0) text += fmt::format("{}{} {}", text.empty() ? "" : ", ", count, what);

@@ -7,6 +7,22 @@
 #include "lacon/catalog/messages.hpp"
 
 namespace lacon {
+namespace {
+
+/// AFFE_VARC stays with the field as its keywords (operators/fields/thermal.hpp); fields and groups must be those of the mesh.
+void check_temperatures(const MaterialField& field, const Base& base, const Mesh& mesh, const Keywords& keywords) {
+  for (const Keywords& factor : keywords.factors("AFFE_VARC")) {
+    for (const std::string& group : factor.texts("GROUP_MA")) cells_of_group(mesh, group, factor.path("GROUP_MA"));
+    const bool evolves = factor.has("EVOL");
+    const std::string id = factor.concept_id(evolves ? "EVOL" : "CHAM_GD");
+    if ((evolves ? base.result(id).mesh : base.field_head(id).mesh) != field.mesh)
+      fail("MATERIAU_2", {{"keyword", factor.path(evolves ? "EVOL" : "CHAM_GD")},
+                          {"field", base.label(id)},
+                          {"mesh", base.label(field.mesh)}});
+  }
+}
+
+}  // namespace
 
 MaterialField affe_materiau(const Base& base, const Keywords& keywords) {
   MaterialField field;
@@ -29,6 +45,7 @@ MaterialField affe_materiau(const Base& base, const Keywords& keywords) {
       for (const std::int32_t cell : cells_of_group(mesh, group, factor.path("GROUP_MA")))
         field.material[static_cast<std::size_t>(cell)] = index;
   }
+  check_temperatures(field, base, mesh, keywords);
   for (std::size_t i = 0; i < field.materials.size(); ++i)
     fmt::print("  {:<24} {:>9} cells\n", base.label(field.materials[i]),
                std::count(field.material.begin(), field.material.end(), static_cast<std::int32_t>(i)));

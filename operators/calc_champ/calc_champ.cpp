@@ -18,6 +18,7 @@
 #include "lacon/operators/fields/extrapolation.hpp"
 #include "lacon/operators/fields/layout.hpp"
 #include "lacon/operators/fields/mechanics.hpp"
+#include "lacon/operators/fields/result_materials.hpp"
 #include "lacon/operators/fields/selection.hpp"
 #include "lacon/operators/fields/tensor.hpp"
 #include "lacon/structures/displacement.hpp"
@@ -36,7 +37,11 @@ enum class How {
   to_cell_nodes,
   to_nodes,
   forces,
-  reactions
+  reactions,
+  mechanical_strain,
+  stress_energy,
+  path_energy,
+  integral
 };
 
 struct FieldRow {
@@ -56,6 +61,9 @@ constexpr std::array rows{
     FieldRow{"EPSI_ELGA", "DEPL", How::strain},
     FieldRow{"EPSI_ELNO", "EPSI_ELGA", How::to_cell_nodes},
     FieldRow{"EPSI_NOEU", "EPSI_ELNO", How::to_nodes},
+    FieldRow{"EPME_ELGA", "EPSI_ELGA", How::mechanical_strain},
+    FieldRow{"EPME_ELNO", "EPME_ELGA", How::to_cell_nodes},
+    FieldRow{"EPME_NOEU", "EPME_ELNO", How::to_nodes},
     FieldRow{"EPSG_ELGA", "DEPL", How::strain_green},
     FieldRow{"EPSG_ELNO", "EPSG_ELGA", How::to_cell_nodes},
     FieldRow{"EPSG_NOEU", "EPSG_ELNO", How::to_nodes},
@@ -65,6 +73,9 @@ constexpr std::array rows{
     FieldRow{"EPEQ_ELGA", "EPSI_ELGA", How::strain_invariants},
     FieldRow{"EPEQ_ELNO", "EPSI_ELNO", How::strain_invariants},
     FieldRow{"EPEQ_NOEU", "EPEQ_ELNO", How::to_nodes},
+    FieldRow{"EPMQ_ELGA", "EPME_ELGA", How::strain_invariants},
+    FieldRow{"EPMQ_ELNO", "EPME_ELNO", How::strain_invariants},
+    FieldRow{"EPMQ_NOEU", "EPMQ_ELNO", How::to_nodes},
     FieldRow{"EPGQ_ELGA", "EPSG_ELGA", How::strain_invariants},
     FieldRow{"EPGQ_ELNO", "EPSG_ELNO", How::strain_invariants},
     FieldRow{"EPGQ_NOEU", "EPGQ_ELNO", How::to_nodes},
@@ -73,6 +84,14 @@ constexpr std::array rows{
     FieldRow{"VARI_NOEU", "VARI_ELNO", How::to_nodes},
     FieldRow{"FORC_NODA", "SIEF_ELGA", How::forces},
     FieldRow{"REAC_NODA", "FORC_NODA", How::reactions},
+    FieldRow{"ENEL_ELGA", "SIEF_ELGA", How::stress_energy},
+    FieldRow{"ENEL_ELNO", "ENEL_ELGA", How::to_cell_nodes},
+    FieldRow{"ENEL_NOEU", "ENEL_ELNO", How::to_nodes},
+    FieldRow{"ENEL_ELEM", "ENEL_ELGA", How::integral},
+    FieldRow{"ETOT_ELGA", "SIEF_ELGA", How::path_energy},
+    FieldRow{"ETOT_ELNO", "ETOT_ELGA", How::to_cell_nodes},
+    FieldRow{"ETOT_NOEU", "ETOT_ELNO", How::to_nodes},
+    FieldRow{"ETOT_ELEM", "ETOT_ELGA", How::integral},
 };
 
 const FieldRow& row_of(std::string_view name) {
@@ -88,7 +107,7 @@ bool has_zero_variables(const Result& result, std::string_view name) {
 std::vector<std::string> roots_of(const Result& result, std::string_view name) {
   std::vector<std::string> roots;
   const FieldRow* row = &row_of(name);
-  if (name == "REAC_NODA" || name == "FORC_NODA") roots.emplace_back("DEPL");
+  if (name == "REAC_NODA" || name == "FORC_NODA" || name.starts_with("ETOT")) roots.emplace_back("DEPL");
   while (!row->from.empty()) row = &row_of(row->from);
   roots.emplace_back(has_zero_variables(result, row->name) ? "SIEF_ELGA" : row->name);
   return roots;
@@ -149,20 +168,12 @@ class Setting {
     }
     return *points_;
   }
-  /// "E" or "NU" of a cell's material.
-  double elastic(std::int32_t cell, const char* name) {
-    if (!materials_) {
-      material_field_ = base_.material_field(result_.material_field);
-      std::vector<Material> materials;
-      std::vector<std::string> labels;
-      for (const std::string& id : material_field_.materials) {
-        materials.push_back(base_.material(id));
-        labels.push_back(base_.label(id));
-      }
-      materials_.emplace(material_field_, std::move(materials), std::move(labels));
-    }
-    return materials_->parameter(cell, std::string("ELAS/") + name, points().element(static_cast<std::size_t>(cell))->name);
+  ResultMaterials& materials() {
+    if (!materials_) materials_.emplace(base_, result_, mesh_, points());
+    return *materials_;
   }
+  /// Energies of paths that instants before have, by order.
+  std::map<std::int64_t, Field>& path_energies() { return path_energies_; }
   /// @param displacement (n_nodes, dimension), which following pressures act on @return (n_nodes, n_components)
   std::vector<double> external_force(double instant, std::span<const double> displacement) {
     if (!loads_) loads_ = read_loads(order_, base_, result_);
@@ -184,8 +195,8 @@ class Setting {
   Model model_;
   std::unique_ptr<Registry> registry_;
   std::optional<ModelPoints> points_;
-  MaterialField material_field_;
-  std::optional<MaterialTable> materials_;
+  std::optional<ResultMaterials> materials_;
+  std::map<std::int64_t, Field> path_energies_;
   std::optional<StaticProblem> loads_;
 };
 
@@ -238,6 +249,15 @@ class Instant {
         return forces((*this)(row.from), name);
       case How::reactions:
         return reactions(name);
+      case How::mechanical_strain:
+        return mechanical_strain((*this)(row.from), name);
+      case How::stress_energy:
+        refuse_large_strain((*this)(row.from), name);
+        return energy_of_stress((*this)(row.from), name, setting_.materials());
+      case How::path_energy:
+        return path_energy((*this)(row.from), name);
+      case How::integral:
+        return cell_integrals(mesh, setting_.points(), (*this)(row.from), name);
     }
     throw std::logic_error("a field without rule");
   }
@@ -251,7 +271,7 @@ class Instant {
 
   Field strain(Strain measure, const std::vector<char>& wanted, std::string name) {
     Field field = strains(setting_.mesh(), setting_.points(), (*this)("DEPL"), wanted, measure, std::move(name),
-                          [&](std::int32_t cell) { return setting_.elastic(cell, "NU"); });
+                          [&](std::int32_t cell) { return setting_.materials().elastic(cell, "NU"); });
     const auto across = [&](std::int32_t cell, catalog::TransverseStrain follows) {
       const auto c = static_cast<std::size_t>(cell);
       return setting_.points().is_plane_stress(c) && setting_.behaviours().relation[c]->transverse_strain == follows;
@@ -262,6 +282,18 @@ class Instant {
                              {"label", setting_.result().label},
                              {"relation", std::string(setting_.behaviours().relation[static_cast<std::size_t>(cell)]->name)}});
     const auto is_plastic = [&](std::int32_t cell) { return across(cell, catalog::TransverseStrain::isochoric); };
+    const auto in_plane_stress = [&](std::int32_t cell) {
+      return setting_.points().is_plane_stress(static_cast<std::size_t>(cell));
+    };
+    std::vector<double> grown(field.n_rows(), 0.0);
+    if (std::any_of(field.support.begin(), field.support.end(), in_plane_stress))
+      grown = setting_.materials().thermal_strains(field);
+    for (std::size_t i = 0; i < field.support.size(); ++i) {
+      if (!in_plane_stress(field.support[i])) continue;
+      const double nu = setting_.materials().elastic(field.support[i], "NU");  // SIZZ = 0
+      for (std::size_t row = field.first_row(i); row < field.first_row(i + 1); ++row)
+        field.at(row, static_cast<std::size_t>(field.component("EPZZ"))) += (1 + nu) / (1 - nu) * grown[row];
+    }
     if (std::none_of(field.support.begin(), field.support.end(), is_plastic)) return field;
     if (measure == Strain::green_lagrange)
       fail("CALCCHAMP_3", {{"cell", cell_name(*std::find_if(field.support.begin(), field.support.end(), is_plastic))},
@@ -274,15 +306,56 @@ class Instant {
     for (std::size_t i = 0; i < field.support.size(); ++i) {
       const std::int32_t cell = field.support[i];
       if (!is_plastic(cell) || place[static_cast<std::size_t>(cell)] < 0) continue;
-      const double young = setting_.elastic(cell, "E"), nu = setting_.elastic(cell, "NU");
+      const double young = setting_.materials().elastic(cell, "E"), nu = setting_.materials().elastic(cell, "NU");
       const std::size_t first = stress.first_row(static_cast<std::size_t>(place[static_cast<std::size_t>(cell)]));
       for (std::size_t row = field.first_row(i); row < field.first_row(i + 1); ++row) {
         const Eigen::Matrix3d in_plane = own[row];
-        field.at(row, zz) =
-            (1 - 2 * nu) / young * tensors[first + row - field.first_row(i)].trace() - in_plane(0, 0) - in_plane(1, 1);
+        field.at(row, zz) = 3 * grown[row] + (1 - 2 * nu) / young * tensors[first + row - field.first_row(i)].trace() -
+                            in_plane(0, 0) - in_plane(1, 1);
       }
     }
     return field;
+  }
+
+  /// Less the thermal strain.
+  Field mechanical_strain(const Field& whole, std::string name) {
+    Field field = whole;
+    field.name = std::move(name);
+    const std::vector<double> thermal = setting_.materials().thermal_strains(field);
+    for (const char* const component : {"EPXX", "EPYY", "EPZZ"})
+      for (std::size_t row = 0; row < thermal.size(); ++row)
+        field.at(row, static_cast<std::size_t>(field.component(component))) -= thermal[row];
+    return field;
+  }
+
+  /// CALCCHAMP_5: energies are those of small strains.
+  void refuse_large_strain(const Field& field, const std::string& name) {
+    for (const std::int32_t cell : field.support)
+      if (setting_.behaviours().moved[static_cast<std::size_t>(cell)])
+        fail("CALCCHAMP_5", {{"field", name}, {"cell", cell_name(cell)}, {"label", setting_.result().label}});
+  }
+
+  /// Work of the stresses since the first instant of the result, by trapezia.
+  Field path_energy(const Field& stress, const std::string& name) {
+    refuse_large_strain(stress, name);
+    std::map<std::int64_t, Field>& known = setting_.path_energies();
+    if (const auto found = known.find(order_); found != known.end()) return found->second;
+    const auto has_both = [&](std::int64_t o) {
+      return has_field(setting_.result(), "SIEF_ELGA", o) && has_field(setting_.result(), "DEPL", o);
+    };
+    std::optional<std::int64_t> last;
+    for (const std::int64_t o : setting_.result().orders)
+      if (o < order_ && has_both(o)) last = o;
+    const StateOfPoints now{stress, (*this)("EPSI_ELGA")};
+    Field energy;
+    if (last) {
+      Instant before(setting_, *last);
+      const StateOfPoints then{before("SIEF_ELGA"), before("EPSI_ELGA")};
+      energy = energy_of_path(now, &then, &before("ETOT_ELGA"), name);
+    } else {
+      energy = energy_of_path(now, nullptr, nullptr, name);
+    }
+    return known.emplace(order_, std::move(energy)).first->second;
   }
 
   /// Of each row of a field of stresses: how thick a plate of thickness 1 is now, sqrt(1 + 2 E_zz) with Green-Lagrange.
@@ -337,7 +410,7 @@ void calc_champ(const Order& order, const Base& base) {
   const Keywords& keywords = order.keywords;
   const Result from = base.result(keywords.concept_id("RESULTAT"));
   std::vector<std::string> asked;
-  for (const char* family : {"CONTRAINTE", "DEFORMATION", "CRITERES", "VARI_INTERNE", "FORCE"})
+  for (const char* family : {"CONTRAINTE", "DEFORMATION", "CRITERES", "VARI_INTERNE", "FORCE", "ENERGIE"})
     for (const std::string& name : keywords.texts(family)) asked.push_back(name);
   Setting setting(order, base, from);
 

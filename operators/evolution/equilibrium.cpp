@@ -71,6 +71,7 @@ double largest_entry(std::span<const double> values) {
 
 Equilibrium::Equilibrium(const StaticProblem& problem)
     : problem_(problem),
+      heat_(problem),
       relations_(problem),
       elements_(nodes_of_elements(problem)),
       system_(problem.numbering, elements_, symmetry_of(problem)),
@@ -80,9 +81,12 @@ Equilibrium::Equilibrium(const StaticProblem& problem)
   for (const ElementSet& set : problem.solids) {
     linear_ = linear_ && set.linear;
     has_memory_ = has_memory_ || set.kernel->has_memory;
-    points_.push_back(
-        {std::vector<double>(set.cells.size() * set.n_stress()), std::vector<double>(set.cells.size() * set.n_variables())});
+    points_.push_back({std::vector<double>(set.cells.size() * set.n_stress()),
+                       std::vector<double>(set.cells.size() * set.n_variables()),
+                       {},
+                       {}});
   }
+  if (heat_.changes_stiffness()) linear_ = false;
 }
 
 StaticState Equilibrium::natural_state() const {
@@ -91,13 +95,16 @@ StaticState Equilibrium::natural_state() const {
   state.relations.assign(relations_.size(), 0.0);
   for (const ElementSet& set : problem_.solids)
     state.points.push_back({std::vector<double>(set.cells.size() * set.n_stress(), 0.0),
-                            std::vector<double>(set.cells.size() * set.n_variables(), 0.0)});
+                            std::vector<double>(set.cells.size() * set.n_variables(), 0.0),
+                            {},
+                            {}});
   return state;
 }
 
 std::vector<double> Equilibrium::load(double instant, const StaticState& state) {
   const std::vector<double> values = problem_.imposed_values(instant), relations = relations_.values(instant, values);
   instant_ = instant;
+  heat(instant);
   given_ = problem_.dead_force(instant);
   given_.resize(problem_.n_dofs() + problem_.n_patches(), 0.0);
   given_.insert(given_.end(), relations.begin(), relations.end());
@@ -150,10 +157,18 @@ void Equilibrium::add_solids(const StaticState& state, const StaticState& previo
   for (std::size_t s = 0; s < problem_.solids.size(); ++s) {
     const ElementSet& set = problem_.solids[s];
     SolidInput input{.displacement = state.displacement};
-    if (set.kernel->has_memory) {
-      input.previous_displacement = previous.displacement;
-      input.previous_stress = previous.points[s].stress;
-      input.previous_variable = previous.points[s].variable;
+    const StaticState* const from = set.kernel->has_memory ? &previous : origin_ ? &*origin_ : nullptr;
+    if (from) {
+      input.previous_displacement = from->displacement;
+      input.previous_stress = from->points[s].stress;
+      input.previous_variable = from->points[s].variable;
+    }
+    std::vector<double> start;
+    if (heat_.acts()) input.previous_stress = start = heat_.start_of_step(s, points_[s], from);
+    ElementSet heated;
+    if (!points_[s].parameter.empty()) {
+      heated = set;
+      heated.parameters = points_[s].parameter;
     }
     const SolidOutput output{points_[s].stress, points_[s].variable};
     const auto add = [&](const ElementValues& element) {
@@ -162,7 +177,7 @@ void Equilibrium::add_solids(const StaticState& state, const StaticState& previo
       else
         system_.add_unsymmetric(element.dofs, element.matrix, element.force);
     };
-    const auto inverted = evaluate_solids(set, problem_.mesh, input, wanted, output, add);
+    const auto inverted = evaluate_solids(heated.kernel ? heated : set, problem_.mesh, input, wanted, output, add);
     if (!cell_inside_out_) cell_inside_out_ = inverted;
   }
 }
@@ -227,8 +242,15 @@ bool Equilibrium::has_variables() const {
 }
 
 bool Equilibrium::flows(const StaticState& previous) const {
-  return !std::equal(points_.begin(), points_.end(), previous.points.begin(),
-                     [](const PointValues& now, const PointValues& before) { return now.variable == before.variable; });
+  for (std::size_t s = 0; s < points_.size(); ++s) {
+    const auto width = static_cast<std::size_t>(problem_.solids[s].n_point_variables);
+    std::size_t telling = 0;  // behind them are elastic strains, which change without any flow
+    while (telling < width && !std::string_view(problem_.solids[s].kernel->variables[telling]).starts_with("EPSE")) ++telling;
+    const std::vector<double>&now = points_[s].variable, &before = previous.points[s].variable;
+    for (std::size_t i = 0; i < now.size(); ++i)
+      if (i % width < telling && now[i] != before[i]) return true;
+  }
+  return false;
 }
 
 ForceFigures Equilibrium::forces(const StaticState& state, const StaticState& previous) const {

@@ -8,6 +8,7 @@
 
 #include "lacon/operators/contact/contact_state.hpp"
 #include "lacon/operators/evolution/convergence.hpp"
+#include "lacon/operators/evolution/heat.hpp"
 #include "lacon/operators/evolution/matrix_choice.hpp"
 #include "lacon/operators/evolution/relations.hpp"
 #include "lacon/operators/evolution/static_problem.hpp"
@@ -19,20 +20,6 @@ class Group;
 
 namespace lacon {
 
-/// What the integration points of a solid set hold.
-struct PointValues {
-  std::vector<double> stress;    ///< (cells, points, components)
-  std::vector<double> variable;  ///< (cells, points, internal variables)
-};
-
-/// All unknowns at an instant, and what laws with a memory remember.
-struct StaticState {
-  std::vector<double> displacement;  ///< (n_nodes, n_components), with the other unknowns of each node behind it
-  Patchwise patches;
-  std::vector<double> relations;    ///< multipliers of the loads' relations
-  std::vector<PointValues> points;  ///< of each solid set
-};
-
 class Equilibrium {
  public:
   explicit Equilibrium(const StaticProblem& problem);
@@ -41,6 +28,13 @@ class Equilibrium {
 
   /// Displacements, multipliers, stresses and variables zero; no statuses.
   StaticState natural_state() const;
+  /// Temperatures of an instant, which assemblies from now on take; load() does so too.
+  void heat(double instant) { heat_.move_to(instant, points_); }
+  void heat_as(const StaticState& state) { heat_.copy(state.points, points_); }
+  const Heat& heat() const { return heat_; }
+  /// A state that laws without a memory start from; until then it is the natural one.
+  void start_from(const StaticState& state) { origin_ = state; }
+  const std::optional<StaticState>& origin() const { return origin_; }
   /// Take the loads of an instant. Throws LOAD_1, LOAD_6 where they contradict each other.
   /// @return the change of what is imposed, (n_nodes, n_components), 0 elsewhere
   std::vector<double> load(double instant, const StaticState& state);
@@ -105,6 +99,7 @@ class Equilibrium {
   void add_contact(const StaticState& state);
 
   const StaticProblem& problem_;
+  Heat heat_;
   Relations relations_;
   Ragged<std::int32_t> elements_;  ///< nodes of each element that has a matrix
   System system_;
@@ -113,6 +108,7 @@ class Equilibrium {
   bool has_stiffness_ = false;                       ///< a linear stiffness is in the matrix
   NewtonMatrix matrix_{.solid = SolidMatrix::none};  ///< of which kind it is
   std::vector<PointValues> points_;
+  std::optional<StaticState> origin_;
   std::optional<std::int32_t> cell_inside_out_;
   std::optional<double> instant_;  ///< that of the loads
   std::vector<double> given_;      ///< at that instant: dead forces, and behind them what the multipliers' rows are to be

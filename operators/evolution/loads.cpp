@@ -44,6 +44,9 @@ std::vector<double> TimedValues::at(double instant) const {
 
 namespace {
 
+// Components of Load::gravity on cells that turn.
+constexpr std::string_view angular_velocity[] = {"WX", "WY", "WZ"}, axis_point[] = {"X", "Y", "Z"};
+
 /// What a load's terms become, function by function read once.
 class Reader {
  public:
@@ -113,6 +116,41 @@ class Reader {
     for (std::size_t s = first; s < all.size(); ++s) all[s].values.settle();
   }
 
+  /// The centrifugal force of cells that turn, on the initial geometry.
+  void add_rotation(const std::vector<LoadTerm>& terms, std::vector<LoadedCells>& all) {
+    struct Turn {
+      double velocity[3], point[3];
+    };
+    std::map<std::int32_t, Turn> turns;
+    for (const LoadTerm& term : terms)
+      for (std::size_t d = 0; d < 3; ++d) {
+        if (term.component == angular_velocity[d]) turns[term.place].velocity[d] = term.value.value;
+        if (term.component == axis_point[d]) turns[term.place].point[d] = term.value.value;
+      }
+    std::vector<std::int32_t> cells;
+    for (const auto& [cell, turn] : turns) cells.push_back(cell);
+    std::vector<std::vector<std::int32_t>> position;
+    for (ElementSet& set : load_sets(problem_.model, *problem_.registry, "CHAR_MECA_FORC", cells, position)) {
+      const std::vector<double> points = integration_points(set, problem_.mesh, problem_.mesh.coordinates);
+      const auto width = static_cast<std::size_t>(n_load_values(*set.kernel)),
+                 n_points = static_cast<std::size_t>(set.tabulation.n_points);
+      TimedValues values(set.cells.size() * n_points * width);
+      for (std::size_t at = 0; at < set.cells.size() * n_points; ++at) {
+        const Turn& turn = turns.at(set.cells[at / n_points]);
+        const double mass = density(set.cells[at / n_points], *set.row);
+        double along = 0, square = 0, way[3];
+        for (std::size_t d = 0; d < 3; ++d) {
+          way[d] = points[3 * at + d] - turn.point[d];
+          along += turn.velocity[d] * way[d];
+          square += turn.velocity[d] * turn.velocity[d];
+        }
+        for (std::size_t d = 0; d < width; ++d)  // FX, FY, FZ
+          values.set(at * width + d, mass * (square * way[d] - along * turn.velocity[d]));
+      }
+      all.push_back({std::move(set), std::move(values)});
+    }
+  }
+
  private:
   double density(std::int32_t cell, const catalog::ElementRow& row) const {
     if (!problem_.materials->has(cell))
@@ -162,7 +200,10 @@ TimedLoad read_load(const StaticProblem& problem, const Base& base, const Result
     fail("LOAD_5", {{"keyword", path + "TYPE_CHARGE"}, {"load", timed.label}});
   reader.add_cells(load.pressure, "CHAR_MECA_PRES", false, follows ? timed.following : timed.cells);
   reader.add_cells(load.force, "CHAR_MECA_FORC", false, timed.cells);
-  reader.add_cells(load.gravity, "CHAR_MECA_FORC", true, timed.cells);
+  std::vector<LoadTerm> gravity, rotation;
+  for (const LoadTerm& term : load.gravity) (term.component.front() == 'F' ? gravity : rotation).push_back(term);
+  reader.add_cells(gravity, "CHAR_MECA_FORC", true, timed.cells);
+  reader.add_rotation(rotation, timed.cells);
   timed.relation_values = TimedValues(load.relations.size());
   for (std::size_t r = 0; r < load.relations.size(); ++r) {
     const Relation& relation = load.relations[r];

@@ -50,19 +50,29 @@ Newton::Newton(const StaticProblem& problem, const NewtonOptions& options, std::
 
 StaticState Newton::initial_state() {
   StaticState state = equilibrium_.natural_state();
+  if (!options_.from_reference) start_heated(state);
   equilibrium_.pair(state.displacement);
   if (contact()) state.patches = contact()->initial();
   assemble(state, state, options_.matrix);
   return state;
 }
 
-void Newton::begin(StaticState& state, const std::string& label) {
+void Newton::start_heated(StaticState& state) {
+  if (!equilibrium_.heat().acts()) return;
+  equilibrium_.heat(options_.start);
+  equilibrium_.heat().copy(equilibrium_.points(), state.points);
+  equilibrium_.start_from(state);
+}
+
+void Newton::begin(StaticState& state, const std::string& label, bool as_given) {
   state.relations = equilibrium_.natural_state().relations;
   if (contact() && state.patches.status.empty()) {
     equilibrium_.rest_at(state.displacement);
     equilibrium_.pair(state.displacement);
     state.patches = contact()->initial();
   }
+  start_heated(state);
+  if (as_given) equilibrium_.start_from(state);
   restart(state);
   for (std::size_t s = 0; s < problem_.solids.size(); ++s) {
     const std::vector<double>&given = state.points[s].stress, &found = equilibrium_.points()[s].stress;
@@ -78,6 +88,7 @@ void Newton::begin(StaticState& state, const std::string& label) {
 }
 
 void Newton::restart(const StaticState& state) {
+  equilibrium_.heat_as(state);
   choice_.start_instant();
   solver_.forget_right_sides();
   equilibrium_.rest_at(state.displacement);
@@ -133,7 +144,7 @@ int Newton::iterate(double instant, StaticState& state, const std::function<void
   if (options_.extrapolates) extrapolate(instant, state, step);
   // plasticity answers to a step of no length elastically: a body that is unloaded now does not overshoot on the tangent of the
   // flow that the last instant ended with, which makes Newton's method go to and fro between two states
-  if (equilibrium_.has_memory() || state.displacement != previous.displacement ||
+  if (equilibrium_.has_memory() || equilibrium_.heat().acts() || state.displacement != previous.displacement ||
       choice_.suited(options_.prediction, equilibrium_.touches(state)) != equilibrium_.matrix())
     assemble(state, previous, options_.prediction);
   bool settling = false;  // statuses change from iteration to iteration: a rough solution finds them as well

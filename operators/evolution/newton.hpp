@@ -21,8 +21,9 @@ struct NewtonOptions {
   int iterations = 10;                            ///< ITER_GLOB_MAXI
   SolidMatrix matrix = SolidMatrix::tangent;      ///< NEWTON/MATRICE
   SolidMatrix prediction = SolidMatrix::tangent;  ///< NEWTON/PREDICTION: of the first iteration of an instant
-  bool extrapolates = false;  ///< PREDICTION='EXTRAPOLE': an instant starts where the motion of the last one leads to
-  double start = 0;           ///< the instant of the initial state
+  bool extrapolates = false;    ///< PREDICTION='EXTRAPOLE': an instant starts where the motion of the last one leads to
+  double start = 0;             ///< the instant of the initial state
+  bool from_reference = false;  ///< its temperatures are those of reference, whatever they are at that instant
   std::optional<LineSearch> line_search;  ///< RECH_LINEAIRE
   bool cuts = false;                      ///< a step that fails is cut: no message advises it
 };
@@ -37,7 +38,8 @@ class Newton {
   /// Begin with a state of another computation: statuses are those of CONTACT_INIT where `patches` is empty, multipliers of
   /// relations are found anew. Throws EVOLUTION_10 where its stresses are not those of the laws. @param label of the result it
   /// comes from
-  void begin(StaticState& state, const std::string& label);
+  /// @param as_given laws without a memory go on from it too: its stresses need not follow from its displacements
+  void begin(StaticState& state, const std::string& label, bool as_given = false);
 
   /// Solve the instant, starting from `state`, which is in equilibrium. Calls `report` for each iteration.
   /// @return number of iterations. Throws an InstantFailure: EVOLUTION_4 (not converged), EVOLUTION_15, EVOLUTION_18 (cells
@@ -54,10 +56,15 @@ class Newton {
   const ConvergenceCriteria& criteria() const { return options_.criteria; }
   const SaddlePointSolver& solver() const { return solver_; }
   const Equilibrium& equilibrium() const { return equilibrium_; }
+  /// The state that laws without a memory start from, where it is not the natural one.
+  const std::optional<StaticState>& origin() const { return equilibrium_.origin(); }
+  void start_from(const StaticState& state) { equilibrium_.start_from(state); }
   /// The contact at the last evaluation; nullptr without contact.
   const ContactState* contact() const { return equilibrium_.contact(); }
 
  private:
+  /// Let a state have the temperatures of the first instant, and laws without a memory start from it.
+  void start_heated(StaticState& state);
   int iterate(double instant, StaticState& state, const std::function<void(const IterationReport&)>& report);
   void assemble(const StaticState& state, const StaticState& previous, SolidMatrix asked);
   /// The solution of the present system. @param rough a few digits will do. Where bodies are loose that are near to others,

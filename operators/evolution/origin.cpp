@@ -7,7 +7,7 @@
 namespace lacon {
 
 std::optional<Origin> origin_of(const Keywords& keywords, const Base& base) {
-  if (!keywords.has("ETAT_INIT")) return std::nullopt;
+  if (!keywords.has("ETAT_INIT") || !keywords.factor("ETAT_INIT").has("EVOL_NOLI")) return std::nullopt;
   const Keywords from = keywords.factor("ETAT_INIT");
   Origin origin{base.result(from.concept_id("EVOL_NOLI")), 0, 0};
   origin.order = selected_orders(base, origin.result, from).back();

@@ -12,8 +12,8 @@ struct Origin {
   double instant;
 };
 
-/// @param keywords of the command; nothing where it has no ETAT_INIT. Throws FIELDS_1 to FIELDS_3 where the result
-/// has no such instant.
+/// @param keywords of the command; nothing where it has no ETAT_INIT with EVOL_NOLI. Throws FIELDS_1 to FIELDS_3 where the
+/// result has no such instant.
 std::optional<Origin> origin_of(const Keywords& keywords, const Base& base);
 
 }  // namespace lacon

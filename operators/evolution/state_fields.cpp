@@ -194,4 +194,36 @@ StaticState archived_state(const StaticProblem& problem, const Base& base, const
   return state;
 }
 
+StaticState given_state(const StaticProblem& problem, const Base& base, const Keywords& given) {
+  const auto read = [&](const char* keyword) {
+    Field field = base.field(given.concept_id(keyword));
+    if (field.mesh != problem.model.mesh)
+      fail("EVOLUTION_1", {{"first", given.path(keyword)}, {"second", "MODELE"}, {"what", "meshes"}});
+    field.name = keyword;
+    return field;
+  };
+  const auto label = [&](const char* keyword) { return base.label(given.concept_id(keyword)); };
+  StaticState state;
+  state.displacement.assign(problem.n_dofs(), 0.0);
+  if (given.has("DEPL")) state.displacement = nodal_values(problem.mesh, read("DEPL"), problem.components);
+  for (std::size_t dof = 0; dof < problem.n_dofs(); ++dof)
+    if (!problem.exists[dof]) state.displacement[dof] = 0;
+  for (const ElementSet& set : problem.solids)
+    state.points.push_back({.stress = std::vector<double>(set.cells.size() * set.n_stress(), 0.0),
+                            .variable = std::vector<double>(set.cells.size() * set.n_variables(), 0.0),
+                            .thermal = {},
+                            .parameter = {}});
+  const auto fill = [&](const char* keyword, std::vector<double> PointValues::*values, auto names) {
+    if (!given.has(keyword)) return;
+    const Field field = read(keyword);
+    const std::vector<std::int32_t> place = places_in(field, problem.mesh.n_cells());
+    for (std::size_t s = 0; s < problem.solids.size(); ++s)
+      if (const std::vector<std::string> own = names(problem.solids[s]); !own.empty())
+        state.points[s].*values = points_of(field, place, problem.solids[s], own, label(keyword));
+  };
+  fill("SIGM", &PointValues::stress, stress_names);
+  fill("VARI", &PointValues::variable, variable_names);
+  return state;
+}
+
 }  // namespace lacon

@@ -35,18 +35,28 @@ void read_materials(StaticProblem& problem, const Base& base, const std::string&
   problem.material_field = std::make_unique<MaterialField>(base.material_field(field));
   if (problem.material_field->mesh != problem.model.mesh)
     fail("EVOLUTION_1", {{"first", "CHAM_MATER"}, {"second", "MODELE"}, {"what", "meshes"}});
-  std::vector<Material> materials;
-  std::vector<std::string> labels;
-  std::map<std::string, Function> functions;
-  for (const std::string& id : problem.material_field->materials) {
-    materials.push_back(base.material(id));
-    labels.push_back(base.label(id));
-    for (const auto& [law, parameters] : materials.back().laws)
-      for (const auto& [name, value] : parameters)
-        if (const auto* function = std::get_if<std::string>(&value)) functions.emplace(*function, base.function(*function));
-  }
-  problem.materials =
-      std::make_unique<MaterialTable>(*problem.material_field, std::move(materials), std::move(labels), std::move(functions));
+  MaterialTemperatures temperatures = read_temperatures(base, field, problem.mesh);
+  problem.materials = std::make_unique<MaterialTable>(lacon::read_materials(base, *problem.material_field, temperatures));
+  problem.thermal = std::make_unique<ThermalMaterials>(base, *problem.material_field, std::move(temperatures));
+}
+
+/// Laws that a temperature acts on through the state that they start from: those that answer to a change of strain with
+/// isotropic elasticity. That stress takes what the change of thermal strain does (Equilibrium::start_of_step()).
+constexpr std::string_view heated_laws[] = {"ELAS/PETIT",           "ELAS/PETIT_REAC",           "ELAS/GDEF_LOG",
+                                            "VMIS_ISOT_LINE/PETIT", "VMIS_ISOT_LINE/PETIT_REAC", "VMIS_ISOT_LINE/GDEF_LOG",
+                                            "VMIS_ISOT_TRAC/PETIT", "VMIS_ISOT_TRAC/PETIT_REAC", "VMIS_ISOT_TRAC/GDEF_LOG"};
+
+/// Keep temperatures, and functions of them, only where solids are concerned. Throws BEHAVIOUR_5 for a law that takes none.
+void check_temperatures(StaticProblem& problem) {
+  bool any = false;
+  for (const ElementSet& set : problem.solids)
+    for (const std::int32_t cell : set.cells) {
+      if (!problem.thermal->concerns(cell)) continue;
+      any = true;
+      if (std::find(std::begin(heated_laws), std::end(heated_laws), set.option) == std::end(heated_laws))
+        fail("BEHAVIOUR_5", {{"behaviour", set.option}, {"cell", cell_name(cell)}});
+    }
+  if (!any) problem.thermal.reset();
 }
 
 /// Say what V1, V2 of VARI_ELGA are under each behaviour that has internal variables.
@@ -181,6 +191,7 @@ StaticProblem read_problem(const Order& order, const Base& base) {
                               read_behaviours(problem.mesh, keywords.factors("COMPORTEMENT")));
   name_variables(problem.solids);
   warn_of_locking(problem);
+  check_temperatures(problem);
 
   problem.imposed.assign(problem.n_dofs(), 0);
   std::vector<std::string> seen;

@@ -10,6 +10,7 @@
 #include "lacon/assembly/numbering.hpp"
 #include "lacon/elements/registry.hpp"
 #include "lacon/operators/evolution/loads.hpp"
+#include "lacon/operators/fields/thermal.hpp"
 #include "lacon/structures/base.hpp"
 
 namespace lacon {
@@ -22,6 +23,7 @@ struct StaticProblem {
   std::unique_ptr<Registry> registry;
   std::unique_ptr<MaterialField> material_field;
   std::unique_ptr<MaterialTable> materials;
+  std::unique_ptr<ThermalMaterials> thermal;  ///< nothing where no temperature matters
   std::vector<ElementSet> solids;
   std::vector<TimedLoad> loads;
   std::optional<Contact> contact;

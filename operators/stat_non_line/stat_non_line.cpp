@@ -75,9 +75,9 @@ class QuasiStatic : public InstantSolver {
       : newton_(problem, options, std::move(engine)), state_(newton_.initial_state()), last_(state_) {}
 
   /// Start from a state of another computation. @param label of its result
-  void begin(StaticState state, const std::string& label) {
+  void begin(StaticState state, const std::string& label, bool as_given = false) {
     state_ = std::move(state);
-    newton_.begin(state_, label);
+    newton_.begin(state_, label, as_given);
     last_ = state_;
   }
   int solve(double instant, const std::function<void(const IterationReport&)>& report) override {
@@ -94,6 +94,7 @@ class QuasiStatic : public InstantSolver {
   void save(const hdf5::Group& group) const override {
     write(group.create("state"), state_);
     group.write("rest", rest_);
+    if (newton_.origin()) write(group.create("origin"), *newton_.origin());
     newton_.save(group);
   }
   std::int64_t number_of_base() const override { return newton_.solver().base_number(); }
@@ -101,6 +102,7 @@ class QuasiStatic : public InstantSolver {
   void resume(const hdf5::Group& group, const hdf5::Group* base) override {
     state_ = last_ = read_state(group.open("state"));
     rest_ = group.read<double>("rest");
+    if (group.has("origin")) newton_.start_from(read_state(group.open("origin")));
     newton_.resume(group, base, state_, rest_);
   }
   const ConvergenceCriteria& criteria() const { return newton_.criteria(); }
@@ -129,7 +131,12 @@ void stat_non_line(const Order& order, const Base& base) {
   const Present present = solver.present(problem);
   Observations observations(keywords, base, problem.mesh, fields_of(present));
   Archive archive(order, base, present, origin, observations, record.has_value());
-  if (origin) solver.begin(archived_state(problem, base, origin->result, origin->order), origin->result.label);
+  if (origin)
+    solver.begin(archived_state(problem, base, origin->result, origin->order), origin->result.label);
+  else if (!record && keywords.has("ETAT_INIT"))
+    solver.begin(given_state(problem, base, keywords.factor("ETAT_INIT")), "ETAT_INIT", true);
+  else if (!record)
+    Heat(problem).warn_of_start(present.state);
 
   NewtonTable table(std::cout, present, keywords.factor("AFFICHAGE").yes("INFO_RESIDU"), keywords.integer("INFO") == 2);
   StepEvents events(steps.events, base, problem.mesh, fields_of(present));

@@ -487,7 +487,7 @@ C = DEFI_CONTACT(MODELE=MO, FORMULATION='CONTINUE',
         self.assertEqual(run.err.count("<F>"), 2)
 
     def test_unknown_commands(self):
-        self.refused(self.run_study("DEBUT()\nX = MECA_STATIQUE(MODELE=1)\n"), "COMMAND_11", "MECA_STATIQUE", "not available in Lacon",
+        self.refused(self.run_study("DEBUT()\nX = DYNA_NON_LINE(MODELE=1)\n"), "COMMAND_11", "DYNA_NON_LINE", "not available in Lacon",
                      "use STAT_NON_LINE", "study.comm:2")
         self.refused(self.run_study("DEBUT()\nX = LIRE_MALLAGE()\n"), "STUDY_20", "LIRE_MALLAGE", "LIRE_MAILLAGE", "study.comm:2")
 

@@ -92,7 +92,7 @@ except AsterError as error:
     assert error.id_message == 'KEYWORD_1' and 'UNITE' in error.message
 from code_aster import CA
 try:
-    MECA_STATIQUE()
+    DYNA_NON_LINE()
 except CA.AsterError:
     print('caught')
 FIN()
@@ -397,7 +397,7 @@ FIN()
         run = self.launch("help", "DEFI_CONTAC")
         self.assertEqual(run.status, 2)
         self.assertIn("the nearest one is DEFI_CONTACT", run.out)
-        run = self.launch("help", "MECA_STATIQUE")
+        run = self.launch("help", "DYNA_NON_LINE")
         self.assertEqual(run.status, 2)
         self.assertIn("not available", run.out)
 

@@ -267,6 +267,49 @@ def hertz_section(runner):
     return hertz_axis.section(runner)
 
 
+def of_test(case, method):
+    """What a method of a test case makes, in a folder of its own."""
+    test = case(method)
+    test.setUp()
+    try:
+        return getattr(test, method)()
+    finally:
+        test.doCleanups()
+
+
+def press_fit_section(_runner):
+    from test_thermal import PressFit
+
+    rows = [[f"{speed:g}", f"{found.mean():.6f}", f"{exact:.6f}", f"{abs(found / exact - 1).max():.1e}"]
+            for speed, found, exact in of_test(PressFit, "figures")]
+    return f"""## A press fit that is heated and turns
+
+Two rings, r = 1 to 2 and 2 to 3, held along the axis (AXIS, QUAD8, 12 and 14 cells across); E = 2000, nu = 0.3, alpha = 1e-4, density 3. The inner one is heated by
+100 degrees (AFFE_VARC), then both turn (ROTATION). Theory: Lame's pressure of the interference (1 + nu) alpha dT b less what the two rings widen apart, in plane strain.
+
+{table(["speed", "LAGS_C", "theory", "error"], rows)}
+"""
+
+
+def large_strain_section(_runner):
+    from test_large_strain import Necking, Upsetting
+
+    rows = [[law, f"{stress:.1e}", f"{moved:.1e}"] for law, stress, moved in of_test(Upsetting, "figures")]
+    loads, considere, strain, width = of_test(Necking, "figures")
+    return f"""## Plasticity at large strain
+
+A round billet, 10 wide and 10 high, upset to 5.5 by a rigid die that slides without friction, in 10 steps (AXIS, QUAD8; E = 200000, nu = 0.3, yield stress
+400 + 600 p). Theory: everywhere Kirchhoff's stress 400 + 600 p over the logarithmic strain. GDEF_LOG has it whatever the steps; SIMO_MIEHE is of the first order in
+the step, 6 % of strain here.
+
+{table(["DEFORMATION", "error of the stress", "of the widening"], rows)}
+
+The round bar of Simo and Miehe (Comput. Methods Appl. Mech. Engrg. 98, 1992): 53.334 long, radius 6.413, made 0.5 % thinner in its middle, pulled by 14 (GDEF_LOG).
+Theory while it is a cylinder (Considere): the load is largest, {considere:.0f}, at the strain {strain:.3f}. Found: {loads.max():.0f}, {loads.max() / considere:.4f} of it (the
+thinner section has 0.99 of the area). At the end the neck has {width["neck"]:.3f} of the first radius, the end of the bar {width["end"]:.3f} (exp(-strain / 2) = {math.exp(-strain / 2):.3f}).
+"""
+
+
 def robustness_section(runner):
     return chapter.section()
 
@@ -277,7 +320,7 @@ def main():
     try:
         sections = [make(runner) for make in (patch_section, current_section, space_section, degree_section, materials_section,
                                               convergence_section, peer_section, orders_section, hertz_meshes_section, roller_section,
-                                              hertz_section, robustness_section)]
+                                              hertz_section, press_fit_section, large_strain_section, robustness_section)]
     finally:
         runner.doCleanups()
     text = "# Verification\n\nWritten by `python3 tests/verification/book.py`, which runs the studies; the same studies are tests.\n\n" + "\n".join(sections)

@@ -1,0 +1,50 @@
+#pragma once
+// What the cells of a result are made of at an instant: moduli and thermal strains, and energies that follow from them.
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "lacon/operators/fields/cell_points.hpp"
+#include "lacon/operators/fields/thermal.hpp"
+
+namespace lacon {
+
+/// Refers to what it is made of.
+class ResultMaterials {
+ public:
+  /// @param points of the result's model
+  ResultMaterials(const Base& base, const Result& result, const Mesh& mesh, ModelPoints& points);
+
+  /// "E" or "NU" of a cell at the reference temperature. Throws ELEMENT_3.
+  double elastic(std::int32_t cell, const char* name) const;
+  /// Thermal strains of each row of a field at integration points.
+  std::vector<double> thermal_strains(const Field& field);
+  /// E and NU of each cell of a field at integration points, (cells, 2), at its instant.
+  std::vector<double> moduli(const Field& field);
+
+ private:
+  /// Call use(cells, their places in the field's support, n_points) for cells of as many points.
+  template <class Use>
+  void each_size(const Field& field, const Use& use) const;
+
+  const Mesh& mesh_;
+  ModelPoints& points_;
+  MaterialField field_;
+  std::unique_ptr<MaterialTable> table_;
+  std::unique_ptr<ThermalMaterials> thermal_;
+};
+
+/// Elastic energy for each unit of volume out of stresses at integration points, sigma : C^-1 : sigma / 2: TOTALE.
+Field energy_of_stress(const Field& stress, std::string name, ResultMaterials& materials);
+/// The same out of strains, less thermal ones: e : C : e / 2.
+Field energy_of_strain(const Field& strain, std::string name, ResultMaterials& materials);
+/// Work done from one state to the next for each unit of volume, the mean of both stresses times the change of strain, added to
+/// `before`. Where `before` is null the state before is the natural one.
+struct StateOfPoints {
+  const Field &stress, &strain;
+};
+Field energy_of_path(const StateOfPoints& now, const StateOfPoints* last, const Field* before, std::string name);
+/// The integral of a field at integration points over each of its cells (ELEM).
+Field cell_integrals(const Mesh& mesh, ModelPoints& points, const Field& density, std::string name);
+
+}  // namespace lacon

@@ -1,0 +1,98 @@
+"""Energies, MECA_STATIQUE and the commands that make and move results, against theory: work that forces do is what bodies store."""
+
+import unittest
+
+import numpy as np
+
+from load_study import POISSON, YOUNG, LoadTest, flat_block, flat_brick
+from results import Result  # noqa: I001 (load_study says where it is)
+
+STRETCH = """
+def stretched(unit, modelisation, matter=MATTER):
+    global LOADS
+    model(unit, modelisation, matter)
+    H = AFFE_CHAR_CINE(MODELE=MODEL, MECA_IMPO=(_F(GROUP_MA='LEFT', DX=0), _F(GROUP_MA='BASE', DY=0)))
+    P = AFFE_CHAR_MECA(MODELE=MODEL, PRES_REP=_F(GROUP_MA='RIGHT', PRES=-30.0))
+    LOADS = (_F(CHARGE=H), _F(CHARGE=P, FONC_MULT=RAMP))
+
+def table_of(**keywords):
+    return POST_ELEM(**keywords).EXTR_TABLE().values()
+"""
+
+
+class Energies(LoadTest):
+    def test_the_work_of_forces_is_the_energy_of_an_elastic_body(self):
+        """A sheet (2 x 1) under the tension s: s^2 / (2 E) for each unit of volume, as work, of stresses, of strains, cell by cell."""
+        run = self.run_text([flat_block("QUAD8")], STRETCH + f"""
+stretched(20, 'C_PLAN')
+solve(*LOADS)
+R[0] = CALC_CHAMP(reuse=R[0], RESULTAT=R[0], ENERGIE=('ENEL_ELGA', 'ENEL_ELEM', 'ETOT_ELGA', 'ETOT_ELEM', 'ENEL_ELNO'),
+                  VARI_INTERNE='VARI_ELNO')
+R.append(MECA_STATIQUE(MODELE=MODEL, CHAM_MATER=FIELD, EXCIT=LOADS, LIST_INST=TIMES))
+exact = 30.0**2 / (2 * {YOUNG}) * 2.0
+for result, shift in ((R[0], 0), (R[1], 1)):
+    for kind in ('ENER_ELAS', 'ENER_POT'):
+        found = table_of(RESULTAT=result, **{{kind: _F(TOUT='OUI')}})
+        assert abs(found['TOTALE'][-1] / exact - 1) < 1e-10 and abs(found['TOTALE'][1] / exact - 0.25) < 1e-10, found
+        assert found['NUME_ORDRE'][0] == shift and found['POUR_CENT'][-1] == 100, found
+    work = table_of(RESULTAT=result, TRAV_EXT=_F())
+    assert abs(work['TRAV_ELAS'][-1] / exact - 1) < 1e-10 and abs(work['TRAV_REEL'][-1] / exact - 1) < 1e-10, work
+""")
+        self.assertEqual(run.status, 0, run.stdout[-3000:] + run.stderr[-3000:])
+        result = Result(self.folder / "loads.base", "R[0]")
+        for name in ("ENEL_ELGA", "ETOT_ELGA", "ENEL_ELNO"):
+            self.assert_near(result.field(name, 2)[1]["TOTALE"], np.full(1, 30.0**2 / (2 * YOUNG)))
+        for name in ("ENEL_ELEM", "ETOT_ELEM"):
+            self.assertAlmostEqual(result.field(name, 2)[1]["TOTALE"].sum(), 30.0**2 / YOUNG, delta=1e-10)
+        self.assertEqual(np.abs(result.field("VARI_ELNO", 2)[1]["V1"]).max(), 0)
+
+
+class InitialState(LoadTest):
+    def test_a_state_of_fields_goes_on_as_the_computation_it_came_from(self):
+        """Plastic: DEPL, SIGM and VARI at half the load and on to the whole one, as in one run; elastic: stresses that balance a load
+        move nothing."""
+        run = self.run_text([flat_block("QUAD8")], STRETCH + f"""
+SOFT = DEFI_MATERIAU(ELAS=_F(E={YOUNG}, NU={POISSON}), ECRO_LINE=_F(SY=10.0, D_SIGM_EPSI=100.0))
+stretched(20, 'D_PLAN', SOFT)
+solve(*LOADS, COMPORTEMENT=_F(RELATION='VMIS_ISOT_LINE'))
+fields = dict((name, CREA_CHAMP(TYPE_CHAM=kind, OPERATION='EXTR', RESULTAT=R[0], NOM_CHAM=cham, INST=0.5))
+              for name, kind, cham in (('DEPL', 'NOEU_DEPL_R', 'DEPL'), ('SIGM', 'ELGA_SIEF_R', 'SIEF_ELGA'), ('VARI', 'ELGA_VARI_R', 'VARI_ELGA')))
+LATE = DEFI_LIST_REEL(VALE=(0.5, 1.0))
+R.append(STAT_NON_LINE(MODELE=MODEL, CHAM_MATER=FIELD, EXCIT=LOADS, INCREMENT=_F(LIST_INST=LATE), ETAT_INIT=_F(**fields),
+                       COMPORTEMENT=_F(RELATION='VMIS_ISOT_LINE'), CONVERGENCE=_F(RESI_GLOB_RELA=1e-10)))
+stretched(20, 'C_PLAN')
+solve(*LOADS)
+whole = CREA_CHAMP(TYPE_CHAM='ELGA_SIEF_R', OPERATION='EXTR', RESULTAT=R[2], NOM_CHAM='SIEF_ELGA', INST=1.0)
+STILL = (LOADS[0], dict(LOADS[1], FONC_MULT=ONE))
+R.append(STAT_NON_LINE(MODELE=MODEL, CHAM_MATER=FIELD, EXCIT=STILL, INCREMENT=_F(LIST_INST=LATE), ETAT_INIT=_F(SIGM=whole)))
+""")
+        self.assertEqual(run.status, 0, run.stdout[-3000:] + run.stderr[-3000:])
+        results = [Result(self.folder / "loads.base", f"R[{k}]") for k in range(4)]
+        self.assert_near(self.displacement(results[1], 1, 2), self.displacement(results[0], 2, 2), 1e-8)
+        scale = np.abs(self.displacement(results[2], 2, 2)).max()
+        self.assertLessEqual(np.abs(self.displacement(results[3], 1, 2)).max(), 1e-10 * scale)
+
+
+class Results(LoadTest):
+    def test_results_out_of_fields_and_on_other_meshes(self):
+        """CREA_RESU of functions of X, Y and INST, EXTR_RESU of some of it, PROJ_CHAMP onto another mesh: a quadratic field is exact."""
+        run = self.run_text([flat_block("QUAD9"), flat_block("TRIA6"), flat_brick("HEXA20")], """
+model(20, 'D_PLAN')
+F = CREA_CHAMP(TYPE_CHAM='NOEU_TEMP_F', OPERATION='AFFE', MAILLAGE=MESH, AFFE=_F(TOUT='OUI', NOM_CMP='TEMP', VALE_F=formula('(1 + INST) * X * Y + X**2')))
+R.append(CREA_RESU(OPERATION='AFFE', TYPE_RESU='EVOL_THER', AFFE=_F(NOM_CHAM='TEMP', CHAM_GD=F, INST=(0.0, 0.5, 1.0))))
+R.append(EXTR_RESU(RESULTAT=R[0], ARCHIVAGE=_F(INST=(0.5, 1.0))))
+OTHER = LIRE_MAILLAGE(UNITE=21)
+R.append(PROJ_CHAMP(METHODE='COLLOCATION', RESULTAT=R[1], MAILLAGE_1=MESH, MAILLAGE_2=OTHER, INST=1.0))
+R[0] = CREA_RESU(reuse=R[0], RESULTAT=R[0], OPERATION='AFFE', TYPE_RESU='EVOL_THER', AFFE=_F(NOM_CHAM='TEMP', CHAM_GD=F, INST=2.0))
+""")
+        self.assertEqual(run.status, 0, run.stdout[-3000:] + run.stderr[-3000:])
+        made, part, moved = (Result(self.folder / "loads.base", f"R[{k}]") for k in range(3))
+        self.assertEqual((list(made.instants.values()), list(part.instants.values()), list(moved.instants.values())),
+                         ([0.0, 0.5, 1.0, 2.0], [0.5, 1.0], [1.0]))
+        for result, order, instant in ((made, 0, 0.0), (made, 3, 2.0), (part, 1, 0.5), (moved, 2, 1.0)):
+            x, y = result.points.T
+            self.assert_near(result.at_nodes("TEMP", order, "TEMP"), (1 + instant) * x * y + x**2)
+
+
+if __name__ == "__main__":
+    unittest.main()

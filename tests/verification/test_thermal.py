@@ -1,0 +1,158 @@
+"""Temperatures against closed forms: free expansion, held bodies, a ring shrunk on another one, parameters that follow the temperature."""
+
+import math
+import unittest
+
+import numpy as np
+
+from load_study import POISSON, YOUNG, LoadTest, flat_block, flat_brick
+from meshes import block, union  # noqa: I001 (load_study says where it is)
+from results import Result
+
+ALPHA, HEAT = 1e-4, 100.0
+#: a field of temperatures of MESH at two instants, uniform at VALE_REF and HEAT above it in some groups
+TEMPERATURES = f"""
+HOT = DEFI_MATERIAU(ELAS=_F(E={YOUNG}, NU={POISSON}, ALPHA={ALPHA}, RHO=3.0))
+
+def temperature(value, groups):
+    return CREA_CHAMP(TYPE_CHAM="NOEU_TEMP_R", OPERATION="AFFE", MAILLAGE=MESH,
+                      AFFE=(_F(TOUT="OUI", NOM_CMP="TEMP", VALE=20.0), _F(GROUP_MA=groups, NOM_CMP="TEMP", VALE=value)))
+
+def heat(unit, modelisation, matter=HOT, groups="BODY"):
+    global COURSE, FIELD
+    model(unit, modelisation, matter)
+    COURSE = CREA_RESU(OPERATION="AFFE", TYPE_RESU="EVOL_THER", AFFE=(
+        _F(NOM_CHAM="TEMP", CHAM_GD=temperature(20.0, groups), INST=0.0), _F(NOM_CHAM="TEMP", CHAM_GD=temperature({20 + HEAT}, groups), INST=1.0)))
+    FIELD = AFFE_MATERIAU(MAILLAGE=MESH, AFFE=_F(TOUT="OUI", MATER=matter), AFFE_VARC=_F(NOM_VARC="TEMP", EVOL=COURSE, VALE_REF=20.0))
+"""
+FLAT = "_F(GROUP_MA='LEFT', DX=0), _F(GROUP_MA='BASE', DY=0)"
+#: how a body is held so that it can expand
+FREE = {"D_PLAN": FLAT, "C_PLAN": FLAT, "AXIS": "_F(GROUP_MA='BASE', DY=0)",
+        "3D": "_F(GROUP_MA='LEFT', DX=0), _F(GROUP_MA='FRONT', DY=0), _F(GROUP_MA='BASE', DZ=0)"}
+
+
+class Expansion(LoadTest):
+    def test_a_free_body_expands_without_stress(self):
+        """u = alpha dT x, (1 + nu) times that in plane strain; with logarithmic strains exp(...) - 1 instead."""
+        cases = [(modelisation, kind, law)
+                 for modelisation, kind in (("D_PLAN", "QUAD8"), ("C_PLAN", "TRIA6"), ("AXIS", "QUAD4"), ("3D", "HEXA20"), ("3D", "TETRA4"))
+                 for law in ("PETIT", "GDEF_LOG") if (modelisation, law) != ("C_PLAN", "GDEF_LOG")]
+        text, meshes = TEMPERATURES, []
+        for modelisation, kind, law in cases:
+            text += f"""heat({20 + len(meshes)}, '{modelisation}')
+H = AFFE_CHAR_CINE(MODELE=MODEL, MECA_IMPO=({FREE[modelisation]},))
+solve(_F(CHARGE=H), COMPORTEMENT=_F(RELATION='ELAS', DEFORMATION='{law}'))
+CALC_CHAMP(reuse=R[-1], RESULTAT=R[-1], DEFORMATION=('EPSI_NOEU', 'EPME_NOEU'))
+"""
+            meshes.append(flat_brick(kind) if modelisation == "3D" else flat_block(kind, start=1.0 if modelisation == "AXIS" else 0.0))
+        for (modelisation, kind, law), result in zip(cases, self.solved(meshes, text)):
+            with self.subTest(f"{modelisation} {kind} {law}"):
+                strain = (1 + POISSON if modelisation == "D_PLAN" else 1) * ALPHA * HEAT
+                stretch = math.expm1(strain) if law == "GDEF_LOG" else strain
+                dimension = result.points.shape[1]
+                self.assert_near(self.displacement(result, 2, dimension), stretch * result.points)
+                self.assert_near(result.at_nodes("EPSI_NOEU", 2, "EPXX"), np.full(len(result.points), stretch))
+                mechanical = result.at_nodes("EPME_NOEU", 2, "EPXX")
+                self.assertLessEqual(np.abs(mechanical - (stretch - ALPHA * HEAT)).max(), 1e-10 * strain)
+
+    def test_a_held_bar_is_pressed(self):
+        """Held at both ends: sigma = -E alpha dT, half of it at half the time, with MECA_STATIQUE, plasticity that does not flow, and
+        parameters that are functions."""
+        text = TEMPERATURES + f"""
+E_OF_T = DEFI_FONCTION(NOM_PARA='TEMP', VALE=(0, {YOUNG}, 200, {YOUNG / 2}))
+NU_OF_T = DEFI_CONSTANTE(VALE={POISSON})
+ALPHA_OF_T = DEFI_FONCTION(NOM_PARA='TEMP', VALE=(0, {ALPHA}, 200, {2 * ALPHA}))
+SOFT = DEFI_MATERIAU(ELAS_FO=_F(E=E_OF_T, NU=NU_OF_T, ALPHA=ALPHA_OF_T, TEMP_DEF_ALPHA=0.0))
+YIELD = DEFI_MATERIAU(ELAS=_F(E={YOUNG}, NU={POISSON}, ALPHA={ALPHA}), ECRO_LINE=_F(SY=1e6, D_SIGM_EPSI=1.0))
+for matter, law in ((HOT, 'ELAS'), (YIELD, 'VMIS_ISOT_LINE'), (SOFT, 'ELAS')):
+    heat(20, 'C_PLAN', matter)
+    H = AFFE_CHAR_CINE(MODELE=MODEL, MECA_IMPO=(_F(GROUP_MA='LEFT', DX=0), _F(GROUP_MA='RIGHT', DX=0), _F(GROUP_MA='BASE', DY=0)))
+    R.append(STAT_NON_LINE(MODELE=MODEL, CHAM_MATER=FIELD, EXCIT=_F(CHARGE=H), INCREMENT=_F(LIST_INST=TIMES),
+                           COMPORTEMENT=_F(RELATION=law)))
+    R[-1] = CALC_CHAMP(reuse=R[-1], RESULTAT=R[-1], CONTRAINTE='SIEF_NOEU')
+    if law == 'ELAS':
+        R.append(MECA_STATIQUE(MODELE=MODEL, CHAM_MATER=FIELD, EXCIT=_F(CHARGE=H), LIST_INST=TIMES))
+        R[-1] = CALC_CHAMP(reuse=R[-1], RESULTAT=R[-1], CONTRAINTE='SIEF_NOEU')
+"""
+        run = self.run_text([flat_block("QUAD8")], text)
+        self.assertEqual(run.status, 0, run.stdout[-3000:] + run.stderr[-3000:])
+
+        def young(t):
+            return YOUNG * (1 - t / 400)
+
+        def grown(t):
+            def whole(x):
+                return ALPHA * (1 + x / 200) * x
+            return whole(t) - whole(20.0)
+
+        soft = {1: -young(70) * grown(70), 2: -young(120) * grown(120)}
+        plain = {1: -YOUNG * ALPHA * HEAT / 2, 2: -YOUNG * ALPHA * HEAT}
+        for k, (exact, shift) in enumerate(((plain, 0), (plain, 1), (plain, 0), (soft, 0), (soft, 1))):
+            result = Result(self.folder / "loads.base", f"R[{k}]")
+            for order, stress in exact.items():
+                found = result.at_nodes("SIEF_NOEU", order + shift, "SIXX")
+                self.assertLessEqual(np.abs(found - stress).max(), 1e-8 * abs(stress), (k, order))
+
+
+def lame_pressure(interference, a, b, c, young, poisson):
+    """Of two rings a < b < c of one material in plane stress."""
+    outer, inner = (c**2 + b**2) / (c**2 - b**2) + poisson, (b**2 + a**2) / (b**2 - a**2) - poisson
+    return interference * young / (b * (outer + inner))
+
+
+def turned_radius(r, inside, outside, young, poisson, strength):
+    """Displacement of a free ring that turns, in plane stress. @param strength density times speed^2"""
+    return strength * (3 + poisson) / (8 * young) * (
+        (1 - poisson) * (inside**2 + outside**2) * r + (1 + poisson) * inside**2 * outside**2 / r - (1 - poisson**2) / (3 + poisson) * r**3)
+
+
+class PressFit(LoadTest):
+    """A ring that is heated in another one, held along the axis (plane strain): Lame's pressure, which turning takes away."""
+
+    A, B, C, SPEED = 1.0, 2.0, 3.0, 0.4
+
+    def pressures(self):
+        lines = np.linspace(0, 0.5, 3)
+        inner = block("QUAD8", np.linspace(self.A, self.B, 13), lines, None, "IN", {"right": "SLAVE"})
+        outer = block("QUAD8", np.linspace(self.B, self.C, 15), np.linspace(0, 0.5, 4), None, "OUT", {"left": "MASTER"})
+        run = self.run_text([union([inner, outer])], TEMPERATURES + f"""
+WHOLE = LIRE_MAILLAGE(UNITE=20)
+MESH = CREA_MAILLAGE(MAILLAGE=WHOLE, DECOUPE_LAC=_F(GROUP_MA_ESCL='SLAVE'))
+MODEL = AFFE_MODELE(MAILLAGE=MESH, AFFE=_F(TOUT='OUI', PHENOMENE='MECANIQUE', MODELISATION='AXIS'))
+COURSE = CREA_RESU(OPERATION="AFFE", TYPE_RESU="EVOL_THER", AFFE=(
+    _F(NOM_CHAM="TEMP", CHAM_GD=temperature(20.0, 'IN'), INST=0.0), _F(NOM_CHAM="TEMP", CHAM_GD=temperature({20 + HEAT}, 'IN'), INST=1.0)))
+FIELD = AFFE_MATERIAU(MAILLAGE=MESH, AFFE=_F(TOUT="OUI", MATER=HOT),
+                      AFFE_VARC=_F(GROUP_MA='IN', NOM_VARC="TEMP", EVOL=COURSE, VALE_REF=20.0, PROL_DROITE='CONSTANT'))
+CONTACT = DEFI_CONTACT(MODELE=MODEL, FORMULATION='CONTINUE', ALGO_RESO_GEOM='NEWTON', ALGO_RESO_CONT='NEWTON',
+                       ZONE=_F(ALGO_CONT='LAC', GROUP_MA_ESCL='SLAVE', GROUP_MA_MAIT='MASTER', CONTACT_INIT='INTERPENETRE'))
+HOLD = AFFE_CHAR_CINE(MODELE=MODEL, MECA_IMPO=_F(TOUT='OUI', DY=0))
+TURN = AFFE_CHAR_MECA(MODELE=MODEL, ROTATION=_F(VITESSE={self.SPEED}, AXE=(0, 1, 0), CENTRE=(0, 0, 0)))
+SQUARE = FORMULE(NOM_PARA='INST', VALE='max(INST - 1, 0)**2')
+LIST = DEFI_LIST_REEL(VALE=(0.0, 1.0, 1.5, 2.0))
+R.append(STAT_NON_LINE(MODELE=MODEL, CHAM_MATER=FIELD, CONTACT=CONTACT, EXCIT=(_F(CHARGE=HOLD), _F(CHARGE=TURN, FONC_MULT=SQUARE)),
+                       INCREMENT=_F(LIST_INST=LIST), CONVERGENCE=_F(RESI_GLOB_RELA=1e-10, ITER_GLOB_MAXI=20)))
+""")
+        self.assertEqual(run.status, 0, run.stdout[-3000:] + run.stderr[-3000:])
+        result = Result(self.folder / "loads.base", "R[0]")
+        return {order: result.where_present("DEPL", order, "LAGS_C") for order in (1, 2, 3)}
+
+    def figures(self):
+        """Of each instant: speed, LAGS_C of the patches, theory."""
+        young, poisson = YOUNG / (1 - POISSON**2), POISSON / (1 - POISSON)  # plane strain as plane stress
+        heated = (1 + POISSON) * ALPHA * HEAT * self.B
+        pressures = self.pressures()
+        rows = []
+        for order, part in ((1, 0.0), (2, 0.5), (3, 1.0)):
+            strength = 3.0 * (self.SPEED * part) ** 2
+            opened = (turned_radius(self.B, self.B, self.C, young, poisson, strength)
+                      - turned_radius(self.B, self.A, self.B, young, poisson, strength))
+            rows.append((self.SPEED * part, pressures[order], -lame_pressure(heated - opened, self.A, self.B, self.C, young, poisson)))
+        return rows
+
+    def test_lames_pressure_and_its_loss_with_the_speed(self):
+        for speed, found, exact in self.figures():
+            self.assertLessEqual(np.abs(found - exact).max(), 1e-6 * abs(exact), speed)
+
+
+if __name__ == "__main__":
+    unittest.main()
