@@ -5,13 +5,16 @@ import textwrap
 from ..core import catalog, plugins
 from ..core.checker import condition
 from ..core.nearest import nearest
-from . import examples
+from . import examples, keyword_table
 
 _types = {"group_ma": "group of cells", "group_no": "group of nodes", "cell": "cell name", "node": "node name", "factor": "_F(...)"}
 
 
 def run(names):
-    """Print the list of commands, or the keywords of each named one. @return exit status"""
+    """Print the list of commands, the keywords of each named one, or with --table the page of all of them. @return exit status"""
+    if names == ["--table"]:
+        print(keyword_table.text(), end="")
+        return 0
     if not names:
         for name in catalog.command_names():
             print(f"{name:18}{catalog.command(name)['help']}")

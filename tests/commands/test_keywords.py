@@ -1,0 +1,129 @@
+"""Keywords of the catalogue: each one that is taken has a reader among the sources of its command; docs/keywords.md lists them all.
+
+A keyword without a reader is either the only choice there is (one value), or says in its help that it is a word without effect ("accepted; ..."
+or "accepted: ..."). The reader is looked for in what the command's program includes (C++), or its module imports (Python), transitively.
+"""
+
+import ast
+import functools
+import re
+import sys
+import unittest
+
+sys.path.insert(0, __file__.rpartition("/")[0] or ".")
+from support import ROOT  # noqa: E402
+
+from lacon.commands import implementations  # noqa: E402
+from lacon.core import catalog  # noqa: E402
+from lacon.tools import keyword_table  # noqa: E402
+
+#: commands that are read elsewhere than in their own module
+ELSEWHERE = {"DEBUT": "run", "POURSUITE": "run", "FIN": "run"}
+
+#: commands whose keywords stay with the concept, and what reads them there
+LATER = {"AFFE_MATERIAU": "stat_non_line"}
+
+#: taken keywords whose readers know no names: what reads them goes by the catalogue or by rows of elements
+BY_ROWS = {
+    "MECA_IMPO/PHI": "unknowns of elements", "MECA_IMPO/PSI": "unknowns of elements", "DDL_IMPO/PHI": "unknowns of elements",
+    "DDL_IMPO/PSI": "unknowns of elements", "FACE_IMPO/PHI": "unknowns of elements", "FACE_IMPO/PSI": "unknowns of elements",
+    "MACR_ADAP_MAIL/MAILLAGE_NP1": "makes: the concept's name", "DEFI_MATERIAU/ELAS": "materials: by KEYWORD/PARAMETER",
+}
+
+
+@functools.cache
+def cpp_sources(program):
+    """Text of everything that an operator's sources include, and of the sources beside these headers."""
+    seen, todo = set(), list((ROOT / "operators" / program).glob("*.?pp"))
+    while todo:
+        path = todo.pop()
+        if path in seen or not path.exists():
+            continue
+        seen.add(path)
+        for included in re.findall(r'#include "lacon/((?:operators|structures|elements|pairing|assembly)/[^"]+)"', path.read_text(encoding="utf-8")):
+            todo += [ROOT / included, (ROOT / included).with_suffix(".cpp")]
+        if path.name == "order.hpp":
+            todo += (ROOT / "elements").glob("*.cpp")
+    return "\n".join(path.read_text(encoding="utf-8") for path in sorted(seen))
+
+
+@functools.cache
+def python_sources(module):
+    """Text of a module of commands/lacon and of all that it imports."""
+    seen, todo = set(), [ROOT / "commands" / "lacon" / module]
+    while todo:
+        path = todo.pop()
+        if path in seen or not path.exists():
+            continue
+        seen.add(path)
+        for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+            if isinstance(node, ast.ImportFrom) and node.level:
+                folder = path.parents[node.level - 1].joinpath(*(node.module or "").split("."))
+                todo += [folder.with_suffix(".py"), *(folder / f"{alias.name}.py" for alias in node.names)]
+    return "\n".join(path.read_text(encoding="utf-8") for path in sorted(seen))
+
+
+@functools.cache
+def sources(command):
+    row = catalog.command(command)
+    if "operator" in row:
+        program = row["operator"]
+        own = cpp_sources(program if (ROOT / "operators" / program).is_dir() else program.removesuffix("_cine").removesuffix("_meca"))
+        return own + (cpp_sources(LATER[command]) if command in LATER else "")
+    family = ELSEWHERE.get(command)
+    if family:
+        return "\n".join(python_sources(f"{family}/{path.name}") for path in sorted((ROOT / "commands/lacon" / family).glob("*.py")))
+    return python_sources(f"commands/{implementations.home(command)}.py")
+
+
+def read_in(text, name):
+    """Whether sources name a keyword, whole, in a text, or as a beginning and an ending that are put together."""
+    if re.search(rf'''["'/]{name}["'/]''', text):
+        return True
+    return any(re.search(f'''["']{name[:k]}_?["']''', text) and re.search(f'''["']_?{name[k:].lstrip("_")}["']''', text)
+               for k in range(2, len(name)) if name[k] == "_" or name[k - 1] == "_")
+
+
+def of_defaults(row):
+    """Names of keywords on which the default of another one depends: a row of the catalogue reads them."""
+    found = {name for when in row.get("when", ()) if "default" in when for name in when.get("if", ())}
+    return found.union(*(of_defaults(keyword) for keyword in row.get("keyword", {}).values()))
+
+
+def material(name):
+    """Parameters of materials are read by the rows of elements and laws."""
+    return any(re.search(rf'["/]{name}"', path.read_text(encoding="utf-8"))
+               for folder in ("elements", "catalog", "operators") for path in (ROOT / folder).rglob("*") if path.suffix in (".cpp", ".toml") and "commands" not in path.parts)
+
+
+class Keywords(unittest.TestCase):
+    maxDiff = None
+
+    def test_each_keyword_that_is_taken_has_a_reader(self):
+        orphans = []
+        for command in catalog.command_names():
+            for path, kind, _ in keyword_table.rows(command, catalog.command(command)):
+                if kind != "taken" or path in BY_ROWS or f"{command}/{path}" in BY_ROWS:
+                    continue
+                name = path.rpartition("/")[2]
+                row = catalog.command(command)
+                if name in of_defaults(row) or path == row.get("reuse"):  # the launcher reads the concept that reuse= enriches
+                    continue
+                if not (material(name) if command == "DEFI_MATERIAU" else read_in(sources(command), name)):
+                    orphans.append(f"{command}/{path}")
+        self.assertEqual(orphans, [], "nobody reads these: let a source read them, or say in their help \"accepted; ...\" why they change nothing")
+
+    def test_the_walk_finds_what_nobody_reads(self):
+        """The words: of those that say that they change nothing most have indeed no reader."""
+        for command, name in (("STAT_NON_LINE", "RENUM"), ("MACR_ADAP_MAIL", "QUALITE"), ("DEFI_FONCTION", "TITRE"), ("AFFE_MODELE", "VERI_JACOBIEN")):
+            self.assertFalse(read_in(sources(command), name), f"{command}/{name}")
+        self.assertTrue(read_in(sources("STAT_NON_LINE"), "RESI_GLOB_RELA"))
+        self.assertTrue(read_in(sources("POST_RELEVE_T"), "INVARIANT"))
+
+    def test_the_page_of_the_keywords_is_that_of_the_catalogue(self):
+        page = (ROOT / "docs" / "keywords.md").read_text(encoding="utf-8")
+        self.assertTrue(page == keyword_table.text(), "make it anew: lacon help --table > docs/keywords.md")
+
+
+if __name__ == "__main__":
+    unittest.main()
