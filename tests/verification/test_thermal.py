@@ -154,5 +154,32 @@ R.append(STAT_NON_LINE(MODELE=MODEL, CHAM_MATER=FIELD, CONTACT=CONTACT, EXCIT=(_
             self.assertLessEqual(np.abs(found - exact).max(), 1e-6 * abs(exact), speed)
 
 
+class Refusals(LoadTest):
+    def test_what_temperatures_cannot_do_is_said(self):
+        text = TEMPERATURES.replace("HOT =", "from code_aster import CA\nHOT =") + """
+def said(**more):
+    try:
+        STAT_NON_LINE(MODELE=MODEL, CHAM_MATER=FIELD, EXCIT=_F(CHARGE=H), **dict(dict(INCREMENT=_F(LIST_INST=TIMES)), **more))
+    except CA.AsterError as error:
+        return error.id_message
+
+heat(20, 'D_PLAN')
+H = AFFE_CHAR_CINE(MODELE=MODEL, MECA_IMPO=(_F(GROUP_MA='LEFT', DX=0), _F(GROUP_MA='BASE', DY=0)))
+assert said(COMPORTEMENT=_F(RELATION='ELAS', DEFORMATION='GREEN_LAGRANGE')) == 'BEHAVIOUR_5'
+LATER = DEFI_LIST_REEL(VALE=(0.0, 1.0, 2.0))
+assert said(INCREMENT=_F(LIST_INST=LATER)) == 'THERMAL_6'
+LATE = DEFI_LIST_REEL(VALE=(0.5, 1.0))
+assert said(INCREMENT=_F(LIST_INST=LATE)) == 'EVOLUTION_33'  # an alarm, which DEBUT makes an error
+FIELD = AFFE_MATERIAU(MAILLAGE=MESH, AFFE=_F(TOUT='OUI', MATER=HOT), AFFE_VARC=_F(NOM_VARC='TEMP', CHAM_GD=temperature(20.0, 'BODY')))
+assert said() == 'THERMAL_1'
+LAW = DEFI_FONCTION(NOM_PARA='TEMP', VALE=(-100, 2000, 200, 1000))
+SOFT = DEFI_MATERIAU(ELAS_FO=_F(E=LAW, NU=DEFI_CONSTANTE(VALE=0.3)))
+FIELD = AFFE_MATERIAU(MAILLAGE=MESH, AFFE=_F(TOUT='OUI', MATER=SOFT))
+assert said() == 'THERMAL_3'
+"""
+        run = self.run_text([flat_block("QUAD4")], text)
+        self.assertEqual(run.status, 0, run.stdout[-2000:] + run.stderr[-3000:])
+
+
 if __name__ == "__main__":
     unittest.main()
