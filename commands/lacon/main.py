@@ -43,6 +43,8 @@ def parser():
     made.add_argument("--timings", action="store_true", help="print where the time went")
     made.add_argument("--verbose", action="store_true", help="operators say each phase with its time, and each count, as they come")
     made.add_argument("--threads", type=int, metavar="N", help="threads of operators")
+    made.add_argument("--sandbox", action="store_true", help="run the study without network, and let it write its base and the files of its units alone (bubblewrap)")
+    made.add_argument("--stage", help=argparse.SUPPRESS)  # of the launcher within a sandbox
     made.add_argument("--version", action=_Version, nargs=0, help="print the version, and what operators calculate with")
     return made
 
@@ -72,6 +74,12 @@ def main(arguments=None):
     asked, options = parse(arguments)
     launch = importlib.import_module(".run.launch", __package__)  # --help, --version, help and inspect start without
     units = launch.units_of(asked, options)
-    status, diagnostic = outcome.guarded(lambda: launch.run_command_line(options, units))
+    if options.sandbox:
+        sandbox = importlib.import_module(".run.sandbox", __package__)
+        status, diagnostic = outcome.guarded(lambda: (sandbox.run(options, units), ""))
+        if not diagnostic:  # the launcher within has said it
+            return status
+    else:
+        status, diagnostic = outcome.guarded(lambda: launch.run_command_line(options, units))
     print(f"--- DIAGNOSTIC JOB : {diagnostic}", flush=True)
     return status

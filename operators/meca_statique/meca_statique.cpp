@@ -10,6 +10,7 @@
 #include "lacon/operators/evolution/newton.hpp"
 #include "lacon/operators/evolution/state_fields.hpp"
 #include "lacon/operators/program/blas.hpp"
+#include "lacon/operators/program/checking.hpp"
 #include "lacon/operators/program/program.hpp"
 
 namespace lacon {
@@ -61,6 +62,7 @@ void meca_statique(const Order& order, const Base& base) {
       std::make_unique<MumpsEngine>(MumpsOptions{.memory_margin = static_cast<int>(solver.integer("PCENT_PIVOT")),
                                                  .residual_tolerance = solver.real("RESI_RELA")}));
   StaticState state = newton.initial_state();
+  if (only_checks()) return;
   Result result = empty_result(order, problem);
   for (const double instant : instants) {
     newton.solve(instant, state, [](const IterationReport&) {});

@@ -12,6 +12,7 @@
 
 #include "lacon/catalog/messages.hpp"
 #include "lacon/operators/program/blas.hpp"
+#include "lacon/operators/program/checking.hpp"
 #include "lacon/operators/program/ending.hpp"
 #include "lacon/operators/program/terminal.hpp"
 
@@ -23,7 +24,7 @@ struct Outcome {
   std::vector<Message> messages;
   std::vector<std::pair<std::string, double>> seconds, counts;
   std::string command, source;
-  bool verbose = false;
+  bool verbose = false, checks = false;
   std::function<void(const std::string&)> phase_watch;
 } outcome;
 
@@ -113,6 +114,7 @@ int run_program(int argc, char** argv, std::string_view name, std::string_view w
   CLI::App app{std::string(what_it_does), std::string(name)};
   std::string file;
   app.add_option("order", file, "JSON order (docs/structures.md, section 4)")->required();
+  app.add_flag("--check", outcome.checks, "refuse what the order would be refused for, and end before what takes long");
   return run(argc, argv, app, [&] {
     const Order order = read_order(file);
     outcome.command = order.command;
@@ -133,6 +135,8 @@ int run_tool(int argc, char** argv, CLI::App& app, const std::function<void()>& 
   for (int i = 1; i < argc; ++i) outcome.source += (i > 1 ? " " : "") + std::string(argv[i]);
   return run(argc, argv, app, work);
 }
+
+bool only_checks() { return outcome.checks; }
 
 const std::vector<Message>& messages_so_far() { return outcome.messages; }
 

@@ -17,6 +17,7 @@
 #include "lacon/operators/evolution/table.hpp"
 #include "lacon/operators/evolution/time_stepping.hpp"
 #include "lacon/operators/program/blas.hpp"
+#include "lacon/operators/program/checking.hpp"
 #include "lacon/operators/program/ending.hpp"
 #include "lacon/operators/program/program.hpp"
 
@@ -143,6 +144,7 @@ void stat_non_line(const Order& order, const Base& base) {
   ContactNotices notices(present);
   RestartRecord restart(base, begins, solver, archive,
                         {{"archive", &archive}, {"events", &events}, {"notices", &notices}, {"observations", &observations}});
+  if (only_checks()) return;
   Interruption interruption;
   wait_with_ending();
   const Course past = record ? restart.go_on(*record) : Course();

@@ -125,7 +125,7 @@ def main():
     print(f"{program} at work")
     if "print" in behaviour:
         print(behaviour["print"], os.environ[behaviour["print"]])
-    if result and not behaviour.get("lazy"):
+    if result and not behaviour.get("lazy") and "--check" not in sys.argv:
         write(base / result["id"] / "index.h5" if result["id"].startswith("result") else base / f"{result['id']}.h5")
     if "unit" in behaviour:
         pathlib.Path(order["units"][behaviour["unit"]]).write_text("written\n")

@@ -26,8 +26,8 @@ class Check(LauncherTest):
         run = self.check(STUDY + REST + "FIN()\n")
         self.assertEqual(run.status, 0, run.err)
         self.assertIn("study.comm: 14 commands are right", run.out)
-        self.assertIn("by their keywords alone: STAT_NON_LINE (line 11), CALC_CHAMP (line 12), IMPR_RESU (line 13), TEST_RESU (line 14)", run.out)
-        self.assertEqual(self.operators(), ["lire_maillage", "crea_maillage", "affe_modele", "affe_materiau", "affe_char_cine"])
+        self.assertIn("up to the first instant: STAT_NON_LINE (line 11)\n  by their keywords alone: CALC_CHAMP (line 12), IMPR_RESU (line 13), TEST_RESU (line 14)", run.out)
+        self.assertEqual(self.operators(), ["lire_maillage", "crea_maillage", "affe_modele", "affe_materiau", "affe_char_cine", "stat_non_line"])
         self.assertNotIn("at work", run.out)
 
     def test_lines_of_several_files_say_which(self):
@@ -35,7 +35,7 @@ class Check(LauncherTest):
         self.write("second.comm", REST + "FIN()\n")
         run = self.launch("check", "first.comm", "second.comm", "--unit", "20=mesh.med")
         self.assertIn("first.comm, second.comm: 14 commands are right", run.out)
-        self.assertIn("STAT_NON_LINE (first.comm:11), CALC_CHAMP (second.comm:1), IMPR_RESU (second.comm:2), TEST_RESU (second.comm:3)", run.out)
+        self.assertIn("STAT_NON_LINE (first.comm:11)\n  by their keywords alone: CALC_CHAMP (second.comm:1), IMPR_RESU (second.comm:2), TEST_RESU (second.comm:3)", run.out)
 
     def test_up_to_a_value_that_only_a_run_can_give(self):
         text = STUDY + REST + "T = RECU_TABLE(CO=R, NOM_TABLE='OBSERVATION')\ntry:\n    n = T['VALE', 1]\nexcept Exception:\n    n = 0\nFIN(NO_SUCH=1)\n"
@@ -53,6 +53,18 @@ class Check(LauncherTest):
         run = self.check(STUDY, behaviour=wrong)
         self.assertEqual(run.status, 2)
         self.assertIn("<F> <MESH_1> no such group", run.err)
+
+    def test_what_solves_is_refused_before_its_first_instant(self):
+        wrong = {"stat_non_line": {"status": 2, "messages": [{"severity": "F", "id": "EVOLUTION_7", "text": "no material", "do": "give it"}]}}
+        run = self.check(STUDY, behaviour=wrong)
+        self.assertEqual(run.status, 2)
+        self.assertIn("<F> <EVOLUTION_7> no material", run.err)
+
+    def test_a_computation_behind_another_is_checked_by_its_keywords(self):
+        again = "R2 = STAT_NON_LINE(MODELE=MO, CHAM_MATER=CM, EXCIT=_F(CHARGE=BC), INCREMENT=_F(LIST_INST=L), ETAT_INIT=_F(EVOL_NOLI=R))\n"
+        run = self.check(STUDY + again)
+        self.assertEqual(run.status, 0, run.err)
+        self.assertIn("by their keywords alone: STAT_NON_LINE (line 12)", run.out)
 
     def test_the_base_of_the_study_is_left_alone(self):
         self.ok(self.run_study(STUDY + "FIN()\n"))

@@ -22,11 +22,16 @@ from .unfinished import Unfinished
 
 _registry = "base.json"
 _orders = "orders.partial"
-_no_registry = (OSError, ValueError, KeyError, TypeError)  #: what reading a file that is none throws
+_no_registry = (OSError, ValueError, KeyError, TypeError, RecursionError)  #: what reading a file that is none throws
 #: seconds after which an operator whose launcher is gone has ended
 patience = 3.0
 _tries, _pause = 20, 0.01  # seconds, until a folder that a run has just made is a base
 _entry = re.compile(r"([a-z_]+_\d+)(\.h5)?(\.partial)?$")
+
+
+def may_be_base(folder):
+    """Whether a folder is a base, empty, or one that a full disk kept from having a registry."""
+    return (folder / _registry).exists() or all(path.name.startswith((_registry, _orders)) for path in folder.iterdir())
 
 
 class Base:
@@ -106,8 +111,7 @@ class Base:
         self._objects = weakref.WeakValueDictionary()
 
     def _check_folder(self, where, fresh):
-        """A folder that is not a base is left alone; one that a full disk kept from having a registry is one. One that is to be emptied
-        has to show a registry of ours."""
+        """A folder that is not a base is left alone. One that is to be emptied has to show a registry of ours."""
         if not self.folder.is_dir():
             fail("STUDY_4", where, folder=self.folder)
         if fresh and (self.folder / _registry).exists():
@@ -115,7 +119,7 @@ class Base:
                 self._registry_there()
             except _no_registry:
                 fail("STUDY_4", where, folder=self.folder)
-        if not (self.folder / _registry).exists() and not all(path.name.startswith((_registry, _orders)) for path in self.folder.iterdir()):
+        if not may_be_base(self.folder):
             fail("STUDY_4", where, folder=self.folder)
 
     def _registry_there(self):

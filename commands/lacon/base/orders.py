@@ -49,8 +49,8 @@ def order(command, study, keywords, where, result=None, units=None, written=()):
     return made
 
 
-def run(program, made, study):
-    """Start the operator on the order and wait for it. @return its Outcome. @throws InternalError where it does not exist"""
+def run(program, made, study, checks=False):
+    """Start the operator on the order, or with `checks` on all of it but what takes long, and wait for it. @return its Outcome. @throws InternalError where it does not exist"""
     import subprocess  # start-up: a study without operators
 
     executable = operator_folder() / program
@@ -75,7 +75,7 @@ def run(program, made, study):
     with ours, _terminal(study) as terminal:
         environment.update({"LACON_TERMINAL": str(terminal)} if terminal else {})
         with theirs:  # an operator that ends a moment after the launcher still holds the base
-            arguments = [executable, order_file, "--status", status_file, *(["--verbose"] if study.verbose else [])]
+            arguments = [executable, order_file, "--status", status_file, *["--verbose"] * study.verbose, *["--check"] * checks]
             process = subprocess.Popen(arguments, env=environment, stderr=quiet,
                                        stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL if study.check or study.quiet else None,
                                        pass_fds=(study.base.lock, theirs.fileno(), *([terminal] if terminal else [])))

@@ -51,7 +51,7 @@ class Command:
         if not self.name.startswith("TEST_"):  # its checks print a line each
             run.progress(f"{where}: {label + ' = ' if label else ''}{self.name}")
         if run.check and run.check.takes(self.name, row, keywords, where):
-            return self._unsolved(run, row, label, where, reused, named)
+            return self._unsolved(run, row, keywords, where, label, reused, named)
         if "operator" in row:
             result, outcome = self._order(run, row, keywords, where, label, reused, named)
             run.timings.add(self.name, where, time.perf_counter() - started, outcome)
@@ -172,11 +172,18 @@ class Command:
         _enter(run, label, item, where)
         return item
 
-    def _unsolved(self, run, row, label, where, reused, named):
-        """The object of a concept that `lacon check` does not make; nothing for a command without."""
+    def _unsolved(self, run, row, keywords, where, label, reused, named):
+        """The object of a concept that `lacon check` does not make; nothing for a command without. The operator of one that solves
+        does all but that, where what it starts from was really made."""
         if "result" not in row:
             return None
         identifier = reused.id if reused else run.base.new_id(row["result"])
+        if run.check.prepares(row, keywords):
+            result = {"id": identifier, "label": label, "reuse": bool(reused)}
+            made = orders.order(self.name, run, keywords, where, result, self._units(run, row, keywords, where))
+            outcome = orders.run(row["operator"], made, run, checks=True)
+            if outcome.status != 0:
+                orders.raise_failure(outcome, row["operator"], where)
         run.base.unsolved = {**dict(run.base.unsolved), identifier: (label or self.name, where)}
         return self._result(run, identifier, label, where, reused, named)
 

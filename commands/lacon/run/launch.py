@@ -7,6 +7,7 @@ from ..commands import checks
 from ..core import current, messages, outcome
 from . import execution, study
 from .export import Export, read_export
+from .stage import Stage
 
 
 def units_of(parser, options):
@@ -34,6 +35,11 @@ def command_files(names, units):
     export.units = {**export.units, **units}
     execution.check_files(export.commands)
     return export
+
+
+def base_of(export):
+    """The base of a study whose command line names none."""
+    return export.base or export.commands[0].with_suffix(".base")
 
 
 def _is_text(path):
@@ -69,12 +75,13 @@ def run_command_line(options, units):
     threads = options.threads
     if threads is None and export.parameters.get("ncpus", "").isdigit():
         threads = max(1, int(export.parameters["ncpus"]))
-    base = options.base or export.base or export.commands[0].with_suffix(".base")
+    base = options.base or base_of(export)
     for path in (os.getcwd(), base, *export.commands, *export.units.values()):
         if not _is_text(path):
             messages.fail("STUDY_26", path=path)
     run = study.Study(base, export.units, options.fresh, threads, options.checks == "all", execution.provided_names(),
                       options.force, options.verbose)
+    run.stage = Stage(options.stage) if options.stage else None
     run.files = [os.path.realpath(name) for name in export.commands]
     for name in export.commands + export.named + export.data:
         run.protect(name)

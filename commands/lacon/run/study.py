@@ -20,6 +20,7 @@ class Study:
     def __init__(self, base_folder, units=None, fresh=False, threads=None, strict_checks=False, provided=None, force=False, verbose=False):
         self.base_folder = pathlib.Path(base_folder)
         self.units = dict(units or {})  #: number -> path
+        self.given_units = dict(self.units)  #: as the command line and the export file have them
         self.files = []  #: command files of the run
         self.texts = []  #: (name, text) of those that are run
         self.fresh = fresh
@@ -37,6 +38,7 @@ class Study:
         self.ignored_alarms = frozenset()
         self.alarms = 0
         self.checks = []
+        self.stage = None  #: a stage.Stage, where this run is one in a sandbox
         self.written_units = {}  #: number -> path
         self.earlier_units = {}  #: number -> (file, file written) before DEFI_FICHIER gave it another one; None: none
         self.plots = {}  #: (unit, format) -> tables.curves.Plot that this run draws there
@@ -152,7 +154,7 @@ class Study:
 
     def input_unit(self, number, where):
         """The file of a unit that a command reads: one that was given, or that this run wrote."""
-        path = self.units.get(number) or self.written_units.get(number)
+        path = self.written_units.get(number) or self.units.get(number)
         if path is None:
             fail("COMMAND_4", where, unit=number)
         if not os.path.isfile(path) or not os.access(path, os.R_OK):
@@ -167,14 +169,15 @@ class Study:
     def output_unit(self, number, suffix, where):
         """The file of a unit that a command writes; beside the command file where none was given."""
         path = os.path.abspath(self.units.get(number, self.base_folder.parent / f"{self.base_folder.stem}.{number}{suffix}"))
+        staged = self.stage and (number not in self.units or self.units[number] == self.given_units.get(number))
         folder = os.path.dirname(path)
         # written whole by renaming, which would replace a device such as /dev/null
         is_other = os.path.exists(path) and not os.path.isfile(path)
-        if not os.path.isdir(folder) or not os.access(folder, os.W_OK) or is_other:
+        if not os.path.isdir(folder) or not (staged or os.access(folder, os.W_OK)) or is_other:
             fail("COMMAND_8", where, unit=number, file=path)
         if os.path.realpath(path) in self.sources:
             fail("COMMAND_12", where, unit=number, file=path)
-        return path
+        return self.stage.file(number, path) if staged else path
 
     def announced_output(self, number, suffix, where):
         """As output_unit(); says where the file goes when nobody gave one."""
@@ -182,7 +185,7 @@ class Study:
             return self.written_units[number]
         path = self.output_unit(number, suffix, where)
         if number not in self.units:
-            self.inform("COMMAND_10", where, unit=number, file=os.path.relpath(path))
+            self.inform("COMMAND_10", where, unit=number, file=os.path.relpath(self.base_folder.parent / os.path.basename(path)))
         return path
 
     def write_text(self, number, suffix, where, text):

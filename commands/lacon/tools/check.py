@@ -1,8 +1,9 @@
 """`lacon check study.comm`: everything that can be known of a study without solving it.
 
 The command file runs in a base of its own, which disappears. Meshes, groups, models, materials, loads and contacts are really made, so
-that whatever their operators refuse is found. What solves (rows with `solves`) and what follows from it is checked by its keywords
-alone; nothing is printed to files and nothing is tested. The check ends at the first value that only a run can give.
+that whatever their operators refuse is found. The operator of what solves (rows with `solves`) does everything up to its first instant;
+what follows from that is checked by its keywords alone; nothing is printed to files and nothing is tested. The check ends at the first
+value that only a run can give.
 """
 
 import argparse
@@ -22,19 +23,30 @@ class Check:
 
     def __init__(self):
         self.commands = 0
-        self.unsolved = []  #: (command, where) of those whose keywords alone are checked
+        self.prepared = []  #: (command, where) of those that went up to their first instant
+        self.unsolved = []  #: of those whose keywords alone are checked
 
     def takes(self, command, row, keywords, where):
         """The command is not really run. Its keywords are right when this is asked."""
         self.commands += 1
         if command in _always:
             return False
-        unsolved = any(item.id in current.study.base.unsolved for item in concepts_in(keywords))
+        unsolved = self._follows(keywords)
         if not (row.get("solves") or unsolved or "result" not in row):
             return False
-        if row.get("solves") or unsolved:
+        if unsolved:
             self.unsolved.append((command, where))
+        elif row.get("solves"):
+            self.prepared.append((command, where))
         return True
+
+    def prepares(self, row, keywords):
+        """Whether a command that is not really run solves, and what it starts from is there."""
+        return bool(row.get("solves")) and not self._follows(keywords)
+
+    def _follows(self, keywords):
+        """Whether keywords name a concept that is not there since nothing was solved."""
+        return any(item.id in current.study.base.unsolved for item in concepts_in(keywords))
 
 
 def parser():
@@ -68,11 +80,17 @@ def run(arguments):
     if status != outcome.done:
         return status
     words = [f"{', '.join(map(os.path.relpath, options.files))}: {this.check.commands} commands are right"]
+    if this.check.prepared:
+        words.append("up to the first instant: " + _listed(this.check.prepared, export))
     if this.check.unsolved:
-        one_file = len({where.rpartition(":")[0] for _, where in this.check.unsolved}) == 1 == len(export.commands)
-        seen = dict.fromkeys(f"{command} ({'line ' + where.rpartition(':')[2] if one_file else where})" for command, where in this.check.unsolved)
-        words.append("by their keywords alone: " + ", ".join(seen))
+        words.append("by their keywords alone: " + _listed(this.check.unsolved, export))
     for needed, place in stopped:
         words.append(f"checked up to {place}: it needs what {needed.label} holds, which only a run can give ({needed.label} is made at {needed.made})")
     print("\n  ".join(words))
     return status
+
+
+def _listed(commands, export):
+    """"STAT_NON_LINE (line 11), ...": commands with their lines, and with the file where there are several."""
+    one_file = len({where.rpartition(":")[0] for _, where in commands}) == 1 == len(export.commands)
+    return ", ".join(dict.fromkeys(f"{command} ({'line ' + where.rpartition(':')[2] if one_file else where})" for command, where in commands))

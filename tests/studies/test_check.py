@@ -1,0 +1,38 @@
+"""`lacon check` on real operators: what the solution refuses before its first instant is found without solving."""
+
+import unittest
+
+from faults.small_study import STUDY, SmallStudy
+
+
+class Check(SmallStudy):
+    def check(self, *replaced):
+        self.assertIn(replaced[0], STUDY)
+        (self.folder / "study.comm").write_text(STUDY.replace(*replaced), encoding="utf-8")
+        return self.run_tool("check", "study.comm", "--unit", "20=blocks.med")
+
+    def test_a_study_that_is_right_goes_up_to_its_first_instant(self):
+        run = self.check("DEBUT()", "DEBUT()")
+        self.assertEqual(run.returncode, 0, run.stderr)
+        self.assertIn("up to the first instant: STAT_NON_LINE", run.stdout)
+        self.assertNotIn("INST", run.stdout.upper().replace("INSTANT", ""))
+        self.assertEqual(sorted(path.name for path in self.folder.iterdir()), ["blocks.med", "study.comm"])
+
+    def test_a_body_without_material(self):
+        run = self.check('AFFE=_F(TOUT="OUI", MATER=STEEL)', 'AFFE=_F(GROUP_MA="VBOT", MATER=STEEL)')
+        self.assertEqual(run.returncode, 2, run.stdout + run.stderr)
+        self.assertIn("where: STAT_NON_LINE", run.stderr)
+
+    def test_a_behaviour_whose_parameters_the_material_lacks(self):
+        run = self.check('RELATION="ELAS"', 'RELATION="VMIS_ISOT_LINE"')
+        self.assertEqual(run.returncode, 2, run.stdout + run.stderr)
+        self.assertIn("where: STAT_NON_LINE", run.stderr)
+
+    def test_instants_that_are_not_there(self):
+        run = self.check("INCREMENT=_F(LIST_INST=TIMES)", "INCREMENT=_F(LIST_INST=TIMES, INST_FIN=7.0)")
+        self.assertEqual(run.returncode, 2, run.stdout + run.stderr)
+        self.assertIn("where: STAT_NON_LINE", run.stderr)
+
+
+if __name__ == "__main__":
+    unittest.main()
