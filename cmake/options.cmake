@@ -1,6 +1,7 @@
 option(LACON_TESTS "Build the tests" ON)
 option(LACON_WARNINGS_AS_ERRORS "Treat warnings as errors" OFF)
 option(LACON_SANITIZE "Build with the address and undefined-behaviour sanitizers" OFF)
+option(LACON_FUZZ "Build tests/fuzz with libFuzzer, and all it uses with sanitizers (clang)" OFF)
 set(LACON_SHARED_CASES "${PROJECT_SOURCE_DIR}/../shared/cases" CACHE PATH "Folder of the peer's test cases (meshes/, checks.csv); tests that need it are skipped where it is missing")
 set(LACON_SHARED_BENCH "${PROJECT_SOURCE_DIR}/../shared/bench" CACHE PATH "Folder of the benchmark study (meshes/t2.med); tests that need it are skipped where it is missing")
 
@@ -17,11 +18,16 @@ if(CCACHE)
   set(CMAKE_CXX_COMPILER_LAUNCHER "${CCACHE}")
 endif()
 
-add_compile_options(-Wall -Wextra -Wpedantic -Wshadow -Wno-missing-field-initializers -Wno-restrict)  # -Wrestrict: false alarms of g++ 12 on std::string
+add_compile_options(-Wall -Wextra -Wpedantic -Wshadow -Wno-missing-field-initializers $<$<CXX_COMPILER_ID:GNU>:-Wno-restrict>)  # -Wrestrict: false alarms of g++ 12 on std::string
 if(LACON_WARNINGS_AS_ERRORS)
   add_compile_options(-Werror)
 endif()
 if(LACON_SANITIZE)
   add_compile_options(-fsanitize=address,undefined -fno-omit-frame-pointer)
   add_link_options(-fsanitize=address,undefined)
+endif()
+if(LACON_FUZZ)
+  set(fuzz_sanitizers -fsanitize=fuzzer-no-link,address,undefined -fno-sanitize-recover=all -fno-omit-frame-pointer)
+  add_compile_options(${fuzz_sanitizers})
+  add_link_options(${fuzz_sanitizers})
 endif()

@@ -36,34 +36,48 @@ hdf5::Reader open_concept(const Base& base, std::string_view id, std::string_vie
 
 }  // namespace
 
-Mesh Base::mesh(std::string_view id) const { return storage::read_mesh(open_concept(*this, id, "mesh")); }
-
-Model Base::model(std::string_view id) const { return storage::read_model(open_concept(*this, id, "model")); }
-
-Material Base::material(std::string_view id) const { return storage::read_material(open_concept(*this, id, "material")); }
-
-MaterialField Base::material_field(std::string_view id) const {
-  return storage::read_material_field(open_concept(*this, id, "material_field"));
+Mesh Base::mesh(std::string_view id) const {
+  return storage::read_whatever(open_concept(*this, id, "mesh"), storage::read_mesh);
 }
 
-Load Base::load(std::string_view id) const { return storage::read_load(open_concept(*this, id, "load")); }
+Model Base::model(std::string_view id) const {
+  return storage::read_whatever(open_concept(*this, id, "model"), storage::read_model);
+}
 
-Contact Base::contact(std::string_view id) const { return storage::read_contact(open_concept(*this, id, "contact")); }
+Material Base::material(std::string_view id) const {
+  return storage::read_whatever(open_concept(*this, id, "material"), storage::read_material);
+}
 
-Function Base::function(std::string_view id) const { return storage::read_function(open_concept(*this, id, "function")); }
+MaterialField Base::material_field(std::string_view id) const {
+  return storage::read_whatever(open_concept(*this, id, "material_field"), storage::read_material_field);
+}
 
-Formula Base::formula(std::string_view id) const { return storage::read_formula(open_concept(*this, id, "formula")); }
+Load Base::load(std::string_view id) const {
+  return storage::read_whatever(open_concept(*this, id, "load"), storage::read_load);
+}
+
+Contact Base::contact(std::string_view id) const {
+  return storage::read_whatever(open_concept(*this, id, "contact"), storage::read_contact);
+}
+
+Function Base::function(std::string_view id) const {
+  return storage::read_whatever(open_concept(*this, id, "function"), storage::read_function);
+}
+
+Formula Base::formula(std::string_view id) const {
+  return storage::read_whatever(open_concept(*this, id, "formula"), storage::read_formula);
+}
 
 std::vector<double> Base::list_of_reals(std::string_view id) const {
-  return storage::read_list_of_reals(open_concept(*this, id, "list_of_reals"));
+  return storage::read_whatever(open_concept(*this, id, "list_of_reals"), storage::read_list_of_reals);
 }
 
 TimeSteps Base::time_steps(std::string_view id) const {
   if (type(id) == "list_of_reals") return {.values = list_of_reals(id)};
-  return storage::read_time_steps(open_concept(*this, id, "time_steps"));
+  return storage::read_whatever(open_concept(*this, id, "time_steps"), storage::read_time_steps);
 }
 
-Table Base::table(std::string_view id) const { return read_table(open_concept(*this, id, "table")); }
+Table Base::table(std::string_view id) const { return storage::read_whatever(open_concept(*this, id, "table"), read_table); }
 
 Field Base::field(std::string_view id) const {
   open_concept(*this, id, "field");
@@ -75,7 +89,9 @@ Field Base::field_head(std::string_view id) const {
   return read_field_head(file(id));
 }
 
-Result Base::result(std::string_view id) const { return storage::read_result(open_concept(*this, id, "result")); }
+Result Base::result(std::string_view id) const {
+  return storage::read_whatever(open_concept(*this, id, "result"), storage::read_result);
+}
 
 Field Base::field(const Result& result, std::string_view name, std::int64_t order) const {
   const auto named = result.fields.find(std::string(name));

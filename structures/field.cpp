@@ -4,7 +4,9 @@
 #include <array>
 #include <stdexcept>
 
+#include "lacon/catalog/messages.hpp"
 #include "lacon/structures/hdf5.hpp"
+#include "lacon/structures/storage/storage.hpp"
 
 namespace lacon {
 namespace {
@@ -58,15 +60,36 @@ Field head_of(const hdf5::Group& root) {
 
 }  // namespace
 
-Field read_field_head(const std::filesystem::path& file) { return head_of(hdf5::Reader(file)); }
+namespace {
+
+/// Whether there is a row wherever Field says so.
+bool is_sound(const Field& field) {
+  const std::vector<std::int64_t>& offset = field.offset;
+  const std::size_t rows = field.n_rows();
+  const bool each_has_rows = offset.empty() ? field.support.size() == rows
+                                            : offset.size() == field.support.size() + 1 && offset.front() == 0 &&
+                                                  std::is_sorted(offset.begin(), offset.end()) &&
+                                                  offset.back() == static_cast<std::int64_t>(rows);
+  const auto names_function = [&](double value) { return value >= 0 && value < static_cast<double>(field.functions.size()); };
+  return each_has_rows && field.values.size() == rows * field.n_components() &&
+         (field.present.empty() || field.present.size() == field.values.size()) &&
+         std::all_of(field.support.begin(), field.support.end(), [](std::int32_t i) { return i >= 0; }) &&
+         (field.functions.empty() || std::all_of(field.values.begin(), field.values.end(), names_function));
+}
+
+}  // namespace
+
+Field read_field_head(const std::filesystem::path& file) { return storage::read_whatever(hdf5::Reader(file), head_of); }
 
 Field read_field(const std::filesystem::path& file) {
   const hdf5::Reader root(file);
-  Field field = head_of(root);
+  Field field = storage::read_whatever(root, head_of);
   field.support = root.read<std::int32_t>("support");
   if (root.has("offset")) field.offset = root.read<std::int64_t>("offset");
   field.values = root.read<double>("values");
   if (root.has("present")) field.present = root.read<std::uint8_t>("present");
+  if (!is_sound(field))
+    fail("BASE_2", {{"file", file.string()}, {"reason", "its rows do not fit its support or its components"}});
   return field;
 }
 

@@ -2,8 +2,9 @@
 
 #include <algorithm>
 #include <cerrno>
+#include <cstdlib>
 #include <cstring>
-#include <numeric>
+#include <limits>
 #include <utility>
 
 #include "lacon/catalog/messages.hpp"
@@ -54,14 +55,51 @@ Handle string_type() {
   return type;
 }
 
+/// The number of values; the largest number where there are more.
 std::size_t count(const std::vector<hsize_t>& shape) {
-  return std::accumulate(shape.begin(), shape.end(), std::size_t{1}, std::multiplies<>());
+  std::size_t product = 1;
+  for (const hsize_t extent : shape)
+    if (extent == 0) return 0;
+  for (const hsize_t extent : shape)
+    if (__builtin_mul_overflow(product, extent, &product)) return std::numeric_limits<std::size_t>::max();
+  return product;
 }
 
+// Limits of docs/trust.md: a small file may claim any size, or name one text many times.
+constexpr std::size_t expansion = 64;          // times the size of its file that the values of a dataset may take
+constexpr std::size_t always = 1 << 20;        // bytes that they may take in any case
+constexpr std::size_t attribute_texts = 1000;  // of one attribute
+
+/// How many bytes a dataset of the file of `object` may take in memory.
+std::size_t most_bytes(hid_t object) {
+  const Handle file(H5Iget_file_id(object), H5Fclose);
+  hsize_t size = 0;
+  H5Fget_filesize(file, &size);
+  return std::max<std::size_t>(always, expansion * size);
+}
+
+bool fits(hid_t object, std::size_t count, std::size_t width) {
+  return count <= always / std::max<std::size_t>(width, 1) || count <= most_bytes(object) / std::max<std::size_t>(width, 1);
+}
+
+constexpr const char* too_large = "claims more values than a file of this size may have";
+
+/// Memory for texts of variable length, up to a limit.
+struct Budget {
+  std::size_t left;
+  static void* take(std::size_t size, void* budget) {
+    std::size_t& left = static_cast<Budget*>(budget)->left;
+    if (size > left) return nullptr;
+    left -= size;
+    return std::malloc(size);
+  }
+  static void give_back(void* text, void* /*budget*/) { std::free(text); }
+};
+
 /// Strings out of `size` items that `read(memory type, buffer)` delivers, of fixed or variable length. Fixed ones lose
-/// trailing blanks and zeros.
+/// trailing blanks and zeros. @param transfer property list with which `read` reads
 template <class Read>
-bool read_texts(hid_t type, hid_t space, std::size_t size, Read read, std::vector<std::string>& texts) {
+bool read_texts(hid_t type, hid_t space, std::size_t size, hid_t transfer, Read read, std::vector<std::string>& texts) {
   if (H5Tget_class(type) != H5T_STRING) return false;
   texts.clear();
   if (H5Tis_variable_str(type) > 0) {
@@ -70,7 +108,7 @@ bool read_texts(hid_t type, hid_t space, std::size_t size, Read read, std::vecto
     std::vector<char*> buffer(size, nullptr);
     if (read(static_cast<hid_t>(memory), static_cast<void*>(buffer.data())) < 0) return false;
     for (const char* item : buffer) texts.emplace_back(item ? item : "");
-    H5Dvlen_reclaim(memory, space, H5P_DEFAULT, buffer.data());
+    H5Dvlen_reclaim(memory, space, transfer, buffer.data());
     return true;
   }
   const std::size_t length = H5Tget_size(type);
@@ -157,10 +195,11 @@ std::vector<hsize_t> Group::shape(std::string_view name) const {
 template <class T>
 std::vector<T> Group::read(std::string_view name, std::size_t (*capacity)(std::size_t)) const {
   const std::size_t size = count(shape(name));
+  const Handle set(H5Dopen2(id_, zero_ended(name).c_str(), H5P_DEFAULT), H5Dclose);
+  if (!fits(set, size, sizeof(T))) refuse("the dataset '" + std::string(name) + "' " + too_large);
   std::vector<T> values;
   reserve_pages(values, size, capacity ? capacity(size) : size);
   values.resize(size);
-  const Handle set(H5Dopen2(id_, zero_ended(name).c_str(), H5P_DEFAULT), H5Dclose);
   if (!values.empty() && H5Dread(set, native_type<T>(), H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()) < 0)
     refuse("the dataset '" + std::string(name) + "' cannot be read");
   return values;
@@ -173,9 +212,13 @@ std::vector<std::string> Group::read_strings(std::string_view name) const {
   const Handle space(H5Dget_space(set), H5Sclose);
   std::vector<std::string> texts;
   if (size == 0) return texts;
+  if (!fits(set, size, H5Tget_size(type))) refuse("the dataset '" + std::string(name) + "' " + too_large);
   const Handle transfer = small_buffer();
+  Budget budget{most_bytes(set)};
+  H5Pset_vlen_mem_manager(transfer, Budget::take, &budget, Budget::give_back, nullptr);
   const auto read = [&](hid_t memory, void* buffer) { return H5Dread(set, memory, H5S_ALL, H5S_ALL, transfer, buffer); };
-  if (!read_texts(type, space, size, read, texts)) refuse("the dataset '" + std::string(name) + "' does not hold text");
+  if (!read_texts(type, space, size, transfer, read, texts))
+    refuse("the dataset '" + std::string(name) + "' does not hold text");
   return texts;
 }
 
@@ -218,6 +261,7 @@ void Group::read_columns(std::string_view name, std::size_t columns,
   const std::vector<hsize_t> extents = shape(name);
   const std::size_t rows = count(extents) / columns;
   const Handle set(H5Dopen2(id_, zero_ended(name).c_str(), H5P_DEFAULT), H5Dclose);
+  if (!fits(set, count(extents), sizeof(T))) refuse("the dataset '" + std::string(name) + "' " + too_large);
   const Handle space(H5Dget_space(set), H5Sclose);
   const Handle creation(H5Dget_create_plist(set), H5Pclose);
   const bool in_parts = extents.size() == 1 && H5Pget_layout(creation) == H5D_CONTIGUOUS;
@@ -298,7 +342,9 @@ std::vector<std::string> Group::attribute_strings(std::string_view name) const {
     const Handle space(H5Aget_space(attribute), H5Sclose);
     const auto size = static_cast<std::size_t>(H5Sget_simple_extent_npoints(space));
     const auto read = [&](hid_t memory, void* buffer) { return H5Aread(attribute, memory, buffer); };
-    if (size == 0 || read_texts(type, space, size, read, texts)) return texts;
+    if (size > attribute_texts || !fits(attribute, size, H5Tget_size(type)))
+      refuse("the attribute '" + std::string(name) + "' " + too_large);
+    if (size == 0 || read_texts(type, space, size, H5P_DEFAULT, read, texts)) return texts;
   }
   refuse("it has no text attribute '" + std::string(name) + "'");
 }

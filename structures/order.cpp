@@ -1,7 +1,9 @@
 #include "lacon/structures/order.hpp"
 
 #include <fstream>
+#include <limits>
 #include <set>
+#include <stdexcept>
 
 #include "lacon/catalog/keywords.hpp"
 #include "lacon/catalog/messages.hpp"
@@ -10,6 +12,8 @@ namespace lacon {
 namespace {
 
 using nlohmann::json;
+
+constexpr int deepest = 64;  // lists and objects within each other: an order has six
 
 [[noreturn]] void wrong_type(const std::string& keyword, const std::string& expected) {
   fail("ORDER_4", {{"keyword", keyword}, {"expected", expected}});
@@ -59,6 +63,12 @@ T get(const json& value, bool fits, const std::string& path, const char* expecte
   return value.get<T>();
 }
 
+/// Whether a number is an integer that 64 bits with a sign hold.
+bool is_integer(const json& value) {
+  return value.is_number_integer() &&
+         !(value.is_number_unsigned() && value.get<std::uint64_t>() > std::numeric_limits<std::int64_t>::max());
+}
+
 std::string id_of(const json& value, const std::string& path) {
   if (!value.is_object() || !value.contains("concept") || !value["concept"].is_string()) wrong_type(path, "a concept");
   return value["concept"].get<std::string>();
@@ -79,7 +89,7 @@ double Keywords::real(std::string_view name) const {
 
 std::int64_t Keywords::integer(std::string_view name) const {
   const json& v = value(name);
-  return get<std::int64_t>(v, v.is_number_integer(), path(name), "an integer");
+  return get<std::int64_t>(v, is_integer(v), path(name), "an integer");
 }
 
 std::string Keywords::text(std::string_view name) const {
@@ -105,8 +115,7 @@ Vec3 Keywords::vector(std::string_view name, int dimension) const {
 std::vector<std::int64_t> Keywords::integers(std::string_view name) const {
   std::vector<std::int64_t> items;
   if (has(name))
-    for (const json& v : value(name))
-      items.push_back(get<std::int64_t>(v, v.is_number_integer(), path(name), "a list of integers"));
+    for (const json& v : value(name)) items.push_back(get<std::int64_t>(v, is_integer(v), path(name), "a list of integers"));
   return items;
 }
 
@@ -183,7 +192,7 @@ Order parse_order(const json& order, const std::string& file) {
     parsed.keywords = Keywords(order.at("keywords"), "");
   } catch (const json::exception& error) {
     refuse(error.what());
-  } catch (const std::invalid_argument&) {
+  } catch (const std::logic_error&) {  // of std::stoi
     refuse("a unit is not a number");
   }
   if (!parsed.keywords.values().is_object()) refuse("'keywords' is not an object");
@@ -197,7 +206,11 @@ Order parse_order(const json& order, const std::string& file) {
 Order read_order(const std::filesystem::path& file) {
   std::ifstream stream(file);
   if (!stream) fail("ORDER_1", {{"file", file.string()}, {"reason", "the file cannot be opened"}});
-  const json order = json::parse(stream, nullptr, false);
+  const auto not_too_deep = [&](int depth, json::parse_event_t, const json&) {
+    if (depth > deepest) fail("ORDER_1", {{"file", file.string()}, {"reason", "its lists are nested too deeply"}});
+    return true;
+  };
+  const json order = json::parse(stream, not_too_deep, false);
   if (order.is_discarded()) fail("ORDER_1", {{"file", file.string()}, {"reason", "it is not JSON"}});
   return parse_order(order, file.string());
 }

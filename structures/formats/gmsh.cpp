@@ -76,6 +76,9 @@ class Source {
     return static_cast<std::size_t>(n);
   }
 
+  /// How many members all groups may have: a file may put each of many cells into each of many groups (docs/trust.md).
+  std::size_t most_memberships() const { return 8 * text_.size(); }
+
   std::string quoted() {
     const std::size_t open = text_.find('"', position_), close = text_.find('"', open == std::string::npos ? open : open + 1);
     if (close == std::string::npos) damaged("a name is not quoted");
@@ -243,6 +246,9 @@ class GmshReader {
 
   template <class Next>
   void add_cell(const catalog::CellRow& row, std::int64_t tag, std::vector<std::int64_t> physical, const Next& next) {
+    memberships_ += physical.size();
+    if (memberships_ > source_.most_memberships())
+      source_.damaged("its cells are in more groups than a file of its size may have");
     cells_.push_back({row.type, tag, nodes_.size(), std::move(physical)});
     for (int j = 0; j < row.n_nodes; ++j) nodes_.push_back(next());
   }
@@ -311,6 +317,7 @@ class GmshReader {
   std::unordered_map<std::int64_t, std::int32_t> number_;    ///< of a node by its tag
   std::vector<double> coordinates_;
   std::vector<Cell> cells_;
+  std::size_t memberships_ = 0;      ///< of cells in physical groups
   std::vector<std::int64_t> nodes_;  ///< tags, cell by cell, in gmsh's order
 };
 

@@ -21,6 +21,8 @@ inline constexpr std::string_view no_step = "-0000000000000000001-00000000000000
 inline constexpr std::size_t group_name_length = 80;  ///< MED_LNAME_SIZE
 inline constexpr std::size_t name_length = 64;        ///< MED_NAME_SIZE: meshes, families, fields, profiles
 
+inline constexpr std::size_t largest_names = std::size_t{1} << 26;  ///< bytes of names that one family is read with
+
 /// A scalar integer attribute of a dataset (Group has only those of groups), or -1.
 inline std::int64_t dataset_integer(const hdf5::Group& group, std::string_view dataset, const char* attribute) {
   std::int64_t value = -1;
@@ -44,6 +46,7 @@ inline std::vector<std::string> read_names(const hdf5::Group& group, std::string
   if (H5Tis_variable_str(type) > 0) return names;
   const auto rows = static_cast<std::size_t>(std::max<hssize_t>(0, H5Sget_simple_extent_npoints(space)));
   std::size_t width = H5Tget_size(type);
+  if (rows > largest_names / std::max<std::size_t>(width, 1)) return names;
   std::vector<char> bytes(rows * width);
   if (rows == 0 || H5Dread(set, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, bytes.data()) < 0) return names;
   if (width == 1 || (rows == 1 && width > group_name_length)) width = group_name_length;  // one long row of bytes

@@ -26,6 +26,14 @@ std::string joined(const std::vector<std::string>& names) {
   return text;
 }
 
+/// The size of a file, which may be one that is being written.
+std::uint64_t bytes_of_file(const H5Group& root) {
+  const hdf5::Handle file(H5Iget_file_id(root.id()), H5Fclose);
+  hsize_t size = 0;
+  H5Fget_filesize(file, &size);
+  return size;
+}
+
 hdf5::Reader open(const fs::path& file) {
   if (first_bytes(file, 8) != "\x89HDF\r\n\x1a\n")
     fail("MED_2", {{"file", file.string()}, {"reason", "it is not an HDF5 file"}});
@@ -97,11 +105,13 @@ class MeshReader {
   void read_nodes(const H5Group& step, std::int64_t space);
   void read_cells(const H5Group& step);
   Families families(const char* kind);
-  void read_members(const H5Group& group, const std::string& where, std::size_t first, std::size_t n, Families& families) const;
+  void read_members(const H5Group& group, const std::string& where, std::size_t first, std::size_t n, Families& families);
 
   const H5Group& root_;
   std::string name_;
   std::int64_t version_;  ///< 2: no computation steps, families of nodes and cells side by side
+  /// How many more members all groups may have: a file may put each of many nodes into each of many groups (docs/trust.md).
+  std::uint64_t memberships_left_ = 16 * bytes_of_file(root_);
   FileNames file_names_;
   Mesh mesh_;
   Families node_families_, cell_families_;
@@ -285,7 +295,7 @@ MeshReader::Families MeshReader::families(const char* kind) {
 
 /// Put `n` entities, of the numbers from `first` on, into the groups of their families.
 void MeshReader::read_members(const H5Group& group, const std::string& where, std::size_t first, std::size_t n,
-                              Families& families) const {
+                              Families& families) {
   if (!group.has("FAM")) return;
   dataset<std::int32_t>(group, "FAM", where, n, 1, [&](std::size_t begin, std::span<const std::int32_t> family) {
     for (std::size_t i = 0, end = 0; i < family.size(); i = end) {  // a run of one family
@@ -295,6 +305,9 @@ void MeshReader::read_members(const H5Group& group, const std::string& where, st
       if (groups == families.groups_of.end())
         damaged("it has no family of the number " + std::to_string(family[i]) + ", to which " +
                 (&families == &node_families_ ? node_name(number) : cell_name(number)) + " belongs");
+      const std::uint64_t more = groups->second.size() * (end - i);
+      if (more > memberships_left_) damaged("its groups have more members than a file of its size may have");
+      memberships_left_ -= more;
       for (std::vector<med::Run>* members : groups->second) members->push_back({number, static_cast<std::int32_t>(end - i)});
     }
   });

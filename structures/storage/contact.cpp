@@ -47,6 +47,7 @@ Contact read_contact(const hdf5::Group& root) {
   }
   for (const auto& [name, member] : zone_lists) {
     const auto values = read_ragged<std::int32_t>(root, name);
+    if (values.size() != contact.zones.size()) refuse(root, std::string("'") + name + "' does not fit 'zones/tolerance'");
     for (std::size_t z = 0; z < contact.zones.size(); ++z)
       (contact.zones[z].*member).assign(values[z].begin(), values[z].end());
   }

@@ -1,3 +1,5 @@
+#include <algorithm>
+
 #include "lacon/structures/storage/storage.hpp"
 
 #include "lacon/structures/storage/pieces.hpp"
@@ -31,13 +33,31 @@ std::vector<Group> read_groups(const hdf5::Group& root, const std::string& name,
   return groups;
 }
 
+/// Patches that fit each other and their mesh.
+void check(const hdf5::Group& root, const Mesh& mesh) {
+  const Patches& patches = *mesh.patches;
+  const auto below = [](const Ragged<std::int32_t>& rows, std::size_t n) {
+    return std::all_of(rows.values.begin(), rows.values.end(),
+                       [n](std::int32_t i) { return i >= 0 && static_cast<std::size_t>(i) < n; });
+  };
+  const std::vector<std::int64_t>& offset = patches.zone_offset;
+  const bool sound = offset.size() == patches.zone_group.size() + 1 && offset.front() == 0 &&
+                     std::is_sorted(offset.begin(), offset.end()) &&
+                     offset.back() == static_cast<std::int64_t>(patches.size()) && patches.parent.size() == patches.size() &&
+                     patches.cells.size() == patches.size() && patches.carriers.size() == patches.size() &&
+                     below(patches.cells, mesh.n_cells()) && below(patches.carriers, mesh.n_nodes());
+  if (!sound) refuse(root, "'patches' is inconsistent");
+}
+
 }  // namespace
 
 Mesh read_mesh(const hdf5::Group& root) {
   Mesh mesh;
   mesh.name = root.text("name");
   mesh.dimension = static_cast<int>(root.integer("dimension"));
+  if (mesh.dimension != 2 && mesh.dimension != 3) refuse(root, "a mesh has 2 or 3 dimensions");
   mesh.coordinates = root.read<double>("coordinates", with_room);
+  if (mesh.coordinates.size() % 3 != 0) refuse(root, "a node has three coordinates");
   const hdf5::Group cells = root.open("cells");
   std::vector<CellType> types;
   for (const std::string& name : cells.attribute_strings("types")) {
@@ -71,6 +91,7 @@ Mesh read_mesh(const hdf5::Group& root) {
     patches.parent = group.read<std::int32_t>("parent");
     patches.cells = read_ragged<std::int32_t>(group, "cells");
     patches.carriers = read_ragged<std::int32_t>(group, "carriers");
+    check(root, mesh);
   }
   return mesh;
 }

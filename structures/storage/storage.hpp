@@ -2,9 +2,12 @@
 // How each concept lies in its file, docs/structures.md section 2: a reader and a writer for each, in a file of their own.
 // Tables and fields have theirs beside their data (table.hpp, field.hpp). A reader takes the root of a file of the right type,
 // and throws BASE_2 where what it finds is not sound.
+#include <nlohmann/json.hpp>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
+#include "lacon/catalog/messages.hpp"
 #include "lacon/structures/concepts.hpp"
 #include "lacon/structures/hdf5.hpp"
 #include "lacon/structures/mesh.hpp"
@@ -22,6 +25,19 @@ Formula read_formula(const hdf5::Group& root);
 std::vector<double> read_list_of_reals(const hdf5::Group& root);
 TimeSteps read_time_steps(const hdf5::Group& root);
 Result read_result(const hdf5::Group& root);
+
+/// What one of these readers makes of a file whose content may be anything: what it does not look at by itself (a list that is
+/// too short, JSON that is none) is BASE_2 as well.
+template <class Read>
+auto read_whatever(const hdf5::Group& root, const Read& read) {
+  try {
+    return read(root);
+  } catch (const std::logic_error& error) {  // out_of_range, length_error
+    fail("BASE_2", {{"file", root.path().string()}, {"reason", std::string("its content does not fit: ") + error.what()}});
+  } catch (const nlohmann::json::exception& error) {
+    fail("BASE_2", {{"file", root.path().string()}, {"reason", std::string("its content does not fit: ") + error.what()}});
+  }
+}
 
 /// What a file says of the concept itself, next to what every concept has.
 void write(const hdf5::Group& root, const Mesh& mesh);

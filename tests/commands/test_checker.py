@@ -50,6 +50,10 @@ class Mistakes(unittest.TestCase):
     def test_unknown_keyword_names_the_nearest(self):
         self.one("KEYWORD_1", "LIRE_MAILLAGE/UNITEE", "nearest one is UNITE", command="LIRE_MAILLAGE", UNITEE=20)
 
+    def test_integers_beyond_64_bits(self):
+        for command, keywords in (("LIRE_MAILLAGE", {"UNITE": 10**400}), ("DEFI_CONSTANTE", {"VALE": 10**400}), ("DEFI_CONSTANTE", {"VALE": -10**400})):
+            self.assertEqual(len(problems(command, **keywords)), 1, command)
+
     def test_unknown_keyword_in_an_occurrence(self):
         self.one("KEYWORD_1", "DEFI_CONTACT/ZONE[1]/CONTACT_INI", "CONTACT_INIT", command="DEFI_CONTACT", **self.contact(CONTACT_INI="OUI"))
 

@@ -207,9 +207,12 @@ def _convert(kind, value):
     if hasattr(value, "dtype") and getattr(value, "ndim", 1) == 0:
         value = value.item()
     if kind == "real":
-        return float(value) if isinstance(value, (int, float)) and not isinstance(value, bool) and math.isfinite(value) else None
+        try:
+            return float(value) if isinstance(value, (int, float)) and not isinstance(value, bool) and math.isfinite(value) else None
+        except OverflowError:  # an integer beyond every number of 64 bits
+            return None
     if kind == "integer":
-        return value if isinstance(value, int) and not isinstance(value, bool) else None
+        return value if isinstance(value, int) and not isinstance(value, bool) and -2**63 <= value < 2**63 else None
     if kind == "scalar":
         return value if isinstance(value, str) or _convert("real", value) is not None else None
     if kind in _names:
