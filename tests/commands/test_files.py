@@ -3,7 +3,7 @@
 import sys
 
 sys.path.insert(0, __file__.rpartition("/")[0] or ".")
-from support import LauncherTest, main  # noqa: E402
+from support import STUDY, LauncherTest, main  # noqa: E402
 
 TABLE = "T = CREA_TABLE(LISTE=_F(PARA='A', LISTE_I=(1, 2)))\n"
 
@@ -55,6 +55,14 @@ IMPR_TABLE(TABLE=T, UNITE=unit)
 assert rows() == 1
 FIN()
 """))
+
+    def test_unit_6_is_the_terminal_unless_it_has_a_file(self):
+        study = STUDY + TABLE + "IMPR_TABLE(TABLE=T, UNITE=6)\nIMPR_RESU(FORMAT='RESULTAT', UNITE=6, RESU=_F(RESULTAT=R))\nprint('behind')\nFIN()\n"
+        run = self.ok(self.run_study(study, behaviour={"impr_resu": {"unit": "6"}}))
+        self.assertRegex(run.out, r"(?s)\n +1\n +2\n.*\nwritten\n.*behind\n")
+        self.assertEqual(sorted(path.name for path in self.work.iterdir()), ["mesh.med", "study.base", "study.comm"])
+        self.ok(self.run_study(study, "--unit", "6=six.txt", behaviour={"impr_resu": {"unit": "6"}}))
+        self.assertEqual((self.work / "six.txt").read_text(), "written\n")
 
     def test_a_released_unit_has_its_own_file_again(self):
         self.ok(self.run_study(f"""DEBUT()

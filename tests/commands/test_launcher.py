@@ -52,6 +52,11 @@ class Endings(LauncherTest):
         for behaviour in ({"status": 4}, {"status": 77}, {"kill": 6}):
             self.ends(self.run_study(STUDY, behaviour={"stat_non_line": behaviour}), 4, "<F>_ABNORMAL_ABORT")
 
+    def test_an_operator_that_cannot_be_started_is_told_with_what_to_look_at(self):
+        run = self.run_study(STUDY, behaviour={"affe_modele": {"status": 127}})
+        self.ends(run, 4, "<F>_ABNORMAL_ABORT")
+        self.assertIn("<INTERNAL_4> the operator affe_modele cannot be started", run.err)
+
     def test_a_check_that_is_missed(self):
         check = "TEST_RESU(MAILLAGE=_F(MAILLAGE=M, CARA='NB_NOEUD', VALE_CALC_I=6, REFERENCE='ANALYTIQUE', VALE_REFE_I={}))\nFIN()\n"
         self.ends(self.run_study(STUDY + check.format(7)), 5, "NOOK_TEST_RESU")

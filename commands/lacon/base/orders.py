@@ -170,6 +170,8 @@ def raise_failure(outcome, program, where):
         items = fatal or [message("COMMAND_7", where, program=program)]
         linear = any(m.id.startswith(linear_solver) for m in items)
         raise (SolutionError if linear else ConvergenceError)(items, shown=bool(fatal))
+    if outcome.status in (126, 127):  # as the loader and shells say it
+        raise InternalError([message("INTERNAL_4", where, program=program, folder=operator_folder())])
     if outcome.status < 0:
         try:
             name = signal.Signals(-outcome.status).name

@@ -1,5 +1,6 @@
 """The commands as a command file calls them: check the keywords, then order the operator or do the work here."""
 
+import pathlib
 import time
 
 from ..base import command_files, orders
@@ -134,7 +135,15 @@ class Command:
         if grows:
             run.base.unfinished.end(identifier)
         self._protect_data(run, row, keywords, units)
-        run.written_units.update((k, units[k]) for k, keyword in _unit_numbers(row, keywords) if keyword["unit"] == "out")
+        for number, keyword in _unit_numbers(row, keywords):
+            if keyword["unit"] != "out":
+                continue
+            if self._is_printed(run, number, keywords):
+                printed = pathlib.Path(units[number])
+                print(printed.read_text(encoding="utf-8"), end="")
+                printed.unlink()
+            else:
+                run.written_units[number] = units[number]
         if not result:
             return None, outcome
         return self._result(run, identifier, label, where, reused, named), outcome
@@ -209,10 +218,17 @@ class Command:
             place = f"{self.name}/UNITE, {where}"
             if keyword["unit"] == "in":
                 units[number] = run.input_unit(number, place)
+            elif self._is_printed(run, number, keywords):
+                units[number] = str(run.base.orders() / "printed")
             else:
                 suffix = {"MED": ".med", "VTU": ".pvd", "RESULTAT": ".resu"}.get(keywords.get("FORMAT"), "")
                 units[number] = run.announced_output(number, suffix, place)
         return units
+
+    @staticmethod
+    def _is_printed(run, number, keywords):
+        """Whether the operator writes text for the terminal, which the launcher prints."""
+        return run.is_terminal(number) and keywords.get("FORMAT") == "RESULTAT"
 
 
 def _unit_numbers(row, keywords):

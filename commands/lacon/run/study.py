@@ -188,8 +188,15 @@ class Study:
             self.inform("COMMAND_10", where, unit=number, file=os.path.relpath(self.base_folder.parent / os.path.basename(path)))
         return path
 
+    def is_terminal(self, number):
+        """Unit 6 is the output of the run, as at code_aster, unless it has a file."""
+        return number == 6 and number not in self.units
+
     def write_text(self, number, suffix, where, text):
         """Write a unit, or add to what this run has written there."""
+        if self.is_terminal(number):
+            print(text, end="")
+            return
         path = self.announced_output(number, suffix, where)
         try:
             if number in self.written_units:
