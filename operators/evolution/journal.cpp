@@ -3,6 +3,11 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
+#include "lacon/operators/program/blas.hpp"
+#include "lacon/operators/program/machine.hpp"
+#include "lacon/operators/program/program.hpp"
+#include "lacon/structures/parallel.hpp"
+
 namespace lacon {
 namespace {
 
@@ -10,6 +15,13 @@ const char* const name = "journal.jsonl";
 
 /// A number that JSON does not have becomes null.
 nlohmann::json limit_of(const std::optional<double>& criterion) { return criterion ? nlohmann::json(*criterion) : nullptr; }
+
+nlohmann::json machine() {
+  nlohmann::json told = {
+      {"lacon", program_version()}, {"processor", processor_name()}, {"threads", n_threads()}, {"blas", nullptr}};
+  if (const std::optional<Blas> blas = present_blas()) told["blas"] = blas->library + ", kernel " + blas->kernel;
+  return told;
+}
 
 }  // namespace
 
@@ -28,6 +40,7 @@ Journal::Journal(const std::filesystem::path& result, const TimeSteps& steps, do
                          {"instants", steps.values},
                          {"limits", limits},
                          {"patches", present.contact ? present.contact->n_patches() : 0},
+                         {"machine", machine()},
                          {"since",
                           std::chrono::duration_cast<std::chrono::seconds>(std::chrono::system_clock::now().time_since_epoch())
                               .count()}}
@@ -62,7 +75,8 @@ void Journal::iterate(double instant, const IterationReport& report) {
 }
 
 void Journal::accept(const SolvedInstant& solved) {
-  out_ << nlohmann::json{{"event", "solved"}, {"instant", solved.instant}, {"iterations", solved.iterations}, {"at", seconds()}}
+  out_ << nlohmann::json{{"event", "solved"}, {"instant", solved.instant}, {"iterations", solved.iterations},
+                         {"at", seconds()},   {"phases", phases_so_far()}, {"memory", peak_memory()}}
        << std::endl;
 }
 

@@ -146,6 +146,12 @@ void begin_phase(const std::string& name) {
   if (outcome.phase_watch) outcome.phase_watch(name);
 }
 
+std::map<std::string, double> phases_so_far() {
+  std::map<std::string, double> sums;
+  for (const auto& [name, seconds] : outcome.seconds) sums[name] += seconds;
+  return sums;
+}
+
 Phase::Phase(std::string name) : name_(std::move(name)), start_(now()) { begin_phase(name_); }
 Phase::~Phase() { add_to_phase(std::move(name_), now() - start_); }
 

@@ -1,6 +1,7 @@
 #pragma once
 // The frame of every operator's main(): command line, order, messages, timings, exit status.
 #include <functional>
+#include <map>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -39,6 +40,9 @@ void watch_phases(std::function<void(const std::string&)> watch);
 
 /// A phase begins whose time will be added when it is known; a Phase says it by itself.
 void begin_phase(const std::string& name);
+/// Seconds of each phase so far.
+std::map<std::string, double> phases_so_far();
+
 /// Add to a phase of the operator's timings.
 void add_to_phase(std::string name, double seconds);
 

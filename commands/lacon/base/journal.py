@@ -20,13 +20,15 @@ class Journal:
     """What a journal tells.
 
     `attempts` in their order; `instants` asked for, the first one is that of the initial state; `limits` of the criteria by name, None where one is
-    not asked for; `patches` of the contact; `since` (seconds of the epoch) the last process computes, `begins` at which instant; `ended`, `completed`.
+    not asked for; `patches` of the contact; `since` (seconds of the epoch) the last process computes, `begins` at which instant; `ended`, `completed`;
+    of the last process `machine` (lacon, processor, threads, blas), `phases` name -> seconds, `memory` in bytes, as far as it has told them.
     """
 
     def __init__(self, lines):
         self.attempts, self.instants, self.limits = [], [], {}
         self.patches, self.since, self.begins, self.now = 0, 0.0, 0.0, 0.0
         self.ended = self.completed = False
+        self.machine, self.phases, self.memory = {}, {}, 0
         for line in lines:
             try:
                 self._take(json.loads(line))
@@ -38,6 +40,7 @@ class Journal:
         if row["event"] == "start":
             self.begins, self.instants, self.limits = row["from"], row["instants"], row["limits"]
             self.patches, self.since = row["patches"], row["since"]
+            self.machine, self.phases, self.memory = row.get("machine", {}), {}, 0
             self.attempts = [a for a in self.attempts if a.solved and a.instant <= self.begins]  # what is behind is computed again
             self.ended = self.completed = False
         elif row["event"] == "begin":
@@ -46,6 +49,7 @@ class Journal:
             self.attempts[-1].iterations.append({k: math.nan if v is None else v for k, v in row.items()})
         elif row["event"] == "solved":
             self.attempts[-1].solved = True
+            self.phases, self.memory = row.get("phases", {}), row.get("memory", 0)
         elif row["event"] == "end":
             self.ended, self.completed = True, row["completed"]
 

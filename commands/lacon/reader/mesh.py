@@ -96,6 +96,25 @@ class Mesh:
         """[(slave group, number of its first patch, number behind its last one)] of a mesh that was cut."""
         return self._read(contents.patch_zones)
 
+    @cached_property
+    def patch_measures(self):
+        """(length or area of each patch, its centre), by the vertices of its cells: (p), (p, 3)"""
+        patch = numpy.full(len(self.cell_types), -1)
+        for number, cells in enumerate(self.patches):
+            patch[cells] = number
+        total, moment = numpy.zeros(len(self.patches)), numpy.zeros((len(self.patches), 3))
+        for name, (numbers, nodes) in self.cells_of_dimension(self.dimension - 1).items():
+            own = patch[numbers] >= 0
+            corners = self.points[nodes[own, :catalog.cells()[name]["vertices"]]]
+            fan = [(0, 1)] if corners.shape[1] == 2 else [(0, i, i + 1) for i in range(1, corners.shape[1] - 1)]
+            for part in fan:
+                first, *others = (corners[:, i] for i in part)
+                sides = [other - first for other in others]
+                measure = numpy.linalg.norm(sides[0], axis=1) if len(sides) == 1 else numpy.linalg.norm(numpy.cross(*sides), axis=1) / 2
+                numpy.add.at(total, patch[numbers[own]], measure)
+                numpy.add.at(moment, patch[numbers[own]], measure[:, None] * corners[:, part].mean(axis=1))
+        return total, moment / numpy.where(total > 0, total, 1.0)[:, None]
+
     def cells_of_dimension(self, dimension):
         """As `cells`, those of a dimension."""
         types = catalog.cells()

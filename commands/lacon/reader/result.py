@@ -45,30 +45,13 @@ class Patches:
         self.gap = numpy.where(self.status < 0, numpy.nan, value["JEU"])
         self.coverage = value["COEFSURF"]
         self.zone = numpy.repeat(numpy.arange(len(mesh.patch_zones)), [last - start for _, start, last in mesh.patch_zones])
-        measured = [_measure(mesh, cells) for cells in mesh.patches]
-        self.area = numpy.array([area for area, _ in measured])
-        self.centre = numpy.array([centre for _, centre in measured]).reshape(-1, 3)
+        self.area, self.centre = mesh.patch_measures
 
     def __len__(self):
         return len(self.status)
 
     def __repr__(self):
         return f"<{len(self)} patches at INST {self.instant:g}, {(self.status == 1).sum()} in contact>"
-
-
-def _measure(mesh, cells):
-    """(length or area, centre) of skin cells, by their vertices."""
-    total, moment = 0.0, numpy.zeros(3)
-    for corners in mesh.polygons(cells):
-        points = mesh.points[corners]
-        if len(points) == 2:
-            parts = [(numpy.linalg.norm(points[1] - points[0]), points.mean(axis=0))]
-        else:
-            parts = [(numpy.linalg.norm(numpy.cross(points[i] - points[0], points[i + 1] - points[0])) / 2, points[[0, i, i + 1]].mean(axis=0))
-                     for i in range(1, len(points) - 1)]
-        for area, centre in parts:
-            total, moment = total + area, moment + area * centre
-    return total, moment / total if total else moment
 
 
 class Result:

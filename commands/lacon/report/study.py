@@ -1,7 +1,5 @@
 """A result as its page shows it: which instants and fields are drawn, the contact of each instant, the run."""
 
-import os
-import platform
 import time
 
 from .. import version
@@ -201,17 +199,20 @@ class _Page:
 
     def _run(self, started):
         journal = self.result.journal
+        machine_of = {} if journal is None else journal.machine
         study = [("Base", str(self.base.folder)), ("Result", self.result.label), ("Mesh", self.mesh.label)]
-        machine = [("Lacon", version), ("Python", platform.python_version()), ("Processor", _processor()), ("Cores", str(os.cpu_count())),
-                   ("System", f"{platform.system()} {platform.release()}")]
+        machine = [(name, str(machine_of[key])) for name, key in (("Lacon", "lacon"), ("Processor", "processor"), ("Threads", "threads"),
+                                                                     ("Dense algebra", "blas")) if machine_of.get(key)]
         totals = []
         if journal is not None:
             rows = [line for _, line in journal.iterations()]
             totals += [("in all", f"{journal.now:.4g} s"), ("iterations", f"{len(rows)} in {len(journal.attempts)} instants tried"),
                        ("factorisations", str(sum(bool(line.get("factorised")) for line in rows)))]
-        page = [("made", time.strftime("%Y-%m-%d %H:%M")), ("instants drawn", f"{len(self.drawn)} of {len(self.result.orders)}"),
+            totals += [("most memory", f"{journal.memory / 2**20:.0f} MiB")] if journal.memory else []
+        page = [("Lacon", version), ("made", time.strftime("%Y-%m-%d %H:%M")), ("instants drawn", f"{len(self.drawn)} of {len(self.result.orders)}"),
                 ("fields", "16 bits a number, contact 32"), ("made in", f"{time.perf_counter() - started:.2f} s")]
-        return {"study": study, "machine": machine, "totals": totals, "phases": {}, "page": page}
+        return {"study": study, "machine": machine, "totals": totals,
+                "phases": {} if journal is None else journal.phases, "page": page}
 
 
 def _rank(name):
@@ -256,11 +257,3 @@ def _newton_of(journal, instant):
 def _finite(x):
     """A number that JSON has."""
     return x if isinstance(x, (int, bool)) or numpy.isfinite(x) else None
-
-
-def _processor():
-    try:
-        with open("/proc/cpuinfo", encoding="utf-8", errors="replace") as file:
-            return next(line.partition(":")[2].strip() for line in file if line.startswith("model name"))
-    except (OSError, StopIteration):
-        return platform.processor() or platform.machine()

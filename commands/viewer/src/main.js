@@ -9,6 +9,8 @@ const $ = (id) => document.getElementById(id);
 const inputs = ["field", "component", "map", "range", "low", "high", "magnify", "opacity", "edges", "zone", "opening", "instant"];
 const control = Object.fromEntries(inputs.map((id) => [id, $(id)]));
 
+const manyFacets = 20000; // edges of so many are not lines any more
+
 let scene = null;
 let shown = {kind: "none", values: null};
 let picked = null;
@@ -373,8 +375,8 @@ function startControls() {
 async function restart() {
   picked = null;
   fillControls();
-  for (const id of ["range", "magnify", "edges"]) control[id][id === "edges" ? "checked" : "value"] = {range: "instant", magnify: 1, edges: true}[id];
-  Object.assign(scene.see, {edges: true, hidden: new Set()});
+  [control.range.value, control.magnify.value, control.edges.checked] = ["instant", 1, scene.facetCell.length < manyFacets];
+  Object.assign(scene.see, {edges: control.edges.checked, hidden: new Set()});
   seeThrough(field()?.kind === "patch" && study.dimension === 3 ? 0.75 : 0);
   scene.hold = true; // one picture, when all is in place
   openBook(0);
