@@ -332,6 +332,15 @@ class Shown(unittest.TestCase):
             self.assertLessEqual(set(masters), ground)
             self.assertLess(abs(sum(masters.values()) - 100), 3.0)
 
+    def test_plane_a_pressure_that_is_one_has_one_colour_on_a_scale_from_zero(self):
+        """Both strips carry the same stress everywhere: its round-off is not spread over all colours."""
+        self.open(2)
+        self.browser.do(set={"field": "CONT_ELEM", "component": "pressure"})
+        low, high = (float(self.browser.ask(f"document.getElementById('{name}').value")) for name in ("low", "high"))
+        pressure = base_of(study(2))["RESULT"].contact().pressure
+        self.assertEqual(low, 0.0)
+        self.assertAlmostEqual(high, pressure.max(), delta=1e-5 * pressure.max())
+
     def test_plane_masters_are_those_that_lie_opposite(self):
         """Slave cells of 2/3 on master cells of 1/2: shares are known."""
         self.open(2)

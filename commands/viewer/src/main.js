@@ -114,6 +114,7 @@ async function range(own) {
       const [low, high] = rangeOf(other);
       found = [Math.min(found[0], low), Math.max(found[1], high)];
     }
+  if (found[1] - found[0] <= 1e-6 * Math.max(...found.map(Math.abs))) found = [Math.min(0, ...found), Math.max(0, ...found)]; // one value and round-off
   if (control.map.value === diverging) {
     const most = Math.max(Math.abs(found[0]), Math.abs(found[1]));
     found = [-most, most];

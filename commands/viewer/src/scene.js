@@ -383,6 +383,7 @@ export class Scene {
       }
     }
     if (low[0] > high[0]) return;
+    low[1] -= 0.2 * (high[1] - low[1]); // there stands the scale
     const focus = vec3.create();
     axes.forEach((axis, k) => vec3.scaleAndAdd(focus, focus, axis, (low[k] + high[k]) / 2));
     camera.setFocalPoint(...focus);
