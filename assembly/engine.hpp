@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <optional>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "lacon/assembly/sparse_matrix.hpp"
@@ -15,7 +16,19 @@ struct Factorisation {
   std::optional<std::int64_t> negative_pivots;  ///< the inertia, where the engine knows it
   std::vector<std::int64_t> null_pivots;        ///< equations whose pivot is zero: the matrix is singular
   double flops = 0;
-  std::int64_t entries = 0;  ///< of the factor
+  std::int64_t entries = 0;                                              ///< of the factor
+  std::int64_t whole_entries = 0;                                        ///< the same before its blocks were compressed
+  bool single_precision = false, low_rank = false, out_of_core = false;  ///< how the factor is kept
+  double error = 0;                                                      ///< what a substitution leaves of a residual
+  double wasted_flops = 0;                                               ///< of a factor that was no use
+  std::string doubt;  ///< why a factor in single precision or of low rank was no use, and an exact one was made behind it
+};
+
+/// What a solution took.
+struct Solution {
+  double residual = 0;                 ///< |b - A x| / (|A| |x| + |b|), largest entry
+  int iterations = 0;                  ///< of GMRES
+  std::optional<Factorisation> again;  ///< another factorisation; where it has null pivots there is no solution
 };
 
 /// Solves with one matrix at a time, which has at least one equation. After an error in analyse() or factorise() an analysis
@@ -29,9 +42,14 @@ class Engine {
   /// Make ready to solve with a matrix of the analysed pattern: factorise it, or set up what iterations need. The matrix must
   /// stay as it is while it is solved with. Throws SOLVER_2 (no memory).
   virtual Factorisation factorise(const SparseMatrix& matrix) = 0;
-  /// Solve in place. @return the relative residual |b - A x| / (|A| |x| + |b|), largest entry
-  /// Throws SOLVER_1, or another error of severity S that says why there is no solution; `right_side` is then as it was.
-  virtual double solve(std::span<double> right_side) = 0;
+  /// Solve in place. Throws SOLVER_1, or another error of severity S that says why there is no solution; `right_side` is then
+  /// as it was.
+  virtual Solution solve(std::span<double> right_side) = 0;
+
+  /// Whether a cheaper factor has failed, so that all are exact from then on; and to have it so. For another process that goes
+  /// on with the same bits.
+  virtual bool wants_exact_factors() const { return false; }
+  virtual void want_exact_factors() {}
 };
 
 /// An engine that keeps a factor, with which one substitution is cheap and a block of sparse right sides is cheaper still.
@@ -41,8 +59,8 @@ class FactorEngine : public Engine {
   virtual void substitute(std::span<double> right_side) = 0;
   /// The same for a block of sparse right sides. @param offset (n + 1), index, value: entries of each
   /// @return (n, size), one solution after the other
-  virtual std::vector<double> substitute(std::span<const std::int64_t> offset, std::span<const std::int32_t> index,
-                                         std::span<const double> value) = 0;
+  virtual std::vector<float> substitute(std::span<const std::int64_t> offset, std::span<const std::int32_t> index,
+                                        std::span<const double> value) = 0;
 };
 
 }  // namespace lacon

@@ -15,10 +15,14 @@ namespace {
 
 using Eigen::Map, Eigen::MatrixXd, Eigen::VectorXd;
 
+// What an operation on low-rank blocks costs, in operations of a factorisation of whole ones: small products are slow.
+constexpr double operations_of_low_rank = 3;
 // What an entry of the factor costs, in operations of a factorisation: in the substitutions of one right side, at memory's
 // speed, and in those of a block of sparse ones, at arithmetic's. Measured (docs/performance.md).
 constexpr double operations_of_a_solution = 40, operations_in_a_block = 2.5;
 constexpr int block_size = 64;
+/// Errors of a Schur complement over that of its factor.
+constexpr double blur = 2;
 constexpr int least_iterations = 8;
 
 class Stopwatch {
@@ -102,6 +106,7 @@ bool same_pattern(const SparseMatrix& a, const SparseMatrix& b) {
 SaddlePointSolver::SaddlePointSolver(std::unique_ptr<Engine> engine, const SaddlePointOptions& options)
     : options_(options), engine_(std::move(engine)), substitution_(dynamic_cast<FactorEngine*>(engine_.get())) {}
 
+double SaddlePointSolver::factorisation_cost() const { return (factor_.low_rank ? operations_of_low_rank : 1) * factor_.flops; }
 double SaddlePointSolver::solution_cost() const { return operations_of_a_solution * static_cast<double>(factor_.entries); }
 double SaddlePointSolver::column_cost() const { return operations_in_a_block * static_cast<double>(factor_.entries); }
 
@@ -206,7 +211,17 @@ SolutionReport SaddlePointSolver::solve(const SparseMatrix& matrix, std::int64_t
     reference_ =
         std::max(reference_, Map<const VectorXd>(scale.data(), n).cwiseProduct(Map<VectorXd>(right_side.data(), n)).norm());
   }
-  engine_->solve(right_side);
+  kept_ = Kept::nothing;  // while a solution may take another factorisation
+  const Solution solution = engine_->solve(right_side);
+  kept_ = Kept::factor;
+  report.iterations = solution.iterations;
+  if (solution.again) {
+    const double wasted = factor_.flops;
+    factor_ = *solution.again;
+    factor_.wasted_flops += wasted;
+    report.factorisation = factor_;
+    kept_ = factor_.null_pivots.empty() ? Kept::factor : Kept::analysis;
+  }
   return report;
 }
 
@@ -240,7 +255,8 @@ bool SaddlePointSolver::make_columns(const SparseMatrix& matrix, const Switched&
     if (!columns_.contains(i)) wanted.push_back(i);
   const double cost = static_cast<double>(wanted.size()) * column_cost() + expected_iterations_ * solution_cost();
   const double memory = 0.5 * static_cast<double>((columns_.size() + wanted.size()) * matrix.size());  // in doubles
-  if (cost > options_.work_limit * factor_.flops || memory > options_.column_memory * static_cast<double>(factor_.entries))
+  if (cost > options_.work_limit * factorisation_cost() ||
+      memory > options_.column_memory * static_cast<double>(factor_.whole_entries))
     return false;
 
   for (std::size_t first = 0; first < wanted.size(); first += block_size) {
@@ -268,7 +284,7 @@ bool SaddlePointSolver::make_columns(const SparseMatrix& matrix, const Switched&
 }
 
 void SaddlePointSolver::compute(Block block) {
-  const std::vector<double> inverse = substitution_->substitute(block.offset, block.index, block.value);
+  const std::vector<float> inverse = substitution_->substitute(block.offset, block.index, block.value);
   const std::int64_t number = blocks_.empty() ? 0 : blocks_.rbegin()->first + 1;
   const auto n = static_cast<std::ptrdiff_t>(base_->size());
   for (std::size_t c = 0; c < block.rows.size(); ++c) {
@@ -304,7 +320,8 @@ bool SaddlePointSolver::corrected(const SparseMatrix& matrix, std::span<double> 
   if (!make_columns(matrix, switched, report)) return false;
   const std::vector<double> scales_of_rows = scales(matrix);
   const Preconditioner preconditioner(*this, matrix, switched);
-  if (!(preconditioner.condition() > options_.singular)) return false;
+  // an inexact factor blurs what is singular
+  if (!(preconditioner.condition() > std::max(options_.singular, blur * factor_.error))) return false;
 
   const auto n = static_cast<Eigen::Index>(matrix.size());
   const VectorXd scaled = Map<const VectorXd>(scales_of_rows.data(), n).cwiseProduct(Map<VectorXd>(right_side.data(), n));
@@ -313,7 +330,7 @@ bool SaddlePointSolver::corrected(const SparseMatrix& matrix, std::span<double> 
   const double full = std::min(options_.tolerance * reference_, options_.least_gain * size);
   const double goal = rough ? std::max(full, options_.rough_gain * size) : full;
   const int most =
-      std::max(least_iterations, static_cast<int>(std::min(1e3, options_.work_limit * factor_.flops / solution_cost())));
+      std::max(least_iterations, static_cast<int>(std::min(1e3, options_.work_limit * factorisation_cost() / solution_cost())));
   const GmresResult found = gmres([&](std::span<const double> x, std::span<double> y) { matrix.multiply(x, y); },
                                   [&](std::span<double> x) { preconditioner.apply(x); }, scales_of_rows, right_side,
                                   {.goal = goal, .iterations = most});
@@ -330,6 +347,7 @@ bool SaddlePointSolver::corrected(const SparseMatrix& matrix, std::span<double> 
 void SaddlePointSolver::save(const hdf5::Group& group) const {
   group.set("reference", reference_);
   group.set("factorisations", factorisations_);
+  group.set("exact", std::int64_t{engine_->wants_exact_factors()});
   group.set("expected_iterations", static_cast<std::int64_t>(expected_iterations_));
   std::vector<std::int64_t> rows;
   std::vector<double> scales;
@@ -371,6 +389,7 @@ void SaddlePointSolver::save_base(const hdf5::Group& group) const {
 void SaddlePointSolver::resume(const hdf5::Group& group, const hdf5::Group* base, const Numbering& numbering) {
   reference_ = group.real("reference");
   factorisations_ = group.integer("factorisations");
+  if (group.integer("exact")) engine_->want_exact_factors();
   expected_iterations_ = static_cast<int>(group.integer("expected_iterations"));
   const auto rows = group.read<std::int64_t>("scale/row");
   const auto scales = group.read<double>("scale/value");

@@ -208,22 +208,53 @@ std::vector<SparseMatrix::RowSize> SparseMatrix::row_sizes(std::int64_t n) const
   return sizes;
 }
 
-void SparseMatrix::multiply(std::span<const double> x, std::span<double> y) const {
+template <class Function>
+void SparseMatrix::multiply(std::span<const double> x, std::span<double> y, const Function& f) const {
   std::fill(y.begin(), y.end(), 0.0);
   if (!is_symmetric()) {
     for (std::int64_t row = 0; row < size(); ++row)
-      for (std::int64_t k = row_[row]; k < row_[row + 1]; ++k) y[row] += value_[k] * x[column_[k]];
+      for (std::int64_t k = row_[row]; k < row_[row + 1]; ++k) y[row] += f(value_[k]) * f(x[column_[k]]);
     return;
   }
   for (std::int64_t row = 0; row < size(); ++row) {
     double sum = 0;
     const std::int64_t last = row_[row + 1] - 1;
     for (std::int64_t k = row_[row]; k < last; ++k) {
-      sum += value_[k] * x[column_[k]];
-      y[column_[k]] += value_[k] * x[row];
+      sum += f(value_[k]) * f(x[column_[k]]);
+      y[column_[k]] += f(value_[k]) * f(x[row]);
     }
-    y[row] += sum + value_[last] * x[row];
+    y[row] += sum + f(value_[last]) * f(x[row]);
   }
+}
+
+void SparseMatrix::multiply(std::span<const double> x, std::span<double> y) const {
+  multiply(x, y, [](double v) { return v; });
+}
+
+void SparseMatrix::multiply_magnitudes(std::span<const double> x, std::span<double> y) const {
+  multiply(x, y, [](double v) { return std::abs(v); });
+}
+
+std::vector<double> SparseMatrix::equilibration() const {
+  std::vector<double> scale(size(), 1.0), largest(size());
+  constexpr int most_rounds = 20;  // each takes the square root of what is still to be done, at once where diagonals are large
+  bool done = false;
+  for (int round = 0; round < most_rounds && !done; ++round) {
+    done = true;
+    std::fill(largest.begin(), largest.end(), 0.0);
+    for (std::int64_t row = 0; row < size(); ++row)
+      for (std::int64_t k = row_[row]; k < row_[row + 1]; ++k) {
+        const double value = std::abs(value_[k]) * scale[row] * scale[column_[k]];
+        largest[row] = std::max(largest[row], value);
+        largest[column_[k]] = std::max(largest[column_[k]], value);
+      }
+    for (std::int64_t row = 0; row < size(); ++row) {
+      if (largest[row] > 0) scale[row] /= std::sqrt(largest[row]);
+      done = done && (largest[row] == 0 || std::abs(std::log2(largest[row])) < 1);
+    }
+  }
+  for (double& value : scale) value = std::exp2(std::round(std::log2(value)));
+  return scale;
 }
 
 double SparseMatrix::norm() const {

@@ -51,6 +51,10 @@ class SparseMatrix {
 
   /// y = A x
   void multiply(std::span<const double> x, std::span<double> y) const;
+  /// y = |A| |x|, of magnitudes
+  void multiply_magnitudes(std::span<const double> x, std::span<double> y) const;
+  /// Powers of two d that make the largest entry of each row and column of d A d about 1, (size).
+  std::vector<double> equilibration() const;
   /// How large a row is: the sum of |a_ij|, and how many entries it has.
   struct RowSize {
     double sum = 0;
@@ -75,6 +79,9 @@ class SparseMatrix {
   template <bool lower, class Value>
   void add_rows(std::span<const std::int64_t> equations, const Value& value);
   std::int64_t diagonal_place(std::int64_t equation) const;
+  /// y = f(A) f(x), of numbers or of magnitudes.
+  template <class Function>
+  void multiply(std::span<const double> x, std::span<double> y, const Function& f) const;
 
   const Numbering* numbering_;
   Symmetry symmetry_;

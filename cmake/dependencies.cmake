@@ -22,7 +22,7 @@ find_package(nlohmann_json REQUIRED)
 find_package(tomlplusplus REQUIRED)
 find_package(fmt REQUIRED)
 find_package(CLI11 REQUIRED)
-lacon_find_library(mumps dmumps_c.h dmumps_seq mumps_common_seq pord_seq mpiseq_seq)
+lacon_find_library(mumps dmumps_c.h dmumps_seq smumps_seq mumps_common_seq pord_seq mpiseq_seq)
 lacon_find_library(metis metis.h metis)
 lacon_find_library(openblas cblas.h openblas)
 

@@ -233,7 +233,14 @@ std::vector<double> Newton::solve_system(StaticState& state, const StaticState& 
     add_to_phase("solution", report.solution_seconds);
     add_to_count("solutions", 1);
     add_to_count("factorisations", report.factorised ? 1 : 0);
-    add_to_count("Gflop of factorisations", 1e-9 * report.factorisation.flops);
+    if (report.factorised) {
+      const Factorisation& factor = report.factorisation;
+      if (factor.single_precision) add_to_count("factors in single precision", 1);
+      if (factor.low_rank) add_to_count("factors of low rank", 1);
+      if (factor.out_of_core) add_to_count("factors in files", 1);
+      if (!factor.doubt.empty()) inform("SOLVER_4", {{"reason", factor.doubt}});
+    }
+    add_to_count("Gflop of factorisations", 1e-9 * (report.factorisation.flops + report.factorisation.wasted_flops));
     add_to_count("columns of the inverse", report.columns);
     add_to_count("iterations of GMRES", report.iterations);
     const std::vector<std::int64_t>& null = report.factorisation.null_pivots;

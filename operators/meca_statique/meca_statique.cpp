@@ -5,8 +5,8 @@
 #include <cmath>
 #include <memory>
 
-#include "lacon/assembly/mumps_engine.hpp"
 #include "lacon/catalog/messages.hpp"
+#include "lacon/operators/evolution/linear_solver.hpp"
 #include "lacon/operators/evolution/newton.hpp"
 #include "lacon/operators/evolution/state_fields.hpp"
 #include "lacon/operators/program/blas.hpp"
@@ -54,13 +54,10 @@ void meca_statique(const Order& order, const Base& base) {
     return read_problem(order, base);
   }();
   const std::vector<double> instants = instants_of(keywords, base);
-  const Keywords solver = keywords.factor("SOLVEUR");
-  if (const std::string method = solver.text("METHODE"); method != "MUMPS") inform("EVOLUTION_24", {{"method", method}});
   Newton newton(
       problem,
       {.criteria = {.resi_glob_rela = residual}, .iterations = iterations, .start = instants.front(), .from_reference = true},
-      std::make_unique<MumpsEngine>(MumpsOptions{.memory_margin = static_cast<int>(solver.integer("PCENT_PIVOT")),
-                                                 .residual_tolerance = solver.real("RESI_RELA")}));
+      engine_of(keywords.factor("SOLVEUR"), base));
   StaticState state = newton.initial_state();
   if (only_checks()) return;
   Result result = empty_result(order, problem);

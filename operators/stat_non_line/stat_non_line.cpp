@@ -4,12 +4,12 @@
 #include <iostream>
 #include <memory>
 
-#include "lacon/assembly/mumps_engine.hpp"
 #include "lacon/catalog/messages.hpp"
 #include "lacon/operators/evolution/archive.hpp"
 #include "lacon/operators/evolution/contact_notices.hpp"
 #include "lacon/operators/evolution/interruption.hpp"
 #include "lacon/operators/evolution/journal.hpp"
+#include "lacon/operators/evolution/linear_solver.hpp"
 #include "lacon/operators/evolution/newton.hpp"
 #include "lacon/operators/evolution/progress.hpp"
 #include "lacon/operators/evolution/restart.hpp"
@@ -51,12 +51,6 @@ NewtonOptions newton_options(const Keywords& keywords, const TimeSteps& steps) {
           .start = steps.values.front(),
           .line_search = line_search_of(keywords),
           .cuts = steps.action.cut};
-}
-
-std::unique_ptr<Engine> engine_of(const Keywords& solver) {
-  if (const std::string method = solver.text("METHODE"); method != "MUMPS") inform("EVOLUTION_24", {{"method", method}});
-  return std::make_unique<MumpsEngine>(MumpsOptions{.memory_margin = static_cast<int>(solver.integer("PCENT_PIVOT")),
-                                                    .residual_tolerance = solver.real("RESI_RELA")});
 }
 
 TimeSteps steps_of(const Keywords& increment, const Base& base, std::optional<double> origin) {
@@ -128,7 +122,7 @@ void stat_non_line(const Order& order, const Base& base) {
   const std::optional<Origin> origin = record ? std::nullopt : origin_of(keywords, base);
   const std::optional<double> begins = record ? origin_in(*record) : origin ? std::optional(origin->instant) : std::nullopt;
   const TimeSteps steps = steps_of(keywords.factor("INCREMENT"), base, begins);
-  QuasiStatic solver(problem, newton_options(keywords, steps), engine_of(keywords.factor("SOLVEUR")));
+  QuasiStatic solver(problem, newton_options(keywords, steps), engine_of(keywords.factor("SOLVEUR"), base));
   const Present present = solver.present(problem);
   Observations observations(keywords, base, problem.mesh, fields_of(present));
   Archive archive(order, base, present, origin, observations, record.has_value());

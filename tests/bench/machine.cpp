@@ -1,6 +1,6 @@
 // The yardsticks of the end-to-end bench, as JSON: dgemm, a copy of memory, and the factorisation by MUMPS of the matrix of a
-// cube of HEXA8 (107 811 displacements for 32 cells an edge), with the kernel and the threads that an operator takes. usage:
-// bench_machine [cells an edge]
+// cube of HEXA8 (107 811 displacements for 32 cells an edge) in double precision, with the kernel and the threads that an
+// operator takes. usage: bench_machine [cells an edge]
 #include <fmt/format.h>
 
 #include <cstdlib>
@@ -17,7 +17,7 @@ int main(int argc, char** argv) {
   const double dgemm = bench::dgemm_gflops(), copy = bench::copy_gbytes();
   const Numbering numbering = bench::cube_numbering(n);
   const SparseMatrix matrix = bench::cube_matrix(numbering, n);
-  MumpsEngine engine;
+  MumpsEngine engine({.single_precision = MumpsOptions::Use::never});
   const double analysis = bench::seconds([&] { engine.analyse(matrix); });
   Factorisation found;
   const double factorisation = bench::seconds([&] { found = engine.factorise(matrix); });

@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <random>
 
 #include "dense.hpp"
@@ -192,6 +193,34 @@ TEST(SparseMatrix, KnowsHowLargeItsRowsAre) {
       EXPECT_NEAR(sizes[row].sum, block.row(row).cwiseAbs().sum(), 1e-14);
       EXPECT_GE(sizes[row].entries, (block.row(row).array() != 0).count());
       EXPECT_LE(sizes[row].entries, n);
+    }
+  }
+}
+
+// Products of magnitudes are those of dense matrices; powers of two bring the largest entry of each row near 1, whatever units
+// rows are in.
+TEST(SparseMatrix, IsEquilibratedByPowersOfTwo) {
+  std::mt19937 random(5);
+  const Chain chain(12, 2);
+  const std::vector<Coupling> couplings{{12, 3}, {12, 4}, {13, 9}};
+  for (const Symmetry symmetry : {Symmetry::symmetric, Symmetry::general}) {
+    SparseMatrix matrix(chain.numbering, chain.cliques, couplings, symmetry);
+    for (const Coupling& c : couplings)
+      matrix.add(std::vector<std::int64_t>{chain.numbering.first[c.a], chain.numbering.first[c.b]},
+                 std::vector<double>{0, 1e-25, 0});
+    test::add_springs(matrix, chain, 1e30);
+    const Eigen::MatrixXd full = dense(matrix);
+    const Eigen::VectorXd x = Eigen::VectorXd::Random(full.rows());
+    Eigen::VectorXd y(full.rows());
+    matrix.multiply_magnitudes({x.data(), 26}, {y.data(), 26});
+    EXPECT_LE((full.cwiseAbs() * x.cwiseAbs() - y).cwiseAbs().maxCoeff(), 1e-15 * y.maxCoeff());
+    const std::vector<double> scale = matrix.equilibration();
+    for (int i = 0; i < 26; ++i) {
+      EXPECT_EQ(std::exp2(std::round(std::log2(scale[i]))), scale[i]);
+      double largest = 0;
+      for (int j = 0; j < 26; ++j) largest = std::max(largest, scale[i] * std::abs(full(i, j)) * scale[j]);
+      EXPECT_GE(largest, 0.1);
+      EXPECT_LE(largest, 4);
     }
   }
 }

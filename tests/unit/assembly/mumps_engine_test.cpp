@@ -1,5 +1,13 @@
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include <sys/resource.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <fstream>
 #include <random>
 #include <utility>
 
@@ -42,7 +50,7 @@ TEST(MumpsEngine, SolvesSaddlePoints) {
   EXPECT_EQ(found.negative_pivots, 2);
   EXPECT_TRUE(found.null_pivots.empty());
   Eigen::VectorXd b = Eigen::VectorXd::Random(system.matrix.size()), x = b;
-  EXPECT_LE(engine.solve({x.data(), static_cast<std::size_t>(x.size())}), 1e-15);
+  EXPECT_LE(engine.solve({x.data(), static_cast<std::size_t>(x.size())}).residual, 1e-15);
   const Eigen::VectorXd expected = dense(system.matrix).fullPivLu().solve(b);
   EXPECT_LE((x - expected).cwiseAbs().maxCoeff(), 1e-11 * expected.cwiseAbs().maxCoeff());
 }
@@ -80,7 +88,7 @@ TEST(MumpsEngine, SolvesUnsymmetricSystems) {
     EXPECT_EQ(found.negative_pivots, std::nullopt);
     EXPECT_TRUE(found.null_pivots.empty());
     Eigen::VectorXd b = Eigen::VectorXd::Random(matrix.size()), x = b;
-    EXPECT_LE(engine.solve({x.data(), static_cast<std::size_t>(x.size())}), 1e-14);
+    EXPECT_LE(engine.solve({x.data(), static_cast<std::size_t>(x.size())}).residual, 1e-14);
     const Eigen::VectorXd expected = dense(matrix).fullPivLu().solve(b);
     const double condition = 1 / dense(matrix).fullPivLu().rcond();
     EXPECT_LE((x - expected).cwiseAbs().maxCoeff(), 1e-14 * condition * expected.cwiseAbs().maxCoeff());
@@ -146,6 +154,250 @@ TEST(MumpsEngine, RefusesABadSolution) {
     EXPECT_EQ(error.message().id, "SOLVER_1");
     EXPECT_EQ(error.message().severity, 'S');
   }
+}
+
+// ------------------------------------------------------------------------------------------ factors that are not exact
+
+using Use = MumpsOptions::Use;
+constexpr MumpsOptions::Use always = Use::always, never = Use::never;
+
+std::span<double> entries(Eigen::VectorXd& x) { return {x.data(), static_cast<std::size_t>(x.size())}; }
+
+/// n^3 points in a cube, one displacement each, with springs between neighbours; one side is held.
+struct Lattice {
+  explicit Lattice(int n, double contrast = 1)
+      : numbering(number_equations(n * n * n, 1, held(n), 0)), matrix(numbering, springs(n), {}) {
+    const Ragged<std::int32_t> all = springs(n);
+    for (std::size_t s = 0; s < all.size(); ++s) {
+      const double k = all[s][0] >= n * n * n / 2 ? contrast : 1;
+      matrix.add(std::vector<std::int64_t>{numbering.of(all[s][0], 0), numbering.of(all[s][1], 0)},
+                 std::vector<double>{k, -k, k});
+    }
+  }
+  static std::vector<std::uint8_t> held(int n) {
+    std::vector<std::uint8_t> free(n * n * n, 1);
+    std::fill(free.begin(), free.begin() + n * n, 0);
+    return free;
+  }
+  static Ragged<std::int32_t> springs(int n) {
+    Ragged<std::int32_t> all;
+    const int strides[] = {1, n, n * n};
+    for (int i = 0; i < n * n * n; ++i)
+      for (const int stride : strides)
+        if (i / stride % n + 1 < n) all.push_back(std::vector<std::int32_t>{i, i + stride});
+    return all;
+  }
+  Numbering numbering;
+  SparseMatrix matrix;
+};
+
+// A factor in single precision gives a solution as exact as one in double precision does, and the same inertia.
+TEST(MumpsEngine, SolvesWithSinglePrecision) {
+  SaddlePoint system;
+  for (const Use low_rank : {never, always}) {
+    MumpsEngine engine({.single_precision = always, .low_rank = low_rank});
+    engine.analyse(system.matrix);
+    const Factorisation found = engine.factorise(system.matrix);
+    EXPECT_TRUE(found.single_precision);
+    EXPECT_EQ(found.doubt, "");
+    EXPECT_EQ(found.negative_pivots, 2);
+    Eigen::VectorXd b = Eigen::VectorXd::Random(system.matrix.size()), x = b;
+    EXPECT_LE(engine.solve(entries(x)).residual, 1e-15);
+    const Eigen::VectorXd expected = dense(system.matrix).fullPivLu().solve(b);
+    EXPECT_LE((x - expected).cwiseAbs().maxCoeff(), 1e-11 * expected.cwiseAbs().maxCoeff());
+  }
+}
+
+// Units make no difference to it: forces and lengths far outside the range of single precision.
+TEST(MumpsEngine, SolvesWithSinglePrecisionInAnyUnits) {
+  SaddlePoint system;
+  std::vector<double> values(system.matrix.values().begin(), system.matrix.values().end());
+  for (double& value : values) value *= 1e60;
+  for (std::int64_t row = system.chain.numbering.of_patch(0); row < system.matrix.size(); ++row)
+    for (std::int64_t k = system.matrix.rows()[row]; k < system.matrix.rows()[row + 1]; ++k) values[k] *= 1e-90;
+  system.matrix.restore(values);
+  MumpsEngine engine({.single_precision = always});
+  engine.analyse(system.matrix);
+  EXPECT_EQ(engine.factorise(system.matrix).doubt, "");
+  Eigen::VectorXd b = 1e60 * Eigen::VectorXd::Random(system.matrix.size()), x = b;
+  for (std::int64_t row = system.chain.numbering.of_patch(0); row < system.matrix.size(); ++row) b[row] = x[row] = 1e-30;
+  EXPECT_LE(engine.solve(entries(x)).residual, 1e-15);
+  const Eigen::VectorXd left = dense(system.matrix) * x - b;
+  EXPECT_LE(left.head(58).cwiseAbs().maxCoeff(), 1e-13 * b.head(58).cwiseAbs().maxCoeff());
+  EXPECT_LE(left.tail(2).cwiseAbs().maxCoeff(), 1e-13 * 1e-30);
+}
+
+// However near a matrix is to a singular one, the inertia is that of its eigenvalues: a factor that cannot tell is given up.
+TEST(MumpsEngine, KnowsTheInertiaInSinglePrecision) {
+  const Lattice lattice(5);
+  const Eigen::VectorXd eigenvalues = Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(dense(lattice.matrix)).eigenvalues();
+  int doubts = 0, carried = 0;
+  for (const int which : {0, 7, 50})
+    for (const double distance : {1e-2, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8, -1e-2, -1e-4, -1e-5, -1e-6, -1e-7, -1e-8}) {
+      SparseMatrix shifted = lattice.matrix;
+      const double shift = eigenvalues[which] + distance * eigenvalues[eigenvalues.size() - 1];
+      for (std::int64_t e = 0; e < shifted.size(); ++e) shifted.add_diagonal(e, -shift);
+      MumpsEngine engine({.single_precision = always, .low_rank = always, .low_rank_threshold = 1e-4});
+      engine.analyse(shifted);
+      const Factorisation found = engine.factorise(shifted);
+      EXPECT_EQ(found.negative_pivots, (eigenvalues.array() < shift).count()) << which << " " << distance;
+      ++(found.doubt.empty() ? carried : doubts);
+      EXPECT_EQ(found.single_precision, found.doubt.empty());
+    }
+  EXPECT_GE(doubts, 6) << "nearer than single precision tells";
+  EXPECT_GE(carried, 6);
+}
+
+// Free motions are found as by a factor in double precision, and the engine remembers.
+TEST(MumpsEngine, FindsFreeMotionsInSinglePrecision) {
+  const Chain chain(25);
+  SparseMatrix matrix(chain.numbering, chain.cliques, {});
+  test::add_springs(matrix, chain);
+  MumpsEngine engine({.single_precision = always});
+  for (const bool remembers : {false, true}) {
+    EXPECT_EQ(engine.wants_exact_factors(), remembers);
+    engine.analyse(matrix);
+    const Factorisation found = engine.factorise(matrix);
+    EXPECT_EQ(found.null_pivots.size(), 2u);
+    EXPECT_FALSE(found.single_precision);
+    EXPECT_EQ(found.doubt.empty(), remembers);
+  }
+}
+
+/// A beam of points: what bends it is the second difference. Held at its first two points; the condition is its length to the
+/// power of four.
+struct Beam {
+  explicit Beam(int n) : numbering(number_equations(n, 1, held(n), 0)), matrix(numbering, triples(n), {}) {
+    for (int i = 0; i + 2 < n; ++i) {
+      const double k = 1 + 0.3 * std::sin(i);
+      matrix.add(std::vector<std::int64_t>{numbering.of(i, 0), numbering.of(i + 1, 0), numbering.of(i + 2, 0)},
+                 std::vector<double>{k, -2 * k, 4 * k, k, -2 * k, k});
+    }
+  }
+  static std::vector<std::uint8_t> held(int n) {
+    std::vector<std::uint8_t> free(n, 1);
+    free[0] = free[1] = 0;
+    return free;
+  }
+  static Ragged<std::int32_t> triples(int n) {
+    Ragged<std::int32_t> all;
+    for (int i = 0; i + 2 < n; ++i) all.push_back(std::vector<std::int32_t>{i, i + 1, i + 2});
+    return all;
+  }
+  Numbering numbering;
+  SparseMatrix matrix;
+};
+
+// What single precision cannot carry, a slender beam and a stiff body on a soft one, is factorised in double precision; what it
+// can has the same digits.
+TEST(MumpsEngine, GivesSinglePrecisionUpWhereItDoesNotCarry) {
+  const Beam slender(300), stout(20);
+  const Lattice stiff(8, 1e6), uniform(8);
+  const struct {
+    const SparseMatrix& matrix;
+    bool carries;
+    double condition;
+  } cases[] = {
+      {slender.matrix, false, 8.1e9}, {stout.matrix, true, 1.6e5}, {stiff.matrix, false, 1e7}, {uniform.matrix, true, 1e2}};
+  for (const auto& [matrix, carries, condition] : cases) {
+    SCOPED_TRACE(condition);
+    std::vector<double> solutions[2];
+    for (const bool single : {false, true}) {
+      MumpsEngine engine({.single_precision = single ? always : never});
+      engine.analyse(matrix);
+      const Factorisation found = engine.factorise(matrix);
+      EXPECT_EQ(found.negative_pivots, 0);
+      EXPECT_EQ(found.single_precision, single && carries) << found.doubt;
+      solutions[single].assign(static_cast<std::size_t>(matrix.size()), 1.0);
+      EXPECT_LE(engine.solve(solutions[single]).residual, 1e-14);
+    }
+    const double largest = *std::max_element(solutions[0].begin(), solutions[0].end());
+    for (std::size_t i = 0; i < solutions[0].size(); ++i)
+      ASSERT_NEAR(solutions[1][i], solutions[0][i], 1e-15 * condition * largest);
+  }
+}
+
+// Low-rank blocks are cheaper, and the same bits in every run; columns of the inverse come from them as from any factor.
+TEST(MumpsEngine, CompressesBlocks) {
+  const Lattice lattice(30);
+  const std::vector<std::int64_t> offset{0, 1, 2};
+  const std::vector<std::int32_t> index{100, 7000};
+  const std::vector<double> value{1.0, 3.0};
+  std::vector<double> solutions[2];
+  double flops[2];
+  for (const bool low_rank : {false, true})
+    for (int run = 0; run < 2; ++run) {
+      MumpsEngine engine({.single_precision = always, .low_rank = low_rank ? always : never, .low_rank_threshold = 1e-3});
+      engine.analyse(lattice.matrix);
+      const Factorisation found = engine.factorise(lattice.matrix);
+      EXPECT_EQ(found.low_rank, low_rank);
+      EXPECT_EQ(found.doubt, "");
+      flops[low_rank] = found.flops;
+      std::vector<double> x(static_cast<std::size_t>(lattice.matrix.size()), 0.0);
+      x[7000] = 3;
+      engine.solve(x);
+      const std::vector<float> columns = engine.substitute(offset, index, value);
+      for (std::size_t i = 0; i < x.size(); ++i) ASSERT_NEAR(columns[x.size() + i], x[i], 0.05 * x[7000]);
+      if (run == 0)
+        solutions[low_rank] = x;
+      else
+        EXPECT_EQ(solutions[low_rank], x);
+    }
+  EXPECT_LT(flops[true], 0.9 * flops[false]);
+  for (std::size_t i = 0; i < solutions[0].size(); ++i)
+    ASSERT_NEAR(solutions[1][i], solutions[0][i], 1e-12 * solutions[0][7000]);
+}
+
+// ------------------------------------------------------------------------------------------------------ factors in files
+
+// A factor that is kept in files gives the solution that one in memory gives, and leaves no files behind.
+TEST(MumpsEngine, KeepsFactorsInFiles) {
+  const std::filesystem::path folder = std::filesystem::temp_directory_path() / fmt::format("mumps_engine_test.{}", getpid());
+  const SaddlePoint system;
+  Eigen::VectorXd x = Eigen::VectorXd::Random(system.matrix.size()), y = x;
+  {
+    MumpsEngine in_memory, in_files({.memory = MumpsOptions::Memory::out_of_core, .folder = folder});
+    for (const auto& [engine, side] : {std::pair(&in_memory, &x), std::pair(&in_files, &y)}) {
+      engine->analyse(system.matrix);
+      EXPECT_EQ(engine->factorise(system.matrix).out_of_core, engine == &in_files);
+      engine->solve(entries(*side));
+    }
+    EXPECT_FALSE(std::filesystem::is_empty(folder));
+  }
+  EXPECT_EQ(x, y);
+  EXPECT_FALSE(std::filesystem::exists(folder));
+}
+
+/// Bytes of addresses that this process has.
+std::size_t addresses() {
+  std::size_t pages = 0;
+  std::ifstream("/proc/self/statm") >> pages;
+  return pages * static_cast<std::size_t>(getpagesize());
+}
+
+// Where memory ends the factor goes into files by itself; where it may not, that is told.
+TEST(MumpsEngine, GoesOnInFilesWhereMemoryEnds) {
+  const Lattice lattice(30);
+  const auto solve = [&](MumpsOptions::Memory memory) {
+    const std::string folder = std::filesystem::temp_directory_path() / fmt::format("mumps_engine_memory.{}", getpid());
+    MumpsEngine engine({.single_precision = never, .memory = memory, .folder = folder});
+    const Lattice small(16);  // OpenBLAS takes its own memory at its first product
+    engine.analyse(small.matrix);
+    engine.factorise(small.matrix);
+    engine.analyse(lattice.matrix);
+    const rlimit limit{addresses() + (std::size_t{45} << 20), RLIM_INFINITY};  // files need 30
+    setrlimit(RLIMIT_AS, &limit);
+    try {
+      if (!engine.factorise(lattice.matrix).out_of_core) return 1;
+      std::vector<double> x(static_cast<std::size_t>(lattice.matrix.size()), 1.0);
+      return engine.solve(x).residual < 1e-14 ? 0 : 2;
+    } catch (const Error& error) {
+      return error.message().id == "SOLVER_2" ? 3 : 4;
+    }
+  };
+  GTEST_FLAG_SET(death_test_style, "threadsafe");  // a process that has nothing to give back
+  EXPECT_EXIT(_exit(solve(MumpsOptions::Memory::where_needed)), testing::ExitedWithCode(0), "");
+  EXPECT_EXIT(_exit(solve(MumpsOptions::Memory::in_core)), testing::ExitedWithCode(3), "");
 }
 
 }  // namespace

@@ -1,0 +1,168 @@
+#include "lacon/assembly/mumps.hpp"
+
+#include <dmumps_c.h>
+#include <fmt/format.h>
+#include <smumps_c.h>
+
+#include <algorithm>
+#include <stdexcept>
+#include <vector>
+
+#include "lacon/catalog/messages.hpp"
+
+namespace lacon {
+namespace {
+
+/// Numbered as in the MUMPS manual, from 1.
+template <class Array>
+auto& at(Array& array, int number) {
+  return array[number - 1];
+}
+
+/// A count of MUMPS; in millions where it is negative.
+double count(int value) { return value < 0 ? -1e6 * value : value; }
+
+constexpr int communicator = -987654;  // "MPI_COMM_WORLD" of the manual
+enum Job { start = -1, end = -2, analyse_job = 1, factorise_job = 2, solve_job = 3 };
+
+void call(DMUMPS_STRUC_C& mumps) { dmumps_c(&mumps); }
+void call(SMUMPS_STRUC_C& mumps) { smumps_c(&mumps); }
+
+template <class Real>
+struct Structure;
+template <>
+struct Structure<double> {
+  using type = DMUMPS_STRUC_C;
+};
+template <>
+struct Structure<float> {
+  using type = SMUMPS_STRUC_C;
+};
+
+}  // namespace
+
+template <class Real>
+struct Mumps<Real>::State {
+  MumpsSettings settings;
+  typename Structure<Real>::type mumps{};
+
+  explicit State(const MumpsSettings& given) : settings(given) {
+    mumps.sym = settings.symmetric ? 2 : 0;  // general symmetric: multipliers make the matrix indefinite
+    mumps.par = 1;
+    mumps.comm_fortran = communicator;
+    run(start);
+    for (int stream = 1; stream <= 3; ++stream) at(mumps.icntl, stream) = 0;
+    at(mumps.icntl, 4) = 0;
+    if (!settings.symmetric) at(mumps.icntl, 6) = 0;  // the pattern is symmetric: no columns to exchange
+    at(mumps.icntl, 7) = 1;                           // our own order, in perm_in
+    at(mumps.icntl, 13) = 1;                          // no parallel root: the inertia is exact
+    at(mumps.icntl, 14) = settings.memory_margin;
+    at(mumps.icntl, 24) = 1;  // report null pivots instead of stopping
+    at(mumps.cntl, 3) = static_cast<Real>(settings.singular_pivot);
+    if (settings.low_rank > 0) {
+      at(mumps.icntl, 35) = 2;  // in the factorisation and in the solutions
+      at(mumps.keep, 482) = 3;  // blocks of what follows in our order: SCOTCH takes long, and others in every run
+      at(mumps.cntl, 7) = static_cast<Real>(settings.low_rank);
+    }
+    if (settings.out_of_core) {
+      at(mumps.icntl, 22) = 1;
+      if (settings.folder.size() >= sizeof mumps.ooc_tmpdir) fail("SOLVER_5", {{"folder", settings.folder}});
+      std::copy(settings.folder.begin(), settings.folder.end(), mumps.ooc_tmpdir);
+      mumps.ooc_tmpdir[settings.folder.size()] = '\0';
+    }
+  }
+  ~State() { run(end); }
+  State(const State&) = delete;
+  State& operator=(const State&) = delete;
+
+  void run(int job) {
+    mumps.job = job;
+    call(mumps);
+  }
+  /// -8, -9: delayed pivots took more memory than foreseen
+  bool lacks_room() {
+    const int code = at(mumps.infog, 1);
+    return code == -8 || code == -9;
+  }
+  void require(const char* phase) {
+    const int code = at(mumps.infog, 1);
+    if (code >= 0) return;
+    if (code == -13 || code == -19) fail("SOLVER_2", {{"phase", phase}, {"equations", std::to_string(mumps.n)}});
+    if (code == -90) fail("SOLVER_5", {{"folder", settings.folder}});
+    throw std::runtime_error(fmt::format("MUMPS: {} returned INFOG(1) = {}, INFOG(2) = {}", phase, code, at(mumps.infog, 2)));
+  }
+};
+
+template <class Real>
+Mumps<Real>::Mumps(const MumpsSettings& settings) : state_(std::make_unique<State>(settings)) {}
+template <class Real>
+Mumps<Real>::~Mumps() = default;
+
+template <class Real>
+MumpsForecast Mumps<Real>::analyse(const MumpsPattern& pattern) {
+  auto& mumps = state_->mumps;
+  mumps.n = static_cast<MUMPS_INT>(pattern.place.size());
+  mumps.nnz = static_cast<MUMPS_INT8>(pattern.row.size());
+  mumps.irn = pattern.row.data();
+  mumps.jcn = pattern.column.data();
+  mumps.perm_in = pattern.place.data();
+  state_->run(analyse_job);
+  state_->require("analysis");
+  const int megabytes = at(mumps.infog, state_->settings.out_of_core ? 26 : state_->settings.low_rank > 0 ? 36 : 16);
+  return {.flops = at(mumps.rinfog, 1), .entries = count(at(mumps.infog, 20)), .bytes = 1e6 * megabytes};
+}
+
+template <class Real>
+Factorisation Mumps<Real>::factorise(std::span<const Real> values) {
+  State& s = *state_;
+  s.mumps.a = const_cast<Real*>(values.data());  // read only
+  s.run(factorise_job);
+  for (int margin = 2 * s.settings.memory_margin; s.lacks_room() && margin < 2000; margin *= 2) {
+    at(s.mumps.icntl, 14) = margin;
+    s.run(factorise_job);
+  }
+  s.mumps.a = nullptr;
+  s.require("factorisation");
+  const bool low_rank = s.settings.low_rank > 0;
+  Factorisation found{.flops = at(s.mumps.rinfog, low_rank ? 14 : 3),
+                      .entries = static_cast<std::int64_t>(count(at(s.mumps.infog, low_rank ? 35 : 29))),
+                      .whole_entries = static_cast<std::int64_t>(count(at(s.mumps.infog, 29)))};
+  if (s.settings.symmetric) found.negative_pivots = at(s.mumps.infog, 12);
+  for (int i = 0; i < at(s.mumps.infog, 28); ++i) found.null_pivots.push_back(s.mumps.pivnul_list[i] - 1);
+  return found;
+}
+
+template <class Real>
+void Mumps<Real>::substitute(std::span<Real> right_side) {
+  auto& mumps = state_->mumps;
+  mumps.rhs = right_side.data();
+  mumps.nrhs = 1;
+  state_->run(solve_job);
+  state_->require("solution");
+}
+
+template <class Real>
+void Mumps<Real>::substitute(std::span<const std::int64_t> offset, std::span<const std::int32_t> index,
+                             std::span<const Real> value, std::span<Real> solution) {
+  auto& mumps = state_->mumps;
+  std::vector<MUMPS_INT> first(offset.begin(), offset.end()), row(index.begin(), index.end());
+  for (MUMPS_INT& number : first) ++number;
+  for (MUMPS_INT& number : row) ++number;
+  at(mumps.icntl, 20) = 3;  // sparse, and used to skip what stays zero
+  at(mumps.icntl, 27) = static_cast<MUMPS_INT>(offset.size() - 1);
+  mumps.nrhs = static_cast<MUMPS_INT>(offset.size() - 1);
+  mumps.lrhs = mumps.n;
+  mumps.rhs = solution.data();
+  mumps.nz_rhs = static_cast<MUMPS_INT>(index.size());
+  mumps.irhs_ptr = first.data();
+  mumps.irhs_sparse = row.data();
+  mumps.rhs_sparse = const_cast<Real*>(value.data());  // read only
+  state_->run(solve_job);
+  at(mumps.icntl, 20) = 0;
+  state_->require("solution");
+}
+
+template class Mumps<double>;
+template class Mumps<float>;
+
+}  // namespace lacon
