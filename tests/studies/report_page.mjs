@@ -3,6 +3,7 @@
 //   {"open": FILE, "width": ..., "height": ..., "dark": ...}   -> {"seconds"}: until the first view stands
 //   {"set": {"field": "CONT_ELEM", ...}}                       -> {}: controls, by their id
 //   {"click": [x, y]}, {"key": "]"}                            -> {}: in the picture; x and y in its pixels
+//   {"media": "print"}                                         -> {}: as on paper, or "screen"
 //   {"ask": "document.title"}                                  -> {"value"}
 //   {"picture": true}                                          -> {"width", "height", "pixels"}: of the canvas, base64 of RGB rows from the top
 //   {"shot": FILE}                                             -> {}: what is seen, a PNG file
@@ -53,6 +54,11 @@ const steps = {
   async key({key}) {
     await page.focus("#view");
     await settled(() => page.keyboard.press(key));
+    return {};
+  },
+  async media({media}) {
+    await page.emulateMedia({media});
+    await page.waitForTimeout(100);
     return {};
   },
   async ask({ask}) {

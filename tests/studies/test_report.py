@@ -369,6 +369,10 @@ class Shown(unittest.TestCase):
         self.open(2, dark=True)
         dark = self.browser.picture()[0, 0]
         self.assertLess(dark.mean(), 60)
+        self.browser.do(media="print")
+        self.assertGreater(self.browser.picture()[0, 0].mean(), 200)
+        self.browser.do(media="screen")
+        self.assertLess(self.browser.picture()[0, 0].mean(), 60)
         self.browser.ask("document.getElementById('theme').click()")
         self.assertGreater(self.browser.picture()[0, 0].mean(), 200)
 

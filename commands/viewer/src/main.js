@@ -35,12 +35,12 @@ function startTheme() {
   set(dark.matches ? "dark" : "light");
   dark.addEventListener("change", () => set(dark.matches ? "dark" : "light"));
   $("theme").addEventListener("click", () => set(document.documentElement.dataset.theme === "dark" ? "light" : "dark"));
-  let before = "light";
-  addEventListener("beforeprint", () => {
-    before = document.documentElement.dataset.theme;
-    set("light");
+  let before = null; // while it is on paper
+  matchMedia("print").addEventListener("change", ({matches}) => {
+    if (matches) before ??= document.documentElement.dataset.theme;
+    set(matches ? "light" : before ?? "light");
+    if (!matches) before = null;
   });
-  addEventListener("afterprint", () => set(before));
 }
 
 // ---------------------------------------------------------------------------------------------------- choices
