@@ -112,7 +112,7 @@ void write_field_content(const hdf5::Group& root, const Field& field) {
 void write_field(const std::filesystem::path& file, const Field& field) {
   hdf5::write_sealed(file, [&](const hdf5::Group& root) {
     root.set("lacon_type", "field");
-    root.set("format", std::int64_t{1});
+    root.set("format", storage::format);
     write_field_content(root, field);
   });
 }

@@ -26,10 +26,14 @@ std::vector<double> read_list_of_reals(const hdf5::Group& root);
 TimeSteps read_time_steps(const hdf5::Group& root);
 Result read_result(const hdf5::Group& root);
 
-/// What one of these readers makes of a file whose content may be anything: what it does not look at by itself (a list that is
-/// too short, JSON that is none) is BASE_2 as well.
+inline constexpr std::int64_t format = 1;  ///< of the files of a base that are written, and read
+
+/// What one of these readers makes of a file whose content may be anything. One of another format is BASE_6; what it does not
+/// look at by itself (a list that is too short, JSON that is none) is BASE_2 as well.
 template <class Read>
 auto read_whatever(const hdf5::Group& root, const Read& read) {
+  if (const std::int64_t found = root.has_attribute("format") ? root.integer("format") : format; found != format)
+    fail("BASE_6", {{"file", root.path().string()}, {"format", std::to_string(found)}});
   try {
     return read(root);
   } catch (const std::logic_error& error) {  // out_of_range, length_error

@@ -5,6 +5,7 @@ import struct
 from ..core.late import h5py, numpy
 from ..core.messages import fail
 
+_format = 1  #: of the files of a base that are written, and read
 _mark = b"LACONSUM"
 _length = 32
 _part = 1 << 23  #: bytes at a time
@@ -36,7 +37,7 @@ def of(content):
 
 
 def open_checked(path):
-    """An h5py.File to be read, whose content is that of its seal. @throws AsterError BASE_5, OSError"""
+    """An h5py.File to be read, whose content is that of its seal. @throws AsterError BASE_5, BASE_6, OSError"""
     with open(path, "rb") as file:
         length = file.seek(0, 2) - _length
         file.seek(max(length, 0))
@@ -51,4 +52,8 @@ def open_checked(path):
             if found != sums.seal(length):
                 fail("BASE_5", file=path)
             _known[path] = state
-    return h5py.File(path, "r")
+    opened = h5py.File(path, "r")
+    if (written := int(opened.attrs.get("format", _format))) != _format:
+        opened.close()
+        fail("BASE_6", file=path, format=written)
+    return opened
