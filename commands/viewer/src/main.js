@@ -41,6 +41,20 @@ function startTheme() {
     set(matches ? "light" : before ?? "light");
     if (!matches) before = null;
   });
+  // the picture is on the screen a frame later, and only then on paper
+  const printLight = async () => {
+    const name = document.documentElement.dataset.theme;
+    set("light");
+    for (let i = 0; i < 2; ++i) await new Promise(requestAnimationFrame);
+    print();
+    set(name);
+  };
+  $("print").addEventListener("click", printLight);
+  addEventListener("keydown", (event) => {
+    if (!(event.ctrlKey || event.metaKey) || event.key.toLowerCase() !== "p") return;
+    event.preventDefault();
+    printLight();
+  });
 }
 
 // ---------------------------------------------------------------------------------------------------- choices
@@ -314,8 +328,9 @@ function startKeys() {
   for (const kind of ["keydown", "keypress", "keyup"])
     addEventListener(kind, (event) => {
       if (event.target.closest("input, select, textarea, button, a, summary")) return;
+      if (event.ctrlKey || event.metaKey || event.altKey) return;
       event.stopPropagation(); // vtk.js has keys of its own
-      if (kind !== "keydown" || event.ctrlKey || event.metaKey || event.altKey) return;
+      if (kind !== "keydown") return;
       const arrows = event.key.startsWith("Arrow") || event.key === " " || event.key === "Enter";
       if (arrows && document.activeElement !== $("view")) return; // they move the page
       const act = keys[event.key.length === 1 ? event.key.toLowerCase() : event.key];
@@ -360,7 +375,6 @@ function startControls() {
   control.zone.addEventListener("change", () => openBook(Number(control.opening.value)));
   control.opening.addEventListener("input", () => openBook(Number(control.opening.value)));
   $("play").addEventListener("click", play);
-  $("print").addEventListener("click", () => print());
   const views = study.dimension === 2 ? [["fit", () => scene.fit()]] : [["x", () => scene.lookAlong("x")], ["y", () => scene.lookAlong("y")], ["z", () => scene.lookAlong("z")],
     ["3D", () => scene.lookAlong("3D")], ["fit", () => scene.fit()]];
   $("views").replaceChildren(...views.map(([name, act]) => {
