@@ -4,6 +4,7 @@
 
 #include "lacon/catalog/messages.hpp"
 #include "lacon/operators/meshing/body.hpp"
+#include "lacon/operators/meshing/patch_turn.hpp"
 #include "lacon/operators/meshing/quality.hpp"
 
 namespace lacon {
@@ -50,10 +51,12 @@ OrientationReport orient_skin(Mesh& mesh, const std::string& group, std::span<co
   }
   std::sort(to_turn.begin(), to_turn.end());  // a group may name a cell twice
   to_turn.erase(std::unique(to_turn.begin(), to_turn.end()), to_turn.end());
+  const std::vector<std::int32_t> patches = patches_to_turn(mesh, to_turn, keyword + " '" + group + "'");
   for (const std::int32_t skin : to_turn) {
     const auto nodes = mesh.cells[static_cast<std::size_t>(skin)];
     std::ranges::copy(mirrored(mesh.types[static_cast<std::size_t>(skin)], nodes), nodes.begin());
   }
+  settle_turned(mesh, patches);
   report.turned = static_cast<std::int64_t>(to_turn.size());
   return report;
 }

@@ -3,7 +3,6 @@
 #include <fmt/core.h>
 
 #include "lacon/catalog/messages.hpp"
-#include "lacon/operators/meshing/body.hpp"
 #include "lacon/operators/meshing/orientation.hpp"
 #include "lacon/operators/modi_maillage/transform.hpp"
 
@@ -11,7 +10,6 @@ namespace lacon {
 
 void modi_maillage(Mesh& mesh, const Keywords& keywords) {
   if (transform(mesh, keywords)) return;
-  refuse_cut_mesh(mesh, "ORIE_PEAU");
   for (const Keywords& factor : keywords.factors("ORIE_PEAU")) {
     std::vector<std::int32_t> inside;
     for (const std::string& group : factor.texts("GROUP_MA_INTERNE")) {

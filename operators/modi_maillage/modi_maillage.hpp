@@ -6,8 +6,7 @@
 namespace lacon {
 
 /// TRANSLATION, ROTATION, ECHELLE, SYMETRIE (transform.hpp), or ORIE_PEAU: every group of every occurrence; prints how many
-/// cells were turned. Errors: MESH1_12 (mesh already cut), MESH_1, MESH_2 (unknown, empty group) and those of
-/// operators/meshing/orientation.hpp.
+/// cells were turned. Errors: MESH_1, MESH_2 (unknown, empty group) and those of operators/meshing/orientation.hpp.
 void modi_maillage(Mesh& mesh, const Keywords& keywords);
 
 }  // namespace lacon

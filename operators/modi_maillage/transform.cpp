@@ -3,9 +3,11 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <numeric>
 
 #include "lacon/catalog/messages.hpp"
 #include "lacon/operators/meshing/body.hpp"
+#include "lacon/operators/meshing/patch_turn.hpp"
 #include "lacon/structures/vector.hpp"
 
 namespace lacon {
@@ -59,6 +61,10 @@ void mirror(Mesh& mesh, const Keywords& factor) {
   each_node(mesh, [&](Vec3 x) { return x - (2 * dot(normal, x - point)) * normal; });
   for (std::size_t c = 0; c < mesh.n_cells(); ++c)
     std::ranges::copy(mirrored(mesh.types[c], mesh.cells[c]), mesh.cells[c].begin());
+  if (!mesh.patches) return;
+  std::vector<std::int32_t> patches(mesh.patches->size());
+  std::iota(patches.begin(), patches.end(), 0);
+  settle_turned(mesh, patches);
 }
 
 }  // namespace
@@ -74,7 +80,6 @@ bool transform(Mesh& mesh, const Keywords& keywords) {
     each_node(mesh, [&](Vec3 x) { return scale * x; });
     return true;
   }
-  if (keywords.has("SYMETRIE")) refuse_cut_mesh(mesh, "SYMETRIE");
   for (const Keywords& factor : keywords.factors("ROTATION")) rotate(mesh, factor);
   for (const Keywords& factor : keywords.factors("SYMETRIE")) mirror(mesh, factor);
   return keywords.has("ROTATION") || keywords.has("SYMETRIE");

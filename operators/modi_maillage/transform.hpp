@@ -6,8 +6,8 @@
 namespace lacon {
 
 /// Move the nodes as the one of these keywords that is there says; false where there is none. A mirror also turns every cell
-/// inside out, so that volumes stay positive and skins outward. Throws ORDER_4 (vectors of another dimension than the mesh's,
-/// directions that are zero or parallel), MESH1_12 (SYMETRIE of a mesh that is cut for LAC).
+/// inside out, so that volumes stay positive and skins outward, and patches with their sub-cells. Throws ORDER_4 (vectors of
+/// another dimension than the mesh's, directions that are zero or parallel).
 bool transform(Mesh& mesh, const Keywords& keywords);
 
 }  // namespace lacon

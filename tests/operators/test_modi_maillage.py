@@ -120,11 +120,21 @@ class ModiMaillage(OperatorTest):
         self.assert_refuses("ORIE_1", "MODI_MAILLAGE", self.orient({"GROUP_MA_PEAU": ["LEFT_BODY"]}), "M6", "QUAD4",
                             result="mesh_1", reuse=True)
 
-    def test_refuses_a_mesh_that_is_cut(self):
+    def test_turns_and_moves_a_mesh_that_is_cut(self):
         made = self.run_command("CREA_MAILLAGE", {"MAILLAGE": concept("mesh_1"), "DECOUPE_LAC": [{"GROUP_MA_ESCL": ["TOP"]}]}, "mesh_2")
         self.assertEqual(made.status, 0, made.stderr)
-        self.assert_refuses("MESH1_12", "MODI_MAILLAGE", {"MAILLAGE": concept("mesh_2"), "ORIE_PEAU": [{"GROUP_MA_PEAU": ["LOW"]}]},
-                            result="mesh_2", reuse=True)
+        run = self.run_command("MODI_MAILLAGE", {"MAILLAGE": concept("mesh_2"), "ORIE_PEAU": [{"GROUP_MA_PEAU": ["LOW", "TOP"]}]}, "mesh_2", reuse=True)
+        self.assertEqual(run.status, 0, run.stderr)
+        self.assertRegex(run.stdout, r"LOW +1 cells turned")
+        self.assertRegex(run.stdout, r"TOP +0 cells turned")
+        before = self.read_mesh("mesh_2").coordinates
+        with self.create("field_4", "field", references=["mesh_2"], mesh="mesh_2", location="NOEU", quantity="DEPL_R", order=0, instant=0.0, name="U") as file:
+            file.attrs["components"] = np.array(["DX", "DY"], h5py.string_dtype())
+            file["support"], file["values"] = np.array([2], np.int32), np.array([(0.5, -0.25)], float)
+            file["present"] = np.ones((1, 2), np.uint8)
+        moved = self.moved("mesh_2", DEFORME={"OPTION": "TRAN", "DEPL": concept("field_4")}).coordinates - before
+        np.testing.assert_allclose(moved[2], (0.5, -0.25, 0), atol=1e-15)
+        self.assertEqual(np.count_nonzero(moved), 2)
 
 
 if __name__ == "__main__":

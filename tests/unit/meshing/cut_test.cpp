@@ -4,6 +4,7 @@
 
 #include "lacon/catalog/contact.hpp"
 #include "lacon/catalog/cuts.hpp"
+#include "lacon/operators/modi_maillage/modi_maillage.hpp"
 #include "meshes.hpp"
 
 namespace {
@@ -82,6 +83,31 @@ TEST_P(Cut, turns_an_inward_slave_cell) {
   EXPECT_EQ(report.zones[0].turned, 1);
   EXPECT_NEAR(total_measure(made), total_measure(mesh), 1e-13 * total_measure(mesh));
   expect_sound_cut(mesh, made, {"SKIN"});
+}
+
+// A mirror turns every sub-cell inside out, and the patches stay those of the catalogue; so they do where the sub-cells alone
+// are turned, and ORIE_PEAU brings them back.
+TEST_P(Cut, of_a_skin_that_is_turned_keeps_its_patches) {
+  const Count& c = GetParam();
+  for (unsigned seed = 0; seed < 4; ++seed) {
+    Mesh made = cut(one_cell(c.body, c.skin, seed), {"SKIN"}, c.option);
+    const std::vector<std::int32_t> members = made.patches->cells.values;
+    modi_maillage(
+        made,
+        Keywords(nlohmann::json::parse(made.dimension == 3
+                                           ? R"({"SYMETRIE": [{"POINT": [1, 0, 0], "AXE_1": [0, 1, 0], "AXE_2": [0, 0, 1]}]})"
+                                           : R"({"SYMETRIE": [{"POINT": [1, 0], "AXE_1": [0, 1]}]})"),
+                 ""));
+    expect_sound_patches(made);
+    for (const std::int32_t cell : members) {
+      const auto at = static_cast<std::size_t>(cell);
+      std::ranges::copy(mirrored(made.types[at], made.cells[at]), made.cells[at].begin());
+    }
+    modi_maillage(made, Keywords(nlohmann::json::parse(R"({"ORIE_PEAU": [{"GROUP_MA_PEAU": ["SKIN"]}]})"), ""));
+    expect_sound_patches(made);
+    EXPECT_EQ(sorted(made.patches->cells.values), sorted(members));
+    if (HasFailure()) FAIL() << name_of(c) << ", seed " << seed;
+  }
 }
 
 INSTANTIATE_TEST_SUITE_P(Rows, Cut, testing::ValuesIn(counts), [](const auto& row) { return name_of(row.param); });

@@ -123,6 +123,32 @@ inline Nodes sorted(std::span<const std::int32_t> nodes) {
   return all;
 }
 
+/// What holds for every patch: its sub-cells are those of its kind, rank by rank, they look outward, and LAGS_C is carried
+/// where the catalogue says; no node is a carrier of two.
+inline void expect_sound_patches(const Mesh& mesh) {
+  ASSERT_TRUE(mesh.patches);
+  const Patches& patches = *mesh.patches;
+  const NodeCells around(mesh);
+  std::set<std::int32_t> carriers_so_far;
+  for (std::size_t p = 0; p < patches.size(); ++p) {
+    const catalog::PatchRow* row = catalog::find_patch(patches.kind[p]);
+    ASSERT_TRUE(row);
+    ASSERT_EQ(row->cells.size(), patches.cells[p].size());
+    std::set<std::int32_t> carriers;
+    for (std::size_t rank = 0; rank < row->cells.size(); ++rank) {
+      const auto c = static_cast<std::size_t>(patches.cells[p][rank]);
+      EXPECT_EQ(mesh.types[c], row->cells[rank]);
+      const auto bodies = body_cells(mesh, around, c);
+      ASSERT_EQ(bodies.size(), 1u) << "sub-cell " << cell_name(static_cast<std::int64_t>(c));
+      EXPECT_TRUE(bodies[0].match.outward);
+      for (const std::int8_t local : catalog::find_slave(patches.kind[p], static_cast<int>(rank))->carriers)
+        carriers.insert(mesh.cells[c][static_cast<std::size_t>(local)]);
+    }
+    EXPECT_EQ(carriers, std::set<std::int32_t>(patches.carriers[p].begin(), patches.carriers[p].end()));
+    for (const std::int32_t n : carriers) EXPECT_TRUE(carriers_so_far.insert(n).second) << "a carrier of two patches";
+  }
+}
+
 /// What holds for every cut: interior facets belong to two cells and boundary facets to one; the boundary is what it was, but
 /// for the slave facets, whose sub-cells are boundary facets seen from outside; every Jacobian is positive; nothing is used or
 /// left that should not be; patches, groups and the catalogue agree.
@@ -160,26 +186,8 @@ inline void expect_sound_cut(const Mesh& before, const Mesh& after, const std::v
   EXPECT_EQ(p, patches.size());
   EXPECT_EQ(patches.zone_offset.back(), static_cast<std::int64_t>(p));
 
-  const NodeCells around(after);
-  std::set<std::int32_t> carriers_so_far;
-  for (p = 0; p < patches.size(); ++p) {
-    const catalog::PatchRow* row = catalog::find_patch(patches.kind[p]);
-    ASSERT_TRUE(row);
-    ASSERT_EQ(row->cells.size(), patches.cells[p].size());
-    std::set<std::int32_t> carriers;
-    for (std::size_t rank = 0; rank < row->cells.size(); ++rank) {
-      const auto c = static_cast<std::size_t>(patches.cells[p][rank]);
-      EXPECT_EQ(after.types[c], row->cells[rank]);
-      sub_facets.insert(sorted(after.cells[c]));
-      const auto bodies = body_cells(after, around, c);
-      ASSERT_EQ(bodies.size(), 1u) << "sub-cell " << cell_name(static_cast<std::int64_t>(c));
-      EXPECT_TRUE(bodies[0].match.outward);
-      for (const std::int8_t local : catalog::find_slave(patches.kind[p], static_cast<int>(rank))->carriers)
-        carriers.insert(after.cells[c][static_cast<std::size_t>(local)]);
-    }
-    EXPECT_EQ(carriers, std::set<std::int32_t>(patches.carriers[p].begin(), patches.carriers[p].end()));
-    for (const std::int32_t n : carriers) EXPECT_TRUE(carriers_so_far.insert(n).second) << "a carrier of two patches";
-  }
+  expect_sound_patches(after);
+  for (const std::int32_t c : patches.cells.values) sub_facets.insert(sorted(after.cells[static_cast<std::size_t>(c)]));
   for (const Nodes& facet : slave_facets) EXPECT_TRUE(boundary_before.erase(facet));
   for (const Nodes& facet : sub_facets) EXPECT_TRUE(boundary_after.erase(facet)) << "a sub-cell is no boundary facet";
   EXPECT_EQ(boundary_before, boundary_after);

@@ -122,7 +122,7 @@ TEST(OrientErrors, a_body_cell_is_no_skin) {
   EXPECT_EQ(error_of([&] { orient_skin(mesh, "SOUTH", {}, "K"); }).id, "MESH_1");
 }
 
-// Every group of every occurrence is oriented; a mesh that is cut is refused.
+// Every group of every occurrence is oriented, on a mesh that is cut for contact too.
 TEST(ModiMaillage, orients_every_group_of_every_occurrence) {
   Mesh mesh = block(CellType::QUAD4, 2, 2, 1);
   turn(mesh, "AROUND", [](std::int32_t) { return true; });
@@ -134,7 +134,21 @@ TEST(ModiMaillage, orients_every_group_of_every_occurrence) {
             0);
   EXPECT_EQ(orient_skin(mesh, "RIGHT", {}, "K").turned, 2);
   Mesh made = cut(mesh, {"TOP"});
-  EXPECT_EQ(error_of([&] { modi_maillage(made, keywords); }).id, "MESH1_12");
+  turn(made, "BOTTOM", [](std::int32_t) { return true; });
+  modi_maillage(made, keywords);
+  EXPECT_EQ(orient_skin(made, "BOTTOM", {}, "K").turned, 0);
+  expect_sound_patches(made);
+}
+
+// A part of a patch does not turn alone: what it is a part of is said, and nothing has changed.
+TEST(ModiMaillage, a_patch_turns_as_a_whole) {
+  Mesh made = cut(block(CellType::QUAD4, 2, 2, 1), {"TOP"});
+  turn(made, "TOP", [&](std::int32_t cell) { return cell == made.patches->cells[1][0]; });
+  const std::vector<std::int32_t> before = made.cells.values;
+  const Message error = error_of([&] { orient_skin(made, "TOP", {}, "K"); });
+  EXPECT_EQ(error.id, "ORIE_5");
+  EXPECT_THAT(error.text, HasSubstr("'TOP'"));
+  EXPECT_EQ(made.cells.values, before);
 }
 
 }  // namespace
