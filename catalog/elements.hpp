@@ -7,7 +7,7 @@
 
 namespace lacon::catalog {
 
-enum class Role : std::int8_t { solid, skin };
+enum class Role : std::int8_t { solid, skin, discrete };
 
 /// What the coordinates mean: a plane x y; half a plane through the axis of revolution y, x being the radius; space.
 enum class Geometry : std::int8_t { plane, axis, space };

@@ -61,8 +61,15 @@ def load(folder):
         "quantities": read(folder / "quantities.toml")["quantity"],
         "messages": messages,
         "instead": read(folder / "instead.toml"),
-        "commands": {path.stem.upper(): read(path) for path in sorted((folder / "commands").glob("*.toml"))},
+        "commands": complete_commands({path.stem.upper(): read(path) for path in sorted((folder / "commands").glob("*.toml"))}),
     }
+
+
+def complete_commands(commands):
+    """Commands that are like another one get its rows."""
+    for name, row in commands.items():
+        check("like" not in row or "like" not in commands.get(row["like"], {"like": ""}), f"commands: {name} is like no command with rows of its own")
+    return {name: {**commands.get(row.get("like"), {}), **row} for name, row in commands.items()}
 
 
 # ---------------------------------------------------------------------------------------------------- cells

@@ -48,6 +48,10 @@ Material Base::material(std::string_view id) const {
   return storage::read_whatever(open_concept(*this, id, "material"), storage::read_material);
 }
 
+ElementCharacteristics Base::element_characteristics(std::string_view id) const {
+  return storage::read_whatever(open_concept(*this, id, "element_characteristics"), storage::read_element_characteristics);
+}
+
 MaterialField Base::material_field(std::string_view id) const {
   return storage::read_whatever(open_concept(*this, id, "material_field"), storage::read_material_field);
 }
@@ -153,6 +157,10 @@ std::int64_t Base::next_version() const {
 void Base::store(const Mesh& mesh) const { store_concept(*this, *order_, "mesh", mesh); }
 
 void Base::store(const Model& model) const { store_concept(*this, *order_, "model", model); }
+
+void Base::store(const ElementCharacteristics& characteristics) const {
+  store_concept(*this, *order_, "element_characteristics", characteristics);
+}
 
 void Base::store(const MaterialField& field) const {
   std::vector<std::string> references = storage::references(field);

@@ -30,6 +30,7 @@ class Base {
   MaterialField material_field(std::string_view id) const;
   Load load(std::string_view id) const;
   Contact contact(std::string_view id) const;
+  ElementCharacteristics element_characteristics(std::string_view id) const;
   Function function(std::string_view id) const;
   Formula formula(std::string_view id) const;
   std::vector<double> list_of_reals(std::string_view id) const;
@@ -48,6 +49,7 @@ class Base {
   void store(const MaterialField& field) const;
   void store(const Load& load) const;
   void store(const Contact& contact) const;
+  void store(const ElementCharacteristics& characteristics) const;
   void store(const Table& table) const;
   void store(const Field& field) const;
   /// The index of a result, behind the fields that it names. It may be stored again as the result grows: who reads it finds the

@@ -32,4 +32,14 @@ double Function::operator()(double at, std::string_view label) const {
   return y[i] + t * (y[j] - y[i]);
 }
 
+Model Contact::completed(Model of_bodies) const {
+  for (const SkinElement& skin : skins) {
+    auto& names = of_bodies.elements;
+    const auto at = std::find(names.begin(), names.end(), skin.element);
+    of_bodies.element[static_cast<std::size_t>(skin.cell)] = static_cast<std::int32_t>(at - names.begin());
+    if (at == names.end()) names.push_back(skin.element);
+  }
+  return of_bodies;
+}
+
 }  // namespace lacon

@@ -1,5 +1,6 @@
 #pragma once
 // The concepts between mesh and result, as docs/structures.md lays them out. Plain data; numbers are 0-based.
+#include <array>
 #include <cstdint>
 #include <map>
 #include <optional>
@@ -82,6 +83,19 @@ struct ContactZone {
   std::string initial_status;               ///< INTERPENETRE, OUI, NON
   double tolerance = 1e-8;                  ///< RESI_APPA
   double distance_limit = -1;               ///< COEF_MULT_APPA; not positive: that of overlaps alone
+  std::vector<std::int32_t> held_open;      ///< patches that never get into contact (SANS_GROUP_NO, ...)
+  std::string resolution = "OUI";           ///< RESOLUTION; NON: no patch gets into contact, overlaps are told
+  double overlap_tolerance = 0;             ///< TOLE_INTERP: the overlap that is told, with RESOLUTION='NON'
+  std::string gliding = "NON";              ///< GLISSIERE; OUI: what is in contact stays in contact
+  LoadValue slave_offset, master_offset;    ///< DIST_ESCL, DIST_MAIT: by these the skins stand out of their cells
+
+  bool has_offset() const { return slave_offset != LoadValue{} || master_offset != LoadValue{}; }
+};
+
+/// A skin cell that AFFE_MODELE left without element, and the one that contact gives it: of its body's modelisation.
+struct SkinElement {
+  std::int32_t cell;
+  std::string element;  ///< row of the element catalogue
 };
 
 struct SlaveElement {
@@ -100,8 +114,25 @@ struct Contact {
   double resi_geom = 1e-6;
   /// CONT_STAT_ELAS: how many iterations without a change of status the matrix stays elastic for
   std::int64_t elastic_iterations = 0;
+  bool stops_at_overlap = false;  ///< STOP_INTERP: an overlap with RESOLUTION='NON' ends the computation
   std::vector<ContactZone> zones;
   std::vector<SlaveElement> slaves;  ///< zone by zone
+  std::vector<SkinElement> skins;
+
+  /// A model with the elements of `skins` too.
+  Model completed(Model of_bodies) const;
+};
+
+/// A spring between two nodes, or between a node and the ground: the force on the first is -stiffness (u_first - u_second).
+struct Spring {
+  std::int32_t first, second = -1;    ///< nodes; -1: the ground
+  std::array<double, 6> stiffness{};  ///< lower triangle of a symmetric matrix, row by row, in the axes of the mesh
+};
+
+/// AFFE_CARA_ELEM: what elements have beside their material.
+struct ElementCharacteristics {
+  std::string model, mesh;
+  std::vector<Spring> springs;
 };
 
 /// A piecewise function of one parameter.

@@ -10,6 +10,7 @@
 #include "lacon/operators/affe_char/places.hpp"
 #include "lacon/operators/affe_char/relations.hpp"
 #include "lacon/operators/meshing/skin.hpp"
+#include "lacon/operators/program/study_function.hpp"
 
 namespace lacon {
 namespace {
@@ -24,7 +25,7 @@ void load_nodes(const LoadScene& scene, const std::vector<Keywords>& factors, st
     for (const NamedPlaces& named : named_nodes(scene, factor))
       for (const std::string_view component : components) {
         if (!factor.has(component)) continue;
-        const LoadValue value = value_of(scene, factor, component);
+        const LoadValue value = value_of(scene.base, factor, component);
         for (const std::int32_t node : named.members) {
           std::string dof(component);
           if (dof.front() == 'F') dof.front() = 'D';
@@ -113,7 +114,7 @@ void load_cells(Load& load, const LoadScene& scene, const Keywords& keywords) {
       for (const NamedPlaces& named : named_cells(scene, factor, [&](std::int32_t c) { return fits(scene, kind, c); })) {
         for (const std::string component : {"PRES", "CISA_2D", "FX", "FY", "FZ"}) {
           if (!factor.has(component)) continue;
-          const LoadValue value = value_of(scene, factor, component);
+          const LoadValue value = value_of(scene.base, factor, component);
           for (const std::int32_t cell : named.members) {
             check_cell(scene, kind, cell, component, named.source);
             (is_pressure ? pressures : forces_on_cells)

@@ -6,8 +6,7 @@
 
 #include "lacon/catalog/messages.hpp"
 #include "lacon/catalog/quantities.hpp"
-#include "lacon/operators/program/study_function.hpp"
-#include "lacon/structures/names.hpp"
+#include "lacon/operators/meshing/named_nodes.hpp"
 
 namespace lacon {
 
@@ -57,37 +56,6 @@ std::string LoadScene::names_of(unsigned own) const {
 
 // ---------------------------------------------------------------------------------------------------- places
 
-namespace {
-
-/// The nodes that a keyword gives by name: N1, N2, ... Throws CHARGE_1.
-std::vector<std::int32_t> nodes_by_name(const LoadScene& scene, const Keywords& factor, const std::string& keyword) {
-  std::vector<std::int32_t> nodes;
-  for (const std::string& name : factor.texts(keyword)) {
-    const std::optional<std::int32_t> node = find_by_name(scene.mesh, name, Entity::node);
-    if (!node)
-      fail("CHARGE_1", {{"keyword", factor.path(keyword)},
-                        {"name", name},
-                        {"last", node_name(static_cast<std::int64_t>(scene.mesh.n_nodes()) - 1)}});
-    nodes.push_back(*node);
-  }
-  return nodes;
-}
-
-}  // namespace
-
-std::vector<char> nodes_left_out(const LoadScene& scene, const Keywords& factor) {
-  std::vector<char> out(scene.mesh.n_nodes(), 0);
-  const auto leave_out = [&](const auto& nodes) {
-    for (const std::int32_t node : nodes) out[static_cast<std::size_t>(node)] = 1;
-  };
-  for (const std::string& group : factor.texts("SANS_GROUP_MA"))
-    leave_out(nodes_of_cells(scene.mesh, cells_of_group(scene.mesh, group, factor.path("SANS_GROUP_MA"))));
-  for (const std::string& group : factor.texts("SANS_GROUP_NO"))
-    leave_out(nodes_of_group(scene.mesh, group, factor.path("SANS_GROUP_NO")));
-  leave_out(nodes_by_name(scene, factor, "SANS_NOEUD"));
-  return out;
-}
-
 std::vector<NamedPlaces> named_nodes(const LoadScene& scene, const Keywords& factor, const std::string& suffix) {
   const Mesh& mesh = scene.mesh;
   std::vector<NamedPlaces> named;
@@ -105,10 +73,10 @@ std::vector<NamedPlaces> named_nodes(const LoadScene& scene, const Keywords& fac
     const auto members = nodes_of_group(mesh, group, factor.path(group_no));
     named.push_back({factor.path(group_no) + " '" + group + "'", {members.begin(), members.end()}});
   }
-  for (const std::int32_t node : nodes_by_name(scene, factor, node_keyword))
+  for (const std::int32_t node : nodes_by_name(mesh, factor, node_keyword))
     named.push_back({factor.path(node_keyword), {node}});
   if (suffix.empty())
-    for (const std::vector<char> out = nodes_left_out(scene, factor); NamedPlaces & places : named)
+    for (const std::vector<char> out = nodes_left_out(mesh, factor); NamedPlaces & places : named)
       std::erase_if(places.members, [&](std::int32_t node) { return out[static_cast<std::size_t>(node)] != 0; });
   return named;
 }
@@ -131,30 +99,33 @@ std::vector<NamedPlaces> named_cells(const LoadScene& scene, const Keywords& fac
 
 // ---------------------------------------------------------------------------------------------------- values
 
-LoadValue value_of(const LoadScene& scene, const Keywords& factor, std::string_view keyword) {
-  if (!factor.is_concept(keyword)) return {factor.real(keyword), ""};
-  const StudyFunction function(scene.base, factor.concept_id(keyword));
-  constexpr std::string_view known[] = {"X", "Y", "Z", "INST"};
-  function.check_parameters(known, factor.path(keyword));
-  return {0.0, function.id()};
-}
-
 std::string show(const LoadScene& scene, const LoadValue& value) {
   return value.function.empty() ? fmt::format("{:g}", value.value) : scene.base.label(value.function);
 }
 
-bool GivenTerms::add(std::int32_t number, const std::string& place, const std::string& component, const LoadValue& value,
+void GivenTerms::add(std::int32_t number, const std::string& place, const std::string& component, const LoadValue& value,
                      const std::string& source) {
-  const auto [at, first] = given_.try_emplace({number, component}, Given{value, source});
-  if (!first && at->second.value != value)
+  const auto [at, first] = given_.try_emplace({number, component}, Given{terms_.size(), source});
+  if (first) return terms_.push_back({number, component, value});
+  LoadValue& held = terms_[at->second.term].value;
+  if (held == value) return;
+  const auto head = [](const std::string& path, const char* end) { return path.substr(0, path.find_first_of(end)); };
+  const std::string& before = at->second.source;
+  if (head(source, "[/") != head(before, "[/") || head(source, "/") == head(before, "/"))
     fail(conflict_, {{"component", component},
                      {"place", place},
-                     {"first", show(scene_, at->second.value)},
-                     {"first_source", at->second.source},
+                     {"first", show(scene_, held)},
+                     {"first_source", before},
                      {"second", show(scene_, value)},
                      {"second_source", source}});
-  if (first) terms_.push_back({number, component, value});
-  return first;
+  if (replaced_++ == 0) first_replaced_ = component + " of " + place, last_source_ = source;
+  held = value;
+  at->second.source = source;
+}
+
+GivenTerms::~GivenTerms() {
+  if (replaced_ > 0)
+    inform("CHARGE_20", {{"count", std::to_string(replaced_)}, {"what", first_replaced_}, {"source", last_source_}});
 }
 
 }  // namespace lacon

@@ -38,9 +38,6 @@ struct NamedPlaces {
   std::vector<std::int32_t> members;
 };
 
-/// One entry a node of the mesh: not 0 where SANS_GROUP_MA, SANS_GROUP_NO or SANS_NOEUD leaves it out. Throws as named_nodes().
-std::vector<char> nodes_left_out(const LoadScene& scene, const Keywords& factor);
-
 /// TOUT, GROUP_MA, GROUP_NO and NOEUD, whose names may have a suffix (GROUP_NO_1), without the nodes that are left out. Throws
 /// MESH_1, MESH_2, CHARGE_1.
 std::vector<NamedPlaces> named_nodes(const LoadScene& scene, const Keywords& factor, const std::string& suffix = "");
@@ -49,30 +46,33 @@ std::vector<NamedPlaces> named_nodes(const LoadScene& scene, const Keywords& fac
 std::vector<NamedPlaces> named_cells(const LoadScene& scene, const Keywords& factor,
                                      const std::function<bool(std::int32_t)>& fits);
 
-/// The value of a keyword: a number or a function of X, Y, Z and INST. Throws FUNCTION_2.
-LoadValue value_of(const LoadScene& scene, const Keywords& factor, std::string_view keyword);
 std::string show(const LoadScene& scene, const LoadValue& value);
 
-/// What a load has been given so far: each component of a node or a cell has one value.
+/// What a load has been given so far: each component of a node or a cell has one value. Of two occurrences of one factor
+/// keyword the later one wins, as in code_aster; one occurrence and two factor keywords may not give different values.
 class GivenTerms {
  public:
   /// @param conflict message for two values: CHARGE_4 or CHARGE_5
   GivenTerms(const LoadScene& scene, std::string_view conflict, std::vector<LoadTerm>& terms)
       : scene_(scene), conflict_(conflict), terms_(terms) {}
-  /// Enter a value; the same value again is nothing new, another one is an error. @param place "node N5"
-  /// @return whether it is new
-  bool add(std::int32_t number, const std::string& place, const std::string& component, const LoadValue& value,
+  ~GivenTerms();  ///< CHARGE_20: what later occurrences have replaced
+  GivenTerms(const GivenTerms&) = delete;
+  GivenTerms& operator=(const GivenTerms&) = delete;
+  /// Enter a value. @param place "node N5"
+  void add(std::int32_t number, const std::string& place, const std::string& component, const LoadValue& value,
            const std::string& source);
 
  private:
   struct Given {
-    LoadValue value;
+    std::size_t term;  ///< of `terms_`
     std::string source;
   };
   const LoadScene& scene_;
   std::string_view conflict_;
   std::vector<LoadTerm>& terms_;
   std::map<std::pair<std::int32_t, std::string>, Given> given_;
+  std::int64_t replaced_ = 0;
+  std::string first_replaced_, last_source_;  ///< "DX of the node N5", and the keyword that replaced it
 };
 
 }  // namespace lacon

@@ -8,6 +8,8 @@
 #include <set>
 
 #include "lacon/catalog/messages.hpp"
+#include "lacon/operators/meshing/named_nodes.hpp"
+#include "lacon/operators/program/study_function.hpp"
 #include "lacon/pairing/normals.hpp"
 #include "lacon/structures/vector.hpp"
 
@@ -55,7 +57,7 @@ void link_dofs(Load& load, const LoadScene& scene, const Keywords& factor) {
   if (coefficients.size() != nodes.size()) wrong_count(factor, "COEF_MULT", coefficients.size(), nodes.size());
   std::vector<RelationTerm> terms;
   for (std::size_t i = 0; i < nodes.size(); ++i) terms.push_back({nodes[i], components[i], coefficients[i]});
-  add(load, scene, factor.path("DDL"), std::move(terms), value_of(scene, factor, "COEF_IMPO"));
+  add(load, scene, factor.path("DDL"), std::move(terms), value_of(scene.base, factor, "COEF_IMPO"));
 }
 
 /// Every node has the first one's displacement.
@@ -106,7 +108,7 @@ void link_groups(Load& load, const LoadScene& scene, const Keywords& factor) {
       for (std::size_t i = 0; i < components.size(); ++i)
         terms.push_back({side ? nearest : node, components[i], coefficients[i]});
     }
-    add(load, scene, factor.path("DDL_1"), std::move(terms), value_of(scene, factor, "COEF_IMPO"));
+    add(load, scene, factor.path("DDL_1"), std::move(terms), value_of(scene.base, factor, "COEF_IMPO"));
   }
 }
 
@@ -146,7 +148,7 @@ std::vector<std::pair<std::int32_t, Vec3>> normals_of(const LoadScene& scene, co
   const Surface surface = surface_of(scene.mesh, cells, scene.mesh.coordinates);
   const std::vector<double> normals = nodal_normals(surface);
   std::vector<std::pair<std::int32_t, Vec3>> found;
-  const std::vector<char> out = nodes_left_out(scene, factor);
+  const std::vector<char> out = nodes_left_out(scene.mesh, factor);
   for (const std::int32_t node : nodes_of_cells(scene.mesh, cells)) {
     if (out[static_cast<std::size_t>(node)]) continue;
     const Vec3 n = vector_at(normals.data() + 3 * static_cast<std::size_t>(node));
@@ -174,7 +176,7 @@ void hold_normal(Load& load, const LoadScene& scene, const Keywords& factor) {
       const Vec3 direction = tangent ? Vec3{-n.y, n.x, 0} : n;
       std::vector<RelationTerm> terms;
       for (int d = 0; d < scene.mesh.dimension; ++d) terms.push_back({node, translation[d], component(direction, d)});
-      add(load, scene, factor.path(keyword), std::move(terms), value_of(scene, factor, keyword));
+      add(load, scene, factor.path(keyword), std::move(terms), value_of(scene.base, factor, keyword));
     }
   }
 }

@@ -122,7 +122,7 @@ Model affe_modele(const Mesh& mesh, const Registry& registry, const Keywords& ke
       model.element.push_back(-1);
       continue;
     }
-    body = body || given[cell]->role != catalog::Role::skin;
+    body = body || given[cell]->role == catalog::Role::solid;
     const std::string name(given[cell]->name);
     auto at = std::find(model.elements.begin(), model.elements.end(), name);
     if (at == model.elements.end()) at = model.elements.insert(at, name);

@@ -10,12 +10,12 @@
 
 // The variables of points: slave, master, nodal normals, and behind them the corners of the polygon in the slave's chart, which
 // in the end are themselves functions of all unknowns. At a point the integrand is
-//     h = k g,   k = J r / (A . m),   y(eta) = x(xi) + g n(xi),
+//     h = k c,   k = J r / (A . m),   c = g - o(xi),   y(eta) = x(xi) + g n(xi),
 // J the measure, r the radius (1 but in axisymmetry), A the area normal, m the mean normal of a plane chart (A . m is 1
-// elsewhere), n the direction of N, which is A or interpolates nodal normals. With the multiplier k a of the last equation,
-// a . y_i = 0 and a . n = 1,
-//     dh  = g dk + k a . (dy - dx - g dn)                          at fixed eta,
-//     d2h = g d2k + 2 dk dg + k a . (d2y - d2x - 2 dg dn - g d2n)  where eta moves, but for d2eta,
+// elsewhere), o the offset of the skins, n the direction of N, which is A or interpolates nodal normals. With the multiplier k
+// a of the last equation, a . y_i = 0 and a . n = 1,
+//     dh  = c dk + k a . (dy - dx - g dn) - k do                                       at fixed eta,
+//     d2h = c d2k + 2 dk (dg - do) + k a . (d2y - d2x - 2 dg dn - g d2n) - k d2o       where eta moves, but for d2eta,
 // so that first derivatives are sums over nodes, and only second ones need rows, of the few quantities that move at a point:
 //     dg = a . R,   d eta^i = -b^i . R,   R = dy - dx - g dn,   b^i . y_j = 1 if i = j, b^i . n = 0.
 // Of a direction, d2n = (d2N - n (n . d2N)) / L - n |dn|^2 - 2 dn dL / L, and |N| has d2L = n . d2N + L |dn|^2.
@@ -85,7 +85,8 @@ class CellVariation {
     // of what second derivatives are made
     Vector<D> n{}, a{};
     std::array<Vector<D>, R> b{};
-    double g = 0, k = 0, length = 1, jacobian = 0, radius = 1, lift = 1;
+    double g = 0, c = 0, k = 0, length = 1, jacobian = 0, radius = 1, lift = 1;
+    Vector<R> offset_slope = Vector<R>::Zero();
     Vector<D> mean = Vector<D>::Zero();
     Vector<R> jacobian_slope = Vector<R>::Zero(), radius_slope = Vector<R>::Zero();  ///< of the initial geometry
     Eigen::Matrix<double, R, R> jacobian_second = Eigen::Matrix<double, R, R>::Zero(), radius_second = jacobian_second;
@@ -100,7 +101,11 @@ class CellVariation {
     const Vector<D>& normal = is_smooth() ? f.nodal.x : area.n;
     f.length = normal.norm();
     f.n = normal / f.length;
-    f.g = (f.master.x - slave.x).dot(f.n);
+    f.g = f.c = (f.master.x - slave.x).dot(f.n);
+    for (std::size_t a = 0; a < cell_.slave_offset.size(); ++a) {
+      f.c -= phi.value[a] * cell_.slave_offset[a];
+      for (int i = 0; i < R; ++i) f.offset_slope[i] += phi.slope(static_cast<int>(a), i) * cell_.slave_offset[a];
+    }
     std::tie(f.a, f.b) = dual(f.master.d, f.n);
     f.of_mean.setZero(), f.of_area.setZero(), f.of_normal.setZero(), f.of_place.setZero(), f.of_image.setZero();
     f.slope.setZero();
@@ -108,14 +113,14 @@ class CellVariation {
     if (!(f.radius > 0)) return f;
     f.lift = mean ? area.n.dot(*mean) : 1;
     f.k = f.jacobian * f.radius / f.lift;
-    f.value = f.k * f.g;
+    f.value = f.k * f.c;
 
     f.of_image = f.k * f.a;
     f.of_place = -f.of_image;
-    (is_smooth() ? f.of_normal : f.of_area) = -f.value / f.length * (f.a - f.n);
+    (is_smooth() ? f.of_normal : f.of_area) = -f.k * f.g / f.length * (f.a - f.n);
     if (cell_.current_jacobian) {
-      f.of_area += f.g * f.radius / f.lift / f.jacobian * area.n;
-      if (cell_.axis) f.of_place[0] += f.g * f.jacobian;
+      f.of_area += f.c * f.radius / f.lift / f.jacobian * area.n;
+      if (cell_.axis) f.of_place[0] += f.c * f.jacobian;
     }
     if (mean) {
       f.mean = *mean;
@@ -124,7 +129,7 @@ class CellVariation {
     }
     for (int i = 0; i < R; ++i) {
       f.slope[i] = f.of_place.dot(slave.d[i]) + f.of_area.dot(area.d[i]) +
-                   f.g / f.lift * (f.jacobian_slope[i] * f.radius + f.jacobian * f.radius_slope[i]);
+                   f.c / f.lift * (f.jacobian_slope[i] * f.radius + f.jacobian * f.radius_slope[i]) - f.k * f.offset_slope[i];
       if (is_smooth()) f.slope[i] += f.of_normal.dot(f.nodal.d[i]);
     }
     return f;
@@ -183,9 +188,9 @@ class CellVariation {
 
     // the measure
     PointRow djacobian = PointRow::Zero(n), dradius = PointRow::Zero(n), dk;
-    double of_turn = f.value;  // of |dn|^2
+    double of_turn = f.k * f.g;  // of |dn|^2
     if (cell_.current_jacobian) {
-      const double of_area_turn = f.g * f.radius / f.lift * f.jacobian;
+      const double of_area_turn = f.c * f.radius / f.lift * f.jacobian;
       if (is_smooth()) {
         const Direction of_area = direction(point, f, false, dxi);
         djacobian = f.jacobian * of_area.stretch;
@@ -203,17 +208,18 @@ class CellVariation {
         for (int a = 0; a < phi.n; ++a) dradius[D * a] = value(phi, a);
       for (int i = 0; i < R; ++i) dradius += (cell_.current_jacobian ? slave.d[i][0] : f.radius_slope[i]) * dxi.row(i);
       dk += f.jacobian * dradius;
-      form_.add(2 * w * f.g, djacobian, dradius);
+      form_.add(2 * w * f.c, djacobian, dradius);
     }
     if (turned_mean) {
       PointRow dlift = *turned_mean;
       along_area(point, f.mean, dxi, dlift.row(0));
       dk -= f.k / f.lift * dlift;
-      form_.add(-2 * w * f.g / f.lift, dlift, dk);
+      form_.add(-2 * w * f.c / f.lift, dlift, dk);
     }
 
     form_.add(2 * w, dg, dk - f.k * sideways);
-    form_.add(2 * w * f.value, normal.stretch, sideways);
+    form_.add(2 * w * f.k * f.g, normal.stretch, sideways);
+    for (int i = 0; i < R; ++i) form_.add(-2 * w * f.offset_slope[i], dxi.row(i), dk);
     for (int i = 0; i < R; ++i) form_.add(w * of_turn, normal.turn.row(i), normal.turn.row(i));
     for (int i = 0; i < R; ++i) {
       // the image slides along a master that bends and turns
@@ -351,7 +357,9 @@ class CellVariation {
       for (int k = 0; k < R; ++k) {
         double bent = of_place.dot(slave.dd[j][k]) + f.of_area.dot(AreaNormal<D>::second(slave, j, k));
         if (is_smooth()) bent += f.of_normal.dot(f.nodal.dd[j][k]);
-        bent += f.g / f.lift * (f.radius * f.jacobian_second(j, k) + f.jacobian * f.radius_second(j, k));
+        bent += f.c / f.lift * (f.radius * f.jacobian_second(j, k) + f.jacobian * f.radius_second(j, k));
+        for (std::size_t a = 0; a < cell_.slave_offset.size(); ++a)
+          bent -= f.k * phi.bend(static_cast<int>(a), j, k) * cell_.slave_offset[a];
         row += bent * dxi.row(k);
       }
       form_.add(w, dxi.row(j), row);

@@ -85,7 +85,7 @@ struct ContactGeometry::Alike {
   std::vector<std::int32_t> members;  ///< contact cells of the block
   ContactCells some;                  ///< these, where the block has others too
   std::vector<double> slave_shape, slave_gradient, master_shape, slave_initial, slave, master, slave_normal;
-  std::vector<double> point_gap, gap, measure, current_measure, coupling;
+  std::vector<double> point_gap, gap, measure, current_measure, coupling, offset, offset_integral;
   std::vector<std::int32_t> error;
 };
 
@@ -340,6 +340,31 @@ void ContactGeometry::evaluate(const Zone& zone, const ContactCells& cells, Alik
   batch.coupling = room(group.coupling, n * (ns + nm) * dimension).data();
   batch.error = group.error.data();
   kernels_.at(group.element)->contact(&batch);
+  const auto number = static_cast<std::size_t>(&zone - zones_.data());
+  if (has_offset(number)) offset_gaps(number, cells, batch, group);
+}
+
+void ContactGeometry::offset_gaps(std::size_t zone, const ContactCells& cells, lacon_contact_batch batch, Alike& group) const {
+  const std::span<double> at_point = room(group.offset, cells.weight.size()),
+                          integral = room(group.offset_integral, cells.size());
+  const auto n = static_cast<std::size_t>(batch.n_slave_nodes);
+  for (std::size_t c = 0; c < cells.size(); ++c) {
+    const auto nodes = mesh_.cells[contact_.slaves[zones_[zone].slaves[cells.slave[c]]].cell];
+    for (auto p = static_cast<std::size_t>(cells.offset[c]); p < static_cast<std::size_t>(cells.offset[c + 1]); ++p) {
+      double offset = 0;
+      for (std::size_t a = 0; a < n; ++a)
+        offset += batch.slave_shape[p * n + a] * offsets_[zone][static_cast<std::size_t>(nodes[a])];
+      batch.point_gap[p] -= offset;
+      at_point[p] = cells.weight[p] * offset;
+    }
+  }
+  // the measure with these weights is the integral of the offset
+  double* const gap = batch.gap;
+  batch.weight = at_point.data();
+  batch.measure = integral.data();
+  batch.point_gap = batch.gap = batch.current_measure = batch.coupling = nullptr;
+  kernels_.at(group.element)->contact(&batch);
+  for (std::size_t c = 0; c < cells.size(); ++c) gap[c] -= integral[c];
 }
 
 void ContactGeometry::add(const Zone& zone, const Block& block_of_zone, ZonePairing* record) {

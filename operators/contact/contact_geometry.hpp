@@ -65,6 +65,10 @@ class ContactGeometry {
   /// mesh.dimension)
   void rest_at(std::span<const double> displacement);
 
+  /// By what the gaps of each zone are smaller than what its cells leave, from the next update() on: (n_nodes), interpolated on
+  /// the slave; empty: by nothing.
+  void set_offsets(std::vector<std::vector<double>> offsets) { offsets_ = std::move(offsets); }
+
   /// Pair on the current geometry, integrate gaps and couplings. @param displacement (n_nodes, mesh.dimension)
   /// @param records gets one entry a zone. Throws EVOLUTION_3.
   void update(std::span<const double> displacement, std::vector<ZonePairing>* records = nullptr);
@@ -107,6 +111,9 @@ class ContactGeometry {
   /// change their integral.
   bool coincides(std::size_t patch) const;
   Variation frozen_variation(const Cell& cell) const;
+  /// Take the offset off gaps that a kernel gave. @param batch as the kernel had it
+  void offset_gaps(std::size_t zone, const ContactCells& cells, lacon_contact_batch batch, Alike& group) const;
+  bool has_offset(std::size_t zone) const { return zone < offsets_.size() && !offsets_[zone].empty(); }
   /// One of the contact cells of a zone, paired with traces.
   Variation variation(std::size_t zone, const Pairing& found, std::size_t place, bool second) const;
   /// Sum up what the kernels gave.
@@ -129,6 +136,7 @@ class ContactGeometry {
   std::vector<double> rest_;                             ///< likewise, at rest
   std::vector<Zone> zones_;
   std::vector<std::vector<double>> normals_;  ///< of each zone, at the nodes (LISSAGE)
+  std::vector<std::vector<double>> offsets_;  ///< likewise
   std::vector<NormalVariation> normal_variations_;
   std::vector<Cell> cells_;
   std::vector<double> coupling_;

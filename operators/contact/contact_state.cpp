@@ -38,6 +38,9 @@ ContactState::ContactState(const Mesh& mesh, const Model& model, const Contact& 
   own_ = rho_ = size_;
   flexibility_.assign(mesh.n_cells(), 0.0);
   locked_.assign(size_.size(), false);
+  held_open_ = gliding_ = locked_;
+  for (const ContactZone& zone : contact.zones)
+    for (const std::int32_t patch : zone.held_open) held_open_[patch] = true;
   for (const ContactGeometry::Zone& zone : geometry_.zones())
     smallest_edge_.push_back(std::min(smallest_edge(zone.slave), smallest_edge(zone.master)));
 
@@ -103,10 +106,16 @@ Patchwise ContactState::initial() const {
     const std::string& asked = contact_.zones[zone].initial_status;
     const bool touches = geometry_.gap(p) <= tolerances_.initial_gap * smallest_edge_[zone] &&
                          geometry_.coverage(p) >= tolerances_.least_coverage;
-    const bool active = asked == "OUI" || (asked == "INTERPENETRE" && touches);
+    const bool active = !held_open_[p] && (asked == "OUI" || (asked == "INTERPENETRE" && touches));
     patches.status[p] = active ? Status::active : Status::open;
   }
   return patches;
+}
+
+void ContactState::keep_gliding(const Patchwise& patches) {
+  for (std::size_t p = 0; p < n_patches(); ++p)
+    gliding_[p] = geometry_.zone_of(p) >= 0 && contact_.zones[geometry_.zone_of(p)].gliding == "OUI" &&
+                  patches.status[p] == Status::active;
 }
 
 std::int64_t ContactState::update_statuses(Patchwise& patches) const {
@@ -121,8 +130,9 @@ std::int64_t ContactState::update_statuses(Patchwise& patches) const {
       const double round_off = tolerances_.lambda_round_off * largest + rho_[p] * gap_tolerance_;
       // inside the round-off of lambda and g a patch stays what it is: touching and unloaded, it must not flicker
       const bool was_active = status == Status::active;
-      const bool active = was_active ? test <= round_off && geometry_.coverage(p) >= tolerances_.least_coverage
-                                     : test < -round_off && geometry_.coverage(p) >= tolerances_.taking_coverage;
+      const bool pressed = was_active ? test <= round_off : test < -round_off;
+      const bool covered = geometry_.coverage(p) >= (was_active ? tolerances_.least_coverage : tolerances_.taking_coverage);
+      const bool active = (pressed || gliding_[p]) && covered && !held_open_[p];
       next = active ? Status::active : Status::open;
     }
     changes += next != status;
@@ -219,7 +229,7 @@ std::int64_t ContactState::n_constraints(const Patchwise& patches) const {
 HeldOverlap ContactState::held_overlap() const {
   HeldOverlap overlap;
   for (std::size_t p = 0; p < n_patches(); ++p) {
-    if (!locked_[p] || geometry_.coverage(p) < tolerances_.least_coverage ||
+    if (!locked_[p] || held_open_[p] || geometry_.coverage(p) < tolerances_.least_coverage ||
         geometry_.gap(p) >= -tolerances_.held_overlap * size_[p])
       continue;
     ++overlap.count;
@@ -244,7 +254,7 @@ std::vector<std::pair<std::size_t, std::int32_t>> ContactState::nearest_to_hold(
       if (!loose.contains(body)) continue;
       Hold& hold = holds[{geometry_.zone_of(patch), body}];
       if (patches.status[patch] == Status::active) hold.there = true;
-      if (geometry_.coverage(patch) < tolerances_.least_coverage ||
+      if (held_open_[patch] || geometry_.coverage(patch) < tolerances_.least_coverage ||
           geometry_.gap(patch) > tolerances_.holding_gap * size_[patch])
         continue;
       if (!hold.nearest || geometry_.gap(patch) < geometry_.gap(*hold.nearest)) hold.nearest = patch, hold.node = node;
@@ -286,10 +296,24 @@ std::optional<FacetOverlap> ContactState::facet_overlap(std::int32_t number) con
 std::optional<PiercedPatch> ContactState::pierced(std::int32_t zone, const Patchwise& patches) const {
   std::optional<PiercedPatch> worst;
   for (std::size_t p = 0; p < n_patches(); ++p) {
-    if (geometry_.zone_of(p) != zone || locked_[p] || geometry_.coverage(p) < tolerances_.least_coverage) continue;
+    if (geometry_.zone_of(p) != zone || locked_[p] || held_open_[p] || geometry_.coverage(p) < tolerances_.least_coverage)
+      continue;
     const double depth = -geometry_.smallest_gap(p) / size_[p];
     if (depth < (patches.status[p] == Status::active ? tolerances_.pierced : tolerances_.pierced_open)) continue;
     if (!worst || depth > worst->depth) worst = PiercedPatch{p, depth, geometry_.gap(p)};
+  }
+  return worst;
+}
+
+std::optional<UncheckedOverlap> ContactState::unchecked_overlap(std::int32_t zone) const {
+  if (contact_.zones[zone].resolution != "NON") return std::nullopt;
+  std::optional<UncheckedOverlap> worst;
+  for (std::size_t p = 0; p < n_patches(); ++p) {
+    if (geometry_.zone_of(p) != zone || geometry_.coverage(p) < tolerances_.least_coverage) continue;
+    const double depth = -geometry_.smallest_gap(p);
+    if (depth > std::max(contact_.zones[zone].overlap_tolerance, tolerances_.touching * size_[p]) &&
+        (!worst || depth > worst->depth))
+      worst = UncheckedOverlap{p, depth};
   }
   return worst;
 }

@@ -31,6 +31,7 @@ struct ContactTolerances {
   double held_overlap = 1e-6;       ///< of h: an overlap of a locked patch that is worth an alarm
   double pierced = 0.05;            ///< of h: likewise of points of another active patch, whose average is closed
   double pierced_open = 0.04;       ///< of h: of points of an open patch, which nothing keeps out of the master
+  double touching = 1e-8;           ///< of h: an overlap of patches without contact that is round-off
 };
 
 /// What the contact of a zone does at an instant: the figures by which a user trusts it.
@@ -55,6 +56,12 @@ struct PiercedPatch {
   std::size_t patch;
   double depth;  ///< of its deepest point, over h
   double gap;    ///< average
+};
+
+/// A patch without contact that lies inside its master.
+struct UncheckedOverlap {
+  std::size_t patch;
+  double depth;  ///< of its deepest point
 };
 
 /// The patch of a zone that overlaps its master deepest, where that is nothing but what straight edges leave of curved skins.
@@ -91,6 +98,10 @@ class ContactState {
 
   /// ContactGeometry::rest_at
   void rest_at(std::span<const double> displacement) { geometry_.rest_at(displacement); }
+  /// What was in contact at the last state in equilibrium, which zones with GLISSIERE='OUI' keep in contact.
+  void keep_gliding(const Patchwise& patches);
+  /// ContactGeometry::set_offsets
+  void set_offsets(std::vector<std::vector<double>> offsets) { geometry_.set_offsets(std::move(offsets)); }
   /// Pair on the current geometry, integrate gaps and couplings. @param displacement (n_nodes, dimension)
   void update_geometry(std::span<const double> displacement);
   /// Statuses at the first instant (METHOD.md 3.7), multipliers zero.
@@ -131,6 +142,8 @@ class ContactState {
   std::optional<FacetOverlap> facet_overlap(std::int32_t zone) const;
   /// Of a zone the patch that is pierced deepest, over its size, where that is worth an alarm.
   std::optional<PiercedPatch> pierced(std::int32_t zone, const Patchwise& patches) const;
+  /// Of a zone with RESOLUTION='NON' the patch that its master has pierced deepest, by more than TOLE_INTERP.
+  std::optional<UncheckedOverlap> unchecked_overlap(std::int32_t zone) const;
 
   const ContactGeometry& geometry() const { return geometry_; }
   std::size_t n_patches() const { return geometry_.n_patches(); }
@@ -149,6 +162,8 @@ class ContactState {
   std::vector<double> own_;            ///< likewise of each patch
   std::vector<double> rho_;            ///< stiffness of both bodies, in series, under a pressure on each patch
   std::vector<bool> locked_;
+  std::vector<bool> held_open_;                         ///< of each patch: SANS_GROUP_NO, RESOLUTION='NON'
+  std::vector<bool> gliding_;                           ///< of each patch: keeps its contact (GLISSIERE)
   std::vector<ContactGeometry::Variation> variations_;  ///< of contact cells of active patches
   bool second_ = false;                                 ///< they have second derivatives
   double gap_tolerance_ = 0;

@@ -22,6 +22,7 @@ struct ContactCellGeometry {
   std::span<const double> slave_initial, slave_nodes, master_nodes;  ///< (n, dimension)
   std::span<const double> other_nodes;                               ///< (n, dimension): further nodes that bound the polygon
   std::span<const double> slave_normals;                             ///< (n, dimension), nodal, or empty
+  std::span<const double> slave_offset;                              ///< (n): by this gaps are smaller, or empty
   std::span<const double> slave_point, master_point, weight;         ///< of the integration points, as in ContactCells
   /// In the plane: the ends of the interval, and what they move with.
   struct End {

@@ -84,8 +84,8 @@ std::vector<ContactGeometry::Variation> ContactGeometry::vary(std::span<const st
 bool ContactGeometry::coincides(std::size_t patch) const {
   constexpr double round_off = 1e-12;  // of the patch: what this leaves of a gap changes forces as much
   const double size = mesh_.dimension == 3 ? std::sqrt(whole_[patch]) : whole_[patch];
-  return straight_[patch] != 0 && !contact_.smoothing && smallest_gap_[patch] >= -round_off * size &&
-         largest_gap_[patch] <= round_off * size;
+  return straight_[patch] != 0 && !contact_.smoothing && !has_offset(static_cast<std::size_t>(zone_of_[patch])) &&
+         smallest_gap_[patch] >= -round_off * size && largest_gap_[patch] <= round_off * size;
 }
 
 ContactGeometry::Variation ContactGeometry::frozen_variation(const Cell& cell) const {
@@ -165,6 +165,11 @@ ContactGeometry::Variation ContactGeometry::variation(std::size_t z, const Pairi
   cell.slave_point = std::span(cells.slave_point).subspan(first * (dimension - 1), count * (dimension - 1));
   cell.master_point = std::span(cells.master_point).subspan(first * (dimension - 1), count * (dimension - 1));
   cell.weight = std::span(cells.weight).subspan(first, count);
+  std::vector<double> offset;
+  if (has_offset(z)) {
+    for (const std::int32_t node : slave_nodes) offset.push_back(offsets_[z][static_cast<std::size_t>(node)]);
+    cell.slave_offset = offset;
+  }
   vary_gap(cell, second, variation.of_gap);
   if (!contact_.smoothing) return variation;
 

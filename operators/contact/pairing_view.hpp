@@ -37,9 +37,10 @@ struct PairingView {
 
 /// Pair on the geometry at a displacement.
 /// @param displacement (n_nodes, mesh.dimension), empty for the initial geometry
-/// @param cont_elem the field CONT_ELEM of the instant, or nullptr
+/// @param offsets of the skins at the instant, ContactOffsets::at  @param cont_elem its field CONT_ELEM, or nullptr
 /// Throws EVOLUTION_3 for a slave cell without normal, EVOLUTION_8 for one beyond the axis.
 PairingView view_pairing(const Mesh& mesh, const Model& model, const Contact& contact, Registry& registry,
-                         std::span<const double> displacement, const Field* cont_elem);
+                         std::span<const double> displacement, std::vector<std::vector<double>> offsets,
+                         const Field* cont_elem);
 
 }  // namespace lacon

@@ -12,6 +12,7 @@
 #include "lacon/operators/meshing/body.hpp"
 #include "lacon/operators/meshing/checks.hpp"
 #include "lacon/operators/meshing/cut.hpp"
+#include "lacon/operators/meshing/named_nodes.hpp"
 #include "lacon/operators/meshing/quality.hpp"
 
 namespace lacon {
@@ -78,6 +79,33 @@ std::vector<std::int32_t> chosen(const Mesh& mesh, const Keywords& factor) {
   return cells;
 }
 
+/// CREA_POI1: a point cell on each of some nodes, behind all other cells; each node gets one.
+void add_points(Mesh& mesh, const Keywords& factor) {
+  std::vector<std::int32_t> nodes = nodes_by_name(mesh, factor, "NOEUD");
+  const auto append = [&](const auto& members) { nodes.insert(nodes.end(), members.begin(), members.end()); };
+  if (factor.has("TOUT")) {
+    nodes.resize(mesh.n_nodes());
+    std::iota(nodes.begin(), nodes.end(), 0);
+  }
+  for (const std::string& group : factor.texts("GROUP_NO")) append(nodes_of_group(mesh, group, factor.path("GROUP_NO")));
+  for (const std::string& group : factor.texts("GROUP_MA"))
+    append(nodes_of_cells(mesh, cells_of_group(mesh, group, factor.path("GROUP_MA"))));
+  std::ranges::sort(nodes);
+  const auto twice = std::ranges::unique(nodes);
+  nodes.erase(twice.begin(), twice.end());
+  std::vector<std::int32_t> made;
+  for (const std::int32_t node : nodes) {
+    made.push_back(static_cast<std::int32_t>(mesh.n_cells()));
+    mesh.add_cell(CellType::POI1, {&node, 1});
+  }
+  for (const std::string& name : factor.texts("NOM_GROUP_MA")) {
+    if (mesh.find_cell_group(name))
+      fail("GROUPE_1",
+           {{"keyword", factor.path("NOM_GROUP_MA")}, {"what", "cell"}, {"group", name}, {"remove", "DETR_GROUP_MA"}});
+    mesh.cell_groups.push_back({name, made});
+  }
+}
+
 /// The keywords that change the order of cells, and what does it.
 struct Change {
   const char* keyword;
@@ -118,9 +146,15 @@ Mesh crea_maillage(Mesh mesh, const Keywords& keywords) {
     print_counts(nodes, cells, made);
     return made;
   }
+  if (keywords.has("CREA_POI1")) {
+    for (const Keywords& factor : keywords.factors("CREA_POI1")) add_points(mesh, factor);
+    print_counts(nodes, cells, mesh);
+    return mesh;
+  }
   const auto change =
       std::find_if(std::begin(changes), std::end(changes), [&](const Change& c) { return keywords.has(c.keyword); });
-  if (change == std::end(changes)) fail("ORDER_2", {{"keyword", "DECOUPE_LAC, LINE_QUAD, QUAD_LINE, HEXA20_27 or RESTREINT"}});
+  if (change == std::end(changes))
+    fail("ORDER_2", {{"keyword", "DECOUPE_LAC, LINE_QUAD, QUAD_LINE, HEXA20_27, RESTREINT or CREA_POI1"}});
   refuse_cut_mesh(mesh, change->keyword);
   for (const Keywords& factor : keywords.factors(change->keyword))
     fmt::print("  {}: {} cells became {}\n", change->keyword, change->make(mesh, chosen(mesh, factor)), change->what);

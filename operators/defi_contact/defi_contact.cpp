@@ -9,7 +9,9 @@
 
 #include "lacon/catalog/contact.hpp"
 #include "lacon/catalog/messages.hpp"
+#include "lacon/operators/meshing/named_nodes.hpp"
 #include "lacon/operators/meshing/skin.hpp"
+#include "lacon/operators/program/study_function.hpp"
 #include "lacon/pairing/normals.hpp"
 
 namespace lacon {
@@ -61,6 +63,24 @@ void check_zones(const Patches& patches, std::string_view mesh_label, const std:
                          {"groups", number(patches.zone_group.size())},
                          {"prepared", prepared},
                          {"mesh", std::string(mesh_label)}});
+}
+
+/// Skin cells that AFFE_MODELE left out get the element of their body's modelisation, where it knows contact.
+void complete_skins(const Mesh& mesh, const Model& model, const Registry& registry, const SkinSides& sides,
+                    std::span<const std::int32_t> cells, std::vector<SkinElement>& skins) {
+  for (const std::int32_t cell : cells) {
+    if (model.element[static_cast<std::size_t>(cell)] >= 0) continue;
+    for (const BodyCell& body : sides.bodies(cell)) {
+      const std::int32_t element = model.element[static_cast<std::size_t>(body.cell)];
+      if (element < 0) continue;
+      const catalog::ElementRow* of_body = registry.find_element(model.elements[static_cast<std::size_t>(element)]);
+      const catalog::ElementRow* row =
+          of_body ? registry.find_element(of_body->modelisation, mesh.types[static_cast<std::size_t>(cell)]) : nullptr;
+      if (!row || !registry.has_kernel(*row, "RIGI_CONT")) continue;
+      skins.push_back({cell, std::string(row->name)});
+      break;
+    }
+  }
 }
 
 /// A skin cell needs an element that knows contact.
@@ -167,7 +187,24 @@ void add_slaves(Contact& contact, const ContactZone& zone, const Mesh& mesh) {
   }
 }
 
-ContactZone make_zone(const Mesh& mesh, const Keywords& keywords) {
+/// Patches that SANS_GROUP_NO and its kin leave out: a condition of contact belongs to a whole patch, so that one that meets
+/// such a node has none.
+void leave_out(const Mesh& mesh, const Keywords& keywords, ContactZone& zone) {
+  constexpr const char* names[] = {"SANS_GROUP_NO", "SANS_GROUP_MA", "SANS_NOEUD", "SANS_MAILLE"};
+  const auto given = std::ranges::find_if(names, [&](const char* name) { return keywords.has(name); });
+  if (given == std::end(names)) return;
+  const std::vector<char> out = nodes_left_out(mesh, keywords);
+  for (const std::int32_t patch : zone.patches) {
+    const std::vector<std::int32_t> nodes = nodes_of_cells(mesh, mesh.patches->cells[static_cast<std::size_t>(patch)]);
+    if (std::ranges::any_of(nodes, [&](std::int32_t node) { return out[static_cast<std::size_t>(node)] != 0; }))
+      zone.held_open.push_back(patch);
+  }
+  const std::string path = keywords.path(*given);
+  if (zone.held_open.empty()) inform("LAC_7", {{"keyword", path}, {"group", zone.slave_group}});
+  if (zone.held_open.size() == zone.patches.size()) inform("LAC_8", {{"keyword", path}, {"group", zone.slave_group}});
+}
+
+ContactZone make_zone(const Mesh& mesh, const Base& base, const Keywords& keywords) {
   ContactZone zone;
   zone.slave_group = keywords.text("GROUP_MA_ESCL");
   zone.master_group = keywords.text("GROUP_MA_MAIT");
@@ -188,6 +225,15 @@ ContactZone make_zone(const Mesh& mesh, const Keywords& keywords) {
   zone.initial_status = keywords.text("CONTACT_INIT");
   zone.tolerance = keywords.real("RESI_APPA");
   zone.distance_limit = keywords.real("COEF_MULT_APPA");
+  zone.resolution = keywords.text("RESOLUTION");
+  zone.gliding = keywords.text("GLISSIERE");
+  if (zone.resolution == "NON") zone.overlap_tolerance = keywords.real("TOLE_INTERP");
+  if (keywords.has("DIST_ESCL")) zone.slave_offset = value_of(base, keywords, "DIST_ESCL");
+  if (keywords.has("DIST_MAIT")) zone.master_offset = value_of(base, keywords, "DIST_MAIT");
+  if (zone.resolution == "NON")
+    zone.held_open = zone.patches;
+  else
+    leave_out(mesh, keywords, zone);
   return zone;
 }
 
@@ -218,24 +264,29 @@ void check_corners(const Mesh& mesh, const ContactZone& zone) {
 
 }  // namespace
 
-Contact defi_contact(const Mesh& mesh, std::string_view mesh_label, const Model& model, const Registry& registry,
+Contact defi_contact(const Mesh& mesh, const Model& of_bodies, const Registry& registry, const Base& base,
                      const Keywords& keywords) {
+  const std::string mesh_label = base.label(of_bodies.mesh);
   const std::vector<Keywords> factors = keywords.factors("ZONE");
   check_method(keywords, factors);
-  if (!mesh.patches || mesh.patches->size() == 0) fail("CONTACT4_2", {{"mesh", std::string(mesh_label)}});
+  if (!mesh.patches || mesh.patches->size() == 0) fail("CONTACT4_2", {{"mesh", mesh_label}});
   check_zones(*mesh.patches, mesh_label, factors);
 
   Contact contact;
-  contact.mesh = model.mesh;
+  contact.mesh = of_bodies.mesh;
   contact.smoothing = keywords.yes("LISSAGE");
   const std::string variation = keywords.text("VARIATION_JEU");
   contact.frozen_gap = variation == "FIGEE";
   contact.verify_normals = keywords.yes("VERI_NORM");
   contact.resi_geom = keywords.real("RESI_GEOM");
   contact.elastic_iterations = keywords.integer("CONT_STAT_ELAS");
+  contact.stops_at_overlap = keywords.yes("STOP_INTERP");
   const SkinSides sides(mesh);
   for (const Keywords& factor : factors) {
-    const ContactZone zone = make_zone(mesh, factor);
+    const ContactZone zone = make_zone(mesh, base, factor);
+    for (const auto* cells : {&zone.slave, &zone.master})
+      complete_skins(mesh, contact.completed(of_bodies), registry, sides, *cells, contact.skins);
+    const Model model = contact.completed(of_bodies);
     check_patches(*mesh.patches, zone, factor.path("GROUP_MA_ESCL"));
     for (const auto& [keyword, group, cells] : {std::tuple("GROUP_MA_ESCL", zone.slave_group, zone.slave),
                                                 std::tuple("GROUP_MA_MAIT", zone.master_group, zone.master)}) {
@@ -246,10 +297,13 @@ Contact defi_contact(const Mesh& mesh, std::string_view mesh_label, const Model&
     }
     add_slaves(contact, zone, mesh);
     contact.zones.push_back(zone);
-    fmt::print("  zone {}: slave {} ({} cells, {} patches), master {} ({} cells)\n", contact.zones.size(), zone.slave_group,
-               zone.slave.size(), zone.patches.size(), zone.master_group, zone.master.size());
+    fmt::print("  zone {}: slave {} ({} cells, {} patches), master {} ({} cells){}\n", contact.zones.size(), zone.slave_group,
+               zone.slave.size(), zone.patches.size(), zone.master_group, zone.master.size(),
+               zone.held_open.empty() ? "" : fmt::format("; {} patches without contact", zone.held_open.size()));
   }
-  check_axisymmetry(model, registry, contact.zones);
+  if (!contact.skins.empty())
+    fmt::print("  {} skin cells without finite element get that of their bodies\n", contact.skins.size());
+  check_axisymmetry(contact.completed(of_bodies), registry, contact.zones);
   if (contact.smoothing) {
     check_shared_nodes(mesh, contact.zones);
     for (const ContactZone& zone : contact.zones) check_corners(mesh, zone);

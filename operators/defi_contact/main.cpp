@@ -9,7 +9,7 @@ int main(int argc, char** argv) {
                        const Model model = base.model(model_id);
                        const Mesh mesh = base.mesh(model.mesh);
                        const Registry registry(order.plugins);
-                       Contact contact = defi_contact(mesh, base.label(model.mesh), model, registry, order.keywords);
+                       Contact contact = defi_contact(mesh, model, registry, base, order.keywords);
                        contact.model = model_id;
                        base.store(contact);
                      });

@@ -50,6 +50,23 @@ void ContactNotices::tell_what_nothing_presses(double instant) {
       inform("EVOLUTION_23", {{"body", bodies_.name_at(body)}, {"instant", fmt::format("{:.9g}", instant)}});
 }
 
+void ContactNotices::tell_what_overlaps(double instant) {
+  for (std::size_t zone = 0; zone < present_.problem.contact->zones.size(); ++zone) {
+    const auto overlap = present_.contact->unchecked_overlap(static_cast<std::int32_t>(zone));
+    if (!overlap) continue;
+    const ContactZone& names = present_.problem.contact->zones[zone];
+    const auto said = [&](std::string_view id) {
+      return message(id, {{"slave", names.slave_group},
+                          {"master", names.master_group},
+                          {"instant", fmt::format("{:.9g}", instant)},
+                          {"cell", first_cell(overlap->patch)},
+                          {"depth", fmt::format("{:.6g}", overlap->depth)}});
+    };
+    if (present_.problem.contact->stops_at_overlap) throw Error(said("EVOLUTION_36"));
+    if (overlapping_.insert(zone).second) inform(said("EVOLUTION_35"));
+  }
+}
+
 void ContactNotices::start(double instant) {
   const ContactState* const contact = present_.contact;
   if (!contact) return;
@@ -79,6 +96,7 @@ void ContactNotices::accept(const SolvedInstant& solved) {
                             {"cell", first_cell(overlap.deepest)},
                             {"gap", fmt::format("{:.6g}", overlap.gap)}});
   tell_what_is_too_deep(solved.instant);
+  tell_what_overlaps(solved.instant);
   tell_what_nothing_presses(solved.instant);
   const ContactState& contact = *present_.contact;
   for (std::int32_t zone = 0; zone < static_cast<std::int32_t>(contact.geometry().zones().size()); ++zone) {
@@ -117,6 +135,7 @@ void ContactNotices::save(const hdf5::Group& group) const {
   group.write("pierced/depth", depths);
   group.write("pierced/gap", gaps);
   group.write("free", std::vector<std::int32_t>(free_.begin(), free_.end()));
+  group.write("overlapping", std::vector<std::int64_t>(overlapping_.begin(), overlapping_.end()));
   group.write("too_deep", std::vector<std::int64_t>(too_deep_.begin(), too_deep_.end()));
 }
 
@@ -129,6 +148,7 @@ void ContactNotices::resume(const hdf5::Group& group) {
                                                      {static_cast<std::size_t>(patches.at(i)), depths.at(i), gaps.at(i)}};
   const auto free = group.read<std::int32_t>("free");
   free_ = {free.begin(), free.end()};
+  for (const std::int64_t zone : group.read<std::int64_t>("overlapping")) overlapping_.insert(static_cast<std::size_t>(zone));
   for (const std::int64_t zone : group.read<std::int64_t>("too_deep")) too_deep_.insert(static_cast<std::size_t>(zone));
 }
 

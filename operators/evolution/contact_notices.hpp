@@ -17,7 +17,8 @@ class ContactNotices : public EvolutionObserver {
   /// EVOLUTION_6: patches that no displacement can move; EVOLUTION_17; EVOLUTION_22: patches that overlap because
   /// their skins have facets.
   void start(double instant) override;
-  /// EVOLUTION_14: such patches inside their master; EVOLUTION_17; EVOLUTION_23: bodies that lie on others without a pressure.
+  /// EVOLUTION_14: such patches inside their master; EVOLUTION_17; EVOLUTION_23: bodies that lie on others without a pressure;
+  /// EVOLUTION_35: overlaps with RESOLUTION='NON'. Throws EVOLUTION_36 for one with STOP_INTERP='OUI'.
   void accept(const SolvedInstant& solved) override;
   /// EVOLUTION_16: of each zone the patch that its master has pierced deepest.
   void end(bool completed) override;
@@ -36,11 +37,15 @@ class ContactNotices : public EvolutionObserver {
   /// EVOLUTION_23, once a body.
   void tell_what_nothing_presses(double instant);
 
+  /// EVOLUTION_35, once a zone, or EVOLUTION_36.
+  void tell_what_overlaps(double instant);
+
   Present present_;
   Bodies bodies_;
   std::set<std::int32_t> free_;              ///< bodies that are held by contact alone, and of which nothing was told
   std::map<std::int32_t, Pierced> pierced_;  ///< by zone
   std::set<std::size_t> too_deep_;           ///< zones of which it has been told
+  std::set<std::size_t> overlapping_;        ///< likewise, of EVOLUTION_35
 };
 
 }  // namespace lacon

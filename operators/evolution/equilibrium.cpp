@@ -1,6 +1,7 @@
 #include "lacon/operators/evolution/equilibrium.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <map>
@@ -26,6 +27,10 @@ Ragged<std::int32_t> nodes_of_elements(const StaticProblem& problem) {
     for (const std::int32_t cell : set.cells) nodes.push_back(problem.mesh.cells[cell]);
   };
   for (const ElementSet& set : problem.solids) add(set);
+  for (const Spring& spring : problem.springs) {
+    const std::array ends = {spring.first, spring.second};
+    nodes.push_back(std::span(ends).first(spring.second < 0 ? 1 : 2));
+  }
   for (const TimedLoad& load : problem.loads)
     for (const LoadedCells& loaded : load.following) add(loaded.set);
   return nodes;
@@ -77,6 +82,7 @@ Equilibrium::Equilibrium(const StaticProblem& problem)
       system_(problem.numbering, elements_, symmetry_of(problem)),
       extent_(largest_entry(problem.mesh.coordinates)) {
   if (problem.contact) contact_.emplace(problem.mesh, problem.model, *problem.contact, *problem.registry, bodies_of(problem));
+  if (problem.contact) offsets_.resize(problem.contact->zones.size());
   linear_ = !problem.has_following_loads();
   for (const ElementSet& set : problem.solids) {
     linear_ = linear_ && set.linear;
@@ -105,6 +111,10 @@ std::vector<double> Equilibrium::load(double instant, const StaticState& state) 
   const std::vector<double> values = problem_.imposed_values(instant), relations = relations_.values(instant, values);
   instant_ = instant;
   heat(instant);
+  if (offset_skins(instant)) {
+    pair(state.displacement);
+    has_new_gaps_ = true;
+  }
   given_ = problem_.dead_force(instant);
   given_.resize(problem_.n_dofs() + problem_.n_patches(), 0.0);
   given_.insert(given_.end(), relations.begin(), relations.end());
@@ -119,6 +129,15 @@ std::vector<double> Equilibrium::load(double instant, const StaticState& state) 
   return step;
 }
 
+bool Equilibrium::offset_skins(double instant) {
+  if (!contact_ || !problem_.offsets) return false;
+  std::vector<std::vector<double>> offsets = problem_.offsets->at(instant);
+  if (offsets == offsets_) return false;
+  offsets_ = std::move(offsets);
+  contact_->set_offsets(offsets_);
+  return true;
+}
+
 void Equilibrium::pair(std::span<const double> displacement) {
   if (!contact_) return;
   const Phase phase("pairing");
@@ -129,6 +148,7 @@ void Equilibrium::pair(std::span<const double> displacement) {
 
 void Equilibrium::assemble(const StaticState& state, const StaticState& previous, NewtonMatrix wanted) {
   matrix_ = wanted;
+  has_new_gaps_ = false;
   const bool keeps_stiffness = linear_ && has_stiffness_;
   if (contact_) {
     const Phase phase("contact");
@@ -136,6 +156,7 @@ void Equilibrium::assemble(const StaticState& state, const StaticState& previous
   }
   start(keeps_stiffness);
   add_solids(state, previous, keeps_stiffness ? SolidMatrix::none : wanted.solid);
+  add_springs(state, !keeps_stiffness && wanted.solid != SolidMatrix::none);
   add_following_loads(state);
   if (linear_ && !keeps_stiffness) system_.stiffness_is_complete();
   has_stiffness_ = true;
@@ -179,6 +200,29 @@ void Equilibrium::add_solids(const StaticState& state, const StaticState& previo
     };
     const auto inverted = evaluate_solids(heated.kernel ? heated : set, problem_.mesh, input, wanted, output, add);
     if (!cell_inside_out_) cell_inside_out_ = inverted;
+  }
+}
+
+void Equilibrium::add_springs(const StaticState& state, bool with_matrix) {
+  const int d = problem_.dimension;
+  std::vector<std::int64_t> dofs;
+  std::vector<double> force, matrix;
+  for (const Spring& spring : problem_.springs) {
+    const int ends = spring.second < 0 ? 1 : 2;
+    const auto stiffness = [&](int i, int j) {  // of both ends: K, -K
+      const int a = std::max(i % d, j % d), b = std::min(i % d, j % d);
+      return (i / d == j / d ? 1 : -1) * spring.stiffness[static_cast<std::size_t>(a * (a + 1) / 2 + b)];
+    };
+    dofs.clear(), matrix.clear();
+    for (const std::int32_t node : {spring.first, spring.second})
+      for (int i = 0; i < d && node >= 0; ++i) dofs.push_back(std::int64_t{node} * problem_.n_components() + i);
+    force.assign(dofs.size(), 0.0);
+    for (int i = 0; i < ends * d; ++i)
+      for (int j = 0; j < ends * d; ++j) {
+        force[i] += stiffness(i, j) * state.displacement[dofs[j]];
+        if (with_matrix && j <= i) matrix.push_back(stiffness(i, j));
+      }
+    system_.add(dofs, matrix, force);
   }
 }
 
@@ -280,6 +324,18 @@ ForceFigures Equilibrium::forces(const StaticState& state, const StaticState& pr
     }
   }
   return figures;
+}
+
+std::vector<double> Equilibrium::internal_forces(const StaticState& state) const {
+  const std::vector<double>& residual = system_.residual();
+  std::vector<double> forces(residual.begin(), residual.begin() + static_cast<std::ptrdiff_t>(problem_.n_dofs()));
+  const std::vector<double> held = relations_.forces(state.relations);
+  for (std::size_t dof = 0; dof < forces.size(); ++dof) forces[dof] -= held[dof];
+  if (!contact_) return forces;
+  const std::vector<double> pushed = contact_->forces(state.patches);
+  const auto d = static_cast<std::size_t>(problem_.dimension), width = static_cast<std::size_t>(problem_.n_components());
+  for (std::size_t i = 0; i < pushed.size(); ++i) forces[i / d * width + i % d] += pushed[i];
+  return forces;
 }
 
 MotionFigures Equilibrium::motion(std::span<const double> increment, const StaticState& state) const {

@@ -35,14 +35,21 @@ class Equilibrium {
   /// A state that laws without a memory start from; until then it is the natural one.
   void start_from(const StaticState& state) { origin_ = state; }
   const std::optional<StaticState>& origin() const { return origin_; }
-  /// Take the loads of an instant. Throws LOAD_1, LOAD_6 where they contradict each other.
+  /// Take the loads of an instant; the contact is paired anew where its skins' offsets change (has_new_gaps()). Throws LOAD_1,
+  /// LOAD_6 where they contradict each other.
   /// @return the change of what is imposed, (n_nodes, n_components), 0 elsewhere
   std::vector<double> load(double instant, const StaticState& state);
+  /// Take the offsets of the skins at an instant. @return whether they are others than before
+  bool offset_skins(double instant);
   /// Contact cells at these displacements; nothing without contact. @param displacement (n_nodes, n_components)
   void pair(std::span<const double> displacement);
   /// The displacement of the last state in equilibrium, from which contact goes on.
   void rest_at(std::span<const double> displacement) {
     if (contact_) contact_->rest_at(displacement);
+  }
+  /// The patches of that state: contact that glides (GLISSIERE) keeps what was closed.
+  void keep_gliding(const Patchwise& patches) {
+    if (contact_) contact_->keep_gliding(patches);
   }
   /// Forces, matrix, stresses and variables at a state that is paired. @param previous the last one in equilibrium
   void assemble(const StaticState& state, const StaticState& previous, NewtonMatrix wanted);
@@ -67,6 +74,8 @@ class Equilibrium {
 
   /// What the last assembly says of the balance of `state`.
   ForceFigures forces(const StaticState& state, const StaticState& previous) const;
+  /// What stresses and springs resist with at the last assembly, (n_nodes, n_components). @param state of that assembly
+  std::vector<double> internal_forces(const StaticState& state) const;
   MotionFigures motion(std::span<const double> increment, const StaticState& state) const;
   /// Active patches and relations that have an equation: the negative pivots of a stable equilibrium.
   std::int64_t n_constraints(const StaticState& state) const;
@@ -85,6 +94,7 @@ class Equilibrium {
   const std::vector<PointValues>& points() const { return points_; }                ///< at the last assembly
   NewtonMatrix matrix() const { return matrix_; }                                   ///< of the last assembly
   std::optional<std::int32_t> cell_inside_out() const { return cell_inside_out_; }  ///< that the last assembly found
+  bool has_new_gaps() const { return has_new_gaps_; }                               ///< since the last assembly
   bool is_linear() const { return linear_; }                                        ///< the stiffness never changes
   bool has_memory() const { return has_memory_; }                                   ///< a law has
   bool is_symmetric() const { return system_.matrix().is_symmetric(); }
@@ -95,6 +105,7 @@ class Equilibrium {
  private:
   void start(bool keeps_stiffness);
   void add_solids(const StaticState& state, const StaticState& previous, SolidMatrix wanted);
+  void add_springs(const StaticState& state, bool with_matrix);
   void add_following_loads(const StaticState& state);
   void add_contact(const StaticState& state);
 
@@ -114,6 +125,8 @@ class Equilibrium {
   std::vector<double> given_;      ///< at that instant: dead forces, and behind them what the multipliers' rows are to be
   std::vector<double> external_;   ///< the same with following forces at the last evaluation
   double extent_ = 0;              ///< largest coordinate of the mesh
+  std::vector<std::vector<double>> offsets_;  ///< of the skins, ContactOffsets::at
+  bool has_new_gaps_ = false;
 };
 
 }  // namespace lacon

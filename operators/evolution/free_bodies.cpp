@@ -58,6 +58,14 @@ std::set<std::int32_t> free_bodies(const StaticProblem& problem, const Bodies& b
       add(static_cast<std::int64_t>(dof), 1, rows);
       constrain(rows);
     }
+  for (const Spring& spring : problem.springs)
+    for (int i = 0; i < problem.dimension; ++i) {
+      if (spring.stiffness[static_cast<std::size_t>(i * (i + 1) / 2 + i)] == 0) continue;
+      std::map<std::int32_t, Eigen::Vector<double, 6>> rows;
+      add(std::int64_t{spring.first} * problem.n_components() + i, 1, rows);
+      if (spring.second >= 0) add(std::int64_t{spring.second} * problem.n_components() + i, -1, rows);
+      constrain(rows);
+    }
   for (const TimedLoad& load : problem.loads)
     for (const DofRelation& relation : load.relations) {
       std::map<std::int32_t, Eigen::Vector<double, 6>> rows;

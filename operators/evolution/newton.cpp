@@ -50,6 +50,7 @@ Newton::Newton(const StaticProblem& problem, const NewtonOptions& options, std::
 
 StaticState Newton::initial_state() {
   StaticState state = equilibrium_.natural_state();
+  equilibrium_.offset_skins(options_.start);
   if (!options_.from_reference) start_heated(state);
   equilibrium_.pair(state.displacement);
   if (contact()) state.patches = contact()->initial();
@@ -138,13 +139,15 @@ int Newton::solve(double instant, StaticState& state, const std::function<void(c
 int Newton::iterate(double instant, StaticState& state, const std::function<void(const IterationReport&)>& report) {
   const StaticState previous = state;
   equilibrium_.rest_at(previous.displacement);
+  equilibrium_.keep_gliding(previous.patches);
   std::vector<double> step = equilibrium_.load(instant, state);
   choice_.start_instant();
   statuses_.start_instant();
   if (options_.extrapolates) extrapolate(instant, state, step);
   // plasticity answers to a step of no length elastically: a body that is unloaded now does not overshoot on the tangent of the
   // flow that the last instant ended with, which makes Newton's method go to and fro between two states
-  if (equilibrium_.has_memory() || equilibrium_.heat().acts() || state.displacement != previous.displacement ||
+  if (equilibrium_.has_memory() || equilibrium_.heat().acts() || equilibrium_.has_new_gaps() ||
+      state.displacement != previous.displacement ||
       choice_.suited(options_.prediction, equilibrium_.touches(state)) != equilibrium_.matrix())
     assemble(state, previous, options_.prediction);
   bool settling = false;  // statuses change from iteration to iteration: a rough solution finds them as well

@@ -61,6 +61,8 @@ class Newton {
   void start_from(const StaticState& state) { equilibrium_.start_from(state); }
   /// The contact at the last evaluation; nullptr without contact.
   const ContactState* contact() const { return equilibrium_.contact(); }
+  /// Equilibrium::internal_forces
+  std::vector<double> internal_forces(const StaticState& state) const { return equilibrium_.internal_forces(state); }
 
  private:
   /// Let a state have the temperatures of the first instant, and laws without a memory start from it.

@@ -1,6 +1,6 @@
 #pragma once
-// The fields of an instant: DEPL, SIEF_ELGA, VARI_ELGA, CONT_ELEM (METHOD.md 4), CONT_NOEU; and the state that a result holds
-// in them.
+// The fields of an instant: DEPL, SIEF_ELGA, VARI_ELGA, CONT_ELEM (METHOD.md 4), CONT_NOEU, FORC_NODA; and the state that a
+// result holds in them.
 #include <functional>
 #include <map>
 #include <string>
@@ -14,17 +14,22 @@ namespace lacon {
 struct Present {
   const StaticProblem& problem;
   const StaticState& state;
-  const ContactState* contact;  ///< nullptr without contact
+  const ContactState* contact;                                ///< nullptr without contact
+  std::function<std::vector<double>()> internal_forces = {};  ///< Equilibrium::internal_forces of the state
 };
 
 /// Fields by name, each made when it is asked for.
 using FieldMakers = std::map<std::string, std::function<Field()>>;
 /// Those that this computation has. What `present` refers to must outlive them.
 FieldMakers fields_of(const Present& present);
+/// These, and FORC_NODA, which no result holds.
+FieldMakers observed_fields_of(const Present& present);
 
 /// Displacements and the other unknowns of nodes, with LAGS_C on the carriers of the patches, equal on those of one patch.
 /// @param contact makes stand-ins of LAGS_C at the other nodes of the slave skins: nodal_pressures()
 Field displacement_field(const StaticProblem& problem, const StaticState& state, const ContactState* contact = nullptr);
+/// Forces at nodes, (n_nodes, n_components), under the names of the unknowns.
+Field force_field(const StaticProblem& problem, std::span<const double> forces);
 /// Stresses at the integration points of the solid elements.
 Field stress_field(const StaticProblem& problem, const StaticState& state);
 /// Internal variables V1, V2, ... at the integration points of the cells whose law has them; empty where none has.

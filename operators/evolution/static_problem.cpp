@@ -160,6 +160,15 @@ namespace {
 constexpr double nearly_incompressible =
     0.49;  // bulk over shear modulus 50: fully integrated linear cells bend far too stiffly
 
+/// EVOLUTION_37: a discrete element without characteristics would be none.
+void check_springs(const StaticProblem& problem) {
+  std::size_t count = 0;
+  for (const std::int32_t element : problem.model.element)
+    count += element >= 0 && problem.registry->find_element(problem.model.elements[element])->role == catalog::Role::discrete;
+  if (count > problem.springs.size())
+    fail("EVOLUTION_37", {{"count", std::to_string(count)}, {"springs", std::to_string(problem.springs.size())}});
+}
+
 /// EVOLUTION_21: linear cells, without plane stress, of a material that hardly changes its volume.
 void warn_of_locking(const StaticProblem& problem) {
   std::int64_t count = 0;
@@ -193,6 +202,14 @@ StaticProblem read_problem(const Order& order, const Base& base) {
   warn_of_locking(problem);
   check_temperatures(problem);
 
+  if (const auto given = keywords.optional_concept("CARA_ELEM")) {
+    const ElementCharacteristics characteristics = base.element_characteristics(*given);
+    if (characteristics.model != model_id)
+      fail("EVOLUTION_1", {{"first", "CARA_ELEM"}, {"second", "MODELE"}, {"what", "models"}});
+    problem.springs = characteristics.springs;
+  }
+  check_springs(problem);
+
   problem.imposed.assign(problem.n_dofs(), 0);
   std::vector<std::string> seen;
   for (const Keywords& excit : keywords.factors("EXCIT")) {
@@ -210,6 +227,8 @@ StaticProblem read_problem(const Order& order, const Base& base) {
     problem.contact = base.contact(*contact);
     if (problem.contact->model != model_id)
       fail("EVOLUTION_1", {{"first", "CONTACT"}, {"second", "MODELE"}, {"what", "models"}});
+    problem.model = problem.contact->completed(std::move(problem.model));
+    problem.offsets.emplace(problem.mesh, *problem.contact, base);
   }
   std::vector<std::uint8_t> free(problem.n_dofs());
   for (std::size_t i = 0; i < free.size(); ++i) free[i] = problem.exists[i] && !problem.imposed[i];

@@ -9,6 +9,7 @@
 #include "lacon/assembly/element_sets.hpp"
 #include "lacon/assembly/numbering.hpp"
 #include "lacon/elements/registry.hpp"
+#include "lacon/operators/contact/offsets.hpp"
 #include "lacon/operators/evolution/loads.hpp"
 #include "lacon/operators/fields/thermal.hpp"
 #include "lacon/structures/base.hpp"
@@ -25,10 +26,12 @@ struct StaticProblem {
   std::unique_ptr<MaterialTable> materials;
   std::unique_ptr<ThermalMaterials> thermal;  ///< nothing where no temperature matters
   std::vector<ElementSet> solids;
+  std::vector<Spring> springs;
   std::vector<TimedLoad> loads;
   std::optional<Contact> contact;
-  std::vector<std::uint8_t> exists;   ///< (n_nodes, n_components): the degree of freedom exists
-  std::vector<std::uint8_t> imposed;  ///< (n_nodes, n_components): a load imposes it
+  std::optional<ContactOffsets> offsets;  ///< of its skins
+  std::vector<std::uint8_t> exists;       ///< (n_nodes, n_components): the degree of freedom exists
+  std::vector<std::uint8_t> imposed;      ///< (n_nodes, n_components): a load imposes it
   Numbering numbering;
 
   int n_components() const { return static_cast<int>(components.size()); }
@@ -51,7 +54,7 @@ struct StaticProblem {
   std::string dof_name(std::int64_t dof) const;  ///< "N12 DX"
 };
 
-/// What EXCIT, MODELE, CHAM_MATER and CONTACT of an order name.
+/// What EXCIT, MODELE, CHAM_MATER, CARA_ELEM and CONTACT of an order name.
 StaticProblem read_problem(const Order& order, const Base& base);
 
 /// The model, materials and loads that a result was computed with, for external_force(): no contact or equations.

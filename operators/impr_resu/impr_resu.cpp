@@ -11,6 +11,7 @@
 
 #include "lacon/catalog/messages.hpp"
 #include "lacon/elements/reference.hpp"
+#include "lacon/operators/contact/offsets.hpp"
 #include "lacon/operators/contact/pairing_view.hpp"
 #include "lacon/operators/fields/selection.hpp"
 #include "lacon/structures/displacement.hpp"
@@ -128,15 +129,18 @@ void each_pairing(const Order& order, const Base& base, Concepts& concepts, cons
   if (one.has("CONTACT")) {
     const std::string id = one.concept_id("CONTACT");
     const Contact contact = base.contact(id);
+    const Mesh& mesh = concepts.mesh(contact.mesh);
     visit({base.label(id), -1, 0,
-           view_pairing(concepts.mesh(contact.mesh), base.model(contact.model), contact, registry, {}, nullptr)});
+           view_pairing(mesh, contact.completed(base.model(contact.model)), contact, registry, {},
+                        ContactOffsets(mesh, contact, base).at(0), nullptr)});
     return;
   }
   const Result& result = concepts.result(one.concept_id("RESULTAT"));
   if (result.contact.empty()) fail("IMPR_7", {{"keyword", one.path("PAIRING")}, {"label", result.label}});
   const Contact contact = base.contact(result.contact);
-  const Model model = base.model(contact.model);
+  const Model model = contact.completed(base.model(contact.model));
   const Mesh& mesh = concepts.mesh(contact.mesh);
+  const ContactOffsets offsets(mesh, contact, base);
   for (const std::int64_t number : selected_orders(base, result, one)) {
     const Field depl = base.field(result, "DEPL", number);
     std::optional<Field> state;
@@ -144,7 +148,7 @@ void each_pairing(const Order& order, const Base& base, Concepts& concepts, cons
       state = base.field(result, "CONT_ELEM", number);
     visit({result.label, number, depl.instant,
            view_pairing(mesh, model, contact, registry, nodal_displacements(mesh, depl, mesh.dimension),
-                        state ? &*state : nullptr)});
+                        offsets.at(depl.instant), state ? &*state : nullptr)});
   }
 }
 

@@ -131,4 +131,12 @@ double StudyFunction::value(std::string_view parameter, double at) const {
   return values(1, {&known, 1}).front();
 }
 
+LoadValue value_of(const Base& base, const Keywords& keywords, std::string_view keyword) {
+  if (!keywords.is_concept(keyword)) return {keywords.real(keyword), ""};
+  const StudyFunction function(base, keywords.concept_id(keyword));
+  constexpr std::string_view known[] = {"X", "Y", "Z", "INST"};
+  function.check_parameters(known, keywords.path(keyword));
+  return {0.0, function.id()};
+}
+
 }  // namespace lacon

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "lacon/structures/base.hpp"
+#include "lacon/structures/order.hpp"
 
 namespace lacon {
 
@@ -44,5 +45,8 @@ class StudyFunction {
   std::vector<std::string> parameters_;
   std::variant<Function, Formula> rule_;
 };
+
+/// What a keyword gives: a number, or a function of X, Y, Z and INST. Throws FUNCTION_2.
+LoadValue value_of(const Base& base, const Keywords& keywords, std::string_view keyword);
 
 }  // namespace lacon

@@ -101,7 +101,9 @@ class QuasiStatic : public InstantSolver {
     newton_.resume(group, base, state_, rest_);
   }
   const ConvergenceCriteria& criteria() const { return newton_.criteria(); }
-  Present present(const StaticProblem& problem) const { return {problem, state_, newton_.contact()}; }
+  Present present(const StaticProblem& problem) const {
+    return {problem, state_, newton_.contact(), [this] { return newton_.internal_forces(state_); }};
+  }
 
  private:
   Newton newton_;
@@ -124,7 +126,7 @@ void stat_non_line(const Order& order, const Base& base) {
   const TimeSteps steps = steps_of(keywords.factor("INCREMENT"), base, begins);
   QuasiStatic solver(problem, newton_options(keywords, steps), engine_of(keywords.factor("SOLVEUR"), base));
   const Present present = solver.present(problem);
-  Observations observations(keywords, base, problem.mesh, fields_of(present));
+  Observations observations(keywords, base, problem.mesh, observed_fields_of(present));
   Archive archive(order, base, present, origin, observations, record.has_value());
   if (origin)
     solver.begin(archived_state(problem, base, origin->result, origin->order), origin->result.label);

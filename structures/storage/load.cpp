@@ -20,46 +20,6 @@ constexpr LoadGroup load_groups[] = {{"imposed", "node", &Load::imposed},
                                      {"force", "cell", &Load::force},
                                      {"gravity", "cell", &Load::gravity}};
 
-/// Texts that repeat, as a list of the different ones and a number into it.
-class Names {
- public:
-  std::int32_t number(const std::string& name) {
-    const auto at = std::find(names_.begin(), names_.end(), name);
-    if (at == names_.end()) names_.push_back(name);
-    return static_cast<std::int32_t>(std::find(names_.begin(), names_.end(), name) - names_.begin());
-  }
-  const std::vector<std::string>& all() const { return names_; }
-
- private:
-  std::vector<std::string> names_;
-};
-
-/// `value` and, where some are functions, `function` and `function_index`.
-void write_load_values(const hdf5::Group& group, const std::vector<LoadValue>& values) {
-  Names functions;
-  std::vector<double> number;
-  std::vector<std::int32_t> index;
-  for (const LoadValue& v : values) {
-    number.push_back(v.value);
-    index.push_back(v.function.empty() ? -1 : functions.number(v.function));
-  }
-  group.write("value", number);
-  if (functions.all().empty()) return;
-  group.write_strings("function", functions.all());
-  group.write("function_index", index);
-}
-
-std::vector<LoadValue> read_load_values(const hdf5::Group& group) {
-  std::vector<LoadValue> values;
-  for (const double number : group.read<double>("value")) values.push_back({number, ""});
-  if (!group.has("function_index")) return values;
-  const auto functions = group.read_strings("function");
-  const auto index = group.read<std::int32_t>("function_index");
-  for (std::size_t i = 0; i < values.size(); ++i)
-    if (index.at(i) >= 0) values[i].function = functions.at(static_cast<std::size_t>(index[i]));
-  return values;
-}
-
 }  // namespace
 
 Load read_load(const hdf5::Group& root) {

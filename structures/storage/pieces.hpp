@@ -1,8 +1,11 @@
 #pragma once
 // What the files of several concepts have in common.
+#include <algorithm>
 #include <string>
+#include <vector>
 
 #include "lacon/catalog/messages.hpp"
+#include "lacon/structures/concepts.hpp"
 #include "lacon/structures/hdf5.hpp"
 #include "lacon/structures/mesh.hpp"
 
@@ -36,5 +39,23 @@ template <class T>
 Ragged<T> read_ragged(const hdf5::Group& group, const std::string& name) {
   return read_ragged<T>(group, name + "/offset", name + "/values");
 }
+
+/// Texts that repeat, as a list of the different ones and a number into it.
+class Names {
+ public:
+  std::int32_t number(const std::string& name) {
+    const auto at = std::find(names_.begin(), names_.end(), name);
+    if (at == names_.end()) names_.push_back(name);
+    return static_cast<std::int32_t>(std::find(names_.begin(), names_.end(), name) - names_.begin());
+  }
+  const std::vector<std::string>& all() const { return names_; }
+
+ private:
+  std::vector<std::string> names_;
+};
+
+/// `value` and, where some are functions, `function` and `function_index`.
+void write_load_values(const hdf5::Group& group, const std::vector<LoadValue>& values);
+std::vector<LoadValue> read_load_values(const hdf5::Group& group);
 
 }  // namespace lacon::storage

@@ -20,6 +20,7 @@ Material read_material(const hdf5::Group& root);
 MaterialField read_material_field(const hdf5::Group& root);
 Load read_load(const hdf5::Group& root);
 Contact read_contact(const hdf5::Group& root);
+ElementCharacteristics read_element_characteristics(const hdf5::Group& root);
 Function read_function(const hdf5::Group& root);
 Formula read_formula(const hdf5::Group& root);
 std::vector<double> read_list_of_reals(const hdf5::Group& root);
@@ -49,6 +50,7 @@ void write(const hdf5::Group& root, const Model& model);
 void write(const hdf5::Group& root, const MaterialField& field);
 void write(const hdf5::Group& root, const Load& load);
 void write(const hdf5::Group& root, const Contact& contact);
+void write(const hdf5::Group& root, const ElementCharacteristics& characteristics);
 void write(const hdf5::Group& root, const Result& result);
 
 /// Ids of the concepts that this one refers to; an empty one refers to nothing.
@@ -57,6 +59,7 @@ std::vector<std::string> references(const Model& model);
 std::vector<std::string> references(const MaterialField& field);
 std::vector<std::string> references(const Load& load);
 std::vector<std::string> references(const Contact& contact);
+std::vector<std::string> references(const ElementCharacteristics& characteristics);
 std::vector<std::string> references(const Result& result);
 
 }  // namespace lacon::storage

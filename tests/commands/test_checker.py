@@ -92,10 +92,21 @@ class Mistakes(unittest.TestCase):
         for kind, path, text in (("keyword", "DEFI_CONTACT/ZONE[2]/COEF_CONT", "leave it out: "),  # by its path
                                  ("keyword", "AFFE_CHAR_MECA/PRES_REP[1]/MAILLE", "use GROUP_MA: "),  # by its name
                                  ("value", "DEFI_CONTACT/FORMULATION=DISCRETE", "use FORMULATION='CONTINUE'"),
-                                 ("keyword", "DEFI_CONTACT/ZONE[1]/GLISSIERE", "no idea")):
+                                 ("keyword", "MECA_NON_LINE/PILOTAGE", "use displacements imposed"),  # of the command that it is like
+                                 ("keyword", "DEFI_CONTACT/ZONE[1]/PENE_MAXI", "no idea")):
             self.assertTrue(catalog.instead(kind, path, "no idea").startswith(text), path)
         (found,) = checker.complete("LIRE_MAILLAGE", catalog.command("LIRE_MAILLAGE"), {"FORMAT": "IDEAS"})[1]
         self.assertTrue(found.do.startswith("use a MED or gmsh file"), found)
+
+    def test_a_command_under_two_names(self):
+        one, other = map(catalog.command, ("STAT_NON_LINE", "MECA_NON_LINE"))
+        self.assertEqual({**one, "help": "", "like": "STAT_NON_LINE"}, {**other, "help": ""})
+
+    def test_a_number_or_a_function(self):
+        for value in (0.5, 1, concept("function"), concept("formula")):
+            complete("DEFI_CONTACT", **self.contact(DIST_ESCL=value))
+        self.one("KEYWORD_3", "DEFI_CONTACT/ZONE[1]/DIST_ESCL", "a number or a function or a formula", command="DEFI_CONTACT",
+                 **self.contact(DIST_ESCL="much"))
 
     def test_every_replacement_is_of_something_refused(self):
         refused, values = set(), set()

@@ -86,8 +86,19 @@ class Loads(OperatorTest):
         for command, factor in (("AFFE_CHAR_CINE", "MECA_IMPO"), ("AFFE_CHAR_MECA", "DDL_IMPO")):
             self.assert_refuses(identifier, command, {"MODELE": concept("model_3"), factor: occurrences}, *words, result="load_4")
 
-    def test_two_values_for_one_degree_of_freedom_are_refused(self):
-        self.refuses_imposed("CHARGE_4", [{"GROUP_NO": ["BOTTOM"], "DX": 0.0}, {"NOEUD": ["N2"], "DX": 1.0}], "DX", "N2", "BOTTOM")
+    def test_of_two_occurrences_the_last_one_wins_a_component(self):
+        run = self.meca(DDL_IMPO=[{"GROUP_NO": ["BOTTOM"], "DX": 0.0, "DY": 0.0}, {"NOEUD": ["N2"], "DX": 1.0}])
+        self.assertEqual((run.status, self.ids(run)), (0, ["CHARGE_20"]))
+        imposed = self.imposed()
+        self.assertEqual(len(imposed), 6)
+        self.assertEqual((imposed[1, "DX"], imposed[1, "DY"]), (1.0, 0.0))
+        self.assertIn("DX of the node N2, by DDL_IMPO[2]/NOEUD", run.messages[0]["text"])
+        self.meca(DDL_IMPO=[{"NOEUD": ["N2"], "DX": 1.0}, {"GROUP_NO": ["BOTTOM"], "DX": 0.0}])
+        self.assertEqual(self.imposed(), {(n, "DX"): 0.0 for n in (0, 1, 2)})
+
+    def test_two_keywords_do_not_give_one_degree_of_freedom_two_values(self):
+        self.assert_refuses("CHARGE_4", "AFFE_CHAR_MECA", {"MODELE": concept("model_3"), "DDL_IMPO": [{"NOEUD": ["N5"], "DX": 0.0}],
+                                                          "FACE_IMPO": [{"GROUP_MA": ["TOP"], "DX": 1.0}]}, "DX", "N5", result="load_4")
 
     def test_nodes_without_element_are_refused(self):
         self.refuses_imposed("CHARGE_2", [{"GROUP_NO": ["ALONE"], "DX": 0.0}], "N7", "ALONE")
@@ -120,9 +131,6 @@ class Loads(OperatorTest):
 
     def refuses_pressure(self, identifier, occurrences, *words):
         self.assert_refuses(identifier, "AFFE_CHAR_MECA", {"MODELE": concept("model_3"), "PRES_REP": occurrences}, *words, result="load_4")
-
-    def test_two_pressures_for_one_cell_are_refused(self):
-        self.refuses_pressure("CHARGE_5", [{"GROUP_MA": ["TOP"], "PRES": 1.0}, {"GROUP_MA": ["TOP"], "PRES": 2.0}], "M3", "1", "2")
 
     def test_cells_that_are_no_skin_of_the_model_are_refused(self):
         self.refuses_pressure("CHARGE_6", [{"GROUP_MA": ["BODY"], "PRES": 1.0}], "QUAD4", "M1", "BODY")
@@ -207,14 +215,20 @@ class Loads(OperatorTest):
         self.assert_refuses("FUNCTION_2", "AFFE_CHAR_MECA_F", {"MODELE": concept("model_3"), "PRES_REP": [
             {"GROUP_MA": ["TOP"], "PRES": concept("function_5")}]}, "TEMP", "FUNCTION_5", "PRES_REP/PRES", result="load_4")
 
-    def test_two_forces_or_functions_for_one_place_are_refused(self):
+    def test_of_two_forces_pressures_or_functions_the_last_one_wins(self):
         self.write_function("function_5", "INST")
         self.write_function("function_6", "INST")
-        self.assert_refuses("CHARGE_4", "AFFE_CHAR_CINE_F", {"MODELE": concept("model_3"), "MECA_IMPO": [
-            {"GROUP_NO": ["CORNER"], "DX": concept("function_5")}, {"NOEUD": ["N1"], "DX": concept("function_6")}]},
-            "FUNCTION_5", "FUNCTION_6", "N1", result="load_4")
-        self.refuses("CHARGE_5", {"FORCE_CONTOUR": [{"GROUP_MA": ["TOP"], "FX": 1.0}, {"GROUP_MA": ["TOP"], "FX": 2.0}]}, "M3", "FX")
-        self.refuses("CHARGE_5", {"FORCE_NODALE": [{"NOEUD": ["N1"], "FX": 1.0}, {"GROUP_NO": ["CORNER"], "FX": 2.0}]}, "N1", "FX")
+        run = self.run_command("AFFE_CHAR_CINE_F", {"MODELE": concept("model_3"), "MECA_IMPO": [
+            {"GROUP_NO": ["CORNER"], "DX": concept("function_5")}, {"NOEUD": ["N1"], "DX": concept("function_6")}]}, result="load_7")
+        self.assertEqual(self.ids(run), ["CHARGE_20"])
+        with h5py.File(self.path("load_7")) as file:
+            self.assertEqual([text(name) for name in file["imposed/function"][()]], ["function_6"])
+        for group, keywords in (("force", {"FORCE_CONTOUR": [{"GROUP_MA": ["TOP"], "FX": 1.0}, {"GROUP_MA": ["TOP"], "FX": 2.0}]}),
+                                ("nodal_force", {"FORCE_NODALE": [{"NOEUD": ["N1"], "FX": 1.0}, {"NOEUD": ["N1"], "FX": 2.0}]}),
+                                ("pressure", {"PRES_REP": [{"GROUP_MA": ["TOP"], "PRES": 1.0}, {"GROUP_MA": ["TOP"], "PRES": 2.0}]})):
+            self.assertEqual(self.ids(self.meca(**keywords)), ["CHARGE_20"])
+            with h5py.File(self.path("load_4")) as file:
+                self.assertEqual(set(file[f"{group}/value"][()].tolist()), {2.0})
 
     def refuses(self, identifier, keywords, *words):
         self.assert_refuses(identifier, "AFFE_CHAR_MECA", {"MODELE": concept("model_3"), **keywords}, *words, result="load_4")

@@ -38,8 +38,8 @@ class DefiContact(OperatorTest):
         self.make()
 
     def make(self, zones=("ESCL",), zone_offset=(0, 2), kind=(7, 7), sub_cells=((0, 1), (2, 3)), carriers=((1,), (3,)), cells=CELLS,
-             of_cell=OF_CELL, groups=GROUPS, coordinates=COORDINATES):
-        self.write_mesh("mesh_1", coordinates, cells, cell_groups=groups, label="MA")
+             of_cell=OF_CELL, groups=GROUPS, coordinates=COORDINATES, node_groups=None):
+        self.write_mesh("mesh_1", coordinates, cells, cell_groups=groups, node_groups=node_groups, label="MA")
         if zones:
             with h5py.File(self.path("mesh_1"), "a") as file:
                 group = file.create_group("patches")
@@ -109,6 +109,42 @@ class DefiContact(OperatorTest):
             run = self.define()
             self.assertEqual(run.status, 0, run.stderr)
             self.assertEqual(self.slaves(), [(0, 0, 0, "LACS32D")])
+
+    def test_skins_without_element_get_that_of_their_bodies(self):
+        self.make(of_cell=[-1] * 8 + [1] * 5 + [2])
+        run = self.define()
+        self.assertEqual((run.status, self.ids(run)), (0, []), run.stderr)
+        with h5py.File(self.path("contact_3")) as file:
+            self.assertEqual(file["skin/cell"][()].tolist(), [0, 1, 2, 3, 4])
+            self.assertEqual({text(e) for e in file["skin/element"][()]}, {"D_PLAN/SEG2"})
+
+    def left_out(self, **keywords):
+        run = self.define(zone(**keywords))
+        self.assertEqual(run.status, 0, run.stderr)
+        with h5py.File(self.path("contact_3")) as file:
+            return read_ragged(file["zones/held_open"])[0], self.ids(run)
+
+    def test_patches_that_meet_what_is_left_out_have_no_contact(self):
+        self.make(node_groups={"TIP": [4], "FAR": [9]})
+        self.assertEqual(self.left_out(), ([], []))
+        self.assertEqual(self.left_out(SANS_GROUP_NO=["TIP"]), ([1], []))
+        self.assertEqual(self.left_out(SANS_NOEUD=["N1"]), ([0], []))
+        self.assertEqual(self.left_out(SANS_NOEUD=["N3"]), ([0, 1], ["LAC_8"]))
+        self.assertEqual(self.left_out(SANS_MAILLE=["M1"]), ([0], []))
+        self.assertEqual(self.left_out(SANS_GROUP_MA=["ESCL_2"]), ([0, 1], ["LAC_8"]))
+        self.assertEqual(self.left_out(SANS_GROUP_NO=["FAR"]), ([], ["LAC_7"]))
+        self.refuses("CHARGE_1", "N77", zones=[zone(SANS_NOEUD=["N77"])])
+        self.refuses("GROUPE_2", "M77", zones=[zone(SANS_MAILLE=["M77"])])
+
+    def test_offsets_gliding_and_zones_without_resolution_are_kept(self):
+        run = self.define(zone(RESOLUTION="NON", TOLE_INTERP=0.1, GLISSIERE="OUI", DIST_ESCL=0.25, DIST_MAIT=-0.5), STOP_INTERP="OUI")
+        self.assertEqual(run.status, 0, run.stderr)
+        self.assertEqual(self.attributes("contact_3")["stops_at_overlap"], 1)
+        with h5py.File(self.path("contact_3")) as file:
+            zones = file["zones"]
+            self.assertEqual(read_ragged(zones["held_open"]), [[0, 1]])
+            self.assertEqual([text(zones[name][0]) for name in ("resolution", "gliding")], ["NON", "OUI"])
+            self.assertEqual([zones[name][0] for name in ("overlap_tolerance", "slave_offset/value", "master_offset/value")], [0.1, 0.25, -0.5])
 
     def test_zones_take_the_patches_of_their_own_group_in_any_order(self):
         self.make(zones=("ESCL_1", "ESCL_2"), zone_offset=(0, 1, 2))
@@ -195,6 +231,7 @@ class DefiContact(OperatorTest):
 
     def test_cells_that_cannot_be_in_contact_are_refused(self):
         self.refuses("CONTACT_96", "QUAD4", "M14", zones=[zone(GROUP_MA_MAIT="BODY")])
+        self.make(of_cell=[*OF_CELL[:-1], -1])  # the body behind it has no element either
         self.refuses("LAC_4", "M8", zones=[zone(GROUP_MA_MAIT="BARE")])
 
     def test_slave_and_master_share_no_cell(self):

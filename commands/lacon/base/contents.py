@@ -70,6 +70,11 @@ def groups(mesh, kind):
     return dict(zip(group_names(mesh, kind), ragged(mesh[f"groups/{kind}"]))) if f"groups/{kind}" in mesh else {}
 
 
+def cut_groups(mesh):
+    """Slave skins that DECOUPE_LAC has cut."""
+    return list(map(text, mesh["patches/zone_group"][:])) if "patches" in mesh else []
+
+
 def patches(mesh):
     """The skin cells of each patch of a cut mesh."""
     return ragged(mesh["patches/cells"]) if "patches" in mesh else []

@@ -73,7 +73,8 @@ def command(name):
     """The rows of one command."""
     if _is_json():
         return _json()["commands"][name]
-    return toml(location() / "commands" / f"{name.lower()}.toml")
+    row = toml(location() / "commands" / f"{name.lower()}.toml")
+    return {**command(row["like"]), **row} if "like" in row else row
 
 
 @functools.cache
@@ -98,6 +99,9 @@ def instead(kind, path, otherwise):
     @param path  "DEFI_CONTACT/ZONE[1]/COEF_CONT"; of a value with "=VALUE" behind it
     """
     path = re.sub(r"\[\d+\]", "", path)
+    head, slash, rest = path.partition("/")
+    if slash and head in command_names():
+        path = f"{command(head).get('like', head)}/{rest}"
     rows = _instead()[kind]
     found = rows.get(path) or rows.get(path.rpartition("/")[2])
     if not found:

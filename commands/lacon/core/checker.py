@@ -204,6 +204,8 @@ def _convert(kind, value):
     """A value as `kind` wants it; None where it is of another type."""
     if isinstance(value, Concept):
         return value if kind == "concept" or value.type in kind.split("|") else None
+    if "|" in kind:  # a concept it is not
+        return next((found for found in (_convert(one, value) for one in kind.split("|")) if found is not None), None)
     if hasattr(value, "dtype") and getattr(value, "ndim", 1) == 0:
         value = value.item()
     if kind == "real":
@@ -221,11 +223,9 @@ def _convert(kind, value):
 
 
 def _expected(kind):
-    if kind in _names:
-        return _names[kind]
     if kind == "concept":
         return "a concept"
-    return " or ".join(("an " if k[0] in "aeiou" else "a ") + k.replace("_", " ") for k in kind.split("|"))
+    return " or ".join(_names.get(k, ("an " if k[0] in "aeiou" else "a ") + k.replace("_", " ")) for k in kind.split("|"))
 
 
 def _show(value):

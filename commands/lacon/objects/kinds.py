@@ -15,6 +15,10 @@ class MaterialField(Concept):
     type = "material_field"
 
 
+class ElementCharacteristics(Concept):
+    type = "element_characteristics"
+
+
 class Load(Concept):
     type = "load"
 
@@ -23,5 +27,5 @@ class Contact(Concept):
     type = "contact"
 
 
-kinds = {c.type: c for c in (Mesh, Model, Material, MaterialField, Load, Contact, FieldConcept, ListOfReals, TimeSteps, Function, Formula, Result,
-                             Table)}
+kinds = {c.type: c for c in (Mesh, Model, Material, MaterialField, ElementCharacteristics, Load, Contact, FieldConcept, ListOfReals, TimeSteps,
+                             Function, Formula, Result, Table)}

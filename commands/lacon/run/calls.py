@@ -9,6 +9,7 @@ from ..commands.implementations import implementation
 from ..core import catalog, checker, current, labels, plugins
 from ..core.concepts import CO, Concept, _F
 from ..core.messages import AsterError, InternalError, fail, message
+from .contact_methods import refuse_other_methods
 
 
 class Command:
@@ -43,6 +44,8 @@ class Command:
         if starts and isinstance(given.get("CODE"), dict):  # until version 14: CODE=_F(NIV_PUB_WEB='INTERNET')
             given["CODE"] = "OUI"
         reuse = given.pop("reuse", None)
+        if self.name == "DEFI_CONTACT":
+            refuse_other_methods(self.name, given, where, labels.label(frame))
         keywords, problems = checker.complete(self.name, row, given, where)
         reused = self._reuse(row, reuse, given, keywords, where, problems)
         if problems:
@@ -249,6 +252,8 @@ class Unavailable:
 
     def __call__(self, *args, **given):
         frame = labels.user_frame()
+        if self.name == "DEFI_CONT":
+            refuse_other_methods(self.name, given, labels.location(frame), labels.label(frame))
         instead = catalog.instead("command", self.name, "`lacon help` lists the commands that are")
         fail("COMMAND_11", labels.location(frame), command=self.name, instead=instead)
 

@@ -136,6 +136,64 @@ TEST_F(Touching, ToTakeContactAPatchIsCoveredByMoreThanToKeepIt) {
   }
 }
 
+// SANS_GROUP_NO, RESOLUTION='NON': whatever presses the patch, it stays open; what lies in its master is told beyond
+// TOLE_INTERP.
+TEST_F(Touching, APatchThatIsHeldOpenNeverCloses) {
+  contact.zones[0].held_open = {0};
+  contact.zones[0].initial_status = "OUI";
+  contact.zones[0].resolution = "NON";
+  contact.zones[0].overlap_tolerance = 0.05;
+  ContactState now = state();
+  for (const double gap : {0.1, 0.0, -0.04, -0.1}) {
+    lift(gap);
+    now.update_geometry(displacement);
+    Patchwise patches = now.initial();
+    EXPECT_EQ(patches.status[0], Status::open) << gap;
+    EXPECT_EQ(now.update_statuses(patches), 0) << gap;
+    const std::optional<UncheckedOverlap> overlap = now.unchecked_overlap(0);
+    ASSERT_EQ(overlap.has_value(), gap == -0.1);
+    EXPECT_NEAR(overlap ? overlap->depth : 0, overlap ? 0.1 : 0, 1e-15);
+  }
+}
+
+// GLISSIERE='OUI': what was in contact at a state in equilibrium stays so under tension; what closes on the way may open again.
+TEST_F(Touching, AContactThatGlidesDoesNotOpen) {
+  for (const bool glides : {false, true})
+    for (const bool closed : {false, true}) {
+      contact.zones[0].gliding = glides ? "OUI" : "NON";
+      ContactState now = state();
+      lift(0.01);
+      now.update_geometry(displacement);
+      Patchwise patches(1);
+      patches.status[0] = closed ? Status::active : Status::open;
+      now.keep_gliding(patches);
+      patches.status[0] = Status::active;
+      patches.lambda[0] = 3;
+      now.update_statuses(patches);
+      EXPECT_EQ(patches.status[0], glides && closed ? Status::active : Status::open) << glides << closed;
+    }
+}
+
+// DIST_ESCL, DIST_MAIT: gaps are smaller by the mean of the offset, at points by what it interpolates to, and derivatives
+// belong to the same integral.
+TEST_F(Touching, AnOffsetOfTheSkinsMakesGapsSmaller) {
+  ContactState now = state();
+  std::vector<double> offset(mesh.n_nodes(), 7.0);  // away from the slave it means nothing
+  for (const std::size_t node : {8U, 9U, 12U}) offset[node] = 0.02 + 0.01 * mesh.coordinates[3 * node];
+  now.set_offsets({offset});
+  lift(0.05);
+  now.update_geometry(displacement);
+  EXPECT_NEAR(now.geometry().gap(0), 0.05 - 0.025, 1e-15);
+  EXPECT_GT(now.geometry().smallest_gap(0), 0.05 - 0.03);
+  EXPECT_LT(now.geometry().smallest_gap(0), 0.05 - 0.029);
+  const auto variations = now.geometry().vary(std::vector<std::int8_t>{1});
+  ASSERT_EQ(variations.size(), 1U);
+  EXPECT_NEAR(variations[0].of_gap.gap, 0.025, 1e-15);  // times the length 1
+  lift(0.02);
+  now.update_geometry(displacement);
+  EXPECT_EQ(now.initial().status[0], Status::active);  // an overlap, though the cells are apart
+}
+
 TEST_F(Touching, StatusesCompareAPressureWithTheStiffnessOfBothBodiesInSeries) {
   constexpr double gap = 1e-3;
   for (const double contrast : {1e-6, 1e-3, 1.0, 1e3, 1e6})

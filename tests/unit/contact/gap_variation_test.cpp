@@ -30,6 +30,7 @@ struct Skins {
   bool axis, current, smooth;
   std::vector<double> coordinates, initial;  ///< (n_nodes, 3)
   std::vector<std::vector<std::int32_t>> slaves, masters;
+  std::vector<double> offset = {};  ///< (n_nodes), by which the skins stand out of their cells; or empty
 
   /// The sum over all contact cells.
   struct Sum {
@@ -99,6 +100,10 @@ struct Skins {
     cell.master_nodes = std::span(now).subspan(d * ns, d * (known - ns));
     cell.other_nodes = std::span(now).subspan(d * known);
     cell.slave_normals = at_nodes;
+    std::vector<double> offset_at_nodes;
+    for (std::size_t a = 0; a < ns && !offset.empty(); ++a)
+      offset_at_nodes.push_back(offset[static_cast<std::size_t>(nodes[a])]);
+    cell.slave_offset = offset_at_nodes;
     const auto first = static_cast<std::size_t>(cells.offset[c]), count = static_cast<std::size_t>(cells.offset[c + 1]) - first;
     cell.slave_point = std::span(cells.slave_point).subspan(reference * first, reference * count);
     cell.master_point = std::span(cells.master_point).subspan(reference * first, reference * count);
@@ -155,7 +160,7 @@ void expect_rigid_motions_change_nothing(const Skins& skins, const Skins::Sum& a
 /// A slave cell over a chain of masters, in the plane: a part of a large arc over a wavy line, any nodes moved at random.
 struct InPlane : Skins {
   InPlane(CellType slave, CellType master, bool on_axis, bool actual, bool smoothing, unsigned seed)
-      : Skins{2, slave, master, on_axis, actual, smoothing, {}, {}, {}, {}} {
+      : Skins{2, slave, master, on_axis, actual, smoothing, {}, {}, {}, {}, {}} {
     std::mt19937 random(seed);
     std::uniform_real_distribution<double> uniform(-0.04, 0.04);
     const auto chain = [&](CellType type, int n, double from, double to, double height, auto& cells) {
@@ -178,6 +183,7 @@ struct InPlane : Skins {
     initial = coordinates;
     for (double& x : initial) x += uniform(random);
     for (std::size_t i = 2; i < coordinates.size(); i += 3) coordinates[i] = initial[i] = 0;
+    for (std::size_t i = 0; seed % 3 == 0 && i < coordinates.size() / 3; ++i) offset.push_back(0.1 + 3 * uniform(random));
   }
 };
 
@@ -218,7 +224,7 @@ TEST(GapVariation, DerivativesInThePlaneAreThoseOfDifferences) {
 struct InSpace : Skins {
   /// @param bend how far nodes are moved at random, and how much the surfaces are curved
   InSpace(CellType slave, CellType master, bool actual, bool smoothing, double bend, unsigned seed)
-      : Skins{3, slave, master, false, actual, smoothing, {}, {}, {}, {}} {
+      : Skins{3, slave, master, false, actual, smoothing, {}, {}, {}, {}, {}} {
     std::mt19937 random(seed);
     std::uniform_real_distribution<double> uniform(-1, 1);
     const auto skin = [&](CellType type, double x0, double y0, double dx, double dy, int nx, bool up, double z, auto& cells) {
@@ -254,6 +260,7 @@ struct InSpace : Skins {
     skin(master, 0.12, -0.2, 0.61, 0.93, 3, true, 0, masters);
     initial = coordinates;
     for (double& x : initial) x += 0.05 * uniform(random);
+    for (std::size_t i = 0; seed % 2 == 0 && i < coordinates.size() / 3; ++i) offset.push_back(0.1 + 0.1 * uniform(random));
   }
 };
 
