@@ -153,7 +153,9 @@ TEST(StateFields, AreTheStateThatTheyCameFrom) {
     const std::int32_t node = moved.support[row];
     EXPECT_EQ(moved.counts(row, 2), node == 12);                                 // the carrier alone
     EXPECT_EQ(moved.has(row, 2), node == 8 || node == 9 || node == 12) << node;  // the others of the skin stand in
-    if (moved.has(row, 2)) EXPECT_EQ(moved.at(row, 2), state.patches.lambda[0]);
+    if (moved.has(row, 2)) {
+      EXPECT_EQ(moved.at(row, 2), state.patches.lambda[0]);
+    }
   }
   EXPECT_EQ(fields.at("SIEF_ELGA")().n_rows(), 18U);
   const Field variables = fields.at("VARI_ELGA")();
