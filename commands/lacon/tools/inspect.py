@@ -16,7 +16,7 @@ from ..base import contents
 from ..base.base import ReadBase
 from ..core import catalog, checker, plugins
 from ..core.concepts import to_json
-from ..core.messages import AsterError, fail, show
+from ..core.messages import AsterError, fail
 from ..objects.kinds import kinds
 
 _layer = re.compile(r"pairing_(pairs|skins|points|rejected)(_\d+\.vtu|\.pvd)")
@@ -43,17 +43,12 @@ def run(arguments):
             options.instant = float(options.instant)
         except ValueError:
             asked.error(f"--instant {options.instant}: give a number, last or all")
-    try:
-        shelf = ReadBase(options.base, "lacon inspect", kinds)
-        chosen = choose(shelf, options.result)
-        folder = pathlib.Path(options.out or shelf.folder.with_name(shelf.folder.stem + "_pairing").name)
-        if chosen.type == "contact" and options.instant is not None:
-            fail("INSPECT_3", "lacon inspect --instant", label=chosen.label)
-        return write(shelf, resu(chosen, "last" if options.instant is None else options.instant), folder)
-    except AsterError as error:
-        for item in error.messages:
-            show(item)
-        return error.status
+    shelf = ReadBase(options.base, "lacon inspect", kinds)
+    chosen = choose(shelf, options.result)
+    folder = pathlib.Path(options.out or shelf.folder.with_name(shelf.folder.stem + "_pairing").name)
+    if chosen.type == "contact" and options.instant is not None:
+        fail("INSPECT_3", "lacon inspect --instant", label=chosen.label)
+    return write(shelf, resu(chosen, "last" if options.instant is None else options.instant), folder)
 
 
 def choose(shelf, label):

@@ -7,7 +7,7 @@ import webbrowser
 
 from ..core import outcome, plugins
 from ..core.files import write_whole
-from ..core.messages import AsterError, fail, show
+from ..core.messages import fail
 from ..reader.base import open_base
 from ..report import study
 
@@ -29,19 +29,14 @@ def parser():
 def run(arguments):
     """@return exit status"""
     options = parser().parse_args(arguments)
+    page = template()
+    base = open_base(options.base)
+    told, packing = study.make(base, base.only_result(options.result))
+    target = pathlib.Path(options.out or base.folder.with_suffix(".html").name)
     try:
-        page = template()
-        base = open_base(options.base)
-        told, packing = study.make(base, base.only_result(options.result))
-        target = pathlib.Path(options.out or base.folder.with_suffix(".html").name)
-        try:
-            write_whole(target, filled(page, told, packing))
-        except OSError as error:
-            fail("STUDY_3", "lacon report --out", folder=target, reason=error.strerror)
-    except AsterError as error:
-        for item in error.messages:
-            show(item)
-        return error.status
+        write_whole(target, filled(page, told, packing))
+    except OSError as error:
+        fail("STUDY_3", "lacon report --out", folder=target, reason=error.strerror)
     print(f"{target}: {target.stat().st_size / 1e6:.1f} MB, {len(told['drawn'])} instants, {len(told['fields'])} fields")
     if options.open:
         webbrowser.open(target.resolve().as_uri())

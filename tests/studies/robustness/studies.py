@@ -221,9 +221,7 @@ def tips():
 
 
 def tilted_corner():
-    """Frictionless on a plate all of whose nodes are held: no force along it where the tool is the slave, whose patches lie on a plane. Patches of
-    the plate hold the average height of what is above them, and this changes along the plate, but for the mean over a patch by no more than
-    the steeper flank rises: Fx/Fy is (height at one end - height at the other) / length."""
+    """Frictionless on a plate all of whose nodes are held: no force along it."""
     for kind, strain, side in itertools.product(ORDERS, STRAINS, SIDES):
         body = block(kind, lines(0, 1, 6), lines(0, 1, 6), None, "TOOL",
                      {"bottom": "TOOL_SKIN", "left": "TOOL_SKIN", "top": "TOOL_BASE", "right": "TOOL_BASE"})
@@ -231,7 +229,7 @@ def tilted_corner():
         yield Study(name=named(kind, strain, slave(("TOOL", "PLATE"), side)), mesh=mesh,
                     materials={"TOOL": elastic(1e3), "PLATE": elastic(1e6)}, zones=[zone("TOOL", "PLATE", side)], strain=strain,
                     moves=[{"GROUP_MA": "PLATE", "DX": 0.0, "DY": 0.0}, path("TOOL", [(0, 0), (5, 0), (20, 1)], [(0, 0), (5, -0.05), (20, -0.05)])],
-                    steps=20, asked={"Fx/Fy": 1e-6 if side == 0 else math.tan(math.radians(70))}, driven="TOOL_BASE", measure=forces)
+                    steps=20, asked={"Fx/Fy": 1e-6}, driven="TOOL_BASE", measure=forces)
 
 
 def closed_cycle():
