@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "../unit/pairing/region.hpp"
 #include "fuzz.hpp"
 #include "polygons.hpp"
 
@@ -32,15 +33,6 @@ space::Polygon hull(Choices& choices) {
   return around;
 }
 
-space::Region region(const space::Polygon& polygon) {
-  space::Region made{polygon, {}};
-  for (std::size_t i = 0; i < polygon.size(); ++i) {
-    const Vec2 d = polygon[(i + 1) % polygon.size()] - polygon[i];
-    made.halves.push_back({polygon[i], {-d.y, d.x}, 0});
-  }
-  return made;
-}
-
 bool same(double a, double b) { return std::abs(a - b) <= round_off; }
 
 }  // namespace
@@ -49,7 +41,7 @@ void clipping(Bytes input) {
   Choices choices(input);
   const space::Polygon p = hull(choices), q = hull(choices);
   if (p.size() < 3 || q.size() < 3) return;
-  const space::Region a = region(p), b = region(q);
+  const space::Region a = test::region(p), b = test::region(q);
   const double common = common_area(p, q);
   expect(same(0.5 * space::double_area(p), area(p)), "the area of a polygon");
   expect(same(0.5 * space::double_area(space::intersection(a, b).polygon), common), "the area of a common part");

@@ -9,6 +9,7 @@
 #include <limits>
 
 #include "lacon/pairing/target.hpp"
+#include "region.hpp"
 #include "skins_in_space.hpp"
 
 namespace {
@@ -44,15 +45,6 @@ space::Polygon hull(const std::vector<Vec2>& points) {
   space::Polygon polygon;
   for (const Kernel::Point_2& p : corners) polygon.push_back({CGAL::to_double(p.x()), CGAL::to_double(p.y())});
   return polygon;
-}
-
-space::Region region(const space::Polygon& polygon) {
-  space::Region made{polygon, {}};
-  for (std::size_t i = 0; i < polygon.size(); ++i) {
-    const Vec2 d = polygon[(i + 1) % polygon.size()] - polygon[i];
-    made.halves.push_back({polygon[i], {-d.y, d.x}, 0});
-  }
-  return made;
 }
 
 /// A half-plane is evaluated to 4 roundings of a distance, and moves an edge by as much; a new vertex is rounded once more. At
