@@ -205,7 +205,7 @@ Load affe_char(const Mesh& mesh, const Model& model, Registry& registry, const B
   const LoadScene scene = make_scene(mesh, model, registry, base);
   Load load;
   std::vector<Keywords> imposed;
-  for (const char* const keyword : {"MECA_IMPO", "DDL_IMPO", "FACE_IMPO"})
+  for (const char* const keyword : {"MECA_IMPO", "DDL_IMPO", "FACE_IMPO", "ARETE_IMPO"})
     for (const Keywords& factor : keywords.factors(keyword)) add_imposed(imposed, factor, model.dimension);
   load_nodes(scene, imposed, unknowns(), "CHARGE_4", load.imposed);
   load_nodes(scene, keywords.factors("FORCE_NODALE"), forces, "CHARGE_5", load.nodal);

@@ -8,20 +8,14 @@
 #include <set>
 
 #include "lacon/catalog/messages.hpp"
+#include "lacon/operators/affe_char/ties.hpp"
 #include "lacon/operators/meshing/named_nodes.hpp"
 #include "lacon/operators/program/study_function.hpp"
 #include "lacon/pairing/normals.hpp"
 #include "lacon/structures/vector.hpp"
 
 namespace lacon {
-namespace {
 
-constexpr const char* translation[] = {"DX", "DY", "DZ"};
-constexpr double same_place = 1e-9;  // of the size of a group: points that coincide, points on one line
-
-Vec3 unit(Vec3 a) { return a / norm(a); }
-
-/// Every node that an occurrence names, each once, in the order in which they come.
 std::vector<std::int32_t> distinct_nodes(const std::vector<NamedPlaces>& named) {
   std::vector<std::int32_t> nodes;
   std::set<std::int32_t> seen;
@@ -31,12 +25,19 @@ std::vector<std::int32_t> distinct_nodes(const std::vector<NamedPlaces>& named) 
   return nodes;
 }
 
-/// Enter a relation whose degrees of freedom all exist.
-void add(Load& load, const LoadScene& scene, const std::string& source, std::vector<RelationTerm> terms, LoadValue value) {
+void add_relation(Load& load, const LoadScene& scene, const std::string& source, std::vector<RelationTerm> terms,
+                  LoadValue value) {
   std::erase_if(terms, [](const RelationTerm& term) { return term.coefficient == 0; });
   for (const RelationTerm& term : terms) scene.check_dof(term.node, term.component, source);
   if (!terms.empty()) load.relations.push_back({source, std::move(terms), std::move(value)});
 }
+
+namespace {
+
+constexpr const char* translation[] = {"DX", "DY", "DZ"};
+constexpr double same_place = 1e-9;  // of the size of a group: points that coincide, points on one line
+
+Vec3 unit(Vec3 a) { return a / norm(a); }
 
 [[noreturn]] void wrong_count(const Keywords& factor, std::string_view keyword, std::size_t found, std::size_t expected) {
   fail("CHARGE_11",
@@ -57,7 +58,7 @@ void link_dofs(Load& load, const LoadScene& scene, const Keywords& factor) {
   if (coefficients.size() != nodes.size()) wrong_count(factor, "COEF_MULT", coefficients.size(), nodes.size());
   std::vector<RelationTerm> terms;
   for (std::size_t i = 0; i < nodes.size(); ++i) terms.push_back({nodes[i], components[i], coefficients[i]});
-  add(load, scene, factor.path("DDL"), std::move(terms), value_of(scene.base, factor, "COEF_IMPO"));
+  add_relation(load, scene, factor.path("DDL"), std::move(terms), value_of(scene.base, factor, "COEF_IMPO"));
 }
 
 /// Every node has the first one's displacement.
@@ -65,17 +66,16 @@ void make_uniform(Load& load, const LoadScene& scene, const Keywords& factor) {
   const std::vector<std::int32_t> nodes = distinct_nodes(named_nodes(scene, factor));
   for (const std::string& component : factor.texts("DDL"))
     for (std::size_t i = 1; i < nodes.size(); ++i)
-      add(load, scene, factor.path("DDL"), {{nodes[0], component, 1.0}, {nodes[i], component, -1.0}}, {});
+      add_relation(load, scene, factor.path("DDL"), {{nodes[0], component, 1.0}, {nodes[i], component, -1.0}}, {});
 }
 
 /// For each node of the first group and the nearest one of the second: the sum over DDL_1 and that over DDL_2 are COEF_IMPO.
 void link_groups(Load& load, const LoadScene& scene, const Keywords& factor) {
   std::vector<std::int32_t> sides[2];
+  const std::vector<char> out = nodes_left_out(scene.mesh, factor);
   for (int side = 0; side < 2; ++side) {
     sides[side] = distinct_nodes(named_nodes(scene, factor, side ? "_2" : "_1"));
-    for (const std::string& group : factor.texts("SANS_GROUP_NO"))
-      for (const std::int32_t node : nodes_of_group(scene.mesh, group, factor.path("SANS_GROUP_NO")))
-        std::erase(sides[side], node);
+    std::erase_if(sides[side], [&](std::int32_t node) { return out[static_cast<std::size_t>(node)] != 0; });
   }
   if (sides[0].size() != sides[1].size())
     fail("CHARGE_13",
@@ -108,7 +108,7 @@ void link_groups(Load& load, const LoadScene& scene, const Keywords& factor) {
       for (std::size_t i = 0; i < components.size(); ++i)
         terms.push_back({side ? nearest : node, components[i], coefficients[i]});
     }
-    add(load, scene, factor.path("DDL_1"), std::move(terms), value_of(scene.base, factor, "COEF_IMPO"));
+    add_relation(load, scene, factor.path("DDL_1"), std::move(terms), value_of(scene.base, factor, "COEF_IMPO"));
   }
 }
 
@@ -127,7 +127,7 @@ void make_rigid(Load& load, const LoadScene& scene, const Keywords& factor) {
   }
   for (std::vector<RelationTerm>& terms : rigid_relations(points, scene.mesh.dimension)) {
     for (RelationTerm& term : terms) term.node = nodes[static_cast<std::size_t>(term.node)];
-    add(load, scene, named.front().source, std::move(terms), {});
+    add_relation(load, scene, named.front().source, std::move(terms), {});
   }
 }
 
@@ -176,7 +176,7 @@ void hold_normal(Load& load, const LoadScene& scene, const Keywords& factor) {
       const Vec3 direction = tangent ? Vec3{-n.y, n.x, 0} : n;
       std::vector<RelationTerm> terms;
       for (int d = 0; d < scene.mesh.dimension; ++d) terms.push_back({node, translation[d], component(direction, d)});
-      add(load, scene, factor.path(keyword), std::move(terms), value_of(scene.base, factor, keyword));
+      add_relation(load, scene, factor.path(keyword), std::move(terms), value_of(scene.base, factor, keyword));
     }
   }
 }
@@ -280,6 +280,8 @@ void add_relations(Load& load, const LoadScene& scene, const Keywords& keywords)
   for (const Keywords& factor : keywords.factors("LIAISON_UNIF")) make_uniform(load, scene, factor);
   for (const Keywords& factor : keywords.factors("LIAISON_GROUP")) link_groups(load, scene, factor);
   for (const Keywords& factor : keywords.factors("LIAISON_SOLIDE")) make_rigid(load, scene, factor);
+  for (const Keywords& factor : keywords.factors("LIAISON_OBLIQUE")) hold_oblique(load, scene, factor);
+  for (const Keywords& factor : keywords.factors("LIAISON_MAIL")) tie_to_cells(load, scene, factor);
 }
 
 }  // namespace lacon

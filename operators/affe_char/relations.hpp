@@ -1,8 +1,16 @@
 #pragma once
-// Relations between displacements: LIAISON_DDL, LIAISON_UNIF, LIAISON_GROUP, LIAISON_SOLIDE, and DNOR, DTAN of FACE_IMPO.
+// Relations between displacements: LIAISON_DDL, LIAISON_UNIF, LIAISON_GROUP, LIAISON_SOLIDE, DNOR and DTAN of FACE_IMPO, and
+// those of ties.hpp.
 #include "lacon/operators/affe_char/places.hpp"
 
 namespace lacon {
+
+/// Every node that an occurrence names, each once, in the order in which they come.
+std::vector<std::int32_t> distinct_nodes(const std::vector<NamedPlaces>& named);
+
+/// Enter a relation; terms of coefficient 0 are left out. Throws CHARGE_2, CHARGE_3 where a degree of freedom does not exist.
+void add_relation(Load& load, const LoadScene& scene, const std::string& source, std::vector<RelationTerm> terms,
+                  LoadValue value);
 
 /// Append the relations of every such keyword to the load. Throws what names of places and degrees of freedom throw, CHARGE_11
 /// (lists of different lengths), CHARGE_12 (a group without normal), CHARGE_13 (nodes that do not pair), CHARGE_14 (a rigid

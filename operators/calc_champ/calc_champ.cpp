@@ -404,11 +404,32 @@ class Instant {
   std::map<std::string, Field, std::less<>> fields_;
 };
 
+/// EXCIT: the loads of the result, each with its function, in any order. Throws CALCCHAMP_6.
+void check_loads(const Base& base, const Result& from, const Keywords& keywords) {
+  if (!keywords.has("EXCIT")) return;
+  using Loads = std::vector<std::pair<std::string, std::string>>;
+  const auto labels = [&](Loads loads) {
+    std::sort(loads.begin(), loads.end());
+    std::vector<std::string> names;
+    for (const auto& [load, function] : loads)
+      names.push_back(base.label(load) + (function.empty() ? "" : " with " + base.label(function)));
+    return fmt::format("{}", fmt::join(names, ", "));
+  };
+  Loads given, own;
+  for (const Keywords& factor : keywords.factors("EXCIT"))
+    given.emplace_back(factor.concept_id("CHARGE"), factor.optional_concept("FONC_MULT").value_or(""));
+  for (const ResultLoad& load : from.loads) own.emplace_back(load.load, load.function);
+  if (std::is_permutation(given.begin(), given.end(), own.begin(), own.end())) return;
+  fail("CALCCHAMP_6",
+       {{"keyword", keywords.path("EXCIT")}, {"given", labels(given)}, {"label", from.label}, {"own", labels(own)}});
+}
+
 }  // namespace
 
 void calc_champ(const Order& order, const Base& base) {
   const Keywords& keywords = order.keywords;
   const Result from = base.result(keywords.concept_id("RESULTAT"));
+  check_loads(base, from, keywords);
   std::vector<std::string> asked;
   for (const char* family : {"CONTRAINTE", "DEFORMATION", "CRITERES", "VARI_INTERNE", "FORCE", "ENERGIE"})
     for (const std::string& name : keywords.texts(family)) asked.push_back(name);

@@ -50,6 +50,11 @@ class Mistakes(unittest.TestCase):
     def test_unknown_keyword_names_the_nearest(self):
         self.one("KEYWORD_1", "LIRE_MAILLAGE/UNITEE", "nearest one is UNITE", command="LIRE_MAILLAGE", UNITEE=20)
 
+    def test_a_keyword_of_another_level_is_named_with_its_place(self):
+        """In earlier versions of code_aster METHODE was within DEFI_LIST."""
+        self.one("KEYWORD_1", "DEFI_LIST_INST/DEFI_LIST/METHODE", "DEFI_LIST_INST/METHODE is there", command="DEFI_LIST_INST",
+                 DEFI_LIST={"LIST_INST": concept("list_of_reals"), "METHODE": "AUTO"})
+
     def test_integers_beyond_64_bits(self):
         for command, keywords in (("LIRE_MAILLAGE", {"UNITE": 10**400}), ("DEFI_CONSTANTE", {"VALE": 10**400}), ("DEFI_CONSTANTE", {"VALE": -10**400})):
             self.assertEqual(len(problems(command, **keywords)), 1, command)
@@ -74,7 +79,7 @@ class Mistakes(unittest.TestCase):
 
     def test_the_look_of_a_listing_is_taken_and_changes_nothing(self):
         complete("IMPR_RESU", FORMAT="RESULTAT", RESU={"RESULTAT": concept("result"), "FORM_TABL": "OUI", "FORMAT_R": "1PE12.5"})
-        self.one("KEYWORD_11", "IMPR_RESU/MODELE", command="IMPR_RESU", MODELE=concept("model"), RESU={"MAILLAGE": concept("mesh")})
+        complete("IMPR_RESU", MODELE=concept("model"), RESU={"MAILLAGE": concept("mesh")})
 
     def test_a_line_of_nodes_has_its_ends(self):
         line = {"OPTION": "SEGM_DROI_ORDO", "NOM": "A", "PRECISION": 1e-6, "GROUP_MA": "B", "NOEUD_ORIG": "N1", "GROUP_NO_EXTR": "C"}

@@ -66,12 +66,13 @@ assert line.Ordo() == [2, 2]
 
     def test_checks(self):
         run = self.study("""
+TEST_FONCTION(VALEUR=_F(FONCTION=FORMULE(NOM_PARA=('X', 'Y'), VALE='X - 2 * Y'), NOM_PARA=('Y', 'X'), VALE_PARA=(1., 5.), VALE_CALC=3.))
 TEST_FONCTION(VALEUR=(_F(FONCTION=f, VALE_PARA=2., VALE_CALC=5.0, VALE_REFE=5.001, REFERENCE='ANALYTIQUE'),
                       _F(FONCTION=two, VALE_PARA=(2., 3.), VALE_CALC=6.0), _F(FONCTION=quadratic, VALE_PARA=3., VALE_CALC=9.5, VALE_REFE=9.0, REFERENCE='ANALYTIQUE', PRECISION=0.1),
                       _F(FONCTION=f, VALE_PARA=2., VALE_CALC=-5.0, VALE_ABS='OUI')))
 """)
         self.assertEqual((run.status, run.last), (0, "--- DIAGNOSTIC JOB : OK"))
-        self.assertIn("4 checks: 3 OK, 0 NOOK, 1 DIFF", run.out)
+        self.assertIn("5 checks: 4 OK, 0 NOOK, 1 DIFF", run.out)
         self.assertIn("X 2, Y 3", run.out)
 
     def test_calculated_tables(self):
@@ -117,6 +118,7 @@ FIN()
     def test_refused(self):
         self.all_refused(FUNCTIONS + "R = None\n", [
             ("TEST_FONCTION(VALEUR=_F(FONCTION=two, VALE_PARA=1., VALE_CALC=1.))", "FUNCTION_12"),
+            ("TEST_FONCTION(VALEUR=_F(FONCTION=f, NOM_PARA='Z', VALE_PARA=1., VALE_CALC=1.))", "FUNCTION_12"),
             ("TEST_FONCTION(VALEUR=_F(FONCTION=g, VALE_PARA=4., VALE_CALC=1.))", "DEFI_FONCTION_3"),
             ("CALC_FONCTION(INVERSE=_F(FONCTION=f))", "FUNCTION_15"), ("CALC_FONCTION(RMS=_F(FONCTION=f))", "KEYWORD_11"),
             ("CALC_FONCTION(DERIVE=_F(FONCTION=DEFI_FONCTION(NOM_PARA='X', VALE=(0, 1))))", "FUNCTION_14"),

@@ -300,6 +300,48 @@ class Loads(OperatorTest):
         self.write_model("model_3", "mesh_1", ["AXIS/QUAD4", "AXIS/SEG2"], [0, 0, 1, 1, 1, 1, -1, -1])
         self.refuses("CHARGE_14", {"LIAISON_SOLIDE": [{"GROUP_NO": ["BOTTOM"]}]}, "BOTTOM")
 
+    def test_displacements_along_axes_of_their_own(self):
+        """ANGL_NAUT turns the axes about Z: 30 degrees; 90 degrees leave no round-off behind."""
+        self.meca(LIAISON_OBLIQUE=[{"GROUP_NO": ["CORNER"], "ANGL_NAUT": [30.0, 0.0, 0.0], "DX": 2.0, "DY": 3.0}])
+        rows, values = self.relations(14, 2)
+        np.testing.assert_allclose(rows[:, :2], [[0.75**0.5, 0.5], [-0.5, 0.75**0.5]], atol=1e-15)
+        self.assertEqual(values.tolist(), [2.0, 3.0])
+        self.meca(LIAISON_OBLIQUE=[{"NOEUD": ["N1"], "ANGL_NAUT": [90.0], "DX": 0.0}])
+        np.testing.assert_array_equal(self.relations(14, 2)[0][:, :2], [[0, 1]])
+        self.refuses("CHARGE_3", {"LIAISON_OBLIQUE": [{"NOEUD": ["N1"], "ANGL_NAUT": [10.0], "DZ": 0.0}]}, "DZ", "N1")
+        self.refuses("MODIREPERE_5", {"LIAISON_OBLIQUE": [{"NOEUD": ["N1"], "ANGL_NAUT": [0.0, 20.0, 0.0], "DX": 0.0}]}, "ANGL_NAUT")
+
+    def test_nodes_tied_to_the_cells_that_hold_them(self):
+        """The loose node stands in the left cell at a quarter of its width and three quarters of its height; the cell's own nodes are tied
+        to nothing; where it stands outside, it moves as the nearest point."""
+        self.write_mesh("mesh_1", [*COORDINATES[:6], [0.25, 0.75]], [*CELLS, ("QUAD4", [6, 1, 2, 5])], cell_groups={**GROUPS, "LOOSE": [6]},
+                        node_groups=NODES)
+        self.write_model("model_3", "mesh_1", ["D_PLAN/QUAD4", "D_PLAN/SEG2"], [0, 0, 1, 1, 1, 1, 1, -1, 0])
+        self.meca(LIAISON_MAIL=[{"GROUP_MA_MAIT": ["BODY"], "GROUP_NO_ESCL": ["ALONE", "CORNER"]}])
+        rows, values = self.relations(14, 2)
+        weights = {0: 0.75 * 0.25, 1: 0.25 * 0.25, 4: 0.25 * 0.75, 3: 0.75 * 0.75, 6: -1.0}
+        expected = np.zeros((2, 14))
+        for node, weight in weights.items():
+            expected[[0, 1], [2 * node, 2 * node + 1]] = -weight
+        np.testing.assert_allclose(rows, expected, atol=1e-12)
+        self.assertEqual(values.tolist(), [0.0, 0.0])
+        self.refuses("CHARGE_22", {"LIAISON_MAIL": [{"GROUP_MA_MAIT": ["TOP"], "GROUP_NO_ESCL": ["ALONE"]}]}, "LIAISON_MAIL/GROUP_MA_MAIT")
+        self.write_mesh("mesh_1", [*COORDINATES[:6], [-0.5, 0.5]], [*CELLS, ("QUAD4", [6, 1, 2, 5])], cell_groups=GROUPS, node_groups=NODES)
+        run = self.meca(LIAISON_MAIL=[{"GROUP_MA_MAIT": ["BODY"], "GROUP_NO_ESCL": ["ALONE"]}])
+        self.assertEqual((run.status, self.ids(run)), (0, ["CHARGE_23"]))
+        np.testing.assert_allclose(self.relations(14, 2)[0][0, [0, 6, 12]], [-0.5, -0.5, 1.0], atol=1e-9)
+        run = self.meca(LIAISON_MAIL=[{"GROUP_MA_MAIT": ["BODY"], "GROUP_NO_ESCL": ["ALONE"], "DISTANCE_ALARME": 0.6}])
+        self.assertEqual((run.status, self.ids(run)), (0, []))
+        self.refuses("CHARGE_21", {"LIAISON_MAIL": [{"GROUP_MA_MAIT": ["BODY"], "GROUP_NO_ESCL": ["ALONE"], "DISTANCE_MAX": 0.4}]}, "N7")
+
+    def test_edges_and_pairs_without_some_nodes(self):
+        self.meca(ARETE_IMPO=[{"GROUP_MA": ["TOP"], "SANS_NOEUD": ["N5"], "DY": 1.0}])
+        self.assertEqual(self.imposed(), {(5, "DY"): 1, (3, "DY"): 1})
+        sides = {"DDL_1": ["DX"], "COEF_MULT_1": [1.0], "DDL_2": ["DX"], "COEF_MULT_2": [-1.0], "COEF_IMPO": 0.0}
+        self.meca(LIAISON_GROUP=[{"GROUP_NO_1": ["BOTTOM"], "GROUP_MA_2": ["TOP"], "SANS_NOEUD": ["N1", "N4"], **sides}])
+        rows, _ = self.relations(14, 2)
+        self.assertEqual([sorted(np.nonzero(row)[0] // 2) for row in rows], [[1, 4], [2, 5]])
+
     def test_normals_of_a_bent_side_alarm(self):
         """The corner's mean normal is 45 degrees from both sides; multiplied by normal displacement it holds neither."""
         cells = [*CELLS[:7], ("SEG2", [2, 5])]

@@ -73,8 +73,10 @@ def test_fonction(call):
     for test in call.keywords["VALEUR"]:
         concept, at = test["FONCTION"], test["VALE_PARA"]
         names = concept.getVariables() if concept.type == "formula" else [concept.points().parameter]
-        if len(at) != len(names):
+        named = dict(zip(test.get("NOM_PARA", names), at))
+        if len(at) != len(names) or set(named) != set(names) or len(test.get("NOM_PARA", names)) != len(names):
             call.fail("FUNCTION_12", "VALEUR/VALE_PARA", label=concept.label, parameters=", ".join(names))
+        at = [named[name] for name in names]
         value = float(concept(*at))
         place = ", ".join(f"{name} {v:g}" for name, v in zip(names, at))
         check = checks.conclude(call, checks.Check(call.where, concept.label, "", "", place, None, test.get("LEGENDE", ""), value), test)

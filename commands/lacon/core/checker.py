@@ -81,7 +81,10 @@ class _Check:
             otherwise = f"remove it: `lacon help {re.match('[A-Z_0-9]*', path)[0]}` says what is available"
             self.problem("KEYWORD_11", f"{path}/{name}", instead=catalog.instead("keyword", f"{path}/{name}", otherwise))
             return
-        self.problem("KEYWORD_1", f"{path}/{name}", nearest=nearest(name, row.get("keyword", {})))
+        command = path.partition("/")[0]
+        level = next(iter(_levels(command, catalog.command(command), name)), None)
+        close = f"; {level} is there" if level else nearest(name, row.get("keyword", {}))
+        self.problem("KEYWORD_1", f"{path}/{name}", nearest=close)
 
     def holds(self, when, values, given):
         return (all(values.get(k) in allowed for k, allowed in when.get("if", {}).items())
@@ -184,6 +187,14 @@ class _Check:
         for key, (holds, words) in tests.items():
             if key in row and not holds(value, row[key]):
                 self.problem("KEYWORD_15", path, value=_show(value), bound=f"{words} {row[key]:g}")
+
+
+def _levels(path, row, name):
+    """The paths of every keyword of this name in a command."""
+    for own, keyword in row.get("keyword", {}).items():
+        if own == name:
+            yield f"{path}/{own}"
+        yield from _levels(f"{path}/{own}", keyword, name)
 
 
 # ------------------------------------------------------------------------------------------------------- values
