@@ -189,11 +189,4 @@ void RestartRecord::accept(const SolvedInstant& solved) {
   if (!std::getenv("LACON_RESTART_ALWAYS")) next_ = clock::now() + patience * (clock::now() - start);
 }
 
-void RestartRecord::end(bool completed) {
-  std::error_code error;
-  if (!completed) return;
-  fs::remove(folder_ / record_name, error);
-  if (stored_base_ > 0) fs::remove(base_file(stored_base_), error);
-}
-
 }  // namespace lacon

@@ -23,9 +23,10 @@ void write(const hdf5::Group& group, const StaticState& state);
 StaticState read_state(const hdf5::Group& group);
 
 /// The observer behind the archive. The record is replaced when the archive has got an instant, as long as that takes half a
-/// percent of the time: where instants go by in no time, it is that of one of the last. It is removed where the computation is
-/// complete. With LACON_RESTART_ALWAYS it is replaced with each archived instant, whatever that takes. What is large in it, the
-/// base of the linear solver, lies in a file beside it as long as it serves.
+/// percent of the time: where instants go by in no time, it is that of one of the last. With LACON_RESTART_ALWAYS it is
+/// replaced with each archived instant, whatever that takes. What is large in it, the base of the linear solver, lies in a file
+/// beside it as long as it serves. Where the computation is complete the launcher removes it, when it has entered the result:
+/// where it is ended before that, the next one gives the same order again.
 class RestartRecord : public EvolutionObserver {
  public:
   /// @param observers that have something to remember, by name; all arguments must outlive it
@@ -36,7 +37,6 @@ class RestartRecord : public EvolutionObserver {
   /// @return the attempts until then. Throws EVOLUTION_31 where the record is not sound.
   Course go_on(const hdf5::Group& record);
   void accept(const SolvedInstant& solved) override;
-  void end(bool completed) override;
 
  private:
   void take(const hdf5::Group& record);

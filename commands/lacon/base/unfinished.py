@@ -18,15 +18,22 @@ class Unfinished:
     def _entries(self):
         return self.base.registry.get("unfinished", {})  # without any the registry of a base is what it was before
 
-    def begin(self, identifier, label, key, at, where):
+    def begin(self, identifier, label, key, at, where, resumes):
+        if not resumes:
+            self.drop_record(identifier)  # of another order that enriched the same result
         self.base.registry.setdefault("unfinished", {})[identifier] = {"label": label, "key": key, "at": at, "where": where}
         self.base.write(where)
 
     def end(self, identifier):
-        """The computation is at its end, or nothing is left of it."""
+        """The computation is at its end, or nothing is left of it. Its record goes when the registry that says so is written."""
         self._entries.pop(identifier, None)
         if not self._entries:
             self.base.registry.pop("unfinished", None)
+
+    def drop_record(self, identifier):
+        """Remove the restart record of a result."""
+        for path in (self.base.folder / identifier).glob("restart*.h5"):
+            path.unlink(missing_ok=True)
 
     def find(self, kind, key):
         """The id of the one that an order of this key has begun; nothing where there is none, or nothing is taken up."""

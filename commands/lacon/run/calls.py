@@ -107,7 +107,8 @@ class Command:
             identifier = self._resume(run, row["result"], key, identifier, reused, result)
         copy = orders.keep_copy(run.base, identifier) if reused else None
         if grows:
-            run.base.unfinished.begin(identifier, label, key, run.base.kept.hold(identifier) if reused else None, where)
+            at = run.base.kept.hold(identifier) if reused else None
+            run.base.unfinished.begin(identifier, label, key, at, where, resumes="resume" in result)
             command_files.keep(run.base, identifier, run.texts)
         try:
             outcome = orders.run(row["operator"], made, run)
@@ -149,7 +150,10 @@ class Command:
                 run.written_units[number] = units[number]
         if not result:
             return None, outcome
-        return self._result(run, identifier, label, where, reused, named), outcome
+        item = self._result(run, identifier, label, where, reused, named)
+        if grows:
+            run.base.unfinished.drop_record(identifier)
+        return item, outcome
 
     def _resume(self, run, kind, key, identifier, reused, result):
         """Have the operator go on where a run with the same order was ended. @return the id of the concept"""

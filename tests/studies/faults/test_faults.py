@@ -344,6 +344,29 @@ class GoesOn(FaultTest):
         watch = {"NOM_CHAM": "DEPL", "NOM_CMP": "DY", "GROUP_MA": "TOP", "EVAL_CHAM": "MIN"}
         self.check(7, OBSERVATION=watch)
 
+    def test_a_launcher_is_killed_behind_the_end(self):
+        """The operator has come to its end, and its launcher does not get to entering that: the next one asks for what there is."""
+        self.environment = {"FAULTS_LAW": "VMIS_ISOT_LINE"}
+        run = self.start("s.base")
+        text = self.until(run, 1)
+        operator = operator_of(run.pid)
+        run.send_signal(signal.SIGSTOP)
+        text += self.until(run, INSTANTS - 1)
+        start = time.monotonic()
+        while is_alive(operator) and time.monotonic() < start + SECONDS:
+            time.sleep(0.01)
+        run.kill()
+        told = converged(text + run.communicate(timeout=SECONDS)[0])
+        run = self.start("s.base")
+        self.until(run, 1)
+        run.kill()
+        run.communicate(timeout=SECONDS)
+        self.assertEqual((len(told), self.instants("s.base")), (INSTANTS, told))
+        self.whole("s.base")
+        self.whole("whole.base")
+        self.assertEqual(content_of(self.folder / "whole.base"), content_of(self.folder / "s.base"))
+        self.assertEqual([path.name for path in self.index("s.base").parent.glob("restart*")], [])
+
     def test_a_run_may_start_over(self):
         run = self.start("s.base")
         self.until(run, 3)
@@ -406,6 +429,24 @@ class Pursued(FaultTest):
         self.assertEqual(again.returncode, 0, again.stdout[-2000:] + again.stderr)
         self.assertIn("goes on behind the instant", again.stderr)
         self.assertEqual(content_of(self.folder / "s.base"), content_of(self.folder / "whole.base"))
+
+    def test_another_order_does_not_go_on_from_its_record(self):
+        """Killed in its middle, changed, and killed again before it has come to an instant: nothing of the first order is in what follows."""
+        command = [LACON, STUDY, "more.comm", "--base", "s.base", "--unit", "20=stack.med"]
+        for most, count in ((40, 4), (41, 0)):
+            (self.folder / "more.comm").write_text(MORE.format(then="").replace("MAXI=40", f"MAXI={most}"), encoding="utf-8")
+            run = subprocess.Popen(command, cwd=self.folder, env={**os.environ, **self.environment}, text=True,
+                                   stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, start_new_session=True)
+            while not run.stdout.readline().startswith("more.comm:4: RESULT"):
+                self.assertIsNone(run.poll())
+            while not children_of(run.pid):
+                self.assertIsNone(run.poll())
+            self.until(run, count)
+            os.killpg(run.pid, signal.SIGKILL)
+            run.communicate()
+        again = self.run_tool(*command[1:], **self.environment)
+        self.assertEqual((again.returncode, converged(again.stdout)[:1]), (0, ["0.55"]), again.stdout[-2000:] + again.stderr)
+        self.assertNotIn("goes on behind the instant", again.stderr)
 
     def test_the_remedy_where_the_order_is_another_one(self):
         self.more("s.base", "1 / 0")

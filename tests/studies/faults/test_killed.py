@@ -1,7 +1,9 @@
 """A study of 20 instants and two zones that is killed at random moments (its launcher, its operator, both; KILL, TERM, INT), each time followed
 by the same command: no instant that was told as converged is lost, no process is left, and in the end everything is bit for bit what
-a run is that nothing disturbed. FAULTS_SEED chooses other moments."""
+a run is that nothing disturbed. FAULTS_SEED chooses other moments. What explains a failure is kept in the folder that its message names."""
 
+import contextlib
+import json
 import os
 import pathlib
 import random
@@ -15,15 +17,28 @@ import unittest
 
 sys.path[:0] = [str(pathlib.Path(__file__).resolve().parent)]
 
-from test_faults import FaultTest, children_of, content_of, converged, is_alive  # noqa: E402, I001 (it says where study_test.py is)
+from test_faults import FaultTest, children_of, content_of, converged  # noqa: E402, I001 (it says where study_test.py is)
 from study_test import SECONDS  # noqa: E402
 
 MOMENT = 2.5  # seconds after which nothing is left
 
 
+def session_of(leader):
+    """What is alive of the processes that a leader of a session has started, and those that they have: process -> its line in /proc."""
+    found = {}
+    for path in pathlib.Path("/proc").glob("[0-9]*/stat"):
+        with contextlib.suppress(OSError):  # it has just gone
+            text = path.read_text()
+            state, _, _, session = text.rpartition(")")[2].split()[:4]
+            if int(session) == leader and state != "Z":
+                found[int(path.parent.name)] = text
+    return found
+
+
 class Killed(FaultTest):
     def kill(self, wait, whom, number):
         """Start the study, and end it after so many seconds. @return its exit status, what it said"""
+        self.kills.append({"whom": whom, "signal": number.name, "after": wait, "load": os.getloadavg()[0]})
         with tempfile.TemporaryFile("w+") as said:
             run = subprocess.Popen(self.command("s.base"), cwd=self.folder, env={**os.environ, **self.environment}, stdin=subprocess.DEVNULL,
                                    stdout=said, stderr=subprocess.STDOUT, start_new_session=True)
@@ -34,23 +49,39 @@ class Killed(FaultTest):
                 if whom == "group":
                     os.killpg(run.pid, number)
                 elif whom == "operator" and children:
-                    os.kill(children[0], number)
+                    with contextlib.suppress(ProcessLookupError):  # it has come to its end meanwhile
+                        os.kill(children[0], number)
                 else:
                     run.send_signal(number)
-                self.wait_for_the_end(run, children)
+                self.kills[-1]["children"] = children
+                self.wait_for_the_end(run)
             said.seek(0)
-            return run.wait(SECONDS), said.read()
+            self.kills[-1].update(status=run.wait(SECONDS), said=said.read())
+            return run.returncode, self.kills[-1]["said"]
 
-    def wait_for_the_end(self, run, children):
+    def wait_for_the_end(self, run):
         """No process of a run that was killed is there after a moment; one whose operator alone was killed takes its time to say so."""
         run.wait(SECONDS)
         start = time.monotonic()
-        while any(map(is_alive, children)):
-            self.assertLess(time.monotonic() - start, MOMENT, "an operator outlives its launcher")
+        while left := session_of(run.pid):
+            self.assertLess(time.monotonic() - start, MOMENT, f"an operator outlives its launcher: {left}")
             time.sleep(0.01)
 
     def check(self, kills):
-        chance = random.Random(int(os.environ.get("FAULTS_SEED", "1")))
+        """So many kills; what failed is kept: both bases, and each kill with its moment and what the run said."""
+        self.kills = []
+        try:
+            self.kill_and_compare(kills, int(os.environ.get("FAULTS_SEED", "1")))
+        except BaseException as error:
+            kept = pathlib.Path(tempfile.mkdtemp(prefix="killed_", dir=pathlib.Path(os.environ["LACON_BINARY_DIR"]) / "tests"))
+            shutil.copytree(self.folder, kept, dirs_exist_ok=True)
+            (kept / "kills.json").write_text(json.dumps({"failed": repr(error), "environment": self.environment, "kills": self.kills}, indent=1),
+                                             encoding="utf-8")
+            print(f"what explains it is kept in {kept}", file=sys.stderr)
+            raise
+
+    def kill_and_compare(self, kills, seed):
+        chance = random.Random(seed)
         self.environment = {"FAULTS_LAW": "VMIS_ISOT_LINE", **({"LACON_RESTART_ALWAYS": "1"} if chance.random() < 0.5 else {})}
         start = time.monotonic()
         self.whole("whole.base")
