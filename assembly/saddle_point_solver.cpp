@@ -23,6 +23,8 @@ constexpr double operations_of_a_solution = 40, operations_in_a_block = 2.5;
 constexpr int block_size = 64;
 /// Errors of a Schur complement over that of its factor.
 constexpr double blur = 2;
+/// Of a motion that is looked for in a right side of any directions: what is left of it where its direction is unlucky.
+constexpr double least_share = 1e-2;
 constexpr int least_iterations = 8;
 
 class Stopwatch {
@@ -109,6 +111,10 @@ SaddlePointSolver::SaddlePointSolver(std::unique_ptr<Engine> engine, const Saddl
 double SaddlePointSolver::factorisation_cost() const { return (factor_.low_rank ? operations_of_low_rank : 1) * factor_.flops; }
 double SaddlePointSolver::solution_cost() const { return operations_of_a_solution * static_cast<double>(factor_.entries); }
 double SaddlePointSolver::column_cost() const { return operations_in_a_block * static_cast<double>(factor_.entries); }
+int SaddlePointSolver::most_iterations() const {
+  return std::max(least_iterations,
+                  static_cast<int>(std::min(1e3, options_.work_limit * factorisation_cost() / solution_cost())));
+}
 
 /// The inverse of the base matrix with the switched rows put right.
 ///
@@ -150,15 +156,35 @@ class SaddlePointSolver::Preconditioner {
     solver_.substitution_->substitute(x);
     for (Eigen::Index s = 0; s < size; ++s)
       side[s] = scale_[s] * (seen_by(s, std::span<const double>(x)) - (is_on(s) ? own[s] : 0.0));
-    if (size) side = scale_.asDiagonal() * factor_.solve(side).eval();
-    Map<VectorXd> solution(x.data(), static_cast<Eigen::Index>(x.size()));
+    if (size) add(factor_.solve(side), x);
     for (Eigen::Index s = 0; s < size; ++s)
-      solution -= side[s] * Map<const Eigen::VectorXf>(columns_[s]->inverse.data(), solution.size()).cast<double>();
-    for (Eigen::Index s = 0; s < size; ++s) x[rows_[s]] = is_on(s) ? side[s] : own[s] / matrix_.diagonal(rows_[s]);
+      if (!is_on(s)) x[rows_[s]] = own[s] / matrix_.diagonal(rows_[s]);
+  }
+
+  /// A motion in which those have a share that the complement all but lets go, each the larger the less holds it, (n).
+  std::vector<double> weak_motion() const {
+    const auto size = static_cast<Eigen::Index>(rows_.size());
+    VectorXd side(size);
+    std::uint32_t state = 1;  // any vector does that favours no motion
+    for (Eigen::Index s = 0; s < size; ++s) {
+      state = 1664525 * state + 1013904223;
+      side[s] = state >> 31 ? 1 : -1;
+    }
+    std::vector<double> x(static_cast<std::size_t>(matrix_.size()), 0.0);
+    if (size) add(factor_.solve(side), x);
+    return x;
   }
 
  private:
   bool is_on(Eigen::Index s) const { return static_cast<std::size_t>(s) < n_on_; }
+  /// To x what unknowns y of the scaled complement stand for.
+  void add(const VectorXd& y, std::span<double> x) const {
+    Map<VectorXd> solution(x.data(), static_cast<Eigen::Index>(x.size()));
+    const VectorXd side = scale_.asDiagonal() * y;
+    for (Eigen::Index s = 0; s < side.size(); ++s)
+      solution -= side[s] * Map<const Eigen::VectorXf>(columns_[s]->inverse.data(), solution.size()).cast<double>();
+    for (Eigen::Index s = 0; s < side.size(); ++s) x[rows_[s]] = is_on(s) ? side[s] : 0.0;
+  }
   /// What the equation of a switched row sees of x.
   template <class Number>
   double seen_by(Eigen::Index s, std::span<const Number> x) const {
@@ -304,6 +330,28 @@ void SaddlePointSolver::compute(Block block) {
   });
 }
 
+bool SaddlePointSolver::holds_all(const SparseMatrix& matrix, const Preconditioner& preconditioner,
+                                  std::span<const double> scale, SolutionReport& report) const {
+  const auto norm = [&](std::span<const double> x, bool is_force) {
+    double sum = 0;
+    for (std::size_t i = 0; i < x.size(); ++i) sum += std::pow(is_force ? x[i] * scale[i] : x[i] / scale[i], 2);
+    return std::sqrt(sum);
+  };
+  // pulled along its weak motions a matrix that lets one go has no solution, and GMRES leaves at least that one's share
+  std::vector<double> force = preconditioner.weak_motion();
+  for (std::size_t i = 0; i < force.size(); ++i) force[i] /= scale[i] * scale[i];
+  const double share = std::min(1.0, preconditioner.condition() / (blur * factor_.error));
+  const double goal = least_share * share * norm(force, true);
+  const GmresResult found = gmres([&](std::span<const double> x, std::span<double> y) { matrix.multiply(x, y); },
+                                  [&](std::span<double> x) { preconditioner.apply(x); }, scale, force,
+                                  {.goal = goal, .iterations = most_iterations()});
+  report.iterations += found.iterations;
+  if (!(found.residual <= goal)) return false;
+  // it moves further than the blurred complement says where less holds it
+  preconditioner.apply(force);
+  return preconditioner.condition() * norm(force, false) > options_.singular * norm(found.x, false);
+}
+
 bool SaddlePointSolver::corrected(const SparseMatrix& matrix, std::span<double> right_side, bool rough,
                                   SolutionReport& report) {
   const Stopwatch watch(report.solution_seconds);
@@ -320,8 +368,10 @@ bool SaddlePointSolver::corrected(const SparseMatrix& matrix, std::span<double> 
   if (!make_columns(matrix, switched, report)) return false;
   const std::vector<double> scales_of_rows = scales(matrix);
   const Preconditioner preconditioner(*this, matrix, switched);
-  // an inexact factor blurs what is singular
-  if (!(preconditioner.condition() > std::max(options_.singular, blur * factor_.error))) return false;
+  if (!(preconditioner.condition() > options_.singular)) return false;
+  // an inexact factor blurs what is singular: the matrix itself is asked
+  if (!(preconditioner.condition() > blur * factor_.error) && !holds_all(matrix, preconditioner, scales_of_rows, report))
+    return false;
 
   const auto n = static_cast<Eigen::Index>(matrix.size());
   const VectorXd scaled = Map<const VectorXd>(scales_of_rows.data(), n).cwiseProduct(Map<VectorXd>(right_side.data(), n));
@@ -329,12 +379,10 @@ bool SaddlePointSolver::corrected(const SparseMatrix& matrix, std::span<double> 
   reference_ = std::max(reference_, size);
   const double full = std::min(options_.tolerance * reference_, options_.least_gain * size);
   const double goal = rough ? std::max(full, options_.rough_gain * size) : full;
-  const int most =
-      std::max(least_iterations, static_cast<int>(std::min(1e3, options_.work_limit * factorisation_cost() / solution_cost())));
   const GmresResult found = gmres([&](std::span<const double> x, std::span<double> y) { matrix.multiply(x, y); },
                                   [&](std::span<double> x) { preconditioner.apply(x); }, scales_of_rows, right_side,
-                                  {.goal = goal, .iterations = most});
-  report.iterations = found.iterations;
+                                  {.goal = goal, .iterations = most_iterations()});
+  report.iterations += found.iterations;
   if (!(found.residual <= goal)) return false;
   expected_iterations_ = found.iterations;
   report.rough = found.residual > full;

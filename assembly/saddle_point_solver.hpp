@@ -96,6 +96,10 @@ class SaddlePointSolver {
   enum class Kept { nothing, analysis, factor };
 
   bool corrected(const SparseMatrix& matrix, std::span<double> right_side, bool rough, SolutionReport& report);
+  /// Whether no motion is free in the matrix itself, where the factor is too inexact for its complement to tell.
+  /// @param scale of the equations, (n)
+  bool holds_all(const SparseMatrix& matrix, const Preconditioner& preconditioner, std::span<const double> scale,
+                 SolutionReport& report) const;
   bool make_columns(const SparseMatrix& matrix, const Switched& switched, SolutionReport& report);
   void compute(Block block);
   /// What makes the residuals of displacements and of multipliers comparable, (n).
@@ -103,6 +107,7 @@ class SaddlePointSolver {
   double factorisation_cost() const;
   double solution_cost() const;
   double column_cost() const;
+  int most_iterations() const;
 
   SaddlePointOptions options_;
   std::unique_ptr<Engine> engine_;
