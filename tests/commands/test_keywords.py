@@ -1,4 +1,5 @@
-"""Keywords of the catalogue: each one that is taken has a reader among the sources of its command; docs/keywords.md lists them all.
+"""Keywords of the catalogue: each one that is taken has a reader among the sources of its command, and a test that gives it; docs/keywords.md
+lists them all.
 
 A keyword without a reader is either the only choice there is (one value), or says in its help that it is a word without effect ("accepted; ..."
 or "accepted: ..."). The reader is looked for in what the command's program includes (C++), or its module imports (Python), transitively.
@@ -11,6 +12,7 @@ import sys
 import unittest
 
 sys.path.insert(0, __file__.rpartition("/")[0] or ".")
+import exercised  # noqa: E402
 from support import ROOT  # noqa: E402
 
 from lacon.commands import implementations  # noqa: E402
@@ -29,6 +31,48 @@ BY_ROWS = {
     "DDL_IMPO/PSI": "unknowns of elements", "FACE_IMPO/PHI": "unknowns of elements", "FACE_IMPO/PSI": "unknowns of elements",
     "MACR_ADAP_MAIL/MAILLAGE_NP1": "makes: the concept's name", "DEFI_MATERIAU/ELAS": "materials: by KEYWORD/PARAMETER",
 }
+
+
+#: keywords of one reader: (what of a path differs, what stands for it); a test of one of them is a test of all
+ONE_READER = (
+    (r"^MECA_NON_LINE/|^MECA_STATIQUE/(?=SOLVEUR|EXCIT)", "STAT_NON_LINE/"),  # one operator; one function
+    (r"^(AFFE_CHAR_\w+)_F/", r"\1/"),
+    (r"^AFFE_CHAR_CINE/MECA_IMPO/", "AFFE_CHAR_MECA/DDL_IMPO/"),
+    (r"^.*/(NUME_ORDRE|INST|LIST_INST|PRECISION|CRITERE)$", r"instants/\1"),
+    (r"^.*/FILTRE/", "FILTRE/"),
+    (r"^TEST_\w+/(?:\w+/)?(LEGENDE|VALE_ABS|ORDRE_GRANDEUR|TOLE_MACHINE|VALE_(?:CALC|REFE)_[IK])$", r"checks/\1"),
+    (r"^.*/(SANS_(?:GROUP_MA|GROUP_NO|NOEUD|MAILLE)|MAILLE|NOEUD|NOEUD_[12])$", r"places/\1"),
+    (r"/(OBSERVATION|SUIVI_DDL)/", "/OBSERVATION/"),
+)
+
+#: taken keywords that no test gives in words, and what tests them
+OTHERWISE = {
+    "AFFE_CHAR_MECA/DDL_IMPO/PSI": "an unknown by its row, as PHI", "AFFE_CHAR_MECA/FACE_IMPO/PSI": "the same",
+    "AFFE_CARA_ELEM/DISCRET": "test_affe_cara_elem.py, by the dimension",
+    "STAT_NON_LINE/RECH_LINEAIRE/RESI_LINE_RELA": "line_search_test.cpp", "STAT_NON_LINE/RECH_LINEAIRE/ITER_LINE_MAXI": "the same",
+    "STAT_NON_LINE/RECH_LINEAIRE/RHO_MIN": "the same", "STAT_NON_LINE/RECH_LINEAIRE/RHO_MAX": "the same",
+    "STAT_NON_LINE/RECH_LINEAIRE/RHO_EXCL": "the same",
+    "STAT_NON_LINE/SOLVEUR/LOW_RANK_SEUIL": "solver tests, by its option",
+    "INFO_EXEC_ASTER/TITRE": "a title", "LIRE_MAILLAGE/INFO_MED": "more is printed",
+    "PRE_GMSH/UNITE_GMSH": "units of a command that only converts", "PRE_GMSH/UNITE_MAILLAGE": "the same",
+}
+
+
+def one_of(path):
+    """What stands for all keywords that one function reads."""
+    for pattern, stands in ONE_READER:
+        path = re.sub(pattern, stands, path)
+    return path
+
+
+def default_of(path):
+    """The ways to write the default of COMMAND/FACTOR/KEYWORD."""
+    command, *names = path.split("/")
+    row = catalog.command(command)
+    for name in names:
+        row = row["keyword"][name]
+    default = row.get("default")
+    return [default, tuple(default), *default] if isinstance(default, list) else [default]
 
 
 @functools.cache
@@ -112,6 +156,20 @@ class Keywords(unittest.TestCase):
                 if not (material(name) if command == "DEFI_MATERIAU" else read_in(sources(command), name)):
                     orphans.append(f"{command}/{path}")
         self.assertEqual(orphans, [], "nobody reads these: let a source read them, or say in their help \"accepted; ...\" why they change nothing")
+
+    def test_each_keyword_that_is_taken_is_given_by_a_test(self):
+        """With another value than its default."""
+        given = {}
+        for path, values in exercised.given().items():
+            given.setdefault(one_of(path), []).extend(values)
+        idle = set()
+        for command in catalog.command_names():
+            for path, kind, _ in keyword_table.rows(command, catalog.command(command)):
+                key = one_of(f"{command}/{path}")
+                if kind == "taken" and all(value in default_of(f"{command}/{path}") for value in given.get(key, ())):
+                    idle.add(key)
+        self.assertEqual(sorted(idle - set(OTHERWISE)), [], "no test gives these: write one that sees what they change")
+        self.assertLessEqual(set(OTHERWISE), idle, "tests give these now")
 
     def test_the_walk_finds_what_nobody_reads(self):
         """The words: of those that say that they change nothing most have indeed no reader."""

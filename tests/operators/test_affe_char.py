@@ -341,6 +341,8 @@ class Loads(OperatorTest):
         self.meca(LIAISON_GROUP=[{"GROUP_NO_1": ["BOTTOM"], "GROUP_MA_2": ["TOP"], "SANS_NOEUD": ["N1", "N4"], **sides}])
         rows, _ = self.relations(14, 2)
         self.assertEqual([sorted(np.nonzero(row)[0] // 2) for row in rows], [[1, 4], [2, 5]])
+        self.meca(LIAISON_GROUP=[{"NOEUD_1": ["N1", "N3"], "NOEUD_2": ["N6", "N4"], **sides}])
+        self.assertEqual([sorted(np.nonzero(row)[0] // 2) for row in self.relations(14, 2)[0]], [[0, 3], [2, 5]])
 
     def test_normals_of_a_bent_side_alarm(self):
         """The corner's mean normal is 45 degrees from both sides; multiplied by normal displacement it holds neither."""

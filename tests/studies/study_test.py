@@ -11,18 +11,32 @@ import tempfile
 import types
 import unittest
 
+import numpy as np
+
 SOURCE = pathlib.Path(os.environ["LACON_SOURCE_DIR"])
 LACON = pathlib.Path(os.environ["LACON_BIN"]) / "lacon"
 PEER_MESHES = pathlib.Path(os.environ["LACON_SHARED_CASES"]) / "meshes"
 SECONDS = 300
 
-sys.path.insert(0, str(SOURCE / "commands/studies"))  # meshes.py
+sys.path.insert(0, str(SOURCE / "commands/studies"))
+from meshes import block, union  # noqa: E402
 
 
 def content(folder):
     """Every file below a folder, with a digest of its content."""
     return {str(path.relative_to(folder)): hashlib.sha256(path.read_bytes()).hexdigest()
             for path in sorted(folder.rglob("*")) if path.is_file()}
+
+
+def two_columns():
+    """(mesh, lower, upper): columns of height 1 on one another, LOW with BASE and CBOT, UP with CTOP and TOP; groups of the upper left node
+    EDGE and of the one below it CORNER."""
+    low = block("QUAD4", np.linspace(0, 1, 4), np.linspace(0, 1, 3), name="LOW", sides={"bottom": "BASE", "top": "CBOT"})
+    up = block("QUAD4", np.linspace(0, 1, 3), np.linspace(1, 2, 3), name="UP", sides={"bottom": "CTOP", "top": "TOP"})
+    mesh = union([low, up])
+    for name, corner in (("EDGE", (0, 2)), ("CORNER", (0, 1))):
+        mesh.node_groups[name] = [len(low.points) + i for i, point in enumerate(up.points) if tuple(point) == corner]
+    return mesh, low, up
 
 
 class StudyTest(unittest.TestCase):

@@ -4,21 +4,16 @@ import pathlib
 import unittest
 
 import numpy as np
-from study_test import StudyTest
+from study_test import StudyTest, two_columns
 
-from meshes import block, union, write_med
+from meshes import write_med
 
 COMM = pathlib.Path(__file__).resolve().parent / "contact_keywords.comm"
 
 
 class ContactKeywords(StudyTest):
     def test_every_answer_is_that_of_two_columns(self):
-        low = block("QUAD4", np.linspace(0, 1, 4), np.linspace(0, 1, 3), name="LOW", sides={"bottom": "BASE", "top": "CBOT"})
-        up = block("QUAD4", np.linspace(0, 1, 3), np.linspace(1, 2, 3), name="UP", sides={"bottom": "CTOP", "top": "TOP"})
-        mesh = union([low, up])
-        first = len(low.points)  # of the upper column
-        mesh.node_groups["EDGE"] = [first + i for i, (x, y) in enumerate(up.points) if (x, y) == (0, 2)]
-        mesh.node_groups["CORNER"] = [first + i for i, (x, y) in enumerate(up.points) if (x, y) == (0, 1)]
+        mesh, low, _ = two_columns()
         ground = next(i for i, (x, y) in enumerate(low.points) if (x, y) == (0, 0))
         lines = mesh.cells["SEG2"]
         mesh.cell_groups["LINK"] = [("SEG2", len(lines))]

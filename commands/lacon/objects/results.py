@@ -92,8 +92,7 @@ class Result(Concept):
         return self._names_at(False)
 
     def getMaterialField(self):
-        with self.open() as file:
-            return self.base.concept(contents.reference(file, "material_field"))
+        return self._referred("material_field")
 
     def getLastTime(self):
         return self.instants()[-1][1]
@@ -102,8 +101,13 @@ class Result(Concept):
         return self.mesh()
 
     def getModel(self):
+        return self._referred("model")
+
+    def _referred(self, what):
+        """A concept that the result was computed with; nothing where it was made of fields alone."""
         with self.open() as file:
-            return self.base.concept(contents.reference(file, "model"))
+            identifier = contents.reference(file, what)
+        return self.base.concept(identifier) if identifier else None
 
 
 class Table(Concept):

@@ -10,7 +10,7 @@ _head = """# Keywords of the commands, beside code_aster's
 Made by `lacon help --table > docs/keywords.md` from `catalog/commands/*.toml` and `catalog/instead.toml`. `lacon help COMMAND` says more: types,
 defaults, bounds, rules.
 
-* *taken*: it does what code_aster's documentation says, and `tests/commands/test_keywords.py` finds who reads it;
+* *taken*: it does what code_aster's documentation says, and `tests/commands/test_keywords.py` finds who reads it, and a test that gives it;
 * *only choice*: taken with the one value that there is; any other value is refused;
 * *word*: accepted for what it says, with no effect here, and why;
 * *refused*: code_aster has it and Lacon has not; what to use instead, where there is something.
