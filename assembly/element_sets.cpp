@@ -6,6 +6,7 @@
 #include <memory>
 
 #include "lacon/catalog/messages.hpp"
+#include "lacon/catalog/wording.hpp"
 #include "lacon/structures/parallel.hpp"
 
 namespace lacon {
@@ -26,22 +27,22 @@ std::size_t batch_size(std::size_t matrix_entries) {
   return lanes * std::clamp<std::size_t>(cache_bytes / (matrix_entries * sizeof(LaneNumbers)), 1, most_blocks);
 }
 
-const char* reason(int error) {
+std::string reason(int error) {
   switch (error) {
     case LACON_BAD_JACOBIAN:
-      return "the Jacobian is zero, negative or of mixed sign";
+      return "bad_jacobian";
     case LACON_BAD_PARAMETER:
-      return "a material parameter is out of its range";
+      return "bad_parameter";
     case LACON_BAD_BATCH:
-      return "the kernel does not serve this kind of element: its catalogue row is wrong";
+      return "bad_kernel_row";
     case LACON_BAD_RADIUS:
-      return "it reaches over the axis of revolution: DX is the radius, which must not be negative";
+      return "beyond_axis";
     case LACON_INSIDE_OUT:
-      return "the displacement turns it inside out";
+      return "turned_inside_out";
     case LACON_BEYOND_CURVE:
-      return "the hardening curve ends before the strain that is reached";
+      return "beyond_curve";
     default:
-      return "the result is not a finite number";
+      return "not_finite";
   }
 }
 

@@ -12,6 +12,7 @@
 #include "lacon/assembly/mumps.hpp"
 #include "lacon/assembly/ordering.hpp"
 #include "lacon/catalog/messages.hpp"
+#include "lacon/catalog/wording.hpp"
 
 namespace lacon {
 namespace {
@@ -274,10 +275,10 @@ Factorisation MumpsEngine::factorise(const SparseMatrix& matrix) {
   Factorisation found = s.factorise();
   if (s.form.is_exact()) return found;
   if (!found.null_pivots.empty())
-    return s.factorise_exactly(fmt::format("a pivot is below {:.0e} of the matrix", doubtful_pivot), found.flops);
+    return s.factorise_exactly(part("pivot_too_small", {{"limit", fmt::format("{:.0e}", doubtful_pivot)}}), found.flops);
   found.error = s.error_of_factor();
   if (!(found.error <= doubtful_error))
-    return s.factorise_exactly(fmt::format("of some motion a substitution leaves {:.1g}", found.error), found.flops);
+    return s.factorise_exactly(part("motion_left", {{"share", fmt::format("{:.1g}", found.error)}}), found.flops);
   return found;
 }
 
@@ -340,7 +341,7 @@ Solution MumpsEngine::solve(std::span<double> right_side) {
     step = residual;
   }
   if (!exact && !(error <= least_accuracy)) {
-    const Factorisation again = s.factorise_exactly(fmt::format("GMRES leaves {:.0e} of forces", error), 0);
+    const Factorisation again = s.factorise_exactly(part("gmres_leaves", {{"share", fmt::format("{:.0e}", error)}}), 0);
     Solution second;
     if (again.null_pivots.empty()) second = solve(right_side);
     second.iterations += solution.iterations;

@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <cstdlib>
 
 #include "lacon/catalog/cells.hpp"
 #include "lacon/catalog/contact.hpp"
@@ -6,6 +7,7 @@
 #include "lacon/catalog/messages.hpp"
 #include "lacon/catalog/refinements.hpp"
 #include "lacon/catalog/text.hpp"
+#include "lacon/catalog/wording.hpp"
 
 namespace lacon::catalog {
 
@@ -66,12 +68,37 @@ std::string fill(std::string_view text, std::string_view id, std::initializer_li
   return filled;
 }
 
+/// The row of this name; null without one.
+template <typename Row>
+const Row* find(std::span<const Row> rows, std::string_view Row::*key, std::string_view name) {
+  const auto found = std::find_if(rows.begin(), rows.end(), [&](const Row& row) { return row.*key == name; });
+  return found == rows.end() ? nullptr : &*found;
+}
+
+bool in_french() {
+  static const bool french = [] {
+    for (const char* const variable : {"LC_ALL", "LC_MESSAGES", "LANG"})
+      if (const char* const value = std::getenv(variable); value && *value) return std::string_view(value).starts_with("fr");
+    return false;
+  }();
+  return french;
+}
+
 }  // namespace
 
 Message message(std::string_view id, std::initializer_list<MessageValue> values) {
-  for (const catalog::MessageRow& row : catalog::messages())
-    if (row.id == id) return {row.severity, std::string(id), fill(row.text, id, values), fill(row.advice, id, values)};
-  throw std::logic_error("message " + std::string(id) + " is not in the catalogue");
+  const catalog::MessageRow* const row = find(catalog::messages(), &catalog::MessageRow::id, id);
+  if (!row) throw std::logic_error("message " + std::string(id) + " is not in the catalogue");
+  const catalog::WordingRow* const french =
+      in_french() ? find(catalog::french_messages(), &catalog::WordingRow::id, id) : nullptr;
+  return {row->severity, std::string(id), fill(french ? french->text : row->text, id, values),
+          fill(french ? french->advice : row->advice, id, values)};
+}
+
+std::string part(std::string_view name, std::initializer_list<MessageValue> values) {
+  const catalog::PartRow* const row = find(catalog::parts(), &catalog::PartRow::name, name);
+  if (!row) throw std::logic_error("the part " + std::string(name) + " of messages is not in the catalogue");
+  return fill(in_french() ? row->french : row->english, name, values);
 }
 
 void fail(std::string_view id, std::initializer_list<MessageValue> values) { throw Error(message(id, values)); }

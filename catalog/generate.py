@@ -9,6 +9,7 @@ rows is checked here: a row that names a cell, component or rank that does not e
 
 import json
 import pathlib
+import re
 import sys
 import tomllib
 
@@ -37,11 +38,15 @@ def load(folder):
 
     messages = {}
     for path in sorted((folder / "messages").glob("*.toml")):
+        if path.name == "parts.toml":
+            continue
         for identifier, row in read(path).items():
             check(identifier not in messages, f"{path}: message {identifier} is there twice")
             check(set(row) == {"severity", "text", "do"}, f"{path}: {identifier} has {sorted(row)}")
             check(row["severity"] in "FSAI", f"{path}: {identifier}: severity {row['severity']}")
             messages[identifier] = row
+    parts = read(folder / "messages/parts.toml")
+    french, french_parts = read_french(folder, read, messages, parts)
     elements = []
     for path in sorted((folder / "elements").glob("*.toml")):
         elements += read(path)["element"]
@@ -60,9 +65,35 @@ def load(folder):
         **read(folder / "behaviours.toml"),
         "quantities": read(folder / "quantities.toml")["quantity"],
         "messages": messages,
+        "parts": parts,
+        "french": {"messages": french, "parts": french_parts},
         "instead": read(folder / "instead.toml"),
         "commands": complete_commands({path.stem.upper(): read(path) for path in sorted((folder / "commands").glob("*.toml"))}),
     }
+
+
+def gaps(words):
+    """The names between braces."""
+    return sorted(set(re.findall(r"\{(\w+)\}", words)))
+
+
+def read_french(folder, read, messages, parts):
+    """(messages, parts) in French. A gap that only one of the languages has stops the build; words that are missing stay English."""
+    french = {}
+    for path in sorted((folder / "messages/fr").glob("*.toml")):
+        rows = read(path)
+        if path.name == "parts.toml":
+            french_parts = rows
+            continue
+        for identifier, row in rows.items():
+            check(identifier in messages and identifier not in french, f"{path}: {identifier} is no message, or there twice")
+            check(set(row) == {"text", "do"}, f"{path}: {identifier} has {sorted(row)}")
+            for key in row:
+                check(gaps(row[key]) == gaps(messages[identifier][key]), f"{path}: {identifier} has other gaps than in English")
+            french[identifier] = row
+    for name, words in french_parts.items():
+        check(name in parts and gaps(words) == gaps(parts[name]), f"{folder}/messages/fr/parts.toml: {name} is no part, or has other gaps than in English")
+    return french, french_parts
 
 
 def complete_commands(commands):
@@ -250,6 +281,9 @@ def write_cpp(catalog, writer):
         f"{{{text(q['name'])}, {writer.strings(q['components'])}}}" for q in catalog["quantities"]]
     tables["messages", "MessageRow"] = [
         f"{{{text(i)}, '{m['severity']}', {text(m['text'])}, {text(m['do'])}}}" for i, m in catalog["messages"].items()]
+    french = catalog["french"]
+    tables["french_messages", "WordingRow"] = [f"{{{text(i)}, {text(m['text'])}, {text(m['do'])}}}" for i, m in french["messages"].items()]
+    tables["parts", "PartRow"] = [f"{{{text(n)}, {text(words)}, {text(french['parts'].get(n, words))}}}" for n, words in catalog["parts"].items()]
     rows = []
     for command, entry in catalog["commands"].items():
         for path, row in keyword_paths(entry.get("keyword", {})):
@@ -265,7 +299,7 @@ def write_cpp(catalog, writer):
         else:
             body.append(f"std::span<const {row}> {name}() {{ return {{}}; }}")
     includes = "\n".join(f'#include "lacon/catalog/{h}.hpp"' for h in
-                         ("behaviours", "cells", "contact", "cuts", "elements", "keywords", "messages", "quantities", "refinements"))
+                         ("behaviours", "cells", "contact", "cuts", "elements", "keywords", "messages", "quantities", "refinements", "wording"))
     return (f"// Made by catalog/generate.py from the catalogue's TOML: do not edit.\n{includes}\n\nnamespace lacon::catalog {{\n"
             "namespace {\n" + "\n".join(writer.arrays) + "\n}\n\n" + "\n".join(body) + "\n}\n")
 

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "lacon/catalog/messages.hpp"
+#include "lacon/catalog/wording.hpp"
 
 namespace lacon {
 namespace {
@@ -28,7 +29,9 @@ struct Source {
 std::vector<double> linear(const Source& source) {
   const double young = source.parameter("ELAS/E"), slope = source.parameter("ECRO_LINE/D_SIGM_EPSI"),
                yield = source.parameter("ECRO_LINE/SY");
-  if (!(slope < young)) source.refuse(fmt::format("ECRO_LINE/D_SIGM_EPSI, {:g}, must be below ELAS/E, {:g}", slope, young));
+  if (!(slope < young))
+    source.refuse(
+        part("hardening_too_stiff", {{"slope", fmt::format("{:g}", slope)}, {"modulus", fmt::format("{:g}", young)}}));
   return {0.0, yield, young * slope / (young - slope)};
 }
 
@@ -36,17 +39,17 @@ std::vector<double> linear(const Source& source) {
 std::vector<double> tabulated(const Source& source) {
   const Function& test = source.materials.function(source.cell, "TRACTION/SIGM", source.element);
   const double young = source.parameter("ELAS/E");
-  if (test.parameter != "EPSI") source.refuse("TRACTION/SIGM must be a function of EPSI, not of " + test.parameter);
+  if (test.parameter != "EPSI") source.refuse(part("curve_of_another", {{"parameter", test.parameter}}));
   std::vector<double> strain = test.x, stress = test.y;
   if (strain.front() == 0 && stress.front() == 0) {
     strain.erase(strain.begin());
     stress.erase(stress.begin());
   }
-  if (strain.empty() || !(strain.front() > 0 && stress.front() > 0))
-    source.refuse("TRACTION/SIGM must start with the elastic limit, a strain and a stress above zero");
+  if (strain.empty() || !(strain.front() > 0 && stress.front() > 0)) source.refuse(part("curve_without_limit"));
   const double initial = stress.front() / strain.front();
   if (std::abs(initial - young) > modulus_tolerance * young)
-    source.refuse(fmt::format("the first point of TRACTION/SIGM gives the modulus {:g}, ELAS/E is {:g}", initial, young));
+    source.refuse(
+        part("curve_of_other_modulus", {{"found", fmt::format("{:g}", initial)}, {"modulus", fmt::format("{:g}", young)}}));
   std::vector<double> curve;
   const std::size_t n = strain.size();
   const auto plastic = [&](std::size_t i) {
@@ -57,8 +60,8 @@ std::vector<double> tabulated(const Source& source) {
     if (i + 1 < n) {
       const double step = plastic(i + 1) - plastic(i);
       if (!(step > 0))
-        source.refuse(fmt::format("between the strains {:g} and {:g} TRACTION/SIGM is not below the elastic slope", strain[i],
-                                  strain[i + 1]));
+        source.refuse(part("curve_too_stiff",
+                           {{"first", fmt::format("{:g}", strain[i])}, {"second", fmt::format("{:g}", strain[i + 1])}}));
       slope = (stress[i + 1] - stress[i]) / step;
     } else if (test.extension_right == "CONSTANT") {
       slope = 0;
@@ -117,7 +120,7 @@ std::vector<double> hardening_curve(const MaterialTable& materials, std::int32_t
                                     std::string_view element) {
   const Source source{materials, cell, element};
   const auto row = std::find_if(std::begin(rows), std::end(rows), [&](const Row& r) { return r.keyword == keyword; });
-  if (row == std::end(rows)) source.refuse("no hardening curve can be had from the keyword '" + std::string(keyword) + "'");
+  if (row == std::end(rows)) source.refuse(part("no_curve", {{"keyword", std::string(keyword)}}));
   return row->curve(source);
 }
 

@@ -5,6 +5,7 @@
 #include <numeric>
 
 #include "lacon/catalog/messages.hpp"
+#include "lacon/catalog/wording.hpp"
 
 namespace lacon {
 namespace {
@@ -41,18 +42,19 @@ std::span<const std::int32_t> members(const std::vector<Group>& groups, const st
     const std::string near = nearest_name(name, names);
     std::string known;
     for (const std::string& n : names) known += (known.empty() ? "" : ", ") + n;
-    const std::string hint = find(others, name) ? "; there is a " + std::string(other) + " group of this name, which " +
-                                                      (other == "node" ? "GROUP_NO" : "GROUP_MA") + " takes"
-                             : near.empty() ? ""
-                                            : "; did you mean '" + near + "'?";
+    const std::string hint =
+        find(others, name)
+            ? part("other_kind_of_group", {{"other", part(other)}, {"keyword", other == "node" ? "GROUP_NO" : "GROUP_MA"}})
+        : near.empty() ? ""
+                       : part("did_you_mean", {{"name", near}});
     fail("MESH_1", {{"keyword", std::string(keyword)},
-                    {"what", std::string(what)},
+                    {"what", part(what)},
                     {"group", std::string(name)},
                     {"hint", hint},
-                    {"known", known.empty() ? "(it has none)" : known}});
+                    {"known", known.empty() ? part("no_groups") : known}});
   }
   if (group->members.empty())
-    fail("MESH_2", {{"keyword", std::string(keyword)}, {"what", std::string(what)}, {"group", std::string(name)}});
+    fail("MESH_2", {{"keyword", std::string(keyword)}, {"what", part(what)}, {"group", std::string(name)}});
   return group->members;
 }
 

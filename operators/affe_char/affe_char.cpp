@@ -7,6 +7,7 @@
 #include <functional>
 
 #include "lacon/catalog/messages.hpp"
+#include "lacon/catalog/wording.hpp"
 #include "lacon/operators/affe_char/places.hpp"
 #include "lacon/operators/affe_char/relations.hpp"
 #include "lacon/operators/meshing/skin.hpp"
@@ -30,7 +31,7 @@ void load_nodes(const LoadScene& scene, const std::vector<Keywords>& factors, st
           std::string dof(component);
           if (dof.front() == 'F') dof.front() = 'D';
           scene.check_dof(node, dof, named.source);
-          given.add(node, "the node " + node_name(node), std::string(component), value, named.source);
+          given.add(node, part("place_node", {{"node", node_name(node)}}), std::string(component), value, named.source);
         }
       }
 }
@@ -45,14 +46,14 @@ struct CellKeyword {
   const char* keyword;
   const char* option;      ///< whose kernel does it
   int space, codimension;  ///< of the cells' elements; space 0: any
-  const char* carrier;     ///< what these cells are
+  const char* carrier;     ///< the part that says what these cells are
   std::vector<LoadTerm> Load::*terms;
 };
 const CellKeyword cell_keywords[] = {
-    {"PRES_REP", "CHAR_MECA_PRES", 0, 1, "skin cell", &Load::pressure},
-    {"FORCE_CONTOUR", "CHAR_MECA_FORC", 2, 1, "edge of a plane or axisymmetric body", &Load::force},
-    {"FORCE_FACE", "CHAR_MECA_FORC", 3, 1, "face of a 3D body", &Load::force},
-    {"FORCE_INTERNE", "CHAR_MECA_FORC", 0, 0, "body cell", &Load::force},
+    {"PRES_REP", "CHAR_MECA_PRES", 0, 1, "skin_cell", &Load::pressure},
+    {"FORCE_CONTOUR", "CHAR_MECA_FORC", 2, 1, "edge_of_body", &Load::force},
+    {"FORCE_FACE", "CHAR_MECA_FORC", 3, 1, "face_of_body", &Load::force},
+    {"FORCE_INTERNE", "CHAR_MECA_FORC", 0, 0, "body_cell", &Load::force},
 };
 
 bool fits(const LoadScene& scene, const CellKeyword& kind, std::int32_t cell) {
@@ -90,7 +91,7 @@ void check_cell(const LoadScene& scene, const CellKeyword& kind, std::int32_t ce
     fail("CHARGE_6", {{"keyword", source},
                       {"cell", cell_name(cell)},
                       {"type", std::string(scene.mesh.row(static_cast<std::size_t>(cell)).name)},
-                      {"carrier", kind.carrier}});
+                      {"carrier", part(kind.carrier)}});
   const catalog::ElementRow& row = *scene.element(cell);
   const char* const* values = scene.registry.kernel(row, kind.option, LACON_LOAD).parameters;
   std::string known;
@@ -118,7 +119,7 @@ void load_cells(Load& load, const LoadScene& scene, const Keywords& keywords) {
           for (const std::int32_t cell : named.members) {
             check_cell(scene, kind, cell, component, named.source);
             (is_pressure ? pressures : forces_on_cells)
-                .add(cell, "the cell " + cell_name(cell), component, value, named.source);
+                .add(cell, part("place_cell", {{"cell", cell_name(cell)}}), component, value, named.source);
           }
         }
         if (!is_pressure || !keywords.yes("VERI_NORM")) continue;
@@ -130,7 +131,7 @@ void load_cells(Load& load, const LoadScene& scene, const Keywords& keywords) {
 
 /// PESANTEUR: GRAVITE along DIRECTION on body cells.
 void load_gravity(Load& load, const LoadScene& scene, const Keywords& keywords) {
-  const CellKeyword kind{"PESANTEUR", "CHAR_MECA_FORC", 0, 0, "body cell", &Load::gravity};
+  const CellKeyword kind{"PESANTEUR", "CHAR_MECA_FORC", 0, 0, "body_cell", &Load::gravity};
   GivenTerms given(scene, "CHARGE_5", load.gravity);
   for (const Keywords& factor : keywords.factors(kind.keyword)) {
     std::vector<double> direction = factor.reals("DIRECTION");
@@ -138,24 +139,24 @@ void load_gravity(Load& load, const LoadScene& scene, const Keywords& keywords) 
     const auto refuse = [&](const std::string& reason) {
       fail("CHARGE_10", {{"keyword", factor.path("DIRECTION")}, {"reason", reason}});
     };
-    if (!(length > 0)) refuse("it has no length");
+    if (!(length > 0)) refuse(part("no_length"));
     for (double& component : direction) component /= length;
     for (const NamedPlaces& named : named_cells(scene, factor, [&](std::int32_t c) { return fits(scene, kind, c); }))
       for (const std::int32_t cell : named.members) {
         check_cell(scene, kind, cell, "FX", named.source);
         const catalog::ElementRow& row = *scene.element(cell);
-        if (row.geometry != catalog::Geometry::space && direction[2] != 0) refuse("it leaves the plane of the model");
-        if (row.geometry == catalog::Geometry::axis && direction[0] != 0) refuse("it is not along the axis of revolution");
+        if (row.geometry != catalog::Geometry::space && direction[2] != 0) refuse(part("out_of_plane"));
+        if (row.geometry == catalog::Geometry::axis && direction[0] != 0) refuse(part("not_along_axis"));
         for (std::size_t d = 0; d < static_cast<std::size_t>(catalog::dimension_of(row.geometry)); ++d)
-          given.add(cell, "the cell " + cell_name(cell), std::string(forces[d]), {factor.real("GRAVITE") * direction[d], ""},
-                    named.source);
+          given.add(cell, part("place_cell", {{"cell", cell_name(cell)}}), std::string(forces[d]),
+                    {factor.real("GRAVITE") * direction[d], ""}, named.source);
       }
   }
 }
 
 /// ROTATION: bodies that turn round an axis; in the plane it is normal to it, in axisymmetry that of revolution.
 void load_rotation(Load& load, const LoadScene& scene, const Keywords& keywords) {
-  const CellKeyword kind{"ROTATION", "CHAR_MECA_FORC", 0, 0, "body cell", &Load::gravity};
+  const CellKeyword kind{"ROTATION", "CHAR_MECA_FORC", 0, 0, "body_cell", &Load::gravity};
   GivenTerms given(scene, "CHARGE_5", load.gravity);
   for (const Keywords& factor : keywords.factors(kind.keyword)) {
     const std::vector<double> along = factor.reals("AXE");
@@ -165,20 +166,21 @@ void load_rotation(Load& load, const LoadScene& scene, const Keywords& keywords)
     const auto refuse = [&](const std::string& keyword, const std::string& reason) {
       fail("CHARGE_10", {{"keyword", factor.path(keyword)}, {"reason", reason}});
     };
-    if (!(length > 0)) refuse("AXE", "it has no length");
+    if (!(length > 0)) refuse("AXE", part("no_length"));
     for (const NamedPlaces& named : named_cells(scene, factor, [&](std::int32_t c) { return fits(scene, kind, c); }))
       for (const std::int32_t cell : named.members) {
         check_cell(scene, kind, cell, "FX", named.source);
         const catalog::Geometry geometry = scene.element(cell)->geometry;
         if (geometry == catalog::Geometry::plane && (along[0] != 0 || along[1] != 0))
-          refuse("AXE", "it is not normal to the plane of the model");
+          refuse("AXE", part("not_normal_to_plane"));
         if (geometry == catalog::Geometry::axis && (along[0] != 0 || along[2] != 0))
-          refuse("AXE", "it is not the axis of revolution");
-        if (geometry == catalog::Geometry::axis && centre[0] != 0) refuse("CENTRE", "it is not on the axis of revolution");
+          refuse("AXE", part("not_axis_of_revolution"));
+        if (geometry == catalog::Geometry::axis && centre[0] != 0) refuse("CENTRE", part("not_on_axis"));
         for (std::size_t d = 0; d < 3; ++d) {
-          given.add(cell, "the cell " + cell_name(cell), std::string(angular_velocity[d]),
+          given.add(cell, part("place_cell", {{"cell", cell_name(cell)}}), std::string(angular_velocity[d]),
                     {factor.real("VITESSE") * along[d] / length, ""}, named.source);
-          given.add(cell, "the cell " + cell_name(cell), std::string(axis_point[d]), {centre[d], ""}, named.source);
+          given.add(cell, part("place_cell", {{"cell", cell_name(cell)}}), std::string(axis_point[d]), {centre[d], ""},
+                    named.source);
         }
       }
   }
@@ -220,15 +222,13 @@ Load affe_char(const Mesh& mesh, const Model& model, Registry& registry, const B
     std::sort(places.begin(), places.end());
     return static_cast<std::size_t>(std::unique(places.begin(), places.end()) - places.begin());
   };
-  const std::tuple<std::size_t, const char*> lines[] = {{load.imposed.size(), "imposed degrees of freedom"},
-                                                        {cells(load.nodal), "nodes under forces"},
-                                                        {cells(load.pressure), "cells under pressure"},
-                                                        {cells(load.force), "cells under forces"},
-                                                        {cells(load.gravity), "cells under gravity or in rotation"},
-                                                        {load.relations.size(), "relations between displacements"}};
+  const std::tuple<std::size_t, const char*> lines[] = {
+      {load.imposed.size(), "imposed_dofs"},          {cells(load.nodal), "nodes_under_forces"},
+      {cells(load.pressure), "cells_under_pressure"}, {cells(load.force), "cells_under_forces"},
+      {cells(load.gravity), "cells_under_gravity"},   {load.relations.size(), "relations_between"}};
   std::string text;
   for (const auto& [count, what] : lines)
-    if (count > 0) text += fmt::format("{}{} {}", text.empty() ? "" : ", ", count, what);
+    if (count > 0) text += (text.empty() ? "" : ", ") + part(what, {{"count", std::to_string(count)}});
   fmt::print("  {}\n", text);
   return load;
 }

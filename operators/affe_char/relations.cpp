@@ -8,6 +8,7 @@
 #include <set>
 
 #include "lacon/catalog/messages.hpp"
+#include "lacon/catalog/wording.hpp"
 #include "lacon/operators/affe_char/ties.hpp"
 #include "lacon/operators/meshing/named_nodes.hpp"
 #include "lacon/operators/program/study_function.hpp"
@@ -78,9 +79,9 @@ void link_groups(Load& load, const LoadScene& scene, const Keywords& factor) {
     std::erase_if(sides[side], [&](std::int32_t node) { return out[static_cast<std::size_t>(node)] != 0; });
   }
   if (sides[0].size() != sides[1].size())
-    fail("CHARGE_13",
-         {{"keyword", factor.path("DDL_1")},
-          {"reason", fmt::format("there are {} nodes on one side and {} on the other", sides[0].size(), sides[1].size())}});
+    fail("CHARGE_13", {{"keyword", factor.path("DDL_1")},
+                       {"reason", part("unequal_sides", {{"first", std::to_string(sides[0].size())},
+                                                         {"second", std::to_string(sides[1].size())}})}});
   std::vector<double> shift = factor.reals("TRAN");
   shift.resize(3, 0.0);
   std::set<std::int32_t> taken;
@@ -97,7 +98,8 @@ void link_groups(Load& load, const LoadScene& scene, const Keywords& factor) {
       }
     }
     if (!taken.insert(nearest).second)
-      fail("CHARGE_13", {{"keyword", factor.path("DDL_1")}, {"reason", node_name(nearest) + " is nearest to two nodes"}});
+      fail("CHARGE_13",
+           {{"keyword", factor.path("DDL_1")}, {"reason", part("nearest_to_two", {{"node", node_name(nearest)}})}});
     std::vector<RelationTerm> terms;
     for (int side = 0; side < 2; ++side) {
       const std::string suffix = side ? "_2" : "_1";
@@ -140,7 +142,7 @@ std::vector<std::pair<std::int32_t, Vec3>> normals_of(const LoadScene& scene, co
     for (const std::int32_t cell : cells_of_group(scene.mesh, group, factor.path("GROUP_MA"))) {
       if (catalog::cell(scene.mesh.types[static_cast<std::size_t>(cell)]).dimension != scene.mesh.dimension - 1)
         fail("CHARGE_12", {{"keyword", factor.path("GROUP_MA") + " '" + group + "'"},
-                           {"reason", "the cell " + cell_name(cell) + " is no skin cell"}});
+                           {"reason", part("cell_no_skin", {{"cell", cell_name(cell)}})}});
       cells.push_back(cell);
     }
   std::sort(cells.begin(), cells.end());
@@ -153,8 +155,8 @@ std::vector<std::pair<std::int32_t, Vec3>> normals_of(const LoadScene& scene, co
     if (out[static_cast<std::size_t>(node)]) continue;
     const Vec3 n = vector_at(normals.data() + 3 * static_cast<std::size_t>(node));
     if (norm(n) == 0)
-      fail("CHARGE_12", {{"keyword", factor.path("GROUP_MA")},
-                         {"reason", "the normals of the cells at the node " + node_name(node) + " cancel"}});
+      fail("CHARGE_12",
+           {{"keyword", factor.path("GROUP_MA")}, {"reason", part("normals_cancel", {{"node", node_name(node)}})}});
     found.emplace_back(node, n);
   }
   // a normal that stands for cells of different directions holds none of them

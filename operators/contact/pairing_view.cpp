@@ -9,6 +9,7 @@
 #include <limits>
 #include <numeric>
 
+#include "lacon/catalog/wording.hpp"
 #include "lacon/elements/reference.hpp"
 #include "lacon/operators/contact/contact_geometry.hpp"
 #include "lacon/structures/vector.hpp"
@@ -225,16 +226,22 @@ class ZoneView {
       covered += geometry_.covered(static_cast<std::size_t>(patch));
       whole += geometry_.whole(static_cast<std::size_t>(patch));
     }
-    lines.push_back(
-        fmt::format("  zone {}, {} on {}: {} slave cells in {} patches, {} master cells, {} contact cells; covered {:.6g} of "
-                    "{:.6g} ({:.4g} %)",
-                    number_ + 1, data.slave_group, data.master_group, zone_.slaves.size(), data.patches.size(),
-                    zone_.masters.size(), record_.pairing.cells.size(), covered, whole, whole > 0 ? 100 * covered / whole : 0));
+    lines.push_back("  " + part("zone_pairing", {{"zone", std::to_string(number_ + 1)},
+                                                 {"slave", data.slave_group},
+                                                 {"master", data.master_group},
+                                                 {"slaves", std::to_string(zone_.slaves.size())},
+                                                 {"patches", std::to_string(data.patches.size())},
+                                                 {"masters", std::to_string(zone_.masters.size())},
+                                                 {"cells", std::to_string(record_.pairing.cells.size())},
+                                                 {"covered", fmt::format("{:.6g}", covered)},
+                                                 {"whole", fmt::format("{:.6g}", whole)},
+                                                 {"percent", fmt::format("{:.4g}", whole > 0 ? 100 * covered / whole : 0)}}));
     std::vector<std::string> counts;
     for (int r = 0; r < n_rejections; ++r)
       if (const auto n = record_.pairing.count(static_cast<Rejection>(r)); n > 0)
-        counts.push_back(fmt::format("{} {}", n, rejection_name(static_cast<Rejection>(r))));
-    if (!counts.empty()) lines.push_back(fmt::format("    rejected couples: {}", fmt::join(counts, ", ")));
+        counts.push_back(fmt::format("{} {}", n, rejection_words(static_cast<Rejection>(r))));
+    if (!counts.empty())
+      lines.push_back("    " + part("couples_rejected", {{"reasons", fmt::format("{}", fmt::join(counts, ", "))}}));
     report_patches(lines);
   }
 
@@ -282,24 +289,29 @@ class ZoneView {
     for (const auto& [couple, measure] : couples()) {
       const SlaveElement& slave =
           contact_.slaves[static_cast<std::size_t>(zone_.slaves[static_cast<std::size_t>(couple.first)])];
-      tell(slave, fmt::format("{} on {}: {:.4g} %", cell_name(slave.cell),
-                              cell_name(zone_.masters[static_cast<std::size_t>(couple.second)]),
-                              100 * measure / geometry_.whole(static_cast<std::size_t>(slave.patch))));
+      tell(slave,
+           part("cell_on_cell",
+                {{"slave", cell_name(slave.cell)},
+                 {"master", cell_name(zone_.masters[static_cast<std::size_t>(couple.second)])},
+                 {"said", fmt::format("{:.4g} %", 100 * measure / geometry_.whole(static_cast<std::size_t>(slave.patch)))}}));
     }
     for (const RejectedCouple& couple : record_.pairing.rejected)
       if (couple.slave >= 0 && couple.master >= 0)
-        tell(rejected_slave(couple), fmt::format("{} on {}: {}", cell_name(rejected_slave(couple).cell),
-                                                 cell_name(rejected_master(couple)), rejection_name(couple.reason)));
+        tell(rejected_slave(couple), part("cell_on_cell", {{"slave", cell_name(rejected_slave(couple).cell)},
+                                                           {"master", cell_name(rejected_master(couple))},
+                                                           {"said", rejection_words(couple.reason)}}));
     for (const std::int32_t patch : partial) {
       const auto text = told.find(patch);
       if (text == told.end()) break;
-      lines.push_back(fmt::format("    patch {}, covered to {:.4g} %: {}", patch + 1,
-                                  100 * geometry_.coverage(static_cast<std::size_t>(patch)),
-                                  text->second.empty() ? "no master lies along the slave's normals"
-                                                       : fmt::format("{}", fmt::join(text->second, "; "))));
+      lines.push_back(
+          "    " +
+          part("patch_covered", {{"patch", std::to_string(patch + 1)},
+                                 {"percent", fmt::format("{:.4g}", 100 * geometry_.coverage(static_cast<std::size_t>(patch)))},
+                                 {"said", text->second.empty() ? part("no_master_along_normals")
+                                                               : fmt::format("{}", fmt::join(text->second, "; "))}}));
     }
     if (partial.size() > most_patches)
-      lines.push_back(fmt::format("    and {} more patches that are not wholly covered", partial.size() - most_patches));
+      lines.push_back("    " + part("more_patches", {{"count", std::to_string(partial.size() - most_patches)}}));
   }
 
   const Mesh& mesh_;
@@ -344,6 +356,12 @@ PairingView view_pairing(const Mesh& mesh, const Model& model, const Contact& co
   for (Drawing* drawing : {&pairs, &skins, &points, &rejected})
     if (!drawing->empty()) view.layers.push_back(drawing->take());
   return view;
+}
+
+std::string rejection_words(Rejection rejection) {
+  std::string name(rejection_name(rejection));
+  std::ranges::replace(name, ' ', '_');
+  return part(name);
 }
 
 }  // namespace lacon

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "lacon/elements/registry.hpp"
+#include "lacon/pairing/pairing.hpp"
 #include "lacon/structures/base.hpp"
 
 namespace lacon {
@@ -42,5 +43,8 @@ struct PairingView {
 PairingView view_pairing(const Mesh& mesh, const Model& model, const Contact& contact, Registry& registry,
                          std::span<const double> displacement, std::vector<std::vector<double>> offsets,
                          const Field* cont_elem);
+
+/// Why a couple was rejected, in the user's language.
+std::string rejection_words(Rejection rejection);
 
 }  // namespace lacon

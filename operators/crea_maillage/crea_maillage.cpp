@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "lacon/catalog/messages.hpp"
+#include "lacon/catalog/wording.hpp"
 #include "lacon/operators/crea_maillage/order_change.hpp"
 #include "lacon/operators/crea_maillage/restriction.hpp"
 #include "lacon/operators/meshing/body.hpp"
@@ -101,7 +102,7 @@ void add_points(Mesh& mesh, const Keywords& factor) {
   for (const std::string& name : factor.texts("NOM_GROUP_MA")) {
     if (mesh.find_cell_group(name))
       fail("GROUPE_1",
-           {{"keyword", factor.path("NOM_GROUP_MA")}, {"what", "cell"}, {"group", name}, {"remove", "DETR_GROUP_MA"}});
+           {{"keyword", factor.path("NOM_GROUP_MA")}, {"what", part("cell")}, {"group", name}, {"remove", "DETR_GROUP_MA"}});
     mesh.cell_groups.push_back({name, made});
   }
 }

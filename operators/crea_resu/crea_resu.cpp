@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "lacon/catalog/messages.hpp"
+#include "lacon/catalog/wording.hpp"
 #include "lacon/operators/program/study_function.hpp"
 
 namespace lacon {
@@ -39,7 +40,8 @@ std::vector<double> instants_of(const Keywords& factor, const Base& base) {
   const auto first = static_cast<std::size_t>(factor.optional_integer("NUME_INIT").value_or(1) - 1),
              last =
                  static_cast<std::size_t>(factor.optional_integer("NUME_FIN").value_or(static_cast<std::int64_t>(list.size())));
-  if (first >= last || last > list.size()) fail("CREARESU_1", {{"keyword", factor.path("NUME_INIT")}, {"what", "instant"}});
+  if (first >= last || last > list.size())
+    fail("CREARESU_1", {{"keyword", factor.path("NUME_INIT")}, {"what", part("instant_of_list")}});
   return {list.begin() + static_cast<std::ptrdiff_t>(first), list.begin() + static_cast<std::ptrdiff_t>(last)};
 }
 
@@ -75,7 +77,7 @@ void crea_resu(const Order& order, const Base& base) {
     const std::string name = factor.has("NOM_CHAM")     ? factor.text("NOM_CHAM")
                              : keywords.has("NOM_CHAM") ? keywords.text("NOM_CHAM")
                                                         : "";
-    if (name.empty()) fail("CREARESU_1", {{"keyword", factor.path("NOM_CHAM")}, {"what", "name of the field"}});
+    if (name.empty()) fail("CREARESU_1", {{"keyword", factor.path("NOM_CHAM")}, {"what", part("field_name")}});
     for (const double instant : instants_of(factor, base)) {
       Field own = field;
       if (field.quantity.ends_with("_F")) {

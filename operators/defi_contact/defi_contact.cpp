@@ -9,6 +9,7 @@
 
 #include "lacon/catalog/contact.hpp"
 #include "lacon/catalog/messages.hpp"
+#include "lacon/catalog/wording.hpp"
 #include "lacon/operators/meshing/named_nodes.hpp"
 #include "lacon/operators/meshing/skin.hpp"
 #include "lacon/operators/program/study_function.hpp"
@@ -51,8 +52,7 @@ void check_zones(const Patches& patches, std::string_view mesh_label, const std:
     if (cut_zone(patches, slave) < 0 && cut_zone(patches, master) >= 0)
       fail("CONTACT4_5", {{"keyword", zone.path("GROUP_MA_ESCL")},
                           {"group", slave},
-                          {"reason", "its cells are no sub-cells of patches, and those of the master '" + master +
-                                         "' are: slave and master look swapped"}});
+                          {"reason", part("skins_look_swapped", {{"master", master}})}});
     if (cut_zone(patches, slave) < 0)
       fail("CONTACT2_18", {{"keyword", zone.path("GROUP_MA_ESCL")}, {"group", slave}, {"prepared", prepared}});
     used.insert(slave);
@@ -90,8 +90,7 @@ void check_elements(const Mesh& mesh, const Model& model, const Registry& regist
     const auto c = static_cast<std::size_t>(cell);
     const std::string type(mesh.row(c).name);
     if (mesh.row(c).dimension != model.dimension - 1)
-      fail("CONTACT_96",
-           {{"where", where}, {"cell", cell_name(cell)}, {"type", type}, {"reason", "it is not a skin cell of the model"}});
+      fail("CONTACT_96", {{"where", where}, {"cell", cell_name(cell)}, {"type", type}, {"reason", part("no_skin_of_model")}});
     const std::int32_t element = model.element[c];
     if (element < 0) fail("LAC_4", {{"where", where}, {"cell", cell_name(cell)}, {"type", type}});
     const std::string& name = model.elements[static_cast<std::size_t>(element)];
@@ -101,7 +100,7 @@ void check_elements(const Mesh& mesh, const Model& model, const Registry& regist
       fail("CONTACT_96", {{"where", where},
                           {"cell", cell_name(cell)},
                           {"type", type},
-                          {"reason", "its finite element " + name + " has no contact kernel (RIGI_CONT)"}});
+                          {"reason", part("element_without_contact", {{"element", name}})}});
   }
 }
 
@@ -164,8 +163,9 @@ void check_patches(const Patches& patches, const ContactZone& zone, const std::s
   if (in_patches != in_group)
     fail("CONTACT4_5", {{"keyword", keyword},
                         {"group", zone.slave_group},
-                        {"reason", fmt::format("it has {} cells, and its {} patches have {} sub-cells that are not the same",
-                                               in_group.size(), zone.patches.size(), in_patches.size())}});
+                        {"reason", part("sub_cells_differ", {{"cells", number(in_group.size())},
+                                                             {"patches", number(zone.patches.size())},
+                                                             {"others", number(in_patches.size())}})}});
 }
 
 void add_slaves(Contact& contact, const ContactZone& zone, const Mesh& mesh) {

@@ -7,6 +7,7 @@
 #include <numeric>
 
 #include "lacon/catalog/messages.hpp"
+#include "lacon/catalog/wording.hpp"
 #include "lacon/operators/meshing/chain.hpp"
 #include "lacon/structures/names.hpp"
 #include "lacon/structures/vector.hpp"
@@ -34,7 +35,7 @@ std::int32_t number_of(const Mesh& mesh, std::string_view name, const Kind& kind
   const std::optional<std::int32_t> number = find_by_name(mesh, name, kind.letter == 'N' ? Entity::node : Entity::cell);
   if (!number)
     fail("GROUPE_2", {{"keyword", keyword},
-                      {"what", std::string(kind.name)},
+                      {"what", part(kind.name)},
                       {"name", std::string(name)},
                       {"first", std::string(1, kind.letter) + "1"},
                       {"last", std::string(1, kind.letter) + std::to_string(count)}});
@@ -89,14 +90,14 @@ void refuse_existing(const Mesh& mesh, const Kind& kind, const std::string& name
   for (const Group& group : mesh.*kind.groups)
     if (group.name == name)
       fail("GROUPE_1",
-           {{"keyword", keyword}, {"what", std::string(kind.name)}, {"group", name}, {"remove", std::string(kind.remove)}});
+           {{"keyword", keyword}, {"what", part(kind.name)}, {"group", name}, {"remove", std::string(kind.remove)}});
 }
 
 void add_group(Mesh& mesh, const Kind& kind, const std::string& name, const Members& members, const std::string& keyword,
                bool alarm) {
   refuse_existing(mesh, kind, name, keyword);
   if (members.empty()) {
-    if (alarm) inform("GROUPE_3", {{"keyword", keyword}, {"what", std::string(kind.name)}, {"group", name}});
+    if (alarm) inform("GROUPE_3", {{"keyword", keyword}, {"what", part(kind.name)}, {"group", name}});
     return;
   }
   fmt::print("  {} group {:<24} {:>8} {}s\n", kind.name, name, members.size(), kind.name);

@@ -6,6 +6,7 @@
 #include <array>
 
 #include "lacon/catalog/messages.hpp"
+#include "lacon/catalog/wording.hpp"
 #include "lacon/operators/fields/selection.hpp"
 #include "lacon/operators/program/program.hpp"
 #include "lacon/structures/storage/storage.hpp"
@@ -56,13 +57,12 @@ void Archive::go_on(const Order& order, const std::optional<Origin>& origin) {
   const auto refuse = [&](const std::string& reason, const std::string& remedy) {
     fail("EVOLUTION_12", {{"label", result_.label}, {"reason", reason}, {"remedy", remedy}});
   };
-  const std::string another = "give the computation a result of its own, without reuse";
-  if (!order.reuse) refuse("RESULTAT without reuse", "give reuse as well, or leave RESULTAT out");
+  if (!order.reuse) refuse(part("result_without_reuse"), part("give_reuse_too"));
   if (!origin || order.keywords.factor("ETAT_INIT").concept_id("EVOL_NOLI") != order.result_id)
-    refuse("ETAT_INIT does not start from this result", "give ETAT_INIT=_F(EVOL_NOLI=" + result_.label + ")");
+    refuse(part("state_not_from_result"), part("give_state", {{"label", result_.label}}));
   const Result& old = origin->result;
   const auto differs = [&](const std::string& what) {
-    refuse("it was computed with another " + what + ", and has one alone", another);
+    refuse(part("computed_with_another", {{"what", what}}), part("result_of_its_own"));
   };
   if (old.model != result_.model) differs("MODELE");
   if (old.material_field != result_.material_field) differs("CHAM_MATER");
@@ -75,8 +75,9 @@ void Archive::go_on(const Order& order, const std::optional<Origin>& origin) {
   std::vector<std::int64_t> orders = old.orders;
   orders.erase(std::upper_bound(orders.begin(), orders.end(), origin->order), orders.end());
   if (orders.size() < old.orders.size() && !order.keywords.factor("ARCHIVAGE").has("DETR_NUME_SUIV"))
-    refuse(fmt::format("it has {} instant(s) behind order {}", old.orders.size() - orders.size(), origin->order),
-           "give ARCHIVAGE=_F(DETR_NUME_SUIV='OUI') to remove them, or " + another);
+    refuse(part("instants_behind_order",
+                {{"count", std::to_string(old.orders.size() - orders.size())}, {"order", std::to_string(origin->order)}}),
+           part("remove_instants_behind"));
   const auto fields = old.fields;
   const std::int64_t version = result_.version;
   result_ = part_of(old, orders);

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <numeric>
 
+#include "lacon/catalog/wording.hpp"
+
 namespace lacon {
 
 Bodies::Bodies(const Mesh& mesh) : mesh_(mesh), lowest_(mesh.n_nodes()) {
@@ -34,8 +36,8 @@ std::string Bodies::name_at(std::int32_t node) const {
       largest = &group;
   if (largest) return largest->name;
   for (std::int32_t cell = 0; cell < static_cast<std::int32_t>(mesh_.n_cells()); ++cell)
-    if (inside(cell)) return "the body of " + cell_name(cell);
-  return "no body";
+    if (inside(cell)) return part("body_of_cell", {{"cell", cell_name(cell)}});
+  return part("no_body");
 }
 
 }  // namespace lacon

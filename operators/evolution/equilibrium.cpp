@@ -8,6 +8,7 @@
 #include <numeric>
 #include <set>
 
+#include "lacon/catalog/wording.hpp"
 #include "lacon/operators/evolution/bodies.hpp"
 #include "lacon/operators/program/program.hpp"
 #include "lacon/structures/hdf5.hpp"
@@ -371,11 +372,12 @@ std::string Equilibrium::names(std::span<const std::int64_t> equations) const {
   for (const std::int64_t dof : dofs_of(equations))
     first_of.emplace(bodies.of(static_cast<std::int32_t>(dof / problem_.n_components())), dof);
   for (const auto& [body, dof] : first_of)
-    if (shown < most) names += (shown++ ? ", " : "") + problem_.dof_name(dof) + " of " + bodies.name_at(body);
+    if (shown < most)
+      names += (shown++ ? ", " : "") + part("dof_of_body", {{"dof", problem_.dof_name(dof)}, {"body", bodies.name_at(body)}});
   for (std::size_t r = 0; r < relations_.size() && shown < most; ++r)
     if (std::count(equations.begin(), equations.end(), system_.equation(relations_.unknown(r, system_))) > 0)
       names += (shown++ ? ", " : "") + relations_.name(r);
-  return names.empty() ? "multipliers of contact" : names;
+  return names.empty() ? part("contact_multipliers") : names;
 }
 
 void Equilibrium::save(const hdf5::Group& group) const {

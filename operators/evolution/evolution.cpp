@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "lacon/catalog/wording.hpp"
 #include "lacon/operators/evolution/time_stepping.hpp"
 
 namespace lacon {
@@ -25,7 +26,8 @@ void evolve(const TimeSteps& steps, InstantSolver& solver, std::span<EvolutionOb
     course.push_back(past[course.size()]);
     const Attempt& attempt = course.back();
     if (attempt.instant != instant)
-      fail("EVOLUTION_31", {{"reason", fmt::format("its steps are others, {:.9g} for {:.9g}", attempt.instant, instant)}});
+      fail("EVOLUTION_31", {{"reason", part("steps_are_others", {{"found", fmt::format("{:.9g}", attempt.instant)},
+                                                                 {"expected", fmt::format("{:.9g}", instant)}})}});
     if (attempt.failure) throw *attempt.failure;
   };
   const auto attempt = [&](double instant) {

@@ -9,6 +9,7 @@
 #include <set>
 
 #include "lacon/catalog/messages.hpp"
+#include "lacon/catalog/wording.hpp"
 #include "lacon/operators/evolution/bodies.hpp"
 #include "lacon/operators/evolution/instant_failure.hpp"
 #include "lacon/operators/program/program.hpp"
@@ -24,12 +25,12 @@ constexpr double near_round_off = 1e-9;
 constexpr int settled = 4;  // iterations without a change of status after which a ratio is that of the residual alone
 constexpr double other_stress = 1e-8;  // of the largest stress: that of another law
 
-const char* const cut_the_step =
-    "let DEFI_LIST_INST cut the step: INCREMENT takes its list, and it cuts a step that fails by default";
-const char* const coarser_load =
-    "the bodies may not bear this load (a limit point, buckling, cells too coarse for what bends there): look at the last "
-    "instant that was "
-    "solved, refine there, or drive by a displacement instead of a force";
+/// What is known of a failure, one thing behind the other.
+std::string said(std::initializer_list<std::string> what) {
+  std::string text;
+  for (const std::string& words : what) text += (text.empty() || words.empty() ? "" : "; ") + words;
+  return text;
+}
 
 }  // namespace
 
@@ -130,8 +131,8 @@ int Newton::solve(double instant, StaticState& state, const std::function<void(c
     // the state before was computed: what is wrong with a cell now, the iterations have done
     if (error.message().id != "ELEMENT_1" && error.message().id != "EVOLUTION_3") throw;
     throw InstantFailure(message("EVOLUTION_18", {{"instant", fmt::format("{:.9g}", instant)},
-                                                  {"reason", error.message().text + course_.words()},
-                                                  {"remedy", options_.cuts ? coarser_load : cut_the_step}}),
+                                                  {"reason", said({error.message().text, course_.words()})},
+                                                  {"remedy", part(options_.cuts ? "remedy_coarser_load" : "remedy_cut_step")}}),
                          {});
   }
 }
@@ -354,7 +355,8 @@ std::string Newton::cells_of(const std::vector<std::size_t>& patches) const {
   }
   std::string text;
   for (const auto& [zone, cells] : of_zone)
-    text += fmt::format("{}{} of {}", text.empty() ? "" : ", ", cells, problem_.contact->zones[zone].slave_group);
+    text += (text.empty() ? "" : ", ") +
+            part("cells_of_group", {{"cells", cells}, {"group", problem_.contact->zones[zone].slave_group}});
   return text + (patches.size() > most ? ", ..." : "");
 }
 
@@ -362,21 +364,20 @@ void Newton::fail_to_converge(double instant, const IterationReport& line, std::
   const ConvergenceCriteria& asked = options_.criteria;
   const double excess = std::max(asked.resi_glob_rela ? line.rela / *asked.resi_glob_rela : 0,
                                  asked.resi_glob_maxi ? line.maxi / *asked.resi_glob_maxi : 0);
-  std::string why = unmet_criteria(line, changing) + course_.words();
+  std::string round_words, turned_words;
   if (const auto& round = statuses_.round())
-    why += fmt::format(
-        "; statuses went round, {} patch(es) at slave cells {} with a period of {} sets, and are kept until their equilibrium "
-        "is "
-        "found",
-        round->patches.size(), cells_of(round->patches), round->period);
+    round_words = part("statuses_went_round", {{"count", std::to_string(round->patches.size())},
+                                               {"cells", cells_of(round->patches)},
+                                               {"period", std::to_string(round->period)}});
   if (const auto cell = equilibrium_.cell_inside_out())
-    why += fmt::format("; cell {} of {} is turned inside out", cell_name(*cell),
-                       Bodies(problem_.mesh).name_at(problem_.mesh.cells[*cell][0]));
-  throw InstantFailure(message("EVOLUTION_4", {{"instant", fmt::format("{:.9g}", instant)},
-                                               {"iterations", std::to_string(options_.iterations)},
-                                               {"unmet", why},
-                                               {"remedy", remedy(line, excess)}}),
-                       {.ratio = settled_ >= settled && !course_.period() ? course_.ratio() : std::nullopt, .excess = excess});
+    turned_words = part("cell_inside_out",
+                        {{"cell", cell_name(*cell)}, {"body", Bodies(problem_.mesh).name_at(problem_.mesh.cells[*cell][0])}});
+  throw InstantFailure(
+      message("EVOLUTION_4", {{"instant", fmt::format("{:.9g}", instant)},
+                              {"iterations", std::to_string(options_.iterations)},
+                              {"unmet", said({unmet_criteria(line, changing), course_.words(), round_words, turned_words})},
+                              {"remedy", remedy(line, excess)}}),
+      {.ratio = settled_ >= settled && !course_.period() ? course_.ratio() : std::nullopt, .excess = excess});
 }
 
 std::string Newton::remedy(const IterationReport& line, double excess) const {
@@ -386,21 +387,14 @@ std::string Newton::remedy(const IterationReport& line, double excess) const {
   if (settled_ >= settled && ratio < no_better && !diverges && !course_.period()) {
     const double more = excess > 1 ? std::ceil(std::log(excess) / -std::log(ratio)) : settled;
     if (more <= 2.0 * options_.iterations)
-      return fmt::format("allow more iterations: the residual comes to its end within {} (CONVERGENCE/ITER_GLOB_MAXI)",
-                         options_.iterations + static_cast<int>(more) + 1);
+      return part("remedy_more_iterations", {{"count", std::to_string(options_.iterations + static_cast<int>(more) + 1)}});
   }
-  if (settled_ >= settled && line.rela < near_round_off)
-    return "ask for less: what is left is near the round-off of the forces (CONVERGENCE/RESI_GLOB_RELA, RESI_GLOB_MAXI)";
-  if (!options_.cuts) return cut_the_step;
-  if (diverges) return coarser_load;
-  if (line.status_changes > 0 || statuses_.round())
-    return "refine the slave skin around that cell, or make the other skin the slave: its patches are too coarse for what "
-           "happens there";
-  if (course_.period() && !options_.line_search)
-    return "let a line search shorten the increments that lead from one state to the other (RECH_LINEAIRE=_F())";
-  return "look in the table from which iteration on the residual does not fall, and in the mesh at the node where it is "
-         "largest "
-         "(AFFICHAGE/INFO_RESIDU)";
+  if (settled_ >= settled && line.rela < near_round_off) return part("remedy_ask_less");
+  if (!options_.cuts) return part("remedy_cut_step");
+  if (diverges) return part("remedy_coarser_load");
+  if (line.status_changes > 0 || statuses_.round()) return part("remedy_refine_slave");
+  if (course_.period() && !options_.line_search) return part("remedy_line_search");
+  return part("remedy_look_at_table");
 }
 
 std::string Newton::unmet_criteria(const IterationReport& line, std::size_t changing) const {
@@ -408,15 +402,19 @@ std::string Newton::unmet_criteria(const IterationReport& line, std::size_t chan
   const auto add = [&](bool met, const std::string& what) {
     if (!met) text += (text.empty() ? "" : ", ") + what;
   };
-  std::string where = line.worst_dof < 0 ? "" : " at " + equilibrium_.place(line.worst_dof);
-  if (line.worst_dof >= 0 && course_.stays() > 2) where += fmt::format(" (largest there in the last {})", course_.stays());
-  add(line.rela_met, fmt::format("RESI_GLOB_RELA {:.1e}{}", line.rela, where));
-  add(line.maxi_met, fmt::format("RESI_GLOB_MAXI {:.1e}{}", line.maxi, where));
+  const auto at_its_place = [&](const std::string& residual) {
+    if (line.worst_dof < 0) return residual;
+    const std::string place = equilibrium_.place(line.worst_dof);
+    if (course_.stays() <= 2) return part("residual_at", {{"residual", residual}, {"place", place}});
+    return part("residual_stays_at", {{"residual", residual}, {"place", place}, {"count", std::to_string(course_.stays())}});
+  };
+  add(line.rela_met, at_its_place(fmt::format("RESI_GLOB_RELA {:.1e}", line.rela)));
+  add(line.maxi_met, at_its_place(fmt::format("RESI_GLOB_MAXI {:.1e}", line.maxi)));
   add(line.geometry_met, fmt::format("RESI_GEOM {:.1e}", line.geometry));
-  add(line.constraint_met, fmt::format("max. gap / size {:.1e}", line.constraint));
+  add(line.constraint_met, part("largest_gap", {{"value", fmt::format("{:.1e}", line.constraint)}}));
   if (line.status_changes)
-    add(false, fmt::format("{} patch(es) changing status, the first at slave cell {}", line.status_changes,
-                           cell_name(problem_.mesh.patches->cells[changing].front())));
+    add(false, part("patches_change_status", {{"count", std::to_string(line.status_changes)},
+                                              {"cell", cell_name(problem_.mesh.patches->cells[changing].front())}}));
   return text;
 }
 

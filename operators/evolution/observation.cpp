@@ -9,6 +9,7 @@
 #include <numeric>
 
 #include "lacon/catalog/messages.hpp"
+#include "lacon/catalog/wording.hpp"
 #include "lacon/structures/hdf5.hpp"
 #include "lacon/structures/names.hpp"
 
@@ -105,10 +106,10 @@ void Observer::check_place(const Field& field) const {
     fail("OBSERVATION_3", {{"keyword", keywords_.path(keyword)}, {"field", field.name}, {"needed", needed}});
   };
   for (const std::string_view keyword : {"NOEUD", "GROUP_NO"})
-    if (!on_nodes && keywords_.has(keyword)) refuse(keyword, "MAILLE, GROUP_MA or TOUT");
-  if (field.offset.empty() && keywords_.has("POINT")) refuse("POINT", "nothing: it has one value a node or cell");
+    if (!on_nodes && keywords_.has(keyword)) refuse(keyword, part("cells_wanted"));
+  if (field.offset.empty() && keywords_.has("POINT")) refuse("POINT", part("no_point_wanted"));
   if (!field.offset.empty() && !keywords_.has("POINT") && keywords_.text("EVAL_ELGA") == "VALE")
-    refuse("EVAL_ELGA='VALE'", "POINT, or EVAL_ELGA='MIN' or 'MAX'");
+    refuse("EVAL_ELGA='VALE'", part("point_wanted"));
 }
 
 std::vector<std::size_t> Observer::components_of(const Field& field) const {

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "lacon/catalog/wording.hpp"
 #include "lacon/operators/program/program.hpp"
 #include "lacon/operators/program/terminal.hpp"
 
@@ -33,8 +34,12 @@ std::string in_words(double seconds) {
 
 std::string progress_text(double instant, int iteration, const std::string& phase, double share, double gone,
                           std::optional<double> left) {
-  return fmt::format("INST {:.6g}  iteration {}  {:<15} {:3.0f} % of the instants  {}{}", instant, iteration, phase,
-                     std::floor(100 * share), in_words(gone), left ? ", about " + in_words(*left) + " left" : "");
+  return part("progress_line", {{"instant", fmt::format("{:.6g}", instant)},
+                                {"iteration", std::to_string(iteration)},
+                                {"phase", fmt::format("{:<15}", phase)},
+                                {"share", fmt::format("{:3.0f}", std::floor(100 * share))},
+                                {"gone", in_words(gone)}}) +
+         (left ? part("progress_left", {{"time", in_words(*left)}}) : "");
 }
 
 Progress::Progress(const std::vector<double>& instants) : instants_(instants) {

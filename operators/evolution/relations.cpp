@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "lacon/catalog/messages.hpp"
+#include "lacon/catalog/wording.hpp"
 
 namespace lacon {
 
@@ -26,7 +27,7 @@ std::int64_t Relations::unknown(std::size_t relation, const System& system) cons
 }
 
 std::string Relations::name(std::size_t relation) const {
-  return "a relation of " + relations_[relation].load->label + " (" + relations_[relation].row->source + ")";
+  return part("relation_of", {{"load", relations_[relation].load->label}, {"source", relations_[relation].row->source}});
 }
 
 std::vector<Coupling> Relations::couplings() const {

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "lacon/catalog/wording.hpp"
+
 namespace lacon {
 namespace {
 
@@ -49,12 +51,13 @@ std::optional<std::size_t> ResidualCourse::period() const {
 }
 
 std::string ResidualCourse::words() const {
-  if (!finite()) return "; the residual has left the range of numbers";
-  if (const auto again = period()) return fmt::format("; the residual goes round with a period of {} iterations", *again);
+  if (!finite()) return part("residual_no_number");
+  if (const auto again = period()) return part("residual_goes_round", {{"period", std::to_string(*again)}});
   const std::optional<double> changes = ratio(), falls = order();
   if (!changes) return "";
-  return fmt::format("; the residual changes by the factor {:.2g} an iteration{}", *changes,
-                     falls ? fmt::format(" (order {:.2g})", *falls) : "");
+  const std::string factor = fmt::format("{:.2g}", *changes);
+  if (!falls) return part("residual_changes", {{"factor", factor}});
+  return part("residual_changes_of_order", {{"factor", factor}, {"order", fmt::format("{:.2g}", *falls)}});
 }
 
 }  // namespace lacon

@@ -6,6 +6,7 @@
 #include <span>
 
 #include "lacon/catalog/messages.hpp"
+#include "lacon/catalog/wording.hpp"
 #include "lacon/operators/contact/contact_field.hpp"
 #include "lacon/structures/displacement.hpp"
 
@@ -185,7 +186,7 @@ Field variable_field(const StaticProblem& problem, const StaticState& state) {
 
 StaticState archived_state(const StaticProblem& problem, const Base& base, const Result& result, std::int64_t order) {
   if (result.mesh != problem.model.mesh)
-    fail("EVOLUTION_1", {{"first", "ETAT_INIT/EVOL_NOLI"}, {"second", "MODELE"}, {"what", "meshes"}});
+    fail("EVOLUTION_1", {{"first", "ETAT_INIT/EVOL_NOLI"}, {"second", "MODELE"}, {"what", part("meshes")}});
   StaticState state;
   state.displacement = nodal_values(problem.mesh, base.field(result, "DEPL", order), problem.components);
   for (std::size_t dof = 0; dof < problem.n_dofs(); ++dof)
@@ -220,7 +221,7 @@ StaticState given_state(const StaticProblem& problem, const Base& base, const Ke
   const auto read = [&](const char* keyword) {
     Field field = base.field(given.concept_id(keyword));
     if (field.mesh != problem.model.mesh)
-      fail("EVOLUTION_1", {{"first", given.path(keyword)}, {"second", "MODELE"}, {"what", "meshes"}});
+      fail("EVOLUTION_1", {{"first", given.path(keyword)}, {"second", "MODELE"}, {"what", part("meshes")}});
     field.name = keyword;
     return field;
   };

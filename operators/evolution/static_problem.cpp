@@ -7,6 +7,7 @@
 #include <map>
 
 #include "lacon/catalog/messages.hpp"
+#include "lacon/catalog/wording.hpp"
 #include "lacon/operators/evolution/behaviours.hpp"
 #include "lacon/structures/displacement.hpp"
 
@@ -34,7 +35,7 @@ void find_dofs(StaticProblem& problem) {
 void read_materials(StaticProblem& problem, const Base& base, const std::string& field) {
   problem.material_field = std::make_unique<MaterialField>(base.material_field(field));
   if (problem.material_field->mesh != problem.model.mesh)
-    fail("EVOLUTION_1", {{"first", "CHAM_MATER"}, {"second", "MODELE"}, {"what", "meshes"}});
+    fail("EVOLUTION_1", {{"first", "CHAM_MATER"}, {"second", "MODELE"}, {"what", part("meshes")}});
   MaterialTemperatures temperatures = read_temperatures(base, field, problem.mesh);
   problem.materials = std::make_unique<MaterialTable>(lacon::read_materials(base, *problem.material_field, temperatures));
   problem.thermal = std::make_unique<ThermalMaterials>(base, *problem.material_field, std::move(temperatures));
@@ -205,7 +206,7 @@ StaticProblem read_problem(const Order& order, const Base& base) {
   if (const auto given = keywords.optional_concept("CARA_ELEM")) {
     const ElementCharacteristics characteristics = base.element_characteristics(*given);
     if (characteristics.model != model_id)
-      fail("EVOLUTION_1", {{"first", "CARA_ELEM"}, {"second", "MODELE"}, {"what", "models"}});
+      fail("EVOLUTION_1", {{"first", "CARA_ELEM"}, {"second", "MODELE"}, {"what", part("models")}});
     problem.springs = characteristics.springs;
   }
   check_springs(problem);
@@ -218,7 +219,7 @@ StaticProblem read_problem(const Order& order, const Base& base) {
       fail("LOAD_3", {{"keyword", excit.path("CHARGE")}, {"load", base.label(load_id)}});
     seen.push_back(load_id);
     if (base.load(load_id).model != model_id)
-      fail("EVOLUTION_1", {{"first", excit.path("CHARGE")}, {"second", "MODELE"}, {"what", "models"}});
+      fail("EVOLUTION_1", {{"first", excit.path("CHARGE")}, {"second", "MODELE"}, {"what", part("models")}});
     problem.loads.push_back(read_load(
         problem, base, {load_id, excit.optional_concept("FONC_MULT").value_or(""), excit.text("TYPE_CHARGE")}, excit.path("")));
     for (const std::int64_t dof : problem.loads.back().dofs) problem.imposed[dof] = 1;
@@ -226,7 +227,7 @@ StaticProblem read_problem(const Order& order, const Base& base) {
   if (const auto contact = keywords.optional_concept("CONTACT")) {
     problem.contact = base.contact(*contact);
     if (problem.contact->model != model_id)
-      fail("EVOLUTION_1", {{"first", "CONTACT"}, {"second", "MODELE"}, {"what", "models"}});
+      fail("EVOLUTION_1", {{"first", "CONTACT"}, {"second", "MODELE"}, {"what", part("models")}});
     problem.model = problem.contact->completed(std::move(problem.model));
     problem.offsets.emplace(problem.mesh, *problem.contact, base);
   }

@@ -1,11 +1,15 @@
 #include "lacon/operators/evolution/table.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <vector>
+
+#include "lacon/catalog/wording.hpp"
+#include "lacon/operators/contact/pairing_view.hpp"
 
 namespace lacon {
 namespace {
@@ -95,7 +99,10 @@ void NewtonTable::iterate(double /*instant*/, const IterationReport& report) {
 
 void NewtonTable::accept(const SolvedInstant& solved) {
   rule();
-  out_ << fmt::format(" Converged at the instant {:.9g} with {} iteration(s)\n", solved.instant, solved.iterations);
+  out_ << ' '
+       << part("converged_at",
+               {{"instant", fmt::format("{:.9g}", solved.instant)}, {"count", std::to_string(solved.iterations)}})
+       << '\n';
   if (present_.contact) prove(*present_.contact);
   out_.flush();
 }
@@ -108,22 +115,31 @@ void NewtonTable::prove(const ContactState& contact) {
     least = std::min(least, patches.lambda[p]);
     most = std::max(most, patches.lambda[p]);
   }
-  if (least <= most) out_ << fmt::format(" LAGS_C of the patches in contact from {:.9g} to {:.9g}\n", least, most);
+  if (least <= most)
+    out_ << ' ' << part("pressures_from_to", {{"least", fmt::format("{:.9g}", least)}, {"most", fmt::format("{:.9g}", most)}})
+         << '\n';
   for (const ZoneBalance& zone : contact.balance(patches)) {
-    out_ << fmt::format(" {} on {}: {} patches in contact, {} open, {} without master; covered {:.6g} of {:.6g}\n",
-                        zone.slave_group, zone.master_group, zone.active, zone.open, zone.unpaired, zone.covered, zone.whole)
-         << fmt::format(
-                "   force on the slave {}, on the master {}, sum {:.1e}, moment of both {:.1e}; largest |LAGS_C x JEU| "
-                "{:.1e}\n",
-                components(zone.on_slave), components(zone.on_master), norm(zone.on_slave + zone.on_master), norm(zone.moment),
-                zone.work);
+    out_ << ' '
+         << part("zone_statuses", {{"slave", zone.slave_group},
+                                   {"master", zone.master_group},
+                                   {"active", std::to_string(zone.active)},
+                                   {"open", std::to_string(zone.open)},
+                                   {"unpaired", std::to_string(zone.unpaired)},
+                                   {"covered", fmt::format("{:.6g}", zone.covered)},
+                                   {"whole", fmt::format("{:.6g}", zone.whole)}})
+         << "\n   "
+         << part("zone_forces", {{"slave", components(zone.on_slave)},
+                                 {"master", components(zone.on_master)},
+                                 {"sum", fmt::format("{:.1e}", norm(zone.on_slave + zone.on_master))},
+                                 {"moment", fmt::format("{:.1e}", norm(zone.moment))},
+                                 {"work", fmt::format("{:.1e}", zone.work)}})
+         << '\n';
   }
   if (rejections_) {
-    out_ << " pairing rejected:";
+    std::vector<std::string> reasons;
     for (int r = 0; r < n_rejections; ++r)
-      out_ << fmt::format("{} {} {}", r ? "," : "", contact.geometry().rejected()[r],
-                          rejection_name(static_cast<Rejection>(r)));
-    out_ << '\n';
+      reasons.push_back(fmt::format("{} {}", contact.geometry().rejected()[r], rejection_words(static_cast<Rejection>(r))));
+    out_ << ' ' << part("pairing_rejected", {{"reasons", fmt::format("{}", fmt::join(reasons, ", "))}}) << '\n';
   }
 }
 

@@ -7,6 +7,7 @@
 #include <functional>
 #include <map>
 
+#include "lacon/catalog/wording.hpp"
 #include "lacon/operators/evolution/instant_failure.hpp"
 
 namespace lacon {
@@ -26,10 +27,10 @@ constexpr double same_ratio = 0.05;  // of the logarithm of ratios
 /// Why no cut helps, or nothing. Where a step and its parts have residuals that fall by the same ratio, a part of them has
 /// 1 / cut_into of the whole's after as many iterations.
 std::optional<std::string> in_vain(const FailureNature& now, const FailureNature& before, const StepCut& action, int level) {
-  if (!now.depends_on_step) return "what fails does not depend on its length";
+  if (!now.depends_on_step) return part("fails_at_any_length");
   if (!now.ratio || !before.ratio || std::abs(std::log(*now.ratio / *before.ratio)) > same_ratio) return std::nullopt;
   if (now.excess <= std::pow(action.cut_into, action.cut_levels - level)) return std::nullopt;
-  return fmt::format("its residual changes by the same factor, {:.2g}, as that of the step that it was cut from", *now.ratio);
+  return part("same_ratio_as_before", {{"factor", fmt::format("{:.2g}", *now.ratio)}});
 }
 
 /// The length of the parts into which the step to `to` is cut. Called while `error` is handled: throws it on where the step is
@@ -137,19 +138,19 @@ class AdaptiveStepper {
   std::int64_t count_ = 0;
 };
 
-constexpr const char* from_the_list = "give instants that are in the list, the first before the last";
-
 /// Position of an instant in the list, to a relative precision.
 std::size_t find_instant(const TimeSteps& steps, double instant, double precision) {
   for (std::size_t i = 0; i < steps.values.size(); ++i)
     if (std::abs(steps.values[i] - instant) <= precision * std::max(std::abs(instant), precision)) return i;
-  fail("EVOLUTION_5", {{"what", fmt::format("the instant {:.15g} is not in the list", instant)}, {"remedy", from_the_list}});
+  fail("EVOLUTION_5", {{"what", part("instant_not_in_list", {{"instant", fmt::format("{:.15g}", instant)}})},
+                       {"remedy", part("give_from_list")}});
 }
 
 std::size_t check_number(const TimeSteps& steps, std::int64_t number) {
   if (number >= 0 && static_cast<std::size_t>(number) < steps.values.size()) return static_cast<std::size_t>(number);
-  fail("EVOLUTION_5", {{"what", fmt::format("there is no number {} in a list of {} instants", number, steps.values.size())},
-                       {"remedy", from_the_list}});
+  fail("EVOLUTION_5", {{"what", part("number_not_in_list",
+                                     {{"number", std::to_string(number)}, {"count", std::to_string(steps.values.size())}})},
+                       {"remedy", part("give_from_list")}});
 }
 
 }  // namespace
@@ -178,17 +179,15 @@ TimeSteps restrict(const TimeSteps& steps, const Interval& interval) {
   if (interval.last_number) last = check_number(steps, *interval.last_number);
   if (from_state && last + 1 <= first)
     fail("EVOLUTION_5",
-         {{"what", fmt::format("there is no instant behind that of ETAT_INIT, {:.15g}", *interval.initial_state)},
-          {"remedy",
-           "the result that ETAT_INIT names may have come to its end in a run before: leave this command out, take a list that "
-           "goes further, or name an earlier instant (ETAT_INIT/INST; with reuse also ARCHIVAGE/DETR_NUME_SUIV)"}});
+         {{"what", part("no_instant_behind_state", {{"instant", fmt::format("{:.15g}", *interval.initial_state)}})},
+          {"remedy", part("result_at_its_end")}});
   if (!from_state && (steps.values.size() < 2 || last <= first))
-    fail("EVOLUTION_5", {{"what", "there is no step to compute"}, {"remedy", from_the_list}});
-  TimeSteps part = steps;
-  part.values.assign(steps.values.begin() + static_cast<std::ptrdiff_t>(first),
+    fail("EVOLUTION_5", {{"what", part("no_step_to_compute")}, {"remedy", part("give_from_list")}});
+  TimeSteps kept = steps;
+  kept.values.assign(steps.values.begin() + static_cast<std::ptrdiff_t>(first),
                      steps.values.begin() + static_cast<std::ptrdiff_t>(last) + 1);
-  if (from_state) part.values.insert(part.values.begin(), *interval.initial_state);
-  return part;
+  if (from_state) kept.values.insert(kept.values.begin(), *interval.initial_state);
+  return kept;
 }
 
 }  // namespace lacon

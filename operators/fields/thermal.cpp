@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "lacon/catalog/messages.hpp"
+#include "lacon/catalog/wording.hpp"
 #include "lacon/structures/hdf5.hpp"
 
 namespace lacon {
@@ -244,10 +245,10 @@ Field ThermalMaterials::at_instant(const MaterialTemperature& from, double insta
   Field field = read(after);
   const Field first = read(after - 1);
   if (first.support != field.support || first.offset != field.offset || first.present != field.present)
-    fail("THERMAL_5", {{"label", result.label}, {"field", from.name + " of one layout"}});
-  const double part = (wanted - there[after - 1].first) / (there[after].first - there[after - 1].first);
+    fail("THERMAL_5", {{"label", result.label}, {"field", part("field_of_one_layout", {{"field", from.name}})}});
+  const double share = (wanted - there[after - 1].first) / (there[after].first - there[after - 1].first);
   for (std::size_t k = 0; k < field.values.size(); ++k)
-    field.values[k] = first.values[k] + part * (field.values[k] - first.values[k]);
+    field.values[k] = first.values[k] + share * (field.values[k] - first.values[k]);
   return field;
 }
 

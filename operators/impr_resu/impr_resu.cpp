@@ -10,6 +10,7 @@
 #include <tuple>
 
 #include "lacon/catalog/messages.hpp"
+#include "lacon/catalog/wording.hpp"
 #include "lacon/elements/reference.hpp"
 #include "lacon/operators/contact/offsets.hpp"
 #include "lacon/operators/contact/pairing_view.hpp"
@@ -113,7 +114,8 @@ struct PrintedPairing {
   PairingView view;
 
   std::string title() const {
-    return "Pairing of " + label + (order < 0 ? " on the initial geometry" : fmt::format(" at instant {:g}", instant));
+    if (order < 0) return part("pairing_at_start", {{"label", label}});
+    return part("pairing_at_instant", {{"label", label}, {"instant", fmt::format("{:g}", instant)}});
   }
 };
 
@@ -309,14 +311,14 @@ void print_mesh_file(const Order& order, const Base& base, Concepts& concepts, c
   std::string mesh_id, text = goes_on ? read_text(file) : "";
   for (const Keywords& one : order.keywords.factors("RESU")) {
     const auto refuse = [&](const char* keyword, const char* what) {
-      fail("IMPR_8", {{"keyword", one.path(keyword)}, {"what", what}});
+      fail("IMPR_8", {{"keyword", one.path(keyword)}, {"what", part(what)}});
     };
-    if (means_pairing(one)) refuse(one.has("CONTACT") ? "CONTACT" : "PAIRING", "a pairing");
+    if (means_pairing(one)) refuse(one.has("CONTACT") ? "CONTACT" : "PAIRING", "a_pairing");
     const char* const source = one.has("CHAM_GD") ? "CHAM_GD" : one.has("RESULTAT") ? "RESULTAT" : "MAILLAGE";
     if (!gmsh && has_fields(one)) refuse(source, "fields");
     const std::string id = has_fields(one) ? concepts.source(one).second.mesh : one.concept_id("MAILLAGE");
     const Mesh& mesh = concepts.mesh(id);
-    if (!mesh_id.empty() && mesh_id != id) refuse(source, "a second mesh");
+    if (!mesh_id.empty() && mesh_id != id) refuse(source, "second_mesh");
     if (mesh_id.empty() && !goes_on) {
       text += gmsh ? gmsh_mesh_text(mesh) : mail_text(mesh, base.label(id));
       written.add("mesh " + base.label(id));

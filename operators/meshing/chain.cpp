@@ -4,21 +4,22 @@
 #include <map>
 
 #include "lacon/catalog/messages.hpp"
+#include "lacon/catalog/wording.hpp"
 
 namespace lacon {
 
 std::vector<std::int32_t> chain_of_lines(const Mesh& mesh, const std::string& group, const std::string& keyword) {
   const auto cells = cells_of_group(mesh, group, keyword);
   const auto refuse = [&](std::int32_t cell, const char* why) {
-    fail("LIGNCOUPE_4", {{"keyword", keyword}, {"group", group}, {"cell", cell_name(cell)}, {"why", why}});
+    fail("LIGNCOUPE_4", {{"keyword", keyword}, {"group", group}, {"cell", cell_name(cell)}, {"why", part(why)}});
   };
   std::map<std::int32_t, std::vector<std::size_t>> around;  // vertex -> cells, by place in the group
   for (std::size_t i = 0; i < cells.size(); ++i) {
     const auto cell = static_cast<std::size_t>(cells[i]);
-    if (mesh.row(cell).dimension != 1) refuse(cells[i], "is no line cell");
+    if (mesh.row(cell).dimension != 1) refuse(cells[i], "no_line_cell");
     for (const std::int32_t vertex : mesh.cells[cell].first(2)) {
       around[vertex].push_back(i);
-      if (around[vertex].size() > 2) refuse(cells[i], "is at a node where more than two cells meet");
+      if (around[vertex].size() > 2) refuse(cells[i], "more_than_two_cells");
     }
   }
   std::vector<char> used(cells.size(), 0);
@@ -49,7 +50,7 @@ std::vector<std::int32_t> chain_of_lines(const Mesh& mesh, const std::string& gr
     std::reverse(nodes.begin(), nodes.end());
   }
   if (const auto left = std::find(used.begin(), used.end(), 0); left != used.end())
-    refuse(cells[static_cast<std::size_t>(left - used.begin())], "does not hang together with the first one");
+    refuse(cells[static_cast<std::size_t>(left - used.begin())], "not_connected");
   nodes.push_back(first);
   nodes.insert(nodes.end(), forward.begin(), forward.end());
   return nodes;

@@ -7,6 +7,7 @@
 #include <string>
 
 #include "lacon/catalog/messages.hpp"
+#include "lacon/catalog/wording.hpp"
 #include "lacon/elements/lanes.hpp"
 #include "lacon/operators/meshing/body.hpp"
 #include "lacon/operators/meshing/quality.hpp"
@@ -117,7 +118,7 @@ std::vector<std::int32_t> orient_body_cells(Mesh& mesh) {
       const std::string groups = groups_with(mesh, cell);
       fail("LIRE_2", {{"cell", cell_name(cell)},
                       {"type", std::string(row.name)},
-                      {"groups", groups.empty() ? "" : ", of the group " + groups},
+                      {"groups", groups.empty() ? "" : part("of_the_group", {{"groups", groups}})},
                       {"least", number(range.least)},
                       {"greatest", number(range.greatest)}});
     }

@@ -7,6 +7,7 @@
 
 #include "lacon/catalog/cuts.hpp"
 #include "lacon/catalog/messages.hpp"
+#include "lacon/catalog/wording.hpp"
 #include "lacon/operators/meshing/body.hpp"
 #include "lacon/operators/meshing/quality.hpp"
 #include "lacon/operators/meshing/subdivision.hpp"
@@ -170,10 +171,9 @@ void straighten(CellType type, const CellNodes& sub_cell, const CellNodes& added
 
 /// What a slave skin of this mesh is made of, for a message.
 std::string skin_cells(const Mesh& mesh) {
-  if (mesh.dimension == 2) return "segments (SEG2, SEG3)";
-  const std::string faces = "faces (TRIA3, TRIA6, QUAD4, QUAD8, QUAD9)";
+  if (mesh.dimension == 2) return part("segments");
   const bool is_solid = std::ranges::any_of(mesh.types, [](CellType type) { return catalog::cell(type).dimension == 3; });
-  return is_solid ? faces : faces + " of 3D cells, and there are none: a plane mesh is one of 2D only where every z is 0";
+  return part(is_solid ? "faces" : "faces_of_solids");
 }
 
 constexpr std::int64_t max_facets = 6;  ///< of a body cell
@@ -229,7 +229,7 @@ std::vector<Slave> find_slaves(const Mesh& mesh, std::span<const std::string> gr
       if (!is_sound(jacobian_range(mesh.types[b], mesh.cells[b], mesh.coordinates)))
         fail("DECOUPE_6", {{"keyword", keyword},
                            {"group", group},
-                           {"what", "the body cell " + cell_name(body.cell) + " under the slave cell " + cell_name(cell) + ","},
+                           {"what", part("body_under_slave", {{"body", cell_name(body.cell)}, {"cell", cell_name(cell)}})},
                            {"type", std::string(mesh.row(b).name)}});
       slaves.push_back({cell, body.cell, zone});
       quality.emplace_back(scaled_jacobian(mesh.types[b], mesh.cells[b], mesh.coordinates), body.cell);  // while it is at hand
@@ -265,7 +265,7 @@ CellNodes cut_slave(Forest& forest, const Slave& slave, const std::string& group
                        {"reason", reason}});
   };
   const catalog::CutRow* cut = catalog::find_cut(forest.type(slave.cell), forest.type(body), option);
-  if (!cut) refuse("there is no cut for this pair");
+  if (!cut) refuse(part("no_cut_for_pair"));
   if (!match.outward) {
     forest.turn(slave.cell);
     ++zone.turned;
@@ -274,7 +274,7 @@ CellNodes cut_slave(Forest& forest, const Slave& slave, const std::string& group
 
   // the body cell turned so that its facet lies where the row expects it
   const auto placement = std::ranges::find(cut->placements, match.facet, &catalog::Placement::facet);
-  if (placement == cut->placements.end()) refuse("the facet is of another type");
+  if (placement == cut->placements.end()) refuse(part("facet_of_other_type"));
   const CellNodes skin(forest.nodes(slave.cell));
   CellNodes turned_body = pick(forest.nodes(body), placement->nodes);
   const auto n_vertices = cut->facet.size();
@@ -285,7 +285,7 @@ CellNodes cut_slave(Forest& forest, const Slave& slave, const std::string& group
   CellNodes of_facet = pick(forest.nodes(body), facet.nodes), of_skin = skin;
   std::ranges::sort(of_facet);
   std::ranges::sort(of_skin);
-  if (!std::ranges::equal(of_facet, of_skin)) refuse("they share their vertices, but not their mid nodes");
+  if (!std::ranges::equal(of_facet, of_skin)) refuse(part("mid_nodes_differ"));
 
   const CellNodes new_skin = add_nodes(cut->skin, skin, cut->skin_nodes, coordinates);
   const CellNodes new_body = add_nodes(cut->body, turned_body, cut->body_nodes, coordinates);
@@ -312,7 +312,7 @@ CellNodes cut_slave(Forest& forest, const Slave& slave, const std::string& group
       fail("DECOUPE_6",
            {{"keyword", keyword},
             {"group", group},
-            {"what", "a sub-cell of " + cell_name(slave.body) + ", cut under the slave cell " + cell_name(slave.cell) + ","},
+            {"what", part("sub_cell_under_slave", {{"body", cell_name(slave.body)}, {"cell", cell_name(slave.cell)}})},
             {"type", std::string(catalog::cell(sub.type).name)}});
     quality.emplace_back(scaled_jacobian(sub.type, own, coordinates), forest.add(sub.type, own, body));
   }

@@ -1,6 +1,7 @@
 #include "lacon/operators/meshing/named_nodes.hpp"
 
 #include "lacon/catalog/messages.hpp"
+#include "lacon/catalog/wording.hpp"
 #include "lacon/structures/names.hpp"
 
 namespace lacon {
@@ -12,7 +13,7 @@ std::vector<std::int32_t> cells_by_name(const Mesh& mesh, const Keywords& factor
     const std::optional<std::int32_t> cell = find_by_name(mesh, name, Entity::cell);
     if (!cell)
       fail("GROUPE_2", {{"keyword", factor.path(keyword)},
-                        {"what", "cell"},
+                        {"what", part("cell")},
                         {"name", name},
                         {"first", cell_name(0)},
                         {"last", cell_name(static_cast<std::int64_t>(mesh.n_cells()) - 1)}});

@@ -6,6 +6,7 @@
 #include <numeric>
 
 #include "lacon/catalog/messages.hpp"
+#include "lacon/catalog/wording.hpp"
 #include "lacon/operators/meshing/body.hpp"
 #include "lacon/operators/meshing/patch_turn.hpp"
 #include "lacon/structures/vector.hpp"
@@ -13,13 +14,13 @@
 namespace lacon {
 namespace {
 
-[[noreturn]] void refuse(const Keywords& keywords, const char* keyword, const std::string& expected) {
-  fail("ORDER_4", {{"keyword", keywords.path(keyword)}, {"expected", expected}});
+[[noreturn]] void refuse(const Keywords& keywords, const char* keyword, const char* expected) {
+  fail("ORDER_4", {{"keyword", keywords.path(keyword)}, {"expected", part(expected)}});
 }
 
 Vec3 unit(const Keywords& keywords, const char* keyword, Vec3 given) {
   const double length = norm(given);
-  if (!(length > 0)) refuse(keywords, keyword, "a direction: not zero, and not parallel to the other one");
+  if (!(length > 0)) refuse(keywords, keyword, "a_direction");
   return given / length;
 }
 
@@ -38,7 +39,7 @@ void rotate(Mesh& mesh, const Keywords& factor) {
   Vec3 axis{0, 0, 1};
   if (mesh.dimension == 3) {
     const char* keyword = factor.has("POIN_2") ? "POIN_2" : "DIR";
-    if (!factor.has(keyword)) refuse(factor, "DIR", "given, or POIN_2, for a mesh of three dimensions");
+    if (!factor.has(keyword)) refuse(factor, "DIR", "given_or_second_point");
     axis = factor.vector(keyword, mesh.dimension);
     if (factor.has("POIN_2")) axis = axis - from;
     axis = unit(factor, keyword, axis);
@@ -54,7 +55,7 @@ void mirror(Mesh& mesh, const Keywords& factor) {
   const Vec3 point = factor.vector("POINT", mesh.dimension), first = factor.vector("AXE_1", mesh.dimension);
   Vec3 second{0, 0, 1};
   if (mesh.dimension == 3) {
-    if (!factor.has("AXE_2")) refuse(factor, "AXE_2", "given, for a mesh of three dimensions");
+    if (!factor.has("AXE_2")) refuse(factor, "AXE_2", "given_in_space");
     second = factor.vector("AXE_2", mesh.dimension);
   }
   const Vec3 normal = unit(factor, "AXE_1", cross(first, second));

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "lacon/catalog/messages.hpp"
+#include "lacon/catalog/wording.hpp"
 #include "lacon/operators/program/blas.hpp"
 #include "lacon/operators/program/checking.hpp"
 #include "lacon/operators/program/ending.hpp"
@@ -35,8 +36,9 @@ void print(const Message& message) {
   hide_terminal_line();
   std::cerr << '<' << message.severity << "> <" << message.id << "> " << message.text << '\n';
   if (message.severity != 'I') {
-    if (!outcome.command.empty()) std::cerr << "    where: " << outcome.command << ", " << outcome.source << '\n';
-    if (!message.advice.empty()) std::cerr << "    do:    " << message.advice << '\n';
+    if (!outcome.command.empty())
+      std::cerr << "    " << part("label_where", {{"place", outcome.command + ", " + outcome.source}}) << '\n';
+    if (!message.advice.empty()) std::cerr << "    " << part("label_do", {{"advice", message.advice}}) << '\n';
   }
   outcome.messages.push_back(message);
 }

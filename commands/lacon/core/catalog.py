@@ -77,15 +77,40 @@ def command(name):
     return {**command(row["like"]), **row} if "like" in row else row
 
 
-@functools.cache
-def messages():
-    """identifier -> {severity, text, do}"""
-    if _is_json():
-        return _json()["messages"]
+def _messages_of(folder):
+    """(messages by identifier, parts by name) in a folder of rows"""
     rows = {}
-    for path in sorted((location() / "messages").glob("*.toml")):
-        rows.update(toml(path))
-    return rows
+    for path in sorted(folder.glob("*.toml")):
+        rows.update(toml(path) if path.name != "parts.toml" else {})
+    return rows, toml(folder / "parts.toml")
+
+
+def in_french():
+    """Whether the user reads French: what catalog/wording.hpp says of the environment."""
+    said = (os.environ.get(name) for name in ("LC_ALL", "LC_MESSAGES", "LANG"))
+    return next(filter(None, said), "").startswith("fr")
+
+
+@functools.cache
+def _wording(french):
+    """(messages, parts) in a language."""
+    if _is_json():
+        rows, parts = _json()["messages"], _json()["parts"]
+        other = (_json()["french"]["messages"], _json()["french"]["parts"]) if french else ({}, {})
+    else:
+        rows, parts = _messages_of(location() / "messages")
+        other = _messages_of(location() / "messages/fr") if french else ({}, {})
+    return {identifier: {**row, **other[0].get(identifier, {})} for identifier, row in rows.items()}, {**parts, **other[1]}
+
+
+def messages():
+    """identifier -> {severity, text, do} in the user's language"""
+    return _wording(in_french())[0]
+
+
+def part(name, **values):
+    """What a text is made of that is no message by itself: a row of messages/parts.toml with its gaps filled."""
+    return _wording(in_french())[1][name].format(**values)
 
 
 @functools.cache

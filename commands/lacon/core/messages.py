@@ -17,9 +17,9 @@ class Message(collections.namedtuple("Message", "severity id text do where", def
     def __str__(self):
         lines = [f"<{self.severity}> <{self.id}> {self.text}"]
         if self.where:
-            lines.append(f"    where: {self.where}")
+            lines.append("    " + catalog.part("label_where", place=self.where))
         if self.do:
-            lines.append(f"    do:    {self.do}")
+            lines.append("    " + catalog.part("label_do", advice=self.do))
         return "\n".join(lines)
 
 

@@ -26,9 +26,9 @@ TEST(ResidualCourse, HasTheRatioAndTheOrderOfItsEnd) {
 
 TEST(ResidualCourse, SaysBothInWords) {
   EXPECT_EQ(course({1}).words(), "");
-  EXPECT_EQ(course({8, 4, 2, 1}).words(), "; the residual changes by the factor 0.5 an iteration (order 1)");
-  EXPECT_EQ(course({1, 2}).words(), "; the residual changes by the factor 2 an iteration");
-  EXPECT_EQ(course({1, std::nan("")}).words(), "; the residual has left the range of numbers");
+  EXPECT_EQ(course({8, 4, 2, 1}).words(), "the residual changes by the factor 0.5 an iteration (order 1)");
+  EXPECT_EQ(course({1, 2}).words(), "the residual changes by the factor 2 an iteration");
+  EXPECT_EQ(course({1, std::nan("")}).words(), "the residual has left the range of numbers");
 }
 
 TEST(ResidualCourse, KnowsWhatComesBack) {
@@ -37,7 +37,7 @@ TEST(ResidualCourse, KnowsWhatComesBack) {
   EXPECT_FALSE(course({1, 2, 1}).period());        // not twice yet
   EXPECT_FALSE(course({1, 1, 1, 1, 1}).period());  // it stands
   EXPECT_FALSE(course({8, 4, 2, 1}).period());
-  EXPECT_EQ(course({9, 1, 2, 1, 2}).words(), "; the residual goes round with a period of 2 iterations");
+  EXPECT_EQ(course({9, 1, 2, 1, 2}).words(), "the residual goes round with a period of 2 iterations");
 }
 
 TEST(ResidualCourse, CountsForHowLongItIsLargestAtOnePlace) {

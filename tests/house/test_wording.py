@@ -1,0 +1,79 @@
+"""Messages are rows of the catalogue, in English and in French: none lacks a language, and no C++ puts one together from words of its own."""
+
+import os
+import pathlib
+import re
+import subprocess
+import tomllib
+import unittest
+
+SOURCE = pathlib.Path(os.environ["LACON_SOURCE_DIR"])
+BIN = pathlib.Path(os.environ["LACON_BIN"])
+ROOMS = ("structures", "elements", "pairing", "assembly", "operators")
+#: English alone, so far: why a file or a plug-in cannot be read (reasons for who writes files and plug-ins)
+ENGLISH = ("structures/formats/", "structures/storage/", "structures/hdf5.cpp", "structures/files.cpp", "structures/field.cpp", "structures/order.cpp", "structures/table.cpp",
+           "elements/registry.cpp", "elements/plugin_rows.cpp")
+#: statements whose words no user of a study reads (defects, names of phases and counts, command lines), or that print tables
+OTHERWISE = r"static_assert|--status|logic_error|invalid_argument|runtime_error|Phase |add_to_count|CLI|add_option|add_flag|fmt::print|run_operator|run_program|\"expected\""
+
+
+def rows(folder):
+    """identifier or name -> row, of the files in a folder."""
+    found = {}
+    for path in sorted((SOURCE / "catalog/messages" / folder).glob("*.toml")):
+        found.update(tomllib.loads(path.read_text(encoding="utf-8")))
+    return found
+
+
+def statements(path):
+    """(line, text) of the statements of a C++ file, without comments."""
+    text = re.sub(r"//[^\n]*", "", path.read_text(encoding="utf-8"))
+    start = 0
+    for match in re.finditer(r"[;{}]\s*\n", text):
+        yield text.count("\n", 0, start) + 1, text[start:match.end()]
+        start = match.end()
+
+
+def prose(statement):
+    """The words of its literals that are a text for people: three or more one behind the other."""
+    literals = re.findall(r'"((?:[^"\\\n]|\\.)*)"', re.sub(r'"\s*\n\s*"', "", statement))
+    return [text for text in literals if re.search(r"(?:\b[a-z]+ ){2}[a-z]+\b", text)]
+
+
+class Wording(unittest.TestCase):
+    maxDiff = None
+
+    def test_every_message_and_every_part_is_there_in_french(self):
+        english, french = rows("."), rows("fr")
+        self.assertEqual(sorted(set(english) - set(french)), [], "add them to catalog/messages/fr/")
+        self.assertEqual(sorted(set(french) - set(english)), [])
+
+    def test_parts_that_are_asked_for_exist_and_each_is_asked_for(self):
+        names = set(tomllib.loads((SOURCE / "catalog/messages/parts.toml").read_text(encoding="utf-8")))
+        text = "".join(path.read_text(encoding="utf-8") for room in (*ROOMS, "commands/lacon", "catalog") for path in (SOURCE / room).rglob("*")
+                       if path.suffix in (".cpp", ".hpp", ".py"))
+        self.assertEqual(set(re.findall(r'\bpart\(\s*"(\w+)"', text)) - names, set())
+        self.assertEqual({name for name in names if f'"{name}"' not in text and f'"{name.replace("_", " ")}"' not in text}, set())
+
+    def test_no_cpp_composes_english_text(self):
+        found = [f"{path.relative_to(SOURCE)}:{line}: {text}" for room in ROOMS for path in sorted((SOURCE / room).rglob("*.[ch]pp"))
+                 if not str(path.relative_to(SOURCE)).startswith(ENGLISH) and path.name not in ("main.cpp", "tool.cpp")
+                 for line, statement in statements(path) if not re.search(OTHERWISE, statement) for text in prose(statement)]
+        self.assertEqual(found, [], "make them rows of catalog/messages/parts.toml and fr/parts.toml, and take them with part()")
+
+    def test_launcher_and_operators_speak_the_language_of_the_environment(self):
+        def said(*command, **language):
+            plain = {name: value for name, value in os.environ.items() if name not in ("LC_ALL", "LC_MESSAGES", "LANG")}
+            return subprocess.run([*map(str, command)], capture_output=True, text=True, check=False, env={**plain, **language}).stderr
+
+        launcher = [BIN / "lacon", "new", "--template", "nothing"]
+        for command, french, english in ((launcher, "il n'y a pas de modèle d'étude", "there is no template"),
+                                         ([BIN / "affe_modele", "/nowhere.json"], "ne peut pas être lu", "cannot be read")):
+            self.assertIn(french, said(*command, LANG="fr_FR.UTF-8"))
+            self.assertIn(french, said(*command, LANG="en_GB.UTF-8", LC_ALL="fr_BE"))
+            self.assertIn(english, said(*command))
+            self.assertIn(english, said(*command, LANG="fr_FR.UTF-8", LC_ALL="C"))
+
+
+if __name__ == "__main__":
+    unittest.main()
