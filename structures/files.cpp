@@ -18,4 +18,18 @@ void check_replaceable(const fs::path& file) {
   if (fs::exists(found) && !fs::is_regular_file(found)) refuse("it is a device, or something else that is not a file");
 }
 
+void write_as_partial(const fs::path& file, const std::function<void(const fs::path&)>& make) {
+  check_replaceable(file);
+  const fs::path partial = file.string() + ".partial";
+  std::error_code error;
+  try {
+    make(partial);
+    fs::rename(partial, file, error);
+    if (error) fail("BASE_3", {{"file", file.string()}, {"reason", error.message()}});
+  } catch (...) {
+    fs::remove(partial, error);
+    throw;
+  }
+}
+
 }  // namespace lacon

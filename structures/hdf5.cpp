@@ -428,40 +428,22 @@ class Writer : public Group {
   Writer(Handle root, const std::filesystem::path& path) : Group(std::move(root), path, true) {}
 };
 
-/// Create `file` as write_whole() does; `finish` has its way with the partial file before that gets its name.
-void write_partial(const std::filesystem::path& file, const std::function<void(const Group&)>& write,
-                   const std::filesystem::path& copy_of, void (*finish)(const std::filesystem::path&), bool small = false) {
+/// Write what goes into an HDF5 file that was just opened as `partial`, and will be `file`.
+void fill(const Handle& opened, const std::filesystem::path& partial, const std::filesystem::path& file,
+          const std::function<void(const Group&)>& write) {
+  if (opened < 0) cannot_write(file, with_system_reason("the file '" + partial.string() + "' cannot be made"));
+  {
+    const Writer root(Handle(H5Gopen2(opened, "/", H5P_DEFAULT), H5Gclose), file);
+    write(root);
+  }
+  if (H5Fflush(opened, H5F_SCOPE_LOCAL) < 0) cannot_write(file, with_system_reason("it cannot be ended"));
+}
+
+Handle new_file(const std::filesystem::path& path, hid_t access) {
   prepare();
-  check_replaceable(file);
-  const std::filesystem::path partial = file.string() + ".partial";
-  std::error_code error;
-  if (!copy_of.empty()) {
-    std::filesystem::copy_file(copy_of, partial, std::filesystem::copy_options::overwrite_existing, error);
-    if (error) cannot_write(file, error.message());
-  }
-  try {
-    const Handle creation(H5Pcreate(H5P_FILE_CREATE), H5Pclose);
-    H5Pset_link_creation_order(creation, H5P_CRT_ORDER_TRACKED | H5P_CRT_ORDER_INDEXED);
-    const Handle access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose);
-    constexpr std::size_t growth = 1 << 18;
-    if (small) H5Pset_fapl_core(access, growth, true);
-    Handle opened(copy_of.empty() ? H5Fcreate(partial.c_str(), H5F_ACC_TRUNC, creation, access)
-                                  : H5Fopen(partial.c_str(), H5F_ACC_RDWR, H5P_DEFAULT),
-                  H5Fclose);
-    if (opened < 0) cannot_write(file, with_system_reason("the file '" + partial.string() + "' cannot be made"));
-    {
-      const Writer root(Handle(H5Gopen2(opened, "/", H5P_DEFAULT), H5Gclose), file);
-      write(root);
-    }
-    if (H5Fflush(opened, H5F_SCOPE_LOCAL) < 0) cannot_write(file, with_system_reason("it cannot be ended"));
-    opened = Handle();
-    finish(partial);
-    std::filesystem::rename(partial, file, error);
-    if (error) cannot_write(file, error.message());
-  } catch (...) {
-    std::filesystem::remove(partial, error);
-    throw;
-  }
+  const Handle creation(H5Pcreate(H5P_FILE_CREATE), H5Pclose);
+  H5Pset_link_creation_order(creation, H5P_CRT_ORDER_TRACKED | H5P_CRT_ORDER_INDEXED);
+  return Handle(H5Fcreate(path.c_str(), H5F_ACC_TRUNC, creation, access), H5Fclose);
 }
 
 }  // namespace
@@ -486,15 +468,33 @@ Reader::Reader(const std::filesystem::path& file) : Group({}, file, false) {
 
 void write_whole(const std::filesystem::path& file, const std::function<void(const Group&)>& write,
                  const std::filesystem::path& copy_of) {
-  write_partial(file, write, copy_of, [](const std::filesystem::path&) {});
+  write_as_partial(file, [&](const std::filesystem::path& partial) {
+    if (copy_of.empty()) return fill(new_file(partial, H5P_DEFAULT), partial, file, write);
+    std::error_code error;
+    std::filesystem::copy_file(copy_of, partial, std::filesystem::copy_options::overwrite_existing, error);
+    if (error) cannot_write(file, error.message());
+    prepare();
+    fill(Handle(H5Fopen(partial.c_str(), H5F_ACC_RDWR, H5P_DEFAULT), H5Fclose), partial, file, write);
+  });
 }
 
 void write_sealed(const std::filesystem::path& file, const std::function<void(const Group&)>& write) {
-  write_partial(file, write, {}, seal);
+  write_as_partial(file, [&](const std::filesystem::path& partial) {
+    fill(new_file(partial, H5P_DEFAULT), partial, file, write);
+    seal(partial);
+  });
 }
 
 void write_sealed_at_once(const std::filesystem::path& file, const std::function<void(const Group&)>& write) {
-  write_partial(file, write, {}, seal, true);
+  write_as_partial(file, [&](const std::filesystem::path& partial) {
+    const Handle access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose);
+    H5Pset_fapl_core(access, 1 << 16, false);
+    const Handle opened = new_file(partial, access);
+    fill(opened, partial, file, write);
+    std::vector<char> content(static_cast<std::size_t>(std::max<ssize_t>(0, H5Fget_file_image(opened, nullptr, 0))));
+    if (H5Fget_file_image(opened, content.data(), content.size()) <= 0) cannot_write(file, "HDF5 does not give its content");
+    write_with_seal(partial, content);
+  });
 }
 
 }  // namespace lacon::hdf5

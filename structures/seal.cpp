@@ -10,6 +10,7 @@
 #include <cstdint>
 #include <cstring>
 #include <map>
+#include <span>
 #include <string_view>
 #include <tuple>
 #include <vector>
@@ -29,9 +30,13 @@ struct Trailer {
 };
 static_assert(sizeof(Trailer) == 32);
 
+void add(Trailer& sums, std::span<const std::uint64_t> words) {
+  for (const std::uint64_t word : words) sums.sum_of_sums += sums.sum += word;
+}
+
 class OpenFile {
  public:
-  OpenFile(const std::filesystem::path& path, int flags) : id_(::open(path.c_str(), flags | O_CLOEXEC)) {}
+  OpenFile(const std::filesystem::path& path, int flags) : id_(::open(path.c_str(), flags | O_CLOEXEC, 0666)) {}
   OpenFile(const OpenFile&) = delete;
   OpenFile& operator=(const OpenFile&) = delete;
   ~OpenFile() {
@@ -79,7 +84,7 @@ bool sum_up(const OpenFile& file, std::uint64_t length, Trailer& made) {
     const std::size_t n = (size + 7) / 8;
     words[n - 1] = 0;
     if (!file.read(words.data(), size, at)) return false;
-    for (std::size_t i = 0; i < n; ++i) made.sum_of_sums += made.sum += words[i];
+    add(made, {words.data(), n});
   }
   return true;
 }
@@ -91,6 +96,17 @@ void seal(const std::filesystem::path& path) {
   const auto length = static_cast<std::uint64_t>(file ? file.state().st_size : 0);
   Trailer trailer;
   if (!file || !sum_up(file, length, trailer) || !file.write(&trailer, sizeof trailer, length))
+    fail("BASE_3", {{"file", path.string()}, {"reason", std::strerror(errno)}});
+}
+
+void write_with_seal(const std::filesystem::path& path, std::span<const char> content) {
+  std::vector<std::uint64_t> words((content.size() + 7) / 8);
+  std::memcpy(words.data(), content.data(), content.size());
+  Trailer trailer;
+  trailer.length = content.size();
+  add(trailer, words);
+  const OpenFile file(path, O_WRONLY | O_CREAT | O_TRUNC);
+  if (!file || !file.write(content.data(), content.size(), 0) || !file.write(&trailer, sizeof trailer, trailer.length))
     fail("BASE_3", {{"file", path.string()}, {"reason", std::strerror(errno)}});
 }
 

@@ -31,6 +31,8 @@ struct Sealed : testing::Test {
     whole = bytes.str();
     ASSERT_EQ(whole.size(), length + 32);
     EXPECT_EQ(whole.substr(0, length), content);
+    lacon::write_with_seal(file, content);
+    EXPECT_EQ((std::ostringstream() << std::ifstream(file, std::ios::binary).rdbuf()).str(), whole);
     lacon::check_seal(file);
   }
   void refused(const std::string& bytes, const std::string& what) const {
