@@ -71,6 +71,7 @@ class Equilibrium {
 
   /// Power of the unbalanced forces of the last assembly along a solution of the system.
   double power(std::span<const double> solution) const;
+  std::int64_t first_multiplier() const { return system_.first_multiplier(); }  ///< equations from it on: relations and patches
 
   /// What the last assembly says of the balance of `state`.
   ForceFigures forces(const StaticState& state, const StaticState& previous) const;

@@ -287,11 +287,13 @@ bool Newton::hold_loose_bodies(std::span<const std::int64_t> null_pivots, Static
 void Newton::shorten(std::span<const double> solution, const StaticState& previous, StaticState& state,
                      std::vector<double>& increment) {
   const std::vector<double> at_rest(increment.size(), 0.0);
+  const std::int64_t multipliers = equilibrium_.first_multiplier();
   bool flows = equilibrium_.flows(previous);
   double reached = 1;
   const auto power = [&](double part) {
     if (part != reached) {
       std::vector<double> back(solution.begin(), solution.end());
+      if (options_.line_search) std::fill(back.begin() + multipliers, back.end(), 0.0);
       for (double& value : back) value *= part - reached;
       const std::vector<double> moved = equilibrium_.add(back, at_rest, state);
       for (std::size_t i = 0; i < moved.size(); ++i) increment[i] += moved[i];
@@ -302,11 +304,14 @@ void Newton::shorten(std::span<const double> solution, const StaticState& previo
     flows = flows || equilibrium_.flows(previous);
     return options_.line_search || flows ? equilibrium_.power(solution) : 0;
   };
-  const double start = equilibrium_.power(solution);
-  if (options_.line_search)
+  // a search keeps the new multipliers: with the old ones forces of contact, which do work where gaps close, hide those that
+  // count
+  if (options_.line_search) {
+    const double start = power(0);
     part_without_power(*options_.line_search, start, power);
-  else
-    part_of_increment(start, power);
+  } else {
+    part_of_increment(equilibrium_.power(solution), power);
+  }
 }
 
 void Newton::extrapolate(double instant, StaticState& state, std::vector<double>& step) {
