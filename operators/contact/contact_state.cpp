@@ -8,6 +8,7 @@
 #include "lacon/catalog/contact.hpp"
 #include "lacon/catalog/messages.hpp"
 #include "lacon/elements/contact_system.hpp"
+#include "lacon/operators/contact/contact_edge.hpp"
 #include "lacon/operators/contact/facets.hpp"
 #include "lacon/operators/meshing/body.hpp"
 #include "lacon/pairing/normals.hpp"
@@ -64,6 +65,17 @@ ContactState::ContactState(const Mesh& mesh, const Model& model, const Contact& 
   for (const ContactZone& zone : contact_.zones)
     for (const std::int32_t cell : zone.master)
       if (const std::optional<double> modulus = modulus_below(cell)) flexibility_[cell] = 1 / *modulus;
+  std::map<std::pair<std::int32_t, std::int32_t>, std::set<std::int32_t>> around_node;  // patches of a zone
+  for (const SlaveElement& slave : contact_.slaves)
+    for (const std::int32_t node : mesh.cells[slave.cell])
+      around_node[{geometry_.zone_of(slave.patch), node}].insert(slave.patch);
+  std::vector<std::set<std::int32_t>> neighbours(n_patches());
+  for (const auto& [where, patches] : around_node)
+    for (const std::int32_t patch : patches) neighbours[patch].insert(patches.begin(), patches.end());
+  for (std::size_t p = 0; p < n_patches(); ++p) {
+    neighbours[p].erase(static_cast<std::int32_t>(p));
+    neighbours_.emplace_back(neighbours[p].begin(), neighbours[p].end());
+  }
   double extent = 0;
   for (int d = 0; d < mesh.dimension; ++d) {
     double low = INFINITY, high = -INFINITY;
@@ -139,6 +151,20 @@ std::int64_t ContactState::update_statuses(Patchwise& patches) const {
     status = next;
   }
   return changes;
+}
+
+std::int64_t ContactState::open_behind_edges(const std::vector<Status>& before, Patchwise& patches) const {
+  std::vector<double> force(n_patches(), 0.0);
+  std::vector<bool> pulled(n_patches(), false), pressed(n_patches(), false);
+  for (std::size_t p = 0; p < n_patches(); ++p) {
+    if (before[p] != Status::active || locked_[p]) continue;
+    force[p] = patches.lambda[p] * geometry_.covered(p);
+    pulled[p] = patches.status[p] == Status::open && force[p] > 0;
+    pressed[p] = patches.status[p] == Status::active && force[p] < 0 && !gliding_[p];
+  }
+  const std::vector<std::size_t> opened = behind_the_edge(neighbours_, force, pulled, pressed);
+  for (const std::size_t patch : opened) patches.status[patch] = Status::open;
+  return static_cast<std::int64_t>(opened.size());
 }
 
 void ContactState::linearise(const Patchwise& patches, bool second) {
@@ -238,13 +264,11 @@ HeldOverlap ContactState::held_overlap() const {
   return overlap;
 }
 
-std::vector<std::pair<std::size_t, std::int32_t>> ContactState::nearest_to_hold(
-    const Patchwise& patches, const std::set<std::int32_t>& loose,
-    const std::function<std::int32_t(std::int32_t node)>& body_of) const {
+std::vector<NearestPatches> ContactState::nearest_to_hold(const Patchwise& patches, const std::set<std::int32_t>& loose,
+                                                          const std::function<std::int32_t(std::int32_t node)>& body_of) const {
   struct Hold {
     bool there = false;
-    std::optional<std::size_t> nearest;
-    std::int32_t node = -1;
+    std::map<std::size_t, std::int32_t> near;  // patches, and a node of the body
   };
   std::map<std::pair<std::int32_t, std::int32_t>, Hold> holds;  // by zone and body
   for (const ContactGeometry::Cell& cell : geometry_.cells()) {
@@ -254,15 +278,21 @@ std::vector<std::pair<std::size_t, std::int32_t>> ContactState::nearest_to_hold(
       if (!loose.contains(body)) continue;
       Hold& hold = holds[{geometry_.zone_of(patch), body}];
       if (patches.status[patch] == Status::active) hold.there = true;
-      if (held_open_[patch] || geometry_.coverage(patch) < tolerances_.least_coverage ||
-          geometry_.gap(patch) > tolerances_.holding_gap * size_[patch])
-        continue;
-      if (!hold.nearest || geometry_.gap(patch) < geometry_.gap(*hold.nearest)) hold.nearest = patch, hold.node = node;
+      if (!held_open_[patch] && geometry_.coverage(patch) >= tolerances_.least_coverage &&
+          geometry_.gap(patch) <= tolerances_.holding_gap * size_[patch])
+        hold.near.try_emplace(patch, node);
     }
   }
-  std::vector<std::pair<std::size_t, std::int32_t>> found;
-  for (const auto& [where, hold] : holds)
-    if (!hold.there && hold.nearest) found.emplace_back(*hold.nearest, hold.node);
+  std::vector<NearestPatches> found;
+  for (const auto& [where, hold] : holds) {
+    if (hold.there || hold.near.empty()) continue;
+    const auto [nearest, node] =
+        *std::ranges::min_element(hold.near, {}, [&](const auto& candidate) { return geometry_.gap(candidate.first); });
+    found.push_back({{nearest}, node});
+    for (const auto& [patch, other] : hold.near)
+      if (patch != nearest && geometry_.gap(patch) <= geometry_.gap(nearest) + tolerances_.as_near * size_[patch])
+        found.back().patches.push_back(patch);
+  }
   return found;
 }
 

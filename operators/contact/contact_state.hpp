@@ -26,6 +26,7 @@ struct ContactTolerances {
   double lambda_round_off = 1e-10;  ///< of the largest |lambda|: below it a sign means nothing
   double gap_round_off = 1e-14;     ///< of the size of the mesh
   double holding_gap = 0.5;         ///< of h: average gap up to which a patch may hold a body that is loose otherwise
+  double as_near = 1e-3;            ///< of h: by how much gaps of patches that hold it together may differ
   double facet_overlap = 1e-3;      ///< of h: average overlap that is worth an alarm where facets make it
   double facets = 1.5;              ///< largest overlap that facets make, over what they leave of the curves
   double held_overlap = 1e-6;       ///< of h: an overlap of a locked patch that is worth an alarm
@@ -56,6 +57,12 @@ struct PiercedPatch {
   std::size_t patch;
   double depth;  ///< of its deepest point, over h
   double gap;    ///< average
+};
+
+/// Patches that are as near to their master as any others of a body.
+struct NearestPatches {
+  std::vector<std::size_t> patches;  ///< the nearest of all first
+  std::int32_t node;                 ///< of the body
 };
 
 /// A patch without contact that lies inside its master.
@@ -108,6 +115,9 @@ class ContactState {
   Patchwise initial() const;
   /// Statuses from lambda + rho g. @return how many have changed
   std::int64_t update_statuses(Patchwise& patches) const;
+  /// Open patches behind those that are pulled open (contact_edge.hpp). @param before statuses that the multipliers belong to
+  /// @return how many
+  std::int64_t open_behind_edges(const std::vector<Status>& before, Patchwise& patches) const;
 
   /// Differentiate the gaps of active patches at the present geometry, for what follows.
   /// @param second whether evaluate() is to have the second derivatives, lambda d2G/du2, in its matrix
@@ -133,11 +143,10 @@ class ContactState {
   /// Whether every displacement in a patch's row is imposed: its multiplier is then undetermined and keeps its value.
   bool is_locked(std::size_t patch) const { return locked_[patch]; }
   HeldOverlap held_overlap() const;
-  /// For each of some loose bodies, in each zone where no patch holds it: the patch that is nearest to its master, within
-  /// ContactTolerances::holding_gap, and a node of the body. @param loose bodies, numbered as body_of(node) does
-  std::vector<std::pair<std::size_t, std::int32_t>> nearest_to_hold(
-      const Patchwise& patches, const std::set<std::int32_t>& loose,
-      const std::function<std::int32_t(std::int32_t node)>& body_of) const;
+  /// For each of some loose bodies, in each zone where no patch holds it: the patches that are nearest to their master, within
+  /// ContactTolerances::holding_gap. @param loose bodies, numbered as body_of(node) does
+  std::vector<NearestPatches> nearest_to_hold(const Patchwise& patches, const std::set<std::int32_t>& loose,
+                                              const std::function<std::int32_t(std::int32_t node)>& body_of) const;
   /// Of a zone, at the initial geometry: nothing where some patch overlaps by more than its facets explain.
   std::optional<FacetOverlap> facet_overlap(std::int32_t zone) const;
   /// Of a zone the patch that is pierced deepest, over its size, where that is worth an alarm.
@@ -156,11 +165,12 @@ class ContactState {
   const ContactTolerances tolerances_;
   ContactGeometry geometry_;
   std::vector<std::uint8_t> free_;
-  std::vector<double> smallest_edge_;  ///< of each zone
-  std::vector<double> size_;           ///< h of each patch: |T| in 2D, sqrt |T| in 3D, initial geometry
-  std::vector<double> flexibility_;    ///< 1 / E of the body below each cell of a master skin, 0 elsewhere
-  std::vector<double> own_;            ///< likewise of each patch
-  std::vector<double> rho_;            ///< stiffness of both bodies, in series, under a pressure on each patch
+  std::vector<double> smallest_edge_;                  ///< of each zone
+  std::vector<double> size_;                           ///< h of each patch: |T| in 2D, sqrt |T| in 3D, initial geometry
+  std::vector<double> flexibility_;                    ///< 1 / E of the body below each cell of a master skin, 0 elsewhere
+  std::vector<double> own_;                            ///< likewise of each patch
+  std::vector<double> rho_;                            ///< stiffness of both bodies, in series, under a pressure on each patch
+  std::vector<std::vector<std::int32_t>> neighbours_;  ///< patches of its zone that share a node with each patch
   std::vector<bool> locked_;
   std::vector<bool> held_open_;                         ///< of each patch: SANS_GROUP_NO, RESOLUTION='NON'
   std::vector<bool> gliding_;                           ///< of each patch: keeps its contact (GLISSIERE)

@@ -10,7 +10,6 @@
 
 #include "lacon/catalog/messages.hpp"
 #include "lacon/catalog/wording.hpp"
-#include "lacon/operators/evolution/bodies.hpp"
 #include "lacon/operators/evolution/instant_failure.hpp"
 #include "lacon/operators/program/program.hpp"
 #include "lacon/structures/hdf5.hpp"
@@ -37,6 +36,8 @@ std::string said(std::initializer_list<std::string> what) {
 Newton::Newton(const StaticProblem& problem, const NewtonOptions& options, std::unique_ptr<Engine> engine)
     : problem_(problem),
       options_(options),
+      bodies_(problem.mesh),
+      loose_(problem, bodies_),
       equilibrium_(problem),
       choice_({.linear = equilibrium_.is_linear(),
                .has_memory = equilibrium_.has_memory(),
@@ -228,57 +229,72 @@ std::vector<double> Newton::solve_system(StaticState& state, const StaticState& 
   const System& system = equilibrium_.system();
   for (bool sprung = false;; sprung = times_held_ > 1) {
     line.constraints = equilibrium_.n_constraints(state);
-    std::vector<double> solution = equilibrium_.right_side(step);
-    begin_phase("linear system");
-    line.solution = solver_.solve(system.matrix(), system.first_multiplier(), solution, rough);
-    const SolutionReport& report = line.solution;
-    add_to_phase("analysis", report.analysis_seconds);
-    add_to_phase("factorisation", report.factorisation_seconds);
-    add_to_phase("solution", report.solution_seconds);
-    add_to_count("solutions", 1);
-    add_to_count("factorisations", report.factorised ? 1 : 0);
-    if (report.factorised) {
-      const Factorisation& factor = report.factorisation;
-      if (factor.single_precision) add_to_count("factors in single precision", 1);
-      if (factor.low_rank) add_to_count("factors of low rank", 1);
-      if (factor.out_of_core) add_to_count("factors in files", 1);
-      if (!factor.doubt.empty()) inform("SOLVER_4", {{"reason", factor.doubt}});
+    std::vector<LooseMotion> loose;
+    if (settled_ == 0) loose = loose_.of(system.matrix());
+    std::vector<std::int64_t> null;
+    for (const LooseMotion& motion : loose) null.push_back(problem_.numbering.equation[static_cast<std::size_t>(motion.dof)]);
+    if (loose.empty()) {
+      std::vector<double> solution = equilibrium_.right_side(step);
+      solve_linear(solution, rough, line);
+      null = line.solution.factorisation.null_pivots;
+      if (null.empty()) return solution;
+      for (const std::int64_t dof : equilibrium_.dofs_of(null))
+        loose.push_back({dof, {bodies_.of(static_cast<std::int32_t>(dof / problem_.n_components()))}});
     }
-    add_to_count("Gflop of factorisations", 1e-9 * (report.factorisation.flops + report.factorisation.wasted_flops));
-    add_to_count("columns of the inverse", report.columns);
-    add_to_count("iterations of GMRES", report.iterations);
-    const std::vector<std::int64_t>& null = report.factorisation.null_pivots;
-    if (null.empty()) return solution;
     // the first matrix of an instant is that of the state before
-    if (sprung || !hold_loose_bodies(null, state, previous, asked))
+    if (sprung || loose.size() < null.size() || !hold(loose, state, previous, asked))
       throw InstantFailure(message("SOLVER_3", {{"count", std::to_string(null.size())}, {"names", equilibrium_.names(null)}}),
                            {.depends_on_step = line.iteration > 0});
   }
 }
 
-bool Newton::hold_loose_bodies(std::span<const std::int64_t> null_pivots, StaticState& state, const StaticState& previous,
-                               SolidMatrix asked) {
-  const std::vector<std::int64_t> dofs = equilibrium_.dofs_of(null_pivots);
-  if (!contact() || dofs.size() < null_pivots.size()) return false;
-  const Bodies bodies(problem_.mesh);
-  std::set<std::int32_t> loose, near;
-  for (const std::int64_t dof : dofs) loose.insert(bodies.of(static_cast<std::int32_t>(dof / problem_.n_components())));
-  const auto held = contact()->nearest_to_hold(state.patches, loose, [&](std::int32_t node) { return bodies.of(node); });
-  for (const auto& [patch, node] : held) near.insert(bodies.of(node));
-  if (near != loose) return false;
+void Newton::solve_linear(std::vector<double>& solution, bool rough, IterationReport& line) {
+  const System& system = equilibrium_.system();
+  begin_phase("linear system");
+  line.solution = solver_.solve(system.matrix(), system.first_multiplier(), solution, rough);
+  const SolutionReport& report = line.solution;
+  add_to_phase("analysis", report.analysis_seconds);
+  add_to_phase("factorisation", report.factorisation_seconds);
+  add_to_phase("solution", report.solution_seconds);
+  add_to_count("solutions", 1);
+  add_to_count("factorisations", report.factorised ? 1 : 0);
+  if (report.factorised) {
+    const Factorisation& factor = report.factorisation;
+    if (factor.single_precision) add_to_count("factors in single precision", 1);
+    if (factor.low_rank) add_to_count("factors of low rank", 1);
+    if (factor.out_of_core) add_to_count("factors in files", 1);
+    if (!factor.doubt.empty()) inform("SOLVER_4", {{"reason", factor.doubt}});
+  }
+  add_to_count("Gflop of factorisations", 1e-9 * (report.factorisation.flops + report.factorisation.wasted_flops));
+  add_to_count("columns of the inverse", report.columns);
+  add_to_count("iterations of GMRES", report.iterations);
+}
+
+bool Newton::hold(const std::vector<LooseMotion>& loose, StaticState& state, const StaticState& previous, SolidMatrix asked) {
+  if (!contact()) return false;
+  std::set<std::int32_t> bodies, near;
+  for (const LooseMotion& motion : loose) bodies.insert(motion.bodies.begin(), motion.bodies.end());
+  const auto holds = contact()->nearest_to_hold(state.patches, bodies, [&](std::int32_t node) { return bodies_.of(node); });
+  for (const NearestPatches& hold : holds) near.insert(bodies_.of(hold.node));
+  for (const LooseMotion& motion : loose)
+    if (std::ranges::none_of(motion.bodies, [&](std::int32_t body) { return near.contains(body); })) return false;
   if (++times_held_ > 1) {
+    std::vector<std::int64_t> dofs;
+    for (const LooseMotion& motion : loose) dofs.push_back(motion.dof);
     equilibrium_.hold(dofs);
     return true;
   }
-  for (const auto& [patch, node] : held) {
-    state.patches.status[patch] = Status::active;
-    if (!told_.insert(patch).second) continue;
-    const ContactZone& zone = problem_.contact->zones[contact()->geometry().zone_of(patch)];
-    inform("EVOLUTION_20", {{"body", bodies.name_at(node)},
-                            {"cell", cell_name(problem_.mesh.patches->cells[patch].front())},
+  for (const NearestPatches& hold : holds) {
+    const std::size_t first = hold.patches.front();
+    for (const std::size_t patch : hold.patches) state.patches.status[patch] = Status::active;
+    if (!told_.insert(first).second) continue;
+    const ContactZone& zone = problem_.contact->zones[contact()->geometry().zone_of(first)];
+    inform("EVOLUTION_20", {{"body", bodies_.name_at(hold.node)},
+                            {"count", std::to_string(hold.patches.size())},
+                            {"cell", cell_name(problem_.mesh.patches->cells[first].front())},
                             {"slave", zone.slave_group},
                             {"master", zone.master_group},
-                            {"gap", fmt::format("{:.3g}", contact()->geometry().gap(patch))}});
+                            {"gap", fmt::format("{:.3g}", contact()->geometry().gap(first))}});
   }
   assemble(state, previous, asked);
   return true;
@@ -328,6 +344,7 @@ std::vector<Status> Newton::wanted_statuses(const StaticState& state, IterationR
   const Phase phase("pairing");
   Patchwise patches = state.patches;
   line.status_changes = contact()->update_statuses(patches);
+  if (!statuses_.keeps()) line.status_changes += contact()->open_behind_edges(state.patches.status, patches);
   return patches.status;
 }
 
@@ -375,8 +392,8 @@ void Newton::fail_to_converge(double instant, const IterationReport& line, std::
                                                {"cells", cells_of(round->patches)},
                                                {"period", std::to_string(round->period)}});
   if (const auto cell = equilibrium_.cell_inside_out())
-    turned_words = part("cell_inside_out",
-                        {{"cell", cell_name(*cell)}, {"body", Bodies(problem_.mesh).name_at(problem_.mesh.cells[*cell][0])}});
+    turned_words =
+        part("cell_inside_out", {{"cell", cell_name(*cell)}, {"body", bodies_.name_at(problem_.mesh.cells[*cell][0])}});
   throw InstantFailure(
       message("EVOLUTION_4", {{"instant", fmt::format("{:.9g}", instant)},
                               {"iterations", std::to_string(options_.iterations)},

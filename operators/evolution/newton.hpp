@@ -10,6 +10,7 @@
 #include "lacon/assembly/saddle_point_solver.hpp"
 #include "lacon/operators/evolution/equilibrium.hpp"
 #include "lacon/operators/evolution/line_search.hpp"
+#include "lacon/operators/evolution/loose_motions.hpp"
 #include "lacon/operators/evolution/matrix_choice.hpp"
 #include "lacon/operators/evolution/residual_course.hpp"
 #include "lacon/operators/evolution/status_rule.hpp"
@@ -73,11 +74,12 @@ class Newton {
   /// patches of `state` take contact first. Throws SOLVER_3.
   std::vector<double> solve_system(StaticState& state, const StaticState& previous, SolidMatrix asked,
                                    std::span<const double> step, bool rough, IterationReport& line);
+  /// Solve the system with what `solution` holds, in place.
+  void solve_linear(std::vector<double>& solution, bool rough, IterationReport& line);
   /// Hold bodies that are loose and near to others: at first the nearest patches take contact, and EVOLUTION_20 says so. Where
   /// they are pulled and open again, nothing presses on the bodies: springs keep them where they are, in the matrix alone.
   /// @return whether all of them are held
-  bool hold_loose_bodies(std::span<const std::int64_t> null_pivots, StaticState& state, const StaticState& previous,
-                         SolidMatrix asked);
+  bool hold(const std::vector<LooseMotion>& loose, StaticState& state, const StaticState& previous, SolidMatrix asked);
   /// What pressures and gaps ask for at the state's geometry, in `line` how many patches want to change; nothing without
   /// contact.
   std::vector<Status> wanted_statuses(const StaticState& state, IterationReport& line) const;
@@ -103,6 +105,8 @@ class Newton {
 
   const StaticProblem& problem_;
   NewtonOptions options_;
+  Bodies bodies_;
+  LooseMotions loose_;
   Equilibrium equilibrium_;
   MatrixChoice choice_;
   StatusRule statuses_;

@@ -8,7 +8,7 @@ import pathlib
 
 from bodies import (arch, half_disc, lines, polygon, quarter_of_a_lens, round_tool, round_tool_in_space, slab, slab_in_space, tip, turned)
 import peer_checks
-from meshes import block, union, write_med
+from meshes import block, graded, union, write_med
 from study_test import PEER_MESHES
 
 HERE = pathlib.Path(__file__).resolve().parent
@@ -21,7 +21,7 @@ SIDES = (0, 1)  # which of the two skins is the slave
 
 @dataclasses.dataclass
 class Study:
-    """One computation. An instant of its list is the number of its step."""
+    """One computation. An instant of its list is the number of its step, or one of `instants`."""
     name: str
     mesh: object
     materials: dict       # body -> keywords of DEFI_MATERIAU
@@ -30,6 +30,9 @@ class Study:
     steps: int
     strain: str = "PETIT"
     model: str = "D_PLAN"
+    loads: tuple = ()     # keywords of AFFE_CHAR_MECA_F, see study.comm
+    instants: tuple = ()
+    most: int = 60        # ITER_GLOB_MAXI
     cut: bool = False     # whether DEFI_LIST_INST cuts a step that fails
     asked: dict = dataclasses.field(default_factory=dict)  # figure -> largest value; "finished" is always asked
     driven: str = ""      # group whose reactions are measured
@@ -42,7 +45,7 @@ class Study:
         """Write the inputs. @return (arguments of the launcher, variables of its environment)"""
         write_med(folder / "mesh.med", self.mesh)
         orders = {"model": self.model, "materials": self.materials, "moves": self.moves, "zones": self.zones, "strain": self.strain,
-                  "cut": self.cut, "instants": [float(k) for k in range(self.steps + 1)]}
+                  "cut": self.cut, "loads": self.loads, "most": self.most, "instants": self.instants or [float(k) for k in range(self.steps + 1)]}
         (folder / "study.json").write_text(json.dumps(orders))
         return [HERE / "study.comm", "--unit", f"20={folder / 'mesh.med'}"], {"ROBUSTNESS_STUDY": str(folder / "study.json")}
 
@@ -311,6 +314,24 @@ def ironing_in_space():
                     asked={"per step": 6}, driven="TOOL_BASE", measure=ripple)
 
 
+def force_driven():
+    """Half a round body, or a block, that nothing but contact holds along its axis, pressed on a slab by a force, with the default of
+    10 iterations: the contact of the round one begins in a point, and is 7 cells wide behind the first step."""
+    instants = (0.0, 0.04, 0.28, 0.52, 0.76, 1.0)
+    for model, what, kind, strain, side in itertools.product(("AXIS", "D_PLAN"), ("round", "block"), ORDERS, STRAINS, SIDES):
+        fine = graded(1.0, 0.01, 0.1, 1.2)
+        low = (lambda x, y: (x, y + (1 - y) * (1 - math.sqrt(1 - (0.9 * x) ** 2)))) if what == "round" else None
+        across = fine if what == "round" else lines(0, 0.5, 16)
+        mesh = union([block(kind, across, graded(1.0, 0.01, 0.05, 1.3), low, "TOOL", {"bottom": "TOOL_SKIN", "top": "TOOL_BASE", "left": "AXIS"}),
+                      block(kind, graded(2.0, 0.013, 0.15, 1.3), -graded(2.0, 0.013, 0.05, 1.3)[::-1], None, "SLAB",
+                            {"top": "SLAB_SKIN", "bottom": "SLAB_BASE", "left": "AXIS"})])
+        pressure = 3.0 if what == "round" else 30.0
+        yield Study(name=named(what, model, kind, strain, slave(("TOOL", "SLAB"), side)), mesh=mesh, model=model, strain=strain, cut=True,
+                    materials={"TOOL": elastic(1e3), "SLAB": elastic(1e3)}, zones=[zone("TOOL", "SLAB", side)], instants=instants, steps=5,
+                    moves=[held("SLAB"), {"GROUP_MA": "AXIS", "DX": 0.0}], loads=({"PRES_REP": {"GROUP_MA": "TOOL_BASE", "PRES": [[0, 0], [1, pressure]]}},),
+                    most=10, asked={"per step": 8, "lost": 0}, driven="TOOL_BASE")
+
+
 def peer_cases():
     for name, steps, most in (("ssnv104k", 10, 50), ("ssnv104n", 10, 50), ("ssnp165c", 20, 90), ("ssnp165e", 20, 90)):
         if PEER_MESHES.is_dir():
@@ -330,6 +351,7 @@ ROWS = {
     "space": ("ironing in space", ironing_in_space),
     "difficult": ("block in a die, beams that meet, bodies held by contact", difficult),
     "corner": ("tilted corner dragged", tilted_corner),
+    "force": ("bodies that contact alone holds, driven by a force", force_driven),
     "peer": ("the peer's half spheres and half ring", peer_cases),
     "cycle": ("closed elastic cycle with PETIT_REAC", closed_cycle),
 }

@@ -1,0 +1,39 @@
+#pragma once
+// Motions of bodies that a matrix does not resist. A factorisation may not see them: on fine meshes, and on those of cells of
+// very different size, the last pivot of a body that nothing holds is round-off far above zero.
+#include <cstdint>
+#include <set>
+#include <vector>
+
+#include "lacon/assembly/sparse_matrix.hpp"
+#include "lacon/operators/evolution/rigid_motions.hpp"
+
+namespace lacon {
+
+struct LooseMotion {
+  std::int64_t dof;               ///< one that it moves most, of each motion another one
+  std::set<std::int32_t> bodies;  ///< that it moves
+};
+
+class LooseMotions {
+ public:
+  /// All arguments must outlive it.
+  LooseMotions(const StaticProblem& problem, const Bodies& bodies);
+
+  /// Rigid motions of all bodies together, on the initial geometry, that the matrix maps to nothing but round-off: neither
+  /// contact nor relations, springs or stresses resist them.
+  std::vector<LooseMotion> of(const SparseMatrix& matrix) const;
+
+ private:
+  /// A degree of freedom that has an equation, of a body that imposed displacements do not hold.
+  struct Moved {
+    std::int64_t dof, equation;
+    std::int32_t first;  ///< of the motions of its body
+    Eigen::VectorXd by;  ///< what these move it by
+  };
+
+  std::vector<std::int32_t> bodies_;  ///< of each motion that imposed displacements leave
+  std::vector<Moved> moved_;          ///< ascending
+};
+
+}  // namespace lacon
