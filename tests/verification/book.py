@@ -22,6 +22,7 @@ sys.path[:0] = [str(ROOT / "tests/studies"), str(ROOT / "tests/studies/robustnes
 from study_test import PEER_MESHES, StudyTest  # noqa: E402, I001 (it says where meshes.py is)
 import chapter  # noqa: E402
 import convergence  # noqa: E402
+import families  # noqa: E402
 import hertz  # noqa: E402
 import hertz_axis  # noqa: E402
 import orders  # noqa: E402
@@ -277,6 +278,10 @@ def of_test(case, method):
         test.doCleanups()
 
 
+def families_section(runner):
+    return families.section(runner)
+
+
 def press_fit_section(_runner):
     from test_thermal import PressFit
 
@@ -320,7 +325,7 @@ def main():
     try:
         sections = [make(runner) for make in (patch_section, current_section, space_section, degree_section, materials_section,
                                               convergence_section, peer_section, orders_section, hertz_meshes_section, roller_section,
-                                              hertz_section, press_fit_section, large_strain_section, robustness_section)]
+                                              hertz_section, families_section, press_fit_section, large_strain_section, robustness_section)]
     finally:
         runner.doCleanups()
     text = "# Verification\n\nWritten by `python3 tests/verification/book.py`, which runs the studies; the same studies are tests.\n\n" + "\n".join(sections)
