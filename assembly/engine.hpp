@@ -21,7 +21,9 @@ struct Factorisation {
   bool single_precision = false, low_rank = false, out_of_core = false;  ///< how the factor is kept
   double error = 0;                                                      ///< what a substitution leaves of a residual
   double wasted_flops = 0;                                               ///< of a factor that was no use
-  std::string doubt;  ///< why a factor in single precision or of low rank was no use, and an exact one was made behind it
+  bool is_iterative = false;                                             ///< there is none: iterations have what they need
+  std::string stalled;  ///< why iterations were no use, and a factor was made instead
+  std::string doubt;    ///< why a factor in single precision or of low rank was no use, and an exact one was made behind it
 };
 
 /// What a solution took.

@@ -25,6 +25,7 @@ find_package(CLI11 REQUIRED)
 lacon_find_library(mumps dmumps_c.h dmumps_seq smumps_seq mumps_common_seq pord_seq mpiseq_seq)
 lacon_find_library(metis metis.h metis)
 lacon_find_library(openblas cblas.h openblas)
+include(cmake/petsc.cmake)
 
 # The interpreter that has numpy and h5py: another python3 may come first in PATH.
 set(LACON_PYTHON "" CACHE FILEPATH "Python 3.11 or later with numpy and h5py")

@@ -2,27 +2,69 @@
 
 #include <string>
 
-#include "lacon/assembly/mumps_engine.hpp"
+#include "lacon/assembly/petsc_engine.hpp"
 #include "lacon/catalog/messages.hpp"
+#include "lacon/operators/evolution/bodies.hpp"
 
 namespace lacon {
+namespace {
 
-std::unique_ptr<Engine> engine_of(const Keywords& solver, const Base& base) {
-  if (const std::string method = solver.text("METHODE"); method != "MUMPS") inform("EVOLUTION_24", {{"method", method}});
+constexpr int most_iterations = 500;      // where NMAX_ITER does not say
+constexpr double direct_residual = 1e-6;  // of a factor that stands in for iterations: RESI_RELA is theirs
+
+MumpsOptions direct_options(const Keywords& solver, const Base& base) {
   using Use = MumpsOptions::Use;
   using Memory = MumpsOptions::Memory;
   const auto use = [](bool always) { return always ? Use::always : Use::never; };
   const std::string acceleration = solver.text("ACCELERATION"), memory = solver.text("GESTION_MEMOIRE");
-  return std::make_unique<MumpsEngine>(
-      MumpsOptions{.memory_margin = static_cast<int>(solver.integer("PCENT_PIVOT")),
-                   .residual_tolerance = solver.real("RESI_RELA"),
-                   .single_precision = solver.has("MIXER_PRECISION") ? use(solver.yes("MIXER_PRECISION")) : Use::where_it_pays,
-                   .low_rank = acceleration == "AUTO" ? Use::where_it_pays : use(acceleration.starts_with("LR")),
-                   .low_rank_threshold = solver.real("LOW_RANK_SEUIL"),
-                   .memory = memory == "OUT_OF_CORE" ? Memory::out_of_core
-                             : memory == "IN_CORE"   ? Memory::in_core
-                                                     : Memory::where_needed,
-                   .folder = base.folder() / "factor.partial"});
+  return {.memory_margin = static_cast<int>(solver.integer("PCENT_PIVOT")),
+          .residual_tolerance = solver.real("RESI_RELA"),
+          .single_precision = solver.has("MIXER_PRECISION") ? use(solver.yes("MIXER_PRECISION")) : Use::where_it_pays,
+          .low_rank = acceleration == "AUTO" ? Use::where_it_pays : use(acceleration.starts_with("LR")),
+          .low_rank_threshold = solver.real("LOW_RANK_SEUIL"),
+          .memory = memory == "OUT_OF_CORE" ? Memory::out_of_core
+                    : memory == "IN_CORE"   ? Memory::in_core
+                                            : Memory::where_needed,
+          .folder = base.folder() / "factor.partial"};
+}
+
+PetscOptions iterative_options(const Keywords& solver, const Base& base, const StaticProblem& problem,
+                               const std::string& preconditioner) {
+  PetscOptions options{.preconditioner = preconditioner,
+                       .tolerance = solver.real("RESI_RELA"),
+                       .dimension = problem.dimension,
+                       .coordinates = problem.mesh.coordinates,
+                       .direct = direct_options(solver, base)};
+  if (solver.has("ALGORITHME")) options.algorithm = solver.text("ALGORITHME");
+  options.direct.residual_tolerance = direct_residual;
+  options.iterations = solver.integer("NMAX_ITER") > 0 ? static_cast<int>(solver.integer("NMAX_ITER")) : most_iterations;
+  const Bodies bodies(problem.mesh);
+  for (std::size_t node = 0; node < problem.mesh.n_nodes(); ++node)
+    options.body.push_back(bodies.of(static_cast<std::int32_t>(node)));
+  return options;
+}
+
+/// PRE_COND of PETSC that are factors, with which a solution is a direct one.
+std::unique_ptr<Engine> factor_of(const std::string& preconditioner, const Keywords& solver, const Base& base) {
+  inform("EVOLUTION_38", {{"preconditioner", preconditioner}});
+  MumpsOptions options = direct_options(solver, base);
+  options.residual_tolerance = direct_residual;
+  if (preconditioner == "LDLT_SP") options.single_precision = MumpsOptions::Use::always;
+  if (preconditioner == "LDLT_DP") options.single_precision = MumpsOptions::Use::never;
+  return std::make_unique<MumpsEngine>(options);
+}
+
+}  // namespace
+
+std::unique_ptr<Engine> engine_of(const Keywords& solver, const Base& base, const StaticProblem& problem) {
+  const std::string method = solver.text("METHODE");
+  if (method == "PETSC") {
+    const std::string preconditioner = solver.has("PRE_COND") ? solver.text("PRE_COND") : "GAMG";
+    if (preconditioner == "LDLT_SP" || preconditioner == "LDLT_DP") return factor_of(preconditioner, solver, base);
+    return std::make_unique<PetscEngine>(iterative_options(solver, base, problem, preconditioner));
+  }
+  if (method != "MUMPS") inform("EVOLUTION_24", {{"method", method}});
+  return std::make_unique<MumpsEngine>(direct_options(solver, base));
 }
 
 }  // namespace lacon

@@ -257,17 +257,19 @@ void Newton::solve_linear(std::vector<double>& solution, bool rough, IterationRe
   add_to_phase("factorisation", report.factorisation_seconds);
   add_to_phase("solution", report.solution_seconds);
   add_to_count("solutions", 1);
-  add_to_count("factorisations", report.factorised ? 1 : 0);
+  const Factorisation& factor = report.factorisation;
+  add_to_count("factorisations", report.factorised && !factor.is_iterative ? 1 : 0);
   if (report.factorised) {
-    const Factorisation& factor = report.factorisation;
+    if (factor.is_iterative) add_to_count("preconditioners of PETSc", 1);
+    if (!factor.stalled.empty()) inform("SOLVER_7", {{"reason", factor.stalled}});
     if (factor.single_precision) add_to_count("factors in single precision", 1);
     if (factor.low_rank) add_to_count("factors of low rank", 1);
     if (factor.out_of_core) add_to_count("factors in files", 1);
     if (!factor.doubt.empty()) inform("SOLVER_4", {{"reason", factor.doubt}});
   }
-  add_to_count("Gflop of factorisations", 1e-9 * (report.factorisation.flops + report.factorisation.wasted_flops));
+  add_to_count("Gflop of factorisations", 1e-9 * (factor.flops + factor.wasted_flops));
   add_to_count("columns of the inverse", report.columns);
-  add_to_count("iterations of GMRES", report.iterations);
+  add_to_count(factor.is_iterative ? "iterations of PETSc" : "iterations of GMRES", report.iterations);
 }
 
 bool Newton::hold(const std::vector<LooseMotion>& loose, StaticState& state, const StaticState& previous, SolidMatrix asked) {

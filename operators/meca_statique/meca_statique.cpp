@@ -57,7 +57,7 @@ void meca_statique(const Order& order, const Base& base) {
   Newton newton(
       problem,
       {.criteria = {.resi_glob_rela = residual}, .iterations = iterations, .start = instants.front(), .from_reference = true},
-      engine_of(keywords.factor("SOLVEUR"), base));
+      engine_of(keywords.factor("SOLVEUR"), base, problem));
   StaticState state = newton.initial_state();
   if (only_checks()) return;
   Result result = empty_result(order, problem);

@@ -124,7 +124,7 @@ void stat_non_line(const Order& order, const Base& base) {
   const std::optional<Origin> origin = record ? std::nullopt : origin_of(keywords, base);
   const std::optional<double> begins = record ? origin_in(*record) : origin ? std::optional(origin->instant) : std::nullopt;
   const TimeSteps steps = steps_of(keywords.factor("INCREMENT"), base, begins);
-  QuasiStatic solver(problem, newton_options(keywords, steps), engine_of(keywords.factor("SOLVEUR"), base));
+  QuasiStatic solver(problem, newton_options(keywords, steps), engine_of(keywords.factor("SOLVEUR"), base, problem));
   const Present present = solver.present(problem);
   Observations observations(keywords, base, problem.mesh, observed_fields_of(present));
   Archive archive(order, base, present, origin, observations, record.has_value());

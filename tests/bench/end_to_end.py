@@ -5,6 +5,7 @@ usage: end_to_end.py BUILD [NAME ...]      BUILD: build/release, with the target
                                            (tetrahedra, from LACON_SHARED_BENCH); by default H1 H2 H1c H2c
        --all            every one
        --threads 1 2    of Lacon, one run each; by default 1
+       --engine PETSC   of SOLVEUR, in place of MUMPS; memory is then that of the larger process, and there is no --docs
        --parts          the Google Benchmarks, start_up.py and cutting.py as well (--all: 5 million cells too)
        --no-calculix    even where ccx is installed (Debian: calculix-ccx), leave it out
        --patience N     it gets N times the time of Lacon, by default 20; but at least two minutes, and at most ten
@@ -81,10 +82,11 @@ def mesh_file(name, folder):
     return path
 
 
-def study(lacon, name, folder, threads):
-    """One run of a study; its base stays in the folder. @return what tables.py shows of it"""
+def study(lacon, name, folder, threads, engine):
+    """One run of a study; its base stays in the folder. @param engine METHODE of SOLVEUR  @return what tables.py shows of it"""
     mesh, base, report = mesh_file(name, folder), folder / f"{name}.base", folder / "run.json"
-    environment = {**os.environ, "BLOCKS_FLAT": "0" if is_curved(name) else "1", "BLOCKS_DZ": str(PUSH)}
+    environment = {**os.environ, "BLOCKS_FLAT": "0" if is_curved(name) else "1", "BLOCKS_DZ": str(PUSH),
+                   "BLOCKS_ENGINE": engine}
     command = [lacon, SOURCE / "tests/bench/two_blocks.comm", "--fresh", "--unit", f"20={mesh}", "--base", base, "--json", report,
                "--threads", threads]
     start = time.perf_counter()
@@ -105,6 +107,12 @@ def study(lacon, name, folder, threads):
             "equations": 3 * len(result.points) + len(result.patches), "counts": solved["counts"], "phases": phases_of(commands, wall),
             "io": files_of(commands, base, mesh), "force": float(result.parameter("zone_1_slave_force_z")[-1]),
             "pressures": [-float(pressures.max()), -float(pressures.min())]}
+
+
+def iterations_of(row):
+    """In words, of the linear solver; nothing of one that makes factors."""
+    counts = row["counts"]
+    return f", {counts['iterations of PETSc']:.0f} iterations in {counts['solutions']:.0f} solutions" if "iterations of PETSc" in counts else ""
 
 
 def phases_of(commands, wall):
@@ -190,6 +198,7 @@ def main():
     parser.add_argument("names", nargs="*", metavar="NAME", help=f"{' '.join(NAMES)}; by default H1 H2 H1c H2c")
     parser.add_argument("--all", action="store_true")
     parser.add_argument("--threads", type=int, nargs="+", default=[1])
+    parser.add_argument("--engine", choices=("MUMPS", "PETSC"), default="MUMPS")
     parser.add_argument("--parts", action="store_true")
     parser.add_argument("--no-calculix", action="store_true")
     parser.add_argument("--patience", type=float, default=20)
@@ -199,6 +208,8 @@ def main():
     names = NAMES if options.all else options.names or ("H1", "H2", "H1c", "H2c")
     if unknown := [name for name in names if name not in NAMES]:
         parser.error(f"{unknown[0]}: the studies are {' '.join(NAMES)}")
+    if options.docs and options.engine != "MUMPS":
+        parser.error("--docs: its tables are those of MUMPS")
     build = options.build.resolve()
     measured, measured_at = {"machine": machine_of(build), "studies": [], "calculix": [], "parts": [], "texts": {}}, time.monotonic()
     with_calculix = not options.no_calculix and calculix.program()
@@ -216,9 +227,9 @@ def main():
             if time.monotonic() - measured_at > STALE:
                 measured["machine"], measured_at = machine_of(build), time.monotonic()
             yardsticks = {key: measured["machine"][key] for key in ("factorisation_seconds", "dgemm_gflops", "copy_gbytes")}
-            rows = [best_study(build / "bin/lacon", name, folder, threads) for threads in options.threads]
+            rows = [best_study(build / "bin/lacon", name, folder, threads, options.engine) for threads in options.threads]
             measured["studies"] += [{**row, "yardsticks": yardsticks} for row in rows]
-            print(*(f"{name}, {row['threads']} thread(s): {row['wall']:.2f} s" for row in rows), sep="\n", flush=True)
+            print(*(f"{name}, {row['threads']} thread(s): {row['wall']:.2f} s" + iterations_of(row) for row in rows), sep="\n", flush=True)
             if with_calculix:
                 measured["calculix"].append({**peer(name, folder, rows[0]["wall"], options.patience), "yardsticks": yardsticks})
                 print(f"{name}, CalculiX: {measured['calculix'][-1]['failure'] or ''} {measured['calculix'][-1]['seconds']:.2f} s", flush=True)

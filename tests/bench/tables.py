@@ -112,7 +112,7 @@ def profile_section(measured):
              line("Newton solutions", lambda row: int(row["counts"]["solutions"])),
              line("factorisations", lambda row: int(row["counts"]["factorisations"])),
              line("columns of the inverse", lambda row: int(row["counts"]["columns of the inverse"])),
-             line("iterations of GMRES", lambda row: int(row["counts"]["iterations of GMRES"]))]
+             line("iterations of GMRES", lambda row: int(row["counts"].get("iterations of GMRES", 0)))]
     return table(["", *(row["name"] for row in rows)], found)
 
 

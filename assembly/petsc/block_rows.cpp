@@ -1,0 +1,213 @@
+#include "lacon/assembly/petsc/block_rows.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace lacon {
+namespace {
+
+/// Of the weights, in stiffnesses of the displacements of a row; and what a Schur complement has beside them.
+constexpr double weight_of_rows = 1, rest_of_schur = 0.5;
+
+struct Entry {
+  std::int32_t column;
+  double value;
+};
+
+/// A row of C, the column of B beside it, and the row of D: of a multiplier, not scaled yet.
+struct Multiplier {
+  std::vector<Entry> c, b, d;
+};
+
+/// Entries gathered row by row, in two passes.
+class Gathering {
+ public:
+  Gathering(std::int64_t first, std::int64_t last) : first_(first), last_(last), next_(last - first + 1, 0) {}
+  bool has(std::int64_t row) const { return row >= first_ && row < last_; }
+  void count(std::int64_t row, std::int64_t n = 1) { next_[row - first_ + 1] += n; }
+  void make_room() {
+    for (std::size_t i = 1; i < next_.size(); ++i) next_[i] += next_[i - 1];
+    entries_.resize(next_.back());
+  }
+  void add(std::int64_t row, std::int32_t column, double value) { entries_[next_[row - first_]++] = {column, value}; }
+  std::size_t size() const { return entries_.size(); }
+  /// The entries of a row, of which some columns may be there more than once.
+  std::span<Entry> row(std::int64_t row) {
+    const std::int64_t i = row - first_, begin = i ? next_[i - 1] : 0;
+    return {entries_.data() + begin, static_cast<std::size_t>(next_[i] - begin)};
+  }
+
+ private:
+  std::int64_t first_, last_;
+  std::vector<std::int64_t> next_;
+  std::vector<Entry> entries_;
+};
+
+std::span<Entry> summed(std::span<Entry> entries) {
+  std::stable_sort(entries.begin(), entries.end(), [](const Entry& x, const Entry& y) { return x.column < y.column; });
+  std::size_t n = 0;
+  for (const Entry& entry : entries)
+    if (n > 0 && entries[n - 1].column == entry.column)
+      entries[n - 1].value += entry.value;
+    else
+      entries[n++] = entry;
+  return entries.first(n);
+}
+
+template <class Use>
+void for_each_entry(const BlockSystem& system, const Use& use) {
+  for (std::int64_t i = 0; i < system.sizes.n; ++i)
+    for (std::int64_t k = system.row[i]; k < system.row[i + 1]; ++k) {
+      const std::int32_t j = system.column[k];
+      if (system.value[k] == 0) continue;
+      use(system.place[i], system.place[j], system.value[k]);
+      if (system.sizes.is_symmetric && i != j) use(system.place[j], system.place[i], system.value[k]);
+    }
+}
+
+void append(Rows& rows, std::span<const Entry> entries) {
+  for (const auto& [column, value] : entries) {
+    rows.column.push_back(column);
+    rows.value.push_back(value);
+  }
+  rows.offset.push_back(static_cast<std::int64_t>(rows.column.size()));
+}
+
+/// Rows of K, a block after the other: all rows of a block have the same columns, whole blocks.
+Rows whole_blocks(Gathering& gathered, const Range& blocks, int dimension) {
+  Rows rows{.first = blocks.first * dimension, .last = blocks.last * dimension};
+  rows.column.reserve(gathered.size() + gathered.size() / 8);  // memory is largest here
+  rows.value.reserve(gathered.size() + gathered.size() / 8);
+  std::vector<std::int32_t> neighbours;
+  std::vector<Entry> whole;
+  for (std::int64_t block = blocks.first; block < blocks.last; ++block) {
+    std::vector<std::span<Entry>> own;
+    neighbours = {static_cast<std::int32_t>(block)};
+    for (int i = 0; i < dimension; ++i) {
+      own.push_back(summed(gathered.row(block * dimension + i)));
+      for (const Entry& entry : own.back()) neighbours.push_back(entry.column / dimension);
+    }
+    std::sort(neighbours.begin(), neighbours.end());
+    neighbours.erase(std::unique(neighbours.begin(), neighbours.end()), neighbours.end());
+    for (int i = 0; i < dimension; ++i) {
+      whole.clear();
+      std::size_t next = 0;
+      for (const std::int32_t neighbour : neighbours)
+        for (std::int32_t column = neighbour * dimension; column < (neighbour + 1) * dimension; ++column) {
+          const bool there = next < own[i].size() && own[i][next].column == column;
+          whole.push_back({column, there ? own[i][next].value : 0.0});
+          next += there;
+        }
+      append(rows, whole);
+    }
+  }
+  return rows;
+}
+
+}  // namespace
+
+BlockRows rows_of_part(const BlockSystem& system, int part, int n_parts) {
+  const int dimension = system.sizes.dimension;
+  BlockRows made{.blocks = Range::of_part(system.sizes.n_blocks, part, n_parts),
+                 .multipliers = Range::of_part(system.sizes.n_multipliers, part, n_parts)};
+  const Range own{made.blocks.first * dimension, made.blocks.last * dimension};
+
+  // what all processes know: the diagonal of K, and the rows of the multipliers
+  std::vector<double> diagonal(system.sizes.n_blocks * dimension, 0.0);
+  std::vector<Multiplier> multipliers(system.sizes.n_multipliers);
+  Gathering k(own.first, own.last);
+  for_each_entry(system, [&](std::int32_t row, std::int32_t column, double value) {
+    if (row >= 0 && column >= 0) {
+      if (row == column) diagonal[row] = value;
+      if (k.has(row)) k.count(row);
+    } else if (row >= 0) {
+      multipliers[-1 - column].b.push_back({row, value});
+    } else {
+      (column >= 0 ? multipliers[-1 - row].c : multipliers[-1 - row].d).push_back({column, value});
+    }
+  });
+  double mean = 0;
+  std::int64_t n_free = 0;
+  for (const double value : diagonal)
+    if (value != 0) mean += std::abs(value), ++n_free;
+  mean = n_free ? mean / static_cast<double>(n_free) : 1;
+
+  std::vector<double> scale(multipliers.size(), 1.0), schur(multipliers.size(), 1.0), weight(multipliers.size(), 0.0);
+  for (std::size_t i = 0; i < multipliers.size(); ++i) {
+    Multiplier& m = multipliers[i];
+    double flexibility = 0, own_diagonal = 0;
+    m.b = {m.b.begin(), m.b.begin() + static_cast<std::ptrdiff_t>(summed(m.b).size())};
+    m.c = {m.c.begin(), m.c.begin() + static_cast<std::ptrdiff_t>(summed(m.c).size())};
+    for (std::size_t p = 0, q = 0; p < m.c.size() && q < m.b.size();)
+      if (m.c[p].column < m.b[q].column) {
+        ++p;
+      } else if (m.b[q].column < m.c[p].column) {
+        ++q;
+      } else {
+        if (diagonal[m.c[p].column] != 0) flexibility += m.c[p].value * m.b[q].value / diagonal[m.c[p].column];
+        ++p, ++q;
+      }
+    for (const Entry& entry : m.d)
+      if (entry.column == -1 - static_cast<std::int32_t>(i)) own_diagonal = entry.value;
+    const double size = std::max(std::abs(flexibility), std::abs(own_diagonal));
+    if (size == 0) continue;
+    scale[i] = std::sqrt(mean / size);
+    const bool is_weighted = m.d.empty();
+    if (is_weighted) weight[i] = weight_of_rows / mean * (flexibility < 0 ? -1 : 1);
+    schur[i] = is_weighted ? -(flexibility < 0 ? -mean : mean) / (weight_of_rows + rest_of_schur)
+                           : mean * (own_diagonal - flexibility) / size;
+    if (schur[i] == 0) schur[i] = mean;
+    for (Entry& entry : m.b) entry.value *= scale[i];
+    for (Entry& entry : m.c) entry.value *= scale[i];
+  }
+
+  // K + B W C
+  for (std::size_t i = 0; i < multipliers.size(); ++i)
+    for (const Entry& entry : multipliers[i].b)
+      if (weight[i] != 0 && k.has(entry.column)) k.count(entry.column, static_cast<std::int64_t>(multipliers[i].c.size()));
+  for (std::int64_t row = own.first; row < own.last; ++row)
+    if (diagonal[row] == 0) k.count(row);
+  k.make_room();
+  for_each_entry(system, [&](std::int32_t row, std::int32_t column, double value) {
+    if (row >= 0 && column >= 0 && k.has(row)) k.add(row, column, value);
+  });
+  for (std::size_t i = 0; i < multipliers.size(); ++i)
+    for (const Entry& b : multipliers[i].b)
+      if (weight[i] != 0 && k.has(b.column))
+        for (const Entry& c : multipliers[i].c) k.add(b.column, c.column, weight[i] * b.value * c.value);
+  made.is.assign(own.last - own.first, 0);
+  for (const std::int32_t place : system.place)
+    if (place >= own.first && place < own.last) made.is[place - own.first] = 1;
+  for (std::int64_t row = own.first; row < own.last; ++row)
+    if (diagonal[row] == 0) k.add(row, static_cast<std::int32_t>(row), made.is[row - own.first] ? 0.0 : mean);
+  made.k = whole_blocks(k, made.blocks, dimension);
+
+  Gathering b(own.first, own.last);
+  for (const Multiplier& m : multipliers)
+    for (const Entry& entry : m.b)
+      if (b.has(entry.column)) b.count(entry.column);
+  b.make_room();
+  for (std::size_t i = 0; i < multipliers.size(); ++i)
+    for (const Entry& entry : multipliers[i].b)
+      if (b.has(entry.column)) b.add(entry.column, static_cast<std::int32_t>(i), entry.value);
+  made.b = {.first = own.first, .last = own.last};
+  for (std::int64_t row = own.first; row < own.last; ++row) append(made.b, b.row(row));
+
+  made.c = made.d = {.first = made.multipliers.first, .last = made.multipliers.last};
+  for (std::int64_t i = made.multipliers.first; i < made.multipliers.last; ++i) {
+    Multiplier& m = multipliers[i];
+    append(made.c, m.c);
+    for (Entry& entry : m.d) {
+      entry.column = -1 - entry.column;
+      entry.value *= scale[i] * scale[entry.column];
+    }
+    append(made.d, summed(m.d));
+    made.scale.push_back(scale[i]);
+    made.schur.push_back(schur[i]);
+    made.weight.push_back(weight[i]);
+  }
+  return made;
+}
+
+}  // namespace lacon

@@ -1,0 +1,42 @@
+#pragma once
+// The rows of a block system that one process has, made ready for iterations:
+//   [K + B W C  B] [u]   [f + B W g]
+//   [C          D] [p] = [g        ]
+// Multipliers are scaled so that their rows are of the size of K. The weights W have a stiffness of the size of K where a row
+// of D vanishes: they change no solution, they hold bodies that contact alone holds, and make the Schur complement nearly a
+// multiple of the identity.
+#include <cstdint>
+#include <vector>
+
+#include "lacon/assembly/petsc/exchange.hpp"
+
+namespace lacon {
+
+/// Rows [first, last) of one of the blocks, with columns of all of it.
+struct Rows {
+  std::int64_t first = 0, last = 0;
+  std::vector<std::int64_t> offset{0};
+  std::vector<std::int32_t> column;
+  std::vector<double> value;
+};
+
+/// From here to there, of `size` things: those of one of `n_parts`.
+struct Range {
+  std::int64_t first, last;
+  static Range of_part(std::int64_t size, int part, int n_parts) {
+    return {size * part / n_parts, size * (part + 1) / n_parts};
+  }
+};
+
+struct BlockRows {
+  Range blocks, multipliers;     ///< own ones
+  Rows k, b, c, d;               ///< K with its weights; own rows
+  std::vector<double> scale;     ///< of multipliers, own ones
+  std::vector<double> schur;     ///< what stands for the Schur complement: its diagonal, own rows
+  std::vector<double> weight;    ///< W, own ones
+  std::vector<std::uint8_t> is;  ///< own rows of displacements: 0 where one is imposed
+};
+
+BlockRows rows_of_part(const BlockSystem& system, int part, int n_parts);
+
+}  // namespace lacon

@@ -1,0 +1,290 @@
+#include "lacon/assembly/petsc/krylov.hpp"
+
+#include <cmath>
+#include <stdexcept>
+#include <utility>
+
+namespace lacon {
+namespace {
+
+constexpr int restart = 60;
+/// Solutions of the residual that is left, where what the iterations follow is not the residual itself.
+constexpr int most_rounds = 4;
+
+std::string last_error;
+
+PetscErrorCode note_error(MPI_Comm, int, const char* function, const char*, PetscErrorCode code, PetscErrorType type,
+                          const char* text, void*) {
+  if (type == PETSC_ERROR_INITIAL) {
+    last_error = text && *text ? text : "error " + std::to_string(code);
+    last_error += std::string(" (") + function + ")";
+  }
+  return code;
+}
+
+/// Owned rows of a matrix, of all columns.
+OwnedMat make_matrix(const Rows& rows, std::int64_t own_columns, int block_size) {
+  OwnedMat made;
+  const auto n = static_cast<PetscInt>(rows.last - rows.first);
+  checked(MatCreate(PETSC_COMM_WORLD, made.out()));
+  checked(MatSetSizes(made, n, static_cast<PetscInt>(own_columns), PETSC_DETERMINE, PETSC_DETERMINE));
+  checked(MatSetType(made, MATAIJ));
+  if (block_size > 1) checked(MatSetBlockSize(made, block_size));
+  const std::vector<PetscInt> offset(rows.offset.begin(), rows.offset.end());
+  checked(MatSeqAIJSetPreallocationCSR(made, offset.data(), rows.column.data(), rows.value.data()));
+  checked(MatMPIAIJSetPreallocationCSR(made, offset.data(), rows.column.data(), rows.value.data()));
+  return made;
+}
+
+/// Rigid motions of the displacements, orthonormal; zero where one is imposed.
+void set_rigid_motions(Mat k, const BlockSystem& system, const BlockRows& rows) {
+  const int dimension = system.sizes.dimension, n_turns = dimension == 3 ? 3 : 1;
+  std::vector<Vec> motions;
+  double middle[3] = {0, 0, 0};
+  for (std::int64_t node = 0; node < system.sizes.n_blocks; ++node)
+    for (int i = 0; i < dimension; ++i)
+      middle[i] += system.coordinates[node * dimension + i] / static_cast<double>(system.sizes.n_blocks);
+  for (int motion = 0; motion < dimension + n_turns; ++motion) {
+    Vec v = nullptr;
+    double* values = nullptr;
+    checked(MatCreateVecs(k, &v, nullptr));
+    checked(VecGetArray(v, &values));
+    for (std::int64_t node = rows.blocks.first; node < rows.blocks.last; ++node) {
+      const std::int64_t at = (node - rows.blocks.first) * dimension;
+      const double* x = &system.coordinates[node * dimension];
+      const int turn = motion - dimension, from = dimension == 3 ? (turn + 1) % 3 : 0, to = dimension == 3 ? (turn + 2) % 3 : 1;
+      for (int i = 0; i < dimension; ++i) {
+        const double moved = turn < 0 ? i == motion : i == to ? x[from] - middle[from] : i == from ? middle[to] - x[to] : 0;
+        values[at + i] = rows.is[at + i] ? moved : 0;
+      }
+    }
+    checked(VecRestoreArray(v, &values));
+    double before = 0, after = 0;
+    checked(VecNorm(v, NORM_2, &before));
+    for (const Vec other : motions) {
+      double product = 0;
+      checked(VecDot(v, other, &product));
+      checked(VecAXPY(v, -product, other));
+    }
+    checked(VecNormalize(v, &after));
+    if (after > 1e-8 * before)
+      motions.push_back(v);
+    else
+      checked(VecDestroy(&v));
+  }
+  MatNullSpace space = nullptr;
+  checked(MatNullSpaceCreate(PETSC_COMM_WORLD, PETSC_FALSE, static_cast<PetscInt>(motions.size()), motions.data(), &space));
+  checked(MatSetNearNullSpace(k, space));
+  checked(MatNullSpaceDestroy(&space));
+  for (Vec& v : motions) checked(VecDestroy(&v));
+}
+
+/// How PETSc spells a name of SOLVEUR; whether its preconditioner has to be symmetric and positive.
+struct Algorithm {
+  KSPType type;
+  bool is_symmetric = false;
+};
+Algorithm algorithm_of(const std::string& name) {
+  if (name == "CG" || name == "CR") return {KSPMINRES, true};
+  if (name == "GCR") return {KSPGCR};
+  if (name == "BCGS") return {KSPBCGS};
+  if (name == "GMRES" || name == "GMRES_LMP") return {KSPGMRES};
+  return {KSPFGMRES};
+}
+
+void set(const std::string& name, const std::string& value) {
+  PetscBool known = PETSC_FALSE;
+  checked(PetscOptionsHasName(nullptr, nullptr, name.c_str(), &known));
+  if (!known) checked(PetscOptionsSetValue(nullptr, name.c_str(), value.c_str()));  // PETSC_OPTIONS of the user stand
+}
+
+}  // namespace
+
+void checked(PetscErrorCode code) {
+  if (code) throw std::runtime_error("PETSc: " + std::exchange(last_error, std::string()));
+}
+
+void catch_errors() { checked(PetscPushErrorHandler(note_error, nullptr)); }
+
+Krylov::Krylov(const BlockSystem& system, const KrylovOptions& options)
+    : options_(options), n_multipliers_(system.sizes.n_multipliers), dimension_(system.sizes.dimension) {
+  int part = 0, n_parts = 1;
+  MPI_Comm_rank(PETSC_COMM_WORLD, &part);
+  MPI_Comm_size(PETSC_COMM_WORLD, &n_parts);
+  BlockRows rows = rows_of_part(system, part, n_parts);
+  const std::int64_t n_rows = rows.k.last - rows.k.first;
+  equation_.assign(n_rows + (rows.c.last - rows.c.first), -1);
+  for (std::int64_t i = 0; i < system.sizes.n; ++i) {
+    const std::int64_t place = system.place[i], multiplier = -1 - place;
+    if (place >= rows.k.first && place < rows.k.last) equation_[place - rows.k.first] = static_cast<std::int32_t>(i);
+    if (place < 0 && multiplier >= rows.c.first && multiplier < rows.c.last)
+      equation_[n_rows + multiplier - rows.c.first] = static_cast<std::int32_t>(i);
+  }
+  scale_.assign(n_rows, 1.0);
+  scale_.insert(scale_.end(), rows.scale.begin(), rows.scale.end());
+  weight_ = rows.weight;
+  set_up_blocks(system, rows);
+  set_up_solver();
+}
+
+void Krylov::set_up_blocks(const BlockSystem& system, BlockRows& rows) {
+  const std::int64_t own = rows.k.last - rows.k.first, own_multipliers = rows.c.last - rows.c.first;
+  k_ = make_matrix(rows.k, own, static_cast<int>(dimension_));
+  rows.k = {};
+  set_rigid_motions(k_, system, rows);
+  if (n_multipliers_ == 0) {
+    checked(MatCreateVecs(k_, solution_.out(), side_.out()));
+  } else {
+    b_ = make_matrix(rows.b, own_multipliers, 1);
+    c_ = make_matrix(rows.c, own, 1);
+    d_ = make_matrix(rows.d, own_multipliers, 1);
+    Mat blocks[] = {k_, b_, c_, d_};
+    checked(MatCreateNest(PETSC_COMM_WORLD, 2, nullptr, 2, nullptr, blocks, matrix_.out()));
+    Rows diagonal{.first = rows.d.first, .last = rows.d.last};
+    for (std::int64_t i = 0; i < own_multipliers; ++i) {
+      diagonal.column.push_back(static_cast<std::int32_t>(rows.d.first + i));
+      // PETSc changes the sign of a preconditioner that has to be positive
+      diagonal.value.push_back(algorithm_of(options_.algorithm).is_symmetric ? -std::abs(rows.schur[i]) : rows.schur[i]);
+      diagonal.offset.push_back(i + 1);
+    }
+    schur_ = make_matrix(diagonal, own_multipliers, 1);
+    checked(MatCreateVecs(matrix_, solution_.out(), side_.out()));
+    checked(MatCreateVecs(b_, weighted_.out(), added_.out()));
+  }
+  checked(VecDuplicate(side_, residual_.out()));
+}
+
+void Krylov::set_up_displacements(PC pc) const {
+  const std::string& name = options_.preconditioner;
+  const char* prefix = nullptr;
+  checked(PCGetOptionsPrefix(pc, &prefix));
+  const std::string own = std::string("-") + (prefix ? prefix : "");
+  if (name == "BOOMER") {
+    checked(PCSetType(pc, PCHYPRE));
+    checked(PCHYPRESetType(pc, "boomeramg"));
+    set(own + "pc_hypre_boomeramg_strong_threshold", dimension_ == 3 ? "0.5" : "0.25");
+    set(own + "pc_hypre_boomeramg_nodal_coarsen", "4");
+    set(own + "pc_hypre_boomeramg_vec_interp_variant", "2");
+  } else if (name == "JACOBI") {
+    checked(PCSetType(pc, PCJACOBI));
+  } else if (name == "SOR") {
+    checked(PCSetType(pc, PCSOR));
+  } else if (name == "LDLT_INC") {
+    checked(PCSetType(pc, PCBJACOBI));
+  } else if (name == "SANS") {
+    checked(PCSetType(pc, PCNONE));
+  } else {
+    checked(PCSetType(pc, PCGAMG));
+    // aggregates of many nodes make few entries; a Chebyshev polynomial of degree 4 is worth them. Its lower end is where they
+    // take over
+    set(own + "pc_gamg_threshold", "0");
+    set(own + "mg_levels_pc_type", "jacobi");  // SOR stops at an aggregate of one node, whose turns have no diagonal
+    set(own + "mg_levels_ksp_max_it", "4");
+    set(own + "mg_levels_ksp_chebyshev_esteig", "0,0.04,0,1.1");
+  }
+  checked(PCSetFromOptions(pc));
+}
+
+void Krylov::set_up_solver() {
+  const Algorithm algorithm = algorithm_of(options_.algorithm);
+  checked(KSPCreate(PETSC_COMM_WORLD, ksp_.out()));
+  Mat const matrix = n_multipliers_ ? matrix_ : k_;
+  checked(KSPSetOperators(ksp_, matrix, matrix));
+  checked(KSPSetType(ksp_, algorithm.type));
+  if (!algorithm.is_symmetric) checked(KSPSetPCSide(ksp_, PC_RIGHT));
+  set("-ksp_gmres_restart", std::to_string(restart));
+  set("-ksp_gcr_restart", std::to_string(restart));
+  PC pc = nullptr;
+  checked(KSPGetPC(ksp_, &pc));
+  if (n_multipliers_ == 0) {
+    set_up_displacements(pc);
+  } else {
+    IS rows[2];
+    checked(MatNestGetISs(matrix_, rows, nullptr));
+    checked(PCSetType(pc, PCFIELDSPLIT));
+    checked(PCFieldSplitSetIS(pc, "u", rows[0]));
+    checked(PCFieldSplitSetIS(pc, "p", rows[1]));
+    checked(PCFieldSplitSetType(pc, PC_COMPOSITE_SCHUR));
+    checked(PCFieldSplitSetSchurFactType(
+        pc, algorithm.is_symmetric ? PC_FIELDSPLIT_SCHUR_FACT_DIAG : PC_FIELDSPLIT_SCHUR_FACT_UPPER));
+    checked(PCFieldSplitSetSchurPre(pc, PC_FIELDSPLIT_SCHUR_PRE_USER, schur_));
+    set("-fieldsplit_p_ksp_type", "preonly");
+    set("-fieldsplit_p_pc_type", "jacobi");
+    set("-fieldsplit_u_ksp_type", "preonly");
+  }
+  checked(KSPSetFromOptions(ksp_));
+  if (n_multipliers_) {
+    checked(PCSetUp(pc));
+    PetscInt n_parts = 0;
+    KSP* parts = nullptr;
+    checked(PCFieldSplitSchurGetSubKSP(pc, &n_parts, &parts));
+    PC displacements = nullptr;
+    checked(KSPGetPC(parts[0], &displacements));
+    set_up_displacements(displacements);
+    checked(PetscFree(parts));
+  }
+  checked(KSPSetUp(ksp_));
+  checked(KSPSetUpOnBlocks(ksp_));
+}
+
+void Krylov::load(std::span<const double> right_side) {
+  double* values = nullptr;
+  checked(VecGetArray(side_, &values));
+  for (std::size_t i = 0; i < equation_.size(); ++i) values[i] = equation_[i] < 0 ? 0 : scale_[i] * right_side[equation_[i]];
+  if (n_multipliers_) {
+    const std::size_t n_rows = equation_.size() - weight_.size();
+    double* own = nullptr;
+    checked(VecGetArray(weighted_, &own));
+    for (std::size_t i = 0; i < weight_.size(); ++i) own[i] = weight_[i] * values[n_rows + i];
+    checked(VecRestoreArray(weighted_, &own));
+    checked(MatMult(b_, weighted_, added_));
+    checked(VecGetArray(added_, &own));
+    for (std::size_t i = 0; i < n_rows; ++i) values[i] += own[i];
+    checked(VecRestoreArray(added_, &own));
+  }
+  checked(VecRestoreArray(side_, &values));
+}
+
+KrylovResult Krylov::solve(std::span<double> right_side) {
+  load(right_side);
+  KrylovResult result;
+  double size = 0, left = 0;
+  checked(VecNorm(side_, NORM_2, &size));
+  checked(VecSet(solution_, 0));
+  checked(VecCopy(side_, residual_));
+  OwnedVec step;
+  checked(VecDuplicate(solution_, step.out()));
+  Mat const matrix = n_multipliers_ ? matrix_ : k_;
+  left = size;
+  for (int round = 0; round < most_rounds && left > options_.tolerance * size; ++round) {
+    const int more = options_.iterations - result.iterations;
+    checked(KSPSetTolerances(ksp_, options_.tolerance * size / left, PETSC_DEFAULT, PETSC_DEFAULT, std::max(1, more)));
+    checked(KSPSolve(ksp_, residual_, step));
+    KSPConvergedReason reason = KSP_CONVERGED_ITERATING;
+    PetscInt iterations = 0;
+    checked(KSPGetConvergedReason(ksp_, &reason));
+    checked(KSPGetIterationNumber(ksp_, &iterations));
+    result.iterations += static_cast<int>(iterations);
+    checked(VecAXPY(solution_, 1, step));
+    checked(MatMult(matrix, solution_, residual_));
+    checked(VecAYPX(residual_, -1, side_));
+    checked(VecNorm(residual_, NORM_2, &left));
+    result.failure = reason < 0 ? KSPConvergedReasons[reason] : "";
+    if (reason < 0 || !std::isfinite(left)) break;
+  }
+  result.residual = size > 0 ? left / size : 0;
+  if (left <= options_.tolerance * size)
+    result.failure.clear();
+  else if (result.failure.empty())
+    result.failure = "STALLED";
+  if (!result.failure.empty()) return result;
+
+  const double* values = nullptr;
+  checked(VecGetArrayRead(solution_, &values));
+  for (std::size_t i = 0; i < equation_.size(); ++i)
+    if (equation_[i] >= 0) right_side[equation_[i]] = scale_[i] * values[i];
+  checked(VecRestoreArrayRead(solution_, &values));
+  return result;
+}
+
+}  // namespace lacon

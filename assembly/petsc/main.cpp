@@ -1,0 +1,92 @@
+// lacon_petsc: the ranks of PETSc, which an operator starts and talks with over standard input and output (exchange.hpp).
+#include <sys/prctl.h>
+#include <unistd.h>
+
+#include <csignal>
+#include <cstdio>
+#include <iostream>
+#include <memory>
+#include <sstream>
+#include <string>
+
+#include "lacon/assembly/petsc/krylov.hpp"
+
+namespace {
+
+using lacon::Krylov, lacon::KrylovOptions, lacon::KrylovResult, lacon::BlockSystem, lacon::SharedMemory;
+
+bool is_first() {
+  int rank = 0;
+  MPI_Comm_rank(PETSC_COMM_WORLD, &rank);
+  return rank == 0;
+}
+
+/// The next line of standard input, which the first rank reads, for all of them; empty at its end. They wait asleep: the
+/// operator works meanwhile.
+std::string next_line() {
+  std::string line;
+  if (is_first()) std::getline(std::cin, line);
+  int size = static_cast<int>(line.size()), there = 0;
+  MPI_Request request;
+  for (MPI_Ibcast(&size, 1, MPI_INT, 0, PETSC_COMM_WORLD, &request); !there;) {
+    MPI_Test(&request, &there, MPI_STATUS_IGNORE);
+    if (!there) usleep(200);
+  }
+  line.resize(static_cast<std::size_t>(size));
+  MPI_Bcast(line.data(), size, MPI_CHAR, 0, PETSC_COMM_WORLD);
+  return line;
+}
+
+void answer(const std::string& line) {
+  MPI_Barrier(PETSC_COMM_WORLD);  // what others have written is there
+  if (is_first()) std::cout << line << std::endl;
+}
+
+std::string solved(Krylov& krylov, const std::string& path) {
+  const SharedMemory memory = SharedMemory::open(path);
+  const KrylovResult found = krylov.solve({reinterpret_cast<double*>(memory.data()), memory.size() / sizeof(double)});
+  std::ostringstream line;
+  line.precision(2);
+  line << (found.failure.empty() ? "converged " : "diverged ") << found.iterations << ' ' << found.residual << ' '
+       << found.failure;
+  return line.str();
+}
+
+void serve(const KrylovOptions& options) {
+  answer("ready");
+  std::unique_ptr<Krylov> krylov;
+  for (std::string line = next_line(); !line.empty(); line = next_line()) {
+    const std::string path = line.substr(line.rfind(' ') + 1);
+    try {
+      if (line.starts_with("set up ")) {
+        krylov.reset();
+        const SharedMemory memory = SharedMemory::open(path);
+        krylov = std::make_unique<Krylov>(BlockSystem::in(memory), options);
+        answer("ready");
+      } else {
+        answer(solved(*krylov, path));
+      }
+    } catch (const std::exception& error) {
+      // other ranks may be anywhere: what is left of them is of no use
+      std::cout << "failed " << error.what() << std::endl;
+      int n_ranks = 1;
+      MPI_Comm_size(PETSC_COMM_WORLD, &n_ranks);
+      if (n_ranks > 1) MPI_Abort(PETSC_COMM_WORLD, 1);
+      krylov.reset();
+    }
+  }
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  if (argc != 5) {
+    std::fputs("usage: lacon_petsc ALGORITHM PRECONDITIONER TOLERANCE ITERATIONS (started by operators)\n", stderr);
+    return 2;
+  }
+  prctl(PR_SET_PDEATHSIG, SIGKILL);
+  if (PetscInitialize(nullptr, nullptr, nullptr, nullptr)) return 4;
+  lacon::catch_errors();
+  serve({.algorithm = argv[1], .preconditioner = argv[2], .tolerance = std::stod(argv[3]), .iterations = std::stoi(argv[4])});
+  PetscFinalize();
+}

@@ -1,0 +1,105 @@
+#include "lacon/assembly/petsc/ranks.hpp"
+
+#include <fcntl.h>
+#include <sys/prctl.h>
+#include <sys/socket.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <csignal>
+#include <cstring>
+#include <system_error>
+#include <thread>
+
+#include "lacon/catalog/wording.hpp"
+
+namespace lacon {
+namespace {
+
+constexpr int not_started = 127;
+/// They end by themselves when nobody talks to them any more.
+constexpr std::chrono::milliseconds patience{2000}, nap{2};
+
+}  // namespace
+
+Ranks::Ranks(std::vector<std::string> command) {
+  std::vector<char*> words;
+  for (std::string& word : command) words.push_back(word.data());
+  words.push_back(nullptr);
+  int to[2], from[2];
+  if (socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, to) || pipe2(from, O_CLOEXEC))
+    throw std::system_error(errno, std::generic_category(), "PETSc");
+  process_ = fork();
+  if (process_ == 0) {
+    prctl(PR_SET_PDEATHSIG, SIGTERM);  // mpirun ends its ranks
+    dup2(to[1], STDIN_FILENO);
+    dup2(from[1], STDOUT_FILENO);
+    setenv("OPENBLAS_NUM_THREADS", "1", 1);
+    setenv("OMP_NUM_THREADS", "1", 1);
+    execvp(words[0], words.data());
+    _exit(not_started);
+  }
+  close(to[1]);
+  close(from[1]);
+  to_ = to[0];
+  from_ = from[0];
+}
+
+Ranks::~Ranks() {
+  close(to_);
+  const auto wait = [&](std::chrono::milliseconds time) {
+    for (; ended_.empty() && time.count() > 0; time -= nap) {
+      if (waitpid(process_, nullptr, WNOHANG) != 0) return true;
+      std::this_thread::sleep_for(nap);
+    }
+    return !ended_.empty();
+  };
+  if (!wait(patience)) {
+    kill(process_, SIGTERM);
+    if (!wait(patience)) {
+      kill(process_, SIGKILL);
+      waitpid(process_, nullptr, 0);
+    }
+  }
+  close(from_);
+}
+
+std::string Ranks::first_answer() { return answer(); }
+
+std::string Ranks::ask(const std::string& line) {
+  const std::string whole = line + '\n';
+  for (std::size_t sent = 0; sent < whole.size();) {
+    const ssize_t now = send(to_, whole.data() + sent, whole.size() - sent, MSG_NOSIGNAL);
+    if (now < 0 && errno != EINTR) return {};
+    if (now > 0) sent += static_cast<std::size_t>(now);
+  }
+  return answer();
+}
+
+std::string Ranks::answer() {
+  for (std::size_t end = heard_.find('\n');; end = heard_.find('\n')) {
+    if (end != std::string::npos) {
+      std::string line = heard_.substr(0, end);
+      heard_.erase(0, end + 1);
+      return line;
+    }
+    char more[4096];
+    const ssize_t got = read(from_, more, sizeof more);
+    if (got < 0 && errno == EINTR) continue;
+    if (got <= 0) return {};
+    heard_.append(more, static_cast<std::size_t>(got));
+  }
+}
+
+std::string Ranks::end() {
+  int status = 0;
+  if (ended_.empty() && waitpid(process_, &status, 0) == process_)
+    ended_ = WIFSIGNALED(status) ? part("ended_by_signal", {{"signal", strsignal(WTERMSIG(status))}})
+             : WEXITSTATUS(status) == not_started
+                 ? part("cannot_be_started")
+                 : part("ended_with_status", {{"status", std::to_string(WEXITSTATUS(status))}});
+  return ended_;
+}
+
+}  // namespace lacon

@@ -1,0 +1,183 @@
+#include "lacon/assembly/petsc_engine.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <map>
+#include <optional>
+#include <sstream>
+
+#include "lacon/assembly/petsc/exchange.hpp"
+#include "lacon/assembly/petsc/free_motion.hpp"
+#include "lacon/assembly/petsc/ranks.hpp"
+#include "lacon/catalog/messages.hpp"
+#include "lacon/catalog/wording.hpp"
+
+namespace lacon {
+namespace {
+
+std::string program_beside_this() { return std::filesystem::read_symlink("/proc/self/exe").parent_path() / "lacon_petsc"; }
+
+/// Why iterations have ended, in words. @param reason as PETSc names it
+std::string words_of(const std::string& reason, int iterations, const std::string& left) {
+  static const std::map<std::string, std::string> names{{"DIVERGED_ITS", "iterations_are_spent"},
+                                                        {"DIVERGED_DTOL", "residual_grows"},
+                                                        {"DIVERGED_BREAKDOWN", "iterations_break_down"},
+                                                        {"DIVERGED_BREAKDOWN_BICG", "iterations_break_down"},
+                                                        {"DIVERGED_INDEFINITE_PC", "preconditioner_not_positive"},
+                                                        {"DIVERGED_NANORINF", "residual_no_number"},
+                                                        {"DIVERGED_PC_FAILED", "preconditioner_cannot_be_made"},
+                                                        {"STALLED", "residual_does_not_fall"}};
+  const auto name = names.find(reason);
+  return part("after_iterations", {{"reason", name == names.end() ? reason : part(name->second)},
+                                   {"iterations", std::to_string(iterations)},
+                                   {"share", left}});
+}
+
+}  // namespace
+
+struct PetscEngine::State {
+  PetscOptions options;
+  std::unique_ptr<Ranks> ranks;
+  BlockSystem::Sizes sizes;
+  std::vector<std::int32_t> place;  ///< of each equation
+  std::vector<std::int32_t> node;   ///< of each block
+  std::vector<std::int32_t> body;   ///< of each block, from 0 on
+  const SparseMatrix* matrix = nullptr;
+  std::unique_ptr<MumpsEngine> direct;  ///< where this matrix has a factor
+
+  void start() {
+    if (ranks) return;
+    ranks = std::make_unique<Ranks>(std::vector<std::string>{options.program, options.algorithm, options.preconditioner,
+                                                             fmt::format("{:.3e}", options.tolerance),
+                                                             std::to_string(options.iterations)});
+    if (ranks->first_answer().empty()) fail("SOLVER_6", {{"reason", options.program + ": " + ranks->end()}});
+  }
+
+  std::string ask(const std::string& line) {
+    std::string answer = ranks->ask(line);
+    if (answer.empty()) {
+      const std::string end = ranks->end();
+      ranks.reset();
+      fail("SOLVER_8", {{"reason", end}});
+    }
+    return answer;
+  }
+
+  void number(const Numbering& numbering) {
+    place.assign(static_cast<std::size_t>(numbering.n_equations()), -1);
+    node.clear();
+    body.clear();
+    std::map<std::int32_t, std::int32_t> bodies;
+    const int dimension = options.dimension;
+    for (std::int64_t n = 0; n < numbering.n_nodes; ++n) {
+      bool is_free = false;
+      for (int i = 0; i < dimension; ++i)
+        if (const std::int64_t e = numbering.of(n, i); e >= 0) {
+          is_free = true;
+          place[e] = static_cast<std::int32_t>(static_cast<int>(node.size()) * dimension + i);
+        }
+      if (!is_free) continue;
+      node.push_back(static_cast<std::int32_t>(n));
+      body.push_back(bodies.try_emplace(options.body[n], static_cast<std::int32_t>(bodies.size())).first->second);
+    }
+    std::int32_t n_multipliers = 0;
+    for (std::int32_t& at : place)
+      if (at < 0) at = -1 - n_multipliers++;
+    sizes = {.n = numbering.n_equations(),
+             .n_blocks = static_cast<std::int64_t>(node.size()),
+             .n_multipliers = n_multipliers,
+             .dimension = dimension};
+  }
+
+  SharedMemory system() {
+    sizes.n_entries = matrix->n_entries();
+    sizes.is_symmetric = matrix->is_symmetric();
+    SharedMemory memory(BlockSystem::bytes(sizes));
+    std::memcpy(memory.data(), &sizes, sizeof sizes);
+    const BlockSystem made = BlockSystem::in(memory);
+    std::ranges::copy(matrix->rows(), made.row.begin());
+    std::ranges::copy(matrix->columns(), made.column.begin());
+    std::ranges::copy(matrix->values(), made.value.begin());
+    std::ranges::copy(place, made.place.begin());
+    for (std::size_t b = 0; b < node.size(); ++b)
+      for (int i = 0; i < sizes.dimension; ++i)
+        made.coordinates[b * static_cast<std::size_t>(sizes.dimension) + static_cast<std::size_t>(i)] =
+            options.coordinates[3 * static_cast<std::size_t>(node[b]) + static_cast<std::size_t>(i)];
+    return memory;
+  }
+
+  /// A factor instead. @param why
+  Factorisation factorise_directly(const std::string& why) {
+    direct = std::make_unique<MumpsEngine>(options.direct);
+    try {
+      direct->analyse(*matrix);
+      Factorisation found = direct->factorise(*matrix);
+      found.stalled = why;
+      return found;
+    } catch (const Error& error) {
+      if (error.message().id != "SOLVER_2") throw;
+    }
+    direct.reset();
+    fail("SOLVER_9", {{"reason", why}, {"equations", std::to_string(sizes.n)}});
+  }
+};
+
+PetscEngine::PetscEngine(const PetscOptions& options) : state_(std::make_unique<State>()) {
+  state_->options = options;
+  std::string& program = state_->options.program;
+  if (program.empty()) program = program_beside_this();
+  if (!std::filesystem::exists(program)) fail("SOLVER_6", {{"reason", part("built_without_petsc")}});
+}
+PetscEngine::~PetscEngine() = default;
+
+void PetscEngine::analyse(const SparseMatrix& matrix) {
+  State& s = *state_;
+  s.matrix = nullptr;
+  s.direct.reset();
+  s.start();
+  s.number(matrix.numbering());
+}
+
+Factorisation PetscEngine::factorise(const SparseMatrix& matrix) {
+  State& s = *state_;
+  s.matrix = &matrix;
+  s.direct.reset();
+  const SharedMemory memory = s.system();
+  if (has_free_motion(BlockSystem::in(memory), s.body)) return s.factorise_directly(part("free_rigid_motion"));
+  if (const std::string said = s.ask("set up " + memory.path()); said != "ready") return s.factorise_directly(said);
+  Factorisation made;
+  made.is_iterative = true;
+  return made;
+}
+
+Solution PetscEngine::solve(std::span<double> right_side) {
+  State& s = *state_;
+  if (s.direct) return s.direct->solve(right_side);
+  const SharedMemory memory(right_side.size_bytes());
+  const std::span<double> shared{reinterpret_cast<double*>(memory.data()), right_side.size()};
+  std::ranges::copy(right_side, shared.begin());
+  std::istringstream said(s.ask("solve " + memory.path()));
+  std::string word, left, why;
+  Solution solution;
+  said >> word;
+  if (word != "failed") said >> solution.iterations >> left;
+  std::getline(said >> std::ws, why);
+  if (word == "converged") {
+    std::ranges::copy(shared, right_side.begin());
+    solution.residual = std::stod(left);
+    return solution;
+  }
+  if (word != "failed") why = words_of(why, solution.iterations, left);
+  const Factorisation again = s.factorise_directly(why);
+  Solution second;
+  if (again.null_pivots.empty()) second = s.direct->solve(right_side);
+  second.iterations += solution.iterations;
+  if (!second.again) second.again = again;
+  second.again->stalled = why;
+  return second;
+}
+
+}  // namespace lacon

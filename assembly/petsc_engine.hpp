@@ -1,0 +1,46 @@
+#pragma once
+// PETSc: iterations for symmetric and general matrices, in processes of their own (petsc/). Displacements by multigrid, which
+// knows the rigid motions, multipliers by their Schur complement. Its memory is linear in the number of equations.
+//
+// A matrix with a rigid motion that nothing resists, and one at which the iterations stall, gets a factor of MUMPS instead.
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "lacon/assembly/mumps_engine.hpp"
+
+namespace lacon {
+
+struct PetscOptions {
+  std::string algorithm = "GMRES";      ///< ALGORITHME
+  std::string preconditioner = "GAMG";  ///< PRE_COND
+  double tolerance = 1e-8;              ///< RESI_RELA: of the residual, against the right side
+  int iterations = 500;                 ///< NMAX_ITER
+  std::string program;                  ///< lacon_petsc; empty: beside the program that runs
+  int dimension = 3;
+  std::vector<double> coordinates;  ///< (n_nodes, 3): of the nodes of the numbering
+  std::vector<std::int32_t> body;   ///< (n_nodes): any numbers; nodes of the same body have the same one
+  MumpsOptions direct;
+};
+
+class PetscEngine : public Engine {
+ public:
+  /// Throws SOLVER_6 where PETSc is not there.
+  explicit PetscEngine(const PetscOptions& options);
+  ~PetscEngine() override;
+  PetscEngine(const PetscEngine&) = delete;
+  PetscEngine& operator=(const PetscEngine&) = delete;
+
+  /// Throws SOLVER_6 where PETSc cannot be started.
+  void analyse(const SparseMatrix& matrix) override;
+  /// Throws SOLVER_8 where PETSc ends, SOLVER_9 where there is no memory for the factor instead.
+  Factorisation factorise(const SparseMatrix& matrix) override;
+  /// Likewise, and SOLVER_1.
+  Solution solve(std::span<double> right_side) override;
+
+ private:
+  struct State;
+  std::unique_ptr<State> state_;
+};
+
+}  // namespace lacon

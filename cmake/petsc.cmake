@@ -1,0 +1,16 @@
+# PETSc, optional: the target `petsc` where it is there. It brings MPI and a MUMPS for it, whose names are those of the sequential one
+# that operators link: no program has both.
+option(LACON_PETSC "Build the iterative engine where PETSc is installed" ON)
+if(LACON_PETSC)
+  find_path(PETSC_INCLUDE petscksp.h PATHS /usr/lib/petsc/include)
+  find_library(PETSC_LIBRARY NAMES petsc_real petsc PATHS /usr/lib/petsc/lib)
+  find_package(MPI QUIET COMPONENTS C)
+endif()
+if(LACON_PETSC AND PETSC_INCLUDE AND PETSC_LIBRARY AND MPI_C_FOUND)
+  add_library(petsc INTERFACE IMPORTED)
+  target_include_directories(petsc SYSTEM INTERFACE "${PETSC_INCLUDE}")
+  target_compile_definitions(petsc INTERFACE OMPI_SKIP_MPICXX MPICH_SKIP_MPICXX)
+  target_link_libraries(petsc INTERFACE "${PETSC_LIBRARY}" MPI::MPI_C)
+else()
+  message(STATUS "without PETSc (Debian: libpetsc-real-dev): SOLVEUR=_F(METHODE='PETSC') will be refused")
+endif()

@@ -1,0 +1,74 @@
+"""A study gives the same results whether a factor or iterations of PETSc solve its linear systems; without PETSc it is refused."""
+
+import os
+import pathlib
+import unittest
+
+import numpy as np
+from study_test import StudyTest
+from test_precision import Precision as Blocks
+from test_precision import two_blocks
+
+from meshes import write_med
+from results import Result
+
+PROGRAM = pathlib.Path(os.environ["LACON_BIN"]) / "lacon_petsc"
+#: of the largest value: ten times the RESI_GLOB_RELA of these studies, or of those that ask for less
+AGREEMENT = 1e-5
+
+
+def assert_same(test, one, other):
+    """Components of a field on nodes: name -> values, NaN where a node has none."""
+    test.assertEqual(one.keys(), other.keys())
+    largest = max(np.nanmax(np.abs(values)) for name, values in one.items() if name != "LAGS_C")
+    for name, values in one.items():
+        scale = np.nanmax(np.abs(values)) if name == "LAGS_C" else largest
+        test.assertLessEqual(np.nanmax(np.abs(other[name] - values)), AGREEMENT * scale, name)
+
+
+@unittest.skipUnless(PROGRAM.exists(), "built without PETSc")
+class Petsc(StudyTest):
+    solve = Blocks.solve
+
+    def test_two_blocks_of_unequal_stiffness(self):
+        write_med(self.folder / "blocks.med", two_blocks(1.0, (7, 6, 3)))
+        case = {"NU": "0.3", "CONTRAST": "1e3", "SLENDER": "0"}
+        exact, direct, _ = self.solve("double", case)
+        found, counts, said = self.solve("petsc", case | {"PRE_COND": "GAMG"})
+        assert_same(self, exact, found)
+        self.assertNotIn("SOLVER_7", said)
+        self.assertEqual((counts["solutions"], counts["factorisations"]), (direct["solutions"], 0))
+        self.assertGreater(counts["iterations of PETSc"], 0)
+
+    def test_hertz(self):
+        made = self.run_tool("new", "--template", "hertz")
+        self.assertEqual(made.returncode, 0, made.stderr)
+        study = self.folder / "hertz/hertz.comm"
+        text = study.read_text(encoding="utf-8")
+        last, steps = {}, {}
+        for method in ("MUMPS", "PETSC"):
+            study.write_text(text.replace("STAT_NON_LINE(", f"STAT_NON_LINE(SOLVEUR=_F(METHODE='{method}'), "), encoding="utf-8")
+            base = self.folder / f"{method}.base"
+            run = self.run_lacon(study, "--base", base)
+            self.assert_all_ok(run, 1)
+            self.assertNotIn("SOLVER_7", run.stdout + run.stderr)
+            result = Result(base, "RESULT")
+            last[method] = result.field("DEPL", result.orders[-1])[1]
+            steps[method] = [line for line in run.stdout.splitlines() if "Converged at the instant" in line]
+        assert_same(self, last["MUMPS"], last["PETSC"])
+        self.assertEqual(steps["MUMPS"], steps["PETSC"])
+
+
+class WithoutPetsc(StudyTest):
+    @unittest.skipIf(PROGRAM.exists(), "built with PETSc")
+    def test_it_is_refused_by_name(self):
+        write_med(self.folder / "blocks.med", two_blocks(1.0, (4, 4, 2)))
+        run = self.run_lacon(pathlib.Path(__file__).with_name("precision.comm"), "--base", "b.base", "--unit", "20=blocks.med", NU="0.3",
+                             CONTRAST="1", SLENDER="0", SOLVER="petsc", PRE_COND="GAMG")
+        self.assertEqual(run.status, 2)
+        self.assertIn("SOLVER_6", run.stdout + run.stderr)
+        self.assertIn("libpetsc-real-dev", run.stdout + run.stderr)
+
+
+if __name__ == "__main__":
+    unittest.main()

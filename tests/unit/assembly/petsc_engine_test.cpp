@@ -1,0 +1,197 @@
+#include "lacon/assembly/petsc_engine.hpp"
+
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+#include <random>
+
+#include "dense.hpp"
+#include "lacon/assembly/saddle_point_solver.hpp"
+#include "lacon/catalog/messages.hpp"
+
+namespace lacon {
+namespace {
+
+using test::Chain;
+using test::dense;
+
+constexpr int n_nodes = 40, n_rows = 3;
+const std::string program = LACON_BINARY_DIR "/bin/lacon_petsc";
+
+/// Two chains of springs in the plane, the second one held by the rows of multipliers alone, where they are on.
+struct TwoBodies {
+  explicit TwoBodies(bool is_tied = true)
+      : chain(n_nodes, n_rows, free()), matrix(chain.numbering, chain.cliques, couplings()) {
+    matrix.set_zero();
+    for (int i = 0; i + 1 < n_nodes; ++i)
+      if (i + 1 != n_nodes / 2)
+        for (int axis = 0; axis < 2; ++axis)
+          matrix.add(std::vector<std::int64_t>{chain.numbering.of(i, axis), chain.numbering.of(i + 1, axis)},
+                     std::vector<double>{50, -50, 50});
+    for (int r = 0; r < n_rows; ++r) {
+      const std::int64_t row = chain.numbering.of_patch(r);
+      if (!is_tied || r == n_rows - 1) {
+        matrix.add_diagonal(row, 1e-4);  // off
+        continue;
+      }
+      matrix.add(std::vector<std::int64_t>{row, chain.numbering.of(5 + r, r), chain.numbering.of(25 + r, r)},
+                 std::vector<double>{0, 1e-3, 0, -1e-3, 0, 0});
+    }
+  }
+  static std::vector<std::uint8_t> free() {
+    std::vector<std::uint8_t> flags(2 * n_nodes, 1);
+    flags[0] = flags[1] = 0;
+    return flags;
+  }
+  static std::vector<Coupling> couplings() {
+    std::vector<Coupling> all;
+    for (int r = 0; r < n_rows; ++r)
+      for (const int node : {5 + r, 25 + r}) all.push_back({n_nodes + r, node});
+    return all;
+  }
+  PetscOptions options() const {
+    PetscOptions made{.tolerance = 1e-12, .program = program, .dimension = 2};
+    for (int i = 0; i < n_nodes; ++i) {
+      made.coordinates.insert(made.coordinates.end(), {0.0, 0.0, 0.0});  // springs resist no turn: all nodes are at one place
+      made.body.push_back(i < n_nodes / 2 ? 7 : 3);
+    }
+    return made;
+  }
+  Eigen::VectorXd expected(const Eigen::VectorXd& b) const { return dense(matrix).fullPivLu().solve(b); }
+  Chain chain;
+  SparseMatrix matrix;
+};
+
+std::span<double> span_of(Eigen::VectorXd& x) { return {x.data(), static_cast<std::size_t>(x.size())}; }
+
+class PetscEngineTest : public testing::Test {
+ protected:
+  void SetUp() override {
+    if (!std::filesystem::exists(program)) GTEST_SKIP() << "built without PETSc";
+  }
+};
+
+// The solution of a saddle-point system whose stiffness is singular without its constraints is that of dense LU, with each
+// preconditioner and algorithm.
+TEST_F(PetscEngineTest, SolvesSaddlePoints) {
+  const TwoBodies system;
+  for (const auto& [algorithm, preconditioner] :
+       {std::pair("FGMRES", "GAMG"), std::pair("GMRES", "BOOMER"), std::pair("CR", "GAMG"), std::pair("GCR", "SOR"),
+        std::pair("BCGS", "LDLT_INC")}) {
+    PetscOptions options = system.options();
+    options.algorithm = algorithm;
+    options.preconditioner = preconditioner;
+    PetscEngine engine(options);
+    engine.analyse(system.matrix);
+    const Factorisation made = engine.factorise(system.matrix);
+    EXPECT_TRUE(made.is_iterative) << made.stalled;
+    Eigen::VectorXd b = Eigen::VectorXd::Random(system.matrix.size()), x = b;
+    const Solution solution = engine.solve(span_of(x));
+    EXPECT_FALSE(solution.again) << algorithm << ", " << preconditioner << ": " << solution.again->stalled;
+    EXPECT_GT(solution.iterations, 0);
+    const Eigen::VectorXd expected = system.expected(b);
+    EXPECT_LE((x - expected).cwiseAbs().maxCoeff(), 1e-8 * expected.cwiseAbs().maxCoeff())
+        << algorithm << ", " << preconditioner;
+  }
+}
+
+// Another process with the same system gives the same bits, and so does a second solution in the same one.
+TEST_F(PetscEngineTest, GivesTheSameBitsInEveryRun) {
+  const TwoBodies system;
+  const Eigen::VectorXd b = Eigen::VectorXd::Random(system.matrix.size());
+  std::vector<Eigen::VectorXd> found;
+  for (int run = 0; run < 2; ++run) {
+    PetscEngine engine(system.options());
+    engine.analyse(system.matrix);
+    for (int solution = 0; solution < 2; ++solution) {
+      engine.factorise(system.matrix);
+      found.push_back(b);
+      engine.solve(span_of(found.back()));
+    }
+  }
+  for (const Eigen::VectorXd& x : found) EXPECT_EQ(x, found.front());
+}
+
+// A matrix that is not symmetric is solved as well.
+TEST_F(PetscEngineTest, SolvesUnsymmetricMatrices) {
+  const TwoBodies pattern;
+  SparseMatrix matrix(pattern.chain.numbering, pattern.chain.cliques, TwoBodies::couplings(), Symmetry::general);
+  std::mt19937 random(3);
+  test::fill_unsymmetric(matrix, pattern.chain, TwoBodies::couplings(), random);
+  PetscEngine engine(pattern.options());
+  engine.analyse(matrix);
+  engine.factorise(matrix);
+  Eigen::VectorXd b = Eigen::VectorXd::Random(matrix.size()), x = b;
+  EXPECT_FALSE(engine.solve(span_of(x)).again);
+  EXPECT_LE((dense(matrix) * x - b).cwiseAbs().maxCoeff(), 1e-9);
+}
+
+// A rigid motion that nothing resists is left to the factor, which names it; nothing is iterated.
+TEST_F(PetscEngineTest, LeavesFreeMotionsToAFactor) {
+  const TwoBodies system(false);
+  PetscEngine engine(system.options());
+  engine.analyse(system.matrix);
+  const Factorisation found = engine.factorise(system.matrix);
+  EXPECT_EQ(found.null_pivots.size(), 2);
+  EXPECT_NE(found.stalled.find("rigid motion"), std::string::npos) << found.stalled;
+}
+
+// Iterations that come to no end are made good by a factor, once: the next matrix is iterated on again.
+TEST_F(PetscEngineTest, FactorisesWhereIterationsStall) {
+  const TwoBodies system;
+  PetscOptions options = system.options();
+  options.iterations = 1;
+  SaddlePointSolver solver(std::make_unique<PetscEngine>(options));
+  const Eigen::VectorXd b = Eigen::VectorXd::Random(system.matrix.size());
+  for (int matrix = 0; matrix < 2; ++matrix) {
+    Eigen::VectorXd x = b;
+    const SolutionReport report = solver.solve(system.matrix, system.chain.numbering.first[n_nodes], span_of(x));
+    EXPECT_NE(report.factorisation.stalled.find("NMAX_ITER"), std::string::npos) << report.factorisation.stalled;
+    EXPECT_NE(report.factorisation.stalled.find("after 1 iterations"), std::string::npos) << report.factorisation.stalled;
+    EXPECT_EQ(report.factorisation.negative_pivots, 2);
+    EXPECT_LE((x - system.expected(b)).cwiseAbs().maxCoeff(), 1e-10 * x.cwiseAbs().maxCoeff());
+  }
+}
+
+/// The message that a call ends with; nothing where it does not.
+template <class Call>
+std::string error_of(const Call& call) {
+  try {
+    call();
+  } catch (const Error& error) {
+    return error.message().id + " " + error.message().text;
+  }
+  return {};
+}
+
+// Where PETSc is not there, or cannot be started, or ends, that is said.
+TEST(PetscEngine, SaysThatPetscIsNotThere) {
+  const TwoBodies system;
+  PetscOptions options = system.options();
+  options.program = "/nowhere/lacon_petsc";
+  EXPECT_EQ(error_of([&] { PetscEngine engine(options); }).substr(0, 8), "SOLVER_6");
+  options.program = "/bin/false";
+  PetscEngine ends(options);
+  const std::string said = error_of([&] { ends.analyse(system.matrix); });
+  EXPECT_NE(said.find("SOLVER_6"), std::string::npos) << said;
+  EXPECT_NE(said.find("exit status 1"), std::string::npos) << said;
+}
+
+TEST(PetscEngine, SaysThatItsProcessesHaveEnded) {
+  const TwoBodies system;
+  const std::filesystem::path script = std::filesystem::temp_directory_path() / "lacon_petsc_that_is_killed";
+  std::ofstream(script) << "#!/bin/sh\necho ready\nread line\nkill -9 $$\n";
+  std::filesystem::permissions(script, std::filesystem::perms::owner_all);
+  PetscOptions options = system.options();
+  options.program = script;
+  PetscEngine engine(options);
+  engine.analyse(system.matrix);
+  const std::string said = error_of([&] { engine.factorise(system.matrix); });
+  EXPECT_NE(said.find("SOLVER_8"), std::string::npos) << said;
+  EXPECT_NE(said.find("Killed"), std::string::npos) << said;
+  std::filesystem::remove(script);
+}
+
+}  // namespace
+}  // namespace lacon
