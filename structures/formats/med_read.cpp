@@ -267,7 +267,7 @@ void MeshReader::read_cells(const H5Group& step) {
 
 MeshReader::Families MeshReader::families(const char* kind) {
   Families families;
-  const std::string both = "FAS/" + name_, path = both + "/" + kind;
+  const std::string both = "ENS_MAA/" + name_ + "/FAS", path = "FAS/" + name_ + "/" + kind;  // before MED 2.2: of both kinds
   const bool mixed = version_ == 2 && !root_.is_group(path) && root_.is_group(both);
   if (!mixed && !root_.is_group(path)) return families;
   const H5Group all = root_.open(mixed ? both : path);

@@ -51,15 +51,16 @@ SQUARE = [[0, 0], [1, 0], [1, 1], [0, 1]]
 
 
 def write_med_2(path, minor, surplus=0):
-    """SQUARE as two TRIA3 and a SEG2 as MED 2 has it: no computation step, DIM instead of ESP, families of both kinds side by side, names of groups in
-    one text. @param surplus columns behind the nodes of the SEG2"""
+    """SQUARE as two TRIA3 and a SEG2 as MED 2 has it: no computation step, DIM instead of ESP, names of groups in one text, before 2.2 families of both
+    kinds side by side in the mesh's group. @param surplus columns behind the nodes of the SEG2"""
     with h5py.File(path, "w") as file:
         about = file.create_group("INFOS_GENERALES")
         for name, value in zip(("MAJ", "MIN", "REL"), (2, minor, 2)):
             about.attrs[name] = np.int32(value)
         mesh = file.create_group("ENS_MAA/OLD")
-        mesh.attrs["DIM"] = np.int32(2)
-        mesh.create_dataset("NOE/COO", data=np.array(SQUARE, float).T.ravel()).attrs["NBR"] = np.int32(4)
+        mesh.attrs.update(DIM=np.int32(2), TYP=np.int32(0), DES=np.bytes_("a square".ljust(200)))
+        places = mesh.create_dataset("NOE/COO", data=np.array(SQUARE, float).T.ravel())
+        places.attrs.update(NBR=np.int32(4), REP=np.int32(0), NOM=np.bytes_("x".ljust(16) + "y".ljust(16)), UNI=np.bytes_(" " * 32))
         mesh["NOE/FAM"] = np.array([0, 0, 3, 0], np.int32)
         mesh.create_dataset("MAI/TR3/NOD", data=np.array([[1, 2, 3], [1, 3, 4]], np.int32).T.ravel()).attrs["NBR"] = np.int32(2)
         mesh["MAI/TR3/FAM"] = np.array([-1, -1], np.int32)
@@ -67,11 +68,14 @@ def write_med_2(path, minor, surplus=0):
         mesh["MAI/SE2/FAM"] = np.array([-2], np.int32)
         for name, number, groups in (("FAMILLE_0", 0, []), ("FAMILLE_NOEUD_3", 3, ["TIP"]), ("FAMILLE_ELEMENT_1", -1, ["BODY"]),
                                      ("FAMILLE_ELEMENT_2", -2, ["BOTTOM", "BOTH"])):
-            family = file.create_group(f"FAS/OLD/{name}")
+            kind = "" if not number else "NOEUD/" if number > 0 else "ELEME/"
+            family = file.create_group(f"ENS_MAA/OLD/FAS/{name}" if minor < 2 else f"FAS/OLD/{kind}{name}")
             family.attrs["NUM"] = np.int32(number)
             if groups:
                 family.create_group("GRO").attrs["NBR"] = np.int32(len(groups))
-                family["GRO"].create_dataset("NOM", data=np.bytes_("".join(group.ljust(80) for group in groups)))
+                family["GRO"].create_dataset("NOM", data=np.frombuffer("".join(group.ljust(80) for group in groups).encode(), np.int8))
+        for path, count in (("NOE", 4), ("NOE/FAM", 4), ("MAI/TR3", 2), ("MAI/TR3/FAM", 2), ("MAI/SE2", 1), ("MAI/SE2/FAM", 1)):
+            mesh[path].attrs["NBR"] = np.int32(count)
 
 
 class LireMaillage(OperatorTest):
@@ -107,8 +111,13 @@ class LireMaillage(OperatorTest):
             self.assertIn(line, run.stdout)
 
     def test_files_of_version_2(self):
-        for minor, surplus in ((3, 0), (1, 1)):
+        """That of 2.3 is one for libmed's own reader of such files as well: read behind its conversion, it is the same mesh."""
+        for minor, surplus, converts in ((3, 0, False), (1, 1, False), (3, 0, True)):
             write_med_2(self.file, minor, surplus)
+            if converts:
+                made = self.folder / "made.med"
+                self.med_tool("medimport", str(self.file), str(made))
+                made.replace(self.file)
             run = self.read()
             self.assertEqual((run.status, self.ids(run)), (0, []), run.stderr)
             mesh = self.read_mesh("mesh_1")
