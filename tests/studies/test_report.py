@@ -130,6 +130,22 @@ class Content(StudyTest):
         self.assertEqual((done.returncode, list(self.folder.iterdir())), (2, []))
         self.assertIn("<F> <STUDY_2>", done.stderr)
 
+    def test_the_page_is_in_the_language_it_is_asked_in(self):
+        """Every text of the page's sources has its French, and a page made in French says so."""
+        sources = {path.name: path.read_text(encoding="utf-8") for path in (SOURCE / "commands/viewer/src").iterdir()}
+        french = set(re.findall(r'^  "((?:[^"\\]|\\.)*)": "', sources["words.js"], re.M))
+        asked = {text for name, source in sources.items() if name.endswith(".js") for text in re.findall(r'\bt\("((?:[^"\\]|\\.)*)"', source)}
+        body = re.sub(r"<(script|pre)\b.*?</\1>|<!--.*?-->", "", sources["page.html"].partition("<body>")[2], flags=re.S)
+        asked |= {words.strip() for words in re.findall(r">([^<>]+)<", body) if re.search(r"[a-z]", words)} | set(re.findall(r'(?:aria-label|title)="([^"]+)"', body))
+        self.assertEqual(asked - french, set())
+        base = study(2) / "study.base"
+        for language, proof in (("fr", "Le contact s'est établi"), ("en", "Contact has settled")):
+            done = self.run_tool("report", str(base), "--out", "page.html", LC_ALL=language)
+            self.assertEqual(done.returncode, 0, done.stderr)
+            told = Told(self.folder / "page.html").study
+            self.assertEqual(told["language"], language)
+            self.assertIn(proof, [line["what"] for lines in told["proofs"] for line in lines])
+
     def test_values_are_those_of_the_base_to_16_bits(self):
         for dimension in (2, 3):
             told, result = Told(study(dimension) / "study.html"), base_of(study(dimension))["RESULT"]

@@ -108,7 +108,7 @@ def messages():
     return _wording(in_french())[0]
 
 
-def part(name, **values):
+def part(name, /, **values):
     """What a text is made of that is no message by itself: a row of messages/parts.toml with its gaps filled."""
     return _wording(in_french())[1][name].format(**values)
 

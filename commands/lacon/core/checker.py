@@ -12,8 +12,9 @@ from .concepts import CO, Concept
 from .messages import message
 from .nearest import nearest
 
-_names = {"group_ma": "the name of a group of cells", "group_no": "the name of a group of nodes", "cell": "the name of a cell",
-          "node": "the name of a node", "scalar": "a number or a text", "text": "a text", "integer": "an integer", "real": "a number"}
+#: type of a value -> the part that names it
+_names = {"group_ma": "name_of_cells", "group_no": "name_of_nodes", "cell": "name_of_cell", "node": "name_of_node", "scalar": "number_or_text", "text": "a_text",
+          "integer": "an_integer", "real": "a_number"}
 
 
 def complete(command, row, given, where=""):
@@ -136,7 +137,7 @@ class _Check:
     def factor(self, path, row, value):
         items = [value] if isinstance(value, dict) else list(value) if isinstance(value, (list, tuple)) else None
         if items is None or not all(isinstance(item, dict) for item in items):
-            self.problem("KEYWORD_3", path, expected="_F(...), or a list of them", found=_show(value))
+            self.problem("KEYWORD_3", path, expected=catalog.part("f_or_list"), found=_show(value))
             return []
         if not self.cardinality(path, row, len(items)):
             return []
@@ -235,8 +236,9 @@ def _convert(kind, value):
 
 def _expected(kind):
     if kind == "concept":
-        return "a concept"
-    return " or ".join(_names.get(k, ("an " if k[0] in "aeiou" else "a ") + k.replace("_", " ")) for k in kind.split("|"))
+        return catalog.part("a_concept")
+    return catalog.part("or").join(catalog.part(_names[k]) if k in _names else catalog.part("an_object" if k[0] in "aeiou" else "an_object_of_kind", kind=k.replace("_", " "))
+                                   for k in kind.split("|"))
 
 
 def _show(value):

@@ -1,5 +1,7 @@
 """What a name that is not known was probably to be."""
 
+from . import catalog
+
 
 def nearest(name, known):
     """"; the nearest one is X", or nothing."""
@@ -9,4 +11,4 @@ def nearest(name, known):
         return ""
     upper = {str(k).upper(): str(k) for k in known}
     close = difflib.get_close_matches(name.upper(), upper, 1, 0.5)
-    return f"; the nearest one is {upper[close[0]]}" if close else ""
+    return catalog.part("nearest", name=upper[close[0]]) if close else ""

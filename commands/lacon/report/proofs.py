@@ -1,5 +1,6 @@
 """What a result holds to be trusted by: figures of the contact and of Newton's method at each instant, each with a verdict in plain words."""
 
+from ..core.catalog import part
 from ..core.late import numpy
 
 balanced = 1e-8  #: sums of forces and moments that vanish, over the forces
@@ -25,11 +26,10 @@ def of_instant(index, parameters, zones, journal, patches):
     found, expected = value("negative_pivots"), value("expected_negative_pivots")
     if found is not None and found >= 0:
         holds = found == expected
-        lines.append(_line(holds, "Stable equilibrium", f"{found:.0f} negative pivots, {expected:.0f} constraints",
-                           "as many as constraints: the bodies resist every motion that contact leaves them" if holds else
-                           "not as many as constraints: a body can move away or buckle, or the equilibrium is not the only one"))
+        lines.append(_line(holds, part("stable_equilibrium"), part("pivots_constraints", found=f"{found:.0f}", expected=f"{expected:.0f}"),
+                           part("bodies_resist" if holds else "a_body_moves")))
     for number, (slave, master, _, _) in enumerate(zones):
-        lines += of_zone(f"{slave} on {master}", lambda name, number=number: value(f"zone_{number + 1}_{name}"),
+        lines += of_zone(part("slave_on_master", slave=slave, master=master), lambda name, number=number: value(f"zone_{number + 1}_{name}"),
                          None if patches is None else (patches, patches.zone == number))
     return lines
 
@@ -42,12 +42,11 @@ def newton(iterations):
     for key, keyword in (("rela", "RESI_GLOB_RELA"), ("maxi", "RESI_GLOB_MAXI")):
         if limits.get(key) is not None:
             holds = last[key] <= limits[key]
-            found.append(_line(bool(holds or last.get("converged")), f"Equilibrium, {keyword}", f"{_figure(last[key])}, asked for {_figure(limits[key])}",
-                               f"reached in {len(lines)} iterations" if holds or last.get("converged") else "not reached"))
+            found.append(_line(bool(holds or last.get("converged")), part("equilibrium_by", keyword=keyword), part("asked_for", found=_figure(last[key]), limit=_figure(limits[key])),
+                               part("reached_in", count=len(lines)) if holds or last.get("converged") else part("not_reached")))
     if "changes" in last:
         holds = last["changes"] == 0
-        found.append(_line(holds, "Contact has settled", f"{last['changes']} patches changed in the last iteration",
-                           "no patch opens or closes any more" if holds else "the computation ended while patches were opening or closing"))
+        found.append(_line(holds, part("contact_settled"), part("patches_changed", count=last["changes"]), part("nothing_changes" if holds else "still_changing")))
     return found
 
 
@@ -60,7 +59,7 @@ def of_zone(name, value, patches):
     force = max(numpy.linalg.norm(slave), numpy.linalg.norm(master))
     lines = []
     if value("active") == 0:
-        return [_line(True, f"{name}: no contact", f"{value('open'):.0f} patches open", "the skins do not touch at this instant")]
+        return [_line(True, part("no_contact", zone=name), part("patches_open", count=f"{value('open'):.0f}"), part("skins_apart"))]
     pressure, size, reach = force, 1.0, 1.0
     if patches is not None:
         of, mask = patches
@@ -70,23 +69,22 @@ def of_zone(name, value, patches):
         force = max(force, float((abs(of.pressure) * of.area)[mask & (of.status == 1)].sum()))
     sums = float(numpy.linalg.norm(slave + master))
     holds = sums <= balanced * force
-    lines.append(_line(bool(holds), f"{name}: forces balance", f"sum {_figure(sums)} of {_figure(force)}",
-                       "action equals reaction" if holds else "action and reaction differ: forces are lost in the contact"))
+    lines.append(_line(bool(holds), part("forces_balance", zone=name), part("sum_of", found=_figure(sums), whole=_figure(force)),
+                       part("action_is_reaction" if holds else "forces_lost")))
     about = float(numpy.linalg.norm(moment))
     holds = about <= balanced * force * max(reach, 1e-300)
-    lines.append(_line(bool(holds), f"{name}: moments balance", f"sum {_figure(about)} of {_figure(force * reach)}",
-                       "the contact makes no moment out of nothing" if holds else "the contact makes a moment of its own"))
+    lines.append(_line(bool(holds), part("moments_balance", zone=name), part("sum_of", found=_figure(about), whole=_figure(force * reach)),
+                       part("no_moment" if holds else "own_moment")))
     work = value("largest_lambda_gap")
     holds = work <= exclusive * max(pressure * size, 1e-300)
-    lines.append(_line(bool(holds), f"{name}: pressure or gap", f"largest |pressure × gap| {_figure(work)} of {_figure(pressure * size)}",
-                       "where there is pressure there is no gap" if holds else "some patch has pressure and a gap, or overlap, at once"))
+    lines.append(_line(bool(holds), part("pressure_or_gap", zone=name), part("largest_product", found=_figure(work), whole=_figure(pressure * size)),
+                       part("never_both" if holds else "both_at_once")))
     if patches is not None:
         least = float(of.pressure[mask & (of.status == 1)].min())
         holds = least >= -pulling * pressure
-        lines.append(_line(bool(holds), f"{name}: contact only presses", f"least pressure {_figure(least)}",
-                           "no patch in contact pulls" if holds else "a patch in contact pulls: the load is between two instants, or the iteration ended early"))
+        lines.append(_line(bool(holds), part("only_presses", zone=name), part("least_pressure", found=_figure(least)), part("no_patch_pulls" if holds else "a_patch_pulls")))
     covered, whole, lost = value("covered"), value("whole"), value("unpaired")
     if whole:
-        lines.append(_line(True if lost == 0 else None, f"{name}: slaves see masters", f"{100 * covered / whole:.4g} % of the slave skin, {lost:.0f} patches without master",
-                           "every patch has a master" if lost == 0 else "patches without master carry nothing: right where the slave skin reaches beyond the master"))
+        lines.append(_line(True if lost == 0 else None, part("slaves_see_masters", zone=name), part("skin_covered", percent=f"{100 * covered / whole:.4g}", count=f"{lost:.0f}"),
+                           part("every_patch_has_one" if lost == 0 else "patches_without_one")))
     return lines

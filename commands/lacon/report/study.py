@@ -4,6 +4,8 @@ import time
 
 from .. import version
 from ..base import contents
+from ..core import catalog
+from ..core.catalog import part
 from ..core.late import numpy
 from . import proofs
 from .packing import Packing
@@ -15,7 +17,7 @@ _deflated = 0.8  #: of a number of 16 bits, with what base64 adds
 _most_courses = 400  #: instants whose contact is followed
 _most_components = 12  #: of a field: internal variables may be many
 _shown = ("DEPL", "SIEF_NOEU", "SIEQ_NOEU", "SIEF_ELNO", "SIEF_ELGA")  #: fields that come first
-_places = {"NOEU": "", "ELEM": ", by cell", "ELGA": ", mean of each cell's points", "ELNO": ", mean at the nodes"}
+_places = {"ELEM": "by_cell", "ELGA": "mean_of_points", "ELNO": "mean_at_nodes"}  #: parts that say how a field is shown
 _contact = ("pressure", "gap", "status", "coverage")
 
 
@@ -45,7 +47,7 @@ class _Page:
         if contact:
             fields.insert(0, contact)
         told = {
-            "title": f"{self.result.label} of {self.base.folder.name}", "label": self.result.label, "base": self.base.folder.name,
+            "title": part("result_of_base", label=self.result.label, base=self.base.folder.name), "language": "fr" if catalog.in_french() else "en", "label": self.result.label, "base": self.base.folder.name,
             "subtitle": self._subtitle(), "dimension": self.mesh.dimension,
             "size": float(numpy.linalg.norm(numpy.ptp(points, axis=0))), "points": add(points - middle, "f4"),
             "nodes": add(self.drawing.nodes + 1, "i4"), "facet_cells": add(numpy.where(skins >= 0, skins, self.drawing.facet_cells) + 1, "i4"),
@@ -67,7 +69,7 @@ class _Page:
             return None
         components = [c for c in field.components if c != "LAGS_C"][:_most_components]
         if len(components) < len([c for c in field.components if c != "LAGS_C"]):
-            self.notes.append(f"Of {name} the first {_most_components} of {len(field.components)} components are here.")
+            self.notes.append(part("first_components", field=name, count=_most_components, all=len(field.components)))
         return field.location, components
 
     def _instants(self):
@@ -78,7 +80,7 @@ class _Page:
         most = min(_largest_page / max(1.0, 2 * _deflated * numbers), _read / max(1.0, self._bytes_of_an_instant()))
         chosen = min(count, max(1, int(most)))
         if chosen < count:
-            self.notes.append(f"{chosen} of {count} instants are drawn, so that the page stays small; curves and tables have all of them.")
+            self.notes.append(part("instants_drawn", count=chosen, all=count))
         return numpy.unique(numpy.rint(numpy.linspace(count - 1, 0, chosen)).astype(int)).tolist()
 
     def _bytes_of_an_instant(self):
@@ -103,7 +105,7 @@ class _Page:
             values = numpy.column_stack([field[c] if c in field.components else numpy.full(len(field.values), numpy.nan) for c in components])
             stored, ranges = self.packing.add_quantised(self._placed(field, values))
             instants[index] = {"values": stored, "ranges": ranges}
-        return {"name": name, "title": name + _places[location], "kind": "node" if on_nodes else "facet", "components": components, "instants": instants}
+        return {"name": name, "title": name + (part(_places[location]) if location in _places else ""), "kind": "node" if on_nodes else "facet", "components": components, "instants": instants}
 
     def _placed(self, field, values):
         """The rows of a field at the drawn nodes or facets, nan elsewhere."""
@@ -155,7 +157,7 @@ class _Page:
                                 proofs.of_instant(index, self.result.parameters, self.zones, _newton_of(journal, self.result.instants[index]), patches))
         if not instants:
             return None, courses
-        return {"name": "CONT_ELEM", "title": "Contact", "kind": "patch", "exact": True, "components": list(_contact), "instants": instants}, courses
+        return {"name": "CONT_ELEM", "title": part("contact"), "kind": "patch", "exact": True, "components": list(_contact), "instants": instants}, courses
 
     def _figures(self, index, number, patches):
         """Of a zone at an instant."""
@@ -184,33 +186,33 @@ class _Page:
             rows += [{"attempt": number, **{key: _finite(line[key]) for key in ("rela", "maxi", "geometry", "changes", "active") if key in line}}
                      for line in attempt.iterations]
         if len(rows) > 5000:
-            self.notes.append(f"The curves of Newton's method have the last 5000 of {len(rows)} iterations.")
+            self.notes.append(part("last_iterations", count=5000, all=len(rows)))
         return {"limits": journal.limits, "patches": journal.patches, "rows": rows[-5000:]}
 
     def _subtitle(self):
         nodes, cells = len(self.mesh.points), sum(len(numbers) for numbers, _ in self.mesh.cells_of_dimension(self.mesh.dimension).values())
-        words = [f"{nodes} nodes, {cells} cells in {len(self.drawing.parts)} bodies"]
+        words = [part("nodes_cells_bodies", nodes=nodes, cells=cells, bodies=len(self.drawing.parts))]
         if self.zones:
-            words.append(f"{len(self.mesh.patches)} patches in {len(self.zones)} contact zone{'s' * (len(self.zones) > 1)}")
-        words.append(f"{len(self.result.orders)} instants to {self.result.instants[-1]:g}")
+            words.append(part("patches_in_zones" if len(self.zones) > 1 else "patches_in_zone", patches=len(self.mesh.patches), zones=len(self.zones)))
+        words.append(part("instants_to", count=len(self.result.orders), last=f"{self.result.instants[-1]:g}"))
         if not self.result.complete:
-            words.append("the computation is under way" if self.base.running else "the computation has not come to its end")
+            words.append(part("under_way" if self.base.running else "not_at_its_end"))
         return "; ".join(words)
 
     def _run(self, started):
         journal = self.result.journal
         machine_of = {} if journal is None else journal.machine
-        study = [("Base", str(self.base.folder)), ("Result", self.result.label), ("Mesh", self.mesh.label)]
-        machine = [(name, str(machine_of[key])) for name, key in (("Lacon", "lacon"), ("Processor", "processor"), ("Threads", "threads"),
-                                                                     ("Dense algebra", "blas")) if machine_of.get(key)]
+        study = [(part("run_base"), str(self.base.folder)), (part("run_result"), self.result.label), (part("run_mesh"), self.mesh.label)]
+        machine = [(name, str(machine_of[key])) for name, key in (("Lacon", "lacon"), (part("run_processor"), "processor"), (part("run_threads"), "threads"),
+                                                                     (part("run_blas"), "blas")) if machine_of.get(key)]
         totals = []
         if journal is not None:
             rows = [line for _, line in journal.iterations()]
-            totals += [("in all", f"{journal.now:.4g} s"), ("iterations", f"{len(rows)} in {len(journal.attempts)} instants tried"),
-                       ("factorisations", str(sum(bool(line.get("factorised")) for line in rows)))]
-            totals += [("most memory", f"{journal.memory / 2**20:.0f} MiB")] if journal.memory else []
-        page = [("Lacon", version), ("made", time.strftime("%Y-%m-%d %H:%M")), ("instants drawn", f"{len(self.drawn)} of {len(self.result.orders)}"),
-                ("fields", "16 bits a number, contact 32"), ("made in", f"{time.perf_counter() - started:.2f} s")]
+            totals += [(part("run_in_all"), f"{journal.now:.4g} s"), (part("run_iterations"), part("iterations_in", count=len(rows), tried=len(journal.attempts))),
+                       (part("run_factorisations"), str(sum(bool(line.get("factorised")) for line in rows)))]
+            totals += [(part("run_memory"), f"{journal.memory / 2**20:.0f} MiB")] if journal.memory else []
+        page = [("Lacon", version), (part("run_made"), time.strftime("%Y-%m-%d %H:%M")), (part("run_drawn"), part("some_of", count=len(self.drawn), all=len(self.result.orders))),
+                (part("run_fields"), part("bits")), (part("run_made_in"), f"{time.perf_counter() - started:.2f} s")]
         return {"study": study, "machine": machine, "totals": totals,
                 "phases": {} if journal is None else journal.phases, "page": page}
 

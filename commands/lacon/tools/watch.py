@@ -14,6 +14,7 @@ from ..base.journal import name as journal_name
 from ..base.journal import read_journal
 from ..core import outcome
 from ..core.concepts import type_of
+from ..core.catalog import part
 from ..core.messages import fail
 from .chart import chart, columns_of
 
@@ -80,12 +81,12 @@ def chosen(base):
 
 def frame(base, running, width, height):
     """What is shown now, lines of text that fit into the window."""
-    state = f"running since {running['since'].partition(' ')[2]} (process {running['process']})" if running else "not running"
+    state = part("running_since", time=running["since"].partition(" ")[2], process=running["process"]) if running else part("not_running")
     computation = chosen(base)
     if computation is None:
         if not running:
             fail("WATCH_1", "lacon watch", folder=base.folder)
-        return [f"{base.folder.name}: {state}", "", "no computation has come to an iteration yet"]
+        return [f"{base.folder.name}: {state}", "", part("no_iteration_yet")]
     identifier, label, where = computation
     journal = read_journal(base, identifier)
     lines = [f"{base.folder.name}: {label or identifier}{', ' + where if where else ''}; {state}", progress(journal, running), ""]
@@ -95,21 +96,21 @@ def frame(base, running, width, height):
     if journal.patches:
         lines += statuses(journal, shown, width, rows)
     first = f" {shown[0][0].instant:.6g}" if shown else ""
-    return [line[:width] for line in lines] + ["".ljust(11) + f"{len(shown)} iterations from the instant{first} on; dots upright: another instant"[:width - 11]]
+    return [line[:width] for line in lines] + ["".ljust(11) + part("iterations_shown", count=len(shown), first=first)[:width - 11]]
 
 
 def progress(journal, running):
     """"INST 0.4  iteration 3  35 % of the instants  1 min 20 s, about 2 min 30 s left\""""
     if not journal.attempts:
-        return "the first instant has begun" if not journal.ended else "no instant was tried"
+        return part("first_has_begun" if not journal.ended else "no_instant_tried")
     attempt, reached = journal.attempts[-1], journal.share(journal.reached())
-    words = [f"INST {attempt.instant:.6g}", f"iteration {len(attempt.iterations)}", f"{math.floor(100 * reached)} % of the instants"]
+    words = [f"INST {attempt.instant:.6g}", part("iteration_number", number=len(attempt.iterations)), part("share_of_instants", percent=math.floor(100 * reached))]
     if journal.ended:
-        return "  ".join([*words, in_words(journal.now), "complete" if journal.completed else "ended before the last instant"])
+        return "  ".join([*words, in_words(journal.now), part("complete" if journal.completed else "ended_before_last")])
     gone = time.time() - journal.since if running else journal.now
     left = journal.seconds_left()
-    words.append(in_words(gone) + (f", about {in_words(left)} left" if left is not None and running else ""))
-    return "  ".join(words + ([] if running else ["ended on the way"]))
+    words.append(in_words(gone) + (part("progress_left", time=in_words(left)) if left is not None and running else ""))
+    return "  ".join(words + ([] if running else [part("ended_on_the_way")]))
 
 
 def in_words(seconds):
@@ -139,8 +140,8 @@ def residuals(journal, shown, width, rows):
     limit = journal.limits.get(kind)
     known = [v for v in [*values, limit or 0.0] if math.isfinite(v) and v > 0.0] or [1.0]
     lower, upper = (10.0 ** edge(math.log10(pick(known))) for edge, pick in ((math.floor, min), (math.ceil, max)))
-    last = f", now {values[-1]:.2e}" if values else ""
-    title = f"RESI_GLOB_{kind.upper()}{last}{f', asked for {limit:.0e} (dashed)' if limit else ''}"
+    last = part("now_value", value=f"{values[-1]:.2e}") if values else ""
+    title = f"RESI_GLOB_{kind.upper()}{last}" + (part("asked_dashed", limit=f"{limit:.0e}") if limit else "")
     drawn, marks = curves(shown, width, kind)
     return [" " * 11 + title, *chart(drawn, width, rows, lower, max(upper, 10.0 * lower), log=True, level=limit, marks=marks)]
 
@@ -148,7 +149,7 @@ def residuals(journal, shown, width, rows):
 def statuses(journal, shown, width, rows):
     """How many patches change between contact and no contact."""
     values = [line["changes"] for _, line in shown]
-    active = f", {shown[-1][1]['active']} of {journal.patches} patches are in contact" if shown else ""
-    title = f"patches that change{f', now {values[-1]}' if values else ''}{active}"
+    active = part("patches_in_contact", count=shown[-1][1]["active"], all=journal.patches) if shown else ""
+    title = part("patches_that_change") + (part("now_value", value=values[-1]) if values else "") + active
     drawn, marks = curves(shown, width, "changes")
     return [" " * 11 + title, *chart(drawn, width, rows, 0, max([*values, 1]), marks=marks)]

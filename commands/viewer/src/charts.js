@@ -1,4 +1,5 @@
 // Curves as SVG: scales, axes, legend, a reading under the pointer. They print as they are and take the page's colours.
+import {t} from "./words.js";
 
 const width = 560, height = 270, left = 68, right = 14, top = 12, bottom = 44;
 
@@ -16,9 +17,9 @@ export const number = (x, digits = 4) => {
   return size >= 1e5 || size < 1e-3 ? x.toExponential(digits - 1).replace(/\.?0+e/, "e").replace("e+", "e") : String(Number(x.toPrecision(digits)));
 };
 
-/** About n round numbers from low to high. */
-export function ticks(low, high, n = 5) {
-  const raw = (high - low) / n || 1, power = 10 ** Math.floor(Math.log10(raw));
+/** About n round numbers from low to high, no nearer than `least`. */
+export function ticks(low, high, n = 5, least = 0) {
+  const raw = Math.max((high - low) / n || 1, least), power = 10 ** Math.floor(Math.log10(raw));
   const step = power * [1, 2, 5, 10].find((m) => m * power >= raw * 0.999);
   const found = [];
   for (let i = Math.ceil(low / step - 1e-9); i * step <= high + 1e-9 * step; ++i) found.push(i * step);
@@ -33,7 +34,9 @@ function decades(low, high) {
   return found;
 }
 
-function scaleOf(values, log, whole) {
+const narrow = 2e-3; // a range over its values: below it their four digits are all the same
+
+function scaleOf(values, log, whole, least = 0) {
   const known = values.filter((v) => Number.isFinite(v) && (!log || v > 0));
   let low = Math.min(...known), high = Math.max(...known);
   if (!known.length) [low, high] = log ? [1e-8, 1] : [0, 1];
@@ -44,11 +47,13 @@ function scaleOf(values, log, whole) {
     return {low, high, marks, place: (v) => (Math.log(v) - Math.log(low)) / (Math.log(high) - Math.log(low))};
   }
   if (!whole) {
+    const size = Math.max(Math.abs(low), Math.abs(high));
+    if (high - low < narrow * size) [low, high] = [low - 0.1 * size, high + 0.1 * size];
     if (low > 0 && low < 0.5 * high) low = 0;
     const room = (high - low || Math.abs(high) || 1) * 0.05;
     [low, high] = [low === 0 ? 0 : low - room, high + room];
   } else if (low === high) [low, high] = [low - 0.5, high + 0.5];
-  return {low, high, marks: ticks(low, high), place: (v) => (v - low) / (high - low)};
+  return {low, high, marks: ticks(low, high, 5, least), place: (v) => (v - low) / (high - low)};
 }
 
 /**
@@ -62,12 +67,12 @@ export function chart({title, x, y, series, log = false, levels = [], dividers =
   const places = drawn.flatMap(({points}) => points.map(([p]) => p));
   const bars = drawn.find((one) => one.bars)?.points.length;
   const room = bars ? (0.5 * (Math.max(...places) - Math.min(...places))) / Math.max(1, bars - 1) : 0; // a bar stands about its place
-  const across = scaleOf([...places, Math.min(...places) - room, Math.max(...places) + room], false, true);
+  const across = scaleOf([...places, Math.min(...places) - room, Math.max(...places) + room], false, true, places.every(Number.isInteger) ? 1 : 0);
   const up = scaleOf([...drawn.flatMap(({points}) => points.map(([, q]) => q)), ...levels.map(({value}) => value)], log, false);
   const px = (v) => left + across.place(v) * (width - left - right);
   const py = (v) => height - bottom - Math.min(Math.max(up.place(v), 0), 1) * (height - top - bottom);
   const picture = svg("svg", {viewBox: `0 0 ${width} ${height}`, role: "img", class: "chart"});
-  const spoken = drawn.map(({name, points}) => `${name}: ${points.length} values, the last one ${number(points.at(-1)[1])}`).join("; ");
+  const spoken = drawn.map(({name, points}) => t("{name}: {count} values, the last one {last}", {name, count: points.length, last: number(points.at(-1)[1])})).join("; ");
   picture.append(svg("title", {}, `${title}. ${spoken}`));
   for (const mark of up.marks) {
     const h = py(mark);

@@ -4,6 +4,7 @@ import {at as colourAt, css, diverging, maps, series as colours, statuses} from 
 import {quantities, study, values} from "./data.js";
 import {element, showCurves, showFigures, showProofs, showRun, showZones} from "./panels.js";
 import {Scene} from "./scene.js";
+import {t, translatePage} from "./words.js";
 
 const $ = (id) => document.getElementById(id);
 const inputs = ["field", "component", "map", "range", "low", "high", "magnify", "opacity", "edges", "zone", "opening", "instant"];
@@ -70,7 +71,7 @@ const options = (select, rows) => select.replaceChildren(...rows.map(([value, te
 function fillControls() {
   options(control.field, study.fields.map(({name, title}) => [name, title]));
   options(control.map, [...Object.keys(maps)].map((name) => [name, name]));
-  options(control.zone, study.zones.map(({slave, master}, z) => [z, `${z + 1}: ${slave} on ${master}`]));
+  options(control.zone, study.zones.map(({slave, master}, z) => [z, `${z + 1}: ${t("{slave} on {master}", {slave, master})}`]));
   $("book").hidden = !study.zones.length;
   control.instant.max = drawn.length - 1;
   control.instant.value = drawn.length - 1;
@@ -153,8 +154,8 @@ async function draw() {
   scene.deform(vector, Number(control.magnify.value));
   shown = {kind: field()?.kind, values: own, vector, limits, map};
   showScale(own);
-  $("instant-value").textContent = `instant ${number(study.instants[instant], 9)}  (${Number(control.instant.value) + 1} of ${drawn.length})`;
-  control.instant.setAttribute("aria-valuetext", `instant ${number(study.instants[instant], 9)}`);
+  $("instant-value").textContent = t("instant {instant}  ({number} of {count})", {instant: number(study.instants[instant], 9), number: Number(control.instant.value) + 1, count: drawn.length});
+  control.instant.setAttribute("aria-valuetext", t("instant {instant}", {instant: number(study.instants[instant], 9)}));
   showPicked();
   scene.render();
   document.body.dataset.drawn = String(mine);
@@ -172,14 +173,14 @@ async function drawAll() {
 }
 
 function showScale(own) {
-  const name = field() ? `${field().title}, ${quantity().label}` : "";
+  const name = field() ? `${field().title}, ${t(quantity().label)}` : "";
   if (!own) {
-    $("scale").replaceChildren(element("b", {textContent: name ? `${name}: not kept at this instant` : "no field"}));
+    $("scale").replaceChildren(element("b", {textContent: name ? t("{field}: not kept at this instant", {field: name}) : t("no field")}));
     return;
   }
   const {limits, map} = shown;
   if (map === "status") {
-    const keys = statuses.map(({name: word, colour}) => element("span", {}, element("i", {style: `background:${css(colour)}`}), word));
+    const keys = statuses.map(({name: word, colour}) => element("span", {}, element("i", {style: `background:${css(colour)}`}), t(word)));
     $("scale").replaceChildren(element("b", {textContent: name}), element("div", {className: "keys"}, ...keys));
     return;
   }
@@ -212,10 +213,10 @@ async function alongSkins() {
     }
     const zone = study.zones[surface.meta.zone];
     for (const name of ["pressure", "gap"])
-      curves[name].push({name: `${zone.slave} on ${zone.master}`, colour: colours[surface.meta.zone % colours.length], points: steps[name]});
+      curves[name].push({name: t("{slave} on {master}", zone), colour: colours[surface.meta.zone % colours.length], points: steps[name]});
   }
-  return [["pressure", "Contact pressure along the slave skins"], ["gap", "Gap along the slave skins"]].map(([name, title]) =>
-    chart({title: `${title}, instant ${number(study.instants[now()], 9)}`, x: "length along the skin, from its end", y: name, series: curves[name]}));
+  return [["pressure", t("Contact pressure along the slave skins")], ["gap", t("Gap along the slave skins")]].map(([name, title]) =>
+    chart({title: `${title}, ${t("instant {instant}", {instant: number(study.instants[now()], 9)})}`, x: t("length along the skin, from its end"), y: t(name), series: curves[name]}));
 }
 
 /** The segments of a skin one behind the other. */
@@ -255,13 +256,13 @@ async function showPicked() {
   }
   const {facet, node, zone, kind, name} = picked;
   const patch = scene.facetPatch[facet];
-  const pairs = [["on", name], ["cell", `M${scene.facetCell[facet]}`], ["nearest node", `N${scene.nodes[node]}`]];
+  const pairs = [[t("on"), name], [t("cell"), `M${scene.facetCell[facet]}`], [t("nearest node"), `N${scene.nodes[node]}`]];
   const own = {node, facet, patch}[shown.kind];
-  if (shown.values && own >= 0) pairs.push([`${quantity().label} (${field().name})`, number(shown.values[own], 6)]);
-  if (shown.vector) pairs.push(["displacement", shown.vector.map((v) => number(v[node])).join(", ")]);
+  if (shown.values && own >= 0) pairs.push([`${t(quantity().label)} (${field().name})`, number(shown.values[own], 6)]);
+  if (shown.vector) pairs.push([t("displacement"), shown.vector.map((v) => number(v[node])).join(", ")]);
   if (kind !== "slave" || patch < 0) {
     scene.mark([{kind: "patch", wanted: {facets: new Set([facet])}}]);
-    showFigures(`Cell M${scene.facetCell[facet]}`, pairs);
+    showFigures(t("Cell {name}", {name: `M${scene.facetCell[facet]}`}), pairs);
     return;
   }
   const contact = study.fields.find(({kind: of}) => of === "patch");
@@ -269,8 +270,8 @@ async function showPicked() {
   if (all) {
     const value = (what) => all[contact.components.indexOf(what)][patch];
     const state = statuses.find((s) => s.value === value("status"));
-    pairs.unshift(["status", state?.name ?? "–"], ["pressure", number(value("pressure"), 6)], ["gap", number(value("gap"), 4)],
-      ["covered", `${(100 * value("coverage")).toFixed(1)} %`], [study.dimension === 3 ? "area" : "length", number(study.patch_areas[patch], 5)]);
+    pairs.unshift([t("status"), state ? t(state.name) : "–"], [t("pressure"), number(value("pressure"), 6)], [t("gap"), number(value("gap"), 4)],
+      [t("covered"), `${(100 * value("coverage")).toFixed(1)} %`], [t(study.dimension === 3 ? "area" : "length"), number(study.patch_areas[patch], 5)]);
   }
   const masters = scene.mastersOf(patch, zone);
   const facets = new Set();
@@ -278,7 +279,7 @@ async function showPicked() {
     if (p === patch) facets.add(f);
   });
   scene.mark([{kind: "masters", wanted: {facets: new Set(masters.map((m) => m.facet)), onSkins: true}}, {kind: "patch", wanted: {facets, onSkins: true}}]);
-  showFigures(`Patch ${patch + 1}, zone ${zone + 1}`, pairs, masters);
+  showFigures(t("Patch {patch}, zone {zone}", {patch: patch + 1, zone: zone + 1}), pairs, masters);
   scene.render();
 }
 
@@ -300,7 +301,7 @@ function play() {
   clearInterval(playing);
   playing = stop ? null : setInterval(() => step(1, true), 600);
   $("play").textContent = stop ? "▶" : "❚❚";
-  $("play").ariaLabel = stop ? "Play" : "Pause";
+  $("play").ariaLabel = stop ? t("Play") : t("Pause");
 }
 
 function step(by, around = false) {
@@ -378,7 +379,7 @@ function startControls() {
   const views = study.dimension === 2 ? [["fit", () => scene.fit()]] : [["x", () => scene.lookAlong("x")], ["y", () => scene.lookAlong("y")], ["z", () => scene.lookAlong("z")],
     ["3D", () => scene.lookAlong("3D")], ["fit", () => scene.fit()]];
   $("views").replaceChildren(...views.map(([name, act]) => {
-    const button = element("button", {type: "button", textContent: name, title: name === "fit" ? "Show all (F)" : `Look from ${name}`});
+    const button = element("button", {type: "button", textContent: t(name), title: name === "fit" ? t("Show all (F)") : t("Look from {where}", {where: name})});
     button.addEventListener("click", act);
     return button;
   }));
@@ -401,16 +402,17 @@ async function restart() {
 }
 
 function failed(reason) {
-  const told = element("p", {id: "failure", role: "alert", textContent: `The picture cannot be drawn: ${reason}. A browser with WebGL 2 is needed; tables and curves below are complete.`});
+  const told = element("p", {id: "failure", role: "alert", textContent: t("The picture cannot be drawn: {reason}. A browser with WebGL 2 is needed; tables and curves below are complete.", {reason})});
   document.querySelector("main").before(told);
   $("look").hidden = true;
 }
 
 async function start() {
+  translatePage();
   document.title = `${study.label}: ${study.base}`;
   $("title").textContent = `${study.title}`;
   $("subtitle").textContent = study.subtitle;
-  $("hint").textContent = study.dimension === 2 ? "drag moves, wheel zooms, click picks" : "drag turns, Shift-drag moves, wheel zooms, click picks";
+  $("hint").textContent = study.dimension === 2 ? t("drag moves, wheel zooms, click picks") : t("drag turns, Shift-drag moves, wheel zooms, click picks");
   fillControls();
   startTheme();
   showFigures();
