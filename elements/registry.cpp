@@ -1,6 +1,7 @@
 #include "lacon/elements/registry.hpp"
 
 #include <dlfcn.h>
+#include <sys/auxv.h>
 
 #include <algorithm>
 #include <cstdlib>
@@ -60,11 +61,19 @@ std::vector<fs::path> path_from_environment() {
   return folders;
 }
 
+/// This program's file: as the system knows it, or, where /proc is not mounted, as it was started.
+fs::path executable() {
+  std::error_code error;
+  const fs::path known = fs::read_symlink("/proc/self/exe", error);
+  if (!error) return known;
+  const auto* const started = reinterpret_cast<const char*>(getauxval(AT_EXECFN));
+  return started ? fs::canonical(started, error) : fs::path();
+}
+
 /// The folder of the built-in plug-ins, installed or in the build tree; empty where there is none.
 fs::path folder_beside_executable() {
   std::error_code error;
-  const fs::path executable = fs::read_symlink("/proc/self/exe", error);
-  const fs::path folder = executable.parent_path().parent_path() / "lib" / "lacon" / "plugins";
+  const fs::path folder = executable().parent_path().parent_path() / "lib" / "lacon" / "plugins";
   return fs::is_directory(folder, error) ? folder : fs::path();
 }
 

@@ -89,6 +89,15 @@ class Program(TwoSquares):
             self.assertAlmostEqual(sum(float(value) for what, value, unit in said if what == name and unit), run.seconds[name], delta=1e-4)
         self.assertEqual(sum(float(value) for what, value, unit in said if what == "solutions" and not unit), run.counts["solutions"])
 
+    @unittest.skipUnless(os.geteuid() == 0 and subprocess.run(["unshare", "-m", "true"], check=False).returncode == 0, "needs a mount namespace")
+    def test_without_proc_the_plugins_beside_the_program_are_found(self):
+        """As in a chroot where nobody has mounted it."""
+        order = self.solve().order
+        hidden = 'mount -t tmpfs none /proc && exec "$0" "$@"'
+        for program in (BIN / "stat_non_line", os.path.relpath(BIN / "stat_non_line", self.folder)):
+            run = subprocess.run(["unshare", "-m", "sh", "-c", hidden, program, order], cwd=self.folder, capture_output=True, text=True, timeout=60, check=False)
+            self.assertEqual(run.returncode, 0, run.stderr)
+
 
 if __name__ == "__main__":
     unittest.main()
