@@ -125,6 +125,8 @@ struct PetscEngine::State {
   }
 };
 
+bool PetscEngine::is_there() { return std::filesystem::exists(program_beside_this()); }
+
 PetscEngine::PetscEngine(const PetscOptions& options) : state_(std::make_unique<State>()) {
   state_->options = options;
   std::string& program = state_->options.program;

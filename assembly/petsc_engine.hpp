@@ -25,6 +25,8 @@ struct PetscOptions {
 
 class PetscEngine : public Engine {
  public:
+  /// Whether the program that this engine starts lies beside the one that runs.
+  static bool is_there();
   /// Throws SOLVER_6 where PETSc is not there.
   explicit PetscEngine(const PetscOptions& options);
   ~PetscEngine() override;

@@ -1,9 +1,15 @@
 #include "lacon/operators/evolution/linear_solver.hpp"
 
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cmath>
 #include <string>
 
 #include "lacon/assembly/petsc_engine.hpp"
 #include "lacon/catalog/messages.hpp"
+#include "lacon/catalog/wording.hpp"
 #include "lacon/operators/evolution/bodies.hpp"
 
 namespace lacon {
@@ -54,17 +60,45 @@ std::unique_ptr<Engine> factor_of(const std::string& preconditioner, const Keywo
   return std::make_unique<MumpsEngine>(options);
 }
 
+/// What AUTO is, said so.
+std::string suited_method(const StaticProblem& problem) {
+  const std::int64_t n = problem.numbering.n_equations();
+  const double memory = static_cast<double>(sysconf(_SC_PHYS_PAGES)) * static_cast<double>(sysconf(_SC_PAGESIZE));
+  const bool is_large = suits_iterations(n, problem.dimension, memory);
+  const std::string method = is_large && PetscEngine::is_there() ? "PETSC" : "MUMPS";
+  inform("EVOLUTION_39", {{"method", method},
+                          {"equations", std::to_string(n)},
+                          {"factor", fmt::format("{:.2g}", 1e-9 * memory_of_factor(n, problem.dimension))},
+                          {"memory", fmt::format("{:.2g}", 1e-9 * memory)},
+                          {"reason", part(method == "PETSC" ? "factor_too_large"
+                                          : is_large        ? "petsc_not_there"
+                                                            : "factor_has_room")}});
+  return method;
+}
+
 }  // namespace
 
+double memory_of_factor(std::int64_t n_equations, int dimension) {
+  const auto n = static_cast<double>(n_equations);
+  // 4.2 GB for 311 469 equations in space, growing as N^1.3; in the plane N log N
+  return dimension == 3 ? 4.2e9 * std::pow(n / 311'469, 1.3) : 100 * n * std::log2(std::max(n, 2.0));
+}
+
+bool suits_iterations(std::int64_t n_equations, int dimension, double memory) {
+  return memory_of_factor(n_equations, dimension) > memory / 2;
+}
+
 std::unique_ptr<Engine> engine_of(const Keywords& solver, const Base& base, const StaticProblem& problem) {
-  const std::string method = solver.text("METHODE");
+  const std::string asked = solver.text("METHODE"), method = asked == "AUTO" ? suited_method(problem) : asked;
   if (method == "PETSC") {
     const std::string preconditioner = solver.has("PRE_COND") ? solver.text("PRE_COND") : "GAMG";
     if (preconditioner == "LDLT_SP" || preconditioner == "LDLT_DP") return factor_of(preconditioner, solver, base);
     return std::make_unique<PetscEngine>(iterative_options(solver, base, problem, preconditioner));
   }
   if (method != "MUMPS") inform("EVOLUTION_24", {{"method", method}});
-  return std::make_unique<MumpsEngine>(direct_options(solver, base));
+  MumpsOptions options = direct_options(solver, base);
+  if (asked == "AUTO") options.residual_tolerance = direct_residual;
+  return std::make_unique<MumpsEngine>(options);
 }
 
 }  // namespace lacon

@@ -1,5 +1,6 @@
 #pragma once
 // The linear solver that SOLVEUR asks for.
+#include <cstdint>
 #include <memory>
 
 #include "lacon/assembly/engine.hpp"
@@ -9,8 +10,13 @@
 
 namespace lacon {
 
-/// MUMPS or PETSc; a METHODE that MUMPS stands in for is told (EVOLUTION_24). Throws SOLVER_6 where PETSc is asked for and not
-/// there. @param base where files of the factor go
+/// MUMPS or PETSc; a METHODE that MUMPS stands in for is told (EVOLUTION_24), and what AUTO takes (EVOLUTION_39). Throws
+/// SOLVER_6 where PETSc is asked for and not there. @param base where files of the factor go
 std::unique_ptr<Engine> engine_of(const Keywords& solver, const Base& base, const StaticProblem& problem);
+
+/// About what a factor in double precision takes, bytes. Measured on the two blocks of docs/performance.md.
+double memory_of_factor(std::int64_t n_equations, int dimension);
+/// Whether AUTO takes iterations: where a factor would not have room in half of the memory. @param memory of the machine, bytes
+bool suits_iterations(std::int64_t n_equations, int dimension, double memory);
 
 }  // namespace lacon

@@ -320,6 +320,14 @@ class StatNonLine(TwoSquares):
         self.assertIn("METHODE='GCPC'", run.stderr)
         np.testing.assert_array_equal(self.read_field("result_9", "DEPL", 1).values, expected)
 
+    def test_auto_takes_mumps_for_few_equations_and_says_so(self):
+        self.assertEqual(self.solve().status, 0)
+        expected = self.read_field("result_9", "DEPL", 1).values
+        run = self.solve(SOLVEUR={"METHODE": "AUTO"})
+        self.assertEqual((run.status, self.ids(run)), (0, ["EVOLUTION_39"]), run.stderr)
+        self.assertIn("MUMPS for", run.stderr)
+        np.testing.assert_array_equal(self.read_field("result_9", "DEPL", 1).values, expected)
+
     # ------------------------------------------------------------------------------------------ what it refuses
 
     def test_an_order_that_lacks_a_keyword_is_refused(self):
