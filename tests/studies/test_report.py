@@ -146,6 +146,23 @@ class Content(StudyTest):
             self.assertEqual(told["language"], language)
             self.assertIn(proof, [line["what"] for lines in told["proofs"] for line in lines])
 
+    def test_a_page_is_made_while_the_computation_runs(self):
+        write_mesh(self.folder / "mesh.med", 2)
+        (self.folder / "study.comm").write_text(STUDY.format(**MODELS[2]).replace("NOMBRE=2", "NOMBRE=400"), encoding="utf-8")
+        with subprocess.Popen([LACON, "study.comm", "--unit", "20=mesh.med"], cwd=self.folder, stdout=subprocess.PIPE, stdin=subprocess.DEVNULL, text=True) as run:
+            for line in run.stdout:
+                if line.startswith(" Converged at the instant") and not line.startswith(" Converged at the instant 0.0025 "):
+                    break
+            done = self.run_tool("report", "study.base")
+            under_way = run.poll() is None
+            run.kill()
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertTrue(under_way, "the computation came to its end before its page was made")
+        told = Told(self.folder / "study.html").study
+        self.assertIn("the computation is under way", told["subtitle"])
+        self.assertTrue(2 <= len(told["instants"]) < 401)
+        self.assertTrue(told["journal"]["rows"])
+
     def test_values_are_those_of_the_base_to_16_bits(self):
         for dimension in (2, 3):
             told, result = Told(study(dimension) / "study.html"), base_of(study(dimension))["RESULT"]
