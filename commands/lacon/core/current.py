@@ -2,3 +2,6 @@
 
 #: a run.study.Study; nothing where no command file runs
 study = None
+
+#: name -> command, as command files call them; what objects do with fields is done by commands
+commands = {}

@@ -1,18 +1,54 @@
 """Fields as a command file sees them."""
 
 from ..base.fields import FieldData, open_field
+from ..core import current
 from ..core.concepts import Concept
 from ..core.late import numpy
 
 
-class Field(FieldData):
+class Arithmetic:
+    """Sums, differences and multiples of fields of one layout are fields of their own, made by CREA_CHAMP."""
+
+    def __add__(self, other):
+        return _combined((self, 1.0), (other, 1.0))
+
+    def __sub__(self, other):
+        return _combined((self, 1.0), (other, -1.0))
+
+    def __mul__(self, factor):
+        return _combined((self, factor))
+
+    __rmul__ = __mul__
+
+    def __neg__(self):
+        return _combined((self, -1.0))
+
+
+def _combined(*terms):
+    """@param terms (field, factor)"""
+    if not all(isinstance(field, Arithmetic) and isinstance(factor, (int, float)) for field, factor in terms):
+        return NotImplemented
+    parts = [{"CHAM_GD": field.concept(), "COEF_R": float(factor)} for field, factor in terms]
+    return current.commands["CREA_CHAMP"](OPERATION="COMB", TYPE_CHAM=terms[0][0].type_of_field(), COMB=parts)
+
+
+class Field(Arithmetic, FieldData):
     """A field at one instant, with the methods of code_aster's fields."""
 
-    def __init__(self, base, path):
-        """@param path of its file, relative to the base"""
+    def __init__(self, base, path, origin=None):
+        """@param path of its file, relative to the base  @param origin of a field of a result: (result, its name there, order number)"""
         with open_field(base.folder, path) as file:
             super().__init__(file)
         self.base = base
+        self._origin = origin
+
+    def concept(self):
+        """It as a concept of its own."""
+        result, name, order = self._origin
+        return current.commands["CREA_CHAMP"](OPERATION="EXTR", TYPE_CHAM=self.type(), RESULTAT=result, NOM_CHAM=name, NUME_ORDRE=order)
+
+    def type_of_field(self):
+        return self.type()
 
     def mesh(self):
         return self.base.concept(self.mesh_id)
@@ -166,10 +202,16 @@ class SimpleField:
     toNumpy = getValues
 
 
-class FieldConcept(Concept):
+class FieldConcept(Arithmetic, Concept):
     """A field of its own, of CREA_CHAMP; what a field of a result does, it does too."""
 
     type = "field"
+
+    def concept(self):
+        return self
+
+    def type_of_field(self):
+        return self.content().type()
 
     def content(self):
         """A Field."""

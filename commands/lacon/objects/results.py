@@ -26,6 +26,9 @@ class Result(Concept):
     def getLastIndex(self):
         return self.instants()[-1][0]
 
+    def getFirstIndex(self):
+        return self.instants()[0][0]
+
     def getTime(self, index):
         return dict(self.instants())[index]
 
@@ -44,7 +47,7 @@ class Result(Concept):
         """The Field of an order number; None where there is none."""
         with self.open() as file:
             path = contents.field_file(file, name, order)
-        return Field(self.base, path) if path else None
+        return Field(self.base, path, (self, name, order)) if path else None
 
     def getField(self, name, value=None, para="NUME_ORDRE", crit="RELATIF", prec=1e-6, index=None, **ignored):
         """The field of an order number, or with para="INST" of an instant. @throws AsterError where there is none"""

@@ -263,8 +263,9 @@ class Unavailable:
 
 
 def all_commands():
-    """name -> callable: every command, and every name of code_aster's that is not one here."""
+    """name -> callable: every command, and every name of code_aster's that is not one here. Objects find them in core/current.py."""
     names = {name: Unavailable(name) for name in catalog.peer_commands()}
     names.update((name, Command(name)) for name in catalog.command_names())
+    current.commands = dict(names)
     names.update(_F=_F, CO=CO)
     return names
