@@ -3,6 +3,7 @@
 import functools
 import math
 
+from ..core.catalog import part
 from ..core.late import numpy
 from ..core.messages import fail
 
@@ -136,7 +137,7 @@ def pressure(points, dimension, outlines, patches, title):
 
 def _words(patches, zone):
     members = patches.zone == zone
-    return f"{patches.groups[zone]}: {(patches.status[members] == 1).sum()} of {members.sum()} patches in contact"
+    return part("zone_in_contact", zone=patches.groups[zone], count=(patches.status[members] == 1).sum(), all=members.sum())
 
 
 def _steps(axes, points, outlines, patches, zone):
@@ -154,12 +155,12 @@ def _steps(axes, points, outlines, patches, zone):
     axes.stairs(values, edges, color=_contact[zone % len(_contact)], linewidth=1.2)
     lost = status < 0
     if lost.any():
-        axes.plot((edges[:-1] + width / 2)[lost], numpy.zeros(lost.sum()), "x", color=_pale, markersize=3, label="without master")
+        axes.plot((edges[:-1] + width / 2)[lost], numpy.zeros(lost.sum()), "x", color=_pale, markersize=3, label=part("without_master"), clip_on=False)
         axes.legend(frameon=False)
     axes.set_xlim(edges[0], edges[-1])
     axes.set_title(_words(patches, zone), loc="left")
-    axes.set_xlabel("length along the slave skin")
-    axes.set_ylabel("contact pressure")
+    axes.set_xlabel(part("length_along_skin"))
+    axes.set_ylabel(part("contact_pressure"))
     axes.grid(color="#e3e7eb", linewidth=0.6)
 
 
@@ -177,7 +178,7 @@ def _skin(figure, axes, points, outlines, patches, zone):
     first /= numpy.linalg.norm(first)
     plane = numpy.column_stack([first, numpy.cross(away, first)])
     collection = _collection([(corners - centre) @ plane for corners in cells], 0.2)
-    _colour(figure, axes, collection, values, "contact pressure", None)
+    _colour(figure, axes, collection, values, part("contact_pressure"), None)
     axes.add_collection(collection)
     seen = (middle - centre) @ plane
     axes.set_xlim(seen[:, 0].min(), seen[:, 0].max())
@@ -193,7 +194,7 @@ def convergence(journal, title):
     rows = journal.iterations()
     figure = _new_figure(7.6, 4.8 if journal.patches else 3.4)
     panels = figure.subplots(2 if journal.patches else 1, 1, sharex=True, squeeze=False, height_ratios=(2.2, 1) if journal.patches else (1,))[:, 0]
-    kinds = (("rela", "RESI_GLOB_RELA", "o"), ("maxi", "RESI_GLOB_MAXI", "s"), ("geometry", "RESI_GEOM", "^"), ("constraint", "largest gap / size", "v"))
+    kinds = (("rela", "RESI_GLOB_RELA", "o"), ("maxi", "RESI_GLOB_MAXI", "s"), ("geometry", "RESI_GEOM", "^"), ("constraint", part("gap_over_size"), "v"))
     number = numpy.arange(len(rows))
     begins = [i for i in number if i == 0 or rows[i][0] is not rows[i - 1][0]]
     pieces = list(zip(begins, [*begins[1:], len(rows)]))
@@ -207,20 +208,20 @@ def convergence(journal, title):
             panels[0].plot(number[first:last], values[first:last], color=colour, marker=mark, markersize=3, linewidth=1.0, label=words if not first else None)
         panels[0].axhline(limit, color=colour, linestyle=":", linewidth=0.9)
     panels[0].set_yscale("log")
-    panels[0].set_ylabel("residual (dotted: asked for)")
+    panels[0].set_ylabel(part("residual_dotted"))
     panels[0].legend(frameon=False, fontsize=8, ncols=4, loc="lower left", bbox_to_anchor=(0.0, 1.0))
     for panel in panels:
         panel.grid(color="#e3e7eb", linewidth=0.6)
         for first, last in pieces[::2]:
             panel.axvspan(first - 0.5, last - 0.5, color="#f2f4f7", zorder=0)
     if journal.patches:
-        panels[1].bar(number, [line["changes"] for _, line in rows], color=_contact[0], width=0.7, label="patches that change")
+        panels[1].bar(number, [line["changes"] for _, line in rows], color=_contact[0], width=0.7, label=part("patches_that_change"))
         other = panels[1].twinx()
         other.plot(number, [line["active"] for _, line in rows], color=_contact[1], linewidth=1.0, drawstyle="steps-mid")
-        panels[1].set_ylabel("patches that change", color=_contact[0])
-        other.set_ylabel("in contact", color=_contact[1])
+        panels[1].set_ylabel(part("patches_that_change"), color=_contact[0])
+        other.set_ylabel(part("in_contact"), color=_contact[1])
         other.set_ylim(bottom=0)
-    panels[-1].set_xlabel(f"iteration; each band is an instant that was tried, {len(pieces)} in all")
+    panels[-1].set_xlabel(part("bands_are_instants", count=len(pieces)))
     panels[-1].set_xlim(-0.5, max(len(rows), 1) - 0.5)
     figure.suptitle(title, fontsize=10, x=0.01, ha="left")
     return figure

@@ -5,6 +5,7 @@ from functools import cached_property
 from ..base import command_files, contents
 from ..base.fields import FieldData, open_field
 from ..base.journal import read_journal
+from ..core.catalog import part
 from ..core.late import numpy
 from ..core.messages import fail
 from . import pictures
@@ -183,13 +184,13 @@ class Result:
         patches = self.contact(order=order)
         outlines = [self.mesh.polygons(cells) for cells in self.mesh.patches]
         return pictures.pressure(self.mesh.points + self.displacements(order=order), self.mesh.dimension, outlines, patches,
-                                 f"{self.label}, INST {patches.instant:g}: contact pressure")
+                                 f"{self.label}, INST {patches.instant:g}: {part('contact_pressure')}")
 
     def plot_convergence(self):
         """A picture of residuals and changes of contact over the iterations. @throws AsterError READER_4 without journal"""
         if self.journal is None:
             fail("READER_4", "lacon", label=self.label)
-        return pictures.convergence(self.journal, f"{self.label}: Newton's method")
+        return pictures.convergence(self.journal, f"{self.label}: {part('newton_method')}")
 
     def _repr_png_(self):
         return as_picture(self.plot())
