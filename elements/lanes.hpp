@@ -7,9 +7,10 @@
 #include "lacon/elements/plugin.h"
 
 // A kernel that is marked so is compiled for several instruction sets; the loader takes the best one that the processor has, by
-// its features: names of processors ("arch=haswell") would leave out all others that have the same. The thread sanitizer is not
-// ready when the loader chooses.
-#if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__) && !defined(__SANITIZE_THREAD__)
+// its features: names of processors ("arch=haswell") would leave out all others that have the same. Sanitizers are not ready
+// when the loader chooses, and instrumented kernels take minutes to compile as it is.
+#if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__) && !defined(__SANITIZE_THREAD__) && \
+    !defined(__SANITIZE_ADDRESS__)
 #define LACON_KERNEL __attribute__((target_clones("default", "arch=x86-64-v3", "arch=x86-64-v4")))
 #else
 #define LACON_KERNEL

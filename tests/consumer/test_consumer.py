@@ -35,9 +35,8 @@ def setUpModule():
     root = pathlib.Path(folder.name)
     prefix, build = root / "prefix", root / "build"
     others = {name: root / name for name in ("laws", "voids")}
-    flags = "-fsanitize=address,undefined" if os.environ["LACON_SANITIZE"] == "ON" else ""
     cmake = os.environ["LACON_CMAKE"]
-    settings = [f"-DCMAKE_PREFIX_PATH={prefix}", f"-DCMAKE_CXX_FLAGS={flags}", f"-DCMAKE_BUILD_TYPE={os.environ['LACON_BUILD_TYPE']}",
+    settings = [f"-DCMAKE_PREFIX_PATH={prefix}", f"-DCMAKE_CXX_FLAGS={os.environ['LACON_SANITIZE']}", f"-DCMAKE_BUILD_TYPE={os.environ['LACON_BUILD_TYPE']}",
                 f"-DCMAKE_CXX_COMPILER={os.environ['LACON_CXX']}", f"-DCMAKE_INSTALL_PREFIX={prefix}"]
     for command in (
         [cmake, "--install", os.environ["LACON_BINARY_DIR"], "--prefix", prefix],
