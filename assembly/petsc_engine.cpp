@@ -50,9 +50,20 @@ struct PetscEngine::State {
 
   void start() {
     if (ranks) return;
-    ranks = std::make_unique<Ranks>(std::vector<std::string>{options.program, options.algorithm, options.preconditioner,
-                                                             fmt::format("{:.3e}", options.tolerance),
-                                                             std::to_string(options.iterations)});
+    std::vector<std::string> command;
+    if (options.n_ranks > 1)
+      command = {"mpirun",
+                 "-n",
+                 std::to_string(options.n_ranks),
+                 "--oversubscribe",
+                 "--bind-to",
+                 "none",
+                 "--mca",
+                 "btl_vader_single_copy_mechanism",
+                 "none"};
+    command.insert(command.end(), {options.program, options.algorithm, options.preconditioner,
+                                   fmt::format("{:.3e}", options.tolerance), std::to_string(options.iterations)});
+    ranks = std::make_unique<Ranks>(command);
     if (ranks->first_answer().empty()) fail("SOLVER_6", {{"reason", options.program + ": " + ranks->end()}});
   }
 
@@ -149,9 +160,12 @@ Factorisation PetscEngine::factorise(const SparseMatrix& matrix) {
   s.direct.reset();
   const SharedMemory memory = s.system();
   if (has_free_motion(BlockSystem::in(memory), s.body)) return s.factorise_directly(part("free_rigid_motion"));
-  if (const std::string said = s.ask("set up " + memory.path()); said != "ready") return s.factorise_directly(said);
+  const std::string said = s.ask("set up " + memory.path());
+  if (!said.starts_with("ready")) return s.factorise_directly(said);
   Factorisation made;
-  made.is_iterative = true;
+  made.is_iterative = s.options.preconditioner != "LDLT_DP";
+  if (const std::size_t space = said.find(' '); space != std::string::npos)
+    made.negative_pivots = std::stoll(said.substr(space));
   return made;
 }
 

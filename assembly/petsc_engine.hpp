@@ -13,9 +13,10 @@ namespace lacon {
 
 struct PetscOptions {
   std::string algorithm = "GMRES";      ///< ALGORITHME
-  std::string preconditioner = "GAMG";  ///< PRE_COND
+  std::string preconditioner = "GAMG";  ///< PRE_COND; LDLT_DP: a factor by the MUMPS of all processes
   double tolerance = 1e-8;              ///< RESI_RELA: of the residual, against the right side
   int iterations = 500;                 ///< NMAX_ITER
+  int n_ranks = 1;                      ///< processes, which mpirun starts where there are several
   std::string program;                  ///< lacon_petsc; empty: beside the program that runs
   int dimension = 3;
   std::vector<double> coordinates;  ///< (n_nodes, 3): of the nodes of the numbering

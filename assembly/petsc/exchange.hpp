@@ -1,6 +1,6 @@
 #pragma once
 // What an operator tells the processes of PETSc, in memory that they share, and what lines of text say about it:
-//   set up PATH    of a system             -> ready, or failed WHY
+//   set up PATH    of a system             -> ready, ready NEGATIVE-PIVOTS, or failed WHY
 //   solve PATH     of a right side (n)     -> converged ITERATIONS RESIDUAL, with the solution in its place,
 //                                             diverged ITERATIONS RESIDUAL REASON (of PETSc), or failed WHY
 #include <cstdint>

@@ -1,5 +1,6 @@
 #include "lacon/assembly/petsc/krylov.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <stdexcept>
 #include <utility>
@@ -124,7 +125,40 @@ Krylov::Krylov(const BlockSystem& system, const KrylovOptions& options)
   scale_.insert(scale_.end(), rows.scale.begin(), rows.scale.end());
   weight_ = rows.weight;
   set_up_blocks(system, rows);
-  set_up_solver();
+  if (is_direct())
+    factorise(system.sizes.is_symmetric);
+  else
+    set_up_solver();
+}
+
+void Krylov::factorise(bool is_symmetric) {
+  if (n_multipliers_)
+    checked(MatConvert(matrix_, MATAIJ, MAT_INITIAL_MATRIX, whole_.out()));
+  else
+    checked(MatDuplicate(k_, MAT_COPY_VALUES, whole_.out()));
+  checked(MatSetOption(whole_, MAT_SYMMETRIC, is_symmetric ? PETSC_TRUE : PETSC_FALSE));
+  checked(KSPCreate(PETSC_COMM_WORLD, ksp_.out()));
+  checked(KSPSetOperators(ksp_, whole_, whole_));
+  checked(KSPSetType(ksp_, KSPPREONLY));
+  PC pc = nullptr;
+  checked(KSPGetPC(ksp_, &pc));
+  checked(PCSetType(pc, is_symmetric ? PCCHOLESKY : PCLU));
+  checked(PCFactorSetMatSolverType(pc, MATSOLVERMUMPS));
+  set("-mat_mumps_icntl_7", "5");   // METIS
+  set("-mat_mumps_icntl_13", "1");  // the inertia of all fronts
+  set("-mat_mumps_icntl_14", "50");
+  set("-mat_mumps_icntl_24", "1");  // null pivots are counted
+  checked(KSPSetFromOptions(ksp_));
+  checked(KSPSetUp(ksp_));
+  Mat factor = nullptr;
+  checked(PCFactorGetMatrix(pc, &factor));
+  PetscInt null_pivots = 0, negative = 0, status = 0;
+  checked(MatMumpsGetInfog(factor, 1, &status));
+  checked(MatMumpsGetInfog(factor, 28, &null_pivots));
+  is_singular_ = status < 0 || null_pivots > 0;
+  if (!is_symmetric || is_singular_) return;
+  checked(MatGetInertia(factor, &negative, nullptr, nullptr));
+  negative_pivots_ = static_cast<int>(negative);
 }
 
 void Krylov::set_up_blocks(const BlockSystem& system, BlockRows& rows) {
@@ -256,21 +290,28 @@ KrylovResult Krylov::solve(std::span<double> right_side) {
   checked(VecDuplicate(solution_, step.out()));
   Mat const matrix = n_multipliers_ ? matrix_ : k_;
   left = size;
-  for (int round = 0; round < most_rounds && left > options_.tolerance * size; ++round) {
+  const double goal = is_direct() ? 1e-15 : options_.tolerance;  // a factor is refined as far as that goes
+  for (int round = 0; round < most_rounds && left > goal * size; ++round) {
+    const double before = left;
     const int more = options_.iterations - result.iterations;
-    checked(KSPSetTolerances(ksp_, options_.tolerance * size / left, PETSC_DEFAULT, PETSC_DEFAULT, std::max(1, more)));
+    checked(KSPSetTolerances(ksp_, goal * size / left, PETSC_DEFAULT, PETSC_DEFAULT, std::max(1, more)));
     checked(KSPSolve(ksp_, residual_, step));
     KSPConvergedReason reason = KSP_CONVERGED_ITERATING;
     PetscInt iterations = 0;
     checked(KSPGetConvergedReason(ksp_, &reason));
     checked(KSPGetIterationNumber(ksp_, &iterations));
-    result.iterations += static_cast<int>(iterations);
+    result.iterations += is_direct() ? 0 : static_cast<int>(iterations);
     checked(VecAXPY(solution_, 1, step));
     checked(MatMult(matrix, solution_, residual_));
     checked(VecAYPX(residual_, -1, side_));
     checked(VecNorm(residual_, NORM_2, &left));
     result.failure = reason < 0 ? KSPConvergedReasons[reason] : "";
     if (reason < 0 || !std::isfinite(left)) break;
+    if (is_direct() && left > 0.5 * before) {
+      if (left > before) checked(VecAXPY(solution_, -1, step));
+      left = std::min(left, before);
+      break;
+    }
   }
   result.residual = size > 0 ? left / size : 0;
   if (left <= options_.tolerance * size)

@@ -3,6 +3,7 @@
 #include <petscksp.h>
 
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <string>
 #include <utility>
@@ -40,7 +41,7 @@ void catch_errors();
 
 struct KrylovOptions {
   std::string algorithm = "GMRES";      ///< SOLVEUR/ALGORITHME
-  std::string preconditioner = "GAMG";  ///< SOLVEUR/PRE_COND
+  std::string preconditioner = "GAMG";  ///< SOLVEUR/PRE_COND; LDLT_DP: a factor, by the MUMPS of all processes
   double tolerance = 1e-8;              ///< of the residual, against the right side
   int iterations = 500;
 };
@@ -57,11 +58,16 @@ class Krylov {
   Krylov(const BlockSystem& system, const KrylovOptions& options);
   /// @param right_side (n), the solution afterwards: each process writes its own
   KrylovResult solve(std::span<double> right_side);
+  /// Of a factor of a symmetric matrix.
+  std::optional<int> negative_pivots() const { return negative_pivots_; }
+  bool is_singular() const { return is_singular_; }
 
  private:
   void load(std::span<const double> right_side);
   void set_up_blocks(const BlockSystem& system, BlockRows& rows);
   void set_up_solver();
+  void factorise(bool is_symmetric);
+  bool is_direct() const { return options_.preconditioner == "LDLT_DP"; }
   void set_up_displacements(PC pc) const;
 
   KrylovOptions options_;
@@ -69,9 +75,11 @@ class Krylov {
   std::vector<std::int32_t> equation_;  ///< of own rows, displacements first; -1: imposed
   std::vector<double> scale_;           ///< of them
   std::vector<double> weight_;          ///< of own multipliers
-  OwnedMat k_, b_, c_, d_, matrix_, schur_;
+  OwnedMat k_, b_, c_, d_, matrix_, schur_, whole_;
   OwnedVec side_, solution_, residual_, weighted_, added_;
   OwnedKsp ksp_;
+  std::optional<int> negative_pivots_;
+  bool is_singular_ = false;
 };
 
 }  // namespace lacon

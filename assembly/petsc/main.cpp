@@ -62,7 +62,9 @@ void serve(const KrylovOptions& options) {
         krylov.reset();
         const SharedMemory memory = SharedMemory::open(path);
         krylov = std::make_unique<Krylov>(BlockSystem::in(memory), options);
-        answer("ready");
+        answer(krylov->is_singular()       ? "failed singular"
+               : krylov->negative_pivots() ? "ready " + std::to_string(*krylov->negative_pivots())
+                                           : "ready");
       } else {
         answer(solved(*krylov, path));
       }

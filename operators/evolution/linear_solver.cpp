@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
 #include <string>
 
 #include "lacon/assembly/petsc_engine.hpp"
@@ -17,6 +18,12 @@ namespace {
 
 constexpr int most_iterations = 500;      // where NMAX_ITER does not say
 constexpr double direct_residual = 1e-6;  // of a factor that stands in for iterations: RESI_RELA is theirs
+
+/// Processes that the launcher wants (--mpi).
+int ranks() {
+  const char* const wanted = std::getenv("LACON_MPI");
+  return wanted ? std::max(1, std::atoi(wanted)) : 1;
+}
 
 MumpsOptions direct_options(const Keywords& solver, const Base& base) {
   using Use = MumpsOptions::Use;
@@ -44,6 +51,7 @@ PetscOptions iterative_options(const Keywords& solver, const Base& base, const S
   if (solver.has("ALGORITHME")) options.algorithm = solver.text("ALGORITHME");
   options.direct.residual_tolerance = direct_residual;
   options.iterations = solver.integer("NMAX_ITER") > 0 ? static_cast<int>(solver.integer("NMAX_ITER")) : most_iterations;
+  options.n_ranks = ranks();
   const Bodies bodies(problem.mesh);
   for (std::size_t node = 0; node < problem.mesh.n_nodes(); ++node)
     options.body.push_back(bodies.of(static_cast<std::int32_t>(node)));
@@ -96,6 +104,12 @@ std::unique_ptr<Engine> engine_of(const Keywords& solver, const Base& base, cons
     return std::make_unique<PetscEngine>(iterative_options(solver, base, problem, preconditioner));
   }
   if (method != "MUMPS") inform("EVOLUTION_24", {{"method", method}});
+  if (ranks() > 1 && PetscEngine::is_there()) {
+    PetscOptions options = iterative_options(solver, base, problem, "LDLT_DP");
+    options.tolerance = direct_residual;
+    return std::make_unique<PetscEngine>(options);
+  }
+  if (ranks() > 1) inform("EVOLUTION_40");
   MumpsOptions options = direct_options(solver, base);
   if (asked == "AUTO") options.residual_tolerance = direct_residual;
   return std::make_unique<MumpsEngine>(options);

@@ -1,7 +1,9 @@
 """A study gives the same results whether a factor or iterations of PETSc solve its linear systems; without PETSc it is refused."""
 
+import json
 import os
 import pathlib
+import shutil
 import unittest
 
 import numpy as np
@@ -17,13 +19,13 @@ PROGRAM = pathlib.Path(os.environ["LACON_BIN"]) / "lacon_petsc"
 AGREEMENT = 1e-5
 
 
-def assert_same(test, one, other):
+def assert_same(test, one, other, agreement=AGREEMENT):
     """Components of a field on nodes: name -> values, NaN where a node has none."""
     test.assertEqual(one.keys(), other.keys())
     largest = max(np.nanmax(np.abs(values)) for name, values in one.items() if name != "LAGS_C")
     for name, values in one.items():
         scale = np.nanmax(np.abs(values)) if name == "LAGS_C" else largest
-        test.assertLessEqual(np.nanmax(np.abs(other[name] - values)), AGREEMENT * scale, name)
+        test.assertLessEqual(np.nanmax(np.abs(other[name] - values)), agreement * scale, name)
 
 
 @unittest.skipUnless(PROGRAM.exists(), "built without PETSc")
@@ -57,6 +59,46 @@ class Petsc(StudyTest):
             steps[method] = [line for line in run.stdout.splitlines() if "Converged at the instant" in line]
         assert_same(self, last["MUMPS"], last["PETSC"])
         self.assertEqual(steps["MUMPS"], steps["PETSC"])
+
+
+@unittest.skipUnless(PROGRAM.exists() and shutil.which("mpirun"), "built without PETSc, or there is no mpirun")
+class Mpi(StudyTest):
+    """--mpi N, with more processes than processors: a factor by the MUMPS of all of them, or their iterations."""
+
+    def setUp(self):
+        super().setUp()
+        write_med(self.folder / "blocks.med", two_blocks(1.0, (7, 6, 3)))
+
+    def solve(self, solver, *options):
+        """@return displacements, counts, what was said"""
+        base, report = self.folder / "run.base", self.folder / "run.json"
+        run = self.run_tool(pathlib.Path(__file__).with_name("precision.comm"), "--fresh", "--base", base, "--unit", "20=blocks.med", "--json", report,
+                            *options, NU="0.3", CONTRAST="1", SLENDER="0", SOLVER=solver, PRE_COND="GAMG")
+        self.assertEqual(run.returncode, 0, run.stdout[-3000:] + run.stderr[-3000:])
+        commands = json.loads(report.read_text())["timings"]["commands"]
+        result = Result(base, "RESULT")
+        counts = next(c["counts"] for c in commands if c["command"] == "STAT_NON_LINE")
+        return result.field("DEPL", result.orders[-1])[1], counts, run.stdout + run.stderr
+
+    def test_values_are_those_of_one_process(self):
+        one, counts, _ = self.solve("double")
+        for ranks in (2, 3):
+            found, now, said = self.solve("double", "--mpi", ranks)
+            assert_same(self, one, found, 1e-9)
+            self.assertEqual(now["solutions"], counts["solutions"])
+            self.assertEqual(now["factorisations"], now["solutions"])  # none is kept
+            self.assertNotIn("SOLVER_7", said)
+            self.assertEqual(said.count("Converged at the instant"), 1)
+
+    def test_iterations_give_the_same_bits_in_every_run(self):
+        one, counts, _ = self.solve("double")
+        found, now, said = self.solve("petsc", "--mpi", 2)
+        again, _, _ = self.solve("petsc", "--mpi", 2)
+        assert_same(self, one, found, AGREEMENT)
+        self.assertEqual(now["solutions"], counts["solutions"])
+        self.assertNotIn("SOLVER_7", said)
+        for name, values in found.items():
+            np.testing.assert_array_equal(again[name], values)
 
 
 class WithoutPetsc(StudyTest):

@@ -66,6 +66,8 @@ def run(program, made, study, checks=False):
     environment.setdefault("OPENBLAS_NUM_THREADS", "1")  # the operator takes one thread of OpenBLAS: no others are started
     if study.threads:
         environment["LACON_THREADS"] = environment["OMP_NUM_THREADS"] = str(study.threads)
+    if study.ranks:
+        environment["LACON_MPI"] = str(study.ranks)
     sys.stdout.flush()
     sys.stderr.flush()
     start = time.perf_counter()

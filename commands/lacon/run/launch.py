@@ -75,12 +75,16 @@ def run_command_line(options, units):
     threads = options.threads
     if threads is None and export.parameters.get("ncpus", "").isdigit():
         threads = max(1, int(export.parameters["ncpus"]))
+    ranks = options.mpi
+    if ranks is None and export.parameters.get("mpi_nbcpu", "").isdigit():
+        ranks = max(1, int(export.parameters["mpi_nbcpu"]))
     base = options.base or base_of(export)
     for path in (os.getcwd(), base, *export.commands, *export.units.values()):
         if not _is_text(path):
             messages.fail("STUDY_26", path=path)
     run = study.Study(base, export.units, options.fresh, threads, options.checks == "all", execution.provided_names(),
                       options.force, options.verbose)
+    run.ranks = ranks
     run.stage = Stage(options.stage) if options.stage else None
     run.files = [os.path.realpath(name) for name in export.commands]
     for name in export.commands + export.named + export.data:

@@ -27,6 +27,7 @@ class Study:
         self.check = None  #: a tools.check.Check, where this run only checks
         self.force = force  #: run every operator, changed or not
         self.threads = threads
+        self.ranks = None  #: processes that solve linear systems
         self.verbose = verbose  #: operators say their phases and counts as they come
         self.quiet = False  #: of what is not a message nothing is printed
         self.strict_checks = strict_checks

@@ -127,6 +127,22 @@ TEST_F(PetscEngineTest, SolvesUnsymmetricMatrices) {
   EXPECT_LE((dense(matrix) * x - b).cwiseAbs().maxCoeff(), 1e-9);
 }
 
+// A factor by the MUMPS of PETSc gives the solution and the inertia.
+TEST_F(PetscEngineTest, FactorisesAsWell) {
+  const TwoBodies system;
+  PetscOptions options = system.options();
+  options.preconditioner = "LDLT_DP";
+  PetscEngine engine(options);
+  engine.analyse(system.matrix);
+  const Factorisation found = engine.factorise(system.matrix);
+  EXPECT_FALSE(found.is_iterative);
+  EXPECT_EQ(found.negative_pivots, 2);
+  Eigen::VectorXd b = Eigen::VectorXd::Random(system.matrix.size()), x = b;
+  EXPECT_EQ(engine.solve(span_of(x)).iterations, 0);
+  const Eigen::VectorXd expected = system.expected(b);
+  EXPECT_LE((x - expected).cwiseAbs().maxCoeff(), 1e-11 * expected.cwiseAbs().maxCoeff());
+}
+
 // A rigid motion that nothing resists is left to the factor, which names it; nothing is iterated.
 TEST_F(PetscEngineTest, LeavesFreeMotionsToAFactor) {
   const TwoBodies system(false);
