@@ -246,6 +246,14 @@ double ContactState::constraint_residual(const Patchwise& patches) const {
   return largest;
 }
 
+double ContactState::deepest_open(const Patchwise& patches) const {
+  double deepest = 0;
+  for (std::size_t p = 0; p < n_patches(); ++p)
+    if (patches.status[p] == Status::open && !held_open_[p] && geometry_.coverage(p) >= tolerances_.taking_coverage)
+      deepest = std::max(deepest, -geometry_.gap(p) / size_[p]);
+  return deepest;
+}
+
 std::int64_t ContactState::n_constraints(const Patchwise& patches) const {
   std::int64_t count = 0;
   for (std::size_t p = 0; p < n_patches(); ++p) count += patches.status[p] == Status::active && !locked_[p];

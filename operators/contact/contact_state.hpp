@@ -132,6 +132,8 @@ class ContactState {
 
   /// Largest |g_T| / h over the active patches that have an equation.
   double constraint_residual(const Patchwise& patches) const;
+  /// How deep the open patch lies in its master that lies deepest, over h; at least 0.
+  double deepest_open(const Patchwise& patches) const;
   /// Forces and statuses of each zone.
   std::vector<ZoneBalance> balance(const Patchwise& patches) const;
   /// The strain that the pressure on a patch makes in the bodies under it: |lambda| times their flexibility.

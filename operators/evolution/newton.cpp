@@ -21,7 +21,8 @@ constexpr double gap_share = 1e-2;  // of RESI_GEOM: largest |g_T| / h, 1e-8 by 
 constexpr double worse = 1.2;       // a residual that changes by this factor an iteration diverges
 constexpr double no_better = 0.97;  // or does not fall
 constexpr double near_round_off = 1e-9;
-constexpr int settled = 4;  // iterations without a change of status after which a ratio is that of the residual alone
+constexpr int settled = 4;     // iterations without a change of status after which a ratio is that of the residual alone
+constexpr double deepest = 1;  // sizes of a patch, by which bodies that began in a few patches may go into each other
 constexpr double other_stress = 1e-8;  // of the largest stress: that of another law
 
 /// What is known of a failure, one thing behind the other.
@@ -170,11 +171,13 @@ int Newton::iterate(double instant, StaticState& state, const std::function<void
     if (course_.period())  // iterates that go to and fro between two states: what they jump over lies between them
       for (double& value : solution) value *= 0.5;
     std::vector<double> increment = equilibrium_.add(solution, step, state);
+    const bool driven = std::ranges::any_of(step, [](double value) { return value != 0; });
     std::fill(step.begin(), step.end(), 0.0);  // imposed displacements move in the first iteration alone
     if (iteration > 0 && (options_.line_search || equilibrium_.has_variables()))
       shorten(solution, previous, state, increment);
     else
       equilibrium_.pair(state.displacement);
+    if (times_held_ > 0 && !driven) stay_shallow(solution, state, increment);
     const std::vector<Status> before = state.patches.status, wanted = wanted_statuses(state, line);
     // what imposed displacements alone have parted, the next iteration may bring together again: it starts from bodies that
     // touch
@@ -330,6 +333,17 @@ void Newton::shorten(std::span<const double> solution, const StaticState& previo
   } else {
     part_of_increment(equilibrium_.power(solution), power);
   }
+}
+
+void Newton::stay_shallow(std::span<const double> solution, StaticState& state, std::vector<double>& increment) {
+  const double depth = contact()->deepest_open(state.patches);
+  if (!(depth > deepest)) return;
+  const double part = deepest / depth;
+  std::vector<double> back(solution.begin(), solution.end());
+  for (double& value : back) value *= part - 1;
+  equilibrium_.add(back, std::vector<double>(increment.size(), 0.0), state);
+  for (double& value : increment) value *= part;
+  equilibrium_.pair(state.displacement);
 }
 
 void Newton::extrapolate(double instant, StaticState& state, std::vector<double>& step) {

@@ -421,5 +421,17 @@ TEST_F(Touching, ANodeWithoutAnyMasterHasAStandInForItsGap) {
   }
 }
 
+TEST_F(Touching, AnOpenPatchInsideItsMasterIsDeep) {
+  // of size 1, a tenth inside
+  lift(-0.1);
+  ContactState contact_state = state();
+  contact_state.update_geometry(displacement);
+  Patchwise patches(1);
+  patches.status[0] = Status::open;
+  EXPECT_NEAR(contact_state.deepest_open(patches), 0.1, 1e-12);
+  patches.status[0] = Status::active;
+  EXPECT_EQ(contact_state.deepest_open(patches), 0);
+}
+
 }  // namespace
 }  // namespace lacon
