@@ -66,6 +66,8 @@ class Docs(unittest.TestCase):
         known[""] = {option for names, *_ in options_of(launcher.parser()) for option in names}
         wrong, seen = [], 0
         for page in PAGES:
+            if page.name == "clean-machine.md":  # what was printed, no examples
+                continue
             for number, words in command_lines(page):
                 tool = words[0] if words[0] in launcher.tools else ""
                 if not tool and not re.search(r"\.(comm|export)$|^--|^FILE|^NAME|^study", words[0]):
