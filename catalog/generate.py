@@ -61,7 +61,7 @@ def load(folder):
         "refinements": refinements.complete_refinements(read(folder / "refinements.toml")["refinement"], by_name, check),
         "patches": contact["patch"],
         "slaves": contact["slave"],
-        "elements": elements,
+        "elements": complete_elements(elements),
         **read(folder / "behaviours.toml"),
         "quantities": read(folder / "quantities.toml")["quantity"],
         "messages": messages,
@@ -70,6 +70,22 @@ def load(folder):
         "instead": read(folder / "instead.toml"),
         "commands": complete_commands({path.stem.upper(): read(path) for path in sorted((folder / "commands").glob("*.toml"))}),
     }
+
+
+def complete_elements(rows):
+    """Rows that are like others, written out: their cells with other numbers of points, less those they are without."""
+    known = [row for row in rows if "like" not in row]
+    complete = list(known)
+    for row in rows:
+        if "like" not in row:
+            continue
+        models = [model for model in known if model["modelisation"] == row["like"]]
+        served = {cell for model in models for cell in model["points"]}
+        check(set(row["points"]) | set(row.get("without", ())) <= served, f"elements: {row['modelisation']} changes cells that {row['like']} does not have")
+        for model in models:
+            points = {cell: row["points"].get(cell, n) for cell, n in model["points"].items() if cell not in row.get("without", ())}
+            complete.append({**model, "modelisation": row["modelisation"], "points": points})
+    return complete
 
 
 def gaps(words):

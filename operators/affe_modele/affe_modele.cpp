@@ -68,6 +68,7 @@ Model affe_modele(const Mesh& mesh, const Registry& registry, const Keywords& ke
   Model model;
   model.dimension = 0;
   std::vector<const catalog::ElementRow*> given(mesh.n_cells(), nullptr);
+  std::vector<std::string> left_by(mesh.n_cells());  // the last modelisation that has no element for the cell
   const double extent = extent_of(mesh);
   for (const Keywords& factor : keywords.factors("AFFE")) {
     const std::string modelisation = factor.text("MODELISATION"), phenomenon = factor.text("PHENOMENE");
@@ -86,6 +87,7 @@ Model affe_modele(const Mesh& mesh, const Registry& registry, const Keywords& ke
     for (const std::int32_t cell : cells) {
       const CellType type = mesh.types[static_cast<std::size_t>(cell)];
       const catalog::ElementRow* row = rows[static_cast<std::size_t>(type)];
+      left_by[static_cast<std::size_t>(cell)] = row ? "" : modelisation;
       if (!row) {
         ++without[type];
         continue;
@@ -118,6 +120,10 @@ Model affe_modele(const Mesh& mesh, const Registry& registry, const Keywords& ke
   bool body = false;
   for (std::size_t cell = 0; cell < given.size(); ++cell) {
     if (!given[cell]) {
+      if (!left_by[cell].empty() && mesh.row(cell).dimension == model.dimension)
+        fail("MODELE_8", {{"modelisation", left_by[cell]},
+                          {"kind", std::string(mesh.row(cell).name)},
+                          {"cell", cell_name(static_cast<std::int32_t>(cell))}});
       ++without[mesh.types[cell]];
       model.element.push_back(-1);
       continue;

@@ -76,6 +76,13 @@ class AffeModele(OperatorTest):
         run = self.refuses("MODELE_2", [affe(TOUT="OUI"), affe(GROUP_MA=["POINT"])], "AFFE[2]", "1 POI1")
         self.assertIn("QUAD4", run.messages[0]["do"])
 
+    def test_a_body_cell_that_the_modelisation_has_no_element_for_is_refused_unless_another_serves_it(self):
+        """D_PLAN_SI: a linear quadrangle would have one point."""
+        self.refuses("MODELE_8", [affe(TOUT="OUI", MODELISATION="D_PLAN_SI")], "D_PLAN_SI", "QUAD4", "M1")
+        run = self.model(affe(TOUT="OUI", MODELISATION="D_PLAN_SI"), affe(GROUP_MA=["LEFT"]))
+        self.assertEqual(run.status, 0, run.stderr)
+        self.assertEqual(self.elements()[:3], ["D_PLAN/QUAD4", "D_PLAN_SI/TRIA3", "D_PLAN_SI/SEG2"])
+
     def test_a_mesh_of_space_is_refused_under_plane_strain(self):
         lifted = np.column_stack([COORDINATES, [0, 0, 0, 0, 0.1]])
         self.write_mesh("mesh_3", lifted, CELLS, cell_groups=GROUPS)

@@ -71,6 +71,12 @@ class Patch(StudyTest):
         for model, jacobian in (("AXIS", "INITIAL"), ("AXIS", "ACTUALISE"), ("C_PLAN", "INITIAL"), ("C_PLAN", "ACTUALISE")):
             self.assert_all_ok(self.run_patches(pairs, pressure=PRESSURE, jacobian=jacobian, model=model), patch.CHECKS_A_PAIR * len(pairs))
 
+    def test_reduced_integration_is_exact_on_either_side(self):
+        """D_PLAN_SI and AXIS_SI: quadrangles of 4 points as slave, as master, on both sides."""
+        pairs = [("QUAD8", "QUAD8"), ("QUAD8", "TRIA6"), ("TRIA3", "QUAD8")]
+        for model in ("D_PLAN_SI", "AXIS_SI"):
+            self.assert_all_ok(self.run_patches(pairs, pressure=PRESSURE, model=model), patch.CHECKS_A_PAIR * len(pairs))
+
     def test_with_two_materials_the_error_is_of_the_order_of_the_strain(self):
         """The lower block stretches more than the upper one: the skins end at different places, apart by the difference of
         strains, and the pressure there differs from p by a constant times that difference."""

@@ -16,9 +16,9 @@ CHECKS = 12
 
 @unittest.skipUnless(PEER_MESHES.is_dir(), f"the peer's meshes are not in {PEER_MESHES} (set LACON_SHARED_CASES)")
 class Patch3D(StudyTest):
-    def run_patch(self, mesh, cut, slave, master, base, load, x, y):
+    def run_patch(self, mesh, cut, slave, master, base, load, x, y, model="3D"):
         run = self.run_study(COMM, "--fresh", "--checks", "all", "--unit", f"20={PEER_MESHES / mesh}", PATCH_CUT=cut, PATCH_SLAVE=slave,
-                             PATCH_MASTER=master, PATCH_BASE=base, PATCH_LOAD=load, PATCH_X=x, PATCH_Y=y)
+                             PATCH_MASTER=master, PATCH_BASE=base, PATCH_LOAD=load, PATCH_X=x, PATCH_Y=y, PATCH_MODEL=model)
         self.assert_all_ok(run, CHECKS)
 
     def run_both(self, name, cut):
@@ -41,6 +41,9 @@ class Patch3D(StudyTest):
         self.run_both("ssnp170m", "PYRA")
         self.run_both("ssnp170w", "PYRA")
         self.run_both("ssnp170r", "PYRA")
+
+    def test_hexahedra_of_eight_points(self):
+        self.run_patch("ssnp170r.mmed", "PYRA", "Group_1", "Group_2", "Group_3", "Group_4", "Symx", "Symy", model="3D_SI")
 
     def test_prisms_and_pyramids_on_either_face(self):
         for unit in range(20, 28):
