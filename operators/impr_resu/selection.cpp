@@ -77,7 +77,8 @@ void each_field(const Base& base, const Result& result, const Mesh& mesh, const 
       if (parts) field = field.location == Location::nodes ? restrict_to_nodes(field, nodes) : restrict_to_cells(field, cells);
       if (field.support.empty()) continue;
       nowhere.erase(names[i]);
-      const std::string own = keywords.has("CHAM_GD") ? names[i] : med_field_name(result.label, names[i]);
+      const std::string& root = keywords.has("NOM_RESU_MED") ? keywords.text("NOM_RESU_MED") : result.label;
+      const std::string own = keywords.has("CHAM_GD") ? names[i] : med_field_name(root, names[i]);
       visit({med_names.empty() ? own : med_names[i], std::move(field)});
     }
   }

@@ -49,6 +49,46 @@ assert h.Parametres() == {'INTERPOL': ['LIN', 'LIN'], 'NOM_PARA': 'INST', 'NOM_R
 assert h(4) == 13 and f(4) == 9 and CALC_FONCTION(ABS=_F(FONCTION=f))(4) == 9
 """))
 
+    def test_means_and_polynomials(self):
+        """The mean of f and g at all their points; a parabola through points of one is found again, also by too high a degree."""
+        self.ok(self.study("""
+m = CALC_FONCTION(MOYENNE=_F(FONCTION=(f, g)))
+assert m.Valeurs() == [[0, 1, 2, 3], [1, 1, 2.5, 4]]
+x = [0, 0.3, 1, 1.4, 2]
+parabola = DEFI_FONCTION(NOM_PARA='X', ABSCISSE=x, ORDONNEE=[3 * v**2 - v for v in x], PROL_DROITE='LINEAIRE')
+for degree in (2, 4):
+    p = CALC_FONCTION(REGR_POLYNOMIALE=_F(FONCTION=parabola, DEGRE=degree))
+    assert p.Absc() == x and max(abs(a - b) for a, b in zip(p.Ordo(), parabola.Ordo())) < 1e-13 and p.Parametres() == parabola.Parametres()
+line = CALC_FONCTION(REGR_POLYNOMIALE=_F(FONCTION=DEFI_FONCTION(NOM_PARA='X', VALE=(0, 0, 1, 3, 2, 0)), DEGRE=1))
+assert max(abs(v - 1) for v in line.Ordo()) < 1e-14
+"""))
+        self.refused(self.study("CALC_FONCTION(REGR_POLYNOMIALE=_F(FONCTION=f, DEGRE=3))"), "FUNCTION_18", "3 + 1 points", "f has 3")
+
+    def test_measures_of_functions(self):
+        """By trapezes over the points: of (0, 1), (1, -1), (2, 1) the square is 1 everywhere, and the mean 0; of a line over [1, 3] of [0, 4] by hand."""
+        self.ok(self.study("""
+saw = DEFI_FONCTION(NOM_PARA='INST', VALE=(0, 1, 1, -1, 2, 1))
+line = DEFI_FONCTION(NOM_PARA='INST', VALE=(0, 0, 4, 4))
+T = INFO_FONCTION(RMS=(_F(FONCTION=saw), _F(FONCTION=line, INST_INIT=1., INST_FIN=3.)))
+assert T.EXTR_TABLE().para == ['FONCTION', 'METHODE', 'INST_INIT', 'INST_FIN', 'RMS']
+assert T['RMS', 1] == 1 and T['FONCTION', 2] == 'line' and abs(T['RMS', 2] - 5**0.5) < 1e-14 and T['INST_FIN', 2] == 3
+E = INFO_FONCTION(ECART_TYPE=_F(FONCTION=line, INST_INIT=1., INST_FIN=3.))
+assert abs(E['ECART_TYPE', 1] - 1) < 1e-14 and abs(INFO_FONCTION(ECART_TYPE=_F(FONCTION=saw))['ECART_TYPE', 1] - 1) < 1e-14
+assert INFO_FONCTION(MAX=_F(FONCTION=(f, g))).EXTR_TABLE().rows == CALC_FONCTION(MAX=_F(FONCTION=(f, g))).EXTR_TABLE().rows
+"""))
+        self.refused(self.study("INFO_FONCTION(RMS=_F(FONCTION=f, INST_INIT=2., INST_FIN=2.))"), "FUNCTION_19", "between 2 and 2")
+
+    def test_a_surface_is_drawn_by_its_functions(self):
+        done = self.study("""
+surface = DEFI_NAPPE(NOM_PARA='TEMP', PARA=(10., 20.), NOM_PARA_FONC='EPSI', DEFI_FONCTION=(_F(VALE=(0., 0., 1., 5.)), _F(VALE=(0., 1., 1., 7.))))
+IMPR_FONCTION(UNITE=6, COURBE=_F(FONCTION=surface))
+assert surface.Valeurs() == [[10., 20.], [[[0., 1.], [0., 5.]], [[0., 1.], [1., 7.]]]]
+""")
+        self.ok(done)
+        rows = [line.split() for line in done.out.splitlines() if line.strip() and line.split()[0][0].isdigit()]
+        self.assertIn(["1.00000E+00", "5.00000E+00", "7.00000E+00"], rows, done.out)
+        self.assertIn("surface_20", done.out)
+
     def test_the_derivative_is_of_second_order_on_any_steps(self):
         """Exact for a quadratic function on uneven points, also at the ends; its error falls fourfold for sin."""
         self.ok(self.study("""

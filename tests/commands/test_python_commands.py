@@ -7,7 +7,7 @@ import unittest
 import h5py
 
 sys.path.insert(0, __file__.rpartition("/")[0] or ".")
-from support import LauncherTest  # noqa: E402
+from support import STUDY, LauncherTest  # noqa: E402
 
 from lacon.base.functions import Piecewise  # noqa: E402
 from lacon.core.messages import AsterError  # noqa: E402
@@ -199,6 +199,65 @@ class Commands(LauncherTest):
 
     def test_a_function_outside_its_points_in_a_command_file(self):
         self.refused(self.run_study("DEBUT()\nF = DEFI_FONCTION(NOM_PARA='INST', VALE=(0, 0, 1, 1))\nF(2)\n"), "DEFI_FONCTION_3", "F has no value at 2")
+
+
+
+class Copies(LauncherTest):
+    def test_every_kind_of_concept_is_copied(self):
+        """A copy has the content, and is a concept of its own: what changes or takes out the one leaves the other."""
+        self.ok(self.run_study(STUDY + """
+F = FORMULE(NOM_PARA='X', VALE='twice(X)', twice=lambda x: 2 * x)
+T = CREA_TABLE(LISTE=_F(PARA='A', LISTE_R=(1., 2.)))
+RAMP2, F2, T2, M2, R2 = COPIER(CONCEPT=RAMP), COPIER(CONCEPT=F), COPIER(CONCEPT=T), COPIER(CONCEPT=M), COPIER(CONCEPT=R)
+assert RAMP2.Valeurs() == RAMP.Valeurs() and RAMP2.id != RAMP.id
+assert F2(3) == 6 and M2.getGroupsOfCells() == M.getGroupsOfCells() and M2.getNumberOfNodes() == 6
+before = R.getField('DEPL', 1).getValues()
+T = CALC_TABLE(reuse=T, TABLE=T, ACTION=_F(OPERATION='SUPPRIME', NOM_PARA='A'))
+assert T2.EXTR_TABLE().para == ['A']
+DETRUIRE(NOM=(R, M2))
+assert R2.getField('DEPL', 1).getValues() == before and R2.getModel() is MO
+FIN()
+"""))
+        self.write("more.comm", "POURSUITE()\nassert R2.getField('DEPL', 1).getMesh() is M\nFIN()\n")
+        self.ok(self.launch("more.comm", "--base", "study.base"))
+
+    def test_the_check_knows_the_kind_of_a_copy(self):
+        self.write("checked.comm", STUDY + "S = COPIER(CONCEPT=R)\nIMPR_RESU(RESU=_F(RESULTAT=S))\nFIN()\n")
+        self.assertEqual(self.launch("check", "checked.comm", "--unit", "20=mesh.med").status, 0)
+
+
+class Information(LauncherTest):
+    def test_a_result_and_a_mesh_are_told(self):
+        done = self.run_study(STUDY + """
+INFO_RESU(RESULTAT=R)
+INFO_RESU(RESULTAT=R, UNITE=45)
+MACR_INFO_MAIL(MAILLAGE=M, TAILLE='OUI')
+FIN()
+""", "--unit", "45=told.txt")
+        self.ok(done)
+        for words in ("NUME_ORDRE", "INST", "DEPL +NOEU_DEPL_R +[0-9]+ ", "QUAD4 +2", "SEG2 +1", "BODY +GROUP_MA +2", "TOP +GROUP_NO +3",
+                      "TOUT +1.00000E\\+00 +1.00000E\\+00", "BODY +1.00000E\\+00"):
+            self.assertRegex(done.out, words)
+        self.assertIn("NOEU_DEPL_R", (self.work / "told.txt").read_text())
+
+
+class Integers(LauncherTest):
+    def test_lists_of_integers_are_taken_where_several_are(self):
+        self.ok(self.run_study(STUDY + """
+assert DEFI_LIST_ENTI(VALE=(3, 1)).getValues() == [3, 1]
+assert DEFI_LIST_ENTI(DEBUT=1, INTERVALLE=(_F(JUSQU_A=5, PAS=2), _F(JUSQU_A=8, NOMBRE=3))).getValues() == [1, 3, 5, 6, 7, 8]
+orders = DEFI_LIST_ENTI(OPERATION='DEFI', VALE=(0, 1))
+T = CREA_TABLE(RESU=_F(RESULTAT=R, NOM_CHAM='DEPL', LIST_ORDRE=orders, NOM_CMP='DX', GROUP_NO='ONE'))
+assert T.EXTR_TABLE().NUME_ORDRE == T.EXTR_TABLE()['NUME_ORDRE'] and sorted(set(T.values()['NUME_ORDRE'])) == [0, 1]
+DETRUIRE(NOM=orders)
+FIN()
+"""))
+        for line, *words in (("DEFI_LIST_ENTI(DEBUT=1, INTERVALLE=_F(JUSQU_A=4, NOMBRE=2))", "DEFI_LIST_2"),
+                             ("DEFI_LIST_ENTI(DEBUT=1, INTERVALLE=_F(JUSQU_A=4, PAS=2))", "DEFI_LIST_2", "2"),
+                             ("DEFI_LIST_ENTI(DEBUT=1, INTERVALLE=_F(JUSQU_A=1, PAS=2))", "DEFI_LIST_1"),
+                             ("DEFI_LIST_ENTI(OPERATION='NUME_ORDRE', VALE=1)", "KEYWORD_13", "getIndexes")):
+            with self.subTest(line):
+                self.refused(self.run_study(f"DEBUT()\nX = {line}\n"), *words)
 
 
 if __name__ == "__main__":

@@ -46,6 +46,26 @@ t = LIRE_TABLE(UNITE=51, FORMAT='LIBRE', SEPARATEUR=',', RENOMME_PARA='UNIQUE', 
 """, "assert t.para == ['A', 'B', 'A_1'] and t.values() == {'A': [1, 2], 'B': [1.5, -100.0], 'A_1': ['x', None]} and t.type == ['I', 'R', 'K8'], t",
                           csv="# a comment\nQ\n1\n\n\nA , B, A\n1, 1.5, x\n# between\n2,-1.0D+02,-\n"))
 
+    def test_a_function_of_two_parameters(self):
+        """Parameters, abscissae and the values of each function are columns; between them it interpolates as DEFI_NAPPE's."""
+        self.ok(self.read("""
+S = LIRE_FONCTION(UNITE=51, TYPE='NAPPE', NOM_PARA='TEMP', NOM_PARA_FONC='EPSI', INDIC_PARA=(1, 1), INDIC_ABSCISSE=(2, 1), PROL_DROITE='CONSTANT',
+                  DEFI_FONCTION=(_F(INDIC_RESU=(2, 2), PROL_DROITE='CONSTANT'), _F(INDIC_RESU=(2, 3), PROL_DROITE='LINEAIRE')))
+""", """
+assert S.getVariables() == ['TEMP', 'EPSI'] and S.Absc() == [[0, 1, 2]] * 2 and S.Ordo()[1] == [0, 7, 9]
+assert abs(S(15, 0.5) - (2.5 + 3.5) / 2) < 1e-14 and abs(S(30, 3) - 11) < 1e-14
+""", txt="10.\n20.\n\n0 0 0\n1 5 7\n2 6 9\n"))
+
+    def test_arrays_of_numpy(self):
+        self.ok(self.read("""
+import numpy
+numpy.save('points.npy', numpy.array([[0., 5., 1.], [1., 6., 3.]]))
+number = DEFI_FICHIER(FICHIER='points.npy', TYPE='BINARY', ACCES='OLD')
+F = LIRE_FONCTION(UNITE=number, FORMAT='NUMPY', NOM_PARA='INST')
+G = LIRE_FONCTION(UNITE=number, FORMAT='NUMPY', NOM_PARA='INST', INDIC_RESU=(1, 3))
+""", "assert F.Valeurs() == [[0, 1], [5, 6]] and G.Ordo() == [1, 3]"))
+        self.refused(self.read("LIRE_FONCTION(UNITE=51, FORMAT='NUMPY', NOM_PARA='INST')", "", npy="0 1\n"), "FUNCTION_20", "numpy.save")
+
     def told(self, calls, files):
         """Run commands that are all refused, and compare what is said: [(command, identifier, words)]"""
         lines = "".join(f"try:\n    x = {command}\nexcept AsterError as error:\n    said.append(str(error))\n" for command, _, _ in calls)

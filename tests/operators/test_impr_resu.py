@@ -300,6 +300,8 @@ class ImprResu(OperatorTest):
         fields = self.library()["fields"]
         self.assertEqual(fields["MOVE"]["steps"][0]["values"]["NOE"]["profile"], [1, 2, 4, 5])
         self.assertEqual(fields["STRESS"]["steps"][0]["values"]["MAI.QU4"]["profile"], [1])
+        self.print({**self.U, "NOM_CHAM": ["DEPL", "SIEF_ELGA"], "NOM_RESU_MED": "PRESS"})
+        self.assertEqual(list(self.library()["fields"]), ["PRESS___DEPL", "PRESS___DEPL_LAGS_C", "PRESS___SIEF_ELGA"])
 
     def test_a_field_without_value_on_the_part_is_told(self):
         run = self.print({**self.U, "NOM_CHAM": ["CONT_ELEM", "DEPL"], "GROUP_MA": ["BODY"]})

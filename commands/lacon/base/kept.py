@@ -20,12 +20,12 @@ import json
 import os
 import pathlib
 import re
-import shutil
 import sys
 
 from .. import version
 from ..core import catalog, plugins
 from ..core.concepts import type_of
+from ..core.files import link
 from . import contents, names, seal
 
 #: of the base: versions of concepts that were changed in place
@@ -181,7 +181,7 @@ class Kept:
         if _stat(source) != record["stat"] or self._field_stats(identifier, source) != record.get("fields"):
             return False
         if source != path:
-            _link(source, path)
+            link(source, path)
         self._at[identifier] = at
         return True
 
@@ -203,7 +203,7 @@ class Kept:
         """
         at = self._in_force(identifier, self._made.get(identifier, ()))
         if at is not None:
-            _link(self.base.path(identifier), self._copy(identifier, at))
+            link(self.base.path(identifier), self._copy(identifier, at))
         return at
 
     def leave(self, identifier):
@@ -220,9 +220,9 @@ class Kept:
             self._at[identifier] = -1
             return
         self._cut(identifier, at + 1)
-        _link(before, self._copy(identifier, at))
+        link(before, self._copy(identifier, at))
         self._add(identifier, key, messages)
-        _link(self.base.path(identifier), self._copy(identifier, at + 1))
+        link(self.base.path(identifier), self._copy(identifier, at + 1))
 
     def _add(self, identifier, key, messages):
         self._at[identifier] = -1
@@ -359,18 +359,6 @@ def _fields(index):
         return set()
     with seal.open_checked(index) as file:
         return contents.field_files(file)
-
-
-def _link(source, target):
-    """Give a file a second name, or a copy where the file system has no such thing; what has the name is replaced."""
-    target.parent.mkdir(exist_ok=True)
-    partial = target.with_name(target.name + ".link.partial")
-    _unlink(partial)
-    try:
-        os.link(source, partial)
-    except OSError:
-        shutil.copy2(source, partial)
-    os.replace(partial, target)
 
 
 def _unlink(path):

@@ -1,4 +1,4 @@
-"""IMPR_FONCTION, TEST_FONCTION, RECU_FONCTION, CALC_FONCTION."""
+"""IMPR_FONCTION, TEST_FONCTION, RECU_FONCTION, CALC_FONCTION, INFO_FONCTION."""
 
 import itertools
 import math
@@ -16,7 +16,7 @@ from .drawing import draw
 
 def impr_fonction(call):
     k = call.keywords
-    made = [_curve(call, factor, f"COURBE[{i}]") for i, factor in enumerate(k["COURBE"], 1)]
+    made = [curve for i, factor in enumerate(k["COURBE"], 1) for curve in _curves(call, factor, f"COURBE[{i}]")]
     if k["FORMAT"] == "TABLEAU":
         _print_columns(call, made)
     else:
@@ -33,6 +33,17 @@ def _print_columns(call, made):
     table.titr = "\n".join([*k.get("TITRE", ()), *k.get("SOUS_TITRE", ())])
     text = printing.columns(table, real, k["SEPARATEUR"], k["COMMENTAIRE"], k["DEBUT_LIGNE"], k["FIN_LIGNE"].removesuffix("\n"))
     call.study.write_text(k["UNITE"], ".resu" if k["UNITE"] == 8 else ".table", f"IMPR_FONCTION/UNITE, {call.where}", text + "\n")
+
+
+def _curves(call, factor, path):
+    """The curve of an occurrence of COURBE; of a function of two parameters one for each of its functions."""
+    concept = factor.get("FONCTION")
+    surface = concept.surface() if concept is not None and concept.type == "formula" else None
+    if surface is None:
+        return [_curve(call, factor, path)]
+    name = factor.get("LEGENDE", concept.label)
+    return [_curve(call, {**factor, "FONCTION": curve, "LEGENDE": f"{name}_{at:g}"}, path)
+            for at, curve in zip(*surface)]
 
 
 def _curve(call, factor, path):
@@ -192,6 +203,19 @@ def _mult(call, factor):
     return _made(call, x, [math.prod(f(v) for f in factor["FONCTION"]) for v in x], factor["FONCTION"][0].points())
 
 
+def _moyenne(call, factor):
+    x, concepts = _abscissae(call, factor["FONCTION"]), factor["FONCTION"]
+    return _made(call, x, [sum(f(v) for f in concepts) / len(concepts) for v in x], concepts[0].points())
+
+
+def _regr_polynomiale(call, factor):
+    points, degree = factor["FONCTION"].points(), factor["DEGRE"]
+    if len(points.x) <= degree:
+        call.fail("FUNCTION_18", "REGR_POLYNOMIALE/DEGRE", label=factor["FONCTION"].label, degree=degree, count=len(points.x))
+    fit = numpy.polynomial.Polynomial.fit(points.x, points.y, degree)
+    return _made(call, points.x, fit(numpy.array(points.x)), points)
+
+
 def _compose(call, factors):
     inner, outer = factors[0]["FONC_PARA"], factors[0]["FONC_RESU"]
     points = inner.points()
@@ -223,6 +247,34 @@ def _max(call, factor):
 
 _operations = {
     "COMB": _comb, "ENVELOPPE": _enveloppe, "DERIVE": _derive, "INTEGRE": _integre, "MULT": _mult, "COMPOSE": _compose, "ASSE": _asse,
-    "MAX": _max, "ABS": _pointwise(lambda factor, y: abs(y)), "INVERSE": _pointwise(lambda factor, y: 1.0 / y),
+    "MOYENNE": _moyenne, "REGR_POLYNOMIALE": _regr_polynomiale, "MAX": _max, "ABS": _pointwise(lambda factor, y: abs(y)), "INVERSE": _pointwise(lambda factor, y: 1.0 / y),
     "PUISSANCE": _pointwise(lambda factor, y: y ** factor["EXPOSANT"]),
 }
+
+
+# ------------------------------------------------------------------------------------------------- INFO_FONCTION
+
+
+def info_fonction(call):
+    k = call.keywords
+    if "MAX" in k:
+        return _max(call, k["MAX"][0])
+    name = "RMS" if "RMS" in k else "ECART_TYPE"
+    return storage.make(call, Table([_mean_square(call, factor, name, f"{name}[{i}]") for i, factor in enumerate(k[name], 1)]))
+
+
+def _mean_square(call, factor, name, path):
+    """A row: the root of the mean over [INST_INIT, INST_FIN] of the square, of ECART_TYPE of what differs from the mean; by trapezes over the points."""
+    concept = factor["FONCTION"]
+    points = concept.points()
+    first, last = factor.get("INST_INIT", points.x[0]), factor.get("INST_FIN", points.x[-1])
+    if not first < last:
+        call.fail("FUNCTION_19", path, label=concept.label, first=f"{first:g}", last=f"{last:g}")
+    x = numpy.array([first, *(v for v in points.x if first < v < last), last])
+    y = numpy.array([concept(v) for v in x])
+
+    def mean(values):
+        return float(numpy.sum((values[1:] + values[:-1]) * numpy.diff(x)) / 2 / (last - first))
+
+    square = mean(y**2 if name == "RMS" else (y - mean(y)) ** 2)
+    return {"FONCTION": concept.label, "METHODE": factor["METHODE"], "INST_INIT": first, "INST_FIN": last, name: math.sqrt(square)}

@@ -1,4 +1,4 @@
-"""DEFI_LIST_REEL and DEFI_LIST_INST."""
+"""DEFI_LIST_REEL, DEFI_LIST_ENTI and DEFI_LIST_INST."""
 
 import json
 
@@ -35,6 +35,20 @@ def _interval(call, start, interval, path):
             call.fail("DEFI_LIST_2", f"{path}/PAS", step=f"{interval['PAS']:g}", start=f"{start:g}", end=f"{end:g}")
     step = (end - start) / count
     return [start + i * step for i in range(1, count)] + [end]
+
+
+def defi_list_enti(call):
+    k = call.keywords
+    values = list(k["VALE"]) if "VALE" in k else [k["DEBUT"]]
+    for i, interval in enumerate(k.get("INTERVALLE", ()), 1):
+        start, end, path = values[-1], interval["JUSQU_A"], f"INTERVALLE[{i}]"
+        if not end > start:
+            call.fail("DEFI_LIST_1", f"{path}/JUSQU_A", first=start, second=end)
+        step = interval.get("PAS") or (end - start) // interval["NOMBRE"]
+        if step == 0 or (end - start) % step or (end - start) // step != interval.get("NOMBRE", (end - start) // step):
+            call.fail("DEFI_LIST_2", path, step=step or f"1/{interval['NOMBRE']} of it", start=start, end=end)
+        values += range(start + step, end + 1, step)
+    return call.write("list_of_integers", lambda file: file.create_dataset("values", data=values, dtype="i8"))
 
 
 def defi_list_inst(call):

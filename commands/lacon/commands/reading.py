@@ -3,9 +3,11 @@
 import re
 
 from ..base.functions import Piecewise
+from ..core.late import numpy
 from ..tables import storage
 from ..tables.table import Table, type_of
 from . import functions
+from .call import Call
 
 _missing = "-"
 
@@ -142,14 +144,46 @@ def _unique(call, names):
 
 def lire_fonction(call):
     k = call.keywords
-    path, lines = _lines(call)
-    blocks = _blocks(lines, {"None": None}.get(k["SEPAR"], k["SEPAR"]))
-    x, y = (_of_block(call, path, blocks, keyword) for keyword in ("INDIC_PARA", "INDIC_RESU"))
+    if k["FORMAT"] == "NUMPY":
+        path, blocks = _array(call)
+    else:
+        path, lines = _lines(call)
+        blocks = _blocks(lines, {"None": None}.get(k["SEPAR"], k["SEPAR"]))
+    if k["TYPE"] == "NAPPE":
+        return _nappe(call, path, blocks)
+    x, y = (_of_block(call, path, blocks, k[keyword], keyword) for keyword in ("INDIC_PARA", "INDIC_RESU"))
     if len(x) != len(y):
         call.fail("DEFI_FONCTION_5", "INDIC_RESU", parameters=len(x), values=len(y))
     x, y = functions.increasing(call, x, y, k["VERIF"], "INDIC_PARA")
     like = Piecewise(x, y, parameter=k["NOM_PARA"], component=k["NOM_RESU"])
     return functions.make(call, functions.described(call, x, y, like), "UNITE")
+
+
+def _nappe(call, path, blocks):
+    """A function of two parameters: their first one, abscissae that all its functions have, and the values of each."""
+    k = call.keywords
+    abscissae = _of_block(call, path, blocks, k["INDIC_ABSCISSE"], "INDIC_ABSCISSE")
+    curves = []
+    for i, factor in enumerate(k["DEFI_FONCTION"], 1):
+        values = _of_block(call, path, blocks, factor["INDIC_RESU"], f"DEFI_FONCTION[{i}]/INDIC_RESU")
+        curves.append({"ABSCISSE": abscissae, "ORDONNEE": values, **{name: factor[name] for name in ("INTERPOL", "PROL_GAUCHE", "PROL_DROITE")}})
+    keywords = {**{name: k[name] for name in ("NOM_PARA", "NOM_PARA_FONC", "NOM_RESU", "INTERPOL", "PROL_GAUCHE", "PROL_DROITE", "VERIF")},
+                "PARA": _of_block(call, path, blocks, k["INDIC_PARA"], "INDIC_PARA"), "DEFI_FONCTION": curves}
+    return functions.defi_nappe(Call(call.study, call.command, keywords, call.where, call.label))
+
+
+def _array(call):
+    """(the file of UNITE, its array as one block)"""
+    path = call.study.input_unit(call.keywords["UNITE"], f"{call.command}/UNITE, {call.where}")
+    try:
+        array = numpy.load(path, allow_pickle=False)
+        block = numpy.atleast_2d(numpy.asarray(array, float)).tolist()
+        if array.ndim != 2:
+            raise ValueError(f"it has {array.ndim} dimensions")
+    except (ValueError, TypeError, OSError, EOFError) as error:
+        call.fail("FUNCTION_20", "UNITE", file=path, reason=error)
+    call.study.has_read(path)
+    return path, [block]
 
 
 def _blocks(lines, separator):
@@ -166,9 +200,9 @@ def _blocks(lines, separator):
     return blocks
 
 
-def _of_block(call, path, blocks, keyword):
-    """A column of numbers that (block, column) names, from 1."""
-    block, column = call.keywords[keyword]
+def _of_block(call, path, blocks, place, keyword):
+    """A column of numbers that `place`, (block, column) from 1, names."""
+    block, column = place
     if block > len(blocks) or any(column > len(row) for row in blocks[block - 1]):
         sizes = "; ".join(f"block {i}: {min(map(len, b))} columns, {len(b)} lines" for i, b in enumerate(blocks, 1)) or "no numbers"
         call.fail("FUNCTION_16", keyword, file=path, block=block, column=column, known=sizes)

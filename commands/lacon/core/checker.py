@@ -67,7 +67,7 @@ class _Check:
         return {**{name: values[name] for name in rows if name in values}, **others}
 
     def renamed(self, path, row, given):
-        """Keywords that earlier versions of code_aster called otherwise (`formerly`), under their present names."""
+        """Keywords that code_aster, or earlier versions of it, spell otherwise too (`formerly`), under the names here."""
         made = {}
         for name, value in given.items():
             now = row.get("formerly", {}).get(name, name)
@@ -120,7 +120,7 @@ class _Check:
         if row["type"] == "factor":
             return self.factor(path, row, value)
         many = row.get("max", 1) != 1
-        items = _items(value)
+        items = _items(value, row["type"])
         if items is None:
             items = [value]
         if not self.cardinality(path, row, len(items)):
@@ -201,10 +201,10 @@ def _levels(path, row, name):
 # ------------------------------------------------------------------------------------------------------- values
 
 
-def _items(value):
-    """The values of a list-like thing; None for a single value."""
+def _items(value, kind):
+    """The values of a list-like thing, a list of DEFI_LIST_ENTI among them where integers are wanted; None for a single value."""
     if isinstance(value, Concept):
-        return None
+        return value.getValues() if kind == "integer" and value.type == "list_of_integers" and not value.destroyed else None
     if isinstance(value, (list, tuple, range)):
         return list(value)
     if hasattr(value, "dtype") and getattr(value, "ndim", 0) > 0:

@@ -1,7 +1,8 @@
-"""Files that are written wholly or not at all."""
+"""Files that are written wholly or not at all; second names of files."""
 
 import contextlib
 import os
+import shutil
 
 
 @contextlib.contextmanager
@@ -27,3 +28,15 @@ def write_whole(path, text):
     """A text file in UTF-8. @throws OSError"""
     with whole(path) as partial, open(partial, "w", encoding="utf-8") as file:
         file.write(text)
+
+
+def link(source, target):
+    """Give a file a second name, or a copy where the file system has no such thing; what has the name is replaced."""
+    target.parent.mkdir(exist_ok=True)
+    partial = target.with_name(target.name + ".link.partial")
+    partial.unlink(missing_ok=True)
+    try:
+        os.link(source, partial)
+    except OSError:
+        shutil.copy2(source, partial)
+    os.replace(partial, target)

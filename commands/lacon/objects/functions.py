@@ -1,7 +1,7 @@
 """Lists, functions and formulae as a command file sees them."""
 
 from ..base.expressions import read_formula
-from ..base.functions import read_function
+from ..base.functions import between, read_function
 from ..core.concepts import Concept
 from ..core.late import numpy
 
@@ -14,6 +14,10 @@ class ListOfReals(Concept):
             return file["values"][:].tolist()
 
     Valeurs = getValues
+
+
+class ListOfIntegers(ListOfReals):
+    type = "list_of_integers"
 
 
 class TimeSteps(ListOfReals):
@@ -89,6 +93,24 @@ class Formula(Concept):
 
     def getVariables(self):
         return list(self.expression().parameters)
+
+    def surface(self):
+        """(parameters, functions there) of DEFI_NAPPE's function of two parameters; None for any other formula."""
+        values = self.expression().values
+        return (values["parameters"], values["curves"]) if values.get("between") is between else None
+
+    def Valeurs(self):
+        """Of DEFI_NAPPE: [parameters, [[abscissae, ordinates] of each function]]"""
+        surface = self.surface()
+        if surface is None:
+            raise AttributeError(f"{self.label or self.id} is a formula, which has no points of its own; CALC_FONC_INTERP takes it at a list")
+        return [list(surface[0]), [curve.Valeurs() for curve in surface[1]]]
+
+    def Absc(self):
+        return [curve[0] for curve in self.Valeurs()[1]]
+
+    def Ordo(self):
+        return [curve[1] for curve in self.Valeurs()[1]]
 
     def Parametres(self):
         return {"NOM_PARA": self.getVariables()}

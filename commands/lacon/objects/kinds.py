@@ -2,7 +2,7 @@
 
 from ..core.concepts import Concept
 from .fields import FieldConcept
-from .functions import Formula, Function, ListOfReals, TimeSteps
+from .functions import Formula, Function, ListOfIntegers, ListOfReals, TimeSteps
 from .meshes import Mesh, Model
 from .results import Result, Table
 
@@ -27,5 +27,5 @@ class Contact(Concept):
     type = "contact"
 
 
-kinds = {c.type: c for c in (Mesh, Model, Material, MaterialField, ElementCharacteristics, Load, Contact, FieldConcept, ListOfReals, TimeSteps,
-                             Function, Formula, Result, Table)}
+kinds = {c.type: c for c in (Mesh, Model, Material, MaterialField, ElementCharacteristics, Load, Contact, FieldConcept, ListOfReals, ListOfIntegers,
+                             TimeSteps, Function, Formula, Result, Table)}

@@ -101,14 +101,18 @@ class Mesh(Concept):
 
     def getMinMaxEdgeSizes(self, groups):
         """(least, greatest) distance between the ends of the edges of the cells of a group or of several."""
-        names, types = self._read(contents.cell_types)
-        offset, nodes = self._read(contents.connectivity)
-        points = self.getCoordinates().toNumpy()
-        lengths = [numpy.linalg.norm(points[nodes[offset[cell] + a]] - points[nodes[offset[cell] + b]])
-                   for cell in self.getCells(groups) for a, b in catalog.edges(names[types[cell]])]
+        lengths = self.edge_lengths(groups)
         if not lengths:
             raise ValueError(f"getMinMaxEdgeSizes: the cells of {groups} have no edges")
         return float(min(lengths)), float(max(lengths))
+
+    def edge_lengths(self, groups=()):
+        """Distances between the ends of the edges of the cells of a group or of several, of all without groups."""
+        names, types = self._read(contents.cell_types)
+        offset, nodes = self._read(contents.connectivity)
+        points = self.getCoordinates().toNumpy()
+        return [numpy.linalg.norm(points[nodes[offset[cell] + a]] - points[nodes[offset[cell] + b]])
+                for cell in self.getCells(groups) for a, b in catalog.edges(names[types[cell]])]
 
     def isQuadratic(self):
         """Whether it has cells of the second order."""

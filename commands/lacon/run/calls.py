@@ -193,7 +193,8 @@ class Command:
         does all but that, where what it starts from was really made."""
         if "result" not in row:
             return None
-        identifier = reused.id if reused else run.base.new_id(row["result"])
+        kind = keywords[row["result_of"]].type if "result_of" in row else row["result"]
+        identifier = reused.id if reused else run.base.new_id(kind)
         if run.check.prepares(row, keywords):
             result = {"id": identifier, "label": label, "reuse": bool(reused)}
             made = orders.order(self.name, run, keywords, where, result, self._units(run, row, keywords, where))
