@@ -8,6 +8,7 @@
 #include <fstream>
 #include <limits>
 
+#include "lacon/assembly/any_signs.hpp"
 #include "lacon/assembly/gmres.hpp"
 #include "lacon/assembly/mumps.hpp"
 #include "lacon/assembly/ordering.hpp"
@@ -201,12 +202,8 @@ struct MumpsEngine::State {
   /// What a substitution leaves of a vector, after some, which bring out what it leaves most of: the largest share.
   double error_of_factor() {
     const auto n = static_cast<std::size_t>(matrix->size());
-    std::vector<double> left(n), x, image(n);
-    std::uint32_t state = 1;  // any vector does that favours no motion
-    for (std::size_t i = 0; i < n; ++i) {
-      state = 1664525 * state + 1013904223;
-      left[i] = (state >> 31 ? 1 : -1) / scale[i];
-    }
+    std::vector<double> left = any_signs(n), x, image(n);
+    for (std::size_t i = 0; i < n; ++i) left[i] /= scale[i];
     double most = 0, size = scaled_norm(left);
     for (int look = 0; look < looks && size > 0; ++look) {
       x = left;

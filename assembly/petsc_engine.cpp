@@ -9,14 +9,17 @@
 #include <optional>
 #include <sstream>
 
+#include "lacon/assembly/loose_motions.hpp"
 #include "lacon/assembly/petsc/exchange.hpp"
-#include "lacon/assembly/petsc/free_motion.hpp"
 #include "lacon/assembly/petsc/ranks.hpp"
 #include "lacon/catalog/messages.hpp"
 #include "lacon/catalog/wording.hpp"
 
 namespace lacon {
 namespace {
+
+/// What resists a motion less, of what resists most, iterations cannot tell from nothing.
+constexpr double hardly_resisted = 1e-6;
 
 std::string program_beside_this() { return std::filesystem::read_symlink("/proc/self/exe").parent_path() / "lacon_petsc"; }
 
@@ -44,7 +47,7 @@ struct PetscEngine::State {
   BlockSystem::Sizes sizes;
   std::vector<std::int32_t> place;  ///< of each equation
   std::vector<std::int32_t> node;   ///< of each block
-  std::vector<std::int32_t> body;   ///< of each block, from 0 on
+  std::optional<LooseMotions> loose;
   const SparseMatrix* matrix = nullptr;
   std::unique_ptr<MumpsEngine> direct;  ///< where this matrix has a factor
 
@@ -80,9 +83,7 @@ struct PetscEngine::State {
   void number(const Numbering& numbering) {
     place.assign(static_cast<std::size_t>(numbering.n_equations()), -1);
     node.clear();
-    body.clear();
-    std::map<std::int32_t, std::int32_t> bodies;
-    const int dimension = options.dimension;
+    const int dimension = options.geometry.dimension;
     for (std::int64_t n = 0; n < numbering.n_nodes; ++n) {
       bool is_free = false;
       for (int i = 0; i < dimension; ++i)
@@ -90,9 +91,7 @@ struct PetscEngine::State {
           is_free = true;
           place[e] = static_cast<std::int32_t>(static_cast<int>(node.size()) * dimension + i);
         }
-      if (!is_free) continue;
-      node.push_back(static_cast<std::int32_t>(n));
-      body.push_back(bodies.try_emplace(options.body[n], static_cast<std::int32_t>(bodies.size())).first->second);
+      if (is_free) node.push_back(static_cast<std::int32_t>(n));
     }
     std::int32_t n_multipliers = 0;
     for (std::int32_t& at : place)
@@ -101,6 +100,7 @@ struct PetscEngine::State {
              .n_blocks = static_cast<std::int64_t>(node.size()),
              .n_multipliers = n_multipliers,
              .dimension = dimension};
+    loose.emplace(RigidMotions(options.geometry), numbering);
   }
 
   SharedMemory system() {
@@ -116,7 +116,7 @@ struct PetscEngine::State {
     for (std::size_t b = 0; b < node.size(); ++b)
       for (int i = 0; i < sizes.dimension; ++i)
         made.coordinates[b * static_cast<std::size_t>(sizes.dimension) + static_cast<std::size_t>(i)] =
-            options.coordinates[3 * static_cast<std::size_t>(node[b]) + static_cast<std::size_t>(i)];
+            options.geometry.coordinates[3 * static_cast<std::size_t>(node[b]) + static_cast<std::size_t>(i)];
     return memory;
   }
 
@@ -158,8 +158,8 @@ Factorisation PetscEngine::factorise(const SparseMatrix& matrix) {
   State& s = *state_;
   s.matrix = &matrix;
   s.direct.reset();
+  if (!s.loose->of(matrix, hardly_resisted).empty()) return s.factorise_directly(part("free_rigid_motion"));
   const SharedMemory memory = s.system();
-  if (has_free_motion(BlockSystem::in(memory), s.body)) return s.factorise_directly(part("free_rigid_motion"));
   const std::string said = s.ask("set up " + memory.path());
   if (!said.starts_with("ready")) return s.factorise_directly(said);
   Factorisation made;

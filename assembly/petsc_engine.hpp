@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "lacon/assembly/mumps_engine.hpp"
+#include "lacon/assembly/rigid_motions.hpp"
 
 namespace lacon {
 
@@ -18,9 +19,7 @@ struct PetscOptions {
   int iterations = 500;                 ///< NMAX_ITER
   int n_ranks = 1;                      ///< processes, which mpirun starts where there are several
   std::string program;                  ///< lacon_petsc; empty: beside the program that runs
-  int dimension = 3;
-  std::vector<double> coordinates;  ///< (n_nodes, 3): of the nodes of the numbering
-  std::vector<std::int32_t> body;   ///< (n_nodes): any numbers; nodes of the same body have the same one
+  BodyGeometry geometry;                ///< of the nodes of the numbering; coordinates must outlive the engine
   MumpsOptions direct;
 };
 

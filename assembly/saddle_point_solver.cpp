@@ -7,6 +7,7 @@
 #include <numeric>
 #include <utility>
 
+#include "lacon/assembly/any_signs.hpp"
 #include "lacon/assembly/gmres.hpp"
 #include "lacon/structures/hdf5.hpp"
 
@@ -164,14 +165,9 @@ class SaddlePointSolver::Preconditioner {
   /// A motion in which those have a share that the complement all but lets go, each the larger the less holds it, (n).
   std::vector<double> weak_motion() const {
     const auto size = static_cast<Eigen::Index>(rows_.size());
-    VectorXd side(size);
-    std::uint32_t state = 1;  // any vector does that favours no motion
-    for (Eigen::Index s = 0; s < size; ++s) {
-      state = 1664525 * state + 1013904223;
-      side[s] = state >> 31 ? 1 : -1;
-    }
+    const std::vector<double> signs = any_signs(rows_.size());
     std::vector<double> x(static_cast<std::size_t>(matrix_.size()), 0.0);
-    if (size) add(factor_.solve(side), x);
+    if (size) add(factor_.solve(Map<const VectorXd>(signs.data(), size)), x);
     return x;
   }
 

@@ -1,19 +1,31 @@
 #include "lacon/operators/evolution/free_bodies.hpp"
 
+#include <algorithm>
 #include <map>
-
-#include "lacon/operators/evolution/rigid_motions.hpp"
 
 namespace lacon {
 
+BodyGeometry geometry_of(const StaticProblem& problem, const Bodies& bodies) {
+  BodyGeometry geometry{.dimension = problem.dimension, .coordinates = problem.mesh.coordinates};
+  geometry.is_of_revolution =
+      std::ranges::any_of(problem.solids, [](const ElementSet& set) { return set.row->geometry == catalog::Geometry::axis; });
+  geometry.body.assign(problem.mesh.n_nodes(), -1);
+  for (const ElementSet& set : problem.solids)
+    for (const std::int32_t cell : set.cells)
+      for (const std::int32_t node : problem.mesh.cells[static_cast<std::size_t>(cell)])
+        geometry.body[static_cast<std::size_t>(node)] = bodies.of(node);
+  return geometry;
+}
+
 std::set<std::int32_t> free_bodies(const StaticProblem& problem, const Bodies& bodies) {
-  const RigidMotions motions(problem, bodies);
+  const BodyGeometry geometry = geometry_of(problem, bodies);
+  const RigidMotions motions(geometry);
   // what holds a body: the sum of row row^T over its constraints, a row being what one makes of the rigid motions
   std::map<std::int32_t, Eigen::Matrix<double, 6, 6>> held;
   for (const std::int32_t body : motions.bodies()) held[body].setZero();
   using Rows = std::map<std::int32_t, MotionVector>;
   const auto add = [&](std::int64_t dof, double coefficient, Rows& rows) {
-    if (const auto row = motions.row(dof))
+    if (const auto row = motions.row(dof / problem.n_components(), static_cast<int>(dof % problem.n_components())))
       rows.try_emplace(row->body, MotionVector::Zero()).first->second += coefficient * row->by;
   };
   const auto constrain = [&](const Rows& rows) {

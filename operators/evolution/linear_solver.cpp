@@ -11,7 +11,7 @@
 #include "lacon/assembly/petsc_engine.hpp"
 #include "lacon/catalog/messages.hpp"
 #include "lacon/catalog/wording.hpp"
-#include "lacon/operators/evolution/bodies.hpp"
+#include "lacon/operators/evolution/free_bodies.hpp"
 
 namespace lacon {
 namespace {
@@ -45,16 +45,12 @@ PetscOptions iterative_options(const Keywords& solver, const Base& base, const S
                                const std::string& preconditioner) {
   PetscOptions options{.preconditioner = preconditioner,
                        .tolerance = solver.real("RESI_RELA"),
-                       .dimension = problem.dimension,
-                       .coordinates = problem.mesh.coordinates,
+                       .geometry = geometry_of(problem, Bodies(problem.mesh)),
                        .direct = direct_options(solver, base)};
   if (solver.has("ALGORITHME")) options.algorithm = solver.text("ALGORITHME");
   options.direct.residual_tolerance = direct_residual;
   options.iterations = solver.integer("NMAX_ITER") > 0 ? static_cast<int>(solver.integer("NMAX_ITER")) : most_iterations;
   options.n_ranks = ranks();
-  const Bodies bodies(problem.mesh);
-  for (std::size_t node = 0; node < problem.mesh.n_nodes(); ++node)
-    options.body.push_back(bodies.of(static_cast<std::int32_t>(node)));
   return options;
 }
 

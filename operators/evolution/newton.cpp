@@ -10,6 +10,7 @@
 
 #include "lacon/catalog/messages.hpp"
 #include "lacon/catalog/wording.hpp"
+#include "lacon/operators/evolution/free_bodies.hpp"
 #include "lacon/operators/evolution/instant_failure.hpp"
 #include "lacon/operators/program/program.hpp"
 #include "lacon/structures/hdf5.hpp"
@@ -38,7 +39,7 @@ Newton::Newton(const StaticProblem& problem, const NewtonOptions& options, std::
     : problem_(problem),
       options_(options),
       bodies_(problem.mesh),
-      loose_(problem, bodies_),
+      loose_(RigidMotions(geometry_of(problem, bodies_)), problem.numbering),
       equilibrium_(problem),
       choice_({.linear = equilibrium_.is_linear(),
                .has_memory = equilibrium_.has_memory(),

@@ -7,10 +7,11 @@
 #include <string>
 #include <vector>
 
+#include "lacon/assembly/loose_motions.hpp"
 #include "lacon/assembly/saddle_point_solver.hpp"
+#include "lacon/operators/evolution/bodies.hpp"
 #include "lacon/operators/evolution/equilibrium.hpp"
 #include "lacon/operators/evolution/line_search.hpp"
-#include "lacon/operators/evolution/loose_motions.hpp"
 #include "lacon/operators/evolution/matrix_choice.hpp"
 #include "lacon/operators/evolution/residual_course.hpp"
 #include "lacon/operators/evolution/status_rule.hpp"

@@ -51,16 +51,19 @@ struct TwoBodies {
     return all;
   }
   PetscOptions options() const {
-    PetscOptions made{.tolerance = 1e-12, .program = program, .dimension = 2};
-    for (int i = 0; i < n_nodes; ++i) {
-      made.coordinates.insert(made.coordinates.end(), {0.0, 0.0, 0.0});  // springs resist no turn: all nodes are at one place
-      made.body.push_back(i < n_nodes / 2 ? 7 : 3);
-    }
+    PetscOptions made{.tolerance = 1e-12, .program = program, .geometry = {.dimension = 2, .coordinates = places}};
+    for (int i = 0; i < n_nodes; ++i) made.geometry.body.push_back(i < n_nodes / 2 ? 7 : 3);
     return made;
   }
   Eigen::VectorXd expected(const Eigen::VectorXd& b) const { return dense(matrix).fullPivLu().solve(b); }
+  static std::vector<double> in_a_line() {
+    std::vector<double> x;
+    for (int i = 0; i < n_nodes; ++i) x.insert(x.end(), {static_cast<double>(i), 0.0, 0.0});
+    return x;
+  }
   Chain chain;
   SparseMatrix matrix;
+  std::vector<double> places = in_a_line();
 };
 
 std::span<double> span_of(Eigen::VectorXd& x) { return {x.data(), static_cast<std::size_t>(x.size())}; }
@@ -151,6 +154,23 @@ TEST_F(PetscEngineTest, LeavesFreeMotionsToAFactor) {
   const Factorisation found = engine.factorise(system.matrix);
   EXPECT_EQ(found.null_pivots.size(), 2);
   EXPECT_NE(found.stalled.find("rigid motion"), std::string::npos) << found.stalled;
+}
+
+// Bodies that hold each other, and that nothing else holds, move together.
+TEST_F(PetscEngineTest, SeesBodiesThatMoveTogether) {
+  const Chain chain(4);
+  SparseMatrix matrix(chain.numbering, chain.cliques, std::vector<Coupling>{{2, 0}, {3, 1}});
+  matrix.set_zero();
+  const auto spring = [&](int a, int b) {
+    for (int axis = 0; axis < 2; ++axis)
+      matrix.add(std::vector<std::int64_t>{chain.numbering.of(a, axis), chain.numbering.of(b, axis)},
+                 std::vector<double>{1, -1, 1});
+  };
+  for (const auto& [a, b] : {std::pair(0, 1), std::pair(2, 3), std::pair(0, 2), std::pair(1, 3)}) spring(a, b);
+  const std::vector<double> corners{0, 0, 0, 1, 0, 0, 0, 1, 0, 1, 1, 0};
+  PetscEngine engine({.program = program, .geometry = {.dimension = 2, .coordinates = corners, .body = {0, 0, 2, 2}}});
+  engine.analyse(matrix);
+  EXPECT_EQ(engine.factorise(matrix).null_pivots.size(), 2);
 }
 
 // Iterations that come to no end are made good by a factor, once: the next matrix is iterated on again.

@@ -1,9 +1,10 @@
 // Motions of bodies that a matrix does not resist.
-#include "lacon/operators/evolution/loose_motions.hpp"
+#include "lacon/assembly/loose_motions.hpp"
 
 #include <gtest/gtest.h>
 
 #include "lacon/operators/evolution/equilibrium.hpp"
+#include "lacon/operators/evolution/free_bodies.hpp"
 #include "two_squares.hpp"
 
 namespace lacon {
@@ -11,16 +12,19 @@ namespace {
 
 using namespace test;
 
+LooseMotions motions_of(const StaticProblem& problem) {
+  return {RigidMotions(geometry_of(problem, Bodies(problem.mesh))), problem.numbering};
+}
+
 /// Of two squares apart, the lower one held, at rest.
 std::vector<LooseMotion> loose(StaticProblem problem) {
   problem.loads.push_back(hold(bottom, 1));
   problem.loads.push_back(hold(bottom, 0));
   number(problem);
-  const Bodies bodies(problem.mesh);
   Equilibrium equilibrium(problem);
   const StaticState rest = equilibrium.natural_state();
   equilibrium.assemble(rest, rest, {});
-  return LooseMotions(problem, bodies).of(equilibrium.system().matrix());
+  return motions_of(problem).of(equilibrium.system().matrix());
 }
 
 TEST(LooseMotions, OfABodyThatNothingHoldsAreAllThatThereAre) {
@@ -53,12 +57,11 @@ TEST(LooseMotions, WeakSpringsResist) {
 
 TEST(LooseMotions, ThereAreNoneWhereContactHolds) {
   const StaticProblem problem = pressed_squares();
-  const Bodies bodies(problem.mesh);
   Equilibrium equilibrium(problem);
   StaticState state = equilibrium.natural_state();
   equilibrium.pair(state.displacement);
   state.patches = equilibrium.contact()->initial();
-  const LooseMotions motions(problem, bodies);
+  const LooseMotions motions = motions_of(problem);
   for (const Status status : {Status::active, Status::open}) {
     state.patches.status = {status};
     equilibrium.assemble(state, state, {});

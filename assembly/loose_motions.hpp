@@ -5,24 +5,26 @@
 #include <set>
 #include <vector>
 
+#include "lacon/assembly/rigid_motions.hpp"
 #include "lacon/assembly/sparse_matrix.hpp"
-#include "lacon/operators/evolution/rigid_motions.hpp"
 
 namespace lacon {
 
 struct LooseMotion {
-  std::int64_t dof;               ///< one that it moves most, of each motion another one
+  std::int64_t dof;               ///< place in Numbering::equation of what it moves most, of each motion another one
   std::set<std::int32_t> bodies;  ///< that it moves
 };
 
 class LooseMotions {
  public:
-  /// All arguments must outlive it.
-  LooseMotions(const StaticProblem& problem, const Bodies& bodies);
+  static constexpr double round_off = 1e-11;
+
+  LooseMotions(const RigidMotions& motions, const Numbering& numbering);
 
   /// Rigid motions of all bodies together, on the initial geometry, that the matrix maps to nothing but round-off: neither
   /// contact nor relations, springs or stresses resist them.
-  std::vector<LooseMotion> of(const SparseMatrix& matrix) const;
+  /// @param negligible of what the entries of a row sum up to, and of what resists most
+  std::vector<LooseMotion> of(const SparseMatrix& matrix, double negligible = round_off) const;
 
  private:
   /// A degree of freedom that has an equation, of a body that imposed displacements do not hold.

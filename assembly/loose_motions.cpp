@@ -1,4 +1,4 @@
-#include "lacon/operators/evolution/loose_motions.hpp"
+#include "lacon/assembly/loose_motions.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -6,7 +6,6 @@
 namespace lacon {
 namespace {
 
-constexpr double round_off = 1e-11;  // of what the entries of a row sum up to, and of what resists most
 constexpr double takes_part = 1e-6;  // of a motion: a body that it moves
 
 /// Rows of a matrix of few columns as its triangle, which has the same null space.
@@ -18,13 +17,13 @@ class Triangle {
     if (count_ == pending_.rows()) reduce();
   }
   /// (n_columns, n): combinations of columns that vanish.
-  Eigen::MatrixXd null_space() {
+  Eigen::MatrixXd null_space(double negligible) {
     reduce();
     if (rows_.rows() == 0) return Eigen::MatrixXd::Identity(rows_.cols(), rows_.cols());
     const Eigen::JacobiSVD<Eigen::MatrixXd> svd(rows_, Eigen::ComputeFullV);
     Eigen::Index rank = 0;
     while (rank < svd.singularValues().size() &&
-           svd.singularValues()[rank] > round_off * std::max(1.0, svd.singularValues()[0]))
+           svd.singularValues()[rank] > negligible * std::max(1.0, svd.singularValues()[0]))
       ++rank;
     return svd.matrixV().rightCols(rows_.cols() - rank);
   }
@@ -46,13 +45,17 @@ class Triangle {
 
 }  // namespace
 
-LooseMotions::LooseMotions(const StaticProblem& problem, const Bodies& bodies) {
-  const RigidMotions motions(problem, bodies);
+LooseMotions::LooseMotions(const RigidMotions& motions, const Numbering& numbering) {
+  const auto for_each_row = [&](const auto& use) {
+    for (std::int64_t dof = 0; dof < std::ssize(numbering.equation); ++dof)
+      if (const auto row = motions.row(dof / numbering.n_components, static_cast<int>(dof % numbering.n_components)))
+        use(dof, *row);
+  };
   std::map<std::int32_t, Eigen::Matrix<double, 6, 6>> held;
   for (const std::int32_t body : motions.bodies()) held[body].setZero();
-  for (std::size_t dof = 0; dof < problem.n_dofs(); ++dof)
-    if (problem.imposed[dof])
-      if (const auto row = motions.row(static_cast<std::int64_t>(dof))) held[row->body] += row->by * row->by.transpose();
+  for_each_row([&](std::int64_t dof, const RigidMotions::Row& row) {
+    if (numbering.equation[dof] < 0) held[row.body] += row.by * row.by.transpose();
+  });
   struct Left {
     std::int32_t first;
     Eigen::Matrix<double, 6, Eigen::Dynamic> motions;
@@ -65,16 +68,14 @@ LooseMotions::LooseMotions(const StaticProblem& problem, const Bodies& bodies) {
     bodies_.insert(bodies_.end(), static_cast<std::size_t>(free.cols()), body);
   }
   if (left.empty()) return;
-  for (std::size_t dof = 0; dof < problem.n_dofs(); ++dof) {
-    const std::int64_t equation = problem.numbering.equation[dof];
-    const auto row = equation < 0 ? std::nullopt : motions.row(static_cast<std::int64_t>(dof));
-    const auto own = row ? left.find(row->body) : left.end();
-    if (own == left.end()) continue;
-    moved_.push_back({static_cast<std::int64_t>(dof), equation, own->second.first, own->second.motions.transpose() * row->by});
-  }
+  for_each_row([&](std::int64_t dof, const RigidMotions::Row& row) {
+    const auto own = left.find(row.body);
+    if (numbering.equation[dof] < 0 || own == left.end()) return;
+    moved_.push_back({dof, numbering.equation[dof], own->second.first, own->second.motions.transpose() * row.by});
+  });
 }
 
-std::vector<LooseMotion> LooseMotions::of(const SparseMatrix& matrix) const {
+std::vector<LooseMotion> LooseMotions::of(const SparseMatrix& matrix, double negligible) const {
   if (moved_.empty()) return {};
   const auto columns = static_cast<Eigen::Index>(bodies_.size());
   std::vector<const Moved*> at(static_cast<std::size_t>(matrix.size()), nullptr);
@@ -113,9 +114,9 @@ std::vector<LooseMotion> LooseMotions::of(const SparseMatrix& matrix) const {
     if (image.most == 0) continue;
     put(image.first, image.own);
     for (const auto& [first, values] : image.others) put(first, values);
-    if (row.cwiseAbs().maxCoeff() > round_off) resistance.add(row);
+    if (row.cwiseAbs().maxCoeff() > negligible) resistance.add(row);
   }
-  Eigen::MatrixXd free = resistance.null_space();
+  Eigen::MatrixXd free = resistance.null_space(negligible);
 
   std::vector<LooseMotion> loose;
   for (Eigen::Index motion = 0; motion < free.cols(); ++motion) {
