@@ -15,10 +15,12 @@
 namespace lacon::hdf5 {
 namespace {
 
-/// HDF5 prints its own error stack unless told not to; our messages name the file and what was wanted. Each open file has half
-/// a megabyte of tables, which the next one takes over where the free lists may hold that much: fresh pages cost more than
-/// small files.
+/// Comes before any other call. A program's exit leaves HDF5 alone, which would close a file once more that could not be written,
+/// and crash. HDF5 prints its own error stack unless told not to; our messages name the file and what was wanted. Each open file
+/// has half a megabyte of tables, which the next one takes over where the free lists may hold that much: fresh pages cost more
+/// than small files.
 void prepare() {
+  H5dont_atexit();
   H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
   constexpr int bytes = 4 << 20;
   H5set_free_list_limits(bytes, bytes, bytes, bytes, bytes, bytes);
@@ -487,6 +489,7 @@ void write_sealed(const std::filesystem::path& file, const std::function<void(co
 
 void write_sealed_at_once(const std::filesystem::path& file, const std::function<void(const Group&)>& write) {
   write_as_partial(file, [&](const std::filesystem::path& partial) {
+    prepare();
     const Handle access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose);
     H5Pset_fapl_core(access, 1 << 16, false);
     const Handle opened = new_file(partial, access);

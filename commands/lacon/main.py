@@ -2,11 +2,10 @@
 
 import argparse
 import importlib
-import os
 import sys
 
 from . import version
-from .core import outcome
+from .core import outcome, streams
 from .core.plugins import operator_folder
 
 #: `lacon NAME ...` that is no study: modules of tools/
@@ -64,6 +63,7 @@ def parse(arguments):
 def main(arguments=None):
     """@return the exit status"""
     arguments = sys.argv[1:] if arguments is None else arguments
+    streams.open_closed()
     sys.stdout.reconfigure(line_buffering=sys.stdout.isatty())
     if arguments and arguments[0] in tools:
         tool = importlib.import_module(f".tools.{arguments[0]}", __package__)
@@ -72,7 +72,7 @@ def main(arguments=None):
             sys.stdout.flush()
             return status
         except BrokenPipeError:  # `lacon help STAT_NON_LINE | head`: who reads has seen enough
-            os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())  # what is still to be written at exit goes nowhere
+            streams.let_go()
             return outcome.done
     asked, options = parse(arguments)
     launch = importlib.import_module(".run.launch", __package__)  # --help, --version, help and inspect start without
@@ -84,5 +84,8 @@ def main(arguments=None):
             return status
     else:
         status, diagnostic = outcome.guarded(lambda: launch.run_command_line(options, units))
-    print(f"--- DIAGNOSTIC JOB : {diagnostic}", flush=True)
+    try:
+        print(f"--- DIAGNOSTIC JOB : {diagnostic}", flush=True)
+    except BrokenPipeError:
+        streams.let_go()
     return status

@@ -42,7 +42,7 @@ void end_with_launcher() {
 void wait_with_ending() {
   struct sigaction action = {};
   action.sa_handler = remember;
-  for (const int signal : {SIGTERM, SIGINT, SIGHUP}) {
+  for (const int signal : {SIGTERM, SIGINT, SIGHUP, SIGPIPE, SIGXCPU}) {
     struct sigaction before = {};
     sigaction(signal, nullptr, &before);
     if (before.sa_handler != SIG_IGN) sigaction(signal, &action, nullptr);  // nohup stays what it is
@@ -57,6 +57,10 @@ const char* ending() {
       return "SIGINT";
     case SIGHUP:
       return "SIGHUP";
+    case SIGPIPE:
+      return "SIGPIPE";
+    case SIGXCPU:
+      return "SIGXCPU";
     default:
       return nullptr;
   }

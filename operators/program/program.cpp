@@ -1,10 +1,13 @@
 #include "lacon/operators/program/program.hpp"
 
+#include <fcntl.h>
 #include <fmt/format.h>
+#include <unistd.h>
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <chrono>
+#include <csignal>
 #include <fstream>
 #include <iostream>
 #include <nlohmann/json.hpp>
@@ -85,8 +88,17 @@ std::string version() {
          (blas ? fmt::format("\n{}, kernel {}, {} thread(s)", blas->library, blas->kernel, blas->threads) : std::string());
 }
 
+/// A standard stream that the caller has closed leads nowhere, so that no file of the base gets its number; a file that grows
+/// beyond the shell's limit (ulimit -f) cannot be written, as on a full disk.
+void set_up_files() {
+  for (const int stream : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO})
+    if (fcntl(stream, F_GETFD) < 0) open("/dev/null", O_RDWR);
+  std::signal(SIGXFSZ, SIG_IGN);
+}
+
 /// Read the command line, which adds the options that every program has, then do the work.
 int run(int argc, char** argv, CLI::App& app, const std::function<void()>& work) {
+  set_up_files();
   set_up_blas(argv);
   std::string status_file;
   app.add_option("--status", status_file, "write the outcome to this JSON file");

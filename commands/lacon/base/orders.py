@@ -1,6 +1,7 @@
 """Orders: one command with complete keywords, handed to the executable of its operator; docs/structures.md section 4."""
 
 import contextlib
+import errno
 import json
 import os
 import shutil
@@ -11,7 +12,7 @@ import sys
 import threading
 import time
 
-from ..core import late
+from ..core import late, streams
 from ..core.concepts import to_json
 from ..core.messages import AsterError, ConvergenceError, InternalError, Message, SolutionError, fail, message
 from ..core.plugins import operator_folder
@@ -19,8 +20,10 @@ from . import expressions
 
 #: seconds that an operator has to end; it needs less
 patience = 1.8
-#: what messages of a solution that failed in the linear solver begin with; any other is one of Newton's method
-linear_solver = "SOLVER_"
+#: what messages of a solution that failed in the linear solver, or for want of memory, begin with; any other is one of Newton's method
+not_newton = ("SOLVER_", "MEMORY_")
+#: what an operator says that a signal has ended between two instants
+ended_by_signal = "EVOLUTION_30"
 #: takes away the line of a terminal in which it stands
 _empty_line = b"\r\033[K"
 
@@ -159,19 +162,23 @@ def _forward(stream, ignored, terminal):
         elif not line.startswith("    "):
             hidden = False
         if not hidden:
-            sys.stderr.write(empty_line + line)
-    sys.stderr.flush()
+            with contextlib.suppress(BrokenPipeError):  # the operator goes on speaking
+                sys.stderr.write(empty_line + line)
+    with contextlib.suppress(BrokenPipeError):
+        sys.stderr.flush()
 
 
 def raise_failure(outcome, program, where):
     """The Python exception of an operator that did not end with 0."""
     fatal = [m for m in outcome.messages if m.severity in "FS"]
+    if (outcome.status == -signal.SIGPIPE or any(m.id == ended_by_signal for m in fatal)) and streams.readers_gone():
+        raise BrokenPipeError(errno.EPIPE, os.strerror(errno.EPIPE))
     if outcome.status == 2:
         raise AsterError(fatal or [message("COMMAND_6", where, program=program)], shown=bool(fatal))
     if outcome.status == 3:
         items = fatal or [message("COMMAND_7", where, program=program)]
-        linear = any(m.id.startswith(linear_solver) for m in items)
-        raise (SolutionError if linear else ConvergenceError)(items, shown=bool(fatal))
+        newton = not any(m.id.startswith(not_newton) for m in items)
+        raise (ConvergenceError if newton else SolutionError)(items, shown=bool(fatal))
     if outcome.status in (126, 127):  # as the loader and shells say it
         raise InternalError([message("INTERNAL_4", where, program=program, folder=operator_folder())])
     if outcome.status < 0:

@@ -14,7 +14,7 @@ import traceback
 import warnings
 
 from ..base import names as namespace
-from ..core import labels, messages
+from ..core import labels, messages, streams
 from ..core.messages import AsterError, fail, message, show
 from ..core.nearest import nearest
 from ..peer import modules
@@ -67,7 +67,7 @@ def signals():
     def end(number, _):
         raise Ended(number)
 
-    before = {number: signal.getsignal(number) for number in (signal.SIGTERM, signal.SIGHUP, signal.SIGINT)}
+    before = {number: signal.getsignal(number) for number in (signal.SIGTERM, signal.SIGHUP, signal.SIGINT, signal.SIGXCPU)}
     for number, handler in before.items():
         if handler is not signal.SIG_IGN:
             signal.signal(number, end)
@@ -76,6 +76,19 @@ def signals():
     finally:
         for number, handler in before.items():
             signal.signal(number, handler)
+
+
+@contextlib.contextmanager
+def readers():
+    """Raise Ended where whoever reads the output has gone, as after `lacon study.comm | head`; what is still to be said then leads nowhere."""
+    try:
+        yield
+    except BaseException as error:
+        gone = streams.readers_gone()
+        streams.let_go()
+        if gone and isinstance(error, BrokenPipeError):
+            raise Ended(signal.SIGPIPE) from None
+        raise
 
 
 @contextlib.contextmanager
@@ -155,7 +168,8 @@ def _run_file(study, path, source, values):
     if folder not in sys.path:
         sys.path.insert(0, folder)
     try:
-        exec(_compiled(path, source), values)
+        with readers():
+            exec(_compiled(path, source), values)
     except AsterError as error:
         _report(error)
         raise Failure(error.status, error.diagnostic) from None

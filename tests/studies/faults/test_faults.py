@@ -206,7 +206,7 @@ class Ends(FaultTest):
         self.assertEqual(self.ended_by(signal.SIGKILL)[0], -signal.SIGKILL)
 
     def test_the_launcher_is_asked_to_end(self):
-        for number in (signal.SIGTERM, signal.SIGINT, signal.SIGHUP):
+        for number in (signal.SIGTERM, signal.SIGINT, signal.SIGHUP, signal.SIGXCPU):
             status, text = self.ended_by(number)
             self.assertEqual(status, 4, text)
             self.assertIn(f"<F> <STUDY_18> the run was ended by {number.name}\n    where: {STUDY}:", text)
@@ -218,6 +218,24 @@ class Ends(FaultTest):
         status, text = self.ended_by(signal.SIGINT, lambda run: os.getpgid(run.pid), os.killpg)
         self.assertEqual(status, 4, text)
         self.assertIn(f"<F> <STUDY_18> the run was ended by SIGINT\n    where: {STUDY}:", text)
+
+    def test_whoever_reads_the_output_goes(self):
+        """As after `lacon study.comm | head`; `both`: after `lacon study.comm 2>&1 | head`."""
+        for both in (False, True):
+            with open(self.folder / "log", "w+", encoding="utf-8") as log:
+                run = subprocess.Popen(self.command("s.base"), cwd=self.folder, env={**os.environ, **self.environment}, text=True,
+                                       stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.STDOUT if both else log)
+                told = converged(self.until(run, 2))
+                operator = operator_of(run.pid)
+                run.stdout.close()
+                self.assertEqual(run.wait(SECONDS), 4)
+                self.assertFalse(is_alive(operator))
+                log.seek(0)
+                said = log.read()
+            self.assertNotIn("Traceback", said)
+            self.assertTrue(both or "<F> <STUDY_18> the run was ended by SIGPIPE" in said, said)
+            self.assertEqual(self.instants("s.base")[:2], told[:2])
+            shutil.rmtree(self.folder / "s.base")
 
     def test_the_time_limit_is_over(self):
         (self.folder / "s.export").write_text(f"P time_limit 1.5\nF comm {STUDY} D 1\nF libr {self.folder}/stack.med D 20\n", encoding="utf-8")

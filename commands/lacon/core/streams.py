@@ -1,0 +1,37 @@
+"""Standard input, output and error: one that the caller has closed, and one whose reader has gone."""
+
+import os
+import select
+import sys
+
+
+def open_closed():
+    """A stream that the caller has closed (`>&-`) leads nowhere; otherwise the next file that is opened, one of the base's, would get its number."""
+    for number, name, mode in ((0, "stdin", "r"), (1, "stdout", "w"), (2, "stderr", "w")):
+        try:
+            os.fstat(number)
+        except OSError:
+            os.open(os.devnull, os.O_RDWR)  # gets the lowest number that is free, which is this one
+            os.set_inheritable(number, True)
+        if getattr(sys, name) is None:
+            setattr(sys, name, open(number, mode, encoding="utf-8", errors="backslashreplace", closefd=False))
+
+
+def readers_gone():
+    """Whether nobody reads the output or the log any more (`lacon study.comm | head`)."""
+    return any(_has_lost_its_reader(stream) for stream in (sys.stdout, sys.stderr))
+
+
+def let_go():
+    """What is still to be said where nobody reads it leads nowhere."""
+    for stream in (sys.stdout, sys.stderr):
+        if _has_lost_its_reader(stream):
+            nowhere = os.open(os.devnull, os.O_WRONLY)
+            os.dup2(nowhere, stream.fileno())
+            os.close(nowhere)
+
+
+def _has_lost_its_reader(stream):
+    poll = select.poll()
+    poll.register(stream.fileno(), 0)
+    return any(event & select.POLLERR for _, event in poll.poll(0))

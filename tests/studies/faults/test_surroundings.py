@@ -1,0 +1,42 @@
+"""What a shell or a batch system may give a run: standard streams that are closed, limits of files. The study comes to the same end, or says what is
+wrong and comes to it when it is run again."""
+
+import pathlib
+import subprocess
+import sys
+
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1]))
+
+from study_test import LACON, SECONDS  # noqa: E402, I001
+from test_threads import datasets  # noqa: E402
+
+from .small_study import SmallStudy  # noqa: E402
+
+UNITS = "--unit 20=blocks.med --unit 80=s.rmed --unit 81=s.vtu --unit 8=s.txt"
+
+
+class Surroundings(SmallStudy):
+    def shell(self, line):
+        """A line of a shell in which LACON runs the study. @return the process"""
+        line = line.replace("LACON", f"'{LACON}' study.comm --base s.base {UNITS}")
+        return subprocess.run(["sh", "-c", line], cwd=self.folder, capture_output=True, text=True, timeout=SECONDS, check=False)
+
+    def test_streams_that_are_closed(self):
+        self.assertEqual(self.run_small("whole").returncode, 0)
+        expected = datasets(self.folder / "whole.base")
+        for closed in (">&-", "<&- >&- 2>&-"):
+            run = self.shell(f"LACON --fresh {closed}")
+            self.assertEqual(run.returncode, 0, f"{closed}: {run.stdout[-500:]}{run.stderr}")
+            self.assertNotIn("Traceback", run.stdout + run.stderr)
+            found = datasets(self.folder / "s.base")
+            self.assertEqual([key for key in expected if key[0].endswith(".h5") and found.get(key) != expected[key] and "index" not in key[0]], [])
+
+    def test_files_may_not_grow_beyond_a_limit(self):
+        """`ulimit -f`, in blocks of 512 bytes: as a disk that is full."""
+        for blocks in (1, 20):
+            run = self.shell(f"ulimit -f {blocks}; LACON")
+            self.assertEqual(run.returncode, 2, f"{blocks}: {run.stdout[-500:]}{run.stderr}")
+            self.assertIn("File too large", run.stderr)
+            self.assertNotIn("Traceback", run.stderr)
+        run = self.shell("LACON")
+        self.assertEqual(run.returncode, 0, run.stderr)
