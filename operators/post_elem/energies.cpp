@@ -8,6 +8,7 @@
 #include "lacon/operators/fields/mechanics.hpp"
 #include "lacon/operators/fields/result_materials.hpp"
 #include "lacon/operators/fields/selection.hpp"
+#include "lacon/operators/post_elem/parts.hpp"
 #include "lacon/structures/displacement.hpp"
 
 namespace lacon {
@@ -44,26 +45,6 @@ void refuse_large_strain(const Result& result, const std::string& keyword) {
       fail("POSTELEM_4", {{"keyword", keyword}, {"deformation", deformation}, {"label", result.label}});
 }
 
-/// "TOUT" and the body cells of the model, or each group and its cells: entity, place, cells.
-struct Part {
-  std::string entity, place;
-  std::vector<char> cells;
-};
-
-std::vector<Part> parts_of(Subject& subject, const Keywords& factor) {
-  std::vector<Part> parts;
-  if (!factor.has("GROUP_MA")) {
-    parts.push_back({"TOUT", "TOUT", std::vector<char>(subject.mesh.n_cells())});
-    for (std::size_t c = 0; c < subject.mesh.n_cells(); ++c) parts.back().cells[c] = subject.points.is_solid(c);
-  }
-  for (const std::string& group : factor.texts("GROUP_MA")) {
-    parts.push_back({"GROUP_MA", group, std::vector<char>(subject.mesh.n_cells())});
-    for (const std::int32_t cell : cells_of_group(subject.mesh, group, factor.path("GROUP_MA")))
-      parts.back().cells[static_cast<std::size_t>(cell)] = 1;
-  }
-  return parts;
-}
-
 }  // namespace
 
 Table energies(const Order& order, const Base& base, const std::string& keyword) {
@@ -86,7 +67,7 @@ Table energies(const Order& order, const Base& base, const std::string& keyword)
     double whole = 0;
     for (const double value : sums.values) whole += value;
     for (const Keywords& factor : order.keywords.factors(keyword))
-      for (const Part& part : parts_of(subject, factor)) {
+      for (const Part& part : parts_of(subject.mesh, subject.points, factor)) {
         double sum = 0;
         for (std::size_t i = 0; i < sums.support.size(); ++i)
           if (part.cells[static_cast<std::size_t>(sums.support[i])]) sum += sums.values[i];

@@ -14,6 +14,7 @@
 #include "lacon/operators/fields/layout.hpp"
 #include "lacon/operators/fields/selection.hpp"
 #include "lacon/operators/post_elem/energies.hpp"
+#include "lacon/operators/post_elem/inertia.hpp"
 
 namespace lacon {
 namespace {
@@ -258,6 +259,7 @@ void post_elem(const Order& order, const Base& base) {
   for (const char* const keyword : {"ENER_ELAS", "ENER_POT"})
     if (order.keywords.has(keyword)) return base.store(energies(order, base, keyword));
   if (order.keywords.has("TRAV_EXT")) return base.store(external_work(order, base));
+  if (order.keywords.has("MASS_INER")) return base.store(inertia(order, base));
   static const std::vector<std::pair<const char*, Table (*)(Subject&)>> kinds{
       {"NORME", norms}, {"INTEGRALE", integrals}, {"MINMAX", extremes}};
   std::optional<Table> table;

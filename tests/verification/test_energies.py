@@ -47,6 +47,44 @@ for result, shift in ((R[0], 0), (R[1], 1)):
         self.assertEqual(np.abs(result.field("VARI_ELNO", 2)[1]["V1"]).max(), 0)
 
 
+class Masses(LoadTest):
+    def test_masses_of_bricks_tubes_and_sheets(self):
+        """Closed forms: a brick, also turned and about its corner; a sheet for each unit of thickness; a tube, axisymmetric, all round."""
+        run = self.run_text([flat_brick("HEXA20"), flat_block("QUAD8"), flat_block("QUAD8", start=1.0)], """
+from math import pi
+def masses(**factor):
+    table = POST_ELEM(MASS_INER=_F(**factor), MODELE=MODEL, CHAM_MATER=FIELD).EXTR_TABLE()
+    assert len(table) == 1 and table.LIEU[0] == factor.get('GROUP_MA', 'TOUT')
+    return {name: values[0] for name, values in table.values().items()}
+def near(found, **exact):
+    for name, value in exact.items():
+        assert abs(found[name] - value) <= 1e-12 * (1 + abs(value)), (name, found[name], value)
+def moments(mass, a, b, c):
+    return mass * (b**2 + c**2) / 12, mass * (a**2 + c**2) / 12, mass * (a**2 + b**2) / 12
+model(20, '3D')
+x, y, z = moments(9, 2, 1, 1.5)
+near(masses(TOUT='OUI', ORIG_INER=(0., 0., 0.)), MASSE=9, CDG_X=1, CDG_Y=0.5, CDG_Z=0.75, IX_G=x, IY_G=y, IZ_G=z, IXY_G=0, IXZ_G=0, IYZ_G=0,
+     IX_PRIN_G=x, IY_PRIN_G=z, IZ_PRIN_G=y, X_P=0, IX_P=x + 9 * (0.5**2 + 0.75**2), IXY_P=9 * 0.5, IXZ_P=9 * 0.75, IYZ_P=9 * 0.375)
+MESH = MODI_MAILLAGE(reuse=MESH, MAILLAGE=MESH, ROTATION=_F(POIN_1=(0., 0., 0.), DIR=(0., 0., 1.), ANGLE=30.))
+near(masses(GROUP_MA='BODY'), MASSE=9, IX_PRIN_G=x, IY_PRIN_G=z, IZ_PRIN_G=y, IZ_G=z, IXY_G=9 / 12 * (2**2 - 1**2) * 3**0.5 / 4)
+model(21, 'C_PLAN')
+x, y, z = moments(6, 2, 1, 0)
+near(masses(), MASSE=6, CDG_X=1, CDG_Y=0.5, CDG_Z=0, IX_G=x, IY_G=y, IZ_G=x + y, IX_PRIN_G=x, IY_PRIN_G=y, IZ_PRIN_G=x + y)
+near(masses(ORIG_INER=(1., 0.)), IX_P=x + 6 * 0.25, IY_P=y, Z_P=0)
+model(22, 'AXIS')
+m = 3 * pi * (9 - 1)
+near(masses(), MASSE=m, CDG_X=0, CDG_Y=0.5, IY_G=m * 10 / 2, IX_G=m * (10 / 4 + 1 / 12), IZ_G=m * (10 / 4 + 1 / 12), IXY_G=0)
+for error, factor in (('POSTELEM_5', _F(GROUP_MA='RIGHT')), ('MESH_1', _F(GROUP_MA='NONE'))):
+    try:
+        POST_ELEM(MASS_INER=factor, MODELE=MODEL, CHAM_MATER=FIELD)
+    except AsterError as refusal:
+        assert error in str(refusal), refusal
+    else:
+        assert False
+""")
+        self.assertEqual(run.status, 0, run.stdout[-3000:] + run.stderr[-3000:])
+
+
 class InitialState(LoadTest):
     def test_a_state_of_fields_goes_on_as_the_computation_it_came_from(self):
         """Plastic: DEPL, SIGM and VARI at half the load and on to the whole one, as in one run; elastic: stresses that balance a load
