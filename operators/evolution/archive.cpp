@@ -33,11 +33,11 @@ ArchiveChoice::ArchiveChoice(const Keywords& keywords, const Base& base) : insta
 }
 
 Archive::Archive(const Order& order, const Base& base, const Present& present, const std::optional<Origin>& origin,
-                 const Observations& observations, bool resumes)
+                 std::function<std::map<std::string, Table>()> tables, bool resumes)
     : base_(base),
       present_(present),
       fields_(fields_of(present)),
-      observations_(observations),
+      tables_(std::move(tables)),
       choice_(order.keywords.factor("ARCHIVAGE"), base) {
   const Keywords& keywords = order.keywords;
   result_.label = order.result_label;
@@ -86,8 +86,7 @@ void Archive::go_on(const Order& order, const std::optional<Origin>& origin) {
     for (const auto& [number, file] : files)
       if (number <= origin->order) result_.fields[name][number] = file;
   taken_over_ = result_.orders.size();
-  if (const auto observed = result_.tables.find("OBSERVATION"); observed != result_.tables.end())
-    drop_behind(observed->second, result_.instants.back());
+  for (auto& [name, table] : result_.tables) drop_behind(table, result_.instants.back());
 }
 
 void Archive::start(double instant) {
@@ -136,7 +135,7 @@ void Archive::store(bool complete) {
   const Phase phase("archive");
   Result result = result_;
   result.complete = complete;
-  if (const auto& observed = observations_.table()) add_observed(result, *observed);
+  for (const auto& [name, table] : tables_()) add_table(result, name, table);
   base_.store(result);
   stored_ = true;
 }
@@ -179,13 +178,13 @@ void Archive::add_balance(const std::vector<ZoneBalance>& zones) {
   }
 }
 
-/// Behind what the result that goes on has observed; NUME_REUSE counts its computations.
-void Archive::add_observed(Result& result, const Table& observed) {
-  const auto [at, first] = result.tables.try_emplace("OBSERVATION", observed);
+/// Behind what the result that goes on has in that table; NUME_REUSE counts its computations.
+void Archive::add_table(Result& result, const std::string& name, const Table& table) {
+  const auto [at, first] = result.tables.try_emplace(name, table);
   if (first) return;
-  for (std::size_t c = 0; c < observed.columns.size(); ++c) {
+  for (std::size_t c = 0; c < table.columns.size(); ++c) {
     Table::Column& column = at->second.columns[c];
-    std::vector<Table::Cell> cells = observed.columns[c].cells;
+    std::vector<Table::Cell> cells = table.columns[c].cells;
     if (column.name == "NUME_REUSE" && !column.cells.empty())
       cells.assign(cells.size(), std::get<std::int64_t>(column.cells.back()) + 1);
     column.cells.insert(column.cells.end(), cells.begin(), cells.end());

@@ -1,6 +1,8 @@
 #pragma once
 // The result of a computation as it grows: fields and parameters of the instants that are kept. From the first solved instant
 // on its index is in the base, and replaced with each further one, so that whatever ends the computation loses none of them.
+#include <functional>
+#include <map>
 #include <optional>
 #include <set>
 #include <string>
@@ -27,10 +29,10 @@ class ArchiveChoice {
 class Archive : public EvolutionObserver {
  public:
   /// With `reuse` the instants of the result up to the initial state are taken over: throws EVOLUTION_12 where that cannot be.
-  /// @param observations whose table is stored with the result; all arguments must outlive it
+  /// @param tables stored with the result as they are at the time, by name; all arguments must outlive it
   /// @param resumes resume() follows, which knows what was taken over
   Archive(const Order& order, const Base& base, const Present& present, const std::optional<Origin>& origin,
-          const Observations& observations, bool resumes = false);
+          std::function<std::map<std::string, Table>()> tables, bool resumes = false);
 
   void start(double instant) override;
   void begin(double instant) override;
@@ -54,12 +56,12 @@ class Archive : public EvolutionObserver {
   void add(double instant, int iterations);
   void store(bool complete);
   void add_balance(const std::vector<ZoneBalance>& zones);
-  static void add_observed(Result& result, const Table& observed);
+  static void add_table(Result& result, const std::string& name, const Table& table);
   void put(const std::string& parameter, double value) { result_.parameters[parameter].push_back(value); }
   const Base& base_;
   Present present_;
   FieldMakers fields_;
-  const Observations& observations_;
+  std::function<std::map<std::string, Table>()> tables_;
   ArchiveChoice choice_;
   Pivots pivots_;
   Result result_;

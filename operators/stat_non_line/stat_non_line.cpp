@@ -7,6 +7,7 @@
 #include "lacon/catalog/messages.hpp"
 #include "lacon/operators/evolution/archive.hpp"
 #include "lacon/operators/evolution/contact_notices.hpp"
+#include "lacon/operators/evolution/energy_balance.hpp"
 #include "lacon/operators/evolution/interruption.hpp"
 #include "lacon/operators/evolution/journal.hpp"
 #include "lacon/operators/evolution/linear_solver.hpp"
@@ -127,7 +128,14 @@ void stat_non_line(const Order& order, const Base& base) {
   QuasiStatic solver(problem, newton_options(keywords, steps), engine_of(keywords.factor("SOLVEUR"), base, problem));
   const Present present = solver.present(problem);
   Observations observations(keywords, base, problem.mesh, observed_fields_of(present));
-  Archive archive(order, base, present, origin, observations, record.has_value());
+  EnergyBalance energies(keywords.has("ENERGIE"), present);
+  const auto tables = [&] {
+    std::map<std::string, Table> kept;
+    if (const auto& observed = observations.table()) kept["OBSERVATION"] = *observed;
+    if (const auto& works = energies.table()) kept["PARA_CALC"] = *works;
+    return kept;
+  };
+  Archive archive(order, base, present, origin, tables, record.has_value());
   if (origin)
     solver.begin(archived_state(problem, base, origin->result, origin->order), origin->result.label);
   else if (!record && keywords.has("ETAT_INIT"))
@@ -139,7 +147,11 @@ void stat_non_line(const Order& order, const Base& base) {
   StepEvents events(steps.events, base, problem.mesh, fields_of(present));
   ContactNotices notices(present);
   RestartRecord restart(base, begins, solver, archive,
-                        {{"archive", &archive}, {"events", &events}, {"notices", &notices}, {"observations", &observations}});
+                        {{"archive", &archive},
+                         {"energies", &energies},
+                         {"events", &events},
+                         {"notices", &notices},
+                         {"observations", &observations}});
   if (only_checks()) return;
   Interruption interruption;
   wait_with_ending();
@@ -147,8 +159,8 @@ void stat_non_line(const Order& order, const Base& base) {
   Journal journal(base.result_folder(), steps, reached(past, steps.values.front()), solver.criteria(), present);
   Progress progress(steps.values);
   // what is told as converged is in the base
-  const std::array<EvolutionObserver*, 9> observers{&observations, &notices, &archive,  &restart,     &table,
-                                                    &journal,      &events,  &progress, &interruption};
+  const std::array<EvolutionObserver*, 10> observers{&observations, &energies, &notices, &archive,  &restart,
+                                                     &table,        &journal,  &events,  &progress, &interruption};
   evolve(steps, solver, observers, past);
 }
 

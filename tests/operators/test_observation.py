@@ -78,6 +78,19 @@ class Observation(TwoSquares):
         with h5py.File(self.path("result_9")) as file:
             self.assertNotIn("tables", file)
 
+    def test_works_along_the_displacements(self):
+        """ENERGIE: half the pressure times what its side moves, stored in the squares; contact and supports do no work, and the table is there at every instant."""
+        self.write_list("list_of_reals_11", [0.0, 0.5, 1.0])
+        self.write_function("function_10", [0.0, 1.0], [0.0, 1.0])
+        loads = ["load_5", {"CHARGE": concept("load_6"), "FONC_MULT": concept("function_10")}]
+        for changes, instants in (({}, [0.0, 1.0]), ({"loads": loads, "INCREMENT": {"LIST_INST": concept("list_of_reals_11")}}, [0.0, 0.5, 1.0])):
+            self.assertEqual(self.solve(ENERGIE=[{}], **changes).status, 0)
+            with h5py.File(self.path("result_9")) as file:
+                table = self.read_table(file["tables/PARA_CALC"])
+            work = -PRESSURE * 2 * EYY / 2
+            self.assert_rows(table, ["NUME_REUSE", "INST", "TRAV_EXT", "ENER_CIN", "ENER_TOT", "TRAV_AMOR", "TRAV_LIAI", "DISS_SCH"],
+                             [[0, t, work * t**2, 0.0, work * t**2, 0.0, 0.0, 0.0] for t in instants])
+
     def test_what_cannot_be_observed_is_refused_before_the_first_instant(self):
         for identifier, occurrence, words in (
                 ("OBSERVATION_1", {"NOM_CHAM": "SIEF_NOEU", "NOM_CMP": ["SIYY"]}, ["SIEF_NOEU"]),

@@ -47,6 +47,37 @@ for result, shift in ((R[0], 0), (R[1], 1)):
         self.assertEqual(np.abs(result.field("VARI_ELNO", 2)[1]["V1"]).max(), 0)
 
 
+class Balance(LoadTest):
+    def test_what_forces_and_supports_give_is_stored(self):
+        """ENERGIE of a sheet (2 x 1) stretched by a tension, by its end that is moved, and on with reuse=; the work of supports is TRAV_LIAI."""
+        run = self.run_text([flat_block("QUAD8")], STRETCH + f"""
+exact = 30.0**2 / (2 * {YOUNG}) * 2.0
+def works(result):
+    return RECU_TABLE(CO=result, NOM_TABLE='PARA_CALC').EXTR_TABLE().values()
+def near(found, *values):
+    assert len(found) == len(values) and all(abs(a - b) < 1e-9 * exact for a, b in zip(found, values)), (found, values)
+stretched(20, 'C_PLAN')
+solve(*LOADS, ENERGIE=_F())
+found = works(R[0])
+near(found['INST'], 0, 0.5, 1)
+near(found['TRAV_EXT'], 0, exact / 4, exact)
+near(found['ENER_TOT'], 0, exact / 4, exact)
+near(found['TRAV_LIAI'], 0, 0, 0)
+R[0] = STAT_NON_LINE(reuse=R[0], RESULTAT=R[0], MODELE=MODEL, CHAM_MATER=FIELD, EXCIT=LOADS, ETAT_INIT=_F(EVOL_NOLI=R[0], INST=0.5), ENERGIE=_F(),
+                     INCREMENT=_F(LIST_INST=TIMES), ARCHIVAGE=_F(DETR_NUME_SUIV='OUI'), CONVERGENCE=_F(RESI_GLOB_RELA=1e-10))
+found = works(R[0])
+assert found['NUME_REUSE'] == [0, 0, 1, 1] and found['INST'] == [0, 0.5, 0.5, 1], found
+near(found['TRAV_EXT'], 0, exact / 4, 0, exact * 3 / 4)
+PULL = AFFE_CHAR_CINE(MODELE=MODEL, MECA_IMPO=_F(GROUP_MA='RIGHT', DX=30.0 / {YOUNG} * 2.0))
+solve(LOADS[0], _F(CHARGE=PULL, FONC_MULT=RAMP), ENERGIE=_F())
+found = works(R[1])
+near(found['TRAV_EXT'], 0, 0, 0)
+near(found['ENER_TOT'], 0, exact / 4, exact)
+near(found['TRAV_LIAI'], 0, -exact / 4, -exact)
+""")
+        self.assertEqual(run.status, 0, run.stdout[-3000:] + run.stderr[-3000:])
+
+
 class Masses(LoadTest):
     def test_masses_of_bricks_tubes_and_sheets(self):
         """Closed forms: a brick, also turned and about its corner; a sheet for each unit of thickness; a tube, axisymmetric, all round."""
