@@ -12,8 +12,9 @@ import importlib
 version = "0.1.0"
 
 #: name -> module of this package that has it; imported when it is first asked for, so that the launcher starts quickly
-_offered = {"open": "reader.base:open_base", "Base": "reader.base:Base", "Mesh": "reader.mesh:Mesh", "Result": "reader.result:Result",
-            "Field": "reader.result:Field", "Patches": "reader.result:Patches", "run_study": "run.session:run_study", "Run": "run.session:Run",
+_offered = {"open": "reader.base:open_base", "Base": "reader.base:Base", "Mesh": "reader.mesh:Mesh", "States": "reader.result:States",
+            "Result": "reader.result:Result", "FailedStep": "reader.result:FailedStep", "Field": "reader.result:Field",
+            "Patches": "reader.result:Patches", "run_study": "run.session:run_study", "Run": "run.session:Run",
             "RunFailed": "run.session:RunFailed", "Study": "run.session:Study", "Error": "core.messages:AsterError"}
 __all__ = [*_offered, "version"]
 

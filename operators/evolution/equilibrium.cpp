@@ -327,6 +327,13 @@ ForceFigures Equilibrium::forces(const StaticState& state, const StaticState& pr
   return figures;
 }
 
+std::vector<double> Equilibrium::unbalanced() const {
+  std::vector<double> forces(problem_.n_dofs(), 0.0);
+  for (std::size_t dof = 0; dof < forces.size(); ++dof)
+    if (!problem_.imposed[dof] && problem_.numbering.equation[dof] >= 0) forces[dof] = system_.residual()[dof] - external_[dof];
+  return forces;
+}
+
 std::vector<double> Equilibrium::internal_forces(const StaticState& state) const {
   const std::vector<double>& residual = system_.residual();
   std::vector<double> forces(residual.begin(), residual.begin() + static_cast<std::ptrdiff_t>(problem_.n_dofs()));

@@ -75,6 +75,9 @@ class Equilibrium {
 
   /// What the last assembly says of the balance of `state`.
   ForceFigures forces(const StaticState& state, const StaticState& previous) const;
+  /// What is left of the forces at the last assembly, internal less external, (n_nodes, n_components); 0 where nothing is
+  /// unknown.
+  std::vector<double> unbalanced() const;
   /// What stresses and springs resist with at the last assembly, (n_nodes, n_components). @param state of that assembly
   std::vector<double> internal_forces(const StaticState& state) const;
   MotionFigures motion(std::span<const double> increment, const StaticState& state) const;

@@ -39,6 +39,7 @@ void evolve(const TimeSteps& steps, InstantSolver& solver, std::span<EvolutionOb
       tell([&](EvolutionObserver& o) { o.judge(instant); });
     } catch (const Error& error) {
       course.back().failure.emplace(error.message(), nature_of(error));
+      tell([&](EvolutionObserver& o) { o.failed(instant, error); });
       throw;
     }
   };

@@ -62,6 +62,7 @@ class EvolutionObserver {
   virtual void begin(double /*instant*/) {}                            ///< an instant is tried
   virtual void iterate(double /*instant*/, const IterationReport&) {}  ///< after each iteration
   virtual void judge(double /*instant*/) {}                            ///< solved, but not yet accepted
+  virtual void failed(double /*instant*/, const Error&) {}             ///< the solver stands where it gave up
   virtual void accept(const SolvedInstant&) {}
   virtual void end(bool /*completed*/) {}  ///< always, whatever ends the computation
   /// What it remembers of the instants so far, for another process that goes on; resume() is called there instead of start().

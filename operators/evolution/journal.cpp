@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
+#include "lacon/operators/evolution/failed_step.hpp"
 #include "lacon/operators/program/blas.hpp"
 #include "lacon/operators/program/machine.hpp"
 #include "lacon/operators/program/program.hpp"
@@ -82,7 +83,7 @@ void Journal::accept(const SolvedInstant& solved) {
 
 void Journal::end(bool completed) {
   out_ << nlohmann::json{{"event", "end"}, {"completed", completed}, {"at", seconds()}} << std::endl;
-  if (completed || exists(folder_ / "index.h5")) return;
+  if (completed || exists(folder_ / "index.h5") || exists(folder_ / failed_step_file)) return;
   out_.close();
   std::error_code error;
   std::filesystem::remove(folder_ / name, error);

@@ -22,7 +22,7 @@ class Journal : public EvolutionObserver {
   void begin(double instant) override;
   void iterate(double instant, const IterationReport& report) override;
   void accept(const SolvedInstant& solved) override;
-  /// A journal of a computation that leaves no result goes.
+  /// A journal of a computation that leaves neither result nor iterates of a failed step goes.
   void end(bool completed) override;
 
  private:

@@ -63,7 +63,8 @@ class Newton {
   void start_from(const StaticState& state) { equilibrium_.start_from(state); }
   /// The contact at the last evaluation; nullptr without contact.
   const ContactState* contact() const { return equilibrium_.contact(); }
-  /// Equilibrium::internal_forces
+  /// Equilibrium::unbalanced, internal_forces
+  std::vector<double> unbalanced() const { return equilibrium_.unbalanced(); }
   std::vector<double> internal_forces(const StaticState& state) const { return equilibrium_.internal_forces(state); }
 
  private:

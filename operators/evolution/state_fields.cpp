@@ -124,19 +124,19 @@ FieldMakers fields_of(const Present& present) {
 FieldMakers observed_fields_of(const Present& present) {
   FieldMakers fields = fields_of(present);
   fields["FORC_NODA"] = [&problem = present.problem, forces = present.internal_forces] {
-    return force_field(problem, forces());
+    return nodal_field(problem, forces());
   };
   return fields;
 }
 
-Field force_field(const StaticProblem& problem, std::span<const double> forces) {
+Field nodal_field(const StaticProblem& problem, std::span<const double> values) {
   Field field{.name = "FORC_NODA", .quantity = "DEPL_R", .location = Location::nodes, .components = problem.components};
   const std::size_t width = field.components.size();
   for (std::size_t node = 0; node < problem.mesh.n_nodes(); ++node) {
     const auto exists = std::span(problem.exists).subspan(node * width, width);
     if (!exists[0]) continue;
     field.support.push_back(static_cast<std::int32_t>(node));
-    field.values.insert(field.values.end(), forces.begin() + node * width, forces.begin() + (node + 1) * width);
+    field.values.insert(field.values.end(), values.begin() + node * width, values.begin() + (node + 1) * width);
     field.present.insert(field.present.end(), exists.begin(), exists.end());
   }
   clear_if_whole(field);

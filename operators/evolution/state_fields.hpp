@@ -16,6 +16,7 @@ struct Present {
   const StaticState& state;
   const ContactState* contact;                                ///< nullptr without contact
   std::function<std::vector<double>()> internal_forces = {};  ///< Equilibrium::internal_forces of the state
+  std::function<std::vector<double>()> unbalanced = {};       ///< Equilibrium::unbalanced of the last iterate
 };
 
 /// Fields by name, each made when it is asked for.
@@ -28,8 +29,9 @@ FieldMakers observed_fields_of(const Present& present);
 /// Displacements and the other unknowns of nodes, with LAGS_C on the carriers of the patches, equal on those of one patch.
 /// @param contact makes stand-ins of LAGS_C at the other nodes of the slave skins: nodal_pressures()
 Field displacement_field(const StaticProblem& problem, const StaticState& state, const ContactState* contact = nullptr);
-/// Forces at nodes, (n_nodes, n_components), under the names of the unknowns.
-Field force_field(const StaticProblem& problem, std::span<const double> forces);
+/// Values at nodes, (n_nodes, n_components), under the names of the unknowns: forces FORC_NODA, or what else they are named
+/// then.
+Field nodal_field(const StaticProblem& problem, std::span<const double> values);
 /// Stresses at the integration points of the solid elements.
 Field stress_field(const StaticProblem& problem, const StaticState& state);
 /// Internal variables V1, V2, ... at the integration points of the cells whose law has them; empty where none has.

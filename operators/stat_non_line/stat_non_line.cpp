@@ -8,6 +8,7 @@
 #include "lacon/operators/evolution/archive.hpp"
 #include "lacon/operators/evolution/contact_notices.hpp"
 #include "lacon/operators/evolution/energy_balance.hpp"
+#include "lacon/operators/evolution/failed_step.hpp"
 #include "lacon/operators/evolution/interruption.hpp"
 #include "lacon/operators/evolution/journal.hpp"
 #include "lacon/operators/evolution/linear_solver.hpp"
@@ -103,7 +104,8 @@ class QuasiStatic : public InstantSolver {
   }
   const ConvergenceCriteria& criteria() const { return newton_.criteria(); }
   Present present(const StaticProblem& problem) const {
-    return {problem, state_, newton_.contact(), [this] { return newton_.internal_forces(state_); }};
+    return {problem, state_, newton_.contact(), [this] { return newton_.internal_forces(state_); },
+            [this] { return newton_.unbalanced(); }};
   }
 
  private:
@@ -156,12 +158,18 @@ void stat_non_line(const Order& order, const Base& base) {
   Interruption interruption;
   wait_with_ending();
   const Course past = record ? restart.go_on(*record) : Course();
-  Journal journal(base.result_folder(), steps, reached(past, steps.values.front()), solver.criteria(), present);
+  const double start = reached(past, steps.values.front());
+  FailedStep failed_step(order, base, present, start);
+  Journal journal(base.result_folder(), steps, start, solver.criteria(), present);
   Progress progress(steps.values);
   // what is told as converged is in the base
-  const std::array<EvolutionObserver*, 10> observers{&observations, &energies, &notices, &archive,  &restart,
-                                                     &table,        &journal,  &events,  &progress, &interruption};
-  evolve(steps, solver, observers, past);
+  const std::array<EvolutionObserver*, 11> observers{&observations, &energies, &notices, &archive,  &restart,     &table,
+                                                     &failed_step,  &journal,  &events,  &progress, &interruption};
+  try {
+    evolve(steps, solver, observers, past);
+  } catch (const Error& error) {
+    failed_step.tell(error);
+  }
 }
 
 }  // namespace lacon

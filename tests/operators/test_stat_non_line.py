@@ -400,6 +400,66 @@ class StatNonLine(TwoSquares):
         self.assertEqual(run.status, 3)
         self.assertFalse(self.path("result_9").exists())
 
+    # ------------------------------------------------------------------------------------------ a step that failed
+
+    def failed_step(self):
+        return self.base / "result_9" / "failed_step.h5"
+
+    def fail_second_step(self, **changes):
+        """Instant 1 has no load and converges; instant 2 has one, and meets no criterion."""
+        self.write_function("function_10", [0, 1, 2, 3], [0, 0, 1, 1])
+        self.write_list("list_of_reals_8", [0.0, 1.0, 2.0])
+        return self.solve(loads=["load_5", {"CHARGE": concept("load_6"), "FONC_MULT": concept("function_10")}],
+                          **{"CONVERGENCE": UNREACHABLE, **changes})
+
+    def test_the_last_iterates_of_a_failed_step_are_kept_beside_the_result(self):
+        run = self.fail_second_step(CONVERGENCE={**UNREACHABLE, "ITER_GLOB_MAXI": 8})
+        self.assert_refused(run, "EVOLUTION_4", status=3)
+        self.assertIn("`lacon report study.base`", run.messages[-1]["do"])
+        with h5py.File(self.failed_step()) as step:
+            about = dict(step.attrs)
+            self.assertEqual([about[k] for k in ("lacon_type", "format", "label", "mesh", "contact", "begins", "instant", "message")],
+                             ["failed_step", 1, "RESU", "mesh_1", "contact_7", 1.0, 2.0, "EVOLUTION_4"])
+            self.assertEqual(about["text"], run.messages[-1]["text"])
+            np.testing.assert_array_equal(step["iteration"], range(3, 9))
+            self.assertEqual(sorted(step["fields"]), ["CONT_ELEM", "DEPL", "RESI_NOEU"])
+            for name, width in (("CONT_ELEM", 5), ("DEPL", 2), ("RESI_NOEU", 2)):
+                self.assertEqual(sorted(step[f"fields/{name}"]), [str(i) for i in range(3, 9)])
+                self.assertEqual(step[f"fields/{name}/8/values"].shape[1], width)
+            residual = step["fields/RESI_NOEU/8/values"][:]
+            self.assertEqual(abs(residual).max(), step["parameters/resi_glob_maxi"][-1])
+            points = np.array(square(-1) + square(0))
+            np.testing.assert_allclose(step["fields/DEPL/8/values"][:, 1], EYY * (points[:, 1] + 1), atol=1e-12)
+            self.assertEqual(step["fields/CONT_ELEM/8"].attrs["instant"], 2.0)
+        with h5py.File(self.path("result_9")) as index:  # and no instant of the result
+            np.testing.assert_array_equal(index["instant"], [0.0, 1.0])
+            self.assertNotIn("RESI_NOEU", index["fields"])
+        self.assertEqual(self.failed_step().read_bytes()[-32:-24], b"LACONSUM")
+
+    def test_a_step_that_fails_before_any_instant_leaves_its_iterates_and_no_result(self):
+        run = self.solve(CONVERGENCE=UNREACHABLE)
+        self.assert_refused(run, "EVOLUTION_4", status=3)
+        self.assertFalse(self.path("result_9").exists())
+        self.assertTrue(self.failed_step().exists())
+        self.assertTrue((self.base / "result_9/journal.jsonl").exists())
+
+    def test_the_iterates_go_when_an_instant_as_late_converges_and_are_replaced_when_another_step_fails(self):
+        self.fail_second_step()
+        before = self.failed_step().read_bytes()
+        self.fail_second_step(CONVERGENCE={**UNREACHABLE, "ITER_GLOB_MAXI": 7})
+        self.assertNotEqual(self.failed_step().read_bytes(), before)
+        loads = ["load_5", {"CHARGE": concept("load_6"), "FONC_MULT": concept("function_10")}]
+        keywords = self.keywords(loads=loads, RESULTAT=concept("result_9"), ETAT_INIT={"EVOL_NOLI": concept("result_9")})
+        run = self.run_command("STAT_NON_LINE", keywords, result="result_9", label="RESU", reuse=True)
+        self.assertEqual(run.status, 0, run.stderr)
+        self.assertFalse(self.failed_step().exists())
+        with h5py.File(self.path("result_9")) as index:
+            np.testing.assert_array_equal(index["instant"], [0.0, 1.0, 2.0])
+
+    def test_a_computation_without_failure_leaves_no_iterates(self):
+        self.assertEqual(self.solve().status, 0)
+        self.assertFalse(self.failed_step().exists())
+
 
 if __name__ == "__main__":
     unittest.main()

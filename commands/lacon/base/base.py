@@ -171,6 +171,10 @@ class Base:
             return self.folder / identifier / "index.h5"
         return self.folder / f"{identifier}.h5"
 
+    def failed_step(self, identifier):
+        """File of the last iterates of the step at which the computation of a result failed; it may be there without the result."""
+        return self.folder / identifier / contents.failed_step
+
     def open(self, identifier):
         if identifier in self.unsolved:
             raise NeedsRun(*self.unsolved[identifier])
@@ -316,7 +320,7 @@ class Base:
                     _remove(folder)
                     continue
                 for path in folder.glob("*.h5"):
-                    if path.name != "index.h5" and f"{folder.name}/{path.name}" not in named:
+                    if path.name not in ("index.h5", contents.failed_step) and f"{folder.name}/{path.name}" not in named:
                         _remove(path)
 
 

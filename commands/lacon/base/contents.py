@@ -99,6 +99,8 @@ def contact_zones(contact):
 
 # ---------------------------------------------------------------------------------------------------- result
 
+failed_step = "failed_step.h5"  #: in the folder of a result: the last iterates of a step that was given up
+
 
 def instants(result):
     """[(order number, instant)]"""
@@ -131,6 +133,16 @@ def field_files_by_order(result, name):
 def field_files(result):
     """Every field file that the index of a result names."""
     return {path for entry in result.get("fields", {}).values() for path in entry["file"].asstr()[:]}
+
+
+def iterations(failed_step):
+    """Numbers of the iterates of a failed step."""
+    return failed_step["iteration"][:].tolist()
+
+
+def fields_of_iterates(failed_step):
+    """name of a field -> the iterations that have it; its group is fields/NAME/ITERATION, laid out as a field's file."""
+    return {name: sorted(map(int, groups)) for name, groups in failed_step["fields"].items()}
 
 
 def parameters(result):

@@ -21,6 +21,8 @@ class Unfinished:
     def begin(self, identifier, label, key, at, where, resumes):
         if not resumes:
             self.drop_record(identifier)  # of another order that enriched the same result
+        for other in [i for i in self.without_instants() if i != identifier and self._entries[i]["label"] == label]:
+            self.base.drop(other)  # this computation takes the place of one that failed
         self.base.registry.setdefault("unfinished", {})[identifier] = {"label": label, "key": key, "at": at, "where": where}
         self.base.write(where)
 
@@ -45,6 +47,11 @@ class Unfinished:
         """(version that it enriches, key of the order), nothing where there is none"""
         entry = self._entries.get(identifier, {})
         return [(entry["at"], entry["key"])] if entry.get("at") is not None else []
+
+    def without_instants(self):
+        """id -> label of those that have failed before any instant was solved: of them there are but the iterates of that step."""
+        return {identifier: entry["label"] for identifier, entry in self._entries.items()
+                if not self.base.path(identifier).exists() and self.base.failed_step(identifier).exists()}
 
     def ids(self):
         return set(self._entries)

@@ -6,7 +6,7 @@ from ..base.base import look_into
 from ..core.concepts import type_of
 from ..core.messages import fail
 from .mesh import Mesh
-from .result import Result
+from .result import FailedStep, Result
 
 
 class Base:
@@ -43,20 +43,30 @@ class Base:
         base, labels = self._labels("result")
         return {label: Result(_Files(self, base), identifier, label) for label, identifier in labels.items()}
 
+    @property
+    def failed_steps(self):
+        """label -> FailedStep, of results that have no instant; one that has instants has it as `failed_step`."""
+        base = self._registered()
+        files = _Files(self, base)
+        steps = {label: FailedStep(files, identifier, label) for identifier, label in base.unfinished.without_instants().items()}
+        return {label: step for label, step in steps.items() if files.has_mesh_of(step)}
+
     def __getitem__(self, label):
-        """The mesh or result of a label. @throws AsterError READER_1"""
+        """The mesh or result of a label; of a computation that solved no instant the step that failed. @throws AsterError READER_1"""
         for kind in ("mesh", "result"):
             base, labels = self._labels(kind)
             if label in labels:
                 return self._mesh(base, labels[label], label) if kind == "mesh" else Result(_Files(self, base), labels[label], label)
-        fail("READER_1", "lacon", label=label, folder=self.folder, known=", ".join([*self.meshes, *self.results]) or "none")
+        if label in self.failed_steps:
+            return self.failed_steps[label]
+        fail("READER_1", "lacon", label=label, folder=self.folder, known=", ".join([*self.meshes, *self.results, *self.failed_steps]) or "none")
         raise AssertionError
 
     def only_result(self, label=None):
         """The result of this label, or the one that there is. @throws AsterError READER_1, READER_5"""
         if label:
             return self[label]
-        results = self.results
+        results = self.results or self.failed_steps
         if len(results) != 1:
             fail("READER_5", "lacon", folder=self.folder, count=len(results), known=", ".join(results) or "none")
         return next(iter(results.values()))
@@ -77,7 +87,10 @@ class _Files:
 
     def __init__(self, shown, base):
         self._shown, self._base = shown, base
-        self.folder, self.open = base.folder, base.open
+        self.folder, self.open, self.failed_step = base.folder, base.open, base.failed_step
+
+    def has_mesh_of(self, states):
+        return self._base.path(states.mesh_id).exists()
 
     def mesh_of(self, identifier):
         labels = {i: label for label, i in self._base.registry["labels"].items()}

@@ -1,11 +1,14 @@
-"""A result of a base as arrays: fields, contact of the patches, iterations."""
+"""A result of a base as arrays: fields, contact of the patches, iterations; and the last iterates of a step that failed."""
 
+import contextlib
 from functools import cached_property
 
 from ..base import command_files, contents
 from ..base.fields import FieldData, open_field
 from ..base.journal import read_journal
+from ..base.seal import open_checked
 from ..core.catalog import part
+from ..core.hdf5 import text
 from ..core.late import numpy
 from ..core.messages import fail
 from . import pictures
@@ -55,36 +58,21 @@ class Patches:
         return f"<{len(self)} patches at INST {self.instant:g}, {(self.status == 1).sum()} in contact>"
 
 
-class Result:
-    """A result, also of a computation in progress: what was asked for once stays as it was then; take it from the base again for later instants.
+class States:
+    """States of bodies by their order numbers: what instants of a result and iterates of a failed step have in common."""
 
-    `label` the variable of the study, `orders` and `instants` (k), `complete` whether its computation has come to its end, `mesh`, `fields` name ->
-    instants that have it, `parameters` name -> (k).
-    """
+    complete = False
 
-    def __init__(self, base, identifier, label):
+    def _start(self, base, identifier, label, file):
+        """@param file of the result or of the failed step, open"""
         self._base, self._id, self.label = base, identifier, label
-        with base.open(identifier) as file:
-            pairs = contents.instants(file)
-            self.orders, self.instants = [order for order, _ in pairs], numpy.array([instant for _, instant in pairs])
-            self.complete = contents.is_complete(file)
-            self._fields = {name: contents.field_files_by_order(file, name) for name in contents.fields(file)}
-            self.parameters = contents.parameters(file)
-            self._mesh_id = contents.reference(file, "mesh")
-            self._contact_id = contents.reference(file, "contact")
-
-    def __repr__(self):
-        more = "" if self.complete else ", not complete"
-        return f"<result {self.label}: {len(self.orders)} instants to INST {self.instants[-1]:g}{more}; fields {', '.join(self._fields)}>"
+        self.parameters = contents.parameters(file)
+        self.mesh_id = contents.reference(file, "mesh")
+        self._contact_id = contents.reference(file, "contact")
 
     @cached_property
     def mesh(self):
-        return self._base.mesh_of(self._mesh_id)
-
-    @property
-    def fields(self):
-        of_order = dict(zip(self.orders, self.instants.tolist()))
-        return {name: [of_order[order] for order in files] for name, files in self._fields.items()}
+        return self._base.mesh_of(self.mesh_id)
 
     @cached_property
     def journal(self):
@@ -108,10 +96,6 @@ class Result:
         """The order numbers at which a field is."""
         return list(self._fields[name])
 
-    def bytes_of_field(self, name):
-        """What its last file takes."""
-        return (self._base.folder / list(self._fields[name].values())[-1]).stat().st_size
-
     def order_of(self, instant=None, order=None):
         """The order number of an instant, the last one by default. @throws AsterError READER_2"""
         if order is None and instant is None:
@@ -129,11 +113,10 @@ class Result:
     def field(self, name, instant=None, order=None):
         """A Field at an instant or an order number, the last one by default. @throws AsterError READER_2, RESULT_1"""
         order = self.order_of(instant, order)
-        path = self._fields.get(name, {}).get(order)
-        if path is None:
+        if order not in self._fields.get(name, ()):
             fail("RESULT_1", "lacon", label=self.label, field=name, order=order, known=", ".join(self._fields) or "none")
-        with open_field(self._base.folder, path) as file:
-            return Field(file, order, float(self.instants[self.orders.index(order)]))
+        with self._opened(name, order) as stored:
+            return Field(stored, order, float(self.instants[self.orders.index(order)]))
 
     def displacements(self, instant=None, order=None):
         """(nodes of the mesh, 3)"""
@@ -164,16 +147,21 @@ class Result:
                 made.cell_data[name] = [whole[numbers] for numbers, _ in self.mesh.cells.values()]
         return made
 
+    def _shown(self, _):
+        """The field by which an order is coloured where none is asked for; nothing: displacements."""
+        return None
+
     def plot(self, instant=None, order=None, scale=1.0, field=None, component=None):
         """A picture of the deformed mesh, coloured by a field at nodes (the magnitude of its components where none is named; by default that of the
-        displacements): a matplotlib figure. @param scale of the displacements"""
+        displacements, of an iterate that of the forces not in balance): a matplotlib figure. @param scale of the displacements"""
         order = self.order_of(instant, order)
         moved = self.displacements(order=order)
+        field = field or self._shown(order)
         if field is None:
             values, name = numpy.linalg.norm(moved, axis=1), "|DEPL|"
         else:
             values, name = self.field(field, order=order).magnitude(component, len(moved)), f"{field} {component or 'magnitude'}"
-        title = f"{self.label}, INST {self.instants[self.orders.index(order)]:g}" + (f", displacements x {scale:g}" if scale != 1.0 else "")
+        title = self.title_of(order) + (f", {part('displacements_times', scale=f'{scale:g}')}" if scale != 1.0 else "")
         return pictures.bodies(self.mesh.points + scale * moved, self.mesh.dimension, self.mesh.boundary, values, name, title)
 
     def plot_pressure(self, instant=None, order=None):
@@ -184,7 +172,7 @@ class Result:
         patches = self.contact(order=order)
         outlines = [self.mesh.polygons(cells) for cells in self.mesh.patches]
         return pictures.pressure(self.mesh.points + self.displacements(order=order), self.mesh.dimension, outlines, patches,
-                                 f"{self.label}, INST {patches.instant:g}: {part('contact_pressure')}")
+                                 f"{self.title_of(order)}: {part('contact_pressure')}")
 
     def plot_convergence(self):
         """A picture of residuals and changes of contact over the iterations. @throws AsterError READER_4 without journal"""
@@ -194,6 +182,97 @@ class Result:
 
     def _repr_png_(self):
         return as_picture(self.plot())
+
+
+class Result(States):
+    """A result, also of a computation in progress: what was asked for once stays as it was then; take it from the base again for later instants.
+
+    `label` the variable of the study, `orders` and `instants` (k), `complete` whether its computation has come to its end, `mesh`, `fields` name ->
+    instants that have it, `parameters` name -> (k), `failed_step` the last iterates of the step at which the computation failed, or None.
+    """
+
+    def __init__(self, base, identifier, label):
+        with base.open(identifier) as file:
+            self._start(base, identifier, label, file)
+            pairs = contents.instants(file)
+            self.orders, self.instants = [order for order, _ in pairs], numpy.array([instant for _, instant in pairs])
+            self.complete = contents.is_complete(file)
+            self._fields = {name: contents.field_files_by_order(file, name) for name in contents.fields(file)}
+
+    def __repr__(self):
+        more = ("" if self.complete else ", not complete") + (f", then {self.failed_step!r}" if self.failed_step else "")
+        return f"<result {self.label}: {len(self.orders)} instants to INST {self.instants[-1]:g}{more}; fields {', '.join(self._fields)}>"
+
+    @property
+    def fields(self):
+        of_order = dict(zip(self.orders, self.instants.tolist()))
+        return {name: [of_order[order] for order in files] for name, files in self._fields.items()}
+
+    @cached_property
+    def failed_step(self):
+        try:
+            return FailedStep(self._base, self._id, self.label)
+        except FileNotFoundError:
+            return None
+
+    def bytes_of_field(self, name):
+        """What its last file takes."""
+        return (self._base.folder / list(self._fields[name].values())[-1]).stat().st_size
+
+    def title_of(self, order):
+        """"RES, INST 0.5\""""
+        return f"{self.label}, INST {self.instants[self.orders.index(order)]:g}"
+
+    def _opened(self, name, order):
+        return open_field(self._base.folder, self._fields[name][order])
+
+
+class FailedStep(States):
+    """The last iterates of the step at which a computation failed: no instant of its result, but fields that are looked at as those of one.
+
+    `label` of the result, `instant` that was not solved, `begins` the last one that was, `reason` why in words, `orders` the numbers of the
+    iterations (k), `fields` name -> iterations that have it: DEPL, RESI_NOEU (forces at nodes that are not in balance, internal less external), with
+    contact CONT_ELEM; `parameters` resi_glob_rela, resi_glob_maxi, status_changes (k), nan of an iterate that was not judged any more.
+    """
+
+    failed_step = None
+
+    def __init__(self, base, identifier, label):
+        self._path = base.failed_step(identifier)
+        with open_checked(self._path) as file:
+            self._start(base, identifier, label, file)
+            self.orders = contents.iterations(file)
+            self.instant, self.begins = float(file.attrs["instant"]), float(file.attrs["begins"])
+            self.message, self.reason = text(file.attrs["message"]), text(file.attrs["text"])
+            self._fields = contents.fields_of_iterates(file)
+        self.instants = numpy.full(len(self.orders), self.instant)
+
+    def __repr__(self):
+        return f"<failed step of {self.label} to INST {self.instant:g}: iterations {', '.join(map(str, self.orders))}; fields {', '.join(self._fields)}>"
+
+    @property
+    def fields(self):
+        return {name: list(iterations) for name, iterations in self._fields.items()}
+
+    def order_of(self, instant=None, order=None):
+        """The number of an iteration, the last one that was judged by default. @throws AsterError READER_2"""
+        return self._fields["RESI_NOEU"][-1] if instant is None and order is None else super().order_of(instant, order)
+
+    def bytes_of_field(self, name):
+        """What one of its iterates takes."""
+        return self.field(name, order=self._fields[name][-1]).values.nbytes
+
+    def _shown(self, order):
+        return "RESI_NOEU" if order in self._fields.get("RESI_NOEU", ()) else None
+
+    def title_of(self, order):
+        """"RES, iteration 7 of the failed step to INST 0.5\""""
+        return part("title_of_iterate", label=self.label, instant=f"{self.instant:g}", iteration=order)
+
+    @contextlib.contextmanager
+    def _opened(self, name, order):
+        with open_checked(self._path) as file:
+            yield file[f"fields/{name}/{order}"]
 
 
 def _spread(field, count):

@@ -7,6 +7,7 @@ from ..base import contents
 from ..core import catalog
 from ..core.catalog import part
 from ..core.late import numpy
+from ..reader.result import FailedStep
 from . import proofs
 from .packing import Packing
 from .surface import Drawing
@@ -16,7 +17,7 @@ _read = 700e6  #: bytes of field files that are read for it
 _deflated = 0.8  #: of a number of 16 bits, with what base64 adds
 _most_courses = 400  #: instants whose contact is followed
 _most_components = 12  #: of a field: internal variables may be many
-_shown = ("DEPL", "SIEF_NOEU", "SIEQ_NOEU", "SIEF_ELNO", "SIEF_ELGA")  #: fields that come first
+_shown = ("DEPL", "RESI_NOEU", "SIEF_NOEU", "SIEQ_NOEU", "SIEF_ELNO", "SIEF_ELGA")  #: fields that come first
 _places = {"ELEM": "by_cell", "ELGA": "mean_of_points", "ELNO": "mean_at_nodes"}  #: parts that say how a field is shown
 _contact = ("pressure", "gap", "status", "coverage")
 
@@ -29,12 +30,13 @@ def make(base, result):
 class _Page:
     def __init__(self, base, result):
         self.base, self.result, self.mesh = base, result, result.mesh
+        self.step = result if isinstance(result, FailedStep) else result.failed_step
+        self.orders, self.instants = ([], numpy.zeros(0)) if result is self.step else (result.orders, result.instants)
         self.packing = Packing()
         self.zones = result.zones
         self.drawing = Drawing(self.mesh, self.zones)
         self.notes = []
-        self.fields = {name: self._head(name) for name in result.fields if name != "CONT_ELEM"}
-        self.fields = {name: head for name, head in self.fields.items() if head}
+        self.fields = self._heads(result) if self.orders else {}
         self.drawn = self._instants()
 
     def made(self):
@@ -42,7 +44,8 @@ class _Page:
         points = self.mesh.points[self.drawing.nodes]
         middle = (points.min(axis=0) + points.max(axis=0)) / 2
         add, skins = self.packing.add, self.drawing.facet_skins
-        fields = [self._field(name) for name in sorted(self.fields, key=_rank)]
+        drawn = {index: self.orders[index] for index in self.drawn}
+        fields = [self._field(self.result, name, self.fields[name], drawn) for name in sorted(self.fields, key=_rank)]
         contact, courses = self._contact()
         if contact:
             fields.insert(0, contact)
@@ -52,19 +55,24 @@ class _Page:
             "size": float(numpy.linalg.norm(numpy.ptp(points, axis=0))), "points": add(points - middle, "f4"),
             "nodes": add(self.drawing.nodes + 1, "i4"), "facet_cells": add(numpy.where(skins >= 0, skins, self.drawing.facet_cells) + 1, "i4"),
             "facet_patches": add(self.drawing.facet_patches, "i4"), "surfaces": [self._surface(s) for s in self.drawing.surfaces],
-            "parts": self.drawing.parts, "fields": fields, "instants": self.result.instants.tolist(), "drawn": self.drawn,
-            "first": _first(fields), "zones": courses, "patch_areas": self._areas.tolist() if contact else [],
+            "parts": self.drawing.parts, "fields": fields, "instants": self.instants.tolist(), "drawn": self.drawn,
+            "first": _first(fields), "failed": self._failed(), "zones": courses, "patch_areas": self.mesh.patch_measures[0].tolist() if self.zones else [],
             "iterations": numpy.asarray(self.result.parameters.get("newton_iterations", [])).tolist(), "proofs": self._proofs,
             "journal": self._journal(), "commands": self.result.commands, "run": self._run(started), "notes": self.notes}
         return told, self.packing
 
     # ------------------------------------------------------------------------------------------- what is drawn
 
-    def _head(self, name):
+    def _heads(self, states):
+        """name -> (location, components) of the fields that can be drawn; contact is drawn by patches."""
+        heads = {name: self._head(states, name) for name in states.fields if name != "CONT_ELEM"}
+        return {name: head for name, head in heads.items() if head}
+
+    def _head(self, states, name):
         """(location, components) of a field that can be drawn; nothing otherwise."""
-        order = self.result.orders[-1]
-        files = self.result.field_orders(name)
-        field = self.result.field(name, order=order if order in files else files[-1])
+        order = states.orders[-1]
+        files = states.field_orders(name)
+        field = states.field(name, order=order if order in files else files[-1])
         if field.functions or not len(field.support):
             return None
         components = [c for c in field.components if c != "LAGS_C"][:_most_components]
@@ -74,14 +82,18 @@ class _Page:
 
     def _instants(self):
         """Which instants are drawn: all, or so many of them that the page stays small, the first and the last among them."""
-        count = len(self.result.orders)
-        numbers = sum(len(components) * (len(self.drawing.nodes) if location in ("NOEU", "ELNO") else len(self.drawing.facet_cells))
-                      for location, components in self.fields.values())
-        most = min(_largest_page / max(1.0, 2 * _deflated * numbers), _read / max(1.0, self._bytes_of_an_instant()))
+        count = len(self.orders)
+        iterates = len(self.step.orders) * self._bytes_of(self._heads(self.step)) if self.step else 0.0
+        most = min((_largest_page - iterates) / max(1.0, self._bytes_of(self.fields)), _read / max(1.0, self._bytes_of_an_instant()))
         chosen = min(count, max(1, int(most)))
         if chosen < count:
             self.notes.append(part("instants_drawn", count=chosen, all=count))
         return numpy.unique(numpy.rint(numpy.linspace(count - 1, 0, chosen)).astype(int)).tolist()
+
+    def _bytes_of(self, heads):
+        """What the fields of a state take in the page, about."""
+        return 2 * _deflated * sum(len(components) * (len(self.drawing.nodes) if location in ("NOEU", "ELNO") else len(self.drawing.facet_cells))
+                                   for location, components in heads.values())
 
     def _bytes_of_an_instant(self):
         return sum(self.result.bytes_of_field(name) for name in self.fields)
@@ -93,19 +105,19 @@ class _Page:
                 told[key] = self.packing.add(surface[key], "u4" if not key.endswith("facets") else "i4")
         return told
 
-    def _field(self, name):
-        location, components = self.fields[name]
+    def _field(self, states, name, head, drawn):
+        """@param drawn number in the page -> order"""
+        location, components = head
         on_nodes = location in ("NOEU", "ELNO")
         instants = {}
-        for index in self.drawn:
-            order = self.result.orders[index]
-            if order not in self.result.field_orders(name):
+        for index, order in drawn.items():
+            if order not in states.field_orders(name):
                 continue
-            field = self.result.field(name, order=order)
+            field = states.field(name, order=order)
             values = numpy.column_stack([field[c] if c in field.components else numpy.full(len(field.values), numpy.nan) for c in components])
             stored, ranges = self.packing.add_quantised(self._placed(field, values))
             instants[index] = {"values": stored, "ranges": ranges}
-        return {"name": name, "title": name + (part(_places[location]) if location in _places else ""), "kind": "node" if on_nodes else "facet", "components": components, "instants": instants}
+        return {"name": name, "title": name + (part(_places[location]) if location in _places else f" ({part('unbalanced_forces')})" if name == "RESI_NOEU" else ""), "kind": "node" if on_nodes else "facet", "components": components, "instants": instants}
 
     def _placed(self, field, values):
         """The rows of a field at the drawn nodes or facets, nan elsewhere."""
@@ -136,28 +148,27 @@ class _Page:
 
     def _contact(self):
         """(the field of the patches, or nothing; what the page is told of each zone). Makes the proof lines too."""
-        count = len(self.result.orders)
+        count = len(self.orders)
         followed = set(numpy.unique(numpy.rint(numpy.linspace(0, count - 1, min(count, _most_courses))).astype(int)).tolist()) | set(self.drawn)
         courses = [{"slave": slave, "master": master, "course": []} for slave, master, _, _ in self.zones]
         instants, self._proofs = {}, []
         journal = self.result.journal
         with_patches = bool(self.zones) and "CONT_ELEM" in self.result.fields
-        for index, order in enumerate(self.result.orders):
+        for index, order in enumerate(self.orders):
             patches = None
             if with_patches and index in followed and order in self.result.field_orders("CONT_ELEM"):
                 patches = self.result.contact(order=order)
                 patches.space = self.mesh.dimension == 3
-                self._areas = patches.area
                 if index in self.drawn:
-                    values = numpy.array([patches.pressure, patches.gap, patches.status, patches.coverage])
-                    instants[index] = {"values": self.packing.add(values, "f4")}
+                    instants[index] = self._of_patches(patches)
             for number, zone in enumerate(courses):
                 zone["course"].append(self._figures(index, number, patches))
             self._proofs.append([] if index == 0 and count > 1 else
-                                proofs.of_instant(index, self.result.parameters, self.zones, _newton_of(journal, self.result.instants[index]), patches))
-        if not instants:
-            return None, courses
-        return {"name": "CONT_ELEM", "title": part("contact"), "kind": "patch", "exact": True, "components": list(_contact), "instants": instants}, courses
+                                proofs.of_instant(index, self.result.parameters, self.zones, _newton_of(journal, self.instants[index]), patches))
+        return _contact_field(instants), courses
+
+    def _of_patches(self, patches):
+        return {"values": self.packing.add(numpy.array([patches.pressure, patches.gap, patches.status, patches.coverage]), "f4")}
 
     def _figures(self, index, number, patches):
         """Of a zone at an instant."""
@@ -174,6 +185,18 @@ class _Page:
             told["area"] = float((patches.area * patches.coverage)[active].sum())
             told["largest"] = float(patches.pressure[active].max(initial=0.0))
         return told
+
+    def _failed(self):
+        """The last iterates of the step that failed, with their fields."""
+        step = self.step
+        if step is None:
+            return None
+        drawn = dict(enumerate(step.orders))
+        fields = [self._field(step, name, head, drawn) for name, head in sorted(self._heads(step).items(), key=lambda item: _rank(item[0]))]
+        contact = _contact_field({index: self._of_patches(step.contact(order=order)) for index, order in drawn.items()
+                                  if order in step.fields.get("CONT_ELEM", ())})
+        return {"instant": step.instant, "begins": step.begins, "message": step.message, "reason": step.reason, "iterations": step.orders,
+                "fields": ([contact] if contact else []) + fields, "first": {"field": "RESI_NOEU", "component": "magnitude"}}
 
     # ------------------------------------------------------------------------------------------- the run
 
@@ -194,8 +217,11 @@ class _Page:
         words = [part("nodes_cells_bodies", nodes=nodes, cells=cells, bodies=len(self.drawing.parts))]
         if self.zones:
             words.append(part("patches_in_zones" if len(self.zones) > 1 else "patches_in_zone", patches=len(self.mesh.patches), zones=len(self.zones)))
-        words.append(part("instants_to", count=len(self.result.orders), last=f"{self.result.instants[-1]:g}"))
-        if not self.result.complete:
+        if self.orders:
+            words.append(part("instants_to", count=len(self.orders), last=f"{self.instants[-1]:g}"))
+        if self.step:
+            words.append(part("step_that_failed", instant=f"{self.step.instant:g}"))
+        elif not self.result.complete:
             words.append(part("under_way" if self.base.running else "not_at_its_end"))
         return "; ".join(words)
 
@@ -211,10 +237,17 @@ class _Page:
             totals += [(part("run_in_all"), f"{journal.now:.4g} s"), (part("run_iterations"), part("iterations_in", count=len(rows), tried=len(journal.attempts))),
                        (part("run_factorisations"), str(sum(bool(line.get("factorised")) for line in rows)))]
             totals += [(part("run_memory"), f"{journal.memory / 2**20:.0f} MiB")] if journal.memory else []
-        page = [("Lacon", version), (part("run_made"), time.strftime("%Y-%m-%d %H:%M")), (part("run_drawn"), part("some_of", count=len(self.drawn), all=len(self.result.orders))),
+        page = [("Lacon", version), (part("run_made"), time.strftime("%Y-%m-%d %H:%M")), (part("run_drawn"), part("some_of", count=len(self.drawn), all=len(self.orders))),
                 (part("run_fields"), part("bits")), (part("run_made_in"), f"{time.perf_counter() - started:.2f} s")]
         return {"study": study, "machine": machine, "totals": totals,
                 "phases": {} if journal is None else journal.phases, "page": page}
+
+
+def _contact_field(instants):
+    """The field of the patches, or nothing. @param instants number in the page -> values"""
+    if not instants:
+        return None
+    return {"name": "CONT_ELEM", "title": part("contact"), "kind": "patch", "exact": True, "components": list(_contact), "instants": instants}
 
 
 def _rank(name):

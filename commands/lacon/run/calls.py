@@ -127,7 +127,7 @@ class Command:
                 orders.put_back(run.base, identifier, copy)
                 if not result.get("resume"):
                     run.base.unfinished.end(identifier)
-            elif result:
+            elif result and not run.base.failed_step(identifier).exists():
                 run.base.give_back(identifier)
             run.base.drop_partial()
             raise

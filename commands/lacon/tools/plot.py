@@ -10,6 +10,7 @@ import pathlib
 from ..core import outcome
 from ..core.messages import AsterError, fail, show
 from ..reader.base import open_base
+from ..reader.result import Result
 
 formats = ("png", "svg")
 
@@ -22,7 +23,8 @@ def parser():
     made.add_argument("base", metavar="BASE", help="folder of the base, STUDY.base")
     made.add_argument("--result", metavar="LABEL", help="the result; otherwise the only one")
     made.add_argument("--instant", type=float, metavar="T", help="an instant of the result; otherwise the last one")
-    made.add_argument("--field", metavar="NAME", help="colours of the mesh: a field at nodes, SIEF_NOEU; otherwise the displacements")
+    made.add_argument("--iteration", type=int, metavar="N", help="an iterate of the step at which the computation failed, by its number")
+    made.add_argument("--field", metavar="NAME", help="colours of the mesh: a field at nodes, SIEF_NOEU; otherwise the displacements, of an iterate the forces not in balance")
     made.add_argument("--component", metavar="NAME", help="a component of the field; otherwise its magnitude")
     made.add_argument("--scale", type=float, default=1.0, metavar="X", help="of the displacements; 1 by default")
     made.add_argument("--format", action="append", choices=formats, help="one of them alone; may be repeated")
@@ -38,8 +40,13 @@ def run(arguments):
     base = open_base(options.base)
     stem = pathlib.Path(options.out or base.folder.resolve().stem)
     result = base.only_result(options.result)
-    pictures = {"mesh": lambda: result.plot(options.instant, scale=options.scale, field=checked(result, options), component=options.component),
-                "pressure": lambda: result.plot_pressure(options.instant), "convergence": result.plot_convergence}
+    if options.iteration is not None:
+        result = result.failed_step or result
+        if isinstance(result, Result):
+            fail("PLOT_2", "lacon plot --iteration", label=result.label)
+    at = {"instant": options.instant, "order": options.iteration}
+    pictures = {"mesh": lambda: result.plot(**at, scale=options.scale, field=checked(result, at, options), component=options.component),
+                "pressure": lambda: result.plot_pressure(**at), "convergence": result.plot_convergence}
     for name, draw in pictures.items():
         try:
             figure = draw()
@@ -59,11 +66,11 @@ def run(arguments):
     return outcome.done
 
 
-def checked(result, options):
+def checked(result, at, options):
     """The field that is meant. @throws AsterError PLOT_1"""
     if options.field is None:
         return None
-    field = result.field(options.field, options.instant)
+    field = result.field(options.field, **at)
     if field.location != "NOEU" or (options.component and options.component not in field.components):
         fail("PLOT_1", f"lacon plot --field {options.field}", field=options.field, location=field.location, components=", ".join(field.components))
     return options.field

@@ -68,13 +68,13 @@ def follow(options, draws):
 
 def chosen(base):
     """(id, label, where) of the computation to look at: the one that is under way, otherwise that of the newest journal; nothing where there is none"""
-    for identifier, entry in base.registry.get("unfinished", {}).items():
-        if (base.folder / identifier / journal_name).exists():
-            return identifier, entry["label"], entry["where"]
     journals = sorted(base.folder.glob(f"*/{journal_name}"), key=lambda path: path.stat().st_mtime)
     results = [path.parent.name for path in journals if type_of(path.parent.name) == "result"]
     if not results:
         return None
+    entry = base.registry.get("unfinished", {}).get(results[-1])
+    if entry:
+        return results[-1], entry["label"], entry["where"]
     labels = {identifier: label for label, identifier in base.registry["labels"].items()}
     return results[-1], labels.get(results[-1], ""), ""
 

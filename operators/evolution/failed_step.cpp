@@ -1,0 +1,156 @@
+#include "lacon/operators/evolution/failed_step.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "lacon/catalog/wording.hpp"
+#include "lacon/operators/contact/contact_field.hpp"
+#include "lacon/operators/program/program.hpp"
+#include "lacon/structures/hdf5.hpp"
+#include "lacon/structures/storage/storage.hpp"
+
+namespace lacon {
+namespace {
+
+/// Statuses and residuals go round with periods of two or three iterations: two whole rounds of the longer one.
+constexpr std::size_t most = 6;
+
+constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
+
+bool is_finite(const std::vector<double>& values) {
+  return std::all_of(values.begin(), values.end(), [](double value) { return std::isfinite(value); });
+}
+
+std::optional<double> instant_in(const std::filesystem::path& file) {
+  std::error_code error;
+  if (!exists(file, error)) return std::nullopt;
+  try {
+    return hdf5::Reader(file).real("instant");
+  } catch (const Error&) {
+    return -std::numeric_limits<double>::infinity();  // whatever it was, the next instant takes its place
+  }
+}
+
+}  // namespace
+
+FailedStep::FailedStep(const Order& order, const Base& base, const Present& present, double begins)
+    : order_(order),
+      base_(base),
+      present_(present),
+      file_(base.result_folder() / failed_step_file),
+      begins_(begins),
+      there_(instant_in(file_)) {}
+
+void FailedStep::begin(double /*instant*/) {
+  iterates_.clear();
+  failure_.reset();
+}
+
+void FailedStep::iterate(double /*instant*/, const IterationReport& report) {
+  if (!std::isfinite(report.maxi) || report.converged()) return;  // numbers that nobody can draw, or that nobody asks for
+  const Phase phase("last iterates");
+  if (iterates_.size() == most) iterates_.pop_front();
+  iterates_.push_back({.iteration = report.iteration,
+                       .rela = report.rela,
+                       .maxi = report.maxi,
+                       .changes = static_cast<double>(report.status_changes),
+                       .displacement = present_.state.displacement,
+                       .unbalanced = present_.unbalanced(),
+                       .contact = {}});
+  if (present_.contact)
+    iterates_.back().contact = contact_field(*present_.problem.contact, present_.contact->geometry(), present_.state.patches);
+}
+
+void FailedStep::failed(double instant, const Error& error) {
+  if (error.message().severity != 'S') return;
+  failure_ = {.instant = instant, .message = error.message()};
+  // an iteration that cannot be judged (a cell is none any more) has moved the bodies all the same
+  const std::vector<double>& moved = present_.state.displacement;
+  if (iterates_.empty() || moved == iterates_.back().displacement || !is_finite(moved)) return;
+  if (iterates_.size() == most) iterates_.pop_front();
+  iterates_.push_back({.iteration = iterates_.back().iteration + 1,
+                       .rela = unknown,
+                       .maxi = unknown,
+                       .changes = unknown,
+                       .displacement = moved,
+                       .unbalanced = {},
+                       .contact = {}});
+}
+
+void FailedStep::accept(const SolvedInstant& solved) {
+  begins_ = solved.instant;
+  if (there_ && solved.instant >= *there_ * (1 - 1e-12)) remove();
+}
+
+void FailedStep::end(bool completed) {
+  if (completed) remove();
+  if (completed || !failure_ || iterates_.empty()) return;
+  try {
+    store();
+    stored_ = true;
+  } catch (const Error&) {
+    // a full disk: what is told is why the step failed
+  }
+}
+
+void FailedStep::tell(const Error& error) const {
+  if (!stored_) throw error;
+  Message message = error.message();
+  message.advice +=
+      (message.advice.empty() ? "" : "; ") +
+      part("iterates_are_kept", {{"base", base_.folder().filename().string()}, {"count", std::to_string(iterates_.size())}});
+  throw Error(std::move(message));
+}
+
+void FailedStep::store() const {
+  const StaticProblem& problem = present_.problem;
+  hdf5::write_sealed(file_, [&](const hdf5::Group& root) {
+    root.set("lacon_type", std::string_view("failed_step"));
+    root.set("format", storage::format);
+    root.set("label", order_.result_label);
+    root.set("model", order_.keywords.concept_id("MODELE"));
+    root.set("mesh", problem.model.mesh);
+    root.set("contact", order_.keywords.optional_concept("CONTACT").value_or(""));
+    root.set("begins", begins_);
+    root.set("instant", failure_->instant);
+    root.set("message", failure_->message.id);
+    root.set("text", failure_->message.text);
+    std::vector<std::int64_t> iterations;
+    std::vector<double> rela, maxi, changes;
+    for (const Iterate& iterate : iterates_) {
+      iterations.push_back(iterate.iteration);
+      rela.push_back(iterate.rela);
+      maxi.push_back(iterate.maxi);
+      changes.push_back(iterate.changes);
+    }
+    root.write("iteration", iterations);
+    const hdf5::Group parameters = root.create("parameters"), fields = root.create("fields");
+    parameters.write("resi_glob_rela", rela);
+    parameters.write("resi_glob_maxi", maxi);
+    if (present_.contact) parameters.write("status_changes", changes);
+    const auto put = [&](const Iterate& iterate, const char* name, Field field) {
+      field.name = name;
+      field.mesh = problem.model.mesh;
+      field.order = iterate.iteration;
+      field.instant = failure_->instant;
+      write_field_content(fields.create(fmt::format("{}/{}", field.name, iterate.iteration)), field);
+    };
+    for (const Iterate& iterate : iterates_) {
+      put(iterate, "DEPL", nodal_field(problem, iterate.displacement));
+      if (!iterate.unbalanced.empty()) put(iterate, "RESI_NOEU", nodal_field(problem, iterate.unbalanced));
+      if (iterate.contact) put(iterate, "CONT_ELEM", *iterate.contact);
+    }
+  });
+}
+
+void FailedStep::remove() {
+  if (!there_) return;
+  std::error_code error;
+  std::filesystem::remove(file_, error);
+  there_.reset();
+}
+
+}  // namespace lacon
