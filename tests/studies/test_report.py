@@ -63,6 +63,28 @@ def write_mesh(path, dimension):
     write_med(path, union([lower, upper]))
 
 
+#: behind the instant 0.5 a step that is cut nowhere, and meets no criterion
+FAILS = """
+RESULT = STAT_NON_LINE(reuse=RESULT, RESULTAT=RESULT, ETAT_INIT=_F(EVOL_NOLI=RESULT), MODELE=MODEL, CHAM_MATER=MATTER, CONTACT=CONTACT,
+                       EXCIT=(_F(CHARGE=HELD), _F(CHARGE=PUSH, FONC_MULT=RAMP)), INCREMENT=_F(LIST_INST=TIMES),
+                       CONVERGENCE=_F(RESI_GLOB_MAXI=1e-30, ITER_GLOB_MAXI=7))
+FIN()"""
+
+
+@functools.cache
+def failed_study():
+    """As study(2), with a step that fails behind its first instant."""
+    folder = pathlib.Path(tempfile.mkdtemp(prefix="lacon_report_"))
+    unittest.addModuleCleanup(shutil.rmtree, folder, ignore_errors=True)
+    write_mesh(folder / "mesh.med", 2)
+    text = STUDY.format(**MODELS[2]).replace("LIST_INST=TIMES", "LIST_INST=TIMES, INST_FIN=0.5", 1).replace("\nFIN()", FAILS)
+    (folder / "study.comm").write_text(text, encoding="utf-8")
+    for arguments, status in ((("study.comm", "--unit", "20=mesh.med"), 3), (("report", "study.base"), 0)):
+        done = subprocess.run([LACON, *arguments], cwd=folder, capture_output=True, text=True, timeout=SECONDS, stdin=subprocess.DEVNULL, check=False)
+        assert done.returncode == status, done.stdout[-3000:] + done.stderr
+    return folder
+
+
 @functools.cache
 def study(dimension):
     """Folder of a study that was run and reported, the same for all tests, which change nothing in it."""
@@ -283,7 +305,9 @@ class Shown(unittest.TestCase):
         cls.addClassCleanup(cls.browser.close)
 
     def open(self, dimension, **more):
-        page = study(dimension) / "study.html"
+        self.open_page(study(dimension) / "study.html", **more)
+
+    def open_page(self, page, **more):
         if self.opened != (page, more):
             self.browser.do(open=page, **more)
             type(self).opened = page, more
@@ -344,6 +368,30 @@ class Shown(unittest.TestCase):
         self.assertLess(abs(self.browser.picture() - last).mean(), 0.05)
         self.browser.do(key="ArrowLeft")
         self.assertGreater(abs(self.browser.picture() - last).max(), 20)
+
+    def test_plane_iterates_of_a_failed_step_have_a_slider_and_their_residual_as_colours(self):
+        self.open_page(failed_study() / "study.html")
+        step = base_of(failed_study())["RESULT"].failed_step
+        shown = "document.querySelector('#scale b').textContent + document.getElementById('instant-value').textContent"
+        self.assertIn("SIEF_NOEU, von Mises", self.browser.ask(shown))  # instants come first
+        self.assertIn("instant 0.5 ", self.browser.ask(shown))
+        of_instant = self.browser.picture()
+        names = ["CONT_ELEM", "DEPL", "RESI_NOEU"]
+        for place, iteration in ((0, step.orders[0]), (5, 7)):
+            self.browser.do(set={"iterate": place})
+            self.assertIn("RESI_NOEU (forces not in balance), log", self.browser.ask(shown))
+            self.assertEqual(self.browser.ask("document.getElementById('iterate-value').textContent"), f"iteration {iteration} of the step to 1")
+            self.assertEqual(self.browser.ask("[...document.querySelectorAll('#field option')].map((o) => o.value)"), names)
+            high = float(self.browser.ask("document.getElementById('high').value"))
+            field = step.field("RESI_NOEU", order=iteration)
+            self.assertAlmostEqual(high, np.log10(np.hypot(*field.values.T).max()), delta=1e-3)
+        self.assertGreater(abs(self.browser.picture() - of_instant).max(), 20)
+        self.assertEqual(self.browser.ask("window.lacon.study.instants"), [0, 0.5])  # an iterate is none of them
+        self.assertIn("✗ 1 of", self.browser.ask("document.getElementById('verdict').textContent"))
+        self.assertIn("EVOLUTION_4", self.browser.ask("document.getElementById('proof-lines').textContent"))
+        self.browser.do(set={"instant": 1})
+        self.assertIn("SIEF_NOEU, von Mises", self.browser.ask(shown))
+        self.assertLess(abs(self.browser.picture() - of_instant).mean(), 0.05)
 
     def test_space_a_click_on_a_patch_tells_its_figures_and_masters(self):
         """3D, the book open: every fifth patch is picked at its middle."""

@@ -196,7 +196,7 @@ class _Page:
         contact = _contact_field({index: self._of_patches(step.contact(order=order)) for index, order in drawn.items()
                                   if order in step.fields.get("CONT_ELEM", ())})
         return {"instant": step.instant, "begins": step.begins, "message": step.message, "reason": step.reason, "iterations": step.orders,
-                "fields": ([contact] if contact else []) + fields, "first": {"field": "RESI_NOEU", "component": "magnitude"}}
+                "start": step.orders.index(step.order_of()), "fields": ([contact] if contact else []) + fields, "first": {"field": "RESI_NOEU", "component": "decades"}}
 
     # ------------------------------------------------------------------------------------------- the run
 

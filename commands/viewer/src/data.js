@@ -57,12 +57,19 @@ export function quantities(field) {
   const at = (name) => field.components.indexOf(name);
   const found = field.components.map((name, c) => ({name, label: field.labels?.[c] ?? name, unit: field.units?.[c] ?? "", of: (all) => all[c]}));
   const vector = ["DX", "DY", "DZ"].map(at).filter((c) => c >= 0);
-  if (field.name === "DEPL" && vector.length > 1)
+  if (["DEPL", "RESI_NOEU"].includes(field.name) && vector.length > 1)
     found.unshift({name: "magnitude", label: "magnitude", of: (all) => combine(vector.map((c) => all[c]), (v) => Math.hypot(...v))});
+  if (field.name === "RESI_NOEU") found.unshift({name: "decades", label: "log₁₀ of the magnitude", of: (all) => decades(combine(vector.map((c) => all[c]), (v) => Math.hypot(...v)))});
   const stress = tensor.map(at);
   if (field.name.startsWith("SIEF") && stress.slice(0, 4).every((c) => c >= 0))
     found.unshift({name: "mises", label: "von Mises", of: (all) => combine(stress.map((c) => (c < 0 ? null : all[c])), mises)});
   return found;
+}
+
+/** Residuals are of many sizes: their logarithms, as far as a millionth of the largest one; nothing where there is none. */
+function decades(sizes) {
+  const least = Math.log10(sizes.reduce((a, b) => Math.max(a, b), 0)) - 6;
+  return sizes.map((v) => (v > 0 ? Math.max(Math.log10(v), least) : NaN));
 }
 
 function mises([xx, yy, zz, xy, xz, yz]) {

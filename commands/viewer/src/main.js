@@ -7,7 +7,7 @@ import {Scene} from "./scene.js";
 import {t, translatePage} from "./words.js";
 
 const $ = (id) => document.getElementById(id);
-const inputs = ["field", "component", "map", "range", "low", "high", "magnify", "opacity", "edges", "zone", "opening", "instant"];
+const inputs = ["field", "component", "map", "range", "low", "high", "magnify", "opacity", "edges", "zone", "opening", "instant", "iterate"];
 const control = Object.fromEntries(inputs.map((id) => [id, $(id)]));
 
 const manyFacets = 20000; // edges of so many are not lines any more
@@ -60,24 +60,51 @@ function startTheme() {
 
 // ---------------------------------------------------------------------------------------------------- choices
 
-/** The instants that are drawn: indices into study.instants. */
-const drawn = study.drawn;
-const now = () => drawn[Number(control.instant.value)];
-const field = () => study.fields.find(({name}) => name === control.field.value);
+// What is looked at is one of two courses: the instants of the result, or the iterates of the step that failed.
+const instants = {fields: study.fields, drawn: study.drawn, start: study.drawn.length - 1, first: study.first, control: control.instant}; // drawn: indices into study.instants
+const iterates = study.failed && {fields: study.failed.fields, drawn: study.failed.iterations.map((_, i) => i), start: study.failed.start, first: study.failed.first, control: control.iterate};
+let course = instants;
+const drawn = () => course.drawn;
+const now = () => drawn()[Number(course.control.value)];
+const lastInstant = () => study.drawn[Number(control.instant.value)] ?? study.drawn.at(-1);
+const field = () => course.fields.find(({name}) => name === control.field.value);
+/** "instant 0.5" of what is looked at. */
+const caption = () => (course === instants ? t("instant {instant}", {instant: number(study.instants[now()], 9)})
+  : t("iteration {iteration} of the failed step", {iteration: study.failed.iterations[now()]}));
 const quantity = () => quantities(field()).find(({name}) => name === control.component.value);
 
 const options = (select, rows) => select.replaceChildren(...rows.map(([value, text]) => element("option", {value, textContent: text})));
 
+/** Look at the other course, with the fields that it has. */
+function follow(other) {
+  if (course === other) return;
+  course.shown = {field: control.field.value, component: control.component.value};
+  course = other;
+  const {field: name, component} = course.shown ?? course.first;
+  fillFields(name, component);
+}
+
+function fillFields(name, component) {
+  options(control.field, course.fields.map(({name: value, title}) => [value, title]));
+  control.field.value = name;
+  fillComponents(component);
+  $("time").classList.toggle("rests", course !== instants);
+  $("iterates").classList.toggle("rests", course !== iterates);
+}
+
 function fillControls() {
-  options(control.field, study.fields.map(({name, title}) => [name, title]));
   options(control.map, [...Object.keys(maps)].map((name) => [name, name]));
   options(control.zone, study.zones.map(({slave, master}, z) => [z, `${z + 1}: ${t("{slave} on {master}", {slave, master})}`]));
   $("book").hidden = !study.zones.length;
-  control.instant.max = drawn.length - 1;
-  control.instant.value = drawn.length - 1;
-  $("time").hidden = drawn.length < 2;
-  control.field.value = study.first.field;
-  fillComponents(study.first.component);
+  for (const one of [instants, iterates].filter(Boolean)) {
+    one.control.max = one.drawn.length - 1;
+    one.control.value = one.start;
+    one.shown = null;
+  }
+  $("time").hidden = study.drawn.length < (iterates ? 1 : 2);
+  $("iterates").hidden = !iterates;
+  course = study.drawn.length ? instants : iterates;
+  fillFields(course.first.field, course.first.component);
   $("parts").replaceChildren(...(study.parts.length > 1 ? study.parts.map((name, part) => {
     const box = element("input", {type: "checkbox", checked: true});
     box.addEventListener("change", () => {
@@ -123,7 +150,7 @@ async function range(own) {
   if (control.range.value === "own") return [Number(control.low.value), Number(control.high.value)];
   let found = rangeOf(own ?? []);
   if (control.range.value === "all")
-    for (const instant of drawn) {
+    for (const instant of drawn()) {
       const other = await valuesAt(instant);
       if (!other) continue;
       const [low, high] = rangeOf(other);
@@ -142,7 +169,7 @@ async function range(own) {
 async function draw() {
   const mine = ++drawing;
   const instant = now();
-  const displacement = study.fields.find(({name}) => name === "DEPL");
+  const displacement = course.fields.find(({name}) => name === "DEPL");
   const moved = displacement ? await values(displacement, instant) : null;
   const vector = moved && ["DX", "DY", "DZ"].map((name) => displacement.components.indexOf(name)).filter((c) => c >= 0).map((c) => moved[c]);
   const own = field() ? await valuesAt(instant) : null;
@@ -154,19 +181,32 @@ async function draw() {
   scene.deform(vector, Number(control.magnify.value));
   shown = {kind: field()?.kind, values: own, vector, limits, map};
   showScale(own);
-  $("instant-value").textContent = t("instant {instant}  ({number} of {count})", {instant: number(study.instants[instant], 9), number: Number(control.instant.value) + 1, count: drawn.length});
-  control.instant.setAttribute("aria-valuetext", t("instant {instant}", {instant: number(study.instants[instant], 9)}));
+  showTimes();
   showPicked();
   scene.render();
   document.body.dataset.drawn = String(mine);
 }
 
+function showTimes() {
+  if (study.drawn.length) {
+    const at = {instant: number(study.instants[lastInstant()], 9), number: Number(control.instant.value) + 1, count: study.drawn.length};
+    $("instant-value").textContent = t("instant {instant}  ({number} of {count})", at);
+    control.instant.setAttribute("aria-valuetext", t("instant {instant}", at));
+  }
+  if (!iterates) return;
+  const iteration = {iteration: study.failed.iterations[Number(control.iterate.value)], instant: number(study.failed.instant, 9)};
+  $("iterate-value").textContent = t("iteration {iteration} of the step to {instant}", iteration);
+  control.iterate.setAttribute("aria-valuetext", $("iterate-value").textContent);
+}
+
+/** Also what stands around the picture; of iterates the tables stay with the last instant. */
 async function drawAll() {
   await draw();
-  showProofs(now());
-  showZones(now());
-  showCurves(now(), (instant) => {
-    const nearest = drawn.reduce((best, d, i) => (Math.abs(d - instant) < Math.abs(drawn[best] - instant) ? i : best), 0);
+  showProofs(lastInstant());
+  showZones(lastInstant());
+  showCurves(lastInstant(), (instant) => {
+    const nearest = study.drawn.reduce((best, d, i) => (Math.abs(d - instant) < Math.abs(study.drawn[best] - instant) ? i : best), 0);
+    follow(instants);
     control.instant.value = nearest;
     drawAll();
   }, await alongSkins());
@@ -193,7 +233,7 @@ function showScale(own) {
 /** In the plane: pressure and gap over the length of each slave skin. */
 async function alongSkins() {
   if (study.dimension !== 2 || !study.zones.length) return [];
-  const contact = study.fields.find(({kind}) => kind === "patch");
+  const contact = course.fields.find(({kind}) => kind === "patch");
   const all = contact && (await values(contact, now()));
   if (!all) return [];
   const column = (name) => all[contact.components.indexOf(name)];
@@ -216,7 +256,7 @@ async function alongSkins() {
       curves[name].push({name: t("{slave} on {master}", zone), colour: colours[surface.meta.zone % colours.length], points: steps[name]});
   }
   return [["pressure", t("Contact pressure along the slave skins")], ["gap", t("Gap along the slave skins")]].map(([name, title]) =>
-    chart({title: `${title}, ${t("instant {instant}", {instant: number(study.instants[now()], 9)})}`, x: t("length along the skin, from its end"), y: t(name), series: curves[name]}));
+    chart({title: `${title}, ${caption()}`, x: t("length along the skin, from its end"), y: t(name), series: curves[name]}));
 }
 
 /** The segments of a skin one behind the other. */
@@ -265,7 +305,7 @@ async function showPicked() {
     showFigures(t("Cell {name}", {name: `M${scene.facetCell[facet]}`}), pairs);
     return;
   }
-  const contact = study.fields.find(({kind: of}) => of === "patch");
+  const contact = course.fields.find(({kind: of}) => of === "patch");
   const all = contact && (await values(contact, now()));
   if (all) {
     const value = (what) => all[contact.components.indexOf(what)][patch];
@@ -305,8 +345,8 @@ function play() {
 }
 
 function step(by, around = false) {
-  const next = Number(control.instant.value) + by;
-  control.instant.value = around ? next % drawn.length : Math.min(Math.max(next, 0), drawn.length - 1);
+  const next = Number(course.control.value) + by, count = drawn().length;
+  course.control.value = around ? next % count : Math.min(Math.max(next, 0), count - 1);
   return drawAll();
 }
 
@@ -363,7 +403,11 @@ function startControls() {
     $("own-range").hidden = control.range.value !== "own";
     draw();
   });
-  control.instant.addEventListener("input", drawAll);
+  for (const one of [instants, iterates].filter(Boolean))
+    one.control.addEventListener("input", () => {
+      follow(one);
+      drawAll();
+    });
   control.opacity.addEventListener("input", () => {
     seeThrough(Number(control.opacity.value));
     scene.render();
@@ -421,9 +465,9 @@ async function start() {
     scene = await Scene.create($("canvas"));
   } catch (error) {
     failed(error.message);
-    showProofs(drawn.at(-1));
-    showZones(drawn.at(-1));
-    showCurves(drawn.at(-1), () => {}, []);
+    showProofs(lastInstant());
+    showZones(lastInstant());
+    showCurves(lastInstant(), () => {}, []);
     return;
   }
   theme();

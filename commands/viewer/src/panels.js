@@ -31,13 +31,15 @@ const list = (pairs) => element("dl", {}, ...pairs.flatMap(([name, value]) => [e
 
 /** The verdict over all instants, and one line a proof at this instant. */
 export function showProofs(instant) {
-  const all = study.proofs.flat();
+  const step = study.failed && {holds: false, what: t("The step from {begins} to {instant}", {begins: number(study.failed.begins, 9), instant: number(study.failed.instant, 9)}),
+    found: study.failed.message, says: study.failed.reason};
+  const all = [...study.proofs.flat(), step].filter(Boolean);
   const failed = all.filter(({holds}) => holds === false).length;
   const verdict = document.getElementById("verdict");
   verdict.className = failed ? "bad" : "good";
   verdict.textContent = !all.length ? "" : t(failed ? "✗ {failed} of {all} checks want a look" : "✓ all {all} checks hold", {failed, all: all.length});
   verdict.hidden = !all.length;
-  const lines = study.proofs[instant] ?? [];
+  const lines = [step, ...(study.proofs[instant] ?? [])].filter(Boolean);
   document.getElementById("proof-lines").replaceChildren(lines.length
     ? table(["", t("What is checked"), t("Found"), t("What it says")], lines.map(({holds, what, found, says}) => [mark(holds), what, found, says]))
     : element("p", {textContent: t("The result holds no figures to check at this instant.")}));
@@ -45,7 +47,7 @@ export function showProofs(instant) {
 
 export function showZones(instant) {
   const box = document.getElementById("zones");
-  box.hidden = !study.zones.length;
+  box.hidden = !study.zones.length || instant === undefined;
   if (box.hidden) return;
   const at = study.instants[instant];
   const rows = study.zones.map((zone, z) => {
