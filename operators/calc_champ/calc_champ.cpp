@@ -32,6 +32,8 @@ enum class How {
   same,
   strain,
   strain_green,
+  strain_logarithmic,
+  plastic,
   stress_invariants,
   strain_invariants,
   to_cell_nodes,
@@ -67,6 +69,15 @@ constexpr std::array rows{
     FieldRow{"EPSG_ELGA", "DEPL", How::strain_green},
     FieldRow{"EPSG_ELNO", "EPSG_ELGA", How::to_cell_nodes},
     FieldRow{"EPSG_NOEU", "EPSG_ELNO", How::to_nodes},
+    FieldRow{"EPMG_ELGA", "EPSG_ELGA", How::mechanical_strain},
+    FieldRow{"EPMG_ELNO", "EPMG_ELGA", How::to_cell_nodes},
+    FieldRow{"EPMG_NOEU", "EPMG_ELNO", How::to_nodes},
+    FieldRow{"EPSL_ELGA", "DEPL", How::strain_logarithmic},
+    FieldRow{"EPSL_ELNO", "EPSL_ELGA", How::to_cell_nodes},
+    FieldRow{"EPSL_NOEU", "EPSL_ELNO", How::to_nodes},
+    FieldRow{"EPSP_ELGA", "SIEF_ELGA", How::plastic},
+    FieldRow{"EPSP_ELNO", "EPSP_ELGA", How::to_cell_nodes},
+    FieldRow{"EPSP_NOEU", "EPSP_ELNO", How::to_nodes},
     FieldRow{"SIEQ_ELGA", "SIEF_ELGA", How::stress_invariants},
     FieldRow{"SIEQ_ELNO", "SIGM_ELNO", How::stress_invariants},
     FieldRow{"SIEQ_NOEU", "SIEQ_ELNO", How::to_nodes},
@@ -107,7 +118,8 @@ bool has_zero_variables(const Result& result, std::string_view name) {
 std::vector<std::string> roots_of(const Result& result, std::string_view name) {
   std::vector<std::string> roots;
   const FieldRow* row = &row_of(name);
-  if (name == "REAC_NODA" || name == "FORC_NODA" || name.starts_with("ETOT")) roots.emplace_back("DEPL");
+  if (name == "REAC_NODA" || name == "FORC_NODA" || name.starts_with("ETOT") || name.starts_with("EPSP"))
+    roots.emplace_back("DEPL");
   while (!row->from.empty()) row = &row_of(row->from);
   roots.emplace_back(has_zero_variables(result, row->name) ? "SIEF_ELGA" : row->name);
   return roots;
@@ -234,9 +246,14 @@ class Instant {
         return field;
       }
       case How::strain:
+        return on_wanted_cells(strain(Strain::small, setting_.wanted(), name));
       case How::strain_green:
-        return on_wanted_cells(
-            strain(row.how == How::strain ? Strain::small : Strain::green_lagrange, setting_.wanted(), name));
+        return on_wanted_cells(strain(Strain::green_lagrange, setting_.wanted(), name));
+      case How::strain_logarithmic:
+        return on_wanted_cells(strain(Strain::logarithmic, setting_.wanted(), name));
+      case How::plastic:
+        refuse_large_strain((*this)(row.from), name);
+        return plastic_strain((*this)("EPSI_ELGA"), (*this)(row.from), name, setting_.materials());
       case How::stress_invariants:
         return equivalent_stress((*this)(row.from), name);
       case How::strain_invariants:
@@ -295,7 +312,7 @@ class Instant {
         field.at(row, static_cast<std::size_t>(field.component("EPZZ"))) += (1 + nu) / (1 - nu) * grown[row];
     }
     if (std::none_of(field.support.begin(), field.support.end(), is_plastic)) return field;
-    if (measure == Strain::green_lagrange)
+    if (measure != Strain::small)
       fail("CALCCHAMP_3", {{"cell", cell_name(*std::find_if(field.support.begin(), field.support.end(), is_plastic))},
                            {"label", setting_.result().label}});
     // plastic strain keeps the volume: the trace of the strain is the elastic one, (1 - 2 nu) / E times that of the stress
@@ -328,7 +345,7 @@ class Instant {
     return field;
   }
 
-  /// CALCCHAMP_5: energies are those of small strains.
+  /// CALCCHAMP_5: energies and plastic strains are those of small strains.
   void refuse_large_strain(const Field& field, const std::string& name) {
     for (const std::int32_t cell : field.support)
       if (setting_.behaviours().moved[static_cast<std::size_t>(cell)])

@@ -15,6 +15,13 @@ constexpr std::size_t cells_at_once = 256;  // in one block of a loop
 
 constexpr const char* displacement_names[] = {"DX", "DY", "DZ"};
 
+/// Of Green and Lagrange's strain.
+Eigen::Matrix3d logarithmic(const Eigen::Matrix3d& green) {
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> stretches(Eigen::Matrix3d::Identity() + 2 * green);
+  const Eigen::Vector3d logarithms = 0.5 * stretches.eigenvalues().array().log();
+  return stretches.eigenvectors() * logarithms.asDiagonal() * stretches.eigenvectors().transpose();
+}
+
 }  // namespace
 
 Field strains(const Mesh& mesh, ModelPoints& points, const Field& displacement, const std::vector<char>& wanted, Strain measure,
@@ -54,7 +61,8 @@ Field strains(const Mesh& mesh, ModelPoints& points, const Field& displacement, 
         }
         if (axis) h(2, 2) = radial / at.position[static_cast<std::size_t>(3 * p)];
         Eigen::Matrix3d strain = 0.5 * (h + h.transpose());
-        if (measure == Strain::green_lagrange) strain += 0.5 * h.transpose() * h;
+        if (measure != Strain::small) strain += 0.5 * h.transpose() * h;
+        if (measure == Strain::logarithmic) strain = logarithmic(strain);
         if (plane_stress) strain(2, 2) = -nu[c] / (1 - nu[c]) * (strain(0, 0) + strain(1, 1));
         double* const row =
             field.values.data() + (static_cast<std::size_t>(field.offset[c]) + static_cast<std::size_t>(p)) * width;

@@ -10,8 +10,9 @@
 namespace lacon {
 
 enum class Strain {
-  small,          ///< EPSI: (H + H^T) / 2 of the displacement gradient H
-  green_lagrange  ///< EPSG: (H + H^T + H^T H) / 2
+  small,           ///< EPSI: (H + H^T) / 2 of the displacement gradient H
+  green_lagrange,  ///< EPSG: (H + H^T + H^T H) / 2
+  logarithmic      ///< EPSL: ln(F^T F) / 2, F = 1 + H
 };
 
 /// Strains at the integration points of the body cells that `wanted` marks, components EPXX EPYY EPZZ EPXY (EPXZ EPYZ). EPZZ is

@@ -106,10 +106,31 @@ class Projection {
   std::vector<Place> places_;
 };
 
+/// The mesh that fields go to: its id.
+std::string target(const Keywords& keywords, const Base& base) {
+  const auto model = keywords.optional_concept("MODELE_2");
+  return model ? base.model(*model).mesh : keywords.concept_id("MAILLAGE_2");
+}
+
+/// CHAM_GD: a field of its own.
+void project_field(const Order& order, const Base& base) {
+  const Keywords& keywords = order.keywords;
+  const Field field = base.field(keywords.concept_id("CHAM_GD"));
+  if (field.location != Location::nodes || field.quantity.ends_with("_F"))
+    fail("PROJCHAMP_1", {{"keyword", keywords.path("CHAM_GD")}, {"field", field.name}});
+  const std::string mesh = target(keywords, base);
+  const Mesh here = base.mesh(field.mesh), there = base.mesh(mesh);
+  Field made = Projection(here, there, keywords)(field);
+  made.name = order.result_label;
+  made.mesh = mesh;
+  base.store(made);
+}
+
 }  // namespace
 
 void proj_champ(const Order& order, const Base& base) {
   const Keywords& keywords = order.keywords;
+  if (keywords.has("CHAM_GD")) return project_field(order, base);
   const Result from = base.result(keywords.concept_id("RESULTAT"));
   const auto model = keywords.optional_concept("MODELE_2");
   const std::vector<std::int64_t> orders = selected_orders(base, from, keywords);
@@ -117,7 +138,7 @@ void proj_champ(const Order& order, const Base& base) {
   to.version = 0;
   to.label = order.result_label;
   to.model = model.value_or("");
-  to.mesh = model ? base.model(*model).mesh : keywords.concept_id("MAILLAGE_2");
+  to.mesh = target(keywords, base);
   to.material_field = to.contact = "";
   to.loads.clear();
   to.tables.clear();

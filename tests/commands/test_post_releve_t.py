@@ -118,7 +118,7 @@ def fill(file):
 F = current.study.base.write_concept('field', 'F', 'CREA_CHAMP', {{}}, fill)
 def table(**more):
     keywords = dict(NOM_CMP={components}) if not {{'INVARIANT', 'ELEM_PRINCIPAUX'}} & set(more) else {{}}
-    return POST_RELEVE_T(ACTION=_F(INTITULE='it', CHAM_GD=F, GROUP_NO='TOP', **{{'OPERATION': 'EXTRACTION', **keywords, **more}})).EXTR_TABLE()
+    return POST_RELEVE_T(ACTION=_F(INTITULE='it', CHAM_GD=F, **{{'OPERATION': 'EXTRACTION', 'GROUP_NO': 'TOP', **keywords, **more}})).EXTR_TABLE()
 def near(found, expected):
     import numpy
     assert numpy.allclose(found, expected, rtol=0, atol=1e-13), (found, expected)
@@ -140,6 +140,20 @@ t = table(TRAC_DIR='OUI', DIRECTION=(3., 4.))
 near(t.TRAC_DIR, [.8, 1.4, 2.])
 t = table(REPERE='POLAIRE', ORIGINE=(1., 1.))  # node 5 is on the axis
 near([a * a + b * b for a, b in zip(t.DX, t.DY)], [1, 2, 5])
+FIN()
+"""))
+
+    def test_axes_along_a_line(self):
+        """X goes along the nodes in their order, Y to its left or towards VECT_Y; at a corner X is half way."""
+        self.ok(self.run_study(STUDY + self.field("DEPL_R", ["DX", "DY"], [[0.0, 1.0], [1.0, 1.0], [2.0, 1.0]]) + """
+t = table(REPERE='LOCAL')
+near(t.DX, [0, 1, 2]); near(t.DY, [1, 1, 1])
+t = table(REPERE='LOCAL', VECT_Y=(5., -2.))
+near(t.DX, [0, 1, 2]); near(t.DY, [-1, -1, -1])
+t = table(REPERE='LOCAL', GROUP_NO=None, NOEUD=('N6', 'N5', 'N4'))
+near(t.DX, [-2, -1, 0]); near(t.DY, [-1, -1, -1])
+t = POST_RELEVE_T(ACTION=_F(INTITULE='corner', RESULTAT=R, INST=1.0, NOM_CHAM='DEPL', NOM_CMP='DX', NOEUD=('N1', 'N2', 'N5'), OPERATION='EXTRACTION', REPERE='LOCAL'))
+near(t.EXTR_TABLE().DX, [1, 2**0.5, 0])
 FIN()
 """))
 
@@ -201,7 +215,8 @@ FIN()
                               ({"NOM_CMP": None, "RESULTANTE": "'DX'", "OPERATION": "'EXTREMA'"}, "POST_2"),
                               ({"NOM_CMP": "'LAGS_C'", "GROUP_NO": "'ONE'"}, "POST_3"),
                               ({"NOM_CMP": "('DX', 'LAGS_C')", "OPERATION": "'MOYENNE'"}, "POST_4"),
-                              ({"GROUP_NO": "'ONE'", "OPERATION": "'MOYENNE'"}, "POST_5"), ({"REPERE": "'LOCAL'"}, "KEYWORD_13"),
+                              ({"GROUP_NO": "'ONE'", "OPERATION": "'MOYENNE'"}, "POST_5"), ({"GROUP_NO": "'ONE'", "REPERE": "'LOCAL'"}, "POST_5"),
+                              ({"REPERE": "'LOCAL'", "VECT_Y": "(1., 0.)"}, "POST_9"), ({"VECT_Y": "(1., 0.)"}, "KEYWORD_10"),
                               ({"REPERE": "'UTILISATEUR'"}, "KEYWORD_2"), ({"ORIGINE": "(0., 0.)"}, "KEYWORD_10"),
                               ({"NOM_CMP": None, "INVARIANT": "'OUI'"}, "POST_7"), ({"TRAC_DIR": "'OUI'"}, "KEYWORD_9"),
                               ({"TRAC_DIR": "'OUI'", "DIRECTION": "(0., 0.)"}, "POST_8"), ({"TRAC_NOR": "'OUI'"}, "KEYWORD_11"),

@@ -47,6 +47,49 @@ for result, shift in ((R[0], 0), (R[1], 1)):
         self.assertEqual(np.abs(result.field("VARI_ELNO", 2)[1]["V1"]).max(), 0)
 
 
+class Strains(LoadTest):
+    def test_logarithmic_and_plastic_strains(self):
+        """EPSL of a sheet that is stretched twofold, compressed to 0.8 and turned by 50 degrees: ln of the stretches; EPSP of a bar in tension: what flows, at
+        constant volume, also beside a thermal strain."""
+        run = self.run_text([flat_block("QUAD8"), flat_brick("HEXA8")], STRETCH + """
+from math import cos, radians, sin
+c, s = cos(radians(50)), sin(radians(50))
+model(20, 'D_PLAN')
+H = AFFE_CHAR_CINE_F(MODELE=MODEL, MECA_IMPO=_F(GROUP_MA='BODY', DX=formula(f'{2 * c} * X - {0.8 * s} * Y - X'), DY=formula(f'{2 * s} * X + {0.8 * c} * Y - Y')))
+R.append(STAT_NON_LINE(MODELE=MODEL, CHAM_MATER=FIELD, EXCIT=_F(CHARGE=H), INCREMENT=_F(LIST_INST=DEFI_LIST_REEL(VALE=(0., 1.))),
+                       COMPORTEMENT=_F(RELATION='ELAS', DEFORMATION='GDEF_LOG')))
+R[0] = CALC_CHAMP(reuse=R[0], RESULTAT=R[0], DEFORMATION=('EPSL_ELGA', 'EPSL_NOEU', 'EPMG_ELGA', 'EPSG_ELGA'))
+try:
+    CALC_CHAMP(RESULTAT=R[0], DEFORMATION='EPSP_ELGA')
+except AsterError as refusal:
+    assert 'CALCCHAMP_5' in str(refusal)
+else:
+    assert False
+SOFT = DEFI_MATERIAU(ELAS=_F(E=2000., NU=0.3, ALPHA=1e-3), ECRO_LINE=_F(SY=10.0, D_SIGM_EPSI=100.0))
+model(21, '3D', SOFT)
+WARM = CREA_CHAMP(TYPE_CHAM='NOEU_TEMP_R', OPERATION='AFFE', MAILLAGE=MESH, AFFE=_F(TOUT='OUI', NOM_CMP='TEMP', VALE=4.0))
+COLD = CREA_CHAMP(TYPE_CHAM='NOEU_TEMP_R', OPERATION='AFFE', MAILLAGE=MESH, AFFE=_F(TOUT='OUI', NOM_CMP='TEMP', VALE=0.0))
+HEAT = CREA_RESU(OPERATION='AFFE', TYPE_RESU='EVOL_THER', AFFE=(_F(NOM_CHAM='TEMP', CHAM_GD=COLD, INST=0.0), _F(NOM_CHAM='TEMP', CHAM_GD=WARM, INST=1.0)))
+FIELD = AFFE_MATERIAU(MAILLAGE=MESH, AFFE=_F(TOUT='OUI', MATER=SOFT), AFFE_VARC=_F(TOUT='OUI', NOM_VARC='TEMP', EVOL=HEAT, VALE_REF=0.0))
+H = AFFE_CHAR_CINE(MODELE=MODEL, MECA_IMPO=(_F(GROUP_MA='LEFT', DX=0), _F(GROUP_MA='FRONT', DY=0), _F(GROUP_MA='BASE', DZ=0)))
+P = AFFE_CHAR_MECA(MODELE=MODEL, PRES_REP=_F(GROUP_MA='RIGHT', PRES=-30.0))
+solve(_F(CHARGE=H), _F(CHARGE=P, FONC_MULT=RAMP), COMPORTEMENT=_F(RELATION='VMIS_ISOT_LINE'))
+R[1] = CALC_CHAMP(reuse=R[1], RESULTAT=R[1], DEFORMATION=('EPSP_ELGA', 'EPSP_NOEU'))
+""")
+        self.assertEqual(run.status, 0, run.stdout[-3000:] + run.stderr[-3000:])
+        turned, flowed = (Result(self.folder / "loads.base", f"R[{k}]") for k in range(2))
+        for name in ("EPSL_ELGA", "EPSL_NOEU"):
+            strain = turned.field(name, 1)[1]
+            for component, exact in (("EPXX", np.log(2)), ("EPYY", np.log(0.8)), ("EPZZ", 0), ("EPXY", 0)):
+                self.assertLessEqual(np.abs(strain[component] - exact).max(), 1e-10, (name, component))
+        self.assert_near(turned.field("EPMG_ELGA", 1)[1]["EPXX"], turned.field("EPSG_ELGA", 1)[1]["EPXX"])
+        plastic = (30.0 - 10.0) * (1 / 100.0 - 1 / YOUNG)
+        for name in ("EPSP_ELGA", "EPSP_NOEU"):
+            strain = flowed.field(name, 2)[1]
+            for component, exact in (("EPXX", plastic), ("EPYY", -plastic / 2), ("EPZZ", -plastic / 2), ("EPXY", 0)):
+                self.assertLessEqual(np.abs(strain[component] - exact).max(), 1e-8 * plastic, (name, component))
+
+
 class Balance(LoadTest):
     def test_what_forces_and_supports_give_is_stored(self):
         """ENERGIE of a sheet (2 x 1) stretched by a tension, by its end that is moved, and on with reuse=; the work of supports is TRAV_LIAI."""
@@ -152,6 +195,16 @@ R.append(CREA_RESU(OPERATION='AFFE', TYPE_RESU='EVOL_THER', AFFE=_F(NOM_CHAM='TE
 R.append(EXTR_RESU(RESULTAT=R[0], ARCHIVAGE=_F(INST=(0.5, 1.0))))
 OTHER = LIRE_MAILLAGE(UNITE=21)
 R.append(PROJ_CHAMP(METHODE='COLLOCATION', RESULTAT=R[1], MAILLAGE_1=MESH, MAILLAGE_2=OTHER, INST=1.0))
+HERE = CREA_CHAMP(TYPE_CHAM='NOEU_TEMP_R', OPERATION='EXTR', RESULTAT=R[0], NOM_CHAM='TEMP', INST=1.0)
+THERE = PROJ_CHAMP(METHODE='COLLOCATION', CHAM_GD=HERE, MAILLAGE_1=MESH, MAILLAGE_2=OTHER)
+points, (values, mask) = OTHER.getCoordinates().toNumpy(), THERE.toSimpleFieldOnNodes().getValues()
+assert THERE.getMesh() is OTHER and mask.all() and abs(values[:, 0] - (2 * points[:, 0] * points[:, 1] + points[:, 0]**2)).max() < 1e-13
+try:
+    PROJ_CHAMP(CHAM_GD=F, MAILLAGE_2=OTHER)
+except AsterError as refusal:
+    assert 'PROJCHAMP_1' in str(refusal)
+else:
+    assert False
 R[0] = CREA_RESU(reuse=R[0], RESULTAT=R[0], OPERATION='AFFE', TYPE_RESU='EVOL_THER', AFFE=_F(NOM_CHAM='TEMP', CHAM_GD=F, INST=2.0))
 """)
         self.assertEqual(run.status, 0, run.stdout[-3000:] + run.stderr[-3000:])

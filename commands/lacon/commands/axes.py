@@ -62,6 +62,8 @@ def at(call, k, path, points, plane):
     """Axes of REPERE at points (n, 3), as rows of (n, 3, 3). @param plane the mesh has two dimensions"""
     if k["REPERE"] == "UTILISATEUR":
         return numpy.broadcast_to(_nautical(k["ANGL_NAUT"]), (len(points), 3, 3))
+    if k["REPERE"] == "LOCAL":
+        return _along(call, k, path, points, plane)
     origin = numpy.zeros(3)
     given = k.get("ORIGINE", ())
     origin[:len(given)] = given
@@ -84,6 +86,29 @@ def at(call, k, path, points, plane):
     around = numpy.cross(along, radial)
     polar = plane or k["REPERE"] == "POLAIRE"
     return numpy.stack([radial, around, along] if polar else [radial, along, around], axis=1)
+
+
+def _along(call, k, path, points, plane):
+    """Axes at points of a line: X its tangent, the mean of the directions of the pieces beside a point; Y towards VECT_Y."""
+    pieces = numpy.diff(points, axis=0)
+    lengths = numpy.linalg.norm(pieces, axis=1)
+    if not len(pieces) or not lengths.all():
+        call.fail("POST_5", path)
+    pieces /= lengths[:, None]
+    tangent = numpy.vstack([pieces[:1], pieces[1:] + pieces[:-1], pieces[-1:]])
+    if "VECT_Y" in k:
+        towards = numpy.zeros(3)
+        towards[:len(k["VECT_Y"])] = k["VECT_Y"]
+        across = numpy.cross(tangent, towards / max(numpy.linalg.norm(towards), 1e-300))
+    elif plane:
+        across = numpy.tile([0.0, 0.0, 1.0], (len(points), 1))
+    else:
+        call.fail("POST_9", f"{path}/VECT_Y")
+    sizes = numpy.linalg.norm(tangent, axis=1), numpy.linalg.norm(across, axis=1)
+    if min(map(min, sizes)) < 1e-6:
+        call.fail("POST_9", f"{path}/VECT_Y")
+    tangent, across = tangent / sizes[0][:, None], across / sizes[1][:, None]
+    return numpy.stack([tangent, numpy.cross(across, tangent), across], axis=1)
 
 
 def _nautical(degrees):

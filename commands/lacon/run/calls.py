@@ -88,7 +88,8 @@ class Command:
         written = {unit for unit in units if unit in run.written_units}
         result = None
         if "result" in row:
-            identifier = reused.id if reused else run.base.new_id(row["result"])
+            kind = _kind(row, keywords)
+            identifier = reused.id if reused else run.base.new_id(kind)
             result = {"id": identifier, "label": label, "reuse": bool(reused)}
             keywords = {k: {"concept": identifier} if named and v is named else v for k, v in keywords.items()}
         made = orders.order(self.name, run, keywords, where, result, units, written)
@@ -98,13 +99,13 @@ class Command:
                 return run.base.kept.order_key(made, plugins.operator_folder() / row["operator"], made["units"])
 
             key = run.base.kept.key_of_change(identifier, make_key) if reused else make_key()
-            found = self._unchanged(run, row["result"], key, where, identifier, reused)
+            found = self._unchanged(run, kind, key, where, identifier, reused)
             if found:
                 self._protect_data(run, row, keywords, units)
                 return self._result(run, found, label, where, reused, named), orders.Outcome(0, [], {}, {}, 0.0)
         grows, ended_well = row.get("solves"), False
         if grows:
-            identifier = self._resume(run, row["result"], key, identifier, reused, result)
+            identifier = self._resume(run, kind, key, identifier, reused, result)
         copy = orders.keep_copy(run.base, identifier) if reused else None
         if grows:
             at = run.base.kept.hold(identifier) if reused else None
@@ -193,8 +194,7 @@ class Command:
         does all but that, where what it starts from was really made."""
         if "result" not in row:
             return None
-        kind = keywords[row["result_of"]].type if "result_of" in row else row["result"]
-        identifier = reused.id if reused else run.base.new_id(kind)
+        identifier = reused.id if reused else run.base.new_id(_kind(row, keywords))
         if run.check.prepares(row, keywords):
             result = {"id": identifier, "label": label, "reuse": bool(reused)}
             made = orders.order(self.name, run, keywords, where, result, self._units(run, row, keywords, where))
@@ -237,6 +237,12 @@ class Command:
     def _is_printed(run, number, keywords):
         """Whether the operator writes text for the terminal, which the launcher prints."""
         return run.is_terminal(number) and keywords.get("FORMAT") == "RESULTAT"
+
+
+def _kind(row, keywords):
+    """The type of what a command makes: `result`, or that of the concept which the keyword `result_of` holds."""
+    given = keywords.get(row.get("result_of"))
+    return given.type if given is not None else row["result"]
 
 
 def _unit_numbers(row, keywords):
