@@ -11,6 +11,8 @@ void judge_forces(const ConvergenceCriteria& criteria, const ForceFigures& force
       forces.unbalanced > 0 && std::isfinite(forces.unbalanced) ? forces.unbalanced / forces.reference : forces.unbalanced;
   report.rela_met = !criteria.resi_glob_rela || report.rela <= *criteria.resi_glob_rela || forces.significant == 0;
   report.maxi_met = !criteria.resi_glob_maxi || report.maxi <= *criteria.resi_glob_maxi;
+  report.refe = forces.over_own;
+  report.refe_met = !criteria.resi_refe_rela || report.refe <= *criteria.resi_refe_rela;
 }
 
 void judge_contact(const ConvergenceCriteria& criteria, const MotionFigures& motion, double constraint,

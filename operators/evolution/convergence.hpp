@@ -11,6 +11,7 @@ namespace lacon {
 struct ConvergenceCriteria {
   std::optional<double> resi_glob_rela;
   std::optional<double> resi_glob_maxi;
+  std::optional<double> resi_refe_rela = {};
   double resi_geom = 1e-6;
   double constraint = 1e-8;  ///< largest |g_T| / h over active patches
 };
@@ -22,6 +23,7 @@ struct ForceFigures {
   double significant = 0;       ///< what is left where it is more than round-off, below which no iteration gets
   /// External forces, reactions, forces of relations and of contact: what a residual is measured against.
   double reference = 0;
+  double over_own = 0;  ///< the largest over that of its degree of freedom (reference_forces.hpp)
 };
 
 /// The displacements of an iteration, as figures.
@@ -34,8 +36,8 @@ struct MotionFigures {
 /// One line of the Newton table.
 struct IterationReport {
   int iteration = 0;
-  double rela = 0, maxi = 0;
-  bool rela_met = true, maxi_met = true;
+  double rela = 0, maxi = 0, refe = 0;
+  bool rela_met = true, maxi_met = true, refe_met = true;
   std::int64_t worst_dof = -1;  ///< where the residual is largest
   std::int64_t status_changes = 0;
   double geometry = 0;  ///< max |du| / max |u|
@@ -47,13 +49,13 @@ struct IterationReport {
   double seconds = 0;
 
   /// With the statuses that the patches have.
-  bool in_equilibrium() const { return rela_met && maxi_met && geometry_met && constraint_met && !solution.rough; }
+  bool in_equilibrium() const { return rela_met && maxi_met && refe_met && geometry_met && constraint_met && !solution.rough; }
   bool converged() const { return in_equilibrium() && status_changes == 0; }
 };
 
-/// RESI_GLOB_RELA and RESI_GLOB_MAXI: fills in rela, maxi and whether they are met. The relative residual is measured against
-/// the present equilibrium alone, whatever iterates or instants before it were; where its forces vanish, what round-off leaves
-/// of them meets it whatever it is of nothing. What is not finite meets nothing.
+/// RESI_GLOB_RELA, RESI_GLOB_MAXI and RESI_REFE_RELA: fills in rela, maxi, refe and whether they are met. The relative residual
+/// is measured against the present equilibrium alone, whatever iterates or instants before it were; where its forces vanish,
+/// what round-off leaves of them meets it whatever it is of nothing. What is not finite meets nothing.
 void judge_forces(const ConvergenceCriteria& criteria, const ForceFigures& forces, IterationReport& report);
 
 /// RESI_GEOM and the gaps of active patches: fills in geometry, constraint and whether they are met.

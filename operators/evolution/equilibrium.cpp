@@ -313,7 +313,12 @@ ForceFigures Equilibrium::forces(const StaticState& state, const StaticState& pr
     } else if (const std::int64_t equation = problem_.numbering.equation[dof]; equation >= 0) {
       figures.reference = std::max(figures.reference, std::abs(external_[dof]));
       if (!std::isfinite(unbalanced))
-        return {.unbalanced = unbalanced, .worst_dof = static_cast<std::int64_t>(dof), .significant = unbalanced};
+        return {.unbalanced = unbalanced,
+                .worst_dof = static_cast<std::int64_t>(dof),
+                .significant = unbalanced,
+                .over_own = unbalanced};
+      if (!reference_forces_.empty() && reference_forces_[dof] > 0)
+        figures.over_own = std::max(figures.over_own, unbalanced / reference_forces_[dof]);
       if (unbalanced > figures.unbalanced || figures.worst_dof < 0) {
         figures.unbalanced = unbalanced;
         figures.worst_dof = static_cast<std::int64_t>(dof);

@@ -4,6 +4,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "lacon/operators/contact/contact_state.hpp"
@@ -73,6 +74,9 @@ class Equilibrium {
   double power(std::span<const double> solution) const;
   std::int64_t first_multiplier() const { return system_.first_multiplier(); }  ///< equations from it on: relations and patches
 
+  /// Measure what is unbalanced by the reference of its degree of freedom too, where that is above zero
+  /// (reference_forces.hpp).
+  void measure_by(std::vector<double> reference_forces) { reference_forces_ = std::move(reference_forces); }
   /// What the last assembly says of the balance of `state`.
   ForceFigures forces(const StaticState& state, const StaticState& previous) const;
   /// What is left of the forces at the last assembly, internal less external, (n_nodes, n_components); 0 where nothing is
@@ -129,6 +133,7 @@ class Equilibrium {
   std::vector<double> given_;      ///< at that instant: dead forces, and behind them what the multipliers' rows are to be
   std::vector<double> external_;   ///< the same with following forces at the last evaluation
   double extent_ = 0;              ///< largest coordinate of the mesh
+  std::vector<double> reference_forces_;      ///< (n_nodes, n_components), or nothing
   std::vector<std::vector<double>> offsets_;  ///< of the skins, ContactOffsets::at
   bool has_new_gaps_ = false;
 };

@@ -32,7 +32,9 @@ Journal::Journal(const std::filesystem::path& result, const TimeSteps& steps, do
   std::error_code error;
   std::filesystem::create_directories(folder_, error);
   out_.open(folder_ / name, std::ios::app);
-  nlohmann::json limits = {{"rela", limit_of(criteria.resi_glob_rela)}, {"maxi", limit_of(criteria.resi_glob_maxi)}};
+  nlohmann::json limits = {{"rela", limit_of(criteria.resi_glob_rela)},
+                           {"maxi", limit_of(criteria.resi_glob_maxi)},
+                           {"refe", limit_of(criteria.resi_refe_rela)}};
   if (present.contact) limits.update({{"geometry", criteria.resi_geom}, {"constraint", criteria.constraint}});
   // behind a line that a process which was killed has left half-written
   out_ << '\n'
@@ -60,6 +62,7 @@ void Journal::iterate(double instant, const IterationReport& report) {
                          {"iteration", report.iteration},
                          {"rela", report.rela},
                          {"maxi", report.maxi},
+                         {"refe", report.refe},
                          {"factorised", report.solution.factorised},
                          {"converged", report.converged()},
                          {"seconds", report.seconds},

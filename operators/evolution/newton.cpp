@@ -47,6 +47,7 @@ Newton::Newton(const StaticProblem& problem, const NewtonOptions& options, std::
                .in_space = problem.dimension == 3,
                .settling = problem.contact ? problem.contact->elastic_iterations : 0}),
       solver_(std::move(engine)) {
+  equilibrium_.measure_by(options.reference_forces);
   if (!problem.contact) return;
   options_.criteria.resi_geom = problem.contact->resi_geom;
   options_.criteria.constraint = gap_share * problem.contact->resi_geom;
@@ -401,8 +402,9 @@ std::string Newton::cells_of(const std::vector<std::size_t>& patches) const {
 
 void Newton::fail_to_converge(double instant, const IterationReport& line, std::size_t changing) const {
   const ConvergenceCriteria& asked = options_.criteria;
-  const double excess = std::max(asked.resi_glob_rela ? line.rela / *asked.resi_glob_rela : 0,
-                                 asked.resi_glob_maxi ? line.maxi / *asked.resi_glob_maxi : 0);
+  const double excess = std::max({asked.resi_glob_rela ? line.rela / *asked.resi_glob_rela : 0,
+                                  asked.resi_glob_maxi ? line.maxi / *asked.resi_glob_maxi : 0,
+                                  asked.resi_refe_rela ? line.refe / *asked.resi_refe_rela : 0});
   std::string round_words, turned_words;
   if (const auto& round = statuses_.round())
     round_words = part("statuses_went_round", {{"count", std::to_string(round->patches.size())},
@@ -449,6 +451,7 @@ std::string Newton::unmet_criteria(const IterationReport& line, std::size_t chan
   };
   add(line.rela_met, at_its_place(fmt::format("RESI_GLOB_RELA {:.1e}", line.rela)));
   add(line.maxi_met, at_its_place(fmt::format("RESI_GLOB_MAXI {:.1e}", line.maxi)));
+  add(line.refe_met, at_its_place(fmt::format("RESI_REFE_RELA {:.1e}", line.refe)));
   add(line.geometry_met, fmt::format("RESI_GEOM {:.1e}", line.geometry));
   add(line.constraint_met, part("largest_gap", {{"value", fmt::format("{:.1e}", line.constraint)}}));
   if (line.status_changes)

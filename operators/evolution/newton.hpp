@@ -20,6 +20,7 @@ namespace lacon {
 
 struct NewtonOptions {
   ConvergenceCriteria criteria;
+  std::vector<double> reference_forces = {};      ///< those of RESI_REFE_RELA, (n_nodes, n_components)
   int iterations = 10;                            ///< ITER_GLOB_MAXI
   SolidMatrix matrix = SolidMatrix::tangent;      ///< NEWTON/MATRICE
   SolidMatrix prediction = SolidMatrix::tangent;  ///< NEWTON/PREDICTION: of the first iteration of an instant

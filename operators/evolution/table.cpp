@@ -12,21 +12,21 @@
 #include "lacon/operators/contact/pairing_view.hpp"
 
 namespace lacon {
+
+struct NewtonColumn {
+  const char* title[3];
+  std::string (*value)(const IterationReport&, const StaticProblem&);
+  enum { always, with_contact, with_place, with_reference } shown = always;
+};
+
 namespace {
 
 constexpr int width = 16;
 
-struct Column {
-  const char* title[3];
-  std::string (*value)(const IterationReport&, const StaticProblem&);
-  bool contact_only = false;
-  bool where_only = false;
-};
-
 /// A number, and behind it an X as long as its criterion is not met.
 std::string judged(double value, bool met) { return fmt::format("{:.5E} {}", value, met ? ' ' : 'X'); }
 
-const Column columns[] = {
+const NewtonColumn columns[] = {
     {{"NEWTON", "ITERATION", ""},
      [](const IterationReport& r, const StaticProblem&) {
        return fmt::format("{}{}", r.iteration, r.converged() ? ' ' : 'X');
@@ -35,23 +35,25 @@ const Column columns[] = {
      [](const IterationReport& r, const StaticProblem&) { return judged(r.rela, r.rela_met); }},
     {{"RESIDU", "ABSOLU", "RESI_GLOB_MAXI"},
      [](const IterationReport& r, const StaticProblem&) { return judged(r.maxi, r.maxi_met); }},
+    {{"RESIDU", "REFERENCE", "RESI_REFE_RELA"},
+     [](const IterationReport& r, const StaticProblem&) { return judged(r.refe, r.refe_met); },
+     NewtonColumn::with_reference},
     {{"RESIDU", "MAXIMUM", "AU POINT"},
      [](const IterationReport& r, const StaticProblem& p) { return r.worst_dof < 0 ? std::string() : p.dof_name(r.worst_dof); },
-     false,
-     true},
+     NewtonColumn::with_place},
     {{"OPTION", "ASSEMBLAGE", ""},
      [](const IterationReport& r, const StaticProblem&) { return std::string(r.solution.factorised ? "TANGENTE" : "-"); }},
     {{"CONTACT", "NEWTON GENE", "VARI. CONT."},
      [](const IterationReport& r, const StaticProblem&) {
        return fmt::format("{} {}", r.status_changes, r.status_changes ? 'X' : ' ');
      },
-     true},
+     NewtonColumn::with_contact},
     {{"CONTACT", "NEWTON GENE", "CRIT. GEOM."},
      [](const IterationReport& r, const StaticProblem&) { return judged(r.geometry, r.geometry_met); },
-     true},
+     NewtonColumn::with_contact},
     {{"CONTACT", "MAX. GAP / SIZE", "ACTIVE PATCHES"},
      [](const IterationReport& r, const StaticProblem&) { return judged(r.constraint, r.constraint_met); },
-     true},
+     NewtonColumn::with_contact},
     {{"SOLVER", "NEGATIVE", "PIVOTS"},
      [](const IterationReport& r, const StaticProblem&) {
        const std::optional<std::int64_t>& found = r.solution.factorisation.negative_pivots;
@@ -61,14 +63,16 @@ const Column columns[] = {
     {{"TIME", "SECONDS", ""}, [](const IterationReport& r, const StaticProblem&) { return fmt::format("{:.4f}", r.seconds); }},
 };
 
-std::vector<const Column*> shown(const StaticProblem& problem, bool where) {
-  std::vector<const Column*> list;
-  for (const Column& column : columns)
-    if ((!column.contact_only || problem.contact) && (!column.where_only || where)) list.push_back(&column);
+}  // namespace
+
+std::vector<const NewtonColumn*> NewtonTable::shown() const {
+  std::vector<const NewtonColumn*> list;
+  for (const NewtonColumn& column : columns)
+    if (column.shown == NewtonColumn::always || (column.shown == NewtonColumn::with_contact && present_.problem.contact) ||
+        (column.shown == NewtonColumn::with_place && where_) || (column.shown == NewtonColumn::with_reference && reference_))
+      list.push_back(&column);
   return list;
 }
-
-}  // namespace
 
 std::string NewtonTable::components(Vec3 vector) const {
   std::string text;
@@ -76,14 +80,14 @@ std::string NewtonTable::components(Vec3 vector) const {
   return text + ")";
 }
 
-void NewtonTable::rule() { out_ << ' ' << std::string(shown(present_.problem, where_).size() * (width + 1) + 1, '-') << '\n'; }
+void NewtonTable::rule() { out_ << ' ' << std::string(shown().size() * (width + 1) + 1, '-') << '\n'; }
 
 void NewtonTable::begin(double instant) {
   out_ << fmt::format("\n Instant de calcul: {:.12e}\n", instant);
   rule();
   for (int i = 0; i < 3; ++i) {
     out_ << " |";
-    for (const Column* column : shown(present_.problem, where_)) out_ << fmt::format("{:^{}}|", column->title[i], width);
+    for (const NewtonColumn* column : shown()) out_ << fmt::format("{:^{}}|", column->title[i], width);
     out_ << '\n';
   }
   rule();
@@ -92,7 +96,7 @@ void NewtonTable::begin(double instant) {
 
 void NewtonTable::iterate(double /*instant*/, const IterationReport& report) {
   out_ << " |";
-  for (const Column* column : shown(present_.problem, where_))
+  for (const NewtonColumn* column : shown())
     out_ << fmt::format("{:>{}}|", column->value(report, present_.problem) + " ", width);
   out_ << std::endl;  // as it goes: a long computation shows where it is
 }

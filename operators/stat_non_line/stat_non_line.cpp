@@ -14,6 +14,7 @@
 #include "lacon/operators/evolution/linear_solver.hpp"
 #include "lacon/operators/evolution/newton.hpp"
 #include "lacon/operators/evolution/progress.hpp"
+#include "lacon/operators/evolution/reference_forces.hpp"
 #include "lacon/operators/evolution/restart.hpp"
 #include "lacon/operators/evolution/step_events.hpp"
 #include "lacon/operators/evolution/table.hpp"
@@ -39,13 +40,17 @@ std::optional<LineSearch> line_search_of(const Keywords& keywords) {
                     .excluded = search.real("RHO_EXCL")};
 }
 
-NewtonOptions newton_options(const Keywords& keywords, const TimeSteps& steps) {
+NewtonOptions newton_options(const Keywords& keywords, const TimeSteps& steps, const StaticProblem& problem) {
   const Keywords convergence = keywords.factor("CONVERGENCE"), newton = keywords.factor("NEWTON");
   const SolidMatrix matrix = matrix_of(newton.text("MATRICE"));
   const std::string prediction = newton.text("PREDICTION");
   const auto iterations = static_cast<int>(convergence.integer("ITER_GLOB_MAXI"));
   return {.criteria = {.resi_glob_rela = convergence.optional_real("RESI_GLOB_RELA"),
-                       .resi_glob_maxi = convergence.optional_real("RESI_GLOB_MAXI")},
+                       .resi_glob_maxi = convergence.optional_real("RESI_GLOB_MAXI"),
+                       .resi_refe_rela = convergence.optional_real("RESI_REFE_RELA")},
+          .reference_forces = convergence.has("RESI_REFE_RELA") ? reference_forces(problem, convergence.real("SIGM_REFE"),
+                                                                                   convergence.optional_real("EFFORT_REFE"))
+                                                                : std::vector<double>(),
           .iterations = iterations + static_cast<int>(iterations * steps.more_iterations / 100),
           .matrix = matrix,
           .prediction = prediction == "EXTRAPOLE" ? matrix : matrix_of(prediction),
@@ -127,7 +132,7 @@ void stat_non_line(const Order& order, const Base& base) {
   const std::optional<Origin> origin = record ? std::nullopt : origin_of(keywords, base);
   const std::optional<double> begins = record ? origin_in(*record) : origin ? std::optional(origin->instant) : std::nullopt;
   const TimeSteps steps = steps_of(keywords.factor("INCREMENT"), base, begins);
-  QuasiStatic solver(problem, newton_options(keywords, steps), engine_of(keywords.factor("SOLVEUR"), base, problem));
+  QuasiStatic solver(problem, newton_options(keywords, steps, problem), engine_of(keywords.factor("SOLVEUR"), base, problem));
   const Present present = solver.present(problem);
   Observations observations(keywords, base, problem.mesh, observed_fields_of(present));
   EnergyBalance energies(keywords.has("ENERGIE"), present);
@@ -145,7 +150,8 @@ void stat_non_line(const Order& order, const Base& base) {
   else if (!record)
     Heat(problem).warn_of_start(present.state);
 
-  NewtonTable table(std::cout, present, keywords.factor("AFFICHAGE").yes("INFO_RESIDU"), keywords.integer("INFO") == 2);
+  NewtonTable table(std::cout, present, keywords.factor("AFFICHAGE").yes("INFO_RESIDU"),
+                    solver.criteria().resi_refe_rela.has_value(), keywords.integer("INFO") == 2);
   StepEvents events(steps.events, base, problem.mesh, fields_of(present));
   ContactNotices notices(present);
   RestartRecord restart(base, begins, solver, archive,

@@ -4,7 +4,7 @@ import re
 import unittest
 
 import numpy as np
-from load_study import LoadTest, flat_block
+from load_study import SIDES_2D, LoadTest, flat_block
 
 from meshes import block, brick, union  # noqa: I001 (load_study says where it is)
 from results import Result
@@ -106,6 +106,40 @@ R.append(STAT_NON_LINE(MODELE=MODEL, CHAM_MATER=FIELD, EXCIT=(_F(CHARGE=TURN), _
                        CONVERGENCE=_F(RESI_GLOB_RELA=1e-6, ITER_GLOB_MAXI=10)))
 """)
         self.assertEqual(run.status, 0, run.stdout[-3000:] + run.stderr[-2000:])
+
+    def test_a_reference_stress_measures_each_node_by_what_it_would_make_there(self):
+        """RESI_REFE_RELA: one square of side h gives each corner SIGM_REFE h / 4; springs at the free corners EFFORT_REFE besides."""
+        side, stress, effort = 2.0, 50.0, 15.0
+        lines = np.linspace(0, side, 2)
+        text = f"""
+model(20, "D_PLAN")
+{{springs}}
+PULL = AFFE_CHAR_MECA(MODELE=MODEL, FORCE_CONTOUR=_F(GROUP_MA="RIGHT", FX=300.0, FY=200.0))
+HOLD = AFFE_CHAR_CINE(MODELE=MODEL, MECA_IMPO=_F(GROUP_MA="LEFT", DX=0.0, DY=0.0))
+R.append(STAT_NON_LINE(MODELE=MODEL, CHAM_MATER=FIELD, EXCIT=(_F(CHARGE=HOLD), _F(CHARGE=PULL, FONC_MULT=RAMP)),
+                       COMPORTEMENT=_F(RELATION="ELAS", DEFORMATION="GREEN_LAGRANGE"), INCREMENT=_F(LIST_INST=DEFI_LIST_REEL(VALE=(0.0, 1.0))),
+                       CONVERGENCE=_F(RESI_REFE_RELA=1e-4, SIGM_REFE={stress}, ITER_GLOB_MAXI=20, **LIMIT), **SPRINGS))
+"""
+        without = "LIMIT = SPRINGS = {}"
+        springs = f"""
+MESH = CREA_MAILLAGE(MAILLAGE=MESH, CREA_POI1=_F(NOM_GROUP_MA="HOOK", GROUP_MA="RIGHT"))
+MODEL = AFFE_MODELE(MAILLAGE=MESH, AFFE=(_F(TOUT="OUI", PHENOMENE="MECANIQUE", MODELISATION="D_PLAN"),
+                                         _F(GROUP_MA="HOOK", PHENOMENE="MECANIQUE", MODELISATION="2D_DIS_T")))
+FIELD = AFFE_MATERIAU(MAILLAGE=MESH, AFFE=_F(TOUT="OUI", MATER=MATTER))
+SOFT = AFFE_CARA_ELEM(MODELE=MODEL, DISCRET_2D=_F(GROUP_MA="HOOK", CARA="K_T_D_N", VALE=(20.0, 20.0)))
+SPRINGS, LIMIT = dict(CARA_ELEM=SOFT), dict(EFFORT_REFE={effort})
+"""
+        for case, reference in ((without, stress * side / 4), (springs, stress * side / 4 + effort)):
+            run = self.run_text([block("QUAD4", lines, lines, None, "BODY", SIDES_2D)], text.format(springs=case))
+            self.assertEqual(run.status, 0, run.stdout[-3000:] + run.stderr[-2000:])
+            rows = [[word.strip(" X") for word in line.split("|")] for line in run.stdout.splitlines() if re.match(r"^ \|\s*\d+X? +\|", line)]
+            self.assertGreater(len(rows), 3)
+            for number, row in enumerate(rows):
+                self.assertAlmostEqual(float(row[4]) * reference / float(row[3]), 1, delta=2e-5)
+                self.assertEqual(float(row[4]) <= 1e-4, number == len(rows) - 1)
+        run = self.run_text([block("QUAD4", lines, lines, None, "BODY", SIDES_2D)], text.format(springs=springs + "LIMIT = {}"))
+        self.assertEqual(run.status, 2)
+        self.assertIn("<EVOLUTION_41>", run.stderr)
 
     def test_an_isostatic_press_fit_is_measured_against_its_contact_forces(self):
         """Two rings, one pressed into the other, held by nothing that reacts: the forces between them are the only ones.

@@ -194,7 +194,8 @@ def convergence(journal, title):
     rows = journal.iterations()
     figure = _new_figure(7.6, 4.8 if journal.patches else 3.4)
     panels = figure.subplots(2 if journal.patches else 1, 1, sharex=True, squeeze=False, height_ratios=(2.2, 1) if journal.patches else (1,))[:, 0]
-    kinds = (("rela", "RESI_GLOB_RELA", "o"), ("maxi", "RESI_GLOB_MAXI", "s"), ("geometry", "RESI_GEOM", "^"), ("constraint", part("gap_over_size"), "v"))
+    kinds = (("rela", "RESI_GLOB_RELA", "o"), ("maxi", "RESI_GLOB_MAXI", "s"), ("refe", "RESI_REFE_RELA", "D"),
+             ("geometry", "RESI_GEOM", "^"), ("constraint", part("gap_over_size"), "v"))
     number = numpy.arange(len(rows))
     begins = [i for i in number if i == 0 or rows[i][0] is not rows[i - 1][0]]
     pieces = list(zip(begins, [*begins[1:], len(rows)]))

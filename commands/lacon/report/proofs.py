@@ -39,7 +39,7 @@ def newton(iterations):
     limits, lines = iterations
     last = lines[-1]
     found = []
-    for key, keyword in (("rela", "RESI_GLOB_RELA"), ("maxi", "RESI_GLOB_MAXI")):
+    for key, keyword in (("rela", "RESI_GLOB_RELA"), ("maxi", "RESI_GLOB_MAXI"), ("refe", "RESI_REFE_RELA")):
         if limits.get(key) is not None:
             holds = last[key] <= limits[key]
             found.append(_line(bool(holds or last.get("converged")), part("equilibrium_by", keyword=keyword), part("asked_for", found=_figure(last[key]), limit=_figure(limits[key])),

@@ -134,14 +134,15 @@ def curves(shown, width, value):
 
 
 def residuals(journal, shown, width, rows):
-    """RESI_GLOB_RELA, or where it is not asked for RESI_GLOB_MAXI, on a logarithmic scale."""
-    kind = "rela" if journal.limits.get("rela") is not None else "maxi"
+    """RESI_GLOB_RELA, or where it is not asked for RESI_REFE_RELA or RESI_GLOB_MAXI, on a logarithmic scale."""
+    kinds = {"rela": "RESI_GLOB_RELA", "refe": "RESI_REFE_RELA", "maxi": "RESI_GLOB_MAXI"}
+    kind = next((name for name in kinds if journal.limits.get(name) is not None), "maxi")
     values = [line[kind] for _, line in shown]
     limit = journal.limits.get(kind)
     known = [v for v in [*values, limit or 0.0] if math.isfinite(v) and v > 0.0] or [1.0]
     lower, upper = (10.0 ** edge(math.log10(pick(known))) for edge, pick in ((math.floor, min), (math.ceil, max)))
     last = part("now_value", value=f"{values[-1]:.2e}") if values else ""
-    title = f"RESI_GLOB_{kind.upper()}{last}" + (part("asked_dashed", limit=f"{limit:.0e}") if limit else "")
+    title = f"{kinds[kind]}{last}" + (part("asked_dashed", limit=f"{limit:.0e}") if limit else "")
     drawn, marks = curves(shown, width, kind)
     return [" " * 11 + title, *chart(drawn, width, rows, lower, max(upper, 10.0 * lower), log=True, level=limit, marks=marks)]
 

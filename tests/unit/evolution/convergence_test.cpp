@@ -43,6 +43,15 @@ TEST(Convergence, TheAbsoluteResidualCountsRoundOffToo) {
   EXPECT_TRUE(judged(criteria, {.unbalanced = 1e-13, .significant = 1e-13, .reference = 0}).converged());
 }
 
+TEST(Convergence, TheLargestResidualOverItsOwnReferenceIsJudged) {
+  const ConvergenceCriteria criteria{.resi_glob_rela = {}, .resi_glob_maxi = {}, .resi_refe_rela = 1e-3};
+  IterationReport report;
+  judge_forces(criteria, {.unbalanced = 5, .significant = 5, .reference = 1, .over_own = 9e-4}, report);
+  EXPECT_TRUE(report.converged());
+  judge_forces(criteria, {.unbalanced = 5, .significant = 5, .reference = 1, .over_own = 2e-3}, report);
+  EXPECT_FALSE(report.converged());
+}
+
 TEST(Convergence, WhatIsNotANumberMeetsNothing) {
   for (const ConvergenceCriteria& criteria : {ConvergenceCriteria{.resi_glob_rela = 1e-6, .resi_glob_maxi = {}},
                                               ConvergenceCriteria{.resi_glob_rela = {}, .resi_glob_maxi = 1e-6}})

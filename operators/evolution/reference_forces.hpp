@@ -1,0 +1,17 @@
+#pragma once
+// RESI_REFE_RELA: the force of each degree of freedom that a reference stress would make there.
+#include <optional>
+#include <vector>
+
+#include "lacon/operators/evolution/static_problem.hpp"
+
+namespace lacon {
+
+/// A stress component of the size `stress` at one integration point alone makes forces at the nodes of its element. The
+/// reference of a degree of freedom is the sum of their magnitudes over elements, points and components, of each element
+/// divided by the number of its points; a spring adds `effort` in each direction at its ends. On the initial geometry.
+/// @param stress SIGM_REFE @param effort EFFORT_REFE; throws EVOLUTION_41 where there are springs and none is given
+/// @return (n_nodes, n_components), zero where nothing resists
+std::vector<double> reference_forces(const StaticProblem& problem, double stress, std::optional<double> effort);
+
+}  // namespace lacon
