@@ -15,10 +15,9 @@
 namespace lacon::hdf5 {
 namespace {
 
-/// Comes before any other call. A program's exit leaves HDF5 alone, which would close a file once more that could not be written,
-/// and crash. HDF5 prints its own error stack unless told not to; our messages name the file and what was wanted. Each open file
-/// has half a megabyte of tables, which the next one takes over where the free lists may hold that much: fresh pages cost more
-/// than small files.
+/// Comes before any other call. HDF5 does nothing at a program's exit, where it would crash on files that could not be written,
+/// nor prints its error stack: our messages say what was wanted. Each open file has half a megabyte of tables, which the next
+/// one takes over where the free lists may hold that much: fresh pages cost more than small files.
 void prepare() {
   H5dont_atexit();
   H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
@@ -441,10 +440,11 @@ void fill(const Handle& opened, const std::filesystem::path& partial, const std:
   if (H5Fflush(opened, H5F_SCOPE_LOCAL) < 0) cannot_write(file, with_system_reason("it cannot be ended"));
 }
 
-Handle new_file(const std::filesystem::path& path, hid_t access) {
+Handle new_file(const std::filesystem::path& path, bool in_memory = false) {
   prepare();
-  const Handle creation(H5Pcreate(H5P_FILE_CREATE), H5Pclose);
+  const Handle creation(H5Pcreate(H5P_FILE_CREATE), H5Pclose), access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose);
   H5Pset_link_creation_order(creation, H5P_CRT_ORDER_TRACKED | H5P_CRT_ORDER_INDEXED);
+  if (in_memory) H5Pset_fapl_core(access, 1 << 16, false);
   return Handle(H5Fcreate(path.c_str(), H5F_ACC_TRUNC, creation, access), H5Fclose);
 }
 
@@ -471,7 +471,7 @@ Reader::Reader(const std::filesystem::path& file) : Group({}, file, false) {
 void write_whole(const std::filesystem::path& file, const std::function<void(const Group&)>& write,
                  const std::filesystem::path& copy_of) {
   write_as_partial(file, [&](const std::filesystem::path& partial) {
-    if (copy_of.empty()) return fill(new_file(partial, H5P_DEFAULT), partial, file, write);
+    if (copy_of.empty()) return fill(new_file(partial), partial, file, write);
     std::error_code error;
     std::filesystem::copy_file(copy_of, partial, std::filesystem::copy_options::overwrite_existing, error);
     if (error) cannot_write(file, error.message());
@@ -482,17 +482,14 @@ void write_whole(const std::filesystem::path& file, const std::function<void(con
 
 void write_sealed(const std::filesystem::path& file, const std::function<void(const Group&)>& write) {
   write_as_partial(file, [&](const std::filesystem::path& partial) {
-    fill(new_file(partial, H5P_DEFAULT), partial, file, write);
+    fill(new_file(partial), partial, file, write);
     seal(partial);
   });
 }
 
 void write_sealed_at_once(const std::filesystem::path& file, const std::function<void(const Group&)>& write) {
   write_as_partial(file, [&](const std::filesystem::path& partial) {
-    prepare();
-    const Handle access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose);
-    H5Pset_fapl_core(access, 1 << 16, false);
-    const Handle opened = new_file(partial, access);
+    const Handle opened = new_file(partial, true);
     fill(opened, partial, file, write);
     std::vector<char> content(static_cast<std::size_t>(std::max<ssize_t>(0, H5Fget_file_image(opened, nullptr, 0))));
     if (H5Fget_file_image(opened, content.data(), content.size()) <= 0) cannot_write(file, "HDF5 does not give its content");

@@ -82,6 +82,11 @@ class Endings(LauncherTest):
         self.ends(self.run_study("DEBUT()\nimport sys\nsys.exit()\n"), 0, "OK")
         self.refused(self.run_study("DEBUT()\nexit(3)\n"), "STUDY_17", "study.comm:2")
 
+    def test_an_interrupt_that_a_command_file_raises(self):
+        run = self.run_study(STUDY + "raise KeyboardInterrupt\n")
+        self.ends(run, 4, "<F>_ABNORMAL_ABORT")
+        self.assertRegex(run.err, r"<STUDY_18> the run was ended by SIGINT\n +where: .*study.comm:\d+")
+
     def test_called_through_functions(self):
         self.refused(self.run_study("DEBUT()\ndef f():\n    LIRE_MAILLAGE(UNIT=1)\nf()\n"), "study.comm:3", "called from study.comm:4")
 
@@ -180,6 +185,13 @@ class Units(LauncherTest):
         self.ok(self.run_study(STUDY + "FIN()\n"))
         order = self.last_order("LIRE_MAILLAGE")
         self.assertEqual(order["units"], {"20": str(self.work / "mesh.med")})
+
+    def test_a_command_file_may_change_its_folder(self):
+        (self.work / "other").mkdir()
+        run = self.run_study("import os\nDEBUT()\nos.chdir('other')\nM = LIRE_MAILLAGE(UNITE=20)\nFIN()\n", "--json", "report.json")
+        self.assertEqual(run.status, 0, run.err)
+        self.assertEqual(list((self.work / "other").iterdir()), [])
+        self.assertTrue((self.work / "report.json").exists())
 
     def test_an_output_without_file_goes_beside_the_command_file_and_says_so(self):
         behaviour = {"impr_resu": {"unit": "80"}}

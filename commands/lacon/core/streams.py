@@ -19,19 +19,19 @@ def open_closed():
 
 def readers_gone():
     """Whether nobody reads the output or the log any more (`lacon study.comm | head`)."""
-    return any(_has_lost_its_reader(stream) for stream in (sys.stdout, sys.stderr))
+    return any(_has_lost_its_reader(number) for number in (1, 2))
 
 
 def let_go():
     """What is still to be said where nobody reads it leads nowhere."""
-    for stream in (sys.stdout, sys.stderr):
-        if _has_lost_its_reader(stream):
+    for number in (1, 2):
+        if _has_lost_its_reader(number):
             nowhere = os.open(os.devnull, os.O_WRONLY)
-            os.dup2(nowhere, stream.fileno())
+            os.dup2(nowhere, number)
             os.close(nowhere)
 
 
-def _has_lost_its_reader(stream):
+def _has_lost_its_reader(number):
     poll = select.poll()
-    poll.register(stream.fileno(), 0)
+    poll.register(number, 0)
     return any(event & select.POLLERR for _, event in poll.poll(0))

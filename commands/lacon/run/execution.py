@@ -83,11 +83,13 @@ def readers():
     """Raise Ended where whoever reads the output has gone, as after `lacon study.comm | head`; what is still to be said then leads nowhere."""
     try:
         yield
+    except KeyboardInterrupt as error:  # that a command file raises: at Ctrl-C it is Ended
+        raise Ended(signal.SIGINT).with_traceback(error.__traceback__) from None
     except BaseException as error:
         gone = streams.readers_gone()
         streams.let_go()
         if gone and isinstance(error, BrokenPipeError):
-            raise Ended(signal.SIGPIPE) from None
+            raise Ended(signal.SIGPIPE).with_traceback(error.__traceback__) from None
         raise
 
 

@@ -85,6 +85,7 @@ def run_command_line(options, units):
     run = study.Study(base, export.units, options.fresh, threads, options.checks == "all", execution.provided_names(),
                       options.force, options.verbose)
     run.ranks = ranks
+    report = options.json and os.path.abspath(options.json)  # a command file may change its folder
     run.stage = Stage(options.stage) if options.stage else None
     run.files = [os.path.realpath(name) for name in export.commands]
     for name in export.commands + export.named + export.data:
@@ -102,9 +103,9 @@ def run_command_line(options, units):
             diagnostic = "<A>_ALARM" if run.alarms else "OK"
     if run.checks:
         print(checks.summary(run.checks))
-    if options.json:
+    if report:
         try:
-            checks.write_json(options.json, run.checks, diagnostic, status, run.timings.data())
+            checks.write_json(report, run.checks, diagnostic, status, run.timings.data())
         except OSError as error:
             messages.show(messages.message("STUDY_3", options.json, folder=options.json, reason=error.strerror))
             status, diagnostic = status or outcome.user_error, diagnostic if status else "<F>_ERROR"

@@ -18,8 +18,9 @@ class Study:
     """Everything that one call of the launcher shares between its command files."""
 
     def __init__(self, base_folder, units=None, fresh=False, threads=None, strict_checks=False, provided=None, force=False, verbose=False):
-        self.base_folder = pathlib.Path(base_folder)
-        self.units = dict(units or {})  #: number -> path
+        self.base_folder = pathlib.Path(os.path.abspath(base_folder))
+        # a command file may change its folder
+        self.units = {number: os.path.abspath(path) for number, path in (units or {}).items()}  #: number -> path
         self.given_units = dict(self.units)  #: as the command line and the export file have them
         self.files = []  #: command files of the run
         self.texts = []  #: (name, text) of those that are run
@@ -215,10 +216,10 @@ class Study:
     def associate(self, number, path, append):
         """Give a unit another file, which is written anew unless `append`, until release()."""
         self.earlier_units.setdefault(number, (self.units.get(number), self.written_units.pop(number, None)))
-        self.units[number] = path
+        self.units[number] = os.path.abspath(path)
         self.written_units.pop(number, None)
         if append and os.path.isfile(path):
-            self.written_units[number] = os.path.abspath(path)
+            self.written_units[number] = self.units[number]
 
     def release(self, number):
         """The unit has the file again that it had before associate()."""
