@@ -114,7 +114,8 @@ struct GreenLagrange : testing::TestWithParam<const ElementRow*> {
   const ElementRow& row = *GetParam();
   const lacon::catalog::CellRow& cell = lacon::catalog::cell(row.cell);
   const int D = cell.dimension;
-  const bool axis = row.modelisation == "AXIS", plane_stress = row.modelisation == "C_PLAN";
+  const bool axis = row.geometry == lacon::catalog::Geometry::axis,
+             plane_stress = row.stress_state == lacon::catalog::StressState::plane_stress;
   const Numbers x = shaken(cell);
 };
 
@@ -192,7 +193,7 @@ TEST_P(GreenLagrange, ABodyTurnedInsideOutIsSaid) {
 
 std::vector<const ElementRow*> turning() {
   std::vector<const ElementRow*> rows = solids();
-  std::erase_if(rows, [](const ElementRow* row) { return row->modelisation == "AXIS"; });
+  std::erase_if(rows, [](const ElementRow* row) { return row->geometry == lacon::catalog::Geometry::axis; });
   return rows;
 }
 
@@ -286,7 +287,7 @@ const double path[] = {0.003, 0.02, 0.05, 0.03, -0.01, -0.04, 0.01, 0.09};  // l
 
 TEST_P(Plastic, PureShearFollowsTheClosedForm) {
   // q = sqrt(3) tau, tau = mu (gamma - sqrt(3) p): q = 3 mu (gamma / sqrt(3) - p)
-  if (row.modelisation == "AXIS") return;  // there is no homogeneous shear
+  if (row.geometry == lacon::catalog::Geometry::axis) return;  // there is no homogeneous shear
   OneSense exact{3 * mu, curve};
   State state;
   for (const double gamma : path) {
@@ -307,20 +308,20 @@ TEST_P(Plastic, PureShearFollowsTheClosedForm) {
 
 TEST_P(Plastic, EqualStretchOfTwoDirectionsFollowsTheClosedForm) {
   // two equal principal strains e and the third free or zero: the stress stays on one ray
-  const bool plane_stress = row.modelisation == "C_PLAN";
+  const bool plane_stress = row.stress_state == lacon::catalog::StressState::plane_stress;
   State state;
   // C_PLAN: q = |sigma|, e = sigma (1 - nu) / E + p / 2. Others, third strain zero: deviatoric strain e/3 (1, 1, -2), q = 3 mu
   // (2 e / 3 - p)
   OneSense exact{plane_stress ? young / (2 * (1 - poisson)) : 3 * mu, curve};
   for (const double e : path) {
     double gradient[3][3] = {{e, 0, 0}, {0, e, 0}, {0, 0, 0}};
-    if (row.modelisation == "AXIS") gradient[1][1] = 0;  // radial and hoop strain
+    if (row.geometry == lacon::catalog::Geometry::axis) gradient[1][1] = 0;  // radial and hoop strain
     const auto answer = run(row, std::get<1>(GetParam()), x, linear_field(x, D, gradient), state, curve);
     ASSERT_EQ(answer.error, LACON_FINE);
     const double q = exact.stress(plane_stress ? 2 * e : 2 * e / 3);
     const double mean = (lambda + 2 * mu / 3) * 2 * e;
     state = answer.state;
-    const std::size_t n = row.stress.size(), third = row.modelisation == "AXIS" ? 1 : 2;
+    const std::size_t n = row.stress.size(), third = row.geometry == lacon::catalog::Geometry::axis ? 1 : 2;
     for (std::size_t i = 0; i < state.stress.size(); ++i) {
       const std::size_t c = i % n;
       const double value = plane_stress ? (c < 2 ? q : 0) : c > 2 ? 0 : mean + (c == third ? -2 * q / 3 : q / 3);

@@ -11,6 +11,7 @@
 
 #include "lacon/elements/reference.hpp"
 #include "lacon/elements/registry.hpp"
+#include "solids.hpp"
 
 namespace {
 
@@ -603,7 +604,7 @@ TEST_P(EveryLoad, ForcesAddUpToTheMeasureOfTheCell) {
     const double determinant = gram[0][0] * (gram[1][1] * gram[2][2] - gram[1][2] * gram[2][1]) -
                                gram[0][1] * (gram[1][0] * gram[2][2] - gram[1][2] * gram[2][0]) +
                                gram[0][2] * (gram[1][0] * gram[2][1] - gram[1][1] * gram[2][0]);
-    measure += table.weight[z(p)] * std::sqrt(determinant) * (row.modelisation == "AXIS" ? r : 1);
+    measure += table.weight[z(p)] * std::sqrt(determinant) * (row.geometry == lacon::catalog::Geometry::axis ? r : 1);
   }
   for (int d = 0; d < D; ++d) {
     double sum = 0;
@@ -623,11 +624,9 @@ TEST_P(EveryLoad, BadElementsAndValuesAreCaught) {
 }
 
 std::vector<const lacon::catalog::ElementRow*> loaded_rows() {
-  std::vector<const lacon::catalog::ElementRow*> rows;
-  for (const auto& row : lacon::catalog::elements())
-    for (const auto& kernel : row.kernels)
-      if (kernel.option == "CHAR_MECA_FORC") rows.push_back(&row);
-  return rows;
+  return rows_where([](const auto& row) {
+    return std::ranges::any_of(row.kernels, [](const auto& kernel) { return kernel.option == "CHAR_MECA_FORC"; });
+  });
 }
 
 INSTANTIATE_TEST_SUITE_P(All, EveryLoad, testing::ValuesIn(loaded_rows()), [](const auto& row) {

@@ -92,7 +92,8 @@ struct Modelisation : testing::TestWithParam<const lacon::catalog::ElementRow*> 
   const lacon::catalog::ElementRow& row = *GetParam();
   const lacon::catalog::CellRow& cell = lacon::catalog::cell(row.cell);
   const int D = cell.dimension;
-  const bool axis = row.modelisation == "AXIS", plane_stress = row.modelisation == "C_PLAN";
+  const bool axis = row.geometry == lacon::catalog::Geometry::axis,
+             plane_stress = row.stress_state == lacon::catalog::StressState::plane_stress;
   Numbers x = shaken(cell);
   /// u = gradient x
   Numbers linear(const double (&gradient)[3][3]) const {

@@ -1,5 +1,6 @@
 #pragma once
 // Solid elements for tests: rows, and a cell of each kind.
+#include <algorithm>
 #include <random>
 #include <string>
 #include <vector>
@@ -38,11 +39,23 @@ inline std::vector<double> shaken(const lacon::catalog::CellRow& cell) {
   return points;
 }
 
-inline std::vector<const lacon::catalog::ElementRow*> solids() {
+/// Rows of the catalogue for which `wanted` holds, less those with the kernels of one before: D_PLAN_SI/TRIA3.
+template <class Wanted>
+std::vector<const lacon::catalog::ElementRow*> rows_where(const Wanted& wanted) {
   std::vector<const lacon::catalog::ElementRow*> rows;
-  for (const auto& row : lacon::catalog::elements())
-    if (row.role == lacon::catalog::Role::solid) rows.push_back(&row);
+  for (const auto& row : lacon::catalog::elements()) {
+    if (!wanted(row)) continue;
+    const auto is_the_same = [&](const lacon::catalog::ElementRow* other) {
+      return other->cell == row.cell && other->geometry == row.geometry && other->stress_state == row.stress_state &&
+             row.name.starts_with(other->modelisation);
+    };
+    if (std::ranges::none_of(rows, is_the_same)) rows.push_back(&row);
+  }
   return rows;
+}
+
+inline std::vector<const lacon::catalog::ElementRow*> solids() {
+  return rows_where([](const auto& row) { return row.role == lacon::catalog::Role::solid; });
 }
 
 /// "D_PLAN_TRIA3"
