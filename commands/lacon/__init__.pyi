@@ -64,6 +64,8 @@ class Patches:
     zone: Integers
     area: Floats
     centre: Floats
+    masters: tuple[Integers, Integers, Floats] | None
+    def masters_of(self, patch: int) -> dict[int, float]: ...
     def __len__(self) -> int: ...
 
 class Attempt:

@@ -1,7 +1,10 @@
 #include "lacon/operators/contact/contact_field.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <numeric>
+#include <utility>
 
 #include "lacon/catalog/messages.hpp"
 #include "lacon/pairing/normals.hpp"
@@ -50,15 +53,56 @@ std::vector<double> slave_normals(const Mesh& mesh, const ContactGeometry& geome
   return normals;
 }
 
+/// Indices into Contact::slaves by ascending cell: the rows of CONT_ELEM.
+std::vector<std::size_t> rows_of(const Contact& contact) {
+  std::vector<std::size_t> rows(contact.slaves.size());
+  std::iota(rows.begin(), rows.end(), 0);
+  std::sort(rows.begin(), rows.end(),
+            [&](std::size_t a, std::size_t b) { return contact.slaves[a].cell < contact.slaves[b].cell; });
+  return rows;
+}
+
+/// The integral of the slave's normals over a contact cell, as long as its measure where it is flat.
+double directed_measure(const Mesh& mesh, const Contact& contact, const ContactGeometry& geometry,
+                        const ContactGeometry::Cell& cell) {
+  const std::size_t nodes = mesh.cells[contact.slaves[cell.slave].cell].size(), dimension = mesh.dimension;
+  std::array<double, 3> sum{};
+  for (std::size_t i = 0; i < nodes * dimension; ++i) sum[i % dimension] += geometry.coupling()[cell.coupling + i];
+  return std::hypot(sum[0], sum[1], sum[2]);
+}
+
 }  // namespace
+
+PairedMasters paired_masters(const Mesh& mesh, const Contact& contact, const ContactGeometry& geometry) {
+  std::vector<std::vector<std::pair<std::int32_t, double>>> seen(contact.slaves.size());
+  std::vector<double> whole(geometry.n_patches(), 0.0);
+  for (const ContactGeometry::Cell& cell : geometry.cells()) {
+    const double measure = directed_measure(mesh, contact, geometry, cell);
+    whole[contact.slaves[cell.slave].patch] += measure;
+    seen[cell.slave].emplace_back(cell.master, measure);
+  }
+  PairedMasters masters;
+  for (const std::size_t row : rows_of(contact)) {
+    const std::size_t patch = contact.slaves[row].patch;
+    std::sort(seen[row].begin(), seen[row].end());
+    for (const auto& [cell, measure] : seen[row]) {
+      if (std::cmp_equal(masters.cell.size(), masters.offset.back()) || masters.cell.back() != cell) {
+        masters.cell.push_back(cell);
+        masters.share.push_back(0);
+      }
+      masters.share.back() += geometry.coverage(patch) * measure / whole[patch];
+    }
+    masters.offset.push_back(static_cast<std::int64_t>(masters.cell.size()));
+  }
+  return masters;
+}
 
 Field contact_field(const Contact& contact, const ContactGeometry& geometry, const Patchwise& patches) {
   Field field{.name = "CONT_ELEM", .quantity = "CLAC_R", .location = Location::cells, .components = {"CONT"}};
   for (const PatchQuantity& quantity : patch_quantities) field.components.emplace_back(quantity.component);
   field.components.insert(field.components.end(), {"JEU", "COEFSURF", "PRESCOOR"});
-  std::vector<SlaveElement> slaves = contact.slaves;
-  std::sort(slaves.begin(), slaves.end(), [](const SlaveElement& a, const SlaveElement& b) { return a.cell < b.cell; });
-  for (const SlaveElement& slave : slaves) {
+  for (const std::size_t row : rows_of(contact)) {
+    const SlaveElement& slave = contact.slaves[row];
     const std::size_t p = slave.patch;
     const bool paired = patches.status[p] != Status::unpaired;
     field.support.push_back(slave.cell);

@@ -24,6 +24,14 @@ std::vector<std::pair<std::int32_t, double>> nodal_pressures(const Mesh& mesh, c
 /// forces with friction, are equal to them. VX to VZ: outward normal. Z in space alone. @param state linearised at `patches`
 Field nodal_contact_field(const Mesh& mesh, const Contact& contact, const ContactState& state, const Patchwise& patches);
 
+/// With which master cells pairing has paired each slave cell, in the order of the rows of CONT_ELEM.
+struct PairedMasters {
+  std::vector<std::int64_t> offset{0};  ///< (slave cells + 1)
+  std::vector<std::int32_t> cell;       ///< of a slave cell ascending
+  std::vector<double> share;  ///< part of the slave cell's patch that the couple covers: of the patch's together its coverage
+};
+PairedMasters paired_masters(const Mesh& mesh, const Contact& contact, const ContactGeometry& geometry);
+
 /// What the patches carry in such a field of cells. @param label of the result that it is from
 /// Throws EVOLUTION_11 where a slave cell is not in the field or lacks a component.
 Patchwise patches_of(const Field& field, const Mesh& mesh, const Contact& contact, const std::string& label);

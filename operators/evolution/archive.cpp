@@ -9,10 +9,14 @@
 #include "lacon/catalog/wording.hpp"
 #include "lacon/operators/fields/selection.hpp"
 #include "lacon/operators/program/program.hpp"
+#include "lacon/structures/hdf5.hpp"
 #include "lacon/structures/storage/storage.hpp"
 
 namespace lacon {
 namespace {
+
+/// "CONT_ELEM_3.masters.h5" of "CONT_ELEM_3.h5".
+std::filesystem::path path_of_masters(std::filesystem::path field) { return field.replace_extension(".masters.h5"); }
 
 /// Remove the rows of a table whose INST is behind an instant.
 void drop_behind(Table& table, double instant) {
@@ -27,6 +31,12 @@ void drop_behind(Table& table, double instant) {
 }
 
 }  // namespace
+
+void write(const hdf5::Group& group, const PairedMasters& masters) {
+  group.write("offset", masters.offset);
+  group.write("cell", masters.cell);
+  group.write("share", masters.share);
+}
 
 ArchiveChoice::ArchiveChoice(const Keywords& keywords, const Base& base) : instants_(keywords, base, "PAS_ARCH") {
   for (const std::string& name : keywords.texts("CHAM_EXCLU")) excluded_.insert(name);
@@ -127,7 +137,14 @@ void Archive::end(bool completed) {
   if (completed)
     store(true);
   else if (!stored_ && taken_over_ == 0)
-    base_.discard(result_);
+    discard();
+}
+
+void Archive::discard() {
+  std::error_code error;
+  for (const auto& [order, file] : result_.fields["CONT_ELEM"])
+    std::filesystem::remove(path_of_masters(base_.folder() / file), error);
+  base_.discard(result_);
 }
 
 void Archive::store(bool complete) {
@@ -150,12 +167,24 @@ void Archive::add(double instant, int iterations) {
     field.instant = instant;
     base_.add_field(result_, std::move(field));
   }
+  add_masters(number);
   if (present_.contact) add_balance(present_.contact->balance(present_.state.patches));
   put("newton_iterations", iterations);
   put("negative_pivots", static_cast<double>(pivots_.found));
   put("expected_negative_pivots", static_cast<double>(pivots_.expected));
   result_.orders.push_back(number);
   result_.instants.push_back(instant);
+}
+
+/// Beside CONT_ELEM, for who looks at it: what its patches were paired with.
+void Archive::add_masters(std::int64_t number) {
+  if (!present_.contact || !choice_.keeps("CONT_ELEM")) return;
+  const std::filesystem::path field = base_.folder() / result_.fields.at("CONT_ELEM").at(number);
+  hdf5::write_sealed_at_once(path_of_masters(field), [&](const hdf5::Group& root) {
+    root.set("lacon_type", std::string_view("masters"));
+    root.set("format", storage::format);
+    write(root, paired_masters(present_.problem.mesh, *present_.problem.contact, present_.contact->geometry()));
+  });
 }
 
 /// The proof lines as parameters of the instant: zone_1_slave_force_x, ...

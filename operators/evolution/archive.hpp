@@ -7,6 +7,7 @@
 #include <set>
 #include <string>
 
+#include "lacon/operators/contact/contact_field.hpp"
 #include "lacon/operators/evolution/evolution.hpp"
 #include "lacon/operators/evolution/observation.hpp"
 #include "lacon/operators/evolution/origin.hpp"
@@ -25,6 +26,9 @@ class ArchiveChoice {
   ChosenInstants instants_;
   std::set<std::string> excluded_;
 };
+
+/// What a file of masters holds, docs/structures.md section 3.
+void write(const hdf5::Group& group, const PairedMasters& masters);
 
 class Archive : public EvolutionObserver {
  public:
@@ -55,6 +59,8 @@ class Archive : public EvolutionObserver {
   void go_on(const Order& order, const std::optional<Origin>& origin);
   void add(double instant, int iterations);
   void store(bool complete);
+  void add_masters(std::int64_t number);
+  void discard();
   void add_balance(const std::vector<ZoneBalance>& zones);
   static void add_table(Result& result, const std::string& name, const Table& table);
   void put(const std::string& parameter, double value) { result_.parameters[parameter].push_back(value); }

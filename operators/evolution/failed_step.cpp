@@ -7,7 +7,7 @@
 #include <limits>
 
 #include "lacon/catalog/wording.hpp"
-#include "lacon/operators/contact/contact_field.hpp"
+#include "lacon/operators/evolution/archive.hpp"
 #include "lacon/operators/program/program.hpp"
 #include "lacon/structures/hdf5.hpp"
 #include "lacon/structures/storage/storage.hpp"
@@ -59,9 +59,13 @@ void FailedStep::iterate(double /*instant*/, const IterationReport& report) {
                        .changes = static_cast<double>(report.status_changes),
                        .displacement = present_.state.displacement,
                        .unbalanced = present_.unbalanced(),
-                       .contact = {}});
-  if (present_.contact)
-    iterates_.back().contact = contact_field(*present_.problem.contact, present_.contact->geometry(), present_.state.patches);
+                       .contact = {},
+                       .masters = {}});
+  if (!present_.contact) return;
+  const Contact& contact = *present_.problem.contact;
+  const ContactGeometry& geometry = present_.contact->geometry();
+  iterates_.back().contact = contact_field(contact, geometry, present_.state.patches);
+  iterates_.back().masters = paired_masters(present_.problem.mesh, contact, geometry);
 }
 
 void FailedStep::failed(double instant, const Error& error) {
@@ -77,7 +81,8 @@ void FailedStep::failed(double instant, const Error& error) {
                        .changes = unknown,
                        .displacement = moved,
                        .unbalanced = {},
-                       .contact = {}});
+                       .contact = {},
+                       .masters = {}});
 }
 
 void FailedStep::accept(const SolvedInstant& solved) {
@@ -141,7 +146,9 @@ void FailedStep::store() const {
     for (const Iterate& iterate : iterates_) {
       put(iterate, "DEPL", nodal_field(problem, iterate.displacement));
       if (!iterate.unbalanced.empty()) put(iterate, "RESI_NOEU", nodal_field(problem, iterate.unbalanced));
-      if (iterate.contact) put(iterate, "CONT_ELEM", *iterate.contact);
+      if (!iterate.contact) continue;
+      put(iterate, "CONT_ELEM", *iterate.contact);
+      write(fields.create(fmt::format("CONT_ELEM/{}/masters", iterate.iteration)), *iterate.masters);
     }
   });
 }

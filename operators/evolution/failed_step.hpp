@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "lacon/catalog/messages.hpp"
+#include "lacon/operators/contact/contact_field.hpp"
 #include "lacon/operators/evolution/evolution.hpp"
 #include "lacon/operators/evolution/state_fields.hpp"
 #include "lacon/structures/base.hpp"
@@ -37,6 +38,7 @@ class FailedStep : public EvolutionObserver {
     double rela, maxi, changes;  ///< as in the Newton table; nan of a state that was not judged any more
     std::vector<double> displacement, unbalanced;
     std::optional<Field> contact;
+    std::optional<PairedMasters> masters;
   };
   struct Failure {
     double instant;

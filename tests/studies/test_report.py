@@ -410,8 +410,13 @@ class Shown(unittest.TestCase):
             self.assertEqual((title, figures["status"]), (f"Patch {patch + 1}, zone 1", words[patches.status[patch]]))
             self.assertAlmostEqual(float(figures["pressure"]), patches.pressure[patch], delta=1e-5 * abs(patches.pressure).max())
             masters = {int(name[1:]): float(share.rstrip(" %")) for name, share in figures.items() if re.fullmatch(r"M\d+", name)}
+            paired = {cell + 1: 100 * share for cell, share in patches.masters_of(patch).items()}
+            self.assertEqual(set(masters), set(paired))
             self.assertLessEqual(set(masters), ground)
-            self.assertLess(abs(sum(masters.values()) - 100), 3.0)
+            for cell, share in paired.items():  # said to 1 %, small ones to 0.1 %
+                self.assertAlmostEqual(masters[cell], share, delta=0.51)
+            marked = self.browser.ask(f"[...window.lacon.scene.facetsOf({list(masters)}, 0)].map((f) => window.lacon.scene.facetCell[f])")
+            self.assertEqual(sorted(marked), sorted(masters))
 
     def test_plane_a_pressure_that_is_one_has_one_colour_on_a_scale_from_zero(self):
         """Both strips carry the same stress everywhere: its round-off is not spread over all colours."""
@@ -422,17 +427,40 @@ class Shown(unittest.TestCase):
         self.assertEqual(low, 0.0)
         self.assertAlmostEqual(high, pressure.max(), delta=1e-5 * pressure.max())
 
-    def test_plane_masters_are_those_that_lie_opposite(self):
-        """Slave cells of 2/3 on master cells of 1/2: shares are known."""
+    def test_plane_cell_fields_colour_the_skins_too(self):
+        """Skins lie over the bodies as ribbons: each piece has the value of the cell under it. The stress is the same everywhere."""
         self.open(2)
-        shares = self.browser.ask("window.lacon.scene.mastersOf(0, 0).map(({cell, share}) => [cell, share])")
-        mesh = base_of(study(2))["RESULT"].mesh
+        self.browser.do(set={"field": "SIEF_ELGA", "component": "SIYY"})
+        values = self.browser.ask("""window.lacon.scene.surfaces.filter((s) => s.meta.segments)
+          .map((s) => s.mapper.getScalarVisibility() && [...s.polydata.getCellData().getScalars().getData()])""")
+        self.assertEqual(len(values), 2)
+        for one in values:
+            np.testing.assert_allclose(one, -200.0 * SQUASH, rtol=1e-3)
+
+    def test_plane_masters_are_those_that_lie_opposite(self):
+        """Slave cells of 2/3 on master cells of 1/2: shares are known, and picking a patch says them."""
+        result = base_of(study(2))["RESULT"]
+        mesh, patches = result.mesh, result.contact()
         own = [mesh.points[corners][:, 0] for corners in mesh.polygons(mesh.patches[0])]
         low, high = min(map(min, own)), max(map(max, own))
-        for cell, corners in zip(mesh.groups["GROUND"], mesh.polygons(mesh.groups["GROUND"])):
+        wanted = {}
+        for cell, corners in zip(mesh.groups["GROUND"].tolist(), mesh.polygons(mesh.groups["GROUND"])):
             x = mesh.points[corners][:, 0]
-            share = max(0.0, min(high, x.max()) - max(low, x.min())) / (high - low)
-            self.assertAlmostEqual(dict(shares).get(int(cell) + 1, 0.0), share, delta=0.1)
+            wanted[cell] = max(0.0, min(high, x.max()) - max(low, x.min())) / (high - low)
+        wanted = {cell: share for cell, share in wanted.items() if share > 0}
+        found = patches.masters_of(0)
+        self.assertEqual(set(found), set(wanted))
+        for cell, share in wanted.items():
+            self.assertAlmostEqual(found[cell], share, delta=1e-9)
+        self.open(2)
+        place = self.browser.ask("""(() => { const {scene} = window.lacon, s = scene.surfaces.find((one) => one.meta.kind === 'slave');
+          const t = s.facetOfTriangle.findIndex((f) => scene.facetPatch[f] === 0);
+          return [0, 1, 2].map((c) => [0, 1, 2].reduce((sum, k) => sum + s.coordinates[3 * s.triangles[3 * t + k] + c] / 3, 0)); })()""")
+        self.browser.do(click=self.browser.place(place))
+        title, figures = self.browser.figures()
+        self.assertEqual(title, "Patch 1, zone 1")
+        self.assertEqual({name: share for name, share in figures.items() if re.fullmatch(r"M\d+", name)},
+                         {f"M{cell + 1}": f"{100 * share:.0f} %" for cell, share in wanted.items()})
 
     def test_space_the_open_book_shows_both_skins_apart(self):
         """Seen from where the page looks, slave and master cover different places and face the one who looks."""

@@ -320,7 +320,8 @@ class Base:
                     _remove(folder)
                     continue
                 for path in folder.glob("*.h5"):
-                    if path.name not in ("index.h5", contents.failed_step) and f"{folder.name}/{path.name}" not in named:
+                    field = path.name.replace(".masters.h5", ".h5")  # what lies beside a field goes with it
+                    if path.name not in ("index.h5", contents.failed_step) and f"{folder.name}/{field}" not in named:
                         _remove(path)
 
 

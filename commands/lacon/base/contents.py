@@ -97,6 +97,16 @@ def contact_zones(contact):
     return list(zip(zones["slave_group"].asstr()[:], zones["master_group"].asstr()[:], ragged(zones["slave"]), ragged(zones["master"])))
 
 
+def masters(group):
+    """(offset, master cells, shares) that a file of masters holds: those of row i of its CONT_ELEM from offset[i] on."""
+    return tuple(group[name][:] for name in ("offset", "cell", "share"))
+
+
+def path_of_masters(field):
+    """The file of masters beside a field file CONT_ELEM. @param field its path"""
+    return field.with_name(field.name.removesuffix(".h5") + ".masters.h5")
+
+
 # ---------------------------------------------------------------------------------------------------- result
 
 failed_step = "failed_step.h5"  #: in the folder of a result: the last iterates of a step that was given up

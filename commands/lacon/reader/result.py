@@ -36,9 +36,12 @@ class Field(FieldData):
 class Patches:
     """The contact at one instant, one row a patch: `pressure` (positive where bodies press on each other), `gap` (nan where there is no master),
     `status` (1 in contact, 0 open, -1 without master), `coverage` (part of the patch that has a master), `zone` (number, from 0), `area` (length
-    in the plane), `centre` (p, 3); `groups` the slave group of each zone."""
+    in the plane), `centre` (p, 3); `groups` the slave group of each zone. `masters` are the cells that pairing has paired the patches with: (offset
+    (p + 1), cells, shares), those of patch k from offset[k] on, with the part of the patch that each covers; None of bases that did not keep them."""
 
-    def __init__(self, mesh, field):
+    def __init__(self, mesh, field, read_masters):
+        """@param read_masters returns contents.masters of the field, or None"""
+        self._mesh, self._support, self._read_masters = mesh, field.support, read_masters
         self.instant = field.instant
         self.groups = [group for group, _, _ in mesh.patch_zones]
         first = numpy.array([cells[0] for cells in mesh.patches])
@@ -50,6 +53,29 @@ class Patches:
         self.coverage = value["COEFSURF"]
         self.zone = numpy.repeat(numpy.arange(len(mesh.patch_zones)), [last - start for _, start, last in mesh.patch_zones])
         self.area, self.centre = mesh.patch_measures
+
+    @cached_property
+    def masters(self):
+        found = self._read_masters()
+        if found is None:
+            return None
+        offset, cells, shares = found
+        patch_of_cell = numpy.zeros(len(self._mesh.cell_types), int)
+        for number, own in enumerate(self._mesh.patches):
+            patch_of_cell[own] = number
+        # a patch of several cells sees a master by each of them
+        couples = numpy.repeat(patch_of_cell[self._support], numpy.diff(offset)) * len(patch_of_cell) + cells
+        couples, place = numpy.unique(couples, return_inverse=True)
+        patch, cells = numpy.divmod(couples, len(patch_of_cell))
+        return numpy.searchsorted(patch, numpy.arange(len(self) + 1)), cells, numpy.bincount(place, shares, minlength=len(couples))
+
+    def masters_of(self, patch):
+        """Master cell -> part of the patch that it covers, the largest first; nothing where they were not kept."""
+        if self.masters is None:
+            return {}
+        offset, cells, shares = self.masters
+        own = slice(offset[patch], offset[patch + 1])
+        return dict(sorted(zip(cells[own].tolist(), shares[own].tolist()), key=lambda item: -item[1]))
 
     def __len__(self):
         return len(self.status)
@@ -130,7 +156,11 @@ class States:
 
     def contact(self, instant=None, order=None):
         """The Patches at an instant; None where the computation is without contact."""
-        return Patches(self.mesh, self.field("CONT_ELEM", instant, order)) if "CONT_ELEM" in self._fields else None
+        if "CONT_ELEM" not in self._fields:
+            return None
+        order = self.order_of(instant, order)
+
+        return Patches(self.mesh, self.field("CONT_ELEM", order=order), lambda: self._masters(order))
 
     def to_meshio(self, instant=None, order=None):
         """A meshio.Mesh on the deformed points: fields of nodes as point data, those of cells as cell data, nan where they are not."""
@@ -226,6 +256,13 @@ class Result(States):
     def _opened(self, name, order):
         return open_field(self._base.folder, self._fields[name][order])
 
+    def _masters(self, order):
+        path = contents.path_of_masters(self._base.folder / self._fields["CONT_ELEM"][order])
+        if not path.exists():
+            return None
+        with open_checked(path) as file:
+            return contents.masters(file)
+
 
 class FailedStep(States):
     """The last iterates of the step at which a computation failed: no instant of its result, but fields that are looked at as those of one.
@@ -273,6 +310,10 @@ class FailedStep(States):
     def _opened(self, name, order):
         with open_checked(self._path) as file:
             yield file[f"fields/{name}/{order}"]
+
+    def _masters(self, order):
+        with self._opened("CONT_ELEM", order) as stored:
+            return contents.masters(stored["masters"])
 
 
 def _spread(field, count):

@@ -19,6 +19,7 @@ _most_courses = 400  #: instants whose contact is followed
 _most_components = 12  #: of a field: internal variables may be many
 _shown = ("DEPL", "RESI_NOEU", "SIEF_NOEU", "SIEQ_NOEU", "SIEF_ELNO", "SIEF_ELGA")  #: fields that come first
 _places = {"ELEM": "by_cell", "ELGA": "mean_of_points", "ELNO": "mean_at_nodes"}  #: parts that say how a field is shown
+_share = 10000  #: of a patch, of which masters have whole numbers
 _contact = ("pressure", "gap", "status", "coverage")
 
 
@@ -57,6 +58,7 @@ class _Page:
             "facet_patches": add(self.drawing.facet_patches, "i4"), "surfaces": [self._surface(s) for s in self.drawing.surfaces],
             "parts": self.drawing.parts, "fields": fields, "instants": self.instants.tolist(), "drawn": self.drawn,
             "first": _first(fields), "failed": self._failed(), "zones": courses, "patch_areas": self.mesh.patch_measures[0].tolist() if self.zones else [],
+            "share": _share,
             "iterations": numpy.asarray(self.result.parameters.get("newton_iterations", [])).tolist(), "proofs": self._proofs,
             "journal": self._journal(), "commands": self.result.commands, "run": self._run(started), "notes": self.notes}
         return told, self.packing
@@ -84,7 +86,7 @@ class _Page:
         """Which instants are drawn: all, or so many of them that the page stays small, the first and the last among them."""
         count = len(self.orders)
         iterates = len(self.step.orders) * self._bytes_of(self._heads(self.step)) if self.step else 0.0
-        most = min((_largest_page - iterates) / max(1.0, self._bytes_of(self.fields)), _read / max(1.0, self._bytes_of_an_instant()))
+        most = min((_largest_page - iterates) / max(1.0, self._bytes_of(self.fields) + self._bytes_of_contact()), _read / max(1.0, self._bytes_of_an_instant()))
         chosen = min(count, max(1, int(most)))
         if chosen < count:
             self.notes.append(part("instants_drawn", count=chosen, all=count))
@@ -94,6 +96,13 @@ class _Page:
         """What the fields of a state take in the page, about."""
         return 2 * _deflated * sum(len(components) * (len(self.drawing.nodes) if location in ("NOEU", "ELNO") else len(self.drawing.facet_cells))
                                    for location, components in heads.values())
+
+    def _bytes_of_contact(self):
+        """Likewise of patches and their masters."""
+        if not self.orders or "CONT_ELEM" not in self.result.fields:
+            return 0.0
+        patches = self.result.contact(order=self.result.field_orders("CONT_ELEM")[-1])
+        return _deflated * (4 * (len(_contact) + 1) * len(patches) + (6 * len(patches.masters[1]) if patches.masters else 0))
 
     def _bytes_of_an_instant(self):
         return sum(self.result.bytes_of_field(name) for name in self.fields)
@@ -125,9 +134,8 @@ class _Page:
         if field.location == "NOEU":
             return _spread(nodes, field.support, values)[self.drawing.nodes]
         if field.location == "ELEM":
-            whole = _spread(cells, field.support, values)
-            return whole[numpy.where((self.drawing.facet_skins >= 0) & numpy.isnan(whole[self.drawing.facet_cells]).all(axis=1), self.drawing.facet_skins,
-                                     self.drawing.facet_cells)]
+            whole, skins, under = _spread(cells, field.support, values), self.drawing.facet_skins, self.drawing.facet_cells
+            return whole[numpy.where((skins >= 0) & ~numpy.isnan(whole[skins]).all(axis=1), skins, under)]  # of a skin its own values, if it has any
         if field.location == "ELGA":
             means = _means(field.offset, values)
             return _spread(cells, field.support, means)[self.drawing.facet_cells]
@@ -168,7 +176,12 @@ class _Page:
         return _contact_field(instants), courses
 
     def _of_patches(self, patches):
-        return {"values": self.packing.add(numpy.array([patches.pressure, patches.gap, patches.status, patches.coverage]), "f4")}
+        stored = {"values": self.packing.add(numpy.array([patches.pressure, patches.gap, patches.status, patches.coverage]), "f4")}
+        if patches.masters is not None:
+            offset, cells, shares = patches.masters
+            stored["masters"] = {"offset": self.packing.add(offset, "u4"), "cells": self.packing.add(cells + 1, "u4"),
+                                 "shares": self.packing.add(numpy.rint(shares * _share), "u2")}
+        return stored
 
     def _figures(self, index, number, patches):
         """Of a zone at an instant."""

@@ -110,7 +110,7 @@ class _Places:
 class Drawing:
     """The surfaces of a mesh, each a dictionary for the page.
 
-    `nodes` numbers of the nodes that are drawn; `facet_cells` (f) the body cell of each facet (of a skin in the plane, the skin cell);
+    `nodes` numbers of the nodes that are drawn; `facet_cells` (f) the body cell of each facet (of a skin in the plane, that under it);
     `facet_skins` (f) its skin cell in contact, -1 for none; `facet_patches` (f) its patch, -1 for none; `parts` names of the bodies.
     """
 
@@ -181,13 +181,14 @@ class Drawing:
 
     def _skins_in_plane(self, zones):
         """Skins are lines, facets of their own behind those of the bodies; the body lies to their left."""
-        edges, middles = [], []
+        edges, middles, owners = [], [], []
         for one in self.facets:
             middle = self.mesh.points[one.nodes[:, :one.vertices]].mean(axis=1)
             for a in range(one.vertices):
                 edges.append(_key(one.nodes[:, [a, (a + 1) % one.vertices]]))
                 middles.append(middle)
-        place, middles, skins = _Places(numpy.concatenate(edges)), numpy.concatenate(middles), self._skin_keys()
+                owners.append(one.cells)
+        place, middles, owners, skins = _Places(numpy.concatenate(edges)), numpy.concatenate(middles), numpy.concatenate(owners), self._skin_keys()
         for number, names, kind, cells in _sides(zones):
             at, there = place.of(skins[cells])
             ends, of = [], []
@@ -203,7 +204,7 @@ class Drawing:
                     ends.append(own[:, pair])
                     of.append(rows + len(self.facet_cells))
             ends, of = numpy.concatenate(ends), numpy.concatenate(of)
-            self.facet_cells = numpy.concatenate([self.facet_cells, cells])
+            self.facet_cells = numpy.concatenate([self.facet_cells, numpy.where(there, owners[at], cells)])
             self.facet_skins = numpy.concatenate([self.facet_skins, cells])
             self.surfaces.append({"name": names, "kind": kind, "zone": number, "node": int(ends[0, 0]), "segments": self._renumbered[ends],
                                   "segment_facets": of})

@@ -50,6 +50,15 @@ export async function values(field, instant) {
   });
 }
 
+/** The masters of a patch: [{cell, share}], the largest share first; null where the base does not know them. @returns a promise */
+export async function mastersOf(stored, patch) {
+  if (!stored?.masters) return null;
+  const {offset, cells, shares} = stored.masters;
+  const [from, cell, share] = await Promise.all([offset, cells, shares].map(array));
+  const own = Array.from({length: from[patch + 1] - from[patch]}, (_, i) => from[patch] + i);
+  return own.map((i) => ({cell: cell[i], share: share[i] / study.share})).sort((a, b) => b.share - a.share);
+}
+
 const tensor = ["SIXX", "SIYY", "SIZZ", "SIXY", "SIXZ", "SIYZ"];
 
 /** What a field can be coloured by: its components, and what is made of them: [{name, label, of(components)}]. */

@@ -1,7 +1,7 @@
 // The page of `lacon report`: what is chosen, and who shows it.
 import {chart, number} from "./charts.js";
 import {at as colourAt, css, diverging, maps, series as colours, statuses} from "./colours.js";
-import {quantities, study, values} from "./data.js";
+import {mastersOf, quantities, study, values} from "./data.js";
 import {element, showCurves, showFigures, showProofs, showRun, showZones} from "./panels.js";
 import {Scene} from "./scene.js";
 import {t, translatePage} from "./words.js";
@@ -313,12 +313,12 @@ async function showPicked() {
     pairs.unshift([t("status"), state ? t(state.name) : "–"], [t("pressure"), number(value("pressure"), 6)], [t("gap"), number(value("gap"), 4)],
       [t("covered"), `${(100 * value("coverage")).toFixed(1)} %`], [t(study.dimension === 3 ? "area" : "length"), number(study.patch_areas[patch], 5)]);
   }
-  const masters = scene.mastersOf(patch, zone);
+  const masters = await mastersOf(contact?.instants[now()], patch);
   const facets = new Set();
   scene.facetPatch.forEach((p, f) => {
     if (p === patch) facets.add(f);
   });
-  scene.mark([{kind: "masters", wanted: {facets: new Set(masters.map((m) => m.facet)), onSkins: true}}, {kind: "patch", wanted: {facets, onSkins: true}}]);
+  scene.mark([{kind: "masters", wanted: {facets: scene.facetsOf((masters ?? []).map((m) => m.cell), zone), onSkins: true}}, {kind: "patch", wanted: {facets, onSkins: true}}]);
   showFigures(t("Patch {patch}, zone {zone}", {patch: patch + 1, zone: zone + 1}), pairs, masters);
   scene.render();
 }

@@ -129,14 +129,14 @@ export function showRun() {
   document.getElementById("notes").textContent = study.notes.join(" ");
 }
 
-/** Figures of what was picked. */
+/** Figures of what was picked. @param masters of a patch: [{cell, share}], null where they are not known; undefined for what has none */
 export function showFigures(title, pairs, masters) {
   const box = document.getElementById("figures");
   if (!title) {
     box.replaceChildren(element("span", {className: "unknown", textContent: study.zones.length ? t("Click on a patch or a body.") : t("Click on a body.")}));
     return;
   }
-  box.replaceChildren(element("h3", {textContent: title}), list(pairs), ...(masters ? [element("h3", {textContent: t("Its masters")}), masters.length
+  box.replaceChildren(element("h3", {textContent: title}), list(pairs), ...(masters === undefined ? [] : [element("h3", {textContent: t("Its masters")}), masters?.length
     ? list(masters.map(({cell, share}) => [`M${cell}`, `${(100 * share).toFixed(share < 0.1 ? 1 : 0)} %`]))
-    : element("span", {className: "unknown", textContent: t("none along its normal")})] : []));
+    : element("span", {className: "unknown", textContent: t(masters ? "none along its normals" : "not known: the base was computed before they were kept")})]));
 }

@@ -1,4 +1,4 @@
-// Where a straight line meets triangles: what a click hits, and which masters a patch sees.
+// Where a straight line meets triangles: what a click hits.
 
 /**
  * The first hit of a ray.

@@ -192,7 +192,7 @@ export class Scene {
       const {polydata, mapper, source, facets, meta} = surface;
       polydata.getPointData().setScalars(null);
       polydata.getCellData().setScalars(null);
-      const has = values && (kind !== "patch" || meta.kind === "slave") && (kind !== "facet" || !meta.segments);
+      const has = values && (kind !== "patch" || meta.kind === "slave");
       mapper.setScalarVisibility(Boolean(has));
       if (has && kind === "node") {
         const own = source ? Float32Array.from(source, (node) => values[node]) : values;
@@ -480,71 +480,10 @@ export class Scene {
     return surface.source ? surface.source[nearest] : nearest;
   }
 
-  /**
-   * The masters that a patch sees along its normal at places spread over it: [{cell, facet, share}], the largest share first.
-   * In the plane and in space alike, on the geometry that is shown without scale.
-   */
-  mastersOf(patch, zone) {
-    const slave = this.surfaces.find(({meta}) => meta.zone === zone && meta.kind === "slave");
-    const master = this.surfaces.find(({meta}) => meta.zone === zone && meta.kind === "master");
-    if (!slave || !master) return [];
-    const seen = new Map();
-    let tried = 0;
-    for (const {point, normal, weight} of this.flat ? this.placesInPlane(slave, patch) : this.placesInSpace(slave, patch)) {
-      tried += weight;
-      const facet = this.flat ? this.segmentAlong(master, point, normal) : this.faceAlong(master, point, normal);
-      if (facet !== null) seen.set(facet, (seen.get(facet) ?? 0) + weight);
-    }
-    return [...seen].map(([facet, count]) => ({facet, cell: this.facetCell[facet], share: count / tried})).sort((a, b) => b.share - a.share);
-  }
-
-  *placesInSpace({triangles, facetOfTriangle, coordinates}, patch) {
-    const spread = [[1 / 3, 1 / 3], [1 / 6, 1 / 6], [2 / 3, 1 / 6], [1 / 6, 2 / 3], [0.05, 0.05], [0.9, 0.05], [0.05, 0.9], [0.475, 0.475], [0.05, 0.475],
-      [0.475, 0.05]];
-    const corner = (i) => coordinates.subarray(3 * i, 3 * i + 3);
-    for (let t = 0; t < facetOfTriangle.length; ++t) {
-      if (this.facetPatch[facetOfTriangle[t]] !== patch) continue;
-      const [a, b, c] = [0, 1, 2].map((k) => corner(triangles[3 * t + k]));
-      const u = vec3.sub(vec3.create(), b, a), v = vec3.sub(vec3.create(), c, a);
-      const normal = vec3.cross(vec3.create(), u, v), weight = vec3.length(normal);
-      vec3.normalize(normal, normal);
-      for (const [r, s] of spread) yield {point: a.map((x, k) => x + r * u[k] + s * v[k]), normal, weight};
-    }
-  }
-
-  *placesInPlane({ends, facets}, patch) {
-    for (let i = 0; i < facets.length; ++i) {
-      if (this.facetPatch[facets[i]] !== patch) continue;
-      const a = this.points.subarray(3 * ends[2 * i], 3 * ends[2 * i] + 2), b = this.points.subarray(3 * ends[2 * i + 1], 3 * ends[2 * i + 1] + 2);
-      const length = Math.hypot(b[0] - a[0], b[1] - a[1]);
-      const normal = [(b[1] - a[1]) / length, (a[0] - b[0]) / length];
-      for (const r of [0.02, 0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9, 0.98])
-        yield {point: [a[0] + r * (b[0] - a[0]), a[1] + r * (b[1] - a[1])], normal, weight: length};
-    }
-  }
-
-  /** The facet of a skin nearest along a line, to either side; it faces the other way. */
-  faceAlong(surface, point, normal) {
-    const hits = [1, -1].map((way) => firstHit(surface.coordinates, surface.triangles, point, normal.map((x) => way * x), -1e-9 * this.size, 0.25 * this.size));
-    const best = hits.filter(Boolean).sort((a, b) => Math.abs(a.distance) - Math.abs(b.distance))[0];
-    return best ? surface.facetOfTriangle[best.triangle] : null;
-  }
-
-  segmentAlong({ends, facets}, [x, y], [nx, ny]) {
-    const {points} = this;
-    let found = null, nearest = 0.25 * this.size;
-    for (let i = 0; i < facets.length; ++i) {
-      const a = 3 * ends[2 * i], b = 3 * ends[2 * i + 1];
-      const dx = points[b] - points[a], dy = points[b + 1] - points[a + 1];
-      const det = nx * dy - ny * dx;
-      if (det === 0) continue;
-      const sx = points[a] - x, sy = points[a + 1] - y;
-      const along = (nx * sy - ny * sx) / -det, away = (sx * dy - sy * dx) / det;
-      if (along < -1e-9 || along > 1 + 1e-9 || Math.abs(away) >= nearest) continue;
-      nearest = Math.abs(away);
-      found = facets[i];
-    }
-    return found;
+  /** The facets of the master skin of a zone that lie on some of its cells. @param cells numbers from 1 on  @return a Set */
+  facetsOf(cells, zone) {
+    const skin = this.surfaces.find(({meta}) => meta.zone === zone && meta.kind === "master"), wanted = new Set(cells);
+    return new Set([...(skin?.facets ?? [])].filter((facet) => wanted.has(this.facetCell[facet])));
   }
 
   /** Outline facets: a patch and its masters. @param groups [{facets: Set, kind}] */

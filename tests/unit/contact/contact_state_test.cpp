@@ -355,6 +355,10 @@ TEST_F(Touching, ContElemHoldsWhatThePatchesCarry) {
   const Patchwise read = patches_of(field, mesh, contact, "RESU");
   EXPECT_EQ(read.status, patches.status);
   EXPECT_EQ(read.lambda, patches.lambda);
+  const PairedMasters masters = paired_masters(mesh, contact, now.geometry());
+  EXPECT_EQ(masters.offset, (std::vector<std::int64_t>{0, 1}));
+  EXPECT_EQ(masters.cell, (std::vector<std::int32_t>{now.geometry().cells().front().master}));
+  EXPECT_NEAR(masters.share.front(), 1, 1e-14);
   Field elsewhere = field;
   elsewhere.support = {0};
   EXPECT_THROW(patches_of(elsewhere, mesh, contact, "RESU"), Error);
