@@ -47,6 +47,8 @@ class Engine {
   /// Solve in place. Throws SOLVER_1, or another error of severity S that says why there is no solution; `right_side` is then
   /// as it was.
   virtual Solution solve(std::span<double> right_side) = 0;
+  /// Likewise, where a part of the right side may be left. @param share of its norm; an engine may leave less
+  virtual Solution solve_to(double /*share*/, std::span<double> right_side) { return solve(right_side); }
 
   /// Whether a cheaper factor has failed, so that all are exact from then on; and to have it so. For another process that goes
   /// on with the same bits.

@@ -51,6 +51,8 @@ struct PetscEngine::State {
   const SparseMatrix* matrix = nullptr;
   std::unique_ptr<MumpsEngine> direct;  ///< where this matrix has a factor
 
+  bool is_iterative() const { return options.preconditioner != "LDLT_DP"; }
+
   void start() {
     if (ranks) return;
     std::vector<std::string> command;
@@ -64,14 +66,14 @@ struct PetscEngine::State {
                  "--mca",
                  "btl_vader_single_copy_mechanism",
                  "none"};
-    command.insert(command.end(), {options.program, options.algorithm, options.preconditioner,
-                                   fmt::format("{:.3e}", options.tolerance), std::to_string(options.iterations)});
+    command.insert(command.end(),
+                   {options.program, options.algorithm, options.preconditioner, std::to_string(options.iterations)});
     ranks = std::make_unique<Ranks>(command);
-    if (ranks->first_answer().empty()) fail("SOLVER_6", {{"reason", options.program + ": " + ranks->end()}});
+    if (ranks->answer().empty()) fail("SOLVER_6", {{"reason", options.program + ": " + ranks->end()}});
   }
 
-  std::string ask(const std::string& line) {
-    std::string answer = ranks->ask(line);
+  std::string ask(const std::string& line) { return checked(ranks->ask(line)); }
+  std::string checked(std::string answer) {
     if (answer.empty()) {
       const std::string end = ranks->end();
       ranks.reset();
@@ -159,23 +161,28 @@ Factorisation PetscEngine::factorise(const SparseMatrix& matrix) {
   s.matrix = &matrix;
   s.direct.reset();
   if (!s.loose->of(matrix, hardly_resisted).empty()) return s.factorise_directly(part("free_rigid_motion"));
-  const SharedMemory memory = s.system();
-  const std::string said = s.ask("set up " + memory.path());
+  std::optional<SharedMemory> memory(s.system());
+  std::string said = s.ask("set up " + memory->path());
+  memory.reset();  // before the multigrid takes most
+  if (said == "taken") said = s.checked(s.ranks->answer());
   if (!said.starts_with("ready")) return s.factorise_directly(said);
   Factorisation made;
-  made.is_iterative = s.options.preconditioner != "LDLT_DP";
+  made.is_iterative = s.is_iterative();
   if (const std::size_t space = said.find(' '); space != std::string::npos)
     made.negative_pivots = std::stoll(said.substr(space));
   return made;
 }
 
-Solution PetscEngine::solve(std::span<double> right_side) {
+Solution PetscEngine::solve(std::span<double> right_side) { return solve_to(0, right_side); }
+
+Solution PetscEngine::solve_to(double share, std::span<double> right_side) {
   State& s = *state_;
   if (s.direct) return s.direct->solve(right_side);
+  share = s.is_iterative() ? std::max(share, s.options.tolerance) : s.options.tolerance;
   const SharedMemory memory(right_side.size_bytes());
   const std::span<double> shared{reinterpret_cast<double*>(memory.data()), right_side.size()};
   std::ranges::copy(right_side, shared.begin());
-  std::istringstream said(s.ask("solve " + memory.path()));
+  std::istringstream said(s.ask(fmt::format("solve {:.3e} {}", share, memory.path())));
   std::string word, left, why;
   Solution solution;
   said >> word;

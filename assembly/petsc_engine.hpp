@@ -39,6 +39,8 @@ class PetscEngine : public Engine {
   Factorisation factorise(const SparseMatrix& matrix) override;
   /// Likewise, and SOLVER_1.
   Solution solve(std::span<double> right_side) override;
+  /// To RESI_RELA, where that is more.
+  Solution solve_to(double share, std::span<double> right_side) override;
 
  private:
   struct State;

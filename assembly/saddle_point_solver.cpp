@@ -199,13 +199,13 @@ class SaddlePointSolver::Preconditioner {
 };
 
 SolutionReport SaddlePointSolver::solve(const SparseMatrix& matrix, std::int64_t first_multiplier, std::span<double> right_side,
-                                        bool rough) {
+                                        const Accuracy& accuracy) {
   SolutionReport report;
   if (matrix.size() == 0) return report;  // every displacement is imposed
   first_multiplier_ = first_multiplier;
   if (options_.reuse && substitution_ && kept_ == Kept::factor && matrix.is_symmetric() && base_->is_symmetric() &&
       stiffness_change(matrix, *base_, first_multiplier) <= options_.stiffness_drift &&
-      corrected(matrix, right_side, rough, report))
+      corrected(matrix, right_side, accuracy.rough, report))
     return report;
 
   // what is thrown from here on leaves a solver that keeps nothing
@@ -213,38 +213,43 @@ SolutionReport SaddlePointSolver::solve(const SparseMatrix& matrix, std::int64_t
   kept_ = Kept::nothing;
   columns_.clear();
   blocks_.clear();
-  base_ = matrix;
+  if (substitution_) base_ = matrix;
+  const SparseMatrix& now = substitution_ ? *base_ : matrix;  // nothing is kept without a factor
   if (!analysed) {
     const Stopwatch watch(report.analysis_seconds);
-    engine_->analyse(*base_);
+    engine_->analyse(now);
   }
   {
     const Stopwatch watch(report.factorisation_seconds);
-    factor_ = report.factorisation = engine_->factorise(*base_);
+    factor_ = report.factorisation = engine_->factorise(now);
     report.factorised = true;
     ++factorisations_;
   }
-  kept_ = factor_.null_pivots.empty() ? Kept::factor : Kept::analysis;
-  if (kept_ == Kept::analysis) return report;
+  kept_ = kept_behind(factor_);
+  if (!factor_.null_pivots.empty()) return report;
   const Stopwatch watch(report.solution_seconds);
-  if (matrix.is_symmetric()) {
+  if (substitution_ && matrix.is_symmetric()) {
     const std::vector<double> scale = scales(matrix);
     const auto n = static_cast<Eigen::Index>(scale.size());
     reference_ =
         std::max(reference_, Map<const VectorXd>(scale.data(), n).cwiseProduct(Map<VectorXd>(right_side.data(), n)).norm());
   }
   kept_ = Kept::nothing;  // while a solution may take another factorisation
-  const Solution solution = engine_->solve(right_side);
-  kept_ = Kept::factor;
+  const Solution solution = engine_->solve_to(accuracy.share, right_side);
+  report.rough = accuracy.rough && factor_.is_iterative && !solution.again;
   report.iterations = solution.iterations;
   if (solution.again) {
     const double wasted = factor_.flops;
     factor_ = *solution.again;
     factor_.wasted_flops += wasted;
     report.factorisation = factor_;
-    kept_ = factor_.null_pivots.empty() ? Kept::factor : Kept::analysis;
   }
+  kept_ = kept_behind(factor_);
   return report;
+}
+
+SaddlePointSolver::Kept SaddlePointSolver::kept_behind(const Factorisation& factor) const {
+  return !substitution_ ? Kept::nothing : factor.null_pivots.empty() ? Kept::factor : Kept::analysis;
 }
 
 std::vector<double> SaddlePointSolver::scales(const SparseMatrix& matrix) {

@@ -36,13 +36,19 @@ struct SaddlePointOptions {
   double column_memory = 0.5;     ///< largest memory of the columns, of a whole factor's in double precision
 };
 
+/// How exact a solution has to be.
+struct Accuracy {
+  bool rough = false;  ///< another one corrects it: GMRES need not go further than the rough gain
+  double share = 0;    ///< of the right side, that may be left where the engine iterates itself
+};
+
 /// How a system was solved.
 struct SolutionReport {
   bool factorised = false;
   Factorisation factorisation;  ///< what the factorisation found, where there was one
   int columns = 0;              ///< of the inverse, computed anew
   int iterations = 0;           ///< of GMRES
-  bool rough = false;           ///< GMRES went no further than the rough gain
+  bool rough = false;           ///< iterations went no further than a rough solution
   double analysis_seconds = 0, factorisation_seconds = 0, solution_seconds = 0;
 };
 
@@ -54,9 +60,8 @@ class SaddlePointSolver {
   /// Solve A x = b in place. @param first_multiplier rows from here on are multipliers'
   /// Where the report has null pivots, the matrix is singular and `right_side` is left as it was.
   /// Throws SOLVER_1, SOLVER_2.
-  /// @param rough a solution to the rough gain will do: another one corrects it
   SolutionReport solve(const SparseMatrix& matrix, std::int64_t first_multiplier, std::span<double> right_side,
-                       bool rough = false);
+                       const Accuracy& accuracy = {});
   /// Right sides so far were those of a computation that failed: they say nothing of how exact the next solution has to be.
   void forget_right_sides() { reference_ = 0; }
 
@@ -95,6 +100,7 @@ class SaddlePointSolver {
   /// What of the engine's work stands.
   enum class Kept { nothing, analysis, factor };
 
+  Kept kept_behind(const Factorisation& factor) const;
   bool corrected(const SparseMatrix& matrix, std::span<double> right_side, bool rough, SolutionReport& report);
   /// Whether no motion is free in the matrix itself, where the factor is too inexact for its complement to tell.
   /// @param scale of the equations, (n)

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <stdexcept>
 #include <utility>
 
 namespace lacon {
@@ -9,6 +11,9 @@ namespace {
 
 /// Of the weights, in stiffnesses of the displacements of a row; and what a Schur complement has beside them.
 constexpr double weight_of_rows = 1, rest_of_schur = 0.5;
+/// Blocks of K whose entries are gathered at a time: each time the whole matrix is gone through.
+constexpr std::int64_t blocks_at_once = 20'000;
+constexpr int most_times = 16;
 
 struct Entry {
   std::int32_t column;
@@ -71,14 +76,12 @@ void append(Rows& rows, std::span<const Entry> entries) {
     rows.column.push_back(column);
     rows.value.push_back(value);
   }
-  rows.offset.push_back(static_cast<std::int64_t>(rows.column.size()));
+  if (rows.column.size() > std::numeric_limits<std::int32_t>::max()) throw std::length_error("PETSc: 2^31");
+  rows.offset.push_back(static_cast<std::int32_t>(rows.column.size()));
 }
 
 /// Rows of K, a block after the other: all rows of a block have the same columns, whole blocks.
-Rows whole_blocks(Gathering& gathered, const Range& blocks, int dimension) {
-  Rows rows{.first = blocks.first * dimension, .last = blocks.last * dimension};
-  rows.column.reserve(gathered.size() + gathered.size() / 8);  // memory is largest here
-  rows.value.reserve(gathered.size() + gathered.size() / 8);
+void append_whole_blocks(Rows& rows, Gathering& gathered, const Range& blocks, int dimension) {
   std::vector<std::int32_t> neighbours;
   std::vector<Entry> whole;
   for (std::int64_t block = blocks.first; block < blocks.last; ++block) {
@@ -102,7 +105,6 @@ Rows whole_blocks(Gathering& gathered, const Range& blocks, int dimension) {
       append(rows, whole);
     }
   }
-  return rows;
 }
 
 }  // namespace
@@ -116,11 +118,11 @@ BlockRows rows_of_part(const BlockSystem& system, int part, int n_parts) {
   // what all processes know: the diagonal of K, and the rows of the multipliers
   std::vector<double> diagonal(system.sizes.n_blocks * dimension, 0.0);
   std::vector<Multiplier> multipliers(system.sizes.n_multipliers);
-  Gathering k(own.first, own.last);
+  std::size_t n_own = 0;  // entries of own rows
   for_each_entry(system, [&](std::int32_t row, std::int32_t column, double value) {
     if (row >= 0 && column >= 0) {
       if (row == column) diagonal[row] = value;
-      if (k.has(row)) k.count(row);
+      n_own += row >= own.first && row < own.last;
     } else if (row >= 0) {
       multipliers[-1 - column].b.push_back({row, value});
     } else {
@@ -162,26 +164,36 @@ BlockRows rows_of_part(const BlockSystem& system, int part, int n_parts) {
     for (Entry& entry : m.c) entry.value *= scale[i];
   }
 
-  // K + B W C
-  for (std::size_t i = 0; i < multipliers.size(); ++i)
-    for (const Entry& entry : multipliers[i].b)
-      if (weight[i] != 0 && k.has(entry.column)) k.count(entry.column, static_cast<std::int64_t>(multipliers[i].c.size()));
-  for (std::int64_t row = own.first; row < own.last; ++row)
-    if (diagonal[row] == 0) k.count(row);
-  k.make_room();
-  for_each_entry(system, [&](std::int32_t row, std::int32_t column, double value) {
-    if (row >= 0 && column >= 0 && k.has(row)) k.add(row, column, value);
-  });
-  for (std::size_t i = 0; i < multipliers.size(); ++i)
-    for (const Entry& b : multipliers[i].b)
-      if (weight[i] != 0 && k.has(b.column))
-        for (const Entry& c : multipliers[i].c) k.add(b.column, c.column, weight[i] * b.value * c.value);
   made.is.assign(own.last - own.first, 0);
   for (const std::int32_t place : system.place)
     if (place >= own.first && place < own.last) made.is[place - own.first] = 1;
-  for (std::int64_t row = own.first; row < own.last; ++row)
-    if (diagonal[row] == 0) k.add(row, static_cast<std::int32_t>(row), made.is[row - own.first] ? 0.0 : mean);
-  made.k = whole_blocks(k, made.blocks, dimension);
+
+  // K + B W C, some rows at a time: gathered, its entries take more memory than all else
+  made.k = {.first = own.first, .last = own.last};
+  made.k.offset.reserve(static_cast<std::size_t>(own.last - own.first) + 1);
+  made.k.column.reserve(n_own + n_own / 2);  // what stays empty takes none
+  made.k.value.reserve(n_own + n_own / 2);
+  const std::int64_t n_blocks = made.blocks.last - made.blocks.first,
+                     step = std::max(blocks_at_once, n_blocks / most_times + 1);
+  for (std::int64_t first = made.blocks.first; first < made.blocks.last; first += step) {
+    const Range blocks{first, std::min(first + step, made.blocks.last)};
+    Gathering k(blocks.first * dimension, blocks.last * dimension);
+    const auto for_each_of_k = [&](const auto& use) {
+      for_each_entry(system, [&](std::int32_t row, std::int32_t column, double value) {
+        if (row >= 0 && column >= 0 && k.has(row)) use(row, column, value);
+      });
+      for (std::size_t i = 0; i < multipliers.size(); ++i)
+        for (const Entry& b : multipliers[i].b)
+          if (weight[i] != 0 && k.has(b.column))
+            for (const Entry& c : multipliers[i].c) use(b.column, c.column, weight[i] * b.value * c.value);
+      for (auto row = static_cast<std::int32_t>(blocks.first * dimension); row < blocks.last * dimension; ++row)
+        if (diagonal[row] == 0) use(row, row, made.is[row - own.first] ? 0.0 : mean);
+    };
+    for_each_of_k([&](std::int32_t row, std::int32_t, double) { k.count(row); });
+    k.make_room();
+    for_each_of_k([&](std::int32_t row, std::int32_t column, double value) { k.add(row, column, value); });
+    append_whole_blocks(made.k, k, blocks, dimension);
+  }
 
   Gathering b(own.first, own.last);
   for (const Multiplier& m : multipliers)

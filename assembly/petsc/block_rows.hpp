@@ -12,11 +12,10 @@
 
 namespace lacon {
 
-/// Rows [first, last) of one of the blocks, with columns of all of it.
+/// Rows [first, last) of one of the blocks, with columns of all of it; numbers as PETSc has them.
 struct Rows {
   std::int64_t first = 0, last = 0;
-  std::vector<std::int64_t> offset{0};
-  std::vector<std::int32_t> column;
+  std::vector<std::int32_t> offset{0}, column;
   std::vector<double> value;
 };
 

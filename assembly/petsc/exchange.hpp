@@ -1,7 +1,9 @@
 #pragma once
 // What an operator tells the processes of PETSc, in memory that they share, and what lines of text say about it:
-//   set up PATH    of a system             -> ready, ready NEGATIVE-PIVOTS, or failed WHY
-//   solve PATH     of a right side (n)     -> converged ITERATIONS RESIDUAL, with the solution in its place,
+//   set up PATH    of a system             -> taken, when its memory is of no more use, and behind it ready,
+//                                             ready NEGATIVE-PIVOTS, or failed WHY; or failed WHY at once
+//   solve SHARE PATH   of a right side (n), of which that share may be left
+//                                          -> converged ITERATIONS RESIDUAL, with the solution in its place,
 //                                             diverged ITERATIONS RESIDUAL REASON (of PETSc), or failed WHY
 #include <cstdint>
 #include <cstring>

@@ -31,9 +31,18 @@ OwnedMat make_matrix(const Rows& rows, std::int64_t own_columns, int block_size)
   checked(MatSetSizes(made, n, static_cast<PetscInt>(own_columns), PETSC_DETERMINE, PETSC_DETERMINE));
   checked(MatSetType(made, MATAIJ));
   if (block_size > 1) checked(MatSetBlockSize(made, block_size));
-  const std::vector<PetscInt> offset(rows.offset.begin(), rows.offset.end());
-  checked(MatSeqAIJSetPreallocationCSR(made, offset.data(), rows.column.data(), rows.value.data()));
-  checked(MatMPIAIJSetPreallocationCSR(made, offset.data(), rows.column.data(), rows.value.data()));
+  checked(MatSeqAIJSetPreallocationCSR(made, rows.offset.data(), rows.column.data(), rows.value.data()));
+  checked(MatMPIAIJSetPreallocationCSR(made, rows.offset.data(), rows.column.data(), rows.value.data()));
+  return made;
+}
+
+/// All rows of a square matrix, which stay where they are.
+OwnedMat make_matrix_in_place(Rows& rows, int block_size) {
+  OwnedMat made;
+  const auto n = static_cast<PetscInt>(rows.last);
+  checked(
+      MatCreateSeqAIJWithArrays(PETSC_COMM_WORLD, n, n, rows.offset.data(), rows.column.data(), rows.value.data(), made.out()));
+  checked(MatSetBlockSize(made, block_size));
   return made;
 }
 
@@ -108,7 +117,10 @@ void checked(PetscErrorCode code) {
 void catch_errors() { checked(PetscPushErrorHandler(note_error, nullptr)); }
 
 Krylov::Krylov(const BlockSystem& system, const KrylovOptions& options)
-    : options_(options), n_multipliers_(system.sizes.n_multipliers), dimension_(system.sizes.dimension) {
+    : options_(options),
+      is_symmetric_(system.sizes.is_symmetric),
+      n_multipliers_(system.sizes.n_multipliers),
+      dimension_(system.sizes.dimension) {
   int part = 0, n_parts = 1;
   MPI_Comm_rank(PETSC_COMM_WORLD, &part);
   MPI_Comm_size(PETSC_COMM_WORLD, &n_parts);
@@ -125,24 +137,27 @@ Krylov::Krylov(const BlockSystem& system, const KrylovOptions& options)
   scale_.insert(scale_.end(), rows.scale.begin(), rows.scale.end());
   weight_ = rows.weight;
   set_up_blocks(system, rows);
+}
+
+void Krylov::set_up() {
   if (is_direct())
-    factorise(system.sizes.is_symmetric);
+    factorise();
   else
     set_up_solver();
 }
 
-void Krylov::factorise(bool is_symmetric) {
+void Krylov::factorise() {
   if (n_multipliers_)
     checked(MatConvert(matrix_, MATAIJ, MAT_INITIAL_MATRIX, whole_.out()));
   else
     checked(MatDuplicate(k_, MAT_COPY_VALUES, whole_.out()));
-  checked(MatSetOption(whole_, MAT_SYMMETRIC, is_symmetric ? PETSC_TRUE : PETSC_FALSE));
+  checked(MatSetOption(whole_, MAT_SYMMETRIC, is_symmetric_ ? PETSC_TRUE : PETSC_FALSE));
   checked(KSPCreate(PETSC_COMM_WORLD, ksp_.out()));
   checked(KSPSetOperators(ksp_, whole_, whole_));
   checked(KSPSetType(ksp_, KSPPREONLY));
   PC pc = nullptr;
   checked(KSPGetPC(ksp_, &pc));
-  checked(PCSetType(pc, is_symmetric ? PCCHOLESKY : PCLU));
+  checked(PCSetType(pc, is_symmetric_ ? PCCHOLESKY : PCLU));
   checked(PCFactorSetMatSolverType(pc, MATSOLVERMUMPS));
   set("-mat_mumps_icntl_7", "5");   // METIS
   set("-mat_mumps_icntl_13", "1");  // the inertia of all fronts
@@ -156,15 +171,21 @@ void Krylov::factorise(bool is_symmetric) {
   checked(MatMumpsGetInfog(factor, 1, &status));
   checked(MatMumpsGetInfog(factor, 28, &null_pivots));
   is_singular_ = status < 0 || null_pivots > 0;
-  if (!is_symmetric || is_singular_) return;
+  if (!is_symmetric_ || is_singular_) return;
   checked(MatGetInertia(factor, &negative, nullptr, nullptr));
   negative_pivots_ = static_cast<int>(negative);
 }
 
 void Krylov::set_up_blocks(const BlockSystem& system, BlockRows& rows) {
   const std::int64_t own = rows.k.last - rows.k.first, own_multipliers = rows.c.last - rows.c.first;
-  k_ = make_matrix(rows.k, own, static_cast<int>(dimension_));
-  rows.k = {};
+  const auto block_size = static_cast<int>(dimension_);
+  if (own == system.sizes.n_blocks * dimension_) {
+    rows_of_k_ = std::move(rows.k);
+    k_ = make_matrix_in_place(rows_of_k_, block_size);
+  } else {
+    k_ = make_matrix(rows.k, own, block_size);
+    rows.k = {};
+  }
   set_rigid_motions(k_, system, rows);
   if (n_multipliers_ == 0) {
     checked(MatCreateVecs(k_, solution_.out(), side_.out()));
@@ -279,7 +300,7 @@ void Krylov::load(std::span<const double> right_side) {
   checked(VecRestoreArray(side_, &values));
 }
 
-KrylovResult Krylov::solve(std::span<double> right_side) {
+KrylovResult Krylov::solve(std::span<double> right_side, double share) {
   load(right_side);
   KrylovResult result;
   double size = 0, left = 0;
@@ -290,7 +311,7 @@ KrylovResult Krylov::solve(std::span<double> right_side) {
   checked(VecDuplicate(solution_, step.out()));
   Mat const matrix = n_multipliers_ ? matrix_ : k_;
   left = size;
-  const double goal = is_direct() ? 1e-15 : options_.tolerance;  // a factor is refined as far as that goes
+  const double goal = is_direct() ? 1e-15 : share;  // a factor is refined as far as that goes
   for (int round = 0; round < most_rounds && left > goal * size; ++round) {
     const double before = left;
     const int more = options_.iterations - result.iterations;
@@ -314,7 +335,7 @@ KrylovResult Krylov::solve(std::span<double> right_side) {
     }
   }
   result.residual = size > 0 ? left / size : 0;
-  if (left <= options_.tolerance * size)
+  if (left <= share * size)
     result.failure.clear();
   else if (result.failure.empty())
     result.failure = "STALLED";

@@ -42,7 +42,6 @@ void catch_errors();
 struct KrylovOptions {
   std::string algorithm = "GMRES";      ///< SOLVEUR/ALGORITHME
   std::string preconditioner = "GAMG";  ///< SOLVEUR/PRE_COND; LDLT_DP: a factor, by the MUMPS of all processes
-  double tolerance = 1e-8;              ///< of the residual, against the right side
   int iterations = 500;
 };
 
@@ -54,10 +53,12 @@ struct KrylovResult {
 
 class Krylov {
  public:
-  /// @param part of all processes, by their rows
+  /// Takes its rows of the system, which need not be there any more.
   Krylov(const BlockSystem& system, const KrylovOptions& options);
-  /// @param right_side (n), the solution afterwards: each process writes its own
-  KrylovResult solve(std::span<double> right_side);
+  /// Make the factor or the preconditioner.
+  void set_up();
+  /// @param right_side (n), the solution afterwards: each process writes its own  @param share of it that may be left
+  KrylovResult solve(std::span<double> right_side, double share);
   /// Of a factor of a symmetric matrix.
   std::optional<int> negative_pivots() const { return negative_pivots_; }
   bool is_singular() const { return is_singular_; }
@@ -66,15 +67,17 @@ class Krylov {
   void load(std::span<const double> right_side);
   void set_up_blocks(const BlockSystem& system, BlockRows& rows);
   void set_up_solver();
-  void factorise(bool is_symmetric);
+  void factorise();
   bool is_direct() const { return options_.preconditioner == "LDLT_DP"; }
   void set_up_displacements(PC pc) const;
 
   KrylovOptions options_;
+  bool is_symmetric_;
   std::int64_t n_multipliers_, dimension_;
   std::vector<std::int32_t> equation_;  ///< of own rows, displacements first; -1: imposed
   std::vector<double> scale_;           ///< of them
   std::vector<double> weight_;          ///< of own multipliers
+  Rows rows_of_k_;                      ///< where k_ has its entries, in one process
   OwnedMat k_, b_, c_, d_, matrix_, schur_, whole_;
   OwnedVec side_, solution_, residual_, weighted_, added_;
   OwnedKsp ksp_;

@@ -1,4 +1,5 @@
 // lacon_petsc: the ranks of PETSc, which an operator starts and talks with over standard input and output (exchange.hpp).
+#include <malloc.h>
 #include <sys/prctl.h>
 #include <unistd.h>
 
@@ -42,9 +43,14 @@ void answer(const std::string& line) {
   if (is_first()) std::cout << line << std::endl;
 }
 
-std::string solved(Krylov& krylov, const std::string& path) {
+std::unique_ptr<Krylov> taken(const std::string& path, const KrylovOptions& options) {
   const SharedMemory memory = SharedMemory::open(path);
-  const KrylovResult found = krylov.solve({reinterpret_cast<double*>(memory.data()), memory.size() / sizeof(double)});
+  return std::make_unique<Krylov>(BlockSystem::in(memory), options);
+}
+
+std::string solved(Krylov& krylov, double share, const std::string& path) {
+  const SharedMemory memory = SharedMemory::open(path);
+  const KrylovResult found = krylov.solve({reinterpret_cast<double*>(memory.data()), memory.size() / sizeof(double)}, share);
   std::ostringstream line;
   line.precision(2);
   line << (found.failure.empty() ? "converged " : "diverged ") << found.iterations << ' ' << found.residual << ' '
@@ -60,13 +66,15 @@ void serve(const KrylovOptions& options) {
     try {
       if (line.starts_with("set up ")) {
         krylov.reset();
-        const SharedMemory memory = SharedMemory::open(path);
-        krylov = std::make_unique<Krylov>(BlockSystem::in(memory), options);
+        malloc_trim(0);  // what it had goes back to the system
+        krylov = taken(path, options);
+        answer("taken");
+        krylov->set_up();
         answer(krylov->is_singular()       ? "failed singular"
                : krylov->negative_pivots() ? "ready " + std::to_string(*krylov->negative_pivots())
                                            : "ready");
       } else {
-        answer(solved(*krylov, path));
+        answer(solved(*krylov, std::stod(line.substr(line.find(' '))), path));
       }
     } catch (const std::exception& error) {
       // other ranks may be anywhere: what is left of them is of no use
@@ -82,13 +90,13 @@ void serve(const KrylovOptions& options) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  if (argc != 5) {
-    std::fputs("usage: lacon_petsc ALGORITHM PRECONDITIONER TOLERANCE ITERATIONS (started by operators)\n", stderr);
+  if (argc != 4) {
+    std::fputs("usage: lacon_petsc ALGORITHM PRECONDITIONER ITERATIONS (started by operators)\n", stderr);
     return 2;
   }
   prctl(PR_SET_PDEATHSIG, SIGKILL);
   if (PetscInitialize(nullptr, nullptr, nullptr, nullptr)) return 4;
   lacon::catch_errors();
-  serve({.algorithm = argv[1], .preconditioner = argv[2], .tolerance = std::stod(argv[3]), .iterations = std::stoi(argv[4])});
+  serve({.algorithm = argv[1], .preconditioner = argv[2], .iterations = std::stoi(argv[3])});
   PetscFinalize();
 }

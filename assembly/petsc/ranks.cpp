@@ -69,8 +69,6 @@ Ranks::~Ranks() {
   close(from_);
 }
 
-std::string Ranks::first_answer() { return answer(); }
-
 std::string Ranks::ask(const std::string& line) {
   const std::string whole = line + '\n';
   for (std::size_t sent = 0; sent < whole.size();) {

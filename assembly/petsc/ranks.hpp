@@ -19,14 +19,12 @@ class Ranks {
 
   /// Say a line and wait for the answer. @return it; empty where they have ended
   std::string ask(const std::string& line);
-  /// The answer to nothing: that they are ready.
-  std::string first_answer();
+  /// The next line of theirs, behind that answer, or the first one: that they are ready. @return likewise
+  std::string answer();
   /// How they have ended, in words: after an empty answer.
   std::string end();
 
  private:
-  std::string answer();
-
   pid_t process_ = -1;
   int to_ = -1, from_ = -1;
   std::string heard_;

@@ -148,6 +148,7 @@ int Newton::iterate(double instant, StaticState& state, const std::function<void
   std::vector<double> step = equilibrium_.load(instant, state);
   choice_.start_instant();
   statuses_.start_instant();
+  forcing_.start_instant();
   if (options_.extrapolates) extrapolate(instant, state, step);
   // plasticity answers to a step of no length elastically: a body that is unloaded now does not overshoot on the tangent of the
   // flow that the last instant ended with, which makes Newton's method go to and fro between two states
@@ -161,14 +162,15 @@ int Newton::iterate(double instant, StaticState& state, const std::function<void
   std::size_t changing = 0;
   for (int iteration = 0; iteration <= options_.iterations; ++iteration) {
     const auto start = std::chrono::steady_clock::now();
-    line = {.iteration = iteration};
     const bool rough = settling && iteration < options_.iterations;
+    const Accuracy accuracy{.rough = rough, .share = iteration > 0 ? forcing_.next(options_.criteria, line, rough) : 0};
+    line = {.iteration = iteration};
     const SolidMatrix asked = iteration == 0 ? options_.prediction : options_.matrix;
-    std::vector<double> solution = solve_system(state, previous, asked, step, rough, line);
+    std::vector<double> solution = solve_system(state, previous, asked, step, accuracy, line);
     const auto& negative = line.solution.factorisation.negative_pivots;
     if (negative && choice_.note_pivots(equilibrium_.matrix(), equilibrium_.curves(state), *negative, line.constraints)) {
       assemble(state, previous, SolidMatrix::tangent);
-      solution = solve_system(state, previous, SolidMatrix::tangent, step, rough, line);
+      solution = solve_system(state, previous, SolidMatrix::tangent, step, accuracy, line);
     }
     if (course_.period())  // iterates that go to and fro between two states: what they jump over lies between them
       for (double& value : solution) value *= 0.5;
@@ -230,7 +232,7 @@ void Newton::assemble(const StaticState& state, const StaticState& previous, Sol
 }
 
 std::vector<double> Newton::solve_system(StaticState& state, const StaticState& previous, SolidMatrix asked,
-                                         std::span<const double> step, bool rough, IterationReport& line) {
+                                         std::span<const double> step, const Accuracy& accuracy, IterationReport& line) {
   const System& system = equilibrium_.system();
   for (bool sprung = false;; sprung = times_held_ > 1) {
     line.constraints = equilibrium_.n_constraints(state);
@@ -240,7 +242,7 @@ std::vector<double> Newton::solve_system(StaticState& state, const StaticState& 
     for (const LooseMotion& motion : loose) null.push_back(problem_.numbering.equation[static_cast<std::size_t>(motion.dof)]);
     if (loose.empty()) {
       std::vector<double> solution = equilibrium_.right_side(step);
-      solve_linear(solution, rough, line);
+      solve_linear(solution, accuracy, line);
       null = line.solution.factorisation.null_pivots;
       if (null.empty()) return solution;
       for (const std::int64_t dof : equilibrium_.dofs_of(null))
@@ -253,10 +255,10 @@ std::vector<double> Newton::solve_system(StaticState& state, const StaticState& 
   }
 }
 
-void Newton::solve_linear(std::vector<double>& solution, bool rough, IterationReport& line) {
+void Newton::solve_linear(std::vector<double>& solution, const Accuracy& accuracy, IterationReport& line) {
   const System& system = equilibrium_.system();
   begin_phase("linear system");
-  line.solution = solver_.solve(system.matrix(), system.first_multiplier(), solution, rough);
+  line.solution = solver_.solve(system.matrix(), system.first_multiplier(), solution, accuracy);
   const SolutionReport& report = line.solution;
   add_to_phase("analysis", report.analysis_seconds);
   add_to_phase("factorisation", report.factorisation_seconds);

@@ -11,6 +11,7 @@
 #include "lacon/assembly/saddle_point_solver.hpp"
 #include "lacon/operators/evolution/bodies.hpp"
 #include "lacon/operators/evolution/equilibrium.hpp"
+#include "lacon/operators/evolution/forcing_term.hpp"
 #include "lacon/operators/evolution/line_search.hpp"
 #include "lacon/operators/evolution/matrix_choice.hpp"
 #include "lacon/operators/evolution/residual_course.hpp"
@@ -73,12 +74,12 @@ class Newton {
   void start_heated(StaticState& state);
   int iterate(double instant, StaticState& state, const std::function<void(const IterationReport&)>& report);
   void assemble(const StaticState& state, const StaticState& previous, SolidMatrix asked);
-  /// The solution of the present system. @param rough a few digits will do. Where bodies are loose that are near to others,
-  /// patches of `state` take contact first. Throws SOLVER_3.
+  /// The solution of the present system. Where bodies are loose that are near to others, patches of `state` take contact
+  /// first. Throws SOLVER_3.
   std::vector<double> solve_system(StaticState& state, const StaticState& previous, SolidMatrix asked,
-                                   std::span<const double> step, bool rough, IterationReport& line);
+                                   std::span<const double> step, const Accuracy& accuracy, IterationReport& line);
   /// Solve the system with what `solution` holds, in place.
-  void solve_linear(std::vector<double>& solution, bool rough, IterationReport& line);
+  void solve_linear(std::vector<double>& solution, const Accuracy& accuracy, IterationReport& line);
   /// Hold bodies that are loose and near to others: at first the nearest patches take contact, and EVOLUTION_20 says so. Where
   /// they are pulled and open again, nothing presses on the bodies: springs keep them where they are, in the matrix alone.
   /// @return whether all of them are held
@@ -116,6 +117,7 @@ class Newton {
   Equilibrium equilibrium_;
   MatrixChoice choice_;
   StatusRule statuses_;
+  ForcingTerm forcing_;
   /// The instant that was solved last.
   struct Motion {
     double from, to;

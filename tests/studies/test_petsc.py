@@ -3,6 +3,7 @@
 import json
 import os
 import pathlib
+import re
 import shutil
 import unittest
 
@@ -56,9 +57,11 @@ class Petsc(StudyTest):
             self.assertNotIn("SOLVER_7", run.stdout + run.stderr)
             result = Result(base, "RESULT")
             last[method] = result.field("DEPL", result.orders[-1])[1]
-            steps[method] = [line for line in run.stdout.splitlines() if "Converged at the instant" in line]
+            steps[method] = [int(n) for n in re.findall(r"Converged at the instant \S+ with (\d+)", run.stdout)]
         assert_same(self, last["MUMPS"], last["PETSC"])
-        self.assertEqual(steps["MUMPS"], steps["PETSC"])
+        self.assertEqual(len(steps["PETSC"]), len(steps["MUMPS"]))
+        for exact, inexact in zip(steps["MUMPS"], steps["PETSC"]):  # rough while statuses change
+            self.assertAlmostEqual(exact, inexact, delta=1)
 
 
 @unittest.skipUnless(PROGRAM.exists() and shutil.which("mpirun"), "built without PETSc, or there is no mpirun")

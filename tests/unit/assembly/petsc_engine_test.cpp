@@ -99,6 +99,24 @@ TEST_F(PetscEngineTest, SolvesSaddlePoints) {
   }
 }
 
+// Where a part of the right side may be left, that much is left at most, and iterations are fewer. A factor leaves none.
+TEST_F(PetscEngineTest, SolvesNoFurtherThanAsked) {
+  const TwoBodies system;
+  const Eigen::VectorXd b = Eigen::VectorXd::Random(system.matrix.size());
+  PetscOptions options = system.options();
+  for (const std::string preconditioner : {"JACOBI", "LDLT_DP"}) {
+    options.preconditioner = preconditioner;
+    PetscEngine engine(options);
+    engine.analyse(system.matrix);
+    engine.factorise(system.matrix);
+    Eigen::VectorXd rough = b, exact = b;
+    const Solution some = engine.solve_to(1e-2, span_of(rough)), all = engine.solve(span_of(exact));
+    EXPECT_LE(some.residual, preconditioner == "LDLT_DP" ? 1e-12 : 1e-2);
+    EXPECT_LE(all.residual, 1e-12);
+    if (preconditioner == "JACOBI") EXPECT_LT(some.iterations, all.iterations);
+  }
+}
+
 // Another process with the same system gives the same bits, and so does a second solution in the same one.
 TEST_F(PetscEngineTest, GivesTheSameBitsInEveryRun) {
   const TwoBodies system;

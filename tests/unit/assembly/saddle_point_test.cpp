@@ -138,7 +138,8 @@ TEST(SaddlePointSolver, SolvesRoughlyWhereThatWillDo) {
   system.drift = 0.1;
   system.fill();
   Eigen::VectorXd b = Eigen::VectorXd::Random(system.matrix.size()), x = b;
-  report = solver.solve(system.matrix, system.first_multiplier(), {x.data(), static_cast<std::size_t>(x.size())}, true);
+  report =
+      solver.solve(system.matrix, system.first_multiplier(), {x.data(), static_cast<std::size_t>(x.size())}, {.rough = true});
   EXPECT_TRUE(report.rough);
   const int few = report.iterations;
   const double left = (dense(system.matrix) * x - b).norm() / b.norm();
