@@ -164,5 +164,25 @@ FIN()
                 self.refused(self.run_study(f"DEBUT()\nF = DEFI_FONCTION(NOM_PARA='X', VALE=(0, 0, 1, 1))\nA = {line}\n", "--fresh"), *words)
 
 
+class Names(LauncherTest):
+    def test_what_the_study_calls_as_mathematics_does_is_the_studys(self):
+        """Numbers, functions and concepts of its own, as in any Python expression; what numpy has by these names, and what is imported, changes nothing."""
+        self.ok(self.run_study("""
+DEBUT()
+from math import *
+from numpy import *
+assert FORMULE(NOM_PARA='X', VALE='e * sqrt(X) + max(X, pi)')(4.) == 2 * e + 4
+e, sum, gamma = 3.0, 4, DEFI_CONSTANTE(VALE=5.0)
+def sqrt(x):
+    return -x
+F = FORMULE(NOM_PARA='X', VALE='e * X + sum + gamma(X) + sqrt(X)')
+assert F(2.) == 6 + 4 + 5 - 2, F(2.)
+assert FORMULE(NOM_PARA='X', VALE='e * X', e=7.0)(1.) == 7 and FORMULE(NOM_PARA='e', VALE='e')(1.) == 1
+e = 9.0
+assert F(2.) == 13
+FIN()
+"""))
+
+
 if __name__ == "__main__":
     unittest.main()

@@ -78,6 +78,21 @@ class Endings(LauncherTest):
         self.refused(self.run_study("DEBUT()\nM = (\n"), "STUDY_16", "study.comm:2")
         self.refused(self.run_study("DEBUT()\nM = DEFI_MATERIAU(ELAS=1, ELAS=2)\n"), "STUDY_16", "study.comm:2", "repeated")
 
+    def test_python_that_ends_in_odd_ways_is_told_as_any_other(self):
+        """What is no Exception, an exception without a text, an output that is closed or put to None: a diagnosis, no traceback of the launcher's."""
+        for text, word in (("class Odd(BaseException): pass\nraise Odd('why')", "Odd: why"),
+                           ("raise GeneratorExit", "GeneratorExit"),
+                           ("class Odd(Exception):\n    def __str__(self): raise ValueError\nraise Odd", "Odd: its text cannot be made"),
+                           ("import sys\nsys.stdout.close()\n1 / 0", "ZeroDivisionError"), ("import sys\nsys.stdout = None\n1 / 0", "ZeroDivisionError"),
+                           ("import io, sys\nsys.stdout = io.StringIO()\n1 / 0", "ZeroDivisionError")):
+            with self.subTest(text):
+                run = self.run_study(f"DEBUT()\n{text}\n")
+                self.assertEqual(run.status, 2, run.err)
+                self.assertIn(word, run.err)
+                self.assertNotIn("commands/lacon", run.err)
+        run = self.run_study("DEBUT()\nimport sys\nsys.stdout = None\nC = DEFI_CONSTANTE(VALE=1.)\nFIN()\n")
+        self.assertEqual(run.status, 0, run.err)
+
     def test_exit(self):
         self.ends(self.run_study("DEBUT()\nimport sys\nsys.exit()\n"), 0, "OK")
         self.refused(self.run_study("DEBUT()\nexit(3)\n"), "STUDY_17", "study.comm:2")

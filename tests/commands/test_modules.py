@@ -4,7 +4,7 @@ import sys
 import unittest
 
 sys.path.insert(0, __file__.rpartition("/")[0] or ".")
-from support import LauncherTest  # noqa: E402
+from support import STUDY, LauncherTest  # noqa: E402
 
 try:
     import sympy
@@ -37,7 +37,7 @@ class Modules(LauncherTest):
         self.assertIn("the literal way", self.ok(self.run_study(EITHER)).out)
 
     def test_modules_that_are_not_here(self):
-        for statement, word in (("from Utilitai.Table import Table", "Utilitai"), ("import code_aster.Supervis", "code_aster.Supervis"),
+        for statement, word in (("from Utilitai.Utmess import UTMESS", "Utilitai"), ("import code_aster.Supervis", "code_aster.Supervis"),
                                 ("from code_aster.Utilities import logger", "logger"), ("import aster; aster.onFatalError()", "onFatalError"),
                                 ("from code_aster import CA; CA.Model()", "Model")):
             run = self.refused(self.run_study(f"DEBUT()\n{statement}\n"), word, "STUDY_19", "study.comm:2")
@@ -60,6 +60,38 @@ MO = AFFE_MODELE(MAILLAGE=mesh, AFFE=_F(TOUT='OUI', PHENOMENE='MECANIQUE', MODEL
 assert MO.getMesh() is mesh and mesh.getName() == 'mesh'
 CA.close()
 """))
+
+    def test_methods_of_results_functions_and_tables(self):
+        """What command files of versions 12 to 17 call beside values: the one process, order numbers, text of tables; tables without a concept."""
+        run = self.ok(self.run_study(STUDY + """
+from code_aster.CA import MPI
+from Utilitai.Table import Table
+from code_aster.Objects.table_py import Table as Same
+import aster
+assert MPI.ASTER_COMM_WORLD.Get_rank() == 0 == MPI.ASTER_COMM_WORLD.rank and CA.MPI.ASTER_COMM_WORLD.Get_size() == 1
+assert R.getModel(1) is MO and R.getMaterialField(1) is CM
+assert R.getIndexFromParameter('INST', 0.5, 'RELATIF', 1e-6) == 1 and R.getIndexFromParameter('INST', 0.7, throw_except=False) == -1
+try:
+    R.getIndexFromParameter('INST', 0.7, 'ABSOLU', 1e-3)
+except ValueError as error:
+    assert '0 instants at 0.7' in str(error) and 'INST 0.5' in str(error), error
+assert RAMP.getValuesAsArray().tolist() == [[0, 0], [1, 1]]
+assert (M.getInnerNodes(), M.getOuterNodes(), len(M.getInnerCells())) == (list(range(6)), [], 3)
+t = Table(rows=[{'A': 1.0, 'B': 'x'}])
+assert Same is Table and not hasattr(t, 'C') and t.A.values() == [1.0]
+t.Impr()
+t.Impr(FICHIER='t.txt', FORMAT='ASTER')
+assert '#DEBUT_TABLE' in open('t.txt').read()
+aster.affiche('MESSAGE', 'a word of the study')
+R.printInfo()
+try:
+    R.getField('DEPL', 1).getValue
+except AttributeError as error:
+    assert "DEPL, a field, has no 'getValue' here; the nearest one is getValues" in str(error), error
+FIN()
+"""))
+        for words in ("a word of the study", "NOEU_DEPL_R", "A +B"):
+            self.assertRegex(run.out, words)
 
     def test_headers_of_versions_12_to_16(self):
         for header, end in (

@@ -30,6 +30,8 @@ class Fields(StudyTest):
             profile = next(iter(step.values()))
             np.testing.assert_array_equal(profile["CO"][()], [0, 0, 0])  # Y on the base
         self.assertIn("NODES", (self.folder / "out.resu").read_text())
+        with h5py.File(self.folder / "twice.med") as file:
+            self.assertEqual(list(file["CHA"]), ["NEUT_R"])
 
 
 if __name__ == "__main__":

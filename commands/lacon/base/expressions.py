@@ -42,11 +42,15 @@ class Expression:
 
     def names(self):
         """Names that are neither parameters nor mathematics nor Python's own."""
+        return [name for name in self.used() if not _is_provided(name)]
+
+    def used(self):
+        """Names that are not parameters."""
         tree = ast.parse(self.text, mode="eval")
         bound = {node.id for node in ast.walk(tree) if isinstance(node, ast.Name) and not isinstance(node.ctx, ast.Load)}
         bound |= {node.arg for node in ast.walk(tree) if isinstance(node, ast.arg)}
         used = dict.fromkeys(node.id for node in ast.walk(tree) if isinstance(node, ast.Name))
-        return [n for n in used if n not in self.parameters and n not in bound and n not in _mathematics and not hasattr(builtins, n)]
+        return [name for name in used if name not in self.parameters and name not in bound]
 
     def value(self, point, name):
         """@param point parameter -> value. @throws AsterError FORMULE_2 with the point"""
@@ -172,6 +176,16 @@ class Expression:
         except RecursionError:
             elementwise = False
         return {**scope, "__builtins__": {}} if elementwise else {}
+
+
+def _is_provided(name):
+    return name in _mathematics or hasattr(builtins, name)
+
+
+def hides(name, value):
+    """Whether a value of the study, a number, a function of its own or a concept, stands in the place of mathematics or of what Python has by that name.
+    What numpy and the like have by it does not."""
+    return _is_provided(name) and (isinstance(value, (numbers.Number, Concept)) or isinstance(value, types.FunctionType) and value.__module__ == "__main__")
 
 
 def read_formula(concept):

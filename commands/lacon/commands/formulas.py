@@ -3,7 +3,7 @@
 import json
 
 from ..base import names
-from ..base.expressions import Expression
+from ..base.expressions import Expression, hides
 from ..core.hdf5 import text_type
 from ..core.nearest import nearest
 
@@ -20,6 +20,9 @@ def formule(call):
     except (SyntaxError, ValueError) as error:
         call.fail("FORMULE_1", "VALE", reason=error.msg if isinstance(error, SyntaxError) else error)
     study = call.study.names.values
+    for name, value in call.study.names.user().items():
+        if name not in values and name in expression.used() and hides(name, value):
+            expression.values[name] = value
     for name in expression.names():
         if name in values:
             continue

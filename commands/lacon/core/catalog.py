@@ -131,7 +131,7 @@ def instead(kind, path, otherwise):
     found = rows.get(path) or rows.get(path.rpartition("/")[2])
     if not found:
         return otherwise
-    return found if found.startswith("leave it out") else f"use {found}"
+    return found if found.startswith("leave ") else f"use {found}"
 
 
 @functools.cache

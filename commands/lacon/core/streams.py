@@ -17,6 +17,16 @@ def open_closed():
             setattr(sys, name, open(number, mode, encoding="utf-8", errors="backslashreplace", closefd=False))
 
 
+def take_back():
+    """Output and log that a command file has closed, or put to None, are the process's own again, or lead nowhere."""
+    for name in ("stdout", "stderr"):
+        stream, own = getattr(sys, name), getattr(sys, f"__{name}__")
+        if stream is None or getattr(stream, "closed", False):
+            setattr(sys, name, None if own is None or own.closed else own)
+    if None in (sys.stdout, sys.stderr):
+        open_closed()
+
+
 def readers_gone():
     """Whether nobody reads the output or the log any more (`lacon study.comm | head`)."""
     return any(_has_lost_its_reader(number) for number in (1, 2))

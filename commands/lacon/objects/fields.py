@@ -4,6 +4,8 @@ from ..base.fields import FieldData, open_field
 from ..core import current
 from ..core.concepts import Concept
 from ..core.late import numpy
+from ..core.nearest import nearest
+from .files import print_med
 
 
 class Arithmetic:
@@ -22,6 +24,27 @@ class Arithmetic:
 
     def __neg__(self):
         return _combined((self, -1.0))
+
+    def copy(self):
+        return _combined((self, 1.0))
+
+    def restrict(self, components=(), groups=()):
+        """The field of these components, or all, on these groups (of nodes; else of cells), or everywhere."""
+        names = [components] if isinstance(components, str) else list(components)
+        return self._part(self.type_of_field(), groups, **({"NOM_CMP": names} if names else {}))
+
+    def asPhysicalQuantity(self, quantity, components):
+        """The field of another quantity. @param components its name here -> its name there"""
+        kind = f"{self.type_of_field().partition('_')[0]}_{quantity}"
+        return self._part(kind, (), NOM_CMP=list(components), NOM_CMP_RESU=list(components.values()))
+
+    def _part(self, kind, groups, **more):
+        mesh = self.getMesh()
+        groups = [groups] if isinstance(groups, str) else list(groups)
+        keyword = "GROUP_NO" if groups and groups[0] in mesh.getGroupsOfNodes() and kind.startswith("NOEU") else "GROUP_MA"
+        part = {"CHAM_GD": self.concept(), **({keyword: groups} if groups else {"TOUT": "OUI"}), **more}
+        return current.commands["CREA_CHAMP"](OPERATION="ASSE", TYPE_CHAM=kind, MAILLAGE=mesh, ASSE=part)
+
 
 
 def _combined(*terms):
@@ -49,6 +72,16 @@ class Field(Arithmetic, FieldData):
 
     def type_of_field(self):
         return self.type()
+
+    def __getattr__(self, name):
+        if name.startswith("_"):
+            raise AttributeError(name)
+        known = [k for k in dir(type(self)) if not k.startswith("_")]
+        raise AttributeError(f"{self.name}, a field, has no '{name}' here{nearest(name, known)}")
+
+    def printMedFile(self, path, local=True):
+        result, name, order = self._origin
+        print_med(path, RESULTAT=result, NOM_CHAM=name, NUME_ORDRE=order)
 
     def mesh(self):
         return self.base.concept(self.mesh_id)
@@ -82,6 +115,13 @@ class Field(Arithmetic, FieldData):
         parts = [self.values[self.counted[:, column], column] for column in map(self.components.index, self._names(components))]
         values = numpy.concatenate(parts)
         return float(numpy.linalg.norm(values, orders[kind])) if len(values) else 0.0
+
+    def dot(self, other):
+        """The sum of the products of the values that both have."""
+        other = other.content() if isinstance(other, FieldConcept) else other
+        if self.components != other.components or self.values.shape != other.values.shape or (self.support != other.support).any():
+            raise ValueError(f"dot: {self.name} and {other.name} have not the same components at the same places")
+        return float((self.values * other.values)[self.counted & other.counted].sum())
 
     def toSimpleFieldOnNodes(self):
         return SimpleField(self, on_nodes=True)
@@ -187,9 +227,34 @@ class SimpleField:
         return self._field.support.tolist()
 
     def getNumberOfPointsOfCell(self, cell):
-        field = self._field
-        at = field.support.tolist().index(cell)
-        return 1 if field.offset is None else int(field.offset[at + 1] - field.offset[at])
+        """0 where the cell has no values."""
+        first, last = self._rows(cell)
+        return last - first
+
+    def _rows(self, owner):
+        """(first, last + 1) of the rows of a cell or node; (0, 0) where it has none."""
+        field, at = self._field, numpy.flatnonzero(self._field.support == owner)
+        if not len(at):
+            return 0, 0
+        at = int(at[0])
+        return (at, at + 1) if field.offset is None else (int(field.offset[at]), int(field.offset[at + 1]))
+
+    def hasValue(self, owner, component, point=0, subpoint=0):
+        """Whether a node, or a cell at a point (or node of it), has a component, named or by its number from 0."""
+        first, last = self._rows(owner)
+        column = self._column(component)
+        return bool(column is not None and subpoint == 0 and 0 <= point < last - first and self._field.present[first + point, column])
+
+    def getValue(self, owner, component, point=0, subpoint=0):
+        if not self.hasValue(owner, component, point, subpoint):
+            raise ValueError(f"{self._field.name} has no {component} at {owner}, point {point}")
+        return float(self._field.values[self._rows(owner)[0] + point, self._column(component)])
+
+    def _column(self, component):
+        names = self._field.components
+        if isinstance(component, str):
+            return names.index(component) if component in names else None
+        return component if 0 <= component < len(names) else None
 
     def getValues(self, copy=True):
         """@return (values, mask), of nodes (nodes of the mesh, components), of cells (points or nodes of cells that have values,
@@ -212,6 +277,9 @@ class FieldConcept(Arithmetic, Concept):
 
     def type_of_field(self):
         return self.content().type()
+
+    def printMedFile(self, path, local=True):
+        print_med(path, CHAM_GD=self, NOM_CHAM_MED=self.label or self.content().quantity)
 
     def content(self):
         """A Field."""

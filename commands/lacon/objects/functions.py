@@ -54,6 +54,10 @@ class Function(Concept):
     def getValues(self):
         return self.Absc() + self.Ordo()
 
+    def getValuesAsArray(self):
+        """(n, 2): abscissae and ordinates"""
+        return numpy.column_stack(self.Valeurs())
+
     def size(self):
         return len(self.points().x)
 

@@ -3,10 +3,11 @@
 import re
 
 from ..base import contents
-from ..core import catalog
-from ..core.concepts import Concept
+from ..core import catalog, current, labels
+from ..core.concepts import CO, Concept
 from ..core.late import numpy
 from ..core.nearest import nearest
+from .files import print_med
 
 
 _linear = {"POI1", "SEG2", "TRIA3", "QUAD4", "TETRA4", "PENTA6", "PYRAM5", "HEXA8"}
@@ -114,6 +115,24 @@ class Mesh(Concept):
         return [numpy.linalg.norm(points[nodes[offset[cell] + a]] - points[nodes[offset[cell] + b]])
                 for cell in self.getCells(groups) for a, b in catalog.edges(names[types[cell]])]
 
+    def refine(self, ntimes=1, info=1):
+        """The mesh with every edge cut in two, `ntimes` times over: MACR_ADAP_MAIL."""
+        label, mesh = labels.label(labels.user_frame()) or "refined", self
+        for _ in range(ntimes):
+            made = CO(label)
+            current.commands["MACR_ADAP_MAIL"](MAILLAGE_N=mesh, MAILLAGE_NP1=made, ADAPTATION="RAFFINEMENT_UNIFORME", INFO=info)
+            mesh = made
+        return mesh
+
+    def convertToQuadratic(self, info=1):
+        return current.commands["CREA_MAILLAGE"](MAILLAGE=self, LINE_QUAD={"TOUT": "OUI"}, INFO=info)
+
+    def convertToLinear(self, info=1):
+        return current.commands["CREA_MAILLAGE"](MAILLAGE=self, QUAD_LINE={"TOUT": "OUI"}, INFO=info)
+
+    def printMedFile(self, path, local=True):
+        print_med(path, MAILLAGE=self)
+
     def isQuadratic(self):
         """Whether it has cells of the second order."""
         names, types = self._read(contents.cell_types)
@@ -121,6 +140,18 @@ class Mesh(Concept):
 
     def isParallel(self):
         return False
+
+    def getInnerNodes(self):
+        """Those of this process: all."""
+        return self.getNodes()
+
+    def getInnerCells(self):
+        return self.getCells()
+
+    def getOuterNodes(self):
+        return []
+
+    getOuterCells = getOuterNodes
 
     def getCellName(self, cell):
         return f"M{cell + 1}"

@@ -1,10 +1,12 @@
 """Results and tables as a command file sees them."""
 
 from ..base import contents
+from ..core import current
 from ..core.concepts import Concept, listed
 from ..core.messages import fail
 from ..tables.storage import read_table
 from .fields import Field
+from .files import print_med
 
 
 class Result(Concept):
@@ -54,8 +56,7 @@ class Result(Concept):
         order = value if index is None else index
         instants = self.instants()
         if para == "INST":
-            scale = abs(order) if crit == "RELATIF" else 1.0
-            found = [o for o, t in instants if abs(t - order) <= prec * scale]
+            found = self._orders_near(order, crit, prec)
             order = found[0] if len(found) == 1 else f"(INST {order:g})"
         elif para != "NUME_ORDRE":
             raise ValueError(f"getField: para is {para!r}; results here know NUME_ORDRE and INST")
@@ -66,6 +67,28 @@ class Result(Concept):
             known = ", ".join(sorted(self.LIST_CHAMPS())) or "none"
             fail("RESULT_1", "getField", label=self.label, field=name, order=order, known=known)
         return field
+
+    def _orders_near(self, instant, crit, prec):
+        scale = abs(instant) if crit == "RELATIF" else 1.0
+        return [order for order, t in self.instants() if abs(t - instant) <= prec * scale]
+
+    def getIndexFromParameter(self, para, value, crit="RELATIF", prec=1e-6, throw_except=True):
+        """The order number of an instant; -1 where there is not one, or with `throw_except` a ValueError."""
+        if para != "INST":
+            raise ValueError(f"getIndexFromParameter: para is {para!r}; results here know INST")
+        found = self._orders_near(value, crit, prec)
+        if len(found) != 1 and throw_except:
+            raise ValueError(f"{self.label} has {len(found)} instants at {value:g} within {prec:g}; it has {listed(self.instants())}")
+        return found[0] if len(found) == 1 else -1
+
+    def printInfo(self):
+        current.commands["INFO_RESU"](RESULTAT=self)
+
+    printListOfFields = printInfo
+
+    def printMedFile(self, path, medname="", local=True):
+        """@param medname what names of fields begin with, instead of the result's name"""
+        print_med(path, RESULTAT=self, **({"NOM_RESU_MED": medname} if medname else {}))
 
     def getAccessParameters(self):
         """{"NUME_ORDRE": [...], "INST": [...]}"""
@@ -94,7 +117,8 @@ class Result(Concept):
     def getFieldsOnCellsRealNames(self):
         return self._names_at(False)
 
-    def getMaterialField(self):
+    def getMaterialField(self, index=None):
+        """Of any order number: it has one."""
         return self._referred("material_field")
 
     def getLastTime(self):
@@ -103,7 +127,7 @@ class Result(Concept):
     def getMesh(self):
         return self.mesh()
 
-    def getModel(self):
+    def getModel(self, index=None):
         return self._referred("model")
 
     def _referred(self, what):

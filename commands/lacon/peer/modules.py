@@ -7,6 +7,7 @@ import types
 
 from ..commands import checks
 from ..core import current, labels, messages
+from ..tables.table import Table
 from .meshes import NewMesh
 
 
@@ -63,6 +64,21 @@ class TestCase:
         current.study.progress(f"assertions: {checks.summary(self._checks)}")
 
 
+class _OneProcess:
+    """The communicator of a command file, which is one process."""
+
+    def Get_rank(self):
+        return 0
+
+    def Get_size(self):
+        return 1
+
+    rank, size = property(Get_rank), property(Get_size)
+
+    def Barrier(self):
+        pass
+
+
 class OtherFailure(messages.SolutionError):
     """What code_aster tells apart in an `except` and Lacon never raises: laws are integrated exactly, contact has no loop of its own."""
 
@@ -83,13 +99,16 @@ class _Modules:
     """Finds the modules of code_aster that are made when they are imported, and says so for those that Lacon does not have."""
 
     _tensors = "code_aster.MacroCommands.Contrib."
-    made = {"code_aster.MacroCommands", "code_aster.MacroCommands.Contrib", _tensors + "TensorModule", _tensors + "HookeTensor"}
+    #: where code_aster has its Table, before version 15 and since
+    tables = {"Utilitai.Table", "code_aster.Objects.table_py"}
+    packages = {"code_aster.MacroCommands", "code_aster.MacroCommands.Contrib", "Utilitai", "code_aster.Objects"}
+    made = packages | tables | {_tensors + "TensorModule", _tensors + "HookeTensor"}
     missing = {"code_aster", "Contrib", "Execution", "Macro", "Messages", "Miss", "Noyau", "Utilitai", "aster_core",
                "aster_fonctions", "run_aster"}
 
     def find_spec(self, name, path=None, target=None):
         if name in self.made:
-            return importlib.machinery.ModuleSpec(name, self, is_package=not name.endswith(("TensorModule", "HookeTensor")))
+            return importlib.machinery.ModuleSpec(name, self, is_package=name in self.packages)
         if name.partition(".")[0] in self.missing:
             raise ModuleNotFoundError(f"the module {name} is part of code_aster, and Lacon does not have it", name=name)
         return None
@@ -98,6 +117,8 @@ class _Modules:
         return None
 
     def exec_module(self, module):
+        if module.__name__ in self.tables:
+            module.Table = Table
         if module.__name__.startswith(self._tensors):
             from . import tensors  # needs sympy
 
@@ -138,7 +159,7 @@ def install(names):
     def close(**keywords):
         return names["FIN"](**keywords)
 
-    ca = _module("code_aster.CA", {**_exceptions, "TestCase": TestCase, "init": init, "close": close, "Mesh": lambda: NewMesh(names)})
+    ca = _module("code_aster.CA", {**_exceptions, "TestCase": TestCase, "init": init, "close": close, "MPI": types.SimpleNamespace(ASTER_COMM_WORLD=_OneProcess()), "Mesh": lambda: NewMesh(names)})
     commands = _module("code_aster.Commands", names)
     utilities = _module("code_aster.Utilities", {})
     utilities.__getattr__ = _utility
@@ -148,7 +169,7 @@ def install(names):
     former = _module("Cata", {})
     former.cata = _module("Cata.cata", names)
     _module("Accas", syntax)
-    _module("aster", _former_exceptions)
+    _module("aster", {**_former_exceptions, "affiche": lambda unit, text: current.study.progress(text)})
     _module("libaster", _exceptions)
     root = types.ModuleType("code_aster", "The commands of Lacon under code_aster's name.")
     vars(root).update({name: vars(ca)[name] for name in ca.__all__})  # code_aster.TestCase of version 15

@@ -15,7 +15,7 @@ import warnings
 
 from ..base import names as namespace
 from ..core import labels, messages, streams
-from ..core.messages import AsterError, fail, message, show
+from ..core.messages import AsterError, NeedsRun, fail, message, show
 from ..core.nearest import nearest
 from ..peer import modules
 from .calls import all_commands
@@ -86,6 +86,7 @@ def readers():
     except KeyboardInterrupt as error:  # that a command file raises: at Ctrl-C it is Ended
         raise Ended(signal.SIGINT).with_traceback(error.__traceback__) from None
     except BaseException as error:
+        streams.take_back()
         gone = streams.readers_gone()
         streams.let_go()
         if gone and isinstance(error, BrokenPipeError):
@@ -196,9 +197,22 @@ def _run_file(study, path, source, values):
         if _is_in(study.base_folder, error):
             show(message("STUDY_3", place(error), folder=error.filename, reason=error.strerror))
             raise Failure(2, "<F>_ERROR") from None
-        _print_traceback(error)
-        show(message("STUDY_19", place(error), kind=type(error).__name__, text=error))
-        raise Failure(2, "<F>_ERROR") from None
+        _refuse(error)
+    except (NeedsRun, Failure):
+        raise
+    except BaseException as error:  # of the command file's own
+        _refuse(error)
+
+
+def _refuse(error):
+    """A Python error of the command file. @throws Failure"""
+    try:
+        text = str(error)
+    except Exception:  # of its own making too
+        text = "its text cannot be made"
+    _print_traceback(error)
+    show(message("STUDY_19", place(error), kind=type(error).__name__, text=text))
+    raise Failure(2, "<F>_ERROR") from None
 
 
 def _is_in(base, error):

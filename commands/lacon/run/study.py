@@ -6,6 +6,7 @@ import sys
 
 from ..base.base import Base
 from ..base.names import Names
+from ..core import streams
 from ..core.concepts import Concept
 from ..core.files import write_whole
 from ..core.messages import AsterError, Message, fail, message, show
@@ -256,5 +257,6 @@ class Study:
         execution.include(path, self.names.values)
 
     def progress(self, text):
+        streams.take_back()
         if self.check is None and not self.quiet:
             print(text, flush=sys.stdout.isatty())

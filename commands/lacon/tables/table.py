@@ -133,7 +133,10 @@ class Table:
     def __getattr__(self, name):
         if name.startswith("__"):
             raise AttributeError(name)
-        return self[name]
+        try:
+            return self[name]
+        except KeyError as error:
+            raise AttributeError(error.args[0]) from None
 
     def __getitem__(self, key):
         """A column by its name; the table of some columns by a list of names; a cell by (column, row), rows from 1."""
@@ -166,6 +169,19 @@ class Table:
 
     def EXTR_TABLE(self):
         return self
+
+    def Impr(self, FICHIER=None, FORMAT="TABLEAU"):
+        """Print it, to a file or the output of the run; FORMAT is TABLEAU or ASTER."""
+        if FORMAT not in ("TABLEAU", "ASTER"):
+            raise ValueError(f"Impr: FORMAT is {FORMAT!r}; take TABLEAU or ASTER, or IMPR_TABLE for curves")
+        text = printing.aster(self) if FORMAT == "ASTER" else printing.columns(self)
+        if FICHIER is None:
+            print(text)
+            return
+        with open(FICHIER, "a", encoding="utf-8") as file:
+            file.write(text + "\n")
+
+    ImprTabl = Impr
 
     def Array(self, *names):
         """The columns as a numpy array, rows with a missing cell left out."""
