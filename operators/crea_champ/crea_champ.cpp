@@ -150,6 +150,11 @@ std::vector<double> measures(const Field& field, const std::string& kind) {
   return found;
 }
 
+void check_same_places(const Field& field, const Field& other, const Result& result, const std::string& name) {
+  if (field.components != other.components || field.support != other.support || field.offset != other.offset)
+    fail("CREACHAMP_16", {{"field", name}, {"label", result.label}, {"order", std::to_string(field.order)}});
+}
+
 /// The extreme of each value over the instants, the first of several; a stand-in only where it is one at every instant.
 Field extreme(Task& task, const Result& result, const std::vector<std::int64_t>& orders, const std::string& name) {
   const std::string kind = task.keywords().text("TYPE_MAXI");
@@ -164,8 +169,7 @@ Field extreme(Task& task, const Result& result, const std::vector<std::int64_t>&
   best.present.assign(best.values.size(), 0);
   for (const std::int64_t order : orders) {
     const Field field = task.base().field(result, name, order);
-    if (field.components != best.components || field.support != best.support || field.offset != best.offset)
-      fail("CREACHAMP_16", {{"field", name}, {"label", result.label}, {"order", std::to_string(order)}});
+    check_same_places(field, best, result, name);
     const std::vector<double> measure = measures(field, kind);
     each_value(field, [&](std::size_t row, std::size_t c) {
       const std::size_t k = row * field.n_components() + c;
@@ -179,6 +183,51 @@ Field extreme(Task& task, const Result& result, const std::vector<std::int64_t>&
   return best;
 }
 
+/// INTERPOL='LIN': on the line between the instants beside INST that have the field; nothing where INST is one of them, or not
+/// between any.
+std::optional<Field> interpolated(Task& task, const Result& result, const std::string& name) {
+  const Keywords& keywords = task.keywords();
+  if (keywords.text("INTERPOL") != "LIN" || !keywords.has("INST") || keywords.has("TYPE_MAXI")) return std::nullopt;
+  const double wanted = keywords.reals("INST").front(), precision = keywords.real("PRECISION"),
+               slack = keywords.text("CRITERE") == "RELATIF" ? precision * std::abs(wanted) : precision;
+  std::optional<std::size_t> before, behind;
+  for (std::size_t k = 0; k < result.orders.size(); ++k) {
+    const auto files = result.fields.find(name);
+    if (files == result.fields.end() || !files->second.contains(result.orders[k])) continue;
+    if (std::abs(result.instants[k] - wanted) <= slack) return std::nullopt;
+    const bool early = result.instants[k] < wanted;  // CREA_RESU adds instants in any order
+    std::optional<std::size_t>& beside = early ? before : behind;
+    if (!beside || (result.instants[k] > result.instants[*beside]) == early) beside = k;
+  }
+  if (!before || !behind) return std::nullopt;
+  Field field = task.base().field(result, name, result.orders[*before]);
+  const Field next = task.base().field(result, name, result.orders[*behind]);
+  check_same_places(next, field, result, name);
+  const double from = result.instants[*before], part = (wanted - from) / (result.instants[*behind] - from);
+  for (std::size_t k = 0; k < field.values.size(); ++k) field.values[k] += part * (next.values[k] - field.values[k]);
+  if (field.present.empty()) field.present = next.present;
+  for (std::size_t k = 0; k < next.present.size(); ++k) {  // a stand-in at either is one; what one has not is not there
+    field.present[k] = field.present[k] && next.present[k] ? std::max(field.present[k], next.present[k]) : std::uint8_t{0};
+    if (!field.present[k]) field.values[k] = 0;
+  }
+  return field;
+}
+
+/// A field of a result: at one instant, between two, or extremes over several.
+Field of_result(Task& task, const Result& result, const std::string& name) {
+  const Keywords& keywords = task.keywords();
+  if (std::optional<Field> between = interpolated(task, result, name)) return std::move(*between);
+  std::vector<std::int64_t> orders;
+  if (names_instants(keywords))
+    orders = selected_orders(task.base(), result, keywords);
+  else if (const auto files = result.fields.find(name); files != result.fields.end())
+    for (const auto& [order, file] : files->second) orders.push_back(order);
+  if (keywords.has("TYPE_MAXI")) return extreme(task, result, orders, name);
+  if (orders.size() > 1)
+    fail("CREACHAMP_8", {{"field", name}, {"label", result.label}, {"orders", fmt::format("{}", fmt::join(orders, ", "))}});
+  return task.base().field(result, name, orders.empty() ? 0 : orders.front());
+}
+
 Field extract(Task& task) {
   const Keywords& keywords = task.keywords();
   const std::string name = keywords.text("NOM_CHAM");
@@ -189,16 +238,7 @@ Field extract(Task& task) {
     field = geometry(mesh, Ground(mesh).rows(Location::nodes).first, mesh.coordinates);
     field.name = name;
   } else {
-    const Result result = task.base().result(keywords.concept_id("RESULTAT"));
-    std::vector<std::int64_t> orders;
-    if (names_instants(keywords))
-      orders = selected_orders(task.base(), result, keywords);
-    else if (const auto files = result.fields.find(name); files != result.fields.end())
-      for (const auto& [order, file] : files->second) orders.push_back(order);
-    if (orders.size() > 1 && !keywords.has("TYPE_MAXI"))
-      fail("CREACHAMP_8", {{"field", name}, {"label", result.label}, {"orders", fmt::format("{}", fmt::join(orders, ", "))}});
-    field = keywords.has("TYPE_MAXI") ? extreme(task, result, orders, name)
-                                      : task.base().field(result, name, orders.empty() ? 0 : orders.front());
+    field = of_result(task, task.base().result(keywords.concept_id("RESULTAT")), name);
     task.ground(field.mesh);
   }
   check_type(field, task.type());

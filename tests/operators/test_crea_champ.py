@@ -103,6 +103,13 @@ class CreaChamp(FieldTest):
                     np.testing.assert_array_equal(field.present, [(1, 1, 0), (1, 1, 1)])
                     np.testing.assert_array_equal(field.values[field.present > 0], [x for row in expected for x in row])
         self.refuses("FIELDS_2", "0.7", TYPE_MAXI="MAXI", TYPE_RESU="VALE", INST=[0.7], **what)
+        for instant, dx, dy, pressure in ((0.25, (1, 4), (0.5, -1.5), None), (0.7, (0.8, 2.4), (-1, -1.8), -13), (1.0 + 1e-9, (-1, 0), (-4, 0), -25)):
+            with self.subTest(instant=instant):
+                field = self.make("field_4", INTERPOL="LIN", INST=[instant], **what)
+                np.testing.assert_allclose(field.values[:, :2].T, [dx, dy], atol=1e-14)
+                np.testing.assert_array_equal(field.present, [(1, 1, 0), (1, 1, pressure is not None)])
+                self.assertAlmostEqual(field.values[1, 2], pressure or 0.0, delta=1e-13)
+        self.refuses("FIELDS_2", "1.5", INTERPOL="LIN", INST=[1.5], **what)
 
     def test_what_stands_in_for_no_value_stays_one(self):
         """JEU = -1 without a gap (2 of `present`): copied as such, the extreme only where there never is a gap, no part of means at nodes."""
