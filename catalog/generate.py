@@ -68,6 +68,7 @@ def load(folder):
         "parts": parts,
         "french": {"messages": french, "parts": french_parts},
         "instead": read(folder / "instead.toml"),
+        "instead_in_french": read(folder / "instead.fr.toml"),
         "commands": complete_commands({path.stem.upper(): read(path) for path in sorted((folder / "commands").glob("*.toml"))}),
     }
 

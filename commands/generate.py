@@ -7,6 +7,7 @@ Writes OUTPUT/completion/lacon (bash) and _lacon (zsh), OUTPUT/man/man1 and man7
 """
 
 import importlib
+import os
 import pathlib
 import sys
 
@@ -25,6 +26,7 @@ def command_lines():
 
 
 def main(output):
+    os.environ["LC_ALL"] = "C"  # manuals are in English
     lines, names = command_lines(), list(templates.known())
     texts = {"completion/lacon": completion.bash(lines, names), "completion/_lacon": completion.zsh(lines, names),
              "reference/commands.md": manual.commands_markdown(), "reference/messages.md": manual.messages_markdown()}

@@ -6,6 +6,7 @@
 
 #include "lacon/catalog/messages.hpp"
 #include "lacon/catalog/quantities.hpp"
+#include "lacon/catalog/wording.hpp"
 #include "lacon/operators/meshing/named_nodes.hpp"
 
 namespace lacon {
@@ -118,7 +119,7 @@ void GivenTerms::add(std::int32_t number, const std::string& place, const std::s
                      {"first_source", before},
                      {"second", show(scene_, value)},
                      {"second_source", source}});
-  if (replaced_++ == 0) first_replaced_ = component + " of " + place, last_source_ = source;
+  if (replaced_++ == 0) first_replaced_ = part("one_of_another", {{"one", component}, {"other", place}}), last_source_ = source;
   held = value;
   at->second.source = source;
 }

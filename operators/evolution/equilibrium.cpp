@@ -363,7 +363,7 @@ std::int64_t Equilibrium::n_constraints(const StaticState& state) const {
 
 std::string Equilibrium::place(std::int64_t dof) const {
   const auto node = static_cast<std::int32_t>(dof / problem_.n_components());
-  return problem_.dof_name(dof) + " of " + Bodies(problem_.mesh).name_at(node);
+  return part("one_of_another", {{"one", problem_.dof_name(dof)}, {"other", Bodies(problem_.mesh).name_at(node)}});
 }
 
 std::vector<std::int64_t> Equilibrium::dofs_of(std::span<const std::int64_t> equations) const {

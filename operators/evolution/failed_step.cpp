@@ -8,7 +8,6 @@
 
 #include "lacon/catalog/wording.hpp"
 #include "lacon/operators/evolution/archive.hpp"
-#include "lacon/operators/program/program.hpp"
 #include "lacon/structures/hdf5.hpp"
 #include "lacon/structures/storage/storage.hpp"
 
@@ -51,7 +50,6 @@ void FailedStep::begin(double /*instant*/) {
 
 void FailedStep::iterate(double /*instant*/, const IterationReport& report) {
   if (!std::isfinite(report.maxi) || report.converged()) return;  // numbers that nobody can draw, or that nobody asks for
-  const Phase phase("last iterates");
   if (iterates_.size() == most) iterates_.pop_front();
   iterates_.push_back({.iteration = report.iteration,
                        .rela = report.rela,

@@ -48,6 +48,13 @@ class Wording(unittest.TestCase):
         self.assertEqual(sorted(set(english) - set(french)), [], "add them to catalog/messages/fr/")
         self.assertEqual(sorted(set(french) - set(english)), [])
 
+    def test_what_to_use_instead_is_there_in_french(self):
+        english, french = (tomllib.loads((SOURCE / f"catalog/instead{kind}.toml").read_text(encoding="utf-8")) for kind in ("", ".fr"))
+        texts = {text for rows_of_kind in english.values() for text in rows_of_kind.values()}
+        spoken = {text for text in texts if re.search(r"\b[a-z]{2,}\b", re.sub(r"'[^']*'|`[^`]*`", "", text))}  # others are names alone
+        self.assertEqual(sorted(spoken - set(french)), [], "add them to catalog/instead.fr.toml")
+        self.assertEqual(sorted(set(french) - texts), [])
+
     def test_parts_that_are_asked_for_exist_and_each_is_asked_for(self):
         names = set(tomllib.loads((SOURCE / "catalog/messages/parts.toml").read_text(encoding="utf-8")))
         text = "".join(path.read_text(encoding="utf-8") for room in (*ROOMS, "commands/lacon", "catalog") for path in (SOURCE / room).rglob("*")

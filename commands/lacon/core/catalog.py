@@ -118,6 +118,12 @@ def _instead():
     return _json()["instead"] if _is_json() else toml(location() / "instead.toml")
 
 
+@functools.cache
+def _instead_in_french():
+    """A text of instead.toml -> the same in French."""
+    return _json()["instead_in_french"] if _is_json() else toml(location() / "instead.fr.toml")
+
+
 def instead(kind, path, otherwise):
     """What to use instead of a command, keyword or value (`kind`) of code_aster's that is not here.
 
@@ -131,7 +137,8 @@ def instead(kind, path, otherwise):
     found = rows.get(path) or rows.get(path.rpartition("/")[2])
     if not found:
         return otherwise
-    return found if found.startswith("leave ") else f"use {found}"
+    words = _instead_in_french().get(found, found) if in_french() else found
+    return words if found.startswith("leave ") else part("use_instead", what=words)
 
 
 @functools.cache

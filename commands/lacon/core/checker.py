@@ -79,7 +79,7 @@ class _Check:
 
     def unknown(self, path, name, row):
         if name in row.get("elsewhere", ()):
-            otherwise = f"remove it: `lacon help {re.match('[A-Z_0-9]*', path)[0]}` says what is available"
+            otherwise = catalog.part("remove_see_help", command=re.match("[A-Z_0-9]*", path)[0])
             self.problem("KEYWORD_11", f"{path}/{name}", instead=catalog.instead("keyword", f"{path}/{name}", otherwise))
             return
         command = path.partition("/")[0]
@@ -179,7 +179,7 @@ class _Check:
 
     def other_value(self, path, value, allowed):
         """A value that code_aster has and Lacon has not."""
-        instead = catalog.instead("value", f"{path}={value}", f"give one of: {_list(allowed)}")
+        instead = catalog.instead("value", f"{path}={value}", catalog.part("give_one_of", values=_list(allowed)))
         self.problem("KEYWORD_13", path, value=_show(value), instead=instead)
 
     def bounds(self, path, row, value):

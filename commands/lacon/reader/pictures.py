@@ -101,9 +101,8 @@ def _colour(figure, axes, collection, values, name, shade):
 
     finite = values[numpy.isfinite(values)]
     low, high = (finite.min(), finite.max()) if len(finite) else (0.0, 1.0)
-    least = _uniform * max(abs(low), abs(high)) or 1.0
-    if high - low < least:
-        low, high = (low + high - least) / 2.0, (low + high + least) / 2.0
+    if high - low <= _uniform * max(abs(low), abs(high)):  # one value and round-off
+        low, high = (min(0.0, low), max(0.0, high)) if low or high else (0.0, 1.0)
     norm = matplotlib.colors.Normalize(low, high)
     mapped = matplotlib.colormaps[_colours]
     colours = mapped(norm(values))
@@ -113,6 +112,7 @@ def _colour(figure, axes, collection, values, name, shade):
     collection.set_facecolor(colours)
     bar = figure.colorbar(matplotlib.cm.ScalarMappable(norm, mapped), ax=axes, shrink=0.8, aspect=30, pad=0.02)
     bar.set_label(name)
+    bar.formatter.set_useOffset(False)
     bar.outline.set_visible(False)
 
 

@@ -43,7 +43,7 @@ def newton(iterations):
         if limits.get(key) is not None:
             holds = last[key] <= limits[key]
             found.append(_line(bool(holds or last.get("converged")), part("equilibrium_by", keyword=keyword), part("asked_for", found=_figure(last[key]), limit=_figure(limits[key])),
-                               part("reached_in", count=len(lines)) if holds or last.get("converged") else part("not_reached")))
+                               part("reached_in", count=last.get("iteration", len(lines) - 1)) if holds or last.get("converged") else part("not_reached")))
     if "changes" in last:
         holds = last["changes"] == 0
         found.append(_line(holds, part("contact_settled"), part("patches_changed", count=last["changes"]), part("nothing_changes" if holds else "still_changing")))

@@ -265,7 +265,7 @@ class Unavailable:
         frame = labels.user_frame()
         if self.name == "DEFI_CONT":
             refuse_other_methods(self.name, given, labels.location(frame), labels.label(frame))
-        instead = catalog.instead("command", self.name, "`lacon help` lists the commands that are")
+        instead = catalog.instead("command", self.name, catalog.part("see_commands"))
         fail("COMMAND_11", labels.location(frame), command=self.name, instead=instead)
 
 

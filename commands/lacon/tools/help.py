@@ -1,18 +1,26 @@
 """`lacon help`, `lacon help DEFI_CONTACT`: the catalogue's rows as text."""
 
+import functools
+import os
 import textwrap
 
 from ..core import catalog, plugins
+from ..core.catalog import part
 from ..core.checker import condition
 from ..core.nearest import nearest
 from . import examples, keyword_table
 
-_types = {"group_ma": "group of cells", "group_no": "group of nodes", "cell": "cell name", "node": "node name", "factor": "_F(...)"}
+#: of keywords -> the part that says them; other types are concepts
+_types = {"group_ma": "type_group_ma", "group_no": "type_group_no", "cell": "type_cell", "node": "type_node", "integer": "type_integer",
+          "real": "type_real", "text": "type_text"}
+_rules = {"exactly_one": "rule_exactly_one", "at_least_one": "rule_at_least_one", "exclusive": "rule_exclusive", "together": "rule_together"}
+_limits = {"above": "limit_above", "at_least": "limit_at_least", "below": "limit_below", "at_most": "limit_at_most"}
 
 
 def run(names):
     """Print the list of commands, the keywords of each named one, or with --table the page of all of them. @return exit status"""
     if names == ["--table"]:
+        os.environ["LC_ALL"] = "C"  # a page of the documentation
         print(keyword_table.text(), end="")
         return 0
     if not names:
@@ -24,11 +32,11 @@ def run(names):
         if name in catalog.command_names():
             print("\n".join(_command(name)))
         elif name in catalog.peer_commands():
-            print(f"{name} is a command of code_aster that is not available in Lacon")
-            print("  " + catalog.instead("command", name, "there is no counterpart"))
+            print(part("not_in_lacon", name=name))
+            print("  " + catalog.instead("command", name, part("no_counterpart")))
             status = 2
         else:
-            print(f"there is no command {name}{nearest(name, catalog.command_names())}")
+            print(part("no_command", name=name, nearest=nearest(name, catalog.command_names())))
             status = 2
     return status
 
@@ -39,10 +47,10 @@ def _command(name):
     yield f"{name}{result}"
     yield from _wrap(row["help"], 2)
     if "reuse" in row:
-        must = "needed" if row.get("reuse_status") == "mandatory" else "possible"
-        yield from _wrap(f"reuse= is {must}: the concept given as {row['reuse']} is changed in place", 2)
+        must = "reuse_needed" if row.get("reuse_status") == "mandatory" else "reuse_possible"
+        yield from _wrap(part(must, keyword=row["reuse"]), 2)
     yield from _keywords(row, 2)
-    yield "  the shortest call that is accepted:"
+    yield "  " + part("shortest_call")
     yield from textwrap.wrap(examples.text(name), 110, initial_indent="    ", subsequent_indent="        ", break_long_words=False)
     yield ""
 
@@ -59,39 +67,41 @@ def _keywords(row, indent):
 def rules(row):
     """What holds between the keywords of a command or of a factor keyword, in words."""
     for rule in row.get("rule", ()):
-        words = {"exactly_one": "exactly one of", "at_least_one": "at least one of", "exclusive": "at most one of",
-                 "together": "all or none of"}[rule["kind"]]
-        yield f"{words}: {', '.join(rule['of'])}"
+        yield part(_rules[rule["kind"]], keywords=", ".join(rule["of"]))
     for when in row.get("when", ()):
         yield _when(when)
 
 
 def kind(row):
     """"integer, mandatory, at least 1" and the like."""
-    words = [" or ".join(_types.get(k, k.replace("_", " ")) for k in row["type"].split("|"))]
+    words = [functools.reduce(lambda one, other: part("one_or_other", one=one, other=other), map(_type, row["type"].split("|")))]
     most = row.get("max", 1)
     if most != 1:
-        words.append("one or many" if most == "many" else f"up to {most}")
+        words.append(part("one_or_many") if most == "many" else part("up_to", count=most))
     if row.get("status") == "mandatory":
-        words.append("mandatory")
+        words.append(part("is_mandatory"))
     if "into_from" in row:
-        words.append("one of " + ", ".join(plugins.lists[row["into_from"]]()))
+        words.append(part("one_of", values=", ".join(plugins.lists[row["into_from"]]())))
     elif "into" in row:
-        words.append("one of " + ", ".join(map(str, row["into"])))
-    for key in ("above", "at_least", "below", "at_most"):
-        if key in row:
-            words.append(f"{key.replace('_', ' ')} {row[key]:g}")
+        words.append(part("one_of", values=", ".join(map(str, row["into"]))))
+    words += [part(words_of, limit=f"{row[key]:g}") for key, words_of in _limits.items() if key in row]
     if "default" in row and row["type"] != "factor":
         value = row["default"]
-        words.append("default " + (", ".join(map(str, value)) if isinstance(value, list) else str(value)))
+        words.append(part("default_is", value=", ".join(map(str, value)) if isinstance(value, list) else value))
     return "; ".join(words)
 
 
+def _type(name):
+    if name == "factor":
+        return "_F(...)"
+    return part(_types[name]) if name in _types else name.replace("_", " ")
+
+
 def _when(when):
-    parts = [f"{k} is {v} by default" for k, v in when.get("default", {}).items()]
-    parts += [f"{k} is mandatory" for k in when.get("mandatory", ())]
-    parts += [f"{', '.join(when['forbidden'])} are refused"] if "forbidden" in when else []
-    return f"with {condition(when)}: {'; '.join(parts)}"
+    parts = [part("keyword_by_default", keyword=k, value=v) for k, v in when.get("default", {}).items()]
+    parts += [part("keyword_mandatory", keyword=k) for k in when.get("mandatory", ())]
+    parts += [part("keywords_refused", keywords=", ".join(when["forbidden"]))] if "forbidden" in when else []
+    return part("with_keywords", condition=condition(when), what="; ".join(parts))
 
 
 def _wrap(text, indent):

@@ -10,6 +10,7 @@ const $ = (id) => document.getElementById(id);
 const inputs = ["field", "component", "map", "range", "low", "high", "magnify", "opacity", "edges", "zone", "opening", "instant", "iterate"];
 const control = Object.fromEntries(inputs.map((id) => [id, $(id)]));
 
+const roundOff = 1e-12; // of the model's size: gaps below it are none
 const manyFacets = 20000; // edges of so many are not lines any more
 
 let scene = null;
@@ -93,7 +94,7 @@ function fillFields(name, component) {
 }
 
 function fillControls() {
-  options(control.map, [...Object.keys(maps)].map((name) => [name, name]));
+  options(control.map, [...Object.keys(maps)].map((name) => [name, t(name)]));
   options(control.zone, study.zones.map(({slave, master}, z) => [z, `${z + 1}: ${t("{slave} on {master}", {slave, master})}`]));
   $("book").hidden = !study.zones.length;
   for (const one of [instants, iterates].filter(Boolean)) {
@@ -119,7 +120,7 @@ function fillControls() {
 function fillComponents(wanted) {
   if (!field()) return;
   const list = quantities(field());
-  options(control.component, list.map(({name, label}) => [name, label]));
+  options(control.component, list.map(({name, label}) => [name, t(label)]));
   control.component.value = list.some(({name}) => name === wanted) ? wanted : list[0].name;
   chooseMap();
 }
@@ -157,6 +158,7 @@ async function range(own) {
       found = [Math.min(found[0], low), Math.max(found[1], high)];
     }
   if (found[1] - found[0] <= 1e-6 * Math.max(...found.map(Math.abs))) found = [Math.min(0, ...found), Math.max(0, ...found)]; // one value and round-off
+  if (quantity()?.name === "gap" && Math.max(...found.map(Math.abs)) < roundOff * study.size) found = [-roundOff * study.size, roundOff * study.size];
   if (control.map.value === diverging) {
     const most = Math.max(Math.abs(found[0]), Math.abs(found[1]));
     found = [-most, most];
@@ -225,7 +227,9 @@ function showScale(own) {
     return;
   }
   const steps = Array.from({length: 33}, (_, i) => css(colourAt(map, i / 32))).join(",");
-  const marks = [0, 0.25, 0.5, 0.75, 1].map((x) => element("span", {textContent: number(limits[0] + x * (limits[1] - limits[0]), 3)}));
+  const places = [0, 0.25, 0.5, 0.75, 1].map((x) => limits[0] + x * (limits[1] - limits[0]));
+  const digits = [3, 4, 5, 6].find((n) => new Set(places.map((x) => number(x, n))).size === places.length) ?? 6; // neighbours differ
+  const marks = places.map((x) => element("span", {textContent: number(x, digits)}));
   $("scale").replaceChildren(element("b", {textContent: name}), element("div", {className: "bar", style: `background:linear-gradient(90deg,${steps})`}),
     element("div", {className: "ticks"}, ...marks));
 }

@@ -37,7 +37,7 @@ export function showProofs(instant) {
   const failed = all.filter(({holds}) => holds === false).length;
   const verdict = document.getElementById("verdict");
   verdict.className = failed ? "bad" : "good";
-  verdict.textContent = !all.length ? "" : t(failed ? "✗ {failed} of {all} checks want a look" : "✓ all {all} checks hold", {failed, all: all.length});
+  verdict.textContent = !all.length ? "" : t(failed ? "✗ {failed} of {all} checks to look at" : "✓ all {all} checks hold", {failed, all: all.length});
   verdict.hidden = !all.length;
   const lines = [step, ...(study.proofs[instant] ?? [])].filter(Boolean);
   document.getElementById("proof-lines").replaceChildren(lines.length
