@@ -18,6 +18,8 @@ struct ContactCells {
   std::vector<double> vertex;  ///< (vertices, dimension - 1): the clipped polygon in the slave's reference space
   /// In the plane, of each vertex: the node of the master surface whose normal cuts the slave there; -1: an end of the slave
   std::vector<std::int32_t> vertex_node;
+  /// Likewise where that normal crosses the slave: elsewhere than `vertex` where the cover fades (PairingOptions::fading)
+  std::vector<double> vertex_crossing;
 
   std::size_t size() const { return slave.size(); }
   bool operator==(const ContactCells&) const = default;
@@ -29,14 +31,14 @@ struct ContactCells {
       for (std::size_t i = 1; i < from.size(); ++i) to.push_back(shift + from[i]);
     };
     behind(slave, other.slave), behind(master, other.master), behind(weight, other.weight), behind(vertex, other.vertex);
-    behind(vertex_node, other.vertex_node);
+    behind(vertex_node, other.vertex_node), behind(vertex_crossing, other.vertex_crossing);
     behind(slave_point, other.slave_point), behind(master_point, other.master_point);
     shifted(offset, other.offset), shifted(vertex_offset, other.vertex_offset);
   }
   /// Empty, with the memory kept.
   void clear() {
     for (auto* numbers : {&slave, &master, &vertex_node}) numbers->clear();
-    for (auto* values : {&slave_point, &master_point, &weight, &vertex}) values->clear();
+    for (auto* values : {&slave_point, &master_point, &weight, &vertex, &vertex_crossing}) values->clear();
     for (auto* offsets : {&offset, &vertex_offset}) offsets->assign(1, 0);
   }
 };

@@ -74,6 +74,9 @@ struct PairingOptions {
   /// In space: integrate every couple to this degree whatever its facets ask for (integration_degree() in
   /// chart_points.hpp); 0: what they ask for. To measure what a degree leaves.
   int degree = 0;
+  /// Width of the band at both ends of a slave cell in which its cover ends slowly (fading.hpp), in reference coordinates; 0:
+  /// no such band. Ends that lie inside of a patch have none: what one cell of it loses there the next one loses as well.
+  double fading = 0;
   bool traced = false;  ///< in space: give the traces too. Flat slaves are then cut as those that are nearly flat
 };
 

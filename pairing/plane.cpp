@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "lacon/elements/reference.hpp"
+#include "lacon/pairing/fading.hpp"
 #include "lacon/pairing/masters.hpp"
 #include "lacon/pairing/polynomial.hpp"
 #include "lacon/structures/vector.hpp"
@@ -210,8 +211,10 @@ struct Image {
 };
 
 /// Where the normal of the slave at xi meets the true master, curved if it is. The ends of the master lie on both sides of the
-/// normal, but for round-off: then the end itself is the image, moved by one step of Newton's method.
-Image image(const SlaveCell& slave, double xi, const Surface& master, std::int32_t cell, const PairingTolerances& tolerances) {
+/// normal, but for round-off, or where the cover fades beyond them: then the image is near an end, moved by Newton's method.
+/// @param beyond by how much, in reference coordinates
+Image image(const SlaveCell& slave, double xi, const Surface& master, std::int32_t cell, const PairingTolerances& tolerances,
+            double beyond = 0) {
   const auto nodes = master.nodes[cell];
   const Vec2 x = slave.x(xi), t = slave.tangent(xi);
   std::array<Vec2, 3> points;
@@ -228,8 +231,10 @@ Image image(const SlaveCell& slave, double xi, const Surface& master, std::int32
     image.xi = zero.at[0];
   } else {
     const double end = std::abs(h(-1)) < std::abs(h(1)) ? -1 : 1;
-    const double step = -h(end) / h.derivative()(end);
-    image.xi = end + (std::abs(step) <= tolerances.ray ? step : 0);
+    const Polynomial slope = h.derivative();
+    double step = -h(end) / slope(end), at = end + step;
+    for (int i = 0; i < 3 && std::abs(step) > tolerances.ray; ++i) at += step = -h(at) / slope(at);
+    image.xi = std::abs(at - end) <= std::max(tolerances.ray, beyond) ? at : end;
   }
   image.found = std::abs(h(image.xi)) <= tolerances.ray * size;
   const Vec2 d = curve(image.xi);
@@ -376,7 +381,12 @@ class PairerInPlane final : public detail::CellPairer {
         intervals, tolerances.sliver, [&](double xi, std::int32_t m) { return image(e, xi, master, m, tolerances).gap; },
         [&](std::int32_t m) { reject(m, Rejection::hidden); });
 
-    for (const auto& [a, b, m, node_a, node_b] : intervals) {
+    for (std::size_t i = 0; i < intervals.size(); ++i) {
+      const auto& [first, last, m, node_a, node_b] = intervals[i];
+      const bool free_a = i == 0 || intervals[i - 1].b != first,
+                 free_b = i + 1 == intervals.size() || intervals[i + 1].a != last;
+      const double a = free_a && node_a >= 0 ? end_of_cover(cell, first) : first,
+                   b = free_b && node_b >= 0 ? end_of_cover(cell, last) : last;
       if (!(b - a > 2 * tolerances.sliver)) {
         reject(m, Rejection::sliver);
         continue;
@@ -387,7 +397,7 @@ class PairerInPlane final : public detail::CellPairer {
       bool complete = true;
       for (int g = 0; g < rule.size() && complete; ++g) {
         const double xi = 0.5 * (a + b) + 0.5 * (b - a) * rule.points[g];
-        const Image on_master = image(e, xi, master, m, tolerances);
+        const Image on_master = image(e, xi, master, m, tolerances, a < first || b > last ? beyond_an_end : 0);
         complete = on_master.found;
         cells.slave_point.push_back(xi);
         cells.master_point.push_back(on_master.xi);
@@ -404,13 +414,26 @@ class PairerInPlane final : public detail::CellPairer {
       cells.master.push_back(m);
       cells.offset.push_back(static_cast<std::int64_t>(cells.weight.size()));
       cells.vertex.insert(cells.vertex.end(), {a, b});
-      cells.vertex_node.push_back(a > -1 + tolerances.coincident ? node_a : -1);
-      cells.vertex_node.push_back(b < 1 - tolerances.coincident ? node_b : -1);
+      cells.vertex_crossing.insert(cells.vertex_crossing.end(), {first, last});
+      cells.vertex_node.push_back(first > -1 + tolerances.coincident ? node_a : -1);
+      cells.vertex_node.push_back(last < 1 - tolerances.coincident ? node_b : -1);
       cells.vertex_offset.push_back(static_cast<std::int64_t>(cells.vertex.size()));
     }
   }
 
  private:
+  static constexpr double beyond_an_end = 0.25;  // of a master: where the cover fades an image may lie there
+
+  /// Where the cover ends that the normal through the last node of the masters cuts off at `crossing`.
+  double end_of_cover(std::size_t cell, double crossing) const {
+    const double width = masters_->options.fading;
+    if (!(width > 0)) return crossing;
+    const std::span<const std::uint8_t> inner = masters_->slave.inner;
+    const bool inside =
+        !inner.empty() && inner[static_cast<std::size_t>(masters_->slave.nodes[cell][crossing > 0 ? 1 : 0])] != 0;
+    return inside ? crossing : faded_end(crossing, width).at;
+  }
+
   std::shared_ptr<const MastersInPlane> masters_;
   // used again for every slave cell
   Projections projections;

@@ -17,6 +17,8 @@ struct Surface {
   Ragged<std::int32_t> nodes;           ///< of each cell, in the order of catalog/cells.toml
   std::span<const double> coordinates;  ///< (n_nodes, 3), current; z = 0 in 2D
   std::span<const double> normals;      ///< (n_nodes, 3), unit, outward (LISSAGE='OUI'), or empty: normals of the cells
+  std::span<const std::uint8_t> inner =
+      {};  ///< (n_nodes): 1 for nodes inside of a patch of several cells; empty: there are none
 
   std::size_t size() const { return types.size(); }
   void add_cell(CellType type, std::span<const std::int32_t> cell_nodes) {

@@ -65,8 +65,30 @@ lacon_contact_batch batch_of(std::size_t n_cells, int n_slave_nodes, int n_maste
 constexpr std::size_t block = 128;  // slave cells that a thread takes at a time
 // Bodies that are pressed on one another overlap by a fraction of a facet, coarse curved skins and press fits by one or two.
 // What is deeper a normal meets beyond the body: the far side of a skin that is slave as a whole, the end of another body.
-constexpr double deepest_overlap = 4;         // diameters of the larger cell of a couple
+constexpr double deepest_overlap = 4;  // diameters of the larger cell of a couple
+// Of the reference coordinate of a slave cell, -1 to 1: wide enough for the stiffness that forces have across it, pressure
+// times gap over its width, to be less than that of the body, narrow enough to be a tenth of a per mille of what a patch is
+// covered by.
+constexpr double fading = 2e-3;
 constexpr double coverage_round_off = 1e-12;  // covered fractions above 1 by no more than this are 1
+
+/// Nodes that lie inside of a patch, (n_nodes).
+std::vector<std::uint8_t> inner_nodes(const Mesh& mesh, const Contact& contact, std::span<const std::int32_t> slaves) {
+  std::map<std::tuple<std::int32_t, std::int32_t, std::int32_t>, int> cells_at;  // sides of the cells of each patch
+  std::vector<std::uint8_t> inner(mesh.n_nodes(), 0);
+  for (const std::int32_t s : slaves) {
+    const auto nodes = mesh.cells[contact.slaves[s].cell];
+    const auto n = static_cast<std::size_t>(mesh.row(contact.slaves[s].cell).n_vertices);
+    for (std::size_t i = 0; i < n; ++i) {
+      const auto [a, b] = std::minmax(nodes[i], nodes[mesh.dimension == 2 ? i : (i + 1) % n]);
+      ++cells_at[{contact.slaves[s].patch, a, b}];
+      inner[static_cast<std::size_t>(nodes[i])] = 1;
+    }
+  }
+  for (const auto& [side, count] : cells_at)
+    if (count == 1) inner[static_cast<std::size_t>(std::get<1>(side))] = inner[static_cast<std::size_t>(std::get<2>(side))] = 0;
+  return inner;
+}
 
 /// Room for what is still to come. @param whole what will have come behind `first` in the end, over what has come so far
 template <class T>
@@ -129,6 +151,11 @@ ContactGeometry::ContactGeometry(const Mesh& mesh, const Model& model, const Con
         .pairing = {.distance_limit = data.distance_limit, .depth_limit = data.distance_limit > 0 ? -1 : deepest_overlap}};
     for (const std::int32_t cell : data.slave) zone.slaves.push_back(slave_of_cell.at(cell));
     for (const std::int32_t patch : data.patches) zone_of_[patch] = static_cast<std::int32_t>(zones_.size());
+    if (!contact.frozen_gap) {
+      zone.pairing.fading = fading;
+      zone.inner = inner_nodes(mesh, contact, zone.slaves);
+      zone.slave.inner = zone.inner;
+    }
     zones_.push_back(std::move(zone));
   }
   if (contact.smoothing && !contact.frozen_gap)

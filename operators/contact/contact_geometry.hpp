@@ -29,6 +29,7 @@ class ContactGeometry {
   struct Zone {
     std::vector<std::int32_t> slaves;   ///< index into Contact::slaves of each cell of `slave`
     std::vector<std::int32_t> masters;  ///< mesh cell of each cell of `master`
+    std::vector<std::uint8_t> inner;    ///< Surface::inner of the slave
     Surface slave, master;
     bool current_jacobian = false;
     PairingOptions pairing;

@@ -2,6 +2,7 @@
 #include <vector>
 
 #include "lacon/operators/contact/cell_variation.hpp"
+#include "lacon/pairing/fading.hpp"
 
 namespace lacon::variations {
 namespace {
@@ -13,7 +14,7 @@ class EndVariation {
   EndVariation(const ContactCellGeometry& cell, const ContactCellGeometry::End& end, Eigen::Index n) : row_(Row::Zero(n)) {
     if (end.node < 0) return;
     const int slaves = catalog::cell(cell.slave).n_nodes, masters = catalog::cell(cell.master).n_nodes;
-    const Shapes<2> phi(cell.slave, &end.at);
+    const Shapes<2> phi(cell.slave, &end.crossing);
     const Interpolated<2> slave(phi, cell.slave_nodes.data());
     const bool smooth = !cell.slave_normals.empty();
     // T, its slope and its curvature
@@ -54,6 +55,7 @@ class EndVariation {
     for (int d = 0; d < 2; ++d) part(2, moved.row(d), turned.row(d));
     part(1, row_, Row(2 * apart.transpose() * ddt + apart.dot(t[2]) * row_));
     part(-1, row_, Row(2 * t[0].transpose() * ddx + slave.dd[0][0].dot(t[0]) * row_));
+    if (end.at != end.crossing) fade(faded_end(end.crossing, cell.fading));
   }
 
   const Row& row() const { return row_; }
@@ -69,6 +71,12 @@ class EndVariation {
     Row first, second;
   };
   static Vector<2> along(const Vector<2>& normal) { return {-normal[1], normal[0]}; }
+  /// From the place where the normal crosses the slave to the end of the cover.
+  void fade(const FadedEnd& end) {
+    for (Product& product : products_) product.factor *= end.slope;
+    products_.push_back({end.curvature, row_, row_});
+    row_ *= end.slope;
+  }
 
   Row row_;
   std::vector<Product> products_;

@@ -26,10 +26,12 @@ struct ContactCellGeometry {
   std::span<const double> slave_point, master_point, weight;         ///< of the integration points, as in ContactCells
   /// In the plane: the ends of the interval, and what they move with.
   struct End {
-    double at;  ///< reference coordinate
-    int node;   ///< behind which node its normal ends it: of the unknowns' nodes; -1: an end of the slave itself
+    double at;        ///< reference coordinate
+    int node;         ///< behind which node its normal ends it: of the unknowns' nodes; -1: an end of the slave itself
+    double crossing;  ///< where that normal crosses the slave
   };
-  End ends[2] = {{-1, -1}, {1, -1}};
+  End ends[2] = {{-1, -1, -1}, {1, -1, 1}};
+  double fading = 0;  ///< PairingOptions::fading: how ends depend on these places where they differ
   /// In space: what the polygon hangs on, and of each of its lines the nodes of the master that it is drawn on: of the
   /// unknowns' nodes.
   const PolygonTrace* trace = nullptr;

@@ -129,8 +129,9 @@ ContactGeometry::Variation ContactGeometry::variation(std::size_t z, const Pairi
     for (std::size_t k = 0; k < 2; ++k) {
       const std::size_t vertex = 2 * place + k;
       const std::int32_t node = cells.vertex_node[vertex];
-      cell.ends[k] = {cells.vertex[vertex], node < 0 ? -1 : local(node)};
+      cell.ends[k] = {cells.vertex[vertex], node < 0 ? -1 : local(node), cells.vertex_crossing[vertex]};
     }
+    cell.fading = zone.pairing.fading;
   } else {
     cell.trace = &found.traces[place];
     for (const PolygonTrace::Line& line : cell.trace->line) {

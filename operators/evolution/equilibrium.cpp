@@ -281,6 +281,13 @@ double Equilibrium::power(std::span<const double> solution) const {
   return std::inner_product(unbalanced.begin(), unbalanced.begin() + system_.first_multiplier(), solution.begin(), 0.0);
 }
 
+double Equilibrium::resistance(std::span<const double> solution) const {
+  std::vector<double> motion(solution.begin(), solution.end()), force(motion.size());
+  std::fill(motion.begin() + system_.first_multiplier(), motion.end(), 0.0);
+  system_.matrix().multiply(motion, force);
+  return std::inner_product(motion.begin(), motion.end(), force.begin(), 0.0);
+}
+
 bool Equilibrium::has_variables() const {
   return std::any_of(problem_.solids.begin(), problem_.solids.end(),
                      [](const ElementSet& set) { return set.n_variables() > 0; });

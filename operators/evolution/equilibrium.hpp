@@ -72,6 +72,8 @@ class Equilibrium {
 
   /// Power of the unbalanced forces of the last assembly along a solution of the system.
   double power(std::span<const double> solution) const;
+  /// Power of the forces by which the matrix resists a solution, along it; multipliers have no part in it.
+  double resistance(std::span<const double> solution) const;
   std::int64_t first_multiplier() const { return system_.first_multiplier(); }  ///< equations from it on: relations and patches
 
   /// Measure what is unbalanced by the reference of its degree of freedom too, where that is above zero

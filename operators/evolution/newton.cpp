@@ -335,7 +335,8 @@ void Newton::shorten(std::span<const double> solution, const StaticState& previo
     const double start = power(0);
     part_without_power(*options_.line_search, start, power);
   } else {
-    part_of_increment(equilibrium_.power(solution), power);
+    // a patch that has just taken contact moves bodies whose forces are balanced
+    part_of_increment(std::max(equilibrium_.power(solution), equilibrium_.resistance(solution)), power);
   }
 }
 
@@ -420,14 +421,15 @@ void Newton::fail_to_converge(double instant, const IterationReport& line, std::
                               {"iterations", std::to_string(options_.iterations)},
                               {"unmet", said({unmet_criteria(line, changing), course_.words(), round_words, turned_words})},
                               {"remedy", remedy(line, excess)}}),
-      {.ratio = settled_ >= settled && !course_.period() ? course_.ratio() : std::nullopt, .excess = excess});
+      {.ratio = settled_ >= settled && !course_.period() && !course_.smaller_before() ? course_.ratio() : std::nullopt,
+       .excess = excess});
 }
 
 std::string Newton::remedy(const IterationReport& line, double excess) const {
   const double ratio = course_.ratio().value_or(1);
   const bool diverges = !course_.finite() || ratio > worse || equilibrium_.cell_inside_out();
   // more iterations, where a few times as many come to the end
-  if (settled_ >= settled && ratio < no_better && !diverges && !course_.period()) {
+  if (settled_ >= settled && ratio < no_better && !diverges && !course_.period() && !course_.smaller_before()) {
     const double more = excess > 1 ? std::ceil(std::log(excess) / -std::log(ratio)) : settled;
     if (more <= 2.0 * options_.iterations)
       return part("remedy_more_iterations", {{"count", std::to_string(options_.iterations + static_cast<int>(more) + 1)}});

@@ -31,6 +31,13 @@ std::optional<double> ResidualCourse::ratio() const {
   return std::pow(residuals_[n - 1] / residuals_[n - 1 - steps], 1.0 / static_cast<double>(steps));
 }
 
+std::optional<std::size_t> ResidualCourse::smaller_before() const {
+  if (residuals_.empty() || !finite()) return std::nullopt;
+  const auto least = std::min_element(residuals_.rbegin(), residuals_.rend());
+  if (!(*least < residuals_.back())) return std::nullopt;
+  return static_cast<std::size_t>(least - residuals_.rbegin());
+}
+
 std::optional<double> ResidualCourse::order() const {
   const std::size_t n = residuals_.size();
   if (n < 3 || !finite() || !(residuals_[n - 1] > 0)) return std::nullopt;
@@ -56,6 +63,12 @@ std::string ResidualCourse::words() const {
   const std::optional<double> changes = ratio(), falls = order();
   if (!changes) return "";
   const std::string factor = fmt::format("{:.2g}", *changes);
+  if (const auto before = smaller_before(); before && *changes < 1)
+    return part(
+        "residual_was_smaller",
+        {{"factor", factor},
+         {"count", std::to_string(*before)},
+         {"times", fmt::format("{:.2g}", residuals_.back() / *(residuals_.rbegin() + static_cast<std::ptrdiff_t>(*before)))}});
   if (!falls) return part("residual_changes", {{"factor", factor}});
   return part("residual_changes_of_order", {{"factor", factor}, {"order", fmt::format("{:.2g}", *falls)}});
 }

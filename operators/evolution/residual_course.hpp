@@ -16,6 +16,8 @@ class ResidualCourse {
   /// By which factor it has changed in an iteration, the geometric mean of the last three at most; nothing before there are
   /// two.
   std::optional<double> ratio() const;
+  /// How many iterations before the last it was smaller than there, at its least; nothing where it never was.
+  std::optional<std::size_t> smaller_before() const;
   /// Observed order of the last three, where they fall.
   std::optional<double> order() const;
   /// After how many iterations residuals come back, two whole periods long; nothing where they do not.

@@ -314,6 +314,17 @@ def ironing_in_space():
                     asked={"per step": 6}, driven="TOOL_BASE", measure=ripple)
 
 
+def aligned_ends():
+    """Columns whose ends are aligned, which flow and widen alike: an end of the one comes to lie on either side of the other's."""
+    for model, kind, cells, side in itertools.product(("D_PLAN", "C_PLAN"), ORDERS, ((4, 6), (7, 5)), SIDES):
+        mesh = union([slab(kind, name, (-0.5, 0.5), (low, low + 1), (n, n), skin=skin)
+                      for name, low, n, skin in (("UPPER", 0, cells[0], "bottom"), ("LOWER", -1, cells[1], "top"))])
+        law = plastic(2e5, 400.0, 2000.0)
+        yield Study(name=named(model, kind, f"{cells[0]} on {cells[1]} cells", slave(("UPPER", "LOWER"), side)), mesh=mesh, model=model,
+                    materials={"UPPER": law, "LOWER": {**law, "ELAS": {"E": 2e5, "NU": 0.2}}}, zones=[zone("UPPER", "LOWER", side)],
+                    moves=[held("LOWER"), path("UPPER", [(0, 0), (10, 0)], [(0, 0), (10, -0.02)])], steps=10, asked={"per step": 8}, driven="UPPER_BASE")
+
+
 def force_driven():
     """Half a round body, or a block, that nothing but contact holds along its axis, pressed on a slab by a force, with the default of
     10 iterations: the contact of the round one begins in a point, and is 7 cells wide behind the first step."""
@@ -351,6 +362,7 @@ ROWS = {
     "space": ("ironing in space", ironing_in_space),
     "difficult": ("block in a die, beams that meet, bodies held by contact", difficult),
     "corner": ("tilted corner dragged", tilted_corner),
+    "aligned": ("columns whose ends are aligned", aligned_ends),
     "force": ("bodies that contact alone holds, driven by a force", force_driven),
     "peer": ("the peer's half spheres and half ring", peer_cases),
     "cycle": ("closed elastic cycle with PETIT_REAC", closed_cycle),

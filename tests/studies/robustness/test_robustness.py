@@ -16,7 +16,8 @@ from studies import Study, elastic, held, path, zone  # noqa: E402
 
 #: seconds each, one or more of a row
 SHORT = ["arch/x10, QUAD8 GREEN", "arch/x10, QUAD4 PETIT", "plastic/flat 1, QUAD8", "plastic/round 5, QUAD4", "contrast/1e-06 QUAD4 PETIT", "contrast/1e+06 QUAD8 GREEN", "difficult/beams QUAD8 GREEN",
-         "difficult/die QUAD4 PETIT,", "difficult/stack D_PLAN QUAD8 GREEN", "difficult/stack 3D HEXA8 PETIT", "force/round AXIS QUAD4 GREEN"]
+         "difficult/die QUAD4 PETIT,", "difficult/stack D_PLAN QUAD8 GREEN", "difficult/stack 3D HEXA8 PETIT", "force/round AXIS QUAD4 GREEN", "aligned/D_PLAN QUAD8 7 lower",
+         "aligned/C_PLAN QUAD4 4 lower"]
 LONG = ["difficult/stack 3D HEXA20 GREEN"]
 
 TABLE = """
@@ -83,6 +84,15 @@ class Skins(StudyTest):
                           moves=[held("SLAB"), path("TOOL", [(0, 0), (4, 0)], [(0, 0), (4, -0.1)])], steps=4, asked={"per step": 4})
             self.assertEqual(missed(study, run(study, LACON, self.folder)), [], kind)
             self.assertIn("<I> <EVOLUTION_17>", "".join((self.folder / name).read_text() for name in ("out", "err")))
+
+    def test_a_patch_that_takes_contact_at_the_end_moves_bodies_that_flow_and_are_balanced(self):
+        """The increment that closes its gap leaves more unbalanced forces than there were: that is no reason to shorten it, again and again."""
+        mesh = union([slab("QUAD4", "TOOL", (-0.5, 0.5), (0, 1), (4, 4), skin="bottom"), slab("QUAD4", "SLAB", (-1, 1), (-1, 0), (12, 6))])
+        study = Study(name="late", mesh=mesh, materials={body: {"ELAS": {"E": 2e5, "NU": poisson}, "ECRO_LINE": {"SY": 400.0, "D_SIGM_EPSI": 2000.0}}
+                                                         for body, poisson in (("TOOL", 0.3), ("SLAB", 0.2))},
+                      zones=[zone("TOOL", "SLAB", 1)], model="C_PLAN", steps=1, asked={"per step": 20},
+                      moves=[held("SLAB"), path("TOOL", [(0, 0), (1, 0)], [(0, 0), (1, -0.01)])])
+        self.assertEqual(missed(study, run(study, LACON, self.folder)), [])
 
     def test_overlap_of_facets_is_told(self):
         """Half rings, one in the other, whose arcs have the same radius: chords of 9 degrees overlap arcs by 1 - cos 4.5 degrees = 0.0031."""

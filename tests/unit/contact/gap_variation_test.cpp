@@ -31,6 +31,7 @@ struct Skins {
   std::vector<double> coordinates, initial;  ///< (n_nodes, 3)
   std::vector<std::vector<std::int32_t>> slaves, masters;
   std::vector<double> offset = {};  ///< (n_nodes), by which the skins stand out of their cells; or empty
+  double fading = 0;                ///< PairingOptions::fading
 
   /// The sum over all contact cells.
   struct Sum {
@@ -49,7 +50,7 @@ struct Skins {
     slave.normals = normals;
     const NormalVariation of_normals(slave);
     // images to round-off: differences divide their error by the step
-    const Pairing found = pair(slave, master, {.tolerances = {.ray = 1e-14}, .traced = dimension == 3});
+    const Pairing found = pair(slave, master, {.tolerances = {.ray = 1e-14}, .fading = fading, .traced = dimension == 3});
     Sum sum{0, std::vector<double>(size()), std::vector<double>(second ? size() * size() : 0)};
     for (std::size_t c = 0; c < found.cells.size(); ++c) add(found, c, normals, slave, of_normals, second, sum);
     return sum;
@@ -75,8 +76,9 @@ struct Skins {
     if (dimension == 2) {
       for (std::size_t k = 0; k < 2; ++k) {
         const std::int32_t node = cells.vertex_node[2 * c + k];
-        cell.ends[k] = {cells.vertex[2 * c + k], node < 0 ? -1 : local(node)};
+        cell.ends[k] = {cells.vertex[2 * c + k], node < 0 ? -1 : local(node), cells.vertex_crossing[2 * c + k]};
       }
+      cell.fading = fading;
     } else {
       cell.trace = &found.traces[c];
       for (const PolygonTrace::Line& line : cell.trace->line) {
@@ -196,6 +198,7 @@ TEST(GapVariation, DerivativesInThePlaneAreThoseOfDifferences) {
         for (const bool current : {false, true})
           for (const bool smooth : {false, true}) {
             InPlane skins(slave, master, axis, current, smooth, ++seed);
+            skins.fading = seed % 3 == 1 ? 1 : 0;  // the cover ends within such a band
             const std::string what = "seed " + std::to_string(seed);
             const Skins::Sum at = skins.evaluate(true);
             const double largest = largest_of(at.gradient), largest_second = largest_of(at.hessian);
@@ -218,6 +221,54 @@ TEST(GapVariation, DerivativesInThePlaneAreThoseOfDifferences) {
                     << i << ' ' << j << ' ' << what;
             }
           }
+}
+
+/// A straight slave cell over a master that ends `beyond` behind it, with a gap that grows to 0.2 at that end.
+Skins aligned_ends(CellType slave, CellType master, double beyond, double fading) {
+  Skins skins{2, slave, master, false, false, false, {}, {}, {}, {}, {}};
+  skins.fading = fading;
+  skins.coordinates = {0, 0.1, 0, 1, 0.2, 0, 1 + beyond, 0, 0, -0.5, 0, 0};
+  skins.slaves = {{0, 1}};
+  skins.masters = {{2, 3}};
+  const auto add_middle = [&](std::vector<std::int32_t>& cell) {
+    const auto a = static_cast<std::size_t>(3 * cell[0]), b = static_cast<std::size_t>(3 * cell[1]);
+    cell.push_back(static_cast<std::int32_t>(skins.size() / 3));
+    for (std::size_t k = 0; k < 3; ++k)
+      skins.coordinates.push_back(0.5 * (skins.coordinates[a + k] + skins.coordinates[b + k]));
+  };
+  if (catalog::cell(slave).order == 2) add_middle(skins.slaves[0]);
+  if (catalog::cell(master).order == 2) add_middle(skins.masters[0]);
+  skins.initial = skins.coordinates;
+  return skins;
+}
+
+// The normal of the slave's end passes the master's end at `aligned`. There forces must not jump, or no iterate is in
+// equilibrium where they push both ends together; beyond the band, and where the ends are aligned, the integral is the exact
+// one.
+TEST(GapVariation, ForcesDoNotJumpWhereTheEndsOfBothSkinsAreAligned) {
+  constexpr double aligned = 0.02, width = 2e-3, far = 2 * width, near = 1e-7;
+  for (const CellType slave : {CellType::SEG2, CellType::SEG3})
+    for (const CellType master : {CellType::SEG2, CellType::SEG3}) {
+      const auto at = [&](double beyond, double fading) {
+        return aligned_ends(slave, master, aligned + beyond, fading).evaluate(false);
+      };
+      const auto jump = [](const Skins::Sum& a, const Skins::Sum& b) {
+        double largest = 0;
+        for (std::size_t i = 0; i < a.gradient.size(); ++i)
+          largest = std::max(largest, std::abs(a.gradient[i] - b.gradient[i]));
+        return largest;
+      };
+      EXPECT_GT(jump(at(-near, 0), at(near, 0)), 0.1);
+      EXPECT_LT(jump(at(-near, width), at(near, width)), 2e3 * near);
+      for (const double beyond : {-far, 0.0, far}) {
+        EXPECT_NEAR(at(beyond, width).gap, at(beyond, 0).gap, 1e-14);
+        if (beyond != 0) {
+          EXPECT_LT(jump(at(beyond, width), at(beyond, 0)), 1e-13);
+        }
+      }
+      for (double beyond = -width; beyond < 0; beyond += width / 10)  // never further from it than the band is wide
+        EXPECT_NEAR(at(beyond, width).gap, at(beyond, 0).gap, 0.02 * width);
+    }
 }
 
 /// A slave cell, with its neighbour, over masters that reach beyond it on some sides only; in space.

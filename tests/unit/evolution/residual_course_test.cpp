@@ -31,6 +31,15 @@ TEST(ResidualCourse, SaysBothInWords) {
   EXPECT_EQ(course({1, std::nan("")}).words(), "the residual has left the range of numbers");
 }
 
+// A residual that falls behind a jump promises nothing: it may jump again before it comes to its end.
+TEST(ResidualCourse, KnowsThatItWasSmallerBefore) {
+  EXPECT_FALSE(course({}).smaller_before());
+  EXPECT_FALSE(course({8, 4, 2, 1}).smaller_before());
+  EXPECT_EQ(course({8, 1, 16, 8, 4, 2}).smaller_before(), 4U);
+  EXPECT_EQ(course({8, 1, 16, 8, 4, 2}).words(),
+            "the residual falls by the factor 0.5 an iteration, but 4 iteration(s) before it was 2 times smaller");
+}
+
 TEST(ResidualCourse, KnowsWhatComesBack) {
   EXPECT_EQ(course({9, 1, 2, 1, 2}).period(), 2U);
   EXPECT_EQ(course({9, 1, 2, 3, 1.001, 2, 3}).period(), 3U);
