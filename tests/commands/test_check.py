@@ -30,6 +30,13 @@ class Check(LauncherTest):
         self.assertEqual(self.operators(), ["lire_maillage", "crea_maillage", "affe_modele", "affe_materiau", "affe_char_cine", "stat_non_line"])
         self.assertNotIn("at work", run.out)
 
+    def test_a_command_file_may_leave_its_folder(self):
+        """Also for one that is no longer there."""
+        for leave in ("os.chdir('/')", "folder = tempfile.mkdtemp()\nos.chdir(folder)\nos.rmdir(folder)"):
+            run = self.check(f"import os, tempfile\n{STUDY}{leave}\nFIN()\n")
+            self.assertEqual(run.status, 0, run.err)
+            self.assertIn("study.comm: 11 commands are right", run.out)
+
     def test_lines_of_several_files_say_which(self):
         self.write("first.comm", STUDY)
         self.write("second.comm", REST + "FIN()\n")

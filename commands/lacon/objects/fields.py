@@ -30,20 +30,21 @@ class Arithmetic:
 
     def restrict(self, components=(), groups=()):
         """The field of these components, or all, on these groups (of nodes; else of cells), or everywhere."""
-        names = [components] if isinstance(components, str) else list(components)
-        return self._part(self.type_of_field(), groups, **({"NOM_CMP": names} if names else {}))
+        names = self.content()._names(components)
+        return self._part(self.type_of_field(), groups, NOM_CMP=names)
 
     def asPhysicalQuantity(self, quantity, components):
         """The field of another quantity. @param components its name here -> its name there"""
         kind = f"{self.type_of_field().partition('_')[0]}_{quantity}"
-        return self._part(kind, (), NOM_CMP=list(components), NOM_CMP_RESU=list(components.values()))
+        return self._part(kind, (), NOM_CMP=self.content()._names(components), NOM_CMP_RESU=list(components.values()))
 
     def _part(self, kind, groups, **more):
         mesh = self.getMesh()
         groups = [groups] if isinstance(groups, str) else list(groups)
         keyword = "GROUP_NO" if groups and groups[0] in mesh.getGroupsOfNodes() and kind.startswith("NOEU") else "GROUP_MA"
         part = {"CHAM_GD": self.concept(), **({keyword: groups} if groups else {"TOUT": "OUI"}), **more}
-        return current.commands["CREA_CHAMP"](OPERATION="ASSE", TYPE_CHAM=kind, MAILLAGE=mesh, ASSE=part)
+        where = {"MODELE": self._model()} if kind.startswith("ELGA") else {"MAILLAGE": mesh}
+        return current.commands["CREA_CHAMP"](OPERATION="ASSE", TYPE_CHAM=kind, ASSE=part, **where)
 
 
 
@@ -72,6 +73,12 @@ class Field(Arithmetic, FieldData):
 
     def type_of_field(self):
         return self.type()
+
+    def content(self):
+        return self
+
+    def _model(self):
+        return self._origin[0].getModel()
 
     def __getattr__(self, name):
         if name.startswith("_"):
@@ -277,6 +284,9 @@ class FieldConcept(Arithmetic, Concept):
 
     def type_of_field(self):
         return self.content().type()
+
+    def _model(self):
+        return None  # which a field of its own does not know
 
     def printMedFile(self, path, local=True):
         print_med(path, CHAM_GD=self, NOM_CHAM_MED=self.label or self.content().quantity)

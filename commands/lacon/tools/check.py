@@ -62,6 +62,7 @@ def run(arguments):
     asked = parser()
     options = asked.parse_args(arguments)
     export = launch.command_files(options.files, launch.units_of(asked, options))
+    shown = ", ".join(map(os.path.relpath, options.files))  # before a command file goes to another folder
     stopped = []
     with tempfile.TemporaryDirectory(prefix="lacon_check_") as folder:
         this = study.Study(pathlib.Path(folder) / "check.base", export.units, provided=execution.provided_names())
@@ -79,7 +80,7 @@ def run(arguments):
         status, _ = launch.run_study(this, work)
     if status != outcome.done:
         return status
-    words = [f"{', '.join(map(os.path.relpath, options.files))}: {this.check.commands} commands are right"]
+    words = [f"{shown}: {this.check.commands} commands are right"]
     if this.check.prepared:
         words.append("up to the first instant: " + _listed(this.check.prepared, export))
     if this.check.unsolved:
