@@ -17,17 +17,18 @@ def formule(call):
     values = {name: value for name, value in k.items() if name not in ("NOM_PARA", "VALE")}
     try:
         expression = Expression(text, parameters, values)
-    except (SyntaxError, ValueError) as error:
+        used = expression.used()
+    except (SyntaxError, ValueError, RecursionError, MemoryError) as error:
         call.fail("FORMULE_1", "VALE", reason=error.msg if isinstance(error, SyntaxError) else error)
-    study = call.study.names.values
-    for name, value in call.study.names.user().items():
-        if name not in values and name in expression.used() and hides(name, value):
-            expression.values[name] = value
+    study, own = call.study.names.values, call.study.names.user()
+    for name in used:
+        if name in own and name not in values and hides(name, own[name]):
+            expression.values[name] = own[name]
     for name in expression.names():
         if name in values:
             continue
         if name not in study:
-            call.fail("FORMULE_4", "VALE", name=name, nearest=nearest(name, [*parameters, *call.study.names.user()]))
+            call.fail("FORMULE_4", "VALE", name=name, nearest=nearest(name, [*parameters, *own]))
         expression.values[name] = study[name]
     return make(call, expression)
 

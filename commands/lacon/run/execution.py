@@ -164,6 +164,8 @@ def _compiled(path, source):
             return compile(ast.parse(source, path), path, "exec")
     except SyntaxError as error:
         fail("STUDY_16", f"{error.filename}:{error.lineno}", reason=error.msg)
+    except (ValueError, RecursionError, MemoryError) as error:  # a null byte; an expression that is nested too deeply for Python
+        fail("STUDY_16", str(path), reason=error)
 
 
 def _run_file(study, path, source, values):
