@@ -6,25 +6,25 @@ const types = {u1: Uint8Array, u2: Uint16Array, i4: Int32Array, u4: Uint32Array,
 const unpacked = new Map();
 
 async function inflate(text) {
-  const bytes = Uint8Array.from(atob(text), (c) => c.charCodeAt(0));
+  const letters = atob(text), bytes = new Uint8Array(letters.length);
+  for (let i = 0; i < bytes.length; ++i) bytes[i] = letters.charCodeAt(i);
   const stream = new Blob([bytes]).stream().pipeThrough(new DecompressionStream("deflate"));
   return new Uint8Array(await new Response(stream).arrayBuffer());
 }
 
-/** The first bytes of all numbers come first, then the second ones: so they deflate better. */
+/** The first bytes of all numbers come first, then the second ones: so they deflate better. @return a buffer of whole numbers */
 function unshuffle(bytes, size) {
-  if (size === 1) return bytes;
-  const count = bytes.length / size;
-  const whole = new Uint8Array(bytes.length);
-  for (let b = 0; b < size; ++b)
-    for (let i = 0, from = b * count, to = b; i < count; ++i, ++from, to += size) whole[to] = bytes[from];
-  return whole;
+  const n = bytes.length / size;
+  if (size === 1) return bytes.buffer;
+  const whole = size === 2 ? new Uint16Array(n) : new Uint32Array(n);
+  if (size === 2) for (let i = 0; i < n; ++i) whole[i] = bytes[i] | (bytes[n + i] << 8);
+  else for (let i = 0; i < n; ++i) whole[i] = bytes[i] | (bytes[n + i] << 8) | (bytes[2 * n + i] << 16) | (bytes[3 * n + i] << 24);
+  return whole.buffer;
 }
 
 async function unpack({id, type}) {
   const bytes = await inflate(document.getElementById(`array-${id}`).textContent);
-  const whole = unshuffle(bytes, types[type].BYTES_PER_ELEMENT);
-  return new types[type](whole.buffer, 0, whole.length / types[type].BYTES_PER_ELEMENT);
+  return new types[type](unshuffle(bytes, types[type].BYTES_PER_ELEMENT));
 }
 
 /** The typed array of a reference {id, type}. @return a promise */
@@ -46,7 +46,9 @@ export async function values(field, instant) {
     if (field.exact) return part;
     const [low, high] = stored.ranges[c];
     const step = (high - low) / (absent - 1);
-    return Float32Array.from(part, (q) => (q === absent ? NaN : low + q * step));
+    const own = new Float32Array(count);
+    for (let i = 0; i < count; ++i) own[i] = part[i] === absent ? NaN : low + part[i] * step;
+    return own;
   });
 }
 

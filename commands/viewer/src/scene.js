@@ -24,20 +24,26 @@ const plain = [0.72, 0.75, 0.79]; // what has no value
 const highlight = {patch: [0.0, 0.0, 0.0], masters: [0.8, 0.47, 0.65]};
 const ribbon = 0.006; // width of a skin in the plane, in sizes of the model
 
+const corners = [0, 1, 2, 0, 2, 3]; // of both triangles of a face of four
+
 /** Faces of three and four points as cells of vtk and as triangles, with the facet that each belongs to. */
 async function faces(meta) {
   const [tri, triFacet, quad, quadFacet] = await Promise.all([meta.triangles, meta.triangle_facets, meta.quads, meta.quad_facets].map(array));
   const n = tri.length / 3, m = quad.length / 4;
   const cells = new Uint32Array(4 * n + 5 * m), triangles = new Uint32Array(tri.length + 6 * m);
   const facets = new Int32Array(n + m), facetOfTriangle = new Int32Array(n + 2 * m);
-  for (let i = 0; i < n; ++i) cells.set([3, tri[3 * i], tri[3 * i + 1], tri[3 * i + 2]], 4 * i);
+  for (let i = 0, c = 0; i < tri.length; i += 3) {
+    cells[c++] = 3;
+    for (let k = 0; k < 3; ++k) cells[c++] = tri[i + k];
+  }
   triangles.set(tri);
   facets.set(triFacet);
   facetOfTriangle.set(triFacet);
   for (let i = 0; i < m; ++i) {
-    const [a, b, c, d] = quad.subarray(4 * i, 4 * i + 4);
-    cells.set([4, a, b, c, d], 4 * n + 5 * i);
-    triangles.set([a, b, c, a, c, d], tri.length + 6 * i);
+    const cell = 4 * n + 5 * i, halves = tri.length + 6 * i;
+    cells[cell] = 4;
+    for (let k = 0; k < 4; ++k) cells[cell + 1 + k] = quad[4 * i + k];
+    for (let k = 0; k < 6; ++k) triangles[halves + k] = quad[4 * i + corners[k]];
     facets[n + i] = facetOfTriangle[n + 2 * i] = facetOfTriangle[n + 2 * i + 1] = quadFacet[i];
   }
   return {cells, triangles, facets, facetOfTriangle, source: null};
@@ -71,14 +77,15 @@ export class Scene {
   static async create(box) {
     const scene = new Scene();
     scene.flat = study.dimension === 2;
-    [scene.initial, scene.nodes, scene.facetCell, scene.facetPatch] = await Promise.all(
-      [study.points, study.nodes, study.facet_cells, study.facet_patches].map(array));
-    scene.points = Float32Array.from(scene.initial);
+    const read = Promise.all([study.points, study.nodes, study.facet_cells, study.facet_patches].map(array));
+    for (const meta of study.surfaces) for (const what of Object.values(meta)) if (what?.type) array(what);
     scene.size = study.size;
     scene.lut = vtkColorTransferFunction.newInstance();
     scene.book = {zone: -1, opening: 0};
     scene.see = {opacity: 1, edges: true, hidden: new Set()};
-    scene.openWindow(box);
+    scene.openWindow(box); // takes long; what is read is inflated meanwhile
+    [scene.initial, scene.nodes, scene.facetCell, scene.facetPatch] = await read;
+    scene.points = Float32Array.from(scene.initial);
     scene.surfaces = await Promise.all(study.surfaces.map((meta) => scene.makeSurface(meta)));
     scene.marks = [];
     return scene;
@@ -141,7 +148,11 @@ export class Scene {
   async makeEdges(meta) {
     const ends = await array(meta.edges);
     const lines = new Uint32Array(1.5 * ends.length);
-    for (let i = 0; i < ends.length / 2; ++i) lines.set([2, ends[2 * i], ends[2 * i + 1]], 3 * i);
+    for (let i = 0, l = 0; i < ends.length; i += 2) {
+      lines[l++] = 2;
+      lines[l++] = ends[i];
+      lines[l++] = ends[i + 1];
+    }
     const polydata = vtkPolyData.newInstance();
     polydata.getPoints().setData(this.points, 3);
     polydata.getLines().setData(lines);
@@ -369,18 +380,21 @@ export class Scene {
     const above = vec3.cross(vec3.create(), right, towards);
     const axes = [right, above, towards];
     const low = [Infinity, Infinity, Infinity], high = [-Infinity, -Infinity, -Infinity];
-    const point = vec3.create();
     for (const {actor, coordinates, triangles, turn} of this.surfaces) {
       if (!actor.getVisibility()) continue;
-      for (const i of triangles) {
-        vec3.set(point, coordinates[3 * i], coordinates[3 * i + 1], coordinates[3 * i + 2]);
-        if (turn) vec3.transformMat4(point, point, turn);
-        axes.forEach((axis, k) => {
-          const x = vec3.dot(point, axis);
-          if (x < low[k]) low[k] = x;
-          if (x > high[k]) high[k] = x;
-        });
-      }
+      // the turn belongs to the axes: points are many
+      axes.forEach((axis, k) => {
+        const [x, y, z] = turn ? [0, 4, 8].map((c) => turn[c] * axis[0] + turn[c + 1] * axis[1] + turn[c + 2] * axis[2]) : axis;
+        const shift = turn ? turn[12] * axis[0] + turn[13] * axis[1] + turn[14] * axis[2] : 0;
+        let least = Infinity, most = -Infinity;
+        for (let t = 0; t < triangles.length; ++t) {
+          const p = 3 * triangles[t], at = x * coordinates[p] + y * coordinates[p + 1] + z * coordinates[p + 2];
+          if (at < least) least = at;
+          if (at > most) most = at;
+        }
+        low[k] = Math.min(low[k], least + shift);
+        high[k] = Math.max(high[k], most + shift);
+      });
     }
     if (low[0] > high[0]) return;
     low[1] -= 0.2 * (high[1] - low[1]); // there stands the scale
