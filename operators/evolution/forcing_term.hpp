@@ -9,9 +9,10 @@ class ForcingTerm {
  public:
   void start_instant() { last_residual_ = 0; }
   /// For the next iteration of an instant: what share of the right side its linear solution may leave; 0: as little as the
-  /// engine leaves, for the first one, of which nothing is known.
+  /// engine leaves, where forces are not in balance yet: a small residual of soft bodies is no small error of displacements,
+  /// and a matrix that is no exact derivative makes more iterations of it.
   /// @param line what the last iteration has left  @param rough statuses are changing: its digits will be of no use
-  double next(const ConvergenceCriteria& criteria, const IterationReport& line, bool rough);
+  double next(const IterationReport& line, bool rough);
 
  private:
   double last_residual_ = 0;

@@ -163,7 +163,7 @@ int Newton::iterate(double instant, StaticState& state, const std::function<void
   for (int iteration = 0; iteration <= options_.iterations; ++iteration) {
     const auto start = std::chrono::steady_clock::now();
     const bool rough = settling && iteration < options_.iterations;
-    const Accuracy accuracy{.rough = rough, .share = iteration > 0 ? forcing_.next(options_.criteria, line, rough) : 0};
+    const Accuracy accuracy{.rough = rough, .share = iteration > 0 ? forcing_.next(line, rough) : 0};
     line = {.iteration = iteration};
     const SolidMatrix asked = iteration == 0 ? options_.prediction : options_.matrix;
     std::vector<double> solution = solve_system(state, previous, asked, step, accuracy, line);

@@ -1,11 +1,12 @@
 #!/usr/bin/env python3
 """Times whole studies of two stacked blocks, and their parts. No assertion: figures for people.
 
-usage: end_to_end.py BUILD [NAME ...]      BUILD: build/release, with the target benches; NAME: H1 to H4 flat, H1c to H4c curved, T2, T3c
+usage: end_to_end.py BUILD [NAME ...]      BUILD: build/release, with the target benches; NAME: H1 to H6 flat, H1c to H6c curved, T2, T3c
                                            (tetrahedra, from LACON_SHARED_BENCH); by default H1 H2 H1c H2c
-       --all            every one
+       --all            every one but H5 and H6
        --threads 1 2    of Lacon, one run each; by default 1
-       --engine PETSC   of SOLVEUR, in place of MUMPS; memory is then that of the larger process, and there is no --docs
+       --engine PETSC   of SOLVEUR, in place of MUMPS
+       --mpi N          processes that solve linear systems; with it or PETSC memory is that of the largest process, and there is no --docs
        --parts          the Google Benchmarks, start_up.py and cutting.py as well (--all: 5 million cells too)
        --no-calculix    even where ccx is installed (Debian: calculix-ccx), leave it out
        --patience N     it gets N times the time of Lacon, by default 20; but at least two minutes, and at most ten
@@ -37,11 +38,15 @@ from meshes import brick, union, write_med  # noqa: E402
 from results import MeshOfBase, Result, identifier_of  # noqa: E402
 
 #: cells along the sides of the bottom block, its height, the same of the top block
-SIZES = {"H1": (15, 8, 12, 6), "H2": (26, 14, 21, 12), "H3": (38, 20, 31, 17), "H4": (48, 26, 39, 22)}
+SIZES = {"H1": (15, 8, 12, 6), "H2": (26, 14, 21, 12), "H3": (38, 20, 31, 17), "H4": (48, 26, 39, 22),
+         "H5": (71, 38, 58, 32), "H6": (103, 55, 84, 46)}
+#: these and their curved ones belong to --all; H5 and H6 are for iterations: a million equations, and three
+OF_ALL = ("H1", "H2", "H3", "H4")
 CURVATURE, PUSH = 0.002, 0.0011
 #: unstructured tetrahedra come from files
 MESHES = pathlib.Path(os.environ.get("LACON_SHARED_BENCH", SOURCE.parent / "shared/bench")) / "meshes"
 NAMES = (*SIZES, *(f"{name}c" for name in SIZES), "T2", "T3c")
+ALL = (*OF_ALL, *(f"{name}c" for name in OF_ALL), "T2", "T3c")
 PARTS = ("pairing", "cutting", "stiffness", "algebra")
 #: CalculiX gets at least and at most so many seconds
 SHORTEST, LONGEST = 120, 600
@@ -82,13 +87,13 @@ def mesh_file(name, folder):
     return path
 
 
-def study(lacon, name, folder, threads, engine):
-    """One run of a study; its base stays in the folder. @param engine METHODE of SOLVEUR  @return what tables.py shows of it"""
+def study(lacon, name, folder, threads, engine, ranks):
+    """One run of a study; its base stays in the folder. @param engine METHODE of SOLVEUR @param ranks processes that solve  @return what tables.py shows of it"""
     mesh, base, report = mesh_file(name, folder), folder / f"{name}.base", folder / "run.json"
     environment = {**os.environ, "BLOCKS_FLAT": "0" if is_curved(name) else "1", "BLOCKS_DZ": str(PUSH),
                    "BLOCKS_ENGINE": engine}
     command = [lacon, SOURCE / "tests/bench/two_blocks.comm", "--fresh", "--unit", f"20={mesh}", "--base", base, "--json", report,
-               "--threads", threads]
+               "--threads", threads, "--mpi", ranks]
     start = time.perf_counter()
     with open(folder / "output", "w+", encoding="utf-8") as output:
         process = subprocess.Popen([str(word) for word in command], env=environment, stdout=output, stderr=subprocess.STDOUT)
@@ -199,16 +204,17 @@ def main():
     parser.add_argument("--all", action="store_true")
     parser.add_argument("--threads", type=int, nargs="+", default=[1])
     parser.add_argument("--engine", choices=("MUMPS", "PETSC"), default="MUMPS")
+    parser.add_argument("--mpi", type=int, default=1)
     parser.add_argument("--parts", action="store_true")
     parser.add_argument("--no-calculix", action="store_true")
     parser.add_argument("--patience", type=float, default=20)
     parser.add_argument("--json", type=pathlib.Path)
     parser.add_argument("--docs", action="store_true")
     options = parser.parse_args()
-    names = NAMES if options.all else options.names or ("H1", "H2", "H1c", "H2c")
+    names = ALL if options.all else options.names or ("H1", "H2", "H1c", "H2c")
     if unknown := [name for name in names if name not in NAMES]:
         parser.error(f"{unknown[0]}: the studies are {' '.join(NAMES)}")
-    if options.docs and options.engine != "MUMPS":
+    if options.docs and (options.engine != "MUMPS" or options.mpi > 1):
         parser.error("--docs: its tables are those of MUMPS")
     build = options.build.resolve()
     measured, measured_at = {"machine": machine_of(build), "studies": [], "calculix": [], "parts": [], "texts": {}}, time.monotonic()
@@ -227,7 +233,7 @@ def main():
             if time.monotonic() - measured_at > STALE:
                 measured["machine"], measured_at = machine_of(build), time.monotonic()
             yardsticks = {key: measured["machine"][key] for key in ("factorisation_seconds", "dgemm_gflops", "copy_gbytes")}
-            rows = [best_study(build / "bin/lacon", name, folder, threads, options.engine) for threads in options.threads]
+            rows = [best_study(build / "bin/lacon", name, folder, threads, options.engine, options.mpi) for threads in options.threads]
             measured["studies"] += [{**row, "yardsticks": yardsticks} for row in rows]
             print(*(f"{name}, {row['threads']} thread(s): {row['wall']:.2f} s" + iterations_of(row) for row in rows), sep="\n", flush=True)
             if with_calculix:

@@ -93,6 +93,30 @@ class Mpi(StudyTest):
             self.assertNotIn("SOLVER_7", said)
             self.assertEqual(said.count("Converged at the instant"), 1)
 
+    def test_an_export_file_asks_for_processes(self):
+        """P mpi_nbcpu N is --mpi N, which stands where both are there. A solution by several processes keeps no factor."""
+        export = self.folder / "study.export"
+        export.write_text(f"P mpi_nbcpu 2\nF comm {pathlib.Path(__file__).with_name('precision.comm')} D 1\nF med {self.folder / 'blocks.med'} D 20\n",
+                          encoding="utf-8")
+        for options, processes in (((), 2), (("--mpi", 1), 1)):
+            run = self.run_tool(export, "--fresh", "--base", "run.base", "--json", self.folder / "run.json", *options, NU="0.3", CONTRAST="1",
+                                SLENDER="0", SOLVER="double", PRE_COND="GAMG", PATH=f"{self.noting()}:{os.environ['PATH']}")
+            self.assertEqual(run.returncode, 0, run.stdout[-3000:] + run.stderr[-3000:])
+            started = self.folder / "started"
+            self.assertEqual(started.exists(), processes > 1)
+            if processes > 1:
+                self.assertIn(f"-n {processes} ", started.read_text())
+                started.unlink()
+
+    def noting(self):
+        """A folder with an mpirun that notes in the file `started` what it is asked for."""
+        folder = self.folder / "programs"
+        folder.mkdir(exist_ok=True)
+        mpirun = folder / "mpirun"
+        mpirun.write_text(f'#!/bin/sh\nprintf "%s " "$@" >> {self.folder}/started\nexec {shutil.which("mpirun")} "$@"\n', encoding="utf-8")
+        mpirun.chmod(0o755)
+        return folder
+
     def test_iterations_give_the_same_bits_in_every_run(self):
         one, counts, _ = self.solve("double")
         found, now, said = self.solve("petsc", "--mpi", 2)
