@@ -4,6 +4,7 @@
 #include <array>
 #include <map>
 #include <memory>
+#include <string_view>
 
 #include "lacon/catalog/messages.hpp"
 #include "lacon/catalog/wording.hpp"
@@ -27,7 +28,8 @@ std::size_t batch_size(std::size_t matrix_entries) {
   return lanes * std::clamp<std::size_t>(cache_bytes / (matrix_entries * sizeof(LaneNumbers)), 1, most_blocks);
 }
 
-std::string reason(int error) {
+/// The part that says it.
+std::string_view reason(int error) {
   switch (error) {
     case LACON_BAD_JACOBIAN:
       return "bad_jacobian";
@@ -58,7 +60,7 @@ bool refused(std::int32_t error) { return error != LACON_FINE && error != LACON_
       ++count;
     }
   fail("ELEMENT_1", {{"count", std::to_string(count)},
-                     {"reason", reason(errors[first])},
+                     {"reason", part(reason(errors[first]))},
                      {"cell", cell_name(cells[first])},
                      {"element", std::string(set.row->name)}});
 }

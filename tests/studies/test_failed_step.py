@@ -75,6 +75,19 @@ class FailedStep(StudyTest):
         result = self.opened()["RESULT"]
         self.assertEqual((result.instants.tolist(), result.failed_step), ([0.0, 0.25, 0.5, 0.75, 1.0], None))
 
+    def test_pictures_of_iterates_that_diverge_still_show_the_bodies(self):
+        sys.path.insert(0, str(SOURCE / "commands"))
+        from lacon.reader.result import FailedStep as Step
+
+        class Flown(Step):
+            """Bodies of size 5 (4 x 3); a node is gone."""
+
+            def __init__(self):
+                self.mesh = type("Mesh", (), {"points": np.array([[0.0, 0.0, 0.0], [4.0, 3.0, 0.0]])})
+
+        for gone, scale in ((1.0, 1.0), (2.5e6, 1e-6)):
+            self.assertAlmostEqual(Flown()._bound(np.array([[gone, 0.0, 0.0], [0.0, 0.0, 0.0]])), scale, delta=1e-12)
+
     def test_a_killed_run_leaves_none(self):
         (self.folder / "study.comm").write_text(self.text.replace("INCREMENT=_F(LIST_INST=TIMES)", f"INCREMENT=_F(LIST_INST=TIMES), {FAILS}").replace("=8)", "=100000)"))
         run = subprocess.Popen([LACON, "study.comm", "--unit", "20=mesh.med"], cwd=self.folder, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, start_new_session=True)

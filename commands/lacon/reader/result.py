@@ -15,6 +15,9 @@ from . import pictures
 from .mesh import as_picture
 
 
+_farthest = 0.5  #: sizes of the model, that a node of an iterate moves in a picture
+
+
 class Field(FieldData):
     """A field at one instant. `support` (n) numbers of nodes or cells, `values` (r, components), `present` (r, components), `location` NOEU, ELGA,
     ELNO or ELEM, `offset` (n + 1) the rows of each cell at ELGA and ELNO; field["DX"] are the values of a component, nan where it does not exist."""
@@ -177,6 +180,10 @@ class States:
                 made.cell_data[name] = [whole[numbers] for numbers, _ in self.mesh.cells.values()]
         return made
 
+    def _bound(self, _):
+        """By what displacements are scaled in pictures, so that bodies are seen."""
+        return 1.0
+
     def _shown(self, _):
         """The field by which an order is coloured where none is asked for; nothing: displacements."""
         return None
@@ -186,12 +193,13 @@ class States:
         displacements, of an iterate that of the forces not in balance): a matplotlib figure. @param scale of the displacements"""
         order = self.order_of(instant, order)
         moved = self.displacements(order=order)
+        scale *= self._bound(moved)
         field = field or self._shown(order)
         if field is None:
             values, name = numpy.linalg.norm(moved, axis=1), "|DEPL|"
         else:
             values, name = self.field(field, order=order).magnitude(component, len(moved)), f"{field} {component or 'magnitude'}"
-        title = self.title_of(order) + (f", {part('displacements_times', scale=f'{scale:g}')}" if scale != 1.0 else "")
+        title = self.title_of(order) + (f", {part('displacements_times', scale=f'{scale:.3g}')}" if scale != 1.0 else "")
         return pictures.bodies(self.mesh.points + scale * moved, self.mesh.dimension, self.mesh.boundary, values, name, title)
 
     def plot_pressure(self, instant=None, order=None):
@@ -201,7 +209,8 @@ class States:
         order = self.order_of(instant, order)
         patches = self.contact(order=order)
         outlines = [self.mesh.polygons(cells) for cells in self.mesh.patches]
-        return pictures.pressure(self.mesh.points + self.displacements(order=order), self.mesh.dimension, outlines, patches,
+        moved = self.displacements(order=order)
+        return pictures.pressure(self.mesh.points + self._bound(moved) * moved, self.mesh.dimension, outlines, patches,
                                  f"{self.title_of(order)}: {part('contact_pressure')}")
 
     def plot_convergence(self):
@@ -298,6 +307,11 @@ class FailedStep(States):
     def bytes_of_field(self, name):
         """What one of its iterates takes."""
         return self.field(name, order=self._fields[name][-1]).values.nbytes
+
+    def _bound(self, moved):
+        """Iterations that diverge leave nodes far away."""
+        size = numpy.linalg.norm(numpy.ptp(self.mesh.points, axis=0))
+        return min(1.0, _farthest * size / max(numpy.linalg.norm(moved, axis=1).max(), 1e-300))
 
     def _shown(self, order):
         return "RESI_NOEU" if order in self._fields.get("RESI_NOEU", ()) else None

@@ -180,16 +180,26 @@ async function draw() {
   const map = quantity()?.name === "status" ? "status" : control.map.value;
   scene.setMap(map, limits);
   scene.colour(field()?.kind, own);
-  scene.deform(vector, Number(control.magnify.value));
+  const scale = Number(control.magnify.value) * bound(vector);
+  scene.deform(vector, scale);
   shown = {kind: field()?.kind, values: own, vector, limits, map};
   showScale(own);
-  showTimes();
+  showTimes(scale);
   showPicked();
   scene.render();
   document.body.dataset.drawn = String(mine);
 }
 
-function showTimes() {
+/** By what displacements are scaled: iterations that diverge leave nodes far away. */
+function bound(vector) {
+  if (course === instants || !vector) return 1;
+  let farthest = 0;
+  for (let i = 0; i < vector[0].length; ++i) farthest = Math.max(farthest, Math.hypot(...vector.map((v) => v[i] || 0)));
+  return Math.min(1, (0.5 * study.size) / farthest);
+}
+
+/** @param scale of the displacements that are shown */
+function showTimes(scale) {
   if (study.drawn.length) {
     const at = {instant: number(study.instants[lastInstant()], 9), number: Number(control.instant.value) + 1, count: study.drawn.length};
     $("instant-value").textContent = t("instant {instant}  ({number} of {count})", at);
@@ -198,6 +208,7 @@ function showTimes() {
   if (!iterates) return;
   const iteration = {iteration: study.failed.iterations[Number(control.iterate.value)], instant: number(study.failed.instant, 9)};
   $("iterate-value").textContent = t("iteration {iteration} of the step to {instant}", iteration);
+  if (course === iterates && scale !== Number(control.magnify.value)) $("iterate-value").textContent += `, ${t("displacements × {scale}", {scale: number(scale, 2)})}`;
   control.iterate.setAttribute("aria-valuetext", $("iterate-value").textContent);
 }
 

@@ -109,6 +109,7 @@ const french = {
   "Iterates of the failed step": "Itérés du pas échoué",
   "iteration {iteration} of the failed step": "itération {iteration} du pas échoué",
   "iteration {iteration} of the step to {instant}": "itération {iteration} du pas vers {instant}",
+  "displacements × {scale}": "déplacements × {scale}",
   "The step from {begins} to {instant}": "Le pas de {begins} à {instant}",
   "{field}: not kept at this instant": "{field} : non gardé à cet instant",
   "no field": "aucun champ",
