@@ -358,9 +358,10 @@ class GoesOn(FaultTest):
         _, text = self.check(6, law="VMIS_ISOT_LINE", ARCHIVAGE={"PAS_ARCH": 4, "CHAM_EXCLU": "SIEF_ELGA"})
         self.assertEqual(len(converged(text)), INSTANTS - 4)
 
-    def test_observations_go_on(self):
+    def test_tables_go_on(self):
+        """Observations and works: rows of before, sums that go on from them."""
         watch = {"NOM_CHAM": "DEPL", "NOM_CMP": "DY", "GROUP_MA": "TOP", "EVAL_CHAM": "MIN"}
-        self.check(7, OBSERVATION=watch)
+        self.check(7, OBSERVATION=watch, ENERGIE={})
 
     def test_a_launcher_is_killed_behind_the_end(self):
         """The operator has come to its end, and its launcher does not get to entering that: the next one asks for what there is."""
