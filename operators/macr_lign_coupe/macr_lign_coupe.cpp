@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <numeric>
@@ -65,6 +66,8 @@ Subject subject_of(const Base& base, const Keywords& keywords) {
 
 /// A node of less weight than this has a part in the value by round-off alone: the point is on a node or a side without it.
 constexpr double weight_of_round_off = 1e-10;
+/// A sum or product of unit vectors that is shorter has no direction.
+constexpr double least_direction = 1e-6;
 
 /// The value of a component at a point; nothing where a node that it needs lacks it.
 std::optional<double> value_at(const Field& field, const std::vector<std::int64_t>& row_of_node, const LinePoint& point,
@@ -80,6 +83,49 @@ std::optional<double> value_at(const Field& field, const std::vector<std::int64_
   return sum;
 }
 
+/// REPERE='LOCAL' at each point: X along the line, at a corner the mean of both directions; Y towards VECT_Y, without it in the
+/// plane to the left of X. Throws LIGNCOUPE_10.
+std::vector<Eigen::Matrix3d> local_axes(const Mesh& mesh, const Keywords& line, const std::vector<LinePoint>& points) {
+  const auto refuse = [&] { fail("LIGNCOUPE_10", {{"keyword", line.path("VECT_Y")}}); };
+  const auto unit = [&](const Eigen::Vector3d& vector) -> Eigen::Vector3d {
+    if (!(vector.norm() > least_direction)) refuse();
+    return vector.normalized();
+  };
+  const auto piece = [&](std::size_t i) {
+    using Place = Eigen::Map<const Eigen::Vector3d>;
+    const Eigen::Vector3d step = Place(points[i + 1].position.data()) - Place(points[i].position.data());
+    if (step.isZero(0)) refuse();
+    return Eigen::Vector3d(step.normalized());
+  };
+  const std::size_t last = points.size() - 1;
+  if (last == 0) refuse();
+  std::vector<Eigen::Vector3d> along;
+  for (std::size_t i = 0; i <= last; ++i)
+    along.push_back(unit((i > 0 ? piece(i - 1) : piece(0)) + (i < last ? piece(i) : piece(last - 1))));
+  if (line.text("TYPE") == "ARC" && last > 1) {  // the tangents at both ends of a chord of a circle are images of each other
+    const auto image = [](const Eigen::Vector3d& tangent, const Eigen::Vector3d& chord) -> Eigen::Vector3d {
+      return 2 * tangent.dot(chord) * chord - tangent;
+    };
+    along[0] = image(along[1], piece(0));
+    along[last] = image(along[last - 1], piece(last - 1));
+  }
+  Eigen::Vector3d towards = Eigen::Vector3d::Zero();
+  if (line.has("VECT_Y")) {
+    const std::vector<double> given = line.reals("VECT_Y");
+    std::copy(given.begin(), given.end(), towards.data());
+    towards = unit(towards);
+  } else if (mesh.dimension == 3) {
+    refuse();
+  }
+  std::vector<Eigen::Matrix3d> axes;
+  for (const Eigen::Vector3d& x : along) {
+    const Eigen::Vector3d z = line.has("VECT_Y") ? unit(x.cross(towards)) : Eigen::Vector3d::UnitZ();
+    axes.emplace_back();
+    axes.back() << x.transpose(), z.cross(x).transpose(), z.transpose();
+  }
+  return axes;
+}
+
 /// The field in the axes of REPERE at the points of a line: a row of nodes stands for them.
 Field turned(const Mesh& mesh, const Keywords& line, const Field& field, const std::vector<LinePoint>& points) {
   Field made = field;
@@ -87,7 +133,10 @@ Field turned(const Mesh& mesh, const Keywords& line, const Field& field, const s
   made.values.clear();
   made.present.clear();
   const std::vector<std::int64_t> row_of_node = places(field, mesh.n_nodes());
-  const Frame frame(mesh, line, line.text("REPERE") == "CYLINDRIQUE");
+  const bool local = line.text("REPERE") == "LOCAL";
+  const std::vector<Eigen::Matrix3d> along = local ? local_axes(mesh, line, points) : std::vector<Eigen::Matrix3d>();
+  std::optional<Frame> frame;
+  if (!local) frame.emplace(mesh, line, line.text("REPERE") == "CYLINDRIQUE");
   const std::vector<Turned> parts = turned_components(field);
   std::size_t lost = 0;
   for (std::size_t i = 0; i < points.size(); ++i) {
@@ -97,7 +146,8 @@ Field turned(const Mesh& mesh, const Keywords& line, const Field& field, const s
       made.values.push_back(value.value_or(0.0));
       made.present.push_back(value.has_value());
     }
-    const Eigen::Matrix3d axes = frame.at(Eigen::Map<const Eigen::Vector3d>(points[i].position.data()), lost);
+    const Eigen::Matrix3d axes =
+        local ? along[i] : frame->at(Eigen::Map<const Eigen::Vector3d>(points[i].position.data()), lost);
     for (const Turned& part : parts) {
       const auto lacks = [&](int c) { return c >= 0 && !made.has(i, static_cast<std::size_t>(c)); };
       if (std::ranges::none_of(part.column, lacks)) {

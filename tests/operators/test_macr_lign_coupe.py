@@ -92,6 +92,27 @@ class MacrLignCoupe(OperatorTest):
         self.assertEqual(self.messages, ["MODIREPERE_4"])
         self.refuses("MODIREPERE_5", {**cylinder, "AXE_Z": [0.0, 0.0, 0.0]}, "AXE_Z")
 
+    def test_axes_along_the_line(self):
+        """u = x: along a segment the abscissa and what is across; on an arc about the centre the radius across and nothing along; at a corner the mean."""
+        points, cells = bricks(2)
+        self.write(points, cells, points)
+        start, end = np.array([0.1, 0.9, 0.2]), np.array([0.8, 0.3, 0.6])
+        line = {"NB_POINTS": 5, "COOR_ORIG": [*start], "COOR_EXTR": [*end], "REPERE": "LOCAL"}
+        x = (end - start) / np.linalg.norm(end - start)
+        y = np.array([0.0, 0.0, 1.0]) - x[2] * x
+        y /= np.linalg.norm(y)
+        for row in self.lines({**line, "VECT_Y": [0.0, 0.0, 5.0]}, NUME_ORDRE=[0]):
+            place = np.array([row[c] for c in PLACE[1:]])
+            np.testing.assert_allclose([row[c] for c in ("DX", "DY", "DZ")], [place @ x, place @ y, place @ np.cross(x, y)], atol=1e-14)
+        for wrong in ({}, {"VECT_Y": [0.0, 0.0, 0.0]}, {"VECT_Y": [*(2 * x)]}):
+            self.refuses("LIGNCOUPE_10", {**line, **wrong}, "VECT_Y")
+        arc = {"TYPE": "ARC", "NB_POINTS": 4, "CENTRE": [0.0, 0.0, 0.5], "COOR_ORIG": [0.8, 0.0, 0.5], "ANGLE": 90.0, "DNOR": [0.0, 0.0, 1.0]}
+        for row in self.lines({**arc, "REPERE": "LOCAL", "VECT_Y": [-1.0, -1.0, 0.0]}, NUME_ORDRE=[0]):
+            np.testing.assert_allclose([row[c] for c in ("DX", "DY", "DZ")], [0, -0.8, 0.5], atol=1e-13)
+        self.write([(0, 0), (1, 0), (1, 1), (0, 1)], [("QUAD4", [0, 1, 2, 3])], [(0, 0), (1, 0), (1, 1), (0, 1)], node_groups={"CORNER": [0, 1, 2]})
+        rows = self.lines({"TYPE": "GROUP_NO", "GROUP_NO": "CORNER", "REPERE": "LOCAL"}, NUME_ORDRE=[0])
+        np.testing.assert_allclose([[row["DX"], row["DY"]] for row in rows], [(0, 0), (0.5**0.5, -(0.5**0.5)), (1, -1)], atol=1e-15)
+
     def test_axes_of_a_vector_that_is_not_whole_leave_it_out(self):
         self.write([(0, 0), (1, 0), (1, 1), (0, 1)], [("QUAD4", [0, 1, 2, 3])], [(1, 2)] * 4, present=np.array([(1, 1), (1, 0), (1, 1), (1, 1)], np.uint8))
         rows = self.lines({"NB_POINTS": 2, "COOR_ORIG": [1.0, 0.0], "COOR_EXTR": [1.0, 1.0], "REPERE": "UTILISATEUR", "ANGL_NAUT": [90.0]}, NUME_ORDRE=[0])
