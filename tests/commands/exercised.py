@@ -68,7 +68,7 @@ def _parsed(text):
     """The whole text, or every call in it that stands by itself."""
     try:
         yield ast.parse(textwrap.dedent(text))
-    except SyntaxError:
+    except (SyntaxError, ValueError):  # the latter of null bytes
         for start in re.finditer(r"\b(?:_F|[A-Z]+_[A-Z_]+)\(", text):
             depth = 0
             for end in range(start.end() - 1, len(text)):
