@@ -305,7 +305,8 @@ class SolidBatches : public ElementBatches {
 
   void evaluate(const LoopBlock& cells) {
     const Batch batch(set_, mesh_, cells);
-    const std::size_t n_stress = set_.n_stress(), n_variables = set_.n_variables();
+    const std::size_t n_stress = set_.n_stress(), n_variables = set_.n_variables(),
+                      n_points = static_cast<std::size_t>(set_.tabulation.n_points);
     // what is left out, or does not exist, is a null pointer
     const auto nodal = [&](std::span<const double> values, LaneArray& array) -> const double* {
       if (values.empty()) return nullptr;
@@ -352,7 +353,9 @@ class SolidBatches : public ElementBatches {
         .elastic_matrix = wanted_ == SolidMatrix::elastic,
         .stressless_matrix = wanted_ == SolidMatrix::stressless,
         .n_unknowns = set_.n_unknowns(),
-        .whole_matrix = symmetric_ ? nullptr : numbers(matrix_)};
+        .whole_matrix = symmetric_ ? nullptr : numbers(matrix_),
+        .thermal_strain = of_cells(input_.thermal, n_points, thermal_),
+        .previous_thermal_strain = of_cells(input_.previous_thermal, n_points, from_thermal_)};
     set_.kernel->solid(&call);
     take_results(batch);
     if (call.stress) batch.scatter(stress_, n_stress, output_.stress.subspan(cells.first * n_stress));
@@ -363,7 +366,8 @@ class SolidBatches : public ElementBatches {
   SolidInput input_;
   SolidMatrix wanted_;
   SolidOutput output_;
-  LaneArray coordinates_, displacement_, parameters_, from_, from_stress_, from_variable_, stress_, variable_;
+  LaneArray coordinates_, displacement_, parameters_, from_, from_stress_, from_variable_, thermal_, from_thermal_, stress_,
+      variable_;
 };
 
 class LoadBatches : public ElementBatches {

@@ -73,8 +73,9 @@ enum class SolidMatrix { none, tangent, stressless, elastic, whole };
 struct SolidInput {
   std::span<const double> displacement;
   std::span<const double> previous_displacement;
-  std::span<const double> previous_stress;    ///< (cells, n_points, n_stress)
-  std::span<const double> previous_variable;  ///< (cells, n_points, n_variables)
+  std::span<const double> previous_stress;                 ///< (cells, n_points, n_stress)
+  std::span<const double> previous_variable;               ///< (cells, n_points, n_variables)
+  std::span<const double> thermal, previous_thermal = {};  ///< (cells, n_points): strains, for kernels that take them
 };
 
 /// Where values at the integration points of the set's cells go; empty: not wanted.

@@ -17,7 +17,7 @@
 extern "C" {
 #endif
 
-#define LACON_ABI 6
+#define LACON_ABI 7
 #define LACON_LANES 8
 
 #if defined(__GNUC__)
@@ -70,6 +70,9 @@ typedef struct lacon_solid_batch {
   int32_t n_unknowns;        /* of a node: as many as the kernel's `unknowns` */
   double* whole_matrix; /* (n_blocks, ndof, ndof, LANES), row by row: the tangent of an `unsymmetric` kernel as it is, where
                            `matrix` has its symmetric part */
+  const double* thermal_strain;          /* (n_blocks, n_points, LANES): equal in all directions; of a kernel that takes it the
+                                            stress is that of the strain less this. NULL: none */
+  const double* previous_thermal_strain; /* likewise, of the last state */
 } lacon_solid_batch;
 
 /* Elements (bodies, skins, edges) under a load that has values at each integration point. ndof = n_nodes * n_unknowns. */
@@ -132,6 +135,7 @@ typedef struct lacon_kernel {
   const char* const* unknowns;   /* solid, load: its unknowns at each node, "DX", "TEMP", some of its elements' `dofs`, NULL at
                                     the end; or NULL: the displacements */
   int32_t unsymmetric;           /* solid: 1 if its tangent is not symmetric, and `whole_matrix` may be asked for */
+  int32_t takes_thermal_strain;  /* solid: 1 if it works with `thermal_strain` */
 } lacon_kernel;
 
 typedef struct lacon_plugin_table {

@@ -99,6 +99,9 @@ class Outputs {
   LaneErrors& errors_;
 };
 
+/// Of a lane at a point, 0 where there is none.
+double thermal_at(const double* strain, std::int64_t here, int lane) { return strain ? strain[here * LACON_LANES + lane] : 0; }
+
 /// A law of small strains, elasticity or plasticity upon it, in a measure that follows from C.
 template <Kind K, class M, Law L>
 void take_measured(const lacon_solid_batch& b, std::int64_t here, const Slopes<K>& slopes, const Moduli& moduli,
@@ -109,7 +112,9 @@ void take_measured(const lacon_solid_batch& b, std::int64_t here, const Slopes<K
     const Deformation<M> last(slopes.at_last(l));
     Matrix3 t = Matrix3::Zero();
     if (b.previous_stress) t = last.working(symmetric(b.previous_stress, here * n_stress, n_stress, l));
-    const Matrix3 step = Deformation<M>(slopes.at(l)).strain() - last.strain();
+    const Matrix3 step =
+        Deformation<M>(slopes.at(l)).strain() - last.strain() -
+        (thermal_at(b.thermal_strain, here, l) - thermal_at(b.previous_thermal_strain, here, l)) * Matrix3::Identity();
     t += moduli.lambda[l] * step.trace() * Matrix3::Identity() + 2 * moduli.mu[l] * step;
     for (int i = 0; i < n; ++i) stress[i][l] = t(places[i].i, places[i].k);
   }
@@ -147,6 +152,7 @@ void take_simo_miehe(const lacon_solid_batch& b, std::int64_t here, const Slopes
   for (int l = 0; l < LACON_LANES; ++l) {
     const SimoMiehe law{.bulk = moduli.lambda[l] + 2 * moduli.mu[l] / 3,
                         .mu = moduli.mu[l],
+                        .thermal = thermal_at(b.thermal_strain, here, l),
                         .plastic = plastic,
                         .elastic_matrix = b.elastic_matrix != 0,
                         .stressless_matrix = b.stressless_matrix != 0,
@@ -277,7 +283,8 @@ constexpr lacon_kernel row(const char* name, void (*function)(const lacon_solid_
           .has_memory = plastic,
           .takes_curve = plastic,
           .unknowns = nullptr,
-          .unsymmetric = plastic && simo_miehe};
+          .unsymmetric = plastic && simo_miehe,
+          .takes_thermal_strain = 1};
 }
 
 // a function for each combination: a template cannot be compiled for several instruction sets

@@ -1,14 +1,15 @@
 #pragma once
-// SIMO_MIEHE: elasticity of the isochoric elastic left Cauchy-Green tensor b with tau = K (J^2 - 1) / 2 I + mu dev b, and
-// plasticity with von Mises' criterion on Kirchhoff's stress tau (Simo and Hughes, Computational Inelasticity, 9.3: the return
-// keeps the trace of b).
+// SIMO_MIEHE: elasticity of the isochoric elastic left Cauchy-Green tensor b with tau = (K (J^2 - 1) / 2 - 3 K e (J + 1 / J) /
+// 2) I
+// + mu dev b, e the thermal strain, and plasticity with von Mises' criterion on Kirchhoff's stress tau (Simo and Hughes,
+// Computational Inelasticity, 9.3: the return keeps the trace of b).
 #include "lacon/elements/solid/von_mises.hpp"
 #include "measures.hpp"
 
 namespace lacon::solid {
 
 struct SimoMiehe {
-  double bulk, mu;
+  double bulk, mu, thermal;
   bool plastic, elastic_matrix, stressless_matrix;
   Hardening hardening;
 
@@ -48,7 +49,7 @@ struct SimoMiehe {
     const Matrix3 s = kept * s_trial;
     answer.elastic = s / mu + (trace / 3 - 1) * unit;
     const double j = answer.volume, growth = determinant_less_one(slope);  // J - 1
-    const Matrix3 tau = s + (bulk / 2 * growth * (2 + growth)) * unit;
+    const Matrix3 tau = s + (bulk / 2 * (growth * (2 + growth) - 3 * thermal * (j + 1 / j))) * unit;
     answer.nominal = tau * back.transpose();
     answer.cauchy = tau / j;
     if (!with_tangent) return answer;
@@ -59,7 +60,7 @@ struct SimoMiehe {
         rate(k, l) = 1;
         const double growth_rate = rate.trace();
         const Matrix3 change = d_tau(rate, trial, s_trial, q, three_mu, kept, slope_of_yield, answer.dp) +
-                               growth_rate * bulk * j * j * unit -
+                               growth_rate * bulk * (j * j - 1.5 * thermal * (j - 1 / j)) * unit -
                                (stressless_matrix ? Matrix3(Matrix3::Zero()) : Matrix3(tau * rate.transpose()));
         for (int i = 0; i < 3; ++i)
           for (int m = 0; m < 3; ++m) spatial(3 * i + m, 3 * k + l) = change(i, m);

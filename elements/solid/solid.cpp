@@ -37,9 +37,11 @@ template <Kind K, Measure M, Law L>
 LACON_INLINE void take_stress(const lacon_solid_batch& b, std::int64_t here, const Block<K, M>& block,
                               const Lanes (&twice)[components_of(K)], Point<K>& point, Lanes& sum, LaneErrors& errors) {
   constexpr int n_stress = components_of(K);
-  const Lanes pressure = block.lambda * (twice[0] + twice[1] + twice[2]) / 2;
+  Lanes thermal = {};  // twice the strain that is none of the stress's
+  if (M == Measure::green && b.thermal_strain) thermal = 2 * lanes(b.thermal_strain, here);
+  const Lanes pressure = block.lambda * (twice[0] + twice[1] + twice[2] - (K == Kind::plane_stress ? 2 : 3) * thermal) / 2;
   auto& s = point.stress;
-  for (int i = 0; i < n_stress; ++i) s[i] = i < 3 ? pressure + block.mu * twice[i] : block.mu * twice[i];
+  for (int i = 0; i < n_stress; ++i) s[i] = i < 3 ? pressure + block.mu * (twice[i] - thermal) : block.mu * twice[i];
   if (M != Measure::green && b.previous_stress)
     for (int i = 0; i < n_stress; ++i) s[i] += lanes(b.previous_stress, here * n_stress + i);
   if constexpr (K == Kind::plane_stress) s[2] = Lanes{};
@@ -76,11 +78,11 @@ struct NominalStress {
 };
 
 /// Green-Lagrange: whether the element is turned inside out, and Cauchy's stress F S F^T / det F. In plane stress det F has the
-/// stretch across, which keeps SIZZ zero.
+/// stretch across, which keeps SIZZ zero. @param thermal strain, equal in all directions
 template <Kind K>
 LACON_INLINE void take_cauchy_stress(const Point<K>& point, const NominalStress<K>& nominal,
-                                     const Lanes (&twice)[components_of(K)], const Lanes& nu, double* stress,
-                                     LaneErrors& errors) {
+                                     const Lanes (&twice)[components_of(K)], const Lanes& thermal, const Lanes& nu,
+                                     double* stress, LaneErrors& errors) {
   constexpr int D = dimension_of(K);
   Lanes f[D][D], volume;
   for (int i = 0; i < D; ++i)
@@ -93,7 +95,7 @@ LACON_INLINE void take_cauchy_stress(const Point<K>& point, const NominalStress<
   for (int l = 0; l < LACON_LANES; ++l) {
     bool right_way = volume[l] > 0 && (K != Kind::axis || point.hoop_slope[l] > -1);
     if constexpr (K == Kind::plane_stress) {
-      const double across = 1 - nu[l] / (1 - nu[l]) * (twice[0][l] + twice[1][l]);
+      const double across = 1 + 2 * thermal[l] - nu[l] / (1 - nu[l]) * (twice[0][l] + twice[1][l] - 4 * thermal[l]);
       right_way = right_way && across > 0;
       volume[l] *= std::sqrt(across);
     }
@@ -159,7 +161,8 @@ LACON_INLINE void evaluate(const lacon_solid_batch& b) {
       const NominalStress<K> nominal(point, green);
       double* const stress = b.stress ? b.stress + here * n_stress * LACON_LANES : nullptr;
       if constexpr (green)
-        take_cauchy_stress<K>(point, nominal, twice, block.nu, stress, errors);
+        take_cauchy_stress<K>(point, nominal, twice, b.thermal_strain ? lanes(b.thermal_strain, here) : Lanes{}, block.nu,
+                              stress, errors);
       else if (stress)
         for (int i = 0; i < n_stress; ++i) lanes(stress, i) = point.stress[i];
       if (force) add_force<K>(point, nominal, nodes, force);
@@ -197,7 +200,8 @@ constexpr lacon_kernel row(const char* name, void (*function)(const lacon_solid_
           .has_memory = plastic || measure == Measure::updated,
           .takes_curve = plastic,
           .unknowns = nullptr,
-          .unsymmetric = measure == Measure::updated};
+          .unsymmetric = measure == Measure::updated,
+          .takes_thermal_strain = measure == Measure::green};
 }
 
 // a function for each combination: a template cannot be compiled for several instruction sets

@@ -186,7 +186,11 @@ void Equilibrium::add_solids(const StaticState& state, const StaticState& previo
       input.previous_variable = from->points[s].variable;
     }
     std::vector<double> start;
-    if (heat_.acts()) input.previous_stress = start = heat_.start_of_step(s, points_[s], from);
+    if (heat_.acts()) {
+      input.previous_stress = start = heat_.start_of_step(s, points_[s], from);
+      input.thermal = points_[s].thermal;
+      if (from) input.previous_thermal = from->points[s].thermal;
+    }
     ElementSet heated;
     if (!points_[s].parameter.empty()) {
       heated = set;

@@ -1,6 +1,5 @@
 #include "lacon/operators/evolution/heat.hpp"
 
-#include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
 
@@ -8,6 +7,15 @@
 #include "lacon/operators/program/program.hpp"
 
 namespace lacon {
+
+namespace {
+
+/// Whether a law takes the whole thermal strain, from VALE_REF on, and not its changes.
+bool is_total(const ElementSet& set) {
+  return set.option == "ELAS/GREEN_LAGRANGE" || set.option == "ELAS/GROT_GDEP" || set.option.ends_with("/SIMO_MIEHE");
+}
+
+}  // namespace
 
 constexpr double no_strain = 1e-12;  // what interpolation leaves of it at VALE_REF
 
@@ -41,31 +49,6 @@ void Heat::copy(const std::vector<PointValues>& from, std::vector<PointValues>& 
   }
 }
 
-/// det F at the points of cells of a set, (cells, points): what stresses of a displaced geometry are divided by.
-std::vector<double> Heat::volumes(const ElementSet& set, const std::vector<double>& displacement) {
-  const Mesh& mesh = problem_.mesh;
-  std::vector<double> found;
-  const auto width = static_cast<std::size_t>(set.n_components), D = static_cast<std::size_t>(set.dimension());
-  for (const std::int32_t cell : set.cells) {
-    const auto c = static_cast<std::size_t>(cell);
-    const CellPoints& at = (*points_)(c, mesh.coordinates);
-    for (std::size_t p = 0; p < static_cast<std::size_t>(at.n_points); ++p) {
-      Eigen::Matrix3d f = Eigen::Matrix3d::Identity();
-      for (std::size_t a = 0; a < static_cast<std::size_t>(at.n_nodes); ++a) {
-        const double* const u = displacement.data() + static_cast<std::size_t>(mesh.cells[c][a]) * width;
-        for (std::size_t i = 0; i < D; ++i)
-          for (std::size_t k = 0; k < D; ++k)
-            f(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(k)) +=
-                u[i] * at.gradient[(p * static_cast<std::size_t>(at.n_nodes) + a) * D + k];
-        if (points_->is_axisymmetric(c))
-          f(2, 2) += u[0] * at.shape[p * static_cast<std::size_t>(at.n_nodes) + a] / at.position[3 * p];
-      }
-      found.push_back(f.determinant());
-    }
-  }
-  return found;
-}
-
 std::vector<double> Heat::start_of_step(std::size_t s, const PointValues& at, const StaticState* from) {
   const ElementSet& set = problem_.solids[s];
   const auto n_points = static_cast<std::size_t>(set.tabulation.n_points), n_stress = set.row->stress.size(),
@@ -79,8 +62,6 @@ std::vector<double> Heat::start_of_step(std::size_t s, const PointValues& at, co
   const auto strain = [](const PointValues& values, std::size_t point) {
     return values.thermal.empty() ? 0.0 : values.thermal[point];
   };
-  std::vector<double> volume;  // T of logarithmic strains is Kirchhoff's in its trace and its parts across it
-  if (from && set.option.ends_with("/GDEF_LOG")) volume = volumes(set, from->displacement);
   for (std::size_t c = 0; c < set.cells.size(); ++c) {
     const double young = now[c * n_parameters], nu = now[c * n_parameters + 1], old_young = before[c * n_parameters],
                  old_nu = before[c * n_parameters + 1];
@@ -96,8 +77,9 @@ std::vector<double> Heat::start_of_step(std::size_t s, const PointValues& at, co
         for (std::size_t i = 0; i < normal; ++i) mean += value[i] / static_cast<double>(normal);
         for (std::size_t i = 0; i < n_stress; ++i) value[i] = shear * value[i] + (i < normal ? (bulk - shear) * mean : 0.0);
       }
+      if (set.kernel->takes_thermal_strain) continue;
       const double grown = strain(at, point) - (from ? strain(from->points[s], point) : 0.0);
-      for (std::size_t i = 0; i < normal; ++i) value[i] -= expansion * grown / (volume.empty() ? 1.0 : volume[point]);
+      for (std::size_t i = 0; i < normal; ++i) value[i] -= expansion * grown;
     }
   }
   return stress;
@@ -107,6 +89,7 @@ void Heat::warn_of_start(const StaticState& state) const {
   std::int64_t count = 0;
   std::int32_t first = -1;
   for (std::size_t s = 0; s < state.points.size(); ++s) {
+    if (is_total(problem_.solids[s])) continue;
     const std::vector<double>& strain = state.points[s].thermal;
     const std::vector<std::int32_t>& cells = problem_.solids[s].cells;
     const std::size_t width = strain.size() / std::max<std::size_t>(cells.size(), 1);

@@ -22,16 +22,14 @@ class Heat {
   void move_to(double instant, std::vector<PointValues>& points);
   /// The same as other points have it.
   void copy(const std::vector<PointValues>& from, std::vector<PointValues>& to) const;
-  /// The stress that the laws of a set start from. They answer to a change of strain with isotropic elasticity: what the change
-  /// of the thermal strain does is taken off the stress before, which under other moduli keeps its elastic strain.
+  /// The stress that the laws of a set start from: under other moduli it keeps its elastic strain. Of laws that know nothing of
+  /// thermal strains and answer to a change of strain with isotropic elasticity, what its change does is taken off.
   /// @param from the state before, nullptr: the natural one at the reference temperature
   std::vector<double> start_of_step(std::size_t set, const PointValues& now, const StaticState* from);
   /// EVOLUTION_33: cells whose first temperature is not that of reference, for laws count changes from there on alone.
   void warn_of_start(const StaticState& state) const;
 
  private:
-  std::vector<double> volumes(const ElementSet& set, const std::vector<double>& displacement);
-
   const StaticProblem& problem_;
   std::optional<ModelPoints> points_;  ///< where there are temperatures
 };

@@ -41,11 +41,14 @@ void read_materials(StaticProblem& problem, const Base& base, const std::string&
   problem.thermal = std::make_unique<ThermalMaterials>(base, *problem.material_field, std::move(temperatures));
 }
 
-/// Laws that a temperature acts on through the state that they start from: those that answer to a change of strain with
-/// isotropic elasticity. That stress takes what the change of thermal strain does (Equilibrium::start_of_step()).
-constexpr std::string_view heated_laws[] = {"ELAS/PETIT",           "ELAS/PETIT_REAC",           "ELAS/GDEF_LOG",
-                                            "VMIS_ISOT_LINE/PETIT", "VMIS_ISOT_LINE/PETIT_REAC", "VMIS_ISOT_LINE/GDEF_LOG",
-                                            "VMIS_ISOT_TRAC/PETIT", "VMIS_ISOT_TRAC/PETIT_REAC", "VMIS_ISOT_TRAC/GDEF_LOG"};
+/// Whether a temperature acts on a law: its kernel takes thermal strains, or it answers to a change of strain with isotropic
+/// elasticity, so that the stress that it starts from takes what their change does (Heat::start_of_step()).
+bool feels_heat(const ElementSet& set) {
+  constexpr std::string_view linear[] = {"ELAS/PETIT",           "ELAS/PETIT_REAC",
+                                         "VMIS_ISOT_LINE/PETIT", "VMIS_ISOT_LINE/PETIT_REAC",
+                                         "VMIS_ISOT_TRAC/PETIT", "VMIS_ISOT_TRAC/PETIT_REAC"};
+  return set.kernel->takes_thermal_strain || std::find(std::begin(linear), std::end(linear), set.option) != std::end(linear);
+}
 
 /// Keep temperatures, and functions of them, only where solids are concerned. Throws BEHAVIOUR_5 for a law that takes none.
 void check_temperatures(StaticProblem& problem) {
@@ -54,7 +57,9 @@ void check_temperatures(StaticProblem& problem) {
     for (const std::int32_t cell : set.cells) {
       if (!problem.thermal->concerns(cell)) continue;
       any = true;
-      if (std::find(std::begin(heated_laws), std::end(heated_laws), set.option) == std::end(heated_laws))
+      // stresses that turn with the body do not keep their elastic strain where moduli change
+      const bool turns = set.option.starts_with("VMIS_") && set.option.ends_with("/GROT_GDEP");
+      if (!feels_heat(set) || (turns && problem.thermal->has_functions(set.cells)))
         fail("BEHAVIOUR_5", {{"behaviour", set.option}, {"cell", cell_name(cell)}});
     }
   if (!any) problem.thermal.reset();

@@ -121,6 +121,106 @@ const auto case_name = [](const auto& given) {
 INSTANTIATE_TEST_SUITE_P(All, LargeStrain, testing::ValuesIn(cases(true)), case_name);
 INSTANTIATE_TEST_SUITE_P(All, Objectivity, testing::ValuesIn(cases(false)), case_name);
 
+// ---------------------------------------------------------------------------------------------------- thermal strains
+
+/// The stretch that a thermal strain makes where nothing resists.
+double free_stretch(const std::string& option, double strain) {
+  if (option.ends_with("GDEF_LOG")) return std::exp(strain);
+  if (!option.ends_with("SIMO_MIEHE")) return std::sqrt(1 + 2 * strain);
+  double volume = 1;  // J^2 - 1 = 3 e (J + 1 / J)
+  for (int i = 0; i < 200; ++i) volume = std::sqrt(1 + 3 * strain * (volume + 1 / volume));
+  return std::cbrt(volume);
+}
+
+struct Heated {
+  const char* element;
+  std::string option;
+};
+std::vector<Heated> heated() {
+  std::vector<Heated> all;
+  for (const char* element : {"3D/TETRA4", "AXIS/QUAD4", "D_PLAN/TRIA6", "C_PLAN/QUAD4"})
+    for (const auto& kernel : registry().find_element(element)->kernels)
+      if (kernel.option.find('/') != kernel.option.npos && !kernel.option.starts_with("VMIS_ISOT_TRAC") &&
+          registry().kernel(*registry().find_element(element), kernel.option, LACON_SOLID).takes_thermal_strain)
+        all.push_back({element, std::string(kernel.option)});
+  return all;
+}
+
+TEST(ThermalStrain, ABodyThatNothingHoldsExpandsWithoutStress) {
+  for (const auto& [element, option] : heated()) {
+    if (std::string_view(element).starts_with("D_PLAN")) continue;  // it is held across
+    const ElementRow& row = *registry().find_element(element);
+    const Numbers x = shaken(lacon::catalog::cell(row.cell));
+    const double l = free_stretch(option, 0.02);
+    const auto answer = run(row, option, x, moved_by(x, static_cast<int>(row.dofs.size()), {{{l, 0, 0}, {0, l, 0}, {0, 0, l}}}),
+                            {}, linear_hardening, false, false, 0.02);
+    ASSERT_EQ(answer.error, LACON_FINE);
+    for (const double stress : answer.state.stress) EXPECT_NEAR(stress, 0, 1e-12 * young) << element << ' ' << option;
+    for (const double force : answer.force) EXPECT_NEAR(force, 0, 1e-12 * young) << element << ' ' << option;
+  }
+}
+
+TEST(ThermalStrain, TheMatrixIsTheDerivativeOfTheForce) {
+  for (const auto& [element, option] : heated()) {
+    const ElementRow& row = *registry().find_element(element);
+    const Numbers x = shaken(lacon::catalog::cell(row.cell));
+    State from = run(row, option, x, shaken_displacement(x.size(), 0.02, 3), {}, linear_hardening, false, false, 0.01).state;
+    const Numbers u = shaken_displacement(x.size(), 0.05, 4);
+    const auto force_at = [&](const Numbers& v) { return run(row, option, x, v, from, linear_hardening, false, false, 0.03); };
+    const Answer at = force_at(u);
+    ASSERT_EQ(at.error, LACON_FINE);
+    const std::size_t n = x.size();
+    std::vector<Numbers> derivative(n);
+    constexpr double step = 1e-6;
+    for (std::size_t j = 0; j < n; ++j) {
+      Numbers low = u, high = u;
+      low[j] -= step;
+      high[j] += step;
+      const Numbers before = force_at(low).force, after = force_at(high).force;
+      for (std::size_t i = 0; i < n; ++i) derivative[j].push_back((after[i] - before[i]) / (2 * step));
+    }
+    double largest = 0;
+    for (const double entry : at.matrix) largest = std::max(largest, std::abs(entry));
+    for (std::size_t i = 0; i < n; ++i)
+      for (std::size_t j = 0; j <= i; ++j) {
+        EXPECT_NEAR(at.matrix[i * (i + 1) / 2 + j], (derivative[j][i] + derivative[i][j]) / 2, 2e-8 * largest)
+            << element << option;
+        if (at.whole_matrix.empty()) continue;
+        EXPECT_NEAR(at.whole_matrix[i * n + j], derivative[j][i], 2e-8 * largest) << element << option;
+      }
+  }
+}
+
+TEST(ThermalStrain, OfPlaneStressIsThatOfABodyThatIsFreeAcross) {
+  const ElementRow &plate = *registry().find_element("C_PLAN/QUAD4"), &body = *registry().find_element("3D/HEXA8");
+  const Numbers x = shaken(lacon::catalog::cell(plate.cell)), y = shaken(lacon::catalog::cell(body.cell));
+  const auto at = [&](double across) {
+    return run(body, "ELAS/GREEN_LAGRANGE", y, moved_by(y, 3, {{{1.1, 0.05, 0}, {-0.02, 0.95, 0}, {0, 0, across}}}), {},
+               linear_hardening, false, false, 0.04);
+  };
+  double low = 0.5, high = 1.5;
+  for (int i = 0; i < 100; ++i) (at((low + high) / 2).state.stress[2] > 0 ? high : low) = (low + high) / 2;
+  const Numbers exact = at(low).state.stress,
+                found = run(plate, "ELAS/GREEN_LAGRANGE", x, moved_by(x, 2, {{{1.1, 0.05, 0}, {-0.02, 0.95, 0}, {0, 0, 1}}}),
+                            {}, linear_hardening, false, false, 0.04)
+                            .state.stress;
+  for (std::size_t i = 0; i < 4; ++i) EXPECT_NEAR(found[i], exact[i], 1e-12 * young);
+}
+
+TEST(ThermalStrain, AddsUpFromStateToState) {
+  // heated in one step or in two, at rest: the same stress
+  for (const std::string option : {"VMIS_ISOT_LINE/GDEF_LOG", "VMIS_ISOT_LINE/GROT_GDEP", "VMIS_ISOT_LINE/SIMO_MIEHE"}) {
+    const ElementRow& row = *registry().find_element("3D/HEXA8");
+    const Numbers x = shaken(lacon::catalog::cell(row.cell)),
+                  u = moved_by(x, 3, {{{1.02, 0.01, 0}, {0, 0.99, 0}, {0, 0, 1.01}}});
+    const auto heat = [&](double strain, const State& from) {
+      return run(row, option, x, u, from, never_flows, false, false, strain).state;
+    };
+    const Numbers once = heat(0.03, {}).stress, twice = heat(0.03, heat(0.01, {})).stress;
+    for (std::size_t i = 0; i < once.size(); ++i) EXPECT_NEAR(twice[i], once[i], 1e-12 * young) << option;
+  }
+}
+
 // ---------------------------------------------------------------------------------------------------- uniaxial tension
 
 /// Solve f(t) = 0 for an increasing f.

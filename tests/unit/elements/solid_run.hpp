@@ -15,6 +15,7 @@ inline const Numbers pieces = {0, 1, 40, 0.01, 1.4, 10, 0.05, 1.8, 0};  // three
 
 struct State {
   Numbers displacement, stress, variable;
+  double thermal = 0;  ///< strain, the same at all points
 };
 
 struct Answer {
@@ -25,7 +26,8 @@ struct Answer {
 
 /// One element, in every lane. @param x, u (n_nodes, dimension)  @param from the last state; empty vectors: natural
 inline Answer run(const ElementRow& row, const std::string& option, const Numbers& x, const Numbers& u, const State& from,
-                  const Numbers& curve = linear_hardening, bool elastic_matrix = false, bool stressless_matrix = false) {
+                  const Numbers& curve = linear_hardening, bool elastic_matrix = false, bool stressless_matrix = false,
+                  double thermal = 0) {
   const auto table = table_of(row);
   const lacon_kernel& kernel = registry().kernel(row, option, LACON_SOLID);
   const auto spread = [](const Numbers& values) {
@@ -68,13 +70,16 @@ inline Answer run(const ElementRow& row, const std::string& option, const Number
   batch.elastic_matrix = elastic_matrix;
   batch.stressless_matrix = stressless_matrix;
   batch.whole_matrix = whole_matrix.empty() ? nullptr : whole_matrix.data();
+  const Numbers thermal_strain(points * LACON_LANES, thermal), before_thermal(points * LACON_LANES, from.thermal);
+  if (thermal != 0) batch.thermal_strain = thermal_strain.data();
+  if (from.thermal != 0) batch.previous_thermal_strain = before_thermal.data();
   kernel.solid(&batch);
   const auto first = [](const Numbers& lanes) {
     Numbers values;
     for (std::size_t i = 3; i < lanes.size(); i += LACON_LANES) values.push_back(lanes[i]);  // of lane 3
     return values;
   };
-  return {first(matrix), first(whole_matrix), first(force), {u, first(stress), first(variable)}, error[3]};
+  return {first(matrix), first(whole_matrix), first(force), {u, first(stress), first(variable), thermal}, error[3]};
 }
 
 /// u = gradient x, in three dimensions or two.
