@@ -8,6 +8,7 @@
 
 #include "lacon/catalog/messages.hpp"
 #include "lacon/catalog/wording.hpp"
+#include "lacon/operators/affe_char/nodal_forces.hpp"
 #include "lacon/operators/affe_char/places.hpp"
 #include "lacon/operators/affe_char/relations.hpp"
 #include "lacon/operators/meshing/skin.hpp"
@@ -210,7 +211,8 @@ Load affe_char(const Mesh& mesh, const Model& model, Registry& registry, const B
   for (const char* const keyword : {"MECA_IMPO", "DDL_IMPO", "FACE_IMPO", "ARETE_IMPO"})
     for (const Keywords& factor : keywords.factors(keyword)) add_imposed(imposed, factor, model.dimension);
   load_nodes(scene, imposed, unknowns(), "CHARGE_4", load.imposed);
-  load_nodes(scene, keywords.factors("FORCE_NODALE"), forces, "CHARGE_5", load.nodal);
+  load_nodes(scene, along_the_mesh(scene, keywords.factors("FORCE_NODALE")), forces, "CHARGE_5", load.nodal);
+  load_edges(load, scene, keywords);
   load_cells(load, scene, keywords);
   load_gravity(load, scene, keywords);
   load_rotation(load, scene, keywords);

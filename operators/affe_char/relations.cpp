@@ -284,6 +284,7 @@ void add_relations(Load& load, const LoadScene& scene, const Keywords& keywords)
   for (const Keywords& factor : keywords.factors("LIAISON_SOLIDE")) make_rigid(load, scene, factor);
   for (const Keywords& factor : keywords.factors("LIAISON_OBLIQUE")) hold_oblique(load, scene, factor);
   for (const Keywords& factor : keywords.factors("LIAISON_MAIL")) tie_to_cells(load, scene, factor);
+  for (const Keywords& factor : keywords.factors("LIAISON_RBE3")) follow_on_average(load, scene, factor);
 }
 
 }  // namespace lacon

@@ -2,10 +2,12 @@
 
 #include <fmt/format.h>
 
+#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 
 #include "lacon/catalog/messages.hpp"
+#include "lacon/catalog/wording.hpp"
 #include "lacon/operators/affe_char/relations.hpp"
 #include "lacon/operators/fields/axes.hpp"
 #include "lacon/operators/fields/cell_locator.hpp"
@@ -75,6 +77,96 @@ void tie_to_cells(Load& load, const LoadScene& scene, const Keywords& factor) {
     inform("CHARGE_23", {{"keyword", factor.path("GROUP_MA_MAIT")},
                          {"count", std::to_string(outside)},
                          {"distance", fmt::format("{:.3g}", farthest)}});
+}
+
+namespace {
+
+/// The components of a DDL_ESCL, 'DX-DY-DZ', as places among the translations.
+std::vector<int> components_of(const Keywords& factor, const std::string& text) {
+  std::vector<int> found;
+  for (std::size_t begin = 0; begin <= text.size();) {
+    const std::size_t end = std::min(text.find('-', begin), text.size());
+    const auto at = std::find(std::begin(translation), std::end(translation), text.substr(begin, end - begin));
+    if (at == std::end(translation))
+      fail("CHARGE_24", {{"keyword", factor.path("DDL_ESCL")},
+                         {"reason", part("no_translation", {{"name", text.substr(begin, end - begin)}})}});
+    found.push_back(static_cast<int>(at - std::begin(translation)));
+    begin = end + 1;
+  }
+  return found;
+}
+
+/// One value a node, or one for all.
+template <class Value>
+const Value& of_node(const Keywords& factor, const char* keyword, const std::vector<Value>& values, std::size_t node,
+                     std::size_t n_nodes) {
+  if (values.size() != 1 && values.size() != n_nodes)
+    fail("CHARGE_11",
+         {{"keyword", factor.path(keyword)}, {"found", std::to_string(values.size())}, {"expected", std::to_string(n_nodes)}});
+  return values[values.size() == 1 ? 0 : node];
+}
+
+}  // namespace
+
+void follow_on_average(Load& load, const LoadScene& scene, const Keywords& factor) {
+  const std::string source = factor.path("DDL_MAIT");
+  const auto refuse = [&](const std::string& reason) { fail("CHARGE_24", {{"keyword", source}, {"reason", reason}}); };
+  for (const std::string& element : scene.model.elements)
+    if (const catalog::ElementRow* row = scene.registry.find_element(element); row && row->geometry == catalog::Geometry::axis)
+      refuse(part("no_rotation_in_axisymmetry"));
+  const std::vector<std::int32_t> masters = distinct_nodes(named_nodes(scene, factor, "_MAIT")),
+                                  slaves = distinct_nodes(named_nodes(scene, factor, "_ESCL"));
+  if (masters.size() != 1) refuse(part("one_master_node", {{"count", std::to_string(masters.size())}}));
+  const std::vector<std::string> followed = factor.texts("DDL_ESCL");
+  const std::vector<double> weights = factor.reals("COEF_ESCL");
+  const auto place = [&](std::int32_t node) {
+    const auto at = scene.mesh.point(static_cast<std::size_t>(node));
+    return Eigen::Vector3d(at[0], at[1], at[2]);
+  };
+  const Eigen::Vector3d origin = place(masters.front());
+  double size = 0;
+  for (const std::int32_t node : slaves) size = std::max(size, (place(node) - origin).norm());
+  if (!(size > 0)) size = 1;
+
+  // a rigid motion is t + w x r; rows of what it does to each followed displacement, lengths by the size
+  struct Row {
+    RelationTerm term;  ///< with the weight for its coefficient
+    Eigen::Matrix<double, 6, 1> motion;
+  };
+  std::vector<Row> rows;
+  Eigen::Matrix<double, 6, 6> normal = Eigen::Matrix<double, 6, 6>::Zero();
+  const bool in_plane = scene.mesh.dimension == 2;
+  for (std::size_t i = 0; i < slaves.size(); ++i) {
+    const Eigen::Vector3d r = (place(slaves[i]) - origin) / size;
+    const double weight = of_node(factor, "COEF_ESCL", weights, i, slaves.size());
+    for (const int d : components_of(factor, of_node(factor, "DDL_ESCL", followed, i, slaves.size()))) {
+      Eigen::Matrix<double, 6, 1> motion = Eigen::Matrix<double, 6, 1>::Zero();
+      motion[d] = 1;
+      for (int axis = in_plane ? 2 : 0; axis < 3; ++axis) motion[3 + axis] = Eigen::Vector3d::Unit(axis).cross(r)[d];
+      rows.push_back({{slaves[i], translation[d], weight}, motion});
+      normal += weight * motion * motion.transpose();
+    }
+  }
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix<double, 6, 6>> solver(normal);
+  const double least = 1e-10 * solver.eigenvalues().cwiseAbs().maxCoeff();
+  Eigen::Matrix<double, 6, 6> inverse = Eigen::Matrix<double, 6, 6>::Zero(), unknown = inverse;
+  for (int k = 0; k < 6; ++k) {
+    const Eigen::Matrix<double, 6, 1> mode = solver.eigenvectors().col(k);
+    if (solver.eigenvalues()[k] > least)
+      inverse += mode * mode.transpose() / solver.eigenvalues()[k];
+    else
+      unknown += mode * mode.transpose();
+  }
+  for (const std::string& component : factor.texts("DDL_MAIT")) {
+    const auto d = std::find(std::begin(translation), std::end(translation), component) - std::begin(translation);
+    if (unknown.row(d).norm() > 1e-8) refuse(part("motion_not_said", {{"component", component}}));
+    std::vector<RelationTerm> terms{{masters.front(), component, 1.0}};
+    for (const Row& row : rows) {
+      const double coefficient = row.term.coefficient * inverse.row(d).dot(row.motion);
+      if (std::abs(coefficient) > round_off) terms.push_back({row.term.node, row.term.component, -coefficient});
+    }
+    add_relation(load, scene, source, std::move(terms), {});
+  }
 }
 
 }  // namespace lacon

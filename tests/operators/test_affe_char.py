@@ -311,6 +311,62 @@ class Loads(OperatorTest):
         self.refuses("CHARGE_3", {"LIAISON_OBLIQUE": [{"NOEUD": ["N1"], "ANGL_NAUT": [10.0], "DZ": 0.0}]}, "DZ", "N1")
         self.refuses("MODIREPERE_5", {"LIAISON_OBLIQUE": [{"NOEUD": ["N1"], "ANGL_NAUT": [0.0, 20.0, 0.0], "DX": 0.0}]}, "ANGL_NAUT")
 
+    def nodal(self):
+        """(node, component) -> sum of the forces."""
+        sums = {}
+        with h5py.File(self.path("load_4")) as file:
+            group = file["nodal_force"]
+            names = [text(n) for n in group["component"][()]]
+            for n, c, v in zip(group["node"][()], group["component_index"][()], group["value"][()]):
+                sums[int(n), names[c]] = sums.get((int(n), names[c]), 0.0) + v
+        return sums
+
+    def test_forces_in_axes_of_their_own(self):
+        """ANGL_NAUT: the first axis is 30 degrees above x."""
+        self.meca(FORCE_NODALE=[{"GROUP_NO": ["CORNER"], "ANGL_NAUT": [30.0], "FX": 2.0}, {"NOEUD": ["N2"], "ANGL_NAUT": [90.0], "FY": 3.0}])
+        found = self.nodal()
+        for place, value in {(0, "FX"): 3**0.5, (0, "FY"): 1.0, (1, "FX"): -3.0, (1, "FY"): 0.0}.items():
+            self.assertAlmostEqual(found[place], value, delta=1e-14)
+
+    def test_forces_along_edges_in_space(self):
+        """A straight edge of length 3 gives its ends a sixth and its middle two thirds; edges that meet add up, FORCE_NODALE too; of two occurrences
+        the later one holds."""
+        points = [[0, 0, 0], [3, 0, 0], [0, 1, 0], [0, 0, 1], [1.5, 0, 0], [3, 4, 0]]
+        self.write_mesh("mesh_1", points, [("TETRA4", [0, 1, 2, 3]), ("SEG3", [0, 1, 4]), ("SEG2", [1, 5]), ("POI1", [4]), ("POI1", [5])],
+                        cell_groups={"BODY": [0], "EDGES": [1, 2], "LAST": [2]}, dimension=3)
+        self.write_model("model_3", "mesh_1", ["3D/TETRA4", "DIS_T/POI1"], [0, -1, -1, 1, 1], dimension=3)
+        run = self.meca(FORCE_ARETE=[{"GROUP_MA": ["EDGES"], "FZ": 6.0}, {"GROUP_MA": ["LAST"], "FZ": 1.0, "FX": 2.0}],
+                        FORCE_NODALE=[{"NOEUD": ["N1"], "FZ": 0.5}])
+        self.assertEqual(run.status, 0, run.stderr)
+        expected = {(0, "FZ"): 3.5, (4, "FZ"): 12.0, (1, "FZ"): 3.0 + 2.0, (5, "FZ"): 2.0, (1, "FX"): 4.0, (5, "FX"): 4.0}
+        found = self.nodal()
+        self.assertEqual(set(found), set(expected))
+        for place, value in expected.items():
+            self.assertAlmostEqual(found[place], value, delta=1e-13)
+        self.refuses("CHARGE_6", {"FORCE_ARETE": [{"GROUP_MA": ["BODY"], "FX": 1.0}]}, "TETRA4", "M1")
+
+    def test_a_node_that_follows_others_on_average(self):
+        """LIAISON_RBE3: rigid motions of the others are its own, whatever the weights; alike and around it, it is their weighted mean."""
+        ring = {"GROUP_NO_MAIT": "MIDDLE", "DDL_MAIT": ["DX", "DY"], "NOEUD_ESCL": ["N1", "N3", "N6", "N4"], "DDL_ESCL": ["DX-DY"]}
+        self.write_mesh("mesh_1", [*COORDINATES[:6], [1.0, 0.5]], [*CELLS[:6], ("POI1", [6])], cell_groups={**GROUPS, "LOOSE": [6], "RIGHT": [5]},
+                        node_groups={**NODES, "MIDDLE": [6]})
+        self.write_model("model_3", "mesh_1", ["D_PLAN/QUAD4", "D_PLAN/SEG2", "2D_DIS_T/POI1"], [0, 0, 1, 1, 1, 1, 2])
+        points = np.array([*COORDINATES[:6], [1.0, 0.5]])
+        for weights in ([1.0], [1.0, 2.0, 3.0, 7.0]):
+            run = self.meca(LIAISON_RBE3=[{**ring, "COEF_ESCL": weights}])
+            self.assertEqual(run.status, 0, run.stderr)
+            rows, values = self.relations(14, 2)
+            self.assertEqual((len(rows), np.abs(values).max()), (2, 0))
+            for motion in (np.tile([1.0, 0.0], 7), np.tile([0.0, 1.0], 7), (points[:, ::-1] * [-1, 1]).ravel()):
+                np.testing.assert_allclose(rows @ motion, 0, atol=1e-14)
+            if len(weights) == 1:
+                np.testing.assert_allclose(rows[0].reshape(7, 2)[[0, 2, 5, 3], 0], -0.25, atol=1e-14)
+        self.meca(LIAISON_RBE3=[{"NOEUD_MAIT": "N7", "DDL_MAIT": ["DX"], "GROUP_NO_ESCL": ["BOTTOM"], "DDL_ESCL": ["DX-DY", "DX", "DX-DY"], "COEF_ESCL": [2.0]}])
+        self.assertEqual(len(self.relations(14, 2)[0]), 1)
+        self.refuses("CHARGE_24", {"LIAISON_RBE3": [{**ring, "NOEUD_ESCL": ["N1"], "COEF_ESCL": [1.0]}]}, "DX")
+        self.refuses("CHARGE_24", {"LIAISON_RBE3": [{**ring, "DDL_ESCL": ["DX-DRZ"], "COEF_ESCL": [1.0]}]}, "DRZ")
+        self.refuses("CHARGE_11", {"LIAISON_RBE3": [{**ring, "COEF_ESCL": [1.0, 2.0]}]}, "COEF_ESCL")
+
     def test_nodes_tied_to_the_cells_that_hold_them(self):
         """The loose node stands in the left cell at a quarter of its width and three quarters of its height; the cell's own nodes are tied
         to nothing; where it stands outside, it moves as the nearest point."""
