@@ -12,6 +12,7 @@
 #include "lacon/assembly/loose_motions.hpp"
 #include "lacon/assembly/petsc/exchange.hpp"
 #include "lacon/assembly/petsc/ranks.hpp"
+#include "lacon/assembly/twice_the_digits.hpp"
 #include "lacon/catalog/messages.hpp"
 #include "lacon/catalog/wording.hpp"
 
@@ -20,6 +21,11 @@ namespace {
 
 /// What resists a motion less, of what resists most, iterations cannot tell from nothing.
 constexpr double hardly_resisted = 1e-6;
+
+/// To what of the largest value solutions by a factor of several processes are rounded, and to what they are known before; no
+/// power of two, so that values which are sums of a few of those lie between two multiples by chance alone.
+constexpr double rounded_to = 0.7 * 0x1p-50, exact_to = 1e-24;
+constexpr int most_passes = 8;
 
 std::string program_beside_this() { return std::filesystem::read_symlink("/proc/self/exe").parent_path() / "lacon_petsc"; }
 
@@ -122,6 +128,46 @@ struct PetscEngine::State {
     return memory;
   }
 
+  /// In place. @return why there is no solution, in words
+  std::string solve_once(double share, std::span<double> right_side, Solution& solution) {
+    const SharedMemory memory(right_side.size_bytes());
+    const std::span<double> shared{reinterpret_cast<double*>(memory.data()), right_side.size()};
+    std::ranges::copy(right_side, shared.begin());
+    std::istringstream said(ask(fmt::format("solve {:.3e} {}", share, memory.path())));
+    std::string word, left, why;
+    said >> word;
+    if (word != "failed") said >> solution.iterations >> left;
+    std::getline(said >> std::ws, why);
+    if (word != "converged") return word == "failed" ? why : words_of(why, solution.iterations, left);
+    std::ranges::copy(shared, right_side.begin());
+    solution.residual = std::stod(left);
+    return {};
+  }
+
+  /// Likewise by a factor, which MUMPS sums up in another order in every run.
+  std::string solve_to_the_last_bit(std::span<double> right_side, Solution& solution) {
+    TwiceTheDigits x(right_side.size());
+    std::vector<double> step(right_side.begin(), right_side.end()), grain(right_side.size());
+    for (int pass = 0; pass < most_passes; ++pass) {
+      if (std::string why = solve_once(options.tolerance, step, solution); !why.empty()) {
+        if (pass == 0) return why;
+        break;
+      }
+      x.add(step);
+      // displacements and multipliers have sizes of their own
+      double largest[2] = {0, 0}, moved[2] = {0, 0};
+      for (std::size_t i = 0; i < place.size(); ++i) {
+        largest[place[i] < 0] = std::max(largest[place[i] < 0], std::abs(x.leading()[i]));
+        moved[place[i] < 0] = std::max(moved[place[i] < 0], std::abs(step[i]));
+      }
+      for (std::size_t i = 0; i < place.size(); ++i) grain[i] = rounded_to * largest[place[i] < 0];
+      if (moved[0] <= exact_to * largest[0] && moved[1] <= exact_to * largest[1]) break;
+      step = x.residual(*matrix, right_side);
+    }
+    x.round(right_side, grain);
+    return {};
+  }
+
   /// A factor instead. @param why
   Factorisation factorise_directly(const std::string& why) {
     direct = std::make_unique<MumpsEngine>(options.direct);
@@ -161,6 +207,7 @@ Factorisation PetscEngine::factorise(const SparseMatrix& matrix) {
   s.matrix = &matrix;
   s.direct.reset();
   if (!s.loose->of(matrix, hardly_resisted).empty()) return s.factorise_directly(part("free_rigid_motion"));
+  s.ask("forget");
   std::optional<SharedMemory> memory(s.system());
   std::string said = s.ask("set up " + memory->path());
   memory.reset();  // before the multigrid takes most
@@ -178,22 +225,10 @@ Solution PetscEngine::solve(std::span<double> right_side) { return solve_to(0, r
 Solution PetscEngine::solve_to(double share, std::span<double> right_side) {
   State& s = *state_;
   if (s.direct) return s.direct->solve(right_side);
-  share = s.is_iterative() ? std::max(share, s.options.tolerance) : s.options.tolerance;
-  const SharedMemory memory(right_side.size_bytes());
-  const std::span<double> shared{reinterpret_cast<double*>(memory.data()), right_side.size()};
-  std::ranges::copy(right_side, shared.begin());
-  std::istringstream said(s.ask(fmt::format("solve {:.3e} {}", share, memory.path())));
-  std::string word, left, why;
   Solution solution;
-  said >> word;
-  if (word != "failed") said >> solution.iterations >> left;
-  std::getline(said >> std::ws, why);
-  if (word == "converged") {
-    std::ranges::copy(shared, right_side.begin());
-    solution.residual = std::stod(left);
-    return solution;
-  }
-  if (word != "failed") why = words_of(why, solution.iterations, left);
+  const std::string why = s.is_iterative() ? s.solve_once(std::max(share, s.options.tolerance), right_side, solution)
+                                           : s.solve_to_the_last_bit(right_side, solution);
+  if (why.empty()) return solution;
   const Factorisation again = s.factorise_directly(why);
   Solution second;
   if (again.null_pivots.empty()) second = s.direct->solve(right_side);

@@ -1,5 +1,6 @@
 #pragma once
 // What an operator tells the processes of PETSc, in memory that they share, and what lines of text say about it:
+//   forget         what was set up         -> forgotten: its memory is free
 //   set up PATH    of a system             -> taken, when its memory is of no more use, and behind it ready,
 //                                             ready NEGATIVE-PIVOTS, or failed WHY; or failed WHY at once
 //   solve SHARE PATH   of a right side (n), of which that share may be left

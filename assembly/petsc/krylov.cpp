@@ -311,11 +311,9 @@ KrylovResult Krylov::solve(std::span<double> right_side, double share) {
   checked(VecDuplicate(solution_, step.out()));
   Mat const matrix = n_multipliers_ ? matrix_ : k_;
   left = size;
-  const double goal = is_direct() ? 1e-15 : share;  // a factor is refined as far as that goes
-  for (int round = 0; round < most_rounds && left > goal * size; ++round) {
-    const double before = left;
+  for (int round = 0; round < most_rounds && left > share * size; ++round) {
     const int more = options_.iterations - result.iterations;
-    checked(KSPSetTolerances(ksp_, goal * size / left, PETSC_DEFAULT, PETSC_DEFAULT, std::max(1, more)));
+    checked(KSPSetTolerances(ksp_, share * size / left, PETSC_DEFAULT, PETSC_DEFAULT, std::max(1, more)));
     checked(KSPSolve(ksp_, residual_, step));
     KSPConvergedReason reason = KSP_CONVERGED_ITERATING;
     PetscInt iterations = 0;
@@ -328,11 +326,6 @@ KrylovResult Krylov::solve(std::span<double> right_side, double share) {
     checked(VecNorm(residual_, NORM_2, &left));
     result.failure = reason < 0 ? KSPConvergedReasons[reason] : "";
     if (reason < 0 || !std::isfinite(left)) break;
-    if (is_direct() && left > 0.5 * before) {
-      if (left > before) checked(VecAXPY(solution_, -1, step));
-      left = std::min(left, before);
-      break;
-    }
   }
   result.residual = size > 0 ? left / size : 0;
   if (left <= share * size)

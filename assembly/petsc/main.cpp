@@ -64,9 +64,11 @@ void serve(const KrylovOptions& options) {
   for (std::string line = next_line(); !line.empty(); line = next_line()) {
     const std::string path = line.substr(line.rfind(' ') + 1);
     try {
-      if (line.starts_with("set up ")) {
+      if (line == "forget") {
         krylov.reset();
         malloc_trim(0);  // what it had goes back to the system
+        answer("forgotten");
+      } else if (line.starts_with("set up ")) {
         krylov = taken(path, options);
         answer("taken");
         krylov->set_up();
