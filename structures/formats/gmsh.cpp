@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "lacon/catalog/messages.hpp"
+#include "lacon/catalog/wording.hpp"
 #include "lacon/structures/formats/file_names.hpp"
 #include "lacon/structures/formats/text_file.hpp"
 
@@ -133,8 +134,8 @@ class GmshReader {
       if (section == "ELM") elements = true, elements_1();
       source_.skip_section();
     }
-    if (!nodes) source_.damaged("the file has no section $Nodes");
-    if (!elements || cells_.empty()) source_.damaged("the file has no cells");
+    if (!nodes) source_.damaged(part("gmsh_no_nodes"));
+    if (!elements || cells_.empty()) source_.damaged(part("file_no_cells"));
   }
 
   /// What goes before the sections of a file of version 2 or later; version 1 has nothing.

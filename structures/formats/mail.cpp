@@ -14,6 +14,7 @@
 
 #include "lacon/catalog/messages.hpp"
 #include "lacon/catalog/text.hpp"
+#include "lacon/catalog/wording.hpp"
 #include "lacon/structures/formats/file_names.hpp"
 #include "lacon/structures/formats/text_file.hpp"
 #include "lacon/structures/names.hpp"
@@ -260,8 +261,8 @@ std::vector<std::int32_t> numbers_of(const std::vector<std::string_view>& names,
 }
 
 Mesh MailReader::finish(std::string name) {
-  if (nodes_.empty()) words_.damaged(words_.line(), "the file has no nodes (COOR_2D, COOR_3D)");
-  if (cells_.empty()) words_.damaged(words_.line(), "the file has no cells");
+  if (nodes_.empty()) words_.damaged(words_.line(), part("mail_no_nodes"));
+  if (cells_.empty()) words_.damaged(words_.line(), part("file_no_cells"));
   Mesh mesh;
   mesh.name = std::move(name);
   mesh.coordinates.resize(coordinates_.size());

@@ -8,6 +8,7 @@
 
 #include "lacon/catalog/messages.hpp"
 #include "lacon/catalog/text.hpp"
+#include "lacon/catalog/wording.hpp"
 #include "lacon/structures/formats/file_names.hpp"
 #include "lacon/structures/formats/med.hpp"
 #include "lacon/structures/formats/med_layout.hpp"
@@ -35,8 +36,7 @@ std::uint64_t bytes_of_file(const H5Group& root) {
 }
 
 hdf5::Reader open(const fs::path& file) {
-  if (first_bytes(file, 8) != "\x89HDF\r\n\x1a\n")
-    fail("MED_2", {{"file", file.string()}, {"reason", "it is not an HDF5 file"}});
+  if (first_bytes(file, 8) != "\x89HDF\r\n\x1a\n") fail("MED_2", {{"file", file.string()}, {"reason", part("file_not_hdf5")}});
   return hdf5::Reader(file);
 }
 
@@ -47,15 +47,13 @@ hdf5::Reader open_med(const fs::path& file) {
       return open(file);
     } catch (const Error& error) {
       if (error.message().id != "BASE_2") throw;
-      fail("MED_1", {{"file", file.string()}, {"reason", "HDF5 cannot open it; it may be cut off, or being written"}});
+      fail("MED_1", {{"file", file.string()}, {"reason", part("file_cut_off")}});
     }
   }();
-  if (!root.is_group("INFOS_GENERALES"))
-    fail("MED_2", {{"file", file.string()}, {"reason", "it is HDF5, but has no group INFOS_GENERALES"}});
+  if (!root.is_group("INFOS_GENERALES")) fail("MED_2", {{"file", file.string()}, {"reason", part("med_no_header")}});
   const H5Group about = root.open("INFOS_GENERALES");
-  for (const char* part : {"MAJ", "MIN", "REL"})
-    if (!about.has_attribute(part))
-      fail("MED_2", {{"file", file.string()}, {"reason", "its INFOS_GENERALES do not say the version"}});
+  for (const char* number : {"MAJ", "MIN", "REL"})
+    if (!about.has_attribute(number)) fail("MED_2", {{"file", file.string()}, {"reason", part("med_no_version")}});
   const std::int64_t major = about.integer("MAJ");
   if (major < 2 || major > 4) {
     const std::string version =
@@ -129,7 +127,7 @@ H5Group MeshReader::first_step(const H5Group& mesh) const {
     const std::pair key(step.integer("NDT"), step.integer("NOR"));
     if (first.empty() || key < lowest) first = child, lowest = key;
   }
-  if (first.empty()) damaged("it has no computation step");
+  if (first.empty()) damaged(part("med_no_step"));
   return mesh.open(first);
 }
 
@@ -181,10 +179,10 @@ std::int64_t MeshReader::rows_of(const H5Group& group, const char* dataset, std:
 
 void MeshReader::read_nodes(const H5Group& step, std::int64_t space) {
   const H5Group nodes = entities(step, "NOE", "nodes");
-  if (!nodes.has("COO") || nodes.is_group("COO")) damaged("its nodes have no coordinates");
+  if (!nodes.has("COO") || nodes.is_group("COO")) damaged(part("mesh_no_coordinates"));
   std::int64_t count = rows_of(nodes, "COO", static_cast<std::size_t>(space));
   if (count < 0) damaged("the dataset COO of its nodes has no attribute NBR");
-  if (count == 0) damaged("it has no nodes");
+  if (count == 0) damaged(part("mesh_no_nodes"));
   if (count > std::numeric_limits<std::int32_t>::max() / 4) unsuitable("it has " + std::to_string(count) + " nodes");
   const auto n = static_cast<std::size_t>(count);
   const auto axes = static_cast<std::size_t>(space);
@@ -205,7 +203,7 @@ void MeshReader::read_nodes(const H5Group& step, std::int64_t space) {
 }
 
 void MeshReader::read_cells(const H5Group& step) {
-  if (!step.is_group("MAI")) damaged("it has no cells");
+  if (!step.is_group("MAI")) damaged(part("mesh_no_cells"));
   const H5Group all = step.open("MAI");
   const std::vector<std::string> present = all.children();
   for (const std::string& type : present) {
@@ -262,7 +260,7 @@ void MeshReader::read_cells(const H5Group& step) {
     offset.resize(offset.size() + n);
     for (auto own = offset.end() - static_cast<std::ptrdiff_t>(n); own != offset.end(); ++own) *own = end += row.n_nodes;
   }
-  if (mesh_.n_cells() == 0) damaged("it has no cells");
+  if (mesh_.n_cells() == 0) damaged(part("mesh_no_cells"));
 }
 
 MeshReader::Families MeshReader::families(const char* kind) {
@@ -331,8 +329,8 @@ Mesh MeshReader::read() {
   mesh_.name = file_names_.read(name_);
   const std::int64_t space = integer(group, version_ == 2 && !group.has_attribute("ESP") ? "DIM" : "ESP", "it");
   if (space != 2 && space != 3) unsuitable("its points have " + std::to_string(space) + " coordinates");
-  if (group.has_attribute("TYP") && group.integer("TYP") != 0) unsuitable("it is a structured grid");
-  if (group.has_attribute("REP") && group.integer("REP") != 0) unsuitable("its coordinates are not Cartesian");
+  if (group.has_attribute("TYP") && group.integer("TYP") != 0) unsuitable(part("mesh_is_grid"));
+  if (group.has_attribute("REP") && group.integer("REP") != 0) unsuitable(part("mesh_not_cartesian"));
   const H5Group step = first_step(group);
   node_families_ = families("NOEUD");
   cell_families_ = families("ELEME");

@@ -7,6 +7,7 @@
 #include <system_error>
 
 #include "lacon/catalog/messages.hpp"
+#include "lacon/catalog/wording.hpp"
 #include "lacon/structures/files.hpp"
 
 namespace lacon {
@@ -22,14 +23,14 @@ std::string read_text(const fs::path& file) {
 std::string first_bytes(const fs::path& mesh_file, std::size_t count) {
   std::error_code error;
   const auto refuse = [&](const std::string& reason) { fail("MED_1", {{"file", mesh_file.string()}, {"reason", reason}}); };
-  if (!fs::exists(mesh_file, error)) refuse("there is no such file");
-  if (fs::is_directory(mesh_file, error)) refuse("it is a folder");
+  if (!fs::exists(mesh_file, error)) refuse(part("file_not_there"));
+  if (fs::is_directory(mesh_file, error)) refuse(part("file_is_folder"));
   std::ifstream stream(mesh_file, std::ios::binary);
   if (!stream) refuse(std::strerror(errno));
   std::string bytes(count, '\0');
   stream.read(bytes.data(), static_cast<std::streamsize>(count));
   bytes.resize(static_cast<std::size_t>(stream.gcount()));
-  if (bytes.empty()) refuse("it is empty");
+  if (bytes.empty()) refuse(part("file_is_empty"));
   return bytes;
 }
 

@@ -10,8 +10,8 @@ import unittest
 SOURCE = pathlib.Path(os.environ["LACON_SOURCE_DIR"])
 BIN = pathlib.Path(os.environ["LACON_BIN"])
 ROOMS = ("structures", "elements", "pairing", "assembly", "operators")
-#: English alone, so far: why a file or a plug-in cannot be read (reasons for who writes files and plug-ins)
-ENGLISH = ("structures/formats/", "structures/storage/", "structures/hdf5.cpp", "structures/files.cpp", "structures/field.cpp", "structures/order.cpp", "structures/table.cpp",
+#: English alone, so far: what is wrong inside a file or a plug-in (reasons for who writes them)
+ENGLISH = ("structures/formats/", "structures/storage/", "structures/hdf5.cpp", "structures/field.cpp", "structures/order.cpp", "structures/table.cpp",
            "elements/registry.cpp", "elements/plugin_rows.cpp")
 #: statements whose words no user of a study reads (defects, names of phases and counts, command lines), or that print tables
 OTHERWISE = r"static_assert|--status|logic_error|invalid_argument|runtime_error|Phase |add_to_count|CLI|add_option|add_flag|fmt::print|run_operator|run_program|\"expected\""
