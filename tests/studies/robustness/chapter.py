@@ -35,7 +35,6 @@ REASONS = {
     "tips": "a corner passes over coarse patches of a slope, which take the load over from one another; statuses change several times a step",
     "polygon": "four iterations of quadratic convergence in each of 43 steps, five where a corner goes over to another patch",
     "difficult": "sliding steps of a whole cell: the prediction, with the motion imposed at one end alone, flows where the solution does not",
-    "peer": "two iterations",
     "corner": "patches of the plate hold the average height of what is above them, and this changes as the tool moves along: Fx/Fy is (height at "
               "one end - height at the other) / length of the patch; the tool as slave has no such force",
     "cycle": "PETIT_REAC integrates its law at the end of a step, as the peer does, and is of the first order: half of it with steps half as long (guide)",
@@ -122,7 +121,8 @@ def section(figures=None):
 PETIT and GREEN_LAGRANGE (plastic ones PETIT and PETIT_REAC), either side slave. ITER_GLOB_MAXI is 60 (its default of 10 where a force drives), all other
 criteria and keywords of Newton's method are defaults. An iteration is a solution of the linear system; lost ones belong to steps that were cut or
 never solved, and count in what is asked. "Before": contact forces along the slave's normal, frozen; where a force drives, statuses alone move the edge of a
-contact, by one patch an iteration, and a factorisation's pivots alone say what is loose. Rows that are there once have not changed since.
+contact, by one patch an iteration, and a factorisation's pivots alone say what is loose; where ends are
+aligned, forces jump when they pass each other. Rows that are there once have not changed since.
 
 {table}
 
