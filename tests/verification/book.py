@@ -315,6 +315,19 @@ thinner section has 0.99 of the area). At the end the neck has {width["neck"]:.3
 """
 
 
+def extrusion_section(_runner):
+    from test_extrusion import ENTRY, EXIT, SLOPE, YIELD, Extrusion, bounds
+
+    lower, upper = bounds()
+    steady = [force for way, force in of_test(Extrusion, "forces") if way > 1.35]
+    return f"""## Extrusion
+
+A billet of the half height {ENTRY:.0f} is pushed through a smooth die that leaves {EXIT} of it, in plane strain and without friction (D_PLAN_SI, QUAD8, GDEF_LOG; yield stress {YIELD:.0f},
+{SLOPE:.0f} of it more for each unit of strain). Theory: limit analysis of a rigid plastic material without hardening. The work of a pure stretch, {lower:.1f}, is less than any flow takes; that
+of v_x = 1 / h, v_y = y h' / h^2, which follows the die, is {upper:.1f}, more than the flow takes (upper bound theorem). Found where the flow is steady: {min(steady):.1f} to {max(steady):.1f}.
+"""
+
+
 def robustness_section(runner):
     return chapter.section()
 
@@ -325,7 +338,7 @@ def main():
     try:
         sections = [make(runner) for make in (patch_section, current_section, space_section, degree_section, materials_section,
                                               convergence_section, peer_section, orders_section, hertz_meshes_section, roller_section,
-                                              hertz_section, families_section, press_fit_section, large_strain_section, robustness_section)]
+                                              hertz_section, families_section, press_fit_section, large_strain_section, extrusion_section, robustness_section)]
     finally:
         runner.doCleanups()
     text = "# Verification\n\nWritten by `python3 tests/verification/book.py`, which runs the studies; the same studies are tests.\n\n" + "\n".join(sections)
