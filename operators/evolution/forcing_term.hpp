@@ -9,8 +9,7 @@ class ForcingTerm {
  public:
   void start_instant() { last_residual_ = 0; }
   /// For the next iteration of an instant: what share of the right side its linear solution may leave; 0: as little as the
-  /// engine leaves, where forces are not in balance yet: a small residual of soft bodies is no small error of displacements,
-  /// and a matrix that is no exact derivative makes more iterations of it.
+  /// engine leaves, where forces are not in balance yet and statuses stay.
   /// @param line what the last iteration has left  @param rough statuses are changing: its digits will be of no use
   double next(const IterationReport& line, bool rough);
 
