@@ -130,7 +130,7 @@ class Files(unittest.TestCase):
             if factors:
                 factor = chance.choice(factors)
                 own = list(row["keyword"][factor]["keyword"])
-                given[factor] = _F(**{chance.choice(own): chance.choice(values) for _ in range(3)})
+                given[factor] = _F(**{chance.choice(own): chance.choice(values) for _ in range(3)} if own else {})
             runs += 1
             try:
                 checker.complete(name, row, given, "study.comm:1")

@@ -112,6 +112,15 @@ class Reader(unittest.TestCase):
         self.assertAlmostEqual((patches.pressure * patches.area).sum() / force, 1.0, delta=0.02)
         self.assertTrue((patches.gap[patches.status == 0] > 0.0).all())
 
+    def test_masters_that_something_has_touched_are_refused(self):
+        with tempfile.TemporaryDirectory() as folder:
+            base = shutil.copytree(self.base.folder, pathlib.Path(folder) / "copy.base")
+            (path,) = base.glob("result_*/CONT_ELEM_4.masters.h5")
+            spoilt = bytearray(path.read_bytes())
+            spoilt[len(spoilt) // 2] ^= 1
+            path.write_bytes(spoilt)
+            self.refused("BASE_5", lambda: open_base(base)["RESULT"].contact().masters)
+
     @unittest.skipUnless(meshio, "no meshio")
     def test_meshio_gets_what_it_reads_from_our_own_files(self):
         made, read = self.result.to_meshio(), meshio.read(next(self.folder.glob("result_*.vtu")))

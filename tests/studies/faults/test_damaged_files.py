@@ -27,7 +27,7 @@ class Damaged(SmallStudy):
             program, text = order.name.split(".")[0].partition("-")[2], order.read_text(encoding="utf-8")
             for path in sorted(self.base.rglob("*.h5")):
                 concept = path.relative_to(self.base).parts[0].removesuffix(".h5")
-                named = f'"{concept}"' in text.split('"keywords"')[1] and path.parent.name != "kept"
+                named = f'"{concept}"' in text.split('"keywords"')[1] and path.parent.name != "kept" and not path.name.endswith(".masters.h5")
                 if named and (path.name == "index.h5" or path.parent == self.base or program == "impr_resu"):
                     pairs.append((path, LACON.parent / program, order))
         return pairs

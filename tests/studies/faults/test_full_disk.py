@@ -18,7 +18,7 @@ SHIM = pathlib.Path(os.environ["LACON_BINARY_DIR"]).resolve() / "tests/full_disk
 PLENTY = 1 << 40
 def first_name(file):
     """What was begun twice has another number, result_12, and a field of another name, SIGM_NOEU_0_2.h5."""
-    return re.sub(r"(_\d+)_\d+(?=\.h5$)", r"\1", re.sub(r"result_\d+", "result", file))
+    return re.sub(r"(_\d+)_\d+(?=(\.masters)?\.h5$)", r"\1", re.sub(r"result_\d+", "result", file))
 
 
 def fields(base):
