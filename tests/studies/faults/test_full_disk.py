@@ -16,15 +16,28 @@ from .small_study import SmallStudy  # noqa: E402
 
 SHIM = pathlib.Path(os.environ["LACON_BINARY_DIR"]).resolve() / "tests/full_disk.so"
 PLENTY = 1 << 40
-def first_name(file):
-    """What was begun twice has another number, result_12, and a field of another name, SIGM_NOEU_0_2.h5."""
-    return re.sub(r"(_\d+)_\d+(?=(\.masters)?\.h5$)", r"\1", re.sub(r"result_\d+", "result", file))
+
+
+def naming(files, base=""):
+    """How files of a study are called whatever was begun twice: by the place of their concept among those there are, not its number, and
+    SIGM_NOEU_0_2.h5 as SIGM_NOEU_0.h5. @param base what names of concepts stand behind"""
+    concept = re.compile(rf"{re.escape(base)}(kept/)?([a-z_]+)_(\d+)(?=[./]|$)")
+    numbers = sorted({int(found[3]) for found in map(concept.match, files) if found})
+
+    def name(file):
+        if found := concept.match(file):
+            file = f"{base}{found[1] or ''}{found[2]}_{numbers.index(int(found[3]))}{file[found.end():]}"
+        return re.sub(r"(_\d+)_\d+(?=(\.masters)?\.h5$)", r"\1", file)
+
+    return name
 
 
 def fields(base):
-    """What a base holds, without the names of files, which the index of a result and its copy in kept/ know."""
-    return {(first_name(file), name): value for (file, name), value in datasets(base).items()
-            if not (file.endswith("index.h5") or file.startswith("kept/"))}
+    """What a base holds, without names of files and concepts, which the index of a result, its copy in kept/ and a material field know."""
+    found = datasets(base)
+    called = naming({file for file, _ in found})
+    return {(called(file), name): value for (file, name), value in found.items()
+            if not (file.endswith("index.h5") or file.startswith("kept/") or name == "materials")}
 
 
 class FullDisk(SmallStudy):
@@ -34,7 +47,8 @@ class FullDisk(SmallStudy):
         return self.run_small(name, LD_PRELOAD=str(SHIM), LACON_TEST_DISK=str(self.folder / "left"))
 
     def files(self, name):
-        return {str(path.relative_to(self.folder)) for path in self.folder.rglob("*") if path.relative_to(self.folder).parts[0].startswith(name)}
+        found = {str(path.relative_to(self.folder)) for path in self.folder.rglob("*") if path.relative_to(self.folder).parts[0].startswith(name)}
+        return set(map(naming(found, f"{name}.base/"), found))
 
     def fill(self, levels):
         """The study on disks that are full after a share of what it writes, and again with room enough."""
@@ -57,7 +71,7 @@ class FullDisk(SmallStudy):
                 self.assertEqual(again.returncode, 0, again.stdout + again.stderr)
                 found = fields(self.folder / f"{name}.base")
                 self.assertEqual([key for key in found.keys() | expected.keys() if found.get(key) != expected.get(key)], [])
-                self.assertEqual({first_name(file.replace(name, "whole")) for file in self.files(name)}, set(map(first_name, self.files("whole"))))
+                self.assertEqual({file.replace(name, "whole") for file in self.files(name)}, self.files("whole"))
 
 
 class Short(FullDisk):
