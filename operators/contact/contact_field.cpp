@@ -90,7 +90,8 @@ PairedMasters paired_masters(const Mesh& mesh, const Contact& contact, const Con
         masters.cell.push_back(cell);
         masters.share.push_back(0);
       }
-      masters.share.back() += geometry.coverage(patch) * measure / whole[patch];
+      // on the axis of revolution couples have no measure
+      if (whole[patch] > 0) masters.share.back() += geometry.coverage(patch) * measure / whole[patch];
     }
     masters.offset.push_back(static_cast<std::int64_t>(masters.cell.size()));
   }

@@ -5,6 +5,8 @@
 
 #include <cmath>
 #include <map>
+#include <tuple>
+#include <utility>
 
 #include "lacon/catalog/messages.hpp"
 #include "lacon/operators/contact/contact_field.hpp"
@@ -362,6 +364,18 @@ TEST_F(Touching, ContElemHoldsWhatThePatchesCarry) {
   Field elsewhere = field;
   elsewhere.support = {0};
   EXPECT_THROW(patches_of(elsewhere, mesh, contact, "RESU"), Error);
+}
+
+TEST_F(Touching, CouplesWithoutMeasureCoverNothing) {
+  // turned so that both skins lie on the axis of revolution, where lengths weigh nothing
+  for (std::size_t node = 0; node < mesh.n_nodes(); ++node)
+    std::tie(mesh.coordinates[3 * node], mesh.coordinates[3 * node + 1]) =
+        std::pair(mesh.coordinates[3 * node + 1], -mesh.coordinates[3 * node]);
+  model.elements = {"AXIS/SEG3", "AXIS/QUAD8"};
+  ContactState now = state();
+  now.update_geometry(displacement);
+  ASSERT_FALSE(now.geometry().cells().empty());
+  EXPECT_EQ(paired_masters(mesh, contact, now.geometry()).share, std::vector<double>{0});
 }
 
 TEST_F(Touching, ContNoeuHoldsWhatThePatchesAroundANodeCarryAndTheForceOnIt) {
