@@ -62,6 +62,22 @@ class Reader(unittest.TestCase):
         self.refused("READER_1", lambda: self.base["RESULTS"])
         self.refused("STUDY_2", lambda: open_base(self.folder / "none.base"))
 
+    def test_the_result_that_is_meant_has_displacements(self):
+        """Beside a course of temperatures, that a command file made to heat the bodies, the computed result is the one to look at."""
+        (self.folder / "warm.comm").write_text("""DEBUT()
+MESH = LIRE_MAILLAGE(UNITE=20)
+MODEL = AFFE_MODELE(MAILLAGE=MESH, AFFE=_F(TOUT='OUI', PHENOMENE='MECANIQUE', MODELISATION='D_PLAN'))
+MATTER = DEFI_MATERIAU(ELAS=_F(E=1.0, NU=0.0, ALPHA=1e-3))
+WARM = CREA_CHAMP(TYPE_CHAM='NOEU_TEMP_R', OPERATION='AFFE', MAILLAGE=MESH, AFFE=_F(TOUT='OUI', NOM_CMP='TEMP', VALE=20.0))
+COURSE = CREA_RESU(OPERATION='AFFE', TYPE_RESU='EVOL_THER', AFFE=_F(NOM_CHAM='TEMP', CHAM_GD=WARM, INST=(0.0, 1.0)))
+FIELD = AFFE_MATERIAU(MAILLAGE=MESH, AFFE=_F(TOUT='OUI', MATER=MATTER), AFFE_VARC=_F(NOM_VARC='TEMP', EVOL=COURSE, VALE_REF=0.0))
+HOLD = AFFE_CHAR_CINE(MODELE=MODEL, MECA_IMPO=_F(TOUT='OUI', DX=0.0, DY=0.0))
+RESULT = MECA_STATIQUE(MODELE=MODEL, CHAM_MATER=FIELD, EXCIT=_F(CHARGE=HOLD), INST=1.0)
+FIN()
+""")
+        self.run_lacon("warm.comm", "--unit", "20=mesh.med")
+        self.assertEqual(open_base(self.folder / "warm.base").only_result().label, "RESULT")
+
     def test_a_mesh_is_points_cells_and_groups(self):
         mesh = self.base["MESH"]
         self.assertEqual((mesh.dimension, len(mesh.points)), (2, 17 * 5 + 11 * 5))

@@ -296,6 +296,24 @@ Two rings, r = 1 to 2 and 2 to 3, held along the axis (AXIS, QUAD8, 12 and 14 ce
 """
 
 
+def joints_section(_runner):
+    from test_joints import Bolt, PlaneStress, Sector
+
+    rows = [[f"{round(value, 2) + 0.0:.2f}" for value in (pull, bolt, of_bolt, clamp, of_clamp)]
+            for pull, bolt, clamp in of_test(Bolt, "figures") for of_bolt, of_clamp in [Bolt().theory(pull)]]
+    sector, plane = (max(of_test(case, "differences")) for case in (Sector, PlaneStress))
+    return f"""## A bolt that cooling tightens
+
+A bolt, radius 6, in a sleeve 40 long, radii 7 to 14, under a head that hardly gives way (AXIS, QUAD8; E = 210000, nu = 0, alpha = 1.2e-5). The shank is cooled by 50 degrees (AFFE_VARC),
+then the head is pulled until the joint parts. Theory: two springs E A / L; they share the pull as long as the sleeve is pressed, then the bolt carries it alone.
+
+{table(["pull, N", "bolt", "theory", "clamping force", "theory"], rows)}
+
+Models that are the same: a sector of 30 degrees of two rings under a pressure 1 + 1.2 cos 6 t, held by LIAISON_OBLIQUE, has the displacements and contact pressures of the quarter
+within {sector:.0e}; a pin in a hole in plane stress those of plane strain with nu' = nu / (1 + nu), E' = E (1 + 2 nu) / (1 + nu)^2 within {plane:.0e}.
+"""
+
+
 def large_strain_section(_runner):
     from test_large_strain import Necking, Upsetting
 
@@ -338,7 +356,8 @@ def main():
     try:
         sections = [make(runner) for make in (patch_section, current_section, space_section, degree_section, materials_section,
                                               convergence_section, peer_section, orders_section, hertz_meshes_section, roller_section,
-                                              hertz_section, families_section, press_fit_section, large_strain_section, extrusion_section, robustness_section)]
+                                              hertz_section, families_section, press_fit_section, joints_section, large_strain_section,
+                                              extrusion_section, robustness_section)]
     finally:
         runner.doCleanups()
     text = "# Verification\n\nWritten by `python3 tests/verification/book.py`, which runs the studies; the same studies are tests.\n\n" + "\n".join(sections)

@@ -63,10 +63,12 @@ class Base:
         raise AssertionError
 
     def only_result(self, label=None):
-        """The result of this label, or the one that there is. @throws AsterError READER_1, READER_5"""
+        """The result of this label, or the one that there is: of displacements where there is one, beside courses of temperatures.
+        @throws AsterError READER_1, READER_5"""
         if label:
             return self[label]
-        results = self.results or self.failed_steps
+        found = self.results
+        results = {name: result for name, result in found.items() if "DEPL" in result.fields} or self.failed_steps or found
         if len(results) != 1:
             fail("READER_5", "lacon", folder=self.folder, count=len(results), known=", ".join(results) or "none")
         return next(iter(results.values()))

@@ -21,7 +21,7 @@ def parser():
         prog="lacon plot", description="Draws the deformed mesh, the contact pressure and the convergence of a result, as NAME_mesh, NAME_pressure and "
         "NAME_convergence, each as PNG and SVG; also of a run in progress.")
     made.add_argument("base", metavar="BASE", help="folder of the base, STUDY.base")
-    made.add_argument("--result", metavar="LABEL", help="the result; otherwise the only one")
+    made.add_argument("--result", metavar="LABEL", help="the result; otherwise the only one of displacements")
     made.add_argument("--instant", type=float, metavar="T", help="an instant of the result; otherwise the last one")
     made.add_argument("--iteration", type=int, metavar="N", help="an iterate of the step at which the computation failed, by its number")
     made.add_argument("--field", metavar="NAME", help="colours of the mesh: a field at nodes, SIEF_NOEU; otherwise the displacements, of an iterate the forces not in balance")

@@ -20,7 +20,7 @@ def parser():
         prog="lacon report", description="Writes one HTML file that shows a result: the deformed bodies in 3D with every field, the contact patch by patch, "
         "curves of Newton's method and of the contact, what the result may be trusted for, times and the command file.")
     made.add_argument("base", metavar="BASE", help="folder of the base, STUDY.base")
-    made.add_argument("--result", metavar="LABEL", help="the result; otherwise the only one")
+    made.add_argument("--result", metavar="LABEL", help="the result; otherwise the only one of displacements")
     made.add_argument("--out", metavar="FILE", help="the file to write, which is replaced; otherwise BASE without its suffix and with .html")
     made.add_argument("--open", action="store_true", help="show it in the browser")
     return made
