@@ -121,7 +121,7 @@ void write_head(const hdf5::Group& root, const Order& order, std::string_view ty
   for (const std::string& id : references)
     if (!id.empty()) list.push_back(id);
   root.set("lacon_type", type);
-  root.set("format", storage::format);
+  root.set("format", storage::newest_format(type));
   root.set("version", version);
   root.set("id", order.result_id);
   root.set("label", order.result_label);

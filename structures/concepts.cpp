@@ -32,6 +32,11 @@ double Function::operator()(double at, std::string_view label) const {
   return y[i] + t * (y[j] - y[i]);
 }
 
+const ResultStage& Result::stage(std::int64_t order) const {
+  const auto later = std::find_if(stages.begin() + 1, stages.end(), [&](const ResultStage& one) { return one.first > order; });
+  return *(later - 1);
+}
+
 Model Contact::completed(Model of_bodies) const {
   for (const SkinElement& skin : skins) {
     auto& names = of_bodies.elements;

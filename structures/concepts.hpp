@@ -192,14 +192,22 @@ struct ResultLoad {
   std::string load;
   std::string function;  ///< may be empty
   std::string type;      ///< TYPE_CHARGE: FIXE_CSTE, SUIV
+  bool operator==(const ResultLoad&) const = default;
+};
+
+/// What the instants of a result are computed with, from one of them on.
+struct ResultStage {
+  std::int64_t first = 0;  ///< order
+  std::string contact;     ///< id, may be empty
+  std::vector<ResultLoad> loads;
+  std::string behaviour = "[]";  ///< JSON
 };
 
 /// The index of a result: which fields it has at which instants.
 struct Result {
-  std::string label;                                 ///< when it was written
-  std::string model, mesh, material_field, contact;  ///< ids, the last may be empty
-  std::vector<ResultLoad> loads;
-  std::string behaviour;  ///< JSON
+  std::string label;                        ///< when it was written
+  std::string model, mesh, material_field;  ///< ids
+  std::vector<ResultStage> stages{1};       ///< by increasing orders, one at least
   std::vector<std::int64_t> orders;
   std::vector<double> instants;
   /// name -> order -> file, relative to the base folder
@@ -209,6 +217,8 @@ struct Result {
   std::map<std::string, Table> tables;  ///< "OBSERVATION"
   bool complete = true;                 ///< the computation came to its end
   std::int64_t version = 0;             ///< with which the index is stored, where it grows; 0: the one after that in the base
+
+  const ResultStage& stage(std::int64_t order) const;  ///< the one that an order belongs to
 };
 
 }  // namespace lacon

@@ -137,9 +137,9 @@ struct CellBehaviours {
   std::vector<const catalog::RelationRow*> relation;
 };
 
-CellBehaviours behaviours_of(const Mesh& mesh, const Result& result, const Registry& registry) {
+CellBehaviours behaviours_of(const Mesh& mesh, const ResultStage& stage, const Registry& registry) {
   std::vector<Keywords> occurrences;
-  for (const auto& occurrence : nlohmann::json::parse(result.behaviour)) occurrences.emplace_back(occurrence, "COMPORTEMENT/");
+  for (const auto& occurrence : nlohmann::json::parse(stage.behaviour)) occurrences.emplace_back(occurrence, "COMPORTEMENT/");
   const Behaviours behaviours = read_behaviours(mesh, occurrences);
   std::vector<BehaviourRows> known;
   for (const std::string& option : behaviours.options) known.push_back(behaviour_rows(registry, option));
@@ -169,9 +169,11 @@ class Setting {
   const std::vector<char>& wanted() const { return wanted_; }
   bool has_part() const { return order_.keywords.has("GROUP_MA"); }
   std::string groups() const { return fmt::format("{}", fmt::join(order_.keywords.texts("GROUP_MA"), ", ")); }
-  const CellBehaviours& behaviours() {
-    if (!behaviours_) behaviours_ = behaviours_of(mesh_, result_, registry());
-    return *behaviours_;
+  const CellBehaviours& behaviours(std::int64_t order) {
+    const ResultStage& stage = result_.stage(order);
+    const auto known = behaviours_.find(stage.first);
+    if (known != behaviours_.end()) return known->second;
+    return behaviours_.emplace(stage.first, behaviours_of(mesh_, stage, registry())).first->second;
   }
   ModelPoints& points() {
     if (!points_) {
@@ -187,9 +189,10 @@ class Setting {
   /// Energies of paths that instants before have, by order.
   std::map<std::int64_t, Field>& path_energies() { return path_energies_; }
   /// @param displacement (n_nodes, dimension), which following pressures act on @return (n_nodes, n_components)
-  std::vector<double> external_force(double instant, std::span<const double> displacement) {
-    if (!loads_) loads_ = read_loads(order_, base_, result_);
-    return loads_->external_force(instant, displacement);
+  std::vector<double> external_force(std::int64_t order, double instant, std::span<const double> displacement) {
+    const ResultStage& stage = result_.stage(order);
+    if (!loads_ || loads_->first != stage.first) loads_.emplace(stage.first, read_loads(order_, base_, result_, stage));
+    return loads_->second.external_force(instant, displacement);
   }
 
  private:
@@ -203,13 +206,13 @@ class Setting {
   const Result& result_;
   Mesh mesh_;
   std::vector<char> wanted_;
-  std::optional<CellBehaviours> behaviours_;
+  std::map<std::int64_t, CellBehaviours> behaviours_;  ///< by the first order of their stage
   Model model_;
   std::unique_ptr<Registry> registry_;
   std::optional<ModelPoints> points_;
   std::optional<ResultMaterials> materials_;
   std::map<std::int64_t, Field> path_energies_;
-  std::optional<StaticProblem> loads_;
+  std::optional<std::pair<std::int64_t, StaticProblem>> loads_;  ///< of a stage, by its first order
 };
 
 /// The fields of one instant, each computed once, on the cells that are meant.
@@ -291,13 +294,14 @@ class Instant {
                           [&](std::int32_t cell) { return setting_.materials().elastic(cell, "NU"); });
     const auto across = [&](std::int32_t cell, catalog::TransverseStrain follows) {
       const auto c = static_cast<std::size_t>(cell);
-      return setting_.points().is_plane_stress(c) && setting_.behaviours().relation[c]->transverse_strain == follows;
+      return setting_.points().is_plane_stress(c) && setting_.behaviours(order_).relation[c]->transverse_strain == follows;
     };
     for (const std::int32_t cell : field.support)
       if (across(cell, catalog::TransverseStrain::unknown))
-        fail("CALCCHAMP_4", {{"cell", cell_name(cell)},
-                             {"label", setting_.result().label},
-                             {"relation", std::string(setting_.behaviours().relation[static_cast<std::size_t>(cell)]->name)}});
+        fail("CALCCHAMP_4",
+             {{"cell", cell_name(cell)},
+              {"label", setting_.result().label},
+              {"relation", std::string(setting_.behaviours(order_).relation[static_cast<std::size_t>(cell)]->name)}});
     const auto is_plastic = [&](std::int32_t cell) { return across(cell, catalog::TransverseStrain::isochoric); };
     const auto in_plane_stress = [&](std::int32_t cell) {
       return setting_.points().is_plane_stress(static_cast<std::size_t>(cell));
@@ -348,7 +352,7 @@ class Instant {
   /// CALCCHAMP_5: energies and plastic strains are those of small strains.
   void refuse_large_strain(const Field& field, const std::string& name) {
     for (const std::int32_t cell : field.support)
-      if (setting_.behaviours().moved[static_cast<std::size_t>(cell)])
+      if (setting_.behaviours(order_).moved[static_cast<std::size_t>(cell)])
         fail("CALCCHAMP_5", {{"field", name}, {"cell", cell_name(cell)}, {"label", setting_.result().label}});
   }
 
@@ -378,7 +382,7 @@ class Instant {
   /// Of each row of a field of stresses: how thick a plate of thickness 1 is now, sqrt(1 + 2 E_zz) with Green-Lagrange.
   std::vector<double> thickness(const Field& stress) {
     const auto changes = [&](std::size_t cell) {
-      return setting_.behaviours().green[cell] && setting_.points().is_plane_stress(cell);
+      return setting_.behaviours(order_).green[cell] && setting_.points().is_plane_stress(cell);
     };
     std::vector<char> wanted(setting_.mesh().n_cells(), 0);
     for (const std::int32_t cell : stress.support)
@@ -398,7 +402,7 @@ class Instant {
   }
 
   Field forces(const Field& stress, std::string name) {
-    return nodal_forces(setting_.mesh(), setting_.points(), stress, setting_.behaviours().moved,
+    return nodal_forces(setting_.mesh(), setting_.points(), stress, setting_.behaviours(order_).moved,
                         displaced(setting_.mesh(), (*this)("DEPL")), thickness(stress), std::move(name));
   }
 
@@ -408,7 +412,7 @@ class Instant {
     Field field = forces(setting_.base().field(setting_.result(), "SIEF_ELGA", order_), std::move(name));
     const std::size_t width = field.n_components();
     const std::vector<double> displacement = nodal_displacements(mesh, (*this)("DEPL"), static_cast<int>(width)),
-                              external = setting_.external_force(field.instant, displacement);
+                              external = setting_.external_force(order_, field.instant, displacement);
     const std::size_t n_unknowns = external.size() / mesh.n_nodes();  // of a node, displacements first
     for (std::size_t i = 0; i < field.support.size(); ++i)
       for (std::size_t d = 0; d < width; ++d)
@@ -421,8 +425,8 @@ class Instant {
   std::map<std::string, Field, std::less<>> fields_;
 };
 
-/// EXCIT: the loads of the result, each with its function, in any order. Throws CALCCHAMP_6.
-void check_loads(const Base& base, const Result& from, const Keywords& keywords) {
+/// EXCIT: the loads of the result at an instant, each with its function, in any order. Throws CALCCHAMP_6.
+void check_loads(const Base& base, const Result& from, std::int64_t order, const Keywords& keywords) {
   if (!keywords.has("EXCIT")) return;
   using Loads = std::vector<std::pair<std::string, std::string>>;
   const auto labels = [&](Loads loads) {
@@ -435,7 +439,7 @@ void check_loads(const Base& base, const Result& from, const Keywords& keywords)
   Loads given, own;
   for (const Keywords& factor : keywords.factors("EXCIT"))
     given.emplace_back(factor.concept_id("CHARGE"), factor.optional_concept("FONC_MULT").value_or(""));
-  for (const ResultLoad& load : from.loads) own.emplace_back(load.load, load.function);
+  for (const ResultLoad& load : from.stage(order).loads) own.emplace_back(load.load, load.function);
   if (std::is_permutation(given.begin(), given.end(), own.begin(), own.end())) return;
   fail("CALCCHAMP_6",
        {{"keyword", keywords.path("EXCIT")}, {"given", labels(given)}, {"label", from.label}, {"own", labels(own)}});
@@ -446,7 +450,6 @@ void check_loads(const Base& base, const Result& from, const Keywords& keywords)
 void calc_champ(const Order& order, const Base& base) {
   const Keywords& keywords = order.keywords;
   const Result from = base.result(keywords.concept_id("RESULTAT"));
-  check_loads(base, from, keywords);
   std::vector<std::string> asked;
   for (const char* family : {"CONTRAINTE", "DEFORMATION", "CRITERES", "VARI_INTERNE", "FORCE", "ENERGIE"})
     for (const std::string& name : keywords.texts(family)) asked.push_back(name);
@@ -454,6 +457,7 @@ void calc_champ(const Order& order, const Base& base) {
 
   // without a choice of instants, those that a field cannot be computed at are left alone as long as others have it
   const std::vector<std::int64_t> orders = selected_orders(base, from, keywords);
+  for (const std::int64_t o : orders) check_loads(base, from, o, keywords);
   std::vector<std::pair<std::int64_t, std::string>> fields;
   for (const std::int64_t o : orders)
     for (const std::string& name : asked) {

@@ -65,7 +65,6 @@ void crea_resu(const Order& order, const Base& base) {
   if (order.reuse) result = base.result(order.result_id);
   result.version = 0;
   result.label = order.result_label;
-  if (result.behaviour.empty()) result.behaviour = "[]";
   std::optional<Mesh> mesh;
   for (const Keywords& factor : keywords.factors("AFFE")) {
     const Field field = base.field(factor.concept_id("CHAM_GD"));

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <limits>
 
 #include "lacon/catalog/messages.hpp"
 #include "lacon/catalog/wording.hpp"
@@ -55,12 +56,14 @@ Archive::Archive(const Order& order, const Base& base, const Present& present, c
   result_.model = keywords.concept_id("MODELE");
   result_.mesh = present.problem.model.mesh;
   result_.material_field = keywords.concept_id("CHAM_MATER");
-  result_.contact = keywords.optional_concept("CONTACT").value_or("");
+  ResultStage& stage = result_.stages.front();
+  stage.contact = keywords.optional_concept("CONTACT").value_or("");
   for (const Keywords& excit : keywords.factors("EXCIT"))
-    result_.loads.push_back(
+    stage.loads.push_back(
         {excit.concept_id("CHARGE"), excit.optional_concept("FONC_MULT").value_or(""), excit.text("TYPE_CHARGE")});
-  result_.behaviour = keywords.values().value("COMPORTEMENT", nlohmann::json::array()).dump();
+  stage.behaviour = keywords.values().value("COMPORTEMENT", nlohmann::json::array()).dump();
   if (!resumes && (order.reuse || keywords.has("RESULTAT"))) go_on(order, origin);
+  if (!resumes) number_zones();
 }
 
 void Archive::go_on(const Order& order, const std::optional<Origin>& origin) {
@@ -76,12 +79,6 @@ void Archive::go_on(const Order& order, const std::optional<Origin>& origin) {
   };
   if (old.model != result_.model) differs("MODELE");
   if (old.material_field != result_.material_field) differs("CHAM_MATER");
-  if (old.contact != result_.contact) differs("CONTACT");
-  if (old.behaviour != result_.behaviour) differs("COMPORTEMENT");
-  if (!std::equal(
-          old.loads.begin(), old.loads.end(), result_.loads.begin(), result_.loads.end(),
-          [](const auto& a, const auto& b) { return a.load == b.load && a.function == b.function && a.type == b.type; }))
-    differs("EXCIT");
   std::vector<std::int64_t> orders = old.orders;
   orders.erase(std::upper_bound(orders.begin(), orders.end(), origin->order), orders.end());
   if (orders.size() < old.orders.size() && !order.keywords.factor("ARCHIVAGE").has("DETR_NUME_SUIV"))
@@ -90,13 +87,28 @@ void Archive::go_on(const Order& order, const std::optional<Origin>& origin) {
            part("remove_instants_behind"));
   const auto fields = old.fields;
   const std::int64_t version = result_.version;
+  ResultStage stage = result_.stages.front();
   result_ = part_of(old, orders);
   result_.version = version;
+  stage.first = origin->order + 1;
+  const ResultStage& last = result_.stages.back();
+  if (stage.contact != last.contact || stage.loads != last.loads || stage.behaviour != last.behaviour)
+    result_.stages.push_back(std::move(stage));
   for (const auto& [name, files] : fields)
     for (const auto& [number, file] : files)
       if (number <= origin->order) result_.fields[name][number] = file;
   taken_over_ = result_.orders.size();
   for (auto& [name, table] : result_.tables) drop_behind(table, result_.instants.back());
+}
+
+/// A slave group has the same number at all instants, whatever the order of zones in the contact of a stage.
+void Archive::number_zones() {
+  if (!present_.problem.contact) return;
+  const auto first = std::ranges::find_if(result_.stages, [](const ResultStage& stage) { return !stage.contact.empty(); });
+  const std::vector<ContactZone> known = base_.contact(first->contact).zones;
+  for (const ContactZone& zone : present_.problem.contact->zones)
+    zone_numbers_.push_back(
+        static_cast<std::size_t>(std::ranges::find(known, zone.slave_group, &ContactZone::slave_group) - known.begin()));
 }
 
 void Archive::start(double instant) {
@@ -125,6 +137,7 @@ void Archive::save(const hdf5::Group& group) const {
 void Archive::resume(const hdf5::Group& group) {
   result_ = storage::read_result(group);
   result_.version = group.integer("version");
+  number_zones();
   const hdf5::Reader found(base_.result_folder() / "index.h5");
   if (found.integer("version") == result_.version) there_ = found.shape("order").at(0);
   taken_over_ = static_cast<std::size_t>(group.integer("taken_over"));
@@ -174,6 +187,15 @@ void Archive::add(double instant, int iterations) {
   put("expected_negative_pivots", static_cast<double>(pivots_.expected));
   result_.orders.push_back(number);
   result_.instants.push_back(instant);
+  for (auto& [name, values] : result_.parameters)  // of zones, where only other stages have a contact
+    values.resize(result_.orders.size(), std::numeric_limits<double>::quiet_NaN());
+}
+
+/// A value of the instant that is being added.
+void Archive::put(const std::string& parameter, double value) {
+  std::vector<double>& values = result_.parameters[parameter];
+  values.resize(result_.orders.size(), std::numeric_limits<double>::quiet_NaN());
+  values.push_back(value);
 }
 
 /// Beside CONT_ELEM, for who looks at it: what its patches were paired with.
@@ -190,7 +212,7 @@ void Archive::add_masters(std::int64_t number) {
 /// The proof lines as parameters of the instant: zone_1_slave_force_x, ...
 void Archive::add_balance(const std::vector<ZoneBalance>& zones) {
   for (std::size_t z = 0; z < zones.size(); ++z) {
-    const std::string name = "zone_" + std::to_string(z + 1) + "_";
+    const std::string name = "zone_" + std::to_string(zone_numbers_[z] + 1) + "_";
     const auto put = [&](const std::string& what, double value) { this->put(name + what, value); };
     for (int d = 0; d < 3; ++d) {
       const std::string axis(1, "xyz"[d]);

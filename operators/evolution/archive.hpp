@@ -57,18 +57,20 @@ class Archive : public EvolutionObserver {
     std::int64_t found = -1, expected = -1;
   };
   void go_on(const Order& order, const std::optional<Origin>& origin);
+  void number_zones();
   void add(double instant, int iterations);
   void store(bool complete);
   void add_masters(std::int64_t number);
   void discard();
   void add_balance(const std::vector<ZoneBalance>& zones);
   static void add_table(Result& result, const std::string& name, const Table& table);
-  void put(const std::string& parameter, double value) { result_.parameters[parameter].push_back(value); }
+  void put(const std::string& parameter, double value);
   const Base& base_;
   Present present_;
   FieldMakers fields_;
   std::function<std::map<std::string, Table>()> tables_;
   ArchiveChoice choice_;
+  std::vector<std::size_t> zone_numbers_;  ///< in the result's parameters, of each zone
   Pivots pivots_;
   Result result_;
   std::size_t taken_over_ = 0;  ///< instants of a result that goes on

@@ -245,10 +245,10 @@ StaticProblem read_problem(const Order& order, const Base& base) {
   return problem;
 }
 
-StaticProblem read_loads(const Order& order, const Base& base, const Result& result) {
+StaticProblem read_loads(const Order& order, const Base& base, const Result& result, const ResultStage& stage) {
   StaticProblem problem = read_model(order, base, result.model);
   if (!result.material_field.empty()) read_materials(problem, base, result.material_field);
-  for (const ResultLoad& load : result.loads) problem.loads.push_back(read_load(problem, base, load, "EXCIT/"));
+  for (const ResultLoad& load : stage.loads) problem.loads.push_back(read_load(problem, base, load, "EXCIT/"));
   return problem;
 }
 

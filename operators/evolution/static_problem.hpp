@@ -58,6 +58,6 @@ struct StaticProblem {
 StaticProblem read_problem(const Order& order, const Base& base);
 
 /// The model, materials and loads that a result was computed with, for external_force(): no contact or equations.
-StaticProblem read_loads(const Order& order, const Base& base, const Result& result);
+StaticProblem read_loads(const Order& order, const Base& base, const Result& result, const ResultStage& stage);
 
 }  // namespace lacon

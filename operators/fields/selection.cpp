@@ -84,6 +84,8 @@ Result part_of(const Result& result, const std::vector<std::int64_t>& orders) {
     part.instants.push_back(result.instants[k]);
     for (auto& [name, values] : part.parameters) values.push_back(result.parameters.at(name)[k]);
   }
+  while (part.stages.size() > 1 && (part.orders.empty() || part.stages.back().first > part.orders.back()))
+    part.stages.pop_back();
   return part;
 }
 

@@ -124,33 +124,44 @@ bool means_pairing(const Keywords& one) { return one.has("CONTACT") || (one.has(
 /// An occurrence of RESU may have fields beside MAILLAGE.
 bool has_fields(const Keywords& one) { return one.has("RESULTAT") || one.has("CHAM_GD"); }
 
-/// Visit what an occurrence of RESU with CONTACT or PAIRING='OUI' means. Throws IMPR_7 for a result without contact.
+/// A contact with what its pairing is viewed by.
+struct ViewedContact {
+  ViewedContact(const Base& base, const Mesh& mesh, const std::string& id)
+      : contact(base.contact(id)), model(contact.completed(base.model(contact.model))), offsets(mesh, contact, base) {}
+  Contact contact;
+  Model model;
+  ContactOffsets offsets;
+};
+
+/// Visit what an occurrence of RESU with CONTACT or PAIRING='OUI' means, of a result the instants with contact. Throws IMPR_7
+/// where there is none.
 void each_pairing(const Order& order, const Base& base, Concepts& concepts, const Keywords& one,
                   const std::function<void(PrintedPairing&&)>& visit) {
   Registry registry(order.plugins);
   if (one.has("CONTACT")) {
     const std::string id = one.concept_id("CONTACT");
-    const Contact contact = base.contact(id);
-    const Mesh& mesh = concepts.mesh(contact.mesh);
-    visit({base.label(id), -1, 0,
-           view_pairing(mesh, contact.completed(base.model(contact.model)), contact, registry, {},
-                        ContactOffsets(mesh, contact, base).at(0), nullptr)});
+    const Mesh& mesh = concepts.mesh(base.contact(id).mesh);
+    const ViewedContact viewed(base, mesh, id);
+    visit(
+        {base.label(id), -1, 0, view_pairing(mesh, viewed.model, viewed.contact, registry, {}, viewed.offsets.at(0), nullptr)});
     return;
   }
   const Result& result = concepts.result(one.concept_id("RESULTAT"));
-  if (result.contact.empty()) fail("IMPR_7", {{"keyword", one.path("PAIRING")}, {"label", result.label}});
-  const Contact contact = base.contact(result.contact);
-  const Model model = contact.completed(base.model(contact.model));
-  const Mesh& mesh = concepts.mesh(contact.mesh);
-  const ContactOffsets offsets(mesh, contact, base);
-  for (const std::int64_t number : selected_orders(base, result, one)) {
+  std::vector<std::int64_t> orders = selected_orders(base, result, one);
+  std::erase_if(orders, [&](std::int64_t number) { return result.stage(number).contact.empty(); });
+  if (orders.empty()) fail("IMPR_7", {{"keyword", one.path("PAIRING")}, {"label", result.label}});
+  const Mesh& mesh = concepts.mesh(result.mesh);
+  std::map<std::string, ViewedContact> contacts;
+  for (const std::int64_t number : orders) {
+    const std::string& id = result.stage(number).contact;
+    const ViewedContact& viewed = contacts.try_emplace(id, base, mesh, id).first->second;
     const Field depl = base.field(result, "DEPL", number);
     std::optional<Field> state;
     if (const auto files = result.fields.find("CONT_ELEM"); files != result.fields.end() && files->second.contains(number))
       state = base.field(result, "CONT_ELEM", number);
     visit({result.label, number, depl.instant,
-           view_pairing(mesh, model, contact, registry, nodal_displacements(mesh, depl, mesh.dimension),
-                        offsets.at(depl.instant), state ? &*state : nullptr)});
+           view_pairing(mesh, viewed.model, viewed.contact, registry, nodal_displacements(mesh, depl, mesh.dimension),
+                        viewed.offsets.at(depl.instant), state ? &*state : nullptr)});
   }
 }
 

@@ -38,9 +38,8 @@ Result empty_result(const Order& order, const StaticProblem& problem) {
   result.mesh = problem.model.mesh;
   result.material_field = keywords.concept_id("CHAM_MATER");
   for (const Keywords& excit : keywords.factors("EXCIT"))
-    result.loads.push_back(
+    result.stages.front().loads.push_back(
         {excit.concept_id("CHARGE"), excit.optional_concept("FONC_MULT").value_or(""), excit.text("TYPE_CHARGE")});
-  result.behaviour = "[]";
   return result;
 }
 

@@ -40,9 +40,10 @@ struct Subject {
 };
 
 void refuse_large_strain(const Result& result, const std::string& keyword) {
-  for (const auto& behaviour : nlohmann::json::parse(result.behaviour))
-    if (const std::string deformation = behaviour.value("DEFORMATION", "PETIT"); deformation != "PETIT")
-      fail("POSTELEM_4", {{"keyword", keyword}, {"deformation", deformation}, {"label", result.label}});
+  for (const ResultStage& stage : result.stages)
+    for (const auto& behaviour : nlohmann::json::parse(stage.behaviour))
+      if (const std::string deformation = behaviour.value("DEFORMATION", "PETIT"); deformation != "PETIT")
+        fail("POSTELEM_4", {{"keyword", keyword}, {"deformation", deformation}, {"label", result.label}});
 }
 
 }  // namespace

@@ -139,10 +139,9 @@ void proj_champ(const Order& order, const Base& base) {
   to.label = order.result_label;
   to.model = model.value_or("");
   to.mesh = target(keywords, base);
-  to.material_field = to.contact = "";
-  to.loads.clear();
+  to.material_field = "";
+  to.stages = {{}};
   to.tables.clear();
-  to.behaviour = "[]";
   const Mesh here = base.mesh(from.mesh), there = base.mesh(to.mesh);
   const Projection project(here, there, keywords);
   std::vector<std::string> names = keywords.texts("NOM_CHAM");

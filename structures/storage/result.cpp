@@ -6,16 +6,47 @@ namespace lacon::storage {
 
 using nlohmann::json;
 
+namespace {
+
+ResultStage read_stage(const json& from) {
+  ResultStage stage{
+      .first = from.at("first"), .contact = from.at("contact"), .loads = {}, .behaviour = from.at("behaviour").dump()};
+  for (const json& load : from.at("loads"))
+    stage.loads.push_back({load.at("load"), load.at("function"), load.value("type", "FIXE_CSTE")});
+  return stage;
+}
+
+std::vector<ResultStage> read_stages(const hdf5::Group& root) {
+  if (!root.has_attribute("stages"))  // format 1 had one for all orders
+    return {read_stage({{"first", 0},
+                        {"contact", root.text("contact")},
+                        {"loads", json::parse(root.text("loads"))},
+                        {"behaviour", json::parse(root.text("behaviour"))}})};
+  std::vector<ResultStage> stages;
+  for (const json& stage : json::parse(root.text("stages"))) stages.push_back(read_stage(stage));
+  if (stages.empty()) throw std::out_of_range("no stage");
+  return stages;
+}
+
+json written(const ResultStage& stage) {
+  json loads = json::array();
+  for (const ResultLoad& load : stage.loads)
+    loads.push_back({{"load", load.load}, {"function", load.function}, {"type", load.type}});
+  return {{"first", stage.first},
+          {"contact", stage.contact},
+          {"loads", std::move(loads)},
+          {"behaviour", json::parse(stage.behaviour)}};
+}
+
+}  // namespace
+
 Result read_result(const hdf5::Group& root) {
   Result result;
   result.label = root.text("label");
   result.model = root.text("model");
   result.mesh = root.text("mesh");
   result.material_field = root.text("material_field");
-  result.contact = root.text("contact");
-  for (const json& load : json::parse(root.text("loads")))
-    result.loads.push_back({load.at("load"), load.at("function"), load.value("type", "FIXE_CSTE")});
-  result.behaviour = root.text("behaviour");
+  result.stages = read_stages(root);
   if (root.has_attribute("complete")) result.complete = root.integer("complete") != 0;
   result.orders = root.read<std::int64_t>("order");
   result.instants = root.read<double>("instant");
@@ -38,12 +69,9 @@ void write(const hdf5::Group& root, const Result& result) {
   root.set("model", result.model);
   root.set("mesh", result.mesh);
   root.set("material_field", result.material_field);
-  root.set("contact", result.contact);
-  json loads = json::array();
-  for (const ResultLoad& load : result.loads)
-    loads.push_back({{"load", load.load}, {"function", load.function}, {"type", load.type}});
-  root.set("loads", loads.dump());
-  root.set("behaviour", result.behaviour);
+  json stages = json::array();
+  for (const ResultStage& stage : result.stages) stages.push_back(written(stage));
+  root.set("stages", stages.dump());
   root.set("complete", std::int64_t{result.complete});
   root.write("order", result.orders);
   root.write("instant", result.instants);
@@ -65,10 +93,13 @@ void write(const hdf5::Group& root, const Result& result) {
 }
 
 std::vector<std::string> references(const Result& result) {
-  std::vector<std::string> references{result.model, result.mesh, result.material_field, result.contact};
-  for (const ResultLoad& load : result.loads) {
-    references.push_back(load.load);
-    references.push_back(load.function);
+  std::vector<std::string> references{result.model, result.mesh, result.material_field};
+  for (const ResultStage& stage : result.stages) {
+    references.push_back(stage.contact);
+    for (const ResultLoad& load : stage.loads) {
+      references.push_back(load.load);
+      references.push_back(load.function);
+    }
   }
   return references;
 }

@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 #include <stdexcept>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "lacon/catalog/messages.hpp"
@@ -27,14 +28,19 @@ std::vector<double> read_list_of_reals(const hdf5::Group& root);
 TimeSteps read_time_steps(const hdf5::Group& root);
 Result read_result(const hdf5::Group& root);
 
-inline constexpr std::int64_t format = 1;  ///< of the files of a base that are written, and read
+inline constexpr std::int64_t format =
+    1;  ///< of the files of a base that are written, but that of results, which has had others
+
+/// The newest format of a type of concept: the one that is written. Earlier ones are read.
+constexpr std::int64_t newest_format(std::string_view type) { return type == "result" ? 2 : format; }
 
 /// What one of these readers makes of a file whose content may be anything. One of another format is BASE_6; what it does not
 /// look at by itself (a list that is too short, JSON that is none) is BASE_2 as well.
 template <class Read>
 auto read_whatever(const hdf5::Group& root, const Read& read) {
-  if (const std::int64_t found = root.has_attribute("format") ? root.integer("format") : format; found != format)
-    fail("BASE_6", {{"file", root.path().string()}, {"format", std::to_string(found)}});
+  const std::int64_t found = root.has_attribute("format") ? root.integer("format") : format;
+  if (const std::int64_t newest = newest_format(root.text("lacon_type")); found < format || found > newest)
+    fail("BASE_6", {{"file", root.path().string()}, {"format", std::to_string(found)}, {"known", std::to_string(newest)}});
   try {
     return read(root);
   } catch (const std::logic_error& error) {  // out_of_range, length_error

@@ -215,7 +215,9 @@ class Strains(OperatorTest):
         run = self.run_command("CALC_CHAMP", {"RESULTAT": concept("result_5"), "FORCE": ["FORC_NODA"]}, result="result_5", reuse=True)
         self.assertEqual(run.status, 0, run.stderr)  # small strains: forces on the initial geometry
         with h5py.File(self.path("result_5"), "a") as file:
-            file.attrs["behaviour"] = json.dumps([{"RELATION": "ELAS", "DEFORMATION": "GREEN_LAGRANGE"}])
+            stages = json.loads(file.attrs["stages"])
+            stages[0]["behaviour"] = [{"RELATION": "ELAS", "DEFORMATION": "GREEN_LAGRANGE"}]
+            file.attrs["stages"] = json.dumps(stages)
         self.assert_refuses("FIELDS_4", "CALC_CHAMP", {"RESULTAT": concept("result_5"), "FORCE": ["FORC_NODA"]}, "M1", result="result_5", reuse=True)
 
 

@@ -3,6 +3,8 @@
 The one place that knows the layout on reading: for the objects of a command file, the tools and studies of their own.
 """
 
+import json
+
 from ..core.hdf5 import ragged, text, texts
 from ..core.late import numpy
 
@@ -97,6 +99,26 @@ def contact_zones(contact):
     return list(zip(zones["slave_group"].asstr()[:], zones["master_group"].asstr()[:], ragged(zones["slave"]), ragged(zones["master"])))
 
 
+def contacts(states):
+    """The ids of the contacts of a result's stages, each once, the first one first, or that of a failed step."""
+    if "stages" not in states.attrs:  # results of format 1, failed steps
+        return [identifier] if (identifier := reference(states, "contact")) else []
+    return list(dict.fromkeys(stage["contact"] for stage in stages(states) if stage["contact"]))
+
+
+def zones_of_contacts(contacts_in_turn):
+    """contact_zones() of several contacts together: those of a slave group are one, by the order of the first contact. What it meets is named and listed
+    for all of them. @param contacts_in_turn contact_zones() of each"""
+    merged = {}
+    for zones in contacts_in_turn:
+        for slave, master, slaves, masters_of_zone in zones:
+            names, _, cells = merged.setdefault(slave, ([], slaves, []))
+            if master not in names:
+                names.append(master)
+                cells.append(masters_of_zone)
+    return [(slave, ", ".join(names), slaves, numpy.unique(numpy.concatenate(cells))) for slave, (names, slaves, cells) in merged.items()]
+
+
 def masters(group):
     """(offset, master cells, shares) that a file of masters holds: those of row i of its CONT_ELEM from offset[i] on."""
     return tuple(group[name][:] for name in ("offset", "cell", "share"))
@@ -115,6 +137,23 @@ failed_step = "failed_step.h5"  #: in the folder of a result: the last iterates 
 def instants(result):
     """[(order number, instant)]"""
     return list(zip(result["order"][:].tolist(), result["instant"][:].tolist()))
+
+
+def stages(result):
+    """[{"first", "contact", "loads", "behaviour"}]: what its instants were computed with, from an order number on; of one of format 1 without loads and behaviour"""
+    if "stages" in result.attrs:
+        return json.loads(text(result.attrs["stages"]))
+    return [{"first": 0, "contact": reference(result, "contact")}]
+
+
+def orders_with_contact(result):
+    """The order numbers that belong to a stage with contact."""
+    found, with_contact = stages(result), []
+    for order, _ in instants(result):
+        stage = [one for one in found if one["first"] <= order][-1]
+        if stage["contact"]:
+            with_contact.append(order)
+    return with_contact
 
 
 def is_complete(result):

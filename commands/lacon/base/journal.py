@@ -39,7 +39,7 @@ class Journal:
         self.now = row.get("at", 0.0)
         if row["event"] == "start":
             self.begins, self.instants, self.limits = row["from"], row["instants"], row["limits"]
-            self.patches, self.since = row["patches"], row["since"]
+            self.patches, self.since = max(self.patches, row["patches"]), row["since"]  # of a result that goes on without contact those that it had
             self.machine, self.phases, self.memory = row.get("machine", {}), {}, 0
             self.attempts = [a for a in self.attempts if a.solved and a.instant <= self.begins]  # what is behind is computed again
             self.ended = self.completed = False

@@ -2,10 +2,11 @@
 
 import struct
 
+from ..core.hdf5 import text
 from ..core.late import h5py, numpy
 from ..core.messages import fail
 
-_format = 1  #: of the files of a base that are written, and read
+_newest = {"result": 2}  #: format of the files of a base that is written, and read with those before; of others 1
 _mark = b"LACONSUM"
 _length = 32
 _part = 1 << 23  #: bytes at a time
@@ -53,7 +54,8 @@ def open_checked(path):
                 fail("BASE_5", file=path)
             _known[path] = state
     opened = h5py.File(path, "r")
-    if (written := int(opened.attrs.get("format", _format))) != _format:
+    newest = _newest.get(text(opened.attrs.get("lacon_type", "")), 1)
+    if not 1 <= (written := int(opened.attrs.get("format", 1))) <= newest:
         opened.close()
-        fail("BASE_6", file=path, format=written)
+        fail("BASE_6", file=path, format=written, known=newest)
     return opened

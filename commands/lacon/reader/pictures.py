@@ -216,9 +216,9 @@ def convergence(journal, title):
         for first, last in pieces[::2]:
             panel.axvspan(first - 0.5, last - 0.5, color="#f2f4f7", zorder=0)
     if journal.patches:
-        panels[1].bar(number, [line["changes"] for _, line in rows], color=_contact[0], width=0.7, label=part("patches_that_change"))
+        panels[1].bar(number, [line.get("changes", 0) for _, line in rows], color=_contact[0], width=0.7, label=part("patches_that_change"))
         other = panels[1].twinx()
-        other.plot(number, [line["active"] for _, line in rows], color=_contact[1], linewidth=1.0, drawstyle="steps-mid")
+        other.plot(number, [line.get("active", 0) for _, line in rows], color=_contact[1], linewidth=1.0, drawstyle="steps-mid")
         panels[1].set_ylabel(part("patches_that_change"), color=_contact[0])
         other.set_ylabel(part("in_contact"), color=_contact[1])
         other.set_ylim(bottom=0)

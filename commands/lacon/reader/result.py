@@ -42,11 +42,12 @@ class Patches:
     in the plane), `centre` (p, 3); `groups` the slave group of each zone. `masters` are the cells that pairing has paired the patches with: (offset
     (p + 1), cells, shares), those of patch k from offset[k] on, with the part of the patch that each covers; None of bases that did not keep them."""
 
-    def __init__(self, mesh, field, read_masters):
-        """@param read_masters returns contents.masters of the field, or None"""
+    def __init__(self, mesh, groups, field, read_masters):
+        """@param groups the slave group of each zone; of a contact that is not known none: those of the mesh
+        @param read_masters returns contents.masters of the field, or None"""
         self._mesh, self._support, self._read_masters = mesh, field.support, read_masters
         self.instant = field.instant
-        self.groups = [group for group, _, _ in mesh.patch_zones]
+        self.groups = groups or [group for group, _, _ in mesh.patch_zones]
         first = numpy.array([cells[0] for cells in mesh.patches])
         rows = numpy.searchsorted(field.support, first)
         value = {name: column[rows] for name, column in zip(field.components, field.values.T)}
@@ -54,7 +55,7 @@ class Patches:
         self.pressure = -value["PRES"]
         self.gap = numpy.where(self.status < 0, numpy.nan, value["JEU"])
         self.coverage = value["COEFSURF"]
-        self.zone = numpy.repeat(numpy.arange(len(mesh.patch_zones)), [last - start for _, start, last in mesh.patch_zones])
+        self.zone = numpy.repeat([self.groups.index(group) for group, _, _ in mesh.patch_zones], [last - start for _, start, last in mesh.patch_zones])
         self.area, self.centre = mesh.patch_measures
 
     @cached_property
@@ -97,7 +98,7 @@ class States:
         self._base, self._id, self.label = base, identifier, label
         self.parameters = contents.parameters(file)
         self.mesh_id = contents.reference(file, "mesh")
-        self._contact_id = contents.reference(file, "contact")
+        self._contact_ids = contents.contacts(file)
 
     @cached_property
     def mesh(self):
@@ -115,11 +116,12 @@ class States:
 
     @cached_property
     def zones(self):
-        """[(slave group, master group, slave cells, master cells)] of its contact."""
-        if not self._contact_id:
-            return []
-        with self._base.open(self._contact_id) as file:
-            return contents.contact_zones(file)
+        """[(slave group, master group, slave cells, master cells)] of its contact; where it has had several, with all that a slave group meets."""
+        found = []
+        for identifier in self._contact_ids:
+            with self._base.open(identifier) as file:
+                found.append(contents.contact_zones(file))
+        return found[0] if len(found) == 1 else contents.zones_of_contacts(found)
 
     def field_orders(self, name):
         """The order numbers at which a field is."""
@@ -158,12 +160,12 @@ class States:
         return found
 
     def contact(self, instant=None, order=None):
-        """The Patches at an instant; None where the computation is without contact."""
-        if "CONT_ELEM" not in self._fields:
-            return None
+        """The Patches at an instant; None where it was computed without contact."""
         order = self.order_of(instant, order)
-
-        return Patches(self.mesh, self.field("CONT_ELEM", order=order), lambda: self._masters(order))
+        if order not in self._fields.get("CONT_ELEM", ()):
+            return None
+        groups = [slave for slave, *_ in self.zones]
+        return Patches(self.mesh, groups, self.field("CONT_ELEM", order=order), lambda: self._masters(order))
 
     def to_meshio(self, instant=None, order=None):
         """A meshio.Mesh on the deformed points: fields of nodes as point data, those of cells as cell data, nan where they are not."""
@@ -204,10 +206,10 @@ class States:
 
     def plot_pressure(self, instant=None, order=None):
         """A picture of the contact pressure of every zone. @throws AsterError READER_3 without contact"""
-        if "CONT_ELEM" not in self._fields:
-            fail("READER_3", "lacon", label=self.label)
         order = self.order_of(instant, order)
         patches = self.contact(order=order)
+        if patches is None:
+            fail("READER_3", "lacon", label=self.label)
         outlines = [self.mesh.polygons(cells) for cells in self.mesh.patches]
         moved = self.displacements(order=order)
         return pictures.pressure(self.mesh.points + self._bound(moved) * moved, self.mesh.dimension, outlines, patches,

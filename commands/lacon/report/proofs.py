@@ -20,7 +20,12 @@ def of_instant(index, parameters, zones, journal, patches):
     """Lines of one instant. @param parameters name -> values of the instants  @param zones contents.contact_zones()
     @param journal what newton() made of the iterations of this instant; None  @param patches reader.Patches; None"""
     lines = []
-    value = lambda name: float(parameters[name][index]) if name in parameters else None  # noqa: E731
+
+    def value(name):
+        """None where the instant has none: a stage of the result without contact"""
+        found = float(parameters[name][index]) if name in parameters else numpy.nan
+        return None if numpy.isnan(found) else found
+
     if journal:
         lines += newton(journal)
     found, expected = value("negative_pivots"), value("expected_negative_pivots")

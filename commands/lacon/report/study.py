@@ -187,7 +187,7 @@ class _Page:
         """Of a zone at an instant."""
         value = {name: float(values[index]) for name, values in self.result.parameters.items()}
         start = f"zone_{number + 1}_"
-        if start + "active" not in value:
+        if numpy.isnan(value.get(start + "active", numpy.nan)):  # no contact, or none in this stage
             return {}
         told = {name: value[start + name] for name in ("active", "open", "unpaired", "covered")}
         told["force"] = [value[f"{start}slave_force_{axis}"] for axis in "xyz"[:self.mesh.dimension]]
@@ -217,9 +217,9 @@ class _Page:
         journal = self.result.journal
         if journal is None:
             return None
-        rows = []
+        rows, without = [], {"changes": 0, "active": 0} if journal.patches else {}  # contact: of instants that have none
         for number, attempt in enumerate(journal.attempts):
-            rows += [{"attempt": number, **{key: _finite(line[key]) for key in ("rela", "maxi", "geometry", "changes", "active") if key in line}}
+            rows += [{"attempt": number, **without, **{key: _finite(line[key]) for key in ("rela", "maxi", "geometry", "changes", "active") if key in line}}
                      for line in attempt.iterations]
         if len(rows) > 5000:
             self.notes.append(part("last_iterations", count=5000, all=len(rows)))

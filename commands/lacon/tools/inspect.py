@@ -70,7 +70,7 @@ def choose(shelf, label):
 
 def contact_of(result):
     with result.open() as file:
-        return contents.reference(file, "contact")
+        return contents.contacts(file)
 
 
 def resu(chosen, instant):
@@ -81,7 +81,7 @@ def resu(chosen, instant):
         return {"RESULTAT": chosen, "PAIRING": "OUI"}
     if instant == "last":
         with chosen.open() as file:
-            return {"RESULTAT": chosen, "PAIRING": "OUI", "NUME_ORDRE": [int(file["order"][-1])]}
+            return {"RESULTAT": chosen, "PAIRING": "OUI", "NUME_ORDRE": [contents.orders_with_contact(file)[-1]]}
     return {"RESULTAT": chosen, "PAIRING": "OUI", "INST": [instant]}
 
 

@@ -129,7 +129,7 @@ def curves(shown, width, value):
         if i == 0 or attempt is not shown[i - 1][0]:
             found.append([])
             marks += [i * step - step // 2] if i else []
-        found[-1].append((i * step, line[value]))
+        found[-1].append((i * step, line.get(value, 0)))  # an instant without contact has no changes of it
     return found, marks
 
 
@@ -149,8 +149,8 @@ def residuals(journal, shown, width, rows):
 
 def statuses(journal, shown, width, rows):
     """How many patches change between contact and no contact."""
-    values = [line["changes"] for _, line in shown]
-    active = part("patches_in_contact", count=shown[-1][1]["active"], all=journal.patches) if shown else ""
+    values = [line.get("changes", 0) for _, line in shown]
+    active = part("patches_in_contact", count=shown[-1][1].get("active", 0), all=journal.patches) if shown else ""
     title = part("patches_that_change") + (part("now_value", value=values[-1]) if values else "") + active
     drawn, marks = curves(shown, width, "changes")
     return [" " * 11 + title, *chart(drawn, width, rows, 0, max([*values, 1]), marks=marks)]
