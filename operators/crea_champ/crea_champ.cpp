@@ -12,6 +12,7 @@
 #include <memory>
 
 #include "lacon/catalog/messages.hpp"
+#include "lacon/operators/crea_champ/field_of_table.hpp"
 #include "lacon/operators/fields/extrapolation.hpp"
 #include "lacon/operators/fields/layout.hpp"
 #include "lacon/operators/fields/selection.hpp"
@@ -230,6 +231,8 @@ Field of_result(Task& task, const Result& result, const std::string& name) {
 
 Field extract(Task& task) {
   const Keywords& keywords = task.keywords();
+  if (keywords.has("TABLE"))
+    return finished(task, field_of_table(task.base().table(keywords.concept_id("TABLE")), task.ground(), task.type()));
   const std::string name = keywords.text("NOM_CHAM");
   Field field;
   if (!keywords.has("RESULTAT")) {

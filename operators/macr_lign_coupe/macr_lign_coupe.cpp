@@ -14,6 +14,7 @@
 #include "lacon/operators/fields/extrapolation.hpp"
 #include "lacon/operators/fields/layout.hpp"
 #include "lacon/operators/fields/selection.hpp"
+#include "lacon/operators/fields/tensor.hpp"
 #include "lacon/operators/macr_lign_coupe/lines.hpp"
 
 namespace lacon {
@@ -126,19 +127,13 @@ std::vector<Eigen::Matrix3d> local_axes(const Mesh& mesh, const Keywords& line, 
   return axes;
 }
 
-/// The field in the axes of REPERE at the points of a line: a row of nodes stands for them.
-Field turned(const Mesh& mesh, const Keywords& line, const Field& field, const std::vector<LinePoint>& points) {
+/// The field at the points of a line: a row of nodes stands for them.
+Field at_points(const Mesh& mesh, const Field& field, const std::vector<LinePoint>& points) {
   Field made = field;
   made.support.clear();
   made.values.clear();
   made.present.clear();
   const std::vector<std::int64_t> row_of_node = places(field, mesh.n_nodes());
-  const bool local = line.text("REPERE") == "LOCAL";
-  const std::vector<Eigen::Matrix3d> along = local ? local_axes(mesh, line, points) : std::vector<Eigen::Matrix3d>();
-  std::optional<Frame> frame;
-  if (!local) frame.emplace(mesh, line, line.text("REPERE") == "CYLINDRIQUE");
-  const std::vector<Turned> parts = turned_components(field);
-  std::size_t lost = 0;
   for (std::size_t i = 0; i < points.size(); ++i) {
     made.support.push_back(static_cast<std::int32_t>(i));
     for (std::size_t c = 0; c < field.n_components(); ++c) {
@@ -146,6 +141,19 @@ Field turned(const Mesh& mesh, const Keywords& line, const Field& field, const s
       made.values.push_back(value.value_or(0.0));
       made.present.push_back(value.has_value());
     }
+  }
+  return made;
+}
+
+/// What REPERE makes of a field at the points of a line.
+void turn_axes(const Mesh& mesh, const Keywords& line, const std::vector<LinePoint>& points, Field& made) {
+  const bool local = line.text("REPERE") == "LOCAL";
+  const std::vector<Eigen::Matrix3d> along = local ? local_axes(mesh, line, points) : std::vector<Eigen::Matrix3d>();
+  std::optional<Frame> frame;
+  if (!local) frame.emplace(mesh, line, line.text("REPERE") == "CYLINDRIQUE");
+  const std::vector<Turned> parts = turned_components(made);
+  std::size_t lost = 0;
+  for (std::size_t i = 0; i < points.size(); ++i) {
     const Eigen::Matrix3d axes =
         local ? along[i] : frame->at(Eigen::Map<const Eigen::Vector3d>(points[i].position.data()), lost);
     for (const Turned& part : parts) {
@@ -159,6 +167,60 @@ Field turned(const Mesh& mesh, const Keywords& line, const Field& field, const s
     }
   }
   if (lost) inform("MODIREPERE_4", {{"count", std::to_string(lost)}});
+}
+
+/// Unit vectors at the points: DIRECTION, or for TRAC_NOR the normal of the line, in the axes of the components.
+std::vector<Eigen::Vector3d> directions(const Mesh& mesh, const Keywords& line, const std::vector<LinePoint>& points) {
+  Eigen::Vector3d one = Eigen::Vector3d::UnitY();  // of REPERE='LOCAL'
+  if (line.has("TRAC_DIR")) {
+    const std::vector<double> given = line.reals("DIRECTION");
+    one.setZero();
+    std::copy(given.begin(), given.end(), one.data());
+    if (one.isZero(0)) fail("LIGNCOUPE_11", {{"keyword", line.path("DIRECTION")}});
+    one.normalize();
+  }
+  std::vector<Eigen::Vector3d> found(points.size(), one);
+  if (line.has("TRAC_NOR") && line.text("REPERE") == "GLOBAL") {
+    const std::vector<Eigen::Matrix3d> axes = local_axes(mesh, line, points);
+    for (std::size_t i = 0; i < points.size(); ++i) found[i] = axes[i].row(1).transpose();
+  }
+  return found;
+}
+
+/// Vectors at points with what they are made of.
+struct Traces {
+  std::vector<std::string> names;
+  std::vector<std::vector<double>> rows;  ///< one for each point, empty where the vector or tensor is not whole
+};
+
+/// TRAC_DIR, TRAC_NOR: T d of the tensor among these components, or v . d of the vector; nothing where there is neither.
+Traces traces(const Mesh& mesh, const Keywords& line, const std::vector<LinePoint>& points, const Field& field) {
+  const char* const kind = line.has("TRAC_DIR") ? "DIR" : "NOR";
+  const std::vector<Turned> parts = turned_components(field);
+  auto part = std::ranges::find_if(parts, &Turned::tensor);
+  if (part == parts.end()) part = parts.begin();
+  if (part == parts.end()) return {};
+  Traces made;
+  for (int k = 1; part->tensor && k <= 3; ++k) made.names.push_back(fmt::format("TR_{}_{}", kind, k));
+  if (!part->tensor) made.names.push_back(fmt::format("TRAC_{}", kind));
+  const std::vector<Eigen::Vector3d> along = directions(mesh, line, points);
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    std::vector<double>& row = made.rows.emplace_back();
+    const auto lacks = [&](int c) { return c >= 0 && !field.has(i, static_cast<std::size_t>(c)); };
+    if (std::ranges::any_of(part->column, lacks)) continue;
+    const auto value = [&](std::size_t k) {
+      return part->column[k] < 0 ? 0.0 : field.at(i, static_cast<std::size_t>(part->column[k]));
+    };
+    Eigen::Matrix3d tensor = Eigen::Matrix3d::Zero();
+    if (part->tensor)
+      for (std::size_t k = 0; k < tensor_axes.size(); ++k)
+        tensor(tensor_axes[k].i, tensor_axes[k].j) = tensor(tensor_axes[k].j, tensor_axes[k].i) = value(k);
+    const Eigen::Vector3d product = tensor * along[i];
+    if (part->tensor)
+      row.assign(product.data(), product.data() + 3);
+    else
+      row.push_back(Eigen::Vector3d(value(0), value(1), value(2)).dot(along[i]));
+  }
   return made;
 }
 
@@ -168,20 +230,44 @@ struct Values {
   std::vector<std::vector<std::optional<double>>> at;  ///< (component, point)
 };
 
+/// The field with these components alone.
+Field with_components(const Field& field, const std::vector<std::string>& names) {
+  Field made = field;
+  made.components = names;
+  made.values.clear();
+  made.present.clear();
+  for (std::size_t row = 0; row < field.n_rows(); ++row)
+    for (const std::string& name : names) {
+      const auto c = static_cast<std::size_t>(field.component(name));
+      made.values.push_back(field.at(row, c));
+      made.present.push_back(field.has(row, c));
+    }
+  return made;
+}
+
 Values interpolate(const Mesh& mesh, const Keywords& line, const Field& field, const std::vector<LinePoint>& points,
                    const std::vector<std::string>& components) {
-  Values values{components, {}};
-  const bool global = line.text("REPERE") == "GLOBAL";
-  const std::vector<std::int64_t> row_of_node = places(field, mesh.n_nodes());
-  const Field own = global ? Field() : turned(mesh, line, field, points);
-  for (const std::string& name : components) {
-    const auto c = static_cast<std::size_t>(field.component(name));
+  Field own = at_points(mesh, field, points);
+  if (line.text("REPERE") != "GLOBAL") turn_axes(mesh, line, points, own);
+  own = with_components(own, components);
+  Values values;
+  if (line.has("TRAC_DIR") || line.has("TRAC_NOR")) {
+    const Traces found = traces(mesh, line, points, own);
+    if (found.names.empty())
+      fail("LIGNCOUPE_12", {{"keyword", line.path(line.has("TRAC_DIR") ? "TRAC_DIR" : "TRAC_NOR")},
+                            {"components", fmt::format("{}", fmt::join(components, ", "))}});
+    values.components = found.names;
+    for (std::size_t c = 0; c < found.names.size(); ++c) {
+      std::vector<std::optional<double>>& column = values.at.emplace_back();
+      for (const std::vector<double>& row : found.rows) column.push_back(row.empty() ? std::nullopt : std::optional(row[c]));
+    }
+    return values;
+  }
+  values.components = components;
+  for (std::size_t c = 0; c < components.size(); ++c) {
     std::vector<std::optional<double>>& column = values.at.emplace_back();
     for (std::size_t i = 0; i < points.size(); ++i)
-      if (global)
-        column.push_back(value_at(field, row_of_node, points[i], c));
-      else
-        column.push_back(own.has(i, c) ? std::optional(own.at(i, c)) : std::nullopt);
+      column.push_back(own.has(i, c) ? std::optional(own.at(i, c)) : std::nullopt);
   }
   return values;
 }

@@ -64,6 +64,32 @@ assert max(abs(v - 1) for v in line.Ordo()) < 1e-14
 """))
         self.refused(self.study("CALC_FONCTION(REGR_POLYNOMIALE=_F(FONCTION=f, DEGRE=3))"), "FUNCTION_18", "3 + 1 points", "f has 3")
 
+    def test_simpson_is_exact_for_parabolas_on_any_steps(self):
+        """x**2 from 0 on, with an odd and an even count of intervals; on equal steps x**3 at the ends of pairs; of two points the trapezoid."""
+        self.ok(self.study("""
+def integral(x, degree):
+    points = DEFI_FONCTION(NOM_PARA='X', ABSCISSE=x, ORDONNEE=[v**degree for v in x])
+    made = CALC_FONCTION(INTEGRE=_F(FONCTION=points, METHODE='SIMPSON', COEF=2.))
+    assert made.Absc() == x
+    return [y - 2 - v**(degree + 1) / (degree + 1) for v, y in zip(made.Absc(), made.Ordo())]
+for x in ([0, 0.3, 1, 1.4, 2], [0, 0.3, 1, 1.4], [0, 1, 3]):
+    assert max(map(abs, integral(x, 2))) < 1e-14, integral(x, 2)
+assert max(map(abs, integral([0, 1, 2, 3, 4], 3)[::2])) < 1e-13
+assert integral([0, 1], 2) == [0, 0.5 - 1 / 3]
+"""))
+
+    def test_fractiles_and_extremes_of_parts(self):
+        """Of three constants the median is the one between, a quarter half way below it. The extremes of g in [1, 2.5], on whose ends no points are."""
+        self.ok(self.study("""
+flat = [DEFI_FONCTION(NOM_PARA='X', VALE=(0, c, 1, c)) for c in (4., 1., 2.)]
+for part, value in ((1.0, 4), (0.0, 1), (0.5, 2), (0.25, 1.5)):
+    assert CALC_FONCTION(FRACTILE=_F(FONCTION=flat, FRACT=part)).Valeurs() == [[0, 1], [value, value]]
+M = CALC_FONCTION(MAX=_F(FONCTION=g, INTERVALLE=(1., 2.5, 2., 3.))).EXTR_TABLE()
+assert [(r['INTERVALLE'], r['TYPE'], r['INST'], r['TOUTRESU']) for r in M] == [(1, 'MAX', 1, 1), (1, 'MIN', 2.5, -0.5), (2, 'MAX', 2, 0), (2, 'MIN', 3, -1)], M
+"""))
+        for ends in ("(1., 0.)", "(0., 1., 2.)"):
+            self.refused(self.study(f"CALC_FONCTION(MAX=_F(FONCTION=g, INTERVALLE={ends}))"), "FUNCTION_21")
+
     def test_measures_of_functions(self):
         """By trapezes over the points: of (0, 1), (1, -1), (2, 1) the square is 1 everywhere, and the mean 0; of a line over [1, 3] of [0, 4] by hand."""
         self.ok(self.study("""
@@ -133,6 +159,9 @@ assert w.values() == {'A': [1, 2, 3, 9], 'B': [4, 5, 7, None], 'S': ['x', 'y', '
 assert table(_F(OPERATION='AJOUT_COLONNE', NOM_PARA='C', VALE_COLONNE=(5., 6.))).values()['C'] == [5, 6, None]
 c = table(_F(OPERATION='CALCUL', NOM_PARA=('A', 'B'), TYPE_CALCUL=('SOMM', 'MOY', 'MINI')))
 assert c.values() == {'TYPE_CALCUL': ['SOMM', 'MOY', 'MINI'], 'A': [6, 2, 1], 'B': [16, 16 / 3, 4]}
+d = table(_F(OPERATION='STATISTIQUES'))
+assert d.values()['TYPE_CALCUL'] == ['NOMBRE', 'MOY', 'ECART_TYPE', 'MEDIANE', 'MAXI', 'MINI', 'SOMM'] and d.para == ['TYPE_CALCUL', 'A', 'B'], d
+assert d.values()['A'] == [3, 2, (2 / 3)**0.5, 2, 3, 1, 6] and table(_F(OPERATION='STATISTIQUES', NOM_PARA='B')).values()['B'][3] == 5
 U = CREA_TABLE(LISTE=(_F(PARA='A', LISTE_R=(2., 3., 8.)), _F(PARA='Q', LISTE_R=(0.2, 0.3, 0.8))))
 j = table(_F(OPERATION='COMB', TABLE=U, NOM_PARA='A')).values()
 assert j['A'] == [1, 2, 3, 8] and j['Q'] == [None, 0.2, 0.3, 0.8] and j['B'] == [4, 5, 7, None]

@@ -157,6 +157,22 @@ near(t.EXTR_TABLE().DX, [1, 2**0.5, 0])
 FIN()
 """))
 
+    def test_traces_on_the_line(self):
+        """Along the nodes the normal is to the left: Y; backwards -Y; in the axes of the line always Y. Of a tensor its product with it."""
+        self.ok(self.run_study(STUDY + self.field("DEPL_R", ["DX", "DY"], [[0.0, 1.0], [1.0, 2.0], [2.0, 3.0]]) + """
+near(table(TRAC_NOR='OUI').TRAC_NOR, [1, 2, 3])
+near(table(TRAC_NOR='OUI', VECT_Y=(0., -1.)).TRAC_NOR, [-1, -2, -3])
+near(table(TRAC_NOR='OUI', GROUP_NO=None, NOEUD=('N6', 'N5', 'N4')).TRAC_NOR, [-3, -2, -1])
+near(table(TRAC_NOR='OUI', REPERE='LOCAL').TRAC_NOR, [1, 2, 3])
+FIN()
+"""))
+        names = ["SIXX", "SIYY", "SIZZ", "SIXY"]
+        self.ok(self.run_study(STUDY + self.field("SIEF_R", names, [[3.0, 4.0, 10.0, 2.0], [5.0, 0.0, 0.0, 0.0], [0.0, 0.0, 0.0, 7.0]]) + """
+t = table(TRAC_NOR='OUI')
+near(t.TR_NOR_1, [2, 0, 7]); near(t.TR_NOR_2, [4, 0, 0]); near(t.TR_NOR_3, [0, 0, 0])
+FIN()
+"""))
+
     def test_a_vector_that_is_not_whole_has_no_components_in_other_axes(self):
         self.ok(self.run_study(STUDY + self.field("DEPL_R", ["DX", "DY"], [[0.0, 1.0], [1.0, 1.0], [2.0, 1.0]]).replace(
             "F = current", "    file['present'] = [[1, 1], [1, 0], [1, 1]]\nF = current") + """
@@ -219,7 +235,7 @@ FIN()
                               ({"REPERE": "'LOCAL'", "VECT_Y": "(1., 0.)"}, "POST_9"), ({"VECT_Y": "(1., 0.)"}, "KEYWORD_10"),
                               ({"REPERE": "'UTILISATEUR'"}, "KEYWORD_2"), ({"ORIGINE": "(0., 0.)"}, "KEYWORD_10"),
                               ({"NOM_CMP": None, "INVARIANT": "'OUI'"}, "POST_7"), ({"TRAC_DIR": "'OUI'"}, "KEYWORD_9"),
-                              ({"TRAC_DIR": "'OUI'", "DIRECTION": "(0., 0.)"}, "POST_8"), ({"TRAC_NOR": "'OUI'"}, "KEYWORD_11"),
+                              ({"TRAC_DIR": "'OUI'", "DIRECTION": "(0., 0.)"}, "POST_8"), ({"CHEMIN": "R"}, "KEYWORD_11"),
                               ({"NOM_CMP": None, "RESULTANTE": "'DX'", "REPERE": "'POLAIRE'"}, "KEYWORD_10")):
             given = ", ".join(f"{k}={v}" for k, v in {**good, **changes}.items() if v)
             calls.append((f"POST_RELEVE_T(ACTION=_F(INTITULE='it', RESULTAT=R, {given}))", word))

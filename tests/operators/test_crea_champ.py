@@ -180,6 +180,38 @@ class CreaChamp(FieldTest):
         np.testing.assert_array_equal(field.values[:, 0], np.arange(0, 12, 2))
         np.testing.assert_array_equal(field.present[:, 2], [1, 1, 0, 0, 0, 0])
 
+    def write_table(self, identifier, columns):
+        """@param columns name -> (type, cells, None where one is missing)"""
+        with self.create(identifier, "table", title="") as file:
+            file["columns"] = np.array(list(columns), h5py.string_dtype())
+            file["types"] = np.array([kind for kind, _ in columns.values()], h5py.string_dtype())
+            for k, (kind, cells) in enumerate(columns.values()):
+                stored = {"I": np.int64, "R": float}.get(kind, h5py.string_dtype())
+                file[f"values/{k}"] = np.array([("" if kind[0] == "K" else 0) if cell is None else cell for cell in cells], stored)
+                file[f"present/{k}"] = np.array([cell is not None for cell in cells], np.uint8)
+
+    def test_a_field_of_a_table(self):
+        """Columns that are components go to the places that the rows name; others, and cells that are missing, make nothing."""
+        self.write_table("table_3", {"INST": ("R", [0.0, 0.0]), "NOEUD": ("K8", ["N4", "N2"]), "DX": ("R", [3.0, None]), "DY": ("R", [5.0, 7.0])})
+        made = {"OPERATION": "EXTR", "MAILLAGE": concept("mesh_1"), "TABLE": concept("table_3"), "NOM_CHAM": ""}
+        field = self.make("field_4", TYPE_CHAM="NOEU_DEPL_R", **made)
+        self.assertEqual((field.components, field.support, field.present.tolist()), (["DX", "DY"], [1, 3], [[0, 1], [1, 1]]))
+        np.testing.assert_array_equal(field.values, [[0, 7], [3, 5]])
+        self.write_table("table_3", {"MAILLE": ("K8", ["M3", "M2"]), "POINT": ("I", [4, 1]), "NOEUD": ("K8", ["N5", "N1"]), "X1": ("R", [1.0, 2.0])})
+        cells = self.make("field_5", TYPE_CHAM="ELEM_NEUT_R", **made)
+        self.assertEqual((cells.support, cells.values[:, 0].tolist()), ([1, 2], [2, 1]))
+        points = self.make("field_6", TYPE_CHAM="ELGA_NEUT_R", **{**made, "MODELE": concept("model_2")})
+        self.assertEqual([points.support[0], points.support[-1]], [1, 2])
+        self.assertEqual(points.values[points.present[:, 0] != 0, 0].tolist(), [2, 1])
+        nodes = self.make("field_7", TYPE_CHAM="ELNO_NEUT_R", **made)  # N5 is the third node of M3, N1 the first of M2
+        self.assertEqual((nodes.support, np.flatnonzero(nodes.present[:, 0]).tolist()), ([1, 2], [0, 4 + CELLS[2][1].index(4)]))
+        self.refuses("CREACHAMP_2", "TABLE", "X1", TYPE_CHAM="NOEU_TEMP_R", **made)
+        self.refuses("CREACHAMP_19", "NOEU_NEUT_F", TYPE_CHAM="NOEU_NEUT_F", **made)
+        self.write_table("table_3", {"MAILLE": ("K8", ["M3", "M9"]), "POINT": ("I", [5, 1]), "X1": ("R", [1.0, 2.0])})
+        self.refuses("CREACHAMP_17", "NOEUD", TYPE_CHAM="NOEU_NEUT_R", **made)
+        self.refuses("CREACHAMP_18", "M9", "row 2", TYPE_CHAM="ELEM_NEUT_R", **made)
+        self.refuses("CREACHAMP_18", "POINT", "'5'", TYPE_CHAM="ELNO_NEUT_R", **made)
+
     def test_a_value_of_a_cell_goes_to_all_its_points(self):
         self.own("field_3", "ELEM_CLAC_R", ["PRES"], [0], [-3.0])
         field = self.make("field_4", OPERATION="ASSE", TYPE_CHAM="CART_NEUT_R", MAILLAGE=concept("mesh_1"),

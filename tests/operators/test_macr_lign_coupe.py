@@ -113,6 +113,20 @@ class MacrLignCoupe(OperatorTest):
         rows = self.lines({"TYPE": "GROUP_NO", "GROUP_NO": "CORNER", "REPERE": "LOCAL"}, NUME_ORDRE=[0])
         np.testing.assert_allclose([[row["DX"], row["DY"]] for row in rows], [(0, 0), (0.5**0.5, -(0.5**0.5)), (1, -1)], atol=1e-15)
 
+    def test_traces_on_a_line(self):
+        """u = x, T with x and y on its diagonal, on the diagonal of a square from below: n = (-1, 1) / sqrt 2."""
+        corners = [(0, 0), (1, 0), (1, 1), (0, 1)]
+        line = {"NB_POINTS": 3, "COOR_ORIG": [0.2, 0.4], "COOR_EXTR": [0.6, 0.8]}
+        self.write(corners, [("QUAD4", [0, 1, 2, 3])], corners)
+        root = 0.5**0.5
+        for row in self.lines({**line, "TRAC_NOR": "OUI"}, NUME_ORDRE=[0]):
+            self.assertEqual([name for name in row if name.startswith(("D", "TR"))], ["TRAC_NOR"])
+            self.assertAlmostEqual(row["TRAC_NOR"], (row["COOR_Y"] - row["COOR_X"]) * root, 14)
+        for row in self.lines({**line, "TRAC_NOR": "OUI", "VECT_Y": [1.0, 0.0]}, {**line, "TRAC_DIR": "OUI", "DIRECTION": [2.0, -2.0]}, NUME_ORDRE=[0]):
+            self.assertAlmostEqual(row.get("TRAC_NOR", row.get("TRAC_DIR")) or row["TRAC_DIR"], (row["COOR_X"] - row["COOR_Y"]) * root, 14)
+        self.assertAlmostEqual(self.column(self.lines({**line, "TRAC_NOR": "OUI", "REPERE": "LOCAL", "OPERATION": "MOYENNE"}, NUME_ORDRE=[0]), "TRAC_NOR")[0], 0.2 * root, 14)
+        self.refuses("LIGNCOUPE_11", {**line, "TRAC_DIR": "OUI", "DIRECTION": [0.0, 0.0]}, "DIRECTION")
+
     def test_axes_of_a_vector_that_is_not_whole_leave_it_out(self):
         self.write([(0, 0), (1, 0), (1, 1), (0, 1)], [("QUAD4", [0, 1, 2, 3])], [(1, 2)] * 4, present=np.array([(1, 1), (1, 0), (1, 1), (1, 1)], np.uint8))
         rows = self.lines({"NB_POINTS": 2, "COOR_ORIG": [1.0, 0.0], "COOR_EXTR": [1.0, 1.0], "REPERE": "UTILISATEUR", "ANGL_NAUT": [90.0]}, NUME_ORDRE=[0])

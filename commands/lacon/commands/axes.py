@@ -63,7 +63,7 @@ def at(call, k, path, points, plane):
     if k["REPERE"] == "UTILISATEUR":
         return numpy.broadcast_to(_nautical(k["ANGL_NAUT"]), (len(points), 3, 3))
     if k["REPERE"] == "LOCAL":
-        return _along(call, k, path, points, plane)
+        return line_axes(call, k, path, points, plane)
     origin = numpy.zeros(3)
     given = k.get("ORIGINE", ())
     origin[:len(given)] = given
@@ -88,7 +88,7 @@ def at(call, k, path, points, plane):
     return numpy.stack([radial, around, along] if polar else [radial, along, around], axis=1)
 
 
-def _along(call, k, path, points, plane):
+def line_axes(call, k, path, points, plane):
     """Axes at points of a line: X its tangent, the mean of the directions of the pieces beside a point; Y towards VECT_Y."""
     pieces = numpy.diff(points, axis=0)
     lengths = numpy.linalg.norm(pieces, axis=1)
@@ -139,13 +139,18 @@ def principals(given):
     return made
 
 
-def traces(components, values, direction):
-    """{name: (n) values}: TRAC_DIR = v . d of vectors, TR_DIR_1 ... = T d of tensors; nothing where there are neither."""
-    unit = numpy.zeros(3)
-    unit[:len(direction)] = direction
-    unit /= numpy.linalg.norm(unit)
+def traces(components, values, along, kind):
+    """{name: (n) values}: TRAC_DIR = v . d of vectors, TR_DIR_1 ... = T d of tensors; nothing where there are neither. @param along unit vectors
+    d (n, 3) @param kind "DIR" or "NOR\""""
     for _, given in tensors(components, values):
-        return {f"TR_DIR_{i + 1}": column for i, column in enumerate((given @ unit).T)}
+        return {f"TR_{kind}_{i + 1}": column for i, column in enumerate(numpy.einsum("nij,nj->in", given, along))}
     for _, given in vectors(components, values):
-        return {"TRAC_DIR": given @ unit}
+        return {f"TRAC_{kind}": (given * along).sum(axis=1)}
     return {}
+
+
+def direction(given, count):
+    """A direction as unit vectors (count, 3)."""
+    unit = numpy.zeros(3)
+    unit[:len(given)] = given
+    return numpy.tile(unit / numpy.linalg.norm(unit), (count, 1))

@@ -1,10 +1,13 @@
 """CALC_TABLE: a table from another, one ACTION after the other."""
 
+import statistics
+
 from ..tables import filters, printing, storage
 from ..tables.table import Table, type_of
 
 _reductions = {"MAXI": max, "MINI": min, "SOMM": sum, "MOY": lambda v: sum(v) / len(v), "MAXI_ABS": lambda v: max(map(abs, v)),
                "MINI_ABS": lambda v: min(map(abs, v)), "SOMM_ABS": lambda v: sum(map(abs, v))}
+_statistics = {"NOMBRE": len, "MOY": statistics.fmean, "ECART_TYPE": statistics.pstdev, "MEDIANE": statistics.median, "MAXI": max, "MINI": min, "SOMM": sum}
 
 
 def calc_table(call):
@@ -139,17 +142,30 @@ def _unique(call, table, action, path):
 
 def _reduce(call, table, action, path):
     """CALCUL: a row for each TYPE_CALCUL."""
-    columns = {"TYPE_CALCUL": ("K16", list(action["TYPE_CALCUL"]))}
-    for name in action["NOM_PARA"]:
+    return _reduced(call, table, action["NOM_PARA"], {what: _reductions[what] for what in action["TYPE_CALCUL"]}, path)
+
+
+def _reduced(call, table, names, reductions, path):
+    """A row for each reduction of the columns. @param reductions name -> function of the cells that there are"""
+    columns = {"TYPE_CALCUL": ("K16", list(reductions))}
+    for name in names:
         values = filters.numeric(call, table, name, f"{path}/NOM_PARA").values()
         if not values:
             call.fail("TABLE_9", f"{path}/NOM_PARA", name=name, count=0)
-        columns[name] = ("R", [float(_reductions[what](values)) for what in action["TYPE_CALCUL"]])
+        columns[name] = ("R", [float(reduction(values)) for reduction in reductions.values()])
     return Table.of_columns(columns, table.titr)
+
+
+def _describe(call, table, action, path):
+    """STATISTIQUES: what describes every column of numbers, or those of NOM_PARA."""
+    names = action.get("NOM_PARA") or [name for name in table.para if table.kind(name) in ("I", "R") and table[name].values()]
+    for name in names:
+        filters.column_of(call, table, name, f"{path}/NOM_PARA")
+    return _reduced(call, table, names, _statistics, path)
 
 
 #: operations whose NOM_PARA are columns that must be there
 _existing = {"FILTRE", "EXTR", "TRI", "SUPPRIME", "UNIQUE", "CALCUL"}
 _operations = {"FILTRE": _filter, "EXTR": lambda call, table, action, path: table[action["NOM_PARA"]], "RENOMME": _rename, "TRI": _sort,
                "COMB": _combine, "AJOUT_LIGNE": _add_row, "AJOUT_COLONNE": _add_columns, "OPER": _compute, "SUPPRIME": _drop, "UNIQUE": _unique,
-               "CALCUL": _reduce}
+               "CALCUL": _reduce, "STATISTIQUES": _describe}

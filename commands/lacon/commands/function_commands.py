@@ -1,6 +1,5 @@
 """IMPR_FONCTION, TEST_FONCTION, RECU_FONCTION, CALC_FONCTION, INFO_FONCTION."""
 
-import itertools
 import math
 
 from ..base.functions import Piecewise
@@ -176,10 +175,21 @@ def _derive(call, factor):
 
 
 def _integre(call, factor):
-    """The trapezoidal rule, exact for a piecewise linear function."""
+    """The trapezoidal rule, exact for a piecewise linear function, or Simpson's."""
     points = factor["FONCTION"].points()
-    areas = ((b - a) * (fa + fb) / 2 for a, b, fa, fb in zip(points.x, points.x[1:], points.y, points.y[1:]))
-    return _made(call, points.x, list(itertools.accumulate(areas, initial=factor["COEF"])), points)
+    x, y = numpy.array(points.x), numpy.array(points.y)
+    steps = numpy.diff(x)
+    areas = steps * (y[1:] + y[:-1]) / 2
+    if factor["METHODE"] == "SIMPSON" and len(x) > 2:
+        areas -= _second_differences(x, y) * steps**3 / 6
+    return _made(call, x, numpy.cumsum([factor["COEF"], *areas]), points)
+
+
+def _second_differences(x, y):
+    """Of each interval that of the parabola through three points which it belongs to: those of intervals in pairs, of a last one alone the last three."""
+    slopes = numpy.diff(y) / numpy.diff(x)
+    found = numpy.diff(slopes) / (x[2:] - x[:-2])
+    return found[[min(i - i % 2, len(found) - 1) for i in range(len(slopes))]]
 
 
 def _pointwise(change):
@@ -208,6 +218,12 @@ def _moyenne(call, factor):
     return _made(call, x, [sum(f(v) for f in concepts) / len(concepts) for v in x], concepts[0].points())
 
 
+def _fractile(call, factor):
+    x = _abscissae(call, factor["FONCTION"])
+    values = numpy.array([[f(v) for v in x] for f in factor["FONCTION"]])
+    return _made(call, x, numpy.quantile(values, factor["FRACT"], axis=0), factor["FONCTION"][0].points())
+
+
 def _regr_polynomiale(call, factor):
     points, degree = factor["FONCTION"].points(), factor["DEGRE"]
     if len(points.x) <= degree:
@@ -234,20 +250,34 @@ def _asse(call, factors):
 
 
 def _max(call, factor):
-    """A table with the extremes of each function."""
+    """A table with the extremes of each function, or in each interval of it."""
     rows = []
     for concept in factor["FONCTION"]:
         points = concept.points()
-        for what, choose in (("MAX", max), ("MIN", min)):
-            value = choose(points.y)
-            rows += [{"FONCTION": concept.label, "TYPE": what, points.parameter: x, points.component: y}
-                     for x, y in zip(points.x, points.y) if y == value]
+        for head, x, y in _parts(call, concept, factor.get("INTERVALLE")):
+            for what, choose in (("MAX", max), ("MIN", min)):
+                value = choose(y)
+                rows += [{"FONCTION": concept.label, **head, "TYPE": what, points.parameter: a, points.component: b} for a, b in zip(x, y) if b == value]
     return storage.make(call, Table(rows))
+
+
+def _parts(call, concept, ends):
+    """[(cells of the table, abscissae, ordinates)] of a function: as a whole, or with its values at the ends of each interval."""
+    points = concept.points()
+    if ends is None:
+        return [({}, points.x, points.y)]
+    if len(ends) % 2 or any(not first < last for first, last in zip(ends[::2], ends[1::2])):
+        call.fail("FUNCTION_21", "MAX/INTERVALLE", ends=", ".join(f"{v:g}" for v in ends))
+    parts = []
+    for number, (first, last) in enumerate(zip(ends[::2], ends[1::2]), 1):
+        x = [first, *(v for v in points.x if first < v < last), last]
+        parts.append(({"INTERVALLE": number}, x, [concept(v) for v in x]))
+    return parts
 
 
 _operations = {
     "COMB": _comb, "ENVELOPPE": _enveloppe, "DERIVE": _derive, "INTEGRE": _integre, "MULT": _mult, "COMPOSE": _compose, "ASSE": _asse,
-    "MOYENNE": _moyenne, "REGR_POLYNOMIALE": _regr_polynomiale, "MAX": _max, "ABS": _pointwise(lambda factor, y: abs(y)), "INVERSE": _pointwise(lambda factor, y: 1.0 / y),
+    "MOYENNE": _moyenne, "FRACTILE": _fractile, "REGR_POLYNOMIALE": _regr_polynomiale, "MAX": _max, "ABS": _pointwise(lambda factor, y: abs(y)), "INVERSE": _pointwise(lambda factor, y: 1.0 / y),
     "PUISSANCE": _pointwise(lambda factor, y: y ** factor["EXPOSANT"]),
 }
 

@@ -57,13 +57,15 @@ class _Frame:
         self._derive()
 
     def _derive(self):
-        """Put what INVARIANT, ELEM_PRINCIPAUX or TRAC_DIR asks for in the place of the components."""
+        """Put what INVARIANT, ELEM_PRINCIPAUX, TRAC_DIR or TRAC_NOR asks for in the place of the components."""
         action, values = self.action, numpy.where(self.there, self.values, 0.0)
-        keyword = next((k for k in ("INVARIANT", "ELEM_PRINCIPAUX", "TRAC_DIR") if k in action), None)
+        keyword = next((k for k in ("INVARIANT", "ELEM_PRINCIPAUX", "TRAC_DIR", "TRAC_NOR") if k in action), None)
         if keyword is None:
             return
         if keyword == "TRAC_DIR":
-            made = axes.traces(self.names, values, action["DIRECTION"])
+            made = axes.traces(self.names, values, axes.direction(action["DIRECTION"], len(values)), "DIR")
+        elif keyword == "TRAC_NOR":
+            made = axes.traces(self.names, values, self._normals(), "NOR")
         else:
             of = axes.invariants if keyword == "INVARIANT" else axes.principals
             made = next((of(given) for _, given in axes.tensors(self.names, values)), {})
@@ -71,6 +73,12 @@ class _Frame:
             self.call.fail("POST_7", f"{self.path}/{keyword}", field=self.field.name, components=", ".join(self.names))
         self.names, self.values = list(made), numpy.column_stack(list(made.values()))
         self.there = numpy.repeat(self.there.all(axis=1)[:, None], len(made), axis=1)
+
+    def _normals(self):
+        """Of the line of nodes, in the axes of the components."""
+        if self.action["REPERE"] == "LOCAL":
+            return axes.direction((0.0, 1.0), len(self.points))
+        return axes.line_axes(self.call, self.action, self.path, self.points, self.field.mesh().getDimension() == 2)[:, 1]
 
     def extraction(self):
         """A row a node."""
