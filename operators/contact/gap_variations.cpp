@@ -116,7 +116,8 @@ ContactGeometry::Variation ContactGeometry::variation(std::size_t z, const Pairi
       .master = mesh_.types[master_cell],
       .dimension = mesh_.dimension,
       .axis = registry_.find_element(model_.elements[model_.element[slave_cell]])->geometry == catalog::Geometry::axis,
-      .current_jacobian = zone.current_jacobian};
+      .current_jacobian = zone.current_jacobian,
+      .fading = zone.pairing.fading};
 
   // nodes of other masters that bound the polygon come behind
   const auto local = [&](std::int32_t node) {
@@ -131,7 +132,6 @@ ContactGeometry::Variation ContactGeometry::variation(std::size_t z, const Pairi
       const std::int32_t node = cells.vertex_node[vertex];
       cell.ends[k] = {cells.vertex[vertex], node < 0 ? -1 : local(node), cells.vertex_crossing[vertex]};
     }
-    cell.fading = zone.pairing.fading;
   } else {
     cell.trace = &found.traces[place];
     for (const PolygonTrace::Line& line : cell.trace->line) {

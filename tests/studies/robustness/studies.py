@@ -325,6 +325,18 @@ def aligned_ends():
                     moves=[held("LOWER"), path("UPPER", [(0, 0), (10, 0)], [(0, 0), (10, -0.02)])], steps=10, asked={"per step": 8}, driven="UPPER_BASE")
 
 
+def aligned_faces():
+    """The same in space: columns a cell thick, free on all sides, each of whose faces comes to lie on either side of the other column's."""
+    for cells, side in itertools.product(((4, 6), (7, 5)), SIDES):
+        mesh = union([slab_in_space("HEXA20", name, (-0.5, 0.5), (0, 0.25), (low, low + 1), (n, 1, n), skin=skin)
+                      for name, low, n, skin in (("UPPER", 0, cells[0], "bottom"), ("LOWER", -1, cells[1], "top"))])
+        law = plastic(2e5, 400.0, 2000.0)
+        yield Study(name=named("HEXA20", f"{cells[0]} on {cells[1]} cells", slave(("UPPER", "LOWER"), side)), mesh=mesh, model="3D",
+                    materials={"UPPER": law, "LOWER": {**law, "ELAS": {"E": 2e5, "NU": 0.2}}}, zones=[zone("UPPER", "LOWER", side)],
+                    moves=[{**held("LOWER"), "DZ": 0.0}, {**held("UPPER"), "DZ": [[0, 0], [10, -0.02]]}], steps=10,
+                    asked={"per step": 8}, driven="UPPER_BASE")
+
+
 def force_driven():
     """Half a round body, or a block, that nothing but contact holds along its axis, pressed on a slab by a force, with the default of
     10 iterations: the contact of the round one begins in a point, and is 7 cells wide behind the first step."""
@@ -363,6 +375,7 @@ ROWS = {
     "difficult": ("block in a die, beams that meet, bodies held by contact", difficult),
     "corner": ("tilted corner dragged", tilted_corner),
     "aligned": ("columns whose ends are aligned", aligned_ends),
+    "faces": ("columns whose faces are aligned, in space", aligned_faces),
     "force": ("bodies that contact alone holds, driven by a force", force_driven),
     "peer": ("the peer's half spheres and half ring", peer_cases),
     "cycle": ("closed elastic cycle with PETIT_REAC", closed_cycle),
