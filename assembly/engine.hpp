@@ -19,11 +19,12 @@ struct Factorisation {
   std::int64_t entries = 0;                                              ///< of the factor
   std::int64_t whole_entries = 0;                                        ///< the same before its blocks were compressed
   bool single_precision = false, low_rank = false, out_of_core = false;  ///< how the factor is kept
+  int processes = 1;                                                     ///< that share it
   double error = 0;                                                      ///< what a substitution leaves of a residual
   double wasted_flops = 0;                                               ///< of a factor that was no use
   bool is_iterative = false;                                             ///< there is none: iterations have what they need
   std::string stalled;  ///< why iterations were no use, and a factor was made instead
-  std::string doubt;    ///< why a factor in single precision or of low rank was no use, and an exact one was made behind it
+  std::string doubt;    ///< why a cheaper factor was no use, and an exact one was made behind it
 };
 
 /// What a solution took.

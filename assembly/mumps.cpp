@@ -84,6 +84,18 @@ struct Mumps<Real>::State {
     const int code = at(mumps.infog, 1);
     return code == -8 || code == -9;
   }
+  /// One half of a substitution, without the border. @param half as ICNTL(26) numbers them
+  void substitute_within(int half, std::span<Real> sides, std::span<Real> border) {
+    at(mumps.icntl, 26) = half;
+    mumps.rhs = sides.data();
+    mumps.lrhs = mumps.n;
+    mumps.nrhs = static_cast<MUMPS_INT>(sides.size() / static_cast<std::size_t>(mumps.n));
+    mumps.redrhs = border.data();
+    mumps.lredrhs = mumps.size_schur;
+    run(solve_job);
+    at(mumps.icntl, 26) = 0;
+    require("solution");
+  }
   void require(const char* phase) {
     const int code = at(mumps.infog, 1);
     if (code >= 0) return;
@@ -106,6 +118,11 @@ MumpsForecast Mumps<Real>::analyse(const MumpsPattern& pattern) {
   mumps.irn = pattern.row.data();
   mumps.jcn = pattern.column.data();
   mumps.perm_in = pattern.place.data();
+  if (!pattern.border.empty()) {
+    at(mumps.icntl, 19) = 1;
+    mumps.size_schur = static_cast<MUMPS_INT>(pattern.border.size());
+    mumps.listvar_schur = pattern.border.data();
+  }
   state_->run(analyse_job);
   state_->require("analysis");
   const int megabytes = at(mumps.infog, state_->settings.out_of_core ? 26 : state_->settings.low_rank > 0 ? 36 : 16);
@@ -114,14 +131,20 @@ MumpsForecast Mumps<Real>::analyse(const MumpsPattern& pattern) {
 
 template <class Real>
 Factorisation Mumps<Real>::factorise(std::span<const Real> values) {
+  return factorise(values, {});
+}
+
+template <class Real>
+Factorisation Mumps<Real>::factorise(std::span<const Real> values, std::span<Real> schur) {
   State& s = *state_;
   s.mumps.a = const_cast<Real*>(values.data());  // read only
+  s.mumps.schur = schur.data();
   s.run(factorise_job);
   for (int margin = 2 * s.settings.memory_margin; s.lacks_room() && margin < 2000; margin *= 2) {
     at(s.mumps.icntl, 14) = margin;
     s.run(factorise_job);
   }
-  s.mumps.a = nullptr;
+  s.mumps.a = s.mumps.schur = nullptr;
   s.require("factorisation");
   const bool low_rank = s.settings.low_rank > 0;
   Factorisation found{.flops = at(s.mumps.rinfog, low_rank ? 14 : 3),
@@ -136,7 +159,8 @@ template <class Real>
 void Mumps<Real>::substitute(std::span<Real> right_side) {
   auto& mumps = state_->mumps;
   mumps.rhs = right_side.data();
-  mumps.nrhs = 1;
+  mumps.lrhs = mumps.n;
+  mumps.nrhs = static_cast<MUMPS_INT>(right_side.size() / static_cast<std::size_t>(mumps.n));
   state_->run(solve_job);
   state_->require("solution");
 }
@@ -160,6 +184,16 @@ void Mumps<Real>::substitute(std::span<const std::int64_t> offset, std::span<con
   state_->run(solve_job);
   at(mumps.icntl, 20) = 0;
   state_->require("solution");
+}
+
+template <class Real>
+void Mumps<Real>::reduce(std::span<Real> sides, std::span<Real> border) {
+  state_->substitute_within(1, sides, border);
+}
+
+template <class Real>
+void Mumps<Real>::expand(std::span<Real> border, std::span<Real> sides) {
+  state_->substitute_within(2, sides, border);
 }
 
 template class Mumps<double>;

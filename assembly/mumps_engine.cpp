@@ -12,6 +12,7 @@
 #include "lacon/assembly/gmres.hpp"
 #include "lacon/assembly/mumps.hpp"
 #include "lacon/assembly/ordering.hpp"
+#include "lacon/assembly/tree/tree_mumps.hpp"
 #include "lacon/catalog/messages.hpp"
 #include "lacon/catalog/wording.hpp"
 
@@ -56,8 +57,8 @@ double available_memory() {
 
 /// How a factor is made.
 struct Form {
-  bool single_precision = false, low_rank = false, out_of_core = false;
-  bool is_exact() const { return !single_precision && !low_rank; }
+  bool single_precision = false, low_rank = false, out_of_core = false, shared = false;
+  bool is_exact() const { return !single_precision && !low_rank && !shared; }
 };
 
 }  // namespace
@@ -67,13 +68,15 @@ struct MumpsEngine::State {
   bool exact = false;  ///< from now on
   std::vector<int> row, column, place;
   Form form;
-  std::unique_ptr<Mumps<double>> full;  ///< one of the two
-  std::unique_ptr<Mumps<float>> single;
+  std::optional<Subtrees> subtrees;  ///< where processes may share the factor
+  MumpsProcesses processes;
+  std::unique_ptr<MumpsFactor<double>> full;  ///< one of the two
+  std::unique_ptr<MumpsFactor<float>> single;
   const SparseMatrix* matrix = nullptr;  ///< whose factor is kept
   std::vector<double> scale;             ///< of its rows and columns, where the factor is not exact
   bool has_folder = false;
 
-  explicit State(const MumpsOptions& given) : options(given) {}
+  explicit State(const MumpsOptions& given) : options(given), processes(given.processes, given.program) {}
   State(const State&) = delete;
   State& operator=(const State&) = delete;
   ~State() {
@@ -109,8 +112,13 @@ struct MumpsEngine::State {
                                  .out_of_core = form.out_of_core,
                                  .folder = options.folder};
     const MumpsPattern pattern{row, column, place};
-    if (!form.single_precision) return (full = std::make_unique<Mumps<double>>(settings))->analyse(pattern);
-    return (single = std::make_unique<Mumps<float>>(settings))->analyse(pattern);
+    if (!form.single_precision) return (full = made<double>(settings))->analyse(pattern);
+    return (single = made<float>(settings))->analyse(pattern);
+  }
+  template <class Real>
+  std::unique_ptr<MumpsFactor<Real>> made(const MumpsSettings& settings) {
+    if (form.shared) return std::make_unique<TreeMumps<Real>>(settings, *subtrees, processes);
+    return std::make_unique<Mumps<Real>>(settings);
   }
 
   /// The cheapest form that the options allow.
@@ -121,16 +129,18 @@ struct MumpsEngine::State {
     const auto may = [&](Use use) { return !exact && use == Use::where_it_pays && of.size() >= least_equations; };
     Form wanted{.single_precision = asks(options.single_precision) || may(options.single_precision),
                 .low_rank = asks(options.low_rank) && !in_files,  // MUMPS has no low-rank factors in files
-                .out_of_core = in_files};
-    MumpsForecast forecast = prepare(wanted, symmetric);
-    if (may(options.single_precision) && forecast.flops < single_precision_pays * forecast.entries) {
+                .out_of_core = in_files,
+                .shared = subtrees && !exact && !in_files};
+    // processes are asked once: counts of the tree say as much
+    MumpsForecast forecast =
+        wanted.shared ? MumpsForecast{.flops = subtrees->flops, .entries = subtrees->entries} : prepare(wanted, symmetric);
+    const double work = forecast.flops / forecast.entries;
+    const bool is_cheap = may(options.single_precision) && work < single_precision_pays;
+    if (is_cheap)
       wanted.single_precision = false;
-      forecast = prepare(wanted, symmetric);
-    } else if (may(options.low_rank) && wanted.single_precision && !in_files &&
-               forecast.flops > low_rank_pays * forecast.entries) {
+    else if (may(options.low_rank) && wanted.single_precision && !in_files && work > low_rank_pays)
       wanted.low_rank = true;
-      forecast = prepare(wanted, symmetric);
-    }
+    if (wanted.shared || is_cheap || wanted.low_rank != form.low_rank) forecast = prepare(wanted, symmetric);
     if (options.memory == MumpsOptions::Memory::where_needed && of.size() >= least_equations &&
         forecast.bytes > available_memory())
       prepare({.single_precision = wanted.single_precision, .out_of_core = true}, symmetric);
@@ -147,10 +157,11 @@ struct MumpsEngine::State {
     found.single_precision = form.single_precision;
     found.low_rank = form.low_rank;
     found.out_of_core = form.out_of_core;
+    found.processes = form.shared ? processes.size() : 1;
     return found;
   }
   template <class Real>
-  Factorisation factorise_scaled(Mumps<Real>& mumps) {
+  Factorisation factorise_scaled(MumpsFactor<Real>& mumps) {
     std::vector<Real> values;
     values.reserve(static_cast<std::size_t>(matrix->n_entries()));
     for (std::int64_t i = 0; i < matrix->size(); ++i)
@@ -189,7 +200,7 @@ struct MumpsEngine::State {
       substitute_scaled(*full, right_side);
   }
   template <class Real>
-  void substitute_scaled(Mumps<Real>& mumps, std::span<double> right_side) {
+  void substitute_scaled(MumpsFactor<Real>& mumps, std::span<double> right_side) {
     double most = 0;
     for (std::size_t i = 0; i < right_side.size(); ++i) most = std::max(most, std::abs(scale[i] * right_side[i]));
     if (most == 0) return;
@@ -262,6 +273,11 @@ void MumpsEngine::analyse(const SparseMatrix& matrix) {
   const std::vector<std::int32_t> order = elimination_order(matrix);
   s.place.assign(order.begin(), order.end());
   for (int& p : s.place) ++p;
+  s.subtrees.reset();
+  if (s.options.processes > 1 && matrix.size() >= s.options.least_shared) {
+    s.subtrees = independent_subtrees(matrix, order, s.options.processes);
+    if (s.subtrees->process.size() < 2) s.subtrees.reset();  // they would wait for each other
+  }
   s.choose(matrix);
 }
 
@@ -285,7 +301,7 @@ std::vector<float> MumpsEngine::substitute(std::span<const std::int64_t> offset,
                                            std::span<const double> value) {
   State& s = *state_;
   const std::size_t n = static_cast<std::size_t>(s.matrix->size()), size = (offset.size() - 1) * n;
-  const auto solve = [&]<class Real>(Mumps<Real>& mumps) {
+  const auto solve = [&]<class Real>(MumpsFactor<Real>& mumps) {
     std::vector<Real> values(value.begin(), value.end()), solution(size);
     std::vector<double> most(offset.size() - 1, 0.0);
     if (!s.form.is_exact())

@@ -4,7 +4,8 @@
 // Where the matrix is large the factor is made in single precision, of low-rank blocks where that is less work still. GMRES on
 // the matrix in double precision gives the solution all its digits back. Such a factor has to prove itself: no pivot near
 // zero, and no vector that it leaves much of, so that the matrix has its inertia and its free motions. Where it does not, or
-// GMRES stalls, there is a factor in double precision from then on.
+// GMRES stalls, there is a factor in double precision from then on. A factor that processes share (tree/) is one of these: its
+// pivots are looked for within subtrees.
 #include <memory>
 #include <string>
 
@@ -25,6 +26,9 @@ struct MumpsOptions {
   double low_rank_threshold = 0;              ///< LOW_RANK_SEUIL: of the matrix; 0: the engine's own
   Memory memory = Memory::where_needed;       ///< GESTION_MEMOIRE: whether the factor is in files
   std::string folder = "factor";              ///< of these files alone: it is made and removed
+  int processes = 1;                          ///< that share a factor
+  std::int64_t least_shared = 0;              ///< equations from which on they do
+  std::string program;                        ///< lacon_mumps; empty: beside the program that runs
 };
 
 class MumpsEngine : public FactorEngine {

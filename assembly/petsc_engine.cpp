@@ -11,8 +11,7 @@
 
 #include "lacon/assembly/loose_motions.hpp"
 #include "lacon/assembly/petsc/exchange.hpp"
-#include "lacon/assembly/petsc/ranks.hpp"
-#include "lacon/assembly/twice_the_digits.hpp"
+#include "lacon/assembly/processes/companion.hpp"
 #include "lacon/catalog/messages.hpp"
 #include "lacon/catalog/wording.hpp"
 
@@ -21,11 +20,6 @@ namespace {
 
 /// What resists a motion less, of what resists most, iterations cannot tell from nothing.
 constexpr double hardly_resisted = 1e-6;
-
-/// To what of the largest value solutions by a factor of several processes are rounded, and to what they are known before; no
-/// power of two, so that values which are sums of a few of those lie between two multiples by chance alone.
-constexpr double rounded_to = 0.7 * 0x1p-50, exact_to = 1e-24;
-constexpr int most_passes = 8;
 
 std::string program_beside_this() { return std::filesystem::read_symlink("/proc/self/exe").parent_path() / "lacon_petsc"; }
 
@@ -49,15 +43,13 @@ std::string words_of(const std::string& reason, int iterations, const std::strin
 
 struct PetscEngine::State {
   PetscOptions options;
-  std::unique_ptr<Ranks> ranks;
+  std::unique_ptr<Companion> ranks;
   BlockSystem::Sizes sizes;
   std::vector<std::int32_t> place;  ///< of each equation
   std::vector<std::int32_t> node;   ///< of each block
   std::optional<LooseMotions> loose;
   const SparseMatrix* matrix = nullptr;
   std::unique_ptr<MumpsEngine> direct;  ///< where this matrix has a factor
-
-  bool is_iterative() const { return options.preconditioner != "LDLT_DP"; }
 
   void start() {
     if (ranks) return;
@@ -74,7 +66,7 @@ struct PetscEngine::State {
                  "none"};
     command.insert(command.end(),
                    {options.program, options.algorithm, options.preconditioner, std::to_string(options.iterations)});
-    ranks = std::make_unique<Ranks>(command);
+    ranks = std::make_unique<Companion>(command);
     if (ranks->answer().empty()) fail("SOLVER_6", {{"reason", options.program + ": " + ranks->end()}});
   }
 
@@ -129,7 +121,7 @@ struct PetscEngine::State {
   }
 
   /// In place. @return why there is no solution, in words
-  std::string solve_once(double share, std::span<double> right_side, Solution& solution) {
+  std::string iterate(double share, std::span<double> right_side, Solution& solution) {
     const SharedMemory memory(right_side.size_bytes());
     const std::span<double> shared{reinterpret_cast<double*>(memory.data()), right_side.size()};
     std::ranges::copy(right_side, shared.begin());
@@ -141,30 +133,6 @@ struct PetscEngine::State {
     if (word != "converged") return word == "failed" ? why : words_of(why, solution.iterations, left);
     std::ranges::copy(shared, right_side.begin());
     solution.residual = std::stod(left);
-    return {};
-  }
-
-  /// Likewise by a factor, which MUMPS sums up in another order in every run.
-  std::string solve_to_the_last_bit(std::span<double> right_side, Solution& solution) {
-    TwiceTheDigits x(right_side.size());
-    std::vector<double> step(right_side.begin(), right_side.end()), grain(right_side.size());
-    for (int pass = 0; pass < most_passes; ++pass) {
-      if (std::string why = solve_once(options.tolerance, step, solution); !why.empty()) {
-        if (pass == 0) return why;
-        break;
-      }
-      x.add(step);
-      // displacements and multipliers have sizes of their own
-      double largest[2] = {0, 0}, moved[2] = {0, 0};
-      for (std::size_t i = 0; i < place.size(); ++i) {
-        largest[place[i] < 0] = std::max(largest[place[i] < 0], std::abs(x.leading()[i]));
-        moved[place[i] < 0] = std::max(moved[place[i] < 0], std::abs(step[i]));
-      }
-      for (std::size_t i = 0; i < place.size(); ++i) grain[i] = rounded_to * largest[place[i] < 0];
-      if (moved[0] <= exact_to * largest[0] && moved[1] <= exact_to * largest[1]) break;
-      step = x.residual(*matrix, right_side);
-    }
-    x.round(right_side, grain);
     return {};
   }
 
@@ -212,11 +180,9 @@ Factorisation PetscEngine::factorise(const SparseMatrix& matrix) {
   std::string said = s.ask("set up " + memory->path());
   memory.reset();  // before the multigrid takes most
   if (said == "taken") said = s.checked(s.ranks->answer());
-  if (!said.starts_with("ready")) return s.factorise_directly(said);
+  if (said != "ready") return s.factorise_directly(said);
   Factorisation made;
-  made.is_iterative = s.is_iterative();
-  if (const std::size_t space = said.find(' '); space != std::string::npos)
-    made.negative_pivots = std::stoll(said.substr(space));
+  made.is_iterative = true;
   return made;
 }
 
@@ -226,8 +192,7 @@ Solution PetscEngine::solve_to(double share, std::span<double> right_side) {
   State& s = *state_;
   if (s.direct) return s.direct->solve(right_side);
   Solution solution;
-  const std::string why = s.is_iterative() ? s.solve_once(std::max(share, s.options.tolerance), right_side, solution)
-                                           : s.solve_to_the_last_bit(right_side, solution);
+  const std::string why = s.iterate(std::max(share, s.options.tolerance), right_side, solution);
   if (why.empty()) return solution;
   const Factorisation again = s.factorise_directly(why);
   Solution second;

@@ -14,7 +14,7 @@ namespace lacon {
 
 struct PetscOptions {
   std::string algorithm = "GMRES";      ///< ALGORITHME
-  std::string preconditioner = "GAMG";  ///< PRE_COND; LDLT_DP: a factor by the MUMPS of all processes
+  std::string preconditioner = "GAMG";  ///< PRE_COND
   double tolerance = 1e-8;              ///< RESI_RELA: of the residual, against the right side
   int iterations = 500;                 ///< NMAX_ITER
   int n_ranks = 1;                      ///< processes, which mpirun starts where there are several

@@ -1,8 +1,8 @@
 #pragma once
 // What an operator tells the processes of PETSc, in memory that they share, and what lines of text say about it:
 //   forget         what was set up         -> forgotten: its memory is free
-//   set up PATH    of a system             -> taken, when its memory is of no more use, and behind it ready,
-//                                             ready NEGATIVE-PIVOTS, or failed WHY; or failed WHY at once
+//   set up PATH    of a system             -> taken, when its memory is of no more use, and behind it ready or
+//                                             failed WHY; or failed WHY at once
 //   solve SHARE PATH   of a right side (n), of which that share may be left
 //                                          -> converged ITERATIONS RESIDUAL, with the solution in its place,
 //                                             diverged ITERATIONS RESIDUAL REASON (of PETSc), or failed WHY
@@ -10,7 +10,7 @@
 #include <cstring>
 #include <span>
 
-#include "lacon/assembly/petsc/shared_memory.hpp"
+#include "lacon/assembly/processes/shared_memory.hpp"
 
 namespace lacon {
 

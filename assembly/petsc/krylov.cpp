@@ -139,43 +139,6 @@ Krylov::Krylov(const BlockSystem& system, const KrylovOptions& options)
   set_up_blocks(system, rows);
 }
 
-void Krylov::set_up() {
-  if (is_direct())
-    factorise();
-  else
-    set_up_solver();
-}
-
-void Krylov::factorise() {
-  if (n_multipliers_)
-    checked(MatConvert(matrix_, MATAIJ, MAT_INITIAL_MATRIX, whole_.out()));
-  else
-    checked(MatDuplicate(k_, MAT_COPY_VALUES, whole_.out()));
-  checked(MatSetOption(whole_, MAT_SYMMETRIC, is_symmetric_ ? PETSC_TRUE : PETSC_FALSE));
-  checked(KSPCreate(PETSC_COMM_WORLD, ksp_.out()));
-  checked(KSPSetOperators(ksp_, whole_, whole_));
-  checked(KSPSetType(ksp_, KSPPREONLY));
-  PC pc = nullptr;
-  checked(KSPGetPC(ksp_, &pc));
-  checked(PCSetType(pc, is_symmetric_ ? PCCHOLESKY : PCLU));
-  checked(PCFactorSetMatSolverType(pc, MATSOLVERMUMPS));
-  set("-mat_mumps_icntl_7", "5");   // METIS
-  set("-mat_mumps_icntl_13", "1");  // the inertia of all fronts
-  set("-mat_mumps_icntl_14", "50");
-  set("-mat_mumps_icntl_24", "1");  // null pivots are counted
-  checked(KSPSetFromOptions(ksp_));
-  checked(KSPSetUp(ksp_));
-  Mat factor = nullptr;
-  checked(PCFactorGetMatrix(pc, &factor));
-  PetscInt null_pivots = 0, negative = 0, status = 0;
-  checked(MatMumpsGetInfog(factor, 1, &status));
-  checked(MatMumpsGetInfog(factor, 28, &null_pivots));
-  is_singular_ = status < 0 || null_pivots > 0;
-  if (!is_symmetric_ || is_singular_) return;
-  checked(MatGetInertia(factor, &negative, nullptr, nullptr));
-  negative_pivots_ = static_cast<int>(negative);
-}
-
 void Krylov::set_up_blocks(const BlockSystem& system, BlockRows& rows) {
   const std::int64_t own = rows.k.last - rows.k.first, own_multipliers = rows.c.last - rows.c.first;
   const auto block_size = static_cast<int>(dimension_);
@@ -240,7 +203,7 @@ void Krylov::set_up_displacements(PC pc) const {
   checked(PCSetFromOptions(pc));
 }
 
-void Krylov::set_up_solver() {
+void Krylov::set_up() {
   const Algorithm algorithm = algorithm_of(options_.algorithm);
   checked(KSPCreate(PETSC_COMM_WORLD, ksp_.out()));
   Mat const matrix = n_multipliers_ ? matrix_ : k_;
@@ -319,7 +282,7 @@ KrylovResult Krylov::solve(std::span<double> right_side, double share) {
     PetscInt iterations = 0;
     checked(KSPGetConvergedReason(ksp_, &reason));
     checked(KSPGetIterationNumber(ksp_, &iterations));
-    result.iterations += is_direct() ? 0 : static_cast<int>(iterations);
+    result.iterations += static_cast<int>(iterations);
     checked(VecAXPY(solution_, 1, step));
     checked(MatMult(matrix, solution_, residual_));
     checked(VecAYPX(residual_, -1, side_));

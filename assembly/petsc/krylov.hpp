@@ -3,7 +3,6 @@
 #include <petscksp.h>
 
 #include <cstdint>
-#include <optional>
 #include <span>
 #include <string>
 #include <utility>
@@ -41,7 +40,7 @@ void catch_errors();
 
 struct KrylovOptions {
   std::string algorithm = "GMRES";      ///< SOLVEUR/ALGORITHME
-  std::string preconditioner = "GAMG";  ///< SOLVEUR/PRE_COND; LDLT_DP: a factor, by the MUMPS of all processes
+  std::string preconditioner = "GAMG";  ///< SOLVEUR/PRE_COND
   int iterations = 500;
 };
 
@@ -55,20 +54,14 @@ class Krylov {
  public:
   /// Takes its rows of the system, which need not be there any more.
   Krylov(const BlockSystem& system, const KrylovOptions& options);
-  /// Make the factor or the preconditioner.
+  /// Make the preconditioner.
   void set_up();
   /// @param right_side (n), the solution afterwards: each process writes its own  @param share of it that may be left
   KrylovResult solve(std::span<double> right_side, double share);
-  /// Of a factor of a symmetric matrix.
-  std::optional<int> negative_pivots() const { return negative_pivots_; }
-  bool is_singular() const { return is_singular_; }
 
  private:
   void load(std::span<const double> right_side);
   void set_up_blocks(const BlockSystem& system, BlockRows& rows);
-  void set_up_solver();
-  void factorise();
-  bool is_direct() const { return options_.preconditioner == "LDLT_DP"; }
   void set_up_displacements(PC pc) const;
 
   KrylovOptions options_;
@@ -78,11 +71,9 @@ class Krylov {
   std::vector<double> scale_;           ///< of them
   std::vector<double> weight_;          ///< of own multipliers
   Rows rows_of_k_;                      ///< where k_ has its entries, in one process
-  OwnedMat k_, b_, c_, d_, matrix_, schur_, whole_;
+  OwnedMat k_, b_, c_, d_, matrix_, schur_;
   OwnedVec side_, solution_, residual_, weighted_, added_;
   OwnedKsp ksp_;
-  std::optional<int> negative_pivots_;
-  bool is_singular_ = false;
 };
 
 }  // namespace lacon

@@ -42,7 +42,7 @@ def parser():
     made.add_argument("--timings", action="store_true", help="print where the time went")
     made.add_argument("--verbose", action="store_true", help="operators say each phase with its time, and each count, as they come")
     made.add_argument("--threads", type=int, metavar="N", help="threads of operators")
-    made.add_argument("--mpi", type=int, metavar="N", help="processes that solve the linear systems, started by mpirun (PETSc)")
+    made.add_argument("--mpi", type=int, metavar="N", help="processes that solve the linear systems")
     made.add_argument("--sandbox", action="store_true", help="run the study without network, and let it write its base and the files of its units alone (bubblewrap)")
     made.add_argument("--stage", help=argparse.SUPPRESS)  # of the launcher within a sandbox
     made.add_argument("--version", action=_Version, nargs=0, help="print the version, and what operators calculate with")

@@ -19,11 +19,14 @@ namespace {
 constexpr int most_iterations = 500;      // where NMAX_ITER does not say
 constexpr double direct_residual = 1e-6;  // of a factor that stands in for iterations: RESI_RELA is theirs
 
-/// Processes that the launcher wants (--mpi).
-int ranks() {
-  const char* const wanted = std::getenv("LACON_MPI");
-  return wanted ? std::max(1, std::atoi(wanted)) : 1;
+int number_in(const char* variable, int otherwise) {
+  const char* const wanted = std::getenv(variable);
+  return wanted ? std::max(1, std::atoi(wanted)) : otherwise;
 }
+/// Processes that the launcher wants (--mpi).
+int ranks() { return number_in("LACON_MPI", 1); }
+/// Equations from which on they share a factor: tests have them share small ones.
+constexpr int least_shared = 20'000;
 
 MumpsOptions direct_options(const Keywords& solver, const Base& base) {
   using Use = MumpsOptions::Use;
@@ -38,7 +41,9 @@ MumpsOptions direct_options(const Keywords& solver, const Base& base) {
           .memory = memory == "OUT_OF_CORE" ? Memory::out_of_core
                     : memory == "IN_CORE"   ? Memory::in_core
                                             : Memory::where_needed,
-          .folder = base.folder() / "factor.partial"};
+          .folder = base.folder() / "factor.partial",
+          .processes = ranks(),
+          .least_shared = number_in("LACON_MPI_FROM", least_shared)};
 }
 
 PetscOptions iterative_options(const Keywords& solver, const Base& base, const StaticProblem& problem,
@@ -100,12 +105,6 @@ std::unique_ptr<Engine> engine_of(const Keywords& solver, const Base& base, cons
     return std::make_unique<PetscEngine>(iterative_options(solver, base, problem, preconditioner));
   }
   if (method != "MUMPS") inform("EVOLUTION_24", {{"method", method}});
-  if (ranks() > 1 && PetscEngine::is_there()) {
-    PetscOptions options = iterative_options(solver, base, problem, "LDLT_DP");
-    options.tolerance = direct_residual;
-    return std::make_unique<PetscEngine>(options);
-  }
-  if (ranks() > 1) inform("EVOLUTION_40");
   MumpsOptions options = direct_options(solver, base);
   if (asked == "AUTO") options.residual_tolerance = direct_residual;
   return std::make_unique<MumpsEngine>(options);

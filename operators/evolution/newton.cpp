@@ -271,6 +271,7 @@ void Newton::solve_linear(std::vector<double>& solution, const Accuracy& accurac
     if (!factor.stalled.empty()) inform("SOLVER_7", {{"reason", factor.stalled}});
     if (factor.single_precision) add_to_count("factors in single precision", 1);
     if (factor.low_rank) add_to_count("factors of low rank", 1);
+    if (factor.processes > 1) add_to_count("factors by several processes", 1);
     if (factor.out_of_core) add_to_count("factors in files", 1);
     if (!factor.doubt.empty()) inform("SOLVER_4", {{"reason", factor.doubt}});
   }

@@ -1,4 +1,4 @@
-"""`lacon` for tests of whole studies with another solver: SOLVEUR of every order is METHODE=LACON_TEST_SOLVER. LACON_MPI is the number of processes."""
+"""`lacon` for tests of whole studies with another solver: SOLVEUR of every order is METHODE=LACON_TEST_SOLVER. LACON_MPI is the number of processes, which share factors from LACON_MPI_FROM equations on."""
 
 import os
 import sys

@@ -14,12 +14,14 @@
 #include "dense.hpp"
 #include "lacon/assembly/mumps_engine.hpp"
 #include "lacon/catalog/messages.hpp"
+#include "lattice.hpp"
 
 namespace lacon {
 namespace {
 
 using test::Chain;
 using test::dense;
+using test::Lattice;
 
 /// A chain held at its first node, with multipliers that tie the x displacements of node pairs.
 struct SaddlePoint {
@@ -162,34 +164,6 @@ using Use = MumpsOptions::Use;
 constexpr MumpsOptions::Use always = Use::always, never = Use::never;
 
 std::span<double> entries(Eigen::VectorXd& x) { return {x.data(), static_cast<std::size_t>(x.size())}; }
-
-/// n^3 points in a cube, one displacement each, with springs between neighbours; one side is held.
-struct Lattice {
-  explicit Lattice(int n, double contrast = 1)
-      : numbering(number_equations(n * n * n, 1, held(n), 0)), matrix(numbering, springs(n), {}) {
-    const Ragged<std::int32_t> all = springs(n);
-    for (std::size_t s = 0; s < all.size(); ++s) {
-      const double k = all[s][0] >= n * n * n / 2 ? contrast : 1;
-      matrix.add(std::vector<std::int64_t>{numbering.of(all[s][0], 0), numbering.of(all[s][1], 0)},
-                 std::vector<double>{k, -k, k});
-    }
-  }
-  static std::vector<std::uint8_t> held(int n) {
-    std::vector<std::uint8_t> free(n * n * n, 1);
-    std::fill(free.begin(), free.begin() + n * n, 0);
-    return free;
-  }
-  static Ragged<std::int32_t> springs(int n) {
-    Ragged<std::int32_t> all;
-    const int strides[] = {1, n, n * n};
-    for (int i = 0; i < n * n * n; ++i)
-      for (const int stride : strides)
-        if (i / stride % n + 1 < n) all.push_back(std::vector<std::int32_t>{i, i + stride});
-    return all;
-  }
-  Numbering numbering;
-  SparseMatrix matrix;
-};
 
 // A factor in single precision gives a solution as exact as one in double precision does, and the same inertia.
 TEST(MumpsEngine, SolvesWithSinglePrecision) {

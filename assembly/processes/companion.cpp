@@ -1,4 +1,4 @@
-#include "lacon/assembly/petsc/ranks.hpp"
+#include "lacon/assembly/processes/companion.hpp"
 
 #include <fcntl.h>
 #include <sys/prctl.h>
@@ -18,18 +18,18 @@ namespace lacon {
 namespace {
 
 constexpr int not_started = 127;
-/// They end by themselves when nobody talks to them any more.
+/// It ends by itself when nobody talks to it any more.
 constexpr std::chrono::milliseconds patience{2000}, nap{2};
 
 }  // namespace
 
-Ranks::Ranks(std::vector<std::string> command) {
+Companion::Companion(std::vector<std::string> command) {
   std::vector<char*> words;
   for (std::string& word : command) words.push_back(word.data());
   words.push_back(nullptr);
   int to[2], from[2];
   if (socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, to) || pipe2(from, O_CLOEXEC))
-    throw std::system_error(errno, std::generic_category(), "PETSc");
+    throw std::system_error(errno, std::generic_category(), command.front());
   process_ = fork();
   if (process_ == 0) {
     prctl(PR_SET_PDEATHSIG, SIGTERM);  // mpirun ends its ranks
@@ -50,7 +50,7 @@ Ranks::Ranks(std::vector<std::string> command) {
   from_ = from[0];
 }
 
-Ranks::~Ranks() {
+Companion::~Companion() {
   close(to_);
   const auto wait = [&](std::chrono::milliseconds time) {
     for (; ended_.empty() && time.count() > 0; time -= nap) {
@@ -69,17 +69,17 @@ Ranks::~Ranks() {
   close(from_);
 }
 
-std::string Ranks::ask(const std::string& line) {
+bool Companion::say(const std::string& line) {
   const std::string whole = line + '\n';
   for (std::size_t sent = 0; sent < whole.size();) {
     const ssize_t now = send(to_, whole.data() + sent, whole.size() - sent, MSG_NOSIGNAL);
-    if (now < 0 && errno != EINTR) return {};
+    if (now < 0 && errno != EINTR) return false;
     if (now > 0) sent += static_cast<std::size_t>(now);
   }
-  return answer();
+  return true;
 }
 
-std::string Ranks::answer() {
+std::string Companion::answer() {
   for (std::size_t end = heard_.find('\n');; end = heard_.find('\n')) {
     if (end != std::string::npos) {
       std::string line = heard_.substr(0, end);
@@ -94,7 +94,7 @@ std::string Ranks::answer() {
   }
 }
 
-std::string Ranks::end() {
+std::string Companion::end() {
   int status = 0;
   if (ended_.empty() && waitpid(process_, &status, 0) == process_)
     ended_ = WIFSIGNALED(status) ? part("ended_by_signal", {{"signal", strsignal(WTERMSIG(status))}})

@@ -1,4 +1,4 @@
-#include "lacon/assembly/petsc/shared_memory.hpp"
+#include "lacon/assembly/processes/shared_memory.hpp"
 
 #include <fcntl.h>
 #include <sys/mman.h>

@@ -1,0 +1,36 @@
+#pragma once
+// A program that an operator starts, asks line by line, and ends: one process, or mpirun with several.
+#include <sys/types.h>
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace lacon {
+
+class Companion {
+ public:
+  /// Start a program with its arguments. It says "ready" when it is.
+  explicit Companion(std::vector<std::string> command);
+  /// Ends it.
+  ~Companion();
+  Companion(const Companion&) = delete;
+  Companion& operator=(const Companion&) = delete;
+
+  /// Say a line. @return whether somebody was there to hear it
+  bool say(const std::string& line);
+  /// The next line of its own; the first one says that it is ready. @return it; empty where it has ended
+  std::string answer();
+  /// Say a line and wait for the answer. @return likewise
+  std::string ask(const std::string& line) { return say(line) ? answer() : std::string(); }
+  /// How it has ended, in words: after an empty answer.
+  std::string end();
+
+ private:
+  pid_t process_ = -1;
+  int to_ = -1, from_ = -1;
+  std::string heard_;
+  std::string ended_;
+};
+
+}  // namespace lacon

@@ -1,0 +1,142 @@
+// lacon_mumps: a process that factorises subtrees for an operator, which starts it and talks with it over standard input and
+// output (exchange.hpp).
+#include <malloc.h>
+#include <sys/prctl.h>
+
+#include <csignal>
+#include <cstring>
+#include <iostream>
+#include <map>
+#include <new>
+#include <sstream>
+#include <string>
+
+#include "lacon/assembly/mumps.hpp"
+#include "lacon/assembly/processes/shared_memory.hpp"
+#include "lacon/assembly/tree/exchange.hpp"
+#include "lacon/catalog/messages.hpp"
+
+namespace {
+
+using lacon::SharedMemory, lacon::PieceSizes, lacon::Mumps;
+
+template <class Real>
+class Piece {
+ public:
+  explicit Piece(SharedMemory pattern)
+      : pattern_(std::move(pattern)),
+        sizes_(*reinterpret_cast<const PieceSizes*>(pattern_.data())),
+        mumps_({.symmetric = sizes_.is_symmetric != 0,
+                .memory_margin = sizes_.memory_margin,
+                .singular_pivot = sizes_.singular_pivot,
+                .scaled = true,
+                .low_rank = sizes_.low_rank}) {}
+
+  std::string analyse() {
+    int* next = reinterpret_cast<int*>(pattern_.data() + sizeof(PieceSizes));
+    const auto take = [&](std::int64_t size) {
+      const std::span<int> part(next, static_cast<std::size_t>(size));
+      next += size;
+      return part;
+    };
+    const auto row = take(sizes_.entries), column = take(sizes_.entries), place = take(sizes_.size),
+               border = take(sizes_.border);
+    const lacon::MumpsForecast foreseen = mumps_.analyse({.row = row, .column = column, .place = place, .border = border});
+    return said(foreseen.flops, foreseen.entries, foreseen.bytes);
+  }
+  std::string factorise(const SharedMemory& memory) {
+    Real* const values = reinterpret_cast<Real*>(memory.data());
+    const auto n = static_cast<std::size_t>(sizes_.entries), border = static_cast<std::size_t>(sizes_.border);
+    const lacon::Factorisation found =
+        mumps_.factorise(std::span<const Real>(values, n), std::span<Real>(values + n, border * border));
+    std::string answer = said(found.flops, found.entries, found.whole_entries, found.negative_pivots.value_or(0));
+    for (const std::int64_t equation : found.null_pivots) answer += ' ' + std::to_string(equation);
+    return answer;
+  }
+  std::string reduce(const SharedMemory& memory) {
+    const auto [sides, border] = parts(memory);
+    if (sizes_.border)
+      mumps_.reduce(sides, border);
+    else
+      mumps_.substitute(sides);
+    return said();
+  }
+  std::string expand(const SharedMemory& memory) {
+    const auto [sides, border] = parts(memory);
+    if (sizes_.border) mumps_.expand(border, sides);
+    return said();
+  }
+
+ private:
+  std::pair<std::span<Real>, std::span<Real>> parts(const SharedMemory& memory) const {
+    const auto size = static_cast<std::size_t>(sizes_.size), border = static_cast<std::size_t>(sizes_.border);
+    const std::size_t count = memory.size() / sizeof(Real) / (size + border);
+    Real* const first = reinterpret_cast<Real*>(memory.data());
+    return {{first, count * size}, {first + count * size, count * border}};
+  }
+  static std::string said(auto... numbers) {
+    std::ostringstream line;
+    line.precision(17);
+    line << "done";
+    ((line << ' ' << numbers), ...);
+    return line.str();
+  }
+
+  SharedMemory pattern_;
+  PieceSizes sizes_;
+  Mumps<Real> mumps_;
+};
+
+class Pieces {
+ public:
+  std::string answer(const std::string& verb, std::istream& said) {
+    if (verb == "forget") {
+      single_.clear();
+      full_.clear();
+      malloc_trim(0);  // what they had goes back to the system
+      return "done";
+    }
+    std::string precision, path;
+    int number = 0;
+    said >> precision >> number >> path;
+    SharedMemory memory = SharedMemory::open(path);
+    return precision == "float" ? answer(single_, verb, number, std::move(memory))
+                                : answer(full_, verb, number, std::move(memory));
+  }
+
+ private:
+  template <class Real>
+  static std::string answer(std::map<int, Piece<Real>>& pieces, const std::string& verb, int number, SharedMemory memory) {
+    if (verb == "analyse") {
+      pieces.erase(number);
+      return pieces.try_emplace(number, std::move(memory)).first->second.analyse();
+    }
+    Piece<Real>& piece = pieces.at(number);
+    return verb == "factorise" ? piece.factorise(memory) : verb == "reduce" ? piece.reduce(memory) : piece.expand(memory);
+  }
+
+  std::map<int, Piece<float>> single_;
+  std::map<int, Piece<double>> full_;
+};
+
+}  // namespace
+
+int main() {
+  prctl(PR_SET_PDEATHSIG, SIGKILL);
+  Pieces pieces;
+  std::cout << "ready" << std::endl;
+  for (std::string line; std::getline(std::cin, line);) {
+    std::istringstream said(line);
+    std::string verb;
+    said >> verb;
+    try {
+      std::cout << pieces.answer(verb, said) << std::endl;
+    } catch (const lacon::Error&) {  // SOLVER_2: there are no files
+      std::cout << "no memory" << std::endl;
+    } catch (const std::bad_alloc&) {
+      std::cout << "no memory" << std::endl;
+    } catch (const std::exception& error) {
+      std::cout << "failed " << error.what() << std::endl;
+    }
+  }
+}

@@ -1,0 +1,363 @@
+#include "lacon/assembly/tree/tree_mumps.hpp"
+
+#include <algorithm>
+#include <cstring>
+#include <filesystem>
+#include <numeric>
+#include <sstream>
+#include <stdexcept>
+#include <type_traits>
+#include <utility>
+
+#include "lacon/assembly/tree/exchange.hpp"
+#include "lacon/catalog/messages.hpp"
+#include "lacon/catalog/wording.hpp"
+
+namespace lacon {
+namespace {
+
+/// A pivot of a piece this much larger than a null one is left to the top, where others may take its turn: a body that contact
+/// alone holds, say, where multipliers are the border. And how often more of them are looked for.
+constexpr double loose = 100;
+constexpr int most_rounds = 3;
+/// Numbers that a process answers of a factorisation, before the equations of such pivots.
+constexpr std::size_t of_a_piece = 4;
+
+/// Places of some equations among themselves, from 1.
+std::vector<int> ranks(std::span<const std::int32_t> equations, std::span<const int> place) {
+  std::vector<std::size_t> order(equations.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::sort(order.begin(), order.end(),
+            [&](std::size_t a, std::size_t b) { return place[equations[a]] < place[equations[b]]; });
+  std::vector<int> rank(order.size());
+  for (std::size_t i = 0; i < order.size(); ++i) rank[order[i]] = static_cast<int>(i) + 1;
+  return rank;
+}
+
+template <class Real>
+std::span<Real> values_in(const SharedMemory& memory) {
+  return {reinterpret_cast<Real*>(memory.data()), memory.size() / sizeof(Real)};
+}
+
+}  // namespace
+
+// ------------------------------------------------------------------------------------------------------------- processes
+
+void MumpsProcesses::start() {
+  if (!processes_.empty()) return;
+  std::string program = program_;
+  if (program.empty()) program = std::filesystem::read_symlink("/proc/self/exe").parent_path() / "lacon_mumps";
+  for (int i = 0; i < n_; ++i) processes_.push_back(std::make_unique<Companion>(std::vector{program}));
+  for (const auto& process : processes_)
+    if (process->answer().empty()) {
+      const std::string end = process->end();
+      processes_.clear();
+      fail("SOLVER_8", {{"reason", program + ": " + end}});
+    }
+}
+
+void MumpsProcesses::forget() noexcept {
+  for (const auto& process : processes_)
+    if (process->ask("forget").empty()) {
+      processes_.clear();
+      return;
+    }
+}
+
+std::vector<std::vector<double>> MumpsProcesses::ask(const Question& question, std::span<const int> process,
+                                                     const std::function<std::string(std::size_t)>& rest) {
+  if (processes_.empty()) fail("SOLVER_8", {{"reason", part("cannot_be_started")}});
+  for (std::size_t p = 0; p < process.size(); ++p) processes_[process[p]]->say(question.verb + rest(p));
+  std::vector<std::vector<double>> found(process.size());
+  bool has_memory = true;
+  std::string failure;
+  for (std::size_t p = 0; p < process.size(); ++p) {
+    const std::string answer = processes_[process[p]]->answer();
+    if (answer.empty()) {
+      const std::string end = processes_[process[p]]->end();
+      processes_.clear();
+      fail("SOLVER_8", {{"reason", end}});
+    }
+    std::istringstream said(answer);
+    std::string word;
+    said >> word;
+    if (word == "done")
+      for (double number; said >> number;) found[p].push_back(number);
+    else if (answer == "no memory")
+      has_memory = false;
+    else
+      failure = answer;
+  }
+  if (!failure.empty()) throw std::runtime_error("lacon_mumps: " + failure);
+  if (!has_memory) fail("SOLVER_2", {{"phase", question.phase}, {"equations", std::to_string(question.equations)}});
+  return found;
+}
+
+// ---------------------------------------------------------------------------------------------------------------- a factor
+
+template <class Real>
+TreeMumps<Real>::TreeMumps(const MumpsSettings& settings, Subtrees subtrees, MumpsProcesses& processes)
+    : settings_(settings), subtrees_(std::move(subtrees)), processes_(processes) {
+  settings_.scaled = true;
+  settings_.singular_pivot = -settings.singular_pivot;  // of entries about 1, also where the largest of a piece is less
+  processes_.start();
+}
+
+template <class Real>
+TreeMumps<Real>::~TreeMumps() {
+  processes_.forget();
+}
+
+template <class Real>
+std::vector<std::vector<double>> TreeMumps<Real>::ask(const char* verb, const char* phase,
+                                                      std::span<const SharedMemory> memory) {
+  return processes_.ask({verb, phase, local_.size()}, subtrees_.process, [&](std::size_t piece) {
+    return (std::is_same_v<Real, float> ? " float " : " double ") + std::to_string(piece) + ' ' + memory[piece].path();
+  });
+}
+
+template <class Real>
+std::int32_t TreeMumps<Real>::subtree_of(std::size_t entry) const {
+  return std::max(subtrees_.of[row_[entry] - 1], subtrees_.of[column_[entry] - 1]);
+}
+
+template <class Real>
+void TreeMumps<Real>::number(const MumpsPattern& pattern) {
+  pattern_ = pattern;
+  row_ = pattern.row;
+  column_ = pattern.column;
+  const std::size_t n = pattern.place.size();
+  pieces_.assign(subtrees_.process.size(), {});
+  local_.assign(n, 0);
+  top_.clear();
+  for (std::int32_t i = 0; i < static_cast<std::int32_t>(n); ++i) {  // in their order: blocks are of what is near each other
+    std::vector<std::int32_t>& those = subtrees_.of[i] < 0 ? top_ : pieces_[subtrees_.of[i]].own;
+    local_[i] = static_cast<std::int32_t>(those.size());
+    those.push_back(i);
+  }
+  for (std::size_t k = 0; k < row_.size(); ++k) {
+    const std::int32_t piece = subtree_of(k);
+    if (piece < 0) continue;
+    ++pieces_[piece].n_entries;
+    for (const int i : {row_[k] - 1, column_[k] - 1})
+      if (subtrees_.of[i] < 0) pieces_[piece].border.push_back(local_[i]);
+  }
+  for (Piece& piece : pieces_) {
+    std::sort(piece.border.begin(), piece.border.end());
+    piece.border.erase(std::unique(piece.border.begin(), piece.border.end()), piece.border.end());
+  }
+}
+
+template <class Real>
+SharedMemory TreeMumps<Real>::pattern_of(std::int32_t number, const MumpsPattern& pattern) const {
+  const Piece& piece = pieces_[number];
+  const PieceSizes sizes{.size = static_cast<std::int64_t>(piece.size()),
+                         .entries = piece.n_entries,
+                         .border = static_cast<std::int64_t>(piece.border.size()),
+                         .is_symmetric = settings_.symmetric,
+                         .memory_margin = settings_.memory_margin,
+                         .singular_pivot = loose * settings_.singular_pivot,
+                         .low_rank = settings_.low_rank};
+  SharedMemory memory(sizeof sizes + sizeof(int) * static_cast<std::size_t>(2 * sizes.entries + sizes.size + sizes.border));
+  std::memcpy(memory.data(), &sizes, sizeof sizes);
+  int* const row = reinterpret_cast<int*>(memory.data() + sizeof sizes);
+  int* const column = row + sizes.entries;
+  int* const place = column + sizes.entries;
+  std::vector<int> in_border(top_.size());
+  for (std::size_t b = 0; b < piece.border.size(); ++b) in_border[piece.border[b]] = static_cast<int>(piece.own.size() + b);
+  const auto local = [&](int equation) {
+    return 1 + (subtrees_.of[equation - 1] < 0 ? in_border[local_[equation - 1]] : local_[equation - 1]);
+  };
+  std::size_t next = 0;
+  for (std::size_t k = 0; k < pattern.row.size(); ++k)
+    if (subtree_of(k) == number) {
+      row[next] = local(pattern.row[k]);
+      column[next++] = local(pattern.column[k]);
+    }
+  std::ranges::copy(ranks(piece.own, pattern.place), place);
+  std::iota(place + piece.own.size(), place + sizes.size, 1 + static_cast<int>(piece.own.size()));
+  std::iota(place + sizes.size, place + sizes.size + sizes.border, 1 + static_cast<int>(piece.own.size()));
+  return memory;
+}
+
+template <class Real>
+void TreeMumps<Real>::number_top() {
+  const auto m = static_cast<std::int32_t>(top_.size());
+  std::vector<std::vector<std::int32_t>> own(top_.size());  // rows of the matrix's entries, by columns
+  const auto place = [&](std::size_t entry) {               // row and column
+    const std::int32_t i = local_[row_[entry] - 1], j = local_[column_[entry] - 1];
+    return settings_.symmetric ? std::pair(std::max(i, j), std::min(i, j)) : std::pair(i, j);
+  };
+  for (std::size_t k = 0; k < row_.size(); ++k)
+    if (subtree_of(k) < 0) own[place(k).second].push_back(place(k).first);
+  std::vector<std::int32_t> seen(top_.size(), -1);
+  top_pattern_ = {};
+  for (std::int32_t j = 0; j < m; ++j) {
+    for (const std::int32_t i : own[j]) seen[i] = j;
+    for (const Piece& piece : pieces_)
+      if (std::binary_search(piece.border.begin(), piece.border.end(), j))
+        for (const std::int32_t i : piece.border) seen[i] = j;
+    for (std::int32_t i = settings_.symmetric ? j : 0; i < m; ++i)
+      if (seen[i] == j) {
+        top_pattern_.row.push_back(i + 1);
+        top_pattern_.column.push_back(j + 1);
+      }
+    top_pattern_.offset.push_back(static_cast<std::int64_t>(top_pattern_.row.size()));
+  }
+  top_pattern_.own.clear();
+  for (std::size_t k = 0; k < row_.size(); ++k)
+    if (subtree_of(k) < 0) top_pattern_.own.push_back(top_pattern_.entry(place(k).first, place(k).second));
+}
+
+template <class Real>
+void TreeMumps<Real>::add_to_top(const Piece& piece, std::span<const Real> schur, std::span<Real> values) const {
+  const std::size_t n = piece.border.size();
+  for (std::size_t b = 0; b < n; ++b) {
+    const std::size_t first = settings_.symmetric ? b : 0;
+    std::int64_t k = top_pattern_.entry(piece.border[first], piece.border[b]);
+    for (std::size_t a = first; a < n; ++a) {
+      while (top_pattern_.row[k] != piece.border[a] + 1) ++k;
+      values[k] += schur[a * n + b];
+    }
+  }
+}
+
+template <class Real>
+MumpsForecast TreeMumps<Real>::analyse(const MumpsPattern& pattern) {
+  number(pattern);
+  std::vector<SharedMemory> memory;
+  for (std::size_t p = 0; p < pieces_.size(); ++p) memory.push_back(pattern_of(static_cast<std::int32_t>(p), pattern));
+  const auto found = ask("analyse", "analysis", memory);
+  MumpsForecast whole;
+  if (!top_.empty()) {
+    number_top();
+    top_pattern_.place = ranks(top_, pattern.place);
+    top_factor_ = std::make_unique<Mumps<Real>>(settings_);
+    whole = top_factor_->analyse(
+        {.row = top_pattern_.row, .column = top_pattern_.column, .place = top_pattern_.place, .border = {}});
+  }
+  for (const std::vector<double>& numbers : found) {
+    whole.flops += numbers.at(0);
+    whole.entries += numbers.at(1);
+    whole.bytes += numbers.at(2);
+  }
+  return whole;
+}
+
+template <class Real>
+std::vector<std::vector<double>> TreeMumps<Real>::factorise_pieces(std::span<const Real> values,
+                                                                   std::vector<SharedMemory>& memory) {
+  memory.clear();
+  std::vector<Real*> next;
+  for (const Piece& piece : pieces_) {
+    memory.emplace_back(sizeof(Real) * (static_cast<std::size_t>(piece.n_entries) + piece.border.size() * piece.border.size()));
+    next.push_back(reinterpret_cast<Real*>(memory.back().data()));
+  }
+  for (std::size_t k = 0; k < values.size(); ++k)
+    if (const std::int32_t piece = subtree_of(k); piece >= 0) *next[piece]++ = values[k];
+  return ask("factorise", "factorisation", memory);
+}
+
+template <class Real>
+bool TreeMumps<Real>::leave_to_top(const std::vector<std::vector<double>>& found) {
+  bool any = false;
+  for (std::size_t p = 0; p < pieces_.size(); ++p)
+    for (std::size_t k = of_a_piece; k < found[p].size(); ++k) {
+      subtrees_.of[pieces_[p].own.at(static_cast<std::size_t>(found[p][k]))] = -1;
+      any = true;
+    }
+  return any;
+}
+
+template <class Real>
+Factorisation TreeMumps<Real>::factorise(std::span<const Real> values) {
+  std::vector<SharedMemory> memory;
+  std::vector<std::vector<double>> found = factorise_pieces(values, memory);
+  double wasted = 0;
+  for (int round = 0; round < most_rounds && leave_to_top(found); ++round) {
+    for (const std::vector<double>& numbers : found) wasted += numbers.at(0);
+    analyse(pattern_);
+    found = factorise_pieces(values, memory);
+  }
+
+  Factorisation whole;
+  whole.wasted_flops = wasted;
+  if (settings_.symmetric) whole.negative_pivots = 0;
+  for (const std::vector<double>& numbers : found) {
+    whole.flops += numbers.at(0);
+    whole.entries += static_cast<std::int64_t>(numbers.at(1));
+    whole.whole_entries += static_cast<std::int64_t>(numbers.at(2));
+    if (whole.negative_pivots) *whole.negative_pivots += static_cast<std::int64_t>(numbers.at(3));
+    whole.null_pivots.insert(whole.null_pivots.end(), numbers.size() - of_a_piece, 0);
+  }
+  if (!top_factor_ || !whole.null_pivots.empty()) return whole;
+  std::vector<Real> sum(top_pattern_.row.size(), 0);
+  for (std::size_t k = 0, next = 0; k < values.size(); ++k)
+    if (subtree_of(k) < 0) sum[top_pattern_.own[next++]] = values[k];
+  for (std::size_t p = 0; p < pieces_.size(); ++p) {
+    const std::size_t n = pieces_[p].border.size();
+    add_to_top(pieces_[p], values_in<const Real>(memory[p]).last(n * n), sum);
+  }
+  memory.clear();
+  const Factorisation top = top_factor_->factorise(sum);
+  whole.flops += top.flops;
+  whole.entries += top.entries;
+  whole.whole_entries += top.whole_entries;
+  if (whole.negative_pivots) *whole.negative_pivots += *top.negative_pivots;
+  whole.null_pivots = top.null_pivots;
+  return whole;
+}
+
+template <class Real>
+void TreeMumps<Real>::substitute_all(std::span<Real> sides) {
+  const std::size_t n = local_.size(), count = sides.size() / n;
+  std::vector<SharedMemory> memory;
+  for (const Piece& piece : pieces_) {
+    memory.emplace_back(sizeof(Real) * count * (piece.size() + piece.border.size()));
+    const std::span<Real> own = values_in<Real>(memory.back());
+    for (std::size_t c = 0; c < count; ++c)
+      for (std::size_t i = 0; i < piece.own.size(); ++i) own[c * piece.size() + i] = sides[c * n + piece.own[i]];
+  }
+  ask("reduce", "solution", memory);
+  const std::size_t m = top_.size();
+  std::vector<Real> top(count * m);
+  for (std::size_t c = 0; c < count; ++c)
+    for (std::size_t i = 0; i < m; ++i) top[c * m + i] = sides[c * n + top_[i]];
+  const auto for_each_border = [&](const auto& use) {  // of the value that a piece has in the memory, and that of the top
+    for (std::size_t p = 0; p < pieces_.size(); ++p) {
+      const std::vector<std::int32_t>& border = pieces_[p].border;
+      const std::span<Real> values = values_in<Real>(memory[p]).subspan(count * pieces_[p].size());
+      for (std::size_t c = 0; c < count; ++c)
+        for (std::size_t b = 0; b < border.size(); ++b) use(values[c * border.size() + b], top[c * m + border[b]]);
+    }
+  };
+  for_each_border([](Real left, Real& of_top) { of_top += left; });
+  if (top_factor_) top_factor_->substitute(top);
+  for_each_border([](Real& value, Real of_top) { value = of_top; });
+  for (std::size_t c = 0; c < count; ++c)
+    for (std::size_t i = 0; i < m; ++i) sides[c * n + top_[i]] = top[c * m + i];
+  ask("expand", "solution", memory);
+  for (std::size_t p = 0; p < pieces_.size(); ++p)
+    for (std::size_t c = 0; c < count; ++c)
+      for (std::size_t i = 0; i < pieces_[p].own.size(); ++i)
+        sides[c * n + pieces_[p].own[i]] = values_in<Real>(memory[p])[c * pieces_[p].size() + i];
+}
+
+template <class Real>
+void TreeMumps<Real>::substitute(std::span<Real> right_side) {
+  substitute_all(right_side);
+}
+
+template <class Real>
+void TreeMumps<Real>::substitute(std::span<const std::int64_t> offset, std::span<const std::int32_t> index,
+                                 std::span<const Real> value, std::span<Real> solution) {
+  std::fill(solution.begin(), solution.end(), Real{0});
+  for (std::size_t c = 0; c + 1 < offset.size(); ++c)
+    for (std::int64_t k = offset[c]; k < offset[c + 1]; ++k) solution[c * local_.size() + index[k]] += value[k];
+  substitute_all(solution);
+}
+
+template class TreeMumps<double>;
+template class TreeMumps<float>;
+
+}  // namespace lacon

@@ -1,0 +1,225 @@
+#include "lacon/assembly/tree/tree_mumps.hpp"
+
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+#include <random>
+
+#include "dense.hpp"
+#include "lacon/assembly/mumps_engine.hpp"
+#include "lacon/assembly/ordering.hpp"
+#include "lacon/catalog/messages.hpp"
+#include "lattice.hpp"
+
+namespace lacon {
+namespace {
+
+using test::Lattice;
+using Use = MumpsOptions::Use;
+
+MumpsOptions shared_by(int processes) {
+  return {.processes = processes, .least_shared = 1, .program = LACON_BINARY_DIR "/bin/lacon_mumps"};
+}
+
+std::vector<double> any_force(std::int64_t n) {
+  std::mt19937 random(5);
+  return test::random_values(static_cast<std::size_t>(n), random);
+}
+
+/// Lattices one on the other, the upper one held by multipliers alone: pairs of points that move as one.
+struct Stacked {
+  static constexpr int n = 9, points = n * n * n, rows = n * n;
+  explicit Stacked(bool is_symmetric = true)
+      : numbering(number_equations(2 * points, 1, free(), rows)),
+        matrix(numbering, springs(), couplings(), is_symmetric ? Symmetry::symmetric : Symmetry::general) {
+    const Ragged<std::int32_t> all = springs();
+    const auto add = [&](std::vector<std::int64_t> equations, double a, double b, double c) {
+      if (is_symmetric)
+        matrix.add(equations, std::vector{a, b, c});
+      else
+        matrix.add_unsymmetric(equations, std::vector{a, 0.9 * b, b, c});
+    };
+    for (std::size_t s = 0; s < all.size(); ++s) add({numbering.of(all[s][0], 0), numbering.of(all[s][1], 0)}, 1, -1, 1.1);
+    for (const Coupling& c : couplings())
+      add({numbering.of_patch(c.a - 2 * points), numbering.of(c.b, 0)}, 0, c.b < points ? 1 : -1, 0);
+  }
+  static std::vector<std::uint8_t> free() {
+    std::vector<std::uint8_t> all(2 * points, 1);
+    std::fill(all.begin(), all.begin() + n * n, 0);
+    return all;
+  }
+  static Ragged<std::int32_t> springs() {
+    const Ragged<std::int32_t> one = Lattice::springs(n);
+    Ragged<std::int32_t> all;
+    for (const std::int32_t from : {0, points})
+      for (std::size_t s = 0; s < one.size(); ++s) all.push_back(std::vector<std::int32_t>{one[s][0] + from, one[s][1] + from});
+    return all;
+  }
+  static std::vector<Coupling> couplings() {
+    std::vector<Coupling> all;
+    for (int r = 0; r < rows; ++r) {
+      all.push_back({2 * points + r, points - rows + r});
+      all.push_back({2 * points + r, points + r});
+    }
+    return all;
+  }
+  Numbering numbering;
+  SparseMatrix matrix;
+};
+
+// Equations of two subtrees never meet, and sharing shortens the work.
+TEST(Subtrees, DoNotMeet) {
+  const Stacked system;
+  const std::vector<std::int32_t> order = elimination_order(system.matrix);
+  for (const int processes : {2, 3, 5}) {
+    const Subtrees found = independent_subtrees(system.matrix, order, processes);
+    for (std::int64_t row = 0; row < system.matrix.size(); ++row)
+      for (std::int64_t k = system.matrix.rows()[row]; k < system.matrix.rows()[row + 1]; ++k) {
+        const int one = found.of[row], other = found.of[system.matrix.columns()[k]];
+        ASSERT_TRUE(one == other || one < 0 || other < 0);
+      }
+    EXPECT_LT(found.longest, 0.85 * found.flops);
+    EXPECT_GE(found.longest, found.flops / processes);
+  }
+}
+
+// A factor that processes share gives solutions, inertia and columns of the inverse as that of one process does, in the same
+// bits in every run.
+TEST(TreeMumps, SolvesAsOneProcessDoes) {
+  const std::vector<std::int64_t> offset{0, 2, 3};
+  const std::vector<std::int32_t> index{100, 700, 1000};
+  const std::vector<double> value{1.0, 3.0, -2.0};
+  for (const bool is_symmetric : {true, false}) {
+    const Stacked system(is_symmetric);
+    const std::vector<double> force = any_force(system.matrix.size());
+    MumpsEngine one;
+    one.analyse(system.matrix);
+    const Factorisation wanted = one.factorise(system.matrix);
+    std::vector<double> expected = force;
+    one.solve(expected);
+    const std::vector<float> columns = one.substitute(offset, index, value);
+    const double size = *std::max_element(expected.begin(), expected.end());
+    for (const int processes : {2, 3})
+      for (const auto& [single, low_rank] :
+           {std::pair(Use::never, Use::never), {Use::always, Use::never}, {Use::always, Use::always}}) {
+        MumpsOptions options = shared_by(processes);
+        options.single_precision = single;
+        options.low_rank = low_rank;
+        std::vector<std::vector<double>> runs;
+        for (int run = 0; run < 2; ++run) {
+          MumpsEngine engine(options);
+          engine.analyse(system.matrix);
+          const Factorisation found = engine.factorise(system.matrix);
+          EXPECT_EQ(found.doubt, "");
+          EXPECT_EQ(found.processes, processes);
+          EXPECT_EQ(found.single_precision, single == Use::always);
+          EXPECT_EQ(found.negative_pivots, wanted.negative_pivots);
+          runs.push_back(force);
+          engine.solve(runs.back());
+          const std::vector<float> now = engine.substitute(offset, index, value);
+          for (std::size_t i = 0; i < now.size(); ++i) ASSERT_NEAR(now[i], columns[i], 1e-3);
+        }
+        EXPECT_EQ(runs[0], runs[1]);
+        for (std::size_t i = 0; i < expected.size(); ++i) ASSERT_NEAR(runs[0][i], expected[i], 1e-11 * size);
+      }
+  }
+}
+
+// Other values on the same pattern, and matrices that are not large enough.
+TEST(TreeMumps, IsMadeForLargeMatricesAgainAndAgain) {
+  Lattice lattice(10);
+  MumpsOptions options = shared_by(2);
+  MumpsEngine engine(options);
+  engine.analyse(lattice.matrix);
+  for (int round = 0; round < 2; ++round) {
+    EXPECT_EQ(engine.factorise(lattice.matrix).processes, 2);
+    std::vector<double> force = any_force(lattice.matrix.size());
+    EXPECT_LE(engine.solve(force).residual, 1e-14);
+    lattice.matrix.add_diagonal(500, 3.0);
+  }
+  options.least_shared = 1'000;
+  MumpsEngine of_large_ones(options);
+  of_large_ones.analyse(lattice.matrix);
+  EXPECT_EQ(of_large_ones.factorise(lattice.matrix).processes, 1);
+}
+
+// Where something moves freely one process makes an exact factor, which says what.
+TEST(TreeMumps, LeavesFreeMotionsToOneProcess) {
+  const Lattice lattice(8, 1, false);
+  MumpsEngine one, engine(shared_by(2));
+  one.analyse(lattice.matrix);
+  engine.analyse(lattice.matrix);
+  const Factorisation found = engine.factorise(lattice.matrix);
+  EXPECT_EQ(found.null_pivots, one.factorise(lattice.matrix).null_pivots);
+  EXPECT_EQ(found.null_pivots.size(), 1);
+  EXPECT_NE(found.doubt, "");
+  EXPECT_EQ(found.processes, 1);
+}
+
+// A body that multipliers alone hold is loose where these are all of its border: its last pivots are left to the top.
+TEST(TreeMumps, HoldsBodiesByTheTop) {
+  const Stacked system;
+  const Numbering& numbering = system.numbering;
+  Subtrees bodies{.of = std::vector<std::int32_t>(static_cast<std::size_t>(system.matrix.size()), -1), .process = {0, 1}};
+  for (int point = 0; point < 2 * Stacked::points; ++point)
+    if (const std::int64_t e = numbering.of(point, 0); e >= 0) bodies.of[e] = point < Stacked::points ? 0 : 1;
+  std::vector<int> row, column, place;
+  for (std::int64_t i = 0; i < system.matrix.size(); ++i)
+    for (std::int64_t k = system.matrix.rows()[i]; k < system.matrix.rows()[i + 1]; ++k) {
+      row.push_back(static_cast<int>(i) + 1);
+      column.push_back(system.matrix.columns()[k] + 1);
+    }
+  for (const std::int32_t p : elimination_order(system.matrix)) place.push_back(p + 1);
+  MumpsProcesses processes(2, shared_by(2).program);
+  const auto solved = [&]<class Real>(double singular_pivot) {
+    TreeMumps<Real> factor({.singular_pivot = singular_pivot}, bodies, processes);
+    factor.analyse({.row = row, .column = column, .place = place, .border = {}});
+    const std::vector<Real> values(system.matrix.values().begin(), system.matrix.values().end());
+    const Factorisation found = factor.factorise(values);
+    EXPECT_TRUE(found.null_pivots.empty());
+    EXPECT_EQ(found.negative_pivots, Stacked::rows);
+    const std::vector<double> force = any_force(system.matrix.size());
+    std::vector<Real> x(force.begin(), force.end());
+    factor.substitute(x);
+    const std::vector<double> found_x(x.begin(), x.end());
+    std::vector<double> image(force.size());
+    system.matrix.multiply(found_x, image);
+    double left = 0;
+    for (std::size_t i = 0; i < force.size(); ++i) left = std::max(left, std::abs(force[i] - image[i]));
+    return left;
+  };
+  EXPECT_LE(solved.operator()<double>(1e-10), 1e-10);
+  EXPECT_LE(solved.operator()<float>(1e-6), 1e-2);
+}
+
+/// The message that a factorisation ends with.
+std::string end_of(const std::string& program) {
+  const Lattice lattice(10);
+  MumpsOptions options = shared_by(2);
+  options.program = program;
+  MumpsEngine engine(options);
+  try {
+    engine.analyse(lattice.matrix);
+    engine.factorise(lattice.matrix);
+  } catch (const Error& error) {
+    return error.message().id + " " + error.message().text;
+  }
+  return {};
+}
+
+// A process that cannot be started, or ends, is told.
+TEST(TreeMumps, SaysThatProcessesHaveEnded) {
+  const std::string none = end_of("/nowhere/lacon_mumps");
+  EXPECT_TRUE(none.starts_with("SOLVER_8")) << none;
+  const std::filesystem::path script = std::filesystem::temp_directory_path() / "lacon_mumps_that_is_killed";
+  std::ofstream(script) << "#!/bin/sh\necho ready\nread line\nkill -9 $$\n";
+  std::filesystem::permissions(script, std::filesystem::perms::owner_all);
+  const std::string killed = end_of(script);
+  EXPECT_TRUE(killed.starts_with("SOLVER_8")) << killed;
+  EXPECT_NE(killed.find("Killed"), std::string::npos) << killed;
+  std::filesystem::remove(script);
+}
+
+}  // namespace
+}  // namespace lacon
