@@ -5,6 +5,7 @@
 #include <stdexcept>
 
 #include "lacon/catalog/messages.hpp"
+#include "lacon/catalog/wording.hpp"
 #include "lacon/structures/hdf5.hpp"
 #include "lacon/structures/storage/storage.hpp"
 
@@ -88,8 +89,7 @@ Field read_field(const std::filesystem::path& file) {
   if (root.has("offset")) field.offset = root.read<std::int64_t>("offset");
   field.values = root.read<double>("values");
   if (root.has("present")) field.present = root.read<std::uint8_t>("present");
-  if (!is_sound(field))
-    fail("BASE_2", {{"file", file.string()}, {"reason", "its rows do not fit its support or its components"}});
+  if (!is_sound(field)) fail("BASE_2", {{"file", file.string()}, {"reason", part("field_does_not_fit")}});
   return field;
 }
 

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "lacon/catalog/messages.hpp"
+#include "lacon/catalog/wording.hpp"
 #include "lacon/structures/files.hpp"
 #include "lacon/structures/memory.hpp"
 #include "lacon/structures/seal.hpp"
@@ -83,7 +84,8 @@ bool fits(hid_t object, std::size_t count, std::size_t width) {
   return count <= always / std::max<std::size_t>(width, 1) || count <= most_bytes(object) / std::max<std::size_t>(width, 1);
 }
 
-constexpr const char* too_large = "claims more values than a file of this size may have";
+/// What is wrong with the group, dataset or attribute of a name, by its row of parts.toml.
+std::string about(std::string_view row, std::string_view name) { return part(row, {{"name", std::string(name)}}); }
 
 /// Memory for texts of variable length, up to a limit.
 struct Budget {
@@ -157,7 +159,7 @@ std::vector<std::string> Group::children() const {
     static_cast<std::vector<std::string>*>(list)->emplace_back(name);
     return 0;
   };
-  if (H5Literate(id_, H5_INDEX_NAME, H5_ITER_INC, nullptr, collect, &names) < 0) refuse("its groups cannot be listed");
+  if (H5Literate(id_, H5_INDEX_NAME, H5_ITER_INC, nullptr, collect, &names) < 0) refuse(part("hdf5_groups_unlisted"));
   return names;
 }
 
@@ -169,7 +171,7 @@ bool Group::is_group(std::string_view name) const {
 
 Group Group::open(std::string_view name) const {
   Handle group(is_group(name) ? H5Gopen2(id_, zero_ended(name).c_str(), H5P_DEFAULT) : H5I_INVALID_HID, H5Gclose);
-  if (group < 0) refuse("it has no group '" + std::string(name) + "'");
+  if (group < 0) refuse(about("hdf5_no_group", name));
   return Group(std::move(group), path_, writing_);
 }
 
@@ -179,14 +181,14 @@ Group Group::create(std::string_view name) const {
   const Handle links(H5Pcreate(H5P_LINK_CREATE), H5Pclose);
   H5Pset_create_intermediate_group(links, 1);
   Handle group(H5Gcreate2(id_, zero_ended(name).c_str(), links, creation, H5P_DEFAULT), H5Gclose);
-  if (group < 0) refuse("the group '" + std::string(name) + "' cannot be made");
+  if (group < 0) refuse(about("hdf5_group_not_made", name));
   return Group(std::move(group), path_, writing_);
 }
 
 std::vector<hsize_t> Group::shape(std::string_view name) const {
   const Handle set(has(name) && !is_group(name) ? H5Dopen2(id_, zero_ended(name).c_str(), H5P_DEFAULT) : H5I_INVALID_HID,
                    H5Dclose);
-  if (set < 0) refuse("it has no dataset '" + std::string(name) + "'");
+  if (set < 0) refuse(about("hdf5_no_dataset", name));
   const Handle space(H5Dget_space(set), H5Sclose);
   std::vector<hsize_t> extents(static_cast<std::size_t>(std::max(0, H5Sget_simple_extent_ndims(space))));
   H5Sget_simple_extent_dims(space, extents.data(), nullptr);
@@ -197,12 +199,12 @@ template <class T>
 std::vector<T> Group::read(std::string_view name, std::size_t (*capacity)(std::size_t)) const {
   const std::size_t size = count(shape(name));
   const Handle set(H5Dopen2(id_, zero_ended(name).c_str(), H5P_DEFAULT), H5Dclose);
-  if (!fits(set, size, sizeof(T))) refuse("the dataset '" + std::string(name) + "' " + too_large);
+  if (!fits(set, size, sizeof(T))) refuse(about("hdf5_dataset_large", name));
   std::vector<T> values;
   reserve_pages(values, size, capacity ? capacity(size) : size);
   values.resize(size);
   if (!values.empty() && H5Dread(set, native_type<T>(), H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()) < 0)
-    refuse("the dataset '" + std::string(name) + "' cannot be read");
+    refuse(about("hdf5_dataset_unreadable", name));
   return values;
 }
 
@@ -213,13 +215,12 @@ std::vector<std::string> Group::read_strings(std::string_view name) const {
   const Handle space(H5Dget_space(set), H5Sclose);
   std::vector<std::string> texts;
   if (size == 0) return texts;
-  if (!fits(set, size, H5Tget_size(type))) refuse("the dataset '" + std::string(name) + "' " + too_large);
+  if (!fits(set, size, H5Tget_size(type))) refuse(about("hdf5_dataset_large", name));
   const Handle transfer = small_buffer();
   Budget budget{most_bytes(set)};
   H5Pset_vlen_mem_manager(transfer, Budget::take, &budget, Budget::give_back, nullptr);
   const auto read = [&](hid_t memory, void* buffer) { return H5Dread(set, memory, H5S_ALL, H5S_ALL, transfer, buffer); };
-  if (!read_texts(type, space, size, transfer, read, texts))
-    refuse("the dataset '" + std::string(name) + "' does not hold text");
+  if (!read_texts(type, space, size, transfer, read, texts)) refuse(about("hdf5_dataset_no_text", name));
   return texts;
 }
 
@@ -235,7 +236,7 @@ void Group::write(std::string_view name, std::span<const T> values, std::vector<
   if (shape.empty()) shape = {values.size()};
   const Handle set = new_dataset(name, native_type<T>(), shape);
   if (set < 0 || (!values.empty() && H5Dwrite(set, native_type<T>(), H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()) < 0))
-    refuse("the dataset '" + std::string(name) + "' cannot be written");
+    refuse(about("hdf5_dataset_not_written", name));
 }
 
 namespace {
@@ -262,7 +263,7 @@ void Group::read_columns(std::string_view name, std::size_t columns,
   const std::vector<hsize_t> extents = shape(name);
   const std::size_t rows = count(extents) / columns;
   const Handle set(H5Dopen2(id_, zero_ended(name).c_str(), H5P_DEFAULT), H5Dclose);
-  if (!fits(set, count(extents), sizeof(T))) refuse("the dataset '" + std::string(name) + "' " + too_large);
+  if (!fits(set, count(extents), sizeof(T))) refuse(about("hdf5_dataset_large", name));
   const Handle space(H5Dget_space(set), H5Sclose);
   const Handle creation(H5Dget_create_plist(set), H5Pclose);
   const bool in_parts = extents.size() == 1 && H5Pget_layout(creation) == H5D_CONTIGUOUS;
@@ -272,7 +273,7 @@ void Group::read_columns(std::string_view name, std::size_t columns,
     values.resize(std::min(step, rows - first) * columns);
     const Handle memory = select_rows(space, rows, columns, first, values.size() / columns);
     if (H5Dread(set, native_type<T>(), memory, space, H5P_DEFAULT, values.data()) < 0)
-      refuse("the dataset '" + std::string(name) + "' cannot be read");
+      refuse(about("hdf5_dataset_unreadable", name));
     visit(first, values);
   }
 }
@@ -291,7 +292,7 @@ void Group::write_columns(std::string_view name, std::size_t rows, std::size_t c
     const Handle memory = select_rows(space, rows, columns, first, values.size() / columns);
     written = H5Dwrite(set, native_type<T>(), memory, space, H5P_DEFAULT, values.data()) >= 0;
   }
-  if (!written) refuse("the dataset '" + std::string(name) + "' cannot be written");
+  if (!written) refuse(about("hdf5_dataset_not_written", name));
 }
 
 void Group::write_strings(std::string_view name, const std::vector<std::string>& values) const {
@@ -300,7 +301,7 @@ void Group::write_strings(std::string_view name, const std::vector<std::string>&
   const Handle type = string_type();
   const Handle set = new_dataset(name, type, {values.size()});
   if (set < 0 || (!values.empty() && H5Dwrite(set, type, H5S_ALL, H5S_ALL, small_buffer(), pointers.data()) < 0))
-    refuse("the dataset '" + std::string(name) + "' cannot be written");
+    refuse(about("hdf5_dataset_not_written", name));
 }
 
 bool Group::has_attribute(std::string_view name) const { return H5Aexists(id_, zero_ended(name).c_str()) > 0; }
@@ -325,13 +326,13 @@ Handle new_attribute(hid_t group, std::string_view name, hid_t type, hid_t space
 
 std::int64_t Group::integer(std::string_view name) const {
   std::int64_t value = 0;
-  if (!read_number(id_, name, value)) refuse("it has no integer attribute '" + std::string(name) + "'");
+  if (!read_number(id_, name, value)) refuse(about("hdf5_no_integer", name));
   return value;
 }
 
 double Group::real(std::string_view name) const {
   double value = 0;
-  if (!read_number(id_, name, value)) refuse("it has no real attribute '" + std::string(name) + "'");
+  if (!read_number(id_, name, value)) refuse(about("hdf5_no_real", name));
   return value;
 }
 
@@ -343,16 +344,15 @@ std::vector<std::string> Group::attribute_strings(std::string_view name) const {
     const Handle space(H5Aget_space(attribute), H5Sclose);
     const auto size = static_cast<std::size_t>(H5Sget_simple_extent_npoints(space));
     const auto read = [&](hid_t memory, void* buffer) { return H5Aread(attribute, memory, buffer); };
-    if (size > attribute_texts || !fits(attribute, size, H5Tget_size(type)))
-      refuse("the attribute '" + std::string(name) + "' " + too_large);
+    if (size > attribute_texts || !fits(attribute, size, H5Tget_size(type))) refuse(about("hdf5_attribute_large", name));
     if (size == 0 || read_texts(type, space, size, H5P_DEFAULT, read, texts)) return texts;
   }
-  refuse("it has no text attribute '" + std::string(name) + "'");
+  refuse(about("hdf5_no_text", name));
 }
 
 std::string Group::text(std::string_view name) const {
   const std::vector<std::string> texts = attribute_strings(name);
-  if (texts.size() != 1) refuse("its attribute '" + std::string(name) + "' is not one text");
+  if (texts.size() != 1) refuse(about("hdf5_not_one_text", name));
   return texts.front();
 }
 
@@ -362,7 +362,7 @@ std::vector<std::string> Group::attributes() const {
     static_cast<std::vector<std::string>*>(list)->emplace_back(name);
     return 0;
   };
-  if (H5Aiterate2(id_, H5_INDEX_NAME, H5_ITER_INC, nullptr, collect, &names) < 0) refuse("its attributes cannot be listed");
+  if (H5Aiterate2(id_, H5_INDEX_NAME, H5_ITER_INC, nullptr, collect, &names) < 0) refuse(part("hdf5_attributes_unlisted"));
   return names;
 }
 
@@ -378,8 +378,7 @@ requires std::is_arithmetic_v<T>
 void Group::set(std::string_view name, T value) const {
   const Handle space(H5Screate(H5S_SCALAR), H5Sclose);
   const Handle attribute = new_attribute(id_, name, native_type<T>(), space);
-  if (attribute < 0 || H5Awrite(attribute, native_type<T>(), &value) < 0)
-    refuse("the attribute '" + std::string(name) + "' cannot be written");
+  if (attribute < 0 || H5Awrite(attribute, native_type<T>(), &value) < 0) refuse(about("attribute_not_written", name));
 }
 
 void Group::set(std::string_view name, std::string_view value) const {
@@ -388,8 +387,7 @@ void Group::set(std::string_view name, std::string_view value) const {
   const Handle attribute = new_attribute(id_, name, type, space);
   const std::string text(value);
   const char* pointer = text.c_str();
-  if (attribute < 0 || H5Awrite(attribute, type, &pointer) < 0)
-    refuse("the attribute '" + std::string(name) + "' cannot be written");
+  if (attribute < 0 || H5Awrite(attribute, type, &pointer) < 0) refuse(about("attribute_not_written", name));
 }
 
 void Group::set(std::string_view name, const std::vector<std::string>& values) const {
@@ -400,7 +398,7 @@ void Group::set(std::string_view name, const std::vector<std::string>& values) c
   const Handle type = string_type();
   const Handle attribute = new_attribute(id_, name, type, space);
   if (attribute < 0 || (size > 0 && H5Awrite(attribute, type, pointers.data()) < 0))
-    refuse("the attribute '" + std::string(name) + "' cannot be written");
+    refuse(about("attribute_not_written", name));
 }
 
 #define LACON_HDF5_TYPE(T)                                                                                 \
@@ -432,12 +430,12 @@ class Writer : public Group {
 /// Write what goes into an HDF5 file that was just opened as `partial`, and will be `file`.
 void fill(const Handle& opened, const std::filesystem::path& partial, const std::filesystem::path& file,
           const std::function<void(const Group&)>& write) {
-  if (opened < 0) cannot_write(file, with_system_reason("the file '" + partial.string() + "' cannot be made"));
+  if (opened < 0) cannot_write(file, with_system_reason(about("file_not_made", partial.string())));
   {
     const Writer root(Handle(H5Gopen2(opened, "/", H5P_DEFAULT), H5Gclose), file);
     write(root);
   }
-  if (H5Fflush(opened, H5F_SCOPE_LOCAL) < 0) cannot_write(file, with_system_reason("it cannot be ended"));
+  if (H5Fflush(opened, H5F_SCOPE_LOCAL) < 0) cannot_write(file, with_system_reason(part("file_not_ended")));
 }
 
 Handle new_file(const std::filesystem::path& path, bool in_memory = false) {
@@ -456,14 +454,14 @@ Reader::Reader(const std::filesystem::path& file) : Group({}, file, false) {
   file_ = Handle(H5Fopen(file.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), H5Fclose);
   if (file_ < 0) {
     std::error_code error;
-    if (!std::filesystem::exists(file, error)) refuse("there is no such file");
-    if (std::filesystem::is_directory(file, error)) refuse("it is a folder");
+    if (!std::filesystem::exists(file, error)) refuse(part("file_not_there"));
+    if (std::filesystem::is_directory(file, error)) refuse(part("file_is_folder"));
     if (std::FILE* stream = std::fopen(file.c_str(), "rb"))
       std::fclose(stream);
     else
       refuse(std::strerror(errno));
-    if (H5Fis_hdf5(file.c_str()) <= 0) refuse("it is not an HDF5 file");
-    refuse("HDF5 cannot open it: it may be cut off, or open elsewhere for writing");
+    if (H5Fis_hdf5(file.c_str()) <= 0) refuse(part("file_not_hdf5"));
+    refuse(part("file_cut_off"));
   }
   id_ = Handle(H5Gopen2(file_, "/", H5P_DEFAULT), H5Gclose);
 }
@@ -492,7 +490,7 @@ void write_sealed_at_once(const std::filesystem::path& file, const std::function
     const Handle opened = new_file(partial, true);
     fill(opened, partial, file, write);
     std::vector<char> content(static_cast<std::size_t>(std::max<ssize_t>(0, H5Fget_file_image(opened, nullptr, 0))));
-    if (H5Fget_file_image(opened, content.data(), content.size()) <= 0) cannot_write(file, "HDF5 does not give its content");
+    if (H5Fget_file_image(opened, content.data(), content.size()) <= 0) cannot_write(file, part("hdf5_no_content"));
     write_with_seal(partial, content);
   });
 }

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "lacon/catalog/messages.hpp"
+#include "lacon/catalog/wording.hpp"
 #include "lacon/structures/hdf5.hpp"
 
 namespace lacon {
@@ -85,7 +86,7 @@ Table read_table(const hdf5::Group& group) {
     sound = sound && (k == 0 || column.cells.size() == table.n_rows());
     table.columns.push_back(std::move(column));
   }
-  if (!sound) fail("BASE_2", {{"file", group.path().string()}, {"reason", "the columns of the table do not fit each other"}});
+  if (!sound) fail("BASE_2", {{"file", group.path().string()}, {"reason", part("table_does_not_fit")}});
   return table;
 }
 

@@ -21,7 +21,7 @@ namespace {
 namespace fs = std::filesystem;
 
 /// Number of nodes and name of gmsh's types of cells that have no row in cells.toml, to name them in the refusal.
-constexpr std::pair<int, std::string_view> unused_types[] = {{13, "18-node prism"}, {14, "14-node pyramid"}};
+constexpr std::pair<int, std::string_view> unused_types[] = {{13, "gmsh_prism_18"}, {14, "gmsh_pyramid_14"}};
 
 using Entity = std::pair<int, std::int64_t>;  ///< dimension and tag: a geometrical entity, or a physical group
 
@@ -50,7 +50,7 @@ class Source {
   void skip_section() {
     const std::string end = (section_ == "NOD" || section_ == "ELM" ? "$END" : "$End") + section_;
     const std::size_t at = text_.find(end, position_);
-    if (at == std::string::npos) damaged("it has no end, " + end);
+    if (at == std::string::npos) damaged(part("gmsh_no_end", {{"end", end}}));
     position_ = at + end.size();
     rest_of_line();
   }
@@ -64,8 +64,8 @@ class Source {
   }
 
   /// A number that is text, whatever the rest of the file is. Behind it comes the end of the line.
-  std::int64_t text_integer() { return parsed<std::int64_t>("a whole number"); }
-  double text_real() { return parsed<double>("a number"); }
+  std::int64_t text_integer() { return parsed<std::int64_t>("a_whole_number"); }
+  double text_real() { return parsed<double>("a_number"); }
   std::int64_t integer() { return binary ? bytes<std::int32_t>() : text_integer(); }
   std::int64_t size() { return binary ? static_cast<std::int64_t>(bytes<std::uint64_t>()) : text_integer(); }
   double real() { return binary ? bytes<double>() : text_real(); }
@@ -73,7 +73,7 @@ class Source {
   /// A count of things that take `least` bytes at least: a spoilt file may claim any number.
   std::size_t count(std::int64_t n, std::size_t least) const {
     if (n < 0 || static_cast<std::uint64_t>(n) > (text_.size() - position_) / least)
-      damaged("it announces " + std::to_string(n) + " entries, which the file is too short for");
+      damaged(part("gmsh_too_short", {{"count", std::to_string(n)}}));
     return static_cast<std::size_t>(n);
   }
 
@@ -82,7 +82,7 @@ class Source {
 
   std::string quoted() {
     const std::size_t open = text_.find('"', position_), close = text_.find('"', open == std::string::npos ? open : open + 1);
-    if (close == std::string::npos) damaged("a name is not quoted");
+    if (close == std::string::npos) damaged(part("gmsh_not_quoted"));
     position_ = close + 1;
     return text_.substr(open + 1, close - open - 1);
   }
@@ -97,7 +97,8 @@ class Source {
     if (error != std::errc()) {
       const std::size_t stop = std::min(text_.find_first_of(" \t\r\n", position_), text_.size());
       const std::string found = text_.substr(position_, std::min<std::size_t>(stop - position_, 30));
-      damaged((found.empty() ? "it ends" : "there is '" + found + "'") + " where " + what + " should be");
+      damaged(found.empty() ? part("it_ends_where", {{"expected", part(what)}})
+                            : part("there_is_where", {{"found", "'" + found + "'"}, {"expected", part(what)}}));
     }
     position_ = static_cast<std::size_t>(end - text_.data());
     return value;
@@ -105,7 +106,7 @@ class Source {
 
   template <class T>
   T bytes() {
-    if (text_.size() - position_ < sizeof(T)) damaged("it is cut off");
+    if (text_.size() - position_ < sizeof(T)) damaged(part("it_is_cut_off"));
     T value;
     std::memcpy(&value, text_.data() + position_, sizeof(T));
     position_ += sizeof(T);
@@ -149,8 +150,7 @@ class GmshReader {
     if (!(version >= 2 && version < 3) && !(version >= 4 && version < 5))
       fail("GMSH_2", {{"file", source_.file()}, {"version", std::to_string(version).substr(0, 3)}});
     source_.binary = mode != 0;
-    if (source_.binary && (real_size != 8 || source_.integer() != 1))
-      source_.damaged("it was written by a machine of another kind (order or size of numbers)");
+    if (source_.binary && (real_size != 8 || source_.integer() != 1)) source_.damaged(part("gmsh_other_machine"));
     source_.skip_section();
   }
 
@@ -191,9 +191,9 @@ class GmshReader {
 
   void add_node(std::int64_t tag, double x, double y, double z) {
     if (!std::isfinite(x) || !std::isfinite(y) || !std::isfinite(z))
-      source_.damaged("the coordinates of the node " + std::to_string(tag) + " are not finite numbers");
+      source_.damaged(part("node_not_finite", {{"node", std::to_string(tag)}}));
     if (!number_.emplace(tag, static_cast<std::int32_t>(coordinates_.size() / 3)).second)
-      source_.damaged("the node " + std::to_string(tag) + " is there twice");
+      source_.damaged(part("node_is_there_twice", {{"node", std::to_string(tag)}}));
     coordinates_.insert(coordinates_.end(), {x, y, z});
   }
 
@@ -239,17 +239,16 @@ class GmshReader {
   const catalog::CellRow& row_of(std::int64_t type) const {
     for (const catalog::CellRow& row : catalog::cells())
       if (row.gmsh_type == type) return row;
-    std::string what = "of the type " + std::to_string(type);
+    std::string what = part("gmsh_of_type", {{"type", std::to_string(type)}});
     for (const auto& [number, name] : unused_types)
-      if (number == type) what = name;
+      if (number == type) what = part(name);
     fail("GMSH_4", {{"file", source_.file()}, {"type", what}});
   }
 
   template <class Next>
   void add_cell(const catalog::CellRow& row, std::int64_t tag, std::vector<std::int64_t> physical, const Next& next) {
     memberships_ += physical.size();
-    if (memberships_ > source_.most_memberships())
-      source_.damaged("its cells are in more groups than a file of its size may have");
+    if (memberships_ > source_.most_memberships()) source_.damaged(part("too_many_members"));
     cells_.push_back({row.type, tag, nodes_.size(), std::move(physical)});
     for (int j = 0; j < row.n_nodes; ++j) nodes_.push_back(next());
   }
@@ -262,8 +261,9 @@ class GmshReader {
       const std::int64_t physical = source_.integer();
       source_.integer();  // the geometrical entity
       if (const std::int64_t n_nodes = source_.integer(); n_nodes != row.n_nodes)
-        source_.damaged("the " + std::string(row.name) + " " + std::to_string(tag) + " has " + std::to_string(n_nodes) +
-                        " nodes");
+        source_.damaged(
+            part("gmsh_wrong_nodes",
+                 {{"type", std::string(row.name)}, {"cell", std::to_string(tag)}, {"count", std::to_string(n_nodes)}}));
       add_cell(row, tag, physical != 0 ? std::vector<std::int64_t>{std::abs(physical)} : std::vector<std::int64_t>{},
                [&] { return source_.integer(); });
     }
@@ -278,7 +278,7 @@ class GmshReader {
       const catalog::CellRow& row = row_of(source_.integer());
       const std::size_t follow = source_.binary ? source_.count(source_.integer(), 4) : 1;
       const std::size_t n_tags = source_.count(source_.integer(), 1);
-      if (follow == 0 || follow > n) source_.damaged("a block of cells has " + std::to_string(follow) + " of them");
+      if (follow == 0 || follow > n) source_.damaged(part("gmsh_block_of", {{"count", std::to_string(follow)}}));
       for (std::size_t i = 0; i < follow; ++i, --n) {
         if (source_.binary) tag = source_.integer();
         std::vector<std::int64_t> physical;

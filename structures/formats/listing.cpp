@@ -9,10 +9,12 @@
 #include <ostream>
 #include <string>
 
+#include "lacon/catalog/wording.hpp"
+
 namespace lacon {
 namespace {
 
-void list_groups(std::ostream& out, const char* what, const std::vector<Group>& groups) {
+void list_groups(std::ostream& out, const std::string& what, const std::vector<Group>& groups) {
   if (groups.empty()) return;
   fmt::print(out, "  {:<26}{:>10}\n", what, groups.size());
   for (const Group& group : groups) fmt::print(out, "    {:<24}{:>10}\n", group.name, group.members.size());
@@ -85,13 +87,13 @@ void list_field(std::ostream& out, const Mesh& mesh, const Field& field, std::st
 
 void list_mesh(std::ostream& out, const Mesh& mesh, bool full) {
   fmt::print(out, "  {:<26}{:>10}\n", "dimension", mesh.dimension);
-  fmt::print(out, "  {:<26}{:>10}\n", "nodes", mesh.n_nodes());
-  fmt::print(out, "  {:<26}{:>10}\n", "cells", mesh.n_cells());
+  fmt::print(out, "  {:<26}{:>10}\n", part("nodes"), mesh.n_nodes());
+  fmt::print(out, "  {:<26}{:>10}\n", part("cells"), mesh.n_cells());
   std::map<CellType, std::size_t> count;
   for (const CellType type : mesh.types) ++count[type];
   for (const auto& [type, n] : count) fmt::print(out, "    {:<24}{:>10}\n", catalog::cell(type).name, n);
-  list_groups(out, "groups of cells", mesh.cell_groups);
-  list_groups(out, "groups of nodes", mesh.node_groups);
+  list_groups(out, part("groups_of_cells"), mesh.cell_groups);
+  list_groups(out, part("groups_of_nodes"), mesh.node_groups);
   if (!full) return;
   for (std::size_t k = 0; k < static_cast<std::size_t>(mesh.dimension); ++k) {
     double low = std::numeric_limits<double>::infinity(), high = -low;

@@ -95,7 +95,7 @@ class MailReader {
   void read() {
     for (;;) {
       const Word keyword = words_.next();
-      if (keyword.text.empty()) words_.damaged(keyword.line, "the file ends without FIN");
+      if (keyword.text.empty()) words_.damaged(keyword.line, part("mail_no_fin"));
       if (keyword.text == "FIN") return;
       if (keyword.text == "TITRE")
         skip_title(keyword);
@@ -123,16 +123,16 @@ class MailReader {
   [[noreturn]] void refuse(const Word& keyword) const {
     if (std::ranges::find(other_types, keyword.text) != std::end(other_types))
       fail("MAIL_2", {{"file", words_.file()}, {"line", std::to_string(keyword.line)}, {"type", std::string(keyword.text)}});
-    words_.damaged(keyword.line, "there is " + shown(keyword.text) +
-                                     " where TITRE, COOR_2D, COOR_3D, a type of cells, "
-                                     "GROUP_NO, GROUP_MA or FIN should be");
+    words_.damaged(keyword.line,
+                   part("there_is_where", {{"found", shown(keyword.text)}, {"expected", part("mail_beginnings")}}));
   }
 
   /// The next word of a part that began with `keyword`; empty at its end, FINSF.
   Word item(const Word& keyword) {
     const Word word = words_.next();
     if (word.text.empty())
-      words_.damaged(word.line, fmt::format("the file ends in {} of line {}, without FINSF", keyword.text, keyword.line));
+      words_.damaged(word.line,
+                     part("mail_no_finsf", {{"keyword", std::string(keyword.text)}, {"line", std::to_string(keyword.line)}}));
     if (word.text == "FINSF") return {{}, word.line};
     return word;
   }
@@ -151,7 +151,7 @@ class MailReader {
       const std::string_view key = words_.next().text;
       words_.next();
       const Word value = words_.next();
-      if (value.text.empty()) words_.damaged(value.line, "nothing is behind " + std::string(key) + " =");
+      if (value.text.empty()) words_.damaged(value.line, part("mail_no_value", {{"keyword", std::string(key)}}));
       if (key == "NOM" && value.text != "INDEFINI") name = value.text;
       if (key == "NBLIGE") std::from_chars(value.text.data(), value.text.data() + value.text.size(), lines);
       ahead = words_;
@@ -170,25 +170,26 @@ class MailReader {
     double value = 0;
     const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
     if (error != std::errc() || end != text.data() + text.size() || !std::isfinite(value))
-      words_.damaged(word.line, "there is " + (word.text.empty() ? "FINSF" : shown(word.text)) +
-                                    " where a coordinate of the node " + shown(node) + " should be");
+      words_.damaged(word.line, part("there_is_where", {{"found", word.text.empty() ? "FINSF" : shown(word.text)},
+                                                        {"expected", part("mail_coordinate", {{"node", shown(node)}})}}));
     return value;
   }
 
   static void add_name(const Words& words, Numbers& numbers, std::vector<std::string_view>& names, const Word& word,
-                       const char* what) {
+                       Entity entity) {
     if (!numbers.emplace(word.text, static_cast<std::int32_t>(names.size())).second)
-      words.damaged(word.line, fmt::format("the {} {} is there twice", what, shown(word.text)));
+      words.damaged(word.line, entity == Entity::node ? part("node_is_there_twice", {{"node", shown(word.text)}})
+                                                      : part("cell_is_there_twice", {{"cell", shown(word.text)}}));
     names.push_back(word.text);
   }
 
   void read_nodes(const Word& keyword) {
     const int dimension = keyword.text[5] - '0';
-    if (dimension_ != 0 && dimension_ != dimension) words_.damaged(keyword.line, "there are COOR_2D and COOR_3D");
+    if (dimension_ != 0 && dimension_ != dimension) words_.damaged(keyword.line, part("mail_both_dimensions"));
     dimension_ = dimension;
     skip_head(keyword);
     for (Word node = item(keyword); !node.text.empty(); node = item(keyword)) {
-      add_name(words_, node_numbers_, nodes_, node, "node");
+      add_name(words_, node_numbers_, nodes_, node, Entity::node);
       for (int d = 0; d < 3; ++d) coordinates_.push_back(d < dimension ? real(keyword, node.text) : 0.0);
     }
   }
@@ -196,12 +197,14 @@ class MailReader {
   void read_cells(const Word& keyword, const catalog::CellRow& row) {
     skip_head(keyword);
     for (Word cell = item(keyword); !cell.text.empty(); cell = item(keyword)) {
-      add_name(words_, cell_numbers_, cells_, cell, "cell");
+      add_name(words_, cell_numbers_, cells_, cell, Entity::cell);
       types_.push_back(row.type);
       for (int j = 0; j < row.n_nodes; ++j) {
         const Word node = item(keyword);
         if (node.text.empty())
-          words_.damaged(node.line, fmt::format("the cell {} ends after {} of its {} nodes", shown(cell.text), j, row.n_nodes));
+          words_.damaged(node.line, part("mail_short_cell", {{"cell", shown(cell.text)},
+                                                             {"count", std::to_string(j)},
+                                                             {"nodes", std::to_string(row.n_nodes)}}));
         cell_nodes_.push_back(node);
       }
     }
@@ -210,18 +213,18 @@ class MailReader {
   void read_group(const Word& keyword) {
     std::string_view name = skip_head(keyword);
     if (name.empty()) name = item(keyword).text;
-    if (name.empty()) words_.damaged(words_.line(), "a group has no name");
+    if (name.empty()) words_.damaged(words_.line(), part("mail_group_without_name"));
     Named& group = groups_.emplace_back(Named{name, keyword.text == "GROUP_NO", {}});
     for (Word member = item(keyword); !member.text.empty(); member = item(keyword)) group.members.push_back(member);
   }
 
-  std::int32_t number(const Numbers& numbers, const Word& word, const char* what, const std::string& where) const {
+  std::int32_t number(const Numbers& numbers, const Word& word, Entity entity, const std::string& where) const {
     const auto found = numbers.find(word.text);
     if (found == numbers.end())
       fail("MAIL_3", {{"file", words_.file()},
                       {"line", std::to_string(word.line)},
                       {"where", where},
-                      {"what", what},
+                      {"what", part(entity == Entity::node ? "node" : "cell")},
                       {"name", as_utf8(std::string(word.text))}});
     return found->second;
   }
@@ -281,7 +284,8 @@ Mesh MailReader::finish(std::string name) {
   for (const std::size_t c : file_place) {
     own.clear();
     for (std::size_t k = first[c]; k < first[c + 1]; ++k)
-      own.push_back(number(node_numbers_, cell_nodes_[k], "node", "the cell " + as_utf8(std::string(cells_[c]))));
+      own.push_back(
+          number(node_numbers_, cell_nodes_[k], Entity::node, part("the_cell", {{"cell", as_utf8(std::string(cells_[c]))}})));
     mesh.add_cell(types_[c], own);
   }
   read_groups(mesh.cell_groups, false);
@@ -300,7 +304,7 @@ void MailReader::read_groups(std::vector<Group>& groups, bool of_nodes) {
     const std::string label = file_names_.read(std::string(group.group));
     auto& [members, known] = found[label];
     for (const Word& member : group.members) {
-      const std::int32_t n = number(of_nodes ? node_numbers_ : cell_numbers_, member, of_nodes ? "node" : "cell",
+      const std::int32_t n = number(of_nodes ? node_numbers_ : cell_numbers_, member, of_nodes ? Entity::node : Entity::cell,
                                     (of_nodes ? "GROUP_NO " : "GROUP_MA ") + label);
       if (known.insert(n).second) members.push_back(n);
     }
@@ -315,7 +319,7 @@ void MailReader::add_named(std::vector<Group>& groups, const std::vector<std::st
     if (number_in_name(names[i], entity) != numbers[i]) own.push_back(i);
   if (own.empty()) return;
   inform(own.size() > most_names ? "MAIL_4" : "MAIL_5", {{"file", words_.file()},
-                                                         {"what", entity == Entity::node ? "nodes" : "cells"},
+                                                         {"what", part(entity == Entity::node ? "nodes" : "cells")},
                                                          {"count", std::to_string(own.size())},
                                                          {"letter", entity == Entity::node ? "N" : "M"},
                                                          {"some", as_utf8(std::string(names[own[0]]))}});

@@ -1,6 +1,7 @@
 #include "lacon/structures/formats/med_pieces.hpp"
 
 #include "lacon/catalog/messages.hpp"
+#include "lacon/catalog/wording.hpp"
 
 namespace lacon::med {
 
@@ -16,7 +17,7 @@ void set_text(const hdf5::Group& group, const char* name, std::string_view value
   const hdf5::Handle attribute(H5Acreate2(group.id(), name, type, space, H5P_DEFAULT, H5P_DEFAULT), H5Aclose);
   const std::string text(value);
   if (attribute < 0 || H5Awrite(attribute, type, text.c_str()) < 0)
-    fail("BASE_3", {{"file", group.path().string()}, {"reason", std::string("the attribute ") + name + " cannot be written"}});
+    fail("BASE_3", {{"file", group.path().string()}, {"reason", part("attribute_not_written", {{"name", name}})}});
 }
 
 std::string in_columns(const std::vector<std::string>& names) {
@@ -29,7 +30,7 @@ std::string in_columns(const std::vector<std::string>& names) {
   return text;
 }
 
-void check_name(const hdf5::Group& root, const char* what, std::string_view name, std::size_t length, bool is_link) {
+void check_name(const hdf5::Group& root, const std::string& what, std::string_view name, std::size_t length, bool is_link) {
   if (name.empty() || name.size() > length || (is_link && name.find('/') != std::string_view::npos))
     fail("MED_12",
          {{"file", root.path().string()}, {"what", what}, {"name", std::string(name)}, {"length", std::to_string(length)}});

@@ -32,7 +32,8 @@ void write_numbers(const hdf5::Group& group, const char* name, std::size_t count
 std::string in_columns(const std::vector<std::string>& names);
 
 /// Throws MED_12. @param is_link the name becomes that of an HDF5 group, which cannot hold a '/'
-void check_name(const hdf5::Group& root, const char* what, std::string_view name, std::size_t length, bool is_link = true);
+void check_name(const hdf5::Group& root, const std::string& what, std::string_view name, std::size_t length,
+                bool is_link = true);
 
 /// `name`, or `name_2`, `name_3`, ...: the first that `fits`.
 template <class Fits>

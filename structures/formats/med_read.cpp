@@ -89,7 +89,7 @@ class MeshReader {
     fail("MED_10", {{"mesh", name_}, {"file", root_.path().string()}, {"reason", reason}});
   }
   std::int64_t integer(const H5Group& group, const char* attribute, const std::string& where) const {
-    if (!group.has_attribute(attribute)) damaged(where + " has no attribute " + attribute);
+    if (!group.has_attribute(attribute)) damaged(part("has_no_attribute", {{"where", where}, {"attribute", attribute}}));
     return group.integer(attribute);
   }
   H5Group first_step(const H5Group& mesh) const;
@@ -134,11 +134,11 @@ H5Group MeshReader::first_step(const H5Group& mesh) const {
 /// The group that holds the datasets of an entity. Files of all versions keep them directly in it; where it names a profile,
 /// they belong to a part of the entities, which is not a whole mesh.
 H5Group MeshReader::entities(const H5Group& parent, const std::string& name, const std::string& where) const {
-  if (!parent.is_group(name)) damaged("it has no " + where);
+  if (!parent.is_group(name)) damaged(part("med_has_no", {{"what", where}}));
   H5Group group = parent.open(name);
   const std::string profile = group.has_attribute("PFL") ? group.text("PFL") : std::string(med::no_profile);
   if (!profile.empty() && profile != med::no_profile)
-    unsuitable("its " + where + " are stored with the profile '" + profile + "'");
+    unsuitable(part("med_has_profile", {{"what", where}, {"profile", profile}}));
   return group.is_group(med::no_profile) ? group.open(med::no_profile) : std::move(group);
 }
 
@@ -150,12 +150,14 @@ void MeshReader::dataset(const H5Group& group, const std::string& name, const st
     std::size_t found = 1;  // before reading: a spoilt file may claim any size
     for (const hsize_t extent : group.shape(name)) found *= extent;
     if (found != rows * columns)
-      damaged("the dataset " + name + " of its " + where + " has " + std::to_string(found) + " values instead of " +
-              std::to_string(rows * columns));
+      damaged(part("med_dataset_size", {{"dataset", name},
+                                        {"what", where},
+                                        {"found", std::to_string(found)},
+                                        {"expected", std::to_string(rows * columns)}}));
     group.read_columns<T>(name, columns, visit);
   } catch (const Error& error) {
     if (error.message().id != "BASE_2") throw;
-    damaged("the dataset " + name + " of its " + where + " cannot be read");
+    damaged(part("med_dataset_unreadable", {{"dataset", name}, {"what", where}}));
   }
 }
 
@@ -178,15 +180,16 @@ std::int64_t MeshReader::rows_of(const H5Group& group, const char* dataset, std:
 }
 
 void MeshReader::read_nodes(const H5Group& step, std::int64_t space) {
-  const H5Group nodes = entities(step, "NOE", "nodes");
+  const H5Group nodes = entities(step, "NOE", part("nodes"));
   if (!nodes.has("COO") || nodes.is_group("COO")) damaged(part("mesh_no_coordinates"));
   std::int64_t count = rows_of(nodes, "COO", static_cast<std::size_t>(space));
-  if (count < 0) damaged("the dataset COO of its nodes has no attribute NBR");
+  if (count < 0) damaged(part("med_dataset_without", {{"dataset", "COO"}, {"what", part("nodes")}, {"attribute", "NBR"}}));
   if (count == 0) damaged(part("mesh_no_nodes"));
-  if (count > std::numeric_limits<std::int32_t>::max() / 4) unsuitable("it has " + std::to_string(count) + " nodes");
+  if (count > std::numeric_limits<std::int32_t>::max() / 4)
+    unsuitable(part("med_too_many", {{"count", std::to_string(count)}, {"what", part("nodes")}}));
   const auto n = static_cast<std::size_t>(count);
   const auto axes = static_cast<std::size_t>(space);
-  dataset<double>(nodes, "COO", "nodes", n, axes, [&](std::size_t first, std::span<const double> part) {
+  dataset<double>(nodes, "COO", part("nodes"), n, axes, [&](std::size_t first, std::span<const double> part) {
     if (first == 0) reserve_pages(mesh_.coordinates, 3 * n, with_room(3 * n));
     const std::size_t here = part.size() / axes;
     mesh_.coordinates.resize(3 * (first + here));
@@ -199,7 +202,7 @@ void MeshReader::read_nodes(const H5Group& step, std::int64_t space) {
       if (!std::isfinite(to[i]))
         fail("MED_9", {{"mesh", name_}, {"file", root_.path().string()}, {"node", std::to_string(first + i / 3 + 1)}});
   });
-  read_members(nodes, "nodes", 0, n, node_families_);
+  read_members(nodes, part("nodes"), 0, n, node_families_);
 }
 
 void MeshReader::read_cells(const H5Group& step) {
@@ -212,19 +215,22 @@ void MeshReader::read_cells(const H5Group& step) {
     if (known) continue;
     std::string list;
     for (const catalog::CellRow& row : catalog::cells()) list += (list.empty() ? "" : ", ") + std::string(row.name);
-    const std::string what = type == "POG" || type == "PO2" ? " (polygons)" : type == "POE" ? " (polyhedra)" : "";
+    const std::string what = type == "POG" || type == "PO2" ? " (" + part("polygons") + ")"
+                             : type == "POE"                ? " (" + part("polyhedra") + ")"
+                                                            : "";
     fail("MED_6", {{"mesh", name_}, {"file", root_.path().string()}, {"type", type}, {"what", what}, {"known", list}});
   }
   const auto n_nodes = static_cast<std::int32_t>(mesh_.n_nodes());
   for (const catalog::CellRow& row : catalog::cells()) {
     const std::string type(row.med_name);
     if (!all.has(type)) continue;
-    const std::string where = "cells " + type;
+    const std::string where = part("cells_of_type", {{"type", type}});
     const H5Group group = entities(all, type, where);
-    if (!group.has("NOD") || group.is_group("NOD")) damaged("its " + where + " have no nodal connectivity (NOD)");
+    if (!group.has("NOD") || group.is_group("NOD")) damaged(part("med_no_connectivity", {{"what", where}}));
     const std::int64_t count = rows_of(group, "NOD", static_cast<std::size_t>(row.n_nodes));
-    if (count < 0) damaged("the dataset NOD of its " + where + " has no attribute NBR");
-    if (count > std::numeric_limits<std::int32_t>::max() / 32) unsuitable("it has " + std::to_string(count) + " " + where);
+    if (count < 0) damaged(part("med_dataset_without", {{"dataset", "NOD"}, {"what", where}, {"attribute", "NBR"}}));
+    if (count > std::numeric_limits<std::int32_t>::max() / 32)
+      unsuitable(part("med_too_many", {{"count", std::to_string(count)}, {"what", where}}));
     const auto n = static_cast<std::size_t>(count);
     const std::size_t size = static_cast<std::size_t>(row.n_nodes), stored = columns_of_cells(group, n, size);
     dataset<std::int32_t>(group, "NOD", where, n, stored, [&](std::size_t first, std::span<const std::int32_t> all_columns) {
@@ -271,16 +277,15 @@ MeshReader::Families MeshReader::families(const char* kind) {
   const H5Group all = root_.open(mixed ? both : path);
   for (const std::string& child : all.children()) {
     const H5Group one = all.open(child);
-    const std::int64_t number = integer(one, "NUM", "the family '" + child + "'");
+    const std::int64_t number = integer(one, "NUM", part("med_family", {{"family", child}}));
     if (mixed && (number > 0) != (std::string_view(kind) == "NOEUD")) continue;  // those of nodes are positive
     std::vector<std::vector<med::Run>*>& groups = families.groups_of[number];
     groups.clear();
     if (!one.is_group("GRO")) continue;
     const H5Group list = one.open("GRO");
-    const std::int64_t count = integer(list, "NBR", "the list of groups of the family '" + child + "'");
+    const std::int64_t count = integer(list, "NBR", part("med_groups_of_family", {{"family", child}}));
     const std::vector<std::string> names = med::read_names(list, "NOM");
-    if (static_cast<std::int64_t>(names.size()) != count)
-      damaged("the group names of the family '" + child + "' cannot be read");
+    if (static_cast<std::int64_t>(names.size()) != count) damaged(part("med_group_names", {{"family", child}}));
     std::set<std::string> own;  // a family may name a group twice
     for (const std::string& name : names) own.insert(file_names_.read(name));
     for (const std::string& name : own) {
@@ -301,10 +306,10 @@ void MeshReader::read_members(const H5Group& group, const std::string& where, st
       const auto number = static_cast<std::int32_t>(first + begin + i);
       const auto groups = families.groups_of.find(family[i]);
       if (groups == families.groups_of.end())
-        damaged("it has no family of the number " + std::to_string(family[i]) + ", to which " +
-                (&families == &node_families_ ? node_name(number) : cell_name(number)) + " belongs");
+        damaged(part("med_no_family", {{"family", std::to_string(family[i])},
+                                       {"member", &families == &node_families_ ? node_name(number) : cell_name(number)}}));
       const std::uint64_t more = groups->second.size() * (end - i);
-      if (more > memberships_left_) damaged("its groups have more members than a file of its size may have");
+      if (more > memberships_left_) damaged(part("too_many_members"));
       memberships_left_ -= more;
       for (std::vector<med::Run>* members : groups->second) members->push_back({number, static_cast<std::int32_t>(end - i)});
     }
@@ -327,8 +332,8 @@ std::vector<Group> MeshReader::Families::groups() const {
 Mesh MeshReader::read() {
   const H5Group group = root_.open("ENS_MAA/" + name_);
   mesh_.name = file_names_.read(name_);
-  const std::int64_t space = integer(group, version_ == 2 && !group.has_attribute("ESP") ? "DIM" : "ESP", "it");
-  if (space != 2 && space != 3) unsuitable("its points have " + std::to_string(space) + " coordinates");
+  const std::int64_t space = integer(group, version_ == 2 && !group.has_attribute("ESP") ? "DIM" : "ESP", part("it"));
+  if (space != 2 && space != 3) unsuitable(part("med_axes", {{"count", std::to_string(space)}}));
   if (group.has_attribute("TYP") && group.integer("TYP") != 0) unsuitable(part("mesh_is_grid"));
   if (group.has_attribute("REP") && group.integer("REP") != 0) unsuitable(part("mesh_not_cartesian"));
   const H5Group step = first_step(group);

@@ -3,6 +3,7 @@
 #include <cstdio>
 #include <utility>
 
+#include "lacon/catalog/wording.hpp"
 #include "lacon/structures/formats/med.hpp"
 #include "lacon/structures/formats/med_pieces.hpp"
 #include "lacon/structures/formats/parts.hpp"
@@ -116,7 +117,7 @@ std::string MedFile::field_group(const std::string& name, std::string_view mesh_
     return group.text("MAI") == mesh_name && group.integer("NCO") == static_cast<std::int64_t>(components.size()) &&
            found == labels;
   });
-  check_name(root_, "field", chosen, name_length);
+  check_name(root_, part("field"), chosen, name_length);
   if (root_.has("CHA/" + chosen)) return chosen;
   const H5Group group = root_.create("CHA/" + chosen);
   set_text(group, "MAI", mesh_name);

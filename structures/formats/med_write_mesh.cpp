@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "lacon/catalog/messages.hpp"
+#include "lacon/catalog/wording.hpp"
 #include "lacon/structures/formats/med.hpp"
 #include "lacon/structures/formats/med_pieces.hpp"
 
@@ -23,7 +24,7 @@ void write_names(const H5Group& group, const std::vector<std::string>& names) {
     std::copy(names[i].begin(), names[i].end(), bytes.begin() + static_cast<long>(i * width));
   const hdf5::Handle set(H5Dcreate2(group.id(), "NOM", type, space, H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT), H5Dclose);
   if (set < 0 || H5Dwrite(set, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, bytes.data()) < 0)
-    fail("BASE_3", {{"file", group.path().string()}, {"reason", "the group names cannot be written"}});
+    fail("BASE_3", {{"file", group.path().string()}, {"reason", part("group_names_not_written")}});
 }
 
 /// The mesh as it will be read back: cells sorted by type, groups by name.
@@ -122,8 +123,8 @@ std::vector<std::int32_t> write_families(const H5Group& root, const std::string&
 }
 
 void write_mesh(const H5Group& root, const Mesh& mesh, const std::string& name) {
-  for (const Group& group : mesh.cell_groups) check_name(root, "group of cells", group.name, group_name_length, false);
-  for (const Group& group : mesh.node_groups) check_name(root, "group of nodes", group.name, group_name_length, false);
+  for (const Group& group : mesh.cell_groups) check_name(root, part("type_group_ma"), group.name, group_name_length, false);
+  for (const Group& group : mesh.node_groups) check_name(root, part("type_group_no"), group.name, group_name_length, false);
   int dimension = 0;
   for (const CellType type : mesh.types) dimension = std::max(dimension, catalog::cell(type).dimension);
   const auto space = static_cast<std::size_t>(mesh.dimension);
@@ -206,7 +207,7 @@ void write_mesh(const H5Group& root, const Mesh& mesh, const std::string& name) 
 }  // namespace
 
 std::string MedFile::add_mesh(const Mesh& mesh, std::string_view name) {
-  check_name(root_, "mesh", name, name_length);
+  check_name(root_, part("mesh"), name, name_length);
   std::optional<Mesh> wanted;
   bool there = false, same = false;
   const std::string chosen = free_name(std::string(name), [&](const std::string& candidate) {

@@ -2,6 +2,7 @@
 
 #include <utility>
 
+#include "lacon/catalog/wording.hpp"
 #include "lacon/structures/storage/pieces.hpp"
 
 namespace lacon::storage {
@@ -60,7 +61,8 @@ Contact read_contact(const hdf5::Group& root) {
   for (const auto& [name, member] : zone_lists) {
     if (!root.has(name)) continue;
     const auto values = read_ragged<std::int32_t>(root, name);
-    if (values.size() != contact.zones.size()) refuse(root, std::string("'") + name + "' does not fit 'zones/tolerance'");
+    if (values.size() != contact.zones.size())
+      refuse(root, part("does_not_fit", {{"what", name}, {"other", "zones/tolerance"}}));
     for (std::size_t z = 0; z < contact.zones.size(); ++z)
       (contact.zones[z].*member).assign(values[z].begin(), values[z].end());
   }

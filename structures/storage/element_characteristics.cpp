@@ -1,5 +1,6 @@
 #include <algorithm>
 
+#include "lacon/catalog/wording.hpp"
 #include "lacon/structures/storage/pieces.hpp"
 #include "lacon/structures/storage/storage.hpp"
 
@@ -9,7 +10,8 @@ ElementCharacteristics read_element_characteristics(const hdf5::Group& root) {
   ElementCharacteristics characteristics{.model = root.text("model"), .mesh = root.text("mesh"), .springs = {}};
   const auto first = root.read<std::int32_t>("springs/first"), second = root.read<std::int32_t>("springs/second");
   const auto stiffness = root.read<double>("springs/stiffness");
-  if (second.size() != first.size() || stiffness.size() != 6 * first.size()) refuse(root, "'springs' have different lengths");
+  if (second.size() != first.size() || stiffness.size() != 6 * first.size())
+    refuse(root, part("is_inconsistent", {{"what", "springs"}}));
   for (std::size_t i = 0; i < first.size(); ++i) {
     Spring& spring = characteristics.springs.emplace_back(Spring{.first = first[i], .second = second[i]});
     std::copy_n(stiffness.begin() + static_cast<std::ptrdiff_t>(6 * i), 6, spring.stiffness.begin());

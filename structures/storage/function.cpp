@@ -1,5 +1,6 @@
 #include "lacon/structures/storage/storage.hpp"
 
+#include "lacon/catalog/wording.hpp"
 #include "lacon/structures/storage/pieces.hpp"
 
 namespace lacon::storage {
@@ -14,7 +15,8 @@ Function read_function(const hdf5::Group& root) {
   function.extension_right = root.text("extension_right");
   function.x = root.read<double>("x");
   function.y = root.read<double>("y");
-  if (function.x.empty() || function.x.size() != function.y.size()) refuse(root, "'x' and 'y' do not fit");
+  if (function.x.empty() || function.x.size() != function.y.size())
+    refuse(root, part("does_not_fit", {{"what", "x"}, {"other", "y"}}));
   return function;
 }
 

@@ -2,6 +2,7 @@
 
 #include "lacon/structures/storage/storage.hpp"
 
+#include "lacon/catalog/wording.hpp"
 #include "lacon/structures/storage/pieces.hpp"
 
 namespace lacon::storage {
@@ -23,11 +24,11 @@ std::vector<Group> read_groups(const hdf5::Group& root, const std::string& name,
   if (!root.has(name)) return groups;
   const std::vector<std::string> names = root.read_strings(name + "/name");
   const auto members = read_ragged<std::int32_t>(root, name);
-  if (members.size() != names.size()) refuse(root, "'" + name + "' is inconsistent");
+  if (members.size() != names.size()) refuse(root, part("is_inconsistent", {{"what", name}}));
   for (std::size_t i = 0; i < names.size(); ++i) {
     for (const std::int32_t m : members[i])
       if (m < 0 || static_cast<std::size_t>(m) >= n_entities)
-        refuse(root, "the group '" + names[i] + "' names member " + std::to_string(m));
+        refuse(root, part("group_names_member", {{"group", names[i]}, {"member", std::to_string(m)}}));
     groups.push_back({names[i], {members[i].begin(), members[i].end()}});
   }
   return groups;
@@ -46,7 +47,7 @@ void check(const hdf5::Group& root, const Mesh& mesh) {
                      offset.back() == static_cast<std::int64_t>(patches.size()) && patches.parent.size() == patches.size() &&
                      patches.cells.size() == patches.size() && patches.carriers.size() == patches.size() &&
                      below(patches.cells, mesh.n_cells()) && below(patches.carriers, mesh.n_nodes());
-  if (!sound) refuse(root, "'patches' is inconsistent");
+  if (!sound) refuse(root, part("is_inconsistent", {{"what", "patches"}}));
 }
 
 }  // namespace
@@ -55,30 +56,32 @@ Mesh read_mesh(const hdf5::Group& root) {
   Mesh mesh;
   mesh.name = root.text("name");
   mesh.dimension = static_cast<int>(root.integer("dimension"));
-  if (mesh.dimension != 2 && mesh.dimension != 3) refuse(root, "a mesh has 2 or 3 dimensions");
+  if (mesh.dimension != 2 && mesh.dimension != 3) refuse(root, part("mesh_dimensions"));
   mesh.coordinates = root.read<double>("coordinates", with_room);
-  if (mesh.coordinates.size() % 3 != 0) refuse(root, "a node has three coordinates");
+  if (mesh.coordinates.size() % 3 != 0) refuse(root, part("node_coordinates"));
   const hdf5::Group cells = root.open("cells");
   std::vector<CellType> types;
   for (const std::string& name : cells.attribute_strings("types")) {
     const auto type = catalog::find_cell(name);
-    if (!type) refuse(root, "there is no cell type " + name);
+    if (!type) refuse(root, part("no_cell_type", {{"type", name}}));
     types.push_back(*type);
   }
   mesh.cells = read_ragged<std::int32_t>(cells, "offset", "nodes", with_room);
   const std::vector<std::int8_t> codes = cells.read<std::int8_t>("type");
   mesh.types.reserve(with_room(codes.size()));
   for (const std::int8_t code : codes) {
-    if (code < 0 || static_cast<std::size_t>(code) >= types.size()) refuse(root, "a cell has the type " + std::to_string(code));
+    if (code < 0 || static_cast<std::size_t>(code) >= types.size())
+      refuse(root, part("cell_has_type", {{"type", std::to_string(code)}}));
     mesh.types.push_back(types[static_cast<std::size_t>(code)]);
   }
-  if (mesh.types.size() != mesh.cells.size()) refuse(root, "'cells/type' does not fit 'cells/offset'");
+  if (mesh.types.size() != mesh.cells.size())
+    refuse(root, part("does_not_fit", {{"what", "cells/type"}, {"other", "cells/offset"}}));
   for (std::size_t c = 0; c < mesh.n_cells(); ++c) {
     if (mesh.cells[c].size() != static_cast<std::size_t>(mesh.row(c).n_nodes))
-      refuse(root, "cell " + cell_name(static_cast<std::int64_t>(c)) + " has a wrong number of nodes");
+      refuse(root, part("cell_wrong_nodes", {{"cell", cell_name(static_cast<std::int64_t>(c))}}));
     for (const std::int32_t n : mesh.cells[c])
       if (n < 0 || static_cast<std::size_t>(n) >= mesh.n_nodes())
-        refuse(root, "cell " + cell_name(static_cast<std::int64_t>(c)) + " names a node that does not exist");
+        refuse(root, part("cell_unknown_node", {{"cell", cell_name(static_cast<std::int64_t>(c))}}));
   }
   mesh.cell_groups = read_groups(root, "groups/cells", mesh.n_cells());
   mesh.node_groups = read_groups(root, "groups/nodes", mesh.n_nodes());

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "lacon/catalog/messages.hpp"
+#include "lacon/catalog/wording.hpp"
 #include "lacon/structures/concepts.hpp"
 #include "lacon/structures/hdf5.hpp"
 #include "lacon/structures/mesh.hpp"
@@ -31,7 +32,7 @@ Ragged<T> read_ragged(const hdf5::Group& group, const std::string& offset, const
   bool sound =
       !rows.offset.empty() && rows.offset.front() == 0 && rows.offset.back() == static_cast<std::int64_t>(rows.values.size());
   for (std::size_t i = 1; sound && i < rows.offset.size(); ++i) sound = rows.offset[i] >= rows.offset[i - 1];
-  if (!sound) refuse(group, "'" + offset + "' does not fit '" + values + "'");
+  if (!sound) refuse(group, part("does_not_fit", {{"what", offset}, {"other", values}}));
   return rows;
 }
 

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "lacon/catalog/messages.hpp"
+#include "lacon/catalog/wording.hpp"
 #include "lacon/structures/concepts.hpp"
 #include "lacon/structures/hdf5.hpp"
 #include "lacon/structures/mesh.hpp"
@@ -44,9 +45,9 @@ auto read_whatever(const hdf5::Group& root, const Read& read) {
   try {
     return read(root);
   } catch (const std::logic_error& error) {  // out_of_range, length_error
-    fail("BASE_2", {{"file", root.path().string()}, {"reason", std::string("its content does not fit: ") + error.what()}});
+    fail("BASE_2", {{"file", root.path().string()}, {"reason", part("content_does_not_fit", {{"reason", error.what()}})}});
   } catch (const nlohmann::json::exception& error) {
-    fail("BASE_2", {{"file", root.path().string()}, {"reason", std::string("its content does not fit: ") + error.what()}});
+    fail("BASE_2", {{"file", root.path().string()}, {"reason", part("content_does_not_fit", {{"reason", error.what()}})}});
   }
 }
 

@@ -4,15 +4,15 @@ import os
 import pathlib
 import re
 import subprocess
+import tempfile
 import tomllib
 import unittest
 
 SOURCE = pathlib.Path(os.environ["LACON_SOURCE_DIR"])
 BIN = pathlib.Path(os.environ["LACON_BIN"])
 ROOMS = ("structures", "elements", "pairing", "assembly", "operators")
-#: English alone, so far: what is wrong inside a file or a plug-in (reasons for who writes them)
-ENGLISH = ("structures/formats/", "structures/storage/", "structures/hdf5.cpp", "structures/field.cpp", "structures/order.cpp", "structures/table.cpp",
-           "elements/registry.cpp", "elements/plugin_rows.cpp")
+#: English alone: what is wrong inside an order or a plug-in (reasons for who writes them)
+ENGLISH = ("structures/order.cpp", "elements/registry.cpp", "elements/plugin_rows.cpp")
 #: statements whose words no user of a study reads (defects, names of phases and counts, command lines), or that print tables
 OTHERWISE = r"static_assert|--status|logic_error|invalid_argument|runtime_error|Phase |add_to_count|CLI|add_option|add_flag|fmt::print|run_operator|run_program|\"expected\""
 
@@ -74,9 +74,16 @@ class Wording(unittest.TestCase):
             plain = {name: value for name, value in os.environ.items() if name not in ("LC_ALL", "LC_MESSAGES", "LANG")}
             return subprocess.run([*map(str, command)], capture_output=True, text=True, check=False, env={**plain, **language}).stderr
 
+        folder = tempfile.TemporaryDirectory(prefix="lacon_wording_")
+        self.addCleanup(folder.cleanup)
+        damaged = pathlib.Path(folder.name) / "damaged.mail"
+        damaged.write_text("COOR_2D\n A 0. 0.\n B 1. x\nFINSF\nFIN\n", encoding="utf-8")
+        convert = [BIN / "lacon", "convert", damaged, damaged.with_suffix(".med")]
         launcher = [BIN / "lacon", "new", "--template", "nothing"]
         for command, french, english in ((launcher, "il n'y a pas de modèle d'étude", "there is no template"),
-                                         ([BIN / "affe_modele", "/nowhere.json"], "ne peut pas être lu", "cannot be read")):
+                                         ([BIN / "affe_modele", "/nowhere.json"], "ne peut pas être lu", "cannot be read"),
+                                         (convert, "il y a 'x' là où devrait être une coordonnée du nœud 'B'",
+                                          "there is 'x' where a coordinate of the node 'B' should be")):
             self.assertIn(french, said(*command, LANG="fr_FR.UTF-8"))
             self.assertIn(french, said(*command, LANG="en_GB.UTF-8", LC_ALL="fr_BE"))
             self.assertIn(english, said(*command))
