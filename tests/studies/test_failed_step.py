@@ -57,6 +57,17 @@ class FailedStep(StudyTest):
         self.assertEqual((list(base.results), base.failed_steps, base["RESULT"].failed_step), (["RESULT"], {}, None))
         self.assertEqual(list((self.folder / "study.base").glob("*/failed_step.h5")), [])
 
+    def test_one_that_fails_is_looked_at_in_place_of_an_older_result_of_its_name(self):
+        """What a command file gave before it was changed is not what was asked for last; changed back, it is again."""
+        self.run_study(self.text, 0)
+        self.run_study(self.text.replace("INCREMENT=_F(LIST_INST=TIMES)", f"INCREMENT=_F(LIST_INST=TIMES), {FAILS}"), 3)
+        base = self.opened()
+        self.assertEqual((base.results, base.only_result().message, base["RESULT"].message), ({}, "EVOLUTION_4", "EVOLUTION_4"))
+        self.run_study(self.text, 0)
+        base = self.opened()
+        self.assertEqual((list(base.results), base.failed_steps), (["RESULT"], {}))
+        self.assertEqual(base.only_result().instants[-1], 1.0)
+
     def test_one_behind_solved_instants_stays_beside_them_and_nothing_goes_on_from_it(self):
         half = self.text.replace("INCREMENT=_F(LIST_INST=TIMES)", "INCREMENT=_F(LIST_INST=TIMES, INST_FIN=0.5)")
         again = ("RESULT = STAT_NON_LINE(reuse=RESULT, RESULTAT=RESULT, ETAT_INIT=_F(EVOL_NOLI=RESULT), MODELE=MODEL, CHAM_MATER=MATTER, CONTACT=CONTACT, "

@@ -21,10 +21,14 @@ class Unfinished:
     def begin(self, identifier, label, key, at, where, resumes):
         if not resumes:
             self.drop_record(identifier)  # of another order that enriched the same result
-        for other in [i for i in self.without_instants() if i != identifier and self._entries[i]["label"] == label]:
-            self.base.drop(other)  # this computation takes the place of one that failed
+        self.replace_failed(identifier, label)
         self.base.registry.setdefault("unfinished", {})[identifier] = {"label": label, "key": key, "at": at, "where": where}
         self.base.write(where)
+
+    def replace_failed(self, identifier, label):
+        """This result takes the place of one of the same name that failed before any instant."""
+        for other in [i for i in self.without_instants() if i != identifier and self._entries[i]["label"] == label]:
+            self.base.drop(other)
 
     def end(self, identifier):
         """The computation is at its end, or nothing is left of it. Its record goes when the registry that says so is written."""

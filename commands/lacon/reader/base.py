@@ -39,9 +39,10 @@ class Base:
 
     @property
     def results(self):
-        """label -> Result, those in progress among them"""
+        """label -> Result, those in progress among them; not one that a newer computation of this name, which solved no instant, was to replace"""
         base, labels = self._labels("result")
-        return {label: Result(_Files(self, base), identifier, label) for label, identifier in labels.items()}
+        failed = base.unfinished.without_instants().values()
+        return {label: Result(_Files(self, base), identifier, label) for label, identifier in labels.items() if label not in failed}
 
     @property
     def failed_steps(self):
@@ -53,22 +54,18 @@ class Base:
 
     def __getitem__(self, label):
         """The mesh or result of a label; of a computation that solved no instant the step that failed. @throws AsterError READER_1"""
-        for kind in ("mesh", "result"):
-            base, labels = self._labels(kind)
-            if label in labels:
-                return self._mesh(base, labels[label], label) if kind == "mesh" else Result(_Files(self, base), labels[label], label)
-        if label in self.failed_steps:
-            return self.failed_steps[label]
-        fail("READER_1", "lacon", label=label, folder=self.folder, known=", ".join([*self.meshes, *self.results, *self.failed_steps]) or "none")
-        raise AssertionError
+        known = {**self.meshes, **self.results, **self.failed_steps}
+        if label not in known:
+            fail("READER_1", "lacon", label=label, folder=self.folder, known=", ".join(known) or "none")
+        return known[label]
 
     def only_result(self, label=None):
-        """The result of this label, or the one that there is: of displacements where there is one, beside courses of temperatures.
+        """The result of this label, or the one that there is: a solution or the step that failed, beside courses of temperatures.
         @throws AsterError READER_1, READER_5"""
         if label:
             return self[label]
         found = self.results
-        results = {name: result for name, result in found.items() if "DEPL" in result.fields} or self.failed_steps or found
+        results = {**{name: result for name, result in found.items() if "DEPL" in result.fields}, **self.failed_steps} or found
         if len(results) != 1:
             fail("READER_5", "lacon", folder=self.folder, count=len(results), known=", ".join(results) or "none")
         return next(iter(results.values()))
