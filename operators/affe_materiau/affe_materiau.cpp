@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "lacon/catalog/messages.hpp"
+#include "lacon/catalog/wording.hpp"
 
 namespace lacon {
 namespace {
@@ -47,8 +48,8 @@ MaterialField affe_materiau(const Base& base, const Keywords& keywords) {
   }
   check_temperatures(field, base, mesh, keywords);
   for (std::size_t i = 0; i < field.materials.size(); ++i)
-    fmt::print("  {:<24} {:>9} cells\n", base.label(field.materials[i]),
-               std::count(field.material.begin(), field.material.end(), static_cast<std::int32_t>(i)));
+    fmt::print("  {:<24} {:>9} {}\n", base.label(field.materials[i]),
+               std::count(field.material.begin(), field.material.end(), static_cast<std::int32_t>(i)), part("cells"));
   return field;
 }
 

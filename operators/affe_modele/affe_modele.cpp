@@ -8,6 +8,7 @@
 #include <numeric>
 
 #include "lacon/catalog/messages.hpp"
+#include "lacon/catalog/wording.hpp"
 
 namespace lacon {
 namespace {
@@ -135,7 +136,7 @@ Model affe_modele(const Mesh& mesh, const Registry& registry, const Keywords& ke
     model.element.push_back(static_cast<std::int32_t>(at - model.elements.begin()));
     ++counts[name];
   }
-  for (const auto& [name, count] : counts) fmt::print("  {:<24} {:>9} cells\n", name, count);
+  for (const auto& [name, count] : counts) fmt::print("  {:<24} {:>9} {}\n", name, count, part("cells"));
   if (!body) inform("MODELE_7", {{"space", model.dimension == 3 ? "space" : "the plane"}});
   if (!without.empty()) inform("MODELE_5", {{"cells", cell_types(without)}});
   return model;

@@ -32,7 +32,8 @@ LacCut cut_of(const Keywords& factor, std::int64_t info) {
 
 /// @param nodes, cells how many there were
 void print_counts(std::size_t nodes, std::size_t cells, const Mesh& after) {
-  fmt::print("  nodes {:>8} -> {:>8}\n  cells {:>8} -> {:>8}\n", nodes, after.n_nodes(), cells, after.n_cells());
+  fmt::print("  {:<5} {:>8} -> {:>8}\n  {:<5} {:>8} -> {:>8}\n", part("nodes"), nodes, after.n_nodes(), part("cells"), cells,
+             after.n_cells());
 }
 
 /// Below it a cell is named as badly shaped: METHOD.md 1.6 on cells with several slave faces.
@@ -45,8 +46,11 @@ void print_quality(const CutReport& report, const Mesh& after, bool details) {
     const std::string groups = groups_with(after, cell);
     return cell_name(cell) + (groups.empty() ? "" : " (" + groups + ")");
   };
-  fmt::print("  scaled Jacobian of the cells under the skins: {:.3f} to {:.3f} before the cut, {:.3f} to {:.3f} after it\n",
-             was.least(), was.quantiles.back(), is.least(), is.quantiles.back());
+  const auto shown = [](double value) { return fmt::format("{:.3f}", value); };
+  fmt::print("  {}\n", part("jacobian_of_cut", {{"least", shown(was.least())},
+                                                {"largest", shown(was.quantiles.back())},
+                                                {"least_after", shown(is.least())},
+                                                {"largest_after", shown(is.quantiles.back())}}));
   if (details) {
     fmt::print("    {:8} {:>9} {:>8}", "", "cells", "mean");
     for (const double fraction : Quality::fractions) fmt::print(" {:>6g} %", 100 * fraction);
@@ -125,7 +129,7 @@ Mesh cut_and_tell(Mesh mesh, const LacCut& cut) {
   Mesh made = cut_lac(std::move(mesh), cut.groups, cut.option, cut.keyword, report);
   for (const CutZone& zone : report.zones) {
     if (zone.turned > 0) inform("DECOUPE_7", {{"count", std::to_string(zone.turned)}, {"group", zone.group}});
-    fmt::print("  zone {:<24} {:>8} macro-elements\n", zone.group, zone.patches);
+    fmt::print("  zone {:<24} {:>8} {}\n", zone.group, zone.patches, part("macro_elements"));
   }
   if (cut.complete_node_groups) complete_node_groups(report, made);
   inform("MESH1_3", {{"nodes", std::to_string(report.new_nodes)}, {"cells", std::to_string(report.new_cells)}});

@@ -297,12 +297,17 @@ Contact defi_contact(const Mesh& mesh, const Model& of_bodies, const Registry& r
     }
     add_slaves(contact, zone, mesh);
     contact.zones.push_back(zone);
-    fmt::print("  zone {}: slave {} ({} cells, {} patches), master {} ({} cells){}\n", contact.zones.size(), zone.slave_group,
-               zone.slave.size(), zone.patches.size(), zone.master_group, zone.master.size(),
-               zone.held_open.empty() ? "" : fmt::format("; {} patches without contact", zone.held_open.size()));
+    fmt::print("  {}{}\n",
+               part("zone_of_contact", {{"number", std::to_string(contact.zones.size())},
+                                        {"slave", zone.slave_group},
+                                        {"cells", std::to_string(zone.slave.size())},
+                                        {"patches", std::to_string(zone.patches.size())},
+                                        {"master", zone.master_group},
+                                        {"master_cells", std::to_string(zone.master.size())}}),
+               zone.held_open.empty() ? "" : part("patches_held_open", {{"count", std::to_string(zone.held_open.size())}}));
   }
   if (!contact.skins.empty())
-    fmt::print("  {} skin cells without finite element get that of their bodies\n", contact.skins.size());
+    fmt::print("  {}\n", part("skins_get_elements", {{"count", std::to_string(contact.skins.size())}}));
   check_axisymmetry(contact.completed(of_bodies), registry, contact.zones);
   if (contact.smoothing) {
     check_shared_nodes(mesh, contact.zones);

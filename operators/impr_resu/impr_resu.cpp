@@ -97,7 +97,7 @@ class Written {
   void lines(const std::string& file, std::vector<std::string>& lines) const {
     for (const std::string& name : names_) {
       const int n = count_.at(name);
-      lines.push_back(fmt::format("{}{}: {}", name, n > 1 ? fmt::format(" at {} instants", n) : "", file));
+      lines.push_back(fmt::format("{}{}: {}", name, n > 1 ? part("at_instants", {{"count", std::to_string(n)}}) : "", file));
     }
   }
 
@@ -191,7 +191,7 @@ void print_med(const Order& order, const Base& base, Concepts& concepts, const f
       }
       if (one.has("MAILLAGE")) {
         const std::string id = one.concept_id("MAILLAGE");
-        written.add("mesh " + med.add_mesh(concepts.mesh(id), base.label(id)));
+        written.add(part("mesh") + " " + med.add_mesh(concepts.mesh(id), base.label(id)));
         if (!has_fields(one)) continue;
       }
       const Result& result = concepts.source(one).second;
@@ -205,7 +205,7 @@ void print_med(const Order& order, const Base& base, Concepts& concepts, const f
         }
         const auto rule = [](CellType type, int n) { return points_of(type, n).value(); };
         for (const std::string& name : med.add_field(mesh, mesh_name, field, printed.name_in_med, field.order, rule))
-          written.add("field " + name);
+          written.add(part("field") + " " + name);
       });
     }
   });
@@ -246,7 +246,7 @@ fs::path print_vtu(const Order& order, const Base& base, Concepts& concepts, con
     if (one.has("MAILLAGE") && !has_fields(one)) {  // files with fields hold their mesh
       const std::string id = one.concept_id("MAILLAGE");
       steps[{rank(id), -1}] = {base.label(id), 0, id, {}};
-      written.add("mesh " + base.label(id));
+      written.add(part("mesh") + " " + base.label(id));
       continue;
     }
     const auto& [id, result] = concepts.source(one);
@@ -256,7 +256,7 @@ fs::path print_vtu(const Order& order, const Base& base, Concepts& concepts, con
       step.instant = printed.field.instant;
       step.mesh = result.mesh;
       const std::string name = printed.field.name;
-      written.add("field " + name + " of " + result.label);
+      written.add(part("field_of", {{"field", name}, {"result", result.label}}));
       const auto same = std::count_if(step.fields.begin(), step.fields.end(), [&](const NamedField& f) {
         return f.name == name || f.name.starts_with(name + "_part_");
       });
@@ -291,7 +291,7 @@ void print_listing(const Order& order, const Base& base, Concepts& concepts, con
       const std::string id = one.concept_id("MAILLAGE");
       out << "\nmesh " << base.label(id) << '\n';
       list_mesh(out, concepts.mesh(id), one.yes("INFO_MAILLAGE"));
-      written.add("mesh " + base.label(id));
+      written.add(part("mesh") + " " + base.label(id));
       if (!has_fields(one)) continue;
     }
     const Result& result = concepts.source(one).second;
@@ -304,7 +304,7 @@ void print_listing(const Order& order, const Base& base, Concepts& concepts, con
     each_field(base, result, mesh, one, [&](PrintedField&& printed) {
       list_field(out, mesh, printed.field,
                  (one.has("CHAM_GD") ? "field " : "result " + result.label + ", field ") + printed.field.name, what);
-      written.add("field " + printed.field.name + " of " + result.label);
+      written.add(part("field_of", {{"field", printed.field.name}, {"result", result.label}}));
     });
   }
   TextFiles files;
@@ -332,14 +332,14 @@ void print_mesh_file(const Order& order, const Base& base, Concepts& concepts, c
     if (!mesh_id.empty() && mesh_id != id) refuse(source, "second_mesh");
     if (mesh_id.empty() && !goes_on) {
       text += gmsh ? gmsh_mesh_text(mesh) : mail_text(mesh, base.label(id));
-      written.add("mesh " + base.label(id));
+      written.add(part("mesh") + " " + base.label(id));
     }
     mesh_id = id;
     if (!has_fields(one)) continue;
     const Result& result = concepts.source(one).second;
     each_field(base, result, mesh, one, [&](PrintedField&& printed) {
       text += gmsh_field_text(mesh, printed.field, printed.field.name);
-      written.add("field " + printed.field.name + " of " + result.label);
+      written.add(part("field_of", {{"field", printed.field.name}, {"result", result.label}}));
     });
   }
   TextFiles files;

@@ -1,6 +1,7 @@
 // LIRE_MAILLAGE: a mesh from a file.
 #include <iostream>
 
+#include "lacon/catalog/wording.hpp"
 #include "lacon/operators/meshing/checks.hpp"
 #include "lacon/operators/program/program.hpp"
 #include "lacon/structures/formats/gmsh.hpp"
@@ -30,7 +31,7 @@ void read_mesh(const Order& order, const Base& base) {
     for (const Keywords& check : keywords.factors("VERI_MAIL"))
       if (check.yes("VERIF")) inspect(mesh, check.real("APLAT"));
   }
-  std::cout << "Mesh " << order.result_label << ": '" << mesh.name << "' of " << file.string() << '\n';
+  std::cout << part("mesh_of_file", {{"label", order.result_label}, {"name", mesh.name}, {"file", file.string()}}) << '\n';
   list_mesh(std::cout, mesh, keywords.integer("INFO") > 1 || keywords.integer("INFO_MED") > 1);
   const Phase phase("write");
   base.store(mesh);

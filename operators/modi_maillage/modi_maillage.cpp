@@ -3,6 +3,7 @@
 #include <fmt/core.h>
 
 #include "lacon/catalog/messages.hpp"
+#include "lacon/catalog/wording.hpp"
 #include "lacon/operators/meshing/orientation.hpp"
 #include "lacon/operators/modi_maillage/transform.hpp"
 
@@ -18,7 +19,7 @@ void modi_maillage(Mesh& mesh, const Keywords& keywords) {
     }
     for (const std::string& group : factor.texts("GROUP_MA_PEAU")) {
       const OrientationReport report = orient_skin(mesh, group, inside, factor.path("GROUP_MA_PEAU"));
-      fmt::print("  ORIE_PEAU {:<24} {:>8} cells turned\n", group, report.turned);
+      fmt::print("  ORIE_PEAU {:<24} {:>8} {}\n", group, report.turned, part("cells_turned"));
       if (!report.without_body.empty())
         inform("ORIE_4", {{"count", std::to_string(report.without_body.size())},
                           {"group", group},
