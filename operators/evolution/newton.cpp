@@ -248,10 +248,14 @@ std::vector<double> Newton::solve_system(StaticState& state, const StaticState& 
       for (const std::int64_t dof : equilibrium_.dofs_of(null))
         loose.push_back({dof, {bodies_.of(static_cast<std::int32_t>(dof / problem_.n_components()))}});
     }
+    if (!sprung && loose.size() == null.size() && hold(loose, state, previous, asked)) continue;
+    const std::string count = std::to_string(null.size()), names = equilibrium_.names(null);
     // the first matrix of an instant is that of the state before
-    if (sprung || loose.size() < null.size() || !hold(loose, state, previous, asked))
-      throw InstantFailure(message("SOLVER_3", {{"count", std::to_string(null.size())}, {"names", equilibrium_.names(null)}}),
-                           {.depends_on_step = line.iteration > 0});
+    if (line.iteration == 0)
+      throw InstantFailure(message("SOLVER_3", {{"count", count}, {"names", names}}), {.depends_on_step = false});
+    throw InstantFailure(
+        message("EVOLUTION_42", {{"iteration", std::to_string(line.iteration)}, {"count", count}, {"names", names}}),
+        {.depends_on_step = true});
   }
 }
 

@@ -47,7 +47,7 @@ class Newton {
 
   /// Solve the instant, starting from `state`, which is in equilibrium. Calls `report` for each iteration.
   /// @return number of iterations. Throws an InstantFailure: EVOLUTION_4 (not converged), EVOLUTION_15, EVOLUTION_18 (cells
-  /// that are no cells any more), SOLVER_3 (singular) ..., severity S. `state` is then between two instants.
+  /// that are no cells any more), SOLVER_3, EVOLUTION_42 (singular) ..., severity S. `state` is then between two instants.
   int solve(double instant, StaticState& state, const std::function<void(const IterationReport&)>& report);
   /// Go back to a state: contact, stresses and system are those of `state` again, as solve() needs them.
   void restart(const StaticState& state);
@@ -75,7 +75,7 @@ class Newton {
   int iterate(double instant, StaticState& state, const std::function<void(const IterationReport&)>& report);
   void assemble(const StaticState& state, const StaticState& previous, SolidMatrix asked);
   /// The solution of the present system. Where bodies are loose that are near to others, patches of `state` take contact
-  /// first. Throws SOLVER_3.
+  /// first. Throws SOLVER_3 in the first iteration, EVOLUTION_42 in later ones.
   std::vector<double> solve_system(StaticState& state, const StaticState& previous, SolidMatrix asked,
                                    std::span<const double> step, const Accuracy& accuracy, IterationReport& line);
   /// Solve the system with what `solution` holds, in place.

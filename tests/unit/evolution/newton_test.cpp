@@ -139,6 +139,25 @@ TEST(Newton, SaysWhatIsNotMetAndWhatIsLoose) {
   }
 }
 
+TEST(Newton, SaysWhatIsLooseSinceAnIteration) {
+  // the upper square is pushed beyond the end of the lower one, which holds it until then
+  StaticProblem problem = two_squares("ELAS/PETIT", true);
+  problem.loads.push_back(hold(bottom, 1));
+  problem.loads.push_back(hold(bottom, 0));
+  problem.loads.push_back(hold({8, 9, 10, 11}, 0, 5.0));
+  problem.loads.push_back(press(problem, pressure, false));
+  number(problem);
+  Newton solver = newton(problem, 1e-10);
+  StaticState state = solver.initial_state();
+  try {
+    solver.solve(1.0, state, [](const IterationReport&) {});
+    FAIL() << "nothing holds the upper square";
+  } catch (const Error& error) {
+    EXPECT_EQ(error.message().id, "EVOLUTION_42");
+    EXPECT_NE(error.message().text.find("DY of the body of M5"), std::string::npos) << error.message().text;
+  }
+}
+
 TEST(StateFields, AreTheStateThatTheyCameFrom) {
   const StaticProblem problem = pressed_squares("VMIS_ISOT_LINE/PETIT");
   Newton solver = newton(problem, 1e-10);
