@@ -101,7 +101,8 @@ class Command:
             key = run.base.kept.key_of_change(identifier, make_key) if reused else make_key()
             found = self._unchanged(run, kind, key, where, identifier, reused)
             if found:
-                run.base.unfinished.replace_failed(found, label)
+                if row.get("solves"):
+                    run.base.unfinished.replace_failed(found, label)
                 self._protect_data(run, row, keywords, units)
                 return self._result(run, found, label, where, reused, named), orders.Outcome(0, [], {}, {}, 0.0)
         grows, ended_well = row.get("solves"), False
