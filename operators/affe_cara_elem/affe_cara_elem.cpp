@@ -2,6 +2,8 @@
 
 #include <fmt/core.h>
 
+#include <algorithm>
+#include <cmath>
 #include <map>
 
 #include "lacon/catalog/messages.hpp"
@@ -12,6 +14,8 @@ namespace {
 
 using Matrix = std::array<double, 6>;  // Spring::stiffness
 
+constexpr double same_stiffness = 1e-12;  ///< of the largest value
+
 /// One occurrence of DISCRET or DISCRET_2D.
 struct Discrete {
   Keywords keywords;
@@ -21,17 +25,37 @@ struct Discrete {
 /// Place of the entry (i, j), j <= i, in a lower triangle.
 std::size_t entry(int i, int j) { return static_cast<std::size_t>(i * (i + 1) / 2 + j); }
 
+/// What K_T_L says of both nodes is a spring between them, which a motion of both leaves alone: S, -S and S are its blocks.
+/// Throws DISCRET_5 for any other matrix.
+Matrix matrix_of_link(const Discrete& discrete, const std::vector<double>& values) {
+  const int d = discrete.dimension;
+  double largest = 0;
+  for (const double value : values) largest = std::max(largest, std::abs(value));
+  Matrix matrix{};
+  for (int i = 0; i < d; ++i)
+    for (int j = 0; j < d; ++j) {
+      const double first = values[i < j ? entry(j, i) : entry(i, j)], between = values[entry(d + i, j)],
+                   second = values[i < j ? entry(d + j, d + i) : entry(d + i, d + j)];
+      if (std::max(std::abs(first + between), std::abs(first - second)) > same_stiffness * largest)
+        fail("DISCRET_5", {{"keyword", discrete.keywords.path("VALE")}});
+      if (j <= i) matrix[entry(i, j)] = first;
+    }
+  return matrix;
+}
+
 /// The values as a matrix: those of a diagonal, or an upper triangle column by column, which is a lower one row by row.
 Matrix matrix_of(const Discrete& discrete) {
   const std::vector<double> values = discrete.keywords.reals("VALE");
+  const std::string kind = discrete.keywords.text("CARA");
   const int d = discrete.dimension;
-  const bool whole = discrete.keywords.text("CARA") == "K_T_N";
-  const auto wanted = static_cast<std::size_t>(whole ? d * (d + 1) / 2 : d);
+  const bool whole = kind == "K_T_N", link = kind == "K_T_L";
+  const auto wanted = static_cast<std::size_t>(link ? d * (2 * d + 1) : whole ? d * (d + 1) / 2 : d);
   if (values.size() != wanted)
     fail("DISCRET_3", {{"keyword", discrete.keywords.path("VALE")},
                        {"count", std::to_string(values.size())},
                        {"wanted", std::to_string(wanted)},
-                       {"kind", discrete.keywords.text("CARA")}});
+                       {"kind", kind}});
+  if (link) return matrix_of_link(discrete, values);
   Matrix matrix{};
   for (std::size_t i = 0; i < wanted; ++i) matrix[whole ? i : entry(static_cast<int>(i), static_cast<int>(i))] = values[i];
   return matrix;
@@ -52,7 +76,8 @@ Matrix along_the_cell(const Discrete& discrete, const Mesh& mesh, std::int32_t c
   const double* const x = mesh.coordinates.data();
   const Vec3 way = vector_at(x + 3 * std::ptrdiff_t{nodes.back()}) - vector_at(x + 3 * std::ptrdiff_t{nodes.front()});
   const double length = norm(way);
-  if (nodes.size() < 2 || !(length > 0) || (discrete.dimension == 3 && given[entry(1, 1)] != given[entry(2, 2)]))
+  const bool diagonal = given[entry(1, 0)] == 0 && given[entry(2, 0)] == 0 && given[entry(2, 1)] == 0;
+  if (nodes.size() < 2 || !(length > 0) || !diagonal || (discrete.dimension == 3 && given[entry(1, 1)] != given[entry(2, 2)]))
     fail("DISCRET_4", {{"keyword", discrete.keywords.path("REPERE")}, {"cell", cell_name(cell)}});
   return turned(way / length, given[entry(0, 0)], given[entry(1, 1)], discrete.dimension);
 }
@@ -69,7 +94,7 @@ void check_cell(const Discrete& discrete, const Mesh& mesh, const Model& model, 
                        {"type", type},
                        {"element", row ? std::string(row->name) : "none"},
                        {"modelisation", discrete.dimension == 3 ? "DIS_T" : "2D_DIS_T"}});
-  if ((cara == "K_T_D_L") != (row->cell == CellType::SEG2))
+  if (cara.ends_with("_L") != (row->cell == CellType::SEG2))
     fail("DISCRET_2", {{"keyword", discrete.keywords.path("CARA")}, {"kind", cara}, {"cell", cell_name(cell)}, {"type", type}});
 }
 

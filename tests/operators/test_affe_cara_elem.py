@@ -38,6 +38,25 @@ class AffeCaraElem(OperatorTest):
         self.assertEqual(self.springs({"GROUP_MA": ["LINK"], "CARA": "K_T_D_L", "VALE": [1.0, 2.0, 3.0]}),
                          [(0, 1, [[1, 0, 0], [0, 2, 0], [0, 0, 3]])])
 
+    def test_a_line_by_the_matrix_of_both_nodes(self):
+        """S, -S, S are a spring between the nodes, in its own axes too; what holds a node beside, or joins otherwise, is none."""
+        def triangle(first, between, second):
+            whole = np.block([[first, between], [np.transpose(between), second]])
+            return [whole[i, j] for j in range(6) for i in range(j + 1)]
+
+        stiffness = np.array([[1.0, 2.0, 4.0], [2.0, 3.0, 5.0], [4.0, 5.0, 6.0]])
+        link = {"GROUP_MA": ["LINK"], "CARA": "K_T_L"}
+        self.assertEqual(self.springs({**link, "VALE": triangle(stiffness, -stiffness, stiffness)}), [(0, 1, stiffness.tolist())])
+        along = np.diag([10.0, 2.0, 2.0])
+        self.assertEqual(self.springs({**link, "VALE": triangle(along, -along, along), "REPERE": "LOCAL"}),
+                         self.springs({"GROUP_MA": ["LINK"], "CARA": "K_T_D_L", "VALE": [10.0, 2.0, 2.0], "REPERE": "LOCAL"}))
+        uneven = stiffness + np.triu(np.ones((3, 3)), 1)
+        for blocks in ((stiffness, -2 * stiffness, stiffness), (stiffness, -stiffness, 2 * stiffness), (stiffness, -uneven, stiffness)):
+            self.refuses("DISCRET_5", "VALE", **link, VALE=triangle(*blocks))
+        self.refuses("DISCRET_4", **link, VALE=triangle(stiffness, -stiffness, stiffness), REPERE="LOCAL")
+        self.refuses("DISCRET_3", "21", **link, VALE=[1.0, 2.0, 3.0])
+        self.refuses("DISCRET_2", "K_T_L", GROUP_MA=["POINT"], CARA="K_T_L", VALE=triangle(along, -along, along))
+
     def test_along_the_cell(self):
         (_, _, matrix), = self.springs({"GROUP_MA": ["LINK"], "CARA": "K_T_D_L", "VALE": [10.0, 2.0, 2.0], "REPERE": "LOCAL"})
         along = np.array([0.6, 0.8, 0])
