@@ -13,6 +13,7 @@
 
 #include "lacon/catalog/messages.hpp"
 #include "lacon/operators/crea_champ/field_of_table.hpp"
+#include "lacon/operators/fields/course.hpp"
 #include "lacon/operators/fields/extrapolation.hpp"
 #include "lacon/operators/fields/layout.hpp"
 #include "lacon/operators/fields/selection.hpp"
@@ -152,7 +153,7 @@ std::vector<double> measures(const Field& field, const std::string& kind) {
 }
 
 void check_same_places(const Field& field, const Field& other, const Result& result, const std::string& name) {
-  if (field.components != other.components || field.support != other.support || field.offset != other.offset)
+  if (!on_the_same_places(field, other))
     fail("CREACHAMP_16", {{"field", name}, {"label", result.label}, {"order", std::to_string(field.order)}});
 }
 
@@ -191,27 +192,16 @@ std::optional<Field> interpolated(Task& task, const Result& result, const std::s
   if (keywords.text("INTERPOL") != "LIN" || !keywords.has("INST") || keywords.has("TYPE_MAXI")) return std::nullopt;
   const double wanted = keywords.reals("INST").front(), precision = keywords.real("PRECISION"),
                slack = keywords.text("CRITERE") == "RELATIF" ? precision * std::abs(wanted) : precision;
-  std::optional<std::size_t> before, behind;
-  for (std::size_t k = 0; k < result.orders.size(); ++k) {
-    const auto files = result.fields.find(name);
-    if (files == result.fields.end() || !files->second.contains(result.orders[k])) continue;
-    if (std::abs(result.instants[k] - wanted) <= slack) return std::nullopt;
-    const bool early = result.instants[k] < wanted;  // CREA_RESU adds instants in any order
-    std::optional<std::size_t>& beside = early ? before : behind;
-    if (!beside || (result.instants[k] > result.instants[*beside]) == early) beside = k;
-  }
-  if (!before || !behind) return std::nullopt;
-  Field field = task.base().field(result, name, result.orders[*before]);
-  const Field next = task.base().field(result, name, result.orders[*behind]);
+  const std::vector<FieldInstant> course = course_of(result, name);
+  if (std::ranges::any_of(course, [&](const FieldInstant& one) { return std::abs(one.instant - wanted) <= slack; }))
+    return std::nullopt;
+  const auto behind = std::ranges::lower_bound(course, wanted, {}, &FieldInstant::instant);
+  if (behind == course.begin() || behind == course.end()) return std::nullopt;
+  const FieldInstant before = *(behind - 1);
+  Field field = task.base().field(result, name, before.order);
+  const Field next = task.base().field(result, name, behind->order);
   check_same_places(next, field, result, name);
-  const double from = result.instants[*before], part = (wanted - from) / (result.instants[*behind] - from);
-  for (std::size_t k = 0; k < field.values.size(); ++k) field.values[k] += part * (next.values[k] - field.values[k]);
-  if (field.present.empty()) field.present = next.present;
-  for (std::size_t k = 0; k < next.present.size(); ++k) {  // a stand-in at either is one; what one has not is not there
-    field.present[k] = field.present[k] && next.present[k] ? std::max(field.present[k], next.present[k]) : std::uint8_t{0};
-    if (!field.present[k]) field.values[k] = 0;
-  }
-  return field;
+  return between(std::move(field), next, (wanted - before.instant) / (behind->instant - before.instant));
 }
 
 /// A field of a result: at one instant, between two, or extremes over several.

@@ -8,6 +8,7 @@
 
 #include "lacon/catalog/messages.hpp"
 #include "lacon/catalog/wording.hpp"
+#include "lacon/operators/fields/course.hpp"
 #include "lacon/structures/hdf5.hpp"
 
 namespace lacon {
@@ -221,35 +222,29 @@ Field ThermalMaterials::at_instant(const MaterialTemperature& from, double insta
   if (!from.field.empty()) return checked(base_.field(from.field), base_.label(from.field));
   const Result result = base_.result(from.result);
   const double wanted = from.instants.empty() ? instant : StudyFunction(base_, from.instants).value("INST", instant);
-  std::vector<std::pair<double, std::int64_t>> there;  // instants with the field, and their orders
-  if (const auto files = result.fields.find(from.name); files != result.fields.end())
-    for (std::size_t k = 0; k < result.orders.size(); ++k)
-      if (files->second.contains(result.orders[k])) there.emplace_back(result.instants[k], result.orders[k]);
+  const std::vector<FieldInstant> there = course_of(result, from.name);
   if (there.empty()) fail("THERMAL_5", {{"label", result.label}, {"field", from.name}});
-  std::sort(there.begin(), there.end());
-  const auto read = [&](std::size_t k) { return checked(base_.field(result, from.name, there[k].second), result.label); };
+  const auto read = [&](std::size_t k) { return checked(base_.field(result, from.name, there[k].order), result.label); };
   const auto near = [&](double a) { return std::abs(a - wanted) <= same_instant * std::max(std::abs(a), std::abs(wanted)); };
   for (std::size_t k = 0; k < there.size(); ++k)
-    if (near(there[k].first)) return read(k);
-  const std::string* outside = wanted < there.front().first  ? &from.before
-                               : wanted > there.back().first ? &from.behind
-                                                             : nullptr;
+    if (near(there[k].instant)) return read(k);
+  const std::string* outside = wanted < there.front().instant  ? &from.before
+                               : wanted > there.back().instant ? &from.behind
+                                                               : nullptr;
   if (outside && *outside == "CONSTANT") return read(outside == &from.before ? 0 : there.size() - 1);
   if ((outside && *outside == "EXCLU") || there.size() < 2)
     fail("THERMAL_6", {{"label", result.label},
                        {"instant", fmt::format("{:.9g}", wanted)},
-                       {"first", fmt::format("{:.9g}", there.front().first)},
-                       {"last", fmt::format("{:.9g}", there.back().first)}});
+                       {"first", fmt::format("{:.9g}", there.front().instant)},
+                       {"last", fmt::format("{:.9g}", there.back().instant)}});
   std::size_t after = 1;
-  while (after + 1 < there.size() && there[after].first < wanted) ++after;
-  Field field = read(after);
-  const Field first = read(after - 1);
-  if (first.support != field.support || first.offset != field.offset || first.present != field.present)
+  while (after + 1 < there.size() && there[after].instant < wanted) ++after;
+  Field first = read(after - 1);
+  const Field second = read(after);
+  if (!on_the_same_places(first, second) || first.present != second.present)
     fail("THERMAL_5", {{"label", result.label}, {"field", part("field_of_one_layout", {{"field", from.name}})}});
-  const double share = (wanted - there[after - 1].first) / (there[after].first - there[after - 1].first);
-  for (std::size_t k = 0; k < field.values.size(); ++k)
-    field.values[k] = first.values[k] + share * (field.values[k] - first.values[k]);
-  return field;
+  const double share = (wanted - there[after - 1].instant) / (there[after].instant - there[after - 1].instant);
+  return between(std::move(first), second, share);  // outside by PROL='LINEAIRE' as well
 }
 
 }  // namespace lacon
