@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <numeric>
 
 #include "lacon/catalog/messages.hpp"
@@ -148,17 +149,21 @@ void keep_positions(const Keywords& factor, Members& members) {
   members = Members(members.begin() + (first - 1), members.begin() + last);
 }
 
+/// VECT_NORMALE with length 1.
+Vec3 direction_of(const Mesh& mesh, const Keywords& factor) {
+  const Vec3 direction = factor.vector("VECT_NORMALE", mesh.dimension);
+  const double length = norm(direction);
+  if (!(length > 0)) fail("ORDER_4", {{"keyword", factor.path("VECT_NORMALE")}, {"expected", "a vector other than zero"}});
+  return direction / length;
+}
+
 /// Distance from what POINT and VECT_NORMALE describe: a plane, an axis, or a centre.
 class Distance {
  public:
   enum class From { plane, axis, centre };
 
   Distance(const Mesh& mesh, const Keywords& factor, From from) : from_(from), point_(factor.vector("POINT", mesh.dimension)) {
-    if (from == From::centre) return;
-    direction_ = factor.vector("VECT_NORMALE", mesh.dimension);
-    const double length = std::hypot(direction_.x, direction_.y, direction_.z);
-    if (!(length > 0)) fail("ORDER_4", {{"keyword", factor.path("VECT_NORMALE")}, {"expected", "a vector other than zero"}});
-    direction_ = direction_ / length;
+    if (from != From::centre) direction_ = direction_of(mesh, factor);
   }
 
   double operator()(std::span<const double, 3> x) const {
@@ -193,8 +198,41 @@ Members cells_with(const Mesh& mesh, const std::vector<char>& marked, const std:
   return found;
 }
 
+/// The mean normal of a skin cell by its vertices, as long as its measure; 0 for another cell.
+Vec3 normal_of(const Mesh& mesh, std::size_t cell) {
+  const catalog::CellRow& row = mesh.row(cell);
+  if (row.dimension != mesh.dimension - 1) return {};
+  const auto corners = mesh.cells[cell].first(static_cast<std::size_t>(row.n_vertices));
+  const auto place = [&](std::size_t k) {
+    return vector_at(mesh.point(static_cast<std::size_t>(corners[k % corners.size()])).data());
+  };
+  if (row.dimension == 1) {
+    const Vec3 along = place(1) - place(0);
+    return {along.y, -along.x, 0};
+  }
+  Vec3 normal{};
+  for (std::size_t k = 0; k < corners.size(); ++k) normal = normal + 0.5 * cross(place(k), place(k + 1));
+  return normal;
+}
+
+/// FACE_NORMALE: skin cells whose normal is within ANGL_PREC of VECT_NORMALE, or with VERI_SIGNE='NON' of its line.
+Members cells_that_face(const Mesh& mesh, const Keywords& factor) {
+  const Vec3 direction = direction_of(mesh, factor);
+  const double most = factor.real("ANGL_PREC") * std::numbers::pi / 180;
+  const bool with_sign = factor.yes("VERI_SIGNE");
+  Members found;
+  for (std::size_t c = 0; c < mesh.n_cells(); ++c) {
+    const Vec3 normal = normal_of(mesh, c);
+    if (!(norm(normal) > 0)) continue;
+    const double along = dot(normal, direction), across = norm(normal - along * direction);
+    if (std::atan2(across, with_sign ? along : std::abs(along)) <= most) found.push_back(static_cast<std::int32_t>(c));
+  }
+  return found;
+}
+
 Members cells_by_option(const Mesh& mesh, const Keywords& factor) {
   const std::string option = factor.text("OPTION");
+  if (option == "FACE_NORMALE") return cells_that_face(mesh, factor);
   std::vector<char> marked(mesh.n_nodes(), 0);
   if (option == "APPUI") {
     for (const std::string& group : factor.texts("GROUP_NO"))

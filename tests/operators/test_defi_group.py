@@ -1,5 +1,6 @@
 """DEFI_GROUP alone, on a base made by hand, and what it refuses."""
 
+import math
 import unittest
 
 from lacon_test import OperatorTest, concept
@@ -46,6 +47,20 @@ class DefiGroup(OperatorTest):
         self.assertEqual(self.place(OPTION="BANDE", POINT=[2.0, 5.0], VECT_NORMALE=[3.0, 0.0], DIST=0.1), [1, 2])
         self.assertEqual(self.place(OPTION="BANDE", POINT=[2.0, 5.0], VECT_NORMALE=[3.0, 0.0], DIST=1.1, CRIT_NOEUD="TOUS"), [1, 2])
         self.assertEqual(self.place(OPTION="CYLINDRE", POINT=[4.0, 0.0], VECT_NORMALE=[0.0, 1.0], RAYON=0.5), [3])
+
+    def test_skin_cells_by_their_normal(self):
+        """Of a hexagon run round with the body to its left, sides whose normals point down, at 60 degrees from there, and up; of a cube one face."""
+        corners = [(math.cos(math.radians(a)), math.sin(math.radians(a))) for a in range(-120, 240, 60)]  # the first side lies below
+        cells = [("SEG2", [i, (i + 1) % 6]) for i in range(6)] + [("TRIA3", [0, 1, 2])]
+        for keywords, wanted in (({}, [0]), ({"ANGL_PREC": 61.0}, [0, 1, 5]), ({"VERI_SIGNE": "NON"}, [0, 3]), ({"ANGL_PREC": 59.0}, [0])):
+            self.write_mesh("mesh_1", corners, cells)
+            mesh, _ = self.define(CREA_GROUP_MA=[{"NOM": "NEW", "OPTION": "FACE_NORMALE", "VECT_NORMALE": [0.0, -3.0], **keywords}])
+            self.assertEqual(list(mesh.cell_groups["NEW"]), wanted, keywords)
+        cube = [(x, y, z) for z in (0, 1) for y in (0, 1) for x in (0, 1)]
+        self.write_mesh("mesh_1", cube, [("QUAD4", [4, 5, 7, 6]), ("QUAD4", [0, 2, 3, 1]), ("TRIA3", [1, 3, 7]), ("HEXA8", [0, 1, 3, 2, 4, 5, 7, 6])])
+        mesh, _ = self.define(CREA_GROUP_MA=[{"NOM": "UP", "OPTION": "FACE_NORMALE", "VECT_NORMALE": [0.0, 0.0, 1.0]},
+                                             {"NOM": "SIDE", "OPTION": "FACE_NORMALE", "VECT_NORMALE": [1.0, 0.0, 0.0]}])
+        self.assertEqual([list(mesh.cell_groups[name]) for name in ("UP", "SIDE")], [[0], [2]])
 
     def test_cells_on_the_nodes_of_a_group(self):
         self.assertEqual(self.place(OPTION="APPUI", GROUP_NO=["ENDS"], TYPE_APPUI="AU_MOINS_UN"), [0, 3])
