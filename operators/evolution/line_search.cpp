@@ -6,7 +6,7 @@
 namespace lacon {
 namespace {
 
-constexpr double small_enough = 0.5;  // of the power at the start: what Newton's next matrix finds by itself
+constexpr double small_enough = 0.1;  // of the power at the start, as RESI_LINE_RELA
 constexpr double least = 0.1;         // of the last part
 constexpr int evaluations = 6;
 
