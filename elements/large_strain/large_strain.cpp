@@ -120,7 +120,11 @@ void take_measured(const lacon_solid_batch& b, std::int64_t here, const Slopes<K
   }
   Tangent<Kind::three_d> tangent{moduli.lambda, moduli.mu};
   if constexpr (L == Law::von_mises) {
-    Lanes p = b.previous_variable ? lanes(b.previous_variable, here * n_plastic_variables) : Lanes{}, flows;
+    Lanes p = {}, flows = {};
+    if (b.previous_variable) {
+      p = lanes(b.previous_variable, here * n_plastic_variables);
+      flows = lanes(b.previous_variable, here * n_plastic_variables + 1);
+    }
     return_to_criterion<Kind::three_d>(stress, tangent, p, flows, {b.curve, b.n_curve}, errors);
     if (b.variable) {
       lanes(b.variable, here * n_plastic_variables) = p;
@@ -158,11 +162,13 @@ void take_simo_miehe(const lacon_solid_batch& b, std::int64_t here, const Slopes
                         .stressless_matrix = b.stressless_matrix != 0,
                         .hardening = {b.curve, b.n_curve}};
     const bool starts = plastic && b.previous_variable;
-    const double p = starts ? b.previous_variable[here * n * LACON_LANES + l] : 0;
+    const double* const last = starts ? b.previous_variable + here * n * LACON_LANES + l : nullptr;
+    const double p = last ? last[0] : 0;
+    const bool flowed = last && last[LACON_LANES] != 0;
     const Matrix3 now = slopes.at(l), before = plastic ? slopes.at_last(l) : Matrix3(Matrix3::Zero());
     Matrix3 elastic = Matrix3::Zero();
     if (starts) elastic = -2 * symmetric(b.previous_variable, here * n + n_plastic_variables, n_elastic_variables, l);
-    const SimoMiehe::Answer answer = law(now, before, elastic, p, outputs.wants_tangent());
+    const SimoMiehe::Answer answer = law(now, before, elastic, p, flowed, outputs.wants_tangent());
     errors.set(l, answer.error != LACON_FINE, answer.error);
     if (plastic && b.variable) {
       double* const variable = b.variable + here * n * LACON_LANES + l;

@@ -22,8 +22,8 @@ struct SimoMiehe {
   };
 
   /// @param slope, previous_slope gradients of the displacement now and before  @param elastic b - I before  @param p plastic
-  /// strain before
-  Answer operator()(const Matrix3& slope, const Matrix3& previous_slope, const Matrix3& elastic, double p,
+  /// strain before  @param flowed whether the last step did
+  Answer operator()(const Matrix3& slope, const Matrix3& previous_slope, const Matrix3& elastic, double p, bool flowed,
                     bool with_tangent) const {
     const Matrix3 unit = Matrix3::Identity(), f = unit + slope, back = f.inverse();
     // the step's gradient less I, exact for small steps, and made isochoric
@@ -39,7 +39,11 @@ struct SimoMiehe {
     const Matrix3 s_trial = mu * deviator(trial);
     const double q = std::sqrt(1.5) * s_trial.norm(), three_mu = mu * trace;
     double kept = 1, slope_of_yield = 0;
-    if (plastic && q > (1 + on_criterion) * hardening(p).stress) {
+    const Hardening::Value yield = plastic ? hardening(p) : Hardening::Value{INFINITY, 0};
+    const bool flows = q > (1 + on_criterion) * yield.stress,
+               yields = flows || (flowed && q > (1 - still_on_criterion) * yield.stress && three_mu + yield.slope > 0);
+    if (yields) slope_of_yield = yield.slope;
+    if (flows) {
       const PlasticStep flow = radial_return(q, p, three_mu, hardening);
       answer.error = flow.error;
       answer.dp = flow.dp;
@@ -59,7 +63,7 @@ struct SimoMiehe {
         Matrix3 rate = Matrix3::Zero();
         rate(k, l) = 1;
         const double growth_rate = rate.trace();
-        const Matrix3 change = d_tau(rate, trial, s_trial, q, three_mu, kept, slope_of_yield, answer.dp) +
+        const Matrix3 change = d_tau(rate, trial, s_trial, q, three_mu, kept, slope_of_yield, answer.dp, yields) +
                                growth_rate * bulk * (j * j - 1.5 * thermal * (j - 1 / j)) * unit -
                                (stressless_matrix ? Matrix3(Matrix3::Zero()) : Matrix3(tau * rate.transpose()));
         for (int i = 0; i < 3; ++i)
@@ -82,7 +86,7 @@ struct SimoMiehe {
 
   /// Change of the deviatoric stress. @param rate dF F^-1
   Matrix3 d_tau(const Matrix3& rate, const Matrix3& trial, const Matrix3& s_trial, double q, double three_mu, double kept,
-                double slope_of_yield, double dp) const {
+                double slope_of_yield, double dp, bool yields) const {
     const Matrix3 d = deviator(rate), d_symmetric = (d + d.transpose()) / 2;
     Matrix3 ds = 2 * three_mu / 3 * d_symmetric;  // without what turns and moves the stress
     double d_trace = 0;
@@ -91,7 +95,7 @@ struct SimoMiehe {
       ds = mu * deviator(moved + moved.transpose());
       d_trace = 2 * moved.trace();
     }
-    if (!(dp > 0) || elastic_matrix) return (elastic_matrix ? 1 : kept) * ds;
+    if (!yields || elastic_matrix) return (elastic_matrix ? 1 : kept) * ds;
     const double dq = 1.5 / q * s_trial.cwiseProduct(ds).sum();
     const double ddp = (dq - mu * d_trace * dp) / (three_mu + slope_of_yield);
     return kept * ds + (slope_of_yield * ddp - kept * dq) / q * s_trial;

@@ -47,7 +47,11 @@ LACON_INLINE void take_stress(const lacon_solid_batch& b, std::int64_t here, con
   if constexpr (K == Kind::plane_stress) s[2] = Lanes{};
   point.tangent = {block.lambda, block.mu};
   if constexpr (L == Law::von_mises) {
-    Lanes strain = b.previous_variable ? lanes(b.previous_variable, here * n_plastic_variables) : Lanes{}, flows;
+    Lanes strain = {}, flows = {};
+    if (b.previous_variable) {
+      strain = lanes(b.previous_variable, here * n_plastic_variables);
+      flows = lanes(b.previous_variable, here * n_plastic_variables + 1);
+    }
     return_to_criterion<K>(s, point.tangent, strain, flows, {b.curve, b.n_curve}, errors);
     if (b.variable) {
       lanes(b.variable, here * n_plastic_variables) = strain;

@@ -11,6 +11,9 @@ namespace lacon::solid {
 // Von Mises stresses this far above the yield stress, as a share of it, are on the criterion: a step of no length does not
 // flow.
 constexpr double on_criterion = 1e-12;
+// This far below it they still are where the last step flowed. There a step of no length is taken for the start of more flow,
+// with the tangent of the continuum, which predicts what comes next.
+constexpr double still_on_criterion = 1e-9;
 
 inline const char* const plastic_variables[] = {"EPSPEQ", "INDIPLAS", nullptr};  // cumulated plastic strain; 1 where it grows
 constexpr int n_plastic_variables = 2;
@@ -101,23 +104,31 @@ inline PlasticStep plane_return(const PlaneTrial& trial, double p, const Hardeni
 
 /// Bring a trial stress back to the criterion.
 /// @param stress in: elastic trial, out: the law's answer  @param tangent in: elastic, out: consistent
-/// @param p cumulated plastic strain, in and out  @param flows 1 where it has grown
+/// @param p cumulated plastic strain, in and out  @param flows in: 1 where the last step flowed, out: 1 where p has grown
 template <Kind K>
 LACON_INLINE void return_to_criterion(Lanes (&stress)[components_of(K)], Tangent<K>& tangent, Lanes& p, Lanes& flows,
                                       const Hardening& hardening, LaneErrors& errors) {
   constexpr int n = components_of(K);
-  flows = Lanes{};
   Lanes deviator[n], square = {};
   const Lanes mean = (stress[0] + stress[1] + stress[2]) / 3;
   for (int i = 0; i < n; ++i) {
     deviator[i] = i < 3 ? stress[i] - mean : stress[i];
     square += (i < 3 ? 1 : 2) * deviator[i] * deviator[i];
   }
-  Lanes dp = {}, slope = {}, q = {};
+  Lanes dp = {}, slope = {}, q = {}, yields = {};
   bool any = false;
   for (int l = 0; l < LACON_LANES; ++l) {
     q[l] = std::sqrt(1.5 * square[l]);
-    if (!(q[l] > (1 + on_criterion) * hardening(p[l]).stress)) continue;
+    const auto [yield, present_slope] = hardening(p[l]);
+    const bool flowed = flows[l] != 0;
+    flows[l] = q[l] > (1 + on_criterion) * yield;
+    if (flows[l] == 0) {
+      if (!flowed || !(q[l] > (1 - still_on_criterion) * yield) || !(3 * tangent.mu[l] + present_slope > 0)) continue;
+      slope[l] = present_slope;
+      yields[l] = 1;
+      any = true;
+      continue;
+    }
     PlasticStep step;
     if constexpr (K == Kind::plane_stress) {
       const double sum = stress[0][l] + stress[1][l], difference = stress[0][l] - stress[1][l];
@@ -131,7 +142,7 @@ LACON_INLINE void return_to_criterion(Lanes (&stress)[components_of(K)], Tangent
     errors.set(l, step.error != LACON_FINE, step.error);
     dp[l] = step.dp;
     slope[l] = step.slope;
-    flows[l] = 1;
+    yields[l] = 1;
     any = true;
   }
   if (!any) return;
@@ -139,7 +150,7 @@ LACON_INLINE void return_to_criterion(Lanes (&stress)[components_of(K)], Tangent
   if constexpr (K == Kind::plane_stress) {
     Lanes gamma = {};
     for (int l = 0; l < LACON_LANES; ++l)
-      if (flows[l] != 0) gamma[l] = 1.5 * dp[l] / hardening(p[l] + dp[l]).stress;
+      if (yields[l] != 0) gamma[l] = 1.5 * dp[l] / hardening(p[l] + dp[l]).stress;
     const Lanes sum_stiffness = 2 * (tangent.lambda + tangent.mu);
     const Lanes by_sum = 1 / (1 + sum_stiffness / 3 * gamma), by_rest = 1 / (1 + 2 * tangent.mu * gamma);
     const Lanes half_sum = (stress[0] + stress[1]) / 2 * by_sum, half_difference = (stress[0] - stress[1]) / 2 * by_rest;
@@ -157,13 +168,13 @@ LACON_INLINE void return_to_criterion(Lanes (&stress)[components_of(K)], Tangent
     const Lanes through = 2 * (xi_sum * n_sum * n_sum + xi_rest * (n_difference * n_difference + n_shear * n_shear));
     const Lanes whole = 2 * (3 * n_sum * n_sum + n_difference * n_difference + n_shear * n_shear);  // n : P^-1 : n
     const Lanes beta = 2.0 / 3 * slope * whole / (1 - 2.0 / 3 * slope * gamma);
-    for (int l = 0; l < LACON_LANES; ++l) tangent.rank[l] = flows[l] != 0 ? 1 / (through[l] + beta[l]) : 0.0;
+    for (int l = 0; l < LACON_LANES; ++l) tangent.rank[l] = yields[l] != 0 ? 1 / (through[l] + beta[l]) : 0.0;
   } else {
     Lanes kept = {}, lost = {};
     for (int l = 0; l < LACON_LANES; ++l) {
-      kept[l] = flows[l] != 0 ? 1 - three_mu[l] * dp[l] / q[l] : 1.0;
+      kept[l] = yields[l] != 0 ? 1 - three_mu[l] * dp[l] / q[l] : 1.0;
       // 2 mu times the share of a change along the deviator that flows; per square of the trial's deviator
-      lost[l] = flows[l] != 0 ? (three_mu[l] / (three_mu[l] + slope[l]) - 1 + kept[l]) / square[l] : 0.0;
+      lost[l] = yields[l] != 0 ? (three_mu[l] / (three_mu[l] + slope[l]) - 1 + kept[l]) / square[l] : 0.0;
     }
     const Lanes bulk = tangent.lambda + 2 * tangent.mu / 3;
     tangent.rank = 2 * tangent.mu * lost;

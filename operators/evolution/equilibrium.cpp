@@ -130,6 +130,31 @@ std::vector<double> Equilibrium::load(double instant, const StaticState& state) 
   return step;
 }
 
+bool Equilibrium::load_goes_on(double before, double last, double instant, const StaticState& state) const {
+  if (heat_.acts()) return false;
+  const auto goes_on = [&](const auto& load) {
+    const std::vector<double> a = load(before), b = load(last), c = load(instant);
+    double product = 0;
+    for (std::size_t i = 0; i < a.size(); ++i) product += (b[i] - a[i]) * (c[i] - b[i]);
+    return product;
+  };
+  const double imposed = goes_on([&](double at) { return problem_.imposed_values(at); }),
+               forces = goes_on([&](double at) { return problem_.external_force(at, state.displacement); });
+  return std::min(imposed, forces) >= 0 && std::max(imposed, forces) > 0;
+}
+
+StaticState Equilibrium::at_rest(const StaticState& state) const {
+  StaticState still = state;
+  for (std::size_t s = 0; s < still.points.size(); ++s) {
+    const auto width = static_cast<std::size_t>(problem_.solids[s].n_point_variables);
+    std::vector<double>& values = still.points[s].variable;
+    for (std::size_t v = 0; v < width; ++v)
+      if (std::string_view(problem_.solids[s].kernel->variables[v]) == "INDIPLAS")
+        for (std::size_t i = v; i < values.size(); i += width) values[i] = 0;
+  }
+  return still;
+}
+
 bool Equilibrium::offset_skins(double instant) {
   if (!contact_ || !problem_.offsets) return false;
   std::vector<std::vector<double>> offsets = problem_.offsets->at(instant);

@@ -40,6 +40,11 @@ class Equilibrium {
   /// LOAD_6 where they contradict each other.
   /// @return the change of what is imposed, (n_nodes, n_components), 0 elsewhere
   std::vector<double> load(double instant, const StaticState& state);
+  /// Whether what acts goes on from an instant to the next as it went from the one before, rather than back; not said where
+  /// temperatures act.
+  bool load_goes_on(double before, double last, double instant, const StaticState& state) const;
+  /// The same state with no law that flows (INDIPLAS), so that a step begins elastically.
+  StaticState at_rest(const StaticState& state) const;
   /// Take the offsets of the skins at an instant. @return whether they are others than before
   bool offset_skins(double instant);
   /// Contact cells at these displacements; nothing without contact. @param displacement (n_nodes, n_components)

@@ -150,12 +150,14 @@ int Newton::iterate(double instant, StaticState& state, const std::function<void
   statuses_.start_instant();
   forcing_.start_instant();
   if (options_.extrapolates) extrapolate(instant, state, step);
-  // plasticity answers to a step of no length elastically: a body that is unloaded now does not overshoot on the tangent of the
-  // flow that the last instant ended with, which makes Newton's method go to and fro between two states
+  // plasticity answers to a step of no length by the flow that the last instant ended with where the load goes on: a neck that
+  // softens goes on alone. A body that is unloaded now would overshoot on it, to and fro between two states
+  const bool goes_on =
+      motion_ && equilibrium_.has_memory() && equilibrium_.load_goes_on(motion_->from, motion_->to, instant, state);
   if (equilibrium_.has_memory() || equilibrium_.heat().acts() || equilibrium_.has_new_gaps() ||
       state.displacement != previous.displacement ||
       choice_.suited(options_.prediction, equilibrium_.touches(state)) != equilibrium_.matrix())
-    assemble(state, previous, options_.prediction);
+    assemble(state, goes_on ? previous : equilibrium_.at_rest(previous), options_.prediction);
   bool settling = false;  // statuses change from iteration to iteration: a rough solution finds them as well
   settled_ = times_held_ = 0;
   IterationReport line;
@@ -202,11 +204,7 @@ int Newton::iterate(double instant, StaticState& state, const std::function<void
       if (const auto cell = equilibrium_.cell_inside_out())
         fail("EVOLUTION_9", {{"instant", fmt::format("{:.9g}", instant)}, {"cell", cell_name(*cell)}});
       state.points = equilibrium_.points();
-      if (options_.extrapolates)
-        motion_ = {!motion_                                ? options_.start
-                   : motion_->end == previous.displacement ? motion_->to
-                                                           : motion_->from,
-                   instant, previous.displacement, state.displacement};
+      note_motion(instant, previous, state);
       return iteration;
     }
     changing = static_cast<std::size_t>(std::mismatch(before.begin(), before.end(), wanted.begin()).first - before.begin());
@@ -354,6 +352,12 @@ void Newton::stay_shallow(std::span<const double> solution, StaticState& state, 
   equilibrium_.add(back, std::vector<double>(increment.size(), 0.0), state);
   for (double& value : increment) value *= part;
   equilibrium_.pair(state.displacement);
+}
+
+void Newton::note_motion(double instant, const StaticState& previous, const StaticState& state) {
+  const bool follows = motion_ && (!options_.extrapolates || motion_->end == previous.displacement);
+  motion_ = {.from = follows ? motion_->to : motion_ ? motion_->from : options_.start, .to = instant, .start = {}, .end = {}};
+  if (options_.extrapolates) motion_->start = previous.displacement, motion_->end = state.displacement;
 }
 
 void Newton::extrapolate(double instant, StaticState& state, std::vector<double>& step) {

@@ -93,6 +93,7 @@ class Newton {
   std::string cells_of(const std::vector<std::size_t>& patches) const;
   /// Throws EVOLUTION_15 where no statuses satisfy all patches.
   void fail_if_endless(double instant) const;
+  void note_motion(double instant, const StaticState& previous, const StaticState& state);
   /// Go on from `state` by the motion of the last instant, in proportion to the step, and to what is imposed.
   /// @param[in,out] step of imposed displacements, none where that is done
   void extrapolate(double instant, StaticState& state, std::vector<double>& step);
@@ -121,7 +122,7 @@ class Newton {
   /// The instant that was solved last.
   struct Motion {
     double from, to;
-    std::vector<double> start, end;  ///< displacements
+    std::vector<double> start, end;  ///< displacements, where the next instant is extrapolated
   };
   std::optional<Motion> motion_;
   std::set<std::size_t> told_;  ///< patches that EVOLUTION_20 was about

@@ -13,6 +13,7 @@ import numpy as np
 sys.path.insert(0, str(pathlib.Path(os.environ["LACON_SOURCE_DIR"]) / "tests/studies"))
 
 from study_test import StudyTest  # noqa: E402, I001 (it says where meshes.py is)
+from load_study import LoadTest, flat_block  # noqa: E402
 from meshes import block, brick, write_med  # noqa: E402
 
 COMM = pathlib.Path(__file__).resolve().parent / "behaviours.comm"
@@ -117,6 +118,26 @@ class Behaviours(StudyTest):
                 self.assertGreaterEqual(len(near), 2, residuals)
                 for before, after in near:
                     self.assertLess(after, before**2 + 1e-13, residuals)
+
+
+class Prediction(LoadTest):
+    """A bar in tension, with linear hardening: while the load goes on, the tangent of flow leads to the next instant at once, and
+    where it turns back, that of elasticity."""
+
+    def test_only_instants_in_which_flow_begins_are_corrected(self):
+        # flow begins at the strain 0.0045: on the way to the instants 1 and 7
+        run = self.run_text([flat_block("QUAD8", size=(1.0, 1.0))], """
+model(20, 'AXIS', DEFI_MATERIAU(ELAS=_F(E=2000.0, NU=0.3), ECRO_LINE=_F(SY=9.0, D_SIGM_EPSI=100.0)))
+PATH = DEFI_FONCTION(NOM_PARA='INST', VALE=(0, 0, 4, 0.02, 6, 0.018, 10, 0.03))
+HOLD = AFFE_CHAR_CINE(MODELE=MODEL, MECA_IMPO=(_F(GROUP_MA='LEFT', DX=0), _F(GROUP_MA='BASE', DY=0)))
+PULL = AFFE_CHAR_CINE(MODELE=MODEL, MECA_IMPO=_F(GROUP_MA='TOP', DY=1.0))
+LIST = DEFI_LIST_REEL(DEBUT=0.0, INTERVALLE=_F(JUSQU_A=10.0, NOMBRE=10))
+R.append(STAT_NON_LINE(MODELE=MODEL, CHAM_MATER=FIELD, EXCIT=(_F(CHARGE=HOLD), _F(CHARGE=PULL, FONC_MULT=PATH)), INCREMENT=_F(LIST_INST=LIST),
+                       COMPORTEMENT=_F(RELATION='VMIS_ISOT_LINE'), CONVERGENCE=_F(RESI_GLOB_RELA=1e-9)))
+""")
+        self.assertEqual(run.status, 0, run.stdout + run.stderr)
+        corrections = [int(found) for found in re.findall(r"Converged at the instant \S+ with (\d+) iteration", run.stdout)]
+        self.assertEqual([count > 0 for count in corrections], [k in (1, 7) for k in range(1, 11)], corrections)
 
 
 if __name__ == "__main__":

@@ -368,6 +368,34 @@ TEST(Plasticity, PlaneStressOfAnyDirectionIsOnTheCriterion) {
   }
 }
 
+TEST(Plasticity, AStepOfNoLengthHasTheTangentOfMoreFlowWhereTheLastStepFlowed) {
+  for (const auto& [element, option] : cases()) {
+    if (!option.starts_with("VMIS")) continue;
+    const ElementRow& row = *element;
+    SCOPED_TRACE(test_name(row) + " " + option);
+    const Numbers x = shaken(lacon::catalog::cell(row.cell));
+    const Numbers u = shaken_displacement(x.size(), 0.05, 1);
+    State from = run(row, option, x, u, {}).state;
+    const auto rest = run(row, option, x, u, from);
+    constexpr double share = 1e-7;  // of the displacement, further
+    Numbers further = u;
+    for (double& value : further) value *= 1 + share;
+    const auto more = run(row, option, x, further, from);
+    double largest = 0, stress = 0;
+    for (const double entry : more.matrix) largest = std::max(largest, std::abs(entry));
+    for (const double component : from.stress) stress = std::max(stress, std::abs(component));
+    for (std::size_t i = 0; i < rest.matrix.size(); ++i) EXPECT_NEAR(rest.matrix[i], more.matrix[i], 1e-4 * largest) << i;
+    for (std::size_t i = 0; i < from.stress.size(); ++i) EXPECT_NEAR(rest.state.stress[i], from.stress[i], 1e-12 * stress);
+    const std::size_t width = z(lacon::n_names(registry().kernel(row, option, LACON_SOLID).variables));
+    for (std::size_t i = 1; i < from.variable.size(); i += width) {
+      EXPECT_EQ(rest.state.variable[i], 0);  // nothing has grown
+      from.variable[i] = 0;
+    }
+    const auto elastic = run(row, option, x, u, from), asked = run(row, option, x, u, from, linear_hardening, true);
+    for (std::size_t i = 0; i < elastic.matrix.size(); ++i) EXPECT_NEAR(elastic.matrix[i], asked.matrix[i], 1e-12 * largest);
+  }
+}
+
 TEST(Plasticity, BeyondTheEndOfTheCurveIsSaid) {
   const ElementRow& row = *registry().find_element("3D/HEXA8");
   const Numbers x = shaken(lacon::catalog::cell(row.cell));
