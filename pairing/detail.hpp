@@ -28,12 +28,12 @@ MakeCellPairer pair_in_space(const Surface& slave, const Surface& master, const 
 /// All coordinates of a cell, and nodal normals if there are, are finite numbers.
 bool finite(const Surface& surface, std::size_t cell);
 
+/// The deepest overlap of a couple.
+double deepest(const PairingOptions& options, double diameter, double cosine);
 /// Whether no gap up to this one is beyond a limit of `options`. @param diameter of the larger cell of the couple
-bool within_limits(const PairingOptions& options, double largest_gap, double diameter);
+/// @param cosine between the normal of the slave and the opposite of the master's
+bool within_limits(const PairingOptions& options, double largest_gap, double diameter, double cosine);
 /// Which limit a gap in the middle of what a couple has in common is beyond.
-std::optional<Rejection> beyond_limits(const PairingOptions& options, double gap, double diameter);
-
-/// What PairingOptions::largest_angle asks of -n_e . n_m at least.
-double smallest_cosine(const PairingOptions& options);
+std::optional<Rejection> beyond_limits(const PairingOptions& options, double gap, double diameter, double cosine);
 
 }  // namespace lacon::detail

@@ -30,7 +30,8 @@ template <int D>
 struct Masters {
   const Surface &slave, &master;
   PairingOptions options;
-  double slave_extent = 0, smallest_cosine = -1;
+  double slave_extent = 0;
+  double steep;                      ///< steep_cosine()
   std::vector<std::int32_t> usable;  ///< cells that are not degenerate, and what the tree has as items
   BoxTree<D> tree;
 
@@ -43,7 +44,7 @@ struct Masters {
         master(master_skin),
         options(pairing_options),
         slave_extent(extent<D>(slave_skin)),
-        smallest_cosine(detail::smallest_cosine(pairing_options)),
+        steep(steep_cosine(pairing_options)),
         tree(boxes_of_usable(rejected, examine)) {}
 
   /// Call couple(cell) for every master whose box `touches(box)`, or for all of them.

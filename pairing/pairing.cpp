@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <mutex>
 #include <numbers>
 #include <stdexcept>
@@ -41,22 +42,27 @@ bool finite(const Surface& surface, std::size_t cell) {
   });
 }
 
-bool within_limits(const PairingOptions& options, double largest_gap, double diameter) {
-  const auto within = [&](double limit, double more) { return !(limit > 0) || largest_gap <= limit * diameter + more; };
-  return within(options.distance_limit, 0) && within(options.depth_limit, options.motion);
+double deepest(const PairingOptions& options, double diameter, double cosine) {
+  return options.depth_limit > 0 ? options.depth_limit * diameter * std::max(cosine, 0.0) + options.motion
+                                 : std::numeric_limits<double>::infinity();
 }
 
-std::optional<Rejection> beyond_limits(const PairingOptions& options, double gap, double diameter) {
+bool within_limits(const PairingOptions& options, double largest_gap, double diameter, double cosine) {
+  return !(options.distance_limit > 0 && largest_gap > options.distance_limit * diameter) &&
+         largest_gap <= deepest(options, diameter, cosine);
+}
+
+std::optional<Rejection> beyond_limits(const PairingOptions& options, double gap, double diameter, double cosine) {
   if (options.distance_limit > 0 && std::abs(gap) > options.distance_limit * diameter) return Rejection::too_far;
-  if (options.depth_limit > 0 && -gap > options.depth_limit * diameter + options.motion) return Rejection::too_deep;
+  if (-gap > deepest(options, diameter, cosine)) return Rejection::too_deep;
   return std::nullopt;
 }
 
-double smallest_cosine(const PairingOptions& options) {
-  return options.largest_angle < 90 ? std::cos(options.largest_angle * std::numbers::pi / 180) : -1;
-}
-
 }  // namespace detail
+
+double steep_cosine(const PairingOptions& options) {
+  return options.steep_angle < 90 ? std::cos(options.steep_angle * std::numbers::pi / 180) : 0;
+}
 
 std::string_view rejection_name(Rejection rejection) {
   static constexpr std::string_view names[n_rejections] = {"facing away",       "hidden",   "sliver",  "degenerate slave",

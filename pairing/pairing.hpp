@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "lacon/elements/contact_cells.hpp"
+#include "lacon/pairing/steepness.hpp"
 #include "lacon/pairing/surface.hpp"
 
 namespace lacon {
@@ -53,7 +54,8 @@ struct PolygonTrace {
   struct Point {
     std::int32_t last;
     double r, s;
-    double weight;  ///< of the rule: the point's own is this times the area of that triangle, which may be zero
+    double weight;  ///< of the rule, times the couple's share: the point's own has the triangle's area, which may be zero, as
+                    ///< factor
   };
   std::vector<Point> point;
 };
@@ -64,15 +66,14 @@ struct PairingOptions {
   /// Largest |gap| in the middle of what a couple has in common, in diameters of the larger of its two cells (COEF_MULT_APPA);
   /// not positive: no limit.
   double distance_limit = -1;
-  /// Likewise of an overlap alone, behind which normals reach through a body; not positive: no limit.
+  /// Likewise of an overlap alone, behind which normals reach through a body; not positive: no limit. It is multiplied by the
+  /// cosine of the angle between both normals: a wall is met inside a body only by who looks through it.
   double depth_limit = -1;
   double motion =
       0;  ///< by how much more cells may overlap than `depth_limit` says: what they have moved since they were apart
-  /// Largest angle between the slave's normal and the opposite of the master's, in degrees; 90: no limit. A master that is
-  /// nearly parallel to the normal covers next to nothing, with any gap between its ends: a wall beside an edge is not
-  /// contact, whatever side of 90 degrees a deformation puts it on. At the default an error of position grows 57 times in the
-  /// gap.
-  double largest_angle = 89;
+  /// Angle between the slave's normal and the opposite of the master's, in degrees, from which on a couple counts less and less
+  /// (steepness.hpp); 90: none does.
+  double steep_angle = 85;
   /// In space: integrate every couple to this degree whatever its facets ask for (integration_degree() in
   /// chart_points.hpp); 0: what they ask for. To measure what a degree leaves.
   int degree = 0;
@@ -83,6 +84,9 @@ struct PairingOptions {
   bool traced = false;  ///< in space: give the traces too. Flat slaves are then cut as those that are nearly flat
 };
 
+/// The cosine of `steep_angle`, exactly 0 for 90 degrees.
+double steep_cosine(const PairingOptions& options);
+
 /// Why a couple of cells that see each other gives no contact cell, or a smaller one.
 enum class Rejection : std::uint8_t {
   facing_away,        ///< n_e . n_m >= 0: the master shows its back
@@ -92,7 +96,7 @@ enum class Rejection : std::uint8_t {
   degenerate_master,  ///< master cells (not couples) of zero length or with coordinates that are not finite
   no_image,           ///< an integration point has no image on the master along the slave's normal
   too_far,            ///< beyond PairingOptions::distance_limit
-  too_steep,          ///< beyond PairingOptions::largest_angle
+  too_steep,          ///< its share is nothing: PairingOptions::steep_angle
   too_deep            ///< beyond PairingOptions::depth_limit
 };
 inline constexpr int n_rejections = 9;

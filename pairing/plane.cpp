@@ -355,15 +355,15 @@ class PairerInPlane final : public detail::CellPairer {
           projections.of(e, master, first), projections.of(e, master, second),
           [&](double a, double b, int end_a, int end_b) {
             const double middle = 0.5 * (a + b);
-            const Vec2 along = point(master, second) - point(master, first), t = e.tangent(middle);
+            const Vec2 along = point(master, second) - point(master, first);
             const auto beyond_limits = [&]() -> std::optional<Rejection> {
               const double own = 2 * length(e.x.c[1]), other = length(along), diameter = std::max(own, other);
               // the way from x_e to its image by the middle of the slave and an end of the master, both of which may bulge
               const double largest = length(point(master, first) - e.origin) + own + 1.5 * other;
-              if (detail::within_limits(options, largest, diameter)) return std::nullopt;
-              return detail::beyond_limits(options, image(e, middle, master, m, tolerances).gap, diameter);
+              if (detail::within_limits(options, largest, diameter, cosine(e, m))) return std::nullopt;
+              return detail::beyond_limits(options, image(e, middle, master, m, tolerances).gap, diameter, cosine(e, m));
             };
-            if (-dot(t, along) < masters_->smallest_cosine * length(t) * length(along))
+            if (!(share(e, m) > tolerances.sliver))
               reject(m, Rejection::too_steep);
             else if (const auto limit = beyond_limits())
               reject(m, *limit);
@@ -392,6 +392,7 @@ class PairerInPlane final : public detail::CellPairer {
         continue;
       }
       const Rule& rule = gauss_rule(integration_points(slave, cell, master, m));
+      const double counted = share(e, m);
       ContactCells& cells = pairing.cells;
       const std::size_t before = cells.weight.size();
       bool complete = true;
@@ -401,7 +402,7 @@ class PairerInPlane final : public detail::CellPairer {
         complete = on_master.found;
         cells.slave_point.push_back(xi);
         cells.master_point.push_back(on_master.xi);
-        cells.weight.push_back(0.5 * (b - a) * rule.weights[g]);
+        cells.weight.push_back(0.5 * (b - a) * rule.weights[g] * counted);
       }
       if (!complete) {
         cells.slave_point.resize(before);
@@ -423,6 +424,18 @@ class PairerInPlane final : public detail::CellPairer {
 
  private:
   static constexpr double beyond_an_end = 0.25;  // of a master: where the cover fades an image may lie there
+
+  double share(const SlaveCell& slave, std::int32_t m) const {
+    return share_of_couple(cosine(slave, m), masters_->steep).value;
+  }
+
+  /// Of the angle between the mean normal of the slave and the opposite of the master's.
+  double cosine(const SlaveCell& slave, std::int32_t m) const {
+    const Surface& master = masters_->master;
+    const Vec2 along = point(master, master.nodes[m][1]) - point(master, master.nodes[m][0]),
+               t = slave.tangent(-1) + slave.tangent(1);
+    return -dot(t, along) / (length(t) * length(along));
+  }
 
   /// Where the cover ends that the normal through the last node of the masters cuts off at `crossing`.
   double end_of_cover(std::size_t cell, double crossing) const {

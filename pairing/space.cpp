@@ -80,6 +80,7 @@ class PairerInSpace final : public detail::CellPairer {
       return;
     }
     const std::size_t n_rejected = found.rejected.size();
+    mean_normal_ = mean_normal();
     find_views();
     if (in_triangles_ && e.constant) {
       found.rejected.resize(n_rejected);
@@ -136,7 +137,7 @@ class PairerInSpace final : public detail::CellPairer {
           see(e, piece, part, true, seen, scratch);
           if (double_area(seen.polygon) > sliver_) {
             couples = true;
-            if (-dot(area, piece.normal) < masters_->skin.smallest_cosine * norm(area) * norm(piece.normal)) {
+            if (!(share(m) > tolerances().sliver)) {
               reject(m, Rejection::too_steep);
             } else {
               views.push_back(new_view(static_cast<std::int32_t>(p), m));
@@ -167,6 +168,21 @@ class PairerInSpace final : public detail::CellPairer {
         part.border[static_cast<std::size_t>(i)] = true;
         in_triangles_ = in_triangles_ || (e.constant && e.fades(part.p[i], part.p[next]));
       }
+  }
+
+  double share(std::int32_t m) const { return share_of_couple(cosine(m), masters_->skin.steep).value; }
+  /// Of the angle between the mean normal of the slave and the opposite of the master's.
+  double cosine(std::int32_t m) const { return -dot(mean_normal_, master(m).normal); }
+
+  /// Of the slave's outline, or of its nodal normals.
+  Vec3 mean_normal() const {
+    const Surface& slave = masters_->skin.slave;
+    if (slave.normals.empty()) return e.n;
+    Vec3 sum{};
+    for (const std::int32_t node :
+         slave.nodes[static_cast<std::size_t>(slave_)].first(static_cast<std::size_t>(e.f.n_vertices)))
+      sum = sum + vector_at(slave.normals.data() + 3 * static_cast<std::size_t>(node));
+    return (1 / norm(sum)) * sum;
   }
 
   /// Remember the edges of the parts of a master, and let their half-planes know them.
@@ -206,9 +222,10 @@ class PairerInSpace final : public detail::CellPairer {
       // the way from x_e to its image by the first nodes; a quadratic cell may bulge
       const auto reach = [](const FacetKind& f) { return (f.order == 1 ? 1 : 1.25) * f.size; };
       const double largest = norm(nodes[0] - e.f.nodes[0]) + reach(e.f) + reach(master(view->master));
-      if (detail::within_limits(options(), largest, size)) return false;
+      if (detail::within_limits(options(), largest, size, cosine(view->master))) return false;
       const double found = gap(*view, middle(view->region.polygon));
-      const auto limit = std::isfinite(found) ? detail::beyond_limits(options(), found, size) : std::nullopt;
+      const auto limit =
+          std::isfinite(found) ? detail::beyond_limits(options(), found, size, cosine(view->master)) : std::nullopt;
       if (limit) reject(view->master, *limit);
       return limit.has_value();
     });
@@ -315,7 +332,9 @@ class PairerInSpace final : public detail::CellPairer {
         if (distance < least) least = distance, line = edges_[static_cast<std::size_t>(half.line)];
       }
     }
-    for (const ChartPoints::InFan& point : points.fan) trace.point.push_back({point.last, point.r, point.s, point.weight});
+    const double counted = share(view.master);
+    for (const ChartPoints::InFan& point : points.fan)
+      trace.point.push_back({point.last, point.r, point.s, point.weight * counted});
   }
 
   /// @param n_points of `places`, the others are vertices
@@ -325,12 +344,13 @@ class PairerInSpace final : public detail::CellPairer {
     cells.slave_point.resize(2 * (n_before + n_points));
     cells.master_point.resize(2 * (n_before + n_points));
     cells.weight.resize(n_before + n_points);
+    const double counted = share(m);
     std::size_t at = 2 * n_before;
     for (std::size_t i = 0; i < n_points; ++i, at += 2) {
       const Vec2 xi = places[i].xi, eta = images[i].xi;
       cells.slave_point[at] = xi.x, cells.slave_point[at + 1] = xi.y;
       cells.master_point[at] = eta.x, cells.master_point[at + 1] = eta.y;
-      cells.weight[at / 2] = points.weight[i] * places[i].scale;
+      cells.weight[at / 2] = points.weight[i] * places[i].scale * counted;
     }
     for (const SlaveFacet::Place& place : std::span(places).subspan(n_points)) {
       cells.vertex.push_back(place.xi.x);
@@ -349,6 +369,7 @@ class PairerInSpace final : public detail::CellPairer {
   SlaveFacet e;
   double sliver_ = 0;          ///< double area below which nothing is kept
   bool in_triangles_ = false;  ///< what is asked of `e`, or what a line that fades asks for
+  Vec3 mean_normal_{};         ///< unit
   // used again for every slave cell
   std::vector<Vec3> polygon;
   std::vector<Part> parts;

@@ -384,5 +384,7 @@ void chain_corners(const Eigen::MatrixXd& by_points, const Columns& columns, con
 
 void vary_in_plane(const ContactCellGeometry& cell, bool second, GapVariation& variation);
 void vary_in_space(const ContactCellGeometry& cell, bool second, GapVariation& variation);
+/// Add what the share of a couple adds that is steep (steepness.hpp), to derivatives that take it for constant.
+void vary_share(const ContactCellGeometry& cell, GapVariation& variation);
 
 }  // namespace lacon::variations

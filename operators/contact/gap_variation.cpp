@@ -52,6 +52,7 @@ void vary_gap(const ContactCellGeometry& cell, bool second, GapVariation& variat
     variations::vary_in_plane(cell, second, variation);
   else
     variations::vary_in_space(cell, second, variation);
+  variations::vary_share(cell, variation);
 }
 
 }  // namespace lacon

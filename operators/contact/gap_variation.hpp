@@ -20,6 +20,7 @@ struct ContactCellGeometry {
   bool axis = false;              ///< half a plane through the axis of revolution: integrals have the factor r
   bool current_jacobian = false;  ///< TYPE_JACOBIEN='ACTUALISE'
   double fading = 0;              ///< PairingOptions::fading
+  double steep = 0;               ///< steep_cosine() of the pairing: weights of points have the couple's share as factor
   std::span<const double> slave_initial, slave_nodes, master_nodes;  ///< (n, dimension)
   std::span<const double> other_nodes;                               ///< (n, dimension): further nodes that bound the polygon
   std::span<const double> slave_normals;                             ///< (n, dimension), nodal, or empty

@@ -117,7 +117,8 @@ ContactGeometry::Variation ContactGeometry::variation(std::size_t z, const Pairi
       .dimension = mesh_.dimension,
       .axis = registry_.find_element(model_.elements[model_.element[slave_cell]])->geometry == catalog::Geometry::axis,
       .current_jacobian = zone.current_jacobian,
-      .fading = zone.pairing.fading};
+      .fading = zone.pairing.fading,
+      .steep = steep_cosine(zone.pairing)};
 
   // nodes of other masters that bound the polygon come behind
   const auto local = [&](std::int32_t node) {

@@ -79,6 +79,12 @@ Hit cast(const Skin& slave, std::size_t e, Vec2 x, const Skin& master, std::size
   return hit;
 }
 
+/// Of the angle between the normal of a slave cell and the opposite of a master's.
+double cosine(const Skin& slave, std::size_t e, const Skin& master, std::size_t m) {
+  const Vec2 t = slave.node(e, 1) - slave.node(e, 0), along = master.node(m, 1) - master.node(m, 0);
+  return -dot(t, along) / (length(t) * length(along));
+}
+
 void pairing_in_plane(Choices& choices) {
   Skin slave = chain(choices, -2, false), master = chain(choices, -8, true);
   const Pairing found = pair(slave.view(2), master.view(2));
@@ -97,7 +103,8 @@ void pairing_in_plane(Choices& choices) {
       const Vec2 y = master.node(m, 0) + r * (master.node(m, 1) - master.node(m, 0));
       expect(std::abs(dot(y - x, t)) <= 1e-9 * dot(t, t), "an image lies on the normal of its point");
     }
-    expect(std::abs(sum - (to - from)) <= 1e-12, "weights sum up to the contact cell");
+    const double share = share_of_couple(cosine(slave, e, master, m), steep_cosine({})).value;
+    expect(std::abs(sum - share * (to - from)) <= 1e-12, "weights sum up to the contact cell");
   }
   for (std::size_t e = 0; e < slave.surface.size(); ++e)
     for (const double xi : {-0.93, -0.51, -0.13, 0.29, 0.61, 0.97}) {
@@ -105,8 +112,7 @@ void pairing_in_plane(Choices& choices) {
       bool hit = false, doubtful = false;
       for (std::size_t m = 0; m < master.surface.size(); ++m) {
         const Hit one = cast(slave, e, x, master, m);
-        const Vec2 along = master.node(m, 1) - master.node(m, 0);
-        const bool steep = -dot(t, along) < 0.018 * length(t) * length(along);  // 89 degrees are 0.01745
+        const bool steep = cosine(slave, e, master, m) < 1e-6;  // its share is round-off
         hit = hit || (one.found && !steep);
         doubtful = doubtful || one.near_end || (one.found && steep);
       }

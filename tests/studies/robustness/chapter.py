@@ -122,7 +122,7 @@ PETIT and GREEN_LAGRANGE (plastic ones PETIT and PETIT_REAC), either side slave.
 criteria and keywords of Newton's method are defaults. An iteration is a solution of the linear system; lost ones belong to steps that were cut or
 never solved, and count in what is asked. "Before": contact forces along the slave's normal, frozen; where a force drives, statuses alone move the edge of a
 contact, by one patch an iteration, and a factorisation's pivots alone say what is loose; where ends are
-aligned, forces jump when they pass each other. Rows that are there once have not changed since.
+aligned, forces jump when they pass each other, and where side walls are in the zone, when these come upright. Rows that are there once have not changed since.
 
 {table}
 

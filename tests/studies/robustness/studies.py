@@ -337,6 +337,19 @@ def aligned_faces():
                     asked={"per step": 8}, driven="UPPER_BASE")
 
 
+def whole_skins():
+    """A block on a smaller or a larger one, all sides of both in the zone."""
+    sides = {name: {"left": f"{name}_SKIN", "right": f"{name}_SKIN"} for name in ("UPPER", "LOWER")}
+    for (widths, kind), strain, side in itertools.product(itertools.product(((1.0, 0.5), (0.5, 1.0)), ORDERS), STRAINS, SIDES):
+        mesh = union([slab(kind, "UPPER", (-widths[0], widths[0]), (0, 1), (round(14 * widths[0]), 7), skin="bottom", sides=sides["UPPER"]),
+                      slab(kind, "LOWER", (-widths[1], widths[1]), (-1, 0), (round(18 * widths[1]), 9), sides=sides["LOWER"])])
+        for body in ("UPPER", "LOWER"):
+            mesh.cell_groups[f"{body}_SKIN"] += mesh.cell_groups[f"{body}_BASE"]
+        yield Study(name=named("larger above" if widths[0] > widths[1] else "smaller above", kind, strain, slave(("UPPER", "LOWER"), side)), mesh=mesh,
+                    materials={"UPPER": elastic(1e3), "LOWER": elastic(1e3)}, zones=[zone("UPPER", "LOWER", side)], strain=strain, cut=True,
+                    moves=[held("LOWER"), path("UPPER", [(0, 0), (10, 0)], [(0, 0), (10, -0.1)])], steps=10, asked={"per step": 6}, driven="UPPER_BASE")
+
+
 def force_driven():
     """Half a round body, or a block, that nothing but contact holds along its axis, pressed on a slab by a force, with the default of
     10 iterations: the contact of the round one begins in a point, and is 7 cells wide behind the first step."""
@@ -376,6 +389,7 @@ ROWS = {
     "corner": ("tilted corner dragged", tilted_corner),
     "aligned": ("columns whose ends are aligned", aligned_ends),
     "faces": ("columns whose faces are aligned, in space", aligned_faces),
+    "skins": ("blocks whose whole skins are in the zone", whole_skins),
     "force": ("bodies that contact alone holds, driven by a force", force_driven),
     "peer": ("the peer's half spheres and half ring", peer_cases),
     "cycle": ("closed elastic cycle with PETIT_REAC", closed_cycle),

@@ -36,6 +36,7 @@ struct Skins {
   std::vector<std::vector<std::int32_t>> slaves, masters;
   std::vector<double> offset = {};  ///< (n_nodes), by which the skins stand out of their cells; or empty
   double fading = 0;                ///< PairingOptions::fading
+  double steep_angle = 85;          ///< PairingOptions::steep_angle
 
   /// The sum over all contact cells.
   struct Sum {
@@ -54,7 +55,9 @@ struct Skins {
     slave.normals = normals;
     const NormalVariation of_normals(slave);
     // images to round-off: differences divide their error by the step
-    const Pairing found = pair(slave, master, {.tolerances = {.ray = 1e-14}, .fading = fading, .traced = dimension == 3});
+    const PairingOptions options{
+        .tolerances = {.ray = 1e-14}, .steep_angle = steep_angle, .fading = fading, .traced = dimension == 3};
+    const Pairing found = pair(slave, master, options);
     Sum sum{0, std::vector<double>(size()), std::vector<double>(second ? size() * size() : 0)};
     for (std::size_t c = 0; c < found.cells.size(); ++c) add(found, c, normals, slave, of_normals, second, sum);
     return sum;
@@ -75,7 +78,8 @@ struct Skins {
                              .dimension = dimension,
                              .axis = axis,
                              .current_jacobian = current,
-                             .fading = fading};
+                             .fading = fading,
+                             .steep = steep_cosine({.steep_angle = steep_angle})};
     const auto local = [&](std::int32_t node) {
       auto at = std::find(nodes.begin() + static_cast<long>(ns), nodes.end(), node);
       if (at == nodes.end()) at = nodes.insert(at, node);
@@ -205,7 +209,8 @@ TEST(GapVariation, DerivativesInThePlaneAreThoseOfDifferences) {
         for (const bool current : {false, true})
           for (const bool smooth : {false, true}) {
             InPlane skins(slave, master, axis, current, smooth, ++seed);
-            skins.fading = seed % 3 == 1 ? 1 : 0;  // the cover ends within such a band
+            skins.fading = seed % 3 == 1 ? 1 : 0;      // the cover ends within such a band
+            if (seed % 2 == 0) skins.steep_angle = 3;  // most couples count by a share
             const std::string what = "seed " + std::to_string(seed);
             const Skins::Sum at = skins.evaluate(true);
             const double largest = largest_of(at.gradient), largest_second = largest_of(at.hessian);
@@ -380,7 +385,8 @@ TEST(GapVariation, DerivativesInSpaceAreThoseOfDifferences) {
     for (const CellType master : skin_kinds) {
       const bool smooth = ++seed % 3 == 0;
       InSpace skins(slave, master, seed % 4 < 2, smooth, 0.03, seed);
-      skins.fading = seed % 5 < 2 ? 1 : 0;  // edges of masters pass within such a band
+      skins.fading = seed % 5 < 2 ? 1 : 0;       // edges of masters pass within such a band
+      if (seed % 2 == 0) skins.steep_angle = 2;  // most couples count by a share
       const Skins::Sum at = skins.evaluate(true);
       const std::size_t n = at.gradient.size();
       const double largest = largest_of(at.gradient), largest_second = largest_of(at.hessian);
