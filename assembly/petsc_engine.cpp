@@ -120,6 +120,22 @@ struct PetscEngine::State {
     return memory;
   }
 
+  /// Unknowns that their row alone decides, those of open patches among them, and their values: iterations come near them only.
+  std::vector<std::pair<std::int64_t, double>> decided(std::span<const double> right_side) const {
+    std::vector<std::uint8_t> alone(right_side.size(), 1);
+    for (std::int64_t row = 0; row < matrix->size(); ++row)
+      for (std::int64_t k = matrix->rows()[row]; k < matrix->rows()[row + 1]; ++k) {
+        const std::int64_t column = matrix->columns()[k];
+        if (column == row || matrix->values()[k] == 0) continue;
+        alone[row] = 0;
+        if (matrix->is_symmetric()) alone[column] = 0;
+      }
+    std::vector<std::pair<std::int64_t, double>> found;
+    for (std::int64_t i = 0; i < matrix->size(); ++i)
+      if (alone[i] && matrix->diagonal(i) != 0) found.emplace_back(i, right_side[i] / matrix->diagonal(i));
+    return found;
+  }
+
   /// In place. @return why there is no solution, in words
   std::string iterate(double share, std::span<double> right_side, Solution& solution) {
     const SharedMemory memory(right_side.size_bytes());
@@ -131,7 +147,9 @@ struct PetscEngine::State {
     if (word != "failed") said >> solution.iterations >> left;
     std::getline(said >> std::ws, why);
     if (word != "converged") return word == "failed" ? why : words_of(why, solution.iterations, left);
+    const auto exact = decided(right_side);
     std::ranges::copy(shared, right_side.begin());
+    for (const auto& [row, value] : exact) right_side[row] = value;
     solution.residual = std::stod(left);
     return {};
   }

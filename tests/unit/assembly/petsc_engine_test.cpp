@@ -115,6 +115,21 @@ TEST_F(PetscEngineTest, SolvesNoFurtherThanAsked) {
   EXPECT_LT(some.iterations, all.iterations);
 }
 
+// Where a row says what its unknown is, that is what it is, to the last bit: the pressure of a patch that is open is zero.
+TEST_F(PetscEngineTest, PressuresOfOpenPatchesAreZero) {
+  const TwoBodies system;
+  const std::int64_t open = system.chain.numbering.of_patch(n_rows - 1);
+  for (const double asked : {0.0, 3.0}) {
+    PetscEngine engine(system.options());
+    engine.analyse(system.matrix);
+    engine.factorise(system.matrix);
+    Eigen::VectorXd x = Eigen::VectorXd::Random(system.matrix.size());
+    x[open] = asked;
+    engine.solve(span_of(x));
+    EXPECT_EQ(x[open], asked / 1e-4);
+  }
+}
+
 // Another process with the same system gives the same bits, and so does a second solution in the same one.
 TEST_F(PetscEngineTest, GivesTheSameBitsInEveryRun) {
   const TwoBodies system;
