@@ -317,6 +317,11 @@ double Equilibrium::resistance(std::span<const double> solution) const {
   return std::inner_product(motion.begin(), motion.end(), force.begin(), 0.0);
 }
 
+bool Equilibrium::makes_symmetric() const {
+  return is_symmetric() && std::any_of(problem_.solids.begin(), problem_.solids.end(),
+                                       [](const ElementSet& set) { return set.kernel->unsymmetric; });
+}
+
 bool Equilibrium::has_variables() const {
   return std::any_of(problem_.solids.begin(), problem_.solids.end(),
                      [](const ElementSet& set) { return set.n_variables() > 0; });

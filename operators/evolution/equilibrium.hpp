@@ -113,7 +113,8 @@ class Equilibrium {
   bool is_linear() const { return linear_; }                                        ///< the stiffness never changes
   bool has_memory() const { return has_memory_; }                                   ///< a law has
   bool is_symmetric() const { return system_.matrix().is_symmetric(); }
-  bool has_variables() const;  ///< a law has internal variables
+  bool makes_symmetric() const;  ///< of a tangent that is not, the matrix has the symmetric part
+  bool has_variables() const;    ///< a law has internal variables
   /// Whether internal variables of the last assembly are not those of the last state in equilibrium: the law flows.
   bool flows(const StaticState& previous) const;
 

@@ -27,7 +27,7 @@ NewtonMatrix MatrixChoice::suited(SolidMatrix asked, bool touches) const {
   if (elastic_.left > 0 || (!traits_.linear && settled_ < traits_.settling)) return {SolidMatrix::elastic, !flat};
   if (asked != SolidMatrix::tangent || traits_.linear) return {asked, !flat};
   if (!traits_.symmetric && !flat) return {SolidMatrix::whole, true};
-  return {(traits_.has_memory && touches) || unstable_ || unsafe ? SolidMatrix::stressless : asked, !flat};
+  return {(traits_.made_symmetric && touches) || unstable_ || unsafe ? SolidMatrix::stressless : asked, !flat};
 }
 
 bool MatrixChoice::note_pivots(NewtonMatrix present, bool curves, std::int64_t negative, std::int64_t constraints) {

@@ -15,11 +15,11 @@ struct NewtonMatrix {
 
 /// What a problem says of its matrices.
 struct MatrixTraits {
-  bool linear = false;        ///< the stiffness never changes
-  bool has_memory = false;    ///< a law goes from the last state in equilibrium to the present
-  bool symmetric = true;      ///< otherwise the matrix may be that of an unsymmetric tangent, as it is
-  bool in_space = false;      ///< second derivatives of gaps wait
-  std::int64_t settling = 0;  ///< CONT_STAT_ELAS: iterations without change of status before which the matrix is elastic
+  bool linear = false;          ///< the stiffness never changes
+  bool made_symmetric = false;  ///< of a law's tangent that is not symmetric it has the symmetric part
+  bool symmetric = true;        ///< otherwise the matrix may be that of an unsymmetric tangent, as it is
+  bool in_space = false;        ///< second derivatives of gaps wait
+  std::int64_t settling = 0;    ///< CONT_STAT_ELAS: iterations without change of status before which the matrix is elastic
 };
 
 /// The unbalanced forces that an iteration leaves.
@@ -32,9 +32,9 @@ struct Unbalance {
 };
 
 /// The matrix to go on with where the user asks for one. A tangent that is not symmetric (PETIT_REAC) is taken as it is where
-/// the problem's matrix may be. Otherwise, in contact, the tangent of laws with a memory goes without the terms of the stress:
-/// made symmetric, what this leaves of them is no help where bodies turn and touch. Far from the solution the consistent matrix
-/// may be unstable, which a symmetric one tells by its pivots:
+/// the problem's matrix may be. Otherwise, in contact, it goes without the terms of the stress: made symmetric, what this
+/// leaves of them is no help where bodies turn and touch. Far from the solution the consistent matrix may be unstable, which a
+/// symmetric one tells by its pivots:
 /// - without contact, the tangent goes without the terms of the stress for the rest of the instant: that leads downhill to a
 ///   stable equilibrium;
 /// - in contact, both the terms of the stress and the second derivatives of gaps are left out for some iterations. They go

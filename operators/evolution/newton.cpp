@@ -42,7 +42,7 @@ Newton::Newton(const StaticProblem& problem, const NewtonOptions& options, std::
       loose_(RigidMotions(geometry_of(problem, bodies_)), problem.numbering),
       equilibrium_(problem),
       choice_({.linear = equilibrium_.is_linear(),
-               .has_memory = equilibrium_.has_memory(),
+               .made_symmetric = equilibrium_.makes_symmetric(),
                .symmetric = equilibrium_.is_symmetric(),
                .in_space = problem.dimension == 3,
                .settling = problem.contact ? problem.contact->elastic_iterations : 0}),

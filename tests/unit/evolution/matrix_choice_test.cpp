@@ -14,20 +14,21 @@ MatrixChoice started(const MatrixTraits& traits) {
 
 constexpr NewtonMatrix consistent{.solid = SolidMatrix::tangent, .curved = true};
 
-TEST(MatrixChoice, TheTangentGoesWithoutStressWhereALawWithMemoryTouches) {
+TEST(MatrixChoice, ATangentMadeSymmetricGoesWithoutStressInContact) {
   for (const bool linear : {false, true})
-    for (const bool memory : {false, true})
+    for (const bool made_symmetric : {false, true})
       for (const bool touches : {false, true}) {
-        const MatrixChoice choice = started({.linear = linear, .has_memory = memory});
-        const SolidMatrix expected = !linear && memory && touches ? SolidMatrix::stressless : SolidMatrix::tangent;
-        EXPECT_EQ(choice.suited(SolidMatrix::tangent, touches), (NewtonMatrix{expected, true})) << linear << memory << touches;
+        const MatrixChoice choice = started({.linear = linear, .made_symmetric = made_symmetric});
+        const SolidMatrix expected = !linear && made_symmetric && touches ? SolidMatrix::stressless : SolidMatrix::tangent;
+        EXPECT_EQ(choice.suited(SolidMatrix::tangent, touches), (NewtonMatrix{expected, true}))
+            << linear << made_symmetric << touches;
         EXPECT_EQ(choice.suited(SolidMatrix::elastic, touches), (NewtonMatrix{SolidMatrix::elastic, true}));
       }
 }
 
 TEST(MatrixChoice, WhereTheUserWantsItTheMatrixOfWhatFlowsIsElasticUntilStatusesHaveSettled) {
   for (const bool linear : {false, true}) {
-    MatrixChoice choice = started({.linear = linear, .has_memory = true, .settling = 2});
+    MatrixChoice choice = started({.linear = linear, .made_symmetric = true, .settling = 2});
     const auto is_elastic = [&] { return choice.suited(SolidMatrix::tangent, true).solid == SolidMatrix::elastic; };
     EXPECT_FALSE(is_elastic());
     choice.note_statuses(3, false);
@@ -76,7 +77,7 @@ TEST(MatrixChoice, InContactStressAndCurvatureAreLeftOutTogetherEachTimeForTwice
 
 TEST(MatrixChoice, ATangentThatIsNotSymmetricIsTakenAsItIs) {
   for (const bool touches : {false, true}) {
-    const MatrixChoice choice = started({.has_memory = true, .symmetric = false});
+    const MatrixChoice choice = started({.made_symmetric = true, .symmetric = false});
     EXPECT_EQ(choice.suited(SolidMatrix::tangent, touches), (NewtonMatrix{SolidMatrix::whole, true}));
     EXPECT_EQ(choice.suited(SolidMatrix::elastic, touches), (NewtonMatrix{SolidMatrix::elastic, true}));
   }
@@ -85,7 +86,7 @@ TEST(MatrixChoice, ATangentThatIsNotSymmetricIsTakenAsItIs) {
 TEST(MatrixChoice, FarFromBalanceStressAndCurvatureAreLeftOutOfAMatrixWithoutInertia) {
   constexpr NewtonMatrix whole{.solid = SolidMatrix::whole, .curved = true},
       flat{.solid = SolidMatrix::stressless, .curved = false};
-  MatrixChoice choice = started({.has_memory = true, .symmetric = false});
+  MatrixChoice choice = started({.made_symmetric = true, .symmetric = false});
   EXPECT_FALSE(choice.note_residual({.largest = 9, .share = 0.9}));
   EXPECT_EQ(choice.suited(SolidMatrix::tangent, true), whole);
   EXPECT_TRUE(choice.note_residual({.largest = 11, .share = 1.1}));
@@ -99,13 +100,13 @@ TEST(MatrixChoice, FarFromBalanceStressAndCurvatureAreLeftOutOfAMatrixWithoutIne
   EXPECT_FALSE(choice.note_residual({.largest = 9, .share = 0.9, .statuses_change = true}));
   EXPECT_TRUE(choice.note_residual({.largest = 8, .share = 0.8, .in_flow = true, .statuses_change = true}));
   EXPECT_EQ(choice.suited(SolidMatrix::tangent, true), flat);
-  MatrixChoice symmetric = started({.has_memory = true});
+  MatrixChoice symmetric = started({.made_symmetric = true});
   EXPECT_FALSE(symmetric.note_residual({.largest = 11, .share = 1.1}));
 }
 
 TEST(MatrixChoice, AResidualThatGrowsInFlowBringsTheElasticMatrixEachTimeForTwiceAsLong) {
   for (const bool symmetric : {true, false}) {
-    MatrixChoice choice = started({.has_memory = true, .symmetric = symmetric});
+    MatrixChoice choice = started({.made_symmetric = true, .symmetric = symmetric});
     const auto elastic = [&] { return choice.suited(SolidMatrix::tangent, false).solid == SolidMatrix::elastic; };
     EXPECT_FALSE(choice.note_residual({.largest = 5, .in_flow = true}));
     EXPECT_FALSE(choice.note_residual({.largest = 4, .in_flow = true}));
