@@ -63,12 +63,12 @@ std::string ResidualCourse::words() const {
   const std::optional<double> changes = ratio(), falls = order();
   if (!changes) return "";
   const std::string factor = fmt::format("{:.2g}", *changes);
-  if (const auto before = smaller_before(); before && *changes < 1)
-    return part(
-        "residual_was_smaller",
-        {{"factor", factor},
-         {"count", std::to_string(*before)},
-         {"times", fmt::format("{:.2g}", residuals_.back() / *(residuals_.rbegin() + static_cast<std::ptrdiff_t>(*before)))}});
+  if (const auto before = smaller_before(); before && *changes < 1) {
+    const double times = residuals_.back() / *(residuals_.rbegin() + static_cast<std::ptrdiff_t>(*before));
+    if (times > 1 + other)
+      return part("residual_was_smaller",
+                  {{"factor", factor}, {"count", std::to_string(*before)}, {"times", fmt::format("{:.2g}", times)}});
+  }
   if (!falls) return part("residual_changes", {{"factor", factor}});
   return part("residual_changes_of_order", {{"factor", factor}, {"order", fmt::format("{:.2g}", *falls)}});
 }

@@ -38,6 +38,7 @@ TEST(ResidualCourse, KnowsThatItWasSmallerBefore) {
   EXPECT_EQ(course({8, 1, 16, 8, 4, 2}).smaller_before(), 4U);
   EXPECT_EQ(course({8, 1, 16, 8, 4, 2}).words(),
             "the residual falls by the factor 0.5 an iteration, but 4 iteration(s) before it was 2 times smaller");
+  EXPECT_EQ(course({1, 1.06, 1.05, 1.04, 1.03}).words(), "the residual changes by the factor 0.99 an iteration (order 1)");
 }
 
 TEST(ResidualCourse, KnowsWhatComesBack) {
