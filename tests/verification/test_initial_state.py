@@ -71,7 +71,7 @@ class InitialState(StudyTest):
         for second, text in (("dict(CHAM_MATER=OTHER)", "EVOLUTION_10"),
                              ("dict(INCREMENT=_F(LIST_INST=TIMES, INST_FIN=2.0))", "EVOLUTION_5"),
                              ("dict(ETAT_INIT=_F(EVOL_NOLI=FIRST, INST=2.5))", "FIELDS_2"),
-                             ("dict(reuse=FIRST, EXCIT=[_F(CHARGE=HOLD), _F(CHARGE=MOVE, FONC_MULT=COURSE)])", "another EXCIT"),
+                             ("dict(reuse=FIRST, CHAM_MATER=OTHER)", "EVOLUTION_12"),
                              ("dict(reuse=WHOLE, ETAT_INIT=_F(EVOL_NOLI=WHOLE, INST=2.0))", "DETR_NUME_SUIV"),
                              ("dict(reuse=WHOLE)", "ETAT_INIT=_F(EVOL_NOLI=WHOLE)"),
                              ("dict(RESULTAT=FIRST)", "without reuse")):
