@@ -8,6 +8,7 @@
 #include <numeric>
 #include <set>
 
+#include "lacon/catalog/messages.hpp"
 #include "lacon/catalog/wording.hpp"
 #include "lacon/operators/evolution/bodies.hpp"
 #include "lacon/operators/program/program.hpp"
@@ -138,9 +139,13 @@ bool Equilibrium::load_goes_on(double before, double last, double instant, const
     for (std::size_t i = 0; i < a.size(); ++i) product += (b[i] - a[i]) * (c[i] - b[i]);
     return product;
   };
-  const double imposed = goes_on([&](double at) { return problem_.imposed_values(at); }),
-               forces = goes_on([&](double at) { return problem_.external_force(at, state.displacement); });
-  return std::min(imposed, forces) >= 0 && std::max(imposed, forces) > 0;
+  try {
+    const double imposed = goes_on([&](double at) { return problem_.imposed_values(at); }),
+                 forces = goes_on([&](double at) { return problem_.external_force(at, state.displacement); });
+    return std::min(imposed, forces) >= 0 && std::max(imposed, forces) > 0;
+  } catch (const Error&) {  // a load need not have a value at the instant of the initial state
+    return false;
+  }
 }
 
 StaticState Equilibrium::at_rest(const StaticState& state) const {
