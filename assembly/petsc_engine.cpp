@@ -14,6 +14,7 @@
 #include "lacon/assembly/processes/companion.hpp"
 #include "lacon/catalog/messages.hpp"
 #include "lacon/catalog/wording.hpp"
+#include "lacon/structures/executable.hpp"
 
 namespace lacon {
 namespace {
@@ -21,7 +22,7 @@ namespace {
 /// What resists a motion less, of what resists most, iterations cannot tell from nothing.
 constexpr double hardly_resisted = 1e-6;
 
-std::string program_beside_this() { return std::filesystem::read_symlink("/proc/self/exe").parent_path() / "lacon_petsc"; }
+std::string program_beside_this() { return executable().parent_path() / "lacon_petsc"; }
 
 /// Why iterations have ended, in words. @param reason as PETSc names it
 std::string words_of(const std::string& reason, int iterations, const std::string& left) {

@@ -1,7 +1,6 @@
 #include "lacon/elements/registry.hpp"
 
 #include <dlfcn.h>
-#include <sys/auxv.h>
 
 #include <algorithm>
 #include <cstdlib>
@@ -9,6 +8,7 @@
 
 #include "lacon/catalog/messages.hpp"
 #include "lacon/elements/plugin_rows.hpp"
+#include "lacon/structures/executable.hpp"
 
 namespace lacon {
 namespace {
@@ -59,15 +59,6 @@ std::vector<fs::path> path_from_environment() {
     rest.remove_prefix(std::min(end + 1, rest.size()));
   }
   return folders;
-}
-
-/// This program's file: as the system knows it, or, where /proc is not mounted, as it was started.
-fs::path executable() {
-  std::error_code error;
-  const fs::path known = fs::read_symlink("/proc/self/exe", error);
-  if (!error) return known;
-  const auto* const started = reinterpret_cast<const char*>(getauxval(AT_EXECFN));
-  return started ? fs::canonical(started, error) : fs::path();
 }
 
 /// The folder of the built-in plug-ins, installed or in the build tree; empty where there is none.

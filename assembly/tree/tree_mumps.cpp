@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cstring>
-#include <filesystem>
 #include <numeric>
 #include <sstream>
 #include <stdexcept>
@@ -12,6 +11,7 @@
 #include "lacon/assembly/tree/exchange.hpp"
 #include "lacon/catalog/messages.hpp"
 #include "lacon/catalog/wording.hpp"
+#include "lacon/structures/executable.hpp"
 
 namespace lacon {
 namespace {
@@ -46,7 +46,7 @@ std::span<Real> values_in(const SharedMemory& memory) {
 void MumpsProcesses::start() {
   if (!processes_.empty()) return;
   std::string program = program_;
-  if (program.empty()) program = std::filesystem::read_symlink("/proc/self/exe").parent_path() / "lacon_mumps";
+  if (program.empty()) program = executable().parent_path() / "lacon_mumps";
   for (int i = 0; i < n_; ++i) processes_.push_back(std::make_unique<Companion>(std::vector{program}));
   for (const auto& process : processes_)
     if (process->answer().empty()) {
