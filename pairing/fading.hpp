@@ -1,5 +1,5 @@
 #pragma once
-// Where the cover of a slave cell ends, near the outline of its patch.
+// Where the cover of a slave cell ends, near an end of that cell.
 #include <cmath>
 
 // Beyond the last node of a master skin nothing is integrated. Where the normal of that node passes an end of a slave, G would
@@ -7,8 +7,6 @@
 // where they drive two ends that are aligned towards each other, equilibrium would lie in the jump, where no iterate finds it.
 // So within a narrow band the cover leaves the slave's end slowly, and catches up with the normal at the band's other side: G
 // has a continuous derivative, and is what it would be both outside the band and where the ends are aligned.
-// In space it is edges of the master skin's border that pass edges of a patch. An edge is passed at once only where both are
-// parallel: where they cross, what is lost grows with the square of the way, so that the band is one of both ends of the edge.
 
 namespace lacon {
 
@@ -22,13 +20,6 @@ inline FadedEnd faded_end(double c, double width) {
   const double end = c > 0 ? 1 : -1, t = (1 - std::abs(c)) / width;
   if (!(t < 1)) return {c, 1, 0};
   return {end * (1 - width * t * t * (2 - t)), t * (4 - 3 * t), -end * (4 - 6 * t) / width};
-}
-
-/// In space: the factor of the distances of both ends of an edge of the outline from a line of the border: at a distance of t
-/// bands from the line the ends lie t^2 (2 - t) bands from it.
-inline double fading_factor(double first, double last, double band) {
-  const double t = std::sqrt(0.5 * (first * first + last * last)) / band;
-  return t < 1 ? t * (2 - t) : 1;
 }
 
 }  // namespace lacon

@@ -43,11 +43,9 @@ struct PolygonTrace {
     std::int32_t master = -1;  ///< cell of the master surface; -1: the triangle's own edge, from vertex `edge` on
     int edge = 0;
     std::array<double, 2> from{}, to{};  ///< reference coordinates of the line's ends on the master
-    bool fades = false;                  ///< it is on the border of the master skin, where PairingOptions::fading asks for it
   };
   bool plane = true;                                ///< the chart is the slave's mean plane, otherwise its reference cell
   std::array<std::array<double, 2>, 3> triangle{};  ///< reference coordinates of its vertices on the slave
-  std::uint8_t outline = 0;                         ///< bit k: its edge from vertex k on is where lines fade
   std::vector<std::array<double, 2>> vertex;        ///< of the polygon
   std::vector<Line> line;                           ///< from each vertex to the next
   /// Of each integration point: it lies in the triangle of the vertices 0, last - 1 and last, at these coordinates.
@@ -77,9 +75,8 @@ struct PairingOptions {
   /// In space: integrate every couple to this degree whatever its facets ask for (integration_degree() in
   /// chart_points.hpp); 0: what they ask for. To measure what a degree leaves.
   int degree = 0;
-  /// Width of the band along the outline of a patch in which its cover ends slowly (fading.hpp), in reference coordinates of a
-  /// slave cell; 0: no such band. Sides inside of a patch have none: what one cell of it loses there the next one loses as
-  /// well.
+  /// Width of the band at both ends of a slave cell in which its cover ends slowly (fading.hpp), in reference coordinates; 0:
+  /// no such band. Ends that lie inside of a patch have none: what one cell of it loses there the next one loses as well.
   double fading = 0;
   bool traced = false;  ///< in space: give the traces too. Flat slaves are then cut as those that are nearly flat
 };

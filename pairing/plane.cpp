@@ -440,8 +440,11 @@ class PairerInPlane final : public detail::CellPairer {
   /// Where the cover ends that the normal through the last node of the masters cuts off at `crossing`.
   double end_of_cover(std::size_t cell, double crossing) const {
     const double width = masters_->options.fading;
-    const bool fades = width > 0 && masters_->slave.on_outline(cell, crossing > 0 ? 1 : 0);
-    return fades ? faded_end(crossing, width).at : crossing;
+    if (!(width > 0)) return crossing;
+    const std::span<const std::uint8_t> inner = masters_->slave.inner;
+    const bool inside =
+        !inner.empty() && inner[static_cast<std::size_t>(masters_->slave.nodes[cell][crossing > 0 ? 1 : 0])] != 0;
+    return inside ? crossing : faded_end(crossing, width).at;
   }
 
   std::shared_ptr<const MastersInPlane> masters_;

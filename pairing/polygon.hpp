@@ -12,10 +12,9 @@ struct HalfPlane {
   Vec2 anchor{}, slope{};
   double value = 0;
   std::int32_t line = -1;  ///< of whoever asked for it: what bounds it
-  bool faded = false;      ///< elsewhere than that (fading.hpp)
 
   double operator()(Vec2 y) const { return value + dot(slope, y - anchor); }
-  HalfPlane opposite() const { return {anchor, -1.0 * slope, -value, line, faded}; }
+  HalfPlane opposite() const { return {anchor, -1.0 * slope, -value, line}; }
 };
 
 /// Vertices of a convex polygon, counter-clockwise.

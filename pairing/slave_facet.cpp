@@ -10,16 +10,12 @@
 namespace lacon::space {
 
 void SlaveFacet::set(const Surface& surface, std::size_t cell, double size, const PairingTolerances& tolerances,
-                     bool in_triangles, double fading) {
+                     bool in_triangles) {
   degenerate = true;
   constant = false;
-  fading_ = fading;
-  outline_ = 0;
   if (!detail::finite(surface, cell)) return;
   f = facet(surface, cell, tolerances.straight);
   n = f.normal;
-  for (int i = 0; i < f.n_vertices && fading > 0; ++i)
-    outline_ = static_cast<std::uint8_t>(outline_ | surface.on_outline(cell, i) << i);
   if (!(f.size > tolerances.degenerate * size)) return;
   take_normals(surface, cell);
   // A corner may have no normal (two nodes in one place, three corners on a line), the middle must.
@@ -105,10 +101,8 @@ void SlaveFacet::subdivide(int k) {
     const Vec2 xi = f.family == Family::TRIA ? Vec2{a / k, b / k} : Vec2{2 * a / k - 1, 2 * b / k - 1};
     return xi;
   };
-  const auto side = [&](bool on_it, int i, int edge) { return on_it ? (outline_ >> i & 1) << edge : 0; };
-  const auto add = [&](Vec2 a, Vec2 b, Vec2 c, int outline) {
+  const auto add = [&](Vec2 a, Vec2 b, Vec2 c) {
     Piece piece;
-    piece.outline = static_cast<std::uint8_t>(outline);
     const std::array<Vec2, 3> xi{a, b, c};
     for (int i = 0; i < 3; ++i) {
       piece.xi[i] = xi[i];
@@ -122,9 +116,8 @@ void SlaveFacet::subdivide(int k) {
   if (f.family == Family::TRIA) {
     for (int j = 0; j < k; ++j)
       for (int i = 0; i < k - j; ++i) {
-        add(vertex(i, j), vertex(i + 1, j), vertex(i, j + 1),
-            side(j == 0, 0, 0) | side(i + j + 1 == k, 1, 1) | side(i == 0, 2, 2));
-        if (i + j + 1 < k) add(vertex(i + 1, j), vertex(i + 1, j + 1), vertex(i, j + 1), 0);
+        add(vertex(i, j), vertex(i + 1, j), vertex(i, j + 1));
+        if (i + j + 1 < k) add(vertex(i + 1, j), vertex(i + 1, j + 1), vertex(i, j + 1));
       }
     return;
   }
@@ -132,9 +125,7 @@ void SlaveFacet::subdivide(int k) {
   for (int j = 0; j < k; ++j)
     for (int i = 0; i < k; ++i) {
       const std::array<Vec2, 4> corner{vertex(i, j), vertex(i + 1, j), vertex(i + 1, j + 1), vertex(i, j + 1)};
-      const std::array<bool, 4> on_side{j == 0, i + 1 == k, j + 1 == k, i == 0};
-      for (int c = 0; c < 4; ++c)
-        add(corner[c], corner[(c + 1) % 4], vertex(i + 0.5, j + 0.5), side(on_side[static_cast<std::size_t>(c)], c, 0));
+      for (int c = 0; c < 4; ++c) add(corner[c], corner[(c + 1) % 4], vertex(i + 0.5, j + 0.5));
     }
 }
 

@@ -11,7 +11,6 @@
 #include <vector>
 
 #include "lacon/pairing/box_tree.hpp"
-#include "lacon/pairing/fading.hpp"
 #include "lacon/pairing/pairing.hpp"
 #include "lacon/pairing/skin_facet.hpp"
 
@@ -22,7 +21,6 @@ struct Piece {
   std::array<Vec3, 3> x, n;  ///< at its vertices, where the normal is not constant
   std::array<Vec2, 3> xi;    ///< likewise
   Vec3 normal{};             ///< mean
-  std::uint8_t outline = 0;  ///< bit k: a triangle's edge from vertex k on is on the outline of the patch, where lines fade
 };
 
 class SlaveFacet {
@@ -37,9 +35,8 @@ class SlaveFacet {
 
   /// Examine a slave cell; `degenerate` says whether it cannot be paired. @param size the extent of its skin
   /// @param in_triangles one flat piece will not do, as for a facet that is nearly flat
-  /// @param fading PairingOptions::fading
   void set(const Surface& surface, std::size_t cell, double size, const PairingTolerances& tolerances,
-           bool in_triangles = false, double fading = 0);
+           bool in_triangles = false);
 
   /// The unit normal at a reference point; the mean one where there is none.
   Vec3 direction(Vec2 xi) const {
@@ -70,10 +67,9 @@ class SlaveFacet {
   void places(std::span<const Vec2> y, const PairingTolerances& tolerances, std::vector<Line>& lines,
               std::vector<Meeting>& meetings, std::vector<Place>& places) const;
 
-  /// The side of an edge of a master on which a normal passes, on a piece. @param border whether it is on the border of the
-  /// skin
-  HalfPlane side(const Piece& piece, Vec3 a, Vec3 b, bool border) const {
-    if (before(b, a)) return side(piece, b, a, border).opposite();
+  /// The side of an edge of a master on which a normal passes, on a piece.
+  HalfPlane side(const Piece& piece, Vec3 a, Vec3 b) const {
+    if (before(b, a)) return side(piece, b, a).opposite();
     if (constant) {
       const Vec2 first{dot(a, e1), dot(a, e2)}, last{dot(b, e1), dot(b, e2)};
       const Vec2 d = last - first;
@@ -81,23 +77,9 @@ class SlaveFacet {
     }
     std::array<double, 3> s;
     for (int k = 0; k < 3; ++k) s[k] = dot(cross(b - a, piece.n[k]), piece.x[k] - a);
-    const bool faded = border && piece.outline != 0 && fade(piece, norm(b - a), s);
     const Vec2 u = piece.polygon[1] - piece.polygon[0], v = piece.polygon[2] - piece.polygon[0];
     const double ds = s[1] - s[0], dt = s[2] - s[0], det = cross(u, v);
-    return {piece.polygon[0], {(ds * v.y - dt * u.y) / det, (dt * u.x - ds * v.x) / det}, s[0], -1, faded};
-  }
-
-  /// Of a flat facet in one piece: whether this edge of the master skin's border fades here, which takes triangles. Not where
-  /// both edges are aligned to round-off.
-  bool fades(Vec3 a, Vec3 b) const {
-    const auto s = [&](int i) { return dot(cross(b - a, n), f.nodes[i] - a); };
-    for (int i = 0; i < f.n_vertices; ++i) {
-      const int next = (i + 1) % f.n_vertices;
-      if ((outline_ >> i & 1) == 0) continue;
-      const double factor = fading_factor(s(i), s(next), band(norm(b - a), f.nodes[next] - f.nodes[i]));
-      if (factor > 1e-9 && factor < 1) return true;
-    }
-    return false;
+    return {piece.polygon[0], {(ds * v.y - dt * u.y) / det, (dt * u.x - ds * v.x) / det}, s[0]};
   }
 
   /// False only where no normal of the slave meets the box. A point q = x(xi) + t m(xi) has the height t = (q - x) . n over x
@@ -121,21 +103,6 @@ class SlaveFacet {
     return cross(v.d1, v.d2);
   }
 
-  /// The band along an edge of the outline, in what a line of this length has as distances.
-  double band(double length, Vec3 edge) const { return 0.5 * fading_ * length * norm(edge); }
-  /// Where a line is near to edges of the outline, move it. @param[in,out] s at the vertices
-  bool fade(const Piece& piece, double length, std::array<double, 3>& s) const {
-    std::array<double, 3> factor{1, 1, 1};
-    for (int k = 0; k < 3; ++k) {
-      const int next = (k + 1) % 3;
-      if ((piece.outline >> k & 1) == 0) continue;
-      const double slower = fading_factor(s[k], s[next], band(length, piece.x[next] - piece.x[k]));
-      factor[k] *= slower, factor[next] *= slower;
-    }
-    for (int k = 0; k < 3; ++k) s[k] *= factor[k];
-    return factor != std::array<double, 3>{1, 1, 1};
-  }
-
   void take_normals(const Surface& surface, std::size_t cell);
   std::optional<double> largest_turn(const PairingTolerances& tolerances) const;
   void set_chart();
@@ -144,9 +111,7 @@ class SlaveFacet {
   void set_walls();
 
   bool smooth_ = false;
-  double fading_ = 0;
-  std::uint8_t outline_ = 0;  ///< bit i: the edge from vertex i on is where lines fade
-  double least_ = 0;          ///< length of `unscaled_direction` below which there is none
+  double least_ = 0;  ///< length of `unscaled_direction` below which there is none
   Map3 nodal_;
   Map2 chart_;
   Inverse from_chart_;

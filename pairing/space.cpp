@@ -74,19 +74,15 @@ class PairerInSpace final : public detail::CellPairer {
   void pair(std::size_t cell, Pairing& found) override {
     slave_ = static_cast<std::int32_t>(cell);
     found_ = &found;
-    set(cell, options().traced);
+    e.set(masters_->skin.slave, cell, masters_->skin.slave_extent, tolerances(), options().traced);
+    edges_.clear();
     if (e.degenerate) {
       reject(-1, Rejection::degenerate_slave);
       return;
     }
-    const std::size_t n_rejected = found.rejected.size();
+    sliver_ = tolerances().sliver * e.chart_area;
     mean_normal_ = mean_normal();
     find_views();
-    if (in_triangles_ && e.constant) {
-      found.rejected.resize(n_rejected);
-      set(cell, true);
-      find_views();
-    }
     drop_far_views();
     keep_nearest();
     for (const View* const view : kept) integrate(*view);
@@ -100,13 +96,6 @@ class PairerInSpace final : public detail::CellPairer {
     return nodes_of(masters_->skin.master, static_cast<std::size_t>(m), e.f.origin);
   }
   void reject(std::int32_t m, Rejection reason) { found_->rejected.push_back({slave_, m, reason}); }
-
-  void set(std::size_t cell, bool in_triangles) {
-    e.set(masters_->skin.slave, cell, masters_->skin.slave_extent, tolerances(), in_triangles, options().fading);
-    sliver_ = tolerances().sliver * e.chart_area;
-    in_triangles_ = in_triangles;
-    edges_.clear();
-  }
 
   View* new_view(std::int32_t piece, std::int32_t m) {
     if (n_stored == store.size()) store.emplace_back();
@@ -125,7 +114,6 @@ class PairerInSpace final : public detail::CellPairer {
 
   void look_at(std::int32_t m) {
     cut_in_parts(master(m), nodes_of_master(m), e, polygon, parts);
-    if (options().fading > 0) find_border(m);
     if (options().traced) name_edges(m);
     bool couples = false, away = false, thin = false;
     for (const Part& part : parts) {
@@ -156,20 +144,6 @@ class PairerInSpace final : public detail::CellPairer {
     if (!couples && !away && thin) reject(m, Rejection::sliver);
   }
 
-  /// Let the parts of a master know which of their edges are on the border of the skin.
-  void find_border(std::int32_t m) {
-    const auto n = static_cast<std::int32_t>(polygon.size()), pieces = n / master(m).n_vertices;
-    for (Part& part : parts)
-      for (int i = 0; i < part.n; ++i) {
-        const int next = (i + 1) % part.n;
-        const std::int32_t from = part.place[static_cast<std::size_t>(i)], to = part.place[static_cast<std::size_t>(next)];
-        if (from < 0 || to != (from + 1) % n || !masters_->skin.master.on_outline(static_cast<std::size_t>(m), from / pieces))
-          continue;
-        part.border[static_cast<std::size_t>(i)] = true;
-        in_triangles_ = in_triangles_ || (e.constant && e.fades(part.p[i], part.p[next]));
-      }
-  }
-
   double share(std::int32_t m) const { return share_of_couple(cosine(m), masters_->skin.steep).value; }
   /// Of the angle between the mean normal of the slave and the opposite of the master's.
   double cosine(std::int32_t m) const { return -dot(mean_normal_, master(m).normal); }
@@ -198,11 +172,7 @@ class PairerInSpace final : public detail::CellPairer {
     for (Part& part : parts)
       for (int i = 0; i < part.n; ++i) {
         part.line[static_cast<std::size_t>(i)] = static_cast<std::int32_t>(edges_.size());
-        edges_.push_back({.master = m,
-                          .edge = 0,
-                          .from = place(part, i),
-                          .to = place(part, i + 1),
-                          .fades = part.border[static_cast<std::size_t>(i)]});
+        edges_.push_back({.master = m, .edge = 0, .from = place(part, i), .to = place(part, i + 1)});
       }
   }
 
@@ -305,7 +275,6 @@ class PairerInSpace final : public detail::CellPairer {
     const Polygon &corners = view.region.polygon, &triangle = piece.polygon;
     PolygonTrace& trace = found_->traces.emplace_back();
     trace.plane = e.plane;
-    trace.outline = piece.outline;
     for (std::size_t k = 0; k < 3; ++k) trace.triangle[k] = {piece.xi[k].x, piece.xi[k].y};
     const auto within = [](Vec2 y, Vec2 origin, Vec2 u, Vec2 v) {
       const double area = cross(u, v);
@@ -324,10 +293,8 @@ class PairerInSpace final : public detail::CellPairer {
         const double distance = std::max(std::abs(cross(along, from - a)), std::abs(cross(along, to - a))) / norm(along);
         if (distance < least) least = distance, line = {.master = -1, .edge = i};
       }
-      // a line that has faded is nearer to the edge than what it is drawn on
-      const bool coincides = least <= tolerances().coincident * e.chart_diameter;
+      if (least <= tolerances().coincident * e.chart_diameter) continue;
       for (const HalfPlane& half : view.region.halves) {
-        if (coincides && !half.faded) continue;
         const double distance = std::max(std::abs(half(from)), std::abs(half(to))) / norm(half.slope);
         if (distance < least) least = distance, line = edges_[static_cast<std::size_t>(half.line)];
       }
@@ -367,9 +334,8 @@ class PairerInSpace final : public detail::CellPairer {
   std::int32_t slave_ = -1;
   Pairing* found_ = nullptr;
   SlaveFacet e;
-  double sliver_ = 0;          ///< double area below which nothing is kept
-  bool in_triangles_ = false;  ///< what is asked of `e`, or what a line that fades asks for
-  Vec3 mean_normal_{};         ///< unit
+  double sliver_ = 0;   ///< double area below which nothing is kept
+  Vec3 mean_normal_{};  ///< unit
   // used again for every slave cell
   std::vector<Vec3> polygon;
   std::vector<Part> parts;

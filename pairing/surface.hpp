@@ -17,12 +17,10 @@ struct Surface {
   Ragged<std::int32_t> nodes;           ///< of each cell, in the order of catalog/cells.toml
   std::span<const double> coordinates;  ///< (n_nodes, 3), current; z = 0 in 2D
   std::span<const double> normals;      ///< (n_nodes, 3), unit, outward (LISSAGE='OUI'), or empty: normals of the cells
-  /// (n_cells): bit i of a cell says whether its side i (an end in the plane, in space the edge from vertex i on) is on the
-  /// outline, of its patch for a slave, of the skin for a master; empty: every side is
-  std::span<const std::uint8_t> outline = {};
+  std::span<const std::uint8_t> inner =
+      {};  ///< (n_nodes): 1 for nodes inside of a patch of several cells; empty: there are none
 
   std::size_t size() const { return types.size(); }
-  bool on_outline(std::size_t cell, int side) const { return outline.empty() || (outline[cell] >> side & 1) != 0; }
   void add_cell(CellType type, std::span<const std::int32_t> cell_nodes) {
     types.push_back(type);
     nodes.push_back(cell_nodes);

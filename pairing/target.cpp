@@ -85,9 +85,8 @@ void see(const SlaveFacet& slave, const Piece& piece, const Part& part, bool fro
   seen.polygon = piece.polygon;
   seen.halves.clear();
   for (int i = 0; i < part.n && !seen.polygon.empty(); ++i) {
-    const auto edge = static_cast<std::size_t>(i);
-    HalfPlane half = slave.side(piece, part.p[i], part.p[(i + 1) % part.n], part.border[edge]);
-    half.line = part.line[edge];
+    HalfPlane half = slave.side(piece, part.p[i], part.p[(i + 1) % part.n]);
+    half.line = part.line[static_cast<std::size_t>(i)];
     seen.halves.push_back(front ? half : half.opposite());
     clip(seen.polygon, seen.halves.back(), scratch);
     seen.polygon.swap(scratch);

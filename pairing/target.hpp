@@ -37,7 +37,6 @@ struct Part {
   std::array<Vec3, 4> p;
   std::array<std::int32_t, 4> place;                    ///< in the outline; -1: the middle of the facet
   std::array<std::int32_t, 4> line = {-1, -1, -1, -1};  ///< HalfPlane::line of each edge
-  std::array<bool, 4> border{};                         ///< whether each edge is on the border of the master skin
 };
 
 /// Convex parts of a master's outline, as seen along the slave's mean normal. @param nodes of the master, from the slave's

@@ -68,33 +68,26 @@ constexpr std::size_t block = 128;  // slave cells that a thread takes at a time
 constexpr double deepest_overlap = 4;  // diameters of the larger cell of a couple
 // Of the reference coordinate of a slave cell, -1 to 1: wide enough for the stiffness that forces have across it, pressure
 // times gap over its width, to be less than that of the body, narrow enough to be a tenth of a per mille of what a patch is
-// covered by. In the plane: in space pairing has such a band too, but stacks of HEXA20 that finish without it stop with it.
+// covered by.
 constexpr double fading = 2e-3;
 constexpr double coverage_round_off = 1e-12;  // covered fractions above 1 by no more than this are 1
 
-/// Surface::outline of cells of a skin. @param patch of each cell, or empty: the skin is one
-std::vector<std::uint8_t> outlines(const Mesh& mesh, std::span<const std::int32_t> cells,
-                                   std::span<const std::int32_t> patch = {}) {
-  struct Side {
-    std::int32_t patch, a, b;  // sides are alike that have these in common
-    std::size_t cell, number;
-    auto key() const { return std::tie(patch, a, b); }
-  };
-  std::vector<Side> sides;
-  for (std::size_t c = 0; c < cells.size(); ++c) {
-    const auto nodes = mesh.cells[cells[c]];
-    const auto n = static_cast<std::size_t>(mesh.row(cells[c]).n_vertices);
+/// Nodes that lie inside of a patch, (n_nodes).
+std::vector<std::uint8_t> inner_nodes(const Mesh& mesh, const Contact& contact, std::span<const std::int32_t> slaves) {
+  std::map<std::tuple<std::int32_t, std::int32_t, std::int32_t>, int> cells_at;  // sides of the cells of each patch
+  std::vector<std::uint8_t> inner(mesh.n_nodes(), 0);
+  for (const std::int32_t s : slaves) {
+    const auto nodes = mesh.cells[contact.slaves[s].cell];
+    const auto n = static_cast<std::size_t>(mesh.row(contact.slaves[s].cell).n_vertices);
     for (std::size_t i = 0; i < n; ++i) {
       const auto [a, b] = std::minmax(nodes[i], nodes[mesh.dimension == 2 ? i : (i + 1) % n]);
-      sides.push_back({patch.empty() ? 0 : patch[c], a, b, c, i});
+      ++cells_at[{contact.slaves[s].patch, a, b}];
+      inner[static_cast<std::size_t>(nodes[i])] = 1;
     }
   }
-  std::sort(sides.begin(), sides.end(), [](const Side& s, const Side& t) { return s.key() < t.key(); });
-  std::vector<std::uint8_t> outline(cells.size(), 0);
-  for (std::size_t i = 0; i < sides.size(); ++i)
-    if ((i == 0 || sides[i - 1].key() != sides[i].key()) && (i + 1 == sides.size() || sides[i + 1].key() != sides[i].key()))
-      outline[sides[i].cell] = static_cast<std::uint8_t>(outline[sides[i].cell] | 1U << sides[i].number);
-  return outline;
+  for (const auto& [side, count] : cells_at)
+    if (count == 1) inner[static_cast<std::size_t>(std::get<1>(side))] = inner[static_cast<std::size_t>(std::get<2>(side))] = 0;
+  return inner;
 }
 
 /// Room for what is still to come. @param whole what will have come behind `first` in the end, over what has come so far
@@ -159,13 +152,9 @@ ContactGeometry::ContactGeometry(const Mesh& mesh, const Model& model, const Con
     for (const std::int32_t cell : data.slave) zone.slaves.push_back(slave_of_cell.at(cell));
     for (const std::int32_t patch : data.patches) zone_of_[patch] = static_cast<std::int32_t>(zones_.size());
     if (!contact.frozen_gap) {
-      if (mesh_.dimension == 2) zone.pairing.fading = fading;
-      std::vector<std::int32_t> patch;  // of each slave cell
-      for (const std::int32_t s : zone.slaves) patch.push_back(contact.slaves[s].patch);
-      zone.slave_outline = outlines(mesh, data.slave, patch);
-      zone.master_outline = outlines(mesh, data.master);
-      zone.slave.outline = zone.slave_outline;
-      zone.master.outline = zone.master_outline;
+      zone.pairing.fading = fading;
+      zone.inner = inner_nodes(mesh, contact, zone.slaves);
+      zone.slave.inner = zone.inner;
     }
     zones_.push_back(std::move(zone));
   }

@@ -27,9 +27,9 @@ struct ZonePairing {
 class ContactGeometry {
  public:
   struct Zone {
-    std::vector<std::int32_t> slaves;                         ///< index into Contact::slaves of each cell of `slave`
-    std::vector<std::int32_t> masters;                        ///< mesh cell of each cell of `master`
-    std::vector<std::uint8_t> slave_outline, master_outline;  ///< Surface::outline of both
+    std::vector<std::int32_t> slaves;   ///< index into Contact::slaves of each cell of `slave`
+    std::vector<std::int32_t> masters;  ///< mesh cell of each cell of `master`
+    std::vector<std::uint8_t> inner;    ///< Surface::inner of the slave
     Surface slave, master;
     bool current_jacobian = false;
     PairingOptions pairing;

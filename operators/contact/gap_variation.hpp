@@ -19,7 +19,6 @@ struct ContactCellGeometry {
   int dimension = 2;
   bool axis = false;              ///< half a plane through the axis of revolution: integrals have the factor r
   bool current_jacobian = false;  ///< TYPE_JACOBIEN='ACTUALISE'
-  double fading = 0;              ///< PairingOptions::fading
   double steep = 0;               ///< steep_cosine() of the pairing: weights of points have the couple's share as factor
   std::span<const double> slave_initial, slave_nodes, master_nodes;  ///< (n, dimension)
   std::span<const double> other_nodes;                               ///< (n, dimension): further nodes that bound the polygon
@@ -30,9 +29,10 @@ struct ContactCellGeometry {
   struct End {
     double at;        ///< reference coordinate
     int node;         ///< behind which node its normal ends it: of the unknowns' nodes; -1: an end of the slave itself
-    double crossing;  ///< where that normal crosses the slave: elsewhere where the cover fades
+    double crossing;  ///< where that normal crosses the slave
   };
   End ends[2] = {{-1, -1, -1}, {1, -1, 1}};
+  double fading = 0;  ///< PairingOptions::fading: how ends depend on these places where they differ
   /// In space: what the polygon hangs on, and of each of its lines the nodes of the master that it is drawn on: of the
   /// unknowns' nodes.
   const PolygonTrace* trace = nullptr;

@@ -117,7 +117,6 @@ ContactGeometry::Variation ContactGeometry::variation(std::size_t z, const Pairi
       .dimension = mesh_.dimension,
       .axis = registry_.find_element(model_.elements[model_.element[slave_cell]])->geometry == catalog::Geometry::axis,
       .current_jacobian = zone.current_jacobian,
-      .fading = zone.pairing.fading,
       .steep = steep_cosine(zone.pairing)};
 
   // nodes of other masters that bound the polygon come behind
@@ -133,6 +132,7 @@ ContactGeometry::Variation ContactGeometry::variation(std::size_t z, const Pairi
       const std::int32_t node = cells.vertex_node[vertex];
       cell.ends[k] = {cells.vertex[vertex], node < 0 ? -1 : local(node), cells.vertex_crossing[vertex]};
     }
+    cell.fading = zone.pairing.fading;
   } else {
     cell.trace = &found.traces[place];
     for (const PolygonTrace::Line& line : cell.trace->line) {

@@ -23,7 +23,7 @@ PolygonVariation::PolygonVariation(const ContactCellGeometry& cell, bool second)
       second_(second),
       vertices_{vertex_at(0), vertex_at(1), vertex_at(2)} {
   for (std::size_t k = 0; k < trace_.line.size(); ++k) lines_.push_back(line(k));
-  for (int k = 0; k < 3; ++k) lines_.push_back({.l = Vector<3>::Unit(k), .s = Vector<3>::Unit(k)});  // the triangle's edges
+  for (int k = 0; k < 3; ++k) lines_.push_back({.l = Vector<3>::Unit(k)});  // the triangle's edges
   for (std::size_t k = 0; k < trace_.vertex.size(); ++k) take_corner(k);
 }
 
@@ -36,30 +36,14 @@ void PolygonVariation::add_gradient(const Row& of_corners, Row& gradient) {
     corner.of_equations = -corner.inverse.transpose() * of_corner[k];
     for (int i = 0; i < 2; ++i) lines_[corner.lines[static_cast<std::size_t>(i)]].of_l += corner.of_equations[i] * corner.b;
   }
-  for (CuttingLine& line : lines_) {
+  for (const CuttingLine& line : lines_) {
     if (!line.moves) continue;
     Vector<3> of_from = Vector<3>::Zero(), of_along = of_from;
-    line.of_s = line.of_l;
-    for (CuttingLine::Fading& fading : line.fading) {
-      for (const int i : {fading.first, fading.last}) {
-        line.of_s[i] *= fading.factor();
-        fading.of_log += line.of_l[i] * line.l[i];
-      }
-    }
-    for (const CuttingLine::Fading& fading : line.fading) {
-      const double square = line.square(fading), of_y = fading.of_log * fading.slope();
-      if (square == 0) continue;
-      for (const int i : {fading.first, fading.last}) line.of_s[i] += 2 * of_y * line.s[i] / square;
-      of_along -= 2 * of_y / line.along.squaredNorm() * line.along;
-      const Vector<3> of_edge = -2 * of_y / fading.edge.squaredNorm() * fading.edge;
-      vertices_[static_cast<std::size_t>(fading.last)].of_place += of_edge;
-      vertices_[static_cast<std::size_t>(fading.first)].of_place -= of_edge;
-    }
     for (int v = 0; v < 3; ++v) {
       TriangleVertex& at = vertices_[static_cast<std::size_t>(v)];
-      const Vector<3> apart = at.x - line.from, side = line.of_s[v] * line.along.cross(at.n);
-      of_along += line.of_s[v] * at.n.cross(apart);
-      at.of_normal += line.of_s[v] * apart.cross(line.along);
+      const Vector<3> apart = at.x - line.from, side = line.of_l[v] * line.along.cross(at.n);
+      of_along += line.of_l[v] * at.n.cross(apart);
+      at.of_normal += line.of_l[v] * apart.cross(line.along);
       at.of_place += side;
       of_from -= side;
     }
@@ -98,11 +82,8 @@ void PolygonVariation::add_second(QuadraticForm& form) {
       form.add(2, corner.row.row(j), turn);
     }
   }
-  for (const CuttingLine& line : lines_) {
-    if (!line.moves) continue;
-    add_second_of_line(line, form);
-    if (!line.fading.empty()) add_second_of_fading(line, form);
-  }
+  for (const CuttingLine& line : lines_)
+    if (line.moves) add_second_of_line(line, form);
   for (const TriangleVertex& at : vertices_) add_second_of_vertex(at, form);
 }
 
@@ -132,7 +113,7 @@ CuttingLine PolygonVariation::line(std::size_t k) const {
   const PolygonTrace::Line& given = trace_.line[k];
   CuttingLine line;
   if (given.master < 0) {
-    line.l = line.s = Vector<3>::Unit((given.edge + 2) % 3);
+    line.l = Vector<3>::Unit((given.edge + 2) % 3);
     return line;
   }
   const ContactCellGeometry::LineNodes& nodes = cell_.lines[k];
@@ -150,67 +131,21 @@ CuttingLine PolygonVariation::line(std::size_t k) const {
     line.from += line.p[a] * Eigen::Map<const Vector<3>>(place);
     line.along += (line.q[a] - line.p[a]) * Eigen::Map<const Vector<3>>(place);
   }
-  if (second_) line.ds = Rows<3>::Zero(3, n_);
+  if (second_) line.dl = Rows<3>::Zero(3, n_);
   for (int v = 0; v < 3; ++v) {
     const TriangleVertex& at = vertices_[static_cast<std::size_t>(v)];
     const Vector<3> apart = at.x - line.from, normal_by_apart = at.n.cross(apart), apart_by_along = apart.cross(line.along),
                     along_by_normal = line.along.cross(at.n);
-    line.s[v] = along_by_normal.dot(apart);
+    line.l[v] = along_by_normal.dot(apart);
     if (!second_) continue;
-    line.ds.row(v) = apart_by_along.transpose() * at.dn;
+    line.dl.row(v) = apart_by_along.transpose() * at.dn;
     for (int a = 0; a < at.phi.n; ++a)
-      line.ds.row(v).segment<3>(3 * a) += at.phi.value[static_cast<std::size_t>(a)] * along_by_normal.transpose();
+      line.dl.row(v).segment<3>(3 * a) += at.phi.value[static_cast<std::size_t>(a)] * along_by_normal.transpose();
     for (std::size_t a = 0; a < static_cast<std::size_t>(line.n_nodes); ++a)
-      line.ds.row(v).segment<3>(line.column[a]) +=
+      line.dl.row(v).segment<3>(line.column[a]) +=
           ((line.q[a] - line.p[a]) * normal_by_apart - line.p[a] * along_by_normal).transpose();
   }
-  fade(line, given.fades);
   return line;
-}
-
-void PolygonVariation::fade(CuttingLine& line, bool fades) const {
-  line.l = line.s;
-  if (second_) line.dl = line.ds;
-  for (int k = 0; fades && k < 3; ++k) {
-    const int next = (k + 1) % 3;
-    if ((trace_.outline >> k & 1) == 0) continue;
-    const Vector<3> edge = vertex(next).x - vertex(k).x;
-    const double band = 0.5 * cell_.fading * line.along.norm() * edge.norm(),
-                 t = std::sqrt(0.5 * (line.s[k] * line.s[k] + line.s[next] * line.s[next])) / band;
-    if (t < 1) line.fading.push_back({k, next, edge, t});
-  }
-  for (const CuttingLine::Fading& fading : line.fading)
-    for (const int i : {fading.first, fading.last}) {
-      line.l[i] *= fading.factor();
-      if (second_) line.dl.row(i) *= fading.factor();
-    }
-  for (const CuttingLine::Fading& fading : line.fading) {
-    if (!second_ || line.square(fading) == 0) continue;
-    const Row slope = fading.slope() * log_slope(line, fading);
-    for (const int i : {fading.first, fading.last}) line.dl.row(i) += line.l[i] * slope;
-  }
-}
-
-Rows<3> PolygonVariation::turned(const CuttingLine& line) const {
-  Rows<3> rows = Rows<3>::Zero(3, n_);
-  for (std::size_t a = 0; a < static_cast<std::size_t>(line.n_nodes); ++a)
-    rows.block<3, 3>(0, line.column[a]).diagonal().array() += line.q[a] - line.p[a];
-  return rows;
-}
-
-Rows<3> PolygonVariation::turned(const CuttingLine::Fading& fading) const {
-  Rows<3> rows = Rows<3>::Zero(3, n_);
-  const Shapes<3>&from = vertex(fading.first).phi, &to = vertex(fading.last).phi;
-  for (std::size_t a = 0; a < static_cast<std::size_t>(from.n); ++a)
-    rows.block<3, 3>(0, 3 * static_cast<Eigen::Index>(a)).diagonal().setConstant(to.value[a] - from.value[a]);
-  return rows;
-}
-
-Row PolygonVariation::log_slope(const CuttingLine& line, const CuttingLine::Fading& fading) const {
-  Row row = -2 / line.along.squaredNorm() * line.along.transpose() * turned(line) -
-            2 / fading.edge.squaredNorm() * fading.edge.transpose() * turned(fading);
-  for (const int i : {fading.first, fading.last}) row += 2 * line.s[i] / line.square(fading) * line.ds.row(i);
-  return row;
 }
 
 void PolygonVariation::take_corner(std::size_t k) {
@@ -220,21 +155,22 @@ void PolygonVariation::take_corner(std::size_t k) {
   const auto& [b1, b2] = trace_.vertex[k];
   corner.b = {1 - b1 - b2, b1, b2};
   if (second_) corner.row = Rows<2>::Zero(2, n_);
-  const auto slope = [](const Vector<3>& l) { return Vector<2>(l[1] - l[0], l[2] - l[0]); };  // by the last two coordinates
-  const auto sine = [&](const Vector<3>& first, const Vector<3>& behind) {
+  const auto slope = [&](std::size_t line) {  // by the last two coordinates
+    const Vector<3>& l = lines_[line].l;
+    return Vector<2>(l[1] - l[0], l[2] - l[0]);
+  };
+  const auto sine = [&](std::size_t first, std::size_t behind) {
     const Vector<2> u = slope(first), v = slope(behind);
     return std::abs(u[0] * v[1] - u[1] * v[0]) / (u.norm() * v.norm());
   };
   for (std::size_t edge = 0; edge < 3; ++edge) {
     if (std::abs(corner.b[static_cast<int>(edge)]) > on_edge) continue;
     for (std::size_t& line : corner.lines)
-      if (const Vector<3>& s = lines_[line].s; lines_[line].moves && sine(s, lines_[n + edge].s) <= least_angle &&
-                                               std::abs(s.dot(corner.b)) <= on_edge * s.cwiseAbs().maxCoeff())
-        line = n + edge;
+      if (lines_[line].moves && sine(line, n + edge) <= least_angle) line = n + edge;
   }
   Eigen::Matrix2d j;
-  for (int i = 0; i < 2; ++i) j.row(i) = slope(lines_[corner.lines[static_cast<std::size_t>(i)]].l).transpose();
-  if (sine(lines_[corner.lines[0]].l, lines_[corner.lines[1]].l) > least_angle) {
+  for (int i = 0; i < 2; ++i) j.row(i) = slope(corner.lines[static_cast<std::size_t>(i)]).transpose();
+  if (sine(corner.lines[0], corner.lines[1]) > least_angle) {
     corner.inverse = j.inverse();
   } else {
     // at a right angle to one of them, the same in all polygons that meet here: the triangle's own edge, which stays
@@ -267,11 +203,11 @@ void PolygonVariation::add_second_of_line(const CuttingLine& line, QuadraticForm
   };
   for (int v = 0; v < 3; ++v) {
     TriangleVertex& at = vertices_[static_cast<std::size_t>(v)];
-    turn += line.of_s[v] * at.dn;
-    of_along -= cross(line.of_s[v] * (at.x - line.from), at.dn);
-    for (int a = 0; a < at.phi.n; ++a) add_moved(line.of_s[v] * at.n, at.phi.value[static_cast<std::size_t>(a)], 3 * a);
-    normal += line.of_s[v] * at.n;
-    at.turned += line.of_s[v] * line.along;
+    turn += line.of_l[v] * at.dn;
+    of_along -= cross(line.of_l[v] * (at.x - line.from), at.dn);
+    for (int a = 0; a < at.phi.n; ++a) add_moved(line.of_l[v] * at.n, at.phi.value[static_cast<std::size_t>(a)], 3 * a);
+    normal += line.of_l[v] * at.n;
+    at.turned += line.of_l[v] * line.along;
   }
   const auto n_nodes = static_cast<std::size_t>(line.n_nodes);
   for (std::size_t a = 0; a < n_nodes; ++a) add_moved(normal, -line.p[a], line.column[a]);
@@ -279,38 +215,6 @@ void PolygonVariation::add_second_of_line(const CuttingLine& line, QuadraticForm
   for (std::size_t a = 0; a < n_nodes; ++a)
     for (int d = 0; d < 3; ++d)
       form.of(line.column[a] + d) += 2 * (line.q[a] - line.p[a]) * of_along.row(d) - 2 * line.p[a] * of_from.row(d);
-}
-
-void PolygonVariation::add_second_of_fading(const CuttingLine& line, QuadraticForm& form) const {
-  std::array<Row, 3> log_of{Row::Zero(n_), Row::Zero(n_), Row::Zero(n_)};  // of ln(l / s)
-  Vector<3> factor = Vector<3>::Ones();                                    // l / s
-  for (const CuttingLine::Fading& fading : line.fading) {
-    const double square = line.square(fading), of_y = fading.of_log * fading.slope();
-    for (const int i : {fading.first, fading.last}) factor[i] *= fading.factor();
-    if (square == 0) continue;
-    const Row dy = log_slope(line, fading);
-    form.add(fading.of_log * fading.curvature(), dy, dy);
-    Row of_square = Row::Zero(n_);
-    for (const int i : {fading.first, fading.last}) {
-      log_of[static_cast<std::size_t>(i)] += fading.slope() * dy;
-      form.add(2 * of_y / square, line.ds.row(i), line.ds.row(i));
-      of_square += 2 * line.s[i] / square * line.ds.row(i);
-    }
-    form.add(-of_y, of_square, of_square);
-    const auto add_length = [&](const Vector<3>& along, const Rows<3>& rows) {  // of ln |along|^2
-      const double length2 = along.squaredNorm();
-      for (int d = 0; d < 3; ++d) form.add(-2 * of_y / length2, rows.row(d), rows.row(d));
-      const Row stretch = 2 / length2 * along.transpose() * rows;
-      form.add(of_y, stretch, stretch);
-    };
-    add_length(line.along, turned(line));
-    add_length(fading.edge, turned(fading));
-  }
-  for (int i = 0; i < 3; ++i) {
-    const Row& dlog = log_of[static_cast<std::size_t>(i)];
-    form.add(2 * line.of_l[i] * factor[i], line.ds.row(i), dlog);
-    form.add(line.of_l[i] * line.l[i], dlog, dlog);
-  }
 }
 
 void PolygonVariation::add_second_of_vertex(const TriangleVertex& at, QuadraticForm& form) const {

@@ -8,11 +8,7 @@
 
 // The polygon lies in a triangle of the slave's chart, whose vertices have fixed reference coordinates; a place in it is two
 // barycentric coordinates b. A line of a master passes the slave's normals on the side of s(b) = sum b_k s_k,
-// s_k = ((q - p) x n_k) . (x_k - p) at the triangle's vertices k. Where the cover fades (pairing/fading.hpp) the two ends i, j
-// of an edge of the outline have instead
-//     l_i = s_i f(t),   t^2 = (s_i^2 + s_j^2) / (2 h^2 |q - p|^2 |x_j - x_i|^2),   f = t (2 - t),
-// h half the width of the band: with y = ln t^2 and theta = ln f,
-//     theta' = (1 - t) / (2 - t),   theta'' = -t / (2 (2 - t)^2).
+// s_k = ((q - p) x n_k) . (x_k - p) at the triangle's vertices k.
 
 namespace lacon::variations {
 
@@ -31,27 +27,14 @@ struct TriangleVertex {
 
 /// A line that cuts the triangle: coefficients l with l . b = 0 on it.
 struct CuttingLine {
-  /// An edge of the outline along which it fades.
-  struct Fading {
-    int first, last;  ///< vertices of the triangle
-    Vector<3> edge;   ///< between them
-    double t;
-    double of_log = 0;  ///< the derivative of the gap by theta
-
-    double factor() const { return t * (2 - t); }
-    double slope() const { return (1 - t) / (2 - t); }  ///< of theta by y
-    double curvature() const { return -t / (2 * (2 - t) * (2 - t)); }
-  };
-  Vector<3> l = Vector<3>::Zero(), s = l;
-  std::vector<Fading> fading = {};
-  double square(const Fading& at) const { return s[at.first] * s[at.first] + s[at.last] * s[at.last]; }
+  Vector<3> l = Vector<3>::Zero();
   bool moves = false;
-  Vector<3> from = l, along = l;                    ///< p and q - p
-  int n_nodes = 0;                                  ///< of the cell that it is drawn on
-  std::array<int, max_skin_nodes> column{};         ///< of these
-  std::array<double, max_skin_nodes> p{}, q{};      ///< factors of these
-  Vector<3> of_l = Vector<3>::Zero(), of_s = of_l;  ///< derivatives of the gap by l and s
-  Rows<3> dl, ds;                                   ///< where second derivatives are wanted
+  Vector<3> from = l, along = l;                ///< p and q - p
+  int n_nodes = 0;                              ///< of the cell that it is drawn on
+  std::array<int, max_skin_nodes> column{};     ///< of these
+  std::array<double, max_skin_nodes> p{}, q{};  ///< factors of these
+  Vector<3> of_l = Vector<3>::Zero();           ///< the derivative of the gap by l
+  Rows<3> dl;                                   ///< where second derivatives are wanted
 };
 
 class PolygonVariation {
@@ -88,24 +71,11 @@ class PolygonVariation {
 
   CuttingLine line(std::size_t k) const;
 
-  /// Take l from s.
-  void fade(CuttingLine& line, bool fades) const;
-
-  /// The derivatives of q - p and of an edge of the triangle.
-  Rows<3> turned(const CuttingLine& line) const;
-  Rows<3> turned(const CuttingLine::Fading& fading) const;
-
-  /// The derivatives of y.
-  Row log_slope(const CuttingLine& line, const CuttingLine::Fading& fading) const;
-
   void take_corner(std::size_t k);
 
-  /// Add sum of_s_k d2 s_k, but for d2n. With S = sum of_s n, Q = sum of_s dn it is 2 (dq - dp) . (sum of_s (dn x (x - p) +
+  /// Add sum of_l_k d2 s_k, but for d2n. With S = sum of_l n, Q = sum of_l dn it is 2 (dq - dp) . (sum of_l (dn x (x - p) +
   /// n x dx) - S x dp) - 2 dp . ((q - p) x Q), and the factor of dn x dx, which a vertex sums up.
   void add_second_of_line(const CuttingLine& line, QuadraticForm& form);
-
-  /// Add what sum of_l_k d2 l_k has beside it.
-  void add_second_of_fading(const CuttingLine& line, QuadraticForm& form) const;
 
   void add_second_of_vertex(const TriangleVertex& at, QuadraticForm& form) const;
 

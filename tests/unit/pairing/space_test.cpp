@@ -229,29 +229,6 @@ TEST(PairingInSpace, TreeEqualsBruteForceOnCurvedSurfaces) {
   }
 }
 
-// Flat skins whose borders are aligned but for a small shift: within the band each side of the cover is t^2 (2 - t) bands short
-// of the slave's, and the pieces beside it have their corners cut off; beyond the band and where the borders are aligned it is
-// as without. The tree misses none of it, and traces are of the same.
-TEST(PairingInSpace, WhereBordersAreNearlyAlignedTheCoverEndsSlowly) {
-  constexpr double fading = 0.02, band = 0.5 * fading;  // of an edge of the slave, which is 1
-  std::mt19937 random(5);
-  for (const CellType s : kinds)
-    for (const CellType m : kinds)
-      for (const double shift : {0.0, 1e-13, 0.002, 0.004, 0.02}) {
-        const auto flat = [](double z) { return [z](double x, double y) { return Vec3{x, y, z}; }; };
-        Skin3 slave = mesh({1, 1, s, false}, flat(0), random);
-        Skin3 master = mesh({3, 4, m, true, 0, shift, 1 - shift, -1, 2}, flat(-0.1), random);
-        const auto covered = [&](const PairingOptions& options) {
-          return forces(slave, master, pair(slave.view(), master.view(), options).cells).area;
-        };
-        const double t = shift / band, lost = t < 1 ? band * t * t * (2 - t) : shift, found = covered({.fading = fading});
-        EXPECT_NEAR(found, 1 - 2 * lost, (t < 1 ? 4 * shift * shift : 0) + 1e-12) << shift;
-        EXPECT_NEAR(covered({.fading = fading, .traced = true}), found, 1e-12) << shift;
-        EXPECT_NEAR(covered({.brute_force = true, .fading = fading}), found, 1e-12) << shift;
-        EXPECT_NEAR(covered({}), 1 - 2 * shift, 1e-12) << shift;
-      }
-}
-
 TEST(PairingInSpace, TheBitsDoNotDependOnTheNumberOfThreads) {
   std::mt19937 random(41);
   for (const bool curved : {false, true}) {
