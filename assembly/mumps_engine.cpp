@@ -121,6 +121,17 @@ struct MumpsEngine::State {
     return std::make_unique<Mumps<Real>>(settings);
   }
 
+  /// Throws SOLVER_8 where there have to be some.
+  bool has_processes() {
+    try {
+      processes.start();
+      return true;
+    } catch (const std::exception&) {  // of the system too: no descriptors left, say
+      if (options.processes_required) throw;
+      return false;
+    }
+  }
+
   /// The cheapest form that the options allow.
   void choose(const SparseMatrix& of) {
     const bool symmetric = of.is_symmetric();
@@ -276,7 +287,7 @@ void MumpsEngine::analyse(const SparseMatrix& matrix) {
   s.subtrees.reset();
   if (s.options.processes > 1 && matrix.size() >= s.options.least_shared) {
     s.subtrees = independent_subtrees(matrix, order, s.options.processes);
-    if (s.subtrees->process.size() < 2) s.subtrees.reset();  // they would wait for each other
+    if (s.subtrees->process.size() < 2 || !s.has_processes()) s.subtrees.reset();  // one alone would wait for the others
   }
   s.choose(matrix);
 }

@@ -27,6 +27,7 @@ struct MumpsOptions {
   Memory memory = Memory::where_needed;       ///< GESTION_MEMOIRE: whether the factor is in files
   std::string folder = "factor";              ///< of these files alone: it is made and removed
   int processes = 1;                          ///< that share a factor
+  bool processes_required = true;             ///< false: where they cannot be started one process makes it
   std::int64_t least_shared = 0;              ///< equations from which on they do
   std::string program;                        ///< lacon_mumps; empty: beside the program that runs
 };

@@ -31,7 +31,9 @@ Companion::Companion(std::vector<std::string> command) {
   if (socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, to) || pipe2(from, O_CLOEXEC))
     throw std::system_error(errno, std::generic_category(), command.front());
   process_ = fork();
-  if (process_ == 0) {
+  if (process_ < 0) {  // its answer is an end at once
+    ended_ = part("cannot_be_started");
+  } else if (process_ == 0) {
     prctl(PR_SET_PDEATHSIG, SIGTERM);  // mpirun ends its ranks
     dup2(to[1], STDIN_FILENO);
     dup2(from[1], STDOUT_FILENO);

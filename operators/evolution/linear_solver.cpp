@@ -12,6 +12,7 @@
 #include "lacon/catalog/messages.hpp"
 #include "lacon/catalog/wording.hpp"
 #include "lacon/operators/evolution/free_bodies.hpp"
+#include "lacon/structures/parallel.hpp"
 
 namespace lacon {
 namespace {
@@ -23,9 +24,12 @@ int number_in(const char* variable, int otherwise) {
   const char* const wanted = std::getenv(variable);
   return wanted ? std::max(1, std::atoi(wanted)) : otherwise;
 }
-/// Processes that the launcher wants (--mpi).
-int ranks() { return number_in("LACON_MPI", 1); }
-/// Equations from which on they share a factor: tests have them share small ones.
+/// Processes that the user wants (--mpi), where he says.
+constexpr const char* wanted_ranks = "LACON_MPI";
+/// Those that share a factor where he does not, but has threads. More than cores, for subtrees are of uneven sizes; the same on
+/// every machine, for their number decides the last bits.
+constexpr int own_ranks = 4;
+/// Equations from which on they share it: tests have them share small ones.
 constexpr int least_shared = 20'000;
 
 MumpsOptions direct_options(const Keywords& solver, const Base& base) {
@@ -42,7 +46,8 @@ MumpsOptions direct_options(const Keywords& solver, const Base& base) {
                     : memory == "IN_CORE"   ? Memory::in_core
                                             : Memory::where_needed,
           .folder = base.folder() / "factor.partial",
-          .processes = ranks(),
+          .processes = number_in(wanted_ranks, n_threads() > 1 ? own_ranks : 1),
+          .processes_required = std::getenv(wanted_ranks) != nullptr,
           .least_shared = number_in("LACON_MPI_FROM", least_shared)};
 }
 
@@ -55,7 +60,7 @@ PetscOptions iterative_options(const Keywords& solver, const Base& base, const S
   if (solver.has("ALGORITHME")) options.algorithm = solver.text("ALGORITHME");
   options.direct.residual_tolerance = direct_residual;
   options.iterations = solver.integer("NMAX_ITER") > 0 ? static_cast<int>(solver.integer("NMAX_ITER")) : most_iterations;
-  options.n_ranks = ranks();
+  options.n_ranks = number_in(wanted_ranks, 1);
   return options;
 }
 

@@ -9,6 +9,8 @@ import unittest
 sys.path.insert(0, __file__.rpartition("/")[0] or ".")
 from support import ROOT, STUDY, LauncherTest  # noqa: E402
 
+from lacon.base.processor import available_cores  # noqa: E402
+
 
 def said(severity, identifier="MODELE1_63"):
     return {"severity": severity, "id": identifier, "text": "something to say", "do": "nothing"}
@@ -398,6 +400,20 @@ FIN()
     def test_threads(self):
         run = self.run_study("DEBUT()\nM = LIRE_MAILLAGE()\n", "--threads", "2", behaviour={"lire_maillage": {"print": "LACON_THREADS"}})
         self.assertIn("LACON_THREADS 2", run.out)
+
+    def test_threads_where_nobody_says_how_many(self):
+        """As many as there are cores; the environment variable says otherwise."""
+        study, printed = "DEBUT()\nM = LIRE_MAILLAGE()\n", {"lire_maillage": {"print": "LACON_THREADS"}}
+        cores = os.environ.get("LACON_THREADS", available_cores())
+        self.assertIn(f"LACON_THREADS {cores}\n", self.run_study(study, behaviour=printed).out)
+        self.assertIn("LACON_THREADS 7\n", self.run_study(study, "--fresh", behaviour=printed, environment={"LACON_THREADS": "7"}).out)
+
+    def test_cores_of_a_container(self):
+        """Its share of their time counts, where it has less than all of them."""
+        quota, all_of_them = self.work / "cpu.max", available_cores(self.work / "none")
+        for text, cores in (("max 100000", all_of_them), ("100000 100000", 1), ("30000 100000", 1), ("9900000 100000", all_of_them), ("?", all_of_them)):
+            quota.write_text(text + "\n", encoding="ascii")
+            self.assertEqual(available_cores(quota), cores, text)
 
     def test_lines_and_labels_however_the_package_was_found(self):
         run = self.run_study("DEBUT()\nM = LIRE_MAILLAGE()\nLIRE_MAILLAGE(UNIT=1)\n",

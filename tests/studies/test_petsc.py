@@ -111,6 +111,12 @@ class Mpi(StudyTest):
             counts = next(c["counts"] for c in json.loads((self.folder / "run.json").read_text())["timings"]["commands"] if c["command"] == "STAT_NON_LINE")
             self.assertEqual("factors by several processes" in counts, are_several)
 
+    def test_threads_ask_for_processes(self):
+        """Where nobody says how many, factors are shared where there is more than one thread."""
+        for options, are_several in ((("--threads", 2), True), (("--threads", 1), False), (("--threads", 2, "--mpi", 1), False)):
+            _, counts, _ = self.solve("double", *options)
+            self.assertEqual("factors by several processes" in counts, are_several, options)
+
     @unittest.skipUnless(PROGRAM.exists() and shutil.which("mpirun"), "built without PETSc, or there is no mpirun")
     def test_iterations_give_the_same_bits_in_every_run(self):
         one, counts, _ = self.solve("double")

@@ -17,6 +17,7 @@ from ..core.concepts import to_json
 from ..core.messages import AsterError, ConvergenceError, InternalError, Message, SolutionError, fail, message
 from ..core.plugins import operator_folder
 from . import expressions
+from .processor import available_cores
 
 #: seconds that an operator has to end; it needs less
 patience = 1.8
@@ -68,7 +69,8 @@ def run(program, made, study, checks=False):
     environment = dict(os.environ)
     environment.setdefault("OPENBLAS_NUM_THREADS", "1")  # the operator takes one thread of OpenBLAS: no others are started
     if study.threads:
-        environment["LACON_THREADS"] = environment["OMP_NUM_THREADS"] = str(study.threads)
+        environment["LACON_THREADS"] = str(study.threads)
+    environment["OMP_NUM_THREADS"] = environment.setdefault("LACON_THREADS", str(available_cores()))
     if study.ranks:
         environment["LACON_MPI"] = str(study.ranks)
     sys.stdout.flush()

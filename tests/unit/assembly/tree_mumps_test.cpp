@@ -221,5 +221,16 @@ TEST(TreeMumps, SaysThatProcessesHaveEnded) {
   std::filesystem::remove(script);
 }
 
+// Where nobody has asked for processes one does without them.
+TEST(TreeMumps, IsNotMadeWhereProcessesCannotBeStarted) {
+  const Lattice lattice(10);
+  MumpsOptions options = shared_by(2);
+  options.processes_required = false;
+  options.program = "/nowhere/lacon_mumps";
+  MumpsEngine engine(options);
+  engine.analyse(lattice.matrix);
+  EXPECT_EQ(engine.factorise(lattice.matrix).processes, 1);
+}
+
 }  // namespace
 }  // namespace lacon
