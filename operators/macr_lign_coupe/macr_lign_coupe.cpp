@@ -3,9 +3,10 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include <Eigen/Geometry>
+#include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
+#include <nlohmann/json.hpp>
 #include <numeric>
 #include <optional>
 
@@ -147,15 +148,17 @@ Field at_points(const Mesh& mesh, const Field& field, const std::vector<LinePoin
 
 /// What REPERE makes of a field at the points of a line.
 void turn_axes(const Mesh& mesh, const Keywords& line, const std::vector<LinePoint>& points, Field& made) {
-  const bool local = line.text("REPERE") == "LOCAL";
+  const bool local = line.text("REPERE") == "LOCAL", polar = line.text("REPERE") == "POLAIRE";
   const std::vector<Eigen::Matrix3d> along = local ? local_axes(mesh, line, points) : std::vector<Eigen::Matrix3d>();
   std::optional<Frame> frame;
-  if (!local) frame.emplace(mesh, line, line.text("REPERE") == "CYLINDRIQUE");
+  nlohmann::json given = line.values();
+  if (polar) given["AXE_Z"] = {0.0, 0.0, 1.0};
+  if (!local) frame.emplace(mesh, Keywords(given, line.path("")), polar || line.text("REPERE") == "CYLINDRIQUE");
   const std::vector<Turned> parts = turned_components(made);
   std::size_t lost = 0;
   for (std::size_t i = 0; i < points.size(); ++i) {
-    const Eigen::Matrix3d axes =
-        local ? along[i] : frame->at(Eigen::Map<const Eigen::Vector3d>(points[i].position.data()), lost);
+    Eigen::Matrix3d axes = local ? along[i] : frame->at(Eigen::Map<const Eigen::Vector3d>(points[i].position.data()), lost);
+    if (polar && mesh.dimension == 3) axes.row(1).swap(axes.row(2));  // the tangential direction is the second one
     for (const Turned& part : parts) {
       const auto lacks = [&](int c) { return c >= 0 && !made.has(i, static_cast<std::size_t>(c)); };
       if (std::ranges::none_of(part.column, lacks)) {
@@ -187,23 +190,63 @@ std::vector<Eigen::Vector3d> directions(const Mesh& mesh, const Keywords& line, 
   return found;
 }
 
-/// Vectors at points with what they are made of.
-struct Traces {
+/// What is made of vectors or tensors at points.
+struct Derived {
   std::vector<std::string> names;
   std::vector<std::vector<double>> rows;  ///< one for each point, empty where the vector or tensor is not whole
 };
 
-/// TRAC_DIR, TRAC_NOR: T d of the tensor among these components, or v . d of the vector; nothing where there is neither.
-Traces traces(const Mesh& mesh, const Keywords& line, const std::vector<LinePoint>& points, const Field& field) {
-  const char* const kind = line.has("TRAC_DIR") ? "DIR" : "NOR";
+/// INVARIANT of a tensor: VMIS, TRESCA, TRACE, DETER.
+std::vector<double> invariants_of(const Eigen::Matrix3d& tensor) {
+  const Eigen::Matrix3d deviator = tensor - tensor.trace() / 3 * Eigen::Matrix3d::Identity();
+  const Eigen::Vector3d principal = Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(tensor).eigenvalues();
+  return {std::sqrt(1.5) * deviator.norm(), principal(2) - principal(0), tensor.trace(), tensor.determinant()};
+}
+
+/// ELEM_PRINCIPAUX of a tensor: PRIN_1 <= PRIN_2 <= PRIN_3 and their unit vectors, whose component of largest magnitude is
+/// positive.
+std::vector<double> principals_of(const Eigen::Matrix3d& tensor) {
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(tensor);
+  std::vector<double> made(solver.eigenvalues().data(), solver.eigenvalues().data() + 3);
+  for (int k = 0; k < 3; ++k) {
+    Eigen::Vector3d axis = solver.eigenvectors().col(k);
+    Eigen::Index largest = 0;
+    axis.cwiseAbs().maxCoeff(&largest);
+    if (axis(largest) < 0) axis = -axis;
+    made.insert(made.end(), axis.data(), axis.data() + 3);
+  }
+  return made;
+}
+
+/// Names of what a keyword makes of a tensor, or of a vector.
+std::vector<std::string> derived_names(std::string_view keyword, bool tensor) {
+  if (keyword == "INVARIANT") return {"VMIS", "TRESCA", "TRACE", "DETER"};
+  if (keyword == "ELEM_PRINCIPAUX")
+    return {"PRIN_1",   "PRIN_2",   "PRIN_3",   "VECT_1_X", "VECT_1_Y", "VECT_1_Z",
+            "VECT_2_X", "VECT_2_Y", "VECT_2_Z", "VECT_3_X", "VECT_3_Y", "VECT_3_Z"};
+  if (!tensor) return {std::string(keyword)};
+  const std::string kind(keyword.substr(5));
+  return {"TR_" + kind + "_1", "TR_" + kind + "_2", "TR_" + kind + "_3"};
+}
+
+/// The keyword of a line that asks for something else than components, or nothing.
+std::string_view derives(const Keywords& line) {
+  for (const char* const keyword : {"INVARIANT", "ELEM_PRINCIPAUX", "TRAC_DIR", "TRAC_NOR"})
+    if (line.has(keyword)) return keyword;
+  return {};
+}
+
+/// INVARIANT and ELEM_PRINCIPAUX of the tensor among these components; TRAC_DIR, TRAC_NOR: T d of the tensor, or v . d of the
+/// vector; nothing where there is none.
+Derived derive(const Mesh& mesh, const Keywords& line, const std::vector<LinePoint>& points, const Field& field) {
+  const std::string_view keyword = derives(line);
+  const bool trace = keyword.starts_with("TRAC");
   const std::vector<Turned> parts = turned_components(field);
   auto part = std::ranges::find_if(parts, &Turned::tensor);
-  if (part == parts.end()) part = parts.begin();
+  if (part == parts.end() && trace) part = parts.begin();
   if (part == parts.end()) return {};
-  Traces made;
-  for (int k = 1; part->tensor && k <= 3; ++k) made.names.push_back(fmt::format("TR_{}_{}", kind, k));
-  if (!part->tensor) made.names.push_back(fmt::format("TRAC_{}", kind));
-  const std::vector<Eigen::Vector3d> along = directions(mesh, line, points);
+  Derived made{derived_names(keyword, part->tensor), {}};
+  const std::vector<Eigen::Vector3d> along = trace ? directions(mesh, line, points) : std::vector<Eigen::Vector3d>();
   for (std::size_t i = 0; i < points.size(); ++i) {
     std::vector<double>& row = made.rows.emplace_back();
     const auto lacks = [&](int c) { return c >= 0 && !field.has(i, static_cast<std::size_t>(c)); };
@@ -215,11 +258,16 @@ Traces traces(const Mesh& mesh, const Keywords& line, const std::vector<LinePoin
     if (part->tensor)
       for (std::size_t k = 0; k < tensor_axes.size(); ++k)
         tensor(tensor_axes[k].i, tensor_axes[k].j) = tensor(tensor_axes[k].j, tensor_axes[k].i) = value(k);
-    const Eigen::Vector3d product = tensor * along[i];
-    if (part->tensor)
+    if (keyword == "INVARIANT") {
+      row = invariants_of(tensor);
+    } else if (keyword == "ELEM_PRINCIPAUX") {
+      row = principals_of(tensor);
+    } else if (part->tensor) {
+      const Eigen::Vector3d product = tensor * along[i];
       row.assign(product.data(), product.data() + 3);
-    else
+    } else {
       row.push_back(Eigen::Vector3d(value(0), value(1), value(2)).dot(along[i]));
+    }
   }
   return made;
 }
@@ -251,11 +299,10 @@ Values interpolate(const Mesh& mesh, const Keywords& line, const Field& field, c
   if (line.text("REPERE") != "GLOBAL") turn_axes(mesh, line, points, own);
   own = with_components(own, components);
   Values values;
-  if (line.has("TRAC_DIR") || line.has("TRAC_NOR")) {
-    const Traces found = traces(mesh, line, points, own);
+  if (const std::string_view keyword = derives(line); !keyword.empty()) {
+    const Derived found = derive(mesh, line, points, own);
     if (found.names.empty())
-      fail("LIGNCOUPE_12", {{"keyword", line.path(line.has("TRAC_DIR") ? "TRAC_DIR" : "TRAC_NOR")},
-                            {"components", fmt::format("{}", fmt::join(components, ", "))}});
+      fail("LIGNCOUPE_12", {{"keyword", line.path(keyword)}, {"components", fmt::format("{}", fmt::join(components, ", "))}});
     values.components = found.names;
     for (std::size_t c = 0; c < found.names.size(); ++c) {
       std::vector<std::optional<double>>& column = values.at.emplace_back();
@@ -353,8 +400,9 @@ std::vector<std::int32_t> searched_cells(const Mesh& mesh, const Keywords& keywo
 /// The components of NOM_CMP, of the line or of all lines; without it all.
 std::vector<std::string> wanted_components(const Field& field, const std::string& name, const Keywords& keywords,
                                            const Keywords& line) {
+  const bool whole = line.has("INVARIANT") || line.has("ELEM_PRINCIPAUX");  // they are those of the whole tensor
   for (const Keywords* given : {&line, &keywords}) {
-    if (!given->has("NOM_CMP")) continue;
+    if (whole || !given->has("NOM_CMP")) continue;
     for (const std::string& component : given->texts("NOM_CMP"))
       if (field.component(component) < 0)
         fail("CREACHAMP_14", {{"keyword", given->path("NOM_CMP")},

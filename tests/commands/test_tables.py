@@ -129,6 +129,39 @@ G = CREA_TABLE(FONCTION=_F(FONCTION=f, PARA=('T', 'U')))
 assert G.getParameters() == ['T', 'U'] and G.getColumnType('T') == 'R' and G.getValues('U') == ([1, 2], [1, 5])
 """))
 
+    def test_a_column_without_values_makes_no_list(self):
+        """dict_CREA_TABLE gave CREA_TABLE an empty list, which it refuses."""
+        self.ok(self.study("""
+t = T.EXTR_TABLE()
+t = t.S.VIDE()
+assert t.values()['S'] == [None]
+U = CREA_TABLE(**t.dict_CREA_TABLE())
+assert U.values() == {'V': [2.5], 'N': [2]}, U.values()
+"""))
+
+    def test_arrays_of_numpy(self):
+        """What IMPR_TABLE and IMPR_FONCTION save, numpy and LIRE_FONCTION read; a cell without number is nan, a text is refused."""
+        self.ok(self.study("""
+import numpy
+DEFI_FICHIER(UNITE=60, FICHIER='table.npy', ACCES='NEW')
+IMPR_TABLE(TABLE=T, FORMAT='NUMPY', UNITE=60, NOM_PARA=('N', 'V'), TRI=_F(NOM_PARA='V'))
+assert numpy.load('table.npy').tolist() == [[3, -3], [1, 1.5], [2, 2.5]]
+HOLES = CREA_TABLE(LISTE=(_F(PARA='A', LISTE_R=(1.0, 2.0)), _F(PARA='B', LISTE_R=(5.0,), NUME_LIGN=(2,))))
+IMPR_TABLE(TABLE=HOLES, FORMAT='NUMPY', UNITE=60)
+found = numpy.load('table.npy')
+assert numpy.isnan(found[0, 1]) and found[1].tolist() == [2, 5]
+F = DEFI_FONCTION(NOM_PARA='INST', VALE=(0.0, 1.0, 2.0, 5.0))
+G = DEFI_FONCTION(NOM_PARA='INST', VALE=(0.0, 3.0, 2.0, 4.0))
+IMPR_FONCTION(FORMAT='NUMPY', UNITE=60, COURBE=(_F(FONCTION=F), _F(FONCTION=G)))
+H = LIRE_FONCTION(FORMAT='NUMPY', UNITE=60, NOM_PARA='INST', INDIC_RESU=(1, 3))
+assert H.Valeurs() == G.Valeurs() and numpy.load('table.npy').shape == (2, 3)
+try:
+    IMPR_TABLE(TABLE=T, FORMAT='NUMPY', UNITE=60)
+    raise SystemExit('a text was saved')
+except AsterError as error:
+    assert "'S'" in str(error) or 'S' in str(error), error
+"""))
+
     def test_survives_the_run(self):
         self.ok(self.study(""))
         self.ok(self.run_study("POURSUITE()\nassert T['V', 2] == 2.5 and T\nFIN()\n"))

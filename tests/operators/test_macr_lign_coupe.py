@@ -127,6 +127,39 @@ class MacrLignCoupe(OperatorTest):
         self.assertAlmostEqual(self.column(self.lines({**line, "TRAC_NOR": "OUI", "REPERE": "LOCAL", "OPERATION": "MOYENNE"}, NUME_ORDRE=[0]), "TRAC_NOR")[0], 0.2 * root, 14)
         self.refuses("LIGNCOUPE_11", {**line, "TRAC_DIR": "OUI", "DIRECTION": [0.0, 0.0]}, "DIRECTION")
 
+    def test_invariants_and_principal_values_of_a_tensor(self):
+        """T turned by 30 degrees from diag(3, 1), SIZZ = -2, times x: those of the diagonal; of the whole tensor, whatever NOM_CMP says of other lines."""
+        angle, corners = math.radians(30), [(0, 0), (1, 0), (1, 1), (0, 1)]
+        c, s = math.cos(angle), math.sin(angle)
+        tensor = [3 * c * c + s * s, 3 * s * s + c * c, -2.0, 2 * c * s]
+        self.write_mesh("mesh_1", np.array(corners, float), [("QUAD4", [0, 1, 2, 3])])
+        self.write_result("result_2", "mesh_1", (0.0,), {"SIGM_NOEU": {0: {
+            "quantity": "SIEF_R", "location": "NOEU", "components": ["SIXX", "SIYY", "SIZZ", "SIXY"], "support": range(4), "present": None,
+            "values": np.array([[(1 + x) * value for value in tensor] for x, _ in corners])}}}, label="RESU")
+        line = {"NB_POINTS": 3, "COOR_ORIG": [0.0, 0.5], "COOR_EXTR": [1.0, 0.5]}
+        subject = {"RESULTAT": concept("result_2"), "NOM_CHAM": "SIGM_NOEU", "NOM_CMP": ["SIXX"]}
+        for row in self.lines({**line, "INVARIANT": "OUI"}, **subject):
+            size = 1 + row["COOR_X"]
+            self.assertEqual(list(row)[-5:], ["COOR_Z", "VMIS", "TRESCA", "TRACE", "DETER"])
+            expected = [size * math.sqrt(((3 - 1)**2 + (1 + 2)**2 + (3 + 2)**2) / 2), 5 * size, 2 * size, -6 * size**3]
+            np.testing.assert_allclose([row[name] for name in ("VMIS", "TRESCA", "TRACE", "DETER")], expected, rtol=1e-13)
+        for row in self.lines({**line, "ELEM_PRINCIPAUX": "OUI"}, **subject):
+            size = 1 + row["COOR_X"]
+            np.testing.assert_allclose([row[f"PRIN_{k}"] for k in (1, 2, 3)], [-2 * size, size, 3 * size], rtol=1e-13)
+            axes = [[row[f"VECT_{k}_{axis}"] for axis in "XYZ"] for k in (1, 2, 3)]
+            np.testing.assert_allclose(axes, [[0, 0, 1], [-s, c, 0], [c, s, 0]], atol=1e-13)
+        self.write(corners, [("QUAD4", [0, 1, 2, 3])], corners)
+        self.refuses("LIGNCOUPE_12", {**line, "INVARIANT": "OUI"}, "DX")
+
+    def test_polar_axes(self):
+        """u = x, which is r e_r: in the plane as CYLINDRIQUE, in space X radial, Y tangential, Z along z."""
+        points, cells = bricks(2)
+        self.write(points, cells, points)
+        line = {"NB_POINTS": 3, "COOR_ORIG": [0.1, 0.9, 0.2], "COOR_EXTR": [0.8, 0.3, 0.6], "REPERE": "POLAIRE", "ORIGINE": [0.0, 0.0, 0.0]}
+        for row in self.lines(line, NUME_ORDRE=[0]):
+            x, y, z = (row[c] for c in PLACE[1:])
+            np.testing.assert_allclose([row[c] for c in ("DX", "DY", "DZ")], [math.hypot(x, y), 0, z], atol=1e-14)
+
     def test_axes_of_a_vector_that_is_not_whole_leave_it_out(self):
         self.write([(0, 0), (1, 0), (1, 1), (0, 1)], [("QUAD4", [0, 1, 2, 3])], [(1, 2)] * 4, present=np.array([(1, 1), (1, 0), (1, 1), (1, 1)], np.uint8))
         rows = self.lines({"NB_POINTS": 2, "COOR_ORIG": [1.0, 0.0], "COOR_EXTR": [1.0, 1.0], "REPERE": "UTILISATEUR", "ANGL_NAUT": [90.0]}, NUME_ORDRE=[0])

@@ -9,6 +9,7 @@ from ..tables.curves import Curve
 from ..tables.table import Table
 from . import checks, functions, places
 from .drawing import draw
+from .table_commands import save
 
 # ------------------------------------------------------------------------------------------------- IMPR_FONCTION
 
@@ -18,6 +19,8 @@ def impr_fonction(call):
     made = [curve for i, factor in enumerate(k["COURBE"], 1) for curve in _curves(call, factor, f"COURBE[{i}]")]
     if k["FORMAT"] == "TABLEAU":
         _print_columns(call, made)
+    elif k["FORMAT"] == "NUMPY":
+        save(call, curves.columns(made))
     else:
         draw(call, made)
 

@@ -1,5 +1,6 @@
 """CREA_TABLE, IMPR_TABLE, TEST_TABLE, RECU_TABLE."""
 
+from ..core.files import whole
 from ..core.late import numpy
 from ..tables import filters, printing, storage
 from ..tables.curves import Curve
@@ -124,6 +125,9 @@ def impr_table(call):
     if k["FORMAT"] in ("XMGRACE", "PNG"):
         _draw(call, concept, table)
         return
+    if k["FORMAT"] == "NUMPY":
+        save(call, table)
+        return
     if "TITRE" in k:
         table.titr = title(call)
     pages = _pages(call, table, k.get("PAGINATION", ()))
@@ -142,6 +146,21 @@ def _draw(call, concept, table):
         points = table.Array(table.para[0], name).reshape(-1, 2)
         made.append(Curve(points[:, 0], points[:, 1], (table.para[0], name), f"{concept.label} {name}"))
     draw(call, made)
+
+
+def save(call, table):
+    """FORMAT='NUMPY': the numbers of a table as the array of numpy.save, a row a row; nan where a cell has none."""
+    for name in table.para:
+        filters.numeric(call, table, name, "NOM_PARA")
+    unit, where = call.keywords["UNITE"], f"{call.command}/UNITE, {call.where}"
+    path = call.study.announced_output(unit, ".npy", where)
+    array = numpy.array([[row.get(name) for name in table.para] for row in table.rows], float)
+    try:
+        with whole(path) as partial, open(partial, "wb") as file:
+            numpy.save(file, array)
+    except OSError:
+        call.fail("COMMAND_8", "UNITE", unit=unit, file=path)
+    call.study.written_units[unit] = path
 
 
 def _pages(call, table, names):

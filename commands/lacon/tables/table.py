@@ -188,10 +188,12 @@ class Table:
         return numpy.array([[row[n] for n in names] for row in self.rows if all(row.get(n) is not None for n in names)], float)
 
     def dict_CREA_TABLE(self):
-        """Keywords of CREA_TABLE that make this table."""
+        """Keywords of CREA_TABLE that make this table, without columns that have no value."""
         lists = []
         for name, kind in zip(self.para, self.type):
             numbered = [(i, row[name]) for i, row in enumerate(self.rows, 1) if row.get(name) is not None]
+            if not numbered:
+                continue
             factor = _F({"PARA": name, "LISTE_" + kind[0]: [v for _, v in numbered]})
             if len(numbered) < len(self.rows):
                 factor["NUME_LIGN"] = [i for i, _ in numbered]
