@@ -71,6 +71,7 @@ struct Load {
   std::vector<LoadTerm> pressure;  ///< PRES (positive towards the body) and CISA_2D (along the tangent) on skin cells
   std::vector<LoadTerm> force;     ///< FX, FY, FZ on cells, for each unit of their length, area or volume
   std::vector<LoadTerm> gravity;   ///< FX, FY, FZ on body cells, for each unit of mass
+  std::vector<LoadTerm> strain;    ///< EPXX, ..., EPYZ on body cells: strains without stress
   std::vector<Relation> relations;
 };
 

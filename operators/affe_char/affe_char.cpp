@@ -1,6 +1,7 @@
 #include "lacon/operators/affe_char/affe_char.hpp"
 
-#include <fmt/core.h>
+#include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
@@ -85,26 +86,31 @@ class OrientationCheck {
   SkinSides sides_;
 };
 
-/// Throws CHARGE_6 where the cell cannot carry the load, CHARGE_9 where its kernel knows no such component.
-void check_cell(const LoadScene& scene, const CellKeyword& kind, std::int32_t cell, const std::string& component,
-                const std::string& source) {
-  if (!fits(scene, kind, cell))
-    fail("CHARGE_6", {{"keyword", source},
-                      {"cell", cell_name(cell)},
-                      {"type", std::string(scene.mesh.row(static_cast<std::size_t>(cell)).name)},
-                      {"carrier", part(kind.carrier)}});
-  const catalog::ElementRow& row = *scene.element(cell);
-  const char* const* values = scene.registry.kernel(row, kind.option, LACON_LOAD).parameters;
-  std::string known;
-  for (; *values; ++values) {
-    if (component == *values) return;
-    known += (known.empty() ? "" : ", ") + std::string(*values);
-  }
+/// CHARGE_6: the cell cannot carry the load.
+[[noreturn]] void refuse_cell(const LoadScene& scene, std::int32_t cell, const char* carrier, const std::string& source) {
+  fail("CHARGE_6", {{"keyword", source},
+                    {"cell", cell_name(cell)},
+                    {"type", std::string(scene.mesh.row(static_cast<std::size_t>(cell)).name)},
+                    {"carrier", part(carrier)}});
+}
+
+/// CHARGE_9: its element knows no such component.
+[[noreturn]] void refuse_component(const LoadScene& scene, std::int32_t cell, const std::string& component,
+                                   const std::vector<std::string>& known, const std::string& source) {
   fail("CHARGE_9", {{"keyword", source},
                     {"component", component},
                     {"cell", cell_name(cell)},
-                    {"element", std::string(row.name)},
-                    {"known", known}});
+                    {"element", std::string(scene.element(cell)->name)},
+                    {"known", fmt::format("{}", fmt::join(known, ", "))}});
+}
+
+void check_cell(const LoadScene& scene, const CellKeyword& kind, std::int32_t cell, const std::string& component,
+                const std::string& source) {
+  if (!fits(scene, kind, cell)) refuse_cell(scene, cell, kind.carrier, source);
+  const char* const* values = scene.registry.kernel(*scene.element(cell), kind.option, LACON_LOAD).parameters;
+  std::vector<std::string> known;
+  for (; *values; ++values) known.emplace_back(*values);
+  if (std::find(known.begin(), known.end(), component) == known.end()) refuse_component(scene, cell, component, known, source);
 }
 
 void load_cells(Load& load, const LoadScene& scene, const Keywords& keywords) {
@@ -187,9 +193,29 @@ void load_rotation(Load& load, const LoadScene& scene, const Keywords& keywords)
   }
 }
 
-}  // namespace
-
-namespace {
+/// PRE_EPSI: strains without stress on body cells; the components are those of the element's stresses.
+void load_strains(Load& load, const LoadScene& scene, const Keywords& keywords) {
+  GivenTerms given(scene, "CHARGE_5", load.strain);
+  const auto is_body = [&](std::int32_t cell) {
+    const catalog::ElementRow* row = scene.element(cell);
+    return row && row->role == catalog::Role::solid;
+  };
+  for (const Keywords& factor : keywords.factors("PRE_EPSI"))
+    for (const NamedPlaces& named : named_cells(scene, factor, is_body))
+      for (const std::string component : {"EPXX", "EPYY", "EPZZ", "EPXY", "EPXZ", "EPYZ"}) {
+        if (!factor.has(component)) continue;
+        const LoadValue value = value_of(scene.base, factor, component);
+        for (const std::int32_t cell : named.members) {
+          if (!is_body(cell)) refuse_cell(scene, cell, "body_cell", named.source);
+          std::vector<std::string> known;
+          for (const std::string_view stress : scene.element(cell)->stress)
+            known.push_back("EP" + std::string(stress.substr(2)));
+          if (std::find(known.begin(), known.end(), component) == known.end())
+            refuse_component(scene, cell, component, known, named.source);
+          given.add(cell, part("place_cell", {{"cell", cell_name(cell)}}), component, value, named.source);
+        }
+      }
+}
 
 /// The displacements that an occurrence imposes, and those that LIAISON='ENCASTRE' or BLOCAGE='DEPLACEMENT' hold: all of the
 /// model.
@@ -216,6 +242,7 @@ Load affe_char(const Mesh& mesh, const Model& model, Registry& registry, const B
   load_cells(load, scene, keywords);
   load_gravity(load, scene, keywords);
   load_rotation(load, scene, keywords);
+  load_strains(load, scene, keywords);
   add_relations(load, scene, keywords);
 
   const auto cells = [](const std::vector<LoadTerm>& terms) {
@@ -227,7 +254,8 @@ Load affe_char(const Mesh& mesh, const Model& model, Registry& registry, const B
   const std::tuple<std::size_t, const char*> lines[] = {
       {load.imposed.size(), "imposed_dofs"},          {cells(load.nodal), "nodes_under_forces"},
       {cells(load.pressure), "cells_under_pressure"}, {cells(load.force), "cells_under_forces"},
-      {cells(load.gravity), "cells_under_gravity"},   {load.relations.size(), "relations_between"}};
+      {cells(load.gravity), "cells_under_gravity"},   {cells(load.strain), "cells_with_strains"},
+      {load.relations.size(), "relations_between"}};
   std::string text;
   for (const auto& [count, what] : lines)
     if (count > 0) text += (text.empty() ? "" : ", ") + part(what, {{"count", std::to_string(count)}});

@@ -303,18 +303,7 @@ class Instant {
               {"label", setting_.result().label},
               {"relation", std::string(setting_.behaviours(order_).relation[static_cast<std::size_t>(cell)]->name)}});
     const auto is_plastic = [&](std::int32_t cell) { return across(cell, catalog::TransverseStrain::isochoric); };
-    const auto in_plane_stress = [&](std::int32_t cell) {
-      return setting_.points().is_plane_stress(static_cast<std::size_t>(cell));
-    };
-    std::vector<double> grown(field.n_rows(), 0.0);
-    if (std::any_of(field.support.begin(), field.support.end(), in_plane_stress))
-      grown = setting_.materials().thermal_strains(field);
-    for (std::size_t i = 0; i < field.support.size(); ++i) {
-      if (!in_plane_stress(field.support[i])) continue;
-      const double nu = setting_.materials().elastic(field.support[i], "NU");  // SIZZ = 0
-      for (std::size_t row = field.first_row(i); row < field.first_row(i + 1); ++row)
-        field.at(row, static_cast<std::size_t>(field.component("EPZZ"))) += (1 + nu) / (1 - nu) * grown[row];
-    }
+    setting_.materials().add_free_strain_across(field);
     if (std::none_of(field.support.begin(), field.support.end(), is_plastic)) return field;
     if (measure != Strain::small)
       fail("CALCCHAMP_3", {{"cell", cell_name(*std::find_if(field.support.begin(), field.support.end(), is_plastic))},
@@ -323,6 +312,7 @@ class Instant {
     const Field stress = setting_.base().field(setting_.result(), "SIEF_ELGA", order_);
     const std::vector<std::int64_t> place = places(stress, setting_.mesh().n_cells());
     const TensorRows tensors(stress, "SI"), own(field, "EP");
+    const std::vector<Eigen::Matrix3d> free = setting_.materials().free_strains(field);
     const auto zz = static_cast<std::size_t>(field.component("EPZZ"));
     for (std::size_t i = 0; i < field.support.size(); ++i) {
       const std::int32_t cell = field.support[i];
@@ -331,21 +321,22 @@ class Instant {
       const std::size_t first = stress.first_row(static_cast<std::size_t>(place[static_cast<std::size_t>(cell)]));
       for (std::size_t row = field.first_row(i); row < field.first_row(i + 1); ++row) {
         const Eigen::Matrix3d in_plane = own[row];
-        field.at(row, zz) = 3 * grown[row] + (1 - 2 * nu) / young * tensors[first + row - field.first_row(i)].trace() -
+        field.at(row, zz) = free[row].trace() + (1 - 2 * nu) / young * tensors[first + row - field.first_row(i)].trace() -
                             in_plane(0, 0) - in_plane(1, 1);
       }
     }
     return field;
   }
 
-  /// Less the thermal strain.
+  /// Less the strains without stress.
   Field mechanical_strain(const Field& whole, std::string name) {
     Field field = whole;
     field.name = std::move(name);
-    const std::vector<double> thermal = setting_.materials().thermal_strains(field);
-    for (const char* const component : {"EPXX", "EPYY", "EPZZ"})
-      for (std::size_t row = 0; row < thermal.size(); ++row)
-        field.at(row, static_cast<std::size_t>(field.component(component))) -= thermal[row];
+    const std::vector<Eigen::Matrix3d> free = setting_.materials().free_strains(field);
+    for (const TensorAxes& axes : tensor_axes)
+      if (const int column = field.component("EP" + std::string(axes.name)); column >= 0)
+        for (std::size_t row = 0; row < free.size(); ++row)
+          field.at(row, static_cast<std::size_t>(column)) -= free[row](axes.i, axes.j);
     return field;
   }
 

@@ -79,6 +79,7 @@ double largest_entry(std::span<const double> values) {
 Equilibrium::Equilibrium(const StaticProblem& problem)
     : problem_(problem),
       heat_(problem),
+      prestrain_(problem),
       relations_(problem),
       elements_(nodes_of_elements(problem)),
       system_(problem.numbering, elements_, symmetry_of(problem)),
@@ -113,6 +114,7 @@ std::vector<double> Equilibrium::load(double instant, const StaticState& state) 
   const std::vector<double> values = problem_.imposed_values(instant), relations = relations_.values(instant, values);
   instant_ = instant;
   heat(instant);
+  prestrain_.move_to(instant, points_);
   if (offset_skins(instant)) {
     pair(state.displacement);
     has_new_gaps_ = true;
@@ -132,7 +134,7 @@ std::vector<double> Equilibrium::load(double instant, const StaticState& state) 
 }
 
 bool Equilibrium::load_goes_on(double before, double last, double instant, const StaticState& state) const {
-  if (heat_.acts()) return false;
+  if (strains_freely(state)) return false;
   const auto goes_on = [&](const auto& load) {
     const std::vector<double> a = load(before), b = load(last), c = load(instant);
     double product = 0;
@@ -220,6 +222,12 @@ void Equilibrium::add_solids(const StaticState& state, const StaticState& previo
       input.previous_stress = start = heat_.start_of_step(s, points_[s], from);
       input.thermal = points_[s].thermal;
       if (from) input.previous_thermal = from->points[s].thermal;
+    }
+    const PointValues* const before = from ? &from->points[s] : nullptr;
+    if (Prestrain::acts(points_[s], before)) {
+      if (start.empty()) start = from ? before->stress : std::vector<double>(set.cells.size() * set.n_stress(), 0.0);
+      prestrain_.take_off(s, points_[s], before, start);
+      input.previous_stress = start;
     }
     ElementSet heated;
     if (!points_[s].parameter.empty()) {

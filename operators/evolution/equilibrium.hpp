@@ -11,6 +11,7 @@
 #include "lacon/operators/evolution/convergence.hpp"
 #include "lacon/operators/evolution/heat.hpp"
 #include "lacon/operators/evolution/matrix_choice.hpp"
+#include "lacon/operators/evolution/prestrain.hpp"
 #include "lacon/operators/evolution/relations.hpp"
 #include "lacon/operators/evolution/static_problem.hpp"
 #include "lacon/operators/evolution/system.hpp"
@@ -31,8 +32,14 @@ class Equilibrium {
   StaticState natural_state() const;
   /// Temperatures of an instant, which assemblies from now on take; load() does so too.
   void heat(double instant) { heat_.move_to(instant, points_); }
-  void heat_as(const StaticState& state) { heat_.copy(state.points, points_); }
+  /// Temperatures and initial strains as a state has them.
+  void strain_as(const StaticState& state) {
+    heat_.copy(state.points, points_);
+    prestrain_.copy(state.points, points_);
+  }
   const Heat& heat() const { return heat_; }
+  /// Whether there are strains without stress, thermal or initial ones, or were in a state.
+  bool strains_freely(const StaticState& state) const { return heat_.acts() || prestrain_.acts(state); }
   /// A state that laws without a memory start from; until then it is the natural one.
   void start_from(const StaticState& state) { origin_ = state; }
   const std::optional<StaticState>& origin() const { return origin_; }
@@ -41,7 +48,7 @@ class Equilibrium {
   /// @return the change of what is imposed, (n_nodes, n_components), 0 elsewhere
   std::vector<double> load(double instant, const StaticState& state);
   /// Whether what acts goes on from an instant to the next as it went from the one before, rather than back; not said where
-  /// temperatures act.
+  /// temperatures or initial strains act.
   bool load_goes_on(double before, double last, double instant, const StaticState& state) const;
   /// The same state with no law that flows (INDIPLAS), so that a step begins elastically.
   StaticState at_rest(const StaticState& state) const;
@@ -127,6 +134,7 @@ class Equilibrium {
 
   const StaticProblem& problem_;
   Heat heat_;
+  Prestrain prestrain_;
   Relations relations_;
   Ragged<std::int32_t> elements_;  ///< nodes of each element that has a matrix
   System system_;

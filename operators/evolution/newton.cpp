@@ -94,7 +94,7 @@ void Newton::begin(StaticState& state, const std::string& label, bool as_given) 
 }
 
 void Newton::restart(const StaticState& state) {
-  equilibrium_.heat_as(state);
+  equilibrium_.strain_as(state);
   choice_.start_instant();
   solver_.forget_right_sides();
   equilibrium_.rest_at(state.displacement);
@@ -154,7 +154,7 @@ int Newton::iterate(double instant, StaticState& state, const std::function<void
   // softens goes on alone. A body that is unloaded now would overshoot on it, to and fro between two states
   const bool goes_on =
       motion_ && equilibrium_.has_memory() && equilibrium_.load_goes_on(motion_->from, motion_->to, instant, state);
-  if (equilibrium_.has_memory() || equilibrium_.heat().acts() || equilibrium_.has_new_gaps() ||
+  if (equilibrium_.has_memory() || equilibrium_.strains_freely(previous) || equilibrium_.has_new_gaps() ||
       state.displacement != previous.displacement ||
       choice_.suited(options_.prediction, equilibrium_.touches(state)) != equilibrium_.matrix())
     assemble(state, goes_on ? previous : equilibrium_.at_rest(previous), options_.prediction);

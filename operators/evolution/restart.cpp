@@ -118,6 +118,7 @@ void write(const hdf5::Group& group, const StaticState& state) {
   for (std::size_t s = 0; s < state.points.size(); ++s) {
     group.write(fmt::format("points/{}/stress", s), state.points[s].stress);
     group.write(fmt::format("points/{}/variable", s), state.points[s].variable);
+    if (!state.points[s].initial.empty()) group.write(fmt::format("points/{}/initial", s), state.points[s].initial);
     if (state.points[s].thermal.empty()) continue;
     group.write(fmt::format("points/{}/thermal", s), state.points[s].thermal);
     group.write(fmt::format("points/{}/parameter", s), state.points[s].parameter);
@@ -134,9 +135,11 @@ StaticState read_state(const hdf5::Group& group) {
     state.patches.*quantity.values = group.read<double>(std::string("patches/") + quantity.component);
   for (std::int64_t s = 0; s < group.integer("sets"); ++s) {
     const auto values = [&](const char* name) { return group.read<double>(fmt::format("points/{}/{}", s, name)); };
-    const bool heated = group.has(fmt::format("points/{}/thermal", s));
-    state.points.push_back({values("stress"), values("variable"), heated ? values("thermal") : std::vector<double>(),
-                            heated ? values("parameter") : std::vector<double>()});
+    const auto optional = [&](const char* name) {
+      return group.has(fmt::format("points/{}/{}", s, name)) ? values(name) : std::vector<double>();
+    };
+    state.points.push_back(
+        {values("stress"), values("variable"), optional("thermal"), optional("parameter"), optional("initial")});
   }
   return state;
 }

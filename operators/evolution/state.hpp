@@ -11,8 +11,9 @@ struct PointValues {
   std::vector<double> stress;    ///< (cells, points, components)
   std::vector<double> variable;  ///< (cells, points, internal variables)
   // what temperatures do; empty where there are none
-  std::vector<double> thermal;    ///< (cells, points): thermal strain
-  std::vector<double> parameter;  ///< (cells, parameters), where parameters follow the temperature
+  std::vector<double> thermal;       ///< (cells, points): thermal strain
+  std::vector<double> parameter;     ///< (cells, parameters), where parameters follow the temperature
+  std::vector<double> initial = {};  ///< (cells, points, 6): initial strains, empty without any
 };
 
 /// All unknowns at an instant, and what laws with a memory remember.

@@ -8,6 +8,7 @@
 #include "lacon/catalog/messages.hpp"
 #include "lacon/catalog/wording.hpp"
 #include "lacon/operators/contact/contact_field.hpp"
+#include "lacon/operators/evolution/prestrain.hpp"
 #include "lacon/structures/displacement.hpp"
 
 namespace lacon {
@@ -184,6 +185,23 @@ Field variable_field(const StaticProblem& problem, const StaticState& state) {
   return field;
 }
 
+namespace {
+
+/// The initial strains under which a state was found.
+void add_initial_strains(const StaticProblem& problem, const Base& base, const Result& result, std::int64_t order,
+                         StaticState& state) {
+  InitialStrains strains;
+  ModelPoints points(problem.mesh, problem.model, *problem.registry);
+  for (const ResultLoad& load : result.stage(order).loads) strains.add(base, load, problem.mesh, points);
+  check_laws(strains, problem.solids);
+  const auto place = std::find(result.orders.begin(), result.orders.end(), order) - result.orders.begin();
+  for (std::size_t s = 0; !strains.empty() && s < problem.solids.size(); ++s)
+    state.points[s].initial = strains.at(result.instants[static_cast<std::size_t>(place)], problem.solids[s].cells,
+                                         problem.solids[s].tabulation.n_points);
+}
+
+}  // namespace
+
 StaticState archived_state(const StaticProblem& problem, const Base& base, const Result& result, std::int64_t order) {
   if (result.mesh != problem.model.mesh)
     fail("EVOLUTION_1", {{"first", "ETAT_INIT/EVOL_NOLI"}, {"second", "MODELE"}, {"what", part("meshes")}});
@@ -211,6 +229,7 @@ StaticState archived_state(const StaticProblem& problem, const Base& base, const
       points.variable = points_of(*variable, variable_place, set, variable_names(set), result.label);
     }
   }
+  add_initial_strains(problem, base, result, order, state);
   if (fresh >= 0) inform("EVOLUTION_13", {{"label", result.label}, {"cell", cell_name(fresh)}});
   if (!problem.contact || !has_field(result, "CONT_ELEM", order)) return state;
   state.patches = patches_of(base.field(result, "CONT_ELEM", order), problem.mesh, *problem.contact, result.label);

@@ -9,6 +9,7 @@
 #include "lacon/catalog/messages.hpp"
 #include "lacon/catalog/wording.hpp"
 #include "lacon/operators/evolution/behaviours.hpp"
+#include "lacon/operators/evolution/prestrain.hpp"
 #include "lacon/structures/displacement.hpp"
 
 namespace lacon {
@@ -41,15 +42,6 @@ void read_materials(StaticProblem& problem, const Base& base, const std::string&
   problem.thermal = std::make_unique<ThermalMaterials>(base, *problem.material_field, std::move(temperatures));
 }
 
-/// Whether a temperature acts on a law: its kernel takes thermal strains, or it answers to a change of strain with isotropic
-/// elasticity, so that the stress that it starts from takes what their change does (Heat::start_of_step()).
-bool feels_heat(const ElementSet& set) {
-  constexpr std::string_view linear[] = {"ELAS/PETIT",           "ELAS/PETIT_REAC",
-                                         "VMIS_ISOT_LINE/PETIT", "VMIS_ISOT_LINE/PETIT_REAC",
-                                         "VMIS_ISOT_TRAC/PETIT", "VMIS_ISOT_TRAC/PETIT_REAC"};
-  return set.kernel->takes_thermal_strain || std::find(std::begin(linear), std::end(linear), set.option) != std::end(linear);
-}
-
 /// Keep temperatures, and functions of them, only where solids are concerned. Throws BEHAVIOUR_5 for a law that takes none.
 void check_temperatures(StaticProblem& problem) {
   bool any = false;
@@ -59,7 +51,8 @@ void check_temperatures(StaticProblem& problem) {
       any = true;
       // stresses that turn with the body do not keep their elastic strain where moduli change
       const bool turns = set.option.starts_with("VMIS_") && set.option.ends_with("/GROT_GDEP");
-      if (!feels_heat(set) || (turns && problem.thermal->has_functions(set.cells)))
+      if (!(set.kernel->takes_thermal_strain || starts_elastically(set)) ||
+          (turns && problem.thermal->has_functions(set.cells)))
         fail("BEHAVIOUR_5", {{"behaviour", set.option}, {"cell", cell_name(cell)}});
     }
   if (!any) problem.thermal.reset();
@@ -218,6 +211,7 @@ StaticProblem read_problem(const Order& order, const Base& base) {
 
   problem.imposed.assign(problem.n_dofs(), 0);
   std::vector<std::string> seen;
+  ModelPoints points(problem.mesh, problem.model, *problem.registry);
   for (const Keywords& excit : keywords.factors("EXCIT")) {
     const std::string load_id = excit.concept_id("CHARGE");
     if (std::find(seen.begin(), seen.end(), load_id) != seen.end())
@@ -225,10 +219,12 @@ StaticProblem read_problem(const Order& order, const Base& base) {
     seen.push_back(load_id);
     if (base.load(load_id).model != model_id)
       fail("EVOLUTION_1", {{"first", excit.path("CHARGE")}, {"second", "MODELE"}, {"what", part("models")}});
-    problem.loads.push_back(read_load(
-        problem, base, {load_id, excit.optional_concept("FONC_MULT").value_or(""), excit.text("TYPE_CHARGE")}, excit.path("")));
+    const ResultLoad load{load_id, excit.optional_concept("FONC_MULT").value_or(""), excit.text("TYPE_CHARGE")};
+    problem.loads.push_back(read_load(problem, base, load, excit.path("")));
+    problem.initial_strains.add(base, load, problem.mesh, points);
     for (const std::int64_t dof : problem.loads.back().dofs) problem.imposed[dof] = 1;
   }
+  check_laws(problem.initial_strains, problem.solids);
   if (const auto contact = keywords.optional_concept("CONTACT")) {
     problem.contact = base.contact(*contact);
     if (problem.contact->model != model_id)

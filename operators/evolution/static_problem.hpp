@@ -11,6 +11,7 @@
 #include "lacon/elements/registry.hpp"
 #include "lacon/operators/contact/offsets.hpp"
 #include "lacon/operators/evolution/loads.hpp"
+#include "lacon/operators/fields/initial_strains.hpp"
 #include "lacon/operators/fields/thermal.hpp"
 #include "lacon/structures/base.hpp"
 
@@ -28,6 +29,7 @@ struct StaticProblem {
   std::vector<ElementSet> solids;
   std::vector<Spring> springs;
   std::vector<TimedLoad> loads;
+  InitialStrains initial_strains;  ///< of the loads
   std::optional<Contact> contact;
   std::optional<ContactOffsets> offsets;  ///< of its skins
   std::vector<std::uint8_t> exists;       ///< (n_nodes, n_components): the degree of freedom exists

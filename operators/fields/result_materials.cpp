@@ -9,7 +9,7 @@
 namespace lacon {
 
 ResultMaterials::ResultMaterials(const Base& base, const Result& result, const Mesh& mesh, ModelPoints& points)
-    : mesh_(mesh), points_(points), field_(base.material_field(result.material_field)) {
+    : base_(base), result_(result), mesh_(mesh), points_(points), field_(base.material_field(result.material_field)) {
   MaterialTemperatures temperatures = read_temperatures(base, result.material_field, mesh);
   table_ = std::make_unique<MaterialTable>(read_materials(base, field_, temperatures));
   thermal_ = std::make_unique<ThermalMaterials>(base, field_, std::move(temperatures));
@@ -19,11 +19,11 @@ double ResultMaterials::elastic(std::int32_t cell, const char* name) const {
   return table_->parameter(cell, std::string("ELAS/") + name, points_.element(static_cast<std::size_t>(cell))->name);
 }
 
-template <class Use>
-void ResultMaterials::each_size(const Field& field, const Use& use) const {
+template <class Matters, class Use>
+void ResultMaterials::each_size(const Field& field, const Matters& matters, const Use& use) {
   std::map<std::size_t, std::pair<std::vector<std::int32_t>, std::vector<std::size_t>>> sizes;
   for (std::size_t i = 0; i < field.support.size(); ++i) {
-    if (!thermal_->concerns(field.support[i])) continue;
+    if (!matters(field.support[i])) continue;
     auto& [cells, places] = sizes[field.first_row(i + 1) - field.first_row(i)];
     cells.push_back(field.support[i]);
     places.push_back(i);
@@ -31,16 +31,59 @@ void ResultMaterials::each_size(const Field& field, const Use& use) const {
   for (const auto& [n_points, of_size] : sizes) use(of_size.first, of_size.second, static_cast<int>(n_points));
 }
 
-std::vector<double> ResultMaterials::thermal_strains(const Field& field) {
-  std::vector<double> strains(field.n_rows(), 0.0);
-  const Ground ground(mesh_, points_);
-  each_size(field, [&](const std::vector<std::int32_t>& cells, const std::vector<std::size_t>& places, int n_points) {
-    const std::vector<double> found = thermal_->strains(ground, field.instant, cells, n_points);
+const InitialStrains& ResultMaterials::initial_strains(std::int64_t order) {
+  const ResultStage& stage = result_.stage(order);
+  if (!initial_ || initial_->first != stage.first) {
+    initial_.emplace(stage.first, InitialStrains());
+    for (const ResultLoad& load : stage.loads) initial_->second.add(base_, load, mesh_, points_);
+  }
+  return initial_->second;
+}
+
+std::vector<Eigen::Matrix3d> ResultMaterials::free_strains(const Field& field) {
+  using Cells = std::vector<std::int32_t>;
+  using Places = std::vector<std::size_t>;
+  std::vector<Eigen::Matrix3d> strains(field.n_rows(), Eigen::Matrix3d::Zero());
+  const auto each_row = [&](const Places& places, int n_points, const auto& use) {
     for (std::size_t i = 0; i < places.size(); ++i)
-      std::copy_n(found.begin() + static_cast<std::ptrdiff_t>(i) * n_points, n_points,
-                  strains.begin() + static_cast<std::ptrdiff_t>(field.first_row(places[i])));
-  });
+      for (std::size_t p = 0; p < static_cast<std::size_t>(n_points); ++p)
+        use(strains[field.first_row(places[i]) + p], i * static_cast<std::size_t>(n_points) + p);
+  };
+  const Ground ground(mesh_, points_);
+  each_size(
+      field, [&](std::int32_t cell) { return thermal_->concerns(cell); },
+      [&](const Cells& cells, const Places& places, int n_points) {
+        const std::vector<double> found = thermal_->strains(ground, field.instant, cells, n_points);
+        each_row(places, n_points,
+                 [&](Eigen::Matrix3d& strain, std::size_t at) { strain += found[at] * Eigen::Matrix3d::Identity(); });
+      });
+  const InitialStrains& initial = initial_strains(field.order);
+  each_size(
+      field, [&](std::int32_t cell) { return initial.concerns(cell); },
+      [&](const Cells& cells, const Places& places, int n_points) {
+        const std::vector<double> found = initial.at(field.instant, cells, n_points);
+        each_row(places, n_points, [&](Eigen::Matrix3d& strain, std::size_t at) {
+          for (std::size_t k = 0; k < tensor_axes.size(); ++k) {
+            const auto& [name, i, j] = tensor_axes[k];
+            strain(i, j) += found[at * tensor_axes.size() + k];
+            if (i != j) strain(j, i) = strain(i, j);
+          }
+        });
+      });
   return strains;
+}
+
+void ResultMaterials::add_free_strain_across(Field& strain) {
+  const auto in_plane_stress = [&](std::int32_t cell) { return points_.is_plane_stress(static_cast<std::size_t>(cell)); };
+  if (std::none_of(strain.support.begin(), strain.support.end(), in_plane_stress)) return;
+  const std::vector<Eigen::Matrix3d> free = free_strains(strain);
+  const auto zz = static_cast<std::size_t>(strain.component("EPZZ"));
+  for (std::size_t i = 0; i < strain.support.size(); ++i) {
+    if (!in_plane_stress(strain.support[i])) continue;
+    const double nu = elastic(strain.support[i], "NU");  // SIZZ = 0
+    for (std::size_t row = strain.first_row(i); row < strain.first_row(i + 1); ++row)
+      strain.at(row, zz) += free[row](2, 2) + nu / (1 - nu) * (free[row](0, 0) + free[row](1, 1));
+  }
 }
 
 std::vector<double> ResultMaterials::moduli(const Field& field) {
@@ -48,16 +91,18 @@ std::vector<double> ResultMaterials::moduli(const Field& field) {
   for (const std::int32_t cell : field.support) moduli.insert(moduli.end(), {elastic(cell, "E"), elastic(cell, "NU")});
   const Ground ground(mesh_, points_);
   const std::string paths[] = {"ELAS/E", "ELAS/NU"};
-  each_size(field, [&](const std::vector<std::int32_t>& cells, const std::vector<std::size_t>& places, int n_points) {
-    if (!thermal_->has_functions(cells)) return;
-    std::vector<double> constant;
-    for (const std::size_t i : places) constant.insert(constant.end(), {moduli[2 * i], moduli[2 * i + 1]});
-    const std::vector<double> found = thermal_->parameters(ground, field.instant, cells, n_points, paths, constant);
-    for (std::size_t i = 0; i < places.size(); ++i) {
-      moduli[2 * places[i]] = found[2 * i];
-      moduli[2 * places[i] + 1] = found[2 * i + 1];
-    }
-  });
+  each_size(
+      field, [&](std::int32_t cell) { return thermal_->concerns(cell); },
+      [&](const std::vector<std::int32_t>& cells, const std::vector<std::size_t>& places, int n_points) {
+        if (!thermal_->has_functions(cells)) return;
+        std::vector<double> constant;
+        for (const std::size_t i : places) constant.insert(constant.end(), {moduli[2 * i], moduli[2 * i + 1]});
+        const std::vector<double> found = thermal_->parameters(ground, field.instant, cells, n_points, paths, constant);
+        for (std::size_t i = 0; i < places.size(); ++i) {
+          moduli[2 * places[i]] = found[2 * i];
+          moduli[2 * places[i] + 1] = found[2 * i + 1];
+        }
+      });
   return moduli;
 }
 
@@ -93,11 +138,12 @@ Field energy_of_stress(const Field& stress, std::string name, ResultMaterials& m
 
 Field energy_of_strain(const Field& strain, std::string name, ResultMaterials& materials) {
   Field energy = energies_like(strain, std::move(name));
-  const std::vector<double> moduli = materials.moduli(strain), thermal = materials.thermal_strains(strain);
+  const std::vector<double> moduli = materials.moduli(strain);
+  const std::vector<Eigen::Matrix3d> free = materials.free_strains(strain);
   const TensorRows tensors(strain, "EP");
   for (std::size_t i = 0; i < strain.support.size(); ++i)
     for (std::size_t row = strain.first_row(i); row < strain.first_row(i + 1); ++row) {
-      const Eigen::Matrix3d e = tensors[row] - thermal[row] * Eigen::Matrix3d::Identity();
+      const Eigen::Matrix3d e = tensors[row] - free[row];
       const double mu = moduli[2 * i] / (2 * (1 + moduli[2 * i + 1])),
                    lambda = 2 * mu * moduli[2 * i + 1] / (1 - 2 * moduli[2 * i + 1]);
       energy.values[row] = lambda / 2 * e.trace() * e.trace() + mu * inner(e, e);
@@ -108,14 +154,15 @@ Field energy_of_strain(const Field& strain, std::string name, ResultMaterials& m
 Field plastic_strain(const Field& strain, const Field& stress, std::string name, ResultMaterials& materials) {
   Field field = strain;
   field.name = std::move(name);
-  const std::vector<double> moduli = materials.moduli(stress), thermal = materials.thermal_strains(strain);
+  const std::vector<double> moduli = materials.moduli(stress);
+  const std::vector<Eigen::Matrix3d> free = materials.free_strains(strain);
   const TensorRows sigma(stress, "SI"), whole(strain, "EP");
   for (std::size_t i = 0; i < strain.support.size(); ++i) {
     const double young = moduli[2 * i], nu = moduli[2 * i + 1];
     for (std::size_t row = strain.first_row(i); row < strain.first_row(i + 1); ++row) {
       const Eigen::Matrix3d one = Eigen::Matrix3d::Identity(),
                             elastic = ((1 + nu) * sigma[row] - nu * sigma[row].trace() * one) / young,
-                            plastic = whole[row] - thermal[row] * one - elastic;
+                            plastic = whole[row] - free[row] - elastic;
       for (const TensorAxes& axes : tensor_axes)
         if (const int column = field.component("EP" + std::string(axes.name)); column >= 0)
           field.at(row, static_cast<std::size_t>(column)) = plastic(axes.i, axes.j);

@@ -1,10 +1,13 @@
 #pragma once
-// What the cells of a result are made of at an instant: moduli and thermal strains, and energies that follow from them.
+// What the cells of a result are made of at an instant: moduli and strains without stress, and energies that follow from them.
+#include <Eigen/Core>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "lacon/operators/fields/cell_points.hpp"
+#include "lacon/operators/fields/initial_strains.hpp"
 #include "lacon/operators/fields/thermal.hpp"
 
 namespace lacon {
@@ -17,28 +20,34 @@ class ResultMaterials {
 
   /// "E" or "NU" of a cell at the reference temperature. Throws ELEMENT_3.
   double elastic(std::int32_t cell, const char* name) const;
-  /// Thermal strains of each row of a field at integration points.
-  std::vector<double> thermal_strains(const Field& field);
+  /// Strains that make no stress, thermal and initial ones (PRE_EPSI), of each row of a field at integration points.
+  std::vector<Eigen::Matrix3d> free_strains(const Field& field);
+  /// Add to EPZZ in plane stress, which strains() takes for that of an isotropic elastic body, what strains without stress do.
+  void add_free_strain_across(Field& strain);
   /// E and NU of each cell of a field at integration points, (cells, 2), at its instant.
   std::vector<double> moduli(const Field& field);
 
  private:
-  /// Call use(cells, their places in the field's support, n_points) for cells of as many points.
-  template <class Use>
-  void each_size(const Field& field, const Use& use) const;
+  /// Call use(cells, their places in the field's support, n_points) for cells that matter, of as many points.
+  template <class Matters, class Use>
+  static void each_size(const Field& field, const Matters& matters, const Use& use);
+  const InitialStrains& initial_strains(std::int64_t order);
 
+  const Base& base_;
+  const Result& result_;
   const Mesh& mesh_;
   ModelPoints& points_;
   MaterialField field_;
   std::unique_ptr<MaterialTable> table_;
   std::unique_ptr<ThermalMaterials> thermal_;
+  std::optional<std::pair<std::int64_t, InitialStrains>> initial_;  ///< of a stage, by its first order
 };
 
 /// Elastic energy for each unit of volume out of stresses at integration points, sigma : C^-1 : sigma / 2: TOTALE.
 Field energy_of_stress(const Field& stress, std::string name, ResultMaterials& materials);
-/// The same out of strains, less thermal ones: e : C : e / 2.
+/// The same out of strains, less those without stress: e : C : e / 2.
 Field energy_of_strain(const Field& strain, std::string name, ResultMaterials& materials);
-/// What stresses leave of strains, less thermal ones: e - C^-1 : sigma. @param strain and stress on the same cells
+/// What stresses leave of strains, less those without stress: e - C^-1 : sigma. @param strain and stress on the same cells
 Field plastic_strain(const Field& strain, const Field& stress, std::string name, ResultMaterials& materials);
 /// Work done from one state to the next for each unit of volume, the mean of both stresses times the change of strain, added to
 /// `before`. Where `before` is null the state before is the natural one.

@@ -14,11 +14,9 @@ struct LoadGroup {
   const char* place;
   std::vector<LoadTerm> Load::*terms;
 };
-constexpr LoadGroup load_groups[] = {{"imposed", "node", &Load::imposed},
-                                     {"nodal_force", "node", &Load::nodal},
-                                     {"pressure", "cell", &Load::pressure},
-                                     {"force", "cell", &Load::force},
-                                     {"gravity", "cell", &Load::gravity}};
+constexpr LoadGroup load_groups[] = {{"imposed", "node", &Load::imposed},   {"nodal_force", "node", &Load::nodal},
+                                     {"pressure", "cell", &Load::pressure}, {"force", "cell", &Load::force},
+                                     {"gravity", "cell", &Load::gravity},   {"initial_strain", "cell", &Load::strain}};
 
 }  // namespace
 

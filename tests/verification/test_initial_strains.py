@@ -1,0 +1,139 @@
+"""PRE_EPSI against closed forms: bodies that take the strain without stress, bodies that are held, functions, states that follow one another."""
+
+import unittest
+
+import numpy as np
+
+from load_study import POISSON, YOUNG, LoadTest, flat_block, flat_brick
+from results import Result
+
+#: components of a strain without stress, and those that plane strain and axisymmetry know
+STRAIN = {"EPXX": 1e-3, "EPYY": -2e-3, "EPZZ": 3e-3, "EPXY": 4e-4, "EPXZ": -5e-4, "EPYZ": 6e-4}
+FLAT = ("EPXX", "EPYY", "EPZZ", "EPXY")
+
+
+def strained(modelisation):
+    """Of an element with these axes: (what PRE_EPSI gives, u = G x that leaves it without stress in them)."""
+    given = {name: value for name, value in STRAIN.items() if modelisation == "3D" or name in FLAT}
+    if modelisation == "3D":
+        e = STRAIN
+        return given, np.array([[e["EPXX"], e["EPXY"], e["EPXZ"]], [e["EPXY"], e["EPYY"], e["EPYZ"]], [e["EPXZ"], e["EPYZ"], e["EPZZ"]]])
+    if modelisation == "AXIS":  # u_r = e r: the hoop strain is the radial one, and a shear turns the sections
+        given["EPZZ"] = given["EPXX"]
+        return given, np.array([[given["EPXX"], 0], [2 * given["EPXY"], given["EPYY"]]])
+    across = POISSON * given["EPZZ"] if modelisation == "D_PLAN" else 0  # what is held across a plane section spreads in it
+    return given, np.array([[given["EPXX"] + across, given["EPXY"]], [given["EPXY"], given["EPYY"] + across]])
+
+
+class InitialStrains(LoadTest):
+    def test_a_body_takes_the_strain_without_stress(self):
+        """u = e x where LEFT moves so, in every modelisation, with elasticity and plasticity; in plane strain SIZZ = -E EPZZ."""
+        cases = [("D_PLAN", "QUAD8", "ELAS", "PETIT"), ("C_PLAN", "TRIA6", "ELAS", "PETIT"), ("C_PLAN", "QUAD4", "VMIS_ISOT_LINE", "PETIT"),
+                 ("AXIS", "QUAD4", "ELAS", "PETIT_REAC"), ("3D", "HEXA8", "VMIS_ISOT_LINE", "PETIT"), ("3D", "TETRA10", "ELAS", "PETIT")]
+        text = f"HARD = DEFI_MATERIAU(ELAS=_F(E={YOUNG}, NU={POISSON}), ECRO_LINE=_F(SY=1e6, D_SIGM_EPSI=1.0))\n"
+        meshes = []
+        for modelisation, kind, law, measure in cases:
+            given, gradient = strained(modelisation)
+            moved = ", ".join(f"D{c}=formula('''{' + '.join(f'({float(g)!r}) * {axis}' for g, axis in zip(row, 'XYZ'))}''')"
+                              for c, row in zip("XYZ", gradient))
+            text += f"""model({20 + len(meshes)}, '{modelisation}', HARD)
+H = AFFE_CHAR_CINE_F(MODELE=MODEL, MECA_IMPO=_F(GROUP_MA='LEFT', {moved}))
+S = AFFE_CHAR_MECA(MODELE=MODEL, PRE_EPSI=_F({'TOUT="OUI"' if kind == 'QUAD8' else 'GROUP_MA="BODY"'}, {', '.join(f'{k}={v!r}' for k, v in given.items())}))
+solve(_F(CHARGE=H, FONC_MULT=RAMP), _F(CHARGE=S, FONC_MULT=RAMP), COMPORTEMENT=_F(RELATION='{law}', DEFORMATION='{measure}'))
+CALC_CHAMP(reuse=R[-1], RESULTAT=R[-1], CONTRAINTE='SIEF_NOEU', DEFORMATION=('EPSI_NOEU',))
+"""
+            meshes.append(flat_brick(kind) if modelisation == "3D" else flat_block(kind, start=1.0 if modelisation == "AXIS" else 0.0))
+        for (modelisation, kind, law, measure), result in zip(cases, self.solved(meshes, text)):
+            with self.subTest(f"{modelisation} {kind} {law} {measure}"):
+                given, gradient = strained(modelisation)
+                exact = result.points @ gradient.T
+                # PETIT_REAC has second order terms of the strain in a step
+                near = 1e-2 if measure == "PETIT_REAC" else 1e-8
+                self.assert_near(self.displacement(result, 2, len(gradient)), exact, near)
+                self.assert_near(self.displacement(result, 1, len(gradient)), exact / 2, near)
+                for component in ("SIXX", "SIYY", "SIZZ", "SIXY"):
+                    stress = -YOUNG * given["EPZZ"] if (modelisation, component) == ("D_PLAN", "SIZZ") else 0
+                    found = result.at_nodes("SIEF_NOEU", 2, component)
+                    self.assertLessEqual(np.abs(found - stress).max(), near * YOUNG * 1e-3, component)
+                across = {"D_PLAN": 0.0}.get(modelisation, given["EPZZ"])
+                self.assertLessEqual(np.abs(result.at_nodes("EPSI_NOEU", 2, "EPZZ") - across).max(), near * 1e-3)
+
+    def test_a_held_bar_is_pressed(self):
+        """Held at both ends: sigma = -E e, also on a first instant alone and with MECA_STATIQUE; mechanical strains and energies are the stress's."""
+        text = """
+model(20, 'C_PLAN')
+H = AFFE_CHAR_CINE(MODELE=MODEL, MECA_IMPO=(_F(GROUP_MA='LEFT', DX=0), _F(GROUP_MA='RIGHT', DX=0), _F(GROUP_MA='BASE', DY=0)))
+S = AFFE_CHAR_MECA(MODELE=MODEL, PRE_EPSI=_F(GROUP_MA='BODY', EPXX=1e-3))
+ONCE = DEFI_LIST_REEL(VALE=(0.0, 1.0))
+R.append(STAT_NON_LINE(MODELE=MODEL, CHAM_MATER=FIELD, EXCIT=(_F(CHARGE=H), _F(CHARGE=S)), INCREMENT=_F(LIST_INST=ONCE)))
+R.append(MECA_STATIQUE(MODELE=MODEL, CHAM_MATER=FIELD, EXCIT=(_F(CHARGE=H), _F(CHARGE=S)), LIST_INST=ONCE))
+for k in range(2):
+    CALC_CHAMP(reuse=R[k], RESULTAT=R[k], CONTRAINTE='SIEF_NOEU', DEFORMATION=('EPME_NOEU', 'EPSP_NOEU'), FORCE='REAC_NODA')
+    elastic = POST_ELEM(RESULTAT=R[k], INST=1.0, ENER_ELAS=_F(TOUT='OUI'))['TOTALE', 1]
+    stored = POST_ELEM(RESULTAT=R[k], INST=1.0, ENER_POT=_F(TOUT='OUI'))['TOTALE', 1]
+    assert abs(elastic / (2000.0 * 1e-6 / 2 * 2.0) - 1) < 1e-10 and abs(stored / elastic - 1) < 1e-10, (elastic, stored)
+"""
+        run = self.run_text([flat_block("QUAD8")], text)
+        self.assertEqual(run.status, 0, run.stdout[-3000:] + run.stderr[-3000:])
+        for k, order in ((0, 1), (1, 2)):
+            result = Result(self.folder / "loads.base", f"R[{k}]")
+            for name, component, value in (("SIEF_NOEU", "SIXX", -YOUNG * 1e-3), ("EPME_NOEU", "EPXX", -1e-3), ("EPME_NOEU", "EPYY", POISSON * 1e-3),
+                                           ("EPME_NOEU", "EPZZ", POISSON * 1e-3), ("EPSP_NOEU", "EPXX", 0), ("EPSP_NOEU", "EPZZ", 0)):
+                scale = YOUNG * 1e-3 if name.startswith("SI") else 1e-3
+                self.assertLessEqual(np.abs(result.at_nodes(name, order, component) - value).max(), 1e-10 * scale, (k, name, component))
+            reaction = result.at_nodes("REAC_NODA", order, "DX")
+            self.assertAlmostEqual(reaction[result.points[:, 0] < 1e-9].sum(), YOUNG * 1e-3, delta=1e-9)
+
+    def test_a_state_goes_on_with_its_initial_strains(self):
+        """A second computation under the same load leaves the stress, one without the load leaves none; plasticity and elasticity alike."""
+        text = f"""
+HARD = DEFI_MATERIAU(ELAS=_F(E={YOUNG}, NU={POISSON}), ECRO_LINE=_F(SY=1e6, D_SIGM_EPSI=1.0))
+for law in ('ELAS', 'VMIS_ISOT_LINE'):
+    model(20, 'C_PLAN', HARD)
+    H = AFFE_CHAR_CINE(MODELE=MODEL, MECA_IMPO=(_F(GROUP_MA='LEFT', DX=0), _F(GROUP_MA='RIGHT', DX=0), _F(GROUP_MA='BASE', DY=0)))
+    S = AFFE_CHAR_MECA_F(MODELE=MODEL, PRE_EPSI=_F(GROUP_MA='BODY', EPXX=only_inst('1e-3 * min(INST, 1.0)')))
+    first = STAT_NON_LINE(MODELE=MODEL, CHAM_MATER=FIELD, EXCIT=(_F(CHARGE=H), _F(CHARGE=S)), INCREMENT=_F(LIST_INST=TIMES), COMPORTEMENT=_F(RELATION=law))
+    LATER = DEFI_LIST_REEL(VALE=(1.0, 2.0))
+    for loads in ((_F(CHARGE=H), _F(CHARGE=S)), (_F(CHARGE=H),)):
+        R.append(STAT_NON_LINE(MODELE=MODEL, CHAM_MATER=FIELD, EXCIT=loads, INCREMENT=_F(LIST_INST=LATER), COMPORTEMENT=_F(RELATION=law),
+                               ETAT_INIT=_F(EVOL_NOLI=first)))
+        CALC_CHAMP(reuse=R[-1], RESULTAT=R[-1], CONTRAINTE='SIEF_NOEU')
+"""
+        run = self.run_text([flat_block("QUAD4")], text)
+        self.assertEqual(run.status, 0, run.stdout[-3000:] + run.stderr[-3000:])
+        for k, stress in enumerate((-YOUNG * 1e-3, 0.0) * 2):
+            found = Result(self.folder / "loads.base", f"R[{k}]").at_nodes("SIEF_NOEU", 1, "SIXX")
+            self.assertLessEqual(np.abs(found - stress).max(), 1e-10 * YOUNG * 1e-3, k)
+
+    def test_functions_of_place_and_time(self):
+        """EPXX = X t: u = t X2 / 2, exact with quadratic cells."""
+        text = ""
+        meshes = [flat_block("TRIA6"), flat_brick("HEXA20")]
+        for k, (modelisation, held) in enumerate((("C_PLAN", ("LEFT DX", "BASE DY")), ("3D", ("LEFT DX", "FRONT DY", "BASE DZ")))):
+            hold = ", ".join(f"_F(GROUP_MA='{group}', {dof}=0)" for group, dof in map(str.split, held))
+            text += f"""model({20 + k}, '{modelisation}')
+H = AFFE_CHAR_CINE(MODELE=MODEL, MECA_IMPO=({hold}))
+S = AFFE_CHAR_MECA_F(MODELE=MODEL, PRE_EPSI=_F(GROUP_MA='BODY', EPXX=formula('X * INST')))
+solve(_F(CHARGE=H), _F(CHARGE=S, FONC_MULT=ONE))
+"""
+        for mesh, result in zip(meshes, self.solved(meshes, text)):
+            dimension = mesh.points.shape[1]
+            exact = np.zeros_like(mesh.points)
+            exact[:, 0] = mesh.points[:, 0] ** 2 / 2
+            for order, factor in ((1, 0.5), (2, 1.0)):
+                self.assert_near(self.displacement(result, order, dimension), factor * exact, 1e-9)
+
+    def test_what_takes_none_is_refused_by_name(self):
+        for expected, text in (
+                ("BEHAVIOUR_6", "S = AFFE_CHAR_MECA(MODELE=MODEL, PRE_EPSI=_F(GROUP_MA='BODY', EPXX=1e-3))\n"
+                                "solve(_F(CHARGE=H), _F(CHARGE=S), COMPORTEMENT=_F(RELATION='ELAS', DEFORMATION='GDEF_LOG'))"),
+                ("CHARGE_9", "AFFE_CHAR_MECA(MODELE=MODEL, PRE_EPSI=_F(GROUP_MA='BODY', EPXZ=1e-3))"),
+                ("CHARGE_6", "AFFE_CHAR_MECA(MODELE=MODEL, PRE_EPSI=_F(GROUP_MA='LEFT', EPXX=1e-3))")):
+            run = self.run_text([flat_block("QUAD4")], "model(20, 'D_PLAN')\n"
+                                "H = AFFE_CHAR_CINE(MODELE=MODEL, MECA_IMPO=_F(GROUP_MA='BASE', DX=0, DY=0))\n" + text)
+            self.assertEqual(run.status, 2, run.stdout + run.stderr)
+            self.assertIn(expected, run.stderr)
+
+
+if __name__ == "__main__":
+    unittest.main()
