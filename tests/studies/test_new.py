@@ -68,6 +68,24 @@ class New(StudyTest):
         self.assertEqual(text.count("ALGO_CONT='LAC'"), 1)
         self.assert_runs()
 
+    def test_planes_of_symmetry_and_supports_may_cut_several_bodies(self):
+        """A quarter of a shaft in a hub, each group on both: the zero of both axes is held across; moved up, the lower plane is the support."""
+        def ring(inner, width):
+            return lambda s, t: ((inner + t * width) * np.sin(np.pi / 2 * s), (inner + t * width) * np.cos(np.pi / 2 * s))
+
+        rings = [block("QUAD4", lines(cells, 0), lines(3, 0), place=ring(inner, width), name=name, sides={**skin, "left": "SYM_X", "right": "SYM_Y"})
+                 for cells, inner, width, name, skin in ((8, 10.0, 5.0, "SHAFT", {"top": "OUTER"}), (12, 15.0, 9.0, "HUB", {"bottom": "BORE"}))]
+        mesh = union(rings)
+        self.assertEqual(self.new(mesh).returncode, 0)
+        text = self.assert_checked()
+        self.assertIn("MECA_IMPO=(_F(GROUP_MA='SYM_X', DX=0.0), _F(GROUP_MA='SYM_Y', DY=0.0))", text)
+        self.assertIn("SYM_X: plane X = 0, on several bodies", text)
+        self.assertIn("lengths are those of the mesh, 24 at its largest", text)
+        self.assert_runs()
+        mesh.points[:, 1] += 2.0
+        self.assertEqual(self.new(mesh, "--out", "moved.comm").returncode, 0)
+        self.assertIn("MECA_IMPO=(_F(GROUP_MA='SYM_Y', DX=0.0, DY=0.0), _F(GROUP_MA='SYM_X', DX=0.0))", self.assert_checked("moved.comm"))
+
     def test_the_skin_itself_is_taken_before_the_whole_boundary(self):
         mesh = plate()
         skins = {group: members for group, members in mesh.cell_groups.items() if group in ("FINE", "LOAD", "SIDE_1")}

@@ -27,24 +27,32 @@ _sample = 1500  # cells of a skin that are looked at
 
 
 class Skin:
-    """A group of skin cells: dimension of the mesh, nodes' coordinates, part of the mesh, length of a cell; middles and outward
-    unit normals of cells that stand for all, and how far they are apart."""
+    """A group of skin cells: dimension and size of the mesh, nodes' coordinates, the parts of the mesh that it bounds, length of a cell;
+    middles and outward unit normals of cells that stand for all, and how far they are apart."""
 
-    def __init__(self, name, dimension, points, part, length, spacing, middles, normals):
-        self.name, self.dimension, self.points, self.part, self.length = name, dimension, points, part, length
-        self.spacing, self.middles, self.normals = spacing, middles, normals
+    def __init__(self, name, dimension, size, points, parts, length, spacing, middles, normals):
+        self.name, self.dimension, self.points, self.parts, self.length = name, dimension, points, parts, length
+        self.size, self.spacing, self.middles, self.normals = size, spacing, middles, normals
+        self.part = parts[0] if len(parts) == 1 else -1
 
     def plane(self):
         """(axis, coordinate) of the coordinate plane it lies in; nothing where it lies in none"""
         spread = self.points.max(axis=0) - self.points.min(axis=0)
         for axis in range(self.dimension):
             if spread[axis] <= 1e-6 * max(spread.max(), 1e-300) and spread.max() > 0:
-                return "XYZ"[axis], float(self.points[:, axis].mean())
+                at = float(self.points[:, axis].mean())
+                return "XYZ"[axis], 0.0 if abs(at) <= 1e-6 * self.size else at
         return None
 
     def words(self):
         at = self.plane()
-        return f"plane {at[0]} = {at[1]:.6g}" if at else "curved or inclined"
+        on = {0: ", on no body", 1: ""}.get(len(self.parts), ", on several bodies")
+        return (f"plane {at[0]} = {at[1]:.6g}" if at else "curved or inclined") + on
+
+    def mirror(self):
+        """Whether it looks like a plane of symmetry: at the zero of an axis; across the last one, where bodies stand, if it cuts several."""
+        at = self.plane()
+        return bool(at) and at[1] == 0.0 and (at[0] != "XYZ"[self.dimension - 1] or len(self.parts) > 1)
 
 
 class MeshGroups:
@@ -58,6 +66,7 @@ class MeshGroups:
             offset, nodes = contents.connectivity(file)
             members = contents.groups(file, "cells")
         self._offset, self._nodes = offset, nodes
+        self.size = float(numpy.ptp(self.points, axis=0).max())
         of_family = {"POI": 0, "SEG": 1, "TRIA": 2, "QUAD": 2}
         dimension = numpy.array([of_family.get(re.match("[A-Z]*", t)[0], 3) for t in types])[kind]
         self._body = dimension == self.dimension
@@ -72,10 +81,10 @@ class MeshGroups:
                 own = numpy.unique(cells(group))
                 first = nodes[offset[group]], nodes[offset[group] + 1]
                 length = float(numpy.linalg.norm(self.points[first[0]] - self.points[first[1]], axis=1).mean())
-                parts = numpy.unique(self._part[own])
+                parts = [part for part in numpy.unique(self._part[own]).tolist() if part >= 0]
                 step = -(-len(group) // _sample)
                 some, spacing = group[::step], length * step ** (1 / (self.dimension - 1))
-                self.skins.append(Skin(name, self.dimension, self.points[own], int(parts[0]) if len(parts) == 1 else -1, length, spacing,
+                self.skins.append(Skin(name, self.dimension, self.size, self.points[own], parts, length, spacing,
                                        *self._faces([nodes[offset[c]:offset[c + 1]] for c in some])))
 
     def _parts(self, offset, nodes, body):
@@ -156,11 +165,10 @@ def study(groups, mesh_file, read_format):
     in_contact = {skin.name for pair in pairs for skin in pair}
     free = [skin for skin in groups.skins if skin.name not in in_contact]
     axis = "XYZ"[groups.dimension - 1]
-    flat = [skin for skin in free if skin.plane() and skin.plane()[0] == axis and skin.part >= 0]
+    mirrors = [skin for skin in free if skin.mirror()]
+    flat = [skin for skin in free if skin.plane() and skin.plane()[0] == axis and skin.parts and skin not in mirrors]
     held = min(flat, key=lambda skin: skin.plane()[1], default=None)
-    size = numpy.ptp(groups.points, axis=0).max()
-    mirrors = [skin for skin in free if skin.plane() and skin.plane()[0] != axis and abs(skin.plane()[1]) <= 1e-6 * size]
-    pressed = max((skin for skin in flat if skin is not held), key=lambda skin: skin.plane()[1], default=None)
+    pressed = max((skin for skin in flat if skin is not held and skin.part >= 0), key=lambda skin: skin.plane()[1], default=None)
     degrees = ["DX", "DY", "DZ"][:groups.dimension]
     fixed = ", ".join(f"{d}=0.0" for d in degrees)
     modelisation = "3D" if groups.dimension == 3 else "D_PLAN"
@@ -169,7 +177,7 @@ def study(groups, mesh_file, read_format):
         "#", f"#   lacon check THIS_FILE --unit 20={mesh_file}",
         f"#   lacon THIS_FILE --unit 20={mesh_file} --unit 80=result.med", "#",
         f"# Bodies: {', '.join(groups.bodies) or 'the mesh has no group of body cells'}",
-        "# Skins:", *[f"#   {skin.name}: {skin.words()}{'' if skin.part >= 0 else ', on no body or on several'}" for skin in groups.skins], "",
+        "# Skins:", *[f"#   {skin.name}: {skin.words()}" for skin in groups.skins], "",
         "DEBUT()", "", f"MESH = LIRE_MAILLAGE(UNITE=20, FORMAT={read_format!r})"]
     skins = tuple(skin.name for skin in groups.skins if skin.part >= 0)
     if skins:
@@ -186,7 +194,9 @@ def study(groups, mesh_file, read_format):
                   "#                          ZONE=_F(APPARIEMENT='MORTAR', ALGO_CONT='LAC', GROUP_MA_ESCL='SLAVE', GROUP_MA_MAIT='MASTER'))"]
     plane = "" if groups.dimension == 3 else "  # CHOOSE: D_PLAN, C_PLAN or AXIS"
     lines += ["", f"MODEL = AFFE_MODELE(MAILLAGE={cut}, AFFE=_F(TOUT='OUI', PHENOMENE='MECANIQUE', MODELISATION={modelisation!r})){plane}",
-              "", "STEEL = DEFI_MATERIAU(ELAS=_F(E=210000.0, NU=0.3))  # CHOOSE; one AFFE for each material, by GROUP_MA",
+              "", f"# CHOOSE units that agree: lengths are those of the mesh, {groups.size:.3g} at its largest. Where they are mm, E and pressures are in MPa,",
+              "# forces in N; where they are metres, E and pressures are in Pa (steel: E=210e9)",
+              "STEEL = DEFI_MATERIAU(ELAS=_F(E=210000.0, NU=0.3))  # CHOOSE; one AFFE for each material, by GROUP_MA",
               f"MATTER = AFFE_MATERIAU(MAILLAGE={cut}, AFFE=_F(TOUT='OUI', MATER=STEEL))", ""]
     imposed, why = [], []
     if held:
