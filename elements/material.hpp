@@ -22,6 +22,10 @@ class MaterialTable {
   bool has(std::int32_t cell) const { return field_->material[cell] >= 0; }
   std::int32_t of(std::int32_t cell) const { return field_->material[cell]; }                    ///< number of its material
   const std::string& label(std::int32_t cell) const { return labels_[field_->material[cell]]; }  ///< of its material
+  /// Whether its material has a keyword of DEFI_MATERIAU, "ECRO_LINE".
+  bool has_law(std::int32_t cell, const std::string& keyword) const {
+    return has(cell) && materials_[of(cell)].laws.contains(keyword);
+  }
   double parameter(std::int32_t cell, std::string_view path, std::string_view element) const;
   /// The parameter, or nothing where the cell's material lacks it.
   std::optional<double> find(std::int32_t cell, std::string_view path) const;

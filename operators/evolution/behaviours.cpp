@@ -21,6 +21,17 @@ Behaviours read_behaviours(const Mesh& mesh, const std::vector<Keywords>& occurr
   return behaviours;
 }
 
+std::vector<bool> named_cells(const Mesh& mesh, const std::vector<Keywords>& occurrences) {
+  const bool all =
+      occurrences.empty() || std::ranges::any_of(occurrences, [](const Keywords& factor) { return !factor.has("GROUP_MA"); });
+  std::vector<bool> named(mesh.n_cells(), all);
+  for (const Keywords& factor : occurrences)
+    for (const std::string& group : factor.texts("GROUP_MA"))
+      for (const std::int32_t cell : cells_of_group(mesh, group, factor.path("GROUP_MA")))
+        named[static_cast<std::size_t>(cell)] = true;
+  return named;
+}
+
 BehaviourRows behaviour_rows(const Registry& registry, std::string_view option) {
   const std::size_t slash = option.find('/');
   const catalog::RelationRow* relation = registry.find_relation(option.substr(0, slash));

@@ -13,6 +13,9 @@ namespace lacon {
 /// A later occurrence wins over an earlier one; cells that none names are elastic with small strains.
 Behaviours read_behaviours(const Mesh& mesh, const std::vector<Keywords>& occurrences);
 
+/// The cells that an occurrence names, all where there is none: elasticity is then what was asked for.
+std::vector<bool> named_cells(const Mesh& mesh, const std::vector<Keywords>& occurrences);
+
 /// The rows behind "VMIS_ISOT_LINE/PETIT". Throws BEHAVIOUR_3 where neither the catalogue nor a plug-in has them.
 struct BehaviourRows {
   const catalog::RelationRow& relation;

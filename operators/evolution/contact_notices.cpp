@@ -67,9 +67,19 @@ void ContactNotices::tell_what_overlaps(double instant) {
   }
 }
 
+void ContactNotices::remember_what_meets() {
+  const std::vector<ContactZone>& zones = present_.problem.contact->zones;
+  for (std::size_t zone = 0; zone < zones.size(); ++zone)
+    if (std::ranges::any_of(zones[zone].patches, [&](std::int32_t patch) {
+          return present_.contact->geometry().coverage(static_cast<std::size_t>(patch)) > 0;
+        }))
+      met_.insert(zone);
+}
+
 void ContactNotices::start(double instant) {
   const ContactState* const contact = present_.contact;
   if (!contact) return;
+  remember_what_meets();
   std::int64_t locked = 0;
   std::size_t first = 0;
   for (std::size_t p = 0; p < contact->n_patches(); ++p)
@@ -95,6 +105,7 @@ void ContactNotices::accept(const SolvedInstant& solved) {
                             {"instant", fmt::format("{:.9g}", solved.instant)},
                             {"cell", first_cell(overlap.deepest)},
                             {"gap", fmt::format("{:.6g}", overlap.gap)}});
+  remember_what_meets();
   tell_what_is_too_deep(solved.instant);
   tell_what_overlaps(solved.instant);
   tell_what_nothing_presses(solved.instant);
@@ -108,6 +119,9 @@ void ContactNotices::accept(const SolvedInstant& solved) {
 }
 
 void ContactNotices::end(bool /*completed*/) {
+  for (std::size_t zone = 0; present_.contact && zone < present_.problem.contact->zones.size(); ++zone)
+    if (const ContactZone& names = present_.problem.contact->zones[zone]; !met_.contains(zone))
+      inform("EVOLUTION_43", {{"slave", names.slave_group}, {"master", names.master_group}});
   for (const auto& [zone, pierced] : pierced_) {
     const ContactZone& names = present_.problem.contact->zones[zone];
     inform("EVOLUTION_16", {{"slave", names.slave_group},
@@ -136,6 +150,7 @@ void ContactNotices::save(const hdf5::Group& group) const {
   group.write("pierced/gap", gaps);
   group.write("free", std::vector<std::int32_t>(free_.begin(), free_.end()));
   group.write("overlapping", std::vector<std::int64_t>(overlapping_.begin(), overlapping_.end()));
+  group.write("met", std::vector<std::int64_t>(met_.begin(), met_.end()));
   group.write("too_deep", std::vector<std::int64_t>(too_deep_.begin(), too_deep_.end()));
 }
 
@@ -149,6 +164,8 @@ void ContactNotices::resume(const hdf5::Group& group) {
   const auto free = group.read<std::int32_t>("free");
   free_ = {free.begin(), free.end()};
   for (const std::int64_t zone : group.read<std::int64_t>("overlapping")) overlapping_.insert(static_cast<std::size_t>(zone));
+  if (group.has("met"))  // a record of before it was kept: zones that meet again are known again
+    for (const std::int64_t zone : group.read<std::int64_t>("met")) met_.insert(static_cast<std::size_t>(zone));
   for (const std::int64_t zone : group.read<std::int64_t>("too_deep")) too_deep_.insert(static_cast<std::size_t>(zone));
 }
 

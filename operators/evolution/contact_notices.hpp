@@ -20,7 +20,7 @@ class ContactNotices : public EvolutionObserver {
   /// EVOLUTION_14: such patches inside their master; EVOLUTION_17; EVOLUTION_23: bodies that lie on others without a pressure;
   /// EVOLUTION_35: overlaps with RESOLUTION='NON'. Throws EVOLUTION_36 for one with STOP_INTERP='OUI'.
   void accept(const SolvedInstant& solved) override;
-  /// EVOLUTION_16: of each zone the patch that its master has pierced deepest.
+  /// EVOLUTION_16: of each zone the patch that its master has pierced deepest; EVOLUTION_43: zones whose skins never met.
   void end(bool completed) override;
   void save(const hdf5::Group& group) const override;
   void resume(const hdf5::Group& group) override;
@@ -37,6 +37,9 @@ class ContactNotices : public EvolutionObserver {
   /// EVOLUTION_23, once a body.
   void tell_what_nothing_presses(double instant);
 
+  /// Zones of which a patch sees a master join those that have met.
+  void remember_what_meets();
+
   /// EVOLUTION_35, once a zone, or EVOLUTION_36.
   void tell_what_overlaps(double instant);
 
@@ -44,6 +47,7 @@ class ContactNotices : public EvolutionObserver {
   Bodies bodies_;
   std::set<std::int32_t> free_;              ///< bodies that are held by contact alone, and of which nothing was told
   std::map<std::int32_t, Pierced> pierced_;  ///< by zone
+  std::set<std::size_t> met_;                ///< zones of which a patch has had a master
   std::set<std::size_t> too_deep_;           ///< zones of which it has been told
   std::set<std::size_t> overlapping_;        ///< likewise, of EVOLUTION_35
 };

@@ -7,8 +7,7 @@ namespace lacon {
 
 BodyGeometry geometry_of(const StaticProblem& problem, const Bodies& bodies) {
   BodyGeometry geometry{.dimension = problem.dimension, .coordinates = problem.mesh.coordinates};
-  geometry.is_of_revolution =
-      std::ranges::any_of(problem.solids, [](const ElementSet& set) { return set.row->geometry == catalog::Geometry::axis; });
+  geometry.is_of_revolution = problem.is_of_revolution();
   geometry.body.assign(problem.mesh.n_nodes(), -1);
   for (const ElementSet& set : problem.solids)
     for (const std::int32_t cell : set.cells)

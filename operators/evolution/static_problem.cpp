@@ -150,6 +150,10 @@ std::vector<double> StaticProblem::imposed_values(double instant) const {
   return values;
 }
 
+bool StaticProblem::is_of_revolution() const {
+  return std::ranges::any_of(solids, [](const ElementSet& set) { return set.row->geometry == catalog::Geometry::axis; });
+}
+
 std::string StaticProblem::dof_name(std::int64_t dof) const {
   return node_name(dof / n_components()) + " " + components[dof % n_components()];
 }
@@ -187,6 +191,34 @@ void warn_of_locking(const StaticProblem& problem) {
            {{"count", std::to_string(count)}, {"cell", cell_name(first)}, {"value", fmt::format("{:g}", largest)}});
 }
 
+/// BEHAVIOUR_7: body cells that COMPORTEMENT leaves out; BEHAVIOUR_8: elastic ones whose material has a tension curve.
+void warn_of_other_behaviours(const StaticProblem& problem, const std::vector<Keywords>& occurrences) {
+  const std::vector<bool> named = named_cells(problem.mesh, occurrences);
+  struct Found {
+    std::int64_t count = 0;
+    std::int32_t first = -1;
+    void add(std::int32_t cell) {
+      if (count++ == 0) first = cell;
+    }
+  } left_out;
+  std::map<std::pair<std::int32_t, std::string_view>, Found> elastic;  // by material and keyword of its curve
+  for (const ElementSet& set : problem.solids)
+    for (const std::int32_t cell : set.cells) {
+      if (!named[static_cast<std::size_t>(cell)]) left_out.add(cell);
+      if (set.option.starts_with("ELAS/"))
+        for (const catalog::RelationRow& law : catalog::relations())
+          if (!law.hardening.empty() && problem.materials->has_law(cell, std::string(law.hardening)))
+            elastic[{problem.materials->of(cell), law.hardening}].add(cell);
+    }
+  if (left_out.count > 0)
+    inform("BEHAVIOUR_7", {{"count", std::to_string(left_out.count)}, {"cell", cell_name(left_out.first)}});
+  for (const auto& [material, found] : elastic)
+    inform("BEHAVIOUR_8", {{"material", problem.materials->label(found.first)},
+                           {"keyword", std::string(material.second)},
+                           {"count", std::to_string(found.count)},
+                           {"cell", cell_name(found.first)}});
+}
+
 }  // namespace
 
 StaticProblem read_problem(const Order& order, const Base& base) {
@@ -197,6 +229,7 @@ StaticProblem read_problem(const Order& order, const Base& base) {
   read_materials(problem, base, keywords.concept_id("CHAM_MATER"));
   problem.solids = solid_sets(problem.mesh, problem.model, *problem.registry, *problem.materials,
                               read_behaviours(problem.mesh, keywords.factors("COMPORTEMENT")));
+  warn_of_other_behaviours(problem, keywords.factors("COMPORTEMENT"));
   name_variables(problem.solids);
   warn_of_locking(problem);
   check_temperatures(problem);

@@ -40,6 +40,7 @@ struct StaticProblem {
   std::size_t n_dofs() const { return exists.size(); }
   /// Patches that have a multiplier.
   std::int64_t n_patches() const { return contact ? static_cast<std::int64_t>(mesh.patches->size()) : 0; }
+  bool is_of_revolution() const;  ///< axisymmetric: forces and measures are those of one radian
   bool has_following_loads() const;
   /// Dead external forces at an instant, (n_nodes, n_components).
   std::vector<double> dead_force(double instant) const;

@@ -132,11 +132,12 @@ void NewtonTable::prove(const ContactState& contact) {
                                    {"covered", fmt::format("{:.6g}", zone.covered)},
                                    {"whole", fmt::format("{:.6g}", zone.whole)}})
          << "\n   "
-         << part("zone_forces", {{"slave", components(zone.on_slave)},
-                                 {"master", components(zone.on_master)},
-                                 {"sum", fmt::format("{:.1e}", norm(zone.on_slave + zone.on_master))},
-                                 {"moment", fmt::format("{:.1e}", norm(zone.moment))},
-                                 {"work", fmt::format("{:.1e}", zone.work)}})
+         << part(present_.problem.is_of_revolution() ? "zone_forces_of_one_radian" : "zone_forces",
+                 {{"slave", components(zone.on_slave)},
+                  {"master", components(zone.on_master)},
+                  {"sum", fmt::format("{:.1e}", norm(zone.on_slave + zone.on_master))},
+                  {"moment", fmt::format("{:.1e}", norm(zone.moment))},
+                  {"work", fmt::format("{:.1e}", zone.work)}})
          << '\n';
   }
   if (rejections_) {

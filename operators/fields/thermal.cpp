@@ -242,7 +242,10 @@ Field ThermalMaterials::at_instant(const MaterialTemperature& from, double insta
   Field first = read(after - 1);
   const Field second = read(after);
   if (!on_the_same_places(first, second) || first.present != second.present)
-    fail("THERMAL_5", {{"label", result.label}, {"field", part("field_of_one_layout", {{"field", from.name}})}});
+    fail("THERMAL_7", {{"label", result.label},
+                       {"field", from.name},
+                       {"first", fmt::format("{:.9g}", there[after - 1].instant)},
+                       {"second", fmt::format("{:.9g}", there[after].instant)}});
   const double share = (wanted - there[after - 1].instant) / (there[after].instant - there[after - 1].instant);
   return between(std::move(first), second, share);  // outside by PROL='LINEAIRE' as well
 }

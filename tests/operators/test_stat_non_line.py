@@ -181,6 +181,34 @@ class StatNonLine(TwoSquares):
             self.assertIn(line, run.stdout)
             open_or_unpaired = "0 open, 1 without" if limit == 0.29 else "1 open, 0 without"
             self.assertIn(open_or_unpaired, run.stdout)
+            self.assertEqual("EVOLUTION_43" in self.ids(run), limit == 0.29)  # nothing met: slave, master or limit are wrong
+
+    def test_forces_of_a_ring_are_said_to_be_those_of_one_radian(self):
+        """Both squares turned round x = 0: the pressure times the area of one radian, r from 0 to 1; in the plane no such word."""
+        self.assertNotIn("radian", self.solve().stdout)
+        self.write_model("model_2", "mesh_1", ["AXIS/SEG3", "AXIS/QUAD8"], [0, 0, 0, 1, 1])
+        printed = self.solve(COMPORTEMENT=None).stdout
+        found = re.search(r"of one radian: force on the slave \(([^,]+), ([^)]+)\)", printed)
+        self.assertTrue(found, printed)
+        self.assertAlmostEqual(float(found[2]), PRESSURE / 2, delta=1e-4)
+
+    def test_body_cells_that_no_behaviour_names_are_told(self):
+        """Whoever names a skin for a body computes elastic cells; whoever gives no COMPORTEMENT asks for them."""
+        self.write_mesh("mesh_1", square(-1) + square(0), CELLS, cell_groups={"MASTER": [0], "SLAVE": [1], "LOWER": [3], "SKIN": [2]})
+        self.write_patches([1], [12])
+        elastic = {"RELATION": "ELAS", "DEFORMATION": "PETIT"}
+        run = self.solve(COMPORTEMENT=[{**elastic, "GROUP_MA": ["LOWER"]}, {**elastic, "GROUP_MA": ["SKIN"]}])
+        self.assertEqual(self.ids(run), ["BEHAVIOUR_7"])
+        self.assertIn("names 1 body cell(s), the first M5, in no occurrence", run.stderr)
+        self.assertEqual(self.ids(self.solve(COMPORTEMENT=None)), [])
+
+    def test_an_elastic_computation_of_a_material_that_could_flow_is_told(self):
+        self.write_material("material_3", ELAS={"E": E, "NU": NU}, ECRO_LINE={"SY": 1e6, "D_SIGM_EPSI": 1.0})
+        run = self.solve()
+        self.assertEqual(self.ids(run), ["BEHAVIOUR_8"])
+        self.assertIn("of 2 cell(s), the first M4, has ECRO_LINE", run.stderr)
+        flows = {"RELATION": "VMIS_ISOT_LINE", "DEFORMATION": "PETIT", "TOUT": "OUI"}
+        self.assertEqual(self.ids(self.solve(COMPORTEMENT=flows), "AFS"), [])
 
     def test_one_slave_cell_over_two_separate_masters_pairs_with_both(self):
         """Masters under 0 to 0.3 and under 0.6 to 1: covered is 0.7, and the gap is their mean. Everything is held."""
