@@ -55,6 +55,28 @@ class Wording(unittest.TestCase):
         self.assertEqual(sorted(spoken - set(french)), [], "add them to catalog/instead.fr.toml")
         self.assertEqual(sorted(set(french) - texts), [])
 
+    def test_every_help_line_is_there_in_french(self):
+        def lines(row):
+            yield row["help"]
+            for keyword in row.get("keyword", {}).values():
+                yield from lines(keyword)
+
+        rows_of_commands = [tomllib.loads(path.read_text(encoding="utf-8")) for path in (SOURCE / "catalog/commands").glob("*.toml")]
+        english = {line for row in rows_of_commands if "help" in row for line in lines(row)}
+        french = tomllib.loads((SOURCE / "catalog/help.fr.toml").read_text(encoding="utf-8"))
+        self.assertEqual(sorted(english - set(french)), [], "add them to catalog/help.fr.toml")
+        self.assertEqual(sorted(set(french) - english), [])
+        keywords = re.compile(r"\b[A-Z][A-Z0-9_]{2,}\b|\d+(?:\.\d+)?(?:e-\d+)?")  # names and numbers are the same in both
+        self.assertEqual([line for line in french if set(keywords.findall(line)) != set(keywords.findall(french[line]))], [])
+
+    def test_help_speaks_the_language_of_the_environment(self):
+        def shown(*names, language="fr_FR.UTF-8"):
+            return subprocess.run([BIN / "lacon", "help", *names], capture_output=True, text=True, check=False, env={**os.environ, "LC_ALL": language}).stdout
+
+        self.assertIn("DEFI_CONTACT      Contact par moyennes locales (LAC) : zones de peaux esclaves et maîtres", shown())
+        self.assertIn("peau esclave : un groupe donné à DECOUPE_LAC", shown("DEFI_CONTACT"))
+        self.assertIn("slave skin: a group given to DECOUPE_LAC", shown("DEFI_CONTACT", language="C"))
+
     def test_parts_that_are_asked_for_exist_and_each_is_asked_for(self):
         names = set(tomllib.loads((SOURCE / "catalog/messages/parts.toml").read_text(encoding="utf-8")))
         text = "".join(path.read_text(encoding="utf-8") for room in (*ROOMS, "commands/lacon", "catalog") for path in (SOURCE / room).rglob("*")

@@ -124,6 +124,17 @@ def _instead_in_french():
     return _json()["instead_in_french"] if _is_json() else toml(location() / "instead.fr.toml")
 
 
+@functools.cache
+def _help_in_french():
+    """A help line of commands/ -> the same in French."""
+    return _json()["help_in_french"] if _is_json() else toml(location() / "help.fr.toml")
+
+
+def help_of(row):
+    """The help line of a command or a keyword in the user's language; what plug-ins say is as they say it."""
+    return _help_in_french().get(row["help"], row["help"]) if in_french() else row["help"]
+
+
 def instead(kind, path, otherwise):
     """What to use instead of a command, keyword or value (`kind`) of code_aster's that is not here.
 

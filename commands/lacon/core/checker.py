@@ -8,7 +8,7 @@ import math
 import re
 
 from . import catalog, plugins
-from .concepts import CO, Concept
+from .concepts import CO, Concept, types
 from .messages import message
 from .nearest import nearest
 
@@ -61,7 +61,7 @@ class _Check:
                         self.problem("KEYWORD_10", f"{path}/{name}", condition=condition(when))
         for name in rows:
             if name in mandatory and name not in given:
-                self.problem("KEYWORD_2", f"{path}/{name}", help=rows[name]["help"])
+                self.problem("KEYWORD_2", f"{path}/{name}", help=catalog.help_of(rows[name]))
         for rule in row.get("rule", ()):
             self.rule(path, rule, given, refused)
         return {**{name: values[name] for name in rows if name in values}, **others}
@@ -237,8 +237,13 @@ def _convert(kind, value):
 def _expected(kind):
     if kind == "concept":
         return catalog.part("a_concept")
-    return catalog.part("or").join(catalog.part(_names[k]) if k in _names else catalog.part("an_object" if k[0] in "aeiou" else "an_object_of_kind", kind=k.replace("_", " "))
-                                   for k in kind.split("|"))
+
+    def said(one):
+        if one in _names:
+            return catalog.part(_names[one])
+        return catalog.part("an_object" if one[0] in "aeiou" else "an_object_of_kind", kind=catalog.part(types[one]))
+
+    return catalog.part("or").join(map(said, kind.split("|")))
 
 
 def _show(value):

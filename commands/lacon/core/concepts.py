@@ -4,6 +4,12 @@ import json
 
 from .nearest import nearest
 
+#: type of a concept -> the part that says it
+types = {"concept": "type_concept", "contact": "type_contact", "element_characteristics": "type_element_characteristics", "field": "type_field", "formula":
+         "type_formula", "function": "type_function", "list_of_integers": "type_list_of_integers", "list_of_reals": "type_list_of_reals", "load": "type_load",
+         "material": "type_material", "material_field": "type_material_field", "mesh": "type_mesh", "model": "type_model", "result": "type_result", "table":
+         "type_table", "time_steps": "type_time_steps"}
+
 
 class Concept:
     """What a command made, as the variable it was assigned to holds it. Two variables of one concept are one Python object.

@@ -24,7 +24,7 @@ class Command:
 
     @property
     def __doc__(self):
-        return catalog.command(self.name)["help"]
+        return catalog.help_of(catalog.command(self.name))
 
     def __call__(self, *args, **given):
         started = time.perf_counter()

@@ -7,11 +7,12 @@ import textwrap
 from ..core import catalog, plugins
 from ..core.catalog import part
 from ..core.checker import condition
+from ..core.concepts import types
 from ..core.nearest import nearest
 from . import examples, keyword_table
 
-#: of keywords -> the part that says them; other types are concepts
-_types = {"group_ma": "type_group_ma", "group_no": "type_group_no", "cell": "type_cell", "node": "type_node", "integer": "type_integer",
+#: type of a keyword -> the part that says it
+_types = {**types, "group_ma": "type_group_ma", "group_no": "type_group_no", "cell": "type_cell", "node": "type_node", "integer": "type_integer",
           "real": "type_real", "text": "type_text"}
 _rules = {"exactly_one": "rule_exactly_one", "at_least_one": "rule_at_least_one", "exclusive": "rule_exclusive", "together": "rule_together"}
 _limits = {"above": "limit_above", "at_least": "limit_at_least", "below": "limit_below", "at_most": "limit_at_most"}
@@ -25,7 +26,7 @@ def run(names):
         return 0
     if not names:
         for name in catalog.command_names():
-            print(f"{name:18}{catalog.command(name)['help']}")
+            print(f"{name:18}{catalog.help_of(catalog.command(name))}")
         return 0
     status = 0
     for name in map(str.upper, names):
@@ -43,9 +44,9 @@ def run(names):
 
 def _command(name):
     row = plugins.command(name)
-    result = f" -> {row['result'].replace('_', ' ')}" if "result" in row else ""
+    result = f" -> {_type(row['result'])}" if "result" in row else ""
     yield f"{name}{result}"
-    yield from _wrap(row["help"], 2)
+    yield from _wrap(catalog.help_of(row), 2)
     if "reuse" in row:
         must = "reuse_needed" if row.get("reuse_status") == "mandatory" else "reuse_possible"
         yield from _wrap(part(must, keyword=row["reuse"]), 2)
@@ -58,7 +59,7 @@ def _command(name):
 def _keywords(row, indent):
     for name, keyword in row.get("keyword", {}).items():
         yield " " * indent + f"{name}  {kind(keyword)}"
-        yield from _wrap(keyword["help"], indent + 4)
+        yield from _wrap(catalog.help_of(keyword), indent + 4)
         yield from _keywords(keyword, indent + 4)
     for rule in rules(row):
         yield from _wrap(rule, indent)
