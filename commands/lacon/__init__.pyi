@@ -106,6 +106,7 @@ class States:
 
 class Result(States):
     failed_step: FailedStep | None
+    is_of_revolution: bool
     @property
     def fields(self) -> dict[str, list[float]]: ...
 

@@ -159,6 +159,8 @@ class Content(StudyTest):
         asked = {text for name, source in sources.items() if name.endswith(".js") for text in re.findall(r'\bt\("((?:[^"\\]|\\.)*)"', source)}
         body = re.sub(r"<(script|pre)\b.*?</\1>|<!--.*?-->", "", sources["page.html"].partition("<body>")[2], flags=re.S)
         asked |= {words.strip() for words in re.findall(r">([^<>]+)<", body) if re.search(r"[a-z]", words)} | set(re.findall(r'(?:aria-label|title)="([^"]+)"', body))
+        asked |= {phase for room in ("assembly", "operators/evolution", "operators/stat_non_line") for path in (SOURCE / room).rglob("*.cpp")
+                  for phase in re.findall(r'(?:Phase phase|add_to_phase)\("([^"]+)"', path.read_text(encoding="utf-8"))}
         self.assertEqual(asked - french, set())
         base = study(2) / "study.base"
         for language, proof in (("fr", "Le contact s'est établi"), ("en", "Contact has settled")):
@@ -490,6 +492,7 @@ class Shown(unittest.TestCase):
         self.assertIn("checks hold", self.browser.ask("document.getElementById('verdict').textContent"))
         titles = self.browser.ask("[...document.querySelectorAll('figcaption')].map((e) => e.textContent)")
         self.assertEqual(titles[:3], ["Newton's method: residuals", "Newton's method: contact", "Contact force on the slave"])
+        self.assertNotIn("radian", self.browser.ask("document.getElementById('zones').textContent"))
         self.assertIn("DEFI_CONTACT", self.browser.ask("document.querySelector('#command-files pre').textContent"))
         self.assertIn("vtk.js", self.browser.ask("document.querySelector('footer pre').textContent"))
 

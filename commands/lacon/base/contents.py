@@ -194,6 +194,11 @@ def fields_of_iterates(failed_step):
     return {name: sorted(map(int, groups)) for name, groups in failed_step["fields"].items()}
 
 
+def modelisations(model):
+    """Names of those that its cells have, "AXIS"."""
+    return {name.partition("/")[0] for name in texts(model, "elements")}
+
+
 def parameters(result):
     """name -> one value an instant"""
     return {name: values[:] for name, values in result.get("parameters", {}).items()}

@@ -7,6 +7,7 @@ from ..base import command_files, contents
 from ..base.fields import FieldData, open_field
 from ..base.journal import read_journal
 from ..base.seal import open_checked
+from ..core import catalog
 from ..core.catalog import part
 from ..core.hdf5 import text
 from ..core.late import numpy
@@ -229,12 +230,14 @@ class Result(States):
     """A result, also of a computation in progress: what was asked for once stays as it was then; take it from the base again for later instants.
 
     `label` the variable of the study, `orders` and `instants` (k), `complete` whether its computation has come to its end, `mesh`, `fields` name ->
-    instants that have it, `parameters` name -> (k), `failed_step` the last iterates of the step at which the computation failed, or None.
+    instants that have it, `parameters` name -> (k), `is_of_revolution` whether it is axisymmetric, its forces being those of one radian,
+    `failed_step` the last iterates of the step at which the computation failed, or None.
     """
 
     def __init__(self, base, identifier, label):
         with base.open(identifier) as file:
             self._start(base, identifier, label, file)
+            self._model_id = contents.reference(file, "model")
             pairs = contents.instants(file)
             self.orders, self.instants = [order for order, _ in pairs], numpy.array([instant for _, instant in pairs])
             self.complete = contents.is_complete(file)
@@ -255,6 +258,14 @@ class Result(States):
             return FailedStep(self._base, self._id, self.label)
         except FileNotFoundError:
             return None
+
+    @cached_property
+    def is_of_revolution(self):
+        if not self._model_id:
+            return False
+        turned = {row["modelisation"] for row in catalog.elements() if row["geometry"] == "axis"}
+        with self._base.open(self._model_id) as file:
+            return bool(contents.modelisations(file) & turned)
 
     def bytes_of_field(self, name):
         """What its last file takes."""

@@ -58,7 +58,7 @@ class _Page:
             "facet_patches": add(self.drawing.facet_patches, "i4"), "surfaces": [self._surface(s) for s in self.drawing.surfaces],
             "parts": self.drawing.parts, "fields": fields, "instants": self.instants.tolist(), "drawn": self.drawn,
             "first": _first(fields), "failed": self._failed(), "zones": courses, "patch_areas": self.mesh.patch_measures[0].tolist() if self.zones else [],
-            "share": _share,
+            "share": _share, "of_revolution": self.result is not self.step and self.result.is_of_revolution,
             "iterations": numpy.asarray(self.result.parameters.get("newton_iterations", [])).tolist(), "proofs": self._proofs,
             "journal": self._journal(), "commands": self.result.commands, "run": self._run(started), "notes": self.notes}
         return told, self.packing

@@ -238,7 +238,7 @@ function showScale(own) {
     return;
   }
   const steps = Array.from({length: 33}, (_, i) => css(colourAt(map, i / 32))).join(",");
-  const places = [0, 0.25, 0.5, 0.75, 1].map((x) => limits[0] + x * (limits[1] - limits[0]));
+  const places = (limits[0] === limits[1] ? [0] : [0, 0.25, 0.5, 0.75, 1]).map((x) => limits[0] + x * (limits[1] - limits[0]));
   const digits = [3, 4, 5, 6].find((n) => new Set(places.map((x) => number(x, n))).size === places.length) ?? 6; // neighbours differ
   const marks = places.map((x) => element("span", {textContent: number(x, digits)}));
   $("scale").replaceChildren(element("b", {textContent: name}), element("div", {className: "bar", style: `background:linear-gradient(90deg,${steps})`}),

@@ -59,7 +59,8 @@ export function showZones(instant) {
   document.getElementById("zone-table").replaceChildren(
     table([t("Zone"), t("Slave on master"), {figure: t("In contact")}, {figure: t("Open")}, {figure: t("Without master")}, {figure: study.dimension === 3 ? t("Area in contact") : t("Length in contact")},
       {figure: t("Slave skin covered")}, {figure: t("Force on the slave")}, {figure: t("Largest pressure")}], rows),
-    element("p", {className: "unknown", textContent: t("At the instant {instant}. Patches are counted; forces are resultants in {axes}.", {instant: number(at, 9), axes: study.dimension === 3 ? "x, y, z" : "x, y"})}));
+    element("p", {className: "unknown", textContent: [t("At the instant {instant}. Patches are counted; forces are resultants in {axes}.", {instant: number(at, 9), axes: study.dimension === 3 ? "x, y, z" : "x, y"}),
+      study.of_revolution ? t("Forces, and how much of the slave skin is covered, are those of one radian of the axisymmetric bodies.") : ""].join(" ").trim()}));
 }
 
 /** All curves, with the instant that is shown. @param choose called with the number of an instant  @param along pressure along the skins, in the plane */
@@ -104,7 +105,7 @@ function instantCurves(instant, choose) {
     return curves.length ? [chart({title, x: t("instant"), y, series: curves, at, choose: pick, ...more})] : [];
   };
   const found = [
-    ...over(t("Contact force on the slave"), t("force"), (now) => now.force && Math.hypot(...now.force)),
+    ...over(study.of_revolution ? t("Contact force on the slave, of one radian") : t("Contact force on the slave"), t("force"), (now) => now.force && Math.hypot(...now.force)),
     ...over(study.dimension === 3 ? t("Area in contact") : t("Length in contact"), study.dimension === 3 ? t("area") : t("length"), (now) => now.area),
     ...over(t("Largest contact pressure"), t("pressure"), (now) => now.largest),
     ...over(t("Patches in contact"), t("patches"), (now) => now.active),
@@ -121,7 +122,7 @@ const seconds = (s) => (s >= 100 ? `${Math.floor(s / 60)} min ${Math.round(s % 6
 export function showRun() {
   const {run} = study;
   const block = (title, pairs) => (pairs.length ? element("div", {}, element("h3", {textContent: title}), list(pairs)) : null);
-  const phases = Object.entries(run.phases ?? {}).sort((a, b) => b[1] - a[1]).map(([name, s]) => [name, seconds(s)]);
+  const phases = Object.entries(run.phases ?? {}).sort((a, b) => b[1] - a[1]).map(([name, s]) => [t(name), seconds(s)]);
   document.getElementById("run-facts").replaceChildren(element("div", {className: "facts"},
     block(t("Study"), run.study), block(t("Machine and versions"), run.machine), block(t("Time and memory of the solution"), [...run.totals, ...phases]), block(t("This page"), run.page)));
   const files = study.commands.map(({name, text}) => element("details", {open: study.commands.length === 1}, element("summary", {textContent: name}), element("pre", {textContent: text})));
