@@ -23,7 +23,7 @@ class Manual(unittest.TestCase):
         cls.addClassCleanup(shutil.rmtree, cls.folder, ignore_errors=True)
         subprocess.run([sys.executable, "-B", str(support.ROOT / "commands/generate.py"), str(cls.folder)], check=True)
         cls.commands = catalog.command_names()
-        for name in ("study.comm", "study.export", "mesh.med", "notes.txt"):
+        for name in ("study.comm", "study.export", "mesh.med", "mesh.mail", "notes.txt"):
             (cls.folder / name).touch()
         (cls.folder / "study.base").mkdir()
 
@@ -41,7 +41,8 @@ class Manual(unittest.TestCase):
         self.assertEqual(self.offered("help", "defi_con"), {name for name in self.commands if name.startswith("DEFI_CON")})
         self.assertEqual(self.offered("plot", "study.base", "--format", ""), {"png", "svg"})
         self.assertEqual(self.offered("new", "--template", "he"), {"hertz"})
-        self.assertEqual(self.offered("convert", "me"), {"mesh.med"})
+        for tool in ("convert", "new"):  # every format that is read
+            self.assertEqual(self.offered(tool, "me"), {"mesh.med", "mesh.mail"})
         self.assertEqual(self.offered("watch", "stu"), {"study.base"})
 
     def test_every_option_of_every_tool_is_offered(self):
@@ -58,7 +59,12 @@ class Manual(unittest.TestCase):
     def test_the_completion_of_zsh_is_read(self):
         done = subprocess.run(["zsh", "-n", str(self.folder / "completion/_lacon")], capture_output=True, text=True, check=False)
         self.assertEqual((done.returncode, done.stderr), (0, ""))
-        self.assertIn("'watch:", (self.folder / "completion/_lacon").read_text(encoding="utf-8"))
+
+    def test_zsh_offers_files_where_a_file_is_meant(self):
+        text = (self.folder / "completion/_lacon").read_text(encoding="utf-8")
+        self.assertIn("'watch:", text)
+        self.assertIn('_files -g "*.(med|mmed|msh|mail)"', text)
+        self.assertEqual(set(re.findall(r":([A-Z=]+):_files", text)), {"FILE", "FOLDER", "N=FILE"})
 
     def test_every_tool_and_every_command_has_a_man_page(self):
         names = {path.name for path in self.folder.glob("man/*/*")}

@@ -3,9 +3,17 @@
 import argparse
 
 from ..core import catalog
+from .convert import read_formats, write_formats
+
+
+def _endings(formats):
+    """The suffixes of formats, without their dots."""
+    return [suffix.lstrip(".") for suffix in formats]
+
 
 #: what a file or folder must end with, by what a command line calls it
-_patterns = {"BASE": "*.base", "FOLDER": "*(/)", "MESH": "*.(med|mmed|msh)"}
+_patterns = {"BASE": "*.base", "FOLDER": "*(/)", "MESH": f"*.({'|'.join(_endings(read_formats))})"}
+_paths = ("FILE", "FOLDER", "N=FILE")  #: values of options that files are offered for
 
 
 def options_of(parser):
@@ -33,8 +41,8 @@ def bash(lines, templates):
         return " ".join(name for names, *_ in options_of(lines[tool]) for name in names)
 
     files = {tool: f"*.@({'|'.join(endings)})" for tool, endings in
-             (("", ("comm", "com[0-9]", "export")), ("check", ("comm", "com[0-9]", "export")), ("convert", ("med", "mmed", "msh", "vtu", "pvd")),
-              ("new", ("med", "mmed", "msh")))}
+             (("", ("comm", "com[0-9]", "export")), ("check", ("comm", "com[0-9]", "export")), ("convert", dict.fromkeys(_endings(read_formats) + _endings(write_formats))),
+              ("new", _endings(read_formats)))}
     text = ["# Completion of lacon for bash, made from its command lines and the catalogue.", "_lacon() {",
             '    local word=${COMP_WORDS[COMP_CWORD]} before=${COMP_WORDS[COMP_CWORD-1]} tool=${COMP_WORDS[1]} options="" files="" values=""',
             "    COMPREPLY=()", "    [[ $COMP_CWORD -gt 1 ]] || tool=''", '    case "$tool" in',
@@ -64,7 +72,7 @@ def zsh(lines, templates):
         for names, value, _, words in options_of(lines[tool]):
             for name in names:
                 values = choices.get((tool, name))
-                action = "" if value is None else f":{value}:({' '.join(values)})" if values else f":{value}:_files"
+                action = "" if value is None else f":{value}:" + (f"({' '.join(values)})" if values else "_files" if value in _paths else "")
                 yield f"'*{name}[{quoted(words)}]{action}'"
         for name, _, words in positionals_of(lines[tool]):
             pattern = _patterns.get(name)
