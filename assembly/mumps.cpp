@@ -45,6 +45,7 @@ template <class Real>
 struct Mumps<Real>::State {
   MumpsSettings settings;
   typename Structure<Real>::type mumps{};
+  std::vector<MUMPS_INT> first, row;  ///< of sparse right sides
 
   explicit State(const MumpsSettings& given) : settings(given) {
     mumps.sym = settings.symmetric ? 2 : 0;  // general symmetric: multipliers make the matrix indefinite
@@ -95,6 +96,23 @@ struct Mumps<Real>::State {
     run(solve_job);
     at(mumps.icntl, 26) = 0;
     require("solution");
+  }
+  /// The next substitution is of sparse right sides. @param solution (n, size)
+  void take_sparse(std::span<const std::int64_t> offset, std::span<const std::int32_t> index, std::span<const Real> value,
+                   std::span<Real> solution) {
+    first.assign(offset.begin(), offset.end());
+    row.assign(index.begin(), index.end());
+    for (MUMPS_INT& number : first) ++number;
+    for (MUMPS_INT& number : row) ++number;
+    at(mumps.icntl, 20) = 3;  // used to skip what stays zero
+    at(mumps.icntl, 27) = static_cast<MUMPS_INT>(offset.size() - 1);
+    mumps.nrhs = static_cast<MUMPS_INT>(offset.size() - 1);
+    mumps.lrhs = mumps.n;
+    mumps.rhs = solution.data();
+    mumps.nz_rhs = static_cast<MUMPS_INT>(index.size());
+    mumps.irhs_ptr = first.data();
+    mumps.irhs_sparse = row.data();
+    mumps.rhs_sparse = const_cast<Real*>(value.data());  // read only
   }
   void require(const char* phase) {
     const int code = at(mumps.infog, 1);
@@ -168,27 +186,23 @@ void Mumps<Real>::substitute(std::span<Real> right_side) {
 template <class Real>
 void Mumps<Real>::substitute(std::span<const std::int64_t> offset, std::span<const std::int32_t> index,
                              std::span<const Real> value, std::span<Real> solution) {
-  auto& mumps = state_->mumps;
-  std::vector<MUMPS_INT> first(offset.begin(), offset.end()), row(index.begin(), index.end());
-  for (MUMPS_INT& number : first) ++number;
-  for (MUMPS_INT& number : row) ++number;
-  at(mumps.icntl, 20) = 3;  // sparse, and used to skip what stays zero
-  at(mumps.icntl, 27) = static_cast<MUMPS_INT>(offset.size() - 1);
-  mumps.nrhs = static_cast<MUMPS_INT>(offset.size() - 1);
-  mumps.lrhs = mumps.n;
-  mumps.rhs = solution.data();
-  mumps.nz_rhs = static_cast<MUMPS_INT>(index.size());
-  mumps.irhs_ptr = first.data();
-  mumps.irhs_sparse = row.data();
-  mumps.rhs_sparse = const_cast<Real*>(value.data());  // read only
+  state_->take_sparse(offset, index, value, solution);
   state_->run(solve_job);
-  at(mumps.icntl, 20) = 0;
+  at(state_->mumps.icntl, 20) = 0;
   state_->require("solution");
 }
 
 template <class Real>
 void Mumps<Real>::reduce(std::span<Real> sides, std::span<Real> border) {
   state_->substitute_within(1, sides, border);
+}
+
+template <class Real>
+void Mumps<Real>::reduce(std::span<const std::int64_t> offset, std::span<const std::int32_t> index, std::span<const Real> value,
+                         std::span<Real> sides, std::span<Real> border) {
+  state_->take_sparse(offset, index, value, sides);
+  state_->substitute_within(1, sides, border);
+  at(state_->mumps.icntl, 20) = 0;
 }
 
 template <class Real>

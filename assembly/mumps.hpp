@@ -70,6 +70,9 @@ class Mumps : public MumpsFactor<Real> {
   /// With a border, a block of right sides after another: what they leave to the border, and then from the solution there the
   /// whole one. @param sides (n, size)  @param[out] border (n, border)
   void reduce(std::span<Real> sides, std::span<Real> border);
+  /// The same where right sides are sparse; `sides` are theirs alone until they are expanded, what is there does not matter.
+  void reduce(std::span<const std::int64_t> offset, std::span<const std::int32_t> index, std::span<const Real> value,
+              std::span<Real> sides, std::span<Real> border);
   void expand(std::span<Real> border, std::span<Real> sides);
 
  private:

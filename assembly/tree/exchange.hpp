@@ -7,7 +7,8 @@
 //                                                              -> done FLOPS ENTRIES WHOLE-ENTRIES NEGATIVE-PIVOTS
 //                                                                 and the equations of null pivots
 //   reduce PIECE PATH        right sides (k, size), and room for what they leave to the border (k, border)  -> done
-//   expand PIECE PATH        the same memory, with solutions of the border: right sides become solutions    -> done
+//   reduce PIECE PATH PATH   likewise of sparse ones, which the second memory has (SparseSides); those of the first are set
+//   later expand PIECE PATH        the same memory, with solutions of the border: right sides become solutions    -> done
 //   forget                   all pieces                                                                     -> done
 // Any of them may be answered by: no memory, or failed WHY.
 #include <cstdint>
@@ -18,6 +19,11 @@ struct PieceSizes {
   std::int64_t size = 0, entries = 0, border = 0;
   std::int32_t is_symmetric = 1, memory_margin = 20;
   double singular_pivot = 0, low_rank = 0;
+};
+
+/// Behind it in its memory: offset (count + 1), int64; value (entries) in the precision; index (entries), int32.
+struct SparseSides {
+  std::int64_t count = 0, entries = 0;
 };
 
 }  // namespace lacon

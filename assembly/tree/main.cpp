@@ -8,6 +8,7 @@
 #include <iostream>
 #include <map>
 #include <new>
+#include <optional>
 #include <sstream>
 #include <string>
 
@@ -61,6 +62,20 @@ class Piece {
       mumps_.substitute(sides);
     return said();
   }
+  std::string reduce(const SharedMemory& memory, const SharedMemory& sparse) {
+    const auto [sides, border] = parts(memory);
+    const auto& sizes = *reinterpret_cast<const lacon::SparseSides*>(sparse.data());
+    const auto count = static_cast<std::size_t>(sizes.count), entries = static_cast<std::size_t>(sizes.entries);
+    const auto* const offset = reinterpret_cast<const std::int64_t*>(sparse.data() + sizeof sizes);
+    const auto* const value = reinterpret_cast<const Real*>(offset + count + 1);
+    const auto* const index = reinterpret_cast<const std::int32_t*>(value + entries);
+    const std::span<const std::int64_t> offsets(offset, count + 1);
+    if (sizes_.border)
+      mumps_.reduce(offsets, {index, entries}, {value, entries}, sides, border);
+    else
+      mumps_.substitute(offsets, {index, entries}, {value, entries}, sides);
+    return said();
+  }
   std::string expand(const SharedMemory& memory) {
     const auto [sides, border] = parts(memory);
     if (sizes_.border) mumps_.expand(border, sides);
@@ -100,19 +115,24 @@ class Pieces {
     int number = 0;
     said >> precision >> number >> path;
     SharedMemory memory = SharedMemory::open(path);
-    return precision == "float" ? answer(single_, verb, number, std::move(memory))
-                                : answer(full_, verb, number, std::move(memory));
+    std::optional<SharedMemory> more;
+    if (said >> path) more.emplace(SharedMemory::open(path));
+    return precision == "float" ? answer(single_, verb, number, std::move(memory), more)
+                                : answer(full_, verb, number, std::move(memory), more);
   }
 
  private:
   template <class Real>
-  static std::string answer(std::map<int, Piece<Real>>& pieces, const std::string& verb, int number, SharedMemory memory) {
+  static std::string answer(std::map<int, Piece<Real>>& pieces, const std::string& verb, int number, SharedMemory memory,
+                            const std::optional<SharedMemory>& more) {
     if (verb == "analyse") {
       pieces.erase(number);
       return pieces.try_emplace(number, std::move(memory)).first->second.analyse();
     }
     Piece<Real>& piece = pieces.at(number);
-    return verb == "factorise" ? piece.factorise(memory) : verb == "reduce" ? piece.reduce(memory) : piece.expand(memory);
+    if (verb == "factorise") return piece.factorise(memory);
+    if (verb == "expand") return piece.expand(memory);
+    return more ? piece.reduce(memory, *more) : piece.reduce(memory);
   }
 
   std::map<int, Piece<float>> single_;

@@ -109,10 +109,11 @@ TreeMumps<Real>::~TreeMumps() {
 }
 
 template <class Real>
-std::vector<std::vector<double>> TreeMumps<Real>::ask(const char* verb, const char* phase,
-                                                      std::span<const SharedMemory> memory) {
+std::vector<std::vector<double>> TreeMumps<Real>::ask(const char* verb, const char* phase, std::span<const SharedMemory> memory,
+                                                      std::span<const SharedMemory> more) {
   return processes_.ask({verb, phase, local_.size()}, subtrees_.process, [&](std::size_t piece) {
-    return (std::is_same_v<Real, float> ? " float " : " double ") + std::to_string(piece) + ' ' + memory[piece].path();
+    return (std::is_same_v<Real, float> ? " float " : " double ") + std::to_string(piece) + ' ' + memory[piece].path() +
+           (more.empty() ? "" : ' ' + more[piece].path());
   });
 }
 
@@ -309,20 +310,15 @@ Factorisation TreeMumps<Real>::factorise(std::span<const Real> values) {
 }
 
 template <class Real>
-void TreeMumps<Real>::substitute_all(std::span<Real> sides) {
-  const std::size_t n = local_.size(), count = sides.size() / n;
+std::vector<SharedMemory> TreeMumps<Real>::memory_of_sides(std::size_t count) const {
   std::vector<SharedMemory> memory;
-  for (const Piece& piece : pieces_) {
-    memory.emplace_back(sizeof(Real) * count * (piece.size() + piece.border.size()));
-    const std::span<Real> own = values_in<Real>(memory.back());
-    for (std::size_t c = 0; c < count; ++c)
-      for (std::size_t i = 0; i < piece.own.size(); ++i) own[c * piece.size() + i] = sides[c * n + piece.own[i]];
-  }
-  ask("reduce", "solution", memory);
-  const std::size_t m = top_.size();
-  std::vector<Real> top(count * m);
-  for (std::size_t c = 0; c < count; ++c)
-    for (std::size_t i = 0; i < m; ++i) top[c * m + i] = sides[c * n + top_[i]];
+  for (const Piece& piece : pieces_) memory.emplace_back(sizeof(Real) * count * (piece.size() + piece.border.size()));
+  return memory;
+}
+
+template <class Real>
+void TreeMumps<Real>::substitute_behind(std::vector<SharedMemory>& memory, std::span<Real> top, std::span<Real> solution) {
+  const std::size_t n = local_.size(), m = top_.size(), count = solution.size() / n;
   const auto for_each_border = [&](const auto& use) {  // of the value that a piece has in the memory, and that of the top
     for (std::size_t p = 0; p < pieces_.size(); ++p) {
       const std::vector<std::int32_t>& border = pieces_[p].border;
@@ -335,26 +331,84 @@ void TreeMumps<Real>::substitute_all(std::span<Real> sides) {
   if (top_factor_) top_factor_->substitute(top);
   for_each_border([](Real& value, Real of_top) { value = of_top; });
   for (std::size_t c = 0; c < count; ++c)
-    for (std::size_t i = 0; i < m; ++i) sides[c * n + top_[i]] = top[c * m + i];
+    for (std::size_t i = 0; i < m; ++i) solution[c * n + top_[i]] = top[c * m + i];
   ask("expand", "solution", memory);
-  for (std::size_t p = 0; p < pieces_.size(); ++p)
+  for (std::size_t p = 0; p < pieces_.size(); ++p) {
+    const std::span<const Real> own = values_in<const Real>(memory[p]);
     for (std::size_t c = 0; c < count; ++c)
       for (std::size_t i = 0; i < pieces_[p].own.size(); ++i)
-        sides[c * n + pieces_[p].own[i]] = values_in<Real>(memory[p])[c * pieces_[p].size() + i];
+        solution[c * n + pieces_[p].own[i]] = own[c * pieces_[p].size() + i];
+  }
 }
 
 template <class Real>
 void TreeMumps<Real>::substitute(std::span<Real> right_side) {
-  substitute_all(right_side);
+  const std::size_t n = local_.size(), m = top_.size(), count = right_side.size() / n;
+  std::vector<SharedMemory> memory = memory_of_sides(count);
+  for (std::size_t p = 0; p < pieces_.size(); ++p) {
+    const std::span<Real> own = values_in<Real>(memory[p]);
+    for (std::size_t c = 0; c < count; ++c)
+      for (std::size_t i = 0; i < pieces_[p].own.size(); ++i)
+        own[c * pieces_[p].size() + i] = right_side[c * n + pieces_[p].own[i]];
+  }
+  ask("reduce", "solution", memory);
+  std::vector<Real> top(count * m);
+  for (std::size_t c = 0; c < count; ++c)
+    for (std::size_t i = 0; i < m; ++i) top[c * m + i] = right_side[c * n + top_[i]];
+  substitute_behind(memory, top, right_side);
+}
+
+template <class Real>
+std::vector<SharedMemory> TreeMumps<Real>::shared_out(std::span<const std::int64_t> offset, std::span<const std::int32_t> index,
+                                                      std::span<const Real> value, std::span<Real> top) const {
+  const std::size_t count = offset.size() - 1;
+  struct Lists {
+    std::vector<std::int64_t> offset{0};
+    std::vector<std::int32_t> index;
+    std::vector<Real> value;
+  };
+  std::vector<Lists> of_pieces(pieces_.size());
+  for (std::size_t c = 0; c < count; ++c) {
+    for (std::int64_t k = offset[c]; k < offset[c + 1]; ++k) {
+      const std::int32_t piece = subtrees_.of[index[k]], own = local_[index[k]];
+      if (piece < 0) {
+        top[c * top_.size() + own] += value[k];
+        continue;
+      }
+      of_pieces[piece].index.push_back(own);
+      of_pieces[piece].value.push_back(value[k]);
+    }
+    for (Lists& lists : of_pieces) {
+      if (c == 0 && lists.index.empty()) {  // MUMPS takes no sides without an entry
+        lists.index.push_back(0);
+        lists.value.push_back(0);
+      }
+      lists.offset.push_back(static_cast<std::int64_t>(lists.index.size()));
+    }
+  }
+  std::vector<SharedMemory> memory;
+  for (const Lists& lists : of_pieces) {
+    const SparseSides sizes{.count = static_cast<std::int64_t>(count),
+                            .entries = static_cast<std::int64_t>(lists.index.size())};
+    const std::span<const std::byte> parts[] = {std::as_bytes(std::span(&sizes, 1)), std::as_bytes(std::span(lists.offset)),
+                                                std::as_bytes(std::span(lists.value)), std::as_bytes(std::span(lists.index))};
+    std::size_t size = 0;
+    for (const auto part : parts) size += part.size();
+    std::byte* next = memory.emplace_back(size).data();
+    for (const auto part : parts) next = std::ranges::copy(part, next).out;
+  }
+  return memory;
 }
 
 template <class Real>
 void TreeMumps<Real>::substitute(std::span<const std::int64_t> offset, std::span<const std::int32_t> index,
                                  std::span<const Real> value, std::span<Real> solution) {
-  std::fill(solution.begin(), solution.end(), Real{0});
-  for (std::size_t c = 0; c + 1 < offset.size(); ++c)
-    for (std::int64_t k = offset[c]; k < offset[c + 1]; ++k) solution[c * local_.size() + index[k]] += value[k];
-  substitute_all(solution);
+  const std::size_t count = offset.size() - 1;
+  std::vector<Real> top(count * top_.size(), 0);
+  const std::vector<SharedMemory> sides = shared_out(offset, index, value, top);
+  std::vector<SharedMemory> memory = memory_of_sides(count);
+  ask("reduce", "solution", memory, sides);
+  substitute_behind(memory, top, solution);
 }
 
 template class TreeMumps<double>;

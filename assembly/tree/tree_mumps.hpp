@@ -72,7 +72,8 @@ class TreeMumps : public MumpsFactor<Real> {
       return std::lower_bound(row.begin() + offset[j], row.begin() + offset[j + 1], i + 1) - row.begin();
     }
   };
-  std::vector<std::vector<double>> ask(const char* verb, const char* phase, std::span<const SharedMemory> memory);
+  std::vector<std::vector<double>> ask(const char* verb, const char* phase, std::span<const SharedMemory> memory,
+                                       std::span<const SharedMemory> more = {});
   void number(const MumpsPattern& pattern);
   SharedMemory pattern_of(std::int32_t number, const MumpsPattern& pattern) const;
   void number_top();
@@ -84,8 +85,13 @@ class TreeMumps : public MumpsFactor<Real> {
   std::vector<std::vector<double>> factorise_pieces(std::span<const Real> values, std::vector<SharedMemory>& memory);
   /// Equations whose pivots pieces cannot take. @return whether there are any
   bool leave_to_top(const std::vector<std::vector<double>>& found);
-  /// In place, of right sides one after the other.
-  void substitute_all(std::span<Real> sides);
+  /// Sparse right sides by pieces; those of the top go to `top`, (count, top). Each piece has an entry at least.
+  std::vector<SharedMemory> shared_out(std::span<const std::int64_t> offset, std::span<const std::int32_t> index,
+                                       std::span<const Real> value, std::span<Real> top) const;
+  /// Memory for the right sides of each piece and their borders.
+  std::vector<SharedMemory> memory_of_sides(std::size_t count) const;
+  /// From what pieces have left to their borders on. @param top right sides there, (count, top)
+  void substitute_behind(std::vector<SharedMemory>& memory, std::span<Real> top, std::span<Real> solution);
 
   MumpsSettings settings_;
   Subtrees subtrees_;
