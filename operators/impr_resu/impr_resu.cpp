@@ -28,6 +28,9 @@ namespace {
 
 namespace fs = std::filesystem;
 
+/// What files call a mesh: as its variable, or where none holds it by its type.
+std::string label_of_mesh(const Base& base, const std::string& id) { return base.label(id).empty() ? "MESH" : base.label(id); }
+
 /// Concepts that several occurrences of RESU share are read once.
 class Concepts {
  public:
@@ -53,7 +56,7 @@ class Concepts {
       const Field field = base_.field_head(id);
       if (field.quantity.ends_with("_F")) fail("CREACHAMP_12", {{"field", base_.label(id)}, {"keyword", one.path("CHAM_GD")}});
       Result& result = at->second;
-      result.label = base_.label(id);
+      result.label = base_.label(id).empty() ? field.quantity : base_.label(id);  // no variable holds it
       result.mesh = field.mesh;
       result.orders = {field.order};
       result.instants = {field.instant};
@@ -191,12 +194,12 @@ void print_med(const Order& order, const Base& base, Concepts& concepts, const f
       }
       if (one.has("MAILLAGE")) {
         const std::string id = one.concept_id("MAILLAGE");
-        written.add(part("mesh") + " " + med.add_mesh(concepts.mesh(id), base.label(id)));
+        written.add(part("mesh") + " " + med.add_mesh(concepts.mesh(id), label_of_mesh(base, id)));
         if (!has_fields(one)) continue;
       }
       const Result& result = concepts.source(one).second;
       const Mesh& mesh = concepts.mesh(result.mesh);
-      const std::string mesh_name = med.add_mesh(mesh, base.label(result.mesh));
+      const std::string mesh_name = med.add_mesh(mesh, label_of_mesh(base, result.mesh));
       each_field(base, result, mesh, one, [&](PrintedField&& printed) {
         const Field& field = printed.field;
         if (field.location == Location::gauss_points && !med_knows_points(mesh, field)) {
@@ -331,7 +334,7 @@ void print_mesh_file(const Order& order, const Base& base, Concepts& concepts, c
     const Mesh& mesh = concepts.mesh(id);
     if (!mesh_id.empty() && mesh_id != id) refuse(source, "second_mesh");
     if (mesh_id.empty() && !goes_on) {
-      text += gmsh ? gmsh_mesh_text(mesh) : mail_text(mesh, base.label(id));
+      text += gmsh ? gmsh_mesh_text(mesh) : mail_text(mesh, label_of_mesh(base, id));
       written.add(part("mesh") + " " + base.label(id));
     }
     mesh_id = id;

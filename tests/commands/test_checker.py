@@ -299,6 +299,19 @@ class Completion(unittest.TestCase):
         self.assertEqual(complete("LIRE_MAILLAGE", UNITE=np.int64(21))["UNITE"], 21)
         self.assertEqual(complete("LIRE_MAILLAGE", FORMAT=("MED",))["FORMAT"], "MED")
 
+    def test_keywords_of_the_command_that_mean_its_occurrences(self):
+        """POST_ELEM(RESULTAT=R, INST=1.0, INTEGRALE=_F(...)): as within the occurrence, which may have its own."""
+        integral = {"NOM_CHAM": "SIEF_ELGA", "TOUT": "OUI"}
+        whole = complete("POST_ELEM", RESULTAT=concept("result"), INST=1.0, PRECISION=1e-3, INTEGRALE=(integral, {**integral, "INST": 2.0}))
+        self.assertNotIn("RESULTAT", whole)
+        self.assertEqual([one["INST"] for one in whole["INTEGRALE"]], [[1.0], [2.0]])
+        self.assertEqual([(one["RESULTAT"].type, one["PRECISION"]) for one in whole["INTEGRALE"]], [("result", 1e-3)] * 2)
+        field = complete("POST_ELEM", CHAM_GD=concept("field"), MODELE=concept("model"), MINMAX={"TOUT": "OUI"})
+        self.assertEqual(set(field["MINMAX"][0]) - {"PRECISION", "CRITERE"}, {"TOUT", "CHAM_GD", "MODELE"})
+        self.assertEqual(complete("POST_ELEM", RESULTAT=concept("result"), ENER_POT={"TOUT": "OUI"})["RESULTAT"].type, "result")
+        self.assertEqual([p for _, p, _ in problems("POST_ELEM", CHAM_GD=concept("field"), RESULTAT=concept("result"), ENER_POT={})], ["POST_ELEM/CHAM_GD"])
+        self.assertIn("POST_ELEM/INTEGRALE[1]", [p for _, p, _ in problems("POST_ELEM", INTEGRALE={"TOUT": "OUI"})])
+
     def test_defaults_that_depend_on_another_keyword(self):
         zone = {"GROUP_MA_MAIT": "A", "GROUP_MA_ESCL": "B", "ALGO_CONT": "LAC"}
         for kind, residual in (("NEWTON", 1e-6), ("POINT_FIXE", 1e-2)):
@@ -495,6 +508,9 @@ class Properties(unittest.TestCase):
 
         for command in catalog.command_names():
             visit(command, catalog.command(command))
+            rows, down = catalog.command(command).get("keyword", {}), catalog.command(command).get("hands_down", {"keywords": (), "to": ()})
+            for row in (rows, *(rows[name]["keyword"] for name in down["to"])):
+                self.assertLessEqual(set(down["keywords"]), set(row), command)
             self.assertTrue(catalog.command(command)["help"])
 
 

@@ -54,7 +54,10 @@ class Maker:
 
 
 def obeys(row, given):
-    """Exclusions and prohibitions hold."""
+    """Exclusions and prohibitions hold; occurrences have themselves what the command could hand down to them."""
+    down = row.get("hands_down", {"keywords": (), "to": ()})
+    if any(name in given for name in down["to"]) and any(name in given for name in down["keywords"]):
+        return False
     for rule in row.get("rule", ()):
         if rule["kind"] in ("exactly_one", "exclusive") and sum(name in given for name in rule["of"]) > 1:
             return False

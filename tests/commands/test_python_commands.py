@@ -126,6 +126,25 @@ class Commands(LauncherTest):
         self.assertEqual(dict(file["ELAS"].attrs), {"E": 2000.0, "NU": 0.3, "RHO": 7800.0})
         self.assertEqual(list(file), ["ELAS"])
 
+    def test_values_of_a_material(self):
+        self.ok(self.run_study("""
+DEBUT()
+E = DEFI_FONCTION(NOM_PARA='TEMP', VALE=(0.0, 2000.0, 100.0, 1000.0))
+NU = FORMULE(NOM_PARA='TEMP', VALE='0.3 + 0 * TEMP')
+M = DEFI_MATERIAU(ELAS=_F(E=2000.0, NU=0.3))
+F = DEFI_MATERIAU(ELAS_FO=_F(E=E, NU=NU))
+assert M.RCVALE('ELAS', nomres=('E', 'NU'), stop=2) == ((2000.0, 0.3), (0, 0))
+assert M.RCVALE('ELAS', nomres='RHO', stop=0) == ((0.0,), (1,)) == M.RCVALE('ECRO_LINE', nomres=('SY',), stop=0)
+assert F.RCVALE('ELAS_FO', 'TEMP', 50.0, ('E', 'NU')) == ((1500.0, 0.3), (0, 0))
+for wrong, words in ((lambda: M.RCVALE('ELAS', nomres='RHO'), 'MATERIAL_1'), (lambda: F.RCVALE('ELAS_FO', nomres='E'), 'FUNCTION_2')):
+    try:
+        wrong()
+        raise SystemExit(words)
+    except AsterError as error:
+        assert words in str(error), error
+FIN()
+"""))
+
     def test_lists(self):
         files = self.make("DEFI_LIST_REEL(DEBUT=0, INTERVALLE=(_F(JUSQU_A=1, NOMBRE=2), _F(JUSQU_A=1.3, PAS=0.1)))",
                           "DEFI_LIST_REEL(VALE=(0, 0.5, 7))")

@@ -38,6 +38,7 @@ class _Check:
         """The keywords of a command, or of one occurrence of a factor keyword."""
         rows = row.get("keyword", {})
         given = self.renamed(path, row, {k: v for k, v in given.items() if v is not None})
+        given = handed_down(row.get("hands_down", {}), given)
         refused = any(name in row.get("elsewhere", ()) for name in given)
         values, others = {}, {}
         for name, value in given.items():
@@ -188,6 +189,19 @@ class _Check:
         for key, (holds, words) in tests.items():
             if key in row and not holds(value, row[key]):
                 self.problem("KEYWORD_15", path, value=_show(value), bound=f"{words} {row[key]:g}")
+
+
+def handed_down(row, given):
+    """Keywords of a command that mean the occurrences of some factor keywords (`hands_down`), in those that do not have them themselves."""
+    targets = [name for name in row.get("to", ()) if isinstance(given.get(name), (dict, list, tuple))]
+    common = {name: given[name] for name in row.get("keywords", ()) if name in given} if targets else {}
+    if not common:
+        return given
+    made = {name: value for name, value in given.items() if name not in common}
+    for name in targets:
+        items = [made[name]] if isinstance(made[name], dict) else made[name]
+        made[name] = [{**common, **item} if isinstance(item, dict) else item for item in items]
+    return made
 
 
 def _levels(path, row, name):

@@ -9,6 +9,7 @@ from ..commands.implementations import implementation
 from ..core import catalog, checker, current, labels, plugins
 from ..core.concepts import CO, Concept, _F
 from ..core.messages import AsterError, InternalError, fail, message
+from ..objects.fields import Field
 from .contact_methods import refuse_other_methods
 
 
@@ -44,6 +45,7 @@ class Command:
         if starts and isinstance(given.get("CODE"), dict):  # until version 14: CODE=_F(NIV_PUB_WEB='INTERNET')
             given["CODE"] = "OUI"
         reuse = given.pop("reuse", None)
+        given = _with_concepts(given)
         if self.name == "DEFI_CONTACT":
             refuse_other_methods(self.name, given, where, labels.label(frame))
         keywords, problems = checker.complete(self.name, row, given, where)
@@ -239,6 +241,17 @@ class Command:
     def _is_printed(run, number, keywords):
         """Whether the operator writes text for the terminal, which the launcher prints."""
         return run.is_terminal(number) and keywords.get("FORMAT") == "RESULTAT"
+
+
+def _with_concepts(value):
+    """Keywords with concepts in the place of fields of results, R.getField('DEPL', 1)."""
+    if isinstance(value, Field):
+        return value.concept()
+    if isinstance(value, dict):
+        return {name: _with_concepts(item) for name, item in value.items()}
+    if isinstance(value, (list, tuple)) and any(isinstance(item, (Field, dict)) for item in value):
+        return [_with_concepts(item) for item in value]
+    return value
 
 
 def _kind(row, keywords):
