@@ -11,6 +11,7 @@
 #include "lacon/catalog/cells.hpp"
 #include "lacon/catalog/messages.hpp"
 #include "lacon/catalog/quantities.hpp"
+#include "lacon/catalog/wording.hpp"
 #include "lacon/elements/reference.hpp"
 
 namespace lacon {
@@ -19,9 +20,9 @@ void bad_plugin(const std::filesystem::path& file, const std::string& reason) {
   fail("PLUGIN_1", {{"file", file.string()}, {"reason", reason}});
 }
 
-std::string in_quotes(std::string_view text) { return "'" + std::string(text) + "'"; }
-
 namespace {
+
+std::string in_quotes(std::string_view text) { return "'" + std::string(text) + "'"; }
 
 /// What a reader of one kind of table stands on.
 class TableReader {
@@ -29,10 +30,10 @@ class TableReader {
   /// @param kind "element" @param keys that such a table may have
   TableReader(const std::filesystem::path& file, const toml::table& table, const std::string& kind,
               std::initializer_list<std::string_view> keys)
-      : file_(file), table_(table), kind_(kind), name_("in line " + std::to_string(table.source().begin.line)) {
+      : file_(file), table_(table), kind_(kind), name_(part("in_line", {{"line", std::to_string(table.source().begin.line)}})) {
     for (const auto& [key, value] : table)
       if (std::find(keys.begin(), keys.end(), key.str()) == keys.end())
-        fail_row("it has the key " + in_quotes(key.str()) + ", which no " + kind + " has");
+        fail_row(part("key_of_no_kind", {{"key", std::string(key.str())}, {"kind", kind}}));
   }
 
  protected:
@@ -42,7 +43,7 @@ class TableReader {
 
   std::string text(std::string_view key) const {
     const std::optional<std::string> value = table_[key].value_exact<std::string>();
-    if (!value || value->empty()) fail_row("it lacks the text " + in_quotes(key));
+    if (!value || value->empty()) fail_row(part("lacks_the_text", {{"key", std::string(key)}}));
     return *value;
   }
 
@@ -54,23 +55,23 @@ class TableReader {
       if (name == given) return value;
       known += (known.empty() ? "" : ", ") + in_quotes(name);
     }
-    fail_row("its " + std::string(key) + " " + in_quotes(given) + " is none of " + known);
+    fail_row(part("none_of", {{"key", std::string(key)}, {"given", given}, {"known", known}}));
   }
 
   /// The table 'kernels': what stands before the kernel (an option, a modelisation) -> "plug-in/kernel".
   std::vector<std::pair<std::string, std::string>> kernels(const std::string& what,
                                                            const std::vector<std::string>& plugins) const {
     const toml::table* table = table_["kernels"].as_table();
-    if (!table) fail_row("it lacks the table 'kernels' (" + what + " = \"plug-in/kernel\")");
+    if (!table) fail_row(part("lacks_the_kernels", {{"what", what}}));
     std::vector<std::pair<std::string, std::string>> found;
     for (const auto& [key, node] : *table) {
       const std::string value = node.value_exact<std::string>().value_or(""), name(key.str());
       const std::size_t slash = value.find('/');
       const std::string plugin = value.substr(0, slash);
       if (slash == std::string::npos || slash == 0 || slash + 1 == value.size())
-        fail_row("its kernel of " + name + ", " + in_quotes(value) + ", is not of the form 'plug-in/kernel'");
+        fail_row(part("kernel_of_another_form", {{"name", name}, {"value", value}}));
       if (std::find(plugins.begin(), plugins.end(), plugin) == plugins.end())
-        fail_row("its kernel of " + name + " is in the plug-in " + in_quotes(plugin) + ", which was not found");
+        fail_row(part("kernel_in_no_plugin", {{"name", name}, {"plugin", plugin}}));
       found.emplace_back(name, value);
     }
     return found;
@@ -98,14 +99,14 @@ class ElementReader : TableReader {
         {{"plane", catalog::Geometry::plane}, {"axis", catalog::Geometry::axis}, {"space", catalog::Geometry::space}});
     const catalog::StressState state = stress_state(role, geometry);
     const toml::table* points = table_["points"].as_table();
-    if (!points || points->empty()) fail_row("it lacks the table 'points' (cell = number of integration points)");
+    if (!points || points->empty()) fail_row(part("lacks_the_points"));
     for (const auto& [key, value] : *points) {
       const std::string cell_name(key.str());
       name_ = modelisation + "/" + cell_name;
       const std::optional<CellType> cell = catalog::find_cell(cell_name);
-      if (!cell) fail_row("the cell " + in_quotes(cell_name) + " does not exist");
+      if (!cell) fail_row(part("cell_does_not_exist", {{"cell", cell_name}}));
       if (catalog::cell(*cell).dimension + (role == catalog::Role::skin ? 1 : 0) != catalog::dimension_of(geometry))
-        fail_row("a cell of this dimension is no " + text("role") + " of its geometry");
+        fail_row(part("cell_of_another_dimension", {{"role", text("role")}}));
       OwnedElement& owned = rows.elements.emplace_back();
       owned.file = file_.string();
       owned.dofs = components("dofs", "DEPL_R", rows);
@@ -132,7 +133,7 @@ class ElementReader : TableReader {
     if (role == catalog::Role::solid && geometry == catalog::Geometry::plane)
       return choice<catalog::StressState>("stress_state", {{"plane_strain", catalog::StressState::plane_strain},
                                                            {"plane_stress", catalog::StressState::plane_stress}});
-    if (table_.contains("stress_state")) fail_row("it has a 'stress_state', which solids in the plane alone have");
+    if (table_.contains("stress_state")) fail_row(part("stress_state_elsewhere"));
     return catalog::StressState::full;
   }
 
@@ -143,10 +144,9 @@ class ElementReader : TableReader {
     std::string names;
     for (const std::string_view name : wanted) names += (names.empty() ? "" : ", ") + in_quotes(name);
     if (dofs.size() < wanted.size() || !std::ranges::equal(dofs.first(wanted.size()), wanted))
-      fail_row("its 'dofs' do not begin with the displacements of its geometry, " + names + ", in this order");
+      fail_row(part("dofs_without_displacements", {{"names", names}}));
     for (const std::string_view other : dofs.subspan(wanted.size()))
-      if (other == "DZ" || other == "LAGS_C")
-        fail_row("its 'dofs' name " + in_quotes(other) + ", which is no unknown of elements of its geometry");
+      if (other == "DZ" || other == "LAGS_C") fail_row(part("dofs_of_no_element", {{"name", std::string(other)}}));
   }
 
   int rule_size(CellType cell, const toml::node& node) const {
@@ -155,22 +155,21 @@ class ElementReader : TableReader {
       if (n && *n > 0 && *n < 100000) return integration_rule(catalog::cell(cell).family, static_cast<int>(*n)).size();
     } catch (const std::logic_error&) {  // told below, with the file
     }
-    fail_row("there is no integration rule of " + (n ? std::to_string(*n) : std::string("this number of")) +
-             " points on this cell");
+    fail_row(n ? part("no_rule_of_points", {{"count", std::to_string(*n)}}) : part("no_rule_of_this_number"));
   }
 
   std::vector<std::string_view> components(std::string_view key, std::string_view quantity, PluginRows& rows) const {
     const auto known = std::find_if(catalog::quantities().begin(), catalog::quantities().end(),
                                     [&](const auto& q) { return q.name == quantity; });
     const toml::array* array = table_[key].as_array();
-    if (!array) fail_row("it lacks the list " + in_quotes(key));
+    if (!array) fail_row(part("lacks_the_list", {{"key", std::string(key)}}));
     std::vector<std::string_view> names;
     for (const toml::node& node : *array) {
       const std::string name = node.value_exact<std::string>().value_or("");
       if (std::find(known->components.begin(), known->components.end(), name) == known->components.end())
-        fail_row(in_quotes(key) + " names " + in_quotes(name) + ", which is no component of " + std::string(quantity));
+        fail_row(part("no_component_of", {{"key", std::string(key)}, {"name", name}, {"quantity", std::string(quantity)}}));
       if (std::find(names.begin(), names.end(), name) != names.end())
-        fail_row(in_quotes(key) + " names " + in_quotes(name) + " twice");
+        fail_row(part("names_twice", {{"key", std::string(key)}, {"name", name}}));
       names.push_back(rows.keep(name));
     }
     return names;
@@ -218,13 +217,14 @@ void read_plugin_rows(const std::filesystem::path& file, const std::vector<std::
   try {
     content = toml::parse_file(file.string());
   } catch (const toml::parse_error& error) {
-    bad_plugin(file, std::string(error.description()) + " (line " + std::to_string(error.source().begin.line) + ")");
+    bad_plugin(file, part("reason_in_line",
+                          {{"reason", std::string(error.description())}, {"line", std::to_string(error.source().begin.line)}}));
   }
   for (const auto& [key, value] : content) {
     const std::string_view kind = key.str();
     if (kind == "material" && value.is_table()) continue;  // keywords of DEFI_MATERIAU: the launcher reads them
     if ((kind != "element" && kind != "relation" && kind != "deformation" && kind != "law") || !value.is_array_of_tables())
-      bad_plugin(file, in_quotes(kind) + " is not a list of [[element]], [[relation]], [[deformation]] or [[law]] tables");
+      bad_plugin(file, part("no_list_of_tables", {{"key", std::string(kind)}}));
     for (const toml::node& node : *value.as_array()) {
       const toml::table& table = *node.as_table();
       if (kind == "element")

@@ -44,6 +44,4 @@ void read_plugin_rows(const std::filesystem::path& file, const std::vector<std::
 /// Throw PLUGIN_1.
 [[noreturn]] void bad_plugin(const std::filesystem::path& file, const std::string& reason);
 
-std::string in_quotes(std::string_view text);
-
 }  // namespace lacon

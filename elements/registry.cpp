@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "lacon/catalog/messages.hpp"
+#include "lacon/catalog/wording.hpp"
 #include "lacon/elements/plugin_rows.hpp"
 #include "lacon/structures/executable.hpp"
 
@@ -72,24 +73,24 @@ fs::path folder_beside_executable() {
 
 /// What is wrong with a kernel of a plug-in's table; empty if nothing is.
 std::string defect(const lacon_kernel& kernel) {
-  if (!kernel.name || !*kernel.name) return "one of its kernels has no name";
-  const std::string name = "its kernel " + in_quotes(kernel.name);
+  if (!kernel.name || !*kernel.name) return part("kernel_without_name");
+  const auto said = [&](std::string_view what) { return part(what, {{"kernel", kernel.name}}); };
   const std::vector<std::string_view> unknowns(kernel.unknowns, kernel.unknowns + n_names(kernel.unknowns));
-  if (kernel.unknowns && unknowns.empty()) return name + " has an empty list of unknowns";
+  if (kernel.unknowns && unknowns.empty()) return said("kernel_without_unknowns");
   for (const std::string_view unknown : unknowns)
     if (std::count(unknowns.begin(), unknowns.end(), unknown) > 1)
-      return name + " names the unknown " + in_quotes(unknown) + " twice";
+      return part("kernel_names_twice", {{"kernel", kernel.name}, {"unknown", std::string(unknown)}});
   switch (kernel.kind) {
     case LACON_SOLID:
-      if (!kernel.parameters) return name + " has no list of parameters";
-      return kernel.solid ? "" : name + " has no function";
+      if (!kernel.parameters) return said("kernel_without_parameters");
+      return kernel.solid ? "" : said("kernel_without_function");
     case LACON_LOAD:
-      if (!kernel.parameters) return name + " has no list of values";
-      return kernel.load ? "" : name + " has no function";
+      if (!kernel.parameters) return said("kernel_without_values");
+      return kernel.load ? "" : said("kernel_without_function");
     case LACON_CONTACT:
-      return kernel.contact ? "" : name + " has no function";
+      return kernel.contact ? "" : said("kernel_without_function");
     default:
-      return name + " is of the unknown kind " + std::to_string(kernel.kind);
+      return part("kernel_of_unknown_kind", {{"kernel", kernel.name}, {"kind", std::to_string(kernel.kind)}});
   }
 }
 
@@ -99,26 +100,27 @@ void open(Plugin& plugin) {
   std::unique_ptr<void, CloseLibrary> library(dlopen(file.c_str(), RTLD_NOW | RTLD_LOCAL));
   if (!library) {
     const char* reason = dlerror();
-    bad_plugin(file, reason ? reason : "it cannot be opened");
+    bad_plugin(file, reason ? reason : part("it_cannot_be_opened"));
   }
   const auto entry = reinterpret_cast<const lacon_plugin_table* (*)()>(dlsym(library.get(), "lacon_plugin"));
-  if (!entry) bad_plugin(file, "it has no function lacon_plugin");
+  if (!entry) bad_plugin(file, part("no_entry"));
   const lacon_plugin_table* table = entry();
-  if (!table) bad_plugin(file, "its function lacon_plugin returns nothing");
+  if (!table) bad_plugin(file, part("entry_returns_nothing"));
   if (table->abi != LACON_ABI)
-    bad_plugin(file, "it was built for the interface (ABI) " + std::to_string(table->abi) + ", this program has " +
-                         std::to_string(LACON_ABI));
+    bad_plugin(file, part("another_abi", {{"found", std::to_string(table->abi)}, {"expected", std::to_string(LACON_ABI)}}));
   if (table->solid_batch_size != sizeof(lacon_solid_batch) || table->load_batch_size != sizeof(lacon_load_batch) ||
       table->contact_batch_size != sizeof(lacon_contact_batch))
-    bad_plugin(file, "its batches have other sizes than this program's");
-  if (table->n_kernels < 1 || !table->kernels) bad_plugin(file, "it has no kernels");
+    bad_plugin(file, part("batches_of_other_sizes"));
+  if (table->n_kernels < 1 || !table->kernels) bad_plugin(file, part("no_kernels"));
   for (std::int32_t k = 0; k < table->n_kernels; ++k)
     if (const std::string reason = defect(table->kernels[k]); !reason.empty()) bad_plugin(file, reason);
   plugin.library = std::move(library);
   plugin.table = table;
 }
 
-const char* kind_name(int kind) { return kind == LACON_SOLID ? "solid elements" : kind == LACON_LOAD ? "loads" : "contact"; }
+std::string kind_name(int kind) {
+  return part(kind == LACON_SOLID ? "for_solid_elements" : kind == LACON_LOAD ? "for_loads" : "for_contact");
+}
 
 }  // namespace
 
@@ -136,7 +138,7 @@ struct Registry::State {
       if (same == plugins.end())
         plugins.push_back({name, found, nullptr, nullptr});
       else if (same->folder != found)
-        bad_plugin(found, "another plug-in of this name is in '" + same->folder.string() + "'");
+        bad_plugin(found, part("plugin_of_this_name", {{"folder", same->folder.string()}}));
     }
   }
 
@@ -171,7 +173,7 @@ template <class Row, class Rows>
 void enter(std::vector<const Row*>& known, const Rows& rows, std::size_t first, const std::string& kind,
            const std::string& file) {
   for (std::size_t i = first; i < rows.size(); ++i) {
-    if (named(known, rows[i].name)) refuse_row(file, kind + " " + std::string(rows[i].name), "another row has this name");
+    if (named(known, rows[i].name)) refuse_row(file, kind + " " + std::string(rows[i].name), part("row_of_this_name"));
     known.push_back(&rows[i]);
   }
 }
@@ -194,8 +196,7 @@ void Registry::State::read_rows() {
     enter(deformations, brought.deformations, first_deformation, "deformation", file);
   }
   for (const OwnedElement& owned : brought.elements) {
-    if (named(rows, owned.row.name))
-      refuse_row(owned.file, "element " + std::string(owned.row.name), "another row has this name");
+    if (named(rows, owned.row.name)) refuse_row(owned.file, "element " + std::string(owned.row.name), part("row_of_this_name"));
     rows.push_back(&owned.row);
   }
   check_behaviours();
@@ -206,23 +207,25 @@ void Registry::State::check_behaviours() const {
   const auto missing = [&](std::string_view option) -> std::string {
     const std::size_t slash = option.find('/');
     const std::string_view relation = option.substr(0, slash), deformation = option.substr(slash + 1);
-    if (!named(relations, relation)) return "there is no relation " + in_quotes(relation);
-    if (!named(deformations, deformation)) return "there is no deformation " + in_quotes(deformation);
+    if (!named(relations, relation)) return part("no_relation", {{"name", std::string(relation)}});
+    if (!named(deformations, deformation)) return part("no_deformation", {{"name", std::string(deformation)}});
     return {};
   };
   for (const OwnedElement& owned : brought.elements)
     for (const catalog::KernelRow& kernel : owned.kernels)
       if (kernel.option.find('/') != std::string_view::npos && !missing(kernel.option).empty())
-        refuse_row(owned.file, "element " + std::string(owned.row.name),
-                   "its option " + in_quotes(kernel.option) + " names no behaviour: " + missing(kernel.option));
+        refuse_row(
+            owned.file, "element " + std::string(owned.row.name),
+            part("option_of_no_behaviour", {{"option", std::string(kernel.option)}, {"reason", missing(kernel.option)}}));
   for (const LawRow& law : brought.laws) {
     const auto refuse = [&](const std::string& reason) { refuse_row(law.file, "law " + std::string(law.option), reason); };
     if (const std::string reason = missing(law.option); !reason.empty()) refuse(reason);
     const auto body = std::find_if(rows.begin(), rows.end(), [&](const catalog::ElementRow* row) {
       return row->modelisation == law.modelisation && row->role == catalog::Role::solid;
     });
-    if (body == rows.end()) refuse("there is no modelisation " + in_quotes(law.modelisation) + " with solid elements");
-    if (kernel_name(**body, law.option) != law.kernel) refuse(in_quotes(law.modelisation) + " has a kernel for it already");
+    if (body == rows.end()) refuse(part("no_solid_modelisation", {{"name", std::string(law.modelisation)}}));
+    if (kernel_name(**body, law.option) != law.kernel)
+      refuse(part("has_its_kernel_already", {{"name", std::string(law.modelisation)}}));
   }
 }
 
@@ -230,7 +233,7 @@ Registry::Registry(std::span<const fs::path> folders) : state_(std::make_unique<
   std::vector<fs::path> asked(folders.begin(), folders.end());
   for (fs::path& folder : path_from_environment()) asked.push_back(std::move(folder));
   for (const fs::path& folder : asked) {
-    if (plugins_in(folder).empty()) bad_plugin(folder, "the folder holds no plug-in");
+    if (plugins_in(folder).empty()) bad_plugin(folder, part("folder_without_plugin"));
     state_->add_plugins(folder);
   }
   if (const fs::path installed = folder_beside_executable(); !installed.empty()) state_->add_plugins(installed);
@@ -271,26 +274,30 @@ const lacon_kernel& Registry::kernel(const catalog::ElementRow& element, std::st
         message("PLUGIN_3", {{"element", std::string(element.name)}, {"option", std::string(option)}, {"reason", reason}}));
   };
   const std::string_view found = state_->kernel_name(element, option);
-  if (found.empty()) throw reasoned("no row names a kernel for it");
+  if (found.empty()) throw reasoned(part("no_row_names_a_kernel"));
   const std::size_t slash = found.find('/');
   const std::string_view plugin_name = found.substr(0, slash), kernel_name = found.substr(slash + 1);
   const auto plugin =
       std::find_if(state_->plugins.begin(), state_->plugins.end(), [&](const Plugin& p) { return p.name == plugin_name; });
-  if (plugin == state_->plugins.end()) throw reasoned("the plug-in " + in_quotes(plugin_name) + " was not found");
+  if (plugin == state_->plugins.end()) throw reasoned(part("plugin_not_found", {{"name", std::string(plugin_name)}}));
   open(*plugin);
   for (std::int32_t k = 0; k < plugin->table->n_kernels; ++k) {
     const lacon_kernel& kernel = plugin->table->kernels[k];
     if (kernel.name != kernel_name) continue;
     if (kernel.kind != kind)
-      throw reasoned("the kernel " + in_quotes(found) + " of '" + plugin->library_file().string() + "' is for " +
-                     kind_name(kernel.kind) + ", not for " + kind_name(kind));
+      throw reasoned(part("kernel_for_another", {{"kernel", std::string(found)},
+                                                 {"file", plugin->library_file().string()},
+                                                 {"found", kind_name(kernel.kind)},
+                                                 {"wanted", kind_name(kind)}}));
     for (const std::string_view unknown : unknowns_of(element, kernel))
       if (std::find(element.dofs.begin(), element.dofs.end(), unknown) == element.dofs.end())
-        throw reasoned("the kernel " + in_quotes(found) + " of '" + plugin->library_file().string() + "' works on " +
-                       in_quotes(unknown) + ", which is none of the element's 'dofs'");
+        throw reasoned(part(
+            "kernel_on_another_unknown",
+            {{"kernel", std::string(found)}, {"file", plugin->library_file().string()}, {"unknown", std::string(unknown)}}));
     return kernel;
   }
-  throw reasoned("the plug-in '" + plugin->library_file().string() + "' has no kernel " + in_quotes(kernel_name));
+  throw reasoned(
+      part("plugin_without_kernel", {{"file", plugin->library_file().string()}, {"kernel", std::string(kernel_name)}}));
 }
 
 std::vector<std::string_view> unknowns_of(const catalog::ElementRow& element, const lacon_kernel& kernel) {

@@ -7,6 +7,7 @@
 
 #include "lacon/catalog/keywords.hpp"
 #include "lacon/catalog/messages.hpp"
+#include "lacon/catalog/wording.hpp"
 
 namespace lacon {
 namespace {
@@ -44,13 +45,13 @@ void check(const json& keywords, const Level& level, const std::string& place) {
     }
     const json& value = keywords[name];
     if (row.type == "factor") {
-      if (!value.is_array()) wrong_type(place + name, "a list of occurrences");
+      if (!value.is_array()) wrong_type(place + name, part("list_of_occurrences"));
       for (std::size_t i = 0; i < value.size(); ++i) {
-        if (!value[i].is_object()) wrong_type(place + name, "a list of occurrences");
+        if (!value[i].is_object()) wrong_type(place + name, part("list_of_occurrences"));
         check(value[i], {level.command, level.prefix + name + "/"}, place + name + "[" + std::to_string(i + 1) + "]/");
       }
     } else if (row.multiple != value.is_array()) {
-      wrong_type(place + name, row.multiple ? "a list" : "a single value");
+      wrong_type(place + name, part(row.multiple ? "a_list" : "a_single_value"));
     }
   });
   for (const auto& [name, value] : keywords.items())
@@ -59,7 +60,7 @@ void check(const json& keywords, const Level& level, const std::string& place) {
 
 template <class T>
 T get(const json& value, bool fits, const std::string& path, const char* expected) {
-  if (!fits) wrong_type(path, expected);
+  if (!fits) wrong_type(path, part(expected));
   return value.get<T>();
 }
 
@@ -70,7 +71,7 @@ bool is_integer(const json& value) {
 }
 
 std::string id_of(const json& value, const std::string& path) {
-  if (!value.is_object() || !value.contains("concept") || !value["concept"].is_string()) wrong_type(path, "a concept");
+  if (!value.is_object() || !value.contains("concept") || !value["concept"].is_string()) wrong_type(path, part("a_concept"));
   return value["concept"].get<std::string>();
 }
 
@@ -84,30 +85,30 @@ const json& Keywords::value(std::string_view name) const {
 
 double Keywords::real(std::string_view name) const {
   const json& v = value(name);
-  return get<double>(v, v.is_number(), path(name), "a number");
+  return get<double>(v, v.is_number(), path(name), "a_number");
 }
 
 std::int64_t Keywords::integer(std::string_view name) const {
   const json& v = value(name);
-  return get<std::int64_t>(v, is_integer(v), path(name), "an integer");
+  return get<std::int64_t>(v, is_integer(v), path(name), "an_integer");
 }
 
 std::string Keywords::text(std::string_view name) const {
   const json& v = value(name);
-  return get<std::string>(v, v.is_string(), path(name), "a text");
+  return get<std::string>(v, v.is_string(), path(name), "a_text");
 }
 
 std::vector<double> Keywords::reals(std::string_view name) const {
   std::vector<double> items;
   if (has(name))
-    for (const json& v : value(name)) items.push_back(get<double>(v, v.is_number(), path(name), "a list of numbers"));
+    for (const json& v : value(name)) items.push_back(get<double>(v, v.is_number(), path(name), "list_of_numbers"));
   return items;
 }
 
 Vec3 Keywords::vector(std::string_view name, int dimension) const {
   std::vector<double> given = reals(name);
   if (given.size() != static_cast<std::size_t>(dimension))
-    wrong_type(path(name), "as many numbers as the mesh has dimensions, " + std::to_string(dimension));
+    wrong_type(path(name), part("a_number_for_each_dimension", {{"count", std::to_string(dimension)}}));
   given.resize(3, 0.0);
   return vector_at(given.data());
 }
@@ -115,7 +116,7 @@ Vec3 Keywords::vector(std::string_view name, int dimension) const {
 std::vector<std::int64_t> Keywords::integers(std::string_view name) const {
   std::vector<std::int64_t> items;
   if (has(name))
-    for (const json& v : value(name)) items.push_back(get<std::int64_t>(v, is_integer(v), path(name), "a list of integers"));
+    for (const json& v : value(name)) items.push_back(get<std::int64_t>(v, is_integer(v), path(name), "list_of_whole_numbers"));
   return items;
 }
 
@@ -123,7 +124,7 @@ std::vector<std::string> Keywords::texts(std::string_view name) const {
   std::vector<std::string> items;
   if (!has(name)) return items;
   if (value(name).is_string()) return {text(name)};
-  for (const json& v : value(name)) items.push_back(get<std::string>(v, v.is_string(), path(name), "a list of texts"));
+  for (const json& v : value(name)) items.push_back(get<std::string>(v, v.is_string(), path(name), "list_of_texts"));
   return items;
 }
 
@@ -161,7 +162,7 @@ std::vector<Keywords> Keywords::factors(std::string_view name) const {
 
 Keywords Keywords::factor(std::string_view name) const {
   const std::vector<Keywords> occurrences = factors(name);
-  if (occurrences.size() != 1) fail("ORDER_4", {{"keyword", path(name)}, {"expected", "given once"}});
+  if (occurrences.size() != 1) fail("ORDER_4", {{"keyword", path(name)}, {"expected", part("given_once")}});
   return occurrences.front();
 }
 
@@ -175,7 +176,7 @@ Order parse_order(const json& order, const std::string& file) {
   const auto refuse = [&](const std::string& reason) { fail("ORDER_1", {{"file", file}, {"reason", reason}}); };
   Order parsed;
   try {
-    if (order.at("format").get<int>() != 1) refuse("its format is not 1");
+    if (order.at("format").get<int>() != 1) refuse(part("order_of_another_format"));
     parsed.command = order.at("command").get<std::string>();
     parsed.base = order.at("base").get<std::string>();
     if (order.contains("result")) {
@@ -193,25 +194,25 @@ Order parse_order(const json& order, const std::string& file) {
   } catch (const json::exception& error) {
     refuse(error.what());
   } catch (const std::logic_error&) {  // of std::stoi
-    refuse("a unit is not a number");
+    refuse(part("unit_is_no_number"));
   }
-  if (!parsed.keywords.values().is_object()) refuse("'keywords' is not an object");
+  if (!parsed.keywords.values().is_object()) refuse(part("keywords_are_no_object"));
   bool known = false;
   for (const catalog::KeywordRow& row : catalog::keywords()) known = known || row.command == parsed.command;
-  if (!known) refuse("there is no command " + parsed.command);
+  if (!known) refuse(part("order_of_no_command", {{"command", parsed.command}}));
   check(parsed.keywords.values(), {parsed.command, ""}, "");
   return parsed;
 }
 
 Order read_order(const std::filesystem::path& file) {
   std::ifstream stream(file);
-  if (!stream) fail("ORDER_1", {{"file", file.string()}, {"reason", "the file cannot be opened"}});
+  if (!stream) fail("ORDER_1", {{"file", file.string()}, {"reason", part("it_cannot_be_opened")}});
   const auto not_too_deep = [&](int depth, json::parse_event_t, const json&) {
-    if (depth > deepest) fail("ORDER_1", {{"file", file.string()}, {"reason", "its lists are nested too deeply"}});
+    if (depth > deepest) fail("ORDER_1", {{"file", file.string()}, {"reason", part("nested_too_deeply")}});
     return true;
   };
   const json order = json::parse(stream, not_too_deep, false);
-  if (order.is_discarded()) fail("ORDER_1", {{"file", file.string()}, {"reason", "it is not JSON"}});
+  if (order.is_discarded()) fail("ORDER_1", {{"file", file.string()}, {"reason", part("it_is_not_json")}});
   return parse_order(order, file.string());
 }
 
