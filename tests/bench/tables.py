@@ -150,7 +150,8 @@ def parts_section(measured):
             elements.setdefault(element, {})[behaviour] = f"{amount(case['items/s'])}, {rate(case, 'GF/s', 'of_dgemm')}, {rate(case, 'GB/s', 'of_copy')}"
             behaviours += [behaviour] * (behaviour not in behaviours)
         else:
-            rows.append([case["name"], amount(case["items/s"]), rate(case, "GF/s", "of_dgemm"), rate(case, "GB/s", "of_copy"),
+            name = f"`{case['name']}`" if "<" in case["name"] else case["name"]  # <...> were a link
+            rows.append([name, amount(case["items/s"]), rate(case, "GF/s", "of_dgemm"), rate(case, "GB/s", "of_copy"),
                          number(case["peak_MB"]) if "peak_MB" in case else ""])
     made = [table(["case", "items a second", "GF/s (of dgemm)", "GB/s (of a copy)", "peak, MB"], rows)] if rows else []
     if elements:

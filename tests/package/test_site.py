@@ -19,6 +19,9 @@ class Site(unittest.TestCase):
         missing = [f"{page.name}: {picture}" for page in site.glob("*.html")
                    for picture in re.findall(r'<img[^>]* src="(?!data:)([^"]+)"', page.read_text(encoding="utf-8")) if not (page.parent / picture).exists()]
         self.assertEqual(missing, [])
+        strange = {f"{page.name}: {link}" for page in site.glob("**/*.html") for link in re.findall(r'<a [^>]*href="(\w+:[^"]*)"', page.read_text(encoding="utf-8"))
+                   if not link.startswith(("http:", "https:"))}
+        self.assertEqual(strange, set())  # names of C++ between < and > are no links
 
 
 if __name__ == "__main__":
