@@ -47,13 +47,14 @@ RESULT = CALC_CHAMP(reuse=RESULT, RESULTAT=RESULT, CONTRAINTE='SIEF_NOEU')
 FIN()
 """
 MODELS = {2: {"model": "D_PLAN", "nu": 0.0, "fixed": "DX=0.0, DY=0.0", "kept": "DX=0.0", "down": "DY", "way": -2 * SQUASH},
+          "AXIS": {"model": "AXIS", "nu": 0.0, "fixed": "DX=0.0, DY=0.0", "kept": "DX=0.0", "down": "DY", "way": -2 * SQUASH},
           3: {"model": "3D", "nu": 0.3, "fixed": "DX=0.0, DY=0.0, DZ=0.0", "kept": "DX=0.0, DY=0.0", "down": "DZ", "way": -0.05}}
 
 
 def write_mesh(path, dimension):
     """In the plane two strips of one width, which do not bulge (NU = 0): displacements are linear. In space a dome of 4 x 4 patches on a plate."""
     line = np.linspace
-    if dimension == 2:
+    if dimension != 3:
         lower = block("QUAD4", line(0, 2, 5), line(-1, 0, 3), name="LOWER", sides={"bottom": "BASE", "top": "GROUND"})
         upper = block("QUAD4", line(0, 2, 4), line(0, 1, 3), name="UPPER", sides={"bottom": "SOLE", "top": "TOP"})
     else:
@@ -486,6 +487,16 @@ class Shown(unittest.TestCase):
         self.assertLess(self.browser.picture()[0, 0].mean(), 60)
         self.browser.ask("document.getElementById('theme').click()")
         self.assertGreater(self.browser.picture()[0, 0].mean(), 200)
+
+    def test_axisymmetric_forces_are_said_to_be_of_one_radian(self):
+        """The two strips turned round x = 0: each force is the pressure times the area of one radian, and the page says so."""
+        self.open("AXIS")
+        result = base_of(study("AXIS"))["RESULT"]
+        self.assertTrue(result.is_of_revolution)
+        patches = result.contact()
+        self.assertAlmostEqual(self.told.study["zones"][0]["course"][-1]["force"][1], patches.pressure.mean() * 2.0**2 / 2, places=5)
+        self.assertIn("of one radian", self.browser.ask("document.getElementById('zones').textContent"))
+        self.assertIn("Contact force on the slave, of one radian", self.browser.ask("document.getElementById('charts').textContent"))
 
     def test_space_tables_and_curves_stand(self):
         self.open(3)

@@ -196,7 +196,7 @@ def fields_of_iterates(failed_step):
 
 def modelisations(model):
     """Names of those that its cells have, "AXIS"."""
-    return {name.partition("/")[0] for name in texts(model, "elements")}
+    return {text(name).partition("/")[0] for name in model["elements"][:]}
 
 
 def parameters(result):

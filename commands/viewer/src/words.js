@@ -77,7 +77,7 @@ const french = {
   "magnitude": "norme",
   "log₁₀ of the magnitude": "log₁₀ de la norme",
   "von Mises": "von Mises",
-  "blue-red, about 0": "bleu-rouge, autour de 0",
+  "blue-red, about 0": "bleu-blanc-rouge",
   "in contact": "en contact",
   "changes of status": "changements de statut",
   "gap of active patches": "jeu des patchs actifs",
