@@ -6,7 +6,8 @@ usage: end_to_end.py BUILD [NAME ...]      BUILD: build/release, with the target
        --all            every one but H5 and H6
        --threads 1 2    of Lacon, one run each; by default 1
        --engine PETSC   of SOLVEUR, in place of MUMPS
-       --mpi N          processes that solve linear systems; with it or PETSC memory is that of the largest process, and there is no --docs
+       --mpi N          processes that solve linear systems, by default those that a user gets; there is no --docs with it or PETSC. Where there
+                        are several, memory is that of the largest process
        --parts          the Google Benchmarks, start_up.py and cutting.py as well (--all: 5 million cells too)
        --no-calculix    even where ccx is installed (Debian: calculix-ccx), leave it out
        --patience N     it gets N times the time of Lacon, by default 20; but at least two minutes, and at most ten
@@ -88,12 +89,12 @@ def mesh_file(name, folder):
 
 
 def study(lacon, name, folder, threads, engine, ranks):
-    """One run of a study; its base stays in the folder. @param engine METHODE of SOLVEUR @param ranks processes that solve  @return what tables.py shows of it"""
+    """One run of a study; its base stays in the folder. @param engine METHODE of SOLVEUR @param ranks processes that solve, or None  @return what tables.py shows of it"""
     mesh, base, report = mesh_file(name, folder), folder / f"{name}.base", folder / "run.json"
     environment = {**os.environ, "BLOCKS_FLAT": "0" if is_curved(name) else "1", "BLOCKS_DZ": str(PUSH),
                    "BLOCKS_ENGINE": engine}
     command = [lacon, SOURCE / "tests/bench/two_blocks.comm", "--fresh", "--unit", f"20={mesh}", "--base", base, "--json", report,
-               "--threads", threads, "--mpi", ranks]
+               "--threads", threads, *(("--mpi", ranks) if ranks else ())]
     start = time.perf_counter()
     with open(folder / "output", "w+", encoding="utf-8") as output:
         process = subprocess.Popen([str(word) for word in command], env=environment, stdout=output, stderr=subprocess.STDOUT)
@@ -204,7 +205,7 @@ def main():
     parser.add_argument("--all", action="store_true")
     parser.add_argument("--threads", type=int, nargs="+", default=[1])
     parser.add_argument("--engine", choices=("MUMPS", "PETSC"), default="MUMPS")
-    parser.add_argument("--mpi", type=int, default=1)
+    parser.add_argument("--mpi", type=int)
     parser.add_argument("--parts", action="store_true")
     parser.add_argument("--no-calculix", action="store_true")
     parser.add_argument("--patience", type=float, default=20)
@@ -214,7 +215,7 @@ def main():
     names = ALL if options.all else options.names or ("H1", "H2", "H1c", "H2c")
     if unknown := [name for name in names if name not in NAMES]:
         parser.error(f"{unknown[0]}: the studies are {' '.join(NAMES)}")
-    if options.docs and (options.engine != "MUMPS" or options.mpi > 1):
+    if options.docs and (options.engine != "MUMPS" or options.mpi):
         parser.error("--docs: its tables are those of MUMPS")
     build = options.build.resolve()
     measured, measured_at = {"machine": machine_of(build), "studies": [], "calculix": [], "parts": [], "texts": {}}, time.monotonic()
