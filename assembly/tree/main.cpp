@@ -113,6 +113,11 @@ class Pieces {
     }
     std::string precision, path;
     int number = 0;
+    if (verb == "open") {
+      said >> path;
+      SharedMemory::open(path);
+      return "done";
+    }
     said >> precision >> number >> path;
     SharedMemory memory = SharedMemory::open(path);
     std::optional<SharedMemory> more;

@@ -48,12 +48,13 @@ void MumpsProcesses::start() {
   std::string program = program_;
   if (program.empty()) program = executable().parent_path() / "lacon_mumps";
   for (int i = 0; i < n_; ++i) processes_.push_back(std::make_unique<Companion>(std::vector{program}));
-  for (const auto& process : processes_)
-    if (process->answer().empty()) {
-      const std::string end = process->end();
-      processes_.clear();
-      fail("SOLVER_8", {{"reason", program + ": " + end}});
-    }
+  const SharedMemory shared(1);  // they see it where /proc is mounted
+  for (const auto& process : processes_) {
+    if (const bool is_ready = !process->answer().empty(); is_ready && process->ask("open " + shared.path()) == "done") continue;
+    const std::string end = process->ask("forget").empty() ? process->end() : part("sees_no_memory");
+    processes_.clear();
+    fail("SOLVER_8", {{"reason", program + ": " + end}});
+  }
 }
 
 void MumpsProcesses::forget() noexcept {

@@ -221,15 +221,22 @@ TEST(TreeMumps, SaysThatProcessesHaveEnded) {
   std::filesystem::remove(script);
 }
 
-// Where nobody has asked for processes one does without them.
-TEST(TreeMumps, IsNotMadeWhereProcessesCannotBeStarted) {
+// Where nobody has asked for processes one does without them, if they cannot be started or see no memory of the operator's.
+TEST(TreeMumps, IsNotMadeWhereProcessesAreOfNoUse) {
   const Lattice lattice(10);
-  MumpsOptions options = shared_by(2);
-  options.processes_required = false;
-  options.program = "/nowhere/lacon_mumps";
-  MumpsEngine engine(options);
-  engine.analyse(lattice.matrix);
-  EXPECT_EQ(engine.factorise(lattice.matrix).processes, 1);
+  const std::filesystem::path blind = std::filesystem::temp_directory_path() / "lacon_mumps_that_is_blind";
+  std::ofstream(blind) << "#!/bin/sh\necho ready\nwhile read line; do echo failed; done\n";
+  std::filesystem::permissions(blind, std::filesystem::perms::owner_all);
+  EXPECT_NE(end_of(blind).find("/proc"), std::string::npos);
+  for (const std::string program : {"/nowhere/lacon_mumps", blind.c_str()}) {
+    MumpsOptions options = shared_by(2);
+    options.processes_required = false;
+    options.program = program;
+    MumpsEngine engine(options);
+    engine.analyse(lattice.matrix);
+    EXPECT_EQ(engine.factorise(lattice.matrix).processes, 1) << program;
+  }
+  std::filesystem::remove(blind);
 }
 
 }  // namespace
