@@ -9,7 +9,8 @@ namespace {
 
 using namespace lacon;
 
-#if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__) && !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
+#if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__) && !defined(__SANITIZE_ADDRESS__) && \
+    !defined(__SANITIZE_THREAD__)
 /// x y - 1, which a fused instruction does not round in between.
 LACON_KERNEL double product_less_one(double x, double y) { return x * y - 1; }
 
