@@ -18,6 +18,7 @@
 #include "lacon/operators/fields/extrapolation.hpp"
 #include "lacon/operators/fields/layout.hpp"
 #include "lacon/operators/fields/mechanics.hpp"
+#include "lacon/operators/fields/plastic_strain.hpp"
 #include "lacon/operators/fields/result_materials.hpp"
 #include "lacon/operators/fields/selection.hpp"
 #include "lacon/operators/fields/tensor.hpp"
@@ -135,6 +136,7 @@ struct CellBehaviours {
   std::vector<char> moved;  ///< stresses live on the displaced geometry
   std::vector<char> green;  ///< Green-Lagrange strains
   std::vector<const catalog::RelationRow*> relation;
+  std::vector<const catalog::DeformationRow*> deformation;
 };
 
 CellBehaviours behaviours_of(const Mesh& mesh, const ResultStage& stage, const Registry& registry) {
@@ -149,6 +151,7 @@ CellBehaviours behaviours_of(const Mesh& mesh, const ResultStage& stage, const R
     found.moved.push_back(deformation.stress_geometry == catalog::StressGeometry::displaced);
     found.green.push_back(deformation.strain == catalog::StrainMeasure::green_lagrange);
     found.relation.push_back(&relation);
+    found.deformation.push_back(&deformation);
   }
   return found;
 }
@@ -255,8 +258,7 @@ class Instant {
       case How::strain_logarithmic:
         return on_wanted_cells(strain(Strain::logarithmic, setting_.wanted(), name));
       case How::plastic:
-        refuse_large_strain((*this)(row.from), name);
-        return plastic_strain((*this)("EPSI_ELGA"), (*this)(row.from), name, setting_.materials());
+        return plastic((*this)(row.from), name);
       case How::stress_invariants:
         return equivalent_stress((*this)(row.from), name);
       case How::strain_invariants:
@@ -340,7 +342,27 @@ class Instant {
     return field;
   }
 
-  /// CALCCHAMP_5: energies and plastic strains are those of small strains.
+  /// What has flowed. Throws CALCCHAMP_7 under a measure of strain that does not say so.
+  Field plastic(const Field& stress, const std::string& name) {
+    const CellBehaviours& behaviours = setting_.behaviours(order_);
+    std::vector<PlasticMeasure> measure(setting_.mesh().n_cells(), PlasticMeasure::small);
+    bool stretches = false;
+    for (const std::int32_t cell : stress.support) {
+      const auto c = static_cast<std::size_t>(cell);
+      const auto found = plastic_measure(*behaviours.relation[c], *behaviours.deformation[c]);
+      if (!found)
+        fail("CALCCHAMP_7", {{"field", name},
+                             {"cell", cell_name(cell)},
+                             {"label", setting_.result().label},
+                             {"deformation", std::string(behaviours.deformation[c]->name)}});
+      measure[c] = *found;
+      stretches = stretches || measure[c] == PlasticMeasure::stretches;
+    }
+    const FlownState state{(*this)("EPSI_ELGA"), stress, (*this)("DEPL"), stretches ? &(*this)("VARI_ELGA") : nullptr};
+    return plastic_strain(setting_.mesh(), setting_.points(), state, measure, name, setting_.materials());
+  }
+
+  /// CALCCHAMP_5: energies are those of small strains.
   void refuse_large_strain(const Field& field, const std::string& name) {
     for (const std::int32_t cell : field.support)
       if (setting_.behaviours(order_).moved[static_cast<std::size_t>(cell)])

@@ -24,6 +24,21 @@ Eigen::Matrix3d logarithmic(const Eigen::Matrix3d& green) {
 
 }  // namespace
 
+Eigen::Matrix3d displacement_gradient(const CellPoints& at, int point, std::span<const std::int32_t> nodes,
+                                      std::span<const double> u, int dimension, bool axisymmetric) {
+  Eigen::Matrix3d h = Eigen::Matrix3d::Zero();
+  double radial = 0;
+  for (int a = 0; a < at.n_nodes; ++a) {
+    const double* const node = u.data() + static_cast<std::ptrdiff_t>(nodes[static_cast<std::size_t>(a)]) * dimension;
+    for (int i = 0; i < dimension; ++i)
+      for (int k = 0; k < dimension; ++k)
+        h(i, k) += node[i] * at.gradient[static_cast<std::size_t>((point * at.n_nodes + a) * dimension + k)];
+    radial += at.shape[static_cast<std::size_t>(point * at.n_nodes + a)] * node[0];
+  }
+  if (axisymmetric) h(2, 2) = radial / at.position[static_cast<std::size_t>(3 * point)];
+  return h;
+}
+
 Field strains(const Mesh& mesh, ModelPoints& points, const Field& displacement, const std::vector<char>& wanted, Strain measure,
               std::string name, const std::function<double(std::int32_t)>& poisson) {
   Field field = field_like(displacement, std::move(name), Location::gauss_points);
@@ -50,16 +65,7 @@ Field strains(const Mesh& mesh, ModelPoints& points, const Field& displacement, 
       const bool axis = own.is_axisymmetric(cell), plane_stress = own.is_plane_stress(cell);
       const auto nodes = mesh.cells[cell];
       for (int p = 0; p < at.n_points; ++p) {
-        Eigen::Matrix3d h = Eigen::Matrix3d::Zero();
-        double radial = 0;
-        for (int a = 0; a < at.n_nodes; ++a) {
-          const double* const node = u.data() + static_cast<std::ptrdiff_t>(nodes[static_cast<std::size_t>(a)]) * dimension;
-          for (int i = 0; i < dimension; ++i)
-            for (int k = 0; k < dimension; ++k)
-              h(i, k) += node[i] * at.gradient[static_cast<std::size_t>((p * at.n_nodes + a) * dimension + k)];
-          radial += at.shape[static_cast<std::size_t>(p * at.n_nodes + a)] * node[0];
-        }
-        if (axis) h(2, 2) = radial / at.position[static_cast<std::size_t>(3 * p)];
+        const Eigen::Matrix3d h = displacement_gradient(at, p, nodes, u, dimension, axis);
         Eigen::Matrix3d strain = 0.5 * (h + h.transpose());
         if (measure != Strain::small) strain += 0.5 * h.transpose() * h;
         if (measure == Strain::logarithmic) strain = logarithmic(strain);

@@ -1,6 +1,8 @@
 #pragma once
 // Strains at integration points from displacements, and nodal forces from stresses.
+#include <Eigen/Core>
 #include <functional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -21,6 +23,11 @@ enum class Strain {
 /// in plane stress only
 Field strains(const Mesh& mesh, ModelPoints& points, const Field& displacement, const std::vector<char>& wanted, Strain measure,
               std::string name, const std::function<double(std::int32_t)>& poisson);
+
+/// Gradient of the displacement at a point of a cell; in axisymmetry with u_r / r round the axis. @param u (n_nodes of the
+/// mesh, dimension)
+Eigen::Matrix3d displacement_gradient(const CellPoints& at, int point, std::span<const std::int32_t> nodes,
+                                      std::span<const double> u, int dimension, bool axisymmetric);
 
 /// Forces at nodes that the stresses do work with, the sum over cells of the integral of B^T sigma; components DX DY (DZ) on
 /// the nodes of these cells. @param stress at integration points, Cauchy @param moved one entry a cell of the mesh, not 0 where

@@ -151,26 +151,6 @@ Field energy_of_strain(const Field& strain, std::string name, ResultMaterials& m
   return energy;
 }
 
-Field plastic_strain(const Field& strain, const Field& stress, std::string name, ResultMaterials& materials) {
-  Field field = strain;
-  field.name = std::move(name);
-  const std::vector<double> moduli = materials.moduli(stress);
-  const std::vector<Eigen::Matrix3d> free = materials.free_strains(strain);
-  const TensorRows sigma(stress, "SI"), whole(strain, "EP");
-  for (std::size_t i = 0; i < strain.support.size(); ++i) {
-    const double young = moduli[2 * i], nu = moduli[2 * i + 1];
-    for (std::size_t row = strain.first_row(i); row < strain.first_row(i + 1); ++row) {
-      const Eigen::Matrix3d one = Eigen::Matrix3d::Identity(),
-                            elastic = ((1 + nu) * sigma[row] - nu * sigma[row].trace() * one) / young,
-                            plastic = whole[row] - free[row] - elastic;
-      for (const TensorAxes& axes : tensor_axes)
-        if (const int column = field.component("EP" + std::string(axes.name)); column >= 0)
-          field.at(row, static_cast<std::size_t>(column)) = plastic(axes.i, axes.j);
-    }
-  }
-  return field;
-}
-
 Field energy_of_path(const StateOfPoints& now, const StateOfPoints* last, const Field* before, std::string name) {
   Field energy = energies_like(now.stress, std::move(name));
   const TensorRows sigma(now.stress, "SI"), e(now.strain, "EP");

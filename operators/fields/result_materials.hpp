@@ -47,8 +47,6 @@ class ResultMaterials {
 Field energy_of_stress(const Field& stress, std::string name, ResultMaterials& materials);
 /// The same out of strains, less those without stress: e : C : e / 2.
 Field energy_of_strain(const Field& strain, std::string name, ResultMaterials& materials);
-/// What stresses leave of strains, less those without stress: e - C^-1 : sigma. @param strain and stress on the same cells
-Field plastic_strain(const Field& strain, const Field& stress, std::string name, ResultMaterials& materials);
 /// Work done from one state to the next for each unit of volume, the mean of both stresses times the change of strain, added to
 /// `before`. Where `before` is null the state before is the natural one.
 struct StateOfPoints {

@@ -58,13 +58,7 @@ model(20, 'D_PLAN')
 H = AFFE_CHAR_CINE_F(MODELE=MODEL, MECA_IMPO=_F(GROUP_MA='BODY', DX=formula(f'{2 * c} * X - {0.8 * s} * Y - X'), DY=formula(f'{2 * s} * X + {0.8 * c} * Y - Y')))
 R.append(STAT_NON_LINE(MODELE=MODEL, CHAM_MATER=FIELD, EXCIT=_F(CHARGE=H), INCREMENT=_F(LIST_INST=DEFI_LIST_REEL(VALE=(0., 1.))),
                        COMPORTEMENT=_F(RELATION='ELAS', DEFORMATION='GDEF_LOG')))
-R[0] = CALC_CHAMP(reuse=R[0], RESULTAT=R[0], DEFORMATION=('EPSL_ELGA', 'EPSL_NOEU', 'EPMG_ELGA', 'EPSG_ELGA'))
-try:
-    CALC_CHAMP(RESULTAT=R[0], DEFORMATION='EPSP_ELGA')
-except AsterError as refusal:
-    assert 'CALCCHAMP_5' in str(refusal)
-else:
-    assert False
+R[0] = CALC_CHAMP(reuse=R[0], RESULTAT=R[0], DEFORMATION=('EPSL_ELGA', 'EPSL_NOEU', 'EPMG_ELGA', 'EPSG_ELGA', 'EPSP_ELGA'))
 SOFT = DEFI_MATERIAU(ELAS=_F(E=2000., NU=0.3, ALPHA=1e-3), ECRO_LINE=_F(SY=10.0, D_SIGM_EPSI=100.0))
 model(21, '3D', SOFT)
 WARM = CREA_CHAMP(TYPE_CHAM='NOEU_TEMP_R', OPERATION='AFFE', MAILLAGE=MESH, AFFE=_F(TOUT='OUI', NOM_CMP='TEMP', VALE=4.0))
@@ -83,11 +77,54 @@ R[1] = CALC_CHAMP(reuse=R[1], RESULTAT=R[1], DEFORMATION=('EPSP_ELGA', 'EPSP_NOE
             for component, exact in (("EPXX", np.log(2)), ("EPYY", np.log(0.8)), ("EPZZ", 0), ("EPXY", 0)):
                 self.assertLessEqual(np.abs(strain[component] - exact).max(), 1e-10, (name, component))
         self.assert_near(turned.field("EPMG_ELGA", 1)[1]["EPXX"], turned.field("EPSG_ELGA", 1)[1]["EPXX"])
+        self.assertEqual(np.abs(turned.field("EPSP_ELGA", 1)[1]["EPXX"]).max(), 0)  # nothing flows
         plastic = (30.0 - 10.0) * (1 / 100.0 - 1 / YOUNG)
         for name in ("EPSP_ELGA", "EPSP_NOEU"):
             strain = flowed.field(name, 2)[1]
             for component, exact in (("EPXX", plastic), ("EPYY", -plastic / 2), ("EPZZ", -plastic / 2), ("EPXY", 0)):
                 self.assertLessEqual(np.abs(strain[component] - exact).max(), 1e-8 * plastic, (name, component))
+
+
+    def test_what_has_flowed_at_large_strains_does_not_turn(self):
+        """A cube stretched by l along x and 1 / sqrt(l) across while it turns by 80 degrees: the plastic strain, on the initial axes, is (p, -p/2, -p/2).
+        With SIMO_MIEHE, whose p is summed up step by step, it is the logarithmic strain less that of b, bx - by = R(p) / mu."""
+        hard, yields, mu = 100.0, 10.0, YOUNG / (2 * (1 + POISSON))
+        cases = [("GDEF_LOG", 1.5), ("GROT_GDEP", 1.02), ("SIMO_MIEHE", 1.5)]
+        text = f"""
+from math import cos, radians, sin
+SOFT = DEFI_MATERIAU(ELAS=_F(E={YOUNG}, NU={POISSON}), ECRO_LINE=_F(SY={yields}, D_SIGM_EPSI={hard}))
+model(20, '3D', SOFT)
+STEPS = DEFI_LIST_REEL(DEBUT=0.0, INTERVALLE=_F(JUSQU_A=1.0, NOMBRE=8))
+for law, most in {cases}:
+    x, y = f"{{most}}**INST * X", f"{{most}}**(-INST / 2) * Y"
+    H = AFFE_CHAR_CINE_F(MODELE=MODEL, MECA_IMPO=_F(GROUP_MA='BODY', DX=formula(f"cos(radians(80 * INST)) * {{x}} - sin(radians(80 * INST)) * {{y}} - X"),
+        DY=formula(f"sin(radians(80 * INST)) * {{x}} + cos(radians(80 * INST)) * {{y}} - Y"), DZ=formula(f"{{most}}**(-INST / 2) * Z - Z")))
+    R.append(STAT_NON_LINE(MODELE=MODEL, CHAM_MATER=FIELD, EXCIT=_F(CHARGE=H), INCREMENT=_F(LIST_INST=STEPS),
+                           COMPORTEMENT=_F(RELATION='VMIS_ISOT_LINE', DEFORMATION=law)))
+    R[-1] = CALC_CHAMP(reuse=R[-1], RESULTAT=R[-1], DEFORMATION='EPSP_ELGA', INST=1.0)
+NEAR = STAT_NON_LINE(MODELE=MODEL, CHAM_MATER=FIELD, EXCIT=_F(CHARGE=H), INCREMENT=_F(LIST_INST=STEPS, NUME_INST_FIN=1),
+                     COMPORTEMENT=_F(RELATION='VMIS_ISOT_LINE', DEFORMATION='PETIT_REAC'))
+try:
+    CALC_CHAMP(RESULTAT=NEAR, DEFORMATION='EPSP_ELGA')
+    raise SystemExit('PETIT_REAC')
+except AsterError as refusal:
+    assert 'CALCCHAMP_7' in str(refusal)
+"""
+        run = self.run_text([flat_brick("HEXA8")], text)
+        self.assertEqual(run.status, 0, run.stdout[-3000:] + run.stderr[-3000:])
+        for k, (law, most) in enumerate(cases):
+            result = Result(self.folder / "loads.base", f"R[{k}]")
+            strain, variables = result.field("EPSP_ELGA", 8)[1], result.field("VARI_ELGA", 8)[1]
+            along = p = variables["V1"]
+            if law == "SIMO_MIEHE":
+                v = [variables[f"V{i}"] for i in range(3, 9)]
+                b = np.eye(3) - 2 * np.array([[v[0], v[3], v[4]], [v[3], v[1], v[5]], [v[4], v[5], v[2]]]).transpose(2, 0, 1)
+                stretches = np.linalg.eigvalsh(b)
+                r = yields + hard * YOUNG / (YOUNG - hard) * p
+                self.assertLessEqual(np.abs(stretches[:, 2] - stretches[:, 0] - r / mu).max(), 1e-12)
+                along = np.log(most) - np.log(stretches[:, 2] / stretches[:, 0]) / 3
+            for component, exact in (("EPXX", along), ("EPYY", -along / 2), ("EPZZ", -along / 2), ("EPXY", 0 * p), ("EPXZ", 0 * p)):
+                self.assertLessEqual(np.abs(strain[component] - exact).max(), 1e-9 * p.max(), (law, component))
 
 
 class Balance(LoadTest):
