@@ -206,6 +206,7 @@ class Readings(LauncherTest):
                 ("INST=1, NOM_CHAM='DEPL', NOM_CMP='LAGS_C', NOEUD='N1'", "TEST_RESU_6", "N1"),
                 ("INST=1, NOM_CHAM='CONT_ELEM', NOM_CMP='PRES', GROUP_MA='BODY'", "TEST_RESU_6", "BODY"),
                 ("INST=1, NOM_CHAM='DEPL', NOM_CMP='DX', GROUP_NO='TOP'", "TEST_RESU_7", "3 values"),
+                ("INST=1, NOM_CHAM='DEPL', NOM_CMP='DX', GROUP_NO='TOP'", "TEST_RESU_7", "or add TYPE_TEST"),
                 ("INST=1, NOM_CHAM='DEPL', NOM_CMP='DX', NOEUD='N7'", "TEST_RESU_8", "N1 to N6"),
                 ("INST=1, NOM_CHAM='DEPL', NOM_CMP='DX', NOEUD='A1'", "TEST_RESU_8", "A1"),
                 ("INST=1, NOM_CHAM='DEPL', NOM_CMP='DX', GROUP_NO='TOPP'", "TEST_RESU_9", "nearest one is TOP"),

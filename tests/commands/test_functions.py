@@ -178,6 +178,11 @@ assert u.Valeurs() == [[0, 0.5, 1], [0, 2, 4]] and u.points().parameter == 'INST
 s = RECU_FONCTION(RESULTAT=R, NOM_CHAM='SIEF_ELGA', NOM_CMP='SIYY', MAILLE='M2', POINT=2, INST=(0.5, 1.0), NOM_RESU='S', PROL_GAUCHE='CONSTANT')
 assert s.Valeurs() == [[0.5, 1], [-4, -4]] and s(0) == -4
 p = RECU_FONCTION(RESULTAT=R, NOM_PARA_RESU='INST', NUME_ORDRE=(1, 2))
+try:
+    RECU_FONCTION(RESULTAT=R, NOM_CHAM='SIEF_ELGA', NOM_CMP='SIYY', MAILLE='M2', INST=(0.5, 1.0))
+    raise SystemExit('several points')
+except AsterError as error:  # which has no TYPE_TEST
+    assert error.id_message == 'TEST_RESU_7' and 'TYPE_TEST' not in str(error), error
 assert p.Valeurs() == [[0.5, 1], [0.5, 1]]
 FIN()
 """))

@@ -1,6 +1,7 @@
 """Where and when a command looks at a result: INST, NUME_ORDRE, TOUT_ORDRE, LIST_INST; nodes and cells; values of fields there."""
 
 from ..base import contents
+from ..core import catalog
 from ..core.concepts import listed
 from ..core.late import numpy
 from ..core.nearest import nearest
@@ -214,7 +215,8 @@ def select(call, test, path, field):
     if "TYPE_TEST" in test:
         place = f"{test['TYPE_TEST']} {place}".strip()
     elif len(values) > 1:
-        call.fail("TEST_RESU_7", path, count=len(values), field=field.name, place=place)
+        otherwise = catalog.part("or_type_test") if call.command == "TEST_RESU" else ""
+        call.fail("TEST_RESU_7", path, count=len(values), field=field.name, place=place, otherwise=otherwise)
     return values, place
 
 
