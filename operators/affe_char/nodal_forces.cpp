@@ -2,32 +2,77 @@
 
 #include <array>
 #include <cmath>
+#include <memory>
 
 #include "lacon/catalog/messages.hpp"
 #include "lacon/catalog/wording.hpp"
 #include "lacon/elements/reference.hpp"
 #include "lacon/operators/fields/axes.hpp"
+#include "lacon/operators/fields/timed_values.hpp"
 #include "lacon/structures/vector.hpp"
 
 namespace lacon {
 namespace {
 
 constexpr const char* forces[] = {"FX", "FY", "FZ"};
+constexpr std::size_t edge_points = 4;  // integration points of an edge
 
-/// What a force of 1 for each unit of length gives each node of an edge.
-std::vector<double> shares_of(const Mesh& mesh, std::int32_t cell) {
+/// The integration points of an edge on the initial geometry.
+struct EdgePoints {
+  std::vector<double> shape;     ///< (n_points, n_nodes)
+  std::vector<double> length;    ///< (n_points): weight times length of the tangent
+  std::vector<double> position;  ///< (n_points, 3)
+};
+
+EdgePoints points_of(const Mesh& mesh, std::int32_t cell) {
   const auto nodes = mesh.cells[static_cast<std::size_t>(cell)];
-  const Tabulation table = tabulate(mesh.types[static_cast<std::size_t>(cell)], integration_rule(Family::SEG, 4));
-  std::vector<double> shares(nodes.size(), 0.0);
+  const Tabulation table = tabulate(mesh.types[static_cast<std::size_t>(cell)], integration_rule(Family::SEG, edge_points));
+  EdgePoints points{table.shape, {}, {}};
   for (std::size_t p = 0; p < table.weight.size(); ++p) {
-    Vec3 tangent{};
-    for (std::size_t a = 0; a < nodes.size(); ++a)
-      tangent =
-          tangent + table.gradient[p * nodes.size() + a] * vector_at(mesh.coordinates.data() + 3 * std::ptrdiff_t{nodes[a]});
-    for (std::size_t a = 0; a < nodes.size(); ++a)
-      shares[a] += table.weight[p] * norm(tangent) * table.shape[p * nodes.size() + a];
+    Vec3 tangent{}, place{};
+    for (std::size_t a = 0; a < nodes.size(); ++a) {
+      const Vec3 node = vector_at(mesh.coordinates.data() + 3 * std::ptrdiff_t{nodes[a]});
+      tangent = tangent + table.gradient[p * nodes.size() + a] * node;
+      place = place + table.shape[p * nodes.size() + a] * node;
+    }
+    points.length.push_back(table.weight[p] * norm(tangent));
+    points.position.insert(points.position.end(), {place.x, place.y, place.z});
   }
-  return shares;
+  return points;
+}
+
+/// What FORCE_ARETE gives an edge.
+struct EdgeForce {
+  std::array<LoadValue, 3> values;
+  std::string source;
+};
+
+/// Its values at the integration points of all edges, (edges, edge_points, 3); functions are asked once.
+std::vector<double> values_at(const Base& base, const std::map<std::int32_t, EdgeForce>& edges,
+                              const std::vector<EdgePoints>& points) {
+  TimedValues values(edges.size() * edge_points * 3);
+  std::map<std::string, std::shared_ptr<const StudyFunction>> functions;
+  std::size_t edge = 0;
+  for (const auto& [cell, given] : edges) {
+    for (std::size_t d = 0; d < 3; ++d)
+      for (std::size_t p = 0; p < edge_points; ++p) {
+        const std::size_t at = (edge * edge_points + p) * 3 + d;
+        const LoadValue& value = given.values[d];
+        if (value.function.empty()) {
+          values.set(at, value.value);
+          continue;
+        }
+        auto& function = functions[value.function];
+        if (!function) {
+          function = std::make_shared<StudyFunction>(base, value.function);
+          constexpr std::array<std::string_view, 3> places{"X", "Y", "Z"};
+          function->check_parameters(places, given.source);
+        }
+        values.set(at, function, std::span(points[edge].position).subspan(3 * p, 3));
+      }
+    ++edge;
+  }
+  return values.at(0.0);
 }
 
 }  // namespace
@@ -53,7 +98,7 @@ std::vector<Keywords> along_the_mesh(const LoadScene& scene, const std::vector<K
 }
 
 void load_edges(Load& load, const LoadScene& scene, const Keywords& keywords) {
-  std::map<std::int32_t, std::pair<std::array<double, 3>, std::string>> of_cell;
+  std::map<std::int32_t, EdgeForce> edges;
   for (const Keywords& factor : keywords.factors("FORCE_ARETE"))
     for (const std::string& group : factor.texts("GROUP_MA")) {
       const std::string source = factor.path("GROUP_MA") + " '" + group + "'";
@@ -64,22 +109,29 @@ void load_edges(Load& load, const LoadScene& scene, const Keywords& keywords) {
                             {"cell", cell_name(cell)},
                             {"type", std::string(row.name)},
                             {"carrier", part("edge_in_space")}});
-        auto& [values, last] = of_cell[cell];
+        EdgeForce& edge = edges[cell];
         for (std::size_t d = 0; d < 3; ++d)
-          if (factor.has(forces[d])) values[d] = factor.real(forces[d]);
-        last = source;
+          if (factor.has(forces[d])) edge.values[d] = value_of(scene.base, factor, forces[d]);
+        edge.source = source;
       }
     }
+  std::vector<EdgePoints> points;
+  for (const auto& [cell, given] : edges) points.push_back(points_of(scene.mesh, cell));
+  const std::vector<double> values = values_at(scene.base, edges, points);
   std::map<std::pair<std::int32_t, std::size_t>, double> of_node;  // and direction
-  for (const auto& [cell, given] : of_cell) {
-    const std::vector<double> shares = shares_of(scene.mesh, cell);
+  std::size_t edge = 0;
+  for (const auto& [cell, given] : edges) {
     const auto nodes = scene.mesh.cells[static_cast<std::size_t>(cell)];
-    for (std::size_t a = 0; a < nodes.size(); ++a)
-      for (std::size_t d = 0; d < 3; ++d) {
-        if (given.first[d] == 0) continue;
-        scene.check_dof(nodes[a], std::string("D") + forces[d][1], given.second);
-        of_node[{nodes[a], d}] += shares[a] * given.first[d];
+    for (std::size_t d = 0; d < 3; ++d) {
+      if (given.values[d] == LoadValue{}) continue;
+      for (std::size_t a = 0; a < nodes.size(); ++a) {
+        scene.check_dof(nodes[a], std::string("D") + forces[d][1], given.source);
+        for (std::size_t p = 0; p < edge_points; ++p)
+          of_node[{nodes[a], d}] +=
+              points[edge].length[p] * points[edge].shape[p * nodes.size() + a] * values[(edge * edge_points + p) * 3 + d];
       }
+    }
+    ++edge;
   }
   for (const auto& [at, value] : of_node) load.nodal.push_back({at.first, forces[at.second], {value, ""}});
 }

@@ -139,6 +139,36 @@ solve(_F(CHARGE=H), _F(CHARGE=G))
         self.assertIn("ELAS/RHO", run.stderr)
 
 
+class Edges(LoadTest):
+    def test_functions_along_an_edge(self):
+        """f = X2 per unit of length on the edge X = 0 to 2 of a brick held at its base: the supports give the integral, 8 / 3, and its moment; time is FONC_MULT's."""
+        mesh = flat_brick("HEXA20")
+        ends = {tuple(p): i for i, p in enumerate(np.round(mesh.points, 9))}
+        top = mesh.points[:, 2].max()
+        line = [[ends[0.0, 0.0, top], ends[0.8, 0.0, top], ends[0.4, 0.0, top]], [ends[0.8, 0.0, top], ends[2.0, 0.0, top], ends[1.4, 0.0, top]]]
+        mesh.cells["SEG3"] = np.array(line)
+        mesh.cell_groups["EDGE"] = [("SEG3", 0), ("SEG3", 1)]
+        text = """
+model(20, '3D')
+H = AFFE_CHAR_CINE(MODELE=MODEL, MECA_IMPO=_F(GROUP_MA='BASE', DX=0, DY=0, DZ=0))
+E = AFFE_CHAR_MECA_F(MODELE=MODEL, FORCE_ARETE=_F(GROUP_MA='EDGE', FZ=FORMULE(NOM_PARA='X', VALE='-X**2'), FY=DEFI_CONSTANTE(VALE=2.0)))
+solve(_F(CHARGE=H), _F(CHARGE=E, FONC_MULT=RAMP))
+CALC_CHAMP(reuse=R[0], RESULTAT=R[0], FORCE='REAC_NODA')
+try:
+    AFFE_CHAR_MECA_F(MODELE=MODEL, FORCE_ARETE=_F(GROUP_MA='EDGE', FZ=RAMP))
+    raise SystemExit('a function of time')
+except AsterError as error:
+    assert error.id_message == 'FUNCTION_2', error
+"""
+        result, = self.solved([mesh], text)
+        for order, factor in ((1, 0.5), (2, 1.0)):
+            up, across = (result.at_nodes("REAC_NODA", order, c) for c in ("DZ", "DY"))
+            held = result.points[:, 2] < 1e-9
+            self.assertAlmostEqual(up[held].sum(), factor * 8 / 3, delta=1e-10)
+            self.assertAlmostEqual((up * result.points[:, 0])[held].sum(), factor * 4.0, delta=1e-10)
+            self.assertAlmostEqual(across[held].sum(), -factor * 4.0, delta=1e-10)
+
+
 class Equalities(LoadTest):
     def test_pressure_traction_nodal_forces_and_their_functions_agree(self):
         """p = 5 on the top of a TRIA6 block: as pressure, as traction, as a function of place, with shear; to the last digits."""
