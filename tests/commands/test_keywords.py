@@ -54,8 +54,6 @@ OTHERWISE = {
     "STAT_NON_LINE/RECH_LINEAIRE/RHO_EXCL": "the same",
     "STAT_NON_LINE/SOLVEUR/LOW_RANK_SEUIL": "solver tests, by its option",
     "STAT_NON_LINE/SOLVEUR/ALGORITHME": "petsc_engine_test.cpp, by its options", "STAT_NON_LINE/SOLVEUR/NMAX_ITER": "the same",
-    "INFO_EXEC_ASTER/TITRE": "a title", "LIRE_MAILLAGE/INFO_MED": "more is printed",
-    "PRE_GMSH/UNITE_GMSH": "units of a command that only converts", "PRE_GMSH/UNITE_MAILLAGE": "the same",
 }
 
 

@@ -22,6 +22,8 @@ class LongKeywordEffects(StudyTest):
         write_med(self.folder / "mesh.med", two_columns()[0])
         run = self.run_study(HERE / "keyword_effects_results.comm", "--unit", f"20={self.folder / 'mesh.med'}")
         self.assertEqual(run.status, 0, run.stdout[-3000:] + run.stderr[-3000:])
+        briefly, length, told = (run.stdout.index(f"\n{mark}\n") for mark in ("briefly", "at length", "told"))
+        self.assertEqual(["X from" in run.stdout[briefly:length], "X from" in run.stdout[length:told]], [False, True])  # INFO_MED
 
 
 del StudyTest
