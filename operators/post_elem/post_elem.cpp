@@ -8,6 +8,7 @@
 #include <functional>
 #include <memory>
 #include <optional>
+#include <set>
 
 #include "lacon/catalog/messages.hpp"
 #include "lacon/operators/fields/extrapolation.hpp"
@@ -93,7 +94,9 @@ class Subject {
     std::vector<std::pair<std::string, std::vector<char>>> found;
     if (!keywords_.has("GROUP_MA")) {
       found.emplace_back("TOUT", std::vector<char>(mesh_.n_cells()));
-      for (std::size_t c = 0; c < mesh_.n_cells(); ++c) found.back().second[c] = points_->is_solid(c);
+      const bool any = keywords_.has("TYPE_MAILLE");  // of which integrated() takes some
+      for (std::size_t c = 0; c < mesh_.n_cells(); ++c)
+        found.back().second[c] = any ? points_->element(c) != nullptr : points_->is_solid(c);
     }
     for (const std::string& group : keywords_.texts("GROUP_MA")) {
       found.emplace_back(group, std::vector<char>(mesh_.n_cells()));
@@ -101,6 +104,27 @@ class Subject {
         found.back().second[static_cast<std::size_t>(cell)] = 1;
     }
     return found;
+  }
+
+  /// Of the marked cells that have a field those that it is integrated over: of the dimension TYPE_MAILLE, otherwise of the
+  /// highest one, for lengths do not add up to areas. POSTELEM_6 tells what that leaves out.
+  std::vector<char> integrated(const Field& field, const std::string& place, const std::vector<char>& cells) {
+    const auto dimension = [&](std::int32_t cell) { return mesh_.row(static_cast<std::size_t>(cell)).dimension; };
+    int wanted = 0;
+    for (const std::int32_t cell : field.support)
+      if (cells[static_cast<std::size_t>(cell)]) wanted = std::max(wanted, dimension(cell));
+    const bool asked = keywords_.has("TYPE_MAILLE");
+    if (asked) wanted = keywords_.text("TYPE_MAILLE").front() - '0';
+    std::vector<char> taken(cells.size(), 0);
+    std::int64_t left = 0;
+    for (const std::int32_t cell : field.support)
+      if (const auto c = static_cast<std::size_t>(cell); cells[c]) {
+        taken[c] = dimension(cell) == wanted;
+        left += !taken[c];
+      }
+    if (left > 0 && !asked && told_.insert(place).second)
+      inform("POSTELEM_6", {{"keyword", keywords_.path("")}, {"place", place}, {"count", std::to_string(left)}});
+    return taken;
   }
 
   [[noreturn]] void refuse_place(const std::string& place) const {
@@ -118,6 +142,7 @@ class Subject {
   std::unique_ptr<Registry> registry_;
   std::optional<ModelPoints> points_;
   std::optional<Ground> ground_;
+  std::set<std::string> told_;  ///< places of POSTELEM_6
 };
 
 /// Call use(row of the field, measure) at every integration point of the marked cells. @return how many cells that is
@@ -175,7 +200,8 @@ Table norms(Subject& subject) {
     const Field field = subject.at_points(subject.named_components(whole));
     const std::vector<double> factors = norm_factors(subject, field);
     double sum = 0;
-    const std::size_t count = each_point(subject, field, cells, [&](std::size_t row, double measure) {
+    const std::vector<char> taken = subject.integrated(field, group, cells);
+    const std::size_t count = each_point(subject, field, taken, [&](std::size_t row, double measure) {
       for (std::size_t c = 0; c < factors.size(); ++c)
         if (field.counts(row, c)) sum += measure * factors[c] * field.at(row, c) * field.at(row, c);
     });
@@ -195,7 +221,8 @@ Table integrals(Subject& subject) {
         for (const std::string& component : field.components) columns.emplace_back(prefix + component, "R");
       table = Table::of(columns);
     }
-    for (const auto& [group, cells] : subject.places()) {
+    for (const auto& [group, marked] : subject.places()) {
+      const std::vector<char> cells = subject.integrated(field, group, marked);
       double volume = 0;
       std::vector<double> sums(field.n_components(), 0.0), left_out(field.n_components(), 0.0);
       const std::size_t count = each_point(subject, field, cells, [&](std::size_t row, double measure) {

@@ -305,6 +305,21 @@ class PostElem(FieldTest):
         np.testing.assert_allclose(table["INTE_DX"], middle * [1, 2, 1], atol=1e-14)
         self.assertEqual((table["NUME_ORDRE"].tolist(), table["INST"].tolist()), ([1] * 3, [1.0] * 3))
 
+    def test_lengths_do_not_add_up_to_areas(self):
+        """A group of a square and its skin: TYPE_MAILLE says which of them; without it the square counts, and what is left out is told."""
+        self.write_mesh("mesh_1", POINTS, CELLS, cell_groups={**GROUPS, "MIXED": [0, 1]})
+        self.own("field_3", "NOEU_DEPL_R", ["DX"], range(6), linear(POINTS))
+        of = {"CHAM_GD": concept("field_3"), "MODELE": concept("model_2")}
+        square, skin = linear(np.array([(0.5, 0.5), (0.5, 0)]))
+        for place, kind, expected in (({"GROUP_MA": ["MIXED"]}, "2D", (1, square)), ({"GROUP_MA": ["MIXED"]}, "1D", (1, skin)), ({"TOUT": "OUI"}, "1D", (1, skin)),
+                                      ({"TOUT": "OUI"}, "2D", (3, (square + 2 * linear(np.array([(2, 0.5)]))[0]) / 3))):
+            table = self.table(INTEGRALE={**of, **place, "TYPE_MAILLE": kind})
+            np.testing.assert_allclose([table["VOL"][0], table["MOYE_DX"][0]], expected, atol=1e-14)
+        for keywords in ({"INTEGRALE": {**of, "GROUP_MA": ["MIXED"]}}, {"NORME": {**of, "TYPE_NORM": "L2", "GROUP_MA": ["SKIN", "LEFT"]}}):
+            run = self.run_command("POST_ELEM", keywords, result="table_9")
+            self.assertEqual((run.status, [message["id"] for message in run.messages]), (0, ["POSTELEM_6"]), run.stderr)
+        self.refuses("POSTELEM_2", "LEFT", command="POST_ELEM", INTEGRALE={**of, "GROUP_MA": ["LEFT"], "TYPE_MAILLE": "1D"})
+
     def test_axisymmetry_integrates_over_one_radian(self):
         self.write_model("model_2", "mesh_1", ["AXIS/SEG2", "AXIS/QUAD4"], [0, 1, 1, -1])
         self.own("field_3", "NOEU_DEPL_R", ["DX"], range(6), np.ones(6))
