@@ -232,6 +232,7 @@ void Newton::assemble(const StaticState& state, const StaticState& previous, Sol
 std::vector<double> Newton::solve_system(StaticState& state, const StaticState& previous, SolidMatrix asked,
                                          std::span<const double> step, const Accuracy& accuracy, IterationReport& line) {
   const System& system = equilibrium_.system();
+  hanging_.clear();
   for (bool sprung = false;; sprung = times_held_ > 1) {
     line.constraints = equilibrium_.n_constraints(state);
     std::vector<LooseMotion> loose;
@@ -294,6 +295,7 @@ bool Newton::hold(const std::vector<LooseMotion>& loose, StaticState& state, con
     std::vector<std::int64_t> dofs;
     for (const LooseMotion& motion : loose) dofs.push_back(motion.dof);
     equilibrium_.hold(dofs);
+    hanging_ = bodies_.name_at(holds.front().node);
     return true;
   }
   for (const NearestPatches& hold : holds) {
@@ -417,7 +419,7 @@ void Newton::fail_to_converge(double instant, const IterationReport& line, std::
   const double excess = std::max({asked.resi_glob_rela ? line.rela / *asked.resi_glob_rela : 0,
                                   asked.resi_glob_maxi ? line.maxi / *asked.resi_glob_maxi : 0,
                                   asked.resi_refe_rela ? line.refe / *asked.resi_refe_rela : 0});
-  std::string round_words, turned_words;
+  std::string round_words, turned_words, hanging_words;
   if (const auto& round = statuses_.round())
     round_words = part("statuses_went_round", {{"count", std::to_string(round->patches.size())},
                                                {"cells", cells_of(round->patches)},
@@ -425,16 +427,19 @@ void Newton::fail_to_converge(double instant, const IterationReport& line, std::
   if (const auto cell = equilibrium_.cell_inside_out())
     turned_words =
         part("cell_inside_out", {{"cell", cell_name(*cell)}, {"body", bodies_.name_at(problem_.mesh.cells[*cell][0])}});
+  if (!hanging_.empty()) hanging_words = part("body_hangs", {{"body", hanging_}});
   throw InstantFailure(
-      message("EVOLUTION_4", {{"instant", fmt::format("{:.9g}", instant)},
-                              {"iterations", std::to_string(options_.iterations)},
-                              {"unmet", said({unmet_criteria(line, changing), course_.words(), round_words, turned_words})},
-                              {"remedy", remedy(line, excess)}}),
+      message("EVOLUTION_4",
+              {{"instant", fmt::format("{:.9g}", instant)},
+               {"iterations", std::to_string(options_.iterations)},
+               {"unmet", said({unmet_criteria(line, changing), course_.words(), round_words, turned_words, hanging_words})},
+               {"remedy", remedy(line, excess)}}),
       {.ratio = settled_ >= settled && !course_.period() && !course_.smaller_before() ? course_.ratio() : std::nullopt,
        .excess = excess});
 }
 
 std::string Newton::remedy(const IterationReport& line, double excess) const {
+  if (!hanging_.empty()) return part("remedy_hold_body", {{"body", hanging_}});
   const double ratio = course_.ratio().value_or(1);
   const bool diverges = !course_.finite() || ratio > worse || equilibrium_.cell_inside_out();
   // more iterations, where a few times as many come to the end

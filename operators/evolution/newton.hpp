@@ -128,6 +128,7 @@ class Newton {
   std::set<std::size_t> told_;  ///< patches that EVOLUTION_20 was about
   ResidualCourse course_;       ///< of the instant
   int times_held_ = 0;          ///< in this instant: loose bodies
+  std::string hanging_;         ///< a body that springs alone hold in the last system
   int settled_ = 0;             ///< iterations in a row in which no status has changed
   SaddlePointSolver solver_;
 };

@@ -210,6 +210,14 @@ class StatNonLine(TwoSquares):
         flows = {"RELATION": "VMIS_ISOT_LINE", "DEFORMATION": "PETIT", "TOUT": "OUI"}
         self.assertEqual(self.ids(self.solve(COMPORTEMENT=flows), "AFS"), [])
 
+    def test_a_body_that_its_load_pulls_off_the_other_is_named(self):
+        """Nothing else holds the upper square along y: no step is small enough, and the message says which body hangs on nothing."""
+        self.write_load("load_6", pressure=[(2, -PRESSURE)])
+        run = self.solve()
+        self.assertEqual((run.status, self.ids(run, "FS")), (3, ["EVOLUTION_4"]), run.stderr)
+        self.assertIn("the body of M5 hangs on nothing: contact that was to hold it opened again", run.stderr)
+        self.assertIn("hold the body of M5", run.stderr)
+
     def test_one_slave_cell_over_two_separate_masters_pairs_with_both(self):
         """Masters under 0 to 0.3 and under 0.6 to 1: covered is 0.7, and the gap is their mean. Everything is held."""
         below = [(0.3 * x, y - 0.1) for x, y in square(-1)] + [(0.6 + 0.4 * x, y - 0.2) for x, y in square(-1)]
