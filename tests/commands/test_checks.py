@@ -210,7 +210,7 @@ class Readings(LauncherTest):
                 ("INST=1, NOM_CHAM='DEPL', NOM_CMP='DX', NOEUD='N7'", "TEST_RESU_8", "N1 to N6"),
                 ("INST=1, NOM_CHAM='DEPL', NOM_CMP='DX', NOEUD='A1'", "TEST_RESU_8", "A1"),
                 ("INST=1, NOM_CHAM='DEPL', NOM_CMP='DX', GROUP_NO='TOPP'", "TEST_RESU_9", "nearest one is TOP"),
-                ("INST=1, NOM_CHAM='DEPL', NOM_CMP='DX', GROUP_NO='SKIN'", "TEST_RESU_9", "group of cells of this name, which GROUP_MA takes"),
+                ("INST=1, NOM_CHAM='DEPL', NOM_CMP='DX', GROUP_NO='SKIN'", "TEST_RESU_9", "cell group of this name, which GROUP_MA takes"),
                 ("INST=1, NOM_CHAM='DEPL', NOM_CMP='DX'", "KEYWORD_8", "TYPE_TEST"),
                 ("NOM_CHAM='DEPL', NOM_CMP='DX', NOEUD='N1'", "KEYWORD_7", "INST"),
                 ("INST=1, NOM_CHAM='DEPL', NOM_CMP='DX', NOEUD='N1', VALE_REFE=1.0", "KEYWORD_2", "REFERENCE"),

@@ -1,5 +1,6 @@
-"""Messages are rows of the catalogue, in English and in French: none lacks a language, and no C++ puts one together from words of its own."""
+"""Messages are rows of the catalogue, in English and in French: none lacks a language, and no program puts one together from words of its own."""
 
+import ast
 import os
 import pathlib
 import re
@@ -87,6 +88,27 @@ class Wording(unittest.TestCase):
         found = [f"{path.relative_to(SOURCE)}:{line}: {text}" for room in ROOMS for path in sorted((SOURCE / room).rglob("*.[ch]pp"))
                  if path.name not in ("main.cpp", "tool.cpp")
                  for line, statement in statements(path) if not re.search(OTHERWISE, statement) for text in prose(statement)]
+        self.assertEqual(found, [], "make them rows of catalog/messages/parts.toml and fr/parts.toml, and take them with part()")
+
+    def test_no_python_fills_messages_with_english_text(self):
+        """Words in the arguments of fail(), message() and the like: two or more in a row, but those that part() is asked for."""
+        def name_of(call):
+            return call.func.attr if isinstance(call.func, ast.Attribute) else getattr(call.func, "id", "")
+
+        def literals(node):
+            if isinstance(node, ast.Call) and name_of(node) in ("part", "message"):
+                return
+            if isinstance(node, ast.Constant) and isinstance(node.value, str):
+                yield node.value
+            for child in ast.iter_child_nodes(node):
+                yield from literals(child)
+
+        found = []
+        for path in sorted((SOURCE / "commands/lacon").rglob("*.py")):
+            for call in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+                if isinstance(call, ast.Call) and name_of(call) in ("fail", "inform", "message", "problem", "part"):
+                    found += [f"{path.relative_to(SOURCE)}:{call.lineno}: {text}" for keyword in call.keywords for text in literals(keyword.value)
+                              if re.search(r"\b[a-z]{2,} [a-z]{2,}", text) or text == "none"]
         self.assertEqual(found, [], "make them rows of catalog/messages/parts.toml and fr/parts.toml, and take them with part()")
 
     def test_launcher_and_operators_speak_the_language_of_the_environment(self):

@@ -13,6 +13,7 @@ import threading
 import time
 
 from ..core import late, streams
+from ..core.catalog import part
 from ..core.concepts import to_json
 from ..core.messages import AsterError, ConvergenceError, InternalError, Message, SolutionError, fail, message
 from ..core.plugins import operator_folder
@@ -188,10 +189,10 @@ def raise_failure(outcome, program, where):
             name = signal.Signals(-outcome.status).name
         except ValueError:
             name = f"signal {-outcome.status}"
-        raise InternalError([message("INTERNAL_3", where, program=program, how=f"it was ended by {name}")])
+        raise InternalError([message("INTERNAL_3", where, program=program, how=part("process_ended_by", name=name))])
     if fatal and outcome.status == 4:
         raise InternalError(fatal, shown=True)
-    raise InternalError([message("INTERNAL_3", where, program=program, how=f"its exit status is {outcome.status}")])
+    raise InternalError([message("INTERNAL_3", where, program=program, how=part("exit_status_is", status=outcome.status))])
 
 
 def keep_copy(base, identifier):

@@ -2,6 +2,7 @@
 
 import statistics
 
+from ..core.catalog import part
 from ..tables import filters, printing, storage
 from ..tables.table import Table, type_of
 
@@ -24,14 +25,14 @@ def calc_table(call):
 
 def _filter(call, table, action, path):
     if len(action["NOM_PARA"]) > 1:
-        call.fail("CALC_TABLE_1", f"{path}/NOM_PARA", operation="FILTRE", wanted="one column", count=len(action["NOM_PARA"]))
+        call.fail("CALC_TABLE_1", f"{path}/NOM_PARA", operation="FILTRE", wanted=part("one_column"), count=len(action["NOM_PARA"]))
     return filters.filtered(call, table, [{**action, "NOM_PARA": action["NOM_PARA"][0]}], path)
 
 
 def _rename(call, table, action, path):
     names = action["NOM_PARA"]
     if len(names) != 2:
-        call.fail("CALC_TABLE_1", f"{path}/NOM_PARA", operation="RENOMME", wanted="the old and the new name", count=len(names))
+        call.fail("CALC_TABLE_1", f"{path}/NOM_PARA", operation="RENOMME", wanted=part("old_and_new_name"), count=len(names))
     filters.column_of(call, table, names[0], f"{path}/NOM_PARA")
     _new(call, table, names[1], path)
     table.Renomme(*names)
@@ -60,7 +61,7 @@ def _add_row(call, table, action, path):
         call.fail("CALC_TABLE_2", path, columns=len(names), values=len(values))
     for name, value in zip(names, values):
         if name in table.para and (table.kind(name)[0] == "K") != isinstance(value, str):
-            call.fail("TABLE_2", f"{path}/VALE", keyword="VALE", column=name, kind=table.kind(name), wanted="a cell of that type")
+            call.fail("TABLE_2", f"{path}/VALE", keyword="VALE", column=name, kind=table.kind(name), wanted=part("cell_of_that_type"))
     table.append({name: float(value) if name in table.para and table.kind(name) == "R" else value for name, value in zip(names, values)})
     return table
 
@@ -71,7 +72,7 @@ def _add_columns(call, table, action, path):
         _new(call, table, name, path)
     if "VALE_COLONNE" in action:
         if len(names) > 1:
-            call.fail("CALC_TABLE_1", f"{path}/NOM_PARA", operation="AJOUT_COLONNE with VALE_COLONNE", wanted="one column", count=len(names))
+            call.fail("CALC_TABLE_1", f"{path}/NOM_PARA", operation=part("with_keyword", name="AJOUT_COLONNE", keyword="VALE_COLONNE"), wanted=part("one_column"), count=len(names))
         table[names[0]] = action["VALE_COLONNE"]
         return table
     if len(names) != len(action["VALE"]):
@@ -85,7 +86,7 @@ def _compute(call, table, action, path):
     """OPER: a column of values of a formula, where its parameters have cells."""
     formula, names = action["FORMULE"], action["NOM_PARA"]
     if len(names) != 1:
-        call.fail("CALC_TABLE_1", f"{path}/NOM_PARA", operation="OPER", wanted="one column, the new one", count=len(names))
+        call.fail("CALC_TABLE_1", f"{path}/NOM_PARA", operation="OPER", wanted=part("one_new_column"), count=len(names))
     columns = action.get("NOM_COLONNE", formula.getVariables())
     if len(columns) != len(formula.getVariables()):
         call.fail("FUNCTION_12", f"{path}/NOM_COLONNE", label=formula.label, parameters=", ".join(formula.getVariables()))

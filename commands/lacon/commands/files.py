@@ -4,6 +4,7 @@ import math
 import os
 import signal
 
+from ..core.catalog import part
 from ..core.messages import fail
 from ..tables import storage
 from ..tables.table import Table
@@ -16,7 +17,7 @@ def include(call):
     if "DONNEE" in k:
         path = os.path.join(os.path.dirname(call.where), k["DONNEE"])
         if not os.path.isfile(path):
-            fail("STUDY_14", place, file=path, reason="there is no such file")
+            fail("STUDY_14", place, file=path, reason=part("file_not_there"))
     else:
         path = run.input_unit(k["UNITE"], place)
     run.protect(path)
@@ -53,7 +54,7 @@ def _unit_of(call, path):
     for number in run.earlier_units:
         if os.path.abspath(run.units[number]) == os.path.abspath(path):
             return number
-    known = ", ".join(run.units[number] for number in run.earlier_units) or "none"
+    known = ", ".join(run.units[number] for number in run.earlier_units) or part("none")
     call.fail("COMMAND_16", "FICHIER", file=path, known=known)
 
 

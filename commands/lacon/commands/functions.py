@@ -2,6 +2,7 @@
 
 from ..base.expressions import Expression
 from ..base.functions import Piecewise, between
+from ..core.catalog import part
 from ..core.hdf5 import text_type
 from . import formulas
 from .call import Call
@@ -106,7 +107,7 @@ def defi_nappe(call):
         call.fail("DEFI_FONCTION_5", "PARA", parameters=len(k["PARA"]), values=len(curves))
     names = {curve.points().parameter for curve in curves} - {_any_parameter}
     if len(names) != 1 or k["NOM_PARA"] in names:
-        call.fail("DEFI_FONCTION_7", "FONCTION" if "FONCTION" in k else "NOM_PARA_FONC", names=", ".join(sorted(names)) or "none", parameter=k["NOM_PARA"])
+        call.fail("DEFI_FONCTION_7", "FONCTION" if "FONCTION" in k else "NOM_PARA_FONC", names=", ".join(sorted(names)) or part("none"), parameter=k["NOM_PARA"])
     other = names.pop()
     text = f"between(({k['NOM_PARA']}, {other}), parameters, curves, interpolation, sides)"
     values = {"between": between, "parameters": list(k["PARA"]), "curves": list(curves), "interpolation": (tuple(k["INTERPOL"]) * 2)[:2],

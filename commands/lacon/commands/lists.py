@@ -2,6 +2,8 @@
 
 import json
 
+from ..core.catalog import part
+
 
 def _increasing(call, values, path):
     for a, b in zip(values, values[1:]):
@@ -46,7 +48,7 @@ def defi_list_enti(call):
             call.fail("DEFI_LIST_1", f"{path}/JUSQU_A", first=start, second=end)
         step = interval.get("PAS") or (end - start) // interval["NOMBRE"]
         if step == 0 or (end - start) % step or (end - start) // step != interval.get("NOMBRE", (end - start) // step):
-            call.fail("DEFI_LIST_2", path, step=step or f"1/{interval['NOMBRE']} of it", start=start, end=end)
+            call.fail("DEFI_LIST_2", path, step=step or part("share_of_interval", count=interval["NOMBRE"]), start=start, end=end)
         values += range(start + step, end + 1, step)
     return call.write("list_of_integers", lambda file: file.create_dataset("values", data=values, dtype="i8"))
 

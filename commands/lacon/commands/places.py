@@ -1,7 +1,7 @@
 """Where and when a command looks at a result: INST, NUME_ORDRE, TOUT_ORDRE, LIST_INST; nodes and cells; values of fields there."""
 
 from ..base import contents
-from ..core import catalog
+from ..core.catalog import part
 from ..core.concepts import listed
 from ..core.late import numpy
 from ..core.nearest import nearest
@@ -17,12 +17,12 @@ def order_of(call, test, path):
     if "NUME_ORDRE" in test:
         found = [(order, t) for order, t in instants if order == test["NUME_ORDRE"]]
         if not found:
-            call.fail("TEST_RESU_1", f"{path}/NUME_ORDRE", what=f"order number {test['NUME_ORDRE']}", label=test["RESULTAT"].label, known=known)
+            call.fail("TEST_RESU_1", f"{path}/NUME_ORDRE", what=part("order_number", number=test["NUME_ORDRE"]), label=test["RESULTAT"].label, known=known)
         return found[0]
     wanted = test["INST"]
     found = _near(instants, test)
     if not found:
-        call.fail("TEST_RESU_1", f"{path}/INST", what=f"instant {wanted:g}", label=test["RESULTAT"].label, known=known)
+        call.fail("TEST_RESU_1", f"{path}/INST", what=part("value_at_instant", instant=f"{wanted:g}"), label=test["RESULTAT"].label, known=known)
     if len(found) > 1:
         call.fail("TEST_RESU_2", f"{path}/INST", instant=f"{wanted:g}", found=", ".join(f"{t:.10g}" for _, t in found))
     return found[0]
@@ -88,12 +88,12 @@ def members_of(call, test, path, mesh, keyword, kind):
         if number is not None:
             return [number]
         count, letter = (mesh.getNumberOfNodes(), "N") if kind == "nodes" else (mesh.getNumberOfCells(), "M")
-        call.fail("TEST_RESU_8", f"{path}/{keyword}", name=name, what="node" if kind == "nodes" else "cell", letter=letter, count=count)
+        call.fail("TEST_RESU_8", f"{path}/{keyword}", name=name, what=part("one_node" if kind == "nodes" else "one_cell"), letter=letter, count=count)
     members = mesh.group(kind, name)
     if members is None:
         known, (other, give) = mesh.group_names(kind), {"nodes": ("cells", "GROUP_MA"), "cells": ("nodes", "GROUP_NO")}[kind]
-        hint = f"; there is a group of {other} of this name, which {give} takes" if mesh.group(other, name) is not None else nearest(name, known)
-        call.fail("TEST_RESU_9", f"{path}/{keyword}", name=name, what=kind, known=", ".join(known) or "none", nearest=hint)
+        hint = part("other_kind_of_group", other=part("cell" if other == "cells" else "node"), keyword=give) if mesh.group(other, name) is not None else nearest(name, known)
+        call.fail("TEST_RESU_9", f"{path}/{keyword}", name=name, what=part(kind), known=", ".join(known) or part("none"), nearest=hint)
     return members
 
 
@@ -211,11 +211,11 @@ def select(call, test, path, field):
     values = numpy.concatenate(values)
     place = " ".join(words)
     if len(values) == 0:
-        call.fail("TEST_RESU_6", path, component=test.get("NOM_CMP", "any component"), field=field.name, place=place or "the whole mesh")
+        call.fail("TEST_RESU_6", path, component=test.get("NOM_CMP", part("any_component")), field=field.name, place=place or part("the_whole_mesh"))
     if "TYPE_TEST" in test:
         place = f"{test['TYPE_TEST']} {place}".strip()
     elif len(values) > 1:
-        otherwise = catalog.part("or_type_test") if call.command == "TEST_RESU" else ""
+        otherwise = part("or_type_test") if call.command == "TEST_RESU" else ""
         call.fail("TEST_RESU_7", path, count=len(values), field=field.name, place=place, otherwise=otherwise)
     return values, place
 

@@ -3,6 +3,7 @@
 import re
 
 from ..base.functions import Piecewise
+from ..core.catalog import part
 from ..core.late import numpy
 from ..tables import storage
 from ..tables.table import Table, type_of
@@ -63,7 +64,7 @@ def _between_marks(call, path, lines):
         elif block is not None:
             block.append((number, line))
     if block is not None:
-        call.fail("TABLE_14", "UNITE", file=path, line=len(lines), reason="the file ends before #FIN_TABLE")
+        call.fail("TABLE_14", "UNITE", file=path, line=len(lines), reason=part("table_ends_early"))
     return blocks
 
 
@@ -86,17 +87,16 @@ def _table(call, path, lines):
     title = [line.strip()[len("#TITRE "):] for _, line in lines if line.strip().startswith("#TITRE ")]
     rows = [(number, _words(line, separator)) for number, line in lines if line.strip() and not line.strip().startswith("#")]
     if len(rows) < (2 if marked else 1):
-        call.fail("TABLE_14", "UNITE", file=path, line=lines[-1][0] if lines else 1, reason="a table begins with the names of its columns"
-                  + (" and their types" if marked else ""))
+        call.fail("TABLE_14", "UNITE", file=path, line=lines[-1][0] if lines else 1, reason=part("table_begins_with_types" if marked else "table_begins_with_names"))
     names = _unique(call, rows[0][1])
     kinds = rows[1][1] if marked else []
     body = rows[2 if marked else 1:]
     for number, cells in ([rows[1]] if marked else []) + body:
         if len(cells) != len(names):
-            call.fail("TABLE_14", "UNITE", file=path, line=number, reason=f"{len(cells)} cells for {len(names)} columns")
+            call.fail("TABLE_14", "UNITE", file=path, line=number, reason=part("cells_for_columns", cells=len(cells), columns=len(names)))
     for kind in kinds:
         if kind not in ("I", "R") and not re.fullmatch("K(8|16|24|32|80)", kind):
-            call.fail("TABLE_14", "UNITE", file=path, line=rows[1][0], reason=f"'{kind}' is no type of a column: I, R, K8 to K80")
+            call.fail("TABLE_14", "UNITE", file=path, line=rows[1][0], reason=part("no_type_of_column", kind=kind))
     columns = {}
     for c, name in enumerate(names):
         texts = [(number, cells[c]) for number, cells in body]
@@ -119,7 +119,7 @@ def _column(call, path, texts, kind):
         elif kind[0] == "K":
             values.append(text)
         elif _number(text) is None or (kind == "I" and not _number(text).is_integer()):
-            call.fail("TABLE_14", "UNITE", file=path, line=number, reason=f"'{text}' is no {'integer' if kind == 'I' else 'number'}")
+            call.fail("TABLE_14", "UNITE", file=path, line=number, reason=part("text_is_no_integer" if kind == "I" else "text_is_no_number", text=text))
         else:
             values.append(int(_number(text)) if kind == "I" else _number(text))
     return kind, values

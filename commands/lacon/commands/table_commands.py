@@ -1,5 +1,6 @@
 """CREA_TABLE, IMPR_TABLE, TEST_TABLE, RECU_TABLE."""
 
+from ..core.catalog import part
 from ..core.files import whole
 from ..core.late import numpy
 from ..tables import filters, printing, storage
@@ -81,7 +82,7 @@ def _of_field(call, k, path):
             row.update((name, ("R", float(field.values[i, c]) if field.present[i, c] else None)) for name, c in zip(names, columns))
             table.add_row(row)
     if not len(table):
-        call.fail("POST_3", path, field=k.get("NOM_CHAM", "CHAM_GD"), components=", ".join(k.get("NOM_CMP", ["any component"])))
+        call.fail("POST_3", path, field=k.get("NOM_CHAM", "CHAM_GD"), components=", ".join(k.get("NOM_CMP", [part("any_component")])))
     return table
 
 
@@ -138,7 +139,7 @@ def impr_table(call):
 def _draw(call, concept, table):
     """A curve of each column by the first one."""
     if len(table.para) < 2:
-        call.fail("TABLE_12", "NOM_PARA", format=call.keywords["FORMAT"], needed="2 or more", count=len(table.para))
+        call.fail("TABLE_12", "NOM_PARA", format=call.keywords["FORMAT"], needed=part("two_or_more"), count=len(table.para))
     for name in table.para:
         filters.numeric(call, table, name, "NOM_PARA")
     made = []
@@ -233,5 +234,5 @@ def _kept(call, result, name):
     with result.open() as file:
         kept = file["tables"] if "tables" in file else {}
         if name not in kept:
-            call.fail("TABLE_10", "NOM_TABLE", label=result.label, name=name, known=", ".join(kept) or "none")
+            call.fail("TABLE_10", "NOM_TABLE", label=result.label, name=name, known=", ".join(kept) or part("none"))
         return storage.read_table(kept[name])

@@ -83,12 +83,12 @@ def materials():
     for path, tables in brought():
         for name, row in tables.get("material", {}).items():
             if name in known or name in found:
-                fail("PLUGIN_2", file=path, row=f"material {name}", reason="another keyword of DEFI_MATERIAU has this name")
+                fail("PLUGIN_2", file=path, row=f"material {name}", reason=catalog.part("keyword_is_taken"))
             if not isinstance(row, dict) or row.get("type") != "factor" or "help" not in row or not isinstance(row.get("keyword"), dict):
-                fail("PLUGIN_2", file=path, row=f"material {name}", reason="it lacks type = \"factor\", 'help' or the table 'keyword'")
+                fail("PLUGIN_2", file=path, row=f"material {name}", reason=catalog.part("lacks_the_factor"))
             for keyword, own in row["keyword"].items():
                 if not isinstance(own, dict) or "type" not in own or "help" not in own:
-                    fail("PLUGIN_2", file=path, row=f"material {name}/{keyword}", reason="it lacks 'type' or 'help'")
+                    fail("PLUGIN_2", file=path, row=f"material {name}/{keyword}", reason=catalog.part("lacks_type_or_help"))
             found[name] = row
     return found
 

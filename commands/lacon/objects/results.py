@@ -2,6 +2,7 @@
 
 from ..base import contents
 from ..core import current
+from ..core.catalog import part
 from ..core.concepts import Concept, listed
 from ..core.messages import fail
 from ..tables.storage import read_table
@@ -63,8 +64,8 @@ class Result(Concept):
         field = self.field(name, order)
         if field is None:
             if isinstance(order, int) and order not in dict(instants):
-                fail("TEST_RESU_1", "getField", label=self.label, what=f"order number {order}", known=listed(instants))
-            known = ", ".join(sorted(self.LIST_CHAMPS())) or "none"
+                fail("TEST_RESU_1", "getField", label=self.label, what=part("order_number", number=order), known=listed(instants))
+            known = ", ".join(sorted(self.LIST_CHAMPS())) or part("none")
             fail("RESULT_1", "getField", label=self.label, field=name, order=order, known=known)
         return field
 

@@ -3,6 +3,7 @@
 import pathlib
 
 from ..base.base import look_into
+from ..core.catalog import part
 from ..core.concepts import type_of
 from ..core.messages import fail
 from .mesh import Mesh
@@ -56,7 +57,7 @@ class Base:
         """The mesh or result of a label; of a computation that solved no instant the step that failed. @throws AsterError READER_1"""
         known = {**self.meshes, **self.results, **self.failed_steps}
         if label not in known:
-            fail("READER_1", "lacon", label=label, folder=self.folder, known=", ".join(known) or "none")
+            fail("READER_1", "lacon", label=label, folder=self.folder, known=", ".join(known) or part("none"))
         return known[label]
 
     def only_result(self, label=None):
@@ -67,7 +68,7 @@ class Base:
         found = self.results
         results = {**{name: result for name, result in found.items() if "DEPL" in result.fields}, **self.failed_steps} or found
         if len(results) != 1:
-            fail("READER_5", "lacon", folder=self.folder, count=len(results), known=", ".join(results) or "none")
+            fail("READER_5", "lacon", folder=self.folder, count=len(results), known=", ".join(results) or part("none"))
         return next(iter(results.values()))
 
     def __repr__(self):

@@ -146,7 +146,7 @@ class States:
         """A Field at an instant or an order number, the last one by default. @throws AsterError READER_2, RESULT_1"""
         order = self.order_of(instant, order)
         if order not in self._fields.get(name, ()):
-            fail("RESULT_1", "lacon", label=self.label, field=name, order=order, known=", ".join(self._fields) or "none")
+            fail("RESULT_1", "lacon", label=self.label, field=name, order=order, known=", ".join(self._fields) or part("none"))
         with self._opened(name, order) as stored:
             return Field(stored, order, float(self.instants[self.orders.index(order)]))
 

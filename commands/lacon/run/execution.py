@@ -15,6 +15,7 @@ import warnings
 
 from ..base import names as namespace
 from ..core import labels, messages, streams
+from ..core.catalog import part
 from ..core.messages import AsterError, NeedsRun, fail, message, show
 from ..core.nearest import nearest
 from ..peer import modules
@@ -36,7 +37,7 @@ def check_files(files):
     """@throws AsterError where a command file cannot be read, before anything runs"""
     for path in files:
         if not os.path.isfile(path) or not os.access(path, os.R_OK):
-            fail("STUDY_14", str(path), file=path, reason="there is no such file" if not os.path.exists(path) else "not a readable file")
+            fail("STUDY_14", str(path), file=path, reason=part("file_not_there" if not os.path.exists(path) else "not_a_readable_file"))
 
 
 class Failure(Exception):
@@ -272,7 +273,7 @@ def delivered(files):
     try:
         for path in files:
             if not path.is_file():
-                fail("STUDY_14", str(path), file=path, reason="there is no such file")
+                fail("STUDY_14", str(path), file=path, reason=part("file_not_there"))
             target = os.path.abspath(path.name)
             if os.path.exists(target):
                 if not os.path.samefile(path, target):

@@ -1,5 +1,6 @@
 """FILTRE, and columns that keywords name."""
 
+from ..core.catalog import part
 from ..core.nearest import nearest
 
 
@@ -39,7 +40,7 @@ def filtered(call, table, factors, path="FILTRE"):
 def column_of(call, table, name, path):
     """@throws AsterError TABLE_1"""
     if name not in table.para:
-        call.fail("TABLE_1", path, name=name, nearest=nearest(name, table.para), known=", ".join(table.para) or "none")
+        call.fail("TABLE_1", path, name=name, nearest=nearest(name, table.para), known=", ".join(table.para) or part("none"))
     return table[name]
 
 
