@@ -28,6 +28,14 @@ class Check(SmallStudy):
         self.assertEqual(run.returncode, 2, run.stdout + run.stderr)
         self.assertIn("where: STAT_NON_LINE", run.stderr)
 
+    def test_a_group_that_what_follows_the_solution_names_and_no_mesh_has(self):
+        """The hours of the solution are not spent before a word that is wrong is found."""
+        table = 'T = POST_RELEVE_T(ACTION=_F(INTITULE="F", RESULTAT=RESULT, NOM_CHAM="DEPL", GROUP_NO="VBOT", OPERATION="EXTRACTION", NOM_CMP="DX"))'
+        run = self.check("FIN()", f"{table}\nFIN()")
+        self.assertEqual(run.returncode, 2, run.stdout + run.stderr)
+        self.assertIn("<F> <TEST_RESU_9> there is no group of nodes 'VBOT'; there is a cell group of this name, which GROUP_MA takes", run.stderr)
+        self.assertIn("where: POST_RELEVE_T/ACTION[1]/GROUP_NO, study.comm:", run.stderr)
+
     def test_instants_that_are_not_there(self):
         run = self.check("INCREMENT=_F(LIST_INST=TIMES)", "INCREMENT=_F(LIST_INST=TIMES, INST_FIN=7.0)")
         self.assertEqual(run.returncode, 2, run.stdout + run.stderr)

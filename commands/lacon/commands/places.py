@@ -80,6 +80,12 @@ def parameters(call, result, names, path):
 # ---------------------------------------------------------------------------------------------------- nodes and cells
 
 
+def group_that_was_meant(kind, name, known):
+    """In words, behind a name that no group has. @param known "nodes" and "cells" -> the groups that are there"""
+    other, word, give = {"nodes": ("cells", "cell", "GROUP_MA"), "cells": ("nodes", "node", "GROUP_NO")}[kind]
+    return part("other_kind_of_group", other=part(word), keyword=give) if name in known[other] else nearest(name, known[kind])
+
+
 def members_of(call, test, path, mesh, keyword, kind):
     """0-based numbers of nodes or cells that a keyword names."""
     name = test[keyword]
@@ -91,9 +97,9 @@ def members_of(call, test, path, mesh, keyword, kind):
         call.fail("TEST_RESU_8", f"{path}/{keyword}", name=name, what=part("one_node" if kind == "nodes" else "one_cell"), letter=letter, count=count)
     members = mesh.group(kind, name)
     if members is None:
-        known, (other, give) = mesh.group_names(kind), {"nodes": ("cells", "GROUP_MA"), "cells": ("nodes", "GROUP_NO")}[kind]
-        hint = part("other_kind_of_group", other=part("cell" if other == "cells" else "node"), keyword=give) if mesh.group(other, name) is not None else nearest(name, known)
-        call.fail("TEST_RESU_9", f"{path}/{keyword}", name=name, what=part(kind), known=", ".join(known) or part("none"), nearest=hint)
+        known = {each: mesh.group_names(each) for each in ("nodes", "cells")}
+        call.fail("TEST_RESU_9", f"{path}/{keyword}", name=name, what=part(kind), known=", ".join(known[kind]) or part("none"),
+                  nearest=group_that_was_meant(kind, name, known))
     return members
 
 

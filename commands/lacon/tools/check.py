@@ -2,7 +2,7 @@
 
 The command file runs in a base of its own, which disappears. Meshes, groups, models, materials, loads and contacts are really made, so
 that whatever their operators refuse is found. The operator of what solves (rows with `solves`) does everything up to its first instant;
-what follows from that is checked by its keywords alone; nothing is printed to files and nothing is tested. The check ends at the first
+what follows from that is checked by its keywords alone, and by the groups that they name; nothing is printed to files and nothing is tested. The check ends at the first
 value that only a run can give.
 """
 
@@ -11,10 +11,13 @@ import os
 import pathlib
 import tempfile
 
+from ..commands.places import group_that_was_meant
 from ..core import current, messages, outcome
-from ..core.concepts import concepts_in
+from ..core.catalog import part
+from ..core.concepts import concepts_in, type_of
 from ..run import execution, launch, study
 
+_groups = {"group_ma": "cells", "group_no": "nodes"}  #: type of a keyword -> what its groups are of
 _always = ("DEBUT", "POURSUITE", "FIN", "DETRUIRE", "INCLUDE", "DEFI_FICHIER")
 
 
@@ -35,6 +38,7 @@ class Check:
         if not (row.get("solves") or unsolved or "result" not in row):
             return False
         if unsolved:
+            _refuse_unknown_groups(command, row, keywords, where)
             self.unsolved.append((command, where))
         elif row.get("solves"):
             self.prepared.append((command, where))
@@ -47,6 +51,34 @@ class Check:
     def _follows(self, keywords):
         """Whether keywords name a concept that is not there since nothing was solved."""
         return any(item.id in current.study.base.unsolved for item in concepts_in(keywords))
+
+
+def _named_groups(row, keywords, path):
+    """(path of a keyword, "cells" or "nodes", name) of every group that a command names."""
+    for name, keyword in row.get("keyword", {}).items():
+        given = keywords.get(name)
+        if given is None:
+            continue
+        several = given if isinstance(given, list) else [given]
+        if keyword["type"] == "factor":
+            for i, occurrence in enumerate(several, 1):
+                yield from _named_groups(keyword, occurrence, f"{path}/{name}[{i}]")
+        elif keyword["type"] in _groups:
+            yield from ((f"{path}/{name}", _groups[keyword["type"]], one) for one in several)
+
+
+def _refuse_unknown_groups(command, row, keywords, where):
+    """TEST_RESU_9: a group that no mesh of the study has. What makes a mesh of a solution, or groups, may know others."""
+    base = current.study.base
+    if row.get("result") == "mesh" or any(type_of(identifier) == "mesh" for identifier in base.unsolved):
+        return
+    meshes = [base.concept(path.stem) for path in base.folder.glob("mesh_*.h5") if type_of(path.stem) == "mesh"]
+    known = {kind: sorted({name for mesh in meshes for name in mesh.group_names(kind)}) for kind in _groups.values()}
+    problems = [messages.message("TEST_RESU_9", f"{path}, {where}", name=name, what=part(kind), known=", ".join(known[kind]) or part("none"),
+                                 nearest=group_that_was_meant(kind, name, known))
+                for path, kind, name in _named_groups(row, keywords, command) if meshes and name not in known[kind]]
+    if problems:
+        raise messages.AsterError(problems)
 
 
 def parser():
