@@ -1,5 +1,6 @@
 """The class of each type of concept."""
 
+from ..base import contents
 from ..core.concepts import Concept
 from ..core.messages import fail
 from .fields import FieldConcept
@@ -35,19 +36,34 @@ class Material(Concept):
         return float(function(*(given[name] for name in names)))
 
 
+class OfModel(Concept):
+    """What is made on a model."""
+
+    def getModel(self):
+        with self.open() as file:
+            return self.base.concept(contents.reference(file, "model"))
+
+    def getMesh(self):
+        return self.getModel().getMesh()
+
+
 class MaterialField(Concept):
     type = "material_field"
 
+    def getMesh(self):
+        with self.open() as file:
+            return self.base.concept(contents.reference(file, "mesh"))
 
-class ElementCharacteristics(Concept):
+
+class ElementCharacteristics(OfModel):
     type = "element_characteristics"
 
 
-class Load(Concept):
+class Load(OfModel):
     type = "load"
 
 
-class Contact(Concept):
+class Contact(OfModel):
     type = "contact"
 
 
