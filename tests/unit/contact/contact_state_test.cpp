@@ -366,6 +366,43 @@ TEST_F(Touching, ContElemHoldsWhatThePatchesCarry) {
   EXPECT_THROW(patches_of(elsewhere, mesh, contact, "RESU"), Error);
 }
 
+TEST_F(Touching, ContElemHasAStandInForTheGapOfAPatchWithoutMasterAlone) {
+  ContactState now = state();
+  now.update_geometry(displacement);
+  Patchwise patches(1);
+  patches.status[0] = Status::active;
+  EXPECT_TRUE(contact_field(contact, now.geometry(), patches).present.empty());  // every value is there
+  patches.status[0] = Status::unpaired;
+  const Field field = contact_field(contact, now.geometry(), patches);
+  for (std::size_t c = 0; c < field.components.size(); ++c)
+    EXPECT_EQ(field.presence(0, c), field.components[c] == "JEU" ? Field::stand_in : Field::there) << field.components[c];
+}
+
+// The slave from x = -0.6 to 0.4, masters from -0.5 to 0.3 and from there to 1.5, all turned: lengths have no direction.
+TEST_F(Touching, SharesOfMastersAreTheirPartsOfThePatch) {
+  mesh.coordinates[3 * 6] = 0.3;
+  for (const std::int32_t node : {8, 9, 12}) mesh.coordinates[3 * static_cast<std::size_t>(node)] -= 0.6;
+  mesh.add_cell(CellType::SEG2, std::vector<std::int32_t>{2, 6});
+  mesh.add_cell(CellType::SEG2, std::vector<std::int32_t>{6, 3});
+  model.elements.emplace_back("D_PLAN/SEG2");
+  model.element.insert(model.element.end(), {2, 2});
+  contact.zones[0].master = {4, 5};
+  for (const double angle : {0.0, 0.6, 2.0}) {
+    Mesh turned = mesh;
+    for (std::size_t node = 0; node < mesh.n_nodes(); ++node) {
+      const double x = mesh.coordinates[3 * node], y = mesh.coordinates[3 * node + 1];
+      turned.coordinates[3 * node] = std::cos(angle) * x - std::sin(angle) * y;
+      turned.coordinates[3 * node + 1] = std::sin(angle) * x + std::cos(angle) * y;
+    }
+    ContactGeometry geometry(turned, model, contact, registry);
+    geometry.update(displacement);
+    const PairedMasters masters = paired_masters(turned, contact, geometry);
+    ASSERT_EQ(masters.cell, (std::vector<std::int32_t>{4, 5}));
+    EXPECT_NEAR(masters.share[0], 0.1, 1e-14);
+    EXPECT_NEAR(masters.share[1], 0.8, 1e-14);
+  }
+}
+
 TEST_F(Touching, CouplesWithoutMeasureCoverNothing) {
   // turned so that both skins lie on the axis of revolution, where lengths weigh nothing
   for (std::size_t node = 0; node < mesh.n_nodes(); ++node)
