@@ -1,4 +1,5 @@
 // The scaled Jacobian: 1 for ideal cells, closed forms for others, and what a cut does to it.
+#include <numeric>
 #include <random>
 
 #include "meshes.hpp"
@@ -77,6 +78,49 @@ TEST(Quality, of_every_cell_has_the_sign_of_its_volume) {
     Nodes nodes(static_cast<std::size_t>(row.n_nodes));
     for (std::size_t i = 0; i < nodes.size(); ++i) nodes[i] = static_cast<std::int32_t>(i);
     EXPECT_LT(scaled_jacobian(row.type, mirrored(row.type, nodes), coordinates), 0) << row.name;
+  }
+}
+
+// Cells of every type, their nodes moved at random: gradients of shape functions, one after the other.
+TEST(JacobianRange, is_that_of_the_determinants_in_the_middle_and_at_the_nodes) {
+  std::mt19937 random(3);
+  std::normal_distribution<double> shift(0, 0.3);
+  for (const catalog::CellRow& row : catalog::cells()) {
+    if (row.dimension < 2) continue;
+    const auto d = static_cast<std::size_t>(row.dimension), n = static_cast<std::size_t>(row.n_nodes);
+    Nodes nodes(n);
+    std::iota(nodes.begin(), nodes.end(), 2);  // behind two that no cell has
+    std::vector<double> coordinates(6, 77.0);
+    for (std::size_t a = 0; a < n; ++a)
+      for (std::size_t k = 0; k < 3; ++k) coordinates.push_back(k < d ? row.nodes[a * d + k] + shift(random) : 0);
+    const auto determinant = [&](std::span<const double> xi) {
+      std::vector<double> gradients(n * d);
+      shape_gradients(row.type, xi, gradients);
+      double j[3][3] = {};
+      if (d == 2) j[2][2] = 1;
+      for (std::size_t a = 0; a < n; ++a)
+        for (std::size_t i = 0; i < d; ++i)
+          for (std::size_t k = 0; k < d; ++k) j[i][k] += gradients[a * d + i] * coordinates[3 * (a + 2) + k];
+      double sum = 0;
+      for (std::size_t k = 0; k < 3; ++k)
+        sum += j[0][k] * (j[1][(k + 1) % 3] * j[2][(k + 2) % 3] - j[1][(k + 2) % 3] * j[2][(k + 1) % 3]);
+      return sum;
+    };
+    std::vector<double> middle(d, 0.0);
+    for (std::size_t v = 0; v < static_cast<std::size_t>(row.n_vertices); ++v)
+      for (std::size_t k = 0; k < d; ++k) middle[k] += row.nodes[v * d + k] / row.n_vertices;
+    const double centre = determinant(middle);
+    EXPECT_NEAR(central_jacobian(row.type, nodes, coordinates), centre, 1e-12) << row.name;
+    if (row.family == Family::PYRAM) continue;  // at its apex there is none
+    double least = centre, greatest = centre;
+    for (std::size_t a = 0; a < n; ++a) {
+      const double here = determinant(row.nodes.subspan(a * d, d));
+      least = std::min(least, here);
+      greatest = std::max(greatest, here);
+    }
+    const JacobianRange range = jacobian_range(row.type, nodes, coordinates);
+    EXPECT_NEAR(range.least, least, 1e-12) << row.name;
+    EXPECT_NEAR(range.greatest, greatest, 1e-12) << row.name;
   }
 }
 
