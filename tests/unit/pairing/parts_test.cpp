@@ -1,9 +1,12 @@
-// The parts of pairing: polynomials, the box tree, nodal normals.
+// The parts of pairing: polynomials, the box tree, facets, nodal normals.
 #include <gtest/gtest.h>
 
 #include <numbers>
+#include <optional>
+#include <random>
 
 #include "lacon/pairing/box_tree.hpp"
+#include "lacon/pairing/facet.hpp"
 #include "lacon/pairing/normals.hpp"
 #include "lacon/pairing/polynomial.hpp"
 #include "skins.hpp"
@@ -86,6 +89,130 @@ TEST(BoxTree, ReportsWhatALinearScanReports) {
         if (touches(boxes[i])) expected.push_back(static_cast<std::int32_t>(i));
       std::sort(found.begin(), found.end());
       EXPECT_EQ(found, expected);
+    }
+  }
+}
+
+/// The places of a facet's reference nodes, times a length, each moved by `shift(k)` in direction k.
+template <class Shift>
+std::vector<Vec3> facet(CellType type, double length, const Shift& shift) {
+  const catalog::CellRow& row = catalog::cell(type);
+  std::vector<Vec3> nodes;
+  for (int a = 0; a < row.n_nodes; ++a) {
+    const double x = shift(0), y = shift(1), z = shift(2);
+    nodes.push_back(length * Vec3{row.nodes[2 * a] + x, row.nodes[2 * a + 1] + y, z});
+  }
+  return nodes;
+}
+
+constexpr CellType facets[] = {CellType::TRIA3, CellType::TRIA6, CellType::QUAD4, CellType::QUAD8, CellType::QUAD9};
+
+/// Lines through points of a facet, nearly along z, from somewhere on the line.
+struct Aimed {
+  std::vector<Vec2> xi;
+  std::vector<space::Line> lines;
+
+  Aimed(const space::Map3& map, Family family, double length, std::size_t n, std::mt19937& random) {
+    std::uniform_real_distribution<double> uniform(-1, 1);
+    for (std::size_t i = 0; i < n; ++i) {
+      Vec2 p{uniform(random), uniform(random)};
+      if (family == Family::TRIA) p = {0.5 * (1 + p.x), 0.25 * (1 + p.y) * (1 - p.x)};
+      const Vec3 lean{0.1 * uniform(random), 0.1 * uniform(random), 1};
+      const Vec3 n_line = (1 / norm(lean)) * lean;
+      xi.push_back(p);
+      lines.push_back({map(p).x + (length * uniform(random)) * n_line, n_line});
+    }
+  }
+};
+
+// Whatever a facet's size: Newton's quadratic convergence arrives within the steps that eight lines have together.
+TEST(Lines, MeetCurvedFacetsWhereTheyAreAimedAt) {
+  std::mt19937 random(5);
+  std::uniform_real_distribution<double> shift(-0.04, 0.04);
+  for (const CellType type : facets)
+    for (const double length : {1e-5, 1.0, 1e5})
+      for (int trial = 0; trial < 20; ++trial) {
+        const Family family = catalog::cell(type).family;
+        std::vector<Vec3> nodes = facet(type, length, [&](int) { return shift(random); });
+        if (type == CellType::QUAD9) nodes[8] = nodes[8] + length * Vec3{0.2, -0.1, 0.1};
+        const space::Map3 map = space::interpolate(type, nodes);
+        const Aimed aimed(map, family, length, 13, random);
+        std::vector<space::Meeting> meetings(13);
+        space::meet(map, family, aimed.lines, 1e-12 * length, 0.25, meetings);
+        for (std::size_t i = 0; i < 13; ++i) {
+          ASSERT_TRUE(meetings[i].found) << catalog::cell(type).name << ' ' << length;
+          EXPECT_NEAR(meetings[i].xi.x, aimed.xi[i].x, 1e-10);
+          EXPECT_NEAR(meetings[i].xi.y, aimed.xi[i].y, 1e-10);
+          const space::Map3::Value at = map(aimed.xi[i]);
+          EXPECT_NEAR(meetings[i].jacobian, dot(cross(at.d1, at.d2), aimed.lines[i].n), 1e-9 * length * length);
+        }
+      }
+}
+
+TEST(Lines, DoNotMeetWhatIsBehindAFold) {
+  std::mt19937 random(6);
+  std::uniform_real_distribution<double> shift(-0.7, 0.7);
+  int found = 0, aimed_behind = 0;
+  for (const CellType type : {CellType::TRIA6, CellType::QUAD8, CellType::QUAD9})
+    for (const double length : {1e-5, 1.0, 1e5})
+      for (int trial = 0; trial < 100; ++trial) {
+        const Family family = catalog::cell(type).family;
+        const space::Map3 map = space::interpolate(type, facet(type, length, [&](int k) { return k < 2 ? shift(random) : 0; }));
+        const Aimed aimed(map, family, length, 16, random);
+        std::vector<space::Meeting> meetings(16);
+        space::meet(map, family, aimed.lines, 1e-12 * length, 0.25, meetings);
+        const double middle = family == Family::TRIA ? 1.0 / 3 : 0;
+        for (std::size_t i = 0; i < 16; ++i) {
+          const auto jacobian = [&](Vec2 p) { return dot(cross(map(p).d1, map(p).d2), aimed.lines[i].n); };
+          const double there = jacobian({middle, middle});
+          aimed_behind += jacobian(aimed.xi[i]) * there < 0;
+          if (!meetings[i].found) continue;
+          ++found;
+          EXPECT_GE(jacobian(meetings[i].xi) * there, -1e-8 * there * there);
+        }
+      }
+  EXPECT_GT(found, 1000);
+  EXPECT_GT(aimed_behind, 500);
+}
+
+TEST(Facets, AreAffineOrDistortedWhateverTheirSize) {
+  const Vec3 up{0, 0, 1};
+  for (const double length : {1e-9, 1.0, 1e9}) {
+    for (const CellType type : facets) {
+      const Family family = catalog::cell(type).family;
+      std::vector<Vec3> nodes = facet(type, length, [](int) { return 0; });
+      for (Vec3& x : nodes) x = {2 * x.x + 0.5 * x.y, x.y - 0.25 * x.x, 0.3 * x.x};
+      const space::Map3 affine = space::interpolate(type, nodes);
+      EXPECT_TRUE(space::is_affine(affine, up));
+      EXPECT_FALSE(space::is_affine(affine, -1 * up));
+      EXPECT_NEAR(space::distortion(affine, family, up), 0, 1e-14);
+      EXPECT_EQ(space::distortion(affine, family, -1 * up), 1);
+      const space::Map2 flat = space::project(affine, {1, 0, 0}, {0, 1, 0});
+      const space::Inverse inverse(flat, family);
+      EXPECT_TRUE(inverse.affine());
+      const std::optional<Vec2> xi = inverse(flat({0.25, 0.375}).x, 1e-14 * length, 0.25);
+      ASSERT_TRUE(xi);
+      EXPECT_NEAR(xi->x, 0.25, 1e-14);
+      EXPECT_NEAR(xi->y, 0.375, 1e-14);
+    }
+    for (const double d : {1e-6, 0.1, 0.7}) {
+      // J = 1 + d eta, and, along x, J = 1 + d xi of a parabola
+      std::vector<Vec3> trapezium = facet(CellType::QUAD4, length, [](int) { return 0; });
+      for (Vec3& x : trapezium) x.x *= 1 + d * x.y / length;
+      const space::Map3 bilinear = space::interpolate(CellType::QUAD4, trapezium);
+      EXPECT_FALSE(space::is_affine(bilinear, up));
+      EXPECT_NEAR(space::distortion(bilinear, Family::QUAD, up), d, 1e-14);
+      const space::Map2 flat = space::project(bilinear, {1, 0, 0}, {0, 1, 0});
+      const space::Inverse inverse(flat, Family::QUAD);
+      EXPECT_FALSE(inverse.affine());
+      const std::optional<Vec2> xi = inverse(flat({0.25, 0.375}).x, 1e-14 * length, 0.25);
+      ASSERT_TRUE(xi);
+      EXPECT_NEAR(xi->x, 0.25, 1e-12);
+      EXPECT_NEAR(xi->y, 0.375, 1e-12);
+      std::vector<Vec3> parabola = facet(CellType::QUAD9, length, [](int) { return 0; });
+      for (Vec3& x : parabola) x.x += d * x.x * x.x / (2 * length);
+      EXPECT_NEAR(space::distortion(space::interpolate(CellType::QUAD9, parabola), Family::QUAD, up),
+                  d < 1e-3 ? d : 2 * d / (1 + d * d), 1e-14);
     }
   }
 }
