@@ -124,6 +124,32 @@ TEST(JacobianRange, is_that_of_the_determinants_in_the_middle_and_at_the_nodes) 
   }
 }
 
+TEST(InvertedCells, are_those_whose_jacobian_is_negative_in_their_middle) {
+  std::mt19937 random(4);
+  std::normal_distribution<double> shift(0, 0.1);
+  for (const int dimension : {2, 3}) {
+    Mesh mesh;
+    mesh.dimension = dimension;
+    Nodes expected;
+    for (const catalog::CellRow& row : catalog::cells())
+      for (int k = 0; k < 10; ++k) {
+        if (row.dimension < 2 || row.dimension > dimension) continue;
+        Nodes nodes;
+        for (int a = 0; a < row.n_nodes; ++a) {
+          std::array<double, 3> x{};
+          for (int i = 0; i < row.dimension; ++i) x[i] = row.nodes[a * row.dimension + i] + shift(random);
+          nodes.push_back(add_node(mesh, x[0], x[1], x[2]));
+        }
+        if (random() % 2 == 0) std::ranges::copy(mirrored(row.type, nodes), nodes.begin());
+        if (row.dimension == dimension && central_jacobian(row.type, nodes, mesh.coordinates) < 0)
+          expected.push_back(static_cast<std::int32_t>(mesh.n_cells()));
+        add(mesh, row.type, nodes);
+      }
+    EXPECT_GT(expected.size(), mesh.n_cells() / 8);
+    EXPECT_EQ(inverted_cells(mesh), expected);
+  }
+}
+
 TEST(Quality, of_a_cube_cut_into_hexahedra_is_that_of_the_method) {
   // METHOD.md 1.5: laterals 2 / sqrt(17), bottom 3 / sqrt(17), centre 1
   Mesh cube;
