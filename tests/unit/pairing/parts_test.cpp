@@ -9,6 +9,7 @@
 #include "lacon/pairing/facet.hpp"
 #include "lacon/pairing/normals.hpp"
 #include "lacon/pairing/polynomial.hpp"
+#include "region.hpp"
 #include "skins.hpp"
 
 namespace lacon::test {
@@ -215,6 +216,22 @@ TEST(Facets, AreAffineOrDistortedWhateverTheirSize) {
                   d < 1e-3 ? d : 2 * d / (1 + d * d), 1e-14);
     }
   }
+}
+
+// Whatever the length of the slopes that half-planes have: the strip is a length.
+TEST(Regions, AreSeparatedWhereTheyOverlapByNoMoreThanTheWidth) {
+  const auto rectangle = [](double from, double to, double slope) {
+    space::Region made = region({{from, 0}, {to, 0}, {to, 1}, {from, 1}});
+    for (space::HalfPlane& half : made.halves) half.slope = (slope / norm(half.slope)) * half.slope;
+    return made;
+  };
+  for (const double slope : {0.25, 1.0, 4.0})
+    for (const double width : {0.0, 1e-6, 0.1})
+      for (const double overlap : {-0.5, 0.9 * width, 1.1 * width + 1e-9, 0.5}) {
+        const space::Region a = rectangle(0, 1, slope), b = rectangle(1 - overlap, 2, slope);
+        EXPECT_EQ(space::separated(a, b, width), overlap <= width) << slope << ' ' << width << ' ' << overlap;
+        EXPECT_EQ(space::separated(b, a, width), overlap <= width) << slope << ' ' << width << ' ' << overlap;
+      }
 }
 
 TEST(NodalNormals, AreRadialOnARegularPolygonAndOnAnArc) {
