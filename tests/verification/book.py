@@ -314,6 +314,25 @@ within {sector:.0e}; a pin in a hole in plane stress those of plane strain with 
 """
 
 
+def snap_fit_section(_runner):
+    from test_snap_fit import SnapFit
+
+    study = SnapFit()
+    rows = of_test(SnapFit, "figures")
+    flank = [[f"{way:.1f}", f"{force[0]:.6f}", f"{-force[2]:.6f}", f"{force[0] / -force[2]:.6f}", f"{energy:.4f}"]
+             for (way, force, *_), (_, energy) in zip([row for row in rows if row[0] > study.GAP], study.on_flank(rows))]
+    taken, given = study.work(rows)
+    return f"""## A hook that snaps over a ridge
+
+In space, HEXA20: a beam 3 long, 0.2 thick, 0.6 wide, whose nose goes over a ridge of the same flanks, 0.3 to 0.55, which is ten times stiffer (E = 2000, nu = 0), in {study.STEPS} steps,
+DEFI_LIST_INST as it is. Theory: without friction the force is normal to the flank; where both flanks meet whole, force times way is twice the energy of a cantilever's bending.
+
+{table(["way", "force to the side", "up", f"ratio ({study.FLANK:.6f})", "work over bending"], flank)}
+
+To be lifted over the ridge the hook takes {taken:.5f}, behind it gives {given:.5f} back (trapezia of the steps). At the end nothing presses it and it is straight within {rows[-1][-1]:.0e}.
+"""
+
+
 def large_strain_section(_runner):
     from test_large_strain import Necking, Upsetting
 
@@ -356,8 +375,8 @@ def main():
     try:
         sections = [make(runner) for make in (patch_section, current_section, space_section, degree_section, materials_section,
                                               convergence_section, peer_section, orders_section, hertz_meshes_section, roller_section,
-                                              hertz_section, families_section, press_fit_section, joints_section, large_strain_section,
-                                              extrusion_section, robustness_section)]
+                                              hertz_section, families_section, press_fit_section, joints_section, snap_fit_section,
+                                              large_strain_section, extrusion_section, robustness_section)]
     finally:
         runner.doCleanups()
     text = "# Verification\n\nWritten by `python3 tests/verification/book.py`, which runs the studies; the same studies are tests.\n\n" + "\n".join(sections)
