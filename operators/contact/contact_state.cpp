@@ -331,13 +331,20 @@ std::optional<FacetOverlap> ContactState::facet_overlap(std::int32_t number) con
   return worst;
 }
 
-std::optional<PiercedPatch> ContactState::pierced(std::int32_t zone, const Patchwise& patches) const {
+bool ContactState::presses(std::int32_t zone, const Patchwise& patches) const {
+  for (std::size_t p = 0; p < n_patches(); ++p)
+    if (geometry_.zone_of(p) == zone && patches.status[p] == Status::active) return true;
+  return false;
+}
+
+std::optional<PiercedPatch> ContactState::pierced(std::int32_t zone, const Patchwise& patches, bool at_rest) const {
+  const double of_open = at_rest ? tolerances_.pierced_at_rest : tolerances_.pierced_open;
   std::optional<PiercedPatch> worst;
   for (std::size_t p = 0; p < n_patches(); ++p) {
     if (geometry_.zone_of(p) != zone || locked_[p] || held_open_[p] || geometry_.coverage(p) < tolerances_.least_coverage)
       continue;
     const double depth = -geometry_.smallest_gap(p) / size_[p];
-    if (depth < (patches.status[p] == Status::active ? tolerances_.pierced : tolerances_.pierced_open)) continue;
+    if (depth < (patches.status[p] == Status::active ? tolerances_.pierced : of_open)) continue;
     if (!worst || depth > worst->depth) worst = PiercedPatch{p, depth, geometry_.gap(p)};
   }
   return worst;

@@ -32,6 +32,7 @@ struct ContactTolerances {
   double held_overlap = 1e-6;       ///< of h: an overlap of a locked patch that is worth an alarm
   double pierced = 0.05;            ///< of h: likewise of points of another active patch, whose average is closed
   double pierced_open = 0.04;       ///< of h: of points of an open patch, which nothing keeps out of the master
+  double pierced_at_rest = 0.005;   ///< of h: likewise, of a zone where nothing presses
   double touching = 1e-8;           ///< of h: an overlap of patches without contact that is round-off
 };
 
@@ -152,7 +153,9 @@ class ContactState {
   /// Of a zone, at the initial geometry: nothing where some patch overlaps by more than its facets explain.
   std::optional<FacetOverlap> facet_overlap(std::int32_t zone) const;
   /// Of a zone the patch that is pierced deepest, over its size, where that is worth an alarm.
-  std::optional<PiercedPatch> pierced(std::int32_t zone, const Patchwise& patches) const;
+  /// @param at_rest nothing presses in this zone: less is
+  std::optional<PiercedPatch> pierced(std::int32_t zone, const Patchwise& patches, bool at_rest) const;
+  bool presses(std::int32_t zone, const Patchwise& patches) const;
   /// Of a zone with RESOLUTION='NON' the patch that its master has pierced deepest, by more than TOLE_INTERP.
   std::optional<UncheckedOverlap> unchecked_overlap(std::int32_t zone) const;
 

@@ -110,11 +110,15 @@ void ContactNotices::accept(const SolvedInstant& solved) {
   tell_what_overlaps(solved.instant);
   tell_what_nothing_presses(solved.instant);
   const ContactState& contact = *present_.contact;
+  const Patchwise& patches = present_.state.patches;
   for (std::int32_t zone = 0; zone < static_cast<std::int32_t>(contact.geometry().zones().size()); ++zone) {
-    const std::optional<PiercedPatch> pierced = contact.pierced(zone, present_.state.patches);
-    if (!pierced) continue;
-    const auto before = pierced_.find(zone);
-    if (before == pierced_.end() || pierced->depth > before->second.worst.depth) pierced_[zone] = {solved.instant, *pierced};
+    if (contact.presses(zone, patches)) pressed_.insert(zone);
+    for (const bool at_rest : {false, true}) {
+      PiercedZones& zones = at_rest ? pierced_at_rest_ : pierced_;
+      const std::optional<PiercedPatch> now = contact.pierced(zone, patches, at_rest);
+      if (const auto before = zones.find(zone); now && (before == zones.end() || now->depth > before->second.worst.depth))
+        zones[zone] = {solved.instant, *now};
+    }
   }
 }
 
@@ -122,7 +126,10 @@ void ContactNotices::end(bool /*completed*/) {
   for (std::size_t zone = 0; present_.contact && zone < present_.problem.contact->zones.size(); ++zone)
     if (const ContactZone& names = present_.problem.contact->zones[zone]; !met_.contains(zone))
       inform("EVOLUTION_43", {{"slave", names.slave_group}, {"master", names.master_group}});
-  for (const auto& [zone, pierced] : pierced_) {
+  PiercedZones told = pierced_;
+  for (const auto& [zone, pierced] : pierced_at_rest_)
+    if (!pressed_.contains(zone)) told.emplace(zone, pierced);
+  for (const auto& [zone, pierced] : told) {
     const ContactZone& names = present_.problem.contact->zones[zone];
     inform("EVOLUTION_16", {{"slave", names.slave_group},
                             {"master", names.master_group},
@@ -133,21 +140,37 @@ void ContactNotices::end(bool /*completed*/) {
   }
 }
 
-void ContactNotices::save(const hdf5::Group& group) const {
+void ContactNotices::save(const hdf5::Group& group, const PiercedZones& pierced_zones) {
   std::vector<std::int64_t> zones, patches;
   std::vector<double> instants, depths, gaps;
-  for (const auto& [zone, pierced] : pierced_) {
+  for (const auto& [zone, pierced] : pierced_zones) {
     zones.push_back(zone);
     patches.push_back(static_cast<std::int64_t>(pierced.worst.patch));
     instants.push_back(pierced.instant);
     depths.push_back(pierced.worst.depth);
     gaps.push_back(pierced.worst.gap);
   }
-  group.write("pierced/zone", zones);
-  group.write("pierced/patch", patches);
-  group.write("pierced/instant", instants);
-  group.write("pierced/depth", depths);
-  group.write("pierced/gap", gaps);
+  group.write("zone", zones);
+  group.write("patch", patches);
+  group.write("instant", instants);
+  group.write("depth", depths);
+  group.write("gap", gaps);
+}
+
+ContactNotices::PiercedZones ContactNotices::resumed(const hdf5::Group& group) {
+  const auto zones = group.read<std::int64_t>("zone"), patches = group.read<std::int64_t>("patch");
+  const auto instants = group.read<double>("instant"), depths = group.read<double>("depth"), gaps = group.read<double>("gap");
+  PiercedZones found;
+  for (std::size_t i = 0; i < zones.size(); ++i)
+    found[static_cast<std::int32_t>(zones[i])] = {instants.at(i),
+                                                  {static_cast<std::size_t>(patches.at(i)), depths.at(i), gaps.at(i)}};
+  return found;
+}
+
+void ContactNotices::save(const hdf5::Group& group) const {
+  save(group.create("pierced"), pierced_);
+  save(group.create("pierced_at_rest"), pierced_at_rest_);
+  group.write("pressed", std::vector<std::int32_t>(pressed_.begin(), pressed_.end()));
   group.write("free", std::vector<std::int32_t>(free_.begin(), free_.end()));
   group.write("overlapping", std::vector<std::int64_t>(overlapping_.begin(), overlapping_.end()));
   group.write("met", std::vector<std::int64_t>(met_.begin(), met_.end()));
@@ -155,12 +178,14 @@ void ContactNotices::save(const hdf5::Group& group) const {
 }
 
 void ContactNotices::resume(const hdf5::Group& group) {
-  const auto zones = group.read<std::int64_t>("pierced/zone"), patches = group.read<std::int64_t>("pierced/patch");
-  const auto instants = group.read<double>("pierced/instant"), depths = group.read<double>("pierced/depth"),
-             gaps = group.read<double>("pierced/gap");
-  for (std::size_t i = 0; i < zones.size(); ++i)
-    pierced_[static_cast<std::int32_t>(zones[i])] = {instants.at(i),
-                                                     {static_cast<std::size_t>(patches.at(i)), depths.at(i), gaps.at(i)}};
+  pierced_ = resumed(group.open("pierced"));
+  if (group.has("pressed")) {
+    pierced_at_rest_ = resumed(group.open("pierced_at_rest"));
+    for (const std::int32_t zone : group.read<std::int32_t>("pressed")) pressed_.insert(zone);
+  } else {  // a record of before they were kept: who knows
+    for (std::size_t zone = 0; zone < present_.problem.contact->zones.size(); ++zone)
+      pressed_.insert(static_cast<std::int32_t>(zone));
+  }
   const auto free = group.read<std::int32_t>("free");
   free_ = {free.begin(), free.end()};
   for (const std::int64_t zone : group.read<std::int64_t>("overlapping")) overlapping_.insert(static_cast<std::size_t>(zone));

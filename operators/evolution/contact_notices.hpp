@@ -20,7 +20,8 @@ class ContactNotices : public EvolutionObserver {
   /// EVOLUTION_14: such patches inside their master; EVOLUTION_17; EVOLUTION_23: bodies that lie on others without a pressure;
   /// EVOLUTION_35: overlaps with RESOLUTION='NON'. Throws EVOLUTION_36 for one with STOP_INTERP='OUI'.
   void accept(const SolvedInstant& solved) override;
-  /// EVOLUTION_16: of each zone the patch that its master has pierced deepest; EVOLUTION_43: zones whose skins never met.
+  /// EVOLUTION_16: of each zone the patch that its master has pierced deepest, of a zone where nothing has pressed at any
+  /// instant also where that is little; EVOLUTION_43: zones whose skins never met.
   void end(bool completed) override;
   void save(const hdf5::Group& group) const override;
   void resume(const hdf5::Group& group) override;
@@ -30,6 +31,9 @@ class ContactNotices : public EvolutionObserver {
     double instant;
     PiercedPatch worst;
   };
+  using PiercedZones = std::map<std::int32_t, Pierced>;
+  static void save(const hdf5::Group& group, const PiercedZones& zones);
+  static PiercedZones resumed(const hdf5::Group& group);
   std::string first_cell(std::size_t patch) const;
   /// EVOLUTION_17: couples of each zone that overlap too deep to be taken for contact, once a zone.
   void tell_what_is_too_deep(double instant);
@@ -45,11 +49,13 @@ class ContactNotices : public EvolutionObserver {
 
   Present present_;
   Bodies bodies_;
-  std::set<std::int32_t> free_;              ///< bodies that are held by contact alone, and of which nothing was told
-  std::map<std::int32_t, Pierced> pierced_;  ///< by zone
-  std::set<std::size_t> met_;                ///< zones of which a patch has had a master
-  std::set<std::size_t> too_deep_;           ///< zones of which it has been told
-  std::set<std::size_t> overlapping_;        ///< likewise, of EVOLUTION_35
+  std::set<std::int32_t> free_;  ///< bodies that are held by contact alone, and of which nothing was told
+  PiercedZones pierced_;
+  PiercedZones pierced_at_rest_;       ///< what is worth an alarm of zones where nothing has pressed
+  std::set<std::int32_t> pressed_;     ///< the others
+  std::set<std::size_t> met_;          ///< zones of which a patch has had a master
+  std::set<std::size_t> too_deep_;     ///< zones of which it has been told
+  std::set<std::size_t> overlapping_;  ///< likewise, of EVOLUTION_35
 };
 
 }  // namespace lacon

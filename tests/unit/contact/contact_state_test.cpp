@@ -312,15 +312,17 @@ TEST_F(Touching, APatchWhoseDisplacementsAreAllImposedIsLockedAndKeepsItsMultipl
 TEST_F(Touching, PointsInsideTheMasterAreToldEarlierWhereNothingPushesThemOut) {
   ContactState now = state();
   for (const bool active : {false, true})
-    for (const double depth : {-0.3, 0.03, 0.045, 0.06}) {
+    for (const double depth : {-0.3, 0.004, 0.03, 0.045, 0.06}) {
       lift(-depth);
       now.update_geometry(displacement);
       EXPECT_NEAR(now.geometry().smallest_gap(0), -depth, 1e-15);
       Patchwise patches(1);
       patches.status[0] = active ? Status::active : Status::open;
-      const std::optional<PiercedPatch> pierced = now.pierced(0, patches);
+      EXPECT_EQ(now.presses(0, patches), active);
+      const std::optional<PiercedPatch> pierced = now.pierced(0, patches, false);
       ASSERT_EQ(pierced.has_value(), depth > (active ? 0.05 : 0.04)) << active << ' ' << depth;
       EXPECT_NEAR(pierced ? pierced->depth : depth, depth, 1e-14);  // h = 1
+      EXPECT_EQ(now.pierced(0, patches, true).has_value(), depth > (active ? 0.05 : 0.005)) << active << ' ' << depth;
     }
   // turned: open in the average, one end inside
   lift(0.1);
@@ -330,7 +332,7 @@ TEST_F(Touching, PointsInsideTheMasterAreToldEarlierWhereNothingPushesThemOut) {
   now.update_geometry(displacement);
   EXPECT_GT(now.geometry().gap(0), 0);
   EXPECT_LT(now.geometry().smallest_gap(0), -0.05);
-  const std::optional<PiercedPatch> pierced = now.pierced(0, Patchwise(1));
+  const std::optional<PiercedPatch> pierced = now.pierced(0, Patchwise(1), false);
   ASSERT_TRUE(pierced);
   EXPECT_EQ(pierced->gap, now.geometry().gap(0));
 }
