@@ -1,6 +1,7 @@
 #include "lacon/pairing/skin_facet.hpp"
 
 #include <algorithm>
+#include <utility>
 
 namespace lacon::space {
 namespace {
@@ -10,6 +11,16 @@ Vec3 point(const Surface& surface, std::int32_t node) {
 }
 
 constexpr int edge_pieces = 4;  // of a curved edge
+
+/// Whether the middle node m of an edge lies between its ends, and beside the line through them by no more than `bulge` of its
+/// length.
+bool is_straight(Vec3 a, Vec3 b, Vec3 m, double bulge) {
+  if (before(b, a)) std::swap(a, b);
+  const Vec3 d = b - a, to_middle = m - a;
+  const double along = dot(d, to_middle), length2 = dot(d, d);
+  if (length2 == 0 && dot(to_middle, to_middle) == 0) return true;  // collapsed
+  return norm(cross(d, to_middle)) <= bulge * length2 && along > 0 && along < length2;
+}
 
 }  // namespace
 
@@ -27,7 +38,7 @@ double diameter(const Nodes& nodes, int n_vertices) {
   return longest;
 }
 
-Facet facet(const Surface& surface, std::size_t cell, double straight) {
+Facet facet(const Surface& surface, std::size_t cell, double straight, bool in_pieces) {
   Facet f;
   f.type = surface.types[cell];
   const catalog::CellRow& row = catalog::cell(f.type);
@@ -44,10 +55,9 @@ Facet facet(const Surface& surface, std::size_t cell, double straight) {
     const Vec3 a = f.nodes[i], b = f.nodes[(i + 1) % nv];
     area = area + cross(a, b);
     if (f.order < 2) continue;
-    const Vec3 d = b - a, m = f.nodes[nv + i] - a;
-    const double along = dot(d, m), length2 = dot(d, d);
-    const bool collapsed = length2 == 0 && dot(m, m) == 0;
-    if (!collapsed && !(norm(cross(d, m)) <= straight * length2 && along > 0 && along < length2)) f.straight = false;
+    const bool is_one_line = is_straight(a, b, f.nodes[nv + i], straight);
+    f.straight = f.straight && is_one_line;
+    f.whole_edge[static_cast<std::size_t>(i)] = is_one_line && !in_pieces;
   }
   const double length = norm(area);
   if (length > 0) f.normal = (1 / length) * area;
@@ -61,7 +71,7 @@ void outline(const FacetKind& f, const Nodes& nodes, std::vector<Vec3>& polygon)
   for (int i = 0; i < f.n_vertices; ++i) {
     const Vec3 a = nodes[i], b = nodes[(i + 1) % f.n_vertices];
     polygon.push_back(a);
-    if (f.straight) continue;
+    if (f.whole_edge[static_cast<std::size_t>(i)]) continue;
     const Vec3 m = nodes[f.n_vertices + i];
     const bool forward = before(a, b);
     const Vec3 first = forward ? a : b, last = forward ? b : a;
@@ -78,7 +88,7 @@ void outline_places(const FacetKind& f, std::vector<Vec2>& places) {
   for (int i = 0; i < f.n_vertices; ++i) {
     const int next = (i + 1) % f.n_vertices;
     const Vec2 a{nodes[2 * i], nodes[2 * i + 1]}, b{nodes[2 * next], nodes[2 * next + 1]};
-    for (int k = 0; k < (f.straight ? 1 : edge_pieces); ++k)
+    for (int k = 0; k < (f.whole_edge[static_cast<std::size_t>(i)] ? 1 : edge_pieces); ++k)
       places.push_back(a + (static_cast<double>(k) / edge_pieces) * (b - a));
   }
 }

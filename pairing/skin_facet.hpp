@@ -26,7 +26,10 @@ struct FacetKind {
   Vec3 normal{};         ///< mean, unit; 0 for a facet without area
   double size = 0;       ///< the longest distance from its first node
   bool straight = true;  ///< edges
-  bool affine = false;   ///< to round-off
+  /// Of the edge from each vertex to the next: it is one line of the outline. Facets that share an edge say the same of it,
+  /// whatever their other edges are.
+  std::array<bool, 4> whole_edge = {true, true, true, true};
+  bool affine = false;  ///< to round-off
   double distortion = 0;
 
   Map3 map(const Nodes& nodes) const {
@@ -42,12 +45,14 @@ struct Facet : FacetKind {
 };
 
 /// @param straight largest bulge of a straight edge over its length
-Facet facet(const Surface& surface, std::size_t cell, double straight);
+/// @param in_pieces cut the edges of a cell of the second order in pieces where they are straight, too: middle nodes then move
+/// the outline at any bulge, and forces do not jump where an edge becomes straight
+Facet facet(const Surface& surface, std::size_t cell, double straight, bool in_pieces = false);
 
 /// An order of points: an edge is followed from its earlier end, whichever facet asks.
 inline bool before(Vec3 a, Vec3 b) { return std::tie(a.x, a.y, a.z) < std::tie(b.x, b.y, b.z); }
 
-/// The outline of a facet as a polygon: a curved edge in pieces, at places that depend on the edge alone.
+/// The outline of a facet as a polygon: a curved edge in pieces, at places that depend on the edge alone, a straight one whole.
 void outline(const FacetKind& f, const Nodes& nodes, std::vector<Vec3>& polygon);
 /// The reference coordinates of its vertices.
 void outline_places(const FacetKind& f, std::vector<Vec2>& places);

@@ -8,6 +8,21 @@
 #include "lacon/pairing/detail.hpp"
 
 namespace lacon::space {
+namespace {
+
+/// Whether the map of a facet of the second order is affine, but for what small deformations leave: opposite edges are
+/// parallel, other nodes lie in the middle of corners.
+bool is_nearly_affine(const Facet& f) {
+  constexpr double small = 1e-3;
+  const auto off = [&](Vec3 d) { return norm(d) > small * f.size; };
+  const int n = f.n_vertices;
+  if (n == 4 && off((f.nodes[0] - f.nodes[1]) + (f.nodes[2] - f.nodes[3]))) return false;
+  for (int i = 0; i < n; ++i)
+    if (off(f.nodes[n + i] - 0.5 * (f.nodes[i] + f.nodes[(i + 1) % n]))) return false;
+  return f.type != CellType::QUAD9 || !off(f.nodes[8] - 0.5 * (f.nodes[0] + f.nodes[2]));
+}
+
+}  // namespace
 
 void SlaveFacet::set(const Surface& surface, std::size_t cell, double size, const PairingTolerances& tolerances,
                      bool in_triangles) {
@@ -25,7 +40,8 @@ void SlaveFacet::set(const Surface& surface, std::size_t cell, double size, cons
   degenerate = false;
   constant = *turn <= tolerances.flat && f.straight && !in_triangles;
   nearly_flat = *turn <= tolerances.nearly_flat && f.straight;
-  plane = f.straight;
+  // in the reference cell middle nodes move points at any bulge; lines of masters are straight there if its map is affine
+  plane = f.straight && !(in_triangles && f.order > 1 && is_nearly_affine(f));
   set_chart();
   set_pieces(*turn);
   set_walls();
@@ -86,7 +102,7 @@ void SlaveFacet::set_pieces(double turn) {
     for (int i = 0; i < f.n_vertices && !plane; ++i)
       bulge = std::max(bulge, norm(f.nodes[f.n_vertices + i] - 0.5 * (f.nodes[i] + f.nodes[(i + 1) % f.n_vertices])));
     const double steps = 8 * std::max(turn, 4 * bulge / diameter(f.nodes, f.n_vertices));
-    subdivide(nearly_flat                ? 1
+    subdivide(nearly_flat && plane       ? 1
               : f.family == Family::TRIA ? std::clamp(1 + static_cast<int>(std::ceil(steps)), 2, 6)
                                          : std::clamp(1 + static_cast<int>(std::ceil(steps / std::numbers::sqrt2)), 2, 4));
   }

@@ -33,13 +33,15 @@ struct MastersInSpace {
                  std::vector<RejectedCouple>& rejected)
       : facets(master.size()),
         skin(slave, master, options, rejected,
-             [this, &master, tolerances = options.tolerances, polygon = std::vector<Vec3>()](
-                 std::size_t cell, double size) mutable { return examine(master, cell, size, tolerances, polygon); }) {}
+             [this, &master, &options, polygon = std::vector<Vec3>()](std::size_t cell, double size) mutable {
+               return examine(master, cell, size, options, polygon);
+             }) {}
 
  private:
-  std::optional<Box<3>> examine(const Surface& master, std::size_t cell, double size, const PairingTolerances& tolerances,
+  std::optional<Box<3>> examine(const Surface& master, std::size_t cell, double size, const PairingOptions& options,
                                 std::vector<Vec3>& polygon) {
-    const Facet f = detail::finite(master, cell) ? facet(master, cell, tolerances.straight) : Facet{};
+    const PairingTolerances& tolerances = options.tolerances;
+    const Facet f = detail::finite(master, cell) ? facet(master, cell, tolerances.straight, options.traced) : Facet{};
     facets[cell] = f;
     const Map3::Value at = f.x({0, 0});
     if (!(f.size > tolerances.degenerate * size) || !(norm(f.normal) > 0) ||

@@ -240,9 +240,14 @@ void ContactState::evaluate(const Patchwise& patches, const std::function<void(c
 }
 
 double ContactState::constraint_residual(const Patchwise& patches) const {
+  // of the rows: polygons that are differentiated follow curves by other pieces than those that are only measured
+  std::vector<double> integral(n_patches(), 0.0);
+  for (const ContactGeometry::Variation& variation : variations_)
+    integral[contact_.slaves[variation.slave].patch] += variation.of_gap.gap;
   double largest = 0;
   for (std::size_t p = 0; p < n_patches(); ++p)
-    if (patches.status[p] == Status::active && !locked_[p]) largest = std::max(largest, std::abs(geometry_.gap(p)) / size_[p]);
+    if (patches.status[p] == Status::active && !locked_[p] && geometry_.covered(p) > 0)
+      largest = std::max(largest, std::abs(integral[p]) / (geometry_.covered(p) * size_[p]));
   return largest;
 }
 

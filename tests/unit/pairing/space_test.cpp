@@ -762,6 +762,21 @@ TEST(PairingInSpace, CurvedFacetsOfMatchingSkinsCoverEachOther) {
   }
 }
 
+TEST(PairingInSpace, StraightEdgesAreLinesWhateverTheOtherEdgesOfTheirFacetsAre) {
+  // two squares side by side; their common edge bulges by half of what is straight, the outer edges of the second by a tenth
+  std::mt19937 random(16);
+  for (const CellType type : {CellType::TRIA6, CellType::QUAD8, CellType::QUAD9}) {
+    Skin3 slave = mesh({1, 1, CellType::QUAD4, false, 0, 0.2, 0.8, 0.2, 0.8}, plane(-0.1), random);
+    Skin3 master = mesh({2, 1, type, true}, plane(0), random);
+    for (std::size_t i = 0; i < master.n_nodes(); ++i) {
+      const Vec3 p = master.node(static_cast<std::int32_t>(i));
+      if (p.y == 0.5 && p.x == 0.5) master.coordinates[3 * i] += 0.5 * PairingTolerances{}.straight;
+      if (p.x == 0.75 && p.y != 0.5) master.coordinates[3 * i + 1] += p.y > 0 ? 0.1 : -0.1;
+    }
+    EXPECT_NEAR(forces(slave, master, pair(slave.view(), master.view()).cells).area, 0.36, 1e-13) << catalog::cell(type).name;
+  }
+}
+
 TEST(Polygons, SubtractionLeavesWhatIntersectionDoesNotTake) {
   std::mt19937 random(16);
   std::uniform_real_distribution<double> uniform(-1, 1);
