@@ -74,6 +74,7 @@ struct MumpsEngine::State {
   std::unique_ptr<MumpsFactor<float>> single;
   const SparseMatrix* matrix = nullptr;  ///< whose factor is kept
   std::vector<double> scale;             ///< of its rows and columns, where the factor is not exact
+  std::vector<std::int64_t> alone;       ///< likewise: unknowns that their row alone decides, such as pressures of open patches
   bool has_folder = false;
 
   explicit State(const MumpsOptions& given) : options(given), processes(given.processes, given.program) {}
@@ -163,6 +164,7 @@ struct MumpsEngine::State {
       found = full->factorise(matrix->values());
     } else {
       scale = matrix->equilibration();
+      alone = matrix->rows_alone();
       found = single ? factorise_scaled(*single) : factorise_scaled(*full);
     }
     found.single_precision = form.single_precision;
@@ -217,8 +219,11 @@ struct MumpsEngine::State {
     if (most == 0) return;
     std::vector<Real> x(right_side.size());
     for (std::size_t i = 0; i < x.size(); ++i) x[i] = static_cast<Real>(scale[i] * right_side[i] / most);
+    std::vector<double> decided;
+    for (const std::int64_t i : alone) decided.push_back(right_side[i] / matrix->diagonal(i));
     mumps.substitute(x);
     for (std::size_t i = 0; i < x.size(); ++i) right_side[i] = most * scale[i] * static_cast<double>(x[i]);
+    for (std::size_t k = 0; k < alone.size(); ++k) right_side[alone[k]] = decided[k];
   }
 
   /// What a substitution leaves of a vector, after some, which bring out what it leaves most of: the largest share.
@@ -324,9 +329,14 @@ std::vector<float> MumpsEngine::substitute(std::span<const std::int64_t> offset,
       }
     mumps.substitute(offset, index, values, solution);
     if (!s.form.is_exact())
-      for (std::size_t c = 0; c < most.size(); ++c)
+      for (std::size_t c = 0; c < most.size(); ++c) {
         for (std::size_t i = 0; i < n; ++i)
           solution[c * n + i] = static_cast<Real>(most[c] * s.scale[i] * static_cast<double>(solution[c * n + i]));
+        for (const std::int64_t i : s.alone) solution[c * n + static_cast<std::size_t>(i)] = 0;
+        for (std::int64_t k = offset[c]; k < offset[c + 1]; ++k)
+          if (std::binary_search(s.alone.begin(), s.alone.end(), index[k]))
+            solution[c * n + static_cast<std::size_t>(index[k])] += static_cast<Real>(value[k] / s.matrix->diagonal(index[k]));
+      }
     return std::vector<float>(solution.begin(), solution.end());
   };
   return s.single ? solve(*s.single) : solve(*s.full);

@@ -123,17 +123,8 @@ struct PetscEngine::State {
 
   /// Unknowns that their row alone decides, those of open patches among them, and their values: iterations come near them only.
   std::vector<std::pair<std::int64_t, double>> decided(std::span<const double> right_side) const {
-    std::vector<std::uint8_t> alone(right_side.size(), 1);
-    for (std::int64_t row = 0; row < matrix->size(); ++row)
-      for (std::int64_t k = matrix->rows()[row]; k < matrix->rows()[row + 1]; ++k) {
-        const std::int64_t column = matrix->columns()[k];
-        if (column == row || matrix->values()[k] == 0) continue;
-        alone[row] = 0;
-        if (matrix->is_symmetric()) alone[column] = 0;
-      }
     std::vector<std::pair<std::int64_t, double>> found;
-    for (std::int64_t i = 0; i < matrix->size(); ++i)
-      if (alone[i] && matrix->diagonal(i) != 0) found.emplace_back(i, right_side[i] / matrix->diagonal(i));
+    for (const std::int64_t i : matrix->rows_alone()) found.emplace_back(i, right_side[i] / matrix->diagonal(i));
     return found;
   }
 

@@ -235,6 +235,17 @@ void SparseMatrix::multiply_magnitudes(std::span<const double> x, std::span<doub
   multiply(x, y, [](double v) { return std::abs(v); });
 }
 
+std::vector<std::int64_t> SparseMatrix::rows_alone() const {
+  std::vector<std::uint8_t> alone(static_cast<std::size_t>(size()), 1);
+  for (std::int64_t row = 0; row < size(); ++row)
+    for (std::int64_t k = rows()[row]; k < rows()[row + 1]; ++k)
+      if (columns()[k] != row && values()[k] != 0) alone[row] = alone[columns()[k]] = 0;
+  std::vector<std::int64_t> found;
+  for (std::int64_t i = 0; i < size(); ++i)
+    if (alone[i] && diagonal(i) != 0) found.push_back(i);
+  return found;
+}
+
 std::vector<double> SparseMatrix::equilibration() const {
   std::vector<double> scale(size(), 1.0), largest(size());
   constexpr int most_rounds = 20;  // each takes the square root of what is still to be done, at once where diagonals are large

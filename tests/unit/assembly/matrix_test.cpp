@@ -197,6 +197,21 @@ TEST(SparseMatrix, KnowsHowLargeItsRowsAre) {
   }
 }
 
+// A multiplier whose coefficients vanish is decided by its row, one of either symmetry; without a diagonal nothing decides it.
+TEST(SparseMatrix, KnowsUnknownsThatTheirRowAloneDecides) {
+  const Chain chain(12, 2);
+  const std::vector<Coupling> couplings{{12, 3}, {12, 4}, {13, 9}};
+  for (const Symmetry symmetry : {Symmetry::symmetric, Symmetry::general}) {
+    SparseMatrix matrix(chain.numbering, chain.cliques, couplings, symmetry);
+    test::add_springs(matrix, chain, 1.0);
+    const std::int64_t held = chain.numbering.first[12], open = chain.numbering.first[13];
+    matrix.add(std::vector<std::int64_t>{held, chain.numbering.first[3]}, std::vector<double>{0, 1, 0});
+    EXPECT_EQ(matrix.rows_alone(), std::vector<std::int64_t>{});
+    matrix.add_diagonal(open, -0.5);
+    EXPECT_EQ(matrix.rows_alone(), std::vector<std::int64_t>{open});
+  }
+}
+
 // Products of magnitudes are those of dense matrices; powers of two bring the largest entry of each row near 1, whatever units
 // rows are in.
 TEST(SparseMatrix, IsEquilibratedByPowersOfTwo) {
