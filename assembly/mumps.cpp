@@ -94,7 +94,7 @@ struct Mumps<Real>::State {
     mumps.redrhs = border.data();
     mumps.lredrhs = mumps.size_schur;
     run(solve_job);
-    at(mumps.icntl, 26) = 0;
+    at(mumps.icntl, 26) = at(mumps.icntl, 20) = 0;
     require("solution");
   }
   /// The next substitution is of sparse right sides. @param solution (n, size)
@@ -202,7 +202,6 @@ void Mumps<Real>::reduce(std::span<const std::int64_t> offset, std::span<const s
                          std::span<Real> sides, std::span<Real> border) {
   state_->take_sparse(offset, index, value, sides);
   state_->substitute_within(1, sides, border);
-  at(state_->mumps.icntl, 20) = 0;
 }
 
 template <class Real>

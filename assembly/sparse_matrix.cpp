@@ -239,7 +239,10 @@ std::vector<std::int64_t> SparseMatrix::rows_alone() const {
   std::vector<std::uint8_t> alone(static_cast<std::size_t>(size()), 1);
   for (std::int64_t row = 0; row < size(); ++row)
     for (std::int64_t k = rows()[row]; k < rows()[row + 1]; ++k)
-      if (columns()[k] != row && values()[k] != 0) alone[row] = alone[columns()[k]] = 0;
+      if (const std::int32_t column = columns()[k]; column != row && values()[k] != 0) {
+        alone[row] = 0;
+        if (is_symmetric()) alone[column] = 0;  // of its row the lower triangle alone is there
+      }
   std::vector<std::int64_t> found;
   for (std::int64_t i = 0; i < size(); ++i)
     if (alone[i] && diagonal(i) != 0) found.push_back(i);

@@ -55,7 +55,7 @@ class SparseMatrix {
   void multiply_magnitudes(std::span<const double> x, std::span<double> y) const;
   /// Powers of two d that make the largest entry of each row and column of d A d about 1, (size).
   std::vector<double> equilibration() const;
-  /// Unknowns that their row alone decides: nothing but a diagonal stands in their row and column, ascending.
+  /// Unknowns that their row alone decides: nothing but a diagonal stands in it. Ascending.
   std::vector<std::int64_t> rows_alone() const;
   /// How large a row is: the sum of |a_ij|, and how many entries it has.
   struct RowSize {

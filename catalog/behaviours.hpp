@@ -19,10 +19,21 @@ struct RelationRow {
 enum class StressGeometry : std::int8_t { initial, displaced };
 enum class StrainMeasure : std::int8_t { small, green_lagrange };
 
+/// How what has flowed (EPSP) follows from a state, on the initial axes.
+enum class PlasticStrain : std::int8_t {
+  unknown,
+  none,            ///< nothing flows
+  small,           ///< e - C^-1 : sigma
+  green_lagrange,  ///< the same of Green and Lagrange's strain and the second Piola-Kirchhoff stress
+  logarithmic,     ///< the same of ln(F^T F) / 2 and the stress that works on it
+  stretches        ///< ln(F^T b^-1 F) / 2 without its trace, b being the elastic stretches, (I - b) / 2 in V3 to V8
+};
+
 struct DeformationRow {
   std::string_view name;  ///< "PETIT"
   StressGeometry stress_geometry;
   StrainMeasure strain;
+  PlasticStrain plastic_strain;
 };
 
 /// The rows that were built in.

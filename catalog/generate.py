@@ -294,7 +294,8 @@ def write_cpp(catalog, writer):
         f"{{{text(r['name'])}, {text(r.get('hardening', ''))}, TransverseStrain::{r.get('transverse_strain', 'unknown')}}}"
         for r in catalog["relation"]]
     tables["deformations", "DeformationRow"] = [
-        f"{{{text(d['name'])}, StressGeometry::{d['stress_geometry']}, StrainMeasure::{d['strain']}}}" for d in catalog["deformation"]]
+        f"{{{text(d['name'])}, StressGeometry::{d['stress_geometry']}, StrainMeasure::{d['strain']}, PlasticStrain::{d.get('plastic_strain', 'unknown')}}}"
+        for d in catalog["deformation"]]
     tables["quantities", "QuantityRow"] = [
         f"{{{text(q['name'])}, {writer.strings(q['components'])}}}" for q in catalog["quantities"]]
     tables["messages", "MessageRow"] = [

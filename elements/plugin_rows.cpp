@@ -195,12 +195,21 @@ class BehaviourReader : TableReader {
   void read_deformation(PluginRows& rows) {
     name_ = text("name");
     text("help");
-    rows.deformations.push_back(
-        {rows.keep(name_),
-         choice<catalog::StressGeometry>("stress_geometry", {{"initial", catalog::StressGeometry::initial},
-                                                             {"displaced", catalog::StressGeometry::displaced}}),
-         choice<catalog::StrainMeasure>("strain", {{"small", catalog::StrainMeasure::small},
-                                                   {"green_lagrange", catalog::StrainMeasure::green_lagrange}})});
+    catalog::DeformationRow row{
+        rows.keep(name_),
+        choice<catalog::StressGeometry>("stress_geometry", {{"initial", catalog::StressGeometry::initial},
+                                                            {"displaced", catalog::StressGeometry::displaced}}),
+        choice<catalog::StrainMeasure>(
+            "strain", {{"small", catalog::StrainMeasure::small}, {"green_lagrange", catalog::StrainMeasure::green_lagrange}}),
+        catalog::PlasticStrain::unknown};
+    if (row.stress_geometry == catalog::StressGeometry::initial) row.plastic_strain = catalog::PlasticStrain::small;
+    if (table_.contains("plastic_strain"))
+      row.plastic_strain =
+          choice<catalog::PlasticStrain>("plastic_strain", {{"small", catalog::PlasticStrain::small},
+                                                            {"green_lagrange", catalog::PlasticStrain::green_lagrange},
+                                                            {"logarithmic", catalog::PlasticStrain::logarithmic},
+                                                            {"stretches", catalog::PlasticStrain::stretches}});
+    rows.deformations.push_back(row);
   }
   void read_law(const std::vector<std::string>& plugins, PluginRows& rows) {
     const std::string option = name_ = text("relation") + "/" + text("deformation");
@@ -232,7 +241,8 @@ void read_plugin_rows(const std::filesystem::path& file, const std::vector<std::
       else if (kind == "relation")
         BehaviourReader(file, table, "relation", {"name", "help", "hardening", "transverse_strain"}).read_relation(rows);
       else if (kind == "deformation")
-        BehaviourReader(file, table, "deformation", {"name", "help", "stress_geometry", "strain"}).read_deformation(rows);
+        BehaviourReader(file, table, "deformation", {"name", "help", "stress_geometry", "strain", "plastic_strain"})
+            .read_deformation(rows);
       else
         BehaviourReader(file, table, "law", {"relation", "deformation", "kernels"}).read_law(plugins, rows);
     }

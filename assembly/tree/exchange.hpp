@@ -7,8 +7,8 @@
 //                                                              -> done FLOPS ENTRIES WHOLE-ENTRIES NEGATIVE-PIVOTS
 //                                                                 and the equations of null pivots
 //   reduce PIECE PATH        right sides (k, size), and room for what they leave to the border (k, border)  -> done
-//   reduce PIECE PATH PATH   likewise of sparse ones, which the second memory has (SparseSides); those of the first are set
-//   later expand PIECE PATH        the same memory, with solutions of the border: right sides become solutions    -> done
+//   reduce PIECE PATH PATH   likewise of sparse ones, which the second memory has (SparseSides)             -> done
+//   expand PIECE PATH        the same memory, with solutions of the border: right sides become solutions    -> done
 //   open PATH                to see whether it can                                                           -> done
 //   forget                   all pieces                                                                     -> done
 // Any of them may be answered by: no memory, or failed WHY.

@@ -345,18 +345,17 @@ class Instant {
   /// What has flowed. Throws CALCCHAMP_7 under a measure of strain that does not say so.
   Field plastic(const Field& stress, const std::string& name) {
     const CellBehaviours& behaviours = setting_.behaviours(order_);
-    std::vector<PlasticMeasure> measure(setting_.mesh().n_cells(), PlasticMeasure::small);
+    std::vector<catalog::PlasticStrain> measure(setting_.mesh().n_cells(), catalog::PlasticStrain::unknown);
     bool stretches = false;
     for (const std::int32_t cell : stress.support) {
       const auto c = static_cast<std::size_t>(cell);
-      const auto found = plastic_measure(*behaviours.relation[c], *behaviours.deformation[c]);
-      if (!found)
+      measure[c] = plastic_measure(*behaviours.relation[c], *behaviours.deformation[c]);
+      if (measure[c] == catalog::PlasticStrain::unknown)
         fail("CALCCHAMP_7", {{"field", name},
                              {"cell", cell_name(cell)},
                              {"label", setting_.result().label},
                              {"deformation", std::string(behaviours.deformation[c]->name)}});
-      measure[c] = *found;
-      stretches = stretches || measure[c] == PlasticMeasure::stretches;
+      stretches = stretches || measure[c] == catalog::PlasticStrain::stretches;
     }
     const FlownState state{(*this)("EPSI_ELGA"), stress, (*this)("DEPL"), stretches ? &(*this)("VARI_ELGA") : nullptr};
     return plastic_strain(setting_.mesh(), setting_.points(), state, measure, name, setting_.materials());

@@ -12,6 +12,7 @@ namespace lacon {
 namespace {
 
 using Matrix3 = Eigen::Matrix3d;
+using catalog::PlasticStrain;
 
 /// C^-1 : stress.
 Matrix3 elastic_strain(const Matrix3& stress, double young, double nu) {
@@ -61,17 +62,13 @@ Matrix3 elastic_variables(const Field& variables, std::size_t row) {
 
 }  // namespace
 
-std::optional<PlasticMeasure> plastic_measure(const catalog::RelationRow& relation,
-                                              const catalog::DeformationRow& deformation) {
-  if (deformation.stress_geometry == catalog::StressGeometry::initial) return PlasticMeasure::small;
-  if (relation.name == "ELAS") return PlasticMeasure::none;
-  if (deformation.name == "GROT_GDEP") return PlasticMeasure::green;
-  if (deformation.name == "GDEF_LOG") return PlasticMeasure::logarithmic;
-  if (deformation.name == "SIMO_MIEHE") return PlasticMeasure::stretches;
-  return std::nullopt;
+PlasticStrain plastic_measure(const catalog::RelationRow& relation, const catalog::DeformationRow& deformation) {
+  // of elastic bodies under small strains the difference itself, which shows stresses that were given (ETAT_INIT)
+  const bool is_said = relation.name != "ELAS" || deformation.plastic_strain == PlasticStrain::small;
+  return is_said ? deformation.plastic_strain : PlasticStrain::none;
 }
 
-Field plastic_strain(const Mesh& mesh, ModelPoints& points, const FlownState& state, const std::vector<PlasticMeasure>& measure,
+Field plastic_strain(const Mesh& mesh, ModelPoints& points, const FlownState& state, const std::vector<PlasticStrain>& measure,
                      std::string name, ResultMaterials& materials) {
   Field field = state.strain;
   field.name = std::move(name);
@@ -91,16 +88,17 @@ Field plastic_strain(const Mesh& mesh, ModelPoints& points, const FlownState& st
                                                   points.is_axisymmetric(cell));
       Matrix3 plastic = Matrix3::Zero();
       switch (measure[cell]) {
-        case PlasticMeasure::small:
+        case PlasticStrain::small:
           plastic = whole[row] - free[row] - elastic_strain(sigma[row], young, nu);
           break;
-        case PlasticMeasure::none:
+        case PlasticStrain::unknown:
+        case PlasticStrain::none:
           break;
-        case PlasticMeasure::green:
-        case PlasticMeasure::logarithmic:
-          plastic = of_measure(measure[cell] == PlasticMeasure::logarithmic, slope, sigma[row], young, nu, free[row]);
+        case PlasticStrain::green_lagrange:
+        case PlasticStrain::logarithmic:
+          plastic = of_measure(measure[cell] == PlasticStrain::logarithmic, slope, sigma[row], young, nu, free[row]);
           break;
-        case PlasticMeasure::stretches: {
+        case PlasticStrain::stretches: {
           const std::size_t own = state.variables->first_row(static_cast<std::size_t>(variable_place[cell])) + row - first;
           plastic = of_stretches(slope, elastic_variables(*state.variables, own));
           break;

@@ -209,6 +209,9 @@ TEST(SparseMatrix, KnowsUnknownsThatTheirRowAloneDecides) {
     EXPECT_EQ(matrix.rows_alone(), std::vector<std::int64_t>{});
     matrix.add_diagonal(open, -0.5);
     EXPECT_EQ(matrix.rows_alone(), std::vector<std::int64_t>{open});
+    if (symmetry == Symmetry::general)  // others may see it
+      matrix.add_unsymmetric(std::vector<std::int64_t>{open, chain.numbering.first[9]}, std::vector<double>{0, 0, 1, 0});
+    EXPECT_EQ(matrix.rows_alone(), std::vector<std::int64_t>{open});
   }
 }
 

@@ -231,6 +231,7 @@ std::string law(const std::string& key = "", const std::string& changed = "") {
       {"help_of_deformation", "help = 'large strains'"},
       {"stress_geometry", "stress_geometry = 'displaced'"},
       {"strain", "strain = 'green_lagrange'"},
+      {"plastic_strain", "plastic_strain = 'logarithmic'"},
       {"[[law]]", "[[law]]"},
       {"relation", "relation = 'SOFT'"},
       {"deformation", "deformation = 'LARGE'"},
@@ -250,6 +251,7 @@ TEST_F(Plugins, LawsOfAPluginServeTheBodiesOfAModelisation) {
   ASSERT_NE(deformation, nullptr);
   EXPECT_EQ(deformation->stress_geometry, lacon::catalog::StressGeometry::displaced);
   EXPECT_EQ(deformation->strain, lacon::catalog::StrainMeasure::green_lagrange);
+  EXPECT_EQ(deformation->plastic_strain, lacon::catalog::PlasticStrain::logarithmic);
   for (const char* body : {"D_PLAN/TRIA3", "D_PLAN/QUAD9"})
     EXPECT_STREQ(registry.kernel(*registry.find_element(body), "SOFT/LARGE", LACON_SOLID).name, "plane_strain_green_elastic");
   EXPECT_FALSE(registry.has_kernel(*registry.find_element("D_PLAN/SEG2"), "SOFT/LARGE"));
@@ -270,6 +272,8 @@ TEST_F(Plugins, BadLawsAreRefusedWithFileAndReason) {
       {law("help"), "relation SOFT: it lacks the text 'help'"},
       {law("name", "name = 'ELAS'"), "relation ELAS: another row has this name"},
       {law("transverse_strain", "transverse_strain = 'none'"), "'none' is none of 'elastic', 'isochoric'"},
+      {law("plastic_strain", "plastic_strain = 'none'"),
+       "'none' is none of 'small', 'green_lagrange', 'logarithmic', 'stretches'"},
       {law("name_of_deformation", "name = 'PETIT'"), "deformation PETIT: another row has this name"},
       {law("stress_geometry"), "deformation LARGE: it lacks the text 'stress_geometry'"},
       {law("strain", "strain = 'huge'"), "'huge' is none of 'small', 'green_lagrange'"},
