@@ -1,9 +1,10 @@
 #include "lacon/operators/crea_maillage/crea_maillage.hpp"
 
-#include <fmt/core.h>
+#include <fmt/format.h>
 
 #include <algorithm>
 #include <numeric>
+#include <set>
 #include <utility>
 
 #include "lacon/catalog/messages.hpp"
@@ -34,6 +35,14 @@ LacCut cut_of(const Keywords& factor, std::int64_t info) {
 void print_counts(std::size_t nodes, std::size_t cells, const Mesh& after) {
   fmt::print("  {:<5} {:>8} -> {:>8}\n  {:<5} {:>8} -> {:>8}\n", part("nodes"), nodes, after.n_nodes(), part("cells"), cells,
              after.n_cells());
+}
+
+/// "SEG3, TRIA6": the types of the cells of all patches.
+std::string slave_types(const Mesh& mesh) {
+  std::set<std::string_view> names;
+  for (std::size_t patch = 0; patch < mesh.patches->size(); ++patch)
+    for (const std::int32_t cell : mesh.patches->cells[patch]) names.insert(mesh.row(static_cast<std::size_t>(cell)).name);
+  return fmt::format("{}", fmt::join(names, ", "));
 }
 
 /// Below it a cell is named as badly shaped: METHOD.md 1.6 on cells with several slave faces.
@@ -132,7 +141,10 @@ Mesh cut_and_tell(Mesh mesh, const LacCut& cut) {
     fmt::print("  zone {:<24} {:>8} {}\n", zone.group, zone.patches, part("macro_elements"));
   }
   if (cut.complete_node_groups) complete_node_groups(report, made);
-  inform("MESH1_3", {{"nodes", std::to_string(report.new_nodes)}, {"cells", std::to_string(report.new_cells)}});
+  if (report.new_cells > 0)
+    inform("MESH1_3", {{"nodes", std::to_string(report.new_nodes)}, {"cells", std::to_string(report.new_cells)}});
+  else
+    inform("DECOUPE_10", {{"count", std::to_string(made.patches->size())}, {"types", slave_types(made)}});
   print_quality(report, made, cut.details);
   print_counts(nodes, cells, made);
   return made;

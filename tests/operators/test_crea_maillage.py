@@ -46,6 +46,14 @@ class CreaMaillage(OperatorTest):
         self.assertRegex(run.stdout, r"cells +4 -> +14")
         self.assertEqual(self.read_mesh("mesh_2").patches.zone_group, ["LOW", "TOP"])
 
+    def test_says_that_nothing_had_to_be_cut(self):
+        """A SEG3 is a macro-element as it is: that no node and no cell is new is no failure."""
+        self.run_command("CREA_MAILLAGE", {"MAILLAGE": concept("mesh_1"), "LINE_QUAD": [{"TOUT": "OUI"}]}, "mesh_2")
+        run = self.run_command("CREA_MAILLAGE", {**self.cut(["LOW"]), "MAILLAGE": concept("mesh_2")}, "mesh_3")
+        self.assertEqual(self.ids(run), ["DECOUPE_10"])
+        self.assertIn("nothing had to be cut: the 1 slave cell(s) (SEG3) are macro-elements as they are", run.messages[0]["text"])
+        self.assertEqual(self.read_mesh("mesh_3").patches.cells, [[0]])
+
     def test_groups_of_nodes_are_completed_on_demand_only(self):
         self.write_mesh("mesh_1", SQUARE, CELLS, GROUPS, {"CORNERS": [0, 2], "LOW": [1, 0], "WHOLE": [0, 1, 2, 3], "TOP": [2, 3]})
         self.run_command("CREA_MAILLAGE", self.cut(["LOW"]), "mesh_2")
