@@ -71,6 +71,7 @@ def load(folder):
         "instead_in_french": read(folder / "instead.fr.toml"),
         "commands": complete_commands({path.stem.upper(): read(path) for path in sorted((folder / "commands").glob("*.toml"))}),
         "help_in_french": read(folder / "help.fr.toml"),
+        "options_in_french": read(folder / "options.fr.toml"),
     }
 
 

@@ -6,6 +6,7 @@ import sys
 
 from . import version
 from .core import outcome, streams
+from .core.command_line import CommandLine
 from .core.plugins import operator_folder
 
 #: `lacon NAME ...` that is no study: modules of tools/
@@ -29,23 +30,23 @@ class _Version(argparse.Action):
 
 def parser():
     """Of the command line of a study."""
-    made = argparse.ArgumentParser(
+    made = CommandLine(
         prog="lacon", description="Runs code_aster command files with the operators of Lacon.",
         epilog="lacon help: all commands; lacon help COMMAND: its keywords. Tools, each with --help: lacon inspect, convert, check, new, plot, report, watch. Exit status: 0 done, 2 user's error, 3 the solution failed, 4 internal error, 5 a check is NOOK.")
-    made.add_argument("files", nargs="+", metavar="FILE", help="command files, in order, or one export file")
-    made.add_argument("--unit", action="append", default=[], metavar="N=FILE", help="the file of unit N; may be repeated")
-    made.add_argument("--base", metavar="FOLDER", help="folder of the base; otherwise STUDY.base beside the first command file")
-    made.add_argument("--fresh", action="store_true", help="DEBUT empties the base first")
-    made.add_argument("--force", action="store_true", help="run every operator, also where nothing has changed since its concept was made")
-    made.add_argument("--checks", choices=("all",), help="all: a VALE_CALC missed beside a reference that is met is NOOK, not DIFF")
-    made.add_argument("--json", metavar="FILE", help="write every check with its figures, and where the time went")
-    made.add_argument("--timings", action="store_true", help="print where the time went")
-    made.add_argument("--verbose", action="store_true", help="operators say each phase with its time, and each count, as they come")
-    made.add_argument("--threads", type=int, metavar="N", help="threads of operators")
-    made.add_argument("--mpi", type=int, metavar="N", help="processes that solve the linear systems")
-    made.add_argument("--sandbox", action="store_true", help="run the study without network, and let it write its base and the files of its units alone (bubblewrap)")
-    made.add_argument("--stage", help=argparse.SUPPRESS)  # of the launcher within a sandbox
-    made.add_argument("--version", action=_Version, nargs=0, help="print the version, and what operators calculate with")
+    made.add("files", nargs="+", metavar="FILE", help="command files, in order, or one export file")
+    made.add("--unit", action="append", default=[], metavar="N=FILE", help="the file of unit N; may be repeated")
+    made.add("--base", metavar="FOLDER", help="folder of the base; otherwise STUDY.base beside the first command file")
+    made.add("--fresh", action="store_true", help="DEBUT empties the base first")
+    made.add("--force", action="store_true", help="run every operator, also where nothing has changed since its concept was made")
+    made.add("--checks", choices=("all",), help="all: a VALE_CALC missed beside a reference that is met is NOOK, not DIFF")
+    made.add("--json", metavar="FILE", help="write every check with its figures, and where the time went")
+    made.add("--timings", action="store_true", help="print where the time went")
+    made.add("--verbose", action="store_true", help="operators say each phase with its time, and each count, as they come")
+    made.add("--threads", type=int, metavar="N", help="threads of operators")
+    made.add("--mpi", type=int, metavar="N", help="processes that solve the linear systems")
+    made.add("--sandbox", action="store_true", help="run the study without network, and let it write its base and the files of its units alone (bubblewrap)")
+    made.add("--stage", help=argparse.SUPPRESS)  # of the launcher within a sandbox
+    made.add("--version", action=_Version, nargs=0, help="print the version, and what operators calculate with")
     return made
 
 
@@ -54,9 +55,9 @@ def parse(arguments):
     asked = parser()
     options = asked.parse_args(arguments)
     if options.threads is not None and options.threads < 1:
-        asked.error("--threads: give a number of at least 1")
+        asked.wrong("give_one_or_more", option="--threads")
     if options.mpi is not None and options.mpi < 1:
-        asked.error("--mpi: give a number of at least 1")
+        asked.wrong("give_one_or_more", option="--mpi")
     return asked, options
 
 

@@ -67,14 +67,23 @@ class Manual(unittest.TestCase):
         self.assertEqual(set(re.findall(r":([A-Z=]+):_files", text)), {"FILE", "FOLDER", "N=FILE"})
 
     def test_every_tool_and_every_command_has_a_man_page(self):
-        names = {path.name for path in self.folder.glob("man/*/*")}
-        self.assertEqual(names, {"lacon.1", *(f"lacon-{tool}.1" for tool in launcher.tools if tool != "help"), *(f"lacon-{name}.7" for name in self.commands)})
+        pages = {"man1/lacon.1", *(f"man1/lacon-{tool}.1" for tool in launcher.tools), *(f"man7/lacon-{name}.7" for name in self.commands)}
+        for folder in (self.folder / "man", self.folder / "man/fr"):
+            self.assertEqual({str(path.relative_to(folder)) for path in folder.glob("man?/*")}, pages)
+
+    def test_pages_speak_english_and_french(self):
+        for page, english, french in (("man1/lacon-watch.1", "Shows how Newton's method", "Montre comment avance la méthode de Newton"),
+                                      ("man7/lacon-DEFI_CONTACT.7", ".SH KEYWORDS", ".SH MOTS-CLÉS")):
+            for folder, said, unsaid in (("man", english, french), ("man/fr", french, english)):
+                text = (self.folder / folder / page).read_text(encoding="utf-8")
+                self.assertIn(said, text)
+                self.assertNotIn(unsaid, text)
 
     @unittest.skipUnless(shutil.which("groff"), "no groff")
     def test_man_pages_are_without_fault(self):
-        pages = sorted(map(str, self.folder.glob("man/*/*")))
+        pages = sorted(map(str, self.folder.glob("man/**/*.?")))
         for page in pages:
-            done = subprocess.run(["groff", "-man", "-Tutf8", "-ww", "-rLL=200n", "-z", page], capture_output=True, text=True, check=False)
+            done = subprocess.run(["groff", "-man", "-Kutf8", "-Tutf8", "-ww", "-rLL=200n", "-z", page], capture_output=True, text=True, check=False)
             self.assertEqual((done.returncode, done.stderr), (0, ""), page)
 
     def test_the_reference_names_every_keyword_and_message(self):

@@ -100,7 +100,8 @@ class Installed(unittest.TestCase):
 
     def test_there_are_completion_and_man_pages(self):
         for path in ("share/bash-completion/completions/lacon", "share/zsh/vendor-completions/_lacon", "share/man/man1/lacon.1", "share/man/man1/lacon-watch.1",
-                     "share/man/man7/lacon-DEFI_CONTACT.7", "share/lacon/python/lacon/py.typed", "share/lacon/python/lacon/__init__.pyi"):
+                     "share/man/man7/lacon-DEFI_CONTACT.7", "share/man/fr/man1/lacon-watch.1", "share/man/fr/man7/lacon-DEFI_CONTACT.7",
+                     "share/lacon/python/lacon/py.typed", "share/lacon/python/lacon/__init__.pyi"):
             self.assertTrue((made["prefix"] / path).is_file(), path)
 
 

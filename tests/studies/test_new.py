@@ -29,6 +29,18 @@ class New(StudyTest):
         self.assertIn("commands are right", done.stdout)
         return (self.folder / name).read_text(encoding="utf-8")
 
+    def test_it_is_written_in_the_language_of_the_user(self):
+        """The same commands; what is said beside them has no English sentence."""
+        self.new(plate())
+        write_med(self.folder / "mesh.med", plate())
+        done = self.run_tool("new", "mesh.med", "--out", "etude.comm", LC_ALL="fr_FR.UTF-8")
+        self.assertIn("etude.comm : une étude de départ ; y chercher CHOISIR", done.stdout)
+        english, french = (self.assert_checked(name).splitlines() for name in ("mesh.comm", "etude.comm"))
+        self.assertEqual([line.partition("#")[0] for line in english], [line.partition("#")[0] for line in french])
+        said = {line.partition("#")[2].strip() for line in english} & {line.partition("#")[2].strip() for line in french}
+        self.assertEqual({line for line in said if len(line.split()) > 3 and "--unit" not in line}, set())
+        self.assertEqual(sum("CHOOSE" in line for line in english), sum("CHOISIR" in line for line in french))
+
     def test_a_contact_of_two_blocks(self):
         done = self.new(plate())
         self.assertEqual(done.returncode, 0, done.stderr)

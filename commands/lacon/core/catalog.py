@@ -135,6 +135,17 @@ def help_of(row):
     return _help_in_french().get(row["help"], row["help"]) if in_french() else row["help"]
 
 
+@functools.cache
+def _options_in_french():
+    """A text of a command line -> the same in French."""
+    return _json()["options_in_french"] if _is_json() else toml(location() / "options.fr.toml")
+
+
+def option_words(text):
+    """A text of a command line in the user's language: a description, what an option does, or what argparse says by itself."""
+    return _options_in_french().get(text, text) if in_french() else text
+
+
 def instead(kind, path, otherwise):
     """What to use instead of a command, keyword or value (`kind`) of code_aster's that is not here.
 

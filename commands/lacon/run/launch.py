@@ -15,9 +15,9 @@ def units_of(parser, options):
     for text in options.unit:
         number, equals, path = text.partition("=")
         if not equals or not number.isdigit() or not 1 <= int(number) <= 99 or not path:
-            parser.error(f"--unit {text}: give a number from 1 to 99 and a file, as in --unit 20=mesh.med")
+            parser.wrong("give_unit", option=f"--unit {text}")
         if int(number) in units:
-            parser.error(f"--unit {number} is there twice")
+            parser.wrong("unit_twice", option=f"--unit {number}")
         units[int(number)] = path
     return units
 

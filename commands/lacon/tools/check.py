@@ -6,7 +6,6 @@ what follows from that is checked by its keywords alone, and by the groups that 
 value that only a run can give.
 """
 
-import argparse
 import os
 import pathlib
 import tempfile
@@ -14,6 +13,7 @@ import tempfile
 from ..commands.places import group_that_was_meant
 from ..core import current, messages, outcome
 from ..core.catalog import part
+from ..core.command_line import CommandLine
 from ..core.concepts import concepts_in, type_of
 from ..run import execution, launch, study
 
@@ -83,9 +83,9 @@ def _refuse_unknown_groups(command, row, keywords, where):
 
 def parser():
     """Of its command line."""
-    made = argparse.ArgumentParser(prog="lacon check", description="Checks command files without solving; the study's base is left alone.")
-    made.add_argument("files", nargs="+", metavar="FILE", help="command files, in order, or one export file")
-    made.add_argument("--unit", action="append", default=[], metavar="N=FILE", help="the file of unit N; may be repeated")
+    made = CommandLine(prog="lacon check", description="Checks command files without solving; the study's base is left alone.")
+    made.add("files", nargs="+", metavar="FILE", help="command files, in order, or one export file")
+    made.add("--unit", action="append", default=[], metavar="N=FILE", help="the file of unit N; may be repeated")
     return made
 
 
@@ -112,13 +112,13 @@ def run(arguments):
         status, _ = launch.run_study(this, work)
     if status != outcome.done:
         return status
-    words = [f"{shown}: {this.check.commands} commands are right"]
+    words = [part("commands_are_right", files=shown, count=this.check.commands)]
     if this.check.prepared:
-        words.append("up to the first instant: " + _listed(this.check.prepared, export))
+        words.append(part("right_up_to_first_instant", commands=_listed(this.check.prepared, export)))
     if this.check.unsolved:
-        words.append("by their keywords alone: " + _listed(this.check.unsolved, export))
+        words.append(part("right_by_keywords_alone", commands=_listed(this.check.unsolved, export)))
     for needed, place in stopped:
-        words.append(f"checked up to {place}: it needs what {needed.label} holds, which only a run can give ({needed.label} is made at {needed.made})")
+        words.append(part("checked_up_to", place=place, label=needed.label, made=needed.made))
     print("\n  ".join(words))
     return status
 
@@ -126,4 +126,4 @@ def run(arguments):
 def _listed(commands, export):
     """"STAT_NON_LINE (line 11), ...": commands with their lines, and with the file where there are several."""
     one_file = len({where.rpartition(":")[0] for _, where in commands}) == 1 == len(export.commands)
-    return ", ".join(dict.fromkeys(f"{command} ({'line ' + where.rpartition(':')[2] if one_file else where})" for command, where in commands))
+    return ", ".join(dict.fromkeys(f"{command} ({part('line_number', line=where.rpartition(':')[2]) if one_file else where})" for command, where in commands))

@@ -1,11 +1,11 @@
 """`lacon convert mesh.msh mesh.med`: a mesh from one format to another, with the operators of LIRE_MAILLAGE and IMPR_RESU."""
 
-import argparse
 import keyword
 import os
 import pathlib
 import tempfile
 
+from ..core.command_line import CommandLine
 from ..run import execution, launch, study
 
 #: what a file's suffix says: the FORMAT of LIRE_MAILLAGE, that of IMPR_RESU
@@ -21,9 +21,10 @@ FIN()
 
 def parser():
     """Of its command line."""
-    made = argparse.ArgumentParser(prog="lacon convert", description="Writes a mesh in another format.")
-    made.add_argument("source", metavar="MESH", help=f"the mesh: {', '.join(read_formats)}")
-    made.add_argument("target", metavar="FILE", help=f"the file to write: {', '.join(write_formats)}; it is replaced where it is there")
+    made = CommandLine(prog="lacon convert", description="Writes a mesh in another format.")
+    made.add("source", metavar="MESH", help="the mesh: {formats}", filled={"formats": ", ".join(read_formats)})
+    made.add("target", metavar="FILE", help="the file to write: {formats}; it is replaced where it is there",
+             filled={"formats": ", ".join(write_formats)})
     return made
 
 
@@ -35,10 +36,10 @@ def run(arguments):
     for path, known in ((options.source, read_formats), (options.target, write_formats)):
         suffix = pathlib.Path(path).suffix.lower()
         if suffix not in known:
-            asked.error(f"{path}: a file named {', '.join(known)} is needed")
+            asked.wrong("file_named", file=path, names=", ".join(known))
         formats.append(known[suffix])
     if os.path.exists(options.target) and os.path.exists(options.source) and os.path.samefile(options.source, options.target):
-        asked.error(f"{options.target}: it is the mesh itself")
+        asked.wrong("file_is_mesh", file=options.target)
     stem = pathlib.Path(options.source).stem
     provided = execution.provided_names()
     name = stem if stem.isidentifier() and not keyword.iskeyword(stem) and stem not in provided else "MESH"

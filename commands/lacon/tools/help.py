@@ -7,6 +7,7 @@ import textwrap
 from ..core import catalog, plugins
 from ..core.catalog import part
 from ..core.checker import condition
+from ..core.command_line import CommandLine
 from ..core.concepts import types
 from ..core.nearest import nearest
 from . import examples, keyword_table
@@ -18,9 +19,19 @@ _rules = {"exactly_one": "rule_exactly_one", "at_least_one": "rule_at_least_one"
 _limits = {"above": "limit_above", "at_least": "limit_at_least", "below": "limit_below", "at_most": "limit_at_most"}
 
 
-def run(names):
-    """Print the list of commands, the keywords of each named one, or with --table the page of all of them. @return exit status"""
-    if names == ["--table"]:
+def parser():
+    """Of its command line."""
+    made = CommandLine(prog="lacon help", description="Lists all commands, or the keywords of some.")
+    made.add("names", metavar="COMMAND", nargs="*", help="a command; without any all of them are listed")
+    made.add("--table", action="store_true", help="print the table of all keywords beside code_aster's, in Markdown")
+    return made
+
+
+def run(arguments):
+    """Print the list of commands, the keywords of each named one, or the page of all of them. @return exit status"""
+    options = parser().parse_args(arguments)
+    names = options.names
+    if options.table:
         os.environ["LC_ALL"] = "C"  # a page of the documentation
         print(keyword_table.text(), end="")
         return 0

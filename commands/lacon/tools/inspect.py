@@ -3,7 +3,6 @@
 Reads the base, and never changes it.
 """
 
-import argparse
 import json
 import os
 import pathlib
@@ -15,6 +14,7 @@ import tempfile
 from ..base import contents
 from ..base.base import ReadBase
 from ..core import catalog, checker, plugins
+from ..core.command_line import CommandLine
 from ..core.concepts import to_json
 from ..core.messages import AsterError, fail
 from ..objects.kinds import kinds
@@ -24,13 +24,13 @@ _layer = re.compile(r"pairing_(pairs|skins|points|rejected)(_\d+\.vtu|\.pvd)")
 
 def parser():
     """Of its command line."""
-    made = argparse.ArgumentParser(
+    made = CommandLine(
         prog="lacon inspect", description="Writes the pairing of a contact: polygons of the contact cells, skins with the covered "
         "fraction of their patches, integration points with their gap, rejected couples with the reason.")
-    made.add_argument("base", metavar="BASE", help="folder of the base, STUDY.base")
-    made.add_argument("--result", metavar="LABEL", help="a result with contact, or a contact (then before any instant); otherwise the only one")
-    made.add_argument("--instant", metavar="T", help="an instant of the result, 'last' (default) or 'all'")
-    made.add_argument("--out", metavar="FOLDER", help="where the files go; otherwise BASE without its suffix and with _pairing")
+    made.add("base", metavar="BASE", help="folder of the base, STUDY.base")
+    made.add("--result", metavar="LABEL", help="a result with contact, or a contact (then before any instant); otherwise the only one")
+    made.add("--instant", metavar="T", help="an instant of the result, 'last' (default) or 'all'")
+    made.add("--out", metavar="FOLDER", help="where the files go; otherwise BASE without its suffix and with _pairing")
     return made
 
 
@@ -42,7 +42,7 @@ def run(arguments):
         try:
             options.instant = float(options.instant)
         except ValueError:
-            asked.error(f"--instant {options.instant}: give a number, last or all")
+            asked.wrong("give_instant", option=f"--instant {options.instant}")
     shelf = ReadBase(options.base, "lacon inspect", kinds)
     chosen = choose(shelf, options.result)
     folder = pathlib.Path(options.out or shelf.folder.with_name(shelf.folder.stem + "_pairing").name)

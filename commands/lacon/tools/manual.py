@@ -5,10 +5,14 @@ import re
 import textwrap
 
 from ..core import catalog
+from ..core.catalog import part
 from . import examples
 from .completion import options_of, positionals_of
 from .help import kind, rules
 
+#: section of a man page -> the part that says it
+_sections = {"name": "section_name", "synopsis": "section_synopsis", "description": "section_description", "arguments": "section_arguments",
+             "options": "section_options", "notes": "section_notes", "see also": "section_see_also", "keywords": "section_keywords"}
 _severities = {"F": "an error of the user's", "S": "the solution failed", "A": "an alarm", "I": "an information"}
 
 
@@ -18,39 +22,45 @@ def _roff(text):
     return "\\&" + text if text.startswith((".", "'")) else text
 
 
+def _section(name):
+    """The line that begins a section, in the user's language."""
+    return ".SH " + part(_sections[name])
+
+
 def tool_page(name, parser, version):
     """The page of `lacon NAME` in section 1, of `lacon` with an empty name."""
     title = f"lacon-{name}" if name else "lacon"
     command = f"lacon {name}".strip()
     arguments = " ".join(f"\\fI{_roff(metavar)}\\fR" + (" ..." if several else "") for metavar, several, _ in positionals_of(parser))
-    lines = [f'.TH {title.upper()} 1 "" "Lacon {version}" "Lacon"', ".SH NAME", f"{_roff(title)} \\- {_roff(parser.description.partition('.')[0])}",
-             ".SH SYNOPSIS", f"\\fB{command}\\fR [\\fIoptions\\fR] {arguments}", ".SH DESCRIPTION", _roff(parser.description), ".SH ARGUMENTS"]
+    lines = [f'.TH {title.upper()} 1 "" "Lacon {version}" "Lacon"', _section("name"), f"{_roff(title)} \\- {_roff(parser.description.partition('.')[0])}",
+             _section("synopsis"), f"\\fB{command}\\fR [\\fIoptions\\fR] {arguments}", _section("description"), _roff(parser.description), _section("arguments")]
     for metavar, _, words in positionals_of(parser):
         lines += [".TP", f"\\fI{_roff(metavar)}\\fR", _roff(words)]
-    lines += [".SH OPTIONS"]
+    lines += [_section("options")]
     for names, value, choices, words in options_of(parser):
         shown = ", ".join(f"\\fB{_roff(option)}\\fR" for option in names) + (f" \\fI{_roff(value)}\\fR" if value else "")
         lines += [".TP", shown, _roff(words + (f" ({', '.join(map(str, choices))})" if choices else ""))]
     if parser.epilog:
-        lines += [".SH NOTES", *([".nf", *map(_roff, parser.epilog.splitlines()), ".fi"] if "\n" in parser.epilog else [_roff(parser.epilog)])]
-    return "\n".join([*lines, ".SH SEE ALSO", "\\fBlacon\\fR(1), \\fBlacon help\\fR", ""])
+        lines += [_section("notes"), *([".nf", *map(_roff, parser.epilog.splitlines()), ".fi"] if "\n" in parser.epilog else [_roff(parser.epilog)])]
+    return "\n".join([*lines, _section("see also"), "\\fBlacon\\fR(1), \\fBlacon help\\fR", ""])
 
 
 def command_page(name, version):
     """The page of a command in section 7."""
     row = catalog.command(name)
-    lines = [f'.TH LACON\\-{name} 7 "" "Lacon {version}" "Commands of Lacon"', ".SH NAME", f"lacon\\-{name} \\- {_roff(row['help'])}", ".SH SYNOPSIS", ".nf",
-             *map(_roff, textwrap.wrap(examples.text(name), 76, subsequent_indent="    ", break_long_words=False)), ".fi", ".SH KEYWORDS"]
+    chapter = part("manual_of_commands")
+    lines = [f'.TH LACON\\-{name} 7 "" "Lacon {version}" "{chapter}"', _section("name"), f"lacon\\-{name} \\- {_roff(catalog.help_of(row))}", _section("synopsis"), ".nf",
+             *map(_roff, textwrap.wrap(examples.text(name), 76, subsequent_indent="    ", break_long_words=False)), ".fi", _section("keywords")]
 
     def keywords(within):
         for keyword, item in within.get("keyword", {}).items():
-            yield from (".TP", f"\\fB{keyword}\\fR  {_roff(kind(item))}", _roff(item["help"]))
+            yield from (".TP", f"\\fB{keyword}\\fR  {_roff(kind(item))}", _roff(catalog.help_of(item)))
             if item["type"] == "factor":
                 yield from (".RS", *keywords(item), ".RE")
         for rule in rules(within):
             yield from (".PP", _roff(rule))
 
-    return "\n".join([*lines, *keywords(row), ".SH SEE ALSO", "\\fBlacon\\fR(1)", ""])
+    return "\n".join([*lines, *keywords(row), _section("see also"), "\\fBlacon\\fR(1)", ""])
 
 
 # ---------------------------------------------------------------------------------------------------- pages of the documentation

@@ -14,7 +14,10 @@ import tempfile
 
 from ..base import contents
 from ..core import outcome
+from ..core.catalog import option_words, part
+from ..core.command_line import CommandLine
 from ..core.late import numpy
+from ..core.messages import fail
 from ..run import execution, launch
 from ..run.study import Study
 from . import templates
@@ -46,8 +49,10 @@ class Skin:
 
     def words(self):
         at = self.plane()
-        on = {0: ", on no body", 1: ""}.get(len(self.parts), ", on several bodies")
-        return (f"plane {at[0]} = {at[1]:.6g}" if at else "curved or inclined") + on
+        said = part("starter_plane_skin", axis=at[0], value=f"{at[1]:.6g}") if at else part("starter_curved_skin")
+        if len(self.parts) == 1:
+            return said
+        return part("starter_on_several_bodies", skin=said) if self.parts else part("starter_on_no_body", skin=said)
 
     def mirror(self):
         """Whether it looks like a plane of symmetry: at the zero of an axis; across the last one, where bodies stand, if it cuts several."""
@@ -173,11 +178,11 @@ def study(groups, mesh_file, read_format):
     fixed = ", ".join(f"{d}=0.0" for d in degrees)
     modelisation = "3D" if groups.dimension == 3 else "D_PLAN"
     lines = [
-        f"# A contact study of {mesh_file}, written by `lacon new`: a beginning. What is marked CHOOSE is a guess.",
-        "#", f"#   lacon check THIS_FILE --unit 20={mesh_file}",
-        f"#   lacon THIS_FILE --unit 20={mesh_file} --unit 80=result.med", "#",
-        f"# Bodies: {', '.join(groups.bodies) or 'the mesh has no group of body cells'}",
-        "# Skins:", *[f"#   {skin.name}: {skin.words()}" for skin in groups.skins], "",
+        "# " + part("starter_head", mesh=mesh_file),
+        "#", f"#   lacon check {part('starter_this_file')} --unit 20={mesh_file}",
+        f"#   lacon {part('starter_this_file')} --unit 20={mesh_file} --unit 80=result.med", "#",
+        "# " + part("starter_bodies", names=", ".join(groups.bodies) or part("starter_no_body_group")),
+        "# " + part("starter_skins"), *[f"#   {skin.name}: {skin.words()}" for skin in groups.skins], "",
         "DEBUT()", "", f"MESH = LIRE_MAILLAGE(UNITE=20, FORMAT={read_format!r})"]
     skins = tuple(skin.name for skin in groups.skins if skin.part >= 0)
     if skins:
@@ -185,55 +190,54 @@ def study(groups, mesh_file, read_format):
     cut = "MESH"
     if pairs:
         cut = "CUT"
-        lines += ["", "# the slave skins are cut into macro-elements: all of them in one command",
+        lines += ["", "# " + part("starter_cut"),
                   f"CUT = CREA_MAILLAGE(MAILLAGE=MESH, DECOUPE_LAC=_F(GROUP_MA_ESCL={tuple(slave.name for slave, _ in pairs)!r}))"]
     else:
-        lines += ["", "# no two skins of different bodies lie close to each other: CHOOSE a slave and a master, and add",
+        lines += ["", "# " + part("starter_no_pair"),
                   "#   CUT = CREA_MAILLAGE(MAILLAGE=MESH, DECOUPE_LAC=_F(GROUP_MA_ESCL='SLAVE'))",
                   "#   CONTACT = DEFI_CONTACT(MODELE=MODEL, FORMULATION='CONTINUE', ALGO_RESO_GEOM='NEWTON', ALGO_RESO_CONT='NEWTON',",
                   "#                          ZONE=_F(APPARIEMENT='MORTAR', ALGO_CONT='LAC', GROUP_MA_ESCL='SLAVE', GROUP_MA_MAIT='MASTER'))"]
-    plane = "" if groups.dimension == 3 else "  # CHOOSE: D_PLAN, C_PLAN or AXIS"
+    plane = "" if groups.dimension == 3 else "  # " + part("starter_modelisation")
     lines += ["", f"MODEL = AFFE_MODELE(MAILLAGE={cut}, AFFE=_F(TOUT='OUI', PHENOMENE='MECANIQUE', MODELISATION={modelisation!r})){plane}",
-              "", f"# CHOOSE units that agree: lengths are those of the mesh, {groups.size:.3g} at its largest. Where they are mm, E and pressures are in MPa,",
-              "# forces in N; where they are metres, E and pressures are in Pa (steel: E=210e9)",
-              "STEEL = DEFI_MATERIAU(ELAS=_F(E=210000.0, NU=0.3))  # CHOOSE; one AFFE for each material, by GROUP_MA",
+              "", "# " + part("starter_units", size=f"{groups.size:.3g}"), "# " + part("starter_units_more"),
+              "STEEL = DEFI_MATERIAU(ELAS=_F(E=210000.0, NU=0.3))  # " + part("starter_material"),
               f"MATTER = AFFE_MATERIAU(MAILLAGE={cut}, AFFE=_F(TOUT='OUI', MATER=STEEL))", ""]
     imposed, why = [], []
     if held:
         imposed.append(f"_F(GROUP_MA={held.name!r}, {fixed})")
-        why.append(f"{held.name} is the lowest plane skin without contact")
+        why.append(part("starter_lowest_skin", skin=held.name))
     for skin in mirrors:
         imposed.append(f"_F(GROUP_MA={skin.name!r}, D{skin.plane()[0]}=0.0)")
-        why.append(f"{skin.name}, at {skin.plane()[0]} = 0, looks like a symmetry")
+        why.append(part("starter_symmetry", skin=skin.name, axis=skin.plane()[0]))
     if pressed:  # what is pressed alone may glide away
         mirrored = {skin.plane()[0] for skin in mirrors if skin.part in (pressed.part, -1)}
         across = [f"D{a}=0.0" for a in "XYZ"[:groups.dimension - 1] if a not in mirrored]
         if across:
             imposed.append(f"_F(GROUP_MA={pressed.name!r}, {', '.join(across)})")
-            why.append(f"{pressed.name}, which is pressed, keeps its place across")
+            why.append(part("starter_pressed", skin=pressed.name))
     if not imposed:
         lowest = min(free, key=lambda skin: skin.points[:, groups.dimension - 1].mean(), default=None)
         whole = next(iter(groups.bodies), None)
         where = f"GROUP_MA={lowest.name!r}" if lowest else f"GROUP_MA={whole!r}" if whole else "TOUT='OUI'"
         imposed.append(f"_F({where}, {fixed})")
-        why.append(f"no skin is plainly a support; {lowest.name} is the lowest one without contact" if lowest else "no skin is a support, so this holds a whole body")
-    lines += [f"# CHOOSE what is held: {'; '.join(why)}",
+        why.append(part("starter_no_support", skin=lowest.name) if lowest else part("starter_no_skin"))
+    lines += ["# " + part("starter_held", why="; ".join(why)),
               f"HELD = AFFE_CHAR_CINE(MODELE=MODEL, MECA_IMPO={imposed[0] if len(imposed) == 1 else '(' + ', '.join(imposed) + ')'})"]
     excit = ["_F(CHARGE=HELD)"]
     if pressed:
-        lines += [f"# CHOOSE the loads; {pressed.name} is the highest plane skin without contact",
+        lines += ["# " + part("starter_loads", skin=pressed.name),
                   f"LOAD = AFFE_CHAR_MECA(MODELE=MODEL, PRES_REP=_F(GROUP_MA={pressed.name!r}, PRES=1.0))",
                   "RAMP = DEFI_FONCTION(NOM_PARA='INST', VALE=(0.0, 0.0, 1.0, 1.0))"]
         excit.append("_F(CHARGE=LOAD, FONC_MULT=RAMP)")
     else:
-        lines += ["# CHOOSE the loads: LOAD = AFFE_CHAR_MECA(MODELE=MODEL, PRES_REP=_F(GROUP_MA='...', PRES=1.0)), and name it in EXCIT"]
+        lines += ["# " + part("starter_loads_to_add", load="LOAD = AFFE_CHAR_MECA(MODELE=MODEL, PRES_REP=_F(GROUP_MA='...', PRES=1.0))")]
     if len(groups.bodies) > 1 or pairs:
-        lines += ["# each body must be held against rigid motion, by supports or by friction-free contact that closes"]
+        lines += ["# " + part("starter_rigid_motion")]
     lines += [""]
     if pairs:
         zone = [f"    _F(APPARIEMENT='MORTAR', ALGO_CONT='LAC', GROUP_MA_ESCL={slave.name!r}, GROUP_MA_MAIT={master.name!r}),"
                 for slave, master in pairs]
-        lines += ["# CHOOSE: the slave is the skin with the finer mesh; swap the names here and in DECOUPE_LAC for the other way round",
+        lines += ["# " + part("starter_swap"),
                   "CONTACT = DEFI_CONTACT(MODELE=MODEL, FORMULATION='CONTINUE', ALGO_RESO_GEOM='NEWTON', ALGO_RESO_CONT='NEWTON', ZONE=(",
                   *zone, "))", ""]
     lines += ["STEPS = DEFI_LIST_REEL(DEBUT=0.0, INTERVALLE=_F(JUSQU_A=1.0, NOMBRE=1))",
@@ -250,13 +254,13 @@ def study(groups, mesh_file, read_format):
 
 def parser():
     """Of its command line."""
-    made = argparse.ArgumentParser(prog="lacon new", description="Writes a starter study from a mesh's groups, or a template that runs as it is.",
+    made = CommandLine(prog="lacon new", description="Writes a starter study from a mesh's groups, or a template that runs as it is.",
                                      formatter_class=argparse.RawDescriptionHelpFormatter,
-                                     epilog="templates:\n" + "\n".join(f"  {name:15} {words}" for name, words in templates.known().items()))
+                                     epilog="\n".join([option_words("templates:"), *(f"  {name:15} {option_words(words)}" for name, words in templates.known().items())]))
     which = made.add_mutually_exclusive_group(required=True)
-    which.add_argument("mesh", metavar="MESH", nargs="?", help=f"the mesh: {', '.join(read_formats)}")
-    which.add_argument("--template", metavar="NAME", help="one of those below: a folder with the command file and the script of its mesh")
-    made.add_argument("--out", metavar="FILE", help="the command file or the folder to write, which must not be there; otherwise MESH.comm or NAME")
+    made.add("mesh", group=which, metavar="MESH", nargs="?", help="the mesh: {formats}", filled={"formats": ", ".join(read_formats)})
+    made.add("--template", group=which, metavar="NAME", help="one of those below: a folder with the command file and the script of its mesh")
+    made.add("--out", metavar="FILE", help="the command file or the folder to write, which must not be there; otherwise MESH.comm or NAME")
     return made
 
 
@@ -268,10 +272,10 @@ def run(arguments):
         return templates.write(options.template, options.out)
     source = pathlib.Path(options.mesh)
     if source.suffix.lower() not in read_formats:
-        asked.error(f"{source}: a file named {', '.join(read_formats)} is needed")
+        asked.wrong("file_named", file=source, names=", ".join(read_formats))
     target = pathlib.Path(options.out or source.with_suffix(".comm").name)
     if target.exists():
-        asked.error(f"{target} is there already: give another name with --out, or remove it")
+        asked.wrong("file_is_there", file=target)
     form = read_formats[source.suffix.lower()]
     with tempfile.TemporaryDirectory(prefix="lacon_new_") as folder:
         this = Study(pathlib.Path(folder) / "new.base", {20: str(source)}, provided=execution.provided_names())
@@ -286,6 +290,6 @@ def run(arguments):
         try:
             target.write_text(made[0], encoding="utf-8")
         except OSError as error:
-            asked.error(f"{target}: {error.strerror}")
-        print(f"{target}: a starter study; look for CHOOSE in it, then: lacon check {target} --unit 20={source}")
+            fail("STUDY_3", "lacon new --out", folder=target, reason=error.strerror)
+        print(part("starter_made", file=target, mesh=source))
     return status

@@ -3,11 +3,11 @@
 Reads the base, and never changes it.
 """
 
-import argparse
 import os
 import pathlib
 
 from ..core import outcome
+from ..core.command_line import CommandLine
 from ..core.messages import AsterError, fail, show
 from ..reader.base import open_base
 from ..reader.result import Result
@@ -17,19 +17,19 @@ formats = ("png", "svg")
 
 def parser():
     """Of its command line."""
-    made = argparse.ArgumentParser(
+    made = CommandLine(
         prog="lacon plot", description="Draws the deformed mesh, the contact pressure and the convergence of a result, as NAME_mesh, NAME_pressure and "
         "NAME_convergence, each as PNG and SVG; also of a run in progress.")
-    made.add_argument("base", metavar="BASE", help="folder of the base, STUDY.base")
-    made.add_argument("--result", metavar="LABEL", help="the result; otherwise the only one of displacements")
-    made.add_argument("--instant", type=float, metavar="T", help="an instant of the result; otherwise the last one")
-    made.add_argument("--iteration", type=int, metavar="N", help="an iterate of the step at which the computation failed, by its number")
-    made.add_argument("--field", metavar="NAME", help="colours of the mesh: a field at nodes, SIEF_NOEU; otherwise the displacements, of an iterate the forces not in balance")
-    made.add_argument("--component", metavar="NAME", help="a component of the field; otherwise its magnitude")
-    made.add_argument("--scale", type=float, default=1.0, metavar="X", help="of the displacements; 1 by default")
-    made.add_argument("--format", action="append", choices=formats, help="one of them alone; may be repeated")
-    made.add_argument("--dpi", type=float, default=150.0, help="of PNG files; 150 by default")
-    made.add_argument("--out", metavar="NAME", help="what the files' names begin with, a folder among it; otherwise the name of the study")
+    made.add("base", metavar="BASE", help="folder of the base, STUDY.base")
+    made.add("--result", metavar="LABEL", help="the result; otherwise the only one of displacements")
+    made.add("--instant", type=float, metavar="T", help="an instant of the result; otherwise the last one")
+    made.add("--iteration", type=int, metavar="N", help="an iterate of the step at which the computation failed, by its number")
+    made.add("--field", metavar="NAME", help="colours of the mesh: a field at nodes, SIEF_NOEU; otherwise the displacements, of an iterate the forces not in balance")
+    made.add("--component", metavar="NAME", help="a component of the field; otherwise its magnitude")
+    made.add("--scale", type=float, default=1.0, metavar="X", help="of the displacements; 1 by default")
+    made.add("--format", action="append", choices=formats, help="one of them alone; may be repeated")
+    made.add("--dpi", type=float, default=150.0, help="of PNG files; 150 by default")
+    made.add("--out", metavar="NAME", help="what the files' names begin with, a folder among it; otherwise the name of the study")
     return made
 
 

@@ -1,11 +1,12 @@
 """`lacon report BASE`: one HTML file of a result, to look at in a browser, offline; also of a run in progress."""
 
-import argparse
 import json
 import pathlib
 import webbrowser
 
 from ..core import outcome, plugins
+from ..core.catalog import part
+from ..core.command_line import CommandLine
 from ..core.files import write_whole
 from ..core.messages import fail
 from ..reader.base import open_base
@@ -16,13 +17,13 @@ _marker = "<!--STUDY-->"
 
 def parser():
     """What it is called with."""
-    made = argparse.ArgumentParser(
+    made = CommandLine(
         prog="lacon report", description="Writes one HTML file that shows a result: the deformed bodies in 3D with every field, the contact patch by patch, "
         "curves of Newton's method and of the contact, what the result may be trusted for, times and the command file.")
-    made.add_argument("base", metavar="BASE", help="folder of the base, STUDY.base")
-    made.add_argument("--result", metavar="LABEL", help="the result; otherwise the only one of displacements")
-    made.add_argument("--out", metavar="FILE", help="the file to write, which is replaced; otherwise BASE without its suffix and with .html")
-    made.add_argument("--open", action="store_true", help="show it in the browser")
+    made.add("base", metavar="BASE", help="folder of the base, STUDY.base")
+    made.add("--result", metavar="LABEL", help="the result; otherwise the only one of displacements")
+    made.add("--out", metavar="FILE", help="the file to write, which is replaced; otherwise BASE without its suffix and with .html")
+    made.add("--open", action="store_true", help="show it in the browser")
     return made
 
 
@@ -37,7 +38,7 @@ def run(arguments):
         write_whole(target, filled(page, told, packing))
     except OSError as error:
         fail("STUDY_3", "lacon report --out", folder=target, reason=error.strerror)
-    print(f"{target}: {target.stat().st_size / 1e6:.1f} MB, {len(told['drawn'])} instants, {len(told['fields'])} fields")
+    print(part("report_made", file=target, size=f"{target.stat().st_size / 1e6:.1f}", instants=len(told["drawn"]), fields=len(told["fields"])))
     if options.open:
         webbrowser.open(target.resolve().as_uri())
     return outcome.done

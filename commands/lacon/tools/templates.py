@@ -4,6 +4,7 @@ import pathlib
 import shutil
 
 from ..core import outcome
+from ..core.catalog import part
 from ..core.messages import fail
 from ..core.nearest import nearest
 
@@ -34,5 +35,5 @@ def write(name, folder=None):
             shutil.copyfile(path, target / path.name)
     except OSError as error:
         fail("STUDY_3", "lacon new --template", folder=target, reason=error.strerror)
-    print(f"{target}: a study that runs as it is, and the script of its mesh; run it: cd {target} && lacon {name}.comm")
+    print(part("template_made", folder=target, name=name))
     return outcome.done

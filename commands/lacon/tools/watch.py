@@ -3,7 +3,6 @@
 Reads the base, and never changes it: the registry says which computation is under way, the journal of its result what its iterations are.
 """
 
-import argparse
 import math
 import shutil
 import sys
@@ -15,6 +14,7 @@ from ..base.journal import read_journal
 from ..core import outcome
 from ..core.concepts import type_of
 from ..core.catalog import part
+from ..core.command_line import CommandLine
 from ..core.messages import fail
 from .chart import chart, columns_of
 
@@ -24,12 +24,12 @@ _widest = 8  #: dots from one iteration to the next, at most
 
 def parser():
     """Of its command line."""
-    made = argparse.ArgumentParser(
+    made = CommandLine(
         prog="lacon watch", description="Shows how Newton's method of a computation in progress goes on: residuals and changes of contact, iteration by "
         "iteration. Ends when the run ends. Into a pipe or a file it writes what it shows last.")
-    made.add_argument("base", metavar="BASE", help="folder of the base, STUDY.base")
-    made.add_argument("--once", action="store_true", help="show what is there now, and end")
-    made.add_argument("--every", type=float, default=1.0, metavar="SECONDS", help="how often it looks; 1 by default")
+    made.add("base", metavar="BASE", help="folder of the base, STUDY.base")
+    made.add("--once", action="store_true", help="show what is there now, and end")
+    made.add("--every", type=float, default=1.0, metavar="SECONDS", help="how often it looks; 1 by default")
     return made
 
 
@@ -38,7 +38,7 @@ def run(arguments):
     asked = parser()
     options = asked.parse_args(arguments)
     if not options.every > 0.0:
-        asked.error(f"--every {options.every:g}: give a number of seconds above 0")
+        asked.wrong("give_seconds", option=f"--every {options.every:g}")
     draws = sys.stdout.isatty() and not options.once
     try:
         last = follow(options, draws)
