@@ -10,6 +10,7 @@
 #include "lacon/catalog/wording.hpp"
 #include "lacon/operators/evolution/behaviours.hpp"
 #include "lacon/operators/evolution/prestrain.hpp"
+#include "lacon/operators/evolution/revolution_axis.hpp"
 #include "lacon/structures/displacement.hpp"
 
 namespace lacon {
@@ -258,6 +259,7 @@ StaticProblem read_problem(const Order& order, const Base& base) {
     for (const std::int64_t dof : problem.loads.back().dofs) problem.imposed[dof] = 1;
   }
   check_laws(problem.initial_strains, problem.solids);
+  warn_of_axis(problem);
   if (const auto contact = keywords.optional_concept("CONTACT")) {
     problem.contact = base.contact(*contact);
     if (problem.contact->model != model_id)
