@@ -22,6 +22,31 @@ bool is_straight(Vec3 a, Vec3 b, Vec3 m, double bulge) {
   return norm(cross(d, to_middle)) <= bulge * length2 && along > 0 && along < length2;
 }
 
+// Of the edges that end in a mirrored one, by which they are prolonged: images are taken that far outside of a cell. Where
+// slaves end at a plane of symmetry their normals lean over it by what facets leave, in gaps.
+constexpr double hem = 0.0625;
+
+bool is_mirrored(const FacetKind& f, int edge) { return (f.mirrored >> (edge % f.n_vertices) & 1) != 0; }
+
+/// Reference coordinates of the vertices of an outline.
+void places_of_outline(const FacetKind& f, std::vector<Vec2>& places) {
+  places.clear();
+  const std::span<const double> nodes = catalog::cell(f.type).nodes;
+  const int n = f.n_vertices;
+  const auto vertex = [&](int i) { return Vec2{nodes[2 * (i % n)], nodes[2 * (i % n) + 1]}; };
+  const auto prolonged = [&](int i) {  // along the other edge of each mirrored one that ends there
+    Vec2 at = vertex(i);
+    if (is_mirrored(f, i)) at = at + hem * (vertex(i) - vertex(i + n - 1));
+    if (is_mirrored(f, i + n - 1)) at = at + hem * (vertex(i) - vertex(i + 1));
+    return at;
+  };
+  for (int i = 0; i < n; ++i) {
+    const Vec2 a = prolonged(i), b = prolonged(i + 1);
+    for (int k = 0; k < (f.whole_edge[static_cast<std::size_t>(i)] ? 1 : edge_pieces); ++k)
+      places.push_back(a + (static_cast<double>(k) / edge_pieces) * (b - a));
+  }
+}
+
 }  // namespace
 
 Nodes nodes_of(const Surface& surface, std::size_t cell, Vec3 origin) {
@@ -43,6 +68,7 @@ Facet facet(const Surface& surface, std::size_t cell, double straight, bool in_p
   f.type = surface.types[cell];
   const catalog::CellRow& row = catalog::cell(f.type);
   f.family = row.family;
+  if (!surface.mirrored.empty()) f.mirrored = surface.mirrored[cell];
   f.order = row.order;
   f.n_vertices = row.n_vertices;
   f.origin = point(surface, surface.nodes[cell][0]);
@@ -68,29 +94,33 @@ Facet facet(const Surface& surface, std::size_t cell, double straight, bool in_p
 
 void outline(const FacetKind& f, const Nodes& nodes, std::vector<Vec3>& polygon) {
   polygon.clear();
-  for (int i = 0; i < f.n_vertices; ++i) {
-    const Vec3 a = nodes[i], b = nodes[(i + 1) % f.n_vertices];
-    polygon.push_back(a);
-    if (f.whole_edge[static_cast<std::size_t>(i)]) continue;
-    const Vec3 m = nodes[f.n_vertices + i];
+  const int n = f.n_vertices;
+  const auto along = [&](int i, double t) {  // an edge, both of whose facets find the same bits
+    const Vec3 a = nodes[i], b = nodes[(i + 1) % n];
     const bool forward = before(a, b);
     const Vec3 first = forward ? a : b, last = forward ? b : a;
-    for (int k = 1; k < edge_pieces; ++k) {
-      const double t = static_cast<double>(forward ? k : edge_pieces - k) / edge_pieces;
-      polygon.push_back(((1 - t) * (1 - 2 * t)) * first + (t * (2 * t - 1)) * last + (4 * t * (1 - t)) * m);
+    if (!forward) t = 1 - t;
+    if (f.whole_edge[static_cast<std::size_t>(i)]) return (1 - t) * first + t * last;
+    return ((1 - t) * (1 - 2 * t)) * first + (t * (2 * t - 1)) * last + (4 * t * (1 - t)) * nodes[n + i];
+  };
+  const auto mirrored = [&](int i) { return is_mirrored(f, i); };
+  std::vector<Vec2> places;
+  Map3 x;
+  if (f.mirrored != 0) places_of_outline(f, places), x = f.map(nodes);
+  for (int i = 0; i < n; ++i) {
+    const double first = mirrored(i + n - 1) ? -hem : 0, last = mirrored(i + 1) ? 1 + hem : 1;
+    for (int k = 0; k < (f.whole_edge[static_cast<std::size_t>(i)] ? 1 : edge_pieces); ++k) {
+      const double t = first + static_cast<double>(k) / edge_pieces * (last - first);
+      if (mirrored(i) && k == 0 && !mirrored(i + n - 1))
+        polygon.push_back(along((i + n - 1) % n, 1 + hem));
+      else if (mirrored(i))
+        polygon.push_back(x(places[polygon.size()]).x);
+      else
+        polygon.push_back(t == 0 ? nodes[i] : along(i, t));
     }
   }
 }
 
-void outline_places(const FacetKind& f, std::vector<Vec2>& places) {
-  places.clear();
-  const std::span<const double> nodes = catalog::cell(f.type).nodes;
-  for (int i = 0; i < f.n_vertices; ++i) {
-    const int next = (i + 1) % f.n_vertices;
-    const Vec2 a{nodes[2 * i], nodes[2 * i + 1]}, b{nodes[2 * next], nodes[2 * next + 1]};
-    for (int k = 0; k < (f.whole_edge[static_cast<std::size_t>(i)] ? 1 : edge_pieces); ++k)
-      places.push_back(a + (static_cast<double>(k) / edge_pieces) * (b - a));
-  }
-}
+void outline_places(const FacetKind& f, std::vector<Vec2>& places) { places_of_outline(f, places); }
 
 }  // namespace lacon::space

@@ -29,7 +29,8 @@ struct FacetKind {
   /// Of the edge from each vertex to the next: it is one line of the outline. Facets that share an edge say the same of it,
   /// whatever their other edges are.
   std::array<bool, 4> whole_edge = {true, true, true, true};
-  bool affine = false;  ///< to round-off
+  std::uint8_t mirrored = 0;  ///< Surface::mirrored
+  bool affine = false;        ///< to round-off
   double distortion = 0;
 
   Map3 map(const Nodes& nodes) const {
@@ -53,6 +54,7 @@ Facet facet(const Surface& surface, std::size_t cell, double straight, bool in_p
 inline bool before(Vec3 a, Vec3 b) { return std::tie(a.x, a.y, a.z) < std::tie(b.x, b.y, b.z); }
 
 /// The outline of a facet as a polygon: a curved edge in pieces, at places that depend on the edge alone, a straight one whole.
+/// Mirrored edges lie a little outside of the cell: what normals meet there stands for the mirror image.
 void outline(const FacetKind& f, const Nodes& nodes, std::vector<Vec3>& polygon);
 /// The reference coordinates of its vertices.
 void outline_places(const FacetKind& f, std::vector<Vec2>& places);

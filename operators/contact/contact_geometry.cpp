@@ -235,6 +235,11 @@ void ContactGeometry::measure_slaves() {
   }
 }
 
+void ContactGeometry::find_mirrors(std::span<const std::uint8_t> free) {
+  for (Zone& zone : zones_)
+    if (!contact_.frozen_gap) zone.planes = mirror_planes(zone.slave, zone.master, free);
+}
+
 void ContactGeometry::rest_at(std::span<const double> displacement) { displace(mesh_, displacement, mesh_.dimension, rest_); }
 
 double ContactGeometry::motion(const Zone& zone) const {
@@ -270,6 +275,8 @@ void ContactGeometry::update(std::span<const double> displacement, std::vector<Z
     const auto z = static_cast<std::size_t>(&zone - zones_.data());
     zone.slave.normals = {};
     zone.pairing.motion = motion(zone);
+    zone.mirrored = mirrored_edges(zone.planes, coordinates_, zone.master.size());
+    zone.master.mirrored = zone.mirrored;
     if (contact_.smoothing) normals_[z] = nodal_normals(zone.slave);
     zone.slave.normals = normals_[z];
     // a few blocks for each thread at a time: points of a large skin are never in memory together

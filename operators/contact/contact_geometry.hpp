@@ -10,6 +10,7 @@
 #include "lacon/elements/reference.hpp"
 #include "lacon/elements/registry.hpp"
 #include "lacon/operators/contact/gap_variation.hpp"
+#include "lacon/operators/contact/mirrors.hpp"
 #include "lacon/operators/contact/normal_variation.hpp"
 #include "lacon/pairing/pairing.hpp"
 #include "lacon/structures/concepts.hpp"
@@ -30,6 +31,8 @@ class ContactGeometry {
     std::vector<std::int32_t> slaves;   ///< index into Contact::slaves of each cell of `slave`
     std::vector<std::int32_t> masters;  ///< mesh cell of each cell of `master`
     std::vector<std::uint8_t> inner;    ///< Surface::inner of the slave
+    std::vector<MirrorPlane> planes;
+    std::vector<std::uint8_t> mirrored;  ///< Surface::mirrored of the master
     Surface slave, master;
     bool current_jacobian = false;
     PairingOptions pairing;
@@ -65,6 +68,11 @@ class ContactGeometry {
   /// COEF_MULT_APPA gives a limit): further off a normal has left the body on its other side. @param displacement (n_nodes,
   /// mesh.dimension)
   void rest_at(std::span<const double> displacement);
+
+  /// Let masters go on beyond planes of symmetry, where slaves end in them too: normals that lean over the plane by what facets
+  /// leave would miss the master there, now more, now less. Not with VARIATION_JEU='FIGEE'.
+  /// @param free (n_nodes, mesh.dimension): 1 where a displacement is an unknown
+  void find_mirrors(std::span<const std::uint8_t> free);
 
   /// By what the gaps of each zone are smaller than what its cells leave, from the next update() on: (n_nodes), interpolated on
   /// the slave; empty: by nothing.

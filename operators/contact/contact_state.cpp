@@ -35,6 +35,7 @@ double extent(const Mesh& mesh, std::int32_t cell) {
 ContactState::ContactState(const Mesh& mesh, const Model& model, const Contact& contact, Registry& registry,
                            ContactBodies bodies)
     : mesh_(mesh), contact_(contact), geometry_(mesh, model, contact, registry), free_(std::move(bodies.free)) {
+  geometry_.find_mirrors(free_);
   size_.assign(mesh.patches->size(), 0.0);
   own_ = rho_ = size_;
   flexibility_.assign(mesh.n_cells(), 0.0);
@@ -342,14 +343,35 @@ bool ContactState::presses(std::int32_t zone, const Patchwise& patches) const {
   return false;
 }
 
+double ContactState::largest_strain(std::int32_t zone, const Patchwise& patches) const {
+  double largest = 0;
+  for (std::size_t p = 0; p < n_patches(); ++p)
+    if (geometry_.zone_of(p) == zone && patches.status[p] == Status::active) largest = std::max(largest, strain(p, patches));
+  return largest;
+}
+
 std::optional<PiercedPatch> ContactState::pierced(std::int32_t zone, const Patchwise& patches, bool at_rest) const {
   const double of_open = at_rest ? tolerances_.pierced_at_rest : tolerances_.pierced_open;
+  return deepest(zone, [&](std::size_t p) { return patches.status[p] == Status::active ? tolerances_.pierced : of_open; });
+}
+
+std::optional<PiercedPatch> ContactState::missed(std::int32_t zone, const Patchwise& patches, double strain) const {
+  const auto is_active = [&](std::int32_t p) { return patches.status[static_cast<std::size_t>(p)] == Status::active; };
+  const double limit = std::max(tolerances_.pierced_at_rest, tolerances_.missed_pressure * strain);
+  return deepest(zone, [&](std::size_t p) {
+    const bool alone = !is_active(static_cast<std::int32_t>(p)) && std::ranges::none_of(neighbours_[p], is_active);
+    return alone ? limit : INFINITY;
+  });
+}
+
+std::optional<PiercedPatch> ContactState::deepest(std::int32_t zone,
+                                                  const std::function<double(std::size_t patch)>& limit) const {
   std::optional<PiercedPatch> worst;
   for (std::size_t p = 0; p < n_patches(); ++p) {
     if (geometry_.zone_of(p) != zone || locked_[p] || held_open_[p] || geometry_.coverage(p) < tolerances_.least_coverage)
       continue;
     const double depth = -geometry_.smallest_gap(p) / size_[p];
-    if (depth < (patches.status[p] == Status::active ? tolerances_.pierced : of_open)) continue;
+    if (depth < limit(p)) continue;
     if (!worst || depth > worst->depth) worst = PiercedPatch{p, depth, geometry_.gap(p)};
   }
   return worst;

@@ -32,7 +32,8 @@ struct ContactTolerances {
   double held_overlap = 1e-6;       ///< of h: an overlap of a locked patch that is worth an alarm
   double pierced = 0.05;            ///< of h: likewise of points of another active patch, whose average is closed
   double pierced_open = 0.04;       ///< of h: of points of an open patch, which nothing keeps out of the master
-  double pierced_at_rest = 0.005;   ///< of h: likewise, of a zone where nothing presses
+  double pierced_at_rest = 0.005;   ///< of h: likewise, where nothing presses
+  double missed_pressure = 0.1;     ///< of the largest: what such points would press with, worth an alarm
   double touching = 1e-8;           ///< of h: an overlap of patches without contact that is round-off
 };
 
@@ -155,7 +156,13 @@ class ContactState {
   /// Of a zone the patch that is pierced deepest, over its size, where that is worth an alarm.
   /// @param at_rest nothing presses in this zone: less is
   std::optional<PiercedPatch> pierced(std::int32_t zone, const Patchwise& patches, bool at_rest) const;
+  /// Of a zone the open patch that is pierced deepest among those around which nothing presses, where that is worth an alarm: a
+  /// contact that the averages of coarse patches miss. @param strain the largest that the zone has made; the depth over h is
+  /// the strain of the pressure that would close it
+  std::optional<PiercedPatch> missed(std::int32_t zone, const Patchwise& patches, double strain) const;
   bool presses(std::int32_t zone, const Patchwise& patches) const;
+  /// Of a zone, over its patches: strain().
+  double largest_strain(std::int32_t zone, const Patchwise& patches) const;
   /// Of a zone with RESOLUTION='NON' the patch that its master has pierced deepest, by more than TOLE_INTERP.
   std::optional<UncheckedOverlap> unchecked_overlap(std::int32_t zone) const;
 
@@ -165,6 +172,9 @@ class ContactState {
   double smallest_patch() const { return *std::min_element(size_.begin(), size_.end()); }
 
  private:
+  /// Of a zone the patch that is pierced deepest, over its size, and by more than a limit of its own.
+  std::optional<PiercedPatch> deepest(std::int32_t zone, const std::function<double(std::size_t patch)>& limit) const;
+
   const Mesh& mesh_;
   const Contact& contact_;
   const ContactTolerances tolerances_;

@@ -113,12 +113,16 @@ void ContactNotices::accept(const SolvedInstant& solved) {
   const Patchwise& patches = present_.state.patches;
   for (std::int32_t zone = 0; zone < static_cast<std::int32_t>(contact.geometry().zones().size()); ++zone) {
     if (contact.presses(zone, patches)) pressed_.insert(zone);
-    for (const bool at_rest : {false, true}) {
-      PiercedZones& zones = at_rest ? pierced_at_rest_ : pierced_;
-      const std::optional<PiercedPatch> now = contact.pierced(zone, patches, at_rest);
+    double& strain = strain_[zone];
+    strain = std::max(strain, contact.largest_strain(zone, patches));
+    const auto note = [&](const std::optional<PiercedPatch>& now, PiercedZones& zones) {
       if (const auto before = zones.find(zone); now && (before == zones.end() || now->depth > before->second.worst.depth))
         zones[zone] = {solved.instant, *now};
-    }
+    };
+    note(contact.pierced(zone, patches, false), pierced_);
+    note(contact.pierced(zone, patches, true), pierced_at_rest_);
+    // before a zone presses for the first time its bodies come nearer, and points of coarse patches go in a little
+    if (strain > 0) note(contact.missed(zone, patches, strain), missed_);
   }
 }
 
@@ -129,15 +133,19 @@ void ContactNotices::end(bool /*completed*/) {
   PiercedZones told = pierced_;
   for (const auto& [zone, pierced] : pierced_at_rest_)
     if (!pressed_.contains(zone)) told.emplace(zone, pierced);
-  for (const auto& [zone, pierced] : told) {
+  const auto tell = [&](std::string_view id, std::int32_t zone, const Pierced& pierced) {
     const ContactZone& names = present_.problem.contact->zones[zone];
-    inform("EVOLUTION_16", {{"slave", names.slave_group},
-                            {"master", names.master_group},
-                            {"cell", first_cell(pierced.worst.patch)},
-                            {"instant", fmt::format("{:.9g}", pierced.instant)},
-                            {"percent", fmt::format("{:.3g}", 100 * pierced.worst.depth)},
-                            {"gap", fmt::format("{:.3g}", pierced.worst.gap)}});
-  }
+    inform(id, {{"slave", names.slave_group},
+                {"master", names.master_group},
+                {"cell", first_cell(pierced.worst.patch)},
+                {"instant", fmt::format("{:.9g}", pierced.instant)},
+                {"percent", fmt::format("{:.3g}", 100 * pierced.worst.depth)},
+                {"gap", fmt::format("{:.3g}", pierced.worst.gap)}});
+  };
+  for (const auto& [zone, pierced] : told) tell("EVOLUTION_16", zone, pierced);
+  for (const auto& [zone, pierced] : missed_)
+    if (const auto other = told.find(zone); other == told.end() || other->second.worst.patch != pierced.worst.patch)
+      tell("EVOLUTION_45", zone, pierced);
 }
 
 void ContactNotices::save(const hdf5::Group& group, const PiercedZones& pierced_zones) {
@@ -170,6 +178,12 @@ ContactNotices::PiercedZones ContactNotices::resumed(const hdf5::Group& group) {
 void ContactNotices::save(const hdf5::Group& group) const {
   save(group.create("pierced"), pierced_);
   save(group.create("pierced_at_rest"), pierced_at_rest_);
+  save(group.create("missed"), missed_);
+  std::vector<std::int32_t> zones;
+  std::vector<double> strains;
+  for (const auto& [zone, strain] : strain_) zones.push_back(zone), strains.push_back(strain);
+  group.write("strained", zones);
+  group.write("strain", strains);
   group.write("pressed", std::vector<std::int32_t>(pressed_.begin(), pressed_.end()));
   group.write("free", std::vector<std::int32_t>(free_.begin(), free_.end()));
   group.write("overlapping", std::vector<std::int64_t>(overlapping_.begin(), overlapping_.end()));
@@ -185,6 +199,12 @@ void ContactNotices::resume(const hdf5::Group& group) {
   } else {  // a record of before they were kept: who knows
     for (std::size_t zone = 0; zone < present_.problem.contact->zones.size(); ++zone)
       pressed_.insert(static_cast<std::int32_t>(zone));
+  }
+  if (group.has("missed")) {  // not in a record of before it was kept
+    missed_ = resumed(group.open("missed"));
+    const auto zones = group.read<std::int32_t>("strained");
+    const auto strains = group.read<double>("strain");
+    for (std::size_t i = 0; i < zones.size(); ++i) strain_[zones[i]] = strains.at(i);
   }
   const auto free = group.read<std::int32_t>("free");
   free_ = {free.begin(), free.end()};

@@ -110,6 +110,36 @@ def quarter_of_a_lens(kind, name, height, n, sides):
     return brick(kind, [lines(0, 1, n)] * 3, place, name, {(2, 0): f"{name}_LOW", (2, 1): f"{name}_HIGH", **sides}, curved=True)
 
 
+def quarter_of_a_ring(kind, name, radii, height, cells, sides):
+    """The part x, y > 0 of a ring about the axis z, of round section. @param radii (of the ring, of its section) @param height of its middle
+    @param cells (half a side of the section's square core, which is as many as around it, along the ring)
+    @param sides (axis, end: 0 or 1) -> group, of the planes x = 0 and y = 0 alone. Groups BODY_LOW, BODY_HIGH."""
+    core, (n, along) = 0.45 * radii[1], cells
+    planes = {(1, 1 - axis): group for (axis, _), group in sides.items()}
+
+    def sector(first):
+        """Of 90 degrees of the section, from a side of the core outward; without an angle the core."""
+        def place(r, turn, s):
+            if first is None:
+                x, z = core * (2 * r - 1), core * (2 * s - 1)
+            else:
+                a, (x, z) = math.radians(first + 90 * s), (1.0, 2 * s - 1)
+                c, t = math.cos(math.radians(first + 45)), math.sin(math.radians(first + 45))
+                x, z = (1 - r) * core * np.array([c * x - t * z, t * x + c * z]) + r * radii[1] * np.array([math.cos(a), math.sin(a)])
+            turn *= math.pi / 2
+            return (radii[0] + x) * math.cos(turn), (radii[0] + x) * math.sin(turn), height + z
+
+        steps = [lines(0, 1, 2 * n if first is None else n), lines(0, 1, along), lines(0, 1, 2 * n)]
+        return brick(kind, steps, place, name, planes if first is None else {**planes, (0, 1): f"{name}_SKIN"}, curved=True)
+
+    ring = weld(union([sector(first) for first in (None, -45, 45, 135, 225)]))
+    ring.cell_groups[f"{name}_LOW"], ring.cell_groups[f"{name}_HIGH"] = [], []
+    for skin, cell in ring.cell_groups.pop(f"{name}_SKIN"):
+        middle = ring.points[ring.cells[skin][cell]].mean(axis=0)
+        ring.cell_groups[f"{name}_{'HIGH' if middle[2] > height else 'LOW'}"].append((skin, cell))
+    return ring
+
+
 def round_tool_in_space(kind, name, radius, centre, cells, ball):
     """A body whose skin is part of a sphere (`ball`), or of a cylinder along y of width 2 radius; its top is flat."""
     most = math.radians(40)

@@ -9,7 +9,7 @@ HERE = pathlib.Path(__file__).resolve().parent
 sys.path[:0] = [str(HERE), str(HERE.parent)]
 
 from study_test import LACON, StudyTest  # noqa: E402, I001 (it says where meshes.py is)
-from bodies import lines, round_tool, slab  # noqa: E402
+from bodies import lines, quarter_of_a_ring, round_tool, slab, slab_in_space  # noqa: E402
 from meshes import block, union  # noqa: E402
 from run import chosen, count, missed, run  # noqa: E402
 from studies import Study, elastic, held, path, zone  # noqa: E402
@@ -73,6 +73,17 @@ class Skins(StudyTest):
             if told:  # the depth / h, less what is between two nodes of the tool
                 self.assertIn(f"of SLAB_SKIN lie inside TOOL_SKIN by {told}", (self.folder / "err").read_text())
 
+    def test_a_contact_that_a_coarse_slave_misses_after_it_has_pressed_is_told(self):
+        """As above: pressed by 0.012, and drawn back to 0.005, where nothing presses though points are inside by a hundredth of a cell, which
+        would press as much as the first did. Where that has pressed twenty times harder it is the end of an unloading."""
+        for deepest, told in ((0.012, True), (0.1, False)):
+            mesh = union([round_tool("QUAD4", "TOOL", 1.0, (0, 1), (36, 10)), slab("QUAD4", "SLAB", (-2, 2), (-2, 0), (9, 4))])
+            study = Study(name="missed", mesh=mesh, materials={"TOOL": elastic(1e3), "SLAB": elastic(1e3)}, zones=[zone("TOOL", "SLAB", 1)],
+                          moves=[held("SLAB"), path("TOOL", [(0, 0), (2, 0)], [(0, 0), (1, -deepest), (2, -0.005)])], steps=2)
+            figures = run(study, LACON, self.folder)
+            self.assertEqual(figures["status"], "finished")
+            self.assertEqual("EVOLUTION_45" in figures.get("alarms", []), told, deepest)
+
     def test_whole_skins_meet_where_they_face_each_other_only(self):
         """A block on a larger one, all of both skins in the zone: normals of far sides reach the other body through their own."""
         sides = {"left": "TOOL_SKIN", "right": "TOOL_SKIN"}
@@ -85,6 +96,19 @@ class Skins(StudyTest):
                           moves=[held("SLAB"), path("TOOL", [(0, 0), (4, 0)], [(0, 0), (4, -0.1)])], steps=4, asked={"per step": 4})
             self.assertEqual(missed(study, run(study, LACON, self.folder)), [], kind)
             self.assertIn("<I> <EVOLUTION_17>", "".join((self.folder / name).read_text() for name in ("out", "err")))
+
+    def test_a_ring_that_ends_at_planes_of_symmetry_is_squeezed(self):
+        """Normals of its curved facets lean over the planes, where the plates end: were it lost what they meet there, as much as each iterate makes
+        of it, no iterate would be in equilibrium (60 iterations of the second step without end)."""
+        sides = {(0, 0): "XZERO", (1, 0): "YZERO"}
+        mesh = union([quarter_of_a_ring("HEXA20", "RING", (3.0, 1.0), 1.0, (1, 3), sides),
+                      slab_in_space("HEXA20", "LOW_PLATE", (0, 4.2), (0, 4.2), (-0.5, 0), (3, 3, 1), sides=sides),
+                      slab_in_space("HEXA20", "TOP_PLATE", (0, 4.2), (0, 4.2), (2, 2.5), (3, 3, 1), skin="bottom", sides=sides)])
+        study = Study(name="ring", mesh=mesh, model="3D", materials={"RING": elastic(10.0, 0.45), "LOW_PLATE": elastic(1e4), "TOP_PLATE": elastic(1e4)},
+                      zones=[{"GROUP_MA_ESCL": f"RING_{end}", "GROUP_MA_MAIT": f"{plate}_PLATE_SKIN"} for end, plate in (("LOW", "LOW"), ("HIGH", "TOP"))],
+                      moves=[{**held("LOW_PLATE"), "DZ": 0.0}, {**held("TOP_PLATE"), "DZ": [[0, 0], [2, -0.4]]}, {"GROUP_MA": "XZERO", "DX": 0.0},
+                             {"GROUP_MA": "YZERO", "DY": 0.0}], steps=2, asked={"per step": 8})
+        self.assertEqual(missed(study, run(study, LACON, self.folder)), [])
 
     def test_a_patch_that_takes_contact_at_the_end_moves_bodies_that_flow_and_are_balanced(self):
         """The increment that closes its gap leaves more unbalanced forces than there were: that is no reason to shorten it, again and again."""

@@ -323,6 +323,9 @@ TEST_F(Touching, PointsInsideTheMasterAreToldEarlierWhereNothingPushesThemOut) {
       ASSERT_EQ(pierced.has_value(), depth > (active ? 0.05 : 0.04)) << active << ' ' << depth;
       EXPECT_NEAR(pierced ? pierced->depth : depth, depth, 1e-14);  // h = 1
       EXPECT_EQ(now.pierced(0, patches, true).has_value(), depth > (active ? 0.05 : 0.005)) << active << ' ' << depth;
+      // a tenth of what has pressed, and nothing of what still does
+      for (const double strain : {1e-9, 0.35, 10.0})
+        EXPECT_EQ(now.missed(0, patches, strain).has_value(), !active && depth > std::max(0.005, 0.1 * strain)) << depth;
     }
   // turned: open in the average, one end inside
   lift(0.1);

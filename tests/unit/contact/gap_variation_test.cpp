@@ -30,9 +30,10 @@ struct Skins {
   bool axis, current, smooth;
   std::vector<double> coordinates, initial;  ///< (n_nodes, 3)
   std::vector<std::vector<std::int32_t>> slaves, masters;
-  std::vector<double> offset = {};  ///< (n_nodes), by which the skins stand out of their cells; or empty
-  double fading = 0;                ///< PairingOptions::fading
-  double steep_angle = 85;          ///< PairingOptions::steep_angle
+  std::vector<double> offset = {};          ///< (n_nodes), by which the skins stand out of their cells; or empty
+  double fading = 0;                        ///< PairingOptions::fading
+  double steep_angle = 85;                  ///< PairingOptions::steep_angle
+  std::vector<std::uint8_t> mirrored = {};  ///< Surface::mirrored of the masters
 
   /// The sum over all contact cells.
   struct Sum {
@@ -46,6 +47,7 @@ struct Skins {
     Surface slave{.dimension = dimension, .types = {}, .nodes = {}, .coordinates = coordinates, .normals = {}}, master = slave;
     for (const auto& cell : slaves) slave.add_cell(slave_type, cell);
     for (const auto& cell : masters) master.add_cell(master_type, cell);
+    master.mirrored = mirrored;
     std::vector<double> normals;
     if (smooth) normals = nodal_normals(slave);
     slave.normals = normals;
@@ -332,7 +334,9 @@ TEST(GapVariation, DerivativesInSpaceAreThoseOfDifferences) {
     for (const CellType master : kinds) {
       const bool smooth = ++seed % 3 == 0;
       InSpace skins(slave, master, seed % 4 < 2, smooth, 0.03, seed);
-      if (seed % 2 == 0) skins.steep_angle = 2;  // most couples count by a share
+      if (seed % 2 == 0) skins.steep_angle = 2;                               // most couples count by a share
+      for (std::size_t c = 0; seed % 5 < 2 && c < skins.masters.size(); ++c)  // their border above goes on
+        skins.mirrored.push_back(catalog::cell(master).family == Family::QUAD ? 1U << 2 : c % 2 == 1 ? 1U << 1 : 0);
       const Skins::Sum at = skins.evaluate(true);
       const std::size_t n = at.gradient.size();
       const double largest = largest_of(at.gradient), largest_second = largest_of(at.hessian);

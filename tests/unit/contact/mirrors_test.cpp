@@ -1,0 +1,111 @@
+// Planes of symmetry in which both skins of a zone end.
+#include "lacon/operators/contact/mirrors.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numeric>
+#include <random>
+
+#include "../pairing/skins_in_space.hpp"
+
+namespace lacon {
+namespace {
+
+/// Two skins over the unit square in one numbering of nodes, as those of a mesh.
+struct TwoSkins {
+  std::vector<double> coordinates;
+  Surface slave, master;
+
+  TwoSkins(CellType slave_type, CellType master_type, const test::Place3& place, bool curved) {
+    std::mt19937 random(7);
+    add(test::mesh({.nx = 2, .ny = 2, .type = slave_type, .up = false}, place, random, curved), slave);
+    add(test::mesh(
+            {.nx = 3, .ny = 3, .type = master_type},
+            [](double x, double y) {
+              return Vec3{x, y, 0};
+            },
+            random),
+        master);
+    slave.coordinates = master.coordinates = coordinates;
+  }
+  std::size_t n_nodes() const { return coordinates.size() / 3; }
+
+ private:
+  void add(const test::Skin3& skin, Surface& surface) {
+    const auto first = static_cast<std::int32_t>(n_nodes());
+    coordinates.insert(coordinates.end(), skin.coordinates.begin(), skin.coordinates.end());
+    surface.dimension = 3;
+    for (std::size_t c = 0; c < skin.surface.size(); ++c) {
+      std::vector<std::int32_t> nodes(skin.surface.nodes[c].begin(), skin.surface.nodes[c].end());
+      for (std::int32_t& node : nodes) node += first;
+      surface.add_cell(skin.surface.types[c], nodes);
+    }
+  }
+};
+
+/// The covered part of the slave's reference cells.
+double cover(const TwoSkins& skins, bool traced) {
+  const Pairing found = pair(skins.slave, skins.master, {.traced = traced});
+  const double whole = catalog::cell(skins.slave.types[0]).family == Family::QUAD ? 4 : 0.5;
+  return std::accumulate(found.cells.weight.begin(), found.cells.weight.end(), 0.0) /
+         (whole * static_cast<double>(skins.slave.size()));
+}
+
+TEST(Mirrors, NormalsThatLeanOverAPlaneOfSymmetryMeetWhatLiesBehindIt) {
+  const auto tilted = [](double x, double y) { return Vec3{x, y, 0.05 + 0.1 * x}; };
+  // the slope is 0.1 at the end x = 1, and 0.04 at y = 0: normals lean out at both
+  const auto bent = [](double x, double y) { return Vec3{x, y, 0.05 + 0.05 * x * x - 0.04 * (y - y * y)}; };
+  for (const CellType of_slave : test::kinds)
+    for (const CellType of_master : test::kinds)
+      for (const bool curved : {false, true})
+        for (const bool traced : {false, true}) {
+          if (curved && catalog::cell(of_slave).order == 1) continue;
+          TwoSkins skins(of_slave, of_master, curved ? test::Place3(bent) : test::Place3(tilted), curved);
+          const auto what = [&] {
+            return testing::Message() << catalog::cell(of_slave).name << ' ' << catalog::cell(of_master).name << curved
+                                      << traced;
+          };
+          // the strip behind the end is as wide as the normal leans: a tenth of the gap there
+          if (!curved) EXPECT_NEAR(cover(skins, traced), 1 - 0.1 * 0.15 / (1 + 0.1 * 0.1), 1e-9) << what();
+          if (curved) EXPECT_LT(cover(skins, traced), 1 - 0.005) << what();
+          const std::vector<std::uint8_t> free(3 * skins.n_nodes(), 0);
+          const std::vector<MirrorPlane> planes = mirror_planes(skins.slave, skins.master, free);
+          EXPECT_EQ(planes.size(), 4U);
+          const std::vector<std::uint8_t> mirrored = mirrored_edges(planes, skins.coordinates, skins.master.size());
+          skins.master.mirrored = mirrored;
+          EXPECT_NEAR(cover(skins, traced), 1, 1e-9) << what();
+        }
+}
+
+TEST(Mirrors, APlaneIsOneWhereBothSkinsEndAndCannotLeaveIt) {
+  TwoSkins skins(
+      CellType::QUAD4, CellType::QUAD8,
+      [](double x, double y) {
+        return Vec3{x, y, 0.1};
+      },
+      false);
+  const auto at = [&](std::size_t node, int axis) -> double& {
+    return skins.coordinates[3 * node + static_cast<std::size_t>(axis)];
+  };
+  std::vector<std::uint8_t> free(3 * skins.n_nodes(), 1);
+  const auto planes = [&] { return mirror_planes(skins.slave, skins.master, free); };
+  EXPECT_TRUE(planes().empty());
+  for (std::size_t node = 0; node < skins.n_nodes(); ++node)
+    if (at(node, 0) == 1) free[3 * node] = 0;
+  const std::vector<MirrorPlane> found = planes();
+  ASSERT_EQ(found.size(), 1U);
+  EXPECT_EQ(found[0].axis, 0);
+  EXPECT_EQ(found[0].ends.size(), 3U);  // edges of the master there
+  std::vector<std::uint8_t> mirrored = mirrored_edges(found, skins.coordinates, skins.master.size());
+  EXPECT_EQ(std::count_if(mirrored.begin(), mirrored.end(), [](std::uint8_t edges) { return edges != 0; }), 3);
+
+  // the wall moves, and takes one skin with it: this is no symmetry any more
+  for (std::size_t node = 0; node < 9; ++node)  // of the slave
+    if (at(node, 0) == 1) at(node, 0) = 1.01;
+  EXPECT_TRUE(mirrored_edges(found, skins.coordinates, skins.master.size()).empty());
+  EXPECT_TRUE(planes().empty());
+}
+
+}  // namespace
+}  // namespace lacon
