@@ -56,6 +56,8 @@ def flat_brick(kind):
 
 
 class LoadTest(StudyTest):
+    head = HEAD
+
     def run_text(self, meshes, text):
         """Run HEAD and text with mesh k on unit 20 + k. @return the run"""
         units = []
@@ -63,7 +65,7 @@ class LoadTest(StudyTest):
             write_med(self.folder / f"{k}.med", mesh)
             units += ["--unit", f"{20 + k}={self.folder / f'{k}.med'}"]
         comm = self.folder / "loads.comm"
-        comm.write_text(HEAD + text + "\nFIN()\n")
+        comm.write_text(self.head + text + "\nFIN()\n")
         return self.run_study(comm, "--fresh", *units)
 
     def solved(self, meshes, text):

@@ -4,7 +4,7 @@ import unittest
 
 import numpy as np
 
-from load_study import NORMALS_2D, NORMALS_3D, POISSON, SIDES_2D, SIDES_3D, YOUNG, LoadTest, flat_block, flat_brick
+from load_study import HEAD, NORMALS_2D, NORMALS_3D, POISSON, SIDES_2D, SIDES_3D, YOUNG, LoadTest, flat_block, flat_brick
 from meshes import block, write_med  # noqa: I001 (load_study says where it is)
 from patch import patch_mesh
 from results import Result
@@ -110,7 +110,7 @@ solve(_F(CHARGE=H, FONC_MULT=RAMP), _F(CHARGE=S, FONC_MULT=RAMP), _F(CHARGE=V, F
 class Gravity(LoadTest):
     def test_a_bar_under_its_weight(self):
         """nu = 0: u = -rho g (L y - y2 / 2) / E along the bar, in every modelisation; FONC_MULT may be a formula."""
-        meshes = [flat_block("QUAD8"), flat_block("TRIA6"), flat_block("QUAD9"), flat_brick("HEXA20"), flat_brick("TETRA10")]
+        meshes = [flat_block("QUAD8"), flat_block("TRIA6"), flat_block("QUAD9", start=1.0), flat_brick("HEXA20"), flat_brick("TETRA10")]
         text = ""
         for k, (modelisation, along) in enumerate((("D_PLAN", 1), ("C_PLAN", 1), ("AXIS", 1), ("3D", 2), ("3D", 2))):
             hold = ", ".join(f"D{c}=0" for c in ("XYZ" if along == 2 else "XY"))
@@ -409,6 +409,7 @@ CALC_CHAMP(reuse=R[0], RESULTAT=R[0], FORCE='REAC_NODA')
         """A constant pressure on any skin from the axis outward thrusts by p r2 / 2 for one radian, wherever the skin has moved. On
         the foot of this cylinder nothing but elasticity keeps the nodes of the axis there: some are beyond it by up to 1e-3."""
         beyond = 0.0
+        self.head = HEAD.replace("DEBUT(", "DEBUT(IGNORE_ALARM='EVOLUTION_44', ")
         for pressure in (-60.0, 60.0):
             mesh = flat_block("QUAD8", size=(2.0, 2.0))
             text = f"""model(20, 'AXIS')
