@@ -80,6 +80,16 @@ class New(StudyTest):
         self.assertEqual(text.count("ALGO_CONT='LAC'"), 1)
         self.assert_runs()
 
+    def test_bodies_may_stand_on_each_other_along_any_axis(self):
+        """Blocks side by side along x, the lower end of one at z = 0: pressed together along x, z = 0 is a symmetry."""
+        left = brick("HEXA8", [lines(2, -1), lines(2, 0.5), lines(2, 0)], name="LEFT", sides={(0, 0): "FOOT", (0, 1): "FACE", (2, 0): "HALF"})
+        right = brick("HEXA8", [lines(3, 0), lines(3, 0.5), lines(3, 0)], name="RIGHT", sides={(0, 0): "SOLE", (0, 1): "HEAD"})
+        self.assertEqual(self.new(union([left, right])).returncode, 0)
+        text = self.assert_checked()
+        self.assertIn("MECA_IMPO=(_F(GROUP_MA='FOOT', DX=0.0, DY=0.0, DZ=0.0), _F(GROUP_MA='HALF', DZ=0.0), _F(GROUP_MA='HEAD', DY=0.0, DZ=0.0))", text)
+        self.assertIn("PRES_REP=_F(GROUP_MA='HEAD', PRES=1.0)", text)
+        self.assert_runs()
+
     def test_planes_of_symmetry_and_supports_may_cut_several_bodies(self):
         """A quarter of a shaft in a hub, each group on both: the zero of both axes is held across; moved up, the lower plane is the support."""
         def ring(inner, width):

@@ -54,10 +54,10 @@ class Skin:
             return said
         return part("starter_on_several_bodies", skin=said) if self.parts else part("starter_on_no_body", skin=said)
 
-    def mirror(self):
-        """Whether it looks like a plane of symmetry: at the zero of an axis; across the last one, where bodies stand, if it cuts several."""
+    def mirror(self, upward):
+        """Whether it looks like a plane of symmetry: at the zero of an axis; of the one along which bodies stand on each other, if it cuts several."""
         at = self.plane()
-        return bool(at) and at[1] == 0.0 and (at[0] != "XYZ"[self.dimension - 1] or len(self.parts) > 1)
+        return bool(at) and at[1] == 0.0 and (at[0] != upward or len(self.parts) > 1)
 
 
 class MeshGroups:
@@ -164,16 +164,25 @@ def _closeness(a, b):
     return near / len(a.middles)
 
 
+def standing(free, dimension):
+    """(axis along which bodies stand on each other, symmetries, the support or nothing, what is pressed or nothing): the last axis, unless another one has
+    both a support and, on another body, a skin that can be pressed. @param free skins without contact"""
+    found = []
+    for axis in reversed("XYZ"[:dimension]):
+        mirrors = [skin for skin in free if skin.mirror(axis)]
+        flat = [skin for skin in free if skin.plane() and skin.plane()[0] == axis and skin.parts and skin not in mirrors]
+        held = min(flat, key=lambda skin: skin.plane()[1], default=None)
+        pressed = max((skin for skin in flat if skin is not held and skin.part >= 0), key=lambda skin: skin.plane()[1], default=None)
+        found.append((axis, mirrors, held, pressed))
+    return next((ways for ways in found if ways[3] and ways[2].part != ways[3].part), found[0])
+
+
 def study(groups, mesh_file, read_format):
     """The text of the starter study."""
     pairs = groups.pairs()
     in_contact = {skin.name for pair in pairs for skin in pair}
     free = [skin for skin in groups.skins if skin.name not in in_contact]
-    axis = "XYZ"[groups.dimension - 1]
-    mirrors = [skin for skin in free if skin.mirror()]
-    flat = [skin for skin in free if skin.plane() and skin.plane()[0] == axis and skin.parts and skin not in mirrors]
-    held = min(flat, key=lambda skin: skin.plane()[1], default=None)
-    pressed = max((skin for skin in flat if skin is not held and skin.part >= 0), key=lambda skin: skin.plane()[1], default=None)
+    axis, mirrors, held, pressed = standing(free, groups.dimension)
     degrees = ["DX", "DY", "DZ"][:groups.dimension]
     fixed = ", ".join(f"{d}=0.0" for d in degrees)
     modelisation = "3D" if groups.dimension == 3 else "D_PLAN"
@@ -211,7 +220,7 @@ def study(groups, mesh_file, read_format):
         why.append(part("starter_symmetry", skin=skin.name, axis=skin.plane()[0]))
     if pressed:  # what is pressed alone may glide away
         mirrored = {skin.plane()[0] for skin in mirrors if skin.part in (pressed.part, -1)}
-        across = [f"D{a}=0.0" for a in "XYZ"[:groups.dimension - 1] if a not in mirrored]
+        across = [f"D{a}=0.0" for a in "XYZ"[:groups.dimension] if a not in mirrored and a != axis]
         if across:
             imposed.append(f"_F(GROUP_MA={pressed.name!r}, {', '.join(across)})")
             why.append(part("starter_pressed", skin=pressed.name))
