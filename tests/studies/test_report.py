@@ -477,6 +477,21 @@ class Shown(unittest.TestCase):
         self.browser.do(set={"opening": 0})
         self.assertEqual(len(self.browser.ask("window.lacon.scene.surfaces.filter((s) => s.actor.getVisibility()).map((s) => s.meta.kind)")), 4)
 
+    def test_what_is_picked_of_a_body_is_outlined_where_the_body_is_seen(self):
+        """Not beside the open book, nor where the body is hidden."""
+        outlines = "window.lacon.scene.marks.filter((one) => one.actor.getVisibility()).length"
+        self.open(2)
+        self.browser.do(click=self.browser.place([0.5, -0.75, 0.0]))
+        self.assertIn("Cell M", self.browser.figures()[0])
+        self.assertEqual(self.browser.ask(outlines), 1)
+        toggle = "[...document.querySelectorAll('#parts label')].find((e) => e.textContent.includes('LOWER')).querySelector('input').click()"
+        for step in range(2):
+            self.browser.do(set={"opening": 1 - step})
+            self.assertEqual(self.browser.ask(outlines), step)
+        for step in range(2):
+            self.browser.ask(toggle)
+            self.assertEqual(self.browser.ask(outlines), step)
+
     def test_the_dark_and_light_differ_and_print_is_light(self):
         self.open(2, dark=True)
         dark = self.browser.picture()[0, 0]

@@ -82,12 +82,12 @@ export class Scene {
     scene.size = study.size;
     scene.lut = vtkColorTransferFunction.newInstance();
     scene.book = {zone: -1, opening: 0};
+    scene.marks = [];
     scene.see = {opacity: 1, edges: true, hidden: new Set()};
     scene.openWindow(box); // takes long; what is read is inflated meanwhile
     [scene.initial, scene.nodes, scene.facetCell, scene.facetPatch] = await read;
     scene.points = Float32Array.from(scene.initial);
     scene.surfaces = await Promise.all(study.surfaces.map((meta) => scene.makeSurface(meta)));
-    scene.marks = [];
     return scene;
   }
 
@@ -248,10 +248,11 @@ export class Scene {
   /** Opacity, edges and visibility of each surface. */
   applyLook() {
     const open = this.book.zone >= 0 && this.book.opening > 0;
-    for (const {meta, actor, edges} of this.surfaces) {
+    for (const surface of this.surfaces) {
+      const {meta, actor, edges} = surface;
       const isBody = meta.kind === "body";
       const of = open ? meta.zone === this.book.zone : !this.see.hidden.has(meta.part) || (!isBody && this.contactOnly && meta.kind === "slave");
-      const visible = of && !(open && isBody);
+      const visible = (surface.shown = of && !(open && isBody));
       const opacity = isBody || (this.contactOnly && meta.kind === "master" && !open) ? this.see.opacity : 1;
       actor.setVisibility(visible && opacity > 0);
       actor.getProperty().setOpacity(opacity);
@@ -260,6 +261,7 @@ export class Scene {
         edges.actor.getProperty().setOpacity(this.flat ? 0.25 : Math.max(0.12, 0.4 * opacity));
       }
     }
+    for (const {actor, surface} of this.marks) actor.setVisibility(surface.shown);
   }
 
   // ------------------------------------------------------------------------------------------------ the open book
@@ -502,7 +504,7 @@ export class Scene {
 
   /** Outline facets: a patch and its masters. @param groups [{facets: Set, kind}] */
   mark(groups) {
-    for (const actor of this.marks) this.renderer.removeActor(actor);
+    for (const {actor} of this.marks) this.renderer.removeActor(actor);
     this.marks = [];
     for (const {wanted, kind} of groups)
       for (const surface of this.surfaces) {
@@ -518,8 +520,9 @@ export class Scene {
         actor.getProperty().setColor(...(kind === "patch" ? this.ink ?? highlight.patch : highlight.masters));
         actor.setPickable(false);
         if (surface.turn) actor.setUserMatrix(surface.turn);
+        actor.setVisibility(surface.shown);
         this.renderer.addActor(actor);
-        this.marks.push(actor);
+        this.marks.push({actor, surface});
       }
   }
 
