@@ -111,6 +111,28 @@ TEST_F(Bar, TheBitsAreThoseOfTheElementsOneByOneForAnyNumberOfThreads) {
   }
 }
 
+// Where all nodes are moved by one affine map, points are those of the reference cell, moved by it.
+TEST_F(Bar, PointsOfAffineCellsAreMovedAsTheirNodes) {
+  for (std::int32_t cell = 0; cell <= n; ++cell)
+    for (std::int32_t i = 0; i < 4; ++i) {
+      const double x = i == 1 || i == 2, y = i > 1, z = cell;
+      double* const at = mesh.coordinates.data() + 3 * (4 * cell + i);
+      at[0] = 2 * x + 0.5 * z, at[1] = y - 0.3 * x, at[2] = z + 0.1 * y + 7;
+    }
+  const ElementSet set = set_of("ELAS/PETIT");
+  const std::vector<double> points = integration_points(set, mesh, mesh.coordinates);
+  const Rule& rule = integration_rule(Family::HEXA, set.tabulation.n_points);
+  ASSERT_EQ(points.size(), static_cast<std::size_t>(3 * n * rule.size()));
+  for (std::int32_t cell = 0, at = 0; cell < n; ++cell)
+    for (int p = 0; p < rule.size(); ++p, at += 3) {
+      const double x = (1 + rule.points[3 * p]) / 2, y = (1 + rule.points[3 * p + 1]) / 2,
+                   z = cell + (1 + rule.points[3 * p + 2]) / 2;
+      EXPECT_NEAR(points[at], 2 * x + 0.5 * z, 1e-12);
+      EXPECT_NEAR(points[at + 1], y - 0.3 * x, 1e-13);
+      EXPECT_NEAR(points[at + 2], z + 0.1 * y + 7, 1e-12);
+    }
+}
+
 TEST_F(Bar, TheFirstCellThatTurnsInsideOutIsNamed) {
   const std::vector<ElementSet> set = {set_of("ELAS/GREEN_LAGRANGE")};
   for (const std::int32_t cell : {650, 333})  // in batches of their own

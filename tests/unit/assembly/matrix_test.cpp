@@ -70,6 +70,7 @@ TEST(SparseMatrix, MultipliesBySymmetry) {
   Eigen::VectorXd x = Eigen::VectorXd::Random(matrix.size()), y(matrix.size());
   matrix.multiply({x.data(), static_cast<std::size_t>(x.size())}, {y.data(), static_cast<std::size_t>(y.size())});
   EXPECT_LE((y - dense(matrix) * x).cwiseAbs().maxCoeff(), 1e-14);
+  EXPECT_NEAR(matrix.norm(), dense(matrix).cwiseAbs().rowwise().sum().maxCoeff(), 1e-14);
 }
 
 // A pattern knows what fits into it: the analysis may stand exactly then.

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <functional>
 
@@ -71,6 +72,32 @@ TEST(ContactEdge, StaysWhereNothingPullsOrWhatIsBehindHoldsIt) {
   EXPECT_TRUE(behind_the_edge(row.neighbours, row.force, row.pulled, row.pressed).empty());
   row.force[9] = 2;  // 2, 1.83, 1.68, 1.55, 1.44, below 1.41 behind the next
   EXPECT_EQ(behind_the_edge(row.neighbours, row.force, row.pulled, row.pressed), (std::vector<std::size_t>{8, 7, 6, 5}));
+}
+
+// Two rows that are pulled at together open as one of them does by itself: each patch stands against its part.
+TEST(ContactEdge, OfTwoRowsMovesAsThatOfOne) {
+  for (const double pull : {0.3, 1.0, 2.0, 3.5}) {
+    Row row(10, [](double r) { return -(1 - r * r); });
+    row.force[9] = pull;
+    row.pulled[9] = true, row.pressed[9] = false;
+    Row both = row;
+    for (std::size_t i = 0; i < 10; ++i) {
+      both.neighbours.push_back(row.neighbours[i]);
+      for (std::int32_t& next : both.neighbours.back()) next += 10;
+      both.force.push_back(row.force[i]);
+      both.pulled.push_back(row.pulled[i]);
+      both.pressed.push_back(row.pressed[i]);
+    }
+    both.neighbours[9].push_back(19);
+    both.neighbours[19].push_back(9);
+    std::vector<std::size_t> expected = behind_the_edge(row.neighbours, row.force, row.pulled, row.pressed),
+                             found = behind_the_edge(both.neighbours, both.force, both.pulled, both.pressed);
+    const std::size_t one = expected.size();
+    for (std::size_t i = 0; i < one; ++i) expected.push_back(expected[i] + 10);
+    std::ranges::sort(expected);
+    std::ranges::sort(found);
+    EXPECT_EQ(found, expected) << pull;
+  }
 }
 
 }  // namespace

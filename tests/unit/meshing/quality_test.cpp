@@ -1,7 +1,9 @@
 // The scaled Jacobian: 1 for ideal cells, closed forms for others, and what a cut does to it.
+#include <cstdio>
 #include <numeric>
 #include <random>
 
+#include "lacon/operators/crea_maillage/crea_maillage.hpp"
 #include "meshes.hpp"
 
 namespace lacon::test {
@@ -194,6 +196,32 @@ TEST(NodeGroups, get_the_new_nodes_of_a_skin_they_hold) {
   EXPECT_EQ(after.node_groups[1].members, (Nodes{3, 4}));
   EXPECT_EQ(after.node_groups[2].members, (Nodes{5, 4, 3, 0, 6, 7, 10, 11}));
   EXPECT_EQ(after.node_groups[3].members, (Nodes{0, 1, 2, 3, 4, 5, 6, 7, 10, 11, 8, 9, 12, 13}));
+}
+
+// What the cut says of shapes: quantiles and the worst cells with INFO=2 alone, a badly shaped cell whatever INFO is.
+TEST(Quality, of_a_cut_is_told_with_details_where_they_are_asked_for_and_with_an_alarm_where_it_is_poor) {
+  for (const double height : {2.0, 0.1})
+    for (const int info : {1, 2}) {
+      Mesh mesh = one_cell(CellType::HEXA8, CellType::QUAD4, 0);
+      for (std::size_t i = 2; i < mesh.coordinates.size(); i += 3) mesh.coordinates[i] *= height / 2;
+      mesh.cell_groups[0].members.resize(1);
+      const Keywords keywords(
+          nlohmann::json{{"INFO", info}, {"DECOUPE_LAC", {{{"GROUP_MA_ESCL", {"SKIN"}}, {"DECOUPE_HEXA", "PYRA"}}}}}, "");
+      const Listener listener;
+      testing::internal::CaptureStdout();
+      const Mesh made = crea_maillage(mesh, keywords);
+      std::fflush(stdout);
+      const std::string said = testing::internal::GetCapturedStdout();
+      double least = INFINITY;
+      for (const std::int32_t c : bodies_of(made)) {
+        const auto cell = static_cast<std::size_t>(c);
+        least = std::min(least, scaled_jacobian(made.types[cell], made.cells[cell], made.coordinates));
+      }
+      EXPECT_EQ(said.find("the worst after the cut") != std::string::npos, info == 2) << said;
+      EXPECT_EQ(least < 0.1, height < 1) << least;
+      const std::vector<std::string> ids = Listener::ids();
+      EXPECT_EQ(std::ranges::count(ids, "DECOUPE_9"), least < 0.1 ? 1 : 0) << least;
+    }
 }
 
 }  // namespace

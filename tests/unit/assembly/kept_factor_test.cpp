@@ -1,0 +1,215 @@
+// What is made of a factor that is kept: for which work, from which columns, and in another process.
+#include <gtest/gtest.h>
+
+#include <unistd.h>
+
+#include <filesystem>
+#include <random>
+
+#include "dense.hpp"
+#include "lacon/assembly/mumps_engine.hpp"
+#include "lacon/assembly/saddle_point_solver.hpp"
+#include "lacon/structures/hdf5.hpp"
+
+namespace lacon {
+namespace {
+
+using test::Chain;
+using test::dense;
+
+constexpr int n_nodes = 40, n_rows = 6;
+
+/// A chain held at its first node, with rows of multipliers that are on or off (diagonal alone).
+struct Rows {
+  Rows() : chain(n_nodes, n_rows, held()), matrix(chain.numbering, chain.cliques, couplings()) { fill(); }
+  static std::vector<std::uint8_t> held() {
+    std::vector<std::uint8_t> free(2 * n_nodes, 1);
+    free[0] = free[1] = 0;
+    return free;
+  }
+  static std::vector<Coupling> couplings() {
+    std::vector<Coupling> all;
+    for (int r = 0; r < n_rows; ++r)
+      for (int k = 0; k < 2; ++k) all.push_back({n_nodes + r, 4 + 6 * r + k});
+    return all;
+  }
+  void fill() {
+    matrix.set_zero();
+    test::add_springs(matrix, chain);
+    for (int r = 0; r < n_rows; ++r) {
+      if (!on[r]) matrix.add_diagonal(chain.numbering.of_patch(r), 0.5 + r);
+      for (int k = 0; on[r] && k < 2; ++k)
+        matrix.add(std::vector<std::int64_t>{chain.numbering.of_patch(r), chain.numbering.of(4 + 6 * r + k, (r + k) % 2)},
+                   std::vector<double>{0, k ? 0.7 : -1.0, 0});
+    }
+  }
+  SolutionReport solve(SaddlePointSolver& solver, std::vector<double>& x) const {
+    return solver.solve(matrix, chain.numbering.first[n_nodes], x);
+  }
+  std::vector<double> side(unsigned seed) const {
+    std::mt19937 random(seed);
+    return test::random_values(static_cast<std::size_t>(matrix.size()), random);
+  }
+  Chain chain;
+  SparseMatrix matrix;
+  std::array<bool, n_rows> on{};
+};
+
+/// MUMPS of a matrix whose entries are off, which says nothing of it, at a given cost.
+class PoorEngine : public FactorEngine {
+ public:
+  explicit PoorEngine(double iterations) : iterations_(iterations) {}
+  void analyse(const SparseMatrix& matrix) override {
+    exact_.analyse(matrix);
+    poor_.analyse(matrix);
+  }
+  Factorisation factorise(const SparseMatrix& matrix) override {
+    Factorisation found = exact_.factorise(matrix);
+    std::vector<double> values(matrix.values().begin(), matrix.values().end());
+    for (std::size_t k = 0; k < values.size(); ++k) values[k] *= 1 + 0.1 * std::sin(static_cast<double>(k));
+    copy_ = matrix;
+    copy_->restore(values);
+    poor_.factorise(*copy_);
+    found.flops = iterations_ * 40 * static_cast<double>(found.entries);  // what so many substitutions cost
+    return found;
+  }
+  Solution solve(std::span<double> right_side) override { return exact_.solve(right_side); }
+  void substitute(std::span<double> right_side) override { poor_.substitute(right_side); }
+  std::vector<float> substitute(std::span<const std::int64_t> offset, std::span<const std::int32_t> index,
+                                std::span<const double> value) override {
+    return poor_.substitute(offset, index, value);
+  }
+
+ private:
+  double iterations_;
+  MumpsEngine exact_, poor_;
+  std::optional<SparseMatrix> copy_;
+};
+
+// GMRES may take as many substitutions as a factorisation costs, and is given up beyond: then the matrix is factorised.
+TEST(KeptFactor, IsGivenUpWhereItsIterationsCostMoreThanAFactorisation) {
+  for (const double worth : {10.0, 1000.0}) {
+    Rows rows;
+    SaddlePointSolver solver(std::make_unique<PoorEngine>(worth), {.column_memory = 1e6});
+    std::vector<double> x = rows.side(1);
+    rows.solve(solver, x);
+    x = rows.side(2);
+    const SolutionReport report = rows.solve(solver, x);
+    EXPECT_EQ(report.factorised, worth == 10) << report.iterations;
+    if (!report.factorised) {
+      EXPECT_GT(report.iterations, 10);
+    }
+    const Eigen::VectorXd left = dense(rows.matrix) * Eigen::Map<Eigen::VectorXd>(x.data(), rows.matrix.size()) -
+                                 Eigen::Map<const Eigen::VectorXd>(rows.side(2).data(), rows.matrix.size());
+    EXPECT_LE(left.cwiseAbs().maxCoeff(), 1e-10);
+  }
+}
+
+// Nothing has changed: one substitution does, and nobody has to be asked whether a body came loose.
+TEST(KeptFactor, SolvesTheSameMatrixAgain) {
+  Rows rows;
+  rows.on[1] = true;
+  rows.fill();
+  SaddlePointSolver solver(std::make_unique<MumpsEngine>(), {.work_limit = 1e6, .column_memory = 1e6});
+  std::vector<double> x = rows.side(1);
+  EXPECT_TRUE(rows.solve(solver, x).factorised);
+  for (unsigned seed = 2; seed < 5; ++seed) {
+    x = rows.side(seed);
+    const SolutionReport report = rows.solve(solver, x);
+    EXPECT_FALSE(report.factorised);
+    EXPECT_LE(report.iterations, 2);
+    EXPECT_EQ(report.columns, 0);
+  }
+}
+
+// Another process that takes over what was saved goes on with the same bits, and with all columns: they come from several
+// blocks, some of whose rows have newer ones since.
+TEST(KeptFactor, GoesOnInAnotherProcessWithTheSameBits) {
+  const std::filesystem::path file = std::filesystem::temp_directory_path() / ("kept_factor_" + std::to_string(getpid()));
+  const SaddlePointOptions eager{.work_limit = 1e6, .column_memory = 1e6};
+  Rows rows;
+  SaddlePointSolver first(std::make_unique<MumpsEngine>(), eager);
+  std::vector<double> x = rows.side(1);
+  rows.solve(first, x);
+  unsigned seed = 1;
+  for (const std::array<bool, n_rows>& on :
+       {std::array<bool, n_rows>{true, true}, {true, true, false, true}, {false, true, false, true, true, true}}) {
+    rows.on = on;
+    rows.fill();
+    x = rows.side(++seed);
+    const SolutionReport report = rows.solve(first, x);
+    EXPECT_FALSE(report.factorised);
+    EXPECT_GT(report.columns, 0);
+  }
+  hdf5::write_whole(file, [&](const hdf5::Group& group) {
+    first.save(group.create("solver"));
+    first.save_base(group.create("base"));
+  });
+  SaddlePointSolver second(std::make_unique<MumpsEngine>(), eager);
+  {
+    const hdf5::Reader reader(file);
+    const hdf5::Group base = reader.open("base");
+    second.resume(reader.open("solver"), &base, rows.chain.numbering);
+  }
+  std::filesystem::remove(file);
+  EXPECT_EQ(second.base_number(), first.base_number());
+  for (const std::array<bool, n_rows>& on : {std::array<bool, n_rows>{true, true, false, true, true, true},
+                                             {true, false, false, false, true},
+                                             {false, false, true, true}}) {
+    rows.on = on;
+    rows.fill();
+    std::vector<double> one = rows.side(++seed), other = one;
+    const SolutionReport expected = rows.solve(first, one), found = rows.solve(second, other);
+    EXPECT_EQ(other, one);
+    EXPECT_FALSE(found.factorised);
+    EXPECT_EQ(found.columns, expected.columns);
+    EXPECT_EQ(found.iterations, expected.iterations);
+  }
+}
+
+// Columns of the inverse, many at once, by a factor that is exact and by one in single precision: those of the dense inverse,
+// also of unknowns that their row alone decides, whatever else is in the same column.
+TEST(KeptFactor, GivesTheColumnsOfTheInverse) {
+  Rows rows;
+  rows.on = {true, false, true, false, false, true};
+  rows.fill();
+  const Eigen::MatrixXd inverse = dense(rows.matrix).inverse();
+  const auto patch = [&](int r) { return static_cast<std::int32_t>(rows.chain.numbering.of_patch(r)); };
+  const std::vector<std::vector<std::pair<std::int32_t, double>>> columns = {{{3, 2.0}},
+                                                                             {{patch(1), 1.0}},
+                                                                             {{5, -1.0}, {20, 4.0}, {patch(3), 3.0}},
+                                                                             {{patch(3), -2.0}, {patch(4), 0.5}},
+                                                                             {{patch(0), 1e-3}},
+                                                                             {{40, 1e4}, {patch(1), 1.0}}};
+  std::vector<std::int64_t> offset{0};
+  std::vector<std::int32_t> index;
+  std::vector<double> value;
+  for (const auto& column : columns) {
+    for (const auto& [i, v] : column) index.push_back(i), value.push_back(v);
+    offset.push_back(static_cast<std::int64_t>(index.size()));
+  }
+  for (const bool single : {false, true}) {
+    MumpsEngine engine({.single_precision = single ? MumpsOptions::Use::always : MumpsOptions::Use::never});
+    engine.analyse(rows.matrix);
+    EXPECT_EQ(engine.factorise(rows.matrix).single_precision, single);
+    const std::vector<float> found = engine.substitute(offset, index, value);
+    const auto n = static_cast<std::size_t>(rows.matrix.size());
+    ASSERT_EQ(found.size(), n * columns.size());
+    for (std::size_t c = 0; c < columns.size(); ++c) {
+      Eigen::VectorXd expected = Eigen::VectorXd::Zero(inverse.rows());
+      for (const auto& [i, v] : columns[c]) expected += v * inverse.col(i);
+      const double largest = expected.cwiseAbs().maxCoeff();
+      for (std::size_t i = 0; i < n; ++i)
+        EXPECT_NEAR(found[c * n + i], expected[static_cast<Eigen::Index>(i)], (single ? 1e-4 : 1e-6) * largest)
+            << c << ' ' << i;
+      // round-off of the column is none of theirs
+      for (const int r : {1, 3, 4}) {
+        const double own = expected[patch(r)];
+        EXPECT_NEAR(found[c * n + static_cast<std::size_t>(patch(r))], own, 1e-6 * std::abs(own)) << c << ' ' << r;
+      }
+    }
+  }
+}
+
+}  // namespace
+}  // namespace lacon

@@ -1,0 +1,172 @@
+// The parts of pairing in space: what a slave facet may meet, where points of polygons lie, where normals meet bent masters.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <random>
+
+#include "lacon/pairing/chart_points.hpp"
+#include "lacon/pairing/slave_facet.hpp"
+#include "skins_in_space.hpp"
+
+namespace lacon::test {
+namespace {
+
+/// One facet, its nodes moved at random.
+Skin3 shaken_facet(CellType type, double shake, std::mt19937& random) {
+  std::uniform_real_distribution<double> uniform(-shake, shake);
+  Skin3 skin;
+  const catalog::CellRow& row = catalog::cell(type);
+  std::vector<std::int32_t> nodes;
+  for (int a = 0; a < row.n_nodes; ++a) {
+    const double x = uniform(random), y = uniform(random), z = uniform(random);
+    nodes.push_back(skin.add_node({3 + row.nodes[2 * a] + x, row.nodes[2 * a + 1] + y - 2, z + 1}));
+  }
+  skin.surface.add_cell(type, nodes);
+  return skin;
+}
+
+/// A place of the reference cell, on its border now and then.
+Vec2 place_in(Family family, std::mt19937& random) {
+  std::uniform_real_distribution<double> uniform(0, 1);
+  double a = uniform(random), b = uniform(random);
+  if (random() % 3 == 0) a = std::round(a);
+  if (random() % 3 == 0) b = std::round(2 * b) / 2;
+  return family == Family::TRIA ? Vec2{a, (1 - a) * b} : Vec2{2 * a - 1, 2 * b - 1};
+}
+
+// A box that holds a point of a normal is never left out, however the facet is bent and wherever on the normal it lies.
+TEST(SlaveFacets, TouchEveryBoxThatANormalPasses) {
+  std::mt19937 random(11);
+  std::uniform_real_distribution<double> uniform(0, 1);
+  int met = 0;
+  for (const CellType type : kinds)
+    for (int trial = 0; trial < 300; ++trial) {
+      Skin3 skin = shaken_facet(type, trial % 2 ? 0.05 : 0.3, random);
+      if (trial % 3 == 0)
+        for (std::size_t a = 0; a < skin.n_nodes(); ++a) {
+          const Vec3 n{uniform(random) - 0.5, uniform(random) - 0.5, 1};
+          for (const double value : {n.x, n.y, n.z}) skin.normals.push_back(value / norm(n));
+        }
+      space::SlaveFacet e;
+      e.set(skin.view(), 0, 2, {});
+      if (e.degenerate) continue;
+      for (int sample = 0; sample < 40; ++sample) {
+        const Vec2 xi = place_in(e.f.family, random);
+        const double height = std::pow(10, 3 * uniform(random) - 1) * (sample % 2 ? 1 : -1);
+        const Vec3 q = e.f.origin + e.f.x(xi).x + height * e.direction(xi);
+        Box<3> box = Box<3>::empty();
+        for (const double side : {-1.0, 1.0}) {
+          const Vec3 corner = q + (side * 0.3 * uniform(random)) * Vec3{1, uniform(random), uniform(random)};
+          box.add(std::array{corner.x, corner.y, corner.z}.data());
+        }
+        for (int d = 0; d < 3; ++d) {
+          box.low[d] = std::min(box.low[d], component(q, d));
+          box.high[d] = std::max(box.high[d], component(q, d));
+        }
+        ++met;
+        ASSERT_TRUE(e.touches(box)) << catalog::cell(type).name << ", trial " << trial;
+      }
+    }
+  EXPECT_GT(met, 20'000);
+}
+
+// Whichever corner of a cell comes first, the same places are near it.
+TEST(SlaveFacets, HaveTheSameNeighbourhoodFromEachCorner) {
+  std::mt19937 random(12);
+  std::uniform_real_distribution<double> uniform(-2, 2);
+  int near = 0;
+  for (int sample = 0; sample < 1000; ++sample) {
+    const Vec2 p{uniform(random), uniform(random)};
+    const bool in_triangle = space::near_reference_cell(Family::TRIA, p, 0.25),
+               in_square = space::near_reference_cell(Family::QUAD, p, 0.25);
+    near += in_triangle;
+    EXPECT_EQ(space::near_reference_cell(Family::TRIA, {p.y, 1 - p.x - p.y}, 0.25), in_triangle);
+    EXPECT_EQ(space::near_reference_cell(Family::TRIA, {1 - p.x - p.y, p.x}, 0.25), in_triangle);
+    EXPECT_EQ(space::near_reference_cell(Family::QUAD, {-p.y, p.x}, 0.25), in_square);
+  }
+  EXPECT_GT(near, 50);
+}
+
+/// The integral of x^a y^b over the triangle of the corners 0, (1, 0) and (0, 1).
+double moment(int a, int b) { return std::exp(std::lgamma(a + 1) + std::lgamma(b + 1) - std::lgamma(a + b + 3)); }
+
+// A rule of a degree integrates polynomials of this degree exactly, on every polygon; Gauss's rules in two directions do with
+// degree / 2 + 1 points in each, and no triangle takes more.
+TEST(ChartPoints, IntegrateTheirDegreeWithNoMorePointsThanItTakes) {
+  const space::Polygon triangle{{0, 0}, {1, 0}, {0, 1}}, pentagon{{0, 0}, {0.5, 0}, {1, 0}, {0.5, 0.5}, {0, 1}};
+  space::ChartPoints points;
+  for (int degree = 1; degree <= 40; ++degree)
+    for (const bool traced : {false, true})
+      for (const space::Polygon& polygon : {triangle, pentagon}) {
+        space::place_points(polygon, degree, true, traced, points);
+        for (int a = 0; a <= degree; ++a) {
+          const int b = degree - a;
+          double sum = 0;
+          for (std::size_t g = 0; g < points.y.size(); ++g)
+            sum += points.weight[g] * std::pow(points.y[g].x, a) * std::pow(points.y[g].y, b);
+          EXPECT_NEAR(sum, moment(a, b), 1e-12 * moment(0, 0)) << degree << ' ' << a;
+        }
+        if (polygon.size() > 3) continue;
+        const auto each_way = static_cast<std::size_t>(degree / 2 + 1);
+        EXPECT_LE(points.y.size(), degree <= 8 ? 16 : each_way * each_way) << degree;
+      }
+  const space::Polygon square{{1, 0}, {3, 1}, {2, 3}, {0, 2}};  // of area 5
+  for (int degree = 1; degree <= 12; ++degree) {
+    space::place_points(square, degree, true, false, points);
+    for (int a = 0; a <= degree; ++a) {
+      double sum = 0, expected = 0;
+      for (std::size_t g = 0; g < points.y.size(); ++g) {
+        const Vec2 p = points.y[g] - Vec2{1, 0};
+        sum += points.weight[g] * std::pow((2 * p.x + p.y) / 5, a) * std::pow((2 * p.y - p.x) / 5, degree - a);
+      }
+      expected = 5.0 / ((a + 1) * (degree - a + 1));  // of s^a t^b over the unit square
+      EXPECT_NEAR(sum, expected, 1e-12) << degree << ' ' << a;
+    }
+  }
+}
+
+// Normals meet masters that are strongly bent where they say: no image is beside its normal, wherever Newton's method for eight
+// lines at once has gone.
+TEST(SlaveFacets, MeetStronglyBentMastersOnTheirNormals) {
+  std::mt19937 random(13);
+  int points = 0;
+  for (const CellType of_slave : kinds)
+    for (const CellType type : {CellType::TRIA6, CellType::QUAD8, CellType::QUAD9})
+      for (int trial = 0; trial < 8; ++trial) {
+        Skin3 slave = shaken_facet(of_slave, 0.1, random), master = shaken_facet(type, 0.4, random);
+        for (std::size_t i = 2; i < master.coordinates.size(); i += 3) master.coordinates[i] += 0.4 * (trial % 5);
+        // the master faces the slave
+        Skin3 facing = master;
+        facing.surface.nodes = {};
+        std::vector<std::int32_t> nodes(master.surface.nodes[0].begin(), master.surface.nodes[0].end());
+        const int n = catalog::cell(type).n_vertices;
+        std::reverse(nodes.begin(), nodes.begin() + n);
+        std::reverse(nodes.begin() + n, nodes.begin() + 2 * n - 1);
+        facing.surface.nodes.push_back(nodes);
+        const ContactCells cells = pair(slave.view(), facing.view()).cells;
+        points += static_cast<int>(cells.weight.size());
+        EXPECT_LT(forces(slave, facing, cells).off_ray, 1e-9) << catalog::cell(of_slave).name << catalog::cell(type).name;
+      }
+  EXPECT_GT(points, 1'200);
+}
+
+// A needle of a master that the slave's normals meet at its far end: how far that is does not hang on the node it begins with.
+TEST(SlaveFacets, AreAsFarFromAMasterWhicheverNodeIsItsFirst) {
+  Skin3 slave;
+  for (const auto& [x, y] : {std::pair(-0.0955, 0.001), {-0.0955, 0.003}, {-0.0945, 0.003}, {-0.0945, 0.001}})
+    slave.add_node({x, y, 0});
+  slave.surface.add_cell(CellType::QUAD4, std::vector<std::int32_t>{0, 1, 2, 3});
+  for (int first = 0; first < 3; ++first)
+    for (const bool beyond : {false, true}) {
+      Skin3 master;
+      for (const Vec3 p : {Vec3{0, 0.1, -0.52}, Vec3{-0.1, 0, -1.02}, Vec3{0.1, 0, -0.02}}) master.add_node(p);
+      master.surface.add_cell(CellType::TRIA3, std::vector<std::int32_t>{first, (first + 1) % 3, (first + 2) % 3});
+      // the gap is 0.99, and the longest edge, by which limits are measured, 1.02
+      const Pairing found = pair(slave.view(), master.view(), {.distance_limit = beyond ? 0.85 : 1.0});
+      EXPECT_EQ(found.cells.size(), beyond ? 0u : 1u) << first;
+      EXPECT_EQ(found.count(Rejection::too_far), beyond ? 1 : 0) << first;
+    }
+}
+
+}  // namespace
+}  // namespace lacon::test
