@@ -124,8 +124,8 @@ def about(cached):
     return f"""# A clean machine
 
 What the README and the [tutorial](tutorial.md) tell a new user to do, done on a Debian 12 with nothing on it (debootstrap's smallest, in a chroot), step by step; then the
-package on a second one. `tests/package/clean_machine.py` made this page on {datetime.date.today():%d %B %Y}, of commit {version}, on {os.cpu_count()} processors that had
-other work too (load {os.getloadavg()[2]:.0f}), with {memory:.0f} GB of memory and a fast network.{" Compiled objects came from a cache: the times of building are not those of a new machine." if cached else ""}
+package on a second one. `tests/package/clean_machine.py` made this page on {datetime.date.today():%d %B %Y}, of commit {version}, on {os.cpu_count()} processors
+(load before the first step: {os.getloadavg()[1]:.1f}), with {memory:.0f} GB of memory and a fast network.{" Compiled objects came from a cache: the times of building are not those of a new machine." if cached else ""}
 """
 
 

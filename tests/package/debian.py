@@ -38,6 +38,9 @@ class Debian:
             if TRUSTED.exists():
                 shutil.copyfile(TRUSTED, self.root / ENVIRONMENT["NODE_EXTRA_CA_CERTS"][1:])
             run("mount", "-t", "proc", "proc", self.root / "proc")
+            run("mount", "-t", "devpts", "-o", "newinstance,ptmxmode=0666", "devpts", self.root / "dev/pts")  # terminals, which tests open
+            (self.root / "dev/ptmx").unlink(missing_ok=True)
+            (self.root / "dev/ptmx").symlink_to("pts/ptmx")
             (self.root / "etc/dpkg/dpkg.cfg.d/unsafe-io").write_text("force-unsafe-io\n", encoding="ascii")  # it need not survive a power failure
             self.home.mkdir()
             self.inside("apt-get", "-q", "update")
@@ -47,8 +50,9 @@ class Debian:
         return self
 
     def __exit__(self, *_):
-        if (self.root / "proc/self").exists():
-            run("umount", self.root / "proc")
+        for mounted, present in (("dev/pts", "dev/pts/ptmx"), ("proc", "proc/self")):
+            if (self.root / present).exists():
+                run("umount", self.root / mounted)
         if str(self.root) not in pathlib.Path("/proc/mounts").read_text(encoding="utf-8"):  # what is mounted is not ours to remove
             shutil.rmtree(self.root, ignore_errors=True)
 
