@@ -109,6 +109,7 @@ struct MumpsEngine::State {
     const MumpsSettings settings{.symmetric = symmetric,
                                  .memory_margin = options.memory_margin,
                                  .singular_pivot = form.is_exact() ? options.singular_pivot : doubtful_pivot,
+                                 .scaled = !form.is_exact(),
                                  .low_rank = form.low_rank ? low_rank_threshold() : 0,
                                  .out_of_core = form.out_of_core,
                                  .folder = options.folder};
@@ -281,6 +282,8 @@ void MumpsEngine::analyse(const SparseMatrix& matrix) {
   s.single.reset();
   s.row.clear();
   s.column.clear();
+  s.row.reserve(static_cast<std::size_t>(matrix.n_entries()));
+  s.column.reserve(static_cast<std::size_t>(matrix.n_entries()));
   for (std::int64_t row = 0; row < matrix.size(); ++row)
     for (std::int64_t k = matrix.rows()[row]; k < matrix.rows()[row + 1]; ++k) {
       s.row.push_back(static_cast<int>(row + 1));

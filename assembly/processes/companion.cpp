@@ -9,8 +9,10 @@
 #include <cerrno>
 #include <csignal>
 #include <cstring>
+#include <initializer_list>
 #include <system_error>
 #include <thread>
+#include <utility>
 
 #include "lacon/catalog/wording.hpp"
 
@@ -21,6 +23,45 @@ constexpr int not_started = 127;
 /// It ends by itself when nobody talks to it any more.
 constexpr std::chrono::milliseconds patience{2000}, nap{2};
 
+/// What this process has, and more.
+class Environment {
+ public:
+  explicit Environment(std::initializer_list<const char*> more) {
+    for (char** text = environ; *text; ++text) texts_.emplace_back(*text);
+    for (const char* text : more) set(text);
+  }
+  /// @param text NAME=VALUE
+  void set(std::string text) {
+    const std::string name = text.substr(0, text.find('=') + 1);
+    std::erase_if(texts_, [&](const std::string& t) { return t.starts_with(name); });
+    texts_.push_back(std::move(text));
+  }
+  /// For exec, as long as nothing is set.
+  char** words() {
+    words_.clear();
+    for (std::string& text : texts_) words_.push_back(text.data());
+    words_.push_back(nullptr);
+    return words_.data();
+  }
+
+ private:
+  std::vector<std::string> texts_;
+  std::vector<char*> words_;
+};
+
+/// A program with its standard streams. @return its process; negative: there can be no more
+pid_t start(char* const* words, char* const* environment, int input, int output) {
+  const pid_t process = vfork();  // fork() would copy the tables of all the memory that a large study has
+  if (process == 0) {
+    prctl(PR_SET_PDEATHSIG, SIGTERM);  // mpirun ends its ranks
+    dup2(input, STDIN_FILENO);
+    dup2(output, STDOUT_FILENO);
+    execvpe(words[0], words, environment);
+    _exit(not_started);
+  }
+  return process;
+}
+
 }  // namespace
 
 Companion::Companion(std::vector<std::string> command) {
@@ -30,22 +71,13 @@ Companion::Companion(std::vector<std::string> command) {
   int to[2], from[2];
   if (socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, to) || pipe2(from, O_CLOEXEC))
     throw std::system_error(errno, std::generic_category(), command.front());
-  process_ = fork();
-  if (process_ < 0) {  // its answer is an end at once
-    ended_ = part("cannot_be_started");
-  } else if (process_ == 0) {
-    prctl(PR_SET_PDEATHSIG, SIGTERM);  // mpirun ends its ranks
-    dup2(to[1], STDIN_FILENO);
-    dup2(from[1], STDOUT_FILENO);
-    setenv("OPENBLAS_NUM_THREADS", "1", 1);
-    setenv("OMP_NUM_THREADS", "1", 1);
-    if (geteuid() == 0) {  // in a container: who lets root run a study lets it run its processes
-      setenv("OMPI_ALLOW_RUN_AS_ROOT", "1", 1);
-      setenv("OMPI_ALLOW_RUN_AS_ROOT_CONFIRM", "1", 1);
-    }
-    execvp(words[0], words.data());
-    _exit(not_started);
+  Environment environment({"OPENBLAS_NUM_THREADS=1", "OMP_NUM_THREADS=1"});
+  if (geteuid() == 0) {  // in a container: who lets root run a study lets it run its processes
+    environment.set("OMPI_ALLOW_RUN_AS_ROOT=1");
+    environment.set("OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1");
   }
+  process_ = start(words.data(), environment.words(), to[1], from[1]);
+  if (process_ < 0) ended_ = part("cannot_be_started");  // its answer is an end at once
   close(to[1]);
   close(from[1]);
   to_ = to[0];

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstring>
+#include <exception>
 #include <numeric>
 #include <sstream>
 #include <stdexcept>
@@ -12,6 +13,7 @@
 #include "lacon/catalog/messages.hpp"
 #include "lacon/catalog/wording.hpp"
 #include "lacon/structures/executable.hpp"
+#include "lacon/structures/parallel.hpp"
 
 namespace lacon {
 namespace {
@@ -22,6 +24,8 @@ constexpr double loose = 100;
 constexpr int most_rounds = 3;
 /// Numbers that a process answers of a factorisation, before the equations of such pivots.
 constexpr std::size_t of_a_piece = 4;
+/// Columns of a Schur complement that a thread adds up at a time.
+constexpr std::size_t columns_together = 64;
 
 /// Places of some equations among themselves, from 1.
 std::vector<int> ranks(std::span<const std::int32_t> equations, std::span<const int> place) {
@@ -66,9 +70,16 @@ void MumpsProcesses::forget() noexcept {
 }
 
 std::vector<std::vector<double>> MumpsProcesses::ask(const Question& question, std::span<const int> process,
-                                                     const std::function<std::string(std::size_t)>& rest) {
+                                                     const std::function<std::string(std::size_t)>& rest,
+                                                     const std::function<void()>& meanwhile) {
   if (processes_.empty()) fail("SOLVER_8", {{"reason", part("cannot_be_started")}});
   for (std::size_t p = 0; p < process.size(); ++p) processes_[process[p]]->say(question.verb + rest(p));
+  std::exception_ptr thrown;
+  try {
+    if (meanwhile) meanwhile();
+  } catch (...) {
+    thrown = std::current_exception();  // answers are on their way
+  }
   std::vector<std::vector<double>> found(process.size());
   bool has_memory = true;
   std::string failure;
@@ -91,6 +102,7 @@ std::vector<std::vector<double>> MumpsProcesses::ask(const Question& question, s
   }
   if (!failure.empty()) throw std::runtime_error("lacon_mumps: " + failure);
   if (!has_memory) fail("SOLVER_2", {{"phase", question.phase}, {"equations", std::to_string(question.equations)}});
+  if (thrown) std::rethrow_exception(thrown);
   return found;
 }
 
@@ -111,11 +123,13 @@ TreeMumps<Real>::~TreeMumps() {
 
 template <class Real>
 std::vector<std::vector<double>> TreeMumps<Real>::ask(const char* verb, const char* phase, std::span<const SharedMemory> memory,
+                                                      const std::function<void()>& meanwhile,
                                                       std::span<const SharedMemory> more) {
-  return processes_.ask({verb, phase, local_.size()}, subtrees_.process, [&](std::size_t piece) {
+  const auto rest = [&](std::size_t piece) {
     return (std::is_same_v<Real, float> ? " float " : " double ") + std::to_string(piece) + ' ' + memory[piece].path() +
            (more.empty() ? "" : ' ' + more[piece].path());
-  });
+  };
+  return processes_.ask({verb, phase, local_.size()}, subtrees_.process, rest, meanwhile);
 }
 
 template <class Real>
@@ -151,34 +165,44 @@ void TreeMumps<Real>::number(const MumpsPattern& pattern) {
 }
 
 template <class Real>
-SharedMemory TreeMumps<Real>::pattern_of(std::int32_t number, const MumpsPattern& pattern) const {
-  const Piece& piece = pieces_[number];
-  const PieceSizes sizes{.size = static_cast<std::int64_t>(piece.size()),
-                         .entries = piece.n_entries,
-                         .border = static_cast<std::int64_t>(piece.border.size()),
-                         .is_symmetric = settings_.symmetric,
-                         .memory_margin = settings_.memory_margin,
-                         .singular_pivot = loose * settings_.singular_pivot,
-                         .low_rank = settings_.low_rank};
-  SharedMemory memory(sizeof sizes + sizeof(int) * static_cast<std::size_t>(2 * sizes.entries + sizes.size + sizes.border));
-  std::memcpy(memory.data(), &sizes, sizeof sizes);
-  int* const row = reinterpret_cast<int*>(memory.data() + sizeof sizes);
-  int* const column = row + sizes.entries;
-  int* const place = column + sizes.entries;
-  std::vector<int> in_border(top_.size());
-  for (std::size_t b = 0; b < piece.border.size(); ++b) in_border[piece.border[b]] = static_cast<int>(piece.own.size() + b);
-  const auto local = [&](int equation) {
-    return 1 + (subtrees_.of[equation - 1] < 0 ? in_border[local_[equation - 1]] : local_[equation - 1]);
+std::vector<SharedMemory> TreeMumps<Real>::patterns() const {
+  struct Next {
+    int *row, *column;
+    std::vector<int> in_border;  ///< by numbers of the top: from 1
   };
-  std::size_t next = 0;
-  for (std::size_t k = 0; k < pattern.row.size(); ++k)
-    if (subtree_of(k) == number) {
-      row[next] = local(pattern.row[k]);
-      column[next++] = local(pattern.column[k]);
-    }
-  std::ranges::copy(ranks(piece.own, pattern.place), place);
-  std::iota(place + piece.own.size(), place + sizes.size, 1 + static_cast<int>(piece.own.size()));
-  std::iota(place + sizes.size, place + sizes.size + sizes.border, 1 + static_cast<int>(piece.own.size()));
+  std::vector<SharedMemory> memory;
+  std::vector<Next> next;
+  for (const Piece& piece : pieces_) {
+    const PieceSizes sizes{.size = static_cast<std::int64_t>(piece.size()),
+                           .entries = piece.n_entries,
+                           .border = static_cast<std::int64_t>(piece.border.size()),
+                           .is_symmetric = settings_.symmetric,
+                           .memory_margin = settings_.memory_margin,
+                           .singular_pivot = loose * settings_.singular_pivot,
+                           .low_rank = settings_.low_rank};
+    memory.emplace_back(sizeof sizes + sizeof(int) * static_cast<std::size_t>(2 * sizes.entries + sizes.size + sizes.border));
+    std::memcpy(memory.back().data(), &sizes, sizeof sizes);
+    int* const row = reinterpret_cast<int*>(memory.back().data() + sizeof sizes);
+    int* const column = row + sizes.entries;
+    int* const place = column + sizes.entries;
+    const int first_of_border = static_cast<int>(piece.own.size()) + 1;
+    std::ranges::copy(ranks(piece.own, pattern_.place), place);
+    std::iota(place + piece.own.size(), place + sizes.size, first_of_border);
+    std::iota(place + sizes.size, place + sizes.size + sizes.border, first_of_border);
+    next.push_back({row, column, std::vector<int>(top_.size())});
+    for (std::size_t b = 0; b < piece.border.size(); ++b)
+      next.back().in_border[piece.border[b]] = first_of_border + static_cast<int>(b);
+  }
+  for (std::size_t k = 0; k < row_.size(); ++k) {
+    const std::int32_t piece = subtree_of(k);
+    if (piece < 0) continue;
+    const auto local = [&](int equation) {
+      const std::int32_t number = local_[equation - 1];
+      return subtrees_.of[equation - 1] < 0 ? next[piece].in_border[number] : number + 1;
+    };
+    *next[piece].row++ = local(row_[k]);
+    *next[piece].column++ = local(column_[k]);
+  }
   return memory;
 }
 
@@ -214,30 +238,39 @@ void TreeMumps<Real>::number_top() {
 template <class Real>
 void TreeMumps<Real>::add_to_top(const Piece& piece, std::span<const Real> schur, std::span<Real> values) const {
   const std::size_t n = piece.border.size();
-  for (std::size_t b = 0; b < n; ++b) {
-    const std::size_t first = settings_.symmetric ? b : 0;
-    std::int64_t k = top_pattern_.entry(piece.border[first], piece.border[b]);
+  parallel_for(n, columns_together, [&](const LoopBlock& block) {
+    const std::size_t first = settings_.symmetric ? block.first : 0;
+    std::vector<std::int64_t> next;  // of each column: rows go on from there
+    for (std::size_t b = block.first; b < block.last; ++b)
+      next.push_back(top_pattern_.entry(piece.border[settings_.symmetric ? b : 0], piece.border[b]));
     for (std::size_t a = first; a < n; ++a) {
-      while (top_pattern_.row[k] != piece.border[a] + 1) ++k;
-      values[k] += schur[a * n + b];
+      const int row = piece.border[a] + 1;
+      for (std::size_t b = block.first; b < (settings_.symmetric ? std::min(a + 1, block.last) : block.last); ++b) {
+        std::int64_t& k = next[b - block.first];
+        while (top_pattern_.row[k] != row) ++k;
+        values[k] += schur[a * n + b];
+      }
     }
-  }
+  });
+}
+
+template <class Real>
+void TreeMumps<Real>::analyse_top() {
+  if (top_factor_ || top_.empty()) return;
+  number_top();
+  top_pattern_.place = ranks(top_, pattern_.place);
+  auto factor = std::make_unique<Mumps<Real>>(settings_);
+  factor->analyse({.row = top_pattern_.row, .column = top_pattern_.column, .place = top_pattern_.place, .border = {}});
+  top_factor_ = std::move(factor);
 }
 
 template <class Real>
 MumpsForecast TreeMumps<Real>::analyse(const MumpsPattern& pattern) {
   number(pattern);
-  std::vector<SharedMemory> memory;
-  for (std::size_t p = 0; p < pieces_.size(); ++p) memory.push_back(pattern_of(static_cast<std::int32_t>(p), pattern));
-  const auto found = ask("analyse", "analysis", memory);
-  MumpsForecast whole;
-  if (!top_.empty()) {
-    number_top();
-    top_pattern_.place = ranks(top_, pattern.place);
-    top_factor_ = std::make_unique<Mumps<Real>>(settings_);
-    whole = top_factor_->analyse(
-        {.row = top_pattern_.row, .column = top_pattern_.column, .place = top_pattern_.place, .border = {}});
-  }
+  top_factor_.reset();
+  const auto found = ask("analyse", "analysis", patterns());
+  const double top = static_cast<double>(top_.size()), entries = top * top / (settings_.symmetric ? 2 : 1);  // all of them
+  MumpsForecast whole{.flops = entries * top * 2 / 3, .entries = entries, .bytes = 2 * sizeof(Real) * entries};
   for (const std::vector<double>& numbers : found) {
     whole.flops += numbers.at(0);
     whole.entries += numbers.at(1);
@@ -257,7 +290,7 @@ std::vector<std::vector<double>> TreeMumps<Real>::factorise_pieces(std::span<con
   }
   for (std::size_t k = 0; k < values.size(); ++k)
     if (const std::int32_t piece = subtree_of(k); piece >= 0) *next[piece]++ = values[k];
-  return ask("factorise", "factorisation", memory);
+  return ask("factorise", "factorisation", memory, [&] { analyse_top(); });
 }
 
 template <class Real>
@@ -408,7 +441,7 @@ void TreeMumps<Real>::substitute(std::span<const std::int64_t> offset, std::span
   std::vector<Real> top(count * top_.size(), 0);
   const std::vector<SharedMemory> sides = shared_out(offset, index, value, top);
   std::vector<SharedMemory> memory = memory_of_sides(count);
-  ask("reduce", "solution", memory, sides);
+  ask("reduce", "solution", memory, {}, sides);
   substitute_behind(memory, top, solution);
 }
 

@@ -30,9 +30,11 @@ class MumpsProcesses {
     std::size_t equations;  ///< likewise
   };
   /// Ask about each piece, all before the first answer is waited for. @param process of each  @param rest of the line about it
+  /// @param meanwhile what is done before answers are waited for; what it throws comes behind them
   /// @return the numbers of each answer  Throws SOLVER_2, SOLVER_8, std::runtime_error.
   std::vector<std::vector<double>> ask(const Question& question, std::span<const int> process,
-                                       const std::function<std::string(std::size_t piece)>& rest);
+                                       const std::function<std::string(std::size_t piece)>& rest,
+                                       const std::function<void()>& meanwhile = {});
 
  private:
   int n_;
@@ -73,14 +75,18 @@ class TreeMumps : public MumpsFactor<Real> {
     }
   };
   std::vector<std::vector<double>> ask(const char* verb, const char* phase, std::span<const SharedMemory> memory,
-                                       std::span<const SharedMemory> more = {});
+                                       const std::function<void()>& meanwhile = {}, std::span<const SharedMemory> more = {});
   void number(const MumpsPattern& pattern);
-  SharedMemory pattern_of(std::int32_t number, const MumpsPattern& pattern) const;
+  /// What the processes are told of each piece.
+  std::vector<SharedMemory> patterns() const;
   void number_top();
+  /// Numbered and analysed, if it has not been yet.
+  void analyse_top();
   /// Add the Schur complement of a piece.
   void add_to_top(const Piece& piece, std::span<const Real> schur, std::span<Real> values) const;
   /// The subtree that an entry of the matrix belongs to; -1: the top.
   std::int32_t subtree_of(std::size_t entry) const;
+  /// Factorise pieces, and see that the top has its analysis, which takes the time of the largest of them anyway.
   /// @param[out] memory with the Schur complement of each  @return what was answered of each
   std::vector<std::vector<double>> factorise_pieces(std::span<const Real> values, std::vector<SharedMemory>& memory);
   /// Equations whose pivots pieces cannot take. @return whether there are any
@@ -102,7 +108,7 @@ class TreeMumps : public MumpsFactor<Real> {
   std::vector<std::int32_t> local_;  ///< of each equation: its number in its piece, or in the top
   std::vector<std::int32_t> top_;    ///< equations of the top
   TopPattern top_pattern_;
-  std::unique_ptr<Mumps<Real>> top_factor_;  ///< where there is a top
+  std::unique_ptr<Mumps<Real>> top_factor_;  ///< where there is a top and its analysis
 };
 
 extern template class TreeMumps<double>;
