@@ -265,7 +265,7 @@ class Inspect(StudyTest):
                 self.assertIn(word, done.stderr)
             self.assertFalse((folder / "study_pairing").exists())
         done = self.inspect(self.folder)
-        self.assertEqual((done.returncode, "<STUDY_2>" in done.stderr), (2, True), done.stderr)
+        self.assertEqual((done.returncode, "<READER_7>" in done.stderr), (2, True), done.stderr)
         (self.folder / "study.comm").write_text("DEBUT()\nFIN()\n")
         self.assertEqual(self.run_lacon("study.comm").status, 0)
         done = self.inspect(self.folder)

@@ -60,7 +60,7 @@ class Reader(unittest.TestCase):
         self.assertIsNone(self.base.running)
         self.assertIn("5 instants to INST 1", repr(self.result))
         self.refused("READER_1", lambda: self.base["RESULTS"])
-        self.refused("STUDY_2", lambda: open_base(self.folder / "none.base"))
+        self.refused("READER_7", lambda: open_base(self.folder / "none.base"))
 
     def test_the_result_that_is_meant_has_displacements(self):
         """Beside a course of temperatures, that a command file made to heat the bodies, the computed result is the one to look at."""

@@ -151,7 +151,7 @@ class Content(StudyTest):
     def test_a_base_that_is_none_is_said(self):
         done = self.run_tool("report", "none.base")
         self.assertEqual((done.returncode, list(self.folder.iterdir())), (2, []))
-        self.assertIn("<F> <STUDY_2>", done.stderr)
+        self.assertIn("<F> <READER_7>", done.stderr)
 
     def test_the_page_is_in_the_language_it_is_asked_in(self):
         """Every text of the page's sources has its French, and a page made in French says so."""

@@ -329,10 +329,10 @@ class ReadBase(Base):
     """A base that is looked at: not locked, not changed."""
 
     def __init__(self, folder, where, kinds=()):
-        """@param kinds as of Base; without them for who reads files alone. @throws AsterError STUDY_2, STUDY_6"""
+        """@param kinds as of Base; without them for who reads files alone. @throws AsterError READER_7, STUDY_6"""
         self._start(folder, kinds)
         if not (self.folder / _registry).is_file():
-            fail("STUDY_2", where, folder=self.folder)
+            fail("READER_7", where, folder=self.folder)
         self._read(where)
         self.unfinished = Unfinished(self)
 

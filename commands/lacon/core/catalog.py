@@ -167,7 +167,7 @@ def instead(kind, path, otherwise):
 def cells():
     """name of a cell type -> its row, with what catalog/generate.py derives. @throws FileNotFoundError where the catalogue is not built"""
     if not _is_json():
-        raise FileNotFoundError(f"{location()} holds the rows alone: build Lacon, or let LACON_CATALOG name catalog.json")
+        raise FileNotFoundError(f"{location()} holds the rows alone: put the folder of a built `lacon` into PATH, or let LACON_CATALOG name its catalog.json")
     return {row["name"]: row for row in _json()["cells"]}
 
 

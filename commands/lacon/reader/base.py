@@ -19,7 +19,7 @@ class Base:
         self._registered()
 
     def _registered(self):
-        """The base as it is now. @throws AsterError STUDY_2, STUDY_6"""
+        """The base as it is now. @throws AsterError READER_7, STUDY_6"""
         return look_into(self.folder, "lacon")
 
     def _labels(self, kind):
@@ -98,5 +98,5 @@ class _Files:
 
 
 def open_base(folder):
-    """The base of a study, `study.base`. @throws AsterError STUDY_2 where there is none, STUDY_6 where it cannot be read"""
+    """The base of a study, `study.base`. @throws AsterError READER_7 where there is none, STUDY_6 where it cannot be read"""
     return Base(folder)
