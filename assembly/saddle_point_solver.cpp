@@ -10,6 +10,7 @@
 #include "lacon/assembly/any_signs.hpp"
 #include "lacon/assembly/gmres.hpp"
 #include "lacon/structures/hdf5.hpp"
+#include "lacon/structures/parallel.hpp"
 
 namespace lacon {
 namespace {
@@ -22,6 +23,8 @@ constexpr double operations_of_low_rank = 3;
 // speed, and in those of a block of sparse ones, at arithmetic's. Measured (docs/performance.md).
 constexpr double operations_of_a_solution = 40, operations_in_a_block = 2.5;
 constexpr int block_size = 64;
+/// Unknowns to which all columns are added while they are at hand.
+constexpr std::size_t rows_together = 2048;
 /// Errors of a Schur complement over that of its factor.
 constexpr double blur = 2;
 /// Of a motion that is looked for in a right side of any directions: what is left of it where its direction is unlucky.
@@ -175,10 +178,13 @@ class SaddlePointSolver::Preconditioner {
   bool is_on(Eigen::Index s) const { return static_cast<std::size_t>(s) < n_on_; }
   /// To x what unknowns y of the scaled complement stand for.
   void add(const VectorXd& y, std::span<double> x) const {
-    Map<VectorXd> solution(x.data(), static_cast<Eigen::Index>(x.size()));
     const VectorXd side = scale_.asDiagonal() * y;
-    for (Eigen::Index s = 0; s < side.size(); ++s)
-      solution -= side[s] * Map<const Eigen::VectorXf>(columns_[s]->inverse.data(), solution.size()).cast<double>();
+    parallel_for(x.size(), rows_together, [&](const LoopBlock& block) {
+      const auto size = static_cast<Eigen::Index>(block.last - block.first);
+      Map<VectorXd> solution(x.data() + block.first, size);
+      for (Eigen::Index s = 0; s < side.size(); ++s)
+        solution -= side[s] * Map<const Eigen::VectorXf>(columns_[s]->inverse.data() + block.first, size).cast<double>();
+    });
     for (Eigen::Index s = 0; s < side.size(); ++s) x[rows_[s]] = is_on(s) ? side[s] : 0.0;
   }
   /// What the equation of a switched row sees of x.
