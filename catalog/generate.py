@@ -64,6 +64,7 @@ def load(folder):
         "elements": complete_elements(elements),
         **read(folder / "behaviours.toml"),
         "quantities": read(folder / "quantities.toml")["quantity"],
+        "result_fields": complete_result_fields(read(folder / "quantities.toml")),
         "messages": messages,
         "parts": parts,
         "french": {"messages": french, "parts": french_parts},
@@ -73,6 +74,16 @@ def load(folder):
         "help_in_french": read(folder / "help.fr.toml"),
         "options_in_french": read(folder / "options.fr.toml"),
     }
+
+
+def complete_result_fields(rows):
+    """[(name of a field of results, its types)], families written out."""
+    complete = [(name, row["types"]) for row in rows["result_field"] for name in row["names"]]
+    complete += [(f"{name}_{place}", [f"{place}_{row['quantity']}"]) for row in rows["result_family"] for name in row["names"] for place in row["places"]]
+    quantities = {row["name"] for row in rows["quantity"]}
+    for name, types in complete:
+        check(all(t.partition("_")[2] in quantities for t in types), f"quantities.toml: {name} is of an unknown quantity: {types}")
+    return complete
 
 
 def complete_elements(rows):
@@ -299,6 +310,7 @@ def write_cpp(catalog, writer):
         for d in catalog["deformation"]]
     tables["quantities", "QuantityRow"] = [
         f"{{{text(q['name'])}, {writer.strings(q['components'])}}}" for q in catalog["quantities"]]
+    tables["result_fields", "ResultFieldRow"] = [f"{{{text(name)}, {writer.strings(types)}}}" for name, types in catalog["result_fields"]]
     tables["messages", "MessageRow"] = [
         f"{{{text(i)}, '{m['severity']}', {text(m['text'])}, {text(m['do'])}}}" for i, m in catalog["messages"].items()]
     french = catalog["french"]

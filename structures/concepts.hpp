@@ -67,11 +67,11 @@ struct Load {
   std::string model;
   std::string kind;                ///< "cine" or "meca"
   std::vector<LoadTerm> imposed;   ///< displacements of nodes
-  std::vector<LoadTerm> nodal;     ///< forces on nodes
+  std::vector<LoadTerm> nodal;     ///< forces on nodes; SIGM at no node (-1): those of the field of stresses `function`
   std::vector<LoadTerm> pressure;  ///< PRES (positive towards the body) and CISA_2D (along the tangent) on skin cells
   std::vector<LoadTerm> force;     ///< FX, FY, FZ on cells, for each unit of their length, area or volume
   std::vector<LoadTerm> gravity;   ///< FX, FY, FZ on body cells, for each unit of mass
-  std::vector<LoadTerm> strain;    ///< EPXX, ..., EPYZ on body cells: strains without stress
+  std::vector<LoadTerm> strain;    ///< EPXX, ..., EPYZ on body cells: strains without stress; EPSI on none (-1): a field
   std::vector<Relation> relations;
 };
 

@@ -4,6 +4,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <functional>
 
@@ -12,6 +13,7 @@
 #include "lacon/operators/affe_char/nodal_forces.hpp"
 #include "lacon/operators/affe_char/places.hpp"
 #include "lacon/operators/affe_char/relations.hpp"
+#include "lacon/operators/fields/expected.hpp"
 #include "lacon/operators/meshing/skin.hpp"
 #include "lacon/operators/program/study_function.hpp"
 
@@ -193,6 +195,19 @@ void load_rotation(Load& load, const LoadScene& scene, const Keywords& keywords)
   }
 }
 
+/// The field that a keyword names, of cells or their integration points, on the model's mesh, in place of values by cell.
+/// Throws CREACHAMP_5, FIELDS_6.
+LoadTerm term_of_field(const LoadScene& scene, const Keywords& factor, const std::string& keyword,
+                       const std::string& quantity) {
+  const std::string id = factor.concept_id(keyword);
+  const Field field = scene.base.field_head(id);
+  if (field.mesh != scene.model.mesh)
+    fail("CREACHAMP_5", {{"first", scene.base.label(scene.model.mesh)}, {"second", scene.base.label(field.mesh)}});
+  const std::string types[] = {"ELGA_" + quantity, "ELEM_" + quantity};
+  check_field(field, std::array<std::string_view, 2>{types[0], types[1]}, factor.path(keyword), scene.base.label(id));
+  return {-1, keyword, {0.0, id}};
+}
+
 /// PRE_EPSI: strains without stress on body cells; the components are those of the element's stresses.
 void load_strains(Load& load, const LoadScene& scene, const Keywords& keywords) {
   GivenTerms given(scene, "CHARGE_5", load.strain);
@@ -215,6 +230,8 @@ void load_strains(Load& load, const LoadScene& scene, const Keywords& keywords) 
           given.add(cell, part("place_cell", {{"cell", cell_name(cell)}}), component, value, named.source);
         }
       }
+  for (const Keywords& factor : keywords.factors("PRE_EPSI"))
+    if (factor.has("EPSI")) load.strain.push_back(term_of_field(scene, factor, "EPSI", "EPSI_R"));
 }
 
 /// The displacements that an occurrence imposes, and those that LIAISON='ENCASTRE' or BLOCAGE='DEPLACEMENT' hold: all of the
@@ -243,19 +260,32 @@ Load affe_char(const Mesh& mesh, const Model& model, Registry& registry, const B
   load_gravity(load, scene, keywords);
   load_rotation(load, scene, keywords);
   load_strains(load, scene, keywords);
+  for (const Keywords& factor : keywords.factors("PRE_SIGM"))
+    load.nodal.push_back(term_of_field(scene, factor, "SIGM", "SIEF_R"));
   add_relations(load, scene, keywords);
 
-  const auto cells = [](const std::vector<LoadTerm>& terms) {
+  std::size_t stressed = 0;  // cells of fields
+  const auto cells = [&](const std::vector<LoadTerm>& terms) {
     std::vector<std::int32_t> places;
-    for (const LoadTerm& term : terms) places.push_back(term.place);
+    for (const LoadTerm& term : terms) {
+      if (term.place >= 0)
+        places.push_back(term.place);
+      else if (const Field field = base.field(term.value.function); term.component == "SIGM")
+        stressed = field.support.size();
+      else
+        places.insert(places.end(), field.support.begin(), field.support.end());
+    }
     std::sort(places.begin(), places.end());
     return static_cast<std::size_t>(std::unique(places.begin(), places.end()) - places.begin());
   };
-  const std::tuple<std::size_t, const char*> lines[] = {
-      {load.imposed.size(), "imposed_dofs"},          {cells(load.nodal), "nodes_under_forces"},
-      {cells(load.pressure), "cells_under_pressure"}, {cells(load.force), "cells_under_forces"},
-      {cells(load.gravity), "cells_under_gravity"},   {cells(load.strain), "cells_with_strains"},
-      {load.relations.size(), "relations_between"}};
+  const std::tuple<std::size_t, const char*> lines[] = {{load.imposed.size(), "imposed_dofs"},
+                                                        {cells(load.nodal), "nodes_under_forces"},
+                                                        {cells(load.pressure), "cells_under_pressure"},
+                                                        {cells(load.force), "cells_under_forces"},
+                                                        {cells(load.gravity), "cells_under_gravity"},
+                                                        {cells(load.strain), "cells_with_strains"},
+                                                        {stressed, "cells_with_stresses"},
+                                                        {load.relations.size(), "relations_between"}};
   std::string text;
   for (const auto& [count, what] : lines)
     if (count > 0) text += (text.empty() ? "" : ", ") + part(what, {{"count", std::to_string(count)}});

@@ -15,6 +15,7 @@
 #include "lacon/operators/evolution/behaviours.hpp"
 #include "lacon/operators/evolution/static_problem.hpp"
 #include "lacon/operators/fields/criteria.hpp"
+#include "lacon/operators/fields/expected.hpp"
 #include "lacon/operators/fields/extrapolation.hpp"
 #include "lacon/operators/fields/layout.hpp"
 #include "lacon/operators/fields/mechanics.hpp"
@@ -180,7 +181,7 @@ class Setting {
   }
   ModelPoints& points() {
     if (!points_) {
-      model_ = base_.model(result_.model);
+      model_ = model_of(base_, result_);
       points_.emplace(mesh_, model_, registry());
     }
     return *points_;
@@ -461,7 +462,7 @@ void check_loads(const Base& base, const Result& from, std::int64_t order, const
 
 void calc_champ(const Order& order, const Base& base) {
   const Keywords& keywords = order.keywords;
-  const Result from = base.result(keywords.concept_id("RESULTAT"));
+  const Result from = with_model(base, base.result(keywords.concept_id("RESULTAT")), keywords);
   std::vector<std::string> asked;
   for (const char* family : {"CONTRAINTE", "DEFORMATION", "CRITERES", "VARI_INTERNE", "FORCE", "ENERGIE"})
     for (const std::string& name : keywords.texts(family)) asked.push_back(name);

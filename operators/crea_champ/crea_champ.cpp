@@ -14,6 +14,7 @@
 #include "lacon/catalog/messages.hpp"
 #include "lacon/operators/crea_champ/field_of_table.hpp"
 #include "lacon/operators/fields/course.hpp"
+#include "lacon/operators/fields/expected.hpp"
 #include "lacon/operators/fields/extrapolation.hpp"
 #include "lacon/operators/fields/layout.hpp"
 #include "lacon/operators/fields/selection.hpp"
@@ -93,9 +94,7 @@ void set_presence(Field& field, std::size_t row, std::size_t component, Field::P
 }
 
 [[noreturn]] void refuse_type(const Field& field, const FieldType& wanted) {
-  fail("CREACHAMP_9", {{"field", field.name},
-                       {"type", fmt::format("{}_{}", location_name(field.location), field.quantity)},
-                       {"wanted", wanted.text}});
+  fail("CREACHAMP_9", {{"field", field.name}, {"type", type_of(field)}, {"wanted", wanted.text}});
 }
 
 void check_type(const Field& field, const FieldType& wanted) {

@@ -6,6 +6,7 @@
 
 #include "lacon/catalog/messages.hpp"
 #include "lacon/catalog/wording.hpp"
+#include "lacon/operators/fields/expected.hpp"
 #include "lacon/operators/program/study_function.hpp"
 
 namespace lacon {
@@ -83,6 +84,7 @@ void crea_resu(const Order& order, const Base& base) {
         if (!mesh) mesh = base.mesh(result.mesh);
         own = evaluated(base, field, *mesh, instant, factor.path("CHAM_GD"));
       }
+      check_result_field(own, name, factor.path("CHAM_GD"), base.label(factor.concept_id("CHAM_GD")));
       own.name = name;
       own.order = order_at(result, instant, factor);
       own.instant = instant;

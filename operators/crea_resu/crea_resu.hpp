@@ -4,7 +4,8 @@
 
 namespace lacon {
 
-/// Throws CREARESU_1 (no name, or no instant), CREARESU_2 (meshes differ), CREARESU_3 (functions elsewhere than at nodes).
+/// Throws CREARESU_1 (no name, or no instant), CREARESU_2 (meshes differ), CREARESU_3 (functions elsewhere than at nodes),
+/// FIELDS_6, FIELDS_7 (a field of another kind than its name says).
 void crea_resu(const Order& order, const Base& base);
 
 }  // namespace lacon

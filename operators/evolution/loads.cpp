@@ -6,6 +6,9 @@
 
 #include "lacon/catalog/messages.hpp"
 #include "lacon/operators/evolution/static_problem.hpp"
+#include "lacon/operators/fields/extrapolation.hpp"
+#include "lacon/operators/fields/layout.hpp"
+#include "lacon/operators/fields/mechanics.hpp"
 
 namespace lacon {
 
@@ -131,6 +134,26 @@ class Reader {
   std::map<std::string, std::shared_ptr<const StudyFunction>> functions_;
 };
 
+/// PRE_SIGM: the forces that a field of stresses makes at nodes, on the initial geometry. Throws CREACHAMP_4 where it has other
+/// points than the model's elements.
+std::vector<LoadTerm> forces_of_stress(const StaticProblem& problem, const Base& base, const std::string& id) {
+  const Mesh& mesh = problem.mesh;
+  Field stress = base.field(id);
+  stress.name = base.label(id);
+  ModelPoints points(mesh, problem.model, *problem.registry);
+  stress = moved_to(Ground(mesh, points), stress, field_type("ELGA_SIEF_R"), false);
+  std::vector<char> bodies(mesh.n_cells());
+  for (std::size_t cell = 0; cell < bodies.size(); ++cell) bodies[cell] = points.is_solid(cell);
+  stress = restrict_to_cells(stress, bodies);
+  const Field forces = nodal_forces(mesh, points, stress, std::vector<char>(mesh.n_cells(), 0), mesh.coordinates,
+                                    std::vector<double>(stress.n_rows(), 1.0), "FORC_NODA");
+  std::vector<LoadTerm> terms;
+  for (std::size_t row = 0; row < forces.n_rows(); ++row)
+    for (std::size_t d = 0; d < forces.n_components(); ++d)
+      terms.push_back({forces.support[row], forces.components[d], {forces.at(row, d), ""}});
+  return terms;
+}
+
 bool vary(const TimedLoad& load) {
   return load.nodal.depends_on_time() ||
          std::any_of(load.cells.begin(), load.cells.end(), [](const LoadedCells& c) { return c.values.depends_on_time(); });
@@ -152,7 +175,7 @@ std::vector<double> TimedLoad::force(const StaticProblem& problem, double instan
 }
 
 TimedLoad read_load(const StaticProblem& problem, const Base& base, const ResultLoad& excit, const std::string& path) {
-  const Load load = base.load(excit.load);
+  Load load = base.load(excit.load);
   TimedLoad timed;
   timed.label = base.label(excit.load);
   if (!excit.function.empty()) {
@@ -161,6 +184,12 @@ TimedLoad read_load(const StaticProblem& problem, const Base& base, const Result
   }
   Reader reader(problem, base, timed.label);
   timed.values = reader.nodal(load.imposed, timed.dofs);
+  const auto field = std::find_if(load.nodal.begin(), load.nodal.end(), [](const LoadTerm& term) { return term.place < 0; });
+  if (field != load.nodal.end()) {
+    const std::vector<LoadTerm> forces = forces_of_stress(problem, base, field->value.function);
+    load.nodal.erase(field);
+    load.nodal.insert(load.nodal.end(), forces.begin(), forces.end());
+  }
   timed.nodal = reader.nodal(load.nodal, timed.nodal_dofs);
   const bool follows = excit.type == "SUIV";
   if (follows &&

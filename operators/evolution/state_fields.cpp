@@ -9,6 +9,7 @@
 #include "lacon/catalog/wording.hpp"
 #include "lacon/operators/contact/contact_field.hpp"
 #include "lacon/operators/evolution/prestrain.hpp"
+#include "lacon/operators/fields/expected.hpp"
 #include "lacon/structures/displacement.hpp"
 
 namespace lacon {
@@ -237,8 +238,9 @@ StaticState archived_state(const StaticProblem& problem, const Base& base, const
 }
 
 StaticState given_state(const StaticProblem& problem, const Base& base, const Keywords& given) {
-  const auto read = [&](const char* keyword) {
+  const auto read = [&](const char* keyword, const std::string_view type) {
     Field field = base.field(given.concept_id(keyword));
+    check_field(field, {&type, 1}, given.path(keyword), base.label(given.concept_id(keyword)));
     if (field.mesh != problem.model.mesh)
       fail("EVOLUTION_1", {{"first", given.path(keyword)}, {"second", "MODELE"}, {"what", part("meshes")}});
     field.name = keyword;
@@ -247,7 +249,7 @@ StaticState given_state(const StaticProblem& problem, const Base& base, const Ke
   const auto label = [&](const char* keyword) { return base.label(given.concept_id(keyword)); };
   StaticState state;
   state.displacement.assign(problem.n_dofs(), 0.0);
-  if (given.has("DEPL")) state.displacement = nodal_values(problem.mesh, read("DEPL"), problem.components);
+  if (given.has("DEPL")) state.displacement = nodal_values(problem.mesh, read("DEPL", "NOEU_DEPL_R"), problem.components);
   for (std::size_t dof = 0; dof < problem.n_dofs(); ++dof)
     if (!problem.exists[dof]) state.displacement[dof] = 0;
   for (const ElementSet& set : problem.solids)
@@ -255,16 +257,16 @@ StaticState given_state(const StaticProblem& problem, const Base& base, const Ke
                             .variable = std::vector<double>(set.cells.size() * set.n_variables(), 0.0),
                             .thermal = {},
                             .parameter = {}});
-  const auto fill = [&](const char* keyword, std::vector<double> PointValues::*values, auto names) {
+  const auto fill = [&](const char* keyword, const char* type, std::vector<double> PointValues::*values, auto names) {
     if (!given.has(keyword)) return;
-    const Field field = read(keyword);
+    const Field field = read(keyword, type);
     const std::vector<std::int32_t> place = places_in(field, problem.mesh.n_cells());
     for (std::size_t s = 0; s < problem.solids.size(); ++s)
       if (const std::vector<std::string> own = names(problem.solids[s]); !own.empty())
         state.points[s].*values = points_of(field, place, problem.solids[s], own, label(keyword));
   };
-  fill("SIGM", &PointValues::stress, stress_names);
-  fill("VARI", &PointValues::variable, variable_names);
+  fill("SIGM", "ELGA_SIEF_R", &PointValues::stress, stress_names);
+  fill("VARI", "ELGA_VARI_R", &PointValues::variable, variable_names);
   return state;
 }
 

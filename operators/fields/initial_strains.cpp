@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <map>
 
+#include "lacon/operators/fields/layout.hpp"
 #include "lacon/operators/fields/tensor.hpp"
 
 namespace lacon {
@@ -10,10 +11,35 @@ namespace {
 
 constexpr std::size_t width = tensor_axes.size();
 
+/// A field of strains of cells at the integration points. Throws CREACHAMP_4 where it has others than the model's elements.
+Field at_points(const Base& base, const std::string& id, const Ground& ground) {
+  Field field = base.field(id);
+  field.name = base.label(id);
+  return moved_to(ground, field, field_type("ELGA_EPSI_R"), false);
+}
+
 }  // namespace
 
 void InitialStrains::add(const Base& base, const ResultLoad& excit, const Mesh& mesh, ModelPoints& points) {
-  const std::vector<LoadTerm> terms = base.load(excit.load).strain;
+  std::vector<LoadTerm> terms = base.load(excit.load).strain;
+  const auto fields = std::stable_partition(terms.begin(), terms.end(), [](const LoadTerm& term) { return term.place >= 0; });
+  for (auto term = fields; term != terms.end(); ++term) {
+    Part part;
+    const Field field = at_points(base, term->value.function, Ground(mesh, points));
+    if (!excit.function.empty()) part.multiplier.emplace(base, excit.function);
+    part.first.assign(mesh.n_cells(), -1);
+    for (std::size_t i = 0; i < field.support.size(); ++i)
+      part.first[static_cast<std::size_t>(field.support[i])] = static_cast<std::int64_t>(field.first_row(i));
+    part.values = TimedValues(field.n_rows() * width);
+    const TensorRows tensors(field, "EP");
+    for (std::size_t row = 0; row < field.n_rows(); ++row) {
+      const Eigen::Matrix3d tensor = tensors[row];
+      for (std::size_t k = 0; k < width; ++k) part.values.set(row * width + k, tensor(tensor_axes[k].i, tensor_axes[k].j));
+    }
+    part.values.settle();
+    parts_.push_back(std::move(part));
+  }
+  terms.erase(fields, terms.end());
   if (terms.empty()) return;
   Part part;
   if (!excit.function.empty()) part.multiplier.emplace(base, excit.function);

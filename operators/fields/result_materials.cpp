@@ -3,13 +3,13 @@
 #include <algorithm>
 #include <map>
 
+#include "lacon/operators/fields/expected.hpp"
 #include "lacon/operators/fields/extrapolation.hpp"
 #include "lacon/operators/fields/tensor.hpp"
 
 namespace lacon {
-
 ResultMaterials::ResultMaterials(const Base& base, const Result& result, const Mesh& mesh, ModelPoints& points)
-    : base_(base), result_(result), mesh_(mesh), points_(points), field_(base.material_field(result.material_field)) {
+    : base_(base), result_(result), mesh_(mesh), points_(points), field_(materials_of(base, result)) {
   MaterialTemperatures temperatures = read_temperatures(base, result.material_field, mesh);
   table_ = std::make_unique<MaterialTable>(read_materials(base, field_, temperatures));
   thermal_ = std::make_unique<ThermalMaterials>(base, field_, std::move(temperatures));

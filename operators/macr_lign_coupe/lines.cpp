@@ -4,6 +4,7 @@
 #include <fmt/ranges.h>
 
 #include <Eigen/Geometry>
+#include <cmath>
 #include <numbers>
 
 #include "lacon/catalog/messages.hpp"
@@ -81,6 +82,7 @@ void locate(std::vector<LinePoint>& points, const Mesh& mesh, const CellLocator&
   const auto show = [&](const LinePoint& point) {
     return fmt::format("({:.6g})", fmt::join(point.position.begin(), point.position.begin() + mesh.dimension, ", "));
   };
+  const double silent = line.optional_real("DISTANCE_ALARME").value_or(limit ? HUGE_VAL : 0.0);
   int outside = 0;
   double furthest = 0;
   std::string where;
@@ -91,14 +93,14 @@ void locate(std::vector<LinePoint>& points, const Mesh& mesh, const CellLocator&
     const auto cell = static_cast<std::size_t>(found->cell);
     points[i].nodes.assign(mesh.cells[cell].begin(), mesh.cells[cell].end());
     points[i].weights = std::move(found->weights);
-    if (!found->outside) continue;
+    if (!found->outside || found->distance <= silent) continue;
     ++outside;
     if (found->distance >= furthest) {
       furthest = found->distance;
       where = show(points[i]);
     }
   }
-  if (outside > 0 && !limit)
+  if (outside > 0)
     inform("LIGNCOUPE_2", {{"keyword", line.path("TYPE")},
                            {"count", std::to_string(outside)},
                            {"distance", fmt::format("{:.3g}", furthest)},

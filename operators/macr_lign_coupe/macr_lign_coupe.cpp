@@ -17,6 +17,7 @@
 #include "lacon/operators/fields/selection.hpp"
 #include "lacon/operators/fields/tensor.hpp"
 #include "lacon/operators/macr_lign_coupe/lines.hpp"
+#include "lacon/operators/macr_lign_coupe/sums.hpp"
 
 namespace lacon {
 namespace {
@@ -330,25 +331,6 @@ void add_values(Table& table, const Row& head, const std::vector<LinePoint>& poi
   }
 }
 
-/// The six quantities of one component along a line.
-std::array<double, 6> moments(const std::vector<LinePoint>& points, const std::vector<double>& f) {
-  const double length = points.back().along;
-  double mean = 0, first = 0;
-  for (std::size_t i = 0; i + 1 < points.size(); ++i) {
-    const double step = points[i + 1].along - points[i].along;
-    const double arm = points[i].along - length / 2, next = points[i + 1].along - length / 2;
-    mean += step * (f[i] + f[i + 1]) / 2 / length;
-    // Simpson's rule, exact for the product of two linear functions
-    first += step * (f[i] * arm + f[i + 1] * next + (f[i] + f[i + 1]) * (arm + next)) / 6 * 12 / (length * length);
-  }
-  return {mean,
-          first,
-          *std::min_element(f.begin(), f.end()),
-          *std::max_element(f.begin(), f.end()),
-          mean - first / 2,
-          mean + first / 2};
-}
-
 void add_means(Table& table, const Row& head, const std::vector<LinePoint>& points, const Values& values, const Keywords& line,
                const std::string& field) {
   if (points.back().along == 0) fail("LIGNCOUPE_6", {{"keyword", line.path("OPERATION")}});
@@ -374,6 +356,22 @@ void add_means(Table& table, const Row& head, const std::vector<LinePoint>& poin
   }
 }
 
+/// RESULTANTE: the sums over the points under their names; with MOMENT under those of axes, with moments about POINT.
+void add_resultant(Table& table, Row row, const std::vector<LinePoint>& points, const Values& values, const Keywords& line) {
+  if (line.text("TYPE") == "SEGMENT" || line.text("TYPE") == "ARC")
+    inform("LIGNCOUPE_13", {{"keyword", line.path("RESULTANTE")}, {"count", std::to_string(points.size())}});
+  std::vector<double> origin = line.has("POINT") ? line.reals("POINT") : std::vector<double>();
+  origin.resize(3, 0.0);
+  const Resultant sum = resultant(points, values.components, values.at, origin);
+  for (std::size_t c = 0; c < values.components.size() && !line.has("MOMENT"); ++c)
+    row.push_back({values.components[c], "R", sum.components[c]});
+  for (std::size_t d = 0; d < 3 && line.has("MOMENT"); ++d)
+    if (sum.along[d]) row.push_back({fmt::format("RESULT_{}", "XYZ"[d]), "R", sum.force[d]});
+  for (std::size_t d = 0; d < 3 && line.has("MOMENT"); ++d)
+    row.push_back({fmt::format("MOMENT_{}", "XYZ"[d]), "R", sum.moment[d]});
+  add_row(table, row);
+}
+
 /// What the rows of a line are called: INTITULE, the group, or its number.
 std::string title(const Keywords& line, std::size_t number) {
   for (const char* keyword : {"INTITULE", "GROUP_NO", "GROUP_MA"})
@@ -397,19 +395,20 @@ std::vector<std::int32_t> searched_cells(const Mesh& mesh, const Keywords& keywo
   return cells;
 }
 
-/// The components of NOM_CMP, of the line or of all lines; without it all.
+/// The components of RESULTANTE, or of NOM_CMP, of the line or of all lines; without them all.
 std::vector<std::string> wanted_components(const Field& field, const std::string& name, const Keywords& keywords,
                                            const Keywords& line) {
   const bool whole = line.has("INVARIANT") || line.has("ELEM_PRINCIPAUX");  // they are those of the whole tensor
-  for (const Keywords* given : {&line, &keywords}) {
-    if (whole || !given->has("NOM_CMP")) continue;
-    for (const std::string& component : given->texts("NOM_CMP"))
+  const std::pair<const Keywords*, const char*> choices[] = {{&line, "RESULTANTE"}, {&line, "NOM_CMP"}, {&keywords, "NOM_CMP"}};
+  for (const auto& [given, keyword] : choices) {
+    if (whole || !given->has(keyword)) continue;
+    for (const std::string& component : given->texts(keyword))
       if (field.component(component) < 0)
-        fail("CREACHAMP_14", {{"keyword", given->path("NOM_CMP")},
+        fail("CREACHAMP_14", {{"keyword", given->path(keyword)},
                               {"component", component},
                               {"field", name},
                               {"known", fmt::format("{}", fmt::join(field.components, ", "))}});
-    return given->texts("NOM_CMP");
+    return given->texts(keyword);
   }
   return field.components;
 }
@@ -447,7 +446,9 @@ void macr_lign_coupe(const Order& order, const Base& base) {
         fail("LIGNCOUPE_9", {{"keyword", line.path("TYPE")},
                              {"field", subject.name},
                              {"components", fmt::format("{}", fmt::join(values.components, ", "))}});
-      if (line.text("OPERATION") == "MOYENNE")
+      if (line.has("RESULTANTE"))
+        add_resultant(table, head, points, values, line);
+      else if (line.text("OPERATION") == "MOYENNE")
         add_means(table, head, points, values, line, subject.name);
       else
         add_values(table, head, points, values);

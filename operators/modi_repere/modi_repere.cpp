@@ -10,6 +10,7 @@
 
 #include "lacon/catalog/messages.hpp"
 #include "lacon/operators/fields/axes.hpp"
+#include "lacon/operators/fields/expected.hpp"
 #include "lacon/operators/fields/layout.hpp"
 #include "lacon/operators/fields/selection.hpp"
 
@@ -50,7 +51,7 @@ class Repere {
  public:
   Repere(const Order& order, const Base& base, const Result& result)
       : mesh_(base.mesh(result.mesh)),
-        model_(base.model(result.model)),
+        model_(model_of(base, result)),
         registry_(order.plugins),
         points_(mesh_, model_, registry_),
         affe_(order.keywords.factors("AFFE")) {

@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "lacon/catalog/messages.hpp"
+#include "lacon/operators/fields/expected.hpp"
 #include "lacon/operators/fields/mechanics.hpp"
 #include "lacon/operators/fields/result_materials.hpp"
 #include "lacon/operators/fields/selection.hpp"
@@ -17,8 +18,8 @@ namespace {
 /// The result that POST_ELEM names, with all that its fields are integrated by.
 struct Subject {
   Subject(const Order& order, const Base& base)
-      : result(base.result(order.keywords.concept_id("RESULTAT"))),
-        model(base.model(result.model)),
+      : result(with_model(base, base.result(order.keywords.concept_id("RESULTAT")), order.keywords)),
+        model(model_of(base, result)),
         mesh(base.mesh(model.mesh)),
         registry(order.plugins),
         points(mesh, model, registry),

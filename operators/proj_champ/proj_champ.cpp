@@ -26,7 +26,8 @@ struct Place {
 /// Where a mesh is taken from: nodes in the cells of another one.
 class Projection {
  public:
-  Projection(const Mesh& from, const Mesh& to, const Keywords& keywords) : from_(from) {
+  Projection(const Mesh& from, const Mesh& to, const Keywords& keywords)
+      : from_(from), zero_on_(keywords.yes("PROL_ZERO") ? to.n_nodes() : 0) {
     std::vector<Keywords> parts = keywords.factors("VIS_A_VIS");
     if (parts.empty()) parts.emplace_back();
     std::vector<char> done(to.n_nodes(), 0);
@@ -59,7 +60,17 @@ class Projection {
     made.support.clear();
     made.values.clear();
     made.present.clear();
+    std::size_t next = 0;  // node that a row is yet to be made for, where there is one for each
+    const auto zeros_up_to = [&](std::size_t end) {
+      for (; next < std::min(end, zero_on_); ++next) {
+        made.support.push_back(static_cast<std::int32_t>(next));
+        made.values.insert(made.values.end(), width, 0.0);
+        made.present.insert(made.present.end(), width, Field::there);
+      }
+    };
     for (const Place& place : places_) {
+      zeros_up_to(static_cast<std::size_t>(place.node));
+      next = static_cast<std::size_t>(place.node) + 1;
       const auto nodes = from_.cells[static_cast<std::size_t>(place.from.cell)];
       std::vector<double> values(width, 0.0);
       std::vector<std::uint8_t> present(width, 1);
@@ -71,10 +82,13 @@ class Projection {
           else
             present[c] = 0;
       }
+      for (std::size_t c = 0; c < width && zero_on_ > 0; ++c)
+        if (!std::exchange(present[c], Field::there)) values[c] = 0;
       made.support.push_back(place.node);
       made.values.insert(made.values.end(), values.begin(), values.end());
       made.present.insert(made.present.end(), present.begin(), present.end());
     }
+    zeros_up_to(zero_on_);
     return without_empty_rows(made);
   }
 
@@ -103,6 +117,7 @@ class Projection {
   }
 
   const Mesh& from_;
+  std::size_t zero_on_;  ///< PROL_ZERO: 0 is the value of those of so many nodes that have none
   std::vector<Place> places_;
 };
 

@@ -273,6 +273,27 @@ FIN()
             ("CREA_TABLE(RESU=_F(RESULTAT=R, INST=1.0, NOM_CHAM='SIEF_ELGA', NOM_CMP='SIYY', NOEUD='N1'))", "TEST_RESU_5"),
             ("CREA_TABLE(RESU=_F(RESULTAT=R, INST=1.0, NOM_CMP='DX', NOEUD='N1'))", "KEYWORD_2")])
 
+    def test_a_cell_is_a_number_or_names_a_concept(self):
+        """EXTR_TABLE: numbers of Python's, or a copy that stays when what it was made of goes."""
+        self.ok(self.run_study("""
+DEBUT()
+F = DEFI_FONCTION(NOM_PARA='INST', VALE=(0, 0, 1, 2))
+T = CREA_TABLE(LISTE=(_F(PARA='N', LISTE_I=(1, 2)), _F(PARA='X', LISTE_R=(0.5, 1.5)), _F(PARA='NAME', LISTE_K=('F', 'T'))))
+n = EXTR_TABLE(TABLE=T, TYPE_RESU='ENTIER', NOM_PARA='N', FILTRE=_F(NOM_PARA='X', VALE=1.5))
+x = EXTR_TABLE(TABLE=T, TYPE_RESU='REEL', NOM_PARA='X', FILTRE=_F(NOM_PARA='N', VALE_I=1))
+assert (n, type(n), x, type(x)) == (2, int, 0.5, float), (n, x)
+assert EXTR_TABLE(TABLE=T, TYPE_RESU='REEL', NOM_PARA='N', FILTRE=_F(NOM_PARA='N', CRIT_COMP='MAXI')) == 2.0
+G = EXTR_TABLE(TABLE=T, TYPE_RESU='FONCTION_SDASTER', NOM_PARA='NAME', FILTRE=_F(NOM_PARA='N', VALE_I=1))
+DETRUIRE(CONCEPT=_F(NOM=F))
+assert G(0.5) == 1.0
+FIN()
+"""))
+        self.all_refused("POURSUITE()", [
+            ("EXTR_TABLE(TABLE=T, TYPE_RESU='REEL', NOM_PARA='X')", "TABLE_16"),
+            ("EXTR_TABLE(TABLE=T, TYPE_RESU='REEL', NOM_PARA='Y')", "TABLE_1"),
+            *((f"EXTR_TABLE(TABLE=T, TYPE_RESU='{kind}', NOM_PARA='{name}', FILTRE=_F(NOM_PARA='N', VALE_I=2))", "TABLE_17")
+              for kind, name in (("ENTIER", "X"), ("REEL", "NAME"), ("FONCTION_SDASTER", "NAME"), ("TABLE_SDASTER", "X")))])
+
     def test_parameters_of_a_result(self):
         self.ok(self.run_study(STUDY + """
 P = RECU_TABLE(CO=R, NOM_PARA='INST')

@@ -51,6 +51,9 @@ class CreaResu(OperatorTest):
         with self.create("list_of_reals_7", "list_of_reals") as file:
             file["values"] = np.array([0.0, 1.0])
         for identifier, one in (("CREARESU_2", {"CHAM_GD": concept("field_5"), "INST": [1.0]}),
+                                ("FIELDS_6", {"CHAM_GD": concept("field_3"), "INST": [1.0], "NOM_CHAM": "DEPL"}),
+                                ("FIELDS_6", {"CHAM_GD": concept("field_3"), "INST": [1.0], "NOM_CHAM": "SIEF_ELGA"}),
+                                ("FIELDS_7", {"CHAM_GD": concept("field_3"), "INST": [1.0], "NOM_CHAM": "UT01_ELGA"}),
                                 ("CREARESU_1", {"CHAM_GD": concept("field_3"), "LIST_INST": concept("list_of_reals_7"), "NUME_INIT": 3}),
                                 ("CREARESU_1", {"CHAM_GD": concept("field_3"), "INST": [1.0], "NOM_CHAM": None})):
             with self.subTest(identifier):
@@ -58,6 +61,9 @@ class CreaResu(OperatorTest):
                     {"NOM_CHAM": "TEMP", "CHAM_GD": concept("field_3"), "INST": [0.0]},
                     {name: value for name, value in {"NOM_CHAM": "TEMP", **one}.items() if value is not None}]}, result="result_6")
                 self.assert_refused(run, identifier)
+                if identifier == "FIELDS_6":  # what it is, and what fits
+                    self.assertIn("NOEU_TEMP_R", run.stderr)
+                    self.assertIn({"DEPL": "NOEU_DEPL_R", "SIEF_ELGA": "ELGA_SIEF_R"}[one["NOM_CHAM"]], run.stderr)
 
 
 if __name__ == "__main__":

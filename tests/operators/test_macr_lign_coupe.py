@@ -59,6 +59,22 @@ class MacrLignCoupe(OperatorTest):
     def column(self, rows, name):
         return [row[name] for row in rows]
 
+    def test_sums_over_nodes_and_their_moments(self):
+        """DX = x, DY = x y at (0, 0), (1, 0), (2, 0) and (1, 1), (0, 1) of the lower squares: closed forms, about the origin and about (1, 2)."""
+        self.plane()
+        rows = self.lines({"TYPE": "GROUP_NO", "GROUP_NO": "LINE", "RESULTANTE": ["DY", "DX"]})
+        self.assertEqual([list(row) for row in rows], [[*HEAD, "DY", "DX"]] * 2)
+        self.assertEqual([(row["DX"], row["DY"]) for row in rows], [(3, 0), (6, 0)])
+        rows = self.lines({"TYPE": "GROUP_MA", "GROUP_MA": "TOP", "RESULTANTE": ["DX", "DY"], "MOMENT": ["DRZ"], "POINT": [1.0, 2.0]})
+        self.assertEqual(list(rows[0]), [*HEAD, "RESULT_X", "RESULT_Y", "MOMENT_X", "MOMENT_Y", "MOMENT_Z"])
+        # nodes (0, 1), (1, 1), (2, 1): forces (0, 0), (1, 1), (2, 2); arms (-1, -1), (0, -1), (1, -1): 0 + 1 + 2 + 2
+        self.assertEqual([[row[n] for n in list(row)[5:]] for row in rows], [[3, 3, 0, 0, 5], [6, 6, 0, 0, 10]])
+        self.assertNotIn("LIGNCOUPE_13", self.messages)
+        segment = {"NB_POINTS": 3, "COOR_ORIG": [0.0, 0.5], "COOR_EXTR": [2.0, 0.5], "RESULTANTE": ["DX"]}
+        self.assertEqual([row["DX"] for row in self.lines(segment)], [3, 6])
+        self.assertIn("LIGNCOUPE_13", self.messages)
+        self.refuses("CREACHAMP_14", {**segment, "RESULTANTE": ["FX"]}, "RESULTANTE", "FX")
+
     def test_a_linear_field_along_a_segment_through_distorted_bricks(self):
         points, cells = bricks(4)
         gradient = np.array([[1.0, -2.0, 0.5], [0.3, 0.0, 4.0], [0.0, 1.0, 1.0]])
@@ -239,8 +255,10 @@ class MacrLignCoupe(OperatorTest):
         rows = self.lines(line, NUME_ORDRE=[0])
         self.assertEqual(self.messages, ["LIGNCOUPE_2"])
         np.testing.assert_allclose(self.column(rows, "DX"), [0.5, 1, 1.5], atol=1e-7)
-        self.lines({**line, "DISTANCE_MAX": 0.11})
-        self.assertEqual(self.messages, [])
+        for more, told in (({"DISTANCE_MAX": 0.11}, []), ({"DISTANCE_ALARME": 0.11}, []), ({"DISTANCE_ALARME": 0.09}, ["LIGNCOUPE_2"]),
+                           ({"DISTANCE_MAX": 0.11, "DISTANCE_ALARME": 0.09}, ["LIGNCOUPE_2"])):
+            self.lines({**line, **more})
+            self.assertEqual(self.messages, told, more)
         self.refuses("LIGNCOUPE_1", {**line, "DISTANCE_MAX": 0.09}, "the point 1", "(0.5, -0.1)", "LIGN_COUPE/TYPE")
         self.refuses("LIGNCOUPE_1", {**line, "COOR_EXTR": [1.5, -1.0]}, "the point 2")
 

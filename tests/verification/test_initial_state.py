@@ -74,7 +74,11 @@ class InitialState(StudyTest):
                              ("dict(reuse=FIRST, CHAM_MATER=OTHER)", "EVOLUTION_12"),
                              ("dict(reuse=WHOLE, ETAT_INIT=_F(EVOL_NOLI=WHOLE, INST=2.0))", "DETR_NUME_SUIV"),
                              ("dict(reuse=WHOLE)", "ETAT_INIT=_F(EVOL_NOLI=WHOLE)"),
-                             ("dict(RESULTAT=FIRST)", "without reuse")):
+                             ("dict(RESULTAT=FIRST)", "without reuse"),
+                             *((f"dict(ETAT_INIT=_F({keyword}=CREA_CHAMP(OPERATION='EXTR', RESULTAT=CALC_CHAMP(reuse=FIRST, RESULTAT=FIRST,"
+                                f" CONTRAINTE='SIEF_ELNO'), NOM_CHAM='{name}', TYPE_CHAM='{kind}', INST=2.0)))", "FIELDS_6")
+                               for keyword, name, kind in (("DEPL", "SIEF_ELGA", "ELGA_SIEF_R"), ("SIGM", "SIEF_ELNO", "ELNO_SIEF_R"),
+                                                           ("VARI", "SIEF_ELGA", "ELGA_SIEF_R")))):
             with self.subTest(second):
                 run = self.solve(elastic, STATE_SECOND=second)
                 self.assertEqual(run.status, 2, run.stdout[-3000:] + run.stderr[-3000:])

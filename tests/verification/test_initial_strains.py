@@ -58,6 +58,97 @@ CALC_CHAMP(reuse=R[-1], RESULTAT=R[-1], CONTRAINTE='SIEF_NOEU', DEFORMATION=('EP
                 across = {"D_PLAN": 0.0}.get(modelisation, given["EPZZ"])
                 self.assertLessEqual(np.abs(result.at_nodes("EPSI_NOEU", 2, "EPZZ") - across).max(), near * 1e-3)
 
+    def test_stress_is_that_of_the_strain_less_the_initial_one(self):
+        """At each point of a body that takes a part of an uneven initial strain: SIEF = C : (EPSI - initial), EPME = EPSI - initial, and energies are
+        halves of SIEF : EPME. By functions, or as a field of their values at the points: the same."""
+        cases, text, meshes = [("D_PLAN", "QUAD8"), ("C_PLAN", "TRIA6"), ("AXIS", "QUAD8"), ("3D", "HEXA8")], "", []
+        lame, shear = YOUNG * POISSON / ((1 + POISSON) * (1 - 2 * POISSON)), YOUNG / 2 / (1 + POISSON)
+        for modelisation, kind in cases:
+            names = tuple(STRAIN) if modelisation == "3D" else FLAT
+            text += f"""
+names = {names}
+columns = ['X%d' % (k + 1) for k in range(len(names))]
+model({20 + len(meshes)}, '{modelisation}')
+H = AFFE_CHAR_CINE(MODELE=MODEL, MECA_IMPO=(_F(GROUP_MA='LEFT', DX=0, DY=0{", DZ=0" if modelisation == "3D" else ""}), _F(GROUP_MA='TOP', DY=1e-3)))
+S = AFFE_CHAR_MECA_F(MODELE=MODEL, PRE_EPSI=_F(GROUP_MA='BODY', **{{name: formula('%r * (1 + X * Y * INST)' % STRAIN[name]) for name in names}}))
+solve(_F(CHARGE=H, FONC_MULT=RAMP), _F(CHARGE=S, FONC_MULT=ONE))
+A = R[-1]
+CALC_CHAMP(reuse=A, RESULTAT=A, DEFORMATION=('EPSI_ELGA', 'EPME_ELGA'), ENERGIE='ENEL_ELGA')
+NODES = CREA_CHAMP(TYPE_CHAM='NOEU_GEOM_R', OPERATION='EXTR', MAILLAGE=MESH, NOM_CHAM='GEOMETRIE')
+PLACES = CREA_CHAMP(TYPE_CHAM='ELGA_GEOM_R', OPERATION='DISC', MODELE=MODEL, CHAM_GD=NODES)
+LAWS = CREA_CHAMP(TYPE_CHAM='ELGA_NEUT_F', OPERATION='AFFE', MODELE=MODEL, AFFE=_F(GROUP_MA='BODY', NOM_CMP=columns,
+                  VALE_F=[FORMULE(NOM_PARA=('X', 'Y'), VALE='%r * (1 + X * Y)' % STRAIN[name]) for name in names]))
+VALUES = CREA_CHAMP(TYPE_CHAM='ELGA_NEUT_R', OPERATION='EVAL', CHAM_F=LAWS, CHAM_PARA=PLACES)
+FREE = CREA_CHAMP(TYPE_CHAM='ELGA_EPSI_R', OPERATION='ASSE', MODELE=MODEL, ASSE=_F(TOUT='OUI', CHAM_GD=VALUES, NOM_CMP=columns, NOM_CMP_RESU=names))
+D = AFFE_CHAR_MECA(MODELE=MODEL, PRE_EPSI=_F(EPSI=FREE))
+B = MECA_STATIQUE(MODELE=MODEL, CHAM_MATER=FIELD, EXCIT=(_F(CHARGE=H), _F(CHARGE=D)), INST=1.0)
+CALC_CHAMP(reuse=B, RESULTAT=B, DEFORMATION='EPME_ELGA')
+for name in ('DEPL', 'SIEF_ELGA', 'EPME_ELGA'):
+    one, other = (numpy.array(r.getField(name, k).getValues()) for r, k in ((A, 2), (B, 1)))
+    assert abs(one - other).max() <= 1e-9 * abs(one).max(), name
+def rows(field):
+    return field.toSimpleFieldOnCells().getValues()[0].reshape(-1, len(field.getComponents()))
+strain, elastic, stress, free = (rows(f) for f in (*(A.getField(name, 2) for name in ('EPSI_ELGA', 'EPME_ELGA', 'SIEF_ELGA')), FREE))
+expected = {2 * shear!r} * elastic
+expected[:, :3] += {lame!r} * elastic[:, :3].sum(axis=1)[:, None]
+assert abs(stress - expected).max() < 1e-9 * abs(stress).max(), 'stress'
+known = [c for c in range(len(names)) if c != 2 or '{modelisation}' != 'C_PLAN']  # the strain across a plate follows from the stress
+assert abs(elastic - (strain - free))[:, known].max() < 1e-9 * abs(free).max(), 'elastic strain'
+energy = rows(A.getField('ENEL_ELGA', 2)).ravel()
+double = numpy.array([1, 1, 1] + [2] * (len(names) - 3))
+assert abs(energy - 0.5 * (stress * elastic * double).sum(axis=1)).max() < 1e-9 * energy.max(), 'energy'
+sums = [POST_ELEM(RESULTAT=A, INST=1.0, **{{which: _F(TOUT='OUI')}})['TOTALE', 1] for which in ('ENER_ELAS', 'ENER_POT')]
+assert abs(sums[0] / sums[1] - 1) < 1e-9, sums
+"""
+            meshes.append(flat_brick(kind) if modelisation == "3D" else flat_block(kind, start=1.0 if modelisation == "AXIS" else 0.0))
+        run = self.run_text(meshes, f"import numpy\nSTRAIN = {STRAIN}\n{text}")
+        self.assertEqual(run.status, 0, run.stdout[-3000:] + run.stderr[-3000:])
+
+    def test_the_forces_of_a_stress_as_load(self):
+        """PRE_SIGM = C : e, of cells, makes the strain e and the stress C : e, which it does not take off, and no reactions. The forces of a stress at
+        points that is in equilibrium with a load are that load."""
+        cases, text, meshes = [("D_PLAN", "QUAD8"), ("C_PLAN", "TRIA6"), ("AXIS", "QUAD4"), ("3D", "TETRA10")], "", []
+        for modelisation, kind in cases:
+            stress, gradient = self.stressed(modelisation)
+            moved = {f"D{c}": " + ".join(f"({float(g)!r}) * {axis}" for g, axis in zip(row, "XYZ")) for c, row in zip("XYZ", gradient)}
+            text += f"""
+model({20 + len(meshes)}, '{modelisation}')
+H = AFFE_CHAR_CINE_F(MODELE=MODEL, MECA_IMPO=_F(GROUP_MA='LEFT', **{{name: formula(text) for name, text in {moved}.items()}}))
+F = CREA_CHAMP(TYPE_CHAM='CART_SIEF_R', OPERATION='AFFE', MAILLAGE=MESH, AFFE=_F(TOUT='OUI', NOM_CMP={tuple(stress)}, VALE={tuple(stress.values())}))
+S = AFFE_CHAR_MECA(MODELE=MODEL, PRE_SIGM=_F(SIGM=F))
+solve(_F(CHARGE=H, FONC_MULT=RAMP), _F(CHARGE=S, FONC_MULT=RAMP))
+CALC_CHAMP(reuse=R[-1], RESULTAT=R[-1], CONTRAINTE='SIEF_NOEU', FORCE='REAC_NODA')
+O = AFFE_CHAR_CINE(MODELE=MODEL, MECA_IMPO=_F(GROUP_MA='LEFT', DX=0, DY=0{", DZ=0" if modelisation == "3D" else ""}))
+P = AFFE_CHAR_MECA(MODELE=MODEL, PRES_REP=_F(GROUP_MA='TOP', PRES=2.0))
+A = MECA_STATIQUE(MODELE=MODEL, CHAM_MATER=FIELD, EXCIT=(_F(CHARGE=O), _F(CHARGE=P)), INST=1.0)
+F = CREA_CHAMP(TYPE_CHAM='ELGA_SIEF_R', OPERATION='EXTR', RESULTAT=A, NOM_CHAM='SIEF_ELGA', NUME_ORDRE=1)
+Q = AFFE_CHAR_MECA(MODELE=MODEL, PRE_SIGM=_F(SIGM=F))
+B = MECA_STATIQUE(MODELE=MODEL, CHAM_MATER=FIELD, EXCIT=(_F(CHARGE=O), _F(CHARGE=Q)), INST=1.0)
+u, v = (numpy.array(r.getField('DEPL', 1).getValues()) for r in (A, B))
+assert abs(u - v).max() <= 1e-9 * abs(u).max()
+"""
+            meshes.append(flat_brick(kind) if modelisation == "3D" else flat_block(kind, start=1.0 if modelisation == "AXIS" else 0.0))
+        for (modelisation, kind), result in zip(cases, self.solved(meshes, "import numpy\n" + text)):
+            with self.subTest(f"{modelisation} {kind}"):
+                stress, gradient = self.stressed(modelisation)
+                for order, factor in ((1, 0.5), (2, 1.0)):
+                    self.assert_near(self.displacement(result, order, len(gradient)), factor * result.points @ gradient.T, 1e-8)
+                    for component, value in stress.items():
+                        found = result.at_nodes("SIEF_NOEU", order, component)
+                        self.assertLessEqual(np.abs(found - factor * value).max(), 1e-8 * YOUNG * 1e-3, component)
+                    self.assertLessEqual(np.abs(result.at_nodes("REAC_NODA", order, "DX")).max(), 1e-8 * YOUNG * 1e-3)
+
+    def stressed(self, modelisation):
+        """(C : e as SIXX, ...; u = G x of that strain e), which in the plane has no part across."""
+        lame, shear = YOUNG * POISSON / ((1 + POISSON) * (1 - 2 * POISSON)), YOUNG / 2 / (1 + POISSON)
+        strain, gradient = strained(modelisation)
+        if modelisation in ("D_PLAN", "C_PLAN"):
+            strain["EPZZ"], gradient = 0.0, np.array([[strain["EPXX"], strain["EPXY"]], [strain["EPXY"], strain["EPYY"]]])
+        if modelisation == "C_PLAN":
+            strain["EPZZ"] = -POISSON / (1 - POISSON) * (strain["EPXX"] + strain["EPYY"])
+        trace = sum(strain[f"EP{a}{a}"] for a in "XYZ")
+        return {f"SI{name[2:]}": float(2 * shear * e + (lame * trace if name[2] == name[3] else 0)) for name, e in strain.items()}, gradient
+
     def test_a_held_bar_is_pressed(self):
         """Held at both ends: sigma = -E e, also on a first instant alone and with MECA_STATIQUE; mechanical strains and energies are the stress's."""
         text = """
@@ -127,6 +218,10 @@ solve(_F(CHARGE=H), _F(CHARGE=S, FONC_MULT=ONE))
         for expected, text in (
                 ("BEHAVIOUR_6", "S = AFFE_CHAR_MECA(MODELE=MODEL, PRE_EPSI=_F(GROUP_MA='BODY', EPXX=1e-3))\n"
                                 "solve(_F(CHARGE=H), _F(CHARGE=S), COMPORTEMENT=_F(RELATION='ELAS', DEFORMATION='GDEF_LOG'))"),
+                ("FIELDS_6", "F = CREA_CHAMP(TYPE_CHAM='NOEU_SIEF_R', OPERATION='AFFE', MAILLAGE=MESH, AFFE=_F(TOUT='OUI', NOM_CMP='SIXX', VALE=1.0))\n"
+                             "AFFE_CHAR_MECA(MODELE=MODEL, PRE_SIGM=_F(SIGM=F))"),
+                ("FIELDS_6", "F = CREA_CHAMP(TYPE_CHAM='ELGA_SIEF_R', OPERATION='AFFE', MODELE=MODEL, AFFE=_F(TOUT='OUI', NOM_CMP='SIXX', VALE=1.0))\n"
+                             "AFFE_CHAR_MECA(MODELE=MODEL, PRE_EPSI=_F(EPSI=F))"),
                 ("CHARGE_9", "AFFE_CHAR_MECA(MODELE=MODEL, PRE_EPSI=_F(GROUP_MA='BODY', EPXZ=1e-3))"),
                 ("CHARGE_6", "AFFE_CHAR_MECA(MODELE=MODEL, PRE_EPSI=_F(GROUP_MA='LEFT', EPXX=1e-3))")):
             run = self.run_text([flat_block("QUAD4")], "model(20, 'D_PLAN')\n"

@@ -211,6 +211,17 @@ def _pointwise(change):
     return operation
 
 
+def _inverse(call, factor):
+    """The function that takes values back to abscissae: points with x and y exchanged, and with them names and interpolations."""
+    points = factor["FONCTION"].points()
+    x, y = (points.y, points.x) if points.y[0] <= points.y[-1] else (points.y[::-1], points.x[::-1])
+    if any(not a < b for a, b in zip(x, x[1:])):
+        call.fail("FUNCTION_22", "INVERSE/FONCTION", label=factor["FONCTION"].label)
+    ends = ["LINEAIRE" if end == "LINEAIRE" else "EXCLU" for end in (points.left, points.right)]
+    left, right = ends if x is points.y else ends[::-1]
+    return _made(call, x, y, Piecewise(x, y, points.interpolation[::-1], left, right, points.component, points.parameter))
+
+
 def _mult(call, factor):
     x = _abscissae(call, factor["FONCTION"])
     return _made(call, x, [math.prod(f(v) for f in factor["FONCTION"]) for v in x], factor["FONCTION"][0].points())
@@ -280,7 +291,7 @@ def _parts(call, concept, ends):
 
 _operations = {
     "COMB": _comb, "ENVELOPPE": _enveloppe, "DERIVE": _derive, "INTEGRE": _integre, "MULT": _mult, "COMPOSE": _compose, "ASSE": _asse,
-    "MOYENNE": _moyenne, "FRACTILE": _fractile, "REGR_POLYNOMIALE": _regr_polynomiale, "MAX": _max, "ABS": _pointwise(lambda factor, y: abs(y)), "INVERSE": _pointwise(lambda factor, y: 1.0 / y),
+    "MOYENNE": _moyenne, "FRACTILE": _fractile, "REGR_POLYNOMIALE": _regr_polynomiale, "MAX": _max, "ABS": _pointwise(lambda factor, y: abs(y)), "INVERSE": _inverse,
     "PUISSANCE": _pointwise(lambda factor, y: y ** factor["EXPOSANT"]),
 }
 

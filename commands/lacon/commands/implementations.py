@@ -10,7 +10,7 @@ _families = {
     "formulas": ("FORMULE",),
     "materials": ("DEFI_MATERIAU",),
     "test_resu": ("TEST_RESU",),
-    "table_commands": ("CREA_TABLE", "IMPR_TABLE", "TEST_TABLE", "RECU_TABLE"),
+    "table_commands": ("CREA_TABLE", "IMPR_TABLE", "TEST_TABLE", "RECU_TABLE", "EXTR_TABLE"),
     "calc_table": ("CALC_TABLE",),
     "function_commands": ("IMPR_FONCTION", "TEST_FONCTION", "RECU_FONCTION", "CALC_FONCTION", "INFO_FONCTION"),
     "information": ("COPIER", "INFO_RESU", "MACR_INFO_MAIL"),

@@ -12,8 +12,11 @@ _own = {"id", "label", "version", "command", "keywords"}
 
 
 def copier(call):
-    source = call.keywords["CONCEPT"]
+    return copy_of(call, call.keywords["CONCEPT"])
 
+
+def copy_of(call, source):
+    """The concept that a call makes, with the content of another."""
     def fill(file):
         with source.open() as there:
             for name, value in there.attrs.items():

@@ -1,12 +1,13 @@
-"""CREA_TABLE, IMPR_TABLE, TEST_TABLE, RECU_TABLE."""
+"""CREA_TABLE, IMPR_TABLE, TEST_TABLE, RECU_TABLE, EXTR_TABLE."""
 
 from ..core.catalog import part
+from ..core.concepts import Concept
 from ..core.files import whole
 from ..core.late import numpy
 from ..tables import filters, printing, storage
 from ..tables.curves import Curve
 from ..tables.table import Table, crossed, type_of
-from . import checks, places
+from . import checks, information, places
 from .drawing import draw
 
 
@@ -236,3 +237,27 @@ def _kept(call, result, name):
         if name not in kept:
             call.fail("TABLE_10", "NOM_TABLE", label=result.label, name=name, known=", ".join(kept) or part("none"))
         return storage.read_table(kept[name])
+
+
+# ---------------------------------------------------------------------------------------------------- EXTR_TABLE
+
+#: TYPE_RESU of concepts -> their types here
+_concepts = {"CHAM_GD_SDASTER": ("field",), "CHAM_NO_SDASTER": ("field",), "CHAM_ELEM": ("field",), "CARTE_SDASTER": ("field",), "TABLE_SDASTER": ("table",),
+             "FONCTION_SDASTER": ("function", "formula"), "NAPPE_SDASTER": ("function",), "EVOL_NOLI": ("result",), "EVOL_ELAS": ("result",),
+             "EVOL_THER": ("result",)}
+
+
+def extr_table(call):
+    """@return a number of Python's, or a concept of its own with the content of the one that the cell names"""
+    k = call.keywords
+    table, name, kind = filters.filtered(call, k["TABLE"].EXTR_TABLE(), k.get("FILTRE", ())), k["NOM_PARA"], k["TYPE_RESU"]
+    cells = filters.column_of(call, table, name, "NOM_PARA").values()
+    if len(cells) != 1:
+        call.fail("TABLE_16", "FILTRE" if "FILTRE" in k else "NOM_PARA", name=name, count=len(cells))
+    is_number = not isinstance(cells[0], str)
+    if is_number and (kind == "REEL" or (kind == "ENTIER" and isinstance(cells[0], int))):
+        return float(cells[0]) if kind == "REEL" else cells[0]
+    there = None if is_number else call.study.names.values.get(cells[0].strip())
+    if kind in ("REEL", "ENTIER") or not isinstance(there, Concept) or there.type not in _concepts[kind]:
+        call.fail("TABLE_17", "TYPE_RESU", name=name, cell=cells[0], kind=kind)
+    return information.copy_of(call, there)
