@@ -167,6 +167,8 @@ class CleanUp(LauncherTest):
     def test_a_destroyed_concept_is_refused_with_the_place(self):
         text = STUDY + "held = [M0]\nDETRUIRE(NOM=M0)\nN = CREA_MAILLAGE(MAILLAGE=held[0], LINE_QUAD=_F(TOUT='OUI'))\n"
         self.refused(self.run_study(text), "KEYWORD_14", "M0", "destroyed at study.comm:13")
+        text = STUDY + "held = [R]\nDETRUIRE(NOM=R)\nheld[0].getField('DEPL', 1)\n"
+        self.refused(self.run_study(text), "KEYWORD_14", "R", "destroyed at study.comm:13")
 
     def test_destruction_keeps_what_others_refer_to(self):
         self.ok(self.run_study(STUDY + "DETRUIRE(NOM=(M, MO))\nX = AFFE_CHAR_CINE\nFIN()\n"))

@@ -2,6 +2,7 @@
 
 import json
 
+from .messages import fail
 from .nearest import nearest
 
 #: type of a concept -> the part that says it
@@ -49,7 +50,9 @@ class Concept:
         raise AttributeError(f"{self.label or self.id}, a {self.type.replace('_', ' ')}, has no '{name}' here{nearest(name, known)}")
 
     def open(self):
-        """Its HDF5 file, open for reading."""
+        """Its HDF5 file, open for reading. @throws AsterError KEYWORD_14 behind DETRUIRE"""
+        if self.destroyed:
+            fail("KEYWORD_14", path=self.type, label=self.label or self.id, place=self.destroyed)
         return self.base.open(self.id)
 
 
