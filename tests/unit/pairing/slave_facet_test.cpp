@@ -1,6 +1,7 @@
 // The parts of pairing in space: what a slave facet may meet, where points of polygons lie, where normals meet bent masters.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <random>
 
@@ -152,20 +153,27 @@ TEST(SlaveFacets, MeetStronglyBentMastersOnTheirNormals) {
 
 // A needle of a master that the slave's normals meet at its far end: how far that is does not hang on the node it begins with.
 TEST(SlaveFacets, AreAsFarFromAMasterWhicheverNodeIsItsFirst) {
-  Skin3 slave;
-  for (const auto& [x, y] : {std::pair(-0.0955, 0.001), {-0.0955, 0.003}, {-0.0945, 0.003}, {-0.0945, 0.001}})
-    slave.add_node({x, y, 0});
-  slave.surface.add_cell(CellType::QUAD4, std::vector<std::int32_t>{0, 1, 2, 3});
-  for (int first = 0; first < 3; ++first)
-    for (const bool beyond : {false, true}) {
-      Skin3 master;
-      for (const Vec3 p : {Vec3{0, 0.1, -0.52}, Vec3{-0.1, 0, -1.02}, Vec3{0.1, 0, -0.02}}) master.add_node(p);
-      master.surface.add_cell(CellType::TRIA3, std::vector<std::int32_t>{first, (first + 1) % 3, (first + 2) % 3});
-      // the gap is 0.99, and the longest edge, by which limits are measured, 1.02
-      const Pairing found = pair(slave.view(), master.view(), {.distance_limit = beyond ? 0.85 : 1.0});
-      EXPECT_EQ(found.cells.size(), beyond ? 0u : 1u) << first;
-      EXPECT_EQ(found.count(Rejection::too_far), beyond ? 1 : 0) << first;
-    }
+  for (const double side : {1.0, -1.0})  // the same in a mirror: its edges the other way round
+    for (int first = 0; first < 3; ++first)
+      for (const bool beyond : {false, true}) {
+        Skin3 slave, master;
+        std::vector<std::int32_t> square, needle;
+        for (const auto& [x, y] : {std::pair(-0.0955, 0.001), {-0.0955, 0.003}, {-0.0945, 0.003}, {-0.0945, 0.001}})
+          square.push_back(slave.add_node({x, side * y, 0}));
+        for (const Vec3 p : {Vec3{0, side * 0.1, -0.52}, Vec3{-0.1, 0, -1.02}, Vec3{0.1, 0, -0.02}})
+          needle.push_back(master.add_node(p));
+        std::rotate(needle.begin(), needle.begin() + first, needle.end());
+        if (side < 0) {
+          std::reverse(square.begin(), square.end());
+          std::reverse(needle.begin() + 1, needle.end());
+        }
+        slave.surface.add_cell(CellType::QUAD4, square);
+        master.surface.add_cell(CellType::TRIA3, needle);
+        // the gap is 0.99, and the longest edge, by which limits are measured, 1.02
+        const Pairing found = pair(slave.view(), master.view(), {.distance_limit = beyond ? 0.85 : 1.0});
+        EXPECT_EQ(found.cells.size(), beyond ? 0u : 1u) << first << side;
+        EXPECT_EQ(found.count(Rejection::too_far), beyond ? 1 : 0) << first << side;
+      }
 }
 
 }  // namespace
