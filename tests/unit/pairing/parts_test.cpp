@@ -1,6 +1,7 @@
 // The parts of pairing: polynomials, the box tree, facets, nodal normals.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <numbers>
 #include <optional>
 #include <random>
@@ -67,6 +68,30 @@ TEST(SignChanges, ZeroAtTheStartCountsAsPositive) {
 TEST(Minimum, IsFoundInsideAndAtTheEnds) {
   EXPECT_NEAR(minimum(with_zeros({0.3, 0.3}, 1)), 0, 1e-15);
   EXPECT_NEAR(minimum(with_zeros({2}, 1)), -3, 1e-15);
+}
+
+template <int D>
+void expect_boxes_of_points() {
+  std::mt19937 random(3);
+  std::uniform_real_distribution<double> where(-1, 1);
+  for (int n = 1; n < 5; ++n) {
+    std::vector<double> points;
+    for (int i = 0; i < n * D; ++i) points.push_back(where(random));
+    points.insert(points.end(), {-50, 50, -50});  // of others
+    Box<D> box = Box<D>::empty();
+    for (int i = 0; i < n; ++i) box.add(points.data() + i * D);
+    for (int d = 0; d < D; ++d) {
+      double low = 2, high = -2;
+      for (int i = 0; i < n; ++i) low = std::min(low, points[i * D + d]), high = std::max(high, points[i * D + d]);
+      EXPECT_EQ(box.low[d], low);
+      EXPECT_EQ(box.high[d], high);
+    }
+  }
+}
+
+TEST(Boxes, ReachFromTheLeastToTheLargestOfTheirPoints) {
+  expect_boxes_of_points<2>();
+  expect_boxes_of_points<3>();
 }
 
 TEST(BoxTree, ReportsWhatALinearScanReports) {
