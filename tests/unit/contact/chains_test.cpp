@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <map>
 #include <numbers>
 #include <set>
 
@@ -126,6 +127,70 @@ TEST(ChainsInContact, HaveTheDerivativesOfTheirGaps) {
           }
         }
       }
+}
+
+// Where skins coincide, first derivatives do not hang on whether second ones are asked for too, whatever the order of the cells
+// and however normals turn.
+TEST(ChainsInContact, ThatCoincideHaveTheSameFirstDerivativesOfEitherOrder) {
+  for (const CellType type : {CellType::QUAD4, CellType::TRIA6, CellType::QUAD8, CellType::QUAD9})
+    for (const bool smooth : {false, true}) {
+      // two cells side by side, curved, and the same again, looking the other way
+      Mesh mesh;
+      mesh.dimension = 3;
+      Contact contact;
+      ContactZone zone;
+      zone.jacobian = "ACTUALISE";
+      mesh.patches.emplace();
+      const catalog::CellRow& row = catalog::cell(type);
+      for (const bool of_slave : {true, false}) {
+        std::map<std::pair<double, double>, std::int32_t> nodes;
+        for (int cell = 0; cell < 2; ++cell) {
+          std::vector<std::int32_t> own;
+          for (int a = 0; a < row.n_nodes; ++a) {
+            const double side = row.family == Family::TRIA && cell == 1 ? -1 : 1;  // turned about the longest edge
+            const double s = row.nodes[2 * a], t = row.nodes[2 * a + 1];
+            const double x = row.family == Family::TRIA ? (cell == 0 ? s : 1 - s) : side * s + 2 * cell,
+                         y = row.family == Family::TRIA && cell == 1 ? 1 - t : t;
+            const auto [at, fresh] = nodes.try_emplace({x, y}, static_cast<std::int32_t>(mesh.n_nodes()));
+            if (fresh) mesh.coordinates.insert(mesh.coordinates.end(), {x, y, 0.1 * std::sin(x + 2 * y) + 0.05 * x * x});
+            own.push_back(at->second);
+          }
+          if (of_slave) {  // looks down
+            const auto v = static_cast<std::ptrdiff_t>(row.n_vertices);
+            std::reverse(own.begin(), own.begin() + v);
+            if (row.order == 2) std::reverse(own.begin() + v, own.begin() + 2 * v - 1);
+          }
+          const auto number = static_cast<std::int32_t>(mesh.n_cells());
+          mesh.add_cell(type, own);
+          (of_slave ? zone.slave : zone.master).push_back(number);
+          if (!of_slave) continue;
+          zone.patches.push_back(cell);
+          mesh.patches->kind.push_back(0);
+          contact.slaves.push_back({number, cell, 0, ""});
+        }
+      }
+      contact.smoothing = smooth;
+      contact.zones.push_back(zone);
+      Model model;
+      model.elements = {"3D/" + std::string(row.name)};
+      model.element.assign(4, 0);
+      Registry registry;
+      ContactGeometry geometry(mesh, model, contact, registry);
+      geometry.update(std::vector<double>(mesh.coordinates.size(), 0.0));
+      const auto gradient = [&](std::int8_t order) {
+        std::vector<double> sum(mesh.coordinates.size());
+        for (const auto& of : geometry.vary(std::vector<std::int8_t>(2, order)))
+          for (std::size_t i = 0; i < of.of_gap.gradient.size(); ++i)
+            sum[3 * static_cast<std::size_t>(of.nodes[i / 3]) + i % 3] += of.of_gap.gradient[i];
+        return sum;
+      };
+      const std::vector<double> first = gradient(1), with_second = gradient(2);
+      double largest = 0;
+      for (const double value : first) largest = std::max(largest, std::abs(value));
+      EXPECT_GT(largest, 0.1);
+      for (std::size_t i = 0; i < first.size(); ++i)
+        EXPECT_NEAR(first[i], with_second[i], 1e-12 * largest) << row.name << smooth;
+    }
 }
 
 // Sums are made kind by kind of masters in each block of slave cells, in the order of kinds, and not as masters come.
