@@ -19,8 +19,8 @@ struct Surface {
   std::span<const double> normals;      ///< (n_nodes, 3), unit, outward (LISSAGE='OUI'), or empty: normals of the cells
   std::span<const std::uint8_t> inner =
       {};  ///< (n_nodes): 1 for nodes inside of a patch of several cells; empty: there are none
-  /// In space, of each cell of a master: bit i is set where the skin goes on beyond the edge from vertex i to the next, as its
-  /// image in a plane of symmetry; empty: nowhere.
+  /// In space, of each cell of a master: bit i is set where the skin goes on a little beyond the edge from vertex i to the
+  /// next, as by its image in a plane of symmetry; empty: nowhere.
   std::span<const std::uint8_t> mirrored = {};
 
   std::size_t size() const { return types.size(); }

@@ -235,12 +235,23 @@ void ContactGeometry::measure_slaves() {
   }
 }
 
-void ContactGeometry::find_mirrors(std::span<const std::uint8_t> free) {
+void ContactGeometry::find_ends(std::span<const std::uint8_t> free) {
   for (Zone& zone : zones_)
-    if (!contact_.frozen_gap) zone.planes = mirror_planes(zone.slave, zone.master, free);
+    if (!contact_.frozen_gap) zone.planes = end_planes(zone.slave, zone.master, free);
+  mirror();
 }
 
-void ContactGeometry::rest_at(std::span<const double> displacement) { displace(mesh_, displacement, mesh_.dimension, rest_); }
+void ContactGeometry::mirror() {
+  for (Zone& zone : zones_) {
+    zone.mirrored = mirrored_edges(zone.planes, zone.master, rest_);
+    zone.master.mirrored = zone.mirrored;
+  }
+}
+
+void ContactGeometry::rest_at(std::span<const double> displacement) {
+  displace(mesh_, displacement, mesh_.dimension, rest_);
+  mirror();
+}
 
 double ContactGeometry::motion(const Zone& zone) const {
   double sum = 0;
@@ -275,8 +286,6 @@ void ContactGeometry::update(std::span<const double> displacement, std::vector<Z
     const auto z = static_cast<std::size_t>(&zone - zones_.data());
     zone.slave.normals = {};
     zone.pairing.motion = motion(zone);
-    zone.mirrored = mirrored_edges(zone.planes, coordinates_, zone.master.size());
-    zone.master.mirrored = zone.mirrored;
     if (contact_.smoothing) normals_[z] = nodal_normals(zone.slave);
     zone.slave.normals = normals_[z];
     // a few blocks for each thread at a time: points of a large skin are never in memory together

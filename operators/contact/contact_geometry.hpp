@@ -31,7 +31,7 @@ class ContactGeometry {
     std::vector<std::int32_t> slaves;   ///< index into Contact::slaves of each cell of `slave`
     std::vector<std::int32_t> masters;  ///< mesh cell of each cell of `master`
     std::vector<std::uint8_t> inner;    ///< Surface::inner of the slave
-    std::vector<MirrorPlane> planes;
+    std::vector<EndPlane> planes;
     std::vector<std::uint8_t> mirrored;  ///< Surface::mirrored of the master
     Surface slave, master;
     bool current_jacobian = false;
@@ -69,10 +69,10 @@ class ContactGeometry {
   /// mesh.dimension)
   void rest_at(std::span<const double> displacement);
 
-  /// Let masters go on beyond planes of symmetry, where slaves end in them too: normals that lean over the plane by what facets
-  /// leave would miss the master there, now more, now less. Not with VARIATION_JEU='FIGEE'.
+  /// Let masters go on where both skins end in one plane: normals that lean over it by what facets leave, or a face that bulges
+  /// a little more than the other one, would miss them there, now more, now less. Not with VARIATION_JEU='FIGEE'.
   /// @param free (n_nodes, mesh.dimension): 1 where a displacement is an unknown
-  void find_mirrors(std::span<const std::uint8_t> free);
+  void find_ends(std::span<const std::uint8_t> free);
 
   /// By what the gaps of each zone are smaller than what its cells leave, from the next update() on: (n_nodes), interpolated on
   /// the slave; empty: by nothing.
@@ -129,6 +129,8 @@ class ContactGeometry {
   void add(const Zone& zone, const Block& block_of_zone, ZonePairing* record);
   /// What a kernel says of a slave cell.
   void note(std::int32_t error, std::int32_t cell);
+  /// Masters go on where slaves still ended in their planes when they were at rest.
+  void mirror();
   /// By how much the two skins of a zone have come nearer since they were at rest, at most.
   double motion(const Zone& zone) const;
   /// Measures of whole patches, in the measure of the kernels' coverage (with r in axisymmetry).

@@ -5,11 +5,14 @@
 #include <map>
 
 #include "lacon/catalog/cells.hpp"
+#include "lacon/structures/vector.hpp"
 
 namespace lacon {
 namespace {
 
-constexpr double in_plane = 1e-9;  // of the extent: mesh files have about ten digits
+constexpr double in_plane = 1e-9;           // of the extent: mesh files have about ten digits
+constexpr double shallow = 0.1;             // of an edge: depth of a cell that hardly leaves the plane of its edge
+constexpr double still_aligned = 1.0 / 32;  // of a cell: half of what outlines go on by
 
 struct BorderEdge {
   std::int32_t cell;
@@ -49,53 +52,88 @@ double reach(const Surface& skin, int axis, int sign) {
   return most;
 }
 
+Vec3 place_of(std::int32_t node, const Surface& skin) {
+  return vector_at(skin.coordinates.data() + 3 * static_cast<std::size_t>(node));
+}
+
+double length_of(const BorderEdge& edge, const Surface& skin) {
+  return norm(place_of(edge.nodes[1], skin) - place_of(edge.nodes[0], skin));
+}
+
+/// Whether both ends of an edge lie on others.
+bool lies_on(const BorderEdge& edge, std::span<const BorderEdge> others, const Surface& skin) {
+  constexpr double close = 1e-6;  // of its length
+  const auto at = [&](std::int32_t node) { return place_of(node, skin); };
+  const double length = length_of(edge, skin);
+  const auto meets = [&](std::int32_t node) {
+    return std::ranges::any_of(others, [&](const BorderEdge& other) {
+      const Vec3 along = at(other.nodes[1]) - at(other.nodes[0]), to = at(node) - at(other.nodes[0]);
+      const double part = std::clamp(dot(to, along) / dot(along, along), 0.0, 1.0);
+      return norm(to - part * along) <= close * length;
+    });
+  };
+  return meets(edge.nodes[0]) && meets(edge.nodes[1]);
+}
+
 }  // namespace
 
-std::vector<MirrorPlane> mirror_planes(const Surface& slave, const Surface& master, std::span<const std::uint8_t> free) {
-  std::vector<MirrorPlane> planes;
+std::vector<EndPlane> end_planes(const Surface& slave, const Surface& master, std::span<const std::uint8_t> free) {
+  std::vector<EndPlane> planes;
   if (slave.dimension != 3) return planes;
   const std::vector<BorderEdge> of_slave = border_of(slave), of_master = border_of(master);
   for (int axis = 0; axis < 3; ++axis)
     for (const int sign : {-1, 1}) {
-      const double place = reach(master, axis, sign), other = reach(slave, axis, sign);
+      const double place = reach(master, axis, sign);
       const double close = in_plane * std::max(std::abs(reach(master, axis, 1)), std::abs(reach(master, axis, -1)));
-      if (!(std::abs(place - other) <= close)) continue;
-      MirrorPlane plane{.axis = axis, .close = close, .nodes = {}, .ends = {}};
-      const auto ends_there = [&](const BorderEdge& edge) {
-        return std::ranges::all_of(edge.nodes, [&](std::int32_t node) {
-          return std::abs(sign * coordinate(master.coordinates, node, axis) - place) <= close &&
-                 free[3 * static_cast<std::size_t>(node) + static_cast<std::size_t>(axis)] == 0;
-        });
+      if (!(std::abs(place - reach(slave, axis, sign)) <= close)) continue;
+      EndPlane plane{.axis = axis, .slave = {}, .ends = {}};
+      const auto beside = [&](std::int32_t node) { return place - sign * coordinate(master.coordinates, node, axis); };
+      // a cell that lies in the plane does not end there
+      const auto ends_there = [&](const BorderEdge& edge, const Surface& skin) {
+        const auto cell = skin.nodes[static_cast<std::size_t>(edge.cell)];
+        const double depth = beside(*std::ranges::max_element(cell, {}, beside));
+        return depth > shallow * length_of(edge, skin) &&
+               std::ranges::all_of(edge.nodes, [&](std::int32_t node) { return std::abs(beside(node)) <= close; });
       };
-      bool slave_ends = false;
+      std::vector<BorderEdge> at_slave;
       for (const BorderEdge& edge : of_slave)
-        if (ends_there(edge)) {
-          slave_ends = true;
-          plane.nodes.insert(plane.nodes.end(), edge.nodes.begin(), edge.nodes.end());
+        if (ends_there(edge, slave)) {
+          plane.slave.insert(plane.slave.end(), edge.nodes.begin(), edge.nodes.end());
+          at_slave.push_back(edge);
         }
+      const auto is_held = [&](std::int32_t node) {
+        return free[3 * static_cast<std::size_t>(node) + static_cast<std::size_t>(axis)] == 0;
+      };
+      const bool slave_is_held = std::ranges::all_of(plane.slave, is_held);
       for (const BorderEdge& edge : of_master)
-        if (ends_there(edge)) {
+        if (ends_there(edge, master) &&
+            ((slave_is_held && std::ranges::all_of(edge.nodes, is_held)) || !lies_on(edge, at_slave, master)))
           plane.ends.emplace_back(edge.cell, edge.edge);
-          plane.nodes.insert(plane.nodes.end(), edge.nodes.begin(), edge.nodes.end());
-        }
-      if (slave_ends && !plane.ends.empty()) planes.push_back(std::move(plane));
+      if (!plane.slave.empty() && !plane.ends.empty()) planes.push_back(std::move(plane));
     }
   return planes;
 }
 
-std::vector<std::uint8_t> mirrored_edges(std::span<const MirrorPlane> planes, std::span<const double> coordinates,
-                                         std::size_t n_cells) {
+std::vector<std::uint8_t> mirrored_edges(std::span<const EndPlane> planes, const Surface& master,
+                                         std::span<const double> coordinates) {
   std::vector<std::uint8_t> mirrored;
-  for (const MirrorPlane& plane : planes) {
-    const double place = coordinate(coordinates, plane.nodes[0], plane.axis);
-    const bool stays = std::ranges::all_of(plane.nodes, [&](std::int32_t node) {
-      return std::abs(coordinate(coordinates, node, plane.axis) - place) <= plane.close;
-    });
-    if (!stays) continue;
-    mirrored.resize(n_cells, 0);
-    for (const auto& [cell, edge] : plane.ends)
+  const auto at = [&](std::int32_t node) { return vector_at(coordinates.data() + 3 * static_cast<std::size_t>(node)); };
+  for (const EndPlane& plane : planes)
+    for (const auto& [cell, edge] : plane.ends) {
+      const auto nodes = master.nodes[static_cast<std::size_t>(cell)];
+      const int n = catalog::cell(master.types[static_cast<std::size_t>(cell)]).n_vertices;
+      double low = INFINITY, high = -INFINITY;  // of the cell, along the axis
+      for (const std::int32_t node : nodes) {
+        low = std::min(low, coordinate(coordinates, node, plane.axis));
+        high = std::max(high, coordinate(coordinates, node, plane.axis));
+      }
+      const Vec3 middle = 0.5 * (at(nodes[edge]) + at(nodes[(edge + 1) % n]));
+      const std::int32_t nearest =
+          *std::ranges::min_element(plane.slave, {}, [&](std::int32_t node) { return norm(at(node) - middle); });
+      if (!(std::abs(component(at(nearest) - middle, plane.axis)) <= still_aligned * (high - low))) continue;
+      mirrored.resize(master.size(), 0);
       mirrored[static_cast<std::size_t>(cell)] |= static_cast<std::uint8_t>(1U << edge);
-  }
+    }
   return mirrored;
 }
 

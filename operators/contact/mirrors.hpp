@@ -1,5 +1,5 @@
 #pragma once
-// Planes of symmetry, in space: where both skins of a zone end in one plane that their nodes cannot leave.
+// Planes in which both skins of a zone end, in space: of symmetry, or free faces that are aligned.
 #include <cstdint>
 #include <span>
 #include <utility>
@@ -9,21 +9,23 @@
 
 namespace lacon {
 
-struct MirrorPlane {
+struct EndPlane {
   int axis = 0;                                    ///< at a right angle to the plane
-  double close = 0;                                ///< nodes are in one plane to this distance
-  std::vector<std::int32_t> nodes;                 ///< of both skins, on the edges that end in it
+  std::vector<std::int32_t> slave;                 ///< nodes of the slave's edges that end in it
   std::vector<std::pair<std::int32_t, int>> ends;  ///< such edges of the master: cell of its surface, edge
 };
 
-/// Planes x, y or z = constant beyond which no skin reaches, in which both end, with edges whose displacement across it is
-/// imposed: by symmetry, as by a wall, what lies behind one is what lies before it. None in the plane.
+/// Planes x, y or z = constant beyond which no skin reaches and in which both end; of the master's edges there those that meet
+/// the border of the slave at points at most, and where no node can leave the plane, as by symmetry, all. Where free borders
+/// lie on each other a face that slides past the other one is what ends the contact. None in the plane.
 /// @param free (n_nodes, dimension): 1 where a displacement is an unknown
-std::vector<MirrorPlane> mirror_planes(const Surface& slave, const Surface& master, std::span<const std::uint8_t> free);
+std::vector<EndPlane> end_planes(const Surface& slave, const Surface& master, std::span<const std::uint8_t> free);
 
-/// Surface::mirrored of the master, of those planes whose nodes still lie in one. @param coordinates (n_nodes, 3), current
-/// @param n_cells of the master @return empty where no plane is left
-std::vector<std::uint8_t> mirrored_edges(std::span<const MirrorPlane> planes, std::span<const double> coordinates,
-                                         std::size_t n_cells);
+/// Surface::mirrored of the master: its edges in such planes that still end where the slave does, to less than what the outline
+/// goes on by there. @param coordinates (n_nodes, 3), of a state in equilibrium: forces would jump where an iterate adds an
+/// edge
+/// @return empty where there are none
+std::vector<std::uint8_t> mirrored_edges(std::span<const EndPlane> planes, const Surface& master,
+                                         std::span<const double> coordinates);
 
 }  // namespace lacon

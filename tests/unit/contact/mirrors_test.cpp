@@ -67,44 +67,52 @@ TEST(Mirrors, NormalsThatLeanOverAPlaneOfSymmetryMeetWhatLiesBehindIt) {
                                       << traced;
           };
           // the strip behind the end is as wide as the normal leans: a tenth of the gap there
-          if (!curved) EXPECT_NEAR(cover(skins, traced), 1 - 0.1 * 0.15 / (1 + 0.1 * 0.1), 1e-9) << what();
-          if (curved) EXPECT_LT(cover(skins, traced), 1 - 0.005) << what();
-          const std::vector<std::uint8_t> free(3 * skins.n_nodes(), 0);
-          const std::vector<MirrorPlane> planes = mirror_planes(skins.slave, skins.master, free);
+          if (!curved) {
+            EXPECT_NEAR(cover(skins, traced), 1 - 0.1 * 0.15 / (1 + 0.1 * 0.1), 1e-9) << what();
+          }
+          if (curved) {
+            EXPECT_LT(cover(skins, traced), 1 - 0.005) << what();
+          }
+          const std::vector<std::uint8_t> held(3 * skins.n_nodes(), 0);
+          const std::vector<EndPlane> planes = end_planes(skins.slave, skins.master, held);
           EXPECT_EQ(planes.size(), 4U);
-          const std::vector<std::uint8_t> mirrored = mirrored_edges(planes, skins.coordinates, skins.master.size());
+          const std::vector<std::uint8_t> mirrored = mirrored_edges(planes, skins.master, skins.coordinates);
           skins.master.mirrored = mirrored;
           EXPECT_NEAR(cover(skins, traced), 1, 1e-9) << what();
         }
 }
 
-TEST(Mirrors, APlaneIsOneWhereBothSkinsEndAndCannotLeaveIt) {
-  TwoSkins skins(
+TEST(Mirrors, EdgesAreThoseThatEndWhereTheSlaveDoes) {
+  const auto flat = [](double x, double y) { return Vec3{x, y, 0.1}; };
+  TwoSkins skins(CellType::QUAD4, CellType::QUAD8, flat, false);
+  const auto n_mirrored = [](const std::vector<std::uint8_t>& mirrored) {
+    return std::count_if(mirrored.begin(), mirrored.end(), [](std::uint8_t edges) { return edges != 0; });
+  };
+  const auto x_of = [&](std::size_t node) -> double& { return skins.coordinates[3 * node]; };
+  const std::vector<std::uint8_t> held(3 * skins.n_nodes(), 0), free(3 * skins.n_nodes(), 1);
+  const std::vector<EndPlane> planes = end_planes(skins.slave, skins.master, held);
+  // free, the slave over the master is as near as one that bends away from it
+  EXPECT_EQ(end_planes(skins.slave, skins.master, free).size(), 4U);
+  TwoSkins one(
       CellType::QUAD4, CellType::QUAD8,
       [](double x, double y) {
-        return Vec3{x, y, 0.1};
+        return Vec3{x, y, 0.1 * x};
       },
       false);
-  const auto at = [&](std::size_t node, int axis) -> double& {
-    return skins.coordinates[3 * node + static_cast<std::size_t>(axis)];
-  };
-  std::vector<std::uint8_t> free(3 * skins.n_nodes(), 1);
-  const auto planes = [&] { return mirror_planes(skins.slave, skins.master, free); };
-  EXPECT_TRUE(planes().empty());
-  for (std::size_t node = 0; node < skins.n_nodes(); ++node)
-    if (at(node, 0) == 1) free[3 * node] = 0;
-  const std::vector<MirrorPlane> found = planes();
-  ASSERT_EQ(found.size(), 1U);
-  EXPECT_EQ(found[0].axis, 0);
-  EXPECT_EQ(found[0].ends.size(), 3U);  // edges of the master there
-  std::vector<std::uint8_t> mirrored = mirrored_edges(found, skins.coordinates, skins.master.size());
-  EXPECT_EQ(std::count_if(mirrored.begin(), mirrored.end(), [](std::uint8_t edges) { return edges != 0; }), 3);
-
-  // the wall moves, and takes one skin with it: this is no symmetry any more
-  for (std::size_t node = 0; node < 9; ++node)  // of the slave
-    if (at(node, 0) == 1) at(node, 0) = 1.01;
-  EXPECT_TRUE(mirrored_edges(found, skins.coordinates, skins.master.size()).empty());
-  EXPECT_TRUE(planes().empty());
+  const std::vector<EndPlane> free_ends = end_planes(one.slave, one.master, free);
+  EXPECT_EQ(free_ends.size(), 3U);  // not where both borders are the line x = 0, nor where the master lies, z = 0
+  ASSERT_EQ(planes.size(), 4U);
+  EXPECT_EQ(planes[0].axis, 0);
+  EXPECT_EQ(planes[0].ends.size(), 3U);
+  EXPECT_EQ(n_mirrored(mirrored_edges(planes, skins.master, skins.coordinates)), 8);  // all but the middle one
+  // cells of a third: their outline goes on by a sixteenth of that, half of which is allowed for
+  const std::vector<double> before = skins.coordinates;
+  for (const auto& [shift, expected] : {std::pair{0.01, 8}, {0.011, 6}}) {
+    skins.coordinates = before;
+    for (std::size_t node = 0; node < 9; ++node) x_of(node) += shift;  // of the slave
+    EXPECT_EQ(n_mirrored(mirrored_edges(planes, skins.master, skins.coordinates)), expected) << shift;
+  }
+  EXPECT_EQ(end_planes(skins.slave, skins.master, held).size(), 2U);  // one that reaches further ends elsewhere
 }
 
 }  // namespace
