@@ -49,6 +49,9 @@ class Check(LauncherTest):
         run = self.check(text)
         self.assertEqual(run.status, 0, run.err)
         self.assertIn("checked up to study.comm:17: it needs what T holds, which only a run can give (T is made at study.comm:15)", run.out)
+        run = self.check(STUDY + "T = RECU_TABLE(CO=R, NOM_TABLE='OBSERVATION')\nn = EXTR_TABLE(TABLE=T, TYPE_RESU='REEL', NOM_PARA='VALE')\nFIN(NO_SUCH=1)\n")
+        self.assertEqual(run.status, 0, run.err)
+        self.assertIn("checked up to study.comm:13: it needs what T holds", run.out)
 
     def test_mistakes_behind_the_solution_are_found(self):
         run = self.check(STUDY + REST.replace("SIEF_NOEU", "SIEF_NODE"))
