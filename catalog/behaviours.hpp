@@ -14,6 +14,7 @@ struct RelationRow {
   std::string_view name;       ///< "VMIS_ISOT_LINE"
   std::string_view hardening;  ///< keyword of DEFI_MATERIAU whose tension curve kernels take, "ECRO_LINE"; empty: none
   TransverseStrain transverse_strain;
+  bool starts_elastically;  ///< a change of strain changes the stress by Hooke's law first, whatever follows
 };
 
 enum class StressGeometry : std::int8_t { initial, displaced };
@@ -34,6 +35,8 @@ struct DeformationRow {
   StressGeometry stress_geometry;
   StrainMeasure strain;
   PlasticStrain plastic_strain;
+  bool adds_stress;   ///< a law answers to the increment of strain alone, beside the stress before
+  bool turns_stress;  ///< the stress before is turned with the body
 };
 
 /// The rows that were built in.

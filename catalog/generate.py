@@ -303,10 +303,12 @@ def write_cpp(catalog, writer):
         relation, deformation = option.split("/")
         check(relation in relations and deformation in deformations, f"elements: there is no behaviour {option}")
     tables["relations", "RelationRow"] = [
-        f"{{{text(r['name'])}, {text(r.get('hardening', ''))}, TransverseStrain::{r.get('transverse_strain', 'unknown')}}}"
+        f"{{{text(r['name'])}, {text(r.get('hardening', ''))}, TransverseStrain::{r.get('transverse_strain', 'unknown')}, "
+        f"{cpp_bool(r.get('starts_elastically', False))}}}"
         for r in catalog["relation"]]
     tables["deformations", "DeformationRow"] = [
-        f"{{{text(d['name'])}, StressGeometry::{d['stress_geometry']}, StrainMeasure::{d['strain']}, PlasticStrain::{d.get('plastic_strain', 'unknown')}}}"
+        f"{{{text(d['name'])}, StressGeometry::{d['stress_geometry']}, StrainMeasure::{d['strain']}, PlasticStrain::{d.get('plastic_strain', 'unknown')}, "
+        f"{cpp_bool(d.get('adds_stress', False))}, {cpp_bool(d.get('turns_stress', False))}}}"
         for d in catalog["deformation"]]
     tables["quantities", "QuantityRow"] = [
         f"{{{text(q['name'])}, {writer.strings(q['components'])}}}" for q in catalog["quantities"]]

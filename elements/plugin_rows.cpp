@@ -47,6 +47,14 @@ class TableReader {
     return *value;
   }
 
+  /// False where it is absent.
+  bool flag(std::string_view key) const {
+    if (!table_.contains(key)) return false;
+    const std::optional<bool> value = table_[key].value_exact<bool>();
+    if (!value) fail_row(part("no_true_or_false", {{"key", std::string(key)}}));
+    return *value;
+  }
+
   template <class Value>
   Value choice(std::string_view key, std::initializer_list<std::pair<std::string_view, Value>> choices) const {
     const std::string given = text(key);
@@ -184,7 +192,7 @@ class BehaviourReader : TableReader {
   void read_relation(PluginRows& rows) {
     name_ = text("name");
     text("help");
-    catalog::RelationRow row{rows.keep(name_), "", catalog::TransverseStrain::unknown};
+    catalog::RelationRow row{rows.keep(name_), "", catalog::TransverseStrain::unknown, flag("starts_elastically")};
     if (table_.contains("hardening")) row.hardening = rows.keep(text("hardening"));
     if (table_.contains("transverse_strain"))
       row.transverse_strain = choice<catalog::TransverseStrain>(
@@ -201,7 +209,9 @@ class BehaviourReader : TableReader {
                                                             {"displaced", catalog::StressGeometry::displaced}}),
         choice<catalog::StrainMeasure>(
             "strain", {{"small", catalog::StrainMeasure::small}, {"green_lagrange", catalog::StrainMeasure::green_lagrange}}),
-        catalog::PlasticStrain::unknown};
+        catalog::PlasticStrain::unknown,
+        flag("adds_stress"),
+        flag("turns_stress")};
     if (row.stress_geometry == catalog::StressGeometry::initial) row.plastic_strain = catalog::PlasticStrain::small;
     if (table_.contains("plastic_strain"))
       row.plastic_strain =
@@ -239,9 +249,11 @@ void read_plugin_rows(const std::filesystem::path& file, const std::vector<std::
       if (kind == "element")
         ElementReader(file, table).read(plugins, rows);
       else if (kind == "relation")
-        BehaviourReader(file, table, "relation", {"name", "help", "hardening", "transverse_strain"}).read_relation(rows);
+        BehaviourReader(file, table, "relation", {"name", "help", "hardening", "transverse_strain", "starts_elastically"})
+            .read_relation(rows);
       else if (kind == "deformation")
-        BehaviourReader(file, table, "deformation", {"name", "help", "stress_geometry", "strain", "plastic_strain"})
+        BehaviourReader(file, table, "deformation",
+                        {"name", "help", "stress_geometry", "strain", "plastic_strain", "adds_stress", "turns_stress"})
             .read_deformation(rows);
       else
         BehaviourReader(file, table, "law", {"relation", "deformation", "kernels"}).read_law(plugins, rows);

@@ -40,4 +40,20 @@ BehaviourRows behaviour_rows(const Registry& registry, std::string_view option) 
   return {*relation, *deformation};
 }
 
+std::optional<ElasticParameters> elastic_parameters(const ElementSet& set) {
+  const char* const* const first = set.kernel->parameters;
+  const char* const* const last = first + set.n_parameters;
+  const auto place = [&](std::string_view name) { return std::find(first, last, name); };
+  const auto young = place("ELAS/E"), poisson = place("ELAS/NU");
+  if (young == last || poisson == last) return std::nullopt;
+  return ElasticParameters{static_cast<std::size_t>(young - first), static_cast<std::size_t>(poisson - first)};
+}
+
+bool starts_elastically(const Registry& registry, const ElementSet& set) {
+  const BehaviourRows rows = behaviour_rows(registry, set.option);
+  if (!rows.relation.starts_elastically || !rows.deformation.adds_stress) return false;
+  if (!elastic_parameters(set)) fail("BEHAVIOUR_9", {{"behaviour", set.option}, {"kernel", set.kernel->name}});
+  return true;
+}
+
 }  // namespace lacon

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "lacon/catalog/messages.hpp"
+#include "lacon/operators/evolution/behaviours.hpp"
 #include "lacon/operators/program/program.hpp"
 
 namespace lacon {
@@ -59,12 +60,14 @@ std::vector<double> Heat::start_of_step(std::size_t s, const PointValues& at, co
   const std::vector<double>& now = at.parameter.empty() ? set.parameters : at.parameter;
   const bool changed = from && !from->points[s].parameter.empty();
   const std::vector<double>& before = changed ? from->points[s].parameter : now;
+  const auto place = elastic_parameters(set);
+  if (!place) return stress;  // a law that takes its thermal strain, and moduli of its own, by itself
   const auto strain = [](const PointValues& values, std::size_t point) {
     return values.thermal.empty() ? 0.0 : values.thermal[point];
   };
   for (std::size_t c = 0; c < set.cells.size(); ++c) {
-    const double young = now[c * n_parameters], nu = now[c * n_parameters + 1], old_young = before[c * n_parameters],
-                 old_nu = before[c * n_parameters + 1];
+    const double young = now[c * n_parameters + place->young], nu = now[c * n_parameters + place->poisson],
+                 old_young = before[c * n_parameters + place->young], old_nu = before[c * n_parameters + place->poisson];
     const double expansion = plane_stress ? young / (1 - nu) : young / (1 - 2 * nu);
     const double shear = young / (1 + nu) / (old_young / (1 + old_nu)),
                  bulk = plane_stress ? young / (1 - nu) / (old_young / (1 - old_nu))

@@ -1,25 +1,18 @@
 #include "lacon/operators/evolution/prestrain.hpp"
 
 #include <algorithm>
-#include <string_view>
 
 #include "lacon/catalog/messages.hpp"
+#include "lacon/operators/evolution/behaviours.hpp"
 #include "lacon/operators/fields/tensor.hpp"
 
 namespace lacon {
 
-bool starts_elastically(const ElementSet& set) {
-  constexpr std::string_view linear[] = {"ELAS/PETIT",           "ELAS/PETIT_REAC",
-                                         "VMIS_ISOT_LINE/PETIT", "VMIS_ISOT_LINE/PETIT_REAC",
-                                         "VMIS_ISOT_TRAC/PETIT", "VMIS_ISOT_TRAC/PETIT_REAC"};
-  return std::find(std::begin(linear), std::end(linear), set.option) != std::end(linear);
-}
-
-void check_laws(const InitialStrains& strains, const std::vector<ElementSet>& solids) {
+void check_laws(const Registry& registry, const InitialStrains& strains, const std::vector<ElementSet>& solids) {
+  const auto concerned = [&](std::int32_t cell) { return strains.concerns(cell); };
   for (const ElementSet& set : solids)
-    for (const std::int32_t cell : set.cells)
-      if (!starts_elastically(set) && strains.concerns(cell))
-        fail("BEHAVIOUR_6", {{"behaviour", set.option}, {"cell", cell_name(cell)}});
+    if (const auto cell = std::ranges::find_if(set.cells, concerned); cell != set.cells.end())
+      if (!starts_elastically(registry, set)) fail("BEHAVIOUR_6", {{"behaviour", set.option}, {"cell", cell_name(*cell)}});
 }
 
 void Prestrain::move_to(double instant, std::vector<PointValues>& points) const {
@@ -43,6 +36,8 @@ void Prestrain::take_off(std::size_t s, const PointValues& at, const PointValues
   const ElementSet& set = problem_.solids[s];
   const auto n_points = static_cast<std::size_t>(set.tabulation.n_points), n_stress = set.row->stress.size(),
              n_parameters = static_cast<std::size_t>(set.n_parameters);
+  const auto place = elastic_parameters(set);
+  if (!place) return;  // of another set of cells, which have no initial strains
   const bool plane_stress = set.row->stress_state == catalog::StressState::plane_stress;
   const std::size_t normal = plane_stress ? 2 : 3;
   const std::vector<double>& parameters = at.parameter.empty() ? set.parameters : at.parameter;
@@ -51,7 +46,8 @@ void Prestrain::take_off(std::size_t s, const PointValues& at, const PointValues
   };
   const auto change = [&](std::size_t entry) { return of(&at, entry) - of(before, entry); };
   for (std::size_t point = 0; point < set.cells.size() * n_points; ++point) {
-    const double young = parameters[point / n_points * n_parameters], nu = parameters[point / n_points * n_parameters + 1];
+    const double* const own = parameters.data() + point / n_points * n_parameters;
+    const double young = own[place->young], nu = own[place->poisson];
     const double lame = plane_stress ? young * nu / (1 - nu * nu) : young * nu / ((1 + nu) * (1 - 2 * nu)),
                  twice_shear = young / (1 + nu);
     double trace = 0;

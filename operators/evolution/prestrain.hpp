@@ -7,11 +7,8 @@
 
 namespace lacon {
 
-/// Whether a law answers to a change of strain with isotropic elasticity, so that the stress that it starts from takes what the
-/// change of a strain without stress does.
-bool starts_elastically(const ElementSet& set);
-/// Throws BEHAVIOUR_6 for a law that does not, on cells that have initial strains.
-void check_laws(const InitialStrains& strains, const std::vector<ElementSet>& solids);
+/// Throws BEHAVIOUR_6 for a law that does not start elastically, on cells that have initial strains.
+void check_laws(const Registry& registry, const InitialStrains& strains, const std::vector<ElementSet>& solids);
 
 /// Refers to the problem, which must outlive it.
 class Prestrain {

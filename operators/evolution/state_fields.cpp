@@ -194,7 +194,7 @@ void add_initial_strains(const StaticProblem& problem, const Base& base, const R
   InitialStrains strains;
   ModelPoints points(problem.mesh, problem.model, *problem.registry);
   for (const ResultLoad& load : result.stage(order).loads) strains.add(base, load, problem.mesh, points);
-  check_laws(strains, problem.solids);
+  check_laws(*problem.registry, strains, problem.solids);
   const auto place = std::find(result.orders.begin(), result.orders.end(), order) - result.orders.begin();
   for (std::size_t s = 0; !strains.empty() && s < problem.solids.size(); ++s)
     state.points[s].initial = strains.at(result.instants[static_cast<std::size_t>(place)], problem.solids[s].cells,

@@ -46,16 +46,17 @@ void read_materials(StaticProblem& problem, const Base& base, const std::string&
 /// Keep temperatures, and functions of them, only where solids are concerned. Throws BEHAVIOUR_5 for a law that takes none.
 void check_temperatures(StaticProblem& problem) {
   bool any = false;
-  for (const ElementSet& set : problem.solids)
-    for (const std::int32_t cell : set.cells) {
-      if (!problem.thermal->concerns(cell)) continue;
-      any = true;
-      // stresses that turn with the body do not keep their elastic strain where moduli change
-      const bool turns = set.option.starts_with("VMIS_") && set.option.ends_with("/GROT_GDEP");
-      if (!(set.kernel->takes_thermal_strain || starts_elastically(set)) ||
-          (turns && problem.thermal->has_functions(set.cells)))
-        fail("BEHAVIOUR_5", {{"behaviour", set.option}, {"cell", cell_name(cell)}});
-    }
+  const auto concerned = [&](std::int32_t cell) { return problem.thermal->concerns(cell); };
+  for (const ElementSet& set : problem.solids) {
+    const auto cell = std::ranges::find_if(set.cells, concerned);
+    if (cell == set.cells.end()) continue;
+    any = true;
+    // stresses that turn with the body do not keep their elastic strain where moduli change
+    const bool turns = set.kernel->has_memory && behaviour_rows(*problem.registry, set.option).deformation.turns_stress;
+    if (!(set.kernel->takes_thermal_strain || starts_elastically(*problem.registry, set)) ||
+        (turns && problem.thermal->has_functions(set.cells)))
+      fail("BEHAVIOUR_5", {{"behaviour", set.option}, {"cell", cell_name(*cell)}});
+  }
   if (!any) problem.thermal.reset();
 }
 
@@ -258,7 +259,7 @@ StaticProblem read_problem(const Order& order, const Base& base) {
     problem.initial_strains.add(base, load, problem.mesh, points);
     for (const std::int64_t dof : problem.loads.back().dofs) problem.imposed[dof] = 1;
   }
-  check_laws(problem.initial_strains, problem.solids);
+  check_laws(*problem.registry, problem.initial_strains, problem.solids);
   warn_of_axis(problem);
   if (const auto contact = keywords.optional_concept("CONTACT")) {
     problem.contact = base.contact(*contact);

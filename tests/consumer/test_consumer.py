@@ -311,6 +311,20 @@ FIN()
             np.testing.assert_allclose(values["V2"], kappa[order - 1] / (self.YC + kappa[order - 1]), rtol=1e-10)
         self.assertIn("DAMAGE/PETIT in VARI_ELGA: V1 = KAPPA, V2 = ENDO", said)
 
+    def test_initial_strains_are_taken_by_laws_that_start_elastically(self):
+        """What is no strain of the law's is off: sigma = C (eps - eps0), with eps0 the same at all instants; others are refused, by what their rows say."""
+        initial, young, nu = 0.005, 104.0, 0.3
+        self.addCleanup(setattr, Laws, "STUDY", Laws.STUDY)
+        Laws.STUDY = Laws.STUDY.replace("R = STAT", f"GROWN = AFFE_CHAR_MECA(MODELE=MODEL, PRE_EPSI=_F(GROUP_MA='BODY', EPXX={initial}))\nR = STAT").replace(
+            "EXCIT=(", "EXCIT=(_F(CHARGE=GROWN), ")
+        for deformation in ("PETIT", "INFINITESIMAL"):
+            stress, _, _ = self.stresses(f"RELATION='ELAS_HOOKE', DEFORMATION='{deformation}'")
+            np.testing.assert_allclose(stress, young * (1 - nu) / ((1 + nu) * (1 - 2 * nu)) * (np.array(self.STRAINS) - initial), rtol=1e-10)
+        for relation, words in (("ELAS_LAME", "<BEHAVIOUR_6> cell M"), ("ELAS_FALSE", "<BEHAVIOUR_9> the behaviour ELAS_FALSE/PETIT")):
+            done = self.study(f"RELATION='{relation}'")
+            self.assertEqual(done.returncode, 2, done.stderr)
+            self.assertIn(words, done.stderr)
+
     def test_the_launcher_knows_the_law_and_its_keywords(self):
         material, solver = self.launch("help", "DEFI_MATERIAU").stdout, self.launch("help", "STAT_NON_LINE").stdout
         for text in ("LAME", "LAMBDA", "YC", "energy density at which half of the stiffness is left", "default 1.0"):

@@ -1,5 +1,6 @@
 // Laws of behaviour for plane strain, small strains. sigma = (1 - d) C eps with C by Lame's constants. Elasticity: d = 0.
-// Damage: d = kappa / (YC + kappa), kappa the largest energy density eps : C eps / 2 that there was.
+// Damage: d = kappa / (YC + kappa), kappa the largest energy density eps : C eps / 2 that there was. Hooke: elasticity by E and
+// NU, which adds to the stress that it starts from.
 #include <lacon/elements/lanes.hpp>
 
 namespace {
@@ -9,16 +10,25 @@ using lacon::lanes;
 
 enum Variable { kappa, damage_share, n_variables };
 
-template <bool weakens>
+enum class Law { lame, damage, hooke };
+
+template <Law law>
 [[gnu::always_inline]] inline void evaluate(const lacon_solid_batch& b) {
-  const int nodes = b.n_nodes, dofs = 2 * nodes, entries = dofs * (dofs + 1) / 2, n_parameters = weakens ? 3 : 2;
+  const int nodes = b.n_nodes, dofs = 2 * nodes, entries = dofs * (dofs + 1) / 2;
+  constexpr bool weakens = law == Law::damage;
+  constexpr int n_parameters = weakens ? 3 : 2;
   if (b.dimension != 2 || nodes > 9 || b.n_stress != 4 || b.n_parameters != n_parameters ||
       b.n_variables != (weakens ? n_variables : 0))
     return lacon::refuse(b);
   for (std::int64_t block = 0; block < b.n_blocks; ++block) {
     lacon::LaneErrors errors;
     const auto parameter = [&](int i) -> const Lanes& { return lanes(b.parameter, n_parameters * block + i); };
-    const Lanes lambda = parameter(0), mu = parameter(1);
+    Lanes lambda = parameter(0), mu = parameter(1);
+    if (law == Law::hooke) {
+      const Lanes nu = parameter(0), young = parameter(1);
+      lambda = young * nu / ((1 + nu) * (1 - 2 * nu));
+      mu = young / (2 * (1 + nu));
+    }
     errors.set(~((lambda >= 0) & (mu > 0)), LACON_BAD_PARAMETER);
     const double* x = b.coordinates + block * dofs * LACON_LANES;
     const double* u = b.displacement + block * dofs * LACON_LANES;
@@ -45,6 +55,12 @@ template <bool weakens>
       }
       const Lanes trace = e[0][0] + e[1][1], shear = mu * (e[0][1] + e[1][0]);
       Lanes full[2][2] = {{lambda * trace + 2 * mu * e[0][0], shear}, {shear, lambda * trace + 2 * mu * e[1][1]}};
+      Lanes across = {};  // of the stress that it starts from
+      if (law == Law::hooke && b.previous_stress) {
+        const auto start = [&](int i) -> const Lanes& { return lanes(b.previous_stress, point * 4 + i); };
+        full[0][0] += start(0), full[1][1] += start(1), across = start(2);
+        full[0][1] += start(3), full[1][0] += start(3);
+      }
       Lanes kept = Lanes{} + 1.0, slope = {};  // 1 - d, and minus its derivative by kappa where that grows
       if (weakens) {
         const Lanes yc = parameter(2);
@@ -62,8 +78,8 @@ template <bool weakens>
       if (b.stress) {
         lanes(b.stress, point * 4) = kept * full[0][0];
         lanes(b.stress, point * 4 + 1) = kept * full[1][1];
-        lanes(b.stress, point * 4 + 2) = kept * lambda * trace;
-        lanes(b.stress, point * 4 + 3) = kept * shear;
+        lanes(b.stress, point * 4 + 2) = kept * lambda * trace + across;
+        lanes(b.stress, point * 4 + 3) = kept * full[0][1];
       }
       Lanes pull[9][2];  // C eps g
       for (int a = 0; a < nodes; ++a)
@@ -84,15 +100,18 @@ template <bool weakens>
   }
 }
 
-LACON_KERNEL void lame(const lacon_solid_batch* batch) { evaluate<false>(*batch); }
-LACON_KERNEL void damage(const lacon_solid_batch* batch) { evaluate<true>(*batch); }
+LACON_KERNEL void lame(const lacon_solid_batch* batch) { evaluate<Law::lame>(*batch); }
+LACON_KERNEL void damage(const lacon_solid_batch* batch) { evaluate<Law::damage>(*batch); }
+LACON_KERNEL void hooke(const lacon_solid_batch* batch) { evaluate<Law::hooke>(*batch); }
 
 const char* const constants[] = {"LAME/LAMBDA", "LAME/MU", nullptr};
 const char* const constants_and_energy[] = {"LAME/LAMBDA", "LAME/MU", "DAMAGE/YC", nullptr};
+const char* const moduli[] = {"ELAS/NU", "ELAS/E", nullptr};
 const char* const variables[] = {"KAPPA", "ENDO", nullptr};
 
 const lacon_kernel kernels[] = {
     {.name = "lame", .kind = LACON_SOLID, .solid = lame, .parameters = constants},
+    {.name = "hooke", .kind = LACON_SOLID, .solid = hooke, .parameters = moduli},
     {.name = "damage",
      .kind = LACON_SOLID,
      .solid = damage,
@@ -102,7 +121,7 @@ const lacon_kernel kernels[] = {
      .has_memory = 1},
 };
 const lacon_plugin_table table = {
-    LACON_ABI, sizeof(lacon_solid_batch), sizeof(lacon_load_batch), sizeof(lacon_contact_batch), "laws", 2, kernels};
+    LACON_ABI, sizeof(lacon_solid_batch), sizeof(lacon_load_batch), sizeof(lacon_contact_batch), "laws", 3, kernels};
 
 }  // namespace
 

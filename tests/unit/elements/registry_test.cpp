@@ -226,12 +226,15 @@ std::string law(const std::string& key = "", const std::string& changed = "") {
       {"help", "help = 'a soft law'"},
       {"hardening", "hardening = 'TRACTION'"},
       {"transverse_strain", "transverse_strain = 'elastic'"},
+      {"starts_elastically", "starts_elastically = true"},
       {"[[deformation]]", "[[deformation]]"},
       {"name_of_deformation", "name = 'LARGE'"},
       {"help_of_deformation", "help = 'large strains'"},
       {"stress_geometry", "stress_geometry = 'displaced'"},
       {"strain", "strain = 'green_lagrange'"},
       {"plastic_strain", "plastic_strain = 'logarithmic'"},
+      {"adds_stress", "adds_stress = true"},
+      {"turns_stress", "turns_stress = true"},
       {"[[law]]", "[[law]]"},
       {"relation", "relation = 'SOFT'"},
       {"deformation", "deformation = 'LARGE'"},
@@ -247,11 +250,14 @@ TEST_F(Plugins, LawsOfAPluginServeTheBodiesOfAModelisation) {
   ASSERT_NE(relation, nullptr);
   EXPECT_EQ(relation->hardening, "TRACTION");
   EXPECT_EQ(relation->transverse_strain, lacon::catalog::TransverseStrain::elastic);
+  EXPECT_TRUE(relation->starts_elastically);
   const auto* deformation = registry.find_deformation("LARGE");
   ASSERT_NE(deformation, nullptr);
   EXPECT_EQ(deformation->stress_geometry, lacon::catalog::StressGeometry::displaced);
   EXPECT_EQ(deformation->strain, lacon::catalog::StrainMeasure::green_lagrange);
   EXPECT_EQ(deformation->plastic_strain, lacon::catalog::PlasticStrain::logarithmic);
+  EXPECT_TRUE(deformation->adds_stress);
+  EXPECT_TRUE(deformation->turns_stress);
   for (const char* body : {"D_PLAN/TRIA3", "D_PLAN/QUAD9"})
     EXPECT_STREQ(registry.kernel(*registry.find_element(body), "SOFT/LARGE", LACON_SOLID).name, "plane_strain_green_elastic");
   EXPECT_FALSE(registry.has_kernel(*registry.find_element("D_PLAN/SEG2"), "SOFT/LARGE"));
@@ -272,6 +278,8 @@ TEST_F(Plugins, BadLawsAreRefusedWithFileAndReason) {
       {law("help"), "relation SOFT: it lacks the text 'help'"},
       {law("name", "name = 'ELAS'"), "relation ELAS: another row has this name"},
       {law("transverse_strain", "transverse_strain = 'none'"), "'none' is none of 'elastic', 'isochoric'"},
+      {law("starts_elastically", "starts_elastically = 'yes'"),
+       "relation SOFT: its 'starts_elastically' is neither true nor false"},
       {law("plastic_strain", "plastic_strain = 'none'"),
        "'none' is none of 'small', 'green_lagrange', 'logarithmic', 'stretches'"},
       {law("name_of_deformation", "name = 'PETIT'"), "deformation PETIT: another row has this name"},
