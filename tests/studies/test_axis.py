@@ -50,7 +50,7 @@ class Axis(StudyTest):
 
     def test_a_free_axis_is_told_with_its_body_and_group(self):
         said = self.study(self.disc(), SOLVE.format(n=1, excit="", more=""))
-        self.assertIn("<A> <EVOLUTION_44> DISC touches the axis of revolution (X = 0), and nothing imposes the radial displacement DX at 3 node(s)", said)
+        self.assertIn("<I> <EVOLUTION_44> DISC touches the axis of revolution (X = 0), and nothing imposes the radial displacement DX at 3 node(s)", said)
         self.assertIn("DDL_IMPO=_F(GROUP_MA='AXIS', DX=0.0)", said)
 
     def test_nothing_is_said_where_anything_holds_it(self):
