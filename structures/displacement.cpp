@@ -1,9 +1,15 @@
 #include "lacon/structures/displacement.hpp"
 
 #include <algorithm>
+#include <array>
 #include <string>
 
 namespace lacon {
+namespace {
+
+const std::array<std::string, 3> names = {"DX", "DY", "DZ"};
+
+}  // namespace
 
 std::vector<double> nodal_values(const Mesh& mesh, const Field& field, std::span<const std::string> components) {
   const std::size_t width = components.size();
@@ -19,8 +25,17 @@ std::vector<double> nodal_values(const Mesh& mesh, const Field& field, std::span
 }
 
 std::vector<double> nodal_displacements(const Mesh& mesh, const Field& field, int dimension) {
-  const std::string names[] = {"DX", "DY", "DZ"};
   return nodal_values(mesh, field, std::span(names).first(static_cast<std::size_t>(dimension)));
+}
+
+std::vector<std::uint8_t> free_displacements(const Mesh& mesh, std::span<const Load> loads) {
+  const auto n = static_cast<std::size_t>(mesh.dimension);
+  std::vector<std::uint8_t> free(mesh.n_nodes() * n, 1);
+  for (const Load& load : loads)
+    for (const LoadTerm& term : load.imposed)
+      for (std::size_t d = 0; d < n; ++d)
+        if (term.component == names[d]) free[static_cast<std::size_t>(term.place) * n + d] = 0;
+  return free;
 }
 
 void displace(const Mesh& mesh, std::span<const double> values, int dimension, std::vector<double>& coordinates) {

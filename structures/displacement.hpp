@@ -1,9 +1,11 @@
 #pragma once
 // Displacements and other unknowns of nodes out of a field, and where nodes are then.
+#include <cstdint>
 #include <span>
 #include <string>
 #include <vector>
 
+#include "lacon/structures/concepts.hpp"
 #include "lacon/structures/field.hpp"
 #include "lacon/structures/mesh.hpp"
 
@@ -14,6 +16,9 @@ std::vector<double> nodal_values(const Mesh& mesh, const Field& field, std::span
 
 /// DX, DY, DZ of a field of nodes as (n_nodes of the mesh, dimension), 0 where it has none.
 std::vector<double> nodal_displacements(const Mesh& mesh, const Field& field, int dimension);
+
+/// Which displacements none of some loads imposes: (n_nodes of the mesh, dimension), 1 or 0.
+std::vector<std::uint8_t> free_displacements(const Mesh& mesh, std::span<const Load> loads);
 
 /// Coordinates of the mesh and displacements, added up: (n_nodes, 3).
 /// @param values (n_nodes, n): the first `dimension` of the n values of a node are its displacements

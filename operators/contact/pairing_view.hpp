@@ -38,11 +38,12 @@ struct PairingView {
 
 /// Pair on the geometry at a displacement.
 /// @param displacement (n_nodes, mesh.dimension), empty for the initial geometry
+/// @param free (n_nodes, mesh.dimension): 1 where a displacement is an unknown, ContactGeometry::find_ends
 /// @param offsets of the skins at the instant, ContactOffsets::at  @param cont_elem its field CONT_ELEM, or nullptr
 /// Throws EVOLUTION_3 for a slave cell without normal, EVOLUTION_8 for one beyond the axis.
 PairingView view_pairing(const Mesh& mesh, const Model& model, const Contact& contact, Registry& registry,
-                         std::span<const double> displacement, std::vector<std::vector<double>> offsets,
-                         const Field* cont_elem);
+                         std::span<const double> displacement, std::span<const std::uint8_t> free,
+                         std::vector<std::vector<double>> offsets, const Field* cont_elem);
 
 /// Why a couple was rejected, in the user's language.
 std::string rejection_words(Rejection rejection);

@@ -145,8 +145,9 @@ void each_pairing(const Order& order, const Base& base, Concepts& concepts, cons
     const std::string id = one.concept_id("CONTACT");
     const Mesh& mesh = concepts.mesh(base.contact(id).mesh);
     const ViewedContact viewed(base, mesh, id);
-    visit(
-        {base.label(id), -1, 0, view_pairing(mesh, viewed.model, viewed.contact, registry, {}, viewed.offsets.at(0), nullptr)});
+    visit({base.label(id), -1, 0,
+           view_pairing(mesh, viewed.model, viewed.contact, registry, {}, free_displacements(mesh, {}), viewed.offsets.at(0),
+                        nullptr)});
     return;
   }
   const Result& result = concepts.result(one.concept_id("RESULTAT"));
@@ -159,12 +160,14 @@ void each_pairing(const Order& order, const Base& base, Concepts& concepts, cons
     const std::string& id = result.stage(number).contact;
     const ViewedContact& viewed = contacts.try_emplace(id, base, mesh, id).first->second;
     const Field depl = base.field(result, "DEPL", number);
+    std::vector<Load> loads;
+    for (const ResultLoad& load : result.stage(number).loads) loads.push_back(base.load(load.load));
     std::optional<Field> state;
     if (const auto files = result.fields.find("CONT_ELEM"); files != result.fields.end() && files->second.contains(number))
       state = base.field(result, "CONT_ELEM", number);
     visit({result.label, number, depl.instant,
            view_pairing(mesh, viewed.model, viewed.contact, registry, nodal_displacements(mesh, depl, mesh.dimension),
-                        viewed.offsets.at(depl.instant), state ? &*state : nullptr)});
+                        free_displacements(mesh, loads), viewed.offsets.at(depl.instant), state ? &*state : nullptr)});
   }
 }
 

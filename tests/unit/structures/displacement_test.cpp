@@ -38,6 +38,14 @@ TEST_F(Displacement, MovesCoordinates) {
   EXPECT_EQ(coordinates, moved);
 }
 
+TEST_F(Displacement, IsFreeWhereNoLoadImposesIt) {
+  lacon::Load first, second;
+  first.imposed = {{.place = 1, .component = "DY", .value = {}}, {.place = 2, .component = "LAGS_C", .value = {}}};
+  second.imposed = {{.place = 0, .component = "DX", .value = {}}, {.place = 0, .component = "DZ", .value = {}}};
+  EXPECT_THAT(lacon::free_displacements(mesh, {}), ElementsAre(1, 1, 1, 1, 1, 1));
+  EXPECT_THAT(lacon::free_displacements(mesh, std::vector{first, second}), ElementsAre(0, 1, 1, 0, 1, 1));
+}
+
 TEST_F(Displacement, StandsBesideOtherUnknowns) {
   const std::vector<std::string> unknowns = {"DX", "DY", "LAGS_C", "TEMP"};
   EXPECT_THAT(lacon::nodal_values(mesh, field, unknowns), ElementsAre(0, 0, 0, 0, 0.5, 0, 9, 0, -0.5, 0.25, 9, 0));
