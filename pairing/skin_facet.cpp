@@ -22,30 +22,7 @@ bool is_straight(Vec3 a, Vec3 b, Vec3 m, double bulge) {
   return norm(cross(d, to_middle)) <= bulge * length2 && along > 0 && along < length2;
 }
 
-// Of the edges that end in a mirrored one, by which they are prolonged: images are taken that far outside of a cell. Where
-// slaves end at a plane of symmetry their normals lean over it by what facets leave, in gaps.
-constexpr double hem = 0.0625;
-
 bool is_mirrored(const FacetKind& f, int edge) { return (f.mirrored >> (edge % f.n_vertices) & 1) != 0; }
-
-/// Reference coordinates of the vertices of an outline.
-void places_of_outline(const FacetKind& f, std::vector<Vec2>& places) {
-  places.clear();
-  const std::span<const double> nodes = catalog::cell(f.type).nodes;
-  const int n = f.n_vertices;
-  const auto vertex = [&](int i) { return Vec2{nodes[2 * (i % n)], nodes[2 * (i % n) + 1]}; };
-  const auto prolonged = [&](int i) {  // along the other edge of each mirrored one that ends there
-    Vec2 at = vertex(i);
-    if (is_mirrored(f, i)) at = at + hem * (vertex(i) - vertex(i + n - 1));
-    if (is_mirrored(f, i + n - 1)) at = at + hem * (vertex(i) - vertex(i + 1));
-    return at;
-  };
-  for (int i = 0; i < n; ++i) {
-    const Vec2 a = prolonged(i), b = prolonged(i + 1);
-    for (int k = 0; k < (f.whole_edge[static_cast<std::size_t>(i)] ? 1 : edge_pieces); ++k)
-      places.push_back(a + (static_cast<double>(k) / edge_pieces) * (b - a));
-  }
-}
 
 }  // namespace
 
@@ -106,7 +83,7 @@ void outline(const FacetKind& f, const Nodes& nodes, std::vector<Vec3>& polygon)
   const auto mirrored = [&](int i) { return is_mirrored(f, i); };
   std::vector<Vec2> places;
   Map3 x;
-  if (f.mirrored != 0) places_of_outline(f, places), x = f.map(nodes);
+  if (f.mirrored != 0) outline_places(f, places), x = f.map(nodes);
   for (int i = 0; i < n; ++i) {
     const double first = mirrored(i + n - 1) ? -hem : 0, last = mirrored(i + 1) ? 1 + hem : 1;
     for (int k = 0; k < (f.whole_edge[static_cast<std::size_t>(i)] ? 1 : edge_pieces); ++k) {
@@ -121,6 +98,22 @@ void outline(const FacetKind& f, const Nodes& nodes, std::vector<Vec3>& polygon)
   }
 }
 
-void outline_places(const FacetKind& f, std::vector<Vec2>& places) { places_of_outline(f, places); }
+void outline_places(const FacetKind& f, std::vector<Vec2>& places) {
+  places.clear();
+  const std::span<const double> nodes = catalog::cell(f.type).nodes;
+  const int n = f.n_vertices;
+  const auto vertex = [&](int i) { return Vec2{nodes[2 * (i % n)], nodes[2 * (i % n) + 1]}; };
+  const auto prolonged = [&](int i) {  // along the other edge of each mirrored one that ends there
+    Vec2 at = vertex(i);
+    if (is_mirrored(f, i)) at = at + hem * (vertex(i) - vertex(i + n - 1));
+    if (is_mirrored(f, i + n - 1)) at = at + hem * (vertex(i) - vertex(i + 1));
+    return at;
+  };
+  for (int i = 0; i < n; ++i) {
+    const Vec2 a = prolonged(i), b = prolonged(i + 1);
+    for (int k = 0; k < (f.whole_edge[static_cast<std::size_t>(i)] ? 1 : edge_pieces); ++k)
+      places.push_back(a + (static_cast<double>(k) / edge_pieces) * (b - a));
+  }
+}
 
 }  // namespace lacon::space

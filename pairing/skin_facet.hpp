@@ -53,6 +53,10 @@ Facet facet(const Surface& surface, std::size_t cell, double straight, bool in_p
 /// An order of points: an edge is followed from its earlier end, whichever facet asks.
 inline bool before(Vec3 a, Vec3 b) { return std::tie(a.x, a.y, a.z) < std::tie(b.x, b.y, b.z); }
 
+/// Of the edges that end in a mirrored one, by which they are prolonged: images are taken that far outside of a cell. Where
+/// slaves end at a plane of symmetry their normals lean over it by what facets leave, in gaps.
+constexpr double hem = 0.0625;
+
 /// The outline of a facet as a polygon: a curved edge in pieces, at places that depend on the edge alone, a straight one whole.
 /// Mirrored edges lie a little outside of the cell: what normals meet there stands for the mirror image.
 void outline(const FacetKind& f, const Nodes& nodes, std::vector<Vec3>& polygon);

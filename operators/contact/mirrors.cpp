@@ -5,14 +5,15 @@
 #include <map>
 
 #include "lacon/catalog/cells.hpp"
+#include "lacon/pairing/skin_facet.hpp"
 #include "lacon/structures/vector.hpp"
 
 namespace lacon {
 namespace {
 
-constexpr double in_plane = 1e-9;           // of the extent: mesh files have about ten digits
-constexpr double shallow = 0.1;             // of an edge: depth of a cell that hardly leaves the plane of its edge
-constexpr double still_aligned = 1.0 / 32;  // of a cell: half of what outlines go on by
+constexpr double in_plane = 1e-9;                 // of the extent: mesh files have about ten digits
+constexpr double shallow = 0.1;                   // of an edge: depth of a cell that hardly leaves the plane of its edge
+constexpr double still_aligned = space::hem / 2;  // of a cell: half of what outlines go on by
 
 struct BorderEdge {
   std::int32_t cell;

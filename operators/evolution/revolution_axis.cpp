@@ -65,8 +65,8 @@ std::string keyword_for(const Mesh& mesh, const Nodes& nodes, const std::vector<
   return nodes.size() == 1 ? "NOEUD=" + names : "NOEUD=(" + names + ")";
 }
 
-}  // namespace
-
+/// Unknowns that loads decide at every instant, (n_nodes, n_components): imposed, or the last one of a relation whose others
+/// are decided.
 std::vector<std::uint8_t> decided_unknowns(const StaticProblem& problem) {
   std::vector<std::uint8_t> decided = problem.imposed;
   std::vector<const DofRelation*> open;
@@ -91,7 +91,9 @@ std::vector<std::uint8_t> decided_unknowns(const StaticProblem& problem) {
   return decided;
 }
 
-void warn_of_axis(const StaticProblem& problem) {
+}  // namespace
+
+void tell_of_axis(const StaticProblem& problem) {
   if (!problem.is_of_revolution()) return;
   const Bodies bodies(problem.mesh);
   std::vector<std::uint8_t> decided = decided_unknowns(problem), is_on_axis(problem.mesh.n_nodes(), 0);

@@ -4,11 +4,7 @@
 
 namespace lacon {
 
-/// Unknowns that loads decide at every instant, (n_nodes, n_components): imposed, or the last one of a relation whose others
-/// are decided.
-std::vector<std::uint8_t> decided_unknowns(const StaticProblem& problem);
-
 /// EVOLUTION_44: an axisymmetric body with nodes on the axis whose radial displacement nothing decides.
-void warn_of_axis(const StaticProblem& problem);
+void tell_of_axis(const StaticProblem& problem);
 
 }  // namespace lacon

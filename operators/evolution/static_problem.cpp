@@ -260,7 +260,7 @@ StaticProblem read_problem(const Order& order, const Base& base) {
     for (const std::int64_t dof : problem.loads.back().dofs) problem.imposed[dof] = 1;
   }
   check_laws(*problem.registry, problem.initial_strains, problem.solids);
-  warn_of_axis(problem);
+  tell_of_axis(problem);
   if (const auto contact = keywords.optional_concept("CONTACT")) {
     problem.contact = base.contact(*contact);
     if (problem.contact->model != model_id)

@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <fstream>
 #include <random>
+#include <stdexcept>
 
 #include "dense.hpp"
 #include "lacon/assembly/mumps_engine.hpp"
@@ -240,4 +241,18 @@ TEST(TreeMumps, IsNotMadeWhereProcessesAreOfNoUse) {
 }
 
 }  // namespace
+// What is done meanwhile may fail: answers are heard all the same, and the next ones are those of the next question.
+TEST(MumpsProcesses, AreHeardWhereWhatIsDoneMeanwhileFails) {
+  MumpsProcesses processes(2, shared_by(2).program);
+  processes.start();
+  const std::vector<int> both = {0, 1};
+  const auto ask = [&](const char* verb, const std::string& rest, const std::function<void()>& meanwhile) {
+    return processes.ask(
+        {verb, "analysis", 1}, both, [&](std::size_t) { return rest; }, meanwhile);
+  };
+  EXPECT_THROW(ask("forget", "", [] { throw std::length_error("meanwhile"); }), std::length_error);
+  EXPECT_THROW(ask("open", " /nowhere", {}), std::runtime_error);  // not the answers to "forget"
+  EXPECT_EQ(ask("forget", "", {}).size(), 2U);
+}
+
 }  // namespace lacon
