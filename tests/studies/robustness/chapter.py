@@ -24,7 +24,9 @@ DRAWN = {
     "contrast": ("1e+06 QUAD4 PETIT tool", "1e-06 QUAD4 PETIT tool"),
     "space": ("sphere HEXA8 GREEN slab", "sphere HEXA20 GREEN tool", "half-cylinder TETRA10 GREEN slab"),
     "difficult": ("die QUAD4 PETIT_REAC block", "beams QUAD8 GREEN upper", "stack AXIS QUAD8 GREEN above"),
-    "corner": ("QUAD4 GREEN tool", "QUAD8 GREEN plate"), "force": ("round AXIS QUAD8 GREEN tool",), "cycle": ("10 QUAD4 lower",),
+    "corner": ("QUAD4 GREEN tool", "QUAD8 GREEN plate"), "aligned": ("D_PLAN QUAD4 4 on 6 upper", "D_PLAN QUAD8 7 on 5 lower"),
+    "faces": ("4 on 6 upper",), "skins": ("larger above QUAD4 GREEN upper", "smaller above QUAD8 GREEN upper"),
+    "force": ("round AXIS QUAD8 GREEN tool",), "cycle": ("10 QUAD4 lower",),
 }
 
 

@@ -69,7 +69,8 @@ def draw_space(axes, study, result):
         axes.add_collection3d(Poly3DCollection(faces, facecolor=colours, edgecolor=INK, linewidth=0.2 if layer == 1 else 0.6, zorder=layer))
         low, high = np.minimum(low, np.min([f.min(axis=0) for f in faces], axis=0)), np.maximum(high, np.max([f.max(axis=0) for f in faces], axis=0))
     axes.set(xlim=(low[0], high[0]), ylim=(low[1], high[1]), zlim=(low[2], high[2]))
-    axes.set_box_aspect(high - low, zoom=1.3)
+    across = np.sort(high - low)[-2:]
+    axes.set_box_aspect(high - low, zoom=1.3 if across[1] < 2 * across[0] else 0.9)  # a long box is cut off at its ends
     axes.view_init(40, -65)
     return order, largest
 
