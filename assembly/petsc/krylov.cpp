@@ -239,6 +239,7 @@ void Krylov::set_up() {
     PC displacements = nullptr;
     checked(KSPGetPC(parts[0], &displacements));
     set_up_displacements(displacements);
+    checked(KSPSetUp(parts[0]));  // now, not in the first iteration
     checked(PetscFree(parts));
   }
   checked(KSPSetUp(ksp_));

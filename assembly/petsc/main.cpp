@@ -43,6 +43,20 @@ void answer(const std::string& line) {
   if (is_first()) std::cout << line << std::endl;
 }
 
+/// What is done while it is there is counted by itself: -log_view of PETSC_OPTIONS shows it under this name.
+class Stage {
+ public:
+  explicit Stage(const char* name) {
+    PetscLogStage stage = -1;
+    lacon::checked(PetscLogStageGetId(name, &stage));
+    if (stage < 0) lacon::checked(PetscLogStageRegister(name, &stage));
+    lacon::checked(PetscLogStagePush(stage));
+  }
+  ~Stage() { PetscLogStagePop(); }
+  Stage(const Stage&) = delete;
+  Stage& operator=(const Stage&) = delete;
+};
+
 std::unique_ptr<Krylov> taken(const std::string& path, const KrylovOptions& options) {
   const SharedMemory memory = SharedMemory::open(path);
   return std::make_unique<Krylov>(BlockSystem::in(memory), options);
@@ -69,11 +83,13 @@ void serve(const KrylovOptions& options) {
         malloc_trim(0);  // what it had goes back to the system
         answer("forgotten");
       } else if (line.starts_with("set up ")) {
+        const Stage stage("set up");
         krylov = taken(path, options);
         answer("taken");
         krylov->set_up();
         answer("ready");
       } else {
+        const Stage stage("solve");
         answer(solved(*krylov, std::stod(line.substr(line.find(' '))), path));
       }
     } catch (const std::exception& error) {
