@@ -64,7 +64,10 @@ struct PetscEngine::State {
                  "none",
                  "--mca",
                  "btl_vader_single_copy_mechanism",
-                 "none"};
+                 "none",
+                 "--mca",
+                 "mpi_yield_when_idle",  // others may need the cores
+                 "1"};
     command.insert(command.end(),
                    {options.program, options.algorithm, options.preconditioner, std::to_string(options.iterations)});
     ranks = std::make_unique<Companion>(command);
