@@ -180,7 +180,7 @@ std::vector<Observer::Value> Observer::of_cell(const Field& field, const std::ve
   for (std::int64_t point = 0; points.empty() && point < n_points; ++point) add(point);
   if (formula_ && !values.empty()) values = of_formula(values);
   const std::string how = keywords_.text("EVAL_ELGA");
-  return how == "VALE" ? values : reduce_by_component(how, values, {.cell = cell, .value = 0});
+  return how == "VALE" || how == "EACH" ? values : reduce_by_component(how, values, {.cell = cell, .value = 0});
 }
 
 std::vector<Observer::Value> Observer::collect(const Field& field) const {

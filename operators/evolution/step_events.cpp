@@ -6,8 +6,17 @@
 #include <cmath>
 
 #include "lacon/catalog/messages.hpp"
+#include "lacon/catalog/wording.hpp"
 
 namespace lacon {
+namespace {
+
+std::string place_of(const Observer::Value& value) {
+  if (value.node >= 0) return node_name(value.node);
+  return part("point_of_cell", {{"point", std::to_string(value.point + 1)}, {"cell", cell_name(value.cell)}});
+}
+
+}  // namespace
 
 StepEvents::StepEvents(const std::vector<StepEvent>& events, const Base& base, const Mesh& mesh, FieldMakers fields)
     : fields_(std::move(fields)) {
@@ -44,7 +53,7 @@ void StepEvents::judge(double instant) {
     for (std::size_t i = 0; i < now.size(); ++i)
       if (const double change = std::abs(now[i].value - increment.last[i].value); change > increment.limit)
         fail("STEP_2", {{"component", now[i].component},
-                        {"node", node_name(now[i].node)},
+                        {"place", place_of(now[i])},
                         {"change", fmt::format("{:.6g}", change)},
                         {"limit", fmt::format("{:.6g}", increment.limit)},
                         {"instant", fmt::format("{:.9g}", instant)}});

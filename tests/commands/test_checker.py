@@ -536,6 +536,16 @@ C = DEFI_CONTACT(MODELE=MO, FORMULATION='CONTINUE',
         self.refused(self.run_study("DEBUT()\nM = LIRE_MAILLAGE()\nN = LIRE_MAILLAGE()\n"
                                     "MODI_MAILLAGE(reuse=M, MAILLAGE=N, ORIE_PEAU=_F(GROUP_MA_PEAU='A'))\n"), "COMMAND_9")
 
+    def test_reuse_wants_what_the_command_makes(self):
+        """It was passed over in silence where the keyword that it stands for is absent: STAT_NON_LINE without RESULTAT."""
+        row = catalog.command("STAT_NON_LINE")["keyword"]["RESULTAT"]
+        self.assertEqual(checker.problems_of("STAT_NON_LINE/reuse", row, kinds["result"](None, "result_1", "R")), [])
+        for value in ("R", 3, kinds["material_field"](None, "material_field_1", "CM")):
+            (problem,) = checker.problems_of("STAT_NON_LINE/reuse", row, value, "study.comm:7")
+            self.assertEqual((problem.id, problem.where), ("KEYWORD_3", "STAT_NON_LINE/reuse, study.comm:7"))
+        self.refused(self.run_study("DEBUT()\nM = LIRE_MAILLAGE()\nF = DEFI_FONCTION(NOM_PARA='INST', VALE=(0, 1))\n"
+                                    "CALC_CHAMP(reuse=F, CONTRAINTE='SIEF_NOEU')\n"), "KEYWORD_3", "CALC_CHAMP/reuse")
+
 
 if __name__ == "__main__":
     unittest.main()

@@ -76,6 +76,14 @@ class OtherMethods(unittest.TestCase):
         said = self.form("DEFI_CONTACT", cut=("E", "F"), FORMULATION="DISCRETE", ZONE=ZONES)
         self.assertNotIn("CREA_MAILLAGE", said.do)
 
+    def test_what_has_no_two_skins_has_no_lac_form(self):
+        """Its keywords are refused by name: a form without slave or master was printed."""
+        for zone in (_F(GROUP_MA="M", NOM_CMP="DY", COEF_IMPO=0.0), _F(FISS_MAIT="F"), _F(GROUP_MA_ESCL="E"), ()):
+            refuse_other_methods("DEFI_CONTACT", {"MODELE": Model(), "FORMULATION": "LIAISON_UNIL", "ZONE": zone}, "study.comm:7", "CTC")
+        _, problems = checker.complete("DEFI_CONTACT", catalog.command("DEFI_CONTACT"),
+                                       {"MODELE": Model(), "FORMULATION": "LIAISON_UNIL", "ZONE": _F(GROUP_MA="M", NOM_CMP="DY", COEF_IMPO=0.0)})
+        self.assertIn("stiff body", " ".join(problem.do for problem in problems))
+
     def test_bilateral_contact_of_defi_cont_glides(self):
         said = self.form("DEFI_CONT", ZONE=_F(GROUP_MA_MAIT="M", GROUP_MA_ESCL="E", ALGO_CONT="LAGRANGIEN", TYPE_CONTACT="BILATERAL"))
         self.assertIn("GLISSIERE='OUI'", said.do)

@@ -178,7 +178,7 @@ FIN()
         self.assertEqual(json.loads(file.attrs["events"]), [
             {"event": "RESI_MAXI", "limit": 1e3, "place": {}, "cut": False, "cut_into": 4, "cut_levels": 3, "smallest": 0.0},
             {"event": "DELTA_GRANDEUR", "limit": 0.1, "cut": True, "cut_into": 3, "cut_levels": 3, "smallest": 0.0,
-             "place": {"NOM_CHAM": "DEPL", "NOM_CMP": ["DX"], "GROUP_NO": ["TOP"], "EVAL_CHAM": "VALE", "EVAL_CMP": "VALE", "EVAL_ELGA": "VALE"}}])
+             "place": {"NOM_CHAM": "DEPL", "NOM_CMP": ["DX"], "GROUP_NO": ["TOP"], "EVAL_CHAM": "VALE", "EVAL_CMP": "VALE", "EVAL_ELGA": "EACH"}}])
         self.assertEqual(json.loads(file.attrs["adaptation"]), {
             "event": "SEUIL", "easy_steps": 2, "easy_iterations": 3, "rule": "ITER_NEWTON", "percent": 100.0, "reference": 7, "smallest": 1e-3,
             "largest": 0.5, "most": 50})

@@ -294,6 +294,29 @@ FIN()
             *((f"EXTR_TABLE(TABLE=T, TYPE_RESU='{kind}', NOM_PARA='{name}', FILTRE=_F(NOM_PARA='N', VALE_I=2))", "TABLE_17")
               for kind, name in (("ENTIER", "X"), ("REEL", "NAME"), ("FONCTION_SDASTER", "NAME"), ("TABLE_SDASTER", "X")))])
 
+    def test_a_concept_is_found_where_a_command_file_has_it(self):
+        """EXTR_TABLE: in a function of the command file, in a list, a dictionary; its own variable before one of the same name outside."""
+        self.ok(self.run_study("""
+DEBUT()
+def constant(value):
+    return DEFI_FONCTION(NOM_PARA='INST', VALE=(0, value, 1, value))
+def named(*names):
+    return CREA_TABLE(LISTE=_F(PARA='NAME', LISTE_K=names, TYPE_K='K24'))
+def found(table):
+    return EXTR_TABLE(TABLE=table, TYPE_RESU='FONCTION_SDASTER', NOM_PARA='NAME')(0.5)
+F, S, D = constant(1), [], {}
+S.append(constant(2))
+S += [constant(3)]
+D['x'] = constant(4)
+assert [found(named(name)) for name in ('F', 'S[0]', 'S[1]', "D['x']")] == [1, 2, 3, 4]
+def macro():
+    F = constant(5)
+    inner = constant(6)
+    return [found(named(name)) for name in ('F', 'inner')]
+assert macro() == [5, 6] and found(named('F')) == 1
+FIN()
+"""))
+
     def test_parameters_of_a_result(self):
         self.ok(self.run_study(STUDY + """
 P = RECU_TABLE(CO=R, NOM_PARA='INST')

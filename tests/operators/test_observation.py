@@ -137,6 +137,14 @@ class Events(TwoSquares):
         self.assertEqual(self.steps(event="DELTA_GRANDEUR", limit=1.1 * EXX, place=place)[1], [0, 1])
         self.assertEqual(self.steps(event="DELTA_GRANDEUR", limit=0.3 * EXX, place=place, cut=False)[0].status, 3)
 
+    def test_large_increments_of_stresses_cut_the_step(self):
+        """At any integration point; the stress goes from 0 to the pressure."""
+        place = {"NOM_CHAM": "SIEF_ELGA", "NOM_CMP": ["SIYY"], "MAILLE": ["M4", "M5"], "EVAL_CHAM": "VALE", "EVAL_CMP": "VALE", "EVAL_ELGA": "EACH"}
+        run, instants = self.steps(event="DELTA_GRANDEUR", limit=0.3 * PRESSURE, place=place)
+        self.assertEqual(instants, [0, 0.25, 0.5, 0.75, 1])
+        self.assertRegex(run.messages[0]["text"], r"SIYY at point \d of M\d")
+        self.assertEqual(self.steps(event="DELTA_GRANDEUR", limit=1.1 * PRESSURE, place=place)[1], [0, 1])
+
     def test_large_residuals_fail_the_step(self):
         run, _ = self.steps(event="RESI_MAXI", limit=1e-30, cut=False)
         self.assertEqual((run.status, self.ids(run)), (3, ["STEP_1"]))

@@ -268,12 +268,12 @@ def hertz_section(runner):
     return hertz_axis.section(runner)
 
 
-def of_test(case, method):
+def of_test(case, method, *given):
     """What a method of a test case makes, in a folder of its own."""
     test = case(method)
     test.setUp()
     try:
-        return getattr(test, method)()
+        return getattr(test, method)(*given)
     finally:
         test.doCleanups()
 
@@ -336,8 +336,18 @@ To be lifted over the ridge the hook takes {taken:.5f}, behind it gives {given:.
 def large_strain_section(_runner):
     from test_large_strain import Necking, Upsetting
 
+    from test_upsetting import BILLETS, MESHES, LongBounds
+
     rows = [[law, f"{stress:.1e}", f"{moved:.1e}"] for law, stress, moved in of_test(Upsetting, "figures")]
-    loads, considere, strain, width = of_test(Necking, "figures")
+    loads, considere, strain, width, neck = of_test(Necking, "figures")
+    shown = [min(neck, key=lambda row: abs(row[0] - radius)) for radius in (0.9, 0.8, 0.7, 0.6)]
+    bridgman = [[f"{value:.3f}" for value in row] for row in shown]
+    later, bounds = of_test(LongBounds, "at_a_tenth")
+    pressed = []
+    for name, (modelisation, ratio) in BILLETS.items():
+        found, (lower, upper) = of_test(LongBounds, "figures", name)
+        hill = f"{0.75 + ratio / 4:.3f}" if modelisation == "D_PLAN_SI" and ratio > 1 else "-"
+        pressed += [[name, law, *(f"{load:.4f}" for load in found[law]), f"{lower:.3f}", f"{upper:.3f}", hill] for law in found]
     return f"""## Plasticity at large strain
 
 A round billet, 10 wide and 10 high, upset to 5.5 by a rigid die that slides without friction, in 10 steps (AXIS, QUAD8; E = 200000, nu = 0.3, yield stress
@@ -349,6 +359,26 @@ the step, 6 % of strain here.
 The round bar of Simo and Miehe (Comput. Methods Appl. Mech. Engrg. 98, 1992): 53.334 long, radius 6.413, made 0.5 % thinner in its middle, pulled by 14 (GDEF_LOG).
 Theory while it is a cylinder (Considere): the load is largest, {considere:.0f}, at the strain {strain:.3f}. Found: {loads.max():.0f}, {loads.max() / considere:.4f} of it (the
 thinner section has 0.99 of the area). At the end the neck has {width["neck"]:.3f} of the first radius, the end of the bar {width["end"]:.3f} (exp(-strain / 2) = {math.exp(-strain / 2):.3f}).
+
+Stresses in the neck (P. W. Bridgman, Studies in Large Plastic Flow and Fracture, 1952): with the neck's radius a and that of its profile R, both as they are
+found, the mean axial stress is (1 + 2 R / a) ln(1 + a / 2 R) times the flow stress at the strain 2 ln(a0 / a), and the largest, in the middle, 1 + ln(1 + a / 2 R)
+times. He takes the strain as the same all over the section; it is larger in the middle, and the stresses found are up to 5 % above his. Of published neck radii of
+this bar none is compared: no figure was at hand that its source could be given for.
+
+{table(["neck over first radius", "a / R", "mean over flow stress", "Bridgman", "middle over mean", "Bridgman"], bridgman)}
+
+## Upsetting between rough platens
+
+Billets of the height 1 between platens that stick, without hardening (yield stress Y = 20, E = 200000, so that the limit load comes at strains of a thousandth), QUAD8 with
+fewer integration points (D_PLAN_SI, AXIS_SI), {MESHES[0]} and {MESHES[1]} cells over half the height. Load: mean pressure over 2 k = 2 Y / sqrt(3) (prisms) or Y (cylinders). Bounds that are
+theorems: below one stress everywhere; above the work of a flow whose v_x or v_r is the same over the height (cylinder: B. Avitzur, Metal Forming, 1968, 1 + 2 m R / (3 sqrt(3) h)
+with m = 1; prism: 1 + w / (4 h)), or of four rigid wedges, (w / h + h / w) / 2. A square prism has no other load than 1. R. Hill (The Mathematical Theory of
+Plasticity, 1950) has 3 / 4 + w / (4 h) for wide prisms, from Prandtl's field (1923): an approximation.
+
+{table(["billet", "DEFORMATION", "load, coarse", "fine", "below", "above", "Hill"], pressed)}
+
+Width over height 1 and 4, diameter over height 1 and 4. When a tenth of the wide prism's height is gone, over the platens' first width (coarse mesh): {", ".join(f"{load:.3f} ({law})" for law, load in later.items())}; below
+{bounds[0]:.0f}, above h / h' + w / (4 h') = {bounds[1]:.3f}, whatever has bulged out.
 """
 
 

@@ -1,4 +1,4 @@
-"""Plasticity at large strain against closed forms: a billet that is upset between frictionless dies, a bar that necks."""
+"""Plasticity at large strain against closed forms: a billet that is upset between frictionless dies, a bar that necks. Platens that stick: test_upsetting.py."""
 
 import unittest
 
@@ -69,8 +69,9 @@ class Necking(LoadTest):
         return self.FIRST + self.SLOPE * p + (self.LAST - self.FIRST) * (1 - np.exp(-self.RATE * p))
 
     def figures(self):
-        """@return loads, Considere's load and strain, name of a section -> its radius at the end over the first one"""
-        s, t = np.linspace(0, 1, 6), np.concatenate([np.linspace(0, 0.35, 9), np.linspace(0.4, 1, 7)])
+        """@return loads, Considere's load and strain, name of a section -> its radius at the end over the first one, stresses of the neck
+        (as neck_stress has them) at every instant"""
+        s, t = np.linspace(0, 1, 6), np.concatenate([np.linspace(0, 0.12, 11), np.linspace(0.145, 0.35, 6), np.linspace(0.45, 1, 5)])
         mesh = block("QUAD8", s, t, lambda x, y: (x * self.RADIUS * (1 - 0.005 * (1 - y)), y * self.HALF), "BAR",
                      {"bottom": "MIDDLE", "left": "AXLE", "top": "TOP"})
         p = np.concatenate([np.linspace(0, 0.4, 81), np.linspace(0.42, 3, 130)])
@@ -84,7 +85,7 @@ REALS = DEFI_LIST_REEL(DEBUT=0.0, INTERVALLE=_F(JUSQU_A=1.0, NOMBRE=50))
 LIST = DEFI_LIST_INST(DEFI_LIST=_F(LIST_INST=REALS), ECHEC=_F(ACTION='DECOUPE'))
 R.append(STAT_NON_LINE(MODELE=MODEL, CHAM_MATER=FIELD, EXCIT=(_F(CHARGE=HOLD), _F(CHARGE=PULL, FONC_MULT=RAMP)), INCREMENT=_F(LIST_INST=LIST),
                        COMPORTEMENT=_F(RELATION='VMIS_ISOT_TRAC', DEFORMATION='GDEF_LOG'), CONVERGENCE=_F(ITER_GLOB_MAXI=20)))
-R[0] = CALC_CHAMP(reuse=R[0], RESULTAT=R[0], FORCE='FORC_NODA')
+R[0] = CALC_CHAMP(reuse=R[0], RESULTAT=R[0], FORCE='FORC_NODA', CONTRAINTE='SIEF_NOEU')
 """)
         self.assertEqual(run.status, 0, run.stdout[-3000:] + run.stderr[-3000:])
         self.assertNotIn("<EVOLUTION_7>", run.stdout + run.stderr, "no step is cut: the neck alone flows, and is predicted to")
@@ -105,16 +106,41 @@ R[0] = CALC_CHAMP(reuse=R[0], RESULTAT=R[0], FORCE='FORC_NODA')
         for name, height in (("neck", 0.0), ("end", self.HALF)):
             there = np.abs(result.points[:, 1] - height) < 1e-6
             width[name] = (result.points[there, 0] + result.at_nodes("DEPL", last, "DX")[there]).max() / self.RADIUS
-        return loads, considere, strain, width
+        return loads, considere, strain, width, [self.neck_stress(result, *at) for at in zip(result.orders[1:], loads)]
+
+    def neck_stress(self, result, order, load):
+        """@return radius of the neck over the first one, over the radius of the neck's profile there; of the axial stress the mean over the flow stress:
+        found, by Bridgman (1952); the largest, in the middle, over the mean: found, by Bridgman"""
+        place = result.points + np.stack([result.at_nodes("DEPL", order, c) for c in ("DX", "DY")], axis=1)
+        section = np.flatnonzero(np.abs(result.points[:, 1]) < 1e-6)
+        section = section[np.argsort(place[section, 0])]
+        r, stress = place[section, 0], result.at_nodes("SIEF_NOEU", order, "SIYY")[section]
+        a = r[-1]
+        mean = ((stress * r)[1:] + (stress * r)[:-1]) @ np.diff(r) / a**2
+        skin = np.abs(result.points[:, 0] - self.RADIUS * (1 - 0.005 * (1 - result.points[:, 1] / self.HALF))) < 1e-6
+        width, height = place[skin].T
+        near = (height > 1e-6) & (height < 0.6 * a)
+        (curvature, _), *_ = np.linalg.lstsq(np.stack([height[near] ** 2 / 2, height[near] ** 4], axis=1), width[near] - a, rcond=None)
+        bend = max(a * curvature, 1e-9)
+        part = np.log(1 + bend / 2)
+        flow = self.yield_stress(2 * np.log(0.995 * self.RADIUS / a))
+        return a / self.RADIUS, bend, load / (np.pi * a**2) / flow, (1 + 2 / bend) * part, stress[0] / mean, (1 + part) / ((1 + 2 / bend) * part)
 
     def test_the_largest_load_is_that_of_considere_and_a_neck_forms(self):
-        loads, considere, strain, width = self.figures()
+        """Bridgman takes the strain as the same all over the section; it is larger in the middle, and stresses are up to 5 % above his."""
+        loads, considere, strain, width, neck = self.figures()
         self.assertLess(loads.max(), 1.001 * considere)  # elasticity keeps some of the strain
         self.assertGreater(loads.max(), 0.985 * considere)  # of the section that is 1 % smaller
         self.assertLess(loads[-1], 0.8 * considere)
         self.assertLess(width["neck"], 0.6)
         # away from the neck it unloads where the load was largest: area exp(-strain), to a few hundredths of it
         self.assertAlmostEqual(width["end"], np.exp(-strain / 2), delta=0.02)
+        thin = [row for row in neck if 0.6 < row[0] < 0.9]
+        self.assertGreater(len(thin), 10)
+        for radius, _, mean, of_mean, middle, of_middle in thin:
+            self.assertTrue(1 < mean / of_mean < 1.05, (radius, mean, of_mean))
+            self.assertTrue(1 < middle / of_middle < 1.055, (radius, middle, of_middle))
+        self.assertGreater(thin[-1][2], 1.2)  # so much that the tolerance tells it from a stress that is the flow stress
 
 
 if __name__ == "__main__":

@@ -99,7 +99,7 @@ def _limit(factor):
         return {"limit": factor.get("RESI_GLOB_MAXI", 0.0), "place": {}}
     place = {name: factor[name] for name in ("NOM_CHAM", "NOEUD", "GROUP_NO", "MAILLE", "GROUP_MA") if name in factor}
     return {"limit": factor["VALE_REF"], "place": {**place, "NOM_CMP": [factor["NOM_CMP"]], "EVAL_CHAM": "VALE", "EVAL_CMP": "VALE",
-                                                   "EVAL_ELGA": "VALE"}}
+                                                   "EVAL_ELGA": "EACH"}}
 
 
 def _adaptation(definition, factor):

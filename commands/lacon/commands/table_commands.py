@@ -1,5 +1,7 @@
 """CREA_TABLE, IMPR_TABLE, TEST_TABLE, RECU_TABLE, EXTR_TABLE."""
 
+from ..base.names import concepts_of
+from ..core import labels
 from ..core.catalog import part
 from ..core.concepts import Concept
 from ..core.files import whole
@@ -247,6 +249,23 @@ _concepts = {"CHAM_GD_SDASTER": ("field",), "CHAM_NO_SDASTER": ("field",), "CHAM
              "EVOL_THER": ("result",)}
 
 
+def _called(study, text):
+    """What a text in a table names: a variable of the functions under way or of the study, a place in a list or a dictionary ("R[0]"), or, where no
+    variable has it, the latest concept made under this name that something still holds."""
+    frame = labels.user_frame()
+    while frame is not None:
+        there = None if labels.is_own(frame) else frame.f_locals.get(text)
+        if isinstance(there, Concept):
+            return there
+        frame = frame.f_back
+    for name, value in list(study.names.values.items()):
+        for label, there in concepts_of(name, value):
+            if label == text and not there.destroyed:
+                return there
+    held = [there for _, there in study.base.live_objects() if there.label == text and not there.destroyed]
+    return max(held, key=lambda there: int(there.id.rpartition("_")[2]), default=None)
+
+
 def extr_table(call):
     """@return a number of Python's, or a concept of its own with the content of the one that the cell names"""
     k = call.keywords
@@ -257,7 +276,7 @@ def extr_table(call):
     is_number = not isinstance(cells[0], str)
     if is_number and (kind == "REEL" or (kind == "ENTIER" and isinstance(cells[0], int))):
         return float(cells[0]) if kind == "REEL" else cells[0]
-    there = None if is_number else call.study.names.values.get(cells[0].strip())
+    there = None if is_number else _called(call.study, cells[0].strip())
     if kind in ("REEL", "ENTIER") or not isinstance(there, Concept) or there.type not in _concepts[kind]:
         call.fail("TABLE_17", "TYPE_RESU", name=name, cell=cells[0], kind=kind)
     return information.copy_of(call, there)

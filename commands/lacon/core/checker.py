@@ -24,6 +24,13 @@ def complete(command, row, given, where=""):
     return keywords, check.problems
 
 
+def problems_of(path, keyword, value, where=""):
+    """What is wrong with one value where a row of the catalogue wants another."""
+    check = _Check(where)
+    check.value(path, keyword, value)
+    return check.problems
+
+
 class _Check:
     def __init__(self, where):
         self.where = where

@@ -22,9 +22,14 @@ sources = {}
 def user_frame():
     """The innermost frame of a command file or of what it imports."""
     frame = sys._getframe(1)
-    while frame is not None and frame.f_code.co_filename.startswith((package, "<formula>")):
+    while frame is not None and is_own(frame):
         frame = frame.f_back
     return frame
+
+
+def is_own(frame):
+    """Whether a frame is the launcher's, or a formula's."""
+    return frame.f_code.co_filename.startswith((package, "<formula>"))
 
 
 def location(frame):

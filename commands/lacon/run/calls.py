@@ -80,6 +80,8 @@ class Command:
             return None
         if holder is None:
             problems.append(message("COMMAND_3", place, command=self.name))
+        elif wrong := checker.problems_of(path, row["keyword"][holder], reuse, where):
+            problems += wrong
         elif keywords.get(holder) is not reuse and holder in given:
             problems.append(message("COMMAND_9", place, keyword=holder))
         return reuse if isinstance(reuse, Concept) else None

@@ -7,8 +7,11 @@ from ..core.messages import fail
 
 
 def refuse_other_methods(command, given, where, label):
-    """Throws LAC_9 with the LAC form, where a DEFI_CONTACT or a DEFI_CONT asks for another method."""
+    """Throws LAC_9 with the LAC form, where a DEFI_CONTACT or a DEFI_CONT asks for another method. What has no two skins (LIAISON_UNIL, XFEM, zones
+    without groups) has no such form: its keywords are refused one by one."""
     zones = _occurrences(given.get("ZONE"))
+    if not zones or not all(zone.get("GROUP_MA_MAIT") and zone.get("GROUP_MA_ESCL") for zone in zones):
+        return
     if command == "DEFI_CONTACT":
         formulation = given.get("FORMULATION", "DISCRETE")
         other = [zone.get("ALGO_CONT", "STANDARD") for zone in zones if zone.get("ALGO_CONT", "STANDARD") != "LAC"]

@@ -50,7 +50,7 @@ class Witness : public EvolutionObserver {
     say("judge", instant);
     if (refuse) {
       refuse = false;
-      fail("STEP_2", {{"component", ""}, {"node", ""}, {"change", ""}, {"limit", ""}, {"instant", ""}});
+      fail("STEP_2", {{"component", ""}, {"place", ""}, {"change", ""}, {"limit", ""}, {"instant", ""}});
     }
   }
   void accept(const SolvedInstant& solved) override {

@@ -138,6 +138,7 @@ TEST(TimeStepping, ActsByTheEvent) {
                            {"limit", ""},
                            {"component", ""},
                            {"node", ""},
+                           {"place", ""},
                            {"change", ""},
                            {"before", ""}});
           },
