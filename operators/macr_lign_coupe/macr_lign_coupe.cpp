@@ -18,6 +18,7 @@
 #include "lacon/operators/fields/tensor.hpp"
 #include "lacon/operators/macr_lign_coupe/lines.hpp"
 #include "lacon/operators/macr_lign_coupe/sums.hpp"
+#include "lacon/structures/vector.hpp"
 
 namespace lacon {
 namespace {
@@ -331,6 +332,19 @@ void add_values(Table& table, const Row& head, const std::vector<LinePoint>& poi
   }
 }
 
+/// POST_10 where the way from point to point goes back on itself by more than 154 degrees, as places.turns_back has it.
+void tell_of_turns(const std::vector<LinePoint>& points, const Keywords& line) {
+  std::size_t count = 0, first = 0;
+  const auto step = [&](std::size_t i) {
+    return vector_at(points[i + 1].position.data()) - vector_at(points[i].position.data());
+  };
+  for (std::size_t i = 1; i + 1 < points.size(); ++i)
+    if (dot(step(i - 1), step(i)) < -0.9 * norm(step(i - 1)) * norm(step(i)) && count++ == 0) first = i;
+  if (count > 0)
+    inform("POST_10", {{"count", std::to_string(count)},
+                       {"place", fmt::format("{} ({:g})", line.path("TYPE"), fmt::join(points[first].position, ", "))}});
+}
+
 void add_means(Table& table, const Row& head, const std::vector<LinePoint>& points, const Values& values, const Keywords& line,
                const std::string& field) {
   if (points.back().along == 0) fail("LIGNCOUPE_6", {{"keyword", line.path("OPERATION")}});
@@ -425,6 +439,7 @@ void macr_lign_coupe(const Order& order, const Base& base) {
   for (const Keywords& line : keywords.factors("LIGN_COUPE")) {
     const std::vector<LinePoint> points = line_points(mesh, locator, line);
     const Row name{{"INTITULE", "K24", title(line, ++number)}};
+    if (line.text("OPERATION") == "MOYENNE") tell_of_turns(points, line);
     for (const std::int64_t o : subject.orders) {
       Field field = subject.result ? base.field(*subject.result, subject.name, o) : base.field(keywords.concept_id("CHAM_GD"));
       if (field.location == Location::gauss_points)

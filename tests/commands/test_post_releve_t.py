@@ -60,6 +60,14 @@ expected = dict(MOMENT_0=5, MOMENT_1=2, MINIMUM=4, MAXIMUM=6, MOYE_INT=4, MOYE_E
 assert found.keys() == expected.keys() and all(abs(found[k] - expected[k]) < 1e-14 for k in found), found
 """))
 
+    def test_a_mean_along_a_way_that_turns_back_is_told(self):
+        """It was a wrong number in silence: the nodes of a skin of quadratic cells come as ends and middles."""
+        run = self.action("INST=1.0, NOEUD=('N4', 'N6', 'N5'), NOM_CHAM='DEPL', NOM_CMP='DX', OPERATION='MOYENNE'", "")
+        self.assertEqual(run.status, 0, run.out + run.err)
+        self.assertIn("<A> <POST_10>", run.err)
+        self.assertIn("N6", run.err)
+        self.assertNotIn("POST_10", self.action("INST=1.0, GROUP_NO='TOP', NOM_CHAM='DEPL', NOM_CMP='DX', OPERATION='MOYENNE'", "").err)
+
     def test_moments_of_a_field_with_a_kink(self):
         self.ok(self.action(
             "INST=1.0, NOEUD=('N1', 'N2', 'N6', 'N5'), NOM_CHAM='DEPL', NOM_CMP='DX', OPERATION='MOYENNE'", """

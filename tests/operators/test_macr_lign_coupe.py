@@ -40,7 +40,7 @@ class MacrLignCoupe(OperatorTest):
         points = [(0, 0), (1, 0), (2, 0), (0, 1), (1, 1), (2, 1), (0, 1), (2, 1), (2, 2), (0, 2)]
         cells = [("QUAD4", [0, 1, 4, 3]), ("QUAD4", [1, 2, 5, 4]), ("QUAD4", [6, 7, 8, 9]), ("SEG2", [4, 3]), ("SEG2", [5, 4]), ("SEG2", [6, 7]),
                  ("SEG2", [1, 4])]
-        self.write(points, cells, [(x + 10 * (i > 5), x * y) for i, (x, y) in enumerate(points)], node_groups={"LINE": [0, 1, 2], "ONE": [2]},
+        self.write(points, cells, [(x + 10 * (i > 5), x * y) for i, (x, y) in enumerate(points)], node_groups={"LINE": [0, 1, 2], "BACK": [0, 2, 1], "ONE": [2]},
                    cell_groups={"LOW": [0, 1], "UP": [2], "TOP": [3, 4], "APART": [3, 5], "FORK": [3, 4, 6], "ALL": [0, 1, 2]})
 
     def lines(self, *lines, **keywords):
@@ -218,6 +218,12 @@ class MacrLignCoupe(OperatorTest):
         for name, (dx, dy) in {"MOMENT_0": (2, 1), "MOMENT_1": (4, 2), "MINIMUM": (0, 0), "MAXIMUM": (4, 2), "MOYE_INT": (0, 0), "MOYE_EXT": (4, 2)}.items():
             np.testing.assert_allclose(found.pop(name), (dx, dy), atol=1e-14)
         self.assertEqual(found, {})
+
+    def test_a_mean_along_a_group_that_is_no_line_is_told(self):
+        self.plane()
+        for group, told in (("LINE", []), ("BACK", ["POST_10"])):
+            self.lines({"TYPE": "GROUP_NO", "GROUP_NO": group, "NOM_CMP": ["DX"], "OPERATION": "MOYENNE"}, INST=[0.0])
+            self.assertEqual(self.messages, told)
 
     def test_two_sides_of_an_interface(self):
         self.plane()

@@ -362,7 +362,7 @@ thinner section has 0.99 of the area). At the end the neck has {width["neck"]:.3
 
 Stresses in the neck (P. W. Bridgman, Studies in Large Plastic Flow and Fracture, 1952): with the neck's radius a and that of its profile R, both as they are
 found, the mean axial stress is (1 + 2 R / a) ln(1 + a / 2 R) times the flow stress at the strain 2 ln(a0 / a), and the largest, in the middle, 1 + ln(1 + a / 2 R)
-times. He takes the strain as the same all over the section; it is larger in the middle, and the stresses found are up to 5 % above his. Of published neck radii of
+times. He takes the strain as the same all over the section; it is larger in the middle, and the stresses found are up to 6 % above his. Of published neck radii of
 this bar none is compared: no figure was at hand that its source could be given for.
 
 {table(["neck over first radius", "a / R", "mean over flow stress", "Bridgman", "middle over mean", "Bridgman"], bridgman)}

@@ -138,6 +138,20 @@ assert abs(u - v).max() <= 1e-9 * abs(u).max()
                         self.assertLessEqual(np.abs(found - factor * value).max(), 1e-8 * YOUNG * 1e-3, component)
                     self.assertLessEqual(np.abs(result.at_nodes("REAC_NODA", order, "DX")).max(), 1e-8 * YOUNG * 1e-3)
 
+    def test_forces_of_a_stress_under_a_law_that_takes_no_initial_strain(self):
+        """What BEHAVIOUR_6 names in its place: a bar with GREEN_LAGRANGE and the dead forces of PRE_SIGM = E e stretches by g, (1 + g) E (g + g^2 / 2) = E e."""
+        strain = 0.1
+        (result,) = self.solved([flat_block("QUAD8")], f"""model(20, 'C_PLAN', BAR)
+H = AFFE_CHAR_CINE(MODELE=MODEL, MECA_IMPO=(_F(GROUP_MA='LEFT', DX=0), _F(GROUP_MA='BASE', DY=0)))
+F = CREA_CHAMP(TYPE_CHAM='CART_SIEF_R', OPERATION='AFFE', MAILLAGE=MESH, AFFE=_F(TOUT='OUI', NOM_CMP='SIXX', VALE={YOUNG * strain}))
+S = AFFE_CHAR_MECA(MODELE=MODEL, PRE_SIGM=_F(SIGM=F))
+solve(_F(CHARGE=H), _F(CHARGE=S, FONC_MULT=RAMP), COMPORTEMENT=_F(RELATION='ELAS', DEFORMATION='GREEN_LAGRANGE'))
+""")
+        stretch = 0.0
+        for _ in range(50):
+            stretch = strain / ((1 + stretch) * (1 + stretch / 2))
+        self.assert_near(self.displacement(result, 2, 2), np.stack([stretch * result.points[:, 0], 0 * result.points[:, 0]], axis=1), 1e-9)
+
     def stressed(self, modelisation):
         """(C : e as SIXX, ...; u = G x of that strain e), which in the plane has no part across."""
         lame, shear = YOUNG * POISSON / ((1 + POISSON) * (1 - 2 * POISSON)), YOUNG / 2 / (1 + POISSON)

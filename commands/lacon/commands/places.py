@@ -181,6 +181,14 @@ def curved_abscissa(points):
     return numpy.concatenate([[0.0], numpy.cumsum(numpy.linalg.norm(numpy.diff(points, axis=0), axis=1))]) if len(points) else points[:, 0]
 
 
+def turns_back(points):
+    """(how often, where first) the way from point to point goes back on itself, by more than 154 degrees; points (n, 3)."""
+    step = numpy.diff(points, axis=0)
+    length = numpy.linalg.norm(step, axis=1)
+    back = (step[1:] * step[:-1]).sum(axis=1) < -0.9 * length[1:] * length[:-1]
+    return int(back.sum()), int(back.argmax()) + 1 if back.any() else 0
+
+
 # ---------------------------------------------------------------------------------------------------- one value
 
 

@@ -15,8 +15,10 @@ def post_releve_t(call):
             call.fail("POST_2", f"{path}/RESULTANTE", operation=operation)
         if "DIRECTION" in action and not any(action["DIRECTION"]):
             call.fail("POST_8", f"{path}/DIRECTION")
-        for head, field in _fields(call, action, path):
+        for k, (head, field) in enumerate(_fields(call, action, path)):
             frame = _Frame(call, action, path, field)
+            if operation == "MOYENNE" and k == 0:
+                frame.tell_of_turns()
             made = frame.resultant() if "RESULTANTE" in action else getattr(frame, operation.lower())()
             for row in made:
                 table.add_row({**head, **row})
@@ -108,6 +110,12 @@ class _Frame:
         for k, name in enumerate(self.names):
             if self.there[:, k].any():
                 yield {"CMP": ("K8", name), "MOYENNE": ("R", float(self._of_component(k).mean()))}
+
+    def tell_of_turns(self):
+        """An alarm where the way from node to node goes back on itself: a mean along it is no mean along a line."""
+        count, first = places.turns_back(self.points)
+        if count:
+            self.call.study.inform("POST_10", f"{self.call.command}/{self.path}, {self.call.where}", count=count, place=f"N{self.nodes[first] + 1}")
 
     def moyenne(self):
         """Six rows: mean along the line of nodes, first moment, extremes, and the ends of the straight line with the same two moments.

@@ -44,7 +44,7 @@ def label(frame):
     """
     while frame is not None:
         code = frame.f_code
-        if not code.co_filename.startswith(package):
+        if not is_own(frame):
             table = _table(code.co_filename)
             position = _position(frame)
             if position in table:
