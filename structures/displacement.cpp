@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <optional>
 #include <string>
 
 namespace lacon {
@@ -28,14 +29,27 @@ std::vector<double> nodal_displacements(const Mesh& mesh, const Field& field, in
   return nodal_values(mesh, field, std::span(names).first(static_cast<std::size_t>(dimension)));
 }
 
-std::vector<std::uint8_t> free_displacements(const Mesh& mesh, std::span<const Load> loads) {
-  const auto n = static_cast<std::size_t>(mesh.dimension);
-  std::vector<std::uint8_t> free(mesh.n_nodes() * n, 1);
-  for (const Load& load : loads)
+std::vector<HeldDirection> held_directions(const Mesh& mesh, std::span<const Load> loads) {
+  const auto axis_of = [&](const std::string& name) -> std::optional<Vec3> {
+    const auto found = std::ranges::find(names.begin(), names.begin() + mesh.dimension, name) - names.begin();
+    if (found == mesh.dimension) return std::nullopt;
+    return Vec3{found == 0 ? 1.0 : 0.0, found == 1 ? 1.0 : 0.0, found == 2 ? 1.0 : 0.0};
+  };
+  std::vector<HeldDirection> held;
+  for (const Load& load : loads) {
     for (const LoadTerm& term : load.imposed)
-      for (std::size_t d = 0; d < n; ++d)
-        if (term.component == names[d]) free[static_cast<std::size_t>(term.place) * n + d] = 0;
-  return free;
+      if (const auto axis = axis_of(term.component)) held.push_back({term.place, *axis});
+    for (const Relation& relation : load.relations) {
+      Vec3 along{};
+      const bool of_one = std::ranges::all_of(relation.terms, [&](const RelationTerm& term) {
+        const auto axis = axis_of(term.component);
+        if (axis) along = along + term.coefficient * *axis;
+        return axis && term.node == relation.terms.front().node;
+      });
+      if (of_one && norm(along) > 0) held.push_back({relation.terms.front().node, along / norm(along)});
+    }
+  }
+  return held;
 }
 
 void displace(const Mesh& mesh, std::span<const double> values, int dimension, std::vector<double>& coordinates) {

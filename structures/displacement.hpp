@@ -8,6 +8,7 @@
 #include "lacon/structures/concepts.hpp"
 #include "lacon/structures/field.hpp"
 #include "lacon/structures/mesh.hpp"
+#include "lacon/structures/vector.hpp"
 
 namespace lacon {
 
@@ -17,8 +18,14 @@ std::vector<double> nodal_values(const Mesh& mesh, const Field& field, std::span
 /// DX, DY, DZ of a field of nodes as (n_nodes of the mesh, dimension), 0 where it has none.
 std::vector<double> nodal_displacements(const Mesh& mesh, const Field& field, int dimension);
 
-/// Which displacements none of some loads imposes: (n_nodes of the mesh, dimension), 1 or 0.
-std::vector<std::uint8_t> free_displacements(const Mesh& mesh, std::span<const Load> loads);
+/// A unit vector along which the displacement of a node is given.
+struct HeldDirection {
+  std::int32_t node;
+  Vec3 along;
+};
+
+/// What some loads impose, along an axis or by a relation between displacements of one node.
+std::vector<HeldDirection> held_directions(const Mesh& mesh, std::span<const Load> loads);
 
 /// Coordinates of the mesh and displacements, added up: (n_nodes, 3).
 /// @param values (n_nodes, n): the first `dimension` of the n values of a node are its displacements

@@ -169,11 +169,17 @@ ContactGeometry::ContactGeometry(const Mesh& mesh, const Model& model, const Con
   check_radii();
 }
 
-void ContactGeometry::note(std::int32_t error, std::int32_t cell) {
+void ContactGeometry::note(std::int32_t error, const SlaveElement& slave) {
   if (error == LACON_BAD_RADIUS)
-    over_axis_ = cell;
+    over_axis_ = slave.cell;
   else if (error != LACON_FINE)
-    fail("EVOLUTION_3", {{"cell", cell_name(cell)}});
+    no_normal(slave);
+}
+
+void ContactGeometry::no_normal(const SlaveElement& slave) const {
+  fail("EVOLUTION_3",
+       {{"cell", cell_name(slave.cell)},
+        {"group", contact_.zones[static_cast<std::size_t>(zone_of(static_cast<std::size_t>(slave.patch)))].slave_group}});
 }
 
 void ContactGeometry::check_radii() const {
@@ -228,16 +234,16 @@ void ContactGeometry::measure_slaves() {
       kernel.contact(&batch);
       for (std::size_t i = 0; i < some.size(); ++i) {
         const SlaveElement& slave = contact_.slaves[some[i]];
-        note(error[i], slave.cell);
+        note(error[i], slave);
         whole_[slave.patch] += size[i];
       }
     }
   }
 }
 
-void ContactGeometry::find_ends(std::span<const std::uint8_t> free) {
+void ContactGeometry::find_ends(std::span<const HeldDirection> held) {
   for (Zone& zone : zones_)
-    if (!contact_.frozen_gap) zone.planes = end_planes(zone.slave, zone.master, free);
+    if (!contact_.frozen_gap) zone.planes = end_planes(zone.slave, zone.master, held);
   mirror();
 }
 
@@ -413,8 +419,7 @@ void ContactGeometry::offset_gaps(std::size_t zone, const ContactCells& cells, l
 void ContactGeometry::add(const Zone& zone, const Block& block_of_zone, ZonePairing* record) {
   const ContactCells& cells = block_of_zone.pairing.cells;
   for (const RejectedCouple& couple : block_of_zone.pairing.rejected) {
-    if (couple.reason == Rejection::degenerate_slave)
-      fail("EVOLUTION_3", {{"cell", cell_name(contact_.slaves[zone.slaves[couple.slave]].cell)}});
+    if (couple.reason == Rejection::degenerate_slave) no_normal(contact_.slaves[zone.slaves[couple.slave]]);
     ++rejected_[static_cast<std::size_t>(couple.reason)];
     if (couple.reason != Rejection::too_deep) continue;
     TooDeep& deep = too_deep_[static_cast<std::size_t>(&zone - zones_.data())];
@@ -440,7 +445,7 @@ void ContactGeometry::add(const Zone& zone, const Block& block_of_zone, ZonePair
     const double* point_gap = group.point_gap.data();
     for (std::size_t i = 0; i < group.members.size(); ++i, at += width) {
       const std::int32_t c = group.members[i], s = zone.slaves[cells.slave[c]], patch = contact_.slaves[s].patch;
-      note(group.error[i], contact_.slaves[s].cell);
+      note(group.error[i], contact_.slaves[s]);
       gap_[patch] += group.gap[i];
       weight_[patch] += group.measure[i];
       covered_[patch] += group.current_measure[i];

@@ -71,8 +71,7 @@ class ContactGeometry {
 
   /// Let masters go on where both skins end in one plane: normals that lean over it by what facets leave, or a face that bulges
   /// a little more than the other one, would miss them there, now more, now less. Not with VARIATION_JEU='FIGEE'.
-  /// @param free (n_nodes, mesh.dimension): 1 where a displacement is an unknown
-  void find_ends(std::span<const std::uint8_t> free);
+  void find_ends(std::span<const HeldDirection> held);
 
   /// By what the gaps of each zone are smaller than what its cells leave, from the next update() on: (n_nodes), interpolated on
   /// the slave; empty: by nothing.
@@ -128,7 +127,8 @@ class ContactGeometry {
   /// Sum up what the kernels gave.
   void add(const Zone& zone, const Block& block_of_zone, ZonePairing* record);
   /// What a kernel says of a slave cell.
-  void note(std::int32_t error, std::int32_t cell);
+  void note(std::int32_t error, const SlaveElement& slave);
+  [[noreturn]] void no_normal(const SlaveElement& slave) const;  ///< throws EVOLUTION_3
   /// Masters go on where slaves still ended in their planes when they were at rest.
   void mirror();
   /// By how much the two skins of a zone have come nearer since they were at rest, at most.

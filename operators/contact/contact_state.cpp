@@ -35,7 +35,7 @@ double extent(const Mesh& mesh, std::int32_t cell) {
 ContactState::ContactState(const Mesh& mesh, const Model& model, const Contact& contact, Registry& registry,
                            ContactBodies bodies)
     : mesh_(mesh), contact_(contact), geometry_(mesh, model, contact, registry), free_(std::move(bodies.free)) {
-  geometry_.find_ends(free_);
+  geometry_.find_ends(bodies.held);
   size_.assign(mesh.patches->size(), 0.0);
   own_ = rho_ = size_;
   flexibility_.assign(mesh.n_cells(), 0.0);

@@ -83,7 +83,8 @@ struct FacetOverlap {
 struct ContactBodies {
   /// Young's modulus of a cell, or nothing where it has no elastic material.
   std::function<std::optional<double>(std::int32_t cell)> modulus;
-  std::vector<std::uint8_t> free;  ///< (n_nodes, dimension): 1 where a displacement is an unknown
+  std::vector<std::uint8_t> free;   ///< (n_nodes, dimension): 1 where a displacement is an unknown
+  std::vector<HeldDirection> held;  ///< what loads give of displacements
 };
 
 /// An unknown of contact: vertex v < n_nodes is node v with its displacements, vertex n_nodes + p is patch p with its

@@ -12,6 +12,7 @@ namespace lacon {
 namespace {
 
 constexpr double in_plane = 1e-9;                 // of the extent: mesh files have about ten digits
+constexpr double parallel = 1e-9;                 // sine of an angle
 constexpr double shallow = 0.1;                   // of an edge: depth of a cell that hardly leaves the plane of its edge
 constexpr double still_aligned = space::hem / 2;  // of a cell: half of what outlines go on by
 
@@ -41,20 +42,16 @@ std::vector<BorderEdge> border_of(const Surface& skin) {
   return border;
 }
 
-double coordinate(std::span<const double> coordinates, std::int32_t node, int axis) {
-  return coordinates[3 * static_cast<std::size_t>(node) + static_cast<std::size_t>(axis)];
-}
-
-/// How far a skin reaches along an axis, in the sense of `sign`.
-double reach(const Surface& skin, int axis, int sign) {
-  double most = -INFINITY;
-  for (std::size_t c = 0; c < skin.size(); ++c)
-    for (const std::int32_t node : skin.nodes[c]) most = std::max(most, sign * coordinate(skin.coordinates, node, axis));
-  return most;
-}
-
 Vec3 place_of(std::int32_t node, const Surface& skin) {
   return vector_at(skin.coordinates.data() + 3 * static_cast<std::size_t>(node));
+}
+
+/// How far a skin reaches along a direction.
+double reach(const Surface& skin, Vec3 along) {
+  double most = -INFINITY;
+  for (std::size_t c = 0; c < skin.size(); ++c)
+    for (const std::int32_t node : skin.nodes[c]) most = std::max(most, dot(along, place_of(node, skin)));
+  return most;
 }
 
 double length_of(const BorderEdge& edge, const Surface& skin) {
@@ -76,42 +73,67 @@ bool lies_on(const BorderEdge& edge, std::span<const BorderEdge> others, const S
   return meets(edge.nodes[0]) && meets(edge.nodes[1]);
 }
 
+/// In which directions nodes are held.
+class Held {
+ public:
+  explicit Held(std::span<const HeldDirection> held) {
+    for (const HeldDirection& one : held) of_[one.node].push_back(one.along);
+  }
+  bool along(Vec3 direction, std::int32_t node) const {
+    const auto found = of_.find(node);
+    return found != of_.end() &&
+           std::ranges::any_of(found->second, [&](Vec3 one) { return norm(cross(one, direction)) <= parallel; });
+  }
+  /// The axes, and the other directions, in both senses, that all nodes of some edge are held in.
+  std::vector<Vec3> normals(std::span<const BorderEdge> edges) const {
+    std::vector<Vec3> found = {{-1, 0, 0}, {1, 0, 0}, {0, -1, 0}, {0, 1, 0}, {0, 0, -1}, {0, 0, 1}};
+    for (const BorderEdge& edge : edges)
+      if (const auto first = of_.find(edge.nodes[0]); first != of_.end())
+        for (const Vec3 one : first->second)
+          if (std::ranges::all_of(edge.nodes, [&](std::int32_t node) { return along(one, node); }) &&
+              std::ranges::none_of(found, [&](Vec3 other) { return norm(cross(one, other)) <= parallel; }))
+            found.insert(found.end(), {-1.0 * one, one});
+    return found;
+  }
+
+ private:
+  std::map<std::int32_t, std::vector<Vec3>> of_;
+};
+
 }  // namespace
 
-std::vector<EndPlane> end_planes(const Surface& slave, const Surface& master, std::span<const std::uint8_t> free) {
+std::vector<EndPlane> end_planes(const Surface& slave, const Surface& master, std::span<const HeldDirection> held) {
   std::vector<EndPlane> planes;
   if (slave.dimension != 3) return planes;
   const std::vector<BorderEdge> of_slave = border_of(slave), of_master = border_of(master);
-  for (int axis = 0; axis < 3; ++axis)
-    for (const int sign : {-1, 1}) {
-      const double place = reach(master, axis, sign);
-      const double close = in_plane * std::max(std::abs(reach(master, axis, 1)), std::abs(reach(master, axis, -1)));
-      if (!(std::abs(place - reach(slave, axis, sign)) <= close)) continue;
-      EndPlane plane{.axis = axis, .slave = {}, .ends = {}};
-      const auto beside = [&](std::int32_t node) { return place - sign * coordinate(master.coordinates, node, axis); };
-      // a cell that lies in the plane does not end there
-      const auto ends_there = [&](const BorderEdge& edge, const Surface& skin) {
-        const auto cell = skin.nodes[static_cast<std::size_t>(edge.cell)];
-        const double depth = beside(*std::ranges::max_element(cell, {}, beside));
-        return depth > shallow * length_of(edge, skin) &&
-               std::ranges::all_of(edge.nodes, [&](std::int32_t node) { return std::abs(beside(node)) <= close; });
-      };
-      std::vector<BorderEdge> at_slave;
-      for (const BorderEdge& edge : of_slave)
-        if (ends_there(edge, slave)) {
-          plane.slave.insert(plane.slave.end(), edge.nodes.begin(), edge.nodes.end());
-          at_slave.push_back(edge);
-        }
-      const auto is_held = [&](std::int32_t node) {
-        return free[3 * static_cast<std::size_t>(node) + static_cast<std::size_t>(axis)] == 0;
-      };
-      const bool slave_is_held = std::ranges::all_of(plane.slave, is_held);
-      for (const BorderEdge& edge : of_master)
-        if (ends_there(edge, master) &&
-            ((slave_is_held && std::ranges::all_of(edge.nodes, is_held)) || !lies_on(edge, at_slave, master)))
-          plane.ends.emplace_back(edge.cell, edge.edge);
-      if (!plane.slave.empty() && !plane.ends.empty()) planes.push_back(std::move(plane));
-    }
+  const Held holds(held);
+  for (const Vec3 normal : holds.normals(of_master)) {
+    const double place = reach(master, normal);
+    const double close = in_plane * std::max(std::abs(place), std::abs(reach(master, -1.0 * normal)));
+    if (!(std::abs(place - reach(slave, normal)) <= close)) continue;
+    EndPlane plane{.normal = normal, .slave = {}, .ends = {}};
+    const auto beside = [&](std::int32_t node) { return place - dot(normal, place_of(node, master)); };
+    // a cell that lies in the plane does not end there
+    const auto ends_there = [&](const BorderEdge& edge, const Surface& skin) {
+      const auto cell = skin.nodes[static_cast<std::size_t>(edge.cell)];
+      const double depth = beside(*std::ranges::max_element(cell, {}, beside));
+      return depth > shallow * length_of(edge, skin) &&
+             std::ranges::all_of(edge.nodes, [&](std::int32_t node) { return std::abs(beside(node)) <= close; });
+    };
+    std::vector<BorderEdge> at_slave;
+    for (const BorderEdge& edge : of_slave)
+      if (ends_there(edge, slave)) {
+        plane.slave.insert(plane.slave.end(), edge.nodes.begin(), edge.nodes.end());
+        at_slave.push_back(edge);
+      }
+    const auto is_held = [&](std::int32_t node) { return holds.along(normal, node); };
+    const bool slave_is_held = std::ranges::all_of(plane.slave, is_held);
+    for (const BorderEdge& edge : of_master)
+      if (ends_there(edge, master) &&
+          ((slave_is_held && std::ranges::all_of(edge.nodes, is_held)) || !lies_on(edge, at_slave, master)))
+        plane.ends.emplace_back(edge.cell, edge.edge);
+    if (!plane.slave.empty() && !plane.ends.empty()) planes.push_back(std::move(plane));
+  }
   return planes;
 }
 
@@ -123,15 +145,15 @@ std::vector<std::uint8_t> mirrored_edges(std::span<const EndPlane> planes, const
     for (const auto& [cell, edge] : plane.ends) {
       const auto nodes = master.nodes[static_cast<std::size_t>(cell)];
       const int n = catalog::cell(master.types[static_cast<std::size_t>(cell)]).n_vertices;
-      double low = INFINITY, high = -INFINITY;  // of the cell, along the axis
+      double low = INFINITY, high = -INFINITY;  // of the cell, along the normal
       for (const std::int32_t node : nodes) {
-        low = std::min(low, coordinate(coordinates, node, plane.axis));
-        high = std::max(high, coordinate(coordinates, node, plane.axis));
+        low = std::min(low, dot(plane.normal, at(node)));
+        high = std::max(high, dot(plane.normal, at(node)));
       }
       const Vec3 middle = 0.5 * (at(nodes[edge]) + at(nodes[(edge + 1) % n]));
       const std::int32_t nearest =
           *std::ranges::min_element(plane.slave, {}, [&](std::int32_t node) { return norm(at(node) - middle); });
-      if (!(std::abs(component(at(nearest) - middle, plane.axis)) <= still_aligned * (high - low))) continue;
+      if (!(std::abs(dot(plane.normal, at(nearest) - middle)) <= still_aligned * (high - low))) continue;
       mirrored.resize(master.size(), 0);
       mirrored[static_cast<std::size_t>(cell)] |= static_cast<std::uint8_t>(1U << edge);
     }

@@ -6,20 +6,21 @@
 #include <vector>
 
 #include "lacon/pairing/surface.hpp"
+#include "lacon/structures/displacement.hpp"
 
 namespace lacon {
 
 struct EndPlane {
-  int axis = 0;                                    ///< at a right angle to the plane
+  Vec3 normal{};                                   ///< of the plane, out of the skins
   std::vector<std::int32_t> slave;                 ///< nodes of the slave's edges that end in it
   std::vector<std::pair<std::int32_t, int>> ends;  ///< such edges of the master: cell of its surface, edge
 };
 
-/// Planes x, y or z = constant beyond which no skin reaches and in which both end; of the master's edges there those that meet
-/// the border of the slave at points at most, and where no node can leave the plane, as by symmetry, all. Where free borders
-/// lie on each other a face that slides past the other one is what ends the contact. None in the plane.
-/// @param free (n_nodes, dimension): 1 where a displacement is an unknown
-std::vector<EndPlane> end_planes(const Surface& slave, const Surface& master, std::span<const std::uint8_t> free);
+/// Planes x, y or z = constant, and those that an edge of the master is held in, beyond which no skin reaches and in which both
+/// end; of the master's edges there those that meet the border of the slave at points at most, and where no node can leave the
+/// plane, as by symmetry, all. Where free borders lie on each other a face that slides past the other one is what ends the
+/// contact. None in the plane.
+std::vector<EndPlane> end_planes(const Surface& slave, const Surface& master, std::span<const HeldDirection> held);
 
 /// Surface::mirrored of the master: its edges in such planes that still end where the slave does, to less than what the outline
 /// goes on by there. @param coordinates (n_nodes, 3), of a state in equilibrium: forces would jump where an iterate adds an

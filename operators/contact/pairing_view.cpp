@@ -326,13 +326,13 @@ class ZoneView {
 }  // namespace
 
 PairingView view_pairing(const Mesh& mesh, const Model& model, const Contact& contact, Registry& registry,
-                         std::span<const double> displacement, std::span<const std::uint8_t> free,
+                         std::span<const double> displacement, std::span<const HeldDirection> held,
                          std::vector<std::vector<double>> offsets, const Field* cont_elem) {
   ContactGeometry geometry(mesh, model, contact, registry);
   const std::vector<double> nowhere(mesh.n_nodes() * static_cast<std::size_t>(mesh.dimension), 0.0);
   std::vector<ZonePairing> records;
   if (displacement.empty()) displacement = nowhere;
-  geometry.find_ends(free);
+  geometry.find_ends(held);
   geometry.rest_at(displacement);
   geometry.set_offsets(std::move(offsets));
   geometry.update(displacement, &records);

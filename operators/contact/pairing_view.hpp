@@ -9,6 +9,7 @@
 #include "lacon/elements/registry.hpp"
 #include "lacon/pairing/pairing.hpp"
 #include "lacon/structures/base.hpp"
+#include "lacon/structures/displacement.hpp"
 
 namespace lacon {
 
@@ -38,11 +39,11 @@ struct PairingView {
 
 /// Pair on the geometry at a displacement.
 /// @param displacement (n_nodes, mesh.dimension), empty for the initial geometry
-/// @param free (n_nodes, mesh.dimension): 1 where a displacement is an unknown, ContactGeometry::find_ends
+/// @param held by loads, ContactGeometry::find_ends
 /// @param offsets of the skins at the instant, ContactOffsets::at  @param cont_elem its field CONT_ELEM, or nullptr
 /// Throws EVOLUTION_3 for a slave cell without normal, EVOLUTION_8 for one beyond the axis.
 PairingView view_pairing(const Mesh& mesh, const Model& model, const Contact& contact, Registry& registry,
-                         std::span<const double> displacement, std::span<const std::uint8_t> free,
+                         std::span<const double> displacement, std::span<const HeldDirection> held,
                          std::vector<std::vector<double>> offsets, const Field* cont_elem);
 
 /// Why a couple was rejected, in the user's language.

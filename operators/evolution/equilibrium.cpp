@@ -51,7 +51,8 @@ ContactBodies bodies_of(const StaticProblem& problem) {
   ContactBodies bodies{.modulus = [&problem](std::int32_t cell) -> std::optional<double> {
                          return problem.materials->has(cell) ? problem.materials->find(cell, "ELAS/E") : std::nullopt;
                        },
-                       .free = {}};
+                       .free = {},
+                       .held = problem.held};
   for (std::int64_t node = 0; node < problem.numbering.n_nodes; ++node)
     for (int d = 0; d < problem.dimension; ++d) bodies.free.push_back(problem.numbering.of(node, d) >= 0);
   return bodies;

@@ -254,6 +254,8 @@ StaticProblem read_problem(const Order& order, const Base& base) {
     seen.push_back(load_id);
     if (base.load(load_id).model != model_id)
       fail("EVOLUTION_1", {{"first", excit.path("CHARGE")}, {"second", "MODELE"}, {"what", part("models")}});
+    const std::vector<HeldDirection> held = held_directions(problem.mesh, std::vector{base.load(load_id)});
+    problem.held.insert(problem.held.end(), held.begin(), held.end());
     const ResultLoad load{load_id, excit.optional_concept("FONC_MULT").value_or(""), excit.text("TYPE_CHARGE")};
     problem.loads.push_back(read_load(problem, base, load, excit.path("")));
     problem.initial_strains.add(base, load, problem.mesh, points);

@@ -14,6 +14,7 @@
 #include "lacon/operators/fields/initial_strains.hpp"
 #include "lacon/operators/fields/thermal.hpp"
 #include "lacon/structures/base.hpp"
+#include "lacon/structures/displacement.hpp"
 
 namespace lacon {
 
@@ -34,6 +35,7 @@ struct StaticProblem {
   std::optional<ContactOffsets> offsets;  ///< of its skins
   std::vector<std::uint8_t> exists;       ///< (n_nodes, n_components): the degree of freedom exists
   std::vector<std::uint8_t> imposed;      ///< (n_nodes, n_components): a load imposes it
+  std::vector<HeldDirection> held;        ///< of nodes, by loads
   Numbering numbering;
 
   int n_components() const { return static_cast<int>(components.size()); }

@@ -146,8 +146,7 @@ void each_pairing(const Order& order, const Base& base, Concepts& concepts, cons
     const Mesh& mesh = concepts.mesh(base.contact(id).mesh);
     const ViewedContact viewed(base, mesh, id);
     visit({base.label(id), -1, 0,
-           view_pairing(mesh, viewed.model, viewed.contact, registry, {}, free_displacements(mesh, {}), viewed.offsets.at(0),
-                        nullptr)});
+           view_pairing(mesh, viewed.model, viewed.contact, registry, {}, {}, viewed.offsets.at(0), nullptr)});
     return;
   }
   const Result& result = concepts.result(one.concept_id("RESULTAT"));
@@ -167,7 +166,7 @@ void each_pairing(const Order& order, const Base& base, Concepts& concepts, cons
       state = base.field(result, "CONT_ELEM", number);
     visit({result.label, number, depl.instant,
            view_pairing(mesh, viewed.model, viewed.contact, registry, nodal_displacements(mesh, depl, mesh.dimension),
-                        free_displacements(mesh, loads), viewed.offsets.at(depl.instant), state ? &*state : nullptr)});
+                        held_directions(mesh, loads), viewed.offsets.at(depl.instant), state ? &*state : nullptr)});
   }
 }
 

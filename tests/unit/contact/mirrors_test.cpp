@@ -44,6 +44,14 @@ struct TwoSkins {
   }
 };
 
+/// All nodes, along the axes.
+std::vector<HeldDirection> all_held(const TwoSkins& skins) {
+  std::vector<HeldDirection> held;
+  for (std::int32_t node = 0; node < static_cast<std::int32_t>(skins.n_nodes()); ++node)
+    for (const Vec3 axis : {Vec3{1, 0, 0}, Vec3{0, 1, 0}, Vec3{0, 0, 1}}) held.push_back({node, axis});
+  return held;
+}
+
 /// The covered part of the slave's reference cells.
 double cover(const TwoSkins& skins, bool traced) {
   const Pairing found = pair(skins.slave, skins.master, {.traced = traced});
@@ -73,8 +81,7 @@ TEST(Mirrors, NormalsThatLeanOverAPlaneOfSymmetryMeetWhatLiesBehindIt) {
           if (curved) {
             EXPECT_LT(cover(skins, traced), 1 - 0.005) << what();
           }
-          const std::vector<std::uint8_t> held(3 * skins.n_nodes(), 0);
-          const std::vector<EndPlane> planes = end_planes(skins.slave, skins.master, held);
+          const std::vector<EndPlane> planes = end_planes(skins.slave, skins.master, all_held(skins));
           EXPECT_EQ(planes.size(), 4U);
           const std::vector<std::uint8_t> mirrored = mirrored_edges(planes, skins.master, skins.coordinates);
           skins.master.mirrored = mirrored;
@@ -89,7 +96,7 @@ TEST(Mirrors, EdgesAreThoseThatEndWhereTheSlaveDoes) {
     return std::count_if(mirrored.begin(), mirrored.end(), [](std::uint8_t edges) { return edges != 0; });
   };
   const auto x_of = [&](std::size_t node) -> double& { return skins.coordinates[3 * node]; };
-  const std::vector<std::uint8_t> held(3 * skins.n_nodes(), 0), free(3 * skins.n_nodes(), 1);
+  const std::vector<HeldDirection> held = all_held(skins), free;
   const std::vector<EndPlane> planes = end_planes(skins.slave, skins.master, held);
   // free, the slave over the master is as near as one that bends away from it
   EXPECT_EQ(end_planes(skins.slave, skins.master, free).size(), 4U);
@@ -102,7 +109,7 @@ TEST(Mirrors, EdgesAreThoseThatEndWhereTheSlaveDoes) {
   const std::vector<EndPlane> free_ends = end_planes(one.slave, one.master, free);
   EXPECT_EQ(free_ends.size(), 3U);  // not where both borders are the line x = 0, nor where the master lies, z = 0
   ASSERT_EQ(planes.size(), 4U);
-  EXPECT_EQ(planes[0].axis, 0);
+  EXPECT_EQ(planes[0].normal.x, -1);
   EXPECT_EQ(planes[0].ends.size(), 3U);
   EXPECT_EQ(n_mirrored(mirrored_edges(planes, skins.master, skins.coordinates)), 8);  // all but the middle one
   // cells of a third: their outline goes on by a sixteenth of that, half of which is allowed for
@@ -113,6 +120,37 @@ TEST(Mirrors, EdgesAreThoseThatEndWhereTheSlaveDoes) {
     EXPECT_EQ(n_mirrored(mirrored_edges(planes, skins.master, skins.coordinates)), expected) << shift;
   }
   EXPECT_EQ(end_planes(skins.slave, skins.master, held).size(), 2U);  // one that reaches further ends elsewhere
+}
+
+/// What ends in oblique planes goes on as what ends in those of the axes does, if the nodes are held in them.
+TEST(Mirrors, PlanesMayBeOblique) {
+  const auto turned = [](Vec3 x) {  // about (1, 2, 2) / 3 by 40 degrees
+    const Vec3 axis = Vec3{1, 2, 2} / 3.0;
+    const double c = std::cos(0.7), s = std::sin(0.7);
+    return c * x + s * cross(axis, x) + (1 - c) * dot(axis, x) * axis;
+  };
+  for (const CellType kind : test::kinds) {
+    TwoSkins skins(
+        kind, CellType::QUAD8,
+        [](double x, double y) {
+          return Vec3{x, y, 0.05 + 0.1 * x};
+        },
+        false);
+    std::vector<HeldDirection> held;  // on the sides x = 0, 1 of the square
+    for (std::size_t node = 0; node < skins.n_nodes(); ++node) {
+      double* const row = skins.coordinates.data() + 3 * node;
+      if (row[0] == 0 || row[0] == 1) held.push_back({static_cast<std::int32_t>(node), turned({1, 0, 0})});
+      const Vec3 there = turned(vector_at(row));
+      row[0] = there.x, row[1] = there.y, row[2] = there.z;
+    }
+    EXPECT_TRUE(end_planes(skins.slave, skins.master, {}).empty());
+    const std::vector<EndPlane> planes = end_planes(skins.slave, skins.master, held);
+    ASSERT_EQ(planes.size(), 2U);
+    const std::vector<std::uint8_t> mirrored = mirrored_edges(planes, skins.master, skins.coordinates);
+    EXPECT_LT(cover(skins, true), 1 - 0.01);
+    skins.master.mirrored = mirrored;
+    EXPECT_NEAR(cover(skins, true), 1, 1e-9) << catalog::cell(kind).name;
+  }
 }
 
 }  // namespace

@@ -6,6 +6,7 @@
 
 namespace {
 
+using testing::DoubleEq;
 using testing::ElementsAre;
 
 /// Three nodes; the field lives on the last two, and the second has no DY.
@@ -38,12 +39,25 @@ TEST_F(Displacement, MovesCoordinates) {
   EXPECT_EQ(coordinates, moved);
 }
 
-TEST_F(Displacement, IsFreeWhereNoLoadImposesIt) {
+/// What is held of each node, in turn: its number and a vector.
+std::vector<std::vector<double>> held_by(const lacon::Mesh& mesh, std::span<const lacon::Load> loads) {
+  std::vector<std::vector<double>> found;
+  for (const auto& [node, along] : lacon::held_directions(mesh, loads))
+    found.push_back({static_cast<double>(node), along.x, along.y, along.z});
+  return found;
+}
+
+TEST_F(Displacement, IsHeldWhereALoadGivesIt) {
   lacon::Load first, second;
   first.imposed = {{.place = 1, .component = "DY", .value = {}}, {.place = 2, .component = "LAGS_C", .value = {}}};
   second.imposed = {{.place = 0, .component = "DX", .value = {}}, {.place = 0, .component = "DZ", .value = {}}};
-  EXPECT_THAT(lacon::free_displacements(mesh, {}), ElementsAre(1, 1, 1, 1, 1, 1));
-  EXPECT_THAT(lacon::free_displacements(mesh, std::vector{first, second}), ElementsAre(0, 1, 1, 0, 1, 1));
+  // one node, whatever the factor; two nodes, or another unknown, hold none of them
+  second.relations = {{"", {{2, "DX", -3.0}, {2, "DY", 4.0}}, {}},
+                      {"", {{1, "DX", 1.0}, {2, "DX", 1.0}}, {}},
+                      {"", {{1, "DX", 1.0}, {1, "LAGS_C", 1.0}}, {}}};
+  EXPECT_THAT(held_by(mesh, {}), ElementsAre());
+  EXPECT_THAT(held_by(mesh, std::vector{first, second}),
+              ElementsAre(ElementsAre(1, 0, 1, 0), ElementsAre(0, 1, 0, 0), ElementsAre(2, DoubleEq(-0.6), DoubleEq(0.8), 0)));
 }
 
 TEST_F(Displacement, StandsBesideOtherUnknowns) {
