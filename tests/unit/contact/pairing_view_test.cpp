@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <array>
 
-#include "lacon/structures/displacement.hpp"
+#include "lacon/catalog/messages.hpp"
 
 namespace lacon {
 namespace {
@@ -62,6 +62,17 @@ const PairingLayer& layer(const PairingView& view, std::string_view name) {
 /// The values of a field of one component by its cells.
 std::vector<double> values(const PairingLayer& layer, std::string_view name) {
   return std::ranges::find(layer.fields, name, &Field::name)->values;
+}
+
+TEST_F(View, ASlaveWithoutLengthIsNamedWithItsSkin) {
+  for (const std::size_t node : {3, 4}) mesh.coordinates[3 * node] = 1.0;
+  try {
+    view();
+    FAIL();
+  } catch (const Error& error) {
+    EXPECT_EQ(error.message().id, "EVOLUTION_3");
+    EXPECT_THAT(error.message().text, HasSubstr("M2 of SLAVE"));
+  }
 }
 
 TEST_F(View, PairsAreTheSegmentsThatMastersCutFromTheirSlave) {
