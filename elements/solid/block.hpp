@@ -9,7 +9,7 @@ namespace lacon::solid {
 template <Kind K, Measure M>
 struct Block {
   static constexpr int D = dimension_of(K);
-  static constexpr bool updated = M == Measure::updated, green = M == Measure::green;
+  static constexpr bool updated = moves(M), green = M == Measure::green;
 
   const double* place;                                ///< coordinates where strains and integrals are taken
   Lanes lambda, mu, nu;                               ///< plane stress: the lambda that makes SIZZ zero
@@ -59,6 +59,35 @@ LACON_INLINE void take_slope(const Point<K>& point, const Lanes* displacement, i
   hoop_slope = hoop_sum;
 }
 
+/// Take the gradient of an increment of displacement from the geometry of u to the middle of the step, whose places are those
+/// of u less half the increment.
+template <Kind K>
+LACON_INLINE void take_middle(Point<K>& point, LaneErrors& errors) {
+  constexpr int D = dimension_of(K);
+  // the inverse of 1 - slope / 2, as of a map from the middle of a cell whose nodes lie at these columns
+  double gradient[(D + 1) * D] = {};
+  Lanes columns[(D + 1) * D] = {};
+  for (int k = 0; k < D; ++k) {
+    gradient[(k + 1) * D + k] = 1;
+    for (int i = 0; i < D; ++i) columns[(k + 1) * D + i] = (i == k ? 1.0 : 0.0) - 0.5 * point.slope[i][k];
+  }
+  const Map<D> map(gradient, columns, D + 1, errors);
+  Lanes slope[D][D];
+  for (int i = 0; i < D; ++i)
+    for (int k = 0; k < D; ++k) {
+      point.middle[i][k] = map.inverse[i][k];
+      slope[i][k] = point.slope[i][0] * map.inverse[0][k];
+      for (int m = 1; m < D; ++m) slope[i][k] += point.slope[i][m] * map.inverse[m][k];
+    }
+  for (int i = 0; i < D; ++i)
+    for (int k = 0; k < D; ++k) point.slope[i][k] = slope[i][k];
+  if constexpr (K == Kind::axis) {
+    point.hoop_middle = 1 / (1 - 0.5 * point.hoop_slope);
+    errors.set(~(point.hoop_middle > 0), LACON_BAD_RADIUS);
+    point.hoop_slope *= point.hoop_middle;
+  }
+}
+
 /// Measure and gradients at point p, and the gradient of the displacement.
 template <Kind K, Measure M>
 LACON_INLINE void take_gradients(const lacon_solid_batch& b, int p, const Block<K, M>& block, Point<K>& point,
@@ -85,6 +114,7 @@ LACON_INLINE void take_gradients(const lacon_solid_batch& b, int p, const Block<
     if constexpr (axis) point.hoop[a] = b.shape[p * nodes + a] * per_radius;
   }
   take_slope(point, block.moved, nodes, point.slope, point.hoop_slope);
+  if constexpr (M == Measure::centred) take_middle(point, errors);
 }
 
 }  // namespace lacon::solid

@@ -135,7 +135,7 @@ LACON_INLINE void add_force(const Point<K>& point, const NominalStress<K>& nomin
 /// the hoop direction with the strain u_r / r, and integrals are those over one radian.
 template <Kind K, Measure M, Law L>
 LACON_INLINE void evaluate(const lacon_solid_batch& b) {
-  constexpr bool green = M == Measure::green, updated = M == Measure::updated, plastic = L == Law::von_mises;
+  constexpr bool green = M == Measure::green, updated = moves(M), plastic = L == Law::von_mises;
   constexpr bool same_moduli = M == Measure::small && L == Law::elastic;  // at all points
   constexpr int D = dimension_of(K), n_stress = components_of(K), n_variables = plastic ? n_plastic_variables : 0;
   const int nodes = b.n_nodes, dofs = D * nodes, entries = dofs * (dofs + 1) / 2;
@@ -170,7 +170,7 @@ LACON_INLINE void evaluate(const lacon_solid_batch& b) {
       else if (stress)
         for (int i = 0; i < n_stress; ++i) lanes(stress, i) = point.stress[i];
       if (force) add_force<K>(point, nominal, nodes, force);
-      if (whole) add_updated_matrix<K, L, true>(point, nodes, whole);
+      if (whole) add_updated_matrix<K, M, L, true>(point, nodes, whole);
       if (!matrix) continue;
       if constexpr (same_moduli) {
         if (kept + 1 == points_at_once || p + 1 == b.n_points)
@@ -180,7 +180,7 @@ LACON_INLINE void evaluate(const lacon_solid_batch& b) {
       if (b.stressless_matrix)
         for (Lanes& component : point.stress) component = Lanes{};
       if (updated && !b.stressless_matrix)
-        add_updated_matrix<K, L, false>(point, nodes, matrix);
+        add_updated_matrix<K, M, L, false>(point, nodes, matrix);
       else
         add_matrix<K, M, L>(point, nodes, matrix);
     }
@@ -201,10 +201,10 @@ constexpr lacon_kernel row(const char* name, void (*function)(const lacon_solid_
           .parameters = isotropic,
           .variables = plastic ? plastic_variables : nullptr,
           .nonlinear = plastic || measure != Measure::small,
-          .has_memory = plastic || measure == Measure::updated,
+          .has_memory = plastic || moves(measure),
           .takes_curve = plastic,
           .unknowns = nullptr,
-          .unsymmetric = measure == Measure::updated,
+          .unsymmetric = moves(measure),
           .takes_thermal_strain = measure == Measure::green};
 }
 
@@ -215,8 +215,8 @@ constexpr lacon_kernel row(const char* name, void (*function)(const lacon_solid_
   }
 #define LACON_ROW(kind, measure, law) row(#kind "_" #measure "_" #law, kind##_##measure##_##law, Measure::measure, Law::law),
 #define LACON_OF_KIND(apply, kind)                                                                                    \
-  apply(kind, small, elastic) apply(kind, updated, elastic) apply(kind, green, elastic) apply(kind, small, von_mises) \
-      apply(kind, updated, von_mises)
+  apply(kind, small, elastic) apply(kind, updated, elastic) apply(kind, centred, elastic) apply(kind, green, elastic) \
+      apply(kind, small, von_mises) apply(kind, updated, von_mises) apply(kind, centred, von_mises)
 #define LACON_ALL(apply)             \
   LACON_OF_KIND(apply, plane_strain) \
   LACON_OF_KIND(apply, plane_stress) \

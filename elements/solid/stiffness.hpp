@@ -5,10 +5,14 @@
 
 namespace lacon::solid {
 
-/// DEFORMATION: small strains (PETIT); small increments of strain on the geometry of u (PETIT_REAC); Green-Lagrange strains and
-/// second Piola-Kirchhoff stresses on the initial geometry (GREEN_LAGRANGE).
-enum class Measure { small, updated, green };
+/// DEFORMATION: small strains (PETIT); small increments of strain on the geometry of u (PETIT_REAC), or on the one in the
+/// middle of the step (PETIT_REAC_MILIEU), with forces on that of u; Green-Lagrange strains and second Piola-Kirchhoff stresses
+/// on the initial geometry (GREEN_LAGRANGE).
+enum class Measure { small, updated, centred, green };
 enum class Law { elastic, von_mises };
+
+/// Whether strains are increments, and forces those on the geometry of u.
+constexpr bool moves(Measure measure) { return measure == Measure::updated || measure == Measure::centred; }
 
 /// Where row n of a matrix starts, in numbers: behind n (n + 1) / 2 entries.
 constexpr int start_of_row(int n) { return n * (n + 1) / 2 * LACON_LANES; }
@@ -22,6 +26,8 @@ struct Point {
   Lanes hoop[K == Kind::axis ? max_nodes : 1];  ///< N / r
   Lanes slope[D][D];                            ///< gradient of the displacement that strains are made of
   Lanes hoop_slope;                             ///< u_r / r
+  Lanes middle[D][D];                           ///< centred: derivative of the geometry of u by that of the middle
+  Lanes hoop_middle;                            ///< likewise r of u over r of the middle
   Lanes stress[n];                              ///< in equilibrium: Cauchy's; with Green-Lagrange the second Piola-Kirchhoff
   Tangent<K> tangent;
 
@@ -160,37 +166,53 @@ LACON_INLINE void add_matrix(const Point<K>& point, int nodes, double* matrix) {
   }
 }
 
-/// The matrix of PETIT_REAC: the derivative of the force on the geometry of u, which moves with u. It is symmetric only up to
-/// terms of the size of the stress.
+/// The matrix of PETIT_REAC, and of the same centred: the derivative of the force on the geometry of u, which moves with u. It
+/// is symmetric only up to terms of the size of the stress.
 /// @tparam whole the derivative itself, (ndof, ndof); else the lower triangle of its symmetric part
-template <Kind K, Law L, bool whole>
+template <Kind K, Measure M, Law L, bool whole>
 LACON_INLINE void add_updated_matrix(const Point<K>& point, int nodes, double* matrix) {
-  constexpr bool axis = K == Kind::axis;
+  constexpr bool axis = K == Kind::axis, centred = M == Measure::centred;
   constexpr int D = dimension_of(K);
+  constexpr double share = centred ? 0.5 : 1.0;  // of the step, that the geometry of strains moves by
   const Tangent<K>& tangent = point.tangent;
   const Lanes(&g)[max_nodes][D] = point.g;
-  // the strain of the step changes by sym(A^T dh), dh the change of displacement's gradient on the geometry of u
+  // the strain of the step changes by sym(A dh), dh the change of displacement's gradient on the geometry of strains
   Lanes shrink[D][D];
   for (int i = 0; i < D; ++i)
-    for (int k = 0; k < D; ++k) shrink[i][k] = (i == k ? 1.0 : 0.0) - point.slope[i][k];
-  const Lanes hoop_shrink = 1 - point.hoop_slope;
+    for (int k = 0; k < D; ++k) shrink[i][k] = (i == k ? 1.0 : 0.0) - share * point.slope[i][k];
+  const Lanes hoop_shrink = 1 - share * point.hoop_slope;
+  Lanes own[centred ? max_nodes : 1][D], own_hoop[centred && axis ? max_nodes : 1];  // gradients on that geometry
+  if constexpr (centred)
+    for (int a = 0; a < nodes; ++a) {
+      for (int i = 0; i < D; ++i) {
+        own[a][i] = g[a][0] * point.middle[0][i];
+        for (int k = 1; k < D; ++k) own[a][i] += g[a][k] * point.middle[k][i];
+      }
+      if constexpr (axis) own_hoop[a] = point.hoop[a] * point.hoop_middle;
+    }
+  const Lanes(*const strain)[D] = centred ? own : g;
+  const Lanes* const ring = centred && axis ? own_hoop : point.hoop;
   Lanes mixed[max_nodes][D], drawn[max_nodes][D];        // A^T g, sigma g
-  Lanes along[max_nodes][D], mixed_along[max_nodes][D];  // direction g, A^T direction g
+  Lanes mixed_strain[max_nodes][D];                      // A^T g of strains
+  Lanes along[max_nodes][D], mixed_along[max_nodes][D];  // direction g, A^T direction g of strains
   for (int a = 0; a < nodes; ++a) {
+    Lanes along_strain[D];
     for (int i = 0; i < D; ++i) {
-      mixed[a][i] = drawn[a][i] = along[a][i] = Lanes{};
+      mixed[a][i] = mixed_strain[a][i] = drawn[a][i] = along[a][i] = along_strain[i] = Lanes{};
       for (int k = 0; k < D; ++k) {
         mixed[a][i] += shrink[k][i] * g[a][k];
+        mixed_strain[a][i] += shrink[k][i] * strain[a][k];
         drawn[a][i] += point.stress[at(i, k)] * g[a][k];
         if (L == Law::von_mises) along[a][i] += tangent.direction[at(i, k)] * g[a][k];
+        if (L == Law::von_mises) along_strain[i] += tangent.direction[at(i, k)] * strain[a][k];
       }
     }
     for (int i = 0; i < D; ++i) {
       mixed_along[a][i] = Lanes{};
-      for (int k = 0; k < D; ++k) mixed_along[a][i] += shrink[k][i] * along[a][k];
+      for (int k = 0; k < D; ++k) mixed_along[a][i] += shrink[k][i] * along_strain[k];
     }
     if (axis && L == Law::von_mises) {
-      mixed_along[a][0] += tangent.direction[2] * hoop_shrink * point.hoop[a];
+      mixed_along[a][0] += tangent.direction[2] * hoop_shrink * ring[a];
       along[a][0] += tangent.direction[2] * point.hoop[a];
     }
   }
@@ -198,31 +220,33 @@ LACON_INLINE void add_updated_matrix(const Point<K>& point, int nodes, double* m
   for (int a = 0; a < nodes; ++a)
     for (int i = 0; i < D; ++i) {
       trace[a][i] = g[a][i];
-      mixed_trace[a][i] = mixed[a][i];
+      mixed_trace[a][i] = mixed_strain[a][i];
       whole_drawn[a][i] = drawn[a][i];
       if (axis && i == 0) {
         trace[a][0] += point.hoop[a];
-        mixed_trace[a][0] += hoop_shrink * point.hoop[a];
+        mixed_trace[a][0] += hoop_shrink * ring[a];
         whole_drawn[a][0] += point.stress[2] * point.hoop[a];
       }
     }
   // entry += d force (a, i) / d u (c, j) over dv
   const auto add_derivative = [&](int a, int i, int c, int j, const Lanes& both, Lanes& entry) LACON_INLINE_LAMBDA {
-    entry += tangent.lambda * trace[a][i] * mixed_trace[c][j] + tangent.mu * (shrink[i][j] * both + g[c][i] * mixed[a][j]) +
-             whole_drawn[a][i] * trace[c][j] - g[a][j] * drawn[c][i];
-    if (axis && i == 0 && j == 0) entry += (2 * tangent.mu * hoop_shrink - point.stress[2]) * point.hoop[a] * point.hoop[c];
+    entry += tangent.lambda * trace[a][i] * mixed_trace[c][j] +
+             tangent.mu * (shrink[i][j] * both + strain[c][i] * mixed[a][j]) + whole_drawn[a][i] * trace[c][j] -
+             g[a][j] * drawn[c][i];
+    if (axis && i == 0 && j == 0)
+      entry += (2 * tangent.mu * hoop_shrink * ring[c] - point.stress[2] * point.hoop[c]) * point.hoop[a];
     if (L == Law::von_mises) entry -= tangent.rank * along[a][i] * mixed_along[c][j];
   };
   for (int a = 0; a < nodes; ++a)
     for (int i = 0; i < D; ++i) {
       double* row = matrix + (whole ? (D * a + i) * D * nodes * LACON_LANES : start_of_row(D * a + i));
       for (int c = 0; c < (whole ? nodes : a + 1); ++c) {
-        Lanes both = g[a][0] * g[c][0];
-        for (int k = 1; k < D; ++k) both += g[a][k] * g[c][k];
+        Lanes both = g[a][0] * strain[c][0], turned = g[c][0] * strain[a][0];
+        for (int k = 1; k < D; ++k) both += g[a][k] * strain[c][k], turned += g[c][k] * strain[a][k];
         for (int j = 0; j < D && (whole || c < a || j <= i); ++j) {
           Lanes entry = {};
           add_derivative(a, i, c, j, both, entry);
-          if (!whole) add_derivative(c, j, a, i, both, entry);
+          if (!whole) add_derivative(c, j, a, i, turned, entry);
           lanes(row, D * c + j) += (whole ? point.dv : point.dv / 2) * entry;
         }
       }

@@ -41,7 +41,6 @@ REASONS = {
     "corner": "patches of the plate hold the average height of what is above them, and this changes as the tool moves along: Fx/Fy is (height at "
               "one end - height at the other) / length of the patch; the tool as slave has no such force",
     "faces": "the border of one skin lies on the edge of the other along its whole length, and bodies that flow sway across it: forces bend sharply there",
-    "cycle": "PETIT_REAC integrates its law at the end of a step, as the peer does, and is of the first order: half of it with steps half as long (guide)",
 }
 
 

@@ -241,7 +241,7 @@ def closed_cycle():
         mesh = union([slab(kind, "UPPER", (0, 1), (0, 1), (5, 5), skin="bottom", sides={"left": "AXIS"}),
                       slab(kind, "LOWER", (0, 1), (-1, 0), (7, 7), sides={"left": "AXIS"})])
         yield Study(name=named(f"{2 * half} steps", kind, slave(("UPPER", "LOWER"), side)), mesh=mesh,
-                    materials={"UPPER": elastic(1e3), "LOWER": elastic(1e3)}, zones=[zone("UPPER", "LOWER", side)], strain="PETIT_REAC", cut=True,
+                    materials={"UPPER": elastic(1e3), "LOWER": elastic(1e3)}, zones=[zone("UPPER", "LOWER", side)], strain="PETIT_REAC_MILIEU", cut=True,
                     moves=[{"GROUP_MA": "LOWER_BASE", "DY": 0.0}, {"GROUP_MA": "AXIS", "DX": 0.0},
                            {"GROUP_MA": "UPPER_BASE", "DY": [[0, 0], [half, -0.5], [2 * half, 0]]}],
                     steps=2 * half, asked={"lost work": 0.01}, driven="UPPER_BASE", measure=lost_work)
@@ -392,7 +392,7 @@ ROWS = {
     "skins": ("blocks whose whole skins are in the zone", whole_skins),
     "force": ("bodies that contact alone holds, driven by a force", force_driven),
     "peer": ("the peer's half spheres and half ring", peer_cases),
-    "cycle": ("closed elastic cycle with PETIT_REAC", closed_cycle),
+    "cycle": ("closed elastic cycle with PETIT_REAC (before) and PETIT_REAC_MILIEU (now)", closed_cycle),
 }
 
 

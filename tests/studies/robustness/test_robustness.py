@@ -19,7 +19,7 @@ from studies import Study, elastic, held, path, zone  # noqa: E402
 #: seconds each, one or more of a row
 SHORT = ["arch/x10, QUAD8 GREEN", "arch/x10, QUAD4 PETIT", "plastic/flat 1, QUAD8", "plastic/round 5, QUAD4", "contrast/1e-06 QUAD4 PETIT", "contrast/1e+06 QUAD8 GREEN", "difficult/beams QUAD8 GREEN",
          "difficult/die QUAD4 PETIT,", "difficult/stack D_PLAN QUAD8 GREEN", "difficult/stack 3D HEXA8 PETIT", "force/round AXIS QUAD4 GREEN", "aligned/D_PLAN QUAD8 7 lower",
-         "aligned/C_PLAN QUAD4 4 lower", "skins/larger QUAD8 PETIT upper"]
+         "aligned/C_PLAN QUAD4 4 lower", "skins/larger QUAD8 PETIT upper", "cycle/10 QUAD4 upper", "cycle/10 QUAD8 lower"]
 LONG = ["difficult/stack 3D HEXA20 GREEN", "faces/4 upper"]
 
 TABLE = """
