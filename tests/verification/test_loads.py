@@ -435,7 +435,45 @@ solve(_F(CHARGE=P, TYPE_CHARGE='SUIV'))
         self.assertIn("<LOAD_5>", run.stderr)
 
 
+class TurnedForces(LoadTest):
+    """FORCE_NODALE with ANGL_NAUT by functions: bodies answer linearly, so that a force that turns moves them by what its components do."""
+
+    def test_a_force_turns_with_the_instant(self):
+        """180 degrees times t: FX is FY at t = 1/2, and -FX at t = 1."""
+        text = """model(20, 'C_PLAN')
+H = AFFE_CHAR_CINE(MODELE=MODEL, MECA_IMPO=_F(GROUP_MA='LEFT', DX=0, DY=0))
+for name in ('FX', 'FY'):
+    solve(_F(CHARGE=H), _F(CHARGE=AFFE_CHAR_MECA(MODELE=MODEL, FORCE_NODALE=_F(GROUP_MA='RIGHT', **{name: 2.0}))))
+two = DEFI_CONSTANTE(VALE=2.0)
+solve(_F(CHARGE=H), _F(CHARGE=AFFE_CHAR_MECA_F(MODELE=MODEL, FORCE_NODALE=_F(GROUP_MA='RIGHT', FX=two, ANGL_NAUT=only_inst('180 * INST')))))
+"""
+        self.solved([flat_block("QUAD8")], text)
+        along, across, turned = (Result(self.folder / "loads.base", f"R[{k}]") for k in range(3))
+        for order, exact in ((1, self.displacement(across, 1, 2)), (2, -self.displacement(along, 2, 2))):
+            self.assert_near(self.displacement(turned, order, 2), exact, 1e-9)
+
+    def test_three_angles_are_those_of_numbers(self):
+        """Forces and angles that depend on the place are those of the node."""
+        (numbers, functions) = self.solved([flat_brick("HEXA20")], """model(20, '3D')
+H = AFFE_CHAR_CINE(MODELE=MODEL, MECA_IMPO=_F(GROUP_MA='LEFT', DX=0, DY=0, DZ=0))
+MESH = DEFI_GROUP(reuse=MESH, MAILLAGE=MESH, CREA_GROUP_NO=_F(NOM='TIP', OPTION='ENV_SPHERE', POINT=(2.0, 1.0, 1.5), RAYON=1e-3, PRECISION=1e-3))
+N = AFFE_CHAR_MECA(MODELE=MODEL, FORCE_NODALE=_F(GROUP_NO='TIP', FX=1.0, FY=2.0, FZ=3.0, ANGL_NAUT=(20.0, 30.0, 40.0)))
+G = AFFE_CHAR_MECA_F(MODELE=MODEL, FORCE_NODALE=_F(GROUP_NO='TIP', FX=formula('X / 2'), FY=formula('X * Y'), FZ=formula('X * Z'),
+                                                   ANGL_NAUT=(formula('10 * X'), formula('30 * Y'), formula('20 * X'))))
+solve(_F(CHARGE=H), _F(CHARGE=N))
+solve(_F(CHARGE=H), _F(CHARGE=G))
+""")
+        self.assert_near(self.displacement(functions, 1, 3), self.displacement(numbers, 1, 3), 1e-9)
+
+    def test_axes_that_leave_the_plane_are_refused(self):
+        run = self.run_text([flat_block("QUAD4")], "model(20, 'D_PLAN')\nF = only_inst('INST')\n"
+                            "AFFE_CHAR_MECA_F(MODELE=MODEL, FORCE_NODALE=_F(GROUP_MA='RIGHT', FX=F, ANGL_NAUT=(F, F)))")
+        self.assertEqual(run.status, 2, run.stdout + run.stderr)
+        self.assertIn("MODIREPERE_5", run.stderr)
+
+
 del LoadTest
+
 
 if __name__ == "__main__":
     unittest.main()

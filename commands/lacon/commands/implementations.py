@@ -17,6 +17,8 @@ _families = {
     "reading": ("LIRE_TABLE", "LIRE_FONCTION"),
     "post_releve_t": ("POST_RELEVE_T",),
 }
+#: commands with an operator -> what makes of their keywords those of the order
+_prepared = {"AFFE_CHAR_MECA_F": ("nodal_forces", "along_the_mesh")}
 _home = {command: family for family, commands in _families.items() for command in commands}
 
 
@@ -33,3 +35,11 @@ def home(command):
 def implementation(command):
     """The function(call) of a command. Its module is imported when it is first called: a study uses few of them."""
     return getattr(importlib.import_module(f".{_home[command]}", __package__), command.lower())
+
+
+def prepared(call):
+    """The keywords of a command as its operator wants them."""
+    if call.command not in _prepared:
+        return call.keywords
+    module, function = _prepared[call.command]
+    return getattr(importlib.import_module(f".{module}", __package__), function)(call)

@@ -5,7 +5,7 @@ import time
 
 from ..base import command_files, orders
 from ..commands.call import Call
-from ..commands.implementations import implementation
+from ..commands.implementations import implementation, prepared
 from ..core import catalog, checker, current, labels, plugins
 from ..core.concepts import CO, Concept, _F
 from ..core.messages import AsterError, InternalError, fail, message
@@ -54,6 +54,7 @@ class Command:
             raise AsterError(problems)
         named = next((keywords[k] for k, keyword in row.get("keyword", {}).items() if keyword.get("makes") and k in keywords), None)
         label = reused.label if reused else named.name if named else labels.label(frame)
+        keywords = prepared(Call(run, self.name, keywords, where, label, reused))
         if not self.name.startswith("TEST_"):  # its checks print a line each
             run.progress(f"{where}: {label + ' = ' if label else ''}{self.name}")
         if run.check and run.check.takes(self.name, row, keywords, where):
