@@ -379,6 +379,13 @@ Members nodes_of_cells(const Mesh& mesh, std::span<const std::int32_t> members, 
   return kept;
 }
 
+/// The one name that a group takes which is not the nodes of a group of cells.
+std::string only_name(const Keywords& factor) {
+  const std::vector<std::string> names = factor.texts("NOM");
+  if (names.size() != 1) fail("ORDER_4", {{"keyword", factor.path("NOM")}, {"expected", "one name"}});
+  return names.front();
+}
+
 void create_node_group(Mesh& mesh, const Keywords& factor, bool alarm) {
   if (factor.has("TOUT_GROUP_MA")) {
     for (const Group& group : std::vector<Group>(mesh.cell_groups)) {
@@ -390,12 +397,14 @@ void create_node_group(Mesh& mesh, const Keywords& factor, bool alarm) {
     return;
   }
   if (factor.has("GROUP_MA") && !factor.has("OPTION")) {
-    const std::vector<std::string> groups = factor.texts("GROUP_MA");
-    if (factor.has("NOM") && groups.size() > 1)
-      fail("GROUPE_4", {{"keyword", factor.path("NOM")}, {"count", std::to_string(groups.size())}});
-    for (const std::string& group : groups)
-      add_group(mesh, nodes, factor.has("NOM") ? factor.text("NOM") : group,
-                nodes_of_cells(mesh, cells_of_group(mesh, group, factor.path("GROUP_MA")),
+    const std::vector<std::string> groups = factor.texts("GROUP_MA"), names = factor.has("NOM") ? factor.texts("NOM") : groups;
+    if (names.size() != groups.size())
+      fail(
+          "GROUPE_4",
+          {{"keyword", factor.path("NOM")}, {"names", std::to_string(names.size())}, {"count", std::to_string(groups.size())}});
+    for (std::size_t g = 0; g < groups.size(); ++g)
+      add_group(mesh, nodes, names[g],
+                nodes_of_cells(mesh, cells_of_group(mesh, groups[g], factor.path("GROUP_MA")),
                                factor.has("CRIT_NOEUD") ? factor.text("CRIT_NOEUD") : "TOUS"),
                 factor.path(factor.has("NOM") ? "NOM" : "GROUP_MA"), alarm);
     return;
@@ -405,7 +414,7 @@ void create_node_group(Mesh& mesh, const Keywords& factor, bool alarm) {
   if (!found)
     fail("ORDER_2", {{"keyword", factor.path("TOUT_GROUP_MA, GROUP_MA, NOEUD, GROUP_NO, INTERSEC, UNION, DIFFE or OPTION")}});
   if (factor.has("GROUP_NO") && !factor.has("OPTION")) keep_positions(factor, *found);
-  add_group(mesh, nodes, factor.text("NOM"), once(*found, mesh.n_nodes()), factor.path("NOM"), alarm);
+  add_group(mesh, nodes, only_name(factor), once(*found, mesh.n_nodes()), factor.path("NOM"), alarm);
 }
 
 }  // namespace

@@ -33,6 +33,14 @@ class DefiGroup(OperatorTest):
         mesh, _ = self.define(DETR_GROUP_MA=[{"NOM": ["LOW", "ONE"]}], DETR_GROUP_NO=[{"NOM": ["END"]}])
         self.assertEqual((list(mesh.cell_groups), list(mesh.node_groups)), (["RIGHT", "BODY", "SKIN"], ["SKIN", "A"]))
 
+    def test_groups_of_nodes_take_a_name_each(self):
+        mesh, _ = self.define(CREA_GROUP_NO=[{"NOM": ["A", "B"], "GROUP_MA": ["LOW", "RIGHT"]}])
+        both, _ = self.define(CREA_GROUP_NO=[{"GROUP_MA": ["LOW", "RIGHT"]}])
+        for name, group in (("A", "LOW"), ("B", "RIGHT")):
+            self.assertEqual(list(mesh.node_groups[name]), list(both.node_groups[group]))
+        self.refuse("GROUPE_4", "2 name(s)", "1 group(s)", CREA_GROUP_NO=[{"NOM": ["C", "D"], "GROUP_MA": ["LOW"]}])
+        self.refuse("ORDER_4", "one name", CREA_GROUP_NO=[{"NOM": ["C", "D"], "NOEUD": ["N1"]}])
+
     def place(self, kind="CREA_GROUP_MA", **keywords):
         """Members of a group made by its place on a strip of four squares, nodes 0 to 4 below and 5 to 9 above, cells 0 to 3."""
         nodes = [[x, y] for y in (0, 1) for x in range(5)]
