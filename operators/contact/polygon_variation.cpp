@@ -1,5 +1,6 @@
 #include "lacon/operators/contact/polygon_variation.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <tuple>
 
@@ -12,6 +13,22 @@ constexpr double least_angle = 1e-6;
 /// that edge there: what meets moves in one way in all polygons around, whichever of the two bounds them. In symmetric meshes
 /// edges of slaves do lie on lines of masters, as near as iterates are symmetric.
 constexpr double on_edge = 1e-9;
+/// A line between parts of one master that passes an edge of the triangle this near to both of its ends stays where it is:
+/// gaps are the same on both sides of it, so that it may as well, and what it meets goes the same way in all polygons around.
+constexpr double along_edge = 1e-3;
+
+/// Whether a line of a curved master leads to its middle, between parts of it.
+bool is_within(const PolygonTrace::Line& line, CellType master) {
+  const double middle = catalog::cell(master).family == Family::QUAD ? 0.0 : 1.0 / 3;
+  const std::array<double, 2> centre{middle, middle};
+  return line.from == centre || line.to == centre;
+}
+
+bool passes_along_an_edge(const Vector<3>& l) {
+  for (int corner = 0; corner < 3; ++corner)
+    if (std::max(std::abs(l[(corner + 1) % 3]), std::abs(l[(corner + 2) % 3])) <= along_edge * std::abs(l[corner])) return true;
+  return false;
+}
 
 }  // namespace
 
@@ -145,6 +162,7 @@ CuttingLine PolygonVariation::line(std::size_t k) const {
       line.dl.row(v).segment<3>(line.column[a]) +=
           ((line.q[a] - line.p[a]) * normal_by_apart - line.p[a] * along_by_normal).transpose();
   }
+  if (is_within(given, nodes.type) && passes_along_an_edge(line.l)) line.moves = false;
   return line;
 }
 

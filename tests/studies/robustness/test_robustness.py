@@ -12,7 +12,7 @@ sys.path[:0] = [str(HERE), str(HERE.parent)]
 
 from study_test import LACON, StudyTest  # noqa: E402, I001 (it says where meshes.py is)
 from bodies import lines, quarter_of_a_ring, round_tool, slab, slab_in_space  # noqa: E402
-from meshes import block, union  # noqa: E402
+from meshes import block, brick, union  # noqa: E402
 from run import chosen, count, missed, run  # noqa: E402
 from studies import Study, elastic, held, path, zone  # noqa: E402
 
@@ -117,6 +117,29 @@ class Skins(StudyTest):
                           loads=[{"LIAISON_OBLIQUE": {**of, "ANGL_NAUT": [turn, 0.0, 0.0]}} for of in held_in] if turn else (),
                           steps=2, asked={"per step": 8})
             self.assertEqual(missed(study, run(study, LACON, self.folder)), [], turn)
+
+    def test_middles_of_masters_may_lie_on_an_edge_of_the_slave(self):
+        """A sector of a tube pressed on a tapered shaft: the middle one of its three cells lies over the edge between both of the shaft. Where lines
+        between parts of a curved master took corners along, differently in the polygons around, forces jumped by 6e-6 in a strip of 1e-8."""
+        def sector(name, radii, z, cells, outer, inner, sides):
+            """@param outer, inner radii as functions of z"""
+            def place(r, a, z):
+                a = math.radians(a)
+                r = inner(z) + (r - radii[0]) / (radii[1] - radii[0]) * (outer(z) - inner(z))
+                return r * math.cos(a), r * math.sin(a), z
+            return brick("HEXA20", [lines(*ends, n) for ends, n in zip((radii, (10, 50), z), cells)], place, name,
+                         {(1, 0): "FIRST", (1, 1): "LAST", **sides}, curved=True)
+
+        def taper(z):
+            return 1.1 - 0.1 * z
+
+        mesh = union([sector("SHAFT", (0.3, 1.0), (0.0, 3.0), (2, 2, 8), taper, lambda z: 0.3, {(0, 1): "SHAFT_SKIN", (2, 0): "SHAFT_BASE"}),
+                      sector("TUBE", (1.0, 1.5), (1.0, 2.5), (2, 3, 6), lambda z: 1.5, taper, {(0, 0): "TUBE_SKIN", (2, 1): "TUBE_BASE"})])
+        study = Study(name="taper", mesh=mesh, model="3D", materials={"SHAFT": elastic(2e4), "TUBE": elastic(1e4)}, zones=[zone("SHAFT", "TUBE", 0)],
+                      strain="GREEN_LAGRANGE", moves=[{"GROUP_MA": "SHAFT_BASE", "DZ": 0.0}, {"GROUP_MA": "TUBE_BASE", "DZ": [[0, 0], [2, -0.12]]}],
+                      loads=[{"LIAISON_OBLIQUE": {"GROUP_MA": plane, "ANGL_NAUT": [angle, 0.0, 0.0], "DY": 0.0}} for plane, angle in (("FIRST", 10), ("LAST", 50))],
+                      steps=2, most=12, asked={"per step": 6})
+        self.assertEqual(missed(study, run(study, LACON, self.folder)), [])
 
     def test_a_patch_that_takes_contact_at_the_end_moves_bodies_that_flow_and_are_balanced(self):
         """The increment that closes its gap leaves more unbalanced forces than there were: that is no reason to shorten it, again and again."""
