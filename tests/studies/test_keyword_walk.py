@@ -30,6 +30,11 @@ class KeywordWalk(StudyTest):
         self.assertEqual(same, [], "given, and nothing changed")
         self.assertGreater(len(changes), 100)
 
+    def test_more_keywords_of_functions_tables_and_lists(self):
+        changes, same = self.walked(HERE / "keyword_walk.comm")
+        self.assertEqual(same, [], "given, and nothing changed")
+        self.assertGreater(len(changes), 100)
+
     def test_a_keyword_without_effect_is_found(self):
         """A precision within which there is one row, whatever it says."""
         comm = self.folder / "idle.comm"

@@ -8,11 +8,16 @@ from . import formulas
 from .call import Call
 
 
+def check_scales(call, path, interpolation, parameters, values):
+    """@throws AsterError DEFI_FONCTION_4 where a logarithm would be of what is not positive"""
+    for numbers, scale, what in ((parameters, interpolation[0], "parameter"), (values, interpolation[1], "value")):
+        if scale == "LOG" and min(numbers) <= 0.0:
+            call.fail("DEFI_FONCTION_4", path, what=what, value=f"{min(numbers):g}")
+
+
 def make(call, function, path):
     """The function concept of a Piecewise that a command makes. @throws AsterError DEFI_FONCTION_4"""
-    for values, scale, what in ((function.x, function.interpolation[0], "parameter"), (function.y, function.interpolation[1], "value")):
-        if scale == "LOG" and min(values) <= 0.0:
-            call.fail("DEFI_FONCTION_4", path, what=what, value=f"{min(values):g}")
+    check_scales(call, path, function.interpolation, function.x, function.y)
 
     def fill(file):
         for name, value in (("parameter", function.parameter), ("component", function.component),
@@ -109,8 +114,10 @@ def defi_nappe(call):
     if len(names) != 1 or k["NOM_PARA"] in names:
         call.fail("DEFI_FONCTION_7", "FONCTION" if "FONCTION" in k else "NOM_PARA_FONC", names=", ".join(sorted(names)) or part("none"), parameter=k["NOM_PARA"])
     other = names.pop()
+    scales = (tuple(k["INTERPOL"]) * 2)[:2]
+    check_scales(call, "PARA", scales, k["PARA"], [y for curve in curves for y in curve.points().y])
     text = f"between(({k['NOM_PARA']}, {other}), parameters, curves, interpolation, sides)"
-    values = {"between": between, "parameters": list(k["PARA"]), "curves": list(curves), "interpolation": (tuple(k["INTERPOL"]) * 2)[:2],
+    values = {"between": between, "parameters": list(k["PARA"]), "curves": list(curves), "interpolation": scales,
               "sides": (k["PROL_GAUCHE"], k["PROL_DROITE"])}
     return formulas.make(call, Expression(text, [k["NOM_PARA"], other], values))
 
