@@ -31,6 +31,10 @@ EXCUSED = (
     (r"^TEST_\w+/(\w+/)?REFERENCE$", "says what VALE_REFE is, which is refused without it: tests/commands/test_checks.py"),
     (r"/MOMENT$", "stands with POINT or not at all; then columns are RESULT_X and MOMENT_X: tests/commands/test_post_releve_t.py"),
     (r"^PRE_GMSH/UNITE_MAILLAGE$", "the unit that LIRE_MAILLAGE reads then: keyword_effects_results.comm"),
+    (r"^CREA_MAILLAGE/INFO$", "what a cut with bad cells prints: tests/operators/test_crea_maillage.py"),
+    (r"^PROJ_CHAMP/DISTANCE_ALARME$", "an alarm: tests/operators/test_proj_champ.py"),
+    (r"/CONVERGENCE/RESI_GLOB_RELA$", "linear studies meet any: tests/unit/evolution/convergence_test.cpp, newton_test.cpp"),
+    (r"/CONVERGENCE/SIGM_REFE$", "linear studies meet any: the closed form of tests/verification/test_references.py"),
     (rf"^({'|'.join(FRAME)})/", "the frame of a study: tests/commands"),
 )
 
