@@ -50,8 +50,8 @@ std::string_view reason(int error) {
 
 bool refused(std::int32_t error) { return error != LACON_FINE && error != LACON_INSIDE_OUT; }
 
-[[noreturn]] void refuse_elements(const ElementSet& set, std::span<const std::int32_t> errors,
-                                  std::span<const std::int32_t> cells) {
+/// @param first_cell of the set, that the first of the errors belongs to
+[[noreturn]] void refuse_elements(const ElementSet& set, std::span<const std::int32_t> errors, std::size_t first_cell) {
   std::int64_t count = 0;
   std::size_t first = errors.size();
   for (std::size_t i = 0; i < errors.size(); ++i)
@@ -61,7 +61,7 @@ bool refused(std::int32_t error) { return error != LACON_FINE && error != LACON_
     }
   fail("ELEMENT_1", {{"count", std::to_string(count)},
                      {"reason", part(reason(errors[first]))},
-                     {"cell", cell_name(cells[first])},
+                     {"cell", cell_name(set.number(first_cell + first))},
                      {"element", std::string(set.row->name)}});
 }
 
@@ -108,10 +108,10 @@ class Batch {
   /// Throws where a kernel refused an element. @return the first that is turned inside out
   std::optional<std::int32_t> check(std::span<const std::int32_t> errors) const {
     const auto own = errors.first(size_);
-    if (std::any_of(own.begin(), own.end(), refused)) refuse_elements(set_, own, std::span(set_.cells).subspan(first_, size_));
+    if (std::any_of(own.begin(), own.end(), refused)) refuse_elements(set_, own, first_);
     const auto inverted = std::find(own.begin(), own.end(), LACON_INSIDE_OUT);
     if (inverted == own.end()) return std::nullopt;
-    return cell(static_cast<std::size_t>(inverted - own.begin()));
+    return set_.number(first_ + static_cast<std::size_t>(inverted - own.begin()));
   }
 
  private:
@@ -160,6 +160,31 @@ std::vector<std::string> node_unknowns(const Model& model, const Registry& regis
   return unknowns;
 }
 
+ElementSet solid_set(const catalog::ElementRow& row, Registry& registry, const std::string& option,
+                     std::span<const std::string> unknowns) {
+  ElementSet set = make_set(row, registry, option, LACON_SOLID, unknowns);
+  set.linear = !set.kernel->nonlinear;
+  set.n_parameters = n_names(set.kernel->parameters);
+  set.n_point_variables = n_names(set.kernel->variables);
+  return set;
+}
+
+void stop_flow(const ElementSet& set, std::span<double> variable) {
+  const auto width = static_cast<std::size_t>(set.n_point_variables);
+  for (std::size_t v = 0; v < width; ++v)
+    if (std::string_view(set.kernel->variables[v]) == "INDIPLAS")
+      for (std::size_t i = v; i < variable.size(); i += width) variable[i] = 0;
+}
+
+bool has_flowed(const ElementSet& set, std::span<const double> now, std::span<const double> before) {
+  const auto width = static_cast<std::size_t>(set.n_point_variables);
+  std::size_t telling = 0;  // behind them are elastic strains, which change without any flow
+  while (telling < width && !std::string_view(set.kernel->variables[telling]).starts_with("EPSE")) ++telling;
+  for (std::size_t i = 0; i < now.size(); ++i)
+    if (i % width < telling && now[i] != before[i]) return true;
+  return false;
+}
+
 std::vector<ElementSet> solid_sets(const Mesh& mesh, const Model& model, Registry& registry, const MaterialTable& materials,
                                    const Behaviours& behaviours) {
   struct Kind {
@@ -193,15 +218,12 @@ std::vector<ElementSet> solid_sets(const Mesh& mesh, const Model& model, Registr
   for (auto& [kind, cells] : by_kind) {
     const catalog::ElementRow& row = *registry.find_element(model.elements[kind.element]);
     const std::string& option = behaviours.options[kind.behaviour];
-    ElementSet set = make_set(row, registry, option, LACON_SOLID, unknowns);
+    ElementSet set = solid_set(row, registry, option, unknowns);
     set.cells = std::move(cells);
-    set.linear = !set.kernel->nonlinear;
     if (set.kernel->takes_curve) {
       const catalog::RelationRow* relation = registry.find_relation(option.substr(0, option.find('/')));
       set.curve = hardening_curve(materials, set.cells.front(), relation ? relation->hardening : "", row.name);
     }
-    set.n_parameters = n_names(set.kernel->parameters);
-    set.n_point_variables = n_names(set.kernel->variables);
     for (const std::int32_t cell : set.cells)
       for (int p = 0; p < set.n_parameters; ++p)
         set.parameters.push_back(materials.parameter(cell, set.kernel->parameters[p], row.name));

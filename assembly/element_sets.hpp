@@ -21,6 +21,7 @@ struct ElementSet {
   std::string option;  ///< of the kernel: "ELAS/PETIT", "CHAR_MECA_PRES"
   Tabulation tabulation;
   std::vector<std::int32_t> cells;
+  std::vector<std::int32_t> numbers;            ///< of them, where the mesh is a part of another one; empty: the same
   std::vector<double> parameters;               ///< (cells, n_parameters), solids only
   int n_parameters = 0, n_point_variables = 0;  ///< n_point_variables: internal variables of a point
   bool linear = true;                           ///< the stiffness does not depend on the displacements
@@ -31,6 +32,7 @@ struct ElementSet {
   int dimension() const { return catalog::dimension_of(row->geometry); }  ///< of the space
   int n_unknowns() const { return static_cast<int>(columns.size()); }     ///< of a node
   int n_nodes() const { return tabulation.n_nodes; }
+  std::int32_t number(std::size_t i) const { return numbers.empty() ? cells[i] : numbers[i]; }  ///< of one of `cells`
   std::size_t n_stress() const { return static_cast<std::size_t>(tabulation.n_points) * row->stress.size(); }    ///< of a cell
   std::size_t n_variables() const { return static_cast<std::size_t>(tabulation.n_points * n_point_variables); }  ///< of a cell
 };
@@ -38,6 +40,15 @@ struct ElementSet {
 /// The unknowns of the model's nodes, of which a node may have some alone: the displacements, and behind them the others in the
 /// order in which elements bring them. Nodal arrays hold them node by node. Throws PLUGIN_4.
 std::vector<std::string> node_unknowns(const Model& model, const Registry& registry);
+
+/// No cells yet, for those of a solid element under an option of it. @param unknowns of node_unknowns()
+ElementSet solid_set(const catalog::ElementRow& row, Registry& registry, const std::string& option,
+                     std::span<const std::string> unknowns);
+
+/// Set the internal variable by which a law says that it flows (INDIPLAS) to zero. @param variable (cells, n_variables)
+void stop_flow(const ElementSet& set, std::span<double> variable);
+/// Whether internal variables are others than before: the law flows. @param now, before (cells, n_variables)
+bool has_flowed(const ElementSet& set, std::span<const double> now, std::span<const double> before);
 
 /// The behaviour of cells: options of solid rows, "ELAS/PETIT", and for each cell of the mesh its index among them.
 struct Behaviours {

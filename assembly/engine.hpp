@@ -2,6 +2,7 @@
 // What a linear solver is to the rest of Lacon: a pattern, then values, then right sides. MUMPS is one engine
 // (mumps_engine.hpp).
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <span>
 #include <string>
@@ -10,6 +11,8 @@
 #include "lacon/assembly/sparse_matrix.hpp"
 
 namespace lacon {
+
+class PetscProcesses;
 
 /// What a factorisation found.
 struct Factorisation {
@@ -55,6 +58,9 @@ class Engine {
   /// on with the same bits.
   virtual bool wants_exact_factors() const { return false; }
   virtual void want_exact_factors() {}
+  /// Those that may have cells and rows of the matrix themselves; such a matrix (SparseMatrix::elsewhere) is solved with. None
+  /// of an engine that needs a matrix in one process.
+  virtual std::shared_ptr<PetscProcesses> processes() const { return nullptr; }
 };
 
 /// An engine that keeps a factor, with which one substitution is cheap and a block of sparse right sides is cheaper still.

@@ -88,14 +88,15 @@ std::vector<LooseMotion> LooseMotions::of(const SparseMatrix& matrix, double neg
     std::map<std::int32_t, MotionVector> others;
   };
   std::vector<Image> images(at.size());
+  const auto of_body = [](Image& image, std::int32_t first) -> MotionVector& {
+    if (image.first < 0) image.first = first;
+    return image.first == first ? image.own : image.others.try_emplace(first, MotionVector::Zero()).first->second;
+  };
   const auto add = [&](std::int64_t row, std::int64_t column, double value) {
     const Moved* const moved = at[column];
     if (!moved || value == 0) return;
     Image& image = images[row];
-    if (image.first < 0) image.first = moved->first;
-    MotionVector& of_body =
-        image.first == moved->first ? image.own : image.others.try_emplace(moved->first, MotionVector::Zero()).first->second;
-    of_body.head(moved->by.size()) += value * moved->by;
+    of_body(image, moved->first).head(moved->by.size()) += value * moved->by;
     image.most += std::abs(value) * moved->by.cwiseAbs().sum();
   };
   for (std::int64_t row = 0; row < matrix.size(); ++row)
@@ -104,6 +105,22 @@ std::vector<LooseMotion> LooseMotions::of(const SparseMatrix& matrix, double neg
       add(row, column, matrix.values()[k]);
       if (matrix.is_symmetric() && column != row) add(column, row, matrix.values()[k]);
     }
+  if (matrix.elsewhere()) {
+    std::vector<double> x(at.size()), y(at.size());
+    const auto multiply = [&](const auto& moves, bool magnitudes, const auto& use) {
+      std::ranges::fill(x, 0.0);
+      std::ranges::fill(y, 0.0);
+      for (const Moved& moved : moved_) x[moved.equation] = moves(moved);
+      matrix.multiply_elsewhere(x, y, magnitudes);
+      for (const Moved& moved : moved_)
+        if (y[moved.equation] != 0) use(images[moved.equation], moved, y[moved.equation]);
+    };
+    for (Eigen::Index motion = 0; motion < 6; ++motion)  // one of each body at once: no cell meets two of them
+      multiply([&](const Moved& moved) { return motion < moved.by.size() ? moved.by[motion] : 0.0; }, false,
+               [&](Image& image, const Moved& moved, double value) { of_body(image, moved.first)[motion] += value; });
+    multiply([](const Moved& moved) { return moved.by.cwiseAbs().sum(); }, true,
+             [](Image& image, const Moved&, double value) { image.most += value; });
+  }
   Triangle resistance(columns);
   for (const Image& image : images) {
     Eigen::VectorXd row = Eigen::VectorXd::Zero(columns);

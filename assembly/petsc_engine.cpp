@@ -9,9 +9,10 @@
 #include <optional>
 #include <sstream>
 
+#include "lacon/assembly/block_numbering.hpp"
 #include "lacon/assembly/loose_motions.hpp"
+#include "lacon/assembly/parts/solid_parts.hpp"
 #include "lacon/assembly/petsc/exchange.hpp"
-#include "lacon/assembly/processes/companion.hpp"
 #include "lacon/catalog/messages.hpp"
 #include "lacon/catalog/wording.hpp"
 #include "lacon/structures/executable.hpp"
@@ -44,67 +45,34 @@ std::string words_of(const std::string& reason, int iterations, const std::strin
 
 struct PetscEngine::State {
   PetscOptions options;
-  std::unique_ptr<Companion> ranks;
+  std::shared_ptr<PetscProcesses> processes;
   BlockSystem::Sizes sizes;
-  std::vector<std::int32_t> place;  ///< of each equation
-  std::vector<std::int32_t> node;   ///< of each block
+  std::optional<BlockNumbering> blocks;
   std::optional<LooseMotions> loose;
   const SparseMatrix* matrix = nullptr;
   std::unique_ptr<MumpsEngine> direct;  ///< where this matrix has a factor
+  std::optional<SparseMatrix> whole;    ///< the same, where other processes have most of it
 
-  void start() {
-    if (ranks) return;
-    std::vector<std::string> command;
-    if (options.n_ranks > 1)
-      command = {"mpirun",
-                 "-n",
-                 std::to_string(options.n_ranks),
-                 "--oversubscribe",
-                 "--bind-to",
-                 "none",
-                 "--mca",
-                 "btl_vader_single_copy_mechanism",
-                 "none",
-                 "--mca",
-                 "mpi_yield_when_idle",  // others may need the cores
-                 "1"};
-    command.insert(command.end(),
-                   {options.program, options.algorithm, options.preconditioner, std::to_string(options.iterations)});
-    ranks = std::make_unique<Companion>(command);
-    if (ranks->answer().empty()) fail("SOLVER_6", {{"reason", options.program + ": " + ranks->end()}});
+  explicit State(const PetscOptions& given) : options(given) {
+    std::string& program = options.program;
+    if (program.empty()) program = program_beside_this();
+    if (!std::filesystem::exists(program)) fail("SOLVER_6", {{"reason", part("built_without_petsc")}});
+    processes = std::make_shared<PetscProcesses>(
+        PetscProgram{program, options.algorithm, options.preconditioner, options.iterations, options.n_ranks});
   }
 
-  std::string ask(const std::string& line) { return checked(ranks->ask(line)); }
-  std::string checked(std::string answer) {
-    if (answer.empty()) {
-      const std::string end = ranks->end();
-      ranks.reset();
-      fail("SOLVER_8", {{"reason", end}});
-    }
-    return answer;
-  }
-
-  void number(const Numbering& numbering) {
-    place.assign(static_cast<std::size_t>(numbering.n_equations()), -1);
-    node.clear();
-    const int dimension = options.geometry.dimension;
-    for (std::int64_t n = 0; n < numbering.n_nodes; ++n) {
-      bool is_free = false;
-      for (int i = 0; i < dimension; ++i)
-        if (const std::int64_t e = numbering.of(n, i); e >= 0) {
-          is_free = true;
-          place[e] = static_cast<std::int32_t>(static_cast<int>(node.size()) * dimension + i);
-        }
-      if (is_free) node.push_back(static_cast<std::int32_t>(n));
-    }
-    std::int32_t n_multipliers = 0;
-    for (std::int32_t& at : place)
-      if (at < 0) at = -1 - n_multipliers++;
-    sizes = {.n = numbering.n_equations(),
-             .n_blocks = static_cast<std::int64_t>(node.size()),
-             .n_multipliers = n_multipliers,
-             .dimension = dimension};
-    loose.emplace(RigidMotions(options.geometry), numbering);
+  void number(const SparseMatrix& given) {
+    const auto* const parts = dynamic_cast<const SolidParts*>(given.elsewhere());
+    if (parts)
+      blocks = parts->blocks();
+    else
+      blocks.emplace(given.numbering(), options.geometry.dimension, options.n_ranks);
+    sizes = {.n = given.numbering().n_equations(),
+             .n_blocks = std::ssize(blocks->node),
+             .n_multipliers = blocks->n_multipliers,
+             .dimension = blocks->dimension,
+             .n_parts = options.n_ranks};
+    loose.emplace(RigidMotions(options.geometry), given.numbering());
   }
 
   SharedMemory system() {
@@ -116,11 +84,12 @@ struct PetscEngine::State {
     std::ranges::copy(matrix->rows(), made.row.begin());
     std::ranges::copy(matrix->columns(), made.column.begin());
     std::ranges::copy(matrix->values(), made.value.begin());
-    std::ranges::copy(place, made.place.begin());
-    for (std::size_t b = 0; b < node.size(); ++b)
+    std::ranges::copy(blocks->place, made.place.begin());
+    std::ranges::copy(blocks->first_block, made.first_block.begin());
+    for (std::size_t b = 0; b < blocks->node.size(); ++b)
       for (int i = 0; i < sizes.dimension; ++i)
         made.coordinates[b * static_cast<std::size_t>(sizes.dimension) + static_cast<std::size_t>(i)] =
-            options.geometry.coordinates[3 * static_cast<std::size_t>(node[b]) + static_cast<std::size_t>(i)];
+            options.geometry.coordinates[3 * static_cast<std::size_t>(blocks->node[b]) + static_cast<std::size_t>(i)];
     return memory;
   }
 
@@ -136,7 +105,7 @@ struct PetscEngine::State {
     const SharedMemory memory(right_side.size_bytes());
     const std::span<double> shared{reinterpret_cast<double*>(memory.data()), right_side.size()};
     std::ranges::copy(right_side, shared.begin());
-    std::istringstream said(ask(fmt::format("solve {:.3e} {}", share, memory.path())));
+    std::istringstream said(processes->ask(fmt::format("solve {:.3e} {}", share, memory.path())));
     std::string word, left, why;
     said >> word;
     if (word != "failed") said >> solution.iterations >> left;
@@ -149,50 +118,53 @@ struct PetscEngine::State {
     return {};
   }
 
+  void forget_factor() {
+    direct.reset();
+    whole.reset();
+  }
+
   /// A factor instead. @param why
   Factorisation factorise_directly(const std::string& why) {
     direct = std::make_unique<MumpsEngine>(options.direct);
     try {
-      direct->analyse(*matrix);
-      Factorisation found = direct->factorise(*matrix);
+      if (matrix->elsewhere()) whole.emplace(matrix->elsewhere()->whole(*matrix));
+      const SparseMatrix& own = whole ? *whole : *matrix;
+      direct->analyse(own);
+      Factorisation found = direct->factorise(own);
       found.stalled = why;
       return found;
     } catch (const Error& error) {
       if (error.message().id != "SOLVER_2") throw;
     }
-    direct.reset();
+    forget_factor();
     fail("SOLVER_9", {{"reason", why}, {"equations", std::to_string(sizes.n)}});
   }
 };
 
 bool PetscEngine::is_there() { return std::filesystem::exists(program_beside_this()); }
 
-PetscEngine::PetscEngine(const PetscOptions& options) : state_(std::make_unique<State>()) {
-  state_->options = options;
-  std::string& program = state_->options.program;
-  if (program.empty()) program = program_beside_this();
-  if (!std::filesystem::exists(program)) fail("SOLVER_6", {{"reason", part("built_without_petsc")}});
-}
+PetscEngine::PetscEngine(const PetscOptions& options) : state_(std::make_unique<State>(options)) {}
 PetscEngine::~PetscEngine() = default;
+std::shared_ptr<PetscProcesses> PetscEngine::processes() const { return state_->processes; }
 
 void PetscEngine::analyse(const SparseMatrix& matrix) {
   State& s = *state_;
   s.matrix = nullptr;
-  s.direct.reset();
-  s.start();
-  s.number(matrix.numbering());
+  s.forget_factor();
+  s.processes->start();
+  s.number(matrix);
 }
 
 Factorisation PetscEngine::factorise(const SparseMatrix& matrix) {
   State& s = *state_;
   s.matrix = &matrix;
-  s.direct.reset();
+  s.forget_factor();
   if (!s.loose->of(matrix, hardly_resisted).empty()) return s.factorise_directly(part("free_rigid_motion"));
-  s.ask("forget");
+  s.processes->ask("forget");
   std::optional<SharedMemory> memory(s.system());
-  std::string said = s.ask("set up " + memory->path());
+  std::string said = s.processes->ask("set up " + memory->path());
   memory.reset();  // before the multigrid takes most
-  if (said == "taken") said = s.checked(s.ranks->answer());
+  if (said == "taken") said = s.processes->answer();
   if (said != "ready") return s.factorise_directly(said);
   Factorisation made;
   made.is_iterative = true;

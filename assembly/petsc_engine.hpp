@@ -41,6 +41,7 @@ class PetscEngine : public Engine {
   Solution solve(std::span<double> right_side) override;
   /// To RESI_RELA, where that is more.
   Solution solve_to(double share, std::span<double> right_side) override;
+  std::shared_ptr<PetscProcesses> processes() const override;
 
  private:
   struct State;

@@ -205,6 +205,13 @@ std::vector<SparseMatrix::RowSize> SparseMatrix::row_sizes(std::int64_t n) const
       count(row, value_[k]);
       if (is_symmetric() && column_[k] != row) count(column_[k], value_[k]);
     }
+  if (!elsewhere_) return sizes;
+  const auto [sum, entries] = elsewhere_->row_sizes();
+  for (std::size_t dof = 0; dof < sum.size(); ++dof)
+    if (const std::int64_t row = numbering_->equation[dof]; row >= 0 && row < n) {
+      sizes[row].sum += sum[dof];
+      sizes[row].entries = std::max(sizes[row].entries, static_cast<std::int32_t>(entries[dof]));
+    }
   return sizes;
 }
 
@@ -229,10 +236,22 @@ void SparseMatrix::multiply(std::span<const double> x, std::span<double> y, cons
 
 void SparseMatrix::multiply(std::span<const double> x, std::span<double> y) const {
   multiply(x, y, [](double v) { return v; });
+  if (elsewhere_) multiply_elsewhere(x, y, false);
 }
 
 void SparseMatrix::multiply_magnitudes(std::span<const double> x, std::span<double> y) const {
   multiply(x, y, [](double v) { return std::abs(v); });
+  if (elsewhere_) multiply_elsewhere(x, y, true);
+}
+
+void SparseMatrix::multiply_elsewhere(std::span<const double> x, std::span<double> y, bool magnitudes) const {
+  const std::vector<std::int64_t>& equation = numbering_->equation;
+  std::vector<double> nodal(equation.size(), 0.0);
+  for (std::size_t dof = 0; dof < nodal.size(); ++dof)
+    if (equation[dof] >= 0) nodal[dof] = x[equation[dof]];
+  const std::span<const double> product = elsewhere_->product(nodal, magnitudes);
+  for (std::size_t dof = 0; dof < nodal.size(); ++dof)
+    if (equation[dof] >= 0) y[equation[dof]] += product[dof];
 }
 
 std::vector<std::int64_t> SparseMatrix::rows_alone() const {
@@ -244,7 +263,7 @@ std::vector<std::int64_t> SparseMatrix::rows_alone() const {
         if (is_symmetric()) alone[column] = 0;  // of its row the lower triangle alone is there
       }
   std::vector<std::int64_t> found;
-  for (std::int64_t i = 0; i < size(); ++i)
+  for (std::int64_t i = elsewhere_ ? numbering_->first[numbering_->n_nodes] : 0; i < size(); ++i)
     if (alone[i] && diagonal(i) != 0) found.push_back(i);
   return found;
 }

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "lacon/assembly/numbering.hpp"
+#include "lacon/assembly/rows_elsewhere.hpp"
 #include "lacon/structures/mesh.hpp"
 
 namespace lacon {
@@ -49,13 +50,21 @@ class SparseMatrix {
   std::span<const double> values() const { return value_; }
   double diagonal(std::int64_t equation) const { return value_[diagonal_place(equation)]; }
 
+  /// Entries that other processes have, which products and sizes of rows count in; they must outlive the matrix. Rows, columns
+  /// and values are those of this one.
+  void add_elsewhere(const RowsElsewhere* rows) { elsewhere_ = rows; }
+  const RowsElsewhere* elsewhere() const { return elsewhere_; }
+  /// y += A x, or |A| |x|, of those alone.
+  void multiply_elsewhere(std::span<const double> x, std::span<double> y, bool magnitudes) const;
+
   /// y = A x
   void multiply(std::span<const double> x, std::span<double> y) const;
   /// y = |A| |x|, of magnitudes
   void multiply_magnitudes(std::span<const double> x, std::span<double> y) const;
   /// Powers of two d that make the largest entry of each row and column of d A d about 1, (size).
   std::vector<double> equilibration() const;
-  /// Unknowns that their row alone decides: nothing but a diagonal stands in it. Ascending.
+  /// Unknowns that their row alone decides: nothing but a diagonal stands in it. Ascending; multipliers alone, where other
+  /// processes have entries.
   std::vector<std::int64_t> rows_alone() const;
   /// How large a row is: the sum of |a_ij|, and how many entries it has.
   struct RowSize {
@@ -92,6 +101,7 @@ class SparseMatrix {
   std::vector<std::int32_t> column_;  ///< ascending in each row
   std::vector<double> value_;
   std::vector<Added> adding_;
+  const RowsElsewhere* elsewhere_ = nullptr;
 };
 
 }  // namespace lacon

@@ -61,13 +61,21 @@ std::span<Entry> summed(std::span<Entry> entries) {
 }
 
 template <class Use>
-void for_each_entry(const BlockSystem& system, const Use& use) {
+void for_each_entry(const BlockSystem& system, const OwnEntries& own, const Use& use) {
   for (std::int64_t i = 0; i < system.sizes.n; ++i)
     for (std::int64_t k = system.row[i]; k < system.row[i + 1]; ++k) {
       const std::int32_t j = system.column[k];
       if (system.value[k] == 0) continue;
       use(system.place[i], system.place[j], system.value[k]);
       if (system.sizes.is_symmetric && i != j) use(system.place[j], system.place[i], system.value[k]);
+    }
+  for (std::int64_t i = 0; own.matrix && i < own.matrix->size(); ++i)
+    for (std::int64_t k = own.matrix->rows()[i]; k < own.matrix->rows()[i + 1]; ++k) {
+      const std::int32_t j = own.matrix->columns()[k];
+      const double value = own.matrix->values()[k];
+      if (value == 0 || own.place[i] < 0 || own.place[j] < 0) continue;
+      use(own.place[i], own.place[j], value);
+      if (i != j) use(own.place[j], own.place[i], value);
     }
 }
 
@@ -109,19 +117,20 @@ void append_whole_blocks(Rows& rows, Gathering& gathered, const Range& blocks, i
 
 }  // namespace
 
-BlockRows rows_of_part(const BlockSystem& system, int part, int n_parts) {
+BlockRows rows_of_part(const BlockSystem& system, const OwnEntries& entries, int part) {
   const int dimension = system.sizes.dimension;
-  BlockRows made{.blocks = Range::of_part(system.sizes.n_blocks, part, n_parts),
-                 .multipliers = Range::of_part(system.sizes.n_multipliers, part, n_parts)};
+  BlockRows made{.blocks = {system.first_block[part], system.first_block[part + 1]},
+                 .multipliers = Range::of_part(system.sizes.n_multipliers, part, static_cast<int>(system.sizes.n_parts))};
   const Range own{made.blocks.first * dimension, made.blocks.last * dimension};
 
   // what all processes know: the diagonal of K, and the rows of the multipliers
-  std::vector<double> diagonal(system.sizes.n_blocks * dimension, 0.0);
+  std::vector<double> diagonal = entries.diagonal;
+  diagonal.resize(system.sizes.n_blocks * dimension, 0.0);
   std::vector<Multiplier> multipliers(system.sizes.n_multipliers);
   std::size_t n_own = 0;  // entries of own rows
-  for_each_entry(system, [&](std::int32_t row, std::int32_t column, double value) {
+  for_each_entry(system, {}, [&](std::int32_t row, std::int32_t column, double value) {
     if (row >= 0 && column >= 0) {
-      if (row == column) diagonal[row] = value;
+      if (row == column) diagonal[row] += value;
       n_own += row >= own.first && row < own.last;
     } else if (row >= 0) {
       multipliers[-1 - column].b.push_back({row, value});
@@ -129,6 +138,7 @@ BlockRows rows_of_part(const BlockSystem& system, int part, int n_parts) {
       (column >= 0 ? multipliers[-1 - row].c : multipliers[-1 - row].d).push_back({column, value});
     }
   });
+  if (entries.matrix) n_own += 2 * static_cast<std::size_t>(entries.matrix->n_entries());
   double mean = 0;
   std::int64_t n_free = 0;
   for (const double value : diagonal)
@@ -179,7 +189,7 @@ BlockRows rows_of_part(const BlockSystem& system, int part, int n_parts) {
     const Range blocks{first, std::min(first + step, made.blocks.last)};
     Gathering k(blocks.first * dimension, blocks.last * dimension);
     const auto for_each_of_k = [&](const auto& use) {
-      for_each_entry(system, [&](std::int32_t row, std::int32_t column, double value) {
+      for_each_entry(system, entries, [&](std::int32_t row, std::int32_t column, double value) {
         if (row >= 0 && column >= 0 && k.has(row)) use(row, column, value);
       });
       for (std::size_t i = 0; i < multipliers.size(); ++i)

@@ -6,9 +6,11 @@
 // of D vanishes: they change no solution, they hold bodies that contact alone holds, and make the Schur complement nearly a
 // multiple of the identity.
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "lacon/assembly/petsc/exchange.hpp"
+#include "lacon/assembly/sparse_matrix.hpp"
 
 namespace lacon {
 
@@ -36,6 +38,13 @@ struct BlockRows {
   std::vector<std::uint8_t> is;  ///< own rows of displacements: 0 where one is imposed
 };
 
-BlockRows rows_of_part(const BlockSystem& system, int part, int n_parts);
+/// Entries between displacements that processes have themselves: those of one of them, beside the system.
+struct OwnEntries {
+  const SparseMatrix* matrix = nullptr;      ///< a lower triangle; rows of own blocks are whole
+  std::span<const std::int32_t> place = {};  ///< of its rows; negative: of none
+  std::vector<double> diagonal = {};         ///< of the rows of all processes
+};
+
+BlockRows rows_of_part(const BlockSystem& system, const OwnEntries& entries, int part);
 
 }  // namespace lacon

@@ -23,6 +23,22 @@ PetscErrorCode note_error(MPI_Comm, int, const char* function, const char*, Pets
   return code;
 }
 
+/// The diagonal that all processes have together.
+std::vector<double> whole_diagonal(const BlockSystem& system, const OwnEntries& entries, int part) {
+  const int dimension = system.sizes.dimension;
+  std::vector<int> first, size;
+  for (std::int64_t p = 0; p < system.sizes.n_parts; ++p) {
+    first.push_back(static_cast<int>(system.first_block[p] * dimension));
+    size.push_back(static_cast<int>(system.first_block[p + 1] * dimension) - first.back());
+  }
+  std::vector<double> whole(system.sizes.n_blocks * dimension, 0.0);
+  for (std::int64_t i = 0; i < entries.matrix->size(); ++i)
+    if (const int at = entries.place[i] - first[part]; at >= 0 && at < size[part])
+      whole[entries.place[i]] = entries.matrix->diagonal(i);
+  MPI_Allgatherv(MPI_IN_PLACE, 0, MPI_DATATYPE_NULL, whole.data(), size.data(), first.data(), MPI_DOUBLE, PETSC_COMM_WORLD);
+  return whole;
+}
+
 /// Owned rows of a matrix, of all columns.
 OwnedMat make_matrix(const Rows& rows, std::int64_t own_columns, int block_size) {
   OwnedMat made;
@@ -116,15 +132,15 @@ void checked(PetscErrorCode code) {
 
 void catch_errors() { checked(PetscPushErrorHandler(note_error, nullptr)); }
 
-Krylov::Krylov(const BlockSystem& system, const KrylovOptions& options)
+Krylov::Krylov(const BlockSystem& system, OwnEntries entries, const KrylovOptions& options)
     : options_(options),
       is_symmetric_(system.sizes.is_symmetric),
       n_multipliers_(system.sizes.n_multipliers),
       dimension_(system.sizes.dimension) {
-  int part = 0, n_parts = 1;
+  int part = 0;
   MPI_Comm_rank(PETSC_COMM_WORLD, &part);
-  MPI_Comm_size(PETSC_COMM_WORLD, &n_parts);
-  BlockRows rows = rows_of_part(system, part, n_parts);
+  if (entries.matrix) entries.diagonal = whole_diagonal(system, entries, part);
+  BlockRows rows = rows_of_part(system, entries, part);
   const std::int64_t n_rows = rows.k.last - rows.k.first;
   equation_.assign(n_rows + (rows.c.last - rows.c.first), -1);
   for (std::int64_t i = 0; i < system.sizes.n; ++i) {

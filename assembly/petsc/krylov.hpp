@@ -52,8 +52,8 @@ struct KrylovResult {
 
 class Krylov {
  public:
-  /// Takes its rows of the system, which need not be there any more.
-  Krylov(const BlockSystem& system, const KrylovOptions& options);
+  /// Takes its rows of the system, which need not be there any more. @param entries its own; their diagonal is found here
+  Krylov(const BlockSystem& system, OwnEntries entries, const KrylovOptions& options);
   /// Make the preconditioner.
   void set_up();
   /// @param right_side (n), the solution afterwards: each process writes its own  @param share of it that may be left

@@ -5,21 +5,29 @@
 
 #include <csignal>
 #include <cstdio>
+#include <cstdlib>
 #include <iostream>
 #include <memory>
 #include <sstream>
 #include <string>
 
+#include "lacon/assembly/petsc/cells.hpp"
 #include "lacon/assembly/petsc/krylov.hpp"
 
 namespace {
 
-using lacon::Krylov, lacon::KrylovOptions, lacon::KrylovResult, lacon::BlockSystem, lacon::SharedMemory;
+using lacon::Cells, lacon::Krylov, lacon::KrylovOptions, lacon::KrylovResult, lacon::BlockSystem, lacon::SharedMemory;
 
-bool is_first() {
+int own_rank() {
   int rank = 0;
   MPI_Comm_rank(PETSC_COMM_WORLD, &rank);
-  return rank == 0;
+  return rank;
+}
+bool is_first() { return own_rank() == 0; }
+int n_ranks() {
+  int n = 1;
+  MPI_Comm_size(PETSC_COMM_WORLD, &n);
+  return n;
 }
 
 /// The next line of standard input, which the first rank reads, for all of them; empty at its end. They wait asleep: the
@@ -57,9 +65,9 @@ class Stage {
   Stage& operator=(const Stage&) = delete;
 };
 
-std::unique_ptr<Krylov> taken(const std::string& path, const KrylovOptions& options) {
+std::unique_ptr<Krylov> taken(const std::string& path, const Cells& cells, const KrylovOptions& options) {
   const SharedMemory memory = SharedMemory::open(path);
-  return std::make_unique<Krylov>(BlockSystem::in(memory), options);
+  return std::make_unique<Krylov>(BlockSystem::in(memory), cells.entries(), options);
 }
 
 std::string solved(Krylov& krylov, double share, const std::string& path) {
@@ -75,6 +83,7 @@ std::string solved(Krylov& krylov, double share, const std::string& path) {
 void serve(const KrylovOptions& options) {
   answer("ready");
   std::unique_ptr<Krylov> krylov;
+  Cells cells(own_rank(), n_ranks());
   for (std::string line = next_line(); !line.empty(); line = next_line()) {
     const std::string path = line.substr(line.rfind(' ') + 1);
     try {
@@ -84,10 +93,12 @@ void serve(const KrylovOptions& options) {
         answer("forgotten");
       } else if (line.starts_with("set up ")) {
         const Stage stage("set up");
-        krylov = taken(path, options);
+        krylov = taken(path, cells, options);
         answer("taken");
         krylov->set_up();
         answer("ready");
+      } else if (cells.obey(line)) {
+        answer("done");
       } else {
         const Stage stage("solve");
         answer(solved(*krylov, std::stod(line.substr(line.find(' '))), path));
@@ -95,9 +106,7 @@ void serve(const KrylovOptions& options) {
     } catch (const std::exception& error) {
       // other ranks may be anywhere: what is left of them is of no use
       std::cout << "failed " << error.what() << std::endl;
-      int n_ranks = 1;
-      MPI_Comm_size(PETSC_COMM_WORLD, &n_ranks);
-      if (n_ranks > 1) MPI_Abort(PETSC_COMM_WORLD, 1);
+      if (n_ranks() > 1) MPI_Abort(PETSC_COMM_WORLD, 1);
       krylov.reset();
     }
   }
@@ -111,6 +120,7 @@ int main(int argc, char** argv) {
     return 2;
   }
   prctl(PR_SET_PDEATHSIG, SIGKILL);
+  setenv("LACON_THREADS", "1", 1);  // processes are what works at the same time here
   if (PetscInitialize(nullptr, nullptr, nullptr, nullptr)) return 4;
   lacon::catch_errors();
   serve({.algorithm = argv[1], .preconditioner = argv[2], .iterations = std::stoi(argv[3])});

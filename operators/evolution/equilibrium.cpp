@@ -11,6 +11,7 @@
 #include "lacon/catalog/messages.hpp"
 #include "lacon/catalog/wording.hpp"
 #include "lacon/operators/evolution/bodies.hpp"
+#include "lacon/operators/evolution/parts.hpp"
 #include "lacon/operators/program/program.hpp"
 #include "lacon/structures/hdf5.hpp"
 
@@ -22,13 +23,14 @@ constexpr double vanishing_displacement = 1e-8;  // of the smallest patch, or of
 // error analysis, 2019).
 constexpr double round_off = std::numeric_limits<double>::epsilon();
 
-/// Nodes of every element that has a matrix.
-Ragged<std::int32_t> nodes_of_elements(const StaticProblem& problem) {
+/// Nodes of every element that has a matrix. @param with_solids or only of the others
+Ragged<std::int32_t> nodes_of_elements(const StaticProblem& problem, bool with_solids) {
   Ragged<std::int32_t> nodes;
   const auto add = [&](const ElementSet& set) {
     for (const std::int32_t cell : set.cells) nodes.push_back(problem.mesh.cells[cell]);
   };
-  for (const ElementSet& set : problem.solids) add(set);
+  for (const ElementSet& set : problem.solids)
+    if (with_solids) add(set);
   for (const Spring& spring : problem.springs) {
     const std::array ends = {spring.first, spring.second};
     nodes.push_back(std::span(ends).first(spring.second < 0 ? 1 : 2));
@@ -36,15 +38,6 @@ Ragged<std::int32_t> nodes_of_elements(const StaticProblem& problem) {
   for (const TimedLoad& load : problem.loads)
     for (const LoadedCells& loaded : load.following) add(loaded.set);
   return nodes;
-}
-
-/// In the plane laws whose tangent is not symmetric have a matrix that is not, where gaps are derived exactly: one half is
-/// worth little without the other. In space its factorisations, twice as long and each for one system, take more than it saves.
-Symmetry symmetry_of(const StaticProblem& problem) {
-  const bool exact_gap = problem.dimension == 2 && problem.contact && !problem.contact->frozen_gap;
-  const bool unsymmetric =
-      std::any_of(problem.solids.begin(), problem.solids.end(), [](const ElementSet& set) { return set.kernel->unsymmetric; });
-  return exact_gap && unsymmetric ? Symmetry::general : Symmetry::symmetric;
 }
 
 ContactBodies bodies_of(const StaticProblem& problem) {
@@ -77,13 +70,14 @@ double largest_entry(std::span<const double> values) {
 
 }  // namespace
 
-Equilibrium::Equilibrium(const StaticProblem& problem)
+Equilibrium::Equilibrium(const StaticProblem& problem, std::shared_ptr<SolidParts> parts)
     : problem_(problem),
       heat_(problem),
       prestrain_(problem),
       relations_(problem),
-      elements_(nodes_of_elements(problem)),
-      system_(problem.numbering, elements_, symmetry_of(problem)),
+      parts_(std::move(parts)),
+      elements_(nodes_of_elements(problem, !parts_)),
+      system_(problem.numbering, elements_, symmetry_of(problem), parts_.get()),
       extent_(largest_entry(problem.mesh.coordinates)) {
   if (problem.contact) contact_.emplace(problem.mesh, problem.model, *problem.contact, *problem.registry, bodies_of(problem));
   if (problem.contact) offsets_.resize(problem.contact->zones.size());
@@ -91,6 +85,7 @@ Equilibrium::Equilibrium(const StaticProblem& problem)
   for (const ElementSet& set : problem.solids) {
     linear_ = linear_ && set.linear;
     has_memory_ = has_memory_ || set.kernel->has_memory;
+    if (parts_) continue;
     points_.push_back({std::vector<double>(set.cells.size() * set.n_stress()),
                        std::vector<double>(set.cells.size() * set.n_variables()),
                        {},
@@ -103,6 +98,10 @@ StaticState Equilibrium::natural_state() const {
   StaticState state;
   state.displacement.assign(problem_.n_dofs(), 0.0);
   state.relations.assign(relations_.size(), 0.0);
+  if (parts_) {
+    state.kept = parts_->natural();
+    return state;
+  }
   for (const ElementSet& set : problem_.solids)
     state.points.push_back({std::vector<double>(set.cells.size() * set.n_stress(), 0.0),
                             std::vector<double>(set.cells.size() * set.n_variables(), 0.0),
@@ -153,13 +152,8 @@ bool Equilibrium::load_goes_on(double before, double last, double instant, const
 
 StaticState Equilibrium::at_rest(const StaticState& state) const {
   StaticState still = state;
-  for (std::size_t s = 0; s < still.points.size(); ++s) {
-    const auto width = static_cast<std::size_t>(problem_.solids[s].n_point_variables);
-    std::vector<double>& values = still.points[s].variable;
-    for (std::size_t v = 0; v < width; ++v)
-      if (std::string_view(problem_.solids[s].kernel->variables[v]) == "INDIPLAS")
-        for (std::size_t i = v; i < values.size(); i += width) values[i] = 0;
-  }
+  if (state.kept && has_variables()) still.kept = parts_->at_rest(*state.kept);
+  for (std::size_t s = 0; s < still.points.size(); ++s) stop_flow(problem_.solids[s], still.points[s].variable);
   return still;
 }
 
@@ -208,6 +202,7 @@ void Equilibrium::start(bool keeps_stiffness) {
 
 void Equilibrium::add_solids(const StaticState& state, const StaticState& previous, SolidMatrix wanted) {
   const Phase phase("elements");
+  if (parts_) return add_solids_of_parts(state, previous, wanted);
   cell_inside_out_.reset();
   for (std::size_t s = 0; s < problem_.solids.size(); ++s) {
     const ElementSet& set = problem_.solids[s];
@@ -245,6 +240,30 @@ void Equilibrium::add_solids(const StaticState& state, const StaticState& previo
     const auto inverted = evaluate_solids(heated.kernel ? heated : set, problem_.mesh, input, wanted, output, add);
     if (!cell_inside_out_) cell_inside_out_ = inverted;
   }
+}
+
+void Equilibrium::add_solids_of_parts(const StaticState& state, const StaticState& previous, SolidMatrix wanted) {
+  const SolidParts::Start first = origin_ ? SolidParts::Start{origin_->displacement, origin_->kept.get()} : SolidParts::Start{};
+  const SolidParts::Start before =
+      has_memory_ ? SolidParts::Start{previous.displacement, previous.kept.get()} : SolidParts::Start{};
+  cell_inside_out_ = parts_->evaluate(state.displacement, wanted, before, first);
+  const std::span<const double> force = parts_->force();
+  for (std::size_t dof = 0; dof < force.size(); ++dof) system_.residual()[dof] += force[dof];
+}
+
+void Equilibrium::hold_points(StaticState& state) const {
+  if (parts_)
+    state.kept = parts_->keep();
+  else
+    state.points = points_;
+}
+
+void Equilibrium::hand_out(StaticState& state) const {
+  if (!parts_ || state.kept) return;
+  state.kept = parts_->put([&](std::size_t set, PointQuantity quantity) -> std::span<const double> {
+    return quantity == PointQuantity::stress ? state.points[set].stress : state.points[set].variable;
+  });
+  state.points.clear();
 }
 
 void Equilibrium::add_springs(const StaticState& state, bool with_matrix) {
@@ -342,14 +361,9 @@ bool Equilibrium::has_variables() const {
 }
 
 bool Equilibrium::flows(const StaticState& previous) const {
-  for (std::size_t s = 0; s < points_.size(); ++s) {
-    const auto width = static_cast<std::size_t>(problem_.solids[s].n_point_variables);
-    std::size_t telling = 0;  // behind them are elastic strains, which change without any flow
-    while (telling < width && !std::string_view(problem_.solids[s].kernel->variables[telling]).starts_with("EPSE")) ++telling;
-    const std::vector<double>&now = points_[s].variable, &before = previous.points[s].variable;
-    for (std::size_t i = 0; i < now.size(); ++i)
-      if (i % width < telling && now[i] != before[i]) return true;
-  }
+  if (parts_) return has_variables() && parts_->flows(*previous.kept);
+  for (std::size_t s = 0; s < points_.size(); ++s)
+    if (has_flowed(problem_.solids[s], points_[s].variable, previous.points[s].variable)) return true;
   return false;
 }
 

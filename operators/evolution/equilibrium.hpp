@@ -1,6 +1,7 @@
 #pragma once
 // The equilibrium of bodies, loads and contact at a state: forces, matrix, and what the integration points hold
 // (METHOD.md 5.3).
+#include <memory>
 #include <optional>
 #include <span>
 #include <string>
@@ -22,9 +23,13 @@ class Group;
 
 namespace lacon {
 
+class SolidParts;
+
 class Equilibrium {
  public:
-  explicit Equilibrium(const StaticProblem& problem);
+  explicit Equilibrium(const StaticProblem& problem) : Equilibrium(problem, nullptr) {}
+  /// @param parts processes that have the cells, or nothing: parts_of()
+  Equilibrium(const StaticProblem& problem, std::shared_ptr<SolidParts> parts);
   Equilibrium(const Equilibrium&) = delete;
   Equilibrium& operator=(const Equilibrium&) = delete;
 
@@ -113,7 +118,12 @@ class Equilibrium {
 
   const System& system() const { return system_; }
   const ContactState* contact() const { return contact_ ? &*contact_ : nullptr; }
-  const std::vector<PointValues>& points() const { return points_; }                ///< at the last assembly
+  /// At the last assembly. Empty where processes have the cells.
+  const std::vector<PointValues>& points() const { return points_; }
+  /// Let a state have what the points hold at the last assembly.
+  void hold_points(StaticState& state) const;
+  /// Where processes have the cells, hand them what the points of a state hold.
+  void hand_out(StaticState& state) const;
   NewtonMatrix matrix() const { return matrix_; }                                   ///< of the last assembly
   std::optional<std::int32_t> cell_inside_out() const { return cell_inside_out_; }  ///< that the last assembly found
   bool has_new_gaps() const { return has_new_gaps_; }                               ///< since the last assembly
@@ -128,6 +138,7 @@ class Equilibrium {
  private:
   void start(bool keeps_stiffness);
   void add_solids(const StaticState& state, const StaticState& previous, SolidMatrix wanted);
+  void add_solids_of_parts(const StaticState& state, const StaticState& previous, SolidMatrix wanted);
   void add_springs(const StaticState& state, bool with_matrix);
   void add_following_loads(const StaticState& state);
   void add_contact(const StaticState& state);
@@ -136,7 +147,8 @@ class Equilibrium {
   Heat heat_;
   Prestrain prestrain_;
   Relations relations_;
-  Ragged<std::int32_t> elements_;  ///< nodes of each element that has a matrix
+  std::shared_ptr<SolidParts> parts_;
+  Ragged<std::int32_t> elements_;  ///< nodes of each element that has a matrix here
   System system_;
   std::optional<ContactState> contact_;
   bool linear_ = true, has_memory_ = false;

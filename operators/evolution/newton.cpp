@@ -12,6 +12,7 @@
 #include "lacon/catalog/wording.hpp"
 #include "lacon/operators/evolution/free_bodies.hpp"
 #include "lacon/operators/evolution/instant_failure.hpp"
+#include "lacon/operators/evolution/parts.hpp"
 #include "lacon/operators/program/program.hpp"
 #include "lacon/structures/hdf5.hpp"
 
@@ -40,7 +41,7 @@ Newton::Newton(const StaticProblem& problem, const NewtonOptions& options, std::
       options_(options),
       bodies_(problem.mesh),
       loose_(RigidMotions(geometry_of(problem, bodies_)), problem.numbering),
-      equilibrium_(problem),
+      equilibrium_(problem, options.one_process ? nullptr : parts_of(problem, *engine)),
       choice_({.linear = equilibrium_.is_linear(),
                .made_symmetric = equilibrium_.makes_symmetric(),
                .symmetric = equilibrium_.is_symmetric(),
@@ -72,6 +73,7 @@ void Newton::start_heated(StaticState& state) {
 
 void Newton::begin(StaticState& state, const std::string& label, bool as_given) {
   state.relations = equilibrium_.natural_state().relations;
+  equilibrium_.hand_out(state);
   if (contact() && state.patches.status.empty()) {
     equilibrium_.rest_at(state.displacement);
     equilibrium_.pair(state.displacement);
@@ -80,8 +82,12 @@ void Newton::begin(StaticState& state, const std::string& label, bool as_given) 
   start_heated(state);
   if (as_given) equilibrium_.start_from(state);
   restart(state);
+  StaticState now;
+  equilibrium_.hold_points(now);
+  std::vector<double> room, other_room;
   for (std::size_t s = 0; s < problem_.solids.size(); ++s) {
-    const std::vector<double>&given = state.points[s].stress, &found = equilibrium_.points()[s].stress;
+    const std::span<const double> given = values_of(state, s, PointQuantity::stress, room),
+                                  found = values_of(now, s, PointQuantity::stress, other_room);
     double largest = 0;
     for (const double stress : found) largest = std::max(largest, std::abs(stress));
     for (std::size_t i = 0; i < given.size(); ++i)
@@ -203,7 +209,7 @@ int Newton::iterate(double instant, StaticState& state, const std::function<void
       if (contact()) contact()->geometry().check_radii();
       if (const auto cell = equilibrium_.cell_inside_out())
         fail("EVOLUTION_9", {{"instant", fmt::format("{:.9g}", instant)}, {"cell", cell_name(*cell)}});
-      state.points = equilibrium_.points();
+      equilibrium_.hold_points(state);
       note_motion(instant, previous, state);
       return iteration;
     }

@@ -30,6 +30,7 @@ struct NewtonOptions {
   bool from_reference = false;  ///< its temperatures are those of reference, whatever they are at that instant
   std::optional<LineSearch> line_search;  ///< RECH_LINEAIRE
   bool cuts = false;                      ///< a step that fails is cut: no message advises it
+  bool one_process = false;               ///< has all cells, even where several could (parts_of)
 };
 
 class Newton {
@@ -63,6 +64,8 @@ class Newton {
   /// The state that laws without a memory start from, where it is not the natural one.
   const std::optional<StaticState>& origin() const { return equilibrium_.origin(); }
   void start_from(const StaticState& state) { equilibrium_.start_from(state); }
+  /// Equilibrium::hand_out
+  void hand_out(StaticState& state) const { equilibrium_.hand_out(state); }
   /// The contact at the last evaluation; nullptr without contact.
   const ContactState* contact() const { return equilibrium_.contact(); }
   /// Equilibrium::unbalanced, internal_forces

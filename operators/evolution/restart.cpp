@@ -114,10 +114,12 @@ void write(const hdf5::Group& group, const StaticState& state) {
   group.write("patches/status", status);
   for (const PatchQuantity& quantity : patch_quantities)
     group.write(std::string("patches/") + quantity.component, state.patches.*quantity.values);
-  group.set("sets", static_cast<std::int64_t>(state.points.size()));
-  for (std::size_t s = 0; s < state.points.size(); ++s) {
-    group.write(fmt::format("points/{}/stress", s), state.points[s].stress);
-    group.write(fmt::format("points/{}/variable", s), state.points[s].variable);
+  group.set("sets", static_cast<std::int64_t>(state.n_sets()));
+  std::vector<double> room;
+  for (std::size_t s = 0; s < state.n_sets(); ++s) {
+    group.write(fmt::format("points/{}/stress", s), values_of(state, s, PointQuantity::stress, room));
+    group.write(fmt::format("points/{}/variable", s), values_of(state, s, PointQuantity::variable, room));
+    if (state.kept) continue;
     if (!state.points[s].initial.empty()) group.write(fmt::format("points/{}/initial", s), state.points[s].initial);
     if (state.points[s].thermal.empty()) continue;
     group.write(fmt::format("points/{}/thermal", s), state.points[s].thermal);

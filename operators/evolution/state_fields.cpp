@@ -174,26 +174,45 @@ Field displacement_field(const StaticProblem& problem, const StaticState& state,
   return field;
 }
 
+namespace {
+
+/// Values of each set, fetched once where processes keep them. The state must outlive it.
+std::function<std::span<const double>(std::size_t)> values_in(const StaticState& state, PointQuantity quantity) {
+  const auto rooms = std::make_shared<std::vector<std::vector<double>>>(state.n_sets());
+  return [&state, quantity, rooms](std::size_t set) -> std::span<const double> {
+    std::vector<double>& room = (*rooms)[set];
+    return room.empty() ? values_of(state, set, quantity, room) : room;
+  };
+}
+
+}  // namespace
+
 Field stress_field(const StaticProblem& problem, const StaticState& state) {
   Field field{.name = "SIEF_ELGA", .quantity = "SIEF_R", .location = Location::gauss_points, .offset = {0}};
-  fill_points(field, problem, stress_names, [&](std::size_t s) { return std::span<const double>(state.points[s].stress); });
+  fill_points(field, problem, stress_names, values_in(state, PointQuantity::stress));
   return field;
 }
 
 Field variable_field(const StaticProblem& problem, const StaticState& state) {
   Field field{.name = "VARI_ELGA", .quantity = "VARI_R", .location = Location::gauss_points, .offset = {0}};
-  fill_points(field, problem, variable_names, [&](std::size_t s) { return std::span<const double>(state.points[s].variable); });
+  fill_points(field, problem, variable_names, values_in(state, PointQuantity::variable));
   return field;
 }
 
 namespace {
 
-/// The initial strains under which a state was found.
-void add_initial_strains(const StaticProblem& problem, const Base& base, const Result& result, std::int64_t order,
-                         StaticState& state) {
+/// Of the loads at an order of a result.
+InitialStrains initial_strains(const StaticProblem& problem, const Base& base, const Result& result, std::int64_t order) {
   InitialStrains strains;
   ModelPoints points(problem.mesh, problem.model, *problem.registry);
   for (const ResultLoad& load : result.stage(order).loads) strains.add(base, load, problem.mesh, points);
+  return strains;
+}
+
+/// The initial strains under which a state was found.
+void add_initial_strains(const StaticProblem& problem, const Base& base, const Result& result, std::int64_t order,
+                         StaticState& state) {
+  const InitialStrains strains = initial_strains(problem, base, result, order);
   check_laws(*problem.registry, strains, problem.solids);
   const auto place = std::find(result.orders.begin(), result.orders.end(), order) - result.orders.begin();
   for (std::size_t s = 0; !strains.empty() && s < problem.solids.size(); ++s)
@@ -202,6 +221,10 @@ void add_initial_strains(const StaticProblem& problem, const Base& base, const R
 }
 
 }  // namespace
+
+bool was_strained(const StaticProblem& problem, const Base& base, const Result& result, std::int64_t order) {
+  return !initial_strains(problem, base, result, order).empty();
+}
 
 StaticState archived_state(const StaticProblem& problem, const Base& base, const Result& result, std::int64_t order) {
   if (result.mesh != problem.model.mesh)

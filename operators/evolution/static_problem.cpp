@@ -79,7 +79,8 @@ StaticProblem read_model(const Order& order, const Base& base, const std::string
   StaticProblem problem;
   problem.model = base.model(model_id);
   problem.mesh = base.mesh(problem.model.mesh);
-  problem.registry = std::make_unique<Registry>(order.plugins);
+  problem.plugins = order.plugins;
+  problem.registry = std::make_unique<Registry>(problem.plugins);
   find_dofs(problem);
   return problem;
 }

@@ -1,5 +1,6 @@
 #pragma once
 // Everything a quasi-static computation starts from: mesh, elements with materials, loads in time, contact.
+#include <filesystem>
 #include <functional>
 #include <memory>
 #include <optional>
@@ -21,8 +22,9 @@ namespace lacon {
 struct StaticProblem {
   Mesh mesh;
   Model model;
-  int dimension = 2;                    ///< of the space
-  std::vector<std::string> components;  ///< node_unknowns(): "DX", "DY", "TEMP"
+  int dimension = 2;                           ///< of the space
+  std::vector<std::string> components;         ///< node_unknowns(): "DX", "DY", "TEMP"
+  std::vector<std::filesystem::path> plugins;  ///< folders of the registry
   std::unique_ptr<Registry> registry;
   std::unique_ptr<MaterialField> material_field;
   std::unique_ptr<MaterialTable> materials;

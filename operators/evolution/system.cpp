@@ -4,8 +4,9 @@
 
 namespace lacon {
 
-System::System(const Numbering& numbering, const Ragged<std::int32_t>& elements, Symmetry symmetry)
-    : numbering_(numbering), elements_(elements), symmetry_(symmetry) {
+System::System(const Numbering& numbering, const Ragged<std::int32_t>& elements, Symmetry symmetry,
+               const RowsElsewhere* elsewhere)
+    : numbering_(numbering), elements_(elements), symmetry_(symmetry), elsewhere_(elsewhere) {
   residual_.assign(numbering.equation.size() + (numbering.n_vertices() - numbering.n_nodes), 0.0);
   make_pattern();
 }
@@ -14,7 +15,10 @@ std::int64_t System::equation(std::int64_t unknown) const {
   return unknown < n_nodal() ? numbering_.equation[unknown] : numbering_.of_patch(unknown - n_nodal());
 }
 
-void System::make_pattern() { matrix_ = std::make_unique<SparseMatrix>(numbering_, elements_, couplings_, symmetry_); }
+void System::make_pattern() {
+  matrix_ = std::make_unique<SparseMatrix>(numbering_, elements_, couplings_, symmetry_);
+  matrix_->add_elsewhere(elsewhere_);
+}
 
 void System::start(std::span<const Coupling> couplings, bool keep_stiffness) {
   if (keep_stiffness) matrix_->restore(stiffness_);
@@ -102,6 +106,11 @@ std::vector<double> System::right_side(std::span<const double> external, std::sp
     if (const std::int64_t e = equation(unknown); e >= 0)
       side[e] = (unknown < static_cast<std::int64_t>(external.size()) ? external[unknown] : 0.0) - residual_[unknown];
   for (const ImposedTerm& term : imposed_terms_) side[term.equation] -= term.coefficient * step[term.dof];
+  if (elsewhere_ && std::ranges::any_of(step, [](double value) { return value != 0; })) {
+    const std::span<const double> product = elsewhere_->product(step, false);
+    for (std::size_t dof = 0; dof < product.size(); ++dof)
+      if (const std::int64_t e = numbering_.equation[dof]; e >= 0) side[e] -= product[dof];
+  }
   return side;
 }
 

@@ -13,7 +13,9 @@ namespace lacon {
 /// multipliers of the patches, then those of relations; only some of them have an equation.
 class System {
  public:
-  System(const Numbering& numbering, const Ragged<std::int32_t>& elements, Symmetry symmetry = Symmetry::symmetric);
+  /// @param elsewhere entries of elements that are not among these
+  System(const Numbering& numbering, const Ragged<std::int32_t>& elements, Symmetry symmetry = Symmetry::symmetric,
+         const RowsElsewhere* elsewhere = nullptr);
 
   std::int64_t n_nodal() const { return static_cast<std::int64_t>(numbering_.equation.size()); }
   std::int64_t multiplier(std::int64_t patch) const { return n_nodal() + patch; }
@@ -65,6 +67,7 @@ class System {
   const Numbering& numbering_;
   const Ragged<std::int32_t>& elements_;
   Symmetry symmetry_;
+  const RowsElsewhere* elsewhere_;
   std::vector<Coupling> couplings_;
   std::unique_ptr<SparseMatrix> matrix_;
   std::vector<double> residual_;

@@ -40,7 +40,8 @@ std::optional<LineSearch> line_search_of(const Keywords& keywords) {
                     .excluded = search.real("RHO_EXCL")};
 }
 
-NewtonOptions newton_options(const Keywords& keywords, const TimeSteps& steps, const StaticProblem& problem) {
+/// @param one_process has all cells
+NewtonOptions newton_options(const Keywords& keywords, const TimeSteps& steps, const StaticProblem& problem, bool one_process) {
   const Keywords convergence = keywords.factor("CONVERGENCE"), newton = keywords.factor("NEWTON");
   const SolidMatrix matrix = matrix_of(newton.text("MATRICE"));
   const std::string prediction = newton.text("PREDICTION");
@@ -57,7 +58,8 @@ NewtonOptions newton_options(const Keywords& keywords, const TimeSteps& steps, c
           .extrapolates = prediction == "EXTRAPOLE",
           .start = steps.values.front(),
           .line_search = line_search_of(keywords),
-          .cuts = steps.action.cut};
+          .cuts = steps.action.cut,
+          .one_process = one_process};
 }
 
 TimeSteps steps_of(const Keywords& increment, const Base& base, std::optional<double> origin) {
@@ -102,9 +104,14 @@ class QuasiStatic : public InstantSolver {
   std::int64_t number_of_base() const override { return newton_.solver().base_number(); }
   void save_base(const hdf5::Group& group) const override { newton_.solver().save_base(group); }
   void resume(const hdf5::Group& group, const hdf5::Group* base) override {
-    state_ = last_ = read_state(group.open("state"));
+    const auto read = [&](const char* name) {
+      StaticState state = read_state(group.open(name));
+      newton_.hand_out(state);
+      return state;
+    };
+    state_ = last_ = read("state");
     rest_ = group.read<double>("rest");
-    if (group.has("origin")) newton_.start_from(read_state(group.open("origin")));
+    if (group.has("origin")) newton_.start_from(read("origin"));
     newton_.resume(group, base, state_, rest_);
   }
   const ConvergenceCriteria& criteria() const { return newton_.criteria(); }
@@ -132,7 +139,11 @@ void stat_non_line(const Order& order, const Base& base) {
   const std::optional<Origin> origin = record ? std::nullopt : origin_of(keywords, base);
   const std::optional<double> begins = record ? origin_in(*record) : origin ? std::optional(origin->instant) : std::nullopt;
   const TimeSteps steps = steps_of(keywords.factor("INCREMENT"), base, begins);
-  QuasiStatic solver(problem, newton_options(keywords, steps, problem), engine_of(keywords.factor("SOLVEUR"), base, problem));
+  // a state that strains brought about is a stress less in one process, whether they act on or not
+  const bool strained = record ? record->has("solver/state/points/0/initial")
+                               : origin && was_strained(problem, base, origin->result, origin->order);
+  QuasiStatic solver(problem, newton_options(keywords, steps, problem, strained),
+                     engine_of(keywords.factor("SOLVEUR"), base, problem));
   const Present present = solver.present(problem);
   Observations observations(keywords, base, problem.mesh, observed_fields_of(present));
   EnergyBalance energies(keywords.has("ENERGIE"), present);

@@ -1,0 +1,166 @@
+#include "lacon/assembly/parts/element_part.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <string_view>
+#include <utility>
+
+namespace lacon {
+
+ElementPart::ElementPart(PartCells cells)
+    : cells_(std::move(cells)), registry_(std::vector<std::filesystem::path>(cells_.plugins.begin(), cells_.plugins.end())) {
+  mesh_.coordinates = std::exchange(cells_.coordinates, {});
+  std::int32_t next = 0;
+  for (PartSet& given : cells_.sets) {
+    const catalog::ElementRow* const row = registry_.find_element(given.element);
+    if (!row) fail("PLUGIN_4", {{"element", given.element}});
+    ElementSet& set = sets_.emplace_back(solid_set(*row, registry_, given.option, cells_.unknowns));
+    set.parameters = std::exchange(given.parameters, {});
+    set.curve = std::exchange(given.curve, {});
+    set.numbers = std::exchange(given.number, {});
+    const auto width = static_cast<std::size_t>(set.n_nodes());
+    for (std::size_t i = 0; i < set.numbers.size(); ++i) {
+      set.cells.push_back(next++);
+      mesh_.cells.push_back(std::span(given.nodes).subspan(i * width, width));
+    }
+    given.nodes = {};
+  }
+  const auto n_nodes = std::ssize(cells_.node);
+  numbering_ = number_equations(n_nodes, cells_.dimension,
+                                std::vector<std::uint8_t>(static_cast<std::size_t>(n_nodes * cells_.dimension), 1), 0);
+  matrix_ = std::make_unique<SparseMatrix>(numbering_, mesh_.cells, std::span<const Coupling>());
+  present_ = std::make_shared<State>(natural());
+}
+
+ElementPart::State ElementPart::natural() const {
+  State state;
+  for (const ElementSet& set : sets_)
+    state.push_back({std::vector<double>(set.cells.size() * set.n_stress(), 0.0),
+                     std::vector<double>(set.cells.size() * set.n_variables(), 0.0)});
+  return state;
+}
+
+std::vector<double> ElementPart::gathered(std::span<const double> nodal) const {
+  const auto d = static_cast<std::size_t>(cells_.dimension);
+  std::vector<double> own(cells_.node.size() * d);
+  for (std::size_t i = 0; i < own.size(); ++i) own[i] = nodal[static_cast<std::size_t>(cells_.node[i / d]) * d + i % d];
+  return own;
+}
+
+void ElementPart::hand_out(std::span<const double> own, std::span<double> nodal) const {
+  const auto d = static_cast<std::size_t>(cells_.dimension);
+  for (std::size_t i = 0; i < static_cast<std::size_t>(cells_.n_own) * d; ++i)
+    nodal[static_cast<std::size_t>(cells_.node[i / d]) * d + i % d] = own[i];
+}
+
+void ElementPart::evaluate(const Board& board, PartReport& report, SolidMatrix wanted, std::int64_t previous,
+                           std::int64_t origin) {
+  report.set = report.cell = -1;
+  report.failed = 0;
+  if (present_.use_count() > 1) present_ = std::make_shared<State>(*present_);  // a kept state stays as it is
+  if (wanted != SolidMatrix::none) matrix_->set_zero();
+  const std::vector<double> displacement = gathered(board.displacement);
+  const std::vector<double> before = previous < 0 ? std::vector<double>() : gathered(board.previous);
+  const std::vector<double> at_first = origin < 0 ? std::vector<double>() : gathered(board.origin);
+  std::vector<double> force(displacement.size(), 0.0);
+  try {
+    for (std::size_t s = 0; s < sets_.size(); ++s) {
+      const ElementSet& set = sets_[s];
+      SolidInput input{.displacement = displacement};
+      const bool remembers = set.kernel->has_memory;
+      if (const std::int64_t from = remembers ? previous : origin; from >= 0) {
+        input.previous_displacement = remembers ? before : at_first;
+        input.previous_stress = kept_.at(from)->at(s).stress;
+        input.previous_variable = kept_.at(from)->at(s).variable;
+      }
+      Values& values = (*present_)[s];
+      const auto inverted =
+          evaluate_solids(set, mesh_, input, wanted, {values.stress, values.variable}, [&](const ElementValues& element) {
+            for (std::size_t i = 0; i < element.dofs.size(); ++i) force[element.dofs[i]] += element.force[i];
+            if (!element.matrix.empty()) matrix_->add(element.dofs, element.matrix);
+          });
+      if (inverted && report.cell < 0) {
+        report.set = static_cast<std::int32_t>(s);
+        report.cell = *inverted;
+      }
+    }
+  } catch (const Error& error) {
+    report.take(error.message());
+  }
+  hand_out(force, board.force);
+}
+
+void ElementPart::keep_natural(std::int64_t number) { kept_[number] = std::make_shared<State>(natural()); }
+
+void ElementPart::keep_at_rest(std::int64_t number, std::int64_t of) {
+  const auto still = std::make_shared<State>(state(of));
+  for (std::size_t s = 0; s < sets_.size(); ++s) stop_flow(sets_[s], (*still)[s].variable);
+  kept_[number] = still;
+}
+
+void ElementPart::write(std::int64_t number, std::size_t set, PointQuantity quantity, std::span<double> all) const {
+  const PartSet& given = cells_.sets[set];
+  if (given.at.empty()) return;
+  const std::vector<double>& values =
+      quantity == PointQuantity::stress ? state(number)[set].stress : state(number)[set].variable;
+  const std::size_t width = values.size() / given.at.size();
+  for (std::size_t i = 0; i < given.at.size(); ++i)
+    if (given.is_own[i])
+      std::copy_n(values.data() + i * width, width, all.data() + static_cast<std::size_t>(given.at[i]) * width);
+}
+
+void ElementPart::read(std::int64_t number, std::size_t set, PointQuantity quantity, std::span<const double> all) {
+  const PartSet& given = cells_.sets[set];
+  if (given.at.empty()) return;
+  std::vector<double>& values = kept_.at(number)->at(set).of(quantity);
+  const std::size_t width = values.size() / given.at.size();
+  for (std::size_t i = 0; i < given.at.size(); ++i)
+    std::copy_n(all.data() + static_cast<std::size_t>(given.at[i]) * width, width, values.data() + i * width);
+}
+
+bool ElementPart::flows(std::int64_t since) const {
+  for (std::size_t s = 0; s < sets_.size(); ++s)
+    if (has_flowed(sets_[s], (*present_)[s].variable, state(since)[s].variable)) return true;
+  return false;
+}
+
+void ElementPart::multiply(const Board& board, bool magnitudes) const {
+  const std::vector<double> x = gathered(board.displacement);
+  std::vector<double> y(x.size());
+  magnitudes ? matrix_->multiply_magnitudes(x, y) : matrix_->multiply(x, y);
+  hand_out(y, board.other);
+}
+
+void ElementPart::measure(const Board& board) const {
+  std::vector<double> sum(cells_.equation.size(), 0.0), entries(cells_.equation.size(), 0.0);
+  const auto count = [&](std::int64_t row, std::int64_t column, double value) {
+    if (cells_.equation[column] < 0) return;
+    sum[row] += std::abs(value);
+    ++entries[row];
+  };
+  for (std::int64_t row = 0; row < matrix_->size(); ++row)
+    for (std::int64_t k = matrix_->rows()[row]; k < matrix_->rows()[row + 1]; ++k) {
+      const std::int32_t column = matrix_->columns()[k];
+      count(row, column, matrix_->values()[k]);
+      if (column != row) count(column, row, matrix_->values()[k]);
+    }
+  hand_out(sum, board.force);
+  hand_out(entries, board.other);
+}
+
+void ElementPart::add_to(std::span<const std::int64_t> row, std::span<const std::int32_t> column,
+                         std::span<double> value) const {
+  const std::int64_t own = cells_.n_own * cells_.dimension;
+  for (std::int64_t i = 0; i < matrix_->size(); ++i)
+    for (std::int64_t k = matrix_->rows()[i]; k < matrix_->rows()[i + 1]; ++k) {
+      const std::int64_t j = matrix_->columns()[k];
+      const std::int32_t a = cells_.equation[i], b = cells_.equation[j];
+      if (a < 0 || b < 0 || (a > b ? i : j) >= own) continue;
+      const auto columns = column.subspan(row[std::max(a, b)], row[std::max(a, b) + 1] - row[std::max(a, b)]);
+      const auto found = std::ranges::lower_bound(columns, std::min(a, b));
+      value[row[std::max(a, b)] + (found - columns.begin())] += matrix_->values()[k];
+    }
+}
+
+}  // namespace lacon

@@ -1,0 +1,77 @@
+#pragma once
+// The cells of one process: evaluated there, their states kept there, and the rows of its nodes put together there.
+//
+// A process evaluates every cell that meets one of its nodes, so that forces and rows of its nodes are whole, summed in the
+// order of the cells: they have the bits that one process gives them.
+#include <cstdint>
+#include <map>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "lacon/assembly/element_sets.hpp"
+#include "lacon/assembly/parts/board.hpp"
+#include "lacon/assembly/parts/kept_points.hpp"
+#include "lacon/assembly/parts/part_cells.hpp"
+#include "lacon/assembly/sparse_matrix.hpp"
+
+namespace lacon {
+
+class ElementPart {
+ public:
+  /// Throws as Registry does.
+  explicit ElementPart(PartCells cells);
+  ElementPart(const ElementPart&) = delete;
+  ElementPart& operator=(const ElementPart&) = delete;
+
+  /// Forces at own nodes, states, and the matrix where one is wanted, at the board's displacements. What is wrong with an
+  /// element stands in the report. @param previous, origin number of a kept state, where laws with a memory and the others
+  /// start from; -1: the natural state
+  void evaluate(const Board& board, PartReport& report, SolidMatrix wanted, std::int64_t previous, std::int64_t origin);
+
+  /// Keep the present state under a number, the natural one, or one that is kept with no law that flows (INDIPLAS).
+  void keep(std::int64_t number) { kept_[number] = present_; }
+  void keep_natural(std::int64_t number);
+  void keep_at_rest(std::int64_t number, std::int64_t of);
+  void drop(std::int64_t number) { kept_.erase(number); }
+  /// Write the values of own cells into an array of all cells of a set, or take those of all cells here from it.
+  /// @param number -1: the present state
+  void write(std::int64_t number, std::size_t set, PointQuantity quantity, std::span<double> all) const;
+  void read(std::int64_t number, std::size_t set, PointQuantity quantity, std::span<const double> all);
+  /// Whether internal variables are others than in a kept state: the law flows.
+  bool flows(std::int64_t since) const;
+
+  /// The product of own rows with the board's displacements, of magnitudes or not.
+  void multiply(const Board& board, bool magnitudes) const;
+  /// SparseMatrix::row_sizes of own rows: sums, and how many entries.
+  void measure(const Board& board) const;
+  /// Add the entries that this process has to a lower triangle of all equations: those in rows of its own nodes.
+  void add_to(std::span<const std::int64_t> row, std::span<const std::int32_t> column, std::span<double> value) const;
+
+  /// Rows and columns are (node, axis) of PartCells::node; rows of own nodes are whole.
+  const SparseMatrix& matrix() const { return *matrix_; }
+  std::span<const std::int32_t> place() const { return cells_.place; }
+
+ private:
+  struct Values {
+    std::vector<double> stress, variable;
+    std::vector<double>& of(PointQuantity quantity) { return quantity == PointQuantity::stress ? stress : variable; }
+  };
+  using State = std::vector<Values>;  ///< of each set
+
+  std::vector<double> gathered(std::span<const double> nodal) const;
+  void hand_out(std::span<const double> own, std::span<double> nodal) const;
+  const State& state(std::int64_t number) const { return number < 0 ? *present_ : *kept_.at(number); }
+  State natural() const;
+
+  PartCells cells_;
+  Registry registry_;
+  Mesh mesh_;  ///< of these cells alone
+  std::vector<ElementSet> sets_;
+  Numbering numbering_;
+  std::unique_ptr<SparseMatrix> matrix_;
+  std::shared_ptr<State> present_;
+  std::map<std::int64_t, std::shared_ptr<State>> kept_;
+};
+
+}  // namespace lacon

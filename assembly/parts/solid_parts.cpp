@@ -1,0 +1,229 @@
+#include "lacon/assembly/parts/solid_parts.hpp"
+
+#include <algorithm>
+#include <cstring>
+#include <functional>
+#include <tuple>
+#include <utility>
+
+#include "lacon/assembly/parts/parcel.hpp"
+#include "lacon/catalog/messages.hpp"
+
+namespace lacon {
+namespace {
+
+std::vector<std::int32_t> cells_of(std::span<const ElementSet> sets) {
+  std::vector<std::int32_t> cells;
+  for (const ElementSet& set : sets) cells.insert(cells.end(), set.cells.begin(), set.cells.end());
+  return cells;
+}
+
+/// What cells take of memory and time, about.
+std::vector<std::int32_t> weights_of(std::span<const ElementSet> sets) {
+  std::vector<std::int32_t> weights;
+  for (const ElementSet& set : sets) weights.insert(weights.end(), set.cells.size(), set.n_nodes() * set.tabulation.n_points);
+  return weights;
+}
+
+SharedMemory in_shared_memory(std::span<const std::byte> bytes) {
+  SharedMemory memory(bytes.size());
+  std::ranges::copy(bytes, memory.data());
+  return memory;
+}
+
+std::span<double> numbers_in(const SharedMemory& memory) {
+  return {reinterpret_cast<double*>(memory.data()), memory.size() / sizeof(double)};
+}
+
+}  // namespace
+
+PartCells cells_of_part(const PartSource& source, int part) {
+  const auto& [mesh, sets, numbering, partition, blocks] = source;
+  PartCells made{.dimension = blocks.dimension};
+  std::vector<std::int32_t> local(mesh.n_nodes(), -1);
+  std::size_t at = 0;
+  for (const ElementSet& set : sets) {
+    PartSet& own = made.sets.emplace_back();
+    own.element = set.row->name;
+    own.option = set.option;
+    own.curve = set.curve;
+    for (std::size_t i = 0; i < set.cells.size(); ++i, ++at) {
+      const auto nodes = mesh.cells[set.cells[i]];
+      const bool is_own = partition.of_cell[at] == part;
+      if (!is_own && std::ranges::none_of(nodes, [&](std::int32_t node) { return partition.of_node[node] == part; })) continue;
+      own.number.push_back(set.cells[i]);
+      own.at.push_back(static_cast<std::int32_t>(i));
+      own.is_own.push_back(is_own);
+      own.nodes.insert(own.nodes.end(), nodes.begin(), nodes.end());
+      const auto width = static_cast<std::ptrdiff_t>(set.n_parameters), first = static_cast<std::ptrdiff_t>(i) * width;
+      own.parameters.insert(own.parameters.end(), set.parameters.begin() + first, set.parameters.begin() + first + width);
+      for (const std::int32_t node : nodes) local[node] = 0;
+    }
+  }
+  for (const bool own : {true, false}) {
+    for (std::int32_t node = 0; node < std::ssize(local); ++node) {
+      if (local[node] < 0 || (partition.of_node[node] == part) != own) continue;
+      local[node] = static_cast<std::int32_t>(made.node.size());
+      made.node.push_back(node);
+      const auto point = mesh.point(static_cast<std::size_t>(node));
+      made.coordinates.insert(made.coordinates.end(), point.begin(), point.end());
+      for (int i = 0; i < blocks.dimension; ++i) {
+        const std::int64_t equation = numbering.of(node, i);
+        made.equation.push_back(static_cast<std::int32_t>(equation));
+        made.place.push_back(equation < 0 ? -1 : blocks.place[equation]);
+      }
+    }
+    if (own) made.n_own = std::ssize(made.node);
+  }
+  for (PartSet& set : made.sets)
+    for (std::int32_t& node : set.nodes) node = local[node];
+  return made;
+}
+
+KeptPoints::~KeptPoints() { parts_->dropped_.push_back(number_); }
+std::size_t KeptPoints::n_sets() const { return parts_->n_sets(); }
+std::vector<double> KeptPoints::values(std::size_t set, PointQuantity quantity) const {
+  return parts_->values(number_, set, quantity);
+}
+
+SolidParts::SolidParts(std::shared_ptr<PetscProcesses> processes, const Mesh& mesh, std::span<const ElementSet> sets,
+                       const Numbering& numbering, std::span<const std::string> unknowns,
+                       std::span<const std::filesystem::path> plugins)
+    : processes_(std::move(processes)),
+      mesh_(mesh),
+      sets_(sets),
+      numbering_(numbering),
+      partition_(partition(mesh, cells_of(sets), weights_of(sets), processes_->size())),
+      blocks_(numbering, static_cast<int>(unknowns.size()), processes_->size(), partition_.of_node),
+      n_cells_(std::ssize(partition_.of_cell)) {
+  processes_->start();
+  const std::int64_t n_dofs = std::ssize(numbering.equation);
+  memory_.emplace(Board::bytes(processes_->size(), n_dofs));
+  board_ = Board::in(*memory_, processes_->size());
+  ask("board " + memory_->path());
+  for (int part = 0; part < processes_->size(); ++part) {
+    Packing packing;
+    {
+      PartCells cells = cells_of_part({mesh_, sets_, numbering_, partition_, blocks_}, part);
+      cells.unknowns = {unknowns.begin(), unknowns.end()};
+      for (const std::filesystem::path& folder : plugins) cells.plugins.push_back(folder);
+      for (const PartSet& set : cells.sets) n_shared_ += std::ssize(set.at);
+      packing(cells);
+    }
+    const SharedMemory memory = in_shared_memory(packing.bytes());
+    ask("part " + std::to_string(part) + ' ' + memory.path());
+  }
+  processes_->keep();
+  n_shared_ -= n_cells_;
+}
+
+void SolidParts::ask(const std::string& line) const {
+  if (!dropped_.empty()) {
+    std::string drop = "drop";
+    for (const std::int64_t number : std::exchange(dropped_, {})) drop += ' ' + std::to_string(number);
+    processes_->ask(drop);
+  }
+  if (const std::string answer = processes_->ask(line); answer != "done") fail("SOLVER_8", {{"reason", answer}});
+}
+
+std::optional<std::int32_t> SolidParts::evaluate(std::span<const double> displacement, SolidMatrix wanted,
+                                                 const Start& previous, const Start& origin) {
+  std::ranges::copy(displacement, board_.displacement.begin());
+  const auto number = [](const Start& start, std::span<double> values) {
+    if (!start.points) return std::string("-1");
+    std::ranges::copy(start.displacement, values.begin());
+    return std::to_string(start.points->number());
+  };
+  const std::string from = number(previous, board_.previous), first = number(origin, board_.origin);
+  ask("evaluate " + std::to_string(static_cast<int>(wanted)) + ' ' + from + ' ' + first);
+  const PartReport* inside_out = nullptr;
+  for (const PartReport& report : board_.report) {
+    if (report.failed) throw Error(report.message());
+    if (report.cell < 0) continue;
+    if (!inside_out || std::tie(report.set, report.cell) < std::tie(inside_out->set, inside_out->cell)) inside_out = &report;
+  }
+  return inside_out ? std::optional(inside_out->cell) : std::nullopt;
+}
+
+KeptState SolidParts::kept(const std::string& verb, const std::string& more) const {
+  const std::int64_t number = ++last_;
+  ask(verb + ' ' + std::to_string(number) + more);
+  return std::make_shared<const KeptPoints>(shared_from_this(), number);
+}
+
+KeptState SolidParts::keep() const { return kept("keep"); }
+KeptState SolidParts::natural() const { return kept("natural"); }
+KeptState SolidParts::at_rest(const KeptPoints& state) const { return kept("rest", ' ' + std::to_string(state.number())); }
+
+KeptState SolidParts::put(const std::function<std::span<const double>(std::size_t, PointQuantity)>& values) const {
+  KeptState state = natural();
+  for (std::size_t s = 0; s < sets_.size(); ++s)
+    for (const PointQuantity quantity : {PointQuantity::stress, PointQuantity::variable}) {
+      const std::span<const double> given = values(s, quantity);
+      if (given.empty()) continue;
+      const SharedMemory memory(given.size_bytes());
+      std::ranges::copy(given, numbers_in(memory).begin());
+      ask("put " + std::to_string(state->number()) + ' ' + std::to_string(s) + ' ' +
+          std::to_string(static_cast<int>(quantity)) + ' ' + memory.path());
+    }
+  return state;
+}
+
+std::vector<double> SolidParts::values(std::int64_t number, std::size_t set, PointQuantity quantity) const {
+  const ElementSet& of = sets_[set];
+  const std::size_t size = of.cells.size() * (quantity == PointQuantity::stress ? of.n_stress() : of.n_variables());
+  if (size == 0) return {};
+  const SharedMemory memory(size * sizeof(double));
+  ask("collect " + std::to_string(number) + ' ' + std::to_string(set) + ' ' + std::to_string(static_cast<int>(quantity)) + ' ' +
+      memory.path());
+  const std::span<const double> found = numbers_in(memory);
+  return {found.begin(), found.end()};
+}
+
+bool SolidParts::flows(const KeptPoints& since) const {
+  ask("flows " + std::to_string(since.number()));
+  return std::ranges::any_of(board_.report, [](const PartReport& report) { return report.flows != 0; });
+}
+
+std::span<const double> SolidParts::product(std::span<const double> x, bool magnitudes) const {
+  std::ranges::copy(x, board_.displacement.begin());
+  ask(magnitudes ? "multiply 1" : "multiply 0");
+  return board_.other;
+}
+
+RowsElsewhere::Sizes SolidParts::row_sizes() const {
+  ask("measure");
+  return {.sum = board_.force, .entries = board_.other};
+}
+
+SparseMatrix SolidParts::whole(const SparseMatrix& here) const {
+  Ragged<std::int32_t> elements;
+  for (const ElementSet& set : sets_)
+    for (const std::int32_t cell : set.cells) elements.push_back(mesh_.cells[cell]);
+  std::vector<Coupling> couplings;
+  for (std::size_t v = 0; v < here.neighbours().size(); ++v)
+    for (const std::int32_t w : here.neighbours()[v])
+      if (w < static_cast<std::int32_t>(v)) couplings.push_back({static_cast<std::int32_t>(v), w});
+  SparseMatrix all(numbering_, elements, couplings);
+  all.copy_rows(here, here.size());
+  Packing packing;
+  std::size_t n_rows = all.rows().size(), n_entries = static_cast<std::size_t>(all.n_entries());
+  packing(n_rows)(n_entries);
+  std::size_t bytes = packing.bytes().size() + n_rows * 8 + n_entries * 12;
+  const SharedMemory memory(bytes);
+  std::byte* next = memory.data();
+  const auto put = [&](const void* from, std::size_t size) {
+    std::memcpy(next, from, size);
+    next += size;
+  };
+  put(packing.bytes().data(), packing.bytes().size());
+  put(all.rows().data(), all.rows().size_bytes());
+  double* const values = reinterpret_cast<double*>(next);
+  put(all.values().data(), all.values().size_bytes());
+  put(all.columns().data(), all.columns().size_bytes());
+  ask("whole " + memory.path());
+  all.restore({values, n_entries});
+  return all;
+}
+
+}  // namespace lacon

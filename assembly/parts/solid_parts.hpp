@@ -1,0 +1,93 @@
+#pragma once
+// Solid elements whose cells the processes of PETSc have: each evaluates its own, keeps their states and its rows of the matrix
+// (element_part.hpp). The operator sees vectors of nodal values, in memory that all of them see.
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "lacon/assembly/block_numbering.hpp"
+#include "lacon/assembly/element_sets.hpp"
+#include "lacon/assembly/parts/board.hpp"
+#include "lacon/assembly/parts/kept_points.hpp"
+#include "lacon/assembly/parts/part_cells.hpp"
+#include "lacon/assembly/parts/partition.hpp"
+#include "lacon/assembly/petsc_processes.hpp"
+#include "lacon/assembly/sparse_matrix.hpp"
+
+namespace lacon {
+
+/// What cells are handed out of.
+struct PartSource {
+  const Mesh& mesh;
+  std::span<const ElementSet> sets;  ///< of elements that know displacements alone
+  const Numbering& numbering;
+  const Partition& partition;  ///< of the cells of all sets, one set behind the other
+  const BlockNumbering& blocks;
+};
+/// What a process gets: its cells, and those of others that meet its nodes; without unknowns and plug-ins.
+PartCells cells_of_part(const PartSource& source, int part);
+
+/// Calls throw SOLVER_8 where the processes have ended.
+class SolidParts : public RowsElsewhere, public std::enable_shared_from_this<SolidParts> {
+ public:
+  /// Hand the cells out. @param sets of elements that know displacements alone, and meet them as `unknowns` says
+  /// @param plugins folders of the registry  Mesh, sets and numbering must outlive it. Throws SOLVER_6.
+  SolidParts(std::shared_ptr<PetscProcesses> processes, const Mesh& mesh, std::span<const ElementSet> sets,
+             const Numbering& numbering, std::span<const std::string> unknowns, std::span<const std::filesystem::path> plugins);
+
+  /// Where laws start from.
+  struct Start {
+    std::span<const double> displacement;
+    const KeptPoints* points = nullptr;  ///< nothing: the natural state
+  };
+  /// Evaluate all elements; the matrix is that of the last evaluation that wanted one. @return the first cell that is turned
+  /// inside out  Throws ELEMENT_1.
+  std::optional<std::int32_t> evaluate(std::span<const double> displacement, SolidMatrix wanted, const Start& previous,
+                                       const Start& origin);
+  /// Of the last evaluation, (n_nodes, dimension), until anything else is asked for.
+  std::span<const double> force() const { return board_.force; }
+
+  KeptState keep() const;  ///< that of the last evaluation
+  KeptState natural() const;
+  KeptState at_rest(const KeptPoints& state) const;
+  /// Hand a state out. @param values(set, quantity) of all cells
+  KeptState put(const std::function<std::span<const double>(std::size_t, PointQuantity)>& values) const;
+  /// Whether a law flows in the last evaluation.
+  bool flows(const KeptPoints& since) const;
+  /// @param number -1: that of the last evaluation
+  std::vector<double> values(std::int64_t number, std::size_t set, PointQuantity quantity) const;
+
+  std::span<const double> product(std::span<const double> x, bool magnitudes) const override;
+  Sizes row_sizes() const override;
+  SparseMatrix whole(const SparseMatrix& here) const override;
+
+  const BlockNumbering& blocks() const { return blocks_; }
+  std::size_t n_sets() const { return sets_.size(); }
+  std::int64_t n_cells() const { return n_cells_; }
+  std::int64_t n_shared() const { return n_shared_; }  ///< evaluations of cells beside those
+
+ private:
+  friend KeptPoints;
+  void ask(const std::string& line) const;
+  KeptState kept(const std::string& verb, const std::string& more = {}) const;
+
+  std::shared_ptr<PetscProcesses> processes_;
+  const Mesh& mesh_;
+  std::span<const ElementSet> sets_;
+  const Numbering& numbering_;
+  Partition partition_;  ///< cells of all sets, one set behind the other
+  BlockNumbering blocks_;
+  std::optional<SharedMemory> memory_;
+  Board board_;
+  std::int64_t n_cells_ = 0, n_shared_ = 0;
+  mutable std::int64_t last_ = 0;              ///< number of a kept state
+  mutable std::vector<std::int64_t> dropped_;  ///< that nobody needs any more
+};
+
+}  // namespace lacon

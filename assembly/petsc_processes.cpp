@@ -1,0 +1,53 @@
+#include "lacon/assembly/petsc_processes.hpp"
+
+#include <utility>
+#include <vector>
+
+#include "lacon/catalog/messages.hpp"
+
+namespace lacon {
+
+void PetscProcesses::start() {
+  if (ranks_) return;
+  if (keeps_) fail_as_ended();
+  std::vector<std::string> command;
+  if (program_.n_ranks > 1)
+    command = {"mpirun",
+               "-n",
+               std::to_string(program_.n_ranks),
+               "--oversubscribe",
+               "--bind-to",
+               "none",
+               "--mca",
+               "btl_vader_single_copy_mechanism",
+               "none",
+               "--mca",
+               "mpi_yield_when_idle",  // others may need the cores
+               "1"};
+  command.insert(command.end(),
+                 {program_.program, program_.algorithm, program_.preconditioner, std::to_string(program_.iterations)});
+  ranks_ = std::make_unique<Companion>(command);
+  if (ranks_->answer().empty()) {
+    const std::string end = ranks_->end();
+    ranks_.reset();
+    fail("SOLVER_6", {{"reason", program_.program + ": " + end}});
+  }
+}
+
+std::string PetscProcesses::ask(const std::string& line) {
+  if (!ranks_) fail_as_ended();
+  return checked(ranks_->ask(line));
+}
+
+std::string PetscProcesses::answer() { return checked(ranks_->answer()); }
+
+std::string PetscProcesses::checked(std::string answer) {
+  if (!answer.empty()) return answer;
+  end_ = ranks_->end();
+  ranks_.reset();
+  fail_as_ended();
+}
+
+void PetscProcesses::fail_as_ended() const { fail("SOLVER_8", {{"reason", end_}}); }
+
+}  // namespace lacon

@@ -1,0 +1,169 @@
+"""Processes that have their part of the cells give what one process gives: values, iterations, states, and the end of all of them."""
+
+import contextlib
+import json
+import os
+import pathlib
+import shutil
+import signal
+import subprocess
+import sys
+import tempfile
+import time
+import unittest
+
+import h5py
+import numpy as np
+from study_test import LACON, SECONDS, StudyTest
+from test_precision import two_blocks
+
+sys.path[:0] = [str(pathlib.Path(__file__).with_name("faults"))]
+
+from test_killed import session_of  # noqa: E402, I001
+
+from meshes import write_med
+from results import Result
+
+COMM = pathlib.Path(__file__).with_name("parts.comm")
+FIELDS = ("DEPL", "SIEF_ELGA", "VARI_ELGA")
+#: of the largest value of a field; RESI_GLOB_RELA is 1e-10 and RESI_RELA 1e-12
+AGREEMENT = 1e-9
+#: the same of MECA_STATIQUE, whose only solution is as exact as RESI_RELA and the condition of blocks of 1 to 100 in stiffness leave it
+LINEAR = 1e-7
+
+
+@unittest.skipUnless((LACON.parent / "lacon_petsc").exists() and shutil.which("mpirun"), "built without PETSc, or there is no mpirun")
+class Parts(StudyTest):
+    def setUp(self):
+        super().setUp()
+        write_med(self.folder / "blocks.med", two_blocks(1.0, (7, 6, 3)))
+
+    def options(self, name):
+        return [COMM, "--fresh", "--base", self.folder / f"{name}.base", "--unit", "20=blocks.med", "--json", self.folder / "run.json"]
+
+    def solve(self, *options, **environment):
+        """@return the result, counts of the last STAT_NON_LINE, what was said"""
+        run = self.run_tool(*self.options("run"), *options, **{"METHOD": "PETSC"} | environment)
+        self.assertEqual(run.returncode, 0, run.stdout[-3000:] + run.stderr[-3000:])
+        commands = json.loads((self.folder / "run.json").read_text())["timings"]["commands"]
+        counts = [c["counts"] for c in commands if c["command"] == "STAT_NON_LINE"][-1]
+        return self.read("run", "RESULT"), counts, run.stdout + run.stderr
+
+    def read(self, base, name, fields=FIELDS):
+        """{(field, order): {component: values}} of a result, and its iterations of Newton"""
+        result = Result(self.folder / f"{base}.base", name)
+        return {(field, order): result.field(field, order)[1] for field in fields for order in result.orders}, result.parameter("newton_iterations") if name == "RESULT" else None
+
+    def assert_same(self, one, other, agreement=AGREEMENT):
+        self.assertEqual(one[0].keys(), other[0].keys())
+        for key, components in one[0].items():
+            largest = max(np.nanmax(np.abs(other_order[name])) for (field, _), other_order in one[0].items() if field == key[0] for name in other_order)
+            for name, values in components.items():
+                np.testing.assert_array_equal(np.isnan(values), np.isnan(other[0][key][name]))
+                self.assertLessEqual(np.nanmax(np.abs(other[0][key][name] - values), initial=0), agreement * largest, (key, name))
+
+    def assert_same_bits(self, one, other):
+        for key, components in one[0].items():
+            for name, values in components.items():
+                np.testing.assert_array_equal(other[0][key][name], values, str((key, name)))
+
+    def test_values_and_states_are_those_of_one_process(self):
+        factor, _, _ = self.solve(METHOD="MUMPS")
+        self.assertGreater(np.nanmax(factor[0]["VARI_ELGA", 2]["V1"]), 1e-3)  # it flows
+        one, counts, _ = self.solve()
+        self.assertNotIn("processes with cells", counts)
+        for ranks in (2, 3):
+            found, now, said = self.solve("--mpi", ranks)
+            self.assertEqual(now["processes with cells"], ranks)
+            self.assertEqual(now["solutions"], counts["solutions"])
+            self.assertEqual(now["factorisations"], 0)
+            self.assertEqual(said.count("Converged at the instant"), 3)
+            self.assertNotIn("SOLVER_", said)
+            self.assert_same(factor, found)
+            self.assert_same(one, found)
+            np.testing.assert_array_equal(one[1], found[1])
+        again, _, _ = self.solve("--mpi", 3)
+        self.assert_same_bits(found, again)
+
+    def test_a_linear_study(self):
+        self.solve(METHOD="MUMPS", ELASTIC="1", INSTANTS="1")
+        one = self.read("run", "LINEAR", FIELDS[:2])
+        self.solve("--mpi", "2", ELASTIC="1", INSTANTS="1")
+        found = self.read("run", "LINEAR", FIELDS[:2])
+        for key, components in one[0].items():
+            largest = max(np.nanmax(np.abs(values)) for values in components.values())
+            for name, values in components.items():
+                self.assertLessEqual(np.nanmax(np.abs(found[0][key][name] - values)), LINEAR * largest, (key, name))
+
+    def test_a_factor_has_the_whole_matrix(self):
+        """Iterations that do not come to their end leave the system to a factor, which is made of the rows of all processes."""
+        factor, _, _ = self.solve(METHOD="MUMPS")
+        found, counts, said = self.solve("--mpi", 2, ITERATIONS="2")
+        self.assertIn("SOLVER_7", said)
+        self.assertGreater(counts["factorisations"], 0)
+        self.assertEqual(counts["processes with cells"], 2)
+        self.assert_same(factor, found)
+
+    def test_a_result_goes_on(self):
+        """States of a result are handed out to those who have the cells."""
+        whole, _, _ = self.solve(METHOD="MUMPS", GO_ON="1")
+        found, counts, _ = self.solve("--mpi", 2, GO_ON="1")
+        self.assertEqual(counts["processes with cells"], 2)
+        self.assert_same(whole, found)
+
+    def test_temperatures_are_left_to_one_process(self):
+        one, _, _ = self.solve(METHOD="MUMPS", HEAT="1", INSTANTS="1")
+        found, counts, said = self.solve("--mpi", 2, HEAT="1", INSTANTS="1")
+        self.assertEqual(said.count("<EVOLUTION_46>"), 1)
+        self.assertNotIn("processes with cells", counts)
+        self.assert_same(one, found)
+
+    @contextlib.contextmanager
+    def started(self, name, order, **environment):
+        """A run that has archived its result up to an order. @return it, and processes of its session by their name"""
+        with tempfile.TemporaryFile("w+") as said, subprocess.Popen(
+                [LACON, *map(str, self.options(name)), "--mpi", "2"], cwd=self.folder, stdin=subprocess.DEVNULL, stdout=said, stderr=subprocess.STDOUT,
+                env={**os.environ, "METHOD": "PETSC", **environment}, start_new_session=True) as run:
+            while self.archived(name) < order and run.poll() is None:
+                time.sleep(0.02)
+            of_name = {}
+            for process, line in session_of(run.pid).items():
+                of_name.setdefault(line[line.index("(") + 1:line.rindex(")")], []).append(process)
+            self.assertEqual(len(of_name.get("lacon_petsc", [])), 2, of_name)
+            yield run, of_name
+            run.wait(SECONDS)
+            for _ in range(500):
+                if not session_of(run.pid):
+                    break
+                time.sleep(0.01)
+            self.assertEqual(session_of(run.pid), {})
+            said.seek(0)
+            run.said = said.read()
+
+    def archived(self, name):
+        """The last order in a base; -1: none"""
+        for path in (self.folder / f"{name}.base").glob("result_*/index.h5"):
+            with contextlib.suppress(OSError), h5py.File(path) as index:  # it is being put there
+                return int(index["order"][-1])
+        return -1
+
+    def test_a_killed_process_ends_all(self):
+        with self.started("killed", 1, INSTANTS="4") as (run, processes):
+            os.kill(processes["lacon_petsc"][-1], signal.SIGKILL)
+        self.assertEqual(run.returncode, 3, run.said[-3000:])
+        self.assertEqual(run.said.count("<SOLVER_8>"), 1, run.said[-3000:])
+        self.assertGreaterEqual(self.archived("killed"), 1)
+
+    def test_another_process_goes_on_with_the_same_bits(self):
+        expected, _, _ = self.solve("--mpi", 2, INSTANTS="4")
+        with self.started("other", 2, INSTANTS="4", LACON_RESTART_ALWAYS="1") as (_, processes):
+            os.kill(processes["stat_non_line"][0], signal.SIGKILL)
+        options = [option for option in self.options("other") if option != "--fresh"]
+        run = self.run_tool(*options, "--mpi", 2, METHOD="PETSC", INSTANTS="4")
+        self.assertEqual(run.returncode, 0, run.stdout[-3000:] + run.stderr[-3000:])
+        self.assertIn("EVOLUTION_32", run.stdout + run.stderr)
+        self.assert_same_bits(expected, self.read("other", "RESULT"))
+
+
+if __name__ == "__main__":
+    unittest.main()
