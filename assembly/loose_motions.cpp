@@ -119,7 +119,10 @@ std::vector<LooseMotion> LooseMotions::of(const SparseMatrix& matrix, double neg
       multiply([&](const Moved& moved) { return motion < moved.by.size() ? moved.by[motion] : 0.0; }, false,
                [&](Image& image, const Moved& moved, double value) { of_body(image, moved.first)[motion] += value; });
     multiply([](const Moved& moved) { return moved.by.cwiseAbs().sum(); }, true,
-             [](Image& image, const Moved&, double value) { image.most += value; });
+             [&](Image& image, const Moved& moved, double value) {
+               of_body(image, moved.first);  // of a row that nothing moves, too: on even meshes its entries cancel exactly
+               image.most += value;
+             });
   }
   Triangle resistance(columns);
   for (const Image& image : images) {
