@@ -53,7 +53,7 @@ OTHERWISE = {
     "STAT_NON_LINE/RECH_LINEAIRE/RHO_MIN": "the same", "STAT_NON_LINE/RECH_LINEAIRE/RHO_MAX": "the same",
     "STAT_NON_LINE/RECH_LINEAIRE/RHO_EXCL": "the same",
     "STAT_NON_LINE/SOLVEUR/LOW_RANK_SEUIL": "solver tests, by its option",
-    "STAT_NON_LINE/SOLVEUR/ALGORITHME": "petsc_engine_test.cpp, by its options", "STAT_NON_LINE/SOLVEUR/NMAX_ITER": "the same",
+    "STAT_NON_LINE/SOLVEUR/ALGORITHME": "petsc_engine_test.cpp, by its options",
 }
 
 
