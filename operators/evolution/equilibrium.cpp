@@ -393,7 +393,8 @@ ForceFigures Equilibrium::forces(const StaticState& state, const StaticState& pr
         figures.worst_dof = static_cast<std::int64_t>(dof);
       }
       const SparseMatrix::RowSize& row = rows[static_cast<std::size_t>(equation)];
-      const double noise = round_off * std::sqrt(row.entries) * row.sum * moved;
+      const double summed = row.sum * moved + (first_forces_.empty() ? 0.0 : first_forces_[dof]);
+      const double noise = round_off * std::sqrt(row.entries) * summed;
       if (!(unbalanced <= noise) || !std::isfinite(noise))  // displacements that overflow excuse nothing
         figures.significant = std::max(figures.significant, unbalanced);
     }
@@ -468,12 +469,14 @@ void Equilibrium::save(const hdf5::Group& group) const {
   std::vector<std::int32_t> couplings;
   for (const Coupling& coupling : system_.couplings()) couplings.insert(couplings.end(), {coupling.a, coupling.b});
   group.write("couplings", couplings);
+  if (!first_forces_.empty()) group.write("first_forces", first_forces_);
 }
 
 void Equilibrium::resume(const hdf5::Group& group, const StaticState& state, std::span<const double> rest) {
   const auto saved = group.read<std::int32_t>("couplings");
   std::vector<Coupling> couplings;
   for (std::size_t i = 0; i + 1 < saved.size(); i += 2) couplings.push_back({saved[i], saved[i + 1]});
+  if (group.has("first_forces")) first_forces_ = group.read<double>("first_forces");
   system_.start(couplings, linear_ && has_stiffness_);
   if (group.has_attribute("instant")) load(group.real("instant"), state);
   rest_at(rest);

@@ -13,6 +13,7 @@
 #include "lacon/operators/evolution/heat.hpp"
 #include "lacon/operators/evolution/matrix_choice.hpp"
 #include "lacon/operators/evolution/prestrain.hpp"
+#include "lacon/operators/evolution/reference_forces.hpp"
 #include "lacon/operators/evolution/relations.hpp"
 #include "lacon/operators/evolution/static_problem.hpp"
 #include "lacon/operators/evolution/system.hpp"
@@ -47,6 +48,8 @@ class Equilibrium {
   bool strains_freely(const StaticState& state) const { return heat_.acts() || prestrain_.acts(state); }
   /// A state that laws without a memory start from; until then it is the natural one.
   void start_from(const StaticState& state) { origin_ = state; }
+  /// Stresses that a computation begins with: displacements from there on do not tell what round-off their forces have.
+  void begin_stressed(const StaticState& state) { first_forces_ = summed_forces(problem_, state); }
   const std::optional<StaticState>& origin() const { return origin_; }
   /// Take the loads of an instant; the contact is paired anew where its skins' offsets change (has_new_gaps()). Throws LOAD_1,
   /// LOAD_6 where they contradict each other.
@@ -162,6 +165,7 @@ class Equilibrium {
   std::vector<double> external_;   ///< the same with following forces at the last evaluation
   double extent_ = 0;              ///< largest coordinate of the mesh
   std::vector<double> reference_forces_;      ///< (n_nodes, n_components), or nothing
+  std::vector<double> first_forces_;          ///< summed_forces() of the first stresses
   std::vector<std::vector<double>> offsets_;  ///< of the skins, ContactOffsets::at
   bool has_new_gaps_ = false;
 };

@@ -81,6 +81,7 @@ void Newton::begin(StaticState& state, const std::string& label, bool as_given) 
   }
   start_heated(state);
   if (as_given) equilibrium_.start_from(state);
+  equilibrium_.begin_stressed(state);
   restart(state);
   StaticState now;
   equilibrium_.hold_points(now);

@@ -38,7 +38,7 @@ std::shared_ptr<SolidParts> parts_of(const StaticProblem& problem, const Engine&
     inform("EVOLUTION_46", {{"reason", part(reason)}, {"count", std::to_string(processes->size())}});
     return nullptr;
   }
-  const Phase phase("parts");
+  const Phase phase("cells to processes");
   auto parts = std::make_shared<SolidParts>(processes, problem.mesh, problem.solids, problem.numbering, problem.components,
                                             problem.plugins);
   add_to_count("processes with cells", processes->size());

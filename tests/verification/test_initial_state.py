@@ -11,6 +11,7 @@ import numpy as np
 sys.path.insert(0, str(pathlib.Path(os.environ["LACON_SOURCE_DIR"]) / "tests/studies"))
 
 from study_test import StudyTest  # noqa: E402, I001 (it says where meshes.py is)
+from load_study import LoadTest  # noqa: E402
 from meshes import block, union, write_med  # noqa: E402
 
 COMM = pathlib.Path(__file__).resolve().parent / "initial_state.comm"
@@ -100,6 +101,32 @@ class InitialState(StudyTest):
         run = self.solve(BEHAVIOURS[0], STATE_SECOND=second, STATE_OBSERVED="{'WHOLE': [(0, 1.0), (0, 2.0), (1, 2.5), (1, 3.0)]}")
         self.assertEqual(run.status, 0, run.stdout[-3000:] + run.stderr[-3000:])
         self.assertEqual(self.results()["WHOLE"][0], [0, 1, 2, 2.5, 3])
+
+
+class ResidualStresses(LoadTest):
+    def test_a_bent_bar_that_lies_free_is_in_equilibrium(self):
+        """A bar is bent plastically and released, on supports that hold it and no more; its residual stresses and internal variables are the
+        beginning of another computation. No force acts there, no support has a reaction: what is left is their round-off."""
+        mesh = block("QUAD8", np.linspace(0, 10, 21), np.linspace(0, 1, 5), None, "BAR", {"top": "TOP"})
+        for name, x in (("FIRST", 0), ("LAST", 10)):
+            mesh.node_groups[name] = mesh.nodes_where(lambda at, y, x=x: abs(at - x) + abs(y - 0.5) < 1e-9)
+        behaviour = "COMPORTEMENT=_F(RELATION='VMIS_ISOT_LINE')"
+        bent, free = self.solved([mesh], f"""
+model(20, 'D_PLAN', DEFI_MATERIAU(ELAS=_F(E=2e5, NU=0.3), ECRO_LINE=_F(SY=400.0, D_SIGM_EPSI=2000.0)))
+HOLD = _F(CHARGE=AFFE_CHAR_CINE(MODELE=MODEL, MECA_IMPO=(_F(GROUP_NO='FIRST', DX=0, DY=0), _F(GROUP_NO='LAST', DY=0))))
+COURSE = DEFI_FONCTION(NOM_PARA='INST', VALE=(0, 0, 0.5, 1, 1, 0))
+PUSH = _F(CHARGE=AFFE_CHAR_MECA(MODELE=MODEL, PRES_REP=_F(GROUP_MA='TOP', PRES=9.5)), FONC_MULT=COURSE)
+TIMES = DEFI_LIST_REEL(DEBUT=0.0, INTERVALLE=_F(JUSQU_A=1.0, NOMBRE=10))
+solve(HOLD, PUSH, {behaviour})
+S, V = (CREA_CHAMP(TYPE_CHAM=f'ELGA_{{kind}}_R', OPERATION='EXTR', RESULTAT=R[0], NOM_CHAM=f'{{kind}}_ELGA', INST=1.0) for kind in ('SIEF', 'VARI'))
+TIMES = DEFI_LIST_REEL(VALE=(0, 1, 2))
+solve(HOLD, ETAT_INIT=_F(SIGM=S, VARI=V), {behaviour})
+""")
+        given, found = (result.field("SIEF_ELGA", order)[1] for result, order in ((bent, 10), (free, 2)))
+        for name, values in given.items():
+            self.assert_near(found[name], values, 1e-9)
+        self.assertGreater(max(np.abs(values).max() for values in given.values()), 50.0)
+        self.assertLessEqual(np.abs(self.displacement(free, 2, 2)).max(), 1e-9)
 
 
 if __name__ == "__main__":

@@ -101,6 +101,7 @@ const french = {
   "Time and memory of the solution": "Temps et mémoire de la résolution",
   "analysis": "analyse",
   "archive": "archivage",
+  "cells to processes": "mailles aux processus",
   "contact": "contact",
   "elements": "éléments",
   "factorisation": "factorisation",

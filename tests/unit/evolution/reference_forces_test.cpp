@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "lacon/catalog/messages.hpp"
@@ -34,6 +35,18 @@ TEST(ReferenceForces, TheyAreThoseOfEachComponentAtEachPointByItself) {
   const StaticProblem problem = test::pressed_squares();
   const std::vector<double> found = reference_forces(problem, 8.0, {}), expected = by_kernels(problem, 8.0);
   for (std::size_t dof = 0; dof < found.size(); ++dof) EXPECT_NEAR(found[dof], expected[dof], 1e-13);
+}
+
+TEST(ReferenceForces, StressesOfOneSizeAreSummedUpToAllOfTheirPoints) {
+  const StaticProblem problem = test::pressed_squares();
+  StaticState state;
+  for (const ElementSet& set : problem.solids)
+    state.points.push_back({.stress = std::vector<double>(set.cells.size() * set.n_stress())});
+  EXPECT_TRUE(summed_forces(problem, state).empty());
+  for (PointValues& values : state.points) std::fill(values.stress.begin(), values.stress.end(), -8.0);
+  const std::vector<double> found = summed_forces(problem, state), of_one = reference_forces(problem, 8.0, {});
+  const int n_points = problem.solids[0].tabulation.n_points;
+  for (std::size_t dof = 0; dof < found.size(); ++dof) EXPECT_NEAR(found[dof], n_points * of_one[dof], 1e-12);
 }
 
 TEST(ReferenceForces, SpringsNeedAForceOfTheirOwn) {
