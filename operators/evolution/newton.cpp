@@ -41,7 +41,7 @@ Newton::Newton(const StaticProblem& problem, const NewtonOptions& options, std::
       options_(options),
       bodies_(problem.mesh),
       loose_(RigidMotions(geometry_of(problem, bodies_)), problem.numbering),
-      equilibrium_(problem, options.one_process ? nullptr : parts_of(problem, *engine)),
+      equilibrium_(problem, parts_of(problem, *engine, options.strained)),
       choice_({.linear = equilibrium_.is_linear(),
                .made_symmetric = equilibrium_.makes_symmetric(),
                .symmetric = equilibrium_.is_symmetric(),

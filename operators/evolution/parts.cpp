@@ -12,9 +12,10 @@ namespace lacon {
 namespace {
 
 /// What only one process can do; empty where there is nothing.
-std::string_view needs_one_process(const StaticProblem& problem) {
+std::string_view needs_one_process(const StaticProblem& problem, bool strained) {
   if (problem.thermal) return "parts_no_temperatures";
   if (!problem.initial_strains.empty()) return "parts_no_initial_strains";
+  if (strained) return "parts_no_strained_state";
   if (problem.n_components() != problem.dimension) return "parts_no_other_unknowns";
   if (symmetry_of(problem) == Symmetry::general) return "parts_no_general_matrix";
   const bool is_flat = std::ranges::any_of(
@@ -31,10 +32,10 @@ Symmetry symmetry_of(const StaticProblem& problem) {
   return exact_gap && unsymmetric ? Symmetry::general : Symmetry::symmetric;
 }
 
-std::shared_ptr<SolidParts> parts_of(const StaticProblem& problem, const Engine& engine) {
+std::shared_ptr<SolidParts> parts_of(const StaticProblem& problem, const Engine& engine, bool strained) {
   const std::shared_ptr<PetscProcesses> processes = engine.processes();
   if (!processes || processes->size() == 1 || only_checks()) return nullptr;
-  if (const std::string_view reason = needs_one_process(problem); !reason.empty()) {
+  if (const std::string_view reason = needs_one_process(problem, strained); !reason.empty()) {
     inform("EVOLUTION_46", {{"reason", part(reason)}, {"count", std::to_string(processes->size())}});
     return nullptr;
   }

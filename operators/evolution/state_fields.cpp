@@ -201,18 +201,12 @@ Field variable_field(const StaticProblem& problem, const StaticState& state) {
 
 namespace {
 
-/// Of the loads at an order of a result.
-InitialStrains initial_strains(const StaticProblem& problem, const Base& base, const Result& result, std::int64_t order) {
-  InitialStrains strains;
-  ModelPoints points(problem.mesh, problem.model, *problem.registry);
-  for (const ResultLoad& load : result.stage(order).loads) strains.add(base, load, problem.mesh, points);
-  return strains;
-}
-
 /// The initial strains under which a state was found.
 void add_initial_strains(const StaticProblem& problem, const Base& base, const Result& result, std::int64_t order,
                          StaticState& state) {
-  const InitialStrains strains = initial_strains(problem, base, result, order);
+  InitialStrains strains;
+  ModelPoints points(problem.mesh, problem.model, *problem.registry);
+  for (const ResultLoad& load : result.stage(order).loads) strains.add(base, load, problem.mesh, points);
   check_laws(*problem.registry, strains, problem.solids);
   const auto place = std::find(result.orders.begin(), result.orders.end(), order) - result.orders.begin();
   for (std::size_t s = 0; !strains.empty() && s < problem.solids.size(); ++s)
@@ -222,8 +216,9 @@ void add_initial_strains(const StaticProblem& problem, const Base& base, const R
 
 }  // namespace
 
-bool was_strained(const StaticProblem& problem, const Base& base, const Result& result, std::int64_t order) {
-  return !initial_strains(problem, base, result, order).empty();
+bool was_strained(const Base& base, const Result& result, std::int64_t order) {
+  return std::ranges::any_of(result.stage(order).loads,
+                             [&](const ResultLoad& load) { return !base.load(load.load).strain.empty(); });
 }
 
 StaticState archived_state(const StaticProblem& problem, const Base& base, const Result& result, std::int64_t order) {

@@ -40,8 +40,8 @@ std::optional<LineSearch> line_search_of(const Keywords& keywords) {
                     .excluded = search.real("RHO_EXCL")};
 }
 
-/// @param one_process has all cells
-NewtonOptions newton_options(const Keywords& keywords, const TimeSteps& steps, const StaticProblem& problem, bool one_process) {
+/// @param strained NewtonOptions::strained
+NewtonOptions newton_options(const Keywords& keywords, const TimeSteps& steps, const StaticProblem& problem, bool strained) {
   const Keywords convergence = keywords.factor("CONVERGENCE"), newton = keywords.factor("NEWTON");
   const SolidMatrix matrix = matrix_of(newton.text("MATRICE"));
   const std::string prediction = newton.text("PREDICTION");
@@ -59,7 +59,7 @@ NewtonOptions newton_options(const Keywords& keywords, const TimeSteps& steps, c
           .start = steps.values.front(),
           .line_search = line_search_of(keywords),
           .cuts = steps.action.cut,
-          .one_process = one_process};
+          .strained = strained};
 }
 
 TimeSteps steps_of(const Keywords& increment, const Base& base, std::optional<double> origin) {
@@ -140,8 +140,8 @@ void stat_non_line(const Order& order, const Base& base) {
   const std::optional<double> begins = record ? origin_in(*record) : origin ? std::optional(origin->instant) : std::nullopt;
   const TimeSteps steps = steps_of(keywords.factor("INCREMENT"), base, begins);
   // a state that strains brought about is a stress less in one process, whether they act on or not
-  const bool strained = record ? record->has("solver/state/points/0/initial")
-                               : origin && was_strained(problem, base, origin->result, origin->order);
+  const bool strained =
+      record ? record->has("solver/state/points/0/initial") : origin && was_strained(base, origin->result, origin->order);
   QuasiStatic solver(problem, newton_options(keywords, steps, problem, strained),
                      engine_of(keywords.factor("SOLVEUR"), base, problem));
   const Present present = solver.present(problem);

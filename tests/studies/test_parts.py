@@ -118,6 +118,14 @@ class Parts(StudyTest):
         self.assertNotIn("processes with cells", counts)
         self.assert_same(one, found)
 
+    def test_strained_states_are_left_to_one_process(self):
+        """Of initial strains that act, and of those that a state to start from has and that act no longer: told for each."""
+        one, _, _ = self.solve(METHOD="MUMPS", STRAINED="1", INSTANTS="2")
+        found, counts, said = self.solve("--mpi", 2, STRAINED="1", INSTANTS="2")
+        self.assertEqual(said.count("<EVOLUTION_46>"), 2)
+        self.assertNotIn("processes with cells", counts)
+        self.assert_same(one, found)
+
     @contextlib.contextmanager
     def started(self, name, order, **environment):
         """A run that has archived its result up to an order. @return it, and processes of its session by their name"""

@@ -4,7 +4,7 @@ import unittest
 
 import numpy as np
 
-from load_study import POISSON, YOUNG, LoadTest, flat_block, flat_brick
+from load_study import POISSON, SIDES_2D, YOUNG, LoadTest, block, flat_block, flat_brick
 from results import Result
 
 #: components of a strain without stress, and those that plane strain and axisymmetry know
@@ -209,6 +209,21 @@ for law in ('ELAS', 'VMIS_ISOT_LINE'):
         for k, stress in enumerate((-YOUNG * 1e-3, 0.0) * 2):
             found = Result(self.folder / "loads.base", f"R[{k}]").at_nodes("SIEF_NOEU", 1, "SIXX")
             self.assertLessEqual(np.abs(found - stress).max(), 1e-10 * YOUNG * 1e-3, k)
+
+    def test_a_strained_state_of_another_mesh_is_refused(self):
+        """Its strains are those of cells that the mesh of the model need not have."""
+        line = np.linspace(0.0, 1.0, 61)
+        run = self.run_text([block("QUAD4", line, line, None, "BODY", SIDES_2D), flat_block("QUAD4")], """
+for unit in (20, 21):
+    model(unit, 'D_PLAN')
+    H = AFFE_CHAR_CINE(MODELE=MODEL, MECA_IMPO=_F(GROUP_MA='BASE', DX=0, DY=0))
+    if unit == 20:
+        S = AFFE_CHAR_MECA(MODELE=MODEL, PRE_EPSI=_F(GROUP_MA='BODY', EPXX=1e-3))
+        first = STAT_NON_LINE(MODELE=MODEL, CHAM_MATER=FIELD, EXCIT=(_F(CHARGE=H), _F(CHARGE=S)), INCREMENT=_F(LIST_INST=TIMES))
+STAT_NON_LINE(MODELE=MODEL, CHAM_MATER=FIELD, EXCIT=_F(CHARGE=H), INCREMENT=_F(LIST_INST=TIMES), ETAT_INIT=_F(EVOL_NOLI=first, NUME_ORDRE=0))
+""")
+        self.assertEqual(run.status, 2, run.stdout[-3000:] + run.stderr[-3000:])
+        self.assertIn("EVOLUTION_1>", run.stderr)
 
     def test_functions_of_place_and_time(self):
         """EPXX = X t: u = t X2 / 2, exact with quadratic cells."""
