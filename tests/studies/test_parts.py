@@ -111,20 +111,15 @@ class Parts(StudyTest):
         self.assertEqual(counts["processes with cells"], 2)
         self.assert_same(whole, found)
 
-    def test_temperatures_are_left_to_one_process(self):
-        one, _, _ = self.solve(METHOD="MUMPS", HEAT="1", INSTANTS="1")
-        found, counts, said = self.solve("--mpi", 2, HEAT="1", INSTANTS="1")
-        self.assertEqual(said.count("<EVOLUTION_46>"), 1)
-        self.assertNotIn("processes with cells", counts)
-        self.assert_same(one, found)
-
-    def test_strained_states_are_left_to_one_process(self):
-        """Of initial strains that act, and of those that a state to start from has and that act no longer: told for each."""
-        one, _, _ = self.solve(METHOD="MUMPS", STRAINED="1", INSTANTS="2")
-        found, counts, said = self.solve("--mpi", 2, STRAINED="1", INSTANTS="2")
-        self.assertEqual(said.count("<EVOLUTION_46>"), 2)
-        self.assertNotIn("processes with cells", counts)
-        self.assert_same(one, found)
+    def test_what_is_left_to_one_process(self):
+        """Temperatures; initial strains, and a state to start from that they brought about and under which they act no longer: told for each."""
+        for told, case in ((1, {"HEAT": "1", "INSTANTS": "1"}), (2, {"STRAINED": "1", "INSTANTS": "2"})):
+            with self.subTest(**case):
+                one, _, _ = self.solve(METHOD="MUMPS", **case)
+                found, counts, said = self.solve("--mpi", 2, **case)
+                self.assertEqual(said.count("<EVOLUTION_46>"), told)
+                self.assertNotIn("processes with cells", counts)
+                self.assert_same(one, found)
 
     @contextlib.contextmanager
     def started(self, name, order, **environment):
