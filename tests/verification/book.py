@@ -382,6 +382,21 @@ Width over height 1 and 4, diameter over height 1 and 4. When a tenth of the wid
 """
 
 
+def indentation_section(_runner):
+    from test_indentation import LAWS, TABOR, Indentation
+
+    found = {law: of_test(Indentation, "figures", law) for law in LAWS}
+    rows = [[f"{depth:.2f}", f"{radius:.3f}", *(f"{found[law][k][2]:.3f}" for law in LAWS)] for k, (depth, radius, _) in enumerate(found[LAWS[1]])]
+    return f"""## Indentation
+
+The template `indentation` of `lacon new`: a hard round punch, driven into a block that flows (AXIS, von Mises with little hardening), with three measures of strain.
+D. Tabor (The Hardness of Metals, 1951): once the plastic zone has come to the surface the mean pressure is {TABOR} times the yield stress, whatever the depth. The
+radius of contact is known to a patch, 0.1: 10 % of the pressure at the end.
+
+{table(["depth", "radius of contact", *(f"mean pressure / yield stress, {law}" for law in LAWS)], rows)}
+"""
+
+
 def extrusion_section(_runner):
     from test_extrusion import ENTRY, EXIT, SLOPE, YIELD, Extrusion, bounds
 
@@ -406,7 +421,7 @@ def main():
         sections = [make(runner) for make in (patch_section, current_section, space_section, degree_section, materials_section,
                                               convergence_section, peer_section, orders_section, hertz_meshes_section, roller_section,
                                               hertz_section, families_section, press_fit_section, joints_section, snap_fit_section,
-                                              large_strain_section, extrusion_section, robustness_section)]
+                                              large_strain_section, indentation_section, extrusion_section, robustness_section)]
     finally:
         runner.doCleanups()
     text = "# Verification\n\nWritten by `python3 tests/verification/book.py`, which runs the studies; the same studies are tests.\n\n" + "\n".join(sections)
