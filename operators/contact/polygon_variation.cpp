@@ -145,6 +145,7 @@ CuttingLine PolygonVariation::line(std::size_t k) const {
     const double* const place = at < n_slave ? cell_.slave_nodes.data() + at
                                 : at < n_own ? cell_.master_nodes.data() + at - n_slave
                                              : cell_.other_nodes.data() + at - n_own;
+    line.foreign = line.foreign || at >= n_own;
     line.from += line.p[a] * Eigen::Map<const Vector<3>>(place);
     line.along += (line.q[a] - line.p[a]) * Eigen::Map<const Vector<3>>(place);
   }
@@ -191,11 +192,13 @@ void PolygonVariation::take_corner(std::size_t k) {
   if (sine(corner.lines[0], corner.lines[1]) > least_angle) {
     corner.inverse = j.inverse();
   } else {
-    // at a right angle to one of them, the same in all polygons that meet here: the triangle's own edge, which stays
+    // at a right angle to one of them, the same in all polygons that meet here: the triangle's own edge, which stays, or the
+    // edge of the master that is seen here, on whose other side its neighbour has no corner; a line of another master, which
+    // hides a part of this one, only divides what is left
     const auto rank = [&](int i) {
       const std::size_t line = corner.lines[static_cast<std::size_t>(i)];
       const PolygonTrace::Line given = lines_[line].moves ? trace_.line[line] : PolygonTrace::Line{};
-      return std::tuple(given.master, given.from, given.to);
+      return std::tuple(lines_[line].foreign, given.master, given.from, given.to);
     };
     const int i = rank(0) <= rank(1) ? 0 : 1;
     corner.inverse.setZero();

@@ -29,6 +29,7 @@ struct TriangleVertex {
 struct CuttingLine {
   Vector<3> l = Vector<3>::Zero();
   bool moves = false;
+  bool foreign = false;                         ///< of another master than the one that the polygon sees
   Vector<3> from = l, along = l;                ///< p and q - p
   int n_nodes = 0;                              ///< of the cell that it is drawn on
   std::array<int, max_skin_nodes> column{};     ///< of these
