@@ -14,6 +14,7 @@
 
 #include "lacon/operators/contact/contact_geometry.hpp"
 #include "lacon/operators/contact/patches.hpp"
+#include "lacon/operators/contact/pressure_alternation.hpp"
 #include "lacon/structures/vector.hpp"
 
 namespace lacon {
@@ -34,6 +35,7 @@ struct ContactTolerances {
   double pierced_open = 0.04;       ///< of h: of points of an open patch, which nothing keeps out of the master
   double pierced_at_rest = 0.005;   ///< of h: likewise, where nothing presses
   double missed_pressure = 0.1;     ///< of the largest: what such points would press with, worth an alarm
+  double alternating = 0.1;         ///< of the pressure: by how much neighbours may differ to opposite sides
   double touching = 1e-8;           ///< of h: an overlap of patches without contact that is round-off
 };
 
@@ -161,6 +163,8 @@ class ContactState {
   /// contact that the averages of coarse patches miss. @param strain the largest that the zone has made; the depth over h is
   /// the strain of the pressure that would close it
   std::optional<PiercedPatch> missed(std::int32_t zone, const Patchwise& patches, double strain) const;
+  /// Of a zone, where its pressures alternate by so much that it is worth an alarm.
+  std::optional<AlternatingPressures> alternation(std::int32_t zone, const Patchwise& patches) const;
   bool presses(std::int32_t zone, const Patchwise& patches) const;
   /// Of a zone, over its patches: strain().
   double largest_strain(std::int32_t zone, const Patchwise& patches) const;
@@ -187,6 +191,7 @@ class ContactState {
   std::vector<double> own_;                            ///< likewise of each patch
   std::vector<double> rho_;                            ///< stiffness of both bodies, in series, under a pressure on each patch
   std::vector<std::vector<std::int32_t>> neighbours_;  ///< patches of its zone that share a node with each patch
+  std::vector<PressureAlternation> alternations_;      ///< of each zone
   std::vector<bool> locked_;
   std::vector<bool> held_open_;                         ///< of each patch: SANS_GROUP_NO, RESOLUTION='NON'
   std::vector<bool> gliding_;                           ///< of each patch: keeps its contact (GLISSIERE)

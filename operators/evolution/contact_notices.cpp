@@ -121,6 +121,9 @@ void ContactNotices::accept(const SolvedInstant& solved) {
     };
     note(contact.pierced(zone, patches, false), pierced_);
     note(contact.pierced(zone, patches, true), pierced_at_rest_);
+    if (const auto now = contact.alternation(zone, patches); now)
+      if (const auto before = alternating_.find(zone); before == alternating_.end() || now->share > before->second.most.share)
+        alternating_[zone] = {solved.instant, *now};
     // before a zone presses for the first time its bodies come nearer, and points of coarse patches go in a little
     if (strain > 0) note(contact.missed(zone, patches, strain), missed_);
   }
@@ -146,6 +149,14 @@ void ContactNotices::end(bool /*completed*/) {
   for (const auto& [zone, pierced] : missed_)
     if (const auto other = told.find(zone); other == told.end() || other->second.worst.patch != pierced.worst.patch)
       tell("EVOLUTION_45", zone, pierced);
+  for (const auto& [zone, alternating] : alternating_) {
+    const ContactZone& names = present_.problem.contact->zones[zone];
+    inform("EVOLUTION_47", {{"slave", names.slave_group},
+                            {"master", names.master_group},
+                            {"cell", first_cell(alternating.most.patch)},
+                            {"instant", fmt::format("{:.9g}", alternating.instant)},
+                            {"percent", fmt::format("{:.3g}", 100 * alternating.most.share)}});
+  }
 }
 
 void ContactNotices::save(const hdf5::Group& group, const PiercedZones& pierced_zones) {
@@ -179,8 +190,18 @@ void ContactNotices::save(const hdf5::Group& group) const {
   save(group.create("pierced"), pierced_);
   save(group.create("pierced_at_rest"), pierced_at_rest_);
   save(group.create("missed"), missed_);
-  std::vector<std::int32_t> zones;
-  std::vector<double> strains;
+  std::vector<std::int32_t> zones, alternating;
+  std::vector<std::int64_t> patches;
+  std::vector<double> strains, instants, shares;
+  for (const auto& [zone, most] : alternating_) {
+    alternating.push_back(zone), patches.push_back(static_cast<std::int64_t>(most.most.patch));
+    instants.push_back(most.instant), shares.push_back(most.most.share);
+  }
+  const hdf5::Group of_alternating = group.create("alternating");
+  of_alternating.write("zone", alternating);
+  of_alternating.write("patch", patches);
+  of_alternating.write("instant", instants);
+  of_alternating.write("share", shares);
   for (const auto& [zone, strain] : strain_) zones.push_back(zone), strains.push_back(strain);
   group.write("strained", zones);
   group.write("strain", strains);
@@ -205,6 +226,14 @@ void ContactNotices::resume(const hdf5::Group& group) {
     const auto zones = group.read<std::int32_t>("strained");
     const auto strains = group.read<double>("strain");
     for (std::size_t i = 0; i < zones.size(); ++i) strain_[zones[i]] = strains.at(i);
+  }
+  if (group.has("alternating")) {  // likewise
+    const hdf5::Group of = group.open("alternating");
+    const auto zones = of.read<std::int32_t>("zone");
+    const auto patches = of.read<std::int64_t>("patch");
+    const auto instants = of.read<double>("instant"), shares = of.read<double>("share");
+    for (std::size_t i = 0; i < zones.size(); ++i)
+      alternating_[zones[i]] = {instants.at(i), {shares.at(i), static_cast<std::size_t>(patches.at(i))}};
   }
   const auto free = group.read<std::int32_t>("free");
   free_ = {free.begin(), free.end()};

@@ -22,7 +22,7 @@ class ContactNotices : public EvolutionObserver {
   void accept(const SolvedInstant& solved) override;
   /// EVOLUTION_16: of each zone the patch that its master has pierced deepest, of a zone where nothing has pressed at any
   /// instant also where that is little; EVOLUTION_45: likewise where a contact is missed while, or after, others press;
-  /// EVOLUTION_43: zones whose skins never met.
+  /// EVOLUTION_43: zones whose skins never met; EVOLUTION_47: zones whose pressures alternate.
   void end(bool completed) override;
   void save(const hdf5::Group& group) const override;
   void resume(const hdf5::Group& group) override;
@@ -31,6 +31,10 @@ class ContactNotices : public EvolutionObserver {
   struct Pierced {
     double instant;
     PiercedPatch worst;
+  };
+  struct Alternating {
+    double instant;
+    AlternatingPressures most;
   };
   using PiercedZones = std::map<std::int32_t, Pierced>;
   static void save(const hdf5::Group& group, const PiercedZones& zones);
@@ -52,13 +56,14 @@ class ContactNotices : public EvolutionObserver {
   Bodies bodies_;
   std::set<std::int32_t> free_;  ///< bodies that are held by contact alone, and of which nothing was told
   PiercedZones pierced_;
-  PiercedZones pierced_at_rest_;           ///< what is worth an alarm of zones where nothing has pressed
-  std::set<std::int32_t> pressed_;         ///< the others
-  std::map<std::int32_t, double> strain_;  ///< of these, the largest that a pressure has made
-  PiercedZones missed_;                    ///< of these, what nothing pressed at
-  std::set<std::size_t> met_;              ///< zones of which a patch has had a master
-  std::set<std::size_t> too_deep_;         ///< zones of which it has been told
-  std::set<std::size_t> overlapping_;      ///< likewise, of EVOLUTION_35
+  PiercedZones pierced_at_rest_;                     ///< what is worth an alarm of zones where nothing has pressed
+  std::set<std::int32_t> pressed_;                   ///< the others
+  std::map<std::int32_t, double> strain_;            ///< of these, the largest that a pressure has made
+  PiercedZones missed_;                              ///< of these, what nothing pressed at
+  std::map<std::int32_t, Alternating> alternating_;  ///< zones whose pressures do, at the instant where they do most
+  std::set<std::size_t> met_;                        ///< zones of which a patch has had a master
+  std::set<std::size_t> too_deep_;                   ///< zones of which it has been told
+  std::set<std::size_t> overlapping_;                ///< likewise, of EVOLUTION_35
 };
 
 }  // namespace lacon

@@ -22,8 +22,9 @@ def contact_study(mesh, hold, push=(), slaves=("SLAVE",), masters=("MASTER",), m
     return study
 
 
-def run_contact(test, studies):
-    """One run of the launcher. @param test a StudyTest @return (run, result of each study)"""
+def run_contact(test, studies, **environment):
+    """One run of the launcher. @param test a StudyTest @param environment CONTACT_ALARMS="ALARME": alarms do not end it
+    @return (run, result of each study)"""
     units, orders = [], []
     for k, one in enumerate(studies):
         path = one["mesh"]
@@ -34,6 +35,6 @@ def run_contact(test, studies):
         orders.append({name: value for name, value in one.items() if name != "mesh"})
     orders_file = test.folder / "studies.json"
     orders_file.write_text(json.dumps(orders))
-    run = test.run_study(COMM, "--fresh", *units, CONTACT_STUDIES=str(orders_file))
+    run = test.run_study(COMM, "--fresh", *units, CONTACT_STUDIES=str(orders_file), **environment)
     test.assertEqual(run.status, 0, run.stdout[-3000:] + run.stderr[-3000:])
     return run, [Result(test.folder / f"{COMM.stem}.base", f"RESU[{k}]") for k in range(len(studies))]

@@ -1,0 +1,117 @@
+"""A sphere pressed on a block in space: pressures of linear triangles that are finer than their master alternate, and it is said so."""
+
+import math
+import os
+import pathlib
+import sys
+
+import numpy as np
+
+SOURCE = pathlib.Path(os.environ["LACON_SOURCE_DIR"])
+sys.path.insert(0, str(SOURCE / "tests/studies"))
+
+from study_test import StudyTest  # noqa: E402, I001 (it says where meshes.py is)
+from contact import contact_study, run_contact  # noqa: E402
+from meshes import brick, graded, union  # noqa: E402
+
+RADIUS, EXTENT, DEPTH, YOUNG, POISSON = 10.0, 3.0, 0.12, 2000.0, 0.3
+FINE = 1.3  #: of the cells that are not graded; the contact's radius is 1.24
+
+
+def quarter(kind, size, body):
+    """The quarter x, y > 0 of the sphere (cut off above) or of the block. @param size of the cells at the contact"""
+    around = graded(EXTENT, size, FINE, 1.35)
+    through = graded(1.0, size / EXTENT, FINE / 2 / EXTENT, 1.35)
+    sides = {(0, 0): "SYMX", (1, 0): "SYMY"}
+    if body == "block":
+        return brick(kind, [around, around, EXTENT * -through[::-1]], None, "BLOCK", {(2, 1): "BLOCK_SKIN", (2, 0): "BLOCK_BASE", **sides})
+
+    def place(x, y, t):
+        low = RADIUS - math.sqrt(RADIUS**2 - x**2 - y**2)
+        return x, y, low + t * (EXTENT - low)
+
+    return brick(kind, [around, around, through], place, "SPHERE", {(2, 0): "SPHERE_SKIN", (2, 1): "SPHERE_BASE", **sides},
+                 curved=kind.endswith(("10", "20")))
+
+
+def study(kinds, sizes, slave):
+    """@param kinds, sizes of the sphere's and of the block's cells"""
+    mesh = union([quarter(kind, size, body) for kind, size, body in zip(kinds, sizes, ("sphere", "block"))])
+    fixed = {"DX": 0.0, "DY": 0.0}
+    hold = [{"GROUP_MA": "SYMX", "DX": 0.0}, {"GROUP_MA": "SYMY", "DY": 0.0}, {"GROUP_MA": "SPHERE_BASE", "DZ": -DEPTH, **fixed},
+            {"GROUP_MA": "BLOCK_BASE", "DZ": 0.0, **fixed}]
+    skins = ["SPHERE_SKIN", "BLOCK_SKIN"]
+    return contact_study(mesh, hold, slaves=skins[slave == "block":][:1], masters=skins[slave == "sphere":][:1],
+                         elastic={"E": YOUNG, "NU": POISSON}, convergence={"RESI_GLOB_RELA": 1e-9, "ITER_GLOB_MAXI": 40})
+
+
+def distances_from_hertz(result):
+    """From the pressures of the force that was found, within three quarters of the radius, root mean squares over the largest of them.
+    @return (of the patches, of the means over the patches around vertices inside: CONT_NOEU there)"""
+    order = result.orders[-1]
+    pressure = result.on_cells("CONT_ELEM", order, "PRES")
+    corners = np.array([[result.points[result.cells[cell][1][:3]] for cell in patch] for patch in result.patches])
+    sides = corners[:, :, 1:] - corners[:, :, :1]
+    areas = np.linalg.norm(np.cross(sides[:, :, 0], sides[:, :, 1]), axis=2) / 2
+    area = areas.sum(axis=1)
+    middle = np.einsum("pc,pcd->pd", areas, corners.mean(axis=2)) / area[:, None]
+    of_patch = np.array([-pressure[patch[0]] for patch in result.patches])
+    force = 4 * of_patch @ area
+    modulus = YOUNG / (2 * (1 - POISSON**2))
+    radius = (3 * force * RADIUS / (4 * modulus)) ** (1 / 3)
+    largest = 3 * force / (2 * math.pi * radius**2)
+
+    def distance(points, values):
+        square = (points[:, 0] ** 2 + points[:, 1] ** 2) / radius**2
+        near = square < 0.75**2
+        return math.sqrt(np.mean((values[near] / largest - np.sqrt(1 - square[near])) ** 2))
+
+    around = {}
+    for number, patch in enumerate(result.patches):
+        for node in {int(node) for cell in patch for node in result.cells[cell][1]}:
+            around.setdefault(node, set()).add(number)
+    inside = [node for node, patches in around.items() if len(patches) > 1 and min(result.points[node][:2]) > 1e-9]
+    at_nodes = result.at_nodes("CONT_NOEU", order, "PRES")
+    return distance(middle, of_patch), distance(result.points[inside], -at_nodes[inside])
+
+
+class Alternation(StudyTest):
+    def solved(self, kinds, sizes, slave):
+        """@return (the alarms, the result)"""
+        run, (result,) = run_contact(self, [study(kinds, sizes, slave)], CONTACT_ALARMS="ALARME")
+        return [line for line in (run.stdout + run.stderr).splitlines() if line.startswith("<A> ")], result
+
+    def test_a_slave_of_linear_triangles_finer_than_its_master_is_told(self):
+        """Either body: it is the cells, not the curve. Means at vertices are of the first order, h / a / 2; patches are not near."""
+        found = []
+        for kinds, sizes, slave in ((("TETRA4", "TETRA4"), (0.2, 0.28), "sphere"), (("TETRA4", "TETRA4"), (0.1, 0.14), "sphere"),
+                                    (("TETRA4", "TETRA4"), (0.28, 0.2), "block"), (("TETRA4", "HEXA8"), (0.2, 0.28), "sphere")):
+            with self.subTest(kinds=kinds, sizes=sizes, slave=slave):
+                alarms, result = self.solved(kinds, sizes, slave)
+                patches, vertices = distances_from_hertz(result)
+                found.append(patches)
+                self.assertEqual(len(alarms), 1, alarms)
+                self.assertIn(f"<EVOLUTION_47> zone {slave.upper()}_SKIN on ", alarms[0])
+                self.assertGreater(patches, 0.7 * min(sizes))
+                self.assertLess(vertices, min(sizes) / 1.24 / 2)
+        self.assertLess(found[1], 0.6 * found[0])  # of the first order
+
+    def test_pressures_that_follow_the_load_are_not_told(self):
+        """Finer masters, the coarser body as the slave, hexahedra, quadratic cells."""
+        for kinds, sizes, slave in ((("TETRA4", "TETRA4"), (0.14, 0.1), "sphere"), (("TETRA4", "TETRA4"), (0.2, 0.28), "block"),
+                                    (("TETRA4", "HEXA8"), (0.2, 0.14), "sphere"), (("HEXA8", "TETRA4"), (0.2, 0.28), "sphere"),
+                                    (("TETRA10", "TETRA10"), (0.28, 0.4), "sphere")):
+            with self.subTest(kinds=kinds, sizes=sizes, slave=slave):
+                alarms, _ = self.solved(kinds, sizes, slave)
+                self.assertEqual(alarms, [])
+
+    def test_edges_of_a_punch_are_not_told(self):
+        """Pressures that have no bound at the edges, on a mesh of matching size."""
+        lines = [np.linspace(0, 1, 9)] * 2 + [np.linspace(0, 1, 5)]
+        under = [np.linspace(-1, 2, 31)] * 2 + [np.linspace(-1, 0, 5)]
+        punch = brick("TETRA4", lines, None, "PUNCH", {(2, 0): "PUNCH_SKIN", (2, 1): "PUNCH_BASE"})
+        block = brick("TETRA4", under, None, "BLOCK", {(2, 1): "BLOCK_SKIN", (2, 0): "BLOCK_BASE"})
+        hold = [{"GROUP_MA": "PUNCH_BASE", "DX": 0.0, "DY": 0.0, "DZ": -0.01}, {"GROUP_MA": "BLOCK_BASE", "DX": 0.0, "DY": 0.0, "DZ": 0.0}]
+        one = contact_study(union([punch, block]), hold, slaves=["PUNCH_SKIN"], masters=["BLOCK_SKIN"], convergence={"RESI_GLOB_RELA": 1e-9, "ITER_GLOB_MAXI": 40})
+        run, _ = run_contact(self, [one], CONTACT_ALARMS="ALARME")
+        self.assertNotIn("<EVOLUTION_47>", run.stdout + run.stderr)
