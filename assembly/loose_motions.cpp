@@ -2,11 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace lacon {
 namespace {
 
 constexpr double takes_part = 1e-6;  // of a motion: a body that it moves
+constexpr int with_magnitudes = 7;   // columns that other processes multiply: six motions, and magnitudes
 
 /// Rows of a matrix of few columns as its triangle, which has the same null space.
 class Triangle {
@@ -43,61 +45,74 @@ class Triangle {
   Eigen::Index count_ = 0;
 };
 
+/// What a row makes of the motions: of those of one body for nearly all, which meet no other one.
+struct Image {
+  double most = 0;  ///< what its entries sum up to
+  std::int32_t first = -1;
+  MotionVector own = MotionVector::Zero();
+  std::map<std::int32_t, MotionVector> others;
+
+  MotionVector& of_body(std::int32_t its_first) {
+    if (first < 0) first = its_first;
+    return first == its_first ? own : others.try_emplace(its_first, MotionVector::Zero()).first->second;
+  }
+};
+
 }  // namespace
 
-LooseMotions::LooseMotions(const RigidMotions& motions, const Numbering& numbering) {
-  const auto for_each_row = [&](const auto& use) {
-    for (std::int64_t dof = 0; dof < std::ssize(numbering.equation); ++dof)
-      if (const auto row = motions.row(dof / numbering.n_components, static_cast<int>(dof % numbering.n_components)))
-        use(dof, *row);
-  };
+template <class Use>
+void LooseMotions::for_each_row(const Use& use) const {
+  for (std::int64_t dof = 0; dof < std::ssize(numbering_.equation); ++dof)
+    if (const auto row = motions_.row(dof / numbering_.n_components, static_cast<int>(dof % numbering_.n_components)))
+      use(dof, *row);
+}
+
+LooseMotions::LooseMotions(RigidMotions motions, const Numbering& numbering)
+    : motions_(std::move(motions)), numbering_(numbering) {
   std::map<std::int32_t, Eigen::Matrix<double, 6, 6>> held;
-  for (const std::int32_t body : motions.bodies()) held[body].setZero();
+  for (const std::int32_t body : motions_.bodies()) held[body].setZero();
   for_each_row([&](std::int64_t dof, const RigidMotions::Row& row) {
     if (numbering.equation[dof] < 0) held[row.body] += row.by * row.by.transpose();
   });
-  struct Left {
-    std::int32_t first;
-    Eigen::Matrix<double, 6, Eigen::Dynamic> motions;
-  };
-  std::map<std::int32_t, Left> left;
   for (const auto& [body, gram] : held) {
-    const Eigen::Matrix<double, 6, Eigen::Dynamic> free = motions.free_of(gram);
+    const Eigen::Matrix<double, 6, Eigen::Dynamic> free = motions_.free_of(gram);
     if (free.cols() == 0) continue;
-    left[body] = {static_cast<std::int32_t>(bodies_.size()), free};
+    left_[body] = {static_cast<std::int32_t>(bodies_.size()), free};
     bodies_.insert(bodies_.end(), static_cast<std::size_t>(free.cols()), body);
   }
-  if (left.empty()) return;
+}
+
+std::vector<LooseMotions::Moved> LooseMotions::moved() const {
+  std::vector<Moved> moved;
   for_each_row([&](std::int64_t dof, const RigidMotions::Row& row) {
-    const auto own = left.find(row.body);
-    if (numbering.equation[dof] < 0 || own == left.end()) return;
-    moved_.push_back({dof, numbering.equation[dof], own->second.first, own->second.motions.transpose() * row.by});
+    const auto own = left_.find(row.body);
+    if (numbering_.equation[dof] < 0 || own == left_.end()) return;
+    const Left& left = own->second;
+    Moved& made = moved.emplace_back(
+        Moved{dof, numbering_.equation[dof], left.first, static_cast<std::int32_t>(left.motions.cols()), MotionVector::Zero()});
+    made.by.head(made.count) = left.motions.transpose() * row.by;
   });
+  return moved;
 }
 
 std::vector<LooseMotion> LooseMotions::of(const SparseMatrix& matrix, double negligible) const {
-  if (moved_.empty()) return {};
+  if (left_.empty()) return {};
+  const std::vector<Moved> all = moved();
+  if (all.empty()) return {};
   const auto columns = static_cast<Eigen::Index>(bodies_.size());
-  std::vector<const Moved*> at(static_cast<std::size_t>(matrix.size()), nullptr);
-  for (const Moved& moved : moved_) at[moved.equation] = &moved;
-  // what a row makes of the motions: of those of one body for nearly all, which meet no other one
-  struct Image {
-    double most = 0;  ///< what its entries sum up to
-    std::int32_t first = -1;
-    MotionVector own = MotionVector::Zero();
-    std::map<std::int32_t, MotionVector> others;
-  };
-  std::vector<Image> images(at.size());
-  const auto of_body = [](Image& image, std::int32_t first) -> MotionVector& {
-    if (image.first < 0) image.first = first;
-    return image.first == first ? image.own : image.others.try_emplace(first, MotionVector::Zero()).first->second;
-  };
+  std::vector<std::int32_t> at(static_cast<std::size_t>(matrix.size()), -1), image_of(at);
+  for (std::size_t i = 0; i < all.size(); ++i) at[all[i].equation] = static_cast<std::int32_t>(i);
+  std::vector<Image> images;  // of rows that meet what moves, here
   const auto add = [&](std::int64_t row, std::int64_t column, double value) {
-    const Moved* const moved = at[column];
-    if (!moved || value == 0) return;
-    Image& image = images[row];
-    of_body(image, moved->first).head(moved->by.size()) += value * moved->by;
-    image.most += std::abs(value) * moved->by.cwiseAbs().sum();
+    if (at[column] < 0 || value == 0) return;
+    const Moved& moved = all[at[column]];
+    if (image_of[row] < 0) {
+      image_of[row] = static_cast<std::int32_t>(images.size());
+      images.emplace_back();
+    }
+    Image& image = images[image_of[row]];
+    image.of_body(moved.first).head(moved.count) += value * moved.moves();
+    image.most += std::abs(value) * moved.moves().cwiseAbs().sum();
   };
   for (std::int64_t row = 0; row < matrix.size(); ++row)
     for (std::int64_t k = matrix.rows()[row]; k < matrix.rows()[row + 1]; ++k) {
@@ -105,36 +120,47 @@ std::vector<LooseMotion> LooseMotions::of(const SparseMatrix& matrix, double neg
       add(row, column, matrix.values()[k]);
       if (matrix.is_symmetric() && column != row) add(column, row, matrix.values()[k]);
     }
-  if (matrix.elsewhere()) {
-    std::vector<double> x(at.size()), y(at.size());
-    const auto multiply = [&](const auto& moves, bool magnitudes, const auto& use) {
-      std::ranges::fill(x, 0.0);
-      std::ranges::fill(y, 0.0);
-      for (const Moved& moved : moved_) x[moved.equation] = moves(moved);
-      matrix.multiply_elsewhere(x, y, magnitudes);
-      for (const Moved& moved : moved_)
-        if (y[moved.equation] != 0) use(images[moved.equation], moved, y[moved.equation]);
-    };
-    for (Eigen::Index motion = 0; motion < 6; ++motion)  // one of each body at once: no cell meets two of them
-      multiply([&](const Moved& moved) { return motion < moved.by.size() ? moved.by[motion] : 0.0; }, false,
-               [&](Image& image, const Moved& moved, double value) { of_body(image, moved.first)[motion] += value; });
-    multiply([](const Moved& moved) { return moved.by.cwiseAbs().sum(); }, true,
-             [&](Image& image, const Moved& moved, double value) {
-               of_body(image, moved.first);  // of a row that nothing moves, too: on even meshes its entries cancel exactly
-               image.most += value;
-             });
-  }
   Triangle resistance(columns);
-  for (const Image& image : images) {
+  const auto enter = [&](const Image& image) {
+    if (image.most == 0) return;
     Eigen::VectorXd row = Eigen::VectorXd::Zero(columns);
     const auto put = [&](std::int32_t first, const MotionVector& values) {
       for (Eigen::Index i = 0; i < 6 && first + i < columns && bodies_[first + i] == bodies_[first]; ++i)
         row[first + i] = values[i] / image.most;
     };
-    if (image.most == 0) continue;
     put(image.first, image.own);
     for (const auto& [first, values] : image.others) put(first, values);
     if (row.cwiseAbs().maxCoeff() > negligible) resistance.add(row);
+  };
+  const auto enter_all = [&](std::span<const double> elsewhere) {
+    for (std::size_t row = 0; row < at.size(); ++row) {
+      if (elsewhere.empty() || at[row] < 0) {
+        if (image_of[row] >= 0) enter(images[image_of[row]]);
+        continue;
+      }
+      const Moved& moved = all[at[row]];
+      const double* const more = elsewhere.data() + moved.dof * with_magnitudes;
+      Image image = image_of[row] < 0 ? Image() : images[image_of[row]];
+      for (int motion = 0; motion < 6; ++motion)
+        if (more[motion] != 0) image.of_body(moved.first)[motion] += more[motion];
+      if (more[6] != 0) {
+        image.of_body(moved.first);  // of a row that nothing moves, too: on even meshes its entries cancel exactly
+        image.most += more[6];
+      }
+      enter(image);
+    }
+  };
+  if (matrix.elsewhere()) {
+    // one motion of each body at once, for no cell meets two of them; and magnitudes
+    const auto fill = [&](std::span<double> x) {
+      for (const Moved& moved : all) {
+        std::copy_n(moved.by.data(), moved.count, x.data() + moved.dof * with_magnitudes);
+        x[static_cast<std::size_t>(moved.dof * with_magnitudes + 6)] = moved.moves().cwiseAbs().sum();
+      }
+    };
+    matrix.elsewhere()->products(with_magnitudes, fill, enter_all);
+  } else {
+    enter_all({});
   }
   Eigen::MatrixXd free = resistance.null_space(negligible);
 
@@ -144,11 +170,11 @@ std::vector<LooseMotion> LooseMotions::of(const SparseMatrix& matrix, double neg
     for (Eigen::Index i = 0; i < columns; ++i)
       if (std::abs(free(i, motion)) > takes_part) found.bodies.insert(bodies_[static_cast<std::size_t>(i)]);
     const auto moves = [&](const Moved& moved, Eigen::Index which) {
-      return moved.by.dot(free.col(which).segment(moved.first, moved.by.size()));
+      return moved.moves().dot(free.col(which).segment(moved.first, moved.count));
     };
-    const Moved* largest = &moved_.front();
+    const Moved* largest = &all.front();
     double size = 0;
-    for (const Moved& moved : moved_)
+    for (const Moved& moved : all)
       if (const double now = std::abs(moves(moved, motion)); now > (1 + takes_part) * size) largest = &moved, size = now;
     found.dof = largest->dof;
     // the others do not move it

@@ -2,6 +2,7 @@
 // Motions of bodies that a matrix does not resist. A factorisation may not see them: on fine meshes, and on those of cells of
 // very different size, the last pivot of a body that nothing holds is round-off far above zero.
 #include <cstdint>
+#include <map>
 #include <set>
 #include <vector>
 
@@ -19,7 +20,8 @@ class LooseMotions {
  public:
   static constexpr double round_off = 1e-11;
 
-  LooseMotions(const RigidMotions& motions, const Numbering& numbering);
+  /// @param numbering must outlive it
+  LooseMotions(RigidMotions motions, const Numbering& numbering);
 
   /// Rigid motions of all bodies together, on the initial geometry, that the matrix maps to nothing but round-off: neither
   /// contact nor relations, springs or stresses resist them.
@@ -30,12 +32,22 @@ class LooseMotions {
   /// A degree of freedom that has an equation, of a body that imposed displacements do not hold.
   struct Moved {
     std::int64_t dof, equation;
-    std::int32_t first;  ///< of the motions of its body
-    Eigen::VectorXd by;  ///< what these move it by
+    std::int32_t first, count;  ///< the motions of its body
+    MotionVector by;            ///< what these move it by
+    auto moves() const { return by.head(count); }
   };
+  struct Left {
+    std::int32_t first;
+    Eigen::Matrix<double, 6, Eigen::Dynamic> motions;
+  };
+  template <class Use>
+  void for_each_row(const Use& use) const;
+  std::vector<Moved> moved() const;  ///< ascending
 
-  std::vector<std::int32_t> bodies_;  ///< of each motion that imposed displacements leave
-  std::vector<Moved> moved_;          ///< ascending
+  RigidMotions motions_;
+  const Numbering& numbering_;
+  std::map<std::int32_t, Left> left_;  ///< of bodies: the motions that imposed displacements leave them
+  std::vector<std::int32_t> bodies_;   ///< of each of these motions
 };
 
 }  // namespace lacon

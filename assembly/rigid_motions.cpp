@@ -1,6 +1,7 @@
 #include "lacon/assembly/rigid_motions.hpp"
 
 #include <algorithm>
+#include <utility>
 
 namespace lacon {
 namespace {
@@ -10,7 +11,8 @@ constexpr double negligible = 1e-10;
 
 }  // namespace
 
-RigidMotions::RigidMotions(const BodyGeometry& geometry) : geometry_(geometry) {
+RigidMotions::RigidMotions(BodyGeometry given) : geometry_(std::move(given)) {
+  const BodyGeometry& geometry = geometry_;
   kinds_ = geometry.is_of_revolution ? std::vector<int>{1}
            : geometry.dimension == 2 ? std::vector<int>{0, 1, 5}
                                      : std::vector<int>{0, 1, 2, 3, 4, 5};

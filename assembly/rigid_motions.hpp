@@ -24,8 +24,8 @@ struct BodyGeometry {
 
 class RigidMotions {
  public:
-  /// @param geometry must outlive it; a body is more than a point
-  explicit RigidMotions(const BodyGeometry& geometry);
+  /// @param geometry its coordinates must outlive it; a body is more than a point
+  explicit RigidMotions(BodyGeometry geometry);
 
   struct Row {
     std::int32_t body;
@@ -42,7 +42,7 @@ class RigidMotions {
     Vec3 low{INFINITY, INFINITY, INFINITY}, high{-INFINITY, -INFINITY, -INFINITY};
   };
 
-  const BodyGeometry& geometry_;
+  BodyGeometry geometry_;
   std::vector<int> kinds_;  ///< the motions that there are, of six
   std::map<std::int32_t, Box> boxes_;
 };

@@ -244,6 +244,29 @@ void SparseMatrix::multiply_magnitudes(std::span<const double> x, std::span<doub
   if (elsewhere_) multiply_elsewhere(x, y, true);
 }
 
+void SparseMatrix::multiply_together(std::span<const double> x, std::span<double> y, int n_columns) const {
+  const auto n = static_cast<std::size_t>(n_columns);
+  std::fill(y.begin(), y.end(), 0.0);
+  std::vector<double> sum(n);
+  for (std::size_t row = 0; row < static_cast<std::size_t>(size()); ++row) {
+    std::fill(sum.begin(), sum.end(), 0.0);
+    const double* const own = &x[row * n];
+    const std::int64_t last = row_[row + 1] - 1;
+    for (std::int64_t k = row_[row]; k < last; ++k) {
+      const double value = value_[k], magnitude = std::abs(value);
+      const std::size_t at = static_cast<std::size_t>(column_[k]) * n;
+      for (std::size_t c = 0; c + 1 < n; ++c) {
+        sum[c] += value * x[at + c];
+        y[at + c] += value * own[c];
+      }
+      sum[n - 1] += magnitude * std::abs(x[at + n - 1]);
+      y[at + n - 1] += magnitude * std::abs(own[n - 1]);
+    }
+    for (std::size_t c = 0; c + 1 < n; ++c) y[row * n + c] += sum[c] + value_[last] * own[c];
+    y[row * n + n - 1] += sum[n - 1] + std::abs(value_[last]) * std::abs(own[n - 1]);
+  }
+}
+
 void SparseMatrix::multiply_elsewhere(std::span<const double> x, std::span<double> y, bool magnitudes) const {
   const std::vector<std::int64_t>& equation = numbering_->equation;
   std::vector<double> nodal(equation.size(), 0.0);

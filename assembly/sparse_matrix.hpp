@@ -61,6 +61,9 @@ class SparseMatrix {
   void multiply(std::span<const double> x, std::span<double> y) const;
   /// y = |A| |x|, of magnitudes
   void multiply_magnitudes(std::span<const double> x, std::span<double> y) const;
+  /// Some products of a symmetric matrix at once, each with the bits of multiply(), the last one with those of
+  /// multiply_magnitudes(); what is elsewhere is left out. @param x, y (size, n_columns)
+  void multiply_together(std::span<const double> x, std::span<double> y, int n_columns) const;
   /// Powers of two d that make the largest entry of each row and column of d A d about 1, (size).
   std::vector<double> equilibration() const;
   /// Unknowns that their row alone decides: nothing but a diagonal stands in it. Ascending; multipliers alone, where other

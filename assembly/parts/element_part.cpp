@@ -41,17 +41,18 @@ ElementPart::State ElementPart::natural() const {
   return state;
 }
 
-std::vector<double> ElementPart::gathered(std::span<const double> nodal) const {
-  const auto d = static_cast<std::size_t>(cells_.dimension);
-  std::vector<double> own(cells_.node.size() * d);
-  for (std::size_t i = 0; i < own.size(); ++i) own[i] = nodal[static_cast<std::size_t>(cells_.node[i / d]) * d + i % d];
+std::vector<double> ElementPart::gathered(std::span<const double> nodal, int width) const {
+  const auto w = static_cast<std::size_t>(cells_.dimension * width);
+  std::vector<double> own(cells_.node.size() * w);
+  for (std::size_t n = 0; n < cells_.node.size(); ++n)
+    std::copy_n(nodal.data() + static_cast<std::size_t>(cells_.node[n]) * w, w, own.data() + n * w);
   return own;
 }
 
-void ElementPart::hand_out(std::span<const double> own, std::span<double> nodal) const {
-  const auto d = static_cast<std::size_t>(cells_.dimension);
-  for (std::size_t i = 0; i < static_cast<std::size_t>(cells_.n_own) * d; ++i)
-    nodal[static_cast<std::size_t>(cells_.node[i / d]) * d + i % d] = own[i];
+void ElementPart::hand_out(std::span<const double> own, std::span<double> nodal, int width) const {
+  const auto w = static_cast<std::size_t>(cells_.dimension * width);
+  for (std::size_t n = 0; n < static_cast<std::size_t>(cells_.n_own); ++n)
+    std::copy_n(own.data() + n * w, w, nodal.data() + static_cast<std::size_t>(cells_.node[n]) * w);
 }
 
 void ElementPart::evaluate(const Board& board, PartReport& report, SolidMatrix wanted, std::int64_t previous,
@@ -130,6 +131,13 @@ void ElementPart::multiply(const Board& board, bool magnitudes) const {
   std::vector<double> y(x.size());
   magnitudes ? matrix_->multiply_magnitudes(x, y) : matrix_->multiply(x, y);
   hand_out(y, board.other);
+}
+
+void ElementPart::multiply(std::span<const double> x, std::span<double> y, int n_columns) const {
+  const std::vector<double> own = gathered(x, n_columns);
+  std::vector<double> product(own.size());
+  matrix_->multiply_together(own, product, n_columns);
+  hand_out(product, y, n_columns);
 }
 
 void ElementPart::measure(const Board& board) const {

@@ -43,6 +43,8 @@ class ElementPart {
 
   /// The product of own rows with the board's displacements, of magnitudes or not.
   void multiply(const Board& board, bool magnitudes) const;
+  /// SparseMatrix::multiply_together. @param x, y (n_nodes, dimension, n_columns)
+  void multiply(std::span<const double> x, std::span<double> y, int n_columns) const;
   /// SparseMatrix::row_sizes of own rows: sums, and how many entries.
   void measure(const Board& board) const;
   /// Add the entries that this process has to a lower triangle of all equations: those in rows of its own nodes.
@@ -59,8 +61,9 @@ class ElementPart {
   };
   using State = std::vector<Values>;  ///< of each set
 
-  std::vector<double> gathered(std::span<const double> nodal) const;
-  void hand_out(std::span<const double> own, std::span<double> nodal) const;
+  /// Of the whole mesh's nodes those that are here, and back. @param width of what stands in nodal arrays for an unknown
+  std::vector<double> gathered(std::span<const double> nodal, int width = 1) const;
+  void hand_out(std::span<const double> own, std::span<double> nodal, int width = 1) const;
   const State& state(std::int64_t number) const { return number < 0 ? *present_ : *kept_.at(number); }
   State natural() const;
 

@@ -191,6 +191,15 @@ std::span<const double> SolidParts::product(std::span<const double> x, bool magn
   return board_.other;
 }
 
+void SolidParts::products(int n_columns, const std::function<void(std::span<double>)>& fill,
+                          const std::function<void(std::span<const double>)>& use) const {
+  const SharedMemory memory(2 * static_cast<std::size_t>(n_columns) * board_.displacement.size_bytes());
+  const std::span<double> both = numbers_in(memory), x = both.first(both.size() / 2);
+  fill(x);
+  ask("products " + std::to_string(n_columns) + ' ' + memory.path());
+  use(both.subspan(x.size()));
+}
+
 RowsElsewhere::Sizes SolidParts::row_sizes() const {
   ask("measure");
   return {.sum = board_.force, .entries = board_.other};

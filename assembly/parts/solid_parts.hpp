@@ -64,6 +64,8 @@ class SolidParts : public RowsElsewhere, public std::enable_shared_from_this<Sol
   std::vector<double> values(std::int64_t number, std::size_t set, PointQuantity quantity) const;
 
   std::span<const double> product(std::span<const double> x, bool magnitudes) const override;
+  void products(int n_columns, const std::function<void(std::span<double>)>& fill,
+                const std::function<void(std::span<const double>)>& use) const override;
   Sizes row_sizes() const override;
   SparseMatrix whole(const SparseMatrix& here) const override;
 

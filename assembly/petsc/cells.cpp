@@ -49,6 +49,11 @@ bool Cells::obey(const std::string& line) {
   } else if (verb == "multiply") {
     said >> kind;
     part_->multiply(board_, kind != 0);
+  } else if (verb == "products") {
+    said >> kind >> path;
+    const SharedMemory memory = SharedMemory::open(path);
+    const std::span<double> both{reinterpret_cast<double*>(memory.data()), memory.size() / sizeof(double)};
+    part_->multiply(both.first(both.size() / 2), both.subspan(both.size() / 2), kind);
   } else if (verb == "measure") {
     part_->measure(board_);
   } else if (verb == "whole") {

@@ -7,6 +7,7 @@
 //   put N SET QUANTITY PATH, collect N SET QUANTITY PATH     values of all cells of a set
 //   flows SINCE                          into the report
 //   multiply MAGNITUDES, measure         own rows
+//   products N PATH                      x and y of own rows, N columns each
 //   whole PATH                           adds them to a lower triangle: n_rows, n_entries, rows, values, columns
 #include <istream>
 #include <optional>

@@ -1,5 +1,6 @@
 """Plug-ins outside the tree: built against the installed package, found, run; and refused, with their file, where they are wrong."""
 
+import json
 import os
 import pathlib
 import shutil
@@ -245,15 +246,29 @@ class Launched(lacon_test.OperatorTest):
     """The installed launcher with the plug-in `plugin`."""
 
     plugin = ""
+    options, environment = (), {}  # of launch_study()
 
-    def launch(self, *arguments):
-        return run(made["prefix"] / "bin/lacon", *arguments, cwd=self.folder, env={**os.environ, "LACON_PLUGIN_PATH": str(made[self.plugin])})
+    def launch(self, *arguments, **environment):
+        return run(made["prefix"] / "bin/lacon", *arguments, cwd=self.folder,
+                   env={**os.environ, "LACON_PLUGIN_PATH": str(made[self.plugin]), **environment})
 
     def launch_study(self, mesh, text):
         """@return the launcher's process; the base is study.base"""
         write_med(self.folder / "mesh.med", mesh)
         (self.folder / "study.comm").write_text(text, encoding="utf-8")
-        return self.launch("study.comm", "--unit", "20=mesh.med", "--base", "study.base", "--fresh")
+        return self.launch("study.comm", "--unit", "20=mesh.med", "--base", "study.base", "--fresh", *self.options, **self.environment)
+
+    def by_two_processes(self, has_cells=True):
+        """For each METHODE whose work two processes share: its name, the same whoever evaluates cells.
+        @param has_cells whether processes may have cells, which the study then counts"""
+        self.environment = {"LACON_MPI_FROM": "1"}
+        for method in ("MUMPS", "PETSC") if (made["prefix"] / "bin/lacon_petsc").exists() and shutil.which("mpirun") else ("MUMPS",):
+            self.options = ("--mpi", "2", "--json", "run.json")
+            with self.subTest(method=method):
+                yield f"SOLVEUR=_F(METHODE='{method}'{', RESI_RELA=1e-13' if method == 'PETSC' else ''})"
+                commands = json.loads((self.folder / "run.json").read_text(encoding="utf-8"))["timings"]["commands"]
+                counts = next(c["counts"] for c in commands if c["command"] == "STAT_NON_LINE")
+                self.assertEqual(counts.get("processes with cells"), 2 if has_cells and method == "PETSC" else None, counts)
 
 
 class Laws(Launched):
@@ -310,6 +325,17 @@ FIN()
             np.testing.assert_allclose(values["V1"], kappa[order - 1], rtol=1e-10)
             np.testing.assert_allclose(values["V2"], kappa[order - 1] / (self.YC + kappa[order - 1]), rtol=1e-10)
         self.assertIn("DAMAGE/PETIT in VARI_ELGA: V1 = KAPPA, V2 = ENDO", said)
+
+    def test_processes_open_the_plug_in_as_well(self):
+        """The law and its memory, in processes that have their part of the cells."""
+        strain = np.array(self.STRAINS)
+        kappa = np.maximum.accumulate((self.LAMBDA + 2 * self.MU) * strain**2 / 2)
+        for solver in self.by_two_processes():
+            stress, result, said = self.stresses(f"RELATION='DAMAGE'), {solver[:-1]}")
+            np.testing.assert_allclose(stress, self.YC / (self.YC + kappa) * (self.LAMBDA + 2 * self.MU) * strain, rtol=1e-10)
+            for order in (1, 2, 3):
+                np.testing.assert_allclose(result.field("VARI_ELGA", order)[1]["V1"], kappa[order - 1], rtol=1e-10)
+            self.assertEqual(said.count("DAMAGE/PETIT in VARI_ELGA: V1 = KAPPA, V2 = ENDO"), 1)
 
     def test_initial_strains_are_taken_by_laws_that_start_elastically(self):
         """What is no strain of the law's is off: sigma = C (eps - eps0), with eps0 the same at all instants; others are refused, by what their rows say."""
@@ -397,6 +423,14 @@ FIN()
         result = Result(self.folder / "study.base", "R")
         held = result.at_nodes("REAC_NODA", 2, "DX")
         np.testing.assert_allclose([held[x == 0].sum(), np.abs(held[x > 0]).max()], [-self.PULL, 0], atol=1e-10)
+
+    def test_processes_share_its_equations(self):
+        """PHI is none of the unknowns that processes with cells know: one process has the cells, and says so."""
+        self.addCleanup(setattr, Unknowns, "STUDY", Unknowns.STUDY)
+        for solver in self.by_two_processes(has_cells=False):
+            Unknowns.STUDY = type(self).STUDY.replace("CHAM_MATER=FIELD, ", f"CHAM_MATER=FIELD, {solver}, ")
+            result = self.result([0, 0.4, 1.0], plain=(1.0, 1.5, 2.0))
+            np.testing.assert_allclose(result.where_present("DEPL", 2, "PHI"), self.UNIFORM, rtol=1e-9)
 
     def test_where_it_is_held_it_forms_boundary_layers(self):
         """phi = UNIFORM (1 - cosh(k (x - 1/2)) / cosh(k / 2)) between x = 0 and 1, where DDL_IMPO holds it: errors go as h^3."""

@@ -25,6 +25,8 @@ from meshes import write_med
 from results import Result
 
 COMM = pathlib.Path(__file__).with_name("parts.comm")
+#: processes share the factors of small matrices too
+SHARED = {"LACON_MPI_FROM": "1"}
 FIELDS = ("DEPL", "SIEF_ELGA", "VARI_ELGA")
 #: of the largest value of a field; RESI_GLOB_RELA is 1e-10 and RESI_RELA 1e-12
 AGREEMENT = 1e-9
@@ -36,14 +38,23 @@ LINEAR = 1e-7
 class Parts(StudyTest):
     def setUp(self):
         super().setUp()
-        write_med(self.folder / "blocks.med", two_blocks(1.0, (7, 6, 3)))
+        mesh = two_blocks(1.0, (7, 6, 3))
+        for number, corner in enumerate(((0, 0, 1), (1, 0, 1), (0, 1, 1))):
+            mesh.node_groups[f"C{number}"] = mesh.nodes_where(lambda *x, at=corner: x == at)
+        write_med(self.folder / "blocks.med", mesh)
 
     def options(self, name):
-        return [COMM, "--fresh", "--base", self.folder / f"{name}.base", "--unit", "20=blocks.med", "--json", self.folder / "run.json"]
+        return [COMM, "--fresh", *self.of_base(name)]
+
+    def of_base(self, name):
+        return ["--base", self.folder / f"{name}.base", "--unit", "20=blocks.med", "--json", self.folder / "run.json"]
 
     def solve(self, *options, **environment):
         """@return the result, counts of the last STAT_NON_LINE, what was said"""
-        run = self.run_tool(*self.options("run"), *options, **{"METHOD": "PETSC"} | environment)
+        return self.ran(self.options("run"), *options, **environment)
+
+    def ran(self, study, *options, **environment):
+        run = self.run_tool(*study, *options, **{"METHOD": "PETSC"} | environment)
         self.assertEqual(run.returncode, 0, run.stdout[-3000:] + run.stderr[-3000:])
         commands = json.loads((self.folder / "run.json").read_text())["timings"]["commands"]
         counts = [c["counts"] for c in commands if c["command"] == "STAT_NON_LINE"][-1]
@@ -110,6 +121,35 @@ class Parts(StudyTest):
         found, counts, _ = self.solve("--mpi", 2, GO_ON="1")
         self.assertEqual(counts["processes with cells"], 2)
         self.assert_same(whole, found)
+
+    def test_another_run_goes_on(self):
+        """POURSUITE: states of a base are handed out, whoever left them there."""
+        whole, _, _ = self.solve(METHOD="MUMPS", GO_ON="1")
+        runs = [((), "MUMPS", {}), (("--mpi", 2), "PETSC", {}), (("--mpi", 2), "MUMPS", SHARED)]
+        for (first, _, _), (second, method, shared) in zip(runs, runs[1:] + runs[:1]):
+            with self.subTest(first=first, second=second, method=method):
+                self.solve(*first, METHOD=method, INSTANTS="1", **shared)
+                found, counts, said = self.ran([COMM.with_suffix(".com1"), *self.of_base("run")], *second, METHOD=method, **shared)
+                self.assertEqual(said.count("Converged at the instant"), 2)
+                self.assertEqual("processes with cells" in counts, method == "PETSC")
+                self.assert_same(whole, found)
+
+    def test_a_rigid_plate(self):
+        """Relations among many nodes, of which each process has some: the plate stays plane, and all is as with one process."""
+        factor, _, _ = self.solve(METHOD="MUMPS", SOLID="1")
+        for method, shared in (("PETSC", {}), ("MUMPS", SHARED)):
+            found, counts, said = self.solve("--mpi", 2, METHOD=method, SOLID="1", **shared)
+            self.assertEqual("processes with cells" in counts, method == "PETSC")
+            self.assertNotIn("SOLVER_", said)
+            self.assert_same(factor, found)
+            np.testing.assert_array_equal(factor[1], found[1])
+        result = Result(self.folder / "run.base", "RESULT")
+        x, moved = result.points, np.stack([result.at_nodes("DEPL", 1, name) for name in ("DX", "DY", "DZ")], axis=1)
+        top = np.isclose(x[:, 2], 1)
+        self.assertGreater(np.ptp(moved[top, 2]), 1e-4)
+        plane = np.column_stack([np.ones(top.sum()), x[top, :2]])
+        for component in moved[top].T:
+            np.testing.assert_allclose(plane @ np.linalg.lstsq(plane, component, rcond=None)[0], component, atol=1e-12)
 
     def test_what_is_left_to_one_process(self):
         """Temperatures; initial strains, and a state to start from that they brought about and under which they act no longer: told for each."""

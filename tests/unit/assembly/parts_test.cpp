@@ -199,6 +199,7 @@ TEST_F(Parts, WhatProcessesPutTogetherHasTheBitsOfOne) {
     for (int part = 0; part < n_parts; ++part) {
       PartCells given = cells_of_part({mesh, sets, numbering, in_sets, blocks}, part);
       given.unknowns = {"DX", "DY", "DZ"};
+      const std::vector<std::size_t> given_nodes(given.node.begin(), given.node.begin() + given.n_own);
       ElementPart own(std::move(given));
       PartReport& report = board.report[static_cast<std::size_t>(part)];
       std::ranges::copy(displacement, board.displacement.begin());
@@ -220,7 +221,17 @@ TEST_F(Parts, WhatProcessesPutTogetherHasTheBitsOfOne) {
       }
       own.add_to(matrix.rows(), matrix.columns(), values);
       std::ranges::copy(moved, board.displacement.begin());
+      own.multiply(board, true);
+      const std::vector<double> magnitudes(board.other.begin(), board.other.end());
       own.multiply(board, false);
+      std::vector<double> twice, products(2 * moved.size(), 0.0);  // a column and magnitudes at once have the bits of each
+      for (const double value : moved) twice.insert(twice.end(), {value, value});
+      own.multiply(twice, products, 2);
+      for (const std::size_t at : given_nodes)
+        for (std::size_t dof = 3 * at; dof < 3 * at + 3; ++dof) {
+          EXPECT_EQ(products[2 * dof], board.other[dof]);
+          EXPECT_EQ(products[2 * dof + 1], magnitudes[dof]);
+        }
     }
     EXPECT_TRUE(std::ranges::equal(board.force, force)) << n_parts;
     EXPECT_TRUE(std::ranges::equal(values, matrix.values())) << n_parts;

@@ -69,5 +69,71 @@ TEST(LooseMotions, ThereAreNoneWhereContactHolds) {
   }
 }
 
+/// A matrix as other processes have it, and how often they are asked.
+class Elsewhere : public RowsElsewhere {
+ public:
+  explicit Elsewhere(const SparseMatrix& matrix) : matrix_(matrix) {}
+  std::span<const double> product(std::span<const double> x, bool magnitudes) const override {
+    ++asked;
+    multiply(x, magnitudes);
+    return y_;
+  }
+  void products(int n_columns, const std::function<void(std::span<double>)>& fill,
+                const std::function<void(std::span<const double>)>& use) const override {
+    ++asked;
+    const std::size_t n = matrix_.numbering().equation.size();
+    std::vector<double> x(n * static_cast<std::size_t>(n_columns), 0.0), y(x.size()), own(n);
+    fill(x);
+    for (int c = 0; c < n_columns; ++c) {
+      for (std::size_t i = 0; i < n; ++i) own[i] = x[i * static_cast<std::size_t>(n_columns) + static_cast<std::size_t>(c)];
+      multiply(own, c + 1 == n_columns);
+      for (std::size_t i = 0; i < n; ++i) y[i * static_cast<std::size_t>(n_columns) + static_cast<std::size_t>(c)] = y_[i];
+    }
+    use(y);
+  }
+  Sizes row_sizes() const override { return {}; }
+  SparseMatrix whole(const SparseMatrix&) const override { return matrix_; }
+
+  mutable int asked = 0;
+
+ private:
+  void multiply(std::span<const double> x, bool magnitudes) const {
+    const std::vector<std::int64_t>& equation = matrix_.numbering().equation;
+    std::vector<double> own(static_cast<std::size_t>(matrix_.size())), image(own.size());
+    for (std::size_t i = 0; i < equation.size(); ++i)
+      if (equation[i] >= 0) own[static_cast<std::size_t>(equation[i])] = x[i];
+    magnitudes ? matrix_.multiply_magnitudes(own, image) : matrix_.multiply(own, image);
+    y_.assign(equation.size(), 0.0);
+    for (std::size_t i = 0; i < equation.size(); ++i)
+      if (equation[i] >= 0) y_[i] = image[static_cast<std::size_t>(equation[i])];
+  }
+  const SparseMatrix& matrix_;
+  mutable std::vector<double> y_;
+};
+
+// Processes that have rows are asked once, whatever the motions are.
+TEST(LooseMotions, OtherProcessesAreAskedOnce) {
+  for (const bool held : {false, true}) {
+    StaticProblem problem = two_squares("ELAS/PETIT", false);
+    problem.loads.push_back(hold(bottom, 1));
+    problem.loads.push_back(hold(bottom, 0));
+    if (held) problem.loads.push_back(hold(axis, 0));
+    number(problem);
+    Equilibrium equilibrium(problem);
+    const StaticState rest = equilibrium.natural_state();
+    equilibrium.assemble(rest, rest, {});
+    const SparseMatrix& whole = equilibrium.system().matrix();
+    const Elsewhere elsewhere(whole);
+    SparseMatrix here(problem.numbering, {}, {});
+    here.add_elsewhere(&elsewhere);
+    const LooseMotions motions = motions_of(problem);
+    const std::vector<LooseMotion> expected = motions.of(whole), found = motions.of(here);
+    EXPECT_EQ(elsewhere.asked, 1);
+    ASSERT_EQ(found.size(), expected.size());
+    EXPECT_EQ(found.size(), held ? 1U : 3U);
+    for (std::size_t i = 0; i < found.size(); ++i) EXPECT_EQ(found[i].bodies, expected[i].bodies);
+  }
+}
+
 }  // namespace
 }  // namespace lacon
