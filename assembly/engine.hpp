@@ -12,7 +12,7 @@
 
 namespace lacon {
 
-class PetscProcesses;
+class PartProcesses;
 
 /// What a factorisation found.
 struct Factorisation {
@@ -58,9 +58,9 @@ class Engine {
   /// on with the same bits.
   virtual bool wants_exact_factors() const { return false; }
   virtual void want_exact_factors() {}
-  /// Those that may have cells and rows of the matrix themselves; such a matrix (SparseMatrix::elsewhere) is solved with. None
-  /// of an engine that needs a matrix in one process.
-  virtual std::shared_ptr<PetscProcesses> processes() const { return nullptr; }
+  /// Those that may have cells and rows of so large a matrix themselves; such a matrix (SparseMatrix::elsewhere) is solved
+  /// with. None of an engine that needs a matrix in one process.
+  virtual std::shared_ptr<PartProcesses> processes(std::int64_t /*n_equations*/) const { return nullptr; }
 };
 
 /// An engine that keeps a factor, with which one substitution is cheap and a block of sparse right sides is cheaper still.

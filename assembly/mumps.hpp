@@ -23,8 +23,9 @@ struct MumpsSettings {
 /// The places of entries and their order of elimination, numbered from 1. They must stay where they are.
 struct MumpsPattern {
   std::span<int> row, column;
-  std::span<int> place;   ///< of each equation
-  std::span<int> border;  ///< equations, the last ones in this order, that are left: those of the Schur complement
+  std::span<int> place;                ///< of each equation
+  std::span<int> border;               ///< equations, the last ones in this order, that are left: those of the Schur complement
+  const VertexGraph* graph = nullptr;  ///< where entries are not listed: those behind it
 };
 
 /// What the analysis foresees.

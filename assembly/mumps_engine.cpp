@@ -65,11 +65,14 @@ struct Form {
 
 struct MumpsEngine::State {
   MumpsOptions options;
-  bool exact = false;  ///< from now on
-  std::vector<int> row, column, place;
+  bool exact = false;            ///< from now on
+  std::vector<int> row, column;  ///< of entries, where one process makes the factor
+  std::vector<int> place;
+  Ragged<std::int32_t> neighbours;  ///< of the whole matrix
+  std::optional<VertexGraph> graph;
   Form form;
   std::optional<Subtrees> subtrees;  ///< where processes may share the factor
-  MumpsProcesses processes;
+  std::shared_ptr<MumpsProcesses> processes;
   std::unique_ptr<MumpsFactor<double>> full;  ///< one of the two
   std::unique_ptr<MumpsFactor<float>> single;
   const SparseMatrix* matrix = nullptr;  ///< whose factor is kept
@@ -77,7 +80,8 @@ struct MumpsEngine::State {
   std::vector<std::int64_t> alone;       ///< likewise: unknowns that their row alone decides, such as pressures of open patches
   bool has_folder = false;
 
-  explicit State(const MumpsOptions& given) : options(given), processes(given.processes, given.program) {}
+  explicit State(const MumpsOptions& given)
+      : options(given), processes(std::make_shared<MumpsProcesses>(given.processes, given.program)) {}
   State(const State&) = delete;
   State& operator=(const State&) = delete;
   ~State() {
@@ -113,20 +117,30 @@ struct MumpsEngine::State {
                                  .low_rank = form.low_rank ? low_rank_threshold() : 0,
                                  .out_of_core = form.out_of_core,
                                  .folder = options.folder};
-    const MumpsPattern pattern{row, column, place};
+    list_entries(symmetric);
+    const MumpsPattern pattern{row, column, place, {}, form.shared ? &*graph : nullptr};
     if (!form.single_precision) return (full = made<double>(settings))->analyse(pattern);
     return (single = made<float>(settings))->analyse(pattern);
   }
+  void list_entries(bool symmetric) {
+    row.clear();
+    column.clear();
+    if (form.shared) return;
+    graph->for_each_entry(symmetric, [&](std::int32_t i, std::int32_t j) {
+      row.push_back(i + 1);
+      column.push_back(j + 1);
+    });
+  }
   template <class Real>
   std::unique_ptr<MumpsFactor<Real>> made(const MumpsSettings& settings) {
-    if (form.shared) return std::make_unique<TreeMumps<Real>>(settings, *subtrees, processes);
+    if (form.shared) return std::make_unique<TreeMumps<Real>>(settings, *subtrees, *processes);
     return std::make_unique<Mumps<Real>>(settings);
   }
 
   /// Throws SOLVER_8 where there have to be some.
   bool has_processes() {
     try {
-      processes.start();
+      processes->start();
       return true;
     } catch (const std::exception&) {  // of the system too: no descriptors left, say
       if (options.processes_required) throw;
@@ -161,26 +175,30 @@ struct MumpsEngine::State {
 
   Factorisation factorise_as_prepared() {
     Factorisation found;
+    std::optional<SparseMatrix> whole;  // where one process makes the factor
+    if (matrix->elsewhere() && !form.shared) whole = matrix->elsewhere()->whole(*matrix);
+    const SparseMatrix& of = whole ? *whole : *matrix;
     if (form.is_exact()) {
-      found = full->factorise(matrix->values());
+      found = full->factorise(of.values());
     } else {
-      scale = matrix->equilibration();
-      alone = matrix->rows_alone();
-      found = single ? factorise_scaled(*single) : factorise_scaled(*full);
+      scale = of.equilibration();
+      alone = of.rows_alone();
+      found = single ? factorise_scaled(*single, of) : factorise_scaled(*full, of);
     }
     found.single_precision = form.single_precision;
     found.low_rank = form.low_rank;
     found.out_of_core = form.out_of_core;
-    found.processes = form.shared ? processes.size() : 1;
+    found.processes = form.shared ? processes->size() : 1;
     return found;
   }
   template <class Real>
-  Factorisation factorise_scaled(MumpsFactor<Real>& mumps) {
+  Factorisation factorise_scaled(MumpsFactor<Real>& mumps, const SparseMatrix& of) {
+    if (of.elsewhere()) return dynamic_cast<TreeMumps<Real>&>(mumps).factorise(of, scale);
     std::vector<Real> values;
-    values.reserve(static_cast<std::size_t>(matrix->n_entries()));
-    for (std::int64_t i = 0; i < matrix->size(); ++i)
-      for (std::int64_t k = matrix->rows()[i]; k < matrix->rows()[i + 1]; ++k)
-        values.push_back(static_cast<Real>(scale[i] * matrix->values()[k] * scale[matrix->columns()[k]]));
+    values.reserve(static_cast<std::size_t>(of.n_entries()));
+    for (std::int64_t i = 0; i < of.size(); ++i)
+      for (std::int64_t k = of.rows()[i]; k < of.rows()[i + 1]; ++k)
+        values.push_back(static_cast<Real>(scale[i] * of.values()[k] * scale[of.columns()[k]]));
     return mumps.factorise(values);
   }
 
@@ -275,26 +293,26 @@ MumpsEngine::~MumpsEngine() = default;
 bool MumpsEngine::wants_exact_factors() const { return state_->exact; }
 void MumpsEngine::want_exact_factors() { state_->exact = true; }
 
+std::shared_ptr<PartProcesses> MumpsEngine::processes(std::int64_t n_equations) const {
+  const MumpsOptions& options = state_->options;
+  const bool share = options.processes > 1 && options.processes_required && n_equations >= options.least_shared &&
+                     options.memory != MumpsOptions::Memory::out_of_core;
+  return share ? state_->processes : nullptr;
+}
+
 void MumpsEngine::analyse(const SparseMatrix& matrix) {
   State& s = *state_;
   s.matrix = nullptr;
   s.full.reset();
   s.single.reset();
-  s.row.clear();
-  s.column.clear();
-  s.row.reserve(static_cast<std::size_t>(matrix.n_entries()));
-  s.column.reserve(static_cast<std::size_t>(matrix.n_entries()));
-  for (std::int64_t row = 0; row < matrix.size(); ++row)
-    for (std::int64_t k = matrix.rows()[row]; k < matrix.rows()[row + 1]; ++k) {
-      s.row.push_back(static_cast<int>(row + 1));
-      s.column.push_back(matrix.columns()[k] + 1);
-    }
-  const std::vector<std::int32_t> order = elimination_order(matrix);
+  s.neighbours = matrix.elsewhere() ? matrix.elsewhere()->graph(matrix) : matrix.neighbours();
+  s.graph.emplace(VertexGraph{s.neighbours, matrix.numbering()});
+  const std::vector<std::int32_t> order = elimination_order(*s.graph);
   s.place.assign(order.begin(), order.end());
   for (int& p : s.place) ++p;
   s.subtrees.reset();
   if (s.options.processes > 1 && matrix.size() >= s.options.least_shared) {
-    s.subtrees = independent_subtrees(matrix, order, s.options.processes);
+    s.subtrees = independent_subtrees(*s.graph, order, s.options.processes);
     if (s.subtrees->process.size() < 2 || !s.has_processes()) s.subtrees.reset();  // one alone would wait for the others
   }
   s.choose(matrix);

@@ -45,6 +45,8 @@ class MumpsEngine : public FactorEngine {
   Solution solve(std::span<double> right_side) override;
   bool wants_exact_factors() const override;
   void want_exact_factors() override;
+  /// Those that share factors, where they have to.
+  std::shared_ptr<PartProcesses> processes(std::int64_t n_equations) const override;
   void substitute(std::span<double> right_side) override;
   std::vector<float> substitute(std::span<const std::int64_t> offset, std::span<const std::int32_t> index,
                                 std::span<const double> value) override;

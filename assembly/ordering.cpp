@@ -9,9 +9,9 @@
 
 namespace lacon {
 
-std::vector<std::int32_t> elimination_order(const SparseMatrix& matrix) {
-  const Numbering& numbering = matrix.numbering();
-  const Ragged<std::int32_t>& graph = matrix.neighbours();
+std::vector<std::int32_t> elimination_order(const VertexGraph& of) {
+  const Numbering& numbering = of.numbering;
+  const Ragged<std::int32_t>& graph = of.neighbours;
   const std::int64_t n_vertices = numbering.n_vertices();
 
   // vertices that have equations, numbered without gaps: METIS must not see the others

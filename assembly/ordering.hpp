@@ -11,6 +11,6 @@ namespace lacon {
 ///
 /// Nested dissection of the vertex graph; a multiplier is moved behind the last of its neighbours that are nodes, so that its
 /// zero diagonal is filled before it becomes a pivot.
-std::vector<std::int32_t> elimination_order(const SparseMatrix& matrix);
+std::vector<std::int32_t> elimination_order(const VertexGraph& graph);
 
 }  // namespace lacon

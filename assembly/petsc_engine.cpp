@@ -13,6 +13,7 @@
 #include "lacon/assembly/loose_motions.hpp"
 #include "lacon/assembly/parts/solid_parts.hpp"
 #include "lacon/assembly/petsc/exchange.hpp"
+#include "lacon/assembly/petsc_processes.hpp"
 #include "lacon/catalog/messages.hpp"
 #include "lacon/catalog/wording.hpp"
 #include "lacon/structures/executable.hpp"
@@ -145,7 +146,7 @@ bool PetscEngine::is_there() { return std::filesystem::exists(program_beside_thi
 
 PetscEngine::PetscEngine(const PetscOptions& options) : state_(std::make_unique<State>(options)) {}
 PetscEngine::~PetscEngine() = default;
-std::shared_ptr<PetscProcesses> PetscEngine::processes() const { return state_->processes; }
+std::shared_ptr<PartProcesses> PetscEngine::processes(std::int64_t /*n_equations*/) const { return state_->processes; }
 
 void PetscEngine::analyse(const SparseMatrix& matrix) {
   State& s = *state_;

@@ -41,7 +41,7 @@ class PetscEngine : public Engine {
   Solution solve(std::span<double> right_side) override;
   /// To RESI_RELA, where that is more.
   Solution solve_to(double share, std::span<double> right_side) override;
-  std::shared_ptr<PetscProcesses> processes() const override;
+  std::shared_ptr<PartProcesses> processes(std::int64_t n_equations) const override;
 
  private:
   struct State;

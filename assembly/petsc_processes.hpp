@@ -4,6 +4,7 @@
 #include <memory>
 #include <string>
 
+#include "lacon/assembly/parts/part_processes.hpp"
 #include "lacon/assembly/processes/companion.hpp"
 
 namespace lacon {
@@ -15,19 +16,16 @@ struct PetscProgram {
   int n_ranks = 1;
 };
 
-class PetscProcesses {
+class PetscProcesses : public PartProcesses {
  public:
   explicit PetscProcesses(PetscProgram program) : program_(std::move(program)) {}
-  int size() const { return program_.n_ranks; }
+  int size() const override { return program_.n_ranks; }
 
-  /// Start them, unless they run. Throws SOLVER_6, SOLVER_8 where they have ended with what nobody else has.
-  void start();
-  /// Say a line and wait for the answer. Throws SOLVER_8 where they have ended.
-  std::string ask(const std::string& line);
+  void start() override;
+  std::string ask(const std::string& line) override;
   /// The next line of their own. Throws likewise.
   std::string answer();
-  /// From now on they have what nobody else has: they are not started a second time.
-  void keep() { keeps_ = true; }
+  void keep() override { keeps_ = true; }
 
  private:
   [[noreturn]] void fail_as_ended() const;

@@ -1,8 +1,11 @@
 #pragma once
 // What of a symmetric matrix other processes have: entries between unknowns of nodes, the imposed ones among them.
+#include <cstdint>
 #include <functional>
 #include <span>
 #include <vector>
+
+#include "lacon/structures/mesh.hpp"
 
 namespace lacon {
 
@@ -22,6 +25,15 @@ class RowsElsewhere {
     std::span<const double> sum, entries;
   };
   virtual Sizes row_sizes() const = 0;
+  /// The diagonal, and the largest |a_ij| d_i d_j of a row. @param d, @return (n_nodes, n_components)
+  virtual std::span<const double> diagonal() const = 0;
+  virtual std::span<const double> row_maxima(std::span<const double> d) const = 0;
+  /// From now on changes are those from what the matrix is now; the largest one of an entry, over its row's and its column's
+  /// diagonal, squared.
+  virtual void remember() const = 0;
+  virtual double change() const = 0;
+  /// Neighbours of each vertex in the whole matrix. @param here what this process has of it, with its multipliers
+  virtual Ragged<std::int32_t> graph(const SparseMatrix& here) const = 0;
   /// The whole matrix in this process. @param here what it has of it, with its multipliers
   virtual SparseMatrix whole(const SparseMatrix& here) const = 0;
 };

@@ -90,13 +90,13 @@ double distance_squared(std::span<const std::int32_t> i, std::span<const double>
 /// The largest change of the stiffness from `base` on, of a row's and a column's diagonal; infinite where the patterns differ.
 double stiffness_change(const SparseMatrix& matrix, const SparseMatrix& base, std::int64_t first_multiplier) {
   if (matrix.size() != base.size() || matrix.rows()[first_multiplier] != base.rows()[first_multiplier]) return INFINITY;
-  double largest = 0;  // squared
+  double largest = matrix.elsewhere() ? matrix.elsewhere()->change() : 0;  // squared
+  const std::vector<double> diagonal = base.diagonals();
   for (std::int64_t row = 0; row < first_multiplier; ++row)
     for (std::int64_t k = matrix.rows()[row]; k < matrix.rows()[row + 1]; ++k) {
       const double difference = matrix.values()[k] - base.values()[k];
       if (difference != 0)
-        largest =
-            std::max(largest, difference * difference / std::abs(base.diagonal(row) * base.diagonal(matrix.columns()[k])));
+        largest = std::max(largest, difference * difference / std::abs(diagonal[row] * diagonal[matrix.columns()[k]]));
     }
   return std::sqrt(largest);
 }
@@ -220,6 +220,7 @@ SolutionReport SaddlePointSolver::solve(const SparseMatrix& matrix, std::int64_t
   columns_.clear();
   blocks_.clear();
   if (substitution_) base_ = matrix;
+  if (substitution_ && matrix.elsewhere()) matrix.elsewhere()->remember();
   const SparseMatrix& now = substitution_ ? *base_ : matrix;  // nothing is kept without a factor
   if (!analysed) {
     const Stopwatch watch(report.analysis_seconds);
@@ -259,15 +260,16 @@ SaddlePointSolver::Kept SaddlePointSolver::kept_behind(const Factorisation& fact
 }
 
 std::vector<double> SaddlePointSolver::scales(const SparseMatrix& matrix) {
+  const std::vector<double> diagonal = matrix.diagonals();
   std::vector<double> scale(matrix.size());
-  for (std::int64_t i = 0; i < first_multiplier_; ++i) scale[i] = 1 / std::sqrt(std::abs(matrix.diagonal(i)));
+  for (std::int64_t i = 0; i < first_multiplier_; ++i) scale[i] = 1 / std::sqrt(std::abs(diagonal[i]));
   for (std::int64_t i = first_multiplier_; i < matrix.size(); ++i) {
     const Row row(matrix, i);
     double flexibility = 0;
     for (std::size_t k = 0; k < row.columns.size(); ++k)
-      flexibility += row.values[k] * row.values[k] / std::abs(matrix.diagonal(row.columns[k]));
+      flexibility += row.values[k] * row.values[k] / std::abs(diagonal[row.columns[k]]);
     // a row that is off is solved exactly: any weight does where it never had coefficients
-    double& known = multiplier_scale_.try_emplace(i, 1 / std::abs(matrix.diagonal(0))).first->second;
+    double& known = multiplier_scale_.try_emplace(i, 1 / std::abs(diagonal[0])).first->second;
     if (flexibility > 0) known = flexibility;
     scale[i] = flexibility > 0 ? 1 / std::sqrt(known) : std::sqrt(known) / std::abs(row.diagonal);
   }

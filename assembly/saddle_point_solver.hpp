@@ -66,10 +66,11 @@ class SaddlePointSolver {
   void forget_right_sides() { reference_ = 0; }
 
   /// What later solutions depend on, for another process that goes on with the same bits: what save_base() saves and, in
-  /// save(), how it is used. The base is large and changes only where base_number() does; 0: there is none.
+  /// save(), how it is used. The base is large and changes only where base_number() does; 0: there is
+  /// none, or other processes have it: a new one is made then, with the digits of this one.
   void save(const hdf5::Group& group) const;
   void save_base(const hdf5::Group& group) const;
-  std::int64_t base_number() const { return kept_ == Kept::factor ? factorisations_ : 0; }
+  std::int64_t base_number() const { return kept_ == Kept::factor && !base_->elsewhere() ? factorisations_ : 0; }
   /// Of a solver that has solved nothing yet. @param base what save_base() made; nullptr where base_number() was 0
   /// Throws BASE_2, SOLVER_2.
   void resume(const hdf5::Group& group, const hdf5::Group* base, const Numbering& numbering);

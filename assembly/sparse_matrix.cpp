@@ -27,9 +27,10 @@ Ragged<std::int32_t> cliques_of_vertices(std::int64_t n_vertices, const Ragged<s
   return transposed;
 }
 
-/// The sorted neighbours of each vertex.
-Ragged<std::int32_t> neighbours_of_vertices(std::int64_t n_vertices, const Ragged<std::int32_t>& cliques,
-                                            std::span<const Coupling> couplings) {
+}  // namespace
+
+Ragged<std::int32_t> vertex_graph(std::int64_t n_vertices, const Ragged<std::int32_t>& cliques,
+                                  std::span<const Coupling> couplings) {
   const Ragged<std::int32_t> own = cliques_of_vertices(n_vertices, cliques);
   std::vector<std::vector<std::int32_t>> extra(couplings.empty() ? 0 : n_vertices);
   for (const Coupling& c : couplings) {
@@ -72,11 +73,9 @@ Ragged<std::int32_t> neighbours_of_vertices(std::int64_t n_vertices, const Ragge
   return neighbours;
 }
 
-}  // namespace
-
 SparseMatrix::SparseMatrix(const Numbering& numbering, const Ragged<std::int32_t>& cliques, std::span<const Coupling> couplings,
                            Symmetry symmetry)
-    : SparseMatrix(neighbours_of_vertices(numbering.n_vertices(), cliques, couplings), numbering, symmetry) {}
+    : SparseMatrix(vertex_graph(numbering.n_vertices(), cliques, couplings), numbering, symmetry) {}
 
 SparseMatrix::SparseMatrix(Ragged<std::int32_t> neighbours, const Numbering& numbering, Symmetry symmetry)
     : numbering_(&numbering), symmetry_(symmetry), neighbours_(std::move(neighbours)) {
@@ -191,6 +190,16 @@ std::int64_t SparseMatrix::diagonal_place(std::int64_t equation) const {
   return std::lower_bound(row, column_.begin() + row_[equation + 1], equation) - column_.begin();
 }
 
+std::vector<double> SparseMatrix::diagonals() const {
+  std::vector<double> values(static_cast<std::size_t>(size()));
+  for (std::int64_t i = 0; i < size(); ++i) values[i] = diagonal(i);
+  if (!elsewhere_) return values;
+  const std::span<const double> more = elsewhere_->diagonal();
+  for (std::size_t dof = 0; dof < more.size(); ++dof)
+    if (const std::int64_t e = numbering_->equation[dof]; e >= 0) values[e] += more[dof];
+  return values;
+}
+
 void SparseMatrix::add_diagonal(std::int64_t equation, double value) { value_[diagonal_place(equation)] += value; }
 
 std::vector<SparseMatrix::RowSize> SparseMatrix::row_sizes(std::int64_t n) const {
@@ -267,13 +276,18 @@ void SparseMatrix::multiply_together(std::span<const double> x, std::span<double
   }
 }
 
+std::vector<double> SparseMatrix::nodal(std::span<const double> x) const {
+  const std::vector<std::int64_t>& equation = numbering_->equation;
+  std::vector<double> values(equation.size(), 0.0);
+  for (std::size_t dof = 0; dof < values.size(); ++dof)
+    if (equation[dof] >= 0) values[dof] = x[equation[dof]];
+  return values;
+}
+
 void SparseMatrix::multiply_elsewhere(std::span<const double> x, std::span<double> y, bool magnitudes) const {
   const std::vector<std::int64_t>& equation = numbering_->equation;
-  std::vector<double> nodal(equation.size(), 0.0);
-  for (std::size_t dof = 0; dof < nodal.size(); ++dof)
-    if (equation[dof] >= 0) nodal[dof] = x[equation[dof]];
-  const std::span<const double> product = elsewhere_->product(nodal, magnitudes);
-  for (std::size_t dof = 0; dof < nodal.size(); ++dof)
+  const std::span<const double> product = elsewhere_->product(nodal(x), magnitudes);
+  for (std::size_t dof = 0; dof < equation.size(); ++dof)
     if (equation[dof] >= 0) y[equation[dof]] += product[dof];
 }
 
@@ -304,6 +318,11 @@ std::vector<double> SparseMatrix::equilibration() const {
         largest[row] = std::max(largest[row], value);
         largest[column_[k]] = std::max(largest[column_[k]], value);
       }
+    if (elsewhere_) {
+      const std::span<const double> more = elsewhere_->row_maxima(nodal(scale));
+      for (std::size_t dof = 0; dof < more.size(); ++dof)
+        if (const std::int64_t e = numbering_->equation[dof]; e >= 0) largest[e] = std::max(largest[e], more[dof]);
+    }
     for (std::int64_t row = 0; row < size(); ++row) {
       if (largest[row] > 0) scale[row] /= std::sqrt(largest[row]);
       done = done && (largest[row] == 0 || std::abs(std::log2(largest[row])) < 1);
@@ -320,6 +339,11 @@ double SparseMatrix::norm() const {
       sums[row] += std::abs(value_[k]);
       if (is_symmetric() && column_[k] != row) sums[column_[k]] += std::abs(value_[k]);
     }
+  if (elsewhere_) {
+    const std::span<const double> more = elsewhere_->row_sizes().sum;
+    for (std::size_t dof = 0; dof < more.size(); ++dof)
+      if (const std::int64_t e = numbering_->equation[dof]; e >= 0) sums[e] += more[dof];
+  }
   return sums.empty() ? 0 : *std::max_element(sums.begin(), sums.end());
 }
 

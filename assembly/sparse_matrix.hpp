@@ -17,6 +17,35 @@ struct Coupling {
 
 enum class Symmetry { symmetric, general };
 
+/// The sorted neighbours of each vertex, where those of each clique and of each coupling meet.
+Ragged<std::int32_t> vertex_graph(std::int64_t n_vertices, const Ragged<std::int32_t>& cliques,
+                                  std::span<const Coupling> couplings);
+
+/// The graph behind a pattern, of which rows need not be there.
+struct VertexGraph {
+  const Ragged<std::int32_t>& neighbours;
+  const Numbering& numbering;
+
+  /// Call use(row, column) for the entries of a pattern, row by row, as a SparseMatrix has them. @param lower triangle alone
+  template <class Use>
+  void for_each_entry(bool lower, const Use& use) const {
+    const std::vector<std::int64_t>& first = numbering.first;
+    for (std::int32_t v = 0; v < numbering.n_vertices(); ++v)
+      for (std::int64_t row = first[v]; row < first[v + 1]; ++row) {
+        const auto add = [&](std::int64_t from, std::int64_t to) {
+          for (; from < to; ++from) use(static_cast<std::int32_t>(row), static_cast<std::int32_t>(from));
+        };
+        bool is_own_there = false;
+        for (const std::int32_t w : neighbours[v]) {
+          if (w > v && lower) break;
+          if (w > v && !is_own_there) add(first[v], first[v + 1]), is_own_there = true;
+          add(first[w], first[w + 1]);
+        }
+        if (!is_own_there) add(first[v], lower ? row + 1 : first[v + 1]);
+      }
+  }
+};
+
 class SparseMatrix {
  public:
   /// The pattern in which neighbouring vertices meet. @param neighbours of each vertex, ascending, without itself
@@ -49,6 +78,8 @@ class SparseMatrix {
   std::span<const std::int32_t> columns() const { return column_; }
   std::span<const double> values() const { return value_; }
   double diagonal(std::int64_t equation) const { return value_[diagonal_place(equation)]; }
+  /// All of it, with what is elsewhere.
+  std::vector<double> diagonals() const;
 
   /// Entries that other processes have, which products and sizes of rows count in; they must outlive the matrix. Rows, columns
   /// and values are those of this one.
@@ -82,6 +113,7 @@ class SparseMatrix {
   /// The graph behind the pattern: neighbours of each vertex, without itself.
   const Ragged<std::int32_t>& neighbours() const { return neighbours_; }
   const Numbering& numbering() const { return *numbering_; }
+  operator VertexGraph() const { return {neighbours_, *numbering_}; }
 
  private:
   /// An equation of an element that add() has in hand.
@@ -92,6 +124,8 @@ class SparseMatrix {
   /// Add value(i, j) of every two equations in hand, of those up to the diagonal where `lower`.
   template <bool lower, class Value>
   void add_rows(std::span<const std::int64_t> equations, const Value& value);
+  /// Of equations those of nodes, (n_nodes, n_components), 0 where there is none.
+  std::vector<double> nodal(std::span<const double> x) const;
   std::int64_t diagonal_place(std::int64_t equation) const;
   /// y = f(A) f(x), of numbers or of magnitudes.
   template <class Function>

@@ -16,6 +16,7 @@ struct alignas(double) PartReport {
   std::int32_t set, cell;  ///< the first that is turned inside out, by its number in the mesh; -1: none
   std::int32_t flows;      ///< whether internal variables are others than those of a state
   std::int32_t failed;     ///< with the error that follows
+  double change;           ///< ElementPart::change()
   char severity, id[31];
   char text[1000], advice[500];
 

@@ -60,7 +60,10 @@ void ElementPart::evaluate(const Board& board, PartReport& report, SolidMatrix w
   report.set = report.cell = -1;
   report.failed = 0;
   if (present_.use_count() > 1) present_ = std::make_shared<State>(*present_);  // a kept state stays as it is
-  if (wanted != SolidMatrix::none) matrix_->set_zero();
+  if (wanted != SolidMatrix::none) {
+    if (remembers_ && remembered_.empty()) remembered_.assign(matrix_->values().begin(), matrix_->values().end());
+    matrix_->set_zero();
+  }
   const std::vector<double> displacement = gathered(board.displacement);
   const std::vector<double> before = previous < 0 ? std::vector<double>() : gathered(board.previous);
   const std::vector<double> at_first = origin < 0 ? std::vector<double>() : gathered(board.origin);
@@ -157,18 +160,54 @@ void ElementPart::measure(const Board& board) const {
   hand_out(entries, board.other);
 }
 
+void ElementPart::write_diagonal(const Board& board) const {
+  std::vector<double> diagonal(cells_.equation.size());
+  for (std::size_t i = 0; i < diagonal.size(); ++i) diagonal[i] = matrix_->diagonal(static_cast<std::int64_t>(i));
+  hand_out(diagonal, board.other);
+}
+
+void ElementPart::write_maxima(const Board& board) const {
+  const std::vector<double> scale = gathered(board.displacement);
+  std::vector<double> most(scale.size(), 0.0);
+  for (std::int64_t row = 0; row < matrix_->size(); ++row)
+    for (std::int64_t k = matrix_->rows()[row]; k < matrix_->rows()[row + 1]; ++k) {
+      const std::int32_t column = matrix_->columns()[k];
+      const double value = std::abs(matrix_->values()[k]) * scale[row] * scale[column];
+      most[row] = std::max(most[row], value);
+      most[column] = std::max(most[column], value);
+    }
+  hand_out(most, board.other);
+}
+
+void ElementPart::remember() {
+  remembers_ = true;
+  remembered_ = {};
+}
+
+double ElementPart::change() const {
+  if (remembered_.empty()) return 0;
+  const std::span<const std::int64_t> rows = matrix_->rows();
+  const std::int64_t own = cells_.n_own * cells_.dimension;
+  double largest = 0;
+  for (std::int64_t i = 0; i < matrix_->size(); ++i)
+    for (std::int64_t k = rows[i]; k < rows[i + 1]; ++k) {
+      const std::int32_t j = matrix_->columns()[k];
+      const double difference = matrix_->values()[k] - remembered_[k];
+      if (difference == 0 || (i >= own && j >= own) || cells_.equation[i] < 0 || cells_.equation[j] < 0) continue;
+      const std::int64_t a = i < own ? i : j, b = j < own ? j : i;  // a diagonal is whole where the node is an own one
+      const double size = std::abs(remembered_[rows[a + 1] - 1] * remembered_[rows[b + 1] - 1]);
+      largest = std::max(largest, difference * difference / size);
+    }
+  return largest;
+}
+
 void ElementPart::add_to(std::span<const std::int64_t> row, std::span<const std::int32_t> column,
                          std::span<double> value) const {
-  const std::int64_t own = cells_.n_own * cells_.dimension;
-  for (std::int64_t i = 0; i < matrix_->size(); ++i)
-    for (std::int64_t k = matrix_->rows()[i]; k < matrix_->rows()[i + 1]; ++k) {
-      const std::int64_t j = matrix_->columns()[k];
-      const std::int32_t a = cells_.equation[i], b = cells_.equation[j];
-      if (a < 0 || b < 0 || (a > b ? i : j) >= own) continue;
-      const auto columns = column.subspan(row[std::max(a, b)], row[std::max(a, b) + 1] - row[std::max(a, b)]);
-      const auto found = std::ranges::lower_bound(columns, std::min(a, b));
-      value[row[std::max(a, b)] + (found - columns.begin())] += matrix_->values()[k];
-    }
+  for_each_own([&](std::int32_t i, std::int32_t j, double entry) {
+    const auto columns = column.subspan(row[i], row[i + 1] - row[i]);
+    const auto found = std::ranges::lower_bound(columns, j);
+    value[row[i] + (found - columns.begin())] += entry;
+  });
 }
 
 }  // namespace lacon

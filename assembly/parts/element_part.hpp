@@ -3,6 +3,7 @@
 //
 // A process evaluates every cell that meets one of its nodes, so that forces and rows of its nodes are whole, summed in the
 // order of the cells: they have the bits that one process gives them.
+#include <algorithm>
 #include <cstdint>
 #include <map>
 #include <memory>
@@ -47,6 +48,24 @@ class ElementPart {
   void multiply(std::span<const double> x, std::span<double> y, int n_columns) const;
   /// SparseMatrix::row_sizes of own rows: sums, and how many entries.
   void measure(const Board& board) const;
+  /// The diagonal of own rows; and their largest |a_ij| d_i d_j, with d in the place of the board's displacements.
+  void write_diagonal(const Board& board) const;
+  void write_maxima(const Board& board) const;
+  /// From now on changes of the matrix are those from what it is now.
+  void remember();
+  /// The largest one, of a row's and a column's diagonal, squared.
+  double change() const;
+  /// Entries of the whole matrix in rows of own nodes. @param use(row, column, value): equations, of the lower triangle
+  template <class Use>
+  void for_each_own(const Use& use) const {
+    const std::int64_t own = cells_.n_own * cells_.dimension;
+    for (std::int64_t i = 0; i < matrix_->size(); ++i)
+      for (std::int64_t k = matrix_->rows()[i]; k < matrix_->rows()[i + 1]; ++k) {
+        const std::int64_t j = matrix_->columns()[k];
+        const std::int32_t a = cells_.equation[i], b = cells_.equation[j];
+        if (a >= 0 && b >= 0 && (a > b ? i : j) < own) use(std::max(a, b), std::min(a, b), matrix_->values()[k]);
+      }
+  }
   /// Add the entries that this process has to a lower triangle of all equations: those in rows of its own nodes.
   void add_to(std::span<const std::int64_t> row, std::span<const std::int32_t> column, std::span<double> value) const;
 
@@ -73,6 +92,8 @@ class ElementPart {
   std::vector<ElementSet> sets_;
   Numbering numbering_;
   std::unique_ptr<SparseMatrix> matrix_;
+  bool remembers_ = false;
+  std::vector<double> remembered_;  ///< values of the matrix, where they have changed since
   std::shared_ptr<State> present_;
   std::map<std::int64_t, std::shared_ptr<State>> kept_;
 };

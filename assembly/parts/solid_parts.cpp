@@ -86,7 +86,7 @@ std::vector<double> KeptPoints::values(std::size_t set, PointQuantity quantity) 
   return parts_->values(number_, set, quantity);
 }
 
-SolidParts::SolidParts(std::shared_ptr<PetscProcesses> processes, const Mesh& mesh, std::span<const ElementSet> sets,
+SolidParts::SolidParts(std::shared_ptr<PartProcesses> processes, const Mesh& mesh, std::span<const ElementSet> sets,
                        const Numbering& numbering, std::span<const std::string> unknowns,
                        std::span<const std::filesystem::path> plugins)
     : processes_(std::move(processes)),
@@ -205,7 +205,27 @@ RowsElsewhere::Sizes SolidParts::row_sizes() const {
   return {.sum = board_.force, .entries = board_.other};
 }
 
-SparseMatrix SolidParts::whole(const SparseMatrix& here) const {
+std::span<const double> SolidParts::diagonal() const {
+  ask("diagonal");
+  return board_.other;
+}
+
+std::span<const double> SolidParts::row_maxima(std::span<const double> d) const {
+  std::ranges::copy(d, board_.displacement.begin());
+  ask("maxima");
+  return board_.other;
+}
+
+void SolidParts::remember() const { ask("remember"); }
+
+double SolidParts::change() const {
+  ask("change");
+  double largest = 0;
+  for (const PartReport& report : board_.report) largest = std::max(largest, report.change);
+  return largest;
+}
+
+Ragged<std::int32_t> SolidParts::graph(const SparseMatrix& here) const {
   Ragged<std::int32_t> elements;
   for (const ElementSet& set : sets_)
     for (const std::int32_t cell : set.cells) elements.push_back(mesh_.cells[cell]);
@@ -213,7 +233,11 @@ SparseMatrix SolidParts::whole(const SparseMatrix& here) const {
   for (std::size_t v = 0; v < here.neighbours().size(); ++v)
     for (const std::int32_t w : here.neighbours()[v])
       if (w < static_cast<std::int32_t>(v)) couplings.push_back({static_cast<std::int32_t>(v), w});
-  SparseMatrix all(numbering_, elements, couplings);
+  return vertex_graph(numbering_.n_vertices(), elements, couplings);
+}
+
+SparseMatrix SolidParts::whole(const SparseMatrix& here) const {
+  SparseMatrix all(graph(here), numbering_, Symmetry::symmetric);
   all.copy_rows(here, here.size());
   Packing packing;
   std::size_t n_rows = all.rows().size(), n_entries = static_cast<std::size_t>(all.n_entries());

@@ -1,5 +1,5 @@
 #pragma once
-// Solid elements whose cells the processes of PETSc have: each evaluates its own, keeps their states and its rows of the matrix
+// Solid elements whose cells processes have: each evaluates its own, keeps their states and its rows of the matrix
 // (element_part.hpp). The operator sees vectors of nodal values, in memory that all of them see.
 #include <cstdint>
 #include <filesystem>
@@ -16,8 +16,8 @@
 #include "lacon/assembly/parts/board.hpp"
 #include "lacon/assembly/parts/kept_points.hpp"
 #include "lacon/assembly/parts/part_cells.hpp"
+#include "lacon/assembly/parts/part_processes.hpp"
 #include "lacon/assembly/parts/partition.hpp"
-#include "lacon/assembly/petsc_processes.hpp"
 #include "lacon/assembly/sparse_matrix.hpp"
 
 namespace lacon {
@@ -38,7 +38,7 @@ class SolidParts : public RowsElsewhere, public std::enable_shared_from_this<Sol
  public:
   /// Hand the cells out. @param sets of elements that know displacements alone, and meet them as `unknowns` says
   /// @param plugins folders of the registry  Mesh, sets and numbering must outlive it. Throws SOLVER_6.
-  SolidParts(std::shared_ptr<PetscProcesses> processes, const Mesh& mesh, std::span<const ElementSet> sets,
+  SolidParts(std::shared_ptr<PartProcesses> processes, const Mesh& mesh, std::span<const ElementSet> sets,
              const Numbering& numbering, std::span<const std::string> unknowns, std::span<const std::filesystem::path> plugins);
 
   /// Where laws start from.
@@ -67,6 +67,11 @@ class SolidParts : public RowsElsewhere, public std::enable_shared_from_this<Sol
   void products(int n_columns, const std::function<void(std::span<double>)>& fill,
                 const std::function<void(std::span<const double>)>& use) const override;
   Sizes row_sizes() const override;
+  std::span<const double> diagonal() const override;
+  std::span<const double> row_maxima(std::span<const double> d) const override;
+  void remember() const override;
+  double change() const override;
+  Ragged<std::int32_t> graph(const SparseMatrix& here) const override;
   SparseMatrix whole(const SparseMatrix& here) const override;
 
   const BlockNumbering& blocks() const { return blocks_; }
@@ -79,7 +84,7 @@ class SolidParts : public RowsElsewhere, public std::enable_shared_from_this<Sol
   void ask(const std::string& line) const;
   KeptState kept(const std::string& verb, const std::string& more = {}) const;
 
-  std::shared_ptr<PetscProcesses> processes_;
+  std::shared_ptr<PartProcesses> processes_;
   const Mesh& mesh_;
   std::span<const ElementSet> sets_;
   const Numbering& numbering_;

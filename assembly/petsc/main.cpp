@@ -10,8 +10,9 @@
 #include <memory>
 #include <sstream>
 #include <string>
+#include <utility>
 
-#include "lacon/assembly/petsc/cells.hpp"
+#include "lacon/assembly/parts/cells.hpp"
 #include "lacon/assembly/petsc/krylov.hpp"
 
 namespace {
@@ -67,7 +68,9 @@ class Stage {
 
 std::unique_ptr<Krylov> taken(const std::string& path, const Cells& cells, const KrylovOptions& options) {
   const SharedMemory memory = SharedMemory::open(path);
-  return std::make_unique<Krylov>(BlockSystem::in(memory), cells.entries(), options);
+  lacon::OwnEntries entries;
+  if (const lacon::ElementPart* const part = cells.part()) entries = {.matrix = &part->matrix(), .place = part->place()};
+  return std::make_unique<Krylov>(BlockSystem::in(memory), std::move(entries), options);
 }
 
 std::string solved(Krylov& krylov, double share, const std::string& path) {

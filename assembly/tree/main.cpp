@@ -1,9 +1,10 @@
-// lacon_mumps: a process that factorises subtrees for an operator, which starts it and talks with it over standard input and
-// output (exchange.hpp).
+// lacon_mumps: a process that factorises subtrees for an operator, and may have cells of its own. The operator starts it, as
+// one of some, and talks with it over standard input and output (exchange.hpp).
 #include <malloc.h>
 #include <sys/prctl.h>
 
 #include <csignal>
+#include <cstdlib>
 #include <cstring>
 #include <iostream>
 #include <map>
@@ -11,8 +12,10 @@
 #include <optional>
 #include <sstream>
 #include <string>
+#include <vector>
 
 #include "lacon/assembly/mumps.hpp"
+#include "lacon/assembly/parts/cells.hpp"
 #include "lacon/assembly/processes/shared_memory.hpp"
 #include "lacon/assembly/tree/exchange.hpp"
 #include "lacon/catalog/messages.hpp"
@@ -26,7 +29,7 @@ class Piece {
  public:
   explicit Piece(SharedMemory pattern)
       : pattern_(std::move(pattern)),
-        sizes_(*reinterpret_cast<const PieceSizes*>(pattern_.data())),
+        sizes_(lacon::PieceMemory::in(pattern_).sizes),
         mumps_({.symmetric = sizes_.is_symmetric != 0,
                 .memory_margin = sizes_.memory_margin,
                 .singular_pivot = sizes_.singular_pivot,
@@ -34,15 +37,9 @@ class Piece {
                 .low_rank = sizes_.low_rank}) {}
 
   std::string analyse() {
-    int* next = reinterpret_cast<int*>(pattern_.data() + sizeof(PieceSizes));
-    const auto take = [&](std::int64_t size) {
-      const std::span<int> part(next, static_cast<std::size_t>(size));
-      next += size;
-      return part;
-    };
-    const auto row = take(sizes_.entries), column = take(sizes_.entries), place = take(sizes_.size),
-               border = take(sizes_.border);
-    const lacon::MumpsForecast foreseen = mumps_.analyse({.row = row, .column = column, .place = place, .border = border});
+    const lacon::PieceMemory piece = lacon::PieceMemory::in(pattern_);
+    const lacon::MumpsForecast foreseen =
+        mumps_.analyse({.row = piece.row, .column = piece.column, .place = piece.place, .border = piece.in_border});
     return said(foreseen.flops, foreseen.entries, foreseen.bytes);
   }
   std::string factorise(const SharedMemory& memory) {
@@ -144,10 +141,40 @@ class Pieces {
   std::map<int, Piece<double>> full_;
 };
 
+template <class Real>
+void fill(std::istream& said, const lacon::ElementPart& part) {
+  std::string path;
+  std::vector<SharedMemory> memory;
+  while (said >> path) memory.push_back(SharedMemory::open(path));
+  lacon::EntryPlaces<Real> places(lacon::EquationMap::in(memory.front()));
+  for (std::size_t m = 1; m + 1 < memory.size(); m += 2)
+    places.add_piece(lacon::PieceMemory::in(memory[m]), reinterpret_cast<Real*>(memory[m + 1].data()));
+  part.for_each_own([&](std::int32_t row, std::int32_t column, double value) { places.add(row, column, value); });
+}
+
+/// @return nothing where a line is not about cells
+std::optional<std::string> answer_about_cells(lacon::Cells& cells, const std::string& line) {
+  try {
+    if (line.starts_with("fill ")) {
+      std::istringstream said(line.substr(line.find(' ')));
+      std::string precision;
+      said >> precision;
+      precision == "float" ? fill<float>(said, *cells.part()) : fill<double>(said, *cells.part());
+      return "done";
+    }
+    if (cells.obey(line)) return "done";
+    return std::nullopt;
+  } catch (const lacon::Error& error) {
+    return "failed " + error.message().text;
+  }
+}
+
 }  // namespace
 
-int main() {
+int main(int argc, char** argv) {
   prctl(PR_SET_PDEATHSIG, SIGKILL);
+  setenv("LACON_THREADS", "1", 1);  // processes are what works at the same time here
+  lacon::Cells cells(argc > 1 ? std::stoi(argv[1]) : 0, argc > 2 ? std::stoi(argv[2]) : 1);
   Pieces pieces;
   std::cout << "ready" << std::endl;
   for (std::string line; std::getline(std::cin, line);) {
@@ -155,7 +182,8 @@ int main() {
     std::string verb;
     said >> verb;
     try {
-      std::cout << pieces.answer(verb, said) << std::endl;
+      const std::optional<std::string> answer = answer_about_cells(cells, line);
+      std::cout << (answer ? *answer : pieces.answer(verb, said)) << std::endl;
     } catch (const lacon::Error&) {  // SOLVER_2: there are no files
       std::cout << "no memory" << std::endl;
     } catch (const std::bad_alloc&) {

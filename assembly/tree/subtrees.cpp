@@ -19,9 +19,9 @@ struct Tree {
   std::vector<double> own, whole;    ///< flops of a vertex, and of the subtree below it
   std::vector<std::vector<std::int32_t>> child;
 
-  Tree(const SparseMatrix& matrix, std::span<const std::int32_t> order) {
-    const Numbering& numbering = matrix.numbering();
-    const Ragged<std::int32_t>& graph = matrix.neighbours();
+  Tree(const VertexGraph& of, std::span<const std::int32_t> order) {
+    const Numbering& numbering = of.numbering;
+    const Ragged<std::int32_t>& graph = of.neighbours;
     for (std::int32_t v = 0; v < numbering.n_vertices(); ++v)
       if (numbering.first[v + 1] > numbering.first[v]) vertex.push_back(v);
     std::sort(vertex.begin(), vertex.end(),
@@ -80,8 +80,8 @@ struct Shares {
 
 }  // namespace
 
-Subtrees independent_subtrees(const SparseMatrix& matrix, std::span<const std::int32_t> order, int n_processes) {
-  const Tree tree(matrix, order);
+Subtrees independent_subtrees(const VertexGraph& graph, std::span<const std::int32_t> order, int n_processes) {
+  const Tree tree(graph, order);
   const auto n = static_cast<std::int32_t>(tree.vertex.size());
   Subtrees best{.of = {}, .process = {}, .entries = tree.entries};
   std::vector<std::int32_t> best_roots;
@@ -136,7 +136,7 @@ Subtrees independent_subtrees(const SparseMatrix& matrix, std::span<const std::i
       *least += tree.whole[i];
     }
     const std::int32_t v = tree.vertex[i];
-    for (std::int64_t e = matrix.numbering().first[v]; e < matrix.numbering().first[v + 1]; ++e) best.of[e] = subtree[i];
+    for (std::int64_t e = graph.numbering.first[v]; e < graph.numbering.first[v + 1]; ++e) best.of[e] = subtree[i];
   }
   return best;
 }

@@ -20,6 +20,6 @@ struct Subtrees {
 /// Those with which the work ends first, when each process takes its own and the top comes behind them. Flops are those of
 /// symmetric fronts without pivoting: they compare, no more.
 /// @param order place of each equation in the order of elimination; equations of a vertex stand together
-Subtrees independent_subtrees(const SparseMatrix& matrix, std::span<const std::int32_t> order, int n_processes);
+Subtrees independent_subtrees(const VertexGraph& graph, std::span<const std::int32_t> order, int n_processes);
 
 }  // namespace lacon

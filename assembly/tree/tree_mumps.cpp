@@ -2,17 +2,12 @@
 
 #include <algorithm>
 #include <cstring>
-#include <exception>
 #include <numeric>
-#include <sstream>
-#include <stdexcept>
+#include <string>
 #include <type_traits>
 #include <utility>
 
-#include "lacon/assembly/tree/exchange.hpp"
 #include "lacon/catalog/messages.hpp"
-#include "lacon/catalog/wording.hpp"
-#include "lacon/structures/executable.hpp"
 #include "lacon/structures/parallel.hpp"
 
 namespace lacon {
@@ -45,69 +40,6 @@ std::span<Real> values_in(const SharedMemory& memory) {
 
 }  // namespace
 
-// ------------------------------------------------------------------------------------------------------------- processes
-
-void MumpsProcesses::start() {
-  if (!processes_.empty()) return;
-  std::string program = program_;
-  if (program.empty()) program = executable().parent_path() / "lacon_mumps";
-  for (int i = 0; i < n_; ++i) processes_.push_back(std::make_unique<Companion>(std::vector{program}));
-  const SharedMemory shared(1);  // they see it where /proc is mounted
-  for (const auto& process : processes_) {
-    if (const bool is_ready = !process->answer().empty(); is_ready && process->ask("open " + shared.path()) == "done") continue;
-    const std::string end = process->ask("forget").empty() ? process->end() : part("sees_no_memory");
-    processes_.clear();
-    fail("SOLVER_8", {{"reason", program + ": " + end}});
-  }
-}
-
-void MumpsProcesses::forget() noexcept {
-  for (const auto& process : processes_)
-    if (process->ask("forget").empty()) {
-      processes_.clear();
-      return;
-    }
-}
-
-std::vector<std::vector<double>> MumpsProcesses::ask(const Question& question, std::span<const int> process,
-                                                     const std::function<std::string(std::size_t)>& rest,
-                                                     const std::function<void()>& meanwhile) {
-  if (processes_.empty()) fail("SOLVER_8", {{"reason", part("cannot_be_started")}});
-  for (std::size_t p = 0; p < process.size(); ++p) processes_[process[p]]->say(question.verb + rest(p));
-  std::exception_ptr thrown;
-  try {
-    if (meanwhile) meanwhile();
-  } catch (...) {
-    thrown = std::current_exception();  // answers are on their way
-  }
-  std::vector<std::vector<double>> found(process.size());
-  bool has_memory = true;
-  std::string failure;
-  for (std::size_t p = 0; p < process.size(); ++p) {
-    const std::string answer = processes_[process[p]]->answer();
-    if (answer.empty()) {
-      const std::string end = processes_[process[p]]->end();
-      processes_.clear();
-      fail("SOLVER_8", {{"reason", end}});
-    }
-    std::istringstream said(answer);
-    std::string word;
-    said >> word;
-    if (word == "done")
-      for (double number; said >> number;) found[p].push_back(number);
-    else if (answer == "no memory")
-      has_memory = false;
-    else
-      failure = answer;
-  }
-  if (!failure.empty()) throw std::runtime_error("lacon_mumps: " + failure);
-  if (!has_memory) fail("SOLVER_2", {{"phase", question.phase}, {"equations", std::to_string(question.equations)}});
-  if (thrown) std::rethrow_exception(thrown);
-  return found;
-}
-
-// ---------------------------------------------------------------------------------------------------------------- a factor
-
 template <class Real>
 TreeMumps<Real>::TreeMumps(const MumpsSettings& settings, Subtrees subtrees, MumpsProcesses& processes)
     : settings_(settings), subtrees_(std::move(subtrees)), processes_(processes) {
@@ -133,15 +65,18 @@ std::vector<std::vector<double>> TreeMumps<Real>::ask(const char* verb, const ch
 }
 
 template <class Real>
-std::int32_t TreeMumps<Real>::subtree_of(std::size_t entry) const {
-  return std::max(subtrees_.of[row_[entry] - 1], subtrees_.of[column_[entry] - 1]);
+template <class Use>
+void TreeMumps<Real>::for_each_entry(const Use& use) const {
+  std::size_t entry = 0;
+  if (pattern_.graph)
+    return pattern_.graph->for_each_entry(settings_.symmetric,
+                                          [&](std::int32_t row, std::int32_t column) { use(entry++, row, column); });
+  for (; entry < pattern_.row.size(); ++entry) use(entry, pattern_.row[entry] - 1, pattern_.column[entry] - 1);
 }
 
 template <class Real>
 void TreeMumps<Real>::number(const MumpsPattern& pattern) {
   pattern_ = pattern;
-  row_ = pattern.row;
-  column_ = pattern.column;
   const std::size_t n = pattern.place.size();
   pieces_.assign(subtrees_.process.size(), {});
   local_.assign(n, 0);
@@ -151,13 +86,13 @@ void TreeMumps<Real>::number(const MumpsPattern& pattern) {
     local_[i] = static_cast<std::int32_t>(those.size());
     those.push_back(i);
   }
-  for (std::size_t k = 0; k < row_.size(); ++k) {
-    const std::int32_t piece = subtree_of(k);
-    if (piece < 0) continue;
+  for_each_entry([&](std::size_t, std::int32_t row, std::int32_t column) {
+    const std::int32_t piece = subtree_of(row, column);
+    if (piece < 0) return;
     ++pieces_[piece].n_entries;
-    for (const int i : {row_[k] - 1, column_[k] - 1})
+    for (const std::int32_t i : {row, column})
       if (subtrees_.of[i] < 0) pieces_[piece].border.push_back(local_[i]);
-  }
+  });
   for (Piece& piece : pieces_) {
     std::sort(piece.border.begin(), piece.border.end());
     piece.border.erase(std::unique(piece.border.begin(), piece.border.end()), piece.border.end());
@@ -165,13 +100,31 @@ void TreeMumps<Real>::number(const MumpsPattern& pattern) {
 }
 
 template <class Real>
-std::vector<SharedMemory> TreeMumps<Real>::patterns() const {
-  struct Next {
-    int *row, *column;
-    std::vector<int> in_border;  ///< by numbers of the top: from 1
-  };
-  std::vector<SharedMemory> memory;
-  std::vector<Next> next;
+std::vector<std::vector<int>> TreeMumps<Real>::borders() const {
+  std::vector<std::vector<int>> borders;
+  for (const Piece& piece : pieces_) {
+    std::vector<int>& number = borders.emplace_back(top_.size());
+    for (std::size_t b = 0; b < piece.border.size(); ++b) number[piece.border[b]] = static_cast<int>(piece.own.size() + b);
+  }
+  return borders;
+}
+
+template <class Real>
+template <class Use>
+void TreeMumps<Real>::for_each_of_pieces(const Use& use) const {
+  const std::vector<std::vector<int>> in_border = borders();
+  for_each_entry([&](std::size_t entry, std::int32_t row, std::int32_t column) {
+    const std::int32_t piece = subtree_of(row, column);
+    if (piece < 0) return;
+    const auto local = [&](std::int32_t i) { return subtrees_.of[i] < 0 ? in_border[piece][local_[i]] : local_[i]; };
+    const int a = local(row), b = local(column);
+    settings_.symmetric&& a < b ? use(entry, piece, b, a) : use(entry, piece, a, b);
+  });
+}
+
+template <class Real>
+void TreeMumps<Real>::make_patterns() {
+  patterns_.clear();
   for (const Piece& piece : pieces_) {
     const PieceSizes sizes{.size = static_cast<std::int64_t>(piece.size()),
                            .entries = piece.n_entries,
@@ -180,42 +133,41 @@ std::vector<SharedMemory> TreeMumps<Real>::patterns() const {
                            .memory_margin = settings_.memory_margin,
                            .singular_pivot = loose * settings_.singular_pivot,
                            .low_rank = settings_.low_rank};
-    memory.emplace_back(sizeof sizes + sizeof(int) * static_cast<std::size_t>(2 * sizes.entries + sizes.size + sizes.border));
-    std::memcpy(memory.back().data(), &sizes, sizeof sizes);
-    int* const row = reinterpret_cast<int*>(memory.back().data() + sizeof sizes);
-    int* const column = row + sizes.entries;
-    int* const place = column + sizes.entries;
+    patterns_.emplace_back(PieceMemory::bytes(sizes));
+    std::memcpy(patterns_.back().data(), &sizes, sizeof sizes);
+    const PieceMemory memory = PieceMemory::in(patterns_.back());
     const int first_of_border = static_cast<int>(piece.own.size()) + 1;
-    std::ranges::copy(ranks(piece.own, pattern_.place), place);
-    std::iota(place + piece.own.size(), place + sizes.size, first_of_border);
-    std::iota(place + sizes.size, place + sizes.size + sizes.border, first_of_border);
-    next.push_back({row, column, std::vector<int>(top_.size())});
-    for (std::size_t b = 0; b < piece.border.size(); ++b)
-      next.back().in_border[piece.border[b]] = first_of_border + static_cast<int>(b);
+    std::ranges::copy(ranks(piece.own, pattern_.place), memory.place.begin());
+    std::iota(memory.place.begin() + static_cast<std::ptrdiff_t>(piece.own.size()), memory.place.end(), first_of_border);
+    std::iota(memory.in_border.begin(), memory.in_border.end(), first_of_border);
+    std::ranges::copy(piece.border, memory.border.begin());
   }
-  for (std::size_t k = 0; k < row_.size(); ++k) {
-    const std::int32_t piece = subtree_of(k);
-    if (piece < 0) continue;
-    const auto local = [&](int equation) {
-      const std::int32_t number = local_[equation - 1];
-      return subtrees_.of[equation - 1] < 0 ? next[piece].in_border[number] : number + 1;
-    };
-    *next[piece].row++ = local(row_[k]);
-    *next[piece].column++ = local(column_[k]);
+  std::vector<PieceMemory> memory;
+  for (const SharedMemory& pattern : patterns_) memory.push_back(PieceMemory::in(pattern));
+  for_each_of_pieces([&](std::size_t, std::int32_t piece, int row, int) { ++memory[piece].offset[row + 1]; });
+  std::vector<std::vector<std::int64_t>> next;
+  for (const PieceMemory& piece : memory) {
+    std::partial_sum(piece.offset.begin(), piece.offset.end(), piece.offset.begin());
+    next.emplace_back(piece.offset.begin(), piece.offset.end() - 1);
   }
-  return memory;
+  for_each_of_pieces([&](std::size_t, std::int32_t piece, int row, int column) {  // columns of a row come in their order
+    const std::int64_t k = next[piece][row]++;
+    memory[piece].row[k] = row + 1;
+    memory[piece].column[k] = column + 1;
+  });
 }
 
 template <class Real>
 void TreeMumps<Real>::number_top() {
   const auto m = static_cast<std::int32_t>(top_.size());
   std::vector<std::vector<std::int32_t>> own(top_.size());  // rows of the matrix's entries, by columns
-  const auto place = [&](std::size_t entry) {               // row and column
-    const std::int32_t i = local_[row_[entry] - 1], j = local_[column_[entry] - 1];
-    return settings_.symmetric ? std::pair(std::max(i, j), std::min(i, j)) : std::pair(i, j);
+  const auto for_each_own = [&](const auto& use) {
+    for_each_entry([&](std::size_t, std::int32_t row, std::int32_t column) {
+      const std::int32_t i = local_[row], j = local_[column];
+      if (subtree_of(row, column) < 0) settings_.symmetric ? use(std::max(i, j), std::min(i, j)) : use(i, j);
+    });
   };
-  for (std::size_t k = 0; k < row_.size(); ++k)
-    if (subtree_of(k) < 0) own[place(k).second].push_back(place(k).first);
+  for_each_own([&](std::int32_t i, std::int32_t j) { own[j].push_back(i); });
   std::vector<std::int32_t> seen(top_.size(), -1);
   top_pattern_ = {};
   for (std::int32_t j = 0; j < m; ++j) {
@@ -231,8 +183,7 @@ void TreeMumps<Real>::number_top() {
     top_pattern_.offset.push_back(static_cast<std::int64_t>(top_pattern_.row.size()));
   }
   top_pattern_.own.clear();
-  for (std::size_t k = 0; k < row_.size(); ++k)
-    if (subtree_of(k) < 0) top_pattern_.own.push_back(top_pattern_.entry(place(k).first, place(k).second));
+  for_each_own([&](std::int32_t i, std::int32_t j) { top_pattern_.own.push_back(top_pattern_.entry(i, j)); });
 }
 
 template <class Real>
@@ -268,7 +219,8 @@ template <class Real>
 MumpsForecast TreeMumps<Real>::analyse(const MumpsPattern& pattern) {
   number(pattern);
   top_factor_.reset();
-  const auto found = ask("analyse", "analysis", patterns());
+  make_patterns();
+  const auto found = ask("analyse", "analysis", patterns_);
   const double top = static_cast<double>(top_.size()), entries = top * top / (settings_.symmetric ? 2 : 1);  // all of them
   MumpsForecast whole{.flops = entries * top * 2 / 3, .entries = entries, .bytes = 2 * sizeof(Real) * entries};
   for (const std::vector<double>& numbers : found) {
@@ -280,17 +232,81 @@ MumpsForecast TreeMumps<Real>::analyse(const MumpsPattern& pattern) {
 }
 
 template <class Real>
-std::vector<std::vector<double>> TreeMumps<Real>::factorise_pieces(std::span<const Real> values,
-                                                                   std::vector<SharedMemory>& memory) {
-  memory.clear();
-  std::vector<Real*> next;
-  for (const Piece& piece : pieces_) {
-    memory.emplace_back(sizeof(Real) * (static_cast<std::size_t>(piece.n_entries) + piece.border.size() * piece.border.size()));
-    next.push_back(reinterpret_cast<Real*>(memory.back().data()));
+void TreeMumps<Real>::fill_in_order(std::span<const Real> entries, Values& values) const {
+  std::vector<std::vector<std::int64_t>> next;
+  std::vector<Real*> into;
+  for (std::size_t p = 0; p < pieces_.size(); ++p) {
+    const std::span<const std::int64_t> offset = pattern_of(p).offset;
+    next.emplace_back(offset.begin(), offset.end() - 1);
+    into.push_back(values_in<Real>(values.pieces[p]).data());
   }
-  for (std::size_t k = 0; k < values.size(); ++k)
-    if (const std::int32_t piece = subtree_of(k); piece >= 0) *next[piece]++ = values[k];
-  return ask("factorise", "factorisation", memory, [&] { analyse_top(); });
+  for_each_of_pieces(
+      [&](std::size_t entry, std::int32_t piece, int row, int) { into[piece][next[piece][row]++] = entries[entry]; });
+  for_each_entry([&](std::size_t entry, std::int32_t row, std::int32_t column) {
+    if (subtree_of(row, column) < 0) values.top.push_back(entries[entry]);
+  });
+}
+
+template <class Real>
+void TreeMumps<Real>::fill_from_all(const SparseMatrix& here, std::span<const double> scale, Values& values) {
+  const SharedMemory numbers(EquationMap::bytes(local_.size()));
+  const EquationMap map = EquationMap::in(numbers);
+  std::ranges::copy(scale, map.scale.begin());
+  std::ranges::copy(subtrees_.of, map.piece.begin());
+  std::ranges::copy(local_, map.number.begin());
+  // the top's own entries, as a piece without a border
+  std::int64_t n_top = 0;
+  const auto for_each_of_top = [&](const auto& use) {
+    for_each_entry([&](std::size_t, std::int32_t row, std::int32_t column) {
+      if (subtree_of(row, column) < 0) use(local_[row], local_[column]);
+    });
+  };
+  for_each_of_top([&](std::int32_t, std::int32_t) { ++n_top; });
+  const PieceSizes sizes{.size = static_cast<std::int64_t>(top_.size()), .entries = n_top};
+  const SharedMemory top(PieceMemory::bytes(sizes)), of_top(sizeof(Real) * static_cast<std::size_t>(n_top));
+  std::memcpy(top.data(), &sizes, sizeof sizes);
+  const PieceMemory top_pattern = PieceMemory::in(top);
+  std::size_t k = 0;
+  for_each_of_top([&](std::int32_t row, std::int32_t column) {
+    ++top_pattern.offset[row + 1];
+    top_pattern.column[k++] = column + 1;
+  });
+  std::partial_sum(top_pattern.offset.begin(), top_pattern.offset.end(), top_pattern.offset.begin());
+
+  EntryPlaces<Real> places(map);
+  std::string line = std::string("fill ") + (std::is_same_v<Real, float> ? "float " : "double ") + numbers.path();
+  const auto enter = [&](const SharedMemory& pattern, const SharedMemory& memory) {
+    places.add_piece(PieceMemory::in(pattern), values_in<Real>(memory).data());
+    line += ' ' + pattern.path() + ' ' + memory.path();
+  };
+  for (std::size_t p = 0; p < pieces_.size(); ++p) enter(patterns_[p], values.pieces[p]);
+  enter(top, of_top);
+  if (const std::string answer = processes_.ask(line); answer != "done") fail("SOLVER_8", {{"reason", answer}});
+  for (std::int64_t row = 0; row < here.size(); ++row)
+    for (std::int64_t at = here.rows()[row]; at < here.rows()[row + 1]; ++at)
+      if (here.values()[at] != 0) places.add(static_cast<std::int32_t>(row), here.columns()[at], here.values()[at]);
+  const std::span<const Real> found = values_in<const Real>(of_top);
+  values.top.assign(found.begin(), found.end());
+}
+
+template <class Real>
+std::vector<std::vector<double>> TreeMumps<Real>::factorise_pieces(const Fill& fill, Values& values) {
+  values = {};
+  for (const Piece& piece : pieces_)
+    values.pieces.emplace_back(sizeof(Real) *
+                               (static_cast<std::size_t>(piece.n_entries) + piece.border.size() * piece.border.size()));
+  fill(values);
+  return ask("factorise", "factorisation", values.pieces, [&] { analyse_top(); });
+}
+
+template <class Real>
+Factorisation TreeMumps<Real>::factorise(std::span<const Real> entries) {
+  return factorise_filled([&](Values& values) { fill_in_order(entries, values); });
+}
+
+template <class Real>
+Factorisation TreeMumps<Real>::factorise(const SparseMatrix& here, std::span<const double> scale) {
+  return factorise_filled([&](Values& values) { fill_from_all(here, scale, values); });
 }
 
 template <class Real>
@@ -305,14 +321,14 @@ bool TreeMumps<Real>::leave_to_top(const std::vector<std::vector<double>>& found
 }
 
 template <class Real>
-Factorisation TreeMumps<Real>::factorise(std::span<const Real> values) {
-  std::vector<SharedMemory> memory;
-  std::vector<std::vector<double>> found = factorise_pieces(values, memory);
+Factorisation TreeMumps<Real>::factorise_filled(const Fill& fill) {
+  Values values;
+  std::vector<std::vector<double>> found = factorise_pieces(fill, values);
   double wasted = 0;
   for (int round = 0; round < most_rounds && leave_to_top(found); ++round) {
     for (const std::vector<double>& numbers : found) wasted += numbers.at(0);
     analyse(pattern_);
-    found = factorise_pieces(values, memory);
+    found = factorise_pieces(fill, values);
   }
 
   Factorisation whole;
@@ -327,13 +343,12 @@ Factorisation TreeMumps<Real>::factorise(std::span<const Real> values) {
   }
   if (!top_factor_ || !whole.null_pivots.empty()) return whole;
   std::vector<Real> sum(top_pattern_.row.size(), 0);
-  for (std::size_t k = 0, next = 0; k < values.size(); ++k)
-    if (subtree_of(k) < 0) sum[top_pattern_.own[next++]] = values[k];
+  for (std::size_t k = 0; k < values.top.size(); ++k) sum[top_pattern_.own[k]] = values.top[k];
   for (std::size_t p = 0; p < pieces_.size(); ++p) {
     const std::size_t n = pieces_[p].border.size();
-    add_to_top(pieces_[p], values_in<const Real>(memory[p]).last(n * n), sum);
+    add_to_top(pieces_[p], values_in<const Real>(values.pieces[p]).last(n * n), sum);
   }
-  memory.clear();
+  values = {};
   const Factorisation top = top_factor_->factorise(sum);
   whole.flops += top.flops;
   whole.entries += top.entries;

@@ -8,39 +8,12 @@
 #include <vector>
 
 #include "lacon/assembly/mumps.hpp"
-#include "lacon/assembly/processes/companion.hpp"
 #include "lacon/assembly/processes/shared_memory.hpp"
+#include "lacon/assembly/tree/exchange.hpp"
+#include "lacon/assembly/tree/mumps_processes.hpp"
 #include "lacon/assembly/tree/subtrees.hpp"
 
 namespace lacon {
-
-/// Processes of lacon_mumps, each with the pieces of a matrix that were given to it.
-class MumpsProcesses {
- public:
-  /// @param program lacon_mumps; empty: beside the program that runs
-  MumpsProcesses(int n_processes, std::string program) : n_(n_processes), program_(std::move(program)) {}
-  int size() const { return n_; }
-
-  /// Where they do not run: not yet, or not any more. Throws SOLVER_8 where one cannot be started.
-  void start();
-  void forget() noexcept;
-  struct Question {
-    const char* verb;
-    const char* phase;      ///< in words, where memory ends
-    std::size_t equations;  ///< likewise
-  };
-  /// Ask about each piece, all before the first answer is waited for. @param process of each  @param rest of the line about it
-  /// @param meanwhile what is done before answers are waited for; what it throws comes behind them
-  /// @return the numbers of each answer  Throws SOLVER_2, SOLVER_8, std::runtime_error.
-  std::vector<std::vector<double>> ask(const Question& question, std::span<const int> process,
-                                       const std::function<std::string(std::size_t piece)>& rest,
-                                       const std::function<void()>& meanwhile = {});
-
- private:
-  int n_;
-  std::string program_;
-  std::vector<std::unique_ptr<Companion>> processes_;
-};
 
 template <class Real>
 class TreeMumps : public MumpsFactor<Real> {
@@ -54,6 +27,8 @@ class TreeMumps : public MumpsFactor<Real> {
 
   MumpsForecast analyse(const MumpsPattern& pattern) override;
   Factorisation factorise(std::span<const Real> values) override;
+  /// The same of a symmetric matrix of which the processes have entries (SparseMatrix::elsewhere), scaled from both sides.
+  Factorisation factorise(const SparseMatrix& here, std::span<const double> scale);
   void substitute(std::span<Real> right_side) override;
   void substitute(std::span<const std::int64_t> offset, std::span<const std::int32_t> index, std::span<const Real> value,
                   std::span<Real> solution) override;
@@ -78,17 +53,37 @@ class TreeMumps : public MumpsFactor<Real> {
                                        const std::function<void()>& meanwhile = {}, std::span<const SharedMemory> more = {});
   void number(const MumpsPattern& pattern);
   /// What the processes are told of each piece.
-  std::vector<SharedMemory> patterns() const;
+  void make_patterns();
+  PieceMemory pattern_of(std::size_t piece) const { return PieceMemory::in(patterns_[piece]); }
+  /// Call use(entry, row, column) for the pattern's entries in their order.
+  template <class Use>
+  void for_each_entry(const Use& use) const;
+  /// The same of pieces, use(entry, piece, row, column) in their numbers, columns of a row ascending.
+  template <class Use>
+  void for_each_of_pieces(const Use& use) const;
+  /// Of each piece: its number of an equation of the top, from 0.
+  std::vector<std::vector<int>> borders() const;
   void number_top();
   /// Numbered and analysed, if it has not been yet.
   void analyse_top();
   /// Add the Schur complement of a piece.
   void add_to_top(const Piece& piece, std::span<const Real> schur, std::span<Real> values) const;
-  /// The subtree that an entry of the matrix belongs to; -1: the top.
-  std::int32_t subtree_of(std::size_t entry) const;
+  /// The subtree that an entry belongs to; -1: the top.
+  std::int32_t subtree_of(std::int32_t i, std::int32_t j) const { return std::max(subtrees_.of[i], subtrees_.of[j]); }
+  /// Values of each piece, with room for its Schur complement, and of the top's own entries.
+  struct Values {
+    std::vector<SharedMemory> pieces;
+    std::vector<Real> top;
+  };
+  using Fill = std::function<void(Values&)>;
+  Factorisation factorise_filled(const Fill& fill);
+  /// From the pattern's entries in their order.
+  void fill_in_order(std::span<const Real> entries, Values& values) const;
+  /// From what the processes have, and from what is here.
+  void fill_from_all(const SparseMatrix& here, std::span<const double> scale, Values& values);
   /// Factorise pieces, and see that the top has its analysis, which takes the time of the largest of them anyway.
-  /// @param[out] memory with the Schur complement of each  @return what was answered of each
-  std::vector<std::vector<double>> factorise_pieces(std::span<const Real> values, std::vector<SharedMemory>& memory);
+  /// @param[out] values with the Schur complement of each  @return what was answered of each
+  std::vector<std::vector<double>> factorise_pieces(const Fill& fill, Values& values);
   /// Equations whose pivots pieces cannot take. @return whether there are any
   bool leave_to_top(const std::vector<std::vector<double>>& found);
   /// Sparse right sides by pieces; those of the top go to `top`, (count, top). Each piece has an entry at least.
@@ -103,10 +98,10 @@ class TreeMumps : public MumpsFactor<Real> {
   Subtrees subtrees_;
   MumpsProcesses& processes_;
   MumpsPattern pattern_;
-  std::span<const int> row_, column_;  ///< of it
   std::vector<Piece> pieces_;
-  std::vector<std::int32_t> local_;  ///< of each equation: its number in its piece, or in the top
-  std::vector<std::int32_t> top_;    ///< equations of the top
+  std::vector<SharedMemory> patterns_;  ///< PieceMemory of each
+  std::vector<std::int32_t> local_;     ///< of each equation: its number in its piece, or in the top
+  std::vector<std::int32_t> top_;       ///< equations of the top
   TopPattern top_pattern_;
   std::unique_ptr<Mumps<Real>> top_factor_;  ///< where there is a top and its analysis
 };

@@ -33,7 +33,7 @@ Symmetry symmetry_of(const StaticProblem& problem) {
 }
 
 std::shared_ptr<SolidParts> parts_of(const StaticProblem& problem, const Engine& engine, bool strained) {
-  const std::shared_ptr<PetscProcesses> processes = engine.processes();
+  const std::shared_ptr<PartProcesses> processes = engine.processes(problem.numbering.n_equations());
   if (!processes || processes->size() == 1 || only_checks()) return nullptr;
   if (const std::string_view reason = needs_one_process(problem, strained); !reason.empty()) {
     inform("EVOLUTION_46", {{"reason", part(reason)}, {"count", std::to_string(processes->size())}});

@@ -25,8 +25,6 @@ from meshes import write_med
 from results import Result
 
 COMM = pathlib.Path(__file__).with_name("parts.comm")
-#: processes share the factors of small matrices too
-SHARED = {"LACON_MPI_FROM": "1"}
 FIELDS = ("DEPL", "SIEF_ELGA", "VARI_ELGA")
 #: of the largest value of a field; RESI_GLOB_RELA is 1e-10 and RESI_RELA 1e-12
 AGREEMENT = 1e-9
@@ -34,8 +32,14 @@ AGREEMENT = 1e-9
 LINEAR = 1e-7
 
 
-@unittest.skipUnless((LACON.parent / "lacon_petsc").exists() and shutil.which("mpirun"), "built without PETSc, or there is no mpirun")
-class Parts(StudyTest):
+#: METHODE, and what runs with several processes need: those of MUMPS share the factors of small matrices too
+PETSC = {"METHOD": "PETSC"}
+MUMPS = {"METHOD": "MUMPS", "LACON_MPI_FROM": "1"}
+
+
+class PartsTest(StudyTest):
+    environment, program = PETSC, "lacon_petsc"
+
     def setUp(self):
         super().setUp()
         mesh = two_blocks(1.0, (7, 6, 3))
@@ -54,7 +58,7 @@ class Parts(StudyTest):
         return self.ran(self.options("run"), *options, **environment)
 
     def ran(self, study, *options, **environment):
-        run = self.run_tool(*study, *options, **{"METHOD": "PETSC"} | environment)
+        run = self.run_tool(*study, *options, **self.environment | environment)
         self.assertEqual(run.returncode, 0, run.stdout[-3000:] + run.stderr[-3000:])
         commands = json.loads((self.folder / "run.json").read_text())["timings"]["commands"]
         counts = [c["counts"] for c in commands if c["command"] == "STAT_NON_LINE"][-1]
@@ -78,6 +82,56 @@ class Parts(StudyTest):
             for name, values in components.items():
                 np.testing.assert_array_equal(other[0][key][name], values, str((key, name)))
 
+    @contextlib.contextmanager
+    def started(self, name, order, **environment):
+        """A run that has archived its result up to an order. @return it, and processes of its session by their name"""
+        with tempfile.TemporaryFile("w+") as said, subprocess.Popen(
+                [LACON, *map(str, self.options(name)), "--mpi", "2"], cwd=self.folder, stdin=subprocess.DEVNULL, stdout=said, stderr=subprocess.STDOUT,
+                env={**os.environ, **self.environment, **environment}, start_new_session=True) as run:
+            while self.archived(name) < order and run.poll() is None:
+                time.sleep(0.02)
+            of_name = {}
+            for process, line in session_of(run.pid).items():
+                of_name.setdefault(line[line.index("(") + 1:line.rindex(")")], []).append(process)
+            self.assertEqual(len(of_name.get(self.program, [])), 2, of_name)
+            yield run, of_name
+            run.wait(SECONDS)
+            for _ in range(500):
+                if not session_of(run.pid):
+                    break
+                time.sleep(0.01)
+            self.assertEqual(session_of(run.pid), {})
+            said.seek(0)
+            run.said = said.read()
+
+    def archived(self, name):
+        """The last order in a base; -1: none"""
+        for path in (self.folder / f"{name}.base").glob("result_*/index.h5"):
+            with contextlib.suppress(OSError), h5py.File(path) as index:  # it is being put there
+                return int(index["order"][-1])
+        return -1
+
+    def assert_killed_process_ends_all(self):
+        with self.started("killed", 1, INSTANTS="4") as (run, processes):
+            os.kill(processes[self.program][-1], signal.SIGKILL)
+        self.assertEqual(run.returncode, 3, run.said[-3000:])
+        self.assertEqual(run.said.count("<SOLVER_8>"), 1, run.said[-3000:])
+        self.assertGreaterEqual(self.archived("killed"), 1)
+
+    def go_on_with_another(self):
+        """@return a result of four instants, and the same where the operator was killed behind the second one"""
+        expected, _, _ = self.solve("--mpi", 2, INSTANTS="4")
+        with self.started("other", 2, INSTANTS="4", LACON_RESTART_ALWAYS="1") as (_, processes):
+            os.kill(processes["stat_non_line"][0], signal.SIGKILL)
+        options = [option for option in self.options("other") if option != "--fresh"]
+        run = self.run_tool(*options, "--mpi", 2, **self.environment, INSTANTS="4")
+        self.assertEqual(run.returncode, 0, run.stdout[-3000:] + run.stderr[-3000:])
+        self.assertIn("EVOLUTION_32", run.stdout + run.stderr)
+        return expected, self.read("other", "RESULT")
+
+
+@unittest.skipUnless((LACON.parent / "lacon_petsc").exists() and shutil.which("mpirun"), "built without PETSc, or there is no mpirun")
+class Parts(PartsTest):
     def test_values_and_states_are_those_of_one_process(self):
         factor, _, _ = self.solve(METHOD="MUMPS")
         self.assertGreater(np.nanmax(factor[0]["VARI_ELGA", 2]["V1"]), 1e-3)  # it flows
@@ -125,21 +179,21 @@ class Parts(StudyTest):
     def test_another_run_goes_on(self):
         """POURSUITE: states of a base are handed out, whoever left them there."""
         whole, _, _ = self.solve(METHOD="MUMPS", GO_ON="1")
-        runs = [((), "MUMPS", {}), (("--mpi", 2), "PETSC", {}), (("--mpi", 2), "MUMPS", SHARED)]
-        for (first, _, _), (second, method, shared) in zip(runs, runs[1:] + runs[:1]):
-            with self.subTest(first=first, second=second, method=method):
-                self.solve(*first, METHOD=method, INSTANTS="1", **shared)
-                found, counts, said = self.ran([COMM.with_suffix(".com1"), *self.of_base("run")], *second, METHOD=method, **shared)
+        one = {"METHOD": "MUMPS"}
+        for first, second in ((one, PETSC), (PETSC, one), (PETSC, MUMPS), (MUMPS, PETSC)):
+            with self.subTest(first=first, second=second):
+                self.solve(*(() if first is one else ("--mpi", 2)), INSTANTS="1", **first)
+                found, counts, said = self.ran([COMM.with_suffix(".com1"), *self.of_base("run")], *(() if second is one else ("--mpi", 2)), **second)
                 self.assertEqual(said.count("Converged at the instant"), 2)
-                self.assertEqual("processes with cells" in counts, method == "PETSC")
+                self.assertEqual(counts.get("processes with cells"), None if second is one else 2)
                 self.assert_same(whole, found)
 
     def test_a_rigid_plate(self):
         """Relations among many nodes, of which each process has some: the plate stays plane, and all is as with one process."""
         factor, _, _ = self.solve(METHOD="MUMPS", SOLID="1")
-        for method, shared in (("PETSC", {}), ("MUMPS", SHARED)):
-            found, counts, said = self.solve("--mpi", 2, METHOD=method, SOLID="1", **shared)
-            self.assertEqual("processes with cells" in counts, method == "PETSC")
+        for environment in (PETSC, MUMPS):
+            found, counts, said = self.solve("--mpi", 2, SOLID="1", **environment)
+            self.assertEqual(counts["processes with cells"], 2)
             self.assertNotIn("SOLVER_", said)
             self.assert_same(factor, found)
             np.testing.assert_array_equal(factor[1], found[1])
@@ -161,51 +215,48 @@ class Parts(StudyTest):
                 self.assertNotIn("processes with cells", counts)
                 self.assert_same(one, found)
 
-    @contextlib.contextmanager
-    def started(self, name, order, **environment):
-        """A run that has archived its result up to an order. @return it, and processes of its session by their name"""
-        with tempfile.TemporaryFile("w+") as said, subprocess.Popen(
-                [LACON, *map(str, self.options(name)), "--mpi", "2"], cwd=self.folder, stdin=subprocess.DEVNULL, stdout=said, stderr=subprocess.STDOUT,
-                env={**os.environ, "METHOD": "PETSC", **environment}, start_new_session=True) as run:
-            while self.archived(name) < order and run.poll() is None:
-                time.sleep(0.02)
-            of_name = {}
-            for process, line in session_of(run.pid).items():
-                of_name.setdefault(line[line.index("(") + 1:line.rindex(")")], []).append(process)
-            self.assertEqual(len(of_name.get("lacon_petsc", [])), 2, of_name)
-            yield run, of_name
-            run.wait(SECONDS)
-            for _ in range(500):
-                if not session_of(run.pid):
-                    break
-                time.sleep(0.01)
-            self.assertEqual(session_of(run.pid), {})
-            said.seek(0)
-            run.said = said.read()
-
-    def archived(self, name):
-        """The last order in a base; -1: none"""
-        for path in (self.folder / f"{name}.base").glob("result_*/index.h5"):
-            with contextlib.suppress(OSError), h5py.File(path) as index:  # it is being put there
-                return int(index["order"][-1])
-        return -1
-
     def test_a_killed_process_ends_all(self):
-        with self.started("killed", 1, INSTANTS="4") as (run, processes):
-            os.kill(processes["lacon_petsc"][-1], signal.SIGKILL)
-        self.assertEqual(run.returncode, 3, run.said[-3000:])
-        self.assertEqual(run.said.count("<SOLVER_8>"), 1, run.said[-3000:])
-        self.assertGreaterEqual(self.archived("killed"), 1)
+        self.assert_killed_process_ends_all()
 
     def test_another_process_goes_on_with_the_same_bits(self):
-        expected, _, _ = self.solve("--mpi", 2, INSTANTS="4")
-        with self.started("other", 2, INSTANTS="4", LACON_RESTART_ALWAYS="1") as (_, processes):
-            os.kill(processes["stat_non_line"][0], signal.SIGKILL)
-        options = [option for option in self.options("other") if option != "--fresh"]
-        run = self.run_tool(*options, "--mpi", 2, METHOD="PETSC", INSTANTS="4")
-        self.assertEqual(run.returncode, 0, run.stdout[-3000:] + run.stderr[-3000:])
-        self.assertIn("EVOLUTION_32", run.stdout + run.stderr)
-        self.assert_same_bits(expected, self.read("other", "RESULT"))
+        self.assert_same_bits(*self.go_on_with_another())
+
+
+class PartsOfFactors(PartsTest):
+    """The same where processes share factors: the operator has no matrix of the bodies."""
+
+    environment, program = MUMPS, "lacon_mumps"
+
+    def test_values_and_states_are_those_of_one_process(self):
+        one, counts, _ = self.solve()
+        self.assertGreater(np.nanmax(one[0]["VARI_ELGA", 2]["V1"]), 1e-3)  # it flows
+        self.assertNotIn("processes with cells", counts)
+        for ranks in (2, 3):
+            found, now, said = self.solve("--mpi", ranks)
+            self.assertEqual(now["processes with cells"], ranks)
+            self.assertEqual(now["solutions"], counts["solutions"])
+            self.assertGreater(now["factorisations"], 0)
+            self.assertEqual(now["factors by several processes"], now["factorisations"])
+            self.assertEqual(said.count("Converged at the instant"), 3)
+            self.assertNotIn("SOLVER_", said)
+            self.assert_same(one, found)
+            np.testing.assert_array_equal(one[1], found[1])
+        again, _, _ = self.solve("--mpi", 3)
+        self.assert_same_bits(found, again)
+
+    def test_a_linear_study(self):
+        self.solve(ELASTIC="1", INSTANTS="1")
+        one = self.read("run", "LINEAR", FIELDS[:2])
+        self.solve("--mpi", 2, ELASTIC="1", INSTANTS="1")
+        self.assert_same(one, self.read("run", "LINEAR", FIELDS[:2]))
+
+    def test_a_killed_process_ends_all(self):
+        self.assert_killed_process_ends_all()
+
+    def test_another_process_goes_on(self):
+        """Who goes on makes a factor of its own, where the processes have had one of an earlier stiffness."""
+        expected, found = self.go_on_with_another()
+        self.assert_same(expected, found)
 
 
 if __name__ == "__main__":

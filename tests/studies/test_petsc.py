@@ -73,11 +73,11 @@ class Mpi(StudyTest):
         super().setUp()
         write_med(self.folder / "blocks.med", two_blocks(1.0, (7, 6, 3)))
 
-    def solve(self, solver, *options):
+    def solve(self, solver, *options, **environment):
         """@return displacements, counts, what was said"""
         base, report = self.folder / "run.base", self.folder / "run.json"
         run = self.run_tool(pathlib.Path(__file__).with_name("precision.comm"), "--fresh", "--base", base, "--unit", "20=blocks.med", "--json", report,
-                            *options, **SHARED, NU="0.3", CONTRAST="1", SLENDER="0", SOLVER=solver, PRE_COND="GAMG")
+                            *options, **{"NU": "0.3", "CONTRAST": "1", "SLENDER": "0"} | SHARED | environment, SOLVER=solver, PRE_COND="GAMG")
         self.assertEqual(run.returncode, 0, run.stdout[-3000:] + run.stderr[-3000:])
         commands = json.loads(report.read_text())["timings"]["commands"]
         result = Result(base, "RESULT")
@@ -96,8 +96,19 @@ class Mpi(StudyTest):
                 self.assertEqual(now["solutions"], counts["solutions"])
                 self.assertLessEqual(now["factorisations"], counts["factorisations"])
                 self.assertEqual(now["factors by several processes"], now["factorisations"])
+                self.assertEqual(now["processes with cells"], ranks)
                 self.assertNotIn("SOLVER_", said)
                 self.assertEqual(said.count("Converged at the instant"), 1)
+
+    def test_an_exact_factor_has_the_whole_matrix(self):
+        """Slender bodies are left to one process in double precision, which gets the rows of those that have the cells."""
+        write_med(self.folder / "blocks.med", two_blocks(100.0, (40, 2, 2)))
+        one, _, _ = self.solve("double", SLENDER="1")
+        found, counts, said = self.solve("single", "--mpi", 2, SLENDER="1")
+        self.assertEqual(said.count("<SOLVER_4>"), 1)
+        self.assertNotIn("factors by several processes", counts)
+        self.assertEqual(counts["processes with cells"], 2)
+        assert_same(self, one, found, 1e-9)
 
     def test_an_export_file_asks_for_processes(self):
         """P mpi_nbcpu N is --mpi N, which stands where both are there."""

@@ -92,6 +92,11 @@ class Elsewhere : public RowsElsewhere {
     use(y);
   }
   Sizes row_sizes() const override { return {}; }
+  std::span<const double> diagonal() const override { return {}; }
+  std::span<const double> row_maxima(std::span<const double>) const override { return {}; }
+  void remember() const override {}
+  double change() const override { return 0; }
+  Ragged<std::int32_t> graph(const SparseMatrix&) const override { return matrix_.neighbours(); }
   SparseMatrix whole(const SparseMatrix&) const override { return matrix_; }
 
   mutable int asked = 0;

@@ -1,4 +1,4 @@
-#include "lacon/assembly/petsc/cells.hpp"
+#include "lacon/assembly/parts/cells.hpp"
 
 #include <sstream>
 #include <utility>
@@ -56,6 +56,14 @@ bool Cells::obey(const std::string& line) {
     part_->multiply(both.first(both.size() / 2), both.subspan(both.size() / 2), kind);
   } else if (verb == "measure") {
     part_->measure(board_);
+  } else if (verb == "diagonal") {
+    part_->write_diagonal(board_);
+  } else if (verb == "maxima") {
+    part_->write_maxima(board_);
+  } else if (verb == "remember") {
+    part_->remember();
+  } else if (verb == "change") {
+    board_.report[static_cast<std::size_t>(rank_)].change = part_->change();
   } else if (verb == "whole") {
     said >> path;
     add_to(path);
@@ -88,11 +96,6 @@ void Cells::add_to(const std::string& path) const {
   auto* const values = reinterpret_cast<double*>(memory.data() + (2 + n_rows) * 8);
   const auto* const columns = reinterpret_cast<const std::int32_t*>(values + n_entries);
   part_->add_to({rows, n_rows}, {columns, n_entries}, {values, n_entries});
-}
-
-OwnEntries Cells::entries() const {
-  if (!part_) return {};
-  return {.matrix = &part_->matrix(), .place = part_->place()};
 }
 
 }  // namespace lacon

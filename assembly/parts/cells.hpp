@@ -1,5 +1,5 @@
 #pragma once
-// What an operator says to a process of PETSc about its cells, and how that obeys; the answer is always done:
+// What an operator says to a process about its cells, and how that obeys; the answer is always done:
 //   board PATH                           Board, from now on
 //   part RANK PATH                       PartCells of that process alone
 //   evaluate MATRIX PREVIOUS ORIGIN      ElementPart::evaluate
@@ -8,13 +8,15 @@
 //   flows SINCE                          into the report
 //   multiply MAGNITUDES, measure         own rows
 //   products N PATH                      x and y of own rows, N columns each
+//   diagonal                             of own rows
+//   maxima                               largest entries of own rows, scaled from both sides
+//   remember, change                     ElementPart::remember; its change() into the report
 //   whole PATH                           adds them to a lower triangle: n_rows, n_entries, rows, values, columns
 #include <istream>
 #include <optional>
 #include <string>
 
 #include "lacon/assembly/parts/element_part.hpp"
-#include "lacon/assembly/petsc/block_rows.hpp"
 
 namespace lacon {
 
@@ -23,8 +25,8 @@ class Cells {
   Cells(int rank, int n_ranks) : rank_(rank), n_ranks_(n_ranks) {}
   /// @return whether the line is about cells
   bool obey(const std::string& line);
-  /// For a system; no matrix where there are no cells.
-  OwnEntries entries() const;
+  /// Nothing where it has no cells.
+  const ElementPart* part() const { return part_ ? &*part_ : nullptr; }
 
  private:
   void exchange(bool put, std::istream& said);
