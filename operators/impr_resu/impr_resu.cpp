@@ -6,6 +6,7 @@
 #include <cctype>
 #include <map>
 #include <optional>
+#include <set>
 #include <sstream>
 #include <tuple>
 
@@ -352,6 +353,33 @@ void print_mesh_file(const Order& order, const Base& base, Concepts& concepts, c
   files.commit();
 }
 
+/// INFO_MAILLAGE of files that do not list the mesh themselves: lines of its counts, each mesh once.
+void tell_meshes(const Order& order, const Base& base, Concepts& concepts, std::vector<std::string>& lines) {
+  std::set<std::string> told;
+  for (const Keywords& one : order.keywords.factors("RESU")) {
+    if (!one.yes("INFO_MAILLAGE")) continue;
+    const std::string id = one.has("CONTACT") ? base.contact(one.concept_id("CONTACT")).mesh
+                           : has_fields(one)  ? concepts.source(one).second.mesh
+                                              : one.concept_id("MAILLAGE");
+    if (!told.insert(id).second) continue;
+    std::istringstream listed([&] {
+      std::ostringstream out;
+      list_mesh(out, concepts.mesh(id), true);
+      return out.str();
+    }());
+    lines.push_back(part("mesh") + " " + base.label(id));
+    for (std::string line; std::getline(listed, line);) lines.push_back(line);
+  }
+}
+
+/// Throws IMPR_9 for keywords of listings in the order of another file.
+void refuse_words_of_listings(const Order& order) {
+  for (const Keywords& one : order.keywords.factors("RESU"))
+    for (const char* word : {"IMPR_COOR", "VALE_MAX", "VALE_MIN"})
+      if (one.has(word) && one.yes(word))
+        fail("IMPR_9", {{"keyword", one.path(word)}, {"format", order.keywords.text("FORMAT")}});
+}
+
 }  // namespace
 
 std::vector<std::string> impr_resu(const Order& order, const Base& base) {
@@ -362,6 +390,10 @@ std::vector<std::string> impr_resu(const Order& order, const Base& base) {
   Concepts concepts(base);
   Written written;
   std::vector<std::string> lines;
+  if (format != "RESULTAT") {
+    refuse_words_of_listings(order);
+    tell_meshes(order, base, concepts, lines);
+  }
   if (format == "MED")
     print_med(order, base, concepts, file, append, written, lines);
   else if (format == "VTU")

@@ -484,6 +484,17 @@ class ImprResu(OperatorTest):
         for word in ("mesh MA", "QUAD4                            2", "X from 0 to 2", "result U, field CONT_ELEM, order 1"):
             self.assertIn(word, text)
 
+    def test_counts_of_the_mesh_beside_any_file(self):
+        for form in ("MED", "GMSH", "VTU"):
+            with self.subTest(form):
+                for said in ("OUI", "NON"):
+                    run = self.print({**self.U, "NOM_CHAM": ["DEPL"], "INFO_MAILLAGE": said}, form)
+                    self.assertEqual(["X from 0 to 2" in run.stdout, "QUAD4                            2" in run.stdout], [said == "OUI"] * 2, run.stdout)
+
+    def test_words_of_listings_are_refused_elsewhere(self):
+        for word in ("IMPR_COOR", "VALE_MAX", "VALE_MIN"):
+            self.refuses("IMPR_9", {**self.U, word: "OUI"}, word, "'MED'")
+
 
 if __name__ == "__main__":
     unittest.main()
