@@ -25,8 +25,8 @@ void add_groups(std::vector<Group>& groups, const std::vector<Group>& more, std:
 void asse_maillage(const Order& order, const Base& base) {
   Mesh mesh = base.mesh(order.keywords.concept_id("MAILLAGE_1"));
   const Mesh second = base.mesh(order.keywords.concept_id("MAILLAGE_2"));
-  refuse_cut_mesh(mesh, order.command);
-  refuse_cut_mesh(second, order.command);
+  refuse_cut_mesh(mesh, order.command, base.label(order.keywords.concept_id("MAILLAGE_1")));
+  refuse_cut_mesh(second, order.command, base.label(order.keywords.concept_id("MAILLAGE_2")));
   const std::size_t n_nodes = mesh.n_nodes(), n_cells = mesh.n_cells();
 
   mesh.dimension = std::max(mesh.dimension, second.dimension);

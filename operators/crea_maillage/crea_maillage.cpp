@@ -150,15 +150,17 @@ Mesh cut_and_tell(Mesh mesh, const LacCut& cut) {
   return made;
 }
 
-Mesh crea_maillage(Mesh mesh, const Keywords& keywords) {
+Mesh crea_maillage(Mesh mesh, const Keywords& keywords, std::string_view label) {
   const std::size_t nodes = mesh.n_nodes(), cells = mesh.n_cells();
   if (keywords.has("DECOUPE_LAC")) {
     const auto occurrences = keywords.factors("DECOUPE_LAC");
     if (occurrences.size() != 1) fail("ORDER_4", {{"keyword", "DECOUPE_LAC"}, {"expected", "given once"}});
-    return cut_and_tell(std::move(mesh), cut_of(occurrences[0], keywords.integer("INFO")));
+    const LacCut cut = cut_of(occurrences[0], keywords.integer("INFO"));
+    refuse_cut_mesh(mesh, cut.keyword, label);
+    return cut_and_tell(std::move(mesh), cut);
   }
   if (keywords.has("RESTREINT")) {
-    refuse_cut_mesh(mesh, "RESTREINT");
+    refuse_cut_mesh(mesh, "RESTREINT", label);
     Mesh made = restricted(mesh, keywords.factors("RESTREINT").at(0));
     print_counts(nodes, cells, made);
     return made;
@@ -172,7 +174,7 @@ Mesh crea_maillage(Mesh mesh, const Keywords& keywords) {
       std::find_if(std::begin(changes), std::end(changes), [&](const Change& c) { return keywords.has(c.keyword); });
   if (change == std::end(changes))
     fail("ORDER_2", {{"keyword", "DECOUPE_LAC, LINE_QUAD, QUAD_LINE, HEXA20_27, RESTREINT or CREA_POI1"}});
-  refuse_cut_mesh(mesh, change->keyword);
+  refuse_cut_mesh(mesh, change->keyword, label);
   for (const Keywords& factor : keywords.factors(change->keyword))
     fmt::print("  {}: {} cells became {}\n", change->keyword, change->make(mesh, chosen(mesh, factor)), change->what);
   tell_what_hangs(mesh);

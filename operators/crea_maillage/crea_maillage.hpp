@@ -22,6 +22,7 @@ Mesh cut_and_tell(Mesh mesh, const LacCut& cut);
 
 /// The mesh that the keywords DECOUPE_LAC, LINE_QUAD, QUAD_LINE, HEXA20_27 or RESTREINT ask for; prints a summary on stdout.
 /// Errors: see operators/meshing/cut.hpp, order_change.hpp and restriction.hpp, and ORDER_2 where none of them is given.
-Mesh crea_maillage(Mesh mesh, const Keywords& keywords);
+/// @param label the variable that holds the mesh, for messages
+Mesh crea_maillage(Mesh mesh, const Keywords& keywords, std::string_view label = {});
 
 }  // namespace lacon

@@ -20,7 +20,8 @@ int main(int argc, char** argv) {
                        }();
                        const Mesh made = [&] {
                          const Phase phase("change");
-                         return crea_maillage(std::move(mesh), order.keywords);
+                         return crea_maillage(std::move(mesh), order.keywords,
+                                              base.label(order.keywords.concept_id("MAILLAGE")));
                        }();
                        const Phase phase("write");
                        base.store(made);

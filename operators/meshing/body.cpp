@@ -109,8 +109,8 @@ std::vector<std::int32_t> mirrored(CellType type, std::span<const std::int32_t> 
   return turned;
 }
 
-void refuse_cut_mesh(const Mesh& mesh, std::string_view what) {
-  if (mesh.patches) fail("MESH1_12", {{"what", std::string(what)}, {"mesh", mesh.name}});
+void refuse_cut_mesh(const Mesh& mesh, std::string_view what, std::string_view label) {
+  if (mesh.patches) fail("MESH1_12", {{"what", std::string(what)}, {"mesh", label.empty() ? mesh.name : std::string(label)}});
 }
 
 }  // namespace lacon

@@ -66,6 +66,7 @@ std::vector<BodyCell> body_cells(const Mesh& mesh, const NodeCells& around, std:
 std::vector<std::int32_t> mirrored(CellType type, std::span<const std::int32_t> nodes);
 
 /// Refuse a change of cells on a mesh that is cut for LAC: MESH1_12. @param what the keyword, for the message
-void refuse_cut_mesh(const Mesh& mesh, std::string_view what);
+/// @param label the variable of the study that holds the mesh; none: the mesh's own name
+void refuse_cut_mesh(const Mesh& mesh, std::string_view what, std::string_view label = {});
 
 }  // namespace lacon

@@ -35,10 +35,10 @@ class AsseMaillage(OperatorTest):
         self.assert_refuses("ASSEMAIL_1", "ASSE_MAILLAGE", self.keywords(second="mesh_4"), "GROUP_NO", "'A'", result="mesh_3")
 
     def test_a_mesh_that_is_cut_is_refused(self):
-        run = self.run_command("CREA_MAILLAGE", {"MAILLAGE": concept("mesh_1"), "DECOUPE_LAC": {"GROUP_MA_ESCL": "TOP"}}, result="mesh_5")
+        run = self.run_command("CREA_MAILLAGE", {"MAILLAGE": concept("mesh_1"), "DECOUPE_LAC": {"GROUP_MA_ESCL": "TOP"}}, result="mesh_5", label="CUT")
         self.assertEqual(run.status, 0, run.stderr)
         for first, second in (("mesh_5", "mesh_2"), ("mesh_2", "mesh_5")):
-            self.assert_refuses("MESH1_12", "ASSE_MAILLAGE", self.keywords(first, second), "ASSE_MAILLAGE", result="mesh_3")
+            self.assert_refuses("MESH1_12", "ASSE_MAILLAGE", self.keywords(first, second), "ASSE_MAILLAGE", "'CUT'", result="mesh_3")
 
 
 if __name__ == "__main__":

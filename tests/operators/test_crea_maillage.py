@@ -142,10 +142,10 @@ class CreaMaillage(OperatorTest):
         self.assert_refuses("DECOUPE_6", "CREA_MAILLAGE", self.cut(["LOW"], "mesh_5"), "M2 under the slave cell M1, a QUAD4, has", result="mesh_6")
 
     def test_refuses_a_mesh_that_is_cut(self):
-        self.run_command("CREA_MAILLAGE", self.cut(["LOW"]), "mesh_2")
-        self.assert_refuses("MESH1_12", "CREA_MAILLAGE", self.cut(["TOP"], "mesh_2"), result="mesh_3")
+        self.run_command("CREA_MAILLAGE", self.cut(["LOW"]), "mesh_2", label="CUT")
+        self.assert_refuses("MESH1_12", "CREA_MAILLAGE", self.cut(["TOP"], "mesh_2"), "'CUT'", result="mesh_3")
         for keyword in ("LINE_QUAD", "QUAD_LINE"):
-            self.assert_refuses("MESH1_12", "CREA_MAILLAGE", {"MAILLAGE": concept("mesh_2"), keyword: [{"TOUT": "OUI"}]}, keyword, result="mesh_3")
+            self.assert_refuses("MESH1_12", "CREA_MAILLAGE", {"MAILLAGE": concept("mesh_2"), keyword: [{"TOUT": "OUI"}]}, keyword, "'CUT'", result="mesh_3")
 
     def test_refuses_incomplete_orders(self):
         self.assert_refuses("ORDER_2", "CREA_MAILLAGE", {"MAILLAGE": concept("mesh_1")}, "DECOUPE_LAC", result="mesh_2")
