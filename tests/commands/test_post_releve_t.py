@@ -242,6 +242,7 @@ FIN()
                               ({"GROUP_NO": "'ONE'", "OPERATION": "'MOYENNE'"}, "POST_5"), ({"GROUP_NO": "'ONE'", "REPERE": "'LOCAL'"}, "POST_5"),
                               ({"REPERE": "'LOCAL'", "VECT_Y": "(1., 0.)"}, "POST_9"), ({"VECT_Y": "(1., 0.)"}, "KEYWORD_10"),
                               ({"REPERE": "'UTILISATEUR'"}, "KEYWORD_2"), ({"ORIGINE": "(0., 0.)"}, "KEYWORD_10"),
+                              ({"NOM_CMP": None, "RESULTANTE": "'DX'", "MOMENT": "'DX'", "POINT": "(0., 0.)"}, "KEYWORD_4"),
                               ({"NOM_CMP": None, "INVARIANT": "'OUI'"}, "POST_7"), ({"TRAC_DIR": "'OUI'"}, "KEYWORD_9"),
                               ({"TRAC_DIR": "'OUI'", "DIRECTION": "(0., 0.)"}, "POST_8"), ({"CHEMIN": "R"}, "KEYWORD_11"),
                               ({"NOM_CMP": None, "RESULTANTE": "'DX'", "REPERE": "'POLAIRE'"}, "KEYWORD_10")):
