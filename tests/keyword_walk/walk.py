@@ -1,14 +1,13 @@
 """Which keywords change something: every command of a study is done again without each of its keywords, and what it makes is compared.
 
 `install()` puts this into the launcher of a test run (launcher() makes such a one). What the walk finds goes to the file that WALK_FILE names, a line of JSON
-each: [COMMAND/FACTOR/KEYWORD, "changes" or "same"]. A keyword changes something where the concept (with what it refers to), what is printed or written, or the
+each: [COMMAND/FACTOR/KEYWORD, "changes" or "same", the study as WALK_STUDY names it, what was another]. A keyword changes something where the concept (with what it refers to), what is printed or written, or the
 error is another one without it; where the command refuses to go without, with another value in its place.
 """
 
 import contextlib
 import copy
 import hashlib
-import io
 import json
 import os
 import pathlib
@@ -23,6 +22,7 @@ import numpy
 #: commands that are a study's frame: again and without they are another study
 FRAME = ("DEBUT", "POURSUITE", "FIN", "INCLUDE", "DEFI_FICHIER", "DETRUIRE", "INFO_EXEC_ASTER")
 OWN = {"id", "label", "keywords", "command", "version", "references"}  # attributes that say what made a concept
+SHOWN = pathlib.Path(__file__).resolve().parent / "shown.json"
 TRIES = 8  # calls in which a keyword may show its effect, before the walk leaves it
 
 #: keywords that change nothing by themselves in the call that gives them, and where they are seen instead
@@ -35,6 +35,8 @@ EXCUSED = (
     (r"^PROJ_CHAMP/DISTANCE_ALARME$", "an alarm: tests/operators/test_proj_champ.py"),
     (r"/CONVERGENCE/RESI_GLOB_RELA$", "linear studies meet any: tests/unit/evolution/convergence_test.cpp, newton_test.cpp"),
     (r"/CONVERGENCE/SIGM_REFE$", "linear studies meet any: the closed form of tests/verification/test_references.py"),
+    (r"^STAT_NON_LINE/RECH_LINEAIRE/METHODE$", "CORDE and MIXTE differ where a secant leaves its bracket: tests/unit/evolution/line_search_test.cpp"),
+    (r"/SOLVEUR/(ACCELERATION|LOW_RANK_SEUIL)$", "small matrices have no blocks to compress: tests/unit/assembly/mumps_engine_test.cpp"),
     (rf"^({'|'.join(FRAME)})/", "the frame of a study: tests/commands"),
 )
 
@@ -43,11 +45,21 @@ def excuse(path):
     return next((why for pattern, why in EXCUSED if re.search(pattern, path)), "")
 
 
+def lines(file):
+    """What the walk has entered: [keyword, verdict, study, what was another]."""
+    return [json.loads(line) for line in file.read_text(encoding="utf-8").splitlines()] if file.exists() else []
+
+
 def found(file):
     """(keywords that have changed something, those that have been given and never have)"""
-    verdicts = [json.loads(line) for line in file.read_text(encoding="utf-8").splitlines()] if file.exists() else []
-    changes = {path for path, verdict in verdicts if verdict == "changes"}
-    return changes, {path for path, _ in verdicts} - changes
+    verdicts = lines(file)
+    changes = {path for path, verdict, *_ in verdicts if verdict == "changes"}
+    return changes, {path for path, *_ in verdicts} - changes
+
+
+def shown():
+    """study -> the keywords that `run --record` found to change something there."""
+    return json.loads(SHOWN.read_text(encoding="utf-8"))
 
 
 def taken():
@@ -168,23 +180,46 @@ def put_files(run, state):
         run.plots = copy.deepcopy(drawings)
 
 
+@contextlib.contextmanager
+def heard(lines):
+    """What this process and those that it starts print goes to `lines`, without the seconds that end rows of Newton's table."""
+    for stream in (sys.stdout, sys.stderr):
+        stream.flush()
+    were = [os.dup(1), os.dup(2)]
+    with tempfile.TemporaryFile() as file:
+        try:
+            for number in (1, 2):
+                os.dup2(file.fileno(), number)
+            yield
+        finally:
+            for stream in (sys.stdout, sys.stderr):
+                stream.flush()
+            for number, was in zip((1, 2), were):
+                os.dup2(was, number)
+                os.close(was)
+            file.seek(0)
+            text = file.read().decode(errors="replace")
+            lines.extend(re.sub(r"[0-9.]+\s*\|$", "|", line.rstrip()) for line in text.splitlines())
+
+
 class Walk:
-    def __init__(self, launcher_calls, current, plugins, error, kind_of):
-        self.calls, self.current, self.plugins, self.error, self.kind_of = launcher_calls, current, plugins, error, kind_of
+    def __init__(self, launcher_calls, current, plugins, error, to_be, kind_of):
+        """@param to_be the type of a name that a command makes a concept of"""
+        self.calls, self.current, self.plugins, self.error, self.to_be, self.kind_of = launcher_calls, current, plugins, error, to_be, kind_of
         self.file = pathlib.Path(os.environ["WALK_FILE"])
         self.busy = False
 
     def tried(self):
         """keyword -> how often it has been tried in vain; infinitely often where it has changed something."""
         tries = {}
-        for line in self.file.read_text(encoding="utf-8").splitlines() if self.file.exists() else ():
-            path, verdict = json.loads(line)
+        for path, verdict, *_ in lines(self.file):
             tries[path] = tries.get(path, 0) + (1 if verdict == "same" else TRIES)
         return tries
 
-    def enter(self, path, verdict):
+    def enter(self, path, verdict, where):
+        """@param where the first part that is another one"""
         with self.file.open("a") as file:
-            file.write(json.dumps([path, verdict]) + "\n")
+            file.write(json.dumps([path, verdict, os.environ.get("WALK_STUDY", ""), where]) + "\n")
 
     def call(self, original, command, given):
         run = self.current.study
@@ -196,34 +231,39 @@ class Walk:
         for path, keyword in leaves(command.name, row, {k: v for k, v in given.items() if k != "reuse"}):
             if tries.get(path, 0) < TRIES and self.kind_of(keyword) == "taken":
                 todo[path] = keyword
-        if not todo or any(keyword.get("makes") for keyword in row.get("keyword", {}).values()):
+        if not todo:
             return original(command, **given)
         reused = given.get("reuse")
         before, written = self.saved(run, reused), files_of(run)
+        named = {name: value.name if isinstance(value, self.to_be) else value for name, value in given.items()}
+        names = {name for name, keyword in row.get("keyword", {}).items() if keyword.get("makes")}
+        call, made, refused = self.with_names(original, names), None, None
         self.busy = True
         try:
             made = original(command, **given)
+        except self.error as error:  # a refusal is what a command does too
+            refused = error
         finally:
             self.busy = False
         after, left = self.saved(run, reused), files_of(run)
         self.busy = True
         checks = len(run.checks)
         try:
-            first = self.outcome(run, original, command, given, before, reused, written)
-            again = self.outcome(run, original, command, given, before, reused, written)
+            first = self.outcome(run, call, command, named, before, reused, written)
+            again = self.outcome(run, call, command, named, before, reused, written)
             noise = {part for part in first.keys() | again.keys() if first.get(part) != again.get(part)}
             for path, keyword in todo.items():
-                names = path.split("/")[1:]
-                verdict = "same"
+                parts = path.split("/")[1:]
+                verdict, where = "same", ""
                 for other in self.others(keyword):
-                    now = self.outcome(run, original, command, changed(given, names, other), before, reused, written)
-                    refused = other is None and set(now) == {"error"} and now["error"].startswith("KEYWORD") and "error" not in first
-                    if refused:
+                    now = self.outcome(run, call, command, changed(named, parts, other), before, reused, written)
+                    if other is None and set(now) == {"error"} and now["error"].startswith("KEYWORD") and "error" not in first:
                         continue  # without it there is no command: with another value, then
-                    if any(now.get(part) != first.get(part) for part in (first.keys() | now.keys()) - noise):
-                        verdict = "changes"
+                    others = sorted(part for part in (first.keys() | now.keys()) - noise if now.get(part) != first.get(part))
+                    if others:
+                        verdict, where = "changes", others[0]
                         break
-                self.enter(path, verdict)
+                self.enter(path, verdict, where)
         finally:
             self.put(run, reused, after)
             put_files(run, left)
@@ -234,7 +274,16 @@ class Walk:
             self.busy = False
             if hasattr(made, "id") and hasattr(made, "label"):
                 self.calls._enter(run, made.label, made, "")
+        if refused:
+            raise refused
         return made
+
+    def with_names(self, original, names):
+        """The command, called with a new CO of the same name in the place of each text that is the name of a concept to be made."""
+        def call(command, **given):
+            return original(command, **{name: self.to_be(value) if name in names and isinstance(value, str) else value for name, value in given.items()})
+
+        return call
 
     @staticmethod
     def others(keyword):
@@ -249,18 +298,18 @@ class Walk:
         else:
             yield "NOTHING"
 
-    def outcome(self, run, original, command, given, before, reused, written):
+    def outcome(self, run, call, command, given, before, reused, written):
         self.put(run, reused, before)
         put_files(run, written)
-        said, told = io.StringIO(), io.StringIO()
+        said = []
         try:
-            with contextlib.redirect_stdout(said), contextlib.redirect_stderr(told):
-                made = original(command, **given)
+            with heard(said):
+                made = call(command, **given)
         except self.error as error:
             return {"error": error.id_message}
         except Exception as error:
             return {"error": type(error).__name__}
-        parts = {f"{where} {k}": line for where, text in (("said", said), ("told", told)) for k, line in enumerate(text.getvalue().splitlines())}
+        parts = {f"said {k}": line for k, line in enumerate(said)}
         if made is not None:
             return {**parts, **content(run, made)}
         for unit, path in run.written_units.items():
@@ -296,11 +345,12 @@ class Walk:
 
 def install():
     from lacon.core import current, labels, plugins
+    from lacon.core.concepts import CO
     from lacon.core.messages import AsterError
     from lacon.run import calls
     from lacon.tools.keyword_table import kind_of
 
-    walk, original = Walk(calls, current, plugins, AsterError, kind_of), calls.Command.__call__
+    walk, original = Walk(calls, current, plugins, AsterError, CO, kind_of), calls.Command.__call__
     labels.is_own = lambda frame, own=labels.is_own: own(frame) or frame.f_code.co_filename == __file__
 
     def called(command, *args, **given):

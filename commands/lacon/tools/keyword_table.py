@@ -11,7 +11,8 @@ Made by `lacon help --table > docs/keywords.md` from `catalog/commands/*.toml` a
 defaults, bounds, rules.
 
 * *taken*: it does what code_aster's documentation says, and `tests/commands/test_keywords.py` finds who reads it, and a test that gives it;
-  `tests/keyword_walk` does the commands of studies again without it, and compares;
+  `tests/keyword_walk` does commands of studies again without it: for each keyword that is taken, `shown.json` there names the study in which
+  the concept, what is printed or written, or the refusal is another one then, or a reason why none can be (`EXCUSED` in `walk.py`);
 * *only choice*: taken with the one value that there is; any other value is refused;
 * *word*: accepted for what it says, with no effect here, and why;
 * *refused*: code_aster has it and Lacon has not; what to use instead, where there is something.

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 namespace lacon {
@@ -48,6 +49,19 @@ TEST(LineSearch, TheUsersKeepsToItsLimits) {
   EXPECT_LE(calls, 4);                                               // the whole, two more, and the best again
   const auto negative = [](double part) { return 1 + 100 * part; };  // vanishes at -0.01
   EXPECT_EQ(part_without_power({.accepted = 1e-9, .iterations = 5, .least = -1, .excluded = 0.02}, 1.0, negative), -0.02);
+}
+
+// A secant that leaves the two parts between which the power changes its sign: METHODE='MIXTE' halves them, 'CORDE' goes there.
+TEST(LineSearch, OnlyABracketKeepsASecantFromLeavingIt) {
+  for (const bool bracket : {false, true}) {
+    double farthest = 0;
+    const auto power = [&](double part) {
+      farthest = std::max(farthest, part);
+      return part < 0.5 ? 1.0 : part < 0.95 ? -5.0 : -0.5;
+    };
+    part_without_power({.keeps_bracket = bracket, .accepted = 1e-6, .iterations = 2}, 1.0, power);
+    EXPECT_EQ(farthest > 1, !bracket) << farthest;
+  }
 }
 
 TEST(LineSearch, TheLastCallIsAtThePartThatIsReturned) {
