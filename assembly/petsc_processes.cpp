@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "lacon/catalog/messages.hpp"
+#include "lacon/catalog/wording.hpp"
 
 namespace lacon {
 
@@ -30,7 +31,8 @@ void PetscProcesses::start() {
   if (ranks_->answer().empty()) {
     const std::string end = ranks_->end();
     ranks_.reset();
-    fail("SOLVER_6", {{"reason", program_.program + ": " + end}});
+    // PETSc's libraries or mpirun are missing, or what these need of the machine is
+    fail(end == part("cannot_be_started") ? "SOLVER_6" : "SOLVER_10", {{"reason", program_.program + ": " + end}});
   }
 }
 
