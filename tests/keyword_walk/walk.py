@@ -23,6 +23,7 @@ import numpy
 FRAME = ("DEBUT", "POURSUITE", "FIN", "INCLUDE", "DEFI_FICHIER", "DETRUIRE", "INFO_EXEC_ASTER")
 OWN = {"id", "label", "keywords", "command", "version", "references"}  # attributes that say what made a concept
 SHOWN = pathlib.Path(__file__).resolve().parent / "shown.json"
+WHEN = rb"[0-9]{2}/[0-9]{2}/[0-9]{4} [0-9]{2}:[0-9]{2}:[0-9]{2}"  # a file's own date is no effect of a keyword
 TRIES = 8  # calls in which a keyword may show its effect, before the walk leaves it
 
 #: keywords that change nothing by themselves in the call that gives them, and where they are seen instead
@@ -128,7 +129,7 @@ def changed(given, names, value=None):
 def parts_of(path, named=lambda text: text):
     """name of a part -> digest, of a file; of one of HDF5 its datasets and attributes. @param named puts what they are in the place of ids"""
     if not h5py.is_hdf5(path):
-        return {"": hashlib.sha256(path.read_bytes()).hexdigest()}
+        return {"": hashlib.sha256(re.sub(WHEN, b"", path.read_bytes())).hexdigest()}
     found = {}
 
     def look(name, item):
