@@ -43,6 +43,12 @@ void fill_points(Field& field, const StaticProblem& problem,
     for (std::size_t i = 0; i < problem.solids[s].cells.size(); ++i) places.push_back({problem.solids[s].cells[i], s, i});
   }
   std::sort(places.begin(), places.end(), [](const Place& a, const Place& b) { return a.cell < b.cell; });
+  std::size_t rows = 0;
+  for (const Place& place : places) rows += static_cast<std::size_t>(problem.solids[place.set].tabulation.n_points);
+  field.values.reserve(rows * field.n_components());  // the largest field there is: no more than its size
+  field.present.reserve(rows * field.n_components());
+  field.support.reserve(places.size());
+  field.offset.reserve(places.size() + 1);
   for (const Place& place : places) {
     const std::vector<int>& own = components[place.set];
     const std::size_t n_points = problem.solids[place.set].tabulation.n_points;
