@@ -6,11 +6,12 @@
 
 namespace {
 
-/// DEFORME: the nodes move by a field of displacements on this mesh.
+/// DEFORME: the nodes move by a field of displacements on this mesh, or on another with the same nodes at the same places
+/// (COPIER).
 void deform(lacon::Mesh& mesh, const lacon::Keywords& factor, const lacon::Base& base, const std::string& mesh_id) {
   const lacon::Field displacement = base.field(factor.concept_id("DEPL"));
   const std::string label = base.label(factor.concept_id("DEPL"));
-  if (displacement.mesh != mesh_id)
+  if (displacement.mesh != mesh_id && base.mesh(displacement.mesh).coordinates != mesh.coordinates)
     lacon::fail("CREACHAMP_5", {{"first", base.label(mesh_id)}, {"second", base.label(displacement.mesh)}});
   if (displacement.location != lacon::Location::nodes || displacement.quantity != "DEPL_R")
     lacon::fail("CREACHAMP_9",

@@ -92,6 +92,8 @@ class ModiMaillage(OperatorTest):
         expected = np.array(NODES, float)
         expected[2] += (0.5, -0.25)
         expected[6] += (1, 0)
+        self.write_mesh("mesh_7", NODES, CELLS, GROUPS)  # a copy: its nodes are those of the field's mesh
+        np.testing.assert_array_equal(self.moved("mesh_7", DEFORME={"OPTION": "TRAN", "DEPL": concept("field_4")}).coordinates[:, :2], expected)
         np.testing.assert_array_equal(self.moved(DEFORME={"OPTION": "TRAN", "DEPL": concept("field_4")}).coordinates[:, :2], expected)
         self.write_tetrahedron()
         write("field_5", mesh="mesh_2")
