@@ -406,6 +406,8 @@ Solution MumpsEngine::solve(std::span<double> right_side) {
   if (!std::isfinite(error) || (s.options.residual_tolerance > 0 && solution.residual > s.options.residual_tolerance))
     fail("SOLVER_1", {{"error", fmt::format("{:.1e}", solution.residual)},
                       {"tolerance", fmt::format("{:.1e}", s.options.residual_tolerance)}});
+  if (!exact)  // refined as the others, they would be so to round-off alone
+    for (const std::int64_t i : s.alone) best[static_cast<std::size_t>(i)] = right_side[i] / s.matrix->diagonal(i);
   std::copy(best.begin(), best.end(), right_side.begin());
   return solution;
 }

@@ -194,6 +194,26 @@ TEST(TreeMumps, HoldsBodiesByTheTop) {
   EXPECT_LE(solved.operator()<float>(1e-6), 1e-2);
 }
 
+// Pressures of open patches are zero to the last bit, not to that of a refinement.
+TEST(TreeMumps, LeavesUnknownsAsTheirRowAloneDecides) {
+  constexpr int open = 20;
+  std::vector<std::uint8_t> free(Stacked::points, 1);
+  std::fill(free.begin(), free.begin() + Stacked::rows, 0);
+  const Numbering numbering = number_equations(Stacked::points, 1, free, open);
+  const Ragged<std::int32_t> springs = Lattice::springs(Stacked::n);
+  SparseMatrix matrix(numbering, springs, {});
+  for (std::size_t s = 0; s < springs.size(); ++s)
+    matrix.add(std::vector{numbering.of(springs[s][0], 0), numbering.of(springs[s][1], 0)}, std::vector{1.0, -1.0, 1.1});
+  for (int r = 0; r < open; ++r) matrix.add_diagonal(numbering.of_patch(r), 3.0 + r);
+  MumpsEngine engine(shared_by(2));
+  engine.analyse(matrix);
+  ASSERT_EQ(engine.factorise(matrix).processes, 2);
+  const std::vector<double> force = any_force(matrix.size());
+  std::vector<double> x = force;
+  engine.solve(x);
+  for (int r = 0; r < open; ++r) EXPECT_EQ(x[numbering.of_patch(r)], force[numbering.of_patch(r)] / (3.0 + r)) << r;
+}
+
 /// The message that a factorisation ends with.
 std::string end_of(const std::string& program) {
   const Lattice lattice(10);
