@@ -34,7 +34,7 @@ const Rule& triangle_rule(int degree) {
   static KnownRules rules;
   return rules.get(Family::TRIA, degree, [&] {
     const int m = degree / 2 + 1;
-    return degree <= 4 ? 6 : degree <= 6 ? 12 : degree <= 8 ? 16 : m * m;
+    return degree <= 4 ? 6 : degree <= 5 ? 7 : degree <= 6 ? 12 : degree <= 8 ? 16 : m * m;
   });
 }
 

@@ -29,7 +29,7 @@ using PointRow = PointRows<1>;
 /// A quadratic form of the variables as a sum of products.
 class QuadraticForm {
  public:
-  explicit QuadraticForm(Eigen::Index n) : sum_(Eigen::MatrixXd::Zero(n, n)), sparse_(Matrix::Zero(n, n)) {}
+  explicit QuadraticForm(Eigen::Index n) : sum_(Matrix::Zero(n, n)) {}
   /// Add factor * first(d) * second(d).
   template <class First, class Second>
   void add(double factor, const First& first, const Second& second) {
@@ -53,13 +53,13 @@ class QuadraticForm {
   void add_cross_of_nodes(const Vector<3>& factor, int a, int b) {
     for (int i = 0; i < 3; ++i) {
       const int j = (i + 1) % 3, k = (i + 2) % 3;
-      sparse_(3 * a + j, 3 * b + k) += factor[i];
-      sparse_(3 * a + k, 3 * b + j) -= factor[i];
+      sum_(3 * a + j, 3 * b + k) += factor[i];
+      sum_(3 * a + k, 3 * b + j) -= factor[i];
     }
   }
   Eigen::Index size() const { return sum_.rows(); }
   /// What is multiplied by variable i, to be added to.
-  auto of(Eigen::Index i) { return sparse_.row(i); }
+  auto of(Eigen::Index i) { return sum_.row(i); }
   /// The symmetric matrix H with d.H.d of the form.
   Eigen::MatrixXd matrix();
 
@@ -67,10 +67,9 @@ class QuadraticForm {
   static constexpr Eigen::Index at_once = 64;  // products
   void sum_up();
 
-  Eigen::MatrixXd sum_;  ///< of products summed up: the lower triangle of their symmetric matrix
-  Matrix sparse_;
+  Matrix sum_;  ///< of products, but for those still to be summed up
   Eigen::Index count_ = 0;
-  Matrix left_, right_;  ///< of products still to be summed up
+  Matrix left_, right_;  ///< of these
 };
 
 /// Shape functions and gradients of a skin cell at many points: all at once, which takes less.
