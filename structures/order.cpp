@@ -176,7 +176,7 @@ Order parse_order(const json& order, const std::string& file) {
   const auto refuse = [&](const std::string& reason) { fail("ORDER_1", {{"file", file}, {"reason", reason}}); };
   Order parsed;
   try {
-    if (order.at("format").get<int>() != 1) refuse(part("order_of_another_format"));
+    if (order.at("format") != 1) refuse(part("order_of_another_format"));
     parsed.command = order.at("command").get<std::string>();
     parsed.base = order.at("base").get<std::string>();
     if (order.contains("result")) {
