@@ -4,7 +4,6 @@
 #include <vector>
 
 #include "lacon/catalog/messages.hpp"
-#include "lacon/catalog/wording.hpp"
 
 namespace lacon {
 
@@ -30,9 +29,10 @@ void PetscProcesses::start() {
   ranks_ = std::make_unique<Companion>(command);
   if (ranks_->answer().empty()) {
     const std::string end = ranks_->end();
+    const bool started = ranks_->has_started();
     ranks_.reset();
     // PETSc's libraries or mpirun are missing, or what these need of the machine is
-    fail(end == part("cannot_be_started") ? "SOLVER_6" : "SOLVER_10", {{"reason", program_.program + ": " + end}});
+    fail(started ? "SOLVER_10" : "SOLVER_6", {{"reason", program_.program + ": " + end}});
   }
 }
 

@@ -77,7 +77,7 @@ Companion::Companion(std::vector<std::string> command) {
     environment.set("OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1");
   }
   process_ = start(words.data(), environment.words(), to[1], from[1]);
-  if (process_ < 0) ended_ = part("cannot_be_started");  // its answer is an end at once
+  if (process_ < 0) end_without_start();  // its answer is an end at once
   close(to[1]);
   close(from[1]);
   to_ = to[0];
@@ -130,12 +130,19 @@ std::string Companion::answer() {
 
 std::string Companion::end() {
   int status = 0;
-  if (ended_.empty() && waitpid(process_, &status, 0) == process_)
-    ended_ = WIFSIGNALED(status) ? part("ended_by_signal", {{"signal", strsignal(WTERMSIG(status))}})
-             : WEXITSTATUS(status) == not_started
-                 ? part("cannot_be_started")
-                 : part("ended_with_status", {{"status", std::to_string(WEXITSTATUS(status))}});
+  if (!ended_.empty() || waitpid(process_, &status, 0) != process_) return ended_;
+  if (WIFSIGNALED(status))
+    ended_ = part("ended_by_signal", {{"signal", strsignal(WTERMSIG(status))}});
+  else if (WEXITSTATUS(status) == not_started)
+    end_without_start();
+  else
+    ended_ = part("ended_with_status", {{"status", std::to_string(WEXITSTATUS(status))}});
   return ended_;
+}
+
+void Companion::end_without_start() {
+  ended_ = part("cannot_be_started");
+  started_ = false;
 }
 
 }  // namespace lacon

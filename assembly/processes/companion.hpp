@@ -25,12 +25,17 @@ class Companion {
   std::string ask(const std::string& line) { return say(line) ? answer() : std::string(); }
   /// How it has ended, in words: after an empty answer.
   std::string end();
+  /// Whether there was such a program (a shell's exit status 127 says that there was none): known after end().
+  bool has_started() const { return started_; }
 
  private:
+  void end_without_start();
+
   pid_t process_ = -1;
   int to_ = -1, from_ = -1;
   std::string heard_;
   std::string ended_;
+  bool started_ = true;
 };
 
 }  // namespace lacon
