@@ -90,6 +90,10 @@ class Equilibrium {
   /// The right side of the system, (n_equations). @param step of the imposed displacements
   std::vector<double> right_side(std::span<const double> step) const { return system_.right_side(external_, step); }
 
+  /// Of the last load() or assembly: external forces, (n_nodes, n_components), and behind them what rows of multipliers are to
+  /// be.
+  const std::vector<double>& external() const { return external_; }
+
   /// Power of the unbalanced forces of the last assembly along a solution of the system.
   double power(std::span<const double> solution) const;
   /// Power of the forces by which the matrix resists a solution, along it; multipliers have no part in it.

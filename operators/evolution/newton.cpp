@@ -23,8 +23,11 @@ constexpr double gap_share = 1e-2;  // of RESI_GEOM: largest |g_T| / h, 1e-8 by 
 constexpr double worse = 1.2;       // a residual that changes by this factor an iteration diverges
 constexpr double no_better = 0.97;  // or does not fall
 constexpr double near_round_off = 1e-9;
-constexpr int settled = 4;     // iterations without a change of status after which a ratio is that of the residual alone
-constexpr double deepest = 1;  // sizes of a patch, by which bodies that began in a few patches may go into each other
+constexpr int tries = 3;        // iterations that have to make forces smaller than where an instant began elsewhere
+constexpr int most = 15;        // that are given to it, for from a near start a few are enough; more while they go on falling
+constexpr double falls = 0.75;  // by this factor an iteration, as they do near a limit point from wherever it begins
+constexpr int settled = 4;      // iterations without a change of status after which a ratio is that of the residual alone
+constexpr double deepest = 1;   // sizes of a patch, by which bodies that began in a few patches may go into each other
 constexpr double other_stress = 1e-8;  // of the largest stress: that of another law
 
 /// What is known of a failure, one thing behind the other.
@@ -47,6 +50,7 @@ Newton::Newton(const StaticProblem& problem, const NewtonOptions& options, std::
                .symmetric = equilibrium_.is_symmetric(),
                .in_space = problem.dimension == 3,
                .settling = problem.contact ? problem.contact->elastic_iterations : 0}),
+      prediction_(problem.imposed),
       solver_(std::move(engine)) {
   equilibrium_.measure_by(options.reference_forces);
   if (!problem.contact) return;
@@ -104,6 +108,7 @@ void Newton::restart(const StaticState& state) {
   equilibrium_.strain_as(state);
   choice_.start_instant();
   solver_.forget_right_sides();
+  prediction_.distrust();
   equilibrium_.rest_at(state.displacement);
   equilibrium_.pair(state.displacement);
   assemble(state, state, options_.matrix);
@@ -112,13 +117,7 @@ void Newton::restart(const StaticState& state) {
 void Newton::save(const hdf5::Group& group) const {
   group.set("waits", std::int64_t{choice_.waits()});
   group.write("told", std::vector<std::int64_t>(told_.begin(), told_.end()));
-  if (motion_) {
-    const hdf5::Group motion = group.create("motion");
-    motion.set("from", motion_->from);
-    motion.set("to", motion_->to);
-    motion.write("start", motion_->start);
-    motion.write("end", motion_->end);
-  }
+  prediction_.save(group.create("prediction"));
   equilibrium_.save(group.create("equilibrium"));
   solver_.save(group.create("solver"));
 }
@@ -126,25 +125,29 @@ void Newton::save(const hdf5::Group& group) const {
 void Newton::resume(const hdf5::Group& group, const hdf5::Group* base, const StaticState& state, std::span<const double> rest) {
   choice_.set_waits(group.integer("waits") != 0);
   for (const std::int64_t patch : group.read<std::int64_t>("told")) told_.insert(static_cast<std::size_t>(patch));
-  if (group.has("motion")) {
-    const hdf5::Group motion = group.open("motion");
-    motion_ = {motion.real("from"), motion.real("to"), motion.read<double>("start"), motion.read<double>("end")};
-  }
+  prediction_.resume(group.open("prediction"));
   equilibrium_.resume(group.open("equilibrium"), state, rest);
   solver_.resume(group.open("solver"), base, problem_.numbering);
 }
 
 int Newton::solve(double instant, StaticState& state, const std::function<void(const IterationReport&)>& report) {
   course_.start();
+  elsewhere_ = false;
   try {
     return iterate(instant, state, report);
   } catch (const Error& error) {
+    Message told = error.message();
+    FailureNature nature = nature_of(error);
+    nature.led_astray = elsewhere_ && told.severity == 'S';
     // the state before was computed: what is wrong with a cell now, the iterations have done
-    if (error.message().id != "ELEMENT_1" && error.message().id != "EVOLUTION_3") throw;
-    throw InstantFailure(message("EVOLUTION_18", {{"instant", fmt::format("{:.9g}", instant)},
-                                                  {"reason", said({error.message().text, course_.words()})},
-                                                  {"remedy", part(options_.cuts ? "remedy_coarser_load" : "remedy_cut_step")}}),
-                         {});
+    if (told.id == "ELEMENT_1" || told.id == "EVOLUTION_3")
+      told = message("EVOLUTION_18", {{"instant", fmt::format("{:.9g}", instant)},
+                                      {"reason", said({told.text, course_.words()})},
+                                      {"remedy", part(options_.cuts ? "remedy_coarser_load" : "remedy_cut_step")}});
+    else if (!nature.led_astray)
+      throw;
+    if (nature.led_astray) prediction_.mislead();
+    throw InstantFailure(told, nature);
   }
 }
 
@@ -156,15 +159,20 @@ int Newton::iterate(double instant, StaticState& state, const std::function<void
   choice_.start_instant();
   statuses_.start_instant();
   forcing_.start_instant();
-  if (options_.extrapolates) extrapolate(instant, state, step);
+  const std::vector<double> external = equilibrium_.external();
+  extrapolate(instant, state, step);
   // plasticity answers to a step of no length by the flow that the last instant ended with where the load goes on: a neck that
   // softens goes on alone. A body that is unloaded now would overshoot on it, to and fro between two states
+  const auto motion = prediction_.last_motion();
   const bool goes_on =
-      motion_ && equilibrium_.has_memory() && equilibrium_.load_goes_on(motion_->from, motion_->to, instant, state);
+      motion && equilibrium_.has_memory() && equilibrium_.load_goes_on(motion->first, motion->second, instant, state);
   if (equilibrium_.has_memory() || equilibrium_.strains_freely(previous) || equilibrium_.has_new_gaps() ||
       state.displacement != previous.displacement ||
       choice_.suited(options_.prediction, equilibrium_.touches(state)) != equilibrium_.matrix())
     assemble(state, goes_on ? previous : equilibrium_.at_rest(previous), options_.prediction);
+  IterationReport there;
+  double forces_before = 0;
+  if (elsewhere_) judge_forces(options_.criteria, equilibrium_.forces(state, previous), there);
   bool settling = false;  // statuses change from iteration to iteration: a rough solution finds them as well
   settled_ = times_held_ = 0;
   IterationReport line;
@@ -211,9 +219,17 @@ int Newton::iterate(double instant, StaticState& state, const std::function<void
       if (const auto cell = equilibrium_.cell_inside_out())
         fail("EVOLUTION_9", {{"instant", fmt::format("{:.9g}", instant)}, {"cell", cell_name(*cell)}});
       equilibrium_.hold_points(state);
-      note_motion(instant, previous, state);
+      prediction_.note(options_.start, {.displacement = previous.displacement, .pressure = previous.patches.lambda},
+                       {instant, state.displacement, state.patches.lambda, external}, elsewhere_);
       return iteration;
     }
+    const int done = iteration + 1;
+    if (elsewhere_ && ((done >= most && !(line.maxi < falls * forces_before)) ||
+                       (done >= tries && !there.in_equilibrium() && !(line.maxi < there.maxi))))
+      fail("EVOLUTION_49", {{"count", std::to_string(done)},
+                            {"residual", fmt::format("{:.3g}", line.maxi)},
+                            {"start", fmt::format("{:.3g}", there.maxi)}});
+    forces_before = line.maxi;
     changing = static_cast<std::size_t>(std::mismatch(before.begin(), before.end(), wanted.begin()).first - before.begin());
     settling = line.status_changes > 0 && !statuses_.keeps();
     bool other_matrix = choice_.note_residual({.largest = line.maxi,
@@ -363,17 +379,17 @@ void Newton::stay_shallow(std::span<const double> solution, StaticState& state, 
   equilibrium_.pair(state.displacement);
 }
 
-void Newton::note_motion(double instant, const StaticState& previous, const StaticState& state) {
-  const bool follows = motion_ && (!options_.extrapolates || motion_->end == previous.displacement);
-  motion_ = {.from = follows ? motion_->to : motion_ ? motion_->from : options_.start, .to = instant, .start = {}, .end = {}};
-  if (options_.extrapolates) motion_->start = previous.displacement, motion_->end = state.displacement;
-}
-
 void Newton::extrapolate(double instant, StaticState& state, std::vector<double>& step) {
-  if (!motion_ || motion_->end != state.displacement || !(motion_->to > motion_->from)) return;
-  const double factor = (instant - motion_->to) / (motion_->to - motion_->from);
+  const bool asked = options_.extrapolates.value_or(false) && prediction_.reaches(state.displacement);
+  elsewhere_ = !options_.extrapolates && (contact() || !equilibrium_.is_linear()) && !equilibrium_.strains_freely(state) &&
+               !equilibrium_.has_new_gaps() && prediction_.serves(instant, state.displacement, step, equilibrium_.external());
+  if (!asked && !elsewhere_) return;
+  const KnownState there = prediction_.at(instant);
   for (std::size_t dof = 0; dof < step.size(); ++dof)
-    state.displacement[dof] += problem_.imposed[dof] ? step[dof] : factor * (motion_->end[dof] - motion_->start[dof]);
+    state.displacement[dof] = problem_.imposed[dof] ? state.displacement[dof] + step[dof] : there.displacement[dof];
+  for (std::size_t p = 0; elsewhere_ && p < state.patches.status.size(); ++p)
+    if (state.patches.status[p] == Status::active && !contact()->is_locked(p))
+      state.patches.lambda[p] = std::min(there.pressure[p], 0.0);
   std::fill(step.begin(), step.end(), 0.0);
   equilibrium_.pair(state.displacement);
 }

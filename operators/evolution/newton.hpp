@@ -14,6 +14,7 @@
 #include "lacon/operators/evolution/forcing_term.hpp"
 #include "lacon/operators/evolution/line_search.hpp"
 #include "lacon/operators/evolution/matrix_choice.hpp"
+#include "lacon/operators/evolution/prediction.hpp"
 #include "lacon/operators/evolution/residual_course.hpp"
 #include "lacon/operators/evolution/status_rule.hpp"
 
@@ -25,9 +26,11 @@ struct NewtonOptions {
   int iterations = 10;                            ///< ITER_GLOB_MAXI
   SolidMatrix matrix = SolidMatrix::tangent;      ///< NEWTON/MATRICE
   SolidMatrix prediction = SolidMatrix::tangent;  ///< NEWTON/PREDICTION: of the first iteration of an instant
-  bool extrapolates = false;    ///< PREDICTION='EXTRAPOLE': an instant starts where the motion of the last one leads to
-  double start = 0;             ///< the instant of the initial state
-  bool from_reference = false;  ///< its temperatures are those of reference, whatever they are at that instant
+  /// PREDICTION='EXTRAPOLE': an instant starts where the motion of the last one leads to; TANGENTE and ELASTIQUE: where the
+  /// last one ended; without it: as Prediction says
+  std::optional<bool> extrapolates = false;
+  double start = 0;                       ///< the instant of the initial state
+  bool from_reference = false;            ///< its temperatures are those of reference, whatever they are at that instant
   std::optional<LineSearch> line_search;  ///< RECH_LINEAIRE
   bool cuts = false;                      ///< a step that fails is cut: no message advises it
   bool strained = false;                  ///< it starts from a state under initial strains
@@ -96,8 +99,7 @@ class Newton {
   std::string cells_of(const std::vector<std::size_t>& patches) const;
   /// Throws EVOLUTION_15 where no statuses satisfy all patches.
   void fail_if_endless(double instant) const;
-  void note_motion(double instant, const StaticState& previous, const StaticState& state);
-  /// Go on from `state` by the motion of the last instant, in proportion to the step, and to what is imposed.
+  /// Go on from `state` by the motion of the last instant, and to what is imposed, where that is asked for or serves.
   /// @param[in,out] step of imposed displacements, none where that is done
   void extrapolate(double instant, StaticState& state, std::vector<double>& step);
   /// Go back along an increment that goes too far (line_search.hpp); the geometry is paired where it ends.
@@ -122,12 +124,8 @@ class Newton {
   MatrixChoice choice_;
   StatusRule statuses_;
   ForcingTerm forcing_;
-  /// The instant that was solved last.
-  struct Motion {
-    double from, to;
-    std::vector<double> start, end;  ///< displacements, where the next instant is extrapolated
-  };
-  std::optional<Motion> motion_;
+  Prediction prediction_;
+  bool elsewhere_ = false;      ///< it has led this instant to another start than the last state
   std::set<std::size_t> told_;  ///< patches that EVOLUTION_20 was about
   ResidualCourse course_;       ///< of the instant
   int times_held_ = 0;          ///< in this instant: loose bodies

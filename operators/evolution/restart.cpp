@@ -40,7 +40,7 @@ std::vector<Message> read_messages(const hdf5::Group& group) {
 
 void write_course(const hdf5::Group& group, const Course& course) {
   std::vector<double> instants, ratios, excesses;
-  std::vector<std::int64_t> iterations, failed, depends;
+  std::vector<std::int64_t> iterations, failed, depends, astray;
   std::vector<Message> failures;
   for (const Attempt& attempt : course) {
     instants.push_back(attempt.instant);
@@ -50,6 +50,7 @@ void write_course(const hdf5::Group& group, const Course& course) {
     const FailureNature& nature = attempt.failure->nature();
     failures.push_back(attempt.failure->message());
     depends.push_back(nature.depends_on_step);
+    astray.push_back(nature.led_astray);
     ratios.push_back(nature.ratio.value_or(NAN));
     excesses.push_back(nature.excess);
   }
@@ -59,6 +60,7 @@ void write_course(const hdf5::Group& group, const Course& course) {
   const hdf5::Group known = group.create("failures");
   write_message(known, failures);
   known.write("depends_on_step", depends);
+  known.write("led_astray", astray);
   known.write("ratio", ratios);
   known.write("excess", excesses);
 }
@@ -68,14 +70,17 @@ Course read_course(const hdf5::Group& group) {
   const auto iterations = group.read<std::int64_t>("iterations"), failed = group.read<std::int64_t>("failed");
   const hdf5::Group known = group.open("failures");
   const std::vector<Message> failures = read_messages(known);
-  const auto depends = known.read<std::int64_t>("depends_on_step");
+  const auto depends = known.read<std::int64_t>("depends_on_step"), astray = known.read<std::int64_t>("led_astray");
   const auto ratios = known.read<double>("ratio"), excesses = known.read<double>("excess");
   Course course;
   std::size_t failure = 0;
   for (std::size_t i = 0; i < instants.size(); ++i) {
     course.push_back({.instant = instants[i], .iterations = static_cast<int>(iterations.at(i)), .failure = {}});
     if (!failed.at(i)) continue;
-    FailureNature nature{.depends_on_step = depends.at(failure) != 0, .ratio = {}, .excess = excesses.at(failure)};
+    FailureNature nature{.depends_on_step = depends.at(failure) != 0,
+                         .ratio = {},
+                         .excess = excesses.at(failure),
+                         .led_astray = astray.at(failure) != 0};
     if (!std::isnan(ratios.at(failure))) nature.ratio = ratios[failure];
     course.back().failure.emplace(failures.at(failure++), nature);
   }

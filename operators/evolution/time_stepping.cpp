@@ -157,7 +157,18 @@ std::size_t check_number(const TimeSteps& steps, std::int64_t number) {
 
 void step_through(const TimeSteps& steps, const SolveInstant& solve, const GoBack& go_back, const Solved& solved,
                   const Iterations& iterations) {
-  const Stepper stepper{steps, solve, go_back, solved};
+  const SolveInstant from_either_start = [&](double to) {
+    try {
+      solve(to);
+      return;
+    } catch (const Error& error) {
+      if (!nature_of(error).led_astray) throw;
+      inform("EVOLUTION_48", {{"instant", fmt::format("{:.9g}", to)}, {"reason", error.message().text}});
+    }
+    go_back();
+    solve(to);
+  };
+  const Stepper stepper{steps, from_either_start, go_back, solved};
   if (steps.adaptation) {
     AdaptiveStepper adaptive(steps, stepper, iterations);
     for (std::size_t i = 1; i < steps.values.size(); ++i) adaptive.advance(steps.values[i - 1], steps.values[i]);

@@ -44,7 +44,7 @@ std::optional<LineSearch> line_search_of(const Keywords& keywords) {
 NewtonOptions newton_options(const Keywords& keywords, const TimeSteps& steps, const StaticProblem& problem, bool strained) {
   const Keywords convergence = keywords.factor("CONVERGENCE"), newton = keywords.factor("NEWTON");
   const SolidMatrix matrix = matrix_of(newton.text("MATRICE"));
-  const std::string prediction = newton.text("PREDICTION");
+  const std::string prediction = newton.has("PREDICTION") ? newton.text("PREDICTION") : "";
   const auto iterations = static_cast<int>(convergence.integer("ITER_GLOB_MAXI"));
   return {.criteria = {.resi_glob_rela = convergence.optional_real("RESI_GLOB_RELA"),
                        .resi_glob_maxi = convergence.optional_real("RESI_GLOB_MAXI"),
@@ -55,7 +55,7 @@ NewtonOptions newton_options(const Keywords& keywords, const TimeSteps& steps, c
           .iterations = iterations + static_cast<int>(iterations * steps.more_iterations / 100),
           .matrix = matrix,
           .prediction = prediction == "EXTRAPOLE" ? matrix : matrix_of(prediction),
-          .extrapolates = prediction == "EXTRAPOLE",
+          .extrapolates = prediction.empty() ? std::nullopt : std::optional(prediction == "EXTRAPOLE"),
           .start = steps.values.front(),
           .line_search = line_search_of(keywords),
           .cuts = steps.action.cut,

@@ -401,12 +401,13 @@ class StatNonLine(TwoSquares):
         self.assert_fails("SOLVER_3", "DY", status=3, loads=["load_6", "load_10"])
 
     def test_line_search_and_extrapolation_lead_to_the_same_solution(self):
-        """A pressure that grows in four equal steps to large strains: extrapolated instants start nearer to their end."""
+        """A pressure that grows in four equal steps to large strains: extrapolated instants start nearer to their end. Without PREDICTION they do as soon
+        as two motions have shown that it would."""
         self.write_function("function_10", [0, 4], [0, 8])
         self.write_list("list_of_reals_8", [0.0, 1.0, 2.0, 3.0, 4.0])
         iterations, ends = {}, {}
         searched = {"METHODE": "CORDE", "RESI_LINE_RELA": 0.1, "ITER_LINE_MAXI": 3, "RHO_MIN": 1e-2, "RHO_MAX": 10.0, "RHO_EXCL": 0.9e-2}
-        for name, more in {"plain": {}, "EXTRAPOLE": {"NEWTON": {"PREDICTION": "EXTRAPOLE"}}, "CORDE": {"RECH_LINEAIRE": searched},
+        for name, more in {"plain": {"NEWTON": {"PREDICTION": "TANGENTE"}}, "by itself": {}, "EXTRAPOLE": {"NEWTON": {"PREDICTION": "EXTRAPOLE"}}, "CORDE": {"RECH_LINEAIRE": searched},
                            "MIXTE": {"RECH_LINEAIRE": {**searched, "METHODE": "MIXTE"}}}.items():
             run = self.solve(loads=["load_5", {"CHARGE": concept("load_6"), "FONC_MULT": concept("function_10")}],
                              COMPORTEMENT={"RELATION": "ELAS", "DEFORMATION": "GREEN_LAGRANGE", "TOUT": "OUI"}, **more)
@@ -417,6 +418,8 @@ class StatNonLine(TwoSquares):
             np.testing.assert_allclose(values, ends["plain"], atol=1e-10, err_msg=name)
         self.assertEqual(iterations["EXTRAPOLE"][0], iterations["plain"][0])  # nothing has moved before the first step
         self.assertLess(sum(iterations["EXTRAPOLE"]), sum(iterations["plain"]))
+        self.assertEqual(iterations["by itself"][:2], iterations["plain"][:2])
+        self.assertLess(sum(iterations["by itself"]), sum(iterations["plain"]))
 
     def test_a_failure_keeps_what_was_computed_before_it(self):
         self.write_function("function_10", [0, 1, 2], [0, 0, 1])

@@ -353,6 +353,11 @@ class GoesOn(FaultTest):
         text, _ = self.check(8, 11, 18, law="VMIS_ISOT_LINE", INCREMENT={"LIST_INST": "CUTS"})
         self.assertEqual((text.count("EVOLUTION_7"), len(converged(text))), (14, INSTANTS + 14))
 
+    def test_instants_that_begin_again(self):
+        """Where a law flows ever more, the residual of an instant that begins where the motion leads to is too large, and then that of the last state."""
+        text, _ = self.check(17, 20, law="VMIS_ISOT_LINE", INCREMENT={"LIST_INST": "LIMITS"})
+        self.assertGreater(text.count("EVOLUTION_48"), 0)
+
     def test_few_instants_are_archived(self):
         """One in four, of the others nothing is there: they are computed again."""
         _, text = self.check(6, law="VMIS_ISOT_LINE", ARCHIVAGE={"PAS_ARCH": 4, "CHAM_EXCLU": "SIEF_ELGA"})

@@ -30,6 +30,7 @@ DRAWN = {
 }
 
 
+AGAIN = "instants that began where the last motion leads to, and began again at the last state: three iterations are lost, and no step is cut"
 #: why a row misses what is asked of it
 REASONS = {
     "overhang": "the path of these patches has a limit point at 98.9 % of the way: the one over the end of the master is covered less and less "
@@ -38,7 +39,9 @@ REASONS = {
     "tips": "a corner passes over coarse patches of a slope. Normals of facets beyond it meet its upright side, so that the gap of a patch is four times as steep as the "
             "motion and bends sharply: iterates jump to and fro between gaps of -0.3 and 0.03 of the patch before they converge, statuses with them; neither a line search on "
             "the power of the forces nor one on the gaps helps",
-    "polygon": "four iterations of quadratic convergence in each of 43 steps, five where a corner goes over to another patch",
+    "polygon": "three iterations of quadratic convergence in each of 43 steps, four or five where a corner goes over to another patch: no motion before leads there",
+    "arch": AGAIN,
+    "force": AGAIN,
     "difficult": "sliding steps of a whole cell: the prediction, with the motion imposed at one end alone, flows where the solution does not",
     "corner": "patches of the plate hold the average height of what is above them, and this changes as the tool moves along: Fx/Fy is (height at "
               "one end - height at the other) / length of the patch; the tool as slave has no such force",

@@ -3,8 +3,8 @@
     run.py [--only ROW[/WORD ...]] [--json FILE] [--before FILE] [--pictures FOLDER] [--list]
 
 Programs are those of LACON_BIN, without it of build/release. A study is ROW/NAME; `--only "hertz/30 % QUAD8"` takes those of the row hertz
-whose names hold all of these words. An iteration is a solution of the linear system; lost ones belong to steps that were cut or never solved,
-and count in what is judged. What is asked of a study is in studies.py.
+whose names hold all of these words. An iteration is a solution of the linear system; lost ones belong to steps that were cut, begun
+again or never solved, and count in what is judged. What is asked of a study is in studies.py.
 """
 
 import argparse

@@ -19,7 +19,7 @@ from studies import Study, elastic, held, path, zone  # noqa: E402
 #: seconds each, one or more of a row
 SHORT = ["arch/x10, QUAD8 GREEN", "arch/x10, QUAD4 PETIT", "plastic/flat 1, QUAD8", "plastic/round 5, QUAD4", "contrast/1e-06 QUAD4 PETIT", "contrast/1e+06 QUAD8 GREEN", "difficult/beams QUAD8 GREEN",
          "difficult/die QUAD4 PETIT,", "difficult/stack D_PLAN QUAD8 GREEN", "difficult/stack 3D HEXA8 PETIT", "force/round AXIS QUAD4 GREEN", "aligned/D_PLAN QUAD8 7 lower",
-         "aligned/C_PLAN QUAD4 4 lower", "skins/larger QUAD8 PETIT upper", "cycle/10 QUAD4 upper", "cycle/10 QUAD8 lower"]
+         "aligned/C_PLAN QUAD4 4 lower", "skins/larger QUAD8 PETIT upper", "cycle/10 QUAD4 upper", "cycle/10 QUAD8 lower", "polygon/QUAD4 wheel"]
 LONG = ["difficult/stack 3D HEXA20 GREEN", "faces/4 upper"]
 
 TABLE = """
@@ -168,6 +168,14 @@ class Skins(StudyTest):
                       zones=[zone("TOOL", "SLAB", 1)], model="C_PLAN", steps=1, asked={"per step": 20},
                       moves=[held("SLAB"), path("TOOL", [(0, 0), (1, 0)], [(0, 0), (1, -0.01)])])
         self.assertEqual(missed(study, run(study, LACON, self.folder)), [])
+
+    def test_an_instant_that_the_last_motion_leads_astray_begins_again_at_the_last_state(self):
+        """A corner that is dragged from patch to patch: where the motion leads to at the instant 18 the bodies have left each other."""
+        (_, study), = chosen(["corner/QUAD4 GREEN plate"])
+        figures = run(study, LACON, self.folder)
+        self.assertEqual((figures["status"], figures["cuts"]), ("finished", 0))
+        self.assertGreater(figures["lost"], 0)
+        self.assertIn("EVOLUTION_48", (self.folder / "out").read_text() + (self.folder / "err").read_text())
 
     def test_overlap_of_facets_is_told(self):
         """Half rings, one in the other, whose arcs have the same radius: chords of 9 degrees overlap arcs by 1 - cos 4.5 degrees = 0.0031."""

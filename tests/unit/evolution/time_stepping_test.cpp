@@ -101,6 +101,30 @@ TEST(TimeStepping, CutsNothingInVain) {
   EXPECT_EQ(cuts({slow, nearly, unknown, unknown}), 3);  // two more cuts leave 15 / 4^2 of it
 }
 
+// It began elsewhere than at the last state: there it is tried before anything is cut.
+TEST(TimeStepping, BeginsAnInstantAgainThatWasLedAstray) {
+  TimeSteps steps{.values = {0, 1}, .action = {.cut = true, .cut_into = 2, .cut_levels = 3}};
+  for (const bool adaptive : {false, true}) {
+    if (adaptive) steps.adaptation.emplace();
+    for (const bool fails_again : {false, true}) {
+      std::vector<double> tried, solved;
+      int returns = 0;
+      step_through(
+          steps,
+          [&](double to) {
+            tried.push_back(to);
+            if (tried.size() == 1 || (tried.size() == 2 && fails_again))
+              throw InstantFailure({.severity = 'S', .id = "EVOLUTION_4", .text = "", .advice = ""},
+                                   {.led_astray = tried.size() == 1});
+          },
+          [&] { ++returns; }, [&](double to, bool) { solved.push_back(to); }, [] { return 9; });
+      EXPECT_EQ(returns, fails_again ? 2 : 1);
+      EXPECT_EQ(tried, fails_again ? std::vector({1.0, 1.0, 0.5, 1.0}) : std::vector({1.0, 1.0}));
+      EXPECT_EQ(solved, fails_again ? std::vector({0.5, 1.0}) : std::vector({1.0}));
+    }
+  }
+}
+
 // An error of the user is no reason to try smaller steps.
 TEST(TimeStepping, CutsOnlyFailuresOfTheSolution) {
   const TimeSteps steps{.values = {0, 1}, .action = {.cut = true}};

@@ -1,0 +1,101 @@
+#include "lacon/operators/evolution/prediction.hpp"
+
+#include <gtest/gtest.h>
+
+#include <functional>
+#include <utility>
+#include <vector>
+
+namespace lacon {
+namespace {
+
+/// A displacement that is imposed, and one that follows in its own way.
+class Path {
+ public:
+  explicit Path(std::function<double(double)> imposed, std::function<double(double)> follows)
+      : imposed_(std::move(imposed)), follows_(std::move(follows)) {}
+
+  KnownState at(double t) const { return {t, {imposed_(t), follows_(t)}, {-t}, {0, 0}}; }
+  void solve(double before, double now) { prediction.note(before, at(before), at(now)); }
+  bool serves(double last, double now) const {
+    return prediction.serves(now, at(last).displacement, std::vector<double>{imposed_(now) - imposed_(last), 0}, at(now).force);
+  }
+
+  Prediction prediction{{1, 0}};
+
+ private:
+  std::function<double(double)> imposed_, follows_;
+};
+
+TEST(Prediction, AMotionThatGoesOnIsFollowedAfterTwoInstants) {
+  Path path([](double t) { return t; }, [](double t) { return 2 * t; });
+  path.solve(0, 1);
+  EXPECT_FALSE(path.serves(1, 2));  // one motion, of which nobody knows whether it goes on
+  path.solve(1, 2);
+  ASSERT_TRUE(path.serves(2, 2.5));
+  const KnownState found = path.prediction.at(2.5);
+  EXPECT_NEAR(found.displacement[1], 5, 1e-14);
+  EXPECT_NEAR(found.pressure[0], -2.5, 1e-14);
+}
+
+TEST(Prediction, AMotionThatTurnsBackIsNotFollowed) {
+  Path path([](double t) { return t; }, [](double t) { return t < 3 ? t : 6 - t; });
+  for (int t = 1; t <= 4; ++t) path.solve(t - 1, t);  // the last extrapolation would have missed twice the motion
+  EXPECT_FALSE(path.serves(4, 5));
+}
+
+TEST(Prediction, ALoadThatTurnsBackIsKnownBefore) {
+  Path path([](double t) { return t < 3 ? t : 6 - t; }, [](double t) { return t; });
+  for (int t = 1; t <= 3; ++t) path.solve(t - 1, t);
+  EXPECT_FALSE(path.serves(3, 4));
+}
+
+TEST(Prediction, WithoutALoadNothingMoves) {
+  Path path([](double) { return 1.0; }, [](double t) { return t; });
+  for (int t = 1; t <= 3; ++t) path.solve(t - 1, t);
+  EXPECT_FALSE(path.serves(3, 4));
+}
+
+TEST(Prediction, AFailureAndOtherDisplacementsAreNoStart) {
+  Path path([](double t) { return t; }, [](double t) { return t; });
+  for (int t = 1; t <= 3; ++t) path.solve(t - 1, t);
+  EXPECT_FALSE(path.prediction.serves(4, std::vector<double>{3, 3.1}, std::vector<double>{1, 0}, std::vector<double>{0, 0}));
+  EXPECT_TRUE(path.serves(3, 4));
+  path.prediction.distrust();
+  EXPECT_FALSE(path.serves(3, 4));
+}
+
+TEST(Prediction, WhatHasLedAstrayRestsTwiceAsLongEachTimeInARow) {
+  Path path([](double t) { return t; }, [](double t) { return t; });
+  int t = 0;
+  const auto instants_until_it_serves = [&](bool led) {
+    path.prediction.mislead();
+    path.prediction.distrust();
+    int rests = -1;  // the instant that begins again
+    while (!path.serves(t, t + 1)) {
+      path.solve(t, t + 1);
+      ++t, ++rests;
+    }
+    if (led) path.prediction.note(0, path.at(t), path.at(t + 1), true);
+    t += led;
+    return rests;
+  };
+  while (!path.serves(t, t + 1)) path.solve(t, t + 1), ++t;
+  EXPECT_EQ(instants_until_it_serves(false), 2);
+  EXPECT_EQ(instants_until_it_serves(false), 4);
+  EXPECT_EQ(instants_until_it_serves(true), 8);
+  EXPECT_EQ(instants_until_it_serves(false), 2);  // it has led well meanwhile
+}
+
+TEST(Prediction, AnInstantThatWasGivenBackIsForgotten) {
+  Path path([](double t) { return t; }, [](double t) { return t; });
+  for (int t = 1; t <= 3; ++t) path.solve(t - 1, t);
+  path.solve(2, 2.5);  // 3 was not accepted
+  EXPECT_EQ(path.prediction.last_motion(), std::pair(2.0, 2.5));
+  EXPECT_FALSE(path.serves(2.5, 3));
+  path.solve(2.5, 3);
+  EXPECT_TRUE(path.serves(3, 4));
+}
+
+}  // namespace
+}  // namespace lacon
