@@ -23,11 +23,8 @@ constexpr double gap_share = 1e-2;  // of RESI_GEOM: largest |g_T| / h, 1e-8 by 
 constexpr double worse = 1.2;       // a residual that changes by this factor an iteration diverges
 constexpr double no_better = 0.97;  // or does not fall
 constexpr double near_round_off = 1e-9;
-constexpr int tries = 3;        // iterations that have to make forces smaller than where an instant began elsewhere
-constexpr int most = 15;        // that are given to it, for from a near start a few are enough; more while they go on falling
-constexpr double falls = 0.75;  // by this factor an iteration, as they do near a limit point from wherever it begins
-constexpr int settled = 4;      // iterations without a change of status after which a ratio is that of the residual alone
-constexpr double deepest = 1;   // sizes of a patch, by which bodies that began in a few patches may go into each other
+constexpr int settled = 4;     // iterations without a change of status after which a ratio is that of the residual alone
+constexpr double deepest = 1;  // sizes of a patch, by which bodies that began in a few patches may go into each other
 constexpr double other_stress = 1e-8;  // of the largest stress: that of another law
 
 /// What is known of a failure, one thing behind the other.
@@ -224,8 +221,7 @@ int Newton::iterate(double instant, StaticState& state, const std::function<void
       return iteration;
     }
     const int done = iteration + 1;
-    if (elsewhere_ && ((done >= most && !(line.maxi < falls * forces_before)) ||
-                       (done >= tries && !there.in_equilibrium() && !(line.maxi < there.maxi))))
+    if (elsewhere_ && Prediction::leads_astray(done, line.maxi, forces_before, there.in_equilibrium() ? HUGE_VAL : there.maxi))
       fail("EVOLUTION_49", {{"count", std::to_string(done)},
                             {"residual", fmt::format("{:.3g}", line.maxi)},
                             {"start", fmt::format("{:.3g}", there.maxi)}});

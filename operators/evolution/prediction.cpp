@@ -9,6 +9,9 @@ namespace lacon {
 namespace {
 
 constexpr double round_off = 1e-10;  // of forces and imposed displacements
+constexpr int tries = 3;             // iterations that have to make forces smaller than where they began
+constexpr int most = 15;  // that are given to them, for from a near start a few are enough; more while forces go on falling
+constexpr double falls = 0.75;  // by this factor an iteration, as they do near a limit point from wherever it begins
 
 /// Figures of an extrapolation of some numbers: what it misses, and how far they go.
 struct Miss {
@@ -47,6 +50,10 @@ void Prediction::note(double start, const KnownState& previous, KnownState solve
 void Prediction::mislead() {
   pause_ = next_pause_ + 1;  // and this one
   next_pause_ *= 2;
+}
+
+bool Prediction::leads_astray(int iterations, double residual, double before, double at_start) {
+  return (iterations >= most && !(residual < falls * before)) || (iterations >= tries && !(residual < at_start));
 }
 
 std::optional<std::pair<double, double>> Prediction::last_motion() const {

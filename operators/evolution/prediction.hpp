@@ -38,6 +38,9 @@ class Prediction {
   void distrust() { came_near_ = false; }
   /// It had begun where the motion led to.
   void mislead();
+  /// Whether iterations that began where the motion led to are better begun again. @param iterations that were made
+  /// @param residual the largest unbalanced force behind them, one iteration before, and where they began
+  static bool leads_astray(int iterations, double residual, double before, double at_start);
   /// The last two instants, where their states are known.
   std::optional<std::pair<double, double>> last_motion() const;
   /// Whether the last motion is known, and has led to these displacements.
