@@ -53,7 +53,8 @@ void Prediction::mislead() {
 }
 
 bool Prediction::leads_astray(int iterations, double residual, double before, double at_start) {
-  return (iterations >= most && !(residual < falls * before)) || (iterations >= tries && !(residual < at_start));
+  if (residual < falls * before) return false;
+  return iterations >= most || (iterations >= tries && !(residual < at_start));
 }
 
 std::optional<std::pair<double, double>> Prediction::last_motion() const {

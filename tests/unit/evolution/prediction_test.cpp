@@ -100,7 +100,8 @@ TEST(Prediction, AnInstantThatWasGivenBackIsForgotten) {
 // Forces that are no smaller behind three iterations, or that hardly fall behind fifteen: near a limit point they fall by half.
 TEST(Prediction, IterationsThatGetNowhereAreBegunAgain) {
   EXPECT_FALSE(Prediction::leads_astray(2, 2.0, 1.0, 1.0));
-  EXPECT_TRUE(Prediction::leads_astray(3, 1.0, 1.5, 1.0));
+  EXPECT_TRUE(Prediction::leads_astray(3, 1.2, 1.5, 1.0));
+  EXPECT_FALSE(Prediction::leads_astray(3, 1.1, 1.5, 1.0));
   EXPECT_FALSE(Prediction::leads_astray(3, 0.9, 1.5, 1.0));
   EXPECT_TRUE(Prediction::leads_astray(15, 8e-5, 1e-4, 1.0));
   EXPECT_FALSE(Prediction::leads_astray(15, 5e-5, 1e-4, 1.0));
