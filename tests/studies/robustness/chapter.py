@@ -30,7 +30,6 @@ DRAWN = {
 }
 
 
-AGAIN = "instants that began where the last motion leads to, and began again at the last state: three iterations are lost, and no step is cut"
 #: why a row misses what is asked of it
 REASONS = {
     "overhang": "the path of these patches has a limit point at 98.9 % of the way: the one over the end of the master is covered less and less "
@@ -40,8 +39,6 @@ REASONS = {
             "motion and bends sharply: iterates jump to and fro between gaps of -0.3 and 0.03 of the patch before they converge, statuses with them; neither a line search on "
             "the power of the forces nor one on the gaps helps",
     "polygon": "three iterations of quadratic convergence in each of 43 steps, four or five where a corner goes over to another patch: no motion before leads there",
-    "arch": AGAIN,
-    "force": AGAIN,
     "difficult": "sliding steps of a whole cell: the prediction, with the motion imposed at one end alone, flows where the solution does not",
     "corner": "patches of the plate hold the average height of what is above them, and this changes as the tool moves along: Fx/Fy is (height at "
               "one end - height at the other) / length of the patch; the tool as slave has no such force",
@@ -127,7 +124,7 @@ def section(figures=None):
 
 `tests/studies/robustness`: deep, sliding, edged, plastic bodies, of very different stiffness, or held by contact alone; plane ones with both orders,
 PETIT and GREEN_LAGRANGE (plastic ones PETIT and PETIT_REAC), either side slave. ITER_GLOB_MAXI is 60 (its default of 10 where a force drives), all other
-criteria and keywords of Newton's method are defaults. An iteration is a solution of the linear system; lost ones belong to steps that were cut or
+criteria and keywords of Newton's method are defaults. An iteration is a solution of the linear system; lost ones belong to steps that were cut, begun again or
 never solved, and count in what is asked. "Before": contact forces along the slave's normal, frozen; where a force drives, statuses alone move the edge of a
 contact, by one patch an iteration, and a factorisation's pivots alone say what is loose; where ends are
 aligned, forces jump when they pass each other, and where side walls are in the zone, when these come upright. Rows that are there once have not changed since.
