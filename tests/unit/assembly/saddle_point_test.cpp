@@ -48,7 +48,7 @@ struct Sequence {
       }
       for (int k = 0; k < 3; ++k) {
         const std::vector<std::int64_t> equations{chain.numbering.of_patch(r), chain.numbering.of(3 + 7 * r + 2 * k, k % 2)};
-        matrix.add(equations, std::vector<double>{0, (k != 1 ? 0.5 : r % 2 ? -1.0 : 0.7) * (1 + drift * (k + 1)), 0});
+        matrix.add(equations, std::vector<double>{0, unit * (k != 1 ? 0.5 : r % 2 ? -1.0 : 0.7) * (1 + drift * (k + 1)), 0});
       }
     }
   }
@@ -64,7 +64,8 @@ struct Sequence {
   SparseMatrix matrix;
   std::array<bool, n_rows> on{};
   double drift = 0;
-  double off = 1;  ///< diagonal of rows that are off
+  double unit = 1;  ///< of coefficients of rows that are on
+  double off = 1;   ///< diagonal of rows that are off
 };
 
 /// A solver that takes every chance to keep its factor: its cost model would factorise so small a matrix again.
@@ -107,6 +108,26 @@ TEST(SaddlePointSolver, FollowsDriftingCoefficients) {
     system.fill();
     EXPECT_LE(system.error(solver, report), 1e-11) << drift;
     EXPECT_FALSE(report.factorised);
+  }
+}
+
+// How far the coefficients of a row have drifted is a share of these: no unit makes of it more or less.
+TEST(SaddlePointSolver, MakesColumnsAnewInAnyUnit) {
+  for (const double unit : {1e-4, 1.0, 1e4}) {
+    Sequence system;
+    SaddlePointSolver solver = eager();
+    SolutionReport report;
+    system.unit = unit;
+    system.fill();
+    system.error(solver, report);
+    system.on[0] = system.on[4] = true;
+    for (const auto& [drift, columns] : {std::pair(0.0, 2), std::pair(0.5, 2), std::pair(0.51, 0)}) {
+      system.drift = drift;
+      system.fill();
+      EXPECT_LE(system.error(solver, report), 1e-11) << unit << ' ' << drift;
+      EXPECT_FALSE(report.factorised);
+      EXPECT_EQ(report.columns, columns) << unit << ' ' << drift;
+    }
   }
 }
 

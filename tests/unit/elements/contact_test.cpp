@@ -272,6 +272,38 @@ TEST_P(Lac, BadGeometryIsCaught) {
   }
 }
 
+TEST_P(Lac, TheUnitOfLengthsIsNoJudgeOfGeometry) {
+  for (const double unit : {1e-9, 1e9})
+    for (const ContactCell& good : variants()) {
+      ContactCell c = good;
+      for (Numbers* const points : {&c.initial, &c.slave, &c.master})
+        for (double& x : *points) x *= unit;
+      const ContactResult r = run(c), whole = run(good);
+      EXPECT_EQ(r.error, whole.error);
+      for (std::size_t p = 0; p < c.weight.size(); ++p)  // a mean normal has a length of one for any unit
+        EXPECT_NEAR(r.point_gap[p], unit * whole.point_gap[p], 100 * eps * unit);
+    }
+}
+
+TEST(ContactKernel, ATangentThatIsRoundOffIsNone) {
+  // edges along each axis, whose middle node lies where dx/dxi = xi + 1/2 - 2 xi m is nothing but round-off at one point
+  int not_zero = 0;
+  for (const int along : {0, 1})
+    for (const double xi : {0.3, 0.35, 0.41, 0.57, 0.6, 0.71, 0.77, 0.83, 0.9}) {
+      ContactCell c = random_cell(CellType::SEG3, CellType::SEG2, 1);
+      c.slave_xi.assign(c.weight.size(), xi);
+      const double middle = (xi + 0.5) / (2 * xi);
+      c.slave.assign(6, 0.0);
+      c.slave[z(2 + along)] = 1;
+      c.slave[z(4 + along)] = middle;
+      c.initial = c.slave;
+      const Numbers gradient = c.shape(c.slave_type, c.slave_xi, true);
+      not_zero += gradient[1] + gradient[2] * middle != 0;
+      EXPECT_EQ(run(c).error, LACON_BAD_JACOBIAN) << xi;
+    }
+  EXPECT_GT(not_zero, 0);
+}
+
 std::vector<Couple> couples() {
   std::vector<Couple> all;
   for (const CellType slave : {CellType::SEG2, CellType::SEG3})

@@ -1,8 +1,11 @@
 // What pairing in the plane keeps at its limits: of any size, at the ends of covers, of slivers, of slanted overlaps.
 #include <gtest/gtest.h>
 
+#include <array>
+#include <cmath>
 #include <numbers>
 
+#include "lacon/elements/reference.hpp"
 #include "lacon/pairing/normals.hpp"
 #include "skins.hpp"
 
@@ -128,6 +131,35 @@ TEST(Covers, OfArcsTakeTheFewestPoints) {
   };
   EXPECT_EQ(points(0), 4u);
   EXPECT_GT(points(0.1), 6u);
+}
+
+// Integrals of the shape functions of such an arc, and of these times what a slave cell brings (its own shape functions, its
+// Jacobian, in axisymmetry the radius): its points keep twelve digits.
+TEST(Covers, OfArcsWhoseMiddleNodeIsOffKeepTwelveDigits) {
+  constexpr double half = 0.7;
+  const Rule& rule = gauss_rule(8);  // exact to the degree 15
+  for (const double off : {1e-6, 1e-4, 1e-3, 0.004, 0.0105, 0.015, 0.02, 0.05, 0.1, 0.2}) {
+    Skin slave, master;
+    add_chain(slave, line(0), {0, 7}, Kind::linear);
+    const std::int32_t a = master.add_node({3.5 + half, -0.1}), b = master.add_node({3.5 - half, -0.1});
+    master.add_cell({a, b, master.add_node({3.5 + off, -0.05})});
+    const ContactCells cells = pair(slave.view(), master.view()).cells;
+    ASSERT_EQ(cells.size(), 1u) << off;
+    for (int power = 0; power <= 4; ++power) {
+      std::array<double, 3> found{}, exact{}, shape;
+      const auto add = [&](std::array<double, 3>& sum, double at, double way, double weight) {
+        shape_functions(CellType::SEG3, std::array{at}, shape);
+        for (std::size_t i = 0; i < 3; ++i) sum[i] += weight * std::pow(way / half, power) * shape[i];
+      };
+      for (std::size_t g = 0; g < cells.weight.size(); ++g)  // 3.5: of the slave's middle, and dx by its coordinate
+        add(found, cells.master_point[g], 3.5 * cells.slave_point[g], 3.5 * cells.weight[g]);
+      for (std::size_t g = 0; g < rule.weights.size(); ++g) {
+        const double xi = rule.points[g];
+        add(exact, xi, -half * xi + off * (1 - xi * xi), (half + 2 * off * xi) * rule.weights[g]);
+      }
+      for (std::size_t i = 0; i < 3; ++i) EXPECT_NEAR(found[i], exact[i], 1e-12) << off << ' ' << power << ' ' << i;
+    }
+  }
 }
 
 }  // namespace
