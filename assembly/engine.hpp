@@ -17,7 +17,8 @@ class PartProcesses;
 /// What a factorisation found.
 struct Factorisation {
   std::optional<std::int64_t> negative_pivots;  ///< the inertia, where the engine knows it
-  std::vector<std::int64_t> null_pivots;        ///< equations whose pivot is zero: the matrix is singular
+  static constexpr std::int64_t unknown = -1;
+  std::vector<std::int64_t> null_pivots;  ///< equations whose pivot is zero: the matrix is singular
   double flops = 0;
   std::int64_t entries = 0;                                              ///< of the factor
   std::int64_t whole_entries = 0;                                        ///< the same before its blocks were compressed
@@ -54,10 +55,11 @@ class Engine {
   /// Likewise, where a part of the right side may be left. @param share of its norm; an engine may leave less
   virtual Solution solve_to(double /*share*/, std::span<double> right_side) { return solve(right_side); }
 
-  /// Whether a cheaper factor has failed, so that all are exact from then on; and to have it so. For another process that goes
-  /// on with the same bits.
-  virtual bool wants_exact_factors() const { return false; }
-  virtual void want_exact_factors() {}
+  /// What cheaper factors have failed for, so that later ones take more care: their pivots are looked for, or they are exact.
+  enum class Care { none, pivots, exact };
+  /// For another process that goes on with the same bits.
+  virtual Care care() const { return Care::none; }
+  virtual void take(Care) {}
   /// Those that may have cells and rows of so large a matrix themselves; such a matrix (SparseMatrix::elsewhere) is solved
   /// with. None of an engine that needs a matrix in one process.
   virtual std::shared_ptr<PartProcesses> processes(std::int64_t /*n_equations*/) const { return nullptr; }

@@ -23,6 +23,7 @@ auto& at(Array& array, int number) {
 /// A count of MUMPS; in millions where it is negative.
 double count(int value) { return value < 0 ? -1e6 * value : value; }
 
+constexpr int singular = -10;          // a pivot is zero, and nobody looked for another one
 constexpr int communicator = -987654;  // "MPI_COMM_WORLD" of the manual
 /// Columns that MUMPS eliminates one by one before they go to what follows as one product. Its own 32 take a quarter of the
 /// time of a large factor in single precision: one by one they wait for memory.
@@ -70,6 +71,10 @@ struct Mumps<Real>::State {
       at(mumps.icntl, 35) = 2;  // in the factorisation and in the solutions
       at(mumps.keep, 482) = 3;  // blocks of what follows in our order: SCOTCH takes long, and others in every run
       at(mumps.cntl, 7) = static_cast<Real>(settings.low_rank);
+    }
+    if (settings.symmetric && settings.as_ordered) {
+      at(mumps.cntl, 1) = 0;
+      at(mumps.icntl, 36) = 1;  // blocks are compressed before they are substituted in: no pivot is looked for in them
     }
     if (settings.out_of_core) {
       at(mumps.icntl, 22) = 1;
@@ -169,6 +174,8 @@ Factorisation Mumps<Real>::factorise(std::span<const Real> values, std::span<Rea
     s.run(factorise_job);
   }
   s.mumps.a = s.mumps.schur = nullptr;
+  if (s.settings.as_ordered && at(s.mumps.infog, 1) == singular)
+    return {.null_pivots = {Factorisation::unknown}, .flops = at(s.mumps.rinfog, 1)};
   s.require("factorisation");
   const bool low_rank = s.settings.low_rank > 0;
   Factorisation found{.flops = at(s.mumps.rinfog, low_rank ? 14 : 3),

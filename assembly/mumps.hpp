@@ -16,6 +16,7 @@ struct MumpsSettings {
   double singular_pivot = 0;  ///< a pivot below this fraction of the scaled matrix is null; negative: below its magnitude
   bool scaled = false;        ///< the matrix is scaled already
   double low_rank = 0;        ///< blocks are compressed to this fraction of the matrix; 0: they stay whole
+  bool as_ordered = false;    ///< of a symmetric matrix: pivots are taken as they come, none is looked for
   bool out_of_core = false;   ///< the factor is in files
   std::string folder;         ///< of these files
 };

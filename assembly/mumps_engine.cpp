@@ -57,15 +57,16 @@ double available_memory() {
 
 /// How a factor is made.
 struct Form {
-  bool single_precision = false, low_rank = false, out_of_core = false, shared = false;
+  bool single_precision = false, low_rank = false, out_of_core = false, shared = false, as_ordered = false;
   bool is_exact() const { return !single_precision && !low_rank && !shared; }
 };
 
 }  // namespace
 
 struct MumpsEngine::State {
+  using Care = Engine::Care;
   MumpsOptions options;
-  bool exact = false;            ///< from now on
+  Care care = Care::none;        ///< from now on
   std::vector<int> row, column;  ///< of entries, where one process makes the factor
   std::vector<int> place;
   Ragged<std::int32_t> neighbours;  ///< of the whole matrix
@@ -107,6 +108,7 @@ struct MumpsEngine::State {
 
   MumpsForecast prepare(const Form& wanted, bool symmetric) {
     form = wanted;
+    form.as_ordered = form.low_rank && symmetric && care == Care::none;
     full.reset();
     single.reset();
     if (form.out_of_core) make_folder();
@@ -115,6 +117,7 @@ struct MumpsEngine::State {
                                  .singular_pivot = form.is_exact() ? options.singular_pivot : doubtful_pivot,
                                  .scaled = !form.is_exact(),
                                  .low_rank = form.low_rank ? low_rank_threshold() : 0,
+                                 .as_ordered = form.as_ordered,
                                  .out_of_core = form.out_of_core,
                                  .folder = options.folder};
     list_entries(symmetric);
@@ -152,6 +155,7 @@ struct MumpsEngine::State {
   void choose(const SparseMatrix& of) {
     const bool symmetric = of.is_symmetric();
     const bool in_files = options.memory == MumpsOptions::Memory::out_of_core;
+    const bool exact = care == Care::exact;
     const auto asks = [&](Use use) { return !exact && use == Use::always; };
     const auto may = [&](Use use) { return !exact && use == Use::where_it_pays && of.size() >= least_equations; };
     Form wanted{.single_precision = asks(options.single_precision) || may(options.single_precision),
@@ -213,13 +217,28 @@ struct MumpsEngine::State {
     return factorise_as_prepared();
   }
 
-  /// An exact factor, now and from now on.
-  Factorisation factorise_exactly(const std::string& doubt, double wasted) {
-    exact = true;
-    prepare({.out_of_core = form.out_of_core}, matrix->is_symmetric());
+  /// One that has proved itself, or is exact.
+  Factorisation factorise_safely() {
     Factorisation found = factorise();
-    found.wasted_flops = wasted;
-    found.doubt = doubt;
+    if (form.is_exact()) return found;
+    const double wasted = found.flops + found.wasted_flops;
+    if (!found.null_pivots.empty())
+      return factorise_with_more_care(part("pivot_too_small", {{"limit", fmt::format("{:.0e}", doubtful_pivot)}}), wasted);
+    found.error = error_of_factor();
+    if (!(found.error <= doubtful_error))
+      return factorise_with_more_care(part("motion_left", {{"share", fmt::format("{:.1g}", found.error)}}), wasted);
+    return found;
+  }
+
+  /// A factor that does without what has failed, now and from now on.
+  Factorisation factorise_with_more_care(const std::string& doubt, double wasted) {
+    care = form.as_ordered ? Care::pivots : Care::exact;
+    Form wanted{.out_of_core = form.out_of_core};
+    if (care == Care::pivots) wanted = form;
+    prepare(wanted, matrix->is_symmetric());
+    Factorisation found = factorise_safely();
+    found.wasted_flops += wasted;
+    if (care == Care::exact && found.doubt.empty()) found.doubt = doubt;
     return found;
   }
 
@@ -290,8 +309,8 @@ struct MumpsEngine::State {
 MumpsEngine::MumpsEngine(const MumpsOptions& options) : state_(std::make_unique<State>(options)) {}
 MumpsEngine::~MumpsEngine() = default;
 
-bool MumpsEngine::wants_exact_factors() const { return state_->exact; }
-void MumpsEngine::want_exact_factors() { state_->exact = true; }
+Engine::Care MumpsEngine::care() const { return state_->care; }
+void MumpsEngine::take(Care care) { state_->care = care; }
 
 std::shared_ptr<PartProcesses> MumpsEngine::processes(std::int64_t n_equations) const {
   const MumpsOptions& options = state_->options;
@@ -321,15 +340,8 @@ void MumpsEngine::analyse(const SparseMatrix& matrix) {
 Factorisation MumpsEngine::factorise(const SparseMatrix& matrix) {
   State& s = *state_;
   s.matrix = &matrix;
-  if (s.exact && !s.form.is_exact()) s.prepare({.out_of_core = s.form.out_of_core}, matrix.is_symmetric());
-  Factorisation found = s.factorise();
-  if (s.form.is_exact()) return found;
-  if (!found.null_pivots.empty())
-    return s.factorise_exactly(part("pivot_too_small", {{"limit", fmt::format("{:.0e}", doubtful_pivot)}}), found.flops);
-  found.error = s.error_of_factor();
-  if (!(found.error <= doubtful_error))
-    return s.factorise_exactly(part("motion_left", {{"share", fmt::format("{:.1g}", found.error)}}), found.flops);
-  return found;
+  if (s.care == Care::exact && !s.form.is_exact()) s.prepare({.out_of_core = s.form.out_of_core}, matrix.is_symmetric());
+  return s.factorise_safely();
 }
 
 void MumpsEngine::substitute(std::span<double> right_side) { state_->substitute(right_side); }
@@ -396,11 +408,14 @@ Solution MumpsEngine::solve(std::span<double> right_side) {
     step = residual;
   }
   if (!exact && !(error <= least_accuracy)) {
-    const Factorisation again = s.factorise_exactly(part("gmres_leaves", {{"share", fmt::format("{:.0e}", error)}}), 0);
+    const Factorisation again = s.factorise_with_more_care(part("gmres_leaves", {{"share", fmt::format("{:.0e}", error)}}), 0);
     Solution second;
     if (again.null_pivots.empty()) second = solve(right_side);
     second.iterations += solution.iterations;
-    second.again = again;
+    if (!second.again)
+      second.again = again;
+    else
+      second.again->wasted_flops += again.flops + again.wasted_flops;
     return second;
   }
   if (!std::isfinite(error) || (s.options.residual_tolerance > 0 && solution.residual > s.options.residual_tolerance))

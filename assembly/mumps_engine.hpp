@@ -4,8 +4,9 @@
 // Where the matrix is large the factor is made in single precision, of low-rank blocks where that is less work still. GMRES on
 // the matrix in double precision gives the solution all its digits back. Such a factor has to prove itself: no pivot near
 // zero, and no vector that it leaves much of, so that the matrix has its inertia and its free motions. Where it does not, or
-// GMRES stalls, there is a factor in double precision from then on. A factor that processes share (tree/) is one of these: its
-// pivots are looked for within subtrees.
+// GMRES stalls, there is a factor in double precision from then on. Low-rank blocks of a symmetric matrix are eliminated as
+// ordered at first, for multipliers come behind what they hold; where such a factor fails, pivots are looked for from then on.
+// A factor that processes share (tree/) is one of these: its pivots are looked for within subtrees.
 #include <memory>
 #include <string>
 
@@ -43,8 +44,8 @@ class MumpsEngine : public FactorEngine {
   Factorisation factorise(const SparseMatrix& matrix) override;
   /// Refined until the residual is at round-off or stops falling. Throws SOLVER_1 where it is above the tolerance.
   Solution solve(std::span<double> right_side) override;
-  bool wants_exact_factors() const override;
-  void want_exact_factors() override;
+  Care care() const override;
+  void take(Care care) override;
   /// Those that share factors, where they have to.
   std::shared_ptr<PartProcesses> processes(std::int64_t n_equations) const override;
   void substitute(std::span<double> right_side) override;

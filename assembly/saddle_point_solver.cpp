@@ -404,7 +404,8 @@ bool SaddlePointSolver::corrected(const SparseMatrix& matrix, std::span<double> 
 void SaddlePointSolver::save(const hdf5::Group& group) const {
   group.set("reference", reference_);
   group.set("factorisations", factorisations_);
-  group.set("exact", std::int64_t{engine_->wants_exact_factors()});
+  group.set("exact", std::int64_t{engine_->care() == Engine::Care::exact});
+  group.set("pivots", std::int64_t{engine_->care() == Engine::Care::pivots});
   group.set("expected_iterations", static_cast<std::int64_t>(expected_iterations_));
   std::vector<std::int64_t> rows;
   std::vector<double> scales;
@@ -446,7 +447,10 @@ void SaddlePointSolver::save_base(const hdf5::Group& group) const {
 void SaddlePointSolver::resume(const hdf5::Group& group, const hdf5::Group* base, const Numbering& numbering) {
   reference_ = group.real("reference");
   factorisations_ = group.integer("factorisations");
-  if (group.integer("exact")) engine_->want_exact_factors();
+  if (group.integer("exact"))
+    engine_->take(Engine::Care::exact);
+  else if (!group.has_attribute("pivots") || group.integer("pivots"))  // bases that do not say were made with pivots looked for
+    engine_->take(Engine::Care::pivots);
   expected_iterations_ = static_cast<int>(group.integer("expected_iterations"));
   const auto rows = group.read<std::int64_t>("scale/row");
   const auto scales = group.read<double>("scale/value");

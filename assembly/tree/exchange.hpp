@@ -27,7 +27,7 @@ namespace lacon {
 
 struct PieceSizes {
   std::int64_t size = 0, entries = 0, border = 0;
-  std::int32_t is_symmetric = 1, memory_margin = 20;
+  std::int32_t is_symmetric = 1, memory_margin = 20, as_ordered = 0;
   double singular_pivot = 0, low_rank = 0;
 };
 

@@ -34,7 +34,8 @@ class Piece {
                 .memory_margin = sizes_.memory_margin,
                 .singular_pivot = sizes_.singular_pivot,
                 .scaled = true,
-                .low_rank = sizes_.low_rank}) {}
+                .low_rank = sizes_.low_rank,
+                .as_ordered = sizes_.as_ordered != 0}) {}
 
   std::string analyse() {
     const lacon::PieceMemory piece = lacon::PieceMemory::in(pattern_);

@@ -131,6 +131,7 @@ void TreeMumps<Real>::make_patterns() {
                            .border = static_cast<std::int64_t>(piece.border.size()),
                            .is_symmetric = settings_.symmetric,
                            .memory_margin = settings_.memory_margin,
+                           .as_ordered = settings_.as_ordered,
                            .singular_pivot = loose * settings_.singular_pivot,
                            .low_rank = settings_.low_rank};
     patterns_.emplace_back(PieceMemory::bytes(sizes));
@@ -311,6 +312,8 @@ Factorisation TreeMumps<Real>::factorise(const SparseMatrix& here, std::span<con
 
 template <class Real>
 bool TreeMumps<Real>::leave_to_top(const std::vector<std::vector<double>>& found) {
+  for (const std::vector<double>& numbers : found)
+    if (std::ranges::count(numbers, Factorisation::unknown)) return false;
   bool any = false;
   for (std::size_t p = 0; p < pieces_.size(); ++p)
     for (std::size_t k = of_a_piece; k < found[p].size(); ++k) {

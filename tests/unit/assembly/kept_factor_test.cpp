@@ -10,6 +10,7 @@
 #include "lacon/assembly/mumps_engine.hpp"
 #include "lacon/assembly/saddle_point_solver.hpp"
 #include "lacon/structures/hdf5.hpp"
+#include "lattice.hpp"
 
 namespace lacon {
 namespace {
@@ -165,6 +166,26 @@ TEST(KeptFactor, GoesOnInAnotherProcessWithTheSameBits) {
     EXPECT_EQ(found.columns, expected.columns);
     EXPECT_EQ(found.iterations, expected.iterations);
   }
+}
+
+// So does one that takes over that pivots have to be looked for: it does not try without.
+TEST(KeptFactor, TakesOverTheCareOfFactors) {
+  const std::filesystem::path file = std::filesystem::temp_directory_path() / ("kept_care_" + std::to_string(getpid()));
+  constexpr int n = 6;
+  test::Lattice lattice(n, 1, false);
+  test::make_pairs(lattice, n);
+  const auto solver = [] {
+    return SaddlePointSolver(std::make_unique<MumpsEngine>(
+        MumpsOptions{.single_precision = MumpsOptions::Use::always, .low_rank = MumpsOptions::Use::always}));
+  };
+  SaddlePointSolver first = solver(), second = solver();
+  std::vector<double> one(static_cast<std::size_t>(lattice.matrix.size()), 1.0), other = one;
+  EXPECT_GT(first.solve(lattice.matrix, lattice.matrix.size(), one).factorisation.wasted_flops, 0);
+  hdf5::write_whole(file, [&](const hdf5::Group& group) { first.save(group.create("solver")); });
+  second.resume(hdf5::Reader(file).open("solver"), nullptr, lattice.numbering);
+  std::filesystem::remove(file);
+  EXPECT_EQ(second.solve(lattice.matrix, lattice.matrix.size(), other).factorisation.wasted_flops, 0);
+  EXPECT_EQ(other, one);
 }
 
 // Columns of the inverse, many at once, by a factor that is exact and by one in single precision: those of the dense inverse,

@@ -229,7 +229,7 @@ TEST(MumpsEngine, FindsFreeMotionsInSinglePrecision) {
   test::add_springs(matrix, chain);
   MumpsEngine engine({.single_precision = always});
   for (const bool remembers : {false, true}) {
-    EXPECT_EQ(engine.wants_exact_factors(), remembers);
+    EXPECT_EQ(engine.care(), remembers ? Engine::Care::exact : Engine::Care::none);
     engine.analyse(matrix);
     const Factorisation found = engine.factorise(matrix);
     EXPECT_EQ(found.null_pivots.size(), 2u);
@@ -320,6 +320,33 @@ TEST(MumpsEngine, CompressesBlocks) {
   EXPECT_LT(flops[true], 0.9 * flops[false]);
   for (std::size_t i = 0; i < solutions[0].size(); ++i)
     ASSERT_NEAR(solutions[1][i], solutions[0][i], 1e-12 * solutions[0][7000]);
+}
+
+// Blocks of low rank are eliminated as ordered; where that gives no pivot they are looked for, from then on, which takes no
+// other precision. Of what no factor can take, a free body, nothing but an exact one is left.
+TEST(MumpsEngine, LooksForPivotsWhereTheOrderGivesNone) {
+  constexpr int n = 6;
+  Lattice lattice(n, 1, false);
+  const SparseMatrix free = lattice.matrix;
+  test::make_pairs(lattice, n);
+  MumpsEngine engine({.single_precision = always, .low_rank = always});
+  engine.analyse(lattice.matrix);
+  for (const bool remembers : {false, true}) {
+    const Factorisation found = engine.factorise(lattice.matrix);
+    EXPECT_TRUE(found.low_rank && found.single_precision);
+    EXPECT_EQ(found.doubt, "");
+    EXPECT_TRUE(found.null_pivots.empty());
+    EXPECT_EQ(found.negative_pivots, lattice.matrix.size() / 2);
+    EXPECT_EQ(found.wasted_flops == 0, remembers);
+    EXPECT_EQ(engine.care(), Engine::Care::pivots);
+    std::vector<double> x(static_cast<std::size_t>(lattice.matrix.size()), 1.0);
+    EXPECT_LE(engine.solve(x).residual, 1e-14);
+  }
+  engine.analyse(free);
+  const Factorisation found = engine.factorise(free);
+  EXPECT_EQ(found.null_pivots.size(), 1u);
+  EXPECT_NE(found.doubt, "");
+  EXPECT_EQ(engine.care(), Engine::Care::exact);
 }
 
 // ------------------------------------------------------------------------------------------------------ factors in files
