@@ -17,6 +17,7 @@
 #include "lacon/operators/fields/criteria.hpp"
 #include "lacon/operators/fields/expected.hpp"
 #include "lacon/operators/fields/extrapolation.hpp"
+#include "lacon/operators/fields/internal_variables.hpp"
 #include "lacon/operators/fields/layout.hpp"
 #include "lacon/operators/fields/mechanics.hpp"
 #include "lacon/operators/fields/plastic_strain.hpp"
@@ -111,19 +112,14 @@ const FieldRow& row_of(std::string_view name) {
   return *std::find_if(rows.begin(), rows.end(), [&](const FieldRow& row) { return row.name == name; });
 }
 
-/// Whether a result has no internal variables because its laws have none: it has V1 = 0 then, as code_aster's.
-bool has_zero_variables(const Result& result, std::string_view name) {
-  return name == "VARI_ELGA" && !result.fields.contains(std::string(name));
-}
-
-/// The fields of the result that a field is computed from in the end.
-std::vector<std::string> roots_of(const Result& result, std::string_view name) {
+/// The fields of the result that a field is computed from in the end. @param zero no law has internal variables: V1 = 0
+std::vector<std::string> roots_of(std::string_view name, bool zero) {
   std::vector<std::string> roots;
   const FieldRow* row = &row_of(name);
   if (name == "REAC_NODA" || name == "FORC_NODA" || name.starts_with("ETOT") || name.starts_with("EPSP"))
     roots.emplace_back("DEPL");
   while (!row->from.empty()) row = &row_of(row->from);
-  roots.emplace_back(has_zero_variables(result, row->name) ? "SIEF_ELGA" : row->name);
+  roots.emplace_back(zero && row->name == "VARI_ELGA" ? "SIEF_ELGA" : row->name);
   return roots;
 }
 
@@ -171,6 +167,14 @@ class Setting {
   const Result& result() const { return result_; }
   const Mesh& mesh() const { return mesh_; }
   const std::vector<char>& wanted() const { return wanted_; }
+  /// Whether the result has no internal variables because its laws have none.
+  bool has_zero_variables() {
+    if (!zero_variables_) {
+      Registry laws(order_.plugins);
+      zero_variables_ = !result_.fields.contains("VARI_ELGA") && !laws_have_variables(base_, result_, laws);
+    }
+    return *zero_variables_;
+  }
   bool has_part() const { return order_.keywords.has("GROUP_MA"); }
   std::string groups() const { return fmt::format("{}", fmt::join(order_.keywords.texts("GROUP_MA"), ", ")); }
   const CellBehaviours& behaviours(std::int64_t order) {
@@ -213,6 +217,7 @@ class Setting {
   std::map<std::int64_t, CellBehaviours> behaviours_;  ///< by the first order of their stage
   Model model_;
   std::unique_ptr<Registry> registry_;
+  std::optional<bool> zero_variables_;
   std::optional<ModelPoints> points_;
   std::optional<ResultMaterials> materials_;
   std::map<std::int64_t, Field> path_energies_;
@@ -236,15 +241,9 @@ class Instant {
     std::string name(row.name);
     switch (row.how) {
       case How::archived: {
-        const bool zero = has_zero_variables(setting_.result(), name);
+        const bool zero = name == "VARI_ELGA" && setting_.has_zero_variables();
         Field field = setting_.base().field(setting_.result(), zero ? "SIEF_ELGA" : name, order_);
-        if (zero) {
-          field.name = name;
-          field.quantity = "VARI_R";
-          field.components = {"V1"};
-          field.values.assign(field.offset.empty() ? 0 : static_cast<std::size_t>(field.offset.back()), 0.0);
-          field.present.clear();
-        }
+        if (zero) field = zero_variables(std::move(field));
         return field.location == Location::nodes ? field : on_wanted_cells(std::move(field));
       }
       case How::same: {
@@ -474,7 +473,8 @@ void calc_champ(const Order& order, const Base& base) {
   std::vector<std::pair<std::int64_t, std::string>> fields;
   for (const std::int64_t o : orders)
     for (const std::string& name : asked) {
-      const std::vector<std::string> roots = roots_of(from, name);
+      const std::vector<std::string> roots =
+          roots_of(name, !keywords.texts("VARI_INTERNE").empty() && setting.has_zero_variables());
       const auto missing =
           std::find_if(roots.begin(), roots.end(), [&](const auto& root) { return !has_field(from, root, o); });
       if (missing == roots.end())
@@ -488,7 +488,7 @@ void calc_champ(const Order& order, const Base& base) {
   for (const auto& [o, name] : fields) {
     if (!instant || instant->first != o) instant.emplace(o, Instant(setting, o));
     // what is archived is in a result that is enriched already, on all cells
-    if (!order.reuse || row_of(name).how != How::archived || has_zero_variables(from, name))
+    if (!order.reuse || row_of(name).how != How::archived || setting.has_zero_variables())
       base.add_field(to, instant->second(name));
   }
   base.store(to);

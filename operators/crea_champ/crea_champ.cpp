@@ -16,6 +16,7 @@
 #include "lacon/operators/fields/course.hpp"
 #include "lacon/operators/fields/expected.hpp"
 #include "lacon/operators/fields/extrapolation.hpp"
+#include "lacon/operators/fields/internal_variables.hpp"
 #include "lacon/operators/fields/layout.hpp"
 #include "lacon/operators/fields/selection.hpp"
 #include "lacon/operators/program/study_function.hpp"
@@ -66,6 +67,13 @@ class Task {
     if (found.mesh != mesh_id_) fail("CREACHAMP_5", {{"first", base_.label(mesh_id_)}, {"second", base_.label(found.mesh)}});
     found.name = base_.label(id);
     return found;
+  }
+
+  /// Whether the field is VARI_ELGA, and a result of stresses has none because its laws have no internal variables.
+  bool has_zero_variables(const Result& result, const std::string& name) const {
+    if (name != "VARI_ELGA" || result.fields.contains(name) || !result.fields.contains("SIEF_ELGA")) return false;
+    Registry registry(order_.plugins);
+    return !laws_have_variables(base_, result, registry);
   }
 
   /// One entry a node or cell: 1 where an occurrence means it.
@@ -230,7 +238,10 @@ Field extract(Task& task) {
     field = geometry(mesh, Ground(mesh).rows(Location::nodes).first, mesh.coordinates);
     field.name = name;
   } else {
-    field = of_result(task, task.base().result(keywords.concept_id("RESULTAT")), name);
+    const Result result = task.base().result(keywords.concept_id("RESULTAT"));
+    const bool zero = task.has_zero_variables(result, name);
+    field = of_result(task, result, zero ? "SIEF_ELGA" : name);
+    if (zero) field = zero_variables(std::move(field));
     task.ground(field.mesh);
   }
   check_type(field, task.type());

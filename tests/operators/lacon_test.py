@@ -223,11 +223,11 @@ class OperatorTest(unittest.TestCase):
             if present is not None:
                 file["present"] = np.array(present, np.uint8).reshape(-1, len(components))
 
-    def write_result(self, identifier, mesh, instants, fields, model="", material_field="", contact="", loads=(), label=None):
+    def write_result(self, identifier, mesh, instants, fields, model="", material_field="", contact="", loads=(), label=None, behaviour="{}"):
         """@param instants of the orders 0, 1, ... @param fields name -> {order: keywords of write_field but path, name, mesh}"""
         references = [one for one in (mesh, model, material_field, contact) if one]
         with self.create(identifier, "result", label, references, index=True, model=model, mesh=mesh, material_field=material_field,
-                         contact=contact, loads=json.dumps(list(loads)), behaviour="{}") as file:
+                         contact=contact, loads=json.dumps(list(loads)), behaviour=behaviour) as file:
             file["order"] = np.arange(len(instants), dtype=np.int64)
             file["instant"] = np.asarray(instants, float)
             file.create_group("parameters")

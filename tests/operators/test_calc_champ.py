@@ -111,6 +111,18 @@ class CalcChamp(OperatorTest):
             if like:
                 np.testing.assert_array_equal(field.support, self.read_field("result_2", like, 1).support)
 
+    def test_internal_variables_that_were_not_kept_are_no_zeros(self):
+        """ARCHIVAGE/CHAM_EXCLU='VARI_ELGA' of a plastic computation."""
+        self.write_model("model_3", "mesh_1", ["D_PLAN/SEG2", "D_PLAN/QUAD4"], [0, 0, 1, 1])
+        for relation, zero in (("ELAS", True), ("VMIS_ISOT_LINE", False)):
+            self.write_result("result_2", "mesh_1", [0.0, 1.0], {"SIEF_ELGA": {1: at_gauss_points(1.0)}}, label="RESU", model="model_3",
+                              behaviour=json.dumps([{"RELATION": relation, "DEFORMATION": "PETIT", "GROUP_MA": ["LEFT"]}]))
+            if zero:
+                run = self.run_on({"VARI_INTERNE": "VARI_ELNO"})
+                self.assertEqual(run.status, 0, run.stderr)
+            else:
+                self.refuses("CALCCHAMP_1", {"VARI_INTERNE": "VARI_ELNO"}, "VARI_ELGA", "VARI_ELNO")
+
     def test_cells_without_stresses_are_refused(self):
         self.refuses("CALCCHAMP_2", {"CONTRAINTE": "SIEF_NOEU", "GROUP_MA": "SKIN"}, "SKIN")
 

@@ -1,5 +1,6 @@
 """crea_champ and post_elem alone: fields by hand in, fields and tables out."""
 
+import json
 import types
 import unittest
 
@@ -81,6 +82,20 @@ class CreaChamp(FieldTest):
         self.refuses("CREACHAMP_9", "NOEU_DEPL_R", "ELGA_SIEF_R", TYPE_CHAM="ELGA_SIEF_R", INST=1.0, **which)
         self.refuses("FIELDS_2", "0.5", TYPE_CHAM="NOEU_DEPL_R", INST=0.5, **which)
         self.refuses("RESULT_1", "VITE", "DEPL", TYPE_CHAM="NOEU_DEPL_R", INST=1.0, **{**which, "NOM_CHAM": "VITE"})
+
+    def test_elastic_results_have_internal_variables_that_are_zero(self):
+        """V1 = 0 at every integration point, as ETAT_INIT/VARI and code_aster's studies take it; of plastic ones that were not kept nothing."""
+        stress = {"quantity": "SIEF_R", "location": "ELGA", "components": ["SIXX", "SIYY"], "support": [1, 2], "offset": [0, 4, 8], "values": np.ones((8, 2))}
+        what = {"TYPE_CHAM": "ELGA_VARI_R", "OPERATION": "EXTR", "RESULTAT": concept("result_3"), "NOM_CHAM": "VARI_ELGA", "INST": 1.0}
+        for relation in ("ELAS", "VMIS_ISOT_LINE"):
+            self.write_result("result_3", "mesh_1", [0.0, 1.0], {"SIEF_ELGA": {1: stress}}, label="RES", model="model_2",
+                              behaviour=json.dumps([{"RELATION": relation, "DEFORMATION": "PETIT"}]))
+            if relation == "ELAS":
+                field = self.make("field_4", **what)
+                self.assertEqual((field.kind, field.components, field.support, field.offset), ("ELGA_VARI_R", ["V1"], [1, 2], [0, 4, 8]))
+                np.testing.assert_array_equal(field.values, np.zeros((8, 1)))
+            else:
+                self.refuses("RESULT_1", "VARI_ELGA", **what)
 
     def test_extremes_over_instants(self):
         """DX = (2, -1) at node 1 and 4 at node 2 grow, turn and vanish; LAGS_C is there at node 2 and from the second instant on alone."""

@@ -1,0 +1,15 @@
+#pragma once
+// Internal variables of a result whose laws have none: code_aster's results have V1 = 0 then.
+#include "lacon/elements/registry.hpp"
+#include "lacon/structures/base.hpp"
+
+namespace lacon {
+
+/// Whether a law of the result has internal variables on some element of its model. Where VARI_ELGA is missing all the same it
+/// was not kept.
+bool laws_have_variables(const Base& base, const Result& result, Registry& registry);
+
+/// VARI_ELGA where no law has internal variables. @param stress SIEF_ELGA of the same instant
+Field zero_variables(Field stress);
+
+}  // namespace lacon
