@@ -23,7 +23,9 @@ namespace {
 LacCut cut_of(const Keywords& factor, std::int64_t info) {
   LacCut cut{.groups = factor.texts("GROUP_MA_ESCL"),
              .option = factor.text("DECOUPE_HEXA"),
-             .complete_node_groups = factor.has("GROUP_NO_COMPLET") && factor.yes("GROUP_NO_COMPLET"),
+             .node_groups = !factor.has("GROUP_NO_COMPLET")  ? SkinGroups::tell
+                            : factor.yes("GROUP_NO_COMPLET") ? SkinGroups::complete
+                                                             : SkinGroups::keep,
              .details = info > 1,
              .keyword = factor.path("GROUP_MA_ESCL")};
   if (cut.option != "PYRA" && cut.option != "HEXA")
@@ -140,11 +142,12 @@ Mesh cut_and_tell(Mesh mesh, const LacCut& cut) {
     if (zone.turned > 0) inform("DECOUPE_7", {{"count", std::to_string(zone.turned)}, {"group", zone.group}});
     fmt::print("  zone {:<24} {:>8} {}\n", zone.group, zone.patches, part("macro_elements"));
   }
-  if (cut.complete_node_groups) complete_node_groups(report, made);
+  if (cut.node_groups == SkinGroups::complete) complete_node_groups(report, made);
   if (report.new_cells > 0)
     inform("MESH1_3", {{"nodes", std::to_string(report.new_nodes)}, {"cells", std::to_string(report.new_cells)}});
   else
     inform("DECOUPE_10", {{"count", std::to_string(made.patches->size())}, {"types", slave_types(made)}});
+  if (cut.node_groups == SkinGroups::tell) tell_node_groups(report, made);
   print_quality(report, made, cut.details);
   print_counts(nodes, cells, made);
   return made;

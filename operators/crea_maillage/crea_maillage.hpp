@@ -8,11 +8,14 @@
 
 namespace lacon {
 
+/// What becomes of groups of nodes that hold a whole slave skin: its new nodes are told of, enter them, or stay out.
+enum class SkinGroups { tell, complete, keep };
+
 /// What DECOUPE_LAC, or the command line of the tool, asks for.
 struct LacCut {
   std::vector<std::string> groups;  ///< slave skins, one contact zone each
   std::string option = "PYRA";      ///< how hexahedra are cut: PYRA or HEXA
-  bool complete_node_groups = false;
+  SkinGroups node_groups = SkinGroups::tell;
   bool details = false;  ///< more about the cells' quality
   std::string keyword;   ///< that names the groups, for messages
 };

@@ -25,7 +25,7 @@ int cut_med_file(int argc, char** argv) {
   fs::path in, out;
   std::string name;
   bool keep_node_groups = false;
-  LacCut cut{.complete_node_groups = true, .keyword = "--slave"};
+  LacCut cut{.node_groups = SkinGroups::complete, .keyword = "--slave"};
   app.add_option("IN", in, "MED file with the mesh")->required();
   app.add_option("OUT", out, "MED file to write; replaced if it is there")->required();
   app.add_option("--slave", cut.groups, "group of cells: a slave skin. Several: the option again; each is one contact zone")
@@ -42,7 +42,7 @@ int cut_med_file(int argc, char** argv) {
     std::error_code error;
     if (fs::equivalent(in, out, error)) fail("CUT_1", {{"file", in.string()}});
     check_replaceable(out);  // before the work
-    cut.complete_node_groups = !keep_node_groups;
+    if (keep_node_groups) cut.node_groups = SkinGroups::keep;
     const Mesh made = [&] {
       Mesh mesh = [&] {
         const Phase phase("read");

@@ -438,23 +438,40 @@ Mesh cut_lac(Mesh mesh, std::span<const std::string> groups, std::string_view op
   return mesh;
 }
 
-void complete_node_groups(const CutReport& report, Mesh& cut) {
-  std::vector<char> inside;
+namespace {
+
+/// The new nodes of a zone that a group misses, where it holds all old ones.
+Nodes missing_nodes(const CutZone& zone, const Group& group, std::size_t n_nodes) {
+  std::vector<char> inside(n_nodes, 0);
+  for (const std::int32_t node : group.members) inside[static_cast<std::size_t>(node)] = 1;
   const auto holds = [&](const Nodes& nodes) {
     return std::ranges::all_of(nodes, [&](std::int32_t node) { return inside[static_cast<std::size_t>(node)] != 0; });
   };
-  for (Group& group : cut.node_groups) {
-    inside.assign(cut.n_nodes(), 0);
-    for (const std::int32_t node : group.members) inside[static_cast<std::size_t>(node)] = 1;
+  Nodes fresh;
+  if (holds(zone.old_skin_nodes)) append(fresh, zone.skin_nodes);
+  if (!fresh.empty() && holds(zone.old_body_nodes)) append(fresh, zone.body_nodes);
+  return fresh;
+}
+
+}  // namespace
+
+void complete_node_groups(const CutReport& report, Mesh& cut) {
+  for (Group& group : cut.node_groups)
     for (const CutZone& zone : report.zones) {
-      Nodes fresh;
-      if (holds(zone.old_skin_nodes)) append(fresh, zone.skin_nodes);
-      if (!fresh.empty() && holds(zone.old_body_nodes)) append(fresh, zone.body_nodes);
+      const Nodes fresh = missing_nodes(zone, group, cut.n_nodes());
       if (fresh.empty()) continue;
       append(group.members, fresh);
       inform("DECOUPE_8", {{"group", group.name}, {"skin", zone.group}, {"count", std::to_string(fresh.size())}});
     }
-  }
+}
+
+void tell_node_groups(const CutReport& report, const Mesh& cut) {
+  std::string names;
+  for (const Group& group : cut.node_groups)
+    if (std::ranges::any_of(report.zones,
+                            [&](const CutZone& zone) { return !missing_nodes(zone, group, cut.n_nodes()).empty(); }))
+      names += (names.empty() ? "'" : ", '") + group.name + "'";
+  if (!names.empty()) inform("DECOUPE_11", {{"groups", names}});
 }
 
 }  // namespace lacon

@@ -43,4 +43,8 @@ Mesh cut_lac(Mesh mesh, std::span<const std::string> groups, std::string_view op
 /// @param cut the mesh that cut_lac() made, with its report
 void complete_node_groups(const CutReport& report, Mesh& cut);
 
+/// Informs DECOUPE_11 of the groups that would get new nodes, where there are any: what is summed over such a group misses
+/// them.
+void tell_node_groups(const CutReport& report, const Mesh& cut);
+
 }  // namespace lacon

@@ -56,7 +56,10 @@ class CreaMaillage(OperatorTest):
 
     def test_groups_of_nodes_are_completed_on_demand_only(self):
         self.write_mesh("mesh_1", SQUARE, CELLS, GROUPS, {"CORNERS": [0, 2], "LOW": [1, 0], "WHOLE": [0, 1, 2, 3], "TOP": [2, 3]})
-        self.run_command("CREA_MAILLAGE", self.cut(["LOW"]), "mesh_2")
+        run = self.run_command("CREA_MAILLAGE", self.cut(["LOW"]), "mesh_2")
+        self.assertEqual(self.ids(run), ["MESH1_3", "DECOUPE_11"])  # sums over such groups miss what the new nodes carry
+        self.assertIn("'LOW', 'WHOLE';", run.messages[1]["text"])
+        self.assertEqual(self.ids(self.run_command("CREA_MAILLAGE", self.cut(["LOW"], GROUP_NO_COMPLET="NON"), "mesh_4")), ["MESH1_3"])
         self.assertEqual({name: list(nodes) for name, nodes in self.read_mesh("mesh_2").node_groups.items()},
                          {"CORNERS": [0, 2], "LOW": [1, 0], "WHOLE": [0, 1, 2, 3], "TOP": [2, 3]})
         run = self.run_command("CREA_MAILLAGE", self.cut(["LOW"], GROUP_NO_COMPLET="OUI"), "mesh_3")
