@@ -72,6 +72,19 @@ class OtherMethods(unittest.TestCase):
                 self.assertEqual(contact["ZONE"], (_F(GROUP_MA_MAIT="M", GROUP_MA_ESCL="E", ALGO_CONT="LAC", SANS_GROUP_NO=("A", "B")),
                                                    _F(GROUP_MA_MAIT="N", GROUP_MA_ESCL="F", ALGO_CONT="LAC", GLISSIERE="OUI", DIST_ESCL=0.5)))
 
+    def test_a_function_that_no_variable_holds_is_left_to_be_named(self):
+        """DIST_MAIT=DEFI_CONSTANTE(...) inside the zone: the form named it by its number in the base, which no study knows."""
+        zone = _F(GROUP_MA_MAIT="M", GROUP_MA_ESCL="E", DIST_MAIT=Concept(None, "function_6"))
+        lines = self.form("DEFI_CONTACT", FORMULATION="DISCRETE", ZONE=(zone, zone)).do
+        self.assertNotIn("function_6", lines)
+        for n in (1, 2):
+            self.assertIn(f"DIST_MAIT_{n} = ...", lines)
+            self.assertIn(f"DIST_MAIT=DIST_MAIT_{n})", lines)
+
+    def test_the_form_says_that_excluded_nodes_open_whole_patches(self):
+        self.assertIn("# SANS_GROUP_NO: whole patches", self.form("DEFI_CONTACT", ZONE=ZONES).do)
+        self.assertNotIn("whole patches", self.form("DEFI_CONTACT", ZONE=ZONES[1]).do)
+
     def test_a_skin_that_is_cut_is_not_cut_again(self):
         said = self.form("DEFI_CONTACT", cut=("E", "F"), FORMULATION="DISCRETE", ZONE=ZONES)
         self.assertNotIn("CREA_MAILLAGE", said.do)

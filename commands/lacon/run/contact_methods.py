@@ -6,6 +6,14 @@ from ..core.concepts import Concept
 from ..core.messages import fail
 
 
+#: keywords of a zone that take patches out
+LEFT_OUT = ("SANS_GROUP_MA", "SANS_GROUP_NO", "SANS_MAILLE", "SANS_NOEUD")
+
+
+class Name(str):
+    """A variable of the form, which stands there without quotes."""
+
+
 def refuse_other_methods(command, given, where, label):
     """Throws LAC_9 with the LAC form, where a DEFI_CONTACT or a DEFI_CONT asks for another method. What has no two skins (LIAISON_UNIL, XFEM, zones
     without groups) has no such form: its keywords are refused one by one."""
@@ -34,12 +42,22 @@ def lac_form(given, zones, label):
         lines += [f"CUT = CREA_MAILLAGE(MAILLAGE={old}, DECOUPE_LAC=_F(GROUP_MA_ESCL={_show(slaves)}))",
                   f"# the model and what follows on CUT instead of {old}"]
     row = catalog.command("DEFI_CONTACT")["keyword"]
+    unnamed = []
     whole = {"MODELE": model, "FORMULATION": "CONTINUE", "ALGO_RESO_GEOM": "NEWTON"}
     whole.update((name, given[name]) for name in ("LISSAGE", "VERI_NORM", "STOP_INTERP") if given.get(name) in row[name]["into"])
     parts = [f"{name}={_show(value)}" for name, value in whole.items()]
-    written = ",\n    ".join("      _F(" + ", ".join(f"{k}={_show(v)}" for k, v in _zone(zone, row["ZONE"]["keyword"]).items()) + ")"
-                             for zone in zones)
+    kept = [_zone(zone, row["ZONE"]["keyword"]) for zone in zones]
+    for n, zone in enumerate(kept):
+        for name, value in zone.items():
+            if isinstance(value, Concept) and not value.label:
+                zone[name] = Name(f"{name}_{n + 1}")
+                unnamed.append(f"{zone[name]} = ...  # what ZONE[{n + 1}]/{name} had: a variable of its own")
+    lines += unnamed
+    written = ",\n    ".join("      _F(" + ", ".join(f"{k}={_show(v)}" for k, v in zone.items()) + ")" for zone in kept)
     lines += [f"{label or 'CONTACT'} = DEFI_CONTACT({', '.join(parts)},", f"    ZONE=(\n    {written},))"]
+    left_out = sorted({name for zone in kept for name in zone if name in LEFT_OUT})
+    if left_out:
+        lines.append(f"# {', '.join(left_out)}: whole patches that meet these nodes stay open; leave it out where it is there for imposed displacements alone")
     if given.get("FROTTEMENT", "SANS") != "SANS":
         lines.append("# without friction, which LAC contact does not have")
     return "\n".join(lines)
@@ -75,4 +93,6 @@ def _show(value):
         return value.label or value.id
     if isinstance(value, (list, tuple)):
         return _show(value[0]) if len(value) == 1 else "(" + ", ".join(map(_show, value)) + ")"
+    if isinstance(value, Name):
+        return str(value)
     return "MODEL" if value is None else repr(value)
