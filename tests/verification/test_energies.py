@@ -35,7 +35,7 @@ for result, shift in ((R[0], 0), (R[1], 1)):
         found = table_of(RESULTAT=result, **{{kind: _F(TOUT='OUI')}})
         assert abs(found['TOTALE'][-1] / exact - 1) < 1e-10 and abs(found['TOTALE'][1] / exact - 0.25) < 1e-10, found
         assert found['NUME_ORDRE'][0] == shift and found['POUR_CENT'][-1] == 100, found
-    work = table_of(RESULTAT=result, TRAV_EXT=_F())
+    work = table_of(RESULTAT=result, TRAV_EXT=_F(TOUT='OUI'))
     assert abs(work['TRAV_ELAS'][-1] / exact - 1) < 1e-10 and abs(work['TRAV_REEL'][-1] / exact - 1) < 1e-10, work
 """)
         self.assertEqual(run.status, 0, run.stdout[-3000:] + run.stderr[-3000:])

@@ -145,10 +145,13 @@ def _draw(call, concept, table):
         call.fail("TABLE_12", "NOM_PARA", format=call.keywords["FORMAT"], needed=part("two_or_more"), count=len(table.para))
     for name in table.para:
         filters.numeric(call, table, name, "NOM_PARA")
-    made = []
+    k, made = call.keywords, []
+    legend = k.get("LEGENDE")
     for name in table.para[1:]:
         points = table.Array(table.para[0], name).reshape(-1, 2)
-        made.append(Curve(points[:, 0], points[:, 1], (table.para[0], name), f"{concept.label} {name}"))
+        called = legend if legend is not None and len(table.para) == 2 else f"{legend or concept.label} {name}"
+        made.append(Curve(points[:, 0], points[:, 1], (table.para[0], name), called, k.get("COULEUR"), k.get("STYLE"), k.get("MARQUEUR"),
+                          k.get("FREQ_MARQUEUR", 0)))
     draw(call, made)
 
 

@@ -137,10 +137,13 @@ class Field(Arithmetic, FieldData):
         return SimpleField(self, on_nodes=False)
 
     def getValuesWithDescription(self, components=(), groups=()):
-        """Values that exist, component after component, of nodes in these groups (of nodes, or of cells: their nodes).
-        @return (values, (numbers of the nodes from 0, names of the components))"""
+        """Values that exist, component after component, of nodes in these groups (of nodes, or of cells: their nodes), or of cells in them.
+        @return (values, (numbers of the nodes from 0, names of the components)), of a field of cells (values, (cells, points, subpoints)), all from 0"""
         if self.location != "NOEU":
-            raise TypeError(f"getValuesWithDescription is for fields of nodes; {self.name} is one of type {self.type()}")
+            owner, place = self.rows()
+            rows = [rows for _, rows in self._chosen(components, groups)]
+            at = numpy.concatenate(rows) if rows else numpy.zeros(0, int)
+            return self.getValues(components, groups), (owner[at].tolist(), place[at].tolist(), [0] * len(at))
         values, (nodes, names) = [], ([], [])
         for name, rows in self._chosen(components, groups):
             values += self.values[rows, self.components.index(name)].tolist()
