@@ -38,12 +38,17 @@ void SlaveFacet::set(const Surface& surface, std::size_t cell, double size, cons
   const std::optional<double> turn = largest_turn(tolerances);
   if (!turn) return;
   degenerate = false;
-  constant = *turn <= tolerances.flat && f.straight && !in_triangles;
-  nearly_flat = *turn <= tolerances.nearly_flat && f.straight;
+  SlaveCut cut = suited_cut(*turn, tolerances);
+  if (!surface.cuts.empty()) {
+    cut.refine(surface.cuts[cell]);
+    surface.cuts[cell] = cut;
+  }
+  nearly_flat = cut.steps == 1;
+  constant = nearly_flat && *turn <= tolerances.flat && !in_triangles;
   // in the reference cell middle nodes move points at any bulge; lines of masters are straight there if its map is affine
-  plane = f.straight && !(in_triangles && f.order > 1 && is_nearly_affine(f));
+  plane = !cut.curved && !(in_triangles && cut.affine);
   set_chart();
-  set_pieces(*turn);
+  set_pieces(cut.steps);
   set_walls();
 }
 
@@ -88,7 +93,21 @@ void SlaveFacet::set_chart() {
   if (plane) from_chart_ = Inverse(chart_, f.family);
 }
 
-void SlaveFacet::set_pieces(double turn) {
+SlaveCut SlaveFacet::suited_cut(double turn, const PairingTolerances& tolerances) const {
+  SlaveCut cut{.curved = !f.straight, .affine = f.order > 1 && is_nearly_affine(f)};
+  if (turn <= tolerances.nearly_flat && f.straight) return cut;
+  // both are the same whichever node is the first
+  double bulge = 0;
+  for (int i = 0; i < f.n_vertices && !f.straight; ++i)
+    bulge = std::max(bulge, norm(f.nodes[f.n_vertices + i] - 0.5 * (f.nodes[i] + f.nodes[(i + 1) % f.n_vertices])));
+  const double steps = 8 * std::max(turn, 4 * bulge / diameter(f.nodes, f.n_vertices));
+  const int most = f.family == Family::TRIA ? 6 : 4;
+  const double of_family = f.family == Family::TRIA ? steps : steps / std::numbers::sqrt2;
+  cut.steps = static_cast<std::uint8_t>(1 + std::clamp(static_cast<int>(std::ceil(of_family)), 1, most - 1));
+  return cut;
+}
+
+void SlaveFacet::set_pieces(int steps) {
   if (constant) {
     pieces.resize(1);
     Piece& piece = pieces[0];
@@ -97,14 +116,7 @@ void SlaveFacet::set_pieces(double turn) {
     piece.normal = n;
   } else {
     pieces.clear();
-    // both are the same whichever node is the first
-    double bulge = 0;
-    for (int i = 0; i < f.n_vertices && !plane; ++i)
-      bulge = std::max(bulge, norm(f.nodes[f.n_vertices + i] - 0.5 * (f.nodes[i] + f.nodes[(i + 1) % f.n_vertices])));
-    const double steps = 8 * std::max(turn, 4 * bulge / diameter(f.nodes, f.n_vertices));
-    subdivide(nearly_flat && plane       ? 1
-              : f.family == Family::TRIA ? std::clamp(1 + static_cast<int>(std::ceil(steps)), 2, 6)
-                                         : std::clamp(1 + static_cast<int>(std::ceil(steps / std::numbers::sqrt2)), 2, 4));
+    subdivide(plane ? steps : std::max(steps, 2));
   }
   chart_area = 0;
   for (const Piece& piece : pieces) chart_area += double_area(piece.polygon);

@@ -106,7 +106,9 @@ class SlaveFacet {
   void take_normals(const Surface& surface, std::size_t cell);
   std::optional<double> largest_turn(const PairingTolerances& tolerances) const;
   void set_chart();
-  void set_pieces(double turn);
+  /// What its shape asks for. @param turn as of largest_turn()
+  SlaveCut suited_cut(double turn, const PairingTolerances& tolerances) const;
+  void set_pieces(int steps);
   void subdivide(int k);
   void set_walls();
 

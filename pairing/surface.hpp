@@ -1,5 +1,6 @@
 #pragma once
 // A skin as pairing sees it: cells, and where their nodes are now.
+#include <algorithm>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -8,6 +9,20 @@
 #include "lacon/structures/mesh.hpp"
 
 namespace lacon {
+
+/// How a slave cell in space is cut into pieces. What its shape asks for changes by leaps, and integrals with it; where they
+/// have to be smooth, a cell stays cut as finely as any shape has asked for before.
+struct SlaveCut {
+  std::uint8_t steps = 1;  ///< of a grid of triangles
+  bool curved = false;     ///< its edges, at some time
+  bool affine = false;     ///< its map nearly was, at some time
+
+  void refine(const SlaveCut& other) {
+    steps = std::max(steps, other.steps);
+    curved = curved || other.curved;
+    affine = affine || other.affine;
+  }
+};
 
 /// One side of a contact zone. Node numbers are rows of `coordinates` and `normals`, which the caller owns and may move between
 /// two pairings. A skin is oriented outward: in 2D the body lies to the left of a cell, and n = (t_y, -t_x) leaves it.
@@ -22,6 +37,8 @@ struct Surface {
   /// In space, of each cell of a master: bit i is set where the skin goes on a little beyond the edge from vertex i to the
   /// next, as by its image in a plane of symmetry; empty: nowhere.
   std::span<const std::uint8_t> mirrored = {};
+  /// In space, of each cell of a slave: how it was cut before, which pairing refines; empty: each as its shape asks for now.
+  std::span<SlaveCut> cuts = {};
 
   std::size_t size() const { return types.size(); }
   void add_cell(CellType type, std::span<const std::int32_t> cell_nodes) {

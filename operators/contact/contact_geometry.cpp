@@ -256,7 +256,27 @@ void ContactGeometry::mirror() {
 
 void ContactGeometry::rest_at(std::span<const double> displacement) {
   displace(mesh_, displacement, mesh_.dimension, rest_);
+  cuts_end_ = true;
   mirror();
+}
+
+std::vector<std::int32_t> ContactGeometry::cuts() const {
+  std::vector<std::int32_t> all;
+  for (const Zone& zone : zones_)
+    for (const SlaveCut& cut : zone.cuts) all.insert(all.end(), {cut.steps, cut.curved, cut.affine});
+  return all;
+}
+
+void ContactGeometry::set_cuts(std::span<const std::int32_t> cuts) {
+  if (cuts.empty()) return;
+  cuts_end_ = false;
+  auto next = cuts.begin();
+  for (Zone& zone : zones_) {
+    zone.cuts.clear();
+    for (std::size_t i = 0; i < zone.slave.size(); ++i, next += 3)
+      zone.cuts.push_back({.steps = static_cast<std::uint8_t>(next[0]), .curved = next[1] != 0, .affine = next[2] != 0});
+    zone.slave.cuts = zone.cuts;
+  }
 }
 
 double ContactGeometry::motion(const Zone& zone) const {
@@ -288,6 +308,11 @@ void ContactGeometry::update(std::span<const double> displacement, std::vector<Z
   std::fill(straight_.begin(), straight_.end(), 1);
   if (records) records->clear();
   normals_.resize(zones_.size());
+  if (std::exchange(cuts_end_, false) && mesh_.dimension == 3)
+    for (Zone& zone : zones_) {
+      zone.cuts.assign(zone.slave.size(), {});
+      zone.slave.cuts = zone.cuts;
+    }
   for (Zone& zone : zones_) {
     const auto z = static_cast<std::size_t>(&zone - zones_.data());
     zone.slave.normals = {};

@@ -31,6 +31,7 @@ class ContactGeometry {
     std::vector<std::int32_t> slaves;   ///< index into Contact::slaves of each cell of `slave`
     std::vector<std::int32_t> masters;  ///< mesh cell of each cell of `master`
     std::vector<std::uint8_t> inner;    ///< Surface::inner of the slave
+    std::vector<SlaveCut> cuts;         ///< Surface::cuts of the slave: in space, since it was at rest
     std::vector<EndPlane> planes;
     std::vector<std::uint8_t> mirrored;  ///< Surface::mirrored of the master
     Surface slave, master;
@@ -68,6 +69,10 @@ class ContactGeometry {
   /// COEF_MULT_APPA gives a limit): further off a normal has left the body on its other side. @param displacement (n_nodes,
   /// mesh.dimension)
   void rest_at(std::span<const double> displacement);
+  /// How slave cells in space have been cut since then (Surface::cuts), of all zones, for set_cuts() of another process:
+  /// steps, curved, affine of each; empty in the plane.
+  std::vector<std::int32_t> cuts() const;
+  void set_cuts(std::span<const std::int32_t> cuts);
 
   /// Let masters go on where both skins end in one plane: normals that lean over it by what facets leave, or a face that bulges
   /// a little more than the other one, would miss them there, now more, now less. Not with VARIATION_JEU='FIGEE'.
@@ -156,6 +161,7 @@ class ContactGeometry {
   std::vector<std::int32_t> zone_of_;
   std::vector<std::int64_t> rejected_;
   std::vector<TooDeep> too_deep_;          ///< of each zone
+  bool cuts_end_ = true;                   ///< with the next update(): bodies are at rest
   std::optional<std::int32_t> over_axis_;  ///< a slave cell with a negative radius
 };
 

@@ -470,6 +470,7 @@ void Equilibrium::save(const hdf5::Group& group) const {
   for (const Coupling& coupling : system_.couplings()) couplings.insert(couplings.end(), {coupling.a, coupling.b});
   group.write("couplings", couplings);
   if (!first_forces_.empty()) group.write("first_forces", first_forces_);
+  if (contact_) group.write("slave_cuts", contact_->geometry().cuts());
 }
 
 void Equilibrium::resume(const hdf5::Group& group, const StaticState& state, std::span<const double> rest) {
@@ -480,6 +481,7 @@ void Equilibrium::resume(const hdf5::Group& group, const StaticState& state, std
   system_.start(couplings, linear_ && has_stiffness_);
   if (group.has_attribute("instant")) load(group.real("instant"), state);
   rest_at(rest);
+  if (contact_) contact_->set_cuts(group.read<std::int32_t>("slave_cuts"));
   pair(state.displacement);
   assemble(state, state, {static_cast<SolidMatrix>(group.integer("solid_matrix")), group.integer("curved_matrix") != 0});
 }

@@ -145,6 +145,41 @@ std::vector<double> derivatives(const Skins& skins, std::int8_t order) {
   return sum;
 }
 
+// As finely as iterates have asked for, so that gaps do not leap on the way back; what another process takes up has the same
+// bits.
+TEST(ContactGeometry, SlavesStayCutAsTheyWereUntilTheyAreAtRest) {
+  Skins skins(3, 2, false);
+  const auto twisted = [&](double by) {  // over a master that is moved aside, so that it ends under slave cells
+    std::vector<double> displacement(skins.displacement.size(), 0.0);
+    for (std::size_t node = 0; node < skins.mesh.n_nodes(); ++node) {
+      const double x = skins.mesh.coordinates[3 * node], y = skins.mesh.coordinates[3 * node + 1];
+      if (skins.mesh.coordinates[3 * node + 2] < 0)
+        displacement[3 * node] = 0.21, displacement[3 * node + 1] = 0.1 * x;
+      else
+        displacement[3 * node + 2] = by * x * y;
+    }
+    return displacement;
+  };
+  Registry registry;
+  const auto coverage_of = [&](ContactGeometry& geometry, double by) {
+    geometry.update(twisted(by));
+    std::vector<double> coverage;
+    for (std::size_t p = 0; p < geometry.n_patches(); ++p) coverage.push_back(geometry.coverage(p));
+    return coverage;
+  };
+  ContactGeometry straight(skins.mesh, skins.model, skins.contact, registry),
+      before(skins.mesh, skins.model, skins.contact, registry), taken_up(skins.mesh, skins.model, skins.contact, registry);
+  const std::vector<double> coarse = coverage_of(straight, 0.1);
+  coverage_of(before, 0.8);
+  const std::vector<double> fine = coverage_of(before, 0.1);
+  EXPECT_NE(fine, coarse);
+  taken_up.rest_at(twisted(0));
+  taken_up.set_cuts(before.cuts());
+  EXPECT_EQ(coverage_of(taken_up, 0.1), fine);
+  before.rest_at(twisted(0.1));
+  EXPECT_EQ(coverage_of(before, 0.1), coarse);
+}
+
 TEST(ContactGeometry, WhereSlaveAndMasterCoincideCouplingsAreTheDerivativesOfGaps) {
   for (const double gap : {0.0, 0.01}) {
     Skins skins(5, 7, false);

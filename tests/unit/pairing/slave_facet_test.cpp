@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <random>
 
 #include "lacon/pairing/chart_points.hpp"
@@ -69,6 +70,41 @@ TEST(SlaveFacets, TouchEveryBoxThatANormalPasses) {
       }
     }
   EXPECT_GT(met, 20'000);
+}
+
+// A cell that straightens and bends again over the end of a master: the largest second difference of what is covered, over the
+// square of the step. A smooth course has some, a leap has more the smaller the step.
+double largest_leap(CellType type, bool keeps_cut) {
+  const auto bent = [&](double by) {
+    std::mt19937 random(1);
+    const Place3 place = [by](double x, double y) { return Vec3{x, y, by * (x * x + 0.5 * x * y - 0.7 * y * y)}; };
+    return mesh({.nx = 1, .ny = 1, .type = type, .up = false}, place, random, true);
+  };
+  std::mt19937 random(1);
+  const Place3 oblique = [](double x, double y) { return Vec3{0.55 * x + 0.1 * y, y, -0.1}; };
+  Skin3 master = mesh({.nx = 2, .ny = 2, .y0 = -0.5, .y1 = 1.5}, oblique, random);
+  std::vector<SlaveCut> cuts(keeps_cut ? bent(0).surface.size() : 0);
+  const auto covered = [&](double by) {
+    Skin3 slave = bent(by);
+    slave.surface.cuts = cuts;
+    const Pairing found = pair(slave.view(), master.view(), {.traced = true});
+    return std::accumulate(found.cells.weight.begin(), found.cells.weight.end(), 0.0);
+  };
+  constexpr int steps = 500;
+  constexpr double most = 0.2, step = most / steps;
+  std::vector<double> course;
+  for (int i = -steps; i <= steps; ++i) course.push_back(covered(std::abs(i) * step));
+  double leap = 0;
+  for (int i = 2; i <= 2 * steps; ++i)
+    if (i != steps + 1) leap = std::max(leap, std::abs(course[i] - 2 * course[i - 1] + course[i - 2]));
+  return leap / (step * step);
+}
+
+// Newton's method goes to and fro where the gap of a patch leaps: a cell stays cut as finely as it had to be.
+TEST(SlaveFacets, StayCutAsTheyWereWithoutLeapsOfWhatIsCovered) {
+  for (const CellType type : {CellType::TRIA6, CellType::QUAD4, CellType::QUAD8, CellType::QUAD9})
+    EXPECT_LT(largest_leap(type, true), 10) << catalog::cell(type).name;
+  EXPECT_GT(largest_leap(CellType::TRIA6, false), 100);
 }
 
 // Whichever corner of a cell comes first, the same places are near it.
