@@ -6,6 +6,8 @@ from ..core.concepts import Concept
 from ..core.messages import fail
 
 
+#: keywords of a zone that have one value with LAC, its default
+ONE_VALUE = ("APPARIEMENT", "ADAPTATION")
 #: keywords of a zone that take patches out
 LEFT_OUT = ("SANS_GROUP_MA", "SANS_GROUP_NO", "SANS_MAILLE", "SANS_NOEUD")
 
@@ -70,7 +72,7 @@ def _zone(zone, row):
         kept["GLISSIERE"] = "OUI"
     for name, value in zone.items():
         allowed = row.get(name, {}).get("into")
-        if name in row and name not in kept and name != "APPARIEMENT" and value is not None and (allowed is None or value in allowed):
+        if name in row and name not in kept and name not in ONE_VALUE and value is not None and (allowed is None or value in allowed):
             kept[name] = value
     return kept
 
