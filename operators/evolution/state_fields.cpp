@@ -10,6 +10,7 @@
 #include "lacon/operators/contact/contact_field.hpp"
 #include "lacon/operators/evolution/prestrain.hpp"
 #include "lacon/operators/fields/expected.hpp"
+#include "lacon/operators/fields/internal_variables.hpp"
 #include "lacon/structures/displacement.hpp"
 
 namespace lacon {
@@ -241,6 +242,8 @@ StaticState archived_state(const StaticProblem& problem, const Base& base, const
   if (has_field(result, "VARI_ELGA", order)) {
     variable = base.field(result, "VARI_ELGA", order);
     variable_place = places_in(*variable, problem.mesh.n_cells());
+  } else if (laws_have_variables(base, result, result.stage(order), *problem.registry)) {
+    base.field(result, "VARI_ELGA", order);  // was not kept: what has flowed is not known, and not zero
   }
   std::int32_t fresh = -1;  // a cell whose law has internal variables now and had none
   for (const ElementSet& set : problem.solids) {

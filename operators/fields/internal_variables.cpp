@@ -7,11 +7,10 @@
 
 namespace lacon {
 
-bool laws_have_variables(const Base& base, const Result& result, Registry& registry) {
+bool laws_have_variables(const Base& base, const Result& result, const ResultStage& stage, Registry& registry) {
   std::vector<std::string> options;
-  for (const ResultStage& stage : result.stages)
-    for (const auto& one : nlohmann::json::parse(stage.behaviour))
-      options.push_back(one.at("RELATION").get<std::string>() + "/" + one.at("DEFORMATION").get<std::string>());
+  for (const auto& one : nlohmann::json::parse(stage.behaviour))
+    options.push_back(one.at("RELATION").get<std::string>() + "/" + one.at("DEFORMATION").get<std::string>());
   if (options.empty() || result.model.empty()) return false;
   return std::ranges::any_of(base.model(result.model).elements, [&](const std::string& name) {
     const catalog::ElementRow* const element = registry.find_element(name);
@@ -20,6 +19,11 @@ bool laws_have_variables(const Base& base, const Result& result, Registry& regis
                     n_names(registry.kernel(*element, option, LACON_SOLID).variables) > 0;
            });
   });
+}
+
+bool laws_have_variables(const Base& base, const Result& result, Registry& registry) {
+  return std::ranges::any_of(result.stages,
+                             [&](const ResultStage& stage) { return laws_have_variables(base, result, stage, registry); });
 }
 
 Field zero_variables(Field stress) {

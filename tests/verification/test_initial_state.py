@@ -85,6 +85,16 @@ class InitialState(StudyTest):
                 self.assertEqual(run.status, 2, run.stdout[-3000:] + run.stderr[-3000:])
                 self.assertIn(text, run.stderr)
 
+    def test_internal_variables_that_were_not_kept_are_not_taken_for_zero(self):
+        """With PETIT_REAC, whose law adds to the stress before, nothing else would notice."""
+        second = "dict(ETAT_INIT=_F(EVOL_NOLI=EXTR_RESU(RESULTAT=FIRST, ARCHIVAGE=_F(INST=2.0, CHAM_EXCLU='VARI_ELGA'))))"
+        for behaviour in BEHAVIOURS:
+            if "VMIS" in str(behaviour):
+                with self.subTest(behaviour):
+                    run = self.solve(behaviour, STATE_SECOND=second)
+                    self.assertEqual(run.status, 2, run.stdout[-3000:] + run.stderr[-3000:])
+                    self.assertIn("has no field VARI_ELGA", run.stderr)
+
     def test_another_instant_and_a_law_that_remembers_from_now_on(self):
         second = ("dict(ETAT_INIT=_F(EVOL_NOLI=FIRST, NUME_ORDRE=0, INST_ETAT_INIT=2.5), COMPORTEMENT=_F(RELATION='VMIS_ISOT_LINE'),"
                   " INCREMENT=_F(LIST_INST=TIMES, INST_FIN=3.0))")
