@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstring>
+#include <new>
 #include <numeric>
 #include <string>
 #include <type_traits>
@@ -208,7 +209,7 @@ void TreeMumps<Real>::add_to_top(const Piece& piece, std::span<const Real> schur
 
 template <class Real>
 void TreeMumps<Real>::analyse_top() {
-  if (top_factor_ || top_.empty()) return;
+  if (top_factor_ || top_.empty() || has_full_top()) return;
   number_top();
   top_pattern_.place = ranks(top_, pattern_.place);
   auto factor = std::make_unique<Mumps<Real>>(settings_);
@@ -220,6 +221,7 @@ template <class Real>
 MumpsForecast TreeMumps<Real>::analyse(const MumpsPattern& pattern) {
   number(pattern);
   top_factor_.reset();
+  full_top_.reset();
   make_patterns();
   const auto found = ask("analyse", "analysis", patterns_);
   const double top = static_cast<double>(top_.size()), entries = top * top / (settings_.symmetric ? 2 : 1);  // all of them
@@ -324,6 +326,32 @@ bool TreeMumps<Real>::leave_to_top(const std::vector<std::vector<double>>& found
 }
 
 template <class Real>
+Factorisation TreeMumps<Real>::factorise_top(Values& values) {
+  std::vector<Real> sum(top_pattern_.row.size(), 0);
+  for (std::size_t k = 0; k < values.top.size(); ++k) sum[top_pattern_.own[k]] = values.top[k];
+  for (std::size_t p = 0; p < pieces_.size(); ++p) add_to_top(pieces_[p], schur_of(p, values), sum);
+  values = {};
+  return top_factor_->factorise(sum);
+}
+
+template <class Real>
+Factorisation TreeMumps<Real>::factorise_full_top(Values& values) try {
+  full_top_ = std::make_unique<DenseFactor<Real>>(ranks(top_, pattern_.place));
+  std::size_t k = 0;
+  for_each_entry([&](std::size_t, std::int32_t row, std::int32_t column) {
+    if (subtree_of(row, column) < 0) full_top_->entry(local_[row], local_[column]) = values.top[k++];
+  });
+  for (std::size_t p = 0; p < pieces_.size(); ++p) full_top_->add(pieces_[p].border, schur_of(p, values));
+  values = {};
+  Factorisation found{.flops = full_top_->flops(), .entries = full_top_->n_entries(), .whole_entries = full_top_->n_entries()};
+  if (!full_top_->eliminate(-settings_.singular_pivot)) found.null_pivots.push_back(Factorisation::unknown);
+  found.negative_pivots = full_top_->negative_pivots();
+  return found;
+} catch (const std::bad_alloc&) {
+  fail("SOLVER_2", {{"phase", "factorisation"}, {"equations", std::to_string(local_.size())}});
+}
+
+template <class Real>
 Factorisation TreeMumps<Real>::factorise_filled(const Fill& fill) {
   Values values;
   std::vector<std::vector<double>> found = factorise_pieces(fill, values);
@@ -344,15 +372,8 @@ Factorisation TreeMumps<Real>::factorise_filled(const Fill& fill) {
     if (whole.negative_pivots) *whole.negative_pivots += static_cast<std::int64_t>(numbers.at(3));
     whole.null_pivots.insert(whole.null_pivots.end(), numbers.size() - of_a_piece, 0);
   }
-  if (!top_factor_ || !whole.null_pivots.empty()) return whole;
-  std::vector<Real> sum(top_pattern_.row.size(), 0);
-  for (std::size_t k = 0; k < values.top.size(); ++k) sum[top_pattern_.own[k]] = values.top[k];
-  for (std::size_t p = 0; p < pieces_.size(); ++p) {
-    const std::size_t n = pieces_[p].border.size();
-    add_to_top(pieces_[p], values_in<const Real>(values.pieces[p]).last(n * n), sum);
-  }
-  values = {};
-  const Factorisation top = top_factor_->factorise(sum);
+  if (top_.empty() || !whole.null_pivots.empty()) return whole;
+  const Factorisation top = has_full_top() ? factorise_full_top(values) : factorise_top(values);
   whole.flops += top.flops;
   whole.entries += top.entries;
   whole.whole_entries += top.whole_entries;
@@ -380,7 +401,10 @@ void TreeMumps<Real>::substitute_behind(std::vector<SharedMemory>& memory, std::
     }
   };
   for_each_border([](Real left, Real& of_top) { of_top += left; });
-  if (top_factor_) top_factor_->substitute(top);
+  if (full_top_)
+    full_top_->substitute(top);
+  else if (top_factor_)
+    top_factor_->substitute(top);
   for_each_border([](Real& value, Real of_top) { value = of_top; });
   for (std::size_t c = 0; c < count; ++c)
     for (std::size_t i = 0; i < m; ++i) solution[c * n + top_[i]] = top[c * m + i];

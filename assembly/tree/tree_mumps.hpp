@@ -9,6 +9,7 @@
 
 #include "lacon/assembly/mumps.hpp"
 #include "lacon/assembly/processes/shared_memory.hpp"
+#include "lacon/assembly/tree/dense_factor.hpp"
 #include "lacon/assembly/tree/exchange.hpp"
 #include "lacon/assembly/tree/mumps_processes.hpp"
 #include "lacon/assembly/tree/subtrees.hpp"
@@ -49,6 +50,11 @@ class TreeMumps : public MumpsFactor<Real> {
       return std::lower_bound(row.begin() + offset[j], row.begin() + offset[j + 1], i + 1) - row.begin();
     }
   };
+  /// Values of each piece, with room for its Schur complement, and of the top's own entries.
+  struct Values {
+    std::vector<SharedMemory> pieces;
+    std::vector<Real> top;
+  };
   std::vector<std::vector<double>> ask(const char* verb, const char* phase, std::span<const SharedMemory> memory,
                                        const std::function<void()>& meanwhile = {}, std::span<const SharedMemory> more = {});
   void number(const MumpsPattern& pattern);
@@ -64,17 +70,27 @@ class TreeMumps : public MumpsFactor<Real> {
   /// Of each piece: its number of an equation of the top, from 0.
   std::vector<std::vector<int>> borders() const;
   void number_top();
-  /// Numbered and analysed, if it has not been yet.
+  /// Whether Schur complements fill it and no pivots are looked for in it.
+  bool has_full_top() const {
+    constexpr std::size_t most = 8192;  // low-rank blocks are less work for larger ones
+    std::size_t entries = 0;            // that Schur complements add to
+    for (const Piece& piece : pieces_) entries += piece.border.size() * piece.border.size();
+    return settings_.symmetric && settings_.as_ordered && top_.size() <= most && entries >= top_.size() * top_.size();
+  }
+  /// Numbered and analysed, if it has not been yet and has to be.
   void analyse_top();
+  /// Of what is left of the matrix there.
+  Factorisation factorise_top(Values& values);
+  Factorisation factorise_full_top(Values& values);
+  /// The Schur complement of a piece, by rows, the lower triangle alone where symmetric.
+  std::span<const Real> schur_of(std::size_t piece, const Values& values) const {
+    const std::size_t n = pieces_[piece].border.size(), first = values.pieces[piece].size() / sizeof(Real) - n * n;
+    return {reinterpret_cast<const Real*>(values.pieces[piece].data()) + first, n * n};
+  }
   /// Add the Schur complement of a piece.
   void add_to_top(const Piece& piece, std::span<const Real> schur, std::span<Real> values) const;
   /// The subtree that an entry belongs to; -1: the top.
   std::int32_t subtree_of(std::int32_t i, std::int32_t j) const { return std::max(subtrees_.of[i], subtrees_.of[j]); }
-  /// Values of each piece, with room for its Schur complement, and of the top's own entries.
-  struct Values {
-    std::vector<SharedMemory> pieces;
-    std::vector<Real> top;
-  };
   using Fill = std::function<void(Values&)>;
   Factorisation factorise_filled(const Fill& fill);
   /// From the pattern's entries in their order.
@@ -104,6 +120,7 @@ class TreeMumps : public MumpsFactor<Real> {
   std::vector<std::int32_t> top_;       ///< equations of the top
   TopPattern top_pattern_;
   std::unique_ptr<Mumps<Real>> top_factor_;  ///< where there is a top and its analysis
+  std::unique_ptr<DenseFactor<Real>> full_top_;
 };
 
 extern template class TreeMumps<double>;
