@@ -481,7 +481,7 @@ void Equilibrium::resume(const hdf5::Group& group, const StaticState& state, std
   system_.start(couplings, linear_ && has_stiffness_);
   if (group.has_attribute("instant")) load(group.real("instant"), state);
   rest_at(rest);
-  if (contact_) contact_->set_cuts(group.read<std::int32_t>("slave_cuts"));
+  if (contact_ && group.has("slave_cuts")) contact_->set_cuts(group.read<std::int32_t>("slave_cuts"));
   pair(state.displacement);
   assemble(state, state, {static_cast<SolidMatrix>(group.integer("solid_matrix")), group.integer("curved_matrix") != 0});
 }

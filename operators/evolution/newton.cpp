@@ -122,7 +122,7 @@ void Newton::save(const hdf5::Group& group) const {
 void Newton::resume(const hdf5::Group& group, const hdf5::Group* base, const StaticState& state, std::span<const double> rest) {
   choice_.set_waits(group.integer("waits") != 0);
   for (const std::int64_t patch : group.read<std::int64_t>("told")) told_.insert(static_cast<std::size_t>(patch));
-  prediction_.resume(group.open("prediction"));
+  if (group.has("prediction")) prediction_.resume(group.open("prediction"));  // not in a record of before it was kept
   equilibrium_.resume(group.open("equilibrium"), state, rest);
   solver_.resume(group.open("solver"), base, problem_.numbering);
 }

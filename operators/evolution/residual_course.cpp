@@ -11,7 +11,9 @@ namespace lacon {
 namespace {
 
 constexpr double same = 1e-2;   // of a residual: the one of a period before
-constexpr double other = 1e-1;  // and what differs within a period
+constexpr double other = 1e-3;  // and what differs within a period,
+constexpr double clearly = 10;  // so many times more than from one period to the next: it does not merely crawl
+constexpr double more = 1e-1;   // of a residual that was smaller before
 
 }  // namespace
 
@@ -49,10 +51,14 @@ std::optional<double> ResidualCourse::order() const {
 std::optional<std::size_t> ResidualCourse::period() const {
   for (std::size_t period = 2; 2 * period <= residuals_.size(); ++period) {
     const auto last = residuals_.end() - static_cast<std::ptrdiff_t>(period);
-    const bool again = std::equal(last, residuals_.end(), last - static_cast<std::ptrdiff_t>(period),
-                                  [](double now, double before) { return std::abs(now - before) <= same * before; });
+    bool again = true;
+    double change = 0;  // from one period to the next
+    for (auto now = last, before = last - static_cast<std::ptrdiff_t>(period); now != residuals_.end(); ++now, ++before) {
+      again = again && std::abs(*now - *before) <= same * *before;
+      change = std::max(change, std::abs(*now - *before));
+    }
     const auto [least, most] = std::minmax_element(last, residuals_.end());
-    if (again && *most > (1 + other) * *least) return period;
+    if (again && *most - *least > std::max(clearly * change, other * *least)) return period;
   }
   return std::nullopt;
 }
@@ -65,7 +71,7 @@ std::string ResidualCourse::words() const {
   const std::string factor = fmt::format("{:.2g}", *changes);
   if (const auto before = smaller_before(); before && *changes < 1) {
     const double times = residuals_.back() / *(residuals_.rbegin() + static_cast<std::ptrdiff_t>(*before));
-    if (times > 1 + other)
+    if (times > 1 + more)
       return part("residual_was_smaller",
                   {{"factor", factor}, {"count", std::to_string(*before)}, {"times", fmt::format("{:.2g}", times)}});
   }

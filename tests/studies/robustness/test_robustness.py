@@ -15,6 +15,7 @@ from bodies import lines, quarter_of_a_ring, round_tool, slab, slab_in_space  # 
 from meshes import block, brick, union  # noqa: E402
 from run import chosen, count, missed, run  # noqa: E402
 from studies import Study, elastic, held, path, zone  # noqa: E402
+from unseen import study as unseen  # noqa: E402
 
 #: seconds each, one or more of a row
 SHORT = ["arch/x10, QUAD8 GREEN", "arch/x10, QUAD4 PETIT", "plastic/flat 1, QUAD8", "plastic/round 5, QUAD4", "contrast/1e-06 QUAD4 PETIT", "contrast/1e+06 QUAD8 GREEN", "difficult/beams QUAD8 GREEN",
@@ -45,6 +46,10 @@ class Driver(unittest.TestCase):
     def test_names_are_unique(self):
         names = [name for name, _ in chosen([])]
         self.assertEqual(len(names), len(set(names)))
+
+    def test_a_number_is_always_the_same_study(self):
+        self.assertEqual(unseen(7).moves, unseen(7).moves)
+        self.assertNotEqual(unseen(7).name, unseen(8).name)
 
 
 class Short(StudyTest):

@@ -47,6 +47,9 @@ TEST(ResidualCourse, KnowsWhatComesBack) {
   EXPECT_FALSE(course({1, 2, 1}).period());        // not twice yet
   EXPECT_FALSE(course({1, 1, 1, 1, 1}).period());  // it stands
   EXPECT_FALSE(course({8, 4, 2, 1}).period());
+  EXPECT_EQ(course({9, 4.279, 4.056, 4.279, 4.056}).period(), 2U);  // at the end of a skin that passes the end of the other
+  EXPECT_FALSE(course({9, 1.03, 1.02, 1.01, 1}).period());          // it crawls
+  EXPECT_FALSE(course({9, 1, 1.0001, 1, 1.0001}).period());         // it stands, but for round-off
   EXPECT_EQ(course({9, 1, 2, 1, 2}).words(), "the residual goes round with a period of 2 iterations");
 }
 
