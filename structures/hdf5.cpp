@@ -9,43 +9,17 @@
 
 #include "lacon/catalog/messages.hpp"
 #include "lacon/catalog/wording.hpp"
-#include "lacon/structures/files.hpp"
+#include "lacon/structures/hdf5_detail.hpp"
 #include "lacon/structures/memory.hpp"
-#include "lacon/structures/seal.hpp"
 
 namespace lacon::hdf5 {
 namespace {
-
-/// Comes before any other call. HDF5 does nothing at a program's exit, where it would crash on files that could not be written,
-/// nor prints its error stack: our messages say what was wanted. Each open file has half a megabyte of tables, which the next
-/// one takes over where the free lists may hold that much: fresh pages cost more than small files.
-void prepare() {
-  H5dont_atexit();
-  H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
-  constexpr int bytes = 4 << 20;
-  H5set_free_list_limits(bytes, bytes, bytes, bytes, bytes, bytes);
-}
 
 /// What texts are converted in: HDF5's own megabyte costs more than to read the few that there are.
 Handle small_buffer() {
   Handle transfer(H5Pcreate(H5P_DATASET_XFER), H5Pclose);
   H5Pset_buffer(transfer, 1 << 14, nullptr, nullptr);
   return transfer;
-}
-
-/// `what`, and what the system said when HDF5's last call failed: ": No space left on device".
-std::string with_system_reason(std::string_view what) {
-  std::string reason;
-  const auto find = [](unsigned, const H5E_error2_t* error, void* to) -> herr_t {
-    static constexpr std::string_view before = "error message = '";
-    const std::string_view text = error->desc ? error->desc : "";
-    const std::size_t at = text.find(before), first = at + before.size();
-    if (at == std::string_view::npos) return 0;
-    *static_cast<std::string*>(to) = ": " + std::string(text.substr(first, text.find('\'', first) - first));
-    return 1;
-  };
-  H5Ewalk2(H5E_DEFAULT, H5E_WALK_UPWARD, find, &reason);
-  return std::string(what) + reason;
 }
 
 std::string zero_ended(std::string_view name) { return std::string(name); }
@@ -127,7 +101,25 @@ bool read_texts(hid_t type, hid_t space, std::size_t size, hid_t transfer, Read 
   return true;
 }
 
+thread_local FailedCloses closes;
+
 }  // namespace
+
+const FailedCloses& failed_closes() { return closes; }
+
+std::string with_system_reason(std::string_view what) {
+  std::string reason;
+  const auto find = [](unsigned, const H5E_error2_t* error, void* to) -> herr_t {
+    static constexpr std::string_view before = "error message = '";
+    const std::string_view text = error->desc ? error->desc : "";
+    const std::size_t at = text.find(before), first = at + before.size();
+    if (at == std::string_view::npos) return 0;
+    *static_cast<std::string*>(to) = ": " + std::string(text.substr(first, text.find('\'', first) - first));
+    return 1;
+  };
+  H5Ewalk2(H5E_DEFAULT, H5E_WALK_UPWARD, find, &reason);
+  return std::string(what) + reason;
+}
 
 Handle& Handle::operator=(Handle&& other) noexcept {
   std::swap(id_, other.id_);
@@ -136,7 +128,9 @@ Handle& Handle::operator=(Handle&& other) noexcept {
 }
 
 Handle::~Handle() {
-  if (id_ >= 0 && close_) close_(id_);
+  if (id_ < 0 || !close_ || close_(id_) >= 0) return;
+  ++closes.count;
+  closes.reason = with_system_reason(part("file_not_ended"));
 }
 
 Group::Group(Handle id, std::filesystem::path path, bool writing)
@@ -415,84 +409,5 @@ LACON_HDF5_TYPE(std::int32_t)
 LACON_HDF5_TYPE(std::int8_t)
 LACON_HDF5_TYPE(std::uint8_t)
 #undef LACON_HDF5_TYPE
-
-namespace {
-
-[[noreturn]] void cannot_write(const std::filesystem::path& file, const std::string& reason) {
-  fail("BASE_3", {{"file", file.string()}, {"reason", reason}});
-}
-
-class Writer : public Group {
- public:
-  Writer(Handle root, const std::filesystem::path& path) : Group(std::move(root), path, true) {}
-};
-
-/// Write what goes into an HDF5 file that was just opened as `partial`, and will be `file`.
-void fill(const Handle& opened, const std::filesystem::path& partial, const std::filesystem::path& file,
-          const std::function<void(const Group&)>& write) {
-  if (opened < 0) cannot_write(file, with_system_reason(about("file_not_made", partial.string())));
-  {
-    const Writer root(Handle(H5Gopen2(opened, "/", H5P_DEFAULT), H5Gclose), file);
-    write(root);
-  }
-  if (H5Fflush(opened, H5F_SCOPE_LOCAL) < 0) cannot_write(file, with_system_reason(part("file_not_ended")));
-}
-
-Handle new_file(const std::filesystem::path& path, bool in_memory = false) {
-  prepare();
-  const Handle creation(H5Pcreate(H5P_FILE_CREATE), H5Pclose), access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose);
-  H5Pset_link_creation_order(creation, H5P_CRT_ORDER_TRACKED | H5P_CRT_ORDER_INDEXED);
-  if (in_memory) H5Pset_fapl_core(access, 1 << 16, false);
-  return Handle(H5Fcreate(path.c_str(), H5F_ACC_TRUNC, creation, access), H5Fclose);
-}
-
-}  // namespace
-
-Reader::Reader(const std::filesystem::path& file) : Group({}, file, false) {
-  prepare();
-  check_seal(file);
-  file_ = Handle(H5Fopen(file.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), H5Fclose);
-  if (file_ < 0) {
-    std::error_code error;
-    if (!std::filesystem::exists(file, error)) refuse(part("file_not_there"));
-    if (std::filesystem::is_directory(file, error)) refuse(part("file_is_folder"));
-    if (std::FILE* stream = std::fopen(file.c_str(), "rb"))
-      std::fclose(stream);
-    else
-      refuse(std::strerror(errno));
-    if (H5Fis_hdf5(file.c_str()) <= 0) refuse(part("file_not_hdf5"));
-    refuse(part("file_cut_off"));
-  }
-  id_ = Handle(H5Gopen2(file_, "/", H5P_DEFAULT), H5Gclose);
-}
-
-void write_whole(const std::filesystem::path& file, const std::function<void(const Group&)>& write,
-                 const std::filesystem::path& copy_of) {
-  write_as_partial(file, [&](const std::filesystem::path& partial) {
-    if (copy_of.empty()) return fill(new_file(partial), partial, file, write);
-    std::error_code error;
-    std::filesystem::copy_file(copy_of, partial, std::filesystem::copy_options::overwrite_existing, error);
-    if (error) cannot_write(file, error.message());
-    prepare();
-    fill(Handle(H5Fopen(partial.c_str(), H5F_ACC_RDWR, H5P_DEFAULT), H5Fclose), partial, file, write);
-  });
-}
-
-void write_sealed(const std::filesystem::path& file, const std::function<void(const Group&)>& write) {
-  write_as_partial(file, [&](const std::filesystem::path& partial) {
-    fill(new_file(partial), partial, file, write);
-    seal(partial);
-  });
-}
-
-void write_sealed_at_once(const std::filesystem::path& file, const std::function<void(const Group&)>& write) {
-  write_as_partial(file, [&](const std::filesystem::path& partial) {
-    const Handle opened = new_file(partial, true);
-    fill(opened, partial, file, write);
-    std::vector<char> content(static_cast<std::size_t>(std::max<ssize_t>(0, H5Fget_file_image(opened, nullptr, 0))));
-    if (H5Fget_file_image(opened, content.data(), content.size()) <= 0) cannot_write(file, part("hdf5_no_content"));
-    write_with_seal(partial, content);
-  });
-}
 
 }  // namespace lacon::hdf5

@@ -1,5 +1,5 @@
-// Loaded first (LD_PRELOAD): a disk that is full after so many bytes, whoever of a study's processes writes them.
-// LACON_TEST_DISK names a file that holds the number of bytes left.
+// Loaded first (LD_PRELOAD): a disk that is full after so many bytes, that fails one of the writes, or that takes half of what
+// it is given, whoever of a study's processes writes. LACON_TEST_DISK names a file that holds a Disk.
 #include <dlfcn.h>
 #include <errno.h>
 #include <fcntl.h>
@@ -15,24 +15,36 @@
 
 namespace {
 
-std::atomic<int64_t>* bytes_left() {
-  static std::atomic<int64_t>* const left = [] {
+struct Disk {
+  std::atomic<int64_t> bytes_left;
+  std::atomic<int64_t> writes;  ///< so far
+  int64_t fails;                ///< this one of them, from 1; 0: none
+  int64_t halves;               ///< whether a write takes half of its bytes
+};
+
+Disk* disk() {
+  static Disk* const found = [] {
     const char* name = getenv("LACON_TEST_DISK");
     const int file = name ? open(name, O_RDWR | O_CLOEXEC) : -1;
-    void* page = file < 0 ? MAP_FAILED : mmap(nullptr, sizeof(int64_t), PROT_READ | PROT_WRITE, MAP_SHARED, file, 0);
+    void* page = file < 0 ? MAP_FAILED : mmap(nullptr, sizeof(Disk), PROT_READ | PROT_WRITE, MAP_SHARED, file, 0);
     if (file >= 0) close(file);
-    return page == MAP_FAILED ? nullptr : static_cast<std::atomic<int64_t>*>(page);
+    return page == MAP_FAILED ? nullptr : static_cast<Disk*>(page);
   }();
-  return left;
+  return found;
 }
 
 /// How many of `size` bytes the disk still takes; all, if this is no file.
 ssize_t taken(int file, size_t size) {
   struct stat about;
-  if (size == 0 || !bytes_left() || fstat(file, &about) != 0 || !S_ISREG(about.st_mode)) return static_cast<ssize_t>(size);
-  int64_t left = *bytes_left(), some;
+  if (size == 0 || !disk() || fstat(file, &about) != 0 || !S_ISREG(about.st_mode)) return static_cast<ssize_t>(size);
+  if (++disk()->writes == disk()->fails) {
+    errno = EIO;
+    return -1;
+  }
+  if (disk()->halves) size = (size + 1) / 2;
+  int64_t left = disk()->bytes_left, some;
   do some = std::min<int64_t>(left, static_cast<int64_t>(size));
-  while (!bytes_left()->compare_exchange_weak(left, left - some));
+  while (!disk()->bytes_left.compare_exchange_weak(left, left - some));
   if (some > 0) return some;
   errno = ENOSPC;
   return -1;
