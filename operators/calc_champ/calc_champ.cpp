@@ -488,7 +488,7 @@ void calc_champ(const Order& order, const Base& base) {
   for (const auto& [o, name] : fields) {
     if (!instant || instant->first != o) instant.emplace(o, Instant(setting, o));
     // what is archived is in a result that is enriched already, on all cells
-    if (!order.reuse || row_of(name).how != How::archived || setting.has_zero_variables())
+    if (!order.reuse || row_of(name).how != How::archived || (name == "VARI_ELGA" && setting.has_zero_variables()))
       base.add_field(to, instant->second(name));
   }
   base.store(to);

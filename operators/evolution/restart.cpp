@@ -70,7 +70,10 @@ Course read_course(const hdf5::Group& group) {
   const auto iterations = group.read<std::int64_t>("iterations"), failed = group.read<std::int64_t>("failed");
   const hdf5::Group known = group.open("failures");
   const std::vector<Message> failures = read_messages(known);
-  const auto depends = known.read<std::int64_t>("depends_on_step"), astray = known.read<std::int64_t>("led_astray");
+  const auto depends = known.read<std::int64_t>("depends_on_step");
+  // not in a record of before it was kept
+  const auto astray =
+      known.has("led_astray") ? known.read<std::int64_t>("led_astray") : std::vector<std::int64_t>(depends.size(), 0);
   const auto ratios = known.read<double>("ratio"), excesses = known.read<double>("excess");
   Course course;
   std::size_t failure = 0;

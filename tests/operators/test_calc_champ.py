@@ -56,6 +56,12 @@ class CalcChamp(OperatorTest):
         nodes = [n for kind, members in CELLS[2:] for n in members]
         np.testing.assert_allclose(field.values, [stress(*POINTS[n], 1.0) for n in nodes], atol=1e-14)
 
+    def test_what_is_archived_stays_whole_where_a_group_alone_is_asked_for(self):
+        """A result of elastic laws, which has no internal variables."""
+        run = self.run_on({"CONTRAINTE": ["SIEF_ELGA", "SIEF_NOEU"], "GROUP_MA": "LEFT"})
+        self.assertEqual(run.status, 0, run.stderr)
+        np.testing.assert_array_equal(self.read_field("result_2", "SIEF_ELGA", 2).support, [2, 3])
+
     def test_only_what_is_asked_for_is_stored(self):
         self.run_on({"CONTRAINTE": "SIEF_NOEU", "INST": [1.0]})
         with self.assertRaises(KeyError):
