@@ -1,6 +1,7 @@
 #include "lacon/operators/impr_resu/impr_resu.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cctype>
@@ -108,6 +109,25 @@ class Written {
  private:
   std::vector<std::string> names_;
   std::map<std::string, int> count_;
+};
+
+/// Tells which fields of an occurrence come as means of cells: those at integration points, with VTU those at nodes of cells
+/// too.
+class Means {
+ public:
+  Means(std::string label, std::string format) : label_(std::move(label)), format_(std::move(format)) {}
+  void add(const Field& field) {
+    if (field.location == Location::gauss_points || (field.location == Location::cell_nodes && format_ == "VTU"))
+      fields_.insert(field.name);
+  }
+  void tell() const {
+    if (fields_.empty()) return;
+    inform("IMPR_10", {{"label", label_}, {"format", format_}, {"fields", fmt::format("{}", fmt::join(fields_, ", "))}});
+  }
+
+ private:
+  std::string label_, format_;
+  std::set<std::string> fields_;
 };
 
 /// The pairing at an instant of a result, or of a contact before any.
@@ -256,7 +276,9 @@ fs::path print_vtu(const Order& order, const Base& base, Concepts& concepts, con
       continue;
     }
     const auto& [id, result] = concepts.source(one);
+    Means means(result.label, "VTU");
     each_field(base, result, concepts.mesh(result.mesh), one, [&](PrintedField&& printed) {
+      means.add(printed.field);
       Step& step = steps[{rank(id), printed.field.order}];
       step.label = result.label;
       step.instant = printed.field.instant;
@@ -268,6 +290,7 @@ fs::path print_vtu(const Order& order, const Base& base, Concepts& concepts, con
       });
       step.fields.push_back({same == 0 ? name : fmt::format("{}_part_{}", name, same + 1), std::move(printed.field)});
     });
+    means.tell();
   }
   std::vector<VtuStep> texts;
   for (const auto& [key, step] : steps)
@@ -343,10 +366,13 @@ void print_mesh_file(const Order& order, const Base& base, Concepts& concepts, c
     mesh_id = id;
     if (!has_fields(one)) continue;
     const Result& result = concepts.source(one).second;
+    Means means(result.label, "GMSH");
     each_field(base, result, mesh, one, [&](PrintedField&& printed) {
+      means.add(printed.field);
       text += gmsh_field_text(mesh, printed.field, printed.field.name);
       written.add(part("field_of", {{"field", printed.field.name}, {"result", result.label}}));
     });
+    means.tell();
   }
   TextFiles files;
   files.write(file, text);

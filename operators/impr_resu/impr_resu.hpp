@@ -17,8 +17,9 @@ struct PrintedField {
 
 /// Visit the fields that an occurrence of RESU means (CHAM_GD: of the result that stands for it), each restricted to its
 /// components, nodes and cells; orders rise, fields come by name or as NOM_CHAM lists them. Fields that NOM_CHAM names are
-/// mandatory where instants are named too. Throws RESULT_1, IMPR_1 (field that is nowhere), IMPR_2 (component), IMPR_3
-/// (GROUP_NO and a field of cells), IMPR_4 (NOM_CHAM_MED), and what selected_orders() throws.
+/// mandatory where instants are named too; those that are left out are told with the reason (IMPR_5). Throws RESULT_1, IMPR_1
+/// (field that is nowhere), IMPR_2 (component), IMPR_3 (GROUP_NO and a field of cells), IMPR_4 (NOM_CHAM_MED), and what
+/// selected_orders() throws.
 void each_field(const Base& base, const Result& result, const Mesh& mesh, const Keywords& keywords,
                 const std::function<void(PrintedField&&)>& visit);
 

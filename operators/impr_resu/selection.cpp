@@ -3,9 +3,11 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <map>
 #include <set>
 
 #include "lacon/catalog/messages.hpp"
+#include "lacon/catalog/wording.hpp"
 #include "lacon/operators/fields/extrapolation.hpp"
 #include "lacon/operators/fields/selection.hpp"
 #include "lacon/operators/impr_resu/impr_resu.hpp"
@@ -60,23 +62,35 @@ void each_field(const Base& base, const Result& result, const Mesh& mesh, const 
   const bool only_nodes = keywords.has("GROUP_NO") && !keywords.has("GROUP_MA");
   const bool parts = only_nodes || keywords.has("GROUP_MA");
   const std::vector<std::string> wanted = keywords.texts("NOM_CMP");
-  std::set<std::string> all_components, found_components, nowhere(names.begin(), names.end());
+  std::set<std::string> all_components, found_components;
+  std::map<std::string, const char*> left_out;  // fields that come with no value so far: why
   for (const std::int64_t order : orders) {
     for (std::size_t i = 0; i < names.size(); ++i) {
+      const auto [why, is_new] = left_out.try_emplace(names[i], "not_at_instants");
       const auto& files = result.fields.at(names[i]);
       if (!files.contains(order) && !(named && names_instants(keywords))) continue;  // base.field() refuses the rest
       Field field = base.field(result, names[i], order);
+      const auto leave_out = [&, reason = why](const char* part) {
+        if (reason->second != nullptr) reason->second = part;
+      };
       if (field.location != Location::nodes && only_nodes) {
         if (named) fail("IMPR_3", {{"keyword", keywords.path("GROUP_NO")}, {"field", names[i]}});
+        leave_out("not_on_nodes");
         continue;
       }
       all_components.insert(field.components.begin(), field.components.end());
       if (!wanted.empty()) field = restrict_to_components(field, wanted);
       found_components.insert(field.components.begin(), field.components.end());
-      if (field.components.empty()) continue;
+      if (field.components.empty()) {
+        leave_out("not_with_components");
+        continue;
+      }
       if (parts) field = field.location == Location::nodes ? restrict_to_nodes(field, nodes) : restrict_to_cells(field, cells);
-      if (field.support.empty()) continue;
-      nowhere.erase(names[i]);
+      if (field.support.empty()) {
+        leave_out("not_on_part");
+        continue;
+      }
+      why->second = nullptr;
       const std::string& root = keywords.has("NOM_RESU_MED") ? keywords.text("NOM_RESU_MED") : result.label;
       const std::string own = keywords.has("CHAM_GD") ? names[i] : med_field_name(root, names[i]);
       visit({med_names.empty() ? own : med_names[i], std::move(field)});
@@ -88,8 +102,11 @@ void each_field(const Base& base, const Result& result, const Mesh& mesh, const 
                       {"component", component},
                       {"label", result.label},
                       {"known", fmt::format("{}", fmt::join(all_components, ", "))}});
-  for (const std::string& name : names)
-    if (named && nowhere.contains(name)) inform("IMPR_5", {{"label", result.label}, {"field", name}});
+  std::map<std::string, std::vector<std::string>> fields_of;
+  for (const auto& [name, why] : left_out)
+    if (why != nullptr) fields_of[why].push_back(name);
+  for (const auto& [why, fields] : fields_of)
+    inform("IMPR_5", {{"label", result.label}, {"fields", fmt::format("{}", fmt::join(fields, ", "))}, {"why", part(why)}});
 }
 
 }  // namespace lacon

@@ -115,6 +115,23 @@ class New(StudyTest):
         self.assertEqual(self.new(mesh).returncode, 0)
         self.assertIn("GROUP_MA_ESCL='FINE', GROUP_MA_MAIT='COARSE'", self.assert_checked())
 
+    def test_whole_boundaries_of_bodies_are_no_skins_of_a_contact(self):
+        """In space, where nothing else is named: what to add is said, and no zone is made of them; beside the skin that meets another they are nothing."""
+        bodies = [brick("HEXA8", [lines(n, 0), lines(n, 0), lines(n, z)], name=name, sides={(a, e): f"{name}_{a}{e}" for a in range(3) for e in range(2)})
+                  for name, z, n in (("LOWER", 0, 2), ("UPPER", 1, 3))]
+        mesh = union(bodies)
+        for name in ("LOWER", "UPPER"):
+            mesh.cell_groups["ALL_" + name] = sorted(c for side, cells in mesh.cell_groups.items() if side.startswith(name + "_") for c in cells)
+        self.assertEqual(self.new(mesh).returncode, 0)
+        text = self.assert_checked()
+        self.assertIn("GROUP_MA_ESCL='UPPER_20', GROUP_MA_MAIT='LOWER_21'", text)
+        self.assertEqual(text.count("ALGO_CONT='LAC'"), 1)
+        mesh.cell_groups = {name: cells for name, cells in mesh.cell_groups.items() if name.startswith("ALL_") or "_" not in name}
+        self.assertEqual(self.new(mesh, "--out", "whole.comm").returncode, 0)
+        text = self.assert_checked("whole.comm")
+        self.assertIn("CHOOSE a slave and a master", text)
+        self.assertNotIn("\nCONTACT =", text)
+
     def test_the_call_that_help_shows_is_accepted(self):
         call = self.run_tool("help", "DEFI_CONTACT").stdout.partition("accepted:")[2]
         self.assertEqual(self.new(plate()).returncode, 0)
