@@ -63,7 +63,7 @@ struct Mumps<Real>::State {
     at(mumps.icntl, 7) = 1;                           // our own order, in perm_in
     if (settings.scaled) at(mumps.icntl, 8) = 0;
     at(mumps.icntl, 13) = 1;  // no parallel root: the inertia is exact
-    at(mumps.icntl, 14) = settings.memory_margin;
+    at(mumps.icntl, 14) = settings.symmetric && settings.as_ordered ? 0 : settings.memory_margin;  // it is for pivots that wait
     at(mumps.icntl, 24) = 1;  // report null pivots instead of stopping
     at(mumps.cntl, 3) = static_cast<Real>(settings.singular_pivot);
     if (settings.symmetric && std::is_same_v<Real, float>) at(mumps.keep, 5) = at(mumps.keep, 6) = panel;
@@ -144,9 +144,13 @@ MumpsForecast Mumps<Real>::analyse(const MumpsPattern& pattern) {
   auto& mumps = state_->mumps;
   mumps.n = static_cast<MUMPS_INT>(pattern.place.size());
   mumps.nnz = static_cast<MUMPS_INT8>(pattern.row.size());
-  mumps.irn = pattern.row.data();
-  mumps.jcn = pattern.column.data();
+  move_entries(pattern.row, pattern.column);
   mumps.perm_in = pattern.place.data();
+  if (!pattern.block.empty()) {
+    at(mumps.icntl, 15) = 1;  // the analysis is one of blocks: a graph of a ninth of the size in space
+    mumps.nblk = static_cast<MUMPS_INT>(pattern.block.size()) - 1;
+    mumps.blkptr = pattern.block.data();
+  }
   if (!pattern.border.empty()) {
     at(mumps.icntl, 19) = 1;
     mumps.size_schur = static_cast<MUMPS_INT>(pattern.border.size());
@@ -156,6 +160,12 @@ MumpsForecast Mumps<Real>::analyse(const MumpsPattern& pattern) {
   state_->require("analysis");
   const int megabytes = at(mumps.infog, state_->settings.out_of_core ? 26 : state_->settings.low_rank > 0 ? 36 : 16);
   return {.flops = at(mumps.rinfog, 1), .entries = count(at(mumps.infog, 20)), .bytes = 1e6 * megabytes};
+}
+
+template <class Real>
+void Mumps<Real>::move_entries(std::span<int> row, std::span<int> column) {
+  state_->mumps.irn = row.data();
+  state_->mumps.jcn = column.data();
 }
 
 template <class Real>

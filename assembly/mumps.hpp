@@ -21,10 +21,12 @@ struct MumpsSettings {
   std::string folder;         ///< of these files
 };
 
-/// The places of entries and their order of elimination, numbered from 1. They must stay where they are.
+/// The places of entries and their order of elimination, numbered from 1. They must stay where they are; those of entries are
+/// read again by each factorisation.
 struct MumpsPattern {
   std::span<int> row, column;
   std::span<int> place;                ///< of each equation
+  std::span<int> block;                ///< the first equation of each block whose equations have one pattern, and behind them
   std::span<int> border;               ///< equations, the last ones in this order, that are left: those of the Schur complement
   const VertexGraph* graph = nullptr;  ///< where entries are not listed: those behind it
 };
@@ -45,6 +47,8 @@ class MumpsFactor {
   virtual ~MumpsFactor() = default;
 
   virtual MumpsForecast analyse(const MumpsPattern& pattern) = 0;
+  /// The places of entries, the same ones, are there from now on.
+  virtual void move_entries(std::span<int> /*row*/, std::span<int> /*column*/) {}
   virtual Factorisation factorise(std::span<const Real> values) = 0;
   /// x = A^-1 b in place, of one right side or of some, one after the other.
   virtual void substitute(std::span<Real> right_side) = 0;
@@ -63,6 +67,7 @@ class Mumps : public MumpsFactor<Real> {
   Mumps& operator=(const Mumps&) = delete;
 
   MumpsForecast analyse(const MumpsPattern& pattern) override;
+  void move_entries(std::span<int> row, std::span<int> column) override;
   Factorisation factorise(std::span<const Real> values) override;
   /// Of a matrix with a border. @param[out] schur (border, border), by rows, where symmetric the lower triangle alone is set
   Factorisation factorise(std::span<const Real> values, std::span<Real> schur);

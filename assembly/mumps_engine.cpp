@@ -66,9 +66,9 @@ struct Form {
 struct MumpsEngine::State {
   using Care = Engine::Care;
   MumpsOptions options;
-  Care care = Care::none;        ///< from now on
-  std::vector<int> row, column;  ///< of entries, where one process makes the factor
-  std::vector<int> place;
+  Care care = Care::none;           ///< from now on
+  std::vector<int> row, column;     ///< of entries, where one process makes the factor
+  std::vector<int> place, block;    ///< of MumpsPattern
   Ragged<std::int32_t> neighbours;  ///< of the whole matrix
   std::optional<VertexGraph> graph;
   Form form;
@@ -120,15 +120,19 @@ struct MumpsEngine::State {
                                  .as_ordered = form.as_ordered,
                                  .out_of_core = form.out_of_core,
                                  .folder = options.folder};
-    list_entries(symmetric);
-    const MumpsPattern pattern{row, column, place, {}, form.shared ? &*graph : nullptr};
+    if (!form.shared) list_entries(symmetric);
+    const MumpsPattern pattern{
+        .row = row, .column = column, .place = place, .block = block, .border = {}, .graph = form.shared ? &*graph : nullptr};
     if (!form.single_precision) return (full = made<double>(settings))->analyse(pattern);
     return (single = made<float>(settings))->analyse(pattern);
   }
   void list_entries(bool symmetric) {
+    std::size_t count = 0;
+    graph->for_each_entry(symmetric, [&](std::int32_t, std::int32_t) { ++count; });
     row.clear();
     column.clear();
-    if (form.shared) return;
+    row.reserve(count);
+    column.reserve(count);
     graph->for_each_entry(symmetric, [&](std::int32_t i, std::int32_t j) {
       row.push_back(i + 1);
       column.push_back(j + 1);
@@ -151,8 +155,8 @@ struct MumpsEngine::State {
     }
   }
 
-  /// The cheapest form that the options allow.
-  void choose(const SparseMatrix& of) {
+  /// The cheapest form that the options allow. @param order of elimination
+  void choose(const SparseMatrix& of, std::span<const std::int32_t> order) {
     const bool symmetric = of.is_symmetric();
     const bool in_files = options.memory == MumpsOptions::Memory::out_of_core;
     const bool exact = care == Care::exact;
@@ -162,16 +166,16 @@ struct MumpsEngine::State {
                 .low_rank = asks(options.low_rank) && !in_files,  // MUMPS has no low-rank factors in files
                 .out_of_core = in_files,
                 .shared = subtrees && !exact && !in_files};
-    // processes are asked once: counts of the tree say as much
-    MumpsForecast forecast =
-        wanted.shared ? MumpsForecast{.flops = subtrees->flops, .entries = subtrees->entries} : prepare(wanted, symmetric);
-    const double work = forecast.flops / forecast.entries;
-    const bool is_cheap = may(options.single_precision) && work < single_precision_pays;
-    if (is_cheap)
-      wanted.single_precision = false;
-    else if (may(options.low_rank) && wanted.single_precision && !in_files && work > low_rank_pays)
-      wanted.low_rank = true;
-    if (wanted.shared || is_cheap || wanted.low_rank != form.low_rank) forecast = prepare(wanted, symmetric);
+    if (may(options.single_precision) || (may(options.low_rank) && wanted.single_precision)) {
+      const EliminationCounts counts = subtrees ? subtrees->whole : elimination_counts(*graph, order);
+      const double work = counts.flops / counts.entries;
+      const bool is_cheap = may(options.single_precision) && work < single_precision_pays;
+      if (is_cheap)
+        wanted.single_precision = false;
+      else if (may(options.low_rank) && wanted.single_precision && !in_files && work > low_rank_pays)
+        wanted.low_rank = true;
+    }
+    const MumpsForecast forecast = prepare(wanted, symmetric);
     if (options.memory == MumpsOptions::Memory::where_needed && of.size() >= least_equations &&
         forecast.bytes > available_memory())
       prepare({.single_precision = wanted.single_precision, .out_of_core = true}, symmetric);
@@ -182,6 +186,10 @@ struct MumpsEngine::State {
     std::optional<SparseMatrix> whole;  // where one process makes the factor
     if (matrix->elsewhere() && !form.shared) whole = matrix->elsewhere()->whole(*matrix);
     const SparseMatrix& of = whole ? *whole : *matrix;
+    if (!form.shared && row.empty()) {
+      list_entries(of.is_symmetric());
+      single ? single->move_entries(row, column) : full->move_entries(row, column);
+    }
     if (form.is_exact()) {
       found = full->factorise(of.values());
     } else {
@@ -189,6 +197,8 @@ struct MumpsEngine::State {
       alone = of.rows_alone();
       found = single ? factorise_scaled(*single, of) : factorise_scaled(*full, of);
     }
+    row = {};
+    column = {};
     found.single_precision = form.single_precision;
     found.low_rank = form.low_rank;
     found.out_of_core = form.out_of_core;
@@ -329,12 +339,17 @@ void MumpsEngine::analyse(const SparseMatrix& matrix) {
   const std::vector<std::int32_t> order = elimination_order(*s.graph);
   s.place.assign(order.begin(), order.end());
   for (int& p : s.place) ++p;
+  s.block.clear();
+  const std::vector<std::int64_t>& first = matrix.numbering().first;
+  for (std::size_t v = 0; v + 1 < first.size(); ++v)
+    if (first[v] < first[v + 1]) s.block.push_back(static_cast<int>(first[v]) + 1);
+  s.block.push_back(static_cast<int>(first.back()) + 1);
   s.subtrees.reset();
   if (s.options.processes > 1 && matrix.size() >= s.options.least_shared) {
     s.subtrees = independent_subtrees(*s.graph, order, s.options.processes);
     if (s.subtrees->process.size() < 2 || !s.has_processes()) s.subtrees.reset();  // one alone would wait for the others
   }
-  s.choose(matrix);
+  s.choose(matrix, order);
 }
 
 Factorisation MumpsEngine::factorise(const SparseMatrix& matrix) {

@@ -33,7 +33,7 @@ struct SaddlePointOptions {
   double stiffness_drift = 0.02;  ///< largest change of an entry of the stiffness, of its diagonals, that is left to GMRES
   double drift = 0.3;             ///< relative change of a row's coefficients above which its column is computed anew
   double work_limit = 1;          ///< most operations without a new factorisation, of those of a factorisation
-  double column_memory = 0.5;     ///< largest memory of the columns, of a whole factor's in double precision
+  double column_memory = 0.25;    ///< largest memory of the columns, of a whole factor's in double precision
 };
 
 /// How exact a solution has to be.

@@ -78,30 +78,37 @@ SparseMatrix::SparseMatrix(const Numbering& numbering, const Ragged<std::int32_t
     : SparseMatrix(vertex_graph(numbering.n_vertices(), cliques, couplings), numbering, symmetry) {}
 
 SparseMatrix::SparseMatrix(Ragged<std::int32_t> neighbours, const Numbering& numbering, Symmetry symmetry)
-    : numbering_(&numbering), symmetry_(symmetry), neighbours_(std::move(neighbours)) {
+    : numbering_(&numbering), symmetry_(symmetry) {
+  const auto pattern = std::make_shared<Pattern>();
+  pattern->neighbours = std::move(neighbours);
+  pattern_ = pattern;
   const auto& first = numbering.first;
-  row_.reserve(numbering.n_equations() + 1);
-  row_.push_back(0);
+  std::vector<std::int64_t>& rows = pattern->row;
+  rows.reserve(numbering.n_equations() + 1);
+  rows.push_back(0);
   // neighbours of v whose columns come before its own
   const auto before = [&](std::int64_t v) {
-    const auto row = neighbours_[v];
+    const auto row = pattern_->neighbours[v];
     return row.first(std::lower_bound(row.begin(), row.end(), v) - row.begin());
   };
-  const auto behind = [&](std::int64_t v) { return neighbours_[v].subspan(before(v).size()); };
+  const auto behind = [&](std::int64_t v) { return pattern_->neighbours[v].subspan(before(v).size()); };
   const auto n_equations = [&](std::span<const std::int32_t> vertices) {
     return std::accumulate(vertices.begin(), vertices.end(), std::int64_t{0},
                            [&](std::int64_t sum, std::int32_t w) { return sum + first[w + 1] - first[w]; });
   };
   for (std::int64_t v = 0; v < numbering.n_vertices(); ++v) {
-    const std::int64_t width = n_equations(is_symmetric() ? before(v) : neighbours_[v]), own = first[v + 1] - first[v];
-    for (std::int64_t i = 1; i <= own; ++i) row_.push_back(row_.back() + width + (is_symmetric() ? i : own));
+    const std::int64_t width = n_equations(is_symmetric() ? before(v) : pattern_->neighbours[v]), own = first[v + 1] - first[v];
+    for (std::int64_t i = 1; i <= own; ++i) rows.push_back(rows.back() + width + (is_symmetric() ? i : own));
   }
-  column_.resize(row_.back());
-  value_.resize(row_.back());
+  pattern->column.resize(rows.back());
+  row_ = rows;
+  column_ = pattern->column;
+  values_ = std::make_shared<std::vector<double>>(rows.back());
+  value_ = *values_;
   parallel_for(numbering.n_vertices(), vertices_at_once, [&](const LoopBlock& block) {
     for (std::size_t v = block.first; v < block.last; ++v)
       for (std::int64_t row = first[v]; row < first[v + 1]; ++row) {
-        auto column = column_.begin() + row_[row];
+        auto column = pattern->column.begin() + row_[row];
         const auto add = [&](std::int64_t from, std::int64_t to) {
           for (; from < to; ++from) *column++ = static_cast<std::int32_t>(from);
         };
@@ -115,22 +122,37 @@ SparseMatrix::SparseMatrix(Ragged<std::int32_t> neighbours, const Numbering& num
 
 bool SparseMatrix::has_room_for(std::span<const Coupling> couplings) const {
   return std::all_of(couplings.begin(), couplings.end(), [&](const Coupling& c) {
-    const auto row = neighbours_[c.a];
+    const auto row = pattern_->neighbours[c.a];
     return c.a == c.b || std::binary_search(row.begin(), row.end(), c.b);
   });
 }
 
-void SparseMatrix::set_zero(std::int64_t first_row) { std::fill(value_.begin() + row_[first_row], value_.end(), 0.0); }
+double* SparseMatrix::own_values() {
+  if (values_.use_count() > 1) {
+    values_ = std::make_shared<std::vector<double>>(*values_);
+    value_ = *values_;
+  }
+  return values_->data();
+}
 
-void SparseMatrix::restore(std::span<const double> values) { std::copy(values.begin(), values.end(), value_.begin()); }
+void SparseMatrix::set_zero(std::int64_t first_row) {
+  std::fill(own_values() + row_[first_row], own_values() + row_.back(), 0.0);
+}
+
+void SparseMatrix::restore(std::span<const double> values) { std::copy(values.begin(), values.end(), own_values()); }
+
+void SparseMatrix::set_row(std::int64_t row, std::span<const double> values) {
+  std::copy(values.begin(), values.end(), own_values() + row_[row]);
+}
 
 void SparseMatrix::copy_rows(const SparseMatrix& other, std::int64_t n_rows) {
+  double* const values = own_values();
   for (std::int64_t row = 0; row < n_rows; ++row) {
     std::int64_t k = other.row_[row];
     const std::int64_t last = other.row_[row + 1];
     for (std::int64_t own = row_[row]; own < row_[row + 1]; ++own) {
       const bool known = k < last && other.column_[k] == column_[own];
-      value_[own] = known ? other.value_[k] : 0;
+      values[own] = known ? other.value_[k] : 0;
       k += known;
     }
     if (k < last) throw std::logic_error("rows of another pattern");
@@ -145,10 +167,11 @@ void SparseMatrix::add_rows(std::span<const std::int64_t> equations, const Value
   for (std::int32_t i = 0; i < static_cast<std::int32_t>(equations.size()); ++i)
     if (equations[i] >= 0) adding_.push_back({static_cast<std::int32_t>(equations[i]), i, i * (i + 1) / 2, 0});
   std::sort(adding_.begin(), adding_.end(), [](const Added& a, const Added& b) { return a.equation < b.equation; });
+  double* const all = own_values();
   for (std::size_t i = 0; i < adding_.size(); ++i) {
     const Added own = adding_[i];
     const std::int32_t* const columns = column_.data() + row_[own.equation];
-    double* const values = value_.data() + row_[own.equation];
+    double* const values = all + row_[own.equation];
     const auto width = static_cast<std::int32_t>(row_[own.equation + 1] - row_[own.equation]);
     std::int32_t next = 0;  // behind the last column that was found in this row
     for (std::size_t j = 0; j < (lower ? i + 1 : adding_.size()); ++j) {
@@ -200,7 +223,7 @@ std::vector<double> SparseMatrix::diagonals() const {
   return values;
 }
 
-void SparseMatrix::add_diagonal(std::int64_t equation, double value) { value_[diagonal_place(equation)] += value; }
+void SparseMatrix::add_diagonal(std::int64_t equation, double value) { own_values()[diagonal_place(equation)] += value; }
 
 std::vector<SparseMatrix::RowSize> SparseMatrix::row_sizes(std::int64_t n) const {
   std::vector<RowSize> sizes(static_cast<std::size_t>(n));

@@ -1,6 +1,7 @@
 #pragma once
 // A sparse matrix, row by row: its pattern from a graph of vertices; where it is symmetric, its lower triangle alone.
 #include <cstdint>
+#include <memory>
 #include <span>
 #include <vector>
 
@@ -46,6 +47,7 @@ struct VertexGraph {
   }
 };
 
+/// Copies share their pattern, and their values until one of them changes.
 class SparseMatrix {
  public:
   /// The pattern in which neighbouring vertices meet. @param neighbours of each vertex, ascending, without itself
@@ -62,6 +64,8 @@ class SparseMatrix {
   void set_zero(std::int64_t first_row = 0);
   /// Give the first rows, or all of them, the values that values() had there.
   void restore(std::span<const double> values);
+  /// The same of one row. @param values as row_values() has them
+  void set_row(std::int64_t row, std::span<const double> values);
   /// Take the values of the first rows from a matrix whose pattern there is a part of this one's; what is new is zero.
   void copy_rows(const SparseMatrix& other, std::int64_t n_rows);
   /// Add an element matrix. @param equations of its degrees of freedom, -1: left out; an equation may stand there more than
@@ -77,6 +81,7 @@ class SparseMatrix {
   std::span<const std::int64_t> rows() const { return row_; }  ///< (size + 1)
   std::span<const std::int32_t> columns() const { return column_; }
   std::span<const double> values() const { return value_; }
+  std::span<const double> row_values(std::int64_t row) const { return value_.subspan(row_[row], row_[row + 1] - row_[row]); }
   double diagonal(std::int64_t equation) const { return value_[diagonal_place(equation)]; }
   /// All of it, with what is elsewhere.
   std::vector<double> diagonals() const;
@@ -111,11 +116,18 @@ class SparseMatrix {
   double norm() const;
 
   /// The graph behind the pattern: neighbours of each vertex, without itself.
-  const Ragged<std::int32_t>& neighbours() const { return neighbours_; }
+  const Ragged<std::int32_t>& neighbours() const { return pattern_->neighbours; }
   const Numbering& numbering() const { return *numbering_; }
-  operator VertexGraph() const { return {neighbours_, *numbering_}; }
+  operator VertexGraph() const { return {neighbours(), *numbering_}; }
 
  private:
+  struct Pattern {
+    Ragged<std::int32_t> neighbours;
+    std::vector<std::int64_t> row;     ///< where the matrix is symmetric, the diagonal is the last entry of each row
+    std::vector<std::int32_t> column;  ///< ascending in each row
+  };
+  /// The values, of this matrix alone from now on.
+  double* own_values();
   /// An equation of an element that add() has in hand.
   struct Added {
     std::int32_t equation, local, start;  ///< start: of its row in the element's triangle
@@ -133,10 +145,11 @@ class SparseMatrix {
 
   const Numbering* numbering_;
   Symmetry symmetry_;
-  Ragged<std::int32_t> neighbours_;
-  std::vector<std::int64_t> row_;     ///< where the matrix is symmetric, the diagonal is the last entry of each row
-  std::vector<std::int32_t> column_;  ///< ascending in each row
-  std::vector<double> value_;
+  std::shared_ptr<const Pattern> pattern_;
+  std::shared_ptr<std::vector<double>> values_;
+  std::span<const std::int64_t> row_;     ///< of the pattern
+  std::span<const std::int32_t> column_;  ///< likewise
+  std::span<const double> value_;         ///< of the values
   std::vector<Added> adding_;
   const RowsElsewhere* elsewhere_ = nullptr;
 };

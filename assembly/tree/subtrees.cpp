@@ -15,9 +15,8 @@ constexpr double least_share = 1e-3, least_gain = 0.02;
 struct Tree {
   std::vector<std::int32_t> vertex;  ///< of the numbering
   std::vector<std::int32_t> parent;  ///< -1: a root
-  double entries = 0;                ///< of the factor
-  std::vector<double> own, whole;    ///< flops of a vertex, and of the subtree below it
-  std::vector<std::vector<std::int32_t>> child;
+  std::vector<double> own;           ///< flops of a vertex
+  EliminationCounts counts;
 
   Tree(const VertexGraph& of, std::span<const std::int32_t> order) {
     const Numbering& numbering = of.numbering;
@@ -45,17 +44,11 @@ struct Tree {
         }
     }
     own.resize(n);
-    child.resize(n);
     for (std::int32_t i = 0; i < n; ++i) {
       own[i] = weight(i) * height[i] * height[i];
-      entries += weight(i) * height[i];
+      counts.flops += own[i];
+      counts.entries += weight(i) * height[i];
     }
-    whole = own;
-    for (std::int32_t i = 0; i < n; ++i)
-      if (parent[i] >= 0) {
-        whole[parent[i]] += whole[i];
-        child[parent[i]].push_back(i);
-      }
   }
 };
 
@@ -80,34 +73,43 @@ struct Shares {
 
 }  // namespace
 
+EliminationCounts elimination_counts(const VertexGraph& graph, std::span<const std::int32_t> order) {
+  return Tree(graph, order).counts;
+}
+
 Subtrees independent_subtrees(const VertexGraph& graph, std::span<const std::int32_t> order, int n_processes) {
   const Tree tree(graph, order);
   const auto n = static_cast<std::int32_t>(tree.vertex.size());
-  Subtrees best{.of = {}, .process = {}, .entries = tree.entries};
+  std::vector<double> below = tree.own;  // flops of the subtree of each vertex
+  std::vector<std::vector<std::int32_t>> child(tree.vertex.size());
+  for (std::int32_t i = 0; i < n; ++i)
+    if (const std::int32_t parent = tree.parent[i]; parent >= 0) {
+      below[parent] += below[i];
+      child[parent].push_back(i);
+    }
+  Subtrees best{.of = {}, .process = {}, .whole = tree.counts};
   std::vector<std::int32_t> best_roots;
   using Subtree = std::pair<double, std::int32_t>;  // flops, root
   std::vector<Subtree> now;                         // a heap
   double top = 0;
   const auto add = [&](std::int32_t root) {
-    if (tree.whole[root] < least_share * best.flops) {
-      top += tree.whole[root];
+    if (below[root] < least_share * best.whole.flops) {
+      top += below[root];
       return;
     }
-    now.emplace_back(tree.whole[root], root);
+    now.emplace_back(below[root], root);
     std::push_heap(now.begin(), now.end());
   };
   const auto look = [&] {
     std::vector<double> work;
     for (const Subtree& s : now) work.push_back(s.first);
     const Shares shares(work, n_processes);
-    if (!best_roots.empty() && top + shares.most > best.longest - least_gain * best.flops) return;
+    if (!best_roots.empty() && top + shares.most > best.longest - least_gain * best.whole.flops) return;
     best.longest = top + shares.most;
     best.process = shares.process;
     best_roots.clear();
     for (const Subtree& s : now) best_roots.push_back(s.second);
   };
-  for (std::int32_t i = 0; i < n; ++i)
-    if (tree.parent[i] < 0) best.flops += tree.whole[i];
   for (std::int32_t i = 0; i < n; ++i)
     if (tree.parent[i] < 0) add(i);
   // down from the roots, into the largest subtree each time, until its halves would not matter
@@ -117,7 +119,7 @@ Subtrees independent_subtrees(const VertexGraph& graph, std::span<const std::int
     now.pop_back();
     top += tree.own[root];
     const std::size_t before = now.size();
-    for (const std::int32_t c : tree.child[root]) add(c);
+    for (const std::int32_t c : child[root]) add(c);
     if (now.size() > before + 1) look();
   }
 
@@ -125,15 +127,15 @@ Subtrees independent_subtrees(const VertexGraph& graph, std::span<const std::int
   std::vector<double> load(best_roots.size());
   for (std::size_t s = 0; s < best_roots.size(); ++s) {
     subtree[best_roots[s]] = static_cast<std::int32_t>(s);
-    load[s] = tree.whole[best_roots[s]];
+    load[s] = below[best_roots[s]];
   }
   best.of.assign(order.size(), -1);
   for (std::int32_t i = n - 1; i >= 0; --i) {
     if (subtree[i] < 0 && tree.parent[i] >= 0) subtree[i] = subtree[tree.parent[i]];
-    if (subtree[i] < 0 && !load.empty() && tree.whole[i] < least_share * best.flops) {
+    if (subtree[i] < 0 && !load.empty() && below[i] < least_share * best.whole.flops) {
       const auto least = std::min_element(load.begin(), load.end());
       subtree[i] = static_cast<std::int32_t>(least - load.begin());
-      *least += tree.whole[i];
+      *least += below[i];
     }
     const std::int32_t v = tree.vertex[i];
     for (std::int64_t e = graph.numbering.first[v]; e < graph.numbering.first[v + 1]; ++e) best.of[e] = subtree[i];

@@ -21,8 +21,8 @@ void System::make_pattern() {
 }
 
 void System::start(std::span<const Coupling> couplings, bool keep_stiffness) {
-  if (keep_stiffness) matrix_->restore(stiffness_);
-  if (!keep_stiffness) stiffness_.clear();
+  if (keep_stiffness) restore_rows();
+  saved_.clear();
   is_complete_ = keep_stiffness;
   if (!matrix_->has_room_for(couplings)) {
     // the pattern only grows: couples that come back find their room, and the analysis stands
@@ -34,7 +34,6 @@ void System::start(std::span<const Coupling> couplings, bool keep_stiffness) {
     const std::unique_ptr<SparseMatrix> before = std::move(matrix_);
     make_pattern();
     if (keep_stiffness) matrix_->copy_rows(*before, first_multiplier());
-    stiffness_.clear();
   }
   matrix_->set_zero(keep_stiffness ? first_multiplier() : 0);
   std::fill(residual_.begin(), residual_.end(), 0.0);
@@ -53,11 +52,18 @@ bool System::couples_nodes(std::span<const std::int64_t> unknowns, std::span<con
   return false;
 }
 
-void System::save_stiffness() {
-  if (stiffness_.empty()) {
-    const auto values = matrix_->values().first(matrix_->rows()[first_multiplier()]);
-    stiffness_.assign(values.begin(), values.end());
+void System::save_rows(std::span<const std::int64_t> equations) {
+  for (const std::int64_t row : equations) {
+    if (row < 0 || row >= first_multiplier()) continue;
+    const auto [saved, is_new] = saved_.try_emplace(row);
+    if (!is_new) continue;
+    const std::span<const double> values = matrix_->row_values(row);
+    saved->second.assign(values.begin(), values.end());
   }
+}
+
+void System::restore_rows() {
+  for (const auto& [row, values] : saved_) matrix_->set_row(row, values);
 }
 
 bool System::enter(std::span<const std::int64_t> unknowns, std::span<const double> residual) {
@@ -72,7 +78,7 @@ bool System::enter(std::span<const std::int64_t> unknowns, std::span<const doubl
 void System::add(std::span<const std::int64_t> unknowns, std::span<const double> lower, std::span<const double> residual) {
   const bool meets_imposed = enter(unknowns, residual);
   if (lower.empty()) return;
-  if (is_complete_ && (!matrix_->is_symmetric() || couples_nodes(unknowns, lower))) save_stiffness();
+  if (is_complete_ && (!matrix_->is_symmetric() || couples_nodes(unknowns, lower))) save_rows(equations_);
   matrix_->add(equations_, lower);
   if (!meets_imposed) return;
   for (std::size_t i = 0, at = 0; i < unknowns.size(); ++i)
@@ -86,7 +92,7 @@ void System::add(std::span<const std::int64_t> unknowns, std::span<const double>
 void System::add_unsymmetric(std::span<const std::int64_t> unknowns, std::span<const double> matrix,
                              std::span<const double> residual) {
   const bool meets_imposed = enter(unknowns, residual);
-  if (is_complete_) save_stiffness();
+  if (is_complete_) save_rows(equations_);
   matrix_->add_unsymmetric(equations_, matrix);
   if (!meets_imposed) return;
   for (std::size_t i = 0, at = 0; i < unknowns.size(); ++i)
@@ -96,8 +102,9 @@ void System::add_unsymmetric(std::span<const std::int64_t> unknowns, std::span<c
 }
 
 void System::add_diagonal(std::int64_t unknown, double value) {
-  if (is_complete_ && unknown < n_nodal()) save_stiffness();
-  matrix_->add_diagonal(equation(unknown), value);
+  const std::int64_t row = equation(unknown);
+  if (is_complete_) save_rows({&row, 1});
+  matrix_->add_diagonal(row, value);
 }
 
 std::vector<double> System::right_side(std::span<const double> external, std::span<const double> step) const {

@@ -1,6 +1,7 @@
 #pragma once
 // The tangent system of one Newton iteration: matrix, residual, and what imposed displacements bring to the right side.
 #include <cstdint>
+#include <map>
 #include <memory>
 #include <span>
 #include <vector>
@@ -61,8 +62,9 @@ class System {
   bool enter(std::span<const std::int64_t> unknowns, std::span<const double> residual);
   /// Whether an element matrix has entries between unknowns of nodes.
   bool couples_nodes(std::span<const std::int64_t> unknowns, std::span<const double> lower) const;
-  /// Before an element whose rows are those of nodes is added: remember the stiffness that it is added to.
-  void save_stiffness();
+  /// Before something is added to rows of nodes, behind the stiffness: remember what they are without it.
+  void save_rows(std::span<const std::int64_t> equations);
+  void restore_rows();
 
   const Numbering& numbering_;
   const Ragged<std::int32_t>& elements_;
@@ -72,10 +74,10 @@ class System {
   std::unique_ptr<SparseMatrix> matrix_;
   std::vector<double> residual_;
   std::vector<ImposedTerm> imposed_terms_;
-  std::size_t n_stiffness_terms_ = 0;    ///< the first of imposed_terms_, which belong to the stiffness
-  bool is_complete_ = false;             ///< the stiffness, which may be kept
-  std::vector<double> stiffness_;        ///< its values, where others were added to them
-  std::vector<std::int64_t> equations_;  ///< of the element that is added
+  std::size_t n_stiffness_terms_ = 0;                  ///< the first of imposed_terms_, which belong to the stiffness
+  bool is_complete_ = false;                           ///< the stiffness, which may be kept
+  std::map<std::int64_t, std::vector<double>> saved_;  ///< of its rows those that others were added to, by equation
+  std::vector<std::int64_t> equations_;                ///< of the element that is added
 };
 
 }  // namespace lacon

@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <random>
 
@@ -43,6 +44,34 @@ TEST(SparseMatrix, AssemblesAsDenseAdditionDoes) {
       }
   }
   EXPECT_EQ((dense(matrix) - expected).cwiseAbs().maxCoeff(), 0.0);
+}
+
+// A copy and what it was copied from have the same values in one place, until one of the two changes: the other one stays.
+TEST(SparseMatrix, IsCopiedWhereItChanges) {
+  const Chain chain(4, 1);
+  SparseMatrix matrix(chain.numbering, chain.cliques, {});
+  matrix.add_diagonal(1, 2.0);
+  SparseMatrix copy = matrix;
+  EXPECT_EQ(copy.values().data(), matrix.values().data());
+  EXPECT_EQ(copy.columns().data(), matrix.columns().data());
+  const std::vector<double> before(matrix.values().begin(), matrix.values().end()), row(matrix.row_values(2).size(), 5.0);
+  const auto is_as_before = [&](const SparseMatrix& one) { return std::ranges::equal(one.values(), before); };
+  copy.add_diagonal(1, 3.0);
+  EXPECT_EQ(copy.diagonal(1), 5.0);
+  EXPECT_TRUE(is_as_before(matrix));
+  copy = matrix;
+  copy.set_row(2, row);
+  EXPECT_TRUE(std::ranges::equal(copy.row_values(2), row));
+  EXPECT_TRUE(is_as_before(matrix));
+  copy = matrix;
+  matrix.set_zero();
+  EXPECT_TRUE(is_as_before(copy));
+  matrix.restore(before);
+  matrix.add(std::vector<std::int64_t>{0, 1}, std::vector<double>{1.0, 2.0, 3.0});
+  EXPECT_TRUE(is_as_before(copy));
+  matrix.copy_rows(copy, matrix.size());
+  EXPECT_TRUE(is_as_before(matrix));
+  EXPECT_NE(copy.values().data(), matrix.values().data());
 }
 
 // Two degrees of freedom with one equation (tied multipliers): R^T A R with the identification R.

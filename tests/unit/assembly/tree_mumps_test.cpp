@@ -4,7 +4,9 @@
 
 #include <filesystem>
 #include <fstream>
+#include <iterator>
 #include <random>
+#include <set>
 #include <stdexcept>
 
 #include "dense.hpp"
@@ -80,9 +82,34 @@ TEST(Subtrees, DoNotMeet) {
         const int one = found.of[row], other = found.of[system.matrix.columns()[k]];
         ASSERT_TRUE(one == other || one < 0 || other < 0);
       }
-    EXPECT_LT(found.longest, 0.85 * found.flops);
-    EXPECT_GE(found.longest, found.flops / processes);
+    EXPECT_LT(found.longest, 0.85 * found.whole.flops);
+    EXPECT_GE(found.longest, found.whole.flops / processes);
   }
+}
+
+// Flops and entries are those of an elimination of the graph, unknown by unknown.
+TEST(Subtrees, CountWhatAnEliminationTakes) {
+  const Stacked system;
+  const std::vector<std::int32_t> order = elimination_order(system.matrix);
+  std::vector<std::set<std::int32_t>> later(order.size());  // neighbours that are eliminated behind each, by place
+  for (std::int64_t row = 0; row < system.matrix.size(); ++row)
+    for (std::int64_t k = system.matrix.rows()[row]; k < system.matrix.rows()[row + 1]; ++k) {
+      const std::int32_t a = order[row], b = order[system.matrix.columns()[k]];
+      if (a != b) later[std::min(a, b)].insert(std::max(a, b));
+    }
+  double flops = 0, entries = 0;
+  for (std::set<std::int32_t>& column : later) {
+    const double height = static_cast<double>(column.size() + 1);
+    flops += height * height;
+    entries += height;
+    if (column.empty()) continue;
+    const std::int32_t next = *column.begin();
+    later[next].insert(std::next(column.begin()), column.end());
+  }
+  const EliminationCounts counts = elimination_counts(system.matrix, order);
+  EXPECT_EQ(counts.flops, flops);
+  EXPECT_EQ(counts.entries, entries);
+  EXPECT_EQ(independent_subtrees(system.matrix, order, 2).whole.flops, flops);
 }
 
 // A factor that processes share gives solutions, inertia and columns of the inverse as that of one process does, in the same
