@@ -399,6 +399,11 @@ class StatNonLine(TwoSquares):
     def test_a_body_that_nothing_holds_is_a_failed_solution(self):
         self.write_load("load_10", imposed=AXIS)
         self.assert_fails("SOLVER_3", "DY", status=3, loads=["load_6", "load_10"])
+        with self.create("time_steps_10", "time_steps", cut=1, cut_into=2, cut_levels=2, smallest=0.0) as file:
+            file["values"] = np.array([0.0, 1.0])
+        run = self.solve(loads=["load_6", "load_10"], INCREMENT={"LIST_INST": concept("time_steps_10")})
+        self.assertEqual((run.status, self.ids(run)), (3, ["EVOLUTION_19", "SOLVER_3"]), run.stderr)  # a shorter step is as loose
+        self.assertIn("DY of the body of M", run.stderr)
 
     def test_line_search_and_extrapolation_lead_to_the_same_solution(self):
         """A pressure that grows in four equal steps to large strains: extrapolated instants start nearer to their end. Without PREDICTION they do as soon

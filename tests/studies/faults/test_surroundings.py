@@ -10,7 +10,10 @@ sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1]))
 from study_test import LACON, SECONDS  # noqa: E402, I001
 from test_threads import datasets  # noqa: E402
 
+from meshes import write_med  # noqa: E402
+
 from .small_study import SmallStudy  # noqa: E402
+from .test_faults import INSTANTS, STUDY, FaultTest, converged, stack  # noqa: E402
 
 UNITS = "--unit 20=blocks.med --unit 80=s.rmed --unit 81=s.vtu --unit 8=s.txt"
 
@@ -40,3 +43,27 @@ class Surroundings(SmallStudy):
             self.assertNotIn("Traceback", run.stderr)
         run = self.shell("LACON")
         self.assertEqual(run.returncode, 0, run.stderr)
+
+
+class Limits(FaultTest):
+    def test_runs_that_a_time_limit_ends_come_further_each_time(self):
+        """Limits that are too short for the whole: what converged is kept, and the next run begins behind it."""
+        self.environment = {"FAULTS_LAW": "VMIS_ISOT_LINE", "LACON_RESTART_ALWAYS": "1"}
+        write_med(self.folder / "stack.med", stack(6))
+        limit, kept, ends = 0.5, [], []
+        while len(ends) < 2:
+            (self.folder / "s.export").write_text(f"P time_limit {limit}\nF comm {STUDY} D 1\nF libr {self.folder}/stack.med D 20\n", encoding="utf-8")
+            run = self.run_tool("s.export", "--base", "s.base", **self.environment)
+            told = kept + converged(run.stdout)
+            if run.returncode == 0:
+                break
+            self.assertEqual(run.returncode, 3, run.stdout[-2000:] + run.stderr)
+            if told != kept:
+                self.assertEqual(self.instants("s.base")[:len(told)], told)  # each once, in their order
+                kept = self.instants("s.base")
+                ends.append(len(kept))
+            else:
+                limit *= 2
+        self.assertGreaterEqual(len(ends), 1)
+        self.whole("s.base")
+        self.assertEqual(self.instants("s.base"), [f"{i / INSTANTS:.9g}" for i in range(1, INSTANTS + 1)])
