@@ -65,13 +65,11 @@ def main(arguments=None):
     """@return the exit status"""
     arguments = sys.argv[1:] if arguments is None else arguments
     streams.open_closed()
-    sys.stdout.reconfigure(line_buffering=sys.stdout.isatty())
+    sys.stdout.reconfigure(line_buffering=sys.stdout.isatty(), errors="backslashreplace")  # names of files that the terminal's encoding lacks
     if arguments and arguments[0] in tools:
         tool = importlib.import_module(f".tools.{arguments[0]}", __package__)
         try:
-            status = outcome.guarded(lambda: (tool.run(arguments[1:]), ""))[0]
-            sys.stdout.flush()
-            return status
+            return outcome.guarded(lambda: (_flushed(tool.run(arguments[1:])), ""))[0]
         except BrokenPipeError:  # `lacon help STAT_NON_LINE | head`: who reads has seen enough
             streams.let_go()
             return outcome.done
@@ -86,7 +84,12 @@ def main(arguments=None):
     else:
         status, diagnostic = outcome.guarded(lambda: launch.run_command_line(options, units))
     try:
-        print(f"--- DIAGNOSTIC JOB : {diagnostic}", flush=True)
+        return outcome.guarded(lambda: (_flushed(status, f"--- DIAGNOSTIC JOB : {diagnostic}"), ""))[0]
     except BrokenPipeError:
         streams.let_go()
+    return status
+
+
+def _flushed(status, *said):
+    print(*said, sep="", end="\n" if said else "", flush=True)
     return status

@@ -138,6 +138,31 @@ void turn_body_cells(Mesh& mesh) {
   tell("LIRE_1", inverted, cell_name);
 }
 
+namespace {
+
+/// Tells of a mesh that lies so far from the origin, for its size, that results keep less than the eight digits that are
+/// promised: a coordinate is exact to 1e-16 of itself, and results of a block that was moved follow it with a hundred times
+/// that, in parts of its size.
+void tell_distance(const Mesh& mesh) {
+  double least[3], greatest[3], size = 0, distance = 0;
+  std::fill_n(least, 3, INFINITY);
+  std::fill_n(greatest, 3, -INFINITY);
+  for (const std::int32_t node : mesh.cells.values)
+    for (std::size_t k = 0; k < 3; ++k) {
+      const double x = mesh.coordinates[3 * static_cast<std::size_t>(node) + k];
+      least[k] = std::min(least[k], x);
+      greatest[k] = std::max(greatest[k], x);
+      distance = std::max(distance, std::abs(x));
+    }
+  for (std::size_t k = 0; k < 3; ++k) size = std::max(size, greatest[k] - least[k]);
+  if (size > 0 && distance > 1e6 * size)
+    inform("LIRE_6", {{"size", number(size)},
+                      {"distance", number(distance)},
+                      {"digits", number(std::floor(15.95 - std::log10(distance / size)))}});
+}
+
+}  // namespace
+
 void inspect(const Mesh& mesh, double flatness) {
   std::vector<char> used(mesh.n_nodes(), 0);
   for (const std::int32_t node : mesh.cells.values) used[static_cast<std::size_t>(node)] = 1;
@@ -154,6 +179,8 @@ void inspect(const Mesh& mesh, double flatness) {
     if (vertices.size() > 1 && is_flat(vertices, mesh.coordinates, flatness)) flat.push_back(static_cast<std::int32_t>(c));
   }
   tell("LIRE_5", flat, cell_name);
+
+  tell_distance(mesh);
 }
 
 }  // namespace lacon

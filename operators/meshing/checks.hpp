@@ -20,8 +20,8 @@ void turn_body_cells(Mesh& mesh);
 /// The groups that a cell is in, for messages: "BODY, ALL"; empty for none.
 std::string groups_with(const Mesh& mesh, std::int32_t cell);
 
-/// What VERI_MAIL looks at, each told once with LIRE_3 to LIRE_5: nodes of no cell, cells with the same nodes, flat cells,
-/// whose least distance between two vertices is under `flatness` times the greatest.
+/// What VERI_MAIL looks at, each told once with LIRE_3 to LIRE_6: nodes of no cell, cells with the same nodes, flat cells,
+/// whose least distance between two vertices is under `flatness` times the greatest, a place far from the origin.
 void inspect(const Mesh& mesh, double flatness);
 
 }  // namespace lacon

@@ -73,6 +73,8 @@ class Values(unittest.TestCase):
         self.refused("'text'", "not a finite real number")
         self.refused("exp(1000 * Y)", "OverflowError")
         self.refused("1e308 * 10 * Y", "inf")
+        self.refused("exit()", "SystemExit")  # which would end the computation as if it were done
+        self.refused("1j * X", "not a finite real number")
 
     def test_one_point_needs_no_arrays(self):
         np.testing.assert_array_equal(Expression("X if X > 0 else 0", ["X"], {}).values_at({"X": np.array([2.0])}, 1, "F"), [2.0])

@@ -166,6 +166,17 @@ class LireMaillage(OperatorTest):
         self.assertEqual(self.ids(self.read()), ["LIRE_5"])
         self.assertEqual(self.ids(self.read(VERI_MAIL=[{"APLAT": 1e-5}])), [])
 
+    def test_a_place_that_costs_digits_is_told(self):
+        """Nodes that no cell has say nothing of a mesh's place; nor does its unit of length."""
+        square = np.array(SQUARE, float)
+        for points, ids in ((square + 1e5, []), (1e-9 * square + 1e-4, []), ([*(square + 1e5), [1e12, 0]], ["LIRE_3"]),
+                            (square + [0, -2e7], ["LIRE_6"]), (1e-9 * square + 1e-1, ["LIRE_6"])):
+            write_med(self.file, points, {"QUAD4": [[0, 1, 2, 3]]})
+            run = self.read()
+            self.assertEqual((run.status, self.ids(run)), (0, ids), run.stderr)
+        self.assertRegex(run.stderr, "<A> <LIRE_6> the mesh, of the size 1e-09, lies 0.1 from the origin: 7 digits")
+        self.assertEqual(self.ids(self.read(VERI_MAIL=[{"VERIF": "NON"}])), [])
+
     def test_the_box_is_printed_on_demand(self):
         write_med(self.file, SQUARE, {"QUAD4": [[0, 1, 2, 3]]})
         self.assertNotIn("X from", self.read().stdout)

@@ -58,7 +58,7 @@ class Expression:
             return eval(self._code, {**_mathematics, **self.values, **point})
         except AsterError:
             raise
-        except Exception as error:
+        except (Exception, SystemExit, GeneratorExit) as error:  # exit() ends no computation as if that had come to its end
             missing = getattr(error, "name", None)
             self._refuse(name, point, f"{missing} was not saved: {self.lost[missing]}" if missing in self.lost
                          else f"{type(error).__name__}: {error}")

@@ -2,7 +2,7 @@
 
 import sys
 
-from . import messages
+from . import messages, streams
 
 #: exit statuses
 done, user_error, solution_failed, internal_error, check_failed = 0, 2, 3, 4, 5
@@ -16,6 +16,14 @@ def guarded(work):
         for item in error.messages:
             messages.show(item)
         return error.status, error.diagnostic
-    except FileNotFoundError as error:  # no catalogue: an installation that is not whole
+    except OSError as error:
+        lost = streams.unwritable(error)
+        if lost:
+            streams.let_go(lost)
+            messages.show(messages.message("STUDY_34", reason=next(iter(lost.values()))))
+            return user_error, "<F>_ERROR"
+        if not isinstance(error, FileNotFoundError):
+            raise
+        # no catalogue: an installation that is not whole
         print(f"<F> <INTERNAL> {error}", file=sys.stderr)
         return internal_error, "<F>_ABNORMAL_ABORT"

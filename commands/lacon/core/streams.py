@@ -1,8 +1,11 @@
 """Standard input, output and error: one that the caller has closed, and one whose reader has gone."""
 
+import errno
 import os
 import select
 import sys
+
+_no_place = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG, errno.EIO, errno.EBADF)
 
 
 def open_closed():
@@ -15,6 +18,19 @@ def open_closed():
             os.set_inheritable(number, True)
         if getattr(sys, name) is None:
             setattr(sys, name, open(number, mode, encoding="utf-8", errors="backslashreplace", closefd=False))
+
+
+def unwritable(error):
+    """{1, 2: why} of the output and the log where they take no more, as a file on a disk that is full, if `error` may come from that. Tries them: of what
+    could not be written Python keeps nothing that would tell."""
+    found = {}
+    if isinstance(error, OSError) and error.filename is None and error.errno in _no_place:
+        for number in (1, 2):
+            try:
+                os.write(number, b"\n")
+            except OSError as reason:
+                found[number] = reason.strerror
+    return found
 
 
 def take_back():
@@ -32,13 +48,15 @@ def readers_gone():
     return any(_has_lost_its_reader(number) for number in (1, 2))
 
 
-def let_go():
-    """What is still to be said where nobody reads it leads nowhere."""
+def let_go(unwritable=()):
+    """What is still to be said where nobody reads it, or where it cannot be written, leads nowhere. @param unwritable 1, 2: output, log"""
     for number in (1, 2):
-        if _has_lost_its_reader(number):
+        if number in unwritable or _has_lost_its_reader(number):
             nowhere = os.open(os.devnull, os.O_WRONLY)
-            os.dup2(nowhere, number)
-            os.close(nowhere)
+            if nowhere != number:
+                os.dup2(nowhere, number)
+            if nowhere > 2:  # otherwise one was closed, and this is one now
+                os.close(nowhere)
 
 
 def _has_lost_its_reader(number):

@@ -5,6 +5,8 @@ import builtins
 import contextlib
 import math
 import os
+import pathlib
+import re
 import shutil
 import signal
 import sys
@@ -81,17 +83,21 @@ def signals():
 
 @contextlib.contextmanager
 def readers():
-    """Raise Ended where whoever reads the output has gone, as after `lacon study.comm | head`; what is still to be said then leads nowhere."""
+    """Raise Ended where whoever reads the output has gone, as after `lacon study.comm | head`; what is still to be said then leads nowhere.
+    @throws AsterError STUDY_34 where the output cannot be written
+    """
     try:
         yield
     except KeyboardInterrupt as error:  # that a command file raises: at Ctrl-C it is Ended
         raise Ended(signal.SIGINT).with_traceback(error.__traceback__) from None
     except BaseException as error:
         streams.take_back()
-        gone = streams.readers_gone()
-        streams.let_go()
+        gone, lost = streams.readers_gone(), streams.unwritable(error)
+        streams.let_go(lost)
         if gone and isinstance(error, BrokenPipeError):
             raise Ended(signal.SIGPIPE).with_traceback(error.__traceback__) from None
+        if lost:
+            fail("STUDY_34", place(error), reason=next(iter(lost.values())))
         raise
 
 
@@ -153,7 +159,20 @@ def _read(path):
         with tokenize.open(path) as file:
             return str(path), file.read()
     except (SyntaxError, UnicodeDecodeError) as error:
+        _refuse_other_encoding(path)
         fail("STUDY_16", str(path), reason=error)
+
+
+def _refuse_other_encoding(path):
+    """@throws AsterError where a text is not in UTF-8 and does not say what it is in"""
+    content = pathlib.Path(path).read_bytes()
+    if re.search(rb"^[ \t\f]*#.*?coding[:=]", b"\n".join(content.split(b"\n", 2)[:2]), re.MULTILINE):
+        return
+    try:
+        content.decode()
+    except UnicodeDecodeError as error:
+        line = content.count(b"\n", 0, error.start) + 1
+        fail("STUDY_35", f"{path}:{line}", byte=f"0x{content[error.start]:02X}")
 
 
 def _compiled(path, source):

@@ -180,6 +180,9 @@ class Study:
             fail("COMMAND_8", where, unit=number, file=path)
         if os.path.realpath(path) in self.sources:
             fail("COMMAND_12", where, unit=number, file=path)
+        for other, written in self.written_units.items():
+            if other != number and os.path.realpath(self.units.get(other, written)) == os.path.realpath(path):
+                fail("COMMAND_17", where, unit=number, other=other, file=path)
         return self.stage.file(number, path) if staged else path
 
     def announced_output(self, number, suffix, where):
