@@ -197,8 +197,8 @@ struct MumpsEngine::State {
       alone = of.rows_alone();
       found = single ? factorise_scaled(*single, of) : factorise_scaled(*full, of);
     }
-    row = {};
-    column = {};
+    row = std::vector<int>();  // with its memory
+    column = std::vector<int>();
     found.single_precision = form.single_precision;
     found.low_rank = form.low_rank;
     found.out_of_core = form.out_of_core;
