@@ -2,6 +2,7 @@
 
 import argparse
 import importlib
+import os
 import sys
 
 from . import version
@@ -73,6 +74,7 @@ def main(arguments=None):
         except BrokenPipeError:  # `lacon help STAT_NON_LINE | head`: who reads has seen enough
             streams.let_go()
             return outcome.done
+    process = os.getpid()
     asked, options = parse(arguments)
     launch = importlib.import_module(".run.launch", __package__)  # --help, --version, help and inspect start without
     units = launch.units_of(asked, options)
@@ -83,6 +85,8 @@ def main(arguments=None):
             return status
     else:
         status, diagnostic = outcome.guarded(lambda: launch.run_command_line(options, units))
+    if os.getpid() != process:  # one that the command file has forked: the diagnosis is that of the run
+        return status
     try:
         return outcome.guarded(lambda: (_flushed(status, f"--- DIAGNOSTIC JOB : {diagnostic}"), ""))[0]
     except BrokenPipeError:

@@ -84,41 +84,6 @@ class Endings(LauncherTest):
             self.assertNotIn("Traceback", run.err)
         self.refused(self.run_study(f"DEBUT()\nF = FORMULE(NOM_PARA='X', VALE='{' + '.join(['X'] * 20000)}')\n"), "FORMULE_1", "study.comm:2", "recursion")
 
-    def test_an_encoding_that_the_file_does_not_name(self):
-        for content, line, byte in ((b"# \xe9t\xe9\nDEBUT()\n", 1, "0xE9"), (b"DEBUT()\n\n\nt = '\xe9t\xe9'\n", 4, "0xE9"),
-                                    ("DEBUT()\n".encode("utf-16"), 1, "0xFF")):
-            (self.work / "study.comm").write_bytes(content)
-            run = self.refused(self.launch("study.comm"), "STUDY_35", f"study.comm:{line}", byte, "# coding: latin-1")
-            self.assertNotIn("Traceback", run.err)
-        (self.work / "study.comm").write_bytes(b"# coding: ascii\nDEBUT()\n\n# \xe9\n")
-        self.refused(self.launch("study.comm"), "STUDY_16", "study.comm", "ascii")
-        (self.work / "study.comm").write_bytes(b"\xef\xbb\xbfDEBUT()\r\nfor i in (1,):\r\n\tprint('\xc3\xa9', i)\r\nFIN()\r\n")
-        self.assertIn("é 1", self.ok(self.launch("study.comm")).out)
-        self.assertIn("\\xe9 1", self.ok(self.launch("study.comm", environment={"PYTHONIOENCODING": "ascii"})).out)
-
-    def test_an_output_that_takes_no_more(self):
-        """As a file on a disk that is full: the run says so where it still can, and ends as at any other full disk."""
-        self.write("study.comm", STUDY + "FIN()\n")
-        self.write("wrong.comm", "DEBUT(")
-        for name, closed in (("study.comm", ">/dev/full"), ("study.comm", ">/dev/full 2>&1"), ("wrong.comm", "2>/dev/full")):
-            run = self.shell(f"{name} --unit 20=mesh.med {closed}")
-            self.assertEqual(run.returncode, 2, closed + run.stderr)
-            self.assertEqual("<F> <STUDY_34> what the run says cannot be written: No space left on device" in run.stderr, closed == ">/dev/full", run.stderr)
-            self.assertNotIn("Traceback", run.stderr)
-        self.assertEqual(self.shell("help DEFI_CONTACT >/dev/full").returncode, 2)
-        self.ok(self.launch("study.comm", "--unit", "20=mesh.med"))
-
-    def test_an_output_that_a_command_file_closes_beneath_python(self):
-        run = self.run_study("import os\nDEBUT()\nos.close(1)\nos.close(0)\nL = DEFI_LIST_REEL(VALE=(0.,))\n")
-        self.assertEqual(run.status, 2)
-        self.assertIn("<STUDY_34> what the run says cannot be written: Bad file descriptor\n    where: study.comm:5", run.err)
-        self.assertNotIn("Traceback", run.err)
-
-    def shell(self, line):
-        """`lacon` with these words of a shell. @return the process"""
-        env = {**os.environ, "PYTHONPATH": str(ROOT / "commands"), "LACON_BIN": str(self.bin), "PYTHONDONTWRITEBYTECODE": "1"}
-        return subprocess.run(["sh", "-c", f"exec '{sys.executable}' -m lacon {line}"], cwd=self.work, env=env, text=True, capture_output=True, timeout=120)
-
     def test_python_that_ends_in_odd_ways_is_told_as_any_other(self):
         """What is no Exception, an exception without a text, an output that is closed or put to None: a diagnosis, no traceback of the launcher's."""
         for text, word in (("class Odd(BaseException): pass\nraise Odd('why')", "Odd: why"),
@@ -224,15 +189,6 @@ class Units(LauncherTest):
         run = self.launch("slow.export")
         self.refused(run, "STUDY_25", "3 s", "slow.comm:5", status=3, diagnostic="<S>_CPU_LIMIT")
         self.ok(self.launch(self.write("more.comm", "POURSUITE()\nassert L.getValues() == [0, 1]\nFIN()\n").name, "--base", "slow.base"))
-
-    def test_two_units_do_not_write_one_file(self):
-        """The second would replace the first in silence; a unit that was released, and one that is read, may have its file."""
-        prints = "IMPR_RESU(UNITE=80, RESU=_F(RESULTAT=R))\n"
-        (self.work / "link").symlink_to(self.work / "out")
-        for path in ("out", "./out", "link"):
-            run = self.run_study(STUDY + prints + prints.replace("80", "81"), "--unit", "80=out", "--unit", f"81={path}", behaviour={"impr_resu": {"unit": "80"}})
-            self.refused(run, "COMMAND_17", "unit 81 has the file of the unit 80", "IMPR_RESU/UNITE, study.comm:13")
-        self.ok(self.run_study(STUDY + "L2 = LIRE_MAILLAGE(UNITE=21)\nFIN()\n", "--unit", "21=mesh.med"))
 
     def test_what_an_earlier_run_has_read_is_not_replaced(self):
         self.ok(self.run_study(STUDY + "FIN()\n"))

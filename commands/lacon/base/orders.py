@@ -84,9 +84,12 @@ def run(program, made, study, checks=False):
         environment.update({"LACON_TERMINAL": str(terminal)} if terminal else {})
         with theirs:  # an operator that ends a moment after the launcher still holds the base
             arguments = [executable, order_file, "--status", status_file, *["--verbose"] * study.verbose, *["--check"] * checks]
-            process = subprocess.Popen(arguments, env=environment, stderr=quiet,
-                                       stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL if study.check or study.quiet else None,
-                                       pass_fds=(study.base.lock, theirs.fileno(), *([terminal] if terminal else [])))
+            try:
+                process = subprocess.Popen(arguments, env=environment, stderr=quiet,
+                                           stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL if study.check or study.quiet else None,
+                                           pass_fds=(study.base.lock, theirs.fileno(), *([terminal] if terminal else [])))
+            except OSError as error:
+                fail("STUDY_38", made["source"], program=program, reason=error.strerror)
         try:
             late.load()  # while the operator works: checks, functions and FIN need it later
             forward = threading.Thread(target=_forward, args=(process.stderr, study.ignored_alarms, terminal), daemon=True) if quiet else None

@@ -1,11 +1,21 @@
 """How the launcher and its tools end: exit statuses, and errors that are shown."""
 
+import os
 import sys
 
 from . import messages, streams
 
 #: exit statuses
 done, user_error, solution_failed, internal_error, check_failed = 0, 2, 3, 4, 5
+
+
+def _is_nowhere():
+    """Whether the working folder was removed."""
+    try:
+        os.getcwd()
+    except FileNotFoundError:
+        return True
+    return False
 
 
 def guarded(work):
@@ -24,6 +34,9 @@ def guarded(work):
             return user_error, "<F>_ERROR"
         if not isinstance(error, FileNotFoundError):
             raise
+        if error.filename is None and _is_nowhere():
+            messages.show(messages.message("STUDY_37"))
+            return user_error, "<F>_ERROR"
         # no catalogue: an installation that is not whole
         print(f"<F> <INTERNAL> {error}", file=sys.stderr)
         return internal_error, "<F>_ABNORMAL_ABORT"

@@ -40,6 +40,10 @@ def check_files(files):
     for path in files:
         if not os.path.isfile(path) or not os.access(path, os.R_OK):
             fail("STUDY_14", str(path), file=path, reason=part("file_not_there" if not os.path.exists(path) else "not_a_readable_file"))
+        for name in ("numpy", "h5py"):  # the folder of a command file comes first where modules are looked for
+            for hidden_by in (f"{name}.py", os.path.join(name, "__init__.py")):
+                if os.path.isfile(os.path.join(os.path.dirname(os.path.abspath(path)), hidden_by)):
+                    fail("STUDY_36", str(path), file=hidden_by, package=name)
 
 
 class Failure(Exception):
@@ -67,7 +71,12 @@ class Ended(BaseException):
 @contextlib.contextmanager
 def signals():
     """Raise Ended at the signals that ask a run to end; one that is ignored (nohup) stays so."""
+    process = os.getpid()
+
     def end(number, _):
+        if os.getpid() != process:  # one that the command file has forked, as a pool of processes: it ends as any other
+            signal.signal(number, signal.SIG_DFL)
+            os.kill(os.getpid(), number)
         raise Ended(number)
 
     before = {number: signal.getsignal(number) for number in (signal.SIGTERM, signal.SIGHUP, signal.SIGINT, signal.SIGXCPU)}

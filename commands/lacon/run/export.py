@@ -31,7 +31,7 @@ def read_export(path):
     export = Export()
     commands = []
     try:
-        lines = path.read_text(encoding="utf-8", errors="replace").splitlines()
+        lines = path.read_text(encoding="utf-8-sig", errors="replace").splitlines()
     except OSError as error:
         fail("STUDY_14", str(path), file=path, reason=error.strerror)
     for number, line in enumerate(lines, 1):

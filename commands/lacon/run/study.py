@@ -23,6 +23,7 @@ class Study:
         # a command file may change its folder
         self.units = {number: os.path.abspath(path) for number, path in (units or {}).items()}  #: number -> path
         self.given_units = dict(self.units)  #: as the command line and the export file have them
+        self.process = os.getpid()
         self.files = []  #: command files of the run
         self.texts = []  #: (name, text) of those that are run
         self.fresh = fresh
@@ -108,6 +109,8 @@ class Study:
 
     def close(self):
         """The end of the run, whatever brought it: save, and after FIN remove what no name refers to any more."""
+        if os.getpid() != self.process:  # a process that the command file has forked: the base is that of the run
+            return
         try:
             if self.base is not None:
                 self.save()

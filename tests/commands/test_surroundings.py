@@ -1,0 +1,142 @@
+"""What is odd around a run, but happens: outputs that take no more, files in other encodings, folders that are gone, names that hide others. Each ends well,
+or with a message of the user's."""
+
+import os
+import pathlib
+import subprocess
+import sys
+
+from support import ROOT, STUDY, LauncherTest, main
+
+PRINT = "IMPR_RESU(UNITE=80, RESU=_F(RESULTAT=R))\n"
+
+
+class Surroundings(LauncherTest):
+    def shell(self, line, before=""):
+        """`lacon` with these words of a shell, behind what comes before. @return the process"""
+        env = {**os.environ, "PYTHONPATH": str(ROOT / "commands"), "LACON_BIN": str(self.bin), "PYTHONDONTWRITEBYTECODE": "1"}
+        return subprocess.run(["sh", "-c", f"{before} exec '{sys.executable}' -m lacon {line}"], cwd=self.work, env=env, text=True, capture_output=True, timeout=120)
+
+    def test_an_encoding_that_the_file_does_not_name(self):
+        for content, line, byte in ((b"# \xe9t\xe9\nDEBUT()\n", 1, "0xE9"), (b"DEBUT()\n\n\nt = '\xe9t\xe9'\n", 4, "0xE9"),
+                                    ("DEBUT()\n".encode("utf-16"), 1, "0xFF")):
+            (self.work / "study.comm").write_bytes(content)
+            run = self.refused(self.launch("study.comm"), "STUDY_35", f"study.comm:{line}", byte, "# coding: latin-1")
+            self.assertNotIn("Traceback", run.err)
+        (self.work / "study.comm").write_bytes(b"# coding: ascii\nDEBUT()\n\n# \xe9\n")
+        self.refused(self.launch("study.comm"), "STUDY_16", "study.comm", "ascii")
+        (self.work / "study.comm").write_bytes(b"\xef\xbb\xbfDEBUT()\r\nfor i in (1,):\r\n\tprint('\xc3\xa9', i)\r\nFIN()\r\n")
+        self.assertIn("é 1", self.ok(self.launch("study.comm")).out)
+        self.assertIn("\\xe9 1", self.ok(self.launch("study.comm", environment={"PYTHONIOENCODING": "ascii"})).out)
+
+    def test_an_output_that_takes_no_more(self):
+        """As a file on a disk that is full: the run says so where it still can, and ends as at any other full disk."""
+        self.write("study.comm", STUDY + "FIN()\n")
+        self.write("wrong.comm", "DEBUT(")
+        for name, closed in (("study.comm", ">/dev/full"), ("study.comm", ">/dev/full 2>&1"), ("wrong.comm", "2>/dev/full")):
+            run = self.shell(f"{name} --unit 20=mesh.med {closed}")
+            self.assertEqual(run.returncode, 2, closed + run.stderr)
+            self.assertEqual("<F> <STUDY_34> what the run says cannot be written: No space left on device" in run.stderr, closed == ">/dev/full", run.stderr)
+            self.assertNotIn("Traceback", run.stderr)
+        self.assertEqual(self.shell("help DEFI_CONTACT >/dev/full").returncode, 2)
+        self.ok(self.launch("study.comm", "--unit", "20=mesh.med"))
+
+    def test_an_output_that_a_command_file_closes_beneath_python(self):
+        run = self.run_study("import os\nDEBUT()\nos.close(1)\nos.close(0)\nL = DEFI_LIST_REEL(VALE=(0.,))\n")
+        self.assertEqual(run.status, 2)
+        self.assertIn("<STUDY_34> what the run says cannot be written: Bad file descriptor\n    where: study.comm:5", run.err)
+        self.assertNotIn("Traceback", run.err)
+
+    def test_two_units_do_not_write_one_file(self):
+        """The second would replace the first in silence; a unit that was released, and one that is read, may have its file."""
+        (self.work / "link").symlink_to(self.work / "out")
+        for path in ("out", "./out", "link"):
+            run = self.run_study(STUDY + PRINT + PRINT.replace("80", "81"), "--unit", "80=out", "--unit", f"81={path}", behaviour={"impr_resu": {"unit": "80"}})
+            self.refused(run, "COMMAND_17", "unit 81 has the file of the unit 80", "IMPR_RESU/UNITE, study.comm:13")
+        self.ok(self.run_study(STUDY + "L2 = LIRE_MAILLAGE(UNITE=21)\nFIN()\n", "--unit", "21=mesh.med"))
+
+    def test_an_export_file_that_begins_with_a_mark_of_its_encoding(self):
+        self.write("study.comm", STUDY + "FIN()\n")
+        (self.work / "study.export").write_bytes(b"\xef\xbb\xbfF comm study.comm D 1\r\nF mmed mesh.med D 20\r\n")
+        self.ok(self.launch("study.export"))
+
+    def test_a_file_that_hides_a_package(self):
+        (self.work / "h5py").mkdir()
+        for name, package in (("numpy.py", "numpy"), ("h5py/__init__.py", "h5py")):
+            self.write(name, "")
+            run = self.refused(self.run_study("DEBUT()\nFIN()\n"), "<STUDY_36>", f"{name} beside the command file hides the Python package {package}")
+            self.assertNotIn("Traceback", run.err)
+            (self.work / name).unlink()
+        self.ok(self.run_study("DEBUT()\nFIN()\n"))  # a folder of that name alone hides nothing
+
+    def test_a_working_folder_that_was_removed(self):
+        self.write("study.comm", "DEBUT()\nFIN()\n")
+        for arguments in ("../study.comm", "new ../mesh.med"):
+            run = self.shell(arguments, "mkdir gone; cd gone; rmdir ../gone;")
+            self.assertEqual(run.returncode, 2, run.stderr)
+            self.assertIn("<STUDY_37> the working folder is not there any more", run.stderr)
+            self.assertNotIn("Traceback", run.stderr)
+
+    def test_an_operator_that_the_system_does_not_start(self):
+        """As where the limit of processes is reached."""
+        for content in ("#!/nowhere/at/all\n", "\x7fELF"):
+            (self.bin / "affe_modele").write_text(content)
+            run = self.refused(self.run_study(STUDY), "<STUDY_38> the operator affe_modele cannot be started", "study.comm:7")
+            self.assertNotIn("Traceback", run.err)
+
+    def test_processes_that_a_command_file_forks(self):
+        """They end as any other at a signal, and leave the base, its end and its diagnosis to the run."""
+        run = self.ok(self.run_study("""
+import multiprocessing, os
+DEBUT()
+x = 1
+with multiprocessing.get_context("fork").Pool(2) as pool:
+    assert pool.map(abs, [-1, -2]) == [1, 2]
+for end in ("raise SystemExit(0)", "FIN()"):
+    child = os.fork()
+    if child == 0:
+        x = 2
+        exec(end)
+        raise SystemExit(0)
+    os.waitpid(child, 0)
+C = DEFI_CONSTANTE(VALE=1.0)
+FIN()
+"""))
+        self.assertNotIn("Traceback", run.err)
+        self.assertEqual(run.out.count("DIAGNOSTIC JOB"), 1, run.out)
+        self.ok(self.run_study("POURSUITE()\nassert x == 1 and C(0.0) == 1.0\nFIN()\n"))
+
+    def test_what_changes_nothing(self):
+        """A base that is a link, a mask of rights, no HOME, no folder for temporary files, a terminal of one column, a name of 255 bytes, much said."""
+        (self.work / "elsewhere").mkdir()
+        (self.work / "study.base").symlink_to("elsewhere")
+        text = STUDY + "for i in range(10000): print(i)\nFIN()\n"
+        before = os.umask(0o077)
+        try:
+            run = self.ok(self.run_study(text, environment={"HOME": "", "TMPDIR": "/nowhere/at/all", "COLUMNS": "1", "LINES": "1", "LC_ALL": "C"}))
+        finally:
+            os.umask(before)
+        self.assertEqual(run.out.count("\n9999\n"), 1)
+        self.assertTrue((self.work / "elsewhere/base.json").is_file() and (self.work / "study.base").is_symlink())
+        self.assertEqual((self.work / "elsewhere/base.json").stat().st_mode & 0o077, 0)  # the rest is of stand-ins, which have a mask of their own
+        self.write(f"{'n' * 250}.comm", STUDY + "FIN()\n")
+        self.ok(self.launch(f"{'n' * 250}.comm", "--unit", "20=mesh.med"))
+        self.ok(self.run_study(STUDY + "FIN()\n", "--base", "é à b.base", name="été.comm"))
+
+    def test_a_base_that_is_removed_beneath_a_run(self):
+        run = self.refused(self.run_study(STUDY.replace("R = STAT", "import shutil\nshutil.rmtree('study.base')\nR = STAT")), "<STUDY_3>", "study.base", "study.comm:13")
+        self.assertNotIn("Traceback", run.err)
+
+    def test_files_of_units_that_are_no_files(self):
+        """Pipes and folders are refused as data and as results, before a result replaces them."""
+        os.mkfifo(self.work / "pipe")
+        (self.work / "folder").mkdir()
+        for path in ("pipe", "folder", "/dev/null"):
+            self.write("study.comm", STUDY + PRINT)
+            self.refused(self.launch("study.comm", "--unit", f"20={path}"), "COMMAND_5", path)
+            self.refused(self.launch("study.comm", "--unit", "20=mesh.med", "--unit", f"80={path}"), "COMMAND_8", path)
+        self.assertTrue(pathlib.Path("/dev/null").is_char_device() and (self.work / "pipe").is_fifo())
+
+
+if __name__ == "__main__":
+    main()
