@@ -211,6 +211,10 @@ FIN()
         self.refuses("DEFI_LIST_REEL(DEBUT=0, INTERVALLE=_F(JUSQU_A=1, PAS=0.3))", "DEFI_LIST_2")
         self.refuses("DEFI_LIST_REEL(DEBUT=0, INTERVALLE=_F(JUSQU_A=1, PAS=3))", "DEFI_LIST_2")
         self.refuses("DEFI_LIST_REEL(VALE=(0, 2, 1))", "DEFI_LIST_1")
+        self.refuses("DEFI_LIST_REEL(DEBUT=1e9, INTERVALLE=_F(JUSQU_A=1e9 + 1e-6, NOMBRE=100))", "DEFI_LIST_1", "INTERVALLE[1]")
+        for much, path in (("NOMBRE=10**9", "INTERVALLE[1]"), ("PAS=1e-300", "INTERVALLE[1]/PAS"), ("PAS=5e-324", "inf")):
+            self.refuses(f"DEFI_LIST_REEL(DEBUT=0, INTERVALLE=_F(JUSQU_A=1, {much}))", "DEFI_LIST_6", path)
+        self.refuses("DEFI_LIST_ENTI(DEBUT=0, INTERVALLE=_F(JUSQU_A=10**15, PAS=1))", "DEFI_LIST_6", "1e+15")
         self.refuses("DEFI_LIST_INST(DEFI_LIST=_F(VALE=(1, 0)))", "DEFI_LIST_1")
 
     def test_a_list_of_one_instant(self):

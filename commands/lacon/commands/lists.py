@@ -5,6 +5,14 @@ import json
 from ..core.catalog import part
 
 
+most = 10_000_000  #: values of a list: those of more are a slip of the pen, and would take the machine's memory
+
+
+def _few_enough(call, count, path):
+    if count > most:
+        call.fail("DEFI_LIST_6", path, count=f"{count:g}", most=most)
+
+
 def _increasing(call, values, path):
     for a, b in zip(values, values[1:]):
         if not a < b:
@@ -32,11 +40,15 @@ def _interval(call, start, interval, path):
         count = interval["NOMBRE"]
     else:
         exact = (end - start) / interval["PAS"]
+        _few_enough(call, exact, f"{path}/PAS")
         count = round(exact)
         if count < 1 or abs(exact - count) > 1e-3:
             call.fail("DEFI_LIST_2", f"{path}/PAS", step=f"{interval['PAS']:g}", start=f"{start:g}", end=f"{end:g}")
+    _few_enough(call, count, path)
     step = (end - start) / count
-    return [start + i * step for i in range(1, count)] + [end]
+    values = [start + i * step for i in range(1, count)] + [end]
+    _increasing(call, [start, *values], path)  # where steps are too small for their place
+    return values
 
 
 def defi_list_enti(call):
@@ -49,6 +61,7 @@ def defi_list_enti(call):
         step = interval.get("PAS") or (end - start) // interval["NOMBRE"]
         if step == 0 or (end - start) % step or (end - start) // step != interval.get("NOMBRE", (end - start) // step):
             call.fail("DEFI_LIST_2", path, step=step or part("share_of_interval", count=interval["NOMBRE"]), start=start, end=end)
+        _few_enough(call, (end - start) // step, path)
         values += range(start + step, end + 1, step)
     return call.write("list_of_integers", lambda file: file.create_dataset("values", data=values, dtype="i8"))
 
