@@ -14,9 +14,9 @@ namespace lacon {
 /// SOLVER_6 where PETSc is asked for and not there. @param base where files of the factor go
 std::unique_ptr<Engine> engine_of(const Keywords& solver, const Base& base, const StaticProblem& problem);
 
-/// About what a factor in double precision takes, bytes. Measured on the two blocks of docs/performance.md.
-double memory_of_factor(std::int64_t n_equations, int dimension);
+/// About what an operator takes that makes a factor, bytes. Measured on the two blocks of docs/performance.md.
+double memory_of_factor(std::int64_t n_equations, int dimension, bool in_double_precision = false);
 /// Whether AUTO takes iterations: where a factor would not have room in half of the memory. @param memory of the machine, bytes
-bool suits_iterations(std::int64_t n_equations, int dimension, double memory);
+bool suits_iterations(double factor, double memory);
 
 }  // namespace lacon
