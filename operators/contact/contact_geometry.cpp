@@ -242,8 +242,10 @@ void ContactGeometry::measure_slaves() {
 }
 
 void ContactGeometry::find_ends(std::span<const HeldDirection> held) {
-  for (Zone& zone : zones_)
+  for (Zone& zone : zones_) {
+    zone.border = border_edges(zone.master);
     if (!contact_.frozen_gap) zone.planes = end_planes(zone.slave, zone.master, held);
+  }
   mirror();
 }
 

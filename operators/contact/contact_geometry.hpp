@@ -34,6 +34,7 @@ class ContactGeometry {
     std::vector<SlaveCut> cuts;         ///< Surface::cuts of the slave: in space, since it was at rest
     std::vector<EndPlane> planes;
     std::vector<std::uint8_t> mirrored;  ///< Surface::mirrored of the master
+    std::vector<std::uint8_t> border;    ///< border_edges() of the master
     Surface slave, master;
     bool current_jacobian = false;
     PairingOptions pairing;
@@ -89,7 +90,8 @@ class ContactGeometry {
   /// The derivatives of the contact cells of some patches at the geometry of the last update(); its couplings with
   /// VARIATION_JEU='FIGEE', and where they are the first derivatives because slave and masters coincide.
   /// @param order of the derivatives wanted of each patch: 0 (none of its cells), 1, 2
-  std::vector<Variation> vary(std::span<const std::int8_t> order) const;
+  /// @param still patches on which the ends of masters keep their places: they are not differentiated; empty: none
+  std::vector<Variation> vary(std::span<const std::int8_t> order, const std::vector<bool>& still = {}) const;
 
   /// An iterate may reach over the axis of revolution on its way, a solution may not: throws EVOLUTION_8.
   void check_radii() const;
@@ -127,8 +129,8 @@ class ContactGeometry {
   /// Take the offset off gaps that a kernel gave. @param batch as the kernel had it
   void offset_gaps(std::size_t zone, const ContactCells& cells, lacon_contact_batch batch, Alike& group) const;
   bool has_offset(std::size_t zone) const { return zone < offsets_.size() && !offsets_[zone].empty(); }
-  /// One of the contact cells of a zone, paired with traces.
-  Variation variation(std::size_t zone, const Pairing& found, std::size_t place, bool second) const;
+  /// One of the contact cells of a zone, paired with traces. @param still the cover keeps its place
+  Variation variation(std::size_t zone, const Pairing& found, std::size_t place, bool second, bool still) const;
   /// Sum up what the kernels gave.
   void add(const Zone& zone, const Block& block_of_zone, ZonePairing* record);
   /// What a kernel says of a slave cell.

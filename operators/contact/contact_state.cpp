@@ -56,7 +56,7 @@ ContactState::ContactState(const Mesh& mesh, const Model& model, const Contact& 
   own_ = rho_ = size_;
   flexibility_.assign(mesh.n_cells(), 0.0);
   locked_.assign(size_.size(), false);
-  held_open_ = gliding_ = locked_;
+  held_open_ = gliding_ = keeps_cover_ = locked_;
   for (const ContactZone& zone : contact.zones)
     for (const std::int32_t patch : zone.held_open) held_open_[patch] = true;
   for (const ContactGeometry::Zone& zone : geometry_.zones())
@@ -149,6 +149,11 @@ void ContactState::keep_gliding(const Patchwise& patches) {
                   patches.status[p] == Status::active;
 }
 
+void ContactState::let_covers_go() {
+  for (std::size_t p = 0; p < n_patches(); ++p)
+    if (!is_covered_in_part(p)) keeps_cover_[p] = false;
+}
+
 std::int64_t ContactState::update_statuses(Patchwise& patches) const {
   double largest = 0;
   for (const double lambda : patches.lambda) largest = std::max(largest, std::abs(lambda));
@@ -191,7 +196,7 @@ void ContactState::linearise(const Patchwise& patches, bool second) {
   std::vector<std::int8_t> order(n_patches(), 0);
   for (std::size_t p = 0; p < n_patches(); ++p)
     if (patches.status[p] == Status::active) order[p] = second_ && patches.lambda[p] != 0 ? 2 : 1;
-  variations_ = geometry_.vary(order);
+  variations_ = geometry_.vary(order, keeps_cover_);
 }
 
 std::vector<std::pair<std::int64_t, std::int64_t>> ContactState::coupled_vertices() const {

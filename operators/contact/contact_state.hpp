@@ -23,6 +23,7 @@ struct ContactTolerances {
   double unpaired = 1e-14;          ///< covered fraction of a patch below which it has no master
   double least_coverage = 1e-5;     ///< covered fraction that an active patch needs
   double taking_coverage = 2e-2;    ///< and one that takes contact
+  double bare = 1e-9;               ///< fraction of a patch that no master covers, above round-off
   double initial_gap = 1e-6;        ///< CONTACT_INIT='INTERPENETRE': largest gap, over the smallest edge
   double lambda_round_off = 1e-10;  ///< of the largest |lambda|: below it a sign means nothing
   double gap_round_off = 1e-14;     ///< of the size of the mesh
@@ -116,6 +117,12 @@ class ContactState {
   void keep_gliding(const Patchwise& patches);
   /// ContactGeometry::set_offsets
   void set_offsets(std::vector<std::vector<double>> offsets) { geometry_.set_offsets(std::move(offsets)); }
+  /// From now on the cover of a patch keeps its place in the derivatives of its gap: pressure acts along normals alone. Forces
+  /// stay balanced, for rigid motions leave the gap as it is, but are no derivatives of it where a master ends on the patch.
+  void keep_cover(std::size_t patch) { keeps_cover_[patch] = true; }
+  bool keeps_cover(std::size_t patch) const { return keeps_cover_[patch]; }
+  /// Patches of which that makes no difference, without master or covered wholly, no longer keep it.
+  void let_covers_go();
   /// Pair on the current geometry, integrate gaps and couplings. @param displacement (n_nodes, dimension)
   void update_geometry(std::span<const double> displacement);
   /// Statuses at the first instant (METHOD.md 3.7), multipliers zero.
@@ -151,6 +158,12 @@ class ContactState {
   std::int64_t n_constraints(const Patchwise& patches) const;
   /// Whether every displacement in a patch's row is imposed: its multiplier is then undetermined and keeps its value.
   bool is_locked(std::size_t patch) const { return locked_[patch]; }
+  /// Whether its master covers as much of it as an active patch needs.
+  bool is_covered(std::size_t patch) const { return geometry_.coverage(patch) >= tolerances_.least_coverage; }
+  /// Whether its master ends on it.
+  bool is_covered_in_part(std::size_t patch) const {
+    return is_covered(patch) && geometry_.coverage(patch) < 1 - tolerances_.bare;
+  }
   HeldOverlap held_overlap() const;
   /// For each of some loose bodies, in each zone where no patch holds it: the patches that are nearest to their master, within
   /// ContactTolerances::holding_gap. @param loose bodies, numbered as body_of(node) does
@@ -197,6 +210,7 @@ class ContactState {
   std::vector<bool> locked_;
   std::vector<bool> held_open_;                         ///< of each patch: SANS_GROUP_NO, RESOLUTION='NON'
   std::vector<bool> gliding_;                           ///< of each patch: keeps its contact (GLISSIERE)
+  std::vector<bool> keeps_cover_;                       ///< of each patch: keep_cover()
   std::vector<ContactGeometry::Variation> variations_;  ///< of contact cells of active patches
   bool second_ = false;                                 ///< they have second derivatives
   double gap_tolerance_ = 0;

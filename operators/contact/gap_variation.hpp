@@ -39,6 +39,7 @@ struct ContactCellGeometry {
   struct LineNodes {
     CellType type{};
     std::array<int, 9> node{};
+    bool still = false;  ///< the line keeps its place on the slave
   };
   std::vector<LineNodes> lines;
 

@@ -42,9 +42,29 @@ ContactGeometry::Variation sum_of(std::span<const ContactGeometry::Variation> ce
   return sum;
 }
 
+/// In the plane: whether no other contact cell of the slave cell goes on there. @param cells those of one slave cell
+bool ends_cover(const ContactCells& cells, std::size_t vertex) {
+  return std::count(cells.vertex.begin(), cells.vertex.end(), cells.vertex[vertex]) == 1;
+}
+
+/// The edge of a facet that a line lies on, if it does. @param from, to in reference coordinates
+std::optional<int> edge_along(CellType type, const std::array<double, 2>& from, const std::array<double, 2>& to) {
+  const bool quadrangle = catalog::cell(type).family == Family::QUAD;
+  for (int edge = 0; edge < (quadrangle ? 4 : 3); ++edge) {
+    const auto off = [&](const std::array<double, 2>& at) {
+      if (quadrangle) return edge % 2 == 0 ? at[1] - (edge - 1) : at[0] + (edge - 2);
+      return edge == 0 ? at[1] : edge == 1 ? 1 - at[0] - at[1] : at[0];
+    };
+    constexpr double round_off = 1e-12;
+    if (std::abs(off(from)) < round_off && std::abs(off(to)) < round_off) return edge;
+  }
+  return std::nullopt;
+}
+
 }  // namespace
 
-std::vector<ContactGeometry::Variation> ContactGeometry::vary(std::span<const std::int8_t> order) const {
+std::vector<ContactGeometry::Variation> ContactGeometry::vary(std::span<const std::int8_t> order,
+                                                              const std::vector<bool>& still) const {
   std::vector<Variation> all;
   std::vector<std::int8_t> left(order.begin(), order.end());
   for (std::size_t p = 0; p < left.size(); ++p)
@@ -70,9 +90,10 @@ std::vector<ContactGeometry::Variation> ContactGeometry::vary(std::span<const st
       std::vector<Variation> found;
       for (std::size_t i = some.first; i < some.last; ++i) {
         pairing.pair(slaves[i], slaves[i] + 1, pairs);
-        const bool second = order[contact_.slaves[zone.slaves[slaves[i]]].patch] > 1;
+        const auto patch = static_cast<std::size_t>(contact_.slaves[zone.slaves[slaves[i]]].patch);
         found.clear();
-        for (std::size_t c = 0; c < pairs.cells.size(); ++c) found.push_back(variation(z, pairs, c, second));
+        for (std::size_t c = 0; c < pairs.cells.size(); ++c)
+          found.push_back(variation(z, pairs, c, order[patch] > 1, !still.empty() && still[patch]));
         all[before + i] = sum_of(found, mesh_.dimension);
       }
     });
@@ -99,8 +120,8 @@ ContactGeometry::Variation ContactGeometry::frozen_variation(const Cell& cell) c
   return variation;
 }
 
-ContactGeometry::Variation ContactGeometry::variation(std::size_t z, const Pairing& found, std::size_t place,
-                                                      bool second) const {
+ContactGeometry::Variation ContactGeometry::variation(std::size_t z, const Pairing& found, std::size_t place, bool second,
+                                                      bool still) const {
   const Zone& zone = zones_[z];
   const ContactCells& cells = found.cells;
   const auto dimension = static_cast<std::size_t>(mesh_.dimension);
@@ -130,7 +151,8 @@ ContactGeometry::Variation ContactGeometry::variation(std::size_t z, const Pairi
     for (std::size_t k = 0; k < 2; ++k) {
       const std::size_t vertex = 2 * place + k;
       const std::int32_t node = cells.vertex_node[vertex];
-      cell.ends[k] = {cells.vertex[vertex], node < 0 ? -1 : local(node), cells.vertex_crossing[vertex]};
+      const bool moves = node >= 0 && !(still && ends_cover(cells, vertex));
+      cell.ends[k] = {cells.vertex[vertex], moves ? local(node) : -1, cells.vertex_crossing[vertex]};
     }
     cell.fading = zone.pairing.fading;
   } else {
@@ -142,6 +164,8 @@ ContactGeometry::Variation ContactGeometry::variation(std::size_t z, const Pairi
       drawn_on.type = mesh_.types[owner];
       std::size_t a = 0;
       for (const std::int32_t node : mesh_.cells[owner]) drawn_on.node[a++] = local(node);
+      const std::optional<int> edge = edge_along(drawn_on.type, line.from, line.to);
+      drawn_on.still = still && edge && (zone.border[static_cast<std::size_t>(line.master)] >> *edge & 1) != 0;
     }
   }
 

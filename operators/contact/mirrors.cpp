@@ -102,6 +102,14 @@ class Held {
 
 }  // namespace
 
+std::vector<std::uint8_t> border_edges(const Surface& skin) {
+  if (skin.dimension != 3) return {};
+  std::vector<std::uint8_t> edges(skin.size(), 0);
+  for (const BorderEdge& edge : border_of(skin))
+    edges[static_cast<std::size_t>(edge.cell)] |= static_cast<std::uint8_t>(1U << edge.edge);
+  return edges;
+}
+
 std::vector<EndPlane> end_planes(const Surface& slave, const Surface& master, std::span<const HeldDirection> held) {
   std::vector<EndPlane> planes;
   if (slave.dimension != 3) return planes;

@@ -16,6 +16,9 @@ struct EndPlane {
   std::vector<std::pair<std::int32_t, int>> ends;  ///< such edges of the master: cell of its surface, edge
 };
 
+/// Of each cell of a skin in space its edges that no other cell has, a bit for each; empty in the plane.
+std::vector<std::uint8_t> border_edges(const Surface& skin);
+
 /// Planes x, y or z = constant, and those that an edge of the master is held in, beyond which no skin reaches and in which both
 /// end; of the master's edges there those that meet the border of the slave at points at most, and where no node can leave the
 /// plane, as by symmetry, all. Where free borders lie on each other a face that slides past the other one is what ends the

@@ -163,7 +163,7 @@ CuttingLine PolygonVariation::line(std::size_t k) const {
       line.dl.row(v).segment<3>(line.column[a]) +=
           ((line.q[a] - line.p[a]) * normal_by_apart - line.p[a] * along_by_normal).transpose();
   }
-  if (is_within(given, nodes.type) && passes_along_an_edge(line.l)) line.moves = false;
+  if (nodes.still || (is_within(given, nodes.type) && passes_along_an_edge(line.l))) line.moves = false;
   return line;
 }
 

@@ -69,6 +69,11 @@ class Equilibrium {
     if (contact_) contact_->rest_at(displacement);
   }
   /// The patches of that state: contact that glides (GLISSIERE) keeps what was closed.
+  /// ContactState::keep_cover, let_covers_go
+  void keep_cover(std::size_t patch) { contact_->keep_cover(patch); }
+  void let_covers_go() {
+    if (contact_) contact_->let_covers_go();
+  }
   void keep_gliding(const Patchwise& patches) {
     if (contact_) contact_->keep_gliding(patches);
   }

@@ -19,20 +19,9 @@
 namespace lacon {
 namespace {
 
-constexpr double gap_share = 1e-2;  // of RESI_GEOM: largest |g_T| / h, 1e-8 by default
-constexpr double worse = 1.2;       // a residual that changes by this factor an iteration diverges
-constexpr double no_better = 0.97;  // or does not fall
-constexpr double near_round_off = 1e-9;
-constexpr int settled = 4;     // iterations without a change of status after which a ratio is that of the residual alone
-constexpr double deepest = 1;  // sizes of a patch, by which bodies that began in a few patches may go into each other
+constexpr double gap_share = 1e-2;     // of RESI_GEOM: largest |g_T| / h, 1e-8 by default
+constexpr double deepest = 1;          // sizes of a patch, by which bodies that began in a few patches may go into each other
 constexpr double other_stress = 1e-8;  // of the largest stress: that of another law
-
-/// What is known of a failure, one thing behind the other.
-std::string said(std::initializer_list<std::string> what) {
-  std::string text;
-  for (const std::string& words : what) text += (text.empty() || words.empty() ? "" : "; ") + words;
-  return text;
-}
 
 }  // namespace
 
@@ -114,6 +103,11 @@ void Newton::restart(const StaticState& state) {
 void Newton::save(const hdf5::Group& group) const {
   group.set("waits", std::int64_t{choice_.waits()});
   group.write("told", std::vector<std::int64_t>(told_.begin(), told_.end()));
+  group.write("covers_told", std::vector<std::int32_t>(covers_told_.begin(), covers_told_.end()));
+  std::vector<std::int64_t> covers;
+  for (std::size_t p = 0; contact() && p < contact()->n_patches(); ++p)
+    if (contact()->keeps_cover(p)) covers.push_back(static_cast<std::int64_t>(p));
+  group.write("covers", covers);
   prediction_.save(group.create("prediction"));
   equilibrium_.save(group.create("equilibrium"));
   solver_.save(group.create("solver"));
@@ -122,7 +116,12 @@ void Newton::save(const hdf5::Group& group) const {
 void Newton::resume(const hdf5::Group& group, const hdf5::Group* base, const StaticState& state, std::span<const double> rest) {
   choice_.set_waits(group.integer("waits") != 0);
   for (const std::int64_t patch : group.read<std::int64_t>("told")) told_.insert(static_cast<std::size_t>(patch));
-  if (group.has("prediction")) prediction_.resume(group.open("prediction"));  // not in a record of before it was kept
+  if (group.has("covers")) {  // not in a record of before they were kept
+    for (const std::int32_t zone : group.read<std::int32_t>("covers_told")) covers_told_.insert(zone);
+    for (const std::int64_t patch : group.read<std::int64_t>("covers"))
+      equilibrium_.keep_cover(static_cast<std::size_t>(patch));
+  }
+  if (group.has("prediction")) prediction_.resume(group.open("prediction"));  // likewise
   equilibrium_.resume(group.open("equilibrium"), state, rest);
   solver_.resume(group.open("solver"), base, problem_.numbering);
 }
@@ -155,6 +154,8 @@ int Newton::iterate(double instant, StaticState& state, const std::function<void
   std::vector<double> step = equilibrium_.load(instant, state);
   choice_.start_instant();
   statuses_.start_instant();
+  lost_masters_.start_instant();
+  times_round_ = 0;
   forcing_.start_instant();
   const std::vector<double> external = equilibrium_.external();
   extrapolate(instant, state, step);
@@ -200,6 +201,7 @@ int Newton::iterate(double instant, StaticState& state, const std::function<void
     // what imposed displacements alone have parted, the next iteration may bring together again: it starts from bodies that
     // touch
     const bool waits = iteration == 0 && parts_a_zone(before, wanted);
+    keep_lost_masters(instant, before, wanted, state);
     state.patches.status = waits ? before : statuses_.next(before, wanted);
     choice_.note_statuses(line.status_changes, equilibrium_.flows(previous));
     assemble(state, previous, options_.matrix);
@@ -210,12 +212,14 @@ int Newton::iterate(double instant, StaticState& state, const std::function<void
     line.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     report(line);
     course_.add(line.maxi, line.worst_dof);
+    if (course_.period()) keep_covers_that_sway(instant, state, iteration == options_.iterations);
     settled_ = line.status_changes > 0 ? 0 : settled_ + 1;
     if (line.converged()) {
       if (contact()) contact()->geometry().check_radii();
       if (const auto cell = equilibrium_.cell_inside_out())
         fail("EVOLUTION_9", {{"instant", fmt::format("{:.9g}", instant)}, {"cell", cell_name(*cell)}});
       equilibrium_.hold_points(state);
+      equilibrium_.let_covers_go();
       prediction_.note(options_.start, {.displacement = previous.displacement, .pressure = previous.patches.lambda},
                        {instant, state.displacement, state.patches.lambda, external}, elsewhere_);
       return iteration;
@@ -407,94 +411,6 @@ bool Newton::parts_a_zone(const std::vector<Status>& before, const std::vector<S
     if (const auto zone = stays.find(contact()->geometry().zone_of(p)); zone != stays.end() && wanted[p] == Status::active)
       zone->second = true;
   return std::ranges::any_of(stays, [](const auto& zone) { return !zone.second; });
-}
-
-void Newton::fail_if_endless(double instant) const {
-  if (!statuses_.endless()) return;
-  const auto& [patches, period] = *statuses_.endless();
-  throw InstantFailure(message("EVOLUTION_15", {{"instant", fmt::format("{:.9g}", instant)},
-                                                {"count", std::to_string(patches.size())},
-                                                {"cells", cells_of(patches)},
-                                                {"period", std::to_string(period)}}),
-                       {.depends_on_step = false});
-}
-
-std::string Newton::cells_of(const std::vector<std::size_t>& patches) const {
-  constexpr std::size_t most = 4;
-  std::map<std::int32_t, std::string> of_zone;
-  for (std::size_t i = 0; i < std::min(most, patches.size()); ++i) {
-    std::string& cells = of_zone[contact()->geometry().zone_of(patches[i])];
-    cells += (cells.empty() ? "" : ", ") + cell_name(problem_.mesh.patches->cells[patches[i]].front());
-  }
-  std::string text;
-  for (const auto& [zone, cells] : of_zone)
-    text += (text.empty() ? "" : ", ") +
-            part("cells_of_group", {{"cells", cells}, {"group", problem_.contact->zones[zone].slave_group}});
-  return text + (patches.size() > most ? ", ..." : "");
-}
-
-void Newton::fail_to_converge(double instant, const IterationReport& line, std::size_t changing) const {
-  const ConvergenceCriteria& asked = options_.criteria;
-  const double excess = std::max({asked.resi_glob_rela ? line.rela / *asked.resi_glob_rela : 0,
-                                  asked.resi_glob_maxi ? line.maxi / *asked.resi_glob_maxi : 0,
-                                  asked.resi_refe_rela ? line.refe / *asked.resi_refe_rela : 0});
-  std::string round_words, turned_words, hanging_words;
-  if (const auto& round = statuses_.round())
-    round_words = part("statuses_went_round", {{"count", std::to_string(round->patches.size())},
-                                               {"cells", cells_of(round->patches)},
-                                               {"period", std::to_string(round->period)}});
-  if (const auto cell = equilibrium_.cell_inside_out())
-    turned_words =
-        part("cell_inside_out", {{"cell", cell_name(*cell)}, {"body", bodies_.name_at(problem_.mesh.cells[*cell][0])}});
-  if (!hanging_.empty()) hanging_words = part("body_hangs", {{"body", hanging_}});
-  throw InstantFailure(
-      message("EVOLUTION_4",
-              {{"instant", fmt::format("{:.9g}", instant)},
-               {"iterations", std::to_string(options_.iterations)},
-               {"unmet", said({unmet_criteria(line, changing), course_.words(), round_words, turned_words, hanging_words})},
-               {"remedy", remedy(line, excess)}}),
-      {.ratio = settled_ >= settled && !course_.period() && !course_.smaller_before() ? course_.ratio() : std::nullopt,
-       .excess = excess});
-}
-
-std::string Newton::remedy(const IterationReport& line, double excess) const {
-  if (!hanging_.empty()) return part("remedy_hold_body", {{"body", hanging_}});
-  const double ratio = course_.ratio().value_or(1);
-  const bool diverges = !course_.finite() || ratio > worse || equilibrium_.cell_inside_out();
-  // more iterations, where a few times as many come to the end
-  if (settled_ >= settled && ratio < no_better && !diverges && !course_.period() && !course_.smaller_before()) {
-    const double more = excess > 1 ? std::ceil(std::log(excess) / -std::log(ratio)) : settled;
-    if (more <= 2.0 * options_.iterations)
-      return part("remedy_more_iterations", {{"count", std::to_string(options_.iterations + static_cast<int>(more) + 1)}});
-  }
-  if (settled_ >= settled && line.rela < near_round_off) return part("remedy_ask_less");
-  if (!options_.cuts) return part("remedy_cut_step");
-  if (diverges) return part("remedy_coarser_load");
-  if (line.status_changes > 0 || statuses_.round()) return part("remedy_refine_slave");
-  if (course_.period() && !options_.line_search) return part("remedy_line_search");
-  return part("remedy_look_at_table");
-}
-
-std::string Newton::unmet_criteria(const IterationReport& line, std::size_t changing) const {
-  std::string text;
-  const auto add = [&](bool met, const std::string& what) {
-    if (!met) text += (text.empty() ? "" : ", ") + what;
-  };
-  const auto at_its_place = [&](const std::string& residual) {
-    if (line.worst_dof < 0) return residual;
-    const std::string place = equilibrium_.place(line.worst_dof);
-    if (course_.stays() <= 2) return part("residual_at", {{"residual", residual}, {"place", place}});
-    return part("residual_stays_at", {{"residual", residual}, {"place", place}, {"count", std::to_string(course_.stays())}});
-  };
-  add(line.rela_met, at_its_place(fmt::format("RESI_GLOB_RELA {:.1e}", line.rela)));
-  add(line.maxi_met, at_its_place(fmt::format("RESI_GLOB_MAXI {:.1e}", line.maxi)));
-  add(line.refe_met, at_its_place(fmt::format("RESI_REFE_RELA {:.1e}", line.refe)));
-  add(line.geometry_met, fmt::format("RESI_GEOM {:.1e}", line.geometry));
-  add(line.constraint_met, part("largest_gap", {{"value", fmt::format("{:.1e}", line.constraint)}}));
-  if (line.status_changes)
-    add(false, part("patches_change_status", {{"count", std::to_string(line.status_changes)},
-                                              {"cell", cell_name(problem_.mesh.patches->cells[changing].front())}}));
-  return text;
 }
 
 }  // namespace lacon

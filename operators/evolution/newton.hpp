@@ -1,6 +1,7 @@
 #pragma once
 // Newton's method for one instant: equilibrium, geometry, contact and behaviour in one loop (METHOD.md 3.2, 5.3).
 #include <functional>
+#include <initializer_list>
 #include <memory>
 #include <set>
 #include <span>
@@ -9,10 +10,12 @@
 
 #include "lacon/assembly/loose_motions.hpp"
 #include "lacon/assembly/saddle_point_solver.hpp"
+#include "lacon/catalog/messages.hpp"
 #include "lacon/operators/evolution/bodies.hpp"
 #include "lacon/operators/evolution/equilibrium.hpp"
 #include "lacon/operators/evolution/forcing_term.hpp"
 #include "lacon/operators/evolution/line_search.hpp"
+#include "lacon/operators/evolution/lost_masters.hpp"
 #include "lacon/operators/evolution/matrix_choice.hpp"
 #include "lacon/operators/evolution/prediction.hpp"
 #include "lacon/operators/evolution/residual_course.hpp"
@@ -99,6 +102,17 @@ class Newton {
   std::string cells_of(const std::vector<std::size_t>& patches) const;
   /// Throws EVOLUTION_15 where no statuses satisfy all patches.
   void fail_if_endless(double instant) const;
+  /// Patches that lose their master wherever they press keep their cover (lost_masters.hpp). Throws EVOLUTION_51 where they
+  /// lose it all the same. @param before, wanted statuses of the iteration that ends, and of the next
+  void keep_lost_masters(double instant, const std::vector<Status>& before, const std::vector<Status>& wanted,
+                         const StaticState& state);
+  /// Residuals go round: where they did before in this instant, or it has no iteration left, patches that press, and on which
+  /// masters end, keep their cover.
+  void keep_covers_that_sway(double instant, const StaticState& state, bool last);
+  /// ContactState::keep_cover; EVOLUTION_50 says so once in a zone.
+  void keep_cover(double instant, std::size_t patch);
+  /// EVOLUTION_50 or 51
+  Message about_cover(std::string_view id, double instant, std::size_t patch) const;
   /// Go on from `state` by the motion of the last instant, and to what is imposed, where that is asked for or serves.
   /// @param[in,out] step of imposed displacements, none where that is done
   void extrapolate(double instant, StaticState& state, std::vector<double>& step);
@@ -111,6 +125,8 @@ class Newton {
   void stay_shallow(std::span<const double> solution, StaticState& state, std::vector<double>& increment);
   /// Throws EVOLUTION_4. @param line the last iteration  @param changing a patch that changes its status in it, if any does
   [[noreturn]] void fail_to_converge(double instant, const IterationReport& line, std::size_t changing) const;
+  /// What is known of a failure, one thing behind the other.
+  static std::string said(std::initializer_list<std::string> what);
   /// What keeps the last iteration from being the solution, in words.
   std::string unmet_criteria(const IterationReport& line, std::size_t changing) const;
   /// The one thing to do about it that fits.
@@ -123,14 +139,17 @@ class Newton {
   Equilibrium equilibrium_;
   MatrixChoice choice_;
   StatusRule statuses_;
+  LostMasters lost_masters_;
   ForcingTerm forcing_;
   Prediction prediction_;
-  bool elsewhere_ = false;      ///< it has led this instant to another start than the last state
-  std::set<std::size_t> told_;  ///< patches that EVOLUTION_20 was about
-  ResidualCourse course_;       ///< of the instant
-  int times_held_ = 0;          ///< in this instant: loose bodies
-  std::string hanging_;         ///< a body that springs alone hold in the last system
-  int settled_ = 0;             ///< iterations in a row in which no status has changed
+  bool elsewhere_ = false;              ///< it has led this instant to another start than the last state
+  std::set<std::size_t> told_;          ///< patches that EVOLUTION_20 was about
+  std::set<std::int32_t> covers_told_;  ///< zones that EVOLUTION_50 was about
+  ResidualCourse course_;               ///< of the instant
+  int times_held_ = 0;                  ///< in this instant: loose bodies
+  int times_round_ = 0;                 ///< in this instant: residuals have come back
+  std::string hanging_;                 ///< a body that springs alone hold in the last system
+  int settled_ = 0;                     ///< iterations in a row in which no status has changed
   SaddlePointSolver solver_;
 };
 

@@ -182,6 +182,19 @@ class Skins(StudyTest):
         self.assertGreater(figures["lost"], 0)
         self.assertIn("EVOLUTION_48", (self.folder / "out").read_text() + (self.folder / "err").read_text())
 
+    def test_a_punch_whose_ends_lie_on_patches_of_a_wider_slave_is_pressed_and_slides(self):
+        """Forces that are derivatives drove its ends off patches that pressed, and let them go in where these did not: no status satisfied such a patch
+        (287 iterations, then stop), or residuals went round for ever (the second of these). The force is that of a mesh eight times as fine (265.9)."""
+        for kind, cells in (("QUAD4", 17), ("QUAD4", 10), ("QUAD8", 10)):
+            mesh = union([slab(kind, "TOOL", (-1, 1), (0, 1), (8, 4), skin="bottom"), slab(kind, "SLAB", (-2, 2), (-1, 0), (cells, 5))])
+            study = Study(name="punch", mesh=mesh, materials={"TOOL": elastic(1e4), "SLAB": elastic(1e3)}, zones=[zone("TOOL", "SLAB", 1)], cut=True,
+                          moves=[held("SLAB"), path("TOOL", [(0, 0), (4, 0), (8, 0.3)], [(0, 0), (4, -0.1), (8, -0.1)])], steps=8, asked={"per step": 10},
+                          driven="TOOL_BASE", measure=lambda instants, moved, reactions: {"force": -float(reactions[-1, :, 1].sum())})
+            figures = run(study, LACON, self.folder)
+            self.assertEqual(missed(study, figures), [], (kind, cells))
+            self.assertIn("EVOLUTION_50", figures["alarms"])
+            self.assertAlmostEqual(figures["force"] / 265.9, 1, delta=0.02)
+
     def test_overlap_of_facets_is_told(self):
         """Half rings, one in the other, whose arcs have the same radius: chords of 9 degrees overlap arcs by 1 - cos 4.5 degrees = 0.0031."""
         def ring(kind, name, radii, cells, skin, base):

@@ -1,0 +1,50 @@
+// Patches on which masters end, and which keep their cover in Newton's method.
+#include <fmt/format.h>
+
+#include "lacon/operators/evolution/instant_failure.hpp"
+#include "lacon/operators/evolution/newton.hpp"
+#include "lacon/operators/program/program.hpp"
+
+namespace lacon {
+
+void Newton::keep_lost_masters(double instant, const std::vector<Status>& before, const std::vector<Status>& wanted,
+                               const StaticState& state) {
+  if (!contact() || problem_.contact->frozen_gap) return;
+  const auto lost =
+      lost_masters_.note(before, wanted, state.patches.lambda, [&](std::size_t patch) { return contact()->is_covered(patch); });
+  for (const std::size_t patch : lost) {
+    if (contact()->keeps_cover(patch))
+      throw InstantFailure(about_cover("EVOLUTION_51", instant, patch), {.depends_on_step = true});
+    keep_cover(instant, patch);
+    lost_masters_.forget(patch);
+    statuses_.start_instant();  // sets that come back from here on answer to other forces
+  }
+}
+
+void Newton::keep_covers_that_sway(double instant, const StaticState& state, bool last) {
+  if (!contact() || problem_.contact->frozen_gap || (++times_round_ < 2 && !last)) return;
+  bool any = false;
+  for (std::size_t p = 0; p < contact()->n_patches(); ++p) {
+    if (state.patches.status[p] != Status::active || contact()->keeps_cover(p) || !contact()->is_covered_in_part(p)) continue;
+    keep_cover(instant, p);
+    any = true;
+  }
+  if (!any || last) return;
+  course_.start();
+  statuses_.start_instant();
+}
+
+void Newton::keep_cover(double instant, std::size_t patch) {
+  equilibrium_.keep_cover(patch);
+  if (covers_told_.insert(contact()->geometry().zone_of(patch)).second) inform(about_cover("EVOLUTION_50", instant, patch));
+}
+
+Message Newton::about_cover(std::string_view id, double instant, std::size_t patch) const {
+  const ContactZone& zone = problem_.contact->zones[contact()->geometry().zone_of(patch)];
+  return message(id, {{"instant", fmt::format("{:.9g}", instant)},
+                      {"cell", cell_name(problem_.mesh.patches->cells[patch].front())},
+                      {"slave", zone.slave_group},
+                      {"master", zone.master_group}});
+}
+
+}  // namespace lacon

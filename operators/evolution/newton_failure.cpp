@@ -1,0 +1,118 @@
+// What Newton's method says of an instant that it does not solve.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+#include "lacon/catalog/messages.hpp"
+#include "lacon/catalog/wording.hpp"
+#include "lacon/operators/evolution/instant_failure.hpp"
+#include "lacon/operators/evolution/newton.hpp"
+#include "lacon/operators/program/program.hpp"
+
+namespace lacon {
+namespace {
+
+constexpr double worse = 1.2;       // a residual that changes by this factor an iteration diverges
+constexpr double no_better = 0.97;  // or does not fall
+constexpr double near_round_off = 1e-9;
+constexpr int settled = 4;  // iterations without a change of status after which a ratio is that of the residual alone
+
+}  // namespace
+
+std::string Newton::said(std::initializer_list<std::string> what) {
+  std::string text;
+  for (const std::string& words : what) text += (text.empty() || words.empty() ? "" : "; ") + words;
+  return text;
+}
+
+void Newton::fail_if_endless(double instant) const {
+  if (!statuses_.endless()) return;
+  const auto& [patches, period] = *statuses_.endless();
+  throw InstantFailure(message("EVOLUTION_15", {{"instant", fmt::format("{:.9g}", instant)},
+                                                {"count", std::to_string(patches.size())},
+                                                {"cells", cells_of(patches)},
+                                                {"period", std::to_string(period)}}),
+                       {.depends_on_step = false});
+}
+
+std::string Newton::cells_of(const std::vector<std::size_t>& patches) const {
+  constexpr std::size_t most = 4;
+  std::map<std::int32_t, std::string> of_zone;
+  for (std::size_t i = 0; i < std::min(most, patches.size()); ++i) {
+    std::string& cells = of_zone[contact()->geometry().zone_of(patches[i])];
+    cells += (cells.empty() ? "" : ", ") + cell_name(problem_.mesh.patches->cells[patches[i]].front());
+  }
+  std::string text;
+  for (const auto& [zone, cells] : of_zone)
+    text += (text.empty() ? "" : ", ") +
+            part("cells_of_group", {{"cells", cells}, {"group", problem_.contact->zones[zone].slave_group}});
+  return text + (patches.size() > most ? ", ..." : "");
+}
+
+void Newton::fail_to_converge(double instant, const IterationReport& line, std::size_t changing) const {
+  const ConvergenceCriteria& asked = options_.criteria;
+  const double excess = std::max({asked.resi_glob_rela ? line.rela / *asked.resi_glob_rela : 0,
+                                  asked.resi_glob_maxi ? line.maxi / *asked.resi_glob_maxi : 0,
+                                  asked.resi_refe_rela ? line.refe / *asked.resi_refe_rela : 0});
+  std::string round_words, turned_words, hanging_words;
+  if (const auto& round = statuses_.round())
+    round_words = part("statuses_went_round", {{"count", std::to_string(round->patches.size())},
+                                               {"cells", cells_of(round->patches)},
+                                               {"period", std::to_string(round->period)}});
+  if (const auto cell = equilibrium_.cell_inside_out())
+    turned_words =
+        part("cell_inside_out", {{"cell", cell_name(*cell)}, {"body", bodies_.name_at(problem_.mesh.cells[*cell][0])}});
+  if (!hanging_.empty()) hanging_words = part("body_hangs", {{"body", hanging_}});
+  throw InstantFailure(
+      message("EVOLUTION_4",
+              {{"instant", fmt::format("{:.9g}", instant)},
+               {"iterations", std::to_string(options_.iterations)},
+               {"unmet", said({unmet_criteria(line, changing), course_.words(), round_words, turned_words, hanging_words})},
+               {"remedy", remedy(line, excess)}}),
+      {.ratio = settled_ >= settled && !course_.period() && !course_.smaller_before() ? course_.ratio() : std::nullopt,
+       .excess = excess});
+}
+
+std::string Newton::remedy(const IterationReport& line, double excess) const {
+  if (!hanging_.empty()) return part("remedy_hold_body", {{"body", hanging_}});
+  const double ratio = course_.ratio().value_or(1);
+  const bool diverges = !course_.finite() || ratio > worse || equilibrium_.cell_inside_out();
+  // more iterations, where a few times as many come to the end
+  if (settled_ >= settled && ratio < no_better && !diverges && !course_.period() && !course_.smaller_before()) {
+    const double more = excess > 1 ? std::ceil(std::log(excess) / -std::log(ratio)) : settled;
+    if (more <= 2.0 * options_.iterations)
+      return part("remedy_more_iterations", {{"count", std::to_string(options_.iterations + static_cast<int>(more) + 1)}});
+  }
+  if (settled_ >= settled && line.rela < near_round_off) return part("remedy_ask_less");
+  if (!options_.cuts) return part("remedy_cut_step");
+  if (diverges) return part("remedy_coarser_load");
+  if (line.status_changes > 0 || statuses_.round()) return part("remedy_refine_slave");
+  if (course_.period() && !options_.line_search) return part("remedy_line_search");
+  return part("remedy_look_at_table");
+}
+
+std::string Newton::unmet_criteria(const IterationReport& line, std::size_t changing) const {
+  std::string text;
+  const auto add = [&](bool met, const std::string& what) {
+    if (!met) text += (text.empty() ? "" : ", ") + what;
+  };
+  const auto at_its_place = [&](const std::string& residual) {
+    if (line.worst_dof < 0) return residual;
+    const std::string place = equilibrium_.place(line.worst_dof);
+    if (course_.stays() <= 2) return part("residual_at", {{"residual", residual}, {"place", place}});
+    return part("residual_stays_at", {{"residual", residual}, {"place", place}, {"count", std::to_string(course_.stays())}});
+  };
+  add(line.rela_met, at_its_place(fmt::format("RESI_GLOB_RELA {:.1e}", line.rela)));
+  add(line.maxi_met, at_its_place(fmt::format("RESI_GLOB_MAXI {:.1e}", line.maxi)));
+  add(line.refe_met, at_its_place(fmt::format("RESI_REFE_RELA {:.1e}", line.refe)));
+  add(line.geometry_met, fmt::format("RESI_GEOM {:.1e}", line.geometry));
+  add(line.constraint_met, part("largest_gap", {{"value", fmt::format("{:.1e}", line.constraint)}}));
+  if (line.status_changes)
+    add(false, part("patches_change_status", {{"count", std::to_string(line.status_changes)},
+                                              {"cell", cell_name(problem_.mesh.patches->cells[changing].front())}}));
+  return text;
+}
+
+}  // namespace lacon
