@@ -70,8 +70,10 @@ class FaultTest(StudyTest):
         write_med(self.folder / "stack.med", stack(self.fineness))
         self.environment = {}
 
+    study = STUDY
+
     def command(self, base, *more):
-        return [str(LACON), str(STUDY), "--base", str(self.folder / base), "--unit", f"20={self.folder / 'stack.med'}", *map(str, more)]
+        return [str(LACON), str(self.study), "--base", str(self.folder / base), "--unit", f"20={self.folder / 'stack.med'}", *map(str, more)]
 
     def start(self, base, *more, **options):
         """A run under way, its output in a pipe."""
@@ -325,6 +327,17 @@ class GoesOn(FaultTest):
         loads = [{"CHARGE": "HOLD"}, {"CHARGE": "MOVE"}, {"CHARGE": "GRIP"}]
         text, _ = self.check(4, 11, 12, model="3D", EXCIT=loads)
         self.assertGreater(len(re.findall(r"\| +- \| .* - \|", text)), 5, "factors that were used again")
+
+    def test_patches_that_keep_their_cover(self):
+        def lines(first, last, steps):
+            return np.linspace(first, last, steps + 1)
+
+        self.study = HERE / "punch.comm"
+        write_med(self.folder / "stack.med", union([
+            block("QUAD4", lines(-2, 2, 17), lines(-1, 0, 5), name="LOWER", sides={"bottom": "BASE", "top": "GROUND"}),
+            block("QUAD4", lines(-1, 1, 8), lines(0, 1, 4), name="PUNCH", sides={"bottom": "FACE", "top": "TOP"})]))
+        text, _ = self.check(2, 5, 6)
+        self.assertIn("EVOLUTION_50", text)
 
     def test_a_record_that_lies_behind(self):
         """Instants that take no time do not all get a record: some are computed again, and none is out of the index meanwhile."""
