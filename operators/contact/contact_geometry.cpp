@@ -242,10 +242,11 @@ void ContactGeometry::measure_slaves() {
 }
 
 void ContactGeometry::find_ends(std::span<const HeldDirection> held) {
-  for (Zone& zone : zones_) {
-    zone.border = border_edges(zone.master);
-    if (!contact_.frozen_gap) zone.planes = end_planes(zone.slave, zone.master, held);
-  }
+  if (!contact_.frozen_gap)
+    for (Zone& zone : zones_) {
+      zone.border = border_edges(zone.master);
+      zone.planes = end_planes(zone.slave, zone.master, held);
+    }
   mirror();
 }
 
