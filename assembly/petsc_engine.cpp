@@ -59,7 +59,7 @@ struct PetscEngine::State {
     if (program.empty()) program = program_beside_this();
     if (!std::filesystem::exists(program)) fail("SOLVER_6", {{"reason", part("built_without_petsc")}});
     processes = std::make_shared<PetscProcesses>(
-        PetscProgram{program, options.algorithm, options.preconditioner, options.iterations, options.n_ranks});
+        PetscProgram{program, options.algorithm, options.preconditioner, options.iterations, options.n_ranks, options.hosts});
   }
 
   void number(const SparseMatrix& given) {
@@ -104,7 +104,7 @@ struct PetscEngine::State {
   /// In place. @return why there is no solution, in words
   std::string iterate(double share, std::span<double> right_side, Solution& solution) {
     const SharedMemory memory(right_side.size_bytes());
-    const std::span<double> shared{reinterpret_cast<double*>(memory.data()), right_side.size()};
+    const std::span<double> shared = memory.numbers();
     std::ranges::copy(right_side, shared.begin());
     std::istringstream said(processes->ask(fmt::format("solve {:.3e} {}", share, memory.path())));
     std::string word, left, why;

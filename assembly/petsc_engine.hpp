@@ -18,8 +18,9 @@ struct PetscOptions {
   double tolerance = 1e-8;              ///< RESI_RELA: of the residual, against the right side
   int iterations = 500;                 ///< NMAX_ITER
   int n_ranks = 1;                      ///< processes, which mpirun starts where there are several
-  std::string program;                  ///< lacon_petsc; empty: beside the program that runs
-  BodyGeometry geometry;                ///< of the nodes of the numbering; coordinates must outlive the engine
+  std::string hosts;      ///< machines where they run, as mpirun takes them; empty: this one, or those of a batch job
+  std::string program;    ///< lacon_petsc; empty: beside the program that runs
+  BodyGeometry geometry;  ///< of the nodes of the numbering; coordinates must outlive the engine
   MumpsOptions direct;
 };
 

@@ -14,12 +14,14 @@ struct PetscProgram {
   std::string algorithm, preconditioner;
   int iterations = 500;
   int n_ranks = 1;
+  std::string hosts;  ///< as mpirun takes them; empty: this machine, or those of the batch job
 };
 
 class PetscProcesses : public PartProcesses {
  public:
   explicit PetscProcesses(PetscProgram program) : program_(std::move(program)) {}
   int size() const override { return program_.n_ranks; }
+  int machines() const override { return machines_; }
 
   void start() override;
   std::string ask(const std::string& line) override;
@@ -34,6 +36,7 @@ class PetscProcesses : public PartProcesses {
   PetscProgram program_;
   std::unique_ptr<Companion> ranks_;
   bool keeps_ = false;
+  int machines_ = 1;
   std::string end_;  ///< how they have ended
 };
 

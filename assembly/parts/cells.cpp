@@ -1,12 +1,13 @@
 #include "lacon/assembly/parts/cells.hpp"
 
+#include <set>
+#include <span>
 #include <sstream>
 #include <utility>
 
 #include "lacon/assembly/parts/parcel.hpp"
 
 namespace lacon {
-
 bool Cells::obey(const std::string& line) {
   std::istringstream said(line);
   std::string verb, path;
@@ -15,21 +16,16 @@ bool Cells::obey(const std::string& line) {
   said >> verb;
   if (verb == "board") {
     said >> path;
-    memory_.emplace(SharedMemory::open(path));
-    board_ = Board::in(*memory_, n_ranks_);
+    loan_ = lender_.borrow(path, LoanUse::write);
+    board_ = Board::in(loan_->memory(), n_ranks_);
   } else if (verb == "part") {
     said >> kind >> path;
+    const auto loan = lender_.borrow(path, LoanUse::read, kind);
     if (kind != rank_) return true;
     PartCells cells;
-    {
-      const SharedMemory memory = SharedMemory::open(path);
-      Unpacking unpack(memory.data());
-      unpack(cells);
-    }
+    Unpacking unpack(loan->memory().data());
+    unpack(cells);
     part_.emplace(std::move(cells));
-  } else if (verb == "evaluate") {
-    said >> kind >> number >> other;
-    part_->evaluate(board_, board_.report[static_cast<std::size_t>(rank_)], static_cast<SolidMatrix>(kind), number, other);
   } else if (verb == "keep") {
     said >> number;
     part_->keep(number);
@@ -43,33 +39,49 @@ bool Cells::obey(const std::string& line) {
     while (said >> number) part_->drop(number);
   } else if (verb == "put" || verb == "collect") {
     exchange(verb == "put", said);
+  } else if (verb == "products") {
+    said >> kind >> path;
+    const auto loan = lender_.borrow(path, LoanUse::write);
+    const std::span<double> both = loan->memory().numbers();
+    part_->multiply(both.first(both.size() / 2), both.subspan(both.size() / 2), kind);
+    loan->give_back();
+  } else if (verb == "remember") {
+    part_->remember();
+  } else if (verb == "whole") {
+    said >> path;
+    add_to(path);
+  } else {
+    return obey_by_board(verb, said);
+  }
+  return true;
+}
+
+bool Cells::obey_by_board(const std::string& verb, std::istream& said) {
+  static const std::set<std::string> known{"evaluate", "flows", "multiply", "measure", "diagonal", "maxima", "change"};
+  if (!known.contains(verb)) return false;
+  PartReport& report = board_.report[static_cast<std::size_t>(rank_)];
+  std::int64_t number = 0, other = 0;
+  int kind = 0;
+  loan_->renew();
+  if (verb == "evaluate") {
+    said >> kind >> number >> other;
+    part_->evaluate(board_, report, static_cast<SolidMatrix>(kind), number, other);
   } else if (verb == "flows") {
     said >> number;
-    board_.report[static_cast<std::size_t>(rank_)].flows = part_->flows(number);
+    report.flows = part_->flows(number);
   } else if (verb == "multiply") {
     said >> kind;
     part_->multiply(board_, kind != 0);
-  } else if (verb == "products") {
-    said >> kind >> path;
-    const SharedMemory memory = SharedMemory::open(path);
-    const std::span<double> both{reinterpret_cast<double*>(memory.data()), memory.size() / sizeof(double)};
-    part_->multiply(both.first(both.size() / 2), both.subspan(both.size() / 2), kind);
   } else if (verb == "measure") {
     part_->measure(board_);
   } else if (verb == "diagonal") {
     part_->write_diagonal(board_);
   } else if (verb == "maxima") {
     part_->write_maxima(board_);
-  } else if (verb == "remember") {
-    part_->remember();
-  } else if (verb == "change") {
-    board_.report[static_cast<std::size_t>(rank_)].change = part_->change();
-  } else if (verb == "whole") {
-    said >> path;
-    add_to(path);
   } else {
-    return false;
+    report.change = part_->change();
   }
+  loan_->give_back();
   return true;
 }
 
@@ -79,16 +91,16 @@ void Cells::exchange(bool put, std::istream& said) {
   int quantity = 0;
   std::string path;
   said >> number >> set >> quantity >> path;
-  const SharedMemory memory = SharedMemory::open(path);
-  const std::span<double> all{reinterpret_cast<double*>(memory.data()), memory.size() / sizeof(double)};
-  if (put)
-    part_->read(number, set, static_cast<PointQuantity>(quantity), all);
-  else
-    part_->write(number, set, static_cast<PointQuantity>(quantity), all);
+  const auto loan = lender_.borrow(path, put ? LoanUse::read : LoanUse::write);
+  const std::span<double> all = loan->memory().numbers();
+  if (put) return part_->read(number, set, static_cast<PointQuantity>(quantity), all);
+  part_->write(number, set, static_cast<PointQuantity>(quantity), all);
+  loan->give_back();
 }
 
 void Cells::add_to(const std::string& path) const {
-  const SharedMemory memory = SharedMemory::open(path);
+  const auto loan = lender_.borrow(path, LoanUse::write);
+  const SharedMemory& memory = loan->memory();
   std::size_t n_rows = 0, n_entries = 0;
   Unpacking unpack(memory.data());
   unpack(n_rows)(n_entries);
@@ -96,6 +108,7 @@ void Cells::add_to(const std::string& path) const {
   auto* const values = reinterpret_cast<double*>(memory.data() + (2 + n_rows) * 8);
   const auto* const columns = reinterpret_cast<const std::int32_t*>(values + n_entries);
   part_->add_to({rows, n_rows}, {columns, n_entries}, {values, n_entries});
+  loan->give_back();
 }
 
 }  // namespace lacon

@@ -13,27 +13,33 @@
 //   remember, change                     ElementPart::remember; its change() into the report
 //   whole PATH                           adds them to a lower triangle: n_rows, n_entries, rows, values, columns
 #include <istream>
+#include <memory>
 #include <optional>
 #include <string>
 
 #include "lacon/assembly/parts/element_part.hpp"
+#include "lacon/assembly/processes/loan.hpp"
 
 namespace lacon {
 
 class Cells {
  public:
-  Cells(int rank, int n_ranks) : rank_(rank), n_ranks_(n_ranks) {}
+  /// @param lender must outlive this
+  Cells(int rank, int n_ranks, const Lender& lender) : rank_(rank), n_ranks_(n_ranks), lender_(lender) {}
   /// @return whether the line is about cells
   bool obey(const std::string& line);
   /// Nothing where it has no cells.
   const ElementPart* part() const { return part_ ? &*part_ : nullptr; }
 
  private:
+  /// Those that read the board, or write there. @return whether it is one
+  bool obey_by_board(const std::string& verb, std::istream& said);
   void exchange(bool put, std::istream& said);
   void add_to(const std::string& path) const;
 
   int rank_, n_ranks_;
-  std::optional<SharedMemory> memory_;
+  const Lender& lender_;
+  std::unique_ptr<Loan> loan_;  ///< of the board
   Board board_;
   std::optional<ElementPart> part_;
 };

@@ -8,6 +8,8 @@ class PartProcesses {
  public:
   virtual ~PartProcesses() = default;
   virtual int size() const = 0;
+  /// On which they run: known when they do.
+  virtual int machines() const { return 1; }
 
   /// Start them, unless they run. Throws SOLVER_6, SOLVER_8, also where they have ended with what nobody else has.
   virtual void start() = 0;

@@ -31,10 +31,6 @@ SharedMemory in_shared_memory(std::span<const std::byte> bytes) {
   return memory;
 }
 
-std::span<double> numbers_in(const SharedMemory& memory) {
-  return {reinterpret_cast<double*>(memory.data()), memory.size() / sizeof(double)};
-}
-
 }  // namespace
 
 PartCells cells_of_part(const PartSource& source, int part) {
@@ -162,7 +158,7 @@ KeptState SolidParts::put(const std::function<std::span<const double>(std::size_
       const std::span<const double> given = values(s, quantity);
       if (given.empty()) continue;
       const SharedMemory memory(given.size_bytes());
-      std::ranges::copy(given, numbers_in(memory).begin());
+      std::ranges::copy(given, memory.numbers().begin());
       ask("put " + std::to_string(state->number()) + ' ' + std::to_string(s) + ' ' +
           std::to_string(static_cast<int>(quantity)) + ' ' + memory.path());
     }
@@ -176,7 +172,7 @@ std::vector<double> SolidParts::values(std::int64_t number, std::size_t set, Poi
   const SharedMemory memory(size * sizeof(double));
   ask("collect " + std::to_string(number) + ' ' + std::to_string(set) + ' ' + std::to_string(static_cast<int>(quantity)) + ' ' +
       memory.path());
-  const std::span<const double> found = numbers_in(memory);
+  const std::span<const double> found = memory.numbers();
   return {found.begin(), found.end()};
 }
 
@@ -194,7 +190,7 @@ std::span<const double> SolidParts::product(std::span<const double> x, bool magn
 void SolidParts::products(int n_columns, const std::function<void(std::span<double>)>& fill,
                           const std::function<void(std::span<const double>)>& use) const {
   const SharedMemory memory(2 * static_cast<std::size_t>(n_columns) * board_.displacement.size_bytes());
-  const std::span<double> both = numbers_in(memory), x = both.first(both.size() / 2);
+  const std::span<double> both = memory.numbers(), x = both.first(both.size() / 2);
   fill(x);
   ask("products " + std::to_string(n_columns) + ' ' + memory.path());
   use(both.subspan(x.size()));

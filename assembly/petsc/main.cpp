@@ -4,20 +4,26 @@
 #include <unistd.h>
 
 #include <csignal>
+#include <cstdint>
 #include <cstdio>
 #include <cstdlib>
+#include <cstring>
 #include <iostream>
 #include <memory>
 #include <sstream>
 #include <string>
+#include <system_error>
 #include <utility>
 
 #include "lacon/assembly/parts/cells.hpp"
 #include "lacon/assembly/petsc/krylov.hpp"
+#include "lacon/assembly/petsc/machines.hpp"
+#include "lacon/assembly/processes/host.hpp"
 
 namespace {
 
-using lacon::Cells, lacon::Krylov, lacon::KrylovOptions, lacon::KrylovResult, lacon::BlockSystem, lacon::SharedMemory;
+using lacon::Cells, lacon::Krylov, lacon::KrylovOptions, lacon::KrylovResult, lacon::BlockSystem, lacon::Lender, lacon::LoanUse,
+    lacon::Machines, lacon::SharedMemory;
 
 int own_rank() {
   int rank = 0;
@@ -66,16 +72,17 @@ class Stage {
   Stage& operator=(const Stage&) = delete;
 };
 
-std::unique_ptr<Krylov> taken(const std::string& path, const Cells& cells, const KrylovOptions& options) {
-  const SharedMemory memory = SharedMemory::open(path);
+std::unique_ptr<Krylov> taken(const Lender& lender, const std::string& path, const Cells& cells, const KrylovOptions& options) {
+  const auto loan = lender.borrow(path, LoanUse::read);
   lacon::OwnEntries entries;
   if (const lacon::ElementPart* const part = cells.part()) entries = {.matrix = &part->matrix(), .place = part->place()};
-  return std::make_unique<Krylov>(BlockSystem::in(memory), std::move(entries), options);
+  return std::make_unique<Krylov>(BlockSystem::in(loan->memory()), std::move(entries), options);
 }
 
-std::string solved(Krylov& krylov, double share, const std::string& path) {
-  const SharedMemory memory = SharedMemory::open(path);
-  const KrylovResult found = krylov.solve({reinterpret_cast<double*>(memory.data()), memory.size() / sizeof(double)}, share);
+std::string solved(const Lender& lender, Krylov& krylov, double share, const std::string& path) {
+  const auto loan = lender.borrow(path, LoanUse::write);
+  const KrylovResult found = krylov.solve(loan->memory().numbers(), share);
+  loan->give_back();
   std::ostringstream line;
   line.precision(2);
   line << (found.failure.empty() ? "converged " : "diverged ") << found.iterations << ' ' << found.residual << ' '
@@ -83,10 +90,21 @@ std::string solved(Krylov& krylov, double share, const std::string& path) {
   return line.str();
 }
 
+/// Whether memory is there that holds this number.
+bool sees(const std::string& path, std::int64_t number) {
+  try {
+    const SharedMemory memory = SharedMemory::open(path);
+    return memory.size() == sizeof number && std::memcmp(memory.data(), &number, sizeof number) == 0;
+  } catch (const std::system_error&) {
+    return false;
+  }
+}
+
 void serve(const KrylovOptions& options) {
-  answer("ready");
+  const Machines machines(PETSC_COMM_WORLD);
+  answer("ready " + std::to_string(machines.count()));
   std::unique_ptr<Krylov> krylov;
-  Cells cells(own_rank(), n_ranks());
+  Cells cells(own_rank(), n_ranks(), machines);
   for (std::string line = next_line(); !line.empty(); line = next_line()) {
     const std::string path = line.substr(line.rfind(' ') + 1);
     try {
@@ -96,7 +114,7 @@ void serve(const KrylovOptions& options) {
         answer("forgotten");
       } else if (line.starts_with("set up ")) {
         const Stage stage("set up");
-        krylov = taken(path, cells, options);
+        krylov = taken(machines, path, cells, options);
         answer("taken");
         krylov->set_up();
         answer("ready");
@@ -104,7 +122,7 @@ void serve(const KrylovOptions& options) {
         answer("done");
       } else {
         const Stage stage("solve");
-        answer(solved(*krylov, std::stod(line.substr(line.find(' '))), path));
+        answer(solved(machines, *krylov, std::stod(line.substr(line.find(' '))), path));
       }
     } catch (const std::exception& error) {
       // other ranks may be anywhere: what is left of them is of no use
@@ -118,14 +136,19 @@ void serve(const KrylovOptions& options) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  if (argc != 4) {
-    std::fputs("usage: lacon_petsc ALGORITHM PRECONDITIONER ITERATIONS (started by operators)\n", stderr);
+  if (argc != 6) {
+    std::fputs("usage: lacon_petsc ALGORITHM PRECONDITIONER ITERATIONS MEMORY NUMBER (started by operators)\n", stderr);
     return 2;
   }
   prctl(PR_SET_PDEATHSIG, SIGKILL);
   setenv("LACON_THREADS", "1", 1);  // processes are what works at the same time here
   if (PetscInitialize(nullptr, nullptr, nullptr, nullptr)) return 4;
   lacon::catch_errors();
-  serve({.algorithm = argv[1], .preconditioner = argv[2], .iterations = std::stoi(argv[3])});
+  int is_seen = is_first() && sees(argv[4], std::stoll(argv[5]));
+  MPI_Bcast(&is_seen, 1, MPI_INT, 0, PETSC_COMM_WORLD);
+  if (is_seen)
+    serve({.algorithm = argv[1], .preconditioner = argv[2], .iterations = std::stoi(argv[3])});
+  else
+    answer("elsewhere " + lacon::own_host());
   PetscFinalize();
 }

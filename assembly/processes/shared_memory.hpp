@@ -1,6 +1,7 @@
 #pragma once
 // Memory that two processes see: one makes it, the other opens it by its path. It has no name that could be left behind.
 #include <cstddef>
+#include <span>
 #include <string>
 
 namespace lacon {
@@ -19,6 +20,7 @@ class SharedMemory {
 
   std::byte* data() const { return data_; }
   std::size_t size() const { return size_; }
+  std::span<double> numbers() const { return {reinterpret_cast<double*>(data_), size_ / sizeof(double)}; }
   /// For another process, as long as this one keeps the memory.
   std::string path() const;
 

@@ -175,7 +175,8 @@ std::optional<std::string> answer_about_cells(lacon::Cells& cells, const std::st
 int main(int argc, char** argv) {
   prctl(PR_SET_PDEATHSIG, SIGKILL);
   setenv("LACON_THREADS", "1", 1);  // processes are what works at the same time here
-  lacon::Cells cells(argc > 1 ? std::stoi(argv[1]) : 0, argc > 2 ? std::stoi(argv[2]) : 1);
+  const lacon::Lender lender;
+  lacon::Cells cells(argc > 1 ? std::stoi(argv[1]) : 0, argc > 2 ? std::stoi(argv[2]) : 1, lender);
   Pieces pieces;
   std::cout << "ready" << std::endl;
   for (std::string line; std::getline(std::cin, line);) {

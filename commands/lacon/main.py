@@ -3,6 +3,7 @@
 import argparse
 import importlib
 import os
+import re
 import sys
 
 from . import version
@@ -45,6 +46,7 @@ def parser():
     made.add("--verbose", action="store_true", help="operators say each phase with its time, and each count, as they come")
     made.add("--threads", type=int, metavar="N", help="threads of operators")
     made.add("--mpi", type=int, metavar="N", help="processes that solve the linear systems")
+    made.add("--hosts", metavar="NAMES", help="machines of the processes of METHODE='PETSC', this one first, as mpirun takes them: NAME:PROCESSES,...")
     made.add("--sandbox", action="store_true", help="run the study without network, and let it write its base and the files of its units alone (bubblewrap)")
     made.add("--stage", help=argparse.SUPPRESS)  # of the launcher within a sandbox
     made.add("--version", action=_Version, nargs=0, help="print the version, and what operators calculate with")
@@ -59,6 +61,8 @@ def parse(arguments):
         asked.wrong("give_one_or_more", option="--threads")
     if options.mpi is not None and options.mpi < 1:
         asked.wrong("give_one_or_more", option="--mpi")
+    if options.hosts is not None and not re.fullmatch(r"[^\s:,]+(:[1-9]\d*)?(,[^\s:,]+(:[1-9]\d*)?)*", options.hosts):
+        asked.wrong("give_hosts", option="--hosts")
     return asked, options
 
 

@@ -26,6 +26,8 @@ int number_in(const char* variable, int otherwise) {
 }
 /// Processes that the user wants (--mpi), where he says.
 constexpr const char* wanted_ranks = "LACON_MPI";
+/// Machines where they run (--hosts), likewise.
+constexpr const char* wanted_hosts = "LACON_HOSTS";
 /// Those that share a factor where he does not, but has threads. More than cores, for subtrees are of uneven sizes; the same on
 /// every machine, for their number decides the last bits.
 constexpr int own_ranks = 4;
@@ -61,6 +63,7 @@ PetscOptions iterative_options(const Keywords& solver, const Base& base, const S
   options.direct.residual_tolerance = direct_residual;
   options.iterations = solver.integer("NMAX_ITER") > 0 ? static_cast<int>(solver.integer("NMAX_ITER")) : most_iterations;
   options.n_ranks = number_in(wanted_ranks, 1);
+  if (const char* const hosts = std::getenv(wanted_hosts)) options.hosts = hosts;
   return options;
 }
 
@@ -109,6 +112,7 @@ std::unique_ptr<Engine> engine_of(const Keywords& solver, const Base& base, cons
     if (preconditioner == "LDLT_SP" || preconditioner == "LDLT_DP") return factor_of(preconditioner, solver, base);
     return std::make_unique<PetscEngine>(iterative_options(solver, base, problem, preconditioner));
   }
+  if (std::getenv(wanted_hosts)) inform("SOLVER_12");
   if (method != "MUMPS") inform("EVOLUTION_24", {{"method", method}});
   MumpsOptions options = direct_options(solver, base);
   if (asked == "AUTO") options.residual_tolerance = direct_residual;

@@ -43,6 +43,7 @@ std::shared_ptr<SolidParts> parts_of(const StaticProblem& problem, const Engine&
   auto parts = std::make_shared<SolidParts>(processes, problem.mesh, problem.solids, problem.numbering, problem.components,
                                             problem.plugins);
   add_to_count("processes with cells", processes->size());
+  if (processes->machines() > 1) add_to_count("machines", processes->machines());
   add_to_count("cells of two processes or more", static_cast<double>(parts->n_shared()));
   return parts;
 }

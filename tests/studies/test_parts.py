@@ -39,6 +39,7 @@ MUMPS = {"METHOD": "MUMPS", "LACON_MPI_FROM": "1"}
 
 class PartsTest(StudyTest):
     environment, program = PETSC, "lacon_petsc"
+    two = ("--mpi", "2")  #: processes
 
     def setUp(self):
         super().setUp()
@@ -86,7 +87,7 @@ class PartsTest(StudyTest):
     def started(self, name, order, **environment):
         """A run that has archived its result up to an order. @return it, and processes of its session by their name"""
         with tempfile.TemporaryFile("w+") as said, subprocess.Popen(
-                [LACON, *map(str, self.options(name)), "--mpi", "2"], cwd=self.folder, stdin=subprocess.DEVNULL, stdout=said, stderr=subprocess.STDOUT,
+                [LACON, *map(str, self.options(name)), *self.two], cwd=self.folder, stdin=subprocess.DEVNULL, stdout=said, stderr=subprocess.STDOUT,
                 env={**os.environ, **self.environment, **environment}, start_new_session=True) as run:
             while self.archived(name) < order and run.poll() is None:
                 time.sleep(0.02)
@@ -120,11 +121,11 @@ class PartsTest(StudyTest):
 
     def go_on_with_another(self):
         """@return a result of four instants, and the same where the operator was killed behind the second one"""
-        expected, _, _ = self.solve("--mpi", 2, INSTANTS="4")
+        expected, _, _ = self.solve(*self.two, INSTANTS="4")
         with self.started("other", 2, INSTANTS="4", LACON_RESTART_ALWAYS="1") as (_, processes):
             os.kill(processes["stat_non_line"][0], signal.SIGKILL)
         options = [option for option in self.options("other") if option != "--fresh"]
-        run = self.run_tool(*options, "--mpi", 2, **self.environment, INSTANTS="4")
+        run = self.run_tool(*options, *self.two, **self.environment, INSTANTS="4")
         self.assertEqual(run.returncode, 0, run.stdout[-3000:] + run.stderr[-3000:])
         self.assertIn("EVOLUTION_32", run.stdout + run.stderr)
         return expected, self.read("other", "RESULT")

@@ -74,6 +74,8 @@ def run(program, made, study, checks=False):
     environment["OMP_NUM_THREADS"] = environment.setdefault("LACON_THREADS", str(available_cores()))
     if study.ranks:
         environment["LACON_MPI"] = str(study.ranks)
+    if study.hosts:
+        environment["LACON_HOSTS"] = study.hosts
     sys.stdout.flush()
     sys.stderr.flush()
     start = time.perf_counter()

@@ -84,7 +84,10 @@ def run_command_line(options, units):
             messages.fail("STUDY_26", path=path)
     run = study.Study(base, export.units, options.fresh, threads, options.checks == "all", execution.provided_names(),
                       options.force, options.verbose)
+    if ranks is None and options.hosts:
+        ranks = sum(int(host.partition(":")[2] or 1) for host in options.hosts.split(","))
     run.ranks = ranks
+    run.hosts = options.hosts
     report = options.json and os.path.abspath(options.json)  # a command file may change its folder
     run.stage = Stage(options.stage) if options.stage else None
     run.files = [os.path.realpath(name) for name in export.commands]

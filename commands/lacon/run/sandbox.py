@@ -83,7 +83,7 @@ def _inner(options, export, base, stage):
         words += ["--unit", f"{number}={os.path.abspath(path)}"]
     for name in ("fresh", "force", "timings", "verbose"):
         words += [f"--{name}"] * getattr(options, name)
-    for name in ("checks", "threads", "mpi"):
+    for name in ("checks", "threads", "mpi", "hosts"):
         if getattr(options, name) is not None:
             words += [f"--{name}", str(getattr(options, name))]
     if options.json:

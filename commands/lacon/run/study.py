@@ -31,6 +31,7 @@ class Study:
         self.force = force  #: run every operator, changed or not
         self.threads = threads
         self.ranks = None  #: processes that solve linear systems
+        self.hosts = None  #: machines where those of PETSC run, as mpirun takes them
         self.verbose = verbose  #: operators say their phases and counts as they come
         self.quiet = False  #: of what is not a message nothing is printed
         self.strict_checks = strict_checks
