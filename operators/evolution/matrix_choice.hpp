@@ -38,7 +38,9 @@ struct Unbalance {
 /// - without contact, the tangent goes without the terms of the stress for the rest of the instant: that leads downhill to a
 ///   stable equilibrium;
 /// - in contact, both the terms of the stress and the second derivatives of gaps are left out for some iterations. They go
-///   together: when a body turns they are in balance. Near the solution the consistent matrix is worth more.
+///   together: when a body turns they are in balance. Near the solution the consistent matrix is worth more. Where iterations
+///   without them come to an equilibrium slowly, it is this equilibrium itself that is unstable (a round body that stands on
+///   the border of two patches): then the consistent matrix is taken as it is for as long as residuals fall.
 /// One that is not symmetric has no such sign: both are left out behind an iteration that leaves forces unbalanced by more than
 /// the largest of them, or contacts that change on bodies that flow.
 /// Where the matrix overshoots (the residual has grown while a law flows), the elastic one takes its place for some iterations:
@@ -80,7 +82,9 @@ class MatrixChoice {
   bool waits_;                ///< for a residual that falls slowly with the second derivatives of gaps
   bool unstable_ = false;     ///< the tangent of an iterate of this instant was
   Span flat_;                 ///< without terms of stress and second derivatives of gaps
-  bool far_ = false;          ///< likewise, of a matrix that is not symmetric
+  int slow_ = 0;              ///< iterations in a row without them, near an equilibrium, that came a little nearer
+  bool balances_ = false;     ///< near an unstable equilibrium: the matrix is taken as it is
+  bool far_ = false;          ///< as flat_, of a matrix that is not symmetric
   Span elastic_;
   double residual_ = 0;  ///< of the last iteration
   bool curved_ = false;  ///< its gaps had second derivatives, and no status changed

@@ -75,6 +75,37 @@ TEST(MatrixChoice, InContactStressAndCurvatureAreLeftOutTogetherEachTimeForTwice
   }
 }
 
+TEST(MatrixChoice, AnUnstableEquilibriumThatIterationsComeToSlowlyHasItsOwnMatrix) {
+  const auto unstable = [](MatrixChoice& choice) {
+    return choice.suited(SolidMatrix::tangent, true).curved && choice.note_pivots(consistent, true, 4, 3);
+  };
+  for (const double ratio : {0.3, 1.2, 0.1}) {  // go away, and come quickly enough
+    for (const bool statuses_change : {false, true}) {
+      for (const double share : {5e-3, 0.1}) {
+        MatrixChoice choice = started({});
+        double residual = 1;
+        int left_out = 0;
+        for (int iteration = 0; iteration < 9; ++iteration) {
+          left_out += unstable(choice) || !choice.suited(SolidMatrix::tangent, true).curved;
+          residual *= ratio;
+          choice.note_residual({.largest = residual, .share = share, .statuses_change = statuses_change, .curved = true});
+        }
+        const bool expected = ratio == 0.3 && !statuses_change && share < 0.01;
+        EXPECT_EQ(left_out, expected ? 4 : 9) << ratio << statuses_change << share;
+        EXPECT_EQ(choice.suited(SolidMatrix::tangent, true) == consistent, expected);
+        if (!expected) continue;
+        EXPECT_FALSE(unstable(choice));
+        choice.note_residual({.largest = 0.9 * residual, .share = share, .curved = true});
+        EXPECT_FALSE(unstable(choice));
+        choice.note_residual({.largest = residual, .share = share, .curved = true});  // that led away
+        EXPECT_TRUE(unstable(choice));
+        choice.note_residual({.largest = residual, .share = share, .curved = true});
+        EXPECT_FALSE(choice.suited(SolidMatrix::tangent, true).curved);  // three of these have to be slow again
+      }
+    }
+  }
+}
+
 TEST(MatrixChoice, ATangentThatIsNotSymmetricIsTakenAsItIs) {
   for (const bool touches : {false, true}) {
     const MatrixChoice choice = started({.made_symmetric = true, .symmetric = false});
