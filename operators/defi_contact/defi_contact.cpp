@@ -237,6 +237,27 @@ ContactZone make_zone(const Mesh& mesh, const Base& base, const Keywords& keywor
   return zone;
 }
 
+/// The first cell of a slave skin that is a master of the other zone. @param master sorted
+const std::int32_t* shared_cell(const ContactZone& slave, const ContactZone& master) {
+  const auto found =
+      std::ranges::find_if(slave.slave, [&](std::int32_t cell) { return std::ranges::binary_search(master.master, cell); });
+  return found == slave.slave.end() ? nullptr : &*found;
+}
+
+/// Two zones that hold the same skins, each of them as the slave once: conditions of contact that say the same twice.
+void check_passes(const std::vector<ContactZone>& zones) {
+  const auto touches = [](const ContactZone& zone) { return zone.held_open.size() < zone.patches.size(); };
+  for (auto second = zones.begin(); second != zones.end(); ++second)
+    for (auto first = zones.begin(); first != second; ++first) {
+      const std::int32_t *one = shared_cell(*first, *second), *other = shared_cell(*second, *first);
+      if (one && other && touches(*first) && touches(*second))
+        fail("LAC_10", {{"first", first->slave_group},
+                        {"first_cell", cell_name(*one)},
+                        {"second", second->slave_group},
+                        {"second_cell", cell_name(*other)}});
+    }
+}
+
 /// Normals are averaged per zone: a node of two slave skins would have two.
 void check_shared_nodes(const Mesh& mesh, const std::vector<ContactZone>& zones) {
   std::vector<std::int32_t> owner(mesh.n_nodes(), -1);
@@ -308,6 +329,7 @@ Contact defi_contact(const Mesh& mesh, const Model& of_bodies, const Registry& r
   }
   if (!contact.skins.empty())
     fmt::print("  {}\n", part("skins_get_elements", {{"count", std::to_string(contact.skins.size())}}));
+  check_passes(contact.zones);
   check_axisymmetry(contact.completed(of_bodies), registry, contact.zones);
   if (contact.smoothing) {
     check_shared_nodes(mesh, contact.zones);

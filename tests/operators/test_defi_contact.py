@@ -237,6 +237,15 @@ class DefiContact(OperatorTest):
     def test_slave_and_master_share_no_cell(self):
         self.refuses("LAC_3", "M4", zones=[zone(GROUP_MA_MAIT="BOTH")])
 
+    def test_one_contact_is_not_given_twice(self):
+        """The same skins, with each as the slave once: a matrix without inverse. A skin may be slave of one body and master of another."""
+        self.make(zones=("ESCL_1", "ESCL_2"), zone_offset=(0, 1, 2))
+        both = [zone(GROUP_MA_ESCL="ESCL_1", GROUP_MA_MAIT="ESCL_2"), zone(GROUP_MA_ESCL="ESCL_2", GROUP_MA_MAIT="ESCL_1")]
+        self.refuses("LAC_10", "ESCL_1", "ESCL_2", "M1", "M3", zones=both)
+        self.assertEqual(self.define(both[0], {**both[1], "RESOLUTION": "NON"}).status, 0)
+        self.path("contact_3").unlink()
+        self.assertEqual(self.define(both[0], zone(GROUP_MA_ESCL="ESCL_2")).status, 0)
+
     def test_inward_skins_are_refused_unless_told_otherwise(self):
         run = self.refuses("MODELISA4_24", "INWARD", "M6", zones=[zone(GROUP_MA_MAIT="INWARD")])
         self.assertIn("ORIE_PEAU", run.messages[0]["do"])
