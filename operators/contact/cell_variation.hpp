@@ -377,6 +377,8 @@ class CellVariation {
   std::array<Vector<3>, D == 3 ? max_skin_nodes * max_skin_nodes : 1> cross_;  ///< factors of dx_a x dx_b
 };
 
+/// The second derivatives by corners and unknowns, (corners, unknowns), at fixed corners.
+Matrix by_corners(const Eigen::MatrixXd& by_points, const Columns& columns);
 /// The second derivatives by the unknowns, from those by the variables of points, of which the last ones are corners.
 /// @param corners (corners, unknowns): derivatives of the corners  @param form what their second derivatives add, by unknowns
 void chain_corners(const Eigen::MatrixXd& by_points, const Columns& columns, const Matrix& corners, QuadraticForm& form,

@@ -104,6 +104,13 @@ struct ContactTerm {
   std::span<const double> residual;          ///< (n)
 };
 
+/// What the matrix lacks where the end of a cover that is kept moves, column row^T: the end moves by `row` times displacements,
+/// and changes residuals by `column` times that.
+struct CoverEnd {
+  std::vector<ContactUnknown> unknowns;
+  std::vector<double> column, row;  ///< (unknowns)
+};
+
 class ContactState {
  public:
   /// All arguments must outlive it. Throws EVOLUTION_2 for a slave body without modulus, and what ContactGeometry throws.
@@ -141,6 +148,8 @@ class ContactState {
   std::vector<std::pair<std::int64_t, std::int64_t>> coupled_vertices() const;
   /// Call `use` for all that adds to contact forces and the multipliers' rows.
   void evaluate(const Patchwise& patches, const std::function<void(const ContactTerm&)>& use) const;
+  /// In the plane: the ends of kept covers, where second derivatives are there.
+  std::vector<CoverEnd> moving_ends(const Patchwise& patches) const;
   /// Contact forces on the bodies, (n_nodes, dimension): -lambda dG/du.
   std::vector<double> forces(const Patchwise& patches) const;
 

@@ -107,15 +107,29 @@ void vary_in_plane(const ContactCellGeometry& cell, bool second, GapVariation& v
   // the corners as functions of the unknowns
   const std::array ends = {EndVariation(cell, from, n), EndVariation(cell, to, n)};
   Matrix corners(2, n);
-  for (int k = 0; k < 2; ++k) corners.row(k) = ends[static_cast<std::size_t>(k)].row();
+  for (int k = 0; k < 2; ++k) {
+    if (cell.ends[k].still)
+      corners.row(k).setZero();
+    else
+      corners.row(k) = ends[static_cast<std::size_t>(k)].row();
+  }
   const Row gradient = sum.by_unknowns() + sum.gradient().segment<2>(corner) * corners;
   variation.gap = sum.gap();
   variation.gradient.assign(gradient.data(), gradient.data() + n);
   variation.hessian.clear();
+  variation.ends.clear();
   if (!second) return;
   QuadraticForm form(n);
-  for (int k = 0; k < 2; ++k) ends[static_cast<std::size_t>(k)].add_second(sum.gradient()[corner + k], form);
-  chain_corners(sum.second_by_points(), columns, corners, form, variation);
+  for (int k = 0; k < 2; ++k)
+    if (!cell.ends[k].still) ends[static_cast<std::size_t>(k)].add_second(sum.gradient()[corner + k], form);
+  const Eigen::MatrixXd by_points = sum.second_by_points();
+  chain_corners(by_points, columns, corners, form, variation);
+  for (int k = 0; k < 2; ++k) {
+    if (!cell.ends[k].still) continue;
+    const Row place = ends[static_cast<std::size_t>(k)].row(),
+              by_end = by_corners(by_points, columns).row(k) + by_points.block(corner + k, corner, 1, 2) * corners;
+    variation.ends.push_back({sum.gradient()[corner + k], {by_end.begin(), by_end.end()}, {place.begin(), place.end()}});
+  }
 }
 
 }  // namespace lacon::variations

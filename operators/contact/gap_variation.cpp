@@ -28,14 +28,19 @@ int ContactCellGeometry::n_unknowns() const {
   return n_nodes() * dimension + (slave_normals.empty() ? 0 : catalog::cell(slave).n_nodes * dimension);
 }
 
+variations::Matrix variations::by_corners(const Eigen::MatrixXd& by_points, const Columns& columns) {
+  const auto& [skins, others, normals, n_corners] = columns;
+  Matrix mixed = Matrix::Zero(n_corners, columns.unknowns());
+  mixed.leftCols(skins) = by_points.block(columns.first_corner(), 0, n_corners, skins);
+  mixed.rightCols(normals) = by_points.block(columns.first_corner(), skins, n_corners, normals);
+  return mixed;
+}
+
 void variations::chain_corners(const Eigen::MatrixXd& by_points, const Columns& columns, const Matrix& corners,
                                QuadraticForm& form, GapVariation& variation) {
   const auto& [skins, others, normals, n_corners] = columns;
   const Eigen::Index n = columns.unknowns(), behind = skins + others;
-  Matrix mixed = Matrix::Zero(n_corners, n);
-  mixed.leftCols(skins) = by_points.block(columns.first_corner(), 0, n_corners, skins);
-  mixed.rightCols(normals) = by_points.block(columns.first_corner(), skins, n_corners, normals);
-  const Matrix right = 2 * mixed + by_points.bottomRightCorner(n_corners, n_corners) * corners;
+  const Matrix right = 2 * by_corners(by_points, columns) + by_points.bottomRightCorner(n_corners, n_corners) * corners;
   for (Eigen::Index k = 0; k < n_corners; ++k) form.add(1, corners.row(k), right.row(k));
   Eigen::MatrixXd hessian = form.matrix();
   hessian.topLeftCorner(skins, skins) += by_points.topLeftCorner(skins, skins);

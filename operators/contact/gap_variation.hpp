@@ -27,9 +27,10 @@ struct ContactCellGeometry {
   std::span<const double> slave_point, master_point, weight;         ///< of the integration points, as in ContactCells
   /// In the plane: the ends of the interval, and what they move with.
   struct End {
-    double at;        ///< reference coordinate
-    int node;         ///< behind which node its normal ends it: of the unknowns' nodes; -1: an end of the slave itself
-    double crossing;  ///< where that normal crosses the slave
+    double at;           ///< reference coordinate
+    int node;            ///< behind which node its normal ends it: of the unknowns' nodes; -1: an end of the slave itself
+    double crossing;     ///< where that normal crosses the slave
+    bool still = false;  ///< derivatives take its place for fixed
   };
   End ends[2] = {{-1, -1, -1}, {1, -1, 1}};
   double fading = 0;  ///< PairingOptions::fading: how ends depend on these places where they differ
@@ -47,11 +48,19 @@ struct ContactCellGeometry {
   int n_unknowns() const;  ///< with nodal normals
 };
 
+/// What derivatives leave out that take an end of the cover for still.
+struct MovingEnd {
+  double gap = 0;                ///< dG by its place
+  std::vector<double> gradient;  ///< (n_unknowns): of the gradient of G by its place
+  std::vector<double> place;     ///< (n_unknowns): of its place by the unknowns
+};
+
 /// Derivatives of G.
 struct GapVariation {
   double gap = 0;                ///< G
   std::vector<double> gradient;  ///< (n_unknowns)
   std::vector<double> hessian;   ///< (n_unknowns, n_unknowns), symmetric; empty where it was not asked for
+  std::vector<MovingEnd> ends;   ///< in the plane, of ends that are still; empty without second derivatives
 };
 
 /// @param second whether second derivatives are wanted  @param[out] variation its memory is used again

@@ -38,6 +38,13 @@ ContactGeometry::Variation sum_of(std::span<const ContactGeometry::Variation> ce
       for (std::size_t j = 0; j < place.size() && !hessian.empty(); ++j)
         sum.of_gap.hessian[place[i] * n + place[j]] += hessian[i * place.size() + j];
     }
+    for (const MovingEnd& end : cell.of_gap.ends) {
+      MovingEnd& same = sum.of_gap.ends.emplace_back(end.gap, std::vector<double>(n), std::vector<double>(n));
+      for (std::size_t i = 0; i < place.size(); ++i) {
+        same.gradient[place[i]] += end.gradient[i];
+        same.place[place[i]] += end.place[i];
+      }
+    }
   }
   return sum;
 }
@@ -151,8 +158,9 @@ ContactGeometry::Variation ContactGeometry::variation(std::size_t z, const Pairi
     for (std::size_t k = 0; k < 2; ++k) {
       const std::size_t vertex = 2 * place + k;
       const std::int32_t node = cells.vertex_node[vertex];
-      const bool moves = node >= 0 && !(still && ends_cover(cells, vertex));
-      cell.ends[k] = {cells.vertex[vertex], moves ? local(node) : -1, cells.vertex_crossing[vertex]};
+      const bool fixed = still && node >= 0 && ends_cover(cells, vertex);
+      cell.ends[k] = {cells.vertex[vertex], node >= 0 && !(fixed && !second) ? local(node) : -1, cells.vertex_crossing[vertex],
+                      fixed};
     }
     cell.fading = zone.pairing.fading;
   } else {

@@ -137,6 +137,11 @@ void NormalVariation::apply_in(const Surface& skin, std::span<const std::int32_t
     variation.hessian.assign(sum.data(), sum.data() + n * n);
   }
   variation.gradient.assign(by_nodes.data(), by_nodes.data() + n);
+  for (MovingEnd& end : variation.ends)
+    for (std::vector<double>* const row : {&end.gradient, &end.place}) {
+      const Eigen::RowVectorXd chained = Eigen::Map<const Eigen::RowVectorXd>(row->data(), n_before) * chain;
+      row->assign(chained.data(), chained.data() + n);
+    }
 }
 
 }  // namespace lacon

@@ -97,6 +97,7 @@ void vary_share_of(const ContactCellGeometry& cell, GapVariation& variation) {
     const Rows<D> da = turn(slave, of_slave, p), dm = turn(master, of_master, q);
     for (int i = 0; i < D; ++i) form.add(-2 * by_cosine, da.row(i), dm.row(i));
     Eigen::Map<Eigen::MatrixXd>(variation.hessian.data(), n, n) += form.matrix();
+    for (MovingEnd& end : variation.ends) Eigen::Map<Row>(end.gradient.data(), n) += end.gap * share.slope / share.value * dc;
   }
   gradient += by_cosine * dc;
 }

@@ -21,21 +21,24 @@ void Newton::keep_lost_masters(double instant, const std::vector<Status>& before
   }
 }
 
-void Newton::keep_covers_that_sway(double instant, const StaticState& state, bool last) {
-  if (!contact() || problem_.contact->frozen_gap || (++times_round_ < 2 && !last)) return;
+bool Newton::keep_covers_that_sway(double instant, const StaticState& state, bool last) {
+  if (!contact() || problem_.contact->frozen_gap || (course_.period() && ++times_round_ < 2 && !last)) return false;
   bool any = false;
   for (std::size_t p = 0; p < contact()->n_patches(); ++p) {
     if (state.patches.status[p] != Status::active || contact()->keeps_cover(p) || !contact()->is_covered_in_part(p)) continue;
     keep_cover(instant, p);
     any = true;
   }
-  if (!any || last) return;
+  if (!any) return false;
+  if (last) return true;
   course_.start();
   statuses_.start_instant();
+  return true;
 }
 
 void Newton::keep_cover(double instant, std::size_t patch) {
   equilibrium_.keep_cover(patch);
+  choice_.start_again();
   if (covers_told_.insert(contact()->geometry().zone_of(patch)).second) inform(about_cover("EVOLUTION_50", instant, patch));
 }
 

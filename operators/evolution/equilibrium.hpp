@@ -12,6 +12,7 @@
 #include "lacon/operators/evolution/convergence.hpp"
 #include "lacon/operators/evolution/heat.hpp"
 #include "lacon/operators/evolution/matrix_choice.hpp"
+#include "lacon/operators/evolution/moving_covers.hpp"
 #include "lacon/operators/evolution/prestrain.hpp"
 #include "lacon/operators/evolution/reference_forces.hpp"
 #include "lacon/operators/evolution/relations.hpp"
@@ -94,6 +95,9 @@ class Equilibrium {
   std::vector<double> add(std::span<const double> solution, std::span<const double> step, StaticState& state) const;
   /// The right side of the system, (n_equations). @param step of the imposed displacements
   std::vector<double> right_side(std::span<const double> step) const { return system_.right_side(external_, step); }
+
+  /// What the matrix of the last assembly lacks of kept covers.
+  std::vector<MovingCover> moving_covers(const StaticState& state, std::span<const double> step) const;
 
   /// Of the last load() or assembly: external forces, (n_nodes, n_components), and behind them what rows of multipliers are to
   /// be.

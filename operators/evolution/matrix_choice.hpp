@@ -57,6 +57,8 @@ class MatrixChoice {
   /// All that lasts longer than an instant: whether second derivatives of gaps wait.
   bool waits() const { return waits_; }
   void set_waits(bool waits) { waits_ = waits; }
+  /// Forces are others from here on: what was seen of their matrices says nothing any more.
+  void start_again() { unstable_ = far_ = balances_ = false, slow_ = 0, flat_ = {}; }
   NewtonMatrix suited(SolidMatrix asked, bool touches) const;
   /// More negative pivots than constraints: beyond a limit point or a bifurcation, from where a step of the tangent leads
   /// anywhere. @param curves gaps of active patches have second derivatives @return whether the matrix has to be another one

@@ -19,6 +19,7 @@
 namespace lacon {
 namespace {
 
+constexpr int drifting = 4;            // iterations without change of status, each of which leaves more than the one before
 constexpr double gap_share = 1e-2;     // of RESI_GEOM: largest |g_T| / h, 1e-8 by default
 constexpr double deepest = 1;          // sizes of a patch, by which bodies that began in a few patches may go into each other
 constexpr double other_stress = 1e-8;  // of the largest stress: that of another law
@@ -212,8 +213,9 @@ int Newton::iterate(double instant, StaticState& state, const std::function<void
     line.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     report(line);
     course_.add(line.maxi, line.worst_dof);
-    if (course_.period()) keep_covers_that_sway(instant, state, iteration == options_.iterations);
     settled_ = line.status_changes > 0 ? 0 : settled_ + 1;
+    const bool other_forces = (course_.period() || std::min(course_.growths(), settled_) >= drifting) &&
+                              keep_covers_that_sway(instant, state, iteration == options_.iterations);
     if (line.converged()) {
       if (contact()) contact()->geometry().check_radii();
       if (const auto cell = equilibrium_.cell_inside_out())
@@ -242,7 +244,7 @@ int Newton::iterate(double instant, StaticState& state, const std::function<void
       other_matrix = true;
       fail_if_endless(instant);
     }
-    if (other_matrix) assemble(state, previous, options_.matrix);
+    if (other_matrix || other_forces) assemble(state, previous, options_.matrix);
     if (!std::isfinite(line.maxi)) break;
   }
   fail_to_converge(instant, line, changing);
@@ -264,9 +266,18 @@ std::vector<double> Newton::solve_system(StaticState& state, const StaticState& 
     for (const LooseMotion& motion : loose) null.push_back(problem_.numbering.equation[static_cast<std::size_t>(motion.dof)]);
     if (loose.empty()) {
       std::vector<double> solution = equilibrium_.right_side(step);
-      solve_linear(solution, accuracy, line);
+      const std::vector<MovingCover> covers = equilibrium_.moving_covers(state, step);
+      for (const MovingCover& cover : covers)
+        for (std::size_t i = 0; i < solution.size(); ++i) solution[i] -= cover.step * cover.column[i];
+      const auto [least, most] = std::ranges::minmax(solution);
+      const double size = std::max(-least, most);
+      line.solution = solve_linear(solution, accuracy);
       null = line.solution.factorisation.null_pivots;
-      if (null.empty()) return solution;
+      if (null.empty()) {
+        line.constraints += follow_covers(
+            covers, size, [&](std::vector<double>& side) { solve_linear(side, accuracy); }, solution);
+        return solution;
+      }
       for (const std::int64_t dof : equilibrium_.dofs_of(null))
         loose.push_back({dof, {bodies_.of(static_cast<std::int32_t>(dof / problem_.n_components()))}});
     }
@@ -281,11 +292,10 @@ std::vector<double> Newton::solve_system(StaticState& state, const StaticState& 
   }
 }
 
-void Newton::solve_linear(std::vector<double>& solution, const Accuracy& accuracy, IterationReport& line) {
+SolutionReport Newton::solve_linear(std::vector<double>& solution, const Accuracy& accuracy) {
   const System& system = equilibrium_.system();
   begin_phase("linear system");
-  line.solution = solver_.solve(system.matrix(), system.first_multiplier(), solution, accuracy);
-  const SolutionReport& report = line.solution;
+  const SolutionReport report = solver_.solve(system.matrix(), system.first_multiplier(), solution, accuracy);
   add_to_phase("analysis", report.analysis_seconds);
   add_to_phase("factorisation", report.factorisation_seconds);
   add_to_phase("solution", report.solution_seconds);
@@ -304,6 +314,7 @@ void Newton::solve_linear(std::vector<double>& solution, const Accuracy& accurac
   add_to_count("Gflop of factorisations", 1e-9 * (factor.flops + factor.wasted_flops));
   add_to_count("columns of the inverse", report.columns);
   add_to_count(factor.is_iterative ? "iterations of PETSc" : "iterations of GMRES", report.iterations);
+  return report;
 }
 
 bool Newton::hold(const std::vector<LooseMotion>& loose, StaticState& state, const StaticState& previous, SolidMatrix asked) {

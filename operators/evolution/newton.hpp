@@ -88,7 +88,7 @@ class Newton {
   std::vector<double> solve_system(StaticState& state, const StaticState& previous, SolidMatrix asked,
                                    std::span<const double> step, const Accuracy& accuracy, IterationReport& line);
   /// Solve the system with what `solution` holds, in place.
-  void solve_linear(std::vector<double>& solution, const Accuracy& accuracy, IterationReport& line);
+  SolutionReport solve_linear(std::vector<double>& solution, const Accuracy& accuracy);
   /// Hold bodies that are loose and near to others: at first the nearest patches take contact, and EVOLUTION_20 says so. Where
   /// they are pulled and open again, nothing presses on the bodies: springs keep them where they are, in the matrix alone.
   /// @return whether all of them are held
@@ -106,9 +106,9 @@ class Newton {
   /// lose it all the same. @param before, wanted statuses of the iteration that ends, and of the next
   void keep_lost_masters(double instant, const std::vector<Status>& before, const std::vector<Status>& wanted,
                          const StaticState& state);
-  /// Residuals go round: where they did before in this instant, or it has no iteration left, patches that press, and on which
-  /// masters end, keep their cover.
-  void keep_covers_that_sway(double instant, const StaticState& state, bool last);
+  /// Residuals go round or drift: where they went round before in this instant, or drift, or it has no iteration left, patches
+  /// that press, and on which masters end, keep their cover. @return whether any does that did not
+  bool keep_covers_that_sway(double instant, const StaticState& state, bool last);
   /// ContactState::keep_cover; EVOLUTION_50 says so once in a zone.
   void keep_cover(double instant, std::size_t patch);
   /// EVOLUTION_50 or 51

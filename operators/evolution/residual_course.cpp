@@ -48,6 +48,13 @@ std::optional<double> ResidualCourse::order() const {
   return std::log(last) / std::log(before);
 }
 
+int ResidualCourse::growths() const {
+  int count = 0;
+  for (auto now = residuals_.rbegin(); now != residuals_.rend() && now + 1 != residuals_.rend() && *now > *(now + 1); ++now)
+    ++count;
+  return count;
+}
+
 std::optional<std::size_t> ResidualCourse::period() const {
   for (std::size_t period = 2; 2 * period <= residuals_.size(); ++period) {
     const auto last = residuals_.end() - static_cast<std::ptrdiff_t>(period);

@@ -22,6 +22,8 @@ class ResidualCourse {
   std::optional<double> order() const;
   /// After how many iterations residuals come back, two whole periods long; nothing where they do not.
   std::optional<std::size_t> period() const;
+  /// How many of the last iterations have each left more than the one before.
+  int growths() const;
   /// In how many iterations up to the last it has been largest at the same place.
   int stays() const { return stays_; }
   /// How it changes in words, with a semicolon before them; empty before it has.

@@ -32,10 +32,6 @@ DRAWN = {
 
 #: why a row misses what is asked of it
 REASONS = {
-    "overhang": "the path of these patches has a limit point at 98.9 % of the way: the one over the end of the master is covered less and less "
-                "(60, 58, 57, 55 % at 9.5, 9.75, 9.8125, 9.875), for its pressure pushes that end back; behind it no statuses satisfy it, until it keeps its cover "
-                "(EVOLUTION_50): the last step takes 43 iterations. With 200 steps the rate of the fastest node shows it: 1/rate^2 falls along a straight line (to 3 %) "
-                "to nothing at 98.83 %",
     "tips": "a corner passes over coarse patches of a slope. Normals of facets beyond it meet its upright side, so that the gap of a patch is four times as steep as the "
             "motion and bends sharply: iterates jump to and fro between gaps of -0.3 and 0.03 of the patch before they converge, statuses with them; neither a line search on "
             "the power of the forces nor one on the gaps helps",

@@ -2,6 +2,7 @@
 
 import math
 import pathlib
+import re
 import sys
 import unittest
 
@@ -207,6 +208,16 @@ class Skins(StudyTest):
                       strain="GREEN_LAGRANGE", zones=[zone("RING", "PLATES", 0)], steps=3, asked={"per step": 8},
                       moves=[held("FLOOR"), path("LID", [(0, 0), (3, 0)], [(0, 0), (3, -0.75)])])
         self.assertEqual(missed(study, run(study, LACON, self.folder)), [])
+
+    def test_residuals_of_covers_that_are_kept_fall_quadratically(self):
+        """Beyond the limit point of a patch that is covered less and less: 88 iterations without the ends of kept covers in the tangent, by 0.4 each."""
+        (_, study), = chosen(["overhang/20 % QUAD8 GREEN upper"])
+        figures = run(study, LACON, self.folder)
+        self.assertEqual(missed(study, figures), [])
+        self.assertIn("EVOLUTION_50", figures["alarms"])
+        table = re.findall(r"^ \|\s*\d+\s*X?\s*\|\s*\S+(?: X)?\s*\|\s*(\S+)", (self.folder / "out").read_text(), re.MULTILINE)
+        before, middle, last = (float(residual) for residual in table[-4:-1])
+        self.assertGreater(math.log(last / middle) / math.log(middle / before), 1.5)
 
     def test_overlap_of_facets_is_told(self):
         """Half rings, one in the other, whose arcs have the same radius: chords of 9 degrees overlap arcs by 1 - cos 4.5 degrees = 0.0031."""

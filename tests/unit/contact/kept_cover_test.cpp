@@ -38,15 +38,16 @@ struct Scene {
   }
 };
 
-/// In the plane: a bent slave that looks down, from x = 0 to 1, over masters from -0.2 to `end`.
-Scene in_plane(double end) {
+/// In the plane: a bent slave that looks down, from x = 0 to 1, over masters from -0.2 to `end`, the last one as steep as
+/// asked.
+Scene in_plane(double end, double slope = 0.2) {
   Scene scene;
   scene.mesh.dimension = 2;
   const auto a = scene.node(1, 0.1, 0), b = scene.node(0, 0.1, 0), c = scene.node(0.5, 0.13, 0);
   scene.slave(CellType::SEG3, {b, a, c}, 14);
   std::int32_t last = -1;
   for (const double x : {-0.2, 0.3, end}) {
-    const auto next = scene.node(x, 0.05 + 0.2 * x, 0);
+    const auto next = scene.node(x, 0.05 + 0.2 * std::min(x, 0.3) + slope * std::max(x - 0.3, 0.0), 0);
     if (last >= 0) scene.master(CellType::SEG2, {next, last});
     last = next;
   }
@@ -86,6 +87,8 @@ Scene in_space(double end, bool quadratic) {
 struct Derivatives {
   double gap = 0;
   std::vector<double> gradient, hessian;
+  /// What they leave out of their own derivatives, because ends are still: (n), (n, n).
+  std::vector<double> of_gap, of_gradient;
 };
 
 Derivatives derivatives(const Scene& scene, bool kept) {
@@ -94,7 +97,7 @@ Derivatives derivatives(const Scene& scene, bool kept) {
   ContactGeometry geometry(scene.mesh, scene.model, scene.contact, registry);
   geometry.find_ends({});
   geometry.update(std::vector<double>(n));
-  Derivatives sum{0, std::vector<double>(n), std::vector<double>(n * n)};
+  Derivatives sum{0, std::vector<double>(n), std::vector<double>(n * n), std::vector<double>(n), std::vector<double>(n * n)};
   for (const auto& of : geometry.vary(std::vector<std::int8_t>{2}, {kept})) {
     const auto at = [&](std::size_t i) { return d * static_cast<std::size_t>(of.nodes[i / d]) + i % d; };
     const std::size_t m = of.of_gap.gradient.size();
@@ -102,6 +105,10 @@ Derivatives derivatives(const Scene& scene, bool kept) {
     for (std::size_t i = 0; i < m; ++i) {
       sum.gradient[at(i)] += of.of_gap.gradient[i];
       for (std::size_t j = 0; j < m; ++j) sum.hessian[at(i) * n + at(j)] += of.of_gap.hessian[i * m + j];
+      for (const MovingEnd& end : of.of_gap.ends) {
+        sum.of_gap[at(i)] += end.gap * end.place[i];
+        for (std::size_t j = 0; j < m; ++j) sum.of_gradient[at(i) * n + at(j)] += end.gradient[i] * end.place[j];
+      }
     }
   }
   return sum;
@@ -188,6 +195,37 @@ TEST(KeptCover, ChangesNoGapAndNoForceAlongTheNormal) {
     EXPECT_NEAR(moves.gradient[2 * node + 1], kept.gradient[2 * node + 1], 1e-14);
   const auto end = 2 * static_cast<std::size_t>(scene.master_nodes[0]);
   EXPECT_GT(std::abs(moves.gradient[end] - kept.gradient[end]), 1e-3);
+}
+
+// Gaps and forces of a kept cover against their differences: what the symmetric part lacks is what the ends that move add.
+TEST(KeptCover, IsDifferentiatedWhollyByItsEndsAsWell) {
+  for (const double slope : {0.2, 3.0})  // the steep one has a share that turns with it
+    for (const bool smoothing : {false, true}) {
+      Scene scene = in_plane(slope > 1 ? 0.32 : 0.6, slope);
+      scene.contact.smoothing = smoothing;
+      const std::size_t n = 2 * scene.mesh.n_nodes();
+      const Derivatives of = derivatives(scene, true);
+      double lacking = 0;
+      for (std::size_t j = 0; j < n; ++j) {
+        constexpr double step = 1e-6;
+        double& place = scene.mesh.coordinates[3 * (j / 2) + j % 2];
+        const double middle = place;
+        place = middle + step;
+        const Derivatives after = derivatives(scene, true);
+        place = middle - step;
+        const Derivatives before = derivatives(scene, true);
+        place = middle;
+        EXPECT_NEAR((after.gap - before.gap) / (2 * step), of.gradient[j] + of.of_gap[j], 1e-7 * largest(of.gradient)) << j;
+        for (std::size_t i = 0; i < n; ++i) {
+          EXPECT_NEAR((after.gradient[i] - before.gradient[i]) / (2 * step), of.hessian[i * n + j] + of.of_gradient[i * n + j],
+                      1e-7 * largest(of.hessian))
+              << i << ' ' << j << ' ' << slope << ' ' << smoothing;
+          lacking = std::max(lacking, std::abs(of.of_gradient[i * n + j] - of.of_gradient[j * n + i]));
+        }
+      }
+      EXPECT_GT(lacking, 1e-2 * largest(of.hessian));  // it is not symmetric
+      EXPECT_GT(largest(of.of_gap), 1e-3 * largest(of.gradient));
+    }
 }
 
 }  // namespace
