@@ -16,9 +16,6 @@
 namespace lacon {
 namespace {
 
-/// "CONT_ELEM_3.masters.h5" of "CONT_ELEM_3.h5".
-std::filesystem::path path_of_masters(std::filesystem::path field) { return field.replace_extension(".masters.h5"); }
-
 /// Remove the rows of a table whose INST is behind an instant.
 void drop_behind(Table& table, double instant) {
   const auto named = [](const Table::Column& column) { return column.name == "INST"; };
@@ -198,7 +195,7 @@ void Archive::put(const std::string& parameter, double value) {
   values.push_back(value);
 }
 
-/// Beside CONT_ELEM, for who looks at it: what its patches were paired with.
+/// Beside CONT_ELEM: what its patches were paired with, for who looks at it, and which of them keep their cover.
 void Archive::add_masters(std::int64_t number) {
   if (!present_.contact || !choice_.keeps("CONT_ELEM")) return;
   const std::filesystem::path field = base_.folder() / result_.fields.at("CONT_ELEM").at(number);
@@ -206,6 +203,10 @@ void Archive::add_masters(std::int64_t number) {
     root.set("lacon_type", std::string_view("masters"));
     root.set("format", storage::format);
     write(root, paired_masters(present_.problem.mesh, *present_.problem.contact, present_.contact->geometry()));
+    std::vector<std::int64_t> kept;
+    for (std::size_t p = 0; p < present_.contact->n_patches(); ++p)
+      if (present_.contact->keeps_cover(p)) kept.push_back(static_cast<std::int64_t>(p));
+    if (!kept.empty()) root.write("kept_covers", kept);
   });
 }
 

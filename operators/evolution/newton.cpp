@@ -7,6 +7,7 @@
 #include <cmath>
 #include <map>
 #include <set>
+#include <utility>
 
 #include "lacon/catalog/messages.hpp"
 #include "lacon/catalog/wording.hpp"
@@ -70,6 +71,8 @@ void Newton::begin(StaticState& state, const std::string& label, bool as_given) 
     equilibrium_.pair(state.displacement);
     state.patches = contact()->initial();
   }
+  for (const std::size_t patch : std::exchange(state.kept_covers, {}))
+    if (contact()->geometry().zone_of(patch) >= 0) keep_cover(options_.start, patch);
   start_heated(state);
   if (as_given) equilibrium_.start_from(state);
   equilibrium_.begin_stressed(state);

@@ -22,9 +22,10 @@ struct PointValues {
 struct StaticState {
   std::vector<double> displacement;  ///< (n_nodes, n_components), with the other unknowns of each node behind it
   Patchwise patches;
-  std::vector<double> relations;    ///< multipliers of the loads' relations
-  std::vector<PointValues> points;  ///< of each solid set; empty where `kept` is there
-  KeptState kept = {};              ///< the same, where the processes of PETSc have the cells
+  std::vector<double> relations;              ///< multipliers of the loads' relations
+  std::vector<PointValues> points;            ///< of each solid set; empty where `kept` is there
+  std::vector<std::size_t> kept_covers = {};  ///< patches whose cover another computation has kept, to begin with
+  KeptState kept = {};                        ///< the same, where the processes of PETSc have the cells
 
   std::size_t n_sets() const { return kept ? kept->n_sets() : points.size(); }
 };

@@ -12,6 +12,7 @@
 #include "lacon/operators/fields/expected.hpp"
 #include "lacon/operators/fields/internal_variables.hpp"
 #include "lacon/structures/displacement.hpp"
+#include "lacon/structures/hdf5.hpp"
 
 namespace lacon {
 namespace {
@@ -223,6 +224,8 @@ void add_initial_strains(const StaticProblem& problem, const Base& base, const R
 
 }  // namespace
 
+std::filesystem::path path_of_masters(std::filesystem::path field) { return field.replace_extension(".masters.h5"); }
+
 bool was_strained(const Base& base, const Result& result, std::int64_t order) {
   return std::ranges::any_of(result.stage(order).loads,
                              [&](const ResultLoad& load) { return !base.load(load.load).strain.empty(); });
@@ -261,6 +264,11 @@ StaticState archived_state(const StaticProblem& problem, const Base& base, const
   if (fresh >= 0) inform("EVOLUTION_13", {{"label", result.label}, {"cell", cell_name(fresh)}});
   if (!problem.contact || !has_field(result, "CONT_ELEM", order)) return state;
   state.patches = patches_of(base.field(result, "CONT_ELEM", order), problem.mesh, *problem.contact, result.label);
+  const std::filesystem::path masters = path_of_masters(base.folder() / result.fields.at("CONT_ELEM").at(order));
+  if (!std::filesystem::exists(masters)) return state;  // of a result that another command made
+  if (const hdf5::Reader root(masters); root.has("kept_covers"))
+    for (const std::int64_t patch : root.read<std::int64_t>("kept_covers"))
+      if (patch >= 0 && patch < problem.n_patches()) state.kept_covers.push_back(static_cast<std::size_t>(patch));
   return state;
 }
 
