@@ -2,6 +2,7 @@
 // linear in the number of facets (time ratio for four times the facets at most 4.6), and microseconds for each contact cell,
 // alone, with gap and both integrals by the contact kernel, and once more with traces and derivatives of gaps.
 #include <cmath>
+#include <map>
 #include <numbers>
 #include <random>
 
@@ -84,9 +85,19 @@ std::vector<std::int32_t> add_skin(Mesh& mesh, int n, CellType type, bool up, do
       const double shake = type == CellType::TRIA3 && i % n != 0 && j % n != 0 ? 0.2 * std::sin(12.9898 * i + 78.233 * j) : 0;
       mesh.coordinates.insert(mesh.coordinates.end(), {(i + shake) / n, (j - shake) / n, z});
     }
+  std::map<std::pair<std::int32_t, std::int32_t>, std::int32_t> middles;
+  const auto middle = [&](std::int32_t a, std::int32_t b) {
+    const auto [at, is_new] = middles.try_emplace(std::minmax(a, b), static_cast<std::int32_t>(mesh.n_nodes()));
+    if (is_new) {
+      for (std::size_t d = 0; d < 3; ++d) mesh.coordinates.push_back((mesh.point(a)[d] + mesh.point(b)[d]) / 2);
+    }
+    return at->second;
+  };
   const auto add = [&](std::initializer_list<std::int32_t> nodes) {
     std::vector<std::int32_t> in_order(nodes);
     if (!up) std::reverse(in_order.begin(), in_order.end());
+    for (std::size_t i = 0, count = in_order.size(); i < count && catalog::cell(type).order > 1; ++i)
+      in_order.push_back(middle(in_order[i], in_order[(i + 1) % count]));
     cells.push_back(static_cast<std::int32_t>(mesh.types.size()));
     mesh.types.push_back(type);
     mesh.cells.push_back(in_order);
@@ -94,7 +105,7 @@ std::vector<std::int32_t> add_skin(Mesh& mesh, int n, CellType type, bool up, do
   for (int j = 0; j < n; ++j)
     for (int i = 0; i < n; ++i) {
       const std::int32_t a = first + j * (n + 1) + i, b = a + 1, c = b + n + 1, d = c - 1;
-      if (type == CellType::QUAD4) {
+      if (catalog::cell(type).family == Family::QUAD) {
         add({a, b, c, d});
       } else {
         add({a, b, c});
@@ -110,7 +121,7 @@ struct Skins {
   Contact contact;
 
   Skins(std::int64_t facets, CellType type) {
-    const int cells_of_square = type == CellType::QUAD4 ? 1 : 2;
+    const int cells_of_square = catalog::cell(type).family == Family::QUAD ? 1 : 2;
     const int n = static_cast<int>(std::lround(std::sqrt(static_cast<double>(facets) / cells_of_square)));
     mesh.dimension = 3;
     ContactZone zone;
@@ -126,7 +137,7 @@ struct Skins {
     }
     mesh.patches = patches;
     contact.zones.push_back(zone);
-    model.elements = {type == CellType::QUAD4 ? "3D/QUAD4" : "3D/TRIA3"};
+    model.elements = {"3D/" + std::string(catalog::cell(type).name)};
     model.element.assign(mesh.types.size(), 0);
   }
 };
@@ -171,44 +182,43 @@ void with_gap_and_integrals(benchmark::State& state) {
 }
 
 /// Skins that are no longer what they were: Jacobians that vary along flat facets ask for rules of higher degree, warped facets
-/// for normals that vary.
-enum class Shape { distorted, warped };
+/// for normals that vary; warped ones of the second order are curved.
+enum class Shape { flat, distorted, warped };
 
-template <Shape shape>
-void after_displacement(benchmark::State& state) {
-  const Skins skins(state.range(0), CellType::QUAD4);
-  static Registry registry;
-  ContactGeometry geometry(skins.mesh, skins.model, skins.contact, registry);
+std::vector<double> displacement_to(Shape shape, const Mesh& mesh) {
   std::vector<double> displacement;
-  for (std::size_t node = 0; node < skins.mesh.n_nodes(); ++node) {
-    const auto& x = skins.mesh.point(node);
+  for (std::size_t node = 0; node < mesh.n_nodes(); ++node) {
+    const auto& x = mesh.point(node);
     const double u = 0.01 * std::sin(3 * x[0] + 2 * x[1]);
     if (shape == Shape::distorted)
       displacement.insert(displacement.end(), {u, -u, 0});
     else
-      displacement.insert(displacement.end(), {0, 0, u});
+      displacement.insert(displacement.end(), {0, 0, shape == Shape::warped ? u : 0});
   }
+  return displacement;
+}
+
+template <CellType type, Shape shape>
+void after_displacement(benchmark::State& state) {
+  const Skins skins(state.range(0), type);
+  static Registry registry;
+  ContactGeometry geometry(skins.mesh, skins.model, skins.contact, registry);
+  const std::vector<double> displacement = displacement_to(shape, skins.mesh);
   for (auto run : state) geometry.update(displacement);
   report_pairing(state, skins.contact.slaves.size(), geometry.cells().size());
 }
 
 /// Contact cells once more, with traces, and derivatives of their gaps, summed up for each slave cell: first ones, or second
 /// ones too.
-template <CellType type, int order, bool warped>
+template <CellType type, int order, Shape shape>
 void with_derivatives(benchmark::State& state) {
   const Skins skins(state.range(0), type);
   static Registry registry;
   ContactGeometry geometry(skins.mesh, skins.model, skins.contact, registry);
-  std::vector<double> displacement(skins.mesh.coordinates.size(), 0.0);
-  for (std::size_t node = 0; warped && node < skins.mesh.n_nodes(); ++node) {
-    const auto& x = skins.mesh.point(node);
-    displacement[3 * node + 2] = 0.01 * std::sin(3 * x[0] + 2 * x[1]);
-  }
-  geometry.update(displacement);
+  geometry.update(displacement_to(shape, skins.mesh));
   const std::vector<std::int8_t> orders(geometry.n_patches(), order);
-  std::size_t cells = 0;
-  for (auto run : state) cells = geometry.vary(orders).size();
-  report_pairing(state, skins.contact.slaves.size(), cells);
+  for (auto run : state) benchmark::DoNotOptimize(geometry.vary(orders));
+  report_pairing(state, skins.contact.slaves.size(), geometry.cells().size());
 }
 
 void sizes(benchmark::internal::Benchmark* bench) {
@@ -221,13 +231,20 @@ BENCHMARK(pairing_alone<CellType::QUAD4>)->Apply(sizes);
 BENCHMARK(pairing_alone<CellType::TRIA3>)->Apply(sizes);
 BENCHMARK(with_gap_and_integrals<CellType::QUAD4>)->Apply(sizes);
 BENCHMARK(with_gap_and_integrals<CellType::TRIA3>)->Apply(sizes);
-BENCHMARK(after_displacement<Shape::distorted>)->Arg(10'000)->Unit(benchmark::kMillisecond);
-BENCHMARK(after_displacement<Shape::warped>)->Arg(10'000)->Unit(benchmark::kMillisecond);
-BENCHMARK(with_derivatives<CellType::QUAD4, 1, false>)->Arg(10'000)->Unit(benchmark::kMillisecond);
-BENCHMARK(with_derivatives<CellType::QUAD4, 2, false>)->Arg(10'000)->Unit(benchmark::kMillisecond);
-BENCHMARK(with_derivatives<CellType::QUAD4, 1, true>)->Arg(10'000)->Unit(benchmark::kMillisecond);
-BENCHMARK(with_derivatives<CellType::QUAD4, 2, true>)->Arg(10'000)->Unit(benchmark::kMillisecond);
-BENCHMARK(with_derivatives<CellType::TRIA3, 1, false>)->Arg(10'000)->Unit(benchmark::kMillisecond);
-BENCHMARK(with_derivatives<CellType::TRIA3, 2, false>)->Arg(10'000)->Unit(benchmark::kMillisecond);
+BENCHMARK(after_displacement<CellType::QUAD4, Shape::distorted>)->Arg(10'000)->Unit(benchmark::kMillisecond);
+
+/// Pairing with gaps, and derivatives, of one kind of skins: next to each other, for their ratios.
+#define LACON_BENCH_DERIVATIVES(type, shape, facets)                                                        \
+  BENCHMARK(after_displacement<CellType::type, Shape::shape>)->Arg(facets)->Unit(benchmark::kMillisecond);  \
+  BENCHMARK(with_derivatives<CellType::type, 1, Shape::shape>)->Arg(facets)->Unit(benchmark::kMillisecond); \
+  BENCHMARK(with_derivatives<CellType::type, 2, Shape::shape>)->Arg(facets)->Unit(benchmark::kMillisecond)
+LACON_BENCH_DERIVATIVES(QUAD4, flat, 10'000);
+LACON_BENCH_DERIVATIVES(QUAD4, warped, 10'000);
+LACON_BENCH_DERIVATIVES(TRIA3, flat, 10'000);
+LACON_BENCH_DERIVATIVES(TRIA3, warped, 10'000);
+LACON_BENCH_DERIVATIVES(QUAD8, flat, 2'500);
+LACON_BENCH_DERIVATIVES(QUAD8, warped, 2'500);
+LACON_BENCH_DERIVATIVES(TRIA6, flat, 2'500);
+LACON_BENCH_DERIVATIVES(TRIA6, warped, 2'500);
 
 }  // namespace
