@@ -34,12 +34,12 @@ DRAWN = {
 REASONS = {
     "tips": "a corner passes over coarse patches of a slope. Normals of facets beyond it meet its upright side, so that the gap of a patch is four times as steep as the "
             "motion and bends sharply: iterates jump to and fro between gaps of -0.3 and 0.03 of the patch before they converge, statuses with them; neither a line search on "
-            "the power of the forces nor one on the gaps helps",
-    "polygon": "three iterations of quadratic convergence in each of 43 steps, four or five where a corner goes over to another patch: no motion before leads there",
+            "the power of the forces nor one on the gaps helps, nor increments that are shortened until the next correction by the same matrix is smaller (69 to 295)",
+    "polygon": "three iterations of quadratic convergence in each of 43 steps, four or five where a corner goes over to another patch: no motion before leads "
+               "there, nor does a parabola through three states (172 to 173, 175 to 176)",
     "difficult": "sliding steps of a whole cell: the prediction, with the motion imposed at one end alone, flows where the solution does not",
     "corner": "patches of the plate hold the average height of what is above them, and this changes as the tool moves along: Fx/Fy is (height at "
               "one end - height at the other) / length of the patch; the tool as slave has no such force",
-    "faces": "the border of one skin lies on the edge of the other along its whole length, and bodies that flow sway across it: forces bend sharply there",
 }
 
 
