@@ -43,6 +43,7 @@ bool finite(const Surface& surface, std::size_t cell) {
 }
 
 double deepest(const PairingOptions& options, double diameter, double cosine) {
+  if (options.distance_limit > 0) return options.distance_limit * diameter + options.motion;
   return options.depth_limit > 0 ? options.depth_limit * diameter * std::max(cosine, 0.0) + options.motion
                                  : std::numeric_limits<double>::infinity();
 }
@@ -53,7 +54,7 @@ bool within_limits(const PairingOptions& options, double largest_gap, double dia
 }
 
 std::optional<Rejection> beyond_limits(const PairingOptions& options, double gap, double diameter, double cosine) {
-  if (options.distance_limit > 0 && std::abs(gap) > options.distance_limit * diameter) return Rejection::too_far;
+  if (options.distance_limit > 0 && gap > options.distance_limit * diameter + options.motion) return Rejection::too_far;
   if (-gap > deepest(options, diameter, cosine)) return Rejection::too_deep;
   return std::nullopt;
 }

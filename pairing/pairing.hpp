@@ -64,11 +64,12 @@ struct PairingOptions {
   /// Largest |gap| in the middle of what a couple has in common, in diameters of the larger of its two cells (COEF_MULT_APPA);
   /// not positive: no limit.
   double distance_limit = -1;
-  /// Likewise of an overlap alone, behind which normals reach through a body; not positive: no limit. It is multiplied by the
-  /// cosine of the angle between both normals: a wall is met inside a body only by who looks through it.
+  /// Likewise of an overlap alone, where distances have no limit, behind which normals reach through a body; not positive: no
+  /// limit. It is multiplied by the cosine of the angle between both normals: a wall is met inside a body only by who looks
+  /// through it.
   double depth_limit = -1;
   double motion =
-      0;  ///< by how much more cells may overlap than `depth_limit` says: what they have moved since they were apart
+      0;  ///< by how much more cells may be apart or overlap than these say: what they have moved since they were apart
   /// Angle between the slave's normal and the opposite of the master's, in degrees, from which on a couple counts less and less
   /// (steepness.hpp); 90: none does.
   double steep_angle = 85;
@@ -94,7 +95,7 @@ enum class Rejection : std::uint8_t {
   no_image,           ///< an integration point has no image on the master along the slave's normal
   too_far,            ///< beyond PairingOptions::distance_limit
   too_steep,          ///< its share is nothing: PairingOptions::steep_angle
-  too_deep            ///< beyond PairingOptions::depth_limit
+  too_deep            ///< an overlap beyond that, or beyond PairingOptions::depth_limit
 };
 inline constexpr int n_rejections = 9;
 std::string_view rejection_name(Rejection rejection);

@@ -19,12 +19,15 @@ void ContactNotices::tell_what_is_too_deep(double instant) {
     const ContactGeometry::TooDeep& deep = geometry.too_deep(zone);
     if (deep.count == 0 || !too_deep_.insert(zone).second) continue;
     const ContactZone& names = present_.problem.contact->zones[zone];
-    inform("EVOLUTION_17", {{"slave", names.slave_group},
-                            {"master", names.master_group},
-                            {"count", std::to_string(deep.count)},
-                            {"cell", cell_name(deep.slave)},
-                            {"instant", fmt::format("{:.9g}", instant)},
-                            {"limit", fmt::format("{:g}", geometry.zones()[zone].pairing.depth_limit)}});
+    const PairingOptions& limits = geometry.zones()[zone].pairing;
+    const bool by_distance = limits.distance_limit > 0;
+    inform(by_distance ? "EVOLUTION_52" : "EVOLUTION_17",
+           {{"slave", names.slave_group},
+            {"master", names.master_group},
+            {"count", std::to_string(deep.count)},
+            {"cell", cell_name(deep.slave)},
+            {"instant", fmt::format("{:.9g}", instant)},
+            {"limit", fmt::format("{:g}", by_distance ? limits.distance_limit : limits.depth_limit)}});
   }
 }
 

@@ -40,7 +40,8 @@ class ContactNotices : public EvolutionObserver {
   static void save(const hdf5::Group& group, const PiercedZones& zones);
   static PiercedZones resumed(const hdf5::Group& group);
   std::string first_cell(std::size_t patch) const;
-  /// EVOLUTION_17: couples of each zone that overlap too deep to be taken for contact, once a zone.
+  /// EVOLUTION_17, or 52 where COEF_MULT_APPA says how deep: couples of each zone that overlap too deep to be taken for
+  /// contact, once a zone.
   void tell_what_is_too_deep(double instant);
 
   /// EVOLUTION_23, once a body.

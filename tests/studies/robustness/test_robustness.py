@@ -105,6 +105,28 @@ class Skins(StudyTest):
             self.assertEqual(missed(study, run(study, LACON, self.folder)), [], kind)
             self.assertIn("<I> <EVOLUTION_17>", "".join((self.folder / name).read_text() for name in ("out", "err")))
 
+    def test_a_limit_of_distance_lets_no_body_pass(self):
+        """COEF_MULT_APPA of less than a step: what bodies have moved counts with it. What overlaps by more at the start is told."""
+
+        def pressed(gap, **more):
+            mesh = union([slab("QUAD4", "TOOL", (-0.5, 0.5), (gap, 1 + gap), (9, 9), skin="bottom"), slab("QUAD4", "SLAB", (-1, 1), (-1, 0), (14, 7))])
+            study = Study(name="limit", mesh=mesh, materials={"TOOL": elastic(1e3), "SLAB": elastic(1e3)}, zones=[zone("TOOL", "SLAB", 0) | more],
+                          moves=[held("SLAB"), path("TOOL", [(0, 0), (2, 0)], [(0, 0), (2, -0.06)])], steps=2)
+            figures = run(study, LACON, self.folder)
+            self.assertEqual(figures["status"], "finished")
+            forces = re.findall(r"force on the slave \(\S+, (\S+)\)", (self.folder / "out").read_text())
+            return float(forces[-1]), "EVOLUTION_52" in figures.get("alarms", [])
+
+        free, told = pressed(0.01)
+        self.assertGreater(free, 1)
+        self.assertFalse(told)
+        for limit in (1e-3, 0.02, 1.0):
+            held_force, told = pressed(0.01, COEF_MULT_APPA=limit)
+            self.assertAlmostEqual(held_force / free, 1, delta=1e-6)
+            self.assertFalse(told, limit)
+        self.assertTrue(pressed(-0.02, COEF_MULT_APPA=0.01)[1])
+        self.assertFalse(pressed(-0.02)[1])
+
     def test_a_ring_that_ends_at_planes_of_symmetry_is_squeezed(self):
         """Normals of its curved facets lean over the planes, where the plates end: were it lost what they meet there, as much as each iterate makes
         of it, no iterate would be in equilibrium (60 iterations of the second step without end). Planes that relations hold are some, too."""

@@ -466,7 +466,9 @@ TEST(Pairing, LeavesOutWhatIsFurtherThanTheLimit) {
     EXPECT_EQ(near.cells.size(), 1u);
     EXPECT_TRUE(near.rejected.empty());
     EXPECT_EQ(far.cells.size(), 0u);
-    EXPECT_EQ(far.rejected, (std::vector<RejectedCouple>{{0, 0, Rejection::too_far}}));
+    EXPECT_EQ(far.rejected, (std::vector<RejectedCouple>{{0, 0, side > 0 ? Rejection::too_deep : Rejection::too_far}}));
+    EXPECT_EQ(pair(slave.view(), master.view(), {.distance_limit = 0.4, .motion = 0.2001}).cells.size(), 1u);
+    EXPECT_EQ(pair(slave.view(), master.view(), {.distance_limit = 0.4, .motion = 0.1999}).cells.size(), 0u);
     for (const double none : {-1.0, 0.0})
       EXPECT_EQ(pair(slave.view(), master.view(), {.distance_limit = none}).cells.size(), 1u);
   }
