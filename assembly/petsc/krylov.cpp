@@ -5,6 +5,8 @@
 #include <stdexcept>
 #include <utility>
 
+#include "lacon/assembly/petsc/block_matrix.hpp"
+
 namespace lacon {
 namespace {
 
@@ -62,26 +64,21 @@ OwnedMat make_matrix_in_place(Rows& rows, int block_size) {
   return made;
 }
 
-/// Rigid motions of the displacements, orthonormal; zero where one is imposed.
-void set_rigid_motions(Mat k, const BlockSystem& system, const BlockRows& rows) {
-  const int dimension = system.sizes.dimension, n_turns = dimension == 3 ? 3 : 1;
+/// Rigid motions of the displacements, orthonormal; zero where one is imposed. @param middle  of all nodes
+void set_rigid_motions(Mat k, int dimension, const Multigrid::Nodes& nodes, const double* middle) {
+  const int n_turns = dimension == 3 ? 3 : 1;
   std::vector<Vec> motions;
-  double middle[3] = {0, 0, 0};
-  for (std::int64_t node = 0; node < system.sizes.n_blocks; ++node)
-    for (int i = 0; i < dimension; ++i)
-      middle[i] += system.coordinates[node * dimension + i] / static_cast<double>(system.sizes.n_blocks);
   for (int motion = 0; motion < dimension + n_turns; ++motion) {
     Vec v = nullptr;
     double* values = nullptr;
     checked(MatCreateVecs(k, &v, nullptr));
     checked(VecGetArray(v, &values));
-    for (std::int64_t node = rows.blocks.first; node < rows.blocks.last; ++node) {
-      const std::int64_t at = (node - rows.blocks.first) * dimension;
-      const double* x = &system.coordinates[node * dimension];
+    for (std::size_t at = 0; at < nodes.is_free.size(); at += dimension) {
+      const double* x = &nodes.coordinates[at];
       const int turn = motion - dimension, from = dimension == 3 ? (turn + 1) % 3 : 0, to = dimension == 3 ? (turn + 2) % 3 : 1;
       for (int i = 0; i < dimension; ++i) {
         const double moved = turn < 0 ? i == motion : i == to ? x[from] - middle[from] : i == from ? middle[to] - x[to] : 0;
-        values[at + i] = rows.is[at + i] ? moved : 0;
+        values[at + i] = nodes.is_free[at + i] ? moved : 0;
       }
     }
     checked(VecRestoreArray(v, &values));
@@ -132,8 +129,9 @@ void checked(PetscErrorCode code) {
 
 void catch_errors() { checked(PetscPushErrorHandler(note_error, nullptr)); }
 
-Krylov::Krylov(const BlockSystem& system, OwnEntries entries, const KrylovOptions& options)
+Krylov::Krylov(const BlockSystem& system, OwnEntries entries, const KrylovOptions& options, Multigrid& multigrid)
     : options_(options),
+      multigrid_(multigrid),
       is_symmetric_(system.sizes.is_symmetric),
       n_multipliers_(system.sizes.n_multipliers),
       dimension_(system.sizes.dimension) {
@@ -152,7 +150,18 @@ Krylov::Krylov(const BlockSystem& system, OwnEntries entries, const KrylovOption
   scale_.assign(n_rows, 1.0);
   scale_.insert(scale_.end(), rows.scale.begin(), rows.scale.end());
   weight_ = rows.weight;
+  nodes_.coordinates.assign(system.coordinates.begin() + rows.blocks.first * dimension_,
+                            system.coordinates.begin() + rows.blocks.last * dimension_);
+  nodes_.is_free = rows.is;
+  for (std::int64_t node = 0; node < system.sizes.n_blocks; ++node)
+    for (int i = 0; i < dimension_; ++i)
+      middle_[i] += system.coordinates[node * dimension_ + i] / static_cast<double>(system.sizes.n_blocks);
   set_up_blocks(system, rows);
+}
+
+Krylov::~Krylov() {
+  ksp_ = {};
+  multigrid_.let_go();
 }
 
 void Krylov::set_up_blocks(const BlockSystem& system, BlockRows& rows) {
@@ -160,14 +169,14 @@ void Krylov::set_up_blocks(const BlockSystem& system, BlockRows& rows) {
   const auto block_size = static_cast<int>(dimension_);
   if (own == system.sizes.n_blocks * dimension_) {
     rows_of_k_ = std::move(rows.k);
-    k_ = make_matrix_in_place(rows_of_k_, block_size);
+    aij_ = make_matrix_in_place(rows_of_k_, block_size);
   } else {
-    k_ = make_matrix(rows.k, own, block_size);
+    aij_ = make_matrix(rows.k, own, block_size);
     rows.k = {};
   }
-  set_rigid_motions(k_, system, rows);
+  k_ = empty_blocks(aij_);
   if (n_multipliers_ == 0) {
-    checked(MatCreateVecs(k_, solution_.out(), side_.out()));
+    checked(MatCreateVecs(aij_, solution_.out(), side_.out()));
   } else {
     b_ = make_matrix(rows.b, own_multipliers, 1);
     c_ = make_matrix(rows.c, own, 1);
@@ -188,9 +197,15 @@ void Krylov::set_up_blocks(const BlockSystem& system, BlockRows& rows) {
   checked(VecDuplicate(side_, residual_.out()));
 }
 
-void Krylov::set_up_displacements(PC pc) const {
+void Krylov::set_up_displacements(KSP displacements) {
   const std::string& name = options_.preconditioner;
   const char* prefix = nullptr;
+  PC pc = nullptr;
+  if (!aij_) aij_ = without_blocks(k_);
+  checked(KSPSetOperators(displacements, k_, aij_));
+  if (name == "GAMG" && multigrid_.suits(nodes_)) return multigrid_.give_to(displacements, aij_);
+  set_rigid_motions(aij_, static_cast<int>(dimension_), nodes_, middle_);
+  checked(KSPGetPC(displacements, &pc));
   checked(PCGetOptionsPrefix(pc, &prefix));
   const std::string own = std::string("-") + (prefix ? prefix : "");
   if (name == "BOOMER") {
@@ -217,10 +232,15 @@ void Krylov::set_up_displacements(PC pc) const {
     set(own + "mg_levels_ksp_chebyshev_esteig", "0,0.04,0,1.1");
   }
   checked(PCSetFromOptions(pc));
+  checked(KSPSetUp(displacements));  // now, not in the first iteration
+  PetscBool is_multigrid = PETSC_FALSE;
+  checked(PetscObjectTypeCompare(reinterpret_cast<PetscObject>(pc), PCGAMG, &is_multigrid));
+  if (is_multigrid) multigrid_.take_from(displacements, nodes_);
 }
 
 void Krylov::set_up() {
   const Algorithm algorithm = algorithm_of(options_.algorithm);
+  ksp_ = {};
   checked(KSPCreate(PETSC_COMM_WORLD, ksp_.out()));
   Mat const matrix = n_multipliers_ ? matrix_ : k_;
   checked(KSPSetOperators(ksp_, matrix, matrix));
@@ -230,9 +250,7 @@ void Krylov::set_up() {
   set("-ksp_gcr_restart", std::to_string(restart));
   PC pc = nullptr;
   checked(KSPGetPC(ksp_, &pc));
-  if (n_multipliers_ == 0) {
-    set_up_displacements(pc);
-  } else {
+  if (n_multipliers_) {
     IS rows[2];
     checked(MatNestGetISs(matrix_, rows, nullptr));
     checked(PCSetType(pc, PCFIELDSPLIT));
@@ -252,14 +270,18 @@ void Krylov::set_up() {
     PetscInt n_parts = 0;
     KSP* parts = nullptr;
     checked(PCFieldSplitSchurGetSubKSP(pc, &n_parts, &parts));
-    PC displacements = nullptr;
-    checked(KSPGetPC(parts[0], &displacements));
-    set_up_displacements(displacements);
-    checked(KSPSetUp(parts[0]));  // now, not in the first iteration
+    KSP const displacements = parts[0];
     checked(PetscFree(parts));
+    set_up_displacements(displacements);
+  } else {
+    set_up_displacements(ksp_);
   }
   checked(KSPSetUp(ksp_));
   checked(KSPSetUpOnBlocks(ksp_));
+  if (aij_) fill(k_, aij_);
+  if (!multigrid_.is_there()) return;
+  aij_ = {};
+  rows_of_k_ = {};
 }
 
 void Krylov::load(std::span<const double> right_side) {
@@ -280,8 +302,7 @@ void Krylov::load(std::span<const double> right_side) {
   checked(VecRestoreArray(side_, &values));
 }
 
-KrylovResult Krylov::solve(std::span<double> right_side, double share) {
-  load(right_side);
+KrylovResult Krylov::iterate(double share) {
   KrylovResult result;
   double size = 0, left = 0;
   checked(VecNorm(side_, NORM_2, &size));
@@ -289,11 +310,14 @@ KrylovResult Krylov::solve(std::span<double> right_side, double share) {
   checked(VecCopy(side_, residual_));
   OwnedVec step;
   checked(VecDuplicate(solution_, step.out()));
-  Mat const matrix = n_multipliers_ ? matrix_ : k_;
+  Mat matrix = nullptr;
+  checked(KSPGetOperators(ksp_, &matrix, nullptr));
   left = size;
   for (int round = 0; round < most_rounds && left > share * size; ++round) {
-    const int more = options_.iterations - result.iterations;
-    checked(KSPSetTolerances(ksp_, share * size / left, PETSC_DEFAULT, PETSC_DEFAULT, std::max(1, more)));
+    const double before = left;
+    int most = options_.iterations - result.iterations;
+    if (multigrid_.is_kept()) most = std::min(most, multigrid_.most_iterations(std::log10(left / (share * size))));
+    checked(KSPSetTolerances(ksp_, share * size / left, PETSC_DEFAULT, PETSC_DEFAULT, std::max(1, most)));
     checked(KSPSolve(ksp_, residual_, step));
     KSPConvergedReason reason = KSP_CONVERGED_ITERATING;
     PetscInt iterations = 0;
@@ -306,14 +330,28 @@ KrylovResult Krylov::solve(std::span<double> right_side, double share) {
     checked(VecNorm(residual_, NORM_2, &left));
     result.failure = reason < 0 ? KSPConvergedReasons[reason] : "";
     if (reason < 0 || !std::isfinite(left)) break;
+    multigrid_.note(static_cast<int>(iterations), std::log10(before / left));
   }
   result.residual = size > 0 ? left / size : 0;
   if (left <= share * size)
     result.failure.clear();
   else if (result.failure.empty())
     result.failure = "STALLED";
-  if (!result.failure.empty()) return result;
+  return result;
+}
 
+KrylovResult Krylov::solve(std::span<double> right_side, double share) {
+  load(right_side);
+  KrylovResult result = iterate(share);
+  if (!result.failure.empty() && multigrid_.is_kept() &&
+      result.iterations < options_.iterations) {  // which may be what is wrong
+    const int lost = result.iterations;
+    multigrid_.forget();
+    set_up();
+    result = iterate(share);
+    result.iterations += lost;
+  }
+  if (!result.failure.empty()) return result;
   const double* values = nullptr;
   checked(VecGetArrayRead(solution_, &values));
   for (std::size_t i = 0; i < equation_.size(); ++i)

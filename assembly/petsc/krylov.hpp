@@ -1,42 +1,15 @@
 #pragma once
 // Iterations of PETSc on a block system: displacements by multigrid, multipliers by their Schur complement.
-#include <petscksp.h>
-
 #include <cstdint>
 #include <span>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include "lacon/assembly/petsc/block_rows.hpp"
+#include "lacon/assembly/petsc/multigrid.hpp"
+#include "lacon/assembly/petsc/owned.hpp"
 
 namespace lacon {
-
-/// What of PETSc is destroyed with its owner.
-template <class Object, PetscErrorCode (*destroy)(Object*)>
-class Owned {
- public:
-  Owned() = default;
-  Owned(Owned&& other) noexcept : object_(std::exchange(other.object_, nullptr)) {}
-  Owned& operator=(Owned&& other) noexcept {
-    std::swap(object_, other.object_);
-    return *this;
-  }
-  ~Owned() { destroy(&object_); }
-  operator Object() const { return object_; }
-  Object* out() { return &object_; }
-
- private:
-  Object object_ = nullptr;
-};
-using OwnedMat = Owned<Mat, MatDestroy>;
-using OwnedVec = Owned<Vec, VecDestroy>;
-using OwnedKsp = Owned<KSP, KSPDestroy>;
-
-/// Throws what PETSc says where a call of it failed.
-void checked(PetscErrorCode code);
-/// From now on calls of PETSc that fail print nothing, and checked() tells what was wrong.
-void catch_errors();
 
 struct KrylovOptions {
   std::string algorithm = "GMRES";      ///< SOLVEUR/ALGORITHME
@@ -53,7 +26,11 @@ struct KrylovResult {
 class Krylov {
  public:
   /// Takes its rows of the system, which need not be there any more. @param entries its own; their diagonal is found here
-  Krylov(const BlockSystem& system, OwnEntries entries, const KrylovOptions& options);
+  /// @param multigrid  of the system before, where it has one
+  Krylov(const BlockSystem& system, OwnEntries entries, const KrylovOptions& options, Multigrid& multigrid);
+  ~Krylov();
+  Krylov(const Krylov&) = delete;
+  Krylov& operator=(const Krylov&) = delete;
   /// Make the preconditioner.
   void set_up();
   /// @param right_side (n), the solution afterwards: each process writes its own  @param share of it that may be left
@@ -62,15 +39,20 @@ class Krylov {
  private:
   void load(std::span<const double> right_side);
   void set_up_blocks(const BlockSystem& system, BlockRows& rows);
-  void set_up_displacements(PC pc) const;
+  void set_up_displacements(KSP displacements);
+  KrylovResult iterate(double share);
 
   KrylovOptions options_;
+  Multigrid& multigrid_;
+  Multigrid::Nodes nodes_;
   bool is_symmetric_;
   std::int64_t n_multipliers_, dimension_;
   std::vector<std::int32_t> equation_;  ///< of own rows, displacements first; -1: imposed
   std::vector<double> scale_;           ///< of them
   std::vector<double> weight_;          ///< of own multipliers
-  Rows rows_of_k_;                      ///< where k_ has its entries, in one process
+  double middle_[3] = {0, 0, 0};        ///< of all nodes
+  Rows rows_of_k_;                      ///< where aij_ has its entries, in one process
+  OwnedMat aij_;                        ///< K for preconditioners that are made of it, as long as they need it
   OwnedMat k_, b_, c_, d_, matrix_, schur_;
   OwnedVec side_, solution_, residual_, weighted_, added_;
   OwnedKsp ksp_;

@@ -72,11 +72,12 @@ class Stage {
   Stage& operator=(const Stage&) = delete;
 };
 
-std::unique_ptr<Krylov> taken(const Lender& lender, const std::string& path, const Cells& cells, const KrylovOptions& options) {
+std::unique_ptr<Krylov> taken(const Lender& lender, const std::string& path, const Cells& cells, const KrylovOptions& options,
+                              lacon::Multigrid& multigrid) {
   const auto loan = lender.borrow(path, LoanUse::read);
   lacon::OwnEntries entries;
   if (const lacon::ElementPart* const part = cells.part()) entries = {.matrix = &part->matrix(), .place = part->place()};
-  return std::make_unique<Krylov>(BlockSystem::in(loan->memory()), std::move(entries), options);
+  return std::make_unique<Krylov>(BlockSystem::in(loan->memory()), std::move(entries), options, multigrid);
 }
 
 std::string solved(const Lender& lender, Krylov& krylov, double share, const std::string& path) {
@@ -103,6 +104,7 @@ bool sees(const std::string& path, std::int64_t number) {
 void serve(const KrylovOptions& options) {
   const Machines machines(PETSC_COMM_WORLD);
   answer("ready " + std::to_string(machines.count()));
+  lacon::Multigrid multigrid;
   std::unique_ptr<Krylov> krylov;
   Cells cells(own_rank(), n_ranks(), machines);
   for (std::string line = next_line(); !line.empty(); line = next_line()) {
@@ -110,11 +112,12 @@ void serve(const KrylovOptions& options) {
     try {
       if (line == "forget") {
         krylov.reset();
+        if (multigrid.is_old()) multigrid.forget();
         malloc_trim(0);  // what it had goes back to the system
         answer("forgotten");
       } else if (line.starts_with("set up ")) {
         const Stage stage("set up");
-        krylov = taken(machines, path, cells, options);
+        krylov = taken(machines, path, cells, options, multigrid);
         answer("taken");
         krylov->set_up();
         answer("ready");
@@ -129,6 +132,7 @@ void serve(const KrylovOptions& options) {
       std::cout << "failed " << error.what() << std::endl;
       if (n_ranks() > 1) MPI_Abort(PETSC_COMM_WORLD, 1);
       krylov.reset();
+      multigrid.forget();
     }
   }
 }

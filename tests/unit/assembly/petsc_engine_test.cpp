@@ -147,6 +147,26 @@ TEST_F(PetscEngineTest, GivesTheSameBitsInEveryRun) {
   for (const Eigen::VectorXd& x : found) EXPECT_EQ(x, found.front());
 }
 
+// A multigrid works for later matrices too, and where one is too different for that a new one is made: all are solved.
+TEST_F(PetscEngineTest, SolvesMatricesThatBecomeOthers) {
+  TwoBodies system;
+  PetscEngine engine(system.options());
+  engine.analyse(system.matrix);
+  const Eigen::VectorXd b = Eigen::VectorXd::Random(system.matrix.size());
+  for (const double stiffer : {0.0, 1e-3, 3.0, 30.0, 1e3}) {
+    for (int i = 1; i + 1 < n_nodes / 2; ++i)
+      system.matrix.add(std::vector<std::int64_t>{system.chain.numbering.of(i, 0), system.chain.numbering.of(i + 1, 0)},
+                        std::vector<double>{50 * stiffer, -50 * stiffer, 50 * stiffer});
+    engine.factorise(system.matrix);
+    Eigen::VectorXd x = b;
+    const Solution solution = engine.solve(span_of(x));
+    EXPECT_FALSE(solution.again) << stiffer << ": " << solution.again->stalled;
+    const Eigen::VectorXd expected = system.expected(b);
+    // 1e-12 of the right side is left; the condition becomes some 1e6
+    EXPECT_LE((x - expected).cwiseAbs().maxCoeff(), 1e-6 * expected.cwiseAbs().maxCoeff()) << stiffer;
+  }
+}
+
 // A matrix that is not symmetric is solved as well.
 TEST_F(PetscEngineTest, SolvesUnsymmetricMatrices) {
   const TwoBodies pattern;

@@ -1,0 +1,31 @@
+#pragma once
+// Products with a sparse matrix in whole blocks.
+#include <cstdint>
+#include <vector>
+
+namespace lacon {
+
+template <class Real>
+struct BlockEntries {
+  int rows = 0, columns = 0;            ///< of a block
+  std::vector<std::int32_t> offset{0};  ///< of rows of blocks
+  std::vector<std::int32_t> column;     ///< of blocks
+  std::vector<Real> value;              ///< blocks column by column, and room for a vector register behind them
+};
+
+/// y = A x, or y += A x, or y += A^T x; sums in the order of the blocks.
+template <class Real>
+using BlockProduct = void (*)(const BlockEntries<Real>& a, const double* x, double* y);
+template <class Real>
+struct BlockKernels {
+  int rows = 0, columns = 0;
+  BlockProduct<Real> multiply = nullptr, add = nullptr, add_transposed = nullptr;
+};
+/// Null where there are none for blocks of this size.
+const BlockKernels<float>* single_kernels(int rows, int columns);
+const BlockKernels<double>* double_kernels(int rows, int columns);
+
+/// Values behind the last block that a kernel may read.
+constexpr int read_behind = 8;
+
+}  // namespace lacon

@@ -1,0 +1,293 @@
+#include "lacon/assembly/petsc/block_matrix.hpp"
+
+#include <algorithm>
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <span>
+#include <stdexcept>
+#include <type_traits>
+#include <utility>
+#include <vector>
+
+#include "lacon/assembly/petsc/block_kernels.hpp"
+
+namespace lacon {
+namespace {
+
+/// Entries of a sequential AIJ matrix. @param block_of  of its columns: which column of blocks, and which one there
+template <class Real, class BlockOf>
+BlockEntries<Real> gathered(Mat matrix, int rows, int columns, const BlockOf& block_of) {
+  BlockEntries<Real> made{.rows = rows, .columns = columns};
+  PetscInt n = 0;
+  const PetscInt *offset = nullptr, *column = nullptr;
+  const PetscScalar* value = nullptr;
+  PetscBool done = PETSC_FALSE;
+  checked(MatGetRowIJ(matrix, 0, PETSC_FALSE, PETSC_FALSE, &n, &offset, &column, &done));
+  checked(MatSeqAIJGetArrayRead(matrix, &value));
+  std::vector<std::int32_t> blocks;
+  const int size = rows * columns;
+  const auto all_of = [&](PetscInt first) {
+    blocks.clear();
+    const std::span<const PetscInt> of_first{column + offset[first], column + offset[first + 1]};
+    for (int r = 0; r < rows; ++r) {
+      const std::span<const PetscInt> own{column + offset[first + r], column + offset[first + r + 1]};
+      if (r > 0 && std::ranges::equal(own, of_first)) continue;  // nearly always
+      for (const PetscInt c : own)
+        if (const std::int32_t block = block_of(c) / columns; blocks.empty() || blocks.back() != block) blocks.push_back(block);
+    }
+    if (std::ranges::is_sorted(blocks, std::less<>())) return;
+    std::sort(blocks.begin(), blocks.end());
+    blocks.erase(std::unique(blocks.begin(), blocks.end()), blocks.end());
+  };
+  made.offset.reserve(n / rows + 1);
+  for (PetscInt first = 0; first < n; first += rows) {
+    all_of(first);
+    made.offset.push_back(made.offset.back() + static_cast<std::int32_t>(blocks.size()));
+  }
+  made.column.reserve(made.offset.back());
+  made.value.assign(static_cast<std::size_t>(made.offset.back()) * size + read_behind, 0);
+  for (PetscInt first = 0; first < n; first += rows) {
+    all_of(first);
+    Real* const row = made.value.data() + made.column.size() * size;
+    made.column.insert(made.column.end(), blocks.begin(), blocks.end());
+    for (int r = 0; r < rows; ++r) {
+      std::ptrdiff_t block = 0;
+      for (PetscInt k = offset[first + r]; k < offset[first + r + 1]; ++k) {
+        const std::int32_t at = block_of(column[k]);
+        while (block < std::ssize(blocks) && blocks[block] < at / columns) ++block;
+        if (block == std::ssize(blocks) || blocks[block] != at / columns)  // columns are in no order
+          block = std::lower_bound(blocks.begin(), blocks.end(), at / columns) - blocks.begin();
+        row[block * size + at % columns * rows + r] = static_cast<Real>(value[k]);
+      }
+    }
+  }
+  checked(MatSeqAIJRestoreArrayRead(matrix, &value));
+  checked(MatRestoreRowIJ(matrix, 0, PETSC_FALSE, PETSC_FALSE, &n, &offset, &column, &done));
+  return made;
+}
+
+/// What a shell has: own rows, with own columns and with those of other processes.
+template <class Real>
+struct Parts {
+  const BlockKernels<Real>* kernels = nullptr;
+  BlockEntries<Real> own, others;
+  std::vector<PetscInt> block;  ///< columns of blocks of the others, among all
+  OwnedVec of_others;           ///< values of those columns
+  OwnedScatter scatter;         ///< from all columns to these; null where there is one process
+};
+
+template <class Real>
+Parts<Real>& parts_of(Mat shell) {
+  void* context = nullptr;
+  checked(MatShellGetContext(shell, &context));
+  return *static_cast<Parts<Real>*>(context);
+}
+
+class Reading {
+ public:
+  explicit Reading(Vec vector) : vector_(vector) { checked(VecGetArrayRead(vector_, &values_)); }
+  ~Reading() { VecRestoreArrayRead(vector_, &values_); }
+  Reading(const Reading&) = delete;
+  Reading& operator=(const Reading&) = delete;
+  operator const double*() const { return values_; }
+
+ private:
+  Vec vector_;
+  const double* values_ = nullptr;
+};
+class Writing {
+ public:
+  explicit Writing(Vec vector) : vector_(vector) { checked(VecGetArray(vector_, &values_)); }
+  ~Writing() { VecRestoreArray(vector_, &values_); }
+  Writing(const Writing&) = delete;
+  Writing& operator=(const Writing&) = delete;
+  operator double*() const { return values_; }
+
+ private:
+  Vec vector_;
+  double* values_ = nullptr;
+};
+
+template <class Real>
+PetscErrorCode apply(Mat shell, BlockProduct<Real> product, Vec x, Vec y) {
+  const Parts<Real>& parts = parts_of<Real>(shell);
+  if (parts.scatter) PetscCall(VecScatterBegin(parts.scatter, x, parts.of_others, INSERT_VALUES, SCATTER_FORWARD));
+  product(parts.own, Reading(x), Writing(y));
+  if (!parts.scatter) return 0;
+  PetscCall(VecScatterEnd(parts.scatter, x, parts.of_others, INSERT_VALUES, SCATTER_FORWARD));
+  parts.kernels->add(parts.others, Reading(parts.of_others), Writing(y));
+  return 0;
+}
+
+template <class Real>
+PetscErrorCode multiply(Mat shell, Vec x, Vec y) {
+  return apply<Real>(shell, parts_of<Real>(shell).kernels->multiply, x, y);
+}
+
+template <class Real>
+PetscErrorCode multiply_add(Mat shell, Vec x, Vec y, Vec z) {
+  if (y != z) PetscCall(VecCopy(y, z));
+  return apply<Real>(shell, parts_of<Real>(shell).kernels->add, x, z);
+}
+
+template <class Real>
+PetscErrorCode multiply_transposed(Mat shell, Vec x, Vec y) {
+  const Parts<Real>& parts = parts_of<Real>(shell);
+  PetscCall(VecSet(y, 0));
+  if (parts.scatter) {
+    PetscCall(VecSet(parts.of_others, 0));
+    parts.kernels->add_transposed(parts.others, Reading(x), Writing(parts.of_others));
+    PetscCall(VecScatterBegin(parts.scatter, parts.of_others, y, ADD_VALUES, SCATTER_REVERSE));
+    PetscCall(VecScatterEnd(parts.scatter, parts.of_others, y, ADD_VALUES, SCATTER_REVERSE));
+  }
+  parts.kernels->add_transposed(parts.own, Reading(x), Writing(y));
+  return 0;
+}
+
+template <class Real>
+PetscErrorCode diagonal(Mat shell, Vec y) {
+  const BlockEntries<Real>& own = parts_of<Real>(shell).own;
+  PetscCall(VecSet(y, 0));
+  const Writing values(y);
+  for (std::size_t i = 0; i + 1 < own.offset.size(); ++i)
+    for (std::int32_t k = own.offset[i]; k < own.offset[i + 1]; ++k)
+      if (own.column[k] == static_cast<std::int32_t>(i))
+        for (int r = 0; r < own.rows; ++r)
+          values[i * own.rows + r] = own.value[static_cast<std::size_t>(k) * own.rows * own.columns + r * (own.rows + 1)];
+  return 0;
+}
+
+template <class Real>
+PetscErrorCode destroy(Mat shell) {
+  delete &parts_of<Real>(shell);
+  return 0;
+}
+
+template <class Function>
+void set_operation(Mat shell, MatOperation operation, Function function) {
+  checked(MatShellSetOperation(shell, operation, reinterpret_cast<void (*)()>(function)));
+}
+
+template <class Real>
+const BlockKernels<Real>* kernels_for(int rows, int columns) {
+  if constexpr (std::is_same_v<Real, float>)
+    return single_kernels(rows, columns);
+  else
+    return double_kernels(rows, columns);
+}
+
+template <class Real>
+OwnedMat shell_for(Mat matrix) {
+  PetscInt rows = 0, columns = 0, n = 0, m = 0, all_n = 0, all_m = 0;
+  checked(MatGetBlockSizes(matrix, &rows, &columns));
+  auto parts = std::make_unique<Parts<Real>>();
+  parts->kernels = kernels_for<Real>(rows, columns);
+  if (!parts->kernels) throw std::logic_error("blocks without a kernel");
+  OwnedMat shell;
+  checked(MatGetLocalSize(matrix, &n, &m));
+  checked(MatGetSize(matrix, &all_n, &all_m));
+  checked(
+      MatCreateShell(PetscObjectComm(reinterpret_cast<PetscObject>(matrix)), n, m, all_n, all_m, parts.release(), shell.out()));
+  checked(MatSetBlockSizes(shell, rows, columns));
+  set_operation(shell, MATOP_MULT, multiply<Real>);
+  set_operation(shell, MATOP_MULT_ADD, multiply_add<Real>);
+  set_operation(shell, MATOP_MULT_TRANSPOSE, multiply_transposed<Real>);
+  set_operation(shell, MATOP_GET_DIAGONAL, diagonal<Real>);
+  set_operation(shell, MATOP_DESTROY, destroy<Real>);
+  return shell;
+}
+
+template <class Real>
+void fill_parts(Parts<Real>& parts, Mat matrix) {
+  const int rows = parts.kernels->rows, columns = parts.kernels->columns;
+  const auto as_it_is = [](PetscInt column) { return column; };
+  PetscBool is_distributed = PETSC_FALSE;
+  checked(PetscObjectTypeCompare(reinterpret_cast<PetscObject>(matrix), MATMPIAIJ, &is_distributed));
+  if (!is_distributed) {
+    parts.own = gathered<Real>(matrix, rows, columns, as_it_is);
+    return;
+  }
+  Mat own = nullptr, others = nullptr;
+  const PetscInt* number = nullptr;
+  PetscInt n_numbers = 0;
+  checked(MatMPIAIJGetSeqAIJ(matrix, &own, &others, &number));
+  parts.own = gathered<Real>(own, rows, columns, as_it_is);
+  checked(MatGetSize(others, nullptr, &n_numbers));
+  std::vector<PetscInt>& block = parts.block;
+  block.clear();
+  for (PetscInt c = 0; c < n_numbers; ++c) block.push_back(number[c] / columns);
+  std::sort(block.begin(), block.end());
+  block.erase(std::unique(block.begin(), block.end()), block.end());
+  parts.others = gathered<Real>(others, rows, columns, [&](PetscInt c) {
+    const auto at = std::lower_bound(block.begin(), block.end(), number[c] / columns) - block.begin();
+    return static_cast<PetscInt>(at) * columns + number[c] % columns;
+  });
+  OwnedIs from;
+  OwnedVec all;
+  const auto n = static_cast<PetscInt>(block.size());
+  checked(ISCreateBlock(PETSC_COMM_SELF, columns, n, block.data(), PETSC_COPY_VALUES, from.out()));
+  parts.of_others = {};
+  parts.scatter = {};
+  checked(VecCreateSeq(PETSC_COMM_SELF, n * columns, parts.of_others.out()));
+  checked(MatCreateVecs(matrix, all.out(), nullptr));
+  checked(VecScatterCreate(all, from, parts.of_others, nullptr, parts.scatter.out()));
+}
+
+}  // namespace
+
+bool has_blocks(Mat matrix, Digits digits) {
+  PetscInt rows = 0, columns = 0;
+  PetscBool is_aij = PETSC_FALSE;
+  checked(PetscObjectTypeCompareAny(reinterpret_cast<PetscObject>(matrix), &is_aij, MATSEQAIJ, MATMPIAIJ, ""));
+  checked(MatGetBlockSizes(matrix, &rows, &columns));
+  return is_aij && (digits == Digits::single_precision ? single_kernels(rows, columns) != nullptr
+                                                       : double_kernels(rows, columns) != nullptr);
+}
+
+OwnedMat in_blocks(Mat matrix, Digits digits) {
+  const bool is_single = digits == Digits::single_precision;
+  OwnedMat shell = is_single ? shell_for<float>(matrix) : shell_for<double>(matrix);
+  if (is_single)
+    fill_parts(parts_of<float>(shell), matrix);
+  else
+    fill_parts(parts_of<double>(shell), matrix);
+  return shell;
+}
+
+OwnedMat empty_blocks(Mat matrix) { return shell_for<double>(matrix); }
+
+void fill(Mat blocks, Mat matrix) { fill_parts(parts_of<double>(blocks), matrix); }
+
+OwnedMat without_blocks(Mat blocks) {
+  const Parts<double>& parts = parts_of<double>(blocks);
+  const int rows = parts.own.rows, columns = parts.own.columns;
+  PetscInt n = 0, m = 0, first = 0;
+  checked(MatGetLocalSize(blocks, &n, &m));
+  checked(MatGetOwnershipRangeColumn(blocks, &first, nullptr));
+  std::vector<PetscInt> offset{0}, column;
+  std::vector<double> value;
+  const auto append = [&](const BlockEntries<double>& from, PetscInt i, int r, const auto& number) {
+    for (std::int32_t k = from.offset[i]; k < from.offset[i + 1]; ++k)
+      for (int c = 0; c < columns; ++c) {
+        column.push_back(number(from.column[k]) * columns + c);
+        value.push_back(from.value[(static_cast<std::size_t>(k) * columns + c) * rows + r]);
+      }
+  };
+  for (PetscInt i = 0; i < n / rows; ++i)
+    for (int r = 0; r < rows; ++r) {
+      append(parts.own, i, r, [&](std::int32_t block) { return first / columns + block; });
+      if (parts.scatter) append(parts.others, i, r, [&](std::int32_t block) { return parts.block[block]; });
+      offset.push_back(static_cast<PetscInt>(column.size()));
+    }
+  OwnedMat made;
+  checked(MatCreate(PetscObjectComm(reinterpret_cast<PetscObject>(blocks)), made.out()));
+  checked(MatSetSizes(made, n, m, PETSC_DETERMINE, PETSC_DETERMINE));
+  checked(MatSetType(made, MATAIJ));
+  checked(MatSetBlockSizes(made, rows, columns));
+  checked(MatSeqAIJSetPreallocationCSR(made, offset.data(), column.data(), value.data()));
+  checked(MatMPIAIJSetPreallocationCSR(made, offset.data(), column.data(), value.data()));
+  return made;
+}
+
+}  // namespace lacon

@@ -1,0 +1,53 @@
+#pragma once
+// GAMG of displacements, which outlives the matrix that it was made for: to make it takes as long as many iterations, and
+// matrices of one study are like each other. Of another matrix its finest level has the entries, the coarser ones what they
+// had.
+#include <petscksp.h>
+
+#include <cstdint>
+#include <vector>
+
+#include "lacon/assembly/petsc/owned.hpp"
+
+namespace lacon {
+
+class Multigrid {
+ public:
+  /// What it depends on beside values: places of own nodes, and which of their displacements are free.
+  struct Nodes {
+    std::vector<double> coordinates;
+    std::vector<std::uint8_t> is_free;
+    bool operator==(const Nodes&) const = default;
+  };
+
+  /// Whether it will do for another matrix of these nodes: on all processes, or on none.
+  bool suits(const Nodes& nodes) const;
+  /// Have a KSP precondition with it that is not set up. @param matrix  AIJ, is needed no more
+  void give_to(KSP displacements, Mat matrix);
+  /// Take the one that a KSP has set up. Its levels get blocks of single precision, and need the matrix no more.
+  void take_from(KSP displacements, Nodes nodes);
+  /// Of the matrix that it works for nothing is needed any more.
+  void let_go() const;
+  void forget() { *this = {}; }
+
+  bool is_there() const { return pc_; }
+  /// Whether it works for another matrix than it was made for.
+  bool is_kept() const { return pc_ && !is_new_; }
+  /// Whether so many iterations were lost by that that a new one pays.
+  bool is_old() const;
+  /// Iterations after which it is said to be of no use for a matrix that it was not made for.
+  int most_iterations(double digits) const;
+  /// How many it has taken for so many digits.
+  void note(int iterations, double digits);
+
+ private:
+  Mat finest() const;
+
+  OwnedPc pc_;
+  Nodes nodes_;
+  bool is_new_ = false;
+  double of_a_digit_ = 0;  ///< iterations, with the matrix that it was made for
+  double lost_ = 0;        ///< iterations more than these, with all others
+};
+
+}  // namespace lacon

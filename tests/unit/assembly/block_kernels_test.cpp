@@ -1,0 +1,72 @@
+#include "lacon/assembly/petsc/block_kernels.hpp"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Dense>
+#include <limits>
+#include <random>
+#include <utility>
+
+namespace lacon {
+namespace {
+
+constexpr int n_rows = 7, n_columns = 5;  // of blocks
+
+/// Some of the blocks, and the matrix that they are.
+template <class Real>
+struct Example {
+  Example(int rows, int columns) : dense(Eigen::MatrixXd::Zero(n_rows * rows, n_columns * columns)) {
+    std::mt19937 random(7);
+    std::uniform_real_distribution<Real> entry(-1, 1);
+    blocks.rows = rows;
+    blocks.columns = columns;
+    for (int i = 0; i < n_rows; ++i) {
+      for (int j = 0; j < n_columns; ++j) {
+        if (i == 3 || (i + 2 * j) % 3 == 0) continue;  // a row has none at all
+        blocks.column.push_back(j);
+        for (int c = 0; c < columns; ++c)
+          for (int r = 0; r < rows; ++r) {
+            blocks.value.push_back(entry(random));
+            dense(i * rows + r, j * columns + c) = blocks.value.back();
+          }
+      }
+      blocks.offset.push_back(static_cast<std::int32_t>(blocks.column.size()));
+    }
+    blocks.value.insert(blocks.value.end(), read_behind, std::numeric_limits<Real>::quiet_NaN());  // counts for nothing
+  }
+  BlockEntries<Real> blocks;
+  Eigen::MatrixXd dense;
+};
+
+// Products are those of the whole matrix, in double precision whatever the entries are in, and nothing behind the blocks gets
+// into them.
+template <class Real>
+void expect_products(const BlockKernels<Real>* kernels, int rows, int columns) {
+  ASSERT_NE(kernels, nullptr);
+  const Example<Real> example(rows, columns);
+  const Eigen::VectorXd x = Eigen::VectorXd::Random(n_columns * columns), z = Eigen::VectorXd::Random(n_rows * rows);
+  Eigen::VectorXd y = z;
+  const double exact = 1e-14;
+  kernels->multiply(example.blocks, x.data(), y.data());
+  EXPECT_LE((y - example.dense * x).cwiseAbs().maxCoeff(), exact);
+  y = z;
+  kernels->add(example.blocks, x.data(), y.data());
+  EXPECT_LE((y - z - example.dense * x).cwiseAbs().maxCoeff(), exact);
+  y = x;
+  kernels->add_transposed(example.blocks, z.data(), y.data());
+  EXPECT_LE((y - x - example.dense.transpose() * z).cwiseAbs().maxCoeff(), exact);
+}
+
+TEST(BlockKernels, MultiplyAsTheWholeMatrix) {
+  for (const auto& [rows, columns] : {std::pair(2, 2), std::pair(2, 3), std::pair(3, 3), std::pair(3, 6), std::pair(6, 6)})
+    expect_products(single_kernels(rows, columns), rows, columns);
+  for (const int size : {2, 3}) expect_products(double_kernels(size, size), size, size);
+}
+
+TEST(BlockKernels, AreNotThereForOtherBlocks) {
+  EXPECT_EQ(single_kernels(6, 5), nullptr);
+  EXPECT_EQ(double_kernels(6, 6), nullptr);
+}
+
+}  // namespace
+}  // namespace lacon
