@@ -26,6 +26,7 @@ void MatrixChoice::start_instant() {
   slow_ = 0;
   settled_ = traits_.settling;
   flat_ = elastic_ = {};
+  iterations_ = without_ = 0;
   residual_ = std::numeric_limits<double>::infinity();
   curved_ = false;
 }
@@ -50,6 +51,8 @@ bool MatrixChoice::note_pivots(NewtonMatrix present, bool curves, std::int64_t n
 }
 
 bool MatrixChoice::note_residual(const Unbalance& unbalance) {
+  ++iterations_;
+  without_ += flat_.left > 0;
   const bool grows = unbalance.in_flow && unbalance.largest > residual_;
   const bool curved = unbalance.curved && !unbalance.statuses_change;
   const bool slow = waits_ && curved && curved_ && unbalance.largest > quick * residual_;

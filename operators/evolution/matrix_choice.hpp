@@ -63,6 +63,8 @@ class MatrixChoice {
   /// More negative pivots than constraints: beyond a limit point or a bifurcation, from where a step of the tangent leads
   /// anywhere. @param curves gaps of active patches have second derivatives @return whether the matrix has to be another one
   bool note_pivots(NewtonMatrix present, bool curves, std::int64_t negative, std::int64_t constraints);
+  /// Whether most iterations of the instant went without what made the consistent matrix unstable, in contact.
+  bool leaves_unstable() const { return 2 * without_ > iterations_; }
   /// How many patches an iteration has changed, before its matrix is made. @param flows a law does: the elastic matrix is
   /// another
   void note_statuses(std::int64_t changes, bool flows) { settled_ = changes > 0 && flows ? 0 : settled_ + 1; }
@@ -80,13 +82,14 @@ class MatrixChoice {
   };
 
   MatrixTraits traits_;
-  std::int64_t settled_ = 0;  ///< iterations without change of status
-  bool waits_;                ///< for a residual that falls slowly with the second derivatives of gaps
-  bool unstable_ = false;     ///< the tangent of an iterate of this instant was
-  Span flat_;                 ///< without terms of stress and second derivatives of gaps
-  int slow_ = 0;              ///< iterations in a row without them, near an equilibrium, that came a little nearer
-  bool balances_ = false;     ///< near an unstable equilibrium: the matrix is taken as it is
-  bool far_ = false;          ///< as flat_, of a matrix that is not symmetric
+  std::int64_t settled_ = 0;          ///< iterations without change of status
+  bool waits_;                        ///< for a residual that falls slowly with the second derivatives of gaps
+  bool unstable_ = false;             ///< the tangent of an iterate of this instant was
+  Span flat_;                         ///< without terms of stress and second derivatives of gaps
+  int slow_ = 0;                      ///< iterations in a row without them, near an equilibrium, that came a little nearer
+  bool balances_ = false;             ///< near an unstable equilibrium: the matrix is taken as it is
+  int iterations_ = 0, without_ = 0;  ///< of the instant: all, and those of flat_
+  bool far_ = false;                  ///< as flat_, of a matrix that is not symmetric
   Span elastic_;
   double residual_ = 0;  ///< of the last iteration
   bool curved_ = false;  ///< its gaps had second derivatives, and no status changed

@@ -17,7 +17,8 @@ namespace {
 constexpr double worse = 1.2;       // a residual that changes by this factor an iteration diverges
 constexpr double no_better = 0.97;  // or does not fall
 constexpr double near_round_off = 1e-9;
-constexpr int settled = 4;  // iterations without a change of status after which a ratio is that of the residual alone
+constexpr int enough_to_leave = 60;  // iterations: from an equilibrium that is unstable to the next one
+constexpr int settled = 4;           // iterations without a change of status after which a ratio is that of the residual alone
 
 }  // namespace
 
@@ -56,7 +57,7 @@ void Newton::fail_to_converge(double instant, const IterationReport& line, std::
   const double excess = std::max({asked.resi_glob_rela ? line.rela / *asked.resi_glob_rela : 0,
                                   asked.resi_glob_maxi ? line.maxi / *asked.resi_glob_maxi : 0,
                                   asked.resi_refe_rela ? line.refe / *asked.resi_refe_rela : 0});
-  std::string round_words, turned_words, hanging_words;
+  std::string round_words, turned_words, hanging_words, unstable_words;
   if (const auto& round = statuses_.round())
     round_words = part("statuses_went_round", {{"count", std::to_string(round->patches.size())},
                                                {"cells", cells_of(round->patches)},
@@ -64,13 +65,14 @@ void Newton::fail_to_converge(double instant, const IterationReport& line, std::
   if (const auto cell = equilibrium_.cell_inside_out())
     turned_words =
         part("cell_inside_out", {{"cell", cell_name(*cell)}, {"body", bodies_.name_at(problem_.mesh.cells[*cell][0])}});
+  if (choice_.leaves_unstable()) unstable_words = part("equilibrium_unstable");
   if (!hanging_.empty()) hanging_words = part("body_hangs", {{"body", hanging_}});
   throw InstantFailure(
-      message("EVOLUTION_4",
-              {{"instant", fmt::format("{:.9g}", instant)},
-               {"iterations", std::to_string(options_.iterations)},
-               {"unmet", said({unmet_criteria(line, changing), course_.words(), round_words, turned_words, hanging_words})},
-               {"remedy", remedy(line, excess)}}),
+      message("EVOLUTION_4", {{"instant", fmt::format("{:.9g}", instant)},
+                              {"iterations", std::to_string(options_.iterations)},
+                              {"unmet", said({unmet_criteria(line, changing), course_.words(), unstable_words, round_words,
+                                              turned_words, hanging_words})},
+                              {"remedy", remedy(line, excess)}}),
       {.ratio = settled_ >= settled && !course_.period() && !course_.smaller_before() ? course_.ratio() : std::nullopt,
        .excess = excess});
 }
@@ -86,6 +88,10 @@ std::string Newton::remedy(const IterationReport& line, double excess) const {
       return part("remedy_more_iterations", {{"count", std::to_string(options_.iterations + static_cast<int>(more) + 1)}});
   }
   if (settled_ >= settled && line.rela < near_round_off) return part("remedy_ask_less");
+  // without what makes the matrix unstable the residual grows slowly first, and falls behind that
+  if (choice_.leaves_unstable() && options_.iterations < enough_to_leave && course_.finite() && !course_.period() &&
+      line.status_changes == 0 && !statuses_.round() && !equilibrium_.cell_inside_out())
+    return part("remedy_leave_equilibrium", {{"count", std::to_string(enough_to_leave)}});
   if (!options_.cuts) return part("remedy_cut_step");
   if (diverges) return part("remedy_coarser_load");
   if (line.status_changes > 0 || statuses_.round()) return part("remedy_refine_slave");

@@ -62,10 +62,14 @@ TEST(MatrixChoice, InContactStressAndCurvatureAreLeftOutTogetherEachTimeForTwice
     const NewtonMatrix flat{.solid = linear ? SolidMatrix::tangent : SolidMatrix::stressless, .curved = false};
     MatrixChoice choice = started({.linear = linear});
     EXPECT_FALSE(choice.note_pivots(consistent, true, 3, 3));
+    EXPECT_FALSE(choice.leaves_unstable());
     EXPECT_TRUE(choice.note_pivots(consistent, true, 4, 3));  // for one iteration
     EXPECT_EQ(choice.suited(SolidMatrix::tangent, false), flat);
     EXPECT_FALSE(choice.note_pivots(flat, true, 4, 3));  // there is nothing left to leave out
     EXPECT_TRUE(choice.note_residual({.largest = 1}));
+    EXPECT_TRUE(choice.leaves_unstable());  // the one that there was
+    choice.note_residual({.largest = 1});
+    EXPECT_FALSE(choice.leaves_unstable());
     EXPECT_EQ(choice.suited(SolidMatrix::tangent, false), consistent);
     EXPECT_TRUE(choice.note_pivots(consistent, true, 4, 3));  // for two
     EXPECT_FALSE(choice.note_residual({.largest = 1}));
