@@ -272,8 +272,8 @@ std::vector<double> Newton::solve_system(StaticState& state, const StaticState& 
       const std::vector<MovingCover> covers = equilibrium_.moving_covers(state, step);
       for (const MovingCover& cover : covers)
         for (std::size_t i = 0; i < solution.size(); ++i) solution[i] -= cover.step * cover.column[i];
-      const auto [least, most] = std::ranges::minmax(solution);
-      const double size = std::max(-least, most);
+      double size = 0;
+      for (const double value : solution) size = std::max(size, std::abs(value));
       line.solution = solve_linear(solution, accuracy);
       null = line.solution.factorisation.null_pivots;
       if (null.empty()) {
