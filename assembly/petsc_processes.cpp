@@ -17,7 +17,7 @@ void PetscProcesses::start() {
   if (ranks_) return;
   if (keeps_) fail_as_ended();
   std::vector<std::string> command;
-  if (program_.n_ranks > 1)
+  if (program_.n_ranks > 1 || !program_.hosts.empty())
     command = {"mpirun",
                "-n",
                std::to_string(program_.n_ranks),
@@ -30,7 +30,7 @@ void PetscProcesses::start() {
                "--mca",
                "mpi_yield_when_idle",  // others may need the cores
                "1"};
-  if (program_.n_ranks > 1 && !program_.hosts.empty()) command.insert(command.end(), {"--host", program_.hosts});
+  if (!program_.hosts.empty()) command.insert(command.end(), {"--host", program_.hosts});
   const SharedMemory mark(sizeof(std::int64_t));  // the first of them has to see it
   const std::int64_t number = std::chrono::steady_clock::now().time_since_epoch().count();
   std::memcpy(mark.data(), &number, sizeof number);

@@ -67,9 +67,14 @@ PetscOptions iterative_options(const Keywords& solver, const Base& base, const S
   return options;
 }
 
+void tell_that_hosts_do_nothing() {
+  if (std::getenv(wanted_hosts)) inform("SOLVER_12");
+}
+
 /// PRE_COND of PETSC that are factors, with which a solution is a direct one.
 std::unique_ptr<Engine> factor_of(const std::string& preconditioner, const Keywords& solver, const Base& base) {
   inform("EVOLUTION_38", {{"preconditioner", preconditioner}});
+  tell_that_hosts_do_nothing();
   MumpsOptions options = direct_options(solver, base);
   options.residual_tolerance = direct_residual;
   if (preconditioner == "LDLT_SP") options.single_precision = MumpsOptions::Use::always;
@@ -112,7 +117,7 @@ std::unique_ptr<Engine> engine_of(const Keywords& solver, const Base& base, cons
     if (preconditioner == "LDLT_SP" || preconditioner == "LDLT_DP") return factor_of(preconditioner, solver, base);
     return std::make_unique<PetscEngine>(iterative_options(solver, base, problem, preconditioner));
   }
-  if (std::getenv(wanted_hosts)) inform("SOLVER_12");
+  tell_that_hosts_do_nothing();
   if (method != "MUMPS") inform("EVOLUTION_24", {{"method", method}});
   MumpsOptions options = direct_options(solver, base);
   if (asked == "AUTO") options.residual_tolerance = direct_residual;

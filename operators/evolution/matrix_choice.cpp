@@ -57,7 +57,8 @@ bool MatrixChoice::note_residual(const Unbalance& unbalance) {
   const bool curved = unbalance.curved && !unbalance.statuses_change;
   const bool slow = waits_ && curved && curved_ && unbalance.largest > quick * residual_;
   if (slow) waits_ = false;
-  const bool near = curved && unbalance.share<near_balance, without = flat_.left> 0;
+  const bool near = curved && unbalance.share < near_balance;
+  const bool without = flat_.left > 0;
   const double ratio = unbalance.largest / residual_;
   slow_ = near && without && ratio > sluggish && ratio < 1 ? slow_ + 1 : near && !without ? slow_ : 0;
   const bool begins = !balances_ && slow_ >= patience;
