@@ -11,9 +11,6 @@ namespace {
 
 /// Of the weights, in stiffnesses of the displacements of a row; and what a Schur complement has beside them.
 constexpr double weight_of_rows = 1, rest_of_schur = 0.5;
-/// Blocks of K whose entries are gathered at a time: each time the whole matrix is gone through.
-constexpr std::int64_t blocks_at_once = 20'000;
-constexpr int most_times = 16;
 
 struct Entry {
   std::int32_t column;
@@ -36,7 +33,6 @@ class Gathering {
     entries_.resize(next_.back());
   }
   void add(std::int64_t row, std::int32_t column, double value) { entries_[next_[row - first_]++] = {column, value}; }
-  std::size_t size() const { return entries_.size(); }
   /// The entries of a row, of which some columns may be there more than once.
   std::span<Entry> row(std::int64_t row) {
     const std::int64_t i = row - first_, begin = i ? next_[i - 1] : 0;
@@ -88,31 +84,69 @@ void append(Rows& rows, std::span<const Entry> entries) {
   rows.offset.push_back(static_cast<std::int32_t>(rows.column.size()));
 }
 
-/// Rows of K, a block after the other: all rows of a block have the same columns, whole blocks.
-void append_whole_blocks(Rows& rows, Gathering& gathered, const Range& blocks, int dimension) {
-  std::vector<std::int32_t> neighbours;
-  std::vector<Entry> whole;
-  for (std::int64_t block = blocks.first; block < blocks.last; ++block) {
-    std::vector<std::span<Entry>> own;
-    neighbours = {static_cast<std::int32_t>(block)};
-    for (int i = 0; i < dimension; ++i) {
-      own.push_back(summed(gathered.row(block * dimension + i)));
-      for (const Entry& entry : own.back()) neighbours.push_back(entry.column / dimension);
+/// Which blocks of K are there: own rows of blocks, with ascending columns.
+struct BlockPattern {
+  std::vector<std::int64_t> offset;
+  std::vector<std::int32_t> column;
+
+  /// @param for_each  goes through entries, often several of a block: calls what it is given with block row, from 0, and column
+  template <class ForEach>
+  BlockPattern(std::int64_t n_rows, const ForEach& for_each) : offset(n_rows + 1, 0) {
+    std::vector<std::int32_t> last;
+    const auto for_each_new = [&](const auto& use) {  // of an element's rows most are not; the others are found below
+      last.assign(n_rows, -1);
+      for_each([&](std::int64_t row, std::int32_t block) {
+        if (last[row] != block) use(row, last[row] = block);
+      });
+    };
+    for_each_new([&](std::int64_t row, std::int32_t) { ++offset[row + 1]; });
+    for (std::int64_t row = 0; row < n_rows; ++row) offset[row + 1] += offset[row];
+    column.resize(offset.back());
+    std::vector<std::int64_t> next(offset.begin(), offset.end() - 1);
+    for_each_new([&](std::int64_t row, std::int32_t block) { column[next[row]++] = block; });
+    std::int64_t end = 0;
+    for (std::int64_t row = 0; row < n_rows; ++row) {
+      const std::int64_t begin = std::exchange(offset[row], end);
+      const auto own = std::span(column).subspan(begin, next[row] - begin);
+      std::sort(own.begin(), own.end());
+      end = std::copy(own.begin(), std::unique(own.begin(), own.end()), column.begin() + end) - column.begin();
     }
-    std::sort(neighbours.begin(), neighbours.end());
-    neighbours.erase(std::unique(neighbours.begin(), neighbours.end()), neighbours.end());
-    for (int i = 0; i < dimension; ++i) {
-      whole.clear();
-      std::size_t next = 0;
-      for (const std::int32_t neighbour : neighbours)
-        for (std::int32_t column = neighbour * dimension; column < (neighbour + 1) * dimension; ++column) {
-          const bool there = next < own[i].size() && own[i][next].column == column;
-          whole.push_back({column, there ? own[i][next].value : 0.0});
-          next += there;
-        }
-      append(rows, whole);
-    }
+    offset.back() = end;
+    column.resize(end);
   }
+  std::span<const std::int32_t> row(std::int64_t row) const {
+    return std::span(column).subspan(offset[row], offset[row + 1] - offset[row]);
+  }
+};
+
+/// Rows of K whose blocks are whole: all rows of a block have the same columns. Entries are summed up as they come.
+/// @param for_each  goes through all entries of own rows: calls what it is given with row, column, value
+template <class ForEach>
+Rows rows_of_blocks(const Range& blocks, int dimension, const ForEach& for_each) {
+  const auto block_of = [&](std::int32_t row) { return dimension == 3 ? row / 3 : row / dimension; };  // division by 3 is quick
+  const BlockPattern pattern(blocks.last - blocks.first, [&](const auto& use) {
+    for (std::int64_t block = blocks.first; block < blocks.last; ++block)
+      use(block - blocks.first, static_cast<std::int32_t>(block));
+    for_each([&](std::int32_t row, std::int32_t column, double) { use(block_of(row) - blocks.first, block_of(column)); });
+  });
+  const std::int64_t size = dimension * dimension * std::ssize(pattern.column);
+  if (size > std::numeric_limits<std::int32_t>::max()) throw std::length_error("PETSc: 2^31");
+  Rows rows{.first = blocks.first * dimension, .last = blocks.last * dimension};
+  rows.offset.reserve(static_cast<std::size_t>(rows.last - rows.first) + 1);
+  rows.column.reserve(size);
+  for (std::int64_t row = rows.first; row < rows.last; ++row) {
+    for (const std::int32_t block : pattern.row(row / dimension - blocks.first))
+      for (int i = 0; i < dimension; ++i) rows.column.push_back(block * dimension + i);
+    rows.offset.push_back(static_cast<std::int32_t>(rows.column.size()));
+  }
+  rows.value.assign(size, 0.0);
+  for_each([&](std::int32_t row, std::int32_t column, double value) {
+    const std::int32_t block = block_of(column);
+    const auto there = pattern.row(block_of(row) - blocks.first);
+    const auto at = std::lower_bound(there.begin(), there.end(), block) - there.begin();
+    rows.value[rows.offset[row - rows.first] + at * dimension + column - block * dimension] += value;
+  });
+  return rows;
 }
 
 }  // namespace
@@ -127,18 +161,15 @@ BlockRows rows_of_part(const BlockSystem& system, const OwnEntries& entries, int
   std::vector<double> diagonal = entries.diagonal;
   diagonal.resize(system.sizes.n_blocks * dimension, 0.0);
   std::vector<Multiplier> multipliers(system.sizes.n_multipliers);
-  std::size_t n_own = 0;  // entries of own rows
   for_each_entry(system, {}, [&](std::int32_t row, std::int32_t column, double value) {
     if (row >= 0 && column >= 0) {
       if (row == column) diagonal[row] += value;
-      n_own += row >= own.first && row < own.last;
     } else if (row >= 0) {
       multipliers[-1 - column].b.push_back({row, value});
     } else {
       (column >= 0 ? multipliers[-1 - row].c : multipliers[-1 - row].d).push_back({column, value});
     }
   });
-  if (entries.matrix) n_own += 2 * static_cast<std::size_t>(entries.matrix->n_entries());
   double mean = 0;
   std::int64_t n_free = 0;
   for (const double value : diagonal)
@@ -178,32 +209,18 @@ BlockRows rows_of_part(const BlockSystem& system, const OwnEntries& entries, int
   for (const std::int32_t place : system.place)
     if (place >= own.first && place < own.last) made.is[place - own.first] = 1;
 
-  // K + B W C, some rows at a time: gathered, its entries take more memory than all else
-  made.k = {.first = own.first, .last = own.last};
-  made.k.offset.reserve(static_cast<std::size_t>(own.last - own.first) + 1);
-  made.k.column.reserve(n_own + n_own / 2);  // what stays empty takes none
-  made.k.value.reserve(n_own + n_own / 2);
-  const std::int64_t n_blocks = made.blocks.last - made.blocks.first,
-                     step = std::max(blocks_at_once, n_blocks / most_times + 1);
-  for (std::int64_t first = made.blocks.first; first < made.blocks.last; first += step) {
-    const Range blocks{first, std::min(first + step, made.blocks.last)};
-    Gathering k(blocks.first * dimension, blocks.last * dimension);
-    const auto for_each_of_k = [&](const auto& use) {
-      for_each_entry(system, entries, [&](std::int32_t row, std::int32_t column, double value) {
-        if (row >= 0 && column >= 0 && k.has(row)) use(row, column, value);
-      });
-      for (std::size_t i = 0; i < multipliers.size(); ++i)
-        for (const Entry& b : multipliers[i].b)
-          if (weight[i] != 0 && k.has(b.column))
-            for (const Entry& c : multipliers[i].c) use(b.column, c.column, weight[i] * b.value * c.value);
-      for (auto row = static_cast<std::int32_t>(blocks.first * dimension); row < blocks.last * dimension; ++row)
-        if (diagonal[row] == 0) use(row, row, made.is[row - own.first] ? 0.0 : mean);
-    };
-    for_each_of_k([&](std::int32_t row, std::int32_t, double) { k.count(row); });
-    k.make_room();
-    for_each_of_k([&](std::int32_t row, std::int32_t column, double value) { k.add(row, column, value); });
-    append_whole_blocks(made.k, k, blocks, dimension);
-  }
+  const auto is_own = [&](std::int32_t row) { return row >= own.first && row < own.last; };
+  made.k = rows_of_blocks(made.blocks, dimension, [&](const auto& use) {  // K + B W C
+    for_each_entry(system, entries, [&](std::int32_t row, std::int32_t column, double value) {
+      if (column >= 0 && is_own(row)) use(row, column, value);
+    });
+    for (std::size_t i = 0; i < multipliers.size(); ++i)
+      for (const Entry& b : multipliers[i].b)
+        if (weight[i] != 0 && is_own(b.column))
+          for (const Entry& c : multipliers[i].c) use(b.column, c.column, weight[i] * b.value * c.value);
+    for (auto row = static_cast<std::int32_t>(own.first); row < own.last; ++row)
+      if (diagonal[row] == 0) use(row, row, made.is[row - own.first] ? 0.0 : mean);
+  });
 
   Gathering b(own.first, own.last);
   for (const Multiplier& m : multipliers)
