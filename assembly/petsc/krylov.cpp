@@ -227,7 +227,8 @@ void Krylov::set_up_displacements(KSP displacements) {
     // aggregates of many nodes make few entries; a Chebyshev polynomial of degree 4 is worth them. Its lower end is where they
     // take over
     set(own + "pc_gamg_threshold", "0");
-    set(own + "mg_levels_pc_type", "jacobi");  // SOR stops at an aggregate of one node, whose turns have no diagonal
+    set(own + "pc_gamg_aggressive_coarsening", "2");  // the second one makes dense rows: a quarter of all products
+    set(own + "mg_levels_pc_type", "jacobi");         // SOR stops at an aggregate of one node, whose turns have no diagonal
     set(own + "mg_levels_ksp_max_it", "4");
     set(own + "mg_levels_ksp_chebyshev_esteig", "0,0.04,0,1.1");
   }
