@@ -5,6 +5,7 @@
 #include <array>
 #include <cassert>
 #include <cmath>
+#include <cstring>
 #include <stdexcept>
 #include <string>
 
@@ -20,7 +21,7 @@ namespace {
 // The shape functions of a cell are the basis, dual to its nodes, of a space of functions x^i y^j z^k / (1 - z)^l (l only in
 // pyramids). The catalogue has the nodes; span_of() below has the spaces; everything else is algebra.
 
-constexpr int max_nodes = 27;
+constexpr int max_nodes = 27, max_skin_nodes = 9;
 
 struct Term {
   std::int8_t i, j, k, l;
@@ -186,6 +187,34 @@ template <Quantity Q>
   }
 }
 
+/// Powers of a coordinate, derived.
+struct DerivedPowers {
+  Points of[3][4];  ///< power, times derived
+
+  [[gnu::always_inline]] explicit DerivedPowers(const Points& x) {
+    const Points zero{}, one = zero + 1.0;
+    const Points all[3][4] = {{one, zero, zero, zero}, {x, one, zero, zero}, {x * x, 2 * x, one + one, zero}};
+    std::memcpy(of, all, sizeof of);
+  }
+};
+
+/// All derivatives up to an order on a skin. @param[out] out (derivatives, nodes, LACON_LANES)
+LACON_KERNEL void derivatives_at(const Space& space, bool surface, const double* xi, int order, double* out) {
+  const std::size_t n = space.terms.size();
+  const DerivedPowers x(lanes(xi, 0)), y(surface ? Points(lanes(xi, 1)) : Points{});
+  for (int times = 0; times <= order; ++times)
+    for (int by_y = 0; by_y <= (surface ? times : 0); ++by_y, out += n * LACON_LANES) {
+      Points sum[max_skin_nodes] = {};
+      for (std::size_t t = 0; t < n; ++t) {
+        const Term& term = space.terms[t];
+        if (term.i < times - by_y || term.j < by_y) continue;
+        const Points factor = x.of[term.i][times - by_y] * y.of[term.j][by_y];
+        for (std::size_t a = 0; a < n; ++a) sum[a] += space.coefficient[t * n + a] * factor;
+      }
+      for (std::size_t a = 0; a < n; ++a) lanes(out, static_cast<std::int64_t>(a)) = sum[a];
+    }
+}
+
 LACON_KERNEL void functions_at(const Space& space, std::size_t dimension, std::size_t n_points, const double* xi, double* out) {
   at_points<Quantity::value>(space, dimension, 1, n_points, xi, out);
 }
@@ -233,6 +262,12 @@ void shape_derivatives(CellType type, std::span<const double> xi, int order, std
       if (factor == 0) continue;
       for (std::size_t a = 0; a < n; ++a) derivatives[a * columns + k] += space.coefficient[t * n + a] * factor;
     }
+}
+
+void shape_lanes(CellType type, const double* xi, int order, double* derivatives) {
+  const int dimension = catalog::cell(type).dimension;
+  assert(dimension <= 2 && order <= 3);
+  derivatives_at(space_of(type), dimension == 2, xi, order, derivatives);
 }
 
 Tabulation tabulate(CellType type, const Rule& rule) {

@@ -18,6 +18,11 @@ void shape_gradients(CellType type, std::span<const double> xi, std::span<double
 /// @param[out] derivatives (n_nodes, order + 1) on surfaces: column k by k times eta and the rest xi; (n_nodes) on lines
 void shape_derivatives(CellType type, std::span<const double> xi, int order, std::span<double> derivatives);
 
+/// Shape functions of a skin cell at LACON_LANES points, and all their derivatives up to an order.
+/// @param xi (dimension, LACON_LANES) @param[out] derivatives (derivatives, n_nodes, LACON_LANES): from an order to the next,
+/// of each as shape_derivatives() has them
+void shape_lanes(CellType type, const double* xi, int order, double* derivatives);
+
 /// An integration rule on a reference cell.
 struct Rule {
   int dimension = 0;

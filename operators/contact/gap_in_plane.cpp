@@ -85,25 +85,29 @@ class EndVariation {
 }  // namespace
 
 void vary_in_plane(const ContactCellGeometry& cell, bool second, GapVariation& variation) {
-  CellVariation<2> sum(cell, 2, second);
+  CellVariation<2> sum(cell, 2, second, {1});
   const Columns& columns = sum.columns();
   const Eigen::Index n = columns.unknowns(), corner = columns.first_corner();
   const auto& [from, to] = cell.ends;
   const double width = to.at - from.at;
-  PointRow dxi = PointRow::Zero(columns.of_points()), dwidth = dxi;
-  dwidth[corner] = -1, dwidth[corner + 1] = 1;
-  sum.start_simplex(1, width);
-  for (std::size_t p = 0; p < cell.weight.size(); ++p) {
-    const double share = (cell.slave_point[p] - from.at) / width, rule = cell.weight[p] / width;
-    const CellVariation<2>::OnSlave point = sum.on_slave(p);
-    const CellVariation<2>::Integrand h = sum.integrand(point);
-    if (!(h.radius > 0)) continue;
-    dxi[corner] = 1 - share, dxi[corner + 1] = share;
-    sum.add_point(point, h, rule, h.of_place);
-    sum.of_simplex() += rule * h.slope[0] * dxi;
-    if (second) sum.add_second_of_point(point, h, rule, h.of_place, dxi);
+  sum.start_simplex(1, width, {0, 1});
+  for (std::size_t first = 0; first < cell.weight.size(); first += LACON_LANES) {
+    PointBlock<2> block;
+    for (std::size_t l = 0; l < LACON_LANES; ++l) {
+      const bool none = first + l >= cell.weight.size();
+      const std::size_t p = none ? first : first + l;
+      block.rule[l] = none ? 0 : cell.weight[p] / width;
+      block.slave[l] = cell.slave_point[p], block.master[l] = cell.master_point[p];
+      const double share = (cell.slave_point[p] - from.at) / width;
+      block.share[l] = 1 - share, block.share[LACON_LANES + l] = share;
+    }
+    sum.add(block);
   }
+  sum.end_points();
+  PointRow dwidth = PointRow::Zero(columns.of_points());
+  dwidth[corner] = -1, dwidth[corner + 1] = 1;
   sum.end_simplex(dwidth);
+  sum.end();
   // the corners as functions of the unknowns
   const std::array ends = {EndVariation(cell, from, n), EndVariation(cell, to, n)};
   Matrix corners(2, n);
@@ -122,7 +126,7 @@ void vary_in_plane(const ContactCellGeometry& cell, bool second, GapVariation& v
   QuadraticForm form(n);
   for (int k = 0; k < 2; ++k)
     if (!cell.ends[k].still) ends[static_cast<std::size_t>(k)].add_second(sum.gradient()[corner + k], form);
-  const Eigen::MatrixXd by_points = sum.second_by_points();
+  const Eigen::MatrixXd by_points = sum.form().matrix();
   chain_corners(by_points, columns, corners, form, variation);
   for (int k = 0; k < 2; ++k) {
     if (!cell.ends[k].still) continue;

@@ -8,184 +8,152 @@
 namespace lacon::variations {
 namespace {
 
-/// The chart of a slave with straight edges: its mean plane, along two directions c whose cross product is its mean normal
-/// (edges of a triangle, diagonals of a quadrangle). A point of the slave is where c . (x(xi) - y) = 0, y the place in the
-/// plane of the triangle, and its weight is the area of the triangle seen along the mean normal over the lift of the slave.
-/// With factors nu of these equations, by which a point's reference coordinates stand still, derivatives need none of its own.
+/// The mean plane of a slave with straight edges (edges of a triangle, diagonals of a quadrangle are its directions), and what
+/// hangs on it beside the points: their weights have the area of the triangle seen along the mean normal as a factor.
 class PlaneChart {
  public:
-  using Cell = CellVariation<3>;
-
-  PlaneChart(const ContactCellGeometry& cell, const PolygonVariation& polygon, Cell& sum, bool second)
-      : polygon_(polygon), sum_(sum), n_(catalog::cell(cell.slave).n_nodes) {
+  PlaneChart(const ContactCellGeometry& cell, const PolygonVariation& polygon) : n_(catalog::cell(cell.slave).n_nodes) {
     const auto ends = catalog::cell(cell.slave).family == Family::TRIA ? std::array{std::pair{0, 1}, std::pair{0, 2}}
                                                                        : std::array{std::pair{0, 2}, std::pair{1, 3}};
-    for (std::size_t i = 0; i < 2; ++i) {
-      of_c_[i].fill(0), of_c_[i][static_cast<std::size_t>(ends[i].first)] = -1,
-                        of_c_[i][static_cast<std::size_t>(ends[i].second)] = 1;
-      c_[i] = Eigen::Map<const Vector<3>>(cell.slave_nodes.data() + 3 * ends[i].second) -
-              Eigen::Map<const Vector<3>>(cell.slave_nodes.data() + 3 * ends[i].first);
-      e_[i] = polygon.vertex(static_cast<int>(i) + 1).x - polygon.vertex(0).x;
+    const auto store = [](const Vector<3>& v, double* to) { Eigen::Map<Vector<3>>{to} = v; };
+    const TriangleVertex& first = polygon.vertex(0);
+    for (int i = 0; i < 2; ++i) {
+      const auto& [from, to] = ends[static_cast<std::size_t>(i)];
+      std::fill_n(plane_.of_c[i], max_slave_nodes, 0.0);
+      plane_.of_c[i][from] = -1, plane_.of_c[i][to] = 1;
+      c_[i] = Eigen::Map<const Vector<3>>(cell.slave_nodes.data() + 3 * to) -
+              Eigen::Map<const Vector<3>>(cell.slave_nodes.data() + 3 * from);
+      e_[i] = polygon.vertex(i + 1).x - first.x;
+      store(c_[i], plane_.c[i]), store(e_[i], plane_.e[i]);
       for (std::size_t a = 0; a < static_cast<std::size_t>(n_); ++a)
-        of_e_[i][a] = polygon.vertex(static_cast<int>(i) + 1).phi.value[a] - polygon.vertex(0).phi.value[a];
+        plane_.of_e[i][a] = polygon.vertex(i + 1).phi.value[a] - first.phi.value[a];
     }
+    std::copy_n(first.phi.value.begin(), n_, plane_.of_origin);
     mean_ = c_[0].cross(c_[1]);
     facet_ = e_[0].cross(e_[1]);
     area_ = facet_.dot(mean_);
-    if (!second) return;
-    of_corner_.resize(cell.trace->vertex.size());
-    for (auto& of : of_corner_) of[0].setZero(), of[1].setZero();
-    by_c_[0] = by_c_[1] = by_mean_ = PointRows<3>::Zero(3, sum.columns().of_points());
+    store(first.x, plane_.origin), store(mean_, plane_.mean);
   }
 
   double area() const { return area_; }
-  const Vector<3>& mean() const { return mean_; }
-
-  /// Add a point. @param b its place  @param at corners of its triangle, by number  @param share of them
-  void add_point(const Cell::OnSlave& point, double rule, const Vector<2>& b, const std::array<int, 3>& at,
-                 const std::array<double, 3>& share, bool second) {
-    const Cell::Integrand h = sum_.integrand(point, &mean_);
-    Eigen::Matrix2d m;
-    for (int i = 0; i < 2; ++i)
-      for (int j = 0; j < 2; ++j) m(i, j) = c_[static_cast<std::size_t>(i)].dot(point.at.d[static_cast<std::size_t>(j)]);
-    const Eigen::Matrix2d inverse = m.inverse();
-    const Vector<2> nu = -inverse.transpose() * h.slope;
-    const Vector<3> held = nu[0] * c_[0] + nu[1] * c_[1], of_place = h.of_place + held;
-    const Vector<3> off = point.at.x - (polygon_.vertex(0).x + b[0] * e_[0] + b[1] * e_[1]);
-    sum_.add_point(point, h, rule, of_place);
-    of_mean_ += rule * h.of_mean;
-    for (std::size_t i = 0; i < 2; ++i) {
-      of_directions_[i] += rule * nu[static_cast<int>(i)] * off;
-      of_sides_[i] -= rule * b[static_cast<int>(i)] * held;
-    }
-    of_origin_ -= rule * held;
-    const Eigen::Index corner = sum_.columns().first_corner();
-    for (std::size_t k = 0; k < 3; ++k)
-      for (int j = 0; j < 2; ++j)
-        sum_.of_simplex()[corner + 2 * at[k] + j] -= rule * share[k] * held.dot(e_[static_cast<std::size_t>(j)]);
-    if (!second) return;
-
-    // c . (dx - dy) + (x - y) . dc = 0
-    PointRows<2> dxi = PointRows<2>::Zero(2, sum_.columns().of_points());
-    PointRows<3> moved = PointRows<3>::Zero(3, dxi.cols());  // dx - dy
-    for (int a = 0; a < n_; ++a) {
-      const auto node = static_cast<std::size_t>(a);
-      const double left =
-          point.phi.value[node] - polygon_.vertex(0).phi.value[node] - b[0] * of_e_[0][node] - b[1] * of_e_[1][node];
-      moved.block<3, 3>(0, 3 * a).diagonal().setConstant(left);
-      for (std::size_t i = 0; i < 2; ++i)
-        dxi.row(static_cast<int>(i)).segment<3>(3 * a) = (left * c_[i] + of_c_[i][node] * off).transpose();
-    }
-    for (std::size_t k = 0; k < 3; ++k)
-      for (int j = 0; j < 2; ++j) {
-        const Eigen::Index column = corner + 2 * at[k] + j;
-        moved.col(column) -= share[k] * e_[static_cast<std::size_t>(j)];
-        for (int i = 0; i < 2; ++i)
-          dxi(i, column) -= share[k] * c_[static_cast<std::size_t>(i)].dot(e_[static_cast<std::size_t>(j)]);
-      }
-    dxi = (-inverse * dxi).eval();
-    for (int i = 0; i < 2; ++i) moved += point.at.d[static_cast<std::size_t>(i)] * dxi.row(i);
-    PointRow turned_mean = PointRow::Zero(dxi.cols());  // A . dm
-    const Vector<3> by_first = c_[1].cross(point.area.n), by_second = point.area.n.cross(c_[0]);
-    for (int a = 0; a < n_; ++a)
-      turned_mean.segment<3>(3 * a) =
-          (of_c_[0][static_cast<std::size_t>(a)] * by_first + of_c_[1][static_cast<std::size_t>(a)] * by_second).transpose();
-    sum_.add_second_of_point(point, h, rule, of_place, dxi, &turned_mean);
-
-    const double w = sum_.factor(rule);
-    for (int i = 0; i < 2; ++i) by_c_[static_cast<std::size_t>(i)] += w * nu[i] * moved;
-    for (int d = 0; d < 3; ++d) sum_.along_area(point, -w * h.value / h.lift * Vector<3>::Unit(d), dxi, by_mean_.row(d));
-    second_of_mean_ += w * h.of_mean;
-    for (std::size_t k = 0; k < 3; ++k)
-      for (std::size_t j = 0; j < 2; ++j) of_corner_[static_cast<std::size_t>(at[k])][j] -= w * share[k] * held;
-  }
+  const PlaneOfSlave& plane() const { return plane_; }
 
   /// The points of a simplex are done: what they say of the chart goes to the nodes.
-  void end_simplex() {
-    const std::array<Vector<3>, 2> of_c = {of_directions_[0] + c_[1].cross(of_mean_),
-                                           of_directions_[1] + of_mean_.cross(c_[0])};
-    for (std::size_t a = 0; a < static_cast<std::size_t>(n_); ++a) {
-      Vector<3> of_node = polygon_.vertex(0).phi.value[a] * of_origin_;
-      for (std::size_t i = 0; i < 2; ++i) of_node += of_c_[i][a] * of_c[i] + of_e_[i][a] * of_sides_[i];
-      sum_.of_simplex().segment<3>(3 * static_cast<Eigen::Index>(a)) += of_node.transpose();
+  void end_points(const CellVariation<3>& sum, const std::array<int, 3>& corners, PointRow& of_simplex) {
+    const PointSums<3>::Simplex& simplex = sum.points().simplex();
+    const auto vector = [](const double* v) { return Vector<3>(v[0], v[1], v[2]); };
+    const Vector<3> of_mean = vector(simplex.of_mean), of_origin = vector(simplex.of_origin);
+    const std::array<Vector<3>, 2> of_c = {vector(simplex.of_directions[0]) + c_[1].cross(of_mean),
+                                           vector(simplex.of_directions[1]) + of_mean.cross(c_[0])},
+                                   of_sides = {vector(simplex.of_sides[0]), vector(simplex.of_sides[1])};
+    for (int a = 0; a < n_; ++a) {
+      Vector<3> of_node = plane_.of_origin[a] * of_origin;
+      for (std::size_t i = 0; i < 2; ++i) of_node += plane_.of_c[i][a] * of_c[i] + plane_.of_e[i][a] * of_sides[i];
+      of_simplex.segment<3>(3 * a) += of_node.transpose();
     }
-    for (Vector<3>* const done : {&of_directions_[0], &of_directions_[1], &of_sides_[0], &of_sides_[1], &of_origin_, &of_mean_})
-      done->setZero();
+    if (sum.is_second())
+      for (std::size_t k = 0; k < 3; ++k) corners_.push_back({corners[k], simplex, k});
   }
 
   /// All simplices are done: what the area of the triangle adds, and second derivatives of the chart.
-  void end(bool second) {
-    const double whole = sum_.gap() / area_;
-    PointRow darea = PointRow::Zero(sum_.columns().of_points());
+  void end(CellVariation<3>& sum) {
+    const double whole = sum.gap() / area_;
+    PointRow darea = PointRow::Zero(sum.columns().of_points());
     const std::array<Vector<3>, 2> by_e = {e_[1].cross(mean_), mean_.cross(e_[0])},
                                    by_c = {c_[1].cross(facet_), facet_.cross(c_[0])};
-    for (std::size_t a = 0; a < static_cast<std::size_t>(n_); ++a)
+    for (int a = 0; a < n_; ++a)
       for (std::size_t i = 0; i < 2; ++i)
-        darea.segment<3>(3 * static_cast<Eigen::Index>(a)) += (of_e_[i][a] * by_e[i] + of_c_[i][a] * by_c[i]).transpose();
-    QuadraticForm& form = sum_.form();
-    if (second) form.add(2 / area_, darea, sum_.gradient());
-    sum_.gradient() += whole * darea;
-    if (!second) return;
-
-    sum_.add_cross(2 * whole * mean_, of_e_[0].data(), 1, of_e_[1].data(), 1);
-    sum_.add_cross(2 * (whole * facet_ + second_of_mean_), of_c_[0].data(), 1, of_c_[1].data(), 1);
-    for (int d = 0; d < 3; ++d) {  // of the facet
-      const Vector<3> first = e_[1].cross(Vector<3>::Unit(d)), behind = Vector<3>::Unit(d).cross(e_[0]);
-      for (std::size_t a = 0; a < static_cast<std::size_t>(n_); ++a)
-        by_mean_.row(d).segment<3>(3 * static_cast<Eigen::Index>(a)) +=
-            whole * (of_e_[0][a] * first + of_e_[1][a] * behind).transpose();
-    }
-    by_c_[0] += cross(c_[1], by_mean_);
-    by_c_[1] -= cross(c_[0], by_mean_);
-    for (std::size_t a = 0; a < static_cast<std::size_t>(n_); ++a)
-      for (std::size_t i = 0; i < 2; ++i)
-        for (int d = 0; d < 3 && of_c_[i][a] != 0; ++d)
-          form.of(3 * static_cast<Eigen::Index>(a) + d) += 2 * of_c_[i][a] * by_c_[i].row(d);
-    const Eigen::Index corner = sum_.columns().first_corner();
-    for (std::size_t k = 0; k < of_corner_.size(); ++k)
-      for (std::size_t j = 0; j < 2; ++j) {
-        auto row = form.of(corner + 2 * static_cast<Eigen::Index>(k) + static_cast<Eigen::Index>(j));
-        for (std::size_t a = 0; a < static_cast<std::size_t>(n_); ++a)
-          row.segment<3>(3 * static_cast<Eigen::Index>(a)) += 2 * of_e_[j][a] * of_corner_[k][j].transpose();
-      }
+        darea.segment<3>(3 * a) += (plane_.of_e[i][a] * by_e[i] + plane_.of_c[i][a] * by_c[i]).transpose();
+    QuadraticForm& form = sum.form();
+    const bool second = sum.is_second();
+    if (second) form.add(2 / area_, darea, sum.gradient());
+    sum.gradient() += whole * darea;
+    if (second) add_second(sum, whole);
   }
 
  private:
-  const PolygonVariation& polygon_;
-  Cell& sum_;
-  int n_;                                                          ///< nodes of the slave
-  std::array<Vector<3>, 2> c_, e_;                                 ///< directions of the plane, sides of the triangle
-  std::array<std::array<double, max_skin_nodes>, 2> of_c_, of_e_;  ///< as sums over the nodes
+  /// Of Q = 2 dc . by_c + 2 dm . by_mean + 2 de . (sum of of_corner dcorner) + area of second order.
+  void add_second(CellVariation<3>& sum, double whole) const {
+    const PointSums<3>& points = sum.points();
+    QuadraticForm& form = sum.form();
+    const Eigen::Index columns = points.columns(), all = sum.columns().of_points();
+    std::array<PointRows<3>, 2> by_c = {PointRows<3>::Zero(3, all), PointRows<3>::Zero(3, all)};
+    PointRows<3> by_mean = by_c[0];
+    for (int d = 0; d < 3; ++d) {
+      by_mean.row(d).head(columns) = 0.5 * Eigen::Map<const Row>(points.by_mean() + d * columns, columns);
+      for (int i = 0; i < 2; ++i)
+        by_c[static_cast<std::size_t>(i)].row(d).head(columns) =
+            0.5 * Eigen::Map<const Row>(points.by_directions() + (2 * d + i) * columns, columns);
+    }
+    for (int a = 0; a < n_; ++a)
+      for (int d = 0; d < 3; ++d) {
+        const int e = (d + 1) % 3, f = (d + 2) % 3;
+        by_mean(d, 3 * a + f) += 0.5 * points.mean_by_node(a, e);
+        by_mean(d, 3 * a + e) -= 0.5 * points.mean_by_node(a, f);
+        for (int i = 0; i < 2; ++i) by_c[static_cast<std::size_t>(i)](d, 3 * a + d) += points.direction_by_node(i, a);
+        // of the facet
+        const Vector<3> first = e_[1].cross(Vector<3>::Unit(d)), behind = Vector<3>::Unit(d).cross(e_[0]);
+        by_mean.row(d).segment<3>(3 * a) += whole * (plane_.of_e[0][a] * first + plane_.of_e[1][a] * behind).transpose();
+      }
+    for (const Corner& corner : corners_)
+      for (int j = 0; j < 2; ++j) {
+        const Eigen::Index column = sum.column(corner.number) + j;
+        for (int i = 0; i < 2; ++i)
+          by_c[static_cast<std::size_t>(i)].col(column) +=
+              corner.by_c[static_cast<std::size_t>(i)] * e_[static_cast<std::size_t>(j)];
+        for (int a = 0; a < n_; ++a) form.of(column).segment<3>(3 * a) += 2 * plane_.of_e[j][a] * corner.by_e.transpose();
+      }
+    by_c[0] += cross(c_[1], by_mean);
+    by_c[1] -= cross(c_[0], by_mean);
+    const Vector<3> of_area = 2 * whole * mean_,
+                    of_mean = 2 * (whole * facet_ +
+                                   Vector<3>(points.second_of_mean(0), points.second_of_mean(1), points.second_of_mean(2)));
+    for (int a = 0; a < n_; ++a) {
+      for (int i = 0; i < 2; ++i)
+        for (int d = 0; d < 3 && plane_.of_c[i][a] != 0; ++d)
+          form.of(3 * a + d).head(all) += 2 * plane_.of_c[i][a] * by_c[static_cast<std::size_t>(i)].row(d);
+      for (int b = 0; b < n_; ++b)
+        form.add_cross_of_nodes(
+            plane_.of_e[0][a] * plane_.of_e[1][b] * of_area + plane_.of_c[0][a] * plane_.of_c[1][b] * of_mean, a, b);
+    }
+  }
+
+  /// A corner of a simplex.
+  struct Corner {
+    int number;
+    std::array<double, 2> by_c;
+    Vector<3> by_e;
+
+    Corner(int n, const PointSums<3>::Simplex& simplex, std::size_t k)
+        : number(n),
+          by_c{simplex.corner_by_c[k][0], simplex.corner_by_c[k][1]},
+          by_e(simplex.corner_by_e[k][0], simplex.corner_by_e[k][1], simplex.corner_by_e[k][2]) {}
+  };
+
+  int n_;  ///< nodes of the slave
+  PlaneOfSlave plane_{};
+  std::array<Vector<3>, 2> c_, e_;
   Vector<3> mean_, facet_;
   double area_ = 0;
-  // derivatives of what the points of a simplex add by c, e, the triangle's origin and the mean normal
-  std::array<Vector<3>, 2> of_directions_ = {Vector<3>::Zero(), Vector<3>::Zero()}, of_sides_ = of_directions_;
-  Vector<3> of_origin_ = Vector<3>::Zero(), of_mean_ = Vector<3>::Zero();
-  // factors in second derivatives, of all points: of dc, dm, dc x dc, and of each corner times de
-  std::array<PointRows<3>, 2> by_c_;
-  PointRows<3> by_mean_;
-  Vector<3> second_of_mean_ = Vector<3>::Zero();
-  std::vector<std::array<Vector<3>, 2>> of_corner_;
+  std::vector<Corner> corners_;
 };
 
 }  // namespace
 
 void vary_in_space(const ContactCellGeometry& cell, bool second, GapVariation& variation) {
   const PolygonTrace& trace = *cell.trace;
-  CellVariation<3> sum(cell, 2 * static_cast<int>(trace.vertex.size()), second);
-  const Columns& columns = sum.columns();
-  const Eigen::Index n = columns.unknowns(), corner = columns.first_corner();
   PolygonVariation polygon(cell, second);
   // a triangle with straight edges is affine: its reference cell does as well
   const bool in_plane = trace.plane && cell.slave != CellType::TRIA3;
   std::optional<PlaneChart> plane;
-  if (in_plane) plane.emplace(cell, polygon, sum, second);
-  Eigen::Matrix2d sides;
-  for (int i = 0; i < 2; ++i)
-    for (int j = 0; j < 2; ++j)
-      sides(i, j) = trace.triangle[static_cast<std::size_t>(j) + 1][static_cast<std::size_t>(i)] -
-                    trace.triangle[0][static_cast<std::size_t>(i)];
-  const double scale = plane ? plane->area() : sides.determinant();
+  if (in_plane) plane.emplace(cell, polygon);
+  std::array<double, 4> sides{};
+  for (std::size_t i = 0; i < 2; ++i)
+    for (std::size_t j = 0; j < 2; ++j) sides[2 * i + j] = trace.triangle[j + 1][i] - trace.triangle[0][i];
+  const double scale = plane ? plane->area() : sides[0] * sides[3] - sides[1] * sides[2];
+  CellVariation<3> sum(cell, static_cast<int>(trace.vertex.size()), second, sides, plane ? &plane->plane() : nullptr);
+  const Columns& columns = sum.columns();
+  const Eigen::Index n = columns.unknowns();
 
   for (std::size_t p = 0; p < trace.point.size();) {
     const std::int32_t last = trace.point[p].last;
@@ -196,40 +164,43 @@ void vary_in_space(const ContactCellGeometry& cell, bool second, GapVariation& v
       place[k] = {given[0], given[1]};
     }
     const Vector<2> u = place[1] - place[0], v = place[2] - place[0];
-    sum.start_simplex(scale, u[0] * v[1] - u[1] * v[0]);
-    for (; p < trace.point.size() && trace.point[p].last == last; ++p) {
-      const auto& [triangle, r, s, rule] = trace.point[p];
-      const std::array<double, 3> share = {1 - r - s, r, s};
-      const Vector<2> b = share[0] * place[0] + share[1] * place[1] + share[2] * place[2];
-      const CellVariation<3>::OnSlave point = sum.on_slave(p);
-      if (plane) {
-        plane->add_point(point, rule, b, at, share, second);
-        continue;
+    sum.start_simplex(scale, u[0] * v[1] - u[1] * v[0], at);
+    while (p < trace.point.size() && trace.point[p].last == last) {
+      PointBlock<3> block;
+      const std::size_t first = p;
+      for (std::size_t l = 0; l < LACON_LANES; ++l) {
+        const bool none = p == trace.point.size() || trace.point[p].last != last;
+        const std::size_t own = none ? first : p++;
+        const auto& [triangle, r, s, rule] = trace.point[own];
+        const std::array<double, 3> share = {1 - r - s, r, s};
+        block.rule[l] = none ? 0 : rule;
+        for (std::size_t k = 0; k < 3; ++k) block.share[k * LACON_LANES + l] = share[k];
+        for (std::size_t i = 0; i < 2; ++i) {
+          const std::size_t to = i * LACON_LANES + l;
+          const auto d = static_cast<Eigen::Index>(i);
+          block.slave[to] = cell.slave_point[2 * own + i], block.master[to] = cell.master_point[2 * own + i];
+          block.place[to] = share[0] * place[0][d] + share[1] * place[1][d] + share[2] * place[2][d];
+        }
       }
-      const CellVariation<3>::Integrand h = sum.integrand(point);
-      sum.add_point(point, h, rule, h.of_place);
-      const Vector<2> of_b = rule * sides.transpose() * h.slope;
-      for (std::size_t k = 0; k < 3; ++k) sum.of_simplex().segment<2>(corner + 2 * at[k]) += share[k] * of_b.transpose();
-      if (!second) continue;
-      PointRows<2> dxi = PointRows<2>::Zero(2, columns.of_points());
-      for (std::size_t k = 0; k < 3; ++k) dxi.middleCols<2>(corner + 2 * at[k]) += share[k] * sides;
-      sum.add_second_of_point(point, h, rule, h.of_place, dxi);
+      sum.add(block);
     }
-    if (plane) plane->end_simplex();
+    PointRow& of_simplex = sum.end_points();
+    if (plane) plane->end_points(sum, at, of_simplex);
     // twice the area of the triangle is the sum of place[k] x place[k + 1]
     PointRow dpart = PointRow::Zero(columns.of_points());
     for (std::size_t k = 0; k < 3; ++k) {
       const Vector<2> side = place[(k + 1) % 3] - place[(k + 2) % 3];
-      dpart.segment<2>(corner + 2 * at[k]) = Vector<2>(side[1], -side[0]).transpose();
+      dpart.segment<2>(sum.column(at[k])) = Vector<2>(side[1], -side[0]).transpose();
     }
     const double of_part = sum.end_simplex(dpart);
     for (std::size_t k = 0; second && k < 3; ++k) {
-      const Eigen::Index own = corner + 2 * at[k], next = corner + 2 * at[(k + 1) % 3];
+      const Eigen::Index own = sum.column(at[k]), next = sum.column(at[(k + 1) % 3]);
       sum.form().of(own)[next + 1] += 2 * of_part;
       sum.form().of(own + 1)[next] -= 2 * of_part;
     }
   }
-  if (plane) plane->end(second);
+  sum.end();
+  if (plane) plane->end(sum);
 
   Row gradient = sum.by_unknowns();
   polygon.add_gradient(sum.gradient().tail(columns.corners), gradient);
@@ -239,7 +210,7 @@ void vary_in_space(const ContactCellGeometry& cell, bool second, GapVariation& v
   if (!second) return;
   QuadraticForm form(n);
   polygon.add_second(form);
-  chain_corners(sum.second_by_points(), columns, polygon.corners(), form, variation);
+  chain_corners(sum.form().matrix(), columns, polygon.corners(), form, variation);
 }
 
 }  // namespace lacon::variations

@@ -72,26 +72,6 @@ class QuadraticForm {
   Matrix left_, right_;  ///< of these
 };
 
-/// Shape functions and gradients of a skin cell at many points: all at once, which takes less.
-template <int D>
-struct ShapeTable {
-  CellType type;
-  std::span<const double> xi;
-  std::vector<double> value, gradient;
-  std::array<double, max_skin_nodes * 3> curvature;  ///< of a cell of the first order: everywhere the same
-
-  /// @param points (n, D - 1)
-  ShapeTable(CellType of, std::span<const double> points) : type(of), xi(points) {
-    const catalog::CellRow& cell = catalog::cell(type);
-    const auto n = static_cast<std::size_t>(cell.n_nodes);
-    value.resize(xi.size() / (D - 1) * n), gradient.resize(xi.size() * n);
-    if (xi.empty()) return;
-    shape_functions(type, xi, value);
-    shape_gradients(type, xi, gradient);
-    if (cell.order == 1) shape_derivatives(type, xi.first(D - 1), 2, curvature);
-  }
-};
-
 /// Shape functions of a skin cell at a point, with their derivatives to an order.
 template <int D>
 struct Shapes {
@@ -108,17 +88,6 @@ struct Shapes {
     shape_gradients(type, at, gradient);
     if (order > 1) shape_derivatives(type, at, 2, curvature);
     if (order > 2) shape_derivatives(type, at, 3, third);
-  }
-  Shapes(const ShapeTable<D>& table, std::size_t point, int wanted) : Shapes(table.type, wanted) {
-    const auto count = static_cast<std::size_t>(n);
-    const std::span<const double> at = table.xi.subspan(R * point, R);
-    std::copy_n(table.value.begin() + static_cast<std::ptrdiff_t>(count * point), count, value.begin());
-    std::copy_n(table.gradient.begin() + static_cast<std::ptrdiff_t>(R * count * point), R * count, gradient.begin());
-    if (catalog::cell(table.type).order == 1)
-      std::copy_n(table.curvature.begin(), (R == 1 ? 1 : 3) * count, curvature.begin());
-    else if (order > 1)
-      shape_derivatives(table.type, at, 2, curvature);
-    if (order > 2) shape_derivatives(table.type, at, 3, third);
   }
   double slope(int node, int i) const { return gradient[static_cast<std::size_t>(node * R + i)]; }
   double bend(int node, int i, int j) const {
@@ -189,16 +158,6 @@ struct AreaNormal {
       const auto& [t, s] = skin.d;
       n = t.cross(s);
       for (int i = 0; i < R; ++i) d[i] = skin.dd[0][i].cross(s) + t.cross(skin.dd[1][i]);
-    }
-  }
-  /// The second derivative by the reference coordinates i and j.
-  static Vector<D> second(const Interpolated<D>& skin, int i, int j) {
-    if constexpr (D == 2) {
-      return out_of(skin.ddd[0]);
-    } else {
-      const auto& [t, s] = skin.d;
-      return skin.dd[0][i].cross(skin.dd[1][j]) + skin.dd[0][j].cross(skin.dd[1][i]) + skin.ddd[i + j].cross(s) +
-             t.cross(skin.ddd[i + j + 1]);
     }
   }
 };

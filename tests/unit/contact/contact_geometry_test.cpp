@@ -145,6 +145,31 @@ std::vector<double> derivatives(const Skins& skins, std::int8_t order) {
   return sum;
 }
 
+TEST(ContactGeometry, TheBitsOfDerivativesDoNotDependOnTheNumberOfThreads) {
+  for (const bool smooth : {false, true}) {
+    Skins skins(6, 5, smooth);
+    std::mt19937 random(12);
+    std::uniform_real_distribution<double> uniform(-0.004, 0.004);
+    for (double& u : skins.displacement) u = uniform(random);
+    const auto with = [&](const char* threads) {
+      setenv("LACON_THREADS", threads, 1);
+      Registry registry;
+      ContactGeometry geometry(skins.mesh, skins.model, skins.contact, registry);
+      geometry.update(skins.displacement);
+      std::vector<double> all;
+      for (const ContactGeometry::Variation& variation : geometry.vary(std::vector<std::int8_t>(geometry.n_patches(), 2))) {
+        all.insert(all.end(), variation.of_gap.gradient.begin(), variation.of_gap.gradient.end());
+        all.insert(all.end(), variation.of_gap.hessian.begin(), variation.of_gap.hessian.end());
+      }
+      unsetenv("LACON_THREADS");
+      return all;
+    };
+    const std::vector<double> alone = with("1");
+    EXPECT_GT(alone.size(), 1000U);
+    for (const char* threads : {"2", "3"}) EXPECT_TRUE(with(threads) == alone) << threads << " threads";
+  }
+}
+
 // As finely as iterates have asked for, so that gaps do not leap on the way back; what another process takes up has the same
 // bits.
 TEST(ContactGeometry, SlavesStayCutAsTheyWereUntilTheyAreAtRest) {
