@@ -2,71 +2,15 @@
 
 #include <Eigen/Dense>
 #include <cmath>
-#include <map>
 
 #include "lacon/elements/reference.hpp"
+#include "lacon/operators/fields/nearest_point.hpp"
+#include "lacon/operators/fields/reference_cell.hpp"
 
 namespace lacon {
 namespace {
 
-using Vector = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, 3, 1>;
 using Matrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor, 3, 3>;
-
-/// A half-space normal . xi <= offset that holds the reference cell.
-struct HalfSpace {
-  Vector normal;
-  double offset;
-};
-
-/// A reference cell as its middle and the half-spaces of its facets.
-struct ReferenceCell {
-  Vector middle;
-  std::vector<HalfSpace> sides;
-
-  explicit ReferenceCell(const catalog::CellRow& row) : middle(Vector::Zero(row.dimension)) {
-    const auto vertex = [&](int i) -> Vector {
-      return Eigen::Map<const Eigen::VectorXd>(row.nodes.data() + static_cast<std::ptrdiff_t>(i) * row.dimension,
-                                               row.dimension);
-    };
-    for (int i = 0; i < row.n_vertices; ++i) middle += vertex(i) / row.n_vertices;
-    for (const catalog::FacetRow& facet : row.facets) {
-      const Vector a = vertex(facet.nodes[0]), along = vertex(facet.nodes[1]) - a;
-      Vector normal(row.dimension);
-      if (row.dimension == 2) {
-        normal << along[1], -along[0];
-      } else {
-        const Eigen::Vector3d u = along, v = vertex(facet.nodes[2]) - a;
-        normal = u.cross(v);
-      }
-      normal.normalize();
-      if (normal.dot(middle - a) > 0) normal = -normal;
-      sides.push_back({normal, normal.dot(a)});
-    }
-  }
-
-  /// The side that xi is furthest beyond, and how far; negative inside.
-  std::pair<const HalfSpace*, double> worst(const Vector& xi) const {
-    std::pair<const HalfSpace*, double> found{nullptr, -1e300};
-    for (const HalfSpace& side : sides)
-      if (const double beyond = side.normal.dot(xi) - side.offset; beyond > found.second) found = {&side, beyond};
-    return found;
-  }
-  bool holds(const Vector& xi) const { return worst(xi).second <= CellLocator::margin; }
-  /// xi moved back across the sides it is beyond, one after the other.
-  Vector moved_inside(Vector xi) const {
-    for (int i = 0; i < 100; ++i) {
-      const auto [side, beyond] = worst(xi);
-      if (beyond <= CellLocator::margin) return xi;
-      xi -= beyond * side->normal;
-    }
-    return middle;
-  }
-};
-
-const ReferenceCell& reference_cell(CellType type) {
-  static std::map<CellType, ReferenceCell> made;
-  return made.try_emplace(type, catalog::cell(type)).first->second;
-}
 
 /// A box that holds a cell, curved or not: that of its vertices, widened by how far the other nodes are from where the linear
 /// cell of these vertices has them (no shape function of such a node exceeds 1).
@@ -97,10 +41,22 @@ Box<3> box_of(const Mesh& mesh, std::size_t cell) {
   return box;
 }
 
-bool within(const Box<3>& box, const std::array<double, 3>& point, double distance) {
-  for (std::size_t d = 0; d < 3; ++d)
-    if (point[d] < box.low[d] - distance || point[d] > box.high[d] + distance) return false;
-  return true;
+double distance(const Box<3>& box, const std::array<double, 3>& point) {
+  std::array<double, 3> off;
+  for (std::size_t d = 0; d < 3; ++d) off[d] = std::max({box.low[d] - point[d], point[d] - box.high[d], 0.0});
+  return std::hypot(off[0], off[1], off[2]);
+}
+
+/// The nodes of a cell relative to a point, so that round-off is that of the cell and not of the distance to the origin.
+Eigen::Matrix<double, Eigen::Dynamic, 3> relative_nodes(const Mesh& mesh, std::int32_t cell,
+                                                        const std::array<double, 3>& point) {
+  const auto nodes = mesh.cells[static_cast<std::size_t>(cell)];
+  Eigen::Matrix<double, Eigen::Dynamic, 3> x(static_cast<Eigen::Index>(nodes.size()), 3);
+  for (Eigen::Index a = 0; a < x.rows(); ++a) {
+    const auto at = mesh.point(static_cast<std::size_t>(nodes[static_cast<std::size_t>(a)]));
+    for (std::size_t d = 0; d < 3; ++d) x(a, static_cast<Eigen::Index>(d)) = at[d] - point[d];
+  }
+  return x;
 }
 
 }  // namespace
@@ -118,46 +74,28 @@ CellLocator::CellLocator(const Mesh& mesh, std::span<const std::int32_t> cells) 
   tree_.emplace(std::move(boxes));
 }
 
-double CellLocator::residual(std::size_t cell, const std::array<double, 3>& point, std::span<const double> xi,
-                             std::vector<double>& weights) const {
-  const auto nodes = mesh_.cells[cell];
-  weights.resize(nodes.size());
-  shape_functions(mesh_.types[cell], xi, weights);
-  Eigen::Vector3d r = -Eigen::Map<const Eigen::Vector3d>(point.data());
-  for (std::size_t a = 0; a < nodes.size(); ++a)
-    r += weights[a] * Eigen::Map<const Eigen::Vector3d>(mesh_.point(static_cast<std::size_t>(nodes[a])).data());
-  return r.norm();
-}
-
-bool CellLocator::inverse(std::size_t cell, const std::array<double, 3>& point, std::span<double> xi) const {
-  const auto nodes = mesh_.cells[cell];
-  const int dimension = mesh_.dimension;
-  const auto n = static_cast<Eigen::Index>(nodes.size());
-  // positions relative to the point, so that round-off is that of the cell and not of the distance to the origin
-  Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor> x(n, dimension);
-  for (Eigen::Index a = 0; a < n; ++a)
-    for (int d = 0; d < dimension; ++d)
-      x(a, d) = mesh_.point(static_cast<std::size_t>(nodes[static_cast<std::size_t>(a)]))[static_cast<std::size_t>(d)] -
-                point[static_cast<std::size_t>(d)];
+std::optional<PointInCell> CellLocator::within(std::int32_t cell, const std::array<double, 3>& point) const {
+  const CellType type = mesh_.types[static_cast<std::size_t>(cell)];
+  const auto x = relative_nodes(mesh_, cell, point).leftCols(mesh_.dimension).eval();
   const double size = (x.colwise().maxCoeff() - x.colwise().minCoeff()).norm();
-  Eigen::VectorXd shape(n);
-  Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor> gradient(n, dimension);
-  const auto off = [&](const Vector& at) -> Vector {
-    shape_functions(mesh_.types[cell], {at.data(), static_cast<std::size_t>(dimension)}, {shape.data(), nodes.size()});
-    return x.transpose() * shape;
+  PointInCell found{cell, std::vector<double>(static_cast<std::size_t>(x.rows())), 0, false};
+  Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor> gradient(x.rows(), mesh_.dimension);
+  const auto off = [&](const ReferenceVector& at) -> ReferenceVector {
+    shape_functions(type, {at.data(), static_cast<std::size_t>(at.size())}, found.weights);
+    return x.transpose() * Eigen::Map<const Eigen::VectorXd>(found.weights.data(), x.rows());
   };
 
-  Vector at = reference_cell(mesh_.types[cell]).middle, r = off(at);
+  ReferenceVector at = reference_cell(type).middle, r = off(at);
   for (int iteration = 0; iteration < 50 && r.norm() > 1e-16 * size; ++iteration) {
-    shape_gradients(mesh_.types[cell], {at.data(), static_cast<std::size_t>(dimension)},
+    shape_gradients(type, {at.data(), static_cast<std::size_t>(at.size())},
                     {gradient.data(), static_cast<std::size_t>(gradient.size())});
     const Matrix jacobian = x.transpose() * gradient;
-    const Vector step = jacobian.fullPivLu().solve(r);
+    const ReferenceVector step = jacobian.fullPivLu().solve(r);
     // a shorter step where the residual would grow; none that helps: converged as far as round-off lets it
     bool better = false;
     for (double part = 1; part > 1e-3 && !better; part /= 2) {
-      const Vector tried = at - part * step;
-      const Vector there = off(tried);
+      const ReferenceVector tried = at - part * step;
+      const ReferenceVector there = off(tried);
       if (!(there.norm() < r.norm())) continue;
       at = tried;
       r = there;
@@ -165,42 +103,54 @@ bool CellLocator::inverse(std::size_t cell, const std::array<double, 3>& point, 
     }
     if (!better) break;
   }
-  std::copy_n(at.data(), dimension, xi.begin());
-  return r.norm() <= 1e-11 * size;
+  found.distance = off(at).norm();
+  if (found.distance > 1e-11 * size || !reference_cell(type).holds(at, margin)) return std::nullopt;
+  return found;
+}
+
+std::optional<PointInCell> CellLocator::nearest(const std::array<double, 3>& point, std::optional<double> distance_max) const {
+  const auto limit = [&](std::int32_t item) { return distance_max.value_or(near * size_[static_cast<std::size_t>(item)]); };
+  // cells farther than some cell's nearest vertex need not be looked at
+  double bound = distance_max.value_or(near * largest_);
+  const auto touches = [&](const Box<3>& box) { return distance(box, point) <= bound; };
+  tree_->visit(touches, [&](std::int32_t item) {
+    const std::int32_t cell = cells_[static_cast<std::size_t>(item)];
+    const double vertex = relative_nodes(mesh_, cell, point)
+                              .topRows(mesh_.row(static_cast<std::size_t>(cell)).n_vertices)
+                              .rowwise()
+                              .norm()
+                              .minCoeff();
+    if (vertex <= limit(item)) bound = std::min(bound, vertex * (1 + 1e-12));
+  });
+  std::vector<std::int32_t> items;
+  tree_->visit(touches, [&](std::int32_t item) { items.push_back(item); });
+  std::sort(items.begin(), items.end());
+
+  std::optional<NearestPoint> best;
+  PointInCell found;
+  for (const std::int32_t item : items) {
+    const std::int32_t cell = cells_[static_cast<std::size_t>(item)];
+    NearestPoint there =
+        nearest_on_border(mesh_.types[static_cast<std::size_t>(cell)], relative_nodes(mesh_, cell, point), largest_);
+    if (there.distance > limit(item)) continue;
+    if (best && !preferred(there.distance, there.from_point, *best, largest_)) continue;
+    best = std::move(there);
+    found.cell = cell;
+  }
+  if (!best) return std::nullopt;
+  found.weights = std::move(best->weights);
+  found.distance = best->distance;
+  found.outside = true;
+  return found;
 }
 
 std::optional<PointInCell> CellLocator::find(const std::array<double, 3>& point, std::optional<double> distance_max) const {
-  const auto candidates = [&](double distance) {
-    std::vector<std::int32_t> items;
-    tree_->visit([&](const Box<3>& box) { return within(box, point, distance); },
-                 [&](std::int32_t item) { items.push_back(item); });
-    std::sort(items.begin(), items.end());
-    return items;
-  };
-  std::array<double, 3> buffer{};
-  const std::span<double> xi(buffer.data(), static_cast<std::size_t>(mesh_.dimension));
-  PointInCell found;
-  for (const std::int32_t item : candidates(0)) {
-    found.cell = cells_[static_cast<std::size_t>(item)];
-    const auto cell = static_cast<std::size_t>(found.cell);
-    if (!inverse(cell, point, xi)) continue;
-    if (!reference_cell(mesh_.types[cell]).holds(Eigen::Map<const Eigen::VectorXd>(xi.data(), mesh_.dimension))) continue;
-    found.distance = residual(cell, point, xi, found.weights);
-    return found;
-  }
-  found.outside = true;
-  std::optional<PointInCell> nearest;
-  for (const std::int32_t item : candidates(distance_max.value_or(near * largest_))) {
-    found.cell = cells_[static_cast<std::size_t>(item)];
-    const auto cell = static_cast<std::size_t>(found.cell);
-    if (!inverse(cell, point, xi)) continue;
-    const Vector inside =
-        reference_cell(mesh_.types[cell]).moved_inside(Eigen::Map<const Eigen::VectorXd>(xi.data(), mesh_.dimension));
-    found.distance = residual(cell, point, {inside.data(), xi.size()}, found.weights);
-    if (found.distance > distance_max.value_or(near * size_[static_cast<std::size_t>(item)])) continue;
-    if (!nearest || found.distance < nearest->distance) nearest = found;
-  }
-  return nearest;
+  std::vector<std::int32_t> items;
+  tree_->visit([&](const Box<3>& box) { return distance(box, point) <= 0; }, [&](std::int32_t item) { items.push_back(item); });
+  std::sort(items.begin(), items.end());
+  for (const std::int32_t item : items)
+    if (auto found = within(cells_[static_cast<std::size_t>(item)], point)) return found;
+  return nearest(point, distance_max);
 }
 
 }  // namespace lacon

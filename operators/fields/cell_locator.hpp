@@ -25,20 +25,17 @@ class CellLocator {
   /// @param cells the cells that are searched; those of another dimension are left out
   CellLocator(const Mesh& mesh, std::span<const std::int32_t> cells);
 
-  /// The first cell that holds the point. Where none does, the cell that has a point nearest to it, by `distance_max` at most
-  /// (without it by `near` of that cell's diagonal); the nearest point is sought in the reference cell, by moving the inverse
-  /// image back across the facets that it is beyond.
+  /// The first cell that holds the point. Where none does, the cell that has the point nearest in space to it, by
+  /// `distance_max` at most (without it by `near` of that cell's diagonal), and the weights there.
   std::optional<PointInCell> find(const std::array<double, 3>& point, std::optional<double> distance_max) const;
 
   static constexpr double near = 0.1;     ///< code_aster's limit beyond which it warns
   static constexpr double margin = 1e-8;  ///< in reference coordinates: inside, but for round-off
 
  private:
-  /// The inverse image of a point by Newton's method; empty where it does not converge. @param[out] xi (dimension)
-  bool inverse(std::size_t cell, const std::array<double, 3>& point, std::span<double> xi) const;
-  /// Distance of the image of xi to the point; weights are the shape functions at xi.
-  double residual(std::size_t cell, const std::array<double, 3>& point, std::span<const double> xi,
-                  std::vector<double>& weights) const;
+  /// The weights of a cell's nodes at a point, by Newton's method; empty where it finds none, or none in the cell.
+  std::optional<PointInCell> within(std::int32_t cell, const std::array<double, 3>& point) const;
+  std::optional<PointInCell> nearest(const std::array<double, 3>& point, std::optional<double> distance_max) const;
 
   const Mesh& mesh_;
   std::vector<std::int32_t> cells_;
