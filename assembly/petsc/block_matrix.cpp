@@ -109,14 +109,21 @@ class Writing {
   double* values_ = nullptr;
 };
 
+/// A product, counted by -log_view.
+template <class Real>
+void run(BlockProduct<Real> product, const BlockEntries<Real>& a, const double* x, double* y) {
+  product(a, x, y);
+  PetscLogFlops(2.0 * static_cast<double>(a.column.size()) * a.rows * a.columns);
+}
+
 template <class Real>
 PetscErrorCode apply(Mat shell, BlockProduct<Real> product, Vec x, Vec y) {
   const Parts<Real>& parts = parts_of<Real>(shell);
   if (parts.scatter) PetscCall(VecScatterBegin(parts.scatter, x, parts.of_others, INSERT_VALUES, SCATTER_FORWARD));
-  product(parts.own, Reading(x), Writing(y));
+  run(product, parts.own, Reading(x), Writing(y));
   if (!parts.scatter) return 0;
   PetscCall(VecScatterEnd(parts.scatter, x, parts.of_others, INSERT_VALUES, SCATTER_FORWARD));
-  parts.kernels->add(parts.others, Reading(parts.of_others), Writing(y));
+  run(parts.kernels->add, parts.others, Reading(parts.of_others), Writing(y));
   return 0;
 }
 
@@ -137,11 +144,11 @@ PetscErrorCode multiply_transposed(Mat shell, Vec x, Vec y) {
   PetscCall(VecSet(y, 0));
   if (parts.scatter) {
     PetscCall(VecSet(parts.of_others, 0));
-    parts.kernels->add_transposed(parts.others, Reading(x), Writing(parts.of_others));
+    run(parts.kernels->add_transposed, parts.others, Reading(x), Writing(parts.of_others));
     PetscCall(VecScatterBegin(parts.scatter, parts.of_others, y, ADD_VALUES, SCATTER_REVERSE));
     PetscCall(VecScatterEnd(parts.scatter, parts.of_others, y, ADD_VALUES, SCATTER_REVERSE));
   }
-  parts.kernels->add_transposed(parts.own, Reading(x), Writing(y));
+  run(parts.kernels->add_transposed, parts.own, Reading(x), Writing(y));
   return 0;
 }
 

@@ -5,15 +5,19 @@ import os
 import pathlib
 import re
 import shutil
+import sys
 import unittest
 
 import numpy as np
-from study_test import StudyTest
+from study_test import SOURCE, StudyTest
 from test_precision import Precision as Blocks
 from test_precision import two_blocks
 
 from meshes import write_med
 from results import Result
+
+sys.path.append(str(SOURCE / "tests/bench"))
+import scaling  # noqa: E402
 
 PROGRAM = pathlib.Path(os.environ["LACON_BIN"]) / "lacon_petsc"
 #: of the largest value: ten times the RESI_GLOB_RELA of these studies, or of those that ask for less
@@ -138,6 +142,16 @@ class Mpi(StudyTest):
         self.assertNotIn("SOLVER_7", said)
         for name, values in found.items():
             np.testing.assert_array_equal(again[name], values)
+
+    @unittest.skipUnless(PROGRAM.exists() and shutil.which("mpirun"), "built without PETSc, or there is no mpirun")
+    def test_log_view_counts_products_in_blocks(self):
+        """A cycle of the multigrid multiplies by the matrix nine times at least (polynomials of degree 4 on either side, a residual); a node sees 8 to 27."""
+        log = self.folder / "log"
+        for options, ranks in (((), 1), (("--mpi", 2), 2)):
+            _, counts, _ = self.solve("petsc", *options, PETSC_OPTIONS=f"-log_view :{log}")
+            flops = scaling.counted(log.read_text(), ranks)["solve"]["flops"] * ranks
+            nodes = len(Result(self.folder / "run.base", "RESULT").points)
+            self.assertGreater(flops / counts["iterations of PETSc"], 9 * 2 * 9 * 8 * nodes)
 
 
 class WithoutPetsc(StudyTest):
