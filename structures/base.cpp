@@ -3,6 +3,7 @@
 #include <nlohmann/json.hpp>
 
 #include "lacon/catalog/messages.hpp"
+#include "lacon/catalog/wording.hpp"
 #include "lacon/structures/storage/storage.hpp"
 
 namespace lacon {
@@ -107,7 +108,7 @@ Field Base::field(const Result& result, std::string_view name, std::int64_t orde
   fail("RESULT_1", {{"label", result.label},
                     {"field", std::string(name)},
                     {"order", std::to_string(order)},
-                    {"known", known.empty() ? "none" : known}});
+                    {"known", known.empty() ? part("none") : known}});
 }
 
 // ---------------------------------------------------------------------------------------------- storing

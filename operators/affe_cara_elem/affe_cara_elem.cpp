@@ -7,6 +7,7 @@
 #include <map>
 
 #include "lacon/catalog/messages.hpp"
+#include "lacon/catalog/wording.hpp"
 #include "lacon/structures/vector.hpp"
 
 namespace lacon {
@@ -92,7 +93,7 @@ void check_cell(const Discrete& discrete, const Mesh& mesh, const Model& model, 
     fail("DISCRET_1", {{"keyword", discrete.keywords.path("GROUP_MA")},
                        {"cell", cell_name(cell)},
                        {"type", type},
-                       {"element", row ? std::string(row->name) : "none"},
+                       {"element", row ? std::string(row->name) : part("none")},
                        {"modelisation", discrete.dimension == 3 ? "DIS_T" : "2D_DIS_T"}});
   if (cara.ends_with("_L") != (row->cell == CellType::SEG2))
     fail("DISCRET_2", {{"keyword", discrete.keywords.path("CARA")}, {"kind", cara}, {"cell", cell_name(cell)}, {"type", type}});

@@ -63,83 +63,117 @@ double extent_of(const Mesh& mesh) {
   return extent;
 }
 
-}  // namespace
-
-Model affe_modele(const Mesh& mesh, const Registry& registry, const Keywords& keywords) {
-  Model model;
-  model.dimension = 0;
-  std::vector<const catalog::ElementRow*> given(mesh.n_cells(), nullptr);
-  std::vector<std::string> left_by(mesh.n_cells());  // the last modelisation that has no element for the cell
-  const double extent = extent_of(mesh);
-  for (const Keywords& factor : keywords.factors("AFFE")) {
-    const std::string modelisation = factor.text("MODELISATION"), phenomenon = factor.text("PHENOMENE");
-    const auto rows = rows_of(registry, modelisation, factor.path("MODELISATION"));
-    std::vector<std::int32_t> cells;
-    if (factor.has("TOUT")) {
-      cells.resize(mesh.n_cells());
-      std::iota(cells.begin(), cells.end(), 0);
-    }
-    for (const std::string& group : factor.texts("GROUP_MA")) {
-      const auto members = cells_of_group(mesh, group, factor.path("GROUP_MA"));
-      cells.insert(cells.end(), members.begin(), members.end());
-    }
-    std::int64_t count = 0;
-    std::map<CellType, std::int64_t> without;
-    for (const std::int32_t cell : cells) {
-      const CellType type = mesh.types[static_cast<std::size_t>(cell)];
-      const catalog::ElementRow* row = rows[static_cast<std::size_t>(type)];
-      left_by[static_cast<std::size_t>(cell)] = row ? "" : modelisation;
-      if (!row) {
-        ++without[type];
-        continue;
-      }
-      if (row->phenomenon != phenomenon)
-        fail("MODELE_6", {{"keyword", factor.path("PHENOMENE")},
-                          {"modelisation", modelisation},
-                          {"phenomenon", std::string(row->phenomenon)}});
-      if (model.dimension != 0 && model.dimension != catalog::dimension_of(row->geometry))
-        fail("MODELE_4", {{"keyword", factor.path("MODELISATION")}, {"cell", cell_name(cell)}});
-      model.dimension = catalog::dimension_of(row->geometry);
-      model.phenomenon = phenomenon;
-      if (model.dimension == 2) check_plane(mesh, cell, modelisation, extent);
-      given[static_cast<std::size_t>(cell)] = row;
-      ++count;
-    }
-    if (count == 0) {
-      std::vector<std::string> served;
-      for (const catalog::ElementRow* row : rows)
-        if (row) served.emplace_back(catalog::cell(row->cell).name);
-      fail("MODELE_2", {{"keyword", factor.path("AFFE")},
-                        {"modelisation", modelisation},
-                        {"served", join(served)},
-                        {"found", cells.empty() ? "none" : cell_types(without)}});
-    }
+/// The cells that an occurrence of AFFE names; those of several groups may be there twice.
+std::vector<std::int32_t> cells_named_by(const Mesh& mesh, const Keywords& factor) {
+  std::vector<std::int32_t> cells;
+  if (factor.has("TOUT")) {
+    cells.resize(mesh.n_cells());
+    std::iota(cells.begin(), cells.end(), 0);
   }
+  for (const std::string& group : factor.texts("GROUP_MA")) {
+    const auto members = cells_of_group(mesh, group, factor.path("GROUP_MA"));
+    cells.insert(cells.end(), members.begin(), members.end());
+  }
+  return cells;
+}
 
+/// Gives elements to cells, one occurrence of AFFE after the other: the last one counts.
+class Assignment {
+ public:
+  explicit Assignment(const Mesh& mesh)
+      : mesh_(mesh), extent_(extent_of(mesh)), given_(mesh.n_cells(), nullptr), left_by_(mesh.n_cells()) {}
+
+  /// Throws MODELE_1 to MODELE_4 and MODELE_6.
+  void assign(const Registry& registry, const Keywords& factor);
+  /// Throws MODELE_8 where a body's cell has no element; says what elements there are (MODELE_5, MODELE_7).
+  Model model();
+
+ private:
+  void check(const catalog::ElementRow& row, std::int32_t cell, const Keywords& factor) const;
+
+  const Mesh& mesh_;
+  double extent_;
+  Model model_{.dimension = 0};
+  std::vector<const catalog::ElementRow*> given_;  ///< to each cell, or nullptr
+  std::vector<std::string> left_by_;               ///< of each cell: the last modelisation, where that has no element for it
+};
+
+/// What a cell is about to get must fit its occurrence, and what other cells have.
+void Assignment::check(const catalog::ElementRow& row, std::int32_t cell, const Keywords& factor) const {
+  const std::string modelisation = factor.text("MODELISATION");
+  const int dimension = catalog::dimension_of(row.geometry);
+  if (row.phenomenon != factor.text("PHENOMENE"))
+    fail("MODELE_6",
+         {{"keyword", factor.path("PHENOMENE")}, {"modelisation", modelisation}, {"phenomenon", std::string(row.phenomenon)}});
+  if (model_.dimension != 0 && model_.dimension != dimension)
+    fail("MODELE_4", {{"keyword", factor.path("MODELISATION")}, {"cell", cell_name(cell)}});
+  if (dimension == 2) check_plane(mesh_, cell, modelisation, extent_);
+}
+
+void Assignment::assign(const Registry& registry, const Keywords& factor) {
+  const std::string modelisation = factor.text("MODELISATION");
+  const auto rows = rows_of(registry, modelisation, factor.path("MODELISATION"));
+  const std::vector<std::int32_t> cells = cells_named_by(mesh_, factor);
   std::map<CellType, std::int64_t> without;
-  std::map<std::string, std::int64_t> counts;
-  bool body = false;
-  for (std::size_t cell = 0; cell < given.size(); ++cell) {
-    if (!given[cell]) {
-      if (!left_by[cell].empty() && mesh.row(cell).dimension == model.dimension)
-        fail("MODELE_8", {{"modelisation", left_by[cell]},
-                          {"kind", std::string(mesh.row(cell).name)},
-                          {"cell", cell_name(static_cast<std::int32_t>(cell))}});
-      ++without[mesh.types[cell]];
-      model.element.push_back(-1);
+  bool serves = false;
+  for (const std::int32_t cell : cells) {
+    const CellType type = mesh_.types[static_cast<std::size_t>(cell)];
+    const catalog::ElementRow* row = rows[static_cast<std::size_t>(type)];
+    left_by_[static_cast<std::size_t>(cell)] = row ? "" : modelisation;
+    if (!row) {
+      ++without[type];
       continue;
     }
-    body = body || given[cell]->role == catalog::Role::solid;
-    const std::string name(given[cell]->name);
-    auto at = std::find(model.elements.begin(), model.elements.end(), name);
-    if (at == model.elements.end()) at = model.elements.insert(at, name);
-    model.element.push_back(static_cast<std::int32_t>(at - model.elements.begin()));
+    check(*row, cell, factor);
+    model_.dimension = catalog::dimension_of(row->geometry);
+    model_.phenomenon = row->phenomenon;
+    given_[static_cast<std::size_t>(cell)] = row;
+    serves = true;
+  }
+  if (serves) return;
+  std::vector<std::string> served;
+  for (const catalog::ElementRow* row : rows)
+    if (row) served.emplace_back(catalog::cell(row->cell).name);
+  fail("MODELE_2", {{"keyword", factor.path("AFFE")},
+                    {"modelisation", modelisation},
+                    {"served", join(served)},
+                    {"found", cells.empty() ? part("none") : cell_types(without)}});
+}
+
+Model Assignment::model() {
+  std::map<CellType, std::int64_t> without;
+  std::map<std::string, std::int64_t> counts;
+  bool has_body = false;
+  for (std::size_t cell = 0; cell < given_.size(); ++cell) {
+    const catalog::ElementRow* const row = given_[cell];
+    if (!row) {
+      if (!left_by_[cell].empty() && mesh_.row(cell).dimension == model_.dimension)
+        fail("MODELE_8", {{"modelisation", left_by_[cell]},
+                          {"kind", std::string(mesh_.row(cell).name)},
+                          {"cell", cell_name(static_cast<std::int32_t>(cell))}});
+      ++without[mesh_.types[cell]];
+      model_.element.push_back(-1);
+      continue;
+    }
+    has_body = has_body || row->role == catalog::Role::solid;
+    const std::string name(row->name);
+    auto at = std::find(model_.elements.begin(), model_.elements.end(), name);
+    if (at == model_.elements.end()) at = model_.elements.insert(at, name);
+    model_.element.push_back(static_cast<std::int32_t>(at - model_.elements.begin()));
     ++counts[name];
   }
   for (const auto& [name, count] : counts) fmt::print("  {:<24} {:>9} {}\n", name, count, part("cells"));
-  if (!body) inform("MODELE_7", {{"space", model.dimension == 3 ? "space" : "the plane"}});
+  if (!has_body) inform("MODELE_7", {{"where", part(model_.dimension == 3 ? "in_space" : "in_the_plane")}});
   if (!without.empty()) inform("MODELE_5", {{"cells", cell_types(without)}});
-  return model;
+  return std::move(model_);
+}
+
+}  // namespace
+
+Model affe_modele(const Mesh& mesh, const Registry& registry, const Keywords& keywords) {
+  Assignment assignment(mesh);
+  for (const Keywords& factor : keywords.factors("AFFE")) assignment.assign(registry, factor);
+  return assignment.model();
 }
 
 }  // namespace lacon

@@ -49,7 +49,7 @@ void each_field(const Base& base, const Result& result, const Mesh& mesh, const 
       fail("IMPR_1", {{"keyword", keywords.path("NOM_CHAM")},
                       {"label", result.label},
                       {"field", name},
-                      {"known", known.empty() ? "none" : fmt::format("{}", fmt::join(known, ", "))}});
+                      {"known", known.empty() ? part("none") : fmt::format("{}", fmt::join(known, ", "))}});
   const std::vector<std::string> med_names = keywords.texts("NOM_CHAM_MED");
   if (!med_names.empty() && med_names.size() != names.size())
     fail("IMPR_4", {{"keyword", keywords.path("NOM_CHAM_MED")},

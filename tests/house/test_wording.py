@@ -45,6 +45,13 @@ def prose(statement):
     return [text for text in literals if re.search(r"(?:\b[a-z]+ ){2}[a-z]+\b", text)]
 
 
+def choices(statement):
+    """Words of a message that are chosen between in place, but those that part() is asked for."""
+    if not re.search(r"\b(?:fail|inform|message|refuse|part)\(", statement):
+        return []
+    return re.findall(r"""[?:]\s*"([a-z]+(?: [a-z]+)*)"(?!\s*,\s*\{)""", re.sub(r"\bpart\([^()]*\)", "", statement))
+
+
 def name_of(call):
     """The function that a call of Python's is of."""
     return call.func.attr if isinstance(call.func, ast.Attribute) else getattr(call.func, "id", "")
@@ -163,6 +170,8 @@ class Wording(unittest.TestCase):
         found = [f"{path.relative_to(SOURCE)}:{line}: {text}" for room in ROOMS for path in sorted((SOURCE / room).rglob("*.[ch]pp"))
                  if path.name not in ("main.cpp", "tool.cpp")
                  for line, statement in statements(path) if not re.search(OTHERWISE, statement) for text in prose(statement)]
+        found += [f"{path.relative_to(SOURCE)}:{line}: {text}" for room in ROOMS for path in sorted((SOURCE / room).rglob("*.[ch]pp"))
+                  for line, statement in statements(path) for text in choices(statement)]
         self.assertEqual(found, [], "make them rows of catalog/messages/parts.toml and fr/parts.toml, and take them with part()")
 
     def test_no_python_fills_messages_with_english_text(self):
