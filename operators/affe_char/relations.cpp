@@ -3,8 +3,8 @@
 #include <fmt/core.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
-#include <map>
 #include <set>
 
 #include "lacon/catalog/messages.hpp"
@@ -36,17 +36,13 @@ void add_relation(Load& load, const LoadScene& scene, const std::string& source,
 namespace {
 
 constexpr const char* translation[] = {"DX", "DY", "DZ"};
-constexpr double same_place = 1e-9;  // of the size of a group: points that coincide, points on one line
-
-Vec3 unit(Vec3 a) { return a / norm(a); }
 
 [[noreturn]] void wrong_count(const Keywords& factor, std::string_view keyword, std::size_t found, std::size_t expected) {
   fail("CHARGE_11",
        {{"keyword", factor.path(keyword)}, {"found", std::to_string(found)}, {"expected", std::to_string(expected)}});
 }
 
-// ---------------------------------------------------------------------------------------------------- LIAISON_DDL, _UNIF,
-// _GROUP
+// ------------------------------------------------------------------------------------ LIAISON_DDL, LIAISON_UNIF, LIAISON_GROUP
 
 /// sum of COEF_MULT[i] * DDL[i] of node i = COEF_IMPO
 void link_dofs(Load& load, const LoadScene& scene, const Keywords& factor) {
@@ -70,47 +66,60 @@ void make_uniform(Load& load, const LoadScene& scene, const Keywords& factor) {
       add_relation(load, scene, factor.path("DDL"), {{nodes[0], component, 1.0}, {nodes[i], component, -1.0}}, {});
 }
 
-/// For each node of the first group and the nearest one of the second: the sum over DDL_1 and that over DDL_2 are COEF_IMPO.
+/// GROUP_NO_1 and the like (side 0), or GROUP_NO_2 (side 1).
+std::string of_side(const char* keyword, int side) { return fmt::format("{}_{}", keyword, side + 1); }
+
+/// The node of `others` that is nearest to a place.
+std::int32_t nearest_of(const std::vector<std::int32_t>& others, const Mesh& mesh, const std::array<double, 3>& place) {
+  std::int32_t nearest = -1;
+  double least = INFINITY;
+  for (const std::int32_t other : others) {
+    const auto to = mesh.point(static_cast<std::size_t>(other));
+    const double distance = std::hypot(place[0] - to[0], place[1] - to[1], place[2] - to[2]);
+    if (!(distance < least)) continue;
+    least = distance;
+    nearest = other;
+  }
+  return nearest;
+}
+
+/// The sum over DDL_1 at a node and that over DDL_2 at the other one.
+std::vector<RelationTerm> terms_of_pair(const Keywords& factor, const std::array<std::int32_t, 2>& nodes) {
+  std::vector<RelationTerm> terms;
+  for (int side = 0; side < 2; ++side) {
+    const std::string keyword = of_side("COEF_MULT", side);
+    const std::vector<std::string> components = factor.texts(of_side("DDL", side));
+    const std::vector<double> coefficients = factor.reals(keyword);
+    if (coefficients.size() != components.size()) wrong_count(factor, keyword, coefficients.size(), components.size());
+    for (std::size_t i = 0; i < components.size(); ++i) terms.push_back({nodes[side], components[i], coefficients[i]});
+  }
+  return terms;
+}
+
+/// For each node of the first group and the nearest one of the second, behind TRAN: the sum over DDL_1 and that over DDL_2 are
+/// COEF_IMPO together.
 void link_groups(Load& load, const LoadScene& scene, const Keywords& factor) {
-  std::vector<std::int32_t> sides[2];
+  std::array<std::vector<std::int32_t>, 2> sides;
   const std::vector<char> out = nodes_left_out(scene.mesh, factor);
   for (int side = 0; side < 2; ++side) {
     sides[side] = distinct_nodes(named_nodes(scene, factor, side ? "_2" : "_1"));
     std::erase_if(sides[side], [&](std::int32_t node) { return out[static_cast<std::size_t>(node)] != 0; });
   }
+  const auto refuse_pairs = [&](const std::string& reason) {
+    fail("CHARGE_13", {{"keyword", factor.path("DDL_1")}, {"reason", reason}});
+  };
   if (sides[0].size() != sides[1].size())
-    fail("CHARGE_13", {{"keyword", factor.path("DDL_1")},
-                       {"reason", part("unequal_sides", {{"first", std::to_string(sides[0].size())},
-                                                         {"second", std::to_string(sides[1].size())}})}});
+    refuse_pairs(
+        part("unequal_sides", {{"first", std::to_string(sides[0].size())}, {"second", std::to_string(sides[1].size())}}));
   std::vector<double> shift = factor.reals("TRAN");
   shift.resize(3, 0.0);
   std::set<std::int32_t> taken;
   for (const std::int32_t node : sides[0]) {
     const auto at = scene.mesh.point(static_cast<std::size_t>(node));
-    std::int32_t nearest = -1;
-    double least = INFINITY;
-    for (const std::int32_t other : sides[1]) {
-      const auto to = scene.mesh.point(static_cast<std::size_t>(other));
-      const double distance = std::hypot(at[0] + shift[0] - to[0], at[1] + shift[1] - to[1], at[2] + shift[2] - to[2]);
-      if (distance < least) {
-        least = distance;
-        nearest = other;
-      }
-    }
-    if (!taken.insert(nearest).second)
-      fail("CHARGE_13",
-           {{"keyword", factor.path("DDL_1")}, {"reason", part("nearest_to_two", {{"node", node_name(nearest)}})}});
-    std::vector<RelationTerm> terms;
-    for (int side = 0; side < 2; ++side) {
-      const std::string suffix = side ? "_2" : "_1";
-      const std::vector<std::string> components = factor.texts("DDL" + suffix);
-      const std::vector<double> coefficients = factor.reals("COEF_MULT" + suffix);
-      if (coefficients.size() != components.size())
-        wrong_count(factor, "COEF_MULT" + suffix, coefficients.size(), components.size());
-      for (std::size_t i = 0; i < components.size(); ++i)
-        terms.push_back({side ? nearest : node, components[i], coefficients[i]});
-    }
-    add_relation(load, scene, factor.path("DDL_1"), std::move(terms), value_of(scene.base, factor, "COEF_IMPO"));
+    const std::int32_t nearest = nearest_of(sides[1], scene.mesh, {at[0] + shift[0], at[1] + shift[1], at[2] + shift[2]});
+    if (!taken.insert(nearest).second) refuse_pairs(part("nearest_to_two", {{"node", node_name(nearest)}}));
+    add_relation(load, scene, factor.path("DDL_1"), terms_of_pair(factor, {node, nearest}),
+                 value_of(scene.base, factor, "COEF_IMPO"));
   }
 }
 
@@ -184,97 +193,6 @@ void hold_normal(Load& load, const LoadScene& scene, const Keywords& factor) {
 }
 
 }  // namespace
-
-std::vector<std::vector<RelationTerm>> rigid_relations(std::span<const double> points, int dimension) {
-  const auto n = static_cast<std::int32_t>(points.size() / 3);
-  std::vector<std::vector<RelationTerm>> relations;
-  const auto at = [&](std::int32_t i) { return vector_at(points.data() + 3 * std::ptrdiff_t{i}); };
-  const auto farthest = [&](const auto& distance) {
-    std::int32_t best = 0;
-    for (std::int32_t i = 1; i < n; ++i)
-      if (distance(i) > distance(best)) best = i;
-    return best;
-  };
-  // displacement u_i = sum over terms; a rotation about each axis is a list of terms of the reference points
-  using Terms = std::vector<RelationTerm>;
-  const auto scaled = [](const Terms& terms, double factor) {
-    Terms result = terms;
-    for (RelationTerm& term : result) term.coefficient *= factor;
-    return result;
-  };
-  const auto append = [](Terms& to, const Terms& terms) { to.insert(to.end(), terms.begin(), terms.end()); };
-  // (u_i - u_0) . direction
-  const auto relative = [&](std::int32_t i, Vec3 direction) {
-    Terms terms;
-    for (int d = 0; d < dimension; ++d) {
-      terms.push_back({i, translation[d], component(direction, d)});
-      terms.push_back({0, translation[d], -component(direction, d)});
-    }
-    return terms;
-  };
-  // the same degree of freedom once
-  const auto enter = [&](const Terms& terms) {
-    std::map<std::pair<std::int32_t, std::string>, double> sums;
-    double largest = 0;
-    for (const RelationTerm& term : terms) sums[{term.node, term.component}] += term.coefficient;
-    for (const auto& [dof, coefficient] : sums) largest = std::max(largest, std::abs(coefficient));
-    Terms merged;
-    for (const auto& [dof, coefficient] : sums)
-      if (std::abs(coefficient) > 1e-14 * largest) merged.push_back({dof.first, dof.second, coefficient});
-    if (!merged.empty()) relations.push_back(std::move(merged));
-  };
-
-  if (n < 2) return relations;
-  const Vec3 a = at(0);
-  const std::int32_t b = farthest([&](std::int32_t i) { return norm(at(i) - a); });
-  const double size = norm(at(b) - a);
-  std::vector<Terms> rotation;  // about the axes below, by the displacements of the reference points
-  std::vector<Vec3> axes;
-  std::set<std::int32_t> references{0};
-  if (size > 0) {
-    references.insert(b);
-    const Vec3 e1 = unit(at(b) - a);
-    enter(relative(b, e1));
-    if (dimension == 2) {
-      axes = {{0, 0, 1}};
-      rotation = {scaled(relative(b, {-e1.y, e1.x, 0}), 1 / size)};
-    } else {
-      const auto off = [&](std::int32_t i) { return norm(cross(at(i) - a, e1)); };
-      const std::int32_t c = farthest(off);
-      Vec3 e2 = std::abs(e1.x) < 0.9 ? unit(cross(e1, {1, 0, 0})) : unit(cross(e1, {0, 1, 0}));
-      const bool on_a_line = off(c) <= same_place * size;
-      if (!on_a_line) e2 = unit(cross(cross(e1, at(c) - a), e1));
-      const Vec3 e3 = cross(e1, e2);
-      // u_b - u_0 = size (w3 e2 - w2 e3)
-      axes = {e2, e3};
-      rotation = {scaled(relative(b, e3), -1 / size), scaled(relative(b, e2), 1 / size)};
-      if (!on_a_line) {
-        references.insert(c);
-        // with c - a = p e1 + q e2: (u_c - u_0) = w x (c - a) = -w3 q e1 + w3 p e2 + (w1 q - w2 p) e3
-        const double p = dot(at(c) - a, e1), q = dot(at(c) - a, e2);
-        Terms first = relative(c, e1), second = relative(c, e2), about = relative(c, e3);
-        append(first, scaled(rotation[1], q));
-        append(second, scaled(rotation[1], -p));
-        enter(first);
-        enter(second);
-        append(about, scaled(rotation[0], p));
-        axes.push_back(e1);
-        rotation.push_back(scaled(about, 1 / q));
-      }
-    }
-  }
-  for (std::int32_t i = 1; i < n; ++i) {
-    if (references.contains(i)) continue;
-    for (int d = 0; d < dimension; ++d) {
-      const Vec3 direction{d == 0 ? 1.0 : 0.0, d == 1 ? 1.0 : 0.0, d == 2 ? 1.0 : 0.0};
-      Terms terms = relative(i, direction);
-      for (std::size_t r = 0; r < axes.size(); ++r)
-        append(terms, scaled(rotation[r], -dot(cross(axes[r], at(i) - a), direction)));
-      enter(terms);
-    }
-  }
-  return relations;
-}
 
 void add_relations(Load& load, const LoadScene& scene, const Keywords& keywords) {
   for (const Keywords& factor : keywords.factors("FACE_IMPO")) hold_normal(load, scene, factor);
