@@ -28,6 +28,8 @@ class PetscEngine : public Engine {
  public:
   /// Whether the program that this engine starts lies beside the one that runs.
   static bool is_there();
+  /// Whether there is what starts several processes of it.
+  static bool has_mpirun();
   /// Throws SOLVER_6 where PETSc is not there.
   explicit PetscEngine(const PetscOptions& options);
   ~PetscEngine() override;

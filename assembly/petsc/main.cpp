@@ -91,6 +91,15 @@ std::string solved(const Lender& lender, Krylov& krylov, double share, const std
   return line.str();
 }
 
+/// Large arrays that are given back go back to the system: Open MPI has them kept for ever, for networks that work on memory
+/// by themselves, and the matrices of a preconditioner on its way are as large as what is left in the end.
+void give_back_at_once() {
+  constexpr int large = 1 << 20;  // bytes
+  mallopt(M_MMAP_MAX, 1 << 16);
+  mallopt(M_MMAP_THRESHOLD, large);
+  mallopt(M_TRIM_THRESHOLD, large);
+}
+
 /// Whether memory is there that holds this number.
 bool sees(const std::string& path, std::int64_t number) {
   try {
@@ -148,6 +157,7 @@ int main(int argc, char** argv) {
   setenv("LACON_THREADS", "1", 1);  // processes are what works at the same time here
   if (PetscInitialize(nullptr, nullptr, nullptr, nullptr)) return 4;
   lacon::catch_errors();
+  give_back_at_once();
   int is_seen = is_first() && sees(argv[4], std::stoll(argv[5]));
   MPI_Bcast(&is_seen, 1, MPI_INT, 0, PETSC_COMM_WORLD);
   if (is_seen)

@@ -59,6 +59,18 @@ PetscInt finest_level(PC multigrid) {
   return n_levels - 1;
 }
 
+/// Matrices of coarser levels are products that could be made again: for that they keep what they were made of, the matrix
+/// above them among it.
+void forget_products(PC multigrid) {
+  for (PetscInt level = 0; level <= finest_level(multigrid); ++level) {
+    KSP smoother = nullptr;
+    Mat matrix = nullptr;
+    checked(PCMGGetSmoother(multigrid, level, &smoother));
+    checked(KSPGetOperators(smoother, nullptr, &matrix));
+    checked(MatProductClear(matrix));
+  }
+}
+
 }  // namespace
 
 bool Multigrid::suits(const Nodes& nodes) const {
@@ -76,6 +88,7 @@ void Multigrid::take_from(KSP displacements, Nodes nodes) {
   if (finest_level(pc) == 0) return;  // a factor
   checked(PetscObjectReference(reinterpret_cast<PetscObject>(pc)));
   *pc_.out() = pc;
+  forget_products(pc);
   for (PetscInt level = finest_level(pc); level > 0; --level) {
     KSP smoother = nullptr;
     Mat matrix = nullptr, interpolation = nullptr;

@@ -28,8 +28,9 @@ int number_in(const char* variable, int otherwise) {
 constexpr const char* wanted_ranks = "LACON_MPI";
 /// Machines where they run (--hosts), likewise.
 constexpr const char* wanted_hosts = "LACON_HOSTS";
-/// Those that share a factor where he does not, but has threads. More than cores, for subtrees are of uneven sizes; the same on
-/// every machine, for their number decides the last bits.
+/// Those that share a factor where he does not, but has threads; iterations are shared by as many as there are threads, for
+/// each of them is busy all the time. More than cores, for subtrees are of uneven sizes; the same on every machine, for their
+/// number decides the last bits.
 constexpr int own_ranks = 4;
 /// Equations from which on they share it: tests have them share small ones.
 constexpr int least_shared = 20'000;
@@ -62,7 +63,8 @@ PetscOptions iterative_options(const Keywords& solver, const Base& base, const S
   if (solver.has("ALGORITHME")) options.algorithm = solver.text("ALGORITHME");
   options.direct.residual_tolerance = direct_residual;
   options.iterations = solver.integer("NMAX_ITER") > 0 ? static_cast<int>(solver.integer("NMAX_ITER")) : most_iterations;
-  options.n_ranks = number_in(wanted_ranks, 1);
+  const bool is_shared = problem.numbering.n_equations() >= number_in("LACON_MPI_FROM", least_shared);
+  options.n_ranks = number_in(wanted_ranks, is_shared && PetscEngine::has_mpirun() ? n_threads() : 1);
   if (const char* const hosts = std::getenv(wanted_hosts)) options.hosts = hosts;
   return options;
 }

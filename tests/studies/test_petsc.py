@@ -133,6 +133,15 @@ class Mpi(StudyTest):
             self.assertEqual("factors by several processes" in counts, are_several, options)
 
     @unittest.skipUnless(PROGRAM.exists() and shutil.which("mpirun"), "built without PETSc, or there is no mpirun")
+    def test_threads_ask_for_processes_that_iterate(self):
+        """As many as threads, where the study is not a small one and nobody says how many."""
+        for options, small, ranks in ((("--threads", 2), "1", 2), (("--threads", 1), "1", None), (("--threads", 2, "--mpi", 1), "1", None),
+                                      (("--threads", 2), "1000000", None)):
+            _, counts, said = self.solve("petsc", *options, LACON_MPI_FROM=small)
+            self.assertEqual(counts.get("processes with cells"), ranks, options)
+            self.assertNotIn("SOLVER_", said)
+
+    @unittest.skipUnless(PROGRAM.exists() and shutil.which("mpirun"), "built without PETSc, or there is no mpirun")
     def test_iterations_give_the_same_bits_in_every_run(self):
         one, counts, _ = self.solve("double")
         found, now, said = self.solve("petsc", "--mpi", 2)
