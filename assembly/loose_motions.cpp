@@ -58,6 +58,24 @@ struct Image {
   }
 };
 
+/// Those of the rows that meet what moves.
+class Images {
+ public:
+  explicit Images(std::int64_t n_rows) : at_(static_cast<std::size_t>(n_rows), -1) {}
+  Image& of_row(std::int64_t row) {
+    if (at_[row] < 0) {
+      at_[row] = static_cast<std::int32_t>(images_.size());
+      images_.emplace_back();
+    }
+    return images_[at_[row]];
+  }
+  const Image* find(std::size_t row) const { return at_[row] < 0 ? nullptr : &images_[at_[row]]; }
+
+ private:
+  std::vector<std::int32_t> at_;
+  std::vector<Image> images_;
+};
+
 }  // namespace
 
 template <class Use>
@@ -95,22 +113,16 @@ std::vector<LooseMotions::Moved> LooseMotions::moved() const {
   return moved;
 }
 
-std::vector<LooseMotion> LooseMotions::of(const SparseMatrix& matrix, double negligible) const {
-  if (left_.empty()) return {};
-  const std::vector<Moved> all = moved();
-  if (all.empty()) return {};
+Eigen::MatrixXd LooseMotions::unresisted(const SparseMatrix& matrix, const std::vector<Moved>& all, double negligible) const {
   const auto columns = static_cast<Eigen::Index>(bodies_.size());
-  std::vector<std::int32_t> at(static_cast<std::size_t>(matrix.size()), -1), image_of(at);
+  std::vector<std::int32_t> at(static_cast<std::size_t>(matrix.size()), -1);  // of an equation: its place in `all`
   for (std::size_t i = 0; i < all.size(); ++i) at[all[i].equation] = static_cast<std::int32_t>(i);
-  std::vector<Image> images;  // of rows that meet what moves, here
+
+  Images images(matrix.size());  // of entries that are here
   const auto add = [&](std::int64_t row, std::int64_t column, double value) {
     if (at[column] < 0 || value == 0) return;
     const Moved& moved = all[at[column]];
-    if (image_of[row] < 0) {
-      image_of[row] = static_cast<std::int32_t>(images.size());
-      images.emplace_back();
-    }
-    Image& image = images[image_of[row]];
+    Image& image = images.of_row(row);
     image.of_body(moved.first).head(moved.count) += value * moved.moves();
     image.most += std::abs(value) * moved.moves().cwiseAbs().sum();
   };
@@ -120,6 +132,7 @@ std::vector<LooseMotion> LooseMotions::of(const SparseMatrix& matrix, double neg
       add(row, column, matrix.values()[k]);
       if (matrix.is_symmetric() && column != row) add(column, row, matrix.values()[k]);
     }
+
   Triangle resistance(columns);
   const auto enter = [&](const Image& image) {
     if (image.most == 0) return;
@@ -132,45 +145,49 @@ std::vector<LooseMotion> LooseMotions::of(const SparseMatrix& matrix, double neg
     for (const auto& [first, values] : image.others) put(first, values);
     if (row.cwiseAbs().maxCoeff() > negligible) resistance.add(row);
   };
+  const auto enter_with = [&](const Moved& moved, Image image, const double* elsewhere) {
+    for (int motion = 0; motion < 6; ++motion)
+      if (elsewhere[motion] != 0) image.of_body(moved.first)[motion] += elsewhere[motion];
+    if (elsewhere[6] != 0) {
+      image.of_body(moved.first);  // of a row that nothing moves, too: on even meshes its entries cancel exactly
+      image.most += elsewhere[6];
+    }
+    enter(image);
+  };
   const auto enter_all = [&](std::span<const double> elsewhere) {
     for (std::size_t row = 0; row < at.size(); ++row) {
+      const Image* const image = images.find(row);
       if (elsewhere.empty() || at[row] < 0) {
-        if (image_of[row] >= 0) enter(images[image_of[row]]);
+        if (image) enter(*image);
         continue;
       }
       const Moved& moved = all[at[row]];
-      const double* const more = elsewhere.data() + moved.dof * with_magnitudes;
-      Image image = image_of[row] < 0 ? Image() : images[image_of[row]];
-      for (int motion = 0; motion < 6; ++motion)
-        if (more[motion] != 0) image.of_body(moved.first)[motion] += more[motion];
-      if (more[6] != 0) {
-        image.of_body(moved.first);  // of a row that nothing moves, too: on even meshes its entries cancel exactly
-        image.most += more[6];
-      }
-      enter(image);
+      enter_with(moved, image ? *image : Image(), elsewhere.data() + moved.dof * with_magnitudes);
     }
   };
-  if (matrix.elsewhere()) {
-    // one motion of each body at once, for no cell meets two of them; and magnitudes
-    const auto fill = [&](std::span<double> x) {
-      for (const Moved& moved : all) {
-        std::copy_n(moved.by.data(), moved.count, x.data() + moved.dof * with_magnitudes);
-        x[static_cast<std::size_t>(moved.dof * with_magnitudes + 6)] = moved.moves().cwiseAbs().sum();
-      }
-    };
-    matrix.elsewhere()->products(with_magnitudes, fill, enter_all);
-  } else {
+  if (!matrix.elsewhere()) {
     enter_all({});
+    return resistance.null_space(negligible);
   }
-  Eigen::MatrixXd free = resistance.null_space(negligible);
+  // one motion of each body at once, for no cell meets two of them; and magnitudes
+  const auto fill = [&](std::span<double> x) {
+    for (const Moved& moved : all) {
+      std::copy_n(moved.by.data(), moved.count, x.data() + moved.dof * with_magnitudes);
+      x[static_cast<std::size_t>(moved.dof * with_magnitudes + 6)] = moved.moves().cwiseAbs().sum();
+    }
+  };
+  matrix.elsewhere()->products(with_magnitudes, fill, enter_all);
+  return resistance.null_space(negligible);
+}
 
+std::vector<LooseMotion> LooseMotions::told_apart(Eigen::MatrixXd motions, const std::vector<Moved>& all) const {
   std::vector<LooseMotion> loose;
-  for (Eigen::Index motion = 0; motion < free.cols(); ++motion) {
+  for (Eigen::Index motion = 0; motion < motions.cols(); ++motion) {
     LooseMotion found{-1, {}};
-    for (Eigen::Index i = 0; i < columns; ++i)
-      if (std::abs(free(i, motion)) > takes_part) found.bodies.insert(bodies_[static_cast<std::size_t>(i)]);
+    for (Eigen::Index i = 0; i < motions.rows(); ++i)
+      if (std::abs(motions(i, motion)) > takes_part) found.bodies.insert(bodies_[static_cast<std::size_t>(i)]);
     const auto moves = [&](const Moved& moved, Eigen::Index which) {
-      return moved.moves().dot(free.col(which).segment(moved.first, moved.count));
+      return moved.moves().dot(motions.col(which).segment(moved.first, moved.count));
     };
     const Moved* largest = &all.front();
     double size = 0;
@@ -178,11 +195,18 @@ std::vector<LooseMotion> LooseMotions::of(const SparseMatrix& matrix, double neg
       if (const double now = std::abs(moves(moved, motion)); now > (1 + takes_part) * size) largest = &moved, size = now;
     found.dof = largest->dof;
     // the others do not move it
-    for (Eigen::Index other = motion + 1; other < free.cols(); ++other)
-      free.col(other) -= moves(*largest, other) / moves(*largest, motion) * free.col(motion);
+    for (Eigen::Index other = motion + 1; other < motions.cols(); ++other)
+      motions.col(other) -= moves(*largest, other) / moves(*largest, motion) * motions.col(motion);
     loose.push_back(found);
   }
   return loose;
+}
+
+std::vector<LooseMotion> LooseMotions::of(const SparseMatrix& matrix, double negligible) const {
+  if (left_.empty()) return {};
+  const std::vector<Moved> all = moved();
+  if (all.empty()) return {};
+  return told_apart(unresisted(matrix, all, negligible), all);
 }
 
 }  // namespace lacon

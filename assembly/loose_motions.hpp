@@ -43,6 +43,10 @@ class LooseMotions {
   template <class Use>
   void for_each_row(const Use& use) const;
   std::vector<Moved> moved() const;  ///< ascending
+  /// (n_motions, n): combinations of the motions that the matrix maps to nothing.
+  Eigen::MatrixXd unresisted(const SparseMatrix& matrix, const std::vector<Moved>& all, double negligible) const;
+  /// Each of them with its bodies, and a degree of freedom that the others are made not to move.
+  std::vector<LooseMotion> told_apart(Eigen::MatrixXd motions, const std::vector<Moved>& all) const;
 
   RigidMotions motions_;
   const Numbering& numbering_;

@@ -149,6 +149,118 @@ Rows rows_of_blocks(const Range& blocks, int dimension, const ForEach& for_each)
   return rows;
 }
 
+/// What all processes know.
+struct Known {
+  std::vector<double> diagonal;  ///< of K
+  double mean;                   ///< of its sizes that are not zero; 1 without any
+  std::vector<Multiplier> multipliers;
+};
+
+double mean_size(std::span<const double> values) {
+  double sum = 0;
+  std::int64_t n = 0;
+  for (const double value : values)
+    if (value != 0) sum += std::abs(value), ++n;
+  return n ? sum / static_cast<double>(n) : 1;
+}
+
+Known known_of(const BlockSystem& system, const OwnEntries& entries) {
+  Known known{.diagonal = entries.diagonal, .mean = 1, .multipliers = std::vector<Multiplier>(system.sizes.n_multipliers)};
+  known.diagonal.resize(system.sizes.n_blocks * system.sizes.dimension, 0.0);
+  for_each_entry(system, {}, [&](std::int32_t row, std::int32_t column, double value) {
+    if (row >= 0 && column >= 0) {
+      if (row == column) known.diagonal[row] += value;
+    } else if (row >= 0) {
+      known.multipliers[-1 - column].b.push_back({row, value});
+    } else {
+      Multiplier& m = known.multipliers[-1 - row];
+      (column >= 0 ? m.c : m.d).push_back({column, value});
+    }
+  });
+  for (Multiplier& m : known.multipliers) {
+    for (std::vector<Entry>* const entries_of_row : {&m.b, &m.c}) {
+      entries_of_row->resize(summed(*entries_of_row).size());
+      entries_of_row->shrink_to_fit();
+    }
+  }
+  known.mean = mean_size(known.diagonal);
+  return known;
+}
+
+/// C diag(K)^-1 B of a multiplier.
+double flexibility_of(const Multiplier& m, std::span<const double> diagonal) {
+  double sum = 0;
+  for (std::size_t p = 0, q = 0; p < m.c.size() && q < m.b.size();) {
+    const std::int32_t column = m.c[p].column;
+    if (column < m.b[q].column) {
+      ++p;
+    } else if (m.b[q].column < column) {
+      ++q;
+    } else {
+      if (diagonal[column] != 0) sum += m.c[p].value * m.b[q].value / diagonal[column];
+      ++p, ++q;
+    }
+  }
+  return sum;
+}
+
+/// Of each multiplier, as in BlockRows.
+struct Scales {
+  std::vector<double> scale, schur, weight;
+};
+
+/// @param[in,out] known its rows of B and C are scaled
+Scales take_scales(Known& known) {
+  const std::size_t n = known.multipliers.size();
+  const double mean = known.mean;
+  Scales made{std::vector<double>(n, 1.0), std::vector<double>(n, 1.0), std::vector<double>(n, 0.0)};
+  for (std::size_t i = 0; i < n; ++i) {
+    Multiplier& m = known.multipliers[i];
+    const double flexibility = flexibility_of(m, known.diagonal);
+    double own_diagonal = 0;
+    for (const Entry& entry : m.d)
+      if (entry.column == -1 - static_cast<std::int32_t>(i)) own_diagonal = entry.value;
+    const double size = std::max(std::abs(flexibility), std::abs(own_diagonal));
+    if (size == 0) continue;
+    made.scale[i] = std::sqrt(mean / size);
+    if (m.d.empty()) {
+      made.weight[i] = weight_of_rows / mean * (flexibility < 0 ? -1 : 1);
+      made.schur[i] = -(flexibility < 0 ? -mean : mean) / (weight_of_rows + rest_of_schur);
+    } else {
+      made.schur[i] = mean * (own_diagonal - flexibility) / size;
+    }
+    if (made.schur[i] == 0) made.schur[i] = mean;
+    for (Entry& entry : m.b) entry.value *= made.scale[i];
+    for (Entry& entry : m.c) entry.value *= made.scale[i];
+  }
+  return made;
+}
+
+/// Own rows of B, which is known by its columns.
+Rows rows_of_b(const Range& own, std::span<const Multiplier> multipliers) {
+  Gathering gathered(own.first, own.last);
+  for (const Multiplier& m : multipliers)
+    for (const Entry& entry : m.b)
+      if (gathered.has(entry.column)) gathered.count(entry.column);
+  gathered.make_room();
+  for (std::size_t i = 0; i < multipliers.size(); ++i)
+    for (const Entry& entry : multipliers[i].b)
+      if (gathered.has(entry.column)) gathered.add(entry.column, static_cast<std::int32_t>(i), entry.value);
+  Rows rows{.first = own.first, .last = own.last};
+  for (std::int64_t row = own.first; row < own.last; ++row) append(rows, gathered.row(row));
+  return rows;
+}
+
+/// Scaled, and summed up. @param d as it is known: columns are places of multipliers
+std::vector<Entry> row_of_d(std::vector<Entry> d, double own_scale, std::span<const double> scale) {
+  for (Entry& entry : d) {
+    entry.column = -1 - entry.column;
+    entry.value *= own_scale * scale[entry.column];
+  }
+  d.resize(summed(d).size());
+  return d;
+}
+
 }  // namespace
 
 BlockRows rows_of_part(const BlockSystem& system, const OwnEntries& entries, int part) {
@@ -156,95 +268,36 @@ BlockRows rows_of_part(const BlockSystem& system, const OwnEntries& entries, int
   BlockRows made{.blocks = {system.first_block[part], system.first_block[part + 1]},
                  .multipliers = Range::of_part(system.sizes.n_multipliers, part, static_cast<int>(system.sizes.n_parts))};
   const Range own{made.blocks.first * dimension, made.blocks.last * dimension};
-
-  // what all processes know: the diagonal of K, and the rows of the multipliers
-  std::vector<double> diagonal = entries.diagonal;
-  diagonal.resize(system.sizes.n_blocks * dimension, 0.0);
-  std::vector<Multiplier> multipliers(system.sizes.n_multipliers);
-  for_each_entry(system, {}, [&](std::int32_t row, std::int32_t column, double value) {
-    if (row >= 0 && column >= 0) {
-      if (row == column) diagonal[row] += value;
-    } else if (row >= 0) {
-      multipliers[-1 - column].b.push_back({row, value});
-    } else {
-      (column >= 0 ? multipliers[-1 - row].c : multipliers[-1 - row].d).push_back({column, value});
-    }
-  });
-  double mean = 0;
-  std::int64_t n_free = 0;
-  for (const double value : diagonal)
-    if (value != 0) mean += std::abs(value), ++n_free;
-  mean = n_free ? mean / static_cast<double>(n_free) : 1;
-
-  std::vector<double> scale(multipliers.size(), 1.0), schur(multipliers.size(), 1.0), weight(multipliers.size(), 0.0);
-  for (std::size_t i = 0; i < multipliers.size(); ++i) {
-    Multiplier& m = multipliers[i];
-    double flexibility = 0, own_diagonal = 0;
-    m.b = {m.b.begin(), m.b.begin() + static_cast<std::ptrdiff_t>(summed(m.b).size())};
-    m.c = {m.c.begin(), m.c.begin() + static_cast<std::ptrdiff_t>(summed(m.c).size())};
-    for (std::size_t p = 0, q = 0; p < m.c.size() && q < m.b.size();)
-      if (m.c[p].column < m.b[q].column) {
-        ++p;
-      } else if (m.b[q].column < m.c[p].column) {
-        ++q;
-      } else {
-        if (diagonal[m.c[p].column] != 0) flexibility += m.c[p].value * m.b[q].value / diagonal[m.c[p].column];
-        ++p, ++q;
-      }
-    for (const Entry& entry : m.d)
-      if (entry.column == -1 - static_cast<std::int32_t>(i)) own_diagonal = entry.value;
-    const double size = std::max(std::abs(flexibility), std::abs(own_diagonal));
-    if (size == 0) continue;
-    scale[i] = std::sqrt(mean / size);
-    const bool is_weighted = m.d.empty();
-    if (is_weighted) weight[i] = weight_of_rows / mean * (flexibility < 0 ? -1 : 1);
-    schur[i] = is_weighted ? -(flexibility < 0 ? -mean : mean) / (weight_of_rows + rest_of_schur)
-                           : mean * (own_diagonal - flexibility) / size;
-    if (schur[i] == 0) schur[i] = mean;
-    for (Entry& entry : m.b) entry.value *= scale[i];
-    for (Entry& entry : m.c) entry.value *= scale[i];
-  }
+  const auto is_own = [&](std::int32_t row) { return row >= own.first && row < own.last; };
+  Known known = known_of(system, entries);
+  const Scales scales = take_scales(known);
 
   made.is.assign(own.last - own.first, 0);
   for (const std::int32_t place : system.place)
-    if (place >= own.first && place < own.last) made.is[place - own.first] = 1;
+    if (is_own(place)) made.is[place - own.first] = 1;
 
-  const auto is_own = [&](std::int32_t row) { return row >= own.first && row < own.last; };
   made.k = rows_of_blocks(made.blocks, dimension, [&](const auto& use) {  // K + B W C
     for_each_entry(system, entries, [&](std::int32_t row, std::int32_t column, double value) {
       if (column >= 0 && is_own(row)) use(row, column, value);
     });
-    for (std::size_t i = 0; i < multipliers.size(); ++i)
-      for (const Entry& b : multipliers[i].b)
-        if (weight[i] != 0 && is_own(b.column))
-          for (const Entry& c : multipliers[i].c) use(b.column, c.column, weight[i] * b.value * c.value);
+    for (std::size_t i = 0; i < known.multipliers.size(); ++i) {
+      const double weight = scales.weight[i];
+      if (weight == 0) continue;
+      for (const Entry& b : known.multipliers[i].b)
+        if (is_own(b.column))
+          for (const Entry& c : known.multipliers[i].c) use(b.column, c.column, weight * b.value * c.value);
+    }
     for (auto row = static_cast<std::int32_t>(own.first); row < own.last; ++row)
-      if (diagonal[row] == 0) use(row, row, made.is[row - own.first] ? 0.0 : mean);
+      if (known.diagonal[row] == 0) use(row, row, made.is[row - own.first] ? 0.0 : known.mean);
   });
-
-  Gathering b(own.first, own.last);
-  for (const Multiplier& m : multipliers)
-    for (const Entry& entry : m.b)
-      if (b.has(entry.column)) b.count(entry.column);
-  b.make_room();
-  for (std::size_t i = 0; i < multipliers.size(); ++i)
-    for (const Entry& entry : multipliers[i].b)
-      if (b.has(entry.column)) b.add(entry.column, static_cast<std::int32_t>(i), entry.value);
-  made.b = {.first = own.first, .last = own.last};
-  for (std::int64_t row = own.first; row < own.last; ++row) append(made.b, b.row(row));
-
+  made.b = rows_of_b(own, known.multipliers);
   made.c = made.d = {.first = made.multipliers.first, .last = made.multipliers.last};
   for (std::int64_t i = made.multipliers.first; i < made.multipliers.last; ++i) {
-    Multiplier& m = multipliers[i];
-    append(made.c, m.c);
-    for (Entry& entry : m.d) {
-      entry.column = -1 - entry.column;
-      entry.value *= scale[i] * scale[entry.column];
-    }
-    append(made.d, summed(m.d));
-    made.scale.push_back(scale[i]);
-    made.schur.push_back(schur[i]);
-    made.weight.push_back(weight[i]);
+    append(made.c, known.multipliers[i].c);
+    append(made.d, row_of_d(std::move(known.multipliers[i].d), scales.scale[i], scales.scale));
+    made.scale.push_back(scales.scale[i]);
+    made.schur.push_back(scales.schur[i]);
+    made.weight.push_back(scales.weight[i]);
   }
   return made;
 }

@@ -45,6 +45,8 @@ struct OwnEntries {
   std::vector<double> diagonal = {};         ///< of the rows of all processes
 };
 
+/// @param entries what the process has of K itself  @param part the process, of system.sizes.n_parts. Throws std::length_error
+/// beyond 2^31 entries.
 BlockRows rows_of_part(const BlockSystem& system, const OwnEntries& entries, int part);
 
 }  // namespace lacon

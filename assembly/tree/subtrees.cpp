@@ -71,6 +71,91 @@ struct Shares {
   }
 };
 
+/// Cuts the elimination tree into subtrees and what is above them, the top. Operations are counted as `flops`.
+class Cutter {
+ public:
+  Cutter(const Tree& tree, int n_processes)
+      : tree_(tree), n_processes_(n_processes), below_(tree.own), child_(tree.vertex.size()) {
+    for (std::int32_t i = 0; i < size(); ++i)
+      if (const std::int32_t parent = tree.parent[i]; parent >= 0) {
+        below_[parent] += below_[i];
+        child_[parent].push_back(i);
+      }
+  }
+
+  /// Down from the roots, into the largest subtree each time, until its halves would not matter.
+  void search() {
+    for (std::int32_t i = 0; i < size(); ++i)
+      if (tree_.parent[i] < 0) add(i);
+    for (look(); !heap_.empty() && top_ < longest_;) {
+      std::pop_heap(heap_.begin(), heap_.end());
+      const std::int32_t root = heap_.back().second;
+      heap_.pop_back();
+      top_ += tree_.own[root];
+      const std::size_t before = heap_.size();
+      for (const std::int32_t c : child_[root]) add(c);
+      if (heap_.size() > before + 1) look();
+    }
+  }
+
+  double longest() const { return longest_; }
+  /// Of the best cut's subtrees: the processes that they are for.
+  const std::vector<int>& processes() const { return processes_; }
+
+  /// The best cut's subtree of each vertex of the tree, -1 in the top; small ones beside it go where there is least to do.
+  std::vector<std::int32_t> subtrees() const {
+    std::vector<std::int32_t> subtree(tree_.vertex.size(), -1);
+    std::vector<double> load(roots_.size());
+    for (std::size_t s = 0; s < roots_.size(); ++s) {
+      subtree[roots_[s]] = static_cast<std::int32_t>(s);
+      load[s] = below_[roots_[s]];
+    }
+    for (std::int32_t i = size() - 1; i >= 0; --i) {
+      if (subtree[i] < 0 && tree_.parent[i] >= 0) subtree[i] = subtree[tree_.parent[i]];
+      if (subtree[i] >= 0 || load.empty() || !is_small(i)) continue;
+      const auto least = std::min_element(load.begin(), load.end());
+      subtree[i] = static_cast<std::int32_t>(least - load.begin());
+      *least += below_[i];
+    }
+    return subtree;
+  }
+
+ private:
+  std::int32_t size() const { return static_cast<std::int32_t>(tree_.vertex.size()); }
+  bool is_small(std::int32_t root) const { return below_[root] < least_share * tree_.counts.flops; }
+
+  void add(std::int32_t root) {
+    if (is_small(root)) {
+      top_ += below_[root];
+      return;
+    }
+    heap_.emplace_back(below_[root], root);
+    std::push_heap(heap_.begin(), heap_.end());
+  }
+
+  /// Keep the present cut where it is better than the best one.
+  void look() {
+    std::vector<double> work;
+    for (const auto& [flops, root] : heap_) work.push_back(flops);
+    const Shares shares(work, n_processes_);
+    if (!roots_.empty() && top_ + shares.most > longest_ - least_gain * tree_.counts.flops) return;
+    longest_ = top_ + shares.most;
+    processes_ = shares.process;
+    roots_.clear();
+    for (const auto& [flops, root] : heap_) roots_.push_back(root);
+  }
+
+  const Tree& tree_;
+  int n_processes_;
+  std::vector<double> below_;                          ///< flops of the subtree of each vertex
+  std::vector<std::vector<std::int32_t>> child_;       ///< of each vertex
+  std::vector<std::pair<double, std::int32_t>> heap_;  ///< the present subtrees: flops, root
+  double top_ = 0;                                     ///< flops of the present top
+  double longest_ = 0;                                 ///< of the best cut: flops of the busiest process and of the top
+  std::vector<int> processes_;
+  std::vector<std::int32_t> roots_;
+};
+
 }  // namespace
 
 EliminationCounts elimination_counts(const VertexGraph& graph, std::span<const std::int32_t> order) {
@@ -79,68 +164,16 @@ EliminationCounts elimination_counts(const VertexGraph& graph, std::span<const s
 
 Subtrees independent_subtrees(const VertexGraph& graph, std::span<const std::int32_t> order, int n_processes) {
   const Tree tree(graph, order);
-  const auto n = static_cast<std::int32_t>(tree.vertex.size());
-  std::vector<double> below = tree.own;  // flops of the subtree of each vertex
-  std::vector<std::vector<std::int32_t>> child(tree.vertex.size());
-  for (std::int32_t i = 0; i < n; ++i)
-    if (const std::int32_t parent = tree.parent[i]; parent >= 0) {
-      below[parent] += below[i];
-      child[parent].push_back(i);
-    }
-  Subtrees best{.of = {}, .process = {}, .whole = tree.counts};
-  std::vector<std::int32_t> best_roots;
-  using Subtree = std::pair<double, std::int32_t>;  // flops, root
-  std::vector<Subtree> now;                         // a heap
-  double top = 0;
-  const auto add = [&](std::int32_t root) {
-    if (below[root] < least_share * best.whole.flops) {
-      top += below[root];
-      return;
-    }
-    now.emplace_back(below[root], root);
-    std::push_heap(now.begin(), now.end());
-  };
-  const auto look = [&] {
-    std::vector<double> work;
-    for (const Subtree& s : now) work.push_back(s.first);
-    const Shares shares(work, n_processes);
-    if (!best_roots.empty() && top + shares.most > best.longest - least_gain * best.whole.flops) return;
-    best.longest = top + shares.most;
-    best.process = shares.process;
-    best_roots.clear();
-    for (const Subtree& s : now) best_roots.push_back(s.second);
-  };
-  for (std::int32_t i = 0; i < n; ++i)
-    if (tree.parent[i] < 0) add(i);
-  // down from the roots, into the largest subtree each time, until its halves would not matter
-  for (look(); !now.empty() && top < best.longest;) {
-    std::pop_heap(now.begin(), now.end());
-    const std::int32_t root = now.back().second;
-    now.pop_back();
-    top += tree.own[root];
-    const std::size_t before = now.size();
-    for (const std::int32_t c : child[root]) add(c);
-    if (now.size() > before + 1) look();
-  }
-
-  std::vector<std::int32_t> subtree(static_cast<std::size_t>(n), -1);
-  std::vector<double> load(best_roots.size());
-  for (std::size_t s = 0; s < best_roots.size(); ++s) {
-    subtree[best_roots[s]] = static_cast<std::int32_t>(s);
-    load[s] = below[best_roots[s]];
-  }
-  best.of.assign(order.size(), -1);
-  for (std::int32_t i = n - 1; i >= 0; --i) {
-    if (subtree[i] < 0 && tree.parent[i] >= 0) subtree[i] = subtree[tree.parent[i]];
-    if (subtree[i] < 0 && !load.empty() && below[i] < least_share * best.whole.flops) {
-      const auto least = std::min_element(load.begin(), load.end());
-      subtree[i] = static_cast<std::int32_t>(least - load.begin());
-      *least += below[i];
-    }
+  Cutter cutter(tree, n_processes);
+  cutter.search();
+  Subtrees made{.of = std::vector<std::int32_t>(order.size(), -1), .process = cutter.processes(), .whole = tree.counts};
+  made.longest = cutter.longest();
+  const std::vector<std::int32_t> subtree = cutter.subtrees();
+  for (std::size_t i = 0; i < subtree.size(); ++i) {
     const std::int32_t v = tree.vertex[i];
-    for (std::int64_t e = graph.numbering.first[v]; e < graph.numbering.first[v + 1]; ++e) best.of[e] = subtree[i];
+    for (std::int64_t e = graph.numbering.first[v]; e < graph.numbering.first[v + 1]; ++e) made.of[e] = subtree[i];
   }
-  return best;
+  return made;
 }
 
 }  // namespace lacon
