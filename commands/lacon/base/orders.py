@@ -56,17 +56,39 @@ def order(command, study, keywords, where, result=None, units=None, written=()):
 
 def run(program, made, study, checks=False):
     """Start the operator on the order, or with `checks` on all of it but what takes long, and wait for it. @return its Outcome. @throws InternalError where it does not exist"""
-    import subprocess  # start-up: a study without operators
-
     executable = operator_folder() / program
     if not os.access(executable, os.X_OK):
         raise InternalError([message("INTERNAL_2", made["source"], program=program, folder=operator_folder())])
+    order_file, status_file = _write_order(made, study)
+    arguments = [executable, order_file, "--status", status_file, *["--verbose"] * study.verbose, *["--check"] * checks]
+    sys.stdout.flush()
+    sys.stderr.flush()
+    start = time.perf_counter()
+    ours, theirs = socket.socketpair()  # for formulae
+    with ours, _terminal(study) as terminal:
+        with theirs:  # an operator that ends a moment after the launcher still holds the base
+            try:
+                process = _start(arguments, study, theirs, terminal)
+            except OSError as error:
+                fail("STUDY_38", made["source"], program=program, reason=error.strerror)
+        _wait(process, study, ours, terminal)
+    seconds = time.perf_counter() - start
+    return Outcome(process.returncode, *_read_status(status_file, f"{made['command']}, {made['source']}"), seconds)
+
+
+def _write_order(made, study):
+    """@return the order's file, and that of the status, which the operator is to write"""
     try:
         order_file, status_file = study.order_files(made["command"])
         status_file.unlink(missing_ok=True)
         order_file.write_text(json.dumps(made, ensure_ascii=False, indent=1), encoding="utf-8")
     except OSError as error:
         fail("STUDY_3", made["source"], folder=study.base.folder, reason=error.strerror)
+    return order_file, status_file
+
+
+def _environment(study):
+    """What operators find in their environment, beside what the launcher has in its own."""
     environment = dict(os.environ)
     environment.setdefault("OPENBLAS_NUM_THREADS", "1")  # the operator takes one thread of OpenBLAS: no others are started
     if study.threads:
@@ -76,41 +98,42 @@ def run(program, made, study, checks=False):
         environment["LACON_MPI"] = str(study.ranks)
     if study.hosts:
         environment["LACON_HOSTS"] = study.hosts
-    sys.stdout.flush()
-    sys.stderr.flush()
-    start = time.perf_counter()
-    quiet = subprocess.PIPE if study.ignored_alarms else None
-    ours, theirs = socket.socketpair()  # for formulae
-    environment.update(LACON_FORMULAS=str(theirs.fileno()), LACON_LAUNCHER=str(os.getpid()))
-    with ours, _terminal(study) as terminal:
-        environment.update({"LACON_TERMINAL": str(terminal)} if terminal else {})
-        with theirs:  # an operator that ends a moment after the launcher still holds the base
-            arguments = [executable, order_file, "--status", status_file, *["--verbose"] * study.verbose, *["--check"] * checks]
-            try:
-                process = subprocess.Popen(arguments, env=environment, stderr=quiet,
-                                           stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL if study.check or study.quiet else None,
-                                           pass_fds=(study.base.lock, theirs.fileno(), *([terminal] if terminal else [])))
-            except OSError as error:
-                fail("STUDY_38", made["source"], program=program, reason=error.strerror)
-        try:
-            late.load()  # while the operator works: checks, functions and FIN need it later
-            forward = threading.Thread(target=_forward, args=(process.stderr, study.ignored_alarms, terminal), daemon=True) if quiet else None
-            if forward:
-                forward.start()
-            with ours.makefile("rwb") as stream:
-                _serve_formulas(stream, study.base)
-            process.wait()
-            if forward:
-                forward.join()
-        except BaseException:
-            _end(process)
-            raise
-        finally:
-            if terminal and process.returncode:  # an operator that was killed leaves its line
-                with contextlib.suppress(OSError):  # the terminal is gone
-                    os.write(terminal, _empty_line)
-    seconds = time.perf_counter() - start
-    return Outcome(process.returncode, *_read_status(status_file, f"{made['command']}, {made['source']}"), seconds)
+    return environment
+
+
+def _start(arguments, study, theirs, terminal):
+    """The operator's process. @param theirs its end of the socket for formulae @param terminal where it says how far it is, or None. @throws OSError"""
+    import subprocess  # start-up: a study without operators
+
+    environment = {**_environment(study), "LACON_FORMULAS": str(theirs.fileno()), "LACON_LAUNCHER": str(os.getpid())}
+    inherited = [study.base.lock, theirs.fileno()]
+    if terminal:
+        environment["LACON_TERMINAL"] = str(terminal)
+        inherited.append(terminal)
+    return subprocess.Popen(arguments, env=environment, stderr=subprocess.PIPE if study.ignored_alarms else None, stdin=subprocess.DEVNULL,
+                            stdout=subprocess.DEVNULL if study.check or study.quiet else None, pass_fds=inherited)
+
+
+def _wait(process, study, ours, terminal):
+    """Until the operator has ended, evaluate its formulae, and hand on what it says."""
+    forward = None
+    try:
+        late.load()  # while the operator works: checks, functions and FIN need it later
+        if process.stderr:
+            forward = threading.Thread(target=_forward, args=(process.stderr, study.ignored_alarms, terminal), daemon=True)
+            forward.start()
+        with ours.makefile("rwb") as stream:
+            _serve_formulas(stream, study.base)
+        process.wait()
+        if forward:
+            forward.join()
+    except BaseException:
+        _end(process)
+        raise
+    finally:
+        if terminal and process.returncode:  # an operator that was killed leaves its line
+            with contextlib.suppress(OSError):  # the terminal is gone
+                os.write(terminal, _empty_line)
 
 
 @contextlib.contextmanager
@@ -130,7 +153,7 @@ def _terminal(study):
 
 def _end(process):
     """End an operator: it stores or gives up what it has in hand, for which it has no more than a moment."""
-    import subprocess  # start-up: see run()
+    import subprocess  # start-up: see _start()
 
     process.terminate()
     try:

@@ -87,37 +87,46 @@ def _source(filename):
         return file.read()
 
 
+def _place(call):
+    return call.lineno, call.end_lineno, call.col_offset, call.end_col_offset
+
+
+def _calls_below(node):
+    return (below for below in ast.walk(node) if isinstance(below, ast.Call))
+
+
 def _pair(target, value, table):
     """Enter the calls of `value`, which is assigned to `target`."""
-    if isinstance(value, ast.Call):
-        table[value.lineno, value.end_lineno, value.col_offset, value.end_col_offset] = target
-        for argument in itertools.chain(value.args, (k.value for k in value.keywords)):
-            for node in ast.walk(argument):
-                if isinstance(node, ast.Call):
-                    table[node.lineno, node.end_lineno, node.col_offset, node.end_col_offset] = None
-    elif isinstance(value, (ast.Tuple, ast.List)):
-        if isinstance(target, (ast.Tuple, ast.List)):
-            if len(target.elts) == len(value.elts) and not any(isinstance(t, ast.Starred) for t in target.elts):
-                for t, v in zip(target.elts, value.elts):
-                    _pair(t, v, table)
-        else:
-            for i, v in enumerate(value.elts):
-                _pair(ast.Subscript(target, ast.Constant(i), ast.Load()), v, table)
-    elif isinstance(value, ast.Dict):
-        for k, v in zip(value.keys, value.values):
-            if k is not None:
-                _pair(ast.Subscript(target, k, ast.Load()), v, table)
-    elif isinstance(value, ast.IfExp):
-        _pair(target, value.body, table)
-        _pair(target, value.orelse, table)
-    elif isinstance(value, ast.ListComp) and isinstance(value.elt, ast.Call):
-        _pair(ast.Subscript(target, _counted, ast.Load()), value.elt, table)
-    elif isinstance(value, ast.DictComp):
-        _pair(ast.Subscript(target, value.key, ast.Load()), value.value, table)
-    elif isinstance(value, (ast.ListComp, ast.GeneratorExp, ast.Await, ast.BoolOp)):
-        for node in ast.walk(value):
-            if isinstance(node, ast.Call):
-                _pair(target, node, table)
+    if not isinstance(value, ast.Call):
+        for its_target, its_value in _parts(target, value):
+            _pair(its_target, its_value, table)
+        return
+    table[_place(value)] = target
+    for argument in itertools.chain(value.args, (k.value for k in value.keywords)):
+        table.update((_place(call), None) for call in _calls_below(argument))
+
+
+def _parts(target, value):
+    """What an assigned value consists of, each part with its own target: elements of lists and dictionaries, branches, or the calls in it."""
+    def element(index):
+        return ast.Subscript(target, index, ast.Load())
+
+    if isinstance(value, (ast.Tuple, ast.List)):
+        if not isinstance(target, (ast.Tuple, ast.List)):
+            return [(element(ast.Constant(i)), v) for i, v in enumerate(value.elts)]
+        are_known = len(target.elts) == len(value.elts) and not any(isinstance(t, ast.Starred) for t in target.elts)
+        return zip(target.elts, value.elts) if are_known else ()
+    if isinstance(value, ast.Dict):
+        return [(element(k), v) for k, v in zip(value.keys, value.values) if k is not None]
+    if isinstance(value, ast.IfExp):
+        return [(target, value.body), (target, value.orelse)]
+    if isinstance(value, ast.ListComp) and isinstance(value.elt, ast.Call):
+        return [(element(_counted), value.elt)]
+    if isinstance(value, ast.DictComp):
+        return [(element(value.key), value.value)]
+    if isinstance(value, (ast.ListComp, ast.GeneratorExp, ast.Await, ast.BoolOp)):
+        return [(target, call) for call in _calls_below(value)]
+    return ()
 
 
 #: the index of an element that a list comprehension is making

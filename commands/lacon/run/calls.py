@@ -100,10 +100,7 @@ class Command:
         made = orders.order(self.name, run, keywords, where, result, units, written)
         key = None
         if result and not any(keyword["unit"] == "out" for _, keyword in _unit_numbers(row, keywords)):
-            def make_key():
-                return run.base.kept.order_key(made, plugins.operator_folder() / row["operator"], made["units"])
-
-            key = run.base.kept.key_of_change(identifier, make_key) if reused else make_key()
+            key = self._key(run, row, made, identifier if reused else None)
             found = self._unchanged(run, kind, key, where, identifier, reused)
             if found:
                 if row.get("solves"):
@@ -131,12 +128,8 @@ class Command:
         except BaseException:
             if grows and not ended_well and orders.has_left(run.base, identifier, copy):
                 self._keep_part(run, identifier, label, where, reused)
-            elif copy:
-                orders.put_back(run.base, identifier, copy)
-                if not result.get("resume"):
-                    run.base.unfinished.end(identifier)
-            elif result and not run.base.failed_step(identifier).exists():
-                run.base.give_back(identifier)
+            elif result:
+                _give_up(run.base, result, copy)
             run.base.drop_partial()
             raise
         if copy:
@@ -147,6 +140,23 @@ class Command:
         if grows:
             run.base.unfinished.end(identifier)
         self._protect_data(run, row, keywords, units)
+        self._take_written(run, row, keywords, units)
+        if not result:
+            return None, outcome
+        item = self._result(run, identifier, label, where, reused, named)
+        if grows:
+            run.base.unfinished.drop_record(identifier)
+        return item, outcome
+
+    def _key(self, run, row, made, changed):
+        """What tells whether an order is the same as an earlier one. @param changed id of the concept that it changes, or None"""
+        def make_key():
+            return run.base.kept.order_key(made, plugins.operator_folder() / row["operator"], made["units"])
+
+        return run.base.kept.key_of_change(changed, make_key) if changed else make_key()
+
+    def _take_written(self, run, row, keywords, units):
+        """Files that the operator has written: of the unit of messages they are printed, others are the study's."""
         for number, keyword in _unit_numbers(row, keywords):
             if keyword["unit"] != "out":
                 continue
@@ -156,12 +166,6 @@ class Command:
                 printed.unlink()
             else:
                 run.written_units[number] = units[number]
-        if not result:
-            return None, outcome
-        item = self._result(run, identifier, label, where, reused, named)
-        if grows:
-            run.base.unfinished.drop_record(identifier)
-        return item, outcome
 
     def _resume(self, run, kind, key, identifier, reused, result):
         """Have the operator go on where a run with the same order was ended. @return the id of the concept"""
@@ -271,6 +275,18 @@ def _enter(run, label, item, where):
     """Enter a concept that is there now in the registry, under the variable it is about to be assigned to."""
     run.names.update_labels(run.base, (label, item.id))
     run.base.write(where)
+
+
+def _give_up(base, result, copy):
+    """The operator has failed, and left nothing: the concept that it changes is as it was, and the id of a new one is free again, unless a failed
+    step is kept under it. @param copy orders.keep_copy of the concept that it changes, or None"""
+    identifier = result["id"]
+    if copy:
+        orders.put_back(base, identifier, copy)
+        if not result.get("resume"):
+            base.unfinished.end(identifier)
+    elif not base.failed_step(identifier).exists():
+        base.give_back(identifier)
 
 
 class Unavailable:

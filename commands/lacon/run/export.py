@@ -17,19 +17,32 @@ FILE = re.compile(r"[FR]\s+(\S+)\s+(\S.*?)\s+([DRC]+)\s+(\d+)")
 
 class Export:
     def __init__(self):
-        self.commands = []
+        self.commands = []  #: in their order
+        self.ranked = []  #: (rank, name) of command files, as they come
         self.units = {}
         self.data = []  #: files of units that are not to be written
         self.named = []  #: files that the command file reads under their own name
         self.base = None
         self.parameters = {}
 
+    def enter_file(self, kind, name, use, unit):
+        """Of an F or R line: its type, path, use (D, R, DR; C: compressed) and unit."""
+        if kind == "comm" or re.fullmatch(r"com\d+", kind):
+            self.ranked.append((_rank(kind, name), name))
+        elif kind in ("base", "bhdf"):
+            self.base = name
+        elif kind == "nom" or (unit == 0 and "D" in use):
+            self.named.append(name)
+        elif unit:
+            self.units[unit] = name
+            if "R" not in use:
+                self.data.append(name)
+
 
 def read_export(path):
-    """@throws AsterError STUDY_13 where a line is not of the format"""
+    """@throws AsterError STUDY_13 where a line is not of the format, STUDY_14 where there is no such file, STUDY_15 where it names no command file"""
     path = pathlib.Path(path)
     export = Export()
-    commands = []
     try:
         lines = path.read_text(encoding="utf-8-sig", errors="replace").splitlines()
     except OSError as error:
@@ -44,20 +57,10 @@ def read_export(path):
         match = FILE.fullmatch(line.strip())
         if not match:
             fail("STUDY_13", f"{path}:{number}", line=line.strip())
-        kind, name, use, unit = match[1], path.parent / match[2], match[3], int(match[4])
-        if kind == "comm" or re.fullmatch(r"com\d+", kind):
-            commands.append((_rank(kind, name), name))
-        elif kind in ("base", "bhdf"):
-            export.base = name
-        elif kind == "nom" or (unit == 0 and "D" in use):
-            export.named.append(name)
-        elif unit:
-            export.units[unit] = name
-            if "R" not in use:
-                export.data.append(name)
-    export.commands = [name for _, name in sorted(commands, key=lambda ranked: ranked[0])]
-    if not commands:
+        export.enter_file(match[1], path.parent / match[2], match[3], int(match[4]))
+    if not export.ranked:
         fail("STUDY_15", str(path), file=path)
+    export.commands = [name for _, name in sorted(export.ranked, key=lambda ranked: ranked[0])]
     return export
 
 

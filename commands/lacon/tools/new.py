@@ -182,83 +182,102 @@ def study(groups, mesh_file, read_format):
     pairs = groups.pairs()
     in_contact = {skin.name for pair in pairs for skin in pair}
     free = [skin for skin in groups.skins if skin.name not in in_contact]
-    axis, mirrors, held, pressed = standing(free, groups.dimension)
-    degrees = ["DX", "DY", "DZ"][:groups.dimension]
-    fixed = ", ".join(f"{d}=0.0" for d in degrees)
-    modelisation = "3D" if groups.dimension == 3 else "D_PLAN"
-    lines = [
-        "# " + part("starter_head", mesh=mesh_file),
-        "#", f"#   lacon check {part('starter_this_file')} --unit 20={mesh_file}",
-        f"#   lacon {part('starter_this_file')} --unit 20={mesh_file} --unit 80=result.med", "#",
-        "# " + part("starter_bodies", names=", ".join(groups.bodies) or part("starter_no_body_group")),
-        "# " + part("starter_skins"), *[f"#   {skin.name}: {skin.words()}" for skin in groups.skins], "",
-        "DEBUT()", "", f"MESH = LIRE_MAILLAGE(UNITE=20, FORMAT={read_format!r})"]
+    stand = standing(free, groups.dimension)
+    pressed = stand[3]
+    cut = "CUT" if pairs else "MESH"
+    lines = [*_head(groups, mesh_file), *_mesh(groups, pairs, read_format), *_model(groups, cut), *_supports(groups, free, stand), *_loads(pressed)]
+    if len(groups.bodies) > 1 or pairs:
+        lines += ["# " + part("starter_rigid_motion")]
+    return "\n".join([*lines, "", *_contact(pairs), *_solution(pairs, pressed)])
+
+
+def _head(groups, mesh_file):
+    """What the study is, how to run it, and what was found in the mesh."""
+    return ["# " + part("starter_head", mesh=mesh_file),
+            "#", f"#   lacon check {part('starter_this_file')} --unit 20={mesh_file}",
+            f"#   lacon {part('starter_this_file')} --unit 20={mesh_file} --unit 80=result.med", "#",
+            "# " + part("starter_bodies", names=", ".join(groups.bodies) or part("starter_no_body_group")),
+            "# " + part("starter_skins"), *[f"#   {skin.name}: {skin.words()}" for skin in groups.skins], ""]
+
+
+def _mesh(groups, pairs, read_format):
+    """The mesh: read, its skins turned outward, the slave ones cut."""
+    lines = ["DEBUT()", "", f"MESH = LIRE_MAILLAGE(UNITE=20, FORMAT={read_format!r})"]
     skins = tuple(skin.name for skin in groups.skins if skin.part >= 0)
     if skins:
         lines += [f"MESH = MODI_MAILLAGE(reuse=MESH, MAILLAGE=MESH, ORIE_PEAU=_F(GROUP_MA_PEAU={skins!r}))"]
-    cut = "MESH"
     if pairs:
-        cut = "CUT"
-        lines += ["", "# " + part("starter_cut"),
-                  f"CUT = CREA_MAILLAGE(MAILLAGE=MESH, DECOUPE_LAC=_F(GROUP_MA_ESCL={tuple(slave.name for slave, _ in pairs)!r}))"]
-    else:
-        lines += ["", "# " + part("starter_no_pair"),
-                  "#   CUT = CREA_MAILLAGE(MAILLAGE=MESH, DECOUPE_LAC=_F(GROUP_MA_ESCL='SLAVE'))",
-                  "#   CONTACT = DEFI_CONTACT(MODELE=MODEL, FORMULATION='CONTINUE', ALGO_RESO_GEOM='NEWTON', ALGO_RESO_CONT='NEWTON',",
-                  "#                          ZONE=_F(APPARIEMENT='MORTAR', ALGO_CONT='LAC', GROUP_MA_ESCL='SLAVE', GROUP_MA_MAIT='MASTER'))"]
+        return [*lines, "", "# " + part("starter_cut"),
+                f"CUT = CREA_MAILLAGE(MAILLAGE=MESH, DECOUPE_LAC=_F(GROUP_MA_ESCL={tuple(slave.name for slave, _ in pairs)!r}))"]
+    return [*lines, "", "# " + part("starter_no_pair"),
+            "#   CUT = CREA_MAILLAGE(MAILLAGE=MESH, DECOUPE_LAC=_F(GROUP_MA_ESCL='SLAVE'))",
+            "#   CONTACT = DEFI_CONTACT(MODELE=MODEL, FORMULATION='CONTINUE', ALGO_RESO_GEOM='NEWTON', ALGO_RESO_CONT='NEWTON',",
+            "#                          ZONE=_F(APPARIEMENT='MORTAR', ALGO_CONT='LAC', GROUP_MA_ESCL='SLAVE', GROUP_MA_MAIT='MASTER'))"]
+
+
+def _model(groups, cut):
+    """@param cut name of the mesh that is solved on"""
+    modelisation = "3D" if groups.dimension == 3 else "D_PLAN"
     plane = "" if groups.dimension == 3 else "  # " + part("starter_modelisation")
-    lines += ["", f"MODEL = AFFE_MODELE(MAILLAGE={cut}, AFFE=_F(TOUT='OUI', PHENOMENE='MECANIQUE', MODELISATION={modelisation!r})){plane}",
-              "", "# " + part("starter_units", size=f"{groups.size:.3g}"), "# " + part("starter_units_more"),
-              "STEEL = DEFI_MATERIAU(ELAS=_F(E=210000.0, NU=0.3))  # " + part("starter_material"),
-              f"MATTER = AFFE_MATERIAU(MAILLAGE={cut}, AFFE=_F(TOUT='OUI', MATER=STEEL))", ""]
-    imposed, why = [], []
+    return ["", f"MODEL = AFFE_MODELE(MAILLAGE={cut}, AFFE=_F(TOUT='OUI', PHENOMENE='MECANIQUE', MODELISATION={modelisation!r})){plane}",
+            "", "# " + part("starter_units", size=f"{groups.size:.3g}"), "# " + part("starter_units_more"),
+            "STEEL = DEFI_MATERIAU(ELAS=_F(E=210000.0, NU=0.3))  # " + part("starter_material"),
+            f"MATTER = AFFE_MATERIAU(MAILLAGE={cut}, AFFE=_F(TOUT='OUI', MATER=STEEL))", ""]
+
+
+def _supports(groups, free, stand):
+    """Imposed displacements, and why these. @param free skins that are in no contact @param stand what standing() found of them"""
+    axis, mirrors, held, pressed = stand
+    fixed = ", ".join(f"{d}=0.0" for d in ("DX", "DY", "DZ")[:groups.dimension])
+    supports = []  # (occurrence of MECA_IMPO, why)
     if held:
-        imposed.append(f"_F(GROUP_MA={held.name!r}, {fixed})")
-        why.append(part("starter_lowest_skin", skin=held.name))
+        supports.append((f"_F(GROUP_MA={held.name!r}, {fixed})", part("starter_lowest_skin", skin=held.name)))
     for skin in mirrors:
-        imposed.append(f"_F(GROUP_MA={skin.name!r}, D{skin.plane()[0]}=0.0)")
-        why.append(part("starter_symmetry", skin=skin.name, axis=skin.plane()[0]))
+        supports.append((f"_F(GROUP_MA={skin.name!r}, D{skin.plane()[0]}=0.0)", part("starter_symmetry", skin=skin.name, axis=skin.plane()[0])))
     if pressed:  # what is pressed alone may glide away
         mirrored = {skin.plane()[0] for skin in mirrors if skin.part in (pressed.part, -1)}
         across = [f"D{a}=0.0" for a in "XYZ"[:groups.dimension] if a not in mirrored and a != axis]
         if across:
-            imposed.append(f"_F(GROUP_MA={pressed.name!r}, {', '.join(across)})")
-            why.append(part("starter_pressed", skin=pressed.name))
-    if not imposed:
+            supports.append((f"_F(GROUP_MA={pressed.name!r}, {', '.join(across)})", part("starter_pressed", skin=pressed.name)))
+    if not supports:
         lowest = min(free, key=lambda skin: skin.points[:, groups.dimension - 1].mean(), default=None)
         whole = next(iter(groups.bodies), None)
         where = f"GROUP_MA={lowest.name!r}" if lowest else f"GROUP_MA={whole!r}" if whole else "TOUT='OUI'"
-        imposed.append(f"_F({where}, {fixed})")
-        why.append(part("starter_no_support", skin=lowest.name) if lowest else part("starter_no_skin"))
-    lines += ["# " + part("starter_held", why="; ".join(why)),
-              f"HELD = AFFE_CHAR_CINE(MODELE=MODEL, MECA_IMPO={imposed[0] if len(imposed) == 1 else '(' + ', '.join(imposed) + ')'})"]
-    excit = ["_F(CHARGE=HELD)"]
-    if pressed:
-        lines += ["# " + part("starter_loads", skin=pressed.name),
-                  f"LOAD = AFFE_CHAR_MECA(MODELE=MODEL, PRES_REP=_F(GROUP_MA={pressed.name!r}, PRES=1.0))",
-                  "RAMP = DEFI_FONCTION(NOM_PARA='INST', VALE=(0.0, 0.0, 1.0, 1.0))"]
-        excit.append("_F(CHARGE=LOAD, FONC_MULT=RAMP)")
-    else:
-        lines += ["# " + part("starter_loads_to_add", load="LOAD = AFFE_CHAR_MECA(MODELE=MODEL, PRES_REP=_F(GROUP_MA='...', PRES=1.0))")]
-    if len(groups.bodies) > 1 or pairs:
-        lines += ["# " + part("starter_rigid_motion")]
-    lines += [""]
-    if pairs:
-        zone = [f"    _F(APPARIEMENT='MORTAR', ALGO_CONT='LAC', GROUP_MA_ESCL={slave.name!r}, GROUP_MA_MAIT={master.name!r}),"
-                for slave, master in pairs]
-        lines += ["# " + part("starter_swap"),
-                  "CONTACT = DEFI_CONTACT(MODELE=MODEL, FORMULATION='CONTINUE', ALGO_RESO_GEOM='NEWTON', ALGO_RESO_CONT='NEWTON', ZONE=(",
-                  *zone, "))", ""]
-    lines += ["STEPS = DEFI_LIST_REEL(DEBUT=0.0, INTERVALLE=_F(JUSQU_A=1.0, NOMBRE=1))",
-              "TIMES = DEFI_LIST_INST(DEFI_LIST=_F(LIST_INST=STEPS), ECHEC=_F(EVENEMENT='ERREUR', ACTION='DECOUPE'))",
-              "RESULT = STAT_NON_LINE(MODELE=MODEL, CHAM_MATER=MATTER,", f"                       EXCIT=({', '.join(excit)},),",
-              *(["                       CONTACT=CONTACT,"] if pairs else []),
-              "                       COMPORTEMENT=_F(TOUT='OUI', RELATION='ELAS', DEFORMATION='PETIT'),",
-              "                       INCREMENT=_F(LIST_INST=TIMES),",
-              "                       CONVERGENCE=_F(RESI_GLOB_RELA=1.0e-6, ITER_GLOB_MAXI=50))", "",
-              "RESULT = CALC_CHAMP(reuse=RESULT, RESULTAT=RESULT, CONTRAINTE='SIEF_NOEU')",
-              "IMPR_RESU(FORMAT='MED', UNITE=80, RESU=_F(RESULTAT=RESULT))", "", "FIN()", ""]
-    return "\n".join(lines)
+        supports.append((f"_F({where}, {fixed})", part("starter_no_support", skin=lowest.name) if lowest else part("starter_no_skin")))
+    imposed, why = zip(*supports)
+    return ["# " + part("starter_held", why="; ".join(why)),
+            f"HELD = AFFE_CHAR_CINE(MODELE=MODEL, MECA_IMPO={imposed[0] if len(imposed) == 1 else '(' + ', '.join(imposed) + ')'})"]
+
+
+def _loads(pressed):
+    if not pressed:
+        return ["# " + part("starter_loads_to_add", load="LOAD = AFFE_CHAR_MECA(MODELE=MODEL, PRES_REP=_F(GROUP_MA='...', PRES=1.0))")]
+    return ["# " + part("starter_loads", skin=pressed.name),
+            f"LOAD = AFFE_CHAR_MECA(MODELE=MODEL, PRES_REP=_F(GROUP_MA={pressed.name!r}, PRES=1.0))",
+            "RAMP = DEFI_FONCTION(NOM_PARA='INST', VALE=(0.0, 0.0, 1.0, 1.0))"]
+
+
+def _contact(pairs):
+    if not pairs:
+        return []
+    zones = [f"    _F(APPARIEMENT='MORTAR', ALGO_CONT='LAC', GROUP_MA_ESCL={slave.name!r}, GROUP_MA_MAIT={master.name!r})," for slave, master in pairs]
+    return ["# " + part("starter_swap"),
+            "CONTACT = DEFI_CONTACT(MODELE=MODEL, FORMULATION='CONTINUE', ALGO_RESO_GEOM='NEWTON', ALGO_RESO_CONT='NEWTON', ZONE=(",
+            *zones, "))", ""]
+
+
+def _solution(pairs, pressed):
+    """The computation, and what is done with its result."""
+    loads = ["_F(CHARGE=HELD)", *(["_F(CHARGE=LOAD, FONC_MULT=RAMP)"] if pressed else [])]
+    return ["STEPS = DEFI_LIST_REEL(DEBUT=0.0, INTERVALLE=_F(JUSQU_A=1.0, NOMBRE=1))",
+            "TIMES = DEFI_LIST_INST(DEFI_LIST=_F(LIST_INST=STEPS), ECHEC=_F(EVENEMENT='ERREUR', ACTION='DECOUPE'))",
+            "RESULT = STAT_NON_LINE(MODELE=MODEL, CHAM_MATER=MATTER,", f"                       EXCIT=({', '.join(loads)},),",
+            *(["                       CONTACT=CONTACT,"] if pairs else []),
+            "                       COMPORTEMENT=_F(TOUT='OUI', RELATION='ELAS', DEFORMATION='PETIT'),",
+            "                       INCREMENT=_F(LIST_INST=TIMES),",
+            "                       CONVERGENCE=_F(RESI_GLOB_RELA=1.0e-6, ITER_GLOB_MAXI=50))", "",
+            "RESULT = CALC_CHAMP(reuse=RESULT, RESULTAT=RESULT, CONTRAINTE='SIEF_NOEU')",
+            "IMPR_RESU(FORMAT='MED', UNITE=80, RESU=_F(RESULTAT=RESULT))", "", "FIN()", ""]
 
 
 def parser():
