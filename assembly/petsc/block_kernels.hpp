@@ -13,6 +13,13 @@ struct BlockEntries {
   std::vector<Real> value;              ///< blocks column by column, and room for a vector register behind them
 };
 
+/// Rows that a process has: columns of its own, numbered from 0, and those of others.
+template <class Real>
+struct SplitBlocks {
+  BlockEntries<Real> own, others;
+  std::vector<std::int32_t> column_of_others;  ///< which columns of blocks, among all, `others` has; ascending
+};
+
 /// y = A x, or y += A x, or y += A^T x; sums in the order of the blocks.
 template <class Real>
 using BlockProduct = void (*)(const BlockEntries<Real>& a, const double* x, double* y);

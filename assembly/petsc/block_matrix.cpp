@@ -67,14 +67,12 @@ BlockEntries<Real> gathered(Mat matrix, int rows, int columns, const BlockOf& bl
   return made;
 }
 
-/// What a shell has: own rows, with own columns and with those of other processes.
+/// What a shell has.
 template <class Real>
-struct Parts {
+struct Parts : SplitBlocks<Real> {
   const BlockKernels<Real>* kernels = nullptr;
-  BlockEntries<Real> own, others;
-  std::vector<PetscInt> block;  ///< columns of blocks of the others, among all
-  OwnedVec of_others;           ///< values of those columns
-  OwnedScatter scatter;         ///< from all columns to these; null where there is one process
+  OwnedVec of_others;    ///< values of the columns of other processes
+  OwnedScatter scatter;  ///< from all columns to these; null where there is one process
 };
 
 template <class Real>
@@ -184,18 +182,14 @@ const BlockKernels<Real>* kernels_for(int rows, int columns) {
     return double_kernels(rows, columns);
 }
 
+/// @param rows, columns of a block  @param n, m of own rows and own columns
 template <class Real>
-OwnedMat shell_for(Mat matrix) {
-  PetscInt rows = 0, columns = 0, n = 0, m = 0, all_n = 0, all_m = 0;
-  checked(MatGetBlockSizes(matrix, &rows, &columns));
+OwnedMat empty_shell(MPI_Comm processes, int rows, int columns, PetscInt n, PetscInt m) {
   auto parts = std::make_unique<Parts<Real>>();
   parts->kernels = kernels_for<Real>(rows, columns);
   if (!parts->kernels) throw std::logic_error("blocks without a kernel");
   OwnedMat shell;
-  checked(MatGetLocalSize(matrix, &n, &m));
-  checked(MatGetSize(matrix, &all_n, &all_m));
-  checked(
-      MatCreateShell(PetscObjectComm(reinterpret_cast<PetscObject>(matrix)), n, m, all_n, all_m, parts.release(), shell.out()));
+  checked(MatCreateShell(processes, n, m, PETSC_DETERMINE, PETSC_DETERMINE, parts.release(), shell.out()));
   checked(MatSetBlockSizes(shell, rows, columns));
   set_operation(shell, MATOP_MULT, multiply<Real>);
   set_operation(shell, MATOP_MULT_ADD, multiply_add<Real>);
@@ -205,75 +199,106 @@ OwnedMat shell_for(Mat matrix) {
   return shell;
 }
 
+/// The values of an AIJ matrix in blocks.
 template <class Real>
-void fill_parts(Parts<Real>& parts, Mat matrix) {
-  const int rows = parts.kernels->rows, columns = parts.kernels->columns;
+SplitBlocks<Real> blocks_of(Mat matrix, int rows, int columns) {
+  SplitBlocks<Real> made;
   const auto as_it_is = [](PetscInt column) { return column; };
   PetscBool is_distributed = PETSC_FALSE;
   checked(PetscObjectTypeCompare(reinterpret_cast<PetscObject>(matrix), MATMPIAIJ, &is_distributed));
   if (!is_distributed) {
-    parts.own = gathered<Real>(matrix, rows, columns, as_it_is);
-    return;
+    made.own = gathered<Real>(matrix, rows, columns, as_it_is);
+    return made;
   }
   Mat own = nullptr, others = nullptr;
   const PetscInt* number = nullptr;
   PetscInt n_numbers = 0;
   checked(MatMPIAIJGetSeqAIJ(matrix, &own, &others, &number));
-  parts.own = gathered<Real>(own, rows, columns, as_it_is);
+  made.own = gathered<Real>(own, rows, columns, as_it_is);
   checked(MatGetSize(others, nullptr, &n_numbers));
-  std::vector<PetscInt>& block = parts.block;
-  block.clear();
+  std::vector<std::int32_t>& block = made.column_of_others;
   for (PetscInt c = 0; c < n_numbers; ++c) block.push_back(number[c] / columns);
   std::sort(block.begin(), block.end());
   block.erase(std::unique(block.begin(), block.end()), block.end());
-  parts.others = gathered<Real>(others, rows, columns, [&](PetscInt c) {
+  made.others = gathered<Real>(others, rows, columns, [&](PetscInt c) {
     const auto at = std::lower_bound(block.begin(), block.end(), number[c] / columns) - block.begin();
     return static_cast<PetscInt>(at) * columns + number[c] % columns;
   });
+  return made;
+}
+
+/// The same blocks in single precision.
+SplitBlocks<float> in_single_precision(const SplitBlocks<double>& blocks) {
+  const auto rounded = [](const BlockEntries<double>& from) {
+    return BlockEntries<float>{from.rows, from.columns, from.offset, from.column, {from.value.begin(), from.value.end()}};
+  };
+  return {rounded(blocks.own), rounded(blocks.others), blocks.column_of_others};
+}
+
+/// A shell without values gets some.
+template <class Real>
+void fill(Mat shell, SplitBlocks<Real> blocks) {
+  Parts<Real>& parts = parts_of<Real>(shell);
+  static_cast<SplitBlocks<Real>&>(parts) = std::move(blocks);
+  int n_processes = 1;
+  MPI_Comm_size(PetscObjectComm(reinterpret_cast<PetscObject>(shell)), &n_processes);
+  if (n_processes == 1) return;
+  const auto n = static_cast<PetscInt>(parts.column_of_others.size());
+  const int columns = parts.kernels->columns;
   OwnedIs from;
   OwnedVec all;
-  const auto n = static_cast<PetscInt>(block.size());
-  checked(ISCreateBlock(PETSC_COMM_SELF, columns, n, block.data(), PETSC_COPY_VALUES, from.out()));
   parts.of_others = {};
   parts.scatter = {};
+  checked(ISCreateBlock(PETSC_COMM_SELF, columns, n, parts.column_of_others.data(), PETSC_COPY_VALUES, from.out()));
   checked(VecCreateSeq(PETSC_COMM_SELF, n * columns, parts.of_others.out()));
-  checked(MatCreateVecs(matrix, all.out(), nullptr));
+  checked(MatCreateVecs(shell, all.out(), nullptr));
   checked(VecScatterCreate(all, from, parts.of_others, nullptr, parts.scatter.out()));
 }
 
 }  // namespace
 
-bool has_blocks(Mat matrix, Digits digits) {
+OwnedMat in_blocks(SplitBlocks<double> rows) {
+  const int size = rows.own.rows;
+  const auto n = static_cast<PetscInt>(rows.own.offset.size() - 1) * size;
+  OwnedMat shell = empty_shell<double>(PETSC_COMM_WORLD, size, size, n, n);
+  fill(shell, std::move(rows));
+  return shell;
+}
+
+bool has_blocks(Mat matrix) {
   PetscInt rows = 0, columns = 0;
   PetscBool is_aij = PETSC_FALSE;
   checked(PetscObjectTypeCompareAny(reinterpret_cast<PetscObject>(matrix), &is_aij, MATSEQAIJ, MATMPIAIJ, ""));
   checked(MatGetBlockSizes(matrix, &rows, &columns));
-  return is_aij && (digits == Digits::single_precision ? single_kernels(rows, columns) != nullptr
-                                                       : double_kernels(rows, columns) != nullptr);
+  return is_aij && single_kernels(rows, columns) != nullptr;
 }
 
-OwnedMat in_blocks(Mat matrix, Digits digits) {
-  const bool is_single = digits == Digits::single_precision;
-  OwnedMat shell = is_single ? shell_for<float>(matrix) : shell_for<double>(matrix);
-  if (is_single)
-    fill_parts(parts_of<float>(shell), matrix);
-  else
-    fill_parts(parts_of<double>(shell), matrix);
+OwnedMat in_single_blocks(Mat matrix) {
+  PetscInt rows = 0, columns = 0, n = 0, m = 0;
+  PetscBool is_shell = PETSC_FALSE;
+  checked(MatGetBlockSizes(matrix, &rows, &columns));
+  checked(MatGetLocalSize(matrix, &n, &m));
+  checked(PetscObjectTypeCompare(reinterpret_cast<PetscObject>(matrix), MATSHELL, &is_shell));
+  OwnedMat shell = empty_shell<float>(PetscObjectComm(reinterpret_cast<PetscObject>(matrix)), rows, columns, n, m);
+  fill(shell, is_shell ? in_single_precision(parts_of<double>(matrix)) : blocks_of<float>(matrix, rows, columns));
   return shell;
 }
 
-OwnedMat empty_blocks(Mat matrix) { return shell_for<double>(matrix); }
+void fill(Mat blocks, Mat matrix) {
+  const BlockKernels<double>& kernels = *parts_of<double>(blocks).kernels;
+  fill(blocks, blocks_of<double>(matrix, kernels.rows, kernels.columns));
+}
 
-void fill(Mat blocks, Mat matrix) { fill_parts(parts_of<double>(blocks), matrix); }
-
-OwnedMat without_blocks(Mat blocks) {
-  const Parts<double>& parts = parts_of<double>(blocks);
-  const int rows = parts.own.rows, columns = parts.own.columns;
+OwnedMat taken_out(Mat blocks) {
+  SplitBlocks<double>& entries = parts_of<double>(blocks);
+  const int rows = entries.own.rows, columns = entries.own.columns;
   PetscInt n = 0, m = 0, first = 0;
   checked(MatGetLocalSize(blocks, &n, &m));
   checked(MatGetOwnershipRangeColumn(blocks, &first, nullptr));
   std::vector<PetscInt> offset{0}, column;
   std::vector<double> value;
+  const std::size_t count = (entries.own.column.size() + entries.others.column.size()) * rows * columns;
+  column.reserve(count), value.reserve(count);
   const auto append = [&](const BlockEntries<double>& from, PetscInt i, int r, const auto& number) {
     for (std::int32_t k = from.offset[i]; k < from.offset[i + 1]; ++k)
       for (int c = 0; c < columns; ++c) {
@@ -281,12 +306,14 @@ OwnedMat without_blocks(Mat blocks) {
         value.push_back(from.value[(static_cast<std::size_t>(k) * columns + c) * rows + r]);
       }
   };
+  const bool has_others = !entries.column_of_others.empty();
   for (PetscInt i = 0; i < n / rows; ++i)
     for (int r = 0; r < rows; ++r) {
-      append(parts.own, i, r, [&](std::int32_t block) { return first / columns + block; });
-      if (parts.scatter) append(parts.others, i, r, [&](std::int32_t block) { return parts.block[block]; });
+      append(entries.own, i, r, [&](std::int32_t block) { return first / columns + block; });
+      if (has_others) append(entries.others, i, r, [&](std::int32_t block) { return entries.column_of_others[block]; });
       offset.push_back(static_cast<PetscInt>(column.size()));
     }
+  entries = {};
   OwnedMat made;
   checked(MatCreate(PetscObjectComm(reinterpret_cast<PetscObject>(blocks)), made.out()));
   checked(MatSetSizes(made, n, m, PETSC_DETERMINE, PETSC_DETERMINE));

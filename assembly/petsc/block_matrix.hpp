@@ -3,23 +3,24 @@
 // entry, and in single precision where they precondition. What an iteration costs is what of matrices it reads.
 #include <petscksp.h>
 
+#include "lacon/assembly/petsc/block_kernels.hpp"
 #include "lacon/assembly/petsc/owned.hpp"
 
 namespace lacon {
 
-enum class Digits { single_precision, double_precision };
+/// A shell of PETSC_COMM_WORLD with these own rows of a square matrix. MatMult, MatMultAdd, their transposes and
+/// MatGetDiagonal work, with the same bits in every run.
+OwnedMat in_blocks(SplitBlocks<double> rows);
 
-/// Whether there is a kernel for the blocks that a matrix says it has.
-bool has_blocks(Mat matrix, Digits digits);
+/// Whether there is a kernel in single precision for the blocks that an AIJ matrix says it has.
+bool has_blocks(Mat matrix);
+/// A shell in single precision with the values that an AIJ matrix, or a shell in double precision, has now; it needs that one
+/// no more.
+OwnedMat in_single_blocks(Mat matrix);
 
-/// A shell of PETSc with the values that an AIJ matrix has now; it needs that one no more. MatMult, MatMultAdd, their
-/// transposes and MatGetDiagonal work, with the same bits in every run.
-OwnedMat in_blocks(Mat matrix, Digits digits);
-
-/// The same without values, of the sizes of a matrix; they are filled in when the matrix may go.
-OwnedMat empty_blocks(Mat matrix);
+/// An AIJ matrix of the values of a shell in double precision, which is left without them: both take as much memory.
+OwnedMat taken_out(Mat blocks);
+/// What an AIJ matrix has goes back into the shell that it was taken out of.
 void fill(Mat blocks, Mat matrix);
-/// That matrix again. @param blocks in double precision
-OwnedMat without_blocks(Mat blocks);
 
 }  // namespace lacon

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <limits>
 #include <stdexcept>
 #include <utility>
@@ -119,32 +120,45 @@ struct BlockPattern {
   }
 };
 
-/// Rows of K whose blocks are whole: all rows of a block have the same columns. Entries are summed up as they come.
+/// Rows of K in whole blocks. Entries are summed up as they come.
 /// @param for_each  goes through all entries of own rows: calls what it is given with row, column, value
 template <class ForEach>
-Rows rows_of_blocks(const Range& blocks, int dimension, const ForEach& for_each) {
+SplitBlocks<double> rows_of_blocks(const Range& blocks, int dimension, const ForEach& for_each) {
   const auto block_of = [&](std::int32_t row) { return dimension == 3 ? row / 3 : row / dimension; };  // division by 3 is quick
   const BlockPattern pattern(blocks.last - blocks.first, [&](const auto& use) {
     for (std::int64_t block = blocks.first; block < blocks.last; ++block)
       use(block - blocks.first, static_cast<std::int32_t>(block));
     for_each([&](std::int32_t row, std::int32_t column, double) { use(block_of(row) - blocks.first, block_of(column)); });
   });
-  const std::int64_t size = dimension * dimension * std::ssize(pattern.column);
-  if (size > std::numeric_limits<std::int32_t>::max()) throw std::length_error("PETSc: 2^31");
-  Rows rows{.first = blocks.first * dimension, .last = blocks.last * dimension};
-  rows.offset.reserve(static_cast<std::size_t>(rows.last - rows.first) + 1);
-  rows.column.reserve(size);
-  for (std::int64_t row = rows.first; row < rows.last; ++row) {
-    for (const std::int32_t block : pattern.row(row / dimension - blocks.first))
-      for (int i = 0; i < dimension; ++i) rows.column.push_back(block * dimension + i);
-    rows.offset.push_back(static_cast<std::int32_t>(rows.column.size()));
+  const int size = dimension * dimension;
+  if (size * std::ssize(pattern.column) > std::numeric_limits<std::int32_t>::max()) throw std::length_error("PETSc: 2^31");
+  const auto is_own = [&](std::int32_t block) { return block >= blocks.first && block < blocks.last; };
+  SplitBlocks<double> rows;
+  std::vector<std::int32_t>& of_others = rows.column_of_others;
+  std::ranges::remove_copy_if(pattern.column, std::back_inserter(of_others), is_own);
+  std::ranges::sort(of_others);
+  of_others.erase(std::unique(of_others.begin(), of_others.end()), of_others.end());
+  const auto number_of = [&](std::int32_t block) {
+    return static_cast<std::int32_t>(is_own(block) ? block - blocks.first
+                                                   : std::ranges::lower_bound(of_others, block) - of_others.begin());
+  };
+  for (std::int64_t row = 0; row < blocks.last - blocks.first; ++row) {
+    for (const std::int32_t block : pattern.row(row))
+      (is_own(block) ? rows.own : rows.others).column.push_back(number_of(block));
+    for (BlockEntries<double>* const part : {&rows.own, &rows.others})
+      part->offset.push_back(static_cast<std::int32_t>(part->column.size()));
   }
-  rows.value.assign(size, 0.0);
+  for (BlockEntries<double>* const part : {&rows.own, &rows.others}) {
+    part->rows = part->columns = dimension;
+    part->value.assign(part->column.size() * size + read_behind, 0.0);
+  }
   for_each([&](std::int32_t row, std::int32_t column, double value) {
-    const std::int32_t block = block_of(column);
-    const auto there = pattern.row(block_of(row) - blocks.first);
-    const auto at = std::lower_bound(there.begin(), there.end(), block) - there.begin();
-    rows.value[rows.offset[row - rows.first] + at * dimension + column - block * dimension] += value;
+    const std::int32_t block = block_of(column), own_row = block_of(row), number = number_of(block);
+    BlockEntries<double>& part = is_own(block) ? rows.own : rows.others;
+    const std::int64_t i = own_row - blocks.first;
+    const auto first = part.column.begin() + part.offset[i], last = part.column.begin() + part.offset[i + 1];
+    const std::int64_t at = std::lower_bound(first, last, number) - part.column.begin();
+    part.value[at * size + (column - block * dimension) * dimension + row - own_row * dimension] += value;
   });
   return rows;
 }

@@ -9,6 +9,7 @@
 #include <span>
 #include <vector>
 
+#include "lacon/assembly/petsc/block_kernels.hpp"
 #include "lacon/assembly/petsc/exchange.hpp"
 #include "lacon/assembly/sparse_matrix.hpp"
 
@@ -31,7 +32,8 @@ struct Range {
 
 struct BlockRows {
   Range blocks, multipliers;     ///< own ones
-  Rows k, b, c, d;               ///< K with its weights; own rows
+  SplitBlocks<double> k;         ///< K with its weights; own rows
+  Rows b, c, d;                  ///< likewise
   std::vector<double> scale;     ///< of multipliers, own ones
   std::vector<double> schur;     ///< what stands for the Schur complement: its diagonal, own rows
   std::vector<double> weight;    ///< W, own ones

@@ -42,25 +42,14 @@ std::vector<double> whole_diagonal(const BlockSystem& system, const OwnEntries& 
 }
 
 /// Owned rows of a matrix, of all columns.
-OwnedMat make_matrix(const Rows& rows, std::int64_t own_columns, int block_size) {
+OwnedMat make_matrix(const Rows& rows, std::int64_t own_columns) {
   OwnedMat made;
   const auto n = static_cast<PetscInt>(rows.last - rows.first);
   checked(MatCreate(PETSC_COMM_WORLD, made.out()));
   checked(MatSetSizes(made, n, static_cast<PetscInt>(own_columns), PETSC_DETERMINE, PETSC_DETERMINE));
   checked(MatSetType(made, MATAIJ));
-  if (block_size > 1) checked(MatSetBlockSize(made, block_size));
   checked(MatSeqAIJSetPreallocationCSR(made, rows.offset.data(), rows.column.data(), rows.value.data()));
   checked(MatMPIAIJSetPreallocationCSR(made, rows.offset.data(), rows.column.data(), rows.value.data()));
-  return made;
-}
-
-/// All rows of a square matrix, which stay where they are.
-OwnedMat make_matrix_in_place(Rows& rows, int block_size) {
-  OwnedMat made;
-  const auto n = static_cast<PetscInt>(rows.last);
-  checked(
-      MatCreateSeqAIJWithArrays(PETSC_COMM_WORLD, n, n, rows.offset.data(), rows.column.data(), rows.value.data(), made.out()));
-  checked(MatSetBlockSize(made, block_size));
   return made;
 }
 
@@ -139,11 +128,11 @@ Krylov::Krylov(const BlockSystem& system, OwnEntries entries, const KrylovOption
   MPI_Comm_rank(PETSC_COMM_WORLD, &part);
   if (entries.matrix) entries.diagonal = whole_diagonal(system, entries, part);
   BlockRows rows = rows_of_part(system, entries, part);
-  const std::int64_t n_rows = rows.k.last - rows.k.first;
+  const std::int64_t first_row = rows.blocks.first * dimension_, n_rows = rows.blocks.last * dimension_ - first_row;
   equation_.assign(n_rows + (rows.c.last - rows.c.first), -1);
   for (std::int64_t i = 0; i < system.sizes.n; ++i) {
     const std::int64_t place = system.place[i], multiplier = -1 - place;
-    if (place >= rows.k.first && place < rows.k.last) equation_[place - rows.k.first] = static_cast<std::int32_t>(i);
+    if (place >= first_row && place < first_row + n_rows) equation_[place - first_row] = static_cast<std::int32_t>(i);
     if (place < 0 && multiplier >= rows.c.first && multiplier < rows.c.last)
       equation_[n_rows + multiplier - rows.c.first] = static_cast<std::int32_t>(i);
   }
@@ -156,7 +145,7 @@ Krylov::Krylov(const BlockSystem& system, OwnEntries entries, const KrylovOption
   for (std::int64_t node = 0; node < system.sizes.n_blocks; ++node)
     for (int i = 0; i < dimension_; ++i)
       middle_[i] += system.coordinates[node * dimension_ + i] / static_cast<double>(system.sizes.n_blocks);
-  set_up_blocks(system, rows);
+  set_up_blocks(rows);
 }
 
 Krylov::~Krylov() {
@@ -164,23 +153,15 @@ Krylov::~Krylov() {
   multigrid_.let_go();
 }
 
-void Krylov::set_up_blocks(const BlockSystem& system, BlockRows& rows) {
-  const std::int64_t own = rows.k.last - rows.k.first, own_multipliers = rows.c.last - rows.c.first;
-  const auto block_size = static_cast<int>(dimension_);
-  if (own == system.sizes.n_blocks * dimension_) {
-    rows_of_k_ = std::move(rows.k);
-    aij_ = make_matrix_in_place(rows_of_k_, block_size);
-  } else {
-    aij_ = make_matrix(rows.k, own, block_size);
-    rows.k = {};
-  }
-  k_ = empty_blocks(aij_);
+void Krylov::set_up_blocks(BlockRows& rows) {
+  const std::int64_t own = (rows.blocks.last - rows.blocks.first) * dimension_, own_multipliers = rows.c.last - rows.c.first;
+  k_ = in_blocks(std::move(rows.k));
   if (n_multipliers_ == 0) {
-    checked(MatCreateVecs(aij_, solution_.out(), side_.out()));
+    checked(MatCreateVecs(k_, solution_.out(), side_.out()));
   } else {
-    b_ = make_matrix(rows.b, own_multipliers, 1);
-    c_ = make_matrix(rows.c, own, 1);
-    d_ = make_matrix(rows.d, own_multipliers, 1);
+    b_ = make_matrix(rows.b, own_multipliers);
+    c_ = make_matrix(rows.c, own);
+    d_ = make_matrix(rows.d, own_multipliers);
     Mat blocks[] = {k_, b_, c_, d_};
     checked(MatCreateNest(PETSC_COMM_WORLD, 2, nullptr, 2, nullptr, blocks, matrix_.out()));
     Rows diagonal{.first = rows.d.first, .last = rows.d.last};
@@ -190,7 +171,7 @@ void Krylov::set_up_blocks(const BlockSystem& system, BlockRows& rows) {
       diagonal.value.push_back(algorithm_of(options_.algorithm).is_symmetric ? -std::abs(rows.schur[i]) : rows.schur[i]);
       diagonal.offset.push_back(i + 1);
     }
-    schur_ = make_matrix(diagonal, own_multipliers, 1);
+    schur_ = make_matrix(diagonal, own_multipliers);
     checked(MatCreateVecs(matrix_, solution_.out(), side_.out()));
     checked(MatCreateVecs(b_, weighted_.out(), added_.out()));
   }
@@ -201,9 +182,10 @@ void Krylov::set_up_displacements(KSP displacements) {
   const std::string& name = options_.preconditioner;
   const char* prefix = nullptr;
   PC pc = nullptr;
-  if (!aij_) aij_ = without_blocks(k_);
+  checked(KSPSetOperators(displacements, k_, k_));
+  if (name == "GAMG" && multigrid_.suits(nodes_)) return multigrid_.give_to(displacements);
+  aij_ = taken_out(k_);
   checked(KSPSetOperators(displacements, k_, aij_));
-  if (name == "GAMG" && multigrid_.suits(nodes_)) return multigrid_.give_to(displacements, aij_);
   set_rigid_motions(aij_, static_cast<int>(dimension_), nodes_, middle_);
   checked(KSPGetPC(displacements, &pc));
   checked(PCGetOptionsPrefix(pc, &prefix));
@@ -282,7 +264,6 @@ void Krylov::set_up() {
   if (aij_) fill(k_, aij_);
   if (!multigrid_.is_there()) return;
   aij_ = {};
-  rows_of_k_ = {};
 }
 
 void Krylov::load(std::span<const double> right_side) {

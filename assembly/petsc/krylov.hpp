@@ -38,7 +38,7 @@ class Krylov {
 
  private:
   void load(std::span<const double> right_side);
-  void set_up_blocks(const BlockSystem& system, BlockRows& rows);
+  void set_up_blocks(BlockRows& rows);
   void set_up_displacements(KSP displacements);
   KrylovResult iterate(double share);
 
@@ -51,7 +51,6 @@ class Krylov {
   std::vector<double> scale_;           ///< of them
   std::vector<double> weight_;          ///< of own multipliers
   double middle_[3] = {0, 0, 0};        ///< of all nodes
-  Rows rows_of_k_;                      ///< where aij_ has its entries, in one process
   OwnedMat aij_;                        ///< K for preconditioners that are made of it, as long as they need it
   OwnedMat k_, b_, c_, d_, matrix_, schur_;
   OwnedVec side_, solution_, residual_, weighted_, added_;

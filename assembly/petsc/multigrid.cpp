@@ -95,9 +95,9 @@ void Multigrid::take_from(KSP displacements, Nodes nodes) {
     checked(PCMGGetSmoother(pc, level, &smoother));
     checked(KSPGetOperators(smoother, nullptr, &matrix));
     checked(PCMGGetInterpolation(pc, level, &interpolation));
-    if (has_blocks(matrix, Digits::single_precision)) use_matrix(pc, level, in_blocks(matrix, Digits::single_precision));
-    if (!has_blocks(interpolation, Digits::single_precision)) continue;
-    const OwnedMat blocks = in_blocks(interpolation, Digits::single_precision);
+    if (has_blocks(matrix)) use_matrix(pc, level, in_single_blocks(matrix));
+    if (!has_blocks(interpolation)) continue;
+    const OwnedMat blocks = in_single_blocks(interpolation);
     checked(PCMGSetInterpolation(pc, level, blocks));
     checked(PCMGSetRestriction(pc, level, blocks));
   }
@@ -112,10 +112,10 @@ void Multigrid::take_from(KSP displacements, Nodes nodes) {
   checked(KSPSetOperators(displacements, exact, finest()));
 }
 
-void Multigrid::give_to(KSP displacements, Mat matrix) {
-  const OwnedMat blocks = in_blocks(matrix, Digits::single_precision);
+void Multigrid::give_to(KSP displacements) {
   Mat exact = nullptr;
   checked(KSPGetOperators(displacements, &exact, nullptr));
+  const OwnedMat blocks = in_single_blocks(exact);
   const OwnedMat kept = referenced(exact);
   checked(KSPSetPC(displacements, pc_));
   use_matrix(pc_, finest_level(pc_), blocks);

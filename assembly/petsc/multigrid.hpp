@@ -22,8 +22,8 @@ class Multigrid {
 
   /// Whether it will do for another matrix of these nodes: on all processes, or on none.
   bool suits(const Nodes& nodes) const;
-  /// Have a KSP precondition with it that is not set up. @param matrix  AIJ, is needed no more
-  void give_to(KSP displacements, Mat matrix);
+  /// Have a KSP precondition with it that is not set up, and whose matrix is in blocks of double precision.
+  void give_to(KSP displacements);
   /// Take the one that a KSP has set up. Its levels get blocks of single precision, and need the matrix no more.
   void take_from(KSP displacements, Nodes nodes);
   /// Of the matrix that it works for nothing is needed any more.
