@@ -9,6 +9,7 @@
 #include "lacon/catalog/messages.hpp"
 #include "lacon/catalog/wording.hpp"
 #include "lacon/operators/meshing/body.hpp"
+#include "lacon/operators/meshing/cut_order.hpp"
 #include "lacon/operators/meshing/quality.hpp"
 #include "lacon/operators/meshing/subdivision.hpp"
 #include "lacon/structures/vector.hpp"
@@ -17,13 +18,6 @@ namespace lacon {
 namespace {
 
 using Nodes = std::vector<std::int32_t>;
-
-/// A slave cell, its body cell before any cut, and the zone it belongs to.
-struct Slave {
-  std::int32_t cell;
-  std::int32_t body;
-  std::size_t zone;
-};
 
 /// Cells while they are cut: a cell that was cut has the sub-cells that replace it. The first ones are those of the mesh; only
 /// what changes is kept here.
@@ -238,11 +232,18 @@ std::vector<Slave> find_slaves(const Mesh& mesh, std::span<const std::string> gr
   return slaves;
 }
 
+/// What became of a slave cell: its sub-cells by rank, as numbers of the forest, the patch's kind and the nodes that carry its
+/// LAGS_C.
+struct CutSlave {
+  CellNodes sub_cells;
+  std::int32_t kind = 0;
+  CellNodes carriers;
+};
+
 /// Cut one slave cell and what its body cell has become. @param quality of the sub-cells of the body, by numbers of the forest
-/// @return the sub-cells of the slave cell by rank, as numbers of the forest
-CellNodes cut_slave(Forest& forest, const Slave& slave, const std::string& group, std::string_view option,
-                    const std::string& keyword, std::vector<double>& coordinates, Patches& patches, CutZone& zone,
-                    std::vector<CellQuality>& quality) {
+CutSlave cut_slave(Forest& forest, const Slave& slave, const std::string& group, std::string_view option,
+                   const std::string& keyword, std::vector<double>& coordinates, CutZone& zone,
+                   std::vector<CellQuality>& quality) {
   std::int32_t body = -1;
   FacetMatch match{};
   forest.leaves(slave.body, [&](std::int32_t leaf) {
@@ -316,11 +317,8 @@ CellNodes cut_slave(Forest& forest, const Slave& slave, const std::string& group
             {"type", std::string(catalog::cell(sub.type).name)}});
     quality.emplace_back(scaled_jacobian(sub.type, own, coordinates), forest.add(sub.type, own, body));
   }
-  patches.kind.push_back(cut->kind);
-  patches.parent.push_back(slave.cell);
-  patches.carriers.push_back(pick(on_skin, cut->carriers));
   ++zone.patches;
-  return sub_cells;
+  return {sub_cells, cut->kind, pick(on_skin, cut->carriers)};
 }
 
 /// Put what a cell was cut into in its place. The mesh changes in place, back to front: what stays moves once.
@@ -408,17 +406,20 @@ Mesh cut_lac(Mesh mesh, std::span<const std::string> groups, std::string_view op
   const std::size_t n_nodes = mesh.n_nodes(), n_cells = mesh.n_cells();
   Patches patches;
   Forest forest(mesh);
-  Ragged<std::int32_t> sub_cells;  // of each patch, as numbers of the forest
-  for (const Slave& slave : slaves)
-    sub_cells.push_back(cut_slave(forest, slave, groups[slave.zone], option, path, mesh.coordinates, patches,
-                                  report.zones[slave.zone], of_sub_cells));
+  std::vector<CutSlave> made(slaves.size());
+  for (const std::size_t k : order_of_cuts(mesh, slaves))
+    made[k] = cut_slave(forest, slaves[k], groups[slaves[k].zone], option, path, mesh.coordinates, report.zones[slaves[k].zone],
+                        of_sub_cells);
 
   Nodes number_of;
   const Heirs heirs = replace_cut_cells(mesh, forest, number_of);
   heirs.inherit(mesh.cell_groups);
-  for (std::size_t p = 0; p < patches.size(); ++p) {
+  for (std::size_t p = 0; p < made.size(); ++p) {
     Nodes own;
-    for (const std::int32_t cell : sub_cells[p]) own.push_back(number_of[static_cast<std::size_t>(cell) - n_cells]);
+    patches.kind.push_back(made[p].kind);
+    patches.parent.push_back(slaves[p].cell);
+    patches.carriers.push_back(made[p].carriers);
+    for (const std::int32_t cell : made[p].sub_cells) own.push_back(number_of[static_cast<std::size_t>(cell) - n_cells]);
     patches.cells.push_back(own);
   }
   for (const CutZone& zone : report.zones) {

@@ -204,6 +204,50 @@ TEST(Cuts, do_not_depend_on_the_order_of_cells) {
   EXPECT_EQ(cells_of_a, cells_of_b);
 }
 
+/// The cells of a mesh by the places of their vertices, turned back by the axes (c, s; -s, c).
+std::multiset<std::set<std::pair<double, double>>> shapes(const Mesh& mesh, double c = 1, double s = 0) {
+  const auto rounded = [](double x) { return std::round(1e9 * x) / 1e9 + 0.0; };
+  std::multiset<std::set<std::pair<double, double>>> found;
+  for (std::size_t cell = 0; cell < mesh.n_cells(); ++cell) {
+    std::set<std::pair<double, double>> places;
+    for (const std::int32_t node : mesh.cells[cell]) {
+      const auto x = mesh.point(static_cast<std::size_t>(node));
+      places.emplace(rounded(c * x[0] + s * x[1]), rounded(c * x[1] - s * x[0]));
+    }
+    found.insert(places);
+  }
+  return found;
+}
+
+// A cell with two slave edges is cut twice: in what order goes by geometry, not by the group's, which is that of numbers in a
+// file, nor by zones, nor by axes. The last one has edges of one length, at the middle of which no distance tells one from the
+// other.
+TEST(Cuts, of_a_body_cell_with_several_slave_faces_do_not_depend_on_their_order) {
+  for (const CellType type : {CellType::TRIA3, CellType::QUAD4})
+    for (unsigned seed = 1; seed < 7; ++seed) {
+      const Mesh mesh = block(type, 3, 2, seed);
+      const auto expected = shapes(cut(mesh, {"AROUND"}));
+      Mesh reversed = mesh, turned = mesh;
+      for (Group& group : reversed.cell_groups) std::ranges::reverse(group.members);
+      EXPECT_EQ(shapes(cut(reversed, {"AROUND"})), expected);
+      EXPECT_EQ(shapes(cut(mesh, {"TOP", "RIGHT", "BOTTOM", "LEFT"})), expected);
+      for (std::size_t n = 0; n < mesh.n_nodes(); ++n) {
+        const auto x = mesh.point(n);
+        turned.coordinates[3 * n] = 0.6 * x[0] - 0.8 * x[1];
+        turned.coordinates[3 * n + 1] = 0.8 * x[0] + 0.6 * x[1];
+      }
+      EXPECT_EQ(shapes(cut(turned, {"AROUND"}), 0.6, 0.8), expected);
+    }
+  for (const CellType type : {CellType::TRIA3, CellType::QUAD4}) {
+    Mesh square = block(type, 1, 1, 1);
+    for (std::size_t n = 0; n < square.n_nodes(); ++n)
+      for (std::size_t d = 0; d < 2; ++d) square.coordinates[3 * n + d] = std::round(square.coordinates[3 * n + d]);
+    Mesh reversed = square;
+    for (Group& group : reversed.cell_groups) std::ranges::reverse(group.members);
+    EXPECT_EQ(shapes(cut(reversed, {"AROUND"})), shapes(cut(square, {"AROUND"})));
+  }
+}
+
 // METHOD.md 1.2-3: new nodes are isoparametric images. On the surface z = q(x, y), q of degree 2, which TRIA6 and QUAD8
 // represent exactly over a straight (x, y) plan, they lie on the surface.
 TEST(Cuts, of_a_curved_quadratic_skin_stay_on_the_curve) {
