@@ -12,6 +12,7 @@
 #include "lacon/catalog/wording.hpp"
 #include "lacon/operators/evolution/bodies.hpp"
 #include "lacon/operators/evolution/parts.hpp"
+#include "lacon/operators/evolution/prediction.hpp"
 #include "lacon/operators/program/program.hpp"
 #include "lacon/structures/hdf5.hpp"
 
@@ -135,15 +136,10 @@ std::vector<double> Equilibrium::load(double instant, const StaticState& state) 
 
 bool Equilibrium::load_goes_on(double before, double last, double instant, const StaticState& state) const {
   if (strains_freely(state)) return false;
-  const auto goes_on = [&](const auto& load) {
-    const std::vector<double> a = load(before), b = load(last), c = load(instant);
-    double product = 0;
-    for (std::size_t i = 0; i < a.size(); ++i) product += (b[i] - a[i]) * (c[i] - b[i]);
-    return product;
-  };
+  const auto course = [&](const auto& load) { return goes_on(load(before), load(last), load(instant)); };
   try {
-    const double imposed = goes_on([&](double at) { return problem_.imposed_values(at); }),
-                 forces = goes_on([&](double at) { return problem_.external_force(at, state.displacement); });
+    const double imposed = course([&](double at) { return problem_.imposed_values(at); }),
+                 forces = course([&](double at) { return problem_.external_force(at, state.displacement); });
     return std::min(imposed, forces) >= 0 && std::max(imposed, forces) > 0;
   } catch (const Error&) {  // a load need not have a value at the instant of the initial state
     return false;

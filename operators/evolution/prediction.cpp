@@ -1,6 +1,7 @@
 #include "lacon/operators/evolution/prediction.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <string>
 
 #include "lacon/structures/hdf5.hpp"
@@ -26,6 +27,17 @@ struct Miss {
 };
 
 }  // namespace
+
+double goes_on(std::span<const double> before, std::span<const double> last, std::span<const double> next) {
+  double product = 0, was = 0, will_be = 0;
+  for (std::size_t i = 0; i < before.size(); ++i) {
+    const double change = last[i] - before[i], next_change = next[i] - last[i];
+    product += change * next_change;
+    was += change * change;
+    will_be += next_change * next_change;
+  }
+  return std::abs(product) > round_off * std::sqrt(was) * std::sqrt(will_be) ? product : 0;
+}
 
 void Prediction::note(double start, const KnownState& previous, KnownState solved, bool led) {
   if (pause_ > 0) --pause_;

@@ -21,6 +21,10 @@ struct KnownState {
   std::vector<double> force;         ///< external ones that the instant began with; nothing of the initial state
 };
 
+/// Whether a load goes on as it went before: the sum of the products of its last change and of the next one; 0 where that is
+/// their round-off, so that axes decide nothing where a motion turns by a right angle.
+double goes_on(std::span<const double> before, std::span<const double> last, std::span<const double> next);
+
 /// Extrapolates the last two states in equilibrium, in proportion to the step. Newton's method leaves an error that is the
 /// square of the one it starts with. So an instant begins where the motion leads to if this would have come nearer to the state
 /// that was found last than the state before it, and if what is imposed at the next instant, which is known, goes on as near.

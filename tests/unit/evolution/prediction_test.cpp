@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <functional>
 #include <utility>
 #include <vector>
@@ -36,6 +37,23 @@ TEST(Prediction, AMotionThatGoesOnIsFollowedAfterTwoInstants) {
   const KnownState found = path.prediction.at(2.5);
   EXPECT_NEAR(found.displacement[1], 5, 1e-14);
   EXPECT_NEAR(found.pressure[0], -2.5, 1e-14);
+}
+
+// Down, then along: in turned axes the product of both is round-off of either sign.
+TEST(Prediction, AMotionThatTurnsByARightAngleDoesNotGoOnInAnyAxes) {
+  for (const double angle : {0.0, 0.3, 0.9, 1.1, 2.0, 4.5}) {
+    const double c = std::cos(angle), s = std::sin(angle);
+    std::vector<double> before, last, next, aside;
+    for (int node = 0; node < 7; ++node) {
+      before.insert(before.end(), {0.1 * c, 0.1 * s});
+      last.insert(last.end(), {0.1 * c + 0.3 * s, 0.1 * s - 0.3 * c});
+      next.insert(next.end(), {0.1 * c + 0.3 * s + 0.7 * c, 0.1 * s - 0.3 * c + 0.7 * s});
+      aside.insert(aside.end(), {0.1 * c + 0.4 * s + 0.7 * c, 0.1 * s - 0.4 * c + 0.7 * s});
+    }
+    EXPECT_EQ(goes_on(before, last, next), 0) << angle;
+    EXPECT_NEAR(goes_on(before, last, aside), 7 * 0.3 * 0.1, 1e-13) << angle;
+    EXPECT_NEAR(goes_on(before, last, before), -7 * 0.3 * 0.3, 1e-13) << angle;
+  }
 }
 
 TEST(Prediction, AMotionThatTurnsBackIsNotFollowed) {
