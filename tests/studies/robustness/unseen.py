@@ -28,11 +28,13 @@ BODIES = ("TOOL", "SLAB")
 
 
 class Draw(random.Random):
-    """What is drawn for one study."""
+    """What is drawn for one study; `kinds` (of cells), `strains` and `lengths` (of steps) are what it is drawn from."""
+
+    kinds, kinds_of_space, strains, lengths = ORDERS, ("HEXA8", "HEXA20", "TETRA10"), STRAINS, (6, 24)
 
     def __init__(self, number):
         super().__init__(number)
-        self.kind, self.strain, self.side, self.steps = self.choice(ORDERS), self.choice(STRAINS), self.choice(SIDES), self.randint(6, 24)
+        self.kind, self.strain, self.side, self.steps = self.choice(self.kinds), self.choice(self.strains), self.choice(SIDES), self.randint(*self.lengths)
         self.course = self.choice(("on", "on", "lift", "return"))
 
     def cells(self, fewest, most):
@@ -105,7 +107,7 @@ def wheel(draw):
     apothem = math.cos(math.pi / sides)
     turn, press = f"{draw.uniform(0.02, 0.09)!r} * max(INST - 3.0, 0.0)", draw.uniform(0.01, 0.06)
     mesh = union([polygon(draw.kind, "TOOL", sides, (0, apothem), (draw.randint(2, 4), 4)), slab(draw.kind, "SLAB", (-1, 4), (-1, 0), (draw.randint(20, 40), 6))])
-    draw.strain, draw.steps = "GREEN_LAGRANGE", max(draw.steps, 12)
+    draw.strain, draw.steps = "GREEN_LAGRANGE", max(draw.steps, draw.lengths[1] // 2)
     return mesh, [{"GROUP_MA": "TOOL_BASE", "DX": f"X * (cos({turn}) - 1) + (Y - {apothem!r}) * sin({turn}) + {apothem!r} * {turn}",
                    "DY": f"-X * sin({turn}) + (Y - {apothem!r}) * (cos({turn}) - 1) - {press} * min(INST, 3.0) / 3.0"}]
 
@@ -126,7 +128,7 @@ def beams(draw):
 
 
 def body_in_space(draw):
-    draw.kind, draw.steps = draw.choice(("HEXA8", "HEXA20", "TETRA10")), min(draw.steps, 10)
+    draw.kind, draw.steps = draw.choice(draw.kinds_of_space), min(draw.steps, 10)
     n = draw.randint(3, 6) if draw.kind == "HEXA8" else draw.randint(2, 4)
     upper = round_tool_in_space(draw.kind, "TOOL", draw.uniform(0.7, 1.2), (-0.3, draw.uniform(-0.2, 0.2), 0), (n, n, 2), draw.random() < 0.6)
     upper.points = upper.points - [0, 0, upper.points[:, 2].min()]
@@ -153,9 +155,9 @@ FLOWING = ("round", "blocks", "axis", "waves")  # where the slab may be plastic
 OFTEN = ("space", "round")
 
 
-def study(number):
+def study(number, kind_of_draw=Draw):
     """The study of this number."""
-    draw = Draw(number)
+    draw = kind_of_draw(number)
     shape = draw.choice([*SHAPES, *OFTEN])
     mesh, moves = SHAPES[shape](draw)
     flows = shape in FLOWING and draw.random() < 0.3
