@@ -177,7 +177,7 @@ std::int64_t ContactState::update_statuses(Patchwise& patches) const {
   return changes;
 }
 
-std::int64_t ContactState::open_behind_edges(const std::vector<Status>& before, Patchwise& patches) const {
+std::int64_t ContactState::open_behind_edges(const std::vector<Status>& before, Patchwise& patches, EdgeCourse* course) const {
   std::vector<double> force(n_patches(), 0.0);
   std::vector<bool> pulled(n_patches(), false), pressed(n_patches(), false);
   for (std::size_t p = 0; p < n_patches(); ++p) {
@@ -186,7 +186,7 @@ std::int64_t ContactState::open_behind_edges(const std::vector<Status>& before, 
     pulled[p] = patches.status[p] == Status::open && force[p] > 0;
     pressed[p] = patches.status[p] == Status::active && force[p] < 0 && !gliding_[p];
   }
-  const std::vector<std::size_t> opened = behind_the_edge(neighbours_, force, pulled, pressed);
+  const std::vector<std::size_t> opened = behind_the_edge(neighbours_, force, pulled, pressed, course);
   for (const std::size_t patch : opened) patches.status[patch] = Status::open;
   return static_cast<std::int64_t>(opened.size());
 }

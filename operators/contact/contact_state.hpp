@@ -12,6 +12,7 @@
 #include <utility>
 #include <vector>
 
+#include "lacon/operators/contact/contact_edge.hpp"
 #include "lacon/operators/contact/contact_geometry.hpp"
 #include "lacon/operators/contact/patches.hpp"
 #include "lacon/operators/contact/pressure_alternation.hpp"
@@ -137,8 +138,9 @@ class ContactState {
   /// Statuses from lambda + rho g. @return how many have changed
   std::int64_t update_statuses(Patchwise& patches) const;
   /// Open patches behind those that are pulled open (contact_edge.hpp). @param before statuses that the multipliers belong to
+  /// @param course of the iterations of an instant
   /// @return how many
-  std::int64_t open_behind_edges(const std::vector<Status>& before, Patchwise& patches) const;
+  std::int64_t open_behind_edges(const std::vector<Status>& before, Patchwise& patches, EdgeCourse* course = nullptr) const;
 
   /// Differentiate the gaps of active patches at the present geometry, for what follows.
   /// @param second whether evaluate() is to have the second derivatives, lambda d2G/du2, in its matrix

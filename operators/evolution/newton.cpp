@@ -158,6 +158,7 @@ int Newton::iterate(double instant, StaticState& state, const std::function<void
   std::vector<double> step = equilibrium_.load(instant, state);
   choice_.start_instant();
   statuses_.start_instant();
+  edges_ = {};
   lost_masters_.start_instant();
   times_round_ = 0;
   forcing_.start_instant();
@@ -408,12 +409,12 @@ void Newton::extrapolate(double instant, StaticState& state, std::vector<double>
   equilibrium_.pair(state.displacement);
 }
 
-std::vector<Status> Newton::wanted_statuses(const StaticState& state, IterationReport& line) const {
+std::vector<Status> Newton::wanted_statuses(const StaticState& state, IterationReport& line) {
   if (!contact()) return {};
   const Phase phase("pairing");
   Patchwise patches = state.patches;
   line.status_changes = contact()->update_statuses(patches);
-  if (!statuses_.keeps()) line.status_changes += contact()->open_behind_edges(state.patches.status, patches);
+  if (!statuses_.keeps()) line.status_changes += contact()->open_behind_edges(state.patches.status, patches, &edges_);
   return patches.status;
 }
 

@@ -95,7 +95,7 @@ class Newton {
   bool hold(const std::vector<LooseMotion>& loose, StaticState& state, const StaticState& previous, SolidMatrix asked);
   /// What pressures and gaps ask for at the state's geometry, in `line` how many patches want to change; nothing without
   /// contact.
-  std::vector<Status> wanted_statuses(const StaticState& state, IterationReport& line) const;
+  std::vector<Status> wanted_statuses(const StaticState& state, IterationReport& line);
   /// Whether a zone that touches would do so nowhere.
   bool parts_a_zone(const std::vector<Status>& before, const std::vector<Status>& wanted) const;
   /// Slave cells of patches, the first ones, with the skin they belong to.
@@ -139,6 +139,7 @@ class Newton {
   Equilibrium equilibrium_;
   MatrixChoice choice_;
   StatusRule statuses_;
+  EdgeCourse edges_;  ///< of the contacts that recede
   LostMasters lost_masters_;
   ForcingTerm forcing_;
   Prediction prediction_;

@@ -333,6 +333,47 @@ To be lifted over the ridge the hook takes {taken:.5f}, behind it gives {given:.
 """
 
 
+def engineering_section(_runner):
+    from test_engineering import Beams, ExpandedTube, RoundedPunch
+
+    def beams(method):
+        return [[f"{load:g}", str(count), f"{length:.2f}", f"{free:.2f}", f"{force:.4f}", f"{exact:.4f}"]
+                for load, count, length, free, force, exact, _ in of_test(Beams, method)]
+
+    tube = [[f"{pressure:.0f}", f"{c:.3f}", f"{least:.3f} to {largest:.3f}", f"{exact:.3f}"]
+            for pressure, c, least, largest, exact in of_test(ExpandedTube, "figures")]
+    punch = [[f"{depth:g}", f"{force:.1f}", f"{width:.3f}", f"{exact:.3f}", f"{middle:.1f}", f"{theory:.1f}"]
+             for depth, force, width, exact, middle, theory in of_test(RoundedPunch, "figures")]
+    heads = ["iterations", "free length", "theory", "force", "theory"]
+    return f"""## Beams that a floor holds up
+
+Beams of E = 200000, nu = 0, on floors that are a hundred times stiffer (D_PLAN, QUAD8). Theory: thin beams, which have no moment where they meet the floor. A patch is 0.625
+and 1 long. Lengths are those up to the first patch in contact.
+
+A clamped beam, 100 long, 1 thick, 0.2 above the floor, under a pressure q: q l^4 / (72 E I) is the height; the floor bears q (100 - 2 l / 3).
+
+{table(["q", *heads], beams("pressed_onto"))}
+
+A heavy beam, 200 long, 2 thick, lifted at its end: q l^4 / (24 E I) is the height, q l / 2 the force.
+
+{table(["height", *heads], beams("lifted"))}
+
+## A tube expanded by a sleeve
+
+An elastic sleeve, radii 8 to 10, is expanded by the pressure in it in a tube, 10 to 20, that flows at 200 (D_PLAN_SI, QUAD8, 30 degrees; E = 200000, nu = 0.3). R. Hill (The
+Mathematical Theory of Plasticity, 1950): what the tube bears while it flows up to the radius c, that which its widening outside says.
+
+{table(["pressure inside", "c", "pressure of contact", "Hill"], tube)}
+
+## A flat punch with rounded edges
+
+A stiff punch, flat to 1, then rounded with the radius 20, on a block 60 wide and high (D_PLAN, QUAD8, cells of 0.05; E = 200000, nu = 0.3). M. Ciavarella, D. A. Hills and
+G. Monno (Proc. Instn Mech. Engrs C 212, 1998), for the force that was found.
+
+{table(["depth", "force", "half width", "theory", "pressure in the middle", "theory"], punch)}
+"""
+
+
 def large_strain_section(_runner):
     from test_large_strain import Necking, Upsetting
 
@@ -421,7 +462,7 @@ def main():
         sections = [make(runner) for make in (patch_section, current_section, space_section, degree_section, materials_section,
                                               convergence_section, peer_section, orders_section, hertz_meshes_section, roller_section,
                                               hertz_section, families_section, press_fit_section, joints_section, snap_fit_section,
-                                              large_strain_section, indentation_section, extrusion_section, robustness_section)]
+                                              engineering_section, large_strain_section, indentation_section, extrusion_section, robustness_section)]
     finally:
         runner.doCleanups()
     text = "# Verification\n\nWritten by `python3 tests/verification/book.py`, which runs the studies; the same studies are tests.\n\n" + "\n".join(sections)

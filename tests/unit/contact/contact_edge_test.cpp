@@ -100,5 +100,33 @@ TEST(ContactEdge, OfTwoRowsMovesAsThatOfOne) {
   }
 }
 
+/// An edge that bending moves: the pull of its patch is the moment there, and the next one holds it.
+Row bent(std::size_t edge, double moment) {
+  Row row(40, [](double) { return 0.0; });
+  for (std::size_t i = 0; i < 40; ++i) {
+    row.force[i] = i == edge ? moment : i + 1 == edge ? -1.5 * moment : i < edge ? -1e-3 : 0;
+    row.pulled[i] = i == edge;
+    row.pressed[i] = i < edge;
+  }
+  return row;
+}
+
+// Moments that fall by as much for each patch end where the secant through the last two does.
+TEST(ContactEdge, ThatBendingMovesGoesWhereTheSecantDoes) {
+  EdgeCourse course;
+  const auto opened = [&](std::size_t edge, double moment) {
+    const Row row = bent(edge, moment);
+    return behind_the_edge(row.neighbours, row.force, row.pulled, row.pressed, &course).size();
+  };
+  EXPECT_EQ(opened(30, 9), 0);
+  EXPECT_EQ(opened(29, 6.5), 1);   // 6.5 / 2.5: two layers
+  EXPECT_EQ(opened(27, 2.4), 0);   // 2.4 / 4.1 of two layers: one
+  EXPECT_EQ(opened(26, 2.39), 3);  // level: four layers, not more
+  EXPECT_EQ(opened(22, 2.5), 0);   // a pull that grows has no zero ahead
+  EXPECT_EQ(opened(10, 1), 0);     // another edge
+  course = {};
+  EXPECT_EQ(opened(9, 0.9), 0);  // another instant
+}
+
 }  // namespace
 }  // namespace lacon
