@@ -21,7 +21,10 @@ std::filesystem::path Base::file(std::string_view id) const {
 
 std::string Base::type(std::string_view id) const { return hdf5::Reader(file(id)).text("lacon_type"); }
 
-std::string Base::label(std::string_view id) const { return hdf5::Reader(file(id)).text("label"); }
+std::string Base::label(std::string_view id) const {
+  std::string label = hdf5::Reader(file(id)).text("label");
+  return label.empty() ? std::string(id) : label;
+}
 
 // ---------------------------------------------------------------------------------------------- reading
 

@@ -80,15 +80,9 @@ def main(arguments=None):
             return outcome.done
     process = os.getpid()
     asked, options = parse(arguments)
-    launch = importlib.import_module(".run.launch", __package__)  # --help, --version, help and inspect start without
-    units = launch.units_of(asked, options)
-    if options.sandbox:
-        sandbox = importlib.import_module(".run.sandbox", __package__)
-        status, diagnostic = outcome.guarded(lambda: (sandbox.run(options, units), ""))
-        if not diagnostic:  # the launcher within has said it
-            return status
-    else:
-        status, diagnostic = outcome.guarded(lambda: launch.run_command_line(options, units))
+    status, diagnostic = outcome.guarded(lambda: _run(asked, options))
+    if not diagnostic:  # the launcher within a sandbox has said it
+        return status
     if os.getpid() != process:  # one that the command file has forked: the diagnosis is that of the run
         return status
     try:
@@ -96,6 +90,16 @@ def main(arguments=None):
     except BrokenPipeError:
         streams.let_go()
     return status
+
+
+def _run(asked, options):
+    """A study. @return (exit status, words of the diagnosis)"""
+    launch = importlib.import_module(".run.launch", __package__)  # --help, --version, help and inspect start without
+    units = launch.units_of(asked, options)
+    if options.sandbox:
+        sandbox = importlib.import_module(".run.sandbox", __package__)
+        return sandbox.run(options, units), ""
+    return launch.run_command_line(options, units)
 
 
 def _flushed(status, *said):

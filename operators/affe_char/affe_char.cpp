@@ -146,7 +146,7 @@ void load_gravity(Load& load, const LoadScene& scene, const Keywords& keywords) 
     std::vector<double> direction = factor.reals("DIRECTION");
     const double length = std::hypot(direction[0], direction[1], direction[2]);
     const auto refuse = [&](const std::string& reason) {
-      fail("CHARGE_10", {{"keyword", factor.path("DIRECTION")}, {"reason", reason}});
+      fail("CHARGE_10", {{"keyword", factor.path("DIRECTION")}, {"reason", reason}, {"remedy", part("remedy_gravity")}});
     };
     if (!(length > 0)) refuse(part("no_length"));
     for (double& component : direction) component /= length;
@@ -173,7 +173,7 @@ void load_rotation(Load& load, const LoadScene& scene, const Keywords& keywords)
     centre.resize(3, 0.0);
     const double length = std::hypot(along[0], along[1], along[2]);
     const auto refuse = [&](const std::string& keyword, const std::string& reason) {
-      fail("CHARGE_10", {{"keyword", factor.path(keyword)}, {"reason", reason}});
+      fail("CHARGE_10", {{"keyword", factor.path(keyword)}, {"reason", reason}, {"remedy", part("remedy_rotation")}});
     };
     if (!(length > 0)) refuse("AXE", part("no_length"));
     for (const NamedPlaces& named : named_cells(scene, factor, [&](std::int32_t c) { return fits(scene, kind, c); }))

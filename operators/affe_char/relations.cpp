@@ -26,11 +26,44 @@ std::vector<std::int32_t> distinct_nodes(const std::vector<NamedPlaces>& named) 
   return nodes;
 }
 
+namespace {
+
+constexpr double round_off = 1e-12;  // of coefficients that cancel each other
+
+/// One term for each degree of freedom, in the order of their first ones; those whose coefficients cancel are left out.
+std::vector<RelationTerm> sums_by_dof(std::span<const RelationTerm> terms) {
+  std::vector<RelationTerm> sums;
+  std::vector<double> sizes;
+  std::map<std::pair<std::int32_t, std::string>, std::size_t> places;
+  for (const RelationTerm& term : terms) {
+    const auto [place, is_new] = places.try_emplace({term.node, term.component}, sums.size());
+    if (is_new) {
+      sums.push_back(term);
+      sizes.push_back(std::abs(term.coefficient));
+      continue;
+    }
+    sums[place->second].coefficient += term.coefficient;
+    sizes[place->second] += std::abs(term.coefficient);
+  }
+  std::vector<RelationTerm> kept;
+  for (std::size_t i = 0; i < sums.size(); ++i)
+    if (std::abs(sums[i].coefficient) > round_off * sizes[i]) kept.push_back(std::move(sums[i]));
+  return kept;
+}
+
+}  // namespace
+
 void add_relation(Load& load, const LoadScene& scene, const std::string& source, std::vector<RelationTerm> terms,
                   LoadValue value) {
-  std::erase_if(terms, [](const RelationTerm& term) { return term.coefficient == 0; });
   for (const RelationTerm& term : terms) scene.check_dof(term.node, term.component, source);
-  if (!terms.empty()) load.relations.push_back({source, std::move(terms), std::move(value)});
+  terms = sums_by_dof(terms);
+  if (!terms.empty())
+    load.relations.push_back({source, std::move(terms), std::move(value)});
+  else if (value != LoadValue{})
+    fail("CHARGE_25",
+         {{"keyword", source},
+          {"value", value.function.empty() ? fmt::format("{:.15g}", value.value)
+                                           : part("value_of_function", {{"label", scene.base.label(value.function)}})}});
 }
 
 namespace {

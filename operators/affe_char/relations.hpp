@@ -8,7 +8,9 @@ namespace lacon {
 /// Every node that an occurrence names, each once, in the order in which they come.
 std::vector<std::int32_t> distinct_nodes(const std::vector<NamedPlaces>& named);
 
-/// Enter a relation; terms of coefficient 0 are left out. Throws CHARGE_2, CHARGE_3 where a degree of freedom does not exist.
+/// Enter a relation: one term for each degree of freedom, without those of coefficient 0; where none is left and the value is
+/// 0, there is no relation. Throws CHARGE_2, CHARGE_3 where a degree of freedom does not exist, CHARGE_25 where no term is left
+/// to be a value.
 void add_relation(Load& load, const LoadScene& scene, const std::string& source, std::vector<RelationTerm> terms,
                   LoadValue value);
 

@@ -1,6 +1,8 @@
 #include "lacon/operators/stat_non_line/stat_non_line.hpp"
 
+#include <algorithm>
 #include <array>
+#include <climits>
 #include <iostream>
 #include <memory>
 
@@ -40,6 +42,11 @@ std::optional<LineSearch> line_search_of(const Keywords& keywords) {
                     .excluded = search.real("RHO_EXCL")};
 }
 
+/// A count with so many percent more, at most what an int holds.
+int with_percent(int count, std::int64_t percent) {
+  return static_cast<int>(std::min(count * (1.0 + static_cast<double>(percent) / 100), static_cast<double>(INT_MAX)));
+}
+
 /// @param strained NewtonOptions::strained
 NewtonOptions newton_options(const Keywords& keywords, const TimeSteps& steps, const StaticProblem& problem, bool strained) {
   const Keywords convergence = keywords.factor("CONVERGENCE"), newton = keywords.factor("NEWTON");
@@ -52,7 +59,7 @@ NewtonOptions newton_options(const Keywords& keywords, const TimeSteps& steps, c
           .reference_forces = convergence.has("RESI_REFE_RELA") ? reference_forces(problem, convergence.real("SIGM_REFE"),
                                                                                    convergence.optional_real("EFFORT_REFE"))
                                                                 : std::vector<double>(),
-          .iterations = iterations + static_cast<int>(iterations * steps.more_iterations / 100),
+          .iterations = with_percent(iterations, steps.more_iterations),
           .matrix = matrix,
           .prediction = prediction == "EXTRAPOLE" ? matrix : matrix_of(prediction),
           .extrapolates = prediction.empty() ? std::nullopt : std::optional(prediction == "EXTRAPOLE"),

@@ -43,6 +43,7 @@ json written(const ResultStage& stage) {
 Result read_result(const hdf5::Group& root) {
   Result result;
   result.label = root.text("label");
+  if (result.label.empty()) result.label = root.text("id");
   result.model = root.text("model");
   result.mesh = root.text("mesh");
   result.material_field = root.text("material_field");

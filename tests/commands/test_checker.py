@@ -59,6 +59,24 @@ class Mistakes(unittest.TestCase):
         for command, keywords in (("LIRE_MAILLAGE", {"UNITE": 10**400}), ("DEFI_CONSTANTE", {"VALE": 10**400}), ("DEFI_CONSTANTE", {"VALE": -10**400})):
             self.assertEqual(len(problems(command, **keywords)), 1, command)
 
+    def test_counts_beyond_32_bits(self):
+        """Operators count in them: 2**31 iterations were -2147483648."""
+        study = {"MODELE": concept("model"), "CHAM_MATER": concept("material_field"), "EXCIT": {"CHARGE": concept("load")},
+                 "INCREMENT": {"LIST_INST": concept("list_of_reals")}}
+        for value, wrong in ((2**31, True), (2**32 + 1, True), (2**31 - 1, False)):
+            found = problems("STAT_NON_LINE", **study, CONVERGENCE={"ITER_GLOB_MAXI": value})
+            self.assertEqual([(i, p) for i, p, _ in found], [("KEYWORD_15", "STAT_NON_LINE/CONVERGENCE/ITER_GLOB_MAXI")] * wrong, found)
+            self.assertEqual("at most 2147483647" in str(found), wrong)
+        self.one("KEYWORD_15", "DEFI_LIST_INST/ECHEC[1]/SUBD_NIVEAU", command="DEFI_LIST_INST", DEFI_LIST={"LIST_INST": concept("list_of_reals")},
+                 ECHEC={"SUBD_NIVEAU": 2**33})
+
+    def test_texts_that_no_file_gives_back(self):
+        """HDF5 ends a text at a zero, so that a group A\\0B was one named A; half a character cannot be written."""
+        for text in ("A\0B", "A\ud800"):
+            self.one("KEYWORD_3", "AFFE_MATERIAU/AFFE[1]/GROUP_MA", "name of a group of cells", command="AFFE_MATERIAU", MAILLAGE=concept("mesh"),
+                     AFFE={"GROUP_MA": text, "MATER": concept("material")})
+            self.one("KEYWORD_3", "CREA_TABLE/TITRE", "a text", command="CREA_TABLE", TITRE=text, LISTE={"PARA": "A", "LISTE_R": 1.0})
+
     def test_unknown_keyword_in_an_occurrence(self):
         self.one("KEYWORD_1", "DEFI_CONTACT/ZONE[1]/CONTACT_INI", "CONTACT_INIT", command="DEFI_CONTACT", **self.contact(CONTACT_INI="OUI"))
 

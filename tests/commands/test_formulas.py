@@ -71,6 +71,7 @@ class Values(unittest.TestCase):
         self.refused("X**0.5", "X = -2.0", "not a finite real number")
         self.refused("1 / (X + 2 if X < 0 else 1)", "X = -2.0", "ZeroDivisionError")
         self.refused("'text'", "not a finite real number")
+        self.refused("'1.5'", "not a finite real number")  # a text is no number, whatever it says
         self.refused("exp(1000 * Y)", "OverflowError")
         self.refused("1e308 * 10 * Y", "inf")
         self.refused("exit()", "SystemExit")  # which would end the computation as if it were done

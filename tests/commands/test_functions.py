@@ -216,6 +216,21 @@ FIN()
 
 
 class Drawings(LauncherTest):
+    def test_a_function_at_what_is_no_number(self):
+        """A text went round and round until Python had no room."""
+        self.ok(self.run_study("""
+DEBUT()
+f = DEFI_FONCTION(NOM_PARA='X', VALE=(0., 0., 1., 1.))
+for wrong in ('a', '', b'a'):
+    try:
+        f(wrong)
+    except TypeError as error:
+        assert 'f takes numbers' in str(error), error
+    else:
+        raise AssertionError(wrong)
+FIN()
+"""))
+
     def test_curves_of_several_commands_are_in_one_file(self):
         text = FUNCTIONS + """
 IMPR_FONCTION(FORMAT='XMGRACE', UNITE=29, TITRE='A "title"', LEGENDE_Y='L\\\\s2\\\\N', ECHELLE_X='LOG', BORNE_X=(0.1, 10.), BORNE_Y=(0., 9.),

@@ -55,6 +55,38 @@ class Surroundings(LauncherTest):
             self.refused(run, "COMMAND_17", "unit 81 has the file of the unit 80", "IMPR_RESU/UNITE, study.comm:13")
         self.ok(self.run_study(STUDY + "L2 = LIRE_MAILLAGE(UNITE=21)\nFIN()\n", "--unit", "21=mesh.med"))
 
+    def test_no_unit_and_no_report_is_a_file_of_the_base(self):
+        """Results went into the place of the registry, or of a concept, and the run said OK."""
+        for name in ("base.json", "mesh_1.h5", "new"):
+            run = self.run_study(STUDY + PRINT, "--unit", f"80=study.base/{name}", behaviour={"impr_resu": {"unit": "80"}})
+            self.refused(run, "COMMAND_18", f"study.base/{name}", "IMPR_RESU/UNITE, study.comm:12")
+        self.ok(self.run_study(STUDY + PRINT, "--unit", "80=study.based", behaviour={"impr_resu": {"unit": "80"}}))
+        self.ok(self.launch("study.comm", "--unit", "20=mesh.med", "--unit", "80=out"))
+        (self.work / "out").write_bytes(b"a result")
+        for name in ("study.base/base.json", "study.comm", "mesh.med", "out"):
+            before = (self.work / name).read_bytes()
+            self.refused(self.launch("study.comm", "--unit", "20=mesh.med", "--unit", "80=out", "--json", name), "STUDY_41", name)
+            self.assertEqual((self.work / name).read_bytes(), before)
+
+    def test_more_processes_than_any_machine_has(self):
+        """They were started one by one, until nothing else ran."""
+        self.write("study.comm", STUDY + "FIN()\n")
+        self.write("s.export", "P mpi_nbcpu 999999\nF comm study.comm D 1\n")
+        for arguments in (("study.comm", "--mpi", "100000"), ("s.export",)):
+            self.refused(self.launch(*arguments), "STUDY_40", "1024")
+
+    def test_an_end_asked_for_before_the_study_begins(self):
+        """Ctrl-C while Python still reads Lacon's modules, or behind the end of the run."""
+        self.write("study.comm", "DEBUT()\nFIN()\n")
+        for step in ("units_of", "run_study"):
+            code = (f"import sys; from lacon import main; from lacon.run import launch\ndef end(*_): raise KeyboardInterrupt\n"
+                    f"launch.{step} = end\nsys.exit(main.main(['study.comm']))")
+            run = subprocess.run([sys.executable, "-c", code], cwd=self.work, env={**os.environ, "PYTHONPATH": str(ROOT / "commands")}, text=True,
+                                 capture_output=True, timeout=120)
+            self.assertEqual(run.returncode, 4, run.stderr)
+            self.assertIn("<STUDY_18> the run was ended by SIGINT", run.stderr)
+            self.assertNotIn("Traceback", run.stderr)
+
     def test_an_export_file_that_begins_with_a_mark_of_its_encoding(self):
         self.write("study.comm", STUDY + "FIN()\n")
         (self.work / "study.export").write_bytes(b"\xef\xbb\xbfF comm study.comm D 1\r\nF mmed mesh.med D 20\r\n")

@@ -241,6 +241,8 @@ class Loads(OperatorTest):
         self.refuses("CHARGE_3", {"FORCE_NODALE": [{"GROUP_NO": ["CORNER"], "FZ": 1.0}]}, "DZ", "N1")
         self.refuses("CHARGE_10", {"PESANTEUR": [{"GRAVITE": 1.0, "DIRECTION": [0, 1, 1]}]}, "leaves the plane")
         self.refuses("CHARGE_10", {"PESANTEUR": [{"GRAVITE": 1.0, "DIRECTION": [0, 0, 0]}]}, "no length")
+        turn = {"VITESSE": 1.0, "CENTRE": [0, 0]}
+        self.refuses("CHARGE_10", {"ROTATION": [{**turn, "AXE": [0, 0, 0]}]}, "ROTATION/AXE", "no length")
 
     # ------------------------------------------------------------------------------------------ relations
 
@@ -299,6 +301,24 @@ class Loads(OperatorTest):
         self.refuses("CHARGE_13", {"LIAISON_GROUP": [{"GROUP_NO_1": ["BOTTOM"], "GROUP_MA_2": ["TOP"], "TRAN": [9.0, 1.0], **sides}]}, "two nodes")
         self.write_model("model_3", "mesh_1", ["AXIS/QUAD4", "AXIS/SEG2"], [0, 0, 1, 1, 1, 1, -1, -1])
         self.refuses("CHARGE_14", {"LIAISON_SOLIDE": [{"GROUP_NO": ["BOTTOM"]}]}, "BOTTOM")
+
+    def test_relations_whose_terms_cancel(self):
+        """They were left out with the value they were to have: 0 = 1 was done as nothing."""
+        def link(coefficients, value, nodes=("N1", "N1")):
+            return {"LIAISON_DDL": [{"NOEUD": list(nodes), "DDL": ["DX", "DX"], "COEF_MULT": coefficients, "COEF_IMPO": value}]}
+
+        for coefficients in ([0.0, 0.0], [1.0, -1.0], [0.3, -0.1 - 0.2]):
+            self.refuses("CHARGE_25", link(coefficients, 1.5), "LIAISON_DDL/DDL", "0 is 1.5")
+        self.refuses("CHARGE_25", link([0.0, 0.0], 1.5, ("N1", "N2")), "0 is 1.5")
+        self.assertEqual(self.meca(**link([1.0, -1.0], 0.0)).status, 0)
+        with h5py.File(self.path("load_4")) as file:
+            self.assertNotIn("relations", file)
+        self.path("load_4").unlink()
+        self.assertEqual(self.meca(**link([1.0, 2.0], 1.5)).status, 0)
+        rows, values = self.relations(14, 2)
+        self.assertEqual((rows[0, 0], values.tolist()), (3.0, [1.5]))
+        with h5py.File(self.path("load_4")) as file:
+            self.assertEqual(file["relations/offset"][()].tolist(), [0, 1])
 
     def test_displacements_along_axes_of_their_own(self):
         """ANGL_NAUT turns the axes about Z: 30 degrees; 90 degrees leave no round-off behind."""

@@ -116,6 +116,14 @@ class BadInputs(StudyTest):
                 self.assert_refused(self.run_text(f"POURSUITE()\n{result}{command}\nFIN()\n"), identifier, words, outcome)
                 self.assertEqual(content(self.base), before)
 
+    def test_a_concept_without_a_name_is_named_by_its_number(self):
+        """Messages had nothing in its place."""
+        self.assertEqual(self.run_text(GOOD).status, 0)
+        hold = "_F(CHARGE=AFFE_CHAR_CINE(MODELE=MODEL, MECA_IMPO=_F(GROUP_MA='BASE', DX={})))"
+        run = self.run_text("POURSUITE()\nBAD = STAT_NON_LINE(MODELE=MODEL, CHAM_MATER=MATTER, INCREMENT=_F(LIST_INST=TIMES), "
+                            f"EXCIT=({hold.format(0.0)}, {hold.format(1.0)}))\nFIN()\n")
+        self.assertRegex(run.stderr, r"<F> <LOAD_1> .* load_\d+ imposes 0, load_\d+ imposes 1")
+
     def test_a_base_in_an_unwritable_folder(self):
         run = self.run_text(GOOD, base=self.units[31] / "study.base")  # below a file that is no folder: fails for root too
         self.assertEqual(run.status, 2)

@@ -81,7 +81,7 @@ class Expression:
     def _real(self, point, name):
         value = self.value(point, name)
         try:
-            real = None if isinstance(value, complex) else float(value)
+            real = None if isinstance(value, (complex, str, bytes)) else float(value)
         except (TypeError, ValueError, OverflowError):
             real = None
         if real is None or not math.isfinite(real):

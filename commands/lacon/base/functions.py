@@ -18,8 +18,10 @@ class Piecewise:
 
     def value(self, x, name="function"):
         """@throws AsterError DEFI_FONCTION_3 where x lies outside and the function is not prolonged there"""
-        if hasattr(x, "__len__"):
+        if hasattr(x, "__len__") and not isinstance(x, (str, bytes)):
             return numpy.array([self.value(v, name) for v in x])
+        if isinstance(x, (str, bytes)):
+            raise TypeError(f"{name} takes numbers, and {x!r} is a text")
         x = float(x)
         if len(self.x) == 1:
             return self._alone(x, name)

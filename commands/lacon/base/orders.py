@@ -84,6 +84,8 @@ def _write_order(made, study):
         order_file.write_text(json.dumps(made, ensure_ascii=False, indent=1), encoding="utf-8")
     except OSError as error:
         fail("STUDY_3", made["source"], folder=study.base.folder, reason=error.strerror)
+    except UnicodeEncodeError as error:
+        fail("STUDY_39", made["source"], text=ascii(error.object[error.start:error.end]))
     return order_file, status_file
 
 

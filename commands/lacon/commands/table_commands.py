@@ -39,7 +39,7 @@ def _listed(call):
         if key == "LISTE_K":
             long = [v for v in values if len(v) > int(kind[1:])]
             if long:
-                call.fail("TABLE_8", f"{path}/LISTE_K", value=long[0], length=len(long[0]), kind=kind)
+                call.fail("TABLE_8", f"{path}/LISTE_K", value=long[0] if len(long[0]) <= 60 else long[0][:57] + "...", length=len(long[0]), kind=kind)
         if "NUME_LIGN" in factor:
             rows = factor["NUME_LIGN"]
             if len(rows) != len(values):

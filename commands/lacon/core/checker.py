@@ -5,6 +5,7 @@ of a factor keyword that may be repeated are counted from 1.
 """
 
 import math
+import os
 import re
 
 from . import catalog, plugins
@@ -15,6 +16,9 @@ from .nearest import nearest
 #: type of a value -> the part that names it
 _names = {"group_ma": "name_of_cells", "group_no": "name_of_nodes", "cell": "name_of_cell", "node": "name_of_node", "scalar": "number_or_text", "text": "a_text",
           "integer": "an_integer", "real": "a_number"}
+
+
+_largest_count = 2**31 - 1  # of what is counted: iterations, steps, cells
 
 
 def complete(command, row, given, where=""):
@@ -193,9 +197,10 @@ class _Check:
     def bounds(self, path, row, value):
         tests = {"above": (lambda x, b: x > b, "greater than"), "at_least": (lambda x, b: x >= b, "at least"),
                  "below": (lambda x, b: x < b, "less than"), "at_most": (lambda x, b: x <= b, "at most")}
+        limits = {"at_most": _largest_count, **row} if row["type"] == "integer" and "at_least" in row else row
         for key, (holds, words) in tests.items():
-            if key in row and not holds(value, row[key]):
-                self.problem("KEYWORD_15", path, value=_show(value), bound=f"{words} {row[key]:g}")
+            if key in limits and not holds(value, limits[key]):
+                self.problem("KEYWORD_15", path, value=_show(value), bound=f"{words} {limits[key]:.10g}")
 
 
 def handed_down(row, given):
@@ -248,11 +253,21 @@ def _convert(kind, value):
             return None
     if kind == "integer":
         return value if isinstance(value, int) and not isinstance(value, bool) and -2**63 <= value < 2**63 else None
+    if isinstance(value, str) and not _is_writable(value):
+        return None
     if kind == "scalar":
         return value if isinstance(value, str) or _convert("real", value) is not None else None
     if kind in _names:
         return value if isinstance(value, str) and (kind == "text" or value.strip()) else None
     return None
+
+
+def _is_writable(text):
+    """Whether a text comes back as it was from a file of the base: HDF5 ends it at a zero, and half a character has no bytes."""
+    try:
+        return b"\0" not in os.fsencode(text)
+    except UnicodeEncodeError:
+        return False
 
 
 def _expected(kind):

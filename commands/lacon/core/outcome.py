@@ -26,6 +26,9 @@ def guarded(work):
         for item in error.messages:
             messages.show(item)
         return error.status, error.diagnostic
+    except KeyboardInterrupt:  # before the study takes signals, or behind its end
+        messages.show(messages.message("STUDY_18", signal="SIGINT"))
+        return internal_error, "<F>_ABNORMAL_ABORT"
     except OSError as error:
         lost = streams.unwritable(error)
         if lost:

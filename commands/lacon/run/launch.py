@@ -10,6 +10,9 @@ from .export import Export, read_export
 from .stage import Stage
 
 
+_most_processes = 1024  # on one machine: beyond it is a slip of the keys, and starting them is all that the machine does
+
+
 def units_of(parser, options):
     units = {}
     for text in options.unit:
@@ -78,6 +81,8 @@ def run_command_line(options, units):
     ranks = options.mpi
     if ranks is None and export.parameters.get("mpi_nbcpu", "").isdigit():
         ranks = max(1, int(export.parameters["mpi_nbcpu"]))
+    if (ranks or 0) > _most_processes and not options.hosts:
+        messages.fail("STUDY_40", count=ranks, most=_most_processes)
     base = options.base or base_of(export)
     for path in (os.getcwd(), base, *export.commands, *export.units.values()):
         if not _is_text(path):
@@ -94,6 +99,14 @@ def run_command_line(options, units):
     for name in export.commands + export.named + export.data:
         run.protect(name)
 
+    def check_report():
+        """@throws AsterError where the report would replace a file of the study"""
+        of_units = map(os.path.realpath, export.units.values())
+        if report and (os.path.realpath(report) in {*run.sources, *of_units} or run.keeps(report)):
+            messages.fail("STUDY_41", file=options.json)
+
+    check_report()
+
     def work():
         with execution.signals(), execution.delivered(export.named), execution.time_limit(export.parameters.get("time_limit", "")):
             execution.run_files(run, export.commands)
@@ -107,6 +120,7 @@ def run_command_line(options, units):
     if run.checks:
         print(checks.summary(run.checks))
     if report:
+        check_report()  # the command files have named more of them
         try:
             checks.write_json(report, run.checks, diagnostic, status, run.timings.data())
         except OSError as error:

@@ -184,6 +184,8 @@ class Study:
             fail("COMMAND_8", where, unit=number, file=path)
         if os.path.realpath(path) in self.sources:
             fail("COMMAND_12", where, unit=number, file=path)
+        if self.keeps(path):
+            fail("COMMAND_18", where, unit=number, file=path, base=self.base_folder)
         for other, written in self.written_units.items():
             if other != number and os.path.realpath(self.units.get(other, written)) == os.path.realpath(path):
                 fail("COMMAND_17", where, unit=number, other=other, file=path)
@@ -239,6 +241,10 @@ class Study:
     def free_unit(self):
         """A unit that has no file."""
         return next((n for n in range(99, 0, -1) if n not in self.units and n not in self.written_units), None)
+
+    def keeps(self, path):
+        """Whether a file lies in the base, which nothing but commands writes."""
+        return pathlib.Path(os.path.realpath(path)).is_relative_to(os.path.realpath(self.base_folder))
 
     def protect(self, path):
         """Results never replace this file, in this run and in those that go on with it: it is a datum of the study."""
