@@ -79,6 +79,21 @@ class House(unittest.TestCase):
         missing = [room for room in rooms if (SOURCE / room).is_dir() and not (SOURCE / room / "README.md").exists()]
         self.assertEqual(missing, [])
 
+    def test_every_header_and_module_is_on_the_page_of_its_room(self):
+        """Headers by the nearest page above them, modules of the launcher by that of commands; folders of one operator need none."""
+        wrong = []
+        for path in self.tracked():
+            name = path.relative_to(SOURCE)
+            is_header = name.parts[0] in FLOORS and path.suffix in (".hpp", ".h")
+            if not is_header and not (name.parts[:2] == ("commands", "lacon") and path.suffix == ".py" and path.name != "__init__.py"):
+                continue
+            if name.parts[0] == "operators" and name.parts[1] not in SHARED:
+                continue
+            page = next(folder / "README.md" for folder in path.parents if (folder / "README.md").exists())
+            if f"`{path.name}`" not in page.read_text():
+                wrong.append(str(name))
+        self.assertEqual(wrong, [])
+
     def test_files_that_are_named_exist(self):
         """In pages and comments: by their path from the top folder, in pages also by links and names alone."""
         tracked = self.tracked()
