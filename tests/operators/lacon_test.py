@@ -61,6 +61,17 @@ def complete(rows, given):
     return keywords
 
 
+def fill_field(file, components, support, values, offset=None, present=None):
+    """What the file of a field holds beside its head, docs/structures.md."""
+    file.attrs["components"] = np.array(components, h5py.string_dtype())
+    file["support"] = np.array(support, np.int32)
+    file["values"] = np.asarray(values, float).reshape(-1, len(components))
+    if offset is not None:
+        file["offset"] = np.array(offset, np.int64)
+    if present is not None:
+        file["present"] = np.array(present, np.uint8).reshape(-1, len(components))
+
+
 class OperatorTest(unittest.TestCase):
     """A test with an empty folder and an empty base in it."""
 
@@ -215,13 +226,7 @@ class OperatorTest(unittest.TestCase):
                     "order": np.int64(order), "instant": float(instant), "location": location}
             for key, value in head.items():
                 file.attrs[key] = value
-            file.attrs["components"] = np.array(components, h5py.string_dtype())
-            file["support"] = np.array(support, np.int32)
-            file["values"] = np.asarray(values, float).reshape(-1, len(components))
-            if offset is not None:
-                file["offset"] = np.array(offset, np.int64)
-            if present is not None:
-                file["present"] = np.array(present, np.uint8).reshape(-1, len(components))
+            fill_field(file, components, support, values, offset, present)
 
     def write_result(self, identifier, mesh, instants, fields, model="", material_field="", contact="", loads=(), label=None, behaviour="{}"):
         """@param instants of the orders 0, 1, ... @param fields name -> {order: keywords of write_field but path, name, mesh}"""

@@ -6,7 +6,7 @@ import unittest
 
 import h5py
 import numpy as np
-from lacon_test import OperatorTest, concept, text
+from lacon_test import OperatorTest, concept, fill_field, text
 
 #: two squares side by side (the right one is wider) and the lower skin of the left one; M4 has no element
 POINTS = np.array([(0, 0), (1, 0), (3, 0), (0, 1), (1, 1), (3, 1)], float)
@@ -33,13 +33,7 @@ class FieldTest(OperatorTest):
         location, _, quantity = kind.partition("_")
         with self.create(identifier, "field", references=[mesh], mesh=mesh, location=location, quantity=quantity, order=0, instant=0.0,
                          name=identifier.upper(), **attributes) as file:
-            file.attrs["components"] = np.array(components, h5py.string_dtype())
-            file["support"] = np.array(support, np.int32)
-            file["values"] = np.asarray(values, float).reshape(-1, len(components))
-            if offset is not None:
-                file["offset"] = np.array(offset, np.int64)
-            if present is not None:
-                file["present"] = np.array(present, np.uint8).reshape(-1, len(components))
+            fill_field(file, components, support, values, offset, present)
 
     def run_ok(self, command, result, **keywords):
         run = self.run_command(command, keywords, result=result)

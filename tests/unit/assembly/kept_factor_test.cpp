@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <random>
 
+#include "blurred_engine.hpp"
 #include "dense.hpp"
 #include "lacon/assembly/mumps_engine.hpp"
 #include "lacon/assembly/saddle_point_solver.hpp"
@@ -56,42 +57,17 @@ struct Rows {
   std::array<bool, n_rows> on{};
 };
 
-/// MUMPS of a matrix whose entries are off, which says nothing of it, at a given cost.
-class PoorEngine : public FactorEngine {
- public:
-  explicit PoorEngine(double iterations) : iterations_(iterations) {}
-  void analyse(const SparseMatrix& matrix) override {
-    exact_.analyse(matrix);
-    poor_.analyse(matrix);
-  }
-  Factorisation factorise(const SparseMatrix& matrix) override {
-    Factorisation found = exact_.factorise(matrix);
-    std::vector<double> values(matrix.values().begin(), matrix.values().end());
-    for (std::size_t k = 0; k < values.size(); ++k) values[k] *= 1 + 0.1 * std::sin(static_cast<double>(k));
-    copy_ = matrix;
-    copy_->restore(values);
-    poor_.factorise(*copy_);
-    found.flops = iterations_ * 40 * static_cast<double>(found.entries);  // what so many substitutions cost
-    return found;
-  }
-  Solution solve(std::span<double> right_side) override { return exact_.solve(right_side); }
-  void substitute(std::span<double> right_side) override { poor_.substitute(right_side); }
-  std::vector<float> substitute(std::span<const std::int64_t> offset, std::span<const std::int32_t> index,
-                                std::span<const double> value) override {
-    return poor_.substitute(offset, index, value);
-  }
-
- private:
-  double iterations_;
-  MumpsEngine exact_, poor_;
-  std::optional<SparseMatrix> copy_;
-};
+/// An engine that says nothing of its matrix, at the cost of so many substitutions.
+std::unique_ptr<FactorEngine> poor_engine(double iterations) {
+  return std::make_unique<test::BlurredEngine>(
+      0.1, [=](Factorisation& found) { found.flops = iterations * 40 * static_cast<double>(found.entries); });
+}
 
 // GMRES may take as many substitutions as a factorisation costs, and is given up beyond: then the matrix is factorised.
 TEST(KeptFactor, IsGivenUpWhereItsIterationsCostMoreThanAFactorisation) {
   for (const double worth : {10.0, 1000.0}) {
     Rows rows;
-    SaddlePointSolver solver(std::make_unique<PoorEngine>(worth), {.column_memory = 1e6});
+    SaddlePointSolver solver(poor_engine(worth), {.column_memory = 1e6});
     std::vector<double> x = rows.side(1);
     rows.solve(solver, x);
     x = rows.side(2);

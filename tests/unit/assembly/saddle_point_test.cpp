@@ -3,6 +3,7 @@
 #include <functional>
 #include <random>
 
+#include "blurred_engine.hpp"
 #include "dense.hpp"
 #include "lacon/assembly/mumps_engine.hpp"
 #include "lacon/assembly/saddle_point_solver.hpp"
@@ -278,37 +279,6 @@ TEST(SaddlePointSolver, NeedsNoExactFactor) {
   }
 }
 
-/// MUMPS, but substitutions are those of a matrix whose entries are off by some share, as with blocks of low rank.
-class BlurredEngine : public FactorEngine {
- public:
-  explicit BlurredEngine(double share) : share_(share) {}
-  void analyse(const SparseMatrix& matrix) override {
-    exact_.analyse(matrix);
-    blurred_.analyse(matrix);
-  }
-  Factorisation factorise(const SparseMatrix& matrix) override {
-    Factorisation found = exact_.factorise(matrix);
-    std::vector<double> values(matrix.values().begin(), matrix.values().end());
-    for (std::size_t k = 0; k < values.size(); ++k) values[k] *= 1 + share_ * std::sin(static_cast<double>(k));
-    copy_ = matrix;
-    copy_->restore(values);
-    blurred_.factorise(*copy_);
-    found.error = 30 * share_;
-    return found;
-  }
-  Solution solve(std::span<double> right_side) override { return exact_.solve(right_side); }
-  void substitute(std::span<double> right_side) override { blurred_.substitute(right_side); }
-  std::vector<float> substitute(std::span<const std::int64_t> offset, std::span<const std::int32_t> index,
-                                std::span<const double> value) override {
-    return blurred_.substitute(offset, index, value);
-  }
-
- private:
-  double share_;
-  MumpsEngine exact_, blurred_;
-  std::optional<SparseMatrix> copy_;
-};
-
 // With a factor so inexact that the complement's condition says nothing, the factor is kept all the same while rows hold the
 // chain, and not where they let it go: with a force that pulls at it or none, in one direction or both.
 TEST(SaddlePointSolver, AsksTheMatrixWhatABlurredFactorHides) {
@@ -316,7 +286,8 @@ TEST(SaddlePointSolver, AsksTheMatrixWhatABlurredFactorHides) {
     Sequence system(false);
     for (int r = 0; r < n_rows; ++r) system.on[r] = true;
     system.fill();
-    SaddlePointSolver solver = eager(std::make_unique<BlurredEngine>(share));
+    SaddlePointSolver solver =
+        eager(std::make_unique<test::BlurredEngine>(share, [&](Factorisation& found) { found.error = 30 * share; }));
     SolutionReport report;
     EXPECT_LE(system.error(solver, report), 1e-11);
     std::mt19937 random(3);
@@ -330,7 +301,8 @@ TEST(SaddlePointSolver, AsksTheMatrixWhatABlurredFactorHides) {
       for (const std::size_t loose : {1u, 2u}) {
         system.on.fill(true);
         system.fill();
-        SaddlePointSolver other = eager(std::make_unique<BlurredEngine>(share));
+        SaddlePointSolver other =
+            eager(std::make_unique<test::BlurredEngine>(share, [&](Factorisation& found) { found.error = 30 * share; }));
         system.error(other, report);
         system.on.fill(false);
         system.on[0] = loose == 1;

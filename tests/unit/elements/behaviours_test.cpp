@@ -99,12 +99,6 @@ std::vector<Case> cases() {
   return all;
 }
 
-const auto case_name = [](const auto& given) {
-  std::string name = test_name(*std::get<0>(given.param)) + "_" + std::get<1>(given.param);
-  for (char& c : name)
-    if (c == '/') c = '_';
-  return name;
-};
 INSTANTIATE_TEST_SUITE_P(All, Behaviour, testing::ValuesIn(cases()), case_name);
 INSTANTIATE_TEST_SUITE_P(All, Derivative, testing::ValuesIn(cases()), case_name);
 

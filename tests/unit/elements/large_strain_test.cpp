@@ -112,12 +112,6 @@ std::vector<Case> cases(bool with_axis) {
           all.emplace_back(row, law + "/" + measure);
   return all;
 }
-const auto case_name = [](const auto& given) {
-  std::string name = test_name(*std::get<0>(given.param)) + "_" + std::get<1>(given.param);
-  for (char& c : name)
-    if (c == '/') c = '_';
-  return name;
-};
 INSTANTIATE_TEST_SUITE_P(All, LargeStrain, testing::ValuesIn(cases(true)), case_name);
 INSTANTIATE_TEST_SUITE_P(All, Objectivity, testing::ValuesIn(cases(false)), case_name);
 

@@ -24,6 +24,14 @@ struct Answer {
   int error = -1;
 };
 
+/// Name of a test whose parameter is an element and an option, "ELAS/PETIT".
+inline const auto case_name = [](const auto& given) {
+  std::string name = test_name(*std::get<0>(given.param)) + "_" + std::get<1>(given.param);
+  for (char& c : name)
+    if (c == '/') c = '_';
+  return name;
+};
+
 /// One element, in every lane. @param x, u (n_nodes, dimension)  @param from the last state; empty vectors: natural
 inline Answer run(const ElementRow& row, const std::string& option, const Numbers& x, const Numbers& u, const State& from,
                   const Numbers& curve = linear_hardening, bool elastic_matrix = false, bool stressless_matrix = false,

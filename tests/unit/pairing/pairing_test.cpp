@@ -3,12 +3,12 @@
 
 #include <gtest/gtest.h>
 
-#include <cstdlib>
 #include <limits>
 #include <numbers>
 
 #include "lacon/pairing/normals.hpp"
 #include "skins.hpp"
+#include "threads.hpp"
 
 namespace lacon::test {
 namespace {
@@ -44,13 +44,7 @@ TEST(Pairing, TheBitsDoNotDependOnTheNumberOfThreads) {
   add_chain(master, line(-0.1), scattered(1.2, -0.2, 400, random), Kind::mixed, &random);
   const Pairing alone = pair(slave.view(), master.view());
   EXPECT_GT(alone.cells.size(), 500U);
-  for (const char* threads : {"2", "3", "5"}) {
-    setenv("LACON_THREADS", threads, 1);
-    const Pairing found = pair(slave.view(), master.view());
-    unsetenv("LACON_THREADS");
-    EXPECT_TRUE(found.cells == alone.cells) << threads;
-    EXPECT_EQ(found.rejected, alone.rejected) << threads;
-  }
+  test::expect_same_in_threads(alone, [&] { return pair(slave.view(), master.view()); });
 }
 
 // Also where round-off has moved it into the slave.

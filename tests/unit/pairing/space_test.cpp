@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
 #include <functional>
 #include <limits>
 #include <map>
@@ -16,6 +15,7 @@
 #include "lacon/pairing/pairing.hpp"
 #include "lacon/pairing/polygon.hpp"
 #include "skins_in_space.hpp"
+#include "threads.hpp"
 
 namespace lacon::test {
 namespace {
@@ -240,13 +240,7 @@ TEST(PairingInSpace, TheBitsDoNotDependOnTheNumberOfThreads) {
     EXPECT_GT(alone.cells.size(), 600U);
     EXPECT_GT(alone.count(Rejection::degenerate_slave), 0);
     EXPECT_GT(alone.count(Rejection::degenerate_master), 0);
-    for (const char* threads : {"2", "3", "5"}) {
-      setenv("LACON_THREADS", threads, 1);
-      const Pairing found = pair(slave.view(), master.view());
-      unsetenv("LACON_THREADS");
-      EXPECT_TRUE(found.cells == alone.cells) << threads;
-      EXPECT_EQ(found.rejected, alone.rejected) << threads;
-    }
+    test::expect_same_in_threads(alone, [&] { return pair(slave.view(), master.view()); });
     // parts of any size make the whole
     PairingInParts pairing(slave.view(), master.view());
     Pairing part, whole;
