@@ -52,14 +52,14 @@ def patch_section(runner):
     worst = {c: max(patch.worst(f[c], value) for f in found.values()) for c, value in (("SIYY", -PRESSURE), ("JEU", 0), ("COEFSURF", 1))}
     return f"""## Patch test
 
-Two blocks, 50 wide and 50 high, in plane strain; 7 columns of cells on 5, none of whose lines meet; E = 2000, nu = 0.3; pressure 25 on
+Two blocks, 50 wide and 50 high, in plane strain; 7 columns of cells on 5, with no common grid lines; E = 2000, nu = 0.3; pressure 25 on
 top, free sideways, TYPE_JACOBIEN='INITIAL', RESI_GLOB_RELA 1e-12. Theory: LAGS_C = PRES = SIYY = -25, JEU = 0, COEFSURF = 1.
 
 Largest error of LAGS_C and PRES over the skin, relative to the pressure; slave body (rows) on master body (columns):
 
 {table(["", *patch.KINDS], rows)}
 
-Over all 25 pairs: SIYY within {worst["SIYY"] / PRESSURE:.1e} of the pressure (1e-10 is asked for), the gap within
+Over all 25 pairs: SIYY within {worst["SIYY"] / PRESSURE:.1e} of the pressure (required: 1e-10), the gap within
 {worst["JEU"] / patch.HEIGHT:.1e} of the height (1e-10), COEFSURF within {worst["COEFSURF"]:.1e} (1e-12).
 """
 
@@ -96,7 +96,7 @@ Two unit blocks stacked along the direction (0.48, -0.6, 0.64), meshes that do n
 {patch_space.POISSON}), pressure {patch_space.PRESSURE:g} on both ends, each block held at single nodes as a statically determinate body; RESI_GLOB_RELA 1e-12.
 Theory: LAGS_C = PRES = -p, sigma = -p n n at every node, u linear. First figure: plain grids. Second figure: inner nodes moved at
 random, in the contact plane by up to {patch_space.SHAKE[0]} of a grid step along each axis (quadrangles of scaled Jacobian down to 0.4), elsewhere by up to {patch_space.SHAKE[1]}.
-Asked for: 1e-10 where facets are affine, 1e-8 elsewhere; the long tests ask the same of coordinates times 1e-3 and 1e3, and of
+Required: 1e-10 where facets are affine, 1e-8 elsewhere; the long tests require the same with coordinates scaled by 1e-3 and 1e3, and with
 TYPE_JACOBIEN='ACTUALISE' (-p A0 / A).
 
 Largest error of LAGS_C and PRES, relative to p; slave body (rows) on the facets of the master (columns):
@@ -136,7 +136,7 @@ def materials_section(runner):
     return f"""## Two materials
 
 The lower block has E = {LOWER[0]:g}, nu = {LOWER[1]:g}: it stretches sideways more than the upper one, so that the two skins end at different
-places. The pressure is uniform no more: its error is of the order of the difference of strains.
+places. The pressure is no longer uniform: its error is of the order of the difference between the strains.
 
 Largest error of PRES relative to p, and in brackets its ratio to the difference of strains:
 
@@ -191,8 +191,8 @@ def peer_section(runner):
 Every check at the peer's own tolerances. OK: reference and VALE_CALC are met; DIFF: the reference is met and the peer's digits are not; NOOK: they are not,
 and there is no reference. In ssnp170r, w and z these carry the error of the peer's rule for PYRAM13 (-25.06 to -24.92); here the pressure is -25 to 1e-9. The half ring (ssnp165) has no
 reference: its displacements and pressures are within 6 % of the largest of their kind, 12 and 120, and within 1 % with VARIATION_JEU='FIGEE'; with the residual at 1e-6 they
-are the same. What is left is the forces of contact alone: here they are the derivative of the gap (METHOD.md 5.4 c), on facets that slide far and are not parallel. The peer integrates the master's side on the
-master's facets with the master's normals, so that its forces on slave and master do not balance. With the peer's matrix put in by way of trial (2D, linear edges), all 30 values
+are the same. What remains is the contact forces alone: here they are the derivative of the gap (METHOD.md 5.4 c), on facets that slide far and are not parallel. The peer integrates the master's side on the
+master's facets with the master's normals, so that its forces on slave and master do not balance. With the peer's matrix put in as an experiment (2D, linear edges), all 30 values
 of ssnp165c came out as the peer's to 4e-12 of their size, and the forces on slave and master differed by up to 1.0 % of the load. Distances from theory
 are relative to it. ssnp150 and ssnv219: the next section.
 
@@ -212,7 +212,7 @@ def orders_text(results):
     return f"""## Manufactured solutions
 
 A St-Venant-Kirchhoff body with large displacements on a curved rigid skin (the peer's ssnp150 in the plane, ssnv219 in space; loads derived in
-`tests/studies/manufactured.py`), each mesh half as wide as the one before, one mesh more than the peer's. Theory: displacement 2 (linear cells), 2.5 to 3
+`tests/studies/manufactured.py`), each mesh twice as fine as the one before, with one mesh more than the peer. Theory: displacement 2 (linear cells), 2.5 to 3
 (quadratic); pressure at least 0.5 and 1. The peer's windows were fitted to its own slopes: a pressure that converges faster falls outside as well, and so
 does ssnv219k, whose window follows the peer's rule for PYRAM13 (with the exact rule its release of 2020 found 3.670 and 1.090).
 
@@ -257,7 +257,7 @@ def roller_section(runner):
     return f"""## Line contacts of Hertz
 
 The study of `./commands/demo`: a polymer roller between two steel rings (QUAD8 on TRIA6, QUAD4 on QUAD8). Hertz' half-width and largest
-pressure for the force that was found; the half-width is known to a patch.
+pressure are those for the computed force; the half-width is known to within a patch.
 
 ```{text.getvalue().rstrip()}
 ```
@@ -304,12 +304,12 @@ def joints_section(_runner):
     sector, plane = (max(of_test(case, "differences")) for case in (Sector, PlaneStress))
     return f"""## A bolt that cooling tightens
 
-A bolt, radius 6, in a sleeve 40 long, radii 7 to 14, under a head that hardly gives way (AXIS, QUAD8; E = 210000, nu = 0, alpha = 1.2e-5). The shank is cooled by 50 degrees (AFFE_VARC),
-then the head is pulled until the joint parts. Theory: two springs E A / L; they share the pull as long as the sleeve is pressed, then the bolt carries it alone.
+A bolt, radius 6, in a sleeve 40 long, radii 7 to 14, under a nearly rigid head (AXIS, QUAD8; E = 210000, nu = 0, alpha = 1.2e-5). The shank is cooled by 50 degrees (AFFE_VARC),
+then the head is pulled until the joint parts. Theory: two springs E A / L, which share the pull as long as the sleeve is compressed; then the bolt carries it alone.
 
 {table(["pull, N", "bolt", "theory", "clamping force", "theory"], rows)}
 
-Models that are the same: a sector of 30 degrees of two rings under a pressure 1 + 1.2 cos 6 t, held by LIAISON_OBLIQUE, has the displacements and contact pressures of the quarter
+Equivalent models: a sector of 30 degrees of two rings under a pressure 1 + 1.2 cos 6 t, held by LIAISON_OBLIQUE, has the displacements and contact pressures of the quarter
 within {sector:.0e}; a pin in a hole in plane stress those of plane strain with nu' = nu / (1 + nu), E' = E (1 + 2 nu) / (1 + nu)^2 within {plane:.0e}.
 """
 
@@ -325,7 +325,7 @@ def snap_fit_section(_runner):
     return f"""## A hook that snaps over a ridge
 
 In space, HEXA20: a beam 3 long, 0.2 thick, 0.6 wide, whose nose goes over a ridge of the same flanks, 0.3 to 0.55, which is ten times stiffer (E = 2000, nu = 0), in {study.STEPS} steps,
-DEFI_LIST_INST as it is. Theory: without friction the force is normal to the flank; where both flanks meet whole, force times way is twice the energy of a cantilever's bending.
+DEFI_LIST_INST as it is. Theory: without friction the force is normal to the flank; where the flanks are in full contact, force times travel is twice the bending energy of a cantilever.
 
 {table(["way", "force to the side", "up", f"ratio ({study.FLANK:.6f})", "work over bending"], flank)}
 
@@ -345,10 +345,10 @@ def engineering_section(_runner):
     punch = [[f"{depth:g}", f"{force:.1f}", f"{width:.3f}", f"{exact:.3f}", f"{middle:.1f}", f"{theory:.1f}"]
              for depth, force, width, exact, middle, theory in of_test(RoundedPunch, "figures")]
     heads = ["iterations", "free length", "theory", "force", "theory"]
-    return f"""## Beams that a floor holds up
+    return f"""## Beams on a floor
 
-Beams of E = 200000, nu = 0, on floors that are a hundred times stiffer (D_PLAN, QUAD8). Theory: thin beams, which have no moment where they meet the floor. A patch is 0.625
-and 1 long. Lengths are those up to the first patch in contact.
+Beams of E = 200000, nu = 0, on floors a hundred times stiffer (D_PLAN, QUAD8). Theory: thin beams, with zero moment where they meet the floor. Patches are 0.625
+and 1 long. Lengths are measured to the first patch in contact.
 
 A clamped beam, 100 long, 1 thick, 0.2 above the floor, under a pressure q: q l^4 / (72 E I) is the height; the floor bears q (100 - 2 l / 3).
 
@@ -360,15 +360,15 @@ A heavy beam, 200 long, 2 thick, lifted at its end: q l^4 / (24 E I) is the heig
 
 ## A tube expanded by a sleeve
 
-An elastic sleeve, radii 8 to 10, is expanded by the pressure in it in a tube, 10 to 20, that flows at 200 (D_PLAN_SI, QUAD8, 30 degrees; E = 200000, nu = 0.3). R. Hill (The
-Mathematical Theory of Plasticity, 1950): what the tube bears while it flows up to the radius c, that which its widening outside says.
+An elastic sleeve, radii 8 to 10, is expanded by internal pressure inside a tube, radii 10 to 20, that yields at 200 (D_PLAN_SI, QUAD8, 30 degrees; E = 200000, nu = 0.3). R. Hill (The
+Mathematical Theory of Plasticity, 1950): the pressure that the tube bears when it has yielded up to the radius c, which follows from the expansion of its outer surface.
 
 {table(["pressure inside", "c", "pressure of contact", "Hill"], tube)}
 
 ## A flat punch with rounded edges
 
 A stiff punch, flat to 1, then rounded with the radius 20, on a block 60 wide and high (D_PLAN, QUAD8, cells of 0.05; E = 200000, nu = 0.3). M. Ciavarella, D. A. Hills and
-G. Monno (Proc. Instn Mech. Engrs C 212, 1998), for the force that was found.
+G. Monno (Proc. Instn Mech. Engrs C 212, 1998), for the computed force.
 
 {table(["depth", "force", "half width", "theory", "pressure in the middle", "theory"], punch)}
 """
@@ -392,8 +392,8 @@ def large_strain_section(_runner):
     return f"""## Plasticity at large strain
 
 A round billet, 10 wide and 10 high, upset to 5.5 by a rigid die that slides without friction, in 10 steps (AXIS, QUAD8; E = 200000, nu = 0.3, yield stress
-400 + 600 p). Theory: everywhere Kirchhoff's stress 400 + 600 p over the logarithmic strain. GDEF_LOG has it whatever the steps; SIMO_MIEHE is of the first order in
-the step, 6 % of strain here.
+400 + 600 p). Theory: everywhere Kirchhoff's stress 400 + 600 p over the logarithmic strain. GDEF_LOG gives it whatever the steps; SIMO_MIEHE is first-order accurate in
+the step, here 6 % of strain.
 
 {table(["DEFORMATION", "error of the stress", "of the widening"], rows)}
 
@@ -403,8 +403,8 @@ thinner section has 0.99 of the area). At the end the neck has {width["neck"]:.3
 
 Stresses in the neck (P. W. Bridgman, Studies in Large Plastic Flow and Fracture, 1952): with the neck's radius a and that of its profile R, both as they are
 found, the mean axial stress is (1 + 2 R / a) ln(1 + a / 2 R) times the flow stress at the strain 2 ln(a0 / a), and the largest, in the middle, 1 + ln(1 + a / 2 R)
-times. He takes the strain as the same all over the section; it is larger in the middle, and the stresses found are up to 6 % above his. Of published neck radii of
-this bar none is compared: no figure was at hand that its source could be given for.
+times. He assumes uniform strain over the section; it is larger in the middle, and the computed stresses are up to 6 % above his. Published neck radii of
+this bar are not compared: none was at hand with a source that could be cited.
 
 {table(["neck over first radius", "a / R", "mean over flow stress", "Bridgman", "middle over mean", "Bridgman"], bridgman)}
 
@@ -430,9 +430,9 @@ def indentation_section(_runner):
     rows = [[f"{depth:.2f}", f"{radius:.3f}", *(f"{found[law][k][2]:.3f}" for law in LAWS)] for k, (depth, radius, _) in enumerate(found[LAWS[1]])]
     return f"""## Indentation
 
-The template `indentation` of `lacon new`: a hard round punch, driven into a block that flows (AXIS, von Mises with little hardening), with three measures of strain.
-D. Tabor (The Hardness of Metals, 1951): once the plastic zone has come to the surface the mean pressure is {TABOR} times the yield stress, whatever the depth. The
-radius of contact is known to a patch, 0.1: 10 % of the pressure at the end.
+The template `indentation` of `lacon new`: a hard round punch, driven into a plastic block (AXIS, von Mises with little hardening), with three measures of strain.
+D. Tabor (The Hardness of Metals, 1951): once the plastic zone has reached the surface, the mean pressure is {TABOR} times the yield stress, whatever the depth. The
+radius of contact is known to within a patch, 0.1, which is 10 % of the pressure at the end.
 
 {table(["depth", "radius of contact", *(f"mean pressure / yield stress, {law}" for law in LAWS)], rows)}
 """

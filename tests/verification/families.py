@@ -72,7 +72,7 @@ terms (t / R)^2 = {(THICKNESS / RADIUS) ** 2:.1e}.
 ## A bolted flange
 
 The template `bolted_flange`: the bolt is tightened, then the flange is pulled with {load:.0f} N; two contact zones. Theory: the bolt alone holds the plates together, so it
-carries what is left of the clamping force and the load, as long as the joint is tight.
+carries the remaining clamping force plus the load, as long as the joint is tight.
 
 | | N |
 | --- | --- |

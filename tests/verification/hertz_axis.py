@@ -45,7 +45,7 @@ def section(runner):
     return f"""## Hertz in axisymmetry
 
 The template `hertz` (`lacon new --template hertz`; its mesh is made by `mesh.py` beside it): a sphere of radius {HERTZ_RADIUS:g} on a block, both of steel, QUAD8; the
-slave is the sphere. What is shown is `CONT_NOEU` at nodes of the skin, means over the patches around each. Hertz for the force at these nodes, {found.force:.1f} N
+slave is the sphere. The table shows `CONT_NOEU` at nodes of the skin, averages over the patches around each. Hertz for the force at these nodes, {found.force:.1f} N
 (the reaction at the top is the same to {abs(found.force / found.reaction - 1):.0e}): radius of contact {found.radius:.4f}, largest pressure {found.largest:.1f}.
 
 | radius | PRES found | Hertz | difference, of the largest | JEU |

@@ -1,4 +1,4 @@
-"""The patch test's meshes and runs; test_patch.py judges them, report.py writes docs/verification.md from them."""
+"""The patch test's meshes and runs; test_patch.py judges them, book.py writes docs/verification.md from them."""
 
 import itertools
 

@@ -119,12 +119,12 @@ def section(figures=None):
     table = "\n".join("| " + " | ".join(map(str, line)) + " |" for line in [head, ["---"] * len(head), *lines])
     return f"""{TITLE}
 
-`tests/studies/robustness`: deep, sliding, edged, plastic bodies, of very different stiffness, or held by contact alone; plane ones with both orders,
-PETIT and GREEN_LAGRANGE (plastic ones PETIT and PETIT_REAC), either side slave. ITER_GLOB_MAXI is 60 (its default of 10 where a force drives), all other
-criteria and keywords of Newton's method are defaults. An iteration is a solution of the linear system; lost ones belong to steps that were cut, begun again or
-never solved, and count in what is asked. "Before": contact forces along the slave's normal, frozen; where a force drives, statuses alone move the edge of a
+`tests/studies/robustness`: bodies that penetrate deeply, slide, have edges, flow, differ greatly in stiffness, or are held by contact alone; plane ones with both orders,
+PETIT and GREEN_LAGRANGE (plastic ones PETIT and PETIT_REAC), with either side as the slave. ITER_GLOB_MAXI is 60 (the default, 10, where a force drives); all other
+criteria and keywords of Newton's method are defaults. An iteration is one solution of the linear system; lost ones belong to steps that were cut, restarted or
+never solved, and count towards the limits. "Before": contact forces along the slave's normal, frozen; where a force drives, statuses alone move the edge of a
 contact, by one patch an iteration, and a factorisation's pivots alone say what is loose; where ends are
-aligned, forces jump when they pass each other, and where side walls are in the zone, when these come upright. Rows that are there once have not changed since.
+aligned, forces jump when they pass each other, and where side walls are in the zone, when these come upright. Rows listed once have not changed since.
 
 {table}
 
@@ -132,7 +132,7 @@ Not as asked, and why:
 
 {chr(10).join(missing)}
 
-Pictures: deformed, without magnification; red the contact pressure of the slave's patches, at the instant that is pressed most.
+Pictures: deformed, without magnification; red: contact pressure of the slave's patches at the instant of the largest force.
 
 {chr(10).join(pictures)}
 """
