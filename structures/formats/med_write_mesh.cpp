@@ -122,9 +122,8 @@ std::vector<std::int32_t> write_families(const H5Group& root, const std::string&
   return family;
 }
 
-void write_mesh(const H5Group& root, const Mesh& mesh, const std::string& name) {
-  for (const Group& group : mesh.cell_groups) check_name(root, part("type_group_ma"), group.name, group_name_length, false);
-  for (const Group& group : mesh.node_groups) check_name(root, part("type_group_no"), group.name, group_name_length, false);
+/// The mesh's group, with its attributes. @return that of its only time step
+H5Group write_head(const H5Group& root, const Mesh& mesh, const std::string& name) {
   int dimension = 0;
   for (const CellType type : mesh.types) dimension = std::max(dimension, catalog::cell(type).dimension);
   const auto space = static_cast<std::size_t>(mesh.dimension);
@@ -141,17 +140,17 @@ void write_mesh(const H5Group& root, const Mesh& mesh, const std::string& name) 
   set_text(group, "UNI", std::string(16 * space, ' '));
   set_text(group, "NOM", in_columns({axes.begin(), axes.begin() + mesh.dimension}));
   set_text(group, "DES", "written by Lacon");
-  const H5Group step = group.create(no_step);
+  H5Group step = group.create(no_step);
   for (const auto& [attribute, value] :
        {std::pair("CGT", 1), {"NDT", -1}, {"NOR", -1}, {"NXT", -1}, {"NXI", -1}, {"PVT", -1}, {"PVI", -1}})
     set_int(step, attribute, value);
   step.set("PDT", -1.0);
+  return step;
+}
 
-  const H5Group families = root.create("FAS/" + name + "/FAMILLE_ZERO");
-  set_int(families, "NUM", 0);
-  const std::vector<std::int32_t> node_family = write_families(root, name, "NOEUD", 1, mesh.node_groups, mesh.n_nodes());
-  const std::vector<std::int32_t> cell_family = write_families(root, name, "ELEME", -1, mesh.cell_groups, mesh.n_cells());
-
+/// @param family of each node; empty without groups
+void write_nodes(const H5Group& step, const Mesh& mesh, const std::vector<std::int32_t>& family) {
+  const auto space = static_cast<std::size_t>(mesh.dimension);
   const H5Group nodes = step.create("NOE");
   set_int(nodes, "CGT", 1);
   set_int(nodes, "CGS", 1);
@@ -164,11 +163,43 @@ void write_mesh(const H5Group& root, const Mesh& mesh, const std::string& name) 
         for (std::size_t k = 0; k < n_axes; ++k) part[k * here + i] = from[3 * i + k];
     });
   });
-  if (!node_family.empty())
-    write_numbers<std::int32_t>(nodes, "FAM", mesh.n_nodes(), 1, [&](std::size_t first, std::span<std::int32_t> part) {
-      std::copy_n(node_family.begin() + static_cast<std::ptrdiff_t>(first), part.size(), part.begin());
-    });
+  if (family.empty()) return;
+  write_numbers<std::int32_t>(nodes, "FAM", mesh.n_nodes(), 1, [&](std::size_t first, std::span<std::int32_t> part) {
+    std::copy_n(family.begin() + static_cast<std::ptrdiff_t>(first), part.size(), part.begin());
+  });
+}
 
+/// An integer of each cell of a type. @param of  the cell's number in the mesh -> the integer
+template <class Cells, class Of>
+void write_integers(const H5Group& group, const char* dataset, const Cells& cells, const Of& of) {
+  write_numbers<std::int32_t>(group, dataset, cells.size, 1,
+                              [&, cursor = CellCursor(cells)](std::size_t, std::span<std::int32_t> part) mutable {
+                                cursor.next(part.size(), [&](std::size_t place, std::size_t first, std::size_t n) {
+                                  for (std::size_t i = 0; i < n; ++i) part[place + i] = of(first + i);
+                                });
+                              });
+}
+
+/// Nodes of each cell of a type, node by node, from 1, in MED's order.
+template <class Cells>
+void write_connectivity(const H5Group& group, const Mesh& mesh, const catalog::CellRow& row, const Cells& cells) {
+  const auto size = static_cast<std::size_t>(row.n_nodes);
+  write_numbers<std::int32_t>(group, "NOD", cells.size, size,
+                              [&, cursor = CellCursor(cells)](std::size_t, std::span<std::int32_t> part) mutable {
+                                const auto column = columns(row, part.size() / size);
+                                cursor.next(part.size() / size, [&](std::size_t place, std::size_t first, std::size_t n) {
+                                  const std::int32_t* const nodes_of_run = mesh.cells[first].data();
+                                  with_known_size(size, [&](const auto n_columns) {
+                                    for (std::size_t c = 0; c < n; ++c)
+                                      for (std::size_t j = 0; j < n_columns; ++j)
+                                        part[column[j] + place + c] = nodes_of_run[c * n_columns + j] + 1;
+                                  });
+                                });
+                              });
+}
+
+/// @param family of each cell; empty without groups
+void write_cells(const H5Group& step, const Mesh& mesh, const std::vector<std::int32_t>& family) {
   const H5Group all = step.create("MAI");
   set_int(all, "CGT", 1);
   for (const auto& [type, cells] : by_type(mesh)) {
@@ -178,30 +209,22 @@ void write_mesh(const H5Group& root, const Mesh& mesh, const std::string& name) 
     set_int(one, "CGS", 1);
     set_text(one, "PFL", no_profile);
     set_int(one, "GEO", row.dimension == 0 ? 1 : 100 * row.dimension + row.n_nodes);
-    const auto size = static_cast<std::size_t>(row.n_nodes);
-    write_numbers<std::int32_t>(one, "NOD", cells.size, size,
-                                [&, cursor = CellCursor(cells)](std::size_t, std::span<std::int32_t> part) mutable {
-                                  const auto column = columns(row, part.size() / size);
-                                  cursor.next(part.size() / size, [&](std::size_t place, std::size_t first, std::size_t n) {
-                                    const std::int32_t* const nodes_of_run = mesh.cells[first].data();
-                                    with_known_size(size, [&](const auto n_columns) {
-                                      for (std::size_t c = 0; c < n; ++c)
-                                        for (std::size_t j = 0; j < n_columns; ++j)
-                                          part[column[j] + place + c] = nodes_of_run[c * n_columns + j] + 1;
-                                    });
-                                  });
-                                });
-    const auto write_integers = [&](const char* dataset, const auto& of) {
-      write_numbers<std::int32_t>(one, dataset, cells.size, 1,
-                                  [&, cursor = CellCursor(cells)](std::size_t, std::span<std::int32_t> part) mutable {
-                                    cursor.next(part.size(), [&](std::size_t place, std::size_t first, std::size_t n) {
-                                      for (std::size_t i = 0; i < n; ++i) part[place + i] = of(first + i);
-                                    });
-                                  });
-    };
-    write_integers("NUM", [](std::size_t cell) { return static_cast<std::int32_t>(cell) + 1; });
-    if (!cell_family.empty()) write_integers("FAM", [&](std::size_t cell) { return cell_family[cell]; });
+    write_connectivity(one, mesh, row, cells);
+    write_integers(one, "NUM", cells, [](std::size_t cell) { return static_cast<std::int32_t>(cell) + 1; });
+    if (!family.empty()) write_integers(one, "FAM", cells, [&](std::size_t cell) { return family[cell]; });
   }
+}
+
+void write_mesh(const H5Group& root, const Mesh& mesh, const std::string& name) {
+  for (const Group& group : mesh.cell_groups) check_name(root, part("type_group_ma"), group.name, group_name_length, false);
+  for (const Group& group : mesh.node_groups) check_name(root, part("type_group_no"), group.name, group_name_length, false);
+  const H5Group step = write_head(root, mesh, name);
+  const H5Group families = root.create("FAS/" + name + "/FAMILLE_ZERO");
+  set_int(families, "NUM", 0);
+  const std::vector<std::int32_t> node_family = write_families(root, name, "NOEUD", 1, mesh.node_groups, mesh.n_nodes());
+  const std::vector<std::int32_t> cell_family = write_families(root, name, "ELEME", -1, mesh.cell_groups, mesh.n_cells());
+  write_nodes(step, mesh, node_family);
+  write_cells(step, mesh, cell_family);
 }
 
 }  // namespace
