@@ -35,6 +35,7 @@ struct Factorisation {
 struct Solution {
   double residual = 0;                 ///< |b - A x| / (|A| |x| + |b|), largest entry
   int iterations = 0;                  ///< of GMRES
+  std::optional<double> error;         ///< of a factor that it has proved: Factorisation::error
   std::optional<Factorisation> again;  ///< another factorisation; where it has null pivots there is no solution
 };
 
@@ -49,6 +50,8 @@ class Engine {
   /// Make ready to solve with a matrix of the analysed pattern: factorise it, or set up what iterations need. The matrix must
   /// stay as it is while it is solved with. Throws SOLVER_2 (no memory).
   virtual Factorisation factorise(const SparseMatrix& matrix) = 0;
+  /// The same where a solution comes next, and nothing else: it may prove the factor on its way, and make another one.
+  virtual Factorisation factorise_to_solve(const SparseMatrix& matrix) { return factorise(matrix); }
   /// Solve in place. Throws SOLVER_1, or another error of severity S that says why there is no solution; `right_side` is then
   /// as it was.
   virtual Solution solve(std::span<double> right_side) = 0;

@@ -7,8 +7,9 @@
 #include <filesystem>
 #include <fstream>
 #include <limits>
+#include <type_traits>
 
-#include "lacon/assembly/any_signs.hpp"
+#include "lacon/assembly/factor_proof.hpp"
 #include "lacon/assembly/gmres.hpp"
 #include "lacon/assembly/mumps.hpp"
 #include "lacon/assembly/ordering.hpp"
@@ -30,9 +31,6 @@ constexpr double own_low_rank_threshold = 1e-5;
 
 /// A factor that is not exact has to have no smaller pivot, of the scaled matrix.
 constexpr double doubtful_pivot = 1e-6;
-/// Nor to leave more of any vector: then no pivot on the way from it to the matrix changes its sign.
-constexpr double doubtful_error = 0.3;
-constexpr int looks = 3;
 /// GMRES between two residuals that are computed anew.
 constexpr double gain = 1e-7;
 constexpr int most_iterations = 30;
@@ -80,6 +78,7 @@ struct MumpsEngine::State {
   std::vector<double> scale;             ///< of its rows and columns, where the factor is not exact
   std::vector<std::int64_t> alone;       ///< likewise: unknowns that their row alone decides, such as pressures of open patches
   bool has_folder = false;
+  std::optional<FactorProof> proof;  ///< of a factor that is not exact, where it is to be given yet
 
   explicit State(const MumpsOptions& given)
       : options(given), processes(std::make_shared<MumpsProcesses>(given.processes, given.program)) {}
@@ -216,6 +215,11 @@ struct MumpsEngine::State {
     return mumps.factorise(values);
   }
 
+  void take(const SparseMatrix& of) {
+    matrix = &of;
+    if (care == Care::exact && !form.is_exact()) prepare({.out_of_core = form.out_of_core}, of.is_symmetric());
+  }
+
   /// In files where there is no memory.
   Factorisation factorise() {
     try {
@@ -227,16 +231,26 @@ struct MumpsEngine::State {
     return factorise_as_prepared();
   }
 
-  /// One that has proved itself, or is exact.
-  Factorisation factorise_safely() {
+  /// One that is exact, or has a proof to give.
+  Factorisation factorise_with_proof() {
+    proof.reset();
     Factorisation found = factorise();
     if (form.is_exact()) return found;
-    const double wasted = found.flops + found.wasted_flops;
     if (!found.null_pivots.empty())
-      return factorise_with_more_care(part("pivot_too_small", {{"limit", fmt::format("{:.0e}", doubtful_pivot)}}), wasted);
-    found.error = error_of_factor();
-    if (!(found.error <= doubtful_error))
-      return factorise_with_more_care(part("motion_left", {{"share", fmt::format("{:.1g}", found.error)}}), wasted);
+      return factorise_with_more_care(part("pivot_too_small", {{"limit", fmt::format("{:.0e}", doubtful_pivot)}}),
+                                      found.flops + found.wasted_flops);
+    proof.emplace(*matrix, scale);
+    return found;
+  }
+  /// One that has proved itself, or is exact.
+  Factorisation factorise_safely() {
+    Factorisation found = factorise_with_proof();
+    if (!proof) return found;
+    try {
+      found.error = proved_error();
+    } catch (const Unproved& unproved) {
+      return factorise_with_more_care(unproved.doubt, found.flops + found.wasted_flops);
+    }
     return found;
   }
 
@@ -255,64 +269,71 @@ struct MumpsEngine::State {
   void substitute(std::span<double> right_side) {
     if (form.is_exact())
       full->substitute(right_side);
-    else if (single)
-      substitute_scaled(*single, right_side);
     else
-      substitute_scaled(*full, right_side);
+      substitute_scaled({&right_side, 1});
+  }
+  void substitute_scaled(std::span<const std::span<double>> sides) {
+    single ? substitute_scaled(*single, sides) : substitute_scaled(*full, sides);
   }
   template <class Real>
-  void substitute_scaled(MumpsFactor<Real>& mumps, std::span<double> right_side) {
-    double most = 0;
-    for (std::size_t i = 0; i < right_side.size(); ++i) most = std::max(most, std::abs(scale[i] * right_side[i]));
-    if (most == 0) return;
-    std::vector<Real> x(right_side.size());
-    for (std::size_t i = 0; i < x.size(); ++i) x[i] = static_cast<Real>(scale[i] * right_side[i] / most);
-    std::vector<double> decided;
-    for (const std::int64_t i : alone) decided.push_back(right_side[i] / matrix->diagonal(i));
+  void substitute_scaled(MumpsFactor<Real>& mumps, std::span<const std::span<double>> sides) {
+    const std::size_t n = scale.size();
+    std::vector<double> most, decided;
+    std::vector<Real> x;
+    x.reserve(n * sides.size());
+    for (const std::span<double> side : sides) {
+      double& size = most.emplace_back(0);
+      for (std::size_t i = 0; i < n; ++i) size = std::max(size, std::abs(scale[i] * side[i]));
+      for (const std::int64_t i : alone) decided.push_back(side[i] / matrix->diagonal(i));
+      for (std::size_t i = 0; i < n; ++i) x.push_back(static_cast<Real>(size == 0 ? 0 : scale[i] * side[i] / size));
+    }
+    if (largest(most) == 0) return;
     mumps.substitute(x);
-    for (std::size_t i = 0; i < x.size(); ++i) right_side[i] = most * scale[i] * static_cast<double>(x[i]);
-    for (std::size_t k = 0; k < alone.size(); ++k) right_side[alone[k]] = decided[k];
+    for (std::size_t c = 0; c < sides.size(); ++c) {
+      for (std::size_t i = 0; i < n; ++i) sides[c][i] = most[c] * scale[i] * static_cast<double>(x[c * n + i]);
+      for (std::size_t k = 0; k < alone.size(); ++k) sides[c][alone[k]] = decided[c * alone.size() + k];
+    }
   }
 
-  /// What a substitution leaves of a vector, after some, which bring out what it leaves most of: the largest share.
-  double error_of_factor() {
-    const auto n = static_cast<std::size_t>(matrix->size());
-    std::vector<double> left = any_signs(n), x, image(n);
-    for (std::size_t i = 0; i < n; ++i) left[i] /= scale[i];
-    double most = 0, size = scaled_norm(left);
-    for (int look = 0; look < looks && size > 0; ++look) {
-      x = left;
-      substitute(x);
-      matrix->multiply(x, image);
-      for (std::size_t i = 0; i < n; ++i) left[i] -= image[i];
-      const double now = scaled_norm(left);
-      most = now / size <= most ? most : now / size;  // what is no number stays
-      size = now;
-    }
-    return most;
+  /// A factor that has failed to prove itself.
+  struct Unproved {
+    std::string doubt;
+  };
+  /// One more step of the proof. @param x the factor's solution for the next right side  Throws Unproved.
+  void look(std::span<const double> x) {
+    if (!proof->look(x)) throw Unproved{part("motion_left", {{"share", fmt::format("{:.1g}", proof->error())}})};
   }
-  double scaled_norm(std::span<const double> residual) const {
-    double sum = 0;
-    for (std::size_t i = 0; i < residual.size(); ++i) sum += scale[i] * residual[i] * scale[i] * residual[i];
-    return std::sqrt(sum);
-  }
-
-  /// The largest entry of a residual over what its row sums up; of rows that sum up next to nothing, over a millionth of what
-  /// the largest one does.
-  double share(std::span<const double> residual, std::span<const double> x, std::span<const double> right_side) const {
-    std::vector<double> sums(x.size());
-    matrix->multiply_magnitudes(x, sums);
-    double most = 0, error = 0;
-    for (std::size_t i = 0; i < x.size(); ++i) {
-      sums[i] = scale[i] * (sums[i] + std::abs(right_side[i]));
-      most = std::max(most, sums[i]);
+  /// What is still to be proved. @return Factorisation::error  Throws Unproved.
+  double proved_error() {
+    while (std::optional<std::vector<double>> x = proof->next()) {
+      substitute(*x);
+      look(*x);
     }
-    if (most == 0) return 0;
-    for (std::size_t i = 0; i < x.size(); ++i) {
-      const double now = scale[i] * std::abs(residual[i]) / (sums[i] + 1e-6 * most);
-      error = now <= error ? error : now;  // what is no number stays
-    }
+    const double error = proof->error();
+    proof.reset();
     return error;
+  }
+  /// With a step of the proof where there is one to be taken. Throws Unproved.
+  void substitute_and_look(std::span<double> right_side) {
+    std::optional<std::vector<double>> x = proof ? proof->next() : std::nullopt;
+    if (!x) return substitute(right_side);
+    const std::span<double> both[] = {right_side, *x};
+    substitute_scaled(both);
+    look(*x);
+  }
+
+  /// Refined; likewise.
+  Solution solve(std::span<double> right_side);
+  /// With another factor.
+  Solution solve_with_more_care(const std::string& doubt, std::span<double> right_side) {
+    const Factorisation again = factorise_with_more_care(doubt, 0);
+    Solution second;
+    if (again.null_pivots.empty()) second = solve(right_side);
+    if (!second.again)
+      second.again = again;
+    else
+      second.again->wasted_flops += again.flops + again.wasted_flops;
+    return second;
   }
 };
 
@@ -353,10 +374,13 @@ void MumpsEngine::analyse(const SparseMatrix& matrix) {
 }
 
 Factorisation MumpsEngine::factorise(const SparseMatrix& matrix) {
-  State& s = *state_;
-  s.matrix = &matrix;
-  if (s.care == Care::exact && !s.form.is_exact()) s.prepare({.out_of_core = s.form.out_of_core}, matrix.is_symmetric());
-  return s.factorise_safely();
+  state_->take(matrix);
+  return state_->factorise_safely();
+}
+
+Factorisation MumpsEngine::factorise_to_solve(const SparseMatrix& matrix) {
+  state_->take(matrix);
+  return state_->factorise_with_proof();
 }
 
 void MumpsEngine::substitute(std::span<double> right_side) { state_->substitute(right_side); }
@@ -385,36 +409,46 @@ std::vector<float> MumpsEngine::substitute(std::span<const std::int64_t> offset,
           if (std::binary_search(s.alone.begin(), s.alone.end(), index[k]))
             solution[c * n + static_cast<std::size_t>(index[k])] += static_cast<Real>(value[k] / s.matrix->diagonal(index[k]));
       }
-    return std::vector<float>(solution.begin(), solution.end());
+    if constexpr (std::is_same_v<Real, float>)
+      return solution;
+    else
+      return std::vector<float>(solution.begin(), solution.end());
   };
   return s.single ? solve(*s.single) : solve(*s.full);
 }
 
 Solution MumpsEngine::solve(std::span<double> right_side) {
-  State& s = *state_;
+  try {
+    return state_->solve(right_side);
+  } catch (const State::Unproved& unproved) {
+    return state_->solve_with_more_care(unproved.doubt, right_side);
+  }
+}
+
+Solution MumpsEngine::State::solve(std::span<double> right_side) {
   const std::size_t n = right_side.size();
   std::vector<double> x(n, 0.0), step(right_side.begin(), right_side.end()), residual(step), best(n);
-  const double norm = s.matrix->norm();
+  const double norm = matrix->norm();
   Solution solution{.residual = INFINITY};
-  const bool exact = s.form.is_exact();
+  const bool exact = form.is_exact();
   double error = INFINITY;
   constexpr int most_refinements = 4;
   for (int i = 0; i <= most_refinements; ++i) {
     if (exact) {
-      s.substitute(step);
+      substitute(step);
     } else {
-      GmresResult found = gmres([&](std::span<const double> v, std::span<double> y) { s.matrix->multiply(v, y); },
-                                [&](std::span<double> v) { s.substitute(v); }, s.scale, residual,
-                                {.goal = gain * s.scaled_norm(residual), .iterations = most_iterations, .cycles = 1});
+      GmresResult found = gmres([&](std::span<const double> v, std::span<double> y) { matrix->multiply(v, y); },
+                                [&](std::span<double> v) { substitute_and_look(v); }, scale, residual,
+                                {.goal = gain * scaled_norm(scale, residual), .iterations = most_iterations, .cycles = 1});
       solution.iterations += found.iterations;
       step = std::move(found.x);
     }
     for (std::size_t k = 0; k < n; ++k) x[k] += step[k];
-    s.matrix->multiply(x, residual);
+    matrix->multiply(x, residual);
     for (std::size_t k = 0; k < n; ++k) residual[k] = right_side[k] - residual[k];
-    const double scale = norm * largest(x) + largest(right_side);
-    const double relative = scale > 0 ? largest(residual) / scale : 0,
-                 now = exact ? relative : s.share(residual, x, right_side);
+    const double magnitude = norm * largest(x) + largest(right_side);
+    const double relative = magnitude > 0 ? largest(residual) / magnitude : 0,
+                 now = exact ? relative : residual_share(*matrix, scale, residual, x, right_side);
     if (!(now < error)) break;  // refinement no longer helps: keep the solution before
     error = now;
     solution.residual = relative;
@@ -422,22 +456,17 @@ Solution MumpsEngine::solve(std::span<double> right_side) {
     if (error < round_off) break;
     step = residual;
   }
+  if (proof) solution.error = proved_error();
   if (!exact && !(error <= least_accuracy)) {
-    const Factorisation again = s.factorise_with_more_care(part("gmres_leaves", {{"share", fmt::format("{:.0e}", error)}}), 0);
-    Solution second;
-    if (again.null_pivots.empty()) second = solve(right_side);
+    Solution second = solve_with_more_care(part("gmres_leaves", {{"share", fmt::format("{:.0e}", error)}}), right_side);
     second.iterations += solution.iterations;
-    if (!second.again)
-      second.again = again;
-    else
-      second.again->wasted_flops += again.flops + again.wasted_flops;
     return second;
   }
-  if (!std::isfinite(error) || (s.options.residual_tolerance > 0 && solution.residual > s.options.residual_tolerance))
+  if (!std::isfinite(error) || (options.residual_tolerance > 0 && solution.residual > options.residual_tolerance))
     fail("SOLVER_1", {{"error", fmt::format("{:.1e}", solution.residual)},
-                      {"tolerance", fmt::format("{:.1e}", s.options.residual_tolerance)}});
+                      {"tolerance", fmt::format("{:.1e}", options.residual_tolerance)}});
   if (!exact)  // refined as the others, they would be so to round-off alone
-    for (const std::int64_t i : s.alone) best[static_cast<std::size_t>(i)] = right_side[i] / s.matrix->diagonal(i);
+    for (const std::int64_t i : alone) best[static_cast<std::size_t>(i)] = right_side[i] / matrix->diagonal(i);
   std::copy(best.begin(), best.end(), right_side.begin());
   return solution;
 }

@@ -3,7 +3,8 @@
 //
 // Where the matrix is large the factor is made in single precision, of low-rank blocks where that is less work still. GMRES on
 // the matrix in double precision gives the solution all its digits back. Such a factor has to prove itself: no pivot near
-// zero, and no vector that it leaves much of, so that the matrix has its inertia and its free motions. Where it does not, or
+// zero, and no vector that it leaves much of, so that the matrix has its inertia and its free motions. That vector goes along
+// with the first right sides of a solution, for two cost hardly more than one. Where it does not, or
 // GMRES stalls, there is a factor in double precision from then on. Low-rank blocks of a symmetric matrix are eliminated as
 // ordered at first, for multipliers come behind what they hold; where such a factor fails, pivots are looked for from then on.
 // A factor that processes share (tree/) is one of these: its pivots are looked for within subtrees.
@@ -42,6 +43,7 @@ class MumpsEngine : public FactorEngine {
 
   void analyse(const SparseMatrix& matrix) override;
   Factorisation factorise(const SparseMatrix& matrix) override;
+  Factorisation factorise_to_solve(const SparseMatrix& matrix) override;
   /// Refined until the residual is at round-off or stops falling. Throws SOLVER_1 where it is above the tolerance.
   Solution solve(std::span<double> right_side) override;
   Care care() const override;

@@ -228,7 +228,7 @@ SolutionReport SaddlePointSolver::solve(const SparseMatrix& matrix, std::int64_t
   }
   {
     const Stopwatch watch(report.factorisation_seconds);
-    factor_ = report.factorisation = engine_->factorise(now);
+    factor_ = report.factorisation = engine_->factorise_to_solve(now);
     report.factorised = true;
     ++factorisations_;
   }
@@ -246,11 +246,12 @@ SolutionReport SaddlePointSolver::solve(const SparseMatrix& matrix, std::int64_t
   report.rough = accuracy.rough && factor_.is_iterative && !solution.again;
   report.iterations = solution.iterations;
   if (solution.again) {
-    const double wasted = factor_.flops;
+    const double wasted = factor_.flops + factor_.wasted_flops;
     factor_ = *solution.again;
     factor_.wasted_flops += wasted;
     report.factorisation = factor_;
   }
+  if (solution.error) factor_.error = report.factorisation.error = *solution.error;
   kept_ = kept_behind(factor_);
   return report;
 }
