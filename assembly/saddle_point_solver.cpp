@@ -22,7 +22,7 @@ constexpr double operations_of_low_rank = 3;
 // What an entry of the factor costs, in operations of a factorisation: in the substitutions of one right side, at memory's
 // speed, and in those of a block of sparse ones, at arithmetic's. Measured (docs/performance.md).
 constexpr double operations_of_a_solution = 40, operations_in_a_block = 2.5;
-constexpr int block_size = 64;
+constexpr int block_size = 128;
 /// Unknowns to which all columns are added while they are at hand.
 constexpr std::size_t rows_together = 2048;
 /// Errors of a Schur complement over that of its factor.

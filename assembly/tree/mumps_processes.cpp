@@ -28,8 +28,9 @@ void MumpsProcesses::start() {
 }
 
 void MumpsProcesses::forget() noexcept {
+  for (const auto& process : processes_) process->say("forget");
   for (const auto& process : processes_)
-    if (process->ask("forget").empty()) {
+    if (process->answer().empty()) {
       end_ = process->end();
       processes_.clear();
       return;
