@@ -49,9 +49,24 @@ ContactGeometry::Variation sum_of(std::span<const ContactGeometry::Variation> ce
   return sum;
 }
 
-/// In the plane: whether no other contact cell of the slave cell goes on there. @param cells those of one slave cell
+/// In the plane: the share that a contact cell counts by (steepness.hpp).
+double share_of(const ContactCells& cells, std::size_t place) {
+  double sum = 0;
+  for (auto p = static_cast<std::size_t>(cells.offset[place]); p < static_cast<std::size_t>(cells.offset[place + 1]); ++p)
+    sum += cells.weight[p];
+  return sum / (cells.vertex[2 * place + 1] - cells.vertex[2 * place]);
+}
+
+/// In the plane: whether no other contact cell of the slave cell goes on there by the same share.
+/// @param cells those of one slave cell
 bool ends_cover(const ContactCells& cells, std::size_t vertex) {
-  return std::count(cells.vertex.begin(), cells.vertex.end(), cells.vertex[vertex]) == 1;
+  constexpr double round_off = 1e-9;
+  const std::size_t place = vertex / 2;
+  for (std::size_t other = 0; other < cells.size(); ++other)
+    if (other != place &&
+        (cells.vertex[2 * other] == cells.vertex[vertex] || cells.vertex[2 * other + 1] == cells.vertex[vertex]))
+      return std::abs(share_of(cells, other) - share_of(cells, place)) > round_off;
+  return true;
 }
 
 /// The edge of a facet that a line lies on, if it does. @param from, to in reference coordinates

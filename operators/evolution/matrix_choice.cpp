@@ -21,8 +21,9 @@ constexpr int patience = 3;
 
 }  // namespace
 
-void MatrixChoice::start_instant() {
+void MatrixChoice::start_instant(bool follows) {
   unstable_ = far_ = balances_ = false;
+  follows_ = follows;
   slow_ = 0;
   settled_ = traits_.settling;
   flat_ = elastic_ = {};
@@ -40,7 +41,7 @@ NewtonMatrix MatrixChoice::suited(SolidMatrix asked, bool touches) const {
 }
 
 bool MatrixChoice::note_pivots(NewtonMatrix present, bool curves, std::int64_t negative, std::int64_t constraints) {
-  if (negative <= constraints || balances_) return false;
+  if (negative <= constraints || balances_ || follows_) return false;
   if (present.curved && curves) {
     flat_.begin();
     return true;

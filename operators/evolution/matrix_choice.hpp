@@ -53,7 +53,9 @@ class MatrixChoice {
  public:
   explicit MatrixChoice(const MatrixTraits& traits) : traits_(traits), waits_(traits.in_space) {}
 
-  void start_instant();
+  /// @param follows it takes the matrix as it is, whatever its pivots say
+  void start_instant(bool follows = false);
+  bool follows_unstable() const { return follows_; }
   /// All that lasts longer than an instant: whether second derivatives of gaps wait.
   bool waits() const { return waits_; }
   void set_waits(bool waits) { waits_ = waits; }
@@ -87,6 +89,7 @@ class MatrixChoice {
   bool unstable_ = false;             ///< the tangent of an iterate of this instant was
   Span flat_;                         ///< without terms of stress and second derivatives of gaps
   int slow_ = 0;                      ///< iterations in a row without them, near an equilibrium, that came a little nearer
+  bool follows_ = false;              ///< the instant takes the matrix as it is
   bool balances_ = false;             ///< near an unstable equilibrium: the matrix is taken as it is
   int iterations_ = 0, without_ = 0;  ///< of the instant: all, and those of flat_
   bool far_ = false;                  ///< as flat_, of a matrix that is not symmetric

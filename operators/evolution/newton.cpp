@@ -139,12 +139,15 @@ int Newton::solve(double instant, StaticState& state, const std::function<void(c
     Message told = error.message();
     FailureNature nature = nature_of(error);
     nature.led_astray = elsewhere_ && told.severity == 'S';
+    nature.left_unstable =
+        !nature.led_astray && told.severity == 'S' && choice_.leaves_unstable() && !choice_.follows_unstable();
+    follows_unstable_ = nature.left_unstable;
     // the state before was computed: what is wrong with a cell now, the iterations have done
     if (told.id == "ELEMENT_1" || told.id == "EVOLUTION_3")
       told = message("EVOLUTION_18", {{"instant", fmt::format("{:.9g}", instant)},
                                       {"reason", said({told.text, course_.words()})},
                                       {"remedy", part(options_.cuts ? "remedy_coarser_load" : "remedy_cut_step")}});
-    else if (!nature.led_astray)
+    else if (!nature.led_astray && !nature.left_unstable)
       throw;
     if (nature.led_astray) prediction_.mislead();
     throw InstantFailure(told, nature);
@@ -156,7 +159,7 @@ int Newton::iterate(double instant, StaticState& state, const std::function<void
   equilibrium_.rest_at(previous.displacement);
   equilibrium_.keep_gliding(previous.patches);
   std::vector<double> step = equilibrium_.load(instant, state);
-  choice_.start_instant();
+  choice_.start_instant(std::exchange(follows_unstable_, false));
   statuses_.start_instant();
   edges_ = {};
   lost_masters_.start_instant();
@@ -224,6 +227,7 @@ int Newton::iterate(double instant, StaticState& state, const std::function<void
       if (contact()) contact()->geometry().check_radii();
       if (const auto cell = equilibrium_.cell_inside_out())
         fail("EVOLUTION_9", {{"instant", fmt::format("{:.9g}", instant)}, {"cell", cell_name(*cell)}});
+      tell_unstable(instant, line);
       equilibrium_.hold_points(state);
       equilibrium_.let_covers_go();
       prediction_.note(options_.start, {.displacement = previous.displacement, .pressure = previous.patches.lambda},
@@ -252,6 +256,14 @@ int Newton::iterate(double instant, StaticState& state, const std::function<void
     if (!std::isfinite(line.maxi)) break;
   }
   fail_to_converge(instant, line, changing);
+}
+
+void Newton::tell_unstable(double instant, const IterationReport& line) {
+  const auto& negative = line.solution.factorisation.negative_pivots;
+  if (!choice_.follows_unstable() || !negative || *negative <= line.constraints || std::exchange(unstable_told_, true)) return;
+  inform("EVOLUTION_54", {{"instant", fmt::format("{:.9g}", instant)},
+                          {"negative", std::to_string(*negative)},
+                          {"constraints", std::to_string(line.constraints)}});
 }
 
 void Newton::assemble(const StaticState& state, const StaticState& previous, SolidMatrix asked) {

@@ -82,6 +82,8 @@ class Newton {
   /// Let a state have the temperatures of the first instant, and laws without a memory start from it.
   void start_heated(StaticState& state);
   int iterate(double instant, StaticState& state, const std::function<void(const IterationReport&)>& report);
+  /// EVOLUTION_54, once: what is solved is an equilibrium that is not stable. @param line the last iteration
+  void tell_unstable(double instant, const IterationReport& line);
   void assemble(const StaticState& state, const StaticState& previous, SolidMatrix asked);
   /// The solution of the present system. Where bodies are loose that are near to others, patches of `state` take contact
   /// first. Throws SOLVER_3 in the first iteration, EVOLUTION_42 in later ones.
@@ -145,6 +147,8 @@ class Newton {
   Prediction prediction_;
   bool elsewhere_ = false;              ///< it has led this instant to another start than the last state
   std::set<std::size_t> told_;          ///< patches that EVOLUTION_20 was about
+  bool follows_unstable_ = false;       ///< the next instant does: the last attempt left an equilibrium that is not stable
+  bool unstable_told_ = false;          ///< EVOLUTION_54 was
   std::set<std::int32_t> covers_told_;  ///< zones that EVOLUTION_50 was about
   ResidualCourse course_;               ///< of the instant
   int times_held_ = 0;                  ///< in this instant: loose bodies

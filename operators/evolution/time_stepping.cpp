@@ -157,18 +157,25 @@ std::size_t check_number(const TimeSteps& steps, std::int64_t number) {
 
 void step_through(const TimeSteps& steps, const SolveInstant& solve, const GoBack& go_back, const Solved& solved,
                   const Iterations& iterations) {
-  const SolveInstant from_either_start = [&](double to) {
-    try {
-      solve(to);
-      return;
-    } catch (const Error& error) {
-      if (!nature_of(error).led_astray) throw;
-      inform("EVOLUTION_48", {{"instant", fmt::format("{:.9g}", to)}, {"reason", error.message().text}});
+  const SolveInstant in_any_way = [&](double to) {
+    for (std::optional<InstantFailure> unstable;;) {
+      try {
+        solve(to);
+        return;
+      } catch (const Error& error) {
+        const FailureNature nature = nature_of(error);
+        if (!nature.led_astray && !nature.left_unstable) {
+          if (error.message().severity == 'S' && unstable) throw InstantFailure(*unstable);
+          throw;
+        }
+        if (nature.left_unstable) unstable.emplace(error.message(), nature);
+        inform(nature.led_astray ? "EVOLUTION_48" : "EVOLUTION_53",
+               {{"instant", fmt::format("{:.9g}", to)}, {"reason", error.message().text}});
+      }
+      go_back();
     }
-    go_back();
-    solve(to);
   };
-  const Stepper stepper{steps, from_either_start, go_back, solved};
+  const Stepper stepper{steps, in_any_way, go_back, solved};
   if (steps.adaptation) {
     AdaptiveStepper adaptive(steps, stepper, iterations);
     for (std::size_t i = 1; i < steps.values.size(); ++i) adaptive.advance(steps.values[i - 1], steps.values[i]);

@@ -24,7 +24,8 @@ using Iterations = std::function<int()>;
 /// times over (DEFI_LIST_INST, ECHEC/ACTION='DECOUPE'); the failure that no cut can help (InstantFailure) is thrown on, and
 /// EVOLUTION_19 says why. Which action holds is
 /// said by the event: STEP_1 (RESI_MAXI), STEP_2 (DELTA_GRANDEUR), STEP_4 (DIVE_RESI), any other failure of the solution.
-/// An instant that was led astray (FailureNature) is solved once more behind go_back(), before anything is cut.
+/// An instant that was led astray, or left an equilibrium that is not stable (FailureNature), is solved once more behind
+/// go_back(), before anything is cut. Where the latter fails again, its first failure is what counts.
 /// With `steps.adaptation` (METHODE='AUTO') steps also grow and shrink between the instants of the list, beginning with its
 /// first interval; a step that fails is then cut once, and the shorter one goes on. Throws STEP_3 after too many steps.
 void step_through(const TimeSteps& steps, const SolveInstant& solve, const GoBack& go_back, const Solved& solved,

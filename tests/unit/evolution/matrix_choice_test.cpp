@@ -110,6 +110,20 @@ TEST(MatrixChoice, AnUnstableEquilibriumThatIterationsComeToSlowlyHasItsOwnMatri
   }
 }
 
+TEST(MatrixChoice, AnInstantThatFollowsAnUnstableEquilibriumTakesTheMatrixAsItIs) {
+  MatrixChoice choice = started({});
+  choice.start_instant(true);
+  EXPECT_TRUE(choice.follows_unstable());
+  for (int i = 0; i < 3; ++i) {
+    EXPECT_FALSE(choice.note_pivots(consistent, true, 4, 3));
+    EXPECT_FALSE(choice.note_residual({.largest = 1, .share = 0.001, .curved = true}));
+    EXPECT_EQ(choice.suited(SolidMatrix::tangent, true), consistent);
+  }
+  choice.start_instant();  // that one alone
+  EXPECT_FALSE(choice.follows_unstable());
+  EXPECT_TRUE(choice.note_pivots(consistent, true, 4, 3));
+}
+
 TEST(MatrixChoice, ATangentThatIsNotSymmetricIsTakenAsItIs) {
   for (const bool touches : {false, true}) {
     const MatrixChoice choice = started({.made_symmetric = true, .symmetric = false});

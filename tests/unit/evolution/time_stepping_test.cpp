@@ -125,6 +125,35 @@ TEST(TimeStepping, BeginsAnInstantAgainThatWasLedAstray) {
   }
 }
 
+// Where iterations left an equilibrium that is not stable the instant is solved once more; what fails again is the first
+// failure.
+TEST(TimeStepping, BeginsAnInstantAgainThatLeftAnUnstableEquilibrium) {
+  const auto failure = [](const char* text, FailureNature nature) {
+    return InstantFailure({.severity = 'S', .id = "EVOLUTION_4", .text = text, .advice = ""}, nature);
+  };
+  for (const bool fails_again : {false, true}) {
+    int tried = 0, returns = 0, solved = 0;
+    std::string told;
+    try {
+      step_through(
+          {.values = {0, 1}, .action = {.cut = false}},
+          [&](double) {
+            if (++tried == 1) throw failure("astray", {.led_astray = true});
+            if (tried == 2) throw failure("left", {.ratio = 1.1, .left_unstable = true});
+            if (fails_again) throw failure("stayed", {});
+          },
+          [&] { ++returns; }, [&](double, bool) { ++solved; });
+    } catch (const Error& error) {
+      told = error.message().text;
+      EXPECT_EQ(nature_of(error).ratio, 1.1);
+    }
+    EXPECT_EQ(tried, 3);
+    EXPECT_EQ(returns, 2);
+    EXPECT_EQ(solved, fails_again ? 0 : 1);
+    EXPECT_EQ(told, fails_again ? "left" : "");
+  }
+}
+
 // An error of the user is no reason to try smaller steps.
 TEST(TimeStepping, CutsOnlyFailuresOfTheSolution) {
   const TimeSteps steps{.values = {0, 1}, .action = {.cut = true}};
