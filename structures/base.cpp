@@ -30,11 +30,17 @@ std::string Base::label(std::string_view id) const {
 
 namespace {
 
-/// Open a concept and check its type.
+/// A file in the place of another one.
+[[noreturn]] void is_another(const std::filesystem::path& file, const std::string& found, const std::string& expected) {
+  fail("BASE_7", {{"file", file.string()}, {"found", found}, {"expected", expected}});
+}
+
+/// Open a concept and check its type, and that the file is its own.
 hdf5::Reader open_concept(const Base& base, std::string_view id, std::string_view type) {
   hdf5::Reader root(base.file(id));
   if (const std::string found = root.text("lacon_type"); found != type)
     fail("BASE_4", {{"id", std::string(id)}, {"found", found}, {"expected", std::string(type)}});
+  if (const std::string found = root.text("id"); found != id) is_another(base.file(id), found, std::string(id));
   return root;
 }
 
@@ -101,10 +107,25 @@ Result Base::result(std::string_view id) const {
   return storage::read_whatever(open_concept(*this, id, "result"), storage::read_result);
 }
 
+namespace {
+
+std::string field_of(std::string_view name, std::int64_t order) {
+  return part("field_of_order", {{"field", std::string(name)}, {"order", std::to_string(order)}});
+}
+
+}  // namespace
+
 Field Base::field(const Result& result, std::string_view name, std::int64_t order) const {
   const auto named = result.fields.find(std::string(name));
   if (named != result.fields.end())
-    if (const auto file = named->second.find(order); file != named->second.end()) return read_field(folder_ / file->second);
+    if (const auto file = named->second.find(order); file != named->second.end()) {
+      const std::filesystem::path path = folder_ / file->second;
+      Field field = read_field(path);
+      const bool is_of_result = path.parent_path() != folder_;  // one of its own goes by another name here
+      if (is_of_result && (field.name != name || field.order != order))
+        is_another(path, field_of(field.name, field.order), field_of(name, order));
+      return field;
+    }
   std::string known;
   for (const auto& [field, files] : result.fields)
     if (files.contains(order)) known += (known.empty() ? "" : ", ") + field;

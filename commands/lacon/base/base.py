@@ -15,6 +15,7 @@ import weakref
 
 from ..core.concepts import concepts_in, dumps, type_of
 from ..core.files import write_whole
+from ..core.hdf5 import text
 from ..core.late import h5py
 from ..core.messages import AsterError, NeedsRun, fail
 from . import contents, kept, seal
@@ -179,9 +180,13 @@ class Base:
         if identifier in self.unsolved:
             raise NeedsRun(*self.unsolved[identifier])
         try:
-            return seal.open_checked(self.path(identifier))
+            file = seal.open_checked(self.path(identifier))
         except OSError as error:
             fail("STUDY_7", file=self.path(identifier), reason=error)
+        if (found := text(file.attrs.get("id", identifier))) != identifier:
+            file.close()
+            fail("BASE_7", file=self.path(identifier), found=found, expected=identifier)
+        return file
 
     def concept(self, identifier, label=""):
         """The object of an id, the same one as long as anything holds it."""

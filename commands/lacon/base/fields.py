@@ -1,5 +1,6 @@
 """Fields of results and of their own, read from their files; docs/structures.md section 3."""
 
+from ..core.catalog import part
 from ..core.hdf5 import text, texts
 from ..core.late import numpy
 from ..core.messages import fail
@@ -55,6 +56,14 @@ class FieldData:
         column = self.components.index(name)
         rows = self.present[:, column]
         return self.rows()[0][rows], self.values[rows, column]
+
+
+def check_place(path, file, name, order):
+    """@throws AsterError BASE_7 where the file is that of another field, or of another order number"""
+    found = text(file.attrs["name"]), int(file.attrs["order"])
+    if found != (name, order):
+        said = [part("field_of_order", field=field, order=number) for field, number in (found, (name, order))]
+        fail("BASE_7", file=path, found=said[0], expected=said[1])
 
 
 def open_field(folder, path):

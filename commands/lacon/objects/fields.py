@@ -1,6 +1,6 @@
 """Fields as a command file sees them."""
 
-from ..base.fields import FieldData, open_field
+from ..base.fields import FieldData, check_place, open_field
 from ..core import current
 from ..core.concepts import Concept
 from ..core.late import numpy
@@ -63,6 +63,8 @@ class Field(Arithmetic, FieldData):
         """@param path of its file, relative to the base  @param origin of a field of a result: (result, its name there, order number)"""
         with open_field(base.folder, path) as file:
             super().__init__(file)
+            if origin:
+                check_place(base.folder / path, file, *origin[1:])
         self.base = base
         self._origin = origin
 

@@ -4,7 +4,7 @@ import contextlib
 from functools import cached_property
 
 from ..base import command_files, contents
-from ..base.fields import FieldData, open_field
+from ..base.fields import FieldData, check_place, open_field
 from ..base.journal import read_journal
 from ..base.seal import open_checked
 from ..core import catalog
@@ -276,7 +276,10 @@ class Result(States):
         return f"{self.label}, INST {self.instants[self.orders.index(order)]:g}"
 
     def _opened(self, name, order):
-        return open_field(self._base.folder, self._fields[name][order])
+        path = self._fields[name][order]
+        file = open_field(self._base.folder, path)
+        check_place(self._base.folder / path, file, name, order)
+        return file
 
     def _masters(self, order):
         path = contents.path_of_masters(self._base.folder / self._fields["CONT_ELEM"][order])

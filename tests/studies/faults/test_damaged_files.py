@@ -70,6 +70,32 @@ class Short(Damaged):
             self.assertEqual(run.returncode, 2, run.stdout + run.stderr)
             self.assertRegex(run.stderr, r"<F> <(BASE_5|STUDY_7)> .*DEPL_3.h5")
 
+    def test_a_file_in_the_place_of_another_is_told(self):
+        """Sound and sealed, but of another concept, field or instant: a mesh that was not cut yet ended in an internal error, other loads and other
+        instants' contact in numbers that were wrong."""
+        (result,) = {path.parent for path in self.base.glob("result_*/DEPL_3.h5")}
+        (self.folder / "more.comm").write_text("""
+POURSUITE()
+X = CREA_CHAMP(OPERATION="EXTR", TYPE_CHAM="NOEU_DEPL_R", RESULTAT=RESULT, NOM_CHAM="DEPL", NUME_ORDRE=3)
+Y = STAT_NON_LINE(MODELE=MODEL, CHAM_MATER=MATTER, CONTACT=CONTACT, EXCIT=(_F(CHARGE=HOLD), _F(CHARGE=PUSH, FONC_MULT=GROW)),
+                  ETAT_INIT=_F(EVOL_NOLI=RESULT), INCREMENT=_F(LIST_INST=DEFI_LIST_REEL(VALE=(1.0, 1.1))))
+FIN()
+""", encoding="utf-8")
+        (self.folder / "check.comm").write_text("POURSUITE()\nprint(RESULT.getField('DEPL', 3).getValues()[:1], TIMES.getValues())\nFIN()\n", encoding="utf-8")
+        meshes, loads = sorted(self.base.glob("mesh_*.h5")), sorted(self.base.glob("load_*.h5"))
+        for comm, source, place in (("more", meshes[0], meshes[1]), ("more", loads[0], loads[1]),
+                                    ("more", result / "DEPL_1.h5", result / "DEPL_3.h5"), ("more", result / "CONT_ELEM_1.h5", result / "CONT_ELEM_3.h5"),
+                                    ("more", result / "DEPL_3.h5", result / "SIEF_ELGA_3.h5"), ("check", result / "DEPL_1.h5", result / "DEPL_3.h5"),
+                                    ("check", loads[0], next(self.base.glob("list_of_reals_*.h5")))):
+            with self.subTest(f"{source.name} as {place.name}"):
+                sound = place.read_bytes()
+                place.write_bytes(source.read_bytes())
+                run = self.run_tool(f"{comm}.comm", "--base", self.base)
+                self.assertEqual(run.returncode, 2, run.stdout[-1000:] + run.stderr)
+                self.assertRegex(run.stderr, f"<F> <BASE_[47]> .*{place.stem}")
+                self.assertNotIn("Traceback", run.stderr)
+                place.write_bytes(sound)
+
     def test_a_result_with_a_field_that_was_touched_is_made_again(self):
         for cut, change in ((1000, b""), (-1, b"\xff")):
             (field,) = self.base.glob("result_*/DEPL_2*.h5")
