@@ -394,7 +394,7 @@ def symmetric(number):
 #: what is as it was to the last bit; for others the tolerance in largest values of a field
 WAYS = {"ulp": (ulp, math.inf), "threads": (threads, 0.0), "turned": (turned, 1e-9), "quarter": (quarter, 1e-9), "shifted": (shifted, 1e-9), "mirror": (mirror, 1e-9), "oriented": (oriented, 1e-9),
         "metres": (metres, 1e-9), "extreme": (extreme, 1e-9), "numbers": (numbers, 1e-11), "vertex": (vertex, 1e-11), "bodies": (bodies, 1e-11),
-        "zones": (zones, 1e-11), "loads": (loads, 1e-11), "stages": (stages, 1e-6), "petsc": (petsc, 1e-6), "mpi": (mpi, 1e-9)}
+        "zones": (zones, 1e-6), "loads": (loads, 1e-11), "stages": (stages, 1e-6), "petsc": (petsc, 1e-6), "mpi": (mpi, 1e-9)}
 
 
 def ways(number, names=WAYS):
