@@ -27,8 +27,9 @@ struct Factorisation {
   double error = 0;                                                      ///< what a substitution leaves of a residual
   double wasted_flops = 0;                                               ///< of a factor that was no use
   bool is_iterative = false;                                             ///< there is none: iterations have what they need
-  std::string stalled;  ///< why iterations were no use, and a factor was made instead
-  std::string doubt;    ///< why a cheaper factor was no use, and an exact one was made behind it
+  std::string stalled;   ///< why iterations were no use, and a factor was made instead
+  std::string doubt;     ///< why a cheaper factor was no use, and an exact one was made behind it
+  std::string unshared;  ///< why processes share it no more, or not at all; of the first factor after that
 };
 
 /// What a solution took.

@@ -72,6 +72,7 @@ struct MumpsEngine::State {
   Form form;
   std::optional<Subtrees> subtrees;  ///< where processes may share the factor
   std::shared_ptr<MumpsProcesses> processes;
+  std::optional<std::string> unshared;        ///< Factorisation::unshared, empty once it is told
   std::unique_ptr<MumpsFactor<double>> full;  ///< one of the two
   std::unique_ptr<MumpsFactor<float>> single;
   const SparseMatrix* matrix = nullptr;  ///< whose factor is kept
@@ -148,8 +149,10 @@ struct MumpsEngine::State {
     try {
       processes->start();
       return true;
-    } catch (const std::exception&) {  // of the system too: no descriptors left, say
+    } catch (const std::exception& error) {  // of the system too: no descriptors left, say
       if (options.processes_required) throw;
+      const Error* const told = dynamic_cast<const Error*>(&error);
+      if (!unshared) unshared = told ? told->message().text : error.what();
       return false;
     }
   }
@@ -251,6 +254,12 @@ struct MumpsEngine::State {
     } catch (const Unproved& unproved) {
       return factorise_with_more_care(unproved.doubt, found.flops + found.wasted_flops);
     }
+    return found;
+  }
+
+  /// With what has not been said yet of processes that do not share it.
+  Factorisation telling(Factorisation found) {
+    if (unshared) found.unshared = std::exchange(*unshared, std::string());
     return found;
   }
 
@@ -375,12 +384,12 @@ void MumpsEngine::analyse(const SparseMatrix& matrix) {
 
 Factorisation MumpsEngine::factorise(const SparseMatrix& matrix) {
   state_->take(matrix);
-  return state_->factorise_safely();
+  return state_->telling(state_->factorise_safely());
 }
 
 Factorisation MumpsEngine::factorise_to_solve(const SparseMatrix& matrix) {
   state_->take(matrix);
-  return state_->factorise_with_proof();
+  return state_->telling(state_->factorise_with_proof());
 }
 
 void MumpsEngine::substitute(std::span<double> right_side) { state_->substitute(right_side); }

@@ -326,6 +326,7 @@ SolutionReport Newton::solve_linear(std::vector<double>& solution, const Accurac
     if (factor.processes > 1) add_to_count("factors by several processes", 1);
     if (factor.out_of_core) add_to_count("factors in files", 1);
     if (!factor.doubt.empty()) inform("SOLVER_4", {{"reason", factor.doubt}});
+    if (!factor.unshared.empty()) inform("SOLVER_13", {{"reason", factor.unshared}});
   }
   add_to_count("Gflop of factorisations", 1e-9 * (factor.flops + factor.wasted_flops));
   add_to_count("columns of the inverse", report.columns);

@@ -269,7 +269,8 @@ TEST(TreeMumps, SaysThatProcessesHaveEnded) {
   std::filesystem::remove(script);
 }
 
-// Where nobody has asked for processes one does without them, if they cannot be started or see no memory of the operator's.
+// Where nobody has asked for processes one does without them, if they cannot be started or see no memory of the operator's;
+// that is told once.
 TEST(TreeMumps, IsNotMadeWhereProcessesAreOfNoUse) {
   const Lattice lattice(10);
   const std::filesystem::path blind = std::filesystem::temp_directory_path() / "lacon_mumps_that_is_blind";
@@ -282,7 +283,11 @@ TEST(TreeMumps, IsNotMadeWhereProcessesAreOfNoUse) {
     options.program = program;
     MumpsEngine engine(options);
     engine.analyse(lattice.matrix);
-    EXPECT_EQ(engine.factorise(lattice.matrix).processes, 1) << program;
+    const Factorisation made = engine.factorise(lattice.matrix);
+    EXPECT_EQ(made.processes, 1) << program;
+    EXPECT_NE(made.unshared.find(program), std::string::npos) << made.unshared;
+    engine.analyse(lattice.matrix);
+    EXPECT_EQ(engine.factorise(lattice.matrix).unshared, "") << program;
   }
   std::filesystem::remove(blind);
 }
