@@ -9,7 +9,8 @@ namespace lacon {
 
 /// Edges that recede from iteration to iteration. Where the bodies bend, the pull at the edge is the moment there over the size
 /// of a patch, held by the next patch alone: nothing in one iteration says how far the edge goes, and it would move by a patch
-/// in each. Two iterations do: the pull vanishes where the secant through the last two of it does.
+/// in each. Two iterations do: the pull vanishes where the secant through the last two of it does. In the plane: an edge in
+/// space has other patches in each iteration, and would go too far.
 class EdgeCourse {
  public:
   /// How many layers of patches open, the pulled ones among them. @param pulled together, with their force

@@ -427,7 +427,9 @@ std::vector<Status> Newton::wanted_statuses(const StaticState& state, IterationR
   const Phase phase("pairing");
   Patchwise patches = state.patches;
   line.status_changes = contact()->update_statuses(patches);
-  if (!statuses_.keeps()) line.status_changes += contact()->open_behind_edges(state.patches.status, patches, &edges_);
+  // in space an edge has other patches from iteration to iteration, whose pulls do not compare
+  EdgeCourse* const course = problem_.dimension == 2 ? &edges_ : nullptr;
+  if (!statuses_.keeps()) line.status_changes += contact()->open_behind_edges(state.patches.status, patches, course);
   return patches.status;
 }
 
