@@ -7,12 +7,14 @@ import unittest
 
 import numpy as np
 
-sys.path.insert(0, str(pathlib.Path(os.environ["LACON_SOURCE_DIR"]) / "tests/studies"))
+STUDIES = pathlib.Path(os.environ["LACON_SOURCE_DIR"]) / "tests/studies"
+sys.path[:0] = [str(STUDIES), str(STUDIES / "metamorphic")]
 
 from study_test import StudyTest  # noqa: E402, I001 (it says where meshes.py is)
 from contact import contact_study, run_contact  # noqa: E402
-from meshes import CELLS, Mesh, block, brick, shaken, union  # noqa: E402
+from meshes import block, brick, shaken, union  # noqa: E402
 from patch import KINDS, straight, uneven  # noqa: E402
+from written import first_vertices, renumbered  # noqa: E402
 
 BENCH = pathlib.Path(os.environ["LACON_SHARED_BENCH"]) / "meshes/t2.med"
 PRESSURE, YOUNG, POISSON = 25.0, 2000.0, 0.3
@@ -38,23 +40,6 @@ def bowl(slave, master):
 def pressed(mesh, **more):
     return contact_study(mesh, [{"GROUP_MA": "BASE", "DX": 0, "DY": 0, "DZ": 0}, {"GROUP_MA": "TOP", "DX": 0.01, "DY": 0, "DZ": -0.06}],
                          times=[0.0, 0.5, 1.0], zone={"CONTACT_INIT": "INTERPENETRE"}, **more)
-
-
-def renumbered(mesh, seed):
-    """Other numbers for nodes and cells, another order of the types, another first vertex for each skin cell."""
-    random = np.random.default_rng(seed)
-    node = random.permutation(len(mesh.points))
-    points = np.empty_like(mesh.points)
-    points[node] = mesh.points
-    cells, place = {}, {}
-    for kind in reversed(mesh.cells):
-        rows, order = node[mesh.cells[kind]], random.permutation(len(mesh.cells[kind]))
-        if CELLS[kind][1] == 2:
-            n = 3 if kind.startswith("TRIA") else 4
-            rows = np.hstack([np.roll(rows[:, k:k + n], 1, axis=1) if k + n <= rows.shape[1] else rows[:, k:] for k in range(0, rows.shape[1], n)])
-        cells[kind] = rows[order]
-        place[kind] = np.argsort(order)
-    return Mesh(points, cells, {name: [(kind, int(place[kind][c])) for kind, c in members] for name, members in mesh.cell_groups.items()})
 
 
 def canonical(result):
@@ -99,7 +84,7 @@ class Contact(FlatTetrahedra):
         for slave, master, cut in pairs:
             upper, lower = bowl(slave, master)
             mesh = union([upper, lower])
-            studies += [pressed(m, cut=cut) for m in (mesh, renumbered(mesh, 3), union([lower, upper]))]
+            studies += [pressed(m, cut=cut) for m in (mesh, renumbered(first_vertices(mesh), 3), union([lower, upper]))]
         _, results = run_contact(self, studies)
         for k, pair in enumerate(pairs):
             one, *others = [canonical(result) for result in results[3 * k:3 * k + 3]]
