@@ -59,6 +59,9 @@ class Engine {
   /// Likewise, where a part of the right side may be left. @param share of its norm; an engine may leave less
   virtual Solution solve_to(double /*share*/, std::span<double> right_side) { return solve(right_side); }
 
+  /// Where nodes are for the matrices to come, (n_nodes, 3); until then they are where they were at first.
+  virtual void place_nodes(std::span<const double> /*coordinates*/) {}
+
   /// What cheaper factors have failed for, so that later ones take more care: their pivots are looked for, or they are exact.
   enum class Care { none, pivots, exact };
   /// For another process that goes on with the same bits.

@@ -52,6 +52,7 @@ struct PetscEngine::State {
   BlockSystem::Sizes sizes;
   std::optional<BlockNumbering> blocks;
   std::optional<LooseMotions> loose;
+  std::vector<double> place;  ///< of the nodes now, (n_nodes, 3); empty: where they were at first
   const SparseMatrix* matrix = nullptr;
   std::unique_ptr<MumpsEngine> direct;  ///< where this matrix has a factor
   std::optional<SparseMatrix> whole;    ///< the same, where other processes have most of it
@@ -89,10 +90,11 @@ struct PetscEngine::State {
     std::ranges::copy(matrix->values(), made.value.begin());
     std::ranges::copy(blocks->place, made.place.begin());
     std::ranges::copy(blocks->first_block, made.first_block.begin());
+    const std::span<const double> coordinates = place.empty() ? options.geometry.coordinates : std::span<const double>(place);
     for (std::size_t b = 0; b < blocks->node.size(); ++b)
       for (int i = 0; i < sizes.dimension; ++i)
         made.coordinates[b * static_cast<std::size_t>(sizes.dimension) + static_cast<std::size_t>(i)] =
-            options.geometry.coordinates[3 * static_cast<std::size_t>(blocks->node[b]) + static_cast<std::size_t>(i)];
+            coordinates[3 * static_cast<std::size_t>(blocks->node[b]) + static_cast<std::size_t>(i)];
     return memory;
   }
 
@@ -157,6 +159,10 @@ bool PetscEngine::has_mpirun() {
 PetscEngine::PetscEngine(const PetscOptions& options) : state_(std::make_unique<State>(options)) {}
 PetscEngine::~PetscEngine() = default;
 std::shared_ptr<PartProcesses> PetscEngine::processes(std::int64_t /*n_equations*/) const { return state_->processes; }
+
+void PetscEngine::place_nodes(std::span<const double> coordinates) {
+  state_->place.assign(coordinates.begin(), coordinates.end());
+}
 
 void PetscEngine::analyse(const SparseMatrix& matrix) {
   State& s = *state_;

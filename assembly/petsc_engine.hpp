@@ -44,6 +44,8 @@ class PetscEngine : public Engine {
   Solution solve(std::span<double> right_side) override;
   /// To RESI_RELA, where that is more.
   Solution solve_to(double share, std::span<double> right_side) override;
+  /// The multigrid's rigid motions are those of bodies as they are there.
+  void place_nodes(std::span<const double> coordinates) override;
   std::shared_ptr<PartProcesses> processes(std::int64_t n_equations) const override;
 
  private:

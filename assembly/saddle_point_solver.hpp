@@ -62,6 +62,8 @@ class SaddlePointSolver {
   /// Throws SOLVER_1, SOLVER_2.
   SolutionReport solve(const SparseMatrix& matrix, std::int64_t first_multiplier, std::span<double> right_side,
                        const Accuracy& accuracy = {});
+  /// Where nodes are for the matrices to come (Engine::place_nodes), (n_nodes, 3).
+  void place_nodes(std::span<const double> coordinates) { engine_->place_nodes(coordinates); }
   /// Right sides so far were those of a computation that failed: they say nothing of how exact the next solution has to be.
   void forget_right_sides() { reference_ = 0; }
 

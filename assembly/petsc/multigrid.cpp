@@ -74,14 +74,14 @@ void forget_products(PC multigrid) {
 }  // namespace
 
 bool Multigrid::suits(const Nodes& nodes) const {
-  int suits_here = pc_ && nodes == nodes_ && !is_old(), suits_all = 0;
+  int suits_here = pc_ && nodes.is_free == is_free_ && !is_old(), suits_all = 0;
   MPI_Allreduce(&suits_here, &suits_all, 1, MPI_INT, MPI_LAND, PETSC_COMM_WORLD);
   return suits_all;
 }
 
 bool Multigrid::is_old() const { return lost_ >= of_setting_up; }
 
-void Multigrid::take_from(KSP displacements, Nodes nodes) {
+void Multigrid::take_from(KSP displacements, const Nodes& nodes) {
   forget();
   PC pc = nullptr;
   checked(KSPGetPC(displacements, &pc));
@@ -102,7 +102,7 @@ void Multigrid::take_from(KSP displacements, Nodes nodes) {
     checked(PCMGSetRestriction(pc, level, blocks));
   }
   checked(PCSetReusePreconditioner(pc, PETSC_TRUE));
-  nodes_ = std::move(nodes);
+  is_free_ = nodes.is_free;
   is_new_ = true;
   KSP smoother = nullptr;
   checked(PCMGGetSmoother(pc, finest_level(pc), &smoother));

@@ -17,15 +17,14 @@ class Multigrid {
   struct Nodes {
     std::vector<double> coordinates;
     std::vector<std::uint8_t> is_free;
-    bool operator==(const Nodes&) const = default;
   };
 
-  /// Whether it will do for another matrix of these nodes: on all processes, or on none.
+  /// Whether it will do for another matrix of these nodes, wherever they have moved: on all processes, or on none.
   bool suits(const Nodes& nodes) const;
   /// Have a KSP precondition with it that is not set up, and whose matrix is in blocks of double precision.
   void give_to(KSP displacements);
   /// Take the one that a KSP has set up. Its levels get blocks of single precision, and need the matrix no more.
-  void take_from(KSP displacements, Nodes nodes);
+  void take_from(KSP displacements, const Nodes& nodes);
   /// Of the matrix that it works for nothing is needed any more.
   void let_go() const;
   void forget() { *this = {}; }
@@ -44,7 +43,7 @@ class Multigrid {
   Mat finest() const;
 
   OwnedPc pc_;
-  Nodes nodes_;
+  std::vector<std::uint8_t> is_free_;
   bool is_new_ = false;
   double of_a_digit_ = 0;  ///< iterations, with the matrix that it was made for
   double lost_ = 0;        ///< iterations more than these, with all others

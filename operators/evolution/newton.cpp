@@ -15,6 +15,7 @@
 #include "lacon/operators/evolution/instant_failure.hpp"
 #include "lacon/operators/evolution/parts.hpp"
 #include "lacon/operators/program/program.hpp"
+#include "lacon/structures/displacement.hpp"
 #include "lacon/structures/hdf5.hpp"
 
 namespace lacon {
@@ -267,6 +268,9 @@ void Newton::tell_unstable(double instant, const IterationReport& line) {
 }
 
 void Newton::assemble(const StaticState& state, const StaticState& previous, SolidMatrix asked) {
+  std::vector<double> place;
+  displace(problem_.mesh, state.displacement, problem_.dimension, place);
+  solver_.place_nodes(place);
   equilibrium_.assemble(state, previous, choice_.suited(asked, equilibrium_.touches(state)));
 }
 

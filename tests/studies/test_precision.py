@@ -24,10 +24,10 @@ def two_blocks(length, cells):
 
 
 class Precision(StudyTest):
-    def solve(self, solver, case):
+    def solve(self, solver, case, study="precision.comm", mesh="blocks.med"):
         """@return displacements, what the solution counted, what was said"""
         base, report = self.folder / f"{solver}.base", self.folder / "run.json"
-        run = self.run_tool(SOURCE / "tests/studies/precision.comm", "--fresh", "--base", base, "--unit", "20=blocks.med", "--json", report, **case,
+        run = self.run_tool(SOURCE / "tests/studies" / study, "--fresh", "--base", base, "--unit", f"20={mesh}", "--json", report, **case,
                             SOLVER=solver)
         self.assertEqual(run.returncode, 0, run.stdout[-3000:] + run.stderr[-3000:])
         commands = json.loads(report.read_text())["timings"]["commands"]
