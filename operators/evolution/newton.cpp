@@ -108,6 +108,7 @@ void Newton::restart(const StaticState& state) {
 void Newton::save(const hdf5::Group& group) const {
   group.set("waits", std::int64_t{choice_.waits()});
   group.write("told", std::vector<std::int64_t>(told_.begin(), told_.end()));
+  group.set("unstable_told", std::int64_t{unstable_told_});
   group.write("covers_told", std::vector<std::int32_t>(covers_told_.begin(), covers_told_.end()));
   std::vector<std::int64_t> covers;
   for (std::size_t p = 0; contact() && p < contact()->n_patches(); ++p)
@@ -121,7 +122,8 @@ void Newton::save(const hdf5::Group& group) const {
 void Newton::resume(const hdf5::Group& group, const hdf5::Group* base, const StaticState& state, std::span<const double> rest) {
   choice_.set_waits(group.integer("waits") != 0);
   for (const std::int64_t patch : group.read<std::int64_t>("told")) told_.insert(static_cast<std::size_t>(patch));
-  if (group.has("covers")) {  // not in a record of before they were kept
+  unstable_told_ = group.has_attribute("unstable_told") && group.integer("unstable_told") != 0;  // not in older records
+  if (group.has("covers")) {  // likewise
     for (const std::int32_t zone : group.read<std::int32_t>("covers_told")) covers_told_.insert(zone);
     for (const std::int64_t patch : group.read<std::int64_t>("covers"))
       equilibrium_.keep_cover(static_cast<std::size_t>(patch));
