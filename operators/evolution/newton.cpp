@@ -123,7 +123,7 @@ void Newton::resume(const hdf5::Group& group, const hdf5::Group* base, const Sta
   choice_.set_waits(group.integer("waits") != 0);
   for (const std::int64_t patch : group.read<std::int64_t>("told")) told_.insert(static_cast<std::size_t>(patch));
   unstable_told_ = group.has_attribute("unstable_told") && group.integer("unstable_told") != 0;  // not in older records
-  if (group.has("covers")) {  // likewise
+  if (group.has("covers")) {                                                                     // likewise
     for (const std::int32_t zone : group.read<std::int32_t>("covers_told")) covers_told_.insert(zone);
     for (const std::int64_t patch : group.read<std::int64_t>("covers"))
       equilibrium_.keep_cover(static_cast<std::size_t>(patch));
