@@ -122,8 +122,8 @@ void Newton::save(const hdf5::Group& group) const {
 void Newton::resume(const hdf5::Group& group, const hdf5::Group* base, const StaticState& state, std::span<const double> rest) {
   choice_.set_waits(group.integer("waits") != 0);
   for (const std::int64_t patch : group.read<std::int64_t>("told")) told_.insert(static_cast<std::size_t>(patch));
-  unstable_told_ = group.has_attribute("unstable_told") && group.integer("unstable_told") != 0;  // not in older records
-  if (group.has("covers")) {                                                                     // likewise
+  unstable_told_ = group.has_attribute("unstable_told") && group.integer("unstable_told") != 0;
+  if (group.has("covers")) {  // older records have neither
     for (const std::int32_t zone : group.read<std::int32_t>("covers_told")) covers_told_.insert(zone);
     for (const std::int64_t patch : group.read<std::int64_t>("covers"))
       equilibrium_.keep_cover(static_cast<std::size_t>(patch));
