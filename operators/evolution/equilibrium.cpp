@@ -452,9 +452,10 @@ std::string Equilibrium::names(std::span<const std::int64_t> equations) const {
   for (const auto& [body, dof] : first_of)
     if (shown < most)
       names += (shown++ ? ", " : "") + part("dof_of_body", {{"dof", problem_.dof_name(dof)}, {"body", bodies.name_at(body)}});
+  std::set<std::string> told;  // many relations of one keyword have one name
   for (std::size_t r = 0; r < relations_.size() && shown < most; ++r)
     if (std::count(equations.begin(), equations.end(), system_.equation(relations_.unknown(r, system_))) > 0)
-      names += (shown++ ? ", " : "") + relations_.name(r);
+      if (const std::string name = relations_.name(r); told.insert(name).second) names += (shown++ ? ", " : "") + name;
   return names.empty() ? part("contact_multipliers") : names;
 }
 

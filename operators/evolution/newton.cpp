@@ -9,6 +9,7 @@
 #include <set>
 #include <utility>
 
+#include "lacon/assembly/dependent_rows.hpp"
 #include "lacon/catalog/messages.hpp"
 #include "lacon/catalog/wording.hpp"
 #include "lacon/operators/evolution/free_bodies.hpp"
@@ -286,7 +287,8 @@ std::vector<double> Newton::solve_system(StaticState& state, const StaticState& 
     if (settled_ == 0) loose = loose_.of(system.matrix());
     std::vector<std::int64_t> null;
     for (const LooseMotion& motion : loose) null.push_back(problem_.numbering.equation[static_cast<std::size_t>(motion.dof)]);
-    if (loose.empty()) {
+    const bool moves_freely = !loose.empty();
+    if (!moves_freely) {
       std::vector<double> solution = equilibrium_.right_side(step);
       const std::vector<MovingCover> covers = equilibrium_.moving_covers(state, step);
       for (const MovingCover& cover : covers)
@@ -304,7 +306,15 @@ std::vector<double> Newton::solve_system(StaticState& state, const StaticState& 
         loose.push_back({dof, {bodies_.of(static_cast<std::int32_t>(dof / problem_.n_components()))}});
     }
     if (!sprung && loose.size() == null.size() && hold(loose, state, previous, asked)) continue;
-    const std::string count = std::to_string(null.size()), names = equilibrium_.names(null);
+    const std::int64_t dependent =
+        sprung || moves_freely
+            ? 0
+            : std::min<std::int64_t>(std::ssize(null), count_dependent_rows(system.matrix(), system.first_multiplier()));
+    const std::int64_t free = std::ssize(null) - dependent;
+    if (free == 0)
+      throw InstantFailure(message("SOLVER_14", {{"count", std::to_string(dependent)}, {"names", equilibrium_.names(null)}}),
+                           {.depends_on_step = line.iteration > 0});
+    const std::string count = std::to_string(free), names = equilibrium_.names(null);
     // the first matrix of an instant is that of the state before
     if (line.iteration == 0)
       throw InstantFailure(message("SOLVER_3", {{"count", count}, {"names", names}}), {.depends_on_step = false});

@@ -114,6 +114,9 @@ std::vector<LinePoint> line_points(const Mesh& mesh, const CellLocator& locator,
   if (type == "GROUP_NO") return at_nodes(mesh, nodes_of_group(mesh, line.text("GROUP_NO"), line.path("GROUP_NO")));
   if (type == "GROUP_MA") return at_nodes(mesh, chain_of_lines(mesh, line.text("GROUP_MA"), line.path("GROUP_MA")));
   std::vector<LinePoint> points = type == "ARC" ? arc(mesh, line) : segment(mesh, line);
+  if (points.back().along == 0)
+    inform("LIGNCOUPE_14",
+           {{"keyword", line.path(type == "ARC" ? "ANGLE" : "COOR_EXTR")}, {"count", std::to_string(points.size())}});
   locate(points, mesh, locator, line);
   return points;
 }

@@ -79,7 +79,7 @@ FIN()
 
     def test_mistakes(self):
         for line, *words in (("NOM_PARA='X', VALE='X +'", "FORMULE_1"), ("NOM_PARA='X', VALE='Xx + 1'", "FORMULE_4", "'Xx'", "nearest one is X"),
-                             ("NOM_PARA='1X', VALE='1'", "FORMULE_3"),
+                             ("NOM_PARA='1X', VALE='1'", "FORMULE_3"), ("NOM_PARA=('X', 'in'), VALE='X'", "FORMULE_3", "'in'"),
                              ("NOM_PARA=('X', 'X'), VALE='X'", "KEYWORD_12"), ("NOM_PARA='X', VALE_C='X', VALE='1'", "KEYWORD_11")):
             with self.subTest(line):
                 self.refused(self.run_study(f"DEBUT()\nf = FORMULE({line})\n"), "study.comm:2", *words)

@@ -268,6 +268,12 @@ class MacrLignCoupe(OperatorTest):
         self.refuses("LIGNCOUPE_1", {**line, "DISTANCE_MAX": 0.09}, "the point 1", "(0.5, -0.1)", "LIGN_COUPE/TYPE")
         self.refuses("LIGNCOUPE_1", {**line, "COOR_EXTR": [1.5, -1.0]}, "the point 2")
 
+    def test_a_line_without_length_is_told(self):
+        self.plane()
+        rows = self.lines({"NB_POINTS": 2, "COOR_ORIG": [0.5, 0.5], "COOR_EXTR": [0.5, 0.5]}, NUME_ORDRE=[0])
+        self.assertEqual(self.messages, ["LIGNCOUPE_14"])
+        np.testing.assert_allclose(self.column(rows, "DX"), [0.5, 0.5], atol=1e-14)
+
     def test_instants_of_a_list_that_are_not_there_are_told(self):
         self.plane()
         line = {"NB_POINTS": 2, "COOR_ORIG": [0.5, 0.5], "COOR_EXTR": [1.5, 0.5]}

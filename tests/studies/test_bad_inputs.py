@@ -27,6 +27,9 @@ NEWTON = dict(FORMULATION="CONTINUE", ALGO_RESO_GEOM="NEWTON", ALGO_RESO_CONT="N
 ZONE = dict(GROUP_MA_ESCL="SLAVE", GROUP_MA_MAIT="MASTER", ALGO_CONT="LAC", CONTACT_INIT="OUI")
 CONTACT = DEFI_CONTACT(MODELE=MODEL, ZONE=_F(**ZONE), **NEWTON)
 TIMES = DEFI_LIST_REEL(VALE=(0.0, 1.0))
+HELD = AFFE_CHAR_MECA(MODELE=MODEL, DDL_IMPO=(_F(GROUP_MA="BASE", DY=0.0), _F(GROUP_MA="AXIS", DX=0.0), _F(GROUP_MA="LOOSE", DX=0.0, DY=0.0)))
+RIGID = AFFE_CHAR_MECA(MODELE=MODEL, LIAISON_SOLIDE=_F(GROUP_MA="LOAD"))
+EVEN = AFFE_CHAR_MECA(MODELE=MODEL, LIAISON_UNIF=_F(GROUP_MA="LOAD", DDL="DX"))  # that four nodes move alike: so do those of a rigid line along x
 FIN()
 """
 
@@ -57,6 +60,8 @@ TABLE = {
                                 ["PRES_REP", "LOADS", "LOAD"], USER),
     "no boundary condition": ("STAT_NON_LINE(MODELE=MODEL, CHAM_MATER=MATTER, EXCIT=_F(CHARGE=PUSH), CONTACT=CONTACT, "
                               "INCREMENT=_F(LIST_INST=TIMES))", "SOLVER_3", ["singular"], SOLUTION),
+    "relations that say what others say": ("STAT_NON_LINE(MODELE=MODEL, CHAM_MATER=MATTER, EXCIT=[_F(CHARGE=c) for c in (HELD, RIGID, EVEN)], CONTACT=CONTACT, "
+                                           "INCREMENT=_F(LIST_INST=TIMES))", "SOLVER_14", ["3 of the relations", "RIGID (LIAISON_SOLIDE"], SOLUTION),
     "result in an unwritable folder": ("IMPR_RESU(FORMAT='MED', UNITE=80, RESU=_F(MAILLAGE=CUT))", "COMMAND_8", ["80", "out.med"], USER),
 }
 

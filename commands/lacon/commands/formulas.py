@@ -1,6 +1,7 @@
 """FORMULE."""
 
 import json
+import keyword
 
 from ..base import names
 from ..base.expressions import Expression, hides
@@ -12,7 +13,7 @@ def formule(call):
     k = call.keywords
     parameters, text = k["NOM_PARA"], k["VALE"].strip().replace("\n", " ")
     for parameter in parameters:
-        if not parameter.isidentifier():
+        if not parameter.isidentifier() or keyword.iskeyword(parameter):
             call.fail("FORMULE_3", "NOM_PARA", name=parameter)
     values = {name: value for name, value in k.items() if name not in ("NOM_PARA", "VALE")}
     try:

@@ -1,5 +1,6 @@
 """IMPR_FONCTION, TEST_FONCTION, RECU_FONCTION, CALC_FONCTION, INFO_FONCTION."""
 
+import collections
 import math
 
 from ..base.functions import Piecewise
@@ -108,6 +109,10 @@ def recu_fonction(call):
             filters.numeric(call, table, k[keyword], keyword)
         points = [(row[k["PARA_X"]], row[k["PARA_Y"]]) for row in table if None not in (row.get(k["PARA_X"]), row.get(k["PARA_Y"]))]
         path, names = "PARA_X", (k["PARA_X"], k["PARA_Y"])
+        seen = collections.Counter(x for x, _ in points)
+        if points and seen.most_common(1)[0][1] > 1:
+            x, count = seen.most_common(1)[0]
+            call.fail("FUNCTION_23", path, count=count, name=k["PARA_X"], value=f"{x:.12g}")
     else:
         points, path, names = _in_time(call), "RESULTAT", ("INST", k.get("NOM_CMP", k.get("NOM_PARA_RESU")))
     if not points:

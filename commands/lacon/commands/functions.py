@@ -1,5 +1,7 @@
 """DEFI_FONCTION, DEFI_CONSTANTE: functions of one parameter by points; DEFI_NAPPE: of two; CALC_FONC_INTERP."""
 
+import math
+
 from ..base.expressions import Expression
 from ..base.functions import Piecewise, between
 from ..core.catalog import part
@@ -9,8 +11,11 @@ from .call import Call
 
 
 def check_scales(call, path, interpolation, parameters, values):
-    """@throws AsterError DEFI_FONCTION_4 where a logarithm would be of what is not positive"""
+    """@throws AsterError DEFI_FONCTION_4 where a logarithm would be of what is not positive, DEFI_FONCTION_8 where nothing can be between two points"""
     for numbers, scale, what in ((parameters, interpolation[0], "parameter"), (values, interpolation[1], "value")):
+        for first, second in zip(numbers, numbers[1:]):
+            if math.isinf(second - first):
+                call.fail("DEFI_FONCTION_8", path, what=what, first=f"{first:g}", second=f"{second:g}")
         if scale == "LOG" and min(numbers) <= 0.0:
             call.fail("DEFI_FONCTION_4", path, what=what, value=f"{min(numbers):g}")
 

@@ -5,6 +5,7 @@
 #include <random>
 
 #include "dense.hpp"
+#include "lacon/assembly/dependent_rows.hpp"
 #include "lacon/assembly/ordering.hpp"
 
 namespace lacon {
@@ -271,6 +272,30 @@ TEST(SparseMatrix, IsEquilibratedByPowersOfTwo) {
       EXPECT_LE(largest, 4);
     }
   }
+}
+
+// Three relations of which one is the sum of the others in units of its own, one that is independent, and a multiplier that its
+// diagonal decides: one too many.
+TEST(DependentRows, AreThoseAboveTheRank) {
+  const Chain chain(4, 5);
+  std::vector<Coupling> couplings;
+  for (std::int32_t patch = 0; patch < 5; ++patch)
+    for (std::int32_t node = 0; node < 4; ++node) couplings.push_back({4 + patch, node});
+  SparseMatrix matrix(chain.numbering, chain.cliques, couplings);
+  const auto relate = [&](std::int64_t patch, std::vector<std::int64_t> equations, const std::vector<double>& coefficients) {
+    std::vector<double> lower((equations.size() + 1) * (equations.size() + 2) / 2, 0.0);
+    std::copy(coefficients.begin(), coefficients.end(), lower.end() - std::ssize(coefficients) - 1);
+    equations.push_back(8 + patch);
+    matrix.add(equations, lower);
+  };
+  relate(0, {0, 2}, {1, -1});
+  relate(1, {2, 4}, {3, -3});
+  relate(3, {1, 7}, {1, 2});
+  matrix.add_diagonal(12, 1);
+  EXPECT_EQ(count_dependent_rows(matrix, 8), 0);
+  relate(2, {0, 4}, {1e6, -1e6});
+  EXPECT_EQ(count_dependent_rows(matrix, 8), 1);
+  EXPECT_EQ(count_dependent_rows(matrix, 8, 4), 0);  // more rows than it looks at
 }
 
 }  // namespace
