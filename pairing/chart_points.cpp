@@ -61,6 +61,18 @@ int integration_degree(const SlaveFacet& slave, const FacetKind& master) {
   return std::clamp(degree, 4, exact_polygons(slave, master) ? largest_degree : 8);
 }
 
+int of_derivatives(CellType slave, CellType master, bool smooth) {
+  constexpr int there = 4;  // the least degree that integration_degree() gives
+  // shape functions have this degree where they are not those of an affine map
+  const auto of_shape = [](CellType type) {
+    const catalog::CellRow& cell = catalog::cell(type);
+    return type == CellType::QUAD9 ? 4 : cell.family == Family::QUAD ? cell.order + 1 : cell.order;
+  };
+  // how images slide times what they slide along; the normal's square times the gap
+  const int highest = std::max(of_shape(slave), of_shape(master)), of_normal = smooth ? of_shape(slave) : of_shape(slave) - 1;
+  return std::max({0, 2 * highest - 1 - there, 2 * of_normal + 1 - there});
+}
+
 void place_points(const Polygon& polygon, int degree, bool enough, bool traced, ChartPoints& points) {
   constexpr double round_off = 1e-13, no_area = 1e-15, small = 1e-6;  // the last two: of the area
   points.y.clear();

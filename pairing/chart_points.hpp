@@ -15,6 +15,10 @@ inline bool exact_polygons(const SlaveFacet& slave, const FacetKind& master) { r
 /// measured figures). Where polygons are themselves approximate a higher degree than 8 serves nothing.
 int integration_degree(const SlaveFacet& slave, const FacetKind& master);
 
+/// By how much the derivatives of the integrand have a higher degree than it is, on flat facets. @param smooth slaves have
+/// nodal normals
+int of_derivatives(CellType slave, CellType master, bool smooth);
+
 /// Points of the chart, with their weights there.
 struct ChartPoints {
   std::vector<Vec2> y;

@@ -13,7 +13,8 @@ class CellPairer {
  public:
   virtual ~CellPairer() = default;
   /// Appends what it finds; reasons of rejection in the order of the search, some of them several times.
-  virtual void pair(std::size_t slave_cell, Pairing& found) = 0;
+  /// @param order as PairingInParts::pair() has it
+  virtual void pair(std::size_t slave_cell, Pairing& found, int order) = 0;
 };
 using MakeCellPairer = std::function<std::unique_ptr<CellPairer>()>;
 

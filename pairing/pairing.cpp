@@ -120,14 +120,14 @@ PairingInParts::PairingInParts(const Surface& slave, const Surface& master, cons
 
 PairingInParts::~PairingInParts() = default;
 
-void PairingInParts::pair(std::size_t first, std::size_t last, Pairing& found) {
+void PairingInParts::pair(std::size_t first, std::size_t last, Pairing& found, int order) {
   found.cells.clear();
   found.traces.clear();
   found.cells.dimension = implementation_->dimension;
   found.rejected.clear();
   if (first == 0) found.rejected = implementation_->degenerate_masters;
   std::unique_ptr<detail::CellPairer> pairer = implementation_->take();
-  for (std::size_t cell = first; cell < last; ++cell) pairer->pair(cell, found);
+  for (std::size_t cell = first; cell < last; ++cell) pairer->pair(cell, found, order);
   implementation_->give_back(std::move(pairer));
   std::sort(found.rejected.begin(), found.rejected.end());
   found.rejected.erase(std::unique(found.rejected.begin(), found.rejected.end()), found.rejected.end());

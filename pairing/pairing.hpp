@@ -36,7 +36,8 @@ struct PairingTolerances {
 };
 
 /// In space: how the polygon of a contact cell hangs on the nodes, for whoever differentiates it. It lies in a triangle of the
-/// slave's chart; places in it are barycentric coordinates of the second and third vertex.
+/// slave's chart; places in it are barycentric coordinates of the second and third vertex. Without vertices it need not be
+/// known: what the polygons of a slave cell do adds up to nothing, and points may keep their places on the slave.
 struct PolygonTrace {
   /// What an edge lies on: an edge of the triangle, or the side on which the slave's normals pass a line of a master.
   struct Line {
@@ -141,7 +142,8 @@ class PairingInParts {
 
   /// What pair() finds for the slave cells first <= i < last; degenerate masters come with cell 0. Several threads may call
   /// this at a time. @param[out] found its memory is used again
-  void pair(std::size_t first, std::size_t last, Pairing& found);
+  /// @param order of the derivatives that traces are for: 1, or 2 for second ones too
+  void pair(std::size_t first, std::size_t last, Pairing& found, int order = 2);
 
  private:
   struct Implementation;

@@ -332,7 +332,7 @@ class PairerInPlane final : public detail::CellPairer {
   explicit PairerInPlane(std::shared_ptr<const MastersInPlane> masters)
       : masters_(std::move(masters)), projections(masters_->master.coordinates.size() / 3) {}
 
-  void pair(std::size_t cell, Pairing& pairing) override {
+  void pair(std::size_t cell, Pairing& pairing, int /*order*/) override {
     const Surface &slave = masters_->slave, &master = masters_->master;
     const PairingOptions& options = masters_->options;
     const PairingTolerances& tolerances = options.tolerances;

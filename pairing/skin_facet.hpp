@@ -29,6 +29,7 @@ struct FacetKind {
   /// Of the edge from each vertex to the next: it is one line of the outline. Facets that share an edge say the same of it,
   /// whatever their other edges are.
   std::array<bool, 4> whole_edge = {true, true, true, true};
+  bool plane = true;          ///< all nodes lie in one, and edges are straight, to round-off
   std::uint8_t mirrored = 0;  ///< Surface::mirrored
   bool affine = false;        ///< to round-off
   double distortion = 0;

@@ -24,8 +24,7 @@ bool is_nearly_affine(const Facet& f) {
 
 }  // namespace
 
-void SlaveFacet::set(const Surface& surface, std::size_t cell, double size, const PairingTolerances& tolerances,
-                     bool in_triangles) {
+void SlaveFacet::set(const Surface& surface, std::size_t cell, double size, const PairingTolerances& tolerances) {
   degenerate = true;
   constant = false;
   if (!detail::finite(surface, cell)) return;
@@ -38,17 +37,22 @@ void SlaveFacet::set(const Surface& surface, std::size_t cell, double size, cons
   const std::optional<double> turn = largest_turn(tolerances);
   if (!turn) return;
   degenerate = false;
-  SlaveCut cut = suited_cut(*turn, tolerances);
+  turn_ = *turn;
+  cut_ = suited_cut(turn_, tolerances);
   if (!surface.cuts.empty()) {
-    cut.refine(surface.cuts[cell]);
-    surface.cuts[cell] = cut;
+    cut_.refine(surface.cuts[cell]);
+    surface.cuts[cell] = cut_;
   }
-  nearly_flat = cut.steps == 1;
-  constant = nearly_flat && *turn <= tolerances.flat && !in_triangles;
+  nearly_flat = cut_.steps == 1;
+  constant_ = nearly_flat && turn_ <= tolerances.flat;
+}
+
+void SlaveFacet::lay_out(bool in_triangles) {
+  constant = constant_ && !in_triangles;
   // in the reference cell middle nodes move points at any bulge; lines of masters are straight there if its map is affine
-  plane = !cut.curved && !(in_triangles && cut.affine);
+  plane = !cut_.curved && !(in_triangles && cut_.affine);
   set_chart();
-  set_pieces(cut.steps);
+  set_pieces(cut_.steps);
   set_walls();
 }
 

@@ -33,10 +33,13 @@ class SlaveFacet {
   double chart_area = 0;      ///< twice the area
   double chart_diameter = 0;  ///< at least the largest distance in a piece
 
-  /// Examine a slave cell; `degenerate` says whether it cannot be paired. @param size the extent of its skin
-  /// @param in_triangles one flat piece will not do, as for a facet that is nearly flat
-  void set(const Surface& surface, std::size_t cell, double size, const PairingTolerances& tolerances,
-           bool in_triangles = false);
+  /// Examine a slave cell; `degenerate` says whether it cannot be paired. Only then can it be laid out.
+  /// @param size the extent of its skin
+  void set(const Surface& surface, std::size_t cell, double size, const PairingTolerances& tolerances);
+  /// Its chart, and the pieces of it. @param in_triangles one flat piece will not do, as for a facet that is nearly flat
+  void lay_out(bool in_triangles);
+  /// To round-off: one normal, a plane, lines of masters that are straight in the chart of triangles too.
+  bool whole() const { return constant_ && turn_ <= round_off && f.plane && (f.order == 1 || f.affine); }
 
   /// The unit normal at a reference point; the mean one where there is none.
   Vec3 direction(Vec2 xi) const {
@@ -112,7 +115,11 @@ class SlaveFacet {
   void subdivide(int k);
   void set_walls();
 
-  bool smooth_ = false;
+  static constexpr double round_off = 1e-12;
+
+  bool smooth_ = false, constant_ = false;
+  double turn_ = 0;  ///< of largest_turn()
+  SlaveCut cut_;
   double least_ = 0;  ///< length of `unscaled_direction` below which there is none
   Map3 nodal_;
   Map2 chart_;

@@ -73,20 +73,16 @@ class PairerInSpace final : public detail::CellPairer {
  public:
   explicit PairerInSpace(std::shared_ptr<const MastersInSpace> masters) : masters_(std::move(masters)) {}
 
-  void pair(std::size_t cell, Pairing& found) override {
+  void pair(std::size_t cell, Pairing& found, int order) override {
     slave_ = static_cast<std::int32_t>(cell);
     found_ = &found;
-    e.set(masters_->skin.slave, cell, masters_->skin.slave_extent, tolerances(), options().traced);
-    edges_.clear();
+    e.set(masters_->skin.slave, cell, masters_->skin.slave_extent, tolerances());
     if (e.degenerate) {
       reject(-1, Rejection::degenerate_slave);
       return;
     }
-    sliver_ = tolerances().sliver * e.chart_area;
     mean_normal_ = mean_normal();
-    find_views();
-    drop_far_views();
-    keep_nearest();
+    if (!options().traced || !e.whole() || !is_smooth_over_whole(order)) find_kept(options().traced);
     for (const View* const view : kept) integrate(*view);
   }
 
@@ -107,6 +103,78 @@ class PairerInSpace final : public detail::CellPairer {
     return &view;
   }
 
+  /// What of the slave sees which master. @return whether one of them hides another
+  bool find_kept(bool traced) {
+    traced_ = traced;
+    e.lay_out(traced);
+    sliver_ = tolerances().sliver * e.chart_area;
+    edges_.clear();
+    find_views();
+    drop_far_views();
+    return keep_nearest();
+  }
+
+  /// Whether the integral over a whole slave, flat and under flat masters, has the derivatives that it has in triangles:
+  /// masters cover all of it and are one surface there, so that the gap is the same on both sides of each line that divides the
+  /// slave. Such lines do not change the integral where they move, to first order; to second order neither if masters lie in
+  /// one plane.
+  bool is_smooth_over_whole(int order) {
+    if (find_kept(false) || kept.empty()) return false;
+    constexpr double round_off = 1e-12, least_convex = 0.9;
+    double covered = 0;
+    const FacetKind& first = master(kept[0]->master);
+    const Vec3 origin = nodes_of_master(kept[0]->master)[0];
+    for (const View* const view : kept) {
+      const FacetKind& f = master(view->master);
+      covered += double_area(view->region.polygon);
+      if (!f.straight || !f.plane || f.mirrored != 0 || f.order != first.order || f.distortion > least_convex ||
+          share(view->master) < 1)
+        return false;
+      const Nodes nodes = nodes_of_master(view->master);
+      for (int i = 0; i < f.n_vertices; ++i)
+        if (order > 1 && std::abs(dot(first.normal, nodes[i] - origin)) > round_off * f.size) return false;
+    }
+    if (std::abs(covered - e.chart_area) > round_off * e.chart_area) return false;
+    return std::none_of(kept.begin(), kept.end(), [&](const View* view) { return is_open_inside(view->master); });
+  }
+
+  /// Whether an edge of a master passes through the slave, and no other master that is kept goes on behind it.
+  bool is_open_inside(std::int32_t m) const {
+    const auto& skin = masters_->skin.master.nodes;
+    const auto vertices = [&](std::int32_t of) {
+      return skin[static_cast<std::size_t>(of)].first(static_cast<std::size_t>(master(of).n_vertices));
+    };
+    const auto own = vertices(m);
+    const Nodes nodes = nodes_of_master(m);
+    for (std::size_t i = 0; i < own.size(); ++i) {
+      const std::size_t next = (i + 1) % own.size();
+      const auto goes_on = [&](const View* other) {
+        const auto its = vertices(other->master);
+        for (std::size_t k = 0; k < its.size(); ++k)
+          if (its[k] == own[next] && its[(k + 1) % its.size()] == own[i]) return true;
+        return false;
+      };
+      if (std::none_of(kept.begin(), kept.end(), goes_on) && passes_through(nodes[i], nodes[next])) return true;
+    }
+    return false;
+  }
+
+  /// Whether a line lies in part within the slave, which is one flat piece.
+  bool passes_through(Vec3 a, Vec3 b) const {
+    const Vec2 from{dot(a, e.e1), dot(a, e.e2)}, to{dot(b, e.e1), dot(b, e.e2)};
+    const Polygon& border = e.pieces[0].polygon;
+    double enters = 0, leaves = 1;
+    for (std::size_t i = 0; i < border.size(); ++i) {
+      const Vec2 along = border[(i + 1) % border.size()] - border[i];
+      const double least = tolerances().coincident * e.chart_diameter * norm(along),
+                   at_first = cross(along, from - border[i]) - least, at_last = cross(along, to - border[i]) - least;
+      if (at_first <= 0 && at_last <= 0) return false;
+      if (at_first < 0) enters = std::max(enters, at_first / (at_first - at_last));
+      if (at_last < 0) leaves = std::min(leaves, at_first / (at_first - at_last));
+    }
+    return enters < leaves;
+  }
+
   /// Every part of the slave that sees a master, whatever lies in front of it.
   void find_views() {
     views.clear();
@@ -115,8 +183,10 @@ class PairerInSpace final : public detail::CellPairer {
   }
 
   void look_at(std::int32_t m) {
-    cut_in_parts(master(m), nodes_of_master(m), e, polygon, parts);
-    if (options().traced) name_edges(m);
+    FacetKind f = master(m);
+    if (!traced_ && f.straight) f.whole_edge.fill(true);
+    cut_in_parts(f, nodes_of_master(m), e, polygon, parts);
+    if (traced_) name_edges(m);
     bool couples = false, away = false, thin = false;
     for (const Part& part : parts) {
       const Vec3 area = area_vector(part);
@@ -203,8 +273,8 @@ class PairerInSpace final : public detail::CellPairer {
     });
   }
 
-  /// Where several masters cover a part of the slave, the nearest along the normal keeps it.
-  void keep_nearest() {
+  /// Where several masters cover a part of the slave, the nearest along the normal keeps it. @return whether there are such
+  bool keep_nearest() {
     std::sort(views.begin(), views.end(), sooner);
     kept.clear();
     bool any_hidden = false;
@@ -217,6 +287,7 @@ class PairerInSpace final : public detail::CellPairer {
       }
     }
     if (any_hidden) std::sort(kept.begin(), kept.end(), sooner);
+    return any_hidden;
   }
 
   /// Settle a view with those that are kept: where it is the nearer one they give way; where it is not, what is left of it goes
@@ -256,8 +327,12 @@ class PairerInSpace final : public detail::CellPairer {
   void integrate(const View& view) {
     const FacetKind& f = master(view.master);
     const Target target(f, nodes_of_master(view.master), e);
-    place_points(view.region.polygon, options().degree > 0 ? options().degree : integration_degree(e, f), exact_polygons(e, f),
-                 options().traced, points);
+    const bool in_one = options().traced && !traced_;
+    const int degree = options().degree > 0 ? options().degree
+                       : in_one
+                           ? integration_degree(e, f) + of_derivatives(e.f.type, f.type, !masters_->skin.slave.normals.empty())
+                           : integration_degree(e, f);
+    place_points(view.region.polygon, degree, exact_polygons(e, f), traced_, points);
     const std::size_t n_points = points.weight.size();
     points.y.insert(points.y.end(), view.region.polygon.begin(), view.region.polygon.end());  // vertices behind them
     e.places(points.y, tolerances(), lines, meetings, places);
@@ -268,7 +343,10 @@ class PairerInSpace final : public detail::CellPairer {
       return;
     }
     append_cell(view.master, n_points);
-    if (options().traced) trace(view);
+    if (traced_)
+      trace(view);
+    else if (options().traced)
+      found_->traces.emplace_back();
   }
 
   /// What the polygon of a view hangs on.
@@ -334,6 +412,7 @@ class PairerInSpace final : public detail::CellPairer {
   std::shared_ptr<const MastersInSpace> masters_;
   // of the slave cell at hand
   std::int32_t slave_ = -1;
+  bool traced_ = false;  ///< it is cut as derivatives by polygons ask for
   Pairing* found_ = nullptr;
   SlaveFacet e;
   double sliver_ = 0;   ///< double area below which nothing is kept

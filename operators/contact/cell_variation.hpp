@@ -20,7 +20,7 @@ class CellVariation {
   static constexpr int R = D - 1;
 
  public:
-  /// @param n_corners of the polygon  @param sides, plane as PointSums has them
+  /// @param n_corners of the polygon; 0: points keep their places on the slave  @param sides, plane as PointSums has them
   CellVariation(const ContactCellGeometry& cell, int n_corners, bool second, const std::array<double, R * R>& sides,
                 const PlaneOfSlave* plane = nullptr)
       : columns_{D * (catalog::cell(cell.slave).n_nodes + catalog::cell(cell.master).n_nodes),
@@ -60,7 +60,7 @@ class CellVariation {
     const auto& simplex = points_.simplex();
     of_simplex_.setZero();
     std::copy_n(simplex.gradient, points_.columns(), of_simplex_.data());
-    for (std::size_t k = 0; k < D; ++k)
+    for (std::size_t k = 0; k < D && columns_.corners > 0; ++k)
       for (int i = 0; i < R; ++i) {
         of_simplex_[column(corners_[k]) + i] += simplex.of_corner[k][i];
         for (std::size_t l = 0; l < D && is_second(); ++l)

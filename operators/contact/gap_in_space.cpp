@@ -140,8 +140,45 @@ class PlaneChart {
 
 }  // namespace
 
+namespace {
+
+/// Points that keep their places on the slave.
+void vary_at_points(const ContactCellGeometry& cell, bool second, GapVariation& variation) {
+  CellVariation<3> sum(cell, 0, second, {});
+  sum.start_simplex(1, 1, {});
+  for (std::size_t first = 0; first < cell.weight.size(); first += LACON_LANES) {
+    PointBlock<3> block{};
+    for (std::size_t l = 0; l < LACON_LANES; ++l) {
+      const bool none = first + l >= cell.weight.size();
+      const std::size_t own = none ? first : first + l;
+      block.rule[l] = none ? 0 : cell.weight[own];
+      for (std::size_t i = 0; i < 2; ++i) {
+        block.slave[i * LACON_LANES + l] = cell.slave_point[2 * own + i];
+        block.master[i * LACON_LANES + l] = cell.master_point[2 * own + i];
+      }
+    }
+    sum.add(block);
+  }
+  sum.end_points();
+  sum.end_simplex(PointRow::Zero(sum.columns().of_points()));
+  sum.end();
+  const Row gradient = sum.by_unknowns();
+  variation.gap = sum.gap();
+  variation.gradient.assign(gradient.begin(), gradient.end());
+  variation.hessian.clear();
+  if (!second) return;
+  QuadraticForm form(sum.columns().unknowns());
+  chain_corners(sum.form().matrix(), sum.columns(), Matrix(0, sum.columns().unknowns()), form, variation);
+}
+
+}  // namespace
+
 void vary_in_space(const ContactCellGeometry& cell, bool second, GapVariation& variation) {
   const PolygonTrace& trace = *cell.trace;
+  if (trace.vertex.empty()) {
+    vary_at_points(cell, second, variation);
+    return;
+  }
   PolygonVariation polygon(cell, second);
   // a triangle with straight edges is affine: its reference cell does as well
   const bool in_plane = trace.plane && cell.slave != CellType::TRIA3;

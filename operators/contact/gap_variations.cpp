@@ -111,8 +111,8 @@ std::vector<ContactGeometry::Variation> ContactGeometry::vary(std::span<const st
       Pairing pairs;
       std::vector<Variation> found;
       for (std::size_t i = some.first; i < some.last; ++i) {
-        pairing.pair(slaves[i], slaves[i] + 1, pairs);
         const auto patch = static_cast<std::size_t>(contact_.slaves[zone.slaves[slaves[i]]].patch);
+        pairing.pair(slaves[i], slaves[i] + 1, pairs, order[patch]);
         found.clear();
         for (std::size_t c = 0; c < pairs.cells.size(); ++c)
           found.push_back(variation(z, pairs, c, order[patch] > 1, !still.empty() && still[patch]));

@@ -45,6 +45,7 @@ class PointKernel {
     if constexpr (smooth) add_normal();
     if constexpr (D == 2)
       if (axis) add_radius();
+    if (sums.n_corners_ == 0) return;
     find_rows_of_xi();
     if constexpr (plane) add_plane();
     add_corners();

@@ -34,11 +34,13 @@ struct Skins {
   double fading = 0;                        ///< PairingOptions::fading
   double steep_angle = 85;                  ///< PairingOptions::steep_angle
   std::vector<std::uint8_t> mirrored = {};  ///< Surface::mirrored of the masters
+  int degree = 0;                           ///< PairingOptions::degree
 
   /// The sum over all contact cells.
   struct Sum {
     double gap = 0;
     std::vector<double> gradient, hessian;  ///< by (n_nodes, 3)
+    std::size_t in_one = 0, traced = 0;     ///< contact cells in space
   };
 
   std::size_t size() const { return coordinates.size(); }
@@ -54,10 +56,12 @@ struct Skins {
     const NormalVariation of_normals(slave);
     // images to round-off: differences divide their error by the step
     const PairingOptions options{
-        .tolerances = {.ray = 1e-14}, .steep_angle = steep_angle, .fading = fading, .traced = dimension == 3};
-    const Pairing found = pair(slave, master, options);
+        .tolerances = {.ray = 1e-14}, .steep_angle = steep_angle, .degree = degree, .fading = fading, .traced = dimension == 3};
+    Pairing found;
+    PairingInParts(slave, master, options).pair(0, slave.size(), found, second ? 2 : 1);
     Sum sum{0, std::vector<double>(size()), std::vector<double>(second ? size() * size() : 0)};
     for (std::size_t c = 0; c < found.cells.size(); ++c) add(found, c, normals, slave, of_normals, second, sum);
+    for (const PolygonTrace& trace : found.traces) ++(trace.vertex.empty() ? sum.in_one : sum.traced);
     return sum;
   }
 
@@ -380,6 +384,118 @@ TEST(GapVariation, DerivativesInSpaceAreThoseOfDifferences) {
     }
   EXPECT_GT(compared, 1000);
   EXPECT_LT(rough, compared / 10);
+}
+
+/// Flat slave cells over flat masters that are not parallel to them.
+InSpace flat_skins(CellType slave, CellType master, bool smooth, unsigned seed) {
+  InSpace skins(slave, master, seed % 4 < 2, smooth, 0, seed);
+  if (seed % 4 < 2) skins.initial = skins.coordinates;
+  skins.degree = 20;  // differences, and maps that are not affine, ask for more than the flat ones
+  const std::int32_t first_master = skins.masters[0][0];
+  for (std::size_t i = 0; i < skins.size(); i += 3) {
+    double &x = skins.coordinates[i], &y = skins.coordinates[i + 1], &z = skins.coordinates[i + 2];
+    const bool of_slave = i < 3 * static_cast<std::size_t>(first_master);
+    if (of_slave) x = 0.3 + 0.7 * x, y = 0.7 * y - 0.1;  // within what masters cover
+    // not affine, with straight edges; in the chart of slaves of the second order lines would not be straight
+    if (of_slave ? slave == CellType::QUAD4 : catalog::cell(master).family == Family::QUAD) y *= 1 + 0.1 * x;
+    z += of_slave ? 0.2 * x - 0.1 * y : 0.05 * y;
+  }
+  return skins;
+}
+
+/// Derivatives against differences, along a direction that leaves all planes.
+void expect_derivatives_of_differences(Skins skins, const std::string& what) {
+  const Skins::Sum at = skins.evaluate(true), first = skins.evaluate(false);
+  const std::size_t n = at.gradient.size();
+  const double largest = largest_of(at.gradient), largest_second = largest_of(at.hessian);
+  EXPECT_GT(largest, 0.02) << what;
+  EXPECT_LT(asymmetry(at.hessian, n), 1e-12 * largest_second) << what;
+  expect_rigid_motions_change_nothing(skins, at, what);
+  std::mt19937 random(7);
+  std::uniform_real_distribution<double> uniform(-1, 1);
+  std::vector<double> along(n);
+  for (double& d : along) d = uniform(random);
+  const std::vector<double> middle = skins.coordinates;
+  const auto moved = [&](double by) {
+    for (std::size_t i = 0; i < n; ++i) skins.coordinates[i] = middle[i] + by * along[i];
+    return skins.evaluate(false);
+  };
+  constexpr double step = 2e-7;
+  const Skins::Sum ahead = moved(step), behind = moved(-step);
+  if (skins.slave_type != CellType::TRIA3 || skins.master_type != CellType::TRIA3) EXPECT_EQ(ahead.in_one, 0U) << what;
+  double slope = 0;
+  for (std::size_t i = 0; i < n; ++i) slope += at.gradient[i] * along[i];
+  EXPECT_NEAR(slope, (ahead.gap - behind.gap) / (2 * step), 1e-7 * largest) << what;
+  for (std::size_t j = 0; j < n; ++j) {
+    double turn = 0;
+    for (std::size_t i = 0; i < n; ++i) turn += at.hessian[j * n + i] * along[i];
+    EXPECT_NEAR(turn, (ahead.gradient[j] - behind.gradient[j]) / (2 * step), 1e-7 * largest_second) << what;
+    EXPECT_NEAR(at.gradient[j], first.gradient[j], 1e-12 * largest) << what;
+  }
+}
+
+constexpr CellType kinds_in_space[] = {CellType::TRIA3, CellType::QUAD4, CellType::TRIA6, CellType::QUAD8, CellType::QUAD9};
+
+// Where masters in one plane cover a flat slave cell it is integrated in one piece, and has the derivatives of what triangles
+// leave as soon as nodes move.
+TEST(GapVariation, FlatSkinsHaveTheirDerivativesInOnePiece) {
+  unsigned seed = 600;
+  for (const CellType slave : kinds_in_space)
+    for (const CellType master : kinds_in_space) {
+      const bool smooth = ++seed % 3 == 0;
+      const InSpace skins = flat_skins(slave, master, smooth, seed);
+      const std::string what = std::string(catalog::cell(slave).name) + " over " + std::string(catalog::cell(master).name) +
+                               (smooth ? ", smooth, " : ", ") + std::to_string(seed);
+      const Skins::Sum at = skins.evaluate(true);
+      EXPECT_EQ(at.traced, 0U) << what;
+      EXPECT_GT(at.in_one, 3U) << what;
+      expect_derivatives_of_differences(skins, what);
+    }
+}
+
+// Masters in several planes have a kink, which moves: first derivatives alone need no triangles.
+TEST(GapVariation, FlatSlavesOverMastersInSeveralPlanesNeedTrianglesForSecondDerivatives) {
+  unsigned seed = 700;
+  for (const CellType slave : kinds_in_space)
+    for (const CellType master : kinds_in_space) {
+      InSpace skins = flat_skins(slave, master, false, ++seed);
+      for (auto i = 3 * static_cast<std::size_t>(skins.masters[0][0]); i < skins.size(); i += 3)
+        skins.coordinates[i + 2] += 0.1 * std::abs(skins.coordinates[i] - 0.73) - 0.05 * std::abs(skins.coordinates[i] - 1.34);
+      const std::string what = std::string(catalog::cell(slave).name) + " over " + std::string(catalog::cell(master).name);
+      EXPECT_EQ(skins.evaluate(true).in_one, 0U) << what;
+      EXPECT_EQ(skins.evaluate(false).traced, 0U) << what;
+      expect_derivatives_of_differences(skins, what);
+    }
+}
+
+// Where the cover ends within a slave cell, or the gap jumps, first derivatives hang on the lines as well.
+TEST(GapVariation, FlatSlavesNeedTrianglesWhereTheCoverEndsOrTheGapJumps) {
+  for (const CellType kind : kinds_in_space) {
+    const std::string what(catalog::cell(kind).name);
+    EXPECT_EQ(InSpace(kind, kind, true, false, 0, 3).evaluate(false).in_one, 0U) << what;
+    InSpace jumps = flat_skins(kind, kind, false, 2);
+    std::map<std::int32_t, std::int32_t> raised;  // the nodes of the last square, once more
+    for (std::vector<std::int32_t>& cell : jumps.masters) {
+      double middle = 0;
+      for (const std::int32_t node : cell)
+        middle += jumps.coordinates[3 * static_cast<std::size_t>(node)] / double(cell.size());
+      for (std::int32_t& node : cell) {
+        if (middle < 1.34) continue;
+        const auto [at, added] = raised.try_emplace(node, static_cast<std::int32_t>(jumps.size() / 3));
+        for (std::size_t k = 0; added && k < 3; ++k) {
+          const std::size_t from = 3 * static_cast<std::size_t>(node) + k;
+          jumps.coordinates.push_back(jumps.coordinates[from] + (k == 2 ? 0.05 : 0));
+          jumps.initial.push_back(jumps.initial[from]);
+        }
+        if (added && !jumps.offset.empty()) jumps.offset.push_back(0);
+        node = at->second;
+      }
+    }
+    const Skins::Sum at = jumps.evaluate(false);
+    EXPECT_GT(at.in_one, 0U) << what;
+    EXPECT_GT(at.traced, 0U) << what;
+    expect_derivatives_of_differences(jumps, what + ", a jump");
+  }
 }
 
 // The same skins bent by 1e-7 and by 1e-5 of their cells: edges count as straight there, and as curved here. A middle node

@@ -178,6 +178,7 @@ TEST(ExactAreas, OfWhatASlaveSeesOfConvexAndNonConvexMasters) {
     Skin3 below = facet_at(0, p, true), above = facet_at(0.3, q, false);
     const PairingTolerances tolerances;
     slave.set(below.view(), 0, 1, tolerances);
+    slave.lay_out(false);
     if (slave.degenerate) continue;
     ASSERT_TRUE(slave.constant);
     const space::Facet master = space::facet(above.view(), 0, tolerances.straight);

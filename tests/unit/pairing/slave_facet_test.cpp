@@ -51,6 +51,7 @@ TEST(SlaveFacets, TouchEveryBoxThatANormalPasses) {
         }
       space::SlaveFacet e;
       e.set(skin.view(), 0, 2, {});
+      e.lay_out(false);
       if (e.degenerate) continue;
       for (int sample = 0; sample < 40; ++sample) {
         const Vec2 xi = place_in(e.f.family, random);
