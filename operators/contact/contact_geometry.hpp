@@ -129,8 +129,11 @@ class ContactGeometry {
   /// Take the offset off gaps that a kernel gave. @param batch as the kernel had it
   void offset_gaps(std::size_t zone, const ContactCells& cells, lacon_contact_batch batch, Alike& group) const;
   bool has_offset(std::size_t zone) const { return zone < offsets_.size() && !offsets_[zone].empty(); }
-  /// One of the contact cells of a zone, paired with traces. @param still the cover keeps its place
+  /// One of the contact cells of a zone, paired with traces; by the slave's nodal normals too. @param still the cover keeps its
+  /// place
   Variation variation(std::size_t zone, const Pairing& found, std::size_t place, bool second, bool still) const;
+  /// Nodal normals hang on the nodes around: the slave's own nodes, those, then the others. @param slave cell of the zone
+  void chain_normals(std::size_t zone, std::size_t slave, Variation& variation) const;
   /// Sum up what the kernels gave.
   void add(const Zone& zone, const Block& block_of_zone, ZonePairing* record);
   /// What a kernel says of a slave cell.

@@ -8,7 +8,8 @@
 namespace lacon {
 namespace {
 
-/// The contact cells of a slave cell as one: in space a curved one has dozens, of the same nodes but for a few.
+/// The contact cells of a slave cell as one: in space a curved one has dozens, of the same nodes but for a few. Behind the
+/// nodes there may be as many nodal normals as slave nodes.
 ContactGeometry::Variation sum_of(std::span<const ContactGeometry::Variation> cells, int dimension) {
   ContactGeometry::Variation sum;
   if (cells.empty()) return sum;
@@ -20,7 +21,8 @@ ContactGeometry::Variation sum_of(std::span<const ContactGeometry::Variation> ce
   for (const ContactGeometry::Variation& cell : cells)
     for (const std::int32_t node : std::span(cell.nodes).subspan(static_cast<std::size_t>(sum.n_slave_nodes)))
       if (find(node) == sum.nodes.end()) sum.nodes.push_back(node);
-  const auto d = static_cast<std::size_t>(dimension), n = sum.nodes.size() * d;
+  const auto d = static_cast<std::size_t>(dimension), n_normals = cells[0].of_gap.gradient.size() - cells[0].nodes.size() * d,
+             n = sum.nodes.size() * d + n_normals;
   sum.of_gap.gradient.assign(n, 0.0);
   sum.of_gap.hessian.assign(cells[0].of_gap.hessian.empty() ? 0 : n * n, 0.0);
   std::vector<std::size_t> place;
@@ -31,6 +33,7 @@ ContactGeometry::Variation sum_of(std::span<const ContactGeometry::Variation> ce
       const std::size_t at = of_slave ? i : static_cast<std::size_t>(find(cell.nodes[i]) - sum.nodes.begin());
       for (std::size_t k = 0; k < d; ++k) place.push_back(d * at + k);
     }
+    for (std::size_t k = 0; k < n_normals; ++k) place.push_back(n - n_normals + k);
     sum.of_gap.gap += cell.of_gap.gap;
     const std::vector<double>&gradient = cell.of_gap.gradient, &hessian = cell.of_gap.hessian;
     for (std::size_t i = 0; i < place.size(); ++i) {
@@ -117,6 +120,7 @@ std::vector<ContactGeometry::Variation> ContactGeometry::vary(std::span<const st
         for (std::size_t c = 0; c < pairs.cells.size(); ++c)
           found.push_back(variation(z, pairs, c, order[patch] > 1, !still.empty() && still[patch]));
         all[before + i] = sum_of(found, mesh_.dimension);
+        if (contact_.smoothing && !found.empty()) chain_normals(z, slaves[i], all[before + i]);
       }
     });
     std::erase_if(all, [](const Variation& variation) { return variation.slave < 0; });  // slave cells without a master
@@ -220,18 +224,21 @@ ContactGeometry::Variation ContactGeometry::variation(std::size_t z, const Pairi
     cell.slave_offset = offset;
   }
   vary_gap(cell, second, variation.of_gap);
-  if (!contact_.smoothing) return variation;
+  return variation;
+}
 
-  // normals hang on the nodes around: the slave's own nodes, those, then the others
-  std::vector<std::int32_t> all(slave_nodes.begin(), slave_nodes.end());
-  normal_variations_[z].append_nodes_around(zone.slave, slave_nodes, all);
+void ContactGeometry::chain_normals(std::size_t z, std::size_t slave, Variation& variation) const {
+  const Surface& skin = zones_[z].slave;
+  std::vector<std::int32_t>& nodes = variation.nodes;
+  const auto own = skin.nodes[slave];
+  std::vector<std::int32_t> all(own.begin(), own.end());
+  normal_variations_[z].append_nodes_around(skin, own, all);
   const auto n_on_slave = static_cast<int>(all.size());
-  for (const std::int32_t node : std::span(nodes).subspan(slave_nodes.size()))
+  for (const std::int32_t node : std::span(nodes).subspan(own.size()))
     if (std::find(all.begin(), all.end(), node) == all.end()) all.push_back(node);
-  normal_variations_[z].apply(zone.slave, nodes, variation.n_slave_nodes, all, variation.of_gap);
+  normal_variations_[z].apply(skin, nodes, variation.n_slave_nodes, all, variation.of_gap);
   nodes = std::move(all);
   variation.n_slave_nodes = n_on_slave;
-  return variation;
 }
 
 }  // namespace lacon
