@@ -7,7 +7,7 @@ namespace {
 
 constexpr double most = 1e-5;      // of a right side: what is left tells which patches open
 constexpr double factor = 0.9;     // of choice 2, whose exponent is 2
-constexpr double balanced = 1e-2;  // of a right side that the criteria would leave as it is
+constexpr double balanced = 1e-4;  // of one that the criteria would leave as it is; slender bodies lose two of the digits
 
 }  // namespace
 

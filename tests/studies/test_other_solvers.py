@@ -22,13 +22,15 @@ MANUFACTURED = ("ssnp150c", "ssnp150f", "ssnv219e", "ssnv219g", "ssnv219i", "ssn
 #: where factors say by their inertia that a matrix is unstable, and the next iteration has another one
 SNAPPING = ("ssnp165c", "ssnp165e")
 VERIFICATION = ("test_patch", "test_patch_3d", "test_quadratic", "test_hertz", "test_hertz_axis", "test_families", "test_statuses", "test_initial_state",
-                "test_modelisations", "test_loads", "test_thermal", "test_contact.Contact", "test_behaviours", "test_large_strain.Upsetting",
+                "test_modelisations", "test_loads", "test_thermal", "test_contact.Contact", "test_behaviours.Behaviours", "test_behaviours.Prediction",
+                "test_large_strain.Upsetting",
                 "test_norms", "test_derived_fields", "test_patch_space.PatchInSpace")
 
 
 #: what asks for more than iterations give: inertia, relations that say the same twice, pressures of open patches that are zero to the last bit, digits
-#: beyond RESI_GLOB_RELA
-OF_FACTORS = ("test_statuses", "test_modelisations", "test_loads", "test_thermal", "test_patch_space.PatchInSpace")
+#: beyond RESI_GLOB_RELA, or a RESI_GLOB_RELA beyond RESI_RELA
+OF_FACTORS = ("test_statuses", "test_modelisations", "test_loads", "test_thermal", "test_behaviours.Prediction",
+              "test_patch_space.PatchInSpace")
 
 
 def environment(folder, **solver):
