@@ -201,8 +201,7 @@ LoadTerm term_of_field(const LoadScene& scene, const Keywords& factor, const std
                        const std::string& quantity) {
   const std::string id = factor.concept_id(keyword);
   const Field field = scene.base.field_head(id);
-  if (field.mesh != scene.model.mesh)
-    fail("CREACHAMP_5", {{"first", scene.base.label(scene.model.mesh)}, {"second", scene.base.label(field.mesh)}});
+  check_same_mesh(scene.base, scene.model.mesh, field.mesh);
   const std::string types[] = {"ELGA_" + quantity, "ELEM_" + quantity};
   check_field(field, std::array<std::string_view, 2>{types[0], types[1]}, factor.path(keyword), scene.base.label(id));
   return {-1, keyword, {0.0, id}};

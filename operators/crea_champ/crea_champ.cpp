@@ -46,7 +46,7 @@ class Task {
     mesh_id_ = model ? model_.mesh : mesh ? *mesh : otherwise;
     if (mesh_id_.empty()) fail("CREACHAMP_6", {{"operation", keywords().text("OPERATION")}});
     for (const std::string& other : {mesh.value_or(mesh_id_), otherwise.empty() ? mesh_id_ : otherwise})
-      if (other != mesh_id_) fail("CREACHAMP_5", {{"first", base_.label(mesh_id_)}, {"second", base_.label(other)}});
+      check_same_mesh(base_, mesh_id_, other);
     mesh_ = base_.mesh(mesh_id_);
     if (model) {
       registry_ = std::make_unique<Registry>(order_.plugins);
@@ -64,7 +64,7 @@ class Task {
     const std::string id = at.concept_id(keyword);
     Field found = base_.field(id);
     ground(found.mesh);
-    if (found.mesh != mesh_id_) fail("CREACHAMP_5", {{"first", base_.label(mesh_id_)}, {"second", base_.label(found.mesh)}});
+    check_same_mesh(base_, mesh_id_, found.mesh);
     found.name = base_.label(id);
     return found;
   }
@@ -306,8 +306,7 @@ Field evaluate(Task& task) {
   for (const std::string& id : task.keywords().concept_ids("CHAM_PARA")) {
     given.push_back(task.base().field(id));
     given.back().name = task.base().label(id);
-    if (given.back().mesh != functions.mesh)
-      fail("CREACHAMP_5", {{"first", task.base().label(functions.mesh)}, {"second", task.base().label(given.back().mesh)}});
+    check_same_mesh(task.base(), functions.mesh, given.back().mesh);
     if (given.back().location != functions.location || given.back().quantity.ends_with("_F"))
       fail("CREACHAMP_12", {{"field", given.back().name}, {"keyword", "CHAM_PARA"}});
   }

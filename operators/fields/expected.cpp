@@ -32,10 +32,19 @@ void check_result_field(const Field& field, const std::string& name, const std::
     fail("FIELDS_7", {{"keyword", keyword}, {"field", label}, {"type", type_of(field)}, {"name", name}});
 }
 
+void check_same_mesh(const Base& base, const std::string& first, const std::string& second) {
+  if (first != second) fail("CREACHAMP_5", {{"first", base.label(first)}, {"second", base.label(second)}});
+}
+
+void check_own_mesh(const Base& base, const std::string& mesh, const Keywords& keywords, std::string_view mesh_keyword,
+                    std::string_view model_keyword) {
+  if (const auto given = keywords.optional_concept(mesh_keyword)) check_same_mesh(base, mesh, *given);
+  if (const auto given = keywords.optional_concept(model_keyword)) check_same_mesh(base, mesh, base.model(*given).mesh);
+}
+
 Result with_model(const Base& base, Result result, const Keywords& keywords) {
   if (const auto model = keywords.optional_concept("MODELE"); model && result.model.empty()) {
-    if (const std::string mesh = base.model(*model).mesh; mesh != result.mesh)
-      fail("CREACHAMP_5", {{"first", base.label(result.mesh)}, {"second", base.label(mesh)}});
+    check_same_mesh(base, result.mesh, base.model(*model).mesh);
     result.model = *model;
   }
   if (const auto materials = keywords.optional_concept("CHAM_MATER"); materials && result.material_field.empty())
@@ -50,7 +59,9 @@ Model model_of(const Base& base, const Result& result) {
 
 MaterialField materials_of(const Base& base, const Result& result) {
   if (result.material_field.empty()) fail("FIELDS_8", {{"label", result.label}, {"keyword", "CHAM_MATER"}});
-  return base.material_field(result.material_field);
+  MaterialField field = base.material_field(result.material_field);
+  check_same_mesh(base, result.mesh, field.mesh);
+  return field;
 }
 
 }  // namespace lacon

@@ -18,12 +18,18 @@ void check_field(const Field& field, std::span<const std::string_view> types, co
 /// place (X_ELGA), the field must live there: FIELDS_7.
 void check_result_field(const Field& field, const std::string& name, const std::string& keyword, const std::string& label);
 
+/// Refuse two meshes, by their ids, that have to be one: CREACHAMP_5.
+void check_same_mesh(const Base& base, const std::string& first, const std::string& second);
+/// Refuse what MAILLAGE and MODELE, under these names, say where it is not on this mesh: CREACHAMP_5.
+void check_own_mesh(const Base& base, const std::string& mesh, const Keywords& keywords, std::string_view mesh_keyword,
+                    std::string_view model_keyword);
+
 /// The result with MODELE and CHAM_MATER of the command where it names none itself (CREA_RESU). Throws CREACHAMP_5 for a model
 /// on another mesh.
 Result with_model(const Base& base, Result result, const Keywords& keywords);
 /// The model of a result; throws FIELDS_8 where it names none.
 Model model_of(const Base& base, const Result& result);
-/// The materials of a result; throws FIELDS_8 where it names none.
+/// The materials of a result; throws FIELDS_8 where it names none, CREACHAMP_5 where they are of another mesh.
 MaterialField materials_of(const Base& base, const Result& result);
 
 }  // namespace lacon

@@ -72,8 +72,14 @@ Table energies(const Order& order, const Base& base, const std::string& keyword)
     for (const Keywords& factor : order.keywords.factors(keyword))
       for (const Part& part : parts_of(subject.mesh, subject.points, factor)) {
         double sum = 0;
-        for (std::size_t i = 0; i < sums.support.size(); ++i)
-          if (part.cells[static_cast<std::size_t>(sums.support[i])]) sum += sums.values[i];
+        std::size_t count = 0;
+        for (std::size_t i = 0; i < sums.support.size(); ++i) {
+          if (!part.cells[static_cast<std::size_t>(sums.support[i])]) continue;
+          sum += sums.values[i];
+          ++count;
+        }
+        if (count == 0)
+          fail("POSTELEM_2", {{"keyword", factor.path("GROUP_MA")}, {"place", part.place}, {"field", energy.name}});
         table.add({number, subject.result.instants[k], part.place, part.entity, sum, whole != 0 ? 100 * sum / whole : 0.0});
       }
   }

@@ -4,7 +4,8 @@
 
 namespace lacon {
 
-/// @param keyword of POST_ELEM, ENER_ELAS or ENER_POT. Throws POSTELEM_4 for large strains, RESULT_1 where a field is missing.
+/// @param keyword of POST_ELEM, ENER_ELAS or ENER_POT. Throws POSTELEM_2 for a group without body cells, POSTELEM_4 for large
+/// strains, RESULT_1 where a field is missing.
 Table energies(const Order& order, const Base& base, const std::string& keyword);
 
 /// Work of the external forces: of those in equilibrium with the stresses (FORC_NODA), along the displacements.

@@ -4,6 +4,7 @@
 #include <numbers>
 
 #include "lacon/catalog/messages.hpp"
+#include "lacon/operators/fields/expected.hpp"
 #include "lacon/operators/fields/thermal.hpp"
 #include "lacon/operators/post_elem/parts.hpp"
 
@@ -53,20 +54,17 @@ Eigen::Vector3d principal(const Eigen::Matrix3d& second, int dimension) {
 
 Table inertia(const Order& order, const Base& base) {
   const Keywords& keywords = order.keywords;
-  std::string model_id, material_id;
-  if (keywords.has("RESULTAT")) {
-    const Result result = base.result(keywords.concept_id("RESULTAT"));
-    model_id = result.model;
-    material_id = result.material_field;
-  }
-  if (const auto given = keywords.optional_concept("MODELE")) model_id = *given;
-  if (const auto given = keywords.optional_concept("CHAM_MATER")) material_id = *given;
-  const Model model = base.model(model_id);
+  Result bodies;  // what is given counts, beside a result's own too
+  if (keywords.has("RESULTAT")) bodies = base.result(keywords.concept_id("RESULTAT"));
+  bodies.model = keywords.optional_concept("MODELE").value_or(bodies.model);
+  bodies.material_field = keywords.optional_concept("CHAM_MATER").value_or(bodies.material_field);
+  const Model model = model_of(base, bodies);
+  bodies.mesh = model.mesh;
+  const MaterialField field = materials_of(base, bodies);
   const Mesh mesh = base.mesh(model.mesh);
   const Registry registry(order.plugins);
   ModelPoints points(mesh, model, registry);
-  const MaterialField field = base.material_field(material_id);
-  const MaterialTemperatures temperatures = read_temperatures(base, material_id, mesh);
+  const MaterialTemperatures temperatures = read_temperatures(base, bodies.material_field, mesh);
   const MaterialTable materials = read_materials(base, field, temperatures);
 
   std::vector<std::pair<std::string, std::string>> columns{{"LIEU", "K24"}, {"ENTITE", "K8"}, {"MASSE", "R"}};

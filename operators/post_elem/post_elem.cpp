@@ -11,6 +11,7 @@
 #include <set>
 
 #include "lacon/catalog/messages.hpp"
+#include "lacon/operators/fields/expected.hpp"
 #include "lacon/operators/fields/extrapolation.hpp"
 #include "lacon/operators/fields/layout.hpp"
 #include "lacon/operators/fields/selection.hpp"
@@ -63,8 +64,7 @@ class Subject {
   void each_field(const std::function<void(const Field&, std::vector<Table::Cell>)>& use) const {
     for (const std::int64_t o : orders_) {
       const Field field = result_ ? base_.field(*result_, name_, o) : base_.field(keywords_.concept_id("CHAM_GD"));
-      if (field.mesh != model_.mesh)
-        fail("CREACHAMP_5", {{"first", base_.label(model_.mesh)}, {"second", base_.label(field.mesh)}});
+      check_same_mesh(base_, model_.mesh, field.mesh);
       if (field.quantity.ends_with("_F")) fail("CREACHAMP_12", {{"field", name_}, {"keyword", keywords_.path("CHAM_GD")}});
       if (result_)
         use(field, {result_->label, name_, o, field.instant});
@@ -224,22 +224,21 @@ Table integrals(Subject& subject) {
     for (const auto& [group, marked] : subject.places()) {
       const std::vector<char> cells = subject.integrated(field, group, marked);
       double volume = 0;
-      std::vector<double> sums(field.n_components(), 0.0), left_out(field.n_components(), 0.0);
+      std::vector<double> sums(field.n_components(), 0.0), over(field.n_components(), 0.0);
       const std::size_t count = each_point(subject, field, cells, [&](std::size_t row, double measure) {
         volume += measure;
-        for (std::size_t c = 0; c < sums.size(); ++c)
-          if (field.counts(row, c))
-            sums[c] += measure * field.at(row, c);
-          else if (field.has(row, c))
-            left_out[c] += measure;
+        for (std::size_t c = 0; c < sums.size(); ++c) {
+          if (!field.counts(row, c)) continue;
+          sums[c] += measure * field.at(row, c);
+          over[c] += measure;
+        }
       });
       if (count == 0) subject.refuse_place(group);
       std::vector<Table::Cell> values{group, volume};
       values.insert(values.end(), sums.begin(), sums.end());
       for (std::size_t c = 0; c < sums.size(); ++c) {
-        const double over = volume - left_out[c];
-        if (over > 0)
-          values.emplace_back(sums[c] / over);
+        if (over[c] > 0)
+          values.emplace_back(sums[c] / over[c]);
         else
           values.emplace_back();
       }

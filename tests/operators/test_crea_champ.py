@@ -356,6 +356,25 @@ class PostElem(FieldTest):
         norm = self.table(NORME={**of, "TYPE_NORM": "L2", "TOUT": "OUI", "NOM_CMP": ["JEU"]})["VALE_NORM"]
         self.assertAlmostEqual(norm[0], np.sqrt(2) / 2, 14)
 
+    def test_a_mean_is_that_of_the_cells_that_have_the_component(self):
+        """X1 = 4 on the left (area 1), X2 = 6 on the right (area 2): over both X1 is 4 in the mean, not 4/3, and its integral 4; where no cell of
+        a group has it there is none."""
+        self.own("field_3", "ELEM_NEUT_R", ["X1", "X2"], [1, 2], [(4, 0), (0, 6)], present=[(1, 0), (0, 1)])
+        table = self.table(INTEGRALE={"CHAM_GD": concept("field_3"), "MODELE": concept("model_2"), "GROUP_MA": ["BODY", "LEFT"]})
+        np.testing.assert_allclose(table["VOL"], [3, 1], atol=1e-14)
+        np.testing.assert_allclose([table["INTE_X1"], table["INTE_X2"]], [[4, 4], [12, 0]], atol=1e-13)
+        np.testing.assert_allclose([table["MOYE_X1"][0], table["MOYE_X1"][1], table["MOYE_X2"][0]], [4, 4, 6], atol=1e-13)
+        with h5py.File(self.path("table_9")) as file:
+            cells = self.read_table(file)
+        self.assertIsNone(cells[1]["MOYE_X2"])
+
+    def test_masses_ask_for_what_a_result_does_not_say(self):
+        """A result that PROJ_CHAMP or CREA_RESU made names neither model nor materials."""
+        depl = {"quantity": "DEPL_R", "location": "NOEU", "components": ["DX"], "support": range(6), "values": np.zeros(6)}
+        self.write_result("result_3", "mesh_1", [0.0], {"DEPL": {0: depl}}, label="RES")
+        self.refuses("FIELDS_8", "RES", "MODELE", command="POST_ELEM", RESULTAT=concept("result_3"), MASS_INER={"TOUT": "OUI"})
+        self.refuses("FIELDS_8", "RES", "CHAM_MATER", command="POST_ELEM", RESULTAT=concept("result_3"), MODELE=concept("model_2"), MASS_INER={"TOUT": "OUI"})
+
     def test_refusals(self):
         self.own("field_3", "NOEU_DEPL_R", ["DX"], [0, 1, 3, 4], np.ones(4))
         norm = {"TYPE_NORM": "L2", "CHAM_GD": concept("field_3"), "MODELE": concept("model_2")}

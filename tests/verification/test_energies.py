@@ -28,6 +28,7 @@ stretched(20, 'C_PLAN')
 solve(*LOADS)
 R[0] = CALC_CHAMP(reuse=R[0], RESULTAT=R[0], ENERGIE=('ENEL_ELGA', 'ENEL_ELEM', 'ETOT_ELGA', 'ETOT_ELEM', 'ENEL_ELNO'),
                   VARI_INTERNE='VARI_ELNO')
+END = CALC_CHAMP(RESULTAT=R[0], NUME_ORDRE=2, ENERGIE='ETOT_ELGA')  # alone, of the whole path all the same
 R.append(MECA_STATIQUE(MODELE=MODEL, CHAM_MATER=FIELD, EXCIT=LOADS, LIST_INST=TIMES))
 exact = 30.0**2 / (2 * {YOUNG}) * 2.0
 for result, shift in ((R[0], 0), (R[1], 1)):
@@ -37,11 +38,19 @@ for result, shift in ((R[0], 0), (R[1], 1)):
         assert found['NUME_ORDRE'][0] == shift and found['POUR_CENT'][-1] == 100, found
     work = table_of(RESULTAT=result, TRAV_EXT=_F(TOUT='OUI'))
     assert abs(work['TRAV_ELAS'][-1] / exact - 1) < 1e-10 and abs(work['TRAV_REEL'][-1] / exact - 1) < 1e-10, work
+for kind, field in (('ENER_ELAS', 'ENEL_ELGA'), ('ENER_POT', 'EPOT_ELGA')):  # a skin stores nothing: no zero without a word
+    try:
+        POST_ELEM(RESULTAT=R[0], **{{kind: _F(GROUP_MA=('BODY', 'RIGHT'))}})
+    except AsterError as refusal:
+        assert all(word in str(refusal) for word in ('POSTELEM_2', kind, 'RIGHT', field)), refusal
+    else:
+        assert False
 """)
         self.assertEqual(run.status, 0, run.stdout[-3000:] + run.stderr[-3000:])
         result = Result(self.folder / "loads.base", "R[0]")
         for name in ("ENEL_ELGA", "ETOT_ELGA", "ENEL_ELNO"):
             self.assert_near(result.field(name, 2)[1]["TOTALE"], np.full(1, 30.0**2 / (2 * YOUNG)))
+        self.assert_near(Result(self.folder / "loads.base", "END").field("ETOT_ELGA", 2)[1]["TOTALE"], np.full(1, 30.0**2 / (2 * YOUNG)))
         for name in ("ENEL_ELEM", "ETOT_ELEM"):
             self.assertAlmostEqual(result.field(name, 2)[1]["TOTALE"].sum(), 30.0**2 / YOUNG, delta=1e-10)
         self.assertEqual(np.abs(result.field("VARI_ELNO", 2)[1]["V1"]).max(), 0)
