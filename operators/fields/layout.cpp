@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <numeric>
 
 #include "lacon/catalog/messages.hpp"
@@ -224,6 +225,23 @@ std::vector<std::int64_t> places(const Field& field, std::size_t count) {
   for (std::size_t i = 0; i < field.support.size(); ++i)
     place[static_cast<std::size_t>(field.support[i])] = static_cast<std::int64_t>(i);
   return place;
+}
+
+PointValue value_at(const Field& field, const std::vector<std::int64_t>& row_of_node, std::span<const std::int32_t> nodes,
+                    std::span<const double> weights, std::size_t component) {
+  constexpr double round_off = 1e-10;
+  PointValue found{0, Field::there};
+  for (std::size_t a = 0; a < nodes.size(); ++a) {
+    const std::int64_t row = row_of_node[static_cast<std::size_t>(nodes[a])];
+    const Field::Presence presence = row < 0 ? Field::absent : field.presence(static_cast<std::size_t>(row), component);
+    const bool has_part = std::abs(weights[a]) > round_off;
+    if (presence != Field::absent)
+      found.value += weights[a] * field.at(static_cast<std::size_t>(row), component);
+    else if (has_part)
+      return {};
+    if (presence == Field::stand_in && has_part) found.presence = Field::stand_in;
+  }
+  return found;
 }
 
 Field moved_to(const Ground& ground, const Field& field, const FieldType& type, bool zero_elsewhere) {

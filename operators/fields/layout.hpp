@@ -56,6 +56,17 @@ Field without_empty_rows(const Field& field);
 /// cells of the mesh
 std::vector<std::int64_t> places(const Field& field, std::size_t count);
 
+/// What a nodal field has at a point.
+struct PointValue {
+  double value = 0;
+  Field::Presence presence = Field::absent;  ///< a stand-in where that of a node has a part in it
+};
+/// The value of a component at a point of a cell. Nodes of no weight, but for round-off, have no part in it: the point is on a
+/// node or a side without them; where one that has a part lacks the component it does not exist.
+/// @param row_of_node of the field: places() @param weights of `nodes`
+PointValue value_at(const Field& field, const std::vector<std::int64_t>& row_of_node, std::span<const std::int32_t> nodes,
+                    std::span<const double> weights, std::size_t component);
+
 /// The field taken to another location, on all of `ground`. To points: by the cell's shape functions from its nodes; from
 /// points to nodes of cells: extrapolation.hpp; to nodes: the mean over the cells; to cells: the mean of the cell's nodes or
 /// points; a cell's value is that of all its points and nodes. In a cell whose nodes lack a component it does not exist, unless

@@ -19,13 +19,11 @@ struct LinePoint {
 
 /// The points that an occurrence of LIGN_COUPE names.
 ///   SEGMENT   NB_POINTS at equal distances from COOR_ORIG to COOR_EXTR
-///   ARC       NB_POINTS at equal angles from COOR_ORIG, turned about CENTRE by ANGLE degrees in all, in space about the axis
-///   DNOR;
-///             the abscissa is the arc's length
+///   ARC       NB_POINTS at equal angles from COOR_ORIG, turned about CENTRE by ANGLE degrees in all, in space about
+///             the axis DNOR; the abscissa is the arc's length
 ///   GROUP_NO  the nodes of a group, in its order; the abscissa is the length of the straight pieces between points
-///   GROUP_MA  the nodes of a chain of line cells, along it, in the direction of its first cell; that of a closed chain ends
-///   where
-///             it begins
+///   GROUP_MA  the nodes of a chain of line cells, along it, in the direction of its first cell; a closed chain ends at
+///             the node where it begins
 /// Throws LIGNCOUPE_1 for a point that is in no cell and near none, LIGNCOUPE_3 for coordinates that are not as many as the
 /// space has, LIGNCOUPE_4 for a group that is no chain, LIGNCOUPE_8 for an arc without radius or axis; says LIGNCOUPE_2 where
 /// points lie outside by less than the locator's limit.

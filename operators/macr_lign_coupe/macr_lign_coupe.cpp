@@ -12,6 +12,7 @@
 
 #include "lacon/catalog/messages.hpp"
 #include "lacon/operators/fields/axes.hpp"
+#include "lacon/operators/fields/expected.hpp"
 #include "lacon/operators/fields/extrapolation.hpp"
 #include "lacon/operators/fields/layout.hpp"
 #include "lacon/operators/fields/selection.hpp"
@@ -68,24 +69,8 @@ Subject subject_of(const Base& base, const Keywords& keywords) {
   return subject;
 }
 
-/// A node of less weight than this has a part in the value by round-off alone: the point is on a node or a side without it.
-constexpr double weight_of_round_off = 1e-10;
 /// A sum or product of unit vectors that is shorter has no direction.
 constexpr double least_direction = 1e-6;
-
-/// The value of a component at a point; nothing where a node that it needs lacks it.
-std::optional<double> value_at(const Field& field, const std::vector<std::int64_t>& row_of_node, const LinePoint& point,
-                               std::size_t component) {
-  double sum = 0;
-  for (std::size_t a = 0; a < point.nodes.size(); ++a) {
-    const std::int64_t row = row_of_node[static_cast<std::size_t>(point.nodes[a])];
-    if (row >= 0 && field.has(static_cast<std::size_t>(row), component))
-      sum += point.weights[a] * field.at(static_cast<std::size_t>(row), component);
-    else if (std::abs(point.weights[a]) > weight_of_round_off)
-      return std::nullopt;
-  }
-  return sum;
-}
 
 /// REPERE='LOCAL' at each point: X along the line, at a corner the mean of both directions; Y towards VECT_Y, without it in the
 /// plane to the left of X. Throws LIGNCOUPE_10.
@@ -140,9 +125,9 @@ Field at_points(const Mesh& mesh, const Field& field, const std::vector<LinePoin
   for (std::size_t i = 0; i < points.size(); ++i) {
     made.support.push_back(static_cast<std::int32_t>(i));
     for (std::size_t c = 0; c < field.n_components(); ++c) {
-      const std::optional<double> value = value_at(field, row_of_node, points[i], c);
-      made.values.push_back(value.value_or(0.0));
-      made.present.push_back(value.has_value());
+      const auto [value, presence] = value_at(field, row_of_node, points[i].nodes, points[i].weights, c);
+      made.values.push_back(value);
+      made.present.push_back(presence);
     }
   }
   return made;
@@ -290,9 +275,19 @@ Field with_components(const Field& field, const std::vector<std::string>& names)
     for (const std::string& name : names) {
       const auto c = static_cast<std::size_t>(field.component(name));
       made.values.push_back(field.at(row, c));
-      made.present.push_back(field.has(row, c));
+      made.present.push_back(field.presence(row, c));
     }
   return made;
+}
+
+/// Stand-ins are no part of sums, but where nothing else is.
+void leave_out_stand_ins(Field& field) {
+  for (std::size_t c = 0; c < field.n_components(); ++c) {
+    std::size_t counted = 0;
+    for (std::size_t row = 0; row < field.n_rows(); ++row) counted += field.counts(row, c);
+    for (std::size_t row = 0; row < field.n_rows() && counted > 0; ++row)
+      if (!field.counts(row, c)) field.present[row * field.n_components() + c] = Field::absent;
+  }
 }
 
 Values interpolate(const Mesh& mesh, const Keywords& line, const Field& field, const std::vector<LinePoint>& points,
@@ -300,6 +295,7 @@ Values interpolate(const Mesh& mesh, const Keywords& line, const Field& field, c
   Field own = at_points(mesh, field, points);
   if (line.text("REPERE") != "GLOBAL") turn_axes(mesh, line, points, own);
   own = with_components(own, components);
+  if (line.has("RESULTANTE")) leave_out_stand_ins(own);
   Values values;
   if (const std::string_view keyword = derives(line); !keyword.empty()) {
     const Derived found = derive(mesh, line, points, own);
@@ -432,11 +428,13 @@ std::vector<std::string> wanted_components(const Field& field, const std::string
 void macr_lign_coupe(const Order& order, const Base& base) {
   const Keywords& keywords = order.keywords;
   const Subject subject = subject_of(base, keywords);
+  check_own_mesh(base, subject.mesh, keywords, "", "MODELE");
   const Mesh mesh = base.mesh(subject.mesh);
   const CellLocator locator(mesh, searched_cells(mesh, keywords));
   Table table;
   std::size_t number = 0;
   for (const Keywords& line : keywords.factors("LIGN_COUPE")) {
+    check_own_mesh(base, subject.mesh, line, "MAILLAGE", "");
     const std::vector<LinePoint> points = line_points(mesh, locator, line);
     const Row name{{"INTITULE", "K24", title(line, ++number)}};
     if (line.text("OPERATION") == "MOYENNE") tell_of_turns(points, line);

@@ -6,10 +6,12 @@
 #include <cmath>
 #include <numeric>
 #include <optional>
+#include <string_view>
 #include <utility>
 
 #include "lacon/catalog/messages.hpp"
 #include "lacon/operators/fields/cell_locator.hpp"
+#include "lacon/operators/fields/expected.hpp"
 #include "lacon/operators/fields/extrapolation.hpp"
 #include "lacon/operators/fields/layout.hpp"
 #include "lacon/operators/fields/selection.hpp"
@@ -26,7 +28,8 @@ struct Place {
 /// Where a mesh is taken from: nodes in the cells of another one.
 class Projection {
  public:
-  Projection(const Mesh& from, const Mesh& to, const Keywords& keywords)
+  /// @param label of the mesh `from`
+  Projection(const Mesh& from, const Mesh& to, const Keywords& keywords, std::string_view label)
       : from_(from), zero_on_(keywords.yes("PROL_ZERO") ? to.n_nodes() : 0) {
     std::vector<Keywords> parts = keywords.factors("VIS_A_VIS");
     if (parts.empty()) parts.emplace_back();
@@ -48,6 +51,7 @@ class Projection {
         places_.push_back({node, std::move(*found)});
       }
     }
+    if (places_.empty() && zero_on_ == 0) fail("PROJCHAMP_2", {{"mesh", std::string(label)}});
     std::sort(places_.begin(), places_.end(), [](const Place& a, const Place& b) { return a.node < b.node; });
     if (outside > 0 && farthest > keywords.optional_real("DISTANCE_ALARME").value_or(0))
       inform("PROJCHAMP_3", {{"count", std::to_string(outside)}, {"distance", fmt::format("{:.3g}", farthest)}});
@@ -72,21 +76,12 @@ class Projection {
       zeros_up_to(static_cast<std::size_t>(place.node));
       next = static_cast<std::size_t>(place.node) + 1;
       const auto nodes = from_.cells[static_cast<std::size_t>(place.from.cell)];
-      std::vector<double> values(width, 0.0);
-      std::vector<std::uint8_t> present(width, 1);
-      for (std::size_t a = 0; a < place.from.weights.size(); ++a) {
-        const std::int64_t at = row[static_cast<std::size_t>(nodes[a])];
-        for (std::size_t c = 0; c < width; ++c)
-          if (at >= 0 && field.has(static_cast<std::size_t>(at), c))
-            values[c] += place.from.weights[a] * field.at(static_cast<std::size_t>(at), c);
-          else
-            present[c] = 0;
-      }
-      for (std::size_t c = 0; c < width && zero_on_ > 0; ++c)
-        if (!std::exchange(present[c], Field::there)) values[c] = 0;
       made.support.push_back(place.node);
-      made.values.insert(made.values.end(), values.begin(), values.end());
-      made.present.insert(made.present.end(), present.begin(), present.end());
+      for (std::size_t c = 0; c < width; ++c) {
+        const auto [value, presence] = value_at(field, row, nodes, place.from.weights, c);
+        made.values.push_back(value);
+        made.present.push_back(presence == Field::absent && zero_on_ > 0 ? Field::there : presence);
+      }
     }
     zeros_up_to(zero_on_);
     return without_empty_rows(made);
@@ -133,9 +128,10 @@ void project_field(const Order& order, const Base& base) {
   const Field field = base.field(keywords.concept_id("CHAM_GD"));
   if (field.location != Location::nodes || field.quantity.ends_with("_F"))
     fail("PROJCHAMP_1", {{"keyword", keywords.path("CHAM_GD")}, {"field", field.name}});
+  check_own_mesh(base, field.mesh, keywords, "MAILLAGE_1", "MODELE_1");
   const std::string mesh = target(keywords, base);
   const Mesh here = base.mesh(field.mesh), there = base.mesh(mesh);
-  Field made = Projection(here, there, keywords)(field);
+  Field made = Projection(here, there, keywords, base.label(field.mesh))(field);
   made.name = order.result_label;
   made.mesh = mesh;
   base.store(made);
@@ -147,6 +143,7 @@ void proj_champ(const Order& order, const Base& base) {
   const Keywords& keywords = order.keywords;
   if (keywords.has("CHAM_GD")) return project_field(order, base);
   const Result from = base.result(keywords.concept_id("RESULTAT"));
+  check_own_mesh(base, from.mesh, keywords, "MAILLAGE_1", "MODELE_1");
   const auto model = keywords.optional_concept("MODELE_2");
   const std::vector<std::int64_t> orders = selected_orders(base, from, keywords);
   Result to = part_of(from, orders);
@@ -158,7 +155,7 @@ void proj_champ(const Order& order, const Base& base) {
   to.stages = {{}};
   to.tables.clear();
   const Mesh here = base.mesh(from.mesh), there = base.mesh(to.mesh);
-  const Projection project(here, there, keywords);
+  const Projection project(here, there, keywords, base.label(from.mesh));
   std::vector<std::string> names = keywords.texts("NOM_CHAM");
   const bool all = names.empty();
   if (all)

@@ -75,6 +75,24 @@ class MacrLignCoupe(OperatorTest):
         self.assertIn("LIGNCOUPE_13", self.messages)
         self.refuses("CREACHAMP_14", {**segment, "RESULTANTE": ["FX"]}, "RESULTANTE", "FX")
 
+    def test_stand_ins_are_no_part_of_sums_but_where_nothing_else_is(self):
+        """As of POST_RELEVE_T: node 1 of LINE is a stand-in in DX, all of its nodes are in DY."""
+        points, cells = [(0, 0), (1, 0), (2, 0), (0, 1), (1, 1), (2, 1)], [("QUAD4", [0, 1, 4, 3]), ("QUAD4", [1, 2, 5, 4])]
+        self.write(points, cells, [(5, -1)] * 6, instants=(0.0, ), present=[(1 + (n == 1), 2) for n in range(6)], node_groups={"LINE": [0, 1, 2]})
+        rows = self.lines({"TYPE": "GROUP_NO", "GROUP_NO": "LINE", "RESULTANTE": ["DX", "DY"]})
+        self.assertEqual((rows[0]["DX"], rows[0]["DY"]), (10, -3))
+        rows = self.lines({"TYPE": "GROUP_NO", "GROUP_NO": "LINE"})
+        self.assertEqual(self.column(rows, "DX"), [5, 5, 5])
+
+    def test_a_model_or_mesh_that_is_not_the_fields_is_refused(self):
+        self.plane()
+        self.write_mesh("mesh_5", [(0, 0), (1, 0)], [("SEG2", [0, 1])])
+        line = {"TYPE": "GROUP_NO", "GROUP_NO": "LINE"}
+        self.lines({**line, "MAILLAGE": concept("mesh_1")})
+        self.refuses("CREACHAMP_5", {**line, "MAILLAGE": concept("mesh_5")}, "MESH_1", "MESH_5")
+        self.write_model("model_6", "mesh_5", ["D_PLAN/SEG2"], [0])
+        self.refuses("CREACHAMP_5", line, "MESH_1", "MESH_5", MODELE=concept("model_6"))
+
     def test_a_linear_field_along_a_segment_through_distorted_bricks(self):
         points, cells = bricks(4)
         gradient = np.array([[1.0, -2.0, 0.5], [0.3, 0.0, 4.0], [0.0, 1.0, 1.0]])

@@ -59,6 +59,34 @@ class ProjChamp(OperatorTest):
         self.assertEqual((run.status, self.ids(run)), (0, []))
         self.assertEqual(list(self.values(self.project(VIS_A_VIS=[{"GROUP_NO_2": "ABOVE"}], DISTANCE_ALARME=0.2))), [3])
 
+    def test_a_node_on_a_node_has_its_value_where_the_others_of_the_cell_have_none(self):
+        """A field of the lower nodes 0 and 1 (LAGS_C of a skin): node (0, 0) and the place (0.5, 0) between them get it, (0.5, 0.5) does not; a
+        stand-in stays one."""
+        self.write_mesh("mesh_5", [(0, 0), (0.5, 0), (0.5, 0.5)], [("POI1", [k]) for k in range(3)])
+        for kind in (1, 2):
+            skin = {**self.field, "support": [0, 1], "values": [4.0, 6.0], "present": [kind, kind]}
+            self.write_result("result_3", "mesh_1", [0.0], {"DEPL": {0: skin}}, label="RES")
+            run = self.project(MAILLAGE_2=concept("mesh_5"))
+            self.assertEqual(self.values(run, 0), {0: 4.0, 1: 5.0})
+            present = self.read_field("result_4", "DEPL", 0).present
+            self.assertEqual([1, 1] if present is None else present.ravel().tolist(), [kind, kind])
+
+    def test_a_projection_that_reaches_no_node_is_refused(self):
+        """Too far away, or from cells of another dimension: no result without values."""
+        self.write_mesh("mesh_1", POINTS, [*CELLS, ("SEG2", [0, 1])], cell_groups={"SKIN": [2]})
+        above = {"GROUP_NO_2": "ABOVE"}
+        self.assert_refused(self.project(DISTANCE_MAX=0.05, VIS_A_VIS=[above]), "PROJCHAMP_2", "MESH_1")
+        self.assert_refused(self.project(VIS_A_VIS=[{"GROUP_MA_1": "SKIN"}]), "PROJCHAMP_2", "MESH_1")
+        self.assertEqual(set(self.values(self.project(DISTANCE_MAX=0.05, PROL_ZERO="OUI", VIS_A_VIS=[above])).values()), {0.0})
+
+    def test_another_mesh_than_that_of_the_field_is_refused(self):
+        self.write_model("model_6", "mesh_1", ["D_PLAN/QUAD4"], [0, 0])
+        self.write_model("model_7", "mesh_2", ["D_PLAN/QUAD4"], [-1] * 4)
+        for own in ({"MAILLAGE_1": concept("mesh_1")}, {"MODELE_1": concept("model_6")}):
+            self.assertEqual(self.project(**own).status, 0)
+        for other in ({"MAILLAGE_1": concept("mesh_2")}, {"MODELE_1": concept("model_7")}):
+            self.assert_refused(self.project(**other), "CREACHAMP_5", "MESH_1", "MESH_2")
+
     def test_what_is_refused(self):
         self.assert_refused(self.project(NOM_CHAM="VITE"), "RESULT_1", "VITE")
         self.assert_refused(self.project(INST=[0.5]), "FIELDS_2", "0.5")
