@@ -194,8 +194,8 @@ class Setting {
     if (!materials_) materials_.emplace(base_, result_, mesh_, points());
     return *materials_;
   }
-  /// Energies of paths that instants before have, by order.
-  std::map<std::int64_t, Field>& path_energies() { return path_energies_; }
+  /// The energy of the path up to the latest order that it was computed for.
+  std::optional<std::pair<std::int64_t, Field>>& path_energy() { return path_energy_; }
   /// @param displacement (n_nodes, dimension), which following pressures act on @return (n_nodes, n_components)
   std::vector<double> external_force(std::int64_t order, double instant, std::span<const double> displacement) {
     const ResultStage& stage = result_.stage(order);
@@ -220,7 +220,7 @@ class Setting {
   std::optional<bool> zero_variables_;
   std::optional<ModelPoints> points_;
   std::optional<ResultMaterials> materials_;
-  std::map<std::int64_t, Field> path_energies_;
+  std::optional<std::pair<std::int64_t, Field>> path_energy_;
   std::optional<std::pair<std::int64_t, StaticProblem>> loads_;  ///< of a stage, by its first order
 };
 
@@ -368,27 +368,29 @@ class Instant {
         fail("CALCCHAMP_5", {{"field", name}, {"cell", cell_name(cell)}, {"label", setting_.result().label}});
   }
 
-  /// Work of the stresses since the first instant of the result, by trapezia.
+  /// Work of the stresses since the first instant of the result, by trapezia; no more than two instants are in memory.
   Field path_energy(const Field& stress, const std::string& name) {
     refuse_large_strain(stress, name);
-    std::map<std::int64_t, Field>& known = setting_.path_energies();
-    if (const auto found = known.find(order_); found != known.end()) return found->second;
-    const auto has_both = [&](std::int64_t o) {
-      return has_field(setting_.result(), "SIEF_ELGA", o) && has_field(setting_.result(), "DEPL", o);
+    auto& known = setting_.path_energy();
+    if (known && known->first > order_) known.reset();
+    std::optional<Instant> last;
+    if (known) last.emplace(setting_, known->first);
+    const auto add = [&](Instant& now) {
+      std::optional<StateOfPoints> then;
+      if (last) then.emplace((*last)("SIEF_ELGA"), (*last)("EPSI_ELGA"));
+      known.emplace(now.order_, energy_of_path({now("SIEF_ELGA"), now("EPSI_ELGA")}, then ? &*then : nullptr,
+                                               known ? &known->second : nullptr, name));
     };
-    std::optional<std::int64_t> last;
-    for (const std::int64_t o : setting_.result().orders)
-      if (o < order_ && has_both(o)) last = o;
-    const StateOfPoints now{stress, (*this)("EPSI_ELGA")};
-    Field energy;
-    if (last) {
-      Instant before(setting_, *last);
-      const StateOfPoints then{before("SIEF_ELGA"), before("EPSI_ELGA")};
-      energy = energy_of_path(now, &then, &before("ETOT_ELGA"), name);
-    } else {
-      energy = energy_of_path(now, nullptr, nullptr, name);
+    for (const std::int64_t o : setting_.result().orders) {
+      if (o >= order_ || (known && o <= known->first)) continue;
+      if (!has_field(setting_.result(), "SIEF_ELGA", o) || !has_field(setting_.result(), "DEPL", o)) continue;
+      Instant now(setting_, o);
+      now.refuse_large_strain(now("SIEF_ELGA"), name);
+      add(now);
+      last.emplace(std::move(now));
     }
-    return known.emplace(order_, std::move(energy)).first->second;
+    if (!known || known->first < order_) add(*this);
+    return known->second;
   }
 
   /// Of each row of a field of stresses: how thick a plate of thickness 1 is now, sqrt(1 + 2 E_zz) with Green-Lagrange.
