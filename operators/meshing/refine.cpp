@@ -8,7 +8,9 @@
 
 #include "lacon/catalog/messages.hpp"
 #include "lacon/catalog/refinements.hpp"
+#include "lacon/catalog/wording.hpp"
 #include "lacon/operators/meshing/body.hpp"
+#include "lacon/operators/meshing/checks.hpp"
 #include "lacon/operators/meshing/quality.hpp"
 #include "lacon/operators/meshing/subdivision.hpp"
 
@@ -60,14 +62,11 @@ std::vector<char> chosen(const Mesh& mesh, std::span<const std::string> groups, 
   for (std::size_t c = 0; c < mesh.n_cells(); ++c)
     for (const Edge& edge : edges_of(mesh, c))
       if (!mark[c] && cut.contains(edge)) {
-        std::string of_groups;
-        for (const Group& group : mesh.cell_groups)
-          if (std::ranges::find(group.members, static_cast<std::int32_t>(c)) != group.members.end())
-            of_groups += (of_groups.empty() ? " of " : ", ") + group.name;
+        const std::string names = groups_with(mesh, static_cast<std::int32_t>(c));
         fail("RAFFINE_1", {{"keyword", keyword},
                            {"cell", cell_name(static_cast<std::int64_t>(c))},
                            {"type", std::string(mesh.row(c).name)},
-                           {"groups", of_groups},
+                           {"groups", names.empty() ? "" : part("of_the_group", {{"groups", names}})},
                            {"first", node_name(edge.first)},
                            {"second", node_name(edge.second)}});
       }
