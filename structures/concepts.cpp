@@ -23,6 +23,8 @@ double Function::operator()(double at, std::string_view label) const {
   if (x.size() == 1) return y.front();
   if (((left || right) && extension == "CONSTANT") || (!left && at < first) || (!right && at > last))
     return at < first ? y.front() : y.back();
+  if (interpolation[0] == "LOG" && at <= 0)
+    fail("DEFI_FONCTION_8", {{"name", std::string(label)}, {"x", fmt::format("{:.15g}", at)}});
   const auto above = std::upper_bound(x.begin() + 1, x.end() - 1, at);
   const auto j = static_cast<std::size_t>(above - x.begin()), i = j - 1;
   const auto scale = [](const std::string& kind, double v) { return kind == "LOG" ? std::log(v) : v; };

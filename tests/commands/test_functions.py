@@ -167,6 +167,11 @@ U = CREA_TABLE(LISTE=(_F(PARA='A', LISTE_R=(2., 3., 8.)), _F(PARA='Q', LISTE_R=(
 j = table(_F(OPERATION='COMB', TABLE=U, NOM_PARA='A')).values()
 assert j['A'] == [1, 2, 3, 8] and j['Q'] == [None, 0.2, 0.3, 0.8] and j['B'] == [4, 5, 7, None]
 assert table(_F(OPERATION='COMB', TABLE=U, RESTREINT='OUI')).values() == {'A': [2, 3], 'B': [5, 7], 'S': ['y', 'x'], 'Q': [0.2, 0.3]}
+I = CREA_TABLE(LISTE=(_F(PARA='K', LISTE_I=(1, 2)), _F(PARA='B', LISTE_I=(1, 2)), _F(PARA='W', LISTE_K=('u', 'v'))))
+X = CREA_TABLE(LISTE=(_F(PARA='K', LISTE_R=(1., 3.)), _F(PARA='B', LISTE_R=(1.5, 2.5))))
+# integers meet reals: keys are compared as numbers, and no digit is lost
+assert CALC_TABLE(TABLE=I, ACTION=_F(OPERATION='COMB', TABLE=X, NOM_PARA='K')).EXTR_TABLE().values() == {'K': [1, 2, 3], 'B': [1.5, 2, 2.5], 'W': ['u', 'v', None]}
+assert CALC_TABLE(TABLE=I, ACTION=_F(OPERATION='AJOUT_LIGNE', NOM_PARA=('K', 'B'), VALE=(3, 2.7))).EXTR_TABLE().values()['B'] == [1, 2, 2.7]
 name = T.id
 T = CALC_TABLE(reuse=T, TABLE=T, ACTION=_F(OPERATION='SUPPRIME', NOM_PARA='S'))
 assert T.id == name and T.getParameters() == ['A', 'B']
@@ -195,6 +200,7 @@ FIN()
             ("TEST_FONCTION(VALEUR=_F(FONCTION=two, VALE_PARA=1., VALE_CALC=1.))", "FUNCTION_12"),
             ("TEST_FONCTION(VALEUR=_F(FONCTION=f, NOM_PARA='Z', VALE_PARA=1., VALE_CALC=1.))", "FUNCTION_12"),
             ("TEST_FONCTION(VALEUR=_F(FONCTION=g, VALE_PARA=4., VALE_CALC=1.))", "DEFI_FONCTION_3"),
+            ("DEFI_FONCTION(NOM_PARA='X', VALE=(1, 1, 2, 2), INTERPOL=('LOG', 'LIN'), PROL_GAUCHE='LINEAIRE')(0)", "DEFI_FONCTION_8"),
             ("CALC_FONCTION(MAX=_F(FONCTION=g, INTERVALLE=(1., 0.)))", "FUNCTION_21"), ("CALC_FONCTION(MAX=_F(FONCTION=g, INTERVALLE=(0., 1., 2.)))", "FUNCTION_21"),
             ("CALC_FONCTION(INVERSE=_F(FONCTION=CALC_FONCTION(MULT=_F(FONCTION=(f, g)))))", "FUNCTION_22"),
             ("CALC_FONCTION(PUISSANCE=_F(FONCTION=g, EXPOSANT=-1))", "FUNCTION_15"), ("CALC_FONCTION(RMS=_F(FONCTION=f))", "KEYWORD_11"),
@@ -214,6 +220,8 @@ FIN()
             ("CALC_TABLE(TABLE=T, ACTION=_F(OPERATION='AJOUT_LIGNE', NOM_PARA='A', VALE='text'))", "TABLE_2"),
             ("CALC_TABLE(TABLE=T, ACTION=_F(OPERATION='COMB', TABLE=CREA_TABLE(LISTE=_F(PARA='Z', LISTE_R=1.))))", "CALC_TABLE_3"),
             ("CALC_TABLE(TABLE=T, ACTION=_F(OPERATION='COMB', TABLE=T, NOM_PARA='S'))", "CALC_TABLE_4"),
+            ("CALC_TABLE(TABLE=T, ACTION=_F(OPERATION='COMB', TABLE=CREA_TABLE(LISTE=(_F(PARA='A', LISTE_R=1.), _F(PARA='S', LISTE_R=1.))), NOM_PARA='A'))", "CALC_TABLE_5"),
+            ("CALC_TABLE(TABLE=T, ACTION=_F(OPERATION='OPER', FORMULE=FORMULE(NOM_PARA='A', VALE='2 * A'), NOM_PARA='S'))", "TABLE_7"),
             ("CALC_TABLE(TABLE=T, ACTION=_F(OPERATION='EXTR', NOM_PARA='Q'))", "TABLE_1"), ("CALC_TABLE(TABLE=T, ACTION=_F(OPERATION='OPER', NOM_PARA='Q'))", "KEYWORD_2")])
 
 

@@ -3,6 +3,7 @@
 import io
 import json
 import sys
+import time
 import unittest
 
 import h5py
@@ -75,6 +76,23 @@ class Class(unittest.TestCase):
         self.assertEqual(table.para, ["N", "X", "NEW", "D"])
         self.assertEqual(table[["N", "D"]].para, ["N", "D"])
         self.assertEqual(table.Array("N", "X").tolist(), [[1, 0.5], [3, -2], [4, 0.5]])
+
+    def test_a_column_of_integers_that_gets_a_real_is_one_of_reals(self):
+        """2.7 stays 2.7 in a file; a text among numbers is refused where it is put in."""
+        table = sample()
+        table.append({"N": 2.7, "S": "a longer text"})
+        self.assertEqual(table.type, ["R", "R", "K16"])
+        with h5py.File(io.BytesIO(), "w") as file:
+            write_table(file, table)
+            self.assertEqual((read_table(file).values()["N"], read_table(file).kind("S")), ([1, 2, 3, 4, 2.7], "K16"))
+        with self.assertRaisesRegex(TypeError, "column X .* numbers, and 'A'"):
+            table.append({"X": "A"})
+
+    def test_extremes_of_a_long_column_take_no_longer_than_reading_it(self):
+        table = Table.of_columns({"X": ("R", [float(i % 1000) for i in range(20000)])})
+        start = time.process_time()
+        self.assertEqual(len(table.X.MAXI()), 20)
+        self.assertLess(time.process_time() - start, 1.0)
 
     def test_types(self):
         self.assertEqual([type_of(v) for v in ([1, None], [1, 2.0], ["a"], ["a" * 9], ["a" * 80], [], [True])],
@@ -199,6 +217,15 @@ IMPR_TABLE(TABLE=T, UNITE=32, PAGINATION='S', NOM_PARA=('S', 'N'), COMMENTAIRE='
             self.ok(self.study("IMPR_TABLE(TABLE=T, UNITE=30)\nIMPR_TABLE(TABLE=T, UNITE=30)", "--unit", "30=out.txt"))
         self.assertEqual((self.work / "out.txt").read_text().count("LACON CONCEPT T"), 2)
 
+    def test_rows_that_a_cross_table_does_not_show_are_told(self):
+        """Columns 1 and 1.0000001 have one name with five digits."""
+        twice = "U = CREA_TABLE(LISTE=(_F(PARA='A', LISTE_R=(1., 1., 2.)), _F(PARA='B', LISTE_R=(1., 1.0000001, 2.)), _F(PARA='C', LISTE_R=(1., 2., 3.))))\n"
+        run = self.study(twice + "IMPR_TABLE(TABLE=U, UNITE=30, FORMAT='TABLEAU_CROISE')")
+        self.assertEqual(run.last, "--- DIAGNOSTIC JOB : <A>_ALARM", run.out + run.err)
+        self.assertIn("<TABLE_19> 1 rows", run.err)
+        fine = self.ok(self.study(twice + "IMPR_TABLE(TABLE=U, UNITE=30, FORMAT='TABLEAU_CROISE', FORMAT_R='E16.9')"))
+        self.assertNotIn("TABLE_19", fine.err + fine.out)
+
     def test_what_the_study_reads_is_not_replaced(self):
         self.refused(self.study("M = LIRE_MAILLAGE(UNITE=20)\nIMPR_TABLE(TABLE=T, UNITE=20)"), "COMMAND_12")
         self.assertEqual((self.work / "mesh.med").read_bytes(), b"not read by the stand-in")
@@ -208,7 +235,7 @@ IMPR_TABLE(TABLE=T, UNITE=32, PAGINATION='S', NOM_PARA=('S', 'N'), COMMENTAIRE='
         for keywords, word in (("FORMAT_R='12'", "TABLE_11"), ("NOM_PARA='Q'", "TABLE_1"), ("FILTRE=_F(NOM_PARA='Q', VALE=1.)", "TABLE_1"),
                                ("FILTRE=_F(NOM_PARA='S', VALE=1.)", "TABLE_2"), ("FILTRE=_F(NOM_PARA='V', CRIT_COMP='LT', VALE=(1., 2.))", "TABLE_3"),
                                ("FILTRE=_F(NOM_PARA='S', CRIT_COMP='MAXI')", "TABLE_4"), ("FORMAT='TABLEAU_CROISE', NOM_PARA=('N', 'S')", "TABLE_12"),
-                               ("FORMAT='AGRAF'", "KEYWORD_13"), ("FILTRE=_F(NOM_PARA='N', CRIT_COMP='VIDE', VALE=1.)", "KEYWORD_10")):
+                               ("FILTRE=_F(NOM_PARA='S', CRIT_COMP='REGEXP', VALE_K='(')", "TABLE_18"), ("FORMAT='AGRAF'", "KEYWORD_13"), ("FILTRE=_F(NOM_PARA='N', CRIT_COMP='VIDE', VALE=1.)", "KEYWORD_10")):
             calls.append((f"IMPR_TABLE(TABLE=T, UNITE=30, {keywords})", word))
         self.all_refused(f"DEBUT()\n{TABLE}", calls)
         self.assertFalse((self.work / "study.30.table").exists())

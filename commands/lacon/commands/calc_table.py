@@ -4,7 +4,7 @@ import statistics
 
 from ..core.catalog import part
 from ..tables import filters, printing, storage
-from ..tables.table import Table, type_of
+from ..tables.table import Table, joined_type, type_of
 
 _reductions = {"MAXI": max, "MINI": min, "SOMM": sum, "MOY": lambda v: sum(v) / len(v), "MAXI_ABS": lambda v: max(map(abs, v)),
                "MINI_ABS": lambda v: min(map(abs, v)), "SOMM_ABS": lambda v: sum(map(abs, v))}
@@ -92,12 +92,15 @@ def _compute(call, table, action, path):
         call.fail("FUNCTION_12", f"{path}/NOM_COLONNE", label=formula.label, parameters=", ".join(formula.getVariables()))
     for name in columns:
         filters.column_of(call, table, name, f"{path}/FORMULE")
+    _new(call, table, names[0], path)
     table.fromfunction(names[0], formula, columns)
     return table
 
 
-def _key(row, names, real):
-    return tuple(printing.cell(row.get(name), real).strip() for name in names)
+def _key(row, names, real, mixed=()):
+    """What rows are compared by. @param mixed columns that hold integers in one table and reals in the other"""
+    cells = (float(row[name]) if name in mixed and row.get(name) is not None else row.get(name) for name in names)
+    return tuple(printing.cell(cell, real).strip() for cell in cells)
 
 
 def _real(call, action, path):
@@ -116,21 +119,25 @@ def _combine(call, table, action, path):
     for name in names:
         filters.column_of(call, table, name, f"{path}/NOM_PARA")
         filters.column_of(call, other, name, f"{path}/NOM_PARA")
+    kinds = {name: joined_type(kind, other.kind(name)) if name in other.para else kind for name, kind in zip(table.para, table.type)}
+    for name in (n for n, kind in kinds.items() if kind is None):
+        call.fail("CALC_TABLE_5", f"{path}/TABLE", name=name, first=table.kind(name), second=other.kind(name))
+    mixed = [name for name in names if {table.kind(name), other.kind(name)} == {"I", "R"}]
     for which in (table, other):
-        keys = [_key(row, names, real) for row in which]
+        keys = [_key(row, names, real, mixed) for row in which]
         twice = next((key for key in keys if keys.count(key) > 1), None) if len(set(keys)) < len(keys) else None
         if twice:
             call.fail("CALC_TABLE_4", path, label=which.nom, key=", ".join(f"{n} {v}" for n, v in zip(names, twice)))
-    from_other = {_key(row, names, real): row for row in other}
+    from_other = {_key(row, names, real, mixed): row for row in other}
     rows = []
     for row in table:
-        match = from_other.pop(_key(row, names, real), None)
+        match = from_other.pop(_key(row, names, real, mixed), None)
         if match is not None or action["RESTREINT"] == "NON":
             rows.append({**row, **{k: v for k, v in (match or {}).items() if k not in names}})
     if action["RESTREINT"] == "NON":
         rows += from_other.values()
     added = [name for name in other.para if name not in table.para]
-    return Table(rows, table.para + added, table.type + [other.kind(name) for name in added], table.titr)
+    return Table(rows, table.para + added, list(kinds.values()) + [other.kind(name) for name in added], table.titr)
 
 
 def _unique(call, table, action, path):

@@ -8,7 +8,7 @@ from ..core.files import whole
 from ..core.late import numpy
 from ..tables import filters, printing, storage
 from ..tables.curves import Curve
-from ..tables.table import Table, crossed, type_of
+from ..tables.table import Table, crossed, hidden_by_crossing, type_of
 from . import checks, information, places
 from .drawing import draw
 
@@ -190,6 +190,9 @@ def _page(call, label, table, real):
     if k["FORMAT"] == "TABLEAU_CROISE":
         if len(table.para) != 3:
             call.fail("TABLE_12", "NOM_PARA", format="TABLEAU_CROISE", needed="3", count=len(table.para))
+        lost = hidden_by_crossing(table, table.para, real)
+        if lost:
+            call.study.inform("TABLE_19", f"{call.command}/NOM_PARA, {call.where}", count=lost, down=table.para[0], across=table.para[1], format=k["FORMAT_R"])
         return head + printing.columns(crossed(table, table.para, real), real, k["SEPARATEUR"], comment) + "\n"
     end = k["FIN_LIGNE"].removesuffix("\n")
     return head + printing.columns(table, real, k["SEPARATEUR"], comment, k["DEBUT_LIGNE"], end) + "\n"

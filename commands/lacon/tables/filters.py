@@ -1,5 +1,7 @@
 """FILTRE, and columns that keywords name."""
 
+import re
+
 from ..core.catalog import part
 from ..core.nearest import nearest
 
@@ -31,7 +33,10 @@ def filtered(call, table, factors, path="FILTRE"):
         if len(targets) > 1:
             call.fail("TABLE_3", f"{place}/{key}", criterion=criterion)
         if criterion == "REGEXP":
-            table = column.REGEXP(targets[0])
+            try:
+                table = column.REGEXP(targets[0])
+            except re.error as error:
+                call.fail("TABLE_18", f"{place}/{key}", pattern=targets[0], reason=error)
         else:
             table = {"LT": column.__lt__, "LE": column.__le__, "GT": column.__gt__, "GE": column.__ge__}[criterion](targets[0])
     return table

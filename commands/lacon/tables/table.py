@@ -24,6 +24,15 @@ def type_of(values):
     return "I" if there and all(isinstance(v, numbers.Integral) and not isinstance(v, bool) for v in there) else "R"
 
 
+def joined_type(first, second):
+    """Type of a column with cells of both types, None where one holds texts and the other numbers."""
+    if first == second:
+        return first
+    if first in texts and second in texts:
+        return max(first, second, key=texts.index)
+    return None if first in texts or second in texts else "R"
+
+
 class Column(list):
     """The cells of a column, None where one is missing. A comparison gives the table of the rows where it holds."""
 
@@ -74,8 +83,8 @@ class Column(list):
         return self._rows(lambda value: True)
 
     def _extreme(self, choose, measure):
-        there = [measure(v) for v in self if v is not None]
-        return self._rows(lambda value: measure(value) == choose(there))
+        best = choose((measure(v) for v in self if v is not None), default=None)
+        return self._rows(lambda value: measure(value) == best)
 
     def MAXI(self):
         return self._extreme(max, lambda v: v)
@@ -208,12 +217,21 @@ class Table:
         return Table(self.rows, self.para, self.type, self.titr, self.nom)
 
     def append(self, row):
-        """Add a row; new columns are those of its keys."""
+        """Add a row; new columns are those of its keys, and a column of integers that gets a real becomes one of reals."""
         for name, value in row.items():
             if name not in self.para:
                 self.para.append(name)
                 self.type.append(type_of([value]))
+            elif value is not None:
+                self._widen(name, type_of([value]), repr(value))
         self.rows.append({k: v for k, v in row.items() if v is not None})
+
+    def _widen(self, name, kind, what):
+        at = self.para.index(name)
+        both = joined_type(self.type[at], kind)
+        if both is None:
+            raise TypeError(f"the column {name} of the table holds {'texts' if self.type[at] in texts else 'numbers'}, and {what} is none")
+        self.type[at] = both
 
     def add_row(self, cells):
         """Append a row given as column -> (type, value); columns that are new get their type from it."""
@@ -313,8 +331,14 @@ class Table:
     __str__ = __repr__
 
 
+def hidden_by_crossing(table, names, real="12.5E"):
+    """How many rows crossed() does not show, for a later one has the same first cell and the same name of its column."""
+    down, across, _ = names
+    return len(table) - len({(row.get(down), printing.cell(row.get(across), real).strip()) for row in table.rows})
+
+
 def crossed(table, names, real="12.5E"):
-    """The third column by the first (down) and the second (across), whose cells `real` makes names of columns."""
+    """The third column by the first (down) and the second (across), whose cells `real` makes names of columns; of several rows for one cell the last."""
     down, across, what = names
     rows, heads = {}, {}
     for row in table.rows:
