@@ -24,7 +24,7 @@ double Function::operator()(double at, std::string_view label) const {
   if (((left || right) && extension == "CONSTANT") || (!left && at < first) || (!right && at > last))
     return at < first ? y.front() : y.back();
   if (interpolation[0] == "LOG" && at <= 0)
-    fail("DEFI_FONCTION_8", {{"name", std::string(label)}, {"x", fmt::format("{:.15g}", at)}});
+    fail("DEFI_FONCTION_9", {{"name", std::string(label)}, {"x", fmt::format("{:.15g}", at)}});
   const auto above = std::upper_bound(x.begin() + 1, x.end() - 1, at);
   const auto j = static_cast<std::size_t>(above - x.begin()), i = j - 1;
   const auto scale = [](const std::string& kind, double v) { return kind == "LOG" ? std::log(v) : v; };

@@ -143,7 +143,7 @@ struct Function {
   std::string extension_left = "EXCLU", extension_right = "EXCLU";
   std::vector<double> x, y;  ///< x increasing
 
-  /// Throws FUNCTION_1 where x is outside and the extension is EXCLU, DEFI_FONCTION_8 where it is prolonged beyond what
+  /// Throws FUNCTION_1 where x is outside and the extension is EXCLU, DEFI_FONCTION_9 where it is prolonged beyond what
   /// logarithms reach; `label` names the function in the message.
   double operator()(double at, std::string_view label) const;
 };

@@ -17,7 +17,7 @@ class Piecewise:
         self.parameter, self.component = parameter, component
 
     def value(self, x, name="function"):
-        """@throws AsterError DEFI_FONCTION_3 where x lies outside and the function is not prolonged there, DEFI_FONCTION_8 where a logarithm ends"""
+        """@throws AsterError DEFI_FONCTION_3 where x lies outside and the function is not prolonged there, DEFI_FONCTION_9 where a logarithm ends"""
         if hasattr(x, "__len__") and not isinstance(x, (str, bytes)):
             return numpy.array([self.value(v, name) for v in x])
         if isinstance(x, (str, bytes)):
@@ -40,7 +40,7 @@ class Piecewise:
                 return self.y[0] if x < low else self.y[-1]
         i = min(max(bisect.bisect_right(self.x, x) - 1, 0), len(self.x) - 2)
         if self.interpolation[0] == "LOG" and x <= 0.0:
-            fail("DEFI_FONCTION_8", name=name, x=f"{x:g}")
+            fail("DEFI_FONCTION_9", name=name, x=f"{x:g}")
         return self._between(i, x)
 
     def _alone(self, x, name):

@@ -29,7 +29,7 @@ TEST(Functions, a_parameter_by_logarithms_ends_at_zero) {
       function(at, "F");
       ADD_FAILURE() << at;
     } catch (const Error& error) {
-      EXPECT_EQ(error.message().id, "DEFI_FONCTION_8");
+      EXPECT_EQ(error.message().id, "DEFI_FONCTION_9");
     }
   }
 }
