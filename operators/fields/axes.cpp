@@ -97,7 +97,6 @@ std::vector<Turned> turned_components(const Field& field) {
   return found;
 }
 
-/// The row in other axes: A v, or A T A^T.
 void turn(Field& field, std::size_t row, const Turned& what, const Axes& axes) {
   const auto entry = [&](int k) -> double& {
     return field.at(row, static_cast<std::size_t>(what.column[static_cast<std::size_t>(k)]));

@@ -237,7 +237,7 @@ void print_med(const Order& order, const Base& base, Concepts& concepts, const f
   });
 }
 
-/// Fields of one mesh at one instant come into one file, whatever occurrences name them.
+/// Fields of one result at one instant come into one file, whatever occurrences name them.
 /// Each layer of a pairing has a collection of its own, `<stem>_pairs.pvd`.
 fs::path print_vtu(const Order& order, const Base& base, Concepts& concepts, const fs::path& file, bool append,
                    Written& written, std::vector<std::string>& report) {
