@@ -92,6 +92,10 @@ G = LIRE_FONCTION(UNITE=number, FORMAT='NUMPY', NOM_PARA='INST', INDIC_RESU=(1, 
 IMPR_FONCTION(COURBE=_F(FONCTION=F), UNITE=61, FORMAT='TABLEAU', FORMAT_R='E24.17')
 f = LIRE_FONCTION(UNITE=61, NOM_PARA='INST')
 assert f.Valeurs() == F.Valeurs(), f.Valeurs()
+IMPR_FONCTION(COURBE=_F(FONCTION=F), UNITE=62, FORMAT='TABLEAU', SEPARATEUR=';', FORMAT_R='E24.17')
+assert LIRE_TABLE(UNITE=62, SEPARATEUR=';', FORMAT='LIBRE').EXTR_TABLE().para == ['INST', 'F']
+f = LIRE_FONCTION(UNITE=62, NOM_PARA='INST', SEPAR=';', INDIC_PARA=(1, 1), INDIC_RESU=(1, 2))
+assert f.Valeurs() == F.Valeurs(), f.Valeurs()
 FIN()
 """))
         data = "time force\n0, 1\n1, 2\n\n2, 9, -3D-1, 5\n1, 8, 4, 4\nend\n"

@@ -30,9 +30,14 @@ def _number(text):
         return None
 
 
-def _words(line, separator):
-    """Cells of a line; blanks count as one separator."""
-    return line.split() if separator is None else [cell.strip() for cell in line.strip().removesuffix(separator).split(separator)]
+def _words(line, separator, first=""):
+    """Cells of a line; blanks count as one separator. @param first what stands before the first cell"""
+    return line.split() if separator is None else [cell.strip() for cell in line.strip().removeprefix(first).removesuffix(separator).split(separator)]
+
+
+def _before(lines, separator):
+    """The separator, where each of these lines begins with it: so IMPR_TABLE and IMPR_FONCTION write them."""
+    return separator if separator and all(line.strip().startswith(separator) for line in lines) else ""
 
 
 # ---------------------------------------------------------------------------------------------------- LIRE_TABLE
@@ -85,7 +90,9 @@ def _table(call, path, lines):
     separator = k["SEPARATEUR"].strip() or None
     marked = k["FORMAT"] == "ASTER"
     title = [line.strip()[len("#TITRE "):] for _, line in lines if line.strip().startswith("#TITRE ")]
-    rows = [(number, _words(line, separator)) for number, line in lines if line.strip() and not line.strip().startswith("#")]
+    lines_of_cells = [(number, line) for number, line in lines if line.strip() and not line.strip().startswith("#")]
+    first = _before([line for _, line in lines_of_cells], separator)
+    rows = [(number, _words(line, separator, first)) for number, line in lines_of_cells]
     if len(rows) < (2 if marked else 1):
         call.fail("TABLE_14", "UNITE", file=path, line=lines[-1][0] if lines else 1, reason=part("table_begins_with_types" if marked else "table_begins_with_names"))
     names = _unique(call, rows[0][1])
@@ -189,8 +196,9 @@ def _array(call):
 def _blocks(lines, separator):
     """Lines of numbers one behind the other are a block; any other line separates blocks."""
     blocks, open_block = [], False
+    first = _before([line for line in lines if line.strip() and not line.strip().startswith("#")], separator)
     for line in lines:
-        row = [_number(word) for word in _words(line, separator)]
+        row = [_number(word) for word in _words(line, separator, first)]
         is_row = bool(row) and None not in row
         if is_row and not open_block:
             blocks.append([])
