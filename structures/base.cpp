@@ -219,7 +219,8 @@ void Base::store(const Result& result) const {
            [&](const hdf5::Group& root) { storage::write(root, result); });
 }
 
-void Base::add_field(Result& result, Field field) const {
+void Base::add_field(Result& result, FieldRows rows) const {
+  Field& field = rows.field;
   field.mesh = result.mesh;
   // the file of an earlier version stays as it is: a field computed again gets the next free name
   const std::string stem = order_->result_id + "/" + field.name + "_" + std::to_string(field.order);
@@ -228,7 +229,7 @@ void Base::add_field(Result& result, Field field) const {
   for (int again = 2; std::filesystem::exists(folder_ / file, error); ++again)
     file = stem + "_" + std::to_string(again) + ".h5";
   std::filesystem::create_directories(folder_ / order_->result_id);
-  write_field(folder_ / file, field);
+  write_field(folder_ / file, rows);
   result.fields[field.name][field.order] = file;
 }
 

@@ -61,7 +61,7 @@ class Base {
   /// The folder of the order's result.
   std::filesystem::path result_folder() const { return folder_ / order_->result_id; }
   /// Store a field file of the order's result and enter it in the index, which store(result) writes.
-  void add_field(Result& result, Field field) const;
+  void add_field(Result& result, FieldRows rows) const;
   /// Remove the field files of a result that will not be stored.
   void discard(const Result& result) const;
 

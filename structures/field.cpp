@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <stdexcept>
+#include <utility>
 
 #include "lacon/catalog/messages.hpp"
 #include "lacon/catalog/wording.hpp"
@@ -93,7 +94,10 @@ Field read_field(const std::filesystem::path& file) {
   return field;
 }
 
-void write_field_content(const hdf5::Group& root, const Field& field) {
+namespace {
+
+/// Without values and what says which of them are there.
+void write_head(const hdf5::Group& root, const Field& field) {
   root.set("name", field.name);
   root.set("quantity", field.quantity);
   root.set("location", location_name(field.location));
@@ -104,16 +108,45 @@ void write_field_content(const hdf5::Group& root, const Field& field) {
   if (!field.functions.empty()) root.set("functions", field.functions);
   root.write("support", field.support);
   if (!field.offset.empty()) root.write("offset", field.offset);
+}
+
+/// Of a field whose values are made.
+std::size_t n_rows(const FieldRows& rows) {
+  return rows.field.components.empty() ? 0 : rows.field.first_row(rows.field.support.size());
+}
+
+}  // namespace
+
+Field FieldRows::whole() && {
+  if (!values) return std::move(field);
+  field.values.resize(n_rows(*this) * field.n_components());
+  values(field, 0, field.values);
+  if (present) {
+    field.present.resize(field.values.size());
+    present(field, 0, field.present);
+  }
+  return std::move(field);
+}
+
+void write_field_content(const hdf5::Group& root, const Field& field) {
+  write_head(root, field);
   const std::vector<hsize_t> shape{field.n_rows(), field.n_components()};
   root.write("values", field.values, shape);
   if (!field.present.empty()) root.write("present", field.present, shape);
 }
 
-void write_field(const std::filesystem::path& file, const Field& field) {
+void write_field(const std::filesystem::path& file, const FieldRows& rows) {
   hdf5::write_sealed(file, [&](const hdf5::Group& root) {
     root.set("lacon_type", "field");
     root.set("format", storage::format);
-    write_field_content(root, field);
+    if (!rows.values) return write_field_content(root, rows.field);
+    write_head(root, rows.field);
+    const std::vector<hsize_t> shape{n_rows(rows), rows.field.n_components()};
+    const auto write = [&]<class T>(const char* name, const FieldRows::Fill<T>& make) {
+      root.write_rows<T>(name, shape, [&](std::size_t first, std::span<T> some) { make(rows.field, first, some); });
+    };
+    write("values", rows.values);
+    if (rows.present) write("present", rows.present);
   });
 }
 

@@ -8,6 +8,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 namespace lacon {
@@ -64,6 +65,22 @@ struct Field {
   int component(std::string_view component_name) const;
 };
 
+/// A field, the values of which may be made some rows at a time, when they are wanted: no more of them is there at once.
+struct FieldRows {
+  template <class T>
+  using Fill = std::function<void(const Field& field, std::size_t first, std::span<T> rows)>;  ///< whole rows from that one on
+
+  Field field;  ///< without what is made
+  Fill<double> values;
+  Fill<std::uint8_t> present;  ///< where values are made and not all are there
+
+  FieldRows(Field whole) : field(std::move(whole)) {}
+  FieldRows(Field head, Fill<double> make, Fill<std::uint8_t> which)
+      : field(std::move(head)), values(std::move(make)), present(std::move(which)) {}
+  /// With all of its values.
+  Field whole() &&;
+};
+
 /// The first of several greatest (or least) values of a component. Stand-ins are looked at only where nothing else is.
 struct Extreme {
   double value;
@@ -79,6 +96,6 @@ Field read_field_head(const std::filesystem::path& file);
 /// What a file says of the field itself, next to what every file or concept has.
 void write_field_content(const hdf5::Group& root, const Field& field);
 /// Written whole or not at all.
-void write_field(const std::filesystem::path& file, const Field& field);
+void write_field(const std::filesystem::path& file, const FieldRows& rows);
 
 }  // namespace lacon

@@ -239,13 +239,18 @@ namespace {
 /// pieces of each column, which is dearer. Of no power of two, which would put all columns into the same places of the cache.
 template <class T>
 std::size_t rows_of_part(std::size_t columns) {
-  return std::max<std::size_t>(1, 2'000'000 / (columns * sizeof(T)));
+  return std::max<std::size_t>(1, 2'000'000 / (std::max<std::size_t>(1, columns) * sizeof(T)));
 }
 
-/// Select rows of every column in the space of a file. @return the space of these values in memory
-Handle select_rows(hid_t file, std::size_t rows, std::size_t columns, std::size_t first, std::size_t size) {
-  const hsize_t start = first, stride = rows, count = columns, block = size, all = size * columns;
+/// Select rows of every column in the space of a file.
+void select_in_columns(hid_t file, std::size_t rows, std::size_t columns, std::size_t first, std::size_t size) {
+  const hsize_t start = first, stride = rows, count = columns, block = size;
   if (size < rows) H5Sselect_hyperslab(file, H5S_SELECT_SET, &start, &stride, &count, &block);
+}
+
+/// The space of values in memory.
+Handle space_of(std::size_t size) {
+  const hsize_t all = size;
   return Handle(H5Screate_simple(1, &all, nullptr), H5Sclose);
 }
 
@@ -265,7 +270,8 @@ void Group::read_columns(std::string_view name, std::size_t columns,
   std::vector<T> values;
   for (std::size_t first = 0; first < rows; first += step) {
     values.resize(std::min(step, rows - first) * columns);
-    const Handle memory = select_rows(space, rows, columns, first, values.size() / columns);
+    select_in_columns(space, rows, columns, first, values.size() / columns);
+    const Handle memory = space_of(values.size());
     if (H5Dread(set, native_type<T>(), memory, space, H5P_DEFAULT, values.data()) < 0)
       refuse(about("hdf5_dataset_unreadable", name));
     visit(first, values);
@@ -273,20 +279,44 @@ void Group::read_columns(std::string_view name, std::size_t columns,
 }
 
 template <class T>
-void Group::write_columns(std::string_view name, std::size_t rows, std::size_t columns,
-                          const std::function<void(std::size_t, std::span<T>)>& fill) const {
-  const Handle set = new_dataset(name, native_type<T>(), {rows * columns});
+void Group::write_parts(std::string_view name, const std::vector<hsize_t>& shape, std::size_t rows, std::size_t width,
+                        const std::function<void(hid_t, std::size_t, std::size_t)>& select,
+                        const std::function<void(std::size_t, std::span<T>)>& fill) const {
+  const Handle set = new_dataset(name, native_type<T>(), shape);
   const Handle space(H5Dget_space(set), H5Sclose);
-  const std::size_t step = rows_of_part<T>(columns);
+  const std::size_t step = rows_of_part<T>(width);
   std::vector<T> values;
   bool written = set >= 0;
-  for (std::size_t first = 0; written && first < rows; first += step) {
-    values.resize(std::min(step, rows - first) * columns);
+  for (std::size_t first = 0; written && width > 0 && first < rows; first += step) {
+    const std::size_t size = std::min(step, rows - first);
+    values.resize(size * width);
     fill(first, values);
-    const Handle memory = select_rows(space, rows, columns, first, values.size() / columns);
-    written = H5Dwrite(set, native_type<T>(), memory, space, H5P_DEFAULT, values.data()) >= 0;
+    select(space, first, size);
+    written = H5Dwrite(set, native_type<T>(), space_of(values.size()), space, H5P_DEFAULT, values.data()) >= 0;
   }
   if (!written) refuse(about("hdf5_dataset_not_written", name));
+}
+
+template <class T>
+void Group::write_columns(std::string_view name, std::size_t rows, std::size_t columns,
+                          const std::function<void(std::size_t, std::span<T>)>& fill) const {
+  const auto select = [&](hid_t space, std::size_t first, std::size_t size) {
+    select_in_columns(space, rows, columns, first, size);
+  };
+  write_parts<T>(name, {rows * columns}, rows, columns, select, fill);
+}
+
+template <class T>
+void Group::write_rows(std::string_view name, const std::vector<hsize_t>& shape,
+                       const std::function<void(std::size_t, std::span<T>)>& fill) const {
+  const std::size_t rows = shape.front(), width = count(shape) / std::max<std::size_t>(1, rows);
+  const auto select = [&](hid_t space, std::size_t first, std::size_t size) {
+    std::vector<hsize_t> start(shape.size(), 0), some = shape;
+    start.front() = first;
+    some.front() = size;
+    H5Sselect_hyperslab(space, H5S_SELECT_SET, start.data(), nullptr, some.data(), nullptr);
+  };
+  write_parts<T>(name, shape, rows, width, select, fill);
 }
 
 void Group::write_strings(std::string_view name, const std::vector<std::string>& values) const {
@@ -402,6 +432,8 @@ void Group::set(std::string_view name, const std::vector<std::string>& values) c
                                        const std::function<void(std::size_t, std::span<const T>)>&) const; \
   template void Group::write_columns<T>(std::string_view, std::size_t, std::size_t,                        \
                                         const std::function<void(std::size_t, std::span<T>)>&) const;      \
+  template void Group::write_rows<T>(std::string_view, const std::vector<hsize_t>&,                        \
+                                     const std::function<void(std::size_t, std::span<T>)>&) const;         \
   template void Group::set<T>(std::string_view, T) const;
 LACON_HDF5_TYPE(double)
 LACON_HDF5_TYPE(std::int64_t)

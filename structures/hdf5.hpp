@@ -90,6 +90,10 @@ class Group {
   template <class T>
   void write_columns(std::string_view name, std::size_t rows, std::size_t columns,
                      const std::function<void(std::size_t first, std::span<T> values)>& fill) const;
+  /// A large dataset, some rows at a time: whole ones, of as many values as its shape says behind the number of rows.
+  template <class T>
+  void write_rows(std::string_view name, const std::vector<hsize_t>& shape,
+                  const std::function<void(std::size_t first, std::span<T> values)>& fill) const;
 
   bool has_attribute(std::string_view name) const;
   std::int64_t integer(std::string_view name) const;
@@ -108,6 +112,11 @@ class Group {
   Group(Handle id, std::filesystem::path path, bool writing);
   [[noreturn]] void refuse(std::string_view what) const;
   Handle new_dataset(std::string_view name, hid_t type, const std::vector<hsize_t>& shape) const;
+  /// Write a dataset in parts of rows. @param select(space, first row, number of rows) in the space of the file
+  template <class T>
+  void write_parts(std::string_view name, const std::vector<hsize_t>& shape, std::size_t rows, std::size_t width,
+                   const std::function<void(hid_t, std::size_t, std::size_t)>& select,
+                   const std::function<void(std::size_t first, std::span<T> values)>& fill) const;
 
   Handle id_;
   std::filesystem::path path_;

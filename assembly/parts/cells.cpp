@@ -4,6 +4,7 @@
 #include <span>
 #include <sstream>
 #include <utility>
+#include <vector>
 
 #include "lacon/assembly/parts/parcel.hpp"
 
@@ -87,14 +88,15 @@ bool Cells::obey_by_board(const std::string& verb, std::istream& said) {
 
 void Cells::exchange(bool put, std::istream& said) {
   std::int64_t number = 0;
-  std::size_t set = 0;
-  int quantity = 0;
+  int kind = 0;
   std::string path;
-  said >> number >> set >> quantity >> path;
+  said >> number >> kind >> path;
+  std::vector<CellRange> cells;
+  for (CellRange some; said >> some.first >> some.count;) cells.push_back(some);
+  const auto quantity = static_cast<PointQuantity>(kind);
   const auto loan = lender_.borrow(path, put ? LoanUse::read : LoanUse::write);
-  const std::span<double> all = loan->memory().numbers();
-  if (put) return part_->read(number, set, static_cast<PointQuantity>(quantity), all);
-  part_->write(number, set, static_cast<PointQuantity>(quantity), all);
+  if (put) return part_->read(number, quantity, cells, loan->memory().numbers());
+  part_->write(number, quantity, cells, loan->memory().numbers());
   loan->give_back();
 }
 

@@ -4,7 +4,7 @@
 //   part RANK PATH                       PartCells of that process alone
 //   evaluate MATRIX PREVIOUS ORIGIN      ElementPart::evaluate
 //   keep N, natural N, rest N OF, drop N ...      states by number
-//   put N SET QUANTITY PATH, collect N SET QUANTITY PATH     values of all cells of a set
+//   put N QUANTITY PATH FIRST COUNT ..., collect N QUANTITY PATH FIRST COUNT ...     values of some cells of each set
 //   flows SINCE                          into the report
 //   multiply MAGNITUDES, measure         own rows
 //   products N PATH                      x and y of own rows, N columns each

@@ -103,24 +103,34 @@ void ElementPart::keep_at_rest(std::int64_t number, std::int64_t of) {
   kept_[number] = still;
 }
 
-void ElementPart::write(std::int64_t number, std::size_t set, PointQuantity quantity, std::span<double> all) const {
-  const PartSet& given = cells_.sets[set];
-  if (given.at.empty()) return;
-  const std::vector<double>& values =
-      quantity == PointQuantity::stress ? state(number)[set].stress : state(number)[set].variable;
-  const std::size_t width = values.size() / given.at.size();
-  for (std::size_t i = 0; i < given.at.size(); ++i)
-    if (given.is_own[i])
-      std::copy_n(values.data() + i * width, width, all.data() + static_cast<std::size_t>(given.at[i]) * width);
+template <class Use>
+void ElementPart::for_each_in(std::span<const CellRange> cells, PointQuantity quantity, const Use& use) const {
+  std::size_t before = 0;
+  for (std::size_t s = 0; s < sets_.size(); ++s) {
+    const std::vector<std::int32_t>& at = cells_.sets[s].at;
+    const std::size_t width = width_of(sets_[s], quantity), first = cells[s].first, end = first + cells[s].count;
+    const auto place = [&](std::size_t i) { return static_cast<std::size_t>(at[i]); };
+    for (auto i = static_cast<std::size_t>(std::ranges::lower_bound(at, static_cast<std::int32_t>(first)) - at.begin());
+         i < at.size() && place(i) < end; ++i)
+      use(s, i, before + (place(i) - first) * width, width);
+    before += cells[s].count * width;
+  }
 }
 
-void ElementPart::read(std::int64_t number, std::size_t set, PointQuantity quantity, std::span<const double> all) {
-  const PartSet& given = cells_.sets[set];
-  if (given.at.empty()) return;
-  std::vector<double>& values = kept_.at(number)->at(set).of(quantity);
-  const std::size_t width = values.size() / given.at.size();
-  for (std::size_t i = 0; i < given.at.size(); ++i)
-    std::copy_n(all.data() + static_cast<std::size_t>(given.at[i]) * width, width, values.data() + i * width);
+void ElementPart::write(std::int64_t number, PointQuantity quantity, std::span<const CellRange> cells,
+                        std::span<double> values) const {
+  const State& from = state(number);
+  for_each_in(cells, quantity, [&](std::size_t set, std::size_t cell, std::size_t at, std::size_t width) {
+    if (cells_.sets[set].is_own[cell]) std::copy_n(from[set].of(quantity).data() + cell * width, width, values.data() + at);
+  });
+}
+
+void ElementPart::read(std::int64_t number, PointQuantity quantity, std::span<const CellRange> cells,
+                       std::span<const double> values) {
+  State& to = *kept_.at(number);
+  for_each_in(cells, quantity, [&](std::size_t set, std::size_t cell, std::size_t at, std::size_t width) {
+    std::copy_n(values.data() + at, width, to[set].of(quantity).data() + cell * width);
+  });
 }
 
 bool ElementPart::flows(std::int64_t since) const {

@@ -35,10 +35,10 @@ class ElementPart {
   void keep_natural(std::int64_t number);
   void keep_at_rest(std::int64_t number, std::int64_t of);
   void drop(std::int64_t number) { kept_.erase(number); }
-  /// Write the values of own cells into an array of all cells of a set, or take those of all cells here from it.
-  /// @param number -1: the present state
-  void write(std::int64_t number, std::size_t set, PointQuantity quantity, std::span<double> all) const;
-  void read(std::int64_t number, std::size_t set, PointQuantity quantity, std::span<const double> all);
+  /// Write the values of own cells into an array of some cells of each set, one set behind the other, or take those of all
+  /// cells here from it. @param number -1: the present state
+  void write(std::int64_t number, PointQuantity quantity, std::span<const CellRange> cells, std::span<double> values) const;
+  void read(std::int64_t number, PointQuantity quantity, std::span<const CellRange> cells, std::span<const double> values);
   /// Whether internal variables are others than in a kept state: the law flows.
   bool flows(std::int64_t since) const;
 
@@ -77,12 +77,18 @@ class ElementPart {
   struct Values {
     std::vector<double> stress, variable;
     std::vector<double>& of(PointQuantity quantity) { return quantity == PointQuantity::stress ? stress : variable; }
+    const std::vector<double>& of(PointQuantity quantity) const {
+      return quantity == PointQuantity::stress ? stress : variable;
+    }
   };
   using State = std::vector<Values>;  ///< of each set
 
   /// Of the whole mesh's nodes those that are here, and back. @param width of what stands in nodal arrays for an unknown
   std::vector<double> gathered(std::span<const double> nodal, int width = 1) const;
   void hand_out(std::span<const double> own, std::span<double> nodal, int width = 1) const;
+  /// Call use(set, cell here, its first number in an array of these cells, how many it has) for those that are here.
+  template <class Use>
+  void for_each_in(std::span<const CellRange> cells, PointQuantity quantity, const Use& use) const;
   const State& state(std::int64_t number) const { return number < 0 ? *present_ : *kept_.at(number); }
   State natural() const;
 

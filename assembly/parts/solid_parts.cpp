@@ -78,8 +78,15 @@ PartCells cells_of_part(const PartSource& source, int part) {
 
 KeptPoints::~KeptPoints() { parts_->dropped_.push_back(number_); }
 std::size_t KeptPoints::n_sets() const { return parts_->n_sets(); }
+std::size_t KeptPoints::n_cells(std::size_t set) const { return parts_->sets_[set].cells.size(); }
+std::size_t KeptPoints::width(std::size_t set, PointQuantity quantity) const { return width_of(parts_->sets_[set], quantity); }
 std::vector<double> KeptPoints::values(std::size_t set, PointQuantity quantity) const {
-  return parts_->values(number_, set, quantity);
+  std::vector<CellRange> cells(n_sets());
+  cells[set].count = n_cells(set);
+  return std::move(values(quantity, cells)[set]);
+}
+std::vector<std::vector<double>> KeptPoints::values(PointQuantity quantity, std::span<const CellRange> cells) const {
+  return parts_->values(number_, quantity, cells);
 }
 
 SolidParts::SolidParts(std::shared_ptr<PartProcesses> processes, const Mesh& mesh, std::span<const ElementSet> sets,
@@ -159,21 +166,36 @@ KeptState SolidParts::put(const std::function<std::span<const double>(std::size_
       if (given.empty()) continue;
       const SharedMemory memory(given.size_bytes());
       std::ranges::copy(given, memory.numbers().begin());
-      ask("put " + std::to_string(state->number()) + ' ' + std::to_string(s) + ' ' +
-          std::to_string(static_cast<int>(quantity)) + ' ' + memory.path());
+      std::vector<CellRange> cells(sets_.size());
+      cells[s].count = sets_[s].cells.size();
+      exchange("put", state->number(), quantity, cells, memory);
     }
   return state;
 }
 
-std::vector<double> SolidParts::values(std::int64_t number, std::size_t set, PointQuantity quantity) const {
-  const ElementSet& of = sets_[set];
-  const std::size_t size = of.cells.size() * (quantity == PointQuantity::stress ? of.n_stress() : of.n_variables());
-  if (size == 0) return {};
+std::vector<std::vector<double>> SolidParts::values(std::int64_t number, PointQuantity quantity,
+                                                    std::span<const CellRange> cells) const {
+  std::size_t size = 0;
+  for (std::size_t s = 0; s < sets_.size(); ++s) size += cells[s].count * width_of(sets_[s], quantity);
+  std::vector<std::vector<double>> found(sets_.size());
+  if (size == 0) return found;
   const SharedMemory memory(size * sizeof(double));
-  ask("collect " + std::to_string(number) + ' ' + std::to_string(set) + ' ' + std::to_string(static_cast<int>(quantity)) + ' ' +
-      memory.path());
-  const std::span<const double> found = memory.numbers();
-  return {found.begin(), found.end()};
+  exchange("collect", number, quantity, cells, memory);
+  std::span<const double> rest = memory.numbers();
+  for (std::size_t s = 0; s < sets_.size(); ++s) {
+    const std::size_t own = cells[s].count * width_of(sets_[s], quantity);
+    found[s].assign(rest.begin(), rest.begin() + static_cast<std::ptrdiff_t>(own));
+    rest = rest.subspan(own);
+  }
+  return found;
+}
+
+void SolidParts::exchange(const char* verb, std::int64_t number, PointQuantity quantity, std::span<const CellRange> cells,
+                          const SharedMemory& memory) const {
+  std::string line = verb;
+  line += ' ' + std::to_string(number) + ' ' + std::to_string(static_cast<int>(quantity)) + ' ' + memory.path();
+  for (const CellRange& some : cells) line += ' ' + std::to_string(some.first) + ' ' + std::to_string(some.count);
+  ask(line);
 }
 
 bool SolidParts::flows(const KeptPoints& since) const {

@@ -60,8 +60,8 @@ class SolidParts : public RowsElsewhere, public std::enable_shared_from_this<Sol
   KeptState put(const std::function<std::span<const double>(std::size_t, PointQuantity)>& values) const;
   /// Whether a law flows in the last evaluation.
   bool flows(const KeptPoints& since) const;
-  /// @param number -1: that of the last evaluation
-  std::vector<double> values(std::int64_t number, std::size_t set, PointQuantity quantity) const;
+  /// Of some cells of each set. @param number -1: that of the last evaluation
+  std::vector<std::vector<double>> values(std::int64_t number, PointQuantity quantity, std::span<const CellRange> cells) const;
 
   std::span<const double> product(std::span<const double> x, bool magnitudes) const override;
   void products(int n_columns, const std::function<void(std::span<double>)>& fill,
@@ -82,6 +82,9 @@ class SolidParts : public RowsElsewhere, public std::enable_shared_from_this<Sol
  private:
   friend KeptPoints;
   void ask(const std::string& line) const;
+  /// "put" or "collect" values of some cells of each set, one set behind the other.
+  void exchange(const char* verb, std::int64_t number, PointQuantity quantity, std::span<const CellRange> cells,
+                const SharedMemory& memory) const;
   KeptState kept(const std::string& verb, const std::string& more = {}) const;
 
   std::shared_ptr<PartProcesses> processes_;

@@ -172,10 +172,10 @@ void Archive::add(double instant, int iterations) {
   const std::int64_t number = result_.orders.empty() ? 0 : result_.orders.back() + 1;
   for (const auto& [name, make] : fields_) {
     if (!choice_.keeps(name)) continue;
-    Field field = make();
-    field.order = number;
-    field.instant = instant;
-    base_.add_field(result_, std::move(field));
+    FieldRows rows = make();
+    rows.field.order = number;
+    rows.field.instant = instant;
+    base_.add_field(result_, std::move(rows));
   }
   add_masters(number);
   if (present_.contact) add_balance(present_.contact->balance(present_.state.patches));

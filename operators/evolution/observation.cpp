@@ -211,7 +211,7 @@ std::vector<Observer::Value> Observer::look(const FieldMakers& fields) const {
     fail("OBSERVATION_1",
          {{"keyword", keywords_.path("NOM_CHAM")}, {"field", name}, {"known", fmt::format("{}", fmt::join(known, ", "))}});
   }
-  const Field field = maker->second();
+  const Field field = maker->second().whole();
   check_place(field);
   std::vector<Value> values = collect(field);
   if (values.empty()) fail("OBSERVATION_4", {{"keyword", keywords_.path("NOM_CHAM")}, {"field", name}});

@@ -2,8 +2,10 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdlib>
+#include <span>
 
 #include "lacon/catalog/messages.hpp"
 #include "lacon/operators/program/program.hpp"
@@ -94,6 +96,19 @@ Course read_course(const hdf5::Group& group) {
   return course;
 }
 
+/// Of all cells of a set, some at a time where processes have them.
+void write_points(const hdf5::Group& group, const std::string& name, const StaticState& state, std::size_t set,
+                  PointQuantity quantity) {
+  std::vector<double> none;
+  if (!state.kept) return group.write(name, values_of(state, set, quantity, none));
+  const std::size_t width = state.kept->width(set, quantity);
+  group.write_rows<double>(name, {state.kept->n_cells(set), width}, [&](std::size_t first, std::span<double> rows) {
+    std::vector<CellRange> cells(state.n_sets());
+    cells[set] = {first, rows.size() / width};
+    std::ranges::copy(state.kept->values(quantity, cells)[set], rows.begin());
+  });
+}
+
 std::vector<Message> alarms_so_far() {
   std::vector<Message> alarms;
   for (const Message& message : messages_so_far())
@@ -127,10 +142,9 @@ void write(const hdf5::Group& group, const StaticState& state) {
   for (const PatchQuantity& quantity : patch_quantities)
     group.write(std::string("patches/") + quantity.component, state.patches.*quantity.values);
   group.set("sets", static_cast<std::int64_t>(state.n_sets()));
-  std::vector<double> room;
   for (std::size_t s = 0; s < state.n_sets(); ++s) {
-    group.write(fmt::format("points/{}/stress", s), values_of(state, s, PointQuantity::stress, room));
-    group.write(fmt::format("points/{}/variable", s), values_of(state, s, PointQuantity::variable, room));
+    write_points(group, fmt::format("points/{}/stress", s), state, s, PointQuantity::stress);
+    write_points(group, fmt::format("points/{}/variable", s), state, s, PointQuantity::variable);
     if (state.kept) continue;
     if (!state.points[s].initial.empty()) group.write(fmt::format("points/{}/initial", s), state.points[s].initial);
     if (state.points[s].thermal.empty()) continue;
@@ -190,7 +204,7 @@ void RestartRecord::accept(const SolvedInstant& solved) {
   const std::int64_t before = stored_base_, number = solver_.number_of_base();
   if (number > 0 && number != before)
     hdf5::write_sealed(base_file(number), [&](const hdf5::Group& root) { solver_.save_base(root); });
-  hdf5::write_sealed_at_once(folder_ / record_name, [&](const hdf5::Group& root) {
+  hdf5::write_sealed(folder_ / record_name, [&](const hdf5::Group& root) {
     root.set("lacon_type", std::string_view("restart"));
     root.set("format", std::int64_t{1});
     root.set("base", number);

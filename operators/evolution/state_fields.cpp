@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <functional>
+#include <memory>
 #include <optional>
 #include <span>
+#include <utility>
 
 #include "lacon/catalog/messages.hpp"
 #include "lacon/catalog/wording.hpp"
@@ -23,52 +25,110 @@ void clear_if_whole(Field& field) {
     field.present.clear();
 }
 
-/// Fill a field at integration points from the values of the solid sets, (cells, points, components of the set). Cells are in
-/// ascending order, whatever set they belong to; a set without components is left out.
-void fill_points(Field& field, const StaticProblem& problem,
-                 const std::function<std::vector<std::string>(const ElementSet&)>& components_of,
-                 const std::function<std::span<const double>(std::size_t)>& values_of) {
-  struct Place {
-    std::int32_t cell;
-    std::size_t set, index;
-  };
-  std::vector<Place> places;
-  std::vector<std::vector<int>> components;  // of each set, in the field
-  for (std::size_t s = 0; s < problem.solids.size(); ++s) {
-    const std::vector<std::string> names = components_of(problem.solids[s]);
-    components.emplace_back();
-    for (const std::string& name : names) {
-      if (field.component(name) < 0) field.components.push_back(name);
-      components.back().push_back(field.component(name));
-    }
-    if (names.empty()) continue;
-    for (std::size_t i = 0; i < problem.solids[s].cells.size(); ++i) places.push_back({problem.solids[s].cells[i], s, i});
-  }
-  std::sort(places.begin(), places.end(), [](const Place& a, const Place& b) { return a.cell < b.cell; });
-  std::size_t rows = 0;
-  for (const Place& place : places) rows += static_cast<std::size_t>(problem.solids[place.set].tabulation.n_points);
-  field.values.reserve(rows * field.n_components());  // the largest field there is: no more than its size
-  field.present.reserve(rows * field.n_components());
-  field.support.reserve(places.size());
-  field.offset.reserve(places.size() + 1);
-  for (const Place& place : places) {
-    const std::vector<int>& own = components[place.set];
-    const std::size_t n_points = problem.solids[place.set].tabulation.n_points;
-    const std::span<const double> values = values_of(place.set).subspan(place.index * n_points * own.size());
-    field.support.push_back(place.cell);
-    for (std::size_t p = 0; p < n_points; ++p) {
-      const std::size_t first = field.values.size();
-      field.values.resize(first + field.n_components(), 0.0);
-      field.present.resize(first + field.n_components(), 0);
-      for (std::size_t k = 0; k < own.size(); ++k) {
-        field.values[first + own[k]] = values[p * own.size() + k];
-        field.present[first + own[k]] = 1;
+/// Values of the solid sets at integration points, row by row. Cells are in ascending order, whatever set they belong to; a set
+/// without components is left out.
+class PointRows {
+ public:
+  /// @param field gets its components, cells and offsets
+  PointRows(Field& field, const StaticProblem& problem, std::vector<std::string> (*components_of)(const ElementSet&))
+      : sets_(problem.solids) {
+    std::size_t n_cells = 0;
+    for (const ElementSet& set : sets_) {
+      components_.emplace_back();
+      for (const std::string& name : components_of(set)) {
+        if (field.component(name) < 0) field.components.push_back(name);
+        components_.back().push_back(static_cast<std::size_t>(field.component(name)));
       }
+      if (!components_.back().empty()) n_cells += set.cells.size();
     }
-    field.offset.push_back(field.offset.back() + static_cast<std::int64_t>(n_points));
+    field.support.reserve(n_cells);
+    for (std::size_t s = 0; s < sets_.size(); ++s)
+      if (!components_[s].empty()) field.support.insert(field.support.end(), sets_[s].cells.begin(), sets_[s].cells.end());
+    std::ranges::sort(field.support);
+    field.offset.reserve(n_cells + 1);
+    field.offset.assign(1, 0);
+    std::vector<CellRange> at = cells_of(field, 0, n_cells);
+    for_each_cell(field, 0, n_cells, at, [&](std::size_t, std::size_t set, std::size_t) {
+      field.offset.push_back(field.offset.back() + sets_[set].tabulation.n_points);
+    });
   }
-  clear_if_whole(field);
-}
+
+  bool has_all(std::size_t n_components) const {
+    return std::ranges::all_of(components_, [&](const auto& own) { return own.empty() || own.size() == n_components; });
+  }
+
+  void fill_values(const StaticState& state, PointQuantity quantity, const Field& field, std::size_t first,
+                   std::span<double> rows) const {
+    const auto [begin, end] = places_of(field, first, rows.size());
+    const std::vector<CellRange> cells = cells_of(field, begin, end);
+    std::vector<std::vector<double>> fetched;
+    if (state.kept) fetched = state.kept->values(quantity, cells);
+    for_each_row(field, first, rows.size(), [&](std::size_t row, std::size_t set, std::size_t cell, std::size_t point) {
+      const std::vector<std::size_t>& own = components_[set];
+      const std::vector<double>& here = !fetched.empty()                    ? fetched[set]
+                                        : quantity == PointQuantity::stress ? state.points[set].stress
+                                                                            : state.points[set].variable;
+      const std::size_t before = fetched.empty() ? cell : cell - cells[set].first;
+      const std::size_t at = before * width_of(sets_[set], quantity) + point * own.size();
+      for (std::size_t k = 0; k < own.size(); ++k) rows[row * field.n_components() + own[k]] = here[at + k];
+    });
+  }
+
+  void fill_present(const Field& field, std::size_t first, std::span<std::uint8_t> rows) const {
+    std::ranges::fill(rows, Field::absent);
+    for_each_row(field, first, rows.size(), [&](std::size_t row, std::size_t set, std::size_t, std::size_t) {
+      for (const std::size_t component : components_[set]) rows[row * field.n_components() + component] = Field::there;
+    });
+  }
+
+ private:
+  /// Places in the support that have the rows of some values: first, end.
+  static std::pair<std::size_t, std::size_t> places_of(const Field& field, std::size_t first, std::size_t n_values) {
+    const auto end_row = static_cast<std::int64_t>(first + n_values / field.n_components());
+    const auto begin = std::ranges::upper_bound(field.offset, static_cast<std::int64_t>(first)) - field.offset.begin() - 1;
+    const auto end = std::ranges::lower_bound(field.offset, end_row) - field.offset.begin();
+    return {static_cast<std::size_t>(begin), static_cast<std::size_t>(end)};
+  }
+  /// Of each set the cells between those of two places.
+  std::vector<CellRange> cells_of(const Field& field, std::size_t begin, std::size_t end) const {
+    std::vector<CellRange> ranges(sets_.size());
+    if (begin == end) return ranges;
+    for (std::size_t s = 0; s < sets_.size(); ++s) {
+      const std::vector<std::int32_t>& cells = sets_[s].cells;  // ascending
+      const auto first = std::ranges::lower_bound(cells, field.support[begin]);
+      const auto last = std::ranges::upper_bound(cells, field.support[end - 1]);
+      ranges[s] = {static_cast<std::size_t>(first - cells.begin()), static_cast<std::size_t>(last - first)};
+    }
+    return ranges;
+  }
+  /// Call use(place, set, cell of the set). @param at where the cells of each set begin
+  template <class Use>
+  void for_each_cell(const Field& field, std::size_t begin, std::size_t end, std::vector<CellRange> at, const Use& use) const {
+    std::size_t set = 0;
+    const auto is_next = [&](std::int32_t cell) {
+      return !components_[set].empty() && at[set].count > 0 && sets_[set].cells[at[set].first] == cell;
+    };
+    for (std::size_t place = begin; place < end; ++place) {
+      while (!is_next(field.support[place])) set = (set + 1) % sets_.size();
+      use(place, set, at[set].first);
+      ++at[set].first;
+      --at[set].count;
+    }
+  }
+  /// Call use(row, counted from `first`, set, cell of the set, point of the cell).
+  template <class Use>
+  void for_each_row(const Field& field, std::size_t first, std::size_t n_values, const Use& use) const {
+    const auto [begin, end] = places_of(field, first, n_values);
+    const std::size_t end_row = first + n_values / field.n_components();
+    for_each_cell(field, begin, end, cells_of(field, begin, end), [&](std::size_t place, std::size_t set, std::size_t cell) {
+      const std::size_t own = field.first_row(place), behind = std::min(field.first_row(place + 1), end_row);
+      for (std::size_t row = std::max(own, first); row < behind; ++row) use(row - first, set, cell, row - own);
+    });
+  }
+
+  const std::vector<ElementSet>& sets_;
+  std::vector<std::vector<std::size_t>> components_;  ///< of each set, in the field
+};
 
 std::vector<std::string> stress_names(const ElementSet& set) { return {set.row->stress.begin(), set.row->stress.end()}; }
 
@@ -184,27 +244,32 @@ Field displacement_field(const StaticProblem& problem, const StaticState& state,
 
 namespace {
 
-/// Values of each set, fetched once where processes keep them. The state must outlive it.
-std::function<std::span<const double>(std::size_t)> values_in(const StaticState& state, PointQuantity quantity) {
-  const auto rooms = std::make_shared<std::vector<std::vector<double>>>(state.n_sets());
-  return [&state, quantity, rooms](std::size_t set) -> std::span<const double> {
-    std::vector<double>& room = (*rooms)[set];
-    return room.empty() ? values_of(state, set, quantity, room) : room;
+/// A field whose rows are made when they are written. @param field its names; problem and state must outlive it
+FieldRows point_field(Field field, const StaticProblem& problem, const StaticState& state, PointQuantity quantity,
+                      std::vector<std::string> (*components_of)(const ElementSet&)) {
+  const auto rows = std::make_shared<const PointRows>(field, problem, components_of);
+  FieldRows made(std::move(field));
+  made.values = [rows, &state, quantity](const Field& of, std::size_t first, std::span<double> some) {
+    std::ranges::fill(some, 0.0);
+    rows->fill_values(state, quantity, of, first, some);
   };
+  if (!rows->has_all(made.field.n_components()))
+    made.present = [rows](const Field& of, std::size_t first, std::span<std::uint8_t> some) {
+      rows->fill_present(of, first, some);
+    };
+  return made;
 }
 
 }  // namespace
 
-Field stress_field(const StaticProblem& problem, const StaticState& state) {
-  Field field{.name = "SIEF_ELGA", .quantity = "SIEF_R", .location = Location::gauss_points, .offset = {0}};
-  fill_points(field, problem, stress_names, values_in(state, PointQuantity::stress));
-  return field;
+FieldRows stress_field(const StaticProblem& problem, const StaticState& state) {
+  return point_field({.name = "SIEF_ELGA", .quantity = "SIEF_R", .location = Location::gauss_points}, problem, state,
+                     PointQuantity::stress, stress_names);
 }
 
-Field variable_field(const StaticProblem& problem, const StaticState& state) {
-  Field field{.name = "VARI_ELGA", .quantity = "VARI_R", .location = Location::gauss_points, .offset = {0}};
-  fill_points(field, problem, variable_names, values_in(state, PointQuantity::variable));
-  return field;
+FieldRows variable_field(const StaticProblem& problem, const StaticState& state) {
+  return point_field({.name = "VARI_ELGA", .quantity = "VARI_R", .location = Location::gauss_points}, problem, state,
+                     PointQuantity::variable, variable_names);
 }
 
 namespace {

@@ -24,7 +24,7 @@ struct Present {
 };
 
 /// Fields by name, each made when it is asked for.
-using FieldMakers = std::map<std::string, std::function<Field()>>;
+using FieldMakers = std::map<std::string, std::function<FieldRows()>>;
 /// Those that this computation has. What `present` refers to must outlive them.
 FieldMakers fields_of(const Present& present);
 /// These, and FORC_NODA, which no result holds.
@@ -36,10 +36,11 @@ Field displacement_field(const StaticProblem& problem, const StaticState& state,
 /// Values at nodes, (n_nodes, n_components), under the names of the unknowns: forces FORC_NODA, or what else they are named
 /// then.
 Field nodal_field(const StaticProblem& problem, std::span<const double> values);
-/// Stresses at the integration points of the solid elements.
-Field stress_field(const StaticProblem& problem, const StaticState& state);
-/// Internal variables V1, V2, ... at the integration points of the cells whose law has them; empty where none has.
-Field variable_field(const StaticProblem& problem, const StaticState& state);
+/// Stresses at the integration points of the solid elements, fetched some rows at a time where processes have the cells.
+/// Problem and state must outlive them.
+FieldRows stress_field(const StaticProblem& problem, const StaticState& state);
+/// Likewise internal variables V1, V2, ... at the points of the cells whose law has them; empty where none has.
+FieldRows variable_field(const StaticProblem& problem, const StaticState& state);
 
 /// The state that a result holds at an order. Its patches are empty where the result is without contact. Throws EVOLUTION_1
 /// where it lives on another mesh, RESULT_1 where a field is missing, EVOLUTION_11 where a cell has other points or components.

@@ -63,10 +63,10 @@ void meca_statique(const Order& order, const Base& base) {
   for (const double instant : instants) {
     newton.solve(instant, state, [](const IterationReport&) {});
     const std::int64_t number = static_cast<std::int64_t>(result.orders.size()) + 1;
-    const auto add = [&](Field field) {
-      field.order = number;
-      field.instant = instant;
-      base.add_field(result, std::move(field));
+    const auto add = [&](FieldRows rows) {
+      rows.field.order = number;
+      rows.field.instant = instant;
+      base.add_field(result, std::move(rows));
     };
     add(displacement_field(problem, state));
     if (keywords.text("OPTION") == "SIEF_ELGA") add(stress_field(problem, state));

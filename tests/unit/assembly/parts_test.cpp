@@ -147,6 +147,12 @@ struct Parts : Cube {
     for (std::size_t i = 0; i < 50; ++i) free[7 * i] = 0;
     numbering = number_equations(static_cast<std::int64_t>(mesh.n_nodes()), 3, free, 0);
   }
+  /// All cells of a set, and none of the others.
+  std::vector<CellRange> whole(std::size_t set) const {
+    std::vector<CellRange> ranges(sets.size());
+    ranges[set].count = sets[set].cells.size();
+    return ranges;
+  }
 };
 
 TEST_F(Parts, WhatProcessesPutTogetherHasTheBitsOfOne) {
@@ -212,12 +218,12 @@ TEST_F(Parts, WhatProcessesPutTogetherHasTheBitsOfOne) {
       EXPECT_FALSE(own.flows(2));
       own.keep_at_rest(3, 2);
       std::vector<double> rest(variable[plastic].size(), 0.0);
-      own.write(3, plastic, PointQuantity::variable, rest);
+      own.write(3, PointQuantity::variable, whole(plastic), rest);
       for (std::size_t i = 1; i < rest.size(); i += 2) EXPECT_EQ(rest[i], 0);  // V2 is INDIPLAS
       own.drop(1);
       for (std::size_t s = 0; s < sets.size(); ++s) {
-        own.write(-1, s, PointQuantity::stress, found_stress[s]);
-        own.write(2, s, PointQuantity::variable, found_variable[s]);
+        own.write(-1, PointQuantity::stress, whole(s), found_stress[s]);
+        own.write(2, PointQuantity::variable, whole(s), found_variable[s]);
       }
       own.add_to(matrix.rows(), matrix.columns(), values);
       std::ranges::copy(moved, board.displacement.begin());
@@ -246,12 +252,12 @@ TEST_F(Parts, WhatProcessesPutTogetherHasTheBitsOfOne) {
       ElementPart own(std::move(given));
       own.keep_natural(1);
       for (std::size_t s = 0; s < sets.size(); ++s) {  // a state that is handed in
-        own.read(1, s, PointQuantity::stress, stress[s]);
-        own.read(1, s, PointQuantity::variable, variable[s]);
+        own.read(1, PointQuantity::stress, whole(s), stress[s]);
+        own.read(1, PointQuantity::variable, whole(s), variable[s]);
       }
       std::vector<double> back = found_stress[plastic];
       std::ranges::fill(back, 0);
-      own.write(1, plastic, PointQuantity::stress, back);
+      own.write(1, PointQuantity::stress, whole(plastic), back);
       for (std::size_t i = 0; i < back.size(); ++i) EXPECT_TRUE(back[i] == 0 || back[i] == stress[plastic][i]);
       EXPECT_TRUE(own.flows(1));  // it has flowed there, and is natural here
       std::ranges::copy(displacement, board.displacement.begin());

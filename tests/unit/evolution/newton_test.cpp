@@ -164,7 +164,7 @@ TEST(StateFields, AreTheStateThatTheyCameFrom) {
   StaticState state = solver.initial_state();
   solver.solve(1.0, state, [](const IterationReport&) {});
   const FieldMakers fields = fields_of({problem, state, solver.contact()});
-  const Field moved = fields.at("DEPL")();
+  const Field moved = fields.at("DEPL")().whole();
   EXPECT_EQ(moved.components, (std::vector<std::string>{"DX", "DY", "LAGS_C"}));
   for (std::size_t row = 0; row < moved.support.size(); ++row) {
     for (std::size_t d = 0; d < 2; ++d)
@@ -176,8 +176,8 @@ TEST(StateFields, AreTheStateThatTheyCameFrom) {
       EXPECT_EQ(moved.at(row, 2), state.patches.lambda[0]);
     }
   }
-  EXPECT_EQ(fields.at("SIEF_ELGA")().n_rows(), 18U);
-  const Field variables = fields.at("VARI_ELGA")();
+  EXPECT_EQ(fields.at("SIEF_ELGA")().whole().n_rows(), 18U);
+  const Field variables = fields.at("VARI_ELGA")().whole();
   EXPECT_GT(variables.at(0, 0), 0);  // it flows: 25 above 10
   EXPECT_FALSE(fields_of({pressed_squares(), state, nullptr}).contains("VARI_ELGA"));
   EXPECT_TRUE(fields.contains("CONT_ELEM"));
