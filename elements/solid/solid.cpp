@@ -31,6 +31,10 @@ LACON_INLINE void take_strain(const Point<K>& point, Lanes (&twice)[components_o
   if constexpr (K == Kind::axis) twice[2] = green ? point.hoop_slope * (2 + point.hoop_slope) : 2 * point.hoop_slope;
 }
 
+constexpr int n_variables_of(Law law) {
+  return law == Law::kinematic ? n_kinematic_variables : law == Law::von_mises ? n_plastic_variables : 0;
+}
+
 /// The law: stress and tangent at a point. @param here its number among those of the batch
 /// @param sum gets everything that must be finite
 template <Kind K, Measure M, Law L>
@@ -58,6 +62,22 @@ LACON_INLINE void take_stress(const lacon_solid_batch& b, std::int64_t here, con
       lanes(b.variable, here * n_plastic_variables + 1) = flows;
     }
     sum += strain;
+    if (b.elastic_matrix) point.tangent = {block.lambda, block.mu};
+  }
+  if constexpr (L == Law::kinematic) {
+    constexpr int last = n_kinematic_variables - 1;
+    const std::int64_t first = here * n_kinematic_variables;
+    Lanes middle[n_stress] = {}, flowing = {};
+    if (b.previous_variable) {
+      for (int i = 0; i < n_stress; ++i) middle[i] = lanes(b.previous_variable, first + i);
+      flowing = lanes(b.previous_variable, first + last);
+    }
+    return_to_moving_criterion<K>(s, point.tangent, middle, flowing, {b.curve, 1}, errors);
+    if (b.variable) {
+      for (int i = 0; i < last; ++i) lanes(b.variable, first + i) = i < n_stress ? middle[i] : Lanes{};
+      lanes(b.variable, first + last) = flowing;
+    }
+    for (const Lanes& component : middle) sum += component;
     if (b.elastic_matrix) point.tangent = {block.lambda, block.mu};
   }
   sum += point.dv;
@@ -135,12 +155,12 @@ LACON_INLINE void add_force(const Point<K>& point, const NominalStress<K>& nomin
 /// the hoop direction with the strain u_r / r, and integrals are those over one radian.
 template <Kind K, Measure M, Law L>
 LACON_INLINE void evaluate(const lacon_solid_batch& b) {
-  constexpr bool green = M == Measure::green, updated = moves(M), plastic = L == Law::von_mises;
+  constexpr bool green = M == Measure::green, updated = moves(M);
   constexpr bool same_moduli = M == Measure::small && L == Law::elastic;  // at all points
-  constexpr int D = dimension_of(K), n_stress = components_of(K), n_variables = plastic ? n_plastic_variables : 0;
+  constexpr int D = dimension_of(K), n_stress = components_of(K), n_variables = n_variables_of(L);
   const int nodes = b.n_nodes, dofs = D * nodes, entries = dofs * (dofs + 1) / 2;
   if (b.dimension != D || nodes > max_nodes || b.n_stress != n_stress || b.n_parameters != 2 || b.n_variables != n_variables ||
-      (plastic && b.n_curve < 1))
+      (flows(L) && b.n_curve < 1))
     return lacon::refuse(b);
   Block<K, M> block;
   alignas(lane_alignment) Point<K> points[same_moduli ? points_at_once : 1];
@@ -192,14 +212,16 @@ LACON_INLINE void evaluate(const lacon_solid_batch& b) {
 const char* const isotropic[] = {"ELAS/E", "ELAS/NU", nullptr};
 
 constexpr lacon_kernel row(const char* name, void (*function)(const lacon_solid_batch*), Measure measure, Law law) {
-  const bool plastic = law == Law::von_mises;
+  const bool plastic = flows(law);
   return {.name = name,
           .kind = LACON_SOLID,
           .solid = function,
           .load = nullptr,
           .contact = nullptr,
           .parameters = isotropic,
-          .variables = plastic ? plastic_variables : nullptr,
+          .variables = law == Law::kinematic ? kinematic_variables
+                       : plastic             ? plastic_variables
+                                             : nullptr,
           .nonlinear = plastic || measure != Measure::small,
           .has_memory = plastic || moves(measure),
           .takes_curve = plastic,
@@ -217,11 +239,17 @@ constexpr lacon_kernel row(const char* name, void (*function)(const lacon_solid_
 #define LACON_OF_KIND(apply, kind)                                                                                    \
   apply(kind, small, elastic) apply(kind, updated, elastic) apply(kind, centred, elastic) apply(kind, green, elastic) \
       apply(kind, small, von_mises) apply(kind, updated, von_mises) apply(kind, centred, von_mises)
-#define LACON_ALL(apply)             \
-  LACON_OF_KIND(apply, plane_strain) \
-  LACON_OF_KIND(apply, plane_stress) \
-  LACON_OF_KIND(apply, axis)         \
-  LACON_OF_KIND(apply, three_d)
+// in plane stress the middle would move across the plate too
+#define LACON_KINEMATIC(apply, kind) \
+  apply(kind, small, kinematic) apply(kind, updated, kinematic) apply(kind, centred, kinematic)
+#define LACON_ALL(apply)               \
+  LACON_OF_KIND(apply, plane_strain)   \
+  LACON_OF_KIND(apply, plane_stress)   \
+  LACON_OF_KIND(apply, axis)           \
+  LACON_OF_KIND(apply, three_d)        \
+  LACON_KINEMATIC(apply, plane_strain) \
+  LACON_KINEMATIC(apply, axis)         \
+  LACON_KINEMATIC(apply, three_d)
 
 LACON_ALL(LACON_FUNCTION)
 const lacon_kernel kernels[] = {LACON_ALL(LACON_ROW)};

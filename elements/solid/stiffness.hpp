@@ -9,7 +9,8 @@ namespace lacon::solid {
 /// middle of the step (PETIT_REAC_MILIEU), with forces on that of u; Green-Lagrange strains and second Piola-Kirchhoff stresses
 /// on the initial geometry (GREEN_LAGRANGE).
 enum class Measure { small, updated, centred, green };
-enum class Law { elastic, von_mises };
+enum class Law { elastic, von_mises, kinematic };
+constexpr bool flows(Law law) { return law != Law::elastic; }
 
 /// Whether strains are increments, and forces those on the geometry of u.
 constexpr bool moves(Measure measure) { return measure == Measure::updated || measure == Measure::centred; }
@@ -84,7 +85,7 @@ LACON_INLINE void add_elastic_matrix(const Point<K>* points, int n_points, const
 /// part of F_i (x) g_a, where F_i is row i of the deformation gradient (small strains: of the unit matrix).
 template <Kind K, Measure M, Law L>
 LACON_INLINE void add_matrix(const Point<K>& point, int nodes, double* matrix) {
-  constexpr bool axis = K == Kind::axis, green = M == Measure::green, rank_one = L == Law::von_mises;
+  constexpr bool axis = K == Kind::axis, green = M == Measure::green, rank_one = flows(L);
   constexpr int D = dimension_of(K);
   const Lanes dl = point.dv * point.tangent.lambda, dm = point.dv * point.tangent.mu;
   Lanes pushed[green ? max_nodes : 1][D];  // F g
@@ -203,15 +204,15 @@ LACON_INLINE void add_updated_matrix(const Point<K>& point, int nodes, double* m
         mixed[a][i] += shrink[k][i] * g[a][k];
         mixed_strain[a][i] += shrink[k][i] * strain[a][k];
         drawn[a][i] += point.stress[at(i, k)] * g[a][k];
-        if (L == Law::von_mises) along[a][i] += tangent.direction[at(i, k)] * g[a][k];
-        if (L == Law::von_mises) along_strain[i] += tangent.direction[at(i, k)] * strain[a][k];
+        if (flows(L)) along[a][i] += tangent.direction[at(i, k)] * g[a][k];
+        if (flows(L)) along_strain[i] += tangent.direction[at(i, k)] * strain[a][k];
       }
     }
     for (int i = 0; i < D; ++i) {
       mixed_along[a][i] = Lanes{};
       for (int k = 0; k < D; ++k) mixed_along[a][i] += shrink[k][i] * along_strain[k];
     }
-    if (axis && L == Law::von_mises) {
+    if (axis && flows(L)) {
       mixed_along[a][0] += tangent.direction[2] * hoop_shrink * ring[a];
       along[a][0] += tangent.direction[2] * point.hoop[a];
     }
@@ -235,7 +236,7 @@ LACON_INLINE void add_updated_matrix(const Point<K>& point, int nodes, double* m
              g[a][j] * drawn[c][i];
     if (axis && i == 0 && j == 0)
       entry += (2 * tangent.mu * hoop_shrink * ring[c] - point.stress[2] * point.hoop[c]) * point.hoop[a];
-    if (L == Law::von_mises) entry -= tangent.rank * along[a][i] * mixed_along[c][j];
+    if (flows(L)) entry -= tangent.rank * along[a][i] * mixed_along[c][j];
   };
   for (int a = 0; a < nodes; ++a)
     for (int i = 0; i < D; ++i) {

@@ -1,6 +1,7 @@
 #pragma once
-// Plasticity with von Mises' criterion and isotropic hardening R(p), given as a curve of straight pieces: the return to the
-// criterion and the consistent tangent. Simo and Hughes, Computational Inelasticity, 3.3 (solids) and 3.4 (plane stress).
+// Plasticity with von Mises' criterion and isotropic hardening R(p), given as a curve of straight pieces, or linear kinematic
+// hardening (Prager): the return to the criterion and the consistent tangent. Simo and Hughes, Computational Inelasticity, 3.3
+// (solids) and 3.4 (plane stress).
 #include <algorithm>
 #include <cmath>
 
@@ -17,6 +18,10 @@ constexpr double still_on_criterion = 1e-9;
 
 inline const char* const plastic_variables[] = {"EPSPEQ", "INDIPLAS", nullptr};  // cumulated plastic strain; 1 where it grows
 constexpr int n_plastic_variables = 2;
+// the stress in the middle of the criterion, a deviator, of which the plane has four components; 1 where the law flows
+inline const char* const kinematic_variables[] = {"XCINXX", "XCINYY", "XCINZZ",   "XCINXY",
+                                                  "XCINXZ", "XCINYZ", "INDIPLAS", nullptr};
+constexpr int n_kinematic_variables = 7;
 
 /// How a stress answers to a change of strain: lambda tr(de) I + 2 mu de - rank (direction : de) direction.
 template <Kind K>
@@ -186,6 +191,26 @@ LACON_INLINE void return_to_criterion(Lanes (&stress)[components_of(K)], Tangent
     }
   }
   p += dp;
+}
+
+/// The same with a criterion of constant size whose middle moves by 2/3 h times the plastic strain, h being the slope of the
+/// curve's first piece. @param middle in and out  @param mu shear modulus of the trial
+template <Kind K>
+LACON_INLINE void return_to_moving_criterion(Lanes (&stress)[components_of(K)], Tangent<K>& tangent,
+                                             Lanes (&middle)[components_of(K)], Lanes& flows, const Hardening& hardening,
+                                             LaneErrors& errors) {
+  constexpr int n = components_of(K);
+  // seen from the middle the stress comes back along its deviator to the size that isotropic hardening would reach in this one
+  // step, by 3 mu dp; the middle goes the rest of the way, h dp
+  const Lanes share = hardening.on(0, 0).slope / (3 * tangent.mu);
+  Lanes relative[n], trial[n], dp = {};
+  for (int i = 0; i < n; ++i) relative[i] = trial[i] = stress[i] - middle[i];
+  return_to_criterion<K>(relative, tangent, dp, flows, hardening, errors);
+  for (int i = 0; i < n; ++i) {
+    const Lanes back = trial[i] - relative[i];
+    stress[i] -= back;
+    middle[i] += share * back;
+  }
 }
 
 }  // namespace lacon::solid
