@@ -3,7 +3,6 @@
 import io
 import json
 import sys
-import time
 import unittest
 
 import h5py
@@ -88,11 +87,23 @@ class Class(unittest.TestCase):
         with self.assertRaisesRegex(TypeError, "column X .* numbers, and 'A'"):
             table.append({"X": "A"})
 
-    def test_extremes_of_a_long_column_take_no_longer_than_reading_it(self):
-        table = Table.of_columns({"X": ("R", [float(i % 1000) for i in range(20000)])})
-        start = time.process_time()
+    def test_extremes_of_a_column_compare_each_value_twice(self):
+        compared = []
+
+        class Counted(float):
+            __hash__ = float.__hash__
+
+            def __gt__(self, other):
+                compared.append(self)
+                return float.__gt__(self, other)
+
+            def __eq__(self, other):
+                compared.append(self)
+                return float.__eq__(self, other)
+
+        table = Table.of_columns({"X": ("R", [Counted(i % 10) for i in range(200)])})
         self.assertEqual(len(table.X.MAXI()), 20)
-        self.assertLess(time.process_time() - start, 1.0)
+        self.assertLessEqual(len(compared), 2 * 200)
 
     def test_types(self):
         self.assertEqual([type_of(v) for v in ([1, None], [1, 2.0], ["a"], ["a" * 9], ["a" * 80], [], [True])],
