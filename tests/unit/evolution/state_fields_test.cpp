@@ -1,10 +1,12 @@
 // Fields of states that processes keep: the files of one process, from a few cells at a time.
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <filesystem>
 #include <memory>
 #include <sstream>
+#include <string>
 
 #include "lacon/assembly/parts/cells.hpp"
 #include "lacon/assembly/parts/solid_parts.hpp"
@@ -51,7 +53,7 @@ struct FieldsOfParts : testing::Test {
   StaticProblem problem;
   fs::path folder;
 
-  FieldsOfParts() : folder(fs::path(testing::TempDir()) / "lacon_state_fields") {
+  FieldsOfParts() : folder(fs::path(testing::TempDir()) / ("lacon_state_fields_" + std::to_string(getpid()))) {
     fs::create_directories(folder);
     problem.dimension = 3;
     const auto node = [](std::int32_t x, std::int32_t y, std::int32_t z) { return (z * (n + 1) + y) * (n + 1) + x; };
