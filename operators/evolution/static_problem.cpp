@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <set>
 
 #include "lacon/catalog/messages.hpp"
 #include "lacon/catalog/wording.hpp"
@@ -204,14 +205,16 @@ void warn_of_other_behaviours(const StaticProblem& problem, const std::vector<Ke
       if (count++ == 0) first = cell;
     }
   } left_out;
+  std::set<std::string_view> curves;  // several laws take the same
+  for (const catalog::RelationRow& law : catalog::relations())
+    if (!law.hardening.empty()) curves.insert(law.hardening);
   std::map<std::pair<std::int32_t, std::string_view>, Found> elastic;  // by material and keyword of its curve
   for (const ElementSet& set : problem.solids)
     for (const std::int32_t cell : set.cells) {
       if (!named[static_cast<std::size_t>(cell)]) left_out.add(cell);
       if (set.option.starts_with("ELAS/"))
-        for (const catalog::RelationRow& law : catalog::relations())
-          if (!law.hardening.empty() && problem.materials->has_law(cell, std::string(law.hardening)))
-            elastic[{problem.materials->of(cell), law.hardening}].add(cell);
+        for (const std::string_view curve : curves)
+          if (problem.materials->has_law(cell, std::string(curve))) elastic[{problem.materials->of(cell), curve}].add(cell);
     }
   if (left_out.count > 0)
     inform("BEHAVIOUR_7", {{"count", std::to_string(left_out.count)}, {"cell", cell_name(left_out.first)}});
