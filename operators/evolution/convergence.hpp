@@ -2,6 +2,7 @@
 // When an instant is solved: the criteria of CONVERGENCE and of contact, judged on figures alone (METHOD.md 3.2).
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <string>
 
 #include "lacon/assembly/saddle_point_solver.hpp"
@@ -24,7 +25,15 @@ struct ForceFigures {
   /// External forces, reactions, forces of relations and of contact: what a residual is measured against.
   double reference = 0;
   double over_own = 0;  ///< the largest over that of its degree of freedom (reference_forces.hpp)
+  /// Likewise of the vectors of nodes, which no axes change: what is left of a node's force or moment, and the reference of it.
+  double unbalanced_vector = 0, reference_vector = 0;
 };
+
+double largest_entry(std::span<const double> values);
+/// The longest displacement of a node. @param values (n_nodes, n_components), displacements first
+double longest_displacement(std::span<const double> values, std::size_t n_components, std::size_t dimension);
+/// The longest vector of a node's force, or of what works on its other components (moments). @param values likewise
+double longest_force(std::span<const double> values, std::size_t n_components, std::size_t dimension);
 
 /// The displacements of an iteration, as figures.
 struct MotionFigures {
@@ -38,6 +47,8 @@ struct IterationReport {
   int iteration = 0;
   double rela = 0, maxi = 0, refe = 0;
   bool rela_met = true, maxi_met = true, refe_met = true;
+  /// `maxi` and `rela` of the vectors of nodes: by them Newton's method goes on, for axes are no matter of bodies
+  double longest = 0, longest_share = 0;
   std::int64_t worst_dof = -1;  ///< where the residual is largest
   std::int64_t status_changes = 0;
   double geometry = 0;  ///< max |du| / max |u|

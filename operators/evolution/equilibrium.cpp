@@ -52,23 +52,6 @@ ContactBodies bodies_of(const StaticProblem& problem) {
   return bodies;
 }
 
-/// The longest displacement of a node. @param values (n_nodes, n_components)
-double longest_displacement(std::span<const double> values, const StaticProblem& problem) {
-  double largest = 0;
-  for (std::size_t i = 0; i < values.size(); i += problem.components.size()) {
-    double square = 0;
-    for (int d = 0; d < problem.dimension; ++d) square += values[i + d] * values[i + d];
-    largest = std::max(largest, square);
-  }
-  return std::sqrt(largest);
-}
-
-double largest_entry(std::span<const double> values) {
-  double largest = 0;
-  for (const double value : values) largest = std::max(largest, std::abs(value));
-  return largest;
-}
-
 }  // namespace
 
 Equilibrium::Equilibrium(const StaticProblem& problem, std::shared_ptr<SolidParts> parts)
@@ -365,23 +348,32 @@ bool Equilibrium::flows(const StaticState& previous) const {
 
 ForceFigures Equilibrium::forces(const StaticState& state, const StaticState& previous) const {
   const std::vector<double>& residual = system_.residual();
-  ForceFigures figures{.reference = largest_entry(relations_.forces(state.relations))};
-  if (contact_) figures.reference = std::max(figures.reference, largest_entry(contact_->forces(state.patches)));
+  const auto width = static_cast<std::size_t>(problem_.n_components()), d = static_cast<std::size_t>(problem_.dimension);
+  ForceFigures figures;
+  const auto refer_to = [&](const std::vector<double>& forces, std::size_t n_components) {
+    figures.reference = std::max(figures.reference, largest_entry(forces));
+    figures.reference_vector = std::max(figures.reference_vector, longest_force(forces, n_components, d));
+  };
+  refer_to(relations_.forces(state.relations), width);
+  if (contact_) refer_to(contact_->forces(state.patches), d);
+  std::vector<double> left(problem_.n_dofs(), 0.0), acting(problem_.n_dofs(), 0.0);
   // displacements that went to zero leave the round-off of those before them; a body that turns has that of its turn
-  const double moved = std::max({longest_displacement(state.displacement, problem_),
-                                 longest_displacement(previous.displacement, problem_), vanishing_displacement * extent_});
+  const double moved = std::max({longest_displacement(state.displacement, width, d),
+                                 longest_displacement(previous.displacement, width, d), vanishing_displacement * extent_});
   const std::vector<SparseMatrix::RowSize> rows = system_.matrix().row_sizes(system_.first_multiplier());
   for (std::size_t dof = 0; dof < problem_.n_dofs(); ++dof) {
     const double unbalanced = std::abs(residual[dof] - external_[dof]);
     if (problem_.imposed[dof]) {
-      figures.reference = std::max(figures.reference, unbalanced);
+      acting[dof] = unbalanced;
     } else if (const std::int64_t equation = problem_.numbering.equation[dof]; equation >= 0) {
-      figures.reference = std::max(figures.reference, std::abs(external_[dof]));
+      acting[dof] = external_[dof];
+      left[dof] = unbalanced;
       if (!std::isfinite(unbalanced))
         return {.unbalanced = unbalanced,
                 .worst_dof = static_cast<std::int64_t>(dof),
                 .significant = unbalanced,
-                .over_own = unbalanced};
+                .over_own = unbalanced,
+                .unbalanced_vector = unbalanced};
       if (!reference_forces_.empty() && reference_forces_[dof] > 0)
         figures.over_own = std::max(figures.over_own, unbalanced / reference_forces_[dof]);
       if (unbalanced > figures.unbalanced || figures.worst_dof < 0) {
@@ -395,6 +387,8 @@ ForceFigures Equilibrium::forces(const StaticState& state, const StaticState& pr
         figures.significant = std::max(figures.significant, unbalanced);
     }
   }
+  figures.unbalanced_vector = longest_force(left, width, d);
+  refer_to(acting, width);
   return figures;
 }
 
@@ -418,8 +412,9 @@ std::vector<double> Equilibrium::internal_forces(const StaticState& state) const
 }
 
 MotionFigures Equilibrium::motion(std::span<const double> increment, const StaticState& state) const {
-  return {.increment = longest_displacement(increment, problem_),
-          .whole = longest_displacement(state.displacement, problem_),
+  const auto width = static_cast<std::size_t>(problem_.n_components()), d = static_cast<std::size_t>(problem_.dimension);
+  return {.increment = longest_displacement(increment, width, d),
+          .whole = longest_displacement(state.displacement, width, d),
           .vanishing = contact_ ? vanishing_displacement * contact_->smallest_patch() : 0.0};
 }
 

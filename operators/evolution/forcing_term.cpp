@@ -12,8 +12,8 @@ constexpr double balanced = 1e-4;  // of one that the criteria would leave as it
 }  // namespace
 
 double ForcingTerm::next(const IterationReport& line, bool rough) {
-  const double ratio = last_residual_ > 0 ? line.rela / last_residual_ : 1;
-  last_residual_ = line.rela;
+  const double ratio = last_residual_ > 0 ? line.longest_share / last_residual_ : 1;
+  last_residual_ = line.longest_share;
   if (rough) return std::min(most, factor * ratio * ratio);
   return line.rela_met && line.maxi_met && line.refe_met && line.constraint_met ? balanced : 0;
 }

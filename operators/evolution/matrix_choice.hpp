@@ -24,7 +24,7 @@ struct MatrixTraits {
 
 /// The unbalanced forces that an iteration leaves.
 struct Unbalance {
-  double largest = 0;
+  double largest = 0;            ///< of a node
   double share = 0;              ///< the same over the largest force of the equilibrium
   bool in_flow = false;          ///< a law flows
   bool statuses_change = false;  ///< stresses are still those of other contacts

@@ -223,7 +223,7 @@ int Newton::iterate(double instant, StaticState& state, const std::function<void
                     line);
     line.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     report(line);
-    course_.add(line.maxi, line.worst_dof);
+    course_.add(line.longest, line.worst_dof);
     settled_ = line.status_changes > 0 ? 0 : settled_ + 1;
     const bool other_forces = (course_.period() || std::min(course_.growths(), settled_) >= drifting) &&
                               keep_covers_that_sway(instant, state, iteration == options_.iterations);
@@ -239,15 +239,16 @@ int Newton::iterate(double instant, StaticState& state, const std::function<void
       return iteration;
     }
     const int done = iteration + 1;
-    if (elsewhere_ && Prediction::leads_astray(done, line.maxi, forces_before, there.in_equilibrium() ? HUGE_VAL : there.maxi))
+    if (elsewhere_ &&
+        Prediction::leads_astray(done, line.longest, forces_before, there.in_equilibrium() ? HUGE_VAL : there.longest))
       fail("EVOLUTION_49", {{"count", std::to_string(done)},
                             {"residual", fmt::format("{:.3g}", line.maxi)},
                             {"start", fmt::format("{:.3g}", there.maxi)}});
-    forces_before = line.maxi;
+    forces_before = line.longest;
     changing = static_cast<std::size_t>(std::mismatch(before.begin(), before.end(), wanted.begin()).first - before.begin());
     settling = line.status_changes > 0 && !statuses_.keeps();
-    bool other_matrix = choice_.note_residual({.largest = line.maxi,
-                                               .share = line.rela,
+    bool other_matrix = choice_.note_residual({.largest = line.longest,
+                                               .share = line.longest_share,
                                                .in_flow = equilibrium_.flows(previous),
                                                .statuses_change = line.status_changes > 0,
                                                .curved = equilibrium_.curves(state)});

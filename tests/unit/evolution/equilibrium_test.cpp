@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "../assembly/dense.hpp"
 #include "lacon/catalog/messages.hpp"
@@ -158,6 +159,40 @@ TEST(Equilibrium, TheReferenceCountsLoadsReactionsAndContact) {
   EXPECT_NEAR(figures.reference, 2.0 / 3 * 1000 * pressure, 1e-9 * pressure);
   EXPECT_NEAR(figures.unbalanced, 2.0 / 3 * 1000 * pressure, 1e-9 * pressure);
   EXPECT_EQ(figures.significant, figures.unbalanced);
+}
+
+TEST(Equilibrium, TheVectorsOfForcesAreThoseOfWhateverAxes) {
+  const auto turned = [](std::span<double> values, std::size_t width, double angle) {
+    for (std::size_t node = 0; node < values.size(); node += width) {
+      const double x = values[node], y = values[node + 1];
+      values[node] = std::cos(angle) * x - std::sin(angle) * y;
+      values[node + 1] = std::sin(angle) * x + std::cos(angle) * y;
+    }
+  };
+  const auto figures = [&](double angle, double lambda) {
+    StaticProblem problem = two_squares("ELAS/GREEN_LAGRANGE", true);
+    turned(problem.mesh.coordinates, 3, angle);
+    problem.loads.push_back(press(problem, pressure, false));
+    number(problem);
+    Equilibrium equilibrium(problem);
+    StaticState state = equilibrium.natural_state();
+    state.displacement = random_vector(problem.n_dofs(), 0.05, 3);
+    turned(state.displacement, 2, angle);
+    equilibrium.pair(state.displacement);
+    state.patches = equilibrium.contact()->initial();
+    state.patches.status[0] = Status::active;
+    state.patches.lambda[0] = lambda * pressure;
+    equilibrium.load(1.0, state);
+    equilibrium.assemble(state, state, {});
+    return equilibrium.forces(state, state);
+  };
+  for (const double lambda : {0.0, -1000.0}) {  // the reference is the load's, and that of contact
+    const ForceFigures straight = figures(0, lambda), askew = figures(0.7, lambda);
+    EXPECT_NEAR(askew.unbalanced_vector, straight.unbalanced_vector, 1e-12 * straight.unbalanced_vector) << lambda;
+    EXPECT_NEAR(askew.reference_vector, straight.reference_vector, 1e-12 * straight.reference_vector) << lambda;
+    EXPECT_GT(std::abs(askew.unbalanced - straight.unbalanced), 0.01 * straight.unbalanced) << lambda;
+    EXPECT_GT(std::abs(askew.reference - straight.reference), 0.01 * straight.reference) << lambda;
+  }
 }
 
 TEST(Equilibrium, WhatRoundOffLeavesIsNotSignificant) {

@@ -7,7 +7,7 @@ namespace lacon {
 namespace {
 
 /// An iteration that has left that much, and whether this meets the criteria.
-IterationReport left(double residual, bool met) { return {.rela = residual, .rela_met = met}; }
+IterationReport left(double residual, bool met) { return {.rela_met = met, .longest_share = residual}; }
 
 // Where statuses stay and forces are not in balance, a system is solved as exactly as the engine does; where they are, what is
 // left to do is small.
@@ -18,7 +18,7 @@ TEST(ForcingTerm, IsExactUntilForcesAreInBalance) {
   const double share = forcing.next(left(1e-7, true), false);
   EXPECT_GT(share, 0);
   EXPECT_LE(share, 1e-4) << "four digits more than what the criteria ask for: slender bodies lose two";
-  EXPECT_EQ(forcing.next({.rela = 1e-8, .constraint = 1, .constraint_met = false}, false), 0);
+  EXPECT_EQ(forcing.next({.longest_share = 1e-8, .constraint = 1, .constraint_met = false}, false), 0);
 }
 
 // While statuses change it is rougher, and no rougher than the square of what the iteration before has gained (choice 2).
