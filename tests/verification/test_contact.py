@@ -214,6 +214,22 @@ class Contact(FlatTetrahedra):
                                 "CTOP", "CBOT", ["XZERO"], ["YZERO"]))
         self.assert_flat(studies)
 
+    def test_pulls_of_edges_in_space_from_iteration_to_iteration_do_not_compare(self):
+        """A skin bent to 1 in 500 on tetrahedra, whose edge recedes over other patches each time: what opens behind it goes by its own pull (by
+        the secant of two, as in the plane, this took 31 iterations for 6)."""
+        def bent(x, y, z):
+            return x, y, z + (1.0 - z) / 0.5 * 0.002 * (x * x + y * y)
+
+        def lines(n, m, bottom):
+            return [np.linspace(0, 1, n + 1)] * 2 + [np.linspace(bottom, bottom + 0.5, m + 1)]
+
+        sides = {(0, 0): "XZERO", (1, 0): "YZERO"}
+        lower = brick("TETRA4", lines(6, 4, 0.0), name="LOWER", sides={**sides, (2, 0): "BASE", (2, 1): "MASTER"})
+        upper = brick("TETRA4", lines(5, 3, 0.5), bent, "UPPER", {**sides, (2, 0): "SLAVE", (2, 1): "TOP"})
+        hold = [{"GROUP_MA": "XZERO", "DX": 0}, {"GROUP_MA": "YZERO", "DY": 0}, {"GROUP_MA": "BASE", "DZ": 0}, {"GROUP_MA": "TOP", "DZ": -0.0022}]
+        _, (result,) = run_contact(self, [contact_study(union([lower, upper]), hold, convergence={"RESI_GLOB_RELA": 1e-6, "ITER_GLOB_MAXI": 50})])
+        self.assertLessEqual(result.parameter("newton_iterations")[-1], 8)
+
 
 def flat(mesh, slave, master, x, y, **more):
     return contact_study(mesh, [{"GROUP_MA": x, "DX": 0}, {"GROUP_MA": y, "DY": 0}, {"GROUP_MA": "BASE", "DZ": 0}],
