@@ -20,7 +20,7 @@ struct ElementSet {
   const lacon_kernel* kernel = nullptr;
   std::string option;  ///< of the kernel: "ELAS/PETIT", "CHAR_MECA_PRES"
   Tabulation tabulation;
-  std::vector<std::int32_t> cells;
+  std::vector<std::int32_t> cells;              ///< ascending
   std::vector<std::int32_t> numbers;            ///< of them, where the mesh is a part of another one; empty: the same
   std::vector<double> parameters;               ///< (cells, n_parameters), solids only
   int n_parameters = 0, n_point_variables = 0;  ///< n_point_variables: internal variables of a point

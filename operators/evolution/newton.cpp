@@ -242,8 +242,8 @@ int Newton::iterate(double instant, StaticState& state, const std::function<void
     if (elsewhere_ &&
         Prediction::leads_astray(done, line.longest, forces_before, there.in_equilibrium() ? HUGE_VAL : there.longest))
       fail("EVOLUTION_49", {{"count", std::to_string(done)},
-                            {"residual", fmt::format("{:.3g}", line.maxi)},
-                            {"start", fmt::format("{:.3g}", there.maxi)}});
+                            {"residual", fmt::format("{:.3g}", line.longest)},
+                            {"start", fmt::format("{:.3g}", there.longest)}});
     forces_before = line.longest;
     changing = static_cast<std::size_t>(std::mismatch(before.begin(), before.end(), wanted.begin()).first - before.begin());
     settling = line.status_changes > 0 && !statuses_.keeps();

@@ -6,6 +6,7 @@
 #include <numeric>
 #include <set>
 
+#include "hexa_block.hpp"
 #include "lacon/assembly/block_numbering.hpp"
 #include "lacon/assembly/parts/element_part.hpp"
 #include "lacon/assembly/parts/parcel.hpp"
@@ -18,25 +19,22 @@ using namespace lacon;
 /// A block of n x n x n HEXA8, the lower face of which is covered by slave patches of four cells each.
 struct Cube : testing::Test {
   static constexpr std::int32_t n = 8;
+  static constexpr test::HexaBlock block{n};
   Mesh mesh;
   std::vector<std::int32_t> cells, weight;
 
-  static std::int32_t node(std::int32_t x, std::int32_t y, std::int32_t z) { return (z * (n + 1) + y) * (n + 1) + x; }
-  static std::int32_t cell(std::int32_t x, std::int32_t y, std::int32_t z) { return (z * n + y) * n + x; }
+  static std::int32_t node(std::int32_t x, std::int32_t y, std::int32_t z) { return block.node(x, y, z); }
+  static std::int32_t cell(std::int32_t x, std::int32_t y, std::int32_t z) { return block.cell(x, y, z); }
   Cube() {
-    for (std::int32_t i = 0; i < (n + 1) * (n + 1) * (n + 1); ++i)
-      for (const std::int32_t at : {i % (n + 1), i / (n + 1) % (n + 1), i / (n + 1) / (n + 1)})
-        mesh.coordinates.push_back(at + 0.01 * ((7 * i + 3 * at) % 5));
-    for (std::int32_t z = 0; z < n; ++z)
-      for (std::int32_t y = 0; y < n; ++y)
-        for (std::int32_t x = 0; x < n; ++x) {
-          std::vector<std::int32_t> nodes;
-          for (const std::int32_t up : {z, z + 1})
-            nodes.insert(nodes.end(), {node(x, y, up), node(x + 1, y, up), node(x + 1, y + 1, up), node(x, y + 1, up)});
-          cells.push_back(static_cast<std::int32_t>(mesh.n_cells()));
-          weight.push_back(1 + (x > n / 2 ? 2 : 0));
-          mesh.add_cell(CellType::HEXA8, nodes);
-        }
+    block.add_to(mesh);
+    for (std::size_t i = 0; i < mesh.coordinates.size(); ++i) {
+      const int at = static_cast<int>(mesh.coordinates[i]);
+      mesh.coordinates[i] += 0.01 * ((7 * static_cast<int>(i / 3) + 3 * at) % 5);
+    }
+    for (std::int32_t c = 0; c < n * n * n; ++c) {
+      cells.push_back(c);
+      weight.push_back(1 + (c % n > n / 2 ? 2 : 0));
+    }
     mesh.patches.emplace();
     for (std::int32_t y = 0; y < n; y += 2)
       for (std::int32_t x = 0; x < n; x += 2) {

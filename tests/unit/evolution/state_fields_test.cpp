@@ -8,6 +8,7 @@
 #include <sstream>
 #include <string>
 
+#include "../assembly/hexa_block.hpp"
 #include "lacon/assembly/parts/cells.hpp"
 #include "lacon/assembly/parts/solid_parts.hpp"
 #include "lacon/operators/evolution/restart.hpp"
@@ -47,27 +48,15 @@ class Pretended : public PartProcesses {
   std::size_t most_ = 0;
 };
 
-/// A block of n^3 HEXA8 of three laws in turn, one without internal variables.
+/// A block of HEXA8 of three laws in turn, one without internal variables.
 struct FieldsOfParts : testing::Test {
-  static constexpr std::int32_t n = 20;
   StaticProblem problem;
   fs::path folder;
 
   FieldsOfParts() : folder(fs::path(testing::TempDir()) / ("lacon_state_fields_" + std::to_string(getpid()))) {
     fs::create_directories(folder);
     problem.dimension = 3;
-    const auto node = [](std::int32_t x, std::int32_t y, std::int32_t z) { return (z * (n + 1) + y) * (n + 1) + x; };
-    for (std::int32_t i = 0; i < (n + 1) * (n + 1) * (n + 1); ++i)
-      for (const std::int32_t at : {i % (n + 1), i / (n + 1) % (n + 1), i / (n + 1) / (n + 1)})
-        problem.mesh.coordinates.push_back(at);
-    for (std::int32_t z = 0; z < n; ++z)
-      for (std::int32_t y = 0; y < n; ++y)
-        for (std::int32_t x = 0; x < n; ++x) {
-          std::vector<std::int32_t> nodes;
-          for (const std::int32_t up : {z, z + 1})
-            nodes.insert(nodes.end(), {node(x, y, up), node(x + 1, y, up), node(x + 1, y + 1, up), node(x, y + 1, up)});
-          problem.mesh.add_cell(CellType::HEXA8, nodes);
-        }
+    test::HexaBlock{20}.add_to(problem.mesh);
     const std::size_t count = problem.mesh.n_cells();
     problem.model = {.mesh = {},
                      .phenomenon = "MECANIQUE",
