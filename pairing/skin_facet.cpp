@@ -26,6 +26,21 @@ bool is_straight(Vec3 a, Vec3 b, Vec3 m, double bulge) {
 
 bool is_mirrored(const FacetKind& f, int edge) { return (f.mirrored >> (edge % f.n_vertices) & 1) != 0; }
 
+/// The vertices of an outline: visit(edge, t), t from 0 to 1 between the ends of the edge, a little beyond where it is
+/// prolonged and on mirrored edges between their prolonged ends. A curved edge is cut at the same places whether it is
+/// prolonged or not: of two triangles that share it perhaps one alone has a mirrored edge.
+template <class Visit>
+void walk(const FacetKind& f, const Visit& visit) {
+  for (int i = 0; i < f.n_vertices; ++i) {
+    const bool whole = f.whole_edge[static_cast<std::size_t>(i)], outside = is_mirrored(f, i),
+               from_behind = !outside && is_mirrored(f, i + f.n_vertices - 1), to_behind = !outside && is_mirrored(f, i + 1);
+    if (from_behind) visit(i, -hem);
+    if (!from_behind || !whole) visit(i, 0);
+    for (int k = 1; k < edge_pieces && !whole; ++k) visit(i, static_cast<double>(k) / edge_pieces);
+    if (to_behind && !whole) visit(i, 1);
+  }
+}
+
 }  // namespace
 
 Nodes nodes_of(const Surface& surface, std::size_t cell, Vec3 origin) {
@@ -78,28 +93,26 @@ void outline(const FacetKind& f, const Nodes& nodes, std::vector<Vec3>& polygon)
   const int n = f.n_vertices;
   const auto along = [&](int i, double t) {  // an edge, both of whose facets find the same bits
     const Vec3 a = nodes[i], b = nodes[(i + 1) % n];
+    if (t == 0) return a;
+    if (t == 1) return b;
     const bool forward = before(a, b);
     const Vec3 first = forward ? a : b, last = forward ? b : a;
     if (!forward) t = 1 - t;
     if (f.whole_edge[static_cast<std::size_t>(i)]) return (1 - t) * first + t * last;
     return ((1 - t) * (1 - 2 * t)) * first + (t * (2 * t - 1)) * last + (4 * t * (1 - t)) * nodes[n + i];
   };
-  const auto mirrored = [&](int i) { return is_mirrored(f, i); };
   std::vector<Vec2> places;
   Map3 x;
   if (f.mirrored != 0) outline_places(f, places), x = f.map(nodes);
-  for (int i = 0; i < n; ++i) {
-    const double first = mirrored(i + n - 1) ? -hem : 0, last = mirrored(i + 1) ? 1 + hem : 1;
-    for (int k = 0; k < (f.whole_edge[static_cast<std::size_t>(i)] ? 1 : edge_pieces); ++k) {
-      const double t = first + static_cast<double>(k) / edge_pieces * (last - first);
-      if (mirrored(i) && k == 0 && !mirrored(i + n - 1))
-        polygon.push_back(along((i + n - 1) % n, 1 + hem));
-      else if (mirrored(i))
-        polygon.push_back(x(places[polygon.size()]).x);
-      else
-        polygon.push_back(t == 0 ? nodes[i] : along(i, t));
-    }
-  }
+  walk(f, [&](int i, double t) {
+    const int before_it = (i + n - 1) % n;
+    if (!is_mirrored(f, i))
+      polygon.push_back(along(i, t));
+    else if (t == 0 && !is_mirrored(f, before_it))
+      polygon.push_back(along(before_it, 1 + hem));
+    else
+      polygon.push_back(x(places[polygon.size()]).x);
+  });
 }
 
 void outline_places(const FacetKind& f, std::vector<Vec2>& places) {
@@ -113,11 +126,11 @@ void outline_places(const FacetKind& f, std::vector<Vec2>& places) {
     if (is_mirrored(f, i + n - 1)) at = at + hem * (vertex(i) - vertex(i + 1));
     return at;
   };
-  for (int i = 0; i < n; ++i) {
-    const Vec2 a = prolonged(i), b = prolonged(i + 1);
-    for (int k = 0; k < (f.whole_edge[static_cast<std::size_t>(i)] ? 1 : edge_pieces); ++k)
-      places.push_back(a + (static_cast<double>(k) / edge_pieces) * (b - a));
-  }
+  walk(f, [&](int i, double t) {
+    const bool outside = is_mirrored(f, i);
+    const Vec2 a = outside ? prolonged(i) : vertex(i), b = outside ? prolonged(i + 1) : vertex(i + 1);
+    places.push_back(a + t * (b - a));
+  });
 }
 
 }  // namespace lacon::space

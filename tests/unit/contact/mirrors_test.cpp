@@ -17,15 +17,13 @@ struct TwoSkins {
   std::vector<double> coordinates;
   Surface slave, master;
 
-  TwoSkins(CellType slave_type, CellType master_type, const test::Place3& place, bool curved) {
+  TwoSkins(CellType slave_type, CellType master_type, const test::Place3& place, bool curved,
+           const test::Place3& place_of_master = {}) {
     std::mt19937 random(7);
+    const auto flat = [](double x, double y) { return Vec3{x, y, 0}; };
     add(test::mesh({.nx = 2, .ny = 2, .type = slave_type, .up = false}, place, random, curved), slave);
-    add(test::mesh(
-            {.nx = 3, .ny = 3, .type = master_type},
-            [](double x, double y) {
-              return Vec3{x, y, 0};
-            },
-            random),
+    add(test::mesh({.nx = 3, .ny = 3, .type = master_type}, place_of_master ? place_of_master : flat, random,
+                   place_of_master != nullptr),
         master);
     slave.coordinates = master.coordinates = coordinates;
   }
@@ -87,6 +85,27 @@ TEST(Mirrors, NormalsThatLeanOverAPlaneOfSymmetryMeetWhatLiesBehindIt) {
           skins.master.mirrored = mirrored;
           EXPECT_NEAR(cover(skins, traced), 1, 1e-9) << what();
         }
+}
+
+/// Of two triangles that share a curved edge one alone may have a mirrored edge, and go on. Both have the same line between
+/// them: nothing of the slave is left out, and nothing of one hides behind the other.
+TEST(Mirrors, CurvedEdgesAreCutAtTheSamePlacesWhetherTheyGoOnOrNot) {
+  const auto above = [](double x, double y) { return Vec3{x, y, 0.05}; };
+  const auto bent = [](double x, double y) {  // within the square, and a little out of its plane
+    const double bump = std::sin(3.1 * x) * std::sin(2.9 * y);
+    return Vec3{x + 0.05 * x * (1 - x) * std::cos(4 * y), y + 0.05 * bump * y * (1 - y), 0.003 * bump};
+  };
+  for (const CellType of_master : {CellType::TRIA6, CellType::QUAD8, CellType::QUAD9})
+    for (const bool traced : {false, true}) {
+      TwoSkins skins(CellType::QUAD4, of_master, above, false, bent);
+      const std::vector<std::uint8_t> mirrored =
+          mirrored_edges(end_planes(skins.slave, skins.master, all_held(skins)), skins.master, skins.coordinates);
+      EXPECT_GE(std::ranges::count_if(mirrored, [](std::uint8_t edges) { return edges != 0; }), 8);
+      skins.master.mirrored = mirrored;
+      const Pairing found = pair(skins.slave, skins.master, {.traced = traced});
+      EXPECT_EQ(found.count(Rejection::hidden), 0) << catalog::cell(of_master).name << traced;
+      EXPECT_NEAR(cover(skins, traced), 1, 1e-12) << catalog::cell(of_master).name << traced;
+    }
 }
 
 TEST(Mirrors, EdgesAreThoseThatEndWhereTheSlaveDoes) {
