@@ -9,7 +9,6 @@
 
 #include "lacon/assembly/any_signs.hpp"
 #include "lacon/assembly/gmres.hpp"
-#include "lacon/structures/hdf5.hpp"
 #include "lacon/structures/parallel.hpp"
 
 namespace lacon {
@@ -154,15 +153,33 @@ class SaddlePointSolver::Preconditioner {
   /// x = P^-1 b in place
   void apply(std::span<double> x) const {
     const auto size = static_cast<Eigen::Index>(rows_.size());
-    VectorXd own(size), side(size);
+    VectorXd own(size);
     for (const std::int64_t row : scaled_) x[row] *= solver_.base_->diagonal(row) / matrix_.diagonal(row);
     for (Eigen::Index s = 0; s < size; ++s) own[s] = std::exchange(x[rows_[s]], 0.0);
     solver_.substitution_->substitute(x);
-    for (Eigen::Index s = 0; s < size; ++s)
-      side[s] = scale_[s] * (seen_by(s, std::span<const double>(x)) - (is_on(s) ? own[s] : 0.0));
-    if (size) add(factor_.solve(side), x);
-    for (Eigen::Index s = 0; s < size; ++s)
-      if (!is_on(s)) x[rows_[s]] = own[s] / matrix_.diagonal(rows_[s]);
+    finish(own, x);
+  }
+
+  /// The same of sparse right sides, (sides, size).
+  std::vector<float> columns(const SparseSides& sides) const {
+    SparseSides others;
+    MatrixXd own = MatrixXd::Zero(static_cast<Eigen::Index>(rows_.size()), static_cast<Eigen::Index>(sides.size()));
+    for (std::size_t c = 0; c < sides.size(); ++c, others.end_side())
+      for (auto k = static_cast<std::size_t>(sides.offset[c]); k < static_cast<std::size_t>(sides.offset[c + 1]); ++k) {
+        const std::int64_t row = sides.index[k];
+        const auto switched = std::find(rows_.begin(), rows_.end(), row);
+        const bool is_scaled = std::binary_search(scaled_.begin(), scaled_.end(), row);
+        if (switched != rows_.end())
+          own(switched - rows_.begin(), static_cast<Eigen::Index>(c)) += sides.value[k];
+        else
+          others.add_entry(row, sides.value[k] * (is_scaled ? solver_.base_->diagonal(row) / matrix_.diagonal(row) : 1));
+      }
+    const auto n = static_cast<std::size_t>(matrix_.size());
+    std::vector<float> x = others.index.empty() ? std::vector<float>(sides.size() * n)
+                                                : solver_.substitution_->substitute(others.offset, others.index, others.value);
+    for (std::size_t c = 0; c < sides.size(); ++c)
+      finish(own.col(static_cast<Eigen::Index>(c)), std::span(x).subspan(c * n, n));
+    return x;
   }
 
   /// A motion in which those have a share that the complement all but lets go, each the larger the less holds it, (n).
@@ -170,22 +187,35 @@ class SaddlePointSolver::Preconditioner {
     const auto size = static_cast<Eigen::Index>(rows_.size());
     const std::vector<double> signs = any_signs(rows_.size());
     std::vector<double> x(static_cast<std::size_t>(matrix_.size()), 0.0);
-    if (size) add(factor_.solve(Map<const VectorXd>(signs.data(), size)), x);
+    if (size) add(factor_.solve(Map<const VectorXd>(signs.data(), size)), std::span(x));
     return x;
   }
 
  private:
   bool is_on(Eigen::Index s) const { return static_cast<std::size_t>(s) < n_on_; }
+  /// From a solution with the base to that of the matrix. @param own right sides of the switched rows
+  template <class Number>
+  void finish(const VectorXd& own, std::span<Number> x) const {
+    const auto size = static_cast<Eigen::Index>(rows_.size());
+    VectorXd side(size);
+    for (Eigen::Index s = 0; s < size; ++s)
+      side[s] = scale_[s] * (seen_by(s, std::span<const Number>(x)) - (is_on(s) ? own[s] : 0.0));
+    if (size) add(factor_.solve(side), x);
+    for (Eigen::Index s = 0; s < size; ++s)
+      if (!is_on(s)) x[rows_[s]] = static_cast<Number>(own[s] / matrix_.diagonal(rows_[s]));
+  }
   /// To x what unknowns y of the scaled complement stand for.
-  void add(const VectorXd& y, std::span<double> x) const {
+  template <class Number>
+  void add(const VectorXd& y, std::span<Number> x) const {
     const VectorXd side = scale_.asDiagonal() * y;
     parallel_for(x.size(), rows_together, [&](const LoopBlock& block) {
       const auto size = static_cast<Eigen::Index>(block.last - block.first);
-      Map<VectorXd> solution(x.data() + block.first, size);
+      Map<Eigen::VectorX<Number>> solution(x.data() + block.first, size);
       for (Eigen::Index s = 0; s < side.size(); ++s)
-        solution -= side[s] * Map<const Eigen::VectorXf>(columns_[s]->inverse.data() + block.first, size).cast<double>();
+        solution -= (side[s] * Map<const Eigen::VectorXf>(columns_[s]->inverse.data() + block.first, size).cast<double>())
+                        .template cast<Number>();
     });
-    for (Eigen::Index s = 0; s < side.size(); ++s) x[rows_[s]] = is_on(s) ? side[s] : 0.0;
+    for (Eigen::Index s = 0; s < side.size(); ++s) x[rows_[s]] = static_cast<Number>(is_on(s) ? side[s] : 0.0);
   }
   /// What the equation of a switched row sees of x.
   template <class Number>
@@ -214,6 +244,12 @@ SolutionReport SaddlePointSolver::solve(const SparseMatrix& matrix, std::int64_t
       corrected(matrix, right_side, accuracy.rough, report))
     return report;
 
+  if (substitution_ && kept_ == Kept::factor && !matrix.is_symmetric() && !matrix.elsewhere() && same_pattern(matrix, *base_) &&
+      std::ranges::equal(matrix.values(), base_->values())) {
+    solve_with_factor(matrix, right_side, accuracy, report);
+    return report;
+  }
+
   // what is thrown from here on leaves a solver that keeps nothing
   const bool analysed = kept_ != Kept::nothing && same_pattern(matrix, *base_);
   kept_ = Kept::nothing;
@@ -233,7 +269,12 @@ SolutionReport SaddlePointSolver::solve(const SparseMatrix& matrix, std::int64_t
     ++factorisations_;
   }
   kept_ = kept_behind(factor_);
-  if (!factor_.null_pivots.empty()) return report;
+  if (factor_.null_pivots.empty()) solve_with_factor(matrix, right_side, accuracy, report);
+  return report;
+}
+
+void SaddlePointSolver::solve_with_factor(const SparseMatrix& matrix, std::span<double> right_side, const Accuracy& accuracy,
+                                          SolutionReport& report) {
   const Stopwatch watch(report.solution_seconds);
   if (substitution_ && matrix.is_symmetric()) {
     const std::vector<double> scale = scales(matrix);
@@ -253,7 +294,6 @@ SolutionReport SaddlePointSolver::solve(const SparseMatrix& matrix, std::int64_t
   }
   if (solution.error) factor_.error = report.factorisation.error = *solution.error;
   kept_ = kept_behind(factor_);
-  return report;
 }
 
 SaddlePointSolver::Kept SaddlePointSolver::kept_behind(const Factorisation& factor) const {
@@ -302,16 +342,12 @@ bool SaddlePointSolver::make_columns(const SparseMatrix& matrix, const Switched&
       block.on.push_back(std::binary_search(switched.on.begin(), switched.on.end(), wanted[c]));
       if (block.on.back()) {
         const Row row(matrix, wanted[c]);
-        for (std::size_t k = 0; k < row.columns.size(); ++k) {
-          if (row.values[k] == 0) continue;
-          block.index.push_back(row.columns[k]);
-          block.value.push_back(row.values[k]);
-        }
+        for (std::size_t k = 0; k < row.columns.size(); ++k)
+          if (row.values[k] != 0) block.add_entry(row.columns[k], row.values[k]);
       } else {
-        block.index.push_back(static_cast<std::int32_t>(wanted[c]));
-        block.value.push_back(1.0);
+        block.add_entry(wanted[c], 1);
       }
-      block.offset.push_back(static_cast<std::int64_t>(block.index.size()));
+      block.end_side();
     }
     compute(std::move(block));
   }
@@ -362,22 +398,40 @@ bool SaddlePointSolver::holds_all(const SparseMatrix& matrix, const Precondition
   return preconditioner.condition() * norm(force, false) > options_.singular * norm(found.x, false);
 }
 
-bool SaddlePointSolver::corrected(const SparseMatrix& matrix, std::span<double> right_side, bool rough,
-                                  SolutionReport& report) {
-  const Stopwatch watch(report.solution_seconds);
+std::optional<SaddlePointSolver::Switched> SaddlePointSolver::switched_rows(const SparseMatrix& matrix) const {
   Switched switched;
   for (std::int64_t i = first_multiplier_; i < matrix.size(); ++i) {
     const Row row(matrix, i), before(*base_, i);
-    if (row.meets_multipliers(first_multiplier_)) return false;
+    if (row.meets_multipliers(first_multiplier_)) return std::nullopt;
     const bool is_on = row.is_on(), was_on = before.is_on();
     if (is_on != was_on)
       (is_on ? switched.on : switched.off).push_back(i);
     else if (!is_on && row.diagonal != before.diagonal)
       switched.scaled.push_back(i);
   }
-  if (!make_columns(matrix, switched, report)) return false;
+  return switched;
+}
+
+std::size_t SaddlePointSolver::affordable_columns() const {
+  if (kept_ != Kept::factor) return 0;
+  const double most = std::max(options_.more_columns * factorisation_cost(), options_.least_columns);
+  return static_cast<std::size_t>(std::min(most / std::max(column_cost(), 1.0), 1e6));
+}
+
+std::vector<float> SaddlePointSolver::columns(const SparseMatrix& matrix, const SparseSides& sides) {
+  if (kept_ != Kept::factor || sides.size() == 0) return {};
+  if (!matrix.is_symmetric()) return substitution_->substitute(sides.offset, sides.index, sides.value);
+  const std::optional<Switched> switched = switched_rows(matrix);  // their columns are there: it was solved with
+  return switched ? Preconditioner(*this, matrix, *switched).columns(sides) : std::vector<float>{};
+}
+
+bool SaddlePointSolver::corrected(const SparseMatrix& matrix, std::span<double> right_side, bool rough,
+                                  SolutionReport& report) {
+  const Stopwatch watch(report.solution_seconds);
+  const std::optional<Switched> switched = switched_rows(matrix);
+  if (!switched || !make_columns(matrix, *switched, report)) return false;
   const std::vector<double> scales_of_rows = scales(matrix);
-  const Preconditioner preconditioner(*this, matrix, switched);
+  const Preconditioner preconditioner(*this, matrix, *switched);
   if (!(preconditioner.condition() > options_.singular)) return false;
   // an inexact factor blurs what is singular: the matrix itself is asked
   if (!(preconditioner.condition() > blur * factor_.error) && !holds_all(matrix, preconditioner, scales_of_rows, report))
@@ -398,86 +452,6 @@ bool SaddlePointSolver::corrected(const SparseMatrix& matrix, std::span<double> 
   report.rough = found.residual > full;
   std::copy(found.x.begin(), found.x.end(), right_side.begin());
   return true;
-}
-
-// ---------------------------------------------------------------------------------------------- another process goes on
-
-void SaddlePointSolver::save(const hdf5::Group& group) const {
-  group.set("reference", reference_);
-  group.set("factorisations", factorisations_);
-  group.set("exact", std::int64_t{engine_->care() == Engine::Care::exact});
-  group.set("pivots", std::int64_t{engine_->care() == Engine::Care::pivots});
-  group.set("expected_iterations", static_cast<std::int64_t>(expected_iterations_));
-  std::vector<std::int64_t> rows;
-  std::vector<double> scales;
-  for (const auto& [row, scale] : multiplier_scale_) {
-    rows.push_back(row);
-    scales.push_back(scale);
-  }
-  group.write("scale/row", rows);
-  group.write("scale/value", scales);
-  std::vector<std::int64_t> first_row{0}, first_entry{0}, of_rows, offset;
-  std::vector<std::uint8_t> on;
-  std::vector<std::int32_t> index;
-  std::vector<double> value;
-  for (const auto& [number, block] : blocks_) {
-    of_rows.insert(of_rows.end(), block.rows.begin(), block.rows.end());
-    on.insert(on.end(), block.on.begin(), block.on.end());
-    offset.insert(offset.end(), block.offset.begin() + 1, block.offset.end());
-    index.insert(index.end(), block.index.begin(), block.index.end());
-    value.insert(value.end(), block.value.begin(), block.value.end());
-    first_row.push_back(static_cast<std::int64_t>(of_rows.size()));
-    first_entry.push_back(static_cast<std::int64_t>(index.size()));
-  }
-  group.write("columns/first_row", first_row);
-  group.write("columns/first_entry", first_entry);
-  group.write("columns/row", of_rows);
-  group.write("columns/on", on);
-  group.write("columns/offset", offset);
-  group.write("columns/index", index);
-  group.write("columns/value", value);
-}
-
-void SaddlePointSolver::save_base(const hdf5::Group& group) const {
-  group.set("symmetric", std::int64_t{base_->is_symmetric()});
-  group.write("offset", base_->neighbours().offset);
-  group.write("neighbours", base_->neighbours().values);
-  group.write("values", base_->values());
-}
-
-void SaddlePointSolver::resume(const hdf5::Group& group, const hdf5::Group* base, const Numbering& numbering) {
-  reference_ = group.real("reference");
-  factorisations_ = group.integer("factorisations");
-  if (group.integer("exact"))
-    engine_->take(Engine::Care::exact);
-  else if (!group.has_attribute("pivots") || group.integer("pivots"))  // bases that do not say were made with pivots looked for
-    engine_->take(Engine::Care::pivots);
-  expected_iterations_ = static_cast<int>(group.integer("expected_iterations"));
-  const auto rows = group.read<std::int64_t>("scale/row");
-  const auto scales = group.read<double>("scale/value");
-  for (std::size_t i = 0; i < rows.size(); ++i) multiplier_scale_[rows[i]] = scales.at(i);
-  if (!base) return;
-  base_.emplace(Ragged<std::int32_t>{base->read<std::int64_t>("offset"), base->read<std::int32_t>("neighbours")}, numbering,
-                base->integer("symmetric") ? Symmetry::symmetric : Symmetry::general);
-  base_->restore(base->read<double>("values"));
-  engine_->analyse(*base_);
-  factor_ = engine_->factorise(*base_);
-  kept_ = Kept::factor;
-  const auto first_row = group.read<std::int64_t>("columns/first_row"),
-             first_entry = group.read<std::int64_t>("columns/first_entry");
-  const auto of_rows = group.read<std::int64_t>("columns/row"), offset = group.read<std::int64_t>("columns/offset");
-  const auto on = group.read<std::uint8_t>("columns/on");
-  const auto index = group.read<std::int32_t>("columns/index");
-  const auto value = group.read<double>("columns/value");
-  for (std::size_t b = 0; b + 1 < first_row.size(); ++b) {
-    Block block;
-    block.rows.assign(of_rows.begin() + first_row[b], of_rows.begin() + first_row[b + 1]);
-    block.on.assign(on.begin() + first_row[b], on.begin() + first_row[b + 1]);
-    block.offset.insert(block.offset.end(), offset.begin() + first_row[b], offset.begin() + first_row[b + 1]);
-    block.index.assign(index.begin() + first_entry[b], index.begin() + first_entry[b + 1]);
-    block.value.assign(value.begin() + first_entry[b], value.begin() + first_entry[b + 1]);
-    compute(std::move(block));
-  }
 }
 
 }  // namespace lacon

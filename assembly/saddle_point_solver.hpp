@@ -6,7 +6,7 @@
 // by a Schur complement, for which one column of the inverse each is computed and kept. Coefficients that moved with
 // the bodies, and a stiffness that changed a little, are left to GMRES, preconditioned with that. A cost model decides when a
 // new factorisation is cheaper; it counts operations, so that the choice is the same in every run. A matrix that is not
-// symmetric is factorised each time.
+// symmetric is factorised each time that it is another one.
 #include <cstdint>
 #include <map>
 #include <memory>
@@ -34,6 +34,22 @@ struct SaddlePointOptions {
   double drift = 0.3;             ///< relative change of a row's coefficients above which its column is computed anew
   double work_limit = 1;          ///< most operations without a new factorisation, of those of a factorisation
   double column_memory = 0.25;    ///< largest memory of the columns, of a whole factor's in double precision
+  double more_columns = 0.5;      ///< operations of columns(), of those of a factorisation,
+  double least_columns = 1e9;     ///< or so many: in small systems they are not what takes time
+};
+
+/// Right sides with few entries.
+struct SparseSides {
+  std::vector<std::int64_t> offset{0};
+  std::vector<std::int32_t> index;  ///< entries offset[c] to offset[c + 1] of side c
+  std::vector<double> value;
+
+  std::size_t size() const { return offset.size() - 1; }
+  void add_entry(std::int64_t equation, double of_it) {
+    index.push_back(static_cast<std::int32_t>(equation));
+    value.push_back(of_it);
+  }
+  void end_side() { offset.push_back(static_cast<std::int64_t>(index.size())); }
 };
 
 /// How exact a solution has to be.
@@ -62,6 +78,11 @@ class SaddlePointSolver {
   /// Throws SOLVER_1, SOLVER_2.
   SolutionReport solve(const SparseMatrix& matrix, std::int64_t first_multiplier, std::span<double> right_side,
                        const Accuracy& accuracy = {});
+  /// How many columns of the inverse are worth their price beside a solution; 0 where no factor is kept.
+  std::size_t affordable_columns() const;
+  /// What right sides give with the matrix that was solved with last, to about the digits of its factor: nobody looks at
+  /// residuals. @param sides at most affordable_columns()  @return (sides, size); nothing where no factor serves
+  std::vector<float> columns(const SparseMatrix& matrix, const SparseSides& sides);
   /// Where nodes are for the matrices to come (Engine::place_nodes), (n_nodes, 3).
   void place_nodes(std::span<const double> coordinates) { engine_->place_nodes(coordinates); }
   /// Right sides so far were those of a computation that failed: they say nothing of how exact the next solution has to be.
@@ -87,12 +108,9 @@ class SaddlePointSolver {
     std::int64_t block = 0;      ///< in which it was computed
   };
   /// Columns that were computed together: their bits may depend on their company.
-  struct Block {
+  struct Block : SparseSides {
     std::vector<std::int64_t> rows;
     std::vector<std::uint8_t> on;  ///< whether each was switched on
-    std::vector<std::int64_t> offset{0};
-    std::vector<std::int32_t> index;  ///< right sides: entries offset[c] to offset[c + 1] of column c
-    std::vector<double> value;
   };
   /// Multipliers' rows that are not what they were when the factor was made, ascending.
   struct Switched {
@@ -104,6 +122,11 @@ class SaddlePointSolver {
   enum class Kept { nothing, analysis, factor };
 
   Kept kept_behind(const Factorisation& factor) const;
+  /// With that of the last factorisation, of the matrix as it is.
+  void solve_with_factor(const SparseMatrix& matrix, std::span<double> right_side, const Accuracy& accuracy,
+                         SolutionReport& report);
+  /// Nothing where rows of multipliers meet each other.
+  std::optional<Switched> switched_rows(const SparseMatrix& matrix) const;
   bool corrected(const SparseMatrix& matrix, std::span<double> right_side, bool rough, SolutionReport& report);
   /// Whether no motion is free in the matrix itself, where the factor is too inexact for its complement to tell.
   /// @param scale of the equations, (n)

@@ -105,6 +105,13 @@ struct ContactTerm {
   std::span<const double> residual;          ///< (n)
 };
 
+/// The integrated gap of a patch, and its derivatives by displacements.
+struct GapRow {
+  double gap = 0;
+  std::vector<ContactUnknown> unknowns;  ///< one may come several times
+  std::vector<double> derivative;        ///< (unknowns)
+};
+
 /// What the matrix lacks where the end of a cover that is kept moves, column row^T: the end moves by `row` times displacements,
 /// and changes residuals by `column` times that.
 struct CoverEnd {
@@ -145,6 +152,16 @@ class ContactState {
   /// Differentiate the gaps of active patches at the present geometry, for what follows.
   /// @param second whether evaluate() is to have the second derivatives, lambda d2G/du2, in its matrix
   void linearise(const Patchwise& patches, bool second);
+
+  /// The gaps of some patches at the present geometry, (patches).
+  std::vector<GapRow> gap_rows(std::span<const std::size_t> patches) const;
+  /// Whether a patch without contact may take it, its gap being at most `reach` of h; whether an active one may lose it.
+  bool may_close(std::size_t patch, const Patchwise& patches, double reach) const;
+  bool may_open(std::size_t patch, const Patchwise& patches) const;
+  /// The pressure that an integrated gap of a covered patch counts as in its status: rho over what is covered.
+  double pressure_of_gap(std::size_t patch) const { return rho_[patch] / geometry_.covered(patch); }
+  /// Patches of its zone that share a node with it.
+  std::span<const std::int32_t> neighbours(std::size_t patch) const { return neighbours_[patch]; }
 
   /// Pairs of vertices that contact couples: patch and node, and nodes that meet in second derivatives.
   std::vector<std::pair<std::int64_t, std::int64_t>> coupled_vertices() const;

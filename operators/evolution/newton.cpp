@@ -14,6 +14,7 @@
 #include "lacon/catalog/wording.hpp"
 #include "lacon/operators/evolution/free_bodies.hpp"
 #include "lacon/operators/evolution/instant_failure.hpp"
+#include "lacon/operators/evolution/linear_statuses.hpp"
 #include "lacon/operators/evolution/parts.hpp"
 #include "lacon/operators/program/program.hpp"
 #include "lacon/structures/displacement.hpp"
@@ -199,6 +200,7 @@ int Newton::iterate(double instant, StaticState& state, const std::function<void
       assemble(state, previous, SolidMatrix::tangent);
       solution = solve_system(state, previous, SolidMatrix::tangent, step, accuracy, line);
     }
+    fit_statuses(solution, step, state, accuracy);
     if (course_.period())  // iterates that go to and fro between two states: what they jump over lies between them
       for (double& value : solution) value *= 0.5;
     std::vector<double> increment = equilibrium_.add(solution, step, state);
@@ -323,6 +325,28 @@ std::vector<double> Newton::solve_system(StaticState& state, const StaticState& 
         message("EVOLUTION_42", {{"iteration", std::to_string(line.iteration)}, {"count", count}, {"names", names}}),
         {.depends_on_step = true});
   }
+}
+
+void Newton::fit_statuses(std::vector<double>& solution, std::span<const double> step, StaticState& state,
+                          const Accuracy& accuracy) {
+  constexpr std::size_t together = 128;  // columns
+  if (!contact() || settled_ > 0 || statuses_.keeps() || !equilibrium_.moving_covers(state, step).empty()) return;
+  const System& system = equilibrium_.system();
+  LinearStatuses fitted(*contact(), system, state.patches, solution, step);
+  if (fitted.satisfied() || !fitted.narrow(solver_.affordable_columns())) return;
+  for (std::size_t first = 0; first < fitted.size(); first += together) {
+    const std::size_t last = std::min(first + together, fitted.size());
+    const std::vector<float> columns = solver_.columns(system.matrix(), fitted.sides(first, last));
+    if (columns.empty()) return;
+    fitted.note(first, last, columns);
+  }
+  add_to_count("columns of the inverse", static_cast<double>(fitted.size()));
+  if (!fitted.solve()) return;
+  std::vector<double> side = equilibrium_.right_side(step);
+  fitted.add_to(side);
+  if (!solve_linear(side, accuracy).factorisation.null_pivots.empty()) return;
+  solution = std::move(side);
+  fitted.take(state.patches, solution);
 }
 
 SolutionReport Newton::solve_linear(std::vector<double>& solution, const Accuracy& accuracy) {

@@ -89,6 +89,9 @@ class Newton {
   /// first. Throws SOLVER_3 in the first iteration, EVOLUTION_42 in later ones.
   std::vector<double> solve_system(StaticState& state, const StaticState& previous, SolidMatrix asked,
                                    std::span<const double> step, const Accuracy& accuracy, IterationReport& line);
+  /// Go on with statuses that satisfy all patches of the linear system (linear_statuses.hpp), as long as they change from
+  /// iteration to iteration. @param[in,out] solution of the present ones; then of those that `state` has
+  void fit_statuses(std::vector<double>& solution, std::span<const double> step, StaticState& state, const Accuracy& accuracy);
   /// Solve the system with what `solution` holds, in place.
   SolutionReport solve_linear(std::vector<double>& solution, const Accuracy& accuracy);
   /// Hold bodies that are loose and near to others: at first the nearest patches take contact, and EVOLUTION_20 says so. Where

@@ -32,7 +32,8 @@ void StatusRule::start_instant() { *this = {}; }
 
 std::vector<Status> StatusRule::next(const std::vector<Status>& now, const std::vector<Status>& wanted) {
   if (!keeps_) {
-    if (active_.empty()) active_.push_back(active(now));
+    // what an iteration went on with, which may not be what was wanted (LinearStatuses)
+    if (active_.empty() || active(now) != active_.back()) active_.push_back(active(now));
     std::vector<bool> set = active(wanted);
     if (set == active_.back()) return wanted;
     keeps_ = std::count(active_.begin(), active_.end(), set) >= 2;

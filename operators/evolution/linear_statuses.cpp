@@ -1,0 +1,135 @@
+#include "lacon/operators/evolution/linear_statuses.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "lacon/operators/evolution/complementarity.hpp"
+
+namespace lacon {
+namespace {
+
+constexpr double reach = 0.5;     // of h: average gap up to which an open patch may take contact within an iteration
+constexpr double digits = 1e-6;   // of columns of the inverse: they come in single precision
+constexpr double nothing = 1e-9;  // of the unit: what a patch may be pulled or gone into by
+
+}  // namespace
+
+template <class Number>
+double LinearStatuses::along(const GapRow& row, std::span<const Number> x) const {
+  double sum = 0;
+  for (std::size_t i = 0; i < row.unknowns.size(); ++i)
+    if (const std::int64_t e = equation(row.unknowns[i]); e >= 0)
+      sum += row.derivative[i] * static_cast<double>(x[static_cast<std::size_t>(e)]);
+  return sum;
+}
+
+LinearStatuses::LinearStatuses(const ContactState& contact, const System& system, const Patchwise& patches,
+                               std::span<const double> solution, std::span<const double> step)
+    : contact_(contact), system_(system), patches_(patches) {
+  std::vector<std::size_t> open;
+  for (std::size_t p = 0; p < patches.status.size(); ++p) {
+    if (contact.may_open(p, patches))
+      pairs_.push_back({.patch = p,
+                        .opens = true,
+                        .row = {},
+                        .unit_z = 1,
+                        .unit_w = 1,
+                        .w = -(patches.lambda[p] + solution[static_cast<std::size_t>(multiplier(p))])});
+    if (contact.may_close(p, patches, reach)) open.push_back(p);
+  }
+  std::vector<GapRow> rows = contact.gap_rows(open);
+  for (std::size_t i = 0; i < open.size(); ++i) {
+    GapRow& row = rows[i];
+    double gap = row.gap + along(row, solution);
+    for (std::size_t k = 0; k < row.unknowns.size(); ++k)
+      if (equation(row.unknowns[k]) < 0)
+        gap += row.derivative[k] *
+               step[static_cast<std::size_t>(system.unknown(row.unknowns[k].vertex, row.unknowns[k].component))];
+    pairs_.push_back({.patch = open[i], .opens = false, .row = std::move(row), .unit_z = 1, .unit_w = 1, .w = gap});
+  }
+
+  double pressure = 0;
+  for (const Pair& pair : pairs_)
+    pressure = std::max(pressure, pair.opens ? std::abs(pair.w) : -pair.w * contact.pressure_of_gap(pair.patch));
+  for (std::size_t i = 0; i < pairs_.size(); ++i) {
+    Pair& pair = pairs_[i];
+    const double gap = pressure / contact.pressure_of_gap(pair.patch);
+    pair.unit_w = pair.opens ? pressure : gap;
+    pair.unit_z = pair.opens ? gap : pressure;
+    if (pair.w < -nothing * pair.unit_w) wrong_.push_back(i);
+  }
+}
+
+bool LinearStatuses::narrow(std::size_t most) {
+  if (wrong_.size() > most) return false;
+  if (pairs_.size() <= most) return true;
+  std::vector<std::ptrdiff_t> place(patches_.status.size(), -1);  // of each patch among the pairs, until it is taken
+  for (std::size_t i = 0; i < pairs_.size(); ++i) place[pairs_[i].patch] = static_cast<std::ptrdiff_t>(i);
+  std::vector<std::size_t> taken = wrong_;
+  for (const std::size_t i : taken) place[pairs_[i].patch] = -1;
+  for (std::size_t i = 0; i < taken.size() && taken.size() < most; ++i)
+    for (const std::int32_t next : contact_.neighbours(pairs_[taken[i]].patch))
+      if (const std::ptrdiff_t there = std::exchange(place[static_cast<std::size_t>(next)], -1); there >= 0 && taken.size() < most)
+        taken.push_back(static_cast<std::size_t>(there));
+  std::sort(taken.begin(), taken.end());
+  std::vector<Pair> some;
+  for (const std::size_t i : taken) some.push_back(std::move(pairs_[i]));
+  pairs_ = std::move(some);
+  return true;
+}
+
+SparseSides LinearStatuses::sides(std::size_t first, std::size_t last) const {
+  SparseSides sides;
+  for (const Pair& pair : std::span(pairs_).subspan(first, last - first)) {
+    if (pair.opens) sides.add_entry(multiplier(pair.patch), 1);
+    for (std::size_t k = 0; k < pair.row.unknowns.size(); ++k)
+      if (const std::int64_t e = equation(pair.row.unknowns[k]); e >= 0) sides.add_entry(e, pair.row.derivative[k]);
+    sides.end_side();
+  }
+  return sides;
+}
+
+void LinearStatuses::note(std::size_t first, std::size_t last, std::span<const float> columns) {
+  const auto n = static_cast<Eigen::Index>(pairs_.size());
+  if (matrix_.size() == 0) matrix_.resize(n, n);
+  const std::size_t length = columns.size() / (last - first);
+  for (std::size_t c = first; c < last; ++c) {
+    const std::span<const float> column = columns.subspan((c - first) * length, length);
+    for (Eigen::Index i = 0; i < n; ++i) {
+      const Pair& pair = pairs_[static_cast<std::size_t>(i)];
+      const double w = pair.opens ? -static_cast<double>(column[static_cast<std::size_t>(multiplier(pair.patch))])
+                                  : along(pair.row, column);
+      matrix_(i, static_cast<Eigen::Index>(c)) = w * pairs_[c].unit_z / pair.unit_w;
+    }
+  }
+}
+
+bool LinearStatuses::solve() {
+  Eigen::VectorXd q(static_cast<Eigen::Index>(pairs_.size()));
+  for (Eigen::Index i = 0; i < q.size(); ++i)
+    q[i] = pairs_[static_cast<std::size_t>(i)].w / pairs_[static_cast<std::size_t>(i)].unit_w;
+  const std::optional<Eigen::VectorXd> found = solve_complementarity(matrix_, q, digits);
+  if (found) z_ = *found;
+  return found.has_value();
+}
+
+void LinearStatuses::add_to(std::vector<double>& right_side) const {
+  const SparseSides all = sides(0, pairs_.size());
+  for (std::size_t c = 0; c < pairs_.size(); ++c)
+    for (auto k = static_cast<std::size_t>(all.offset[c]); k < static_cast<std::size_t>(all.offset[c + 1]); ++k)
+      right_side[static_cast<std::size_t>(all.index[k])] +=
+          z_[static_cast<Eigen::Index>(c)] * pairs_[c].unit_z * all.value[k];
+}
+
+void LinearStatuses::take(Patchwise& patches, std::vector<double>& solution) const {
+  for (std::size_t c = 0; c < pairs_.size(); ++c) {
+    const double z = z_[static_cast<Eigen::Index>(c)] * pairs_[c].unit_z;
+    if (!(z > 0)) continue;
+    const std::size_t patch = pairs_[c].patch;
+    patches.status[patch] = pairs_[c].opens ? Status::open : Status::active;
+    solution[static_cast<std::size_t>(multiplier(patch))] = (pairs_[c].opens ? 0 : -z) - patches.lambda[patch];
+  }
+}
+
+}  // namespace lacon
