@@ -21,6 +21,9 @@ constexpr double operations_of_low_rank = 3;
 // What an entry of the factor costs, in operations of a factorisation: in the substitutions of one right side, at memory's
 // speed, and in those of a block of sparse ones, at arithmetic's. Measured (docs/performance.md).
 constexpr double operations_of_a_solution = 40, operations_in_a_block = 2.5;
+/// Likewise in the iterations of an engine that keeps no factor: two products by an entry in each, with the matrix and with
+/// what makes it easy.
+constexpr double operations_of_iterations = 200, digits_of_columns = 1e-7;
 constexpr int block_size = 128;
 /// Unknowns to which all columns are added while they are at hand.
 constexpr std::size_t rows_together = 2048;
@@ -239,16 +242,11 @@ SolutionReport SaddlePointSolver::solve(const SparseMatrix& matrix, std::int64_t
   SolutionReport report;
   if (matrix.size() == 0) return report;  // every displacement is imposed
   first_multiplier_ = first_multiplier;
+  ready_ = false;
   if (options_.reuse && substitution_ && kept_ == Kept::factor && matrix.is_symmetric() && base_->is_symmetric() &&
       stiffness_change(matrix, *base_, first_multiplier) <= options_.stiffness_drift &&
       corrected(matrix, right_side, accuracy.rough, report))
     return report;
-
-  if (substitution_ && kept_ == Kept::factor && !matrix.is_symmetric() && !matrix.elsewhere() && same_pattern(matrix, *base_) &&
-      std::ranges::equal(matrix.values(), base_->values())) {
-    solve_with_factor(matrix, right_side, accuracy, report);
-    return report;
-  }
 
   // what is thrown from here on leaves a solver that keeps nothing
   const bool analysed = kept_ != Kept::nothing && same_pattern(matrix, *base_);
@@ -270,6 +268,15 @@ SolutionReport SaddlePointSolver::solve(const SparseMatrix& matrix, std::int64_t
   }
   kept_ = kept_behind(factor_);
   if (factor_.null_pivots.empty()) solve_with_factor(matrix, right_side, accuracy, report);
+  ready_ = factor_.null_pivots.empty();
+  return report;
+}
+
+SolutionReport SaddlePointSolver::solve_again(const SparseMatrix& matrix, std::span<double> right_side,
+                                              const Accuracy& accuracy) {
+  if (!ready_) return solve(matrix, first_multiplier_, right_side, accuracy);
+  SolutionReport report;
+  solve_with_factor(matrix, right_side, accuracy, report);
   return report;
 }
 
@@ -412,14 +419,30 @@ std::optional<SaddlePointSolver::Switched> SaddlePointSolver::switched_rows(cons
   return switched;
 }
 
-std::size_t SaddlePointSolver::affordable_columns() const {
-  if (kept_ != Kept::factor) return 0;
-  const double most = std::max(options_.more_columns * factorisation_cost(), options_.least_columns);
-  return static_cast<std::size_t>(std::min(most / std::max(column_cost(), 1.0), 1e6));
+std::size_t SaddlePointSolver::affordable_columns(const SparseMatrix& matrix) const {
+  // other processes may have most of the entries
+  const std::int64_t entries = std::max(matrix.rows()[matrix.size()], 20 * matrix.size());
+  double most = options_.least_columns, one = operations_of_iterations * static_cast<double>(entries);
+  if (kept_ == Kept::factor)
+    most = std::max(most, options_.more_columns * factorisation_cost()), one = column_cost();
+  else if (!ready_)
+    return 0;
+  return static_cast<std::size_t>(std::min(most / std::max(one, 1.0), 1e6));
 }
 
 std::vector<float> SaddlePointSolver::columns(const SparseMatrix& matrix, const SparseSides& sides) {
-  if (kept_ != Kept::factor || sides.size() == 0) return {};
+  if (sides.size() == 0) return {};
+  if (kept_ != Kept::factor) {
+    std::vector<float> all;
+    for (std::size_t c = 0; c < sides.size(); ++c) {
+      std::vector<double> side(static_cast<std::size_t>(matrix.size()), 0.0);
+      for (auto k = static_cast<std::size_t>(sides.offset[c]); k < static_cast<std::size_t>(sides.offset[c + 1]); ++k)
+        side[static_cast<std::size_t>(sides.index[k])] += sides.value[k];
+      solve_again(matrix, side, {.share = digits_of_columns});
+      all.insert(all.end(), side.begin(), side.end());
+    }
+    return all;
+  }
   if (!matrix.is_symmetric()) return substitution_->substitute(sides.offset, sides.index, sides.value);
   const std::optional<Switched> switched = switched_rows(matrix);  // their columns are there: it was solved with
   return switched ? Preconditioner(*this, matrix, *switched).columns(sides) : std::vector<float>{};

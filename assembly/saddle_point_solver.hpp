@@ -6,7 +6,7 @@
 // by a Schur complement, for which one column of the inverse each is computed and kept. Coefficients that moved with
 // the bodies, and a stiffness that changed a little, are left to GMRES, preconditioned with that. A cost model decides when a
 // new factorisation is cheaper; it counts operations, so that the choice is the same in every run. A matrix that is not
-// symmetric is factorised each time that it is another one.
+// symmetric is factorised each time.
 #include <cstdint>
 #include <map>
 #include <memory>
@@ -78,10 +78,12 @@ class SaddlePointSolver {
   /// Throws SOLVER_1, SOLVER_2.
   SolutionReport solve(const SparseMatrix& matrix, std::int64_t first_multiplier, std::span<double> right_side,
                        const Accuracy& accuracy = {});
-  /// How many columns of the inverse are worth their price beside a solution; 0 where no factor is kept.
-  std::size_t affordable_columns() const;
-  /// What right sides give with the matrix that was solved with last, to about the digits of its factor: nobody looks at
-  /// residuals. @param sides at most affordable_columns()  @return (sides, size); nothing where no factor serves
+  /// Another right side of the matrix that was solved with last.
+  SolutionReport solve_again(const SparseMatrix& matrix, std::span<double> right_side, const Accuracy& accuracy = {});
+  /// How many columns of its inverse are worth their price beside a solution.
+  std::size_t affordable_columns(const SparseMatrix& matrix) const;
+  /// What right sides give with that matrix, to about the digits of its factor: nobody looks at residuals.
+  /// @param sides at most affordable_columns()  @return (sides, size); nothing where there is no way to them
   std::vector<float> columns(const SparseMatrix& matrix, const SparseSides& sides);
   /// Where nodes are for the matrices to come (Engine::place_nodes), (n_nodes, 3).
   void place_nodes(std::span<const double> coordinates) { engine_->place_nodes(coordinates); }
@@ -146,6 +148,7 @@ class SaddlePointSolver {
   FactorEngine* substitution_;  ///< the same, where it keeps a factor
   std::int64_t first_multiplier_ = 0;
   Kept kept_ = Kept::nothing;
+  bool ready_ = false;                ///< the engine, for the matrix that was solved with last
   std::optional<SparseMatrix> base_;  ///< the matrix that this is of
   Factorisation factor_;
   std::int64_t factorisations_ = 0;  ///< so far

@@ -160,6 +160,8 @@ class ContactState {
   bool may_open(std::size_t patch, const Patchwise& patches) const;
   /// The pressure that an integrated gap of a covered patch counts as in its status: rho over what is covered.
   double pressure_of_gap(std::size_t patch) const { return rho_[patch] / geometry_.covered(patch); }
+  /// Round-off of the integrated gap of a patch.
+  double gap_round_off(std::size_t patch) const { return gap_tolerance_ * geometry_.covered(patch); }
   /// Patches of its zone that share a node with it.
   std::span<const std::int32_t> neighbours(std::size_t patch) const { return neighbours_[patch]; }
 

@@ -9,13 +9,15 @@ namespace {
 
 constexpr int patience = 3;         // changes of all wrong pairs that make them no fewer
 constexpr Eigen::Index most = 100;  // changes, and two of each pair: a P-matrix that asks for more is a curiosity
+constexpr double least = 1e-10;     // of a diagonal, where 1 is usual: what resists less is loose
 constexpr double singular = 1e-9;   // reciprocal condition, behind scaling by the diagonal
 
 /// z of the pairs in which it is not zero, (pairs), or nothing where the matrix lets them go.
 std::optional<Eigen::VectorXd> solution_of(const Eigen::MatrixXd& matrix, const Eigen::VectorXd& q,
                                            const std::vector<Eigen::Index>& pairs) {
-  const Eigen::VectorXd scale = matrix.diagonal()(pairs).cwiseSqrt().cwiseInverse();
-  if (!scale.allFinite()) return std::nullopt;  // the diagonal is not positive
+  const Eigen::VectorXd diagonal = matrix.diagonal()(pairs);
+  if (!(diagonal.minCoeff() > least)) return std::nullopt;
+  const Eigen::VectorXd scale = diagonal.cwiseSqrt().cwiseInverse();
   const Eigen::PartialPivLU<Eigen::MatrixXd> factor(scale.asDiagonal() * matrix(pairs, pairs) * scale.asDiagonal());
   if (!(factor.rcond() > singular)) return std::nullopt;
   return scale.cwiseProduct(factor.solve(-scale.cwiseProduct(q(pairs))));

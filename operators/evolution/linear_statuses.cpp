@@ -57,7 +57,8 @@ LinearStatuses::LinearStatuses(const ContactState& contact, const System& system
     const double gap = pressure / contact.pressure_of_gap(pair.patch);
     pair.unit_w = pair.opens ? pressure : gap;
     pair.unit_z = pair.opens ? gap : pressure;
-    if (pair.w < -nothing * pair.unit_w) wrong_.push_back(i);
+    const double round_off = contact.gap_round_off(pair.patch) * (pair.opens ? contact.pressure_of_gap(pair.patch) : 1);
+    if (pair.w < -nothing * pair.unit_w - round_off) wrong_.push_back(i);
   }
 }
 
@@ -70,7 +71,8 @@ bool LinearStatuses::narrow(std::size_t most) {
   for (const std::size_t i : taken) place[pairs_[i].patch] = -1;
   for (std::size_t i = 0; i < taken.size() && taken.size() < most; ++i)
     for (const std::int32_t next : contact_.neighbours(pairs_[taken[i]].patch))
-      if (const std::ptrdiff_t there = std::exchange(place[static_cast<std::size_t>(next)], -1); there >= 0 && taken.size() < most)
+      if (const std::ptrdiff_t there = std::exchange(place[static_cast<std::size_t>(next)], -1);
+          there >= 0 && taken.size() < most)
         taken.push_back(static_cast<std::size_t>(there));
   std::sort(taken.begin(), taken.end());
   std::vector<Pair> some;
@@ -98,8 +100,8 @@ void LinearStatuses::note(std::size_t first, std::size_t last, std::span<const f
     const std::span<const float> column = columns.subspan((c - first) * length, length);
     for (Eigen::Index i = 0; i < n; ++i) {
       const Pair& pair = pairs_[static_cast<std::size_t>(i)];
-      const double w = pair.opens ? -static_cast<double>(column[static_cast<std::size_t>(multiplier(pair.patch))])
-                                  : along(pair.row, column);
+      const double w =
+          pair.opens ? -static_cast<double>(column[static_cast<std::size_t>(multiplier(pair.patch))]) : along(pair.row, column);
       matrix_(i, static_cast<Eigen::Index>(c)) = w * pairs_[c].unit_z / pair.unit_w;
     }
   }
@@ -118,8 +120,7 @@ void LinearStatuses::add_to(std::vector<double>& right_side) const {
   const SparseSides all = sides(0, pairs_.size());
   for (std::size_t c = 0; c < pairs_.size(); ++c)
     for (auto k = static_cast<std::size_t>(all.offset[c]); k < static_cast<std::size_t>(all.offset[c + 1]); ++k)
-      right_side[static_cast<std::size_t>(all.index[k])] +=
-          z_[static_cast<Eigen::Index>(c)] * pairs_[c].unit_z * all.value[k];
+      right_side[static_cast<std::size_t>(all.index[k])] += z_[static_cast<Eigen::Index>(c)] * pairs_[c].unit_z * all.value[k];
 }
 
 void LinearStatuses::take(Patchwise& patches, std::vector<double>& solution) const {

@@ -37,7 +37,8 @@ class LinearStatuses {
   bool solve();
   /// Add what opens and presses to the right side of the system.
   void add_to(std::vector<double>& right_side) const;
-  /// Let patches have their statuses. @param[in,out] solution of that right side: multipliers of patches that opened end at zero
+  /// Let patches have their statuses. @param[in,out] solution of that right side: multipliers of patches that opened end at
+  /// zero
   void take(Patchwise& patches, std::vector<double>& solution) const;
 
  private:
@@ -47,7 +48,9 @@ class LinearStatuses {
     GapRow row;                ///< of one that was not
     double unit_z, unit_w, w;  ///< w: the pressure, or the integrated gap, of x0
   };
-  std::int64_t multiplier(std::size_t patch) const { return system_.equation(system_.multiplier(static_cast<std::int64_t>(patch))); }
+  std::int64_t multiplier(std::size_t patch) const {
+    return system_.equation(system_.multiplier(static_cast<std::int64_t>(patch)));
+  }
   /// Equation of an unknown of a row, or -1.
   std::int64_t equation(const ContactUnknown& unknown) const {
     return system_.equation(system_.unknown(unknown.vertex, unknown.component));

@@ -200,7 +200,8 @@ int Newton::iterate(double instant, StaticState& state, const std::function<void
       assemble(state, previous, SolidMatrix::tangent);
       solution = solve_system(state, previous, SolidMatrix::tangent, step, accuracy, line);
     }
-    fit_statuses(solution, step, state, accuracy);
+    // a matrix that is not that of a minimum has statuses that answer to each other in any sense
+    if (!negative || *negative <= line.constraints) fit_statuses(solution, step, state, accuracy);
     if (course_.period())  // iterates that go to and fro between two states: what they jump over lies between them
       for (double& value : solution) value *= 0.5;
     std::vector<double> increment = equilibrium_.add(solution, step, state);
@@ -302,7 +303,7 @@ std::vector<double> Newton::solve_system(StaticState& state, const StaticState& 
       null = line.solution.factorisation.null_pivots;
       if (null.empty()) {
         line.constraints += follow_covers(
-            covers, size, [&](std::vector<double>& side) { solve_linear(side, accuracy); }, solution);
+            covers, size, [&](std::vector<double>& side) { solve_linear(side, accuracy, true); }, solution);
         return solution;
       }
       for (const std::int64_t dof : equilibrium_.dofs_of(null))
@@ -333,7 +334,7 @@ void Newton::fit_statuses(std::vector<double>& solution, std::span<const double>
   if (!contact() || settled_ > 0 || statuses_.keeps() || !equilibrium_.moving_covers(state, step).empty()) return;
   const System& system = equilibrium_.system();
   LinearStatuses fitted(*contact(), system, state.patches, solution, step);
-  if (fitted.satisfied() || !fitted.narrow(solver_.affordable_columns())) return;
+  if (fitted.satisfied() || !fitted.narrow(solver_.affordable_columns(system.matrix()))) return;
   for (std::size_t first = 0; first < fitted.size(); first += together) {
     const std::size_t last = std::min(first + together, fitted.size());
     const std::vector<float> columns = solver_.columns(system.matrix(), fitted.sides(first, last));
@@ -344,15 +345,16 @@ void Newton::fit_statuses(std::vector<double>& solution, std::span<const double>
   if (!fitted.solve()) return;
   std::vector<double> side = equilibrium_.right_side(step);
   fitted.add_to(side);
-  if (!solve_linear(side, accuracy).factorisation.null_pivots.empty()) return;
+  if (!solve_linear(side, accuracy, true).factorisation.null_pivots.empty()) return;
   solution = std::move(side);
   fitted.take(state.patches, solution);
 }
 
-SolutionReport Newton::solve_linear(std::vector<double>& solution, const Accuracy& accuracy) {
+SolutionReport Newton::solve_linear(std::vector<double>& solution, const Accuracy& accuracy, bool again) {
   const System& system = equilibrium_.system();
   begin_phase("linear system");
-  const SolutionReport report = solver_.solve(system.matrix(), system.first_multiplier(), solution, accuracy);
+  const SolutionReport report = again ? solver_.solve_again(system.matrix(), solution, accuracy)
+                                      : solver_.solve(system.matrix(), system.first_multiplier(), solution, accuracy);
   add_to_phase("analysis", report.analysis_seconds);
   add_to_phase("factorisation", report.factorisation_seconds);
   add_to_phase("solution", report.solution_seconds);

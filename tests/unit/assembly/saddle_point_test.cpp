@@ -172,6 +172,39 @@ TEST(SaddlePointSolver, SolvesRoughlyWhereThatWillDo) {
   EXPECT_GT(report.iterations, few);
 }
 
+// What further right sides give, of nodes and of multipliers, switched or not: to single precision, and nothing is factorised.
+TEST(SaddlePointSolver, GivesColumnsOfTheInverse) {
+  std::mt19937 random(11);
+  Sequence system;
+  SaddlePointSolver solver = eager();
+  SolutionReport report;
+  EXPECT_EQ(solver.affordable_columns(system.matrix), 0U);  // there is no factor
+  system.on[2] = system.on[5] = true;
+  for (int round = 0; round < 10; ++round) {
+    system.off = 1.0 + static_cast<double>(random() % 3);
+    system.fill();
+    system.error(solver, report);
+    EXPECT_EQ(report.factorised, round == 0);
+    SparseSides sides;
+    Eigen::MatrixXd right = Eigen::MatrixXd::Zero(system.matrix.size(), 4 + n_rows);
+    for (Eigen::Index c = 0; c < right.cols(); ++c, sides.end_side()) {
+      if (c < n_rows)
+        right(system.first_multiplier() + c, c) = 1;
+      else
+        for (int k = 0; k < 3; ++k) right(static_cast<Eigen::Index>(random() % system.matrix.size()), c) = k - 0.5;
+      for (Eigen::Index i = 0; i < right.rows(); ++i)
+        if (right(i, c) != 0) sides.add_entry(i, right(i, c));
+    }
+    const Eigen::MatrixXd expected = dense(system.matrix).fullPivLu().solve(right);
+    const std::vector<float> found = solver.columns(system.matrix, sides);
+    ASSERT_EQ(found.size(), static_cast<std::size_t>(expected.size()));
+    const Eigen::MatrixXd difference =
+        Eigen::Map<const Eigen::MatrixXf>(found.data(), expected.rows(), expected.cols()).cast<double>() - expected;
+    EXPECT_LE(difference.cwiseAbs().maxCoeff(), 1e-5 * expected.cwiseAbs().maxCoeff()) << "round " << round;
+    for (bool& row : system.on) row = random() % 2;
+  }
+}
+
 // A row that had no column yet costs one; one that has does not.
 TEST(SaddlePointSolver, KeepsItsColumns) {
   Sequence system;
@@ -335,6 +368,15 @@ TEST(SaddlePointSolver, FactorisesUnsymmetricMatrices) {
       EXPECT_TRUE(report.factorised);
       EXPECT_EQ(report.analysis_seconds > 0, again == 0) << "the analysis stands while the pattern does";
       EXPECT_LE((dense(general) * x - b).cwiseAbs().maxCoeff(), 1e-11);
+      x = 2 * b;
+      report = solver.solve_again(general, {x.data(), static_cast<std::size_t>(x.size())});
+      EXPECT_FALSE(report.factorised);
+      EXPECT_LE((dense(general) * x - 2 * b).cwiseAbs().maxCoeff(), 1e-11);
+      SparseSides side;
+      for (Eigen::Index i = 0; i < b.size(); ++i) side.add_entry(i, b[i]);
+      side.end_side();
+      const std::vector<float> column = solver.columns(general, side);
+      EXPECT_LE((2 * Eigen::Map<const Eigen::VectorXf>(column.data(), b.size()).cast<double>() - x).norm(), 1e-5 * x.norm());
     }
   }
 }
@@ -489,6 +531,15 @@ TEST(SaddlePointSolver, TakesEnginesWithoutFactor) {
     EXPECT_TRUE(report.factorised);
     EXPECT_EQ(report.factorisation.negative_pivots, std::nullopt);
   }
+  EXPECT_GE(solver.affordable_columns(system.matrix), 10U);
+  SparseSides side;
+  side.add_entry(system.first_multiplier(), 1);
+  side.end_side();
+  const std::vector<float> column = solver.columns(system.matrix, side);
+  const Eigen::VectorXd expected = dense(system.matrix).inverse().col(system.first_multiplier());
+  ASSERT_EQ(column.size(), static_cast<std::size_t>(expected.size()));
+  EXPECT_LE((Eigen::Map<const Eigen::VectorXf>(column.data(), expected.size()).cast<double>() - expected).norm(),
+            1e-5 * expected.norm());
   engine.stagnates = true;
   try {
     system.error(solver, report);
