@@ -1,5 +1,6 @@
 #include "lacon/operators/evolution/linear_statuses.hpp"
 
+#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 #include <utility>
@@ -26,39 +27,36 @@ double LinearStatuses::along(const GapRow& row, std::span<const Number> x) const
 
 LinearStatuses::LinearStatuses(const ContactState& contact, const System& system, const Patchwise& patches,
                                std::span<const double> solution, std::span<const double> step)
-    : contact_(contact), system_(system), patches_(patches) {
+    : contact_(contact), system_(system), patches_(patches), first_(solution) {
   std::vector<std::size_t> open;
   for (std::size_t p = 0; p < patches.status.size(); ++p) {
     if (contact.may_open(p, patches))
-      pairs_.push_back({.patch = p,
-                        .opens = true,
-                        .row = {},
-                        .unit_z = 1,
-                        .unit_w = 1,
-                        .w = -(patches.lambda[p] + solution[static_cast<std::size_t>(multiplier(p))])});
+      pairs_.push_back({.patch = p, .opens = true, .row = {}, .start = -patches.lambda[p], .unit_z = 1, .unit_w = 1});
     if (contact.may_close(p, patches, reach)) open.push_back(p);
   }
   std::vector<GapRow> rows = contact.gap_rows(open);
   for (std::size_t i = 0; i < open.size(); ++i) {
     GapRow& row = rows[i];
-    double gap = row.gap + along(row, solution);
+    double start = row.gap;
     for (std::size_t k = 0; k < row.unknowns.size(); ++k)
       if (equation(row.unknowns[k]) < 0)
-        gap += row.derivative[k] *
-               step[static_cast<std::size_t>(system.unknown(row.unknowns[k].vertex, row.unknowns[k].component))];
-    pairs_.push_back({.patch = open[i], .opens = false, .row = std::move(row), .unit_z = 1, .unit_w = 1, .w = gap});
+        start += row.derivative[k] *
+                 step[static_cast<std::size_t>(system.unknown(row.unknowns[k].vertex, row.unknowns[k].component))];
+    pairs_.push_back({.patch = open[i], .opens = false, .row = std::move(row), .start = start, .unit_z = 1, .unit_w = 1});
   }
 
   double pressure = 0;
-  for (const Pair& pair : pairs_)
-    pressure = std::max(pressure, pair.opens ? std::abs(pair.w) : -pair.w * contact.pressure_of_gap(pair.patch));
+  for (const Pair& pair : pairs_) {
+    const double found = w(pair, first_);
+    pressure = std::max(pressure, pair.opens ? std::abs(found) : -found * contact.pressure_of_gap(pair.patch));
+  }
   for (std::size_t i = 0; i < pairs_.size(); ++i) {
     Pair& pair = pairs_[i];
     const double gap = pressure / contact.pressure_of_gap(pair.patch);
     pair.unit_w = pair.opens ? pressure : gap;
     pair.unit_z = pair.opens ? gap : pressure;
     const double round_off = contact.gap_round_off(pair.patch) * (pair.opens ? contact.pressure_of_gap(pair.patch) : 1);
-    if (pair.w < -nothing * pair.unit_w - round_off) wrong_.push_back(i);
+    if (w(pair, first_) < -nothing * pair.unit_w - round_off) wrong_.push_back(i);
   }
 }
 
@@ -109,24 +107,41 @@ void LinearStatuses::note(std::size_t first, std::size_t last, std::span<const f
 
 bool LinearStatuses::solve() {
   Eigen::VectorXd q(static_cast<Eigen::Index>(pairs_.size()));
-  for (Eigen::Index i = 0; i < q.size(); ++i)
-    q[i] = pairs_[static_cast<std::size_t>(i)].w / pairs_[static_cast<std::size_t>(i)].unit_w;
+  for (std::size_t i = 0; i < pairs_.size(); ++i) q[static_cast<Eigen::Index>(i)] = w(pairs_[i], first_) / pairs_[i].unit_w;
   const std::optional<Eigen::VectorXd> found = solve_complementarity(matrix_, q, digits);
   if (found) z_ = *found;
   return found.has_value();
 }
 
-void LinearStatuses::add_to(std::vector<double>& right_side) const {
+std::vector<double> LinearStatuses::correction(std::span<const double> solution) {
+  std::vector<Eigen::Index> changed;
+  for (Eigen::Index i = 0; i < z_.size(); ++i)
+    if (z_[i] != 0) changed.push_back(i);
+  Eigen::VectorXd left(static_cast<Eigen::Index>(changed.size())), more = Eigen::VectorXd::Zero(z_.size());
+  for (Eigen::Index i = 0; i < left.size(); ++i) {
+    const Pair& pair = pairs_[static_cast<std::size_t>(changed[static_cast<std::size_t>(i)])];
+    left[i] = w(pair, solution) / pair.unit_w;
+  }
+  const Eigen::MatrixXd matrix = matrix_(changed, changed);
+  const Eigen::VectorXd found = matrix.partialPivLu().solve(-left);
+  more(changed) = found;
+  z_ += more;
+  std::vector<double> side(solution.size(), 0.0);
+  add(more, side);
+  return side;
+}
+
+void LinearStatuses::add(const Eigen::VectorXd& z, std::vector<double>& right_side) const {
   const SparseSides all = sides(0, pairs_.size());
   for (std::size_t c = 0; c < pairs_.size(); ++c)
     for (auto k = static_cast<std::size_t>(all.offset[c]); k < static_cast<std::size_t>(all.offset[c + 1]); ++k)
-      right_side[static_cast<std::size_t>(all.index[k])] += z_[static_cast<Eigen::Index>(c)] * pairs_[c].unit_z * all.value[k];
+      right_side[static_cast<std::size_t>(all.index[k])] += z[static_cast<Eigen::Index>(c)] * pairs_[c].unit_z * all.value[k];
 }
 
 void LinearStatuses::take(Patchwise& patches, std::vector<double>& solution) const {
   for (std::size_t c = 0; c < pairs_.size(); ++c) {
     const double z = z_[static_cast<Eigen::Index>(c)] * pairs_[c].unit_z;
-    if (!(z > 0)) continue;
+    if (z == 0) continue;
     const std::size_t patch = pairs_[c].patch;
     patches.status[patch] = pairs_[c].opens ? Status::open : Status::active;
     solution[static_cast<std::size_t>(multiplier(patch))] = (pairs_[c].opens ? 0 : -z) - patches.lambda[patch];

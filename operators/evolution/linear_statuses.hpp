@@ -36,7 +36,10 @@ class LinearStatuses {
   /// All columns have come. @return whether there are such statuses
   bool solve();
   /// Add what opens and presses to the right side of the system.
-  void add_to(std::vector<double>& right_side) const;
+  void add_to(std::vector<double>& right_side) const { add(z_, right_side); }
+  /// What columns in single precision have left of pressures and gaps that are to be zero, as another right side of the system,
+  /// (n_equations). @param solution of that right side
+  std::vector<double> correction(std::span<const double> solution);
   /// Let patches have their statuses. @param[in,out] solution of that right side: multipliers of patches that opened end at
   /// zero
   void take(Patchwise& patches, std::vector<double>& solution) const;
@@ -44,10 +47,16 @@ class LinearStatuses {
  private:
   struct Pair {
     std::size_t patch;
-    bool opens;                ///< it was active
-    GapRow row;                ///< of one that was not
-    double unit_z, unit_w, w;  ///< w: the pressure, or the integrated gap, of x0
+    bool opens;    ///< it was active
+    GapRow row;    ///< of one that was not
+    double start;  ///< minus the multiplier, or the integrated gap, where x = 0
+    double unit_z, unit_w;
   };
+  /// The pressure, or the integrated gap, of a solution.
+  double w(const Pair& pair, std::span<const double> solution) const {
+    return pair.start + (pair.opens ? -solution[static_cast<std::size_t>(multiplier(pair.patch))] : along(pair.row, solution));
+  }
+  void add(const Eigen::VectorXd& z, std::vector<double>& right_side) const;
   std::int64_t multiplier(std::size_t patch) const {
     return system_.equation(system_.multiplier(static_cast<std::int64_t>(patch)));
   }
@@ -62,10 +71,11 @@ class LinearStatuses {
   const ContactState& contact_;
   const System& system_;
   const Patchwise& patches_;
+  std::span<const double> first_;  ///< x0
   std::vector<Pair> pairs_;
   std::vector<std::size_t> wrong_;  ///< places of those that have to change
-  Eigen::MatrixXd matrix_;
-  Eigen::VectorXd z_;
+  Eigen::MatrixXd matrix_;          ///< what z makes of w, in their units
+  Eigen::VectorXd z_;               ///< likewise
 };
 
 }  // namespace lacon

@@ -346,6 +346,9 @@ void Newton::fit_statuses(std::vector<double>& solution, std::span<const double>
   std::vector<double> side = equilibrium_.right_side(step);
   fitted.add_to(side);
   if (!solve_linear(side, accuracy, true).factorisation.null_pivots.empty()) return;
+  std::vector<double> more = fitted.correction(side);
+  solve_linear(more, accuracy, true);
+  for (std::size_t i = 0; i < side.size(); ++i) side[i] += more[i];
   solution = std::move(side);
   fitted.take(state.patches, solution);
 }

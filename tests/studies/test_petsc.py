@@ -116,14 +116,15 @@ class Mpi(StudyTest):
                 self.assertEqual(said.count("Converged at the instant"), 1)
 
     def test_an_exact_factor_has_the_whole_matrix(self):
-        """Slender bodies are left to one process in double precision, which gets the rows of those that have the cells."""
+        """Slender bodies are left to one process in double precision, which gets the rows of those that have the cells. Three iterations leave 1e-9 of what
+        bends most: what solutions of 1e-12 are worth where bodies are that soft."""
         write_med(self.folder / "blocks.med", two_blocks(100.0, (40, 2, 2)))
         one, _, _ = self.solve("double", SLENDER="1")
         found, counts, said = self.solve("single", "--mpi", 2, SLENDER="1")
         self.assertEqual(said.count("<SOLVER_4>"), 1)
         self.assertNotIn("factors by several processes", counts)
         self.assertEqual(counts["processes with cells"], 2)
-        assert_same(self, one, found, 1e-9)
+        assert_same(self, one, found, 1e-8)
 
     def test_an_export_file_asks_for_processes(self):
         """P mpi_nbcpu N is --mpi N, which stands where both are there."""
