@@ -72,7 +72,7 @@ void SaddlePointSolver::resume(const hdf5::Group& group, const hdf5::Group* base
   const auto index = group.read<std::int32_t>("columns/index");
   const auto value = group.read<double>("columns/value");
   for (std::size_t b = 0; b + 1 < first_row.size(); ++b) {
-    Block block;
+    SparseSides block;
     block.rows.assign(of_rows.begin() + first_row[b], of_rows.begin() + first_row[b + 1]);
     block.on.assign(on.begin() + first_row[b], on.begin() + first_row[b + 1]);
     block.offset.insert(block.offset.end(), offset.begin() + first_row[b], offset.begin() + first_row[b + 1]);

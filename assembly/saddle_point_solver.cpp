@@ -1,15 +1,14 @@
 #include "lacon/assembly/saddle_point_solver.hpp"
 
-#include <Eigen/Dense>
+#include <Eigen/Core>
 #include <algorithm>
-#include <chrono>
 #include <cmath>
-#include <numeric>
 #include <utility>
 
-#include "lacon/assembly/any_signs.hpp"
 #include "lacon/assembly/gmres.hpp"
-#include "lacon/structures/parallel.hpp"
+#include "lacon/assembly/multiplier_row.hpp"
+#include "lacon/assembly/saddle_point_preconditioner.hpp"
+#include "lacon/assembly/stopwatch.hpp"
 
 namespace lacon {
 namespace {
@@ -21,85 +20,30 @@ constexpr double operations_of_low_rank = 3;
 // What an entry of the factor costs, in operations of a factorisation: in the substitutions of one right side, at memory's
 // speed, and in those of a block of sparse ones, at arithmetic's. Measured (docs/performance.md).
 constexpr double operations_of_a_solution = 40, operations_in_a_block = 2.5;
-/// Likewise in the iterations of an engine that keeps no factor: two products by an entry in each, with the matrix and with
-/// what makes it easy.
-constexpr double operations_of_iterations = 200, digits_of_columns = 1e-7;
-constexpr int block_size = 128;
-/// Unknowns to which all columns are added while they are at hand.
-constexpr std::size_t rows_together = 2048;
 /// Errors of a Schur complement over that of its factor.
 constexpr double blur = 2;
 /// Of a motion that is looked for in a right side of any directions: what is left of it where its direction is unlucky.
 constexpr double least_share = 1e-2;
 constexpr int least_iterations = 8;
 
-class Stopwatch {
- public:
-  explicit Stopwatch(double& seconds) : seconds_(seconds), start_(clock::now()) {}
-  ~Stopwatch() { seconds_ += std::chrono::duration<double>(clock::now() - start_).count(); }
-  Stopwatch(const Stopwatch&) = delete;
-  Stopwatch& operator=(const Stopwatch&) = delete;
-
- private:
-  using clock = std::chrono::steady_clock;
-  double& seconds_;
-  clock::time_point start_;
-};
-
-/// The part of a multiplier's row before its diagonal, and the diagonal; of a symmetric matrix.
-struct Row {
-  std::span<const std::int32_t> columns;
-  std::span<const double> values;
-  double diagonal;
-
-  Row(const SparseMatrix& matrix, std::int64_t row) : diagonal(matrix.diagonal(row)) {
-    const std::int64_t first = matrix.rows()[row], size = matrix.rows()[row + 1] - first - 1;
-    columns = matrix.columns().subspan(first, size);
-    values = matrix.values().subspan(first, size);
-  }
-  bool is_on() const {
-    return std::any_of(values.begin(), values.end(), [](double v) { return v != 0; });
-  }
-  bool meets_multipliers(std::int64_t first_multiplier) const {
-    for (std::size_t k = columns.size(); k-- > 0 && columns[k] >= first_multiplier;)
-      if (values[k] != 0) return true;
-    return false;
-  }
-};
-
-template <class Number>
-double dot(std::span<const std::int32_t> index, std::span<const double> coefficient, std::span<const Number> x) {
-  double sum = 0;
-  for (std::size_t k = 0; k < index.size(); ++k) sum += coefficient[k] * x[index[k]];
-  return sum;
-}
-
-/// |a - b|^2 of two sparse vectors with ascending indices.
-double distance_squared(std::span<const std::int32_t> i, std::span<const double> a, std::span<const std::int32_t> j,
-                        std::span<const double> b) {
-  double sum = 0;
-  std::size_t p = 0, q = 0;
-  while (p < i.size() || q < j.size()) {
-    const bool left = q == j.size() || (p < i.size() && i[p] <= j[q]), right = p == i.size() || (q < j.size() && j[q] <= i[p]);
-    const double difference = (left ? a[p] : 0.0) - (right ? b[q] : 0.0);
-    sum += difference * difference;
-    p += left;
-    q += right;
-  }
-  return sum;
-}
-
-/// The largest change of the stiffness from `base` on, of a row's and a column's diagonal; infinite where the patterns differ.
+/// The largest change of the stiffness from `base` on, of a row's and a column's diagonal; infinite where the equations differ.
+/// Entries that either of the patterns lacks are zeros in it: bodies that slide take more couples in.
 double stiffness_change(const SparseMatrix& matrix, const SparseMatrix& base, std::int64_t first_multiplier) {
-  if (matrix.size() != base.size() || matrix.rows()[first_multiplier] != base.rows()[first_multiplier]) return INFINITY;
+  if (matrix.size() != base.size()) return INFINITY;
   double largest = matrix.elsewhere() ? matrix.elsewhere()->change() : 0;  // squared
   const std::vector<double> diagonal = base.diagonals();
-  for (std::int64_t row = 0; row < first_multiplier; ++row)
-    for (std::int64_t k = matrix.rows()[row]; k < matrix.rows()[row + 1]; ++k) {
-      const double difference = matrix.values()[k] - base.values()[k];
-      if (difference != 0)
-        largest = std::max(largest, difference * difference / std::abs(diagonal[row] * diagonal[matrix.columns()[k]]));
+  for (std::int64_t row = 0; row < first_multiplier; ++row) {
+    std::int64_t k = matrix.rows()[row], j = base.rows()[row];
+    const std::int64_t last_k = matrix.rows()[row + 1], last_j = base.rows()[row + 1];
+    while (k < last_k || j < last_j) {
+      const std::int32_t column =
+          std::min(k < last_k ? matrix.columns()[k] : INT32_MAX, j < last_j ? base.columns()[j] : INT32_MAX);
+      double difference = 0;
+      if (k < last_k && matrix.columns()[k] == column) difference += matrix.values()[k++];
+      if (j < last_j && base.columns()[j] == column) difference -= base.values()[j++];
+      if (difference != 0) largest = std::max(largest, difference * difference / std::abs(diagonal[row] * diagonal[column]));
     }
+  }
   return std::sqrt(largest);
 }
 
@@ -121,121 +65,6 @@ int SaddlePointSolver::most_iterations() const {
   return std::max(least_iterations,
                   static_cast<int>(std::min(1e3, options_.work_limit * factorisation_cost() / solution_cost())));
 }
-
-/// The inverse of the base matrix with the switched rows put right.
-///
-/// With the columns q of the base's inverse (Column) and unknowns y, one for each switched row: x = x0 - sum q y, where y is
-/// the multiplier of a row switched on, whose equation is c.x_u + d y = b, and the reaction of one switched off, whose
-/// multiplier must vanish in the base's equations; it is b / d.
-class SaddlePointSolver::Preconditioner {
- public:
-  Preconditioner(SaddlePointSolver& solver, const SparseMatrix& matrix, const Switched& switched)
-      : solver_(solver), matrix_(matrix), rows_(switched.on), n_on_(rows_.size()), scaled_(switched.scaled) {
-    rows_.insert(rows_.end(), switched.off.begin(), switched.off.end());
-    for (const std::int64_t row : rows_) columns_.push_back(&solver.columns_.at(row));
-    const auto size = static_cast<Eigen::Index>(rows_.size());
-    MatrixXd schur(size, size);
-    for (Eigen::Index s = 0; s < size; ++s) {
-      for (Eigen::Index t = 0; t < size; ++t) schur(t, s) = seen_by(t, std::span<const float>(columns_[s]->inverse));
-      if (is_on(s)) schur(s, s) -= matrix.diagonal(rows_[s]);
-    }
-    if (size == 0) return;
-    // scaled by what the diagonal would be, not by what it is: where a body came loose it vanishes
-    scale_.resize(size);
-    for (Eigen::Index s = 0; s < size; ++s) {
-      const double flexibility = solver.multiplier_scale_.at(rows_[s]);
-      scale_[s] = is_on(s) ? 1 / std::sqrt(flexibility) : std::sqrt(flexibility);
-    }
-    schur = (scale_.asDiagonal() * schur * scale_.asDiagonal()).eval();
-    factor_.compute(schur);
-    condition_ = factor_.rcond() * std::min(1.0, schur.cwiseAbs().colwise().sum().maxCoeff());
-  }
-  /// Reciprocal condition number of the Schur complement; 0 where it vanishes.
-  double condition() const { return condition_; }
-
-  /// x = P^-1 b in place
-  void apply(std::span<double> x) const {
-    const auto size = static_cast<Eigen::Index>(rows_.size());
-    VectorXd own(size);
-    for (const std::int64_t row : scaled_) x[row] *= solver_.base_->diagonal(row) / matrix_.diagonal(row);
-    for (Eigen::Index s = 0; s < size; ++s) own[s] = std::exchange(x[rows_[s]], 0.0);
-    solver_.substitution_->substitute(x);
-    finish(own, x);
-  }
-
-  /// The same of sparse right sides, (sides, size).
-  std::vector<float> columns(const SparseSides& sides) const {
-    SparseSides others;
-    MatrixXd own = MatrixXd::Zero(static_cast<Eigen::Index>(rows_.size()), static_cast<Eigen::Index>(sides.size()));
-    for (std::size_t c = 0; c < sides.size(); ++c, others.end_side())
-      for (auto k = static_cast<std::size_t>(sides.offset[c]); k < static_cast<std::size_t>(sides.offset[c + 1]); ++k) {
-        const std::int64_t row = sides.index[k];
-        const auto switched = std::find(rows_.begin(), rows_.end(), row);
-        const bool is_scaled = std::binary_search(scaled_.begin(), scaled_.end(), row);
-        if (switched != rows_.end())
-          own(switched - rows_.begin(), static_cast<Eigen::Index>(c)) += sides.value[k];
-        else
-          others.add_entry(row, sides.value[k] * (is_scaled ? solver_.base_->diagonal(row) / matrix_.diagonal(row) : 1));
-      }
-    const auto n = static_cast<std::size_t>(matrix_.size());
-    std::vector<float> x = others.index.empty() ? std::vector<float>(sides.size() * n)
-                                                : solver_.substitution_->substitute(others.offset, others.index, others.value);
-    for (std::size_t c = 0; c < sides.size(); ++c)
-      finish(own.col(static_cast<Eigen::Index>(c)), std::span(x).subspan(c * n, n));
-    return x;
-  }
-
-  /// A motion in which those have a share that the complement all but lets go, each the larger the less holds it, (n).
-  std::vector<double> weak_motion() const {
-    const auto size = static_cast<Eigen::Index>(rows_.size());
-    const std::vector<double> signs = any_signs(rows_.size());
-    std::vector<double> x(static_cast<std::size_t>(matrix_.size()), 0.0);
-    if (size) add(factor_.solve(Map<const VectorXd>(signs.data(), size)), std::span(x));
-    return x;
-  }
-
- private:
-  bool is_on(Eigen::Index s) const { return static_cast<std::size_t>(s) < n_on_; }
-  /// From a solution with the base to that of the matrix. @param own right sides of the switched rows
-  template <class Number>
-  void finish(const VectorXd& own, std::span<Number> x) const {
-    const auto size = static_cast<Eigen::Index>(rows_.size());
-    VectorXd side(size);
-    for (Eigen::Index s = 0; s < size; ++s)
-      side[s] = scale_[s] * (seen_by(s, std::span<const Number>(x)) - (is_on(s) ? own[s] : 0.0));
-    if (size) add(factor_.solve(side), x);
-    for (Eigen::Index s = 0; s < size; ++s)
-      if (!is_on(s)) x[rows_[s]] = static_cast<Number>(own[s] / matrix_.diagonal(rows_[s]));
-  }
-  /// To x what unknowns y of the scaled complement stand for.
-  template <class Number>
-  void add(const VectorXd& y, std::span<Number> x) const {
-    const VectorXd side = scale_.asDiagonal() * y;
-    parallel_for(x.size(), rows_together, [&](const LoopBlock& block) {
-      const auto size = static_cast<Eigen::Index>(block.last - block.first);
-      Map<Eigen::VectorX<Number>> solution(x.data() + block.first, size);
-      for (Eigen::Index s = 0; s < side.size(); ++s)
-        solution -= (side[s] * Map<const Eigen::VectorXf>(columns_[s]->inverse.data() + block.first, size).cast<double>())
-                        .template cast<Number>();
-    });
-    for (Eigen::Index s = 0; s < side.size(); ++s) x[rows_[s]] = static_cast<Number>(is_on(s) ? side[s] : 0.0);
-  }
-  /// What the equation of a switched row sees of x.
-  template <class Number>
-  double seen_by(Eigen::Index s, std::span<const Number> x) const {
-    return is_on(s) ? dot(columns_[s]->index, columns_[s]->coefficient, x) : static_cast<double>(x[rows_[s]]);
-  }
-
-  SaddlePointSolver& solver_;
-  const SparseMatrix& matrix_;
-  std::vector<std::int64_t> rows_;  ///< switched on, then switched off
-  std::size_t n_on_;
-  std::vector<std::int64_t> scaled_;
-  std::vector<const Column*> columns_;
-  VectorXd scale_;
-  Eigen::PartialPivLU<MatrixXd> factor_;
-  double condition_ = 1;
-};
 
 SolutionReport SaddlePointSolver::solve(const SparseMatrix& matrix, std::int64_t first_multiplier, std::span<double> right_side,
                                         const Accuracy& accuracy) {
@@ -312,75 +141,16 @@ std::vector<double> SaddlePointSolver::scales(const SparseMatrix& matrix) {
   std::vector<double> scale(matrix.size());
   for (std::int64_t i = 0; i < first_multiplier_; ++i) scale[i] = 1 / std::sqrt(std::abs(diagonal[i]));
   for (std::int64_t i = first_multiplier_; i < matrix.size(); ++i) {
-    const Row row(matrix, i);
+    const MultiplierRow row(matrix, i);
     double flexibility = 0;
     for (std::size_t k = 0; k < row.columns.size(); ++k)
-      flexibility += row.values[k] * row.values[k] / std::abs(diagonal[row.columns[k]]);
+      if (row.values[k] != 0) flexibility += row.values[k] * row.values[k] / std::abs(diagonal[row.columns[k]]);
     // a row that is off is solved exactly: any weight does where it never had coefficients
     double& known = multiplier_scale_.try_emplace(i, 1 / std::abs(diagonal[0])).first->second;
     if (flexibility > 0) known = flexibility;
     scale[i] = flexibility > 0 ? 1 / std::sqrt(known) : std::sqrt(known) / std::abs(row.diagonal);
   }
   return scale;
-}
-
-bool SaddlePointSolver::make_columns(const SparseMatrix& matrix, const Switched& switched, SolutionReport& report) {
-  std::vector<std::int64_t> wanted;
-  for (const std::int64_t i : switched.on) {
-    const auto known = columns_.find(i);
-    const Row row(matrix, i);
-    const double size = std::inner_product(row.values.begin(), row.values.end(), row.values.begin(), 0.0);
-    if (known == columns_.end() || distance_squared(row.columns, row.values, known->second.index, known->second.coefficient) >
-                                       options_.drift * options_.drift * size)
-      wanted.push_back(i);
-  }
-  for (const std::int64_t i : switched.off)
-    if (!columns_.contains(i)) wanted.push_back(i);
-  const double cost = static_cast<double>(wanted.size()) * column_cost() + expected_iterations_ * solution_cost();
-  const double memory = 0.5 * static_cast<double>((columns_.size() + wanted.size()) * matrix.size());  // in doubles
-  if (cost > options_.work_limit * factorisation_cost() ||
-      memory > options_.column_memory * static_cast<double>(factor_.whole_entries))
-    return false;
-
-  for (std::size_t first = 0; first < wanted.size(); first += block_size) {
-    Block block;
-    for (std::size_t c = first; c < std::min(first + block_size, wanted.size()); ++c) {
-      block.rows.push_back(wanted[c]);
-      block.on.push_back(std::binary_search(switched.on.begin(), switched.on.end(), wanted[c]));
-      if (block.on.back()) {
-        const Row row(matrix, wanted[c]);
-        for (std::size_t k = 0; k < row.columns.size(); ++k)
-          if (row.values[k] != 0) block.add_entry(row.columns[k], row.values[k]);
-      } else {
-        block.add_entry(wanted[c], 1);
-      }
-      block.end_side();
-    }
-    compute(std::move(block));
-  }
-  report.columns = static_cast<int>(wanted.size());
-  return true;
-}
-
-void SaddlePointSolver::compute(Block block) {
-  const std::vector<float> inverse = substitution_->substitute(block.offset, block.index, block.value);
-  const std::int64_t number = blocks_.empty() ? 0 : blocks_.rbegin()->first + 1;
-  const auto n = static_cast<std::ptrdiff_t>(base_->size());
-  for (std::size_t c = 0; c < block.rows.size(); ++c) {
-    const auto at = static_cast<std::ptrdiff_t>(c);
-    Column column{.index = {}, .coefficient = {}, .inverse = {}, .block = number};
-    column.inverse.assign(inverse.begin() + at * n, inverse.begin() + (at + 1) * n);
-    if (block.on[c]) {
-      column.index.assign(block.index.begin() + block.offset[c], block.index.begin() + block.offset[c + 1]);
-      column.coefficient.assign(block.value.begin() + block.offset[c], block.value.begin() + block.offset[c + 1]);
-    }
-    columns_.insert_or_assign(block.rows[c], std::move(column));
-  }
-  blocks_.emplace(number, std::move(block));
-  std::erase_if(blocks_, [&](const auto& entry) {
-    return std::none_of(entry.second.rows.begin(), entry.second.rows.end(),
-                        [&](std::int64_t row) { return columns_.at(row).block == entry.first; });
-  });
 }
 
 bool SaddlePointSolver::holds_all(const SparseMatrix& matrix, const Preconditioner& preconditioner,
@@ -408,7 +178,7 @@ bool SaddlePointSolver::holds_all(const SparseMatrix& matrix, const Precondition
 std::optional<SaddlePointSolver::Switched> SaddlePointSolver::switched_rows(const SparseMatrix& matrix) const {
   Switched switched;
   for (std::int64_t i = first_multiplier_; i < matrix.size(); ++i) {
-    const Row row(matrix, i), before(*base_, i);
+    const MultiplierRow row(matrix, i), before(*base_, i);
     if (row.meets_multipliers(first_multiplier_)) return std::nullopt;
     const bool is_on = row.is_on(), was_on = before.is_on();
     if (is_on != was_on)
@@ -417,35 +187,6 @@ std::optional<SaddlePointSolver::Switched> SaddlePointSolver::switched_rows(cons
       switched.scaled.push_back(i);
   }
   return switched;
-}
-
-std::size_t SaddlePointSolver::affordable_columns(const SparseMatrix& matrix) const {
-  // other processes may have most of the entries
-  const std::int64_t entries = std::max(matrix.rows()[matrix.size()], 20 * matrix.size());
-  double most = options_.least_columns, one = operations_of_iterations * static_cast<double>(entries);
-  if (kept_ == Kept::factor)
-    most = std::max(most, options_.more_columns * factorisation_cost()), one = column_cost();
-  else if (!ready_)
-    return 0;
-  return static_cast<std::size_t>(std::min(most / std::max(one, 1.0), 1e6));
-}
-
-std::vector<float> SaddlePointSolver::columns(const SparseMatrix& matrix, const SparseSides& sides) {
-  if (sides.size() == 0) return {};
-  if (kept_ != Kept::factor) {
-    std::vector<float> all;
-    for (std::size_t c = 0; c < sides.size(); ++c) {
-      std::vector<double> side(static_cast<std::size_t>(matrix.size()), 0.0);
-      for (auto k = static_cast<std::size_t>(sides.offset[c]); k < static_cast<std::size_t>(sides.offset[c + 1]); ++k)
-        side[static_cast<std::size_t>(sides.index[k])] += sides.value[k];
-      solve_again(matrix, side, {.share = digits_of_columns});
-      all.insert(all.end(), side.begin(), side.end());
-    }
-    return all;
-  }
-  if (!matrix.is_symmetric()) return substitution_->substitute(sides.offset, sides.index, sides.value);
-  const std::optional<Switched> switched = switched_rows(matrix);  // their columns are there: it was solved with
-  return switched ? Preconditioner(*this, matrix, *switched).columns(sides) : std::vector<float>{};
 }
 
 bool SaddlePointSolver::corrected(const SparseMatrix& matrix, std::span<double> right_side, bool rough,

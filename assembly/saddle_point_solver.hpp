@@ -34,22 +34,35 @@ struct SaddlePointOptions {
   double drift = 0.3;             ///< relative change of a row's coefficients above which its column is computed anew
   double work_limit = 1;          ///< most operations without a new factorisation, of those of a factorisation
   double column_memory = 0.25;    ///< largest memory of the columns, of a whole factor's in double precision
+  double least_memory = 32e6;     ///< or so much, in doubles
   double more_columns = 0.5;      ///< operations of columns(), of those of a factorisation,
   double least_columns = 1e9;     ///< or so many: in small systems they are not what takes time
 };
 
-/// Right sides with few entries.
+/// Right sides with few entries. Those that switch a multiplier's row, and say which: of one that is off its coefficients,
+/// ascending; of one that is on, 1 in its own equation.
 struct SparseSides {
   std::vector<std::int64_t> offset{0};
   std::vector<std::int32_t> index;  ///< entries offset[c] to offset[c + 1] of side c
   std::vector<double> value;
+  std::vector<std::int64_t> rows;  ///< that each switches, or -1
+  std::vector<std::uint8_t> on;    ///< whether it switches that one on
 
-  std::size_t size() const { return offset.size() - 1; }
+  std::size_t size() const { return rows.size(); }
   void add_entry(std::int64_t equation, double of_it) {
     index.push_back(static_cast<std::int32_t>(equation));
     value.push_back(of_it);
   }
-  void end_side() { offset.push_back(static_cast<std::int64_t>(index.size())); }
+  void end_side(std::int64_t row = -1, bool switches_on = false) {
+    offset.push_back(static_cast<std::int64_t>(index.size()));
+    rows.push_back(row);
+    on.push_back(switches_on);
+  }
+  void add_side(const SparseSides& other, std::size_t side) {
+    for (auto k = static_cast<std::size_t>(other.offset[side]); k < static_cast<std::size_t>(other.offset[side + 1]); ++k)
+      add_entry(other.index[k], other.value[k]);
+    end_side(other.rows[side], other.on[side]);
+  }
 };
 
 /// How exact a solution has to be.
@@ -82,9 +95,10 @@ class SaddlePointSolver {
   SolutionReport solve_again(const SparseMatrix& matrix, std::span<double> right_side, const Accuracy& accuracy = {});
   /// How many columns of its inverse are worth their price beside a solution.
   std::size_t affordable_columns(const SparseMatrix& matrix) const;
-  /// What right sides give with that matrix, to about the digits of its factor: nobody looks at residuals.
-  /// @param sides at most affordable_columns()  @return (sides, size); nothing where there is no way to them
-  std::vector<float> columns(const SparseMatrix& matrix, const SparseSides& sides);
+  /// What right sides give with that matrix, to about the digits of its factor: nobody looks at residuals. Where memory allows,
+  /// those that switch rows are there already for a matrix in which these are switched.
+  /// @param sides at most affordable_columns()  @param[out] found (sides, size); nothing where there is no way to them
+  SolutionReport columns(const SparseMatrix& matrix, const SparseSides& sides, std::vector<float>& found);
   /// Where nodes are for the matrices to come (Engine::place_nodes), (n_nodes, 3).
   void place_nodes(std::span<const double> coordinates) { engine_->place_nodes(coordinates); }
   /// Right sides so far were those of a computation that failed: they say nothing of how exact the next solution has to be.
@@ -109,11 +123,6 @@ class SaddlePointSolver {
     std::vector<float> inverse;  ///< (n); GMRES makes up for the digits, and the memory is half
     std::int64_t block = 0;      ///< in which it was computed
   };
-  /// Columns that were computed together: their bits may depend on their company.
-  struct Block : SparseSides {
-    std::vector<std::int64_t> rows;
-    std::vector<std::uint8_t> on;  ///< whether each was switched on
-  };
   /// Multipliers' rows that are not what they were when the factor was made, ascending.
   struct Switched {
     std::vector<std::int64_t> on, off;
@@ -135,7 +144,12 @@ class SaddlePointSolver {
   bool holds_all(const SparseMatrix& matrix, const Preconditioner& preconditioner, std::span<const double> scale,
                  SolutionReport& report) const;
   bool make_columns(const SparseMatrix& matrix, const Switched& switched, SolutionReport& report);
-  void compute(Block block);
+  /// Columns of rows that are as they were when the factor was made: those that are there, and all others if memory allows.
+  std::vector<const Column*> columns_ahead(const Switched& switched, const SparseSides& sides, SolutionReport& report);
+  const Column* known(const SparseSides& sides, std::size_t side) const;
+  bool has_room_for(std::size_t more) const;
+  void drop_columns_but(const Switched& switched);
+  void compute(SparseSides block);
   /// What makes the residuals of displacements and of multipliers comparable, (n).
   std::vector<double> scales(const SparseMatrix& matrix);
   double factorisation_cost() const;
@@ -153,7 +167,8 @@ class SaddlePointSolver {
   Factorisation factor_;
   std::int64_t factorisations_ = 0;  ///< so far
   std::map<std::int64_t, Column> columns_;
-  std::map<std::int64_t, Block> blocks_;             ///< those that some of the columns are from, by number
+  /// Columns that were computed together, as their bits may depend on their company: those that some are from, by number.
+  std::map<std::int64_t, SparseSides> blocks_;
   std::map<std::int64_t, double> multiplier_scale_;  ///< c.c / K of rows when they last had coefficients
   double reference_ = 0;                             ///< largest right side so far, scaled
   int expected_iterations_ = 4;

@@ -162,8 +162,6 @@ class ContactState {
   double pressure_of_gap(std::size_t patch) const { return rho_[patch] / geometry_.covered(patch); }
   /// Round-off of the integrated gap of a patch.
   double gap_round_off(std::size_t patch) const { return gap_tolerance_ * geometry_.covered(patch); }
-  /// Patches of its zone that share a node with it.
-  std::span<const std::int32_t> neighbours(std::size_t patch) const { return neighbours_[patch]; }
 
   /// Pairs of vertices that contact couples: patch and node, and nodes that meet in second derivatives.
   std::vector<std::pair<std::int64_t, std::int64_t>> coupled_vertices() const;

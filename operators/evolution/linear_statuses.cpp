@@ -3,7 +3,8 @@
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
-#include <utility>
+#include <map>
+#include <optional>
 
 #include "lacon/operators/evolution/complementarity.hpp"
 
@@ -17,112 +18,117 @@ constexpr double nothing = 1e-9;  // of the unit: what a patch may be pulled or 
 }  // namespace
 
 template <class Number>
-double LinearStatuses::along(const GapRow& row, std::span<const Number> x) const {
+double LinearStatuses::along(const Pair& pair, std::span<const Number> x) const {
+  if (pair.opens) return -static_cast<double>(x[static_cast<std::size_t>(multiplier(pair))]);
   double sum = 0;
-  for (std::size_t i = 0; i < row.unknowns.size(); ++i)
-    if (const std::int64_t e = equation(row.unknowns[i]); e >= 0)
-      sum += row.derivative[i] * static_cast<double>(x[static_cast<std::size_t>(e)]);
+  for (std::size_t i = 0; i < pair.equations.size(); ++i)
+    sum += pair.derivative[i] * static_cast<double>(x[static_cast<std::size_t>(pair.equations[i])]);
   return sum;
 }
 
 LinearStatuses::LinearStatuses(const ContactState& contact, const System& system, const Patchwise& patches,
                                std::span<const double> solution, std::span<const double> step)
-    : contact_(contact), system_(system), patches_(patches), first_(solution) {
+    : contact_(contact), system_(system), patches_(patches) {
   std::vector<std::size_t> open;
   for (std::size_t p = 0; p < patches.status.size(); ++p) {
     if (contact.may_open(p, patches))
-      pairs_.push_back({.patch = p, .opens = true, .row = {}, .start = -patches.lambda[p], .unit_z = 1, .unit_w = 1});
+      pairs_.push_back({.patch = p, .opens = true, .equations = {}, .derivative = {}, .start = -patches.lambda[p]});
     if (contact.may_close(p, patches, reach)) open.push_back(p);
   }
-  std::vector<GapRow> rows = contact.gap_rows(open);
-  for (std::size_t i = 0; i < open.size(); ++i) {
-    GapRow& row = rows[i];
-    double start = row.gap;
-    for (std::size_t k = 0; k < row.unknowns.size(); ++k)
-      if (equation(row.unknowns[k]) < 0)
-        start += row.derivative[k] *
-                 step[static_cast<std::size_t>(system.unknown(row.unknowns[k].vertex, row.unknowns[k].component))];
-    pairs_.push_back({.patch = open[i], .opens = false, .row = std::move(row), .start = start, .unit_z = 1, .unit_w = 1});
-  }
+  const std::vector<GapRow> rows = contact.gap_rows(open);
+  for (std::size_t i = 0; i < open.size(); ++i) pairs_.push_back(closing(open[i], rows[i], step));
 
   double pressure = 0;
-  for (const Pair& pair : pairs_) {
-    const double found = w(pair, first_);
-    pressure = std::max(pressure, pair.opens ? std::abs(found) : -found * contact.pressure_of_gap(pair.patch));
+  first_.resize(std::ssize(pairs_));
+  for (Eigen::Index i = 0; i < first_.size(); ++i) {
+    const Pair& pair = pairs_[static_cast<std::size_t>(i)];
+    first_[i] = w(pair, solution);
+    pressure = std::max(pressure, pair.opens ? std::abs(first_[i]) : -first_[i] * contact.pressure_of_gap(pair.patch));
   }
-  for (std::size_t i = 0; i < pairs_.size(); ++i) {
-    Pair& pair = pairs_[i];
+  for (Eigen::Index i = 0; i < first_.size(); ++i) {
+    Pair& pair = pairs_[static_cast<std::size_t>(i)];
     const double gap = pressure / contact.pressure_of_gap(pair.patch);
     pair.unit_w = pair.opens ? pressure : gap;
     pair.unit_z = pair.opens ? gap : pressure;
     const double round_off = contact.gap_round_off(pair.patch) * (pair.opens ? contact.pressure_of_gap(pair.patch) : 1);
-    if (w(pair, first_) < -nothing * pair.unit_w - round_off) wrong_.push_back(i);
+    if (first_[i] < -nothing * pair.unit_w - round_off) wanted_.push_back(i);
+    first_[i] /= pair.unit_w;
   }
 }
 
-bool LinearStatuses::narrow(std::size_t most) {
-  if (wrong_.size() > most) return false;
-  if (pairs_.size() <= most) return true;
-  std::vector<std::ptrdiff_t> place(patches_.status.size(), -1);  // of each patch among the pairs, until it is taken
-  for (std::size_t i = 0; i < pairs_.size(); ++i) place[pairs_[i].patch] = static_cast<std::ptrdiff_t>(i);
-  std::vector<std::size_t> taken = wrong_;
-  for (const std::size_t i : taken) place[pairs_[i].patch] = -1;
-  for (std::size_t i = 0; i < taken.size() && taken.size() < most; ++i)
-    for (const std::int32_t next : contact_.neighbours(pairs_[taken[i]].patch))
-      if (const std::ptrdiff_t there = std::exchange(place[static_cast<std::size_t>(next)], -1);
-          there >= 0 && taken.size() < most)
-        taken.push_back(static_cast<std::size_t>(there));
-  std::sort(taken.begin(), taken.end());
-  std::vector<Pair> some;
-  for (const std::size_t i : taken) some.push_back(std::move(pairs_[i]));
-  pairs_ = std::move(some);
-  return true;
+LinearStatuses::Pair LinearStatuses::closing(std::size_t patch, const GapRow& row, std::span<const double> step) const {
+  Pair pair{.patch = patch, .opens = false, .equations = {}, .derivative = {}, .start = row.gap};
+  std::map<std::int32_t, double> derivative;
+  for (std::size_t k = 0; k < row.unknowns.size(); ++k) {
+    const std::int64_t dof = system_.unknown(row.unknowns[k].vertex, row.unknowns[k].component);
+    if (const std::int64_t equation = system_.equation(dof); equation >= 0)
+      derivative[static_cast<std::int32_t>(equation)] += row.derivative[k];
+    else
+      pair.start += row.derivative[k] * step[static_cast<std::size_t>(dof)];
+  }
+  for (const auto& [equation, of_it] : derivative) {
+    pair.equations.push_back(equation);
+    pair.derivative.push_back(of_it);
+  }
+  return pair;
 }
 
-SparseSides LinearStatuses::sides(std::size_t first, std::size_t last) const {
+void LinearStatuses::add_side(const Pair& pair, SparseSides& sides) const {
+  if (pair.opens) sides.add_entry(multiplier(pair), 1);
+  for (std::size_t k = 0; k < pair.equations.size(); ++k) sides.add_entry(pair.equations[k], pair.derivative[k]);
+  sides.end_side(multiplier(pair), !pair.opens);
+}
+
+SparseSides LinearStatuses::sides(std::size_t most) const {
   SparseSides sides;
-  for (const Pair& pair : std::span(pairs_).subspan(first, last - first)) {
-    if (pair.opens) sides.add_entry(multiplier(pair.patch), 1);
-    for (std::size_t k = 0; k < pair.row.unknowns.size(); ++k)
-      if (const std::int64_t e = equation(pair.row.unknowns[k]); e >= 0) sides.add_entry(e, pair.row.derivative[k]);
-    sides.end_side();
-  }
+  for (std::size_t i = 0; i < std::min(most, wanted_.size()); ++i)
+    add_side(pairs_[static_cast<std::size_t>(wanted_[i])], sides);
   return sides;
 }
 
-void LinearStatuses::note(std::size_t first, std::size_t last, std::span<const float> columns) {
-  const auto n = static_cast<Eigen::Index>(pairs_.size());
-  if (matrix_.size() == 0) matrix_.resize(n, n);
-  const std::size_t length = columns.size() / (last - first);
-  for (std::size_t c = first; c < last; ++c) {
-    const std::span<const float> column = columns.subspan((c - first) * length, length);
+void LinearStatuses::note(std::span<const float> columns) {
+  const auto length = static_cast<std::size_t>(system_.matrix().size());
+  const std::size_t count = columns.size() / length;
+  const Eigen::Index n = std::ssize(pairs_), before = std::ssize(taken_);
+  if (before + static_cast<Eigen::Index>(count) > matrix_.cols())
+    matrix_.conservativeResize(n, std::max(2 * matrix_.cols(), before + std::ssize(wanted_)));
+  for (std::size_t c = 0; c < count; ++c) {
+    const std::span<const float> column = columns.subspan(c * length, length);
+    const Pair& of = pairs_[static_cast<std::size_t>(wanted_[c])];
     for (Eigen::Index i = 0; i < n; ++i) {
       const Pair& pair = pairs_[static_cast<std::size_t>(i)];
-      const double w =
-          pair.opens ? -static_cast<double>(column[static_cast<std::size_t>(multiplier(pair.patch))]) : along(pair.row, column);
-      matrix_(i, static_cast<Eigen::Index>(c)) = w * pairs_[c].unit_z / pair.unit_w;
+      matrix_(i, before + static_cast<Eigen::Index>(c)) = along(pair, column) * of.unit_z / pair.unit_w;
     }
   }
+  const auto end = wanted_.begin() + static_cast<std::ptrdiff_t>(count);
+  taken_.insert(taken_.end(), wanted_.begin(), end);
+  wanted_.erase(wanted_.begin(), end);
 }
 
 bool LinearStatuses::solve() {
-  Eigen::VectorXd q(static_cast<Eigen::Index>(pairs_.size()));
-  for (std::size_t i = 0; i < pairs_.size(); ++i) q[static_cast<Eigen::Index>(i)] = w(pairs_[i], first_) / pairs_[i].unit_w;
-  const std::optional<Eigen::VectorXd> found = solve_complementarity(matrix_, q, digits);
-  if (found) z_ = *found;
-  return found.has_value();
+  const auto so_far = matrix_.leftCols(std::ssize(taken_));
+  const std::optional<Eigen::VectorXd> found = solve_complementarity(so_far(taken_, Eigen::all), first_(taken_), digits);
+  if (!found) return false;
+  z_ = *found;
+  const Eigen::VectorXd w = first_ + so_far * z_, error = digits * (first_.cwiseAbs() + so_far.cwiseAbs() * z_.cwiseAbs());
+  std::vector<bool> has_column(pairs_.size(), false);
+  for (const Eigen::Index i : taken_) has_column[static_cast<std::size_t>(i)] = true;
+  for (Eigen::Index i = 0; i < w.size(); ++i)
+    if (w[i] < -error[i] && !has_column[static_cast<std::size_t>(i)]) wanted_.push_back(i);
+  return true;
 }
 
 std::vector<double> LinearStatuses::correction(std::span<const double> solution) {
-  std::vector<Eigen::Index> changed;
+  std::vector<Eigen::Index> changed, pairs;
   for (Eigen::Index i = 0; i < z_.size(); ++i)
-    if (z_[i] != 0) changed.push_back(i);
-  Eigen::VectorXd left(static_cast<Eigen::Index>(changed.size())), more = Eigen::VectorXd::Zero(z_.size());
-  for (Eigen::Index i = 0; i < left.size(); ++i) {
-    const Pair& pair = pairs_[static_cast<std::size_t>(changed[static_cast<std::size_t>(i)])];
-    left[i] = w(pair, solution) / pair.unit_w;
-  }
-  const Eigen::MatrixXd matrix = matrix_(changed, changed);
+    if (z_[i] != 0) {
+      changed.push_back(i);
+      pairs.push_back(taken_[static_cast<std::size_t>(i)]);
+    }
+  Eigen::VectorXd left(std::ssize(changed)), more = Eigen::VectorXd::Zero(z_.size());
+  for (Eigen::Index i = 0; i < left.size(); ++i)
+    left[i] = w(pairs_[static_cast<std::size_t>(pairs[static_cast<std::size_t>(i)])], solution);
+  const Eigen::MatrixXd matrix = matrix_(pairs, changed);
   const Eigen::VectorXd found = matrix.partialPivLu().solve(-left);
   more(changed) = found;
   z_ += more;
@@ -132,19 +138,22 @@ std::vector<double> LinearStatuses::correction(std::span<const double> solution)
 }
 
 void LinearStatuses::add(const Eigen::VectorXd& z, std::vector<double>& right_side) const {
-  const SparseSides all = sides(0, pairs_.size());
-  for (std::size_t c = 0; c < pairs_.size(); ++c)
-    for (auto k = static_cast<std::size_t>(all.offset[c]); k < static_cast<std::size_t>(all.offset[c + 1]); ++k)
-      right_side[static_cast<std::size_t>(all.index[k])] += z[static_cast<Eigen::Index>(c)] * pairs_[c].unit_z * all.value[k];
+  for (Eigen::Index i = 0; i < z.size(); ++i) {
+    const Pair& pair = pairs_[static_cast<std::size_t>(taken_[static_cast<std::size_t>(i)])];
+    SparseSides side;
+    add_side(pair, side);
+    for (std::size_t k = 0; k < side.index.size(); ++k)
+      right_side[static_cast<std::size_t>(side.index[k])] += z[i] * pair.unit_z * side.value[k];
+  }
 }
 
 void LinearStatuses::take(Patchwise& patches, std::vector<double>& solution) const {
-  for (std::size_t c = 0; c < pairs_.size(); ++c) {
-    const double z = z_[static_cast<Eigen::Index>(c)] * pairs_[c].unit_z;
+  for (Eigen::Index i = 0; i < z_.size(); ++i) {
+    const Pair& pair = pairs_[static_cast<std::size_t>(taken_[static_cast<std::size_t>(i)])];
+    const double z = z_[i] * pair.unit_z;
     if (z == 0) continue;
-    const std::size_t patch = pairs_[c].patch;
-    patches.status[patch] = pairs_[c].opens ? Status::open : Status::active;
-    solution[static_cast<std::size_t>(multiplier(patch))] = (pairs_[c].opens ? 0 : -z) - patches.lambda[patch];
+    patches.status[pair.patch] = pair.opens ? Status::open : Status::active;
+    solution[static_cast<std::size_t>(multiplier(pair))] = (pair.opens ? 0 : -z) - patches.lambda[pair.patch];
   }
 }
 

@@ -15,7 +15,9 @@ namespace lacon {
 /// With the solution x0 of the system of some active patches, those that are pulled may open by s >= 0, and open ones that are
 /// gone into may be pressed by p >= 0. Both change x linearly, each by a column of the inverse, so that statuses are a linear
 /// complementarity problem: p >= 0, gap >= 0 and p gap = 0 for every patch, at the geometry and with the matrix of the
-/// iteration. Units: pressures in the largest one of x0, gaps in what that stands for in the rule of statuses.
+/// iteration. It begins with those that are wrong in x0 and takes in others that are in its solution, so that there are columns
+/// of few patches beside those that change. Units: pressures in the largest one of x0, gaps in what that stands for in the rule
+/// of statuses.
 class LinearStatuses {
  public:
   /// All patches that may change. All arguments must outlive it. @param solution x0, (n_equations)
@@ -23,17 +25,15 @@ class LinearStatuses {
   LinearStatuses(const ContactState& contact, const System& system, const Patchwise& patches, std::span<const double> solution,
                  std::span<const double> step);
 
-  /// Whether none of them has to.
-  bool satisfied() const { return wrong_.empty(); }
-  /// Look at so many patches at most, those that have to change and what is nearest around them.
-  /// @return false where these alone are more
-  bool narrow(std::size_t most);
-  std::size_t size() const { return pairs_.size(); }
-  /// Right sides of some of the columns.
-  SparseSides sides(std::size_t first, std::size_t last) const;
-  /// What came of them. @param columns (last - first, n_equations)
-  void note(std::size_t first, std::size_t last, std::span<const float> columns);
-  /// All columns have come. @return whether there are such statuses
+  /// Whether none of them has to, or has to beside those that solve() found.
+  bool satisfied() const { return wanted_.empty(); }
+  /// Columns so far, and those of what has to change now.
+  std::size_t size() const { return taken_.size() + wanted_.size(); }
+  /// Right sides of some of the latter, so many at most that are still to come.
+  SparseSides sides(std::size_t most) const;
+  /// What came of them. @param columns (sides, n_equations)
+  void note(std::span<const float> columns);
+  /// All of them have come. @return whether there are statuses that satisfy these patches
   bool solve();
   /// Add what opens and presses to the right side of the system.
   void add_to(std::vector<double>& right_side) const { add(z_, right_side); }
@@ -47,35 +47,35 @@ class LinearStatuses {
  private:
   struct Pair {
     std::size_t patch;
-    bool opens;    ///< it was active
-    GapRow row;    ///< of one that was not
-    double start;  ///< minus the multiplier, or the integrated gap, where x = 0
-    double unit_z, unit_w;
+    bool opens;                           ///< it was active
+    std::vector<std::int32_t> equations;  ///< of the displacements that its gap depends on, where it was not, ascending,
+    std::vector<double> derivative;       ///< and how
+    double start;                         ///< minus the multiplier, or the integrated gap, where x = 0
+    double unit_z = 1, unit_w = 1;
   };
-  /// The pressure, or the integrated gap, of a solution.
+  Pair closing(std::size_t patch, const GapRow& row, std::span<const double> step) const;
+  std::int64_t multiplier(const Pair& pair) const {
+    return system_.equation(system_.multiplier(static_cast<std::int64_t>(pair.patch)));
+  }
+  /// The change of the pressure, or of the integrated gap, along a solution.
+  template <class Number>
+  double along(const Pair& pair, std::span<const Number> x) const;
+  /// Either in the pair's unit.
   double w(const Pair& pair, std::span<const double> solution) const {
-    return pair.start + (pair.opens ? -solution[static_cast<std::size_t>(multiplier(pair.patch))] : along(pair.row, solution));
+    return (pair.start + along(pair, solution)) / pair.unit_w;
   }
   void add(const Eigen::VectorXd& z, std::vector<double>& right_side) const;
-  std::int64_t multiplier(std::size_t patch) const {
-    return system_.equation(system_.multiplier(static_cast<std::int64_t>(patch)));
-  }
-  /// Equation of an unknown of a row, or -1.
-  std::int64_t equation(const ContactUnknown& unknown) const {
-    return system_.equation(system_.unknown(unknown.vertex, unknown.component));
-  }
-  /// The change of a row's gap along displacements of the equations.
-  template <class Number>
-  double along(const GapRow& row, std::span<const Number> x) const;
+  void add_side(const Pair& pair, SparseSides& sides) const;
 
   const ContactState& contact_;
   const System& system_;
   const Patchwise& patches_;
-  std::span<const double> first_;  ///< x0
-  std::vector<Pair> pairs_;
-  std::vector<std::size_t> wrong_;  ///< places of those that have to change
-  Eigen::MatrixXd matrix_;          ///< what z makes of w, in their units
-  Eigen::VectorXd z_;               ///< likewise
+  std::vector<Pair> pairs_;           ///< all that may change
+  Eigen::VectorXd first_;             ///< w of x0, (pairs)
+  std::vector<Eigen::Index> wanted_;  ///< those that have to change
+  std::vector<Eigen::Index> taken_;   ///< those that have columns,
+  Eigen::MatrixXd matrix_;            ///< what z of each makes of w, in their units, (pairs, taken or more),
+  Eigen::VectorXd z_;                 ///< and what it is, (taken)
 };
 
 }  // namespace lacon

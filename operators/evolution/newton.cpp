@@ -334,15 +334,18 @@ void Newton::fit_statuses(std::vector<double>& solution, std::span<const double>
   if (!contact() || settled_ > 0 || statuses_.keeps() || !equilibrium_.moving_covers(state, step).empty()) return;
   const System& system = equilibrium_.system();
   LinearStatuses fitted(*contact(), system, state.patches, solution, step);
-  if (fitted.satisfied() || !fitted.narrow(solver_.affordable_columns(system.matrix()))) return;
-  for (std::size_t first = 0; first < fitted.size(); first += together) {
-    const std::size_t last = std::min(first + together, fitted.size());
-    const std::vector<float> columns = solver_.columns(system.matrix(), fitted.sides(first, last));
-    if (columns.empty()) return;
-    fitted.note(first, last, columns);
+  const std::size_t most = solver_.affordable_columns(system.matrix());
+  if (fitted.satisfied() || fitted.size() > most) return;
+  std::vector<float> columns;
+  while (!fitted.satisfied() && fitted.size() <= most) {
+    while (!fitted.satisfied()) {
+      begin_phase("linear system");
+      note_work(solver_.columns(system.matrix(), fitted.sides(together), columns));
+      if (columns.empty()) return;
+      fitted.note(columns);
+    }
+    if (!fitted.solve()) return;
   }
-  add_to_count("columns of the inverse", static_cast<double>(fitted.size()));
-  if (!fitted.solve()) return;
   std::vector<double> side = equilibrium_.right_side(step);
   fitted.add_to(side);
   if (!solve_linear(side, accuracy, true).factorisation.null_pivots.empty()) return;
@@ -358,10 +361,15 @@ SolutionReport Newton::solve_linear(std::vector<double>& solution, const Accurac
   begin_phase("linear system");
   const SolutionReport report = again ? solver_.solve_again(system.matrix(), solution, accuracy)
                                       : solver_.solve(system.matrix(), system.first_multiplier(), solution, accuracy);
+  add_to_count("solutions", 1);
+  note_work(report);
+  return report;
+}
+
+void Newton::note_work(const SolutionReport& report) {
   add_to_phase("analysis", report.analysis_seconds);
   add_to_phase("factorisation", report.factorisation_seconds);
   add_to_phase("solution", report.solution_seconds);
-  add_to_count("solutions", 1);
   const Factorisation& factor = report.factorisation;
   add_to_count("factorisations", report.factorised && !factor.is_iterative ? 1 : 0);
   if (report.factorised) {
@@ -377,7 +385,6 @@ SolutionReport Newton::solve_linear(std::vector<double>& solution, const Accurac
   add_to_count("Gflop of factorisations", 1e-9 * (factor.flops + factor.wasted_flops));
   add_to_count("columns of the inverse", report.columns);
   add_to_count(factor.is_iterative ? "iterations of PETSc" : "iterations of GMRES", report.iterations);
-  return report;
 }
 
 bool Newton::hold(const std::vector<LooseMotion>& loose, StaticState& state, const StaticState& previous, SolidMatrix asked) {

@@ -94,6 +94,7 @@ class Newton {
   void fit_statuses(std::vector<double>& solution, std::span<const double> step, StaticState& state, const Accuracy& accuracy);
   /// Solve the system with what `solution` holds, in place. @param again with the matrix that was solved with last
   SolutionReport solve_linear(std::vector<double>& solution, const Accuracy& accuracy, bool again = false);
+  void note_work(const SolutionReport& report);
   /// Hold bodies that are loose and near to others: at first the nearest patches take contact, and EVOLUTION_20 says so. Where
   /// they are pulled and open again, nothing presses on the bodies: springs keep them where they are, in the matrix alone.
   /// @return whether all of them are held

@@ -48,6 +48,24 @@ struct Rows {
   SolutionReport solve(SaddlePointSolver& solver, std::vector<double>& x) const {
     return solver.solve(matrix, chain.numbering.first[n_nodes], x);
   }
+  /// What switches some rows.
+  SparseSides switching(std::initializer_list<int> some) const {
+    SparseSides sides;
+    for (const int r : some) {
+      if (on[r]) sides.add_entry(chain.numbering.of_patch(r), 1);
+      for (int k = 0; !on[r] && k < 2; ++k) sides.add_entry(chain.numbering.of(4 + 6 * r + k, (r + k) % 2), k ? 0.7 : -1.0);
+      sides.end_side(chain.numbering.of_patch(r), !on[r]);
+    }
+    return sides;
+  }
+  /// How far a solution is from dense LU.
+  double error(const std::vector<double>& x, const std::vector<double>& b) const {
+    const auto n = static_cast<Eigen::Index>(x.size());
+    return (dense(matrix).fullPivLu().solve(Eigen::Map<const Eigen::VectorXd>(b.data(), n)) -
+            Eigen::Map<const Eigen::VectorXd>(x.data(), n))
+        .cwiseAbs()
+        .maxCoeff();
+  }
   std::vector<double> side(unsigned seed) const {
     std::mt19937 random(seed);
     return test::random_values(static_cast<std::size_t>(matrix.size()), random);
@@ -96,6 +114,93 @@ TEST(KeptFactor, SolvesTheSameMatrixAgain) {
     EXPECT_FALSE(report.factorised);
     EXPECT_LE(report.iterations, 2);
     EXPECT_EQ(report.columns, 0);
+  }
+}
+
+// Columns that switch rows are there when those are switched, but where memory has no room for them.
+TEST(KeptFactor, NeedsNoColumnTwice) {
+  for (const bool room : {true, false}) {
+    Rows rows;
+    SaddlePointSolver solver(std::make_unique<MumpsEngine>(),
+                             {.work_limit = 1e6, .column_memory = 0, .least_memory = room ? 1e6 : 0});
+    rows.on[0] = true;
+    rows.fill();
+    std::vector<double> x = rows.side(1);
+    rows.solve(solver, x);
+    std::vector<float> first, again;
+    EXPECT_EQ(solver.columns(rows.matrix, rows.switching({0, 2}), first).columns, 2);
+    EXPECT_EQ(solver.columns(rows.matrix, rows.switching({0, 2}), again).columns, room ? 0 : 2);
+    EXPECT_EQ(again, first);
+    rows.on[0] = false;
+    rows.on[2] = true;
+    rows.fill();
+    x = rows.side(2);
+    const SolutionReport report = rows.solve(solver, x);
+    EXPECT_EQ(report.factorised, !room);
+    EXPECT_EQ(report.columns, 0);
+    EXPECT_LE(rows.error(x, rows.side(2)), 1e-11);
+  }
+}
+
+// Those that nothing needs give way to those that a matrix does, and do not come back in another process.
+TEST(KeptFactor, DropsColumnsThatNothingNeeds) {
+  const std::filesystem::path file = std::filesystem::temp_directory_path() / ("kept_columns_" + std::to_string(getpid()));
+  Rows rows;
+  const SaddlePointOptions three{
+      .work_limit = 1e6, .column_memory = 0, .least_memory = 0.5 * 3 * static_cast<double>(rows.matrix.size())};
+  SaddlePointSolver solver(std::make_unique<MumpsEngine>(), three), second(std::make_unique<MumpsEngine>(), three);
+  std::vector<double> x = rows.side(1);
+  rows.solve(solver, x);
+  std::vector<float> found;
+  EXPECT_EQ(solver.columns(rows.matrix, rows.switching({0, 1, 2}), found).columns, 3);
+  rows.on[1] = rows.on[4] = true;
+  rows.fill();
+  x = rows.side(2);
+  SolutionReport report = rows.solve(solver, x);
+  EXPECT_FALSE(report.factorised);
+  EXPECT_EQ(report.columns, 1);
+  EXPECT_LE(rows.error(x, rows.side(2)), 1e-11);
+  hdf5::write_whole(file, [&](const hdf5::Group& group) {
+    solver.save(group.create("solver"));
+    solver.save_base(group.create("base"));
+  });
+  {
+    const hdf5::Reader reader(file);
+    const hdf5::Group base = reader.open("base");
+    second.resume(reader.open("solver"), &base, rows.chain.numbering);
+  }
+  std::filesystem::remove(file);
+  for (const int next : {5, 0}) {  // there is room for one more, but not for two
+    rows.on[next] = true;
+    rows.fill();
+    std::vector<double> one = rows.side(3), other = one;
+    report = rows.solve(solver, one);
+    EXPECT_EQ(report.factorised, next == 0);
+    EXPECT_EQ(rows.solve(second, other).factorised, report.factorised);
+    EXPECT_EQ(other, one);
+  }
+}
+
+// Bodies that slide take more couples in: a pattern that has more entries needs no other factor, unless they are large.
+TEST(KeptFactor, ServesAPatternThatGrew) {
+  for (const double entry : {0.0, 0.01, 0.5}) {
+    Rows rows;
+    SaddlePointSolver solver(std::make_unique<MumpsEngine>(), {.work_limit = 1e6, .column_memory = 1e6});
+    std::vector<double> x = rows.side(1);
+    rows.solve(solver, x);
+    std::vector<Coupling> couplings = Rows::couplings();
+    couplings.push_back({3, 30});
+    couplings.push_back({n_nodes + 1, 35});
+    rows.matrix = SparseMatrix(rows.chain.numbering, rows.chain.cliques, couplings);
+    rows.on[1] = true;
+    rows.fill();
+    rows.matrix.add(std::vector<std::int64_t>{rows.chain.numbering.of(3, 0), rows.chain.numbering.of(30, 1)},
+                    std::vector<double>{0, entry, 0});
+    rows.matrix.add(std::vector<std::int64_t>{rows.chain.numbering.of_patch(1), rows.chain.numbering.of(35, 1)},
+                    std::vector<double>{0, 0.1, 0});
+    x = rows.side(2);
+    EXPECT_EQ(rows.solve(solver, x).factorised, entry == 0.5);
+    EXPECT_LE(rows.error(x, rows.side(2)), 1e-11);
   }
 }
 

@@ -196,7 +196,8 @@ TEST(SaddlePointSolver, GivesColumnsOfTheInverse) {
         if (right(i, c) != 0) sides.add_entry(i, right(i, c));
     }
     const Eigen::MatrixXd expected = dense(system.matrix).fullPivLu().solve(right);
-    const std::vector<float> found = solver.columns(system.matrix, sides);
+    std::vector<float> found;
+    EXPECT_EQ(solver.columns(system.matrix, sides, found).columns, 4 + n_rows);
     ASSERT_EQ(found.size(), static_cast<std::size_t>(expected.size()));
     const Eigen::MatrixXd difference =
         Eigen::Map<const Eigen::MatrixXf>(found.data(), expected.rows(), expected.cols()).cast<double>() - expected;
@@ -375,7 +376,8 @@ TEST(SaddlePointSolver, FactorisesUnsymmetricMatrices) {
       SparseSides side;
       for (Eigen::Index i = 0; i < b.size(); ++i) side.add_entry(i, b[i]);
       side.end_side();
-      const std::vector<float> column = solver.columns(general, side);
+      std::vector<float> column;
+      solver.columns(general, side, column);
       EXPECT_LE((2 * Eigen::Map<const Eigen::VectorXf>(column.data(), b.size()).cast<double>() - x).norm(), 1e-5 * x.norm());
     }
   }
@@ -535,7 +537,8 @@ TEST(SaddlePointSolver, TakesEnginesWithoutFactor) {
   SparseSides side;
   side.add_entry(system.first_multiplier(), 1);
   side.end_side();
-  const std::vector<float> column = solver.columns(system.matrix, side);
+  std::vector<float> column;
+  solver.columns(system.matrix, side, column);
   const Eigen::VectorXd expected = dense(system.matrix).inverse().col(system.first_multiplier());
   ASSERT_EQ(column.size(), static_cast<std::size_t>(expected.size()));
   EXPECT_LE((Eigen::Map<const Eigen::VectorXf>(column.data(), expected.size()).cast<double>() - expected).norm(),

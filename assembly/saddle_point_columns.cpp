@@ -1,0 +1,175 @@
+// Columns of the inverse: those that switched rows need, and those that others ask for.
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <utility>
+
+#include "lacon/assembly/multiplier_row.hpp"
+#include "lacon/assembly/saddle_point_preconditioner.hpp"
+#include "lacon/assembly/saddle_point_solver.hpp"
+#include "lacon/assembly/stopwatch.hpp"
+
+namespace lacon {
+namespace {
+
+/// Likewise in the iterations of an engine that keeps no factor: two products by an entry in each, with the matrix and with
+/// what makes it easy.
+constexpr double operations_of_iterations = 200, digits_of_columns = 1e-7;
+constexpr int block_size = 128;
+
+/// |a - b|^2 of two sparse vectors with ascending indices.
+double distance_squared(std::span<const std::int32_t> i, std::span<const double> a, std::span<const std::int32_t> j,
+                        std::span<const double> b) {
+  double sum = 0;
+  std::size_t p = 0, q = 0;
+  while (p < i.size() || q < j.size()) {
+    const bool left = q == j.size() || (p < i.size() && i[p] <= j[q]), right = p == i.size() || (q < j.size() && j[q] <= i[p]);
+    const double difference = (left ? a[p] : 0.0) - (right ? b[q] : 0.0);
+    sum += difference * difference;
+    p += left;
+    q += right;
+  }
+  return sum;
+}
+
+}  // namespace
+
+std::size_t SaddlePointSolver::affordable_columns(const SparseMatrix& matrix) const {
+  // other processes may have most of the entries
+  const std::int64_t entries = std::max(matrix.rows()[matrix.size()], 20 * matrix.size());
+  double most = options_.least_columns, one = operations_of_iterations * static_cast<double>(entries);
+  if (kept_ == Kept::factor)
+    most = std::max(most, options_.more_columns * factorisation_cost()), one = column_cost();
+  else if (!ready_)
+    return 0;
+  return static_cast<std::size_t>(std::min(most / std::max(one, 1.0), 1e6));
+}
+
+SolutionReport SaddlePointSolver::columns(const SparseMatrix& matrix, const SparseSides& sides, std::vector<float>& found) {
+  SolutionReport report;
+  const Stopwatch watch(report.solution_seconds);
+  found.clear();
+  report.columns = static_cast<int>(sides.size());
+  if (kept_ != Kept::factor) {
+    for (std::size_t c = 0; c < sides.size(); ++c) {
+      std::vector<double> side(static_cast<std::size_t>(matrix.size()), 0.0);
+      for (auto k = static_cast<std::size_t>(sides.offset[c]); k < static_cast<std::size_t>(sides.offset[c + 1]); ++k)
+        side[static_cast<std::size_t>(sides.index[k])] += sides.value[k];
+      solve_again(matrix, side, {.share = digits_of_columns});
+      found.insert(found.end(), side.begin(), side.end());
+    }
+  } else if (!matrix.is_symmetric()) {
+    found = substitution_->substitute(sides.offset, sides.index, sides.value);
+  } else if (const std::optional<Switched> switched = switched_rows(matrix)) {  // their columns are there: it was solved with
+    const std::vector<const Column*> with_base = columns_ahead(*switched, sides, report);
+    found = Preconditioner(*this, matrix, *switched).columns(sides, with_base);
+  }
+  return report;
+}
+
+std::vector<const SaddlePointSolver::Column*> SaddlePointSolver::columns_ahead(const Switched& switched,
+                                                                               const SparseSides& sides,
+                                                                               SolutionReport& report) {
+  SparseSides block;
+  std::vector<bool> as_it_was(sides.size());
+  for (std::size_t c = 0; c < sides.size(); ++c) {
+    as_it_was[c] = sides.rows[c] >= 0 && !std::ranges::binary_search(switched.on, sides.rows[c]) &&
+                   !std::ranges::binary_search(switched.off, sides.rows[c]);
+    if (as_it_was[c] && known(sides, c))
+      --report.columns;
+    else if (as_it_was[c])
+      block.add_side(sides, c);
+  }
+  if (block.size() > 0 && has_room_for(block.size())) compute(std::move(block));
+  std::vector<const Column*> found(sides.size(), nullptr);
+  for (std::size_t c = 0; c < sides.size(); ++c)
+    if (as_it_was[c]) found[c] = known(sides, c);
+  return found;
+}
+
+bool SaddlePointSolver::make_columns(const SparseMatrix& matrix, const Switched& switched, SolutionReport& report) {
+  std::vector<std::int64_t> wanted;
+  for (const std::int64_t i : switched.on) {
+    const auto known = columns_.find(i);
+    const MultiplierRow row(matrix, i);
+    const double size = std::inner_product(row.values.begin(), row.values.end(), row.values.begin(), 0.0);
+    if (known == columns_.end() || distance_squared(row.columns, row.values, known->second.index, known->second.coefficient) >
+                                       options_.drift * options_.drift * size)
+      wanted.push_back(i);
+  }
+  for (const std::int64_t i : switched.off)
+    if (!columns_.contains(i)) wanted.push_back(i);
+  const double cost = static_cast<double>(wanted.size()) * column_cost() + expected_iterations_ * solution_cost();
+  if (cost > options_.work_limit * factorisation_cost()) return false;
+  if (!has_room_for(wanted.size())) drop_columns_but(switched);
+  if (!has_room_for(wanted.size())) return false;
+
+  for (std::size_t first = 0; first < wanted.size(); first += block_size) {
+    SparseSides block;
+    for (std::size_t c = first; c < std::min(first + block_size, wanted.size()); ++c) {
+      const bool on = std::ranges::binary_search(switched.on, wanted[c]);
+      if (on) {
+        const MultiplierRow row(matrix, wanted[c]);
+        for (std::size_t k = 0; k < row.columns.size(); ++k)
+          if (row.values[k] != 0) block.add_entry(row.columns[k], row.values[k]);
+      } else {
+        block.add_entry(wanted[c], 1);
+      }
+      block.end_side(wanted[c], on);
+    }
+    compute(std::move(block));
+  }
+  report.columns = static_cast<int>(wanted.size());
+  return true;
+}
+
+bool SaddlePointSolver::has_room_for(std::size_t more) const {
+  const double memory =
+      0.5 * static_cast<double>((columns_.size() + more) * static_cast<std::size_t>(base_->size()));  // in doubles
+  return memory <= std::max(options_.least_memory, options_.column_memory * static_cast<double>(factor_.whole_entries));
+}
+
+void SaddlePointSolver::drop_columns_but(const Switched& switched) {
+  std::erase_if(columns_, [&](const auto& column) {
+    return !std::ranges::binary_search(switched.on, column.first) && !std::ranges::binary_search(switched.off, column.first);
+  });
+  for (auto& [number, block] : blocks_)
+    for (std::int64_t& row : block.rows)
+      if (!columns_.contains(row)) row = -1;
+}
+
+const SaddlePointSolver::Column* SaddlePointSolver::known(const SparseSides& sides, std::size_t side) const {
+  const auto found = columns_.find(sides.rows[side]);
+  if (found == columns_.end()) return nullptr;
+  const auto first = sides.offset[side], last = sides.offset[side + 1];
+  return !sides.on[side] || (std::ranges::equal(std::span(sides.index).subspan(first, last - first), found->second.index) &&
+                             std::ranges::equal(std::span(sides.value).subspan(first, last - first), found->second.coefficient))
+             ? &found->second
+             : nullptr;
+}
+
+void SaddlePointSolver::compute(SparseSides block) {
+  const std::vector<float> inverse = substitution_->substitute(block.offset, block.index, block.value);
+  const std::int64_t number = blocks_.empty() ? 0 : blocks_.rbegin()->first + 1;
+  const auto n = static_cast<std::ptrdiff_t>(base_->size());
+  for (std::size_t c = 0; c < block.rows.size(); ++c) {
+    if (block.rows[c] < 0) continue;  // it was dropped
+    const auto at = static_cast<std::ptrdiff_t>(c);
+    Column column{.index = {}, .coefficient = {}, .inverse = {}, .block = number};
+    column.inverse.assign(inverse.begin() + at * n, inverse.begin() + (at + 1) * n);
+    if (block.on[c]) {
+      column.index.assign(block.index.begin() + block.offset[c], block.index.begin() + block.offset[c + 1]);
+      column.coefficient.assign(block.value.begin() + block.offset[c], block.value.begin() + block.offset[c + 1]);
+    }
+    columns_.insert_or_assign(block.rows[c], std::move(column));
+  }
+  blocks_.emplace(number, std::move(block));
+  std::erase_if(blocks_, [&](const auto& entry) {
+    return std::ranges::none_of(entry.second.rows, [&](std::int64_t row) {
+      const auto column = columns_.find(row);
+      return column != columns_.end() && column->second.block == entry.first;
+    });
+  });
+}
+
+}  // namespace lacon
