@@ -119,7 +119,7 @@ class Surroundings(LauncherTest):
     def test_processes_that_a_command_file_forks(self):
         """They end as any other at a signal, and leave the base, its end and its diagnosis to the run."""
         run = self.ok(self.run_study("""
-import multiprocessing, os
+import multiprocessing, os, signal, threading
 DEBUT()
 x = 1
 with multiprocessing.get_context("fork").Pool(2) as pool:
@@ -131,6 +131,19 @@ for end in ("raise SystemExit(0)", "FIN()"):
         exec(end)
         raise SystemExit(0)
     os.waitpid(child, 0)
+def forks():
+    child = os.fork()
+    if child == 0:  # a handler of Python's would run only where the process does not wait
+        os._exit(signal.getsignal(signal.SIGTERM) != signal.SIG_DFL or signal.SIGTERM in signal.pthread_sigmask(signal.SIG_BLOCK, []))
+    statuses.append(os.waitpid(child, 0)[1])
+statuses = []
+forks()
+thread = threading.Thread(target=forks)
+thread.start()
+thread.join()
+assert statuses == [0, 0]
+assert signal.getsignal(signal.SIGTERM) != signal.SIG_DFL and not signal.pthread_sigmask(signal.SIG_BLOCK, [])
+del forks, thread
 C = DEFI_CONSTANTE(VALE=1.0)
 FIN()
 """))

@@ -11,6 +11,7 @@ import shutil
 import signal
 import sys
 import sysconfig
+import threading
 import tokenize
 import traceback
 import warnings
@@ -68,26 +69,44 @@ class Ended(BaseException):
         super().__init__(signal.Signals(number).name)
 
 
+caught = set()  # signals that end the run by an exception
+_masks = threading.local()  # of signals, before a thread forks
+
+
+def _before_fork():
+    _masks.now = signal.pthread_sigmask(signal.SIG_BLOCK, caught)
+
+
+def _in_parent():
+    signal.pthread_sigmask(signal.SIG_SETMASK, _masks.now)
+
+
+def _in_child():
+    """A handler of Python runs between two of its instructions: of a pool's process that waits for work, a signal that came just before would not be the end."""
+    for number in caught:
+        signal.signal(number, signal.SIG_DFL)
+    _in_parent()
+
+
+os.register_at_fork(before=_before_fork, after_in_parent=_in_parent, after_in_child=_in_child)
+
+
 @contextlib.contextmanager
 def signals():
-    """Raise Ended at the signals that ask a run to end; one that is ignored (nohup) stays so."""
-    process = os.getpid()
-
+    """Raise Ended at the signals that ask a run to end; one that is ignored (nohup) stays so. Processes that the command file forks end as any other."""
     def end(number, _):
-        if os.getpid() != process:  # one that the command file has forked, as a pool of processes: it ends as any other
-            signal.signal(number, signal.SIG_DFL)
-            os.kill(os.getpid(), number)
         raise Ended(number)
 
     before = {number: signal.getsignal(number) for number in (signal.SIGTERM, signal.SIGHUP, signal.SIGINT, signal.SIGXCPU)}
-    for number, handler in before.items():
-        if handler is not signal.SIG_IGN:
-            signal.signal(number, end)
+    caught.update(number for number, handler in before.items() if handler is not signal.SIG_IGN)
+    for number in caught:
+        signal.signal(number, end)
     try:
         yield
     finally:
         for number, handler in before.items():
             signal.signal(number, handler)
+        caught.clear()
 
 
 @contextlib.contextmanager
