@@ -79,14 +79,15 @@ class SaddlePointSolver::Preconditioner {
       others.end_side();
     }
     const auto n = static_cast<std::size_t>(matrix_.size());
-    std::vector<float> rest, x(sides.size() * n);
-    if (!others.index.empty()) rest = solver_.substitution_->substitute(others.offset, others.index, others.value);
-    for (std::size_t c = 0, r = 0; c < sides.size(); ++c) {
+    std::vector<float> x;
+    if (!others.index.empty()) x = solver_.substitution_->substitute(others.offset, others.index, others.value);
+    x.resize(sides.size() * n);
+    for (std::size_t c = sides.size(), r = others.size(); c-- > 0;) {  // those of the others are at the front
       const std::span<float> column = std::span(x).subspan(c * n, n);
       if (with_base[c])
         std::ranges::copy(with_base[c]->inverse, column.begin());
-      else if (!rest.empty())
-        std::ranges::copy(std::span(rest).subspan(r++ * n, n), column.begin());
+      else if (--r != c)
+        std::ranges::copy(std::span(x).subspan(r * n, n), column.begin());
       finish(own.col(static_cast<Eigen::Index>(c)), column);
     }
     return x;

@@ -1,6 +1,8 @@
 #include "lacon/operators/evolution/complementarity.hpp"
 
 #include <Eigen/LU>
+#include <algorithm>
+#include <cmath>
 #include <limits>
 #include <vector>
 
@@ -8,7 +10,8 @@ namespace lacon {
 namespace {
 
 constexpr int patience = 3;         // changes of all wrong pairs that make them no fewer
-constexpr Eigen::Index most = 100;  // changes, and two of each pair: a P-matrix that asks for more is a curiosity
+constexpr Eigen::Index most = 100;  // changes, and two of each pair: a P-matrix that asks for more is a curiosity,
+constexpr double work = 1e11;       // operations of these: where there are many pairs, statuses are found by iterations as well
 constexpr double least = 1e-10;     // of a diagonal, where 1 is usual: what resists less is loose
 constexpr double singular = 1e-9;   // reciprocal condition, behind scaling by the diagonal
 
@@ -27,10 +30,11 @@ std::optional<Eigen::VectorXd> solution_of(const Eigen::MatrixXd& matrix, const 
 
 std::optional<Eigen::VectorXd> solve_complementarity(const Eigen::MatrixXd& matrix, const Eigen::VectorXd& q, double digits) {
   const Eigen::Index n = q.size();
+  const auto last = most + static_cast<Eigen::Index>(std::min(2.0 * static_cast<double>(n), work / std::pow(n, 3)));
   std::vector<bool> has_z(static_cast<std::size_t>(n), false);
   std::size_t fewest = std::numeric_limits<std::size_t>::max();
   int in_vain = 0;
-  for (Eigen::Index changes = 0; changes < most + 2 * n; ++changes) {
+  for (Eigen::Index changes = 0; changes < last; ++changes) {
     std::vector<Eigen::Index> pairs, wrong;
     for (Eigen::Index i = 0; i < n; ++i)
       if (has_z[static_cast<std::size_t>(i)]) pairs.push_back(i);

@@ -131,6 +131,21 @@ TEST(KeptFactor, NeedsNoColumnTwice) {
     EXPECT_EQ(solver.columns(rows.matrix, rows.switching({0, 2}), first).columns, 2);
     EXPECT_EQ(solver.columns(rows.matrix, rows.switching({0, 2}), again).columns, room ? 0 : 2);
     EXPECT_EQ(again, first);
+    SparseSides mixed = rows.switching({0});  // with one of which nothing is kept in between, and one behind
+    for (int side = 0; side < 3; ++side) {
+      if (side == 1)
+        mixed.add_side(rows.switching({2}), 0);
+      else
+        mixed.add_entry(7, 1 + side), mixed.end_side();
+    }
+    EXPECT_EQ(solver.columns(rows.matrix, mixed, again).columns, room ? 2 : 4);
+    for (const auto& [at, of] : {std::pair(0, 0), std::pair(2, 1)})
+      EXPECT_TRUE(std::ranges::equal(std::span(again).subspan(at * x.size(), x.size()),
+                                     std::span(first).subspan(of * x.size(), x.size())));
+    const Eigen::VectorXd expected = dense(rows.matrix).inverse().col(7);
+    for (const int at : {1, 3})
+      for (std::size_t i = 0; i < x.size(); ++i)
+        EXPECT_NEAR(again[static_cast<std::size_t>(at) * x.size() + i], at * expected[static_cast<Eigen::Index>(i)], 1e-5);
     rows.on[0] = false;
     rows.on[2] = true;
     rows.fill();
