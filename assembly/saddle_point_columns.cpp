@@ -1,7 +1,9 @@
 // Columns of the inverse: those that switched rows need, and those that others ask for.
 #include <algorithm>
 #include <cmath>
+#include <memory>
 #include <numeric>
+#include <set>
 #include <utility>
 
 #include "lacon/assembly/multiplier_row.hpp"
@@ -45,24 +47,26 @@ std::size_t SaddlePointSolver::affordable_columns(const SparseMatrix& matrix) co
   return static_cast<std::size_t>(std::min(most / std::max(one, 1.0), 1e6));
 }
 
-SolutionReport SaddlePointSolver::columns(const SparseMatrix& matrix, const SparseSides& sides, std::vector<float>& found) {
+SolutionReport SaddlePointSolver::columns(const SparseMatrix& matrix, const SparseSides& sides,
+                                          const std::function<void(std::span<const float>)>& use) {
   SolutionReport report;
   const Stopwatch watch(report.solution_seconds);
-  found.clear();
   report.columns = static_cast<int>(sides.size());
+  const auto n = static_cast<std::size_t>(matrix.size());
   if (kept_ != Kept::factor) {
     for (std::size_t c = 0; c < sides.size(); ++c) {
-      std::vector<double> side(static_cast<std::size_t>(matrix.size()), 0.0);
+      std::vector<double> side(n, 0.0);
       for (auto k = static_cast<std::size_t>(sides.offset[c]); k < static_cast<std::size_t>(sides.offset[c + 1]); ++k)
         side[static_cast<std::size_t>(sides.index[k])] += sides.value[k];
       solve_again(matrix, side, {.share = digits_of_columns});
-      found.insert(found.end(), side.begin(), side.end());
+      use(std::vector<float>(side.begin(), side.end()));
     }
   } else if (!matrix.is_symmetric()) {
-    found = substitution_->substitute(sides.offset, sides.index, sides.value);
+    const std::vector<float> found = substitution_->substitute(sides.offset, sides.index, sides.value);
+    for (std::size_t c = 0; c < sides.size(); ++c) use(std::span(found).subspan(c * n, n));
   } else if (const std::optional<Switched> switched = switched_rows(matrix)) {  // their columns are there: it was solved with
     const std::vector<const Column*> with_base = columns_ahead(*switched, sides, report);
-    found = Preconditioner(*this, matrix, *switched).columns(sides, with_base);
+    Preconditioner(*this, matrix, *switched).columns(sides, with_base, use);
   }
   return report;
 }
@@ -124,18 +128,33 @@ bool SaddlePointSolver::make_columns(const SparseMatrix& matrix, const Switched&
 }
 
 bool SaddlePointSolver::has_room_for(std::size_t more) const {
-  const double memory =
-      0.5 * static_cast<double>((columns_.size() + more) * static_cast<std::size_t>(base_->size()));  // in doubles
-  return memory <= std::max(options_.least_memory, options_.column_memory * static_cast<double>(factor_.whole_entries));
+  std::set<const std::vector<float>*> all;
+  for (const auto& [row, column] : columns_) all.insert(column.memory.get());
+  std::size_t floats = more * static_cast<std::size_t>(base_->size());
+  for (const std::vector<float>* memory : all) floats += memory->size();
+  return 0.5 * static_cast<double>(floats) <=
+         std::max(options_.least_memory, options_.column_memory * static_cast<double>(factor_.whole_entries));
 }
 
 void SaddlePointSolver::drop_columns_but(const Switched& switched) {
   std::erase_if(columns_, [&](const auto& column) {
     return !std::ranges::binary_search(switched.on, column.first) && !std::ranges::binary_search(switched.off, column.first);
   });
-  for (auto& [number, block] : blocks_)
+  for (auto& [number, block] : blocks_) {
     for (std::int64_t& row : block.rows)
       if (!columns_.contains(row)) row = -1;
+    move_out_of(number);
+  }
+}
+
+void SaddlePointSolver::move_out_of(std::int64_t block) {
+  if (std::ranges::none_of(blocks_.at(block).rows, [](std::int64_t row) { return row < 0; })) return;
+  for (const std::int64_t row : blocks_.at(block).rows)
+    if (const auto column = columns_.find(row); column != columns_.end() && column->second.block == block) {
+      auto own = std::make_shared<const std::vector<float>>(column->second.inverse.begin(), column->second.inverse.end());
+      column->second.inverse = *own;
+      column->second.memory = std::move(own);
+    }
 }
 
 const SaddlePointSolver::Column* SaddlePointSolver::known(const SparseSides& sides, std::size_t side) const {
@@ -149,14 +168,14 @@ const SaddlePointSolver::Column* SaddlePointSolver::known(const SparseSides& sid
 }
 
 void SaddlePointSolver::compute(SparseSides block) {
-  const std::vector<float> inverse = substitution_->substitute(block.offset, block.index, block.value);
+  const auto memory =
+      std::make_shared<const std::vector<float>>(substitution_->substitute(block.offset, block.index, block.value));
   const std::int64_t number = blocks_.empty() ? 0 : blocks_.rbegin()->first + 1;
-  const auto n = static_cast<std::ptrdiff_t>(base_->size());
-  for (std::size_t c = 0; c < block.rows.size(); ++c) {
+  const auto n = static_cast<std::size_t>(base_->size());
+  for (std::size_t c = 0; c < block.size(); ++c) {
     if (block.rows[c] < 0) continue;  // it was dropped
-    const auto at = static_cast<std::ptrdiff_t>(c);
-    Column column{.index = {}, .coefficient = {}, .inverse = {}, .block = number};
-    column.inverse.assign(inverse.begin() + at * n, inverse.begin() + (at + 1) * n);
+    Column column{
+        .index = {}, .coefficient = {}, .inverse = std::span(*memory).subspan(c * n, n), .block = number, .memory = memory};
     if (block.on[c]) {
       column.index.assign(block.index.begin() + block.offset[c], block.index.begin() + block.offset[c + 1]);
       column.coefficient.assign(block.value.begin() + block.offset[c], block.value.begin() + block.offset[c + 1]);
@@ -164,6 +183,7 @@ void SaddlePointSolver::compute(SparseSides block) {
     columns_.insert_or_assign(block.rows[c], std::move(column));
   }
   blocks_.emplace(number, std::move(block));
+  move_out_of(number);
   std::erase_if(blocks_, [&](const auto& entry) {
     return std::ranges::none_of(entry.second.rows, [&](std::int64_t row) {
       const auto column = columns_.find(row);

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <span>
 #include <utility>
 #include <vector>
@@ -34,7 +35,7 @@ class SaddlePointSolver::Preconditioner {
     const auto size = static_cast<Eigen::Index>(rows_.size());
     MatrixXd schur(size, size);
     for (Eigen::Index s = 0; s < size; ++s) {
-      for (Eigen::Index t = 0; t < size; ++t) schur(t, s) = seen_by(t, std::span<const float>(columns_[s]->inverse));
+      for (Eigen::Index t = 0; t < size; ++t) schur(t, s) = seen_by(t, columns_[s]->inverse);
       if (is_on(s)) schur(s, s) -= matrix.diagonal(rows_[s]);
     }
     if (size == 0) return;
@@ -61,8 +62,10 @@ class SaddlePointSolver::Preconditioner {
     finish(own, x);
   }
 
-  /// The same of sparse right sides, (sides, size). @param with_base of some of them, what the base's inverse makes of them
-  std::vector<float> columns(const SparseSides& sides, std::span<const Column* const> with_base) const {
+  /// The same of sparse right sides, one by one, (size). @param with_base of some of them, what the base's inverse makes of
+  /// them
+  void columns(const SparseSides& sides, std::span<const Column* const> with_base,
+               const std::function<void(std::span<const float>)>& use) const {
     SparseSides others;
     MatrixXd own = MatrixXd::Zero(static_cast<Eigen::Index>(rows_.size()), static_cast<Eigen::Index>(sides.size()));
     for (std::size_t c = 0; c < sides.size(); ++c) {
@@ -79,18 +82,23 @@ class SaddlePointSolver::Preconditioner {
       others.end_side();
     }
     const auto n = static_cast<std::size_t>(matrix_.size());
-    std::vector<float> x;
-    if (!others.index.empty()) x = solver_.substitution_->substitute(others.offset, others.index, others.value);
-    x.resize(sides.size() * n);
-    for (std::size_t c = sides.size(), r = others.size(); c-- > 0;) {  // those of the others are at the front
-      const std::span<float> column = std::span(x).subspan(c * n, n);
+    std::vector<float> rest, column(n);
+    if (!others.index.empty()) rest = solver_.substitution_->substitute(others.offset, others.index, others.value);
+    for (std::size_t c = 0, r = 0; c < sides.size(); ++c) {
+      std::span<const float> found = column;
       if (with_base[c])
-        std::ranges::copy(with_base[c]->inverse, column.begin());
-      else if (--r != c)
-        std::ranges::copy(std::span(x).subspan(r * n, n), column.begin());
-      finish(own.col(static_cast<Eigen::Index>(c)), column);
+        found = with_base[c]->inverse;
+      else if (!rest.empty())
+        found = std::span(rest).subspan(r++ * n, n);
+      else
+        std::ranges::fill(column, 0.0F);
+      if (!rows_.empty()) {
+        if (found.data() != column.data()) std::ranges::copy(found, column.begin());
+        finish(own.col(static_cast<Eigen::Index>(c)), std::span(column));
+        found = column;
+      }
+      use(found);
     }
-    return x;
   }
 
   /// A motion in which those have a share that the complement all but lets go, each the larger the less holds it, (n).

@@ -8,6 +8,7 @@
 // new factorisation is cheaper; it counts operations, so that the choice is the same in every run. A matrix that is not
 // symmetric is factorised each time.
 #include <cstdint>
+#include <functional>
 #include <map>
 #include <memory>
 #include <optional>
@@ -33,7 +34,7 @@ struct SaddlePointOptions {
   double stiffness_drift = 0.02;  ///< largest change of an entry of the stiffness, of its diagonals, that is left to GMRES
   double drift = 0.3;             ///< relative change of a row's coefficients above which its column is computed anew
   double work_limit = 1;          ///< most operations without a new factorisation, of those of a factorisation
-  double column_memory = 0.25;    ///< largest memory of the columns, of a whole factor's in double precision
+  double column_memory = 0.4;     ///< largest memory of the columns, of a whole factor's in double precision
   double least_memory = 32e6;     ///< or so much, in doubles
   double more_columns = 0.5;      ///< operations of columns(), of those of a factorisation,
   double least_columns = 1e9;     ///< or so many: in small systems they are not what takes time
@@ -97,8 +98,10 @@ class SaddlePointSolver {
   std::size_t affordable_columns(const SparseMatrix& matrix) const;
   /// What right sides give with that matrix, to about the digits of its factor: nobody looks at residuals. Where memory allows,
   /// those that switch rows are there already for a matrix in which these are switched.
-  /// @param sides at most affordable_columns()  @param[out] found (sides, size); nothing where there is no way to them
-  SolutionReport columns(const SparseMatrix& matrix, const SparseSides& sides, std::vector<float>& found);
+  /// @param sides at most affordable_columns()  @param use gets the solution of each in turn, (size), which lives as long as
+  /// that call; is not called where there is no way to them
+  SolutionReport columns(const SparseMatrix& matrix, const SparseSides& sides,
+                         const std::function<void(std::span<const float>)>& use);
   /// Where nodes are for the matrices to come (Engine::place_nodes), (n_nodes, 3).
   void place_nodes(std::span<const double> coordinates) { engine_->place_nodes(coordinates); }
   /// Right sides so far were those of a computation that failed: they say nothing of how exact the next solution has to be.
@@ -120,8 +123,9 @@ class SaddlePointSolver {
   struct Column {
     std::vector<std::int32_t> index;
     std::vector<double> coefficient;
-    std::vector<float> inverse;  ///< (n); GMRES makes up for the digits, and the memory is half
-    std::int64_t block = 0;      ///< in which it was computed
+    std::span<const float> inverse;                    ///< (n); GMRES makes up for the digits, and the memory is half
+    std::int64_t block = 0;                            ///< in which it was computed
+    std::shared_ptr<const std::vector<float>> memory;  ///< of all of these, or its own
   };
   /// Multipliers' rows that are not what they were when the factor was made, ascending.
   struct Switched {
@@ -149,6 +153,8 @@ class SaddlePointSolver {
   const Column* known(const SparseSides& sides, std::size_t side) const;
   bool has_room_for(std::size_t more) const;
   void drop_columns_but(const Switched& switched);
+  /// Columns of a block of which some were dropped get memory of their own.
+  void move_out_of(std::int64_t block);
   void compute(SparseSides block);
   /// What makes the residuals of displacements and of multipliers comparable, (n).
   std::vector<double> scales(const SparseMatrix& matrix);

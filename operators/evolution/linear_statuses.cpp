@@ -86,23 +86,16 @@ SparseSides LinearStatuses::sides(std::size_t most) const {
   return sides;
 }
 
-void LinearStatuses::note(std::span<const float> columns) {
-  const auto length = static_cast<std::size_t>(system_.matrix().size());
-  const std::size_t count = columns.size() / length;
-  const Eigen::Index n = std::ssize(pairs_), before = std::ssize(taken_);
-  if (before + static_cast<Eigen::Index>(count) > matrix_.cols())
-    matrix_.conservativeResize(n, std::max(2 * matrix_.cols(), before + std::ssize(wanted_)));
-  for (std::size_t c = 0; c < count; ++c) {
-    const std::span<const float> column = columns.subspan(c * length, length);
-    const Pair& of = pairs_[static_cast<std::size_t>(wanted_[c])];
-    for (Eigen::Index i = 0; i < n; ++i) {
-      const Pair& pair = pairs_[static_cast<std::size_t>(i)];
-      matrix_(i, before + static_cast<Eigen::Index>(c)) = along(pair, column) * of.unit_z / pair.unit_w;
-    }
+void LinearStatuses::note(std::span<const float> column) {
+  const Eigen::Index at = std::ssize(taken_);
+  if (at == matrix_.cols()) matrix_.conservativeResize(std::ssize(pairs_), std::max(2 * at, at + std::ssize(wanted_)));
+  const Pair& of = pairs_[static_cast<std::size_t>(wanted_.front())];
+  for (Eigen::Index i = 0; i < matrix_.rows(); ++i) {
+    const Pair& pair = pairs_[static_cast<std::size_t>(i)];
+    matrix_(i, at) = along(pair, column) * of.unit_z / pair.unit_w;
   }
-  const auto end = wanted_.begin() + static_cast<std::ptrdiff_t>(count);
-  taken_.insert(taken_.end(), wanted_.begin(), end);
-  wanted_.erase(wanted_.begin(), end);
+  taken_.push_back(wanted_.front());
+  wanted_.erase(wanted_.begin());
 }
 
 bool LinearStatuses::solve() {

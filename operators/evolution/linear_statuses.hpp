@@ -31,8 +31,8 @@ class LinearStatuses {
   std::size_t size() const { return taken_.size() + wanted_.size(); }
   /// Right sides of some of the latter, so many at most that are still to come.
   SparseSides sides(std::size_t most) const;
-  /// What came of them. @param columns (sides, n_equations)
-  void note(std::span<const float> columns);
+  /// What came of the next of them. @param column (n_equations)
+  void note(std::span<const float> column);
   /// All of them have come. @return whether there are statuses that satisfy these patches
   bool solve();
   /// Add what opens and presses to the right side of the system.

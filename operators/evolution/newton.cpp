@@ -336,13 +336,16 @@ void Newton::fit_statuses(std::vector<double>& solution, std::span<const double>
   LinearStatuses fitted(*contact(), system, state.patches, solution, step);
   const std::size_t most = solver_.affordable_columns(system.matrix());
   if (fitted.satisfied() || fitted.size() > most) return;
-  std::vector<float> columns;
   while (!fitted.satisfied() && fitted.size() <= most) {
     while (!fitted.satisfied()) {
+      const SparseSides sides = fitted.sides(together);
+      std::size_t found = 0;
       begin_phase("linear system");
-      note_work(solver_.columns(system.matrix(), fitted.sides(together), columns));
-      if (columns.empty()) return;
-      fitted.note(columns);
+      note_work(solver_.columns(system.matrix(), sides, [&](std::span<const float> column) {
+        fitted.note(column);
+        ++found;
+      }));
+      if (found < sides.size()) return;
     }
     if (!fitted.solve()) return;
   }

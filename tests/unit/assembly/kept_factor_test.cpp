@@ -7,6 +7,7 @@
 #include <random>
 
 #include "blurred_engine.hpp"
+#include "columns.hpp"
 #include "dense.hpp"
 #include "lacon/assembly/mumps_engine.hpp"
 #include "lacon/assembly/saddle_point_solver.hpp"
@@ -17,6 +18,7 @@ namespace lacon {
 namespace {
 
 using test::Chain;
+using test::columns;
 using test::dense;
 
 constexpr int n_nodes = 40, n_rows = 6;
@@ -128,8 +130,8 @@ TEST(KeptFactor, NeedsNoColumnTwice) {
     std::vector<double> x = rows.side(1);
     rows.solve(solver, x);
     std::vector<float> first, again;
-    EXPECT_EQ(solver.columns(rows.matrix, rows.switching({0, 2}), first).columns, 2);
-    EXPECT_EQ(solver.columns(rows.matrix, rows.switching({0, 2}), again).columns, room ? 0 : 2);
+    EXPECT_EQ(columns(solver, rows.matrix, rows.switching({0, 2}), first).columns, 2);
+    EXPECT_EQ(columns(solver, rows.matrix, rows.switching({0, 2}), again).columns, room ? 0 : 2);
     EXPECT_EQ(again, first);
     SparseSides mixed = rows.switching({0});  // with one of which nothing is kept in between, and one behind
     for (int side = 0; side < 3; ++side) {
@@ -138,7 +140,7 @@ TEST(KeptFactor, NeedsNoColumnTwice) {
       else
         mixed.add_entry(7, 1 + side), mixed.end_side();
     }
-    EXPECT_EQ(solver.columns(rows.matrix, mixed, again).columns, room ? 2 : 4);
+    EXPECT_EQ(columns(solver, rows.matrix, mixed, again).columns, room ? 2 : 4);
     for (const auto& [at, of] : {std::pair(0, 0), std::pair(2, 1)})
       EXPECT_TRUE(std::ranges::equal(std::span(again).subspan(at * x.size(), x.size()),
                                      std::span(first).subspan(of * x.size(), x.size())));
@@ -167,7 +169,7 @@ TEST(KeptFactor, DropsColumnsThatNothingNeeds) {
   std::vector<double> x = rows.side(1);
   rows.solve(solver, x);
   std::vector<float> found;
-  EXPECT_EQ(solver.columns(rows.matrix, rows.switching({0, 1, 2}), found).columns, 3);
+  EXPECT_EQ(columns(solver, rows.matrix, rows.switching({0, 1, 2}), found).columns, 3);
   rows.on[1] = rows.on[4] = true;
   rows.fill();
   x = rows.side(2);

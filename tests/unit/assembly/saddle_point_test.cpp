@@ -4,6 +4,7 @@
 #include <random>
 
 #include "blurred_engine.hpp"
+#include "columns.hpp"
 #include "dense.hpp"
 #include "lacon/assembly/mumps_engine.hpp"
 #include "lacon/assembly/saddle_point_solver.hpp"
@@ -13,6 +14,7 @@ namespace lacon {
 namespace {
 
 using test::Chain;
+using test::columns;
 using test::dense;
 
 constexpr int n_nodes = 60, n_rows = 8;
@@ -197,7 +199,7 @@ TEST(SaddlePointSolver, GivesColumnsOfTheInverse) {
     }
     const Eigen::MatrixXd expected = dense(system.matrix).fullPivLu().solve(right);
     std::vector<float> found;
-    EXPECT_EQ(solver.columns(system.matrix, sides, found).columns, 4 + n_rows);
+    EXPECT_EQ(columns(solver, system.matrix, sides, found).columns, 4 + n_rows);
     ASSERT_EQ(found.size(), static_cast<std::size_t>(expected.size()));
     const Eigen::MatrixXd difference =
         Eigen::Map<const Eigen::MatrixXf>(found.data(), expected.rows(), expected.cols()).cast<double>() - expected;
@@ -377,7 +379,7 @@ TEST(SaddlePointSolver, FactorisesUnsymmetricMatrices) {
       for (Eigen::Index i = 0; i < b.size(); ++i) side.add_entry(i, b[i]);
       side.end_side();
       std::vector<float> column;
-      solver.columns(general, side, column);
+      columns(solver, general, side, column);
       EXPECT_LE((2 * Eigen::Map<const Eigen::VectorXf>(column.data(), b.size()).cast<double>() - x).norm(), 1e-5 * x.norm());
     }
   }
@@ -538,7 +540,7 @@ TEST(SaddlePointSolver, TakesEnginesWithoutFactor) {
   side.add_entry(system.first_multiplier(), 1);
   side.end_side();
   std::vector<float> column;
-  solver.columns(system.matrix, side, column);
+  columns(solver, system.matrix, side, column);
   const Eigen::VectorXd expected = dense(system.matrix).inverse().col(system.first_multiplier());
   ASSERT_EQ(column.size(), static_cast<std::size_t>(expected.size()));
   EXPECT_LE((Eigen::Map<const Eigen::VectorXf>(column.data(), expected.size()).cast<double>() - expected).norm(),
