@@ -41,7 +41,8 @@ std::size_t SaddlePointSolver::affordable_columns(const SparseMatrix& matrix) co
   const std::int64_t entries = std::max(matrix.rows()[matrix.size()], 20 * matrix.size());
   double most = options_.least_columns, one = operations_of_iterations * static_cast<double>(entries);
   if (kept_ == Kept::factor)
-    most = std::max(most, options_.more_columns * factorisation_cost()), one = column_cost();
+    most = std::max(most, options_.more_columns * factorisation_cost()),
+    one = column_cost() + (has_bare_columns() ? solution_cost() : 0);
   else if (!ready_)
     return 0;
   return static_cast<std::size_t>(std::min(most / std::max(one, 1.0), 1e6));
@@ -67,6 +68,9 @@ SolutionReport SaddlePointSolver::columns(const SparseMatrix& matrix, const Spar
   } else if (const std::optional<Switched> switched = switched_rows(matrix)) {  // their columns are there: it was solved with
     const std::vector<const Column*> with_base = columns_ahead(*switched, sides, report);
     Preconditioner(*this, matrix, *switched).columns(sides, with_base, use);
+    if (!has_room_for(0))
+      for (const std::int64_t row : sides.rows)
+        if (const auto column = columns_.find(row); column != columns_.end()) make_bare(column->second);
   }
   return report;
 }
@@ -74,17 +78,25 @@ SolutionReport SaddlePointSolver::columns(const SparseMatrix& matrix, const Spar
 std::vector<const SaddlePointSolver::Column*> SaddlePointSolver::columns_ahead(const Switched& switched,
                                                                                const SparseSides& sides,
                                                                                SolutionReport& report) {
-  SparseSides block;
   std::vector<bool> as_it_was(sides.size());
+  std::vector<std::size_t> wanted;
   for (std::size_t c = 0; c < sides.size(); ++c) {
     as_it_was[c] = sides.rows[c] >= 0 && !std::ranges::binary_search(switched.on, sides.rows[c]) &&
                    !std::ranges::binary_search(switched.off, sides.rows[c]);
     if (as_it_was[c] && known(sides, c))
       --report.columns;
     else if (as_it_was[c])
-      block.add_side(sides, c);
+      wanted.push_back(c);
   }
-  if (block.size() > 0 && has_room_for(block.size())) compute(std::move(block));
+  const bool bare = !has_room_for(wanted.size());
+  SparseSides block;
+  for (const std::size_t c : wanted)
+    if (!bare ||
+        std::ranges::includes(interface(), std::span(sides.index)
+                                               .subspan(static_cast<std::size_t>(sides.offset[c]),
+                                                        static_cast<std::size_t>(sides.offset[c + 1] - sides.offset[c]))))
+      block.add_side(sides, c);
+  if (block.size() > 0) compute(std::move(block));
   std::vector<const Column*> found(sides.size(), nullptr);
   for (std::size_t c = 0; c < sides.size(); ++c)
     if (as_it_was[c]) found[c] = known(sides, c);
@@ -103,10 +115,16 @@ bool SaddlePointSolver::make_columns(const SparseMatrix& matrix, const Switched&
   }
   for (const std::int64_t i : switched.off)
     if (!columns_.contains(i)) wanted.push_back(i);
-  const double cost = static_cast<double>(wanted.size()) * column_cost() + expected_iterations_ * solution_cost();
+  const double cost = static_cast<double>(wanted.size()) * column_cost() +
+                      expected_iterations_ * (has_bare_columns() ? 2 : 1) * solution_cost();
   if (cost > options_.work_limit * factorisation_cost()) return false;
   if (!has_room_for(wanted.size())) drop_columns_but(switched);
-  if (!has_room_for(wanted.size())) return false;
+  const bool bare = !has_room_for(wanted.size());
+  if (bare) {
+    for (const std::int64_t i : switched.on)
+      if (!std::ranges::includes(interface(), MultiplierRow(matrix, i).columns)) return false;
+    for (auto& [row, column] : columns_) make_bare(column);
+  }
 
   for (std::size_t first = 0; first < wanted.size(); first += block_size) {
     SparseSides block;
@@ -122,16 +140,41 @@ bool SaddlePointSolver::make_columns(const SparseMatrix& matrix, const Switched&
       block.end_side(wanted[c], on);
     }
     compute(std::move(block));
+    if (bare)
+      for (std::size_t c = first; c < std::min(first + block_size, wanted.size()); ++c) make_bare(columns_.at(wanted[c]));
   }
   report.columns = static_cast<int>(wanted.size());
   return true;
+}
+
+const std::vector<std::int32_t>& SaddlePointSolver::interface() {
+  if (!interface_.empty()) return interface_;
+  for (std::int64_t row = first_multiplier_; row < base_->size(); ++row) {
+    const std::span<const std::int32_t> columns = MultiplierRow(*base_, row).columns;
+    interface_.insert(interface_.end(), columns.begin(), columns.end());
+    interface_.push_back(static_cast<std::int32_t>(row));
+  }
+  std::ranges::sort(interface_);
+  interface_.erase(std::unique(interface_.begin(), interface_.end()), interface_.end());
+  return interface_;
+}
+
+void SaddlePointSolver::make_bare(Column& column) {
+  if (column.is_bare()) return;
+  for (const std::int32_t equation : interface()) column.seen.push_back(column.inverse[equation]);
+  column.inverse = {};
+  column.memory.reset();
+}
+
+bool SaddlePointSolver::has_bare_columns() const {
+  return std::ranges::any_of(columns_, [](const auto& column) { return column.second.is_bare(); });
 }
 
 bool SaddlePointSolver::has_room_for(std::size_t more) const {
   std::set<const std::vector<float>*> all;
   for (const auto& [row, column] : columns_) all.insert(column.memory.get());
   std::size_t floats = more * static_cast<std::size_t>(base_->size());
-  for (const std::vector<float>* memory : all) floats += memory->size();
+  for (const std::vector<float>* memory : all) floats += memory ? memory->size() : 0;
   return 0.5 * static_cast<double>(floats) <=
          std::max(options_.least_memory, options_.column_memory * static_cast<double>(factor_.whole_entries));
 }
@@ -150,7 +193,8 @@ void SaddlePointSolver::drop_columns_but(const Switched& switched) {
 void SaddlePointSolver::move_out_of(std::int64_t block) {
   if (std::ranges::none_of(blocks_.at(block).rows, [](std::int64_t row) { return row < 0; })) return;
   for (const std::int64_t row : blocks_.at(block).rows)
-    if (const auto column = columns_.find(row); column != columns_.end() && column->second.block == block) {
+    if (const auto column = columns_.find(row);
+        column != columns_.end() && column->second.block == block && !column->second.is_bare()) {
       auto own = std::make_shared<const std::vector<float>>(column->second.inverse.begin(), column->second.inverse.end());
       column->second.inverse = *own;
       column->second.memory = std::move(own);
@@ -159,7 +203,7 @@ void SaddlePointSolver::move_out_of(std::int64_t block) {
 
 const SaddlePointSolver::Column* SaddlePointSolver::known(const SparseSides& sides, std::size_t side) const {
   const auto found = columns_.find(sides.rows[side]);
-  if (found == columns_.end()) return nullptr;
+  if (found == columns_.end() || found->second.is_bare()) return nullptr;
   const auto first = sides.offset[side], last = sides.offset[side + 1];
   return !sides.on[side] || (std::ranges::equal(std::span(sides.index).subspan(first, last - first), found->second.index) &&
                              std::ranges::equal(std::span(sides.value).subspan(first, last - first), found->second.coefficient))

@@ -34,8 +34,15 @@ class SaddlePointSolver::Preconditioner {
     for (const std::int64_t row : rows_) columns_.push_back(&solver.columns_.at(row));
     const auto size = static_cast<Eigen::Index>(rows_.size());
     MatrixXd schur(size, size);
+    std::vector<float> seen;
     for (Eigen::Index s = 0; s < size; ++s) {
-      for (Eigen::Index t = 0; t < size; ++t) schur(t, s) = seen_by(t, columns_[s]->inverse);
+      std::span<const float> column = columns_[s]->inverse;
+      if (columns_[s]->is_bare()) {
+        seen.resize(static_cast<std::size_t>(matrix.size()));
+        for (std::size_t k = 0; k < solver.interface_.size(); ++k) seen[solver.interface_[k]] = columns_[s]->seen[k];
+        column = seen;
+      }
+      for (Eigen::Index t = 0; t < size; ++t) schur(t, s) = seen_by(t, column);
       if (is_on(s)) schur(s, s) -= matrix.diagonal(rows_[s]);
     }
     if (size == 0) return;
@@ -137,10 +144,22 @@ class SaddlePointSolver::Preconditioner {
       const auto size = static_cast<Eigen::Index>(block.last - block.first);
       Eigen::Map<Eigen::VectorX<Number>> solution(x.data() + block.first, size);
       for (Eigen::Index s = 0; s < side.size(); ++s)
-        solution -=
-            (side[s] * Eigen::Map<const Eigen::VectorXf>(columns_[s]->inverse.data() + block.first, size).cast<double>())
-                .template cast<Number>();
+        if (!columns_[s]->is_bare())
+          solution -=
+              (side[s] * Eigen::Map<const Eigen::VectorXf>(columns_[s]->inverse.data() + block.first, size).cast<double>())
+                  .template cast<Number>();
     });
+    if (std::ranges::any_of(columns_, &Column::is_bare)) {
+      std::vector<double> motion(x.size(), 0.0);
+      for (Eigen::Index s = 0; s < side.size(); ++s) {
+        const Column& column = *columns_[s];
+        if (!column.is_bare()) continue;
+        if (!is_on(s)) motion[rows_[s]] = side[s];
+        for (std::size_t k = 0; k < column.index.size(); ++k) motion[column.index[k]] += side[s] * column.coefficient[k];
+      }
+      solver_.substitution_->substitute(motion);
+      for (std::size_t i = 0; i < x.size(); ++i) x[i] -= static_cast<Number>(motion[i]);
+    }
     for (Eigen::Index s = 0; s < side.size(); ++s) x[rows_[s]] = static_cast<Number>(is_on(s) ? side[s] : 0.0);
   }
   /// What the equation of a switched row sees of x.

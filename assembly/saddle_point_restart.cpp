@@ -19,12 +19,16 @@ void SaddlePointSolver::save(const hdf5::Group& group) const {
   group.write("scale/row", rows);
   group.write("scale/value", scales);
   std::vector<std::int64_t> first_row{0}, first_entry{0}, of_rows, offset;
-  std::vector<std::uint8_t> on;
+  std::vector<std::uint8_t> on, bare;
   std::vector<std::int32_t> index;
   std::vector<double> value;
   for (const auto& [number, block] : blocks_) {
     of_rows.insert(of_rows.end(), block.rows.begin(), block.rows.end());
     on.insert(on.end(), block.on.begin(), block.on.end());
+    for (const std::int64_t row : block.rows) {
+      const auto column = columns_.find(row);
+      bare.push_back(column != columns_.end() && column->second.block == number && column->second.is_bare());
+    }
     offset.insert(offset.end(), block.offset.begin() + 1, block.offset.end());
     index.insert(index.end(), block.index.begin(), block.index.end());
     value.insert(value.end(), block.value.begin(), block.value.end());
@@ -35,6 +39,8 @@ void SaddlePointSolver::save(const hdf5::Group& group) const {
   group.write("columns/first_entry", first_entry);
   group.write("columns/row", of_rows);
   group.write("columns/on", on);
+  group.write("columns/bare", bare);
+  group.write("columns/interface", interface_);
   group.write("columns/offset", offset);
   group.write("columns/index", index);
   group.write("columns/value", value);
@@ -69,6 +75,11 @@ void SaddlePointSolver::resume(const hdf5::Group& group, const hdf5::Group* base
              first_entry = group.read<std::int64_t>("columns/first_entry");
   const auto of_rows = group.read<std::int64_t>("columns/row"), offset = group.read<std::int64_t>("columns/offset");
   const auto on = group.read<std::uint8_t>("columns/on");
+  std::vector<std::uint8_t> bare(on.size(), 0);
+  if (group.has("columns/bare")) {  // bases that do not say have whole ones alone
+    bare = group.read<std::uint8_t>("columns/bare");
+    interface_ = group.read<std::int32_t>("columns/interface");
+  }
   const auto index = group.read<std::int32_t>("columns/index");
   const auto value = group.read<double>("columns/value");
   for (std::size_t b = 0; b + 1 < first_row.size(); ++b) {
@@ -79,6 +90,8 @@ void SaddlePointSolver::resume(const hdf5::Group& group, const hdf5::Group* base
     block.index.assign(index.begin() + first_entry[b], index.begin() + first_entry[b + 1]);
     block.value.assign(value.begin() + first_entry[b], value.begin() + first_entry[b + 1]);
     compute(std::move(block));
+    for (std::int64_t r = first_row[b]; r < first_row[b + 1]; ++r)
+      if (bare.at(static_cast<std::size_t>(r))) make_bare(columns_.at(of_rows[static_cast<std::size_t>(r)]));
   }
 }
 

@@ -82,6 +82,7 @@ SolutionReport SaddlePointSolver::solve(const SparseMatrix& matrix, std::int64_t
   kept_ = Kept::nothing;
   columns_.clear();
   blocks_.clear();
+  interface_.clear();
   if (substitution_) base_ = matrix;
   if (substitution_ && matrix.elsewhere()) matrix.elsewhere()->remember();
   const SparseMatrix& now = substitution_ ? *base_ : matrix;  // nothing is kept without a factor

@@ -34,7 +34,7 @@ struct SaddlePointOptions {
   double stiffness_drift = 0.02;  ///< largest change of an entry of the stiffness, of its diagonals, that is left to GMRES
   double drift = 0.3;             ///< relative change of a row's coefficients above which its column is computed anew
   double work_limit = 1;          ///< most operations without a new factorisation, of those of a factorisation
-  double column_memory = 0.4;     ///< largest memory of the columns, of a whole factor's in double precision
+  double column_memory = 0.2;     ///< largest memory of whole columns, of a whole factor's in double precision,
   double least_memory = 32e6;     ///< or so much, in doubles
   double more_columns = 0.5;      ///< operations of columns(), of those of a factorisation,
   double least_columns = 1e9;     ///< or so many: in small systems they are not what takes time
@@ -126,6 +126,8 @@ class SaddlePointSolver {
     std::span<const float> inverse;                    ///< (n); GMRES makes up for the digits, and the memory is half
     std::int64_t block = 0;                            ///< in which it was computed
     std::shared_ptr<const std::vector<float>> memory;  ///< of all of these, or its own
+    std::vector<float> seen;                           ///< of one that has none: what of it rows of multipliers see
+    bool is_bare() const { return inverse.empty(); }
   };
   /// Multipliers' rows that are not what they were when the factor was made, ascending.
   struct Switched {
@@ -156,6 +158,11 @@ class SaddlePointSolver {
   /// Columns of a block of which some were dropped get memory of their own.
   void move_out_of(std::int64_t block);
   void compute(SparseSides block);
+  /// Of a column what rows of multipliers see is kept. Where its motion is needed a substitution makes it anew, together with
+  /// those of all such columns.
+  void make_bare(Column& column);
+  const std::vector<std::int32_t>& interface();
+  bool has_bare_columns() const;
   /// What makes the residuals of displacements and of multipliers comparable, (n).
   std::vector<double> scales(const SparseMatrix& matrix);
   double factorisation_cost() const;
@@ -173,6 +180,7 @@ class SaddlePointSolver {
   Factorisation factor_;
   std::int64_t factorisations_ = 0;  ///< so far
   std::map<std::int64_t, Column> columns_;
+  std::vector<std::int32_t> interface_;  ///< equations that rows of multipliers see in the base, and these themselves
   /// Columns that were computed together, as their bits may depend on their company: those that some are from, by number.
   std::map<std::int64_t, SparseSides> blocks_;
   std::map<std::int64_t, double> multiplier_scale_;  ///< c.c / K of rows when they last had coefficients
