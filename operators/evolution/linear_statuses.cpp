@@ -11,9 +11,10 @@
 namespace lacon {
 namespace {
 
-constexpr double reach = 0.5;     // of h: average gap up to which an open patch may take contact within an iteration
-constexpr double digits = 1e-6;   // of columns of the inverse: they come in single precision
-constexpr double nothing = 1e-9;  // of the unit: what a patch may be pulled or gone into by
+constexpr double reach = 0.5;          // of h: average gap up to which an open patch may take contact within an iteration
+constexpr double digits = 1e-6;        // of columns of the inverse: they come in single precision
+constexpr double nothing = 1e-9;       // of the unit: what a patch may be pulled or gone into by
+constexpr std::size_t together = 128;  // columns
 
 }  // namespace
 
@@ -79,11 +80,22 @@ void LinearStatuses::add_side(const Pair& pair, SparseSides& sides) const {
   sides.end_side(multiplier(pair), !pair.opens);
 }
 
-SparseSides LinearStatuses::sides(std::size_t most) const {
-  SparseSides sides;
-  for (std::size_t i = 0; i < std::min(most, wanted_.size()); ++i)
-    add_side(pairs_[static_cast<std::size_t>(wanted_[i])], sides);
-  return sides;
+bool LinearStatuses::find(std::size_t most,
+                          const std::function<void(const SparseSides& sides, const UseColumn& use)>& columns) {
+  bool found = false;
+  while (!wanted_.empty() && taken_.size() + wanted_.size() <= most) {
+    while (!wanted_.empty()) {
+      SparseSides sides;
+      for (std::size_t i = 0; i < std::min(together, wanted_.size()); ++i)
+        add_side(pairs_[static_cast<std::size_t>(wanted_[i])], sides);
+      const std::size_t before = taken_.size();
+      columns(sides, [&](std::span<const float> column) { note(column); });
+      if (taken_.size() < before + sides.size()) return false;
+    }
+    if (!solve()) return false;
+    found = true;
+  }
+  return found;
 }
 
 void LinearStatuses::note(std::span<const float> column) {

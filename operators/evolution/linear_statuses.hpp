@@ -3,6 +3,7 @@
 // sends them into their master, and the next one answers to that.
 #include <Eigen/Core>
 #include <cstddef>
+#include <functional>
 #include <span>
 #include <vector>
 
@@ -25,16 +26,12 @@ class LinearStatuses {
   LinearStatuses(const ContactState& contact, const System& system, const Patchwise& patches, std::span<const double> solution,
                  std::span<const double> step);
 
-  /// Whether none of them has to, or has to beside those that solve() found.
-  bool satisfied() const { return wanted_.empty(); }
-  /// Columns so far, and those of what has to change now.
-  std::size_t size() const { return taken_.size() + wanted_.size(); }
-  /// Right sides of some of the latter, so many at most that are still to come.
-  SparseSides sides(std::size_t most) const;
-  /// What came of the next of them. @param column (n_equations)
-  void note(std::span<const float> column);
-  /// All of them have come. @return whether there are statuses that satisfy these patches
-  bool solve();
+  using UseColumn = std::function<void(std::span<const float>)>;
+  /// Find statuses that satisfy all of them. @param most columns that may be asked for: where those of patches that are wrong
+  /// in the solution of others would be more, these others alone are satisfied  @param columns calls `use` with what comes of
+  /// each right side, (n_equations), in turn, or not at all
+  /// @return false where there are none, none are wrong or too many
+  bool find(std::size_t most, const std::function<void(const SparseSides& sides, const UseColumn& use)>& columns);
   /// Add what opens and presses to the right side of the system.
   void add_to(std::vector<double>& right_side) const { add(z_, right_side); }
   /// What columns in single precision have left of pressures and gaps that are to be zero, as another right side of the system,
@@ -45,6 +42,9 @@ class LinearStatuses {
   void take(Patchwise& patches, std::vector<double>& solution) const;
 
  private:
+  void note(std::span<const float> column);
+  bool solve();
+
   struct Pair {
     std::size_t patch;
     bool opens;                           ///< it was active

@@ -330,25 +330,15 @@ std::vector<double> Newton::solve_system(StaticState& state, const StaticState& 
 
 void Newton::fit_statuses(std::vector<double>& solution, std::span<const double> step, StaticState& state,
                           const Accuracy& accuracy) {
-  constexpr std::size_t together = 128;  // columns
   if (!contact() || settled_ > 0 || statuses_.keeps() || !equilibrium_.moving_covers(state, step).empty()) return;
   const System& system = equilibrium_.system();
   LinearStatuses fitted(*contact(), system, state.patches, solution, step);
-  const std::size_t most = solver_.affordable_columns(system.matrix());
-  if (fitted.satisfied() || fitted.size() > most) return;
-  while (!fitted.satisfied() && fitted.size() <= most) {
-    while (!fitted.satisfied()) {
-      const SparseSides sides = fitted.sides(together);
-      std::size_t found = 0;
-      begin_phase("linear system");
-      note_work(solver_.columns(system.matrix(), sides, [&](std::span<const float> column) {
-        fitted.note(column);
-        ++found;
-      }));
-      if (found < sides.size()) return;
-    }
-    if (!fitted.solve()) return;
-  }
+  const bool found = fitted.find(solver_.affordable_columns(system.matrix()),
+                                 [&](const SparseSides& sides, const LinearStatuses::UseColumn& use) {
+                                   begin_phase("linear system");
+                                   note_work(solver_.columns(system.matrix(), sides, use));
+                                 });
+  if (!found) return;
   std::vector<double> side = equilibrium_.right_side(step);
   fitted.add_to(side);
   if (!solve_linear(side, accuracy, true).factorisation.null_pivots.empty()) return;
