@@ -206,7 +206,8 @@ bool SaddlePointSolver::corrected(const SparseMatrix& matrix, std::span<double> 
   const VectorXd scaled = Map<const VectorXd>(scales_of_rows.data(), n).cwiseProduct(Map<VectorXd>(right_side.data(), n));
   const double size = scaled.norm();
   reference_ = std::max(reference_, size);
-  const double full = std::min(options_.tolerance * reference_, options_.least_gain * size);
+  const double exact = options_.tolerance * reference_;
+  const double full = std::min(exact, (size > exact ? options_.least_gain : options_.last_gain) * size);
   const double goal = rough ? std::max(full, options_.rough_gain * size) : full;
   const GmresResult found = gmres([&](std::span<const double> x, std::span<double> y) { matrix.multiply(x, y); },
                                   [&](std::span<double> x) { preconditioner.apply(x); }, scales_of_rows, right_side,

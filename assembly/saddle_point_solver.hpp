@@ -27,7 +27,8 @@ namespace lacon {
 struct SaddlePointOptions {
   bool reuse = true;         ///< false: every matrix is factorised
   double tolerance = 1e-12;  ///< of GMRES, against the largest right side so far
-  double least_gain = 1e-4;  ///< of GMRES, against the right side itself
+  double least_gain = 1e-4;  ///< of GMRES, against the right side itself,
+  double last_gain = 1e-2;   ///< where that is round-off already: below the tolerance
   double rough_gain = 1e-4;  ///< likewise, where a rough solution will do
   double singular = 1e-6;    ///< reciprocal condition of the Schur complement, in single precision, below which the matrix is
                              ///< factorised anew: a body may have come loose

@@ -119,6 +119,22 @@ TEST(KeptFactor, SolvesTheSameMatrixAgain) {
   }
 }
 
+// Digits below the tolerance of the largest right side are round-off: two of them do.
+TEST(KeptFactor, SolvesRoundOffRoughly) {
+  Rows rows;
+  SaddlePointSolver solver(poor_engine(1e6), {.column_memory = 1e6});
+  std::vector<double> x = rows.side(1);
+  rows.solve(solver, x);
+  std::vector<int> iterations;
+  for (const double size : {1e-11, 1e-13}) {
+    x = rows.side(2);
+    for (double& value : x) value *= size;
+    iterations.push_back(rows.solve(solver, x).iterations);
+  }
+  EXPECT_GT(iterations[0], iterations[1]);
+  EXPECT_GT(iterations[1], 0);
+}
+
 // Columns that switch rows are there when those are switched; where memory has no room for whole ones, as bare ones.
 TEST(KeptFactor, NeedsNoColumnTwice) {
   for (const bool room : {true, false}) {
