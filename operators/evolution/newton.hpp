@@ -82,6 +82,15 @@ class Newton {
   /// Let a state have the temperatures of the first instant, and laws without a memory start from it.
   void start_heated(StaticState& state);
   int iterate(double instant, StaticState& state, const std::function<void(const IterationReport&)>& report);
+  /// Forget what was seen in the last one, and take the loads. @return the change of what is imposed: Equilibrium::load
+  std::vector<double> begin_instant(double instant, const StaticState& state);
+  /// Fill in residuals and criteria. @param increment of the iteration
+  void judge(const StaticState& state, const StaticState& previous, std::span<const double> increment,
+             IterationReport& line) const;
+  /// The state is the solution: it gets what the points hold. Throws EVOLUTION_9 where cells are inside out.
+  /// @param external forces as the instant began with them  @param line the last iteration
+  void finish_instant(double instant, const StaticState& previous, StaticState& state, const std::vector<double>& external,
+                      const IterationReport& line);
   /// EVOLUTION_54, once: what is solved is an equilibrium that is not stable. @param line the last iteration
   void tell_unstable(double instant, const IterationReport& line);
   void assemble(const StaticState& state, const StaticState& previous, SolidMatrix asked);

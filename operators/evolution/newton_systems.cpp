@@ -1,0 +1,155 @@
+// The linear systems of Newton's method: assembled, solved, and held where bodies are loose.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+#include "lacon/assembly/dependent_rows.hpp"
+#include "lacon/catalog/messages.hpp"
+#include "lacon/operators/evolution/instant_failure.hpp"
+#include "lacon/operators/evolution/linear_statuses.hpp"
+#include "lacon/operators/evolution/newton.hpp"
+#include "lacon/operators/program/program.hpp"
+#include "lacon/structures/displacement.hpp"
+
+namespace lacon {
+
+void Newton::assemble(const StaticState& state, const StaticState& previous, SolidMatrix asked) {
+  std::vector<double> place;
+  displace(problem_.mesh, state.displacement, problem_.dimension, place);
+  solver_.place_nodes(place);
+  equilibrium_.assemble(state, previous, choice_.suited(asked, equilibrium_.touches(state)));
+}
+
+std::vector<double> Newton::solve_system(StaticState& state, const StaticState& previous, SolidMatrix asked,
+                                         std::span<const double> step, const Accuracy& accuracy, IterationReport& line) {
+  const System& system = equilibrium_.system();
+  hanging_.clear();
+  for (bool sprung = false;; sprung = times_held_ > 1) {
+    line.constraints = equilibrium_.n_constraints(state);
+    std::vector<LooseMotion> loose;
+    if (settled_ == 0) loose = loose_.of(system.matrix());
+    std::vector<std::int64_t> null;
+    for (const LooseMotion& motion : loose) null.push_back(problem_.numbering.equation[static_cast<std::size_t>(motion.dof)]);
+    const bool moves_freely = !loose.empty();
+    if (!moves_freely) {
+      std::vector<double> solution = equilibrium_.right_side(step);
+      const std::vector<MovingCover> covers = equilibrium_.moving_covers(state, step);
+      for (const MovingCover& cover : covers)
+        for (std::size_t i = 0; i < solution.size(); ++i) solution[i] -= cover.step * cover.column[i];
+      double size = 0;
+      for (const double value : solution) size = std::max(size, std::abs(value));
+      line.solution = solve_linear(solution, accuracy);
+      null = line.solution.factorisation.null_pivots;
+      if (null.empty()) {
+        line.constraints += follow_covers(
+            covers, size, [&](std::vector<double>& side) { solve_linear(side, accuracy, true); }, solution);
+        return solution;
+      }
+      for (const std::int64_t dof : equilibrium_.dofs_of(null))
+        loose.push_back({dof, {bodies_.of(static_cast<std::int32_t>(dof / problem_.n_components()))}});
+    }
+    if (!sprung && loose.size() == null.size() && hold(loose, state, previous, asked)) continue;
+    const std::int64_t dependent =
+        sprung || moves_freely
+            ? 0
+            : std::min<std::int64_t>(std::ssize(null), count_dependent_rows(system.matrix(), system.first_multiplier()));
+    const std::int64_t free = std::ssize(null) - dependent;
+    if (free == 0)
+      throw InstantFailure(message("SOLVER_14", {{"count", std::to_string(dependent)}, {"names", equilibrium_.names(null)}}),
+                           {.depends_on_step = line.iteration > 0});
+    const std::string count = std::to_string(free), names = equilibrium_.names(null);
+    // the first matrix of an instant is that of the state before
+    if (line.iteration == 0)
+      throw InstantFailure(message("SOLVER_3", {{"count", count}, {"names", names}}), {.depends_on_step = false});
+    throw InstantFailure(
+        message("EVOLUTION_42", {{"iteration", std::to_string(line.iteration)}, {"count", count}, {"names", names}}),
+        {.depends_on_step = true});
+  }
+}
+
+void Newton::fit_statuses(std::vector<double>& solution, std::span<const double> step, StaticState& state,
+                          const Accuracy& accuracy) {
+  if (!contact() || settled_ > 0 || statuses_.keeps() || !equilibrium_.moving_covers(state, step).empty()) return;
+  const System& system = equilibrium_.system();
+  LinearStatuses fitted(*contact(), system, state.patches, solution, step);
+  const bool found = fitted.find(solver_.affordable_columns(system.matrix()),
+                                 [&](const SparseSides& sides, const LinearStatuses::UseColumn& use) {
+                                   begin_phase("linear system");
+                                   note_work(solver_.columns(system.matrix(), sides, use));
+                                 });
+  if (!found) return;
+  std::vector<double> side = equilibrium_.right_side(step);
+  fitted.add_to(side);
+  if (!solve_linear(side, accuracy, true).factorisation.null_pivots.empty()) return;
+  std::vector<double> more = fitted.correction(side);
+  solve_linear(more, accuracy, true);
+  for (std::size_t i = 0; i < side.size(); ++i) side[i] += more[i];
+  solution = std::move(side);
+  fitted.take(state.patches, solution);
+}
+
+SolutionReport Newton::solve_linear(std::vector<double>& solution, const Accuracy& accuracy, bool again) {
+  const System& system = equilibrium_.system();
+  begin_phase("linear system");
+  const SolutionReport report = again ? solver_.solve_again(system.matrix(), solution, accuracy)
+                                      : solver_.solve(system.matrix(), system.first_multiplier(), solution, accuracy);
+  add_to_count("solutions", 1);
+  note_work(report);
+  return report;
+}
+
+void Newton::note_work(const SolutionReport& report) {
+  add_to_phase("analysis", report.analysis_seconds);
+  add_to_phase("factorisation", report.factorisation_seconds);
+  add_to_phase("solution", report.solution_seconds);
+  const Factorisation& factor = report.factorisation;
+  add_to_count("factorisations", report.factorised && !factor.is_iterative ? 1 : 0);
+  if (report.factorised) {
+    if (factor.is_iterative) add_to_count("preconditioners of PETSc", 1);
+    if (!factor.stalled.empty()) inform("SOLVER_7", {{"reason", factor.stalled}});
+    if (factor.single_precision) add_to_count("factors in single precision", 1);
+    if (factor.low_rank) add_to_count("factors of low rank", 1);
+    if (factor.processes > 1) add_to_count("factors by several processes", 1);
+    if (factor.out_of_core) add_to_count("factors in files", 1);
+    if (!factor.doubt.empty()) inform("SOLVER_4", {{"reason", factor.doubt}});
+    if (!factor.unshared.empty()) inform("SOLVER_13", {{"reason", factor.unshared}});
+  }
+  add_to_count("Gflop of factorisations", 1e-9 * (factor.flops + factor.wasted_flops));
+  add_to_count("columns of the inverse", report.columns);
+  add_to_count(factor.is_iterative ? "iterations of PETSc" : "iterations of GMRES", report.iterations);
+}
+
+bool Newton::hold(const std::vector<LooseMotion>& loose, StaticState& state, const StaticState& previous, SolidMatrix asked) {
+  if (!contact()) return false;
+  std::set<std::int32_t> bodies, near;
+  for (const LooseMotion& motion : loose) bodies.insert(motion.bodies.begin(), motion.bodies.end());
+  const auto holds = contact()->nearest_to_hold(state.patches, bodies, [&](std::int32_t node) { return bodies_.of(node); });
+  for (const NearestPatches& hold : holds) near.insert(bodies_.of(hold.node));
+  for (const LooseMotion& motion : loose)
+    if (std::ranges::none_of(motion.bodies, [&](std::int32_t body) { return near.contains(body); })) return false;
+  if (++times_held_ > 1) {
+    std::vector<std::int64_t> dofs;
+    for (const LooseMotion& motion : loose) dofs.push_back(motion.dof);
+    equilibrium_.hold(dofs);
+    hanging_ = bodies_.name_at(holds.front().node);
+    return true;
+  }
+  for (const NearestPatches& hold : holds) {
+    const std::size_t first = hold.patches.front();
+    for (const std::size_t patch : hold.patches) state.patches.status[patch] = Status::active;
+    if (!told_.insert(first).second) continue;
+    const ContactZone& zone = problem_.contact->zones[contact()->geometry().zone_of(first)];
+    inform("EVOLUTION_20", {{"body", bodies_.name_at(hold.node)},
+                            {"count", std::to_string(hold.patches.size())},
+                            {"cell", cell_name(problem_.mesh.patches->cells[first].front())},
+                            {"slave", zone.slave_group},
+                            {"master", zone.master_group},
+                            {"gap", fmt::format("{:.3g}", contact()->geometry().gap(first))}});
+  }
+  assemble(state, previous, asked);
+  return true;
+}
+
+}  // namespace lacon
