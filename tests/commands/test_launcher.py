@@ -408,6 +408,14 @@ FIN()
         self.assertIn(f"LACON_THREADS {cores}\n", self.run_study(study, behaviour=printed).out)
         self.assertIn("LACON_THREADS 7\n", self.run_study(study, "--fresh", behaviour=printed, environment={"LACON_THREADS": "7"}).out)
 
+    def test_memory_in_huge_pages(self):
+        """Beside other settings of the allocator that the user has; his own one of these stands."""
+        study, name = "DEBUT()\nM = LIRE_MAILLAGE()\n", "GLIBC_TUNABLES"
+        for given, found in (("", "glibc.malloc.hugetlb=1"), ("glibc.malloc.check=0", "glibc.malloc.check=0:glibc.malloc.hugetlb=1"),
+                             ("glibc.malloc.hugetlb=0", "glibc.malloc.hugetlb=0")):
+            run = self.run_study(study, "--fresh", behaviour={"lire_maillage": {"print": name}}, environment={name: given})
+            self.assertIn(f"{name} {found}\n", run.out)
+
     def test_cores_of_a_container(self):
         """Its share of their time counts, where it has less than all of them."""
         quota, all_of_them = self.work / "cpu.max", available_cores(self.work / "none")

@@ -26,6 +26,8 @@ patience = 1.8
 not_newton = ("SOLVER_", "MEMORY_")
 #: what an operator says that a signal has ended between two instants
 ended_by_signal = "EVOLUTION_30"
+#: of glibc's allocator: large blocks are to be in huge pages; older ones than 2.35 pass over it
+_huge_pages = "glibc.malloc.hugetlb"
 #: takes away the line of a terminal in which it stands
 _empty_line = b"\r\033[K"
 
@@ -93,6 +95,9 @@ def _environment(study):
     """What operators find in their environment, beside what the launcher has in its own."""
     environment = dict(os.environ)
     environment.setdefault("OPENBLAS_NUM_THREADS", "1")  # the operator takes one thread of OpenBLAS: no others are started
+    tunables = environment.get("GLIBC_TUNABLES", "")
+    if _huge_pages not in tunables:  # factors in huge pages, where the system leaves the choice to programs
+        environment["GLIBC_TUNABLES"] = ":".join(filter(None, [tunables, f"{_huge_pages}=1"]))
     if study.threads:
         environment["LACON_THREADS"] = str(study.threads)
     environment["OMP_NUM_THREADS"] = environment.setdefault("LACON_THREADS", str(available_cores()))
