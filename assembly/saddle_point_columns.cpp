@@ -1,9 +1,7 @@
 // Columns of the inverse: those that switched rows need, and those that others ask for.
 #include <algorithm>
 #include <cmath>
-#include <memory>
 #include <numeric>
-#include <set>
 #include <utility>
 
 #include "lacon/assembly/multiplier_row.hpp"
@@ -160,10 +158,10 @@ const std::vector<std::int32_t>& SaddlePointSolver::interface() {
 }
 
 void SaddlePointSolver::make_bare(Column& column) {
-  if (column.is_bare()) return;
-  for (const std::int32_t equation : interface()) column.seen.push_back(column.inverse[equation]);
-  column.inverse = {};
-  column.memory.reset();
+  if (column.seen.empty())
+    for (const std::int32_t equation : interface()) column.seen.push_back(column.whole[static_cast<std::size_t>(equation)]);
+  column.whole = {};
+  column.packed = {};
 }
 
 bool SaddlePointSolver::has_bare_columns() const {
@@ -171,11 +169,11 @@ bool SaddlePointSolver::has_bare_columns() const {
 }
 
 bool SaddlePointSolver::has_room_for(std::size_t more) const {
-  std::set<const std::vector<float>*> all;
-  for (const auto& [row, column] : columns_) all.insert(column.memory.get());
-  std::size_t floats = more * static_cast<std::size_t>(base_->size());
-  for (const std::vector<float>* memory : all) floats += memory ? memory->size() : 0;
-  return 0.5 * static_cast<double>(floats) <=
+  const auto n = static_cast<std::size_t>(base_->size());
+  const auto whole =
+      static_cast<std::size_t>(std::ranges::count_if(columns_, [](const auto& column) { return !column.second.is_bare(); }));
+  const std::size_t bytes = (whole + more) * (packs() ? PackedVector::memory(n) : n * sizeof(float));
+  return static_cast<double>(bytes) / sizeof(double) <=
          std::max(options_.least_memory, options_.column_memory * static_cast<double>(factor_.whole_entries));
 }
 
@@ -183,22 +181,9 @@ void SaddlePointSolver::drop_columns_but(const Switched& switched) {
   std::erase_if(columns_, [&](const auto& column) {
     return !std::ranges::binary_search(switched.on, column.first) && !std::ranges::binary_search(switched.off, column.first);
   });
-  for (auto& [number, block] : blocks_) {
+  for (auto& [number, block] : blocks_)
     for (std::int64_t& row : block.rows)
       if (!columns_.contains(row)) row = -1;
-    move_out_of(number);
-  }
-}
-
-void SaddlePointSolver::move_out_of(std::int64_t block) {
-  if (std::ranges::none_of(blocks_.at(block).rows, [](std::int64_t row) { return row < 0; })) return;
-  for (const std::int64_t row : blocks_.at(block).rows)
-    if (const auto column = columns_.find(row);
-        column != columns_.end() && column->second.block == block && !column->second.is_bare()) {
-      auto own = std::make_shared<const std::vector<float>>(column->second.inverse.begin(), column->second.inverse.end());
-      column->second.inverse = *own;
-      column->second.memory = std::move(own);
-    }
 }
 
 const SaddlePointSolver::Column* SaddlePointSolver::known(const SparseSides& sides, std::size_t side) const {
@@ -212,28 +197,40 @@ const SaddlePointSolver::Column* SaddlePointSolver::known(const SparseSides& sid
 }
 
 void SaddlePointSolver::compute(SparseSides block) {
-  const auto memory =
-      std::make_shared<const std::vector<float>>(substitution_->substitute(block.offset, block.index, block.value));
+  const std::vector<float> found = substitution_->substitute(block.offset, block.index, block.value);
   const std::int64_t number = blocks_.empty() ? 0 : blocks_.rbegin()->first + 1;
   const auto n = static_cast<std::size_t>(base_->size());
   for (std::size_t c = 0; c < block.size(); ++c) {
     if (block.rows[c] < 0) continue;  // it was dropped
-    Column column{
-        .index = {}, .coefficient = {}, .inverse = std::span(*memory).subspan(c * n, n), .block = number, .memory = memory};
+    Column column{.index = {}, .coefficient = {}, .block = number, .whole = {}, .packed = {}, .seen = {}};
     if (block.on[c]) {
       column.index.assign(block.index.begin() + block.offset[c], block.index.begin() + block.offset[c + 1]);
       column.coefficient.assign(block.value.begin() + block.offset[c], block.value.begin() + block.offset[c + 1]);
     }
+    const std::span<const float> inverse = std::span(found).subspan(c * n, n);
+    if (packs()) {
+      column.packed = PackedVector(inverse);
+      for (const std::int32_t equation : interface()) column.seen.push_back(inverse[static_cast<std::size_t>(equation)]);
+    } else {
+      column.whole.assign(inverse.begin(), inverse.end());
+    }
     columns_.insert_or_assign(block.rows[c], std::move(column));
   }
   blocks_.emplace(number, std::move(block));
-  move_out_of(number);
   std::erase_if(blocks_, [&](const auto& entry) {
     return std::ranges::none_of(entry.second.rows, [&](std::int64_t row) {
       const auto column = columns_.find(row);
       return column != columns_.end() && column->second.block == entry.first;
     });
   });
+}
+
+std::span<const float> SaddlePointSolver::unpacked(const Column& column, std::vector<float>& room) const {
+  if (!column.whole.empty()) return column.whole;
+  room.assign(column.packed.size(), 0);
+  column.packed.add_to(room, 0, 1);
+  for (std::size_t k = 0; k < interface_.size(); ++k) room[static_cast<std::size_t>(interface_[k])] = column.seen[k];
+  return room;
 }
 
 }  // namespace lacon

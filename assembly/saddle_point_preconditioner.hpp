@@ -34,14 +34,16 @@ class SaddlePointSolver::Preconditioner {
     for (const std::int64_t row : rows_) columns_.push_back(&solver.columns_.at(row));
     const auto size = static_cast<Eigen::Index>(rows_.size());
     MatrixXd schur(size, size);
-    std::vector<float> seen;
+    const bool on_interface = std::ranges::all_of(
+        columns_, [&](const Column* column) { return std::ranges::includes(solver.interface_, column->index); });
+    std::vector<float> room(static_cast<std::size_t>(matrix.size()));
     for (Eigen::Index s = 0; s < size; ++s) {
-      std::span<const float> column = columns_[s]->inverse;
-      if (columns_[s]->is_bare()) {
-        seen.resize(static_cast<std::size_t>(matrix.size()));
-        for (std::size_t k = 0; k < solver.interface_.size(); ++k) seen[solver.interface_[k]] = columns_[s]->seen[k];
-        column = seen;
-      }
+      const std::vector<float>& seen = columns_[s]->seen;
+      std::span<const float> column = room;
+      if (!on_interface || seen.empty())
+        column = solver.unpacked(*columns_[s], room);
+      else
+        for (std::size_t k = 0; k < seen.size(); ++k) room[solver.interface_[k]] = seen[k];
       for (Eigen::Index t = 0; t < size; ++t) schur(t, s) = seen_by(t, column);
       if (is_on(s)) schur(s, s) -= matrix.diagonal(rows_[s]);
     }
@@ -94,7 +96,7 @@ class SaddlePointSolver::Preconditioner {
     for (std::size_t c = 0, r = 0; c < sides.size(); ++c) {
       std::span<const float> found = column;
       if (with_base[c])
-        found = with_base[c]->inverse;
+        found = solver_.unpacked(*with_base[c], column);
       else if (!rest.empty())
         found = std::span(rest).subspan(r++ * n, n);
       else
@@ -143,11 +145,16 @@ class SaddlePointSolver::Preconditioner {
     parallel_for(x.size(), rows_together, [&](const LoopBlock& block) {
       const auto size = static_cast<Eigen::Index>(block.last - block.first);
       Eigen::Map<Eigen::VectorX<Number>> solution(x.data() + block.first, size);
-      for (Eigen::Index s = 0; s < side.size(); ++s)
-        if (!columns_[s]->is_bare())
-          solution -=
-              (side[s] * Eigen::Map<const Eigen::VectorXf>(columns_[s]->inverse.data() + block.first, size).cast<double>())
-                  .template cast<Number>();
+      Eigen::VectorXf motion = Eigen::VectorXf::Zero(size);  // of those that are packed
+      for (Eigen::Index s = 0; s < side.size(); ++s) {
+        const Column& column = *columns_[s];
+        if (!column.whole.empty())
+          solution -= (side[s] * Eigen::Map<const Eigen::VectorXf>(column.whole.data() + block.first, size).cast<double>())
+                          .template cast<Number>();
+        else if (!column.packed.empty())
+          column.packed.add_to({motion.data(), static_cast<std::size_t>(size)}, block.first, static_cast<float>(side[s]));
+      }
+      solution -= motion.cast<Number>();
     });
     if (std::ranges::any_of(columns_, &Column::is_bare)) {
       std::vector<double> motion(x.size(), 0.0);

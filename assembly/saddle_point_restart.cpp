@@ -9,6 +9,7 @@ void SaddlePointSolver::save(const hdf5::Group& group) const {
   group.set("factorisations", factorisations_);
   group.set("exact", std::int64_t{engine_->care() == Engine::Care::exact});
   group.set("pivots", std::int64_t{engine_->care() == Engine::Care::pivots});
+  group.set("first_multiplier", first_multiplier_);
   group.set("expected_iterations", static_cast<std::int64_t>(expected_iterations_));
   std::vector<std::int64_t> rows;
   std::vector<double> scales;
@@ -40,7 +41,6 @@ void SaddlePointSolver::save(const hdf5::Group& group) const {
   group.write("columns/row", of_rows);
   group.write("columns/on", on);
   group.write("columns/bare", bare);
-  group.write("columns/interface", interface_);
   group.write("columns/offset", offset);
   group.write("columns/index", index);
   group.write("columns/value", value);
@@ -71,15 +71,12 @@ void SaddlePointSolver::resume(const hdf5::Group& group, const hdf5::Group* base
   engine_->analyse(*base_);
   factor_ = engine_->factorise(*base_);
   kept_ = Kept::factor;
+  if (!group.has_attribute("first_multiplier")) return;  // bases that do not say: columns are made anew where they are needed
+  first_multiplier_ = group.integer("first_multiplier");
   const auto first_row = group.read<std::int64_t>("columns/first_row"),
              first_entry = group.read<std::int64_t>("columns/first_entry");
   const auto of_rows = group.read<std::int64_t>("columns/row"), offset = group.read<std::int64_t>("columns/offset");
-  const auto on = group.read<std::uint8_t>("columns/on");
-  std::vector<std::uint8_t> bare(on.size(), 0);
-  if (group.has("columns/bare")) {  // bases that do not say have whole ones alone
-    bare = group.read<std::uint8_t>("columns/bare");
-    interface_ = group.read<std::int32_t>("columns/interface");
-  }
+  const auto on = group.read<std::uint8_t>("columns/on"), bare = group.read<std::uint8_t>("columns/bare");
   const auto index = group.read<std::int32_t>("columns/index");
   const auto value = group.read<double>("columns/value");
   for (std::size_t b = 0; b + 1 < first_row.size(); ++b) {

@@ -16,6 +16,7 @@
 #include <vector>
 
 #include "lacon/assembly/engine.hpp"
+#include "lacon/assembly/packed_vector.hpp"
 #include "lacon/assembly/sparse_matrix.hpp"
 
 namespace lacon::hdf5 {
@@ -124,11 +125,11 @@ class SaddlePointSolver {
   struct Column {
     std::vector<std::int32_t> index;
     std::vector<double> coefficient;
-    std::span<const float> inverse;                    ///< (n); GMRES makes up for the digits, and the memory is half
-    std::int64_t block = 0;                            ///< in which it was computed
-    std::shared_ptr<const std::vector<float>> memory;  ///< of all of these, or its own
-    std::vector<float> seen;                           ///< of one that has none: what of it rows of multipliers see
-    bool is_bare() const { return inverse.empty(); }
+    std::int64_t block = 0;    ///< in which it was computed
+    std::vector<float> whole;  ///< (n); GMRES makes up for the digits, and the memory is half;
+    PackedVector packed;       ///< or so,
+    std::vector<float> seen;   ///< with what rows of multipliers see of it
+    bool is_bare() const { return whole.empty() && packed.empty(); }
   };
   /// Multipliers' rows that are not what they were when the factor was made, ascending.
   struct Switched {
@@ -156,9 +157,11 @@ class SaddlePointSolver {
   const Column* known(const SparseSides& sides, std::size_t side) const;
   bool has_room_for(std::size_t more) const;
   void drop_columns_but(const Switched& switched);
-  /// Columns of a block of which some were dropped get memory of their own.
-  void move_out_of(std::int64_t block);
   void compute(SparseSides block);
+  /// Whether whole columns are packed: a factor of low rank has no more digits.
+  bool packs() const { return factor_.low_rank; }
+  /// All of a column that is not bare, (n). @param room for one that is packed
+  std::span<const float> unpacked(const Column& column, std::vector<float>& room) const;
   /// Of a column what rows of multipliers see is kept. Where its motion is needed a substitution makes it anew, together with
   /// those of all such columns.
   void make_bare(Column& column);

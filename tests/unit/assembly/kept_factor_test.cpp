@@ -83,6 +83,11 @@ std::unique_ptr<FactorEngine> poor_engine(double iterations) {
       0.1, [=](Factorisation& found) { found.flops = iterations * 40 * static_cast<double>(found.entries); });
 }
 
+/// One that calls its exact factor one of low rank.
+std::unique_ptr<FactorEngine> low_rank_engine() {
+  return std::make_unique<test::BlurredEngine>(0, [](Factorisation& found) { found.low_rank = true; });
+}
+
 // GMRES may take as many substitutions as a factorisation costs, and is given up beyond: then the matrix is factorised.
 TEST(KeptFactor, IsGivenUpWhereItsIterationsCostMoreThanAFactorisation) {
   for (const double worth : {10.0, 1000.0}) {
@@ -249,48 +254,94 @@ TEST(KeptFactor, ServesAPatternThatGrew) {
   }
 }
 
+// Whole columns of a factor of low rank take little more than half the memory, and what is seen of them loses no digit.
+TEST(KeptFactor, PacksColumnsOfLowRank) {
+  for (const bool packed : {false, true}) {
+    Rows rows;
+    const auto n = static_cast<std::size_t>(rows.matrix.size());
+    const SaddlePointOptions options{.work_limit = 1e6,
+                                     .column_memory = 0,
+                                     .least_memory = static_cast<double>(3 * PackedVector::memory(n)) / sizeof(double)};
+    std::unique_ptr<Engine> engine = std::make_unique<MumpsEngine>();
+    if (packed) engine = low_rank_engine();
+    SaddlePointSolver solver(std::move(engine), options);
+    std::vector<double> x = rows.side(1);
+    rows.solve(solver, x);
+    std::vector<float> found, again;
+    EXPECT_EQ(columns(solver, rows.matrix, rows.switching({0, 2, 3}), found).columns, 3);
+    EXPECT_EQ(columns(solver, rows.matrix, rows.switching({0, 2, 3}), again).columns, packed ? 0 : 3);  // without room: bare
+    EXPECT_EQ(again, found);
+    const Eigen::MatrixXd inverse = dense(rows.matrix).inverse();
+    const std::vector<int> of{0, 2, 3};
+    for (std::size_t c = 0; c < of.size(); ++c) {
+      const SparseSides side = rows.switching({of[c]});
+      Eigen::VectorXd exact = Eigen::VectorXd::Zero(rows.matrix.size());
+      for (std::size_t k = 0; k < side.index.size(); ++k) exact += side.value[k] * inverse.col(side.index[k]);
+      const double size = exact.cwiseAbs().maxCoeff();
+      for (std::size_t i = 0; i < n; ++i)
+        EXPECT_NEAR(found[c * n + i], exact[static_cast<Eigen::Index>(i)], (packed ? 2e-5 : 1e-6) * size);
+      for (const std::int32_t seen : side.index)
+        EXPECT_NEAR(found[c * n + static_cast<std::size_t>(seen)], exact[seen], 1e-6 * size);
+    }
+    rows.on[0] = rows.on[2] = rows.on[3] = true;
+    rows.fill();
+    x = rows.side(2);
+    const SolutionReport report = rows.solve(solver, x);
+    EXPECT_FALSE(report.factorised);
+    EXPECT_EQ(report.columns, 0);
+    EXPECT_LE(report.iterations, 4);
+    EXPECT_LE(rows.error(x, rows.side(2)), 1e-11);
+  }
+}
+
 // Another process that takes over what was saved goes on with the same bits, and with all columns: they come from several
 // blocks, some of whose rows have newer ones since.
 TEST(KeptFactor, GoesOnInAnotherProcessWithTheSameBits) {
   const std::filesystem::path file = std::filesystem::temp_directory_path() / ("kept_factor_" + std::to_string(getpid()));
   const SaddlePointOptions eager{.work_limit = 1e6, .column_memory = 1e6};
-  Rows rows;
-  SaddlePointSolver first(std::make_unique<MumpsEngine>(), eager);
-  std::vector<double> x = rows.side(1);
-  rows.solve(first, x);
-  unsigned seed = 1;
-  for (const std::array<bool, n_rows>& on :
-       {std::array<bool, n_rows>{true, true}, {true, true, false, true}, {false, true, false, true, true, true}}) {
-    rows.on = on;
-    rows.fill();
-    x = rows.side(++seed);
-    const SolutionReport report = rows.solve(first, x);
-    EXPECT_FALSE(report.factorised);
-    EXPECT_GT(report.columns, 0);
-  }
-  hdf5::write_whole(file, [&](const hdf5::Group& group) {
-    first.save(group.create("solver"));
-    first.save_base(group.create("base"));
-  });
-  SaddlePointSolver second(std::make_unique<MumpsEngine>(), eager);
-  {
-    const hdf5::Reader reader(file);
-    const hdf5::Group base = reader.open("base");
-    second.resume(reader.open("solver"), &base, rows.chain.numbering);
-  }
-  std::filesystem::remove(file);
-  EXPECT_EQ(second.base_number(), first.base_number());
-  for (const std::array<bool, n_rows>& on : {std::array<bool, n_rows>{true, true, false, true, true, true},
-                                             {true, false, false, false, true},
-                                             {false, false, true, true}}) {
-    rows.on = on;
-    rows.fill();
-    std::vector<double> one = rows.side(++seed), other = one;
-    const SolutionReport expected = rows.solve(first, one), found = rows.solve(second, other);
-    EXPECT_EQ(other, one);
-    EXPECT_FALSE(found.factorised);
-    EXPECT_EQ(found.columns, expected.columns);
-    EXPECT_EQ(found.iterations, expected.iterations);
+  for (const bool packed : {false, true}) {
+    const auto engine = [&]() -> std::unique_ptr<Engine> {
+      if (packed) return low_rank_engine();
+      return std::make_unique<MumpsEngine>();
+    };
+    Rows rows;
+    SaddlePointSolver first(engine(), eager);
+    std::vector<double> x = rows.side(1);
+    rows.solve(first, x);
+    unsigned seed = 1;
+    for (const std::array<bool, n_rows>& on :
+         {std::array<bool, n_rows>{true, true}, {true, true, false, true}, {false, true, false, true, true, true}}) {
+      rows.on = on;
+      rows.fill();
+      x = rows.side(++seed);
+      const SolutionReport report = rows.solve(first, x);
+      EXPECT_FALSE(report.factorised);
+      EXPECT_GT(report.columns, 0);
+    }
+    hdf5::write_whole(file, [&](const hdf5::Group& group) {
+      first.save(group.create("solver"));
+      first.save_base(group.create("base"));
+    });
+    SaddlePointSolver second(engine(), eager);
+    {
+      const hdf5::Reader reader(file);
+      const hdf5::Group base = reader.open("base");
+      second.resume(reader.open("solver"), &base, rows.chain.numbering);
+    }
+    std::filesystem::remove(file);
+    EXPECT_EQ(second.base_number(), first.base_number());
+    for (const std::array<bool, n_rows>& on : {std::array<bool, n_rows>{true, true, false, true, true, true},
+                                               {true, false, false, false, true},
+                                               {false, false, true, true}}) {
+      rows.on = on;
+      rows.fill();
+      std::vector<double> one = rows.side(++seed), other = one;
+      const SolutionReport expected = rows.solve(first, one), found = rows.solve(second, other);
+      EXPECT_EQ(other, one);
+      EXPECT_FALSE(found.factorised);
+      EXPECT_EQ(found.columns, expected.columns);
+      EXPECT_EQ(found.iterations, expected.iterations);
+    }
   }
 }
 
