@@ -7,6 +7,7 @@
 #include <algorithm>
 
 #include "lacon/catalog/messages.hpp"
+#include "lacon/operators/fields/expected.hpp"
 #include "lacon/operators/fields/extrapolation.hpp"
 #include "lacon/operators/fields/selection.hpp"
 #include "lacon/operators/fields/tensor.hpp"
@@ -63,6 +64,7 @@ void calc_pression(const Order& order, const Base& base) {
   const Result from = base.result(keywords.concept_id("RESULTAT"));
   if (const auto given = keywords.optional_concept("MAILLAGE"); given && *given != from.mesh)
     fail("CALCPRES_3", {{"mesh", base.label(*given)}, {"label", from.label}, {"own", base.label(from.mesh)}});
+  check_own_mesh(base, from.mesh, keywords, "", "MODELE");
   const Mesh mesh = base.mesh(from.mesh);
   const std::vector<std::int32_t> skin = selected_skin(mesh, keywords);
   const bool deformed = keywords.text("GEOMETRIE") == "DEFORMEE";

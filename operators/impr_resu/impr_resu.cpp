@@ -16,6 +16,7 @@
 #include "lacon/elements/reference.hpp"
 #include "lacon/operators/contact/offsets.hpp"
 #include "lacon/operators/contact/pairing_view.hpp"
+#include "lacon/operators/fields/expected.hpp"
 #include "lacon/operators/fields/selection.hpp"
 #include "lacon/structures/displacement.hpp"
 #include "lacon/structures/formats/gmsh.hpp"
@@ -379,14 +380,18 @@ void print_mesh_file(const Order& order, const Base& base, Concepts& concepts, c
   files.commit();
 }
 
+/// What an occurrence of RESU shows, or is about.
+std::string mesh_of(const Base& base, Concepts& concepts, const Keywords& one) {
+  if (one.has("CONTACT")) return base.contact(one.concept_id("CONTACT")).mesh;
+  return has_fields(one) ? concepts.source(one).second.mesh : one.concept_id("MAILLAGE");
+}
+
 /// INFO_MAILLAGE of files that do not list the mesh themselves: lines of its counts, each mesh once.
 void tell_meshes(const Order& order, const Base& base, Concepts& concepts, std::vector<std::string>& lines) {
   std::set<std::string> told;
   for (const Keywords& one : order.keywords.factors("RESU")) {
     if (!one.yes("INFO_MAILLAGE")) continue;
-    const std::string id = one.has("CONTACT") ? base.contact(one.concept_id("CONTACT")).mesh
-                           : has_fields(one)  ? concepts.source(one).second.mesh
-                                              : one.concept_id("MAILLAGE");
+    const std::string id = mesh_of(base, concepts, one);
     if (!told.insert(id).second) continue;
     std::istringstream listed([&] {
       std::ostringstream out;
@@ -416,6 +421,8 @@ std::vector<std::string> impr_resu(const Order& order, const Base& base) {
   Concepts concepts(base);
   Written written;
   std::vector<std::string> lines;
+  for (const Keywords& one : order.keywords.factors("RESU"))
+    check_own_mesh(base, mesh_of(base, concepts, one), order.keywords, "", "MODELE");
   if (format != "RESULTAT") {
     refuse_words_of_listings(order);
     tell_meshes(order, base, concepts, lines);

@@ -269,6 +269,15 @@ class ImprResu(ImprResuTest):
         for form in ("MED", "VTU", "RESULTAT"):
             self.refuses("IMPR_7", {**self.U, "PAIRING": "OUI"}, "RESU/PAIRING", " U ", form=form)
 
+    def test_a_model_is_one_on_the_mesh_of_all_that_is_shown(self):
+        self.write_mesh("mesh_3", POINTS, MESH_CELLS, label="OTHER")
+        for number, mesh in ((4, "mesh_1"), (5, "mesh_3")):
+            self.write_model(f"model_{number}", mesh, ["D_PLAN/QUAD4"], [-1, 0, -1, 0])
+        own, other = ({"MODELE": concept(f"model_{number}")} for number in (4, 5))
+        self.assertEqual(self.print(self.U, **own).status, 0)
+        for resu in (self.U, self.MA, [self.U, {"MAILLAGE": concept("mesh_3")}]):
+            self.assert_refused(self.print(resu, **other), "CREACHAMP_5", "MA", "OTHER")
+
     def test_a_folder_that_cannot_be_written(self):
         self.file = self.folder / "nowhere" / "out.med"
         for form in ("MED", "VTU", "RESULTAT"):
