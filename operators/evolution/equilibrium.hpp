@@ -145,7 +145,7 @@ class Equilibrium {
   bool has_new_gaps() const { return has_new_gaps_; }                               ///< since the last assembly
   bool is_linear() const { return linear_; }                                        ///< the stiffness never changes
   bool has_memory() const { return has_memory_; }                                   ///< a law has
-  bool is_symmetric() const { return system_.matrix().is_symmetric(); }
+  bool is_symmetric() const { return system_.is_symmetric(); }
   bool makes_symmetric() const;  ///< of a tangent that is not, the matrix has the symmetric part
   bool has_variables() const;    ///< a law has internal variables
   /// Whether internal variables of the last assembly are not those of the last state in equilibrium: the law flows.

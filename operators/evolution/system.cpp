@@ -8,7 +8,6 @@ System::System(const Numbering& numbering, const Ragged<std::int32_t>& elements,
                const RowsElsewhere* elsewhere)
     : numbering_(numbering), elements_(elements), symmetry_(symmetry), elsewhere_(elsewhere) {
   residual_.assign(numbering.equation.size() + (numbering.n_vertices() - numbering.n_nodes), 0.0);
-  make_pattern();
 }
 
 std::int64_t System::equation(std::int64_t unknown) const {
@@ -24,7 +23,7 @@ void System::start(std::span<const Coupling> couplings, bool keep_stiffness) {
   if (keep_stiffness) restore_rows();
   saved_.clear();
   is_complete_ = keep_stiffness;
-  if (!matrix_->has_room_for(couplings)) {
+  if (!matrix_ || !matrix_->has_room_for(couplings)) {
     // the pattern only grows: couples that come back find their room, and the analysis stands
     couplings_.insert(couplings_.end(), couplings.begin(), couplings.end());
     const auto less = [](const Coupling& x, const Coupling& y) { return std::pair(x.a, x.b) < std::pair(y.a, y.b); };

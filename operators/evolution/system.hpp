@@ -43,7 +43,9 @@ class System {
 
   std::vector<double>& residual() { return residual_; }  ///< (unknowns of nodes, multipliers)
   const std::vector<double>& residual() const { return residual_; }
+  /// There is none before the first start().
   const SparseMatrix& matrix() const { return *matrix_; }
+  bool is_symmetric() const { return symmetry_ == Symmetry::symmetric; }
   /// The first equation of a multiplier.
   std::int64_t first_multiplier() const { return numbering_.first[numbering_.n_nodes]; }
 
