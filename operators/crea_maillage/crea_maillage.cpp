@@ -63,13 +63,13 @@ void print_quality(const CutReport& report, const Mesh& after, bool details) {
                                                 {"least_after", shown(is.least())},
                                                 {"largest_after", shown(is.quantiles.back())}}));
   if (details) {
-    fmt::print("    {:8} {:>9} {:>8}", "", "cells", "mean");
+    fmt::print("    {:8} {:>9} {:>8}", "", part("cells"), part("mean"));
     for (const double fraction : Quality::fractions) fmt::print(" {:>6g} %", 100 * fraction);
-    for (const auto& [name, quality] : {std::pair("before", &was), std::pair("after", &is)}) {
+    for (const auto& [name, quality] : {std::pair(part("before_cut"), &was), std::pair(part("after_cut"), &is)}) {
       fmt::print("\n    {:8} {:>9} {:>8.4f}", name, quality->n_cells, quality->mean);
       for (const double value : quality->quantiles) fmt::print(" {:>8.4f}", value);
     }
-    fmt::print("\n    the worst after the cut:\n");
+    fmt::print("\n    {}\n", part("worst_after_cut"));
     for (const auto& [value, cell] : is.worst)
       fmt::print("    {:8.4f}  {} {}\n", value, after.row(static_cast<std::size_t>(cell)).name, place(cell));
   }
@@ -122,15 +122,15 @@ void add_points(Mesh& mesh, const Keywords& factor) {
   }
 }
 
-/// The keywords that change the order of cells, and what does it.
+/// The keywords that change the order of cells, the part that tells it, and what does it.
 struct Change {
   const char* keyword;
   const char* what;
   std::int64_t (*make)(Mesh&, std::span<const std::int32_t>);
 };
-const Change changes[] = {{"LINE_QUAD", "quadratic", make_quadratic},
-                          {"QUAD_LINE", "linear", make_linear},
-                          {"HEXA20_27", "complete: HEXA27, QUAD9", make_complete}};
+const Change changes[] = {{"LINE_QUAD", "cells_quadratic", make_quadratic},
+                          {"QUAD_LINE", "cells_linear", make_linear},
+                          {"HEXA20_27", "cells_complete", make_complete}};
 
 }  // namespace
 
@@ -140,7 +140,7 @@ Mesh cut_and_tell(Mesh mesh, const LacCut& cut) {
   Mesh made = cut_lac(std::move(mesh), cut.groups, cut.option, cut.keyword, report);
   for (const CutZone& zone : report.zones) {
     if (zone.turned > 0) inform("DECOUPE_7", {{"count", std::to_string(zone.turned)}, {"group", zone.group}});
-    fmt::print("  zone {:<24} {:>8} {}\n", zone.group, zone.patches, part("macro_elements"));
+    fmt::print("  {} {:<24} {:>8} {}\n", part("zone"), zone.group, zone.patches, part("macro_elements"));
   }
   if (cut.node_groups == SkinGroups::complete) complete_node_groups(report, made);
   if (report.new_cells > 0)
@@ -179,7 +179,8 @@ Mesh crea_maillage(Mesh mesh, const Keywords& keywords, std::string_view label) 
     fail("ORDER_2", {{"keyword", "DECOUPE_LAC, LINE_QUAD, QUAD_LINE, HEXA20_27, RESTREINT or CREA_POI1"}});
   refuse_cut_mesh(mesh, change->keyword, label);
   for (const Keywords& factor : keywords.factors(change->keyword))
-    fmt::print("  {}: {} cells became {}\n", change->keyword, change->make(mesh, chosen(mesh, factor)), change->what);
+    fmt::print("  {}: {}\n", change->keyword,
+               part(change->what, {{"count", std::to_string(change->make(mesh, chosen(mesh, factor)))}}));
   tell_what_hangs(mesh);
   print_counts(nodes, cells, mesh);
   return mesh;

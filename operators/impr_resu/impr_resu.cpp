@@ -210,7 +210,7 @@ void print_med(const Order& order, const Base& base, Concepts& concepts, const f
               field.instant = printed.instant;
               med.add_field(layer.mesh, name, field, name + "_" + field.name, printed.order);
             }
-            written.add("pairing " + layer.name + " of " + printed.label);
+            written.add(part("pairing_layer_of", {{"layer", layer.name}, {"label", printed.label}}));
           }
           append_report(printed, report);
         });
@@ -298,7 +298,7 @@ fs::path print_vtu(const Order& order, const Base& base, Concepts& concepts, con
     texts.push_back({step.label, step.instant, vtu_text(concepts.mesh(step.mesh), step.fields)});
   for (const auto& [name, own] : layers) {
     const fs::path beside = file.parent_path() / (file.stem().string() + "_" + name + ".pvd");
-    report.push_back(fmt::format("pairing {}: {}", name, write_vtu(beside, append, own).string()));
+    report.push_back(fmt::format("{}: {}", part("pairing_layer", {{"layer", name}}), write_vtu(beside, append, own).string()));
   }
   return texts.empty() && !layers.empty() ? file : write_vtu(file, append, texts);
 }
@@ -313,13 +313,13 @@ void print_listing(const Order& order, const Base& base, Concepts& concepts, con
       each_pairing(order, base, concepts, one, [&](PrintedPairing&& printed) {
         out << '\n' << printed.title() << '\n';
         for (const std::string& line : printed.view.report) out << line << '\n';
-        written.add("pairing of " + printed.label);
+        written.add(part("pairing_of", {{"label", printed.label}}));
       });
       continue;
     }
     if (one.has("MAILLAGE")) {
       const std::string id = one.concept_id("MAILLAGE");
-      out << "\nmesh " << base.label(id) << '\n';
+      out << '\n' << part("mesh") << ' ' << base.label(id) << '\n';
       list_mesh(out, concepts.mesh(id), one.yes("INFO_MAILLAGE"));
       written.add(part("mesh") + " " + base.label(id));
       if (!has_fields(one)) continue;
@@ -333,7 +333,9 @@ void print_listing(const Order& order, const Base& base, Concepts& concepts, con
     what.values = !what.greatest && !what.least;
     each_field(base, result, mesh, one, [&](PrintedField&& printed) {
       list_field(out, mesh, printed.field,
-                 (one.has("CHAM_GD") ? "field " : "result " + result.label + ", field ") + printed.field.name, what);
+                 one.has("CHAM_GD") ? part("field") + " " + printed.field.name
+                                    : part("listed_field", {{"result", result.label}, {"field", printed.field.name}}),
+                 what);
       written.add(part("field_of", {{"field", printed.field.name}, {"result", result.label}}));
     });
   }
