@@ -40,6 +40,8 @@ std::vector<double> tabulated(const Source& source) {
   const Function& test = source.materials.function(source.cell, "TRACTION/SIGM", source.element);
   const double young = source.parameter("ELAS/E");
   if (test.parameter != "EPSI") source.refuse(part("curve_of_another", {{"parameter", test.parameter}}));
+  for (const std::string& rule : test.interpolation)
+    if (rule != "LIN") source.refuse(part("curve_not_straight", {{"rule", rule}}));
   std::vector<double> strain = test.x, stress = test.y;
   if (strain.front() == 0 && stress.front() == 0) {
     strain.erase(strain.begin());
