@@ -82,6 +82,7 @@ void ContactNotices::remember_what_meets() {
 void ContactNotices::start(double instant) {
   const ContactState* const contact = present_.contact;
   if (!contact) return;
+  started_ = true;
   remember_what_meets();
   std::int64_t locked = 0;
   std::size_t first = 0;
@@ -133,6 +134,7 @@ void ContactNotices::accept(const SolvedInstant& solved) {
 }
 
 void ContactNotices::end(bool /*completed*/) {
+  if (!started_) return;  // what ends the computation came before its first state
   for (std::size_t zone = 0; present_.contact && zone < present_.problem.contact->zones.size(); ++zone)
     if (const ContactZone& names = present_.problem.contact->zones[zone]; !met_.contains(zone))
       inform("EVOLUTION_43", {{"slave", names.slave_group}, {"master", names.master_group}});
@@ -244,6 +246,7 @@ void ContactNotices::resume(const hdf5::Group& group) {
   if (group.has("met"))  // a record of before it was kept: zones that meet again are known again
     for (const std::int64_t zone : group.read<std::int64_t>("met")) met_.insert(static_cast<std::size_t>(zone));
   for (const std::int64_t zone : group.read<std::int64_t>("too_deep")) too_deep_.insert(static_cast<std::size_t>(zone));
+  started_ = true;
 }
 
 }  // namespace lacon

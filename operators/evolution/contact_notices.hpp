@@ -62,6 +62,7 @@ class ContactNotices : public EvolutionObserver {
   std::map<std::int32_t, double> strain_;            ///< of these, the largest that a pressure has made
   PiercedZones missed_;                              ///< of these, what nothing pressed at
   std::map<std::int32_t, Alternating> alternating_;  ///< zones whose pressures do, at the instant where they do most
+  bool started_ = false;                             ///< a state has been looked at
   std::set<std::size_t> met_;                        ///< zones of which a patch has had a master
   std::set<std::size_t> too_deep_;                   ///< zones of which it has been told
   std::set<std::size_t> overlapping_;                ///< likewise, of EVOLUTION_35

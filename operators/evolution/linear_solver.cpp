@@ -56,8 +56,10 @@ MumpsOptions direct_options(const Keywords& solver, const Base& base) {
 
 PetscOptions iterative_options(const Keywords& solver, const Base& base, const StaticProblem& problem,
                                const std::string& preconditioner) {
+  const double tolerance = solver.real("RESI_RELA");
+  if (!(tolerance > 0 && tolerance < 1)) fail("SOLVER_15", {{"value", fmt::format("{:g}", tolerance)}});
   PetscOptions options{.preconditioner = preconditioner,
-                       .tolerance = solver.real("RESI_RELA"),
+                       .tolerance = tolerance,
                        .geometry = geometry_of(problem, Bodies(problem.mesh)),
                        .direct = direct_options(solver, base)};
   if (solver.has("ALGORITHME")) options.algorithm = solver.text("ALGORITHME");

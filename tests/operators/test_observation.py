@@ -106,6 +106,7 @@ class Observation(TwoSquares):
             with self.subTest(identifier):
                 run = self.assert_fails(identifier, *words, OBSERVATION=[occurrence])
                 self.assertNotIn("Instant de calcul", run.stdout)
+                self.assertEqual(self.ids(run), [identifier])  # nothing about contact, of which no instant has shown anything
 
 
 class Events(TwoSquares):

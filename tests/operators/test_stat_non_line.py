@@ -356,6 +356,12 @@ class StatNonLine(TwoSquares):
         self.assertIn("METHODE='GCPC'", run.stderr)
         np.testing.assert_array_equal(self.read_field("result_9", "DEPL", 1).values, expected)
 
+    def test_iterations_that_would_never_or_at_once_end_are_refused(self):
+        for share in (-1e-8, 0.0, 1.0, 2.0):
+            with self.subTest(share):
+                self.assert_fails("SOLVER_15", f"{share:g}", SOLVEUR={"METHODE": "PETSC", "RESI_RELA": share})
+        self.assertEqual(self.solve(SOLVEUR={"METHODE": "MUMPS", "RESI_RELA": -1.0}).status, 0)  # of a factor it is not checked then
+
     def test_auto_takes_mumps_for_few_equations_and_says_so(self):
         self.assertEqual(self.solve().status, 0)
         expected = self.read_field("result_9", "DEPL", 1).values
