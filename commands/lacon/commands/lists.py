@@ -1,6 +1,7 @@
 """DEFI_LIST_REEL, DEFI_LIST_ENTI and DEFI_LIST_INST."""
 
 import json
+import math
 
 from ..core.catalog import part
 
@@ -78,6 +79,8 @@ def defi_list_inst(call):
         _increasing(call, values, path)
     if len(values) < 2:
         call.fail("DEFI_LIST_3", path)
+    if k["METHODE"] == "AUTO" and definition["PAS_MINI"] > definition.get("PAS_MAXI", math.inf):
+        call.fail("DEFI_LIST_7", "DEFI_LIST/PAS_MINI", shortest=definition["PAS_MINI"], longest=definition["PAS_MAXI"])
     failures = {}
     for i, factor in enumerate(k["ECHEC"], 1):
         if factor["EVENEMENT"] in failures:
