@@ -114,11 +114,37 @@ void run(BlockProduct<Real> product, const BlockEntries<Real>& a, const double* 
   PetscLogFlops(2.0 * static_cast<double>(a.column.size()) * a.rows * a.columns);
 }
 
+/// y += A x of half a symmetric matrix.
 template <class Real>
-PetscErrorCode apply(Mat shell, BlockProduct<Real> product, Vec x, Vec y) {
+void add_half(const Parts<Real>& parts, const double* x, double* y) {
+  struct alignas(padded_size * sizeof(double)) Padded {
+    double value[padded_size];
+  };
+  static std::vector<Padded> padded_x, padded_y;  // of no product but this one
+  const int size = parts.own.rows;
+  const std::size_t n = parts.own.offset.size() - 1;
+  padded_x.resize(n), padded_y.resize(n);
+  for (std::size_t i = 0; i < n; ++i)
+    for (int r = 0; r < padded_size; ++r) {
+      padded_x[i].value[r] = r < size ? x[i * size + r] : 0;
+      padded_y[i].value[r] = r < size ? y[i * size + r] : 0;
+    }
+  run(parts.kernels->add_half, parts.own, padded_x.data()->value, padded_y.data()->value);
+  for (std::size_t i = 0; i < n; ++i)
+    for (int r = 0; r < size; ++r) y[i * size + r] = padded_y[i].value[r];
+}
+
+/// y = A x, or y += A x.
+template <class Real>
+PetscErrorCode apply(Mat shell, Vec x, Vec y, bool adds) {
   const Parts<Real>& parts = parts_of<Real>(shell);
   if (parts.scatter) PetscCall(VecScatterBegin(parts.scatter, x, parts.of_others, INSERT_VALUES, SCATTER_FORWARD));
-  run(product, parts.own, Reading(x), Writing(y));
+  if (parts.own.is_half) {
+    if (!adds) PetscCall(VecSet(y, 0));
+    add_half(parts, Reading(x), Writing(y));
+  } else {
+    run(adds ? parts.kernels->add : parts.kernels->multiply, parts.own, Reading(x), Writing(y));
+  }
   if (!parts.scatter) return 0;
   PetscCall(VecScatterEnd(parts.scatter, x, parts.of_others, INSERT_VALUES, SCATTER_FORWARD));
   run(parts.kernels->add, parts.others, Reading(parts.of_others), Writing(y));
@@ -127,13 +153,13 @@ PetscErrorCode apply(Mat shell, BlockProduct<Real> product, Vec x, Vec y) {
 
 template <class Real>
 PetscErrorCode multiply(Mat shell, Vec x, Vec y) {
-  return apply<Real>(shell, parts_of<Real>(shell).kernels->multiply, x, y);
+  return apply<Real>(shell, x, y, false);
 }
 
 template <class Real>
 PetscErrorCode multiply_add(Mat shell, Vec x, Vec y, Vec z) {
   if (y != z) PetscCall(VecCopy(y, z));
-  return apply<Real>(shell, parts_of<Real>(shell).kernels->add, x, z);
+  return apply<Real>(shell, x, z, true);
 }
 
 template <class Real>
@@ -146,7 +172,10 @@ PetscErrorCode multiply_transposed(Mat shell, Vec x, Vec y) {
     PetscCall(VecScatterBegin(parts.scatter, parts.of_others, y, ADD_VALUES, SCATTER_REVERSE));
     PetscCall(VecScatterEnd(parts.scatter, parts.of_others, y, ADD_VALUES, SCATTER_REVERSE));
   }
-  run(parts.kernels->add_transposed, parts.own, Reading(x), Writing(y));
+  if (parts.own.is_half)
+    add_half(parts, Reading(x), Writing(y));
+  else
+    run(parts.kernels->add_transposed, parts.own, Reading(x), Writing(y));
   return 0;
 }
 
@@ -230,7 +259,7 @@ SplitBlocks<Real> blocks_of(Mat matrix, int rows, int columns) {
 /// The same blocks in single precision.
 SplitBlocks<float> in_single_precision(const SplitBlocks<double>& blocks) {
   const auto rounded = [](const BlockEntries<double>& from) {
-    return BlockEntries<float>{from.rows, from.columns, from.offset, from.column, {from.value.begin(), from.value.end()}};
+    return BlockEntries<float>{from.rows, from.columns, from.is_half, from.offset, from.column, {from.value.begin(), from.value.end()}};
   };
   return {rounded(blocks.own), rounded(blocks.others), blocks.column_of_others};
 }
@@ -265,6 +294,15 @@ OwnedMat in_blocks(SplitBlocks<double> rows) {
   return shell;
 }
 
+OwnedMat in_blocks(SplitBlocks<float> rows, PetscInt n_columns) {
+  const auto n = static_cast<PetscInt>(rows.own.offset.size() - 1) * rows.own.rows;
+  OwnedMat shell = empty_shell<float>(PETSC_COMM_WORLD, rows.own.rows, rows.own.columns, n, n_columns);
+  fill(shell, std::move(rows));
+  return shell;
+}
+
+const SplitBlocks<double>& entries_of(Mat blocks) { return parts_of<double>(blocks); }
+
 bool has_blocks(Mat matrix) {
   PetscInt rows = 0, columns = 0;
   PetscBool is_aij = PETSC_FALSE;
@@ -284,41 +322,49 @@ OwnedMat in_single_blocks(Mat matrix) {
   return shell;
 }
 
-void fill(Mat blocks, Mat matrix) {
-  const BlockKernels<double>& kernels = *parts_of<double>(blocks).kernels;
-  fill(blocks, blocks_of<double>(matrix, kernels.rows, kernels.columns));
-}
-
-OwnedMat taken_out(Mat blocks) {
-  SplitBlocks<double>& entries = parts_of<double>(blocks);
-  const int rows = entries.own.rows, columns = entries.own.columns;
-  PetscInt n = 0, m = 0, first = 0;
-  checked(MatGetLocalSize(blocks, &n, &m));
+OwnedMat as_aij(Mat blocks) {
+  const SplitBlocks<double>& entries = entries_of(blocks);
+  const int size = entries.own.rows;
+  const auto n_rows = static_cast<std::int32_t>(entries.own.offset.size() - 1);
+  PetscInt first = 0;
   checked(MatGetOwnershipRangeColumn(blocks, &first, nullptr));
+  struct Block {
+    std::int32_t column;
+    const double* value;
+    int step_of_row, step_of_column;
+  };
+  std::vector<std::vector<Block>> rows(n_rows);
+  for (std::int32_t i = 0; i < n_rows; ++i) {
+    for (std::int32_t k = entries.own.offset[i]; k < entries.own.offset[i + 1]; ++k) {
+      const std::int32_t j = entries.own.column[k];
+      const double* const value = entries.own.value.data() + static_cast<std::int64_t>(k) * size * size;
+      const bool by_rows = entries.own.is_half;
+      rows[i].push_back({first / size + j, value, by_rows ? size : 1, by_rows ? 1 : size});
+      if (entries.own.is_half && j != i) rows[j].push_back({first / size + i, value, 1, size});
+    }
+    if (entries.column_of_others.empty()) continue;
+    for (std::int32_t k = entries.others.offset[i]; k < entries.others.offset[i + 1]; ++k)
+      rows[i].push_back({entries.column_of_others[entries.others.column[k]],
+                         entries.others.value.data() + static_cast<std::int64_t>(k) * size * size, 1, size});
+  }
   std::vector<PetscInt> offset{0}, column;
   std::vector<double> value;
-  const std::size_t count = (entries.own.column.size() + entries.others.column.size()) * rows * columns;
-  column.reserve(count), value.reserve(count);
-  const auto append = [&](const BlockEntries<double>& from, PetscInt i, int r, const auto& number) {
-    for (std::int32_t k = from.offset[i]; k < from.offset[i + 1]; ++k)
-      for (int c = 0; c < columns; ++c) {
-        column.push_back(number(from.column[k]) * columns + c);
-        value.push_back(from.value[(static_cast<std::size_t>(k) * columns + c) * rows + r]);
-      }
-  };
-  const bool has_others = !entries.column_of_others.empty();
-  for (PetscInt i = 0; i < n / rows; ++i)
-    for (int r = 0; r < rows; ++r) {
-      append(entries.own, i, r, [&](std::int32_t block) { return first / columns + block; });
-      if (has_others) append(entries.others, i, r, [&](std::int32_t block) { return entries.column_of_others[block]; });
+  for (std::vector<Block>& row : rows) {
+    std::ranges::sort(row, {}, &Block::column);
+    for (int r = 0; r < size; ++r) {
+      for (const Block& block : row)
+        for (int c = 0; c < size; ++c) {
+          column.push_back(block.column * size + c);
+          value.push_back(block.value[r * block.step_of_row + c * block.step_of_column]);
+        }
       offset.push_back(static_cast<PetscInt>(column.size()));
     }
-  entries = {};
+  }
   OwnedMat made;
   checked(MatCreate(PetscObjectComm(reinterpret_cast<PetscObject>(blocks)), made.out()));
-  checked(MatSetSizes(made, n, m, PETSC_DETERMINE, PETSC_DETERMINE));
+  checked(MatSetSizes(made, n_rows * size, n_rows * size, PETSC_DETERMINE, PETSC_DETERMINE));
   checked(MatSetType(made, MATAIJ));
-  checked(MatSetBlockSizes(made, rows, columns));
+  checked(MatSetBlockSizes(made, size, size));
   checked(MatSeqAIJSetPreallocationCSR(made, offset.data(), column.data(), value.data()));
   checked(MatMPIAIJSetPreallocationCSR(made, offset.data(), column.data(), value.data()));
   return made;

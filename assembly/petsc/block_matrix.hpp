@@ -11,6 +11,10 @@ namespace lacon {
 /// A shell of PETSC_COMM_WORLD with these own rows of a square matrix. MatMult, MatMultAdd, their transposes and
 /// MatGetDiagonal work, with the same bits in every run.
 OwnedMat in_blocks(SplitBlocks<double> rows);
+/// The same of any matrix, for a preconditioner. @param n_columns  own ones
+OwnedMat in_blocks(SplitBlocks<float> rows, PetscInt n_columns);
+/// What a shell in double precision has.
+const SplitBlocks<double>& entries_of(Mat blocks);
 
 /// Whether there is a kernel in single precision for the blocks that an AIJ matrix says it has.
 bool has_blocks(Mat matrix);
@@ -18,9 +22,7 @@ bool has_blocks(Mat matrix);
 /// no more.
 OwnedMat in_single_blocks(Mat matrix);
 
-/// An AIJ matrix of the values of a shell in double precision, which is left without them: both take as much memory.
-OwnedMat taken_out(Mat blocks);
-/// What an AIJ matrix has goes back into the shell that it was taken out of.
-void fill(Mat blocks, Mat matrix);
+/// An AIJ matrix of the values of a shell in double precision.
+OwnedMat as_aij(Mat blocks);
 
 }  // namespace lacon

@@ -120,15 +120,23 @@ struct BlockPattern {
   }
 };
 
-/// Rows of K in whole blocks. Entries are summed up as they come.
-/// @param for_each  goes through all entries of own rows: calls what it is given with row, column, value
+/// Rows of K in whole blocks. Entries are summed up as they come. @param is_symmetric  half of the own columns will do
+/// @param for_each  goes through all entries of own rows: calls what it is given with row, column, value, and whether it is K's
+/// @param[out] is_of_k  as in BlockRows
 template <class ForEach>
-SplitBlocks<double> rows_of_blocks(const Range& blocks, int dimension, const ForEach& for_each) {
+SplitBlocks<double> rows_of_blocks(const Range& blocks, int dimension, bool is_symmetric, const ForEach& for_each,
+                                   std::vector<std::uint8_t>& is_of_k) {
   const auto block_of = [&](std::int32_t row) { return dimension == 3 ? row / 3 : row / dimension; };  // division by 3 is quick
+  const auto is_left_out = [&](std::int32_t own_row, std::int32_t block) {
+    return is_symmetric && block >= blocks.first && block < own_row;
+  };
   const BlockPattern pattern(blocks.last - blocks.first, [&](const auto& use) {
     for (std::int64_t block = blocks.first; block < blocks.last; ++block)
       use(block - blocks.first, static_cast<std::int32_t>(block));
-    for_each([&](std::int32_t row, std::int32_t column, double) { use(block_of(row) - blocks.first, block_of(column)); });
+    for_each([&](std::int32_t row, std::int32_t column, double, bool) {
+      const std::int32_t own_row = block_of(row), block = block_of(column);
+      if (!is_left_out(own_row, block)) use(own_row - blocks.first, block);
+    });
   });
   const int size = dimension * dimension;
   if (size * std::ssize(pattern.column) > std::numeric_limits<std::int32_t>::max()) throw std::length_error("PETSc: 2^31");
@@ -152,13 +160,23 @@ SplitBlocks<double> rows_of_blocks(const Range& blocks, int dimension, const For
     part->rows = part->columns = dimension;
     part->value.assign(part->column.size() * size + read_behind, 0.0);
   }
-  for_each([&](std::int32_t row, std::int32_t column, double value) {
-    const std::int32_t block = block_of(column), own_row = block_of(row), number = number_of(block);
+  rows.own.is_half = is_symmetric;
+  is_of_k.assign(rows.own.column.size(), 0);
+  std::int32_t row_before = -1, block_before = -1;  // entries of a block follow each other
+  std::int64_t at = 0;
+  for_each([&](std::int32_t row, std::int32_t column, double value, bool is_k) {
+    const std::int32_t block = block_of(column), own_row = block_of(row);
+    if (is_left_out(own_row, block)) return;
     BlockEntries<double>& part = is_own(block) ? rows.own : rows.others;
-    const std::int64_t i = own_row - blocks.first;
-    const auto first = part.column.begin() + part.offset[i], last = part.column.begin() + part.offset[i + 1];
-    const std::int64_t at = std::lower_bound(first, last, number) - part.column.begin();
-    part.value[at * size + (column - block * dimension) * dimension + row - own_row * dimension] += value;
+    if (own_row != row_before || block != block_before) {
+      const std::int64_t i = own_row - blocks.first;
+      const auto first = part.column.begin() + part.offset[i], last = part.column.begin() + part.offset[i + 1];
+      at = std::lower_bound(first, last, number_of(block)) - part.column.begin();
+      row_before = own_row, block_before = block;
+      if (is_k && is_own(block)) is_of_k[at] = 1;
+    }
+    const std::int64_t r = row - own_row * dimension, c = column - block * dimension;
+    part.value[at * size + (part.is_half ? r * dimension + c : c * dimension + r)] += value;
   });
   return rows;
 }
@@ -290,20 +308,20 @@ BlockRows rows_of_part(const BlockSystem& system, const OwnEntries& entries, int
   for (const std::int32_t place : system.place)
     if (is_own(place)) made.is[place - own.first] = 1;
 
-  made.k = rows_of_blocks(made.blocks, dimension, [&](const auto& use) {  // K + B W C
+  made.k = rows_of_blocks(made.blocks, dimension, system.sizes.is_symmetric, [&](const auto& use) {  // K + B W C
     for_each_entry(system, entries, [&](std::int32_t row, std::int32_t column, double value) {
-      if (column >= 0 && is_own(row)) use(row, column, value);
+      if (column >= 0 && is_own(row)) use(row, column, value, true);
     });
     for (std::size_t i = 0; i < known.multipliers.size(); ++i) {
       const double weight = scales.weight[i];
       if (weight == 0) continue;
       for (const Entry& b : known.multipliers[i].b)
         if (is_own(b.column))
-          for (const Entry& c : known.multipliers[i].c) use(b.column, c.column, weight * b.value * c.value);
+          for (const Entry& c : known.multipliers[i].c) use(b.column, c.column, weight * b.value * c.value, false);
     }
     for (auto row = static_cast<std::int32_t>(own.first); row < own.last; ++row)
-      if (known.diagonal[row] == 0) use(row, row, made.is[row - own.first] ? 0.0 : known.mean);
-  });
+      if (known.diagonal[row] == 0) use(row, row, made.is[row - own.first] ? 0.0 : known.mean, true);
+  }, made.is_of_k);
   made.b = rows_of_b(own, known.multipliers);
   made.c = made.d = {.first = made.multipliers.first, .last = made.multipliers.last};
   for (std::int64_t i = made.multipliers.first; i < made.multipliers.last; ++i) {

@@ -33,6 +33,7 @@ struct Range {
 struct BlockRows {
   Range blocks, multipliers;     ///< own ones
   SplitBlocks<double> k;         ///< K with its weights; own rows
+  std::vector<std::uint8_t> is_of_k;  ///< of its blocks in own columns: 0 where weights alone make them
   Rows b, c, d;                  ///< likewise
   std::vector<double> scale;     ///< of multipliers, own ones
   std::vector<double> schur;     ///< what stands for the Schur complement: its diagonal, own rows

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "lacon/assembly/petsc/block_matrix.hpp"
+#include "lacon/assembly/petsc/near_null_space.hpp"
 
 namespace lacon {
 namespace {
@@ -13,17 +14,6 @@ namespace {
 constexpr int restart = 60;
 /// Solutions of the residual that is left, where what the iterations follow is not the residual itself.
 constexpr int most_rounds = 4;
-
-std::string last_error;
-
-PetscErrorCode note_error(MPI_Comm, int, const char* function, const char*, PetscErrorCode code, PetscErrorType type,
-                          const char* text, void*) {
-  if (type == PETSC_ERROR_INITIAL) {
-    last_error = text && *text ? text : "error " + std::to_string(code);
-    last_error += std::string(" (") + function + ")";
-  }
-  return code;
-}
 
 /// The diagonal that all processes have together.
 std::vector<double> whole_diagonal(const BlockSystem& system, const OwnEntries& entries, int part) {
@@ -53,44 +43,6 @@ OwnedMat make_matrix(const Rows& rows, std::int64_t own_columns) {
   return made;
 }
 
-/// Rigid motions of the displacements, orthonormal; zero where one is imposed. @param middle  of all nodes
-void set_rigid_motions(Mat k, int dimension, const Multigrid::Nodes& nodes, const double* middle) {
-  const int n_turns = dimension == 3 ? 3 : 1;
-  std::vector<Vec> motions;
-  for (int motion = 0; motion < dimension + n_turns; ++motion) {
-    Vec v = nullptr;
-    double* values = nullptr;
-    checked(MatCreateVecs(k, &v, nullptr));
-    checked(VecGetArray(v, &values));
-    for (std::size_t at = 0; at < nodes.is_free.size(); at += dimension) {
-      const double* x = &nodes.coordinates[at];
-      const int turn = motion - dimension, from = dimension == 3 ? (turn + 1) % 3 : 0, to = dimension == 3 ? (turn + 2) % 3 : 1;
-      for (int i = 0; i < dimension; ++i) {
-        const double moved = turn < 0 ? i == motion : i == to ? x[from] - middle[from] : i == from ? middle[to] - x[to] : 0;
-        values[at + i] = nodes.is_free[at + i] ? moved : 0;
-      }
-    }
-    checked(VecRestoreArray(v, &values));
-    double before = 0, after = 0;
-    checked(VecNorm(v, NORM_2, &before));
-    for (const Vec other : motions) {
-      double product = 0;
-      checked(VecDot(v, other, &product));
-      checked(VecAXPY(v, -product, other));
-    }
-    checked(VecNormalize(v, &after));
-    if (after > 1e-8 * before)
-      motions.push_back(v);
-    else
-      checked(VecDestroy(&v));
-  }
-  MatNullSpace space = nullptr;
-  checked(MatNullSpaceCreate(PETSC_COMM_WORLD, PETSC_FALSE, static_cast<PetscInt>(motions.size()), motions.data(), &space));
-  checked(MatSetNearNullSpace(k, space));
-  checked(MatNullSpaceDestroy(&space));
-  for (Vec& v : motions) checked(VecDestroy(&v));
-}
-
 /// How PETSc spells a name of SOLVEUR; whether its preconditioner has to be symmetric and positive.
 struct Algorithm {
   KSPType type;
@@ -104,19 +56,7 @@ Algorithm algorithm_of(const std::string& name) {
   return {KSPFGMRES};
 }
 
-void set(const std::string& name, const std::string& value) {
-  PetscBool known = PETSC_FALSE;
-  checked(PetscOptionsHasName(nullptr, nullptr, name.c_str(), &known));
-  if (!known) checked(PetscOptionsSetValue(nullptr, name.c_str(), value.c_str()));  // PETSC_OPTIONS of the user stand
-}
-
 }  // namespace
-
-void checked(PetscErrorCode code) {
-  if (code) throw std::runtime_error("PETSc: " + std::exchange(last_error, std::string()));
-}
-
-void catch_errors() { checked(PetscPushErrorHandler(note_error, nullptr)); }
 
 Krylov::Krylov(const BlockSystem& system, OwnEntries entries, const KrylovOptions& options, Multigrid& multigrid)
     : options_(options),
@@ -142,9 +82,10 @@ Krylov::Krylov(const BlockSystem& system, OwnEntries entries, const KrylovOption
   nodes_.coordinates.assign(system.coordinates.begin() + rows.blocks.first * dimension_,
                             system.coordinates.begin() + rows.blocks.last * dimension_);
   nodes_.is_free = rows.is;
+  nodes_.is_link = std::move(rows.is_of_k);
   for (std::int64_t node = 0; node < system.sizes.n_blocks; ++node)
     for (int i = 0; i < dimension_; ++i)
-      middle_[i] += system.coordinates[node * dimension_ + i] / static_cast<double>(system.sizes.n_blocks);
+      nodes_.middle[i] += system.coordinates[node * dimension_ + i] / static_cast<double>(system.sizes.n_blocks);
   set_up_blocks(rows);
 }
 
@@ -184,41 +125,30 @@ void Krylov::set_up_displacements(KSP displacements) {
   PC pc = nullptr;
   checked(KSPSetOperators(displacements, k_, k_));
   if (name == "GAMG" && multigrid_.suits(nodes_)) return multigrid_.give_to(displacements);
-  aij_ = taken_out(k_);
+  if (name == "GAMG") return multigrid_.make(displacements, nodes_);
+  aij_ = as_aij(k_);
   checked(KSPSetOperators(displacements, k_, aij_));
-  set_rigid_motions(aij_, static_cast<int>(dimension_), nodes_, middle_);
   checked(KSPGetPC(displacements, &pc));
   checked(PCGetOptionsPrefix(pc, &prefix));
   const std::string own = std::string("-") + (prefix ? prefix : "");
   if (name == "BOOMER") {
+    set_near_null_space(aij_, rigid_motions(aij_, static_cast<int>(dimension_), nodes_));
     checked(PCSetType(pc, PCHYPRE));
     checked(PCHYPRESetType(pc, "boomeramg"));
-    set(own + "pc_hypre_boomeramg_strong_threshold", dimension_ == 3 ? "0.5" : "0.25");
-    set(own + "pc_hypre_boomeramg_nodal_coarsen", "4");
-    set(own + "pc_hypre_boomeramg_vec_interp_variant", "2");
+    set_option(own + "pc_hypre_boomeramg_strong_threshold", dimension_ == 3 ? "0.5" : "0.25");
+    set_option(own + "pc_hypre_boomeramg_nodal_coarsen", "4");
+    set_option(own + "pc_hypre_boomeramg_vec_interp_variant", "2");
   } else if (name == "JACOBI") {
     checked(PCSetType(pc, PCJACOBI));
   } else if (name == "SOR") {
     checked(PCSetType(pc, PCSOR));
   } else if (name == "LDLT_INC") {
     checked(PCSetType(pc, PCBJACOBI));
-  } else if (name == "SANS") {
-    checked(PCSetType(pc, PCNONE));
   } else {
-    checked(PCSetType(pc, PCGAMG));
-    // aggregates of many nodes make few entries; a Chebyshev polynomial of degree 4 is worth them. Its lower end is where they
-    // take over
-    set(own + "pc_gamg_threshold", "0");
-    set(own + "pc_gamg_aggressive_coarsening", "2");  // the second one makes dense rows: a quarter of all products
-    set(own + "mg_levels_pc_type", "jacobi");         // SOR stops at an aggregate of one node, whose turns have no diagonal
-    set(own + "mg_levels_ksp_max_it", "4");
-    set(own + "mg_levels_ksp_chebyshev_esteig", "0,0.04,0,1.1");
+    checked(PCSetType(pc, PCNONE));
   }
   checked(PCSetFromOptions(pc));
   checked(KSPSetUp(displacements));  // now, not in the first iteration
-  PetscBool is_multigrid = PETSC_FALSE;
-  checked(PetscObjectTypeCompare(reinterpret_cast<PetscObject>(pc), PCGAMG, &is_multigrid));
-  if (is_multigrid) multigrid_.take_from(displacements, nodes_);
 }
 
 void Krylov::set_up() {
@@ -229,8 +159,8 @@ void Krylov::set_up() {
   checked(KSPSetOperators(ksp_, matrix, matrix));
   checked(KSPSetType(ksp_, algorithm.type));
   if (!algorithm.is_symmetric) checked(KSPSetPCSide(ksp_, PC_RIGHT));
-  set("-ksp_gmres_restart", std::to_string(restart));
-  set("-ksp_gcr_restart", std::to_string(restart));
+  set_option("-ksp_gmres_restart", std::to_string(restart));
+  set_option("-ksp_gcr_restart", std::to_string(restart));
   PC pc = nullptr;
   checked(KSPGetPC(ksp_, &pc));
   if (n_multipliers_) {
@@ -243,9 +173,9 @@ void Krylov::set_up() {
     checked(PCFieldSplitSetSchurFactType(
         pc, algorithm.is_symmetric ? PC_FIELDSPLIT_SCHUR_FACT_DIAG : PC_FIELDSPLIT_SCHUR_FACT_UPPER));
     checked(PCFieldSplitSetSchurPre(pc, PC_FIELDSPLIT_SCHUR_PRE_USER, schur_));
-    set("-fieldsplit_p_ksp_type", "preonly");
-    set("-fieldsplit_p_pc_type", "jacobi");
-    set("-fieldsplit_u_ksp_type", "preonly");
+    set_option("-fieldsplit_p_ksp_type", "preonly");
+    set_option("-fieldsplit_p_pc_type", "jacobi");
+    set_option("-fieldsplit_u_ksp_type", "preonly");
   }
   checked(KSPSetFromOptions(ksp_));
   if (n_multipliers_) {
@@ -261,9 +191,6 @@ void Krylov::set_up() {
   }
   checked(KSPSetUp(ksp_));
   checked(KSPSetUpOnBlocks(ksp_));
-  if (aij_) fill(k_, aij_);
-  if (!multigrid_.is_there()) return;
-  aij_ = {};
 }
 
 void Krylov::load(std::span<const double> right_side) {

@@ -44,14 +44,13 @@ class Krylov {
 
   KrylovOptions options_;
   Multigrid& multigrid_;
-  Multigrid::Nodes nodes_;
+  OwnNodes nodes_;
   bool is_symmetric_;
   std::int64_t n_multipliers_, dimension_;
   std::vector<std::int32_t> equation_;  ///< of own rows, displacements first; -1: imposed
   std::vector<double> scale_;           ///< of them
   std::vector<double> weight_;          ///< of own multipliers
-  double middle_[3] = {0, 0, 0};        ///< of all nodes
-  OwnedMat aij_;                        ///< K for preconditioners that are made of it, as long as they need it
+  OwnedMat aij_;                        ///< K for preconditioners that are made of it
   OwnedMat k_, b_, c_, d_, matrix_, schur_;
   OwnedVec side_, solution_, residual_, weighted_, added_;
   OwnedKsp ksp_;

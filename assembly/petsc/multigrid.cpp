@@ -2,16 +2,22 @@
 
 #include <algorithm>
 #include <cmath>
+#include <string>
 #include <utility>
 
 #include "lacon/assembly/petsc/block_matrix.hpp"
+#include "lacon/assembly/petsc/smoothed_aggregation.hpp"
 
 namespace lacon {
 namespace {
 
 /// Iterations that a new one takes the time of: as many may be lost before it is made.
 constexpr double of_setting_up = 30;
-/// Ends of the polynomials, of the largest eigenvalue that a few iterations see.
+/// A system of so few equations has a factor.
+constexpr PetscInt few_equations = 50;
+/// Of the polynomials that smooth.
+constexpr int degree = 4;
+/// Their ends, of the largest eigenvalue that a few iterations see.
 constexpr double lower_end = 0.04, upper_end = 1.1;
 constexpr int iterations_for_eigenvalue = 10;
 
@@ -37,11 +43,8 @@ double largest_eigenvalue(Mat matrix) {
   return largest;
 }
 
-/// The polynomials of a level, whose matrix is in blocks.
-void set_ends(KSP smoother) {
-  Mat matrix = nullptr;
-  checked(KSPGetOperators(smoother, &matrix, nullptr));
-  const double largest = largest_eigenvalue(matrix);
+/// The polynomials of a level. @param largest  eigenvalue of its matrix over the diagonal
+void set_ends(KSP smoother, double largest) {
   checked(KSPChebyshevSetEigenvalues(smoother, upper_end * largest, lower_end * largest));
 }
 
@@ -71,9 +74,67 @@ void forget_products(PC multigrid) {
   }
 }
 
+/// The levels of a multigrid that PETSC_OPTIONS of the user have not set otherwise. Aggregates of many nodes make few entries;
+/// a Chebyshev polynomial of degree 4 is worth them. Its lower end is where they take over.
+void set_options_of_gamg(PC pc) {
+  const char* prefix = nullptr;
+  checked(PCGetOptionsPrefix(pc, &prefix));
+  const std::string own = std::string("-") + (prefix ? prefix : "");
+  set_option(own + "pc_gamg_threshold", "0");
+  set_option(own + "pc_gamg_aggressive_coarsening", "1");
+  set_option(own + "mg_levels_pc_type", "jacobi");  // SOR stops at an aggregate of one node, whose turns have no diagonal
+  set_option(own + "mg_levels_ksp_max_it", std::to_string(degree));
+  set_option(own + "mg_levels_ksp_chebyshev_esteig", "0,0.04,0,1.1");
+}
+
+/// Levels that GAMG has made of AIJ matrices get blocks of single precision.
+void use_single_blocks(PC gamg) {
+  forget_products(gamg);
+  for (PetscInt level = finest_level(gamg); level > 0; --level) {
+    KSP smoother = nullptr;
+    Mat matrix = nullptr, interpolation = nullptr;
+    checked(PCMGGetSmoother(gamg, level, &smoother));
+    checked(KSPGetOperators(smoother, nullptr, &matrix));
+    checked(PCMGGetInterpolation(gamg, level, &interpolation));
+    if (has_blocks(matrix)) use_matrix(gamg, level, in_single_blocks(matrix));
+    if (!has_blocks(interpolation)) continue;
+    const OwnedMat blocks = in_single_blocks(interpolation);
+    checked(PCMGSetInterpolation(gamg, level, blocks));
+    checked(PCMGSetRestriction(gamg, level, blocks));
+  }
+}
+
+/// A level of polynomials above one of GAMG.
+void set_up_levels(PC pc, Mat fine, double largest, CoarseLevel coarse) {
+  KSP smoother = nullptr, below = nullptr;
+  PC of_level = nullptr;
+  PetscInt n_coarse = 0;
+  checked(MatGetLocalSize(coarse.matrix, nullptr, &n_coarse));
+  const OwnedMat interpolation = in_blocks(std::move(coarse.interpolation), n_coarse);
+  checked(PCSetType(pc, PCMG));
+  checked(PCMGSetLevels(pc, 2, nullptr));
+  checked(PCSetUseAmat(pc, PETSC_FALSE));  // which is in double precision
+  checked(PCMGSetInterpolation(pc, 1, interpolation));
+  checked(PCMGSetRestriction(pc, 1, interpolation));
+  checked(PCMGGetSmoother(pc, 1, &smoother));
+  checked(KSPSetType(smoother, KSPCHEBYSHEV));
+  checked(KSPSetNormType(smoother, KSP_NORM_NONE));
+  checked(KSPSetTolerances(smoother, PETSC_DEFAULT, PETSC_DEFAULT, PETSC_DEFAULT, degree));
+  checked(KSPGetPC(smoother, &of_level));
+  checked(PCSetType(of_level, PCJACOBI));
+  set_ends(smoother, largest);
+  use_matrix(pc, 1, fine);
+  checked(PCMGGetCoarseSolve(pc, &below));
+  checked(KSPSetType(below, KSPPREONLY));
+  checked(KSPSetOperators(below, coarse.matrix, coarse.matrix));
+  checked(KSPGetPC(below, &of_level));
+  checked(PCSetType(of_level, PCGAMG));
+  set_options_of_gamg(of_level);
+}
+
 }  // namespace
 
-bool Multigrid::suits(const Nodes& nodes) const {
+bool Multigrid::suits(const OwnNodes& nodes) const {
   int suits_here = pc_ && nodes.is_free == is_free_ && !is_old(), suits_all = 0;
   MPI_Allreduce(&suits_here, &suits_all, 1, MPI_INT, MPI_LAND, PETSC_COMM_WORLD);
   return suits_all;
@@ -81,47 +142,56 @@ bool Multigrid::suits(const Nodes& nodes) const {
 
 bool Multigrid::is_old() const { return lost_ >= of_setting_up; }
 
-void Multigrid::take_from(KSP displacements, const Nodes& nodes) {
+void Multigrid::make(KSP displacements, const OwnNodes& nodes) {
   forget();
   PC pc = nullptr;
+  Mat exact = nullptr;
+  PetscInt n = 0, dimension = 0, n_coarse = 0;
   checked(KSPGetPC(displacements, &pc));
-  if (finest_level(pc) == 0) return;  // a factor
+  checked(KSPGetOperators(displacements, &exact, nullptr));
+  checked(MatGetSize(exact, &n, nullptr));
+  checked(MatGetBlockSize(exact, &dimension));
+  if (n <= few_equations) {
+    const OwnedMat aij = as_aij(exact);
+    checked(KSPSetOperators(displacements, exact, aij));
+    checked(PCSetType(pc, PCREDUNDANT));
+    return checked(KSPSetUp(displacements));
+  }
+  const OwnedMat fine = in_single_blocks(exact);
+  const double largest = largest_eigenvalue(fine);
+  CoarseLevel coarse = coarse_level(PETSC_COMM_WORLD, entries_of(exact), nodes.is_link, nodes.is_free, nodes.coordinates,
+                                    rigid_motions(exact, dimension, nodes), largest);
+  checked(KSPSetOperators(displacements, exact, fine));
+  checked(MatGetSize(coarse.matrix, &n_coarse, nullptr));
+  if (n_coarse == 0) {  // everything is imposed
+    checked(PCSetType(pc, PCJACOBI));
+    return checked(KSPSetUp(displacements));
+  }
+  set_up_levels(pc, fine, largest, std::move(coarse));
+  checked(PCSetFromOptions(pc));
+  checked(KSPSetUp(displacements));  // now, not in the first iteration
+  KSP below = nullptr;
+  PC gamg = nullptr;
+  checked(PCMGGetCoarseSolve(pc, &below));
+  checked(KSPGetPC(below, &gamg));
+  use_single_blocks(gamg);
+  checked(PCSetReusePreconditioner(pc, PETSC_TRUE));
   checked(PetscObjectReference(reinterpret_cast<PetscObject>(pc)));
   *pc_.out() = pc;
-  forget_products(pc);
-  for (PetscInt level = finest_level(pc); level > 0; --level) {
-    KSP smoother = nullptr;
-    Mat matrix = nullptr, interpolation = nullptr;
-    checked(PCMGGetSmoother(pc, level, &smoother));
-    checked(KSPGetOperators(smoother, nullptr, &matrix));
-    checked(PCMGGetInterpolation(pc, level, &interpolation));
-    if (has_blocks(matrix)) use_matrix(pc, level, in_single_blocks(matrix));
-    if (!has_blocks(interpolation)) continue;
-    const OwnedMat blocks = in_single_blocks(interpolation);
-    checked(PCMGSetInterpolation(pc, level, blocks));
-    checked(PCMGSetRestriction(pc, level, blocks));
-  }
-  checked(PCSetReusePreconditioner(pc, PETSC_TRUE));
   is_free_ = nodes.is_free;
   is_new_ = true;
-  KSP smoother = nullptr;
-  checked(PCMGGetSmoother(pc, finest_level(pc), &smoother));
-  set_ends(smoother);
-  Mat exact = nullptr;
-  checked(KSPGetOperators(displacements, &exact, nullptr));
-  checked(KSPSetOperators(displacements, exact, finest()));
 }
 
 void Multigrid::give_to(KSP displacements) {
   Mat exact = nullptr;
+  KSP smoother = nullptr;
   checked(KSPGetOperators(displacements, &exact, nullptr));
   const OwnedMat blocks = in_single_blocks(exact);
   const OwnedMat kept = referenced(exact);
   checked(KSPSetPC(displacements, pc_));
   use_matrix(pc_, finest_level(pc_), blocks);
-  KSP smoother = nullptr;
   checked(PCMGGetSmoother(pc_, finest_level(pc_), &smoother));
-  set_ends(smoother);
+  set_ends(smoother, largest_eigenvalue(blocks));
   checked(KSPSetOperators(displacements, exact, blocks));
   is_new_ = false;
 }

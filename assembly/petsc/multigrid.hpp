@@ -1,30 +1,25 @@
 #pragma once
-// GAMG of displacements, which outlives the matrix that it was made for: to make it takes as long as many iterations, and
-// matrices of one study are like each other. Of another matrix its finest level has the entries, the coarser ones what they
-// had.
+// Multigrid of displacements by smoothed aggregation, which outlives the matrix that it was made for: to make it takes as long
+// as some iterations, and matrices of one study are like each other. Of another matrix its finest level has the entries, the
+// coarser ones what they had.
 #include <petscksp.h>
 
 #include <cstdint>
 #include <vector>
 
+#include "lacon/assembly/petsc/near_null_space.hpp"
 #include "lacon/assembly/petsc/owned.hpp"
 
 namespace lacon {
 
 class Multigrid {
  public:
-  /// What it depends on beside values: places of own nodes, and which of their displacements are free.
-  struct Nodes {
-    std::vector<double> coordinates;
-    std::vector<std::uint8_t> is_free;
-  };
-
   /// Whether it will do for another matrix of these nodes, wherever they have moved: on all processes, or on none.
-  bool suits(const Nodes& nodes) const;
-  /// Have a KSP precondition with it that is not set up, and whose matrix is in blocks of double precision.
+  bool suits(const OwnNodes& nodes) const;
+  /// Have a KSP precondition with it whose matrix is in blocks of double precision.
   void give_to(KSP displacements);
-  /// Take the one that a KSP has set up. Its levels get blocks of single precision, and need the matrix no more.
-  void take_from(KSP displacements, const Nodes& nodes);
+  /// Make one for such a KSP. Its levels are in single precision.
+  void make(KSP displacements, const OwnNodes& nodes);
   /// Of the matrix that it works for nothing is needed any more.
   void let_go() const;
   void forget() { *this = {}; }

@@ -63,6 +63,58 @@ TEST(BlockKernels, MultiplyAsTheWholeMatrix) {
   for (const int size : {2, 3}) expect_products(double_kernels(size, size), size, size);
 }
 
+/// A symmetric matrix of which half is there, in rows of blocks from the diagonal on.
+template <class Real>
+struct HalfExample {
+  explicit HalfExample(int size) : dense(Eigen::MatrixXd::Zero(n_rows * size, n_rows * size)) {
+    std::mt19937 random(8);
+    std::uniform_real_distribution<Real> entry(-1, 1);
+    blocks.rows = blocks.columns = size;
+    blocks.is_half = true;
+    for (int i = 0; i < n_rows; ++i) {
+      for (int j = i; j < n_rows; ++j) {
+        if (j != i && (i + j) % 3 == 0) continue;
+        blocks.column.push_back(j);
+        for (int r = 0; r < size; ++r)
+          for (int c = 0; c < size; ++c) {
+            const Real value = j == i && c < r ? static_cast<Real>(dense(i * size + r, j * size + c)) : entry(random);
+            blocks.value.push_back(value);
+            dense(i * size + r, j * size + c) = dense(j * size + c, i * size + r) = value;
+          }
+      }
+      blocks.offset.push_back(static_cast<std::int32_t>(blocks.column.size()));
+    }
+    blocks.value.insert(blocks.value.end(), read_behind, std::numeric_limits<Real>::max() / 4);  // counts for nothing
+  }
+  BlockEntries<Real> blocks;
+  Eigen::MatrixXd dense;
+};
+
+Eigen::VectorXd padded(const Eigen::VectorXd& x, int size) {
+  Eigen::VectorXd made = Eigen::VectorXd::Zero(x.size() / size * padded_size);
+  for (Eigen::Index i = 0; i < x.size(); ++i) made[i / size * padded_size + i % size] = x[i];
+  return made;
+}
+
+template <class Real>
+void expect_product_of_half(const BlockKernels<Real>* kernels, int size) {
+  ASSERT_NE(kernels, nullptr);
+  const HalfExample<Real> example(size);
+  const Eigen::VectorXd x = Eigen::VectorXd::Random(n_rows * size), y = Eigen::VectorXd::Random(n_rows * size);
+  const Eigen::VectorXd there = padded(x, size), expected = y + example.dense * x;
+  Eigen::VectorXd sum = padded(y, size);
+  kernels->add_half(example.blocks, there.data(), sum.data());
+  for (Eigen::Index i = 0; i < x.size(); ++i) EXPECT_NEAR(sum[i / size * padded_size + i % size], expected[i], 1e-14);
+}
+
+TEST(BlockKernels, HalfASymmetricMatrixIsAsGood) {
+  for (const int size : {2, 3}) {
+    expect_product_of_half(single_kernels(size, size), size);
+    expect_product_of_half(double_kernels(size, size), size);
+  }
+  EXPECT_EQ(single_kernels(3, 6)->add_half, nullptr);
+}
+
 TEST(BlockKernels, AreNotThereForOtherBlocks) {
   EXPECT_EQ(single_kernels(6, 5), nullptr);
   EXPECT_EQ(double_kernels(6, 6), nullptr);
