@@ -1,6 +1,6 @@
 #pragma once
-// Nodes put together, so that each aggregate becomes one node of a coarser level (Vanek, Mandel, Brezina, "Algebraic multigrid by
-// smoothed aggregation for second and fourth order elliptic problems", 1996, algorithm 5.1).
+// Nodes put together, so that each aggregate becomes one node of a coarser level (Vanek, Mandel, Brezina, "Algebraic multigrid
+// by smoothed aggregation for second and fourth order elliptic problems", 1996, algorithm 5.1).
 #include <cstdint>
 #include <span>
 #include <vector>

@@ -9,8 +9,8 @@
 namespace lacon {
 namespace {
 
-/// A column of a block in a register; what is behind it there counts for nothing. Sums are made in double precision: a product is
-/// linear to the last digits then, and a preconditioner as well.
+/// A column of a block in a register; what is behind it there counts for nothing. Sums are made in double precision: a product
+/// is linear to the last digits then, and a preconditioner as well.
 template <int rows>
 using Column = std::conditional_t<rows <= 4, FourDoubles, EightDoubles>;
 
@@ -119,14 +119,12 @@ LACON_INLINE void half_product(const BlockEntries<Real>& a, const double* x, dou
   LACON_KERNEL void Real##_##rows##_##columns##_transposed(const BlockEntries<Real>& a, const double* x, double* y) { \
     transposed<Real, rows, columns>(a, x, y);                                                                         \
   }
-#define HALF_KERNEL(Real, size)                                                                               \
-  LACON_KERNEL void Real##_half_##size(const BlockEntries<Real>& a, const double* x, double* y) {             \
-    half_product<Real, size>(a, x, y);                                                                        \
+#define HALF_KERNEL(Real, size)                                                                   \
+  LACON_KERNEL void Real##_half_##size(const BlockEntries<Real>& a, const double* x, double* y) { \
+    half_product<Real, size>(a, x, y);                                                            \
   }
-#define ROW_OF_KERNELS(Real, rows, columns, half)                                                             \
-  {                                                                                                           \
-    rows, columns, Real##_##rows##_##columns, Real##_##rows##_##columns##_add, Real##_##rows##_##columns##_transposed, half \
-  }
+#define ROW_OF_KERNELS(Real, rows, columns, half) \
+  { rows, columns, Real##_##rows##_##columns, Real##_##rows##_##columns##_add, Real##_##rows##_##columns##_transposed, half }
 
 // displacements in the plane and in space, and rigid motions of aggregates there
 BLOCK_KERNELS(float, 2, 2)
@@ -141,9 +139,9 @@ HALF_KERNEL(float, 3)
 HALF_KERNEL(double, 2)
 HALF_KERNEL(double, 3)
 
-constexpr BlockKernels<float> of_single[] = {
-    ROW_OF_KERNELS(float, 2, 2, float_half_2), ROW_OF_KERNELS(float, 2, 3, nullptr), ROW_OF_KERNELS(float, 3, 3, float_half_3),
-    ROW_OF_KERNELS(float, 3, 6, nullptr), ROW_OF_KERNELS(float, 6, 6, nullptr)};
+constexpr BlockKernels<float> of_single[] = {ROW_OF_KERNELS(float, 2, 2, float_half_2), ROW_OF_KERNELS(float, 2, 3, nullptr),
+                                             ROW_OF_KERNELS(float, 3, 3, float_half_3), ROW_OF_KERNELS(float, 3, 6, nullptr),
+                                             ROW_OF_KERNELS(float, 6, 6, nullptr)};
 constexpr BlockKernels<double> of_double[] = {ROW_OF_KERNELS(double, 2, 2, double_half_2),
                                               ROW_OF_KERNELS(double, 3, 3, double_half_3)};
 

@@ -7,7 +7,7 @@ namespace lacon {
 
 template <class Real>
 struct BlockEntries {
-  int rows = 0, columns = 0;            ///< of a block
+  int rows = 0, columns = 0;  ///< of a block
   /// Of a symmetric matrix: columns before that of the diagonal are left out, and those behind it are there row by row.
   bool is_half = false;
   std::vector<std::int32_t> offset{0};  ///< of rows of blocks

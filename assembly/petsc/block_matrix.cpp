@@ -259,7 +259,8 @@ SplitBlocks<Real> blocks_of(Mat matrix, int rows, int columns) {
 /// The same blocks in single precision.
 SplitBlocks<float> in_single_precision(const SplitBlocks<double>& blocks) {
   const auto rounded = [](const BlockEntries<double>& from) {
-    return BlockEntries<float>{from.rows, from.columns, from.is_half, from.offset, from.column, {from.value.begin(), from.value.end()}};
+    return BlockEntries<float>{from.rows,   from.columns, from.is_half,
+                               from.offset, from.column,  {from.value.begin(), from.value.end()}};
   };
   return {rounded(blocks.own), rounded(blocks.others), blocks.column_of_others};
 }

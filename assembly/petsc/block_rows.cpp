@@ -308,20 +308,23 @@ BlockRows rows_of_part(const BlockSystem& system, const OwnEntries& entries, int
   for (const std::int32_t place : system.place)
     if (is_own(place)) made.is[place - own.first] = 1;
 
-  made.k = rows_of_blocks(made.blocks, dimension, system.sizes.is_symmetric, [&](const auto& use) {  // K + B W C
-    for_each_entry(system, entries, [&](std::int32_t row, std::int32_t column, double value) {
-      if (column >= 0 && is_own(row)) use(row, column, value, true);
-    });
-    for (std::size_t i = 0; i < known.multipliers.size(); ++i) {
-      const double weight = scales.weight[i];
-      if (weight == 0) continue;
-      for (const Entry& b : known.multipliers[i].b)
-        if (is_own(b.column))
-          for (const Entry& c : known.multipliers[i].c) use(b.column, c.column, weight * b.value * c.value, false);
-    }
-    for (auto row = static_cast<std::int32_t>(own.first); row < own.last; ++row)
-      if (known.diagonal[row] == 0) use(row, row, made.is[row - own.first] ? 0.0 : known.mean, true);
-  }, made.is_of_k);
+  made.k = rows_of_blocks(
+      made.blocks, dimension, system.sizes.is_symmetric,
+      [&](const auto& use) {  // K + B W C
+        for_each_entry(system, entries, [&](std::int32_t row, std::int32_t column, double value) {
+          if (column >= 0 && is_own(row)) use(row, column, value, true);
+        });
+        for (std::size_t i = 0; i < known.multipliers.size(); ++i) {
+          const double weight = scales.weight[i];
+          if (weight == 0) continue;
+          for (const Entry& b : known.multipliers[i].b)
+            if (is_own(b.column))
+              for (const Entry& c : known.multipliers[i].c) use(b.column, c.column, weight * b.value * c.value, false);
+        }
+        for (auto row = static_cast<std::int32_t>(own.first); row < own.last; ++row)
+          if (known.diagonal[row] == 0) use(row, row, made.is[row - own.first] ? 0.0 : known.mean, true);
+      },
+      made.is_of_k);
   made.b = rows_of_b(own, known.multipliers);
   made.c = made.d = {.first = made.multipliers.first, .last = made.multipliers.last};
   for (std::int64_t i = made.multipliers.first; i < made.multipliers.last; ++i) {

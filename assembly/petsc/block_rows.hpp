@@ -31,14 +31,14 @@ struct Range {
 };
 
 struct BlockRows {
-  Range blocks, multipliers;     ///< own ones
-  SplitBlocks<double> k;         ///< K with its weights; own rows
+  Range blocks, multipliers;          ///< own ones
+  SplitBlocks<double> k;              ///< K with its weights; own rows
   std::vector<std::uint8_t> is_of_k;  ///< of its blocks in own columns: 0 where weights alone make them
-  Rows b, c, d;                  ///< likewise
-  std::vector<double> scale;     ///< of multipliers, own ones
-  std::vector<double> schur;     ///< what stands for the Schur complement: its diagonal, own rows
-  std::vector<double> weight;    ///< W, own ones
-  std::vector<std::uint8_t> is;  ///< own rows of displacements: 0 where one is imposed
+  Rows b, c, d;                       ///< likewise
+  std::vector<double> scale;          ///< of multipliers, own ones
+  std::vector<double> schur;          ///< what stands for the Schur complement: its diagonal, own rows
+  std::vector<double> weight;         ///< W, own ones
+  std::vector<std::uint8_t> is;       ///< own rows of displacements: 0 where one is imposed
 };
 
 /// Entries between displacements that processes have themselves: those of one of them, beside the system.

@@ -74,8 +74,8 @@ void forget_products(PC multigrid) {
   }
 }
 
-/// The levels of a multigrid that PETSC_OPTIONS of the user have not set otherwise. Squared graphs would cost more iterations than
-/// they save (42 for 27 of two blocks, H3). Polynomials end where aggregates take over.
+/// The levels of a multigrid that PETSC_OPTIONS of the user have not set otherwise. Squared graphs would cost more iterations
+/// than they save (42 for 27 of two blocks, H3). Polynomials end where aggregates take over.
 void set_options_of_gamg(PC pc) {
   const char* prefix = nullptr;
   checked(PCGetOptionsPrefix(pc, &prefix));

@@ -16,7 +16,8 @@
 namespace lacon {
 namespace {
 
-/// The step of Jacobi's iteration, over the inverse of the largest eigenvalue: of the interpolation that changes least in energy.
+/// The step of Jacobi's iteration, over the inverse of the largest eigenvalue: of the interpolation that changes least in
+/// energy.
 constexpr double step_of_jacobi = 4.0 / 3;
 /// What is left of a rigid motion of an aggregate beside the others, of the largest one, for it to count as one of its own.
 constexpr double least_motion = 1e-6;
@@ -245,8 +246,8 @@ class Coarsening {
   AggregateNumbers numbers_;
   Halo halo_;
   // of own nodes, and behind them those of others that are next to one:
-  std::vector<std::int32_t> aggregate_of_;       ///< none: -1
-  std::vector<NodeBlock> motions_;         ///< of its aggregate, orthonormal there
+  std::vector<std::int32_t> aggregate_of_;  ///< none: -1
+  std::vector<NodeBlock> motions_;          ///< of its aggregate, orthonormal there
   MotionRows<dim> smoothed_;
   std::vector<CoarseRow> coarse_;
 };
@@ -305,12 +306,12 @@ void Coarsening<dim>::find_motions(std::span<const double> coordinates) {
         for (int r = 0; r < dim; ++r) motions_[i][r][motion] *= factor;
     }
   }
-  for (const std::int32_t aggregate : halo_.ask<std::int32_t>([&](std::int32_t i, std::vector<std::int32_t>& told) {
+  for (const std::int32_t aggregate : halo_.ask<std::int32_t>([&](std::int32_t i, std::vector<std::int32_t>&told) {
          told.push_back(aggregate_of_[i] < 0 ? -1 : numbers_.in_all(aggregate_of_[i]));
        }))
     aggregate_of_.push_back(aggregate < 0 ? -1 : numbers_.here(aggregate));
-  const auto of_others = halo_.ask<NodeBlock>(
-      [&](std::int32_t i, std::vector<NodeBlock>& told) { told.push_back(motions_[i]); });
+  const auto of_others =
+      halo_.ask<NodeBlock>([&](std::int32_t i, std::vector<NodeBlock>& told) { told.push_back(motions_[i]); });
   motions_.insert(motions_.end(), of_others.begin(), of_others.end());
 }
 
@@ -357,7 +358,8 @@ void Coarsening<dim>::know_rows_of_others() {
     told.push_back(static_cast<std::int32_t>(smoothed_.offset[i + 1] - smoothed_.offset[i]));
   });
   const auto aggregates = halo_.ask<std::int32_t>([&](std::int32_t i, std::vector<std::int32_t>& told) {
-    for (std::int64_t k = smoothed_.offset[i]; k < smoothed_.offset[i + 1]; ++k) told.push_back(numbers_.in_all(smoothed_.aggregate[k]));
+    for (std::int64_t k = smoothed_.offset[i]; k < smoothed_.offset[i + 1]; ++k)
+      told.push_back(numbers_.in_all(smoothed_.aggregate[k]));
   });
   using Value = typename decltype(smoothed_.value)::value_type;
   const auto values = halo_.ask<Value>([&](std::int32_t i, std::vector<Value>& told) {
@@ -465,7 +467,8 @@ OwnedMat Coarsening<dim>::matrix(std::span<const OwnedVec> motions) {
   for (std::int32_t a = 0; a < numbers_.n_own(); ++a) {
     const CoarseRow row = std::exchange(coarse_[a], {});
     std::vector<std::pair<std::int32_t, const CoarseBlock*>> sorted;
-    for (std::size_t k = 0; k < row.aggregate.size(); ++k) sorted.emplace_back(numbers_.in_all(row.aggregate[k]), &row.block[k]);
+    for (std::size_t k = 0; k < row.aggregate.size(); ++k)
+      sorted.emplace_back(numbers_.in_all(row.aggregate[k]), &row.block[k]);
     std::ranges::sort(sorted);
     for (int m = 0; m < n_motions; ++m) {
       for (const auto& [b, block] : sorted)
@@ -525,8 +528,10 @@ CoarseLevel made_level(Coarsening<dim> coarsening, std::span<const double> coord
 }  // namespace
 
 CoarseLevel coarse_level(MPI_Comm processes, const SplitBlocks<double>& own_rows, std::span<const std::uint8_t> is_link,
-                         std::span<const std::uint8_t> is_free, std::span<const double> coordinates, std::span<const OwnedVec> motions, double largest) {
-  if (own_rows.own.rows == 3) return made_level(Coarsening<3>(processes, own_rows, is_link, is_free), coordinates, motions, largest);
+                         std::span<const std::uint8_t> is_free, std::span<const double> coordinates,
+                         std::span<const OwnedVec> motions, double largest) {
+  if (own_rows.own.rows == 3)
+    return made_level(Coarsening<3>(processes, own_rows, is_link, is_free), coordinates, motions, largest);
   return made_level(Coarsening<2>(processes, own_rows, is_link, is_free), coordinates, motions, largest);
 }
 

@@ -98,7 +98,9 @@ std::string suited_method(const Keywords& solver, const StaticProblem& problem) 
                           {"equations", std::to_string(n)},
                           {"factor", fmt::format("{:.2g}", 1e-9 * factor)},
                           {"memory", fmt::format("{:.2g}", 1e-9 * memory)},
-                          {"reason", part(iterates ? reason : reason ? "petsc_not_there" : "factor_has_room")}});
+                          {"reason", part(iterates ? reason
+                                          : reason ? "petsc_not_there"
+                                                   : "factor_has_room")}});
   return method;
 }
 

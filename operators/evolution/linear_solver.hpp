@@ -16,8 +16,8 @@ std::unique_ptr<Engine> engine_of(const Keywords& solver, const Base& base, cons
 
 /// About what an operator takes that makes a factor, bytes. Measured on the two blocks of docs/performance.md.
 double memory_of_factor(std::int64_t n_equations, int dimension, bool in_double_precision = false);
-/// Why AUTO takes iterations, a name of catalog/messages/parts.toml; null where a factor suits better. @param factor its memory,
-/// bytes  @param memory of the machine
+/// Why AUTO takes iterations, a name of catalog/messages/parts.toml; null where a factor suits better. @param factor its
+/// memory, bytes  @param memory of the machine
 const char* reason_of_iterations(std::int64_t n_equations, int dimension, double factor, double memory);
 
 }  // namespace lacon

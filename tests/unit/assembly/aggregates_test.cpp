@@ -66,7 +66,8 @@ TEST(Aggregates, DoNotReachAcrossBodies) {
   const int n = 6;
   const Aggregates found = aggregated(lattice(n, [](int below, int above) { return below / 2 == above / 2; }),
                                       std::vector<std::uint8_t>(n * n * n, 1));  // three slices of two planes
-  for (const auto& [aggregate, own] : nodes_of(found)) EXPECT_EQ(*own.begin() / (2 * n * n), *own.rbegin() / (2 * n * n)) << aggregate;
+  for (const auto& [aggregate, own] : nodes_of(found))
+    EXPECT_EQ(*own.begin() / (2 * n * n), *own.rbegin() / (2 * n * n)) << aggregate;
 }
 
 TEST(Aggregates, LeaveOutWhatDoesNotMove) {

@@ -182,7 +182,8 @@ std::pair<double, double> left_of_errors(int n) {
     return sweep(error).norm();
   };
   const Eigen::VectorXd inverse = k.diagonal().cwiseInverse();
-  const double step = 4.0 / 3 / largest_of([&](const Eigen::VectorXd& e) -> Eigen::VectorXd { return inverse.cwiseProduct(k * e); });
+  const double step =
+      4.0 / 3 / largest_of([&](const Eigen::VectorXd& e) -> Eigen::VectorXd { return inverse.cwiseProduct(k * e); });
   const auto smoothed = [&](const Eigen::VectorXd& e) -> Eigen::VectorXd { return e - step * inverse.cwiseProduct(k * e); };
   const auto corrected = [&](const Eigen::VectorXd& e) -> Eigen::VectorXd {
     return e - p * coarse_factor.solve(p.transpose() * (k * e));

@@ -7,8 +7,8 @@ namespace {
 
 constexpr const char* too_large = "factor_too_large";
 
-// A factor takes more than half of the memory: in double precision from 698 500 equations in space on with 24 GB, as 4.2 GB were
-// measured for 311 469. In the plane hardly ever.
+// A factor takes more than half of the memory: in double precision from 698 500 equations in space on with 24 GB, as 4.2 GB
+// were measured for 311 469. In the plane hardly ever.
 TEST(LinearSolver, IteratesWhereAFactorWouldBeTooLarge) {
   const auto reason = [](std::int64_t n, int dimension, double memory, bool in_double_precision = false) {
     return reason_of_iterations(n, dimension, memory_of_factor(n, dimension, in_double_precision), memory);
