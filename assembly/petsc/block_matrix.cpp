@@ -123,6 +123,7 @@ void add_half(const Parts<Real>& parts, const double* x, double* y) {
   static std::vector<Padded> padded_x, padded_y;  // of no product but this one
   const int size = parts.own.rows;
   const std::size_t n = parts.own.offset.size() - 1;
+  if (n == 0) return;
   padded_x.resize(n), padded_y.resize(n);
   for (std::size_t i = 0; i < n; ++i)
     for (int r = 0; r < padded_size; ++r) {

@@ -10,8 +10,9 @@
 
 #include "lacon/assembly/petsc/aggregates.hpp"
 #include "lacon/assembly/petsc/between_processes.hpp"
+#include "lacon/assembly/petsc/motion_blocks.hpp"
 #include "lacon/assembly/petsc/near_null_space.hpp"
-#include "lacon/assembly/petsc/registers.hpp"
+#include "lacon/assembly/petsc/whole_rows.hpp"
 
 namespace lacon {
 namespace {
@@ -21,89 +22,6 @@ namespace {
 constexpr double step_of_jacobi = 4.0 / 3;
 /// What is left of a rigid motion of an aggregate beside the others, of the largest one, for it to count as one of its own.
 constexpr double least_motion = 1e-6;
-
-/// All rigid motions of a displacement in a register, behind which nothing counts.
-template <int dim>
-struct Motions;
-template <>
-struct Motions<2> {
-  static constexpr int count = 3, width = 4;
-  using Lanes = FourDoubles;
-};
-template <>
-struct Motions<3> {
-  static constexpr int count = 6, width = 8;
-  using Lanes = EightDoubles;
-};
-
-/// Rows of motions; aligned, which they would not be as arguments of std::array.
-template <int dim, int n>
-struct alignas(lane_alignment) MotionBlock {
-  using Lanes = typename Motions<dim>::Lanes;
-  Lanes row[n];
-  LACON_INLINE Lanes& operator[](int r) { return row[r]; }
-  LACON_INLINE const Lanes& operator[](int r) const { return row[r]; }
-};
-
-/// Own rows of a matrix, of which half may be stored, and where their blocks are.
-class WholeRows {
- public:
-  explicit WholeRows(const BlockEntries<double>& own) : own_(own) {
-    const auto n = static_cast<std::int32_t>(own.offset.size() - 1);
-    std::vector<std::int64_t>& offset = graph_.offset;
-    offset.assign(n + 1, 0);
-    for_each_block([&](std::int32_t i, std::int32_t, std::int32_t) { ++offset[i + 1]; });
-    std::partial_sum(offset.begin(), offset.end(), offset.begin());
-    graph_.node.resize(offset.back());
-    block_.resize(offset.back());
-    std::vector<std::int64_t> next(offset.begin(), offset.end() - 1);
-    for_each_block([&](std::int32_t i, std::int32_t j, std::int32_t block) {
-      graph_.node[next[i]] = j;
-      block_[next[i]++] = block;
-    });
-  }
-  std::int64_t n() const { return std::ssize(graph_.offset) - 1; }
-  /// Nodes whose blocks are links. @param is_link  of each stored block
-  NodeGraph graph(std::span<const std::uint8_t> is_link) const {
-    NodeGraph links;
-    links.offset.reserve(n() + 1), links.node.reserve(graph_.node.size());
-    for (std::int64_t i = 0; i < n(); ++i) {
-      for (std::int64_t k = graph_.offset[i]; k < graph_.offset[i + 1]; ++k)
-        if (is_link[block_[k] < 0 ? ~block_[k] : block_[k]]) links.node.push_back(graph_.node[k]);
-      links.offset.push_back(std::ssize(links.node));
-    }
-    return links;
-  }
-  /// @param use  gets the other node and the block of its displacements: (dim, dim), column by column
-  template <int dim, class Use>
-  LACON_INLINE void for_each_in_row(std::int64_t i, const Use& use) const {
-    for (std::int64_t k = graph_.offset[i]; k < graph_.offset[i + 1]; ++k) {
-      const std::int32_t at = block_[k];
-      const double* const value = own_.value.data() + static_cast<std::int64_t>(at < 0 ? ~at : at) * dim * dim;
-      double block[dim * dim];
-      for (int c = 0; c < dim; ++c)
-        for (int r = 0; r < dim; ++r) block[c * dim + r] = at < 0 ? value[r * dim + c] : value[c * dim + r];
-      use(graph_.node[k], block);
-    }
-  }
-
- private:
-  /// Rows, columns, and blocks; of those that are there row by row the complement.
-  template <class Use>
-  void for_each_block(const Use& use) const {
-    const auto n = static_cast<std::int32_t>(own_.offset.size() - 1);
-    for (std::int32_t i = 0; i < n; ++i)
-      for (std::int32_t k = own_.offset[i]; k < own_.offset[i + 1]; ++k) {
-        const std::int32_t j = own_.column[k];
-        use(i, j, own_.is_half ? ~k : k);
-        if (own_.is_half && j != i) use(j, i, k);
-      }
-  }
-
-  const BlockEntries<double>& own_;
-  NodeGraph graph_;
-  std::vector<std::int32_t> block_;
-};
 
 /// Numbers of aggregates as this process has them: its own from 0, those of others behind as they come.
 class AggregateNumbers {
@@ -131,57 +49,6 @@ class AggregateNumbers {
   std::vector<std::int32_t> others_;
   std::unordered_map<std::int32_t, std::int32_t> place_;
 };
-
-/// Rows of motions, one of each displacement of a node, for some aggregates.
-template <int dim>
-struct MotionRows {
-  using Lanes = typename Motions<dim>::Lanes;
-  std::vector<std::int64_t> offset{0};
-  std::vector<std::int32_t> aggregate;  ///< as AggregateNumbers has them
-  std::vector<std::array<float, dim * Motions<dim>::width>> value;
-
-  LACON_INLINE void get(std::int64_t k, MotionBlock<dim, dim>& rows) const {
-    for (int r = 0; r < dim; ++r) load(value[k].data() + r * Motions<dim>::width, rows[r]);
-  }
-};
-
-/// Blocks that are summed up, for the aggregates that come.
-template <class Block>
-class BlockSums {
- public:
-  explicit BlockSums(std::int32_t n_aggregates) : place_(n_aggregates, none) {}
-  LACON_INLINE Block& of(std::int32_t aggregate) {
-    if (place_[aggregate] == none) begin(aggregate);
-    return sums_[place_[aggregate]];
-  }
-  std::int32_t size() const { return size_; }
-  std::int32_t aggregate(std::int32_t k) const { return aggregates_[k]; }
-  const Block& sum(std::int32_t k) const { return sums_[k]; }
-  void clear() {
-    for (std::int32_t k = 0; k < size_; ++k) place_[aggregates_[k]] = none;
-    size_ = 0;
-  }
-
- private:
-  static constexpr std::int32_t none = -1;
-  void begin(std::int32_t aggregate) {
-    if (size_ == static_cast<std::int32_t>(sums_.size())) sums_.resize(2 * size_ + 8), aggregates_.resize(2 * size_ + 8);
-    sums_[size_] = {};
-    aggregates_[size_] = aggregate;
-    place_[aggregate] = size_++;
-  }
-
-  std::vector<std::int32_t> place_, aggregates_;
-  std::vector<Block> sums_;
-  std::int32_t size_ = 0;
-};
-
-/// y += A x, of displacements and their motions. @param block (dim, dim), column by column
-template <int dim>
-LACON_INLINE void add_product(const double* block, const MotionBlock<dim, dim>& x, MotionBlock<dim, dim>& y) {
-  for (int c = 0; c < dim; ++c)
-    for (int r = 0; r < dim; ++r) y[r] += block[c * dim + r] * x[c];
-}
 
 /// The matrix and its nodes, and what is made of them step by step.
 template <int dim>
