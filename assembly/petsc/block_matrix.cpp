@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstdint>
 #include <functional>
+#include <limits>
 #include <memory>
 #include <span>
 #include <stdexcept>
@@ -111,16 +112,19 @@ class Writing {
 template <class Real>
 void run(BlockProduct<Real> product, const BlockEntries<Real>& a, const double* x, double* y) {
   product(a, x, y);
-  PetscLogFlops(2.0 * static_cast<double>(a.column.size()) * a.rows * a.columns);
+  const auto stored = static_cast<double>(a.column.size()), n = static_cast<double>(a.offset.size() - 1);
+  PetscLogFlops(2 * (a.is_half ? 2 * stored - n : stored) * a.rows * a.columns);
 }
+
+struct alignas(padded_size * sizeof(double)) Padded {
+  double value[padded_size];
+};
+/// What a product with half a matrix works on, until a matrix is destroyed.
+std::vector<Padded> padded_x, padded_y;
 
 /// y += A x of half a symmetric matrix.
 template <class Real>
 void add_half(const Parts<Real>& parts, const double* x, double* y) {
-  struct alignas(padded_size * sizeof(double)) Padded {
-    double value[padded_size];
-  };
-  static std::vector<Padded> padded_x, padded_y;  // of no product but this one
   const int size = parts.own.rows;
   const std::size_t n = parts.own.offset.size() - 1;
   if (n == 0) return;
@@ -196,6 +200,7 @@ PetscErrorCode diagonal(Mat shell, Vec y) {
 template <class Real>
 PetscErrorCode destroy(Mat shell) {
   delete &parts_of<Real>(shell);
+  padded_x = {}, padded_y = {};
   return 0;
 }
 
@@ -349,8 +354,12 @@ OwnedMat as_aij(Mat blocks) {
       rows[i].push_back({entries.column_of_others[entries.others.column[k]],
                          entries.others.value.data() + static_cast<std::int64_t>(k) * size * size, 1, size});
   }
+  std::size_t n_entries = 0;
+  for (const std::vector<Block>& row : rows) n_entries += row.size() * size * size;
+  if (n_entries > std::numeric_limits<PetscInt>::max()) throw std::length_error("PETSc: 2^31");
   std::vector<PetscInt> offset{0}, column;
   std::vector<double> value;
+  column.reserve(n_entries), value.reserve(n_entries);
   for (std::vector<Block>& row : rows) {
     std::ranges::sort(row, {}, &Block::column);
     for (int r = 0; r < size; ++r) {

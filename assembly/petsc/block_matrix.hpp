@@ -22,7 +22,7 @@ bool has_blocks(Mat matrix);
 /// no more.
 OwnedMat in_single_blocks(Mat matrix);
 
-/// An AIJ matrix of the values of a shell in double precision.
+/// An AIJ matrix of the values of a shell in double precision. Throws std::length_error beyond 2^31 entries.
 OwnedMat as_aij(Mat blocks);
 
 }  // namespace lacon

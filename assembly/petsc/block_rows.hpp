@@ -49,7 +49,7 @@ struct OwnEntries {
 };
 
 /// @param entries what the process has of K itself  @param part the process, of system.sizes.n_parts. Throws std::length_error
-/// beyond 2^31 entries.
+/// beyond 2^31 entries that are stored.
 BlockRows rows_of_part(const BlockSystem& system, const OwnEntries& entries, int part);
 
 }  // namespace lacon

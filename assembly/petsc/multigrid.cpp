@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <string>
+#include <string_view>
 #include <utility>
 
 #include "lacon/assembly/petsc/block_matrix.hpp"
@@ -21,16 +22,17 @@ constexpr int degree = 4;
 constexpr double lower_end = 0.04, upper_end = 1.1;
 constexpr int iterations_for_eigenvalue = 10;
 
-/// Of the matrix over its diagonal, from below.
-double largest_eigenvalue(Mat matrix) {
+/// Of the matrix over its diagonal, from below. @param algorithm CG, or GMRES where the matrix is not positive
+double largest_eigenvalue(Mat matrix, KSPType algorithm = KSPCG) {
   OwnedKsp ksp;
   OwnedVec side, solution;
   PC pc = nullptr;
   double largest = 0, least = 0;
+  KSPConvergedReason reason = KSP_CONVERGED_ITERATING;
   checked(KSPCreate(PetscObjectComm(reinterpret_cast<PetscObject>(matrix)), ksp.out()));
   checked(KSPSetOptionsPrefix(ksp, "eigenvalue_"));
   checked(KSPSetOperators(ksp, matrix, matrix));
-  checked(KSPSetType(ksp, KSPCG));
+  checked(KSPSetType(ksp, algorithm));
   checked(KSPGetPC(ksp, &pc));
   checked(PCSetType(pc, PCJACOBI));
   checked(KSPSetNormType(ksp, KSP_NORM_NONE));
@@ -39,6 +41,8 @@ double largest_eigenvalue(Mat matrix) {
   checked(MatCreateVecs(matrix, solution.out(), side.out()));
   checked(VecSetRandom(side, nullptr));
   checked(KSPSolve(ksp, side, solution));
+  checked(KSPGetConvergedReason(ksp, &reason));
+  if (reason < 0 && algorithm == std::string(KSPCG)) return largest_eigenvalue(matrix, KSPGMRES);
   checked(KSPComputeExtremeSingularValues(ksp, &largest, &least));
   return largest;
 }
@@ -74,6 +78,12 @@ void forget_products(PC multigrid) {
   }
 }
 
+bool is_of_type(PC pc, PCType type) {
+  PetscBool is = PETSC_FALSE;
+  checked(PetscObjectTypeCompare(reinterpret_cast<PetscObject>(pc), type, &is));
+  return is;
+}
+
 /// The levels of a multigrid that PETSC_OPTIONS of the user have not set otherwise. Squared graphs would cost more iterations
 /// than they save (42 for 27 of two blocks, H3). Polynomials end where aggregates take over.
 void set_options_of_gamg(PC pc) {
@@ -102,6 +112,33 @@ void use_single_blocks(PC gamg) {
     checked(PCMGSetInterpolation(gamg, level, blocks));
     checked(PCMGSetRestriction(gamg, level, blocks));
   }
+}
+
+/// What GAMG was made of is needed no more where its finest level has blocks.
+void let_go_of_products(KSP below, PC gamg) {
+  KSP smoother = nullptr;
+  Mat matrix = nullptr;
+  PetscBool is_shell = PETSC_FALSE;
+  checked(PCMGGetSmoother(gamg, finest_level(gamg), &smoother));
+  checked(KSPGetOperators(smoother, &matrix, nullptr));
+  checked(PetscObjectTypeCompare(reinterpret_cast<PetscObject>(matrix), MATSHELL, &is_shell));
+  if (!is_shell) return;
+  checked(PCSetReusePreconditioner(gamg, PETSC_TRUE));
+  checked(KSPSetOperators(below, matrix, matrix));
+}
+
+/// Have PETSC precondition, with a type of its own or with what its options say, and an AIJ matrix.
+void leave_all_levels(KSP displacements, PCType type) {
+  PC pc = nullptr;
+  Mat exact = nullptr;
+  checked(KSPGetPC(displacements, &pc));
+  checked(KSPGetOperators(displacements, &exact, nullptr));
+  const OwnedMat kept = referenced(exact), aij = as_aij(exact);
+  checked(KSPSetOperators(displacements, exact, aij));
+  if (type) checked(PCSetType(pc, type));
+  if (type && type == std::string_view(PCGAMG)) set_options_of_gamg(pc);
+  checked(PCSetFromOptions(pc));
+  checked(KSPSetUp(displacements));
 }
 
 /// A level of polynomials above one of GAMG.
@@ -151,30 +188,27 @@ void Multigrid::make(KSP displacements, const OwnNodes& nodes) {
   checked(KSPGetOperators(displacements, &exact, nullptr));
   checked(MatGetSize(exact, &n, nullptr));
   checked(MatGetBlockSize(exact, &dimension));
-  if (n <= few_equations) {
-    const OwnedMat aij = as_aij(exact);
-    checked(KSPSetOperators(displacements, exact, aij));
-    checked(PCSetType(pc, PCREDUNDANT));
-    return checked(KSPSetUp(displacements));
-  }
+  if (n <= few_equations) return leave_all_levels(displacements, PCGAMG);
   const OwnedMat fine = in_single_blocks(exact);
   const double largest = largest_eigenvalue(fine);
   CoarseLevel coarse = coarse_level(PETSC_COMM_WORLD, entries_of(exact), nodes.is_link, nodes.is_free, nodes.coordinates,
                                     rigid_motions(exact, dimension, nodes), largest);
-  checked(KSPSetOperators(displacements, exact, fine));
   checked(MatGetSize(coarse.matrix, &n_coarse, nullptr));
-  if (n_coarse == 0) {  // everything is imposed
-    checked(PCSetType(pc, PCJACOBI));
-    return checked(KSPSetUp(displacements));
-  }
+  if (n_coarse == 0) return leave_all_levels(displacements, PCJACOBI);  // everything is imposed
+  if (n_coarse >= n) return leave_all_levels(displacements, PCGAMG);    // nodes that nothing joins
+  checked(KSPSetOperators(displacements, exact, fine));
   set_up_levels(pc, fine, largest, std::move(coarse));
   checked(PCSetFromOptions(pc));
-  checked(KSPSetUp(displacements));  // now, not in the first iteration
+  if (!is_of_type(pc, PCMG)) return leave_all_levels(displacements, nullptr);  // PETSC_OPTIONS of the user
+  checked(KSPSetUp(displacements));                                            // now, not in the first iteration
   KSP below = nullptr;
   PC gamg = nullptr;
   checked(PCMGGetCoarseSolve(pc, &below));
   checked(KSPGetPC(below, &gamg));
-  use_single_blocks(gamg);
+  if (is_of_type(gamg, PCGAMG)) {
+    use_single_blocks(gamg);
+    let_go_of_products(below, gamg);
+  }
   checked(PCSetReusePreconditioner(pc, PETSC_TRUE));
   checked(PetscObjectReference(reinterpret_cast<PetscObject>(pc)));
   *pc_.out() = pc;

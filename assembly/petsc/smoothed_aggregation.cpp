@@ -4,7 +4,9 @@
 #include <array>
 #include <cmath>
 #include <iterator>
+#include <limits>
 #include <numeric>
+#include <stdexcept>
 #include <unordered_map>
 #include <utility>
 
@@ -75,7 +77,7 @@ class Coarsening {
   void know_rows_of_others();
   LACON_INLINE void multiply_rows();
   void put_rows_where_they_belong();
-  SplitBlocks<float> interpolation() const;
+  SplitBlocks<float> take_interpolation();
   OwnedMat matrix(std::span<const OwnedVec> motions);
 
  private:
@@ -292,8 +294,9 @@ void Coarsening<dim>::put_rows_where_they_belong() {
   }
 }
 
+/// Own rows, of which nothing is left here.
 template <int dim>
-SplitBlocks<float> Coarsening<dim>::interpolation() const {
+SplitBlocks<float> Coarsening<dim>::take_interpolation() {
   SplitBlocks<float> made;
   const std::int64_t n_blocks = smoothed_.offset[n_];
   std::vector<std::int32_t>& of_others = made.column_of_others;
@@ -302,6 +305,8 @@ SplitBlocks<float> Coarsening<dim>::interpolation() const {
   std::ranges::sort(of_others);
   of_others.erase(std::unique(of_others.begin(), of_others.end()), of_others.end());
   for (BlockEntries<float>* const part : {&made.own, &made.others}) part->rows = dim, part->columns = n_motions;
+  made.own.column.reserve(n_blocks);
+  made.own.value.reserve(n_blocks * dim * n_motions + read_behind);
   for (std::int32_t i = 0; i < n_; ++i) {
     for (std::int64_t k = smoothed_.offset[i]; k < smoothed_.offset[i + 1]; ++k) {
       const std::int32_t aggregate = smoothed_.aggregate[k];
@@ -317,6 +322,7 @@ SplitBlocks<float> Coarsening<dim>::interpolation() const {
       part->offset.push_back(static_cast<std::int32_t>(part->column.size()));
   }
   for (BlockEntries<float>* const part : {&made.own, &made.others}) part->value.resize(part->value.size() + read_behind, 0);
+  smoothed_ = {};
   return made;
 }
 
@@ -329,8 +335,12 @@ OwnedMat Coarsening<dim>::matrix(std::span<const OwnedVec> motions) {
       if (const double d = std::abs(coarse_[a].of(a)[m][m]); d > 0) diagonals[0] += d, diagonals[1] += 1;
   MPI_Allreduce(MPI_IN_PLACE, diagonals, 2, MPI_DOUBLE, MPI_SUM, processes_);
   const double mean = diagonals[1] > 0 ? diagonals[0] / diagonals[1] : 1;
+  std::size_t n_entries = 0;
+  for (const CoarseRow& row : coarse_) n_entries += row.aggregate.size() * n_motions * n_motions;
+  if (n_entries > std::numeric_limits<PetscInt>::max()) throw std::length_error("PETSc: 2^31");
   std::vector<PetscInt> offset{0}, column;
   std::vector<double> value;
+  column.reserve(n_entries), value.reserve(n_entries);
   for (std::int32_t a = 0; a < numbers_.n_own(); ++a) {
     const CoarseRow row = std::exchange(coarse_[a], {});
     std::vector<std::pair<std::int32_t, const CoarseBlock*>> sorted;
@@ -389,7 +399,8 @@ CoarseLevel made_level(Coarsening<dim> coarsening, std::span<const double> coord
   coarsening.know_rows_of_others();
   multiply(coarsening);
   coarsening.put_rows_where_they_belong();
-  return {coarsening.interpolation(), coarsening.matrix(motions)};
+  SplitBlocks<float> interpolation = coarsening.take_interpolation();
+  return {std::move(interpolation), coarsening.matrix(motions)};
 }
 
 }  // namespace
