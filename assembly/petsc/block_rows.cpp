@@ -173,8 +173,8 @@ SplitBlocks<double> rows_of_blocks(const Range& blocks, int dimension, bool is_s
       const auto first = part.column.begin() + part.offset[i], last = part.column.begin() + part.offset[i + 1];
       at = std::lower_bound(first, last, number_of(block)) - part.column.begin();
       row_before = own_row, block_before = block;
-      if (is_k && is_own(block)) is_of_k[at] = 1;
     }
+    if (is_k && is_own(block)) is_of_k[at] = 1;
     const std::int64_t r = row - own_row * dimension, c = column - block * dimension;
     part.value[at * size + (part.is_half ? r * dimension + c : c * dimension + r)] += value;
   });

@@ -175,10 +175,10 @@ void Coarsening<dim>::find_motions(std::span<const double> coordinates) {
         for (int r = 0; r < dim; ++r) motions_[i][r][motion] *= factor;
     }
   }
-  for (const std::int32_t aggregate : halo_.ask<std::int32_t>([&](std::int32_t i, std::vector<std::int32_t>&told) {
-         told.push_back(aggregate_of_[i] < 0 ? -1 : numbers_.in_all(aggregate_of_[i]));
-       }))
-    aggregate_of_.push_back(aggregate < 0 ? -1 : numbers_.here(aggregate));
+  const auto aggregates = halo_.ask<std::int32_t>([&](std::int32_t i, std::vector<std::int32_t>& told) {
+    told.push_back(aggregate_of_[i] < 0 ? -1 : numbers_.in_all(aggregate_of_[i]));
+  });
+  for (const std::int32_t aggregate : aggregates) aggregate_of_.push_back(aggregate < 0 ? -1 : numbers_.here(aggregate));
   const auto of_others =
       halo_.ask<NodeBlock>([&](std::int32_t i, std::vector<NodeBlock>& told) { told.push_back(motions_[i]); });
   motions_.insert(motions_.end(), of_others.begin(), of_others.end());
