@@ -11,6 +11,7 @@
 #include <utility>
 #include <vector>
 
+#include "lacon/assembly/petsc/aij_matrix.hpp"
 #include "lacon/assembly/petsc/block_kernels.hpp"
 
 namespace lacon {
@@ -371,14 +372,7 @@ OwnedMat as_aij(Mat blocks) {
       offset.push_back(static_cast<PetscInt>(column.size()));
     }
   }
-  OwnedMat made;
-  checked(MatCreate(PetscObjectComm(reinterpret_cast<PetscObject>(blocks)), made.out()));
-  checked(MatSetSizes(made, n_rows * size, n_rows * size, PETSC_DETERMINE, PETSC_DETERMINE));
-  checked(MatSetType(made, MATAIJ));
-  checked(MatSetBlockSizes(made, size, size));
-  checked(MatSeqAIJSetPreallocationCSR(made, offset.data(), column.data(), value.data()));
-  checked(MatMPIAIJSetPreallocationCSR(made, offset.data(), column.data(), value.data()));
-  return made;
+  return aij_matrix(PetscObjectComm(reinterpret_cast<PetscObject>(blocks)), {offset, column, value}, n_rows * size, size);
 }
 
 }  // namespace lacon

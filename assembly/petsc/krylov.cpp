@@ -5,6 +5,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "lacon/assembly/petsc/aij_matrix.hpp"
 #include "lacon/assembly/petsc/block_matrix.hpp"
 #include "lacon/assembly/petsc/near_null_space.hpp"
 
@@ -33,14 +34,7 @@ std::vector<double> whole_diagonal(const BlockSystem& system, const OwnEntries& 
 
 /// Owned rows of a matrix, of all columns.
 OwnedMat make_matrix(const Rows& rows, std::int64_t own_columns) {
-  OwnedMat made;
-  const auto n = static_cast<PetscInt>(rows.last - rows.first);
-  checked(MatCreate(PETSC_COMM_WORLD, made.out()));
-  checked(MatSetSizes(made, n, static_cast<PetscInt>(own_columns), PETSC_DETERMINE, PETSC_DETERMINE));
-  checked(MatSetType(made, MATAIJ));
-  checked(MatSeqAIJSetPreallocationCSR(made, rows.offset.data(), rows.column.data(), rows.value.data()));
-  checked(MatMPIAIJSetPreallocationCSR(made, rows.offset.data(), rows.column.data(), rows.value.data()));
-  return made;
+  return aij_matrix(PETSC_COMM_WORLD, {rows.offset, rows.column, rows.value}, static_cast<PetscInt>(own_columns));
 }
 
 /// How PETSc spells a name of SOLVEUR; whether its preconditioner has to be symmetric and positive.
@@ -126,13 +120,13 @@ void Krylov::set_up_displacements(KSP displacements) {
   checked(KSPSetOperators(displacements, k_, k_));
   if (name == "GAMG" && multigrid_.suits(nodes_)) return multigrid_.give_to(displacements);
   if (name == "GAMG") return multigrid_.make(displacements, nodes_);
-  aij_ = as_aij(k_);
-  checked(KSPSetOperators(displacements, k_, aij_));
+  const OwnedMat aij = as_aij(k_);
+  checked(KSPSetOperators(displacements, k_, aij));
   checked(KSPGetPC(displacements, &pc));
   checked(PCGetOptionsPrefix(pc, &prefix));
   const std::string own = std::string("-") + (prefix ? prefix : "");
   if (name == "BOOMER") {
-    set_near_null_space(aij_, rigid_motions(aij_, static_cast<int>(dimension_), nodes_));
+    set_near_null_space(aij, rigid_motions(aij, static_cast<int>(dimension_), nodes_));
     checked(PCSetType(pc, PCHYPRE));
     checked(PCHYPRESetType(pc, "boomeramg"));
     set_option(own + "pc_hypre_boomeramg_strong_threshold", dimension_ == 3 ? "0.5" : "0.25");

@@ -50,7 +50,6 @@ class Krylov {
   std::vector<std::int32_t> equation_;  ///< of own rows, displacements first; -1: imposed
   std::vector<double> scale_;           ///< of them
   std::vector<double> weight_;          ///< of own multipliers
-  OwnedMat aij_;                        ///< K for preconditioners that are made of it
   OwnedMat k_, b_, c_, d_, matrix_, schur_;
   OwnedVec side_, solution_, residual_, weighted_, added_;
   OwnedKsp ksp_;

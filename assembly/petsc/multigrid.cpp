@@ -94,7 +94,7 @@ void set_options_of_gamg(PC pc) {
   set_option(own + "pc_gamg_aggressive_coarsening", "0");
   set_option(own + "mg_levels_pc_type", "jacobi");  // SOR stops at an aggregate of one node, whose turns have no diagonal
   set_option(own + "mg_levels_ksp_max_it", std::to_string(degree));
-  set_option(own + "mg_levels_ksp_chebyshev_esteig", "0,0.04,0,1.1");
+  set_option(own + "mg_levels_ksp_chebyshev_esteig", "0," + std::to_string(lower_end) + ",0," + std::to_string(upper_end));
 }
 
 /// Levels that GAMG has made of AIJ matrices get blocks of single precision.

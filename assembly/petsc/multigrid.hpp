@@ -24,7 +24,6 @@ class Multigrid {
   void let_go() const;
   void forget() { *this = {}; }
 
-  bool is_there() const { return pc_; }
   /// Whether it works for another matrix than it was made for.
   bool is_kept() const { return pc_ && !is_new_; }
   /// Whether so many iterations were lost by that that a new one pays.

@@ -6,21 +6,15 @@ namespace lacon {
 
 std::vector<OwnedVec> rigid_motions(Mat k, int dimension, const OwnNodes& nodes) {
   const int n_turns = dimension == 3 ? 3 : 1;
-  const double* const middle = nodes.middle;
   std::vector<OwnedVec> motions;
   for (int motion = 0; motion < dimension + n_turns; ++motion) {
     OwnedVec v;
     double* values = nullptr;
     checked(MatCreateVecs(k, v.out(), nullptr));
     checked(VecGetArray(v, &values));
-    for (std::size_t at = 0; at < nodes.is_free.size(); at += dimension) {
-      const double* x = &nodes.coordinates[at];
-      const int turn = motion - dimension, from = dimension == 3 ? (turn + 1) % 3 : 0, to = dimension == 3 ? (turn + 2) % 3 : 1;
-      for (int i = 0; i < dimension; ++i) {
-        const double moved = turn < 0 ? i == motion : i == to ? x[from] - middle[from] : i == from ? middle[to] - x[to] : 0;
-        values[at + i] = nodes.is_free[at + i] ? moved : 0;
-      }
-    }
+    for (std::size_t at = 0; at < nodes.is_free.size(); at += dimension)
+      for (int i = 0; i < dimension; ++i)
+        values[at + i] = nodes.is_free[at + i] ? moved_by(motion, dimension, i, &nodes.coordinates[at], nodes.middle) : 0;
     checked(VecRestoreArray(v, &values));
     double before = 0, after = 0;
     checked(VecNorm(v, NORM_2, &before));

@@ -18,6 +18,13 @@ struct OwnNodes {
   double middle[3] = {0, 0, 0};       ///< of the nodes of all processes
 };
 
+/// What a rigid motion moves a displacement by: translations, then turns about `middle`. @param x where the node is
+inline double moved_by(int motion, int dimension, int axis, const double* x, const double* middle) {
+  if (motion < dimension) return axis == motion ? 1 : 0;
+  const int turn = motion - dimension, from = dimension == 3 ? (turn + 1) % 3 : 0, to = dimension == 3 ? (turn + 2) % 3 : 1;
+  return axis == to ? x[from] - middle[from] : axis == from ? middle[to] - x[to] : 0;
+}
+
 /// Rigid motions of all nodes, orthonormal; zero where a displacement is imposed. @param k of their displacements
 std::vector<OwnedVec> rigid_motions(Mat k, int dimension, const OwnNodes& nodes);
 

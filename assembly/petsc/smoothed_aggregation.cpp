@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "lacon/assembly/petsc/aggregates.hpp"
+#include "lacon/assembly/petsc/aij_matrix.hpp"
 #include "lacon/assembly/petsc/between_processes.hpp"
 #include "lacon/assembly/petsc/motion_blocks.hpp"
 #include "lacon/assembly/petsc/near_null_space.hpp"
@@ -152,15 +153,10 @@ void Coarsening<dim>::find_motions(std::span<const double> coordinates) {
     };
     double largest[2] = {0, 0};  // of translations, and of turns
     for (int motion = 0; motion < n_motions; ++motion) {
-      const int turn = motion - dim, from = dim == 3 ? (turn + 1) % 3 : 0, to = dim == 3 ? (turn + 2) % 3 : 1;
-      for (const std::int32_t i : own) {
-        const double* const x = &coordinates[i * dim];
-        for (int r = 0; r < dim; ++r) {
-          const double moved = turn < 0 ? r == motion : r == to ? x[from] - middle[from] : r == from ? middle[to] - x[to] : 0;
-          motions_[i][r][motion] = is_free_[i * dim + r] ? moved : 0;
-        }
-      }
-      double& most = largest[turn >= 0];
+      for (const std::int32_t i : own)
+        for (int r = 0; r < dim; ++r)
+          motions_[i][r][motion] = is_free_[i * dim + r] ? moved_by(motion, dim, r, &coordinates[i * dim], middle.data()) : 0;
+      double& most = largest[motion >= dim];
       most = std::max(most, size_of(motion));
       for (int round = 0; round < 2; ++round)
         for (int other = 0; other < motion; ++other) {
@@ -357,14 +353,7 @@ OwnedMat Coarsening<dim>::matrix(std::span<const OwnedVec> motions) {
       offset.push_back(static_cast<PetscInt>(column.size()));
     }
   }
-  OwnedMat made;
-  const PetscInt n = numbers_.n_own() * n_motions;
-  checked(MatCreate(processes_, made.out()));
-  checked(MatSetSizes(made, n, n, PETSC_DETERMINE, PETSC_DETERMINE));
-  checked(MatSetType(made, MATAIJ));
-  checked(MatSetBlockSize(made, n_motions));
-  checked(MatSeqAIJSetPreallocationCSR(made, offset.data(), column.data(), value.data()));
-  checked(MatMPIAIJSetPreallocationCSR(made, offset.data(), column.data(), value.data()));
+  OwnedMat made = aij_matrix(processes_, {offset, column, value}, numbers_.n_own() * n_motions, n_motions);
 
   std::vector<OwnedVec> of_aggregates;
   for (const OwnedVec& motion : motions) {

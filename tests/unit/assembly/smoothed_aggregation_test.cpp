@@ -15,10 +15,7 @@ namespace {
 
 class PetscEnvironment : public testing::Environment {
  public:
-  void SetUp() override {
-    setenv("HWLOC_COMPONENTS", "-gl", 1);
-    checked(PetscInitializeNoArguments());
-  }
+  void SetUp() override { checked(PetscInitializeNoArguments()); }
   void TearDown() override { PetscFinalize(); }
 };
 const testing::Environment* const environment = testing::AddGlobalTestEnvironment(new PetscEnvironment);
