@@ -1,5 +1,6 @@
 #pragma once
 // Pairing for each dimension of the space; a user takes pairing.hpp.
+#include <array>
 #include <functional>
 #include <memory>
 #include <optional>
@@ -29,12 +30,22 @@ MakeCellPairer pair_in_space(const Surface& slave, const Surface& master, const 
 /// All coordinates of a cell, and nodal normals if there are, are finite numbers.
 bool finite(const Surface& surface, std::size_t cell);
 
-/// The deepest overlap of a couple.
+/// Of a couple: unit, outward; and the cosine of the angle between the slave's and the opposite of the master's.
+struct CoupleNormals {
+  std::array<double, 3> slave, master;
+  double cosine;
+};
+/// By how much the limit of a couple gives way: distance_limit by what both cells have moved since Surface::rest, depth_limit
+/// by what they may have come closer along the normal of either: walls behind a body stay there whatever they slide.
+double give_way(const PairingOptions& options, const Surface& slave, std::size_t slave_cell, const Surface& master,
+                std::size_t master_cell, const CoupleNormals& normals);
+
+/// The deepest overlap of a couple that has not moved.
 double deepest(const PairingOptions& options, double diameter, double cosine);
 /// Whether no gap up to this one is beyond a limit of `options`. @param diameter of the larger cell of the couple
 /// @param cosine between the normal of the slave and the opposite of the master's
 bool within_limits(const PairingOptions& options, double largest_gap, double diameter, double cosine);
-/// Which limit a gap in the middle of what a couple has in common is beyond.
-std::optional<Rejection> beyond_limits(const PairingOptions& options, double gap, double diameter, double cosine);
+/// Which limit a gap in the middle of what a couple has in common is beyond. @param moved give_way()
+std::optional<Rejection> beyond_limits(const PairingOptions& options, double gap, double diameter, double cosine, double moved);
 
 }  // namespace lacon::detail

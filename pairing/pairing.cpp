@@ -2,6 +2,7 @@
 #include "lacon/pairing/pairing.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <mutex>
@@ -42,9 +43,43 @@ bool finite(const Surface& surface, std::size_t cell) {
   });
 }
 
+double give_way(const PairingOptions& options, const Surface& slave, std::size_t slave_cell, const Surface& master,
+                std::size_t master_cell, const CoupleNormals& normals) {
+  if (slave.rest.empty()) return 0;
+  struct Motion {
+    std::array<double, 2> least{INFINITY, INFINITY}, most{-INFINITY, -INFINITY};  ///< along both normals
+    double longest = 0;
+  };
+  const auto motion_of = [&](const Surface& skin, std::size_t cell) {
+    Motion motion;
+    for (const std::int32_t node : skin.nodes[cell]) {
+      std::array<double, 2> along{};
+      double square = 0;
+      for (int d = 0; d < 3; ++d) {
+        const double moved = skin.coordinates[3 * node + d] - skin.rest[3 * node + d];
+        along[0] += moved * normals.slave[d];
+        along[1] += moved * normals.master[d];
+        square += moved * moved;
+      }
+      for (int k = 0; k < 2; ++k) {
+        motion.least[k] = std::min(motion.least[k], along[k]);
+        motion.most[k] = std::max(motion.most[k], along[k]);
+      }
+      motion.longest = std::max(motion.longest, std::sqrt(square));
+    }
+    return motion;
+  };
+  const Motion of_slave = motion_of(slave, slave_cell), of_master = motion_of(master, master_cell);
+  const double both = of_slave.longest + of_master.longest;
+  if (options.distance_limit > 0) return both;
+  double closer = of_slave.most[0] - of_master.least[0];
+  if (normals.cosine > 0) closer = std::max(closer, (of_master.most[1] - of_slave.least[1]) / normals.cosine);
+  return std::clamp(closer, 0.0, both);
+}
+
 double deepest(const PairingOptions& options, double diameter, double cosine) {
-  if (options.distance_limit > 0) return options.distance_limit * diameter + options.motion;
-  return options.depth_limit > 0 ? options.depth_limit * diameter * std::max(cosine, 0.0) + options.motion
+  if (options.distance_limit > 0) return options.distance_limit * diameter;
+  return options.depth_limit > 0 ? options.depth_limit * diameter * std::max(cosine, 0.0)
                                  : std::numeric_limits<double>::infinity();
 }
 
@@ -53,9 +88,10 @@ bool within_limits(const PairingOptions& options, double largest_gap, double dia
          largest_gap <= deepest(options, diameter, cosine);
 }
 
-std::optional<Rejection> beyond_limits(const PairingOptions& options, double gap, double diameter, double cosine) {
-  if (options.distance_limit > 0 && gap > options.distance_limit * diameter + options.motion) return Rejection::too_far;
-  if (-gap > deepest(options, diameter, cosine)) return Rejection::too_deep;
+std::optional<Rejection> beyond_limits(const PairingOptions& options, double gap, double diameter, double cosine,
+                                       double moved) {
+  if (options.distance_limit > 0 && gap > options.distance_limit * diameter + moved) return Rejection::too_far;
+  if (-gap > deepest(options, diameter, cosine) + moved) return Rejection::too_deep;
   return std::nullopt;
 }
 

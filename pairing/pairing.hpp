@@ -63,14 +63,12 @@ struct PairingOptions {
   PairingTolerances tolerances;
   bool brute_force = false;  ///< try every couple instead of searching: the oracle of the tests
   /// Largest |gap| in the middle of what a couple has in common, in diameters of the larger of its two cells (COEF_MULT_APPA);
-  /// not positive: no limit.
+  /// not positive: no limit. What both cells have moved since Surface::rest comes on top.
   double distance_limit = -1;
   /// Likewise of an overlap alone, where distances have no limit, behind which normals reach through a body; not positive: no
   /// limit. It is multiplied by the cosine of the angle between both normals: a wall is met inside a body only by who looks
-  /// through it.
+  /// through it. What the couple has come closer along the normal of either since Surface::rest comes on top.
   double depth_limit = -1;
-  double motion =
-      0;  ///< by how much more cells may be apart or overlap than these say: what they have moved since they were apart
   /// Angle between the slave's normal and the opposite of the master's, in degrees, from which on a couple counts less and less
   /// (steepness.hpp); 90: none does.
   double steep_angle = 85;

@@ -266,8 +266,13 @@ class PairerInSpace final : public detail::CellPairer {
       const double largest = norm(nodes[0] - e.f.nodes[0]) + reach(e.f) + reach(master(view->master));
       if (detail::within_limits(options(), largest, size, cosine(view->master))) return false;
       const double found = gap(*view, middle(view->region.polygon));
-      const auto limit =
-          std::isfinite(found) ? detail::beyond_limits(options(), found, size, cosine(view->master)) : std::nullopt;
+      if (!std::isfinite(found)) return false;
+      const Vec3 n = mean_normal_, m = master(view->master).normal;
+      const double cos = cosine(view->master),
+                   moved = detail::give_way(options(), masters_->skin.slave, static_cast<std::size_t>(slave_),
+                                            masters_->skin.master, static_cast<std::size_t>(view->master),
+                                            {.slave = {n.x, n.y, n.z}, .master = {m.x, m.y, m.z}, .cosine = cos});
+      const auto limit = detail::beyond_limits(options(), found, size, cos, moved);
       if (limit) reject(view->master, *limit);
       return limit.has_value();
     });

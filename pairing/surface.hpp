@@ -37,6 +37,9 @@ struct Surface {
   /// In space, of each cell of a master: bit i is set where the skin goes on a little beyond the edge from vertex i to the
   /// next, as by its image in a plane of symmetry; empty: nowhere.
   std::span<const std::uint8_t> mirrored = {};
+  /// (n_nodes, 3), where nodes were when the bodies last were in balance; empty: where they are now. Limits of distance and of
+  /// depth (PairingOptions) give way by what a couple has moved since.
+  std::span<const double> rest = {};
   /// In space, of each cell of a slave: how it was cut before, which pairing refines; empty: each as its shape asks for now.
   std::span<SlaveCut> cuts = {};
 

@@ -282,21 +282,6 @@ void ContactGeometry::set_cuts(std::span<const std::int32_t> cuts) {
   }
 }
 
-double ContactGeometry::motion(const Zone& zone) const {
-  double sum = 0;
-  for (const Surface* const skin : {&zone.slave, &zone.master}) {
-    double longest = 0;
-    for (std::size_t cell = 0; cell < skin->size(); ++cell)
-      for (const std::int32_t node : skin->nodes[cell]) {
-        const double *const now = coordinates_.data() + 3 * std::ptrdiff_t{node}, *const then =
-                                                                                      now - coordinates_.data() + rest_.data();
-        longest = std::max(longest, std::hypot(now[0] - then[0], now[1] - then[1], now[2] - then[2]));
-      }
-    sum += longest;
-  }
-  return sum;
-}
-
 void ContactGeometry::update(std::span<const double> displacement, std::vector<ZonePairing>* records) {
   displace(mesh_, displacement, mesh_.dimension, coordinates_);
   over_axis_.reset();
@@ -319,7 +304,7 @@ void ContactGeometry::update(std::span<const double> displacement, std::vector<Z
   for (Zone& zone : zones_) {
     const auto z = static_cast<std::size_t>(&zone - zones_.data());
     zone.slave.normals = {};
-    zone.pairing.motion = motion(zone);
+    zone.slave.rest = zone.master.rest = rest_;
     if (contact_.smoothing) normals_[z] = nodal_normals(zone.slave);
     zone.slave.normals = normals_[z];
     // a few blocks for each thread at a time: points of a large skin are never in memory together

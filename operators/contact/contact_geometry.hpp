@@ -141,8 +141,6 @@ class ContactGeometry {
   [[noreturn]] void no_normal(const SlaveElement& slave) const;  ///< throws EVOLUTION_3
   /// Masters go on where slaves still ended in their planes when they were at rest.
   void mirror();
-  /// By how much the two skins of a zone have come nearer since they were at rest, at most.
-  double motion(const Zone& zone) const;
   /// Measures of whole patches, in the measure of the kernels' coverage (with r in axisymmetry).
   void measure_slaves();
   /// The contact kernel of a slave cell's element.

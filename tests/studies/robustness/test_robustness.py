@@ -264,6 +264,13 @@ class Skins(StudyTest):
             self.assertEqual(figures["status"], "finished")
             self.assertIn("EVOLUTION_54" in figures["alarms"], told)
 
+    def test_far_walls_stay_far_whatever_bodies_move_along_them(self):
+        """The ends of two beams, back to back through both, come no closer when one beam is lowered onto the other by more than what is left to the limit of 4
+        diameters; taken for contact, they flipped with a period of two and stopped the study."""
+        figures = run(unseen(8055), LACON, self.folder)
+        self.assertEqual((figures["status"], figures["lost"]), ("finished", 0))
+        self.assertIn("EVOLUTION_17", (self.folder / "err").read_text())
+
     def test_overlap_of_facets_is_told(self):
         """Half rings, one in the other, whose arcs have the same radius: chords of 9 degrees overlap arcs by 1 - cos 4.5 degrees = 0.0031."""
         def ring(kind, name, radii, cells, skin, base):

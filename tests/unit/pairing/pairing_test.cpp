@@ -7,6 +7,7 @@
 #include <numbers>
 
 #include "lacon/pairing/normals.hpp"
+#include "moved.hpp"
 #include "skins.hpp"
 #include "threads.hpp"
 
@@ -461,8 +462,15 @@ TEST(Pairing, LeavesOutWhatIsFurtherThanTheLimit) {
     EXPECT_TRUE(near.rejected.empty());
     EXPECT_EQ(far.cells.size(), 0u);
     EXPECT_EQ(far.rejected, (std::vector<RejectedCouple>{{0, 0, side > 0 ? Rejection::too_deep : Rejection::too_far}}));
-    EXPECT_EQ(pair(slave.view(), master.view(), {.distance_limit = 0.4, .motion = 0.2001}).cells.size(), 1u);
-    EXPECT_EQ(pair(slave.view(), master.view(), {.distance_limit = 0.4, .motion = 0.1999}).cells.size(), 0u);
+    const auto found_after = [&](double distance) {  // of the master, to where it is
+      const std::vector<double> slave_rest = slave.coordinates, master_rest = moved(master.coordinates, {0, -distance, 0});
+      Surface of_slave = slave.view(), of_master = master.view();
+      of_slave.rest = slave_rest;
+      of_master.rest = master_rest;
+      return pair(of_slave, of_master, {.distance_limit = 0.4}).cells.size();
+    };
+    EXPECT_EQ(found_after(0.2001 * side), 1u);
+    EXPECT_EQ(found_after(0.1999 * side), 0u);
     for (const double none : {-1.0, 0.0})
       EXPECT_EQ(pair(slave.view(), master.view(), {.distance_limit = none}).cells.size(), 1u);
   }
@@ -474,13 +482,20 @@ TEST(Pairing, LeavesOutOverlapsThatAreDeeperThanTheLimitAndTheMotion) {
     Skin slave, master;
     add_chain(slave, line(0), {0, 1}, Kind::linear);
     add_chain(master, line(side), {1.5, -0.5}, Kind::linear);
-    const auto rejected = [&](double limit, double motion) {
-      return pair(slave.view(), master.view(), {.depth_limit = limit, .motion = motion}).rejected;
+    const auto rejected = [&](double limit, double closer, double sideways = 0) {  // since they were at rest, half of it each
+      const std::vector<double> slave_rest = moved(slave.coordinates, {0, 0.5 * closer, 0}),
+                                master_rest = moved(master.coordinates, {sideways, -0.5 * closer, 0});
+      Surface of_slave = slave.view(), of_master = master.view();
+      of_slave.rest = slave_rest;
+      of_master.rest = master_rest;
+      return pair(of_slave, of_master, {.depth_limit = limit}).rejected;
     };
     const std::vector<RejectedCouple> none, deep{{0, 0, Rejection::too_deep}};
     EXPECT_EQ(rejected(0.4999, 0), side > 0 ? deep : none);
     EXPECT_EQ(rejected(0.4, 0.1999), side > 0 ? deep : none);
     EXPECT_EQ(rejected(0.4, 0.2001), none);
+    EXPECT_EQ(rejected(0.4, -0.2001), side > 0 ? deep : none);    // the farther apart before
+    EXPECT_EQ(rejected(0.4, 0, 0.2001), side > 0 ? deep : none);  // along the walls: behind the body all the time
     EXPECT_EQ(rejected(0.5001, 0), none);
   }
 }

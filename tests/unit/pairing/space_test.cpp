@@ -14,6 +14,7 @@
 #include "lacon/pairing/normals.hpp"
 #include "lacon/pairing/pairing.hpp"
 #include "lacon/pairing/polygon.hpp"
+#include "moved.hpp"
 #include "skins_in_space.hpp"
 #include "threads.hpp"
 
@@ -677,13 +678,20 @@ TEST(PairingInSpace, LeavesOutOverlapsThatAreDeeperThanTheLimitAndTheMotion) {
   for (const double side : {-1.0, 1.0}) {
     Skin3 slave = slave_square();
     Skin3 master = mesh({1, 1, CellType::QUAD4, true, 0, -0.5, 1.5, -0.5, 1.5}, plane(side), random);
-    const auto rejected = [&](double limit, double motion) {
-      return pair(slave.view(), master.view(), {.depth_limit = limit, .motion = motion}).rejected;
+    const auto rejected = [&](double limit, double closer, double sideways = 0) {  // since they were at rest, half of it each
+      const std::vector<double> slave_rest = moved(slave.coordinates, {0, 0, 0.5 * closer}),
+                                master_rest = moved(master.coordinates, {sideways, 0, -0.5 * closer});
+      Surface of_slave = slave.view(), of_master = master.view();
+      of_slave.rest = slave_rest;
+      of_master.rest = master_rest;
+      return pair(of_slave, of_master, {.depth_limit = limit}).rejected;
     };
     const std::vector<RejectedCouple> none, deep{{0, 0, Rejection::too_deep}};
     EXPECT_EQ(rejected(1 / size - 1e-6, 0), side > 0 ? deep : none);
     EXPECT_EQ(rejected(0.5 / size, 0.5 - 1e-6), side > 0 ? deep : none);
     EXPECT_EQ(rejected(0.5 / size, 0.5 + 1e-6), none);
+    EXPECT_EQ(rejected(0.5 / size, -0.5 - 1e-6), side > 0 ? deep : none);
+    EXPECT_EQ(rejected(0.5 / size, 0, 0.5 + 1e-6), side > 0 ? deep : none);
     EXPECT_EQ(rejected(1 / size + 1e-6, 0), none);
   }
 }
