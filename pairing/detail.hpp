@@ -30,10 +30,9 @@ MakeCellPairer pair_in_space(const Surface& slave, const Surface& master, const 
 /// All coordinates of a cell, and nodal normals if there are, are finite numbers.
 bool finite(const Surface& surface, std::size_t cell);
 
-/// Of a couple: unit, outward; and the cosine of the angle between the slave's and the opposite of the master's.
+/// Of a couple: unit, outward.
 struct CoupleNormals {
   std::array<double, 3> slave, master;
-  double cosine;
 };
 /// By how much the limit of a couple gives way: distance_limit by what both cells have moved since Surface::rest, depth_limit
 /// by what they may have come closer along the normal of either: walls behind a body stay there whatever they slide.

@@ -7,6 +7,7 @@
 #include <limits>
 #include <mutex>
 #include <numbers>
+#include <numeric>
 #include <stdexcept>
 #include <string>
 #include <utility>
@@ -45,13 +46,13 @@ bool finite(const Surface& surface, std::size_t cell) {
 
 double give_way(const PairingOptions& options, const Surface& slave, std::size_t slave_cell, const Surface& master,
                 std::size_t master_cell, const CoupleNormals& normals) {
-  if (slave.rest.empty()) return 0;
   struct Motion {
-    std::array<double, 2> least{INFINITY, INFINITY}, most{-INFINITY, -INFINITY};  ///< along both normals
+    std::array<double, 2> least{}, most{};  ///< along both normals
     double longest = 0;
   };
   const auto motion_of = [&](const Surface& skin, std::size_t cell) {
-    Motion motion;
+    if (skin.rest.empty()) return Motion{};
+    Motion motion{.least = {INFINITY, INFINITY}, .most = {-INFINITY, -INFINITY}};
     for (const std::int32_t node : skin.nodes[cell]) {
       std::array<double, 2> along{};
       double square = 0;
@@ -73,7 +74,8 @@ double give_way(const PairingOptions& options, const Surface& slave, std::size_t
   const double both = of_slave.longest + of_master.longest;
   if (options.distance_limit > 0) return both;
   double closer = of_slave.most[0] - of_master.least[0];
-  if (normals.cosine > 0) closer = std::max(closer, (of_master.most[1] - of_slave.least[1]) / normals.cosine);
+  const double cosine = -std::inner_product(normals.slave.begin(), normals.slave.end(), normals.master.begin(), 0.0);
+  if (cosine > 0) closer = std::max(closer, (of_master.most[1] - of_slave.least[1]) / cosine);
   return std::clamp(closer, 0.0, both);
 }
 

@@ -360,13 +360,12 @@ class PairerInPlane final : public detail::CellPairer {
               const double own = 2 * length(e.x.c[1]), other = length(along), diameter = std::max(own, other);
               // the way from x_e to its image by the middle of the slave and an end of the master, both of which may bulge
               const double largest = length(point(master, first) - e.origin) + own + 1.5 * other;
-              if (detail::within_limits(options, largest, diameter, cosine(e, m))) return std::nullopt;
               const double cos = cosine(e, m);
+              if (detail::within_limits(options, largest, diameter, cos)) return std::nullopt;
               const Vec2 t = e.tangent(-1) + e.tangent(1);
-              const double moved = detail::give_way(options, slave, cell, master, static_cast<std::size_t>(m),
-                                                    {.slave = {t.y / length(t), -t.x / length(t), 0},
-                                                     .master = {along.y / other, -along.x / other, 0},
-                                                     .cosine = cos});
+              const double moved = detail::give_way(
+                  options, slave, cell, master, static_cast<std::size_t>(m),
+                  {.slave = {t.y / length(t), -t.x / length(t), 0}, .master = {along.y / other, -along.x / other, 0}});
               return detail::beyond_limits(options, image(e, middle, master, m, tolerances).gap, diameter, cos, moved);
             };
             if (!(share(e, m) > tolerances.sliver))

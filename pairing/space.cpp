@@ -271,7 +271,7 @@ class PairerInSpace final : public detail::CellPairer {
       const double cos = cosine(view->master),
                    moved = detail::give_way(options(), masters_->skin.slave, static_cast<std::size_t>(slave_),
                                             masters_->skin.master, static_cast<std::size_t>(view->master),
-                                            {.slave = {n.x, n.y, n.z}, .master = {m.x, m.y, m.z}, .cosine = cos});
+                                            {.slave = {n.x, n.y, n.z}, .master = {m.x, m.y, m.z}});
       const auto limit = detail::beyond_limits(options(), found, size, cos, moved);
       if (limit) reject(view->master, *limit);
       return limit.has_value();

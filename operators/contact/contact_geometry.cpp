@@ -149,6 +149,7 @@ ContactGeometry::ContactGeometry(const Mesh& mesh, const Model& model, const Con
         .master = surface_of(mesh, data.master, coordinates_),
         .current_jacobian = data.jacobian == "ACTUALISE",
         .pairing = {.distance_limit = data.distance_limit, .depth_limit = data.distance_limit > 0 ? -1 : deepest_overlap}};
+    zone.slave.rest = zone.master.rest = rest_;
     for (const std::int32_t cell : data.slave) zone.slaves.push_back(slave_of_cell.at(cell));
     for (const std::int32_t patch : data.patches) zone_of_[patch] = static_cast<std::int32_t>(zones_.size());
     if (!contact.frozen_gap) {
@@ -304,7 +305,6 @@ void ContactGeometry::update(std::span<const double> displacement, std::vector<Z
   for (Zone& zone : zones_) {
     const auto z = static_cast<std::size_t>(&zone - zones_.data());
     zone.slave.normals = {};
-    zone.slave.rest = zone.master.rest = rest_;
     if (contact_.smoothing) normals_[z] = nodal_normals(zone.slave);
     zone.slave.normals = normals_[z];
     // a few blocks for each thread at a time: points of a large skin are never in memory together

@@ -463,11 +463,10 @@ TEST(Pairing, LeavesOutWhatIsFurtherThanTheLimit) {
     EXPECT_EQ(far.cells.size(), 0u);
     EXPECT_EQ(far.rejected, (std::vector<RejectedCouple>{{0, 0, side > 0 ? Rejection::too_deep : Rejection::too_far}}));
     const auto found_after = [&](double distance) {  // of the master, to where it is
-      const std::vector<double> slave_rest = slave.coordinates, master_rest = moved(master.coordinates, {0, -distance, 0});
-      Surface of_slave = slave.view(), of_master = master.view();
-      of_slave.rest = slave_rest;
-      of_master.rest = master_rest;
-      return pair(of_slave, of_master, {.distance_limit = 0.4}).cells.size();
+      const std::vector<double> rest = moved(master.coordinates, {0, -distance, 0});
+      Surface of_master = master.view();
+      of_master.rest = rest;
+      return pair(slave.view(), of_master, {.distance_limit = 0.4}).cells.size();
     };
     EXPECT_EQ(found_after(0.2001 * side), 1u);
     EXPECT_EQ(found_after(0.1999 * side), 0u);
