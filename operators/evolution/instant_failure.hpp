@@ -11,9 +11,12 @@ struct FailureNature {
   bool depends_on_step = true;  ///< false: a shorter step meets the same
   /// By which factor the residual changed at last from iteration to iteration, where nothing but it was unsettled.
   std::optional<double> ratio;
-  double excess = 0;           ///< the residual over what is asked
-  bool left_unstable = false;  ///< iterations left the equilibrium that the last one leads to: the next attempt follows it
-  bool led_astray = false;     ///< it began where the last motion leads to: the last state may be a better start
+  double excess = 0;  ///< the residual over what is asked
+  /// Of these at most one: the instant is worth another attempt, before anything is cut.
+  bool led_astray = false;       ///< it began where the last motion leads to: the last state may be a better start
+  bool left_unstable = false;    ///< iterations left the equilibrium that the last one leads to: the next attempt follows it
+  bool stayed_unstable = false;  ///< it followed that equilibrium: the next attempt looks for another one
+  bool begins_again() const { return led_astray || left_unstable || stayed_unstable; }
 };
 
 /// Thrown for a failure of which more is known than its message.

@@ -112,6 +112,7 @@ void Newton::save(const hdf5::Group& group) const {
   for (std::size_t p = 0; contact() && p < contact()->n_patches(); ++p)
     if (contact()->keeps_cover(p)) covers.push_back(static_cast<std::int64_t>(p));
   group.write("covers", covers);
+  unstable_path_.save(group.create("unstable_path"));
   prediction_.save(group.create("prediction"));
   equilibrium_.save(group.create("equilibrium"));
   solver_.save(group.create("solver"));
@@ -126,6 +127,7 @@ void Newton::resume(const hdf5::Group& group, const hdf5::Group* base, const Sta
     for (const std::int64_t patch : group.read<std::int64_t>("covers"))
       equilibrium_.keep_cover(static_cast<std::size_t>(patch));
   }
+  if (group.has("unstable_path")) unstable_path_.resume(group.open("unstable_path"));
   if (group.has("prediction")) prediction_.resume(group.open("prediction"));  // likewise
   equilibrium_.resume(group.open("equilibrium"), state, rest);
   solver_.resume(group.open("solver"), base, problem_.numbering);
@@ -140,15 +142,14 @@ int Newton::solve(double instant, StaticState& state, const std::function<void(c
     Message told = error.message();
     FailureNature nature = nature_of(error);
     nature.led_astray = elsewhere_ && told.severity == 'S';
-    nature.left_unstable =
-        !nature.led_astray && told.severity == 'S' && choice_.leaves_unstable() && !choice_.follows_unstable();
-    follows_unstable_ = nature.left_unstable;
+    if (!nature.led_astray && told.severity == 'S' && unstable_path_.fail(choice_.leaves_unstable()))
+      (choice_.follows_unstable() ? nature.stayed_unstable : nature.left_unstable) = true;
     // the state before was computed: what is wrong with a cell now, the iterations have done
     if (told.id == "ELEMENT_1" || told.id == "EVOLUTION_3")
       told = message("EVOLUTION_18", {{"instant", fmt::format("{:.9g}", instant)},
                                       {"reason", said({told.text, course_.words()})},
                                       {"remedy", part(options_.cuts ? "remedy_coarser_load" : "remedy_cut_step")}});
-    else if (!nature.led_astray && !nature.left_unstable)
+    else if (!nature.begins_again())
       throw;
     if (nature.led_astray) prediction_.mislead();
     throw InstantFailure(told, nature);
@@ -158,7 +159,7 @@ int Newton::solve(double instant, StaticState& state, const std::function<void(c
 std::vector<double> Newton::begin_instant(double instant, const StaticState& state) {
   equilibrium_.rest_at(state.displacement);
   equilibrium_.keep_gliding(state.patches);
-  choice_.start_instant(std::exchange(follows_unstable_, false));
+  choice_.start_instant(unstable_path_.begin());
   statuses_.start_instant();
   edges_ = {};
   lost_masters_.start_instant();
@@ -180,7 +181,7 @@ void Newton::finish_instant(double instant, const StaticState& previous, StaticS
   if (contact()) contact()->geometry().check_radii();
   if (const auto cell = equilibrium_.cell_inside_out())
     fail("EVOLUTION_9", {{"instant", fmt::format("{:.9g}", instant)}, {"cell", cell_name(*cell)}});
-  tell_unstable(instant, line);
+  note_stability(instant, line);
   equilibrium_.hold_points(state);
   equilibrium_.let_covers_go();
   prediction_.note(options_.start, {.displacement = previous.displacement, .pressure = previous.patches.lambda},
@@ -275,9 +276,11 @@ int Newton::iterate(double instant, StaticState& state, const std::function<void
   fail_to_converge(instant, line, changing);
 }
 
-void Newton::tell_unstable(double instant, const IterationReport& line) {
+void Newton::note_stability(double instant, const IterationReport& line) {
   const auto& negative = line.solution.factorisation.negative_pivots;
-  if (!choice_.follows_unstable() || !negative || *negative <= line.constraints || std::exchange(unstable_told_, true)) return;
+  const bool unstable = choice_.follows_unstable() && negative && *negative > line.constraints;
+  unstable_path_.solve(unstable);
+  if (!unstable || std::exchange(unstable_told_, true)) return;
   inform("EVOLUTION_54", {{"instant", fmt::format("{:.9g}", instant)},
                           {"negative", std::to_string(*negative)},
                           {"constraints", std::to_string(line.constraints)}});

@@ -20,6 +20,7 @@
 #include "lacon/operators/evolution/prediction.hpp"
 #include "lacon/operators/evolution/residual_course.hpp"
 #include "lacon/operators/evolution/status_rule.hpp"
+#include "lacon/operators/evolution/unstable_path.hpp"
 
 namespace lacon {
 
@@ -91,8 +92,8 @@ class Newton {
   /// @param external forces as the instant began with them  @param line the last iteration
   void finish_instant(double instant, const StaticState& previous, StaticState& state, const std::vector<double>& external,
                       const IterationReport& line);
-  /// EVOLUTION_54, once: what is solved is an equilibrium that is not stable. @param line the last iteration
-  void tell_unstable(double instant, const IterationReport& line);
+  /// Whether what is solved is an equilibrium that is not stable: EVOLUTION_54, once. @param line the last iteration
+  void note_stability(double instant, const IterationReport& line);
   void assemble(const StaticState& state, const StaticState& previous, SolidMatrix asked);
   /// The solution of the present system. Where bodies are loose that are near to others, patches of `state` take contact
   /// first. Throws SOLVER_3 in the first iteration, EVOLUTION_42 in later ones.
@@ -158,9 +159,9 @@ class Newton {
   LostMasters lost_masters_;
   ForcingTerm forcing_;
   Prediction prediction_;
-  bool elsewhere_ = false;              ///< it has led this instant to another start than the last state
-  std::set<std::size_t> told_;          ///< patches that EVOLUTION_20 was about
-  bool follows_unstable_ = false;       ///< the next instant does: the last attempt left an equilibrium that is not stable
+  bool elsewhere_ = false;      ///< it has led this instant to another start than the last state
+  std::set<std::size_t> told_;  ///< patches that EVOLUTION_20 was about
+  UnstablePath unstable_path_;
   bool unstable_told_ = false;          ///< EVOLUTION_54 was
   std::set<std::int32_t> covers_told_;  ///< zones that EVOLUTION_50 was about
   ResidualCourse course_;               ///< of the instant

@@ -42,7 +42,7 @@ std::vector<Message> read_messages(const hdf5::Group& group) {
 
 void write_course(const hdf5::Group& group, const Course& course) {
   std::vector<double> instants, ratios, excesses;
-  std::vector<std::int64_t> iterations, failed, depends, astray, unstable;
+  std::vector<std::int64_t> iterations, failed, depends, astray, left, stayed;
   std::vector<Message> failures;
   for (const Attempt& attempt : course) {
     instants.push_back(attempt.instant);
@@ -53,7 +53,8 @@ void write_course(const hdf5::Group& group, const Course& course) {
     failures.push_back(attempt.failure->message());
     depends.push_back(nature.depends_on_step);
     astray.push_back(nature.led_astray);
-    unstable.push_back(nature.left_unstable);
+    left.push_back(nature.left_unstable);
+    stayed.push_back(nature.stayed_unstable);
     ratios.push_back(nature.ratio.value_or(NAN));
     excesses.push_back(nature.excess);
   }
@@ -64,7 +65,8 @@ void write_course(const hdf5::Group& group, const Course& course) {
   write_message(known, failures);
   known.write("depends_on_step", depends);
   known.write("led_astray", astray);
-  known.write("left_unstable", unstable);
+  known.write("left_unstable", left);
+  known.write("stayed_unstable", stayed);
   known.write("ratio", ratios);
   known.write("excess", excesses);
 }
@@ -78,7 +80,7 @@ Course read_course(const hdf5::Group& group) {
   const auto kept_later = [&](const char* name) {  // not in a record of before it was kept
     return known.has(name) ? known.read<std::int64_t>(name) : std::vector<std::int64_t>(depends.size(), 0);
   };
-  const auto astray = kept_later("led_astray"), unstable = kept_later("left_unstable");
+  const auto astray = kept_later("led_astray"), left = kept_later("left_unstable"), stayed = kept_later("stayed_unstable");
   const auto ratios = known.read<double>("ratio"), excesses = known.read<double>("excess");
   Course course;
   std::size_t failure = 0;
@@ -88,8 +90,9 @@ Course read_course(const hdf5::Group& group) {
     FailureNature nature{.depends_on_step = depends.at(failure) != 0,
                          .ratio = {},
                          .excess = excesses.at(failure),
-                         .left_unstable = unstable.at(failure) != 0,
-                         .led_astray = astray.at(failure) != 0};
+                         .led_astray = astray.at(failure) != 0,
+                         .left_unstable = left.at(failure) != 0,
+                         .stayed_unstable = stayed.at(failure) != 0};
     if (!std::isnan(ratios.at(failure))) nature.ratio = ratios[failure];
     course.back().failure.emplace(failures.at(failure++), nature);
   }

@@ -164,12 +164,14 @@ void step_through(const TimeSteps& steps, const SolveInstant& solve, const GoBac
         return;
       } catch (const Error& error) {
         const FailureNature nature = nature_of(error);
-        if (!nature.led_astray && !nature.left_unstable) {
+        if (!nature.begins_again()) {
           if (error.message().severity == 'S' && unstable) throw InstantFailure(*unstable);
           throw;
         }
         if (nature.left_unstable) unstable.emplace(error.message(), nature);
-        inform(nature.led_astray ? "EVOLUTION_48" : "EVOLUTION_53",
+        inform(nature.led_astray      ? "EVOLUTION_48"
+               : nature.left_unstable ? "EVOLUTION_53"
+                                      : "EVOLUTION_55",
                {{"instant", fmt::format("{:.9g}", to)}, {"reason", error.message().text}});
       }
       go_back();
