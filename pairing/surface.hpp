@@ -16,11 +16,13 @@ struct SlaveCut {
   std::uint8_t steps = 1;  ///< of a grid of triangles
   bool curved = false;     ///< its edges, at some time
   bool affine = false;     ///< its map nearly was, at some time
+  bool kept = false;       ///< the present shape asks for less
 
-  void refine(const SlaveCut& other) {
-    steps = std::max(steps, other.steps);
-    curved = curved || other.curved;
-    affine = affine || other.affine;
+  void refine(const SlaveCut& before) {
+    kept = before.steps > steps || (before.curved && !curved) || (before.affine && !affine);
+    steps = std::max(steps, before.steps);
+    curved = curved || before.curved;
+    affine = affine || before.affine;
   }
 };
 

@@ -264,6 +264,10 @@ void ContactGeometry::rest_at(std::span<const double> displacement) {
   mirror();
 }
 
+bool ContactGeometry::keeps_cuts() const {
+  return std::ranges::any_of(zones_, [](const Zone& zone) { return std::ranges::any_of(zone.cuts, &SlaveCut::kept); });
+}
+
 std::vector<std::int32_t> ContactGeometry::cuts() const {
   std::vector<std::int32_t> all;
   for (const Zone& zone : zones_)

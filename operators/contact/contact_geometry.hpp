@@ -70,6 +70,10 @@ class ContactGeometry {
   /// COEF_MULT_APPA gives a limit): further off a normal has left the body on its other side. @param displacement (n_nodes,
   /// mesh.dimension)
   void rest_at(std::span<const double> displacement);
+  /// Whether slave cells in space are cut more finely than their present shapes ask for; let the next update() cut them as
+  /// these do.
+  bool keeps_cuts() const;
+  void renew_cuts() { cuts_end_ = true; }
   /// How slave cells in space have been cut since then (Surface::cuts), of all zones, for set_cuts() of another process:
   /// steps, curved, affine of each; empty in the plane.
   std::vector<std::int32_t> cuts() const;
@@ -164,7 +168,7 @@ class ContactGeometry {
   std::vector<std::int32_t> zone_of_;
   std::vector<std::int64_t> rejected_;
   std::vector<TooDeep> too_deep_;          ///< of each zone
-  bool cuts_end_ = true;                   ///< with the next update(): bodies are at rest
+  bool cuts_end_ = true;                   ///< with the next update()
   std::optional<std::int32_t> over_axis_;  ///< a slave cell with a negative radius
 };
 

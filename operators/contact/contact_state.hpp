@@ -126,6 +126,8 @@ class ContactState {
 
   /// ContactGeometry::rest_at
   void rest_at(std::span<const double> displacement) { geometry_.rest_at(displacement); }
+  /// ContactGeometry::renew_cuts
+  void renew_cuts() { geometry_.renew_cuts(); }
   /// ContactGeometry::set_cuts
   void set_cuts(std::span<const std::int32_t> cuts) { geometry_.set_cuts(cuts); }
   /// What was in contact at the last state in equilibrium, which zones with GLISSIERE='OUI' keep in contact.

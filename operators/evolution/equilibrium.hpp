@@ -69,12 +69,14 @@ class Equilibrium {
   void rest_at(std::span<const double> displacement) {
     if (contact_) contact_->rest_at(displacement);
   }
-  /// The patches of that state: contact that glides (GLISSIERE) keeps what was closed.
+  /// ContactGeometry::renew_cuts
+  void renew_cuts() { contact_->renew_cuts(); }
   /// ContactState::keep_cover, let_covers_go
   void keep_cover(std::size_t patch) { contact_->keep_cover(patch); }
   void let_covers_go() {
     if (contact_) contact_->let_covers_go();
   }
+  /// The patches of the last state in equilibrium: contact that glides (GLISSIERE) keeps what was closed.
   void keep_gliding(const Patchwise& patches) {
     if (contact_) contact_->keep_gliding(patches);
   }

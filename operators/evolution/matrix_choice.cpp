@@ -1,6 +1,5 @@
 #include "lacon/operators/evolution/matrix_choice.hpp"
 
-#include <limits>
 #include <utility>
 
 namespace lacon {
@@ -28,7 +27,7 @@ void MatrixChoice::start_instant(bool follows) {
   settled_ = traits_.settling;
   flat_ = elastic_ = {};
   iterations_ = without_ = 0;
-  residual_ = std::numeric_limits<double>::infinity();
+  forget_residual();
   curved_ = false;
 }
 

@@ -1,6 +1,7 @@
 #pragma once
 // Which matrix Newton's method goes on with.
 #include <cstdint>
+#include <limits>
 
 #include "lacon/assembly/element_sets.hpp"
 
@@ -61,6 +62,8 @@ class MatrixChoice {
   void set_waits(bool waits) { waits_ = waits; }
   /// Forces are others from here on: what was seen of their matrices says nothing any more.
   void start_again() { unstable_ = far_ = balances_ = false, slow_ = 0, flat_ = {}; }
+  /// Forces leap a little: the last residual is no measure of the next one.
+  void forget_residual() { residual_ = std::numeric_limits<double>::infinity(); }
   NewtonMatrix suited(SolidMatrix asked, bool touches) const;
   /// More negative pivots than constraints: beyond a limit point or a bifurcation, from where a step of the tangent leads
   /// anywhere. @param curves gaps of active patches have second derivatives @return whether the matrix has to be another one

@@ -22,6 +22,8 @@ namespace {
 constexpr int drifting = 4;            // iterations without change of status, each of which leaves more than the one before
 constexpr double gap_share = 1e-2;     // of RESI_GEOM: largest |g_T| / h, 1e-8 by default
 constexpr double deepest = 1;          // sizes of a patch, by which bodies that began in a few patches may go into each other
+constexpr double near_balance = 0.01;  // unbalanced forces over the largest: shapes are nearly those of the equilibrium
+constexpr int most_cuts = 2;           // anew, in an instant
 constexpr double other_stress = 1e-8;  // of the largest stress: that of another law
 
 }  // namespace
@@ -163,7 +165,7 @@ std::vector<double> Newton::begin_instant(double instant, const StaticState& sta
   statuses_.start_instant();
   edges_ = {};
   lost_masters_.start_instant();
-  settled_ = times_held_ = times_round_ = 0;
+  settled_ = times_held_ = times_round_ = times_cut_ = 0;
   forcing_.start_instant();
   return equilibrium_.load(instant, state);
 }
@@ -241,6 +243,7 @@ int Newton::iterate(double instant, StaticState& state, const std::function<void
     choice_.note_statuses(line.status_changes, equilibrium_.flows(previous));
     assemble(state, previous, options_.matrix);
     judge(state, previous, increment, line);
+    line.renews_cuts = iteration < options_.iterations && renews_cuts(line);
     line.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     report(line);
     course_.add(line.longest, line.worst_dof);
@@ -270,7 +273,13 @@ int Newton::iterate(double instant, StaticState& state, const std::function<void
       other_matrix = true;
       fail_if_endless(instant);
     }
-    if (other_matrix || other_forces) assemble(state, previous, options_.matrix);
+    if (line.renews_cuts) {
+      ++times_cut_;
+      choice_.forget_residual();
+      equilibrium_.renew_cuts();
+      equilibrium_.pair(state.displacement);
+    }
+    if (other_matrix || other_forces || line.renews_cuts) assemble(state, previous, options_.matrix);
     if (!std::isfinite(line.maxi)) break;
   }
   fail_to_converge(instant, line, changing);
@@ -352,6 +361,11 @@ std::vector<Status> Newton::wanted_statuses(const StaticState& state, IterationR
   EdgeCourse* const course = problem_.dimension == 2 ? &edges_ : nullptr;
   if (!statuses_.keeps()) line.status_changes += contact()->open_behind_edges(state.patches.status, patches, course);
   return patches.status;
+}
+
+bool Newton::renews_cuts(const IterationReport& line) const {
+  return contact() && times_cut_ < most_cuts && line.status_changes == 0 && line.longest_share < near_balance &&
+         contact()->geometry().keeps_cuts();
 }
 
 bool Newton::parts_a_zone(const std::vector<Status>& before, const std::vector<Status>& wanted) const {

@@ -125,6 +125,9 @@ class Newton {
   /// Residuals go round or drift: where they went round before in this instant, or drift, or it has no iteration left, patches
   /// that press, and on which masters end, keep their cover. @return whether any does that did not
   bool keep_covers_that_sway(double instant, const StaticState& state, bool last);
+  /// Whether slave cells are to be cut anew: cuts that iterates asked for, which the equilibrium does not, would make it
+  /// another one on another way to it. Twice in an instant, for what is cut differently has another equilibrium.
+  bool renews_cuts(const IterationReport& line) const;
   /// ContactState::keep_cover; EVOLUTION_50 says so once in a zone.
   void keep_cover(double instant, std::size_t patch);
   /// EVOLUTION_50 or 51
@@ -166,6 +169,7 @@ class Newton {
   std::set<std::int32_t> covers_told_;  ///< zones that EVOLUTION_50 was about
   ResidualCourse course_;               ///< of the instant
   int times_held_ = 0;                  ///< in this instant: loose bodies
+  int times_cut_ = 0;                   ///< in this instant: slave cells anew
   int times_round_ = 0;                 ///< in this instant: residuals have come back
   std::string hanging_;                 ///< a body that springs alone hold in the last system
   int settled_ = 0;                     ///< iterations in a row in which no status has changed

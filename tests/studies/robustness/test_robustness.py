@@ -264,6 +264,11 @@ class Skins(StudyTest):
             self.assertEqual(figures["status"], "finished")
             self.assertIn("EVOLUTION_54" in figures["alarms"], told)
 
+    def test_a_stable_equilibrium_is_looked_for_less_and_less_often(self):
+        """A polygon that rolls on coarse patches: of ten instants that follow an unstable equilibrium sixteen attempts looked for another one in vain."""
+        self.assertEqual(run(unseen(9046), LACON, self.folder)["status"], "finished")
+        self.assertIn((self.folder / "err").read_text().count("EVOLUTION_53"), range(1, 11))
+
     def test_far_walls_stay_far_whatever_bodies_move_along_them(self):
         """The ends of two beams, back to back through both, come no closer when one beam is lowered onto the other by more than what is left to the limit of 4
         diameters; taken for contact, they flipped with a period of two and stopped the study."""

@@ -52,6 +52,14 @@ TEST(Convergence, TheLargestResidualOverItsOwnReferenceIsJudged) {
   EXPECT_FALSE(report.converged());
 }
 
+TEST(Convergence, CellsThatAreCutAnewHaveAnotherEquilibrium) {
+  IterationReport report = judged({.resi_glob_rela = 1e-6, .resi_glob_maxi = {}}, {.unbalanced = 1e-9, .reference = 1});
+  EXPECT_TRUE(report.converged());
+  report.renews_cuts = true;
+  EXPECT_TRUE(report.in_equilibrium());
+  EXPECT_FALSE(report.converged());
+}
+
 TEST(Convergence, WhatIsNotANumberMeetsNothing) {
   for (const ConvergenceCriteria& criteria : {ConvergenceCriteria{.resi_glob_rela = 1e-6, .resi_glob_maxi = {}},
                                               ConvergenceCriteria{.resi_glob_rela = {}, .resi_glob_maxi = 1e-6}})

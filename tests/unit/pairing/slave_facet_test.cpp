@@ -108,6 +108,37 @@ TEST(SlaveFacets, StayCutAsTheyWereWithoutLeapsOfWhatIsCovered) {
   EXPECT_GT(largest_leap(CellType::TRIA6, false), 100);
 }
 
+// Whether a cell is cut more finely than its present shape asks for.
+TEST(SlaveFacets, TellWhereTheyAreCutAsTheyWere) {
+  const SlaveCut flat{.steps = 1}, fine{.steps = 4}, curved{.steps = 1, .curved = true}, affine{.steps = 1, .affine = true};
+  const auto kept = [](SlaveCut now, const SlaveCut& before) {
+    now.refine(before);
+    return now.kept;
+  };
+  for (const SlaveCut& more : {fine, curved, affine}) {
+    EXPECT_TRUE(kept(flat, more));
+    EXPECT_FALSE(kept(more, flat));
+    EXPECT_FALSE(kept(more, more));
+  }
+  std::mt19937 random(1);
+  const auto bent = [&](double by) {
+    const Place3 place = [by](double x, double y) { return Vec3{x, y, by * x * y}; };
+    return mesh({.nx = 1, .ny = 1, .type = CellType::QUAD4, .up = false}, place, random, true);
+  };
+  const Place3 level = [](double x, double y) { return Vec3{x, y, -0.1}; };
+  Skin3 master = mesh({.nx = 1, .ny = 1}, level, random);
+  std::vector<SlaveCut> cuts(1);
+  for (const double by : {0.1, 0.4, 0.4, 0.1, 0.1}) {  // what it once was stays
+    Skin3 slave = bent(by);
+    slave.surface.cuts = cuts;
+    const std::uint8_t before = cuts[0].steps;
+    pair(slave.view(), master.view(), {.traced = true});
+    EXPECT_GE(cuts[0].steps, before);
+    EXPECT_EQ(cuts[0].kept, by < 0.2 && before > 2) << by;
+  }
+  EXPECT_GT(cuts[0].steps, 2);
+}
+
 // Whichever corner of a cell comes first, the same places are near it.
 TEST(SlaveFacets, HaveTheSameNeighbourhoodFromEachCorner) {
   std::mt19937 random(12);
