@@ -9,6 +9,10 @@
 
 namespace lacon {
 
+/// Unbalanced forces, of the largest force of the equilibrium: it is near, iterations may come to it, and shapes are nearly its
+/// own.
+constexpr double near_balance = 0.01;
+
 struct ConvergenceCriteria {
   std::optional<double> resi_glob_rela;
   std::optional<double> resi_glob_maxi;

@@ -2,6 +2,8 @@
 
 #include <utility>
 
+#include "lacon/operators/evolution/convergence.hpp"
+
 namespace lacon {
 namespace {
 
@@ -10,8 +12,6 @@ namespace {
 constexpr double quick = 0.05;
 /// Unbalanced forces, of the largest force of the equilibrium.
 constexpr double far_from_balance = 1;
-/// Likewise: an equilibrium is near, which iterations may come to.
-constexpr double near_balance = 0.01;
 /// Of a residual: iterations in a row that leave more come nearer slowly. Three show that the ratio stays, and cost less than
 /// what they end: at the ratio 1/4 it takes ten from `near_balance` to 1e-8. Where residuals grow, they may lead to another
 /// equilibrium, a stable one.

@@ -22,7 +22,6 @@ namespace {
 constexpr int drifting = 4;            // iterations without change of status, each of which leaves more than the one before
 constexpr double gap_share = 1e-2;     // of RESI_GEOM: largest |g_T| / h, 1e-8 by default
 constexpr double deepest = 1;          // sizes of a patch, by which bodies that began in a few patches may go into each other
-constexpr double near_balance = 0.01;  // unbalanced forces over the largest: shapes are nearly those of the equilibrium
 constexpr int most_cuts = 2;           // anew, in an instant
 constexpr double other_stress = 1e-8;  // of the largest stress: that of another law
 

@@ -1,5 +1,7 @@
 #include "lacon/operators/evolution/unstable_path.hpp"
 
+#include <utility>
+
 #include "lacon/structures/hdf5.hpp"
 
 namespace lacon {

@@ -1,7 +1,6 @@
 #pragma once
 // Which instants follow an equilibrium that is not stable at once, and which look for a stable one first.
 #include <cstdint>
-#include <utility>
 
 namespace lacon::hdf5 {
 class Group;

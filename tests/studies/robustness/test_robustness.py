@@ -265,7 +265,7 @@ class Skins(StudyTest):
             self.assertIn("EVOLUTION_54" in figures["alarms"], told)
 
     def test_a_stable_equilibrium_is_looked_for_less_and_less_often(self):
-        """A polygon that rolls on coarse patches: of ten instants that follow an unstable equilibrium sixteen attempts looked for another one in vain."""
+        """A polygon that rolls on coarse patches: sixteen attempts looked for a stable equilibrium in vain where each instant did, six do now."""
         self.assertEqual(run(unseen(9046), LACON, self.folder)["status"], "finished")
         self.assertIn((self.folder / "err").read_text().count("EVOLUTION_53"), range(1, 11))
 

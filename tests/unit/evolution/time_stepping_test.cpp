@@ -154,6 +154,26 @@ TEST(TimeStepping, BeginsAnInstantAgainThatLeftAnUnstableEquilibrium) {
   }
 }
 
+// Where it followed one at once, the next attempt looks for another one: that is the attempt whose failure counts.
+TEST(TimeStepping, BeginsAnInstantAgainThatStayedAtAnUnstableEquilibrium) {
+  int tried = 0, returns = 0;
+  try {
+    step_through(
+        {.values = {0, 1}, .action = {.cut = false}},
+        [&](double) {
+          const bool first = ++tried == 1;
+          throw InstantFailure({.severity = 'S', .id = "EVOLUTION_4", .text = first ? "stayed" : "looked", .advice = ""},
+                               {.stayed_unstable = first});
+        },
+        [&] { ++returns; }, [](double, bool) {});
+    FAIL();
+  } catch (const Error& error) {
+    EXPECT_EQ(error.message().text, "looked");
+  }
+  EXPECT_EQ(tried, 2);
+  EXPECT_EQ(returns, 1);
+}
+
 // An error of the user is no reason to try smaller steps.
 TEST(TimeStepping, CutsOnlyFailuresOfTheSolution) {
   const TimeSteps steps{.values = {0, 1}, .action = {.cut = true}};
