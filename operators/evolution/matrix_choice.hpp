@@ -4,6 +4,7 @@
 #include <limits>
 
 #include "lacon/assembly/element_sets.hpp"
+#include "lacon/operators/evolution/doubling.hpp"
 
 namespace lacon {
 
@@ -77,26 +78,17 @@ class MatrixChoice {
   bool note_residual(const Unbalance& unbalance);
 
  private:
-  /// Iterations with another matrix, twice as many each time that they were not enough.
-  struct Span {
-    int left = 0, next = 1;
-    void begin() {
-      left = next;
-      next *= 2;
-    }
-  };
-
   MatrixTraits traits_;
   std::int64_t settled_ = 0;          ///< iterations without change of status
   bool waits_;                        ///< for a residual that falls slowly with the second derivatives of gaps
   bool unstable_ = false;             ///< the tangent of an iterate of this instant was
-  Span flat_;                         ///< without terms of stress and second derivatives of gaps
+  Doubling flat_;                     ///< iterations without terms of stress and second derivatives of gaps
   int slow_ = 0;                      ///< iterations in a row without them, near an equilibrium, that came a little nearer
   bool follows_ = false;              ///< the instant takes the matrix as it is
   bool balances_ = false;             ///< near an unstable equilibrium: the matrix is taken as it is
   int iterations_ = 0, without_ = 0;  ///< of the instant: all, and those of flat_
   bool far_ = false;                  ///< as flat_, of a matrix that is not symmetric
-  Span elastic_;
+  Doubling elastic_;                  ///< iterations with the elastic matrix
   double residual_ = 0;  ///< of the last iteration
   bool curved_ = false;  ///< its gaps had second derivatives, and no status changed
 };

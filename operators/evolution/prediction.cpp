@@ -40,8 +40,8 @@ double goes_on(std::span<const double> before, std::span<const double> last, std
 }
 
 void Prediction::note(double start, const KnownState& previous, KnownState solved, bool led) {
-  if (pause_ > 0) --pause_;
-  if (led) next_pause_ = shortest;
+  if (pause_.left > 0) --pause_.left;
+  if (led) pause_.next = shortest;
   while (!known_.empty() && known_.back().displacement != previous.displacement) known_.pop_back();
   if (known_.empty()) {
     known_.push_back(previous);
@@ -60,8 +60,8 @@ void Prediction::note(double start, const KnownState& previous, KnownState solve
 }
 
 void Prediction::mislead() {
-  pause_ = next_pause_ + 1;  // and this one
-  next_pause_ *= 2;
+  pause_.begin();
+  ++pause_.left;  // this one
 }
 
 bool Prediction::leads_astray(int iterations, double residual, double before, double at_start) {
@@ -81,7 +81,7 @@ bool Prediction::reaches(std::span<const double> displacement) const {
 
 bool Prediction::serves(double instant, std::span<const double> displacement, std::span<const double> step,
                         std::span<const double> force) const {
-  if (pause_ > 0 || !came_near_ || !reaches(displacement) || known_.front().force.empty()) return false;
+  if (pause_.left > 0 || !came_near_ || !reaches(displacement) || known_.front().force.empty()) return false;
   const KnownState there = at(instant);
   Miss motion, load;
   for (std::size_t i = 0; i < step.size(); ++i)
@@ -107,8 +107,8 @@ KnownState Prediction::at(double instant) const {
 
 void Prediction::save(const hdf5::Group& group) const {
   group.set("came_near", std::int64_t{came_near_});
-  group.set("pause", pause_);
-  group.set("next_pause", next_pause_);
+  group.set("pause", pause_.left);
+  group.set("next_pause", pause_.next);
   group.set("states", static_cast<std::int64_t>(known_.size()));
   for (std::size_t s = 0; s < known_.size(); ++s) {
     const hdf5::Group state = group.create(std::to_string(s));
@@ -121,8 +121,8 @@ void Prediction::save(const hdf5::Group& group) const {
 
 void Prediction::resume(const hdf5::Group& group) {
   came_near_ = group.integer("came_near") != 0;
-  pause_ = group.integer("pause");
-  next_pause_ = group.integer("next_pause");
+  pause_.left = group.integer("pause");
+  pause_.next = group.integer("next_pause");
   known_.clear();
   for (std::int64_t s = 0; s < group.integer("states"); ++s) {
     const hdf5::Group state = group.open(std::to_string(s));

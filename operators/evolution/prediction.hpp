@@ -7,6 +7,8 @@
 #include <utility>
 #include <vector>
 
+#include "lacon/operators/evolution/doubling.hpp"
+
 namespace lacon::hdf5 {
 class Group;
 }
@@ -62,10 +64,9 @@ class Prediction {
  private:
   std::vector<std::uint8_t> imposed_;
   std::vector<KnownState> known_;  ///< at most two, the last one at the end
-  bool came_near_ = false;         ///< the last state would have been predicted better than by the one before it
+  bool came_near_ = false;  ///< the last state would have been predicted better than by the one before it
   static constexpr std::int64_t shortest = 2;
-  std::int64_t pause_ = 0;              ///< instants that still begin at the last state
-  std::int64_t next_pause_ = shortest;  ///< how many do behind the next failure
+  Doubling pause_{.next = shortest};  ///< instants that begin at the last state
 };
 
 }  // namespace lacon

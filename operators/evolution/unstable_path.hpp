@@ -1,6 +1,6 @@
 #pragma once
 // Which instants follow an equilibrium that is not stable at once, and which look for a stable one first.
-#include <cstdint>
+#include "lacon/operators/evolution/doubling.hpp"
 
 namespace lacon::hdf5 {
 class Group;
@@ -28,9 +28,8 @@ class UnstablePath {
  private:
   enum class Attempt { first, follows, looks };
   Attempt next_ = Attempt::first, present_ = Attempt::first;
-  bool follows_ = false;        ///< the present attempt does
-  std::int64_t at_once_ = 0;    ///< instants that still follow at once
-  std::int64_t next_time_ = 1;  ///< how many do behind the next one that looks in vain
+  bool follows_ = false;  ///< the present attempt does
+  Doubling at_once_;      ///< instants that follow at once
 };
 
 }  // namespace lacon

@@ -422,7 +422,9 @@ void expect_derivatives_of_differences(Skins skins, const std::string& what) {
   };
   constexpr double step = 2e-7;
   const Skins::Sum ahead = moved(step), behind = moved(-step);
-  if (skins.slave_type != CellType::TRIA3 || skins.master_type != CellType::TRIA3) EXPECT_EQ(ahead.in_one, 0U) << what;
+  if (skins.slave_type != CellType::TRIA3 || skins.master_type != CellType::TRIA3) {
+    EXPECT_EQ(ahead.in_one, 0U) << what;
+  }
   double slope = 0;
   for (std::size_t i = 0; i < n; ++i) slope += at.gradient[i] * along[i];
   EXPECT_NEAR(slope, (ahead.gap - behind.gap) / (2 * step), 1e-7 * largest) << what;
