@@ -1,5 +1,7 @@
 #include "lacon/assembly/numbering.hpp"
 
+#include "lacon/assembly/counts.hpp"
+
 namespace lacon {
 
 Numbering number_equations(std::int64_t n_nodes, int n_components, std::span<const std::uint8_t> free, std::int64_t n_patches) {
@@ -12,6 +14,7 @@ Numbering number_equations(std::int64_t n_nodes, int n_components, std::span<con
     numbering.first.push_back(next);
   }
   for (std::int64_t patch = 0; patch < n_patches; ++patch) numbering.first.push_back(++next);
+  narrow_count(next, "counted_equations");  // rows and columns of matrices are of 32 bits
   return numbering;
 }
 

@@ -23,6 +23,7 @@ struct Numbering {
 };
 
 /// @param free (n_nodes, n_components): 1 where there is an unknown, 0 where it is imposed or does not exist
+/// Throws SOLVER_16.
 Numbering number_equations(std::int64_t n_nodes, int n_components, std::span<const std::uint8_t> free, std::int64_t n_patches);
 
 }  // namespace lacon

@@ -7,6 +7,8 @@
 #include <stdexcept>
 #include <string>
 
+#include "lacon/assembly/counts.hpp"
+
 namespace lacon {
 
 std::vector<std::int32_t> elimination_order(const VertexGraph& of) {
@@ -27,7 +29,7 @@ std::vector<std::int32_t> elimination_order(const VertexGraph& of) {
   for (const std::int32_t v : vertices) {
     for (const std::int32_t w : graph[v])
       if (compact[w] >= 0) adjacent.push_back(compact[w]);
-    offset.push_back(static_cast<idx_t>(adjacent.size()));
+    offset.push_back(narrow_count<idx_t>(std::ssize(adjacent), "counted_neighbours"));
   }
   std::vector<idx_t> place(n), inverse(n);
   std::iota(place.begin(), place.end(), 0);

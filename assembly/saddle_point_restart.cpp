@@ -58,7 +58,7 @@ void SaddlePointSolver::resume(const hdf5::Group& group, const hdf5::Group* base
   factorisations_ = group.integer("factorisations");
   if (group.integer("exact"))
     engine_->take(Engine::Care::exact);
-  else if (!group.has_attribute("pivots") || group.integer("pivots"))  // bases that do not say were made with pivots looked for
+  else if (group.integer("pivots"))
     engine_->take(Engine::Care::pivots);
   expected_iterations_ = static_cast<int>(group.integer("expected_iterations"));
   const auto rows = group.read<std::int64_t>("scale/row");
@@ -71,7 +71,6 @@ void SaddlePointSolver::resume(const hdf5::Group& group, const hdf5::Group* base
   engine_->analyse(*base_);
   factor_ = engine_->factorise(*base_);
   kept_ = Kept::factor;
-  if (!group.has_attribute("first_multiplier")) return;  // bases that do not say: columns are made anew where they are needed
   first_multiplier_ = group.integer("first_multiplier");
   const auto first_row = group.read<std::int64_t>("columns/first_row"),
              first_entry = group.read<std::int64_t>("columns/first_entry");

@@ -72,14 +72,14 @@ SolutionReport SaddlePointSolver::solve(const SparseMatrix& matrix, std::int64_t
   if (matrix.size() == 0) return report;  // every displacement is imposed
   first_multiplier_ = first_multiplier;
   ready_ = false;
-  if (options_.reuse && substitution_ && kept_ == Kept::factor && matrix.is_symmetric() && base_->is_symmetric() &&
+  const Kept kept = std::exchange(kept_, Kept::nothing);  // what is thrown from here on leaves a solver that keeps nothing
+  if (options_.reuse && substitution_ && kept == Kept::factor && matrix.is_symmetric() && base_->is_symmetric() &&
       stiffness_change(matrix, *base_, first_multiplier) <= options_.stiffness_drift &&
-      corrected(matrix, right_side, accuracy.rough, report))
+      corrected(matrix, right_side, accuracy.rough, report)) {
+    kept_ = kept;
     return report;
-
-  // what is thrown from here on leaves a solver that keeps nothing
-  const bool analysed = kept_ != Kept::nothing && same_pattern(matrix, *base_);
-  kept_ = Kept::nothing;
+  }
+  const bool analysed = kept != Kept::nothing && same_pattern(matrix, *base_);
   columns_.clear();
   blocks_.clear();
   interface_.clear();

@@ -8,6 +8,8 @@
 #include <stdexcept>
 #include <string>
 
+#include "lacon/assembly/counts.hpp"
+
 namespace lacon {
 namespace {
 
@@ -66,7 +68,7 @@ Graph graph_of(const Mesh& mesh, std::span<const std::int32_t> cells, std::span<
   std::vector<idx_t> first{0}, nodes;
   for (const std::int32_t cell : cells) {
     nodes.insert(nodes.end(), mesh.cells[cell].begin(), mesh.cells[cell].end());
-    first.push_back(static_cast<idx_t>(nodes.size()));
+    first.push_back(narrow_count<idx_t>(std::ssize(nodes), "counted_corners"));
   }
   auto n_cells = static_cast<idx_t>(cells.size()), n_nodes = static_cast<idx_t>(mesh.n_nodes());
   idx_t common = mesh.dimension, base = 0, *offset = nullptr, *adjacent = nullptr;

@@ -69,8 +69,13 @@ Companion::Companion(std::vector<std::string> command) {
   for (std::string& word : command) words.push_back(word.data());
   words.push_back(nullptr);
   int to[2], from[2];
-  if (socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, to) || pipe2(from, O_CLOEXEC))
-    throw std::system_error(errno, std::generic_category(), command.front());
+  const auto cannot = [&] { return std::system_error(errno, std::generic_category(), command.front()); };
+  if (pipe2(from, O_CLOEXEC)) throw cannot();
+  if (socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, to)) {
+    const std::system_error error = cannot();
+    for (const int end : from) close(end);
+    throw error;
+  }
   Environment environment({"OPENBLAS_NUM_THREADS=1", "OMP_NUM_THREADS=1"});
   if (geteuid() == 0) {  // in a container: who lets root run a study lets it run its processes
     environment.set("OMPI_ALLOW_RUN_AS_ROOT=1");

@@ -6,6 +6,7 @@
 #include <unistd.h>
 
 #include <cerrno>
+#include <new>
 #include <system_error>
 #include <utility>
 
@@ -19,7 +20,8 @@ int checked(int status, const char* what) {
 
 }  // namespace
 
-SharedMemory::SharedMemory(std::size_t bytes) : size_(bytes) {
+SharedMemory::SharedMemory(std::size_t bytes) : SharedMemory() {  // from here on the destructor closes what there is
+  size_ = bytes;
   file_ = checked(memfd_create("lacon", MFD_CLOEXEC), "memfd_create");
   checked(ftruncate(file_, static_cast<off_t>(bytes)), "ftruncate");
   map();
@@ -38,6 +40,7 @@ SharedMemory SharedMemory::open(const std::string& path) {
 void SharedMemory::map() {
   if (size_ == 0) return;
   void* const at = mmap(nullptr, size_, PROT_READ | PROT_WRITE, MAP_SHARED, file_, 0);
+  if (at == MAP_FAILED && errno == ENOMEM) throw std::bad_alloc();
   if (at == MAP_FAILED) throw std::system_error(errno, std::generic_category(), "mmap");
   data_ = static_cast<std::byte*>(at);
 }

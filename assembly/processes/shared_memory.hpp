@@ -8,7 +8,7 @@ namespace lacon {
 
 class SharedMemory {
  public:
-  /// Zeros. Throws std::system_error, also from open().
+  /// Zeros. Throws std::bad_alloc and std::system_error, also from open().
   explicit SharedMemory(std::size_t bytes);
   /// That of another process of the same machine, to be written as well.
   static SharedMemory open(const std::string& path);

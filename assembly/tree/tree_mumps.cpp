@@ -335,7 +335,7 @@ Factorisation TreeMumps<Real>::factorise_top(Values& values) {
 }
 
 template <class Real>
-Factorisation TreeMumps<Real>::factorise_full_top(Values& values) try {
+Factorisation TreeMumps<Real>::factorise_full_top(Values& values) {
   full_top_ = std::make_unique<DenseFactor<Real>>(ranks(top_, pattern_.place));
   std::size_t k = 0;
   for_each_entry([&](std::size_t, std::int32_t row, std::int32_t column) {
@@ -347,12 +347,10 @@ Factorisation TreeMumps<Real>::factorise_full_top(Values& values) try {
   if (!full_top_->eliminate(-settings_.singular_pivot)) found.null_pivots.push_back(Factorisation::unknown);
   found.negative_pivots = full_top_->negative_pivots();
   return found;
-} catch (const std::bad_alloc&) {
-  fail("SOLVER_2", {{"phase", "factorisation"}, {"equations", std::to_string(local_.size())}});
 }
 
 template <class Real>
-Factorisation TreeMumps<Real>::factorise_filled(const Fill& fill) {
+Factorisation TreeMumps<Real>::factorise_filled(const Fill& fill) try {
   Values values;
   std::vector<std::vector<double>> found = factorise_pieces(fill, values);
   double wasted = 0;
@@ -380,6 +378,8 @@ Factorisation TreeMumps<Real>::factorise_filled(const Fill& fill) {
   if (whole.negative_pivots) *whole.negative_pivots += *top.negative_pivots;
   whole.null_pivots = top.null_pivots;
   return whole;
+} catch (const std::bad_alloc&) {
+  fail("SOLVER_2", {{"phase", "factorisation"}, {"equations", std::to_string(local_.size())}});
 }
 
 template <class Real>

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <numeric>
+#include <set>
 #include <utility>
 
 #include "lacon/catalog/messages.hpp"
@@ -42,14 +43,21 @@ double mean(const ContactGeometry& geometry, std::span<const std::size_t> around
   return measure > 0 ? sum / measure : 0;
 }
 
-/// Outward unit normals of all slave skins at the nodes, (n_nodes, 3); zero elsewhere.
+/// Outward unit normals of all slave skins at the nodes, (n_nodes, 3), between those of the zones that meet there; zero
+/// elsewhere.
 std::vector<double> slave_normals(const Mesh& mesh, const ContactGeometry& geometry) {
   std::vector<double> normals(3 * mesh.n_nodes(), 0.0);
+  std::set<std::size_t> shared;  // nodes of several zones
   for (const ContactGeometry::Zone& zone : geometry.zones()) {
     const std::vector<double> own = nodal_normals(zone.slave);
-    for (std::size_t i = 0; i < own.size(); ++i)
-      if (own[i] != 0) normals[i] = own[i];
+    for (std::size_t node = 0; node < mesh.n_nodes(); ++node) {
+      if (norm(vector_at(&own[3 * node])) > 0 && norm(vector_at(&normals[3 * node])) > 0) shared.insert(node);
+      for (std::size_t i = 3 * node; i < 3 * node + 3; ++i) normals[i] += own[i];
+    }
   }
+  for (const std::size_t node : shared)
+    if (const double length = norm(vector_at(&normals[3 * node])); length > 0)
+      for (std::size_t i = 3 * node; i < 3 * node + 3; ++i) normals[i] /= length;
   return normals;
 }
 

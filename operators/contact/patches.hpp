@@ -1,6 +1,6 @@
 #pragma once
-// What each patch carries from instant to instant. A quantity is one row here: its start (zero), its place in CONT_ELEM, where
-// it is archived and found again, and whether it is an unknown follow from the row.
+// What each patch carries from instant to instant. A quantity is one row here: its start (zero), its place in CONT_ELEM, and
+// where it is archived and found again follow from the row.
 #include <cstdint>
 #include <vector>
 
@@ -20,11 +20,10 @@ struct Patchwise {
 struct PatchQuantity {
   const char* component;                   ///< of CONT_ELEM
   std::vector<double> Patchwise::*values;  ///< (n_patches)
-  bool multiplier;                         ///< an unknown: it has an equation, the next one of the patch's vertex
 };
 
 inline constexpr PatchQuantity patch_quantities[] = {
-    {.component = "PRES", .values = &Patchwise::lambda, .multiplier = true},
+    {.component = "PRES", .values = &Patchwise::lambda},
 };
 
 inline Patchwise::Patchwise(std::size_t n_patches) : status(n_patches, Status::unpaired) {

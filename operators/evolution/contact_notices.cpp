@@ -219,32 +219,22 @@ void ContactNotices::save(const hdf5::Group& group) const {
 
 void ContactNotices::resume(const hdf5::Group& group) {
   pierced_ = resumed(group.open("pierced"));
-  if (group.has("pressed")) {
-    pierced_at_rest_ = resumed(group.open("pierced_at_rest"));
-    for (const std::int32_t zone : group.read<std::int32_t>("pressed")) pressed_.insert(zone);
-  } else {  // a record of before they were kept: who knows
-    for (std::size_t zone = 0; zone < present_.problem.contact->zones.size(); ++zone)
-      pressed_.insert(static_cast<std::int32_t>(zone));
-  }
-  if (group.has("missed")) {  // not in a record of before it was kept
-    missed_ = resumed(group.open("missed"));
-    const auto zones = group.read<std::int32_t>("strained");
-    const auto strains = group.read<double>("strain");
-    for (std::size_t i = 0; i < zones.size(); ++i) strain_[zones[i]] = strains.at(i);
-  }
-  if (group.has("alternating")) {  // likewise
-    const hdf5::Group of = group.open("alternating");
-    const auto zones = of.read<std::int32_t>("zone");
-    const auto patches = of.read<std::int64_t>("patch");
-    const auto instants = of.read<double>("instant"), shares = of.read<double>("share");
-    for (std::size_t i = 0; i < zones.size(); ++i)
-      alternating_[zones[i]] = {instants.at(i), {shares.at(i), static_cast<std::size_t>(patches.at(i))}};
-  }
+  pierced_at_rest_ = resumed(group.open("pierced_at_rest"));
+  for (const std::int32_t zone : group.read<std::int32_t>("pressed")) pressed_.insert(zone);
+  missed_ = resumed(group.open("missed"));
+  const auto strained = group.read<std::int32_t>("strained");
+  const auto strains = group.read<double>("strain");
+  for (std::size_t i = 0; i < strained.size(); ++i) strain_[strained[i]] = strains.at(i);
+  const hdf5::Group alternating = group.open("alternating");
+  const auto zones = alternating.read<std::int32_t>("zone");
+  const auto patches = alternating.read<std::int64_t>("patch");
+  const auto instants = alternating.read<double>("instant"), shares = alternating.read<double>("share");
+  for (std::size_t i = 0; i < zones.size(); ++i)
+    alternating_[zones[i]] = {instants.at(i), {shares.at(i), static_cast<std::size_t>(patches.at(i))}};
   const auto free = group.read<std::int32_t>("free");
   free_ = {free.begin(), free.end()};
   for (const std::int64_t zone : group.read<std::int64_t>("overlapping")) overlapping_.insert(static_cast<std::size_t>(zone));
-  if (group.has("met"))  // a record of before it was kept: zones that meet again are known again
-    for (const std::int64_t zone : group.read<std::int64_t>("met")) met_.insert(static_cast<std::size_t>(zone));
+  for (const std::int64_t zone : group.read<std::int64_t>("met")) met_.insert(static_cast<std::size_t>(zone));
   for (const std::int64_t zone : group.read<std::int64_t>("too_deep")) too_deep_.insert(static_cast<std::size_t>(zone));
   started_ = true;
 }

@@ -69,12 +69,8 @@ Equilibrium::Equilibrium(const StaticProblem& problem, std::shared_ptr<SolidPart
   for (const ElementSet& set : problem.solids) {
     linear_ = linear_ && set.linear;
     has_memory_ = has_memory_ || set.kernel->has_memory;
-    if (parts_) continue;
-    points_.push_back({std::vector<double>(set.cells.size() * set.n_stress()),
-                       std::vector<double>(set.cells.size() * set.n_variables()),
-                       {},
-                       {}});
   }
+  points_ = natural_state().points;
   if (heat_.changes_stiffness()) linear_ = false;
 }
 
@@ -305,15 +301,8 @@ std::vector<double> Equilibrium::add(std::span<const double> solution, std::span
   for (std::size_t dof = 0; dof < increment.size(); ++dof) state.displacement[dof] += increment[dof];
   for (std::size_t r = 0; r < relations_.size(); ++r)
     state.relations[r] += solution[system_.equation(relations_.unknown(r, system_))];
-  if (!contact_) return increment;
-  int multiplier = 0;
-  for (const PatchQuantity& quantity : patch_quantities) {
-    if (!quantity.multiplier) continue;
-    std::vector<double>& values = state.patches.*quantity.values;
-    for (std::size_t p = 0; p < values.size(); ++p)
-      values[p] += solution[problem_.numbering.of_patch(static_cast<std::int64_t>(p)) + multiplier];
-    ++multiplier;
-  }
+  for (std::size_t p = 0; p < state.patches.lambda.size(); ++p)
+    state.patches.lambda[p] += solution[problem_.numbering.of_patch(static_cast<std::int64_t>(p))];
   return increment;
 }
 

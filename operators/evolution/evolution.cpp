@@ -60,7 +60,11 @@ void evolve(const TimeSteps& steps, InstantSolver& solver, std::span<EvolutionOb
   };
   try {
     if (past.empty()) tell([&](EvolutionObserver& o) { o.start(steps.values.front()); });
-    step_through(steps, solve, go_back, solved, [&] { return course.back().iterations; });
+    step_through(
+        steps, solve, go_back, solved, [&] { return course.back().iterations; },
+        [&](const Message& told) {
+          if (!is_past()) inform(told);
+        });
   } catch (...) {
     tell([&](EvolutionObserver& o) { o.end(false); });
     throw;

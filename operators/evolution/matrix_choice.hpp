@@ -89,8 +89,8 @@ class MatrixChoice {
   int iterations_ = 0, without_ = 0;  ///< of the instant: all, and those of flat_
   bool far_ = false;                  ///< as flat_, of a matrix that is not symmetric
   Doubling elastic_;                  ///< iterations with the elastic matrix
-  double residual_ = 0;  ///< of the last iteration
-  bool curved_ = false;  ///< its gaps had second derivatives, and no status changed
+  double residual_ = 0;               ///< of the last iteration
+  bool curved_ = false;               ///< its gaps had second derivatives, and no status changed
 };
 
 }  // namespace lacon

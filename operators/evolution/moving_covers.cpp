@@ -5,18 +5,13 @@
 #include <cmath>
 #include <complex>
 
+#include "lacon/operators/evolution/convergence.hpp"
 #include "lacon/operators/evolution/equilibrium.hpp"
 
 namespace lacon {
 namespace {
 
 constexpr double singular = 1e-3;  // of the complement, which is 1 where covers stay
-
-double largest(const std::vector<double>& values) {
-  double most = 0;
-  for (const double value : values) most = std::max(most, std::abs(value));
-  return most;
-}
 
 double moved(const MovingCover& cover, const std::vector<double>& x) {
   double sum = 0;
@@ -36,7 +31,7 @@ std::int64_t follow_covers(std::span<const MovingCover> covers, double size,
   for (Eigen::Index k = 0; k < n; ++k) {
     const MovingCover& cover = covers[static_cast<std::size_t>(k)];
     std::vector<double>& answer = answers.emplace_back(cover.column);
-    const double factor = size / largest(cover.column);
+    const double factor = size / largest_entry(cover.column);
     if (!std::isfinite(factor)) return 0;
     for (double& value : answer) value *= factor;
     solve(answer);

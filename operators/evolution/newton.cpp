@@ -122,15 +122,13 @@ void Newton::save(const hdf5::Group& group) const {
 void Newton::resume(const hdf5::Group& group, const hdf5::Group* base, const StaticState& state, std::span<const double> rest) {
   choice_.set_waits(group.integer("waits") != 0);
   for (const std::int64_t patch : group.read<std::int64_t>("told")) told_.insert(static_cast<std::size_t>(patch));
-  unstable_told_ = group.has_attribute("unstable_told") && group.integer("unstable_told") != 0;
-  if (group.has("covers")) {  // older records have neither
-    for (const std::int32_t zone : group.read<std::int32_t>("covers_told")) covers_told_.insert(zone);
-    for (const std::int64_t patch : group.read<std::int64_t>("covers"))
-      equilibrium_.keep_cover(static_cast<std::size_t>(patch));
-  }
-  if (group.has("unstable_path")) unstable_path_.resume(group.open("unstable_path"));
-  if (group.has("prediction")) prediction_.resume(group.open("prediction"));  // likewise
+  unstable_told_ = group.integer("unstable_told") != 0;
+  for (const std::int32_t zone : group.read<std::int32_t>("covers_told")) covers_told_.insert(zone);
+  for (const std::int64_t patch : group.read<std::int64_t>("covers")) equilibrium_.keep_cover(static_cast<std::size_t>(patch));
+  unstable_path_.resume(group.open("unstable_path"));
+  prediction_.resume(group.open("prediction"));
   equilibrium_.resume(group.open("equilibrium"), state, rest);
+  place_nodes(state);
   solver_.resume(group.open("solver"), base, problem_.numbering);
 }
 
@@ -182,11 +180,20 @@ void Newton::finish_instant(double instant, const StaticState& previous, StaticS
   if (contact()) contact()->geometry().check_radii();
   if (const auto cell = equilibrium_.cell_inside_out())
     fail("EVOLUTION_9", {{"instant", fmt::format("{:.9g}", instant)}, {"cell", cell_name(*cell)}});
-  note_stability(instant, line);
   equilibrium_.hold_points(state);
+  const auto& negative = line.solution.factorisation.negative_pivots;
+  found_ = {.instant = instant,
+            .before = {.displacement = previous.displacement, .pressure = previous.patches.lambda},
+            .external = external,
+            .negative = negative.value_or(0),
+            .constraints = line.constraints};
+}
+
+void Newton::accept(const StaticState& state) {
+  note_stability();
   equilibrium_.let_covers_go();
-  prediction_.note(options_.start, {.displacement = previous.displacement, .pressure = previous.patches.lambda},
-                   {instant, state.displacement, state.patches.lambda, external}, elsewhere_);
+  prediction_.note(options_.start, found_.before,
+                   {found_.instant, state.displacement, state.patches.lambda, std::move(found_.external)}, elsewhere_);
 }
 
 int Newton::iterate(double instant, StaticState& state, const std::function<void(const IterationReport&)>& report) {
@@ -247,12 +254,12 @@ int Newton::iterate(double instant, StaticState& state, const std::function<void
     report(line);
     course_.add(line.longest, line.worst_dof);
     settled_ = line.status_changes > 0 ? 0 : settled_ + 1;
-    const bool other_forces = (course_.period() || std::min(course_.growths(), settled_) >= drifting) &&
-                              keep_covers_that_sway(instant, state, iteration == options_.iterations);
     if (line.converged()) {
       finish_instant(instant, previous, state, external, line);
       return iteration;
     }
+    const bool other_forces = (course_.period() || std::min(course_.growths(), settled_) >= drifting) &&
+                              keep_covers_that_sway(instant, state, iteration == options_.iterations);
     const int done = iteration + 1;
     if (elsewhere_ &&
         Prediction::leads_astray(done, line.longest, forces_before, there.in_equilibrium() ? HUGE_VAL : there.longest))
@@ -284,14 +291,13 @@ int Newton::iterate(double instant, StaticState& state, const std::function<void
   fail_to_converge(instant, line, changing);
 }
 
-void Newton::note_stability(double instant, const IterationReport& line) {
-  const auto& negative = line.solution.factorisation.negative_pivots;
-  const bool unstable = choice_.follows_unstable() && negative && *negative > line.constraints;
+void Newton::note_stability() {
+  const bool unstable = choice_.follows_unstable() && found_.negative > found_.constraints;
   unstable_path_.solve(unstable);
   if (!unstable || std::exchange(unstable_told_, true)) return;
-  inform("EVOLUTION_54", {{"instant", fmt::format("{:.9g}", instant)},
-                          {"negative", std::to_string(*negative)},
-                          {"constraints", std::to_string(line.constraints)}});
+  inform("EVOLUTION_54", {{"instant", fmt::format("{:.9g}", found_.instant)},
+                          {"negative", std::to_string(found_.negative)},
+                          {"constraints", std::to_string(found_.constraints)}});
 }
 
 void Newton::shorten(std::span<const double> solution, const StaticState& previous, StaticState& state,

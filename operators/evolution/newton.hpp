@@ -57,6 +57,8 @@ class Newton {
   /// @return number of iterations. Throws an InstantFailure: EVOLUTION_4 (not converged), EVOLUTION_15, EVOLUTION_18 (cells
   /// that are no cells any more), SOLVER_3, EVOLUTION_42 (singular) ..., severity S. `state` is then between two instants.
   int solve(double instant, StaticState& state, const std::function<void(const IterationReport&)>& report);
+  /// What solve() has found last belongs to the result: later instants start from it. @param state as it left it
+  void accept(const StaticState& state);
   /// Go back to a state: contact, stresses and system are those of `state` again, as solve() needs them.
   void restart(const StaticState& state);
 
@@ -92,8 +94,10 @@ class Newton {
   /// @param external forces as the instant began with them  @param line the last iteration
   void finish_instant(double instant, const StaticState& previous, StaticState& state, const std::vector<double>& external,
                       const IterationReport& line);
-  /// Whether what is solved is an equilibrium that is not stable: EVOLUTION_54, once. @param line the last iteration
-  void note_stability(double instant, const IterationReport& line);
+  /// Whether what is solved is an equilibrium that is not stable: EVOLUTION_54, once.
+  void note_stability();
+  /// SaddlePointSolver::place_nodes
+  void place_nodes(const StaticState& state);
   void assemble(const StaticState& state, const StaticState& previous, SolidMatrix asked);
   /// The solution of the present system. Where bodies are loose that are near to others, patches of `state` take contact
   /// first. Throws SOLVER_3 in the first iteration, EVOLUTION_42 in later ones.
@@ -151,6 +155,15 @@ class Newton {
   /// The one thing to do about it that fits.
   std::string remedy(const IterationReport& line, double excess) const;
 
+  /// What accept() has to know of the instant that is solved.
+  struct Found {
+    double instant = 0;
+    KnownState before;
+    std::vector<double> external;  ///< forces as the instant began with them
+    std::int64_t negative = 0;     ///< pivots of the last iteration; 0 where it knows none
+    std::int64_t constraints = 0;
+  };
+
   const StaticProblem& problem_;
   NewtonOptions options_;
   Bodies bodies_;
@@ -165,6 +178,7 @@ class Newton {
   bool elsewhere_ = false;      ///< it has led this instant to another start than the last state
   std::set<std::size_t> told_;  ///< patches that EVOLUTION_20 was about
   UnstablePath unstable_path_;
+  Found found_;
   bool unstable_told_ = false;          ///< EVOLUTION_54 was
   std::set<std::int32_t> covers_told_;  ///< zones that EVOLUTION_50 was about
   ResidualCourse course_;               ///< of the instant

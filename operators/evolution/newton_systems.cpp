@@ -15,10 +15,14 @@
 
 namespace lacon {
 
-void Newton::assemble(const StaticState& state, const StaticState& previous, SolidMatrix asked) {
+void Newton::place_nodes(const StaticState& state) {
   std::vector<double> place;
   displace(problem_.mesh, state.displacement, problem_.dimension, place);
   solver_.place_nodes(place);
+}
+
+void Newton::assemble(const StaticState& state, const StaticState& previous, SolidMatrix asked) {
+  place_nodes(state);
   equilibrium_.assemble(state, previous, choice_.suited(asked, equilibrium_.touches(state)));
 }
 

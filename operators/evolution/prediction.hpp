@@ -64,7 +64,7 @@ class Prediction {
  private:
   std::vector<std::uint8_t> imposed_;
   std::vector<KnownState> known_;  ///< at most two, the last one at the end
-  bool came_near_ = false;  ///< the last state would have been predicted better than by the one before it
+  bool came_near_ = false;         ///< the last state would have been predicted better than by the one before it
   static constexpr std::int64_t shortest = 2;
   Doubling pause_{.next = shortest};  ///< instants that begin at the last state
 };

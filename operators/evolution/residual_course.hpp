@@ -26,7 +26,7 @@ class ResidualCourse {
   int growths() const;
   /// In how many iterations up to the last it has been largest at the same place.
   int stays() const { return stays_; }
-  /// How it changes in words, with a semicolon before them; empty before it has.
+  /// How it changes in words; empty before it has.
   std::string words() const;
 
  private:

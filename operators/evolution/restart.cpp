@@ -77,10 +77,8 @@ Course read_course(const hdf5::Group& group) {
   const hdf5::Group known = group.open("failures");
   const std::vector<Message> failures = read_messages(known);
   const auto depends = known.read<std::int64_t>("depends_on_step");
-  const auto kept_later = [&](const char* name) {  // not in a record of before it was kept
-    return known.has(name) ? known.read<std::int64_t>(name) : std::vector<std::int64_t>(depends.size(), 0);
-  };
-  const auto astray = kept_later("led_astray"), left = kept_later("left_unstable"), stayed = kept_later("stayed_unstable");
+  const auto astray = known.read<std::int64_t>("led_astray"), left = known.read<std::int64_t>("left_unstable"),
+             stayed = known.read<std::int64_t>("stayed_unstable");
   const auto ratios = known.read<double>("ratio"), excesses = known.read<double>("excess");
   Course course;
   std::size_t failure = 0;

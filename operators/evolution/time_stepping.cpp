@@ -36,19 +36,19 @@ std::optional<std::string> in_vain(const FailureNature& now, const FailureNature
 /// The length of the parts into which the step to `to` is cut. Called while `error` is handled: throws it on where the step is
 /// not to be cut any more. @param before the failure of the step that it was cut from
 double cut(const StepCut& action, const Error& error, const FailureNature& before, double length, double to, int level,
-           double smallest) {
+           double smallest, const Tell& tell) {
   const double part = length / action.cut_into;
   if (error.message().severity != 'S' || !action.cut || level >= action.cut_levels ||
       part < std::max(action.smallest, smallest))
     throw;
   if (const auto reason = in_vain(nature_of(error), before, action, level)) {
-    inform("EVOLUTION_19", {{"instant", fmt::format("{:.9g}", to)}, {"reason", *reason}});
+    tell(message("EVOLUTION_19", {{"instant", fmt::format("{:.9g}", to)}, {"reason", *reason}}));
     throw;
   }
-  inform("EVOLUTION_7", {{"instant", fmt::format("{:.9g}", to)},
-                         {"parts", std::to_string(action.cut_into)},
-                         {"level", std::to_string(level + 1)},
-                         {"reason", error.message().text}});
+  tell(message("EVOLUTION_7", {{"instant", fmt::format("{:.9g}", to)},
+                               {"parts", std::to_string(action.cut_into)},
+                               {"level", std::to_string(level + 1)},
+                               {"reason", error.message().text}}));
   return part;
 }
 
@@ -57,6 +57,7 @@ struct Stepper {
   const SolveInstant& solve;
   const GoBack& go_back;
   const Solved& solved;
+  const Tell& tell;
 
   /// @param before the failure of the step that this one is a part of
   void advance(double from, double to, int level, bool asked, const FailureNature& before) const {
@@ -64,7 +65,7 @@ struct Stepper {
       solve(to);
     } catch (const Error& error) {
       const StepCut& action = action_for(steps, error);
-      const double part = cut(action, error, before, to - from, to, level, 0);
+      const double part = cut(action, error, before, to - from, to, level, 0, tell);
       const FailureNature failure = nature_of(error);
       go_back();
       for (int i = 1; i <= action.cut_into; ++i) {
@@ -99,7 +100,7 @@ class AdaptiveStepper {
         stepper_.solve(to);
       } catch (const Error& error) {
         step_ = cut(action_for(steps_, error), error, level_ > 0 ? failure_ : FailureNature{}, to - at, to, level_,
-                    rules_.smallest);
+                    rules_.smallest, stepper_.tell);
         failure_ = nature_of(error);
         ++level_;
         easy_ = 0;
@@ -156,7 +157,7 @@ std::size_t check_number(const TimeSteps& steps, std::int64_t number) {
 }  // namespace
 
 void step_through(const TimeSteps& steps, const SolveInstant& solve, const GoBack& go_back, const Solved& solved,
-                  const Iterations& iterations) {
+                  const Iterations& iterations, const Tell& tell) {
   const SolveInstant in_any_way = [&](double to) {
     for (std::optional<InstantFailure> unstable;;) {
       try {
@@ -169,15 +170,15 @@ void step_through(const TimeSteps& steps, const SolveInstant& solve, const GoBac
           throw;
         }
         if (nature.left_unstable) unstable.emplace(error.message(), nature);
-        inform(nature.led_astray      ? "EVOLUTION_48"
-               : nature.left_unstable ? "EVOLUTION_53"
-                                      : "EVOLUTION_55",
-               {{"instant", fmt::format("{:.9g}", to)}, {"reason", error.message().text}});
+        tell(message(nature.led_astray      ? "EVOLUTION_48"
+                     : nature.left_unstable ? "EVOLUTION_53"
+                                            : "EVOLUTION_55",
+                     {{"instant", fmt::format("{:.9g}", to)}, {"reason", error.message().text}}));
       }
       go_back();
     }
   };
-  const Stepper stepper{steps, in_any_way, go_back, solved};
+  const Stepper stepper{steps, in_any_way, go_back, solved, tell};
   if (steps.adaptation) {
     AdaptiveStepper adaptive(steps, stepper, iterations);
     for (std::size_t i = 1; i < steps.values.size(); ++i) adaptive.advance(steps.values[i - 1], steps.values[i]);

@@ -19,6 +19,8 @@ using Solved = std::function<void(double instant, bool asked)>;
 
 /// Number of iterations that the instant solved last took.
 using Iterations = std::function<int()>;
+/// What is told of steps.
+using Tell = std::function<void(const Message& message)>;
 
 /// Solve every instant of `steps` behind the first. A step that fails is cut into `cut_into` equal ones, at most `cut_levels`
 /// times over (DEFI_LIST_INST, ECHEC/ACTION='DECOUPE'); the failure that no cut can help (InstantFailure) is thrown on, and
@@ -28,8 +30,9 @@ using Iterations = std::function<int()>;
 /// go_back(), before anything is cut. Where the latter fails again, its first failure is what counts.
 /// With `steps.adaptation` (METHODE='AUTO') steps also grow and shrink between the instants of the list, beginning with its
 /// first interval; a step that fails is then cut once, and the shorter one goes on. Throws STEP_3 after too many steps.
-void step_through(const TimeSteps& steps, const SolveInstant& solve, const GoBack& go_back, const Solved& solved,
-                  const Iterations& iterations = {});
+void step_through(
+    const TimeSteps& steps, const SolveInstant& solve, const GoBack& go_back, const Solved& solved,
+    const Iterations& iterations = {}, const Tell& tell = [](const Message& told) { inform(told); });
 
 /// The instants that INCREMENT asks for, the initial one first: from INST_INIT or NUME_INST_INIT to INST_FIN or NUME_INST_FIN;
 /// without the former from the instant of the initial state, which need not be in the list.

@@ -95,6 +95,7 @@ class QuasiStatic : public InstantSolver {
     return newton_.solve(instant, state_, report);
   }
   void accept() override {
+    newton_.accept(state_);
     rest_ = std::move(last_.displacement);
     last_ = state_;
   }

@@ -110,7 +110,9 @@ TEST_F(Cube, BlocksOfAPartFollowEachOther) {
       const std::int32_t at = blocks.node[static_cast<std::size_t>(b)];
       EXPECT_EQ(parts.of_node[static_cast<std::size_t>(at)], part);
       for (int i = 0; i < 3; ++i)
-        if (const std::int64_t e = numbering.of(at, i); e >= 0) EXPECT_EQ(blocks.place[static_cast<std::size_t>(e)], 3 * b + i);
+        if (const std::int64_t e = numbering.of(at, i); e >= 0) {
+          EXPECT_EQ(blocks.place[static_cast<std::size_t>(e)], 3 * b + i);
+        }
     }
   const BlockNumbering runs(numbering, 3, 4);
   const auto n_blocks = static_cast<std::int64_t>(runs.node.size());
@@ -231,8 +233,8 @@ TEST_F(Parts, WhatProcessesPutTogetherHasTheBitsOfOne) {
       std::vector<double> twice, products(2 * moved.size(), 0.0);  // a column and magnitudes at once have the bits of each
       for (const double value : moved) twice.insert(twice.end(), {value, value});
       own.multiply(twice, products, 2);
-      for (const std::size_t at : given_nodes)
-        for (std::size_t dof = 3 * at; dof < 3 * at + 3; ++dof) {
+      for (const std::size_t node : given_nodes)
+        for (std::size_t dof = 3 * node; dof < 3 * node + 3; ++dof) {
           EXPECT_EQ(products[2 * dof], board.other[dof]);
           EXPECT_EQ(products[2 * dof + 1], magnitudes[dof]);
         }
@@ -242,8 +244,9 @@ TEST_F(Parts, WhatProcessesPutTogetherHasTheBitsOfOne) {
     EXPECT_EQ(found_stress, stress) << n_parts;
     EXPECT_EQ(found_variable, variable) << n_parts;
     for (std::size_t dof = 0; dof < moved.size(); ++dof)
-      if (const std::int64_t e = numbering.equation[dof]; e >= 0)
+      if (const std::int64_t e = numbering.equation[dof]; e >= 0) {
         EXPECT_NEAR(board.other[dof], y[static_cast<std::size_t>(e)], 1e-10);
+      }
     for (int part = 0; part < n_parts; ++part) {
       PartCells given = cells_of_part({mesh, sets, numbering, in_sets, blocks}, part);
       given.unknowns = {"DX", "DY", "DZ"};

@@ -442,12 +442,14 @@ class FailingEngine : public FactorEngine {
     return engine_.substitute(offset, index, value);
   }
 
-  Call next = none;  ///< fails when it comes
+  Call next = none;    ///< fails when it comes
+  bool loses = false;  ///< with its factor: until it analyses again, as where processes that shared it have ended
 
  private:
   void fail_at(Call call) {
     if (next == call) {
       next = none;
+      if (loses) ready_ = none;
       fail("SOLVER_2", {{"phase", "test"}, {"equations", "0"}});
     }
   }
@@ -480,8 +482,8 @@ TEST(SaddlePointSolver, GoesOnAfterAFailure) {
       {FailingEngine::substitution, "moved coefficients", [](Sequence& system) { system.drift = 0.05, system.fill(); }},
   };
   for (const Way& way : ways)
-    for (const bool back : {false, true}) {
-      SCOPED_TRACE(way.what + std::string(back ? ", and back" : ""));
+    for (const auto& [back, loses] : {std::pair(false, false), std::pair(true, false), std::pair(true, true)}) {
+      SCOPED_TRACE(way.what + std::string(back ? ", and back" : "") + (loses ? ", without its factor" : ""));
       Sequence system;
       system.on[2] = true;
       system.fill();
@@ -493,6 +495,7 @@ TEST(SaddlePointSolver, GoesOnAfterAFailure) {
       const SparseMatrix before = system.matrix;
       way.change(system);
       engine.next = way.call;
+      engine.loses = loses;
       std::vector<double> side(system.matrix.size(), 1.0);
       EXPECT_THROW(solver.solve(system.matrix, system.first_multiplier(), side), Error);
       EXPECT_EQ(engine.next, FailingEngine::none) << "the call did not come";

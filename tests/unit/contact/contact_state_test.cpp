@@ -420,6 +420,30 @@ TEST_F(Touching, CouplesWithoutMeasureCoverNothing) {
   EXPECT_EQ(paired_masters(mesh, contact, now.geometry()).share, std::vector<double>{0});
 }
 
+// Zones may meet at a corner of the body: the normal there stands between those of its sides.
+TEST_F(Touching, ANodeOfTwoZonesHasOneUnitNormal) {
+  mesh.add_cell(CellType::SEG3, std::vector<std::int32_t>{9, 10, 13});  // the side at x = 1
+  mesh.patches->kind.push_back(14);
+  mesh.patches->cells.push_back(std::vector<std::int32_t>{4});
+  mesh.patches->carriers.push_back(std::vector<std::int32_t>{13});
+  model.element = {0, 0, 1, 1, 0};
+  ContactZone side = contact.zones[0];
+  side.slave = {4};
+  side.patches = {1};
+  contact.zones.push_back(side);
+  contact.slaves.push_back({4, 1, 1, "LACS32D"});
+  ContactState now = state();
+  now.update_geometry(displacement);
+  Patchwise patches(2);
+  now.linearise(patches, false);
+  const Field field = nodal_contact_field(mesh, contact, now, patches);
+  ASSERT_EQ(field.support, (std::vector<std::int32_t>{8, 9, 10, 12, 13}));
+  const double half = std::sqrt(0.5), expected[5][2] = {{0, -1}, {half, -half}, {1, 0}, {0, -1}, {1, 0}};
+  for (std::size_t row = 0; row < 5; ++row)
+    for (const auto& [axis, name] : {std::pair(0, "VX"), std::pair(1, "VY")})
+      EXPECT_NEAR(field.at(row, static_cast<std::size_t>(field.component(name))), expected[row][axis], 1e-15) << row;
+}
+
 TEST_F(Touching, ContNoeuHoldsWhatThePatchesAroundANodeCarryAndTheForceOnIt) {
   // a second patch beside the first, half as wide: the cells are SEG3 8 9 12 (x from 0 to 1) and 9 17 18 (x from 1 to 1.5)
   for (const double x : {1.0, 1.5, 1.25}) mesh.coordinates.insert(mesh.coordinates.end(), {x, 0.0, 0.0});

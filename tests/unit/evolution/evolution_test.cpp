@@ -32,6 +32,7 @@ class Solver : public InstantSolver {
     log_.push_back("accepted");
   }
   void go_back() override { log_.push_back("back"); }
+  void stands_at(double instant) { accepted_ = instant; }
 
  private:
   std::vector<std::string>& log_;
@@ -106,6 +107,30 @@ TEST(Evolution, AnObserverThatRefusesASolvedInstantLetsTheStepBeCut) {
   std::erase_if(log, [](const std::string& line) { return line.starts_with("iterate"); });
   EXPECT_THAT(log, ElementsAre("start 0", "begin 1", "judge 1", "back", "begin 0.5", "judge 0.5", "accepted",
                                "accept 0.5 step 0", "begin 1", "judge 1", "accepted", "accept 1 step 1 last", "end"));
+}
+
+std::vector<std::string> told;
+
+// What another process has tried is repeated without a word, cuts and second attempts too.
+TEST(Evolution, NobodyIsToldOfThePastAgain) {
+  const auto sink = [](const Message& message) { told.push_back(message.id); };
+  std::vector<std::string> log;
+  Solver solver(log, 0.5);
+  const TimeSteps asked = steps({0, 1, 2}, true);
+  told.clear();
+  set_message_sink(sink);
+  evolve(asked, solver, {});
+  EXPECT_THAT(told, ElementsAre("EVOLUTION_7", "EVOLUTION_7"));
+  const InstantFailure failure({.severity = 'S', .id = "EVOLUTION_4", .text = "", .advice = ""}, {});
+  const Course past{{.instant = 1, .iterations = 0, .failure = failure},
+                    {.instant = 0.5, .iterations = 1, .failure = {}},
+                    {.instant = 1, .iterations = 1, .failure = {}}};
+  Solver other(log, 0.5);
+  other.stands_at(1);
+  told.clear();
+  evolve(asked, other, {}, past);
+  set_message_sink(nullptr);
+  EXPECT_THAT(told, ElementsAre("EVOLUTION_7"));  // of the step to 2
 }
 
 TEST(Evolution, WhateverBreaksItOffEveryObserverIsTold) {

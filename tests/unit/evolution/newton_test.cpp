@@ -9,6 +9,7 @@
 #include "lacon/assembly/mumps_engine.hpp"
 #include "lacon/catalog/messages.hpp"
 #include "lacon/operators/evolution/state_fields.hpp"
+#include "lacon/structures/hdf5.hpp"
 #include "two_squares.hpp"
 
 namespace lacon {
@@ -91,6 +92,26 @@ TEST(Newton, GoingBackLeavesNoTrace) {
   solver.restart(start);
   solver.solve(1.0, again, [](const IterationReport&) {});
   expect_uniform(problem, again);
+}
+
+// What was solved, and is not accepted (a step's event refuses it), is no motion that later instants go on with.
+TEST(Newton, RemembersInstantsThatAreAccepted) {
+  const std::filesystem::path file = std::filesystem::temp_directory_path() / ("lacon_newton_" + std::to_string(::getpid()));
+  const StaticProblem problem = pressed_squares();
+  Newton solver = newton(problem, 1e-12);
+  const auto known = [&] {
+    hdf5::write_whole(file, [&](const hdf5::Group& root) { solver.save(root); });
+    return hdf5::Reader(file).open("prediction").integer("states");
+  };
+  StaticState state = solver.initial_state();
+  solver.solve(1.0, state, [](const IterationReport&) {});
+  EXPECT_EQ(known(), 0);
+  solver.restart(solver.initial_state());
+  state = solver.initial_state();
+  solver.solve(1.0, state, [](const IterationReport&) {});
+  solver.accept(state);
+  EXPECT_EQ(known(), 2);  // where it began, and where it ended
+  std::filesystem::remove(file);
 }
 
 TEST(Newton, ConvergesQuadraticallyAtLargeStrains) {
