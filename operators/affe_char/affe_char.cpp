@@ -22,12 +22,23 @@ namespace {
 
 // ---------------------------------------------------------------------------------------------------- nodes
 
+/// CHARGE_26: nodes that have unknowns from skin cells alone.
+void tell_loose(const LoadScene& scene, const NamedPlaces& named) {
+  std::int64_t count = 0;
+  std::int32_t first = -1;
+  for (const std::int32_t node : named.members)
+    if (scene.dofs[static_cast<std::size_t>(node)] != 0 && !scene.is_of_a_body[static_cast<std::size_t>(node)] && count++ == 0)
+      first = node;
+  if (count > 0) inform("CHARGE_26", {{"keyword", named.source}, {"count", std::to_string(count)}, {"node", node_name(first)}});
+}
+
 /// Values of every component in `components` that an occurrence gives, on the nodes that it names. A force FX acts on DX.
 void load_nodes(const LoadScene& scene, const std::vector<Keywords>& factors, std::span<const std::string_view> components,
                 std::string_view conflict, std::vector<LoadTerm>& terms) {
   GivenTerms given(scene, conflict, terms);
   for (const Keywords& factor : factors)
-    for (const NamedPlaces& named : named_nodes(scene, factor))
+    for (const NamedPlaces& named : named_nodes(scene, factor)) {
+      tell_loose(scene, named);
       for (const std::string_view component : components) {
         if (!factor.has(component)) continue;
         const LoadValue value = value_of(scene.base, factor, component);
@@ -38,6 +49,7 @@ void load_nodes(const LoadScene& scene, const std::vector<Keywords>& factors, st
           given.add(node, part("place_node", {{"node", node_name(node)}}), std::string(component), value, named.source);
         }
       }
+    }
 }
 
 constexpr std::string_view angular_velocity[] = {"WX", "WY", "WZ"}, axis_point[] = {"X", "Y", "Z"};  // of ROTATION

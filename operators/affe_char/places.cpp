@@ -20,7 +20,7 @@ std::span<const std::string_view> unknowns() {
 // ---------------------------------------------------------------------------------------------------- the scene
 
 LoadScene make_scene(const Mesh& mesh, const Model& model, Registry& registry, const Base& base) {
-  LoadScene scene{mesh, model, registry, base, std::vector<unsigned>(mesh.n_nodes(), 0)};
+  LoadScene scene{mesh, model, registry, base, std::vector<unsigned>(mesh.n_nodes(), 0), std::vector<char>(mesh.n_nodes(), 0)};
   const auto names = unknowns();
   for (std::size_t cell = 0; cell < mesh.n_cells(); ++cell) {
     const catalog::ElementRow* row = scene.element(static_cast<std::int32_t>(cell));
@@ -28,7 +28,10 @@ LoadScene make_scene(const Mesh& mesh, const Model& model, Registry& registry, c
     unsigned own = 0;
     for (std::size_t i = 0; i < names.size(); ++i)
       if (std::find(row->dofs.begin(), row->dofs.end(), names[i]) != row->dofs.end()) own |= 1u << i;
-    for (const std::int32_t node : mesh.cells[cell]) scene.dofs[static_cast<std::size_t>(node)] |= own;
+    for (const std::int32_t node : mesh.cells[cell]) {
+      scene.dofs[static_cast<std::size_t>(node)] |= own;
+      if (row->role != catalog::Role::skin) scene.is_of_a_body[static_cast<std::size_t>(node)] = 1;
+    }
   }
   return scene;
 }

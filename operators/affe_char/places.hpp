@@ -17,7 +17,8 @@ struct LoadScene {
   const Model& model;
   Registry& registry;
   const Base& base;
-  std::vector<unsigned> dofs;  ///< of each node: bit i for unknown i of unknowns()
+  std::vector<unsigned> dofs;      ///< of each node: bit i for unknown i of unknowns()
+  std::vector<char> is_of_a_body;  ///< whether a node belongs to an element that resists
 
   /// The element of a cell, or nullptr.
   const catalog::ElementRow* element(std::int32_t cell) const;

@@ -13,7 +13,8 @@
 namespace lacon {
 namespace {
 
-constexpr double flat = 1e-10;  // a node of a plane model may leave the plane by this fraction of the mesh's extent
+constexpr double flat = 1e-10;   // a node of a plane model may leave the plane by this fraction of the mesh's extent
+constexpr double behind = 1e-6;  // likewise one of a model of revolution the side of its axis
 
 std::string join(std::span<const std::string> names) {
   std::string text;
@@ -46,6 +47,17 @@ void check_plane(const Mesh& mesh, std::int32_t cell, const std::string& modelis
                         {"node", node_name(node)},
                         {"cell", cell_name(cell)},
                         {"z", fmt::format("{:g}", z)}});
+  }
+}
+
+void check_radius(const Mesh& mesh, std::int32_t cell, const std::string& modelisation, double extent) {
+  for (const std::int32_t node : mesh.cells[static_cast<std::size_t>(cell)]) {
+    const double radius = mesh.point(static_cast<std::size_t>(node))[0];
+    if (radius < -behind * extent)
+      fail("MODELE_9", {{"modelisation", modelisation},
+                        {"node", node_name(node)},
+                        {"cell", cell_name(cell)},
+                        {"x", fmt::format("{:g}", radius)}});
   }
 }
 
@@ -83,7 +95,7 @@ class Assignment {
   explicit Assignment(const Mesh& mesh)
       : mesh_(mesh), extent_(extent_of(mesh)), given_(mesh.n_cells(), nullptr), left_by_(mesh.n_cells()) {}
 
-  /// Throws MODELE_1 to MODELE_4 and MODELE_6.
+  /// Throws MODELE_1 to MODELE_4, MODELE_6 and MODELE_9.
   void assign(const Registry& registry, const Keywords& factor);
   /// Throws MODELE_8 where a body's cell has no element; says what elements there are (MODELE_5, MODELE_7).
   Model model();
@@ -108,6 +120,7 @@ void Assignment::check(const catalog::ElementRow& row, std::int32_t cell, const 
   if (model_.dimension != 0 && model_.dimension != dimension)
     fail("MODELE_4", {{"keyword", factor.path("MODELISATION")}, {"cell", cell_name(cell)}});
   if (dimension == 2) check_plane(mesh_, cell, modelisation, extent_);
+  if (row.geometry == catalog::Geometry::axis) check_radius(mesh_, cell, modelisation, extent_);
 }
 
 void Assignment::assign(const Registry& registry, const Keywords& factor) {

@@ -59,6 +59,12 @@ Archive::Archive(const Order& order, const Base& base, const Present& present, c
     stage.loads.push_back(
         {excit.concept_id("CHARGE"), excit.optional_concept("FONC_MULT").value_or(""), excit.text("TYPE_CHARGE")});
   stage.behaviour = keywords.values().value("COMPORTEMENT", nlohmann::json::array()).dump();
+  std::string known;
+  for (const auto& [name, make] : fields_) known += (known.empty() ? "" : ", ") + name;
+  const Keywords archive = keywords.factor("ARCHIVAGE");
+  for (const std::string& name : archive.texts("CHAM_EXCLU"))
+    if (!fields_.contains(name))
+      inform("EVOLUTION_58", {{"keyword", archive.path("CHAM_EXCLU")}, {"name", name}, {"known", known}});
   if (!resumes && (order.reuse || keywords.has("RESULTAT"))) go_on(order, origin);
   if (!resumes) number_zones();
 }

@@ -163,6 +163,7 @@ std::vector<double> Newton::begin_instant(double instant, const StaticState& sta
   edges_ = {};
   lost_masters_.start_instant();
   settled_ = times_held_ = times_round_ = times_cut_ = 0;
+  goes_round_ = false;
   forcing_.start_instant();
   return equilibrium_.load(instant, state);
 }
@@ -230,12 +231,11 @@ int Newton::iterate(double instant, StaticState& state, const std::function<void
     }
     // a matrix that is not that of a minimum has statuses that answer to each other in any sense
     if (!negative || *negative <= line.constraints) fit_statuses(solution, step, state, accuracy);
-    if (course_.period())  // iterates that go to and fro between two states: what they jump over lies between them
-      for (double& value : solution) value *= 0.5;
+    goes_round_ = goes_round_ || course_.period();
     std::vector<double> increment = equilibrium_.add(solution, step, state);
     const bool driven = std::ranges::any_of(step, [](double value) { return value != 0; });
     std::fill(step.begin(), step.end(), 0.0);  // imposed displacements move in the first iteration alone
-    if (iteration > 0 && (options_.line_search || equilibrium_.has_variables()))
+    if (iteration > 0 && (options_.line_search || goes_round_ || equilibrium_.has_variables()))
       shorten(solution, previous, state, increment);
     else
       equilibrium_.pair(state.displacement);
@@ -304,12 +304,14 @@ void Newton::shorten(std::span<const double> solution, const StaticState& previo
                      std::vector<double>& increment) {
   const std::vector<double> at_rest(increment.size(), 0.0);
   const std::int64_t multipliers = equilibrium_.first_multiplier();
+  std::optional<LineSearch> search = options_.line_search;
+  if (!search && goes_round_) search = {.keeps_bracket = true, .most = 1};
   bool flows = equilibrium_.flows(previous);
   double reached = 1;
   const auto power = [&](double part) {
     if (part != reached) {
       std::vector<double> back(solution.begin(), solution.end());
-      if (options_.line_search) std::fill(back.begin() + multipliers, back.end(), 0.0);
+      if (search) std::fill(back.begin() + multipliers, back.end(), 0.0);
       for (double& value : back) value *= part - reached;
       const std::vector<double> moved = equilibrium_.add(back, at_rest, state);
       for (std::size_t i = 0; i < moved.size(); ++i) increment[i] += moved[i];
@@ -318,13 +320,13 @@ void Newton::shorten(std::span<const double> solution, const StaticState& previo
     equilibrium_.pair(state.displacement);
     equilibrium_.assemble(state, previous, {SolidMatrix::none, false});
     flows = flows || equilibrium_.flows(previous);
-    return options_.line_search || flows ? equilibrium_.power(solution) : 0;
+    return search || flows ? equilibrium_.power(solution) : 0;
   };
   // a search keeps the new multipliers: with the old ones forces of contact, which do work where gaps close, hide those that
   // count
-  if (options_.line_search) {
+  if (search) {
     const double start = power(0);
-    part_without_power(*options_.line_search, start, power);
+    part_without_power(*search, start, power);
   } else {
     // a patch that has just taken contact moves bodies whose forces are balanced
     part_of_increment(std::max(equilibrium_.power(solution), equilibrium_.resistance(solution)), power);

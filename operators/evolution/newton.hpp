@@ -184,6 +184,7 @@ class Newton {
   ResidualCourse course_;               ///< of the instant
   int times_held_ = 0;                  ///< in this instant: loose bodies
   int times_cut_ = 0;                   ///< in this instant: slave cells anew
+  bool goes_round_ = false;             ///< in this instant residuals have come back
   int times_round_ = 0;                 ///< in this instant: residuals have come back
   std::string hanging_;                 ///< a body that springs alone hold in the last system
   int settled_ = 0;                     ///< iterations in a row in which no status has changed

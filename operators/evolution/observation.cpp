@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <iostream>
+#include <iterator>
 #include <numeric>
 
 #include "lacon/catalog/messages.hpp"
@@ -26,9 +27,31 @@ ChosenInstants::ChosenInstants(const Keywords& keywords, const Base& base, std::
 
 bool ChosenInstants::has(double instant, std::int64_t step) const {
   if (!listed_) return step % every_ == 0;
-  return std::any_of(instants_.begin(), instants_.end(), [&](double listed) {
-    return std::abs(instant - listed) <= precision_ * (relative_ ? std::abs(listed) : 1.0);
+  return std::any_of(instants_.begin(), instants_.end(), [&](double listed) { return is_at(instant, listed); });
+}
+
+bool ChosenInstants::is_at(double instant, double listed) const {
+  return std::abs(instant - listed) <= precision_ * (relative_ ? std::abs(listed) : 1.0);
+}
+
+std::vector<double> ChosenInstants::missing(std::span<const double> steps) const {
+  std::vector<double> found;
+  std::ranges::copy_if(instants_, std::back_inserter(found), [&](double listed) {
+    return listed > steps.front() && listed < steps.back() &&
+           std::ranges::none_of(steps, [&](double instant) { return is_at(instant, listed); });
   });
+  return found;
+}
+
+void tell_missing_instants(const Keywords& keywords, const Base& base, std::span<const double> steps) {
+  for (const auto& [name, every] : {std::pair("ARCHIVAGE", "PAS_ARCH"), std::pair("OBSERVATION", "PAS_OBSE")})
+    for (const Keywords& occurrence : keywords.factors(name)) {
+      const std::vector<double> missing = ChosenInstants(occurrence, base, every).missing(steps);
+      if (!missing.empty())
+        inform("EVOLUTION_56", {{"keyword", occurrence.path(occurrence.has("INST") ? "INST" : "LIST_INST")},
+                                {"count", std::to_string(missing.size())},
+                                {"instant", fmt::format("{:.9g}", missing.front())}});
+    }
 }
 
 // ---------------------------------------------------------------------------------------------- one observer

@@ -4,6 +4,7 @@
 #include <map>
 #include <optional>
 #include <ostream>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -20,14 +21,21 @@ class ChosenInstants {
   /// @param steps keyword of the number of steps: "PAS_ARCH"
   ChosenInstants(const Keywords& keywords, const Base& base, std::string_view steps);
   bool has(double instant, std::int64_t step) const;
+  /// Those that are named, lie within the steps of a computation and are none of them. @param steps ascending
+  std::vector<double> missing(std::span<const double> steps) const;
 
  private:
+  bool is_at(double instant, double listed) const;
+
   std::int64_t every_;
   bool listed_;
   std::vector<double> instants_;
   double precision_;
   bool relative_;
 };
+
+/// EVOLUTION_56: instants that ARCHIVAGE and OBSERVATION of a computation name and that it will not come to.
+void tell_missing_instants(const Keywords& keywords, const Base& base, std::span<const double> steps);
 
 /// One occurrence of OBSERVATION or SUIVI_DDL: what it looks at.
 class Observer {

@@ -44,8 +44,19 @@ void read_materials(StaticProblem& problem, const Base& base, const std::string&
   problem.thermal = std::make_unique<ThermalMaterials>(base, *problem.material_field, std::move(temperatures));
 }
 
+/// THERMAL_8: materials whose temperature does nothing.
+void warn_of_idle_temperatures(const StaticProblem& problem) {
+  std::map<std::string, std::pair<std::int64_t, std::int32_t>> idle;  // cells and the first one
+  for (const ElementSet& set : problem.solids)
+    for (const std::int32_t cell : set.cells)
+      if (const auto material = problem.thermal->idle(cell)) ++idle.try_emplace(*material, 0, cell).first->second.first;
+  for (const auto& [material, cells] : idle)
+    inform("THERMAL_8", {{"material", material}, {"count", std::to_string(cells.first)}, {"cell", cell_name(cells.second)}});
+}
+
 /// Keep temperatures, and functions of them, only where solids are concerned. Throws BEHAVIOUR_5 for a law that takes none.
 void check_temperatures(StaticProblem& problem) {
+  warn_of_idle_temperatures(problem);
   bool any = false;
   const auto concerned = [&](std::int32_t cell) { return problem.thermal->concerns(cell); };
   for (const ElementSet& set : problem.solids) {

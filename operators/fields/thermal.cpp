@@ -100,7 +100,7 @@ ThermalMaterials::ThermalMaterials(const Base& base, const MaterialField& field,
 ThermalMaterials::Rule ThermalMaterials::make_rule(std::int32_t material, std::int32_t temperature) const {
   const std::string& id = field_.materials[static_cast<std::size_t>(material)];
   const Material read = base_.material(id);
-  Rule rule{.material = base_.label(id), .functions = {}, .expansion = {}, .expansion_origin = {}, .temperature = temperature};
+  Rule rule{.material = base_.label(id), .temperature = temperature};
   const auto value_of = [&](const std::variant<double, std::string>& value) {
     if (std::holds_alternative<double>(value)) return Value{std::get<double>(value), nullptr};
     return Value{0, std::make_shared<StudyFunction>(base_, std::get<std::string>(value))};
@@ -115,6 +115,7 @@ ThermalMaterials::Rule ThermalMaterials::make_rule(std::int32_t material, std::i
     if (const auto expansion = number(elastic->second, "ALPHA"); expansion && *expansion != 0)
       rule.expansion = Value{*expansion, nullptr};
   }
+  rule.has_expansion = std::ranges::any_of(read.laws, [](const auto& law) { return law.second.contains("ALPHA"); });
   if (rule.expansion && temperature >= 0 && !temperatures_.rows[static_cast<std::size_t>(temperature)].reference)
     fail("THERMAL_1", {{"material", rule.material}});
   return rule;

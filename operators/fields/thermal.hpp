@@ -42,6 +42,11 @@ class ThermalMaterials {
 
   /// Whether a cell is one of those.
   bool concerns(std::int32_t cell) const { return rule_of(cell).matters(); }
+  /// Whether its temperature does nothing, for its material has no ALPHA and no functions; the material's label.
+  std::optional<std::string> idle(std::int32_t cell) const {
+    const Rule& rule = rule_of(cell);
+    return rule.temperature >= 0 && rule.functions.empty() && !rule.has_expansion ? std::optional(rule.material) : std::nullopt;
+  }
   /// Whether the parameters of one of these cells are functions.
   bool has_functions(std::span<const std::int32_t> cells) const;
 
@@ -62,7 +67,8 @@ class ThermalMaterials {
   struct Rule {
     std::string material;                    ///< label
     std::map<std::string, Value> functions;  ///< of ELAS_FO: "E", "NU"
-    std::optional<Value> expansion;          ///< ALPHA
+    bool has_expansion = false;              ///< ALPHA is given
+    std::optional<Value> expansion;          ///< where it is not 0
     std::optional<double> expansion_origin;  ///< TEMP_DEF_ALPHA
     std::int32_t temperature = -1;           ///< row
     bool matters() const { return !functions.empty() || (expansion && temperature >= 0); }

@@ -171,7 +171,12 @@ void inspect(const Mesh& mesh, double flatness) {
     if (!used[i]) orphans.push_back(static_cast<std::int32_t>(i));
   tell("LIRE_3", orphans, node_name);
 
-  tell("LIRE_4", twins(mesh), cell_name);
+  std::vector<std::int32_t> copies = twins(mesh);
+  const auto first_body = std::stable_partition(copies.begin(), copies.end(), [&](std::int32_t cell) {
+    return mesh.row(static_cast<std::size_t>(cell)).dimension < mesh.dimension;
+  });
+  tell("LIRE_4", {copies.begin(), first_body}, cell_name);
+  tell("LIRE_7", {first_body, copies.end()}, cell_name);
 
   std::vector<std::int32_t> flat;
   for (std::size_t c = 0; c < mesh.n_cells(); ++c) {

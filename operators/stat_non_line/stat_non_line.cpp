@@ -1,5 +1,7 @@
 #include "lacon/operators/stat_non_line/stat_non_line.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <climits>
@@ -34,6 +36,9 @@ SolidMatrix matrix_of(const std::string& name) { return name == "ELASTIQUE" ? So
 std::optional<LineSearch> line_search_of(const Keywords& keywords) {
   if (!keywords.has("RECH_LINEAIRE")) return std::nullopt;
   const Keywords search = keywords.factor("RECH_LINEAIRE");
+  if (!(search.real("RHO_MIN") <= search.real("RHO_MAX")))
+    fail("EVOLUTION_57",
+         {{"least", fmt::format("{:g}", search.real("RHO_MIN"))}, {"most", fmt::format("{:g}", search.real("RHO_MAX"))}});
   return LineSearch{.keeps_bracket = search.text("METHODE") == "MIXTE",
                     .accepted = search.real("RESI_LINE_RELA"),
                     .iterations = static_cast<int>(search.integer("ITER_LINE_MAXI")),
@@ -147,6 +152,7 @@ void stat_non_line(const Order& order, const Base& base) {
   const std::optional<Origin> origin = record ? std::nullopt : origin_of(keywords, base);
   const std::optional<double> begins = record ? origin_in(*record) : origin ? std::optional(origin->instant) : std::nullopt;
   const TimeSteps steps = steps_of(keywords.factor("INCREMENT"), base, begins);
+  tell_missing_instants(keywords, base, steps.values);
   // a state that strains brought about is a stress less in one process, whether they act on or not
   const bool strained =
       record ? record->has("solver/state/points/0/initial") : origin && was_strained(base, origin->result, origin->order);
