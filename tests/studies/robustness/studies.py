@@ -368,6 +368,18 @@ def force_driven():
                     most=10, asked={"per step": 8, "lost": 0}, driven="TOOL_BASE")
 
 
+def flush_ends():
+    """A block flush with the end of a wider one, pressed by a part of its modulus in one step or in five: each widens, and the end of the
+    one comes to lie within 1e-4 of the other's, where forces change by the pressure times the gap there."""
+    for kind, strain, side, (pressure, steps) in itertools.product(ORDERS, STRAINS, SIDES, ((0.025, 1), (0.05, 1), (0.05, 5))):
+        mesh = union([slab(kind, "UPPER", (0, 3), (1, 2), (3, 2), skin="bottom"), slab(kind, "LOWER", (0, 4), (0, 1), (4, 2))])
+        yield Study(name=named(f"{100 * pressure:g} %", f"{steps} steps", kind, strain, slave(("UPPER", "LOWER"), side)), mesh=mesh, strain=strain,
+                    materials={"UPPER": elastic(2e3), "LOWER": elastic(2e3)}, zones=[zone("UPPER", "LOWER", side)], steps=steps,
+                    moves=[held("LOWER"), {"GROUP_MA": "UPPER_BASE", "DX": 0.0}], most=25,
+                    loads=({"PRES_REP": {"GROUP_MA": "UPPER_BASE", "PRES": [[0, 0], [steps, 2e3 * pressure]]}},),
+                    asked={"solutions": 14 if steps == 1 else 40, "lost": 0}, driven="UPPER_BASE")
+
+
 def peer_cases():
     for name, steps, most in (("ssnv104k", 10, 50), ("ssnv104n", 10, 50), ("ssnp165c", 20, 90), ("ssnp165e", 20, 90)):
         if PEER_MESHES.is_dir():
@@ -391,6 +403,7 @@ ROWS = {
     "faces": ("columns whose faces are aligned, in space", aligned_faces),
     "skins": ("blocks whose whole skins are in the zone", whole_skins),
     "force": ("bodies that contact alone holds, driven by a force", force_driven),
+    "flush": ("blocks with flush ends, pressed in few steps", flush_ends),
     "peer": ("the peer's half spheres and half ring", peer_cases),
     "cycle": ("closed elastic cycle with PETIT_REAC (before) and PETIT_REAC_MILIEU (now)", closed_cycle),
 }
