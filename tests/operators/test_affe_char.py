@@ -57,6 +57,13 @@ class Loads(OperatorTest):
         self.cine({"TOUT": "OUI", "DX": 0.0})
         self.assertEqual(set(self.imposed()), {(n, "DX") for n in range(6)})
 
+    def test_nodes_of_skin_cells_alone_alarm(self):
+        """The mesher has not merged N7 with the body: a support there holds nothing."""
+        for run in (self.cine({"GROUP_MA": ["LOOSE"], "DX": 0.0}, model="model_2"), self.meca(model="model_2", FORCE_NODALE=[{"GROUP_NO": ["ALONE"], "FX": 1.0}])):
+            self.assertEqual((run.status, self.ids(run)), (0, ["CHARGE_26"]))
+            self.assertIn("1 of the nodes belong to no body, the first is N7", run.stderr)
+        self.assertEqual(self.ids(self.cine({"GROUP_MA": ["TOP"], "DX": 0.0}, model="model_2")), [])
+
     def test_nodes_that_are_left_out(self):
         self.cine({"TOUT": "OUI", "DX": 0.0})
         self.meca(DDL_IMPO=[{"GROUP_MA": ["TOP"], "SANS_GROUP_MA": ["BETWEEN"], "DY": 0.0},

@@ -83,6 +83,17 @@ class AffeModele(OperatorTest):
         self.assertEqual(run.status, 0, run.stderr)
         self.assertEqual(self.elements()[:3], ["D_PLAN/QUAD4", "D_PLAN_SI/TRIA3", "D_PLAN_SI/SEG2"])
 
+    def test_a_mesh_beyond_the_axis_of_revolution_is_refused(self):
+        for shift, refused in ((0, False), (-1e-8, False), (-0.25, True)):  # round-off is no side of the axis
+            self.write_mesh("mesh_3", np.array(COORDINATES) + [shift, 0], CELLS, cell_groups=GROUPS)
+            occurrences = [affe(TOUT="OUI", MODELISATION="AXIS")]
+            if refused:
+                self.refuses("MODELE_9", occurrences, "AXIS", "N1", "M1", "X = -0.25", mesh="mesh_3")
+            else:
+                run = self.run_command("AFFE_MODELE", {"MAILLAGE": concept("mesh_3"), "AFFE": occurrences}, result="model_2")
+                self.assertEqual(run.status, 0, run.stderr)
+                self.path("model_2").unlink()
+
     def test_a_mesh_of_space_is_refused_under_plane_strain(self):
         lifted = np.column_stack([COORDINATES, [0, 0, 0, 0, 0.1]])
         self.write_mesh("mesh_3", lifted, CELLS, cell_groups=GROUPS)

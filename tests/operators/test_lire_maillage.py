@@ -156,10 +156,13 @@ class LireMaillage(OperatorTest):
     def test_checks_inform_and_can_be_switched_off(self):
         write_med(self.file, SQUARE + [[5, 5]], {"QUAD4": [[0, 1, 2, 3], [1, 2, 3, 0]]})
         run = self.read()
-        self.assertEqual((run.status, self.ids(run)), (0, ["LIRE_3", "LIRE_4"]))
+        self.assertEqual((run.status, self.ids(run)), (0, ["LIRE_3", "LIRE_7"]))  # two body cells in the same place are an alarm
+        self.assertEqual([message["severity"] for message in run.messages], ["I", "A"])
         self.assertIn("N5", run.stderr)
         self.assertIn("M2", run.stderr)
         self.assertEqual(self.ids(self.read(VERI_MAIL=[{"VERIF": "NON"}])), [])
+        write_med(self.file, SQUARE, {"QUAD4": [[0, 1, 2, 3]], "SEG2": [[0, 1], [1, 0]]})
+        self.assertEqual(self.ids(self.read()), ["LIRE_4"])
 
     def test_flat_cells_are_told(self):
         write_med(self.file, [[0, 0], [1, 0], [1, 1e-4]], {"TRIA3": [[0, 1, 2]]})

@@ -348,6 +348,14 @@ class StatNonLine(TwoSquares):
             self.assertEqual(sorted(index["fields"]), ["CONT_ELEM", "CONT_NOEU", "DEPL"])
             np.testing.assert_array_equal(index["fields/DEPL/order"], [0, 1, 2])
 
+    def test_instants_and_fields_that_archivage_names_in_vain_are_told(self):
+        self.write_list("list_of_reals_8", [0.0, 0.5, 1.0])
+        for archived, alarms, words in (({"INST": [0.5], "PRECISION": 1e-6, "CRITERE": "RELATIF"}, [], ""), ({"INST": [0.5, 0.7, 3.0], "PRECISION": 1e-6, "CRITERE": "RELATIF"}, ["EVOLUTION_56"], "1 of these instants, the first is 0.7"),
+                                        ({"CHAM_EXCLU": ["DEPLL"]}, ["EVOLUTION_58"], "no field 'DEPLL'")):
+            run = self.solve(ARCHIVAGE=archived)
+            self.assertEqual((run.status, self.ids(run)), (0, alarms), run.stderr)
+            self.assertIn(words, run.stderr)
+
     def test_any_solver_is_mumps_and_says_so(self):
         self.assertEqual(self.solve().status, 0)
         expected = self.read_field("result_9", "DEPL", 1).values
@@ -425,6 +433,7 @@ class StatNonLine(TwoSquares):
             self.assertEqual((run.status, run.messages), (0, []), run.stderr)
             iterations[name] = [int(words.split()[0]) for words in run.stdout.split(" with ") if words.split()[1:2] == ["iteration(s)"]]
             ends[name] = self.read_field("result_9", "DEPL", 4).values
+        self.assert_refused(self.solve(RECH_LINEAIRE={**searched, "RHO_MIN": 0.5, "RHO_MAX": 0.2}), "EVOLUTION_57", "RHO_MIN=0.5", "RHO_MAX=0.2")
         for name, values in ends.items():
             np.testing.assert_allclose(values, ends["plain"], atol=1e-10, err_msg=name)
         self.assertEqual(iterations["EXTRAPOLE"][0], iterations["plain"][0])  # nothing has moved before the first step
