@@ -9,6 +9,7 @@
 #include "lacon/catalog/wording.hpp"
 #include "lacon/operators/evolution/archive.hpp"
 #include "lacon/structures/hdf5.hpp"
+#include "lacon/structures/names.hpp"
 #include "lacon/structures/storage/storage.hpp"
 
 namespace lacon {
@@ -16,6 +17,9 @@ namespace {
 
 /// Statuses and residuals go round with periods of two or three iterations: two whole rounds of the longer one.
 constexpr std::size_t most = 6;
+
+/// Pressure over the modulus of elasticity.
+constexpr double beyond_all_solids = 0.5;
 
 constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
 
@@ -35,12 +39,13 @@ std::optional<double> instant_in(const std::filesystem::path& file) {
 
 }  // namespace
 
-FailedStep::FailedStep(const Order& order, const Base& base, const Present& present, double begins)
+FailedStep::FailedStep(const Order& order, const Base& base, const Present& present, double begins, double ends)
     : order_(order),
       base_(base),
       present_(present),
       file_(base.result_folder() / failed_step_file),
       begins_(begins),
+      ends_(ends),
       there_(instant_in(file_)) {}
 
 void FailedStep::begin(double /*instant*/) {
@@ -99,9 +104,24 @@ void FailedStep::end(bool completed) {
   }
 }
 
+std::string FailedStep::large_load() const {
+  double young = 0;
+  for (const ElementSet& set : present_.problem.solids)
+    for (const std::int32_t cell : set.cells)
+      young = std::max(young, present_.problem.materials->find(cell, "ELAS/E").value_or(0));
+  const Pressure pressure = largest_pressure(present_.problem, ends_);
+  if (!(young > 0 && pressure.value > beyond_all_solids * young)) return "";
+  return part("load_is_large", {{"value", fmt::format("{:.4g}", pressure.value)},
+                                {"cell", cell_name(pressure.cell)},
+                                {"times", fmt::format("{:.2g}", pressure.value / young)},
+                                {"young", fmt::format("{:.4g}", young)}});
+}
+
 void FailedStep::tell(const Error& error) const {
-  if (!stored_) throw error;
   Message message = error.message();
+  if (const std::string load = message.severity == 'S' ? large_load() : ""; !load.empty())
+    message.advice = load + (message.advice.empty() ? "" : "; " + message.advice);
+  if (!stored_) throw Error(std::move(message));
   message.advice +=
       (message.advice.empty() ? "" : "; ") +
       part("iterates_are_kept", {{"base", base_.folder().filename().string()}, {"count", std::to_string(iterates_.size())}});

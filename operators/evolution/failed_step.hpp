@@ -22,14 +22,14 @@ inline constexpr const char* failed_step_file = "failed_step.h5";
 class FailedStep : public EvolutionObserver {
  public:
   /// All arguments must outlive it.
-  FailedStep(const Order& order, const Base& base, const Present& present, double begins);
+  FailedStep(const Order& order, const Base& base, const Present& present, double begins, double ends);
 
   void begin(double instant) override;
   void iterate(double instant, const IterationReport& report) override;
   void failed(double instant, const Error& error) override;
   void accept(const SolvedInstant& solved) override;
   void end(bool completed) override;
-  /// Throw an error on; where iterates of it are stored, with advice where to look at them.
+  /// Throw an error on; with advice where its load is beyond what solids bear, and where to look at iterates that are stored.
   [[noreturn]] void tell(const Error& error) const;
 
  private:
@@ -44,6 +44,8 @@ class FailedStep : public EvolutionObserver {
     double instant;
     Message message;
   };
+  /// What there is to say of a pressure that is as large as moduli are, as where its unit is not theirs.
+  std::string large_load() const;
   void store() const;
   void remove();
 
@@ -53,6 +55,7 @@ class FailedStep : public EvolutionObserver {
   std::filesystem::path file_;
   std::deque<Iterate> iterates_;    ///< of the present step
   double begins_;                   ///< the last instant in equilibrium
+  double ends_;                     ///< the last instant that is asked for
   std::optional<Failure> failure_;  ///< of the present step
   std::optional<double> there_;     ///< the instant whose iterates an earlier computation has left
   bool stored_ = false;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <set>
 
 #include "lacon/catalog/messages.hpp"
@@ -215,6 +216,23 @@ TimedLoad read_load(const StaticProblem& problem, const Base& base, const Result
   timed.relation_values.settle();
   if (!vary(timed) && !(timed.cells.empty() && timed.nodal_dofs.empty())) timed.steady = timed.force(problem, 0.0);
   return timed;
+}
+
+Pressure largest_pressure(const StaticProblem& problem, double instant) {
+  Pressure largest;
+  for (const TimedLoad& load : problem.loads) {
+    const double factor = std::abs(load.multiplier(instant));
+    for (const std::vector<LoadedCells>* const loads : {&load.cells, &load.following})
+      for (const LoadedCells& loaded : *loads) {
+        if (loaded.set.option != "CHAR_MECA_PRES") continue;
+        const std::vector<double> values = loaded.values.at(instant);
+        const std::size_t width = values.size() / std::max<std::size_t>(loaded.set.cells.size(), 1);
+        for (std::size_t i = 0; i < values.size(); ++i)
+          if (const double value = factor * std::abs(values[i]); value > largest.value)
+            largest = {value, loaded.set.cells[i / width]};
+      }
+  }
+  return largest;
 }
 
 }  // namespace lacon

@@ -52,4 +52,12 @@ struct TimedLoad {
 /// @param path of the occurrence in messages, "EXCIT[2]/"
 TimedLoad read_load(const StaticProblem& problem, const Base& base, const ResultLoad& excit, const std::string& path);
 
+/// A pressure, and a cell that it acts on.
+struct Pressure {
+  double value = 0;
+  std::int32_t cell = -1;  ///< none
+};
+/// The largest one of all loads at an instant.
+Pressure largest_pressure(const StaticProblem& problem, double instant);
+
 }  // namespace lacon

@@ -190,7 +190,7 @@ void stat_non_line(const Order& order, const Base& base) {
   wait_with_ending();
   const Course past = record ? restart.go_on(*record) : Course();
   const double start = reached(past, steps.values.front());
-  FailedStep failed_step(order, base, present, start);
+  FailedStep failed_step(order, base, present, start, steps.values.back());
   Journal journal(base.result_folder(), steps, start, solver.criteria(), present);
   Progress progress(steps.values);
   // what is told as converged is in the base

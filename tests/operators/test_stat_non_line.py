@@ -441,6 +441,15 @@ class StatNonLine(TwoSquares):
         self.assertEqual(iterations["by itself"][:2], iterations["plain"][:2])
         self.assertLess(sum(iterations["by itself"]), sum(iterations["plain"]))
 
+    def test_a_pressure_in_other_units_than_the_modulus_is_told_where_it_fails(self):
+        """25 MPa as 25e6 beside a modulus in MPa: whatever the iterations fail at, the load is beyond what solids bear."""
+        for factor, told in ((1, False), (1e6, True)):
+            self.write_load("load_6", pressure=[(2, factor * PRESSURE)])
+            run = self.solve(CONVERGENCE=UNREACHABLE)
+            self.assertEqual(run.status, 3, run.stderr)
+            self.assertEqual("look at the units: the pressure of 2.5e+07 on cell M3" in run.stderr, told, run.stderr)
+            self.assertEqual("modulus E=2000" in run.stderr, told)
+
     def test_a_failure_keeps_what_was_computed_before_it(self):
         self.write_function("function_10", [0, 1, 2], [0, 0, 1])
         self.write_list("list_of_reals_8", [0.0, 1.0, 2.0])
