@@ -89,6 +89,8 @@ std::optional<std::int32_t> number_of_name(std::string_view name, char letter, s
 }
 
 std::string nearest_name(std::string_view name, std::span<const std::string> names) {
+  while (name.starts_with(' ')) name.remove_prefix(1);
+  while (name.ends_with(' ')) name.remove_suffix(1);
   std::string best;
   std::size_t least = std::max<std::size_t>(2, name.size() / 3) + 1;
   for (const std::string& candidate : names)

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "lacon/catalog/messages.hpp"
+#include "lacon/catalog/wording.hpp"
 #include "lacon/pairing/normals.hpp"
 
 namespace lacon {
@@ -173,14 +174,16 @@ Field nodal_contact_field(const Mesh& mesh, const Contact& contact, const Contac
 }
 
 Patchwise patches_of(const Field& field, const Mesh& mesh, const Contact& contact, const std::string& label) {
-  const auto refuse = [&](std::int32_t cell) {
-    fail("EVOLUTION_11", {{"label", label}, {"field", field.name}, {"cell", cell_name(cell)}});
+  const auto refuse = [&](std::int32_t cell, const std::string& lack) {
+    fail("EVOLUTION_11", {{"label", label}, {"field", field.name}, {"cell", cell_name(cell)}, {"lack", lack}});
   };
   std::vector<std::int32_t> row(mesh.n_cells(), -1);
   for (std::size_t i = 0; i < field.support.size(); ++i) row[field.support[i]] = static_cast<std::int32_t>(i);
   const auto value = [&](std::int32_t cell, const char* name) {
     const int component = field.component(name);
-    if (row[cell] < 0 || component < 0 || !field.has(row[cell], component)) refuse(cell);
+    if (row[cell] < 0) refuse(cell, part("no_values_there"));
+    if (component < 0 || !field.has(row[cell], component))
+      refuse(cell, part("no_component_there", {{"component", name}, {"needed", "CONT, PRES"}}));
     return field.at(row[cell], component);
   };
   Patchwise patches(mesh.patches->size());

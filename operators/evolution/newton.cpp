@@ -231,7 +231,9 @@ int Newton::iterate(double instant, StaticState& state, const std::function<void
     }
     // a matrix that is not that of a minimum has statuses that answer to each other in any sense
     if (!negative || *negative <= line.constraints) fit_statuses(solution, step, state, accuracy);
-    goes_round_ = goes_round_ || course_.period();
+    // what iterates that go to and fro jump over lies between them. In space forces leap where the traces of facets change, and
+    // a search for balance stops at each leap: there it ends with the period
+    goes_round_ = course_.period() || (goes_round_ && problem_.dimension == 2);
     std::vector<double> increment = equilibrium_.add(solution, step, state);
     const bool driven = std::ranges::any_of(step, [](double value) { return value != 0; });
     std::fill(step.begin(), step.end(), 0.0);  // imposed displacements move in the first iteration alone

@@ -139,7 +139,8 @@ class Newton {
   /// Go on from `state` by the motion of the last instant, and to what is imposed, where that is asked for or serves.
   /// @param[in,out] step of imposed displacements, none where that is done
   void extrapolate(double instant, StaticState& state, std::vector<double>& step);
-  /// Go back along an increment that goes too far (line_search.hpp); the geometry is paired where it ends.
+  /// Go back along an increment that goes too far (line_search.hpp), or to what lies between two iterates that come back; the
+  /// geometry is paired where it ends.
   /// @param solution that `state` has moved by  @param increment of all unknowns of nodes, shortened as well
   void shorten(std::span<const double> solution, const StaticState& previous, StaticState& state,
                std::vector<double>& increment);
@@ -184,7 +185,7 @@ class Newton {
   ResidualCourse course_;               ///< of the instant
   int times_held_ = 0;                  ///< in this instant: loose bodies
   int times_cut_ = 0;                   ///< in this instant: slave cells anew
-  bool goes_round_ = false;             ///< in this instant residuals have come back
+  bool goes_round_ = false;             ///< residuals have come back: increments are searched (line_search.hpp)
   int times_round_ = 0;                 ///< in this instant: residuals have come back
   std::string hanging_;                 ///< a body that springs alone hold in the last system
   int settled_ = 0;                     ///< iterations in a row in which no status has changed

@@ -1,5 +1,8 @@
 #include "lacon/operators/evolution/state_fields.hpp"
 
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
 #include <algorithm>
 #include <functional>
 #include <memory>
@@ -150,14 +153,19 @@ std::vector<double> points_of(const Field& field, const std::vector<std::int32_t
                               const std::vector<std::string>& names, const std::string& label) {
   std::vector<double> values;
   for (const std::int32_t cell : set.cells) {
-    const auto refuse = [&] { fail("EVOLUTION_11", {{"label", label}, {"field", field.name}, {"cell", cell_name(cell)}}); };
-    if (place[cell] < 0) refuse();
+    const auto refuse = [&](const std::string& lack) {
+      fail("EVOLUTION_11", {{"label", label}, {"field", field.name}, {"cell", cell_name(cell)}, {"lack", lack}});
+    };
+    if (place[cell] < 0) refuse(part("no_values_there"));
     const std::size_t first = field.first_row(place[cell]), end = field.first_row(place[cell] + 1);
-    if (end - first != static_cast<std::size_t>(set.tabulation.n_points)) refuse();
+    if (end - first != static_cast<std::size_t>(set.tabulation.n_points))
+      refuse(
+          part("other_points", {{"found", std::to_string(end - first)}, {"needed", std::to_string(set.tabulation.n_points)}}));
     for (std::size_t row = first; row < end; ++row)
       for (const std::string& name : names) {
         const int component = field.component(name);
-        if (component < 0 || !field.has(row, component)) refuse();
+        if (component < 0 || !field.has(row, component))
+          refuse(part("no_component_there", {{"component", name}, {"needed", fmt::format("{}", fmt::join(names, ", "))}}));
         values.push_back(field.at(row, component));
       }
   }
