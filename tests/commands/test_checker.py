@@ -545,6 +545,16 @@ C = DEFI_CONTACT(MODELE=MO, FORMULATION='CONTINUE',
                      "use STAT_NON_LINE", "study.comm:2")
         self.refused(self.run_study("DEBUT()\nX = LIRE_MALLAGE()\n"), "STUDY_20", "LIRE_MALLAGE", "LIRE_MAILLAGE", "study.comm:2")
 
+    def test_a_name_that_is_not_defined_is_near_one_of_the_study(self):
+        """No command that is not available (RESOUDRE), none at all where it is not called, and a name of the study first."""
+        made = "DEBUT()\nRAMP = DEFI_CONSTANTE(VALE=1.0)\n"
+        for line, said in (("DETRUIRE(CONCEPT=_F(NOM=RESU))", "the name 'RESU' is not defined\n"), ("x = RESOUDR()", "the name 'RESOUDR' is not defined\n"),
+                           ("x = RAMPE(0.5)", "'RAMPE' is not defined; the nearest one is RAMP\n"), ("x = rampe", "'rampe' is not defined; the nearest one is RAMP\n"),
+                           ("DETRUIRE(CONCEPT=_F(NOM=RAMP_2))", "'RAMP_2' is not defined; the nearest one is RAMP\n"),
+                           ("x = DEFI_CONSTANT(VALE=1.0)", "the nearest one is DEFI_CONSTANTE\n")):
+            with self.subTest(line):
+                self.refused(self.run_study(made + line + "\n"), "STUDY_20", said, "study.comm:3")
+
     def test_keywords_only(self):
         self.refused(self.run_study("DEBUT()\nLIRE_MAILLAGE(20)\n"), "COMMAND_1", "study.comm:2")
 
