@@ -31,7 +31,7 @@ def problems(command, **keywords):
 
 
 def complete(command, **keywords):
-    made, found = checker.complete(command, catalog.command(command), keywords)
+    made, found, _ = checker.complete(command, catalog.command(command), keywords)
     assert not found, found
     return made
 
@@ -234,7 +234,7 @@ YC = { type = "real", default = 1.0, above = 0.0, help = "energy" }
 
             write(law)
             row = plugins.command("DEFI_MATERIAU")
-            keywords, found = checker.complete("DEFI_MATERIAU", row, {"ELAS": elastic, "MINE": {}})
+            keywords, found, _ = checker.complete("DEFI_MATERIAU", row, {"ELAS": elastic, "MINE": {}})
             self.assertEqual((found, keywords["MINE"][0]["YC"]), ([], 1.0))
             self.assertEqual(checker.complete("DEFI_MATERIAU", row, {"ELAS": elastic, "MINE": {"YC": -1.0}})[1][0].id, "KEYWORD_15")
             self.assertNotIn("MINE", catalog.command("DEFI_MATERIAU")["keyword"])
@@ -523,6 +523,9 @@ class Properties(unittest.TestCase):
             for when in row.get("when", ()):
                 self.assertLessEqual({k for key in ("if", "present", "absent", "default", "mandatory", "forbidden") for k in when.get(key, ())},
                                      names, path)
+                for name in when.get("ignored", ()):
+                    factor, _, own = name.rpartition("/")
+                    self.assertIn(own, row["keyword"][factor]["keyword"] if factor else names, path)
 
         for command in catalog.command_names():
             visit(command, catalog.command(command))
