@@ -13,6 +13,7 @@ from support import STUDY, LauncherTest  # noqa: E402
 
 from lacon.core import catalog, checker, concepts, plugins  # noqa: E402
 from lacon.core.messages import AsterError  # noqa: E402
+from lacon.core.nearest import nearest  # noqa: E402
 from lacon.objects.kinds import kinds  # noqa: E402
 
 
@@ -547,6 +548,9 @@ C = DEFI_CONTACT(MODELE=MO, FORMULATION='CONTINUE',
         self.refused(self.run_study("DEBUT()\nX = DYNA_NON_LINE(MODELE=1)\n"), "COMMAND_11", "DYNA_NON_LINE", "not available in Lacon",
                      "use STAT_NON_LINE", "study.comm:2")
         self.refused(self.run_study("DEBUT()\nX = LIRE_MALLAGE()\n"), "STUDY_20", "LIRE_MALLAGE", "LIRE_MAILLAGE", "study.comm:2")
+
+    def test_spaces_around_a_name_are_not_what_it_is_far_by(self):
+        self.assertEqual(nearest("TOP" + 21 * " ", ["BASE", "TOP"]), "; the nearest one is TOP")
 
     def test_a_name_that_is_not_defined_is_near_one_of_the_study(self):
         """No command that is not available (RESOUDRE), none at all where it is not called, and a name of the study first."""

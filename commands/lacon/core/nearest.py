@@ -10,5 +10,5 @@ def nearest(name, known, likeness=0.5):
     if not isinstance(name, str):
         return ""
     upper = {str(k).upper(): str(k) for k in known}
-    close = difflib.get_close_matches(name.upper(), upper, 1, likeness)
+    close = difflib.get_close_matches(name.strip().upper(), upper, 1, likeness)
     return catalog.part("nearest", name=upper[close[0]]) if close else ""
