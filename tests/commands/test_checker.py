@@ -13,6 +13,7 @@ from support import STUDY, LauncherTest  # noqa: E402
 
 from lacon.core import catalog, checker, concepts, plugins  # noqa: E402
 from lacon.core.messages import AsterError  # noqa: E402
+from lacon.core.nearest import nearest  # noqa: E402
 from lacon.objects.kinds import kinds  # noqa: E402
 
 
@@ -31,7 +32,7 @@ def problems(command, **keywords):
 
 
 def complete(command, **keywords):
-    made, found = checker.complete(command, catalog.command(command), keywords)
+    made, found, _ = checker.complete(command, catalog.command(command), keywords)
     assert not found, found
     return made
 
@@ -234,7 +235,7 @@ YC = { type = "real", default = 1.0, above = 0.0, help = "energy" }
 
             write(law)
             row = plugins.command("DEFI_MATERIAU")
-            keywords, found = checker.complete("DEFI_MATERIAU", row, {"ELAS": elastic, "MINE": {}})
+            keywords, found, _ = checker.complete("DEFI_MATERIAU", row, {"ELAS": elastic, "MINE": {}})
             self.assertEqual((found, keywords["MINE"][0]["YC"]), ([], 1.0))
             self.assertEqual(checker.complete("DEFI_MATERIAU", row, {"ELAS": elastic, "MINE": {"YC": -1.0}})[1][0].id, "KEYWORD_15")
             self.assertNotIn("MINE", catalog.command("DEFI_MATERIAU")["keyword"])
@@ -523,6 +524,9 @@ class Properties(unittest.TestCase):
             for when in row.get("when", ()):
                 self.assertLessEqual({k for key in ("if", "present", "absent", "default", "mandatory", "forbidden") for k in when.get(key, ())},
                                      names, path)
+                for name in when.get("ignored", ()):
+                    factor, _, own = name.rpartition("/")
+                    self.assertIn(own, row["keyword"][factor]["keyword"] if factor else names, path)
 
         for command in catalog.command_names():
             visit(command, catalog.command(command))
@@ -544,6 +548,19 @@ C = DEFI_CONTACT(MODELE=MO, FORMULATION='CONTINUE',
         self.refused(self.run_study("DEBUT()\nX = DYNA_NON_LINE(MODELE=1)\n"), "COMMAND_11", "DYNA_NON_LINE", "not available in Lacon",
                      "use STAT_NON_LINE", "study.comm:2")
         self.refused(self.run_study("DEBUT()\nX = LIRE_MALLAGE()\n"), "STUDY_20", "LIRE_MALLAGE", "LIRE_MAILLAGE", "study.comm:2")
+
+    def test_spaces_around_a_name_are_not_what_it_is_far_by(self):
+        self.assertEqual(nearest("TOP" + 21 * " ", ["BASE", "TOP"]), "; the nearest one is TOP")
+
+    def test_a_name_that_is_not_defined_is_near_one_of_the_study(self):
+        """No command that is not available (RESOUDRE), none at all where it is not called, and a name of the study first."""
+        made = "DEBUT()\nRAMP = DEFI_CONSTANTE(VALE=1.0)\n"
+        for line, said in (("DETRUIRE(CONCEPT=_F(NOM=RESU))", "the name 'RESU' is not defined\n"), ("x = RESOUDR()", "the name 'RESOUDR' is not defined\n"),
+                           ("x = RAMPE(0.5)", "'RAMPE' is not defined; the nearest one is RAMP\n"), ("x = rampe", "'rampe' is not defined; the nearest one is RAMP\n"),
+                           ("DETRUIRE(CONCEPT=_F(NOM=RAMP_2))", "'RAMP_2' is not defined; the nearest one is RAMP\n"),
+                           ("x = DEFI_CONSTANT(VALE=1.0)", "the nearest one is DEFI_CONSTANTE\n")):
+            with self.subTest(line):
+                self.refused(self.run_study(made + line + "\n"), "STUDY_20", said, "study.comm:3")
 
     def test_keywords_only(self):
         self.refused(self.run_study("DEBUT()\nLIRE_MAILLAGE(20)\n"), "COMMAND_1", "study.comm:2")

@@ -10,6 +10,7 @@ sys.path.insert(0, __file__.rpartition("/")[0] or ".")
 from support import STUDY, LauncherTest  # noqa: E402
 
 from lacon.commands.checks import Check, Judgement, judge_calculated  # noqa: E402
+from lacon.core.concepts import listed  # noqa: E402
 
 
 class Rules(unittest.TestCase):
@@ -146,6 +147,14 @@ class Readings(LauncherTest):
                              "INST=1.0, NOM_CHAM='DEPL', NOM_CMP='DX', NOEUD='N4', VALE_CALC=4.0, VALE_REFE=4.0, REFERENCE='ANALYTIQUE'")
         self.assertRegex(run.out, r"(?m)^DIFF .*VALE_CALC +4.1")
         self.assertRegex(run.out, r"(?m)^OK .*reference +4 ")
+
+    def test_a_message_about_an_instant_names_those_around_it(self):
+        """Of many; the first ones where none is asked for."""
+        instants = [(order, order / 10) for order in range(40)]
+        self.assertEqual(listed(instants[:2], 7.0), "0 (INST 0), 1 (INST 0.1)")
+        self.assertRegex(listed(instants), r"^0 \(INST 0\), .*, 11 \(INST 1.1\), \.\.\.$")
+        self.assertRegex(listed(instants, 2.04), r"^\.\.\., 15 \(INST 1.5\), .*, 26 \(INST 2.6\), \.\.\.$")
+        self.assertRegex(listed(instants, 9.0), r"^\.\.\., 28 \(INST 2.8\), .*, 39 \(INST 3.9\)$")
 
     def test_two_tolerances_and_two_criteria(self):
         line = "INST={}, NOM_CHAM='DEPL', NOM_CMP='DX', NOEUD='N4', VALE_CALC=4.0, TOLE_MACHINE=({}), CRITERE=({})"

@@ -373,8 +373,10 @@ part = R.getField('DEPL', 2).EXTR_COMP('LAGS_C', [], 1)
 assert list(part.valeurs) == [-25.0, -25.0] and part.noeud == [2, 5]
 assert R.getAccessParameters() == {'NUME_ORDRE': [0, 1, 2], 'INST': [0.0, 0.5, 1.0]} == R.LIST_VARI_ACCES()
 assert 'DEPL' in R.LIST_CHAMPS() and R.getMesh() is M and R.getModel().getMesh() is M and R.getLastTime() == 1.0
-for wrong, word in ((lambda: R.getField('VITE', 1), 'has no field VITE at order 1'), (lambda: R.getField('DEPL', 0.7, 'INST'), 'INST 0.7'),
-                    (lambda: R.getField('DEPL', 9), 'no order number 9'),
+for wrong, word in ((lambda: R.getField('VITE', 1), 'has no field VITE at order 1'), (lambda: R.getField('DEPL', 9), 'no order number 9'),
+                    (lambda: R.getField('DEPL', 0.7, 'INST'), 'the result R has no instant 0.7'), (lambda: R.getField('DEPL', 0.7), 'no order number 0.7'),
+                    (lambda: R.getField('DEPL', 0.7, 'INST'), 'it has: 0 (INST 0), 1 (INST 0.5), 2 (INST 1)'),
+                    (lambda: R.getField('DEPL', 0.7, 'INST', prec=0.5), 'several instants of the result are within the tolerance of 0.7: 0.5, 1'),
                     (lambda: R.getField('DEPL', 1).toSimpleFieldOnCells(), 'toSimpleFieldOnNodes'),
                     (lambda: R.getField('DEPL', 1).getValues('DZ'), 'DX, LAGS_C'), (lambda: field.norm('NORM_3'), 'NORM_INFINITY'),
                     (lambda: M.getCells('BODYY'), 'nearest one is BODY'), (lambda: M.getConnectivities(), "no 'getConnectivities' here")):

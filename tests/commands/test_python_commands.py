@@ -1,6 +1,7 @@
 """Commands that Python does itself: functions, lists, instants, materials; what their files hold."""
 
 import json
+import re
 import sys
 import unittest
 
@@ -192,9 +193,31 @@ FIN()
         self.assertEqual(json.loads(files[2].attrs["events"]), [
             {"event": "DIVE_RESI", "limit": 0.0, "place": {}, "cut": True, "cut_into": 5, "cut_levels": 3, "smallest": 0.0}])
 
+    def test_what_has_no_effect_is_an_alarm(self):
+        """Given by the command file, not by default; the list is made all the same."""
+        for keywords, ignored in (
+                ("DEFI_LIST=_F(VALE=(0, 1), PAS_MAXI=0.1)", ["DEFI_LIST/PAS_MAXI has no effect with METHODE='MANUEL'"]),
+                ("METHODE='MANUEL', DEFI_LIST=[_F(VALE=(0, 1), PAS_MINI=0.1, NB_PAS_MAXI=1)]",
+                 ["DEFI_LIST/PAS_MINI has no effect with METHODE='MANUEL'", "DEFI_LIST/NB_PAS_MAXI has no effect with METHODE='MANUEL'"]),
+                ("DEFI_LIST=_F(VALE=(0, 1)), ECHEC=(_F(), _F(EVENEMENT='DIVE_RESI', ACTION='ARRET', SUBD_PAS=4, SUBD_PAS_MINI=0.1))",
+                 ["ECHEC[2]/SUBD_PAS has no effect with ACTION='ARRET'", "ECHEC[2]/SUBD_PAS_MINI has no effect with ACTION='ARRET'"]),
+                ("METHODE='AUTO', DEFI_LIST=_F(VALE=(0, 1)), ADAPTATION=_F(EVENEMENT='AUCUN', VALE_I=3, PCENT_AUGM=5.0)",
+                 ["ADAPTATION/VALE_I has no effect with EVENEMENT='TOUT_INST' or 'AUCUN'", "ADAPTATION/PCENT_AUGM has no effect with EVENEMENT='AUCUN'"]),
+                ("METHODE='AUTO', DEFI_LIST=_F(VALE=(0, 1), PAS_MAXI=0.1), ADAPTATION=_F(MODE_CALCUL_TPLUS='ITER_NEWTON', VALE_I=3)", []),
+                ("METHODE='AUTO', DEFI_LIST=_F(VALE=(0, 1)), ADAPTATION=_F(MODE_CALCUL_TPLUS='ITER_NEWTON', NB_ITER_NEWTON_REF=4, PCENT_AUGM=5.0)",
+                 ["ADAPTATION/PCENT_AUGM has no effect with EVENEMENT='SEUIL' or 'TOUT_INST' and MODE_CALCUL_TPLUS='ITER_NEWTON'"])):
+            with self.subTest(keywords):
+                run = self.run_study(f"DEBUT()\nX = DEFI_LIST_INST({keywords})\nFIN()\n", "--fresh")
+                self.assertEqual((run.status, run.last), (0, "--- DIAGNOSTIC JOB : " + ("<A>_ALARM" if ignored else "OK")), run.err)
+                self.assertEqual(re.findall("<A> <KEYWORD_17> DEFI_LIST_INST/(.*)", run.err), ignored)
+                self.assertEqual(self.entries(), ["time_steps_1"])
+        alarm = "DEBUT({})\nX = DEFI_LIST_INST(DEFI_LIST=_F(VALE=(0, 1), PAS_MAXI=0.1))\nFIN()\n"
+        self.refused(self.run_study(alarm.format("ERREUR=_F(ALARME='EXCEPTION')"), "--fresh"), "<F> <KEYWORD_17>")
+        self.assertNotIn("KEYWORD_17", self.ok(self.run_study(alarm.format("IGNORE_ALARM='KEYWORD_17'"), "--fresh")).err)
+
     def test_refused_events(self):
         self.refuses("DEFI_LIST_INST(DEFI_LIST=_F(VALE=(0, 1)), ECHEC=(_F(), _F()))", "DEFI_LIST_4", "ERREUR")
-        self.refuses("DEFI_LIST_INST(DEFI_LIST=_F(VALE=(0, 1)), ADAPTATION=_F())", "KEYWORD_10")
+        self.refuses("DEFI_LIST_INST(DEFI_LIST=_F(VALE=(0, 1), PAS_MAXI=0.1), ADAPTATION=_F())", "KEYWORD_10")
         self.refuses("DEFI_LIST_INST(DEFI_LIST=_F(VALE=(0, 1)), ECHEC=_F(EVENEMENT='RESI_MAXI'))", "KEYWORD_2", "RESI_GLOB_MAXI")
         self.refuses("DEFI_LIST_INST(DEFI_LIST=_F(VALE=(0, 1)), ECHEC=_F(EVENEMENT='DIVE_RESI', ACTION='ITER_SUPPL'))", "DEFI_LIST_5", "DIVE_RESI")
         self.refuses("DEFI_LIST_INST(METHODE='AUTO', DEFI_LIST=_F(VALE=(0, 1), PAS_MINI=0.5, PAS_MAXI=0.2))", "DEFI_LIST_7", "0.5", "0.2")

@@ -282,12 +282,31 @@ TEST_TABLE(TABLE=T, NOM_PARA='N', FILTRE=_F(NOM_PARA='N', VALE_I=1), VALE_CALC_I
     def test_checks_refused(self):
         calls = []
         for keywords, word in (("NOM_PARA='V', VALE_CALC=1.5", "TABLE_9"), ("NOM_PARA='Q', VALE_CALC=1.5", "TABLE_1"),
-                               ("NOM_PARA='V', FILTRE=_F(NOM_PARA='N', VALE_I=9), VALE_CALC=1.5", "TABLE_9"),
+                               ("NOM_PARA='V', FILTRE=_F(NOM_PARA='N', VALE_I=9), VALE_CALC=1.5", "TABLE_20"),
+                               ("NOM_PARA='S', FILTRE=_F(NOM_PARA='N', VALE_I=2), VALE_CALC_K='A'", "TABLE_21"),
                                ("NOM_PARA='V', VALE_CALC_I=1, TYPE_TEST='MAX'", "TABLE_2"), ("NOM_PARA='S', VALE_CALC=1.", "TABLE_2"),
                                ("NOM_PARA='V'", "KEYWORD_7"), ("NOM_PARA='V', VALE_CALC=1., VALE_REFE=1.", "KEYWORD_10"),
                                ("NOM_PARA='V', VALE_CALC=1., REFERENCE='ANALYTIQUE'", "KEYWORD_2")):
             calls.append((f"TEST_TABLE(TABLE=T, {keywords})", word))
         self.all_refused(f"DEBUT()\n{TABLE}", calls)
+
+    def test_a_filter_that_no_row_passes_is_named_with_what_the_column_has(self):
+        """With TYPE_TEST too; of many values those nearest to what was asked for."""
+        self.write("column.py", "COLUMN = [i / 4 for i in range(20)]\n")
+        prelude = """
+DEBUT()
+from column import COLUMN
+T = CREA_TABLE(LISTE=(_F(PARA='INST', LISTE_R=COLUMN), _F(PARA='NAME', LISTE_K=['A', 'B'] * 10), _F(PARA='V', LISTE_I=range(20))))
+"""
+        none = "FILTRE lets no row pass; in the rows before it the column"
+        for call, words in (
+                ("TEST_TABLE(TABLE=T, NOM_PARA='V', TYPE_TEST='MIN', VALE_CALC_I=1, FILTRE=_F(NOM_PARA='INST', VALE=1.1))",
+                 (f"<TABLE_20> {none} 'INST' has: 0.5, 0.75, 1, 1.25, 1.5, 1.75, ...", "TEST_TABLE/FILTRE[1]")),
+                ("TEST_TABLE(TABLE=T, NOM_PARA='V', VALE_CALC_I=1, FILTRE=(_F(NOM_PARA='INST', VALE=1.), _F(NOM_PARA='NAME', VALE_K='B')))",
+                 (f"{none} 'NAME' has: 'A'", "TEST_TABLE/FILTRE[2]")),
+                ("EXTR_TABLE(TABLE=T, TYPE_RESU='ENTIER', NOM_PARA='V', FILTRE=_F(NOM_PARA='V', CRIT_COMP='GT', VALE_I=19))",
+                 (f"{none} 'V' has: 14, 15, 16, 17, 18, 19, ...", "EXTR_TABLE/FILTRE[1]"))):
+            self.assertNotIn("TYPE_TEST", self.refused(self.run_study(prelude + call + "\n"), *words).err)
 
     def test_created_from_fields(self):
         self.ok(self.run_study(STUDY + """

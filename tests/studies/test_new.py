@@ -108,6 +108,45 @@ class New(StudyTest):
         self.assertEqual(self.new(mesh, "--out", "moved.comm").returncode, 0)
         self.assertIn("MECA_IMPO=(_F(GROUP_MA='SYM_Y', DX=0.0, DY=0.0), _F(GROUP_MA='SYM_X', DX=0.0))", self.assert_checked("moved.comm"))
 
+    def test_names_say_which_skin_is_the_slave(self):
+        """Before what is finer; where they say nothing, or both, that counts."""
+        for fine, coarse, slave in (("MAITRE", "PEAU_ESCL", "PEAU_ESCL"), ("Master", "SKIN", "SKIN"), ("SKIN", "slave_1", "slave_1"),
+                                    ("MASTER_OF_SLAVE", "SKIN", "MASTER_OF_SLAVE")):
+            mesh = plate()
+            mesh.cell_groups = {{"FINE": fine, "COARSE": coarse}.get(name, name): cells for name, cells in mesh.cell_groups.items()}
+            (self.folder / "mesh.comm").unlink(missing_ok=True)
+            self.assertEqual(self.new(mesh).returncode, 0)
+            master = fine if slave == coarse else coarse
+            self.assertIn(f"GROUP_MA_ESCL={slave!r}, GROUP_MA_MAIT={master!r}", (self.folder / "mesh.comm").read_text(encoding="utf-8"))
+
+    def test_skins_that_look_away_from_each_other_are_no_pair(self):
+        """The bottom of one plate and the top of the other are within two lengths of cells, thick or thin, with both bodies between them."""
+        for thickness in (1.0, 0.1):
+            lower = block("QUAD4", lines(4, 0, 4.0), lines(1, 0, thickness), name="LOWER", sides={"bottom": "BASE", "top": "MASTER"})
+            upper = block("QUAD4", lines(3, 0, 3.0), lines(1, thickness, thickness), name="UPPER", sides={"bottom": "SLAVE", "top": "LOAD"})
+            (self.folder / "mesh.comm").unlink(missing_ok=True)
+            self.assertEqual(self.new(union([lower, upper])).returncode, 0)
+            text = self.assert_checked()
+            self.assertEqual((text.count("ALGO_CONT='LAC'"), text.count("GROUP_MA_ESCL='SLAVE', GROUP_MA_MAIT='MASTER'")), (1, 1), thickness)
+            self.assertIn("PRES_REP=_F(GROUP_MA='LOAD', PRES=1.0)", text)
+
+    def test_skins_that_overlap_a_little_are_a_pair(self):
+        lower = block("QUAD4", lines(4, 0), lines(2, 0), name="LOWER", sides={"bottom": "BASE", "top": "COARSE"})
+        upper = block("QUAD4", lines(5, 0), lines(2, 0.95), name="UPPER", sides={"bottom": "FINE", "top": "LOAD"})
+        self.assertEqual(self.new(union([lower, upper])).returncode, 0)
+        self.assertIn("GROUP_MA_ESCL='FINE', GROUP_MA_MAIT='COARSE'", self.assert_checked())
+
+    def test_a_skin_meets_the_nearest_one_that_faces_it(self):
+        """A shim between two plates that reach further: the plates face each other too, through it and beside it."""
+        sizes = {"LOWER": (5, 0.0, 1.25), "SHIM": (3, 1.0, 0.5), "UPPER": (5, 1.25, 1.25)}
+        bodies = [block("QUAD4", lines(cells, 0, width), lines(1, height, 0.25 if name == "SHIM" else 1.0), name=name, sides={"bottom": name + "_B", "top": name + "_T"})
+                  for name, (cells, height, width) in sizes.items()]
+        self.assertEqual(self.new(union(bodies)).returncode, 0)
+        text = self.assert_checked()
+        zones = sorted(line.strip() for line in text.splitlines() if "ALGO_CONT='LAC', GROUP_MA_ESCL" in line and not line.startswith("#"))
+        self.assertEqual([line.partition("'LAC', ")[2] for line in zones],
+                         ["GROUP_MA_ESCL='SHIM_B', GROUP_MA_MAIT='LOWER_T'),", "GROUP_MA_ESCL='SHIM_T', GROUP_MA_MAIT='UPPER_B'),"])
+
     def test_the_skin_itself_is_taken_before_the_whole_boundary(self):
         mesh = plate()
         skins = {group: members for group, members in mesh.cell_groups.items() if group in ("FINE", "LOAD", "SIDE_1")}

@@ -9,6 +9,7 @@ import sys
 import tempfile
 import time
 import unittest
+import unittest.mock
 
 from study_test import LACON, SECONDS, SOURCE
 
@@ -17,7 +18,7 @@ sys.path.insert(0, str(SOURCE / "commands"))
 import numpy as np  # noqa: E402
 import test_progress  # noqa: E402
 from lacon.core.messages import AsterError  # noqa: E402
-from lacon.reader.base import open_base  # noqa: E402
+from lacon.reader.base import Base, open_base  # noqa: E402
 
 try:
     import meshio
@@ -77,6 +78,20 @@ FIN()
 """)
         self.run_lacon("warm.comm", "--unit", "20=mesh.med")
         self.assertEqual(open_base(self.folder / "warm.base").only_result().label, "RESULT")
+
+    def test_a_base_without_a_result_says_why_there_may_be_none(self):
+        """Its run failed before an instant and left no iterates, or its command file computes nothing: no result can be named."""
+        (self.folder / "mesh.comm").write_text("DEBUT()\nMESH = LIRE_MAILLAGE(UNITE=20)\nFIN()\n")
+        self.run_lacon("mesh.comm", "--unit", "20=mesh.med")
+        self.refused("READER_8", lambda: open_base(self.folder / "mesh.base").only_result())
+        said = self.run_lacon("plot", "mesh.base", status=2).stderr
+        self.assertIn("<F> <READER_8> the base mesh.base has no result: none was computed, or the computation stopped before its first instant", said)
+        self.assertNotIn("--result", said)
+
+    def test_several_results_are_named(self):
+        results = {"FIRST": self.result, "SECOND": self.result}
+        with unittest.mock.patch.object(Base, "results", results), self.assertRaisesRegex(AsterError, "READER_5.*has 2 results(.|\n)*FIRST, SECOND"):
+            self.base.only_result()
 
     def test_a_mesh_is_points_cells_and_groups(self):
         mesh = self.base["MESH"]

@@ -13,18 +13,19 @@ from ..tables.table import Table
 def order_of(call, test, path):
     """(order number, instant) that INST or NUME_ORDRE names."""
     instants = test["RESULTAT"].instants()
-    known = listed(instants)
     if "NUME_ORDRE" in test:
         found = [(order, t) for order, t in instants if order == test["NUME_ORDRE"]]
         if not found:
-            call.fail("TEST_RESU_1", f"{path}/NUME_ORDRE", what=part("order_number", number=test["NUME_ORDRE"]), label=test["RESULTAT"].label, known=known)
+            call.fail("TEST_RESU_1", f"{path}/NUME_ORDRE", what=part("order_number", number=test["NUME_ORDRE"]), label=test["RESULTAT"].label,
+                      known=listed(instants))
         return found[0]
     wanted = test["INST"]
     found = _near(instants, test)
     if not found:
-        call.fail("TEST_RESU_1", f"{path}/INST", what=part("value_at_instant", instant=f"{wanted:g}"), label=test["RESULTAT"].label, known=known)
+        call.fail("TEST_RESU_1", f"{path}/INST", what=part("value_at_instant", instant=f"{wanted:.9g}"), label=test["RESULTAT"].label,
+                  known=listed(instants, wanted))
     if len(found) > 1:
-        call.fail("TEST_RESU_2", f"{path}/INST", instant=f"{wanted:g}", found=", ".join(f"{t:.10g}" for _, t in found))
+        call.fail("TEST_RESU_2", f"{path}/INST", instant=f"{wanted:.9g}", found=", ".join(f"{t:.10g}" for _, t in found))
     return found[0]
 
 
@@ -55,7 +56,7 @@ def orders(call, k, path):
             wanted = [one for one in wanted if one not in missing]
             for one in missing:
                 call.study.inform("FIELDS_5", f"{call.command}, {call.where}", keyword=f"{path}/LIST_INST", label=result.label,
-                                  instant=f"{one['INST']:g}", known=listed(instants))
+                                  instant=f"{one['INST']:.9g}", known=listed(instants, one["INST"]))
     return sorted({order_of(call, {**one, **tolerance}, path) for one in wanted})
 
 

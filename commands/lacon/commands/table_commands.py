@@ -214,7 +214,9 @@ def test_table(call):
     values = column.values()
     if "TYPE_TEST" in k:
         filters.numeric(call, table, name, "NOM_PARA")
-    if not values or ("TYPE_TEST" not in k and len(values) > 1):
+    if not values:
+        filters.refuse_nothing_left(call, concept.EXTR_TABLE(), k.get("FILTRE", ()), name)
+    if "TYPE_TEST" not in k and len(values) > 1:
         call.fail("TABLE_9", "FILTRE" if "FILTRE" in k else "NOM_PARA", name=name, count=len(values))
     value = values[0]
     if "TYPE_TEST" in k or suffix == "":
@@ -277,7 +279,9 @@ def extr_table(call):
     k = call.keywords
     table, name, kind = filters.filtered(call, k["TABLE"].EXTR_TABLE(), k.get("FILTRE", ())), k["NOM_PARA"], k["TYPE_RESU"]
     cells = filters.column_of(call, table, name, "NOM_PARA").values()
-    if len(cells) != 1:
+    if not cells:
+        filters.refuse_nothing_left(call, k["TABLE"].EXTR_TABLE(), k.get("FILTRE", ()), name)
+    if len(cells) > 1:
         call.fail("TABLE_16", "FILTRE" if "FILTRE" in k else "NOM_PARA", name=name, count=len(cells))
     is_number = not isinstance(cells[0], str)
     if is_number and (kind == "REEL" or (kind == "ENTIER" and isinstance(cells[0], int))):

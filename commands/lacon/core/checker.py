@@ -22,10 +22,10 @@ _largest_count = 2**31 - 1  # of what is counted: iterations, steps, cells
 
 
 def complete(command, row, given, where=""):
-    """@return (keywords with every default, in the order of the catalogue; problems, a list of messages)"""
+    """@return (keywords with every default, in the order of the catalogue; problems, a list of messages; alarms, likewise)"""
     check = _Check(where)
     keywords = check.occurrence(command, row, given)
-    return keywords, check.problems
+    return keywords, check.problems, check.alarms
 
 
 def problems_of(path, keyword, value, where=""):
@@ -39,9 +39,11 @@ class _Check:
     def __init__(self, where):
         self.where = where
         self.problems = []
+        self.alarms = []
 
     def problem(self, identifier, path, **values):
-        self.problems.append(message(identifier, f"{path}, {self.where}" if self.where else path, path=path, **values))
+        item = message(identifier, f"{path}, {self.where}" if self.where else path, path=path, **values)
+        (self.alarms if item.severity == "A" else self.problems).append(item)
 
     # -------------------------------------------------------------------------------------- one set of keywords
 
@@ -71,6 +73,9 @@ class _Check:
                 for name in when.get("forbidden", ()):
                     if name in given:
                         self.problem("KEYWORD_10", f"{path}/{name}", condition=condition(when))
+                for name in when.get("ignored", ()):
+                    if _is_given(name, given):
+                        self.problem("KEYWORD_17", f"{path}/{name}", condition=condition(when))
         for name in rows:
             if name in mandatory and name not in given:
                 self.problem("KEYWORD_2", f"{path}/{name}", help=catalog.help_of(rows[name]))
@@ -201,6 +206,16 @@ class _Check:
         for key, (holds, words) in tests.items():
             if key in limits and not holds(value, limits[key]):
                 self.problem("KEYWORD_15", path, value=_show(value), bound=f"{words} {limits[key]:.10g}")
+
+
+def _is_given(name, given):
+    """Whether a keyword is, "FACTOR/KEYWORD" in an occurrence of a factor keyword."""
+    factor, _, own = name.rpartition("/")
+    if not factor:
+        return name in given
+    items = given.get(factor)
+    items = items if isinstance(items, (list, tuple)) else [items]
+    return any(isinstance(item, dict) and item.get(own) is not None for item in items)
 
 
 def handed_down(row, given):

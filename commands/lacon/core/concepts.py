@@ -119,6 +119,9 @@ def concepts_in(value):
     return list(found.values())
 
 
-def listed(instants):
-    """The first order numbers and instants of a result, for messages."""
-    return ", ".join(f"{order} (INST {t:g})" for order, t in instants[:12]) + (", ..." if len(instants) > 12 else "")
+def listed(instants, near=None):
+    """The first order numbers and instants of a result, for messages; those that lie nearest to the instant `near`, where it is given."""
+    nearest = range(len(instants)) if near is None else sorted(range(len(instants)), key=lambda i: abs(instants[i][1] - near))
+    shown = sorted(nearest[:12])
+    said = [f"{order} (INST {t:.9g})" for order, t in (instants[i] for i in shown)]
+    return ", ".join(["..."] * (bool(shown) and shown[0] > 0) + said + ["..."] * (bool(shown) and shown[-1] < len(instants) - 1))

@@ -57,17 +57,26 @@ class Result(Concept):
         order = value if index is None else index
         instants = self.instants()
         if para == "INST":
-            found = self._orders_near(order, crit, prec)
-            order = found[0] if len(found) == 1 else f"(INST {order:g})"
+            order = self._order_at(instants, order, crit, prec)
         elif para != "NUME_ORDRE":
             raise ValueError(f"getField: para is {para!r}; results here know NUME_ORDRE and INST")
         field = self.field(name, order)
         if field is None:
-            if isinstance(order, int) and order not in dict(instants):
+            if order not in dict(instants):
                 fail("TEST_RESU_1", "getField", label=self.label, what=part("order_number", number=order), known=listed(instants))
             known = ", ".join(sorted(self.LIST_CHAMPS())) or part("none")
             fail("RESULT_1", "getField", label=self.label, field=name, order=order, known=known)
         return field
+
+    def _order_at(self, instants, instant, crit, prec):
+        """The order number of an instant. @throws AsterError TEST_RESU_1, TEST_RESU_2 where there is none, or several"""
+        found = self._orders_near(instant, crit, prec)
+        if not found:
+            what = part("value_at_instant", instant=f"{instant:.9g}")
+            fail("TEST_RESU_1", "getField", label=self.label, what=what, known=listed(instants, instant))
+        if len(found) > 1:
+            fail("TEST_RESU_2", "getField", instant=f"{instant:.9g}", found=", ".join(f"{t:.10g}" for order, t in instants if order in found))
+        return found[0]
 
     def _orders_near(self, instant, crit, prec):
         scale = abs(instant) if crit == "RELATIF" else 1.0
@@ -79,7 +88,7 @@ class Result(Concept):
             raise ValueError(f"getIndexFromParameter: para is {para!r}; results here know INST")
         found = self._orders_near(value, crit, prec)
         if len(found) != 1 and throw_except:
-            raise ValueError(f"{self.label} has {len(found)} instants at {value:g} within {prec:g}; it has {listed(self.instants())}")
+            raise ValueError(f"{self.label} has {len(found)} instants at {value:g} within {prec:g}; it has {listed(self.instants(), value)}")
         return found[0] if len(found) == 1 else -1
 
     def printInfo(self):

@@ -62,13 +62,15 @@ class Base:
 
     def only_result(self, label=None):
         """The result of this label, or the one that there is: a solution or the step that failed, beside courses of temperatures.
-        @throws AsterError READER_1, READER_5"""
+        @throws AsterError READER_1, READER_5, READER_8"""
         if label:
             return self[label]
         found = self.results
         results = {**{name: result for name, result in found.items() if "DEPL" in result.fields}, **self.failed_steps} or found
-        if len(results) != 1:
-            fail("READER_5", "lacon", folder=self.folder, count=len(results), known=", ".join(results) or part("none"))
+        if not results:
+            fail("READER_8", "lacon", folder=self.folder, reason=part("no_result_yet" if self.running else "no_result_left"))
+        if len(results) > 1:
+            fail("READER_5", "lacon", folder=self.folder, count=len(results), known=", ".join(results))
         return next(iter(results.values()))
 
     def __repr__(self):

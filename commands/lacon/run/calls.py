@@ -48,10 +48,11 @@ class Command:
         given = _with_concepts(given)
         if self.name == "DEFI_CONTACT":
             refuse_other_methods(self.name, given, where, labels.label(frame))
-        keywords, problems = checker.complete(self.name, row, given, where)
+        keywords, problems, alarms = checker.complete(self.name, row, given, where)
         reused = self._reuse(row, reuse, given, keywords, where, problems)
         if problems:
             raise AsterError(problems)
+        run.tell(alarms)
         named = next((keywords[k] for k, keyword in row.get("keyword", {}).items() if keyword.get("makes") and k in keywords), None)
         label = reused.label if reused else named.name if named else labels.label(frame)
         keywords = prepared(Call(run, self.name, keywords, where, label, reused))

@@ -17,7 +17,7 @@ import traceback
 import warnings
 
 from ..base import names as namespace
-from ..core import labels, messages, streams
+from ..core import catalog, labels, messages, streams
 from ..core.catalog import part
 from ..core.messages import AsterError, NeedsRun, fail, message, show
 from ..core.nearest import nearest
@@ -241,7 +241,7 @@ def _run_file(study, path, source, values):
         raise Failure(2, "<F>_ERROR") from None
     except NameError as error:
         _print_traceback(error)
-        show(_unknown_name(error, values, study.killed))
+        show(_unknown_name(error, study))
         raise Failure(2, "<F>_ERROR") from None
     except Exception as error:
         if _is_in(study.base_folder, error):
@@ -303,14 +303,20 @@ def _print_traceback(error):
     print("".join(traceback.format_exception_only(error)), end="", file=sys.stderr, flush=True)
 
 
-def _unknown_name(error, values, killed):
-    """@param killed the run that this one goes on with was, and saved no plain Python data"""
-    name = error.name or ""
-    commands = [k for k, v in values.items() if callable(v) and k.isupper() and len(k) > 3]
-    close = nearest(name, commands) if name.isupper() else ""
-    if killed and not close:
-        return message("STUDY_24", place(error), name=name)
-    return message("STUDY_20", place(error), name=name, nearest=close)
+def _unknown_name(error, study):
+    """A name of the study is meant rather than a command, and a command only where it is called; those that are not available are no help."""
+    name, where = error.name or "", place(error)
+    command = nearest(name, catalog.command_names(), 0.7) if name.isupper() and _is_called(name, where) else ""
+    if study.killed and not command:  # the run that this one goes on with, and saved no plain Python data
+        return message("STUDY_24", where, name=name)
+    return message("STUDY_20", where, name=name, nearest=nearest(name, study.names.user(), 0.6) or command)
+
+
+def _is_called(name, where):
+    """Whether the line at a place calls what has this name."""
+    path, _, number = where.rpartition(":")
+    lines = labels.sources.get(path, "").splitlines()[int(number or 1) - 1:]
+    return bool(lines) and re.search(rf"\b{re.escape(name)}\s*\(", lines[0]) is not None
 
 
 @contextlib.contextmanager

@@ -137,18 +137,18 @@ class Study:
 
     def inform(self, identifier, where="", **values):
         """An alarm or an information from the Python side."""
-        item = message(identifier, where, **values)
-        if item.id in self.ignored_alarms:
-            return
-        show(item)
-        self.count_alarms([item])
+        self.tell([message(identifier, where, **values)])
 
-    def repeat_alarms(self, alarms, where):
-        """Say the alarms of an operator that is not run again. @param alarms as Kept.alarms() gives them"""
-        items = [Message(*alarm, where) for alarm in alarms if alarm[1] not in self.ignored_alarms]
+    def tell(self, items):
+        """Messages that do not end the run, but those that the user has had enough of."""
+        items = [item for item in items if item.id not in self.ignored_alarms]
         for item in items:
             show(item)
         self.count_alarms(items)
+
+    def repeat_alarms(self, alarms, where):
+        """Say the alarms of an operator that is not run again. @param alarms as Kept.alarms() gives them"""
+        self.tell([Message(*alarm, where) for alarm in alarms])
 
     def count_alarms(self, items):
         """Count alarms that were shown. @throws AsterError where alarms are errors"""

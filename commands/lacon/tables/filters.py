@@ -5,6 +5,8 @@ import re
 from ..core.catalog import part
 from ..core.nearest import nearest
 
+_most = 6  #: values of a column that a message names
+
 
 def filtered(call, table, factors, path="FILTRE"):
     """The rows that every FILTRE lets pass, one filter after the other. @throws AsterError TABLE_1, TABLE_2, TABLE_3"""
@@ -40,6 +42,25 @@ def filtered(call, table, factors, path="FILTRE"):
         else:
             table = {"LT": column.__lt__, "LE": column.__le__, "GT": column.__gt__, "GE": column.__ge__}[criterion](targets[0])
     return table
+
+
+def refuse_nothing_left(call, table, factors, name):
+    """No row that the filters let pass has a cell in the column `name`: which of them stops all. @throws AsterError TABLE_20, TABLE_21"""
+    for i, factor in enumerate(factors, 1):
+        passed = filtered(call, table, [factor])
+        if len(table) and not len(passed):
+            call.fail("TABLE_20", f"FILTRE[{i}]", column=factor["NOM_PARA"], values=_some(table[factor["NOM_PARA"]], factor))
+        table = passed
+    call.fail("TABLE_21", "NOM_PARA", name=name)
+
+
+def _some(column, factor):
+    """A few values of a column: of numbers those nearest to the one that the filter asks for."""
+    values = list(dict.fromkeys(column.values()))
+    targets = factor.get("VALE", factor.get("VALE_I"))
+    chosen = sorted(sorted(values, key=lambda value: abs(value - targets[0]))[:_most]) if targets else values[:_most]
+    said = [f"{value:.10g}" if isinstance(value, float) else repr(value.strip()) if isinstance(value, str) else str(value) for value in chosen]
+    return ", ".join(said + ["..."] * (len(chosen) < len(values))) or part("none")
 
 
 def column_of(call, table, name, path):

@@ -113,6 +113,7 @@ def _when(when):
     parts = [part("keyword_by_default", keyword=k, value=v) for k, v in when.get("default", {}).items()]
     parts += [part("keyword_mandatory", keyword=k) for k in when.get("mandatory", ())]
     parts += [part("keywords_refused", keywords=", ".join(when["forbidden"]))] if "forbidden" in when else []
+    parts += [part("keywords_ignored", keywords=", ".join(when["ignored"]))] if "ignored" in when else []
     return part("with_keywords", condition=condition(when), what="; ".join(parts))
 
 

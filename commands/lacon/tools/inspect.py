@@ -93,8 +93,8 @@ def write(shelf, occurrence, folder):
         fail("STUDY_3", "lacon inspect --out", folder=folder, reason=error.strerror)
     earlier = {path: path.stat().st_ino for path in folder.iterdir() if _layer.fullmatch(path.name)}
     for number, (form, name) in enumerate((("VTU", "pairing.vtu"), ("MED", "pairing.med"))):
-        keywords, problems = checker.complete("IMPR_RESU", catalog.command("IMPR_RESU"),
-                                              {"FORMAT": form, "UNITE": 80, "RESU": occurrence}, "lacon inspect")
+        keywords, problems, _ = checker.complete("IMPR_RESU", catalog.command("IMPR_RESU"),
+                                                 {"FORMAT": form, "UNITE": 80, "RESU": occurrence}, "lacon inspect")
         if problems:
             raise AsterError(problems)
         made = {"format": 1, "command": "IMPR_RESU", "base": str(shelf.folder), "units": {"80": os.path.abspath(folder / name)},

@@ -2,8 +2,8 @@
 templates, which runs as it is (tools/templates.py).
 
 Bodies are the groups of cells of the mesh's dimension, skins those of one dimension less. Two skins that face each other closely on parts of
-the mesh that are not connected make a contact pair, the finer one as slave. Plane skins at the zero of an axis are taken for symmetries. What
-is a guess says so in the file.
+the mesh that are not connected make a contact pair; the slave is the one that its name calls so, otherwise the finer one. Plane skins at the zero of an
+axis are taken for symmetries. What is a guess says so in the file.
 """
 
 import argparse
@@ -31,11 +31,11 @@ _sample = 1500  # cells of a skin that are looked at
 
 class Skin:
     """A group of skin cells: dimension and size of the mesh, nodes' coordinates, the parts of the mesh that it bounds, length of a cell;
-    middles and outward unit normals of cells that stand for all, and how far they are apart."""
+    middles and outward unit normals of cells that stand for all, how deep the middles of the body cells under them lie, and how far they are apart."""
 
-    def __init__(self, name, dimension, size, points, parts, length, spacing, middles, normals):
+    def __init__(self, name, dimension, size, points, parts, length, spacing, middles, normals, depths):
         self.name, self.dimension, self.points, self.parts, self.length = name, dimension, points, parts, length
-        self.size, self.spacing, self.middles, self.normals = size, spacing, middles, normals
+        self.size, self.spacing, self.middles, self.normals, self.depths = size, spacing, middles, normals, depths
         self.part = parts[0] if len(parts) == 1 else -1
 
     def plane(self):
@@ -53,6 +53,10 @@ class Skin:
         if len(self.parts) == 1:
             return said
         return part("starter_on_several_bodies", skin=said) if self.parts else part("starter_on_no_body", skin=said)
+
+    def role(self):
+        """1 where its name says that it is a slave, -1 a master, 0 neither or both."""
+        return bool(re.search("SLAVE|ESCL", self.name.upper())) - bool(re.search("MASTER|MA[IÎ]T", self.name.upper()))
 
     def mirror(self, upward):
         """Whether it looks like a plane of symmetry: at the zero of an axis; of the one along which bodies stand on each other, if it cuts several."""
@@ -120,8 +124,8 @@ class MeshGroups:
         return first, cell[inside][order]
 
     def _faces(self, faces):
-        """Middles of skin cells and their unit normals, away from the body cell that they bound; 0 where they bound none."""
-        middles, normals = numpy.zeros((len(faces), 3)), numpy.zeros((len(faces), 3))
+        """Middles of skin cells, their unit normals, away from the body cell that they bound, and how deep its middle lies; 0 where they bound none."""
+        middles, normals, depths = numpy.zeros((len(faces), 3)), numpy.zeros((len(faces), 3)), numpy.zeros(len(faces))
         first, cells = self._around
         for i, face in enumerate(faces):
             middles[i] = self.points[face].mean(axis=0)
@@ -133,35 +137,55 @@ class MeshGroups:
             normal = (one[1], -one[0], 0.0) if self.dimension == 2 else numpy.cross(one, self.points[face[2]] - self.points[face[0]])
             length = numpy.linalg.norm(normal)
             if length > 0:
-                normals[i] = numpy.array(normal) / length * (1.0 if numpy.dot(normal, middles[i] - inside) > 0 else -1.0)
-        return middles, normals
+                height = numpy.dot(normal, middles[i] - inside) / length
+                normals[i], depths[i] = numpy.array(normal) / length * (1.0 if height > 0 else -1.0), abs(height)
+        return middles, normals, depths
 
     def pairs(self):
         """[(slave, master)] of skins that face each other on different parts, the closest first; each skin once."""
+        far = {(a, b): _distances(a, b) for a in self.skins for b in self.skins if a.part != b.part and (a.part >= 0 or b.part >= 0)}
+        nearest = {a: numpy.min([d for (one, _), d in far.items() if one is a], axis=0, initial=numpy.inf) for a in self.skins}
         found = []
         for i, a in enumerate(self.skins):
             for b in self.skins[i + 1:]:
-                if a.part != b.part and (a.part >= 0 or b.part >= 0):
-                    shares = _closeness(a, b), _closeness(b, a)
+                if (a, b) in far:
+                    shares, distance = zip(*(_closeness(far[one], nearest[one[0]], max(a.spacing, b.spacing)) for one in ((a, b), (b, a))))
                     if max(shares) >= _share:
-                        slave, master = (a, b) if b.part < 0 or (a.part >= 0 and a.length <= b.length) else (b, a)
-                        found.append((sum(shares), slave, master))  # a group of more than the facing skin has a smaller sum
+                        # a group of more than the facing skin has a smaller sum
+                        found.append((-sum(shares), -abs(a.role() - b.role()), round(min(distance) / self.size, 6), *_slave_first(a, b)))
         taken, pairs = set(), []
-        for _, slave, master in sorted(found, key=lambda row: -row[0]):
+        for *_, slave, master in sorted(found, key=lambda row: row[:3]):
             if slave.name not in taken and master.name not in taken:
                 taken |= {slave.name, master.name}
                 pairs.append((slave, master))
         return pairs
 
 
-def _closeness(a, b):
-    """The part of a's cells that are near a cell of b which looks towards them."""
+def _slave_first(a, b):
+    """A slave is on one body; which skin it is, their names say, otherwise how fine they are."""
+    if a.part < 0 or b.part < 0:
+        return (a, b) if b.part < 0 else (b, a)
+    return (a, b) if (a.role(), -a.length) >= (b.role(), -b.length) else (b, a)
+
+
+def _distances(a, b):
+    """How far each of a's cells is from the nearest cell of b that faces it; infinite where none does. Those that look away from each other, with their
+    bodies between them, do not: what a cell sees lies before it, or behind it by less than the middle of its body cell (skins that overlap)."""
     limit = _near * max(a.spacing, b.spacing)
-    near = 0
+    found = numpy.full(len(a.middles), numpy.inf)
     for rows in numpy.array_split(numpy.arange(len(a.middles)), max(1, len(a.middles) // 100)):
-        square = ((a.middles[rows, None, :] - b.middles[None, :, :]) ** 2).sum(axis=2)
-        near += int(((square <= limit * limit) & (a.normals[rows] @ b.normals.T <= _facing)).any(axis=1).sum())
-    return near / len(a.middles)
+        to = b.middles[None, :, :] - a.middles[rows, None, :]
+        distance = numpy.linalg.norm(to, axis=2)
+        before = (to * a.normals[rows, None, :]).sum(axis=2) > -a.depths[rows, None]
+        faces = (distance <= limit) & before & (a.normals[rows] @ b.normals.T <= _facing)
+        found[rows] = numpy.where(faces, distance, numpy.inf).min(axis=1)
+    return found
+
+
+def _closeness(distances, nearest, spacing):
+    """(the part of a skin's cells that face another one and no skin that is clearly nearer, how far these are from it) @param nearest of all skins"""
+    near = numpy.isfinite(distances) & (distances <= nearest + 0.5 * spacing)
+    return near.mean(), distances[near].mean() if near.any() else numpy.inf
 
 
 def standing(free, dimension):
