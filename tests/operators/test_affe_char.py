@@ -57,6 +57,11 @@ class Loads(OperatorTest):
         self.cine({"TOUT": "OUI", "DX": 0.0})
         self.assertEqual(set(self.imposed()), {(n, "DX") for n in range(6)})
 
+    def test_spaces_around_the_name_of_a_group_are_seen(self):
+        run = self.cine({"GROUP_MA": ["TOP   "], "DY": 0.0})
+        self.assertEqual((run.status, self.ids(run)), (2, ["MESH_1"]))
+        self.assertIn("'TOP'", run.messages[0]["text"] + run.messages[0]["do"])
+
     def test_nodes_of_skin_cells_alone_alarm(self):
         """The mesher has not merged N7 with the body: a support there holds nothing."""
         for run in (self.cine({"GROUP_MA": ["LOOSE"], "DX": 0.0}, model="model_2"), self.meca(model="model_2", FORCE_NODALE=[{"GROUP_NO": ["ALONE"], "FX": 1.0}])):

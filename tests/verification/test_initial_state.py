@@ -76,6 +76,8 @@ class InitialState(StudyTest):
                              ("dict(reuse=WHOLE, ETAT_INIT=_F(EVOL_NOLI=WHOLE, INST=2.0))", "DETR_NUME_SUIV"),
                              ("dict(reuse=WHOLE)", "ETAT_INIT=_F(EVOL_NOLI=WHOLE)"),
                              ("dict(RESULTAT=FIRST)", "without reuse"),
+                             ("dict(ETAT_INIT=_F(SIGM=CREA_CHAMP(OPERATION='AFFE', TYPE_CHAM='ELGA_SIEF_R', MODELE=MODEL, PROL_ZERO='OUI',"
+                              " AFFE=_F(TOUT='OUI', NOM_CMP='SIYY', VALE=-10.0))))", "SIXX is missing of SIXX, SIYY"),
                              *((f"dict(ETAT_INIT=_F({keyword}=CREA_CHAMP(OPERATION='EXTR', RESULTAT=CALC_CHAMP(reuse=FIRST, RESULTAT=FIRST,"
                                 f" CONTRAINTE='SIEF_ELNO'), NOM_CHAM='{name}', TYPE_CHAM='{kind}', INST=2.0)))", "FIELDS_6")
                                for keyword, name, kind in (("DEPL", "SIEF_ELGA", "ELGA_SIEF_R"), ("SIGM", "SIEF_ELNO", "ELNO_SIEF_R"),
