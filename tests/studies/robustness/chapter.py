@@ -26,7 +26,7 @@ DRAWN = {
     "difficult": ("die QUAD4 PETIT_REAC block", "beams QUAD8 GREEN upper", "stack AXIS QUAD8 GREEN above"),
     "corner": ("QUAD4 GREEN tool", "QUAD8 GREEN plate"), "aligned": ("D_PLAN QUAD4 4 on 6 upper", "D_PLAN QUAD8 7 on 5 lower"),
     "faces": ("4 on 6 upper",), "skins": ("larger above QUAD4 GREEN upper", "smaller above QUAD8 GREEN upper"),
-    "force": ("round AXIS QUAD8 GREEN tool",), "cycle": ("10 QUAD4 lower",),
+    "flush": ("1 steps QUAD8 PETIT lower",), "force": ("round AXIS QUAD8 GREEN tool",), "cycle": ("10 QUAD4 lower",),
 }
 
 
@@ -124,7 +124,8 @@ PETIT and GREEN_LAGRANGE (plastic ones PETIT and PETIT_REAC), with either side a
 criteria and keywords of Newton's method are defaults. An iteration is one solution of the linear system; lost ones belong to steps that were cut, restarted or
 never solved, and count towards the limits. "Before": contact forces along the slave's normal, frozen; where a force drives, statuses alone move the edge of a
 contact, by one patch an iteration, and a factorisation's pivots alone say what is loose; where ends are
-aligned, forces jump when they pass each other, and where side walls are in the zone, when these come upright. Rows listed once have not changed since.
+aligned, forces jump when they pass each other, where side walls are in the zone, when these come upright, and
+where ends are flush, increments are halved where residuals go round. Rows listed once have not changed since.
 
 {table}
 

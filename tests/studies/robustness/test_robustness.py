@@ -16,13 +16,13 @@ from study_test import LACON, StudyTest  # noqa: E402, I001 (it says where meshe
 from bodies import half_disc, lines, quarter_of_a_ring, round_tool, slab, slab_in_space, turned  # noqa: E402
 from meshes import block, brick, union, weld  # noqa: E402
 from run import chosen, count, missed, run  # noqa: E402
-from studies import Study, elastic, held, path, zone  # noqa: E402
+from studies import Study, elastic, flush_ends, held, path, zone  # noqa: E402
 from unseen import study as unseen  # noqa: E402
 
 #: seconds each, one or more of a row
 SHORT = ["arch/x10, QUAD8 GREEN", "arch/x10, QUAD4 PETIT", "plastic/flat 1, QUAD8", "plastic/round 5, QUAD4", "contrast/1e-06 QUAD4 PETIT", "contrast/1e+06 QUAD8 GREEN", "difficult/beams QUAD8 GREEN",
          "difficult/die QUAD4 PETIT,", "difficult/stack D_PLAN QUAD8 GREEN", "difficult/stack 3D HEXA8 PETIT", "force/round AXIS QUAD4 GREEN", "aligned/D_PLAN QUAD8 7 lower",
-         "aligned/C_PLAN QUAD4 4 lower", "skins/larger QUAD8 PETIT upper", "cycle/10 QUAD4 upper", "cycle/10 QUAD8 lower", "polygon/QUAD4 wheel"]
+         "aligned/C_PLAN QUAD4 4 lower", "skins/larger QUAD8 PETIT upper", "cycle/10 QUAD4 upper", "cycle/10 QUAD8 lower", "polygon/QUAD4 wheel", "flush/2.5 QUAD8 upper", "flush/5 QUAD4 lower"]
 LONG = ["difficult/stack 3D HEXA20 GREEN", "faces/4 upper"]
 
 TABLE = """
@@ -65,6 +65,22 @@ class Short(StudyTest):
 
 class Long(Short):
     names = LONG
+
+
+class FlushEnds(StudyTest):
+    def test_one_step_finds_what_five_find(self):
+        """QUAD8, 2.5 and 5 % of the modulus: the ends of both skins come to lie within 1e-4 of each other, where forces leap. One step stopped, or kept the
+        cover there, with pressures 3e-3 off."""
+        for part in ("2.5 %", "5 %"):
+            ends = {}
+            for steps in (1, 5):
+                study = next(study for study in flush_ends() if study.name == f"{part}, 1 steps, QUAD8, PETIT, slave upper")
+                press = {"GROUP_MA": "UPPER_BASE", "PRES": [[0, 0], [steps, study.loads[0]["PRES_REP"]["PRES"][-1][1]]]}
+                study = dataclasses.replace(study, steps=steps, loads=({"PRES_REP": press},), measure=lambda instants, moved, forces: {"end": moved[-1].tolist()})
+                figures = run(study, LACON, self.folder)
+                self.assertEqual(figures["status"], "finished")
+                ends[steps] = np.array(figures["end"])
+            np.testing.assert_allclose(ends[1], ends[5], rtol=0, atol=1e-8 * np.abs(ends[5]).max())
 
 
 class Skins(StudyTest):
