@@ -93,8 +93,8 @@ class OtherMethods(unittest.TestCase):
         """Its keywords are refused by name: a form without slave or master was printed."""
         for zone in (_F(GROUP_MA="M", NOM_CMP="DY", COEF_IMPO=0.0), _F(FISS_MAIT="F"), _F(GROUP_MA_ESCL="E"), ()):
             refuse_other_methods("DEFI_CONTACT", {"MODELE": Model(), "FORMULATION": "LIAISON_UNIL", "ZONE": zone}, "study.comm:7", "CTC")
-        _, problems = checker.complete("DEFI_CONTACT", catalog.command("DEFI_CONTACT"),
-                                       {"MODELE": Model(), "FORMULATION": "LIAISON_UNIL", "ZONE": _F(GROUP_MA="M", NOM_CMP="DY", COEF_IMPO=0.0)})
+        _, problems, _ = checker.complete("DEFI_CONTACT", catalog.command("DEFI_CONTACT"),
+                                          {"MODELE": Model(), "FORMULATION": "LIAISON_UNIL", "ZONE": _F(GROUP_MA="M", NOM_CMP="DY", COEF_IMPO=0.0)})
         self.assertIn("stiff body", " ".join(problem.do for problem in problems))
 
     def test_bilateral_contact_of_defi_cont_glides(self):
