@@ -33,7 +33,7 @@ class Loan {
 class Lender {
  public:
   virtual ~Lender() = default;
-  /// @param reader the only process that needs it; -1: all do. For the others a copy is empty  Throws std::system_error.
+  /// @param reader the only process that needs it; -1: all do. For the others a copy is empty  Throws as SharedMemory.
   virtual std::unique_ptr<Loan> borrow(const std::string& path, LoanUse /*use*/, int /*reader*/ = -1) const {
     return std::make_unique<Loan>(SharedMemory::open(path));
   }

@@ -7,6 +7,9 @@
 #include <array>
 #include <cmath>
 #include <functional>
+#include <map>
+#include <set>
+#include <utility>
 
 #include "lacon/catalog/messages.hpp"
 #include "lacon/catalog/wording.hpp"
@@ -22,23 +25,39 @@ namespace {
 
 // ---------------------------------------------------------------------------------------------------- nodes
 
-/// CHARGE_26: nodes that have unknowns from skin cells alone.
-void tell_loose(const LoadScene& scene, const NamedPlaces& named) {
-  std::int64_t count = 0;
-  std::int32_t first = -1;
-  for (const std::int32_t node : named.members)
-    if (scene.dofs[static_cast<std::size_t>(node)] != 0 && !scene.is_of_a_body[static_cast<std::size_t>(node)] && count++ == 0)
-      first = node;
-  if (count > 0) inform("CHARGE_26", {{"keyword", named.source}, {"count", std::to_string(count)}, {"node", node_name(first)}});
+/// CHARGE_26: nodes that have unknowns from skin cells alone, and lie where a body has a node. Skins that stand for a body in
+/// contact have nodes of their own, elsewhere.
+void tell_loose(const LoadScene& scene, const std::vector<NamedPlaces>& places) {
+  std::set<std::array<double, 3>> of_bodies;  // once there is a reason to look
+  bool looked = false;
+  const auto place = [&](std::int32_t node) {
+    const auto point = scene.mesh.point(static_cast<std::size_t>(node));
+    return std::array{point[0], point[1], point[2]};
+  };
+  std::map<std::string, std::vector<std::int32_t>> loose;  // by source: names of nodes are one each
+  for (const NamedPlaces& named : places)
+    for (const std::int32_t node : named.members) {
+      if (scene.dofs[static_cast<std::size_t>(node)] == 0 || scene.is_of_a_body[static_cast<std::size_t>(node)]) continue;
+      if (!std::exchange(looked, true))
+        for (std::size_t i = 0; i < scene.is_of_a_body.size(); ++i)
+          if (scene.is_of_a_body[i]) of_bodies.insert(place(static_cast<std::int32_t>(i)));
+      if (of_bodies.contains(place(node))) loose[named.source].push_back(node);
+    }
+  for (const auto& [source, nodes] : loose)
+    inform("CHARGE_26", {{"keyword", source}, {"count", std::to_string(nodes.size())}, {"node", node_name(nodes.front())}});
 }
 
 /// Values of every component in `components` that an occurrence gives, on the nodes that it names. A force FX acts on DX.
 void load_nodes(const LoadScene& scene, const std::vector<Keywords>& factors, std::span<const std::string_view> components,
                 std::string_view conflict, std::vector<LoadTerm>& terms) {
   GivenTerms given(scene, conflict, terms);
+  const auto places_of = [&](const Keywords& factor) {
+    std::vector<NamedPlaces> places = named_nodes(scene, factor);
+    tell_loose(scene, places);
+    return places;
+  };
   for (const Keywords& factor : factors)
-    for (const NamedPlaces& named : named_nodes(scene, factor)) {
-      tell_loose(scene, named);
+    for (const NamedPlaces& named : places_of(factor))
       for (const std::string_view component : components) {
         if (!factor.has(component)) continue;
         const LoadValue value = value_of(scene.base, factor, component);
@@ -49,7 +68,6 @@ void load_nodes(const LoadScene& scene, const std::vector<Keywords>& factors, st
           given.add(node, part("place_node", {{"node", node_name(node)}}), std::string(component), value, named.source);
         }
       }
-    }
 }
 
 constexpr std::string_view angular_velocity[] = {"WX", "WY", "WZ"}, axis_point[] = {"X", "Y", "Z"};  // of ROTATION

@@ -44,6 +44,8 @@ double mean(const ContactGeometry& geometry, std::span<const std::size_t> around
   return measure > 0 ? sum / measure : 0;
 }
 
+constexpr double cancelled = 1e-6;  // what opposite unit normals may leave of their sum
+
 /// Outward unit normals of all slave skins at the nodes, (n_nodes, 3), between those of the zones that meet there; zero
 /// elsewhere.
 std::vector<double> slave_normals(const Mesh& mesh, const ContactGeometry& geometry) {
@@ -57,8 +59,8 @@ std::vector<double> slave_normals(const Mesh& mesh, const ContactGeometry& geome
     }
   }
   for (const std::size_t node : shared)
-    if (const double length = norm(vector_at(&normals[3 * node])); length > 0)
-      for (std::size_t i = 3 * node; i < 3 * node + 3; ++i) normals[i] /= length;
+    for (const double length = norm(vector_at(&normals[3 * node])); double& component : std::span(&normals[3 * node], 3))
+      component = length > cancelled ? component / length : 0;
   return normals;
 }
 

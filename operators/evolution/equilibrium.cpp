@@ -70,7 +70,7 @@ Equilibrium::Equilibrium(const StaticProblem& problem, std::shared_ptr<SolidPart
     linear_ = linear_ && set.linear;
     has_memory_ = has_memory_ || set.kernel->has_memory;
   }
-  points_ = natural_state().points;
+  if (!parts_) points_ = natural_state().points;
   if (heat_.changes_stiffness()) linear_ = false;
 }
 

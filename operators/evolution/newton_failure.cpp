@@ -95,7 +95,7 @@ std::string Newton::remedy(const IterationReport& line, double excess) const {
   if (!options_.cuts) return part("remedy_cut_step");
   if (diverges) return part("remedy_coarser_load");
   if (line.status_changes > 0 || statuses_.round()) return part("remedy_refine_slave");
-  if (course_.period() && !options_.line_search) return part("remedy_line_search");
+  if (course_.period() && !options_.line_search && problem_.dimension == 3) return part("remedy_line_search");
   return part("remedy_look_at_table");
 }
 

@@ -182,7 +182,9 @@ fs::path RestartRecord::base_file(std::int64_t number) const { return folder_ / 
 Course RestartRecord::go_on(const hdf5::Group& record) {
   try {
     take(record);
-    for (const Message& alarm : read_messages(record.open("alarms"))) inform(alarm);
+    const std::vector<Message> told = messages_so_far();  // those of reading the problem, again
+    for (const Message& alarm : read_messages(record.open("alarms")))
+      if (std::ranges::none_of(told, [&](const Message& m) { return m.id == alarm.id && m.text == alarm.text; })) inform(alarm);
     return read_course(record.open("course"));
   } catch (const std::exception& failure) {
     fail("EVOLUTION_31", {{"reason", failure.what()}});

@@ -63,7 +63,9 @@ class Loads(OperatorTest):
         self.assertIn("'TOP'", run.messages[0]["text"] + run.messages[0]["do"])
 
     def test_nodes_of_skin_cells_alone_alarm(self):
-        """The mesher has not merged N7 with the body: a support there holds nothing."""
+        """The mesher has not merged N7 with N6 of the body: a support there holds nothing. A skin that stands for a body lies elsewhere."""
+        self.assertEqual(self.ids(self.cine({"GROUP_MA": ["LOOSE"], "DX": 0.0}, model="model_2")), [])
+        self.write_mesh("mesh_1", [*COORDINATES[:6], COORDINATES[5]], CELLS, cell_groups=GROUPS, node_groups=NODES)
         for run in (self.cine({"GROUP_MA": ["LOOSE"], "DX": 0.0}, model="model_2"), self.meca(model="model_2", FORCE_NODALE=[{"GROUP_NO": ["ALONE"], "FX": 1.0}])):
             self.assertEqual((run.status, self.ids(run)), (0, ["CHARGE_26"]))
             self.assertIn("1 of the nodes belong to no body, the first is N7", run.stderr)

@@ -304,12 +304,12 @@ def _print_traceback(error):
 
 
 def _unknown_name(error, study):
-    """A name of the study is meant rather than a command, and a command only where it is called; those that are not available are no help."""
+    """A command is meant where the name is called, and otherwise a name of the study; commands that are not available are no help."""
     name, where = error.name or "", place(error)
     command = nearest(name, catalog.command_names(), 0.7) if name.isupper() and _is_called(name, where) else ""
     if study.killed and not command:  # the run that this one goes on with, and saved no plain Python data
         return message("STUDY_24", where, name=name)
-    return message("STUDY_20", where, name=name, nearest=nearest(name, study.names.user(), 0.6) or command)
+    return message("STUDY_20", where, name=name, nearest=command or nearest(name, study.names.user(), 0.6))
 
 
 def _is_called(name, where):
