@@ -47,7 +47,7 @@ double mean(const ContactGeometry& geometry, std::span<const std::size_t> around
 constexpr double cancelled = 1e-6;  // what opposite unit normals may leave of their sum
 
 /// Outward unit normals of all slave skins at the nodes, (n_nodes, 3), between those of the zones that meet there; zero
-/// elsewhere.
+/// where these cancel, and elsewhere.
 std::vector<double> slave_normals(const Mesh& mesh, const ContactGeometry& geometry) {
   std::vector<double> normals(3 * mesh.n_nodes(), 0.0);
   std::set<std::size_t> shared;  // nodes of several zones

@@ -125,9 +125,8 @@ std::string FailedStep::large_load() const {
 
 void FailedStep::tell(const Error& error) const {
   Message message = error.message();
-  if (const std::string load =
-          message.severity == 'S' && !message.id.starts_with("SOLVER_2") && message.id != "SOLVER_8" ? large_load() : "";
-      !load.empty())
+  const bool by_load = message.severity == 'S' && message.id != "SOLVER_2" && message.id != "SOLVER_8";  // memory, processes
+  if (const std::string load = by_load ? large_load() : ""; !load.empty())
     message.advice = load + (message.advice.empty() ? "" : "; " + message.advice);
   if (!stored_) throw Error(std::move(message));
   message.advice +=

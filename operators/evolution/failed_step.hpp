@@ -21,7 +21,7 @@ inline constexpr const char* failed_step_file = "failed_step.h5";
 /// instant as late as theirs converges, or another step of the same result fails.
 class FailedStep : public EvolutionObserver {
  public:
-  /// All arguments must outlive it.
+  /// All arguments must outlive it. @param begins, ends the last instant in equilibrium, and the last that is asked for
   FailedStep(const Order& order, const Base& base, const Present& present, double begins, double ends);
 
   void begin(double instant) override;

@@ -553,12 +553,13 @@ C = DEFI_CONTACT(MODELE=MO, FORMULATION='CONTINUE',
         self.assertEqual(nearest("TOP" + 21 * " ", ["BASE", "TOP"]), "; the nearest one is TOP")
 
     def test_a_name_that_is_not_defined_is_near_one_of_the_study(self):
-        """No command that is not available (RESOUDRE), none at all where it is not called, and a name of the study first."""
+        """Or near a command where it is called; never near one that is not available (RESOUDRE)."""
         made = "DEBUT()\nRAMP = DEFI_CONSTANTE(VALE=1.0)\n"
         for line, said in (("DETRUIRE(CONCEPT=_F(NOM=RESU))", "the name 'RESU' is not defined\n"), ("x = RESOUDR()", "the name 'RESOUDR' is not defined\n"),
                            ("x = RAMPE(0.5)", "'RAMPE' is not defined; the nearest one is RAMP\n"), ("x = rampe", "'rampe' is not defined; the nearest one is RAMP\n"),
                            ("DETRUIRE(CONCEPT=_F(NOM=RAMP_2))", "'RAMP_2' is not defined; the nearest one is RAMP\n"),
-                           ("x = DEFI_CONSTANT(VALE=1.0)", "the nearest one is DEFI_CONSTANTE\n")):
+                           ("x = DEFI_CONSTANT(VALE=1.0)", "the nearest one is DEFI_CONSTANTE\n"),
+                           ("MODELE = 1; x = AFFE_MODEL(MODELE)", "the nearest one is AFFE_MODELE\n")):
             with self.subTest(line):
                 self.refused(self.run_study(made + line + "\n"), "STUDY_20", said, "study.comm:3")
 
