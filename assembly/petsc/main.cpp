@@ -129,6 +129,7 @@ void serve(const KrylovOptions& options) {
         krylov = taken(machines, path, cells, options, multigrid);
         answer("taken");
         krylov->set_up();
+        malloc_trim(0);  // what was freed between other pieces too: what MPI's threads take in between decides how much
         answer("ready");
       } else if (cells.obey(line)) {
         answer("done");
