@@ -87,6 +87,7 @@ struct SolidInput {
   std::span<const double> previous_stress;                 ///< (cells, n_points, n_stress)
   std::span<const double> previous_variable;               ///< (cells, n_points, n_variables)
   std::span<const double> thermal, previous_thermal = {};  ///< (cells, n_points): strains, for kernels that take them
+  std::span<const double> parameters = {};  ///< (cells, n_parameters), in the place of those of the set; empty: those
 };
 
 /// Where values at the integration points of the set's cells go; empty: not wanted.

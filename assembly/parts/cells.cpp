@@ -33,6 +33,12 @@ bool Cells::obey(const std::string& line) {
   } else if (verb == "natural") {
     said >> number;
     part_->keep_natural(number);
+  } else if (verb == "copy") {
+    said >> number >> other;
+    part_->keep_copy(number, other);
+  } else if (verb == "strain") {
+    said >> number;
+    part_->strain_as(number);
   } else if (verb == "rest") {
     said >> number >> other;
     part_->keep_at_rest(number, other);

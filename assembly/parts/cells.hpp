@@ -3,8 +3,10 @@
 //   board PATH                           Board, from now on
 //   part RANK PATH                       PartCells of that process alone
 //   evaluate MATRIX PREVIOUS ORIGIN      ElementPart::evaluate
-//   keep N, natural N, rest N OF, drop N ...      states by number
-//   put N QUANTITY PATH FIRST COUNT ..., collect N QUANTITY PATH FIRST COUNT ...     values of some cells of each set
+//   keep N, natural N, copy N OF, rest N OF, drop N ...      states by number
+//   strain OF                            ElementPart::strain_as
+//   put N QUANTITY PATH FIRST COUNT ..., collect N QUANTITY PATH FIRST COUNT ...     values of some cells of each set; N is
+//                                        -1 for the present state
 //   flows SINCE                          into the report
 //   multiply MAGNITUDES, measure         own rows
 //   products N PATH                      x and y of own rows, N columns each

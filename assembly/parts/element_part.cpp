@@ -6,6 +6,8 @@
 #include <string_view>
 #include <utility>
 
+#include "lacon/assembly/solid_step.hpp"
+
 namespace lacon {
 
 ElementPart::ElementPart(PartCells cells)
@@ -35,10 +37,13 @@ ElementPart::ElementPart(PartCells cells)
 
 ElementPart::State ElementPart::natural() const {
   State state;
-  for (const ElementSet& set : sets_)
-    state.push_back({std::vector<double>(set.cells.size() * set.n_stress(), 0.0),
-                     std::vector<double>(set.cells.size() * set.n_variables(), 0.0)});
+  for (const ElementSet& set : sets_) state.push_back(natural_points(set));
   return state;
+}
+
+ElementPart::State& ElementPart::present() {
+  if (present_.use_count() > 1) present_ = std::make_shared<State>(*present_);
+  return *present_;
 }
 
 std::vector<double> ElementPart::gathered(std::span<const double> nodal, int width) const {
@@ -59,7 +64,7 @@ void ElementPart::evaluate(const Board& board, PartReport& report, SolidMatrix w
                            std::int64_t origin) {
   report.set = report.cell = -1;
   report.failed = 0;
-  if (present_.use_count() > 1) present_ = std::make_shared<State>(*present_);  // a kept state stays as it is
+  State& now = present();
   if (wanted != SolidMatrix::none) {
     if (remembers_ && remembered_.empty()) remembered_.assign(matrix_->values().begin(), matrix_->values().end());
     matrix_->set_zero();
@@ -70,17 +75,12 @@ void ElementPart::evaluate(const Board& board, PartReport& report, SolidMatrix w
   std::vector<double> force(displacement.size(), 0.0);
   try {
     for (std::size_t s = 0; s < sets_.size(); ++s) {
-      const ElementSet& set = sets_[s];
-      SolidInput input{.displacement = displacement};
-      const bool remembers = set.kernel->has_memory;
-      if (const std::int64_t from = remembers ? previous : origin; from >= 0) {
-        input.previous_displacement = remembers ? before : at_first;
-        input.previous_stress = kept_.at(from)->at(s).stress;
-        input.previous_variable = kept_.at(from)->at(s).variable;
-      }
-      Values& values = (*present_)[s];
+      const bool remembers = sets_[s].kernel->has_memory;
+      SolidStart start;
+      if (const std::int64_t from = remembers ? previous : origin; from >= 0)
+        start = {remembers ? before : at_first, &kept_.at(from)->at(s)};
       const auto inverted =
-          evaluate_solids(set, mesh_, input, wanted, {values.stress, values.variable}, [&](const ElementValues& element) {
+          evaluate_step(sets_[s], mesh_, displacement, now[s], start, wanted, [&](const ElementValues& element) {
             for (std::size_t i = 0; i < element.dofs.size(); ++i) force[element.dofs[i]] += element.force[i];
             if (!element.matrix.empty()) matrix_->add(element.dofs, element.matrix);
           });
@@ -97,10 +97,19 @@ void ElementPart::evaluate(const Board& board, PartReport& report, SolidMatrix w
 
 void ElementPart::keep_natural(std::int64_t number) { kept_[number] = std::make_shared<State>(natural()); }
 
+void ElementPart::keep_copy(std::int64_t number, std::int64_t of) { kept_[number] = std::make_shared<State>(state(of)); }
+
 void ElementPart::keep_at_rest(std::int64_t number, std::int64_t of) {
-  const auto still = std::make_shared<State>(state(of));
-  for (std::size_t s = 0; s < sets_.size(); ++s) stop_flow(sets_[s], (*still)[s].variable);
-  kept_[number] = still;
+  keep_copy(number, of);
+  State& still = *kept_.at(number);
+  for (std::size_t s = 0; s < sets_.size(); ++s) stop_flow(sets_[s], still[s].variable);
+}
+
+void ElementPart::strain_as(std::int64_t number) {
+  State& now = present();
+  for (std::size_t s = 0; s < sets_.size(); ++s)
+    for (const PointQuantityRow& row : point_quantities)
+      if (row.is_given) now[s].*row.values = number < 0 ? std::vector<double>() : (*kept_.at(number))[s].*row.values;
 }
 
 template <class Use>
@@ -120,16 +129,20 @@ void ElementPart::for_each_in(std::span<const CellRange> cells, PointQuantity qu
 void ElementPart::write(std::int64_t number, PointQuantity quantity, std::span<const CellRange> cells,
                         std::span<double> values) const {
   const State& from = state(number);
+  const auto held = member_of(quantity);
   for_each_in(cells, quantity, [&](std::size_t set, std::size_t cell, std::size_t at, std::size_t width) {
-    if (cells_.sets[set].is_own[cell]) std::copy_n(from[set].of(quantity).data() + cell * width, width, values.data() + at);
+    if (cells_.sets[set].is_own[cell]) std::copy_n((from[set].*held).data() + cell * width, width, values.data() + at);
   });
 }
 
 void ElementPart::read(std::int64_t number, PointQuantity quantity, std::span<const CellRange> cells,
                        std::span<const double> values) {
-  State& to = *kept_.at(number);
+  State& to = number < 0 ? present() : *kept_.at(number);
+  const auto held = member_of(quantity);
+  for (std::size_t s = 0; s < sets_.size(); ++s)
+    if (cells[s].count > 0) (to[s].*held).resize(sets_[s].cells.size() * width_of(sets_[s], quantity));
   for_each_in(cells, quantity, [&](std::size_t set, std::size_t cell, std::size_t at, std::size_t width) {
-    std::copy_n(values.data() + at, width, to[set].of(quantity).data() + cell * width);
+    std::copy_n(values.data() + at, width, (to[set].*held).data() + cell * width);
   });
 }
 

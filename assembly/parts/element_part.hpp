@@ -14,6 +14,7 @@
 #include "lacon/assembly/parts/board.hpp"
 #include "lacon/assembly/parts/kept_points.hpp"
 #include "lacon/assembly/parts/part_cells.hpp"
+#include "lacon/assembly/point_values.hpp"
 #include "lacon/assembly/sparse_matrix.hpp"
 
 namespace lacon {
@@ -30,13 +31,17 @@ class ElementPart {
   /// start from; -1: the natural state
   void evaluate(const Board& board, PartReport& report, SolidMatrix wanted, std::int64_t previous, std::int64_t origin);
 
-  /// Keep the present state under a number, the natural one, or one that is kept with no law that flows (INDIPLAS).
+  /// Keep the present state under a number, the natural one, or one that is kept: as it is, or with no law that flows
+  /// (INDIPLAS).
   void keep(std::int64_t number) { kept_[number] = present_; }
   void keep_natural(std::int64_t number);
+  void keep_copy(std::int64_t number, std::int64_t of);
   void keep_at_rest(std::int64_t number, std::int64_t of);
+  /// Temperatures and initial strains are, from now on, those of a kept state. @param number -1: none act
+  void strain_as(std::int64_t number);
   void drop(std::int64_t number) { kept_.erase(number); }
   /// Write the values of own cells into an array of some cells of each set, one set behind the other, or take those of all
-  /// cells here from it. @param number -1: the present state
+  /// cells here from it, into a state that has been copied or is natural. @param number -1: the present state
   void write(std::int64_t number, PointQuantity quantity, std::span<const CellRange> cells, std::span<double> values) const;
   void read(std::int64_t number, PointQuantity quantity, std::span<const CellRange> cells, std::span<const double> values);
   /// Whether internal variables are others than in a kept state: the law flows.
@@ -74,14 +79,7 @@ class ElementPart {
   std::span<const std::int32_t> place() const { return cells_.place; }
 
  private:
-  struct Values {
-    std::vector<double> stress, variable;
-    std::vector<double>& of(PointQuantity quantity) { return quantity == PointQuantity::stress ? stress : variable; }
-    const std::vector<double>& of(PointQuantity quantity) const {
-      return quantity == PointQuantity::stress ? stress : variable;
-    }
-  };
-  using State = std::vector<Values>;  ///< of each set
+  using State = std::vector<PointValues>;  ///< of each set
 
   /// Of the whole mesh's nodes those that are here, and back. @param width of what stands in nodal arrays for an unknown
   std::vector<double> gathered(std::span<const double> nodal, int width = 1) const;
@@ -91,6 +89,8 @@ class ElementPart {
   void for_each_in(std::span<const CellRange> cells, PointQuantity quantity, const Use& use) const;
   const State& state(std::int64_t number) const { return number < 0 ? *present_ : *kept_.at(number); }
   State natural() const;
+  /// The present state, to be changed: those that are kept stay as they are.
+  State& present();
 
   PartCells cells_;
   Registry registry_;

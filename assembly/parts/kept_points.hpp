@@ -1,34 +1,31 @@
 #pragma once
 // States of integration points that other processes keep (solid_parts.hpp).
+#include <array>
 #include <cstdint>
 #include <memory>
 #include <span>
 #include <utility>
 #include <vector>
 
-#include "lacon/assembly/element_sets.hpp"
+#include "lacon/assembly/point_values.hpp"
 
 namespace lacon {
 
 class SolidParts;
-
-/// Values at the integration points that can be asked for, and given.
-enum class PointQuantity { stress, variable };
-
-/// Numbers that a cell of a set has.
-inline std::size_t width_of(const ElementSet& set, PointQuantity quantity) {
-  return quantity == PointQuantity::stress ? set.n_stress() : set.n_variables();
-}
 
 /// Some cells of a solid set, one behind the other.
 struct CellRange {
   std::size_t first = 0, count = 0;
 };
 
+/// Which quantities the points of each set hold.
+using Holdings = std::vector<std::array<bool, point_quantities.size()>>;
+
 /// A state that the processes keep as long as this is there.
 class KeptPoints {
  public:
-  KeptPoints(std::shared_ptr<const SolidParts> parts, std::int64_t number) : parts_(std::move(parts)), number_(number) {}
+  KeptPoints(std::shared_ptr<const SolidParts> parts, std::int64_t number, Holdings holdings)
+      : parts_(std::move(parts)), number_(number), holdings_(std::move(holdings)) {}
   ~KeptPoints();
   KeptPoints(const KeptPoints&) = delete;
   KeptPoints& operator=(const KeptPoints&) = delete;
@@ -36,6 +33,8 @@ class KeptPoints {
   std::int64_t number() const { return number_; }
   std::size_t n_sets() const;
   std::size_t n_cells(std::size_t set) const;
+  const Holdings& holdings() const { return holdings_; }
+  bool holds(std::size_t set, PointQuantity quantity) const { return holdings_[set][static_cast<std::size_t>(quantity)]; }
   /// Numbers of a quantity that a cell of a set has.
   std::size_t width(std::size_t set, PointQuantity quantity) const;
   /// Of all cells of a set. Throws SOLVER_8.
@@ -46,6 +45,7 @@ class KeptPoints {
  private:
   std::shared_ptr<const SolidParts> parts_;
   std::int64_t number_;
+  Holdings holdings_;
 };
 using KeptState = std::shared_ptr<const KeptPoints>;
 

@@ -98,6 +98,7 @@ SolidParts::SolidParts(std::shared_ptr<PartProcesses> processes, const Mesh& mes
       numbering_(numbering),
       partition_(partition(mesh, cells_of(sets), weights_of(sets), processes_->size())),
       blocks_(numbering, static_cast<int>(unknowns.size()), processes_->size(), partition_.of_node),
+      holdings_(natural_holdings()),
       n_cells_(std::ssize(partition_.of_cell)) {
   processes_->start();
   const std::int64_t n_dofs = std::ssize(numbering.equation);
@@ -148,29 +149,74 @@ std::optional<std::int32_t> SolidParts::evaluate(std::span<const double> displac
   return inside_out ? std::optional(inside_out->cell) : std::nullopt;
 }
 
-KeptState SolidParts::kept(const std::string& verb, const std::string& more) const {
+std::int64_t SolidParts::kept(const std::string& verb, const std::string& more) const {
   const std::int64_t number = ++last_;
   ask(verb + ' ' + std::to_string(number) + more);
-  return std::make_shared<const KeptPoints>(shared_from_this(), number);
+  return number;
 }
 
-KeptState SolidParts::keep() const { return kept("keep"); }
-KeptState SolidParts::natural() const { return kept("natural"); }
-KeptState SolidParts::at_rest(const KeptPoints& state) const { return kept("rest", ' ' + std::to_string(state.number())); }
+KeptState SolidParts::shared(std::int64_t number, Holdings holdings) const {
+  return std::make_shared<const KeptPoints>(shared_from_this(), number, std::move(holdings));
+}
 
-KeptState SolidParts::put(const std::function<std::span<const double>(std::size_t, PointQuantity)>& values) const {
-  KeptState state = natural();
-  for (std::size_t s = 0; s < sets_.size(); ++s)
-    for (const PointQuantity quantity : {PointQuantity::stress, PointQuantity::variable}) {
-      const std::span<const double> given = values(s, quantity);
-      if (given.empty()) continue;
-      const SharedMemory memory(given.size_bytes());
-      std::ranges::copy(given, memory.numbers().begin());
-      std::vector<CellRange> cells(sets_.size());
-      cells[s].count = sets_[s].cells.size();
-      exchange("put", state->number(), quantity, cells, memory);
-    }
-  return state;
+Holdings SolidParts::natural_holdings() const {
+  Holdings holdings(sets_.size());
+  for (auto& of_set : holdings)
+    for (const PointQuantityRow& row : point_quantities) of_set[static_cast<std::size_t>(row.quantity)] = !row.is_given;
+  return holdings;
+}
+
+KeptState SolidParts::keep() const { return shared(kept("keep"), holdings_); }
+KeptState SolidParts::natural() const { return shared(kept("natural"), natural_holdings()); }
+KeptState SolidParts::at_rest(const KeptPoints& state) const {
+  return shared(kept("rest", ' ' + std::to_string(state.number())), state.holdings());
+}
+
+KeptState SolidParts::put(std::span<const PointValues> points) const {
+  const std::int64_t number = kept("natural");
+  Holdings holdings = natural_holdings();
+  for (const PointQuantityRow& row : point_quantities) put(number, points, row, holdings);
+  return shared(number, std::move(holdings));
+}
+
+KeptState SolidParts::heated(const KeptPoints& state, std::span<const PointValues> points) const {
+  const std::int64_t number = kept("copy", ' ' + std::to_string(state.number()));
+  Holdings holdings = state.holdings();
+  for (const PointQuantity quantity : {PointQuantity::thermal, PointQuantity::parameter})
+    put(number, points, point_quantities[static_cast<std::size_t>(quantity)], holdings);
+  return shared(number, std::move(holdings));
+}
+
+void SolidParts::strain(std::span<const PointValues> points) {
+  const auto is_given = [&](const PointQuantityRow& row) {
+    return row.is_given &&
+           std::ranges::any_of(points, [&](const PointValues& of_set) { return !(of_set.*row.values).empty(); });
+  };
+  if (holdings_ == natural_holdings() && std::ranges::none_of(point_quantities, is_given)) return;
+  holdings_ = natural_holdings();
+  ask("strain -1");
+  for (const PointQuantityRow& row : point_quantities)
+    if (row.is_given) put(-1, points, row, holdings_);
+}
+
+void SolidParts::strain_as(const KeptPoints& state) {
+  if (holdings_ == natural_holdings() && holdings_ == state.holdings()) return;
+  holdings_ = state.holdings();
+  ask("strain " + std::to_string(state.number()));
+}
+
+void SolidParts::put(std::int64_t number, std::span<const PointValues> points, const PointQuantityRow& quantity,
+                     Holdings& holdings) const {
+  for (std::size_t s = 0; s < sets_.size(); ++s) {
+    const std::vector<double>& values = points[s].*quantity.values;
+    if (values.empty()) continue;
+    const SharedMemory memory(values.size() * sizeof(double));
+    std::ranges::copy(values, memory.numbers().begin());
+    std::vector<CellRange> cells(sets_.size());
+    cells[s].count = sets_[s].cells.size();
+    exchange("put", number, quantity.quantity, cells, memory);
+    holdings[s][static_cast<std::size_t>(quantity.quantity)] = true;
+  }
 }
 
 std::vector<std::vector<double>> SolidParts::values(std::int64_t number, PointQuantity quantity,

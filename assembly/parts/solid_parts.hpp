@@ -56,8 +56,14 @@ class SolidParts : public RowsElsewhere, public std::enable_shared_from_this<Sol
   KeptState keep() const;  ///< that of the last evaluation
   KeptState natural() const;
   KeptState at_rest(const KeptPoints& state) const;
-  /// Hand a state out. @param values(set, quantity) of all cells
-  KeptState put(const std::function<std::span<const double>(std::size_t, PointQuantity)>& values) const;
+  /// Hand a state out. @param points of each set
+  KeptState put(std::span<const PointValues> points) const;
+  /// A state with what temperatures do at another instant. @param points of each set, of which thermal strains and parameters
+  /// are taken
+  KeptState heated(const KeptPoints& state, std::span<const PointValues> points) const;
+  /// What temperatures and initial strains do, from the next evaluation on. @param points of each set
+  void strain(std::span<const PointValues> points);
+  void strain_as(const KeptPoints& state);
   /// Whether a law flows in the last evaluation.
   bool flows(const KeptPoints& since) const;
   /// Of some cells of each set. @param number -1: that of the last evaluation
@@ -82,10 +88,16 @@ class SolidParts : public RowsElsewhere, public std::enable_shared_from_this<Sol
  private:
   friend KeptPoints;
   void ask(const std::string& line) const;
+  /// Put what the points of each set hold of a quantity into a state of the processes. @param holdings of that state
+  void put(std::int64_t number, std::span<const PointValues> points, const PointQuantityRow& quantity,
+           Holdings& holdings) const;
   /// "put" or "collect" values of some cells of each set, one set behind the other.
   void exchange(const char* verb, std::int64_t number, PointQuantity quantity, std::span<const CellRange> cells,
                 const SharedMemory& memory) const;
-  KeptState kept(const std::string& verb, const std::string& more = {}) const;
+  /// Ask for a state that is kept. @param more behind its number
+  std::int64_t kept(const std::string& verb, const std::string& more = {}) const;
+  KeptState shared(std::int64_t number, Holdings holdings) const;
+  Holdings natural_holdings() const;
 
   std::shared_ptr<PartProcesses> processes_;
   const Mesh& mesh_;
@@ -95,6 +107,7 @@ class SolidParts : public RowsElsewhere, public std::enable_shared_from_this<Sol
   BlockNumbering blocks_;
   std::optional<SharedMemory> memory_;
   Board board_;
+  Holdings holdings_;  ///< of the present state
   std::int64_t n_cells_ = 0, n_shared_ = 0;
   mutable std::int64_t last_ = 0;              ///< number of a kept state
   mutable std::vector<std::int64_t> dropped_;  ///< that nobody needs any more

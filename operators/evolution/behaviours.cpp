@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "lacon/assembly/solid_step.hpp"
 #include "lacon/catalog/messages.hpp"
 
 namespace lacon {
@@ -38,15 +39,6 @@ BehaviourRows behaviour_rows(const Registry& registry, std::string_view option) 
   const catalog::DeformationRow* deformation = registry.find_deformation(option.substr(slash + 1));
   if (!relation || !deformation) fail("BEHAVIOUR_3", {{"behaviour", std::string(option)}});
   return {*relation, *deformation};
-}
-
-std::optional<ElasticParameters> elastic_parameters(const ElementSet& set) {
-  const char* const* const first = set.kernel->parameters;
-  const char* const* const last = first + set.n_parameters;
-  const auto place = [&](std::string_view name) { return std::find(first, last, name); };
-  const auto young = place("ELAS/E"), poisson = place("ELAS/NU");
-  if (young == last || poisson == last) return std::nullopt;
-  return ElasticParameters{static_cast<std::size_t>(young - first), static_cast<std::size_t>(poisson - first)};
 }
 
 bool starts_elastically(const Registry& registry, const ElementSet& set) {

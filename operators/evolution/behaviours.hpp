@@ -24,13 +24,6 @@ struct BehaviourRows {
 };
 BehaviourRows behaviour_rows(const Registry& registry, std::string_view option);
 
-/// Where E and NU of ELAS stand among the parameters of a set's kernel.
-struct ElasticParameters {
-  std::size_t young, poisson;
-};
-/// Nothing where the kernel does not take both.
-std::optional<ElasticParameters> elastic_parameters(const ElementSet& set);
-
 /// Whether a law answers to a change of strain with isotropic elasticity, so that the stress that it starts from takes what the
 /// change of a strain without stress does: what the rows of its relation and its deformation say. Throws BEHAVIOUR_9 where they
 /// say so and the kernel does not take E and NU.

@@ -8,6 +8,7 @@
 #include <numeric>
 #include <set>
 
+#include "lacon/assembly/solid_step.hpp"
 #include "lacon/catalog/messages.hpp"
 #include "lacon/catalog/wording.hpp"
 #include "lacon/operators/evolution/bodies.hpp"
@@ -82,19 +83,45 @@ StaticState Equilibrium::natural_state() const {
     state.kept = parts_->natural();
     return state;
   }
-  for (const ElementSet& set : problem_.solids)
-    state.points.push_back({std::vector<double>(set.cells.size() * set.n_stress(), 0.0),
-                            std::vector<double>(set.cells.size() * set.n_variables(), 0.0),
-                            {},
-                            {}});
+  for (const ElementSet& set : problem_.solids) state.points.push_back(natural_points(set));
   return state;
+}
+
+bool Equilibrium::heat(double instant, StaticState& state) {
+  if (!heat_.acts()) return false;
+  if (!parts_) {
+    heat_.move_to(instant, state.points);
+    return true;
+  }
+  std::vector<PointValues> points(parts_->n_sets());
+  heat_.move_to(instant, points);
+  state.kept = parts_->heated(*state.kept, points);
+  return true;
+}
+
+void Equilibrium::strain_as(const StaticState& state) {
+  if (parts_) return parts_->strain_as(*state.kept);
+  for (std::size_t s = 0; s < points_.size(); ++s)
+    for (const PointQuantityRow& row : point_quantities)
+      if (row.is_given) points_[s].*row.values = state.points[s].*row.values;
+}
+
+void Equilibrium::strain(double instant) {
+  if (!parts_) {
+    heat_.move_to(instant, points_);
+    prestrain_.move_to(instant, points_);
+    return;
+  }
+  std::vector<PointValues> points(parts_->n_sets());
+  heat_.move_to(instant, points);
+  prestrain_.move_to(instant, points);
+  parts_->strain(points);
 }
 
 std::vector<double> Equilibrium::load(double instant, const StaticState& state) {
   const std::vector<double> values = problem_.imposed_values(instant), relations = relations_.values(instant, values);
   instant_ = instant;
-  heat(instant);
-  prestrain_.move_to(instant, points_);
+  strain(instant);
   if (offset_skins(instant)) {
     pair(state.displacement);
     has_new_gaps_ = true;
@@ -181,38 +208,15 @@ void Equilibrium::add_solids(const StaticState& state, const StaticState& previo
   cell_inside_out_.reset();
   for (std::size_t s = 0; s < problem_.solids.size(); ++s) {
     const ElementSet& set = problem_.solids[s];
-    SolidInput input{.displacement = state.displacement};
     const StaticState* const from = set.kernel->has_memory ? &previous : origin_ ? &*origin_ : nullptr;
-    if (from) {
-      input.previous_displacement = from->displacement;
-      input.previous_stress = from->points[s].stress;
-      input.previous_variable = from->points[s].variable;
-    }
-    std::vector<double> start;
-    if (heat_.acts()) {
-      input.previous_stress = start = heat_.start_of_step(s, points_[s], from);
-      input.thermal = points_[s].thermal;
-      if (from) input.previous_thermal = from->points[s].thermal;
-    }
-    const PointValues* const before = from ? &from->points[s] : nullptr;
-    if (Prestrain::acts(points_[s], before)) {
-      if (start.empty()) start = from ? before->stress : std::vector<double>(set.cells.size() * set.n_stress(), 0.0);
-      prestrain_.take_off(s, points_[s], before, start);
-      input.previous_stress = start;
-    }
-    ElementSet heated;
-    if (!points_[s].parameter.empty()) {
-      heated = set;
-      heated.parameters = points_[s].parameter;
-    }
-    const SolidOutput output{points_[s].stress, points_[s].variable};
+    const SolidStart start = from ? SolidStart{from->displacement, &from->points[s]} : SolidStart{};
     const auto add = [&](const ElementValues& element) {
       if (element.symmetric)
         system_.add(element.dofs, element.matrix, element.force);
       else
         system_.add_unsymmetric(element.dofs, element.matrix, element.force);
     };
-    const auto inverted = evaluate_solids(heated.kernel ? heated : set, problem_.mesh, input, wanted, output, add);
+    const auto inverted = evaluate_step(set, problem_.mesh, state.displacement, points_[s], start, wanted, add);
     if (!cell_inside_out_) cell_inside_out_ = inverted;
   }
 }
@@ -235,9 +239,7 @@ void Equilibrium::hold_points(StaticState& state) const {
 
 void Equilibrium::hand_out(StaticState& state) const {
   if (!parts_ || state.kept) return;
-  state.kept = parts_->put([&](std::size_t set, PointQuantity quantity) -> std::span<const double> {
-    return quantity == PointQuantity::stress ? state.points[set].stress : state.points[set].variable;
-  });
+  state.kept = parts_->put(state.points);
   state.points.clear();
 }
 

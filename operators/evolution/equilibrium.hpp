@@ -37,14 +37,10 @@ class Equilibrium {
 
   /// Displacements, multipliers, stresses and variables zero; no statuses.
   StaticState natural_state() const;
-  /// Temperatures of an instant, which assemblies from now on take; load() does so too.
-  void heat(double instant) { heat_.move_to(instant, points_); }
-  /// Temperatures and initial strains as a state has them.
-  void strain_as(const StaticState& state) {
-    heat_.copy(state.points, points_);
-    prestrain_.copy(state.points, points_);
-  }
-  const Heat& heat() const { return heat_; }
+  /// Let a state have the temperatures of an instant, where some act. @return whether that is so
+  bool heat(double instant, StaticState& state);
+  /// Temperatures and initial strains that assemblies from now on take: as a state has them. load() takes those of an instant.
+  void strain_as(const StaticState& state);
   /// Whether there are strains without stress, thermal or initial ones, or were in a state.
   bool strains_freely(const StaticState& state) const { return heat_.acts() || prestrain_.acts(state); }
   /// A state that laws without a memory start from; until then it is the natural one.
@@ -136,8 +132,6 @@ class Equilibrium {
 
   const System& system() const { return system_; }
   const ContactState* contact() const { return contact_ ? &*contact_ : nullptr; }
-  /// At the last assembly. Empty where processes have the cells.
-  const std::vector<PointValues>& points() const { return points_; }
   /// Let a state have what the points hold at the last assembly.
   void hold_points(StaticState& state) const;
   /// Where processes have the cells, hand them what the points of a state hold.
@@ -157,6 +151,8 @@ class Equilibrium {
   void start(bool keeps_stiffness);
   void add_solids(const StaticState& state, const StaticState& previous, SolidMatrix wanted);
   void add_solids_of_parts(const StaticState& state, const StaticState& previous, SolidMatrix wanted);
+  /// Temperatures and initial strains of an instant.
+  void strain(double instant);
   void add_springs(const StaticState& state, bool with_matrix);
   void add_following_loads(const StaticState& state);
   void add_contact(const StaticState& state);
@@ -172,7 +168,7 @@ class Equilibrium {
   bool linear_ = true, has_memory_ = false;
   bool has_stiffness_ = false;                       ///< a linear stiffness is in the matrix
   NewtonMatrix matrix_{.solid = SolidMatrix::none};  ///< of which kind it is
-  std::vector<PointValues> points_;
+  std::vector<PointValues> points_;                  ///< at the last assembly; empty where processes have the cells
   std::optional<StaticState> origin_;
   std::optional<std::int32_t> cell_inside_out_;
   std::optional<double> instant_;  ///< that of the loads

@@ -32,7 +32,7 @@ Newton::Newton(const StaticProblem& problem, const NewtonOptions& options, std::
       options_(options),
       bodies_(problem.mesh),
       loose_(RigidMotions(geometry_of(problem, bodies_)), problem.numbering),
-      equilibrium_(problem, parts_of(problem, *engine, options.strained)),
+      equilibrium_(problem, parts_of(problem, *engine)),
       choice_({.linear = equilibrium_.is_linear(),
                .made_symmetric = equilibrium_.makes_symmetric(),
                .symmetric = equilibrium_.is_symmetric(),
@@ -57,9 +57,8 @@ StaticState Newton::initial_state() {
 }
 
 void Newton::start_heated(StaticState& state) {
-  if (!equilibrium_.heat().acts()) return;
-  equilibrium_.heat(options_.start);
-  equilibrium_.heat().copy(equilibrium_.points(), state.points);
+  if (!equilibrium_.heat(options_.start, state)) return;
+  equilibrium_.strain_as(state);
   equilibrium_.start_from(state);
 }
 

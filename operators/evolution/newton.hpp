@@ -37,7 +37,6 @@ struct NewtonOptions {
   bool from_reference = false;            ///< its temperatures are those of reference, whatever they are at that instant
   std::optional<LineSearch> line_search;  ///< RECH_LINEAIRE
   bool cuts = false;                      ///< a step that fails is cut: no message advises it
-  bool strained = false;                  ///< it starts from a state under initial strains
 };
 
 class Newton {

@@ -12,10 +12,7 @@ namespace lacon {
 namespace {
 
 /// What only one process can do; empty where there is nothing.
-std::string_view needs_one_process(const StaticProblem& problem, bool strained) {
-  if (problem.thermal) return "parts_no_temperatures";
-  if (!problem.initial_strains.empty()) return "parts_no_initial_strains";
-  if (strained) return "parts_no_strained_state";
+std::string_view needs_one_process(const StaticProblem& problem) {
   if (problem.n_components() != problem.dimension) return "parts_no_other_unknowns";
   if (symmetry_of(problem) == Symmetry::general) return "parts_no_general_matrix";
   const bool is_flat = std::ranges::any_of(
@@ -32,10 +29,10 @@ Symmetry symmetry_of(const StaticProblem& problem) {
   return exact_gap && unsymmetric ? Symmetry::general : Symmetry::symmetric;
 }
 
-std::shared_ptr<SolidParts> parts_of(const StaticProblem& problem, const Engine& engine, bool strained) {
+std::shared_ptr<SolidParts> parts_of(const StaticProblem& problem, const Engine& engine) {
   const std::shared_ptr<PartProcesses> processes = engine.processes(problem.numbering.n_equations());
   if (!processes || processes->size() == 1 || only_checks()) return nullptr;
-  if (const std::string_view reason = needs_one_process(problem, strained); !reason.empty()) {
+  if (const std::string_view reason = needs_one_process(problem); !reason.empty()) {
     inform("EVOLUTION_46", {{"reason", part(reason)}, {"count", std::to_string(processes->size())}});
     return nullptr;
   }

@@ -13,7 +13,7 @@ namespace lacon {
 Symmetry symmetry_of(const StaticProblem& problem);
 
 /// The processes of an engine with the cells of a problem; nothing where there is one process, and where cells need what only
-/// one process has, which is told (EVOLUTION_46). @param strained NewtonOptions::strained  Throws SOLVER_6.
-std::shared_ptr<SolidParts> parts_of(const StaticProblem& problem, const Engine& engine, bool strained);
+/// one process has, which is told (EVOLUTION_46). Throws SOLVER_6.
+std::shared_ptr<SolidParts> parts_of(const StaticProblem& problem, const Engine& engine);
 
 }  // namespace lacon

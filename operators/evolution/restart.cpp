@@ -144,13 +144,9 @@ void write(const hdf5::Group& group, const StaticState& state) {
     group.write(std::string("patches/") + quantity.component, state.patches.*quantity.values);
   group.set("sets", static_cast<std::int64_t>(state.n_sets()));
   for (std::size_t s = 0; s < state.n_sets(); ++s) {
-    write_points(group, fmt::format("points/{}/stress", s), state, s, PointQuantity::stress);
-    write_points(group, fmt::format("points/{}/variable", s), state, s, PointQuantity::variable);
-    if (state.kept) continue;
-    if (!state.points[s].initial.empty()) group.write(fmt::format("points/{}/initial", s), state.points[s].initial);
-    if (state.points[s].thermal.empty()) continue;
-    group.write(fmt::format("points/{}/thermal", s), state.points[s].thermal);
-    group.write(fmt::format("points/{}/parameter", s), state.points[s].parameter);
+    for (const PointQuantityRow& row : point_quantities)
+      if (!row.is_given || holds(state, s, row.quantity))
+        write_points(group, fmt::format("points/{}/{}", s, row.name), state, s, row.quantity);
   }
 }
 
@@ -163,12 +159,10 @@ StaticState read_state(const hdf5::Group& group) {
   for (const PatchQuantity& quantity : patch_quantities)
     state.patches.*quantity.values = group.read<double>(std::string("patches/") + quantity.component);
   for (std::int64_t s = 0; s < group.integer("sets"); ++s) {
-    const auto values = [&](const char* name) { return group.read<double>(fmt::format("points/{}/{}", s, name)); };
-    const auto optional = [&](const char* name) {
-      return group.has(fmt::format("points/{}/{}", s, name)) ? values(name) : std::vector<double>();
-    };
-    state.points.push_back(
-        {values("stress"), values("variable"), optional("thermal"), optional("parameter"), optional("initial")});
+    PointValues& points = state.points.emplace_back();
+    for (const PointQuantityRow& row : point_quantities)
+      if (const std::string name = fmt::format("points/{}/{}", s, row.name); !row.is_given || group.has(name))
+        points.*row.values = group.read<double>(name);
   }
   return state;
 }

@@ -68,9 +68,7 @@ class PointRows {
     if (state.kept) fetched = state.kept->values(quantity, cells);
     for_each_row(field, first, rows.size(), [&](std::size_t row, std::size_t set, std::size_t cell, std::size_t point) {
       const std::vector<std::size_t>& own = components_[set];
-      const std::vector<double>& here = !fetched.empty()                    ? fetched[set]
-                                        : quantity == PointQuantity::stress ? state.points[set].stress
-                                                                            : state.points[set].variable;
+      const std::vector<double>& here = fetched.empty() ? state.points[set].*member_of(quantity) : fetched[set];
       const std::size_t before = fetched.empty() ? cell : cell - cells[set].first;
       const std::size_t at = before * width_of(sets_[set], quantity) + point * own.size();
       for (std::size_t k = 0; k < own.size(); ++k) rows[row * field.n_components() + own[k]] = here[at + k];
@@ -299,11 +297,6 @@ void add_initial_strains(const StaticProblem& problem, const Base& base, const R
 
 std::filesystem::path path_of_masters(std::filesystem::path field) { return field.replace_extension(".masters.h5"); }
 
-bool was_strained(const Base& base, const Result& result, std::int64_t order) {
-  return std::ranges::any_of(result.stage(order).loads,
-                             [&](const ResultLoad& load) { return !base.load(load.load).strain.empty(); });
-}
-
 StaticState archived_state(const StaticProblem& problem, const Base& base, const Result& result, std::int64_t order) {
   if (result.mesh != problem.model.mesh)
     fail("EVOLUTION_1", {{"first", "ETAT_INIT/EVOL_NOLI"}, {"second", "MODELE"}, {"what", part("meshes")}});
@@ -360,11 +353,7 @@ StaticState given_state(const StaticProblem& problem, const Base& base, const Ke
   if (given.has("DEPL")) state.displacement = nodal_values(problem.mesh, read("DEPL", "NOEU_DEPL_R"), problem.components);
   for (std::size_t dof = 0; dof < problem.n_dofs(); ++dof)
     if (!problem.exists[dof]) state.displacement[dof] = 0;
-  for (const ElementSet& set : problem.solids)
-    state.points.push_back({.stress = std::vector<double>(set.cells.size() * set.n_stress(), 0.0),
-                            .variable = std::vector<double>(set.cells.size() * set.n_variables(), 0.0),
-                            .thermal = {},
-                            .parameter = {}});
+  for (const ElementSet& set : problem.solids) state.points.push_back(natural_points(set));
   const auto fill = [&](const char* keyword, const char* type, std::vector<double> PointValues::*values, auto names) {
     if (!given.has(keyword)) return;
     const Field field = read(keyword, type);

@@ -46,9 +46,6 @@ FieldRows variable_field(const StaticProblem& problem, const StaticState& state)
 /// where it lives on another mesh, RESULT_1 where a field is missing, EVOLUTION_11 where a cell has other points or components.
 StaticState archived_state(const StaticProblem& problem, const Base& base, const Result& result, std::int64_t order);
 
-/// Whether initial strains acted at an order of a result, which may live on another mesh.
-bool was_strained(const Base& base, const Result& result, std::int64_t order);
-
 /// The state of the fields DEPL, SIGM and VARI of ETAT_INIT; zero where one is not given. Throws EVOLUTION_1, EVOLUTION_11 as
 /// archived_state().
 StaticState given_state(const StaticProblem& problem, const Base& base, const Keywords& given);

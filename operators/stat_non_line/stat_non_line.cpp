@@ -52,8 +52,7 @@ int with_percent(int count, std::int64_t percent) {
   return static_cast<int>(std::min(count * (1.0 + static_cast<double>(percent) / 100), static_cast<double>(INT_MAX)));
 }
 
-/// @param strained NewtonOptions::strained
-NewtonOptions newton_options(const Keywords& keywords, const TimeSteps& steps, const StaticProblem& problem, bool strained) {
+NewtonOptions newton_options(const Keywords& keywords, const TimeSteps& steps, const StaticProblem& problem) {
   const Keywords convergence = keywords.factor("CONVERGENCE"), newton = keywords.factor("NEWTON");
   const SolidMatrix matrix = matrix_of(newton.text("MATRICE"));
   const std::string prediction = newton.has("PREDICTION") ? newton.text("PREDICTION") : "";
@@ -70,8 +69,7 @@ NewtonOptions newton_options(const Keywords& keywords, const TimeSteps& steps, c
           .extrapolates = prediction.empty() ? std::nullopt : std::optional(prediction == "EXTRAPOLE"),
           .start = steps.values.front(),
           .line_search = line_search_of(keywords),
-          .cuts = steps.action.cut,
-          .strained = strained};
+          .cuts = steps.action.cut};
 }
 
 TimeSteps steps_of(const Keywords& increment, const Base& base, std::optional<double> origin) {
@@ -153,11 +151,7 @@ void stat_non_line(const Order& order, const Base& base) {
   const std::optional<double> begins = record ? origin_in(*record) : origin ? std::optional(origin->instant) : std::nullopt;
   const TimeSteps steps = steps_of(keywords.factor("INCREMENT"), base, begins);
   tell_missing_instants(keywords, base, steps.values);
-  // a state that strains brought about is a stress less in one process, whether they act on or not
-  const bool strained =
-      record ? record->has("solver/state/points/0/initial") : origin && was_strained(base, origin->result, origin->order);
-  QuasiStatic solver(problem, newton_options(keywords, steps, problem, strained),
-                     engine_of(keywords.factor("SOLVEUR"), base, problem));
+  QuasiStatic solver(problem, newton_options(keywords, steps, problem), engine_of(keywords.factor("SOLVEUR"), base, problem));
   const Present present = solver.present(problem);
   Observations observations(keywords, base, problem.mesh, observed_fields_of(present));
   EnergyBalance energies(keywords.has("ENERGIE"), present);

@@ -21,7 +21,7 @@ sys.path[:0] = [str(pathlib.Path(__file__).with_name("faults"))]
 
 from test_killed import session_of  # noqa: E402, I001
 
-from meshes import write_med
+from meshes import block, union, write_med
 from results import Result
 
 COMM = pathlib.Path(__file__).with_name("parts.comm")
@@ -112,6 +112,23 @@ class PartsTest(StudyTest):
                 return int(index["order"][-1])
         return -1
 
+    def assert_strains_without_stress(self):
+        """Temperatures that change strains and moduli, in one go and from a result on; a state to start from that initial strains brought about, which act no
+        longer: all as one process has it."""
+        def last(found):
+            return found[0]["SIEF_ELGA", max(order for _, order in found[0])]["SIZZ"]
+
+        cold = last(self.solve(METHOD="MUMPS")[0])
+        for case in ({"HEAT": "1"}, {"HEAT": "1", "GO_ON": "1"}, {"STRAINED": "1"}):
+            with self.subTest(**case):
+                one, _, _ = self.solve(METHOD="MUMPS", **case)
+                self.assertGreater(np.nanmax(np.abs(last(one) - cold)), 1e-4 * np.nanmax(np.abs(cold)))
+                found, counts, said = self.solve("--mpi", 2, **case)
+                self.assertNotIn("EVOLUTION_46", said)
+                self.assertEqual(counts["processes with cells"], 2)
+                self.assert_same(one, found)
+                np.testing.assert_array_equal(one[1], found[1])
+
     def assert_killed_process_ends_all(self):
         with self.started("killed", 1, INSTANTS="4") as (run, processes):
             os.kill(processes[self.program][-1], signal.SIGKILL)
@@ -119,13 +136,14 @@ class PartsTest(StudyTest):
         self.assertEqual(run.said.count("<SOLVER_8>"), 1, run.said[-3000:])
         self.assertGreaterEqual(self.archived("killed"), 1)
 
-    def go_on_with_another(self):
+    def go_on_with_another(self, **case):
         """@return a result of four instants, and the same where the operator was killed behind the second one"""
-        expected, _, _ = self.solve(*self.two, INSTANTS="4")
-        with self.started("other", 2, INSTANTS="4", LACON_RESTART_ALWAYS="1") as (_, processes):
+        case |= {"INSTANTS": "4"}
+        expected, _, _ = self.solve(*self.two, **case)
+        with self.started("other", 2, LACON_RESTART_ALWAYS="1", **case) as (_, processes):
             os.kill(processes["stat_non_line"][0], signal.SIGKILL)
         options = [option for option in self.options("other") if option != "--fresh"]
-        run = self.run_tool(*options, *self.two, **self.environment, INSTANTS="4")
+        run = self.run_tool(*options, *self.two, **self.environment, **case)
         self.assertEqual(run.returncode, 0, run.stdout[-3000:] + run.stderr[-3000:])
         self.assertIn("EVOLUTION_32", run.stdout + run.stderr)
         return expected, self.read("other", "RESULT")
@@ -206,21 +224,17 @@ class Parts(PartsTest):
         for component in moved[top].T:
             np.testing.assert_allclose(plane @ np.linalg.lstsq(plane, component, rcond=None)[0], component, atol=1e-12)
 
-    def test_what_is_left_to_one_process(self):
-        """Temperatures; initial strains, and a state to start from that they brought about and under which they act no longer: told for each."""
-        for told, case in ((1, {"HEAT": "1", "INSTANTS": "1"}), (2, {"STRAINED": "1", "INSTANTS": "2"})):
-            with self.subTest(**case):
-                one, _, _ = self.solve(METHOD="MUMPS", **case)
-                found, counts, said = self.solve("--mpi", 2, **case)
-                self.assertEqual(said.count("<EVOLUTION_46>"), told)
-                self.assertNotIn("processes with cells", counts)
-                self.assert_same(one, found)
+    def test_strains_without_stress(self):
+        self.assert_strains_without_stress()
 
     def test_a_killed_process_ends_all(self):
         self.assert_killed_process_ends_all()
 
     def test_another_process_goes_on_with_the_same_bits(self):
         self.assert_same_bits(*self.go_on_with_another())
+
+    def test_another_process_goes_on_under_temperatures(self):
+        self.assert_same_bits(*self.go_on_with_another(HEAT="1"))
 
 
 class PartsOfFactors(PartsTest):
@@ -246,10 +260,31 @@ class PartsOfFactors(PartsTest):
         self.assert_same_bits(found, again)
 
     def test_a_linear_study(self):
-        self.solve(ELASTIC="1", INSTANTS="1")
-        one = self.read("run", "LINEAR", FIELDS[:2])
-        self.solve("--mpi", 2, ELASTIC="1", INSTANTS="1")
-        self.assert_same(one, self.read("run", "LINEAR", FIELDS[:2]))
+        for case in ({}, {"HEAT": "1"}):
+            with self.subTest(**case):
+                self.solve(ELASTIC="1", INSTANTS="1", **case)
+                one = self.read("run", "LINEAR", FIELDS[:2])
+                _, _, said = self.solve("--mpi", 2, ELASTIC="1", INSTANTS="1", **case)
+                self.assertNotIn("EVOLUTION_46", said)
+                self.assert_same(one, self.read("run", "LINEAR", FIELDS[:2]))
+
+    def test_strains_without_stress(self):
+        self.assert_strains_without_stress()
+
+    def test_what_is_left_to_one_process(self):
+        """A matrix that is not symmetric."""
+        lines = np.linspace
+        lower = block("QUAD4", lines(0, 2, 13), lines(-1, 0, 7), name="LOWER", sides={"bottom": "BASE", "top": "GROUND"})
+        upper = block("QUAD4", lines(0.5, 1.5, 6), lines(0, 1, 6), name="UPPER", sides={"bottom": "SOLE", "top": "TOP"})
+        write_med(self.folder / "blocks.med", union([lower, upper]))
+        found = []
+        for told, options in ((0, ()), (1, ("--mpi", 2))):
+            run = self.run_tool(COMM.with_name("unsymmetric.comm"), "--fresh", *self.of_base("run"), *options, **self.environment)
+            self.assertEqual(run.returncode, 0, run.stdout[-3000:] + run.stderr[-3000:])
+            self.assertEqual((run.stdout + run.stderr).count("<EVOLUTION_46>"), told)
+            found.append(self.read("run", "RESULT"))
+        self.assertGreater(np.nanmax(found[0][0]["VARI_ELGA", 2]["V1"]), 1e-3)  # it flows
+        self.assert_same(*found)
 
     def test_a_killed_process_ends_all(self):
         self.assert_killed_process_ends_all()

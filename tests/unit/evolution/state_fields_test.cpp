@@ -109,9 +109,7 @@ TEST_F(FieldsOfParts, AreThoseOfOneProcessAndComeAFewCellsAtATime) {
   const auto parts = std::make_shared<SolidParts>(processes, problem.mesh, problem.solids, problem.numbering,
                                                   problem.components, problem.plugins);
   StaticState there;
-  there.kept = parts->put([&](std::size_t set, PointQuantity quantity) -> std::span<const double> {
-    return quantity == PointQuantity::stress ? here.points[set].stress : here.points[set].variable;
-  });
+  there.kept = parts->put(here.points);
   for (FieldRows (*const field)(const StaticProblem&, const StaticState&) : {stress_field, variable_field}) {
     const Field found = written(field(problem, there)), expected = field(problem, here).whole();
     ASSERT_TRUE(found.name != "SIEF_ELGA" || found.values.size() * sizeof(double) > 3 * part / 2);
