@@ -19,6 +19,9 @@ constexpr double no_better = 0.97;  // or does not fall
 constexpr double near_round_off = 1e-9;
 constexpr int enough_to_leave = 60;  // iterations: from an equilibrium that is unstable to the next one
 constexpr int settled = 4;           // iterations without a change of status after which a ratio is that of the residual alone
+constexpr double quadratic = 1.5;    // order from which on the end is near, whatever was before
+constexpr int settled_quickly = 3;   // likewise, for an order
+constexpr int few = 4;               // iterations to the end from there
 
 }  // namespace
 
@@ -82,6 +85,8 @@ std::string Newton::remedy(const IterationReport& line, double excess) const {
   const double ratio = course_.ratio().value_or(1);
   const bool diverges = !course_.finite() || ratio > worse || equilibrium_.cell_inside_out();
   // more iterations, where a few times as many come to the end
+  if (settled_ >= settled_quickly && course_.order().value_or(0) >= quadratic)
+    return part("remedy_more_iterations", {{"count", std::to_string(options_.iterations + few)}});
   if (settled_ >= settled && ratio < no_better && !diverges && !course_.period() && !course_.smaller_before()) {
     const double more = excess > 1 ? std::ceil(std::log(excess) / -std::log(ratio)) : settled;
     if (more <= 2.0 * options_.iterations)
