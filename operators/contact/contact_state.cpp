@@ -131,13 +131,20 @@ void ContactState::update_geometry(std::span<const double> displacement) {
 
 Patchwise ContactState::initial() const {
   Patchwise patches(n_patches());
+  // what is far from its master does not close at once, unless a whole zone is
+  const auto is_near = [&](std::size_t p) { return geometry_.gap(p) <= tolerances_.starting_gap * size_[p]; };
+  std::vector<bool> comes_near(contact_.zones.size(), false);
+  for (std::size_t p = 0; p < n_patches(); ++p)
+    if (geometry_.zone_of(p) >= 0 && geometry_.coverage(p) >= tolerances_.taking_coverage && is_near(p))
+      comes_near[static_cast<std::size_t>(geometry_.zone_of(p))] = true;
   for (std::size_t p = 0; p < n_patches(); ++p) {
     if (geometry_.zone_of(p) < 0 || geometry_.coverage(p) <= tolerances_.unpaired) continue;
     const std::int32_t zone = geometry_.zone_of(p);
     const std::string& asked = contact_.zones[zone].initial_status;
     const bool touches = geometry_.gap(p) <= tolerances_.initial_gap * smallest_edge_[zone] &&
                          geometry_.coverage(p) >= tolerances_.least_coverage;
-    const bool active = !held_open_[p] && (asked == "OUI" || (asked == "INTERPENETRE" && touches));
+    const bool starts = asked == "OUI" && (is_near(p) || !comes_near[static_cast<std::size_t>(zone)]);
+    const bool active = !held_open_[p] && (starts || (asked == "INTERPENETRE" && touches));
     patches.status[p] = active ? Status::active : Status::open;
   }
   return patches;

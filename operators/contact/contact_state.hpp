@@ -28,6 +28,7 @@ struct ContactTolerances {
   double initial_gap = 1e-6;        ///< CONTACT_INIT='INTERPENETRE': largest gap, over the smallest edge
   double lambda_round_off = 1e-10;  ///< of the largest |lambda|: below it a sign means nothing
   double gap_round_off = 1e-14;     ///< of the size of the mesh
+  double starting_gap = 0.1;        ///< CONTACT_INIT='OUI': of h, largest gap that closes at once, where a patch has no more
   double holding_gap = 0.5;         ///< of h: average gap up to which a patch may hold a body that is loose otherwise
   double as_near = 1e-3;            ///< of h: by how much gaps of patches that hold it together may differ
   double facet_overlap = 1e-3;      ///< of h: average overlap that is worth an alarm where facets make it

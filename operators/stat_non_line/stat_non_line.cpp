@@ -16,6 +16,7 @@
 #include "lacon/operators/evolution/interruption.hpp"
 #include "lacon/operators/evolution/journal.hpp"
 #include "lacon/operators/evolution/linear_solver.hpp"
+#include "lacon/operators/evolution/motion_notices.hpp"
 #include "lacon/operators/evolution/newton.hpp"
 #include "lacon/operators/evolution/progress.hpp"
 #include "lacon/operators/evolution/reference_forces.hpp"
@@ -173,10 +174,12 @@ void stat_non_line(const Order& order, const Base& base) {
                     solver.criteria().resi_refe_rela.has_value(), keywords.integer("INFO") == 2);
   StepEvents events(steps.events, base, problem.mesh, fields_of(present));
   ContactNotices notices(present);
+  MotionNotices motions(present);
   RestartRecord restart(base, begins, solver, archive,
                         {{"archive", &archive},
                          {"energies", &energies},
                          {"events", &events},
+                         {"motions", &motions},
                          {"notices", &notices},
                          {"observations", &observations}});
   if (only_checks()) return;
@@ -188,8 +191,8 @@ void stat_non_line(const Order& order, const Base& base) {
   Journal journal(base.result_folder(), steps, start, solver.criteria(), present);
   Progress progress(steps.values);
   // what is told as converged is in the base
-  const std::array<EvolutionObserver*, 11> observers{&observations, &energies, &notices, &archive,  &restart,     &table,
-                                                     &failed_step,  &journal,  &events,  &progress, &interruption};
+  const std::array<EvolutionObserver*, 12> observers{&observations, &energies,    &notices, &motions, &archive,  &restart,
+                                                     &table,        &failed_step, &journal, &events,  &progress, &interruption};
   try {
     evolve(steps, solver, observers, past);
   } catch (const Error& error) {

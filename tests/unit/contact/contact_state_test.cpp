@@ -57,6 +57,21 @@ struct Touching : testing::Test {
     contact.slaves.push_back({1, 0, 0, "LACS32D"});
   }
 
+  /// Beside the first, half as wide: the cells are SEG3 8 9 12 (x from 0 to 1) and 9 17 18 (x from 1 to 1.5).
+  void add_second_patch() {
+    for (const double x : {1.0, 1.5, 1.25}) mesh.coordinates.insert(mesh.coordinates.end(), {x, 0.0, 0.0});
+    free.resize(38, 1);
+    displacement.resize(38, 0.0);
+    mesh.add_cell(CellType::SEG3, std::vector<std::int32_t>{9, 17, 18});
+    mesh.add_cell(CellType::QUAD8, std::vector<std::int32_t>{9, 17, 10, 11, 18, 13, 14, 15});
+    mesh.patches->kind.push_back(14);
+    mesh.patches->cells.push_back(std::vector<std::int32_t>{4});
+    mesh.patches->carriers.push_back(std::vector<std::int32_t>{18});
+    model.element = {0, 0, 1, 1, 0, 1};
+    contact.zones[0].slave = {1, 4};
+    contact.zones[0].patches = {0, 1};
+    contact.slaves.push_back({4, 1, 0, "LACS32D"});
+  }
   ContactState state() {
     const auto of_body = [this](std::int32_t cell) { return cell == 2 ? master_modulus : modulus; };
     return {mesh, model, contact, registry, {.modulus = of_body, .free = free}};
@@ -93,6 +108,20 @@ TEST_F(Touching, TheInitialStatusIsWhatTheZoneAsksFor) {
     EXPECT_EQ(now.initial().status[0], expected) << asked << ' ' << height;
     EXPECT_EQ(now.initial().lambda[0], 0);
   }
+}
+
+// CONTACT_INIT='OUI': a gap that is far from closing stays open, unless all of the zone are as far.
+TEST_F(Touching, OfPatchesThatAreToCloseThoseThatAreFarDoNotWhereOthersAreNear) {
+  add_second_patch();
+  contact.zones[0].initial_status = "OUI";
+  ContactState now = state();
+  lift(0.02);
+  displacement[2 * 17 + 1] = 0.5, displacement[2 * 18 + 1] = 0.25;
+  now.update_geometry(displacement);
+  EXPECT_EQ(now.initial().status, (std::vector<Status>{Status::active, Status::open}));
+  for (std::size_t node = 8; node < 19; ++node) displacement[2 * node + 1] += node == 16 ? 0 : 1;
+  now.update_geometry(displacement);
+  EXPECT_EQ(now.initial().status, (std::vector<Status>{Status::active, Status::active}));
 }
 
 TEST_F(Touching, APatchIsActiveWherePressureOrOverlapSaysSo) {
@@ -445,19 +474,7 @@ TEST_F(Touching, ANodeOfTwoZonesHasOneUnitNormal) {
 }
 
 TEST_F(Touching, ContNoeuHoldsWhatThePatchesAroundANodeCarryAndTheForceOnIt) {
-  // a second patch beside the first, half as wide: the cells are SEG3 8 9 12 (x from 0 to 1) and 9 17 18 (x from 1 to 1.5)
-  for (const double x : {1.0, 1.5, 1.25}) mesh.coordinates.insert(mesh.coordinates.end(), {x, 0.0, 0.0});
-  free.resize(38, 1);
-  displacement.resize(38, 0.0);
-  mesh.add_cell(CellType::SEG3, std::vector<std::int32_t>{9, 17, 18});
-  mesh.add_cell(CellType::QUAD8, std::vector<std::int32_t>{9, 17, 10, 11, 18, 13, 14, 15});
-  mesh.patches->kind.push_back(14);
-  mesh.patches->cells.push_back(std::vector<std::int32_t>{4});
-  mesh.patches->carriers.push_back(std::vector<std::int32_t>{18});
-  model.element = {0, 0, 1, 1, 0, 1};
-  contact.zones[0].slave = {1, 4};
-  contact.zones[0].patches = {0, 1};
-  contact.slaves.push_back({4, 1, 0, "LACS32D"});
+  add_second_patch();
   ContactState now = state();
   now.update_geometry(displacement);
   Patchwise patches(2);

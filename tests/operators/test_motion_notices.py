@@ -1,0 +1,38 @@
+"""What stat_non_line says where DEFORMATION='PETIT' meets displacements that are not small: the two squares, turned or stretched as a whole."""
+
+import math
+import re
+import unittest
+
+import numpy as np
+from test_stat_non_line import TwoSquares, square
+
+
+class MotionNotices(TwoSquares):
+    def move(self, degrees=0.0, stretch=0.0, deformation="PETIT"):
+        """Turn both squares, and pull them along y, by all displacements, in two steps. @return alarms: (instant, what is said)"""
+        turn = math.radians(degrees)
+        gradient = np.array([[math.cos(turn) - 1, -math.sin(turn)], [math.sin(turn), math.cos(turn) - 1 + stretch]])
+        moved = np.array(square(-1) + square(0)) @ gradient.T
+        self.write_load("load_5", imposed=[(n, name, value) for n, row in enumerate(moved) for name, value in zip(("DX", "DY"), row)])
+        self.write_function("function_10", [0.0, 2.0], [0.0, 1.0])
+        self.write_list("list_of_reals_8", [0.0, 1.0, 2.0])
+        run = self.solve(CONTACT=None, loads=[{"CHARGE": {"concept": "load_5"}, "FONC_MULT": {"concept": "function_10"}}],
+                         COMPORTEMENT={"RELATION": "ELAS", "DEFORMATION": deformation, "TOUT": "OUI"})
+        self.assertEqual(run.status, 0, run.stderr)
+        return re.findall(r"<EVOLUTION_59> .* at the instant (\S+) a tenth of the cells of .*, M[45] among them, (.*): forces", run.stderr)
+
+    def test_turns_are_told_once_a_body(self):
+        self.assertEqual(self.move(degrees=8), [("2", "have turned by 8 degrees or more, which it takes for a strain of 0.97 %")] * 2)
+        self.assertEqual([instant for instant, _ in self.move(degrees=20)], ["1", "1"])
+
+    def test_strains_are_told(self):
+        self.assertEqual(self.move(stretch=0.25), [("2", "are strained by 25 % or more")] * 2)
+
+    def test_what_is_small_or_meant_to_be_large_is_not(self):
+        self.assertEqual(self.move(degrees=4, stretch=0.1), [])
+        self.assertEqual(self.move(degrees=20, deformation="GROT_GDEP"), [])
+
+
+if __name__ == "__main__":
+    unittest.main()
