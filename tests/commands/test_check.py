@@ -4,7 +4,7 @@ import sys
 import unittest
 
 sys.path.insert(0, __file__.rpartition("/")[0] or ".")
-from support import STUDY, LauncherTest  # noqa: E402
+from support import CONTACT, STUDY, LauncherTest  # noqa: E402
 
 REST = """CALC_CHAMP(reuse=R, RESULTAT=R, CONTRAINTE='SIEF_NOEU')
 IMPR_RESU(UNITE=80, RESU=_F(RESULTAT=R))
@@ -75,6 +75,11 @@ class Check(LauncherTest):
         run = self.check(STUDY + again)
         self.assertEqual(run.status, 0, run.err)
         self.assertIn("by their keywords alone: STAT_NON_LINE (line 12)", run.out)
+
+    def test_a_contact_that_nothing_was_given_is_told(self):
+        run = self.check(STUDY.replace("R = STAT", CONTACT + "R = STAT") + "FIN()\n")
+        self.assertEqual(run.status, 0, run.err)
+        self.assertEqual(run.err.count("STUDY_42"), 1, run.err)
 
     def test_the_base_of_the_study_is_left_alone(self):
         self.ok(self.run_study(STUDY + "FIN()\n"))

@@ -68,6 +68,81 @@ assert found.keys() == expected.keys() and all(abs(found[k] - expected[k]) < 1e-
         self.assertIn("N6", run.err)
         self.assertNotIn("POST_10", self.action("INST=1.0, GROUP_NO='TOP', NOM_CHAM='DEPL', NOM_CMP='DX', OPERATION='MOYENNE'", "").err)
 
+    #: Python that makes a mesh of line cells, and a field F on it, ten times the place; vertices N1 N2 N3 at x = 0, 1, 2, middles N4 N5
+    LINES = """
+DEBUT()
+import numpy
+from lacon.core import current
+from lacon.core.hdf5 import text_type
+def mesh(points, cells, groups, node_groups=()):
+    def fill(file):
+        file.attrs['dimension'], file['coordinates'] = 2, numpy.array([[*p, 0] for p in points], float)
+        part = file.create_group('cells')
+        part.attrs.create('types', ['SEG3', 'QUAD4'], dtype=text_type())
+        part['type'] = numpy.array([0 if len(c) == 3 else 1 for c in cells], numpy.int8)
+        part['offset'] = numpy.cumsum([0, *map(len, cells)])
+        part['nodes'] = numpy.concatenate(cells).astype(numpy.int32)
+        for kind, given in (('cells', groups), ('nodes', dict(node_groups))):
+            part = file.create_group(f'groups/{kind}')
+            part.create_dataset('name', data=list(given), dtype=text_type())
+            part['offset'] = numpy.cumsum([0, *map(len, given.values())])
+            part['values'] = numpy.array([i for members in given.values() for i in members], numpy.int32)
+    return current.study.base.write_concept('mesh', 'M', 'BY_HAND', {}, fill)
+def field(m, n):
+    def fill(file):
+        file.attrs.update(name='F', quantity='DEPL_R', mesh=m.id, location='NOEU')
+        file.attrs.create('components', ['DX', 'DY'], dtype=text_type())
+        file['support'], file['values'] = list(range(n)), m.getCoordinates().toNumpy()[:, :2] * 10
+    return current.study.base.write_concept('field', 'F', 'CREA_CHAMP', {}, fill)
+def table(**more):
+    return POST_RELEVE_T(ACTION=_F(**{'INTITULE': 'it', 'CHAM_GD': F, 'NOM_CMP': ('DX', 'DY'), 'OPERATION': 'EXTRACTION', **more})).EXTR_TABLE()
+M = mesh([(0, 0), (1, 0), (2, 0), (.5, 0), (1.5, 0), (0, 1), (1, 1)], [[1, 0, 3], [1, 2, 4], [0, 1, 6, 5]],
+         {'L': [0, 1], 'BACK': [1, 0], 'A': [0], 'B': [1], 'BODY': [2]}, {'NL': [0, 1, 2, 3, 4], 'ALL': list(range(7)), 'ORDER': [0, 3, 1, 4, 2]}.items())
+F = field(M, 7)
+"""
+
+    def test_nodes_of_lines_come_along_their_chain(self):
+        """They came by their numbers, middles last: the abscissa ran back and forth, and integrals over it were wrong in silence."""
+        self.ok(self.run_study(self.LINES + """
+t = table(GROUP_MA='L')  # against x, as the first cell
+assert t.NOEUD.values() == ['N3', 'N5', 'N2', 'N4', 'N1'] and t.ABSC_CURV.values() == [0, .5, 1, 1.5, 2], t
+assert t.DX.values() == [20, 15, 10, 5, 0], t
+assert table(GROUP_MA='BACK').NOEUD.values() == ['N1', 'N4', 'N2', 'N5', 'N3']
+assert table(GROUP_MA=('A', 'B')).NOEUD.values() == table(MAILLE=('M1', 'M2')).NOEUD.values() == t.NOEUD.values()
+assert table(GROUP_NO='ORDER').NOEUD.values() == ['N1', 'N4', 'N2', 'N5', 'N3']  # in the group's order
+near = lambda found, expected: max(abs(a - b) for a, b in zip(found, expected, strict=True)) < 1e-12
+assert near(table(GROUP_MA='BACK', TRAC_NOR='OUI').TRAC_NOR.values(), [0] * 5)
+# two chains, a closed one, and cells that are no lines: by their numbers
+corners = [(0, 0), (2, 0), (2, 2), (0, 2), (1, 0), (2, 1), (1, 2), (0, 1)]
+M = mesh(corners, [[0, 1, 4], [1, 2, 5], [2, 3, 6], [3, 0, 7], [0, 1, 2, 3]], {'ROUND': [0, 1, 2, 3], 'TWO': [0, 2], 'BODY': [4], 'U': [2, 1, 0]})
+F = field(M, 8)
+assert table(GROUP_MA='ROUND').NOEUD.values() == [f'N{i}' for i in range(1, 9)]
+assert table(GROUP_MA='TWO').NOEUD.values() == ['N1', 'N2', 'N3', 'N4', 'N5', 'N7']
+assert table(GROUP_MA='BODY').NOEUD.values() == ['N1', 'N2', 'N3', 'N4']
+assert table(GROUP_MA='U').NOEUD.values() == ['N1', 'N5', 'N2', 'N6', 'N3', 'N7', 'N4']
+FIN()
+"""))
+
+    def test_an_abscissa_that_turns_back_is_told(self):
+        """Of nodes of a line, in whichever group; not of a body, of nodes in an order that was asked for, nor of sums."""
+        def told(last):
+            run = self.run_study(f"{self.LINES}\n{last}\nFIN()\n")
+            self.assertEqual(run.status, 0, run.out + run.err)
+            return run.err
+        self.assertIn("2 time(s), first at N3", told("table(GROUP_NO='NL')"))
+        self.assertIn("<A> <POST_11>", told("table(GROUP_MA='A', GROUP_NO='NL')"))
+        bent = "M = mesh([(0, 0), (2, 0), (2, 2), (1, 0), (2, 1)], [[0, 1, 3], [1, 2, 4]], {}, {'NL': [0, 1, 2, 4, 3]}.items()); F = field(M, 5)"
+        self.assertIn("<A> <POST_11>", told(f"{bent}\ntable(GROUP_NO='NL')"))
+        for silent in ("table(GROUP_MA='L')", "table(GROUP_NO='ORDER')", "table(GROUP_NO='ALL')", "table(GROUP_MA='BODY')", "table(NOEUD=('N1', 'N3', 'N2'))",
+                       "table(GROUP_NO='NL', OPERATION='MOYENNE_ARITH')", "table(GROUP_NO='NL', OPERATION='EXTREMA')",
+                       "table(GROUP_NO='NL', NOM_CMP=None, RESULTANTE='DX')"):
+            self.assertNotIn("POST_1", told(silent), silent)
+
+    def test_axes_of_a_way_that_turns_back(self):
+        """It was said that VECT_Y is missing."""
+        for asked in ("TRAC_NOR='OUI'", "REPERE='LOCAL'"):
+            self.refused(self.run_study(f"{self.LINES}\ntable(GROUP_NO='NL', {asked})\nFIN()\n"), "<F> <POST_12>", "(2, 0, 0)", "NOEUD_ORDO")
+
     def test_moments_of_a_field_with_a_kink(self):
         self.ok(self.action(
             "INST=1.0, NOEUD=('N1', 'N2', 'N6', 'N5'), NOM_CHAM='DEPL', NOM_CMP='DX', OPERATION='MOYENNE'", """

@@ -105,7 +105,9 @@ def line_axes(call, k, path, points, plane):
     else:
         call.fail("POST_9", f"{path}/VECT_Y")
     sizes = numpy.linalg.norm(tangent, axis=1), numpy.linalg.norm(across, axis=1)
-    if min(map(min, sizes)) < 1e-6:
+    if sizes[0].min() < 1e-6:
+        call.fail("POST_12", path, place=", ".join(f"{x:g}" for x in points[sizes[0].argmin()]))
+    if sizes[1].min() < 1e-6:
         call.fail("POST_9", f"{path}/VECT_Y")
     tangent, across = tangent / sizes[0][:, None], across / sizes[1][:, None]
     return numpy.stack([tangent, numpy.cross(across, tangent), across], axis=1)

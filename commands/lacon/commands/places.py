@@ -105,12 +105,18 @@ def members_of(call, test, path, mesh, keyword, kind):
 
 
 def nodes(call, k, mesh, path):
-    """0-based numbers of the nodes that NOEUD, GROUP_NO, MAILLE and GROUP_MA name, in their order, each once."""
+    """0-based numbers of the nodes that NOEUD, GROUP_NO, MAILLE and GROUP_MA name, in their order, each once; of cells that form one open
+    chain of lines along it, since nodes that a cut made, and middles, have the last numbers."""
     found = {}
-    for keyword, kind in (("NOEUD", "nodes"), ("GROUP_NO", "nodes"), ("MAILLE", "cells"), ("GROUP_MA", "cells")):
+    for keyword in ("NOEUD", "GROUP_NO"):
         for name in _listed(k.get(keyword, [])):
-            members = members_of(call, {keyword: name}, path, mesh, keyword, kind)
-            found.update(dict.fromkeys(int(n) for n in (members if kind == "nodes" else sorted(set(mesh.nodes_of(members))))))
+            found.update(dict.fromkeys(map(int, members_of(call, {keyword: name}, path, mesh, keyword, "nodes"))))
+    chain = mesh.chain_of(list(dict.fromkeys(cells(call, k, mesh, path))))
+    if chain:
+        return list({**found, **dict.fromkeys(chain)})
+    for keyword in ("MAILLE", "GROUP_MA"):
+        for name in _listed(k.get(keyword, [])):
+            found.update(dict.fromkeys(map(int, sorted(set(mesh.nodes_of(members_of(call, {keyword: name}, path, mesh, keyword, "cells")))))))
     return list(found)
 
 

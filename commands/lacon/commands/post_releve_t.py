@@ -17,7 +17,7 @@ def post_releve_t(call):
             call.fail("POST_8", f"{path}/DIRECTION")
         for k, (head, field) in enumerate(_fields(call, action, path)):
             frame = _Frame(call, action, path, field)
-            if operation == "MOYENNE" and k == 0:
+            if k == 0:
                 frame.tell_of_turns()
             made = frame.resultant() if "RESULTANTE" in action else getattr(frame, operation.lower())()
             for row in made:
@@ -112,10 +112,29 @@ class _Frame:
                 yield {"CMP": ("K8", name), "MOYENNE": ("R", float(self._of_component(k).mean()))}
 
     def tell_of_turns(self):
-        """An alarm where the way from node to node goes back on itself: a mean along it is no mean along a line."""
+        """An alarm where the way from node to node goes back on itself: a mean along it is no mean along a line, and its length no abscissa."""
+        operation = self.action["OPERATION"]
+        if operation not in ("MOYENNE", "EXTRACTION") or "RESULTANTE" in self.action:
+            return
         count, first = places.turns_back(self.points)
-        if count:
-            self.call.study.inform("POST_10", f"{self.call.command}/{self.path}, {self.call.where}", count=count, place=f"N{self.nodes[first] + 1}")
+        if count and (operation == "MOYENNE" or self._on_a_line()):
+            self.call.study.inform("POST_10" if operation == "MOYENNE" else "POST_11", f"{self.call.command}/{self.path}, {self.call.where}",
+                                   count=count, place=f"N{self.nodes[first] + 1}")
+
+    def _on_a_line(self):
+        """Whether nodes of groups are those of a line, straight or of line cells: of a surface or a body nobody wants the abscissa, and nodes that
+        are named one by one have the order that was wanted."""
+        if "NOEUD" in self.action:
+            return False
+        away = self.points - self.points[0]
+        if numpy.linalg.matrix_rank(away, tol=1e-6 * abs(away).max()) < 2:
+            return True
+        mesh = self.field.mesh()
+        named = list(dict.fromkeys(places.cells(self.call, self.action, mesh, self.path)))
+        if named:
+            return mesh.are_lines(named)
+        chain = mesh.chain_of(mesh.lines_among(self.nodes))
+        return chain is not None and set(chain) == set(self.nodes)
 
     def moyenne(self):
         """Six rows: mean along the line of nodes, first moment, extremes, and the ends of the straight line with the same two moments.

@@ -44,6 +44,49 @@ class Mesh(Concept):
         """Nodes of cells, one cell after the other."""
         return self._read(contents.nodes_of, cells)
 
+    def are_lines(self, cells):
+        names, types = self._read(contents.cell_types)
+        return all(names[t].startswith("SEG") for t in set(types[cells].tolist()))
+
+    def chain_of(self, cells):
+        """Nodes of line cells that form one open chain, along it in the direction of the first cell, as MACR_LIGN_COUPE has them (chain_of_lines);
+        None where they form none."""
+        if not len(cells) or not self.are_lines(cells):
+            return None
+        offset, nodes = self._read(contents.connectivity)
+        own = [nodes[offset[c]:offset[c + 1]].tolist() for c in cells]
+        around = {}  # vertex -> cells there, by place
+        for i, line in enumerate(own):
+            for vertex in line[:2]:
+                around.setdefault(vertex, []).append(i)
+        counts = [len(lines) for lines in around.values()]
+        if counts.count(1) != 2 or max(counts) > 2:
+            return None
+        used = set()
+
+        def walk(i, start):
+            """Nodes beyond `start`, leaving it through line `i`."""
+            found = []
+            while i is not None:
+                used.add(i)
+                forward = own[i][0] == start
+                start = own[i][forward]
+                found += [*own[i][2:][::1 if forward else -1], start]
+                i = next((j for j in around[start] if j not in used), None)
+            return found
+
+        first = own[0][0]
+        ahead = walk(0, first)
+        behind = [node for i in around[first] if i not in used for node in walk(i, first)]
+        return [*behind[::-1], first, *ahead] if len(used) == len(own) else None
+
+    def lines_among(self, nodes):
+        """The line cells that have all their nodes among some."""
+        names, types = self._read(contents.cell_types)
+        offset, own = self._read(contents.connectivity)
+        lines = numpy.flatnonzero(numpy.isin(types, [t for t, name in enumerate(names) if name.startswith("SEG")]))
+        return [int(c) for c in lines if numpy.isin(own[offset[c]:offset[c + 1]], nodes).all()]
+
     def node_counts(self, cells):
         """How many nodes each of some cells has."""
         offset, _ = self._read(contents.connectivity)

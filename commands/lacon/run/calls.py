@@ -10,6 +10,7 @@ from ..core import catalog, checker, current, labels, plugins
 from ..core.concepts import CO, Concept, _F
 from ..core.messages import AsterError, InternalError, fail, message
 from ..objects.fields import Field
+from . import unused_contacts
 from .contact_methods import refuse_other_methods
 
 
@@ -59,7 +60,9 @@ class Command:
         if not self.name.startswith("TEST_"):  # its checks print a line each
             run.progress(f"{where}: {label + ' = ' if label else ''}{self.name}")
         if run.check and run.check.takes(self.name, row, keywords, where):
-            return self._unsolved(run, row, keywords, where, label, reused, named)
+            result = self._unsolved(run, row, keywords, where, label, reused, named)
+            unused_contacts.note(run, self.name, row, keywords, where, result)
+            return result
         if "operator" in row:
             result, outcome = self._order(run, row, keywords, where, label, reused, named)
             run.timings.add(self.name, where, time.perf_counter() - started, outcome)
@@ -69,6 +72,7 @@ class Command:
             if isinstance(result, Concept):
                 _enter(run, label, result, where)
             run.timings.add(self.name, where, time.perf_counter() - started)
+        unused_contacts.note(run, self.name, row, keywords, where, result)
         return result
 
     def _reuse(self, row, reuse, given, keywords, where, problems):

@@ -11,7 +11,7 @@ from ..core.concepts import Concept
 from ..core.files import write_whole
 from ..core.messages import AsterError, Message, fail, message, show
 from ..objects.kinds import kinds
-from . import execution
+from . import execution, unused_contacts
 from .timings import Timings
 
 
@@ -78,6 +78,8 @@ class Study:
                 self.base.registry.pop("begun", None)
         elif not resume and self.fresh and not self._emptied:
             fail("STUDY_10", where)
+        if not resume:
+            unused_contacts.forget(self)
         self._emptied = True
         self.base.hold(where)
         self.open, self.ended = True, ""
@@ -91,6 +93,8 @@ class Study:
 
     def finish(self, where):
         """FIN: save; remove what neither a name, nor a concept, nor a live Python object refers to."""
+        if os.path.basename(where.rpartition(":")[0]) not in (name for name, _ in self.texts[:-1]):  # otherwise POURSUITE follows in this run
+            unused_contacts.tell(self)
         self.base.registry.pop("begun", None)
         self.save()
         keep = set(self.base.registry["labels"].values())
