@@ -1,23 +1,54 @@
 #include "lacon/assembly/petsc_processes.hpp"
 
+#include <sys/resource.h>
+
+#include <algorithm>
 #include <chrono>
 #include <cstdint>
 #include <cstring>
 #include <sstream>
+#include <string>
+#include <system_error>
 #include <utility>
 #include <vector>
 
 #include "lacon/assembly/processes/host.hpp"
 #include "lacon/assembly/processes/shared_memory.hpp"
 #include "lacon/catalog/messages.hpp"
+#include "lacon/catalog/wording.hpp"
 
 namespace lacon {
+namespace {
+
+/// mpirun that has too few files open waits for ever. Throws SOLVER_10.
+void make_room_for_files(int n_processes) {
+  const auto needed = static_cast<rlim_t>(6 * n_processes + 20);
+  rlimit files{};
+  getrlimit(RLIMIT_NOFILE, &files);
+  if (files.rlim_cur >= needed) return;
+  files.rlim_cur = std::min(files.rlim_max, needed);
+  setrlimit(RLIMIT_NOFILE, &files);
+  if (files.rlim_cur < needed)
+    fail("SOLVER_10",
+         {{"reason", part("few_open_files", {{"limit", std::to_string(files.rlim_cur)}, {"needed", std::to_string(needed)}})}});
+}
+
+}  // namespace
 
 void PetscProcesses::start() {
   if (ranks_) return;
   if (keeps_) fail_as_ended();
+  try {
+    start_ranks();
+  } catch (const std::system_error& error) {  // too many open files
+    fail("SOLVER_10", {{"reason", error.what()}});
+  }
+}
+
+void PetscProcesses::start_ranks() {
   std::vector<std::string> command;
-  if (program_.n_ranks > 1 || !program_.hosts.empty())
+  if (program_.n_ranks > 1 || !program_.hosts.empty()) {
+    make_room_for_files(program_.n_ranks);
     command = {"mpirun",
                "-n",
                std::to_string(program_.n_ranks),
@@ -30,6 +61,7 @@ void PetscProcesses::start() {
                "--mca",
                "mpi_yield_when_idle",  // others may need the cores
                "1"};
+  }
   if (!program_.hosts.empty()) command.insert(command.end(), {"--host", program_.hosts});
   const SharedMemory mark(sizeof(std::int64_t));  // the first of them has to see it
   const std::int64_t number = std::chrono::steady_clock::now().time_since_epoch().count();
@@ -47,9 +79,9 @@ void PetscProcesses::start() {
     fail(started ? "SOLVER_10" : "SOLVER_6", {{"reason", program_.program + ": " + end}});
   }
   if (word != "ready") {
-    std::string host;
-    said >> host;
+    const std::string line = said.str(), host = line.substr(std::min(line.size(), word.size() + 1));
     ranks_.reset();
+    if (word != "elsewhere") fail("SOLVER_10", {{"reason", "mpirun: " + line}});
     fail("SOLVER_11", {{"host", host}, {"here", own_host()}});
   }
   said >> machines_;

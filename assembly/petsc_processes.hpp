@@ -31,6 +31,7 @@ class PetscProcesses : public PartProcesses {
 
  private:
   [[noreturn]] void fail_as_ended() const;
+  void start_ranks();
   std::string checked(std::string answer);
 
   PetscProgram program_;

@@ -3,6 +3,7 @@
 #include <exception>
 #include <sstream>
 #include <stdexcept>
+#include <system_error>
 
 #include "lacon/assembly/processes/shared_memory.hpp"
 #include "lacon/catalog/messages.hpp"
@@ -16,14 +17,20 @@ void MumpsProcesses::start() {
   if (keeps_) fail("SOLVER_8", {{"reason", end_}});
   std::string program = program_;
   if (program.empty()) program = executable().parent_path() / "lacon_mumps";
-  for (int i = 0; i < n_; ++i)
-    processes_.push_back(std::make_unique<Companion>(std::vector{program, std::to_string(i), std::to_string(n_)}));
-  const SharedMemory shared(1);  // they see it where /proc is mounted
-  for (const auto& process : processes_) {
-    if (const bool is_ready = !process->answer().empty(); is_ready && process->ask("open " + shared.path()) == "done") continue;
-    const std::string end = process->ask("forget").empty() ? process->end() : part("sees_no_memory");
+  try {
+    for (int i = 0; i < n_; ++i)
+      processes_.push_back(std::make_unique<Companion>(std::vector{program, std::to_string(i), std::to_string(n_)}));
+    const SharedMemory shared(1);  // they see it where /proc is mounted
+    for (const auto& process : processes_) {
+      if (const bool is_ready = !process->answer().empty(); is_ready && process->ask("open " + shared.path()) == "done")
+        continue;
+      const std::string end = process->ask("forget").empty() ? process->end() : part("sees_no_memory");
+      processes_.clear();
+      fail("SOLVER_8", {{"reason", program + ": " + end}});
+    }
+  } catch (const std::system_error& error) {  // too many open files
     processes_.clear();
-    fail("SOLVER_8", {{"reason", program + ": " + end}});
+    fail("SOLVER_8", {{"reason", error.what()}});
   }
 }
 

@@ -7,6 +7,7 @@
 
 #include <csignal>
 #include <cstdlib>
+#include <system_error>
 #include <thread>
 
 namespace lacon {
@@ -32,11 +33,14 @@ void end_with_launcher() {
   prctl(PR_SET_PDEATHSIG, SIGTERM);
   if (getppid() != std::atoi(launcher)) std::raise(SIGTERM);  // it has gone before
   // a launcher in another container than the one that reaps its children: the kernel says nothing of its end
-  std::thread([end = std::atoi(socket)] {
-    pollfd other{.fd = end, .events = POLLRDHUP, .revents = 0};
-    while (poll(&other, 1, -1) < 0) continue;
-    kill(getpid(), SIGTERM);
-  }).detach();
+  try {
+    std::thread([end = std::atoi(socket)] {
+      pollfd other{.fd = end, .events = POLLRDHUP, .revents = 0};
+      while (poll(&other, 1, -1) < 0) continue;
+      kill(getpid(), SIGTERM);
+    }).detach();
+  } catch (const std::system_error&) {  // no more threads are allowed: what the kernel says is enough almost everywhere
+  }
 }
 
 void wait_with_ending() {

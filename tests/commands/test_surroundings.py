@@ -75,6 +75,13 @@ class Surroundings(LauncherTest):
         for arguments in (("study.comm", "--mpi", "100000"), ("s.export",)):
             self.refused(self.launch(*arguments), "STUDY_40", "1024")
 
+    def test_numbers_of_an_export_file_are_numbers(self):
+        """They were taken for 1 where they were none."""
+        self.write("study.comm", STUDY + "FIN()\n")
+        for line in ("P mpi_nbcpu abc", "P ncpus -2", "P mpi_nbcpu 2.0", "P ncpus", "P ncpus 2 3"):
+            self.write("s.export", f"F comm study.comm D 1\n{line}\n")
+            self.refused(self.launch("s.export"), "STUDY_43", "s.export:2", line.split()[1])
+
     def test_an_end_asked_for_before_the_study_begins(self):
         """Ctrl-C while Python still reads Lacon's modules, or behind the end of the run."""
         self.write("study.comm", "DEBUT()\nFIN()\n")

@@ -14,6 +14,9 @@ from ..core.messages import fail
 #: type, name, use and unit of a file; the name is all that lies between
 FILE = re.compile(r"[FR]\s+(\S+)\s+(\S.*?)\s+([DRC]+)\s+(\d+)")
 
+#: parameters that are numbers of threads and of processes
+COUNTS = ("ncpus", "mpi_nbcpu")
+
 
 class Export:
     def __init__(self):
@@ -24,6 +27,10 @@ class Export:
         self.named = []  #: files that the command file reads under their own name
         self.base = None
         self.parameters = {}
+
+    def count(self, name):
+        """A parameter of COUNTS, 0 as 1; nothing where it is not given"""
+        return max(1, int(self.parameters[name])) if name in self.parameters else None
 
     def enter_file(self, kind, name, use, unit):
         """Of an F or R line: its type, path, use (D, R, DR; C: compressed) and unit."""
@@ -40,7 +47,8 @@ class Export:
 
 
 def read_export(path):
-    """@throws AsterError STUDY_13 where a line is not of the format, STUDY_14 where there is no such file, STUDY_15 where it names no command file"""
+    """@throws AsterError STUDY_13 where a line is not of the format, STUDY_14 where there is no such file, STUDY_15 where it names no command file,
+    STUDY_43 where a parameter is no number"""
     path = pathlib.Path(path)
     export = Export()
     try:
@@ -53,6 +61,8 @@ def read_export(path):
             continue
         if words[0] == "P" and len(words) >= 2:
             export.parameters[words[1]] = " ".join(words[2:])
+            if words[1] in COUNTS and not (len(words) == 3 and words[2].isdecimal()):
+                fail("STUDY_43", f"{path}:{number}", name=words[1], value=" ".join(words[2:]))
             continue
         match = FILE.fullmatch(line.strip())
         if not match:

@@ -76,11 +76,9 @@ def run_command_line(options, units):
     """`lacon study.comm` with its options. @return (exit status, words of the diagnosis)"""
     export = command_files(options.files, units)
     threads = options.threads
-    if threads is None and export.parameters.get("ncpus", "").isdigit():
-        threads = max(1, int(export.parameters["ncpus"]))
-    ranks = options.mpi
-    if ranks is None and export.parameters.get("mpi_nbcpu", "").isdigit():
-        ranks = max(1, int(export.parameters["mpi_nbcpu"]))
+    if threads is None:
+        threads = export.count("ncpus")
+    ranks = options.mpi if options.mpi is not None else export.count("mpi_nbcpu")
     if (ranks or 0) > _most_processes and not options.hosts:
         messages.fail("STUDY_40", count=ranks, most=_most_processes)
     base = options.base or base_of(export)

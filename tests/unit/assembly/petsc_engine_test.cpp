@@ -1,6 +1,7 @@
 #include "lacon/assembly/petsc_engine.hpp"
 
 #include <gtest/gtest.h>
+#include <sys/resource.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -303,6 +304,24 @@ TEST(PetscEngine, SaysThatPetscIsNotThere) {
   const std::string said = error_of([&] { ends.analyse(system.matrix); });
   EXPECT_NE(said.find("SOLVER_10"), std::string::npos) << said;  // it is there
   EXPECT_NE(said.find("exit status 1"), std::string::npos) << said;
+}
+
+// mpirun would wait for ever.
+TEST(PetscEngine, SaysThatSoManyProcessesNeedMoreFiles) {
+  const TwoBodies system;
+  PetscOptions options = system.options();
+  options.program = program;
+  options.n_ranks = 3;
+  const auto start_with_few_files = [&] {
+    const rlimit few{30, 30};
+    setrlimit(RLIMIT_NOFILE, &few);
+    std::cerr << error_of([&] {
+      PetscEngine engine(options);
+      engine.analyse(system.matrix);
+    });
+    _exit(0);
+  };
+  EXPECT_EXIT(start_with_few_files(), testing::ExitedWithCode(0), "SOLVER_10.*30 files may be open.*needs about 38");
 }
 
 TEST(PetscEngine, SaysThatItsProcessesHaveEnded) {
