@@ -471,7 +471,7 @@ Solution MumpsEngine::State::solve(std::span<double> right_side) {
     second.iterations += solution.iterations;
     return second;
   }
-  if (!std::isfinite(error) || (options.residual_tolerance > 0 && solution.residual > options.residual_tolerance))
+  if (!std::isfinite(error) || (options.residual_tolerance >= 0 && solution.residual > options.residual_tolerance))
     fail("SOLVER_1", {{"error", fmt::format("{:.1e}", solution.residual)},
                       {"tolerance", fmt::format("{:.1e}", options.residual_tolerance)}});
   if (!exact)  // refined as the others, they would be so to round-off alone

@@ -307,7 +307,7 @@ TEST(PetscEngine, SaysThatPetscIsNotThere) {
 }
 
 // mpirun would wait for ever.
-TEST(PetscEngine, SaysThatSoManyProcessesNeedMoreFiles) {
+TEST_F(PetscEngineTest, SaysThatSoManyProcessesNeedMoreFiles) {
   const TwoBodies system;
   PetscOptions options = system.options();
   options.program = program;
