@@ -344,8 +344,8 @@ std::optional<FacetOverlap> ContactState::facet_overlap(std::int32_t number) con
   const ContactGeometry::Zone& zone = geometry_.zones()[number];
   std::map<std::int32_t, double> missing;  // of each cell of both skins
   const auto examine = [&](const Surface& skin, const auto& cell_of) {
-    const std::vector<double> bulge = missing_bulge(skin);
-    for (std::size_t i = 0; i < bulge.size(); ++i) missing[cell_of(i)] = bulge[i];
+    const std::vector<Bulge> bulges = missing_bulge(skin);
+    for (std::size_t i = 0; i < bulges.size(); ++i) missing[cell_of(i)] = std::abs(bulges[i].missing);
   };
   examine(zone.slave, [&](std::size_t i) { return contact_.slaves[zone.slaves[i]].cell; });
   examine(zone.master, [&](std::size_t i) { return zone.masters[i]; });

@@ -6,9 +6,14 @@
 
 namespace lacon {
 
-/// Of each cell of a skin: the largest bulge that its edges (and the diagonals of a quadrangle) would have if they followed the
-/// nodal normals, less the one that they have. Between two ends with the normals m and n it is |(n - m) . (b - a)| / 8, that of
-/// an arc to third order.
-std::vector<double> missing_bulge(const Surface& skin);
+/// Of an edge of a cell, or of a diagonal of a quadrangle.
+struct Bulge {
+  double missing = 0;    ///< that it would have if it followed the nodal normals, less the one that it has; positive: outward
+  double curvature = 0;  ///< of the arc that it stands for, positive where the skin is convex
+};
+
+/// Of each cell of a skin the edge or diagonal that lacks most. Between two ends with the normals m and n a bulge is
+/// (n - m) . (b - a) / 8, that of an arc to third order. In the plane the cells of a patch have the edge that they cut.
+std::vector<Bulge> missing_bulge(const Surface& skin);
 
 }  // namespace lacon

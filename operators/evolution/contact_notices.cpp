@@ -3,11 +3,18 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "lacon/catalog/messages.hpp"
+#include "lacon/catalog/wording.hpp"
 #include "lacon/structures/hdf5.hpp"
 
 namespace lacon {
+namespace {
+
+constexpr double gap_that_counts = 0.2;  // of what skins give way by: pressures of a fit are wrong by as much
+
+}  // namespace
 
 std::string ContactNotices::first_cell(std::size_t patch) const {
   return cell_name(present_.problem.mesh.patches->cells[patch].front());
@@ -118,7 +125,13 @@ void ContactNotices::accept(const SolvedInstant& solved) {
   for (std::int32_t zone = 0; zone < static_cast<std::int32_t>(contact.geometry().zones().size()); ++zone) {
     if (contact.presses(zone, patches)) pressed_.insert(zone);
     double& strain = strain_[zone];
-    strain = std::max(strain, contact.largest_strain(zone, patches));
+    if (const double now = contact.largest_strain(zone, patches); now >= strain) {
+      strain = now;
+      const auto facets = facet_gaps_->of(zone, patches, present_.state.displacement);
+      faceted_.erase(zone);
+      if (facets && std::abs(facets->gap) > gap_that_counts * facets->give)
+        faceted_.emplace(zone, Faceted{solved.instant, *facets});
+    }
     const auto note = [&](const std::optional<PiercedPatch>& now, PiercedZones& zones) {
       if (const auto before = zones.find(zone); now && (before == zones.end() || now->depth > before->second.worst.depth))
         zones[zone] = {solved.instant, *now};
@@ -162,6 +175,17 @@ void ContactNotices::end(bool /*completed*/) {
                             {"instant", fmt::format("{:.9g}", alternating.instant)},
                             {"percent", fmt::format("{:.3g}", 100 * alternating.most.share)}});
   }
+  for (const auto& [zone, faceted] : faceted_) {
+    const ContactZone& names = present_.problem.contact->zones[zone];
+    const bool apart = faceted.facets.gap > 0;
+    inform("EVOLUTION_60", {{"slave", names.slave_group},
+                            {"master", names.master_group},
+                            {"what", part(apart ? "facets_keep_apart" : "facets_overlap")},
+                            {"gap", fmt::format("{:.3g}", std::abs(faceted.facets.gap))},
+                            {"instant", fmt::format("{:.9g}", faceted.instant)},
+                            {"give", fmt::format("{:.3g}", faceted.facets.give)},
+                            {"wrong", part(apart ? "pressure_too_low" : "pressure_too_high")}});
+  }
 }
 
 void ContactNotices::save(const hdf5::Group& group, const PiercedZones& pierced_zones) {
@@ -202,6 +226,17 @@ void ContactNotices::save(const hdf5::Group& group) const {
     alternating.push_back(zone), patches.push_back(static_cast<std::int64_t>(most.most.patch));
     instants.push_back(most.instant), shares.push_back(most.most.share);
   }
+  std::vector<std::int32_t> of_facets;
+  std::vector<double> when, facet_gaps, gives;
+  for (const auto& [zone, faceted] : faceted_) {
+    of_facets.push_back(zone), when.push_back(faceted.instant);
+    facet_gaps.push_back(faceted.facets.gap), gives.push_back(faceted.facets.give);
+  }
+  const hdf5::Group of_faceted = group.create("faceted");
+  of_faceted.write("zone", of_facets);
+  of_faceted.write("instant", when);
+  of_faceted.write("gap", facet_gaps);
+  of_faceted.write("give", gives);
   const hdf5::Group of_alternating = group.create("alternating");
   of_alternating.write("zone", alternating);
   of_alternating.write("patch", patches);
@@ -231,6 +266,11 @@ void ContactNotices::resume(const hdf5::Group& group) {
   const auto instants = alternating.read<double>("instant"), shares = alternating.read<double>("share");
   for (std::size_t i = 0; i < zones.size(); ++i)
     alternating_[zones[i]] = {instants.at(i), {shares.at(i), static_cast<std::size_t>(patches.at(i))}};
+  const hdf5::Group faceted = group.open("faceted");
+  const auto of_facets = faceted.read<std::int32_t>("zone");
+  const auto when = faceted.read<double>("instant"), facet_gaps = faceted.read<double>("gap"),
+             gives = faceted.read<double>("give");
+  for (std::size_t i = 0; i < of_facets.size(); ++i) faceted_[of_facets[i]] = {when.at(i), {facet_gaps.at(i), gives.at(i)}};
   const auto free = group.read<std::int32_t>("free");
   free_ = {free.begin(), free.end()};
   for (const std::int64_t zone : group.read<std::int64_t>("overlapping")) overlapping_.insert(static_cast<std::size_t>(zone));

@@ -1,8 +1,10 @@
 #pragma once
 // What a user should know of the contact of a computation while it goes.
 #include <map>
+#include <optional>
 #include <set>
 
+#include "lacon/operators/contact/facet_gap.hpp"
 #include "lacon/operators/evolution/evolution.hpp"
 #include "lacon/operators/evolution/free_bodies.hpp"
 #include "lacon/operators/evolution/state_fields.hpp"
@@ -12,7 +14,9 @@ namespace lacon {
 class ContactNotices : public EvolutionObserver {
  public:
   explicit ContactNotices(const Present& present)
-      : present_(present), bodies_(present.problem.mesh), free_(free_bodies(present.problem, bodies_)) {}
+      : present_(present), bodies_(present.problem.mesh), free_(free_bodies(present.problem, bodies_)) {
+    if (present.contact) facet_gaps_.emplace(present.problem.mesh, *present.problem.contact, *present.contact);
+  }
 
   /// EVOLUTION_6: patches that no displacement can move; EVOLUTION_17; EVOLUTION_22: patches that overlap because
   /// their skins have facets.
@@ -22,7 +26,8 @@ class ContactNotices : public EvolutionObserver {
   void accept(const SolvedInstant& solved) override;
   /// EVOLUTION_16: of each zone the patch that its master has pierced deepest, of a zone where nothing has pressed at any
   /// instant also where that is little; EVOLUTION_45: likewise where a contact is missed while, or after, others press;
-  /// EVOLUTION_43: zones whose skins never met; EVOLUTION_47: zones whose pressures alternate.
+  /// EVOLUTION_43: zones whose skins never met; EVOLUTION_47: zones whose pressures alternate; EVOLUTION_60:
+  /// zones whose straight edges leave a gap that counts.
   void end(bool completed) override;
   void save(const hdf5::Group& group) const override;
   void resume(const hdf5::Group& group) override;
@@ -35,6 +40,10 @@ class ContactNotices : public EvolutionObserver {
   struct Alternating {
     double instant;
     AlternatingPressures most;
+  };
+  struct Faceted {
+    double instant;
+    FacetGap facets;
   };
   using PiercedZones = std::map<std::int32_t, Pierced>;
   static void save(const hdf5::Group& group, const PiercedZones& zones);
@@ -62,6 +71,8 @@ class ContactNotices : public EvolutionObserver {
   std::map<std::int32_t, double> strain_;            ///< of these, the largest that a pressure has made
   PiercedZones missed_;                              ///< of these, what nothing pressed at
   std::map<std::int32_t, Alternating> alternating_;  ///< zones whose pressures do, at the instant where they do most
+  std::map<std::int32_t, Faceted> faceted_;          ///< zones with such a gap, at the instant that strains them most
+  std::optional<FacetGaps> facet_gaps_;              ///< where there is contact
   bool started_ = false;                             ///< a state has been looked at
   std::set<std::size_t> met_;                        ///< zones of which a patch has had a master
   std::set<std::size_t> too_deep_;                   ///< zones of which it has been told

@@ -402,8 +402,11 @@ TEST(Facets, LackTheSagittaOfTheArcsThatTheyStandFor) {
     arcs.add_cell(CellType::SEG3, std::vector<std::int32_t>{2 * i, (2 * i + 2) % (2 * n), 2 * i + 1});
   }
   const double sagitta = radius * (1 - std::cos(half));
-  for (const double missing : missing_bulge(chords)) EXPECT_NEAR(missing, sagitta, 0.01 * sagitta);
-  for (const double missing : missing_bulge(arcs)) EXPECT_LT(missing, 0.01 * sagitta);
+  for (const Bulge& bulge : missing_bulge(chords)) {
+    EXPECT_NEAR(bulge.missing, sagitta, 0.01 * sagitta);
+    EXPECT_NEAR(bulge.curvature, 1 / radius, 0.01 / radius);
+  }
+  for (const Bulge& bulge : missing_bulge(arcs)) EXPECT_LT(std::abs(bulge.missing), 0.01 * sagitta);
 }
 
 // The same of a sphere, of triangles and quadrangles: edges and diagonals lie below it as chords do.
@@ -443,11 +446,11 @@ TEST(Facets, LackTheSagittaOfSpheres) {
           add({a, b, c, d});
         }
       }
-    const std::vector<double> missing = missing_bulge(skin);
+    const std::vector<Bulge> missing = missing_bulge(skin);
     EXPECT_EQ(std::ranges::count(inside, true), triangles ? 8 : 4);
     for (std::size_t cell = 0; cell < missing.size(); ++cell)
       if (inside[cell]) {
-        EXPECT_NEAR(missing[cell], longest[cell] * longest[cell] / (8 * radius), 0.02 * t * t) << cell;
+        EXPECT_NEAR(missing[cell].missing, longest[cell] * longest[cell] / (8 * radius), 0.02 * t * t) << cell;
       }
   }
 }
