@@ -1,6 +1,10 @@
 #pragma once
-// Tells what laws of small displacements are asked for beyond them.
+// Tells what laws are asked for beyond the displacements that they are for.
+#include <initializer_list>
+#include <map>
 #include <set>
+#include <string>
+#include <string_view>
 #include <vector>
 
 #include "lacon/operators/evolution/bodies.hpp"
@@ -9,17 +13,29 @@
 
 namespace lacon {
 
+/// The motion of a cell, at one of its points: the turn and the largest strain that small displacements make of it, and by what
+/// its shortest length is less than it was.
+struct CellMotion {
+  std::int32_t cell;
+  double turn, strain, shortening;
+};
+
 class MotionNotices : public EvolutionObserver {
  public:
   explicit MotionNotices(const Present& present) : present_(present), bodies_(present.problem.mesh) {}
 
   /// EVOLUTION_59: a body whose cells, a tenth of them or more, have turned or are strained by too much for
-  /// DEFORMATION='PETIT', once a body.
+  /// DEFORMATION='PETIT'; EVOLUTION_61: are compressed by more than what elasticity under Green-Lagrange strains resists more
+  /// and more; once a body.
   void accept(const SolvedInstant& solved) override;
   void save(const hdf5::Group& group) const override;
   void resume(const hdf5::Group& group) override;
 
  private:
+  /// Of the cells with one of these behaviours, by bodies that nothing was told of.
+  std::map<std::int32_t, std::vector<CellMotion>> motions(std::initializer_list<std::string_view> behaviours) const;
+  void tell(std::string_view id, double instant, const CellMotion& motion, const std::string& what);
+
   Present present_;
   Bodies bodies_;
   std::set<std::int32_t> told_;  ///< bodies

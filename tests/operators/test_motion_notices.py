@@ -20,6 +20,7 @@ class MotionNotices(TwoSquares):
         run = self.solve(CONTACT=None, loads=[{"CHARGE": {"concept": "load_5"}, "FONC_MULT": {"concept": "function_10"}}],
                          COMPORTEMENT={"RELATION": "ELAS", "DEFORMATION": deformation, "TOUT": "OUI"})
         self.assertEqual(run.status, 0, run.stderr)
+        self.said = run.stderr
         return re.findall(r"<EVOLUTION_59> .* at the instant (\S+) a tenth of the cells of .*, M[45] among them, (.*): forces", run.stderr)
 
     def test_turns_are_told_once_a_body(self):
@@ -32,6 +33,12 @@ class MotionNotices(TwoSquares):
     def test_what_is_small_or_meant_to_be_large_is_not(self):
         self.assertEqual(self.move(degrees=4, stretch=0.1), [])
         self.assertEqual(self.move(degrees=20, deformation="GROT_GDEP"), [])
+
+    def test_compression_beyond_what_green_lagrange_strains_resist_is_told(self):
+        """E (l^3 - l) / 2 is largest in compression at l = 1 / sqrt(3): 42 %."""
+        for stretch, deformation, told in ((-0.45, "GROT_GDEP", 2), (-0.45, "GREEN_LAGRANGE", 2), (-0.4, "GROT_GDEP", 0), (-0.45, "GDEF_LOG", 0)):
+            self.assertEqual(self.move(stretch=stretch, deformation=deformation), [])
+            self.assertEqual(len(re.findall(r"<EVOLUTION_61> at the instant 2 a tenth of the cells of .* are compressed by 45 % or more", self.said)), told, deformation)
 
 
 if __name__ == "__main__":
