@@ -152,6 +152,13 @@ void LinearStatuses::add(const Eigen::VectorXd& z, std::vector<double>& right_si
   }
 }
 
+void LinearStatuses::change_all(Patchwise& patches) const {
+  for (const Eigen::Index i : wanted_) {
+    const Pair& pair = pairs_[static_cast<std::size_t>(i)];
+    patches.status[pair.patch] = pair.opens ? Status::open : Status::active;
+  }
+}
+
 void LinearStatuses::take(Patchwise& patches, std::vector<double>& solution) const {
   for (Eigen::Index i = 0; i < z_.size(); ++i) {
     const Pair& pair = pairs_[static_cast<std::size_t>(taken_[static_cast<std::size_t>(i)])];

@@ -32,6 +32,10 @@ class LinearStatuses {
   /// each right side, (n_equations), in turn, or not at all
   /// @return false where there are none, none are wrong or too many
   bool find(std::size_t most, const std::function<void(const SparseSides& sides, const UseColumn& use)>& columns);
+  /// Patches that have to change in x0.
+  std::size_t n_wrong() const { return wanted_.size(); }
+  /// Let all of these change at once. Their multipliers stay: rows of open patches lead them to zero.
+  void change_all(Patchwise& patches) const;
   /// Add what opens and presses to the right side of the system.
   void add_to(std::vector<double>& right_side) const { add(z_, right_side); }
   /// What columns in single precision have left of pressures and gaps that are to be zero, as another right side of the system,

@@ -206,10 +206,13 @@ int Newton::iterate(double instant, StaticState& state, const std::function<void
   const auto motion = prediction_.last_motion();
   const bool goes_on =
       motion && equilibrium_.has_memory() && equilibrium_.load_goes_on(motion->first, motion->second, instant, state);
+  const auto assemble_first = [&] {
+    assemble(state, goes_on ? previous : equilibrium_.at_rest(previous), options_.prediction);
+  };
   if (equilibrium_.has_memory() || equilibrium_.strains_freely(previous) || equilibrium_.has_new_gaps() ||
       state.displacement != previous.displacement ||
       choice_.suited(options_.prediction, equilibrium_.touches(state)) != equilibrium_.matrix())
-    assemble(state, goes_on ? previous : equilibrium_.at_rest(previous), options_.prediction);
+    assemble_first();
   IterationReport there;
   double forces_before = 0;
   if (elsewhere_) judge_forces(options_.criteria, equilibrium_.forces(state, previous), there);
@@ -229,7 +232,9 @@ int Newton::iterate(double instant, StaticState& state, const std::function<void
       solution = solve_system(state, previous, SolidMatrix::tangent, step, accuracy, line);
     }
     // a matrix that is not that of a minimum has statuses that answer to each other in any sense
-    if (!negative || *negative <= line.constraints) fit_statuses(solution, step, state, accuracy);
+    if (!negative || *negative <= line.constraints)
+      fit_statuses(solution, step, state, accuracy, line,
+                   [&] { iteration == 0 ? assemble_first() : assemble(state, previous, options_.matrix); });
     // what iterates that go to and fro jump over lies between them. In space forces leap where the traces of facets change, and
     // a search for balance stops at each leap: there it ends with the period
     goes_round_ = course_.period() || (goes_round_ && problem_.dimension == 2);

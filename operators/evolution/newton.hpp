@@ -15,6 +15,7 @@
 #include "lacon/operators/evolution/equilibrium.hpp"
 #include "lacon/operators/evolution/forcing_term.hpp"
 #include "lacon/operators/evolution/line_search.hpp"
+#include "lacon/operators/evolution/linear_statuses.hpp"
 #include "lacon/operators/evolution/lost_masters.hpp"
 #include "lacon/operators/evolution/matrix_choice.hpp"
 #include "lacon/operators/evolution/prediction.hpp"
@@ -103,8 +104,14 @@ class Newton {
   std::vector<double> solve_system(StaticState& state, const StaticState& previous, SolidMatrix asked,
                                    std::span<const double> step, const Accuracy& accuracy, IterationReport& line);
   /// Go on with statuses that satisfy all patches of the linear system (linear_statuses.hpp), as long as they change from
-  /// iteration to iteration. @param[in,out] solution of the present ones; then of those that `state` has
-  void fit_statuses(std::vector<double>& solution, std::span<const double> step, StaticState& state, const Accuracy& accuracy);
+  /// iteration to iteration. Where more are wrong than columns of the inverse are worth, all of them change and the system of
+  /// these statuses is solved, again and again, for as long as fewer are wrong each time.
+  /// @param[in,out] solution of the present ones; then of those that `state` has
+  /// @param assemble_again lets the system be that of the statuses of `state`
+  void fit_statuses(std::vector<double>& solution, std::span<const double> step, StaticState& state, const Accuracy& accuracy,
+                    IterationReport& line, const std::function<void()>& assemble_again);
+  void fit_by_columns(LinearStatuses& fitted, std::size_t affordable, std::span<const double> step, StaticState& state,
+                      const Accuracy& accuracy, std::vector<double>& solution);
   /// Solve the system with what `solution` holds, in place. @param again with the matrix that was solved with last
   SolutionReport solve_linear(std::vector<double>& solution, const Accuracy& accuracy, bool again = false);
   void note_work(const SolutionReport& report);

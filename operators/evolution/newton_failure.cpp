@@ -84,9 +84,9 @@ std::string Newton::remedy(const IterationReport& line, double excess) const {
   if (!hanging_.empty()) return part("remedy_hold_body", {{"body", hanging_}});
   const double ratio = course_.ratio().value_or(1);
   const bool diverges = !course_.finite() || ratio > worse || equilibrium_.cell_inside_out();
-  // more iterations, where a few times as many come to the end
-  if (settled_ >= settled_quickly && course_.order().value_or(0) >= quadratic)
+  if (settled_ >= settled_quickly && course_.order().value_or(0) >= quadratic && line.rela >= near_round_off)
     return part("remedy_more_iterations", {{"count", std::to_string(options_.iterations + few)}});
+  // more iterations, where a few times as many come to the end
   if (settled_ >= settled && ratio < no_better && !diverges && !course_.period() && !course_.smaller_before()) {
     const double more = excess > 1 ? std::ceil(std::log(excess) / -std::log(ratio)) : settled;
     if (more <= 2.0 * options_.iterations)

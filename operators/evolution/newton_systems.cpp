@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <set>
 
 #include "lacon/assembly/dependent_rows.hpp"
@@ -14,6 +15,11 @@
 #include "lacon/structures/displacement.hpp"
 
 namespace lacon {
+namespace {
+
+constexpr int most_rounds = 6;  // of statuses in an iteration
+
+}  // namespace
 
 void Newton::place_nodes(const StaticState& state) {
   std::vector<double> place;
@@ -74,15 +80,44 @@ std::vector<double> Newton::solve_system(StaticState& state, const StaticState& 
 }
 
 void Newton::fit_statuses(std::vector<double>& solution, std::span<const double> step, StaticState& state,
-                          const Accuracy& accuracy) {
+                          const Accuracy& accuracy, IterationReport& line, const std::function<void()>& assemble_again) {
   if (!contact() || settled_ > 0 || statuses_.keeps() || !equilibrium_.moving_covers(state, step).empty()) return;
   const System& system = equilibrium_.system();
-  LinearStatuses fitted(*contact(), system, state.patches, solution, step);
-  const bool found = fitted.find(solver_.affordable_columns(system.matrix()),
-                                 [&](const SparseSides& sides, const LinearStatuses::UseColumn& use) {
-                                   begin_phase("linear system");
-                                   note_work(solver_.columns(system.matrix(), sides, use));
-                                 });
+  std::size_t wrong = std::numeric_limits<std::size_t>::max();
+  for (int round = 0;; ++round) {
+    LinearStatuses fitted(*contact(), system, state.patches, solution, step);
+    const std::size_t affordable = solver_.affordable_columns(system.matrix());
+    if (fitted.n_wrong() <= affordable) return fit_by_columns(fitted, affordable, step, state, accuracy, solution);
+    if (round == most_rounds || fitted.n_wrong() >= wrong) return;
+    wrong = fitted.n_wrong();
+    const std::vector<Status> before = state.patches.status;
+    fitted.change_all(state.patches);
+    assemble_again();
+    std::vector<double> other = equilibrium_.right_side(step);
+    SolutionReport report;
+    const auto serves = [&] {
+      if (!loose_.of(system.matrix()).empty()) return false;
+      report = solve_linear(other, accuracy);
+      const auto& negative = report.factorisation.negative_pivots;
+      return report.factorisation.null_pivots.empty() && (!negative || *negative <= equilibrium_.n_constraints(state));
+    };
+    if (!serves()) {
+      state.patches.status = before;
+      return assemble_again();
+    }
+    line.constraints = equilibrium_.n_constraints(state);
+    line.solution = report;
+    solution = std::move(other);
+  }
+}
+
+void Newton::fit_by_columns(LinearStatuses& fitted, std::size_t affordable, std::span<const double> step, StaticState& state,
+                            const Accuracy& accuracy, std::vector<double>& solution) {
+  const System& system = equilibrium_.system();
+  const bool found = fitted.find(affordable, [&](const SparseSides& sides, const LinearStatuses::UseColumn& use) {
+    begin_phase("linear system");
+    note_work(solver_.columns(system.matrix(), sides, use));
+  });
   if (!found) return;
   std::vector<double> side = equilibrium_.right_side(step);
   fitted.add_to(side);

@@ -98,6 +98,16 @@ def slab_in_space(kind, name, x, y, z, cells, skin="top", sides=None):
                  {(2, end): f"{name}_SKIN", (2, 1 - end): f"{name}_BASE", **(sides or {})})
 
 
+def cap(kind, name, x, y, z, cells, height, sides=None):
+    """A box whose skin, its bottom, bulges by a paraboloid of that height at the middle of a side. Groups BODY_SKIN, BODY_BASE."""
+    def place(at, across, up):
+        r = (2 * (at - sum(x) / 2) / (x[1] - x[0])) ** 2 + (2 * (across - sum(y) / 2) / (y[1] - y[0])) ** 2
+        return at, across, up + height * r * (z[1] - up) / (z[1] - z[0])
+
+    return brick(kind, [lines(*ends, n) for ends, n in zip((x, y, z), cells)], place, name,
+                 {(2, 0): f"{name}_SKIN", (2, 1): f"{name}_BASE", **(sides or {})}, curved=True)
+
+
 def quarter_of_a_lens(kind, name, height, n, sides):
     """The part x, y > 0 of a body that ends below and above in spheres of radius 1 and centre (0, 0, height). Groups BODY_LOW, BODY_HIGH."""
     most = math.radians(35)

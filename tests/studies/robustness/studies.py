@@ -6,7 +6,7 @@ import json
 import math
 import pathlib
 
-from bodies import (arch, half_disc, lines, polygon, quarter_of_a_lens, round_tool, round_tool_in_space, slab, slab_in_space, tip, turned)
+from bodies import (arch, cap, half_disc, lines, polygon, quarter_of_a_lens, round_tool, round_tool_in_space, slab, slab_in_space, tip, turned)
 import peer_checks
 from meshes import block, graded, union, write_med
 from study_test import PEER_MESHES
@@ -34,6 +34,7 @@ class Study:
     instants: tuple = ()
     most: int = 60        # ITER_GLOB_MAXI
     cut: bool = False     # whether DEFI_LIST_INST cuts a step that fails
+    solver: str = "MUMPS"  # METHODE of SOLVEUR
     asked: dict = dataclasses.field(default_factory=dict)  # figure -> largest value; "finished" is always asked
     driven: str = ""      # group whose reactions are measured
     measure: object = None  # from (instants, displacements of the driven group, its reactions) to figures
@@ -45,7 +46,7 @@ class Study:
         """Write the inputs. @return (arguments of the launcher, variables of its environment)"""
         write_med(folder / "mesh.med", self.mesh)
         orders = {"model": self.model, "materials": self.materials, "moves": self.moves, "zones": self.zones, "strain": self.strain,
-                  "cut": self.cut, "loads": self.loads, "most": self.most, "instants": self.instants or [float(k) for k in range(self.steps + 1)]}
+                  "cut": self.cut, "loads": self.loads, "most": self.most, "solver": self.solver, "instants": self.instants or [float(k) for k in range(self.steps + 1)]}
         (folder / "study.json").write_text(json.dumps(orders))
         return [HERE / "study.comm", "--unit", f"20={folder / 'mesh.med'}"], {"ROBUSTNESS_STUDY": str(folder / "study.json")}
 
@@ -380,6 +381,20 @@ def flush_ends():
                     asked={"solutions": 14 if steps == 1 else 40, "lost": 0}, driven="UPPER_BASE")
 
 
+def caps():
+    """A block with a curved underside, whose faces on two sides slide, comes down on a wider one under its whole load: 400 patches or 270, of which those that are
+    wrong are more than columns of the inverse are worth."""
+    laws = {"elastic": elastic(2e3), "plastic": plastic(2e3, 10.0, 100.0)}
+    for n, (law, material), steps in itertools.product(((20, 20, 9), (18, 15, 8)), laws.items(), (1, 3)):
+        mesh = union([cap("HEXA8", "UPPER", (0, 1), (0, 1), (0.5, 1), n, 0.0125, {(0, 0): "UPPER_X", (1, 0): "UPPER_Y"}),
+                      slab_in_space("HEXA8", "LOWER", (0, 1), (0, 1), (0, 0.5), (n[0] + 2, *n[1:]), sides={(0, 0): "LOWER_X", (1, 0): "LOWER_Y"})])
+        yield Study(name=named(f"{n[0] * n[1]} patches", law, f"{steps} steps"), mesh=mesh, model="3D", materials={"UPPER": material, "LOWER": material},
+                    zones=[zone("UPPER", "LOWER", 0)], steps=steps, most=50,
+                    moves=[{"GROUP_MA": "LOWER_BASE", "DZ": 0.0}, *({"GROUP_MA": f"{body}_{axis}", f"D{axis}": 0.0} for body in ("UPPER", "LOWER") for axis in "XY")],
+                    loads=({"PRES_REP": {"GROUP_MA": "UPPER_BASE", "PRES": [[0, 0], [steps, 25.0]]}},), asked={"per step": 8 if law == "elastic" else 10, "lost": 0},
+                    driven="LOWER_BASE")
+
+
 def peer_cases():
     for name, steps, most in (("ssnv104k", 10, 50), ("ssnv104n", 10, 50), ("ssnp165c", 20, 90), ("ssnp165e", 20, 90)):
         if PEER_MESHES.is_dir():
@@ -404,6 +419,7 @@ ROWS = {
     "skins": ("blocks whose whole skins are in the zone", whole_skins),
     "force": ("bodies that contact alone holds, driven by a force", force_driven),
     "flush": ("blocks with flush ends, pressed in few steps", flush_ends),
+    "caps": ("curved blocks that come down in one step", caps),
     "peer": ("the peer's half spheres and half ring", peer_cases),
     "cycle": ("closed elastic cycle with PETIT_REAC (before) and PETIT_REAC_MILIEU (now)", closed_cycle),
 }

@@ -22,8 +22,8 @@ from unseen import study as unseen  # noqa: E402
 #: seconds each, one or more of a row
 SHORT = ["arch/x10, QUAD8 GREEN", "arch/x10, QUAD4 PETIT", "plastic/flat 1, QUAD8", "plastic/round 5, QUAD4", "contrast/1e-06 QUAD4 PETIT", "contrast/1e+06 QUAD8 GREEN", "difficult/beams QUAD8 GREEN",
          "difficult/die QUAD4 PETIT,", "difficult/stack D_PLAN QUAD8 GREEN", "difficult/stack 3D HEXA8 PETIT", "force/round AXIS QUAD4 GREEN", "aligned/D_PLAN QUAD8 7 lower",
-         "aligned/C_PLAN QUAD4 4 lower", "skins/larger QUAD8 PETIT upper", "cycle/10 QUAD4 upper", "cycle/10 QUAD8 lower", "polygon/QUAD4 wheel", "flush/2.5 QUAD8 upper", "flush/5 QUAD4 lower"]
-LONG = ["difficult/stack 3D HEXA20 GREEN", "faces/4 upper"]
+         "aligned/C_PLAN QUAD4 4 lower", "skins/larger QUAD8 PETIT upper", "cycle/10 QUAD4 upper", "cycle/10 QUAD8 lower", "polygon/QUAD4 wheel", "flush/2.5 QUAD8 upper", "flush/5 QUAD4 lower", "caps/270 plastic 3"]
+LONG = ["difficult/stack 3D HEXA20 GREEN", "faces/4 upper", "caps/400"]
 
 TABLE = """
  Instant de calcul: 1.000000000000e+00
@@ -65,6 +65,19 @@ class Short(StudyTest):
 
 class Long(Short):
     names = LONG
+
+
+class Caps(StudyTest):
+    @unittest.skipUnless(LACON.with_name("lacon_petsc").exists(), "built without PETSc")
+    def test_iterations_of_petsc_find_their_statuses_as_factors_do(self):
+        """Within one linear system: with one set of statuses for each system they took 12, 8 and 8 iterations for 7, 5 and 2."""
+        of_steps = {}
+        for _, study in chosen(["caps/270 elastic 3"]):
+            for solver in ("MUMPS", "PETSC"):
+                of_steps[solver] = run(dataclasses.replace(study, solver=solver), LACON, self.folder)["of steps"]
+        self.assertEqual(len(of_steps["PETSC"]), 3)
+        for exact, iterated in zip(of_steps["MUMPS"], of_steps["PETSC"]):
+            self.assertLessEqual(iterated, exact + 2, of_steps)
 
 
 class FlushEnds(StudyTest):
@@ -313,6 +326,25 @@ class Skins(StudyTest):
             figures = run(study, LACON, self.folder)
             self.assertEqual(figures["status"], "finished")
             self.assertEqual("EVOLUTION_22" in figures.get("alarms", []), told, (outer, radius))
+
+    def test_fits_that_facets_spoil_are_told(self):
+        """Rings pressed on one another by 0.04 at a radius of 20: the chords of 24 and of 30 edges leave a sixth of half the difference of their squared angles of
+        it, more than the fit; a quarter of it by edges of half the length, a sixteenth by a quarter, which pressures show."""
+        def ring(kind, name, radii, cells, skin, base):
+            return weld(block(kind, lines(*radii, 3), lines(0, 2 * math.pi, cells), lambda r, a: (r * math.cos(a), r * math.sin(a)), name,
+                              {skin: f"{name}_SKIN", base: f"{name}_BASE"}))
+
+        for kind, finer, told in (("QUAD4", 1, True), ("QUAD4", 2, True), ("QUAD4", 4, False), ("QUAD8", 1, False)):
+            mesh = union([ring(kind, "INNER", (10, 20.02), 24 * finer, "right", "left"), ring(kind, "OUTER", (19.98, 40), 30 * finer, "left", "right")])
+            study = Study(name="fit", mesh=mesh, materials={"INNER": elastic(2.1e5), "OUTER": elastic(2.1e5)}, zones=[zone("INNER", "OUTER", 0)],
+                          moves=[held("INNER"), held("OUTER")], steps=1)
+            figures = run(study, LACON, self.folder)
+            self.assertEqual(figures["status"], "finished")
+            self.assertEqual("EVOLUTION_60" in figures.get("alarms", []), told, (kind, finer))
+            if told:
+                gap = 20 / 12 * ((2 * math.pi / (24 * finer)) ** 2 - (2 * math.pi / (30 * finer)) ** 2)
+                said = re.search(r"keep them apart by (\S+) on average", (self.folder / "err").read_text())
+                self.assertAlmostEqual(float(said[1]), gap, delta=0.03 * gap)
 
     def test_linear_cells_of_a_material_without_change_of_volume_are_told(self):
         for kind, poisson, told in (("QUAD4", 0.4999, True), ("QUAD4", 0.49, False), ("QUAD8", 0.4999, False)):
