@@ -142,6 +142,7 @@ def main():
             figures = run(study, LACON, folder)
             if asked.pictures and figures["accepted"]:
                 from pictures import draw  # matplotlib is optional
+                asked.pictures.mkdir(parents=True, exist_ok=True)
                 draw([(study, folder / "study.base")], asked.pictures / (re.sub(r"[^\w.-]+", "_", name) + ".png"))
         finally:
             shutil.rmtree(folder, ignore_errors=True)
