@@ -6,6 +6,7 @@
 #include <chrono>
 #include <cstdint>
 #include <cstring>
+#include <filesystem>
 #include <sstream>
 #include <string>
 #include <system_error>
@@ -49,7 +50,8 @@ void PetscProcesses::start_ranks() {
   std::vector<std::string> command;
   if (program_.n_ranks > 1 || !program_.hosts.empty()) {
     make_room_for_files(program_.n_ranks);
-    command = {"mpirun",
+    command = {std::filesystem::path(program_.program).replace_filename("lacon_mpirun"),
+               "mpirun",
                "-n",
                std::to_string(program_.n_ranks),
                "--oversubscribe",
