@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <cstring>
 #include <filesystem>
+#include <iostream>
 #include <sstream>
 #include <string>
 #include <system_error>
@@ -71,22 +72,34 @@ void PetscProcesses::start_ranks() {
   command.insert(command.end(), {program_.program, program_.algorithm, program_.preconditioner,
                                  std::to_string(program_.iterations), mark.path(), std::to_string(number)});
   ranks_ = std::make_unique<Companion>(command);
-  std::istringstream said(ranks_->answer());
-  std::string word;
-  if (!(said >> word)) {
-    const std::string end = ranks_->end();
-    const bool started = ranks_->has_started();
-    ranks_.reset();
-    // PETSc's libraries or mpirun are missing, or what these need of the machine is
-    fail(started ? "SOLVER_10" : "SOLVER_6", {{"reason", program_.program + ": " + end}});
+  const std::string first = first_answer();
+  if (first.empty()) fail_without_start();
+  std::istringstream said(first);
+  std::string word, host;
+  said >> word;
+  if (word == "ready") {
+    said >> machines_;
+    return;
   }
-  if (word != "ready") {
-    const std::string line = said.str(), host = line.substr(std::min(line.size(), word.size() + 1));
-    ranks_.reset();
-    if (word != "elsewhere") fail("SOLVER_10", {{"reason", "mpirun: " + line}});
-    fail("SOLVER_11", {{"host", host}, {"here", own_host()}});
-  }
-  said >> machines_;
+  std::getline(said >> std::ws, host);
+  ranks_.reset();
+  fail("SOLVER_11", {{"host", host}, {"here", own_host()}});
+}
+
+/// What MPI says before is for the user.
+std::string PetscProcesses::first_answer() {
+  std::string line = ranks_->answer();
+  for (; !line.empty() && !line.starts_with("ready ") && !line.starts_with("elsewhere "); line = ranks_->answer())
+    std::cerr << line << '\n';
+  return line;
+}
+
+void PetscProcesses::fail_without_start() {
+  const std::string end = ranks_->end();
+  // where nobody has killed them PETSc's libraries or mpirun are missing, or what these need of the machine is
+  const char* const message = !ranks_->has_started() ? "SOLVER_6" : ranks_->was_killed() ? "SOLVER_8" : "SOLVER_10";
+  ranks_.reset();
+  fail(message, {{"reason", program_.program + ": " + end}});
 }
 
 std::string PetscProcesses::ask(const std::string& line) {

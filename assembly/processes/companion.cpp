@@ -20,6 +20,8 @@ namespace lacon {
 namespace {
 
 constexpr int not_started = 127;
+/// As shells and mpirun have it, the status of who stands for another is this and the signal that ended the other.
+constexpr int by_signal = 128;
 /// It ends by itself when nobody talks to it any more.
 constexpr std::chrono::milliseconds patience{2000}, nap{2};
 
@@ -123,6 +125,7 @@ std::string Companion::answer() {
     if (end != std::string::npos) {
       std::string line = heard_.substr(0, end);
       heard_.erase(0, end + 1);
+      if (line.empty()) continue;
       return line;
     }
     char more[4096];
@@ -136,8 +139,10 @@ std::string Companion::answer() {
 std::string Companion::end() {
   int status = 0;
   if (!ended_.empty() || waitpid(process_, &status, 0) != process_) return ended_;
-  if (WIFSIGNALED(status))
-    ended_ = part("ended_by_signal", {{"signal", strsignal(WTERMSIG(status))}});
+  const int signal = WIFSIGNALED(status) ? WTERMSIG(status) : WEXITSTATUS(status) - by_signal;
+  killed_ = signal > 0 && signal < NSIG;
+  if (killed_)
+    ended_ = part("ended_by_signal", {{"signal", strsignal(signal)}});
   else if (WEXITSTATUS(status) == not_started)
     end_without_start();
   else

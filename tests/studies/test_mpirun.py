@@ -6,7 +6,6 @@ import pathlib
 import shutil
 import signal
 import subprocess
-import time
 import unittest
 
 from study_test import LACON, StudyTest
@@ -15,7 +14,7 @@ from test_parts import PETSC, PartsTest
 PROGRAM = LACON.with_name("lacon_mpirun")
 MEMORY = pathlib.Path("/dev/shm")
 #: a program in the place of mpirun, that makes a file in each of its folders and says where
-TALKS = 'echo "$TMPDIR $LACON_MPI_MEMORY"; touch "$TMPDIR/file" "$LACON_MPI_MEMORY/file"; '
+TALKS = 'touch "$TMPDIR/file" "$LACON_MPI_MEMORY/file" && echo "$TMPDIR $LACON_MPI_MEMORY"; '
 
 
 @unittest.skipUnless(PROGRAM.exists(), "built without PETSc")
@@ -26,32 +25,30 @@ class Folders(StudyTest):
         self.tmp.mkdir()
 
     @contextlib.contextmanager
-    def started(self, script):
+    def started(self, script, before=""):
         """@return the process, and the folders that its program has been given"""
-        with subprocess.Popen([PROGRAM, "sh", "-c", TALKS + script], env={**os.environ, "TMPDIR": str(self.tmp)}, stdin=subprocess.DEVNULL,
+        with subprocess.Popen([PROGRAM, "sh", "-c", before + TALKS + script], env={**os.environ, "TMPDIR": str(self.tmp)}, stdin=subprocess.DEVNULL,
                               stdout=subprocess.PIPE, text=True) as process:
             folders = [pathlib.Path(name) for name in process.stdout.readline().split()]
             self.assertEqual([folder.parent for folder in folders], [self.tmp, MEMORY])
-            while not all((folder / "file").exists() for folder in folders):
-                time.sleep(0.01)
             yield process, folders
 
     def assert_there(self, folders, are_there):
         self.assertEqual([folder.exists() for folder in folders], [are_there] * len(folders))
 
     def test_it_ends_as_its_program(self):
-        with self.started("sleep 0.2; exit 3") as (process, folders):
+        with self.started("exit 3") as (process, folders):
             self.assertEqual(process.wait(5), 3)
             self.assert_there(folders, False)
-        with self.started("sleep 0.2; kill -SEGV $$") as (process, folders):
+        with self.started("kill -SEGV $$") as (process, folders):
             self.assertEqual(process.wait(5), -signal.SIGSEGV)
             self.assert_there(folders, False)
         self.assertEqual(subprocess.run([PROGRAM, "/nowhere/mpirun"], stdin=subprocess.DEVNULL, check=False, timeout=5).returncode, 127)
 
     def test_who_is_asked_to_end_leaves_nothing(self):
         """Also where the program does not listen."""
-        for script, status in (("exec sleep 60", -signal.SIGTERM), ("trap '' TERM; sleep 60 & wait; sleep 60", -signal.SIGKILL)):
-            with self.started(script) as (process, folders):
+        for script, before, status in (("exec sleep 60", "", -signal.SIGTERM), ("sleep 4; sleep 4", "trap '' TERM; ", -signal.SIGKILL)):
+            with self.started(script, before) as (process, folders):
                 process.terminate()
                 self.assertEqual(process.wait(5), status)
                 self.assert_there(folders, False)

@@ -216,6 +216,13 @@ class Ends(FaultTest):
             self.assertIn("COMMAND_14", text)
             shutil.rmtree(self.folder / "s.base")
 
+    def test_the_operator_is_asked_to_end(self):
+        """The status is that of any interruption, whoever got the signal."""
+        status, text = self.ended_by(signal.SIGTERM, lambda run: operator_of(run.pid))
+        self.assertEqual(status, 4, text)
+        self.assertIn("<F> <EVOLUTION_30> ended by SIGTERM", text)
+        self.assertIn("--- DIAGNOSTIC JOB : <F>_ABNORMAL_ABORT", text)
+
     def test_both_are_interrupted(self):
         """As by Ctrl-C in a terminal."""
         status, text = self.ended_by(signal.SIGINT, lambda run: os.getpgid(run.pid), os.killpg)
