@@ -24,7 +24,7 @@ namespace {
 
 /// mpirun that has too few files open waits for ever. Throws SOLVER_10.
 void make_room_for_files(int n_processes) {
-  const auto needed = static_cast<rlim_t>(6 * n_processes + 20);
+  const auto needed = static_cast<rlim_t>(6 * n_processes + 28);
   rlimit files{};
   getrlimit(RLIMIT_NOFILE, &files);
   if (files.rlim_cur >= needed) return;
@@ -42,7 +42,7 @@ void PetscProcesses::start() {
   if (keeps_) fail_as_ended();
   try {
     start_ranks();
-  } catch (const std::system_error& error) {  // too many open files
+  } catch (const std::system_error& error) {
     fail("SOLVER_10", {{"reason", error.what()}});
   }
 }

@@ -100,7 +100,10 @@ int run(char** words) {
   // for processes of this machine: mpirun would tell those of others what begins with OMPI_
   if (!memory.path().empty()) setenv("LACON_MPI_MEMORY", memory.path().c_str(), 1);
   const pid_t process = start(words, before);
-  if (process < 0) return not_started << 8;
+  if (process < 0) {  // it is there, and there can be no more processes
+    std::perror(words[0]);
+    return W_EXITCODE(1, 0);
+  }
   close(STDIN_FILENO);  // who talks with mpirun sees when it has ended
   const int status = wait_for(process, signals);
   wait_for_others(signals);

@@ -14,6 +14,7 @@
 #include <thread>
 #include <utility>
 
+#include "lacon/assembly/processes/open_files.hpp"
 #include "lacon/catalog/wording.hpp"
 
 namespace lacon {
@@ -71,12 +72,15 @@ Companion::Companion(std::vector<std::string> command) {
   for (std::string& word : command) words.push_back(word.data());
   words.push_back(nullptr);
   int to[2], from[2];
-  const auto cannot = [&] { return std::system_error(errno, std::generic_category(), command.front()); };
-  if (pipe2(from, O_CLOEXEC)) throw cannot();
+  const auto refuse = [&](int error) {
+    refuse_too_few_files(error);
+    throw std::system_error(error, std::generic_category(), command.front());
+  };
+  if (pipe2(from, O_CLOEXEC)) refuse(errno);
   if (socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, to)) {
-    const std::system_error error = cannot();
+    const int error = errno;
     for (const int end : from) close(end);
-    throw error;
+    refuse(error);
   }
   Environment environment({"OPENBLAS_NUM_THREADS=1", "OMP_NUM_THREADS=1"});
   if (geteuid() == 0) {  // in a container: who lets root run a study lets it run its processes
@@ -84,7 +88,8 @@ Companion::Companion(std::vector<std::string> command) {
     environment.set("OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1");
   }
   process_ = start(words.data(), environment.words(), to[1], from[1]);
-  if (process_ < 0) end_without_start();  // its answer is an end at once
+  if (process_ < 0)  // its answer is an end at once
+    ended_ = part("cannot_be_started") + ": " + std::generic_category().message(errno);
   close(to[1]);
   close(from[1]);
   to_ = to[0];

@@ -321,7 +321,7 @@ TEST_F(PetscEngineTest, SaysThatSoManyProcessesNeedMoreFiles) {
     });
     _exit(0);
   };
-  EXPECT_EXIT(start_with_few_files(), testing::ExitedWithCode(0), "SOLVER_10.*30 files may be open.*needs about 38");
+  EXPECT_EXIT(start_with_few_files(), testing::ExitedWithCode(0), "SOLVER_10.*30 files may be open.*needs about 46");
 }
 
 /// A program in the place of lacon_petsc.
