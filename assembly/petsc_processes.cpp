@@ -6,6 +6,8 @@
 #include <chrono>
 #include <cstdint>
 #include <cstring>
+#include <filesystem>
+#include <iostream>
 #include <sstream>
 #include <string>
 #include <system_error>
@@ -22,7 +24,7 @@ namespace {
 
 /// mpirun that has too few files open waits for ever. Throws SOLVER_10.
 void make_room_for_files(int n_processes) {
-  const auto needed = static_cast<rlim_t>(6 * n_processes + 20);
+  const auto needed = static_cast<rlim_t>(6 * n_processes + 28);
   rlimit files{};
   getrlimit(RLIMIT_NOFILE, &files);
   if (files.rlim_cur >= needed) return;
@@ -40,7 +42,7 @@ void PetscProcesses::start() {
   if (keeps_) fail_as_ended();
   try {
     start_ranks();
-  } catch (const std::system_error& error) {  // too many open files
+  } catch (const std::system_error& error) {
     fail("SOLVER_10", {{"reason", error.what()}});
   }
 }
@@ -49,7 +51,8 @@ void PetscProcesses::start_ranks() {
   std::vector<std::string> command;
   if (program_.n_ranks > 1 || !program_.hosts.empty()) {
     make_room_for_files(program_.n_ranks);
-    command = {"mpirun",
+    command = {std::filesystem::path(program_.program).replace_filename("lacon_mpirun"),
+               "mpirun",
                "-n",
                std::to_string(program_.n_ranks),
                "--oversubscribe",
@@ -69,22 +72,34 @@ void PetscProcesses::start_ranks() {
   command.insert(command.end(), {program_.program, program_.algorithm, program_.preconditioner,
                                  std::to_string(program_.iterations), mark.path(), std::to_string(number)});
   ranks_ = std::make_unique<Companion>(command);
-  std::istringstream said(ranks_->answer());
-  std::string word;
-  if (!(said >> word)) {
-    const std::string end = ranks_->end();
-    const bool started = ranks_->has_started();
-    ranks_.reset();
-    // PETSc's libraries or mpirun are missing, or what these need of the machine is
-    fail(started ? "SOLVER_10" : "SOLVER_6", {{"reason", program_.program + ": " + end}});
+  const std::string first = first_answer();
+  if (first.empty()) fail_without_start();
+  std::istringstream said(first);
+  std::string word, host;
+  said >> word;
+  if (word == "ready") {
+    said >> machines_;
+    return;
   }
-  if (word != "ready") {
-    const std::string line = said.str(), host = line.substr(std::min(line.size(), word.size() + 1));
-    ranks_.reset();
-    if (word != "elsewhere") fail("SOLVER_10", {{"reason", "mpirun: " + line}});
-    fail("SOLVER_11", {{"host", host}, {"here", own_host()}});
-  }
-  said >> machines_;
+  std::getline(said >> std::ws, host);
+  ranks_.reset();
+  fail("SOLVER_11", {{"host", host}, {"here", own_host()}});
+}
+
+/// What MPI says before is for the user.
+std::string PetscProcesses::first_answer() {
+  std::string line = ranks_->answer();
+  for (; !line.empty() && !line.starts_with("ready ") && !line.starts_with("elsewhere "); line = ranks_->answer())
+    std::cerr << line << '\n';
+  return line;
+}
+
+void PetscProcesses::fail_without_start() {
+  const std::string end = ranks_->end();
+  // where nobody has killed them PETSc's libraries or mpirun are missing, or what these need of the machine is
+  const char* const message = !ranks_->has_started() ? "SOLVER_6" : ranks_->was_killed() ? "SOLVER_8" : "SOLVER_10";
+  ranks_.reset();
+  fail(message, {{"reason", program_.program + ": " + end}});
 }
 
 std::string PetscProcesses::ask(const std::string& line) {

@@ -31,7 +31,9 @@ class PetscProcesses : public PartProcesses {
 
  private:
   [[noreturn]] void fail_as_ended() const;
+  [[noreturn]] void fail_without_start();
   void start_ranks();
+  std::string first_answer();
   std::string checked(std::string answer);
 
   PetscProgram program_;

@@ -155,7 +155,9 @@ int main(int argc, char** argv) {
     return 2;
   }
   prctl(PR_SET_PDEATHSIG, SIGKILL);
-  setenv("LACON_THREADS", "1", 1);  // processes are what works at the same time here
+  setenv("LACON_THREADS", "1", 1);                                 // processes are what works at the same time here
+  if (const char* const folder = std::getenv("LACON_MPI_MEMORY"))  // of lacon_mpirun, on its machine
+    setenv("OMPI_MCA_btl_vader_backing_directory", folder, 0);
   if (PetscInitialize(nullptr, nullptr, nullptr, nullptr)) return 4;
   lacon::catch_errors();
   give_back_at_once();

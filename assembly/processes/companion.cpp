@@ -14,12 +14,15 @@
 #include <thread>
 #include <utility>
 
+#include "lacon/assembly/processes/open_files.hpp"
 #include "lacon/catalog/wording.hpp"
 
 namespace lacon {
 namespace {
 
 constexpr int not_started = 127;
+/// As shells and mpirun have it, the status of who stands for another is this and the signal that ended the other.
+constexpr int by_signal = 128;
 /// It ends by itself when nobody talks to it any more.
 constexpr std::chrono::milliseconds patience{2000}, nap{2};
 
@@ -69,12 +72,15 @@ Companion::Companion(std::vector<std::string> command) {
   for (std::string& word : command) words.push_back(word.data());
   words.push_back(nullptr);
   int to[2], from[2];
-  const auto cannot = [&] { return std::system_error(errno, std::generic_category(), command.front()); };
-  if (pipe2(from, O_CLOEXEC)) throw cannot();
+  const auto refuse = [&](int error) {
+    refuse_too_few_files(error);
+    throw std::system_error(error, std::generic_category(), command.front());
+  };
+  if (pipe2(from, O_CLOEXEC)) refuse(errno);
   if (socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, to)) {
-    const std::system_error error = cannot();
+    const int error = errno;
     for (const int end : from) close(end);
-    throw error;
+    refuse(error);
   }
   Environment environment({"OPENBLAS_NUM_THREADS=1", "OMP_NUM_THREADS=1"});
   if (geteuid() == 0) {  // in a container: who lets root run a study lets it run its processes
@@ -82,7 +88,8 @@ Companion::Companion(std::vector<std::string> command) {
     environment.set("OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1");
   }
   process_ = start(words.data(), environment.words(), to[1], from[1]);
-  if (process_ < 0) end_without_start();  // its answer is an end at once
+  if (process_ < 0)  // its answer is an end at once
+    ended_ = part("cannot_be_started") + ": " + std::generic_category().message(errno);
   close(to[1]);
   close(from[1]);
   to_ = to[0];
@@ -123,6 +130,7 @@ std::string Companion::answer() {
     if (end != std::string::npos) {
       std::string line = heard_.substr(0, end);
       heard_.erase(0, end + 1);
+      if (line.empty()) continue;
       return line;
     }
     char more[4096];
@@ -136,8 +144,10 @@ std::string Companion::answer() {
 std::string Companion::end() {
   int status = 0;
   if (!ended_.empty() || waitpid(process_, &status, 0) != process_) return ended_;
-  if (WIFSIGNALED(status))
-    ended_ = part("ended_by_signal", {{"signal", strsignal(WTERMSIG(status))}});
+  const int signal = WIFSIGNALED(status) ? WTERMSIG(status) : WEXITSTATUS(status) - by_signal;
+  killed_ = signal > 0 && signal < NSIG;
+  if (killed_)
+    ended_ = part("ended_by_signal", {{"signal", strsignal(signal)}});
   else if (WEXITSTATUS(status) == not_started)
     end_without_start();
   else

@@ -19,7 +19,7 @@ class Companion {
 
   /// Say a line. @return whether somebody was there to hear it
   bool say(const std::string& line);
-  /// The next line of its own; the first one says that it is ready. @return it; empty where it has ended
+  /// The next line of its own that is not empty; the first one says that it is ready. @return it; empty where it has ended
   std::string answer();
   /// Say a line and wait for the answer. @return likewise
   std::string ask(const std::string& line) { return say(line) ? answer() : std::string(); }
@@ -27,6 +27,8 @@ class Companion {
   std::string end();
   /// Whether there was such a program (a shell's exit status 127 says that there was none): known after end().
   bool has_started() const { return started_; }
+  /// Whether a signal has ended it, or a process that it stands for: known likewise.
+  bool was_killed() const { return killed_; }
 
  private:
   void end_without_start();
@@ -35,7 +37,7 @@ class Companion {
   int to_ = -1, from_ = -1;
   std::string heard_;
   std::string ended_;
-  bool started_ = true;
+  bool started_ = true, killed_ = false;
 };
 
 }  // namespace lacon

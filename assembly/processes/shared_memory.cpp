@@ -10,10 +10,13 @@
 #include <system_error>
 #include <utility>
 
+#include "lacon/assembly/processes/open_files.hpp"
+
 namespace lacon {
 namespace {
 
 int checked(int status, const char* what) {
+  if (status < 0) refuse_too_few_files(errno);
   if (status < 0) throw std::system_error(errno, std::generic_category(), what);
   return status;
 }

@@ -186,8 +186,11 @@ int main(int argc, char** argv) {
     try {
       const std::optional<std::string> answer = answer_about_cells(cells, line);
       std::cout << (answer ? *answer : pieces.answer(verb, said)) << std::endl;
-    } catch (const lacon::Error&) {  // SOLVER_2: there are no files
-      std::cout << "no memory" << std::endl;
+    } catch (const lacon::Error& error) {
+      if (error.message().id == "SOLVER_2")  // there are no files
+        std::cout << "no memory" << std::endl;
+      else
+        std::cout << "failed " << error.message().text << std::endl;
     } catch (const std::bad_alloc&) {
       std::cout << "no memory" << std::endl;
     } catch (const std::exception& error) {

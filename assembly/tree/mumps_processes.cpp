@@ -28,9 +28,12 @@ void MumpsProcesses::start() {
       processes_.clear();
       fail("SOLVER_8", {{"reason", program + ": " + end}});
     }
-  } catch (const std::system_error& error) {  // too many open files
+  } catch (const std::system_error& error) {
     processes_.clear();
     fail("SOLVER_8", {{"reason", error.what()}});
+  } catch (const Error&) {
+    processes_.clear();
+    throw;
   }
 }
 

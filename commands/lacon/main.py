@@ -34,7 +34,7 @@ def parser():
     """Of the command line of a study."""
     made = CommandLine(
         prog="lacon", description="Runs code_aster command files with the operators of Lacon.",
-        epilog="lacon help: all commands; lacon help COMMAND: its keywords. Tools, each with --help: lacon inspect, convert, check, new, plot, report, watch. Exit status: 0 done, 2 user's error, 3 the solution failed, 4 internal error, 5 a check is NOOK.")
+        epilog="lacon help: all commands; lacon help COMMAND: its keywords. Tools, each with --help: lacon inspect, convert, check, new, plot, report, watch. Exit status: 0 done, 2 user's error, 3 the solution failed, 4 internal error or interrupted, 5 a check is NOOK.")
     made.add("files", nargs="+", metavar="FILE", help="command files, in order, or one export file")
     made.add("--unit", action="append", default=[], metavar="N=FILE", help="the file of unit N; may be repeated")
     made.add("--base", metavar="FOLDER", help="folder of the base; otherwise STUDY.base beside the first command file")

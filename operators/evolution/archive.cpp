@@ -65,6 +65,7 @@ Archive::Archive(const Order& order, const Base& base, const Present& present, c
   for (const std::string& name : archive.texts("CHAM_EXCLU"))
     if (!fields_.contains(name) && name != "VARI_ELGA" && name != "CONT_ELEM" && name != "CONT_NOEU")  // which others have
       inform("EVOLUTION_58", {{"keyword", archive.path("CHAM_EXCLU")}, {"name", name}, {"known", known}});
+  if (archive.has("DETR_NUME_SUIV") && !order.reuse) inform("EVOLUTION_62", {{"keyword", archive.path("DETR_NUME_SUIV")}});
   if (!resumes && (order.reuse || keywords.has("RESULTAT"))) go_on(order, origin);
   if (!resumes) number_zones();
 }

@@ -194,6 +194,7 @@ class Newton {
   bool goes_round_ = false;             ///< residuals have come back: increments are searched (line_search.hpp)
   int times_round_ = 0;                 ///< in this instant: residuals have come back
   std::string hanging_;                 ///< a body that springs alone hold in the last system
+  std::string doubt_;                   ///< why a cheaper factor is no use, where it has not been told
   int settled_ = 0;                     ///< iterations in a row in which no status has changed
   SaddlePointSolver solver_;
 };

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <limits>
 #include <set>
+#include <string>
+#include <utility>
 
 #include "lacon/assembly/dependent_rows.hpp"
 #include "lacon/catalog/messages.hpp"
@@ -152,7 +154,9 @@ void Newton::note_work(const SolutionReport& report) {
     if (factor.low_rank) add_to_count("factors of low rank", 1);
     if (factor.processes > 1) add_to_count("factors by several processes", 1);
     if (factor.out_of_core) add_to_count("factors in files", 1);
-    if (!factor.doubt.empty()) inform("SOLVER_4", {{"reason", factor.doubt}});
+    if (!factor.doubt.empty()) doubt_ = factor.doubt;
+    if (!doubt_.empty() && factor.null_pivots.empty())  // of a singular matrix that is told, and it is why
+      inform("SOLVER_4", {{"reason", std::exchange(doubt_, std::string())}});
     if (!factor.unshared.empty()) inform("SOLVER_13", {{"reason", factor.unshared}});
   }
   add_to_count("Gflop of factorisations", 1e-9 * (factor.flops + factor.wasted_flops));

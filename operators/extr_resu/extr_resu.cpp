@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "lacon/catalog/messages.hpp"
 #include "lacon/operators/fields/selection.hpp"
 
 namespace lacon {
@@ -13,6 +14,12 @@ void extr_resu(const Order& order, const Base& base) {
   if (which.has("PAS_ARCH"))  // and the last one
     std::erase_if(orders, [&](std::int64_t o) { return o % which.integer("PAS_ARCH") != 0 && o != from.orders.back(); });
   const std::vector<std::string> left_out = which.texts("CHAM_EXCLU");
+  for (const std::string& name : left_out)
+    if (!from.fields.contains(name)) {
+      std::string known;
+      for (const auto& [field, files] : from.fields) known += (known.empty() ? "" : ", ") + field;
+      inform("EXTRRESU_1", {{"keyword", which.path("CHAM_EXCLU")}, {"name", name}, {"label", from.label}, {"known", known}});
+    }
   Result to = part_of(from, orders);
   to.version = 0;
   to.label = order.result_label;

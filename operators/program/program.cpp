@@ -72,6 +72,7 @@ int guarded(const std::function<void()>& work) {
     return done;
   } catch (const Error& error) {
     print(error.message());
+    if (ending()) return internal_error;  // as a launcher that gets the signal itself
     return error.message().severity == 'S' ? solution_failed : user_error;
   } catch (const std::bad_alloc&) {
     print(message("MEMORY_1"));

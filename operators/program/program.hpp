@@ -16,6 +16,7 @@ class App;
 
 namespace lacon {
 
+/// An operator that is asked to end (a signal) has the status of an internal error, as where the signal ends it at once.
 enum ExitStatus { done = 0, user_error = 2, solution_failed = 3, internal_error = 4 };
 
 /// What an operator does with its order.

@@ -59,6 +59,19 @@ class Mistakes(unittest.TestCase):
     def test_integers_beyond_64_bits(self):
         for command, keywords in (("LIRE_MAILLAGE", {"UNITE": 10**400}), ("DEFI_CONSTANTE", {"VALE": 10**400}), ("DEFI_CONSTANTE", {"VALE": -10**400})):
             self.assertEqual(len(problems(command, **keywords)), 1, command)
+        for number, bound in ((10**30, "at most 99"), (-10**30, "at least 1")):  # it is an integer
+            self.one("KEYWORD_15", "LIRE_MAILLAGE/UNITE", bound, command="LIRE_MAILLAGE", UNITE=number)
+        for number, bound in ((2**63, "at most 9.223372037e+18"), (-2**63 - 1, "at least -9.223372037e+18")):
+            self.one("KEYWORD_15", "DEFI_LIST_ENTI/DEBUT", bound, command="DEFI_LIST_ENTI", DEBUT=number, INTERVALLE={"JUSQU_A": 3, "PAS": 1})
+
+    def test_a_margin_of_memory_that_no_machine_has(self):
+        """10**9 percent were a factor that MUMPS had no memory for."""
+        study = {"MODELE": concept("model"), "CHAM_MATER": concept("material_field"), "EXCIT": {"CHARGE": concept("load")},
+                 "INCREMENT": {"LIST_INST": concept("list_of_reals")}}
+        for value, wrong in ((10**30, True), (10**9, True), (10001, True), (10000, False)):
+            found = problems("STAT_NON_LINE", **study, SOLVEUR={"PCENT_PIVOT": value})
+            self.assertEqual([(i, p) for i, p, _ in found], [("KEYWORD_15", "STAT_NON_LINE/SOLVEUR/PCENT_PIVOT")] * wrong, found)
+            self.assertEqual("at most 10000" in str(found), wrong)
 
     def test_counts_beyond_32_bits(self):
         """Operators count in them: 2**31 iterations were -2147483648."""

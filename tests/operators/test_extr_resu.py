@@ -42,6 +42,11 @@ class ExtrResu(OperatorTest):
                         del fields["TEMP"]
                     self.assertEqual(self.keep(reuse, **choice), (kept, {name: orders for name, orders in fields.items() if orders}))
 
+    def test_a_field_that_is_not_there_is_told(self):
+        run = self.run_command("EXTR_RESU", {"RESULTAT": concept("result_2"), "ARCHIVAGE": {"CHAM_EXCLU": ["TEMPP", "TEMP"]}}, result="result_3")
+        self.assertEqual((run.status, self.ids(run)), (0, ["EXTRRESU_1"]), run.stderr)
+        self.assertIn("the result RES has no field 'TEMPP'", run.stderr)
+
     def test_an_instant_that_is_not_there_is_refused(self):
         for identifier, choice, word in (("FIELDS_2", {"INST": [0.6]}, "0.6"), ("FIELDS_1", {"NUME_ORDRE": [7]}, "7")):
             self.assert_refuses(identifier, "EXTR_RESU", {"RESULTAT": concept("result_2"), "ARCHIVAGE": choice}, word, result="result_3")

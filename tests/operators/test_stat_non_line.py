@@ -351,7 +351,8 @@ class StatNonLine(TwoSquares):
     def test_instants_and_fields_that_archivage_names_in_vain_are_told(self):
         self.write_list("list_of_reals_8", [0.0, 0.5, 1.0])
         for archived, alarms, words in (({"INST": [0.5], "PRECISION": 1e-6, "CRITERE": "RELATIF"}, [], ""), ({"INST": [0.5, 0.7, 3.0], "PRECISION": 1e-6, "CRITERE": "RELATIF"}, ["EVOLUTION_56"], "1 of these instants, the first is 0.7"),
-                                        ({"CHAM_EXCLU": ["VARI_ELGA"]}, [], ""), ({"CHAM_EXCLU": ["DEPLL"]}, ["EVOLUTION_58"], "no field 'DEPLL'")):
+                                        ({"CHAM_EXCLU": ["VARI_ELGA"]}, [], ""), ({"CHAM_EXCLU": ["DEPLL"]}, ["EVOLUTION_58"], "no field 'DEPLL'"),
+                                        ({"DETR_NUME_SUIV": "OUI"}, ["EVOLUTION_62"], "none is removed")):
             run = self.solve(ARCHIVAGE=archived)
             self.assertEqual((run.status, self.ids(run)), (0, alarms), run.stderr)
             self.assertIn(words, run.stderr)

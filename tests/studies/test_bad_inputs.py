@@ -62,6 +62,9 @@ TABLE = {
                               "INCREMENT=_F(LIST_INST=TIMES))", "SOLVER_3", ["singular"], SOLUTION),
     "relations that say what others say": ("STAT_NON_LINE(MODELE=MODEL, CHAM_MATER=MATTER, EXCIT=[_F(CHARGE=c) for c in (HELD, RIGID, EVEN)], CONTACT=CONTACT, "
                                            "INCREMENT=_F(LIST_INST=TIMES))", "SOLVER_14", ["3 of the relations", "RIGID (LIAISON_SOLIDE"], SOLUTION),
+    "the same with a cheaper factor": ("STAT_NON_LINE(MODELE=MODEL, CHAM_MATER=MATTER, EXCIT=[_F(CHARGE=c) for c in (HELD, RIGID, EVEN)], CONTACT=CONTACT, "
+                                       "INCREMENT=_F(LIST_INST=TIMES), SOLVEUR=_F(METHODE='MUMPS', MIXER_PRECISION='OUI'))", "SOLVER_14",
+                                       ["3 of the relations", "RIGID (LIAISON_SOLIDE"], SOLUTION),
     "result in an unwritable folder": ("IMPR_RESU(FORMAT='MED', UNITE=80, RESU=_F(MAILLAGE=CUT))", "COMMAND_8", ["80", "out.med"], USER),
 }
 
@@ -105,6 +108,7 @@ class BadInputs(StudyTest):
         self.assertEqual(run.diagnostic, f"--- DIAGNOSTIC JOB : {diagnosis}")
         mark = f"<{diagnosis[1]}> <{identifier}>"
         self.assertIn(mark, run.stderr)
+        self.assertNotIn("<SOLVER_4>", run.stderr)  # what a singular matrix brings about is not told before it
         message = run.stderr[run.stderr.index(mark):]
         for word in [*words, "where:", "study.comm:2", "do:"]:
             self.assertIn(word, message)

@@ -286,6 +286,15 @@ class PartsOfFactors(PartsTest):
         self.assertGreater(np.nanmax(found[0][0]["VARI_ELGA", 2]["V1"]), 1e-3)  # it flows
         self.assert_same(*found)
 
+    def test_too_few_files_may_be_open(self):
+        """Processes begin, and memory that they share takes a file for each piece."""
+        for limit in (12, 20):
+            command = ["sh", "-c", f'ulimit -n {limit}; exec "$@"', "sh", LACON, *map(str, self.options("run")), "--mpi", "4"]
+            run = subprocess.run(command, cwd=self.folder, env={**os.environ, **self.environment}, stdin=subprocess.DEVNULL, capture_output=True, text=True,
+                                 timeout=SECONDS, check=False)
+            self.assertEqual(run.returncode, 2, run.stdout[-2000:] + run.stderr[-2000:])
+            self.assertIn(f"<F> <SOLVER_17> {limit} files may be open (ulimit -n)", run.stderr)
+
     def test_a_killed_process_ends_all(self):
         self.assert_killed_process_ends_all()
 

@@ -202,7 +202,7 @@ class _Check:
     def bounds(self, path, row, value):
         tests = {"above": (lambda x, b: x > b, "greater than"), "at_least": (lambda x, b: x >= b, "at least"),
                  "below": (lambda x, b: x < b, "less than"), "at_most": (lambda x, b: x <= b, "at most")}
-        limits = {"at_most": _largest_count, **row} if row["type"] == "integer" and "at_least" in row else row
+        limits = {"at_least": -2**63, "at_most": _largest_count if "at_least" in row else 2**63 - 1, **row} if row["type"] == "integer" else row
         for key, (holds, words) in tests.items():
             if key in limits and not holds(value, limits[key]):
                 self.problem("KEYWORD_15", path, value=_show(value), bound=f"{words} {limits[key]:.10g}")
@@ -267,7 +267,7 @@ def _convert(kind, value):
         except OverflowError:  # an integer beyond every number of 64 bits
             return None
     if kind == "integer":
-        return value if isinstance(value, int) and not isinstance(value, bool) and -2**63 <= value < 2**63 else None
+        return value if isinstance(value, int) and not isinstance(value, bool) else None  # bounds() refuses what no file holds
     if isinstance(value, str) and not _is_writable(value):
         return None
     if kind == "scalar":

@@ -16,7 +16,7 @@ _package = pathlib.Path(__file__).resolve().parents[2]
 
 
 class Run:
-    """What a run of command files came to: `status` (0 done, 2 an error of the user, 3 the solution failed, 4 internal error, 5 a check is NOOK),
+    """What a run of command files came to: `status` (0 done, 2 an error of the user, 3 the solution failed, 4 internal error or interrupted, 5 a check is NOOK),
     `diagnostic`, `output` and `log` (what it has said), `checks` (of TEST_RESU, dictionaries), `base` (None where there is none)."""
 
     def __init__(self, status, output, log, report, folder):

@@ -216,6 +216,13 @@ class Ends(FaultTest):
             self.assertIn("COMMAND_14", text)
             shutil.rmtree(self.folder / "s.base")
 
+    def test_the_operator_is_asked_to_end(self):
+        """The status is that of any interruption, whoever got the signal."""
+        status, text = self.ended_by(signal.SIGTERM, lambda run: operator_of(run.pid))
+        self.assertEqual(status, 4, text)
+        self.assertIn("<F> <EVOLUTION_30> ended by SIGTERM", text)
+        self.assertIn("--- DIAGNOSTIC JOB : <F>_ABNORMAL_ABORT", text)
+
     def test_both_are_interrupted(self):
         """As by Ctrl-C in a terminal."""
         status, text = self.ended_by(signal.SIGINT, lambda run: os.getpgid(run.pid), os.killpg)
@@ -333,6 +340,19 @@ class GoesOn(FaultTest):
         text, _ = self.check(4, 11, 12, model="3D", EXCIT=loads)
         self.assertGreater(len(re.findall(r"\| +- \| .* - \|", text)), 5, "factors that were used again")
 
+    def assert_same_alarms(self, undisturbed, text, *identifiers):
+        """Each alarm is told once, before the end or behind it, with the same words."""
+        of_both = [sorted(line for line in said.splitlines() if line.startswith("<A>")) for said in (undisturbed, text)]
+        self.assertEqual(of_both[1], of_both[0])
+        self.assertEqual(len(set(of_both[0])), len(of_both[0]))
+        for identifier in identifiers:
+            self.assertEqual(text.count(f"<A> <{identifier}>"), 1, identifier)
+
+    def test_alarms_are_told_once(self):
+        """Those of the start, which a record holds and the run that goes on finds as well."""
+        said = self.check(4, 12, ARCHIVAGE={"CHAM_EXCLU": "DEPLL", "DETR_NUME_SUIV": "OUI", "INST": [0.05 * i for i in range(1, 21)] + [0.33]})
+        self.assert_same_alarms(*said, "EVOLUTION_56", "EVOLUTION_58", "EVOLUTION_62")
+
     def test_patches_that_keep_their_cover(self):
         def lines(first, last, steps):
             return np.linspace(first, last, steps + 1)
@@ -341,8 +361,7 @@ class GoesOn(FaultTest):
         write_med(self.folder / "stack.med", union([
             block("QUAD4", lines(-2, 2, 17), lines(-1, 0, 5), name="LOWER", sides={"bottom": "BASE", "top": "GROUND"}),
             block("QUAD4", lines(-1, 1, 8), lines(0, 1, 4), name="PUNCH", sides={"bottom": "FACE", "top": "TOP"})]))
-        text, _ = self.check(2, 5, 6)
-        self.assertIn("EVOLUTION_50", text)
+        self.assert_same_alarms(*self.check(2, 5, 6), "EVOLUTION_50")
 
     def test_equilibria_that_are_not_stable(self):
         """An arch that is pressed (drawn study 5089): its instants are solved by attempts that differ; that it is unstable is said once, of before too."""

@@ -321,22 +321,84 @@ TEST_F(PetscEngineTest, SaysThatSoManyProcessesNeedMoreFiles) {
     });
     _exit(0);
   };
-  EXPECT_EXIT(start_with_few_files(), testing::ExitedWithCode(0), "SOLVER_10.*30 files may be open.*needs about 38");
+  EXPECT_EXIT(start_with_few_files(), testing::ExitedWithCode(0), "SOLVER_10.*30 files may be open.*needs about 46");
 }
+
+/// A program in the place of lacon_petsc.
+class Script {
+ public:
+  explicit Script(const char* text)
+      : path_(std::filesystem::temp_directory_path() / ("lacon_petsc_" + std::to_string(getpid()))) {
+    std::ofstream(path_) << "#!/bin/sh\n" << text << '\n';
+    std::filesystem::permissions(path_, std::filesystem::perms::owner_all);
+  }
+  ~Script() { std::filesystem::remove(path_); }
+  Script(const Script&) = delete;
+  Script& operator=(const Script&) = delete;
+  std::string path() const { return path_; }
+
+ private:
+  std::filesystem::path path_;
+};
 
 TEST(PetscEngine, SaysThatItsProcessesHaveEnded) {
   const TwoBodies system;
-  const std::filesystem::path script = std::filesystem::temp_directory_path() / "lacon_petsc_that_is_killed";
-  std::ofstream(script) << "#!/bin/sh\necho ready\nread line\nkill -9 $$\n";
-  std::filesystem::permissions(script, std::filesystem::perms::owner_all);
+  const Script script("echo ready 1; read line; kill -9 $$");
   PetscOptions options = system.options();
-  options.program = script;
+  options.program = script.path();
   PetscEngine engine(options);
   engine.analyse(system.matrix);
   const std::string said = error_of([&] { engine.factorise(system.matrix); });
   EXPECT_NE(said.find("SOLVER_8"), std::string::npos) << said;
   EXPECT_NE(said.find("Killed"), std::string::npos) << said;
-  std::filesystem::remove(script);
+}
+
+// A process that memory was missing for is no error of the user's, whenever it was killed; mpirun says so by its status.
+TEST(PetscEngine, SaysThatItsProcessesWereKilledBeforeTheyWereReady) {
+  const TwoBodies system;
+  for (const char* const text : {"kill -9 $$", "exit 137", "echo; echo of mpirun; exit 137"}) {
+    const Script script(text);
+    PetscOptions options = system.options();
+    options.program = script.path();
+    PetscEngine engine(options);
+    const std::string said = error_of([&] { engine.analyse(system.matrix); });
+    EXPECT_EQ(said.substr(0, 9), "SOLVER_8 ") << said;
+    EXPECT_NE(said.find("Killed"), std::string::npos) << said;
+  }
+}
+
+// What MPI has to say before is no answer.
+TEST(PetscEngine, IsReadyAfterWhatMpiSays) {
+  const TwoBodies system;
+  const Script script("echo; echo a warning of mpirun; echo ready 1; read line");
+  PetscOptions options = system.options();
+  options.program = script.path();
+  PetscEngine engine(options);
+  EXPECT_EQ(error_of([&] { engine.analyse(system.matrix); }), "");
+}
+
+// It names the machine as the process does, blanks or not.
+TEST(PetscEngine, NamesTheMachineThatDoesNotSeeItsMemory) {
+  const TwoBodies system;
+  const Script script("echo elsewhere node 7");
+  PetscOptions options = system.options();
+  options.program = script.path();
+  PetscEngine engine(options);
+  const std::string said = error_of([&] { engine.analyse(system.matrix); });
+  EXPECT_NE(said.find("SOLVER_11"), std::string::npos) << said;
+  EXPECT_NE(said.find("runs on node 7,"), std::string::npos) << said;
+}
+
+// What says something else, and is no machine, is no name of one.
+TEST(PetscEngine, NamesNoMachineWhereThereIsNone) {
+  const TwoBodies system;
+  const Script script("echo There are not enough slots available; exit 1");
+  PetscOptions options = system.options();
+  options.program = script.path();
+  PetscEngine engine(options);
+  const std::string said = error_of([&] { engine.analyse(system.matrix); });
+  EXPECT_EQ(said.substr(0, 10), "SOLVER_10 ") << said;
+  EXPECT_NE(said.find("exit status 1"), std::string::npos) << said;
 }
 
 }  // namespace

@@ -1,0 +1,101 @@
+"""lacon_mpirun: what Open MPI keeps in files is gone when it has ended; what one leaves that is killed itself goes with the next one."""
+
+import contextlib
+import os
+import pathlib
+import shutil
+import signal
+import subprocess
+import unittest
+
+from study_test import LACON, StudyTest
+from test_parts import PETSC, PartsTest
+
+PROGRAM = LACON.with_name("lacon_mpirun")
+MEMORY = pathlib.Path("/dev/shm")
+#: a program in the place of mpirun, that makes a file in each of its folders and says where
+TALKS = 'touch "$TMPDIR/file" "$LACON_MPI_MEMORY/file" && echo "$TMPDIR $LACON_MPI_MEMORY"; '
+
+
+@unittest.skipUnless(PROGRAM.exists(), "built without PETSc")
+class Folders(StudyTest):
+    def setUp(self):
+        super().setUp()
+        self.tmp = self.folder / "tmp"
+        self.tmp.mkdir()
+
+    @contextlib.contextmanager
+    def started(self, script, before=""):
+        """@return the process, and the folders that its program has been given"""
+        with subprocess.Popen([PROGRAM, "sh", "-c", before + TALKS + script], env={**os.environ, "TMPDIR": str(self.tmp)}, stdin=subprocess.DEVNULL,
+                              stdout=subprocess.PIPE, text=True) as process:
+            folders = [pathlib.Path(name) for name in process.stdout.readline().split()]
+            self.assertEqual([folder.parent for folder in folders], [self.tmp, MEMORY])
+            yield process, folders
+
+    def assert_there(self, folders, are_there):
+        self.assertEqual([folder.exists() for folder in folders], [are_there] * len(folders))
+
+    def test_it_ends_as_its_program(self):
+        with self.started("exit 3") as (process, folders):
+            self.assertEqual(process.wait(5), 3)
+            self.assert_there(folders, False)
+        with self.started("kill -SEGV $$") as (process, folders):
+            self.assertEqual(process.wait(5), -signal.SIGSEGV)
+            self.assert_there(folders, False)
+        self.assertEqual(subprocess.run([PROGRAM, "/nowhere/mpirun"], stdin=subprocess.DEVNULL, check=False, timeout=5).returncode, 127)
+
+    def test_who_is_asked_to_end_leaves_nothing(self):
+        """Also where the program does not listen."""
+        for script, before, status in (("exec sleep 60", "", -signal.SIGTERM), ("sleep 4; sleep 4", "trap '' TERM; ", -signal.SIGKILL)):
+            with self.started(script, before) as (process, folders):
+                process.terminate()
+                self.assertEqual(process.wait(5), status)
+                self.assert_there(folders, False)
+
+    def test_what_a_killed_one_leaves_goes_with_the_next_one(self):
+        with self.started("exec sleep 60") as (living, of_living):
+            with self.started("exec sleep 60") as (killed, left):
+                killed.kill()
+                killed.wait(5)
+                self.assert_there(left, True)
+            others = [self.tmp / "lacon_mpi.other", self.tmp / "lacon_mpi.empty", self.tmp / "lacon"]
+            for other in others:
+                other.mkdir()
+            (others[0] / "host").write_text("another machine")
+            with self.started("exit 0") as (process, _):
+                self.assertEqual(process.wait(5), 0)
+            self.assert_there(left, False)
+            self.assert_there([*of_living, *others], True)
+            living.terminate()
+            living.wait(5)
+
+    def test_folders_that_cannot_be_made(self):
+        """mpirun says itself what it cannot do there."""
+        done = subprocess.run([PROGRAM, "sh", "-c", "echo $TMPDIR"], env={**os.environ, "TMPDIR": "/nowhere"}, stdin=subprocess.DEVNULL, capture_output=True,
+                              text=True, check=False, timeout=5)
+        self.assertEqual((done.returncode, done.stdout), (0, "/nowhere\n"))
+
+
+@unittest.skipUnless(PROGRAM.exists() and shutil.which("mpirun"), "built without PETSc, or there is no mpirun")
+class Killed(PartsTest):
+    """Runs whose launcher is killed: nothing is left where Open MPI has its files."""
+
+    environment = PETSC
+
+    def test_a_killed_run_leaves_no_file(self):
+        tmp = self.folder / "t" / ("m" * 90)  # longer than the name of a socket may be
+        tmp.mkdir(parents=True)
+        before = set(MEMORY.iterdir())
+        for order in (1, 2, 3):
+            with self.started(f"killed{order}", order, INSTANTS="4", TMPDIR=str(tmp)) as (run, _):
+                made = set(MEMORY.iterdir()) - before
+                self.assertTrue(any(tmp.glob("lacon_mpi.*/ompi.*")))
+                self.assertTrue(any(path.is_dir() and any(path.glob("vader_segment*")) for path in made), made)
+                run.kill()
+            self.assertEqual(list(tmp.iterdir()), [])
+            self.assertEqual(made & set(MEMORY.iterdir()), set())
+
+
+if __name__ == "__main__":
+    unittest.main()
