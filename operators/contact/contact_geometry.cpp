@@ -63,7 +63,7 @@ lacon_contact_batch batch_of(std::size_t n_cells, int n_slave_nodes, int n_maste
 }
 
 constexpr std::size_t block = 128;  // slave cells that a thread takes at a time
-constexpr double nothing = 1e-8;    // of a patch: a part of it that has no say
+constexpr double grazed = 1e-4;     // of a patch: a part of it whose points have no say
 // Bodies that are pressed on one another overlap by a fraction of a facet, coarse curved skins and press fits by one or two.
 // What is deeper a normal meets beyond the body: the far side of a skin that is slave as a whole, the end of another body.
 constexpr double deepest_overlap = 4;  // diameters of the larger cell of a couple
@@ -471,9 +471,9 @@ void ContactGeometry::add(const Zone& zone, const Block& block_of_zone, ZonePair
       const std::int64_t n_points = cells.offset[c + 1] - cells.offset[c];
       const double* const first_gap = std::exchange(point_gap, point_gap + n_points);
       for (const double gap : std::span(first_gap, point_gap)) {
-        // a wall that is grazed is as good as not there
-        if (group.current_measure[i] > nothing * whole_[patch]) smallest_gap_[patch] = std::min(smallest_gap_[patch], gap);
-        largest_gap_[patch] = std::max(largest_gap_[patch], gap);
+        // a wall that is grazed, as beside a corner, is as good as not there
+        if (group.current_measure[i] > grazed * whole_[patch]) smallest_gap_[patch] = std::min(smallest_gap_[patch], gap);
+        largest_gap_[patch] = std::max(largest_gap_[patch], std::abs(gap));
       }
       if (catalog::cell(slave_type).order > 1 || catalog::cell(group.master_type).order > 1) straight_[patch] = 0;
       if (!record) continue;

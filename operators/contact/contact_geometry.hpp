@@ -109,7 +109,8 @@ class ContactGeometry {
   std::size_t n_patches() const { return gap_.size(); }
   std::int32_t zone_of(std::size_t patch) const { return zone_of_[patch]; }  ///< -1 for none
   double gap(std::size_t patch) const { return gap_[patch]; }                ///< average, positive when open
-  /// At an integration point, infinite without any.
+  /// At an integration point, infinite without any; those of masters that are seen by a ten thousandth of the patch do not
+  /// count.
   double smallest_gap(std::size_t patch) const { return smallest_gap_[patch]; }
   double covered(std::size_t patch) const { return covered_[patch]; }    ///< measure, current geometry
   double whole(std::size_t patch) const { return whole_[patch]; }        ///< measure, current geometry
@@ -163,8 +164,9 @@ class ContactGeometry {
   std::vector<NormalVariation> normal_variations_;
   std::vector<Cell> cells_;
   std::vector<double> coupling_;
-  std::vector<double> gap_, weight_, covered_, whole_, coverage_, smallest_gap_, largest_gap_;  ///< of each patch
-  std::vector<std::uint8_t> straight_;  ///< likewise: no cell is of the second order
+  std::vector<double> gap_, weight_, covered_, whole_, coverage_, smallest_gap_;  ///< of each patch
+  std::vector<double> largest_gap_;                                               ///< likewise, either way, at all points
+  std::vector<std::uint8_t> straight_;                                            ///< likewise: no cell is of the second order
   std::vector<std::int32_t> zone_of_;
   std::vector<std::int64_t> rejected_;
   std::vector<TooDeep> too_deep_;          ///< of each zone

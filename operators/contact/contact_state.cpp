@@ -308,38 +308,6 @@ HeldOverlap ContactState::held_overlap() const {
   return overlap;
 }
 
-std::vector<NearestPatches> ContactState::nearest_to_hold(const Patchwise& patches, const std::set<std::int32_t>& loose,
-                                                          const std::function<std::int32_t(std::int32_t node)>& body_of) const {
-  struct Hold {
-    bool there = false;
-    std::map<std::size_t, std::int32_t> near;  // patches, and a node of the body
-  };
-  std::map<std::pair<std::int32_t, std::int32_t>, Hold> holds;  // by zone and body
-  for (const ContactGeometry::Cell& cell : geometry_.cells()) {
-    const auto patch = static_cast<std::size_t>(contact_.slaves[cell.slave].patch);
-    for (const std::int32_t owner : {contact_.slaves[cell.slave].cell, cell.master}) {
-      const std::int32_t node = mesh_.cells[owner][0], body = body_of(node);
-      if (!loose.contains(body)) continue;
-      Hold& hold = holds[{geometry_.zone_of(patch), body}];
-      if (patches.status[patch] == Status::active) hold.there = true;
-      if (!held_open_[patch] && geometry_.coverage(patch) >= tolerances_.least_coverage &&
-          geometry_.gap(patch) <= tolerances_.holding_gap * size_[patch])
-        hold.near.try_emplace(patch, node);
-    }
-  }
-  std::vector<NearestPatches> found;
-  for (const auto& [where, hold] : holds) {
-    if (hold.there || hold.near.empty()) continue;
-    const auto [nearest, node] =
-        *std::ranges::min_element(hold.near, {}, [&](const auto& candidate) { return geometry_.gap(candidate.first); });
-    found.push_back({{nearest}, node});
-    for (const auto& [patch, other] : hold.near)
-      if (patch != nearest && geometry_.gap(patch) <= geometry_.gap(nearest) + tolerances_.as_near * size_[patch])
-        found.back().patches.push_back(patch);
-  }
-  return found;
-}
-
 std::optional<FacetOverlap> ContactState::facet_overlap(std::int32_t number) const {
   const ContactGeometry::Zone& zone = geometry_.zones()[number];
   std::map<std::int32_t, double> missing;  // of each cell of both skins

@@ -197,7 +197,8 @@ class ContactState {
   }
   HeldOverlap held_overlap() const;
   /// For each of some loose bodies, in each zone where no patch holds it: the patches that are nearest to their master, within
-  /// ContactTolerances::holding_gap. @param loose bodies, numbered as body_of(node) does
+  /// ContactTolerances::holding_gap; where patches hold them in all zones, those that are nearest across other directions.
+  /// @param loose bodies, numbered as body_of(node) does
   std::vector<NearestPatches> nearest_to_hold(const Patchwise& patches, const std::set<std::int32_t>& loose,
                                               const std::function<std::int32_t(std::int32_t node)>& body_of) const;
   /// Of a zone, at the initial geometry: nothing where some patch overlaps by more than its facets explain.

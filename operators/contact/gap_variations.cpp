@@ -132,7 +132,7 @@ bool ContactGeometry::coincides(std::size_t patch) const {
   constexpr double round_off = 1e-12;  // of the patch: what this leaves of a gap changes forces as much
   const double size = mesh_.dimension == 3 ? std::sqrt(whole_[patch]) : whole_[patch];
   return straight_[patch] != 0 && !contact_.smoothing && !has_offset(static_cast<std::size_t>(zone_of_[patch])) &&
-         smallest_gap_[patch] >= -round_off * size && largest_gap_[patch] <= round_off * size;
+         largest_gap_[patch] <= round_off * size;
 }
 
 ContactGeometry::Variation ContactGeometry::frozen_variation(const Cell& cell) const {

@@ -39,7 +39,17 @@ bool Newton::keep_covers_that_sway(double instant, const StaticState& state, boo
 void Newton::keep_cover(double instant, std::size_t patch) {
   equilibrium_.keep_cover(patch);
   choice_.start_again();
-  if (covers_told_.insert(contact()->geometry().zone_of(patch)).second) inform(about_cover("EVOLUTION_50", instant, patch));
+  covers_since_.try_emplace(contact()->geometry().zone_of(patch), instant);
+}
+
+void Newton::tell_of_covers() {
+  for (std::size_t p = 0; contact() && p < contact()->n_patches(); ++p) {
+    const std::int32_t zone = contact()->geometry().zone_of(p);
+    if (!contact()->keeps_cover(p) || !covers_told_.insert(zone).second) continue;
+    const auto since = covers_since_.find(zone);
+    inform(about_cover("EVOLUTION_50", since == covers_since_.end() ? options_.start : since->second, p));
+  }
+  covers_since_.clear();
 }
 
 Message Newton::about_cover(std::string_view id, double instant, std::size_t patch) const {

@@ -157,6 +157,7 @@ int Newton::solve(double instant, StaticState& state, const std::function<void(c
 std::vector<double> Newton::begin_instant(double instant, const StaticState& state) {
   equilibrium_.rest_at(state.displacement);
   equilibrium_.keep_gliding(state.patches);
+  depths_before_ = depths(state);
   choice_.start_instant(unstable_path_.begin());
   statuses_.start_instant();
   edges_ = {};
@@ -180,6 +181,7 @@ void Newton::finish_instant(double instant, const StaticState& previous, StaticS
   if (contact()) contact()->geometry().check_radii();
   if (const auto cell = equilibrium_.cell_inside_out())
     fail("EVOLUTION_9", {{"instant", fmt::format("{:.9g}", instant)}, {"cell", cell_name(*cell)}});
+  fail_if_passed_through(instant, state);
   equilibrium_.hold_points(state);
   const auto& negative = line.solution.factorisation.negative_pivots;
   found_ = {.instant = instant,
@@ -192,6 +194,7 @@ void Newton::finish_instant(double instant, const StaticState& previous, StaticS
 void Newton::accept(const StaticState& state) {
   note_stability();
   equilibrium_.let_covers_go();
+  tell_of_covers();
   prediction_.note(options_.start, found_.before,
                    {found_.instant, state.displacement, state.patches.lambda, std::move(found_.external)}, elsewhere_);
 }

@@ -2,6 +2,7 @@
 // Newton's method for one instant: equilibrium, geometry, contact and behaviour in one loop (METHOD.md 3.2, 5.3).
 #include <functional>
 #include <initializer_list>
+#include <map>
 #include <memory>
 #include <set>
 #include <span>
@@ -126,6 +127,10 @@ class Newton {
   bool parts_a_zone(const std::vector<Status>& before, const std::vector<Status>& wanted) const;
   /// Slave cells of patches, the first ones, with the skin they belong to.
   std::string cells_of(const std::vector<std::size_t>& patches) const;
+  /// How deep points of each zone lie in its master, over the size of their patch, where nothing presses there.
+  std::vector<double> depths(const StaticState& state) const;
+  /// Throws EVOLUTION_63 where a body has gone through another one in this instant.
+  void fail_if_passed_through(double instant, const StaticState& state) const;
   /// Throws EVOLUTION_15 where no statuses satisfy all patches.
   void fail_if_endless(double instant) const;
   /// Patches that lose their master wherever they press keep their cover (lost_masters.hpp). Throws EVOLUTION_51 where they
@@ -140,6 +145,8 @@ class Newton {
   bool renews_cuts(const IterationReport& line) const;
   /// ContactState::keep_cover; EVOLUTION_50 says so once in a zone.
   void keep_cover(double instant, std::size_t patch);
+  /// EVOLUTION_50 of patches that keep it in a state that is accepted: iterates far from it may have asked for others.
+  void tell_of_covers();
   /// EVOLUTION_50 or 51
   Message about_cover(std::string_view id, double instant, std::size_t patch) const;
   /// Go on from `state` by the motion of the last instant, and to what is imposed, where that is asked for or serves.
@@ -186,16 +193,18 @@ class Newton {
   std::set<std::size_t> told_;  ///< patches that EVOLUTION_20 was about
   UnstablePath unstable_path_;
   Found found_;
-  bool unstable_told_ = false;          ///< EVOLUTION_54 was
-  std::set<std::int32_t> covers_told_;  ///< zones that EVOLUTION_50 was about
-  ResidualCourse course_;               ///< of the instant
-  int times_held_ = 0;                  ///< in this instant: loose bodies
-  int times_cut_ = 0;                   ///< in this instant: slave cells anew
-  bool goes_round_ = false;             ///< residuals have come back: increments are searched (line_search.hpp)
-  int times_round_ = 0;                 ///< in this instant: residuals have come back
-  std::string hanging_;                 ///< a body that springs alone hold in the last system
-  std::string doubt_;                   ///< why a cheaper factor is no use, where it has not been told
-  int settled_ = 0;                     ///< iterations in a row in which no status has changed
+  bool unstable_told_ = false;                   ///< EVOLUTION_54 was
+  std::map<std::int32_t, double> covers_since_;  ///< zones with covers that are kept since an instant that is not accepted yet
+  std::set<std::int32_t> covers_told_;           ///< zones that EVOLUTION_50 was about
+  ResidualCourse course_;                        ///< of the instant
+  int times_held_ = 0;                           ///< in this instant: loose bodies
+  int times_cut_ = 0;                            ///< in this instant: slave cells anew
+  bool goes_round_ = false;                      ///< residuals have come back: increments are searched (line_search.hpp)
+  int times_round_ = 0;                          ///< in this instant: residuals have come back
+  std::vector<double> depths_before_;            ///< depths() as the instant began
+  std::string hanging_;                          ///< a body that springs alone hold in the last system
+  std::string doubt_;                            ///< why a cheaper factor is no use, where it has not been told
+  int settled_ = 0;                              ///< iterations in a row in which no status has changed
   SaddlePointSolver solver_;
 };
 

@@ -22,6 +22,7 @@ constexpr int settled = 4;           // iterations without a change of status af
 constexpr double quadratic = 1.5;    // order from which on the end is near, whatever was before
 constexpr int settled_quickly = 3;   // likewise, for an order
 constexpr int few = 4;               // iterations to the end from there
+constexpr double inside = 1, through = 10;  // sizes of a patch: what coarse patches overlap by stays below the one
 
 }  // namespace
 
@@ -39,6 +40,25 @@ void Newton::fail_if_endless(double instant) const {
                                                 {"cells", cells_of(patches)},
                                                 {"period", std::to_string(period)}}),
                        {.depends_on_step = false});
+}
+
+std::vector<double> Newton::depths(const StaticState& state) const {
+  std::vector<double> found;
+  for (std::size_t zone = 0; contact() && zone < problem_.contact->zones.size(); ++zone) {
+    const auto pierced = contact()->pierced(static_cast<std::int32_t>(zone), state.patches, true);
+    found.push_back(pierced && state.patches.status[pierced->patch] != Status::active ? pierced->depth : 0);
+  }
+  return found;
+}
+
+void Newton::fail_if_passed_through(double instant, const StaticState& state) const {
+  const std::vector<double> now = depths(state);
+  for (std::size_t zone = 0; zone < now.size(); ++zone)
+    if (now[zone] > through && depths_before_[zone] < inside)
+      fail("EVOLUTION_63", {{"instant", fmt::format("{:.9g}", instant)},
+                            {"slave", problem_.contact->zones[zone].slave_group},
+                            {"master", problem_.contact->zones[zone].master_group},
+                            {"sizes", fmt::format("{:.2g}", now[zone])}});
 }
 
 std::string Newton::cells_of(const std::vector<std::size_t>& patches) const {

@@ -1,0 +1,109 @@
+"""Bodies that contact and weak springs hold: they start where they are near, and do not go through each other."""
+
+import re
+import unittest
+
+import numpy as np
+from study_test import StudyTest
+
+from meshes import block, union, write_med
+from results import Result
+
+#: a body BODY on what is held at BASE, under a pressure on TOP
+STUDY = """
+DEBUT()
+MESH = LIRE_MAILLAGE(UNITE=20, FORMAT="MED")
+MESH = CREA_MAILLAGE(MAILLAGE=MESH, DECOUPE_LAC=_F(GROUP_MA_ESCL="SKIN"))
+MESH = CREA_MAILLAGE(MAILLAGE=MESH, CREA_POI1=_F(NOM_GROUP_MA="HOOKS", GROUP_MA="BODY"))
+MODEL = AFFE_MODELE(
+    MAILLAGE=MESH,
+    AFFE=(
+        _F(TOUT="OUI", PHENOMENE="MECANIQUE", MODELISATION="D_PLAN"),
+        _F(GROUP_MA="HOOKS", PHENOMENE="MECANIQUE", MODELISATION="2D_DIS_T"),
+    ),
+)
+SPRINGS = AFFE_CARA_ELEM(MODELE=MODEL, DISCRET_2D=_F(GROUP_MA="HOOKS", CARA="K_T_D_N", VALE=({spring}, {spring})))
+MATTER = AFFE_MATERIAU(MAILLAGE=MESH, AFFE=_F(TOUT="OUI", MATER=DEFI_MATERIAU(ELAS=_F(E=210e3, NU=0.3))))
+CONTACT = DEFI_CONTACT(
+    MODELE=MODEL,
+    FORMULATION="CONTINUE",
+    ALGO_RESO_GEOM="NEWTON",
+    ALGO_RESO_CONT="NEWTON",
+    ZONE=_F(GROUP_MA_ESCL="SKIN", GROUP_MA_MAIT="WALL", ALGO_CONT="LAC"),
+)
+HELD = AFFE_CHAR_CINE(MODELE=MODEL, MECA_IMPO=({held}))
+PRESSED = AFFE_CHAR_MECA(MODELE=MODEL, PRES_REP=_F(GROUP_MA="TOP", PRES={pressure}){more})
+RESULT = STAT_NON_LINE(
+    MODELE=MODEL,
+    CHAM_MATER=MATTER,
+    CARA_ELEM=SPRINGS,
+    CONTACT=CONTACT,
+    EXCIT=(_F(CHARGE=HELD), _F(CHARGE=PRESSED)),
+    INCREMENT=_F(LIST_INST=DEFI_LIST_REEL(VALE=(0.0, 1.0))),
+)
+CALC_CHAMP(reuse=RESULT, RESULTAT=RESULT, FORCE="REAC_NODA")
+FIN()
+"""
+FIXED = '_F(GROUP_MA="BASE", DX=0.0, DY=0.0),'
+
+
+class LooseBodies(StudyTest):
+    def solve(self, mesh, spring, pressure, held="", more=""):
+        """@return (displacement of the highest node, force on the base, what was said)"""
+        write_med(self.folder / "mesh.med", mesh)
+        study = self.folder / "study.comm"
+        study.write_text(STUDY.format(spring=spring, pressure=pressure, held=FIXED + held, more=more), encoding="utf-8")
+        run = self.run_lacon(study, "--unit", "20=mesh.med", "--fresh")
+        self.assertEqual(run.status, 0, run.stdout[-2000:] + run.stderr)
+        result = Result(self.folder / "study.base", "RESULT")
+        moved = result.at_nodes("DEPL", result.orders[-1], "DY")
+        forces = result.at_nodes("REAC_NODA", result.orders[-1], "DY")
+        return moved[np.argmax(result.points[:, 1])], np.nansum(forces), run.stdout + run.stderr
+
+    def rocker(self, cells, gap):
+        """A block with a round underside, of radius 25 and a load at the height of 5: it stands."""
+        up = block("QUAD8", np.linspace(-5, 5, cells + 1), np.linspace(0, 1, 4), lambda x, t: (x, (gap + 0.02 * x * x) * (1 - t) + (5 + gap) * t), "BODY",
+                   {"bottom": "SKIN", "top": "TOP"})
+        low = block("QUAD8", np.linspace(-8, 8, cells + 7), np.linspace(-6, 0, 5), None, "LOW", {"top": "WALL", "bottom": "BASE"})
+        return union([up, low])
+
+    def test_a_body_that_tips_on_one_patch_does_not_go_through_the_other(self):
+        """Iterations left the equilibrium on one patch, which is not stable, for one 16 metres below the slab."""
+        moved, force, said = self.solve(self.rocker(5, 0.05), 1e-3, 100.0)
+        self.assertLess(abs(moved), 0.2)
+        self.assertAlmostEqual(force, 1000, delta=1)  # springs have 1e-3 a node
+        self.assertIn("EVOLUTION_54", said)
+        self.assertIn("the bodies have gone through each other", said)
+
+    def test_covers_that_iterates_far_away_ask_for_are_not_told(self):
+        _, force, said = self.solve(self.rocker(20, 0.5), 1e-3, 100.0, '_F(GROUP_MA="TOP", DX=0.0),', ', LIAISON_UNIF=_F(GROUP_MA="TOP", DDL="DY")')
+        self.assertAlmostEqual(force, 1000, delta=1)
+        self.assertNotIn("<A>", said)
+
+    def slot(self, gap):
+        """A block on the floor of a slot, between walls."""
+        box = block("QUAD8", np.linspace(0, 2, 4), np.linspace(0, 2, 4), None, "BODY", {"bottom": "SKIN", "left": "LEFT", "right": "RIGHT", "top": "TOP"})
+        floor = block("QUAD8", np.linspace(-1, 3, 6), np.linspace(-1, 0, 3), None, "FLOOR", {"top": "WALL", "bottom": "BASE"})
+        walls = [block("QUAD8", np.linspace(*ends, 2), np.linspace(0, 2, 3), None, name, {face: f"{name}_FACE", back: f"{name}_BACK"})
+                 for name, ends, face, back in (("W1", (-1 - gap, -gap), "right", "left"), ("W2", (2 + gap, 3 + gap), "left", "right"))]
+        mesh = union([box, floor, *walls])
+        groups = mesh.cell_groups
+        groups["SKIN"] = groups["SKIN"] + groups.pop("LEFT") + groups.pop("RIGHT")
+        groups["WALL"] = groups["WALL"] + groups.pop("W1_FACE") + groups.pop("W2_FACE")
+        groups["BASE"] = groups["BASE"] + groups.pop("W1_BACK") + groups.pop("W2_BACK")
+        return mesh
+
+    def test_one_zone_holds_in_all_directions(self):
+        """The floor holds the block upright in the zone; what is near it on the sides holds it too."""
+        moved, force, said = self.solve(self.slot(0.002), 0.0, 1000.0)
+        self.assertAlmostEqual(force, 2000, delta=1e-6)
+        self.assertRegex(said, re.compile(r"EVOLUTION_20> nothing holds BODY: 6 patch\(es\) of SKIN, .* with the gap 0.002"))
+
+    def test_walls_that_are_grazed_beside_a_corner_pierce_nothing(self):
+        _, force, said = self.solve(self.slot(0.0), 0.0, 1000.0)
+        self.assertAlmostEqual(force, 2000, delta=1e-6)
+        self.assertNotIn("EVOLUTION_16", said)
+
+
+if __name__ == "__main__":
+    unittest.main()
