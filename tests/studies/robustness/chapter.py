@@ -89,7 +89,7 @@ def summary(row, figures):
 def asked_of(row):
     """In words."""
     words = {"; ".join(f"{key} <= {most:g}" for key, most in study.asked.items()) for study in studies(row)}
-    return " / ".join(sorted(words, key=lambda text: [float(number) for number in re.findall(r"[\d.e-]+$", text)]))
+    return " / ".join(sorted(words, key=lambda text: [float(number) for number in re.findall(r"<= ([\d.e-]+)", text)]))
 
 
 def misses(row, figures):

@@ -419,7 +419,7 @@ ROWS = {
     "skins": ("blocks whose whole skins are in the zone", whole_skins),
     "force": ("bodies that contact alone holds, driven by a force", force_driven),
     "flush": ("blocks with flush ends, pressed in few steps", flush_ends),
-    "caps": ("curved blocks that come down in one step", caps),
+    "caps": ("curved blocks that come down in few steps", caps),
     "peer": ("the peer's half spheres and half ring", peer_cases),
     "cycle": ("closed elastic cycle with PETIT_REAC (before) and PETIT_REAC_MILIEU (now)", closed_cycle),
 }
