@@ -5,19 +5,23 @@
 #include <map>
 
 #include "lacon/operators/contact/contact_state.hpp"
+#include "lacon/pairing/normals.hpp"
 
 namespace lacon {
 namespace {
 
 constexpr double same_way = 0.7;  // cosine, 45 degrees: what presses along one of two normals presses along the other
 
-/// Across the cell of a skin, unit, to either side.
-Vec3 across(const Mesh& mesh, std::int32_t cell, std::span<const double> coordinates) {
-  const auto nodes = mesh.cells[cell];
-  const auto at = [&](std::size_t i) { return vector_at(coordinates.data() + 3 * std::ptrdiff_t{nodes[i]}); };
-  const Vec3 along = at(1) - at(0);
-  const Vec3 normal = mesh.dimension == 2 ? Vec3{-along.y, along.x, 0} : cross(along, at(2) - at(0));
-  return (1 / std::sqrt(dot(normal, normal))) * normal;
+/// Of the cell of a skin at its first vertex, unit.
+Vec3 unit_normal(const Mesh& mesh, std::int32_t cell, std::span<const double> coordinates) {
+  std::vector<double> points;
+  for (const std::int32_t node : mesh.cells[cell]) {
+    const auto point = coordinates.subspan(3 * static_cast<std::size_t>(node), 3);
+    points.insert(points.end(), point.begin(), point.end());
+  }
+  const catalog::CellRow& row = mesh.row(cell);
+  const Vec3 normal = cell_normal(mesh.types[cell], points, row.nodes.first(static_cast<std::size_t>(row.dimension)));
+  return normal / norm(normal);
 }
 
 struct Near {
@@ -46,12 +50,12 @@ std::vector<NearestPatches> ContactState::nearest_to_hold(const Patchwise& patch
       const std::int32_t node = mesh_.cells[owner][0], body = body_of(node);
       if (!loose.contains(body)) continue;
       Hold& hold = holds[{geometry_.zone_of(patch), body}];
-      const Vec3 normal = across(mesh_, slave.cell, geometry_.coordinates());
+      const Vec3 normal = unit_normal(mesh_, slave.cell, geometry_.coordinates());
       if (patches.status[patch] == Status::active)
         hold.pressed.push_back(normal);
       else if (!held_open_[patch] && geometry_.coverage(patch) >= tolerances_.least_coverage &&
-               geometry_.gap(patch) <= tolerances_.holding_gap * size_[patch])
-        if (hold.seen.insert(patch).second) hold.near.push_back({patch, node, geometry_.gap(patch), normal});
+               geometry_.gap(patch) <= tolerances_.holding_gap * size_[patch] && hold.seen.insert(patch).second)
+        hold.near.push_back({patch, node, geometry_.gap(patch), normal});
     }
   }
   std::vector<NearestPatches> found;

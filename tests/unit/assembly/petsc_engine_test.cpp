@@ -353,15 +353,20 @@ TEST(PetscEngine, SaysThatItsProcessesHaveEnded) {
   EXPECT_NE(said.find("Killed"), std::string::npos) << said;
 }
 
+/// What the engine says of a script in the place of its program.
+std::string said_of(const char* text) {
+  const TwoBodies system;
+  const Script script(text);
+  PetscOptions options = system.options();
+  options.program = script.path();
+  PetscEngine engine(options);
+  return error_of([&] { engine.analyse(system.matrix); });
+}
+
 // A process that memory was missing for is no error of the user's, whenever it was killed; mpirun says so by its status.
 TEST(PetscEngine, SaysThatItsProcessesWereKilledBeforeTheyWereReady) {
-  const TwoBodies system;
   for (const char* const text : {"kill -9 $$", "exit 137", "echo; echo of mpirun; exit 137"}) {
-    const Script script(text);
-    PetscOptions options = system.options();
-    options.program = script.path();
-    PetscEngine engine(options);
-    const std::string said = error_of([&] { engine.analyse(system.matrix); });
+    const std::string said = said_of(text);
     EXPECT_EQ(said.substr(0, 9), "SOLVER_8 ") << said;
     EXPECT_NE(said.find("Killed"), std::string::npos) << said;
   }
@@ -369,34 +374,19 @@ TEST(PetscEngine, SaysThatItsProcessesWereKilledBeforeTheyWereReady) {
 
 // What MPI has to say before is no answer.
 TEST(PetscEngine, IsReadyAfterWhatMpiSays) {
-  const TwoBodies system;
-  const Script script("echo; echo a warning of mpirun; echo ready 1; read line");
-  PetscOptions options = system.options();
-  options.program = script.path();
-  PetscEngine engine(options);
-  EXPECT_EQ(error_of([&] { engine.analyse(system.matrix); }), "");
+  EXPECT_EQ(said_of("echo; echo a warning of mpirun; echo ready 1; read line"), "");
 }
 
 // It names the machine as the process does, blanks or not.
 TEST(PetscEngine, NamesTheMachineThatDoesNotSeeItsMemory) {
-  const TwoBodies system;
-  const Script script("echo elsewhere node 7");
-  PetscOptions options = system.options();
-  options.program = script.path();
-  PetscEngine engine(options);
-  const std::string said = error_of([&] { engine.analyse(system.matrix); });
+  const std::string said = said_of("echo elsewhere node 7");
   EXPECT_NE(said.find("SOLVER_11"), std::string::npos) << said;
   EXPECT_NE(said.find("runs on node 7,"), std::string::npos) << said;
 }
 
 // What says something else, and is no machine, is no name of one.
 TEST(PetscEngine, NamesNoMachineWhereThereIsNone) {
-  const TwoBodies system;
-  const Script script("echo There are not enough slots available; exit 1");
-  PetscOptions options = system.options();
-  options.program = script.path();
-  PetscEngine engine(options);
-  const std::string said = error_of([&] { engine.analyse(system.matrix); });
+  const std::string said = said_of("echo There are not enough slots available; exit 1");
   EXPECT_EQ(said.substr(0, 10), "SOLVER_10 ") << said;
   EXPECT_NE(said.find("exit status 1"), std::string::npos) << said;
 }
