@@ -7,8 +7,8 @@
 namespace lacon {
 namespace {
 
-constexpr double takes_part = 1e-6;  // of a motion: a body that it moves
-constexpr int with_magnitudes = 7;   // columns that other processes multiply: six motions, and magnitudes
+constexpr double takes_part = 1e-6;                         // of a motion: a body that it moves
+constexpr double resists = 1e-2 * LooseMotions::round_off;  // of what the entries of a row sum up to
 
 /// Rows of a matrix of few columns as its triangle, which has the same null space.
 class Triangle {
@@ -78,20 +78,21 @@ class Images {
 
 }  // namespace
 
-template <class Use>
-void LooseMotions::for_each_row(const Use& use) const {
-  for (std::int64_t dof = 0; dof < std::ssize(numbering_.equation); ++dof)
+template <class Takes, class Use>
+void LooseMotions::for_each_row(const Takes& takes, const Use& use) const {
+  for (std::int64_t dof = 0; dof < std::ssize(numbering_.equation); ++dof) {
+    if (!takes(dof)) continue;
     if (const auto row = motions_.row(dof / numbering_.n_components, static_cast<int>(dof % numbering_.n_components)))
       use(dof, *row);
+  }
 }
 
 LooseMotions::LooseMotions(RigidMotions motions, const Numbering& numbering)
     : motions_(std::move(motions)), numbering_(numbering) {
   std::map<std::int32_t, Eigen::Matrix<double, 6, 6>> held;
   for (const std::int32_t body : motions_.bodies()) held[body].setZero();
-  for_each_row([&](std::int64_t dof, const RigidMotions::Row& row) {
-    if (numbering.equation[dof] < 0) held[row.body] += row.by * row.by.transpose();
-  });
+  for_each_row([&](std::int64_t dof) { return numbering.equation[dof] < 0; },
+               [&](std::int64_t /*dof*/, const RigidMotions::Row& row) { held[row.body] += row.by * row.by.transpose(); });
   for (const auto& [body, gram] : held) {
     const Eigen::Matrix<double, 6, Eigen::Dynamic> free = motions_.free_of(gram);
     if (free.cols() == 0) continue;
@@ -100,25 +101,107 @@ LooseMotions::LooseMotions(RigidMotions motions, const Numbering& numbering)
   }
 }
 
-std::vector<LooseMotions::Moved> LooseMotions::moved() const {
+template <class Takes, class Use>
+void LooseMotions::for_each_moved(const Takes& takes, const Use& use) const {
+  for_each_row(
+      [&](std::int64_t dof) {
+        const std::int64_t equation = numbering_.equation[dof];
+        return equation >= 0 && takes(equation);
+      },
+      [&](std::int64_t dof, const RigidMotions::Row& row) {
+        const auto own = left_.find(row.body);
+        if (own == left_.end()) return;
+        const Left& left = own->second;
+        const auto count = static_cast<std::int32_t>(left.motions.cols());
+        Moved moved{dof, numbering_.equation[dof], left.first, count, MotionVector::Zero()};
+        moved.by.head(count) = left.motions.transpose() * row.by;
+        use(moved);
+      });
+}
+
+template <class Takes>
+std::vector<LooseMotions::Moved> LooseMotions::moved(const Takes& takes) const {
   std::vector<Moved> moved;
-  for_each_row([&](std::int64_t dof, const RigidMotions::Row& row) {
-    const auto own = left_.find(row.body);
-    if (numbering_.equation[dof] < 0 || own == left_.end()) return;
-    const Left& left = own->second;
-    Moved& made = moved.emplace_back(
-        Moved{dof, numbering_.equation[dof], left.first, static_cast<std::int32_t>(left.motions.cols()), MotionVector::Zero()});
-    made.by.head(made.count) = left.motions.transpose() * row.by;
-  });
+  for_each_moved(takes, [&](const Moved& found) { moved.push_back(found); });
   return moved;
 }
 
-Eigen::MatrixXd LooseMotions::unresisted(const SparseMatrix& matrix, const std::vector<Moved>& all, double negligible) const {
-  const auto columns = static_cast<Eigen::Index>(bodies_.size());
+const MotionVector* LooseMotions::Others::resistance_of(std::int64_t equation) const {
+  const auto found = std::ranges::lower_bound(resisting, equation);
+  return found != resisting.end() && *found == equation ? &resistance[found - resisting.begin()] : nullptr;
+}
+
+LooseMotions::Others LooseMotions::asked(const RowsElsewhere& rows, std::int64_t n_equations) const {
+  Others others{&rows, rows.version(), std::vector<double>(n_equations, 0.0), {}, {}};
+  Eigen::Index most = 0;
+  for (const auto& [body, left] : left_) most = std::max(most, left.motions.cols());
+  // one motion of each body at once, for no cell meets two of them; and magnitudes
+  const std::int64_t width = most + 1;
+  const auto fill = [&](std::span<double> x) {
+    for_each_moved([](std::int64_t) { return true; },
+                   [&](const Moved& moved) {
+                     double* const own = x.data() + moved.dof * width;
+                     std::copy_n(moved.by.data(), moved.count, own);
+                     own[most] = moved.by.cwiseAbs().sum();
+                   });
+  };
+  const auto use = [&](std::span<const double> products) {
+    for (std::int64_t dof = 0; dof < std::ssize(numbering_.equation); ++dof) {
+      const std::int64_t equation = numbering_.equation[dof];
+      const double* const own = products.data() + dof * width;
+      if (equation < 0 || own[most] == 0) continue;
+      others.most[equation] = own[most];
+      const Eigen::Map<const Eigen::VectorXd> image(own, most);
+      if (most == 0 || image.cwiseAbs().maxCoeff() <= resists * own[most]) continue;
+      others.resisting.push_back(equation);
+      others.resistance.emplace_back(MotionVector::Zero()).head(most) = image;
+    }
+  };
+  rows.products(static_cast<int>(width), fill, use);
+  return others;
+}
+
+/// What the rows of a matrix make of the motions, each over what its entries sum up to.
+class LooseMotions::Resistance {
+ public:
+  Resistance(std::span<const std::int32_t> bodies, double negligible)
+      : bodies_(bodies), negligible_(negligible), rows_(std::ssize(bodies)) {}
+  void enter(const Image& image) {
+    if (image.most == 0) return;
+    Eigen::VectorXd row = Eigen::VectorXd::Zero(std::ssize(bodies_));
+    const auto put = [&](std::int32_t first, const MotionVector& values) {
+      for (std::int32_t i = 0; i < 6 && first + i < std::ssize(bodies_) && bodies_[first + i] == bodies_[first]; ++i)
+        row[first + i] = values[i] / image.most;
+    };
+    put(image.first, image.own);
+    for (const auto& [first, values] : image.others) put(first, values);
+    if (row.cwiseAbs().maxCoeff() > negligible_) rows_.add(row);
+  }
+  Eigen::MatrixXd null_space() { return rows_.null_space(negligible_); }
+
+ private:
+  std::span<const std::int32_t> bodies_;
+  double negligible_;
+  Triangle rows_;
+};
+
+Eigen::MatrixXd LooseMotions::unresisted(const SparseMatrix& matrix, double negligible) {
+  const RowsElsewhere* const elsewhere = matrix.elsewhere();
+  if (elsewhere && !(others_ && others_->rows == elsewhere && others_->version == elsewhere->version()))
+    others_ = asked(*elsewhere, matrix.size());
+
+  // rows that entries are here of, and those of others that resist; all others map motions to nothing
+  std::vector<std::uint8_t> matters(static_cast<std::size_t>(matrix.size()), 0);
+  for (std::int64_t row = 0; row < matrix.size(); ++row)
+    for (std::int64_t k = matrix.rows()[row]; k < matrix.rows()[row + 1]; ++k)
+      if (matrix.values()[k] != 0) matters[row] = matters[matrix.columns()[k]] = 1;
+  if (elsewhere)
+    for (const std::int64_t equation : others_->resisting) matters[equation] = 1;
+  const std::vector<Moved> all = moved([&](std::int64_t equation) { return matters[equation] != 0; });
   std::vector<std::int32_t> at(static_cast<std::size_t>(matrix.size()), -1);  // of an equation: its place in `all`
   for (std::size_t i = 0; i < all.size(); ++i) at[all[i].equation] = static_cast<std::int32_t>(i);
 
-  Images images(matrix.size());  // of entries that are here
+  Images images(matrix.size());
   const auto add = [&](std::int64_t row, std::int64_t column, double value) {
     if (at[column] < 0 || value == 0) return;
     const Moved& moved = all[at[column]];
@@ -133,51 +216,24 @@ Eigen::MatrixXd LooseMotions::unresisted(const SparseMatrix& matrix, const std::
       if (matrix.is_symmetric() && column != row) add(column, row, matrix.values()[k]);
     }
 
-  Triangle resistance(columns);
-  const auto enter = [&](const Image& image) {
-    if (image.most == 0) return;
-    Eigen::VectorXd row = Eigen::VectorXd::Zero(columns);
-    const auto put = [&](std::int32_t first, const MotionVector& values) {
-      for (Eigen::Index i = 0; i < 6 && first + i < columns && bodies_[first + i] == bodies_[first]; ++i)
-        row[first + i] = values[i] / image.most;
-    };
-    put(image.first, image.own);
-    for (const auto& [first, values] : image.others) put(first, values);
-    if (row.cwiseAbs().maxCoeff() > negligible) resistance.add(row);
-  };
-  const auto enter_with = [&](const Moved& moved, Image image, const double* elsewhere) {
-    for (int motion = 0; motion < 6; ++motion)
-      if (elsewhere[motion] != 0) image.of_body(moved.first)[motion] += elsewhere[motion];
-    if (elsewhere[6] != 0) {
-      image.of_body(moved.first);  // of a row that nothing moves, too: on even meshes its entries cancel exactly
-      image.most += elsewhere[6];
+  Resistance resistance(bodies_, negligible);
+  for (std::int64_t row = 0; row < matrix.size(); ++row) {
+    if (!matters[row]) continue;
+    const Image* const image = images.find(row);
+    if (!elsewhere || at[row] < 0) {
+      if (image) resistance.enter(*image);
+      continue;
     }
-    enter(image);
-  };
-  const auto enter_all = [&](std::span<const double> elsewhere) {
-    for (std::size_t row = 0; row < at.size(); ++row) {
-      const Image* const image = images.find(row);
-      if (elsewhere.empty() || at[row] < 0) {
-        if (image) enter(*image);
-        continue;
-      }
-      const Moved& moved = all[at[row]];
-      enter_with(moved, image ? *image : Image(), elsewhere.data() + moved.dof * with_magnitudes);
-    }
-  };
-  if (!matrix.elsewhere()) {
-    enter_all({});
-    return resistance.null_space(negligible);
+    Image whole = image ? *image : Image();
+    // of a row that nothing moves, too: on even meshes its entries cancel exactly
+    MotionVector& own = whole.of_body(all[at[row]].first);
+    if (const MotionVector* const of_others = others_->resistance_of(row)) own += *of_others;
+    whole.most += others_->most[row];
+    resistance.enter(whole);
   }
-  // one motion of each body at once, for no cell meets two of them; and magnitudes
-  const auto fill = [&](std::span<double> x) {
-    for (const Moved& moved : all) {
-      std::copy_n(moved.by.data(), moved.count, x.data() + moved.dof * with_magnitudes);
-      x[static_cast<std::size_t>(moved.dof * with_magnitudes + 6)] = moved.moves().cwiseAbs().sum();
-    }
-  };
-  matrix.elsewhere()->products(with_magnitudes, fill, enter_all);
-  return resistance.null_space(negligible);
+  // where stresses turn with bodies, all rows resist, and are others after each evaluation
+  if (others_ && 4 * std::ssize(others_->resisting) > matrix.size()) others_.reset();
+  return resistance.null_space();
 }
 
 std::vector<LooseMotion> LooseMotions::told_apart(Eigen::MatrixXd motions, const std::vector<Moved>& all) const {
@@ -202,11 +258,13 @@ std::vector<LooseMotion> LooseMotions::told_apart(Eigen::MatrixXd motions, const
   return loose;
 }
 
-std::vector<LooseMotion> LooseMotions::of(const SparseMatrix& matrix, double negligible) const {
+std::vector<LooseMotion> LooseMotions::of(const SparseMatrix& matrix, double negligible) {
   if (left_.empty()) return {};
-  const std::vector<Moved> all = moved();
+  Eigen::MatrixXd motions = unresisted(matrix, negligible);
+  if (motions.cols() == 0) return {};
+  const std::vector<Moved> all = moved([](std::int64_t) { return true; });
   if (all.empty()) return {};
-  return told_apart(unresisted(matrix, all, negligible), all);
+  return told_apart(std::move(motions), all);
 }
 
 }  // namespace lacon

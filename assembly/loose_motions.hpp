@@ -3,6 +3,7 @@
 // very different size, the last pivot of a body that nothing holds is round-off far above zero.
 #include <cstdint>
 #include <map>
+#include <optional>
 #include <set>
 #include <vector>
 
@@ -24,9 +25,10 @@ class LooseMotions {
   LooseMotions(RigidMotions motions, const Numbering& numbering);
 
   /// Rigid motions of all bodies together, on the initial geometry, that the matrix maps to nothing but round-off: neither
-  /// contact nor relations, springs or stresses resist them.
-  /// @param negligible of what the entries of a row sum up to, and of what resists most
-  std::vector<LooseMotion> of(const SparseMatrix& matrix, double negligible = round_off) const;
+  /// contact nor relations, springs or stresses resist them. Other processes that have rows are asked once, until values of
+  /// theirs change.
+  /// @param negligible of what the entries of a row sum up to, and of what resists most: round_off, or more
+  std::vector<LooseMotion> of(const SparseMatrix& matrix, double negligible = round_off);
 
  private:
   /// A degree of freedom that has an equation, of a body that imposed displacements do not hold.
@@ -40,11 +42,28 @@ class LooseMotions {
     std::int32_t first;
     Eigen::Matrix<double, 6, Eigen::Dynamic> motions;
   };
-  template <class Use>
-  void for_each_row(const Use& use) const;
-  std::vector<Moved> moved() const;  ///< ascending
+  /// What rows of other processes make of the motions.
+  struct Others {
+    const RowsElsewhere* rows;
+    std::int64_t version;
+    std::vector<double> most;              ///< of each equation: what the entries of its row sum up to
+    std::vector<std::int64_t> resisting;   ///< equations whose row makes more than round-off of them; ascending
+    std::vector<MotionVector> resistance;  ///< of these
+    /// Nothing for a row that makes nothing of them.
+    const MotionVector* resistance_of(std::int64_t equation) const;
+  };
+  class Resistance;
+  /// @param takes whether a degree of freedom is one of those
+  template <class Takes, class Use>
+  void for_each_row(const Takes& takes, const Use& use) const;
+  /// @param takes whether an equation is one of those  @param use takes a Moved, with ascending degrees of freedom
+  template <class Takes, class Use>
+  void for_each_moved(const Takes& takes, const Use& use) const;
+  template <class Takes>
+  std::vector<Moved> moved(const Takes& takes) const;
+  Others asked(const RowsElsewhere& rows, std::int64_t n_equations) const;
   /// (n_motions, n): combinations of the motions that the matrix maps to nothing.
-  Eigen::MatrixXd unresisted(const SparseMatrix& matrix, const std::vector<Moved>& all, double negligible) const;
+  Eigen::MatrixXd unresisted(const SparseMatrix& matrix, double negligible);
   /// Each of them with its bodies, and a degree of freedom that the others are made not to move.
   std::vector<LooseMotion> told_apart(Eigen::MatrixXd motions, const std::vector<Moved>& all) const;
 
@@ -52,6 +71,7 @@ class LooseMotions {
   const Numbering& numbering_;
   std::map<std::int32_t, Left> left_;  ///< of bodies: the motions that imposed displacements leave them
   std::vector<std::int32_t> bodies_;   ///< of each of these motions
+  std::optional<Others> others_;
 };
 
 }  // namespace lacon

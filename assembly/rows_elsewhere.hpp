@@ -14,6 +14,8 @@ class SparseMatrix;
 class RowsElsewhere {
  public:
   virtual ~RowsElsewhere() = default;
+  /// Another number as soon as values may be others.
+  virtual std::int64_t version() const = 0;
   /// The product with unknowns of nodes, or that of magnitudes. @param x (n_nodes, n_components)  @return likewise
   virtual std::span<const double> product(std::span<const double> x, bool magnitudes) const = 0;
   /// Some of them at once, each with the bits of product(); the last one is that of magnitudes.

@@ -1,5 +1,6 @@
 #include "lacon/assembly/parts/cells.hpp"
 
+#include <memory>
 #include <set>
 #include <span>
 #include <sstream>
@@ -19,14 +20,8 @@ bool Cells::obey(const std::string& line) {
     said >> path;
     loan_ = lender_.borrow(path, LoanUse::write);
     board_ = Board::in(loan_->memory(), n_ranks_);
-  } else if (verb == "part") {
-    said >> kind >> path;
-    const auto loan = lender_.borrow(path, LoanUse::read, kind);
-    if (kind != rank_) return true;
-    PartCells cells;
-    Unpacking unpack(loan->memory().data());
-    unpack(cells);
-    part_.emplace(std::move(cells));
+  } else if (verb == "parts") {
+    take_part(said);
   } else if (verb == "keep") {
     said >> number;
     part_->keep(number);
@@ -61,6 +56,20 @@ bool Cells::obey(const std::string& line) {
     return obey_by_board(verb, said);
   }
   return true;
+}
+
+void Cells::take_part(std::istream& said) {
+  int reader = 0;
+  std::string path;
+  std::unique_ptr<Loan> own;
+  for (said >> reader; said >> path; ++reader)
+    if (auto loan = lender_.borrow(path, LoanUse::read, reader); reader == rank_) own = std::move(loan);
+  if (!own) return;
+  PartCells cells;
+  Unpacking unpack(own->memory().data());
+  unpack(cells);
+  own.reset();
+  part_.emplace(std::move(cells));
 }
 
 bool Cells::obey_by_board(const std::string& verb, std::istream& said) {

@@ -1,7 +1,7 @@
 #pragma once
 // What an operator says to a process about its cells, and how that obeys; the answer is always done:
 //   board PATH                           Board, from now on
-//   part RANK PATH                       PartCells of that process alone
+//   parts FIRST PATH ...                 PartCells of the process FIRST alone, of the one behind it, ...
 //   evaluate MATRIX PREVIOUS ORIGIN      ElementPart::evaluate
 //   keep N, natural N, copy N OF, rest N OF, drop N ...      states by number
 //   strain OF                            ElementPart::strain_as
@@ -36,6 +36,7 @@ class Cells {
  private:
   /// Those that read the board, or write there. @return whether it is one
   bool obey_by_board(const std::string& verb, std::istream& said);
+  void take_part(std::istream& said);
   void exchange(bool put, std::istream& said);
   void add_to(const std::string& path) const;
 

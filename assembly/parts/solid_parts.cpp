@@ -25,6 +25,9 @@ std::vector<std::int32_t> weights_of(std::span<const ElementSet> sets) {
   return weights;
 }
 
+/// Of parcels, each of which is an open file.
+constexpr int parcels_at_once = 16;
+
 SharedMemory in_shared_memory(std::span<const std::byte> bytes) {
   SharedMemory memory(bytes.size());
   std::ranges::copy(bytes, memory.data());
@@ -105,17 +108,19 @@ SolidParts::SolidParts(std::shared_ptr<PartProcesses> processes, const Mesh& mes
   memory_.emplace(Board::bytes(processes_->size(), n_dofs));
   board_ = Board::in(*memory_, processes_->size());
   ask("board " + memory_->path());
-  for (int part = 0; part < processes_->size(); ++part) {
-    Packing packing;
-    {
+  for (int first = 0; first < processes_->size(); first += parcels_at_once) {  // they unpack theirs at the same time
+    std::vector<SharedMemory> parcels;
+    std::string line = "parts " + std::to_string(first);
+    for (int part = first; part < std::min(first + parcels_at_once, processes_->size()); ++part) {
       PartCells cells = cells_of_part({mesh_, sets_, numbering_, partition_, blocks_}, part);
       cells.unknowns = {unknowns.begin(), unknowns.end()};
       for (const std::filesystem::path& folder : plugins) cells.plugins.push_back(folder);
       for (const PartSet& set : cells.sets) n_shared_ += std::ssize(set.at);
+      Packing packing;
       packing(cells);
+      line += ' ' + parcels.emplace_back(in_shared_memory(packing.bytes())).path();
     }
-    const SharedMemory memory = in_shared_memory(packing.bytes());
-    ask("part " + std::to_string(part) + ' ' + memory.path());
+    ask(line);
   }
   processes_->keep();
   n_shared_ -= n_cells_;
@@ -132,6 +137,7 @@ void SolidParts::ask(const std::string& line) const {
 
 std::optional<std::int32_t> SolidParts::evaluate(std::span<const double> displacement, SolidMatrix wanted,
                                                  const Start& previous, const Start& origin) {
+  if (wanted != SolidMatrix::none) ++version_;
   std::ranges::copy(displacement, board_.displacement.begin());
   const auto number = [](const Start& start, std::span<double> values) {
     if (!start.points) return std::string("-1");

@@ -69,6 +69,7 @@ class SolidParts : public RowsElsewhere, public std::enable_shared_from_this<Sol
   /// Of some cells of each set. @param number -1: that of the last evaluation
   std::vector<std::vector<double>> values(std::int64_t number, PointQuantity quantity, std::span<const CellRange> cells) const;
 
+  std::int64_t version() const override { return version_; }
   std::span<const double> product(std::span<const double> x, bool magnitudes) const override;
   void products(int n_columns, const std::function<void(std::span<double>)>& fill,
                 const std::function<void(std::span<const double>)>& use) const override;
@@ -109,6 +110,7 @@ class SolidParts : public RowsElsewhere, public std::enable_shared_from_this<Sol
   Board board_;
   Holdings holdings_;  ///< of the present state
   std::int64_t n_cells_ = 0, n_shared_ = 0;
+  std::int64_t version_ = 0;                   ///< of the matrix
   mutable std::int64_t last_ = 0;              ///< number of a kept state
   mutable std::vector<std::int64_t> dropped_;  ///< that nobody needs any more
 };

@@ -1,6 +1,7 @@
 #include "lacon/assembly/petsc/block_rows.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <iterator>
 #include <limits>
@@ -58,7 +59,7 @@ std::span<Entry> summed(std::span<Entry> entries) {
 }
 
 template <class Use>
-void for_each_entry(const BlockSystem& system, const OwnEntries& own, const Use& use) {
+void for_each_entry(const BlockSystem& system, const Use& use) {
   for (std::int64_t i = 0; i < system.sizes.n; ++i)
     for (std::int64_t k = system.row[i]; k < system.row[i + 1]; ++k) {
       const std::int32_t j = system.column[k];
@@ -66,14 +67,51 @@ void for_each_entry(const BlockSystem& system, const OwnEntries& own, const Use&
       use(system.place[i], system.place[j], system.value[k]);
       if (system.sizes.is_symmetric && i != j) use(system.place[j], system.place[i], system.value[k]);
     }
-  for (std::int64_t i = 0; own.matrix && i < own.matrix->size(); ++i)
-    for (std::int64_t k = own.matrix->rows()[i]; k < own.matrix->rows()[i + 1]; ++k) {
-      const std::int32_t j = own.matrix->columns()[k];
-      const double value = own.matrix->values()[k];
-      if (value == 0 || own.place[i] < 0 || own.place[j] < 0) continue;
-      use(own.place[i], own.place[j], value);
-      if (i != j) use(own.place[j], own.place[i], value);
+}
+
+/// What joins two nodes, row by row; zeros in rows and columns of imposed displacements.
+using Block = std::array<double, 9>;
+
+/// The entries that a process has itself, a block of two nodes at a time: calls use(block row, block column, block) for those
+/// that are not zero, in both triangles.
+template <int D, class Use>
+void for_each_block(const OwnEntries& own, const Use& use) {
+  const SparseMatrix& matrix = *own.matrix;
+  const std::int64_t n_nodes = matrix.size() / D;
+  std::vector<std::int32_t> place(n_nodes, -1);
+  for (std::int64_t i = 0; i < n_nodes * D; ++i)
+    if (own.place[i] >= 0) place[i / D] = own.place[i] / D;
+  for (std::int64_t a = 0; a < n_nodes; ++a) {
+    if (place[a] < 0) continue;
+    const std::int64_t n_before = (matrix.rows()[a * D + 1] - matrix.rows()[a * D]) / D;  // neighbours; then comes the diagonal
+    for (std::int64_t n = 0; n <= n_before; ++n) {
+      const bool is_diagonal = n == n_before;
+      const std::int64_t b = matrix.columns()[matrix.rows()[a * D] + n * D] / D;
+      if (place[b] < 0) continue;
+      Block block{}, transposed{};
+      bool is_there = false;
+      for (int r = 0; r < D; ++r)
+        for (int c = 0; c <= (is_diagonal ? r : D - 1); ++c) {
+          const double value = matrix.values()[matrix.rows()[a * D + r] + n * D + c];
+          if (value == 0 || own.place[a * D + r] < 0 || own.place[b * D + c] < 0) continue;
+          is_there = true;
+          block[r * D + c] = transposed[c * D + r] = value;
+          if (is_diagonal) block[c * D + r] = value;
+        }
+      if (!is_there) continue;
+      use(place[a], place[b], block);
+      if (!is_diagonal) use(place[b], place[a], transposed);
     }
+  }
+}
+
+template <class Use>
+void for_each_block(const OwnEntries& own, int dimension, const Use& use) {
+  if (!own.matrix) return;
+  if (dimension == 3)
+    for_each_block<3>(own, use);
+  else
+    for_each_block<2>(own, use);
 }
 
 void append(Rows& rows, std::span<const Entry> entries) {
@@ -121,8 +159,8 @@ struct BlockPattern {
 };
 
 /// Rows of K in whole blocks. Entries are summed up as they come. @param is_symmetric  half of the own columns will do
-/// @param for_each  goes through all entries of own rows: calls what it is given with row, column, value, and whether it is K's
-/// @param[out] is_of_k  as in BlockRows
+/// @param for_each  goes through all entries of own rows: calls the first thing that it is given with row, column, value, and
+/// whether it is K's, the second one with block row, block column and a block of K  @param[out] is_of_k  as in BlockRows
 template <class ForEach>
 SplitBlocks<double> rows_of_blocks(const Range& blocks, int dimension, bool is_symmetric, const ForEach& for_each,
                                    std::vector<std::uint8_t>& is_of_k) {
@@ -133,10 +171,11 @@ SplitBlocks<double> rows_of_blocks(const Range& blocks, int dimension, bool is_s
   const BlockPattern pattern(blocks.last - blocks.first, [&](const auto& use) {
     for (std::int64_t block = blocks.first; block < blocks.last; ++block)
       use(block - blocks.first, static_cast<std::int32_t>(block));
-    for_each([&](std::int32_t row, std::int32_t column, double, bool) {
-      const std::int32_t own_row = block_of(row), block = block_of(column);
+    const auto use_block = [&](std::int32_t own_row, std::int32_t block, const Block&) {
       if (!is_left_out(own_row, block)) use(own_row - blocks.first, block);
-    });
+    };
+    for_each([&](std::int32_t row, std::int32_t column, double, bool) { use_block(block_of(row), block_of(column), {}); },
+             use_block);
   });
   const int size = dimension * dimension;
   if (size * std::ssize(pattern.column) > std::numeric_limits<std::int32_t>::max()) throw std::length_error("PETSc: 2^31");
@@ -162,22 +201,36 @@ SplitBlocks<double> rows_of_blocks(const Range& blocks, int dimension, bool is_s
   }
   rows.own.is_half = is_symmetric;
   is_of_k.assign(rows.own.column.size(), 0);
+  const auto place_of = [&](const BlockEntries<double>& part, std::int32_t own_row, std::int32_t block) {
+    const std::int64_t i = own_row - blocks.first;
+    const auto first = part.column.begin() + part.offset[i], last = part.column.begin() + part.offset[i + 1];
+    return std::lower_bound(first, last, number_of(block)) - part.column.begin();
+  };
   std::int32_t row_before = -1, block_before = -1;  // entries of a block follow each other
   std::int64_t at = 0;
-  for_each([&](std::int32_t row, std::int32_t column, double value, bool is_k) {
+  const auto add = [&](std::int32_t row, std::int32_t column, double value, bool is_k) {
     const std::int32_t block = block_of(column), own_row = block_of(row);
     if (is_left_out(own_row, block)) return;
     BlockEntries<double>& part = is_own(block) ? rows.own : rows.others;
     if (own_row != row_before || block != block_before) {
-      const std::int64_t i = own_row - blocks.first;
-      const auto first = part.column.begin() + part.offset[i], last = part.column.begin() + part.offset[i + 1];
-      at = std::lower_bound(first, last, number_of(block)) - part.column.begin();
+      at = place_of(part, own_row, block);
       row_before = own_row, block_before = block;
     }
     if (is_k && is_own(block)) is_of_k[at] = 1;
     const std::int64_t r = row - own_row * dimension, c = column - block * dimension;
     part.value[at * size + (part.is_half ? r * dimension + c : c * dimension + r)] += value;
-  });
+  };
+  const auto add_block = [&](std::int32_t own_row, std::int32_t block, const Block& values) {
+    if (is_left_out(own_row, block)) return;
+    BlockEntries<double>& part = is_own(block) ? rows.own : rows.others;
+    const std::int64_t there = place_of(part, own_row, block);
+    if (is_own(block)) is_of_k[there] = 1;
+    double* const sum = part.value.data() + there * size;
+    for (int r = 0; r < dimension; ++r)
+      for (int c = 0; c < dimension; ++c)
+        sum[part.is_half ? r * dimension + c : c * dimension + r] += values[r * dimension + c];
+  };
+  for_each(add, add_block);
   return rows;
 }
 
@@ -199,7 +252,7 @@ double mean_size(std::span<const double> values) {
 Known known_of(const BlockSystem& system, const OwnEntries& entries) {
   Known known{.diagonal = entries.diagonal, .mean = 1, .multipliers = std::vector<Multiplier>(system.sizes.n_multipliers)};
   known.diagonal.resize(system.sizes.n_blocks * system.sizes.dimension, 0.0);
-  for_each_entry(system, {}, [&](std::int32_t row, std::int32_t column, double value) {
+  for_each_entry(system, [&](std::int32_t row, std::int32_t column, double value) {
     if (row >= 0 && column >= 0) {
       if (row == column) known.diagonal[row] += value;
     } else if (row >= 0) {
@@ -310,9 +363,12 @@ BlockRows rows_of_part(const BlockSystem& system, const OwnEntries& entries, int
 
   made.k = rows_of_blocks(
       made.blocks, dimension, system.sizes.is_symmetric,
-      [&](const auto& use) {  // K + B W C
-        for_each_entry(system, entries, [&](std::int32_t row, std::int32_t column, double value) {
+      [&](const auto& use, const auto& use_block) {  // K + B W C
+        for_each_entry(system, [&](std::int32_t row, std::int32_t column, double value) {
           if (column >= 0 && is_own(row)) use(row, column, value, true);
+        });
+        for_each_block(entries, dimension, [&](std::int32_t row, std::int32_t column, const Block& block) {
+          if (row >= made.blocks.first && row < made.blocks.last) use_block(row, column, block);
         });
         for (std::size_t i = 0; i < known.multipliers.size(); ++i) {
           const double weight = scales.weight[i];

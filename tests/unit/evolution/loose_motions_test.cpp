@@ -61,7 +61,7 @@ TEST(LooseMotions, ThereAreNoneWhereContactHolds) {
   StaticState state = equilibrium.natural_state();
   equilibrium.pair(state.displacement);
   state.patches = equilibrium.contact()->initial();
-  const LooseMotions motions = motions_of(problem);
+  LooseMotions motions = motions_of(problem);
   for (const Status status : {Status::active, Status::open}) {
     state.patches.status = {status};
     equilibrium.assemble(state, state, {});
@@ -73,6 +73,7 @@ TEST(LooseMotions, ThereAreNoneWhereContactHolds) {
 class Elsewhere : public RowsElsewhere {
  public:
   explicit Elsewhere(const SparseMatrix& matrix) : matrix_(matrix) {}
+  std::int64_t version() const override { return now; }
   std::span<const double> product(std::span<const double> x, bool magnitudes) const override {
     ++asked;
     multiply(x, magnitudes);
@@ -100,6 +101,7 @@ class Elsewhere : public RowsElsewhere {
   SparseMatrix whole(const SparseMatrix&) const override { return matrix_; }
 
   mutable int asked = 0;
+  std::int64_t now = 0;
 
  private:
   void multiply(std::span<const double> x, bool magnitudes) const {
@@ -116,8 +118,9 @@ class Elsewhere : public RowsElsewhere {
   mutable std::vector<double> y_;
 };
 
-// Processes that have rows are asked once, whatever the motions are.
-TEST(LooseMotions, OtherProcessesAreAskedOnce) {
+// Processes that have rows are asked once, whatever the motions are and however often they are looked for, until their values
+// change; what is here changes without them.
+TEST(LooseMotions, OtherProcessesAreAskedOnceUntilTheirValuesChange) {
   for (const bool held : {false, true}) {
     StaticProblem problem = two_squares("ELAS/PETIT", false);
     problem.loads.push_back(hold(bottom, 1));
@@ -127,16 +130,29 @@ TEST(LooseMotions, OtherProcessesAreAskedOnce) {
     Equilibrium equilibrium(problem);
     const StaticState rest = equilibrium.natural_state();
     equilibrium.assemble(rest, rest, {});
-    const SparseMatrix& whole = equilibrium.system().matrix();
-    const Elsewhere elsewhere(whole);
+    SparseMatrix whole = equilibrium.system().matrix();
+    Elsewhere elsewhere(whole);
     SparseMatrix here(problem.numbering, {}, {});
     here.add_elsewhere(&elsewhere);
-    const LooseMotions motions = motions_of(problem);
-    const std::vector<LooseMotion> expected = motions.of(whole), found = motions.of(here);
+    LooseMotions motions = motions_of(problem), motions_of_whole = motions_of(problem);
+    const auto compare = [&](std::size_t n, int asked) {
+      const std::vector<LooseMotion> expected = motions_of_whole.of(whole), found = motions.of(here);
+      EXPECT_EQ(elsewhere.asked, asked);
+      ASSERT_EQ(found.size(), expected.size());
+      EXPECT_EQ(found.size(), n);
+      for (std::size_t i = 0; i < found.size(); ++i) EXPECT_EQ(found[i].bodies, expected[i].bodies);
+    };
+    compare(held ? 1U : 3U, 1);
+    EXPECT_EQ(motions.of(here, 1e-6).size(), held ? 1U : 3U);
+    const auto spring = problem.numbering.equation[25];  // of node 12, vertical
+    here.add_diagonal(spring, young);
+    const auto with_spring = motions.of(here);
+    EXPECT_EQ(with_spring.size(), held ? 0U : 2U);
     EXPECT_EQ(elsewhere.asked, 1);
-    ASSERT_EQ(found.size(), expected.size());
-    EXPECT_EQ(found.size(), held ? 1U : 3U);
-    for (std::size_t i = 0; i < found.size(); ++i) EXPECT_EQ(found[i].bodies, expected[i].bodies);
+    here.set_zero();
+    whole.add_diagonal(spring, young);
+    ++elsewhere.now;
+    compare(held ? 0U : 2U, 2);
   }
 }
 
