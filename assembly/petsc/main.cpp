@@ -92,9 +92,10 @@ std::string solved(const Lender& lender, Krylov& krylov, double share, const std
 }
 
 /// Large arrays that are given back go back to the system: Open MPI has them kept for ever, for networks that work on memory
-/// by themselves, and the matrices of a preconditioner on its way are as large as what is left in the end.
+/// by themselves, and the matrices of a preconditioner on its way are as large as what is left in the end. Vectors do not:
+/// they come and go with every solution, and fresh pages take longer than what is done with them.
 void give_back_at_once() {
-  constexpr int large = 1 << 20;  // bytes
+  constexpr int large = 1 << 25;  // bytes; more malloc does not take
   mallopt(M_MMAP_MAX, 1 << 16);
   mallopt(M_MMAP_THRESHOLD, large);
   mallopt(M_TRIM_THRESHOLD, large);
