@@ -113,6 +113,8 @@ class Newton {
                     IterationReport& line, const std::function<void()>& assemble_again);
   void fit_by_columns(LinearStatuses& fitted, std::size_t affordable, std::span<const double> step, StaticState& state,
                       const Accuracy& accuracy, std::vector<double>& solution);
+  /// Iterations for the present system that start from the solution of one nearby, and go as far as statuses ask for.
+  SolutionReport solve_from(std::span<const double> near, std::span<const double> step, std::vector<double>& solution);
   /// Solve the system with what `solution` holds, in place. @param again with the matrix that was solved with last
   SolutionReport solve_linear(std::vector<double>& solution, const Accuracy& accuracy, bool again = false);
   void note_work(const SolutionReport& report);

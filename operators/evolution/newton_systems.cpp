@@ -19,7 +19,8 @@
 namespace lacon {
 namespace {
 
-constexpr int most_rounds = 6;  // of statuses in an iteration
+constexpr int most_rounds = 6;       // of statuses in an iteration
+constexpr double of_a_round = 1e-6;  // of what the solution before leaves of its right side, iterations may leave
 
 }  // namespace
 
@@ -95,11 +96,12 @@ void Newton::fit_statuses(std::vector<double>& solution, std::span<const double>
     const std::vector<Status> before = state.patches.status;
     fitted.change_all(state.patches);
     assemble_again();
-    std::vector<double> other = equilibrium_.right_side(step);
     SolutionReport report;
+    std::vector<double> other;
     const auto serves = [&] {
       if (!loose_.of(system.matrix()).empty()) return false;
-      report = solve_linear(other, accuracy);
+      report = line.solution.factorisation.is_iterative ? solve_from(solution, step, other)
+                                                        : solve_linear(other = equilibrium_.right_side(step), accuracy);
       const auto& negative = report.factorisation.negative_pivots;
       return report.factorisation.null_pivots.empty() && (!negative || *negative <= equilibrium_.n_constraints(state));
     };
@@ -129,6 +131,16 @@ void Newton::fit_by_columns(LinearStatuses& fitted, std::size_t affordable, std:
   for (std::size_t i = 0; i < side.size(); ++i) side[i] += more[i];
   solution = std::move(side);
   fitted.take(state.patches, solution);
+}
+
+SolutionReport Newton::solve_from(std::span<const double> near, std::span<const double> step, std::vector<double>& solution) {
+  solution.resize(near.size());
+  equilibrium_.system().matrix().multiply(near, solution);
+  const std::vector<double> side = equilibrium_.right_side(step);
+  for (std::size_t i = 0; i < side.size(); ++i) solution[i] = side[i] - solution[i];
+  const SolutionReport report = solve_linear(solution, {.rough = true, .share = of_a_round});
+  for (std::size_t i = 0; i < side.size(); ++i) solution[i] += near[i];
+  return report;
 }
 
 SolutionReport Newton::solve_linear(std::vector<double>& solution, const Accuracy& accuracy, bool again) {
