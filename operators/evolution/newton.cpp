@@ -19,6 +19,7 @@
 namespace lacon {
 namespace {
 
+constexpr int most_times = 3;          // ITER_GLOB_MAXI, where each set of statuses has that many iterations to its equilibrium
 constexpr int drifting = 4;            // iterations without change of status, each of which leaves more than the one before
 constexpr double gap_share = 1e-2;     // of RESI_GEOM: largest |g_T| / h, 1e-8 by default
 constexpr double deepest = 1;          // sizes of a patch, by which bodies that began in a few patches may go into each other
@@ -222,9 +223,13 @@ int Newton::iterate(double instant, StaticState& state, const std::function<void
   bool settling = false;  // statuses change from iteration to iteration: a rough solution finds them as well
   IterationReport line;
   std::size_t changing = 0;
-  for (int iteration = 0; iteration <= options_.iterations; ++iteration) {
+  int last = options_.iterations;
+  const auto with_own_iterations = [&](int first) {
+    return std::min(first + options_.iterations, most_times * options_.iterations);
+  };
+  for (int iteration = 0; iteration <= last; ++iteration) {
     const auto start = std::chrono::steady_clock::now();
-    const bool rough = settling && iteration < options_.iterations;
+    const bool rough = settling && iteration < last;
     const Accuracy accuracy{.rough = rough, .share = iteration > 0 ? forcing_.next(line, rough) : 0};
     line = {.iteration = iteration};
     const SolidMatrix asked = iteration == 0 ? options_.prediction : options_.matrix;
@@ -254,11 +259,13 @@ int Newton::iterate(double instant, StaticState& state, const std::function<void
     // touch
     const bool waits = iteration == 0 && parts_a_zone(before, wanted);
     keep_lost_masters(instant, before, wanted, state);
+    const bool kept = statuses_.keeps();
     state.patches.status = waits ? before : statuses_.next(before, wanted);
+    if (statuses_.keeps() != kept) last = with_own_iterations(iteration);
     choice_.note_statuses(line.status_changes, equilibrium_.flows(previous));
     assemble(state, previous, options_.matrix);
     judge(state, previous, increment, line);
-    line.renews_cuts = iteration < options_.iterations && renews_cuts(line);
+    line.renews_cuts = iteration < last && renews_cuts(line);
     line.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     report(line);
     course_.add(line.longest, line.worst_dof);
@@ -268,7 +275,7 @@ int Newton::iterate(double instant, StaticState& state, const std::function<void
       return iteration;
     }
     const bool other_forces = (course_.period() || std::min(course_.growths(), settled_) >= drifting) &&
-                              keep_covers_that_sway(instant, state, iteration == options_.iterations);
+                              keep_covers_that_sway(instant, state, iteration == last);
     const int done = iteration + 1;
     if (elsewhere_ &&
         Prediction::leads_astray(done, line.longest, forces_before, there.in_equilibrium() ? HUGE_VAL : there.longest))
@@ -287,6 +294,7 @@ int Newton::iterate(double instant, StaticState& state, const std::function<void
       state.patches.status = statuses_.change(state.patches.status, wanted);
       other_matrix = true;
       fail_if_endless(instant);
+      last = with_own_iterations(iteration);
     }
     if (line.renews_cuts) {
       ++times_cut_;

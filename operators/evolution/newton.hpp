@@ -29,7 +29,7 @@ namespace lacon {
 struct NewtonOptions {
   ConvergenceCriteria criteria;
   std::vector<double> reference_forces = {};      ///< those of RESI_REFE_RELA, (n_nodes, n_components)
-  int iterations = 10;                            ///< ITER_GLOB_MAXI
+  int iterations = 10;                            ///< ITER_GLOB_MAXI; of each set, where statuses wait for its equilibrium
   SolidMatrix matrix = SolidMatrix::tangent;      ///< NEWTON/MATRICE
   SolidMatrix prediction = SolidMatrix::tangent;  ///< NEWTON/PREDICTION: of the first iteration of an instant
   /// PREDICTION='EXTRAPOLE': an instant starts where the motion of the last one leads to; TANGENTE and ELASTIQUE: where the
