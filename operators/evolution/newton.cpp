@@ -23,6 +23,7 @@ constexpr int most_times = 3;          // ITER_GLOB_MAXI, where each set of stat
 constexpr int drifting = 4;            // iterations without change of status, each of which leaves more than the one before
 constexpr double gap_share = 1e-2;     // of RESI_GEOM: largest |g_T| / h, 1e-8 by default
 constexpr double deepest = 1;          // sizes of a patch, by which bodies that began in a few patches may go into each other
+constexpr double through = 10;         // likewise, other bodies that only springs hold before they touch
 constexpr int most_cuts = 2;           // anew, in an instant
 constexpr double other_stress = 1e-8;  // of the largest stress: that of another law
 
@@ -246,6 +247,7 @@ int Newton::iterate(double instant, StaticState& state, const std::function<void
     // what iterates that go to and fro jump over lies between them. In space forces leap where the traces of facets change, and
     // a search for balance stops at each leap: there it ends with the period
     goes_round_ = course_.period() || (goes_round_ && problem_.dimension == 2);
+    const std::vector<double> gaps = contact() ? contact()->gaps_over_size() : std::vector<double>();
     std::vector<double> increment = equilibrium_.add(solution, step, state);
     const bool driven = std::ranges::any_of(step, [](double value) { return value != 0; });
     std::fill(step.begin(), step.end(), 0.0);  // imposed displacements move in the first iteration alone
@@ -253,7 +255,7 @@ int Newton::iterate(double instant, StaticState& state, const std::function<void
       shorten(solution, previous, state, increment);
     else
       equilibrium_.pair(state.displacement);
-    if (times_held_ > 0 && !driven) stay_shallow(solution, state, increment);
+    if (contact() && !driven) stay_shallow(solution, gaps, state, increment);
     const std::vector<Status> before = state.patches.status, wanted = wanted_statuses(state, line);
     // what imposed displacements alone have parted, the next iteration may bring together again: it starts from bodies that
     // touch
@@ -350,10 +352,10 @@ void Newton::shorten(std::span<const double> solution, const StaticState& previo
   }
 }
 
-void Newton::stay_shallow(std::span<const double> solution, StaticState& state, std::vector<double>& increment) {
-  const double depth = contact()->deepest_open(state.patches);
-  if (!(depth > deepest)) return;
-  const double part = deepest / depth;
+void Newton::stay_shallow(std::span<const double> solution, std::span<const double> gaps, StaticState& state,
+                          std::vector<double>& increment) {
+  const double part = contact()->part_to_depth(state.patches, gaps, times_held_ > 0 ? deepest : through, deepest);
+  if (!(part < 1)) return;
   std::vector<double> back(solution.begin(), solution.end());
   for (double& value : back) value *= part - 1;
   equilibrium_.add(back, std::vector<double>(increment.size(), 0.0), state);
