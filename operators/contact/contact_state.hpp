@@ -223,6 +223,8 @@ class ContactState {
 
   const ContactGeometry& geometry() const { return geometry_; }
   std::size_t n_patches() const { return geometry_.n_patches(); }
+  /// h
+  double patch_size(std::size_t patch) const { return size_[patch]; }
   /// The smallest h of a patch.
   double smallest_patch() const { return *std::min_element(size_.begin(), size_.end()); }
 
