@@ -282,12 +282,20 @@ double ContactState::constraint_residual(const Patchwise& patches) const {
   return largest;
 }
 
-double ContactState::deepest_open(const Patchwise& patches) const {
-  double deepest = 0;
+std::vector<double> ContactState::gaps_over_size() const {
+  std::vector<double> gaps(n_patches(), 0.0);
   for (std::size_t p = 0; p < n_patches(); ++p)
-    if (patches.status[p] == Status::open && !held_open_[p] && geometry_.coverage(p) >= tolerances_.taking_coverage)
-      deepest = std::max(deepest, -geometry_.gap(p) / size_[p]);
-  return deepest;
+    if (geometry_.coverage(p) >= tolerances_.taking_coverage) gaps[p] = geometry_.gap(p) / size_[p];
+  return gaps;
+}
+
+double ContactState::part_to_depth(const Patchwise& patches, std::span<const double> before, double limit, double depth) const {
+  const std::vector<double> now = gaps_over_size();
+  double part = 1;
+  for (std::size_t p = 0; p < n_patches(); ++p)
+    if (patches.status[p] == Status::open && !held_open_[p] && now[p] < -limit && before[p] > -depth)
+      part = std::min(part, (before[p] + depth) / (before[p] - now[p]));
+  return part;
 }
 
 std::int64_t ContactState::n_constraints(const Patchwise& patches) const {

@@ -177,8 +177,11 @@ class ContactState {
 
   /// Largest |g_T| / h over the active patches that have an equation.
   double constraint_residual(const Patchwise& patches) const;
-  /// How deep the open patch lies in its master that lies deepest, over h; at least 0.
-  double deepest_open(const Patchwise& patches) const;
+  /// Average gaps over h, (patches); 0 of those of which too little is covered to take contact.
+  std::vector<double> gaps_over_size() const;
+  /// The part of an increment, which has led to the present geometry, where the first open patch has come `depth` sizes deep
+  /// into its master; 1 where none lies deeper than `limit` that did not when it began. @param before gaps_over_size() there
+  double part_to_depth(const Patchwise& patches, std::span<const double> before, double limit, double depth) const;
   /// Forces and statuses of each zone.
   std::vector<ZoneBalance> balance(const Patchwise& patches) const;
   /// The strain that the pressure on a patch makes in the bodies under it: |lambda| times their flexibility.
@@ -220,6 +223,8 @@ class ContactState {
 
   const ContactGeometry& geometry() const { return geometry_; }
   std::size_t n_patches() const { return geometry_.n_patches(); }
+  /// h
+  double patch_size(std::size_t patch) const { return size_[patch]; }
   /// The smallest h of a patch.
   double smallest_patch() const { return *std::min_element(size_.begin(), size_.end()); }
 

@@ -13,6 +13,7 @@ namespace lacon {
 namespace {
 
 constexpr double gap_that_counts = 0.2;  // of what skins give way by: pressures of a fit are wrong by as much
+constexpr double missed = 0.04;          // of h: a strain that the pressure would make that coarse patches do not feel
 
 }  // namespace
 
@@ -96,6 +97,8 @@ void ContactNotices::start(double instant) {
   for (std::size_t p = 0; p < contact->n_patches(); ++p)
     if (contact->geometry().coverage(p) > 0 && contact->is_locked(p) && locked++ == 0) first = p;
   tell_what_is_too_deep(instant);
+  for (std::int32_t zone = 0; zone < static_cast<std::int32_t>(contact->geometry().zones().size()); ++zone)
+    if (const auto pierced = contact->pierced(zone, present_.state.patches, true)) depth_before_[zone] = pierced->depth;
   const std::vector<double>& moved = present_.state.displacement;
   const bool initial = std::all_of(moved.begin(), moved.end(), [](double value) { return value == 0; });
   for (std::int32_t zone = 0; initial && zone < static_cast<std::int32_t>(contact->geometry().zones().size()); ++zone)
@@ -188,6 +191,27 @@ void ContactNotices::end(bool /*completed*/) {
   }
 }
 
+void ContactNotices::fail_if_all_missed() const {
+  if (!pressed_.empty()) return;
+  const auto came_in_by = [&](const auto& of_zone) {
+    const auto before = depth_before_.find(of_zone.first);
+    return of_zone.second.worst.depth - (before == depth_before_.end() ? 0 : before->second);
+  };
+  const auto most = std::ranges::max_element(pierced_at_rest_, {}, came_in_by);
+  if (most == pierced_at_rest_.end() || came_in_by(*most) < missed) return;
+  const auto& [zone, pierced] = *most;
+  const ContactZone& names = present_.problem.contact->zones[zone];
+  const double size = present_.contact->patch_size(pierced.worst.patch), depth = pierced.worst.depth * size;
+  fail("EVOLUTION_64", {{"slave", names.slave_group},
+                        {"master", names.master_group},
+                        {"cell", first_cell(pierced.worst.patch)},
+                        {"instant", fmt::format("{:.9g}", pierced.instant)},
+                        {"depth", fmt::format("{:.3g}", depth)},
+                        {"gap", fmt::format("{:.3g}", pierced.worst.gap)},
+                        // where one body comes to a point the average gap less that at the point grows like the size
+                        {"size", fmt::format("{:.2g}", size * depth / (depth + std::max(pierced.worst.gap, 0.0)))}});
+}
+
 void ContactNotices::save(const hdf5::Group& group, const PiercedZones& pierced_zones) {
   std::vector<std::int64_t> zones, patches;
   std::vector<double> instants, depths, gaps;
@@ -226,6 +250,11 @@ void ContactNotices::save(const hdf5::Group& group) const {
     alternating.push_back(zone), patches.push_back(static_cast<std::int64_t>(most.most.patch));
     instants.push_back(most.instant), shares.push_back(most.most.share);
   }
+  std::vector<std::int32_t> deep_before;
+  std::vector<double> depths_before;
+  for (const auto& [zone, depth] : depth_before_) deep_before.push_back(zone), depths_before.push_back(depth);
+  group.write("deep_before", deep_before);
+  group.write("depth_before", depths_before);
   std::vector<std::int32_t> of_facets;
   std::vector<double> when, facet_gaps, gives;
   for (const auto& [zone, faceted] : faceted_) {
@@ -256,6 +285,9 @@ void ContactNotices::resume(const hdf5::Group& group) {
   pierced_ = resumed(group.open("pierced"));
   pierced_at_rest_ = resumed(group.open("pierced_at_rest"));
   for (const std::int32_t zone : group.read<std::int32_t>("pressed")) pressed_.insert(zone);
+  const auto deep_before = group.read<std::int32_t>("deep_before");
+  const auto depths_before = group.read<double>("depth_before");
+  for (std::size_t i = 0; i < deep_before.size(); ++i) depth_before_[deep_before[i]] = depths_before.at(i);
   missed_ = resumed(group.open("missed"));
   const auto strained = group.read<std::int32_t>("strained");
   const auto strains = group.read<double>("strain");

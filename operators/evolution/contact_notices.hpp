@@ -29,6 +29,9 @@ class ContactNotices : public EvolutionObserver {
   /// EVOLUTION_43: zones whose skins never met; EVOLUTION_47: zones whose pressures alternate; EVOLUTION_60:
   /// zones whose straight edges leave a gap that counts.
   void end(bool completed) override;
+  /// Of a computation that has come to its end. Throws EVOLUTION_64 where nothing has pressed in any zone at any instant,
+  /// though bodies have come to lie in each other: there is no force of contact in its result.
+  void fail_if_all_missed() const;
   void save(const hdf5::Group& group) const override;
   void resume(const hdf5::Group& group) override;
 
@@ -66,6 +69,7 @@ class ContactNotices : public EvolutionObserver {
   Bodies bodies_;
   std::set<std::int32_t> free_;  ///< bodies that are held by contact alone, and of which nothing was told
   PiercedZones pierced_;
+  std::map<std::int32_t, double> depth_before_;      ///< of zones at the initial state, where that is worth an alarm
   PiercedZones pierced_at_rest_;                     ///< what is worth an alarm of zones where nothing has pressed
   std::set<std::int32_t> pressed_;                   ///< the others
   std::map<std::int32_t, double> strain_;            ///< of these, the largest that a pressure has made

@@ -19,9 +19,11 @@
 namespace lacon {
 namespace {
 
+constexpr int most_times = 3;          // ITER_GLOB_MAXI, where each set of statuses has that many iterations to its equilibrium
 constexpr int drifting = 4;            // iterations without change of status, each of which leaves more than the one before
 constexpr double gap_share = 1e-2;     // of RESI_GEOM: largest |g_T| / h, 1e-8 by default
 constexpr double deepest = 1;          // sizes of a patch, by which bodies that began in a few patches may go into each other
+constexpr double through = 10;         // likewise, other bodies that only springs hold before they touch
 constexpr int most_cuts = 2;           // anew, in an instant
 constexpr double other_stress = 1e-8;  // of the largest stress: that of another law
 
@@ -222,9 +224,13 @@ int Newton::iterate(double instant, StaticState& state, const std::function<void
   bool settling = false;  // statuses change from iteration to iteration: a rough solution finds them as well
   IterationReport line;
   std::size_t changing = 0;
-  for (int iteration = 0; iteration <= options_.iterations; ++iteration) {
+  int last = options_.iterations;
+  const auto with_own_iterations = [&](int first) {
+    return std::min(first + options_.iterations, most_times * options_.iterations);
+  };
+  for (int iteration = 0; iteration <= last; ++iteration) {
     const auto start = std::chrono::steady_clock::now();
-    const bool rough = settling && iteration < options_.iterations;
+    const bool rough = settling && iteration < last;
     const Accuracy accuracy{.rough = rough, .share = iteration > 0 ? forcing_.next(line, rough) : 0};
     line = {.iteration = iteration};
     const SolidMatrix asked = iteration == 0 ? options_.prediction : options_.matrix;
@@ -241,6 +247,7 @@ int Newton::iterate(double instant, StaticState& state, const std::function<void
     // what iterates that go to and fro jump over lies between them. In space forces leap where the traces of facets change, and
     // a search for balance stops at each leap: there it ends with the period
     goes_round_ = course_.period() || (goes_round_ && problem_.dimension == 2);
+    const std::vector<double> gaps = contact() ? contact()->gaps_over_size() : std::vector<double>();
     std::vector<double> increment = equilibrium_.add(solution, step, state);
     const bool driven = std::ranges::any_of(step, [](double value) { return value != 0; });
     std::fill(step.begin(), step.end(), 0.0);  // imposed displacements move in the first iteration alone
@@ -248,17 +255,19 @@ int Newton::iterate(double instant, StaticState& state, const std::function<void
       shorten(solution, previous, state, increment);
     else
       equilibrium_.pair(state.displacement);
-    if (times_held_ > 0 && !driven) stay_shallow(solution, state, increment);
+    if (contact() && !driven) stay_shallow(solution, gaps, state, increment);
     const std::vector<Status> before = state.patches.status, wanted = wanted_statuses(state, line);
     // what imposed displacements alone have parted, the next iteration may bring together again: it starts from bodies that
     // touch
     const bool waits = iteration == 0 && parts_a_zone(before, wanted);
     keep_lost_masters(instant, before, wanted, state);
+    const bool kept = statuses_.keeps();
     state.patches.status = waits ? before : statuses_.next(before, wanted);
+    if (statuses_.keeps() != kept) last = with_own_iterations(iteration);
     choice_.note_statuses(line.status_changes, equilibrium_.flows(previous));
     assemble(state, previous, options_.matrix);
     judge(state, previous, increment, line);
-    line.renews_cuts = iteration < options_.iterations && renews_cuts(line);
+    line.renews_cuts = iteration < last && renews_cuts(line);
     line.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     report(line);
     course_.add(line.longest, line.worst_dof);
@@ -268,7 +277,7 @@ int Newton::iterate(double instant, StaticState& state, const std::function<void
       return iteration;
     }
     const bool other_forces = (course_.period() || std::min(course_.growths(), settled_) >= drifting) &&
-                              keep_covers_that_sway(instant, state, iteration == options_.iterations);
+                              keep_covers_that_sway(instant, state, iteration == last);
     const int done = iteration + 1;
     if (elsewhere_ &&
         Prediction::leads_astray(done, line.longest, forces_before, there.in_equilibrium() ? HUGE_VAL : there.longest))
@@ -287,6 +296,7 @@ int Newton::iterate(double instant, StaticState& state, const std::function<void
       state.patches.status = statuses_.change(state.patches.status, wanted);
       other_matrix = true;
       fail_if_endless(instant);
+      last = with_own_iterations(iteration);
     }
     if (line.renews_cuts) {
       ++times_cut_;
@@ -342,10 +352,10 @@ void Newton::shorten(std::span<const double> solution, const StaticState& previo
   }
 }
 
-void Newton::stay_shallow(std::span<const double> solution, StaticState& state, std::vector<double>& increment) {
-  const double depth = contact()->deepest_open(state.patches);
-  if (!(depth > deepest)) return;
-  const double part = deepest / depth;
+void Newton::stay_shallow(std::span<const double> solution, std::span<const double> gaps, StaticState& state,
+                          std::vector<double>& increment) {
+  const double part = contact()->part_to_depth(state.patches, gaps, times_held_ > 0 ? deepest : through, deepest);
+  if (!(part < 1)) return;
   std::vector<double> back(solution.begin(), solution.end());
   for (double& value : back) value *= part - 1;
   equilibrium_.add(back, std::vector<double>(increment.size(), 0.0), state);

@@ -29,7 +29,7 @@ namespace lacon {
 struct NewtonOptions {
   ConvergenceCriteria criteria;
   std::vector<double> reference_forces = {};      ///< those of RESI_REFE_RELA, (n_nodes, n_components)
-  int iterations = 10;                            ///< ITER_GLOB_MAXI
+  int iterations = 10;                            ///< ITER_GLOB_MAXI; of each set, where statuses wait for its equilibrium
   SolidMatrix matrix = SolidMatrix::tangent;      ///< NEWTON/MATRICE
   SolidMatrix prediction = SolidMatrix::tangent;  ///< NEWTON/PREDICTION: of the first iteration of an instant
   /// PREDICTION='EXTRAPOLE': an instant starts where the motion of the last one leads to; TANGENTE and ELASTIQUE: where the
@@ -159,9 +159,12 @@ class Newton {
   /// @param solution that `state` has moved by  @param increment of all unknowns of nodes, shortened as well
   void shorten(std::span<const double> solution, const StaticState& previous, StaticState& state,
                std::vector<double>& increment);
-  /// Likewise where bodies began in a few patches, as far as others have gone in deeper than their size: under the whole load
-  /// a few patches give way so far that their neighbourhood is no geometry to go on from.
-  void stay_shallow(std::span<const double> solution, StaticState& state, std::vector<double>& increment);
+  /// Likewise, to where the first patch comes in by its size. Where bodies began in a few patches, as far as others have gone
+  /// in deeper: under the whole load a few patches give way so far that their neighbourhood is no geometry to go on from. Where
+  /// weak springs hold a body before it touches, if one lies ten times as deep: behind the other body.
+  /// @param gaps ContactState::gaps_over_size() where the increment began
+  void stay_shallow(std::span<const double> solution, std::span<const double> gaps, StaticState& state,
+                    std::vector<double>& increment);
   /// Throws EVOLUTION_4. @param line the last iteration  @param changing a patch that changes its status in it, if any does
   [[noreturn]] void fail_to_converge(double instant, const IterationReport& line, std::size_t changing) const;
   /// What is known of a failure, one thing behind the other.

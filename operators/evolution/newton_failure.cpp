@@ -92,7 +92,7 @@ void Newton::fail_to_converge(double instant, const IterationReport& line, std::
   if (!hanging_.empty()) hanging_words = part("body_hangs", {{"body", hanging_}});
   throw InstantFailure(
       message("EVOLUTION_4", {{"instant", fmt::format("{:.9g}", instant)},
-                              {"iterations", std::to_string(options_.iterations)},
+                              {"iterations", std::to_string(line.iteration)},
                               {"unmet", said({unmet_criteria(line, changing), course_.words(), unstable_words, round_words,
                                               turned_words, hanging_words})},
                               {"remedy", remedy(line, excess)}}),

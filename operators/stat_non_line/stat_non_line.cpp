@@ -198,6 +198,7 @@ void stat_non_line(const Order& order, const Base& base) {
   } catch (const Error& error) {
     failed_step.tell(error);
   }
+  notices.fail_if_all_missed();
 }
 
 }  // namespace lacon

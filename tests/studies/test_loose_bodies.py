@@ -80,6 +80,13 @@ class LooseBodies(StudyTest):
         self.assertAlmostEqual(force, 1000, delta=1)
         self.assertNotIn("<A>", said)
 
+    def test_a_body_that_falls_on_weak_springs_ends_on_the_other(self):
+        """Its first increment leads thousands of patches deep: 10 iterations, with all patches pressing there or one, where 3 are enough."""
+        for gap in (0.5, 1.5):
+            _, force, said = self.solve(self.rocker(20, gap), 1e-3, 100.0, '_F(GROUP_MA="TOP", DX=0.0),', ', LIAISON_UNIF=_F(GROUP_MA="TOP", DDL="DY")')
+            self.assertAlmostEqual(force, 1000, delta=1)
+            self.assertLessEqual(int(re.search(r"Converged at the instant 1 with (\d+) iteration", said)[1]), 4)
+
     def slot(self, gap):
         """A block on the floor of a slot, between walls."""
         box = block("QUAD8", np.linspace(0, 2, 4), np.linspace(0, 2, 4), None, "BODY", {"bottom": "SKIN", "left": "LEFT", "right": "RIGHT", "top": "TOP"})

@@ -99,14 +99,17 @@ class FlushEnds(StudyTest):
 class Skins(StudyTest):
     def test_a_round_body_that_a_coarse_slave_lets_through_is_told(self):
         """Pressed by a depth d of its radius into the middle of a cell of length h: the average gap there is h^2 / 24 - d. No force acts with three cells
-        and 0.06, and with nine and 0.005: a hundredth of the cell is too little to tell where others press, or this one does later, but not where nothing does."""
-        for cells, depths, told in ((3, [0.06], "4.4"), (31, [0.06], None), (9, [0.005], "1.0"), (9, [0.005, 0.06], None)):
+        and 0.06, and with nine and 0.005: a hundredth of the cell is too little to tell where others press, or this one does later, but not where nothing does.
+        More than four hundredths, and no force to the end: the instants are stored, and the computation ends with an error."""
+        for cells, depths, told in ((3, [0.06], "4.4"), (31, [0.06], None), (9, [0.005], "1.0"), (9, [0.005, 0.06], None), (3, [0.06, 0.12], "5.8")):
             mesh = union([round_tool("QUAD4", "TOOL", 1.0, (0, 1), (36, 10)), slab("QUAD4", "SLAB", (-2, 2), (-2, 0), (cells, 4))])
             down = [(0, 0), *((k + 1, -depth) for k, depth in enumerate(depths))]
             study = Study(name="coarse", mesh=mesh, materials={"TOOL": elastic(1e3), "SLAB": elastic(1e3)}, zones=[zone("TOOL", "SLAB", 1)],
                           moves=[held("SLAB"), path("TOOL", [(0, 0), (len(depths), 0)], down)], steps=len(depths))
             figures = run(study, LACON, self.folder)
-            self.assertEqual(figures["status"], "finished")
+            missed_to_the_end = (cells, depths) == (3, [0.06])
+            self.assertIn("EVOLUTION_64: no contact has pressed at any instant" if missed_to_the_end else "finished", figures["status"])
+            self.assertEqual(figures["accepted"], len(depths))
             self.assertEqual("EVOLUTION_16" in figures.get("alarms", []), told is not None, (cells, depths))
             if told:  # the depth / h, less what is between two nodes of the tool
                 self.assertIn(f"of SLAB_SKIN lie inside TOOL_SKIN by {told}", (self.folder / "err").read_text())

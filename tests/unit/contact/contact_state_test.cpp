@@ -524,16 +524,23 @@ TEST_F(Touching, ANodeWithoutAnyMasterHasAStandInForItsGap) {
   }
 }
 
-TEST_F(Touching, AnOpenPatchInsideItsMasterIsDeep) {
-  // of size 1, a tenth inside
-  lift(-0.1);
+TEST_F(Touching, AnIncrementIsCutWhereAnOpenPatchGoesIn) {
+  // of size 1, from 0.5 apart to 20 inside: at a depth of 1 it has moved by 1.5 of 20.5
   ContactState contact_state = state();
+  lift(0.5);
+  contact_state.update_geometry(displacement);
+  const std::vector<double> before = contact_state.gaps_over_size();
+  EXPECT_NEAR(before[0], 0.5, 1e-12);
+  contact_state.rest_at(displacement);
+  lift(-20);
   contact_state.update_geometry(displacement);
   Patchwise patches(1);
   patches.status[0] = Status::open;
-  EXPECT_NEAR(contact_state.deepest_open(patches), 0.1, 1e-12);
+  EXPECT_NEAR(contact_state.part_to_depth(patches, before, 10, 1), 1.5 / 20.5, 1e-12);
+  EXPECT_EQ(contact_state.part_to_depth(patches, before, 21, 1), 1);
+  EXPECT_EQ(contact_state.part_to_depth(patches, std::vector<double>{-2.0}, 10, 1), 1);  // where it was in already
   patches.status[0] = Status::active;
-  EXPECT_EQ(contact_state.deepest_open(patches), 0);
+  EXPECT_EQ(contact_state.part_to_depth(patches, before, 10, 1), 1);
 }
 
 }  // namespace
