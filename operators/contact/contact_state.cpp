@@ -361,6 +361,16 @@ bool ContactState::presses(std::int32_t zone, const Patchwise& patches) const {
   return false;
 }
 
+std::optional<double> ContactState::undecided(std::int32_t zone, const Patchwise& patches) const {
+  double largest = 0, round_off = 0;
+  for (std::size_t p = 0; p < n_patches(); ++p) {
+    if (geometry_.zone_of(p) != zone || patches.status[p] != Status::active) continue;
+    largest = std::max(largest, std::abs(patches.lambda[p]));
+    round_off = std::max(round_off, rho_[p] * gap_tolerance_);
+  }
+  return largest > 0 ? std::optional(round_off / largest) : std::nullopt;
+}
+
 double ContactState::largest_strain(std::int32_t zone, const Patchwise& patches) const {
   double largest = 0;
   for (std::size_t p = 0; p < n_patches(); ++p)

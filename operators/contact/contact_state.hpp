@@ -216,6 +216,9 @@ class ContactState {
   /// Of a zone, where its pressures alternate by so much that it is worth an alarm.
   std::optional<AlternatingPressures> alternation(std::int32_t zone, const Patchwise& patches) const;
   bool presses(std::int32_t zone, const Patchwise& patches) const;
+  /// What round-off of coordinates makes of the pressures of a zone's active patches, over the largest of them: patches that
+  /// are pulled or pressed by less stay what they are. Nothing without a pressure.
+  std::optional<double> undecided(std::int32_t zone, const Patchwise& patches) const;
   /// Of a zone, over its patches: strain().
   double largest_strain(std::int32_t zone, const Patchwise& patches) const;
   /// Of a zone with RESOLUTION='NON' the patch that its master has pierced deepest, by more than TOLE_INTERP.

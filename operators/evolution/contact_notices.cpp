@@ -12,8 +12,9 @@
 namespace lacon {
 namespace {
 
-constexpr double gap_that_counts = 0.2;  // of what skins give way by: pressures of a fit are wrong by as much
-constexpr double missed = 0.04;          // of h: a strain that the pressure would make that coarse patches do not feel
+constexpr double gap_that_counts = 0.2;      // of what skins give way by: pressures of a fit are wrong by as much
+constexpr double share_of_round_off = 1e-3;  // of the largest pressure of a zone, at the instant that strains it most
+constexpr double missed = 0.04;              // of h: a strain that the pressure would make that coarse patches do not feel
 
 }  // namespace
 
@@ -78,25 +79,55 @@ void ContactNotices::tell_what_overlaps(double instant) {
   }
 }
 
-void ContactNotices::remember_what_meets() {
+std::set<std::size_t> ContactNotices::zones_that_meet() const {
+  std::set<std::size_t> meeting;
   const std::vector<ContactZone>& zones = present_.problem.contact->zones;
   for (std::size_t zone = 0; zone < zones.size(); ++zone)
     if (std::ranges::any_of(zones[zone].patches, [&](std::int32_t patch) {
           return present_.contact->geometry().coverage(static_cast<std::size_t>(patch)) > 0;
         }))
-      met_.insert(zone);
+      meeting.insert(zone);
+  return meeting;
+}
+
+void ContactNotices::tell_what_was_flung(double instant) {
+  const StaticProblem& problem = present_.problem;
+  const std::vector<double>& now = present_.state.displacement;
+  const int n_components = problem.n_components();
+  const std::vector<ContactZone>& zones = problem.contact->zones;
+  std::set<std::size_t> meeting = zones_that_meet();
+  double size = 0, moved = 0;  // of the model, and farthest in this step
+  for (int d = 0; d < problem.dimension; ++d) {
+    double low = INFINITY, high = -INFINITY;
+    for (std::size_t node = 0; node < problem.mesh.n_nodes(); ++node) {
+      const std::size_t dof = node * static_cast<std::size_t>(n_components) + static_cast<std::size_t>(d);
+      low = std::min(low, problem.mesh.coordinates[3 * node + static_cast<std::size_t>(d)]);
+      high = std::max(high, problem.mesh.coordinates[3 * node + static_cast<std::size_t>(d)]);
+      if (!last_displacement_.empty()) moved = std::max(moved, std::abs(now[dof] - last_displacement_[dof]));
+    }
+    size = std::max(size, high - low);
+  }
+  for (const std::size_t zone : last_met_)
+    if (moved > size && !meeting.contains(zone) && flung_.insert(zone).second)
+      inform("EVOLUTION_66", {{"slave", zones[zone].slave_group},
+                              {"master", zones[zone].master_group},
+                              {"instant", fmt::format("{:.9g}", instant)},
+                              {"times", fmt::format("{:.2g}", moved / size)}});
+  met_.insert(meeting.begin(), meeting.end());
+  last_displacement_ = now;
+  last_met_ = std::move(meeting);
 }
 
 void ContactNotices::start(double instant) {
   const ContactState* const contact = present_.contact;
   if (!contact) return;
   started_ = true;
-  remember_what_meets();
   std::int64_t locked = 0;
   std::size_t first = 0;
   for (std::size_t p = 0; p < contact->n_patches(); ++p)
     if (contact->geometry().coverage(p) > 0 && contact->is_locked(p) && locked++ == 0) first = p;
   tell_what_is_too_deep(instant);
+  tell_what_was_flung(instant);
   for (std::int32_t zone = 0; zone < static_cast<std::int32_t>(contact->geometry().zones().size()); ++zone)
     if (const auto pierced = contact->pierced(zone, present_.state.patches, true)) depth_before_[zone] = pierced->depth;
   const std::vector<double>& moved = present_.state.displacement;
@@ -119,9 +150,9 @@ void ContactNotices::accept(const SolvedInstant& solved) {
                             {"instant", fmt::format("{:.9g}", solved.instant)},
                             {"cell", first_cell(overlap.deepest)},
                             {"gap", fmt::format("{:.6g}", overlap.gap)}});
-  remember_what_meets();
   tell_what_is_too_deep(solved.instant);
   tell_what_overlaps(solved.instant);
+  tell_what_was_flung(solved.instant);
   tell_what_nothing_presses(solved.instant);
   const ContactState& contact = *present_.contact;
   const Patchwise& patches = present_.state.patches;
@@ -134,6 +165,9 @@ void ContactNotices::accept(const SolvedInstant& solved) {
       faceted_.erase(zone);
       if (facets && std::abs(facets->gap) > gap_that_counts * facets->give)
         faceted_.emplace(zone, Faceted{solved.instant, *facets});
+      undecided_.erase(zone);
+      if (const auto share = contact.undecided(zone, patches); share && *share > share_of_round_off && *share < 1)
+        undecided_.emplace(zone, Undecided{solved.instant, *share});
     }
     const auto note = [&](const std::optional<PiercedPatch>& now, PiercedZones& zones) {
       if (const auto before = zones.find(zone); now && (before == zones.end() || now->depth > before->second.worst.depth))
@@ -177,6 +211,13 @@ void ContactNotices::end(bool /*completed*/) {
                             {"cell", first_cell(alternating.most.patch)},
                             {"instant", fmt::format("{:.9g}", alternating.instant)},
                             {"percent", fmt::format("{:.3g}", 100 * alternating.most.share)}});
+  }
+  for (const auto& [zone, undecided] : undecided_) {
+    const ContactZone& names = present_.problem.contact->zones[zone];
+    inform("EVOLUTION_65", {{"slave", names.slave_group},
+                            {"master", names.master_group},
+                            {"instant", fmt::format("{:.9g}", undecided.instant)},
+                            {"percent", fmt::format("{:.2g}", 100 * undecided.share)}});
   }
   for (const auto& [zone, faceted] : faceted_) {
     const ContactZone& names = present_.problem.contact->zones[zone];
@@ -266,6 +307,15 @@ void ContactNotices::save(const hdf5::Group& group) const {
   of_faceted.write("instant", when);
   of_faceted.write("gap", facet_gaps);
   of_faceted.write("give", gives);
+  std::vector<std::int32_t> of_undecided;
+  std::vector<double> undecided_at, undecided_shares;
+  for (const auto& [zone, undecided] : undecided_)
+    of_undecided.push_back(zone), undecided_at.push_back(undecided.instant), undecided_shares.push_back(undecided.share);
+  const hdf5::Group undecided_group = group.create("undecided");
+  undecided_group.write("zone", of_undecided);
+  undecided_group.write("instant", undecided_at);
+  undecided_group.write("share", undecided_shares);
+  group.write("flung", std::vector<std::int64_t>(flung_.begin(), flung_.end()));
   const hdf5::Group of_alternating = group.create("alternating");
   of_alternating.write("zone", alternating);
   of_alternating.write("patch", patches);
@@ -292,6 +342,12 @@ void ContactNotices::resume(const hdf5::Group& group) {
   const auto strained = group.read<std::int32_t>("strained");
   const auto strains = group.read<double>("strain");
   for (std::size_t i = 0; i < strained.size(); ++i) strain_[strained[i]] = strains.at(i);
+  const hdf5::Group undecided = group.open("undecided");
+  const auto of_undecided = undecided.read<std::int32_t>("zone");
+  const auto undecided_at = undecided.read<double>("instant"), undecided_shares = undecided.read<double>("share");
+  for (std::size_t i = 0; i < of_undecided.size(); ++i)
+    undecided_[of_undecided[i]] = {undecided_at.at(i), undecided_shares.at(i)};
+  for (const std::int64_t zone : group.read<std::int64_t>("flung")) flung_.insert(static_cast<std::size_t>(zone));
   const hdf5::Group alternating = group.open("alternating");
   const auto zones = alternating.read<std::int32_t>("zone");
   const auto patches = alternating.read<std::int64_t>("patch");

@@ -22,12 +22,13 @@ class ContactNotices : public EvolutionObserver {
   /// their skins have facets.
   void start(double instant) override;
   /// EVOLUTION_14: such patches inside their master; EVOLUTION_17; EVOLUTION_23: bodies that lie on others without a pressure;
-  /// EVOLUTION_35: overlaps with RESOLUTION='NON'. Throws EVOLUTION_36 for one with STOP_INTERP='OUI'.
+  /// EVOLUTION_35: overlaps with RESOLUTION='NON'; EVOLUTION_66: zones that a step has flung apart. Throws EVOLUTION_36 for an
+  /// overlap with STOP_INTERP='OUI'.
   void accept(const SolvedInstant& solved) override;
   /// EVOLUTION_16: of each zone the patch that its master has pierced deepest, of a zone where nothing has pressed at any
   /// instant also where that is little; EVOLUTION_45: likewise where a contact is missed while, or after, others press;
   /// EVOLUTION_43: zones whose skins never met; EVOLUTION_47: zones whose pressures alternate; EVOLUTION_60:
-  /// zones whose straight edges leave a gap that counts.
+  /// zones whose straight edges leave a gap that counts; EVOLUTION_65: zones whose pressures are near round-off.
   void end(bool completed) override;
   /// Of a computation that has come to its end. Throws EVOLUTION_64 where nothing has pressed in any zone at any instant,
   /// though bodies have come to lie in each other: there is no force of contact in its result.
@@ -48,6 +49,9 @@ class ContactNotices : public EvolutionObserver {
     double instant;
     FacetGap facets;
   };
+  struct Undecided {
+    double instant, share;
+  };
   using PiercedZones = std::map<std::int32_t, Pierced>;
   static void save(const hdf5::Group& group, const PiercedZones& zones);
   static PiercedZones resumed(const hdf5::Group& group);
@@ -59,8 +63,11 @@ class ContactNotices : public EvolutionObserver {
   /// EVOLUTION_23, once a body.
   void tell_what_nothing_presses(double instant);
 
-  /// Zones of which a patch sees a master join those that have met.
-  void remember_what_meets();
+  /// Those of which a patch sees a master.
+  std::set<std::size_t> zones_that_meet() const;
+
+  /// EVOLUTION_66, once a zone; remembers which zones meet.
+  void tell_what_was_flung(double instant);
 
   /// EVOLUTION_35, once a zone, or EVOLUTION_36.
   void tell_what_overlaps(double instant);
@@ -76,6 +83,10 @@ class ContactNotices : public EvolutionObserver {
   PiercedZones missed_;                              ///< of these, what nothing pressed at
   std::map<std::int32_t, Alternating> alternating_;  ///< zones whose pressures do, at the instant where they do most
   std::map<std::int32_t, Faceted> faceted_;          ///< zones with such a gap, at the instant that strains them most
+  std::map<std::int32_t, Undecided> undecided_;      ///< zones of so small pressures, at that instant
+  std::vector<double> last_displacement_;            ///< of the last accepted state,
+  std::set<std::size_t> last_met_;                   ///< and zones of which a patch had a master there
+  std::set<std::size_t> flung_;                      ///< zones of which it has been told
   std::optional<FacetGaps> facet_gaps_;              ///< where there is contact
   bool started_ = false;                             ///< a state has been looked at
   std::set<std::size_t> met_;                        ///< zones of which a patch has had a master

@@ -87,6 +87,19 @@ class LooseBodies(StudyTest):
             self.assertAlmostEqual(force, 1000, delta=1)
             self.assertLessEqual(int(re.search(r"Converged at the instant 1 with (\d+) iteration", said)[1]), 4)
 
+    def test_bodies_that_a_step_flings_apart_are_told(self):
+        """Pushed along the other body by thousands of metres, which weak springs allow; stiff ones leave nothing to tell."""
+        for spring, told in ((1e-3, 1), (1e3, 0)):
+            _, _, said = self.solve(self.rocker(20, 0.0), spring, 0.0, more=', FORCE_CONTOUR=_F(GROUP_MA="TOP", FX=100.0)')
+            self.assertEqual(said.count("<EVOLUTION_66>"), told)
+
+    def test_loads_near_round_off_are_told(self):
+        """Statuses are not told apart below 1e-14 of the coordinates times the stiffness; the same in proportion is right at a larger load."""
+        for pressure, told in ((1e-6, 1), (1e-2, 0)):
+            _, force, said = self.solve(self.rocker(20, 0.0), pressure * 1e-5, pressure, '_F(GROUP_MA="TOP", DX=0.0),')
+            self.assertAlmostEqual(force / pressure, 10, delta=0.1)
+            self.assertEqual(said.count("<EVOLUTION_65>"), told)
+
     def slot(self, gap):
         """A block on the floor of a slot, between walls."""
         box = block("QUAD8", np.linspace(0, 2, 4), np.linspace(0, 2, 4), None, "BODY", {"bottom": "SKIN", "left": "LEFT", "right": "RIGHT", "top": "TOP"})
