@@ -364,6 +364,10 @@ void ContactNotices::resume(const hdf5::Group& group) {
   for (const std::int64_t zone : group.read<std::int64_t>("overlapping")) overlapping_.insert(static_cast<std::size_t>(zone));
   for (const std::int64_t zone : group.read<std::int64_t>("met")) met_.insert(static_cast<std::size_t>(zone));
   for (const std::int64_t zone : group.read<std::int64_t>("too_deep")) too_deep_.insert(static_cast<std::size_t>(zone));
+  if (present_.contact) {  // the solver has resumed
+    last_displacement_ = present_.state.displacement;
+    last_met_ = zones_that_meet();
+  }
   started_ = true;
 }
 
