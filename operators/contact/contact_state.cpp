@@ -30,12 +30,11 @@ double extent(const Mesh& mesh, std::int32_t cell) {
   return sum;
 }
 
-/// Nodes of each patch, without those that carry its pressure. @param slaves of one zone; in the plane nothing
+/// Nodes of each patch, without those that carry its pressure. @param slaves of one zone
 std::vector<std::vector<std::int32_t>> corners_of(const Mesh& mesh, const Contact& contact,
                                                   const std::vector<std::int32_t>& slaves) {
   std::vector<std::set<std::int32_t>> nodes(mesh.patches->size());
   for (const std::int32_t number : slaves) {
-    if (mesh.dimension != 3) break;
     const SlaveElement& slave = contact.slaves[number];
     const catalog::SlaveRow* row = catalog::find_slave(mesh.patches->kind[slave.patch], slave.rank);
     for (std::int8_t i = 0; const std::int32_t node : mesh.cells[slave.cell])
@@ -93,8 +92,11 @@ ContactState::ContactState(const Mesh& mesh, const Model& model, const Contact& 
     neighbours[p].erase(static_cast<std::int32_t>(p));
     neighbours_.emplace_back(neighbours[p].begin(), neighbours[p].end());
   }
-  for (std::size_t zone = 0; zone < geometry_.zones().size(); ++zone)
-    alternations_.emplace_back(corners_of(mesh, contact, geometry_.zones()[zone].slaves));
+  for (std::size_t zone = 0; zone < geometry_.zones().size(); ++zone) {
+    const auto corners = corners_of(mesh, contact, geometry_.zones()[zone].slaves);
+    alternations_.emplace_back(corners);
+    rows_.emplace_back(corners, mesh.dimension - 1);
+  }
   double extent = 0;
   for (int d = 0; d < mesh.dimension; ++d) {
     double low = INFINITY, high = -INFINITY;
@@ -345,14 +347,18 @@ std::optional<FacetOverlap> ContactState::facet_overlap(std::int32_t number) con
 
 std::optional<AlternatingPressures> ContactState::alternation(std::int32_t zone, const Patchwise& patches) const {
   constexpr double whole = 0.99;
-  std::vector<bool> pressed(n_patches());
+  std::vector<bool> seen(n_patches()), pressed(n_patches());
   std::vector<double> area(n_patches());
   for (std::size_t p = 0; p < n_patches(); ++p) {
-    pressed[p] = patches.status[p] == Status::active && !locked_[p] && geometry_.coverage(p) > whole;
+    seen[p] = !locked_[p] && geometry_.coverage(p) > whole;
+    pressed[p] = seen[p] && patches.status[p] == Status::active;
     area[p] = geometry_.whole(p);
   }
-  const auto found = alternations_[static_cast<std::size_t>(zone)].measure(patches.lambda, area, pressed);
-  return found && found->share > tolerances_.alternating ? found : std::nullopt;
+  const auto of_zone = static_cast<std::size_t>(zone);
+  for (const auto& found : {alternations_[of_zone].measure(patches.lambda, area, pressed),
+                            rows_[of_zone].measure(patches.lambda, area, seen, pressed)})
+    if (found && found->share > tolerances_.alternating) return found;
+  return std::nullopt;
 }
 
 bool ContactState::presses(std::int32_t zone, const Patchwise& patches) const {

@@ -16,6 +16,7 @@
 #include "lacon/operators/contact/contact_geometry.hpp"
 #include "lacon/operators/contact/patches.hpp"
 #include "lacon/operators/contact/pressure_alternation.hpp"
+#include "lacon/operators/contact/pressure_rows.hpp"
 #include "lacon/structures/vector.hpp"
 
 namespace lacon {
@@ -70,6 +71,7 @@ struct PiercedPatch {
 struct NearestPatches {
   std::vector<std::size_t> patches;  ///< the nearest of all first
   std::int32_t node;                 ///< of the body
+  bool tips = false;                 ///< it is in contact beside them, and tips onto them
 };
 
 /// A patch without contact that lies inside its master.
@@ -200,7 +202,8 @@ class ContactState {
   }
   HeldOverlap held_overlap() const;
   /// For each of some loose bodies, in each zone where no patch holds it: the patches that are nearest to their master, within
-  /// ContactTolerances::holding_gap; where patches hold them in all zones, those that are nearest across other directions.
+  /// ContactTolerances::holding_gap; where patches hold them in all zones, those that are nearest across other directions;
+  /// where there are none, those far from what presses: feet of a body that tips.
   /// @param loose bodies, numbered as body_of(node) does
   std::vector<NearestPatches> nearest_to_hold(const Patchwise& patches, const std::set<std::int32_t>& loose,
                                               const std::function<std::int32_t(std::int32_t node)>& body_of) const;
@@ -247,6 +250,7 @@ class ContactState {
   std::vector<double> rho_;                            ///< stiffness of both bodies, in series, under a pressure on each patch
   std::vector<std::vector<std::int32_t>> neighbours_;  ///< patches of its zone that share a node with each patch
   std::vector<PressureAlternation> alternations_;      ///< of each zone
+  std::vector<PressureRows> rows_;                     ///< likewise
   std::vector<bool> locked_;
   std::vector<bool> held_open_;                         ///< of each patch: SANS_GROUP_NO, RESOLUTION='NON'
   std::vector<bool> gliding_;                           ///< of each patch: keeps its contact (GLISSIERE)

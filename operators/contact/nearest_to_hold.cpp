@@ -11,32 +11,54 @@ namespace lacon {
 namespace {
 
 constexpr double same_way = 0.7;  // cosine, 45 degrees: what presses along one of two normals presses along the other
+constexpr double far_apart =
+    0.3;  // of the extent of a contact: what presses at one of two places lets a body tip onto the other
 
-/// Of the cell of a skin at its first vertex, unit.
-Vec3 unit_normal(const Mesh& mesh, std::int32_t cell, std::span<const double> coordinates) {
+/// Where a cell of a skin is and looks.
+struct Facing {
+  Vec3 place;   // the mean of its nodes
+  Vec3 normal;  // at its first vertex, unit
+};
+
+Facing facing(const Mesh& mesh, std::int32_t cell, std::span<const double> coordinates) {
   std::vector<double> points;
+  Vec3 sum{};
   for (const std::int32_t node : mesh.cells[cell]) {
     const auto point = coordinates.subspan(3 * static_cast<std::size_t>(node), 3);
     points.insert(points.end(), point.begin(), point.end());
+    sum = sum + vector_at(point.data());
   }
   const catalog::CellRow& row = mesh.row(cell);
   const Vec3 normal = cell_normal(mesh.types[cell], points, row.nodes.first(static_cast<std::size_t>(row.dimension)));
-  return normal / norm(normal);
+  return {sum / static_cast<double>(mesh.cells[cell].size()), normal / norm(normal)};
 }
 
 struct Near {
   std::size_t patch;
   std::int32_t node;  // of the body
   double gap;
-  Vec3 normal;
+  Facing facing;
 };
 
 /// The contact of a body in a zone.
 struct Hold {
-  std::vector<Vec3> pressed;  // normals of patches in contact
-  std::vector<Near> near;     // the others, each once
+  std::vector<Facing> pressed;  // cells of patches in contact
+  std::vector<Near> near;       // the others, each once
   std::set<std::size_t> seen;
 };
+
+/// The diagonal of the box around all that touches or is near.
+double extent(const Hold& hold) {
+  std::vector<Vec3> places;
+  for (const Facing& one : hold.pressed) places.push_back(one.place);
+  for (const Near& one : hold.near) places.push_back(one.facing.place);
+  Vec3 diagonal{};
+  for (double Vec3::*const axis : {&Vec3::x, &Vec3::y, &Vec3::z}) {
+    const auto [least, most] = std::ranges::minmax(places, {}, axis);
+    diagonal.*axis = most.*axis - least.*axis;
+  }
+  return norm(diagonal);
+}
 
 }  // namespace
 
@@ -50,12 +72,12 @@ std::vector<NearestPatches> ContactState::nearest_to_hold(const Patchwise& patch
       const std::int32_t node = mesh_.cells[owner][0], body = body_of(node);
       if (!loose.contains(body)) continue;
       Hold& hold = holds[{geometry_.zone_of(patch), body}];
-      const Vec3 normal = unit_normal(mesh_, slave.cell, geometry_.coordinates());
+      const Facing faces = facing(mesh_, slave.cell, geometry_.coordinates());
       if (patches.status[patch] == Status::active)
-        hold.pressed.push_back(normal);
+        hold.pressed.push_back(faces);
       else if (!held_open_[patch] && geometry_.coverage(patch) >= tolerances_.least_coverage &&
                geometry_.gap(patch) <= tolerances_.holding_gap * size_[patch] && hold.seen.insert(patch).second)
-        hold.near.push_back({patch, node, geometry_.gap(patch), normal});
+        hold.near.push_back({patch, node, geometry_.gap(patch), faces});
     }
   }
   std::vector<NearestPatches> found;
@@ -65,26 +87,36 @@ std::vector<NearestPatches> ContactState::nearest_to_hold(const Patchwise& patch
     for (const Near& other : near)
       if (other.patch != first.patch && other.gap <= first.gap + tolerances_.as_near * size_[other.patch])
         found.back().patches.push_back(other.patch);
+    return first.facing;
+  };
+  // those of `near` that nothing pressed does the same for, the nearest first, until there are none
+  const auto take_beside = [&](const Hold& hold, const auto& does_the_same) {
+    for (std::vector<Facing> pressed = hold.pressed;;) {
+      std::vector<Near> near;
+      std::ranges::copy_if(hold.near, std::back_inserter(near), [&](const Near& one) {
+        return std::ranges::none_of(pressed, [&](const Facing& other) { return does_the_same(other, one.facing); });
+      });
+      if (near.empty()) return;
+      const Facing nearest = std::ranges::min_element(near, {}, &Near::gap)->facing;
+      std::erase_if(near, [&](const Near& other) { return !does_the_same(nearest, other.facing); });
+      pressed.push_back(take(near));
+    }
   };
   for (const auto& [where, hold] : holds)
     if (hold.pressed.empty() && !hold.near.empty()) take(hold.near);
   if (!found.empty()) return found;
-  // in contact in every zone, and loose all the same: what is near across other directions, one after the other
+  // in contact in every zone, and loose all the same: what is near across other directions
+  for (const auto& [where, hold] : holds)
+    take_beside(hold,
+                [](const Facing& one, const Facing& other) { return std::abs(dot(one.normal, other.normal)) > same_way; });
+  if (!found.empty()) return found;
+  // in contact across every direction: what is near beside, that the body tips onto
   for (const auto& [where, hold] : holds) {
-    std::vector<Vec3> pressed = hold.pressed;
-    const auto presses_another_way = [&](const Near& one) {
-      return std::ranges::none_of(pressed, [&](const Vec3& normal) { return std::abs(dot(normal, one.normal)) > same_way; });
-    };
-    for (;;) {
-      std::vector<Near> near;
-      std::ranges::copy_if(hold.near, std::back_inserter(near), presses_another_way);
-      if (near.empty()) break;
-      const Vec3 normal = std::ranges::min_element(near, {}, &Near::gap)->normal;
-      std::erase_if(near, [&](const Near& other) { return std::abs(dot(normal, other.normal)) <= same_way; });
-      take(near);
-      pressed.push_back(normal);
-    }
+    if (hold.near.empty()) continue;
+    const double apart = far_apart * extent(hold);
+    take_beside(hold, [&](const Facing& one, const Facing& other) { return norm(one.place - other.place) <= apart; });
   }
+  for (NearestPatches& beside : found) beside.tips = true;
   return found;
 }
 

@@ -13,6 +13,7 @@ namespace lacon {
 struct AlternatingPressures {
   double share;       ///< root of the mean product of neighbours' distances from smooth pressures, over that of the pressure
   std::size_t patch;  ///< furthest from its smooth pressure
+  bool in_rows;       ///< from patch to patch of a row (pressure_rows.hpp), or else from triangle to triangle
 };
 
 /// A skin of linear triangles has two patches for each of its vertices. Pressures that alternate from patch to patch press on

@@ -206,11 +206,12 @@ void ContactNotices::end(bool /*completed*/) {
       tell("EVOLUTION_45", zone, pierced);
   for (const auto& [zone, alternating] : alternating_) {
     const ContactZone& names = present_.problem.contact->zones[zone];
-    inform("EVOLUTION_47", {{"slave", names.slave_group},
-                            {"master", names.master_group},
-                            {"cell", first_cell(alternating.most.patch)},
-                            {"instant", fmt::format("{:.9g}", alternating.instant)},
-                            {"percent", fmt::format("{:.3g}", 100 * alternating.most.share)}});
+    inform(alternating.most.in_rows ? "EVOLUTION_67" : "EVOLUTION_47",
+           {{"slave", names.slave_group},
+            {"master", names.master_group},
+            {"cell", first_cell(alternating.most.patch)},
+            {"instant", fmt::format("{:.9g}", alternating.instant)},
+            {"percent", fmt::format("{:.3g}", 100 * alternating.most.share)}});
   }
   for (const auto& [zone, undecided] : undecided_) {
     const ContactZone& names = present_.problem.contact->zones[zone];
@@ -286,10 +287,11 @@ void ContactNotices::save(const hdf5::Group& group) const {
   save(group.create("missed"), missed_);
   std::vector<std::int32_t> zones, alternating;
   std::vector<std::int64_t> patches;
+  std::vector<std::int32_t> in_rows;
   std::vector<double> strains, instants, shares;
   for (const auto& [zone, most] : alternating_) {
     alternating.push_back(zone), patches.push_back(static_cast<std::int64_t>(most.most.patch));
-    instants.push_back(most.instant), shares.push_back(most.most.share);
+    instants.push_back(most.instant), shares.push_back(most.most.share), in_rows.push_back(most.most.in_rows);
   }
   std::vector<std::int32_t> deep_before;
   std::vector<double> depths_before;
@@ -321,6 +323,7 @@ void ContactNotices::save(const hdf5::Group& group) const {
   of_alternating.write("patch", patches);
   of_alternating.write("instant", instants);
   of_alternating.write("share", shares);
+  of_alternating.write("in_rows", in_rows);
   for (const auto& [zone, strain] : strain_) zones.push_back(zone), strains.push_back(strain);
   group.write("strained", zones);
   group.write("strain", strains);
@@ -352,8 +355,9 @@ void ContactNotices::resume(const hdf5::Group& group) {
   const auto zones = alternating.read<std::int32_t>("zone");
   const auto patches = alternating.read<std::int64_t>("patch");
   const auto instants = alternating.read<double>("instant"), shares = alternating.read<double>("share");
+  const auto in_rows = alternating.read<std::int32_t>("in_rows");
   for (std::size_t i = 0; i < zones.size(); ++i)
-    alternating_[zones[i]] = {instants.at(i), {shares.at(i), static_cast<std::size_t>(patches.at(i))}};
+    alternating_[zones[i]] = {instants.at(i), {shares.at(i), static_cast<std::size_t>(patches.at(i)), in_rows.at(i) != 0}};
   const hdf5::Group faceted = group.open("faceted");
   const auto of_facets = faceted.read<std::int32_t>("zone");
   const auto when = faceted.read<double>("instant"), facet_gaps = faceted.read<double>("gap"),

@@ -27,7 +27,7 @@ class ContactNotices : public EvolutionObserver {
   void accept(const SolvedInstant& solved) override;
   /// EVOLUTION_16: of each zone the patch that its master has pierced deepest, of a zone where nothing has pressed at any
   /// instant also where that is little; EVOLUTION_45: likewise where a contact is missed while, or after, others press;
-  /// EVOLUTION_43: zones whose skins never met; EVOLUTION_47: zones whose pressures alternate; EVOLUTION_60:
+  /// EVOLUTION_43: zones whose skins never met; EVOLUTION_47 or 67: zones whose pressures alternate; EVOLUTION_60:
   /// zones whose straight edges leave a gap that counts; EVOLUTION_65: zones whose pressures are near round-off.
   void end(bool completed) override;
   /// Of a computation that has come to its end. Throws EVOLUTION_64 where nothing has pressed in any zone at any instant,

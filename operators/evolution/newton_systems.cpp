@@ -184,7 +184,9 @@ bool Newton::hold(const std::vector<LooseMotion>& loose, StaticState& state, con
   for (const NearestPatches& hold : holds) near.insert(bodies_.of(hold.node));
   for (const LooseMotion& motion : loose)
     if (std::ranges::none_of(motion.bodies, [&](std::int32_t body) { return near.contains(body); })) return false;
-  if (++times_held_ > 1) {
+  // springs do not let a body tip onto what it is to stand on
+  const bool tips = !holds.empty() && std::ranges::all_of(holds, &NearestPatches::tips);
+  if (++times_held_ > 1 && !tips) {
     std::vector<std::int64_t> dofs;
     for (const LooseMotion& motion : loose) dofs.push_back(motion.dof);
     equilibrium_.hold(dofs);

@@ -119,6 +119,25 @@ class LooseBodies(StudyTest):
         self.assertAlmostEqual(force, 2000, delta=1e-6)
         self.assertRegex(said, re.compile(r"EVOLUTION_20> nothing holds BODY: 6 patch\(es\) of SKIN, .* with the gap 0.002"))
 
+    def table(self, gaps):
+        """A plate over two feet, each lower than the other one's gap would have it."""
+        plate = block("QUAD8", np.linspace(0, 10, 11), np.linspace(0, 1, 3), None, "BODY", {"bottom": "SKIN", "top": "TOP"})
+        feet = [block("QUAD8", np.linspace(x, x + 1, 4), np.linspace(-1, -gap, 3), None, f"FOOT{x}", {"top": f"TOP{x}", "bottom": f"BASE{x}"})
+                for x, gap in zip((1, 8), gaps)]
+        mesh = union([plate, *feet])
+        groups = mesh.cell_groups
+        groups["WALL"] = groups.pop("TOP1") + groups.pop("TOP8")
+        groups["BASE"] = groups.pop("BASE1") + groups.pop("BASE8")
+        return mesh
+
+    def test_a_plate_that_stands_on_two_feet_tips_onto_the_second(self):
+        """The nearest patch is on one foot, and the plate is loose on it."""
+        for gaps in ((0.0, 0.0), (0.01, 0.03), (0.2, 0.1)):
+            moved, force, said = self.solve(self.table(gaps), 0.0, 1.0, '_F(GROUP_MA="TOP", DX=0.0),')
+            self.assertAlmostEqual(force, 10, delta=1e-9)
+            tilt = (gaps[1] - gaps[0]) / 7
+            self.assertAlmostEqual(moved, -(gaps[0] - 1.5 * tilt), delta=abs(tilt) + 0.005)  # either edge of a foot; it bends by 2e-3
+
     def test_walls_that_are_grazed_beside_a_corner_pierce_nothing(self):
         _, force, said = self.solve(self.slot(0.0), 0.0, 1000.0)
         self.assertAlmostEqual(force, 2000, delta=1e-6)

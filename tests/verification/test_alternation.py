@@ -1,4 +1,5 @@
-"""A sphere pressed on a block in space: pressures of linear triangles that are finer than their master alternate, and it is said so."""
+"""Pressures that answer facets and not the load are told: of linear triangles finer than their master (a sphere pressed on a block in
+space), and along rows of patches (a belt over a pulley)."""
 
 import math
 import os
@@ -12,7 +13,7 @@ sys.path.insert(0, str(SOURCE / "tests/studies"))
 
 from study_test import StudyTest  # noqa: E402, I001 (it says where meshes.py is)
 from contact import contact_study, run_contact  # noqa: E402
-from meshes import brick, graded, union  # noqa: E402
+from meshes import block, brick, graded, union  # noqa: E402
 
 RADIUS, EXTENT, DEPTH, YOUNG, POISSON = 10.0, 3.0, 0.12, 2000.0, 0.3
 FINE = 1.3  #: of the cells that are not graded; the contact's radius is 1.24
@@ -115,3 +116,41 @@ class Alternation(StudyTest):
         one = contact_study(union([punch, block]), hold, slaves=["PUNCH_SKIN"], masters=["BLOCK_SKIN"], convergence={"RESI_GLOB_RELA": 1e-9, "ITER_GLOB_MAXI": 40})
         run, _ = run_contact(self, [one], CONTACT_ALARMS="ALARME")
         self.assertNotIn("<EVOLUTION_47>", run.stdout + run.stderr)
+
+
+def belt(kind, cells):
+    """A quarter of a belt of radius 10, pulled at its end, over a pulley: a uniform pressure. @param cells around (of the belt, of the pulley)"""
+    in_space = kind.startswith("HEXA")
+
+    def place(r, a, *z):
+        return (r * math.cos(a), r * math.sin(a), *z)
+
+    def part(name, radii, n, skin, other):
+        grid = [radii, np.linspace(0, math.pi / 2, n + 1)]
+        if not in_space:
+            return block(kind, *grid, place, name, {skin: f"{name}_SKIN", other: f"{name}_BASE", "bottom": f"{name}_END", "top": "SYM"})
+        ends = {(0, ("left", "right").index(skin)): f"{name}_SKIN", (0, ("left", "right").index(other)): f"{name}_BASE"}
+        return brick(kind, [*grid, np.linspace(0, 2, 3)], place, name, {**ends, (1, 0): f"{name}_END", (1, 1): "SYM", (2, 0): "EDGE", (2, 1): "EDGE"},
+                     curved=kind == "HEXA20")
+
+    mesh = union([part("BELT", np.linspace(10, 10.2, 2), cells[0], "left", "right"), part("PULLEY", np.linspace(5, 10, 6), cells[1], "right", "left")])
+    hold = [{"GROUP_MA": "SYM", "DX": 0.0}, {"GROUP_MA": "PULLEY_BASE", "DX": 0.0, "DY": 0.0}, *([{"GROUP_MA": "EDGE", "DZ": 0.0}] if in_space else [])]
+    return contact_study(mesh, hold, [{"GROUP_MA": "BELT_END", "PRES": -100.0}], slaves=["BELT_SKIN"], masters=["PULLEY_SKIN"],
+                         model="3D" if in_space else "D_PLAN", elastic={"E": 210e3, "NU": 0.3}, convergence={"RESI_GLOB_RELA": 1e-9, "ITER_GLOB_MAXI": 40})
+
+
+class Rows(StudyTest):
+    def told(self, study):
+        """@return (whether EVOLUTION_67 was, the largest pressure over that of the pull)"""
+        run, (result,) = run_contact(self, [study], CONTACT_ALARMS="ALARME")
+        pressure = result.on_cells("CONT_ELEM", result.orders[-1], "PRES")
+        return "<EVOLUTION_67>" in run.stdout + run.stderr, -min(pressure.values()) / (100 * 0.2 / 10)
+
+    def test_pressures_that_follow_facets_are_told(self):
+        """By half of the pressure and more; where cells lie on the curve, or are as many on both skins, nothing is."""
+        for kind, cells, expected in (("QUAD4", (30, 20), True), ("QUAD4", (30, 45), True), ("HEXA8", (30, 20), True),
+                                      ("QUAD4", (30, 30), False), ("QUAD8", (30, 20), False), ("HEXA20", (18, 12), False)):
+            with self.subTest(kind=kind, cells=cells):
+                told, largest = self.told(belt(kind, cells))
+                self.assertEqual(told, expected)
+                (self.assertGreater if expected else self.assertLess)(largest, 1.5)

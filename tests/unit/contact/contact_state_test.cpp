@@ -462,7 +462,7 @@ TEST_F(Touching, ANodeOfTwoZonesHasOneUnitNormal) {
   side.slave = {4};
   side.patches = {1};
   contact.zones.push_back(side);
-  contact.slaves.push_back({4, 1, 1, "LACS32D"});
+  contact.slaves.push_back({4, 1, 0, "LACS32D"});
   ContactState now = state();
   now.update_geometry(displacement);
   Patchwise patches(2);
