@@ -11,9 +11,8 @@
 namespace lacon {
 
 struct FacetGap {
-  double gap;  ///< that edges add on average: positive where they keep the skins apart
-  double
-      give;  ///< what the skins give way by, one over the other, or bodies of their radius under the pressure: the larger one
+  double gap;   ///< that edges add on average: positive where they keep the skins apart
+  double give;  ///< of the skins, one over the other, or of bodies of their radius under the pressure: the larger one
 };
 
 /// Of zones at an instant. What edges leave is that of the mesh: bodies bend by themselves.

@@ -7,7 +7,7 @@
 
 #include "lacon/catalog/messages.hpp"
 #include "lacon/catalog/wording.hpp"
-#include "lacon/structures/hdf5.hpp"
+#include "lacon/operators/evolution/zone_records.hpp"
 
 namespace lacon {
 namespace {
@@ -254,120 +254,30 @@ void ContactNotices::fail_if_all_missed() const {
                         {"size", fmt::format("{:.2g}", size * depth / (depth + std::max(pierced.worst.gap, 0.0)))}});
 }
 
-void ContactNotices::save(const hdf5::Group& group, const PiercedZones& pierced_zones) {
-  std::vector<std::int64_t> zones, patches;
-  std::vector<double> instants, depths, gaps;
-  for (const auto& [zone, pierced] : pierced_zones) {
-    zones.push_back(zone);
-    patches.push_back(static_cast<std::int64_t>(pierced.worst.patch));
-    instants.push_back(pierced.instant);
-    depths.push_back(pierced.worst.depth);
-    gaps.push_back(pierced.worst.gap);
-  }
-  group.write("zone", zones);
-  group.write("patch", patches);
-  group.write("instant", instants);
-  group.write("depth", depths);
-  group.write("gap", gaps);
-}
-
-ContactNotices::PiercedZones ContactNotices::resumed(const hdf5::Group& group) {
-  const auto zones = group.read<std::int64_t>("zone"), patches = group.read<std::int64_t>("patch");
-  const auto instants = group.read<double>("instant"), depths = group.read<double>("depth"), gaps = group.read<double>("gap");
-  PiercedZones found;
-  for (std::size_t i = 0; i < zones.size(); ++i)
-    found[static_cast<std::int32_t>(zones[i])] = {instants.at(i),
-                                                  {static_cast<std::size_t>(patches.at(i)), depths.at(i), gaps.at(i)}};
-  return found;
+template <class Notices, class Use>
+void ContactNotices::for_each_record(Notices& notices, const Use& use) {
+  use("pierced", notices.pierced_);
+  use("depth_before", notices.depth_before_);
+  use("pierced_at_rest", notices.pierced_at_rest_);
+  use("pressed", notices.pressed_);
+  use("strain", notices.strain_);
+  use("missed", notices.missed_);
+  use("alternating", notices.alternating_);
+  use("faceted", notices.faceted_);
+  use("undecided", notices.undecided_);
+  use("flung", notices.flung_);
+  use("met", notices.met_);
+  use("too_deep", notices.too_deep_);
+  use("overlapping", notices.overlapping_);
+  use("free", notices.free_);
 }
 
 void ContactNotices::save(const hdf5::Group& group) const {
-  save(group.create("pierced"), pierced_);
-  save(group.create("pierced_at_rest"), pierced_at_rest_);
-  save(group.create("missed"), missed_);
-  std::vector<std::int32_t> zones, alternating;
-  std::vector<std::int64_t> patches;
-  std::vector<std::int32_t> in_rows;
-  std::vector<double> strains, instants, shares;
-  for (const auto& [zone, most] : alternating_) {
-    alternating.push_back(zone), patches.push_back(static_cast<std::int64_t>(most.most.patch));
-    instants.push_back(most.instant), shares.push_back(most.most.share), in_rows.push_back(most.most.in_rows);
-  }
-  std::vector<std::int32_t> deep_before;
-  std::vector<double> depths_before;
-  for (const auto& [zone, depth] : depth_before_) deep_before.push_back(zone), depths_before.push_back(depth);
-  group.write("deep_before", deep_before);
-  group.write("depth_before", depths_before);
-  std::vector<std::int32_t> of_facets;
-  std::vector<double> when, facet_gaps, gives;
-  for (const auto& [zone, faceted] : faceted_) {
-    of_facets.push_back(zone), when.push_back(faceted.instant);
-    facet_gaps.push_back(faceted.facets.gap), gives.push_back(faceted.facets.give);
-  }
-  const hdf5::Group of_faceted = group.create("faceted");
-  of_faceted.write("zone", of_facets);
-  of_faceted.write("instant", when);
-  of_faceted.write("gap", facet_gaps);
-  of_faceted.write("give", gives);
-  std::vector<std::int32_t> of_undecided;
-  std::vector<double> undecided_at, undecided_shares;
-  for (const auto& [zone, undecided] : undecided_)
-    of_undecided.push_back(zone), undecided_at.push_back(undecided.instant), undecided_shares.push_back(undecided.share);
-  const hdf5::Group undecided_group = group.create("undecided");
-  undecided_group.write("zone", of_undecided);
-  undecided_group.write("instant", undecided_at);
-  undecided_group.write("share", undecided_shares);
-  group.write("flung", std::vector<std::int64_t>(flung_.begin(), flung_.end()));
-  const hdf5::Group of_alternating = group.create("alternating");
-  of_alternating.write("zone", alternating);
-  of_alternating.write("patch", patches);
-  of_alternating.write("instant", instants);
-  of_alternating.write("share", shares);
-  of_alternating.write("in_rows", in_rows);
-  for (const auto& [zone, strain] : strain_) zones.push_back(zone), strains.push_back(strain);
-  group.write("strained", zones);
-  group.write("strain", strains);
-  group.write("pressed", std::vector<std::int32_t>(pressed_.begin(), pressed_.end()));
-  group.write("free", std::vector<std::int32_t>(free_.begin(), free_.end()));
-  group.write("overlapping", std::vector<std::int64_t>(overlapping_.begin(), overlapping_.end()));
-  group.write("met", std::vector<std::int64_t>(met_.begin(), met_.end()));
-  group.write("too_deep", std::vector<std::int64_t>(too_deep_.begin(), too_deep_.end()));
+  for_each_record(*this, [&](std::string_view name, const auto& record) { save_zones(group, name, record); });
 }
 
 void ContactNotices::resume(const hdf5::Group& group) {
-  pierced_ = resumed(group.open("pierced"));
-  pierced_at_rest_ = resumed(group.open("pierced_at_rest"));
-  for (const std::int32_t zone : group.read<std::int32_t>("pressed")) pressed_.insert(zone);
-  const auto deep_before = group.read<std::int32_t>("deep_before");
-  const auto depths_before = group.read<double>("depth_before");
-  for (std::size_t i = 0; i < deep_before.size(); ++i) depth_before_[deep_before[i]] = depths_before.at(i);
-  missed_ = resumed(group.open("missed"));
-  const auto strained = group.read<std::int32_t>("strained");
-  const auto strains = group.read<double>("strain");
-  for (std::size_t i = 0; i < strained.size(); ++i) strain_[strained[i]] = strains.at(i);
-  const hdf5::Group undecided = group.open("undecided");
-  const auto of_undecided = undecided.read<std::int32_t>("zone");
-  const auto undecided_at = undecided.read<double>("instant"), undecided_shares = undecided.read<double>("share");
-  for (std::size_t i = 0; i < of_undecided.size(); ++i)
-    undecided_[of_undecided[i]] = {undecided_at.at(i), undecided_shares.at(i)};
-  for (const std::int64_t zone : group.read<std::int64_t>("flung")) flung_.insert(static_cast<std::size_t>(zone));
-  const hdf5::Group alternating = group.open("alternating");
-  const auto zones = alternating.read<std::int32_t>("zone");
-  const auto patches = alternating.read<std::int64_t>("patch");
-  const auto instants = alternating.read<double>("instant"), shares = alternating.read<double>("share");
-  const auto in_rows = alternating.read<std::int32_t>("in_rows");
-  for (std::size_t i = 0; i < zones.size(); ++i)
-    alternating_[zones[i]] = {instants.at(i), {shares.at(i), static_cast<std::size_t>(patches.at(i)), in_rows.at(i) != 0}};
-  const hdf5::Group faceted = group.open("faceted");
-  const auto of_facets = faceted.read<std::int32_t>("zone");
-  const auto when = faceted.read<double>("instant"), facet_gaps = faceted.read<double>("gap"),
-             gives = faceted.read<double>("give");
-  for (std::size_t i = 0; i < of_facets.size(); ++i) faceted_[of_facets[i]] = {when.at(i), {facet_gaps.at(i), gives.at(i)}};
-  const auto free = group.read<std::int32_t>("free");
-  free_ = {free.begin(), free.end()};
-  for (const std::int64_t zone : group.read<std::int64_t>("overlapping")) overlapping_.insert(static_cast<std::size_t>(zone));
-  for (const std::int64_t zone : group.read<std::int64_t>("met")) met_.insert(static_cast<std::size_t>(zone));
-  for (const std::int64_t zone : group.read<std::int64_t>("too_deep")) too_deep_.insert(static_cast<std::size_t>(zone));
+  for_each_record(*this, [&](std::string_view name, auto& record) { resume_zones(group, name, record); });
   if (present_.contact) {  // the solver has resumed
     last_displacement_ = present_.state.displacement;
     last_met_ = zones_that_meet();

@@ -40,21 +40,38 @@ class ContactNotices : public EvolutionObserver {
   struct Pierced {
     double instant;
     PiercedPatch worst;
+    template <class Use>
+    void for_each_member(const Use& use) {
+      use("instant", instant), use("patch", worst.patch), use("depth", worst.depth), use("gap", worst.gap);
+    }
   };
   struct Alternating {
     double instant;
     AlternatingPressures most;
+    template <class Use>
+    void for_each_member(const Use& use) {
+      use("instant", instant), use("share", most.share), use("patch", most.patch), use("in_rows", most.in_rows);
+    }
   };
   struct Faceted {
     double instant;
     FacetGap facets;
+    template <class Use>
+    void for_each_member(const Use& use) {
+      use("instant", instant), use("gap", facets.gap), use("give", facets.give);
+    }
   };
   struct Undecided {
     double instant, share;
+    template <class Use>
+    void for_each_member(const Use& use) {
+      use("instant", instant), use("share", share);
+    }
   };
   using PiercedZones = std::map<std::int32_t, Pierced>;
-  static void save(const hdf5::Group& group, const PiercedZones& zones);
-  static PiercedZones resumed(const hdf5::Group& group);
+  /// What a run that goes on has to know: use(name, member).
+  template <class Notices, class Use>
+  static void for_each_record(Notices& notices, const Use& use);
   std::string first_cell(std::size_t patch) const;
   /// EVOLUTION_17, or 52 where COEF_MULT_APPA says how deep: couples of each zone that overlap too deep to be taken for
   /// contact, once a zone.
