@@ -259,12 +259,33 @@ std::vector<LooseMotion> LooseMotions::told_apart(Eigen::MatrixXd motions, const
 }
 
 std::vector<LooseMotion> LooseMotions::of(const SparseMatrix& matrix, double negligible) {
+  found_.resize(0, 0);
   if (left_.empty()) return {};
   Eigen::MatrixXd motions = unresisted(matrix, negligible);
   if (motions.cols() == 0) return {};
   const std::vector<Moved> all = moved([](std::int64_t) { return true; });
   if (all.empty()) return {};
+  found_ = motions;
   return told_apart(std::move(motions), all);
+}
+
+Eigen::VectorXd LooseMotions::by(std::int64_t dof) const {
+  const auto row = motions_.row(dof / numbering_.n_components, static_cast<int>(dof % numbering_.n_components));
+  const auto own = row && found_.cols() > 0 && numbering_.equation[dof] >= 0 ? left_.find(row->body) : left_.end();
+  if (own == left_.end()) return Eigen::VectorXd::Zero(found_.cols());
+  const Eigen::VectorXd moves = own->second.motions.transpose() * row->by;
+  return found_.middleRows(own->second.first, moves.size()).transpose() * moves;
+}
+
+Eigen::VectorXd LooseMotions::work(std::span<const double> side) const {
+  if (found_.cols() == 0) return {};
+  Eigen::VectorXd of_motions = Eigen::VectorXd::Zero(found_.rows());
+  for_each_moved([](std::int64_t) { return true; },
+                 [&](const Moved& moved) {
+                   for (std::int32_t i = 0; i < moved.count; ++i)
+                     of_motions[moved.first + i] += side[moved.equation] * moved.by[i];
+                 });
+  return found_.transpose() * of_motions;
 }
 
 }  // namespace lacon

@@ -5,6 +5,7 @@
 #include <map>
 #include <optional>
 #include <set>
+#include <span>
 #include <vector>
 
 #include "lacon/assembly/rigid_motions.hpp"
@@ -29,6 +30,12 @@ class LooseMotions {
   /// theirs change.
   /// @param negligible of what the entries of a row sum up to, and of what resists most: round_off, or more
   std::vector<LooseMotion> of(const SparseMatrix& matrix, double negligible = round_off);
+
+  /// What of() has found last has a basis (of()'s motions are combinations of it): what each of its motions moves a degree of
+  /// freedom by, (n), of the size of one where it is largest.
+  Eigen::VectorXd by(std::int64_t dof) const;
+  /// The work of a right side along each of these motions, (n).
+  Eigen::VectorXd work(std::span<const double> side) const;
 
  private:
   /// A degree of freedom that has an equation, of a body that imposed displacements do not hold.
@@ -72,6 +79,7 @@ class LooseMotions {
   std::map<std::int32_t, Left> left_;  ///< of bodies: the motions that imposed displacements leave them
   std::vector<std::int32_t> bodies_;   ///< of each of these motions
   std::optional<Others> others_;
+  Eigen::MatrixXd found_;  ///< (n_motions, n), of of()
 };
 
 }  // namespace lacon

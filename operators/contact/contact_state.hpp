@@ -201,8 +201,14 @@ class ContactState {
     return is_covered(patch) && geometry_.coverage(patch) < 1 - tolerances_.bare;
   }
   HeldOverlap held_overlap() const;
-  /// For each of some loose bodies, in each zone where no patch holds it: the patches that are nearest to their master, within
-  /// ContactTolerances::holding_gap; where patches hold them in all zones, those that are nearest across other directions;
+  /// Whether an open patch may hold a body that is loose otherwise: its gap is within ContactTolerances::holding_gap.
+  bool may_hold(std::size_t patch, const Patchwise& patches) const;
+  /// Whether gaps of patches that hold a body together may differ by so much.
+  bool is_as_near(std::size_t patch, double difference) const { return difference <= tolerances_.as_near * size_[patch]; }
+  /// A node of the loose body that meets at a patch: of its own, or of a master's; -1 where there is none.
+  std::int32_t node_at(std::size_t patch, const std::function<bool(std::int32_t node)>& is_loose) const;
+  /// For each of some loose bodies, in each zone where no patch holds it: the patches that are nearest to their master and
+  /// may_hold() it; where patches hold them in all zones, those that are nearest across other directions;
   /// where there are none, those far from what presses: feet of a body that tips.
   /// @param loose bodies, numbered as body_of(node) does
   std::vector<NearestPatches> nearest_to_hold(const Patchwise& patches, const std::set<std::int32_t>& loose,

@@ -62,6 +62,22 @@ double extent(const Hold& hold) {
 
 }  // namespace
 
+bool ContactState::may_hold(std::size_t patch, const Patchwise& patches) const {
+  return patches.status[patch] != Status::active && !held_open_[patch] &&
+         geometry_.coverage(patch) >= tolerances_.least_coverage &&
+         geometry_.gap(patch) <= tolerances_.holding_gap * size_[patch];
+}
+
+std::int32_t ContactState::node_at(std::size_t patch, const std::function<bool(std::int32_t node)>& is_loose) const {
+  for (const ContactGeometry::Cell& cell : geometry_.cells()) {
+    const SlaveElement& slave = contact_.slaves[cell.slave];
+    if (static_cast<std::size_t>(slave.patch) != patch) continue;
+    for (const std::int32_t owner : {slave.cell, cell.master})
+      if (const std::int32_t node = mesh_.cells[owner][0]; is_loose(node)) return node;
+  }
+  return -1;
+}
+
 std::vector<NearestPatches> ContactState::nearest_to_hold(const Patchwise& patches, const std::set<std::int32_t>& loose,
                                                           const std::function<std::int32_t(std::int32_t node)>& body_of) const {
   std::map<std::pair<std::int32_t, std::int32_t>, Hold> holds;  // by zone and body
@@ -75,8 +91,7 @@ std::vector<NearestPatches> ContactState::nearest_to_hold(const Patchwise& patch
       const Facing faces = facing(mesh_, slave.cell, geometry_.coordinates());
       if (patches.status[patch] == Status::active)
         hold.pressed.push_back(faces);
-      else if (!held_open_[patch] && geometry_.coverage(patch) >= tolerances_.least_coverage &&
-               geometry_.gap(patch) <= tolerances_.holding_gap * size_[patch] && hold.seen.insert(patch).second)
+      else if (may_hold(patch, patches) && hold.seen.insert(patch).second)
         hold.near.push_back({patch, node, geometry_.gap(patch), faces});
     }
   }

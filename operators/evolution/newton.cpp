@@ -164,7 +164,7 @@ std::vector<double> Newton::begin_instant(double instant, const StaticState& sta
   statuses_.start_instant();
   edges_ = {};
   lost_masters_.start_instant();
-  settled_ = times_held_ = times_round_ = times_cut_ = 0;
+  settled_ = times_held_ = times_rested_ = times_round_ = times_cut_ = 0;
   goes_round_ = false;
   forcing_.start_instant();
   return equilibrium_.load(instant, state);

@@ -118,10 +118,15 @@ class Newton {
   /// Solve the system with what `solution` holds, in place. @param again with the matrix that was solved with last
   SolutionReport solve_linear(std::vector<double>& solution, const Accuracy& accuracy, bool again = false);
   void note_work(const SolutionReport& report);
-  /// Hold bodies that are loose and near to others: at first the nearest patches take contact, and EVOLUTION_20 says so. Where
-  /// they are pulled and open again, nothing presses on the bodies: springs keep them where they are, in the matrix alone.
-  /// @return whether all of them are held
-  bool hold(const std::vector<LooseMotion>& loose, StaticState& state, const StaticState& previous, SolidMatrix asked);
+  /// Hold bodies that are loose and near to others: the patches that their load leads them to (rest_under_load.hpp) take
+  /// contact, or, where there are none, at first the nearest ones do, and EVOLUTION_20 says so. Where they are pulled and open
+  /// again, nothing presses on the bodies: springs keep them where they are, in the matrix alone.
+  enum class Held { no, by_patches, by_springs };
+  Held hold(const std::vector<LooseMotion>& loose, std::span<const double> step, StaticState& state,
+            const StaticState& previous, SolidMatrix asked);
+  /// Patches, the first one nearest, by the loose bodies and the zones that they are of.
+  std::vector<NearestPatches> by_zone(const std::vector<std::size_t>& patches, const std::set<std::int32_t>& loose) const;
+  void take_contact(const std::vector<NearestPatches>& holds, StaticState& state);
   /// What pressures and gaps ask for at the state's geometry, in `line` how many patches want to change; nothing without
   /// contact.
   std::vector<Status> wanted_statuses(const StaticState& state, IterationReport& line);
@@ -203,6 +208,7 @@ class Newton {
   std::set<std::int32_t> covers_told_;           ///< zones that EVOLUTION_50 was about
   ResidualCourse course_;                        ///< of the instant
   int times_held_ = 0;                           ///< in this instant: loose bodies
+  int times_rested_ = 0;                         ///< likewise, by patches that their load leads them to
   int times_cut_ = 0;                            ///< in this instant: slave cells anew
   bool goes_round_ = false;                      ///< residuals have come back: increments are searched (line_search.hpp)
   int times_round_ = 0;                          ///< in this instant: residuals have come back

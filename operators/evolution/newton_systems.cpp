@@ -13,12 +13,14 @@
 #include "lacon/operators/evolution/instant_failure.hpp"
 #include "lacon/operators/evolution/linear_statuses.hpp"
 #include "lacon/operators/evolution/newton.hpp"
+#include "lacon/operators/evolution/rest_under_load.hpp"
 #include "lacon/operators/program/program.hpp"
 #include "lacon/structures/displacement.hpp"
 
 namespace lacon {
 namespace {
 
+constexpr int most_rests = 4;        // in an instant: how often bodies are led to patches by their load
 constexpr int most_rounds = 6;       // of statuses in an iteration
 constexpr double of_a_round = 1e-6;  // of what the solution before leaves of its right side, iterations may leave
 
@@ -39,7 +41,7 @@ std::vector<double> Newton::solve_system(StaticState& state, const StaticState& 
                                          std::span<const double> step, const Accuracy& accuracy, IterationReport& line) {
   const System& system = equilibrium_.system();
   hanging_.clear();
-  for (bool sprung = false;; sprung = times_held_ > 1) {
+  for (Held held = Held::no;;) {
     line.constraints = equilibrium_.n_constraints(state);
     std::vector<LooseMotion> loose;
     if (settled_ == 0) loose = loose_.of(system.matrix());
@@ -63,7 +65,11 @@ std::vector<double> Newton::solve_system(StaticState& state, const StaticState& 
       for (const std::int64_t dof : equilibrium_.dofs_of(null))
         loose.push_back({dof, {bodies_.of(static_cast<std::int32_t>(dof / problem_.n_components()))}});
     }
-    if (!sprung && loose.size() == null.size() && hold(loose, state, previous, asked)) continue;
+    const bool sprung = held == Held::by_springs;
+    if (!sprung && loose.size() == null.size()) {
+      held = hold(loose, step, state, previous, asked);
+      if (held != Held::no) continue;
+    }
     const std::int64_t dependent =
         sprung || moves_freely
             ? 0
@@ -176,23 +182,52 @@ void Newton::note_work(const SolutionReport& report) {
   add_to_count(factor.is_iterative ? "iterations of PETSc" : "iterations of GMRES", report.iterations);
 }
 
-bool Newton::hold(const std::vector<LooseMotion>& loose, StaticState& state, const StaticState& previous, SolidMatrix asked) {
-  if (!contact()) return false;
+Newton::Held Newton::hold(const std::vector<LooseMotion>& loose, std::span<const double> step, StaticState& state,
+                          const StaticState& previous, SolidMatrix asked) {
+  if (!contact()) return Held::no;
   std::set<std::int32_t> bodies, near;
   for (const LooseMotion& motion : loose) bodies.insert(motion.bodies.begin(), motion.bodies.end());
-  const auto holds = contact()->nearest_to_hold(state.patches, bodies, [&](std::int32_t node) { return bodies_.of(node); });
+  std::vector<NearestPatches> holds;
+  if (settled_ == 0 && times_rested_++ < most_rests)  // elsewise no motions of the system are known
+    holds = by_zone(patches_under_load(*contact(), state.patches, equilibrium_, loose_, step), bodies);
+  const bool rests = !holds.empty();
+  if (!rests) holds = contact()->nearest_to_hold(state.patches, bodies, [&](std::int32_t node) { return bodies_.of(node); });
   for (const NearestPatches& hold : holds) near.insert(bodies_.of(hold.node));
   for (const LooseMotion& motion : loose)
-    if (std::ranges::none_of(motion.bodies, [&](std::int32_t body) { return near.contains(body); })) return false;
-  // springs do not let a body tip onto what it is to stand on
+    if (std::ranges::none_of(motion.bodies, [&](std::int32_t body) { return near.contains(body); })) return Held::no;
+  // springs do not let a body fall or tip onto what it is to stand on
   const bool tips = !holds.empty() && std::ranges::all_of(holds, &NearestPatches::tips);
-  if (++times_held_ > 1 && !tips) {
+  if (++times_held_ > 1 && !rests && !tips) {
     std::vector<std::int64_t> dofs;
     for (const LooseMotion& motion : loose) dofs.push_back(motion.dof);
     equilibrium_.hold(dofs);
     hanging_ = bodies_.name_at(holds.front().node);
-    return true;
+    return Held::by_springs;
   }
+  take_contact(holds, state);
+  assemble(state, previous, asked);
+  return Held::by_patches;
+}
+
+std::vector<NearestPatches> Newton::by_zone(const std::vector<std::size_t>& patches,
+                                            const std::set<std::int32_t>& loose) const {
+  std::map<std::pair<std::int32_t, std::int32_t>, NearestPatches> found;  // by zone and body
+  for (const std::size_t patch : patches) {
+    const std::int32_t node = contact()->node_at(patch, [&](std::int32_t at) { return loose.contains(bodies_.of(at)); });
+    if (node < 0) continue;
+    NearestPatches& there = found[{contact()->geometry().zone_of(patch), bodies_.of(node)}];
+    there.node = node;
+    there.patches.push_back(patch);
+  }
+  std::vector<NearestPatches> all;
+  for (auto& [where, there] : found) {
+    std::ranges::stable_sort(there.patches, {}, [&](std::size_t patch) { return contact()->geometry().gap(patch); });
+    all.push_back(std::move(there));
+  }
+  return all;
+}
+
+void Newton::take_contact(const std::vector<NearestPatches>& holds, StaticState& state) {
   for (const NearestPatches& hold : holds) {
     const std::size_t first = hold.patches.front();
     for (const std::size_t patch : hold.patches) state.patches.status[patch] = Status::active;
@@ -205,8 +240,6 @@ bool Newton::hold(const std::vector<LooseMotion>& loose, StaticState& state, con
                             {"master", zone.master_group},
                             {"gap", fmt::format("{:.3g}", contact()->geometry().gap(first))}});
   }
-  assemble(state, previous, asked);
-  return true;
 }
 
 }  // namespace lacon

@@ -100,10 +100,10 @@ class LooseBodies(StudyTest):
             self.assertAlmostEqual(force / pressure, 10, delta=0.1)
             self.assertEqual(said.count("<EVOLUTION_65>"), told)
 
-    def slot(self, gap):
-        """A block on the floor of a slot, between walls."""
+    def slot(self, gap, under=0.0):
+        """A block above the floor of a slot, between walls."""
         box = block("QUAD8", np.linspace(0, 2, 4), np.linspace(0, 2, 4), None, "BODY", {"bottom": "SKIN", "left": "LEFT", "right": "RIGHT", "top": "TOP"})
-        floor = block("QUAD8", np.linspace(-1, 3, 6), np.linspace(-1, 0, 3), None, "FLOOR", {"top": "WALL", "bottom": "BASE"})
+        floor = block("QUAD8", np.linspace(-1, 3, 6), np.linspace(-1, -under, 3), None, "FLOOR", {"top": "WALL", "bottom": "BASE"})
         walls = [block("QUAD8", np.linspace(*ends, 2), np.linspace(0, 2, 3), None, name, {face: f"{name}_FACE", back: f"{name}_BACK"})
                  for name, ends, face, back in (("W1", (-1 - gap, -gap), "right", "left"), ("W2", (2 + gap, 3 + gap), "left", "right"))]
         mesh = union([box, floor, *walls])
@@ -118,6 +118,24 @@ class LooseBodies(StudyTest):
         moved, force, said = self.solve(self.slot(0.002), 0.0, 1000.0)
         self.assertAlmostEqual(force, 2000, delta=1e-6)
         self.assertRegex(said, re.compile(r"EVOLUTION_20> nothing holds BODY: 6 patch\(es\) of SKIN, .* with the gap 0.002"))
+
+    def cell(self, kind, cells, gap):
+        """A block between four walls."""
+        body = block(kind, np.linspace(0, 2, cells + 1), np.linspace(0, 2, cells + 1), None, "BODY", {side: "SKIN" for side in ("bottom", "top", "left", "right")})
+        walls = [block(kind, np.linspace(*x, 4), np.linspace(*y, 3), None, f"WALL{k}", {face: "WALL", back: "BASE"})
+                 for k, (x, y, face, back) in enumerate((((-1, 3), (-1 - gap, -gap), "top", "bottom"), ((-1, 3), (2 + gap, 3 + gap), "bottom", "top"),
+                                                         ((-1 - gap, -gap), (0, 2), "right", "left"), ((2 + gap, 3 + gap), (0, 2), "left", "right")))]
+        mesh = union([body, *walls])
+        mesh.cell_groups["TOP"] = mesh.cell_groups["SKIN"][-1:]
+        return mesh
+
+    def test_a_block_comes_to_rest_where_its_load_leads_it(self):
+        """With contact on all walls, which are as near, it has no equilibrium; without that on the others, there is nothing to find."""
+        for kind, cells in (("QUAD4", 3), ("TRIA3", 4), ("QUAD8", 4), ("TRIA6", 6)):
+            _, force, said = self.solve(self.cell(kind, cells, 0.002), 0.0, 0.0, more=', FORCE_INTERNE=_F(GROUP_MA="BODY", FX=500.0, FY=10.0)')
+            self.assertAlmostEqual(force, -40, delta=1e-6)
+            self.assertIn("<EVOLUTION_20>", said)
+            self.assertLessEqual(int(re.search(r"Converged at the instant 1 with (\d+) iteration", said)[1]), 3)
 
     def table(self, gaps):
         """A plate over two feet, each lower than the other one's gap would have it."""

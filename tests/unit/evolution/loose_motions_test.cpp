@@ -69,6 +69,43 @@ TEST(LooseMotions, ThereAreNoneWhereContactHolds) {
   }
 }
 
+TEST(LooseMotions, AreKnownByWhatTheyMove) {
+  StaticProblem problem = two_squares("ELAS/PETIT", false);
+  problem.loads.push_back(hold(bottom, 1));
+  problem.loads.push_back(hold(bottom, 0));
+  number(problem);
+  Equilibrium equilibrium(problem);
+  const StaticState rest = equilibrium.natural_state();
+  equilibrium.assemble(rest, rest, {});
+  LooseMotions motions = motions_of(problem);
+  EXPECT_EQ(motions.work(std::vector<double>(16, 1.0)).size(), 0);
+  ASSERT_EQ(motions.of(equilibrium.system().matrix()).size(), 3U);
+  const auto n_dofs = std::ssize(problem.numbering.equation);
+  const auto n_equations = static_cast<std::size_t>(equilibrium.system().matrix().size());
+  Eigen::MatrixXd moved(n_dofs, 3);
+  Eigen::VectorXd work = Eigen::VectorXd::Zero(3);
+  std::vector<double> side(n_equations);
+  for (std::size_t i = 0; i < n_equations; ++i) side[i] = std::sin(static_cast<double>(i));
+  for (std::int64_t dof = 0; dof < n_dofs; ++dof) {
+    moved.row(dof) = motions.by(dof).transpose();
+    if (const std::int64_t equation = problem.numbering.equation[static_cast<std::size_t>(dof)]; equation >= 0)
+      work += side[static_cast<std::size_t>(equation)] * motions.by(dof);
+    if (dof < 16) {
+      EXPECT_EQ(moved.row(dof).norm(), 0) << dof;  // the lower square
+    }
+  }
+  EXPECT_TRUE(motions.work(side).isApprox(work, 1e-13));
+  EXPECT_EQ(Eigen::FullPivLU<Eigen::MatrixXd>(moved).rank(), 3);
+  for (Eigen::Index motion = 0; motion < 3; ++motion) {
+    std::vector<double> x(n_equations, 0.0), product(n_equations);
+    for (std::int64_t dof = 0; dof < n_dofs; ++dof)
+      if (const std::int64_t equation = problem.numbering.equation[static_cast<std::size_t>(dof)]; equation >= 0)
+        x[static_cast<std::size_t>(equation)] = moved(dof, motion);
+    equilibrium.system().matrix().multiply(x, product);
+    for (const double force : product) EXPECT_NEAR(force, 0, 1e-9 * young);
+  }
+}
+
 /// A matrix as other processes have it, and how often they are asked.
 class Elsewhere : public RowsElsewhere {
  public:
