@@ -10,6 +10,7 @@
 #include "lacon/elements/contact_system.hpp"
 #include "lacon/operators/contact/contact_edge.hpp"
 #include "lacon/operators/contact/facets.hpp"
+#include "lacon/operators/contact/facing.hpp"
 #include "lacon/operators/meshing/body.hpp"
 #include "lacon/pairing/normals.hpp"
 
@@ -95,7 +96,10 @@ ContactState::ContactState(const Mesh& mesh, const Model& model, const Contact& 
   for (std::size_t zone = 0; zone < geometry_.zones().size(); ++zone) {
     const auto corners = corners_of(mesh, contact, geometry_.zones()[zone].slaves);
     alternations_.emplace_back(corners);
-    rows_.emplace_back(corners, mesh.dimension - 1);
+    std::vector<Vec3> normals(corners.size());
+    for (const std::int32_t slave : geometry_.zones()[zone].slaves)
+      normals[contact.slaves[slave].patch] = facing(mesh, contact.slaves[slave].cell, mesh.coordinates).normal;
+    rows_.emplace_back(corners, normals, mesh.dimension - 1);
   }
   double extent = 0;
   for (int d = 0; d < mesh.dimension; ++d) {

@@ -8,9 +8,9 @@
 namespace lacon {
 namespace {
 
-// Radians, between the normals at the ends of an edge: where they turn by more, by less than ten edges a turn, they are means
-// of what meets at a corner, and stand for no curve.
-constexpr double corner = 0.64;
+// Radians, between a cell and the normals at its vertices: where they turn by more, half the angle of ten edges a turn, they
+// are means of what meets at a corner, and stand for no curve.
+constexpr double corner = 0.32;
 constexpr double negligible = 1e-5;      // of the radius
 constexpr double mean_of_arc = 2.0 / 3;  // height of an arc on average over its largest
 
@@ -58,7 +58,7 @@ const FacetGaps::Bulges& FacetGaps::bulges(std::int32_t number) {
     skin.coordinates = mesh_.coordinates;
     const std::vector<Bulge> of_skin = missing_bulge(skin);
     for (std::size_t i = 0; i < of_skin.size(); ++i)
-      if (8 * std::abs(of_skin[i].missing * of_skin[i].curvature) < corner * corner) found->second[cell_of(i)] = of_skin[i];
+      if (of_skin[i].turn < corner) found->second[cell_of(i)] = of_skin[i];
   };
   add(zone.slave, [&](std::size_t i) { return definition_.slaves[static_cast<std::size_t>(zone.slaves[i])].cell; });
   add(zone.master, [&](std::size_t i) { return zone.masters[i]; });

@@ -37,10 +37,21 @@ std::vector<Bulge> missing_bulge(const Surface& skin) {
     return node;
   };
   std::vector<Bulge> missing;
-  std::vector<double> shape;
+  std::vector<double> shape, points;
   for (std::size_t cell = 0; cell < skin.size(); ++cell) {
     const auto nodes = skin.nodes[cell];
     const catalog::CellRow& row = catalog::cell(skin.types[cell]);
+    points.clear();
+    for (const std::int32_t node : nodes)
+      points.insert(points.end(), &skin.coordinates[3 * static_cast<std::size_t>(node)],
+                    &skin.coordinates[3 * static_cast<std::size_t>(node) + 3]);
+    double turn = 0;
+    for (int i = 0; i < row.n_vertices; ++i) {
+      const auto vertex =
+          row.nodes.subspan(static_cast<std::size_t>(i * row.dimension), static_cast<std::size_t>(row.dimension));
+      const Vec3 own = cell_normal(skin.types[cell], points, vertex);
+      turn = std::max(turn, std::acos(std::clamp(dot(own, at(normals, nodes[i])) / norm(own), -1.0, 1.0)));
+    }
     Bulge& largest = missing.emplace_back();
     for (int i = 0; i < row.n_vertices; ++i)
       for (int j = 0; j < i; ++j) {
@@ -48,7 +59,7 @@ std::vector<Bulge> missing_bulge(const Surface& skin) {
         const Vec3 a = at(skin.coordinates, first), b = at(skin.coordinates, last), m = at(normals, first),
                    n = at(normals, last);
         const double wanted = dot(n - m, b - a) / 8;
-        Bulge found{wanted, 8 * wanted / dot(b - a, b - a)};
+        Bulge found{wanted, 8 * wanted / dot(b - a, b - a), turn};
         // the middle between the two vertices, on the cell
         std::vector<double> middle(static_cast<std::size_t>(row.dimension));
         for (int d = 0; d < row.dimension; ++d)

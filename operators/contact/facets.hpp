@@ -10,6 +10,7 @@ namespace lacon {
 struct Bulge {
   double missing = 0;    ///< that it would have if it followed the nodal normals, less the one that it has; positive: outward
   double curvature = 0;  ///< of the arc that it stands for, positive where the skin is convex
+  double turn = 0;       ///< radians: the largest angle between the cell and the nodal normals at its vertices
 };
 
 /// Of each cell of a skin the edge or diagonal that lacks most. Between two ends with the normals m and n a bulge is

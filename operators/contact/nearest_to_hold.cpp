@@ -5,7 +5,7 @@
 #include <map>
 
 #include "lacon/operators/contact/contact_state.hpp"
-#include "lacon/pairing/normals.hpp"
+#include "lacon/operators/contact/facing.hpp"
 
 namespace lacon {
 namespace {
@@ -13,25 +13,6 @@ namespace {
 constexpr double same_way = 0.7;  // cosine, 45 degrees: what presses along one of two normals presses along the other
 constexpr double far_apart =
     0.3;  // of the extent of a contact: what presses at one of two places lets a body tip onto the other
-
-/// Where a cell of a skin is and looks.
-struct Facing {
-  Vec3 place;   // the mean of its nodes
-  Vec3 normal;  // at its first vertex, unit
-};
-
-Facing facing(const Mesh& mesh, std::int32_t cell, std::span<const double> coordinates) {
-  std::vector<double> points;
-  Vec3 sum{};
-  for (const std::int32_t node : mesh.cells[cell]) {
-    const auto point = coordinates.subspan(3 * static_cast<std::size_t>(node), 3);
-    points.insert(points.end(), point.begin(), point.end());
-    sum = sum + vector_at(point.data());
-  }
-  const catalog::CellRow& row = mesh.row(cell);
-  const Vec3 normal = cell_normal(mesh.types[cell], points, row.nodes.first(static_cast<std::size_t>(row.dimension)));
-  return {sum / static_cast<double>(mesh.cells[cell].size()), normal / norm(normal)};
-}
 
 struct Near {
   std::size_t patch;

@@ -7,7 +7,9 @@
 
 namespace lacon {
 
-PressureRows::PressureRows(const std::vector<std::vector<std::int32_t>>& nodes, std::size_t shared) {
+PressureRows::PressureRows(const std::vector<std::vector<std::int32_t>>& nodes, const std::vector<Vec3>& normals,
+                           std::size_t shared) {
+  constexpr double same_side = 0.5;  // cosine
   std::map<std::int32_t, std::vector<std::size_t>> around;
   for (std::size_t patch = 0; patch < nodes.size(); ++patch)
     for (const std::int32_t node : nodes[patch]) around[node].push_back(patch);
@@ -22,7 +24,7 @@ PressureRows::PressureRows(const std::vector<std::vector<std::int32_t>>& nodes, 
   for (std::size_t patch = 0; patch < nodes.size(); ++patch) {
     std::vector<std::size_t> neighbours;
     for (const auto& [other, count] : in_common(patch))
-      if (count >= shared) neighbours.push_back(other);
+      if (count >= shared && dot(normals[patch], normals[other]) > same_side) neighbours.push_back(other);
     for (std::size_t i = 0; i < neighbours.size(); ++i) {
       const auto touching = in_common(neighbours[i]);
       for (std::size_t j = i + 1; j < neighbours.size(); ++j) {

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "lacon/operators/contact/pressure_alternation.hpp"
+#include "lacon/structures/vector.hpp"
 
 namespace lacon {
 
@@ -17,9 +18,10 @@ namespace lacon {
 /// the next; at the edges of bodies and of contacts, and where a load varies, it keeps it.
 class PressureRows {
  public:
-  /// @param nodes of each patch of a zone (others: none)  @param shared how many nodes neighbours have in common: 1 in the
-  /// plane, 2 or more in space
-  PressureRows(const std::vector<std::vector<std::int32_t>>& nodes, std::size_t shared);
+  /// @param nodes of each patch of a zone (others: none)  @param normals of each patch: a row ends at an edge of the body,
+  /// where they turn by more than 60 degrees  @param shared how many nodes neighbours have in common: 1 in the plane, 2 or more
+  /// in space
+  PressureRows(const std::vector<std::vector<std::int32_t>>& nodes, const std::vector<Vec3>& normals, std::size_t shared);
   /// Nothing where too few patches in rows press.
   /// One or two open patches between pressed ones count as some without pressure.
   /// @param pressure, area of each patch  @param whole those that see a master everywhere  @param pressed those in contact

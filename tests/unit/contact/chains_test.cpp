@@ -405,11 +405,30 @@ TEST(Facets, LackTheSagittaOfTheArcsThatTheyStandFor) {
   for (const Bulge& bulge : missing_bulge(chords)) {
     EXPECT_NEAR(bulge.missing, sagitta, 0.01 * sagitta);
     EXPECT_NEAR(bulge.curvature, 1 / radius, 0.01 / radius);
+    EXPECT_NEAR(bulge.turn, half, 1e-12);
   }
   for (const Bulge& bulge : missing_bulge(arcs)) EXPECT_LT(std::abs(bulge.missing), 0.01 * sagitta);
 }
 
-// The same of a sphere, of triangles and quadrangles: edges and diagonals lie below it as chords do.
+// Around the edge of a box nodal normals look between its sides.
+TEST(Facets, SeeEdgesOfBodiesByTheirTurn) {
+  constexpr int n = 3;  // cells along each of two sides that meet
+  std::vector<double> coordinates;
+  for (int i = 0; i <= 2 * n; ++i)
+    for (int j = 0; j <= n; ++j)
+      for (const double value : {std::min<double>(i, n), 1.0 * j, std::min<double>(2 * n - i, n)}) coordinates.push_back(value);
+  Surface skin{.dimension = 3, .types = {}, .nodes = {}, .coordinates = coordinates, .normals = {}};
+  for (int i = 0; i < 2 * n; ++i)
+    for (int j = 0; j < n; ++j) {
+      const std::int32_t a = i * (n + 1) + j;
+      skin.add_cell(CellType::QUAD4, std::vector<std::int32_t>{a, a + n + 1, a + n + 2, a + 1});
+    }
+  const std::vector<Bulge> bulges = missing_bulge(skin);
+  for (int i = 0; i < 2 * n; ++i)
+    for (int j = 0; j < n; ++j) EXPECT_NEAR(bulges[i * n + j].turn, i == n - 1 || i == n ? std::numbers::pi / 4 : 0, 1e-7) << i;
+}
+
+// The sagitta of a sphere, of triangles and quadrangles: edges and diagonals lie below it as chords do.
 TEST(Facets, LackTheSagittaOfSpheres) {
   constexpr double radius = 2, t = 0.05;  // half an angle between two nodes
   constexpr int n = 6;

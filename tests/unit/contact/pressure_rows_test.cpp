@@ -12,6 +12,7 @@ namespace {
 /// (0, 1)^2 in n x n squares, or (0, 1) in n patches.
 struct Skin {
   std::vector<std::vector<std::int32_t>> nodes;
+  std::vector<Vec3> normals;
   std::vector<double> pressure, area;
   std::vector<bool> whole, pressed;
   std::size_t shared;
@@ -40,13 +41,14 @@ struct Skin {
   }
   void add(std::vector<std::int32_t> of, double value, double size) {
     nodes.push_back(std::move(of));
+    normals.push_back({0, 0, 1});
     pressure.push_back(value);
     area.push_back(size);
     whole.push_back(true);
     pressed.push_back(true);
   }
   std::optional<AlternatingPressures> measure() const {
-    return PressureRows(nodes, shared).measure(pressure, area, whole, pressed);
+    return PressureRows(nodes, normals, shared).measure(pressure, area, whole, pressed);
   }
 };
 
@@ -104,6 +106,17 @@ TEST(PressureRows, CountOpenPatchesBetweenPressedOnesAsSomeWithoutPressure) {
   Skin unseen = row(1);
   for (std::size_t p = 1; p < 16; p += 2) unseen.whole[p] = false;
   EXPECT_FALSE(unseen.measure());
+}
+
+TEST(PressureRows, EndAtEdgesOfBodies) {
+  Skin skin = Skin::line(Skin::even(20), [](double from, double) { return from < 0.45 ? -1 : -3; });
+  const auto share = [&](double degrees) {
+    for (std::size_t p = 10; p < 20; ++p) skin.normals[p] = {std::sin(degrees / 57.3), 0, std::cos(degrees / 57.3)};
+    return skin.measure().value().share;
+  };
+  EXPECT_GT(share(0), 0.01);
+  EXPECT_EQ(share(50), share(0));
+  EXPECT_EQ(share(90), 0);
 }
 
 TEST(PressureRows, NeedRowsThatAreLongEnoughAndNoTriangles) {
