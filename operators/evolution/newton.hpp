@@ -118,10 +118,11 @@ class Newton {
   /// Solve the system with what `solution` holds, in place. @param again with the matrix that was solved with last
   SolutionReport solve_linear(std::vector<double>& solution, const Accuracy& accuracy, bool again = false);
   void note_work(const SolutionReport& report);
+  enum class Held { no, by_patches, by_springs };
   /// Hold bodies that are loose and near to others: the patches that their load leads them to (rest_under_load.hpp) take
   /// contact, or, where there are none, at first the nearest ones do, and EVOLUTION_20 says so. Where they are pulled and open
   /// again, nothing presses on the bodies: springs keep them where they are, in the matrix alone.
-  enum class Held { no, by_patches, by_springs };
+  /// @return by what more than before is held: by patches, some motions may be loose still
   Held hold(const std::vector<LooseMotion>& loose, std::span<const double> step, StaticState& state,
             const StaticState& previous, SolidMatrix asked);
   /// Patches, the first one nearest, by the loose bodies and the zones that they are of.

@@ -185,28 +185,30 @@ void Newton::note_work(const SolutionReport& report) {
 Newton::Held Newton::hold(const std::vector<LooseMotion>& loose, std::span<const double> step, StaticState& state,
                           const StaticState& previous, SolidMatrix asked) {
   if (!contact()) return Held::no;
+  const auto take_contact_and_assemble = [&](const std::vector<NearestPatches>& holds) {
+    ++times_held_;
+    take_contact(holds, state);
+    assemble(state, previous, asked);
+    return Held::by_patches;
+  };
   std::set<std::int32_t> bodies, near;
   for (const LooseMotion& motion : loose) bodies.insert(motion.bodies.begin(), motion.bodies.end());
-  std::vector<NearestPatches> holds;
-  if (settled_ == 0 && times_rested_++ < most_rests)  // elsewise no motions of the system are known
-    holds = by_zone(patches_under_load(*contact(), state.patches, equilibrium_, loose_, step), bodies);
-  const bool rests = !holds.empty();
-  if (!rests) holds = contact()->nearest_to_hold(state.patches, bodies, [&](std::int32_t node) { return bodies_.of(node); });
+  if (settled_ == 0 && times_rested_++ < most_rests) {  // elsewise no motions of the system are known
+    const auto holds = by_zone(patches_under_load(*contact(), state.patches, equilibrium_, loose_, step), bodies);
+    if (!holds.empty()) return take_contact_and_assemble(holds);
+  }
+  const auto holds = contact()->nearest_to_hold(state.patches, bodies, [&](std::int32_t node) { return bodies_.of(node); });
   for (const NearestPatches& hold : holds) near.insert(bodies_.of(hold.node));
   for (const LooseMotion& motion : loose)
     if (std::ranges::none_of(motion.bodies, [&](std::int32_t body) { return near.contains(body); })) return Held::no;
-  // springs do not let a body fall or tip onto what it is to stand on
-  const bool tips = !holds.empty() && std::ranges::all_of(holds, &NearestPatches::tips);
-  if (++times_held_ > 1 && !rests && !tips) {
-    std::vector<std::int64_t> dofs;
-    for (const LooseMotion& motion : loose) dofs.push_back(motion.dof);
-    equilibrium_.hold(dofs);
-    hanging_ = bodies_.name_at(holds.front().node);
-    return Held::by_springs;
-  }
-  take_contact(holds, state);
-  assemble(state, previous, asked);
-  return Held::by_patches;
+  // springs do not let a body tip onto what it is to stand on
+  if (times_held_ == 0 || std::ranges::all_of(holds, &NearestPatches::tips)) return take_contact_and_assemble(holds);
+  ++times_held_;
+  std::vector<std::int64_t> dofs;
+  for (const LooseMotion& motion : loose) dofs.push_back(motion.dof);
+  equilibrium_.hold(dofs);
+  hanging_ = bodies_.name_at(holds.front().node);
+  return Held::by_springs;
 }
 
 std::vector<NearestPatches> Newton::by_zone(const std::vector<std::size_t>& patches,

@@ -137,6 +137,16 @@ class LooseBodies(StudyTest):
             self.assertIn("<EVOLUTION_20>", said)
             self.assertLessEqual(int(re.search(r"Converged at the instant 1 with (\d+) iteration", said)[1]), 3)
 
+    def test_a_pile_falls_together(self):
+        """Three blocks above a slab, of which the middle one has no slave of its own."""
+        sides = ({"bottom": "SKIN", "top": "TOP"}, {"bottom": "WALL", "top": "WALL"}, {"bottom": "SKIN", "top": "SKIN"}, {"bottom": "BASE", "top": "WALL"})
+        blocks = [block("QUAD4", np.linspace(0, 2, 4 + k), np.linspace(0, 1, 3) - 1.01 * k, None, name, {**of, "left": "AXIS"})
+                  for k, (name, of) in enumerate(zip(("BODY", "SECOND", "THIRD", "LOW"), sides))]
+        moved, force, said = self.solve(union(blocks), 0.0, 100.0, '_F(GROUP_MA="AXIS", DX=0.0),')
+        self.assertAlmostEqual(force, 200, delta=1e-6)
+        self.assertAlmostEqual(moved, -0.03 - 4 * 100 / 210e3, delta=4e-4)
+        self.assertLessEqual(int(re.search(r"Converged at the instant 1 with (\d+) iteration", said)[1]), 2)
+
     def table(self, gaps):
         """A plate over two feet, each lower than the other one's gap would have it."""
         plate = block("QUAD8", np.linspace(0, 10, 11), np.linspace(0, 1, 3), None, "BODY", {"bottom": "SKIN", "top": "TOP"})
