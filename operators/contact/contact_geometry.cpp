@@ -467,7 +467,7 @@ void ContactGeometry::add(const Zone& zone, const Block& block_of_zone, ZonePair
       gap_[patch] += group.gap[i];
       weight_[patch] += group.measure[i];
       covered_[patch] += group.current_measure[i];
-      cells_.push_back({s, zone.masters[cells.master[c]], group.gap[i], at});
+      cells_.push_back({s, zone.masters[cells.master[c]], group.gap[i], group.current_measure[i], at});
       const std::int64_t n_points = cells.offset[c + 1] - cells.offset[c];
       const double* const first_gap = std::exchange(point_gap, point_gap + n_points);
       for (const double gap : std::span(first_gap, point_gap)) {

@@ -41,9 +41,10 @@ class ContactGeometry {
   };
   /// A contact cell with what its kernel gave.
   struct Cell {
-    std::int32_t slave;   ///< index into Contact::slaves
-    std::int32_t master;  ///< cell of the mesh
-    double gap;
+    std::int32_t slave;     ///< index into Contact::slaves
+    std::int32_t master;    ///< cell of the mesh
+    double gap;             ///< integral
+    double measure;         ///< current geometry
     std::int64_t coupling;  ///< first entry in coupling()
   };
   /// Couples of a zone that were left out for being too deep.

@@ -415,6 +415,57 @@ std::optional<PiercedPatch> ContactState::deepest(std::int32_t zone,
   return worst;
 }
 
+std::optional<SplitPatch> ContactState::split(std::int32_t zone, const Patchwise& patches, double strain) const {
+  struct Parts {
+    double nearest = INFINITY;
+    double gap[2] = {0, 0}, measure[2] = {0, 0};  // integrals: of what is near, and of the rest
+  };
+  const auto is_asked = [&](std::size_t p) {
+    return geometry_.zone_of(p) == zone && patches.status[p] != Status::active && !locked_[p] && !held_open_[p] &&
+           geometry_.coverage(p) >= tolerances_.taking_coverage;
+  };
+  std::map<std::size_t, Parts> parts;
+  const auto for_each_cell = [&](const auto& use) {
+    for (const ContactGeometry::Cell& cell : geometry_.cells())
+      if (const auto patch = static_cast<std::size_t>(contact_.slaves[cell.slave].patch); cell.measure > 0 && is_asked(patch))
+        use(patch, cell);
+  };
+  for_each_cell([&](std::size_t patch, const ContactGeometry::Cell& cell) {
+    parts[patch].nearest = std::min(parts[patch].nearest, cell.gap / cell.measure);
+  });
+  for_each_cell([&](std::size_t patch, const ContactGeometry::Cell& cell) {
+    Parts& of_patch = parts[patch];
+    const bool is_far = cell.gap / cell.measure > of_patch.nearest + tolerances_.far_behind * size_[patch];
+    of_patch.gap[is_far] += cell.gap;
+    of_patch.measure[is_far] += cell.measure;
+  });
+  std::optional<SplitPatch> worst;
+  for (const auto& [patch, of_patch] : parts) {
+    const double share = of_patch.measure[0] / geometry_.whole(patch);
+    if (of_patch.measure[1] == 0 || share < tolerances_.taking_coverage) continue;
+    const double depth = -of_patch.gap[0] / of_patch.measure[0];
+    if (depth < std::max(tolerances_.touching, tolerances_.missed_pressure * strain) * size_[patch]) continue;
+    if (!worst || depth > worst->depth) worst = SplitPatch{patch, share, depth, of_patch.gap[1] / of_patch.measure[1]};
+  }
+  return worst;
+}
+
+OwnCouples ContactState::own_couples(std::int32_t zone, const std::function<std::int32_t(std::int32_t node)>& body_of) const {
+  OwnCouples found;
+  for (const ContactGeometry::Cell& cell : geometry_.cells()) {
+    const SlaveElement& slave = contact_.slaves[cell.slave];
+    const auto patch = static_cast<std::size_t>(slave.patch);
+    if (geometry_.zone_of(patch) != zone || !(cell.measure > 0)) continue;
+    const double depth = -cell.gap / cell.measure;
+    if (depth < tolerances_.far_behind * size_[patch] ||
+        body_of(mesh_.cells[slave.cell][0]) != body_of(mesh_.cells[cell.master][0]))
+      continue;
+    ++found.count;
+    if (depth > found.depth) found.slave = slave.cell, found.depth = depth;
+  }
+  return found;
+}
+
 std::optional<UncheckedOverlap> ContactState::unchecked_overlap(std::int32_t zone) const {
   if (contact_.zones[zone].resolution != "NON") return std::nullopt;
   std::optional<UncheckedOverlap> worst;

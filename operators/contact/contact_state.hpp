@@ -38,6 +38,7 @@ struct ContactTolerances {
   double pierced = 0.05;            ///< of h: likewise of points of another active patch, whose average is closed
   double pierced_open = 0.04;       ///< of h: of points of an open patch, which nothing keeps out of the master
   double pierced_at_rest = 0.005;   ///< of h: likewise, where nothing presses
+  double far_behind = 0.5;          ///< of h: by how much parts of one patch may see masters at different distances
   double missed_pressure = 0.1;     ///< of the largest: what such points would press with, worth an alarm
   double alternating = 0.1;         ///< of the pressure: by how much neighbours may differ to opposite sides
   double touching = 1e-8;           ///< of h: an overlap of patches without contact that is round-off
@@ -72,6 +73,21 @@ struct NearestPatches {
   std::vector<std::size_t> patches;  ///< the nearest of all first
   std::int32_t node;                 ///< of the body
   bool tips = false;                 ///< it is in contact beside them, and tips onto them
+};
+
+/// An open patch of which a part lies inside its master, and the rest sees another one far behind.
+struct SplitPatch {
+  std::size_t patch;
+  double share;  ///< of the patch: the part inside
+  double depth;  ///< of this part, on average
+  double far;    ///< average gap of the rest
+};
+
+/// Couples of a slave cell and a master cell on two sides of one body.
+struct OwnCouples {
+  std::int64_t count = 0;
+  std::int32_t slave = -1;  ///< cell of the mesh, of the deepest of them
+  double depth = 0;         ///< of this one, on average: what lies between the two sides
 };
 
 /// A patch without contact that lies inside its master.
@@ -222,6 +238,11 @@ class ContactState {
   /// contact that the averages of coarse patches miss. @param strain the largest that the zone has made; the depth over h is
   /// the strain of the pressure that would close it
   std::optional<PiercedPatch> missed(std::int32_t zone, const Patchwise& patches, double strain) const;
+  /// Of a zone the open patch of which a part lies deepest inside its master, where the other part alone keeps it open.
+  /// @param strain as for missed()
+  std::optional<SplitPatch> split(std::int32_t zone, const Patchwise& patches, double strain) const;
+  /// Of a zone, at the initial geometry. @param body_of a node
+  OwnCouples own_couples(std::int32_t zone, const std::function<std::int32_t(std::int32_t node)>& body_of) const;
   /// Of a zone, where its pressures alternate by so much that it is worth an alarm.
   std::optional<AlternatingPressures> alternation(std::int32_t zone, const Patchwise& patches) const;
   bool presses(std::int32_t zone, const Patchwise& patches) const;

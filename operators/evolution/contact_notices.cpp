@@ -13,6 +13,7 @@ namespace lacon {
 namespace {
 
 constexpr double gap_that_counts = 0.2;      // of what skins give way by: pressures of a fit are wrong by as much
+constexpr double share_that_counts = 1e-3;   // of the largest strain of a zone: pressures below are none to speak of
 constexpr double share_of_round_off = 1e-3;  // of the largest pressure of a zone, at the instant that strains it most
 constexpr double missed = 0.04;              // of h: a strain that the pressure would make that coarse patches do not feel
 
@@ -37,6 +38,21 @@ void ContactNotices::tell_what_is_too_deep(double instant) {
             {"cell", cell_name(deep.slave)},
             {"instant", fmt::format("{:.9g}", instant)},
             {"limit", fmt::format("{:g}", by_distance ? limits.distance_limit : limits.depth_limit)}});
+  }
+}
+
+void ContactNotices::tell_of_own_couples() {
+  const auto body_of = [&](std::int32_t node) { return bodies_.of(node); };
+  for (std::size_t zone = 0; zone < present_.problem.contact->zones.size(); ++zone) {
+    const OwnCouples own = present_.contact->own_couples(static_cast<std::int32_t>(zone), body_of);
+    if (own.count == 0) continue;
+    const ContactZone& names = present_.problem.contact->zones[zone];
+    inform("EVOLUTION_69", {{"slave", names.slave_group},
+                            {"master", names.master_group},
+                            {"count", std::to_string(own.count)},
+                            {"cell", cell_name(own.slave)},
+                            {"body", bodies_.name_at(present_.problem.mesh.cells[static_cast<std::size_t>(own.slave)][0])},
+                            {"depth", fmt::format("{:.3g}", own.depth)}});
   }
 }
 
@@ -132,6 +148,7 @@ void ContactNotices::start(double instant) {
     if (const auto pierced = contact->pierced(zone, present_.state.patches, true)) depth_before_[zone] = pierced->depth;
   const std::vector<double>& moved = present_.state.displacement;
   const bool initial = std::all_of(moved.begin(), moved.end(), [](double value) { return value == 0; });
+  if (initial) tell_of_own_couples();
   for (std::int32_t zone = 0; initial && zone < static_cast<std::int32_t>(contact->geometry().zones().size()); ++zone)
     if (const std::optional<FacetOverlap> overlap = contact->facet_overlap(zone)) {
       const ContactZone& names = present_.problem.contact->zones[zone];
@@ -175,9 +192,15 @@ void ContactNotices::accept(const SolvedInstant& solved) {
     };
     note(contact.pierced(zone, patches, false), pierced_);
     note(contact.pierced(zone, patches, true), pierced_at_rest_);
-    if (const auto now = contact.alternation(zone, patches); now)
+    const auto now = contact.alternation(zone, patches);
+    const bool presses_as_before = contact.largest_strain(zone, patches) >= share_that_counts * strain;
+    if (now && presses_as_before &&
+        (!now->in_rows || facet_gaps_->of(zone, patches, present_.state.displacement)))  // along straight skins it is no facets
       if (const auto before = alternating_.find(zone); before == alternating_.end() || now->share > before->second.most.share)
         alternating_[zone] = {solved.instant, *now};
+    if (const auto split = contact.split(zone, patches, strain); split && strain > 0)
+      if (const auto before = split_.find(zone); before == split_.end() || split->depth > before->second.worst.depth)
+        split_[zone] = {solved.instant, *split};
     // before a zone presses for the first time its bodies come nearer, and points of coarse patches go in a little
     if (strain > 0) note(contact.missed(zone, patches, strain), missed_);
   }
@@ -212,6 +235,16 @@ void ContactNotices::end(bool /*completed*/) {
             {"cell", first_cell(alternating.most.patch)},
             {"instant", fmt::format("{:.9g}", alternating.instant)},
             {"percent", fmt::format("{:.3g}", 100 * alternating.most.share)}});
+  }
+  for (const auto& [zone, split] : split_) {
+    const ContactZone& names = present_.problem.contact->zones[zone];
+    inform("EVOLUTION_68", {{"slave", names.slave_group},
+                            {"master", names.master_group},
+                            {"cell", first_cell(split.worst.patch)},
+                            {"instant", fmt::format("{:.9g}", split.instant)},
+                            {"percent", fmt::format("{:.2g}", 100 * split.worst.share)},
+                            {"depth", fmt::format("{:.3g}", split.worst.depth)},
+                            {"far", fmt::format("{:.3g}", split.worst.far)}});
   }
   for (const auto& [zone, undecided] : undecided_) {
     const ContactZone& names = present_.problem.contact->zones[zone];
@@ -263,6 +296,7 @@ void ContactNotices::for_each_record(Notices& notices, const Use& use) {
   use("strain", notices.strain_);
   use("missed", notices.missed_);
   use("alternating", notices.alternating_);
+  use("split", notices.split_);
   use("faceted", notices.faceted_);
   use("undecided", notices.undecided_);
   use("flung", notices.flung_);

@@ -19,7 +19,7 @@ class ContactNotices : public EvolutionObserver {
   }
 
   /// EVOLUTION_6: patches that no displacement can move; EVOLUTION_17; EVOLUTION_22: patches that overlap because
-  /// their skins have facets.
+  /// their skins have facets; EVOLUTION_69: couples of two sides of one body.
   void start(double instant) override;
   /// EVOLUTION_14: such patches inside their master; EVOLUTION_17; EVOLUTION_23: bodies that lie on others without a pressure;
   /// EVOLUTION_35: overlaps with RESOLUTION='NON'; EVOLUTION_66: zones that a step has flung apart. Throws EVOLUTION_36 for an
@@ -28,7 +28,8 @@ class ContactNotices : public EvolutionObserver {
   /// EVOLUTION_16: of each zone the patch that its master has pierced deepest, of a zone where nothing has pressed at any
   /// instant also where that is little; EVOLUTION_45: likewise where a contact is missed while, or after, others press;
   /// EVOLUTION_43: zones whose skins never met; EVOLUTION_47 or 67: zones whose pressures alternate; EVOLUTION_60:
-  /// zones whose straight edges leave a gap that counts; EVOLUTION_65: zones whose pressures are near round-off.
+  /// zones whose straight edges leave a gap that counts; EVOLUTION_68: open patches with a part inside; EVOLUTION_65: zones
+  /// whose pressures are near round-off.
   void end(bool completed) override;
   /// Of a computation that has come to its end. Throws EVOLUTION_64 where nothing has pressed in any zone at any instant,
   /// though bodies have come to lie in each other: there is no force of contact in its result.
@@ -61,6 +62,15 @@ class ContactNotices : public EvolutionObserver {
       use("instant", instant), use("gap", facets.gap), use("give", facets.give);
     }
   };
+  struct Split {
+    double instant;
+    SplitPatch worst;
+    template <class Use>
+    void for_each_member(const Use& use) {
+      use("instant", instant), use("patch", worst.patch), use("share", worst.share), use("depth", worst.depth),
+          use("far", worst.far);
+    }
+  };
   struct Undecided {
     double instant, share;
     template <class Use>
@@ -76,6 +86,9 @@ class ContactNotices : public EvolutionObserver {
   /// EVOLUTION_17, or 52 where COEF_MULT_APPA says how deep: couples of each zone that overlap too deep to be taken for
   /// contact, once a zone.
   void tell_what_is_too_deep(double instant);
+
+  /// EVOLUTION_69: zones that couple two sides of one body.
+  void tell_of_own_couples();
 
   /// EVOLUTION_23, once a body.
   void tell_what_nothing_presses(double instant);
@@ -99,6 +112,7 @@ class ContactNotices : public EvolutionObserver {
   std::map<std::int32_t, double> strain_;            ///< of these, the largest that a pressure has made
   PiercedZones missed_;                              ///< of these, what nothing pressed at
   std::map<std::int32_t, Alternating> alternating_;  ///< zones whose pressures do, at the instant where they do most
+  std::map<std::int32_t, Split> split_;              ///< zones with such a patch, at the instant where it is deepest
   std::map<std::int32_t, Faceted> faceted_;          ///< zones with such a gap, at the instant that strains them most
   std::map<std::int32_t, Undecided> undecided_;      ///< zones of so small pressures, at that instant
   std::vector<double> last_displacement_;            ///< of the last accepted state,
