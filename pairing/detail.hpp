@@ -39,12 +39,18 @@ struct CoupleNormals {
 double give_way(const PairingOptions& options, const Surface& slave, std::size_t slave_cell, const Surface& master,
                 std::size_t master_cell, const CoupleNormals& normals);
 
-/// The deepest overlap of a couple that has not moved.
-double deepest(const PairingOptions& options, double diameter, double cosine);
-/// Whether no gap up to this one is beyond a limit of `options`. @param diameter of the larger cell of the couple
-/// @param cosine between the normal of the slave and the opposite of the master's
-bool within_limits(const PairingOptions& options, double largest_gap, double diameter, double cosine);
+/// What limits of a couple depend on.
+struct CoupleSize {
+  double diameter;  ///< of its larger cell
+  double cosine;    ///< between the normal of the slave and the opposite of the master's
+  double behind;    ///< behind_at_rest()
+};
+/// Of cells of one body: how far, along the normal of the slave, the master lay behind it when they were at rest (their
+/// middles); of cells of two bodies 0.
+double behind_at_rest(const Surface& slave, std::size_t slave_cell, const Surface& master, std::size_t master_cell);
+/// Whether no gap up to this one is beyond a limit of `options`.
+bool within_limits(const PairingOptions& options, double largest_gap, const CoupleSize& couple);
 /// Which limit a gap in the middle of what a couple has in common is beyond. @param moved give_way()
-std::optional<Rejection> beyond_limits(const PairingOptions& options, double gap, double diameter, double cosine, double moved);
+std::optional<Rejection> beyond_limits(const PairingOptions& options, double gap, const CoupleSize& couple, double moved);
 
 }  // namespace lacon::detail

@@ -14,6 +14,7 @@
 
 #include "lacon/pairing/detail.hpp"
 #include "lacon/structures/parallel.hpp"
+#include "lacon/structures/vector.hpp"
 
 namespace lacon {
 namespace {
@@ -79,21 +80,52 @@ double give_way(const PairingOptions& options, const Surface& slave, std::size_t
   return std::clamp(closer, 0.0, both);
 }
 
-double deepest(const PairingOptions& options, double diameter, double cosine) {
-  if (options.distance_limit > 0) return options.distance_limit * diameter;
-  return options.depth_limit > 0 ? options.depth_limit * diameter * std::max(cosine, 0.0)
-                                 : std::numeric_limits<double>::infinity();
+double behind_at_rest(const Surface& slave, std::size_t slave_cell, const Surface& master, std::size_t master_cell) {
+  const auto body = [](const Surface& skin, std::size_t cell) {
+    return skin.body[static_cast<std::size_t>(skin.nodes[cell][0])];
+  };
+  if (slave.body.empty() || master.body.empty() || body(slave, slave_cell) != body(master, master_cell)) return 0;
+  const auto at = [](const Surface& skin, std::size_t cell, std::size_t node) {
+    return vector_at((skin.rest.empty() ? skin.coordinates : skin.rest).data() + 3 * std::ptrdiff_t{skin.nodes[cell][node]});
+  };
+  const auto middle = [&](const Surface& skin, std::size_t cell) {
+    Vec3 sum{};
+    for (std::size_t i = 0; i < skin.nodes[cell].size(); ++i) sum = sum + at(skin, cell, i);
+    return sum / static_cast<double>(skin.nodes[cell].size());
+  };
+  const Vec3 first = at(slave, slave_cell, 0), along = at(slave, slave_cell, 1) - first;
+  const Vec3 normal = slave.dimension == 2 ? Vec3{along.y, -along.x, 0} : cross(along, at(slave, slave_cell, 2) - first);
+  const double size = norm(normal);
+  return size > 0 ? dot(normal, middle(slave, slave_cell) - middle(master, master_cell)) / size : 0;
 }
 
-bool within_limits(const PairingOptions& options, double largest_gap, double diameter, double cosine) {
-  return !(options.distance_limit > 0 && largest_gap > options.distance_limit * diameter) &&
-         largest_gap <= deepest(options, diameter, cosine);
+namespace {
+
+constexpr double infinite = std::numeric_limits<double>::infinity();
+
+/// The deepest overlap of a couple that has not moved.
+double deepest(const PairingOptions& options, const CoupleSize& couple) {
+  if (options.distance_limit > 0) return options.distance_limit * couple.diameter;
+  return options.depth_limit > 0 ? options.depth_limit * couple.diameter * std::max(couple.cosine, 0.0) : infinite;
 }
 
-std::optional<Rejection> beyond_limits(const PairingOptions& options, double gap, double diameter, double cosine,
-                                       double moved) {
-  if (options.distance_limit > 0 && gap > options.distance_limit * diameter + moved) return Rejection::too_far;
-  if (-gap > deepest(options, diameter, cosine) + moved) return Rejection::too_deep;
+/// Likewise of one body, whose other side the master is; infinite of others.
+double deepest_in_itself(const PairingOptions& options, const CoupleSize& couple) {
+  const double limit = options.own_depth_limit * couple.diameter;
+  return options.own_depth_limit > 0 && couple.behind > limit ? limit : infinite;
+}
+
+}  // namespace
+
+bool within_limits(const PairingOptions& options, double largest_gap, const CoupleSize& couple) {
+  return !(options.distance_limit > 0 && largest_gap > options.distance_limit * couple.diameter) &&
+         largest_gap <= std::min(deepest(options, couple), deepest_in_itself(options, couple));
+}
+
+std::optional<Rejection> beyond_limits(const PairingOptions& options, double gap, const CoupleSize& couple, double moved) {
+  if (options.distance_limit > 0 && gap > options.distance_limit * couple.diameter + moved) return Rejection::too_far;
+  if (-gap > deepest_in_itself(options, couple)) return Rejection::other_side;
+  if (-gap > deepest(options, couple) + moved) return Rejection::too_deep;
   return std::nullopt;
 }
 
@@ -104,9 +136,9 @@ double steep_cosine(const PairingOptions& options) {
 }
 
 std::string_view rejection_name(Rejection rejection) {
-  static constexpr std::string_view names[n_rejections] = {"facing away",       "hidden",   "sliver",  "degenerate slave",
-                                                           "degenerate master", "no image", "too far", "too steep",
-                                                           "too deep"};
+  static constexpr std::string_view names[n_rejections] = {"facing away",       "hidden",    "sliver",  "degenerate slave",
+                                                           "degenerate master", "no image",  "too far", "too steep",
+                                                           "too deep",          "other side"};
   return names[static_cast<std::size_t>(rejection)];
 }
 

@@ -69,6 +69,9 @@ struct PairingOptions {
   /// limit. It is multiplied by the cosine of the angle between both normals: a wall is met inside a body only by who looks
   /// through it. What the couple has come closer along the normal of either since Surface::rest comes on top.
   double depth_limit = -1;
+  /// Likewise of couples of one body (Surface::body) whose master lay behind the slave by more than that at rest: it is the
+  /// other side of the body, seen through it. Not positive: no such limit.
+  double own_depth_limit = 0.25;
   /// Angle between the slave's normal and the opposite of the master's, in degrees, from which on a couple counts less and less
   /// (steepness.hpp); 90: none does.
   double steep_angle = 85;
@@ -94,9 +97,10 @@ enum class Rejection : std::uint8_t {
   no_image,           ///< an integration point has no image on the master along the slave's normal
   too_far,            ///< beyond PairingOptions::distance_limit
   too_steep,          ///< its share is nothing: PairingOptions::steep_angle
-  too_deep            ///< an overlap beyond that, or beyond PairingOptions::depth_limit
+  too_deep,           ///< an overlap beyond that, or beyond PairingOptions::depth_limit
+  other_side          ///< an overlap beyond PairingOptions::own_depth_limit
 };
-inline constexpr int n_rejections = 9;
+inline constexpr int n_rejections = 10;
 std::string_view rejection_name(Rejection rejection);
 
 /// A couple that pairing gave up, or a part of it. A degenerate cell stands alone: the other one is -1.

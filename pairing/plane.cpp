@@ -360,13 +360,14 @@ class PairerInPlane final : public detail::CellPairer {
               const double own = 2 * length(e.x.c[1]), other = length(along), diameter = std::max(own, other);
               // the way from x_e to its image by the middle of the slave and an end of the master, both of which may bulge
               const double largest = length(point(master, first) - e.origin) + own + 1.5 * other;
-              const double cos = cosine(e, m);
-              if (detail::within_limits(options, largest, diameter, cos)) return std::nullopt;
+              const detail::CoupleSize size{diameter, cosine(e, m),
+                                            detail::behind_at_rest(slave, cell, master, static_cast<std::size_t>(m))};
+              if (detail::within_limits(options, largest, size)) return std::nullopt;
               const Vec2 t = e.tangent(-1) + e.tangent(1);
               const double moved = detail::give_way(
                   options, slave, cell, master, static_cast<std::size_t>(m),
                   {.slave = {t.y / length(t), -t.x / length(t), 0}, .master = {along.y / other, -along.x / other, 0}});
-              return detail::beyond_limits(options, image(e, middle, master, m, tolerances).gap, diameter, cos, moved);
+              return detail::beyond_limits(options, image(e, middle, master, m, tolerances).gap, size, moved);
             };
             if (!(share(e, m) > tolerances.sliver))
               reject(m, Rejection::too_steep);

@@ -260,19 +260,21 @@ class PairerInSpace final : public detail::CellPairer {
     const double own = diameter(e.f.nodes, e.f.n_vertices);
     std::erase_if(views, [&](const View* view) {
       const Nodes nodes = nodes_of_master(view->master);
-      const double other = diameter(nodes, master(view->master).n_vertices), size = std::max(own, other);
+      const double other = diameter(nodes, master(view->master).n_vertices);
+      const Surface &slave_skin = masters_->skin.slave, &master_skin = masters_->skin.master;
+      const auto slave_cell = static_cast<std::size_t>(slave_), master_cell = static_cast<std::size_t>(view->master);
+      const detail::CoupleSize size{std::max(own, other), cosine(view->master),
+                                    detail::behind_at_rest(slave_skin, slave_cell, master_skin, master_cell)};
       // the way from x_e to its image by the first nodes; a quadratic cell may bulge
       const auto reach = [](const FacetKind& f) { return (f.order == 1 ? 1 : 1.25) * f.size; };
       const double largest = norm(nodes[0] - e.f.nodes[0]) + reach(e.f) + reach(master(view->master));
-      if (detail::within_limits(options(), largest, size, cosine(view->master))) return false;
+      if (detail::within_limits(options(), largest, size)) return false;
       const double found = gap(*view, middle(view->region.polygon));
       if (!std::isfinite(found)) return false;
       const Vec3 n = mean_normal_, m = master(view->master).normal;
-      const double cos = cosine(view->master),
-                   moved = detail::give_way(options(), masters_->skin.slave, static_cast<std::size_t>(slave_),
-                                            masters_->skin.master, static_cast<std::size_t>(view->master),
+      const double moved = detail::give_way(options(), slave_skin, slave_cell, master_skin, master_cell,
                                             {.slave = {n.x, n.y, n.z}, .master = {m.x, m.y, m.z}});
-      const auto limit = detail::beyond_limits(options(), found, size, cos, moved);
+      const auto limit = detail::beyond_limits(options(), found, size, moved);
       if (limit) reject(view->master, *limit);
       return limit.has_value();
     });

@@ -42,6 +42,9 @@ struct Surface {
   /// (n_nodes, 3), where nodes were when the bodies last were in balance; empty: where they are now. Limits of distance and of
   /// depth (PairingOptions) give way by what a couple has moved since.
   std::span<const double> rest = {};
+  /// (n_nodes): the body of each, any number; empty: unknown. Of a couple of one body that lies deep at rest, one cell is seen
+  /// through it.
+  std::span<const std::int32_t> body = {};
   /// In space, of each cell of a slave: how it was cut before, which pairing refines; empty: each as its shape asks for now.
   std::span<SlaveCut> cuts = {};
 

@@ -11,6 +11,7 @@
 #include "lacon/catalog/messages.hpp"
 #include "lacon/elements/reference.hpp"
 #include "lacon/pairing/normals.hpp"
+#include "lacon/structures/bodies.hpp"
 #include "lacon/structures/displacement.hpp"
 #include "lacon/structures/memory.hpp"
 #include "lacon/structures/parallel.hpp"
@@ -132,6 +133,8 @@ ContactGeometry::ContactGeometry(const Mesh& mesh, const Model& model, const Con
       registry_(registry),
       coordinates_(mesh.coordinates),
       rest_(mesh.coordinates) {
+  const Bodies bodies(mesh);
+  for (std::int32_t node = 0; node < static_cast<std::int32_t>(mesh.n_nodes()); ++node) body_.push_back(bodies.of(node));
   const std::size_t n = mesh.patches->size();
   gap_.assign(n, 0.0);
   weight_ = covered_ = whole_ = coverage_ = smallest_gap_ = largest_gap_ = gap_;
@@ -151,6 +154,7 @@ ContactGeometry::ContactGeometry(const Mesh& mesh, const Model& model, const Con
         .current_jacobian = data.jacobian == "ACTUALISE",
         .pairing = {.distance_limit = data.distance_limit, .depth_limit = data.distance_limit > 0 ? -1 : deepest_overlap}};
     zone.slave.rest = zone.master.rest = rest_;
+    zone.slave.body = zone.master.body = body_;
     for (const std::int32_t cell : data.slave) zone.slaves.push_back(slave_of_cell.at(cell));
     for (const std::int32_t patch : data.patches) zone_of_[patch] = static_cast<std::int32_t>(zones_.size());
     if (!contact.frozen_gap) {

@@ -159,6 +159,7 @@ class ContactGeometry {
   std::map<std::int32_t, const lacon_kernel*> kernels_;  ///< of the slaves' elements
   std::vector<double> coordinates_;                      ///< (n_nodes, 3), current
   std::vector<double> rest_;                             ///< likewise, at rest
+  std::vector<std::int32_t> body_;                       ///< (n_nodes): Bodies::of
   std::vector<Zone> zones_;
   std::vector<std::vector<double>> normals_;  ///< of each zone, at the nodes (LISSAGE)
   std::vector<std::vector<double>> offsets_;  ///< likewise

@@ -83,13 +83,6 @@ struct SplitPatch {
   double far;    ///< average gap of the rest
 };
 
-/// Couples of a slave cell and a master cell on two sides of one body.
-struct OwnCouples {
-  std::int64_t count = 0;
-  std::int32_t slave = -1;  ///< cell of the mesh, of the deepest of them
-  double depth = 0;         ///< of this one, on average: what lies between the two sides
-};
-
 /// A patch without contact that lies inside its master.
 struct UncheckedOverlap {
   std::size_t patch;
@@ -241,8 +234,6 @@ class ContactState {
   /// Of a zone the open patch of which a part lies deepest inside its master, where the other part alone keeps it open.
   /// @param strain as for missed()
   std::optional<SplitPatch> split(std::int32_t zone, const Patchwise& patches, double strain) const;
-  /// Of a zone, at the initial geometry. @param body_of a node
-  OwnCouples own_couples(std::int32_t zone, const std::function<std::int32_t(std::int32_t node)>& body_of) const;
   /// Of a zone, where its pressures alternate by so much that it is worth an alarm.
   std::optional<AlternatingPressures> alternation(std::int32_t zone, const Patchwise& patches) const;
   bool presses(std::int32_t zone, const Patchwise& patches) const;

@@ -41,21 +41,6 @@ void ContactNotices::tell_what_is_too_deep(double instant) {
   }
 }
 
-void ContactNotices::tell_of_own_couples() {
-  const auto body_of = [&](std::int32_t node) { return bodies_.of(node); };
-  for (std::size_t zone = 0; zone < present_.problem.contact->zones.size(); ++zone) {
-    const OwnCouples own = present_.contact->own_couples(static_cast<std::int32_t>(zone), body_of);
-    if (own.count == 0) continue;
-    const ContactZone& names = present_.problem.contact->zones[zone];
-    inform("EVOLUTION_69", {{"slave", names.slave_group},
-                            {"master", names.master_group},
-                            {"count", std::to_string(own.count)},
-                            {"cell", cell_name(own.slave)},
-                            {"body", bodies_.name_at(present_.problem.mesh.cells[static_cast<std::size_t>(own.slave)][0])},
-                            {"depth", fmt::format("{:.3g}", own.depth)}});
-  }
-}
-
 void ContactNotices::tell_what_nothing_presses(double instant) {
   if (free_.empty()) return;
   const ContactState& contact = *present_.contact;
@@ -148,7 +133,6 @@ void ContactNotices::start(double instant) {
     if (const auto pierced = contact->pierced(zone, present_.state.patches, true)) depth_before_[zone] = pierced->depth;
   const std::vector<double>& moved = present_.state.displacement;
   const bool initial = std::all_of(moved.begin(), moved.end(), [](double value) { return value == 0; });
-  if (initial) tell_of_own_couples();
   for (std::int32_t zone = 0; initial && zone < static_cast<std::int32_t>(contact->geometry().zones().size()); ++zone)
     if (const std::optional<FacetOverlap> overlap = contact->facet_overlap(zone)) {
       const ContactZone& names = present_.problem.contact->zones[zone];

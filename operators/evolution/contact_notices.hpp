@@ -19,7 +19,7 @@ class ContactNotices : public EvolutionObserver {
   }
 
   /// EVOLUTION_6: patches that no displacement can move; EVOLUTION_17; EVOLUTION_22: patches that overlap because
-  /// their skins have facets; EVOLUTION_69: couples of two sides of one body.
+  /// their skins have facets.
   void start(double instant) override;
   /// EVOLUTION_14: such patches inside their master; EVOLUTION_17; EVOLUTION_23: bodies that lie on others without a pressure;
   /// EVOLUTION_35: overlaps with RESOLUTION='NON'; EVOLUTION_66: zones that a step has flung apart. Throws EVOLUTION_36 for an
@@ -86,9 +86,6 @@ class ContactNotices : public EvolutionObserver {
   /// EVOLUTION_17, or 52 where COEF_MULT_APPA says how deep: couples of each zone that overlap too deep to be taken for
   /// contact, once a zone.
   void tell_what_is_too_deep(double instant);
-
-  /// EVOLUTION_69: zones that couple two sides of one body.
-  void tell_of_own_couples();
 
   /// EVOLUTION_23, once a body.
   void tell_what_nothing_presses(double instant);

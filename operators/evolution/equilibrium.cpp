@@ -11,10 +11,10 @@
 #include "lacon/assembly/solid_step.hpp"
 #include "lacon/catalog/messages.hpp"
 #include "lacon/catalog/wording.hpp"
-#include "lacon/operators/evolution/bodies.hpp"
 #include "lacon/operators/evolution/parts.hpp"
 #include "lacon/operators/evolution/prediction.hpp"
 #include "lacon/operators/program/program.hpp"
+#include "lacon/structures/bodies.hpp"
 #include "lacon/structures/hdf5.hpp"
 
 namespace lacon {

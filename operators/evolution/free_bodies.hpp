@@ -3,8 +3,8 @@
 #include <set>
 
 #include "lacon/assembly/rigid_motions.hpp"
-#include "lacon/operators/evolution/bodies.hpp"
 #include "lacon/operators/evolution/static_problem.hpp"
+#include "lacon/structures/bodies.hpp"
 
 namespace lacon {
 

@@ -7,9 +7,9 @@
 #include <string_view>
 #include <vector>
 
-#include "lacon/operators/evolution/bodies.hpp"
 #include "lacon/operators/evolution/evolution.hpp"
 #include "lacon/operators/evolution/state_fields.hpp"
+#include "lacon/structures/bodies.hpp"
 
 namespace lacon {
 

@@ -12,7 +12,6 @@
 #include "lacon/assembly/loose_motions.hpp"
 #include "lacon/assembly/saddle_point_solver.hpp"
 #include "lacon/catalog/messages.hpp"
-#include "lacon/operators/evolution/bodies.hpp"
 #include "lacon/operators/evolution/equilibrium.hpp"
 #include "lacon/operators/evolution/forcing_term.hpp"
 #include "lacon/operators/evolution/line_search.hpp"
@@ -23,6 +22,7 @@
 #include "lacon/operators/evolution/residual_course.hpp"
 #include "lacon/operators/evolution/status_rule.hpp"
 #include "lacon/operators/evolution/unstable_path.hpp"
+#include "lacon/structures/bodies.hpp"
 
 namespace lacon {
 

@@ -6,7 +6,7 @@
 
 #include "lacon/catalog/messages.hpp"
 #include "lacon/catalog/wording.hpp"
-#include "lacon/operators/evolution/bodies.hpp"
+#include "lacon/structures/bodies.hpp"
 
 namespace lacon {
 namespace {

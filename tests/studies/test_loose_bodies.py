@@ -147,6 +147,16 @@ class LooseBodies(StudyTest):
         self.assertAlmostEqual(moved, -0.03 - 4 * 100 / 210e3, delta=4e-4)
         self.assertLessEqual(int(re.search(r"Converged at the instant 1 with (\d+) iteration", said)[1]), 2)
 
+    def test_plates_in_one_zone_do_not_touch_themselves(self):
+        """Both sides of the middle plate are in the zone, and three cells thick: shifts of 1e-4 coupled them through it, and no step was short enough."""
+        sides = ({"bottom": "SKIN", "top": "TOP"}, {"bottom": "SKIN", "top": "WALL"}, {"bottom": "BASE", "top": "WALL"})
+        plates = [block("QUAD8", np.linspace(0, 50, 51), np.linspace(*ends, 4), None, name, {**of, "left": "AXIS"})
+                  for name, ends, of in zip(("BODY", "SECOND", "LOW"), ((3, 8), (0, 3), (-5, 0)), sides)]
+        moved, force, said = self.solve(union(plates), 0.0, 1.0, '_F(GROUP_MA="AXIS", DX=0.0),')
+        self.assertAlmostEqual(force, 50, delta=1e-9)
+        self.assertAlmostEqual(moved, -13 / (210e3 / (1 - 0.3**2)), delta=5e-6)
+        self.assertNotIn("<A>", said)
+
     def table(self, gaps):
         """A plate over two feet, each lower than the other one's gap would have it."""
         plate = block("QUAD8", np.linspace(0, 10, 11), np.linspace(0, 1, 3), None, "BODY", {"bottom": "SKIN", "top": "TOP"})

@@ -125,6 +125,21 @@ class Skins(StudyTest):
             self.assertEqual(figures["status"], "finished")
             self.assertEqual("EVOLUTION_45" in figures.get("alarms", []), told, deepest)
 
+    def test_a_patch_that_a_far_master_keeps_open_is_told(self):
+        """It lies over the edge of a block by two fifths and over a floor beside it, which is no part of the contact but of its average gap."""
+        for with_floor in (True, False):
+            mesh = union([slab("QUAD8", "TOOL", (0, 10), (0, 2), (10, 3), skin="bottom"), slab("QUAD8", "SLAB", (0, 4.4), (-2, 0), (5, 3)),
+                          slab("QUAD8", "FLOOR", (4.4, 10), (-2, -1), (5, 2))])
+            if with_floor:
+                mesh.cell_groups["SLAB_SKIN"] = mesh.cell_groups["SLAB_SKIN"] + mesh.cell_groups["FLOOR_SKIN"]
+            study = Study(name="pocket", mesh=mesh, materials={body: elastic(1e3) for body in ("TOOL", "SLAB", "FLOOR")}, zones=[zone("TOOL", "SLAB", 0)],
+                          moves=[held("SLAB"), held("FLOOR"), path("TOOL", [(0, 0), (1, 0)], [(0, 0), (1, -0.05)])], steps=1)
+            figures = run(study, LACON, self.folder)
+            self.assertEqual(figures["status"], "finished")
+            self.assertEqual("EVOLUTION_68" in figures.get("alarms", []), with_floor)
+            if with_floor:
+                self.assertRegex((self.folder / "err").read_text(), "(39|4[012]) % of it lies inside SLAB_SKIN")
+
     def test_whole_skins_meet_where_they_face_each_other_only(self):
         """A block on a larger one, all of both skins in the zone: normals of far sides reach the other body through their own."""
         sides = {"left": "TOOL_SKIN", "right": "TOOL_SKIN"}

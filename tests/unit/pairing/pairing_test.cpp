@@ -475,6 +475,32 @@ TEST(Pairing, LeavesOutWhatIsFurtherThanTheLimit) {
   }
 }
 
+TEST(Pairing, LeavesOutTheOtherSideOfTheSameBody) {
+  // as above, 1 deep behind the slave: half a diameter
+  Skin slave, master;
+  add_chain(slave, line(0), {0, 1}, Kind::linear);
+  add_chain(master, line(1), {1.5, -0.5}, Kind::linear);
+  const std::vector<std::int32_t> one(2, 7), other(2, 8);
+  const auto rejected = [&](const std::vector<std::int32_t>& body, double limit, double at_rest = 1) {
+    const std::vector<double> rest = moved(master.coordinates, {0, at_rest - 1, 0});
+    Surface of_slave = slave.view(), of_master = master.view();
+    of_slave.body = one;
+    of_master.body = body;
+    of_master.rest = rest;
+    return pair(of_slave, of_master, {.own_depth_limit = limit}).rejected;
+  };
+  const std::vector<RejectedCouple> none, through{{0, 0, Rejection::other_side}};
+  EXPECT_EQ(rejected(one, 0.4999), through);
+  EXPECT_EQ(rejected(one, 0.5001), none);
+  EXPECT_EQ(rejected(one, 0), none);
+  EXPECT_EQ(rejected(other, 0.25), none);
+  EXPECT_EQ(rejected(one, 0.25, -1), none);  // in front of it: they have met since
+  EXPECT_EQ(rejected(one, 0.25, 0.4), none);
+  EXPECT_EQ(rejected(one, 0.25, 0.6), through);
+  const std::vector<RejectedCouple> unknown = pair(slave.view(), master.view()).rejected;
+  EXPECT_EQ(unknown, none);
+}
+
 TEST(Pairing, LeavesOutOverlapsThatAreDeeperThanTheLimitAndTheMotion) {
   // as above; the outward normal of the slave points to y < 0
   for (const double side : {-1.0, 1.0}) {

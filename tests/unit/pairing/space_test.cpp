@@ -696,6 +696,28 @@ TEST(PairingInSpace, LeavesOutOverlapsThatAreDeeperThanTheLimitAndTheMotion) {
   }
 }
 
+TEST(PairingInSpace, LeavesOutTheOtherSideOfTheSameBody) {
+  std::mt19937 random(23);
+  Skin3 slave = slave_square();
+  Skin3 master = mesh({1, 1, CellType::QUAD4, true, 0, -0.5, 1.5, -0.5, 1.5}, plane(1), random);
+  const std::vector<std::int32_t> one(16, 7), other(16, 8);
+  const auto rejected = [&](const std::vector<std::int32_t>& body, double at_rest) {
+    const std::vector<double> rest = moved(master.coordinates, {0, 0, at_rest - 1});
+    Surface of_slave = slave.view(), of_master = master.view();
+    of_slave.body = one;
+    of_master.body = body;
+    of_master.rest = rest;
+    return pair(of_slave, of_master).rejected;
+  };
+  const std::vector<RejectedCouple> none, through{{0, 0, Rejection::other_side}};
+  const double limit = 0.25 * std::sqrt(8.0);
+  EXPECT_EQ(rejected(one, 1), through);
+  EXPECT_EQ(rejected(one, limit + 1e-6), through);
+  EXPECT_EQ(rejected(one, limit - 1e-6), none);
+  EXPECT_EQ(rejected(one, -1), none);
+  EXPECT_EQ(rejected(other, 1), none);
+}
+
 TEST(PairingInSpace, CountsWallsBesideAnEdgeLessTheSteeperTheyAre) {
   for (const double angle : {0.0, 80.0, 84.9, 85.1, 88.0, 89.9}) {
     const double a = angle * std::numbers::pi / 180, c = std::cos(a), s = std::sin(a), z = -0.1;

@@ -1,4 +1,4 @@
-#include "lacon/operators/evolution/bodies.hpp"
+#include "lacon/structures/bodies.hpp"
 
 #include <algorithm>
 #include <numeric>
