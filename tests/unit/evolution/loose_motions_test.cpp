@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <utility>
+
 #include "lacon/operators/evolution/equilibrium.hpp"
 #include "lacon/operators/evolution/free_bodies.hpp"
 #include "two_squares.hpp"
@@ -16,11 +18,17 @@ LooseMotions motions_of(const StaticProblem& problem) {
   return {RigidMotions(geometry_of(problem, Bodies(problem.mesh))), problem.numbering};
 }
 
-/// Of two squares apart, the lower one held, at rest.
-std::vector<LooseMotion> loose(StaticProblem problem) {
+/// The lower one of two squares held.
+StaticProblem held(StaticProblem problem) {
   problem.loads.push_back(hold(bottom, 1));
   problem.loads.push_back(hold(bottom, 0));
   number(problem);
+  return problem;
+}
+
+/// Of two squares apart, the lower one held, at rest.
+std::vector<LooseMotion> loose(StaticProblem squares) {
+  const StaticProblem problem = held(std::move(squares));
   Equilibrium equilibrium(problem);
   const StaticState rest = equilibrium.natural_state();
   equilibrium.assemble(rest, rest, {});
@@ -70,10 +78,7 @@ TEST(LooseMotions, ThereAreNoneWhereContactHolds) {
 }
 
 TEST(LooseMotions, AreKnownByWhatTheyMove) {
-  StaticProblem problem = two_squares("ELAS/PETIT", false);
-  problem.loads.push_back(hold(bottom, 1));
-  problem.loads.push_back(hold(bottom, 0));
-  number(problem);
+  const StaticProblem problem = held(two_squares("ELAS/PETIT", false));
   Equilibrium equilibrium(problem);
   const StaticState rest = equilibrium.natural_state();
   equilibrium.assemble(rest, rest, {});
