@@ -48,9 +48,24 @@ struct CoupleSize {
 /// Of cells of one body: how far, along the normal of the slave, the master lay behind it when they were at rest (their
 /// middles); of cells of two bodies 0.
 double behind_at_rest(const Surface& slave, std::size_t slave_cell, const Surface& master, std::size_t master_cell);
+/// Whether PairingOptions::left_out has a couple.
+bool is_left_out(const PairingOptions& options, std::size_t slave_cell, std::size_t master_cell);
 /// Whether no gap up to this one is beyond a limit of `options`.
 bool within_limits(const PairingOptions& options, double largest_gap, const CoupleSize& couple);
 /// Which limit a gap in the middle of what a couple has in common is beyond. @param moved give_way()
 std::optional<Rejection> beyond_limits(const PairingOptions& options, double gap, const CoupleSize& couple, double moved);
+
+/// A master that covers a part of a slave cell.
+struct Candidate {
+  std::int32_t master;
+  double gap;   ///< in the middle of the part
+  double size;  ///< of the master
+};
+/// Which of two masters keeps a part of a slave cell that both cover: the nearer one. But free ends of two masters that have
+/// slid over each other by a hair, as of blocks side by side that widen under load, are pushed to the same height: were it
+/// always the nearer one, forces would leap there from one to the other, and no iterate would find an equilibrium. Of such
+/// ends, where they are about as near, the one keeps it whose place at rest has the smaller coordinates.
+/// @param width of what both cover  @param size of the slave cell
+bool comes_before(const Surface& masters, const Candidate& one, const Candidate& other, double width, double size);
 
 }  // namespace lacon::detail

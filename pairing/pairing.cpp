@@ -80,23 +80,31 @@ double give_way(const PairingOptions& options, const Surface& slave, std::size_t
   return std::clamp(closer, 0.0, both);
 }
 
+namespace {
+
+Vec3 node_at_rest(const Surface& skin, std::size_t cell, std::size_t node) {
+  return vector_at((skin.rest.empty() ? skin.coordinates : skin.rest).data() + 3 * std::ptrdiff_t{skin.nodes[cell][node]});
+}
+
+/// The mean of the nodes of a cell.
+Vec3 middle_at_rest(const Surface& skin, std::size_t cell) {
+  Vec3 sum{};
+  for (std::size_t i = 0; i < skin.nodes[cell].size(); ++i) sum = sum + node_at_rest(skin, cell, i);
+  return sum / static_cast<double>(skin.nodes[cell].size());
+}
+
+}  // namespace
+
 double behind_at_rest(const Surface& slave, std::size_t slave_cell, const Surface& master, std::size_t master_cell) {
   const auto body = [](const Surface& skin, std::size_t cell) {
     return skin.body[static_cast<std::size_t>(skin.nodes[cell][0])];
   };
   if (slave.body.empty() || master.body.empty() || body(slave, slave_cell) != body(master, master_cell)) return 0;
-  const auto at = [](const Surface& skin, std::size_t cell, std::size_t node) {
-    return vector_at((skin.rest.empty() ? skin.coordinates : skin.rest).data() + 3 * std::ptrdiff_t{skin.nodes[cell][node]});
-  };
-  const auto middle = [&](const Surface& skin, std::size_t cell) {
-    Vec3 sum{};
-    for (std::size_t i = 0; i < skin.nodes[cell].size(); ++i) sum = sum + at(skin, cell, i);
-    return sum / static_cast<double>(skin.nodes[cell].size());
-  };
-  const Vec3 first = at(slave, slave_cell, 0), along = at(slave, slave_cell, 1) - first;
-  const Vec3 normal = slave.dimension == 2 ? Vec3{along.y, -along.x, 0} : cross(along, at(slave, slave_cell, 2) - first);
+  const Vec3 first = node_at_rest(slave, slave_cell, 0), along = node_at_rest(slave, slave_cell, 1) - first;
+  const Vec3 normal =
+      slave.dimension == 2 ? Vec3{along.y, -along.x, 0} : cross(along, node_at_rest(slave, slave_cell, 2) - first);
   const double size = norm(normal);
-  return size > 0 ? dot(normal, middle(slave, slave_cell) - middle(master, master_cell)) / size : 0;
+  return size > 0 ? dot(normal, middle_at_rest(slave, slave_cell) - middle_at_rest(master, master_cell)) / size : 0;
 }
 
 namespace {
@@ -117,6 +125,11 @@ double deepest_in_itself(const PairingOptions& options, const CoupleSize& couple
 
 }  // namespace
 
+bool is_left_out(const PairingOptions& options, std::size_t slave_cell, std::size_t master_cell) {
+  const Couple couple{static_cast<std::int32_t>(slave_cell), static_cast<std::int32_t>(master_cell)};
+  return std::ranges::binary_search(options.left_out, couple);
+}
+
 bool within_limits(const PairingOptions& options, double largest_gap, const CoupleSize& couple) {
   return !(options.distance_limit > 0 && largest_gap > options.distance_limit * couple.diameter) &&
          largest_gap <= std::min(deepest(options, couple), deepest_in_itself(options, couple));
@@ -129,6 +142,21 @@ std::optional<Rejection> beyond_limits(const PairingOptions& options, double gap
   return std::nullopt;
 }
 
+bool comes_before(const Surface& masters, const Candidate& one, const Candidate& other, double width, double size) {
+  constexpr double narrow = 0.25;  // of the smallest cell
+  constexpr double as_near = 0.1;  // of the slave cell
+  const auto ends = [&](const Candidate& candidate) {
+    return !masters.free_ends.empty() && masters.free_ends[static_cast<std::size_t>(candidate.master)] != 0;
+  };
+  const bool ends_meet = ends(one) && ends(other) && width < narrow * std::min({size, one.size, other.size});
+  if (std::abs(one.gap - other.gap) > (ends_meet ? as_near * size : 0)) return std::abs(one.gap) < std::abs(other.gap);
+  const auto place = [&](const Candidate& candidate) {
+    const Vec3 at = middle_at_rest(masters, static_cast<std::size_t>(candidate.master));
+    return std::tuple(at.x, at.y, at.z, candidate.master);
+  };
+  return place(one) < place(other);
+}
+
 }  // namespace detail
 
 double steep_cosine(const PairingOptions& options) {
@@ -136,9 +164,9 @@ double steep_cosine(const PairingOptions& options) {
 }
 
 std::string_view rejection_name(Rejection rejection) {
-  static constexpr std::string_view names[n_rejections] = {"facing away",       "hidden",    "sliver",  "degenerate slave",
-                                                           "degenerate master", "no image",  "too far", "too steep",
-                                                           "too deep",          "other side"};
+  static constexpr std::string_view names[n_rejections] = {"facing away",       "hidden",     "sliver",    "degenerate slave",
+                                                           "degenerate master", "no image",   "too far",   "too steep",
+                                                           "too deep",          "other side", "far behind"};
   return names[static_cast<std::size_t>(rejection)];
 }
 

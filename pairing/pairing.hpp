@@ -6,6 +6,7 @@
 #include <compare>
 #include <cstdint>
 #include <memory>
+#include <span>
 #include <string_view>
 #include <vector>
 
@@ -59,6 +60,13 @@ struct PolygonTrace {
   std::vector<Point> point;
 };
 
+/// A slave cell and a master cell, by their numbers in the two surfaces.
+struct Couple {
+  std::int32_t slave, master;
+
+  auto operator<=>(const Couple&) const = default;
+};
+
 struct PairingOptions {
   PairingTolerances tolerances;
   bool brute_force = false;  ///< try every couple instead of searching: the oracle of the tests
@@ -72,6 +80,8 @@ struct PairingOptions {
   /// Likewise of couples of one body (Surface::body) whose master lay behind the slave by more than that at rest: it is the
   /// other side of the body, seen through it. Not positive: no such limit.
   double own_depth_limit = 0.25;
+  /// Couples that give no contact cell, sorted: masters that lie far behind others of the same patch. The caller owns them.
+  std::span<const Couple> left_out = {};
   /// Angle between the slave's normal and the opposite of the master's, in degrees, from which on a couple counts less and less
   /// (steepness.hpp); 90: none does.
   double steep_angle = 85;
@@ -98,9 +108,10 @@ enum class Rejection : std::uint8_t {
   too_far,            ///< beyond PairingOptions::distance_limit
   too_steep,          ///< its share is nothing: PairingOptions::steep_angle
   too_deep,           ///< an overlap beyond that, or beyond PairingOptions::depth_limit
-  other_side          ///< an overlap beyond PairingOptions::own_depth_limit
+  other_side,         ///< an overlap beyond PairingOptions::own_depth_limit
+  far_behind          ///< PairingOptions::left_out
 };
-inline constexpr int n_rejections = 10;
+inline constexpr int n_rejections = 11;
 std::string_view rejection_name(Rejection rejection);
 
 /// A couple that pairing gave up, or a part of it. A degenerate cell stands alone: the other one is -1.

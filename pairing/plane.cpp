@@ -246,8 +246,9 @@ Image image(const SlaveCell& slave, double xi, const Surface& master, std::int32
 class Overlaps {
  public:
   /// @param[in,out] intervals sorted by (a, b)
-  template <class Distance, class Hidden>
-  void resolve(std::vector<Interval>& intervals, double sliver, const Distance& distance, const Hidden& hidden) {
+  /// @param gap(xi, master)  @param wins(interval, its gap, other one, its gap): whether the first keeps a part
+  template <class Gap, class Wins, class Hidden>
+  void resolve(std::vector<Interval>& intervals, double sliver, const Gap& gap, const Wins& wins, const Hidden& hidden) {
     bool any = false;
     double end = -1;
     for (const Interval& i : intervals) {
@@ -267,11 +268,11 @@ class Overlaps {
       const auto n = std::count_if(intervals.begin(), intervals.end(), covers);
       if (n == 0) continue;
       std::size_t nearest = intervals.size();
-      double least = std::numeric_limits<double>::infinity();
+      double its_gap = 0;
       for (std::size_t i = 0; i < intervals.size(); ++i)
         if (covers(intervals[i])) {
-          const double d = n == 1 ? 0 : std::abs(distance(0.5 * (a + b), intervals[i].master));
-          if (nearest == intervals.size() || d < least) nearest = i, least = d;
+          const double own = n == 1 ? 0 : gap(0.5 * (a + b), intervals[i].master);
+          if (nearest == intervals.size() || wins(intervals[i], own, intervals[nearest], its_gap)) nearest = i, its_gap = own;
         }
       for (std::size_t i = 0; i < intervals.size(); ++i)
         if (i != nearest && covers(intervals[i])) lost_[i] += b - a;
@@ -371,6 +372,8 @@ class PairerInPlane final : public detail::CellPairer {
             };
             if (!(share(e, m) > tolerances.sliver))
               reject(m, Rejection::too_steep);
+            else if (detail::is_left_out(options, cell, static_cast<std::size_t>(m)))
+              reject(m, Rejection::far_behind);
             else if (const auto limit = beyond_limits())
               reject(m, *limit);
             else
@@ -385,6 +388,14 @@ class PairerInPlane final : public detail::CellPairer {
               [](const Interval& i, const Interval& j) { return std::tie(i.a, i.b, i.master) < std::tie(j.a, j.b, j.master); });
     overlaps.resolve(
         intervals, tolerances.sliver, [&](double xi, std::int32_t m) { return image(e, xi, master, m, tolerances).gap; },
+        [&](const Interval& one, double gap, const Interval& other, double other_gap) {
+          const auto size_of = [&](std::int32_t m) {
+            return length(point(master, master.nodes[m][1]) - point(master, master.nodes[m][0]));
+          };
+          const double size = 2 * length(e.x.c[1]), common = std::min(one.b, other.b) - std::max(one.a, other.a);
+          return detail::comes_before(master, {one.master, gap, size_of(one.master)},
+                                      {other.master, other_gap, size_of(other.master)}, 0.5 * common * size, size);
+        },
         [&](std::int32_t m) { reject(m, Rejection::hidden); });
 
     for (std::size_t i = 0; i < intervals.size(); ++i) {

@@ -259,6 +259,10 @@ class PairerInSpace final : public detail::CellPairer {
   void drop_far_views() {
     const double own = diameter(e.f.nodes, e.f.n_vertices);
     std::erase_if(views, [&](const View* view) {
+      if (detail::is_left_out(options(), static_cast<std::size_t>(slave_), static_cast<std::size_t>(view->master))) {
+        reject(view->master, Rejection::far_behind);
+        return true;
+      }
       const Nodes nodes = nodes_of_master(view->master);
       const double other = diameter(nodes, master(view->master).n_vertices);
       const Surface &slave_skin = masters_->skin.slave, &master_skin = masters_->skin.master;
@@ -308,8 +312,12 @@ class PairerInSpace final : public detail::CellPairer {
       const Region both = intersection(old.region, view.region);
       if (double_area(both.polygon) <= overlap) continue;
       const Vec2 y = middle(both.polygon);
-      const double old_distance = std::abs(gap(old, y)), new_distance = std::abs(gap(view, y));
-      const bool old_wins = old_distance < new_distance || (old_distance == new_distance && old.master < view.master);
+      const auto candidate = [&](const View& seen) {
+        return detail::Candidate{seen.master, gap(seen, y), master(seen.master).size};
+      };
+      const double of_chart = 2 * e.f.size / e.chart_diameter,  // a length in the chart, about
+          width = of_chart * 0.5 * double_area(both.polygon) / diameter(both.polygon);
+      const bool old_wins = detail::comes_before(masters_->skin.master, candidate(old), candidate(view), width, e.f.size);
       const View &winner = old_wins ? old : view, &loser = old_wins ? view : old;
       reject(loser.master, Rejection::hidden);
       any_hidden = true;
@@ -380,10 +388,16 @@ class PairerInSpace final : public detail::CellPairer {
         const double distance = std::max(std::abs(cross(along, from - a)), std::abs(cross(along, to - a))) / norm(along);
         if (distance < least) least = distance, line = {.master = -1, .edge = i};
       }
-      if (least <= tolerances().coincident * e.chart_diameter) continue;
+      const double coincident = tolerances().coincident * e.chart_diameter;
+      if (least <= coincident) continue;
+      // where a line of another master coincides with one of its own, as of masters that lie mirrored to each other, the edge
+      // moves with its own one: so does the part of this master on the other side
+      bool own = false;
       for (const HalfPlane& half : view.region.halves) {
         const double distance = std::max(std::abs(half(from)), std::abs(half(to))) / norm(half.slope);
-        if (distance < least) least = distance, line = edges_[static_cast<std::size_t>(half.line)];
+        const PolygonTrace::Line& candidate = edges_[static_cast<std::size_t>(half.line)];
+        const bool is_own = candidate.master == view.master && distance <= coincident;
+        if (own ? is_own && distance < least : is_own || distance < least) least = distance, line = candidate, own = is_own;
       }
     }
     const double counted = share(view.master);

@@ -39,6 +39,8 @@ struct Surface {
   /// In space, of each cell of a master: bit i is set where the skin goes on a little beyond the edge from vertex i to the
   /// next, as by its image in a plane of symmetry; empty: nowhere.
   std::span<const std::uint8_t> mirrored = {};
+  /// Of each cell of a master: bit i is set where the skin ends or folds at its end or edge i (free_ends.hpp); empty: unknown.
+  std::span<const std::uint8_t> free_ends = {};
   /// (n_nodes, 3), where nodes were when the bodies last were in balance; empty: where they are now. Limits of distance and of
   /// depth (PairingOptions) give way by what a couple has moved since.
   std::span<const double> rest = {};

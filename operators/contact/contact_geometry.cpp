@@ -10,6 +10,8 @@
 
 #include "lacon/catalog/messages.hpp"
 #include "lacon/elements/reference.hpp"
+#include "lacon/operators/contact/facing.hpp"
+#include "lacon/pairing/free_ends.hpp"
 #include "lacon/pairing/normals.hpp"
 #include "lacon/structures/bodies.hpp"
 #include "lacon/structures/displacement.hpp"
@@ -119,13 +121,6 @@ struct ContactGeometry::Block {
   std::vector<Alike> groups;
 };
 
-const Rule& measuring_rule(CellType type) {
-  const auto& [family, order] = std::tie(catalog::cell(type).family, catalog::cell(type).order);
-  return integration_rule(family, family == Family::SEG    ? 4
-                                  : family == Family::TRIA ? (order == 1 ? 6 : 16)
-                                                           : (order == 1 ? 9 : 25));
-}
-
 ContactGeometry::ContactGeometry(const Mesh& mesh, const Model& model, const Contact& contact, Registry& registry)
     : mesh_(mesh),
       model_(model),
@@ -137,7 +132,7 @@ ContactGeometry::ContactGeometry(const Mesh& mesh, const Model& model, const Con
   for (std::int32_t node = 0; node < static_cast<std::int32_t>(mesh.n_nodes()); ++node) body_.push_back(bodies.of(node));
   const std::size_t n = mesh.patches->size();
   gap_.assign(n, 0.0);
-  weight_ = covered_ = whole_ = coverage_ = smallest_gap_ = largest_gap_ = gap_;
+  size_ = weight_ = covered_ = whole_ = coverage_ = smallest_gap_ = largest_gap_ = gap_;
   straight_.assign(n, 1);
   zone_of_.assign(n, -1);
   rejected_.assign(n_rejections, 0);
@@ -161,16 +156,21 @@ ContactGeometry::ContactGeometry(const Mesh& mesh, const Model& model, const Con
       zone.pairing.fading = fading;
       zone.inner = inner_nodes(mesh, contact, zone.slaves);
       zone.slave.inner = zone.inner;
+      zone.free_ends = free_ends(zone.master);
+      zone.master.free_ends = zone.free_ends;
     }
     zones_.push_back(std::move(zone));
   }
   if (contact.smoothing && !contact.frozen_gap)
     for (const Zone& zone : zones_) normal_variations_.emplace_back(zone.slave);
   for (const SlaveElement& slave : contact_.slaves) {
+    size_[slave.patch] += cell_extent(mesh, slave.cell);
     const lacon_kernel*& kernel = kernels_[model_.element[slave.cell]];
     if (!kernel) kernel = &kernel_of(slave.cell);
   }
 
+  if (mesh.dimension == 3)
+    for (double& size : size_) size = std::sqrt(size);
   measure_slaves();
   check_radii();
 }
@@ -264,7 +264,9 @@ void ContactGeometry::mirror() {
 }
 
 void ContactGeometry::rest_at(std::span<const double> displacement) {
+  const std::vector<double> before = rest_;
   displace(mesh_, displacement, mesh_.dimension, rest_);
+  keep_left_out(rest_ == before);
   cuts_end_ = true;
   mirror();
 }
@@ -294,6 +296,10 @@ void ContactGeometry::set_cuts(std::span<const std::int32_t> cuts) {
 
 void ContactGeometry::update(std::span<const double> displacement, std::vector<ZonePairing>* records) {
   displace(mesh_, displacement, mesh_.dimension, coordinates_);
+  look(records);
+}
+
+void ContactGeometry::look(std::vector<ZonePairing>* records) {
   over_axis_.reset();
   measure_slaves();
   cells_.clear();
@@ -471,9 +477,10 @@ void ContactGeometry::add(const Zone& zone, const Block& block_of_zone, ZonePair
       gap_[patch] += group.gap[i];
       weight_[patch] += group.measure[i];
       covered_[patch] += group.current_measure[i];
-      cells_.push_back({s, zone.masters[cells.master[c]], group.gap[i], group.current_measure[i], at});
       const std::int64_t n_points = cells.offset[c + 1] - cells.offset[c];
       const double* const first_gap = std::exchange(point_gap, point_gap + n_points);
+      const auto [least, most] = std::minmax_element(first_gap, point_gap);
+      cells_.push_back({s, zone.masters[cells.master[c]], group.gap[i], group.current_measure[i], *least, *most, at});
       for (const double gap : std::span(first_gap, point_gap)) {
         // a wall that is grazed, as beside a corner, is as good as not there
         if (group.current_measure[i] > grazed * whole_[patch]) smallest_gap_[patch] = std::min(smallest_gap_[patch], gap);

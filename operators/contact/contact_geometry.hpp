@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <map>
 #include <optional>
+#include <set>
 #include <span>
 #include <vector>
 
@@ -25,6 +26,13 @@ struct ZonePairing {
   std::vector<double> measure;    ///< of each contact cell, current geometry
 };
 
+/// A master that is left out of what a patch sees (far_masters.cpp).
+struct FarMaster {
+  std::int32_t patch, master;  ///< `master` is a cell of the mesh
+
+  auto operator<=>(const FarMaster&) const = default;
+};
+
 class ContactGeometry {
  public:
   struct Zone {
@@ -33,8 +41,10 @@ class ContactGeometry {
     std::vector<std::uint8_t> inner;    ///< Surface::inner of the slave
     std::vector<SlaveCut> cuts;         ///< Surface::cuts of the slave: in space, since it was at rest
     std::vector<EndPlane> planes;
-    std::vector<std::uint8_t> mirrored;  ///< Surface::mirrored of the master
-    std::vector<std::uint8_t> border;    ///< border_edges() of the master
+    std::vector<std::uint8_t> mirrored;   ///< Surface::mirrored of the master
+    std::vector<std::uint8_t> border;     ///< border_edges() of the master
+    std::vector<std::uint8_t> free_ends;  ///< Surface::free_ends of the master
+    std::vector<Couple> left_out;         ///< PairingOptions::left_out
     Surface slave, master;
     bool current_jacobian = false;
     PairingOptions pairing;
@@ -45,6 +55,7 @@ class ContactGeometry {
     std::int32_t master;    ///< cell of the mesh
     double gap;             ///< integral
     double measure;         ///< current geometry
+    double least, most;     ///< gaps at its integration points
     std::int64_t coupling;  ///< first entry in coupling()
   };
   /// Couples of a zone that were left out for being too deep.
@@ -80,6 +91,14 @@ class ContactGeometry {
   std::vector<std::int32_t> cuts() const;
   void set_cuts(std::span<const std::int32_t> cuts);
 
+  /// Masters that a patch sees in part, half its size or more behind the others of it (far_masters.cpp), are left out from now
+  /// on, until the patch sees them otherwise: a gap that is an average over both would keep it open. Contact cells are those of
+  /// the last update() without them. @return whether others are left out than before
+  bool leave_far_masters();
+  /// What it has left out, for set_left_out() of another process: patch and master of each.
+  std::vector<std::int32_t> left_out() const;
+  void set_left_out(std::span<const std::int32_t> masters);
+
   /// Let masters go on where both skins end in one plane: normals that lean over it by what facets leave, or a face that bulges
   /// a little more than the other one, would miss them there, now more, now less. Not with VARIATION_JEU='FIGEE'.
   void find_ends(std::span<const HeldDirection> held);
@@ -113,6 +132,8 @@ class ContactGeometry {
   /// At an integration point, infinite without any; those of masters that are seen by a ten thousandth of the patch do not
   /// count.
   double smallest_gap(std::size_t patch) const { return smallest_gap_[patch]; }
+  /// Length of a patch, in space the root of its area, at the initial geometry.
+  const std::vector<double>& sizes() const { return size_; }
   double covered(std::size_t patch) const { return covered_[patch]; }    ///< measure, current geometry
   double whole(std::size_t patch) const { return whole_[patch]; }        ///< measure, current geometry
   double coverage(std::size_t patch) const { return coverage_[patch]; }  ///< covered over whole
@@ -123,6 +144,14 @@ class ContactGeometry {
  private:
   struct Alike;
   struct Block;
+  /// update() at the present coordinates.
+  void look(std::vector<ZonePairing>* records = nullptr);
+  /// Masters that are to be left out of those that `cells_` has. @param before those that are or were
+  std::set<FarMaster> far_masters(const std::set<FarMaster>& before) const;
+  /// From the next look() on.
+  void leave_out(std::set<FarMaster> masters);
+  /// The bodies are at rest. @param same_rest where they last were: instants begin again as they did
+  void keep_left_out(bool same_rest);
   /// Gaps and couplings of the contact cells of a block. @param[in,out] groups gets a group of each kind, some of them perhaps
   /// empty
   void integrate(const Zone& zone, const ContactCells& cells, std::vector<Alike>& groups) const;
@@ -166,18 +195,15 @@ class ContactGeometry {
   std::vector<NormalVariation> normal_variations_;
   std::vector<Cell> cells_;
   std::vector<double> coupling_;
-  std::vector<double> gap_, weight_, covered_, whole_, coverage_, smallest_gap_;  ///< of each patch
-  std::vector<double> largest_gap_;                                               ///< likewise, either way, at all points
-  std::vector<std::uint8_t> straight_;                                            ///< likewise: no cell is of the second order
+  std::vector<double> size_, gap_, weight_, covered_, whole_, coverage_, smallest_gap_;  ///< of each patch
+  std::vector<double> largest_gap_;     ///< likewise, either way, at all points
+  std::vector<std::uint8_t> straight_;  ///< likewise: no cell is of the second order
   std::vector<std::int32_t> zone_of_;
   std::vector<std::int64_t> rejected_;
-  std::vector<TooDeep> too_deep_;          ///< of each zone
-  bool cuts_end_ = true;                   ///< with the next update()
-  std::optional<std::int32_t> over_axis_;  ///< a slave cell with a negative radius
+  std::vector<TooDeep> too_deep_;                    ///< of each zone
+  std::set<FarMaster> left_out_, left_out_at_rest_;  ///< leave_far_masters(): now, and when the bodies were at rest
+  bool cuts_end_ = true;                             ///< with the next update()
+  std::optional<std::int32_t> over_axis_;            ///< a slave cell with a negative radius
 };
-
-/// The rule that measures a whole skin cell: of degree 4 or 5 if it is linear, of 8 or 9, as fine as the points of pairing, if
-/// it may be curved.
-const Rule& measuring_rule(CellType type);
 
 }  // namespace lacon

@@ -17,20 +17,6 @@
 namespace lacon {
 namespace {
 
-/// Length or area of a skin cell at the initial geometry: a size, without the radius that weighs coverage in axisymmetry.
-double extent(const Mesh& mesh, std::int32_t cell) {
-  const catalog::CellRow& row = mesh.row(cell);
-  const Rule& rule = measuring_rule(row.type);
-  std::vector<double> points;
-  for (const std::int32_t node : mesh.cells[cell])
-    points.insert(points.end(), mesh.point(node).begin(), mesh.point(node).end());
-  double sum = 0;
-  for (int p = 0; p < rule.size(); ++p)
-    sum += rule.weights[p] *
-           norm(cell_normal(row.type, points, std::span(rule.points).subspan(p * rule.dimension, rule.dimension)));
-  return sum;
-}
-
 /// Nodes of each patch, without those that carry its pressure. @param slaves of one zone
 std::vector<std::vector<std::int32_t>> corners_of(const Mesh& mesh, const Contact& contact,
                                                   const std::vector<std::int32_t>& slaves) {
@@ -52,10 +38,9 @@ ContactState::ContactState(const Mesh& mesh, const Model& model, const Contact& 
                            ContactBodies bodies)
     : mesh_(mesh), contact_(contact), geometry_(mesh, model, contact, registry), free_(std::move(bodies.free)) {
   geometry_.find_ends(bodies.held);
-  size_.assign(mesh.patches->size(), 0.0);
-  own_ = rho_ = size_;
+  own_ = rho_ = std::vector<double>(n_patches(), 0.0);
   flexibility_.assign(mesh.n_cells(), 0.0);
-  locked_.assign(size_.size(), false);
+  locked_.assign(n_patches(), false);
   held_open_ = gliding_ = keeps_cover_ = locked_;
   for (const ContactZone& zone : contact.zones)
     for (const std::int32_t patch : zone.held_open) held_open_[patch] = true;
@@ -63,9 +48,6 @@ ContactState::ContactState(const Mesh& mesh, const Model& model, const Contact& 
     smallest_edge_.push_back(std::min(smallest_edge(zone.slave), smallest_edge(zone.master)));
 
   const NodeCells around(mesh);
-  for (const SlaveElement& slave : contact_.slaves) size_[slave.patch] += extent(mesh, slave.cell);
-  if (mesh.dimension == 3)
-    for (double& size : size_) size = std::sqrt(size);
   const auto modulus_below = [&](std::int32_t cell) {
     std::optional<double> modulus;
     for (const BodyCell& body : body_cells(mesh, around, cell))
@@ -114,10 +96,18 @@ ContactState::ContactState(const Mesh& mesh, const Model& model, const Contact& 
 }
 
 void ContactState::update_geometry(std::span<const double> displacement) {
-  const int dimension = mesh_.dimension;
   geometry_.update(displacement);
-  variations_.clear();
+  note_geometry();
+}
 
+bool ContactState::leave_far_masters() {
+  if (!geometry_.leave_far_masters()) return false;
+  note_geometry();
+  return true;
+}
+
+void ContactState::note_geometry() {
+  variations_.clear();
   std::fill(locked_.begin(), locked_.end(), true);
   std::vector<double> softest(n_patches(), 0.0);  // 1 / E of the softest body that a patch faces
   for (const ContactGeometry::Cell& cell : geometry_.cells()) {
@@ -126,8 +116,8 @@ void ContactState::update_geometry(std::span<const double> displacement) {
     std::int64_t at = cell.coupling;
     for (const std::int32_t owner : {contact_.slaves[cell.slave].cell, cell.master})
       for (const std::int32_t node : mesh_.cells[owner])
-        for (int d = 0; d < dimension; ++d, ++at)
-          if (geometry_.coupling()[at] != 0 && free_[static_cast<std::size_t>(node) * dimension + d])
+        for (int d = 0; d < mesh_.dimension; ++d, ++at)
+          if (geometry_.coupling()[at] != 0 && free_[static_cast<std::size_t>(node) * mesh_.dimension + d])
             locked_[contact_.slaves[cell.slave].patch] = false;
   }
   // a pressure on a patch of size h moves either body by about h / E: if rho were that of the stiffer one alone, the error of a

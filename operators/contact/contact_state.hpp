@@ -140,6 +140,9 @@ class ContactState {
   void rest_at(std::span<const double> displacement) { geometry_.rest_at(displacement); }
   /// ContactGeometry::renew_cuts
   void renew_cuts() { geometry_.renew_cuts(); }
+  /// ContactGeometry::leave_far_masters, set_left_out
+  bool leave_far_masters();
+  void set_left_out(std::span<const std::int32_t> masters) { geometry_.set_left_out(masters); }
   /// ContactGeometry::set_cuts
   void set_cuts(std::span<const std::int32_t> cuts) { geometry_.set_cuts(cuts); }
   /// What was in contact at the last state in equilibrium, which zones with GLISSIERE='OUI' keep in contact.
@@ -253,6 +256,8 @@ class ContactState {
   double smallest_patch() const { return *std::min_element(size_.begin(), size_.end()); }
 
  private:
+  /// What hangs on the contact cells alone.
+  void note_geometry();
   /// Of a zone the patch that is pierced deepest, over its size, and by more than a limit of its own.
   std::optional<PiercedPatch> deepest(std::int32_t zone, const std::function<double(std::size_t patch)>& limit) const;
 
@@ -261,10 +266,10 @@ class ContactState {
   const ContactTolerances tolerances_;
   ContactGeometry geometry_;
   std::vector<std::uint8_t> free_;
-  std::vector<double> smallest_edge_;                  ///< of each zone
-  std::vector<double> size_;                           ///< h of each patch: |T| in 2D, sqrt |T| in 3D, initial geometry
-  std::vector<double> flexibility_;                    ///< 1 / E of the body below each cell of a master skin, 0 elsewhere
-  std::vector<double> own_;                            ///< likewise of each patch
+  std::vector<double> smallest_edge_;                    ///< of each zone
+  const std::vector<double>& size_ = geometry_.sizes();  ///< h of each patch: |T| in 2D, sqrt |T| in 3D, initial geometry
+  std::vector<double> flexibility_;                      ///< 1 / E of the body below each cell of a master skin, 0 elsewhere
+  std::vector<double> own_;                              ///< likewise of each patch
   std::vector<double> rho_;                            ///< stiffness of both bodies, in series, under a pressure on each patch
   std::vector<std::vector<std::int32_t>> neighbours_;  ///< patches of its zone that share a node with each patch
   std::vector<PressureAlternation> alternations_;      ///< of each zone

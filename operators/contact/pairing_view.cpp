@@ -335,6 +335,8 @@ PairingView view_pairing(const Mesh& mesh, const Model& model, const Contact& co
   geometry.find_ends(held);
   geometry.rest_at(displacement);
   geometry.set_offsets(std::move(offsets));
+  geometry.update(displacement);
+  geometry.leave_far_masters();
   geometry.update(displacement, &records);
 
   std::map<std::int32_t, std::array<double, 2>> state;

@@ -59,14 +59,14 @@ struct IterationReport {
   bool geometry_met = true;
   double constraint = 0;  ///< max |g_T| / h
   bool constraint_met = true;
-  bool renews_cuts = false;      ///< the next iteration cuts slave cells as their present shapes ask for
+  bool pairs_anew = false;       ///< the next iteration sees other contact cells: Newton::pairs_anew()
   SolutionReport solution;       ///< how the linear system was solved
   std::int64_t constraints = 0;  ///< active patches and relations when the matrix was made: the negative pivots to expect
   double seconds = 0;
 
   /// With the statuses that the patches have.
   bool in_equilibrium() const { return rela_met && maxi_met && refe_met && geometry_met && constraint_met && !solution.rough; }
-  bool converged() const { return in_equilibrium() && status_changes == 0 && !renews_cuts; }
+  bool converged() const { return in_equilibrium() && status_changes == 0 && !pairs_anew; }
 };
 
 /// RESI_GLOB_RELA, RESI_GLOB_MAXI and RESI_REFE_RELA: fills in rela, maxi, refe and whether they are met. The relative residual

@@ -176,6 +176,12 @@ void Equilibrium::pair(std::span<const double> displacement) {
   add_to_count("contact cells", static_cast<double>(contact_->geometry().cells().size()));
 }
 
+bool Equilibrium::leave_far_masters() {
+  if (!contact_) return false;
+  const Phase phase("pairing");
+  return contact_->leave_far_masters();
+}
+
 void Equilibrium::assemble(const StaticState& state, const StaticState& previous, NewtonMatrix wanted) {
   matrix_ = wanted;
   has_new_gaps_ = false;
@@ -453,7 +459,9 @@ void Equilibrium::save(const hdf5::Group& group) const {
   for (const Coupling& coupling : system_.couplings()) couplings.insert(couplings.end(), {coupling.a, coupling.b});
   group.write("couplings", couplings);
   if (!first_forces_.empty()) group.write("first_forces", first_forces_);
-  if (contact_) group.write("slave_cuts", contact_->geometry().cuts());
+  if (!contact_) return;
+  group.write("slave_cuts", contact_->geometry().cuts());
+  group.write("left_out", contact_->geometry().left_out());
 }
 
 void Equilibrium::resume(const hdf5::Group& group, const StaticState& state, std::span<const double> rest) {
@@ -465,6 +473,7 @@ void Equilibrium::resume(const hdf5::Group& group, const StaticState& state, std
   if (group.has_attribute("instant")) load(group.real("instant"), state);
   rest_at(rest);
   if (contact_ && group.has("slave_cuts")) contact_->set_cuts(group.read<std::int32_t>("slave_cuts"));
+  if (contact_ && group.has("left_out")) contact_->set_left_out(group.read<std::int32_t>("left_out"));
   pair(state.displacement);
   assemble(state, state, {static_cast<SolidMatrix>(group.integer("solid_matrix")), group.integer("curved_matrix") != 0});
 }

@@ -65,6 +65,8 @@ class Equilibrium {
   void rest_at(std::span<const double> displacement) {
     if (contact_) contact_->rest_at(displacement);
   }
+  /// ContactGeometry::leave_far_masters; false without contact
+  bool leave_far_masters();
   /// ContactGeometry::renew_cuts
   void renew_cuts() { contact_->renew_cuts(); }
   /// ContactState::keep_cover, let_covers_go

@@ -24,7 +24,7 @@ constexpr int drifting = 4;            // iterations without change of status, e
 constexpr double gap_share = 1e-2;     // of RESI_GEOM: largest |g_T| / h, 1e-8 by default
 constexpr double deepest = 1;          // sizes of a patch, by which bodies that began in a few patches may go into each other
 constexpr double through = 10;         // likewise, other bodies that only springs hold before they touch
-constexpr int most_cuts = 2;           // anew, in an instant
+constexpr int most_times_anew = 2;     // that cells are cut, or masters left out, in an instant
 constexpr double other_stress = 1e-8;  // of the largest stress: that of another law
 
 }  // namespace
@@ -53,6 +53,7 @@ StaticState Newton::initial_state() {
   equilibrium_.offset_skins(options_.start);
   if (!options_.from_reference) start_heated(state);
   equilibrium_.pair(state.displacement);
+  equilibrium_.leave_far_masters();
   if (contact()) state.patches = contact()->initial();
   assemble(state, state, options_.matrix);
   return state;
@@ -70,6 +71,7 @@ void Newton::begin(StaticState& state, const std::string& label, bool as_given) 
   if (contact() && state.patches.status.empty()) {
     equilibrium_.rest_at(state.displacement);
     equilibrium_.pair(state.displacement);
+    equilibrium_.leave_far_masters();
     state.patches = contact()->initial();
   }
   for (const std::size_t patch : std::exchange(state.kept_covers, {}))
@@ -102,6 +104,7 @@ void Newton::restart(const StaticState& state) {
   prediction_.distrust();
   equilibrium_.rest_at(state.displacement);
   equilibrium_.pair(state.displacement);
+  equilibrium_.leave_far_masters();
   assemble(state, state, options_.matrix);
 }
 
@@ -164,7 +167,7 @@ std::vector<double> Newton::begin_instant(double instant, const StaticState& sta
   statuses_.start_instant();
   edges_ = {};
   lost_masters_.start_instant();
-  settled_ = times_held_ = times_rested_ = times_round_ = times_cut_ = 0;
+  settled_ = times_held_ = times_rested_ = times_round_ = times_cut_ = times_left_out_ = 0;
   goes_round_ = false;
   forcing_.start_instant();
   return equilibrium_.load(instant, state);
@@ -267,7 +270,7 @@ int Newton::iterate(double instant, StaticState& state, const std::function<void
     choice_.note_statuses(line.status_changes, equilibrium_.flows(previous));
     assemble(state, previous, options_.matrix);
     judge(state, previous, increment, line);
-    line.renews_cuts = iteration < last && renews_cuts(line);
+    line.pairs_anew = iteration < last && pairs_anew(line, state);
     line.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     report(line);
     course_.add(line.longest, line.worst_dof);
@@ -298,13 +301,8 @@ int Newton::iterate(double instant, StaticState& state, const std::function<void
       fail_if_endless(instant);
       last = with_own_iterations(iteration);
     }
-    if (line.renews_cuts) {
-      ++times_cut_;
-      choice_.forget_residual();
-      equilibrium_.renew_cuts();
-      equilibrium_.pair(state.displacement);
-    }
-    if (other_matrix || other_forces || line.renews_cuts) assemble(state, previous, options_.matrix);
+    if (line.pairs_anew) choice_.forget_residual();
+    if (other_matrix || other_forces || line.pairs_anew) assemble(state, previous, options_.matrix);
     if (!std::isfinite(line.maxi)) break;
   }
   fail_to_converge(instant, line, changing);
@@ -389,9 +387,20 @@ std::vector<Status> Newton::wanted_statuses(const StaticState& state, IterationR
   return patches.status;
 }
 
-bool Newton::renews_cuts(const IterationReport& line) const {
-  return contact() && times_cut_ < most_cuts && line.status_changes == 0 && line.longest_share < near_balance &&
-         contact()->geometry().keeps_cuts();
+bool Newton::pairs_anew(const IterationReport& line, const StaticState& state) {
+  if (!contact() || line.status_changes > 0 || line.longest_share >= near_balance) return false;
+  bool anew = false;
+  if (times_left_out_ < most_times_anew) {
+    ++times_left_out_;
+    anew = equilibrium_.leave_far_masters();
+  }
+  if (times_cut_ < most_times_anew && contact()->geometry().keeps_cuts()) {
+    ++times_cut_;
+    equilibrium_.renew_cuts();
+    equilibrium_.pair(state.displacement);
+    anew = true;
+  }
+  return anew;
 }
 
 bool Newton::parts_a_zone(const std::vector<Status>& before, const std::vector<Status>& wanted) const {

@@ -148,9 +148,11 @@ class Newton {
   /// Residuals go round or drift: where they went round before in this instant, or drift, or it has no iteration left, patches
   /// that press, and on which masters end, keep their cover. @return whether any does that did not
   bool keep_covers_that_sway(double instant, const StaticState& state, bool last);
-  /// Whether slave cells are to be cut anew: cuts that iterates asked for, which the equilibrium does not, would make it
-  /// another one on another way to it. Twice in an instant, for what is cut differently has another equilibrium.
-  bool renews_cuts(const IterationReport& line) const;
+  /// Near balance, pair as the present geometry asks for: masters that are far behind others are left out, those that no
+  /// longer are come back; cuts of slave cells that iterates asked for, which the equilibrium does not, would make it another
+  /// one on another way to it. Either twice in an instant, for what is paired anew has another equilibrium.
+  /// @return whether anything has changed
+  bool pairs_anew(const IterationReport& line, const StaticState& state);
   /// ContactState::keep_cover; EVOLUTION_50 says so once in a zone.
   void keep_cover(double instant, std::size_t patch);
   /// EVOLUTION_50 of patches that keep it in a state that is accepted: iterates far from it may have asked for others.
@@ -210,7 +212,7 @@ class Newton {
   ResidualCourse course_;                        ///< of the instant
   int times_held_ = 0;                           ///< in this instant: loose bodies
   int times_rested_ = 0;                         ///< likewise, by patches that their load leads them to
-  int times_cut_ = 0;                            ///< in this instant: slave cells anew
+  int times_cut_ = 0, times_left_out_ = 0;       ///< in this instant: pairs_anew()
   bool goes_round_ = false;                      ///< residuals have come back: increments are searched (line_search.hpp)
   int times_round_ = 0;                          ///< in this instant: residuals have come back
   std::vector<double> depths_before_;            ///< depths() as the instant began

@@ -256,5 +256,128 @@ TEST(ContactGeometry, DerivativesDoNotJumpWhereEdgesOfSlavesLieOnLinesOfMasters)
   }
 }
 
+/// Patches over a step: squares at 0.1 below the slave up to x = 0.6, and a floor at `floor` below it.
+struct Step {
+  Skins skins{4, 4, false};
+  std::int32_t floor_cell;
+
+  Step() {
+    ContactZone& zone = skins.contact.zones[0];
+    for (std::size_t i = 0; i < skins.mesh.coordinates.size(); i += 3)
+      if (skins.mesh.coordinates[i + 2] < 0) skins.mesh.coordinates[i] -= 0.4;
+    const std::vector<std::int32_t> floor = skins.add(1, true, -0.6);
+    floor_cell = floor[0];
+    zone.master.push_back(floor_cell);
+    skins.model.element.push_back(0);
+    skins.displacement.assign(skins.mesh.coordinates.size(), 0.0);
+  }
+  std::vector<double> floor_raised(double by) const {
+    std::vector<double> displacement = skins.displacement;
+    for (std::size_t i = 2; i < displacement.size(); i += 3)
+      if (skins.mesh.coordinates[i] == -0.6) displacement[i] = by;
+    return displacement;
+  }
+};
+
+TEST(ContactGeometry, MastersFarBehindOthersOfAPatchAreLeftOut) {
+  const Step step;
+  Registry registry;
+  ContactGeometry geometry(step.skins.mesh, step.skins.model, step.skins.contact, registry);
+  const auto expect = [&](double share_of_the_step, double gap) {
+    int there = 0;
+    for (const ContactGeometry::Zone& zone : geometry.zones())
+      for (const std::int32_t slave : zone.slaves) {
+        const auto patch = static_cast<std::size_t>(step.skins.contact.slaves[static_cast<std::size_t>(slave)].patch);
+        double least = INFINITY, most = -INFINITY;
+        for (const std::int32_t node : step.skins.mesh.cells[step.skins.contact.slaves[static_cast<std::size_t>(slave)].cell]) {
+          least = std::min(least, step.skins.mesh.coordinates[3 * static_cast<std::size_t>(node)]);
+          most = std::max(most, step.skins.mesh.coordinates[3 * static_cast<std::size_t>(node)]);
+        }
+        if (!(least < 0.6 && most > 0.6) || step.skins.mesh.cells[step.skins.contact.slaves[patch].cell].size() != 4) continue;
+        EXPECT_NEAR(geometry.coverage(patch), share_of_the_step, 1e-12);
+        EXPECT_NEAR(geometry.gap(patch), gap, 1e-12);
+        ++there;
+      }
+    EXPECT_EQ(there, 2);
+  };
+  geometry.rest_at(step.skins.displacement);
+  geometry.update(step.skins.displacement);
+  expect(1, 0.4 * 0.1 + 0.6 * 0.6);
+  EXPECT_TRUE(geometry.leave_far_masters());
+  expect(0.4, 0.1);
+  EXPECT_FALSE(geometry.leave_far_masters());
+  const std::vector<std::int32_t> out = geometry.left_out();
+  EXPECT_EQ(out.size() % 2, 0U);
+  EXPECT_GE(out.size(), 8U);  // squares and triangles over the edge
+  for (std::size_t i = 1; i < out.size(); i += 2) EXPECT_EQ(out[i], step.floor_cell);
+  // patches over the floor alone see it
+  EXPECT_NEAR(geometry.gap(geometry.n_patches() - 1), 0.6, 1e-12);
+
+  // it stays out on the way, and as long as it lies a quarter of the patch behind
+  for (const double raised : {0.44 - 1e-3, 0.46}) {
+    geometry.update(step.floor_raised(raised));
+    expect(0.4, 0.1);
+    EXPECT_EQ(geometry.leave_far_masters(), raised > 0.5 - 0.25 * 0.25) << raised;
+    geometry.rest_at(step.skins.displacement);  // an instant that begins again begins as before
+    EXPECT_EQ(geometry.left_out(), out);
+  }
+  ContactGeometry taken_up(step.skins.mesh, step.skins.model, step.skins.contact, registry);
+  taken_up.set_left_out(out);
+  taken_up.update(step.skins.displacement);
+  geometry.update(step.skins.displacement);
+  for (std::size_t p = 0; p < geometry.n_patches(); ++p) EXPECT_EQ(taken_up.gap(p), geometry.gap(p));
+}
+
+TEST(ContactGeometry, WhatIsHiddenByAFarMasterIsFarAsWell) {
+  Step step;
+  const std::int32_t lower = step.skins.add(1, true, -1.2)[0];
+  step.skins.contact.zones[0].master.push_back(lower);
+  step.skins.model.element.push_back(0);
+  step.skins.displacement.assign(step.skins.mesh.coordinates.size(), 0.0);
+  Registry registry;
+  ContactGeometry geometry(step.skins.mesh, step.skins.model, step.skins.contact, registry);
+  geometry.update(step.skins.displacement);
+  EXPECT_TRUE(geometry.leave_far_masters());
+  const std::vector<std::int32_t> out = geometry.left_out();
+  EXPECT_EQ(std::count(out.begin(), out.end(), lower), std::count(out.begin(), out.end(), step.floor_cell));
+  for (std::size_t p = 0; p < geometry.n_patches(); ++p)
+    EXPECT_TRUE(std::abs(geometry.gap(p) - 0.1) < 1e-12 || std::abs(geometry.gap(p) - 0.6) < 1e-12) << p;
+}
+
+TEST(ContactGeometry, SlopesAndWallsAreNotFarBehind) {
+  // the step as a slope of 45 degrees, or as a wall that leans by 10 degrees, which a patch sees at a grazing angle
+  for (const double reach : {0.5, 0.5 * 0.1763}) {
+    Step step;
+    std::vector<std::int32_t> edge;  // of the upper level, and of the floor
+    for (const double z : {-0.1, -0.6})
+      for (const double y : {0.0, 1.0}) {
+        edge.push_back(static_cast<std::int32_t>(step.skins.mesh.n_nodes()));
+        step.skins.mesh.coordinates.insert(step.skins.mesh.coordinates.end(), {z == -0.1 ? 0.6 : 0.6 + reach, y, z});
+      }
+    const std::int32_t slope = static_cast<std::int32_t>(step.skins.mesh.types.size());
+    step.skins.mesh.types.push_back(CellType::QUAD4);
+    step.skins.mesh.cells.push_back(std::vector<std::int32_t>{edge[0], edge[2], edge[3], edge[1]});
+    step.skins.model.element.push_back(0);
+    step.skins.contact.zones[0].master.push_back(slope);
+    step.skins.displacement.assign(step.skins.mesh.coordinates.size(), 0.0);
+    Registry registry;
+    ContactGeometry geometry(step.skins.mesh, step.skins.model, step.skins.contact, registry);
+    geometry.update(step.skins.displacement);
+    geometry.leave_far_masters();
+    const std::vector<std::int32_t> out = geometry.left_out();
+    EXPECT_EQ(std::count(out.begin(), out.end(), slope), 0) << reach;
+    EXPECT_EQ(out.empty(), reach == 0.5) << reach;
+  }
+}
+
+TEST(ContactGeometry, FrozenGapsAreAveragesOverAllMasters) {
+  Step step;
+  step.skins.contact.frozen_gap = true;
+  Registry registry;
+  ContactGeometry geometry(step.skins.mesh, step.skins.model, step.skins.contact, registry);
+  geometry.update(step.skins.displacement);
+  EXPECT_FALSE(geometry.leave_far_masters());
+}
+
 }  // namespace
 }  // namespace lacon

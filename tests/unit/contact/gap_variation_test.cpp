@@ -516,5 +516,54 @@ TEST(GapVariation, ForcesDoNotJumpWhereEdgesBecomeStraight) {
     }
 }
 
+// Two masters whose bulging ends lie over each other, mirrored to the middle of the slave: lines that part the one coincide
+// with lines that part the other. Beside that place, by a hair, they do not.
+TEST(GapVariation, ForcesDoNotJumpWhereLinesOfTwoMastersCoincide) {
+  for (const CellType kind : {CellType::QUAD8, CellType::QUAD9}) {
+    const auto skins = [&](double shake) {
+      Skins skins{.dimension = 3,
+                  .slave_type = CellType::QUAD4,
+                  .master_type = kind,
+                  .axis = false,
+                  .current = true,
+                  .smooth = false,
+                  .coordinates = {},
+                  .initial = {},
+                  .slaves = {},
+                  .masters = {}};
+      std::mt19937 random(9);
+      std::uniform_real_distribution<double> uniform(-shake, shake);
+      const auto add = [&](double x, double y, double z) {
+        skins.coordinates.insert(skins.coordinates.end(), {x + uniform(random), y + uniform(random), z});
+        return static_cast<std::int32_t>(skins.coordinates.size() / 3) - 1;
+      };
+      skins.slaves = {{add(-0.5, -0.4, 0), add(-0.5, 0.4, 0), add(0.5, 0.4, 0), add(0.5, -0.4, 0)}};
+      for (const double side : {-1.0, 1.0}) {
+        const double end = -0.02 * side, bulge = 0.03 * side, z = -0.1 + 0.02 * side;
+        std::vector<std::int32_t> cell{add(end, -0.5, z),
+                                       add(side, -0.5, z),
+                                       add(side, 0.5, z),
+                                       add(end, 0.5, z),
+                                       add((end + side) / 2, -0.5, z),
+                                       add(side, 0, z),
+                                       add((end + side) / 2, 0.5, z),
+                                       add(end - bulge, 0, z)};
+        if (side < 0) cell = {cell[1], cell[0], cell[3], cell[2], cell[4], cell[7], cell[6], cell[5]};
+        if (kind == CellType::QUAD9) cell.push_back(add((end + side) / 2 - bulge / 2, 0, z));
+        skins.masters.push_back(cell);
+      }
+      skins.initial = skins.coordinates;
+      return skins;
+    };
+    const Skins::Sum at = skins(0).evaluate(false);
+    EXPECT_EQ(at.in_one, 0U);
+    for (const double shake : {1e-13, 1e-10, 1e-7}) {
+      const Skins::Sum beside = skins(shake).evaluate(false);
+      for (std::size_t i = 0; i < at.gradient.size(); ++i)
+        EXPECT_NEAR(at.gradient[i], beside.gradient[i], 1e-10 + 20 * shake) << catalog::cell(kind).name << shake << ' ' << i;
+    }
+  }
+}
+
 }  // namespace
 }  // namespace lacon

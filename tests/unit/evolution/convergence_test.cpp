@@ -55,7 +55,7 @@ TEST(Convergence, TheLargestResidualOverItsOwnReferenceIsJudged) {
 TEST(Convergence, CellsThatAreCutAnewHaveAnotherEquilibrium) {
   IterationReport report = judged({.resi_glob_rela = 1e-6, .resi_glob_maxi = {}}, {.unbalanced = 1e-9, .reference = 1});
   EXPECT_TRUE(report.converged());
-  report.renews_cuts = true;
+  report.pairs_anew = true;
   EXPECT_TRUE(report.in_equilibrium());
   EXPECT_FALSE(report.converged());
 }

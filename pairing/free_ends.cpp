@@ -1,0 +1,48 @@
+#include "lacon/pairing/free_ends.hpp"
+
+#include <algorithm>
+#include <map>
+#include <utility>
+
+#include "lacon/structures/vector.hpp"
+
+namespace lacon {
+namespace {
+
+constexpr double goes_on = 0.5;  // cosine of the angle between two cells that are one face
+
+/// Of the first vertices of a cell, unit; zero for a degenerate cell.
+Vec3 normal_of(const Surface& skin, std::size_t cell) {
+  const auto at = [&](std::size_t i) {
+    return vector_at(skin.coordinates.data() + 3 * static_cast<std::size_t>(skin.nodes[cell][i]));
+  };
+  const Vec3 along = at(1) - at(0), normal = skin.dimension == 2 ? Vec3{along.y, -along.x, 0} : cross(along, at(2) - at(0));
+  const double size = norm(normal);
+  return size > 0 ? normal / size : Vec3{};
+}
+
+}  // namespace
+
+std::vector<std::uint8_t> free_ends(const Surface& skin) {
+  struct End {
+    std::size_t cell;
+    int number;
+  };
+  std::map<std::pair<std::int32_t, std::int32_t>, std::vector<End>>
+      cells_at;  // by the nodes of an edge, in the plane of an end
+  for (std::size_t cell = 0; cell < skin.size(); ++cell) {
+    const auto nodes = skin.nodes[cell];
+    const int n = skin.dimension == 2 ? 2 : catalog::cell(skin.types[cell]).n_vertices;
+    for (int i = 0; i < n; ++i) {
+      const std::int32_t first = nodes[i], second = skin.dimension == 2 ? first : nodes[(i + 1) % n];
+      cells_at[std::minmax(first, second)].push_back({cell, i});
+    }
+  }
+  std::vector<std::uint8_t> ends(skin.size(), 0);
+  for (const auto& [nodes, around] : cells_at)
+    if (around.size() != 2 || dot(normal_of(skin, around[0].cell), normal_of(skin, around[1].cell)) < goes_on)
+      for (const End& end : around) ends[end.cell] |= static_cast<std::uint8_t>(1U << end.number);
+  return ends;
+}
+
+}  // namespace lacon

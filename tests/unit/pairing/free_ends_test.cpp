@@ -1,0 +1,164 @@
+// Where skins end, and who keeps what two free ends cover that have slid over each other.
+#include "lacon/pairing/free_ends.hpp"
+
+#include <gtest/gtest.h>
+
+#include <random>
+
+#include "skins.hpp"
+#include "skins_in_space.hpp"
+
+namespace lacon {
+namespace {
+
+using namespace test;
+
+TEST(FreeEnds, AreWhereASkinEndsOrFolds) {
+  Skin skin;  // a flat, a slope of 45 degrees, a wall
+  for (const Point p : {Point{0, 0}, Point{1, 0}, Point{2, -1}, Point{2, -3}}) skin.add_node(p);
+  for (const std::int32_t i : {0, 1, 2}) skin.add_cell({i, i + 1});
+  EXPECT_EQ(free_ends(skin.view()), (std::vector<std::uint8_t>{0b01, 0b00, 0b10}));
+  skin.coordinates[9] = 1.8;  // it leans back by more: 60 degrees and a little
+  EXPECT_EQ(free_ends(skin.view()), (std::vector<std::uint8_t>{0b01, 0b00, 0b10}));
+  skin.coordinates[9] = 0;
+  EXPECT_EQ(free_ends(skin.view()), (std::vector<std::uint8_t>{0b01, 0b10, 0b11}));
+}
+
+TEST(FreeEnds, AreEdgesInSpace) {
+  Skin3 skin;  // two squares beside each other, and a wall below the second one
+  for (const Vec3 p : {Vec3{0, 0, 0}, Vec3{1, 0, 0}, Vec3{2, 0, 0}, Vec3{0, 1, 0}, Vec3{1, 1, 0}, Vec3{2, 1, 0}, Vec3{2, 0, -1},
+                       Vec3{2, 1, -1}})
+    skin.add_node(p);
+  for (const std::array<std::int32_t, 4> nodes : {std::array{0, 1, 4, 3}, std::array{1, 2, 5, 4}, std::array{2, 6, 7, 5}})
+    skin.surface.add_cell(CellType::QUAD4, nodes);
+  EXPECT_EQ(free_ends(skin.view()), (std::vector<std::uint8_t>{0b1101, 0b0111, 0b1111}));
+}
+
+constexpr double hair = 0.05, wide = 0.4;  // of cells of size 1
+
+/// Two masters of size 1, the second one above the first by `step`, that share a strip in the middle of a slave cell of size 1.
+/// @return how much of the slave cell sees the first
+double first_sees(double width, double step, bool known = true) {
+  Skin slave, master;
+  add_chain(
+      slave,
+      [](double t) {
+        return Point{t, 0.3};
+      },
+      {0, 1}, Kind::linear);
+  add_chain(
+      master,
+      [](double t) {
+        return Point{t, 0.0};
+      },
+      {0.5 + width / 2, -0.5 + width / 2}, Kind::linear);
+  add_chain(
+      master,
+      [&](double t) {
+        return Point{t, step};
+      },
+      {1.5 - width / 2, 0.5 - width / 2}, Kind::linear);
+  Surface masters = master.view();
+  const std::vector<std::uint8_t> ends = free_ends(masters);
+  if (known) masters.free_ends = ends;
+  const ContactCells cells = pair(slave.view(), masters).cells;
+  double sum = 0;
+  for (std::size_t c = 0; c < cells.size(); ++c)
+    for (auto p = cells.offset[c]; p < cells.offset[c + 1]; ++p)
+      sum += cells.master[c] == 0 ? 0.5 * cells.weight[static_cast<std::size_t>(p)] : 0;
+  return sum;
+}
+
+TEST(FreeEnds, KeepWhatTheyShareHoweverTheyAreRaised) {
+  const double kept = 0.5 + hair / 2, lost = 0.5 - hair / 2;
+  for (const double step : {-0.09, -1e-3, 0.0, 1e-3, 0.09}) EXPECT_NEAR(first_sees(hair, step), kept, 1e-14) << step;
+  EXPECT_NEAR(first_sees(hair, 0.11), lost, 1e-14);  // that is a step, and the upper one is in front
+  EXPECT_NEAR(first_sees(hair, -0.11), kept, 1e-14);
+  EXPECT_NEAR(first_sees(hair, 1e-3, false), lost, 1e-14);
+  EXPECT_NEAR(first_sees(wide, 1e-3), 0.5 - wide / 2, 1e-14);  // a sheet that lies on a block
+  EXPECT_NEAR(first_sees(wide, -1e-3), 0.5 + wide / 2, 1e-14);
+}
+
+TEST(FreeEnds, KeepWhatTheyShareInSpace) {
+  std::mt19937 random(3);
+  const auto first_sees = [&](double width, double step) {
+    Skin3 slave = mesh(
+        {1, 1, CellType::QUAD4, false},
+        [](double x, double y) {
+          return Vec3{x, y, 0.3};
+        },
+        random);
+    Skin3 master = mesh(
+        {1, 2, CellType::QUAD8, true, 0, -0.5 + width / 2, 0.5 + width / 2},
+        [](double x, double y) {
+          return Vec3{x, y, 0};
+        },
+        random);
+    const Skin3 other = mesh(
+        {1, 1, CellType::QUAD8, true, 0, 0.5 - width / 2, 1.5 - width / 2},
+        [&](double x, double y) {
+          return Vec3{x, y, step};
+        },
+        random);
+    const auto shift = static_cast<std::int32_t>(master.n_nodes());
+    master.coordinates.insert(master.coordinates.end(), other.coordinates.begin(), other.coordinates.end());
+    std::vector<std::int32_t> nodes(other.surface.nodes[0].begin(), other.surface.nodes[0].end());
+    for (std::int32_t& node : nodes) node += shift;
+    master.surface.add_cell(CellType::QUAD8, nodes);
+    Surface masters = master.view();
+    const std::vector<std::uint8_t> ends = free_ends(masters);
+    masters.free_ends = ends;
+    const ContactCells cells = pair(slave.view(), masters).cells;
+    double sum = 0;
+    for (std::size_t c = 0; c < cells.size(); ++c)
+      for (auto p = cells.offset[c]; p < cells.offset[c + 1]; ++p)
+        sum += cells.master[c] < 2 ? 0.25 * cells.weight[static_cast<std::size_t>(p)] : 0;
+    return sum;
+  };
+  for (const double step : {-0.09, -1e-3, 0.0, 1e-3, 0.09}) EXPECT_NEAR(first_sees(hair, step), 0.5 + hair / 2, 1e-13) << step;
+  EXPECT_NEAR(first_sees(hair, 0.2), 0.5 - hair / 2, 1e-13);
+  EXPECT_NEAR(first_sees(wide, 1e-3), 0.5 - wide / 2, 1e-13);
+}
+
+TEST(Pairing, LeavesOutCouplesThatItIsTold) {
+  Skin slave, master;
+  add_chain(
+      slave,
+      [](double t) {
+        return Point{t, 0.1};
+      },
+      {0, 1, 2}, Kind::linear);
+  add_chain(
+      master,
+      [](double t) {
+        return Point{t, 0.0};
+      },
+      {2.5, -0.5}, Kind::linear);
+  const std::vector<Couple> out{{1, 0}};
+  const Pairing found = pair(slave.view(), master.view(), {.left_out = out});
+  EXPECT_EQ(found.cells.slave, std::vector<std::int32_t>{0});
+  EXPECT_EQ(found.rejected, (std::vector<RejectedCouple>{{1, 0, Rejection::far_behind}}));
+}
+
+TEST(PairingInSpace, LeavesOutCouplesThatItIsTold) {
+  std::mt19937 random(4);
+  Skin3 slave = mesh(
+      {2, 1, CellType::QUAD4, false},
+      [](double x, double y) {
+        return Vec3{x, y, 0.1};
+      },
+      random);
+  Skin3 master = mesh(
+      {1, 1, CellType::QUAD4, true, 0, -1, 2, -1, 2},
+      [](double x, double y) {
+        return Vec3{x, y, 0};
+      },
+      random);
+  const std::vector<Couple> out{{1, 0}};
+  const Pairing found = pair(slave.view(), master.view(), {.left_out = out});
+  EXPECT_EQ(found.cells.slave, std::vector<std::int32_t>{0});
+  EXPECT_EQ(found.rejected, (std::vector<RejectedCouple>{{1, 0, Rejection::far_behind}}));
+}
+
+}  // namespace
+}  // namespace lacon
