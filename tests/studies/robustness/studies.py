@@ -30,6 +30,7 @@ class Study:
     steps: int
     strain: str = "PETIT"
     model: str = "D_PLAN"
+    contact: dict = dataclasses.field(default_factory=dict)  # more keywords of DEFI_CONTACT
     loads: tuple = ()     # keywords of AFFE_CHAR_MECA_F, see study.comm
     instants: tuple = ()
     most: int = 60        # ITER_GLOB_MAXI
@@ -45,7 +46,7 @@ class Study:
     def prepare(self, folder):
         """Write the inputs. @return (arguments of the launcher, variables of its environment)"""
         write_med(folder / "mesh.med", self.mesh)
-        orders = {"model": self.model, "materials": self.materials, "moves": self.moves, "zones": self.zones, "strain": self.strain,
+        orders = {"model": self.model, "materials": self.materials, "moves": self.moves, "zones": self.zones, "contact": self.contact, "strain": self.strain,
                   "cut": self.cut, "loads": self.loads, "most": self.most, "solver": self.solver, "instants": self.instants or [float(k) for k in range(self.steps + 1)]}
         (folder / "study.json").write_text(json.dumps(orders))
         return [HERE / "study.comm", "--unit", f"20={folder / 'mesh.med'}"], {"ROBUSTNESS_STUDY": str(folder / "study.json")}

@@ -1,6 +1,7 @@
 """The table of difficult studies: what is asked of each (studies.py) holds."""
 
 import dataclasses
+import itertools
 import math
 import pathlib
 import re
@@ -125,20 +126,67 @@ class Skins(StudyTest):
             self.assertEqual(figures["status"], "finished")
             self.assertEqual("EVOLUTION_45" in figures.get("alarms", []), told, deepest)
 
-    def test_a_patch_that_a_far_master_keeps_open_is_told(self):
-        """It lies over the edge of a block by two fifths and over a floor beside it, which is no part of the contact but of its average gap."""
+    def test_what_is_far_behind_the_edge_of_a_master_is_no_part_of_its_contact(self):
+        """A patch lies over the edge of a block by two fifths and over a floor beside it. With frozen gaps, as of the peer, it opens, and is told."""
+        for kind, frozen in (("QUAD4", False), ("QUAD8", False), ("QUAD8", True)):
+            forces = []
+            for with_floor in (True, False):
+                mesh = union([slab(kind, "TOOL", (0, 10), (0, 2), (10, 3), skin="bottom"), slab(kind, "SLAB", (0, 4.4), (-2, 0), (5, 3)),
+                              slab(kind, "FLOOR", (4.4, 10), (-2, -1), (5, 2))])
+                if with_floor:
+                    mesh.cell_groups["SLAB_SKIN"] = mesh.cell_groups["SLAB_SKIN"] + mesh.cell_groups["FLOOR_SKIN"]
+                study = Study(name="pocket", mesh=mesh, materials={body: elastic(1e3) for body in ("TOOL", "SLAB", "FLOOR")}, zones=[zone("TOOL", "SLAB", 0)],
+                              moves=[held("SLAB"), held("FLOOR"), path("TOOL", [(0, 0), (1, 0)], [(0, 0), (1, -0.05)])], steps=1,
+                              contact={"VARIATION_JEU": "FIGEE"} if frozen else {})
+                figures = run(study, LACON, self.folder)
+                self.assertEqual(figures["status"], "finished")
+                self.assertEqual("EVOLUTION_68" in figures.get("alarms", []), frozen and with_floor)
+                if frozen and with_floor:
+                    self.assertRegex((self.folder / "err").read_text(), "(39|4[012]) % of it lies inside SLAB_SKIN")
+                forces.append(re.search(r"force on the slave (\([^)]*\))", (self.folder / "out").read_text())[1])
+            (self.assertNotEqual if frozen else self.assertEqual)(*forces)
+
+    def test_what_a_plate_slides_over_the_edge_of_is_left_out_on_the_way(self):
+        """In steps of more than a patch: the floor is left out near balance, where the plate has come over it in the same instant."""
+        forces = []
         for with_floor in (True, False):
-            mesh = union([slab("QUAD8", "TOOL", (0, 10), (0, 2), (10, 3), skin="bottom"), slab("QUAD8", "SLAB", (0, 4.4), (-2, 0), (5, 3)),
-                          slab("QUAD8", "FLOOR", (4.4, 10), (-2, -1), (5, 2))])
+            mesh = union([slab("QUAD8", "TOOL", (-4, 0), (0, 1), (10, 2), skin="bottom"), slab("QUAD8", "SLAB", (-6, 0), (-1, 0), (11, 2)),
+                          slab("QUAD8", "FLOOR", (0, 4), (-2, -1.5), (3, 1))])
             if with_floor:
                 mesh.cell_groups["SLAB_SKIN"] = mesh.cell_groups["SLAB_SKIN"] + mesh.cell_groups["FLOOR_SKIN"]
-            study = Study(name="pocket", mesh=mesh, materials={body: elastic(1e3) for body in ("TOOL", "SLAB", "FLOOR")}, zones=[zone("TOOL", "SLAB", 0)],
-                          moves=[held("SLAB"), held("FLOOR"), path("TOOL", [(0, 0), (1, 0)], [(0, 0), (1, -0.05)])], steps=1)
+            study = Study(name="ledge", mesh=mesh, materials={body: elastic(1e3) for body in ("TOOL", "SLAB", "FLOOR")}, zones=[zone("TOOL", "SLAB", 0)],
+                          moves=[held("SLAB"), held("FLOOR"), path("TOOL", [(0, 0), (1, 0), (4, 2.1)], [(0, 0), (1, -0.02), (4, -0.02)])], steps=4,
+                          asked={"per step": 8})
             figures = run(study, LACON, self.folder)
-            self.assertEqual(figures["status"], "finished")
-            self.assertEqual("EVOLUTION_68" in figures.get("alarms", []), with_floor)
-            if with_floor:
-                self.assertRegex((self.folder / "err").read_text(), "(39|4[012]) % of it lies inside SLAB_SKIN")
+            self.assertEqual(missed(study, figures), [])
+            self.assertEqual(figures.get("alarms", []), [])
+            forces.append(re.findall(r"force on the slave (\([^)]*\))", (self.folder / "out").read_text()))
+        self.assertEqual(*forces)
+
+    def test_blocks_side_by_side_carry_a_plate_whose_corners_slide_over_each_other(self):
+        """They widen under the plate: their free corners lie over each other by a hair, and are pushed to the same height."""
+        for slit, across, below, slides in itertools.product((0, 0.002, 0.02), (7, 10), (3, 4), (False, True)):
+            for kind in ("QUAD4", "QUAD8"):
+                mesh = union([slab(kind, "TOOL", (-1.8, 1.8), (0, 0.5), (across, 2), skin="bottom"),
+                              slab(kind, "SLAB", (-2 - slit / 2, -slit / 2), (-2, 0), (below, below)),
+                              slab(kind, "OTHER", (slit / 2, 2 + slit / 2), (-2, 0), (below + 1, below))])
+                mesh.cell_groups["SLAB_SKIN"] = mesh.cell_groups["SLAB_SKIN"] + mesh.cell_groups["OTHER_SKIN"]
+                steps = 6 if slides else 1
+                study = Study(name="two blocks", mesh=mesh, materials={body: elastic(1e3) for body in ("TOOL", "SLAB", "OTHER")},
+                              zones=[zone("TOOL", "SLAB", 0)], steps=steps, asked={"per step": 6, "lost": 0},
+                              moves=[held("SLAB"), held("OTHER"), path("TOOL", [(0, 0), (1, 0), (6, 0.3)], [(0, 0), (1, -0.05), (6, -0.05)])])
+                self.assertEqual(missed(study, run(study, LACON, self.folder)), [], (kind, slit, across, below, slides))
+
+    def test_blocks_side_by_side_carry_a_plate_in_space(self):
+        for kind, slit, along in itertools.product(("HEXA8", "HEXA20"), (0, 0.01), (3, 4)):
+            mesh = union([slab_in_space(kind, "TOOL", (-0.9, 0.9), (0.1, 0.9), (0, 0.4), (4, along, 1), skin="bottom"),
+                          slab_in_space(kind, "SLAB", (-1 - slit / 2, -slit / 2), (0, 1), (-1, 0), (3, 3, 2)),
+                          slab_in_space(kind, "OTHER", (slit / 2, 1 + slit / 2), (0, 1), (-1, 0), (2, 3, 2))])
+            mesh.cell_groups["SLAB_SKIN"] = mesh.cell_groups["SLAB_SKIN"] + mesh.cell_groups["OTHER_SKIN"]
+            study = Study(name="two blocks", mesh=mesh, model="3D", materials={body: elastic(1e3) for body in ("TOOL", "SLAB", "OTHER")},
+                          zones=[zone("TOOL", "SLAB", 0)], steps=1, asked={"per step": 6, "lost": 0},
+                          moves=[held("SLAB") | {"DZ": 0.0}, held("OTHER") | {"DZ": 0.0}, path("TOOL", [(0, 0), (1, 0)], [(0, 0), (1, 0)], DZ=[[0, 0], [1, -0.03]])])
+            self.assertEqual(missed(study, run(study, LACON, self.folder)), [], (kind, slit, along))
 
     def test_whole_skins_meet_where_they_face_each_other_only(self):
         """A block on a larger one, all of both skins in the zone: normals of far sides reach the other body through their own."""
