@@ -247,22 +247,6 @@ void ContactGeometry::measure_slaves() {
   }
 }
 
-void ContactGeometry::find_ends(std::span<const HeldDirection> held) {
-  if (!contact_.frozen_gap)
-    for (Zone& zone : zones_) {
-      zone.border = border_edges(zone.master);
-      zone.planes = end_planes(zone.slave, zone.master, held);
-    }
-  mirror();
-}
-
-void ContactGeometry::mirror() {
-  for (Zone& zone : zones_) {
-    zone.mirrored = mirrored_edges(zone.planes, zone.master, rest_);
-    zone.master.mirrored = zone.mirrored;
-  }
-}
-
 void ContactGeometry::rest_at(std::span<const double> displacement) {
   const std::vector<double> before = rest_;
   displace(mesh_, displacement, mesh_.dimension, rest_);

@@ -42,6 +42,7 @@ class ContactGeometry {
     std::vector<SlaveCut> cuts;         ///< Surface::cuts of the slave: in space, since it was at rest
     std::vector<EndPlane> planes;
     std::vector<std::uint8_t> mirrored;   ///< Surface::mirrored of the master
+    bool goes_on_flush = false;           ///< go_on_where_flush()
     std::vector<std::uint8_t> border;     ///< border_edges() of the master
     std::vector<std::uint8_t> free_ends;  ///< Surface::free_ends of the master
     std::vector<Couple> left_out;         ///< PairingOptions::left_out
@@ -102,6 +103,14 @@ class ContactGeometry {
   /// Let masters go on where both skins end in one plane: normals that lean over it by what facets leave, or a face that bulges
   /// a little more than the other one, would miss them there, now more, now less. Not with VARIATION_JEU='FIGEE'.
   void find_ends(std::span<const HeldDirection> held);
+
+  /// Likewise where free faces of both bodies are flush, as of plates without lateral strain: forces jump where they pass each
+  /// other, and no iterate is in equilibrium there. From now on, in zones where they are flush now and at rest.
+  /// @return whether there are such that did not go on; contact cells are those with them
+  bool go_on_where_flush();
+  /// Of each zone whether it has some, for another process.
+  std::vector<std::int32_t> flush() const;
+  void set_flush(std::span<const std::int32_t> zones);
 
   /// By what the gaps of each zone are smaller than what its cells leave, from the next update() on: (n_nodes), interpolated on
   /// the slave; empty: by nothing.

@@ -106,6 +106,12 @@ bool ContactState::leave_far_masters() {
   return true;
 }
 
+bool ContactState::go_on_where_flush() {
+  if (!geometry_.go_on_where_flush()) return false;
+  note_geometry();
+  return true;
+}
+
 void ContactState::note_geometry() {
   variations_.clear();
   std::fill(locked_.begin(), locked_.end(), true);

@@ -15,6 +15,7 @@ constexpr double in_plane = 1e-9;                 // of the extent: mesh files h
 constexpr double parallel = 1e-9;                 // sine of an angle
 constexpr double shallow = 0.1;                   // of an edge: depth of a cell that hardly leaves the plane of its edge
 constexpr double still_aligned = space::hem / 2;  // of a cell: half of what outlines go on by
+constexpr double still_flush = 1e-3;              // likewise, of faces that are free to slide past each other
 
 struct BorderEdge {
   std::int32_t cell;
@@ -100,6 +101,30 @@ class Held {
   std::map<std::int32_t, std::vector<Vec3>> of_;
 };
 
+/// Edges of planes that are where the slave ends. @param tolerance of their cells
+std::vector<std::uint8_t> aligned(std::span<const EndPlane> planes, std::vector<std::pair<std::int32_t, int>> EndPlane::*edges,
+                                  double tolerance, const Surface& master, std::span<const double> coordinates) {
+  std::vector<std::uint8_t> found;
+  const auto at = [&](std::int32_t node) { return vector_at(coordinates.data() + 3 * static_cast<std::size_t>(node)); };
+  for (const EndPlane& plane : planes)
+    for (const auto& [cell, edge] : plane.*edges) {
+      const auto nodes = master.nodes[static_cast<std::size_t>(cell)];
+      const int n = catalog::cell(master.types[static_cast<std::size_t>(cell)]).n_vertices;
+      double low = INFINITY, high = -INFINITY;  // of the cell, along the normal
+      for (const std::int32_t node : nodes) {
+        low = std::min(low, dot(plane.normal, at(node)));
+        high = std::max(high, dot(plane.normal, at(node)));
+      }
+      const Vec3 middle = 0.5 * (at(nodes[edge]) + at(nodes[(edge + 1) % n]));
+      const std::int32_t nearest =
+          *std::ranges::min_element(plane.slave, {}, [&](std::int32_t node) { return norm(at(node) - middle); });
+      if (!(std::abs(dot(plane.normal, at(nearest) - middle)) <= tolerance * (high - low))) continue;
+      found.resize(master.size(), 0);
+      found[static_cast<std::size_t>(cell)] |= static_cast<std::uint8_t>(1U << edge);
+    }
+  return found;
+}
+
 }  // namespace
 
 std::vector<std::uint8_t> border_edges(const Surface& skin) {
@@ -119,7 +144,7 @@ std::vector<EndPlane> end_planes(const Surface& slave, const Surface& master, st
     const double place = reach(master, normal);
     const double close = in_plane * std::max(std::abs(place), std::abs(reach(master, -1.0 * normal)));
     if (!(std::abs(place - reach(slave, normal)) <= close)) continue;
-    EndPlane plane{.normal = normal, .slave = {}, .ends = {}};
+    EndPlane plane{.normal = normal, .slave = {}, .ends = {}, .flush = {}};
     const auto beside = [&](std::int32_t node) { return place - dot(normal, place_of(node, master)); };
     // a cell that lies in the plane does not end there
     const auto ends_there = [&](const BorderEdge& edge, const Surface& skin) {
@@ -136,36 +161,24 @@ std::vector<EndPlane> end_planes(const Surface& slave, const Surface& master, st
       }
     const auto is_held = [&](std::int32_t node) { return holds.along(normal, node); };
     const bool slave_is_held = std::ranges::all_of(plane.slave, is_held);
-    for (const BorderEdge& edge : of_master)
-      if (ends_there(edge, master) &&
-          ((slave_is_held && std::ranges::all_of(edge.nodes, is_held)) || !lies_on(edge, at_slave, master)))
-        plane.ends.emplace_back(edge.cell, edge.edge);
-    if (!plane.slave.empty() && !plane.ends.empty()) planes.push_back(std::move(plane));
+    for (const BorderEdge& edge : of_master) {
+      if (!ends_there(edge, master)) continue;
+      const bool held_there = slave_is_held && std::ranges::all_of(edge.nodes, is_held);
+      (held_there || !lies_on(edge, at_slave, master) ? plane.ends : plane.flush).emplace_back(edge.cell, edge.edge);
+    }
+    if (!plane.slave.empty() && !(plane.ends.empty() && plane.flush.empty())) planes.push_back(std::move(plane));
   }
   return planes;
 }
 
 std::vector<std::uint8_t> mirrored_edges(std::span<const EndPlane> planes, const Surface& master,
                                          std::span<const double> coordinates) {
-  std::vector<std::uint8_t> mirrored;
-  const auto at = [&](std::int32_t node) { return vector_at(coordinates.data() + 3 * static_cast<std::size_t>(node)); };
-  for (const EndPlane& plane : planes)
-    for (const auto& [cell, edge] : plane.ends) {
-      const auto nodes = master.nodes[static_cast<std::size_t>(cell)];
-      const int n = catalog::cell(master.types[static_cast<std::size_t>(cell)]).n_vertices;
-      double low = INFINITY, high = -INFINITY;  // of the cell, along the normal
-      for (const std::int32_t node : nodes) {
-        low = std::min(low, dot(plane.normal, at(node)));
-        high = std::max(high, dot(plane.normal, at(node)));
-      }
-      const Vec3 middle = 0.5 * (at(nodes[edge]) + at(nodes[(edge + 1) % n]));
-      const std::int32_t nearest =
-          *std::ranges::min_element(plane.slave, {}, [&](std::int32_t node) { return norm(at(node) - middle); });
-      if (!(std::abs(dot(plane.normal, at(nearest) - middle)) <= still_aligned * (high - low))) continue;
-      mirrored.resize(master.size(), 0);
-      mirrored[static_cast<std::size_t>(cell)] |= static_cast<std::uint8_t>(1U << edge);
-    }
-  return mirrored;
+  return aligned(planes, &EndPlane::ends, still_aligned, master, coordinates);
+}
+
+std::vector<std::uint8_t> flush_edges(std::span<const EndPlane> planes, const Surface& master,
+                                      std::span<const double> coordinates) {
+  return aligned(planes, &EndPlane::flush, still_flush, master, coordinates);
 }
 
 }  // namespace lacon

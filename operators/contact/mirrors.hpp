@@ -11,9 +11,10 @@
 namespace lacon {
 
 struct EndPlane {
-  Vec3 normal{};                                   ///< of the plane, out of the skins
-  std::vector<std::int32_t> slave;                 ///< nodes of the slave's edges that end in it
-  std::vector<std::pair<std::int32_t, int>> ends;  ///< such edges of the master: cell of its surface, edge
+  Vec3 normal{};                                    ///< of the plane, out of the skins
+  std::vector<std::int32_t> slave;                  ///< nodes of the slave's edges that end in it
+  std::vector<std::pair<std::int32_t, int>> ends;   ///< such edges of the master: cell of its surface, edge
+  std::vector<std::pair<std::int32_t, int>> flush;  ///< likewise, free ones that lie along the slave's
 };
 
 /// Of each cell of a skin in space its edges that no other cell has, a bit for each; empty in the plane.
@@ -22,7 +23,7 @@ std::vector<std::uint8_t> border_edges(const Surface& skin);
 /// Planes x, y or z = constant, and those that an edge of the master is held in, beyond which no skin reaches and in which both
 /// end; of the master's edges there those that meet the border of the slave at points at most, and where no node can leave the
 /// plane, as by symmetry, all. Where free borders lie on each other a face that slides past the other one is what ends the
-/// contact. None in the plane.
+/// contact: those are apart. None in the plane.
 std::vector<EndPlane> end_planes(const Surface& slave, const Surface& master, std::span<const HeldDirection> held);
 
 /// Surface::mirrored of the master: its edges in such planes that still end where the slave does, to less than what the outline
@@ -31,5 +32,9 @@ std::vector<EndPlane> end_planes(const Surface& slave, const Surface& master, st
 /// @return empty where there are none
 std::vector<std::uint8_t> mirrored_edges(std::span<const EndPlane> planes, const Surface& master,
                                          std::span<const double> coordinates);
+
+/// Likewise of those edges that lie along the slave's, where they still do, to a thousandth of their cells.
+std::vector<std::uint8_t> flush_edges(std::span<const EndPlane> planes, const Surface& master,
+                                      std::span<const double> coordinates);
 
 }  // namespace lacon

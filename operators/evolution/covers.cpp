@@ -22,14 +22,20 @@ void Newton::keep_lost_masters(double instant, const std::vector<Status>& before
 }
 
 bool Newton::keep_covers_that_sway(double instant, const StaticState& state, bool last) {
-  if (!contact() || problem_.contact->frozen_gap || (course_.period() && ++times_round_ < 2 && !last)) return false;
-  bool any = false;
-  for (std::size_t p = 0; p < contact()->n_patches(); ++p) {
-    if (state.patches.status[p] != Status::active || contact()->keeps_cover(p) || !contact()->is_covered_in_part(p)) continue;
-    keep_cover(instant, p);
-    any = true;
+  if (!contact() || problem_.contact->frozen_gap) return false;
+  if (equilibrium_.go_on_where_flush()) {
+    choice_.start_again();
+  } else {
+    if (course_.period() && ++times_round_ < 2 && !last) return false;
+    bool any = false;
+    for (std::size_t p = 0; p < contact()->n_patches(); ++p) {
+      const bool moves = !contact()->keeps_cover(p) && contact()->is_covered_in_part(p);
+      if (state.patches.status[p] != Status::active || !moves) continue;
+      keep_cover(instant, p);
+      any = true;
+    }
+    if (!any) return false;
   }
-  if (!any) return false;
   if (last) return true;
   course_.start();
   statuses_.start_instant();

@@ -462,6 +462,7 @@ void Equilibrium::save(const hdf5::Group& group) const {
   if (!contact_) return;
   group.write("slave_cuts", contact_->geometry().cuts());
   group.write("left_out", contact_->geometry().left_out());
+  group.write("flush", contact_->geometry().flush());
 }
 
 void Equilibrium::resume(const hdf5::Group& group, const StaticState& state, std::span<const double> rest) {
@@ -473,6 +474,7 @@ void Equilibrium::resume(const hdf5::Group& group, const StaticState& state, std
   if (group.has_attribute("instant")) load(group.real("instant"), state);
   rest_at(rest);
   if (contact_ && group.has("slave_cuts")) contact_->set_cuts(group.read<std::int32_t>("slave_cuts"));
+  if (contact_ && group.has("flush")) contact_->set_flush(group.read<std::int32_t>("flush"));
   if (contact_ && group.has("left_out")) contact_->set_left_out(group.read<std::int32_t>("left_out"));
   pair(state.displacement);
   assemble(state, state, {static_cast<SolidMatrix>(group.integer("solid_matrix")), group.integer("curved_matrix") != 0});

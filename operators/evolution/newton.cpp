@@ -279,7 +279,7 @@ int Newton::iterate(double instant, StaticState& state, const std::function<void
       finish_instant(instant, previous, state, external, line);
       return iteration;
     }
-    const bool other_forces = (course_.period() || std::min(course_.growths(), settled_) >= drifting) &&
+    const bool other_forces = (course_.period() || course_.stands() || std::min(course_.growths(), settled_) >= drifting) &&
                               keep_covers_that_sway(instant, state, iteration == last);
     const int done = iteration + 1;
     if (elsewhere_ &&

@@ -13,6 +13,7 @@ namespace {
 constexpr double same = 1e-2;   // of a residual: the one of a period before
 constexpr double other = 1e-3;  // and what differs within a period,
 constexpr double clearly = 10;  // so many times more than from one period to the next: it does not merely crawl
+constexpr int long_enough = 6;  // iterations
 constexpr double more = 1e-1;   // of a residual that was smaller before
 
 }  // namespace
@@ -68,6 +69,12 @@ std::optional<std::size_t> ResidualCourse::period() const {
     if (again && *most - *least > std::max(clearly * change, other * *least)) return period;
   }
   return std::nullopt;
+}
+
+bool ResidualCourse::stands() const {
+  if (residuals_.size() < long_enough || !finite()) return false;
+  const auto [least, most] = std::minmax_element(residuals_.end() - long_enough, residuals_.end());
+  return *most <= (1 + same) * *least;
 }
 
 std::string ResidualCourse::words() const {

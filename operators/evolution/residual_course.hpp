@@ -22,6 +22,8 @@ class ResidualCourse {
   std::optional<double> order() const;
   /// After how many iterations residuals come back, two whole periods long; nothing where they do not.
   std::optional<std::size_t> period() const;
+  /// Whether the last six are the same, to a hundredth.
+  bool stands() const;
   /// How many of the last iterations have each left more than the one before.
   int growths() const;
   /// In how many iterations up to the last it has been largest at the same place.

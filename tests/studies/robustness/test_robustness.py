@@ -96,6 +96,23 @@ class FlushEnds(StudyTest):
                 ends[steps] = np.array(figures["end"])
             np.testing.assert_allclose(ends[1], ends[5], rtol=0, atol=1e-8 * np.abs(ends[5]).max())
 
+    def test_plates_without_lateral_strain_stay_flush(self):
+        """NU = 0: sides of both plates stay in one plane, and the gap has a kink where they pass each other. It is no matter there what the cover does:
+        forces are those of frozen gaps."""
+        for kind, strain in itertools.product(("HEXA8", "HEXA20"), ("PETIT", "GREEN_LAGRANGE")):
+            forces = []
+            for keywords in ({}, {"VARIATION_JEU": "FIGEE"}):
+                mesh = union([slab_in_space(kind, "TOOL", (0, 1), (0.1, 0.9), (0, 0.4), (5, 3, 1), skin="bottom"),
+                              slab_in_space(kind, "SLAB", (0, 1), (0, 1), (-1, 0), (4, 4, 2))])
+                study = Study(name="flush", mesh=mesh, model="3D", strain=strain, materials={body: elastic(1e3, 0.0) for body in ("TOOL", "SLAB")},
+                              zones=[zone("TOOL", "SLAB", 0)], contact=keywords, steps=1, asked={"per step": 16, "lost": 0},
+                              moves=[held("SLAB") | {"DZ": 0.0}, path("TOOL", [(0, 0), (1, 0)], [(0, 0), (1, 0)], DZ=[[0, 0], [1, -0.03]])])
+                figures = run(study, LACON, self.folder)
+                self.assertEqual(missed(study, figures), [], (kind, strain))
+                self.assertEqual(figures.get("alarms", []), [], (kind, strain))
+                forces.append(float(re.search(r"force on the slave \(\S+ \S+ ([^)]+)\)", (self.folder / "out").read_text())[1]))
+            self.assertAlmostEqual(*forces, delta=1e-3 * forces[1])
+
 
 class Skins(StudyTest):
     def test_a_round_body_that_a_coarse_slave_lets_through_is_told(self):

@@ -126,7 +126,19 @@ TEST(Mirrors, EdgesAreThoseThatEndWhereTheSlaveDoes) {
       },
       false);
   const std::vector<EndPlane> free_ends = end_planes(one.slave, one.master, free);
-  EXPECT_EQ(free_ends.size(), 3U);  // not where both borders are the line x = 0, nor where the master lies, z = 0
+  ASSERT_EQ(free_ends.size(), 4U);  // not where the master lies, z = 0
+  for (const EndPlane& plane : free_ends) {
+    const bool along = plane.normal.x < 0;  // both borders are the line x = 0
+    EXPECT_EQ(plane.ends.size(), along ? 0U : 3U);
+    EXPECT_EQ(plane.flush.size(), along ? 3U : 0U);
+  }
+  EXPECT_EQ(n_mirrored(mirrored_edges(free_ends, one.master, one.coordinates)), 7);
+  const std::vector<double> flush = one.coordinates;
+  for (const auto& [shift, expected] : {std::pair{0.0, 3}, {3.3e-4, 3}, {3.4e-4, 0}}) {  // a thousandth of a third
+    one.coordinates = flush;
+    for (std::size_t node = 0; node < 9; ++node) one.coordinates[3 * node] -= shift;
+    EXPECT_EQ(n_mirrored(flush_edges(free_ends, one.master, one.coordinates)), expected) << shift;
+  }
   ASSERT_EQ(planes.size(), 4U);
   EXPECT_EQ(planes[0].normal.x, -1);
   EXPECT_EQ(planes[0].ends.size(), 3U);

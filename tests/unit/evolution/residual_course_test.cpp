@@ -53,6 +53,12 @@ TEST(ResidualCourse, KnowsWhatComesBack) {
   EXPECT_EQ(course({9, 1, 2, 1, 2}).words(), "the residual goes round with a period of 2 iterations");
 }
 
+TEST(ResidualCourse, KnowsThatItStands) {
+  EXPECT_TRUE(course({9, 1, 1.001, 1, 1.001, 1, 1.001}).stands());
+  EXPECT_FALSE(course({9, 1, 1.001, 1, 1.001, 1}).stands());  // not for long enough
+  EXPECT_FALSE(course({1, 0.99, 0.98, 0.97, 0.96, 0.95, 0.94}).stands());
+}
+
 TEST(ResidualCourse, CountsForHowLongItIsLargestAtOnePlace) {
   ResidualCourse course;
   for (const std::int64_t place : {7, 3, 3, 3}) course.add(1, place);
