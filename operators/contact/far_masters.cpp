@@ -21,14 +21,16 @@ constexpr double still_far = 0.25;      // likewise, of what is left out already
 constexpr double deepest_nearest = 1;   // likewise: nothing is behind a master that a patch lies so deep in
 constexpr double least_nearest = 2e-2;  // of the patch: what the nearer ones cover, so that it can take contact there
 constexpr double facing_cosine =
-    0.5;                        // between the normal of the slave and the opposite of the master's: the least that is no wall
-constexpr int most_levels = 4;  // of masters that lie one behind the other
+    0.5;  // between the normal of the slave and the opposite of the master's: the least that is no wall
+constexpr double round_off = 1e-9;  // of the patch: what less is seen of by accident
+constexpr int most_levels = 4;      // of masters that lie one behind the other
 
 }  // namespace
 
 std::set<FarMaster> ContactGeometry::far_masters(const std::set<FarMaster>& before) const {
   const auto patch_of = [&](const Cell& cell) { return static_cast<std::size_t>(contact_.slaves[cell.slave].patch); };
-  std::vector<double> nearest(n_patches(), std::numeric_limits<double>::infinity()), farthest(n_patches(), -nearest[0]);
+  constexpr double infinite = std::numeric_limits<double>::infinity();
+  std::vector<double> nearest(n_patches(), infinite), farthest(n_patches(), -infinite);
   for (const Cell& cell : cells_) {
     const std::size_t patch = patch_of(cell);
     nearest[patch] = std::min(nearest[patch], cell.least);
@@ -41,7 +43,8 @@ std::set<FarMaster> ContactGeometry::far_masters(const std::set<FarMaster>& befo
   };
   std::map<std::size_t, std::vector<const Cell*>> seen;  // by patches that may see far ones
   for (const Cell& cell : cells_)
-    if (const std::size_t patch = patch_of(cell); cell.measure > 0 && nearest[patch] >= -deepest_nearest * size_[patch] &&
+    if (const std::size_t patch = patch_of(cell); cell.measure > round_off * whole_[patch] &&
+                                                  nearest[patch] >= -deepest_nearest * size_[patch] &&
                                                   farthest[patch] - nearest[patch] > still_far * size_[patch] && !is_wall(cell))
       seen[patch].push_back(&cell);
 

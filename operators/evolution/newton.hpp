@@ -145,8 +145,9 @@ class Newton {
   /// lose it all the same. @param before, wanted statuses of the iteration that ends, and of the next
   void keep_lost_masters(double instant, const std::vector<Status>& before, const std::vector<Status>& wanted,
                          const StaticState& state);
-  /// Residuals go round, stand or drift: where they went round before in this instant, or stand or drift, or it has no iteration
-  /// left, masters go on where both skins are flush, or else patches that press, and on which masters end, keep their cover.
+  /// Residuals go round, stand or drift: where they went round before in this instant, or stand or drift, or it has no
+  /// iteration left, masters go on where both skins are flush, or else patches that press, and on which masters end, keep their
+  /// cover.
   /// @return whether any does that did not
   bool keep_covers_that_sway(double instant, const StaticState& state, bool last);
   /// Near balance, pair as the present geometry asks for: masters that are far behind others are left out, those that no
