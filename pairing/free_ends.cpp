@@ -28,8 +28,7 @@ std::vector<std::uint8_t> free_ends(const Surface& skin) {
     std::size_t cell;
     int number;
   };
-  std::map<std::pair<std::int32_t, std::int32_t>, std::vector<End>>
-      cells_at;  // by the nodes of an edge, in the plane of an end
+  std::map<std::pair<std::int32_t, std::int32_t>, std::vector<End>> cells_at;  // by nodes: of an edge, or twice that of an end
   for (std::size_t cell = 0; cell < skin.size(); ++cell) {
     const auto nodes = skin.nodes[cell];
     const int n = skin.dimension == 2 ? 2 : catalog::cell(skin.types[cell]).n_vertices;

@@ -43,6 +43,7 @@ class ContactGeometry {
     std::vector<EndPlane> planes;
     std::vector<std::uint8_t> mirrored;   ///< Surface::mirrored of the master
     bool goes_on_flush = false;           ///< go_on_where_flush()
+    std::vector<std::uint8_t> flush;      ///< of these, what it adds
     std::vector<std::uint8_t> border;     ///< border_edges() of the master
     std::vector<std::uint8_t> free_ends;  ///< Surface::free_ends of the master
     std::vector<Couple> left_out;         ///< PairingOptions::left_out
@@ -108,9 +109,9 @@ class ContactGeometry {
   /// other, and no iterate is in equilibrium there. From now on, in zones where they are flush now and at rest.
   /// @return whether there are such that did not go on; contact cells are those with them
   bool go_on_where_flush();
-  /// Of each zone whether it has some, for another process.
+  /// Where they do, for set_flush() of another process: zone, cell of the master surface (-1: the zone alone), its edges.
   std::vector<std::int32_t> flush() const;
-  void set_flush(std::span<const std::int32_t> zones);
+  void set_flush(std::span<const std::int32_t> edges);
 
   /// By what the gaps of each zone are smaller than what its cells leave, from the next update() on: (n_nodes), interpolated on
   /// the slave; empty: by nothing.
@@ -185,6 +186,8 @@ class ContactGeometry {
   [[noreturn]] void no_normal(const SlaveElement& slave) const;  ///< throws EVOLUTION_3
   /// Masters go on where slaves still ended in their planes when they were at rest.
   void mirror();
+  /// Surface::mirrored of a zone, with what is flush.
+  void add_flush(Zone& zone);
   /// Measures of whole patches, in the measure of the kernels' coverage (with r in axisymmetry).
   void measure_slaves();
   /// The contact kernel of a slave cell's element.

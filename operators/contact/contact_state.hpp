@@ -145,7 +145,7 @@ class ContactState {
   void set_left_out(std::span<const std::int32_t> masters) { geometry_.set_left_out(masters); }
   /// ContactGeometry::go_on_where_flush, set_flush
   bool go_on_where_flush();
-  void set_flush(std::span<const std::int32_t> zones) { geometry_.set_flush(zones); }
+  void set_flush(std::span<const std::int32_t> edges) { geometry_.set_flush(edges); }
   /// ContactGeometry::set_cuts
   void set_cuts(std::span<const std::int32_t> cuts) { geometry_.set_cuts(cuts); }
   /// What was in contact at the last state in equilibrium, which zones with GLISSIERE='OUI' keep in contact.

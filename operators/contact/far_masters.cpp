@@ -20,10 +20,9 @@ constexpr double far_behind = 0.5;      // of the size of the patch
 constexpr double still_far = 0.25;      // likewise, of what is left out already
 constexpr double deepest_nearest = 1;   // likewise: nothing is behind a master that a patch lies so deep in
 constexpr double least_nearest = 2e-2;  // of the patch: what the nearer ones cover, so that it can take contact there
-constexpr double facing_cosine =
-    0.5;  // between the normal of the slave and the opposite of the master's: the least that is no wall
-constexpr double round_off = 1e-9;  // of the patch: what less is seen of by accident
-constexpr int most_levels = 4;      // of masters that lie one behind the other
+constexpr double facing_cosine = 0.5;   // between the slave's normal and the opposite of the master's: less is a wall
+constexpr double round_off = 1e-9;      // of the patch: what less is seen of by accident
+constexpr int most_levels = 4;          // of masters that lie one behind the other
 
 }  // namespace
 
@@ -31,8 +30,10 @@ std::set<FarMaster> ContactGeometry::far_masters(const std::set<FarMaster>& befo
   const auto patch_of = [&](const Cell& cell) { return static_cast<std::size_t>(contact_.slaves[cell.slave].patch); };
   constexpr double infinite = std::numeric_limits<double>::infinity();
   std::vector<double> nearest(n_patches(), infinite), farthest(n_patches(), -infinite);
+  const auto counts = [&](const Cell& cell) { return cell.measure > round_off * whole_[patch_of(cell)]; };
   for (const Cell& cell : cells_) {
     const std::size_t patch = patch_of(cell);
+    if (!counts(cell)) continue;
     nearest[patch] = std::min(nearest[patch], cell.least);
     farthest[patch] = std::max(farthest[patch], cell.most);
   }
@@ -41,12 +42,12 @@ std::set<FarMaster> ContactGeometry::far_masters(const std::set<FarMaster>& befo
                master = facing(mesh_, cell.master, coordinates_).normal;
     return -dot(slave, master) < facing_cosine;
   };
-  std::map<std::size_t, std::vector<const Cell*>> seen;  // by patches that may see far ones
+  const auto may_see_far = [&](std::size_t patch) {
+    return nearest[patch] >= -deepest_nearest * size_[patch] && farthest[patch] - nearest[patch] > still_far * size_[patch];
+  };
+  std::map<std::size_t, std::vector<const Cell*>> seen;  // by patches
   for (const Cell& cell : cells_)
-    if (const std::size_t patch = patch_of(cell); cell.measure > round_off * whole_[patch] &&
-                                                  nearest[patch] >= -deepest_nearest * size_[patch] &&
-                                                  farthest[patch] - nearest[patch] > still_far * size_[patch] && !is_wall(cell))
-      seen[patch].push_back(&cell);
+    if (counts(cell) && may_see_far(patch_of(cell)) && !is_wall(cell)) seen[patch_of(cell)].push_back(&cell);
 
   std::set<FarMaster> found;
   for (auto& [patch, cells] : seen) {
@@ -99,7 +100,8 @@ void ContactGeometry::leave_out(std::set<FarMaster> masters) {
     for (std::size_t s = 0; !left_out_.empty() && s < zone.slaves.size(); ++s) {
       const std::int32_t patch = contact_.slaves[zone.slaves[s]].patch;
       for (auto one = left_out_.lower_bound({patch, -1}); one != left_out_.end() && one->patch == patch; ++one)
-        zone.left_out.push_back({static_cast<std::int32_t>(s), place.at(one->master)});
+        if (const auto master = place.find(one->master); master != place.end())
+          zone.left_out.push_back({static_cast<std::int32_t>(s), master->second});
     }
     std::ranges::sort(zone.left_out);
     zone.pairing.left_out = zone.left_out;

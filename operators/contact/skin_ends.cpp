@@ -32,17 +32,23 @@ void ContactGeometry::find_ends(std::span<const HeldDirection> held) {
 void ContactGeometry::mirror() {
   for (Zone& zone : zones_) {
     zone.mirrored = mirrored_edges(zone.planes, zone.master, rest_);
-    if (zone.goes_on_flush) add_bits(flush_edges(zone.planes, zone.master, rest_), zone.mirrored);
-    zone.master.mirrored = zone.mirrored;
+    zone.flush.clear();
+    if (zone.goes_on_flush) zone.flush = flush_edges(zone.planes, zone.master, rest_);
+    add_flush(zone);
   }
+}
+
+void ContactGeometry::add_flush(Zone& zone) {
+  add_bits(zone.flush, zone.mirrored);
+  zone.master.mirrored = zone.mirrored;
 }
 
 bool ContactGeometry::go_on_where_flush() {
   bool any = false;
   for (Zone& zone : zones_)
-    if (add_bits(flush_edges(zone.planes, zone.master, coordinates_), zone.mirrored)) {
-      zone.master.mirrored = zone.mirrored;
+    if (add_bits(flush_edges(zone.planes, zone.master, coordinates_), zone.flush)) {
       any = zone.goes_on_flush = true;
+      add_flush(zone);
     }
   if (any) look();
   return any;
@@ -50,13 +56,24 @@ bool ContactGeometry::go_on_where_flush() {
 
 std::vector<std::int32_t> ContactGeometry::flush() const {
   std::vector<std::int32_t> all;
-  for (const Zone& zone : zones_) all.push_back(zone.goes_on_flush ? 1 : 0);
+  for (std::int32_t z = 0; const Zone& zone : zones_) {
+    if (zone.goes_on_flush) all.insert(all.end(), {z, -1, 0});
+    for (std::size_t cell = 0; cell < zone.flush.size(); ++cell)
+      if (zone.flush[cell] != 0) all.insert(all.end(), {z, static_cast<std::int32_t>(cell), zone.flush[cell]});
+    ++z;
+  }
   return all;
 }
 
-void ContactGeometry::set_flush(std::span<const std::int32_t> zones) {
-  for (std::size_t z = 0; z < zones.size(); ++z) zones_[z].goes_on_flush = zones[z] != 0;
-  mirror();
+void ContactGeometry::set_flush(std::span<const std::int32_t> edges) {
+  for (std::size_t i = 0; i + 2 < edges.size(); i += 3) {
+    Zone& zone = zones_.at(static_cast<std::size_t>(edges[i]));
+    zone.goes_on_flush = true;
+    if (edges[i + 1] < 0) continue;
+    zone.flush.resize(zone.master.size(), 0);
+    zone.flush.at(static_cast<std::size_t>(edges[i + 1])) |= static_cast<std::uint8_t>(edges[i + 2]);
+    add_flush(zone);
+  }
 }
 
 }  // namespace lacon

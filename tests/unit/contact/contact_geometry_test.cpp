@@ -379,5 +379,46 @@ TEST(ContactGeometry, FrozenGapsAreAveragesOverAllMasters) {
   EXPECT_FALSE(geometry.leave_far_masters());
 }
 
+TEST(ContactGeometry, MastersGoOnWhereFreeFacesAreFlush) {
+  Skins skins(4, 3, false);
+  for (std::size_t i = 2; i < skins.mesh.coordinates.size(); i += 3) skins.mesh.coordinates[i] = 0;
+  const auto slave_moved = [&](double by) {
+    std::vector<double> displacement(skins.displacement.size(), 0.0);
+    for (std::size_t node = 0; node < 25; ++node) displacement[3 * node] = by;
+    return displacement;
+  };
+  Registry registry;
+  const auto covered = [&](const ContactGeometry& geometry) {
+    double sum = 0;
+    for (std::size_t p = 0; p < geometry.n_patches(); ++p) sum += geometry.covered(p);
+    return sum;
+  };
+  ContactGeometry geometry(skins.mesh, skins.model, skins.contact, registry),
+      taken_up(skins.mesh, skins.model, skins.contact, registry);
+  geometry.find_ends({});
+  taken_up.find_ends({});
+  geometry.rest_at(slave_moved(0));
+  geometry.update(slave_moved(1e-4));
+  EXPECT_NEAR(covered(geometry), 1 - 1e-4, 1e-12);
+  EXPECT_TRUE(geometry.flush().empty());
+  EXPECT_TRUE(geometry.go_on_where_flush());
+  EXPECT_NEAR(covered(geometry), 1, 1e-12);
+  EXPECT_FALSE(geometry.go_on_where_flush());
+  const std::vector<std::int32_t> flush = geometry.flush();
+  EXPECT_EQ(flush.size(), 3 * (1 + 8U));  // eight of nine squares, one of which is two triangles, have an edge at a side
+  taken_up.rest_at(slave_moved(0.01));    // where nothing is flush
+  taken_up.set_flush(flush);
+  taken_up.update(slave_moved(1e-4));
+  EXPECT_EQ(taken_up.flush(), flush);
+  EXPECT_NEAR(covered(taken_up), 1, 1e-12);
+  // beyond a thousandth of a cell it is over with the next state at rest
+  geometry.rest_at(slave_moved(5e-4));
+  geometry.update(slave_moved(5e-4));
+  EXPECT_NEAR(covered(geometry), 1 - 5e-4, 1e-12);
+  geometry.rest_at(slave_moved(3e-4));
+  geometry.update(slave_moved(3e-4));
+  EXPECT_NEAR(covered(geometry), 1, 1e-12);
+}
+
 }  // namespace
 }  // namespace lacon
