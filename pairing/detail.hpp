@@ -64,8 +64,8 @@ struct Candidate {
 /// Which of two masters keeps a part of a slave cell that both cover: the nearer one. But free ends of two masters that have
 /// slid over each other by a hair, as of blocks side by side that widen under load, are pushed to the same height: were it
 /// always the nearer one, forces would leap there from one to the other, and no iterate would find an equilibrium. Of such
-/// ends, where they are about as near, the one keeps it whose place at rest has the smaller coordinates.
-/// @param width of what both cover  @param size of the slave cell
-bool comes_before(const Surface& masters, const Candidate& one, const Candidate& other, double width, double size);
+/// ends, where they are about as near, the one keeps it whose place at rest has the smaller coordinates. The end of a sheet
+/// that lies on a block looks the other way than any end of the block that is near to it. @param size of the slave cell
+bool comes_before(const Surface& masters, const Candidate& one, const Candidate& other, double size);
 
 }  // namespace lacon::detail

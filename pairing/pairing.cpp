@@ -142,14 +142,55 @@ std::optional<Rejection> beyond_limits(const PairingOptions& options, double gap
   return std::nullopt;
 }
 
-bool comes_before(const Surface& masters, const Candidate& one, const Candidate& other, double width, double size) {
-  constexpr double narrow = 0.25;  // of the smallest cell
-  constexpr double as_near = 0.1;  // of the slave cell
-  const auto ends = [&](const Candidate& candidate) {
-    return !masters.free_ends.empty() && masters.free_ends[static_cast<std::size_t>(candidate.master)] != 0;
+namespace {
+
+/// An end (in the plane) or edge (in space) of a cell where its skin ends or folds.
+struct FreeEnd {
+  Vec3 place;   ///< a point of it
+  Vec3 inward;  ///< unit, into the cell, at a right angle to it
+};
+
+std::vector<FreeEnd> free_ends_of(const Surface& skin, std::size_t cell) {
+  std::vector<FreeEnd> ends;
+  if (skin.free_ends.empty()) return ends;
+  const auto at = [&](int i) {
+    return vector_at(skin.coordinates.data() + 3 * std::ptrdiff_t{skin.nodes[cell][static_cast<std::size_t>(i)]});
   };
-  const bool ends_meet = ends(one) && ends(other) && width < narrow * std::min({size, one.size, other.size});
-  if (std::abs(one.gap - other.gap) > (ends_meet ? as_near * size : 0)) return std::abs(one.gap) < std::abs(other.gap);
+  const int n = skin.dimension == 2 ? 2 : catalog::cell(skin.types[cell]).n_vertices;
+  Vec3 middle{};
+  for (int i = 0; i < n; ++i) middle = middle + at(i) / static_cast<double>(n);
+  for (int i = 0; i < n; ++i) {
+    if ((skin.free_ends[cell] >> i & 1) == 0) continue;
+    Vec3 inward = middle - at(i);
+    if (skin.dimension == 3) {
+      const Vec3 along = at((i + 1) % n) - at(i);
+      inward = inward - (dot(inward, along) / dot(along, along)) * along;
+    }
+    ends.push_back({at(i), inward / norm(inward)});
+  }
+  return ends;
+}
+
+/// Whether a free end of each of two cells is near to one of the other, with the two cells on different sides.
+bool ends_meet(const Surface& skin, std::int32_t one, std::int32_t other, double near) {
+  constexpr double opposite = -0.5;  // cosine
+  const std::vector<FreeEnd> own = free_ends_of(skin, static_cast<std::size_t>(one));
+  const std::vector<FreeEnd> others = own.empty() ? own : free_ends_of(skin, static_cast<std::size_t>(other));
+  for (const FreeEnd& a : own)
+    for (const FreeEnd& b : others)
+      if (dot(a.inward, b.inward) < opposite && std::abs(dot(b.place - a.place, a.inward)) < near) return true;
+  return false;
+}
+
+}  // namespace
+
+bool comes_before(const Surface& masters, const Candidate& one, const Candidate& other, double size) {
+  constexpr double hair = 0.25;    // of the smallest cell
+  constexpr double as_near = 0.1;  // of the slave cell
+  const double apart = std::abs(one.gap - other.gap);
+  if (apart > 0 &&
+      !(apart <= as_near * size && ends_meet(masters, one.master, other.master, hair * std::min({size, one.size, other.size}))))
+    return std::abs(one.gap) < std::abs(other.gap);
   const auto place = [&](const Candidate& candidate) {
     const Vec3 at = middle_at_rest(masters, static_cast<std::size_t>(candidate.master));
     return std::tuple(at.x, at.y, at.z, candidate.master);

@@ -392,9 +392,8 @@ class PairerInPlane final : public detail::CellPairer {
           const auto size_of = [&](std::int32_t m) {
             return length(point(master, master.nodes[m][1]) - point(master, master.nodes[m][0]));
           };
-          const double size = 2 * length(e.x.c[1]), common = std::min(one.b, other.b) - std::max(one.a, other.a);
           return detail::comes_before(master, {one.master, gap, size_of(one.master)},
-                                      {other.master, other_gap, size_of(other.master)}, 0.5 * common * size, size);
+                                      {other.master, other_gap, size_of(other.master)}, 2 * length(e.x.c[1]));
         },
         [&](std::int32_t m) { reject(m, Rejection::hidden); });
 

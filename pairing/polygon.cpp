@@ -26,13 +26,6 @@ double double_area(const Polygon& polygon) {
   return sum;
 }
 
-double diameter(const Polygon& polygon) {
-  double largest = 0;
-  for (std::size_t i = 0; i < polygon.size(); ++i)
-    for (std::size_t j = 0; j < i; ++j) largest = std::max(largest, norm(polygon[i] - polygon[j]));
-  return largest;
-}
-
 Vec2 middle(const Polygon& polygon) {
   Vec2 sum{};
   for (const Vec2 v : polygon) sum = sum + v;

@@ -28,9 +28,6 @@ void clip(const Polygon& polygon, const HalfPlane& half, Polygon& inside);
 /// Twice the area.
 double double_area(const Polygon& polygon);
 
-/// The largest distance of two vertices.
-double diameter(const Polygon& polygon);
-
 /// The mean of the vertices: a point inside.
 Vec2 middle(const Polygon& polygon);
 

@@ -315,9 +315,7 @@ class PairerInSpace final : public detail::CellPairer {
       const auto candidate = [&](const View& seen) {
         return detail::Candidate{seen.master, gap(seen, y), master(seen.master).size};
       };
-      const double of_chart = 2 * e.f.size / e.chart_diameter,  // a length in the chart, about
-          width = of_chart * 0.5 * double_area(both.polygon) / diameter(both.polygon);
-      const bool old_wins = detail::comes_before(masters_->skin.master, candidate(old), candidate(view), width, e.f.size);
+      const bool old_wins = detail::comes_before(masters_->skin.master, candidate(old), candidate(view), e.f.size);
       const View &winner = old_wins ? old : view, &loser = old_wins ? view : old;
       reject(loser.master, Rejection::hidden);
       any_hidden = true;

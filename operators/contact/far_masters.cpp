@@ -17,7 +17,7 @@ namespace lacon {
 namespace {
 
 constexpr double far_behind = 0.5;      // of the size of the patch
-constexpr double still_far = 0.25;      // likewise, of what is left out already
+constexpr double still_far = 0.45;      // likewise, of what is left out already
 constexpr double deepest_nearest = 1;   // likewise: nothing is behind a master that a patch lies so deep in
 constexpr double least_nearest = 2e-2;  // of the patch: what the nearer ones cover, so that it can take contact there
 constexpr double facing_cosine = 0.5;   // between the slave's normal and the opposite of the master's: less is a wall

@@ -67,8 +67,8 @@ class Equilibrium {
   }
   /// ContactGeometry::leave_far_masters; false without contact
   bool leave_far_masters();
-  /// ContactGeometry::go_on_where_flush
-  bool go_on_where_flush() { return contact_->go_on_where_flush(); }
+  /// ContactGeometry::go_on_where_flush; false without contact
+  bool go_on_where_flush() { return contact_ && contact_->go_on_where_flush(); }
   /// ContactGeometry::renew_cuts
   void renew_cuts() { contact_->renew_cuts(); }
   /// ContactState::keep_cover, let_covers_go

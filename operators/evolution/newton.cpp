@@ -168,7 +168,7 @@ std::vector<double> Newton::begin_instant(double instant, const StaticState& sta
   edges_ = {};
   lost_masters_.start_instant();
   settled_ = times_held_ = times_rested_ = times_round_ = times_cut_ = times_left_out_ = 0;
-  goes_round_ = false;
+  looked_far_ = goes_round_ = false;
   forcing_.start_instant();
   return equilibrium_.load(instant, state);
 }
@@ -279,8 +279,9 @@ int Newton::iterate(double instant, StaticState& state, const std::function<void
       finish_instant(instant, previous, state, external, line);
       return iteration;
     }
-    const bool other_forces = (course_.period() || course_.stands() || std::min(course_.growths(), settled_) >= drifting) &&
-                              keep_covers_that_sway(instant, state, iteration == last);
+    const bool other_forces =
+        (course_.period() || (course_.stands() && settled_ > drifting) || std::min(course_.growths(), settled_) >= drifting) &&
+        keep_covers_that_sway(instant, state, iteration == last);
     const int done = iteration + 1;
     if (elsewhere_ &&
         Prediction::leads_astray(done, line.longest, forces_before, there.in_equilibrium() ? HUGE_VAL : there.longest))
@@ -390,9 +391,10 @@ std::vector<Status> Newton::wanted_statuses(const StaticState& state, IterationR
 bool Newton::pairs_anew(const IterationReport& line, const StaticState& state) {
   if (!contact() || line.status_changes > 0 || line.longest_share >= near_balance) return false;
   bool anew = false;
-  if (times_left_out_ < most_times_anew) {
-    ++times_left_out_;
+  // once as soon as it is near, and where it would be accepted
+  if (times_left_out_ < most_times_anew && (!std::exchange(looked_far_, true) || line.in_equilibrium())) {
     anew = equilibrium_.leave_far_masters();
+    times_left_out_ += anew ? 1 : 0;
   }
   if (times_cut_ < most_times_anew && contact()->geometry().keeps_cuts()) {
     ++times_cut_;

@@ -215,6 +215,7 @@ class Newton {
   int times_held_ = 0;                           ///< in this instant: loose bodies
   int times_rested_ = 0;                         ///< likewise, by patches that their load leads them to
   int times_cut_ = 0, times_left_out_ = 0;       ///< in this instant: pairs_anew()
+  bool looked_far_ = false;                      ///< in this instant: near balance, for masters that are far
   bool goes_round_ = false;                      ///< residuals have come back: increments are searched (line_search.hpp)
   int times_round_ = 0;                          ///< in this instant: residuals have come back
   std::vector<double> depths_before_;            ///< depths() as the instant began

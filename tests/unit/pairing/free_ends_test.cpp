@@ -79,6 +79,42 @@ TEST(FreeEnds, KeepWhatTheyShareHoweverTheyAreRaised) {
   EXPECT_NEAR(first_sees(wide, -1e-3), 0.5 + wide / 2, 1e-14);
 }
 
+// A sheet of two cells on a block of two, under slave cells that see a narrow part of it: its ends look as those of the block
+// do.
+TEST(FreeEnds, OfASheetHideTheBlockBelow) {
+  for (const double at : {0.02, 0.5, 0.98, 1.02, 1.98}) {
+    Skin slave, master;
+    add_chain(
+        slave,
+        [](double t) {
+          return Point{t, 0.1};
+        },
+        {at - 0.06, at + 0.06}, Kind::linear);
+    add_chain(
+        master,
+        [](double t) {
+          return Point{t, 0.0};
+        },
+        {2.02, 1, -0.02}, Kind::linear);
+    add_chain(
+        master,
+        [](double t) {
+          return Point{t, 0.005};
+        },
+        {2, 1.1, 0}, Kind::linear);
+    Surface masters = master.view();
+    const std::vector<std::uint8_t> ends = free_ends(masters);
+    masters.free_ends = ends;
+    const ContactCells cells = pair(slave.view(), masters).cells;
+    double of_block = 0;
+    for (std::size_t c = 0; c < cells.size(); ++c)
+      for (auto p = cells.offset[c]; p < cells.offset[c + 1]; ++p)
+        of_block += cells.master[c] < 2 ? 0.06 * cells.weight[static_cast<std::size_t>(p)] : 0;
+    const double beside = std::max(0.0, 0.06 - at) + std::max(0.0, at + 0.06 - 2);  // of the sheet
+    EXPECT_NEAR(of_block, std::min(beside, 0.02), 1e-12) << at;
+  }
+}
+
 TEST(FreeEnds, KeepWhatTheyShareInSpace) {
   std::mt19937 random(3);
   const auto first_sees = [&](double width, double step) {
