@@ -105,9 +105,9 @@ class ContactGeometry {
   /// a little more than the other one, would miss them there, now more, now less. Not with VARIATION_JEU='FIGEE'.
   void find_ends(std::span<const HeldDirection> held);
 
-  /// Likewise where free faces of both bodies are flush, as of plates without lateral strain: forces jump where they pass each
-  /// other, and no iterate is in equilibrium there. From now on, where they are flush at present,
-  /// and from the next state at rest on where they are then.
+  /// Let masters go on where free faces of both bodies are flush too, as of plates without lateral strain: forces jump where
+  /// they pass each other, and no iterate is in equilibrium there. Now where they are flush at present, from the next state at
+  /// rest on where they are then.
   /// @return whether there are such that did not go on; contact cells are those with them
   bool go_on_where_flush();
   /// Where they do, for set_flush() of another process: zone, cell of the master surface (-1: the zone alone), its edges.

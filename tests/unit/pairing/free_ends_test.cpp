@@ -36,6 +36,18 @@ TEST(FreeEnds, AreEdgesInSpace) {
 
 constexpr double hair = 0.05, wide = 0.4;  // of cells of size 1
 
+/// The weights of all points that see one of the first masters. @param known whether their free ends are
+double weight_of_first(const Surface& slave, Surface masters, std::int32_t n_first, bool known = true) {
+  const std::vector<std::uint8_t> ends = free_ends(masters);
+  if (known) masters.free_ends = ends;
+  const ContactCells cells = pair(slave, masters).cells;
+  double sum = 0;
+  for (std::size_t c = 0; c < cells.size(); ++c)
+    for (auto p = cells.offset[c]; p < cells.offset[c + 1]; ++p)
+      sum += cells.master[c] < n_first ? cells.weight[static_cast<std::size_t>(p)] : 0;
+  return sum;
+}
+
 /// Two masters of size 1, the second one above the first by `step`, that share a strip in the middle of a slave cell of size 1.
 /// @return how much of the slave cell sees the first
 double first_sees(double width, double step, bool known = true) {
@@ -58,15 +70,7 @@ double first_sees(double width, double step, bool known = true) {
         return Point{t, step};
       },
       {1.5 - width / 2, 0.5 - width / 2}, Kind::linear);
-  Surface masters = master.view();
-  const std::vector<std::uint8_t> ends = free_ends(masters);
-  if (known) masters.free_ends = ends;
-  const ContactCells cells = pair(slave.view(), masters).cells;
-  double sum = 0;
-  for (std::size_t c = 0; c < cells.size(); ++c)
-    for (auto p = cells.offset[c]; p < cells.offset[c + 1]; ++p)
-      sum += cells.master[c] == 0 ? 0.5 * cells.weight[static_cast<std::size_t>(p)] : 0;
-  return sum;
+  return 0.5 * weight_of_first(slave.view(), master.view(), 1, known);
 }
 
 TEST(FreeEnds, KeepWhatTheyShareHoweverTheyAreRaised) {
@@ -102,14 +106,7 @@ TEST(FreeEnds, OfASheetHideTheBlockBelow) {
           return Point{t, 0.005};
         },
         {2, 1.1, 0}, Kind::linear);
-    Surface masters = master.view();
-    const std::vector<std::uint8_t> ends = free_ends(masters);
-    masters.free_ends = ends;
-    const ContactCells cells = pair(slave.view(), masters).cells;
-    double of_block = 0;
-    for (std::size_t c = 0; c < cells.size(); ++c)
-      for (auto p = cells.offset[c]; p < cells.offset[c + 1]; ++p)
-        of_block += cells.master[c] < 2 ? 0.06 * cells.weight[static_cast<std::size_t>(p)] : 0;
+    const double of_block = 0.06 * weight_of_first(slave.view(), master.view(), 2);
     const double beside = std::max(0.0, 0.06 - at) + std::max(0.0, at + 0.06 - 2);  // of the sheet
     EXPECT_NEAR(of_block, std::min(beside, 0.02), 1e-12) << at;
   }
@@ -141,15 +138,7 @@ TEST(FreeEnds, KeepWhatTheyShareInSpace) {
     std::vector<std::int32_t> nodes(other.surface.nodes[0].begin(), other.surface.nodes[0].end());
     for (std::int32_t& node : nodes) node += shift;
     master.surface.add_cell(CellType::QUAD8, nodes);
-    Surface masters = master.view();
-    const std::vector<std::uint8_t> ends = free_ends(masters);
-    masters.free_ends = ends;
-    const ContactCells cells = pair(slave.view(), masters).cells;
-    double sum = 0;
-    for (std::size_t c = 0; c < cells.size(); ++c)
-      for (auto p = cells.offset[c]; p < cells.offset[c + 1]; ++p)
-        sum += cells.master[c] < 2 ? 0.25 * cells.weight[static_cast<std::size_t>(p)] : 0;
-    return sum;
+    return 0.25 * weight_of_first(slave.view(), master.view(), 2);
   };
   for (const double step : {-0.09, -1e-3, 0.0, 1e-3, 0.09}) EXPECT_NEAR(first_sees(hair, step), 0.5 + hair / 2, 1e-13) << step;
   EXPECT_NEAR(first_sees(hair, 0.2), 0.5 - hair / 2, 1e-13);
