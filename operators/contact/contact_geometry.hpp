@@ -11,6 +11,7 @@
 #include "lacon/elements/reference.hpp"
 #include "lacon/elements/registry.hpp"
 #include "lacon/operators/contact/gap_variation.hpp"
+#include "lacon/operators/contact/kept_pairing.hpp"
 #include "lacon/operators/contact/mirrors.hpp"
 #include "lacon/operators/contact/normal_variation.hpp"
 #include "lacon/pairing/pairing.hpp"
@@ -50,6 +51,8 @@ class ContactGeometry {
     Surface slave, master;
     bool current_jacobian = false;
     PairingOptions pairing;
+
+    std::map<std::int32_t, std::int32_t> places() const;  ///< in `master` of cells of the mesh
   };
   /// A contact cell with what its kernel gave.
   struct Cell {
@@ -97,9 +100,6 @@ class ContactGeometry {
   /// on, until the patch sees them otherwise: a gap that is an average over both would keep it open. Contact cells are those of
   /// the last update() without them. @return whether others are left out than before
   bool leave_far_masters();
-  /// What it has left out, for set_left_out() of another process: patch and master of each.
-  std::vector<std::int32_t> left_out() const;
-  void set_left_out(std::span<const std::int32_t> masters);
 
   /// Let masters go on where both skins end in one plane: normals that lean over it by what facets leave, or a face that bulges
   /// a little more than the other one, would miss them there, now more, now less. Not with VARIATION_JEU='FIGEE'.
@@ -110,9 +110,10 @@ class ContactGeometry {
   /// rest on where they are then.
   /// @return whether there are such that did not go on; contact cells are those with them
   bool go_on_where_flush();
-  /// Where they do, for set_flush() of another process: zone, cell of the master surface (-1: the zone alone), its edges.
-  std::vector<std::int32_t> flush() const;
-  void set_flush(std::span<const std::int32_t> edges);
+
+  KeptPairing kept() const;
+  /// Begin as another one, perhaps of other zones, has gone on: what has no place here is passed over.
+  void keep(const KeptPairing& kept);
 
   /// By what the gaps of each zone are smaller than what its cells leave, from the next update() on: (n_nodes), interpolated on
   /// the slave; empty: by nothing.

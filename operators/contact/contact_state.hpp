@@ -140,12 +140,12 @@ class ContactState {
   void rest_at(std::span<const double> displacement) { geometry_.rest_at(displacement); }
   /// ContactGeometry::renew_cuts
   void renew_cuts() { geometry_.renew_cuts(); }
-  /// ContactGeometry::leave_far_masters, set_left_out
+  /// ContactGeometry::leave_far_masters
   bool leave_far_masters();
-  void set_left_out(std::span<const std::int32_t> masters) { geometry_.set_left_out(masters); }
-  /// ContactGeometry::go_on_where_flush, set_flush
+  /// ContactGeometry::go_on_where_flush
   bool go_on_where_flush();
-  void set_flush(std::span<const std::int32_t> edges) { geometry_.set_flush(edges); }
+  /// ContactGeometry::keep
+  void keep(const KeptPairing& kept) { geometry_.keep(kept); }
   /// ContactGeometry::set_cuts
   void set_cuts(std::span<const std::int32_t> cuts) { geometry_.set_cuts(cuts); }
   /// What was in contact at the last state in equilibrium, which zones with GLISSIERE='OUI' keep in contact.

@@ -94,9 +94,8 @@ void ContactGeometry::leave_out(std::set<FarMaster> masters) {
   left_out_ = std::move(masters);
   for (Zone& zone : zones_) {
     zone.left_out.clear();
-    std::map<std::int32_t, std::int32_t> place;  // of cells of the mesh in the master skin
-    for (std::size_t i = 0; !left_out_.empty() && i < zone.masters.size(); ++i)
-      place[zone.masters[i]] = static_cast<std::int32_t>(i);
+    const std::map<std::int32_t, std::int32_t> place =
+        left_out_.empty() ? std::map<std::int32_t, std::int32_t>() : zone.places();
     for (std::size_t s = 0; !left_out_.empty() && s < zone.slaves.size(); ++s) {
       const std::int32_t patch = contact_.slaves[zone.slaves[s]].patch;
       for (auto one = left_out_.lower_bound({patch, -1}); one != left_out_.end() && one->patch == patch; ++one)
@@ -113,19 +112,6 @@ void ContactGeometry::keep_left_out(bool same_rest) {
     leave_out(left_out_at_rest_);
   else
     left_out_at_rest_ = left_out_;
-}
-
-std::vector<std::int32_t> ContactGeometry::left_out() const {
-  std::vector<std::int32_t> all;
-  for (const FarMaster& one : left_out_) all.insert(all.end(), {one.patch, one.master});
-  return all;
-}
-
-void ContactGeometry::set_left_out(std::span<const std::int32_t> masters) {
-  std::set<FarMaster> all;
-  for (std::size_t i = 0; i + 1 < masters.size(); i += 2) all.insert({masters[i], masters[i + 1]});
-  left_out_at_rest_ = all;
-  leave_out(std::move(all));
 }
 
 }  // namespace lacon

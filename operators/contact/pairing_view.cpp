@@ -326,21 +326,21 @@ class ZoneView {
 }  // namespace
 
 PairingView view_pairing(const Mesh& mesh, const Model& model, const Contact& contact, Registry& registry,
-                         std::span<const double> displacement, std::span<const HeldDirection> held,
-                         std::vector<std::vector<double>> offsets, const Field* cont_elem) {
+                         const ViewedInstant& instant) {
   ContactGeometry geometry(mesh, model, contact, registry);
   const std::vector<double> nowhere(mesh.n_nodes() * static_cast<std::size_t>(mesh.dimension), 0.0);
   std::vector<ZonePairing> records;
-  if (displacement.empty()) displacement = nowhere;
-  geometry.find_ends(held);
+  const std::span<const double> displacement = instant.displacement.empty() ? nowhere : instant.displacement;
+  geometry.find_ends(instant.held);
   geometry.rest_at(displacement);
-  geometry.set_offsets(std::move(offsets));
+  geometry.keep(instant.kept);
+  geometry.set_offsets(instant.offsets);
   geometry.update(displacement);
   geometry.leave_far_masters();
   geometry.update(displacement, &records);
 
   std::map<std::int32_t, std::array<double, 2>> state;
-  if (cont_elem) {
+  if (const std::optional<Field>& cont_elem = instant.cont_elem) {
     const auto status = static_cast<std::size_t>(cont_elem->component("CONT"));
     const auto pressure = static_cast<std::size_t>(cont_elem->component("PRES"));
     for (std::size_t i = 0; i < cont_elem->support.size(); ++i)

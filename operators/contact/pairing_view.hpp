@@ -2,11 +2,13 @@
 // A look at the pairing of an instant: contact cells, integration points, covered fractions and rejected couples as meshes with
 // fields on their cells, and as lines of text.
 #include <map>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
 
 #include "lacon/elements/registry.hpp"
+#include "lacon/operators/contact/kept_pairing.hpp"
 #include "lacon/pairing/pairing.hpp"
 #include "lacon/structures/base.hpp"
 #include "lacon/structures/displacement.hpp"
@@ -37,14 +39,18 @@ struct PairingView {
   std::vector<std::string> report;
 };
 
-/// Pair on the geometry at a displacement.
-/// @param displacement (n_nodes, mesh.dimension), empty for the initial geometry
-/// @param held by loads, ContactGeometry::find_ends
-/// @param offsets of the skins at the instant, ContactOffsets::at  @param cont_elem its field CONT_ELEM, or nullptr
-/// Throws EVOLUTION_3 for a slave cell without normal, EVOLUTION_8 for one beyond the axis.
+/// When a pairing is looked at: by default before any instant.
+struct ViewedInstant {
+  std::vector<double> displacement = {};          ///< (n_nodes, mesh.dimension), empty for the initial geometry
+  std::vector<HeldDirection> held = {};           ///< by loads, ContactGeometry::find_ends
+  std::vector<std::vector<double>> offsets = {};  ///< of the skins, ContactOffsets::at
+  std::optional<Field> cont_elem = {};            ///< of a result
+  KeptPairing kept = {};                          ///< likewise, beside it
+};
+
+/// Pair on the geometry at an instant. Throws EVOLUTION_3 for a slave cell without normal, EVOLUTION_8 for one beyond the axis.
 PairingView view_pairing(const Mesh& mesh, const Model& model, const Contact& contact, Registry& registry,
-                         std::span<const double> displacement, std::span<const HeldDirection> held,
-                         std::vector<std::vector<double>> offsets, const Field* cont_elem);
+                         const ViewedInstant& instant);
 
 /// Why a couple was rejected, in the user's language.
 std::string rejection_words(Rejection rejection);

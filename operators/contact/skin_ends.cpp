@@ -54,26 +54,4 @@ bool ContactGeometry::go_on_where_flush() {
   return any;
 }
 
-std::vector<std::int32_t> ContactGeometry::flush() const {
-  std::vector<std::int32_t> all;
-  for (std::int32_t z = 0; const Zone& zone : zones_) {
-    if (zone.goes_on_flush) all.insert(all.end(), {z, -1, 0});
-    for (std::size_t cell = 0; cell < zone.flush.size(); ++cell)
-      if (zone.flush[cell] != 0) all.insert(all.end(), {z, static_cast<std::int32_t>(cell), zone.flush[cell]});
-    ++z;
-  }
-  return all;
-}
-
-void ContactGeometry::set_flush(std::span<const std::int32_t> edges) {
-  for (std::size_t i = 0; i + 2 < edges.size(); i += 3) {
-    Zone& zone = zones_.at(static_cast<std::size_t>(edges[i]));
-    zone.goes_on_flush = true;
-    if (edges[i + 1] < 0) continue;
-    zone.flush.resize(zone.master.size(), 0);
-    zone.flush.at(static_cast<std::size_t>(edges[i + 1])) |= static_cast<std::uint8_t>(edges[i + 2]);
-    add_flush(zone);
-  }
-}
-
 }  // namespace lacon

@@ -214,6 +214,7 @@ void Archive::add_masters(std::int64_t number) {
     for (std::size_t p = 0; p < present_.contact->n_patches(); ++p)
       if (present_.contact->keeps_cover(p)) kept.push_back(static_cast<std::int64_t>(p));
     if (!kept.empty()) root.write("kept_covers", kept);
+    write(root, present_.contact->geometry().kept());
   });
 }
 

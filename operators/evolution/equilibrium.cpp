@@ -461,8 +461,7 @@ void Equilibrium::save(const hdf5::Group& group) const {
   if (!first_forces_.empty()) group.write("first_forces", first_forces_);
   if (!contact_) return;
   group.write("slave_cuts", contact_->geometry().cuts());
-  group.write("left_out", contact_->geometry().left_out());
-  group.write("flush", contact_->geometry().flush());
+  write(group, contact_->geometry().kept());
 }
 
 void Equilibrium::resume(const hdf5::Group& group, const StaticState& state, std::span<const double> rest) {
@@ -474,8 +473,7 @@ void Equilibrium::resume(const hdf5::Group& group, const StaticState& state, std
   if (group.has_attribute("instant")) load(group.real("instant"), state);
   rest_at(rest);
   if (contact_ && group.has("slave_cuts")) contact_->set_cuts(group.read<std::int32_t>("slave_cuts"));
-  if (contact_ && group.has("flush")) contact_->set_flush(group.read<std::int32_t>("flush"));
-  if (contact_ && group.has("left_out")) contact_->set_left_out(group.read<std::int32_t>("left_out"));
+  if (contact_) contact_->keep(read_kept_pairing(group));
   pair(state.displacement);
   assemble(state, state, {static_cast<SolidMatrix>(group.integer("solid_matrix")), group.integer("curved_matrix") != 0});
 }

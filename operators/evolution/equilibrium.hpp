@@ -67,6 +67,10 @@ class Equilibrium {
   }
   /// ContactGeometry::leave_far_masters; false without contact
   bool leave_far_masters();
+  /// ContactGeometry::keep
+  void keep(const KeptPairing& kept) {
+    if (contact_) contact_->keep(kept);
+  }
   /// ContactGeometry::go_on_where_flush; false without contact
   bool go_on_where_flush() { return contact_ && contact_->go_on_where_flush(); }
   /// ContactGeometry::renew_cuts

@@ -74,6 +74,7 @@ void Newton::begin(StaticState& state, const std::string& label, bool as_given) 
     equilibrium_.leave_far_masters();
     state.patches = contact()->initial();
   }
+  equilibrium_.keep(std::exchange(state.kept_pairing, {}));
   for (const std::size_t patch : std::exchange(state.kept_covers, {}))
     if (contact()->geometry().zone_of(patch) >= 0) keep_cover(options_.start, patch);
   start_heated(state);

@@ -14,8 +14,9 @@ struct StaticState {
   Patchwise patches;
   std::vector<double> relations;              ///< multipliers of the loads' relations
   std::vector<PointValues> points;            ///< of each solid set; empty where `kept` is there
-  std::vector<std::size_t> kept_covers = {};  ///< patches whose cover another computation has kept, to begin with
   KeptState kept = {};                        ///< the same, where other processes have the cells
+  std::vector<std::size_t> kept_covers = {};  ///< patches whose cover another computation has kept, to begin with
+  KeptPairing kept_pairing = {};              ///< likewise
 
   std::size_t n_sets() const { return kept ? kept->n_sets() : points.size(); }
 };

@@ -295,8 +295,6 @@ void add_initial_strains(const StaticProblem& problem, const Base& base, const R
 
 }  // namespace
 
-std::filesystem::path path_of_masters(std::filesystem::path field) { return field.replace_extension(".masters.h5"); }
-
 StaticState archived_state(const StaticProblem& problem, const Base& base, const Result& result, std::int64_t order) {
   if (result.mesh != problem.model.mesh)
     fail("EVOLUTION_1", {{"first", "ETAT_INIT/EVOL_NOLI"}, {"second", "MODELE"}, {"what", part("meshes")}});
@@ -332,9 +330,11 @@ StaticState archived_state(const StaticProblem& problem, const Base& base, const
   state.patches = patches_of(base.field(result, "CONT_ELEM", order), problem.mesh, *problem.contact, result.label);
   const std::filesystem::path masters = path_of_masters(base.folder() / result.fields.at("CONT_ELEM").at(order));
   if (!std::filesystem::exists(masters)) return state;  // of a result that another command made
-  if (const hdf5::Reader root(masters); root.has("kept_covers"))
+  const hdf5::Reader root(masters);
+  if (root.has("kept_covers"))
     for (const std::int64_t patch : root.read<std::int64_t>("kept_covers"))
       if (patch >= 0 && patch < problem.n_patches()) state.kept_covers.push_back(static_cast<std::size_t>(patch));
+  state.kept_pairing = read_kept_pairing(root);
   return state;
 }
 

@@ -1,7 +1,6 @@
 #pragma once
 // The fields of an instant: DEPL, SIEF_ELGA, VARI_ELGA, CONT_ELEM (METHOD.md 4), CONT_NOEU, FORC_NODA; and the state that a
 // result holds in them.
-#include <filesystem>
 #include <functional>
 #include <map>
 #include <string>
@@ -10,9 +9,6 @@
 #include "lacon/structures/base.hpp"
 
 namespace lacon {
-
-/// "CONT_ELEM_3.masters.h5" of "CONT_ELEM_3.h5".
-std::filesystem::path path_of_masters(std::filesystem::path field);
 
 /// What observers of a computation look at: the instant that was solved last, or the one that is being solved.
 struct Present {

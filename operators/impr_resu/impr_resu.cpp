@@ -167,8 +167,8 @@ void each_pairing(const Order& order, const Base& base, Concepts& concepts, cons
     const std::string id = one.concept_id("CONTACT");
     const Mesh& mesh = concepts.mesh(base.contact(id).mesh);
     const ViewedContact viewed(base, mesh, id);
-    visit({base.label(id), -1, 0,
-           view_pairing(mesh, viewed.model, viewed.contact, registry, {}, {}, viewed.offsets.at(0), nullptr)});
+    visit(
+        {base.label(id), -1, 0, view_pairing(mesh, viewed.model, viewed.contact, registry, {.offsets = viewed.offsets.at(0)})});
     return;
   }
   const Result& result = concepts.result(one.concept_id("RESULTAT"));
@@ -183,12 +183,14 @@ void each_pairing(const Order& order, const Base& base, Concepts& concepts, cons
     const Field depl = base.field(result, "DEPL", number);
     std::vector<Load> loads;
     for (const ResultLoad& load : result.stage(number).loads) loads.push_back(base.load(load.load));
-    std::optional<Field> state;
-    if (const auto files = result.fields.find("CONT_ELEM"); files != result.fields.end() && files->second.contains(number))
-      state = base.field(result, "CONT_ELEM", number);
-    visit({result.label, number, depl.instant,
-           view_pairing(mesh, viewed.model, viewed.contact, registry, nodal_displacements(mesh, depl, mesh.dimension),
-                        held_directions(mesh, loads), viewed.offsets.at(depl.instant), state ? &*state : nullptr)});
+    ViewedInstant instant{.displacement = nodal_displacements(mesh, depl, mesh.dimension),
+                          .held = held_directions(mesh, loads),
+                          .offsets = viewed.offsets.at(depl.instant)};
+    if (const auto files = result.fields.find("CONT_ELEM"); files != result.fields.end() && files->second.contains(number)) {
+      instant.cont_elem = base.field(result, "CONT_ELEM", number);
+      instant.kept = read_kept_pairing(base.folder() / files->second.at(number));
+    }
+    visit({result.label, number, depl.instant, view_pairing(mesh, viewed.model, viewed.contact, registry, instant)});
   }
 }
 

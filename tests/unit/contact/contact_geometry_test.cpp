@@ -306,7 +306,7 @@ TEST(ContactGeometry, MastersFarBehindOthersOfAPatchAreLeftOut) {
   EXPECT_TRUE(geometry.leave_far_masters());
   expect(0.4, 0.1);
   EXPECT_FALSE(geometry.leave_far_masters());
-  const std::vector<std::int32_t> out = geometry.left_out();
+  const std::vector<std::int32_t> out = geometry.kept().left_out;
   EXPECT_EQ(out.size() % 2, 0U);
   EXPECT_GE(out.size(), 8U);  // squares and triangles over the edge
   for (std::size_t i = 1; i < out.size(); i += 2) EXPECT_EQ(out[i], step.floor_cell);
@@ -319,10 +319,10 @@ TEST(ContactGeometry, MastersFarBehindOthersOfAPatchAreLeftOut) {
     expect(0.4, 0.1);
     EXPECT_EQ(geometry.leave_far_masters(), raised > 0.5 - 0.45 * 0.25) << raised;
     geometry.rest_at(step.skins.displacement);  // an instant that begins again begins as before
-    EXPECT_EQ(geometry.left_out(), out);
+    EXPECT_EQ(geometry.kept().left_out, out);
   }
   ContactGeometry taken_up(step.skins.mesh, step.skins.model, step.skins.contact, registry);
-  taken_up.set_left_out(out);
+  taken_up.keep({.left_out = out, .flush = {}});
   taken_up.update(step.skins.displacement);
   geometry.update(step.skins.displacement);
   for (std::size_t p = 0; p < geometry.n_patches(); ++p) EXPECT_EQ(taken_up.gap(p), geometry.gap(p));
@@ -338,7 +338,7 @@ TEST(ContactGeometry, WhatIsHiddenByAFarMasterIsFarAsWell) {
   ContactGeometry geometry(step.skins.mesh, step.skins.model, step.skins.contact, registry);
   geometry.update(step.skins.displacement);
   EXPECT_TRUE(geometry.leave_far_masters());
-  const std::vector<std::int32_t> out = geometry.left_out();
+  const std::vector<std::int32_t> out = geometry.kept().left_out;
   EXPECT_EQ(std::count(out.begin(), out.end(), lower), std::count(out.begin(), out.end(), step.floor_cell));
   for (std::size_t p = 0; p < geometry.n_patches(); ++p)
     EXPECT_TRUE(std::abs(geometry.gap(p) - 0.1) < 1e-12 || std::abs(geometry.gap(p) - 0.6) < 1e-12) << p;
@@ -364,7 +364,7 @@ TEST(ContactGeometry, SlopesAndWallsAreNotFarBehind) {
     ContactGeometry geometry(step.skins.mesh, step.skins.model, step.skins.contact, registry);
     geometry.update(step.skins.displacement);
     geometry.leave_far_masters();
-    const std::vector<std::int32_t> out = geometry.left_out();
+    const std::vector<std::int32_t> out = geometry.kept().left_out;
     EXPECT_EQ(std::count(out.begin(), out.end(), slope), 0) << reach;
     EXPECT_EQ(out.empty(), reach == 0.5) << reach;
   }
@@ -400,16 +400,16 @@ TEST(ContactGeometry, MastersGoOnWhereFreeFacesAreFlush) {
   geometry.rest_at(slave_moved(0));
   geometry.update(slave_moved(1e-4));
   EXPECT_NEAR(covered(geometry), 1 - 1e-4, 1e-12);
-  EXPECT_TRUE(geometry.flush().empty());
+  EXPECT_TRUE(geometry.kept().flush.empty());
   EXPECT_TRUE(geometry.go_on_where_flush());
   EXPECT_NEAR(covered(geometry), 1, 1e-12);
   EXPECT_FALSE(geometry.go_on_where_flush());
-  const std::vector<std::int32_t> flush = geometry.flush();
+  const std::vector<std::int32_t> flush = geometry.kept().flush;
   EXPECT_EQ(flush.size(), 3 * (1 + 8U));  // eight of nine squares, one of which is two triangles, have an edge at a side
   taken_up.rest_at(slave_moved(0.01));    // where nothing is flush
-  taken_up.set_flush(flush);
+  taken_up.keep({.left_out = {}, .flush = flush});
   taken_up.update(slave_moved(1e-4));
-  EXPECT_EQ(taken_up.flush(), flush);
+  EXPECT_EQ(taken_up.kept().flush, flush);
   EXPECT_NEAR(covered(taken_up), 1, 1e-12);
   // beyond a thousandth of a cell it is over with the next state at rest
   geometry.rest_at(slave_moved(5e-4));

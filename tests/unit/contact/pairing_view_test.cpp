@@ -52,7 +52,7 @@ struct View : testing::Test {
     state.values = {2, -7, 0, -3};
   }
 
-  PairingView view() { return view_pairing(mesh, model, contact, registry, {}, {}, {}, &state); }
+  PairingView view() { return view_pairing(mesh, model, contact, registry, {.cont_elem = state}); }
 };
 
 const PairingLayer& layer(const PairingView& view, std::string_view name) {

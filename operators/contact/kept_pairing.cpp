@@ -1,0 +1,81 @@
+#include "lacon/operators/contact/kept_pairing.hpp"
+
+#include <map>
+#include <set>
+#include <utility>
+
+#include "lacon/operators/contact/contact_geometry.hpp"
+#include "lacon/structures/hdf5.hpp"
+
+namespace lacon {
+
+void write(const hdf5::Group& group, const KeptPairing& kept) {
+  if (!kept.left_out.empty()) group.write("left_out", kept.left_out);
+  if (!kept.flush.empty()) group.write("flush", kept.flush);
+}
+
+KeptPairing read_kept_pairing(const hdf5::Group& group) {
+  KeptPairing kept;
+  if (group.has("left_out")) kept.left_out = group.read<std::int32_t>("left_out");
+  if (group.has("flush")) kept.flush = group.read<std::int32_t>("flush");
+  return kept;
+}
+
+KeptPairing read_kept_pairing(const std::filesystem::path& field) {
+  const std::filesystem::path masters = path_of_masters(field);
+  return std::filesystem::exists(masters) ? read_kept_pairing(hdf5::Reader(masters)) : KeptPairing();
+}
+
+std::filesystem::path path_of_masters(std::filesystem::path field) { return field.replace_extension(".masters.h5"); }
+
+std::map<std::int32_t, std::int32_t> ContactGeometry::Zone::places() const {
+  std::map<std::int32_t, std::int32_t> all;
+  for (std::size_t i = 0; i < masters.size(); ++i) all[masters[i]] = static_cast<std::int32_t>(i);
+  return all;
+}
+
+KeptPairing ContactGeometry::kept() const {
+  KeptPairing kept;
+  for (const FarMaster& one : left_out_) kept.left_out.insert(kept.left_out.end(), {one.patch, one.master});
+  for (const Zone& zone : zones_) {
+    if (!zone.goes_on_flush) continue;
+    const std::int32_t patch = contact_.slaves[zone.slaves.front()].patch;
+    kept.flush.insert(kept.flush.end(), {patch, -1, 0});
+    for (std::size_t cell = 0; cell < zone.flush.size(); ++cell)
+      if (zone.flush[cell] != 0) kept.flush.insert(kept.flush.end(), {patch, zone.masters[cell], zone.flush[cell]});
+  }
+  return kept;
+}
+
+void ContactGeometry::keep(const KeptPairing& kept) {
+  if (contact_.frozen_gap) return;
+  const auto zone_of = [&](std::int32_t patch) -> Zone* {
+    const bool here = patch >= 0 && static_cast<std::size_t>(patch) < n_patches() && zone_of_[patch] >= 0;
+    return here ? &zones_[zone_of_[patch]] : nullptr;
+  };
+  std::map<const Zone*, std::map<std::int32_t, std::int32_t>> places;
+  const auto place = [&](const Zone* zone, std::int32_t master) {
+    std::map<std::int32_t, std::int32_t>& there = places[zone];
+    if (there.empty()) there = zone->places();
+    const auto at = there.find(master);
+    return at == there.end() ? -1 : at->second;
+  };
+  std::set<FarMaster> left_out;
+  for (std::size_t i = 0; i + 1 < kept.left_out.size(); i += 2)
+    if (const Zone* const zone = zone_of(kept.left_out[i]); zone && place(zone, kept.left_out[i + 1]) >= 0)
+      left_out.insert({kept.left_out[i], kept.left_out[i + 1]});
+  left_out_at_rest_ = left_out;
+  leave_out(std::move(left_out));
+  for (std::size_t i = 0; i + 2 < kept.flush.size(); i += 3) {
+    Zone* const zone = zone_of(kept.flush[i]);
+    if (!zone) continue;
+    zone->goes_on_flush = true;
+    const std::int32_t cell = place(zone, kept.flush[i + 1]);
+    if (cell < 0) continue;
+    zone->flush.resize(zone->master.size(), 0);
+    zone->flush[cell] |= static_cast<std::uint8_t>(kept.flush[i + 2]);
+    add_flush(*zone);
+  }
+}
+
+}  // namespace lacon

@@ -1,0 +1,28 @@
+#pragma once
+// What looking at bodies has decided and keeps from instant to instant, for another process or computation to go on with.
+#include <cstdint>
+#include <filesystem>
+#include <vector>
+
+namespace lacon::hdf5 {
+class Group;
+}
+
+namespace lacon {
+
+struct KeptPairing {
+  std::vector<std::int32_t> left_out;  ///< leave_far_masters(): patch and master, a cell of the mesh, of each
+  std::vector<std::int32_t> flush;     ///< go_on_where_flush(): a patch of the zone, a master (-1: the zone alone), its edges
+};
+
+/// What is not empty of it, as data sets `left_out` and `flush` (docs/structures.md).
+void write(const hdf5::Group& group, const KeptPairing& kept);
+/// Empty where there is none.
+KeptPairing read_kept_pairing(const hdf5::Group& group);
+/// Beside a field CONT_ELEM; empty too where another command made its result, which has no such file.
+KeptPairing read_kept_pairing(const std::filesystem::path& field);
+
+/// "CONT_ELEM_3.masters.h5" of "CONT_ELEM_3.h5", the file of an instant that has it.
+std::filesystem::path path_of_masters(std::filesystem::path field);
+
+}  // namespace lacon
