@@ -259,6 +259,7 @@ int Newton::iterate(double instant, StaticState& state, const std::function<void
       shorten(solution, previous, state, increment);
     else
       equilibrium_.pair(state.displacement);
+    if (driven) equilibrium_.leave_far_masters();  // where what is imposed has brought bodies
     if (contact() && !driven) stay_shallow(solution, gaps, state, increment);
     const std::vector<Status> before = state.patches.status, wanted = wanted_statuses(state, line);
     // what imposed displacements alone have parted, the next iteration may bring together again: it starts from bodies that
