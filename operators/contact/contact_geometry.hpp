@@ -27,6 +27,12 @@ struct ZonePairing {
   std::vector<double> measure;    ///< of each contact cell, current geometry
 };
 
+/// A slave cell that has gone through a master.
+struct GoneThrough {
+  std::int32_t cell;
+  double sizes;  ///< how deep its middle lies behind that master, in sizes of its patch
+};
+
 /// A master that is left out of what a patch sees (far_masters.cpp).
 struct FarMaster {
   std::int32_t patch, master;  ///< `master` is a cell of the mesh
@@ -100,6 +106,10 @@ class ContactGeometry {
   /// on, until the patch sees them otherwise: a gap that is an average over both would keep it open. Contact cells are those of
   /// the last update() without them. @return whether others are left out than before
   bool leave_far_masters();
+
+  /// Of a zone the slave cell that has gone through a master since the bodies were at rest and lies deepest behind it, by more
+  /// than a patch or beyond the far side of the body; pairing may not see it (crossings.cpp).
+  std::optional<GoneThrough> gone_through(std::size_t zone) const;
 
   /// Let masters go on where both skins end in one plane: normals that lean over it by what facets leave, or a face that bulges
   /// a little more than the other one, would miss them there, now more, now less. Not with VARIATION_JEU='FIGEE'.

@@ -53,12 +53,20 @@ std::vector<double> Newton::depths(const StaticState& state) const {
 
 void Newton::fail_if_passed_through(double instant, const StaticState& state) const {
   const std::vector<double> now = depths(state);
-  for (std::size_t zone = 0; zone < now.size(); ++zone)
-    if (now[zone] > through && depths_before_[zone] < inside)
+  const auto presses = [&](std::int32_t patch) {
+    return state.patches.status[static_cast<std::size_t>(patch)] == Status::active;
+  };
+  for (std::size_t zone = 0; zone < now.size(); ++zone) {
+    const ContactZone& names = problem_.contact->zones[zone];
+    double sizes = now[zone] > through && depths_before_[zone] < inside ? now[zone] : 0;
+    if (sizes == 0 && std::ranges::none_of(names.patches, presses))
+      if (const auto gone = contact()->geometry().gone_through(zone)) sizes = gone->sizes;
+    if (sizes > 0)
       fail("EVOLUTION_63", {{"instant", fmt::format("{:.9g}", instant)},
-                            {"slave", problem_.contact->zones[zone].slave_group},
-                            {"master", problem_.contact->zones[zone].master_group},
-                            {"sizes", fmt::format("{:.2g}", now[zone])}});
+                            {"slave", names.slave_group},
+                            {"master", names.master_group},
+                            {"sizes", fmt::format("{:.2g}", sizes)}});
+  }
 }
 
 std::string Newton::cells_of(const std::vector<std::size_t>& patches) const {

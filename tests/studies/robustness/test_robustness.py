@@ -143,6 +143,24 @@ class Skins(StudyTest):
             self.assertEqual(figures["status"], "finished")
             self.assertEqual("EVOLUTION_45" in figures.get("alarms", []), told, deepest)
 
+    def test_a_body_that_its_load_would_swing_through_the_floor_lands_on_it(self):
+        """At the end of a soft arm, in one step: the first iterate is beyond all that pairing sees, and so is an equilibrium. The step is cut, and the
+        floor carries what it carries in twenty."""
+        for kind, young, load in (("QUAD4", 1e3, -75.0), ("QUAD4", 3e3, -150.0), ("TRIA3", 1e3, -75.0)):
+            forces = []
+            for steps in (20, 1):
+                mesh = weld(union([slab(kind, "TOOL", (-0.5, 0.5), (0.2, 0.8), (7, 4), skin="bottom"),
+                                   block(kind, lines(-2, -0.5, 3), lines(0.2, 0.8, 4), None, "ARM", {"left": "ARM_BASE"}),
+                                   slab(kind, "SLAB", (-4, 4), (-0.5, 0), (48, 3))]))
+                study = Study(name="arm", mesh=mesh, materials={"TOOL": elastic(1e4), "ARM": elastic(young, 0), "SLAB": elastic(1e4)}, strain="GREEN_LAGRANGE",
+                              zones=[zone("TOOL", "SLAB", 0)], moves=[held("SLAB"), held("ARM")], steps=steps, cut=True,
+                              loads=({"FORCE_INTERNE": {"GROUP_MA": "TOOL", "FY": [[0, 0], [1, load]]}},), instants=[k / steps for k in range(steps + 1)])
+                figures = run(study, LACON, self.folder)
+                self.assertEqual(figures["status"], "finished")
+                forces.append(float(re.findall(r"force on the slave \([^,]*, ([^)]*)\)", (self.folder / "out").read_text())[-1]))
+            self.assertGreater(forces[0], 30)
+            self.assertAlmostEqual(forces[1], forces[0], delta=1e-4 * forces[0])
+
     def test_what_is_far_behind_the_edge_of_a_master_is_no_part_of_its_contact(self):
         """A patch lies over the edge of a block by two fifths and over a floor beside it. With frozen gaps, as of the peer, it opens, and is told."""
         for kind, frozen in (("QUAD4", False), ("QUAD8", False), ("QUAD8", True)):
