@@ -99,6 +99,9 @@ int run(char** words) {
   if (!session.path().empty()) setenv("TMPDIR", session.path().c_str(), 1);  // of this machine alone, as the next one
   // for processes of this machine: mpirun would tell those of others what begins with OMPI_
   if (!memory.path().empty()) setenv("LACON_MPI_MEMORY", memory.path().c_str(), 1);
+  // what ranks know of each other as messages instead of shared files of megabytes: where TMPDIR has no room for these, ranks
+  // die at their start and mpirun waits for ever
+  setenv("PMIX_MCA_gds", "hash", 0);
   const pid_t process = start(words, before);
   if (process < 0) {  // it is there, and there can be no more processes
     std::perror(words[0]);

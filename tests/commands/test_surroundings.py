@@ -82,6 +82,27 @@ class Surroundings(LauncherTest):
             self.write("s.export", f"F comm study.comm D 1\n{line}\n")
             self.refused(self.launch("s.export"), "STUDY_43", "s.export:2", line.split()[1])
 
+    def test_a_time_limit_is_a_number_of_seconds(self):
+        """What is none was no limit; one that is over before the study begins, or longer than any timer, ended in a traceback."""
+        self.write("study.comm", STUDY + "FIN()\n")
+        for limit in ("-5", "nan", "abc", "10s", "0x10", "", "1 2"):
+            self.write("s.export", f"F comm study.comm D 1\nP time_limit {limit}\n")
+            self.refused(self.launch("s.export"), "STUDY_45", "s.export:2")
+        for limit in ("1e-9", "1e-6"):
+            self.write("s.export", f"F comm study.comm D 1\nP time_limit {limit}\n")
+            self.refused(self.launch("s.export"), "STUDY_25", status=3, diagnostic="<S>_CPU_LIMIT")
+        for limit in ("0", "1e300", "inf"):
+            self.write("s.export", f"F comm study.comm D 1\nP time_limit {limit}\nF mmed mesh.med D 20\n")
+            self.ok(self.launch("s.export"))
+
+    def test_a_unit_of_an_export_file_has_one_file(self):
+        """The last one was read in silence, an older result for the mesh."""
+        self.write("study.comm", STUDY + "FIN()\n")
+        self.write("s.export", "F comm study.comm D 1\nF mmed mesh.med D 20\nF rmed out.med R 20\n")
+        self.refused(self.launch("s.export"), "STUDY_44", "s.export:3", "mesh.med", "out.med")
+        self.write("s.export", "F comm study.comm D 1\nF mmed mesh.med D 20\nF mmed mesh.med R 20\n")
+        self.ok(self.launch("s.export"))
+
     def test_an_end_asked_for_before_the_study_begins(self):
         """Ctrl-C while Python still reads Lacon's modules, or behind the end of the run."""
         self.write("study.comm", "DEBUT()\nFIN()\n")

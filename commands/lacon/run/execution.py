@@ -54,6 +54,9 @@ class Failure(Exception):
         self.status, self.diagnostic = status, diagnostic
 
 
+_longest_timer = 1e9  # seconds, thirty years
+
+
 class TimeOver(BaseException):
     """The time limit of an export file is over; no exception that a command file may catch by Exception."""
 
@@ -130,22 +133,20 @@ def readers():
 
 
 @contextlib.contextmanager
-def time_limit(text):
-    """Raise TimeOver after that many seconds, a text as in an export file; what is not a positive number is no limit."""
+def time_limit(seconds):
+    """Raise TimeOver after that many seconds; 0, and more than a timer has, are no limit. @throws Failure where no command file has begun"""
     def over(*_):
         raise TimeOver(seconds)
 
-    try:
-        seconds = float(text)
-    except ValueError:
-        seconds = 0.0
-    if not 0.0 < seconds < math.inf:
+    if not 0.0 < seconds < _longest_timer:
         yield
         return
     before = signal.signal(signal.SIGALRM, over)
-    signal.setitimer(signal.ITIMER_REAL, seconds)
     try:
+        signal.setitimer(signal.ITIMER_REAL, seconds)
         yield
+    except TimeOver as error:
+        _refuse_more_time(error)
     finally:
         signal.setitimer(signal.ITIMER_REAL, 0.0)
         signal.signal(signal.SIGALRM, before)
@@ -231,8 +232,7 @@ def _run_file(study, path, source, values):
             show(message("STUDY_17", place(error), code=error.code))
             raise Failure(2, "<F>_ERROR") from None
     except TimeOver as error:
-        show(message("STUDY_25", place(error), seconds=f"{error.seconds:g}"))
-        raise Failure(3, "<S>_CPU_LIMIT") from None
+        _refuse_more_time(error)
     except Ended as error:
         show(message("STUDY_18", place(error), signal=error))
         raise Failure(4, "<F>_ABNORMAL_ABORT") from None
@@ -252,6 +252,12 @@ def _run_file(study, path, source, values):
         raise
     except BaseException as error:  # of the command file's own
         _refuse(error)
+
+
+def _refuse_more_time(error):
+    """@throws Failure"""
+    show(message("STUDY_25", place(error), seconds=f"{error.seconds:g}"))
+    raise Failure(3, "<S>_CPU_LIMIT") from None
 
 
 def _refuse(error):

@@ -106,7 +106,7 @@ def run_command_line(options, units):
     check_report()
 
     def work():
-        with execution.signals(), execution.delivered(export.named), execution.time_limit(export.parameters.get("time_limit", "")):
+        with execution.signals(), execution.delivered(export.named), execution.time_limit(export.seconds()):
             execution.run_files(run, export.commands)
 
     status, diagnostic = run_study(run, work)
