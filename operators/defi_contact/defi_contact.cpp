@@ -137,6 +137,21 @@ void check_sides(const SkinSides& sides, std::span<const std::int32_t> cells, co
     inform("CONTACT2_20", {{"where", where}, {"count", number(alone.size())}, {"cell", cell_name(alone.front())}});
 }
 
+/// Nothing touches a face between two cells of bodies: what comes near lies on the surface of the body around.
+void check_outside(const Model& model, const SkinSides& sides, std::span<const std::int32_t> cells, const std::string& keyword,
+                   const std::string& group) {
+  for (const std::int32_t cell : cells) {
+    std::vector<BodyCell> bodies = sides.bodies(cell);
+    std::erase_if(bodies, [&](const BodyCell& body) { return model.element[static_cast<std::size_t>(body.cell)] < 0; });
+    if (bodies.size() > 1)
+      fail("DECOUPE_3", {{"keyword", keyword},
+                         {"group", group},
+                         {"cell", cell_name(cell)},
+                         {"first", cell_name(bodies[0].cell)},
+                         {"second", cell_name(bodies[1].cell)}});
+  }
+}
+
 /// A body that AFFE_MODELE forgot leaves its skin without stiffness: the matrix would be singular, without a word of why.
 void check_bodies(const Model& model, const SkinSides& sides, std::span<const std::int32_t> cells, const std::string& where) {
   std::vector<std::pair<std::int32_t, std::int32_t>> bare;  // skin cell, body cell
@@ -314,6 +329,7 @@ Contact defi_contact(const Mesh& mesh, const Model& of_bodies, const Registry& r
       const std::string where = factor.path(keyword) + " '" + group + "'";
       check_elements(mesh, model, registry, cells, where);
       check_bodies(model, sides, cells, where);
+      check_outside(model, sides, cells, factor.path(keyword), group);
       if (contact.verify_normals) check_sides(sides, cells, where, group);
     }
     add_slaves(contact, zone, mesh);

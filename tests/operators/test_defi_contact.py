@@ -124,6 +124,14 @@ class DefiContact(OperatorTest):
         with h5py.File(self.path("contact_3")) as file:
             return read_ragged(file["zones/held_open"])[0], self.ids(run)
 
+    def test_a_master_between_two_body_cells_is_refused(self):
+        """The slave would pass the surface of the body and rest on that line."""
+        self.make(cells=[*CELLS, ("QUAD4", [7, 8, 12, 11])], of_cell=[*OF_CELL, 2])
+        for more in ({}, {"VERI_NORM": "NON"}):
+            self.refuses("DECOUPE_3", "GROUP_MA_MAIT", "M5 of the group 'MAIT'", "M14", "M15", **more)
+        self.make(cells=[*CELLS, ("QUAD4", [7, 8, 12, 11])], of_cell=[*OF_CELL, -1])  # no part of the model
+        self.assertEqual(self.define().status, 0)
+
     def test_patches_that_meet_what_is_left_out_have_no_contact(self):
         self.make(node_groups={"TIP": [4], "FAR": [9]})
         self.assertEqual(self.left_out(), ([], []))
