@@ -107,8 +107,8 @@ class ContactGeometry {
   /// the last update() without them. @return whether others are left out than before
   bool leave_far_masters();
 
-  /// Of a zone the slave cell that has gone through a master since the bodies were at rest and lies deepest behind it, by more
-  /// than a patch or beyond the far side of the body; pairing may not see it (crossings.cpp).
+  /// Of a zone a slave cell that has gone through a master since the bodies were at rest and lies deep behind it, or beyond the
+  /// far side of the body, where pairing may see nothing of it (crossings.cpp).
   std::optional<GoneThrough> gone_through(std::size_t zone) const;
 
   /// Let masters go on where both skins end in one plane: normals that lean over it by what facets leave, or a face that bulges
