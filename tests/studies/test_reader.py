@@ -19,6 +19,7 @@ import numpy as np  # noqa: E402
 import test_progress  # noqa: E402
 from lacon.core.messages import AsterError  # noqa: E402
 from lacon.reader.base import Base, open_base  # noqa: E402
+from lacon.report import study  # noqa: E402
 
 try:
     import meshio
@@ -151,6 +152,30 @@ FIN()
             spoilt[len(spoilt) // 2] ^= 1
             path.write_bytes(spoilt)
             self.refused("BASE_5", lambda: open_base(base)["RESULT"].contact().masters)
+
+    def test_files_that_are_missing_or_damaged_are_told_by_name(self):
+        """In whatever way: they ended in tracebacks of h5py, and a mesh that is gone as if Lacon were not installed whole."""
+        def without_seal(content):  # whose root group is another one
+            return content[:-32].replace(b"components", b"compoments").replace(b"values", b"valves").replace(b"cell", b"call")
+
+        def with_another_mark(content):
+            return content[:-40] + bytes(byte ^ 1 for byte in content[-40:-24]) + content[-24:]
+
+        for pattern, spoil, identifier in (("mesh_2.h5", None, "STUDY_7"), ("mesh_2.h5", lambda content: b"", "STUDY_7"),
+                                           ("result_*/CONT_ELEM_4.masters.h5", lambda content: b"", "STUDY_7"),
+                                           ("result_*/CONT_ELEM_4.masters.h5", lambda content: content[:len(content) // 2], "STUDY_7"),
+                                           ("result_*/CONT_ELEM_4.masters.h5", without_seal, "BASE_5"), ("result_*/CONT_NOEU_4.h5", without_seal, "BASE_5"),
+                                           ("result_*/CONT_NOEU_4.h5", with_another_mark, "BASE_5")):
+            with self.subTest(pattern, expected=identifier), tempfile.TemporaryDirectory() as folder:
+                base = shutil.copytree(self.base.folder, pathlib.Path(folder) / "copy.base")
+                (path,) = base.glob(pattern)
+                content = path.read_bytes()
+                path.unlink()
+                if spoil:
+                    path.write_bytes(spoil(content))
+                with self.assertRaisesRegex(AsterError, f"<F> <{identifier}> .*{path.name}"):
+                    shown = open_base(base)
+                    study.make(shown, shown.only_result())
 
     @unittest.skipUnless(meshio, "no meshio")
     def test_meshio_gets_what_it_reads_from_our_own_files(self):

@@ -179,10 +179,7 @@ class Base:
     def open(self, identifier):
         if identifier in self.unsolved:
             raise NeedsRun(*self.unsolved[identifier])
-        try:
-            file = seal.open_checked(self.path(identifier))
-        except OSError as error:
-            fail("STUDY_7", file=self.path(identifier), reason=error)
+        file = seal.open_checked(self.path(identifier))
         if (found := text(file.attrs.get("id", identifier))) != identifier:
             file.close()
             fail("BASE_7", file=self.path(identifier), found=found, expected=identifier)

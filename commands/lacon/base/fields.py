@@ -4,7 +4,6 @@ from ..core.catalog import part
 from ..core.hdf5 import text, texts
 from ..core.late import numpy
 from ..core.messages import fail
-from . import seal
 
 
 class FieldData:
@@ -64,11 +63,3 @@ def check_place(path, file, name, order):
     if found != (name, order):
         said = [part("field_of_order", field=field, order=number) for field, number in (found, (name, order))]
         fail("BASE_7", file=path, found=said[0], expected=said[1])
-
-
-def open_field(folder, path):
-    """A field's file, `path` relative to the base. @throws AsterError STUDY_7"""
-    try:
-        return seal.open_checked(folder / path)
-    except OSError as error:
-        fail("STUDY_7", file=folder / path, reason=error)

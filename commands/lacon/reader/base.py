@@ -78,7 +78,8 @@ class Base:
 
     def _mesh(self, base, identifier, label):
         """The same object as long as the file is the same."""
-        state = identifier, base.path(identifier).stat().st_mtime_ns
+        path = base.path(identifier)
+        state = identifier, path.stat().st_mtime_ns if path.exists() else 0  # to open one that is gone says so
         if state not in self._meshes:
             self._meshes[state] = Mesh(lambda: base.open(identifier), label)
         return self._meshes[state]

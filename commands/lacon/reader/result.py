@@ -4,7 +4,7 @@ import contextlib
 from functools import cached_property
 
 from ..base import command_files, contents
-from ..base.fields import FieldData, check_place, open_field
+from ..base.fields import FieldData, check_place
 from ..base.journal import read_journal
 from ..base.seal import open_checked
 from ..core import catalog
@@ -254,10 +254,7 @@ class Result(States):
 
     @cached_property
     def failed_step(self):
-        try:
-            return FailedStep(self._base, self._id, self.label)
-        except FileNotFoundError:
-            return None
+        return FailedStep(self._base, self._id, self.label) if self._base.failed_step(self._id).exists() else None
 
     @cached_property
     def is_of_revolution(self):
@@ -275,11 +272,12 @@ class Result(States):
         """"RES, INST 0.5\""""
         return f"{self.label}, INST {self.instants[self.orders.index(order)]:g}"
 
+    @contextlib.contextmanager
     def _opened(self, name, order):
-        path = self._fields[name][order]
-        file = open_field(self._base.folder, path)
-        check_place(self._base.folder / path, file, name, order)
-        return file
+        path = self._base.folder / self._fields[name][order]
+        with open_checked(path) as file:
+            check_place(path, file, name, order)
+            yield file
 
     def _masters(self, order):
         path = contents.path_of_masters(self._base.folder / self._fields["CONT_ELEM"][order])
