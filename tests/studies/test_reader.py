@@ -1,5 +1,6 @@
 """A base as arrays and pictures: the reader behind `import lacon` and `lacon plot`."""
 
+import copy
 import os
 import pathlib
 import shutil
@@ -90,9 +91,30 @@ FIN()
         self.assertNotIn("--result", said)
 
     def test_several_results_are_named(self):
-        results = {"FIRST": self.result, "SECOND": self.result}
+        second = copy.copy(self.result)
+        second.id = "result_99"
+        results = {"FIRST": self.result, "SECOND": second}
         with unittest.mock.patch.object(Base, "results", results), self.assertRaisesRegex(AsterError, "READER_5.*has 2 results(.|\n)*FIRST, SECOND"):
             self.base.only_result()
+
+    def test_a_result_with_several_names_is_one(self):
+        """Under its first plain variable, for every tool; each of its names finds it."""
+        text = (self.folder / "study.comm").read_text().replace("DEBUT()\n", "DEBUT()\nL = []\n").replace("IMPR_RESU(", "L.append(RESULT)\nB = RESULT\nkept = {'of': CONTACT}\nIMPR_RESU(")
+        (self.folder / "names.comm").write_text(text)
+        self.run_lacon("names.comm", "--unit", "20=mesh.med", "--unit", "80=names.pvd")
+        base = open_base(self.folder / "names.base")
+        self.assertEqual(set(base.results), {"RESULT", "B", "L[0]"})
+        self.assertEqual([base.only_result(label).label for label in (None, "B", "L[0]")], ["RESULT", "B", "L[0]"])
+        self.assertIn("names.base: RESULT; not running", self.run_lacon("watch", "names.base").stdout)
+        self.assertIn("Pairing of RESULT at instant 1", self.run_lacon("inspect", "names.base").stdout)
+        for name in ("B", "L[0]"):
+            self.assertIn("at instant 1", self.run_lacon("inspect", "names.base", "--result", name).stdout)
+
+    def test_contacts_with_several_names_are_one(self):
+        text = (self.folder / "study.comm").read_text().partition("RESULT =")[0] + "keywords = {'CONTACT': CONTACT}\nFIN()\n"
+        (self.folder / "contact.comm").write_text(text)
+        self.run_lacon("contact.comm", "--unit", "20=mesh.med")
+        self.assertIn("Pairing of CONTACT on the initial geometry", self.run_lacon("inspect", "contact.base").stdout)
 
     def test_a_mesh_is_points_cells_and_groups(self):
         mesh = self.base["MESH"]

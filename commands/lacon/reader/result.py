@@ -96,7 +96,7 @@ class States:
 
     def _start(self, base, identifier, label, file):
         """@param file of the result or of the failed step, open"""
-        self._base, self._id, self.label = base, identifier, label
+        self._base, self.id, self.label = base, identifier, label
         self.parameters = contents.parameters(file)
         self.mesh_id = contents.reference(file, "mesh")
         self._contact_ids = contents.contacts(file)
@@ -108,12 +108,12 @@ class States:
     @cached_property
     def journal(self):
         """The iterations, a base.journal.Journal; None where they were not written down."""
-        return read_journal(self._base, self._id)
+        return read_journal(self._base, self.id)
 
     @property
     def commands(self):
         """[{"name", "text"}] of the command files that it was computed by."""
-        return command_files.known(self._base, self._id)
+        return command_files.known(self._base, self.id)
 
     @cached_property
     def zones(self):
@@ -254,7 +254,7 @@ class Result(States):
 
     @cached_property
     def failed_step(self):
-        return FailedStep(self._base, self._id, self.label) if self._base.failed_step(self._id).exists() else None
+        return FailedStep(self._base, self.id, self.label) if self._base.failed_step(self.id).exists() else None
 
     @cached_property
     def is_of_revolution(self):

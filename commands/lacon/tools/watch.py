@@ -75,8 +75,7 @@ def chosen(base):
     entry = base.registry.get("unfinished", {}).get(results[-1])
     if entry:
         return results[-1], entry["label"], entry["where"]
-    labels = {identifier: label for label, identifier in base.registry["labels"].items()}
-    return results[-1], labels.get(results[-1], ""), ""
+    return results[-1], base.label_of(results[-1]), ""
 
 
 def frame(base, running, width, height):
