@@ -180,6 +180,8 @@ FIN()
         def without_seal(content):  # whose root group is another one
             return content[:-32].replace(b"components", b"compoments").replace(b"values", b"valves").replace(b"cell", b"call")
 
+        other, masters = (next(self.base.folder.glob(name)).read_bytes() for name in ("load_*.h5", "result_*/CONT_ELEM_4.masters.h5"))
+
         def with_another_mark(content):
             return content[:-40] + bytes(byte ^ 1 for byte in content[-40:-24]) + content[-24:]
 
@@ -187,7 +189,10 @@ FIN()
                                            ("result_*/CONT_ELEM_4.masters.h5", lambda content: b"", "STUDY_7"),
                                            ("result_*/CONT_ELEM_4.masters.h5", lambda content: content[:len(content) // 2], "STUDY_7"),
                                            ("result_*/CONT_ELEM_4.masters.h5", without_seal, "BASE_5"), ("result_*/CONT_NOEU_4.h5", without_seal, "BASE_5"),
-                                           ("result_*/CONT_NOEU_4.h5", with_another_mark, "BASE_5")):
+                                           ("result_*/CONT_NOEU_4.h5", with_another_mark, "BASE_5"),
+                                           *((name, lambda content: other, "BASE_7") for name in ("mesh_2.h5", "result_*/DEPL_4.h5", "result_*/index.h5")),
+                                           *((name, lambda content: masters, "BASE_7") for name in ("contact_*.h5", "result_*/DEPL_4.h5")),
+                                           ("result_*/CONT_ELEM_4.masters.h5", lambda content: other, "BASE_7")):
             with self.subTest(pattern, expected=identifier), tempfile.TemporaryDirectory() as folder:
                 base = shutil.copytree(self.base.folder, pathlib.Path(folder) / "copy.base")
                 (path,) = base.glob(pattern)

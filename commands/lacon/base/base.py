@@ -15,7 +15,6 @@ import weakref
 
 from ..core.concepts import concepts_in, dumps, type_of
 from ..core.files import write_whole
-from ..core.hdf5 import text
 from ..core.late import h5py
 from ..core.messages import AsterError, NeedsRun, fail
 from . import contents, kept, seal
@@ -180,7 +179,7 @@ class Base:
         if identifier in self.unsolved:
             raise NeedsRun(*self.unsolved[identifier])
         file = seal.open_checked(self.path(identifier))
-        if (found := text(file.attrs.get("id", identifier))) != identifier:
+        if (found := contents.holds(file) or identifier) != identifier:
             file.close()
             fail("BASE_7", file=self.path(identifier), found=found, expected=identifier)
         return file

@@ -284,6 +284,8 @@ class Result(States):
         if not path.exists():
             return None
         with open_checked(path) as file:
+            if (found := contents.holds(file)) not in ("masters", ""):
+                fail("BASE_7", file=path, found=found, expected="masters")
             return contents.masters(file)
 
 
