@@ -10,7 +10,8 @@ sys.path.append(str(pathlib.Path(__file__).resolve().parents[1]))
 
 from lacon.base import contents  # noqa: E402
 from lacon.base.base import ReadBase  # noqa: E402
-from lacon.base.fields import FieldData, open_field  # noqa: E402
+from lacon.base.fields import FieldData  # noqa: E402
+from lacon.base.seal import open_checked  # noqa: E402
 
 
 def identifier_of(base, label):
@@ -41,7 +42,7 @@ class Result:
         self.points, self.cells, self.groups, self.patches = mesh.points, mesh.cells, mesh.groups, mesh.patches
 
     def _field(self, name, order):
-        with open_field(self.base.folder, contents.field_file(self.index, name, order)) as file:
+        with open_checked(self.base.folder / contents.field_file(self.index, name, order)) as file:
             return FieldData(file)
 
     def field(self, name, order):

@@ -2,6 +2,7 @@
 apart and a third one below the second: the covered fraction is 2.6 of 3, and the third couple is hidden."""
 
 import base64
+import json
 import pathlib
 import re
 import shutil
@@ -255,6 +256,15 @@ class Inspect(StudyTest):
         layers = ("pairs", "skins", "points", "rejected")
         self.assertEqual(set(content(folder / "look")), {"pairing.med", "pairing_of_mine.vtu", *(f"pairing_{name}.pvd" for name in layers),
                                                          *(f"pairing_{name}_0001.vtu" for name in layers)})
+
+    def test_inspect_takes_a_result_whose_run_was_killed(self):
+        """Its variable was never assigned: the contact was shown instead, before any instant, and --result refused it."""
+        path = shutil.copytree(self.study("D_PLAN").folder / "study.base", self.folder / "study.base") / "base.json"
+        registry = json.loads(path.read_text(encoding="utf-8"))
+        registry["unfinished"] = {registry["labels"].pop("RESU"): {"label": "RESU", "key": None, "at": None, "where": "study.comm:1"}}
+        path.write_text(json.dumps(registry), encoding="utf-8")
+        for arguments in ((), ("--result", "RESU")):
+            self.assertIn("Pairing of RESU at instant 1\n", self.inspect(self.folder, *arguments).stdout)
 
     def test_inspect_refuses_what_is_not_there(self):
         folder = self.study("D_PLAN").folder

@@ -135,6 +135,18 @@ class Journals(ProgressTest):
                       f"{last['active']} of {self.journal().patches} patches are in contact"):
             self.assertIn(words, shown.stdout)
 
+    def test_lines_that_are_none_of_a_journal_are_left_out(self):
+        self.run_tool("study.comm", "--unit", "20=mesh.med")
+        shown = self.run_tool("watch", "study.base").stdout
+        (path,) = self.folder.glob("study.base/*/journal.jsonl")
+        path.write_text('[]\nnull\n1\n"at"\n' + path.read_text() + "[" * 100000 + "\n{}\n{")
+        again = self.run_tool("watch", "study.base")
+        self.assertEqual((again.returncode, again.stdout), (0, shown), again.stderr)
+        path.unlink()
+        path.mkdir()
+        again = self.run_tool("watch", "study.base")
+        self.assertEqual((again.returncode, "<F> <READER_4> RESULT has no journal" in again.stderr), (2, True), again.stderr)
+
     def test_watch_follows_a_run_and_ends_with_it(self):
         run = subprocess.Popen([LACON, "study.comm", "--unit", "20=mesh.med"], cwd=self.folder, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
         while not (self.folder / "study.base/base.json").exists():

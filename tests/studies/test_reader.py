@@ -1,5 +1,6 @@
 """A base as arrays and pictures: the reader behind `import lacon` and `lacon plot`."""
 
+import copy
 import os
 import pathlib
 import shutil
@@ -19,6 +20,7 @@ import numpy as np  # noqa: E402
 import test_progress  # noqa: E402
 from lacon.core.messages import AsterError  # noqa: E402
 from lacon.reader.base import Base, open_base  # noqa: E402
+from lacon.report import study  # noqa: E402
 
 try:
     import meshio
@@ -89,9 +91,30 @@ FIN()
         self.assertNotIn("--result", said)
 
     def test_several_results_are_named(self):
-        results = {"FIRST": self.result, "SECOND": self.result}
+        second = copy.copy(self.result)
+        second.id = "result_99"
+        results = {"FIRST": self.result, "SECOND": second}
         with unittest.mock.patch.object(Base, "results", results), self.assertRaisesRegex(AsterError, "READER_5.*has 2 results(.|\n)*FIRST, SECOND"):
             self.base.only_result()
+
+    def test_a_result_with_several_names_is_one(self):
+        """Under its first plain variable, for every tool; each of its names finds it."""
+        text = (self.folder / "study.comm").read_text().replace("DEBUT()\n", "DEBUT()\nL = []\n").replace("IMPR_RESU(", "L.append(RESULT)\nB = RESULT\nkept = {'of': CONTACT}\nIMPR_RESU(")
+        (self.folder / "names.comm").write_text(text)
+        self.run_lacon("names.comm", "--unit", "20=mesh.med", "--unit", "80=names.pvd")
+        base = open_base(self.folder / "names.base")
+        self.assertEqual(set(base.results), {"RESULT", "B", "L[0]"})
+        self.assertEqual([base.only_result(label).label for label in (None, "B", "L[0]")], ["RESULT", "B", "L[0]"])
+        self.assertIn("names.base: RESULT; not running", self.run_lacon("watch", "names.base").stdout)
+        self.assertIn("Pairing of RESULT at instant 1", self.run_lacon("inspect", "names.base").stdout)
+        for name in ("B", "L[0]"):
+            self.assertIn("at instant 1", self.run_lacon("inspect", "names.base", "--result", name).stdout)
+
+    def test_contacts_with_several_names_are_one(self):
+        text = (self.folder / "study.comm").read_text().partition("RESULT =")[0] + "keywords = {'CONTACT': CONTACT}\nFIN()\n"
+        (self.folder / "contact.comm").write_text(text)
+        self.run_lacon("contact.comm", "--unit", "20=mesh.med")
+        self.assertIn("Pairing of CONTACT on the initial geometry", self.run_lacon("inspect", "contact.base").stdout)
 
     def test_a_mesh_is_points_cells_and_groups(self):
         mesh = self.base["MESH"]
@@ -151,6 +174,35 @@ FIN()
             spoilt[len(spoilt) // 2] ^= 1
             path.write_bytes(spoilt)
             self.refused("BASE_5", lambda: open_base(base)["RESULT"].contact().masters)
+
+    def test_files_that_are_missing_or_damaged_are_told_by_name(self):
+        """In whatever way: they ended in tracebacks of h5py, and a mesh that is gone as if Lacon were not installed whole."""
+        def without_seal(content):  # whose root group is another one
+            return content[:-32].replace(b"components", b"compoments").replace(b"values", b"valves").replace(b"cell", b"call")
+
+        other, masters = (next(self.base.folder.glob(name)).read_bytes() for name in ("load_*.h5", "result_*/CONT_ELEM_4.masters.h5"))
+
+        def with_another_mark(content):
+            return content[:-40] + bytes(byte ^ 1 for byte in content[-40:-24]) + content[-24:]
+
+        for pattern, spoil, identifier in (("mesh_2.h5", None, "STUDY_7"), ("mesh_2.h5", lambda content: b"", "STUDY_7"),
+                                           ("result_*/CONT_ELEM_4.masters.h5", lambda content: b"", "STUDY_7"),
+                                           ("result_*/CONT_ELEM_4.masters.h5", lambda content: content[:len(content) // 2], "STUDY_7"),
+                                           ("result_*/CONT_ELEM_4.masters.h5", without_seal, "BASE_5"), ("result_*/CONT_NOEU_4.h5", without_seal, "BASE_5"),
+                                           ("result_*/CONT_NOEU_4.h5", with_another_mark, "BASE_5"),
+                                           *((name, lambda content: other, "BASE_7") for name in ("mesh_2.h5", "result_*/DEPL_4.h5", "result_*/index.h5")),
+                                           *((name, lambda content: masters, "BASE_7") for name in ("contact_*.h5", "result_*/DEPL_4.h5")),
+                                           ("result_*/CONT_ELEM_4.masters.h5", lambda content: other, "BASE_7")):
+            with self.subTest(pattern, expected=identifier), tempfile.TemporaryDirectory() as folder:
+                base = shutil.copytree(self.base.folder, pathlib.Path(folder) / "copy.base")
+                (path,) = base.glob(pattern)
+                content = path.read_bytes()
+                path.unlink()
+                if spoil:
+                    path.write_bytes(spoil(content))
+                with self.assertRaisesRegex(AsterError, f"<F> <{identifier}> .*{path.name}"):
+                    shown = open_base(base)
+                    study.make(shown, shown.only_result())
 
     @unittest.skipUnless(meshio, "no meshio")
     def test_meshio_gets_what_it_reads_from_our_own_files(self):

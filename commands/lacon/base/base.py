@@ -15,7 +15,6 @@ import weakref
 
 from ..core.concepts import concepts_in, dumps, type_of
 from ..core.files import write_whole
-from ..core.hdf5 import text
 from ..core.late import h5py
 from ..core.messages import AsterError, NeedsRun, fail
 from . import contents, kept, seal
@@ -179,11 +178,8 @@ class Base:
     def open(self, identifier):
         if identifier in self.unsolved:
             raise NeedsRun(*self.unsolved[identifier])
-        try:
-            file = seal.open_checked(self.path(identifier))
-        except OSError as error:
-            fail("STUDY_7", file=self.path(identifier), reason=error)
-        if (found := text(file.attrs.get("id", identifier))) != identifier:
+        file = seal.open_checked(self.path(identifier))
+        if (found := contents.holds(file) or identifier) != identifier:
             file.close()
             fail("BASE_7", file=self.path(identifier), found=found, expected=identifier)
         return file
@@ -346,10 +342,27 @@ class ReadBase(Base):
         holder = self._holder()
         return holder if holder and _is_alive(holder["process"]) else None
 
+    def labels(self, kind):
+        """label -> id, of the concepts of a type that are there, results in progress among them; plain variables first, then elements of lists."""
+        labels = {**self.registry["labels"], **self.unfinished.labels()}
+        return {label: labels[label] for label in sorted(labels, key=lambda label: not label.isidentifier())
+                if type_of(labels[label]) == kind and self.path(labels[label]).exists()}
+
     def labelled(self, kind):
-        """label -> concept, of the concepts of a type that are there."""
-        return {label: self.concept(identifier, label) for label, identifier in self.registry["labels"].items()
-                if type_of(identifier) == kind and self.path(identifier).exists()}
+        """label -> concept, likewise; one of several labels has the first one."""
+        return {label: self.concept(identifier, label) for label, identifier in self.labels(kind).items()}
+
+    def label_of(self, identifier):
+        """The first label of a concept, empty where it has none."""
+        return next((label for label, known in self.labels(type_of(identifier)).items() if known == identifier), "")
+
+
+def once(labelled):
+    """Of label -> thing each one under its first label alone. A thing is the same where its id is."""
+    found = {}
+    for label, thing in labelled.items():
+        found.setdefault(thing.id, (label, thing))
+    return dict(found.values())
 
 
 def look_into(folder, where):

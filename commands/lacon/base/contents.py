@@ -8,6 +8,12 @@ import json
 from ..core.hdf5 import ragged, text, texts
 from ..core.late import numpy
 
+
+def holds(file):
+    """What a file of a base says that it is: the id of a concept, of other files their type; empty where it says neither."""
+    return text(file.attrs.get("id", file.attrs.get("lacon_type", "")))
+
+
 # ---------------------------------------------------------------------------------------------------- mesh
 
 

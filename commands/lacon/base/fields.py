@@ -4,7 +4,7 @@ from ..core.catalog import part
 from ..core.hdf5 import text, texts
 from ..core.late import numpy
 from ..core.messages import fail
-from . import seal
+from . import contents
 
 
 class FieldData:
@@ -60,15 +60,8 @@ class FieldData:
 
 def check_place(path, file, name, order):
     """@throws AsterError BASE_7 where the file is that of another field, or of another order number"""
-    found = text(file.attrs["name"]), int(file.attrs["order"])
-    if found != (name, order):
-        said = [part("field_of_order", field=field, order=number) for field, number in (found, (name, order))]
-        fail("BASE_7", file=path, found=said[0], expected=said[1])
-
-
-def open_field(folder, path):
-    """A field's file, `path` relative to the base. @throws AsterError STUDY_7"""
-    try:
-        return seal.open_checked(folder / path)
-    except OSError as error:
-        fail("STUDY_7", file=folder / path, reason=error)
+    expected = part("field_of_order", field=name, order=order)
+    is_field = "name" in file.attrs and "order" in file.attrs
+    found = part("field_of_order", field=text(file.attrs["name"]), order=int(file.attrs["order"])) if is_field else contents.holds(file)
+    if found != expected:
+        fail("BASE_7", file=path, found=found, expected=expected)

@@ -32,8 +32,8 @@ class Journal:
         for line in lines:
             try:
                 self._take(json.loads(line))
-            except (ValueError, KeyError, TypeError, IndexError):
-                pass  # empty, or cut off where a process was killed
+            except (ValueError, KeyError, TypeError, IndexError, AttributeError, RecursionError):
+                pass  # empty, cut off where a process was killed, or none of a journal
 
     def _take(self, row):
         self.now = row.get("at", 0.0)

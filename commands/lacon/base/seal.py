@@ -1,5 +1,6 @@
 """Seals of the files of a base, docs/structures.md section 1: what `structures/seal.cpp` is for operators."""
 
+import functools
 import struct
 
 from ..core.hdf5 import text
@@ -10,6 +11,9 @@ _newest = {"result": 2}  #: format of the files of a base that is written, and r
 _mark = b"LACONSUM"
 _length = 32
 _part = 1 << 23  #: bytes at a time
+
+#: what reading a file throws that is not laid out as it should be
+_damage = (OSError, KeyError, ValueError, TypeError, IndexError, AttributeError, RuntimeError)
 
 _known = {}  #: path -> the state of the file that was looked at last
 
@@ -38,14 +42,32 @@ def of(content):
 
 
 def open_checked(path):
-    """An h5py.File to be read, whose content is that of its seal. @throws AsterError BASE_5, BASE_6, OSError"""
+    """An h5py.File to be read, whose content is that of its seal. @throws AsterError BASE_5, BASE_6, STUDY_7"""
+    try:
+        opened = (h5py.File if _is_sealed(path) else _unsealed())(path, "r")
+    except OSError as error:
+        fail("STUDY_7", file=path, reason=error)
+    try:
+        written, newest = int(opened.attrs.get("format", 1)), _newest.get(text(opened.attrs.get("lacon_type", "")), 1)
+    except _damage:
+        opened.close()
+        fail("BASE_5", file=path)
+    if not 1 <= written <= newest:
+        opened.close()
+        fail("BASE_6", file=path, format=written, known=newest)
+    return opened
+
+
+def _is_sealed(path):
+    """Whether a file has a seal. @throws AsterError BASE_5 where its content is another one, OSError"""
     with open(path, "rb") as file:
         length = file.seek(0, 2) - _length
         file.seek(max(length, 0))
         found = file.read()
         about = path.stat()
         state = about.st_ino, about.st_size, about.st_mtime_ns
-        if found.startswith(_mark) and _known.get(path) != state:
+        sealed = found.startswith(_mark) or found[8:16] == struct.pack("<Q", max(length, 0))  # the mark itself may be damaged
+        if sealed and _known.get(path) != state:
             sums = _Sums()
             file.seek(0)
             for first in range(0, length, _part):
@@ -53,9 +75,18 @@ def open_checked(path):
             if found != sums.seal(length):
                 fail("BASE_5", file=path)
             _known[path] = state
-    opened = h5py.File(path, "r")
-    newest = _newest.get(text(opened.attrs.get("lacon_type", "")), 1)
-    if not 1 <= (written := int(opened.attrs.get("format", 1))) <= newest:
-        opened.close()
-        fail("BASE_6", file=path, format=written, known=newest)
-    return opened
+    return sealed
+
+
+@functools.cache
+def _unsealed():
+    class Unsealed(h5py.File):
+        """A file without seal: `with` tells what reading it throws as damage."""
+
+        def __exit__(self, kind, error, trace):
+            path = self.filename
+            super().__exit__(kind, error, trace)
+            if isinstance(error, _damage):
+                fail("BASE_5", file=path)
+
+    return Unsealed

@@ -1,6 +1,7 @@
 """Fields as a command file sees them."""
 
-from ..base.fields import FieldData, check_place, open_field
+from ..base.fields import FieldData, check_place
+from ..base.seal import open_checked
 from ..core import current
 from ..core.concepts import Concept
 from ..core.late import numpy
@@ -61,7 +62,7 @@ class Field(Arithmetic, FieldData):
 
     def __init__(self, base, path, origin=None):
         """@param path of its file, relative to the base  @param origin of a field of a result: (result, its name there, order number)"""
-        with open_field(base.folder, path) as file:
+        with open_checked(base.folder / path) as file:
             super().__init__(file)
             if origin:
                 check_place(base.folder / path, file, *origin[1:])

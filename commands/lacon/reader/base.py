@@ -2,9 +2,8 @@
 
 import pathlib
 
-from ..base.base import look_into
+from ..base.base import look_into, once
 from ..core.catalog import part
-from ..core.concepts import type_of
 from ..core.messages import fail
 from .mesh import Mesh
 from .result import FailedStep, Result
@@ -24,8 +23,7 @@ class Base:
 
     def _labels(self, kind):
         base = self._registered()
-        labels = {**base.registry["labels"], **base.unfinished.labels()}
-        return base, {label: i for label, i in labels.items() if type_of(i) == kind and base.path(i).exists()}
+        return base, base.labels(kind)
 
     @property
     def running(self):
@@ -66,7 +64,7 @@ class Base:
         if label:
             return self[label]
         found = self.results
-        results = {**{name: result for name, result in found.items() if "DEPL" in result.fields}, **self.failed_steps} or found
+        results = once({**{name: result for name, result in found.items() if "DEPL" in result.fields}, **self.failed_steps} or found)
         if not results:
             fail("READER_8", "lacon", folder=self.folder, reason=part("no_result_yet" if self.running else "no_result_left"))
         if len(results) > 1:
@@ -78,7 +76,8 @@ class Base:
 
     def _mesh(self, base, identifier, label):
         """The same object as long as the file is the same."""
-        state = identifier, base.path(identifier).stat().st_mtime_ns
+        path = base.path(identifier)
+        state = identifier, path.stat().st_mtime_ns if path.exists() else 0  # to open one that is gone says so
         if state not in self._meshes:
             self._meshes[state] = Mesh(lambda: base.open(identifier), label)
         return self._meshes[state]
@@ -95,8 +94,7 @@ class _Files:
         return self._base.path(states.mesh_id).exists()
 
     def mesh_of(self, identifier):
-        labels = {i: label for label, i in self._base.registry["labels"].items()}
-        return self._shown._mesh(self._base, identifier, labels.get(identifier, identifier))
+        return self._shown._mesh(self._base, identifier, self._base.label_of(identifier) or identifier)
 
 
 def open_base(folder):

@@ -4,7 +4,7 @@ import contextlib
 from functools import cached_property
 
 from ..base import command_files, contents
-from ..base.fields import FieldData, check_place, open_field
+from ..base.fields import FieldData, check_place
 from ..base.journal import read_journal
 from ..base.seal import open_checked
 from ..core import catalog
@@ -96,7 +96,7 @@ class States:
 
     def _start(self, base, identifier, label, file):
         """@param file of the result or of the failed step, open"""
-        self._base, self._id, self.label = base, identifier, label
+        self._base, self.id, self.label = base, identifier, label
         self.parameters = contents.parameters(file)
         self.mesh_id = contents.reference(file, "mesh")
         self._contact_ids = contents.contacts(file)
@@ -108,12 +108,12 @@ class States:
     @cached_property
     def journal(self):
         """The iterations, a base.journal.Journal; None where they were not written down."""
-        return read_journal(self._base, self._id)
+        return read_journal(self._base, self.id)
 
     @property
     def commands(self):
         """[{"name", "text"}] of the command files that it was computed by."""
-        return command_files.known(self._base, self._id)
+        return command_files.known(self._base, self.id)
 
     @cached_property
     def zones(self):
@@ -254,10 +254,7 @@ class Result(States):
 
     @cached_property
     def failed_step(self):
-        try:
-            return FailedStep(self._base, self._id, self.label)
-        except FileNotFoundError:
-            return None
+        return FailedStep(self._base, self.id, self.label) if self._base.failed_step(self.id).exists() else None
 
     @cached_property
     def is_of_revolution(self):
@@ -275,17 +272,20 @@ class Result(States):
         """"RES, INST 0.5\""""
         return f"{self.label}, INST {self.instants[self.orders.index(order)]:g}"
 
+    @contextlib.contextmanager
     def _opened(self, name, order):
-        path = self._fields[name][order]
-        file = open_field(self._base.folder, path)
-        check_place(self._base.folder / path, file, name, order)
-        return file
+        path = self._base.folder / self._fields[name][order]
+        with open_checked(path) as file:
+            check_place(path, file, name, order)
+            yield file
 
     def _masters(self, order):
         path = contents.path_of_masters(self._base.folder / self._fields["CONT_ELEM"][order])
         if not path.exists():
             return None
         with open_checked(path) as file:
+            if (found := contents.holds(file)) not in ("masters", ""):
+                fail("BASE_7", file=path, found=found, expected="masters")
             return contents.masters(file)
 
 

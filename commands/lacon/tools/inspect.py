@@ -12,7 +12,7 @@ import sys
 import tempfile
 
 from ..base import contents
-from ..base.base import ReadBase
+from ..base.base import ReadBase, once
 from ..core import catalog, checker, plugins
 from ..core.command_line import CommandLine
 from ..core.concepts import to_json
@@ -62,9 +62,9 @@ def choose(shelf, label):
         if label not in known:
             fail("INSPECT_1", f"lacon inspect --result {label}", label=label, known=", ".join(known))
         return known[label]
-    candidates = results or contacts
+    candidates = once(results or contacts)
     if len(candidates) != 1:
-        fail("INSPECT_2", "lacon inspect", count=len(candidates), known=", ".join(known))
+        fail("INSPECT_2", "lacon inspect", count=len(candidates), known=", ".join(once(known)))
     return next(iter(candidates.values()))
 
 

@@ -75,8 +75,7 @@ def chosen(base):
     entry = base.registry.get("unfinished", {}).get(results[-1])
     if entry:
         return results[-1], entry["label"], entry["where"]
-    labels = {identifier: label for label, identifier in base.registry["labels"].items()}
-    return results[-1], labels.get(results[-1], ""), ""
+    return results[-1], base.label_of(results[-1]), ""
 
 
 def frame(base, running, width, height):
@@ -89,6 +88,8 @@ def frame(base, running, width, height):
         return [f"{base.folder.name}: {state}", "", part("no_iteration_yet")]
     identifier, label, where = computation
     journal = read_journal(base, identifier)
+    if journal is None:  # it cannot be read
+        fail("READER_4", "lacon watch", label=label or identifier)
     lines = [f"{base.folder.name}: {label or identifier}{', ' + where if where else ''}; {state}", progress(journal, running), ""]
     rows = max((height - len(lines) - 6) // (3 if journal.patches else 1), 3)
     shown = journal.iterations()[-columns_of(width):]
@@ -138,13 +139,13 @@ def residuals(journal, shown, width, rows):
     kinds = {"rela": "RESI_GLOB_RELA", "refe": "RESI_REFE_RELA", "maxi": "RESI_GLOB_MAXI"}
     kind = next((name for name in kinds if journal.limits.get(name) is not None), "maxi")
     values = [line[kind] for _, line in shown]
-    limit = journal.limits.get(kind)
-    known = [v for v in [*values, limit or 0.0] if math.isfinite(v) and v > 0.0] or [1.0]
+    limit = max(journal.limits.get(kind) or 0.0, 0.0)  # no other one is on a logarithmic scale
+    known = [v for v in [*values, limit] if math.isfinite(v) and v > 0.0] or [1.0]
     lower, upper = (10.0 ** edge(math.log10(pick(known))) for edge, pick in ((math.floor, min), (math.ceil, max)))
     last = part("now_value", value=f"{values[-1]:.2e}") if values else ""
     title = f"{kinds[kind]}{last}" + (part("asked_dashed", limit=f"{limit:.0e}") if limit else "")
     drawn, marks = curves(shown, width, kind)
-    return [" " * 11 + title, *chart(drawn, width, rows, lower, max(upper, 10.0 * lower), log=True, level=limit, marks=marks)]
+    return [" " * 11 + title, *chart(drawn, width, rows, lower, max(upper, 10.0 * lower), log=True, level=limit or None, marks=marks)]
 
 
 def statuses(journal, shown, width, rows):

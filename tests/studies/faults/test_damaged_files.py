@@ -70,6 +70,19 @@ class Short(Damaged):
             self.assertEqual(run.returncode, 2, run.stdout + run.stderr)
             self.assertRegex(run.stderr, r"<F> <(BASE_5|STUDY_7)> .*DEPL_3.h5")
 
+    def test_an_earlier_version_of_a_result_is_told_too(self):
+        """POURSUITE looks which field files it names."""
+        (self.folder / "more.comm").write_text("POURSUITE()\nFIN()\n", encoding="utf-8")
+        kept = next(self.base.glob("kept/result_*.0.h5"))
+        sound = kept.read_bytes()
+        kept.unlink()  # it may be a second name of the index
+        for spoilt in (b"", b"junk" * 100, sound[:len(sound) // 2], sound[:600] + b"\xff" * 8 + sound[608:]):
+            kept.write_bytes(spoilt)
+            run = self.run_tool("more.comm", "--base", self.base)
+            self.assertEqual(run.returncode, 2, run.stdout + run.stderr)
+            self.assertRegex(run.stderr, rf"<F> <(BASE_5|STUDY_7)> .*kept/{kept.name}")
+            self.assertNotIn("Traceback", run.stderr)
+
     def test_a_file_in_the_place_of_another_is_told(self):
         """Sound and sealed, but of another concept, field or instant: a mesh that was not cut yet ended in an internal error, other loads and other
         instants' contact in numbers that were wrong."""
