@@ -65,7 +65,8 @@ struct MovingFacet {
   }
 };
 
-/// The parts of a cell, of the corners and middles of its sides. @param shift  what masters have moved by in the mean
+/// The parts of a cell, of the corners and middles of its sides; those of no area are passed by nothing. @param shift  what
+/// masters have moved by in the mean
 std::vector<MovingFacet> facets_of(const Mesh& mesh, std::int32_t cell, std::span<const double> rest,
                                    std::span<const double> now, Vec3 shift) {
   const auto nodes = mesh.cells[cell];
@@ -76,7 +77,6 @@ std::vector<MovingFacet> facets_of(const Mesh& mesh, std::int32_t cell, std::spa
     around.push_back(i);
     if (row.order > 1 && (mesh.dimension == 3 || i == 0)) around.push_back(n + i);
   }
-  if (mesh.dimension == 2 && row.order > 1) std::swap(around[1], around[2]), around = {0, 2, 1};
   const Vec3 outward = facing(mesh, cell, rest).normal;
   const double extent = mesh.dimension == 2 ? cell_extent(mesh, cell) : std::sqrt(cell_extent(mesh, cell));
   std::vector<MovingFacet> parts;
