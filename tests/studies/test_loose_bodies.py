@@ -48,13 +48,15 @@ FIXED = '_F(GROUP_MA="BASE", DX=0.0, DY=0.0),'
 
 
 class LooseBodies(StudyTest):
-    def solve(self, mesh, spring, pressure, held="", more=""):
-        """@return (displacement of the highest node, force on the base, what was said)"""
+    def solve(self, mesh, spring, pressure, held="", more="", status=0):
+        """@return (displacement of the highest node, force on the base, what was said), of a run that stops what was said alone"""
         write_med(self.folder / "mesh.med", mesh)
         study = self.folder / "study.comm"
         study.write_text(STUDY.format(spring=spring, pressure=pressure, held=FIXED + held, more=more), encoding="utf-8")
         run = self.run_lacon(study, "--unit", "20=mesh.med", "--fresh")
-        self.assertEqual(run.status, 0, run.stdout[-2000:] + run.stderr)
+        self.assertEqual(run.status, status, run.stdout[-2000:] + run.stderr)
+        if status:
+            return None, None, run.stdout + run.stderr
         result = Result(self.folder / "study.base", "RESULT")
         moved = result.at_nodes("DEPL", result.orders[-1], "DY")
         forces = result.at_nodes("REAC_NODA", result.orders[-1], "DY")
@@ -88,10 +90,15 @@ class LooseBodies(StudyTest):
             self.assertLessEqual(int(re.search(r"Converged at the instant 1 with (\d+) iteration", said)[1]), 4)
 
     def test_bodies_that_a_step_flings_apart_are_told(self):
-        """Pushed along the other body by thousands of metres, which weak springs allow; stiff ones leave nothing to tell."""
+        """Pushed away from the other body by thousands of metres, which weak springs allow; stiff ones leave nothing to tell."""
         for spring, told in ((1e-3, 1), (1e3, 0)):
-            _, _, said = self.solve(self.rocker(20, 0.0), spring, 0.0, more=', FORCE_CONTOUR=_F(GROUP_MA="TOP", FX=100.0)')
+            _, _, said = self.solve(self.rocker(20, 0.0), spring, 0.0, more=', FORCE_CONTOUR=_F(GROUP_MA="TOP", FX=100.0, FY=200.0)')
             self.assertEqual(said.count("<EVOLUTION_66>"), told)
+
+    def test_a_body_that_a_step_flings_through_the_other_stops(self):
+        """Pushed along it at the top: it tips, and weak springs let it swing through the slab."""
+        _, _, said = self.solve(self.rocker(20, 0.0), 1e-3, 0.0, more=', FORCE_CONTOUR=_F(GROUP_MA="TOP", FX=100.0)', status=3)
+        self.assertIn("<EVOLUTION_63>", said)
 
     def test_loads_near_round_off_are_told(self):
         """Statuses are not told apart below 1e-14 of the coordinates times the stiffness; the same in proportion is right at a larger load."""
