@@ -143,12 +143,7 @@ void check_outside(const Model& model, const SkinSides& sides, std::span<const s
   for (const std::int32_t cell : cells) {
     std::vector<BodyCell> bodies = sides.bodies(cell);
     std::erase_if(bodies, [&](const BodyCell& body) { return model.element[static_cast<std::size_t>(body.cell)] < 0; });
-    if (bodies.size() > 1)
-      fail("DECOUPE_3", {{"keyword", keyword},
-                         {"group", group},
-                         {"cell", cell_name(cell)},
-                         {"first", cell_name(bodies[0].cell)},
-                         {"second", cell_name(bodies[1].cell)}});
+    refuse_inner(bodies, cell, keyword, group);
   }
 }
 

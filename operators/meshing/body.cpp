@@ -109,6 +109,16 @@ std::vector<std::int32_t> mirrored(CellType type, std::span<const std::int32_t> 
   return turned;
 }
 
+void refuse_inner(std::span<const BodyCell> bodies, std::int32_t skin_cell, const std::string& keyword,
+                  const std::string& group) {
+  if (bodies.size() > 1)
+    fail("DECOUPE_3", {{"keyword", keyword},
+                       {"group", group},
+                       {"cell", cell_name(skin_cell)},
+                       {"first", cell_name(bodies[0].cell)},
+                       {"second", cell_name(bodies[1].cell)}});
+}
+
 void refuse_cut_mesh(const Mesh& mesh, std::string_view what, std::string_view label) {
   if (mesh.patches) fail("MESH1_12", {{"what", std::string(what)}, {"mesh", label.empty() ? mesh.name : std::string(label)}});
 }

@@ -2,6 +2,8 @@
 // Which body cell a skin cell belongs to, and from which side it is seen.
 #include <bit>
 #include <optional>
+#include <span>
+#include <string>
 #include <vector>
 
 #include "lacon/structures/mesh.hpp"
@@ -61,6 +63,10 @@ struct BodyCell {
 
 /// Every cell of one dimension more that has the skin cell as a facet, by number.
 std::vector<BodyCell> body_cells(const Mesh& mesh, const NodeCells& around, std::size_t skin_cell);
+
+/// Refuse a skin cell between two body cells: DECOUPE_3. @param bodies those that have it as a facet
+void refuse_inner(std::span<const BodyCell> bodies, std::int32_t skin_cell, const std::string& keyword,
+                  const std::string& group);
 
 /// The nodes of a cell in the order of the same cell turned inside out.
 std::vector<std::int32_t> mirrored(CellType type, std::span<const std::int32_t> nodes);

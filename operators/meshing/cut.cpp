@@ -206,12 +206,7 @@ std::vector<Slave> find_slaves(const Mesh& mesh, std::span<const std::string> gr
       if (bodies.empty())
         fail("MESH1_2",
              {{"keyword", keyword}, {"group", group}, {"cell", cell_name(cell)}, {"type", std::string(mesh.row(c).name)}});
-      if (bodies.size() > 1)
-        fail("DECOUPE_3", {{"keyword", keyword},
-                           {"group", group},
-                           {"cell", cell_name(cell)},
-                           {"first", cell_name(bodies[0].cell)},
-                           {"second", cell_name(bodies[1].cell)}});
+      refuse_inner(bodies, cell, keyword, group);
       const BodyCell& body = bodies[0];
       if (const auto [at, fresh] = slave_of.emplace(std::int64_t{body.cell} * max_facets + body.match.facet, cell); !fresh)
         fail("DECOUPE_5", {{"keyword", keyword},
