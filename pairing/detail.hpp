@@ -48,8 +48,9 @@ struct CoupleSize {
 /// Of cells of one body: how far, along the normal of the slave, the master lay behind it when they were at rest (their
 /// middles); of cells of two bodies 0.
 double behind_at_rest(const Surface& slave, std::size_t slave_cell, const Surface& master, std::size_t master_cell);
-/// Whether PairingOptions::left_out has a couple.
-bool is_left_out(const PairingOptions& options, std::size_t slave_cell, std::size_t master_cell);
+/// Why PairingOptions leave a couple out, if they do.
+std::optional<Rejection> left_out(const PairingOptions& options, const Surface& slave, std::size_t slave_cell,
+                                  const Surface& master, std::size_t master_cell);
 /// Whether no gap up to this one is beyond a limit of `options`.
 bool within_limits(const PairingOptions& options, double largest_gap, const CoupleSize& couple);
 /// Which limit a gap in the middle of what a couple has in common is beyond. @param moved give_way()

@@ -11,16 +11,6 @@ namespace {
 
 constexpr double goes_on = 0.5;  // cosine of the angle between two cells that are one face
 
-/// Of the first vertices of a cell, unit; zero for a degenerate cell.
-Vec3 normal_of(const Surface& skin, std::size_t cell) {
-  const auto at = [&](std::size_t i) {
-    return vector_at(skin.coordinates.data() + 3 * static_cast<std::size_t>(skin.nodes[cell][i]));
-  };
-  const Vec3 along = at(1) - at(0), normal = skin.dimension == 2 ? Vec3{along.y, -along.x, 0} : cross(along, at(2) - at(0));
-  const double size = norm(normal);
-  return size > 0 ? normal / size : Vec3{};
-}
-
 }  // namespace
 
 std::vector<std::uint8_t> free_ends(const Surface& skin) {
@@ -37,9 +27,10 @@ std::vector<std::uint8_t> free_ends(const Surface& skin) {
       cells_at[std::minmax(first, second)].push_back({cell, i});
     }
   }
+  const auto normal = [&](std::size_t cell) { return normal_of(skin.types[cell], skin.nodes[cell], skin.coordinates); };
   std::vector<std::uint8_t> ends(skin.size(), 0);
   for (const auto& [nodes, around] : cells_at)
-    if (around.size() != 2 || dot(normal_of(skin, around[0].cell), normal_of(skin, around[1].cell)) < goes_on)
+    if (around.size() != 2 || dot(normal(around[0].cell), normal(around[1].cell)) < goes_on)
       for (const End& end : around) ends[end.cell] |= static_cast<std::uint8_t>(1U << end.number);
   return ends;
 }

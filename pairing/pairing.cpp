@@ -82,14 +82,17 @@ double give_way(const PairingOptions& options, const Surface& slave, std::size_t
 
 namespace {
 
-Vec3 node_at_rest(const Surface& skin, std::size_t cell, std::size_t node) {
-  return vector_at((skin.rest.empty() ? skin.coordinates : skin.rest).data() + 3 * std::ptrdiff_t{skin.nodes[cell][node]});
+std::span<const double> rest_of(const Surface& skin) { return skin.rest.empty() ? skin.coordinates : skin.rest; }
+
+Vec3 normal_at_rest(const Surface& skin, std::size_t cell) {
+  return normal_of(skin.types[cell], skin.nodes[cell], rest_of(skin));
 }
 
 /// The mean of the nodes of a cell.
 Vec3 middle_at_rest(const Surface& skin, std::size_t cell) {
   Vec3 sum{};
-  for (std::size_t i = 0; i < skin.nodes[cell].size(); ++i) sum = sum + node_at_rest(skin, cell, i);
+  for (const std::int32_t node : skin.nodes[cell])
+    sum = sum + vector_at(rest_of(skin).data() + 3 * static_cast<std::size_t>(node));
   return sum / static_cast<double>(skin.nodes[cell].size());
 }
 
@@ -100,11 +103,8 @@ double behind_at_rest(const Surface& slave, std::size_t slave_cell, const Surfac
     return skin.body[static_cast<std::size_t>(skin.nodes[cell][0])];
   };
   if (slave.body.empty() || master.body.empty() || body(slave, slave_cell) != body(master, master_cell)) return 0;
-  const Vec3 first = node_at_rest(slave, slave_cell, 0), along = node_at_rest(slave, slave_cell, 1) - first;
-  const Vec3 normal =
-      slave.dimension == 2 ? Vec3{along.y, -along.x, 0} : cross(along, node_at_rest(slave, slave_cell, 2) - first);
-  const double size = norm(normal);
-  return size > 0 ? dot(normal, middle_at_rest(slave, slave_cell) - middle_at_rest(master, master_cell)) / size : 0;
+  const Vec3 normal = normal_at_rest(slave, slave_cell);
+  return dot(normal, middle_at_rest(slave, slave_cell) - middle_at_rest(master, master_cell));
 }
 
 namespace {
@@ -125,9 +125,13 @@ double deepest_in_itself(const PairingOptions& options, const CoupleSize& couple
 
 }  // namespace
 
-bool is_left_out(const PairingOptions& options, std::size_t slave_cell, std::size_t master_cell) {
+std::optional<Rejection> left_out(const PairingOptions& options, const Surface& slave, std::size_t slave_cell,
+                                  const Surface& master, std::size_t master_cell) {
   const Couple couple{static_cast<std::int32_t>(slave_cell), static_cast<std::int32_t>(master_cell)};
-  return std::ranges::binary_search(options.left_out, couple);
+  if (std::ranges::binary_search(options.left_out, couple)) return Rejection::far_behind;
+  if (options.no_walls.empty() || options.no_walls[slave_cell] == 0) return std::nullopt;
+  const double cosine = -dot(normal_at_rest(slave, slave_cell), normal_at_rest(master, master_cell));
+  return cosine < wall_cosine ? std::optional(Rejection::wall) : std::nullopt;
 }
 
 bool within_limits(const PairingOptions& options, double largest_gap, const CoupleSize& couple) {
@@ -200,14 +204,19 @@ bool comes_before(const Surface& masters, const Candidate& one, const Candidate&
 
 }  // namespace detail
 
+bool is_left_out(const PairingOptions& options, const Surface& slave, std::size_t slave_cell, const Surface& master,
+                 std::size_t master_cell) {
+  return detail::left_out(options, slave, slave_cell, master, master_cell).has_value();
+}
+
 double steep_cosine(const PairingOptions& options) {
   return options.steep_angle < 90 ? std::cos(options.steep_angle * std::numbers::pi / 180) : 0;
 }
 
 std::string_view rejection_name(Rejection rejection) {
-  static constexpr std::string_view names[n_rejections] = {"facing away",       "hidden",     "sliver",    "degenerate slave",
-                                                           "degenerate master", "no image",   "too far",   "too steep",
-                                                           "too deep",          "other side", "far behind"};
+  static constexpr std::string_view names[n_rejections] = {"facing away",       "hidden",     "sliver",     "degenerate slave",
+                                                           "degenerate master", "no image",   "too far",    "too steep",
+                                                           "too deep",          "other side", "far behind", "wall"};
   return names[static_cast<std::size_t>(rejection)];
 }
 

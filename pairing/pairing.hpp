@@ -60,6 +60,9 @@ struct PolygonTrace {
   std::vector<Point> point;
 };
 
+/// Between the normal of a slave and the opposite of a master's: less is a wall.
+inline constexpr double wall_cosine = 0.5;
+
 /// A slave cell and a master cell, by their numbers in the two surfaces.
 struct Couple {
   std::int32_t slave, master;
@@ -82,6 +85,9 @@ struct PairingOptions {
   double own_depth_limit = 0.25;
   /// Couples that give no contact cell, sorted: masters that lie far behind others of the same patch. The caller owns them.
   std::span<const Couple> left_out = {};
+  /// Of each slave cell: 1 where it gets no contact cell with walls, masters that it faces by less than `wall_cosine` at rest
+  /// (Surface::rest); empty: walls count like all others. The caller owns it.
+  std::span<const std::uint8_t> no_walls = {};
   /// Angle between the slave's normal and the opposite of the master's, in degrees, from which on a couple counts less and less
   /// (steepness.hpp); 90: none does.
   double steep_angle = 85;
@@ -93,6 +99,10 @@ struct PairingOptions {
   double fading = 0;
   bool traced = false;  ///< in space: give the traces too. Flat slaves are then cut as those that are nearly flat
 };
+
+/// Whether PairingOptions leave a couple out, by name or as a wall.
+bool is_left_out(const PairingOptions& options, const Surface& slave, std::size_t slave_cell, const Surface& master,
+                 std::size_t master_cell);
 
 /// The cosine of `steep_angle`, exactly 0 for 90 degrees.
 double steep_cosine(const PairingOptions& options);
@@ -109,9 +119,10 @@ enum class Rejection : std::uint8_t {
   too_steep,          ///< its share is nothing: PairingOptions::steep_angle
   too_deep,           ///< an overlap beyond that, or beyond PairingOptions::depth_limit
   other_side,         ///< an overlap beyond PairingOptions::own_depth_limit
-  far_behind          ///< PairingOptions::left_out
+  far_behind,         ///< PairingOptions::left_out
+  wall                ///< PairingOptions::no_walls
 };
-inline constexpr int n_rejections = 11;
+inline constexpr int n_rejections = 12;
 std::string_view rejection_name(Rejection rejection);
 
 /// A couple that pairing gave up, or a part of it. A degenerate cell stands alone: the other one is -1.

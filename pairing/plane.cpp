@@ -372,8 +372,8 @@ class PairerInPlane final : public detail::CellPairer {
             };
             if (!(share(e, m) > tolerances.sliver))
               reject(m, Rejection::too_steep);
-            else if (detail::is_left_out(options, cell, static_cast<std::size_t>(m)))
-              reject(m, Rejection::far_behind);
+            else if (const auto reason = detail::left_out(options, slave, cell, master, static_cast<std::size_t>(m)))
+              reject(m, *reason);
             else if (const auto limit = beyond_limits())
               reject(m, *limit);
             else

@@ -259,14 +259,14 @@ class PairerInSpace final : public detail::CellPairer {
   void drop_far_views() {
     const double own = diameter(e.f.nodes, e.f.n_vertices);
     std::erase_if(views, [&](const View* view) {
-      if (detail::is_left_out(options(), static_cast<std::size_t>(slave_), static_cast<std::size_t>(view->master))) {
-        reject(view->master, Rejection::far_behind);
+      const Surface &slave_skin = masters_->skin.slave, &master_skin = masters_->skin.master;
+      const auto slave_cell = static_cast<std::size_t>(slave_), master_cell = static_cast<std::size_t>(view->master);
+      if (const auto reason = detail::left_out(options(), slave_skin, slave_cell, master_skin, master_cell)) {
+        reject(view->master, *reason);
         return true;
       }
       const Nodes nodes = nodes_of_master(view->master);
       const double other = diameter(nodes, master(view->master).n_vertices);
-      const Surface &slave_skin = masters_->skin.slave, &master_skin = masters_->skin.master;
-      const auto slave_cell = static_cast<std::size_t>(slave_), master_cell = static_cast<std::size_t>(view->master);
       const detail::CoupleSize size{std::max(own, other), cosine(view->master),
                                     detail::behind_at_rest(slave_skin, slave_cell, master_skin, master_cell)};
       // the way from x_e to its image by the first nodes; a quadratic cell may bulge

@@ -2,6 +2,26 @@
 
 namespace lacon {
 
+Vec3 normal_of(CellType type, std::span<const std::int32_t> nodes, std::span<const double> coordinates) {
+  const auto to = [&](std::size_t from, std::size_t i) {
+    return vector_at(coordinates.data() + 3 * static_cast<std::size_t>(nodes[i])) -
+           vector_at(coordinates.data() + 3 * static_cast<std::size_t>(nodes[from]));
+  };
+  Vec3 normal{};
+  switch (catalog::cell(type).n_vertices) {
+    case 2:
+      normal = {to(0, 1).y, -to(0, 1).x, 0};
+      break;
+    case 3:
+      normal = cross(to(0, 1), to(0, 2));
+      break;
+    default:
+      normal = cross(to(0, 2), to(1, 3));
+  }
+  const double size = norm(normal);
+  return size > 0 ? normal / size : Vec3{};
+}
+
 Surface surface_of(const Mesh& mesh, std::span<const std::int32_t> cells, std::span<const double> coordinates) {
   Surface surface;
   surface.dimension = mesh.dimension;

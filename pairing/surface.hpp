@@ -7,6 +7,7 @@
 
 #include "lacon/catalog/cells.hpp"
 #include "lacon/structures/mesh.hpp"
+#include "lacon/structures/vector.hpp"
 
 namespace lacon {
 
@@ -56,6 +57,9 @@ struct Surface {
     nodes.push_back(cell_nodes);
   }
 };
+
+/// Outward, unit, of the vertices of a skin cell; zero where they have none. @param coordinates (n_nodes, 3)
+Vec3 normal_of(CellType type, std::span<const std::int32_t> nodes, std::span<const double> coordinates);
 
 /// The cells `cells` of a mesh as a surface; cell i of it is mesh cell cells[i]. @param coordinates (n_nodes, 3), current
 Surface surface_of(const Mesh& mesh, std::span<const std::int32_t> cells, std::span<const double> coordinates);

@@ -1,6 +1,7 @@
 #pragma once
 // The contact cells of all zones at a geometry: gaps, couplings and coverage of the patches (METHOD.md 3.4 and 3.5). It knows
 // neither multipliers nor equations, so that a look at the pairing needs no solver.
+#include <array>
 #include <cstdint>
 #include <map>
 #include <optional>
@@ -33,11 +34,17 @@ struct GoneThrough {
   double sizes;  ///< how deep its middle lies behind that master, in sizes of its patch
 };
 
-/// A master that is left out of what a patch sees (far_masters.cpp).
+/// A master that is left out of what a patch sees (left_out.cpp).
 struct FarMaster {
   std::int32_t patch, master;  ///< `master` is a cell of the mesh
 
   auto operator<=>(const FarMaster&) const = default;
+};
+
+/// What patches do not see (left_out.cpp).
+struct LeftOut {
+  std::set<FarMaster> far;
+  std::vector<std::uint8_t> no_walls;  ///< of each patch: 1 where walls are left out (PairingOptions::no_walls)
 };
 
 class ContactGeometry {
@@ -48,12 +55,13 @@ class ContactGeometry {
     std::vector<std::uint8_t> inner;    ///< Surface::inner of the slave
     std::vector<SlaveCut> cuts;         ///< Surface::cuts of the slave: in space, since it was at rest
     std::vector<EndPlane> planes;
-    std::vector<std::uint8_t> mirrored;   ///< Surface::mirrored of the master
-    bool goes_on_flush = false;           ///< go_on_where_flush()
-    std::vector<std::uint8_t> flush;      ///< of these, what it adds
-    std::vector<std::uint8_t> border;     ///< border_edges() of the master
-    std::vector<std::uint8_t> free_ends;  ///< Surface::free_ends of the master
-    std::vector<Couple> left_out;         ///< PairingOptions::left_out
+    std::vector<std::uint8_t> mirrored;                   ///< Surface::mirrored of the master
+    bool goes_on_flush = false;                           ///< go_on_where_flush()
+    std::vector<std::uint8_t> flush;                      ///< of these, what it adds
+    std::vector<std::array<std::int32_t, 4>> neighbours;  ///< edge_neighbours() of the master
+    std::vector<std::uint8_t> free_ends;                  ///< Surface::free_ends of the master
+    std::vector<Couple> left_out;                         ///< PairingOptions::left_out
+    std::vector<std::uint8_t> no_walls;                   ///< PairingOptions::no_walls
     Surface slave, master;
     bool current_jacobian = false;
     PairingOptions pairing;
@@ -102,10 +110,10 @@ class ContactGeometry {
   std::vector<std::int32_t> cuts() const;
   void set_cuts(std::span<const std::int32_t> cuts);
 
-  /// Masters that a patch sees in part, half its size or more behind the others of it (far_masters.cpp), are left out from now
-  /// on, until the patch sees them otherwise: a gap that is an average over both would keep it open. Contact cells are those of
-  /// the last update() without them. @return whether others are left out than before
-  bool leave_far_masters();
+  /// Masters that a patch sees in part, half its size or more behind the others of it, and walls beside such others
+  /// (left_out.cpp), are left out from now on, until the patch sees them otherwise: a gap that is an average over both would
+  /// keep it open. Contact cells are those of the last update() without them. @return whether others are left out than before
+  bool choose_masters();
 
   /// Of a zone a slave cell that has gone through a master since the bodies were at rest and lies deep behind it, or beyond the
   /// far side of the body, where pairing may see nothing of it (crossings.cpp).
@@ -168,10 +176,15 @@ class ContactGeometry {
   struct Block;
   /// update() at the present coordinates.
   void look(std::vector<ZonePairing>* records = nullptr);
-  /// Masters that are to be left out of those that `cells_` has. @param before those that are or were
-  std::set<FarMaster> far_masters(const std::set<FarMaster>& before) const;
+  /// What is to be left out of what `cells_` has. @param before what is or was
+  LeftOut to_leave_out(const LeftOut& before) const;
+  bool is_wall(const Cell& cell, std::span<const double> coordinates) const;
+  /// Whether leaving out walls so, instead of as now, changes `cells_`.
+  bool other_walls(std::span<const std::uint8_t> no_walls) const;
   /// From the next look() on.
-  void leave_out(std::set<FarMaster> masters);
+  void leave_out(LeftOut what);
+  /// At an edge of a master the skin ends, or goes on with what a slave cell does not see. Cells of the zone
+  bool ends_at(const Zone& zone, std::size_t slave, std::size_t master, int edge) const;
   /// The bodies are at rest. @param same_rest where they last were: instants begin again as they did
   void keep_left_out(bool same_rest);
   /// Gaps and couplings of the contact cells of a block. @param[in,out] groups gets a group of each kind, some of them perhaps
@@ -224,10 +237,10 @@ class ContactGeometry {
   std::vector<std::uint8_t> straight_;  ///< likewise: no cell is of the second order
   std::vector<std::int32_t> zone_of_;
   std::vector<std::int64_t> rejected_;
-  std::vector<TooDeep> too_deep_;                    ///< of each zone
-  std::set<FarMaster> left_out_, left_out_at_rest_;  ///< leave_far_masters(): now, and when the bodies were at rest
-  bool cuts_end_ = true;                             ///< with the next update()
-  std::optional<std::int32_t> over_axis_;            ///< a slave cell with a negative radius
+  std::vector<TooDeep> too_deep_;          ///< of each zone
+  LeftOut left_out_, left_out_at_rest_;    ///< choose_masters(): now, and when the bodies were at rest
+  bool cuts_end_ = true;                   ///< with the next update()
+  std::optional<std::int32_t> over_axis_;  ///< a slave cell with a negative radius
 };
 
 }  // namespace lacon

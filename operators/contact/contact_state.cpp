@@ -100,8 +100,8 @@ void ContactState::update_geometry(std::span<const double> displacement) {
   note_geometry();
 }
 
-bool ContactState::leave_far_masters() {
-  if (!geometry_.leave_far_masters()) return false;
+bool ContactState::choose_masters() {
+  if (!geometry_.choose_masters()) return false;
   note_geometry();
   return true;
 }

@@ -140,8 +140,8 @@ class ContactState {
   void rest_at(std::span<const double> displacement) { geometry_.rest_at(displacement); }
   /// ContactGeometry::renew_cuts
   void renew_cuts() { geometry_.renew_cuts(); }
-  /// ContactGeometry::leave_far_masters
-  bool leave_far_masters();
+  /// ContactGeometry::choose_masters
+  bool choose_masters();
   /// ContactGeometry::go_on_where_flush
   bool go_on_where_flush();
   /// ContactGeometry::keep

@@ -192,7 +192,9 @@ ContactGeometry::Variation ContactGeometry::variation(std::size_t z, const Pairi
       std::size_t a = 0;
       for (const std::int32_t node : mesh_.cells[owner]) drawn_on.node[a++] = local(node);
       const std::optional<int> edge = edge_along(drawn_on.type, line.from, line.to);
-      drawn_on.still = still && edge && (zone.border[static_cast<std::size_t>(line.master)] >> *edge & 1) != 0;
+      drawn_on.still =
+          still && edge &&
+          ends_at(zone, static_cast<std::size_t>(cells.slave[place]), static_cast<std::size_t>(line.master), *edge);
     }
   }
 
@@ -225,6 +227,11 @@ ContactGeometry::Variation ContactGeometry::variation(std::size_t z, const Pairi
   }
   vary_gap(cell, second, variation.of_gap);
   return variation;
+}
+
+bool ContactGeometry::ends_at(const Zone& zone, std::size_t slave, std::size_t master, int edge) const {
+  const std::int32_t behind = zone.neighbours[master][static_cast<std::size_t>(edge)];
+  return behind < 0 || is_left_out(zone.pairing, zone.slave, slave, zone.master, static_cast<std::size_t>(behind));
 }
 
 void ContactGeometry::chain_normals(std::size_t z, std::size_t slave, Variation& variation) const {

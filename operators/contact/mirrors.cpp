@@ -25,21 +25,18 @@ struct BorderEdge {
 
 /// Edges of one cell alone.
 std::vector<BorderEdge> border_of(const Surface& skin) {
-  std::map<std::pair<std::int32_t, std::int32_t>, int> cells_at;
-  std::vector<BorderEdge> edges, border;
-  const auto ends = [](const BorderEdge& edge) { return std::minmax(edge.nodes[0], edge.nodes[1]); };
+  std::vector<BorderEdge> border;
+  const std::vector<std::array<std::int32_t, 4>> neighbours = edge_neighbours(skin);
   for (std::size_t c = 0; c < skin.size(); ++c) {
     const catalog::CellRow& row = catalog::cell(skin.types[c]);
     const auto nodes = skin.nodes[c];
     const int n = row.n_vertices;
     for (int i = 0; i < n; ++i) {
-      BorderEdge& edge = edges.emplace_back(BorderEdge{static_cast<std::int32_t>(c), i, {nodes[i], nodes[(i + 1) % n]}});
+      if (neighbours[c][static_cast<std::size_t>(i)] >= 0) continue;
+      BorderEdge& edge = border.emplace_back(BorderEdge{static_cast<std::int32_t>(c), i, {nodes[i], nodes[(i + 1) % n]}});
       if (row.order > 1) edge.nodes.push_back(nodes[n + i]);
-      ++cells_at[ends(edge)];
     }
   }
-  for (BorderEdge& edge : edges)
-    if (cells_at[ends(edge)] == 1) border.push_back(std::move(edge));
   return border;
 }
 
@@ -127,12 +124,24 @@ std::vector<std::uint8_t> aligned(std::span<const EndPlane> planes, std::vector<
 
 }  // namespace
 
-std::vector<std::uint8_t> border_edges(const Surface& skin) {
+std::vector<std::array<std::int32_t, 4>> edge_neighbours(const Surface& skin) {
   if (skin.dimension != 3) return {};
-  std::vector<std::uint8_t> edges(skin.size(), 0);
-  for (const BorderEdge& edge : border_of(skin))
-    edges[static_cast<std::size_t>(edge.cell)] |= static_cast<std::uint8_t>(1U << edge.edge);
-  return edges;
+  std::map<std::pair<std::int32_t, std::int32_t>, std::vector<std::int32_t>> around;  // cells of each edge
+  const auto for_edges = [&](const auto& visit) {
+    for (std::size_t c = 0; c < skin.size(); ++c) {
+      const auto nodes = skin.nodes[c];
+      const auto n = static_cast<std::size_t>(catalog::cell(skin.types[c]).n_vertices);
+      for (std::size_t i = 0; i < n; ++i)
+        visit(static_cast<std::int32_t>(c), i, around[std::minmax(nodes[i], nodes[(i + 1) % n])]);
+    }
+  };
+  for_edges([](std::int32_t cell, std::size_t, std::vector<std::int32_t>& cells) { cells.push_back(cell); });
+  std::vector<std::array<std::int32_t, 4>> neighbours(skin.size(), {-1, -1, -1, -1});
+  for_edges([&](std::int32_t cell, std::size_t i, const std::vector<std::int32_t>& cells) {
+    for (const std::int32_t other : cells)
+      if (other != cell) neighbours[static_cast<std::size_t>(cell)][i] = other;
+  });
+  return neighbours;
 }
 
 std::vector<EndPlane> end_planes(const Surface& slave, const Surface& master, std::span<const HeldDirection> held) {

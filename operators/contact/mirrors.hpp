@@ -1,5 +1,6 @@
 #pragma once
 // Planes in which both skins of a zone end, in space: of symmetry, or free faces that are aligned.
+#include <array>
 #include <cstdint>
 #include <span>
 #include <utility>
@@ -17,8 +18,8 @@ struct EndPlane {
   std::vector<std::pair<std::int32_t, int>> flush;  ///< likewise, free ones that lie along the slave's
 };
 
-/// Of each cell of a skin in space its edges that no other cell has, a bit for each; empty in the plane.
-std::vector<std::uint8_t> border_edges(const Surface& skin);
+/// Of each cell of a skin in space the cells behind its edges, -1 where there is none; empty in the plane.
+std::vector<std::array<std::int32_t, 4>> edge_neighbours(const Surface& skin);
 
 /// Planes x, y or z = constant, and those that an edge of the master is held in, beyond which no skin reaches and in which both
 /// end; of the master's edges there those that meet the border of the slave at points at most, and where no node can leave the

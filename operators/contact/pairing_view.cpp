@@ -336,7 +336,7 @@ PairingView view_pairing(const Mesh& mesh, const Model& model, const Contact& co
   geometry.keep(instant.kept);
   geometry.set_offsets(instant.offsets);
   geometry.update(displacement);
-  geometry.leave_far_masters();
+  geometry.choose_masters();
   geometry.update(displacement, &records);
 
   std::map<std::int32_t, std::array<double, 2>> state;

@@ -23,7 +23,7 @@ bool add_bits(std::span<const std::uint8_t> more, std::vector<std::uint8_t>& all
 void ContactGeometry::find_ends(std::span<const HeldDirection> held) {
   if (!contact_.frozen_gap)
     for (Zone& zone : zones_) {
-      zone.border = border_edges(zone.master);
+      zone.neighbours = edge_neighbours(zone.master);
       zone.planes = end_planes(zone.slave, zone.master, held);
     }
   mirror();

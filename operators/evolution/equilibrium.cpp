@@ -176,10 +176,10 @@ void Equilibrium::pair(std::span<const double> displacement) {
   add_to_count("contact cells", static_cast<double>(contact_->geometry().cells().size()));
 }
 
-bool Equilibrium::leave_far_masters() {
+bool Equilibrium::choose_masters() {
   if (!contact_) return false;
   const Phase phase("pairing");
-  return contact_->leave_far_masters();
+  return contact_->choose_masters();
 }
 
 void Equilibrium::assemble(const StaticState& state, const StaticState& previous, NewtonMatrix wanted) {

@@ -65,8 +65,8 @@ class Equilibrium {
   void rest_at(std::span<const double> displacement) {
     if (contact_) contact_->rest_at(displacement);
   }
-  /// ContactGeometry::leave_far_masters; false without contact
-  bool leave_far_masters();
+  /// ContactGeometry::choose_masters; false without contact
+  bool choose_masters();
   /// ContactGeometry::keep
   void keep(const KeptPairing& kept) {
     if (contact_) contact_->keep(kept);

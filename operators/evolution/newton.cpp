@@ -53,7 +53,7 @@ StaticState Newton::initial_state() {
   equilibrium_.offset_skins(options_.start);
   if (!options_.from_reference) start_heated(state);
   equilibrium_.pair(state.displacement);
-  equilibrium_.leave_far_masters();
+  equilibrium_.choose_masters();
   if (contact()) state.patches = contact()->initial();
   assemble(state, state, options_.matrix);
   return state;
@@ -71,7 +71,7 @@ void Newton::begin(StaticState& state, const std::string& label, bool as_given) 
   if (contact() && state.patches.status.empty()) {
     equilibrium_.rest_at(state.displacement);
     equilibrium_.pair(state.displacement);
-    equilibrium_.leave_far_masters();
+    equilibrium_.choose_masters();
     state.patches = contact()->initial();
   }
   equilibrium_.keep(std::exchange(state.kept_pairing, {}));
@@ -105,7 +105,7 @@ void Newton::restart(const StaticState& state) {
   prediction_.distrust();
   equilibrium_.rest_at(state.displacement);
   equilibrium_.pair(state.displacement);
-  equilibrium_.leave_far_masters();
+  equilibrium_.choose_masters();
   assemble(state, state, options_.matrix);
 }
 
@@ -259,7 +259,7 @@ int Newton::iterate(double instant, StaticState& state, const std::function<void
       shorten(solution, previous, state, increment);
     else
       equilibrium_.pair(state.displacement);
-    if (driven) equilibrium_.leave_far_masters();  // where what is imposed has brought bodies
+    if (driven) equilibrium_.choose_masters();  // where what is imposed has brought bodies
     if (contact() && !driven) stay_shallow(solution, gaps, state, increment);
     const std::vector<Status> before = state.patches.status, wanted = wanted_statuses(state, line);
     // what imposed displacements alone have parted, the next iteration may bring together again: it starts from bodies that
@@ -395,7 +395,7 @@ bool Newton::pairs_anew(const IterationReport& line, const StaticState& state) {
   bool anew = false;
   // once as soon as it is near, and where it would be accepted
   if (times_left_out_ < most_times_anew && (!std::exchange(looked_far_, true) || line.in_equilibrium())) {
-    anew = equilibrium_.leave_far_masters();
+    anew = equilibrium_.choose_masters();
     times_left_out_ += anew ? 1 : 0;
   }
   if (times_cut_ < most_times_anew && contact()->geometry().keeps_cuts()) {

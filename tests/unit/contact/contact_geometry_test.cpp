@@ -303,9 +303,9 @@ TEST(ContactGeometry, MastersFarBehindOthersOfAPatchAreLeftOut) {
   geometry.rest_at(step.skins.displacement);
   geometry.update(step.skins.displacement);
   expect(1, 0.4 * 0.1 + 0.6 * 0.6);
-  EXPECT_TRUE(geometry.leave_far_masters());
+  EXPECT_TRUE(geometry.choose_masters());
   expect(0.4, 0.1);
-  EXPECT_FALSE(geometry.leave_far_masters());
+  EXPECT_FALSE(geometry.choose_masters());
   const std::vector<std::int32_t> out = geometry.kept().left_out;
   EXPECT_EQ(out.size() % 2, 0U);
   EXPECT_GE(out.size(), 8U);  // squares and triangles over the edge
@@ -317,12 +317,12 @@ TEST(ContactGeometry, MastersFarBehindOthersOfAPatchAreLeftOut) {
   for (const double raised : {0.387, 0.388}) {
     geometry.update(step.floor_raised(raised));
     expect(0.4, 0.1);
-    EXPECT_EQ(geometry.leave_far_masters(), raised > 0.5 - 0.45 * 0.25) << raised;
+    EXPECT_EQ(geometry.choose_masters(), raised > 0.5 - 0.45 * 0.25) << raised;
     geometry.rest_at(step.skins.displacement);  // an instant that begins again begins as before
     EXPECT_EQ(geometry.kept().left_out, out);
   }
   ContactGeometry taken_up(step.skins.mesh, step.skins.model, step.skins.contact, registry);
-  taken_up.keep({.left_out = out, .flush = {}});
+  taken_up.keep({.left_out = out, .no_walls = {}, .flush = {}});
   taken_up.update(step.skins.displacement);
   geometry.update(step.skins.displacement);
   for (std::size_t p = 0; p < geometry.n_patches(); ++p) EXPECT_EQ(taken_up.gap(p), geometry.gap(p));
@@ -337,36 +337,84 @@ TEST(ContactGeometry, WhatIsHiddenByAFarMasterIsFarAsWell) {
   Registry registry;
   ContactGeometry geometry(step.skins.mesh, step.skins.model, step.skins.contact, registry);
   geometry.update(step.skins.displacement);
-  EXPECT_TRUE(geometry.leave_far_masters());
+  EXPECT_TRUE(geometry.choose_masters());
   const std::vector<std::int32_t> out = geometry.kept().left_out;
   EXPECT_EQ(std::count(out.begin(), out.end(), lower), std::count(out.begin(), out.end(), step.floor_cell));
   for (std::size_t p = 0; p < geometry.n_patches(); ++p)
     EXPECT_TRUE(std::abs(geometry.gap(p) - 0.1) < 1e-12 || std::abs(geometry.gap(p) - 0.6) < 1e-12) << p;
 }
 
-TEST(ContactGeometry, SlopesAndWallsAreNotFarBehind) {
-  // the step as a slope of 45 degrees, or as a wall that leans by 10 degrees, which a patch sees at a grazing angle
-  for (const double reach : {0.5, 0.5 * 0.1763}) {
-    Step step;
+/// A step that goes down over `reach`.
+struct Slope : Step {
+  std::int32_t cell;
+
+  explicit Slope(double reach) {
     std::vector<std::int32_t> edge;  // of the upper level, and of the floor
     for (const double z : {-0.1, -0.6})
       for (const double y : {0.0, 1.0}) {
-        edge.push_back(static_cast<std::int32_t>(step.skins.mesh.n_nodes()));
-        step.skins.mesh.coordinates.insert(step.skins.mesh.coordinates.end(), {z == -0.1 ? 0.6 : 0.6 + reach, y, z});
+        edge.push_back(static_cast<std::int32_t>(skins.mesh.n_nodes()));
+        skins.mesh.coordinates.insert(skins.mesh.coordinates.end(), {z == -0.1 ? 0.6 : 0.6 + reach, y, z});
       }
-    const std::int32_t slope = static_cast<std::int32_t>(step.skins.mesh.types.size());
-    step.skins.mesh.types.push_back(CellType::QUAD4);
-    step.skins.mesh.cells.push_back(std::vector<std::int32_t>{edge[0], edge[2], edge[3], edge[1]});
-    step.skins.model.element.push_back(0);
-    step.skins.contact.zones[0].master.push_back(slope);
-    step.skins.displacement.assign(step.skins.mesh.coordinates.size(), 0.0);
+    cell = static_cast<std::int32_t>(skins.mesh.types.size());
+    skins.mesh.types.push_back(CellType::QUAD4);
+    skins.mesh.cells.push_back(std::vector<std::int32_t>{edge[0], edge[2], edge[3], edge[1]});
+    skins.model.element.push_back(0);
+    skins.contact.zones[0].master.push_back(cell);
+    skins.displacement.assign(skins.mesh.coordinates.size(), 0.0);
+  }
+};
+
+constexpr double leaning_by_10_degrees = 0.5 * 0.1763;
+
+TEST(ContactGeometry, SlopesAreNotFarBehindAndWallsAreLeftOutWithoutTheirNames) {
+  for (const double reach : {0.5, leaning_by_10_degrees}) {
+    Slope slope(reach);
     Registry registry;
-    ContactGeometry geometry(step.skins.mesh, step.skins.model, step.skins.contact, registry);
-    geometry.update(step.skins.displacement);
-    geometry.leave_far_masters();
+    ContactGeometry geometry(slope.skins.mesh, slope.skins.model, slope.skins.contact, registry);
+    geometry.update(slope.skins.displacement);
+    EXPECT_EQ(geometry.choose_masters(), reach < 0.5);
     const std::vector<std::int32_t> out = geometry.kept().left_out;
-    EXPECT_EQ(std::count(out.begin(), out.end(), slope), 0) << reach;
+    EXPECT_EQ(std::count(out.begin(), out.end(), slope.cell), 0) << reach;
     EXPECT_EQ(out.empty(), reach == 0.5) << reach;
+    EXPECT_EQ(geometry.rejected()[static_cast<std::size_t>(Rejection::wall)] > 0, reach < 0.5) << reach;
+  }
+}
+
+TEST(ContactGeometry, WallsBesideAMasterInFrontAreLeftOut) {
+  // those that see the step and the wall see the step alone; one that sees the wall and nothing in front of it sees the wall
+  for (const bool step : {true, false}) {
+    Slope slope(leaning_by_10_degrees);
+    std::vector<std::int32_t>& masters = slope.skins.contact.zones[0].master;
+    std::erase_if(masters, [&](std::int32_t cell) { return cell == slope.floor_cell || (!step && cell != slope.cell); });
+    Registry registry;
+    ContactGeometry geometry(slope.skins.mesh, slope.skins.model, slope.skins.contact, registry);
+    geometry.update(slope.skins.displacement);
+    const std::vector<double> before = [&] {
+      std::vector<double> gaps;
+      for (std::size_t p = 0; p < geometry.n_patches(); ++p) gaps.push_back(geometry.gap(p));
+      return gaps;
+    }();
+    EXPECT_EQ(geometry.choose_masters(), step);
+    EXPECT_FALSE(geometry.choose_masters());
+    int other = 0;
+    for (std::size_t p = 0; p < geometry.n_patches(); ++p) {
+      if (step && geometry.covered(p) > 0) EXPECT_NEAR(geometry.gap(p), 0.1, 1e-12) << p;
+      other += std::abs(geometry.gap(p) - before[p]) > 1e-3 ? 1 : 0;
+    }
+    EXPECT_EQ(other > 0, step);
+    if (!step) continue;
+
+    // another computation goes on with it, and an instant that begins again
+    const KeptPairing kept = geometry.kept();
+    EXPECT_FALSE(kept.no_walls.empty());
+    ContactGeometry taken_up(slope.skins.mesh, slope.skins.model, slope.skins.contact, registry);
+    taken_up.keep(kept);
+    for (ContactGeometry* const one : {&geometry, &taken_up}) {
+      one->rest_at(slope.skins.displacement);
+      one->update(slope.skins.displacement);
+    }
+    for (std::size_t p = 0; p < geometry.n_patches(); ++p) EXPECT_EQ(taken_up.gap(p), geometry.gap(p));
+    EXPECT_FALSE(taken_up.choose_masters());
   }
 }
 
@@ -376,7 +424,7 @@ TEST(ContactGeometry, FrozenGapsAreAveragesOverAllMasters) {
   Registry registry;
   ContactGeometry geometry(step.skins.mesh, step.skins.model, step.skins.contact, registry);
   geometry.update(step.skins.displacement);
-  EXPECT_FALSE(geometry.leave_far_masters());
+  EXPECT_FALSE(geometry.choose_masters());
 }
 
 TEST(ContactGeometry, MastersGoOnWhereFreeFacesAreFlush) {
@@ -407,7 +455,7 @@ TEST(ContactGeometry, MastersGoOnWhereFreeFacesAreFlush) {
   const std::vector<std::int32_t> flush = geometry.kept().flush;
   EXPECT_EQ(flush.size(), 3 * (1 + 8U));  // eight of nine squares, one of which is two triangles, have an edge at a side
   taken_up.rest_at(slave_moved(0.01));    // where nothing is flush
-  taken_up.keep({.left_out = {}, .flush = flush});
+  taken_up.keep({.left_out = {}, .no_walls = {}, .flush = flush});
   taken_up.update(slave_moved(1e-4));
   EXPECT_EQ(taken_up.kept().flush, flush);
   EXPECT_NEAR(covered(taken_up), 1, 1e-12);

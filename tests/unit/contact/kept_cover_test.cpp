@@ -91,12 +91,13 @@ struct Derivatives {
   std::vector<double> of_gap, of_gradient;
 };
 
-Derivatives derivatives(const Scene& scene, bool kept) {
+Derivatives derivatives(const Scene& scene, bool kept, bool sees_walls = true) {
   const auto d = static_cast<std::size_t>(scene.mesh.dimension), n = d * scene.mesh.n_nodes();
   Registry registry;
   ContactGeometry geometry(scene.mesh, scene.model, scene.contact, registry);
   geometry.find_ends({});
   geometry.update(std::vector<double>(n));
+  if (!sees_walls) geometry.choose_masters();
   Derivatives sum{0, std::vector<double>(n), std::vector<double>(n * n), std::vector<double>(n), std::vector<double>(n * n)};
   for (const auto& of : geometry.vary(std::vector<std::int8_t>{2}, {kept})) {
     const auto at = [&](std::size_t i) { return d * static_cast<std::size_t>(of.nodes[i / d]) + i % d; };
@@ -226,6 +227,24 @@ TEST(KeptCover, IsDifferentiatedWhollyByItsEndsAsWell) {
       EXPECT_GT(lacking, 1e-2 * largest(of.hessian));  // it is not symmetric
       EXPECT_GT(largest(of.of_gap), 1e-3 * largest(of.gradient));
     }
+}
+
+// Where the skin of the master goes on as a wall, which the patch does not see, the master ends for it.
+TEST(KeptCover, EndsWhereAWallBegins) {
+  for (const bool quadratic : {false, true}) {
+    const Derivatives alone = derivatives(in_space(0.6, quadratic), true);
+    Scene scene = in_space(0.6, quadratic);
+    std::vector<std::int32_t> foot;
+    for (const double y : {-0.2, 0.45, 1.2}) foot.push_back(scene.node(0.7, y, -0.5));
+    for (std::size_t i = 0; i < 2; ++i) {
+      scene.master(CellType::QUAD4, {scene.master_nodes[i], foot[i], foot[i + 1], scene.master_nodes[i + 1]});
+      scene.model.element.push_back(0);
+    }
+    const Derivatives beside = derivatives(scene, true, false);
+    EXPECT_NEAR(beside.gap, alone.gap, 1e-15);
+    for (std::size_t i = 0; i < beside.gradient.size(); ++i)
+      EXPECT_NEAR(beside.gradient[i], i < alone.gradient.size() ? alone.gradient[i] : 0, 1e-14 * largest(alone.gradient)) << i;
+  }
 }
 
 /// Two cells of a wall, at 85.6 and 89.2 degrees, the node between them below x = 1, where the slave ends.

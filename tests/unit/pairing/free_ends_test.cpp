@@ -185,5 +185,67 @@ TEST(PairingInSpace, LeavesOutCouplesThatItIsTold) {
   EXPECT_EQ(found.rejected, (std::vector<RejectedCouple>{{1, 0, Rejection::far_behind}}));
 }
 
+/// Masters below slaves, which lean by `leans` degrees now and by `leant` at rest.
+TEST(Pairing, LeavesOutWhatWasAWallAtRest) {
+  const auto turned = [](double degrees) {
+    return [=](double t) {
+      const double angle = degrees * std::numbers::pi / 180;
+      return Point{0.5 + t * std::cos(angle), -2 + t * std::sin(angle)};
+    };
+  };
+  const std::vector<std::uint8_t> none{1}, all{0};
+  for (const double leans : {50.0, 70.0})
+    for (const double leant : {59.0, 61.0}) {
+      Skin slave, master, rest;
+      add_chain(
+          slave,
+          [](double t) {
+            return Point{t, 0.1};
+          },
+          {0, 1}, Kind::linear);
+      add_chain(master, turned(leans), {1, 0}, Kind::linear);
+      add_chain(rest, turned(leant), {1, 0}, Kind::linear);
+      Surface skin = master.view();
+      skin.rest = rest.view().coordinates;
+      const bool wall = leant > 60;
+      EXPECT_EQ(pair(slave.view(), skin, {.no_walls = all}).cells.size(), 1U);
+      const Pairing found = pair(slave.view(), skin, {.no_walls = none});
+      EXPECT_EQ(found.cells.size(), wall ? 0U : 1U) << leans << ' ' << leant;
+      EXPECT_EQ(found.count(Rejection::wall), wall ? 1 : 0);
+      EXPECT_EQ(is_left_out({.no_walls = none}, slave.view(), 0, skin, 0), wall);
+    }
+}
+
+TEST(PairingInSpace, LeavesOutWhatWasAWallAtRest) {
+  const auto leaning = [](double degrees) {
+    return [=](double x, double y) {
+      const double angle = degrees * std::numbers::pi / 180;
+      return Vec3{0.5 + x * std::cos(angle), y, -2 + x * std::sin(angle)};
+    };
+  };
+  std::mt19937 random(4);
+  Skin3 slave = mesh(
+      {2, 1, CellType::QUAD4, false},
+      [](double x, double y) {
+        return Vec3{x, y, 0.1};
+      },
+      random);
+  for (const CellType type : {CellType::QUAD4, CellType::TRIA6})
+    for (const double leant : {59.0, 61.0}) {
+      Skin3 master = mesh({1, 1, type, true, 0, -1, 2, -1, 2}, leaning(70), random),
+            rest = mesh({1, 1, type, true, 0, -1, 2, -1, 2}, leaning(leant), random);
+      Surface skin = master.view();
+      skin.rest = rest.view().coordinates;
+      const Pairing before = pair(slave.view(), skin);
+      const std::vector<std::uint8_t> second{0, 1};
+      const Pairing found = pair(slave.view(), skin, {.no_walls = second});
+      const auto of_second = [](const Pairing& one) { return std::ranges::count(one.cells.slave, 1); };
+      ASSERT_GT(of_second(before), 0);
+      EXPECT_EQ(of_second(found), leant > 60 ? 0 : of_second(before));
+      EXPECT_EQ(found.cells.size() - of_second(found), before.cells.size() - of_second(before));
+      EXPECT_EQ(found.count(Rejection::wall), leant > 60 ? of_second(before) : 0);
+    }
+}
+
 }  // namespace
 }  // namespace lacon
