@@ -11,4 +11,8 @@ namespace lacon {
 /// skin, or one that is turned by more than 60 degrees, at the present coordinates.
 std::vector<std::uint8_t> free_ends(const Surface& skin);
 
+/// The faces of a skin: of each cell the first cell of its face. A face ends where the skin does, and at edges (in space; in
+/// the plane at nodes) where it turns by more than 40 degrees, at the present coordinates.
+std::vector<std::int32_t> faces(const Surface& skin);
+
 }  // namespace lacon

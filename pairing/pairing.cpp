@@ -129,7 +129,9 @@ std::optional<Rejection> left_out(const PairingOptions& options, const Surface& 
                                   const Surface& master, std::size_t master_cell) {
   const Couple couple{static_cast<std::int32_t>(slave_cell), static_cast<std::int32_t>(master_cell)};
   if (std::ranges::binary_search(options.left_out, couple)) return Rejection::far_behind;
-  if (options.no_walls.empty() || options.no_walls[slave_cell] == 0) return std::nullopt;
+  if (!options.in_front) return std::nullopt;
+  const auto in_front = (*options.in_front)[slave_cell];
+  if (in_front.empty() || std::ranges::count(in_front, options.faces[master_cell]) > 0) return std::nullopt;
   const double cosine = -dot(normal_at_rest(slave, slave_cell), normal_at_rest(master, master_cell));
   return cosine < wall_cosine ? std::optional(Rejection::wall) : std::nullopt;
 }

@@ -85,9 +85,11 @@ struct PairingOptions {
   double own_depth_limit = 0.25;
   /// Couples that give no contact cell, sorted: masters that lie far behind others of the same patch. The caller owns them.
   std::span<const Couple> left_out = {};
-  /// Of each slave cell: 1 where it gets no contact cell with walls, masters that it faces by less than `wall_cosine` at rest
-  /// (Surface::rest); empty: walls count like all others. The caller owns it.
-  std::span<const std::uint8_t> no_walls = {};
+  /// Of each slave cell the faces of the master that are in front of it, as `faces` numbers them; null: unknown. Where there
+  /// are some it gets no contact cell with walls, masters of other faces that it faces by less than `wall_cosine` at rest
+  /// (Surface::rest). The caller owns both.
+  const Ragged<std::int32_t>* in_front = nullptr;
+  std::span<const std::int32_t> faces = {};  ///< of each master cell
   /// Angle between the slave's normal and the opposite of the master's, in degrees, from which on a couple counts less and less
   /// (steepness.hpp); 90: none does.
   double steep_angle = 85;
@@ -120,7 +122,7 @@ enum class Rejection : std::uint8_t {
   too_deep,           ///< an overlap beyond that, or beyond PairingOptions::depth_limit
   other_side,         ///< an overlap beyond PairingOptions::own_depth_limit
   far_behind,         ///< PairingOptions::left_out
-  wall                ///< PairingOptions::no_walls
+  wall                ///< PairingOptions::in_front
 };
 inline constexpr int n_rejections = 12;
 std::string_view rejection_name(Rejection rejection);

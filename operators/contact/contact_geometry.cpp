@@ -158,6 +158,7 @@ ContactGeometry::ContactGeometry(const Mesh& mesh, const Model& model, const Con
       zone.slave.inner = zone.inner;
       zone.free_ends = free_ends(zone.master);
       zone.master.free_ends = zone.free_ends;
+      zone.faces = faces(zone.master);
     }
     zones_.push_back(std::move(zone));
   }
@@ -294,6 +295,7 @@ void ContactGeometry::look(std::vector<ZonePairing>* records) {
   std::fill(smallest_gap_.begin(), smallest_gap_.end(), std::numeric_limits<double>::infinity());
   std::fill(largest_gap_.begin(), largest_gap_.end(), -std::numeric_limits<double>::infinity());
   std::fill(straight_.begin(), straight_.end(), 1);
+  beside_walls_.assign(n_patches(), 0);
   if (records) records->clear();
   normals_.resize(zones_.size());
   if (std::exchange(cuts_end_, false) && mesh_.dimension == 3)
@@ -433,6 +435,7 @@ void ContactGeometry::add(const Zone& zone, const Block& block_of_zone, ZonePair
   for (const RejectedCouple& couple : block_of_zone.pairing.rejected) {
     if (couple.reason == Rejection::degenerate_slave) no_normal(contact_.slaves[zone.slaves[couple.slave]]);
     ++rejected_[static_cast<std::size_t>(couple.reason)];
+    if (couple.reason == Rejection::wall) beside_walls_[contact_.slaves[zone.slaves[couple.slave]].patch] = 1;
     if (couple.reason != Rejection::too_deep) continue;
     TooDeep& deep = too_deep_[static_cast<std::size_t>(&zone - zones_.data())];
     if (deep.count++ == 0) deep.slave = contact_.slaves[zone.slaves[couple.slave]].cell;
@@ -464,7 +467,8 @@ void ContactGeometry::add(const Zone& zone, const Block& block_of_zone, ZonePair
       const std::int64_t n_points = cells.offset[c + 1] - cells.offset[c];
       const double* const first_gap = std::exchange(point_gap, point_gap + n_points);
       const auto [least, most] = std::minmax_element(first_gap, point_gap);
-      cells_.push_back({s, zone.masters[cells.master[c]], group.gap[i], group.current_measure[i], *least, *most, at});
+      cells_.push_back(
+          {s, zone.masters[cells.master[c]], cells.master[c], group.gap[i], group.current_measure[i], *least, *most, at});
       for (const double gap : std::span(first_gap, point_gap)) {
         // a wall that is grazed, as beside a corner, is as good as not there
         if (group.current_measure[i] > grazed * whole_[patch]) smallest_gap_[patch] = std::min(smallest_gap_[patch], gap);

@@ -34,17 +34,17 @@ struct GoneThrough {
   double sizes;  ///< how deep its middle lies behind that master, in sizes of its patch
 };
 
-/// A master that is left out of what a patch sees (left_out.cpp).
-struct FarMaster {
+/// A patch and a master that it sees, or does not.
+struct PatchMaster {
   std::int32_t patch, master;  ///< `master` is a cell of the mesh
 
-  auto operator<=>(const FarMaster&) const = default;
+  auto operator<=>(const PatchMaster&) const = default;
 };
 
-/// What patches do not see (left_out.cpp).
+/// What decides on the masters that patches do not see (left_out.cpp).
 struct LeftOut {
-  std::set<FarMaster> far;
-  std::vector<std::uint8_t> no_walls;  ///< of each patch: 1 where walls are left out (PairingOptions::no_walls)
+  std::set<PatchMaster> far;       ///< masters that are left out
+  std::set<PatchMaster> in_front;  ///< the first masters of faces that are in front of a patch, which sees no walls of others
 };
 
 class ContactGeometry {
@@ -61,7 +61,8 @@ class ContactGeometry {
     std::vector<std::array<std::int32_t, 4>> neighbours;  ///< edge_neighbours() of the master
     std::vector<std::uint8_t> free_ends;                  ///< Surface::free_ends of the master
     std::vector<Couple> left_out;                         ///< PairingOptions::left_out
-    std::vector<std::uint8_t> no_walls;                   ///< PairingOptions::no_walls
+    std::vector<std::int32_t> faces;                      ///< PairingOptions::faces
+    Ragged<std::int32_t> in_front;                        ///< PairingOptions::in_front
     Surface slave, master;
     bool current_jacobian = false;
     PairingOptions pairing;
@@ -72,6 +73,7 @@ class ContactGeometry {
   struct Cell {
     std::int32_t slave;     ///< index into Contact::slaves
     std::int32_t master;    ///< cell of the mesh
+    std::int32_t place;     ///< of the master in its zone
     double gap;             ///< integral
     double measure;         ///< current geometry
     double least, most;     ///< gaps at its integration points
@@ -159,6 +161,7 @@ class ContactGeometry {
   std::size_t n_patches() const { return gap_.size(); }
   std::int32_t zone_of(std::size_t patch) const { return zone_of_[patch]; }  ///< -1 for none
   double gap(std::size_t patch) const { return gap_[patch]; }                ///< average, positive when open
+  std::span<const double> gaps() const { return gap_; }                      ///< likewise, of all patches
   /// At an integration point, infinite without any; those of masters that are seen by a ten thousandth of the patch do not
   /// count.
   double smallest_gap(std::size_t patch) const { return smallest_gap_[patch]; }
@@ -179,8 +182,10 @@ class ContactGeometry {
   /// What is to be left out of what `cells_` has. @param before what is or was
   LeftOut to_leave_out(const LeftOut& before) const;
   bool is_wall(const Cell& cell, std::span<const double> coordinates) const;
-  /// Whether leaving out walls so, instead of as now, changes `cells_`.
-  bool other_walls(std::span<const std::uint8_t> no_walls) const;
+  /// The first master of the face that a contact cell lies on.
+  std::int32_t face_of(const Cell& cell) const;
+  /// Whether other faces in front, instead of those as now, may change `cells_`.
+  bool other_walls(const std::set<PatchMaster>& in_front) const;
   /// From the next look() on.
   void leave_out(LeftOut what);
   /// At an edge of a master the skin ends, or goes on with what a slave cell does not see. Cells of the zone
@@ -233,8 +238,9 @@ class ContactGeometry {
   std::vector<Cell> cells_;
   std::vector<double> coupling_;
   std::vector<double> size_, gap_, weight_, covered_, whole_, coverage_, smallest_gap_;  ///< of each patch
-  std::vector<double> largest_gap_;     ///< likewise, either way, at all points
-  std::vector<std::uint8_t> straight_;  ///< likewise: no cell is of the second order
+  std::vector<double> largest_gap_;         ///< likewise, either way, at all points
+  std::vector<std::uint8_t> straight_;      ///< likewise: no cell is of the second order
+  std::vector<std::uint8_t> beside_walls_;  ///< likewise: it would see walls that are left out
   std::vector<std::int32_t> zone_of_;
   std::vector<std::int64_t> rejected_;
   std::vector<TooDeep> too_deep_;          ///< of each zone

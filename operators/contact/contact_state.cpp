@@ -291,6 +291,13 @@ std::vector<double> ContactState::gaps_over_size() const {
   return gaps;
 }
 
+bool ContactState::presses_otherwise(std::span<const double> before, const Patchwise& patches) const {
+  for (std::size_t p = 0; p < n_patches(); ++p)
+    if (patches.status[p] == Status::active && geometry_.gap(p) != before[p]) return true;
+  Patchwise now = patches;
+  return update_statuses(now) > 0;
+}
+
 double ContactState::part_to_depth(const Patchwise& patches, std::span<const double> before, double limit, double depth) const {
   const std::vector<double> now = gaps_over_size();
   double part = 1;

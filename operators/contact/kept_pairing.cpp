@@ -11,14 +11,14 @@ namespace lacon {
 
 void write(const hdf5::Group& group, const KeptPairing& kept) {
   if (!kept.left_out.empty()) group.write("left_out", kept.left_out);
-  if (!kept.no_walls.empty()) group.write("no_walls", kept.no_walls);
+  if (!kept.in_front.empty()) group.write("in_front", kept.in_front);
   if (!kept.flush.empty()) group.write("flush", kept.flush);
 }
 
 KeptPairing read_kept_pairing(const hdf5::Group& group) {
   KeptPairing kept;
   if (group.has("left_out")) kept.left_out = group.read<std::int32_t>("left_out");
-  if (group.has("no_walls")) kept.no_walls = group.read<std::int32_t>("no_walls");
+  if (group.has("in_front")) kept.in_front = group.read<std::int32_t>("in_front");
   if (group.has("flush")) kept.flush = group.read<std::int32_t>("flush");
   return kept;
 }
@@ -38,9 +38,8 @@ std::map<std::int32_t, std::int32_t> ContactGeometry::Zone::places() const {
 
 KeptPairing ContactGeometry::kept() const {
   KeptPairing kept;
-  for (const FarMaster& one : left_out_.far) kept.left_out.insert(kept.left_out.end(), {one.patch, one.master});
-  for (std::size_t patch = 0; patch < left_out_.no_walls.size(); ++patch)
-    if (left_out_.no_walls[patch] != 0) kept.no_walls.push_back(static_cast<std::int32_t>(patch));
+  for (const PatchMaster& one : left_out_.far) kept.left_out.insert(kept.left_out.end(), {one.patch, one.master});
+  for (const PatchMaster& one : left_out_.in_front) kept.in_front.insert(kept.in_front.end(), {one.patch, one.master});
   for (const Zone& zone : zones_) {
     if (!zone.goes_on_flush) continue;
     const std::int32_t patch = contact_.slaves[zone.slaves.front()].patch;
@@ -64,12 +63,14 @@ void ContactGeometry::keep(const KeptPairing& kept) {
     const auto at = there.find(master);
     return at == there.end() ? -1 : at->second;
   };
-  LeftOut left_out{{}, std::vector<std::uint8_t>(n_patches(), 0)};
-  for (std::size_t i = 0; i + 1 < kept.left_out.size(); i += 2)
-    if (const Zone* const zone = zone_of(kept.left_out[i]); zone && place(zone, kept.left_out[i + 1]) >= 0)
-      left_out.far.insert({kept.left_out[i], kept.left_out[i + 1]});
-  for (const std::int32_t patch : kept.no_walls)
-    if (zone_of(patch)) left_out.no_walls[static_cast<std::size_t>(patch)] = 1;
+  const auto known = [&](const std::vector<std::int32_t>& pairs) {
+    std::set<PatchMaster> found;
+    for (std::size_t i = 0; i + 1 < pairs.size(); i += 2)
+      if (const Zone* const zone = zone_of(pairs[i]); zone && place(zone, pairs[i + 1]) >= 0)
+        found.insert({pairs[i], pairs[i + 1]});
+    return found;
+  };
+  LeftOut left_out{known(kept.left_out), known(kept.in_front)};
   left_out_at_rest_ = left_out;
   leave_out(std::move(left_out));
   for (std::size_t i = 0; i + 2 < kept.flush.size(); i += 3) {

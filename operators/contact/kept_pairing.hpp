@@ -12,11 +12,11 @@ namespace lacon {
 
 struct KeptPairing {
   std::vector<std::int32_t> left_out;  ///< choose_masters(): patch and master, a cell of the mesh, of each
-  std::vector<std::int32_t> no_walls;  ///< likewise: patches that see none
+  std::vector<std::int32_t> in_front;  ///< likewise: patch and the first master of a face that is in front of it
   std::vector<std::int32_t> flush;     ///< go_on_where_flush(): a patch of the zone, a master (-1: the zone alone), its edges
 };
 
-/// What is not empty of it, as data sets `left_out`, `no_walls` and `flush` (docs/structures.md).
+/// What is not empty of it, as data sets `left_out`, `in_front` and `flush` (docs/structures.md).
 void write(const hdf5::Group& group, const KeptPairing& kept);
 /// Empty where there is none.
 KeptPairing read_kept_pairing(const hdf5::Group& group);

@@ -10,8 +10,9 @@
 // one is left out, and the patch is one that its master covers in part. That is decided where bodies are at rest or nearly in
 // balance, and holds in between: gaps must not leap from iterate to iterate. A master is far behind where a leap parts the gaps
 // at its points from those at all points that are nearer: slopes have none. Walls a patch sees at a grazing angle, far up, and
-// now more of them and now less. So they do not count as nearer, and a patch that has a master in front of it sees none,
-// neither those that it would see now nor those that it would see on the way: their slope is that at rest.
+// now more of them and now less. So they do not count as nearer, and a patch that has a face of the master in front of it sees
+// no walls but its own, neither those that it would see now nor those that it would see on the way: their slope is that at
+// rest. A round goes on in one face, and what is steep of it is seen.
 
 namespace lacon {
 namespace {
@@ -20,8 +21,14 @@ constexpr double far_behind = 0.5;      // of the size of the patch
 constexpr double still_far = 0.45;      // likewise, of what is left out already
 constexpr double deepest_nearest = 1;   // likewise: nothing is behind a master that a patch lies so deep in
 constexpr double least_nearest = 2e-2;  // of the patch: what the nearer ones cover, so that it can take contact there
+constexpr double still_nearest = 1e-2;  // likewise, of a face that was in front already
 constexpr double round_off = 1e-9;      // of the patch: what less is seen of by accident
 constexpr int most_levels = 4;          // of masters that lie one behind the other
+
+/// What belongs to one patch.
+auto of_patch(const std::set<PatchMaster>& all, std::int32_t patch) {
+  return std::ranges::subrange(all.lower_bound({patch, -1}), all.lower_bound({patch + 1, -1}));
+}
 
 }  // namespace
 
@@ -43,27 +50,31 @@ LeftOut ContactGeometry::to_leave_out(const LeftOut& before) const {
   for (const Cell& cell : cells_)
     if (counts(cell) && !is_wall(cell, coordinates_)) seen[patch_of(cell)].push_back(&cell);
 
-  LeftOut found{{}, std::vector<std::uint8_t>(n_patches(), 0)};
+  LeftOut found;
   for (auto& [patch, cells] : seen) {
     std::ranges::stable_sort(cells, {}, &Cell::least);
+    const auto number = static_cast<std::int32_t>(patch);
     double most = cells[0]->most, covered = 0;
     std::set<std::int32_t> near, far;
+    std::map<std::int32_t, double> covered_by;  // faces
     for (const Cell* const cell : cells) {
-      const FarMaster one{static_cast<std::int32_t>(patch), cell->master};
-      if (!far.empty() || cell->least - most > (before.far.contains(one) ? still_far : far_behind) * size_[patch]) {
+      if (!far.empty() ||
+          cell->least - most > (before.far.contains({number, cell->master}) ? still_far : far_behind) * size_[patch]) {
         far.insert(cell->master);
         continue;
       }
       near.insert(cell->master);
       most = std::max(most, cell->most);
       covered += cell->measure;
+      covered_by[face_of(*cell)] += cell->measure;
     }
-    const bool had_none = patch < before.no_walls.size() && before.no_walls[patch] != 0;
-    found.no_walls[patch] =
-        cells[0]->least >= -deepest_nearest * size_[patch] && covered >= (had_none ? 0.5 : 1) * least_nearest * whole_[patch];
+    for (const auto& [face, part] : covered_by)
+      if (cells[0]->least >= -deepest_nearest * size_[patch] &&
+          part >= (before.in_front.contains({number, face}) ? still_nearest : least_nearest) * whole_[patch])
+        found.in_front.insert({number, face});
     if (covered < least_nearest * whole_[patch] || !may_see_far(patch)) continue;
     for (const std::int32_t master : far)
-      if (!near.contains(master)) found.far.insert({static_cast<std::int32_t>(patch), master});
+      if (!near.contains(master)) found.far.insert({number, master});
   }
   return found;
 }
@@ -73,13 +84,19 @@ bool ContactGeometry::is_wall(const Cell& cell, std::span<const double> coordina
   return -dot(normal(contact_.slaves[cell.slave].cell), normal(cell.master)) < wall_cosine;
 }
 
-bool ContactGeometry::other_walls(std::span<const std::uint8_t> no_walls) const {
-  const auto had_none = [&](std::size_t patch) { return patch < left_out_.no_walls.size() && left_out_.no_walls[patch] != 0; };
-  for (std::size_t patch = 0; patch < no_walls.size() && rejected_[static_cast<std::size_t>(Rejection::wall)] > 0; ++patch)
-    if (no_walls[patch] == 0 && had_none(patch)) return true;
+std::int32_t ContactGeometry::face_of(const Cell& cell) const {
+  const Zone& zone = zones_[static_cast<std::size_t>(zone_of_[contact_.slaves[cell.slave].patch])];
+  return zone.masters[zone.faces[cell.place]];
+}
+
+bool ContactGeometry::other_walls(const std::set<PatchMaster>& in_front) const {
+  const std::set<PatchMaster>& now = left_out_.in_front;
+  for (std::int32_t patch = 0; patch < static_cast<std::int32_t>(n_patches()); ++patch)
+    if (beside_walls_[patch] != 0 && !std::ranges::equal(of_patch(now, patch), of_patch(in_front, patch))) return true;
   return std::ranges::any_of(cells_, [&](const Cell& cell) {
-    const auto patch = static_cast<std::size_t>(contact_.slaves[cell.slave].patch);
-    return no_walls[patch] != 0 && !had_none(patch) && is_wall(cell, rest_);
+    const std::int32_t patch = contact_.slaves[cell.slave].patch;
+    const auto there = of_patch(in_front, patch);
+    return !there.empty() && !in_front.contains({patch, face_of(cell)}) && is_wall(cell, rest_);
   });
 }
 
@@ -87,22 +104,20 @@ bool ContactGeometry::choose_masters() {
   if (contact_.frozen_gap) return false;
   const LeftOut before = left_out_;
   if (!before.far.empty()) {
-    leave_out({{}, before.no_walls});
+    leave_out({{}, before.in_front});
     look();
   }
-  LeftOut all, more = to_leave_out(before);
-  all.no_walls = more.no_walls;
+  LeftOut more = to_leave_out(before), all{{}, more.in_front};
   bool others = false;
   for (int level = 0; level < most_levels; ++level) {
-    const bool walls = other_walls(all.no_walls);
-    const bool far = !more.far.empty();
+    const bool walls = other_walls(all.in_front), far = !more.far.empty();
     others = others || walls;
     all.far.merge(more.far);
     leave_out(all);
     if (!far && !walls) break;
     look();
     more = to_leave_out(before);  // what was hidden by those
-    for (std::size_t patch = 0; patch < n_patches(); ++patch) all.no_walls[patch] |= more.no_walls[patch];
+    all.in_front.merge(more.in_front);
   }
   if (coordinates_ == rest_) left_out_at_rest_ = left_out_;
   return others || left_out_.far != before.far;
@@ -110,21 +125,25 @@ bool ContactGeometry::choose_masters() {
 
 void ContactGeometry::leave_out(LeftOut what) {
   left_out_ = std::move(what);
-  const std::set<FarMaster>& far = left_out_.far;
   for (Zone& zone : zones_) {
     zone.left_out.clear();
-    zone.no_walls.clear();
-    const std::map<std::int32_t, std::int32_t> place = far.empty() ? std::map<std::int32_t, std::int32_t>() : zone.places();
+    zone.in_front = {};
+    const bool any = !left_out_.far.empty() || !left_out_.in_front.empty();
+    const std::map<std::int32_t, std::int32_t> place = any ? zone.places() : std::map<std::int32_t, std::int32_t>();
     for (std::size_t s = 0; s < zone.slaves.size(); ++s) {
       const std::int32_t patch = contact_.slaves[zone.slaves[s]].patch;
-      if (!left_out_.no_walls.empty()) zone.no_walls.push_back(left_out_.no_walls[static_cast<std::size_t>(patch)]);
-      for (auto one = far.lower_bound({patch, -1}); one != far.end() && one->patch == patch; ++one)
-        if (const auto master = place.find(one->master); master != place.end())
+      for (const PatchMaster& one : of_patch(left_out_.far, patch))
+        if (const auto master = place.find(one.master); master != place.end())
           zone.left_out.push_back({static_cast<std::int32_t>(s), master->second});
+      std::vector<std::int32_t> in_front;
+      for (const PatchMaster& one : of_patch(left_out_.in_front, patch))
+        if (const auto master = place.find(one.master); master != place.end()) in_front.push_back(zone.faces[master->second]);
+      zone.in_front.push_back(in_front);
     }
     std::ranges::sort(zone.left_out);
     zone.pairing.left_out = zone.left_out;
-    zone.pairing.no_walls = zone.no_walls;
+    zone.pairing.in_front = &zone.in_front;
+    zone.pairing.faces = zone.faces;
   }
 }
 

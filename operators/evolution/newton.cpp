@@ -272,7 +272,7 @@ int Newton::iterate(double instant, StaticState& state, const std::function<void
     choice_.note_statuses(line.status_changes, equilibrium_.flows(previous));
     assemble(state, previous, options_.matrix);
     judge(state, previous, increment, line);
-    line.pairs_anew = iteration < last && pairs_anew(line, state);
+    line.pairs_anew = iteration < last && pairs_anew(line, state, previous);
     line.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     report(line);
     course_.add(line.longest, line.worst_dof);
@@ -390,12 +390,17 @@ std::vector<Status> Newton::wanted_statuses(const StaticState& state, IterationR
   return patches.status;
 }
 
-bool Newton::pairs_anew(const IterationReport& line, const StaticState& state) {
+bool Newton::pairs_anew(const IterationReport& line, const StaticState& state, const StaticState& previous) {
   if (!contact() || line.status_changes > 0 || line.longest_share >= near_balance) return false;
   bool anew = false;
   // once as soon as it is near, and where it would be accepted
   if (times_left_out_ < most_times_anew && (!std::exchange(looked_far_, true) || line.in_equilibrium())) {
-    anew = equilibrium_.choose_masters();
+    const std::span<const double> gaps = contact()->geometry().gaps();
+    const std::vector<double> before(gaps.begin(), gaps.end());
+    if (equilibrium_.choose_masters()) {
+      anew = contact()->presses_otherwise(before, state.patches);
+      if (!anew) assemble(state, previous, options_.matrix);
+    }
     times_left_out_ += anew ? 1 : 0;
   }
   if (times_cut_ < most_times_anew && contact()->geometry().keeps_cuts()) {

@@ -153,8 +153,8 @@ class Newton {
   /// Near balance, pair as the present geometry asks for: masters that are far behind others are left out, those that no
   /// longer are come back; cuts of slave cells that iterates asked for, which the equilibrium does not, would make it another
   /// one on another way to it. Either twice in an instant, for what is paired anew has another equilibrium.
-  /// @return whether anything has changed
-  bool pairs_anew(const IterationReport& line, const StaticState& state);
+  /// @return whether contact has changed
+  bool pairs_anew(const IterationReport& line, const StaticState& state, const StaticState& previous);
   /// ContactState::keep_cover; EVOLUTION_50 says so once in a zone.
   void keep_cover(double instant, std::size_t patch);
   /// EVOLUTION_50 of patches that keep it in a state that is accepted: iterates far from it may have asked for others.

@@ -322,7 +322,7 @@ TEST(ContactGeometry, MastersFarBehindOthersOfAPatchAreLeftOut) {
     EXPECT_EQ(geometry.kept().left_out, out);
   }
   ContactGeometry taken_up(step.skins.mesh, step.skins.model, step.skins.contact, registry);
-  taken_up.keep({.left_out = out, .no_walls = {}, .flush = {}});
+  taken_up.keep({.left_out = out, .in_front = {}, .flush = {}});
   taken_up.update(step.skins.displacement);
   geometry.update(step.skins.displacement);
   for (std::size_t p = 0; p < geometry.n_patches(); ++p) EXPECT_EQ(taken_up.gap(p), geometry.gap(p));
@@ -406,7 +406,7 @@ TEST(ContactGeometry, WallsBesideAMasterInFrontAreLeftOut) {
 
     // another computation goes on with it, and an instant that begins again
     const KeptPairing kept = geometry.kept();
-    EXPECT_FALSE(kept.no_walls.empty());
+    EXPECT_FALSE(kept.in_front.empty());
     ContactGeometry taken_up(slope.skins.mesh, slope.skins.model, slope.skins.contact, registry);
     taken_up.keep(kept);
     for (ContactGeometry* const one : {&geometry, &taken_up}) {
@@ -455,7 +455,7 @@ TEST(ContactGeometry, MastersGoOnWhereFreeFacesAreFlush) {
   const std::vector<std::int32_t> flush = geometry.kept().flush;
   EXPECT_EQ(flush.size(), 3 * (1 + 8U));  // eight of nine squares, one of which is two triangles, have an edge at a side
   taken_up.rest_at(slave_moved(0.01));    // where nothing is flush
-  taken_up.keep({.left_out = {}, .no_walls = {}, .flush = flush});
+  taken_up.keep({.left_out = {}, .in_front = {}, .flush = flush});
   taken_up.update(slave_moved(1e-4));
   EXPECT_EQ(taken_up.kept().flush, flush);
   EXPECT_NEAR(covered(taken_up), 1, 1e-12);

@@ -185,6 +185,38 @@ TEST(PairingInSpace, LeavesOutCouplesThatItIsTold) {
   EXPECT_EQ(found.rejected, (std::vector<RejectedCouple>{{1, 0, Rejection::far_behind}}));
 }
 
+TEST(Faces, EndWhereASkinEndsOrTurnsByMoreThanFortyDegrees) {
+  for (const double turn : {-41.0, -39.0, 39.0, 41.0}) {
+    Skin chain;
+    const double angle = turn * std::numbers::pi / 180;
+    add_chain(
+        chain,
+        [&](double t) {
+          return t < 2 ? Point{t, 0} : Point{2 + (t - 2) * std::cos(angle), (t - 2) * std::sin(angle)};
+        },
+        {0, 1, 2, 3, 4}, Kind::linear);
+    add_chain(
+        chain,
+        [](double t) {
+          return Point{t, 5.0};
+        },
+        {0, 1}, Kind::linear);
+    const bool folds = std::abs(turn) > 40;
+    EXPECT_EQ(faces(chain.view()), (std::vector<std::int32_t>{0, 0, folds ? 2 : 0, folds ? 2 : 0, 4})) << turn;
+
+    std::mt19937 random(4);
+    Skin3 skin = mesh(
+        {4, 2, CellType::QUAD8, false},
+        [&](double x, double y) {
+          return x < 0.5 ? Vec3{x, y, 0} : Vec3{0.5 + (x - 0.5) * std::cos(angle), y, (x - 0.5) * std::sin(angle)};
+        },
+        random);
+    const std::vector<std::int32_t> found = faces(skin.view());
+    EXPECT_EQ(std::set(found.begin(), found.end()).size(), folds ? 2U : 1U) << turn;
+    EXPECT_EQ(std::ranges::count(found, 0), folds ? 4 : 8) << turn;
+  }
+}
+
 /// Masters below slaves, which lean by `leans` degrees now and by `leant` at rest.
 TEST(Pairing, LeavesOutWhatWasAWallAtRest) {
   const auto turned = [](double degrees) {
@@ -193,7 +225,10 @@ TEST(Pairing, LeavesOutWhatWasAWallAtRest) {
       return Point{0.5 + t * std::cos(angle), -2 + t * std::sin(angle)};
     };
   };
-  const std::vector<std::uint8_t> none{1}, all{0};
+  Ragged<std::int32_t> own, other;  // faces in front
+  own.push_back(std::array{0});
+  other.push_back(std::array{1});
+  const std::array faces{0};
   for (const double leans : {50.0, 70.0})
     for (const double leant : {59.0, 61.0}) {
       Skin slave, master, rest;
@@ -208,11 +243,11 @@ TEST(Pairing, LeavesOutWhatWasAWallAtRest) {
       Surface skin = master.view();
       skin.rest = rest.view().coordinates;
       const bool wall = leant > 60;
-      EXPECT_EQ(pair(slave.view(), skin, {.no_walls = all}).cells.size(), 1U);
-      const Pairing found = pair(slave.view(), skin, {.no_walls = none});
+      EXPECT_EQ(pair(slave.view(), skin, {.in_front = &own, .faces = faces}).cells.size(), 1U);
+      const Pairing found = pair(slave.view(), skin, {.in_front = &other, .faces = faces});
       EXPECT_EQ(found.cells.size(), wall ? 0U : 1U) << leans << ' ' << leant;
       EXPECT_EQ(found.count(Rejection::wall), wall ? 1 : 0);
-      EXPECT_EQ(is_left_out({.no_walls = none}, slave.view(), 0, skin, 0), wall);
+      EXPECT_EQ(is_left_out({.in_front = &other, .faces = faces}, slave.view(), 0, skin, 0), wall);
     }
 }
 
@@ -237,8 +272,11 @@ TEST(PairingInSpace, LeavesOutWhatWasAWallAtRest) {
       Surface skin = master.view();
       skin.rest = rest.view().coordinates;
       const Pairing before = pair(slave.view(), skin);
-      const std::vector<std::uint8_t> second{0, 1};
-      const Pairing found = pair(slave.view(), skin, {.no_walls = second});
+      Ragged<std::int32_t> second;
+      second.push_back(std::vector<std::int32_t>());
+      second.push_back(std::array{1});
+      const std::vector<std::int32_t> faces(master.view().size(), 0);
+      const Pairing found = pair(slave.view(), skin, {.in_front = &second, .faces = faces});
       const auto of_second = [](const Pairing& one) { return std::ranges::count(one.cells.slave, 1); };
       ASSERT_GT(of_second(before), 0);
       EXPECT_EQ(of_second(found), leant > 60 ? 0 : of_second(before));
