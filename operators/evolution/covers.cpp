@@ -10,8 +10,8 @@ namespace lacon {
 void Newton::keep_lost_masters(double instant, const std::vector<Status>& before, const std::vector<Status>& wanted,
                                const StaticState& state) {
   if (!contact() || problem_.contact->frozen_gap) return;
-  const auto lost =
-      lost_masters_.note(before, wanted, state.patches.lambda, [&](std::size_t patch) { return contact()->is_covered(patch); });
+  const auto lost = lost_masters_.note(before, wanted, state.patches.lambda, statuses_.keeps(),
+                                       [&](std::size_t patch) { return contact()->is_covered(patch); });
   for (const std::size_t patch : lost) {
     if (contact()->keeps_cover(patch))
       throw InstantFailure(about_cover("EVOLUTION_51", instant, patch), {.depends_on_step = true});

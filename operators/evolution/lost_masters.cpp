@@ -3,12 +3,12 @@
 namespace lacon {
 
 std::vector<std::size_t> LostMasters::note(const std::vector<Status>& before, const std::vector<Status>& wanted,
-                                           std::span<const double> lambda,
+                                           std::span<const double> lambda, bool waits,
                                            const std::function<bool(std::size_t patch)>& is_covered) {
   std::vector<std::size_t> again;
   for (std::size_t p = 0; p < before.size(); ++p) {
     // an edge that slides off loses its master once
-    if (before[p] != Status::active || wanted[p] == Status::active || !(lambda[p] < 0) || is_covered(p)) continue;
+    if (before[p] != Status::active || wanted[p] == Status::active || !(lambda[p] < 0 || waits) || is_covered(p)) continue;
     if (++times_[p] > 1) again.push_back(p);
   }
   return again;

@@ -20,10 +20,13 @@ class LostMasters {
  public:
   void start_instant() { times_.clear(); }
   /// An iteration ends. @param before statuses in it  @param wanted those that follow  @param lambda pressures, negative
+  /// @param waits statuses wait for their equilibrium: on the way there an active patch may pull, and is in contact all the
+  /// same
   /// @param is_covered whether a master still covers enough of a patch
   /// @return patches that have pressed and lost their master, not for the first time in this instant
   std::vector<std::size_t> note(const std::vector<Status>& before, const std::vector<Status>& wanted,
-                                std::span<const double> lambda, const std::function<bool(std::size_t patch)>& is_covered);
+                                std::span<const double> lambda, bool waits,
+                                const std::function<bool(std::size_t patch)>& is_covered);
   /// From now on losses of a patch count anew.
   void forget(std::size_t patch) { times_.erase(patch); }
 
