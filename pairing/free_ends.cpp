@@ -1,25 +1,32 @@
 #include "lacon/pairing/free_ends.hpp"
 
 #include <algorithm>
+#include <array>
 #include <map>
 #include <numeric>
 #include <utility>
 
+#include "lacon/pairing/normals.hpp"
 #include "lacon/structures/vector.hpp"
 
 namespace lacon {
 namespace {
 
-constexpr double free_turn = 0.5;   // cosine of the angle between two cells from which on their ends are free
-constexpr double face_turn = 0.77;  // likewise, from which on they are two faces: of a chamfer, not of a round that is coarse
+constexpr double free_turn = 0.5;    // cosine of the angle between two cells from which on their ends are free
+constexpr double face_turn = 0.766;  // likewise, from which on they are two faces: of a chamfer, not of a round that is coarse
 
 struct End {
   std::size_t cell;
   int number;
 };
 
-/// Of a skin: the cells at each edge, in the plane at each node, and the cosine of the angle between them; -1 where they are
-/// not two.
+/// What two cells do at an edge, in the plane at a node, that they share.
+struct Fold {
+  double cosine = -1;  ///< of the angle between them; -1 where they are not two
+  bool convex = true;  ///< they turn away from what is in front of them
+};
+
+/// The cells at each edge of a skin, in the plane at each node, and their fold.
 template <class Visit>
 void for_ends(const Surface& skin, const Visit& visit) {
   std::map<std::pair<std::int32_t, std::int32_t>, std::vector<End>> cells_at;  // by nodes: of an edge, or twice that of an end
@@ -31,17 +38,43 @@ void for_ends(const Surface& skin, const Visit& visit) {
       cells_at[std::minmax(first, second)].push_back({cell, i});
     }
   }
-  const auto normal = [&](std::size_t cell) { return normal_of(skin.types[cell], skin.nodes[cell], skin.coordinates); };
-  for (const auto& [nodes, around] : cells_at)
-    visit(around, around.size() == 2 ? dot(normal(around[0].cell), normal(around[1].cell)) : -1);
+  // curved cells that go on smoothly do so there, whatever their chords do
+  const auto normal = [&](const End& end) {
+    const CellType type = skin.types[end.cell];
+    const catalog::CellRow& row = catalog::cell(type);
+    std::vector<double> points;
+    for (const std::int32_t node : skin.nodes[end.cell]) {
+      const auto place = skin.coordinates.subspan(3 * static_cast<std::size_t>(node), 3);
+      points.insert(points.end(), place.begin(), place.end());
+    }
+    std::array<double, 2> at{};  // in reference coordinates: the end, in space the middle of the edge
+    for (int d = 0; d < row.dimension; ++d) {
+      const auto of = [&](int vertex) { return row.nodes[static_cast<std::size_t>(vertex * row.dimension + d)]; };
+      at[static_cast<std::size_t>(d)] =
+          skin.dimension == 2 ? of(end.number) : 0.5 * (of(end.number) + of((end.number + 1) % row.n_vertices));
+    }
+    const Vec3 found = cell_normal(type, points, std::span(at).first(static_cast<std::size_t>(row.dimension)));
+    return norm(found) > 0 ? found / norm(found) : Vec3{};
+  };
+  const auto at = [&](std::int32_t node) { return vector_at(skin.coordinates.data() + 3 * std::ptrdiff_t{node}); };
+  const auto middle = [&](std::size_t cell) {
+    Vec3 sum{};
+    for (const std::int32_t node : skin.nodes[cell]) sum = sum + at(node);
+    return sum / static_cast<double>(skin.nodes[cell].size());
+  };
+  const auto fold = [&](const std::pair<std::int32_t, std::int32_t>& nodes, const End& one, const End& other) {
+    const Vec3 n = normal(one), m = normal(other), place = 0.5 * (at(nodes.first) + at(nodes.second));
+    return Fold{dot(n, m), dot(n, middle(other.cell) - place) + dot(m, middle(one.cell) - place) < 0};
+  };
+  for (const auto& [nodes, around] : cells_at) visit(around, around.size() == 2 ? fold(nodes, around[0], around[1]) : Fold());
 }
 
 }  // namespace
 
 std::vector<std::uint8_t> free_ends(const Surface& skin) {
   std::vector<std::uint8_t> ends(skin.size(), 0);
-  for_ends(skin, [&](const std::vector<End>& around, double cosine) {
-    if (cosine < free_turn)
+  for_ends(skin, [&](const std::vector<End>& around, const Fold& fold) {
+    if (fold.cosine < free_turn)
       for (const End& end : around) ends[end.cell] |= static_cast<std::uint8_t>(1U << end.number);
   });
   return ends;
@@ -57,8 +90,8 @@ std::vector<std::int32_t> faces(const Surface& skin) {
     }
     return static_cast<std::int32_t>(cell);
   };
-  for_ends(skin, [&](const std::vector<End>& around, double cosine) {
-    if (cosine < face_turn) return;
+  for_ends(skin, [&](const std::vector<End>& around, const Fold& fold) {
+    if (fold.convex && fold.cosine < face_turn) return;
     const std::int32_t one = of(around[0].cell), other = of(around[1].cell);
     first[static_cast<std::size_t>(std::max(one, other))] = std::min(one, other);
   });

@@ -132,8 +132,7 @@ std::optional<Rejection> left_out(const PairingOptions& options, const Surface& 
   if (!options.in_front) return std::nullopt;
   const auto in_front = (*options.in_front)[slave_cell];
   if (in_front.empty() || std::ranges::count(in_front, options.faces[master_cell]) > 0) return std::nullopt;
-  const double cosine = -dot(normal_at_rest(slave, slave_cell), normal_at_rest(master, master_cell));
-  return cosine < wall_cosine ? std::optional(Rejection::wall) : std::nullopt;
+  return was_wall(slave, slave_cell, master, master_cell) ? std::optional(Rejection::wall) : std::nullopt;
 }
 
 bool within_limits(const PairingOptions& options, double largest_gap, const CoupleSize& couple) {
@@ -206,9 +205,8 @@ bool comes_before(const Surface& masters, const Candidate& one, const Candidate&
 
 }  // namespace detail
 
-bool is_left_out(const PairingOptions& options, const Surface& slave, std::size_t slave_cell, const Surface& master,
-                 std::size_t master_cell) {
-  return detail::left_out(options, slave, slave_cell, master, master_cell).has_value();
+bool was_wall(const Surface& slave, std::size_t slave_cell, const Surface& master, std::size_t master_cell) {
+  return is_wall(detail::normal_at_rest(slave, slave_cell), detail::normal_at_rest(master, master_cell));
 }
 
 double steep_cosine(const PairingOptions& options) {

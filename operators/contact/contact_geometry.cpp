@@ -134,6 +134,7 @@ ContactGeometry::ContactGeometry(const Mesh& mesh, const Model& model, const Con
   gap_.assign(n, 0.0);
   size_ = weight_ = covered_ = whole_ = coverage_ = smallest_gap_ = largest_gap_ = gap_;
   straight_.assign(n, 1);
+  beside_walls_.assign(n, 0);
   zone_of_.assign(n, -1);
   rejected_.assign(n_rejections, 0);
 
@@ -151,6 +152,7 @@ ContactGeometry::ContactGeometry(const Mesh& mesh, const Model& model, const Con
     zone.slave.rest = zone.master.rest = rest_;
     zone.slave.body = zone.master.body = body_;
     for (const std::int32_t cell : data.slave) zone.slaves.push_back(slave_of_cell.at(cell));
+    for (std::size_t i = 0; i < zone.masters.size(); ++i) zone.places[zone.masters[i]] = static_cast<std::int32_t>(i);
     for (const std::int32_t patch : data.patches) zone_of_[patch] = static_cast<std::int32_t>(zones_.size());
     if (!contact.frozen_gap) {
       zone.pairing.fading = fading;
@@ -159,6 +161,7 @@ ContactGeometry::ContactGeometry(const Mesh& mesh, const Model& model, const Con
       zone.free_ends = free_ends(zone.master);
       zone.master.free_ends = zone.free_ends;
       zone.faces = faces(zone.master);
+      zone.one_face = std::ranges::all_of(zone.faces, [](std::int32_t face) { return face == 0; });
     }
     zones_.push_back(std::move(zone));
   }
@@ -295,7 +298,7 @@ void ContactGeometry::look(std::vector<ZonePairing>* records) {
   std::fill(smallest_gap_.begin(), smallest_gap_.end(), std::numeric_limits<double>::infinity());
   std::fill(largest_gap_.begin(), largest_gap_.end(), -std::numeric_limits<double>::infinity());
   std::fill(straight_.begin(), straight_.end(), 1);
-  beside_walls_.assign(n_patches(), 0);
+  std::fill(beside_walls_.begin(), beside_walls_.end(), 0);
   if (records) records->clear();
   normals_.resize(zones_.size());
   if (std::exchange(cuts_end_, false) && mesh_.dimension == 3)

@@ -43,6 +43,7 @@ struct PatchMaster {
 
 /// What decides on the masters that patches do not see (left_out.cpp).
 struct LeftOut {
+  bool operator==(const LeftOut&) const = default;
   std::set<PatchMaster> far;       ///< masters that are left out
   std::set<PatchMaster> in_front;  ///< the first masters of faces that are in front of a patch, which sees no walls of others
 };
@@ -61,13 +62,13 @@ class ContactGeometry {
     std::vector<std::array<std::int32_t, 4>> neighbours;  ///< edge_neighbours() of the master
     std::vector<std::uint8_t> free_ends;                  ///< Surface::free_ends of the master
     std::vector<Couple> left_out;                         ///< PairingOptions::left_out
+    std::map<std::int32_t, std::int32_t> places;          ///< in `master` of cells of the mesh
     std::vector<std::int32_t> faces;                      ///< PairingOptions::faces
+    bool one_face = true;                                 ///< of the master: there are no walls
     Ragged<std::int32_t> in_front;                        ///< PairingOptions::in_front
     Surface slave, master;
     bool current_jacobian = false;
     PairingOptions pairing;
-
-    std::map<std::int32_t, std::int32_t> places() const;  ///< in `master` of cells of the mesh
   };
   /// A contact cell with what its kernel gave.
   struct Cell {
@@ -112,9 +113,10 @@ class ContactGeometry {
   std::vector<std::int32_t> cuts() const;
   void set_cuts(std::span<const std::int32_t> cuts);
 
-  /// Masters that a patch sees in part, half its size or more behind the others of it, and walls beside such others
-  /// (left_out.cpp), are left out from now on, until the patch sees them otherwise: a gap that is an average over both would
-  /// keep it open. Contact cells are those of the last update() without them. @return whether others are left out than before
+  /// Masters that a patch sees in part, half its size or more behind the others of it, and walls beside a face of the master
+  /// that is in front of it (left_out.cpp), are left out from now on, until the patch sees them otherwise: a gap that is an
+  /// average over both would keep it open. Contact cells are those of the last update() without them.
+  /// @return whether the patches see others than before
   bool choose_masters();
 
   /// Of a zone a slave cell that has gone through a master since the bodies were at rest and lies deep behind it, or beyond the
@@ -167,6 +169,7 @@ class ContactGeometry {
   double smallest_gap(std::size_t patch) const { return smallest_gap_[patch]; }
   /// Length of a patch, in space the root of its area, at the initial geometry.
   const std::vector<double>& sizes() const { return size_; }
+  std::span<const double> measures() const { return covered_; }          ///< covered(), of all patches
   double covered(std::size_t patch) const { return covered_[patch]; }    ///< measure, current geometry
   double whole(std::size_t patch) const { return whole_[patch]; }        ///< measure, current geometry
   double coverage(std::size_t patch) const { return coverage_[patch]; }  ///< covered over whole
@@ -181,14 +184,16 @@ class ContactGeometry {
   void look(std::vector<ZonePairing>* records = nullptr);
   /// What is to be left out of what `cells_` has. @param before what is or was
   LeftOut to_leave_out(const LeftOut& before) const;
-  bool is_wall(const Cell& cell, std::span<const double> coordinates) const;
+  bool is_wall_of(const Cell& cell, std::span<const double> coordinates) const;
+  const Zone& zone_of(const Cell& cell) const;
   /// The first master of the face that a contact cell lies on.
   std::int32_t face_of(const Cell& cell) const;
   /// Whether other faces in front, instead of those as now, may change `cells_`.
   bool other_walls(const std::set<PatchMaster>& in_front) const;
   /// From the next look() on.
   void leave_out(LeftOut what);
-  /// At an edge of a master the skin ends, or goes on with what a slave cell does not see. Cells of the zone
+  /// Whether at an edge of a master the skin ends for a slave cell, or goes on with what is far behind, or with a wall.
+  /// @param slave, master cells of the zone
   bool ends_at(const Zone& zone, std::size_t slave, std::size_t master, int edge) const;
   /// The bodies are at rest. @param same_rest where they last were: instants begin again as they did
   void keep_left_out(bool same_rest);

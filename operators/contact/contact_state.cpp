@@ -291,9 +291,10 @@ std::vector<double> ContactState::gaps_over_size() const {
   return gaps;
 }
 
-bool ContactState::presses_otherwise(std::span<const double> before, const Patchwise& patches) const {
+bool ContactState::presses_otherwise(std::span<const double> gaps, std::span<const double> covered,
+                                     const Patchwise& patches) const {
   for (std::size_t p = 0; p < n_patches(); ++p)
-    if (patches.status[p] == Status::active && geometry_.gap(p) != before[p]) return true;
+    if (patches.status[p] == Status::active && (geometry_.gap(p) != gaps[p] || geometry_.covered(p) != covered[p])) return true;
   Patchwise now = patches;
   return update_statuses(now) > 0;
 }

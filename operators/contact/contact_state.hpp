@@ -196,8 +196,9 @@ class ContactState {
   double constraint_residual(const Patchwise& patches) const;
   /// Average gaps over h, (patches); 0 of those of which too little is covered to take contact.
   std::vector<double> gaps_over_size() const;
-  /// Whether patches that press have other gaps than before, or statuses change. @param before ContactGeometry::gaps() then
-  bool presses_otherwise(std::span<const double> before, const Patchwise& patches) const;
+  /// Whether patches that press have other gaps or another cover than before, or statuses change.
+  /// @param gaps, covered ContactGeometry::gaps() and measures() then
+  bool presses_otherwise(std::span<const double> gaps, std::span<const double> covered, const Patchwise& patches) const;
   /// The part of an increment, which has led to the present geometry, where the first open patch has come `depth` sizes deep
   /// into its master; 1 where none lies deeper than `limit` that did not when it began. @param before gaps_over_size() there
   double part_to_depth(const Patchwise& patches, std::span<const double> before, double limit, double depth) const;

@@ -231,7 +231,11 @@ ContactGeometry::Variation ContactGeometry::variation(std::size_t z, const Pairi
 
 bool ContactGeometry::ends_at(const Zone& zone, std::size_t slave, std::size_t master, int edge) const {
   const std::int32_t behind = zone.neighbours[master][static_cast<std::size_t>(edge)];
-  return behind < 0 || is_left_out(zone.pairing, zone.slave, slave, zone.master, static_cast<std::size_t>(behind));
+  if (behind < 0) return true;
+  const Couple couple{static_cast<std::int32_t>(slave), behind};
+  if (std::ranges::binary_search(zone.left_out, couple)) return true;
+  const auto other = static_cast<std::size_t>(behind);
+  return zone.faces[other] != zone.faces[master] && was_wall(zone.slave, slave, zone.master, other);
 }
 
 void ContactGeometry::chain_normals(std::size_t z, std::size_t slave, Variation& variation) const {

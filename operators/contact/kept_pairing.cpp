@@ -30,12 +30,6 @@ KeptPairing read_kept_pairing(const std::filesystem::path& field) {
 
 std::filesystem::path path_of_masters(std::filesystem::path field) { return field.replace_extension(".masters.h5"); }
 
-std::map<std::int32_t, std::int32_t> ContactGeometry::Zone::places() const {
-  std::map<std::int32_t, std::int32_t> all;
-  for (std::size_t i = 0; i < masters.size(); ++i) all[masters[i]] = static_cast<std::int32_t>(i);
-  return all;
-}
-
 KeptPairing ContactGeometry::kept() const {
   KeptPairing kept;
   for (const PatchMaster& one : left_out_.far) kept.left_out.insert(kept.left_out.end(), {one.patch, one.master});
@@ -56,21 +50,22 @@ void ContactGeometry::keep(const KeptPairing& kept) {
     const bool here = patch >= 0 && static_cast<std::size_t>(patch) < n_patches() && zone_of_[patch] >= 0;
     return here ? &zones_[zone_of_[patch]] : nullptr;
   };
-  std::map<const Zone*, std::map<std::int32_t, std::int32_t>> places;
-  const auto place = [&](const Zone* zone, std::int32_t master) {
-    std::map<std::int32_t, std::int32_t>& there = places[zone];
-    if (there.empty()) there = zone->places();
-    const auto at = there.find(master);
-    return at == there.end() ? -1 : at->second;
+  const auto place = [](const Zone* zone, std::int32_t master) {
+    const auto at = zone->places.find(master);
+    return at == zone->places.end() ? -1 : at->second;
   };
-  const auto known = [&](const std::vector<std::int32_t>& pairs) {
-    std::set<PatchMaster> found;
+  LeftOut left_out;
+  const auto for_known = [&](const std::vector<std::int32_t>& pairs, const auto& visit) {
     for (std::size_t i = 0; i + 1 < pairs.size(); i += 2)
       if (const Zone* const zone = zone_of(pairs[i]); zone && place(zone, pairs[i + 1]) >= 0)
-        found.insert({pairs[i], pairs[i + 1]});
-    return found;
+        visit(*zone, pairs[i], place(zone, pairs[i + 1]));
   };
-  LeftOut left_out{known(kept.left_out), known(kept.in_front)};
+  for_known(kept.left_out, [&](const Zone& zone, std::int32_t patch, std::int32_t master) {
+    left_out.far.insert({patch, zone.masters[master]});
+  });
+  for_known(kept.in_front, [&](const Zone& zone, std::int32_t patch, std::int32_t master) {
+    left_out.in_front.insert({patch, zone.masters[zone.faces[master]]});
+  });
   left_out_at_rest_ = left_out;
   leave_out(std::move(left_out));
   for (std::size_t i = 0; i + 2 < kept.flush.size(); i += 3) {

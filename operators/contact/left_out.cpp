@@ -12,7 +12,7 @@
 // at its points from those at all points that are nearer: slopes have none. Walls a patch sees at a grazing angle, far up, and
 // now more of them and now less. So they do not count as nearer, and a patch that has a face of the master in front of it sees
 // no walls but its own, neither those that it would see now nor those that it would see on the way: their slope is that at
-// rest. A round goes on in one face, and what is steep of it is seen.
+// rest. A round goes on in one face, and so do the floor and the walls of a pocket.
 
 namespace lacon {
 namespace {
@@ -48,7 +48,8 @@ LeftOut ContactGeometry::to_leave_out(const LeftOut& before) const {
   };
   std::map<std::size_t, std::vector<const Cell*>> seen;  // by patches
   for (const Cell& cell : cells_)
-    if (counts(cell) && !is_wall(cell, coordinates_)) seen[patch_of(cell)].push_back(&cell);
+    if (counts(cell) && (may_see_far(patch_of(cell)) || !zone_of(cell).one_face) && !is_wall_of(cell, coordinates_))
+      seen[patch_of(cell)].push_back(&cell);
 
   LeftOut found;
   for (auto& [patch, cells] : seen) {
@@ -66,7 +67,7 @@ LeftOut ContactGeometry::to_leave_out(const LeftOut& before) const {
       near.insert(cell->master);
       most = std::max(most, cell->most);
       covered += cell->measure;
-      covered_by[face_of(*cell)] += cell->measure;
+      if (!zone_of(*cell).one_face) covered_by[face_of(*cell)] += cell->measure;
     }
     for (const auto& [face, part] : covered_by)
       if (cells[0]->least >= -deepest_nearest * size_[patch] &&
@@ -79,13 +80,17 @@ LeftOut ContactGeometry::to_leave_out(const LeftOut& before) const {
   return found;
 }
 
-bool ContactGeometry::is_wall(const Cell& cell, std::span<const double> coordinates) const {
+bool ContactGeometry::is_wall_of(const Cell& cell, std::span<const double> coordinates) const {
   const auto normal = [&](std::int32_t of) { return normal_of(mesh_.types[of], mesh_.cells[of], coordinates); };
-  return -dot(normal(contact_.slaves[cell.slave].cell), normal(cell.master)) < wall_cosine;
+  return is_wall(normal(contact_.slaves[cell.slave].cell), normal(cell.master));
+}
+
+const ContactGeometry::Zone& ContactGeometry::zone_of(const Cell& cell) const {
+  return zones_[static_cast<std::size_t>(zone_of_[contact_.slaves[cell.slave].patch])];
 }
 
 std::int32_t ContactGeometry::face_of(const Cell& cell) const {
-  const Zone& zone = zones_[static_cast<std::size_t>(zone_of_[contact_.slaves[cell.slave].patch])];
+  const Zone& zone = zone_of(cell);
   return zone.masters[zone.faces[cell.place]];
 }
 
@@ -96,7 +101,7 @@ bool ContactGeometry::other_walls(const std::set<PatchMaster>& in_front) const {
   return std::ranges::any_of(cells_, [&](const Cell& cell) {
     const std::int32_t patch = contact_.slaves[cell.slave].patch;
     const auto there = of_patch(in_front, patch);
-    return !there.empty() && !in_front.contains({patch, face_of(cell)}) && is_wall(cell, rest_);
+    return !there.empty() && !in_front.contains({patch, face_of(cell)}) && is_wall_of(cell, rest_);
   });
 }
 
@@ -124,20 +129,20 @@ bool ContactGeometry::choose_masters() {
 }
 
 void ContactGeometry::leave_out(LeftOut what) {
+  if (what == left_out_) return;
   left_out_ = std::move(what);
   for (Zone& zone : zones_) {
     zone.left_out.clear();
     zone.in_front = {};
-    const bool any = !left_out_.far.empty() || !left_out_.in_front.empty();
-    const std::map<std::int32_t, std::int32_t> place = any ? zone.places() : std::map<std::int32_t, std::int32_t>();
     for (std::size_t s = 0; s < zone.slaves.size(); ++s) {
       const std::int32_t patch = contact_.slaves[zone.slaves[s]].patch;
       for (const PatchMaster& one : of_patch(left_out_.far, patch))
-        if (const auto master = place.find(one.master); master != place.end())
+        if (const auto master = zone.places.find(one.master); master != zone.places.end())
           zone.left_out.push_back({static_cast<std::int32_t>(s), master->second});
       std::vector<std::int32_t> in_front;
       for (const PatchMaster& one : of_patch(left_out_.in_front, patch))
-        if (const auto master = place.find(one.master); master != place.end()) in_front.push_back(zone.faces[master->second]);
+        if (const auto master = zone.places.find(one.master); master != zone.places.end())
+          in_front.push_back(zone.faces[master->second]);
       zone.in_front.push_back(in_front);
     }
     std::ranges::sort(zone.left_out);

@@ -7,9 +7,13 @@ std::vector<std::size_t> LostMasters::note(const std::vector<Status>& before, co
                                            const std::function<bool(std::size_t patch)>& is_covered) {
   std::vector<std::size_t> again;
   for (std::size_t p = 0; p < before.size(); ++p) {
+    if (is_covered(p)) {
+      bare_.erase(p);
+      continue;
+    }
     // an edge that slides off loses its master once
-    if (before[p] != Status::active || wanted[p] == Status::active || !(lambda[p] < 0 || waits) || is_covered(p)) continue;
-    if (++times_[p] > 1) again.push_back(p);
+    if (before[p] != Status::active || wanted[p] == Status::active || !(lambda[p] < 0 || waits)) continue;
+    if (bare_.insert(p).second && ++times_[p] > 1) again.push_back(p);
   }
   return again;
 }

@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <functional>
 #include <map>
+#include <set>
 #include <span>
 #include <vector>
 
@@ -18,12 +19,12 @@ namespace lacon {
 
 class LostMasters {
  public:
-  void start_instant() { times_.clear(); }
+  void start_instant() { *this = {}; }
   /// An iteration ends. @param before statuses in it  @param wanted those that follow  @param lambda pressures, negative
   /// @param waits statuses wait for their equilibrium: on the way there an active patch may pull, and is in contact all the
   /// same
   /// @param is_covered whether a master still covers enough of a patch
-  /// @return patches that have pressed and lost their master, not for the first time in this instant
+  /// @return patches that have lost their master in contact, not for the first time in this instant
   std::vector<std::size_t> note(const std::vector<Status>& before, const std::vector<Status>& wanted,
                                 std::span<const double> lambda, bool waits,
                                 const std::function<bool(std::size_t patch)>& is_covered);
@@ -32,6 +33,7 @@ class LostMasters {
 
  private:
   std::map<std::size_t, int> times_;  ///< in this instant, of each patch that has
+  std::set<std::size_t> bare_;        ///< those that have found none since
 };
 
 }  // namespace lacon

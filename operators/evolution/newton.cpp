@@ -395,10 +395,10 @@ bool Newton::pairs_anew(const IterationReport& line, const StaticState& state, c
   bool anew = false;
   // once as soon as it is near, and where it would be accepted
   if (times_left_out_ < most_times_anew && (!std::exchange(looked_far_, true) || line.in_equilibrium())) {
-    const std::span<const double> gaps = contact()->geometry().gaps();
-    const std::vector<double> before(gaps.begin(), gaps.end());
+    const auto copy = [](std::span<const double> values) { return std::vector<double>(values.begin(), values.end()); };
+    const std::vector<double> gaps = copy(contact()->geometry().gaps()), covered = copy(contact()->geometry().measures());
     if (equilibrium_.choose_masters()) {
-      anew = contact()->presses_otherwise(before, state.patches);
+      anew = contact()->presses_otherwise(gaps, covered, state.patches);
       if (!anew) assemble(state, previous, options_.matrix);
     }
     times_left_out_ += anew ? 1 : 0;

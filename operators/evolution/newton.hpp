@@ -150,9 +150,10 @@ class Newton {
   /// cover.
   /// @return whether any does that did not
   bool keep_covers_that_sway(double instant, const StaticState& state, bool last);
-  /// Near balance, pair as the present geometry asks for: masters that are far behind others are left out, those that no
-  /// longer are come back; cuts of slave cells that iterates asked for, which the equilibrium does not, would make it another
-  /// one on another way to it. Either twice in an instant, for what is paired anew has another equilibrium.
+  /// Near balance, pair as the present geometry asks for: masters that are far behind others and walls beside them are left
+  /// out, those that no longer are come back; cuts of slave cells that iterates asked for, which the equilibrium does not,
+  /// would make it another one on another way to it. What changes contact does so twice in an instant at most, for what is
+  /// paired anew has another equilibrium.
   /// @return whether contact has changed
   bool pairs_anew(const IterationReport& line, const StaticState& state, const StaticState& previous);
   /// ContactState::keep_cover; EVOLUTION_50 says so once in a zone.
@@ -215,7 +216,7 @@ class Newton {
   int times_held_ = 0;                           ///< in this instant: loose bodies
   int times_rested_ = 0;                         ///< likewise, by patches that their load leads them to
   int times_cut_ = 0, times_left_out_ = 0;       ///< in this instant: pairs_anew()
-  bool looked_far_ = false;                      ///< in this instant: near balance, for masters that are far
+  bool looked_far_ = false;                      ///< in this instant: near balance, for what is to be left out
   bool goes_round_ = false;                      ///< residuals have come back: increments are searched (line_search.hpp)
   int times_round_ = 0;                          ///< in this instant: residuals have come back
   std::vector<double> depths_before_;            ///< depths() as the instant began

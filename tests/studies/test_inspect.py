@@ -22,7 +22,7 @@ COMM = SOURCE / "tests/studies/inspect_pairing.comm"
 STEP = "-0000000000000000001-0000000000000000001"
 MODELS = {"D_PLAN": 2, "3D": 3}
 COVERED = 2.6 / 3  # of the slave skin, on the initial geometry
-REASONS = ["facing away", "hidden", "sliver", "degenerate slave", "degenerate master", "no image", "too far", "too steep", "too deep", "other side", "far behind"]
+REASONS = ["facing away", "hidden", "sliver", "degenerate slave", "degenerate master", "no image", "too far", "too steep", "too deep", "other side", "far behind", "wall"]
 
 
 def write_mesh(path, dimension):
