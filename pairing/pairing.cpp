@@ -206,7 +206,10 @@ bool comes_before(const Surface& masters, const Candidate& one, const Candidate&
 }  // namespace detail
 
 bool was_wall(const Surface& slave, std::size_t slave_cell, const Surface& master, std::size_t master_cell) {
-  return is_wall(detail::normal_at_rest(slave, slave_cell), detail::normal_at_rest(master, master_cell));
+  const auto normal = [](const Surface& skin, std::size_t cell) {
+    return normal_of(skin.types[cell], skin.nodes[cell], skin.walls.empty() ? detail::rest_of(skin) : skin.walls);
+  };
+  return -dot(normal(slave, slave_cell), normal(master, master_cell)) < wall_cosine;
 }
 
 double steep_cosine(const PairingOptions& options) {

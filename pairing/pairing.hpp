@@ -60,8 +60,9 @@ struct PolygonTrace {
   std::vector<Point> point;
 };
 
-/// Whether a master is a wall for a slave: more than 60 degrees off facing it. @param slave, master unit normals
-inline bool is_wall(Vec3 slave, Vec3 master) { return -dot(slave, master) < 0.5; }
+/// A master is a wall for a slave where the cosine between the slave's normal and the opposite of the master's is less: more
+/// than 60 degrees off facing it.
+inline constexpr double wall_cosine = 0.5;
 
 /// A slave cell and a master cell, by their numbers in the two surfaces.
 struct Couple {
@@ -86,7 +87,7 @@ struct PairingOptions {
   /// Couples that give no contact cell, sorted: masters that lie far behind others of the same patch. The caller owns them.
   std::span<const Couple> left_out = {};
   /// Of each slave cell the faces of the master that are in front of it, as `faces` numbers them; null: unknown. Where there
-  /// are some it gets no contact cell with masters of other faces that were walls at rest (was_wall()). The caller owns both.
+  /// are some it gets no contact cell with masters of other faces that were walls (was_wall()). The caller owns both.
   const Ragged<std::int32_t>* in_front = nullptr;
   std::span<const std::int32_t> faces = {};  ///< of each master cell
   /// Angle between the slave's normal and the opposite of the master's, in degrees, from which on a couple counts less and less
@@ -101,7 +102,7 @@ struct PairingOptions {
   bool traced = false;  ///< in space: give the traces too. Flat slaves are then cut as those that are nearly flat
 };
 
-/// is_wall() of the places of the vertices at rest (Surface::rest).
+/// Whether a master was a wall for a slave where that was decided (Surface::walls).
 bool was_wall(const Surface& slave, std::size_t slave_cell, const Surface& master, std::size_t master_cell);
 
 /// The cosine of `steep_angle`, exactly 0 for 90 degrees.

@@ -45,6 +45,8 @@ struct Surface {
   /// (n_nodes, 3), where nodes were when the bodies last were in balance; empty: where they are now. Limits of distance and of
   /// depth (PairingOptions) give way by what a couple has moved since.
   std::span<const double> rest = {};
+  /// (n_nodes, 3), where nodes were when it was decided which cells are walls (was_wall()); empty: rest.
+  std::span<const double> walls = {};
   /// (n_nodes): the body of each, any number; empty: unknown. Of a couple of one body that lies deep at rest, one cell is seen
   /// through it.
   std::span<const std::int32_t> body = {};

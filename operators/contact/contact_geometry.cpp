@@ -255,6 +255,7 @@ void ContactGeometry::rest_at(std::span<const double> displacement) {
   const std::vector<double> before = rest_;
   displace(mesh_, displacement, mesh_.dimension, rest_);
   keep_left_out(rest_ == before);
+  decide_walls({});
   cuts_end_ = true;
   mirror();
 }
@@ -299,6 +300,7 @@ void ContactGeometry::look(std::vector<ZonePairing>* records) {
   std::fill(largest_gap_.begin(), largest_gap_.end(), -std::numeric_limits<double>::infinity());
   std::fill(straight_.begin(), straight_.end(), 1);
   std::fill(beside_walls_.begin(), beside_walls_.end(), 0);
+  walls_.clear();
   if (records) records->clear();
   normals_.resize(zones_.size());
   if (std::exchange(cuts_end_, false) && mesh_.dimension == 3)
@@ -438,7 +440,10 @@ void ContactGeometry::add(const Zone& zone, const Block& block_of_zone, ZonePair
   for (const RejectedCouple& couple : block_of_zone.pairing.rejected) {
     if (couple.reason == Rejection::degenerate_slave) no_normal(contact_.slaves[zone.slaves[couple.slave]]);
     ++rejected_[static_cast<std::size_t>(couple.reason)];
-    if (couple.reason == Rejection::wall) beside_walls_[contact_.slaves[zone.slaves[couple.slave]].patch] = 1;
+    if (couple.reason == Rejection::wall) {
+      beside_walls_[contact_.slaves[zone.slaves[couple.slave]].patch] = 1;
+      walls_.emplace_back(zone.slaves[couple.slave], zone.masters[couple.master]);
+    }
     if (couple.reason != Rejection::too_deep) continue;
     TooDeep& deep = too_deep_[static_cast<std::size_t>(&zone - zones_.data())];
     if (deep.count++ == 0) deep.slave = contact_.slaves[zone.slaves[couple.slave]].cell;

@@ -136,6 +136,10 @@ class ContactGeometry {
   KeptPairing kept() const;
   /// Begin as another one, perhaps of other zones, has gone on: what has no place here is passed over.
   void keep(const KeptPairing& kept);
+  /// Where bodies were when it was decided what is a wall for which slave cell, (n_nodes, 3), for decide_walls() of another
+  /// process; empty: at rest.
+  std::span<const double> walls_decided_at() const { return walls_at_; }
+  void decide_walls(std::span<const double> coordinates);
 
   /// By what the gaps of each zone are smaller than what its cells leave, from the next update() on: (n_nodes), interpolated on
   /// the slave; empty: by nothing.
@@ -184,7 +188,11 @@ class ContactGeometry {
   void look(std::vector<ZonePairing>* records = nullptr);
   /// What is to be left out of what `cells_` has. @param before what is or was
   LeftOut to_leave_out(const LeftOut& before) const;
-  bool is_wall_of(const Cell& cell, std::span<const double> coordinates) const;
+  /// Of the angle between a slave's normal and the opposite of a master's.
+  /// @param slave index into Contact::slaves @param master cell of the mesh
+  double facing_cosine(std::int32_t slave, std::int32_t master, std::span<const double> coordinates) const;
+  /// Whether, of what patches look at, walls have turned to face them since that was decided, or others have turned away.
+  bool walls_have_turned() const;
   const Zone& zone_of(const Cell& cell) const;
   /// The first master of the face that a contact cell lies on.
   std::int32_t face_of(const Cell& cell) const;
@@ -235,6 +243,7 @@ class ContactGeometry {
   std::map<std::int32_t, const lacon_kernel*> kernels_;  ///< of the slaves' elements
   std::vector<double> coordinates_;                      ///< (n_nodes, 3), current
   std::vector<double> rest_;                             ///< likewise, at rest
+  std::vector<double> walls_at_;                         ///< walls_decided_at()
   std::vector<std::int32_t> body_;                       ///< (n_nodes): Bodies::of
   std::vector<Zone> zones_;
   std::vector<std::vector<double>> normals_;  ///< of each zone, at the nodes (LISSAGE)
@@ -243,9 +252,10 @@ class ContactGeometry {
   std::vector<Cell> cells_;
   std::vector<double> coupling_;
   std::vector<double> size_, gap_, weight_, covered_, whole_, coverage_, smallest_gap_;  ///< of each patch
-  std::vector<double> largest_gap_;         ///< likewise, either way, at all points
-  std::vector<std::uint8_t> straight_;      ///< likewise: no cell is of the second order
-  std::vector<std::uint8_t> beside_walls_;  ///< likewise: it would see walls that are left out
+  std::vector<double> largest_gap_;                           ///< likewise, either way, at all points
+  std::vector<std::uint8_t> straight_;                        ///< likewise: no cell is of the second order
+  std::vector<std::uint8_t> beside_walls_;                    ///< likewise: it would see walls that are left out
+  std::vector<std::pair<std::int32_t, std::int32_t>> walls_;  ///< those: index into Contact::slaves, cell of the mesh
   std::vector<std::int32_t> zone_of_;
   std::vector<std::int64_t> rejected_;
   std::vector<TooDeep> too_deep_;          ///< of each zone

@@ -146,6 +146,8 @@ class ContactState {
   bool go_on_where_flush();
   /// ContactGeometry::keep
   void keep(const KeptPairing& kept) { geometry_.keep(kept); }
+  /// ContactGeometry::decide_walls
+  void decide_walls(std::span<const double> coordinates) { geometry_.decide_walls(coordinates); }
   /// ContactGeometry::set_cuts
   void set_cuts(std::span<const std::int32_t> cuts) { geometry_.set_cuts(cuts); }
   /// What was in contact at the last state in equilibrium, which zones with GLISSIERE='OUI' keep in contact.

@@ -12,7 +12,8 @@
 // at its points from those at all points that are nearer: slopes have none. Walls a patch sees at a grazing angle, far up, and
 // now more of them and now less. So they do not count as nearer, and a patch that has a face of the master in front of it sees
 // no walls but its own, neither those that it would see now nor those that it would see on the way: their slope is that at
-// rest. A round goes on in one face, and so do the floor and the walls of a pocket.
+// rest, or where one was found to have turned since. A round goes on in one face, and so do the floor and the walls of a
+// pocket.
 
 namespace lacon {
 namespace {
@@ -23,6 +24,7 @@ constexpr double deepest_nearest = 1;   // likewise: nothing is behind a master 
 constexpr double least_nearest = 2e-2;  // of the patch: what the nearer ones cover, so that it can take contact there
 constexpr double still_nearest = 1e-2;  // likewise, of a face that was in front already
 constexpr double round_off = 1e-9;      // of the patch: what less is seen of by accident
+constexpr double has_turned = 0.1;      // of a cosine: walls are decided anew where they have turned by more
 constexpr int most_levels = 4;          // of masters that lie one behind the other
 
 /// What belongs to one patch.
@@ -48,7 +50,8 @@ LeftOut ContactGeometry::to_leave_out(const LeftOut& before) const {
   };
   std::map<std::size_t, std::vector<const Cell*>> seen;  // by patches
   for (const Cell& cell : cells_)
-    if (counts(cell) && (may_see_far(patch_of(cell)) || !zone_of(cell).one_face) && !is_wall_of(cell, coordinates_))
+    if (counts(cell) && (may_see_far(patch_of(cell)) || !zone_of(cell).one_face) &&
+        !(facing_cosine(cell.slave, cell.master, coordinates_) < wall_cosine))
       seen[patch_of(cell)].push_back(&cell);
 
   LeftOut found;
@@ -80,9 +83,26 @@ LeftOut ContactGeometry::to_leave_out(const LeftOut& before) const {
   return found;
 }
 
-bool ContactGeometry::is_wall_of(const Cell& cell, std::span<const double> coordinates) const {
+double ContactGeometry::facing_cosine(std::int32_t slave, std::int32_t master, std::span<const double> coordinates) const {
   const auto normal = [&](std::int32_t of) { return normal_of(mesh_.types[of], mesh_.cells[of], coordinates); };
-  return is_wall(normal(contact_.slaves[cell.slave].cell), normal(cell.master));
+  return -dot(normal(contact_.slaves[slave].cell), normal(master));
+}
+
+bool ContactGeometry::walls_have_turned() const {
+  if (std::ranges::any_of(walls_, [&](const auto& wall) {
+        return facing_cosine(wall.first, wall.second, coordinates_) > wall_cosine + has_turned;
+      }))
+    return true;
+  return std::ranges::any_of(cells_, [&](const Cell& cell) {
+    const std::int32_t patch = contact_.slaves[cell.slave].patch;
+    return !of_patch(left_out_.in_front, patch).empty() && !left_out_.in_front.contains({patch, face_of(cell)}) &&
+           facing_cosine(cell.slave, cell.master, coordinates_) < wall_cosine - has_turned;
+  });
+}
+
+void ContactGeometry::decide_walls(std::span<const double> coordinates) {
+  walls_at_.assign(coordinates.begin(), coordinates.end());
+  for (Zone& zone : zones_) zone.slave.walls = zone.master.walls = walls_at_;
 }
 
 const ContactGeometry::Zone& ContactGeometry::zone_of(const Cell& cell) const {
@@ -98,10 +118,12 @@ bool ContactGeometry::other_walls(const std::set<PatchMaster>& in_front) const {
   const std::set<PatchMaster>& now = left_out_.in_front;
   for (std::int32_t patch = 0; patch < static_cast<std::int32_t>(n_patches()); ++patch)
     if (beside_walls_[patch] != 0 && !std::ranges::equal(of_patch(now, patch), of_patch(in_front, patch))) return true;
+  const std::span<const double> decided = walls_at_.empty() ? rest_ : walls_at_;
   return std::ranges::any_of(cells_, [&](const Cell& cell) {
     const std::int32_t patch = contact_.slaves[cell.slave].patch;
     const auto there = of_patch(in_front, patch);
-    return !there.empty() && !in_front.contains({patch, face_of(cell)}) && is_wall_of(cell, rest_);
+    return !there.empty() && !in_front.contains({patch, face_of(cell)}) &&
+           facing_cosine(cell.slave, cell.master, decided) < wall_cosine;
   });
 }
 
@@ -112,8 +134,12 @@ bool ContactGeometry::choose_masters() {
     leave_out({{}, before.in_front});
     look();
   }
+  bool others = walls_have_turned();
+  if (others) {
+    decide_walls(coordinates_);
+    look();
+  }
   LeftOut more = to_leave_out(before), all{{}, more.in_front};
-  bool others = false;
   for (int level = 0; level < most_levels; ++level) {
     const bool walls = other_walls(all.in_front), far = !more.far.empty();
     others = others || walls;

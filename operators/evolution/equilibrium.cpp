@@ -462,6 +462,8 @@ void Equilibrium::save(const hdf5::Group& group) const {
   if (!contact_) return;
   group.write("slave_cuts", contact_->geometry().cuts());
   write(group, contact_->geometry().kept());
+  const std::span<const double> walls = contact_->geometry().walls_decided_at();
+  if (!walls.empty()) group.write("walls_at", std::vector<double>(walls.begin(), walls.end()));
 }
 
 void Equilibrium::resume(const hdf5::Group& group, const StaticState& state, std::span<const double> rest) {
@@ -474,6 +476,7 @@ void Equilibrium::resume(const hdf5::Group& group, const StaticState& state, std
   rest_at(rest);
   if (contact_ && group.has("slave_cuts")) contact_->set_cuts(group.read<std::int32_t>("slave_cuts"));
   if (contact_) contact_->keep(read_kept_pairing(group));
+  if (contact_ && group.has("walls_at")) contact_->decide_walls(group.read<double>("walls_at"));
   pair(state.displacement);
   assemble(state, state, {static_cast<SolidMatrix>(group.integer("solid_matrix")), group.integer("curved_matrix") != 0});
 }

@@ -32,14 +32,13 @@ DRAWN = {
 
 #: why a row misses what is asked of it
 REASONS = {
-    "tips": "a corner passes over coarse patches of a slope. Normals of facets beyond it meet its upright side, so that the gap of a patch is four times as steep as the "
-            "motion and bends sharply: iterates jump to and fro between gaps of -0.3 and 0.03 of the patch before they converge, statuses with them; neither a line search on "
-            "the power of the forces nor one on the gaps helps, nor increments that are shortened until the next correction by the same matrix is smaller (69 to 295)",
+    "tips": "a corner passes over coarse patches of a slope: the part of a patch that it covers, and with it the gap and the status that the patch has, changes from iterate "
+            "to iterate where it goes over to the next one; neither a line search on the power of the forces nor one on the gaps helps",
     "polygon": "three iterations of quadratic convergence in each of 43 steps, four or five where a corner goes over to another patch: no motion before leads "
                "there, nor does a parabola through three states (172 to 173, 175 to 176)",
     "difficult": "sliding steps of a whole cell: the prediction, with the motion imposed at one end alone, flows where the solution does not",
     "corner": "patches of the plate hold the average height of what is above them, and this changes as the tool moves along: Fx/Fy is (height at "
-              "one end - height at the other) / length of the patch; the tool as slave has no such force",
+              "one end - height at the other) / length of the patch (0.96 with the tool's upright side in that average); the tool as slave has no such force",
 }
 
 

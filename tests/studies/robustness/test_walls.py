@@ -11,7 +11,7 @@ HERE = pathlib.Path(__file__).resolve().parent
 sys.path[:0] = [str(HERE), str(HERE.parent)]
 
 from study_test import LACON, StudyTest  # noqa: E402, I001 (it says where meshes.py is)
-from bodies import lines, slab_in_space  # noqa: E402
+from bodies import lines, slab, slab_in_space  # noqa: E402
 from meshes import block, brick, union, weld  # noqa: E402
 from results import Result  # noqa: E402
 from run import missed, positions, run  # noqa: E402
@@ -90,3 +90,21 @@ class Walls(StudyTest):
             study = Study(name="pocket", mesh=mesh, materials={"TOOL": elastic(1e3), "SLAB": elastic(1e3)}, zones=[zone("TOOL", "SLAB", 0)], steps=4,
                           asked={"per step": 5, "lost": 0}, moves=[held("SLAB"), {"GROUP_MA": "TOOL_BASE", "DX": 0.0, "DY": [[0, 0], [4, -0.05]]}])
             self.assertEqual(missed(study, run(study, LACON, self.folder)), [], (kind, width))
+
+    def test_a_square_that_turns_on_another_of_its_sides_in_one_step_rests_on_it_as_if_it_had_not_turned(self):
+        """All its sides are in the zone, and the slab is the slave: what was below it is a wall now, and what was a wall is in front."""
+        side = lines(-0.5, 0.5, 6)
+        found = []
+        for turn in (0.0, math.pi / 2):
+            square = block("QUAD4", side, side, None, "TOOL", {name: "TOOL_SKIN" for name in ("left", "right", "top", "bottom")})
+            mesh = union([square, slab("QUAD4", "SLAB", (-1.5, 1.5), (-1.5, -0.5), (18, 5))])
+            mesh.cell_groups["HUB"] = [cell for cell in mesh.cell_groups["TOOL"] if np.all(np.abs(mesh.points[mesh.cells[cell[0]][cell[1]]]) < 0.2)]
+            move = {"GROUP_MA": "HUB", "DX": f"X*(cos({turn}*INST)-1)-Y*sin({turn}*INST)", "DY": f"X*sin({turn}*INST)+Y*(cos({turn}*INST)-1)-0.08*INST"}
+            study = Study(name="turn", mesh=mesh, materials={"TOOL": elastic(2e3), "SLAB": elastic(1e3)}, zones=[zone("TOOL", "SLAB", 1)], strain="GREEN_LAGRANGE",
+                          steps=1, moves=[held("SLAB"), move])
+            figures = run(study, LACON, self.folder)
+            self.assertEqual(figures["status"], "finished", turn)
+            found.append((self.forces(0)[-1], self.forces(1)[-1]))
+        for across, up in found:
+            self.assertAlmostEqual(across, 0, delta=1e-6 * abs(found[0][1]))
+            self.assertAlmostEqual(up, found[0][1], delta=1e-6 * abs(found[0][1]))
