@@ -12,8 +12,10 @@ std::vector<std::size_t> LostMasters::note(const std::vector<Status>& before, co
       continue;
     }
     // an edge that slides off loses its master once
-    if (before[p] != Status::active || wanted[p] == Status::active || !(lambda[p] < 0 || waits)) continue;
-    if (bare_.insert(p).second && ++times_[p] > 1) again.push_back(p);
+    if (before[p] != Status::active || wanted[p] == Status::active) continue;
+    const bool pulls_bare = !(lambda[p] < 0) && (!waits || bare_.contains(p));
+    bare_.insert(p);
+    if (!pulls_bare && ++times_[p] > 1) again.push_back(p);
   }
   return again;
 }
