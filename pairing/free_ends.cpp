@@ -12,8 +12,7 @@
 namespace lacon {
 namespace {
 
-constexpr double free_turn = 0.5;    // cosine of the angle between two cells from which on their ends are free
-constexpr double face_turn = 0.766;  // likewise, from which on they are two faces: of a chamfer, not of a round that is coarse
+constexpr double turn = 0.5;  // cosine of the angle between two cells from which on their ends are free, and they are two faces
 
 struct End {
   std::size_t cell;
@@ -74,7 +73,7 @@ void for_ends(const Surface& skin, const Visit& visit) {
 std::vector<std::uint8_t> free_ends(const Surface& skin) {
   std::vector<std::uint8_t> ends(skin.size(), 0);
   for_ends(skin, [&](const std::vector<End>& around, const Fold& fold) {
-    if (fold.cosine < free_turn)
+    if (fold.cosine < turn)
       for (const End& end : around) ends[end.cell] |= static_cast<std::uint8_t>(1U << end.number);
   });
   return ends;
@@ -91,7 +90,7 @@ std::vector<std::int32_t> faces(const Surface& skin) {
     return static_cast<std::int32_t>(cell);
   };
   for_ends(skin, [&](const std::vector<End>& around, const Fold& fold) {
-    if (fold.convex && fold.cosine < face_turn) return;
+    if (fold.convex && fold.cosine < turn) return;
     const std::int32_t one = of(around[0].cell), other = of(around[1].cell);
     first[static_cast<std::size_t>(std::max(one, other))] = std::min(one, other);
   });

@@ -12,7 +12,7 @@ namespace lacon {
 std::vector<std::uint8_t> free_ends(const Surface& skin);
 
 /// The faces of a skin: of each cell the first cell of its face. A face ends where the skin does, and at convex edges (in
-/// space; in the plane at nodes) where it turns by more than 40 degrees, at the present coordinates. The floor and the walls of
+/// space; in the plane at nodes) where it turns by more than 60 degrees, at the present coordinates. The floor and the walls of
 /// a pocket are one face: what lies in its corner has both in front of it.
 std::vector<std::int32_t> faces(const Surface& skin);
 
