@@ -7,12 +7,11 @@
 #include <utility>
 
 #include "lacon/pairing/normals.hpp"
+#include "lacon/pairing/pairing.hpp"
 #include "lacon/structures/vector.hpp"
 
 namespace lacon {
 namespace {
-
-constexpr double turn = 0.5;  // cosine of the angle between two cells from which on their ends are free, and they are two faces
 
 struct End {
   std::size_t cell;
@@ -73,7 +72,7 @@ void for_ends(const Surface& skin, const Visit& visit) {
 std::vector<std::uint8_t> free_ends(const Surface& skin) {
   std::vector<std::uint8_t> ends(skin.size(), 0);
   for_ends(skin, [&](const std::vector<End>& around, const Fold& fold) {
-    if (fold.cosine < turn)
+    if (fold.cosine < wall_cosine)
       for (const End& end : around) ends[end.cell] |= static_cast<std::uint8_t>(1U << end.number);
   });
   return ends;
@@ -90,7 +89,7 @@ std::vector<std::int32_t> faces(const Surface& skin) {
     return static_cast<std::int32_t>(cell);
   };
   for_ends(skin, [&](const std::vector<End>& around, const Fold& fold) {
-    if (fold.convex && fold.cosine < turn) return;
+    if (fold.convex && fold.cosine < wall_cosine) return;
     const std::int32_t one = of(around[0].cell), other = of(around[1].cell);
     first[static_cast<std::size_t>(std::max(one, other))] = std::min(one, other);
   });

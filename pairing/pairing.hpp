@@ -61,7 +61,7 @@ struct PolygonTrace {
 };
 
 /// A master is a wall for a slave where the cosine between the slave's normal and the opposite of the master's is less: more
-/// than 60 degrees off facing it.
+/// than 60 degrees off facing it. A face goes over into another one by as much (free_ends.hpp).
 inline constexpr double wall_cosine = 0.5;
 
 /// A slave cell and a master cell, by their numbers in the two surfaces.

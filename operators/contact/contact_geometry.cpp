@@ -134,7 +134,6 @@ ContactGeometry::ContactGeometry(const Mesh& mesh, const Model& model, const Con
   gap_.assign(n, 0.0);
   size_ = weight_ = covered_ = whole_ = coverage_ = smallest_gap_ = largest_gap_ = gap_;
   straight_.assign(n, 1);
-  beside_walls_.assign(n, 0);
   zone_of_.assign(n, -1);
   rejected_.assign(n_rejections, 0);
 
@@ -299,7 +298,6 @@ void ContactGeometry::look(std::vector<ZonePairing>* records) {
   std::fill(smallest_gap_.begin(), smallest_gap_.end(), std::numeric_limits<double>::infinity());
   std::fill(largest_gap_.begin(), largest_gap_.end(), -std::numeric_limits<double>::infinity());
   std::fill(straight_.begin(), straight_.end(), 1);
-  std::fill(beside_walls_.begin(), beside_walls_.end(), 0);
   walls_.clear();
   if (records) records->clear();
   normals_.resize(zones_.size());
@@ -440,10 +438,7 @@ void ContactGeometry::add(const Zone& zone, const Block& block_of_zone, ZonePair
   for (const RejectedCouple& couple : block_of_zone.pairing.rejected) {
     if (couple.reason == Rejection::degenerate_slave) no_normal(contact_.slaves[zone.slaves[couple.slave]]);
     ++rejected_[static_cast<std::size_t>(couple.reason)];
-    if (couple.reason == Rejection::wall) {
-      beside_walls_[contact_.slaves[zone.slaves[couple.slave]].patch] = 1;
-      walls_.emplace_back(zone.slaves[couple.slave], zone.masters[couple.master]);
-    }
+    if (couple.reason == Rejection::wall) walls_.emplace_back(zone.slaves[couple.slave], zone.masters[couple.master]);
     if (couple.reason != Rejection::too_deep) continue;
     TooDeep& deep = too_deep_[static_cast<std::size_t>(&zone - zones_.data())];
     if (deep.count++ == 0) deep.slave = contact_.slaves[zone.slaves[couple.slave]].cell;

@@ -254,8 +254,7 @@ class ContactGeometry {
   std::vector<double> size_, gap_, weight_, covered_, whole_, coverage_, smallest_gap_;  ///< of each patch
   std::vector<double> largest_gap_;                           ///< likewise, either way, at all points
   std::vector<std::uint8_t> straight_;                        ///< likewise: no cell is of the second order
-  std::vector<std::uint8_t> beside_walls_;                    ///< likewise: it would see walls that are left out
-  std::vector<std::pair<std::int32_t, std::int32_t>> walls_;  ///< those: index into Contact::slaves, cell of the mesh
+  std::vector<std::pair<std::int32_t, std::int32_t>> walls_;  ///< left out: index into Contact::slaves, cell of the mesh
   std::vector<std::int32_t> zone_of_;
   std::vector<std::int64_t> rejected_;
   std::vector<TooDeep> too_deep_;          ///< of each zone

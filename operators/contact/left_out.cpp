@@ -115,9 +115,10 @@ std::int32_t ContactGeometry::face_of(const Cell& cell) const {
 }
 
 bool ContactGeometry::other_walls(const std::set<PatchMaster>& in_front) const {
-  const std::set<PatchMaster>& now = left_out_.in_front;
-  for (std::int32_t patch = 0; patch < static_cast<std::int32_t>(n_patches()); ++patch)
-    if (beside_walls_[patch] != 0 && !std::ranges::equal(of_patch(now, patch), of_patch(in_front, patch))) return true;
+  for (const auto& [slave, master] : walls_) {
+    const std::int32_t patch = contact_.slaves[slave].patch;
+    if (!std::ranges::equal(of_patch(left_out_.in_front, patch), of_patch(in_front, patch))) return true;
+  }
   const std::span<const double> decided = walls_at_.empty() ? rest_ : walls_at_;
   return std::ranges::any_of(cells_, [&](const Cell& cell) {
     const std::int32_t patch = contact_.slaves[cell.slave].patch;

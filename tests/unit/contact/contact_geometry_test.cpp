@@ -418,6 +418,40 @@ TEST(ContactGeometry, WallsBesideAMasterInFrontAreLeftOut) {
   }
 }
 
+TEST(ContactGeometry, WallsAreDecidedAnewWhereTheyHaveTurned) {
+  Slope slope(leaning_by_10_degrees);
+  std::erase(slope.skins.contact.zones[0].master, slope.floor_cell);
+  Registry registry;
+  ContactGeometry geometry(slope.skins.mesh, slope.skins.model, slope.skins.contact, registry),
+      taken_up(slope.skins.mesh, slope.skins.model, slope.skins.contact, registry);
+  const auto walls = [&] { return geometry.rejected()[static_cast<std::size_t>(Rejection::wall)]; };
+  const auto foot_moved = [&](double by) {
+    std::vector<double> displacement = slope.skins.displacement;
+    for (const std::int32_t node : slope.skins.mesh.cells[slope.cell])
+      if (slope.skins.mesh.coordinates[3 * static_cast<std::size_t>(node) + 2] == -0.6)
+        displacement[3 * static_cast<std::size_t>(node)] = by;
+    return displacement;
+  };
+  geometry.update(slope.skins.displacement);
+  EXPECT_TRUE(geometry.choose_masters());
+  EXPECT_GT(walls(), 0);
+  // 0.5 down over 0.33 is 56.6 degrees, a cosine of 0.55; over 0.5, 45 degrees
+  for (const auto& [reach, turned] : {std::pair(0.33, false), std::pair(0.5, true)}) {
+    geometry.update(foot_moved(reach - leaning_by_10_degrees));
+    EXPECT_GT(walls(), 0);
+    EXPECT_EQ(geometry.choose_masters(), turned) << reach;
+    EXPECT_EQ(walls() > 0, !turned) << reach;
+    EXPECT_EQ(geometry.walls_decided_at().empty(), !turned) << reach;
+  }
+  // another process goes on with it, and the next instant begins with what is at rest
+  taken_up.keep(geometry.kept());
+  taken_up.decide_walls(geometry.walls_decided_at());
+  taken_up.update(foot_moved(0.5 - leaning_by_10_degrees));
+  for (std::size_t p = 0; p < geometry.n_patches(); ++p) EXPECT_EQ(taken_up.gap(p), geometry.gap(p));
+  geometry.rest_at(slope.skins.displacement);
+  EXPECT_TRUE(geometry.walls_decided_at().empty());
+}
+
 TEST(ContactGeometry, FrozenGapsAreAveragesOverAllMasters) {
   Step step;
   step.skins.contact.frozen_gap = true;

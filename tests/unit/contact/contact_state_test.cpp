@@ -227,6 +227,26 @@ TEST_F(Touching, AnOffsetOfTheSkinsMakesGapsSmaller) {
   EXPECT_EQ(now.initial().status[0], Status::active);  // an overlap, though the cells are apart
 }
 
+TEST_F(Touching, PressesOtherwiseWhereAPatchThatPressesHasChangedOrOneIsTo) {
+  ContactState now = state();
+  const auto lifted = [&](double height) {
+    lift(height);
+    now.update_geometry(displacement);
+  };
+  Patchwise patches = now.initial();
+  for (const bool active : {false, true}) {
+    patches.status[0] = active ? Status::active : Status::open;
+    patches.lambda[0] = active ? -1e9 : 0;  // more than a gap of 0.02 can part
+    lifted(0.01);
+    const std::vector<double> gaps{now.geometry().gap(0)}, covered{now.geometry().covered(0)};
+    EXPECT_FALSE(now.presses_otherwise(gaps, covered, patches));
+    lifted(0.02);
+    EXPECT_EQ(now.presses_otherwise(gaps, covered, patches), active);
+    lifted(-0.02);  // it is to press
+    EXPECT_TRUE(now.presses_otherwise(gaps, covered, patches));
+  }
+}
+
 TEST_F(Touching, StatusesCompareAPressureWithTheStiffnessOfBothBodiesInSeries) {
   constexpr double gap = 1e-3;
   for (const double contrast : {1e-6, 1e-3, 1.0, 1e3, 1e6})

@@ -165,14 +165,19 @@ TEST(Pairing, LeavesOutCouplesThatItIsTold) {
   EXPECT_EQ(found.rejected, (std::vector<RejectedCouple>{{1, 0, Rejection::far_behind}}));
 }
 
-TEST(PairingInSpace, LeavesOutCouplesThatItIsTold) {
-  std::mt19937 random(4);
-  Skin3 slave = mesh(
+/// Side by side at the height 0.1, looking down.
+Skin3 two_squares(std::mt19937& random) {
+  return mesh(
       {2, 1, CellType::QUAD4, false},
       [](double x, double y) {
         return Vec3{x, y, 0.1};
       },
       random);
+}
+
+TEST(PairingInSpace, LeavesOutCouplesThatItIsTold) {
+  std::mt19937 random(4);
+  Skin3 slave = two_squares(random);
   Skin3 master = mesh(
       {1, 1, CellType::QUAD4, true, 0, -1, 2, -1, 2},
       [](double x, double y) {
@@ -214,6 +219,20 @@ TEST(Faces, EndWhereASkinEndsOrTurnsAwayByMoreThanSixtyDegrees) {
     const std::vector<std::int32_t> found = faces(skin.view());
     EXPECT_EQ(std::set(found.begin(), found.end()).size(), folds ? 2U : 1U) << turn;
     EXPECT_EQ(std::ranges::count(found, 0), folds ? 4 : 8) << turn;
+  }
+}
+
+TEST(Faces, GoOnOverCurvedCellsWhoseChordsTurnFar) {
+  for (const Kind kind : {Kind::linear, Kind::quadratic}) {
+    Skin arc;  // by 70 degrees a cell, around what lies above it
+    add_chain(
+        arc,
+        [](double t) {
+          const double angle = 70 * t * std::numbers::pi / 180;
+          return Point{std::sin(angle), -std::cos(angle)};
+        },
+        {0, 1, 2}, kind);
+    EXPECT_EQ(faces(arc.view()), (std::vector<std::int32_t>{0, kind == Kind::linear ? 1 : 0}));
   }
 }
 
@@ -259,12 +278,7 @@ TEST(PairingInSpace, LeavesOutWhatWasAWallAtRest) {
     };
   };
   std::mt19937 random(4);
-  Skin3 slave = mesh(
-      {2, 1, CellType::QUAD4, false},
-      [](double x, double y) {
-        return Vec3{x, y, 0.1};
-      },
-      random);
+  Skin3 slave = two_squares(random);
   for (const CellType type : {CellType::QUAD4, CellType::TRIA6})
     for (const double leant : {59.0, 61.0}) {
       Skin3 master = mesh({1, 1, type, true, 0, -1, 2, -1, 2}, leaning(70), random),
