@@ -58,14 +58,19 @@ void Newton::fail_if_passed_through(double instant, const StaticState& state) co
   };
   for (std::size_t zone = 0; zone < now.size(); ++zone) {
     const ContactZone& names = problem_.contact->zones[zone];
-    double sizes = now[zone] > through && depths_before_[zone] < inside ? now[zone] : 0;
-    if (sizes == 0 && std::ranges::none_of(names.patches, presses))
-      if (const auto gone = contact()->geometry().gone_through(zone)) sizes = gone->sizes;
-    if (sizes > 0)
+    std::optional<GoneThrough> gone;
+    if (now[zone] > through && depths_before_[zone] < inside) {
+      const auto deepest = contact()->pierced(static_cast<std::int32_t>(zone), state.patches, true);
+      gone = {problem_.mesh.patches->cells[deepest->patch].front(), now[zone]};
+    } else if (std::ranges::none_of(names.patches, presses)) {
+      gone = contact()->geometry().gone_through(zone);
+    }
+    if (gone)
       fail("EVOLUTION_63", {{"instant", fmt::format("{:.9g}", instant)},
                             {"slave", names.slave_group},
                             {"master", names.master_group},
-                            {"sizes", fmt::format("{:.2g}", sizes)}});
+                            {"cell", cell_name(gone->cell)},
+                            {"sizes", fmt::format("{:.2g}", gone->sizes)}});
   }
 }
 
