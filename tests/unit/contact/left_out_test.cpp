@@ -151,7 +151,9 @@ TEST(LeftOut, WallsBesideAMasterInFrontAreLeftOut) {
     EXPECT_FALSE(geometry.choose_masters());
     int other = 0;
     for (std::size_t p = 0; p < geometry.n_patches(); ++p) {
-      if (step && geometry.covered(p) > 0) EXPECT_NEAR(geometry.gap(p), 0.1, 1e-12) << p;
+      if (step && geometry.covered(p) > 0) {
+        EXPECT_NEAR(geometry.gap(p), 0.1, 1e-12) << p;
+      }
       other += std::abs(geometry.gap(p) - before[p]) > 1e-3 ? 1 : 0;
     }
     EXPECT_EQ(other > 0, step);
