@@ -103,10 +103,12 @@ class CellVariation {
 
 /// The second derivatives by corners and unknowns, (corners, unknowns), at fixed corners.
 Matrix by_corners(const Eigen::MatrixXd& by_points, const Columns& columns);
+
 /// The second derivatives by the unknowns, from those by the variables of points, of which the last ones are corners.
-/// @param corners (corners, unknowns): derivatives of the corners  @param form what their second derivatives add, by unknowns
-void chain_corners(const Eigen::MatrixXd& by_points, const Columns& columns, const Matrix& corners, QuadraticForm& form,
-                   GapVariation& variation);
+/// @param corners (corners, unknowns and own): derivatives of the corners  @param own unknowns behind the others
+/// @param form what the corners' second derivatives add, by all of these
+void chain_corners(const Eigen::MatrixXd& by_points, const Columns& columns, const Matrix& corners,
+                   const std::vector<OwnUnknown>& own, QuadraticForm& form, GapVariation& variation);
 
 void vary_in_plane(const ContactCellGeometry& cell, bool second, GapVariation& variation);
 void vary_in_space(const ContactCellGeometry& cell, bool second, GapVariation& variation);

@@ -108,32 +108,30 @@ void vary_in_plane(const ContactCellGeometry& cell, bool second, GapVariation& v
   dwidth[corner] = -1, dwidth[corner + 1] = 1;
   sum.end_simplex(dwidth);
   sum.end();
-  // the corners as functions of the unknowns
-  const std::array ends = {EndVariation(cell, from, n), EndVariation(cell, to, n)};
-  Matrix corners(2, n);
+  // the corners as functions of the unknowns, those that keep their place of their own
+  const Eigen::Index all = n + (second ? int{from.still} + int{to.still} : 0);
+  const std::array ends = {EndVariation(cell, from, all), EndVariation(cell, to, all)};
+  std::vector<OwnUnknown> own;
+  Matrix corners = Matrix::Zero(2, all);
   for (int k = 0; k < 2; ++k) {
-    if (cell.ends[k].still)
-      corners.row(k).setZero();
-    else
-      corners.row(k) = ends[static_cast<std::size_t>(k)].row();
+    const Row& end = ends[static_cast<std::size_t>(k)].row();
+    if (!cell.ends[k].still) {
+      corners.row(k) = end;
+    } else if (second) {
+      corners(k, n + std::ssize(own)) = 1;
+      own.push_back({sum.gradient()[corner + k], end.head(n)});
+    }
   }
-  const Row gradient = sum.by_unknowns() + sum.gradient().segment<2>(corner) * corners;
+  const Row gradient = sum.by_unknowns() + sum.gradient().segment<2>(corner) * corners.leftCols(n);
   variation.gap = sum.gap();
   variation.gradient.assign(gradient.data(), gradient.data() + n);
   variation.hessian.clear();
   variation.ends.clear();
   if (!second) return;
-  QuadraticForm form(n);
+  QuadraticForm form(corners.cols());
   for (int k = 0; k < 2; ++k)
     if (!cell.ends[k].still) ends[static_cast<std::size_t>(k)].add_second(sum.gradient()[corner + k], form);
-  const Eigen::MatrixXd by_points = sum.form().matrix();
-  chain_corners(by_points, columns, corners, form, variation);
-  for (int k = 0; k < 2; ++k) {
-    if (!cell.ends[k].still) continue;
-    const Row place = ends[static_cast<std::size_t>(k)].row(),
-              by_end = by_corners(by_points, columns).row(k) + by_points.block(corner + k, corner, 1, 2) * corners;
-    variation.ends.push_back({sum.gradient()[corner + k], {by_end.begin(), by_end.end()}, {place.begin(), place.end()}});
-  }
+  chain_corners(sum.form().matrix(), columns, corners, own, form, variation);
 }
 
 }  // namespace lacon::variations

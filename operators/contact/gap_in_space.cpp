@@ -166,9 +166,10 @@ void vary_at_points(const ContactCellGeometry& cell, bool second, GapVariation& 
   variation.gap = sum.gap();
   variation.gradient.assign(gradient.begin(), gradient.end());
   variation.hessian.clear();
+  variation.ends.clear();
   if (!second) return;
   QuadraticForm form(sum.columns().unknowns());
-  chain_corners(sum.form().matrix(), sum.columns(), Matrix(0, sum.columns().unknowns()), form, variation);
+  chain_corners(sum.form().matrix(), sum.columns(), Matrix(0, sum.columns().unknowns()), {}, form, variation);
 }
 
 }  // namespace
@@ -244,10 +245,11 @@ void vary_in_space(const ContactCellGeometry& cell, bool second, GapVariation& v
   variation.gap = sum.gap();
   variation.gradient.assign(gradient.data(), gradient.data() + n);
   variation.hessian.clear();
+  variation.ends.clear();
   if (!second) return;
-  QuadraticForm form(n);
+  QuadraticForm form(polygon.n_unknowns());
   polygon.add_second(form);
-  chain_corners(sum.form().matrix(), columns, polygon.corners(), form, variation);
+  chain_corners(sum.form().matrix(), columns, polygon.corners(), polygon.own_unknowns(), form, variation);
 }
 
 }  // namespace lacon::variations

@@ -37,17 +37,24 @@ variations::Matrix variations::by_corners(const Eigen::MatrixXd& by_points, cons
 }
 
 void variations::chain_corners(const Eigen::MatrixXd& by_points, const Columns& columns, const Matrix& corners,
-                               QuadraticForm& form, GapVariation& variation) {
+                               const std::vector<OwnUnknown>& own, QuadraticForm& form, GapVariation& variation) {
   const auto& [skins, others, normals, n_corners] = columns;
   const Eigen::Index n = columns.unknowns(), behind = skins + others;
-  const Matrix right = 2 * by_corners(by_points, columns) + by_points.bottomRightCorner(n_corners, n_corners) * corners;
+  Matrix right = by_points.bottomRightCorner(n_corners, n_corners) * corners;
+  right.leftCols(n) += 2 * by_corners(by_points, columns);
   for (Eigen::Index k = 0; k < n_corners; ++k) form.add(1, corners.row(k), right.row(k));
   Eigen::MatrixXd hessian = form.matrix();
   hessian.topLeftCorner(skins, skins) += by_points.topLeftCorner(skins, skins);
   hessian.block(behind, 0, normals, skins) += by_points.block(skins, 0, normals, skins);
   hessian.block(0, behind, skins, normals) += by_points.block(0, skins, skins, normals);
   hessian.block(behind, behind, normals, normals) += by_points.block(skins, skins, normals, normals);
-  variation.hessian.assign(hessian.data(), hessian.data() + n * n);
+  variation.hessian.resize(static_cast<std::size_t>(n * n));
+  Eigen::Map<Eigen::MatrixXd>(variation.hessian.data(), n, n) = hessian.topLeftCorner(n, n);
+  for (Eigen::Index k = 0; k < std::ssize(own); ++k) {
+    const auto& [gap, place] = own[static_cast<std::size_t>(k)];
+    const Row gradient = hessian.row(n + k).head(n);
+    variation.ends.push_back({gap, {gradient.begin(), gradient.end()}, {place.begin(), place.end()}});
+  }
 }
 
 void vary_gap(const ContactCellGeometry& cell, bool second, GapVariation& variation) {

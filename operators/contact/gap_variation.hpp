@@ -60,7 +60,7 @@ struct GapVariation {
   double gap = 0;                ///< G
   std::vector<double> gradient;  ///< (n_unknowns)
   std::vector<double> hessian;   ///< (n_unknowns, n_unknowns), symmetric; empty where it was not asked for
-  std::vector<MovingEnd> ends;   ///< in the plane, of ends that are still; empty without second derivatives
+  std::vector<MovingEnd> ends;   ///< of ends that are still, in space three of each line; empty without second derivatives
 };
 
 /// @param second whether second derivatives are wanted  @param[out] variation its memory is used again

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <tuple>
+#include <utility>
 
 namespace lacon::variations {
 namespace {
@@ -35,7 +36,8 @@ bool passes_along_an_edge(const Vector<3>& l) {
 PolygonVariation::PolygonVariation(const ContactCellGeometry& cell, bool second)
     : cell_(cell),
       trace_(*cell.trace),
-      n_(cell.n_unknowns()),
+      n_(cell.n_unknowns() +
+         (second ? 3 * static_cast<int>(std::ranges::count_if(cell.lines, [](const auto& line) { return line.still; })) : 0)),
       first_normal_(3 * cell.n_nodes()),
       second_(second),
       vertices_{vertex_at(0), vertex_at(1), vertex_at(2)} {
@@ -81,6 +83,14 @@ void PolygonVariation::add_gradient(const Row& of_corners, Row& gradient) {
   }
 }
 
+std::vector<OwnUnknown> PolygonVariation::own_unknowns() const {
+  std::vector<OwnUnknown> own;
+  for (const CuttingLine& line : lines_)
+    for (int k = 0; k < 3 && line.own_column >= 0; ++k)
+      own.push_back({line.of_l[k], still_[own.size() / 3].row(k).head(cell_.n_unknowns())});
+  return own;
+}
+
 Matrix PolygonVariation::corners() const {
   Matrix rows(2 * corners_.size(), n_);
   for (std::size_t k = 0; k < corners_.size(); ++k) rows.middleRows(2 * static_cast<Eigen::Index>(k), 2) = corners_[k].row;
@@ -94,7 +104,7 @@ void PolygonVariation::add_second(QuadraticForm& form) {
     for (int j = 0; j < 2; ++j) {
       Row turn = Row::Zero(n_);
       for (int i = 0; i < 2; ++i)
-        if (const CuttingLine& own = lines_[corner.lines[static_cast<std::size_t>(i)]]; own.moves)
+        if (const CuttingLine& own = lines_[corner.lines[static_cast<std::size_t>(i)]]; own.varies())
           turn += corner.of_equations[i] * (own.dl.row(j + 1) - own.dl.row(0));
       form.add(2, corner.row.row(j), turn);
     }
@@ -126,7 +136,7 @@ TriangleVertex PolygonVariation::vertex_at(int k) const {
   return v;
 }
 
-CuttingLine PolygonVariation::line(std::size_t k) const {
+CuttingLine PolygonVariation::line(std::size_t k) {
   const PolygonTrace::Line& given = trace_.line[k];
   CuttingLine line;
   if (given.master < 0) {
@@ -164,6 +174,11 @@ CuttingLine PolygonVariation::line(std::size_t k) const {
           ((line.q[a] - line.p[a]) * normal_by_apart - line.p[a] * along_by_normal).transpose();
   }
   if (nodes.still || (is_within(given, nodes.type) && passes_along_an_edge(line.l))) line.moves = false;
+  if (nodes.still && second_) {
+    line.own_column = cell_.n_unknowns() + 3 * static_cast<int>(still_.size());
+    still_.push_back(std::exchange(line.dl, Rows<3>::Zero(3, n_)));
+    line.dl.middleCols<3>(line.own_column).setIdentity();
+  }
   return line;
 }
 
@@ -206,7 +221,7 @@ void PolygonVariation::take_corner(std::size_t k) {
   }
   for (int i = 0; i < 2; ++i) {
     const CuttingLine& own = lines_[corner.lines[static_cast<std::size_t>(i)]];
-    if (!own.moves) continue;
+    if (!own.varies()) continue;
     corner.moves = true;
     if (second_) corner.row.noalias() -= corner.inverse.col(i) * (corner.b.transpose() * own.dl);
   }

@@ -36,8 +36,12 @@ struct CuttingLine {
   std::array<double, max_skin_nodes> p{}, q{};  ///< factors of these
   Vector<3> of_l = Vector<3>::Zero();           ///< the derivative of the gap by l
   Rows<3> dl;                                   ///< where second derivatives are wanted
+  int own_column = -1;                          ///< first of its coefficients, where these are unknowns by themselves
+  bool varies() const { return moves || own_column >= 0; }
 };
 
+/// Lines that keep their place do not move with the nodes. Second derivatives have their coefficients as unknowns behind all
+/// others.
 class PolygonVariation {
  public:
   PolygonVariation(const ContactCellGeometry& cell, bool second);
@@ -47,11 +51,16 @@ class PolygonVariation {
   /// Add what the corners do. @param of_corners the derivative by them  @param[in,out] gradient by the unknowns
   void add_gradient(const Row& of_corners, Row& gradient);
 
-  /// Derivatives of the corners by the unknowns, (2 corners, unknowns).
+  /// With those of lines that keep their place.
+  Eigen::Index n_unknowns() const { return n_; }
+  /// Derivatives of the corners by the unknowns, (2 corners, n_unknowns()).
   Matrix corners() const;
 
-  /// Add their second derivatives, after add_gradient().
+  /// Add their second derivatives, after add_gradient(). @param form of n_unknowns()
   void add_second(QuadraticForm& form);
+
+  /// The coefficients of lines that keep their place, after add_gradient(): what the gap does by them, and they by the nodes.
+  std::vector<OwnUnknown> own_unknowns() const;
 
  private:
   struct Corner {
@@ -70,7 +79,7 @@ class PolygonVariation {
   /// The derivative of the gap by the normal of which n is the direction.
   static Vector<3> of_unscaled(const TriangleVertex& at) { return (at.of_normal - at.of_normal.dot(at.n) * at.n) / at.length; }
 
-  CuttingLine line(std::size_t k) const;
+  CuttingLine line(std::size_t k);
 
   void take_corner(std::size_t k);
 
@@ -86,6 +95,7 @@ class PolygonVariation {
   bool second_;
   std::array<TriangleVertex, 3> vertices_;
   std::vector<CuttingLine> lines_;
+  std::vector<Rows<3>> still_;  ///< what derivatives of l would be, of each line that keeps its place
   std::vector<Corner> corners_;
 };
 

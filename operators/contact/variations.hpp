@@ -26,6 +26,12 @@ template <int N>
 using PointRows = Eigen::Matrix<double, N, Eigen::Dynamic, Eigen::RowMajor, N, max_point_variables>;
 using PointRow = PointRows<1>;
 
+/// An unknown by itself that derivatives take for fixed, though it moves with the nodes.
+struct OwnUnknown {
+  double gap;  ///< dG by it
+  Row place;   ///< its derivatives by the unknowns
+};
+
 /// A quadratic form of the variables as a sum of products.
 class QuadraticForm {
  public:

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <complex>
 
+#include "lacon/assembly/gmres.hpp"
 #include "lacon/operators/evolution/convergence.hpp"
 #include "lacon/operators/evolution/equilibrium.hpp"
 
@@ -12,32 +13,45 @@ namespace lacon {
 namespace {
 
 constexpr double singular = 1e-3;  // of the complement, which is 1 where covers stay
+constexpr std::size_t few = 12;    // terms
+constexpr double enough = 1e-4;    // of the motion, that GMRES may leave: iterations of Newton's method gain as much
+constexpr int iterations = 15;
+constexpr double in_vain = 0.3;  // of it: what is left is no better than nothing
 
-double moved(const MovingCover& cover, const std::vector<double>& x) {
+using Entries = std::vector<std::pair<std::int64_t, double>>;
+
+double product(const Entries& row, const std::vector<double>& x) {
   double sum = 0;
-  for (const auto& [equation, value] : cover.row) sum += value * x[static_cast<std::size_t>(equation)];
+  for (const auto& [equation, value] : row) sum += value * x[static_cast<std::size_t>(equation)];
   return sum;
 }
 
-}  // namespace
+void add(double factor, const Entries& column, std::vector<double>& to) {
+  for (const auto& [equation, value] : column) to[static_cast<std::size_t>(equation)] += factor * value;
+}
 
-std::int64_t follow_covers(std::span<const MovingCover> covers, double size,
-                           const std::function<void(std::vector<double>&)>& solve, std::vector<double>& x) {
-  if (covers.empty() || !(size > 0)) return 0;
+/// A^-1 side, by a right side of the size given. @return whether there is one
+bool solve_scaled(std::vector<double>& side, double size, const std::function<void(std::vector<double>&)>& solve) {
+  const double factor = size / largest_entry(side);
+  if (!std::isfinite(factor)) return false;
+  for (double& value : side) value *= factor;
+  solve(side);
+  for (double& value : side) value /= factor;
+  return true;
+}
+
+std::int64_t follow_few(std::span<const MovingCover> covers, double size,
+                        const std::function<void(std::vector<double>&)>& solve, std::vector<double>& x) {
   const auto n = static_cast<Eigen::Index>(covers.size());
   std::vector<std::vector<double>> answers;
   Eigen::MatrixXd complement = Eigen::MatrixXd::Identity(n, n);
   Eigen::VectorXd motion(n);
   for (Eigen::Index k = 0; k < n; ++k) {
-    const MovingCover& cover = covers[static_cast<std::size_t>(k)];
-    std::vector<double>& answer = answers.emplace_back(cover.column);
-    const double factor = size / largest_entry(cover.column);
-    if (!std::isfinite(factor)) return 0;
-    for (double& value : answer) value *= factor;
-    solve(answer);
-    for (double& value : answer) value /= factor;
-    for (Eigen::Index i = 0; i < n; ++i) complement(i, k) += moved(covers[static_cast<std::size_t>(i)], answer);
-    motion[k] = moved(cover, x);
+    std::vector<double>& answer = answers.emplace_back(x.size());
+    add(1, covers[static_cast<std::size_t>(k)].column, answer);
+    if (!solve_scaled(answer, size, solve)) return 0;
+    for (Eigen::Index i = 0; i < n; ++i) complement(i, k) += product(covers[static_cast<std::size_t>(i)].row, answer);
+    motion[k] = product(covers[static_cast<std::size_t>(k)].row, x);
   }
   const Eigen::FullPivLU<Eigen::MatrixXd> factor(complement);
   if (!(factor.rcond() > singular)) return 0;
@@ -49,16 +63,51 @@ std::int64_t follow_covers(std::span<const MovingCover> covers, double size,
   return std::ranges::count_if(values, [](const std::complex<double>& value) { return value.imag() == 0 && value.real() < 0; });
 }
 
+void follow_many(std::span<const MovingCover> covers, double size, const std::function<void(std::vector<double>&)>& solve,
+                 std::vector<double>& x) {
+  std::vector<double> motion, one_by_row;
+  double squares = 0;
+  for (const MovingCover& cover : covers) {
+    double row = 0;
+    for (const auto& [equation, value] : cover.row) row = std::max(row, std::abs(value));
+    one_by_row.push_back(row > 0 ? 1 / row : 1);  // as if all moved by displacements of the same size
+    motion.push_back(product(cover.row, x));
+    squares += motion.back() * motion.back() * one_by_row.back() * one_by_row.back();
+  }
+  if (!(squares > 0)) return;
+  std::vector<double> answer;
+  const auto multiply = [&](std::span<const double> by, std::span<double> moved) {
+    answer.assign(x.size(), 0.0);
+    for (std::size_t k = 0; k < covers.size(); ++k) add(by[k], covers[k].column, answer);
+    if (!solve_scaled(answer, size, solve)) answer.assign(x.size(), 0.0);
+    for (std::size_t k = 0; k < covers.size(); ++k) moved[k] = by[k] + product(covers[k].row, answer);
+  };
+  const GmresResult found = gmres(multiply, [](std::span<double>) {}, one_by_row, motion,
+                                  {.goal = enough * std::sqrt(squares), .iterations = iterations, .cycles = 1});
+  if (!(found.residual < in_vain * std::sqrt(squares))) return;
+  // what the last product was made of: it says what is left
+  for (std::size_t i = 0; i < x.size(); ++i) x[i] -= answer[i];
+}
+
+}  // namespace
+
+std::int64_t follow_covers(std::span<const MovingCover> covers, double size,
+                           const std::function<void(std::vector<double>&)>& solve, std::vector<double>& x) {
+  if (covers.empty() || !(size > 0)) return 0;
+  if (covers.size() <= few) return follow_few(covers, size, solve, x);
+  follow_many(covers, size, solve, x);
+  return 0;
+}
+
 std::vector<MovingCover> Equilibrium::moving_covers(const StaticState& state, std::span<const double> step) const {
   std::vector<MovingCover> covers;
   if (!contact_) return covers;
   for (const CoverEnd& end : contact_->moving_ends(state.patches)) {
     MovingCover& cover = covers.emplace_back();
-    cover.column.assign(static_cast<std::size_t>(problem_.numbering.n_equations()), 0.0);
     for (std::size_t i = 0; i < end.unknowns.size(); ++i) {
       const std::int64_t unknown = system_.unknown(end.unknowns[i].vertex, end.unknowns[i].component);
       if (const std::int64_t e = system_.equation(unknown); e >= 0) {
-        cover.column[static_cast<std::size_t>(e)] += end.column[i];
+        cover.column.emplace_back(e, end.column[i]);
         cover.row.emplace_back(e, end.row[i]);
       } else {
         cover.step += end.row[i] * step[static_cast<std::size_t>(unknown)];

@@ -281,9 +281,9 @@ int Newton::iterate(double instant, StaticState& state, const std::function<void
       finish_instant(instant, previous, state, external, line);
       return iteration;
     }
-    const bool other_forces =
-        (course_.period() || (course_.stands() && settled_ > drifting) || std::min(course_.growths(), settled_) >= drifting) &&
-        keep_covers_that_sway(instant, state, iteration == last);
+    const bool other_forces = (course_.period() || course_.wanders() || (course_.stands() && settled_ > drifting) ||
+                               std::min(course_.growths(), settled_) >= drifting) &&
+                              keep_covers_that_sway(instant, state, iteration == last);
     const int done = iteration + 1;
     if (elsewhere_ &&
         Prediction::leads_astray(done, line.longest, forces_before, there.in_equilibrium() ? HUGE_VAL : there.longest))
@@ -304,6 +304,7 @@ int Newton::iterate(double instant, StaticState& state, const std::function<void
       fail_if_endless(instant);
       last = with_own_iterations(iteration);
     }
+    if (other_forces || line.pairs_anew) last = with_own_iterations(iteration);
     if (line.pairs_anew) choice_.forget_residual();
     if (other_matrix || other_forces || line.pairs_anew) assemble(state, previous, options_.matrix);
     if (!std::isfinite(line.maxi)) break;

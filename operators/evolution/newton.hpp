@@ -104,6 +104,8 @@ class Newton {
   /// first. Throws SOLVER_3 in the first iteration, EVOLUTION_42 in later ones.
   std::vector<double> solve_system(StaticState& state, const StaticState& previous, SolidMatrix asked,
                                    std::span<const double> step, const Accuracy& accuracy, IterationReport& line);
+  /// What the matrix lacks of kept covers (moving_covers.hpp), as far as it is worth its solutions.
+  std::vector<MovingCover> moving_covers(const StaticState& state, std::span<const double> step) const;
   /// Go on with statuses that satisfy all patches of the linear system (linear_statuses.hpp), as long as they change from
   /// iteration to iteration. Where more are wrong than columns of the inverse are worth, all of them change and the system of
   /// these statuses is solved, again and again, for as long as fewer are wrong each time.

@@ -50,16 +50,18 @@ std::vector<double> Newton::solve_system(StaticState& state, const StaticState& 
     const bool moves_freely = !loose.empty();
     if (!moves_freely) {
       std::vector<double> solution = equilibrium_.right_side(step);
-      const std::vector<MovingCover> covers = equilibrium_.moving_covers(state, step);
+      const std::vector<MovingCover> covers = moving_covers(state, step);
       for (const MovingCover& cover : covers)
-        for (std::size_t i = 0; i < solution.size(); ++i) solution[i] -= cover.step * cover.column[i];
+        for (const auto& [equation, value] : cover.column) solution[static_cast<std::size_t>(equation)] -= cover.step * value;
       double size = 0;
       for (const double value : solution) size = std::max(size, std::abs(value));
       line.solution = solve_linear(solution, accuracy);
       null = line.solution.factorisation.null_pivots;
       if (null.empty()) {
-        line.constraints += follow_covers(
-            covers, size, [&](std::vector<double>& side) { solve_linear(side, accuracy, true); }, solution);
+        // solutions by iterations cost more than the iterations of Newton's method that they would spare
+        if (problem_.dimension == 2 || !line.solution.factorisation.is_iterative)
+          line.constraints += follow_covers(
+              covers, size, [&](std::vector<double>& side) { solve_linear(side, accuracy, true); }, solution);
         return solution;
       }
       for (const std::int64_t dof : equilibrium_.dofs_of(null))
@@ -88,9 +90,15 @@ std::vector<double> Newton::solve_system(StaticState& state, const StaticState& 
   }
 }
 
+std::vector<MovingCover> Newton::moving_covers(const StaticState& state, std::span<const double> step) const {
+  // in space they are many: as long as statuses change these are fitted to each other without them
+  if (problem_.dimension == 3 && settled_ == 0) return {};
+  return equilibrium_.moving_covers(state, step);
+}
+
 void Newton::fit_statuses(std::vector<double>& solution, std::span<const double> step, StaticState& state,
                           const Accuracy& accuracy, IterationReport& line, const std::function<void()>& assemble_again) {
-  if (!contact() || settled_ > 0 || statuses_.keeps() || !equilibrium_.moving_covers(state, step).empty()) return;
+  if (!contact() || settled_ > 0 || statuses_.keeps() || !moving_covers(state, step).empty()) return;
   const System& system = equilibrium_.system();
   std::size_t wrong = std::numeric_limits<std::size_t>::max();
   for (int round = 0;; ++round) {

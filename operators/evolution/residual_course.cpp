@@ -10,11 +10,13 @@
 namespace lacon {
 namespace {
 
-constexpr double same = 1e-2;   // of a residual: the one of a period before
-constexpr double other = 1e-3;  // and what differs within a period,
-constexpr double clearly = 10;  // so many times more than from one period to the next: it does not merely crawl
-constexpr int long_enough = 6;  // iterations
-constexpr double more = 1e-1;   // of a residual that was smaller before
+constexpr double same = 1e-2;       // of a residual: the one of a period before
+constexpr double other = 1e-3;      // and what differs within a period,
+constexpr double clearly = 10;      // so many times more than from one period to the next: it does not merely crawl
+constexpr int long_enough = 6;      // iterations
+constexpr std::size_t in_vain = 8;  // iterations
+constexpr int recent = 4;           // in the last of which what comes to its end has fallen all the way
+constexpr double more = 1e-1;       // of a residual that was smaller before
 
 }  // namespace
 
@@ -75,6 +77,11 @@ bool ResidualCourse::stands() const {
   if (residuals_.size() < long_enough || !finite()) return false;
   const auto [least, most] = std::minmax_element(residuals_.end() - long_enough, residuals_.end());
   return *most <= (1 + same) * *least;
+}
+
+bool ResidualCourse::wanders() const {
+  const auto before = smaller_before();
+  return before && *before >= in_vain && *std::min_element(residuals_.end() - recent, residuals_.end()) < residuals_.back();
 }
 
 std::string ResidualCourse::words() const {

@@ -24,6 +24,8 @@ class ResidualCourse {
   std::optional<std::size_t> period() const;
   /// Whether the last six are the same, to a hundredth.
   bool stands() const;
+  /// Whether the last eight are no less than what was reached before them, and the last one is not their way down.
+  bool wanders() const;
   /// How many of the last iterations have each left more than the one before.
   int growths() const;
   /// In how many iterations up to the last it has been largest at the same place.

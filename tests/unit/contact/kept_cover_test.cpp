@@ -58,13 +58,13 @@ Scene in_plane(double end, double slope = 0.2) {
   return scene;
 }
 
-/// In space: a warped slave that looks down, over two flat masters side by side, from x = -0.2 to `end`.
-Scene in_space(double end, bool quadratic) {
+/// In space: a warped slave that looks down, over two masters side by side, flat but for `warp`, from x = -0.2 to `end`.
+Scene in_space(double end, bool quadratic, double warp = 0) {
   Scene scene;
   scene.mesh.dimension = 3;
   const auto a = scene.node(0, 0, 0.1), b = scene.node(0, 1, 0.1), c = scene.node(1, 1, 0.14), d = scene.node(1, 0, 0.1);
   scene.slave(CellType::QUAD4, {a, b, c, d}, 0);
-  const auto at = [&](double x, double y) { return scene.node(x, y, 0.02 + 0.15 * x + 0.05 * y); };
+  const auto at = [&](double x, double y) { return scene.node(x, y, 0.02 + 0.15 * x + 0.05 * y + warp * x * y); };
   std::vector<std::int32_t> low, high, middle;
   for (const double y : {-0.2, 0.45, 1.2}) low.push_back(at(-0.2, y)), high.push_back(at(end, y));
   if (quadratic) {
@@ -199,34 +199,48 @@ TEST(KeptCover, ChangesNoGapAndNoForceAlongTheNormal) {
 }
 
 // Gaps and forces of a kept cover against their differences: what the symmetric part lacks is what the ends that move add.
+void expect_differences(Scene& scene) {
+  const auto d = static_cast<std::size_t>(scene.mesh.dimension), n = d * scene.mesh.n_nodes();
+  const Derivatives of = derivatives(scene, true);
+  double lacking = 0;
+  for (std::size_t j = 0; j < n; ++j) {
+    constexpr double step = 1e-6;
+    double& place = scene.mesh.coordinates[3 * (j / d) + j % d];
+    const double middle = place;
+    place = middle + step;
+    const Derivatives after = derivatives(scene, true);
+    place = middle - step;
+    const Derivatives before = derivatives(scene, true);
+    place = middle;
+    EXPECT_NEAR((after.gap - before.gap) / (2 * step), of.gradient[j] + of.of_gap[j], 1e-7 * largest(of.gradient)) << j;
+    for (std::size_t i = 0; i < n; ++i) {
+      EXPECT_NEAR((after.gradient[i] - before.gradient[i]) / (2 * step), of.hessian[i * n + j] + of.of_gradient[i * n + j],
+                  1e-7 * largest(of.hessian))
+          << i << ' ' << j;
+      lacking = std::max(lacking, std::abs(of.of_gradient[i * n + j] - of.of_gradient[j * n + i]));
+    }
+  }
+  EXPECT_GT(lacking, 1e-2 * largest(of.hessian));  // it is not symmetric
+  EXPECT_GT(largest(of.of_gap), 1e-3 * largest(of.gradient));
+}
+
 TEST(KeptCover, IsDifferentiatedWhollyByItsEndsAsWell) {
-  for (const double slope : {0.2, 3.0, 30.0})  // the steepest has a share that turns with it
-    for (const bool smoothing : {false, true}) {
+  for (const bool smoothing : {false, true}) {
+    SCOPED_TRACE(smoothing ? "nodal normals" : "normals of cells");
+    for (const double slope : {0.2, 3.0, 30.0}) {  // the steepest has a share that turns with it
+      SCOPED_TRACE(slope);
       Scene scene = in_plane(slope > 1 ? 0.32 : 0.6, slope);
       scene.contact.smoothing = smoothing;
-      const std::size_t n = 2 * scene.mesh.n_nodes();
-      const Derivatives of = derivatives(scene, true);
-      double lacking = 0;
-      for (std::size_t j = 0; j < n; ++j) {
-        constexpr double step = 1e-6;
-        double& place = scene.mesh.coordinates[3 * (j / 2) + j % 2];
-        const double middle = place;
-        place = middle + step;
-        const Derivatives after = derivatives(scene, true);
-        place = middle - step;
-        const Derivatives before = derivatives(scene, true);
-        place = middle;
-        EXPECT_NEAR((after.gap - before.gap) / (2 * step), of.gradient[j] + of.of_gap[j], 1e-7 * largest(of.gradient)) << j;
-        for (std::size_t i = 0; i < n; ++i) {
-          EXPECT_NEAR((after.gradient[i] - before.gradient[i]) / (2 * step), of.hessian[i * n + j] + of.of_gradient[i * n + j],
-                      1e-7 * largest(of.hessian))
-              << i << ' ' << j << ' ' << slope << ' ' << smoothing;
-          lacking = std::max(lacking, std::abs(of.of_gradient[i * n + j] - of.of_gradient[j * n + i]));
-        }
-      }
-      EXPECT_GT(lacking, 1e-2 * largest(of.hessian));  // it is not symmetric
-      EXPECT_GT(largest(of.of_gap), 1e-3 * largest(of.gradient));
+      expect_differences(scene);
     }
+    for (const bool quadratic : {false, true}) {
+      SCOPED_TRACE(quadratic ? "QUAD8" : "QUAD4");
+      // warped: differences would go from the rule of flat masters to that of others
+      Scene scene = in_space(0.6, quadratic, quadratic ? 0 : 0.01);
+      scene.contact.smoothing = smoothing;
+      expect_differences(scene);
+    }
+  }
 }
 
 // Where the skin of the master goes on as a wall, which the patch does not see, the master ends for it.

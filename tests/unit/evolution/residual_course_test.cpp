@@ -53,6 +53,14 @@ TEST(ResidualCourse, KnowsWhatComesBack) {
   EXPECT_EQ(course({9, 1, 2, 1, 2}).words(), "the residual goes round with a period of 2 iterations");
 }
 
+TEST(ResidualCourse, KnowsThatItGetsNowhere) {
+  EXPECT_TRUE(course({1, 2, 3, 7, 2, 5, 3, 4, 6}).wanders());
+  EXPECT_FALSE(course({1, 2, 3, 7, 2, 5, 3, 4}).wanders());       // not for long enough
+  EXPECT_FALSE(course({1, 2, 3, 7, 2, 0.9, 3, 4, 6}).wanders());  // it was less since
+  // statuses have changed in equilibrium, and the next one is near
+  EXPECT_FALSE(course({1e-10, 2, 3, 7, 2, 5, 3e-1, 2e-2, 1e-4}).wanders());
+}
+
 TEST(ResidualCourse, KnowsThatItStands) {
   EXPECT_TRUE(course({9, 1, 1.001, 1, 1.001, 1, 1.001}).stands());
   EXPECT_FALSE(course({9, 1, 1.001, 1, 1.001, 1}).stands());  // not for long enough
