@@ -10,13 +10,13 @@
 namespace lacon {
 namespace {
 
-constexpr double same = 1e-2;       // of a residual: the one of a period before
-constexpr double other = 1e-3;      // and what differs within a period,
-constexpr double clearly = 10;      // so many times more than from one period to the next: it does not merely crawl
-constexpr int long_enough = 6;      // iterations
-constexpr std::size_t in_vain = 8;  // iterations
-constexpr int recent = 4;           // in the last of which what comes to its end has fallen all the way
-constexpr double more = 1e-1;       // of a residual that was smaller before
+constexpr double same = 1e-2;           // of a residual: the one of a period before
+constexpr double other = 1e-3;          // and what differs within a period,
+constexpr double clearly = 10;          // so many times more than from one period to the next: it does not merely crawl
+constexpr int long_enough = 6;          // iterations
+constexpr int in_vain = 9, recent = 4;  // iterations, the last of which are no better than those before
+constexpr double far = 1e-3;            // of the largest: these were not near an equilibrium, of other statuses or a law
+constexpr double more = 1e-1;           // of a residual that was smaller before
 
 }  // namespace
 
@@ -80,8 +80,10 @@ bool ResidualCourse::stands() const {
 }
 
 bool ResidualCourse::wanders() const {
-  const auto before = smaller_before();
-  return before && *before >= in_vain && *std::min_element(residuals_.end() - recent, residuals_.end()) < residuals_.back();
+  if (residuals_.size() < in_vain || !finite()) return false;
+  const auto first = residuals_.end() - in_vain, late = residuals_.end() - recent;
+  const double least = *std::min_element(first, late), since = *std::min_element(late, residuals_.end());
+  return since >= least && since < residuals_.back() && least >= far * *std::max_element(first, residuals_.end());
 }
 
 std::string ResidualCourse::words() const {

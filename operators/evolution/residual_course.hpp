@@ -24,7 +24,7 @@ class ResidualCourse {
   std::optional<std::size_t> period() const;
   /// Whether the last six are the same, to a hundredth.
   bool stands() const;
-  /// Whether the last eight are no less than what was reached before them, and the last one is not their way down.
+  /// Whether the last four of nine are no less than those before them, none is near its end, and the last one no way down.
   bool wanders() const;
   /// How many of the last iterations have each left more than the one before.
   int growths() const;

@@ -55,10 +55,11 @@ TEST(ResidualCourse, KnowsWhatComesBack) {
 
 TEST(ResidualCourse, KnowsThatItGetsNowhere) {
   EXPECT_TRUE(course({1, 2, 3, 7, 2, 5, 3, 4, 6}).wanders());
-  EXPECT_FALSE(course({1, 2, 3, 7, 2, 5, 3, 4}).wanders());       // not for long enough
-  EXPECT_FALSE(course({1, 2, 3, 7, 2, 0.9, 3, 4, 6}).wanders());  // it was less since
-  // statuses have changed in equilibrium, and the next one is near
-  EXPECT_FALSE(course({1e-10, 2, 3, 7, 2, 5, 3e-1, 2e-2, 1e-4}).wanders());
+  EXPECT_FALSE(course({2, 3, 7, 2, 5, 3, 4, 6}).wanders());         // not for long enough
+  EXPECT_FALSE(course({2, 2, 3, 7, 2, 1, 3, 4, 6}).wanders());      // the last four have been less
+  EXPECT_FALSE(course({1, 2, 3, 7, 2, 5, 4, 3, 2}).wanders());      // behind a leap it falls
+  EXPECT_FALSE(course({1, 2, 3, 1e-8, 2, 5, 3, 4, 6}).wanders());   // statuses have changed in equilibrium
+  EXPECT_FALSE(course({1e-9, 13, 8, 7, 4, 2, 2, 9, 3}).wanders());  // what flows was elastic in the first iteration
 }
 
 TEST(ResidualCourse, KnowsThatItStands) {
