@@ -23,8 +23,6 @@ namespace lacon {
 
 struct ContactTolerances {
   double unpaired = 1e-14;          ///< covered fraction of a patch below which it has no master
-  double least_coverage = 1e-5;     ///< covered fraction that an active patch needs
-  double taking_coverage = 2e-2;    ///< and one that takes contact
   double bare = 1e-9;               ///< fraction of a patch that no master covers, above round-off
   double initial_gap = 1e-6;        ///< CONTACT_INIT='INTERPENETRE': largest gap, over the smallest edge
   double lambda_round_off = 1e-10;  ///< of the largest |lambda|: below it a sign means nothing
@@ -215,7 +213,7 @@ class ContactState {
   /// Whether every displacement in a patch's row is imposed: its multiplier is then undetermined and keeps its value.
   bool is_locked(std::size_t patch) const { return locked_[patch]; }
   /// Whether its master covers as much of it as an active patch needs.
-  bool is_covered(std::size_t patch) const { return geometry_.coverage(patch) >= tolerances_.least_coverage; }
+  bool is_covered(std::size_t patch) const { return geometry_.coverage(patch) >= least_coverage; }
   /// Whether its master ends on it.
   bool is_covered_in_part(std::size_t patch) const {
     return is_covered(patch) && geometry_.coverage(patch) < 1 - tolerances_.bare;

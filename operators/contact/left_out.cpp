@@ -4,6 +4,7 @@
 #include <map>
 
 #include "lacon/operators/contact/contact_geometry.hpp"
+#include "lacon/operators/contact/patches.hpp"
 
 // The gap of a patch is an average. A patch that reaches past the edge of its master and sees another one behind, the floor of
 // a pocket or the table under a pile, would have both in it, and open with its near part deep inside the nearer one. So the far
@@ -21,8 +22,6 @@ namespace {
 constexpr double far_behind = 0.5;      // of the size of the patch
 constexpr double still_far = 0.45;      // likewise, of what is left out already
 constexpr double deepest_nearest = 1;   // likewise: nothing is behind a master that a patch lies so deep in
-constexpr double least_nearest = 2e-2;  // of the patch: what the nearer ones cover, so that it can take contact there
-constexpr double still_nearest = 1e-2;  // likewise, of a face that was in front already
 constexpr double round_off = 1e-9;      // of the patch: what less is seen of by accident
 constexpr double has_turned = 0.1;      // of a cosine: walls are decided anew where they have turned by more
 constexpr int most_levels = 4;          // of masters that lie one behind the other
@@ -74,9 +73,9 @@ LeftOut ContactGeometry::to_leave_out(const LeftOut& before) const {
     }
     for (const auto& [face, part] : covered_by)
       if (cells[0]->least >= -deepest_nearest * size_[patch] &&
-          part >= (before.in_front.contains({number, face}) ? still_nearest : least_nearest) * whole_[patch])
+          part >= (before.in_front.contains({number, face}) ? least_coverage : taking_coverage) * whole_[patch])
         found.in_front.insert({number, face});
-    if (covered < least_nearest * whole_[patch] || !may_see_far(patch)) continue;
+    if (covered < taking_coverage * whole_[patch] || !may_see_far(patch)) continue;
     for (const std::int32_t master : far)
       if (!near.contains(master)) found.far.insert({number, master});
   }

@@ -25,7 +25,7 @@ std::optional<PiercedPatch> ContactState::deepest(std::int32_t zone,
                                                   const std::function<double(std::size_t patch)>& limit) const {
   std::optional<PiercedPatch> worst;
   for (std::size_t p = 0; p < n_patches(); ++p) {
-    if (geometry_.zone_of(p) != zone || locked_[p] || held_open_[p] || geometry_.coverage(p) < tolerances_.least_coverage)
+    if (geometry_.zone_of(p) != zone || locked_[p] || held_open_[p] || geometry_.coverage(p) < least_coverage)
       continue;
     const double depth = -geometry_.smallest_gap(p) / size_[p];
     if (depth < limit(p)) continue;
@@ -41,7 +41,7 @@ std::optional<SplitPatch> ContactState::split(std::int32_t zone, const Patchwise
   };
   const auto is_asked = [&](std::size_t p) {
     return geometry_.zone_of(p) == zone && patches.status[p] != Status::active && !locked_[p] && !held_open_[p] &&
-           geometry_.coverage(p) >= tolerances_.taking_coverage;
+           geometry_.coverage(p) >= taking_coverage;
   };
   std::map<std::size_t, Parts> parts;
   const auto for_each_cell = [&](const auto& use) {
@@ -61,7 +61,7 @@ std::optional<SplitPatch> ContactState::split(std::int32_t zone, const Patchwise
   std::optional<SplitPatch> worst;
   for (const auto& [patch, of_patch] : parts) {
     const double share = of_patch.measure[0] / geometry_.whole(patch);
-    if (of_patch.measure[1] == 0 || share < tolerances_.taking_coverage) continue;
+    if (of_patch.measure[1] == 0 || share < taking_coverage) continue;
     const double depth = -of_patch.gap[0] / of_patch.measure[0];
     if (depth < std::max(tolerances_.touching, tolerances_.missed_pressure * strain) * size_[patch]) continue;
     if (!worst || depth > worst->depth) worst = SplitPatch{patch, share, depth, of_patch.gap[1] / of_patch.measure[1]};
@@ -73,7 +73,7 @@ std::optional<UncheckedOverlap> ContactState::unchecked_overlap(std::int32_t zon
   if (contact_.zones[zone].resolution != "NON") return std::nullopt;
   std::optional<UncheckedOverlap> worst;
   for (std::size_t p = 0; p < n_patches(); ++p) {
-    if (geometry_.zone_of(p) != zone || geometry_.coverage(p) < tolerances_.least_coverage) continue;
+    if (geometry_.zone_of(p) != zone || geometry_.coverage(p) < least_coverage) continue;
     const double depth = -geometry_.smallest_gap(p);
     if (depth > std::max(contact_.zones[zone].overlap_tolerance, tolerances_.touching * size_[p]) &&
         (!worst || depth > worst->depth))

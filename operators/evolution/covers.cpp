@@ -44,6 +44,7 @@ bool Newton::keep_covers_that_sway(double instant, const StaticState& state, boo
 
 void Newton::keep_cover(double instant, std::size_t patch) {
   equilibrium_.keep_cover(patch);
+  other_covers_ = true;
   choice_.start_again();
   covers_since_.try_emplace(contact()->geometry().zone_of(patch), instant);
 }

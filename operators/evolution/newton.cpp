@@ -169,7 +169,7 @@ std::vector<double> Newton::begin_instant(double instant, const StaticState& sta
   edges_ = {};
   lost_masters_.start_instant();
   settled_ = times_held_ = times_rested_ = times_round_ = times_cut_ = times_left_out_ = 0;
-  looked_far_ = goes_round_ = false;
+  looked_far_ = goes_round_ = other_covers_ = false;
   forcing_.start_instant();
   return equilibrium_.load(instant, state);
 }
@@ -304,7 +304,7 @@ int Newton::iterate(double instant, StaticState& state, const std::function<void
       fail_if_endless(instant);
       last = with_own_iterations(iteration);
     }
-    if (other_forces || line.pairs_anew) last = with_own_iterations(iteration);
+    if (std::exchange(other_covers_, false) || other_forces || line.pairs_anew) last = with_own_iterations(iteration);
     if (line.pairs_anew) choice_.forget_residual();
     if (other_matrix || other_forces || line.pairs_anew) assemble(state, previous, options_.matrix);
     if (!std::isfinite(line.maxi)) break;

@@ -220,11 +220,12 @@ class Newton {
   int times_cut_ = 0, times_left_out_ = 0;       ///< in this instant: pairs_anew()
   bool looked_far_ = false;                      ///< in this instant: near balance, for what is to be left out
   bool goes_round_ = false;                      ///< residuals have come back: increments are searched (line_search.hpp)
-  int times_round_ = 0;                          ///< in this instant: residuals have come back
-  std::vector<double> depths_before_;            ///< depths() as the instant began
-  std::string hanging_;                          ///< a body that springs alone hold in the last system
-  std::string doubt_;                            ///< why a cheaper factor is no use, where it has not been told
-  int settled_ = 0;                              ///< iterations in a row in which no status has changed
+  bool other_covers_ = false;          ///< patches have begun to keep their cover: what follows has its own iterations
+  int times_round_ = 0;                ///< in this instant: residuals have come back
+  std::vector<double> depths_before_;  ///< depths() as the instant began
+  std::string hanging_;                ///< a body that springs alone hold in the last system
+  std::string doubt_;                  ///< why a cheaper factor is no use, where it has not been told
+  int settled_ = 0;                    ///< iterations in a row in which no status has changed
   SaddlePointSolver solver_;
 };
 

@@ -56,6 +56,31 @@ class Walls(StudyTest):
             for beside, alone in zip(*forces, strict=True):
                 self.assertAlmostEqual(beside, alone, delta=1e-6 * abs(alone), msg=(kind, depth, leans))
 
+    def test_the_sliver_of_a_crest_carries_all(self):
+        """Two stiff trapezoids, corner on corner, whose flanks of 66 degrees are in the zone, and a soft layer above that is pressed by a tenth: whatever small
+        part of a patch is on the other's crest, the force is that of the layer. Below a fiftieth the flank came into the average: no status was right."""
+        flank = 1 / math.tan(math.radians(66))
+        for kind in ("QUAD4", "QUAD8"):
+            for side in (0, 1):
+                whole = None
+                for share in (0.5, 0.018, 0.009, 0.002):
+                    over, upper = 0.25 * share, lines(0, 1, 4 if side else 5)
+                    low = block(kind, lines(-1, 0, 4), lines(-1, 0, 4), lambda s, t: (s - (s + 1) * t * flank, t), "LOWER",
+                                {"top": "LOWER_SKIN", "right": "LOWER_SKIN", "bottom": "LOWER_BASE"})
+                    up = block(kind, upper, lines(0, 1, 4), lambda s, t, over=over: (s - over - (1 - s) * t * flank, t), "UPPER",
+                               {"bottom": "UPPER_SKIN", "left": "UPPER_SKIN"})
+                    layer = block(kind, upper, lines(1, 2, 2), lambda s, t, over=over: (s - over - (1 - s) * flank, t), "LAYER", {"top": "TOP"})
+                    study = Study(name="crest", mesh=union([low, weld(union([up, layer]))]), steps=2, asked={"per step": 4},
+                                  materials={"LOWER": elastic(1e7, 0.0), "UPPER": elastic(1e7, 0.0), "LAYER": elastic(1e2, 0.0)}, zones=[zone("LOWER", "UPPER", side)],
+                                  moves=[{"GROUP_MA": "LOWER", "DX": 0.0}, {"GROUP_MA": "LOWER_BASE", "DY": 0.0}, {"GROUP_MA": "UPPER", "DX": 0.0},
+                                         {"GROUP_MA": "LAYER", "DX": 0.0}, {"GROUP_MA": "TOP", "DY": [[0, 0], [2, -0.1]]}])
+                    figures = run(study, LACON, self.folder)
+                    self.assertEqual(missed(study, figures), [], (kind, side, share))
+                    force = self.forces(1)[-1]
+                    whole = whole or force
+                    self.assertAlmostEqual(force, whole, delta=1e-4 * abs(whole), msg=(kind, side, share))  # crests are 1e5 times as stiff
+                self.assertAlmostEqual(abs(whole), 100 * 0.1 * (1 + flank), delta=1e-4 * abs(whole))
+
     def test_a_square_key_in_a_square_hole_is_held_by_either_as_the_slave(self):
         """Turned by 0.06 about its middle. Patches of the hole beside the corners of the key met its other sides: half of the moment, or a stop."""
         grid = np.concatenate([lines(-2.5, -1, 4)[:-1], lines(-1, 1, 6), lines(1, 2.5, 4)[1:]])
