@@ -88,12 +88,15 @@ class AdaptiveStepper {
         iterations_(iterations),
         step_(steps.values[1] - steps.values[0]) {
     limit();
+    step_ = std::max(step_, rules_.smallest);
+    check_reach();
   }
 
   void advance(double from, double target) {
     for (double at = from; at < target;) {
       const bool last = at + step_ * (1 + 1e-6) >= target;  // no sliver is left before an instant of the list
       const double to = last ? target : at + step_;
+      check_length(at, to);
       if (++count_ > rules_.most)
         fail("STEP_3", {{"count", std::to_string(rules_.most)}, {"instant", fmt::format("{:.9g}", at)}});
       try {
@@ -126,7 +129,30 @@ class AdaptiveStepper {
   }
   void limit() {
     if (rules_.largest > 0) step_ = std::min(step_, rules_.largest);
-    step_ = std::max(step_, rules_.smallest);
+  }
+  /// Steps that shrink behind every instant come to an end, however well all goes: a geometric series.
+  void check_reach() const {
+    if (rules_.event != "TOUT_INST" || rules_.rule != "FIXE" || rules_.percent >= 0) return;
+    const double ratio = 1 + rules_.percent / 100, from = steps_.values.front(), last = steps_.values.back();
+    const double reach = (step_ - ratio * rules_.smallest) / (1 - ratio);
+    if (reach * (1 + 1e-6) >= last - from) return;
+    fail("STEP_6", {{"percent", fmt::format("{:.6g}", rules_.percent)},
+                    {"step", fmt::format("{:.6g}", step_)},
+                    {"smallest", fmt::format("{:.6g}", rules_.smallest)},
+                    {"from", fmt::format("{:.9g}", from)},
+                    {"instant", fmt::format("{:.9g}", from + reach)},
+                    {"last", fmt::format("{:.9g}", last)}});
+  }
+  /// Steps that were made shorter than PAS_MINI, or than what numbers of this size tell apart, end nowhere.
+  void check_length(double at, double to) const {
+    if (step_ >= rules_.smallest && to > at) return;
+    const bool by_percent = rules_.rule == "FIXE";
+    const std::string value = by_percent ? fmt::format("{:.6g}", rules_.percent) : std::to_string(rules_.reference);
+    fail("STEP_5", {{"instant", fmt::format("{:.9g}", at)},
+                    {"step", fmt::format("{:.6g}", step_)},
+                    {"smallest", fmt::format("{:.6g}", rules_.smallest)},
+                    {"rule", part(by_percent ? "shorter_by_percent" : "shorter_by_iterations", {{"value", value}})},
+                    {"remedy", part(by_percent ? "positive_percent" : "more_iterations_to_aim_at")}});
   }
 
   const TimeSteps& steps_;

@@ -258,6 +258,33 @@ TEST(AdaptiveStepping, AimsAtANumberOfIterations) {
               ElementsAre(1.0, 3.0, 7.0, 15.0, 16.0));  // sqrt(4 / 1)
 }
 
+/// The message that steps from 0 to 16 by way of 1 end with.
+std::string end_of(const StepAdaptation& adaptation, int iterations, std::size_t& solved) {
+  Solver solver{.longest = 100};
+  solver.iterations = iterations;
+  try {
+    solver.run({.values = {0, 1, 16}, .action = {.cut = true, .cut_into = 2}, .events = {}, .adaptation = adaptation});
+  } catch (const Error& error) {
+    solved = solver.solved.size();
+    return error.message().id;
+  }
+  return {};
+}
+
+// Halved behind every instant, steps come to 2 at most: they went on at PAS_MINI, a million of them.
+TEST(AdaptiveStepping, StepsThatShrinkEnd) {
+  std::size_t solved = 0;
+  EXPECT_EQ(end_of({.event = "TOUT_INST", .percent = -50}, 1, solved), "STEP_6");
+  EXPECT_EQ(solved, 0u);  // before anything is computed
+  EXPECT_EQ(end_of({.easy_steps = 1, .percent = -50, .smallest = 0.1}, 1, solved), "STEP_5");
+  EXPECT_EQ(solved, 4u);  // 1, 0.5, 0.25, 0.125
+  EXPECT_EQ(end_of({.easy_steps = 1, .percent = -50, .smallest = 1e-300}, 1, solved), "STEP_5");
+  EXPECT_LT(solved, 60u);  // at 2 numbers lie 2^-52 apart
+  EXPECT_EQ(end_of({.event = "TOUT_INST", .rule = "ITER_NEWTON", .reference = 1, .smallest = 0.1}, 3, solved), "STEP_5");
+  EXPECT_EQ(solved, 4u);
+  EXPECT_EQ(adapt({.event = "TOUT_INST", .percent = -5}, 1).solved.size(), 32u);  // (1 - 0.95^n) / 0.05 = 16 at n = 31.4
+}
+
 // A step that fails is cut, and the computation goes on with the shorter one until steps are easy again.
 TEST(AdaptiveStepping, GoesOnWithTheShorterStep) {
   const Solver solver = adapt({.event = "AUCUN"}, 1, 0.6);
