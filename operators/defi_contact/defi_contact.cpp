@@ -323,6 +323,7 @@ Contact defi_contact(const Mesh& mesh, const Model& of_bodies, const Registry& r
                                                 std::tuple("GROUP_MA_MAIT", zone.master_group, zone.master)}) {
       const std::string where = factor.path(keyword) + " '" + group + "'";
       check_elements(mesh, model, registry, cells, where);
+      refuse_degenerate(mesh, cells, factor.path(keyword), group);
       check_bodies(model, sides, cells, where);
       check_outside(model, sides, cells, factor.path(keyword), group);
       if (contact.verify_normals) check_sides(sides, cells, where, group);

@@ -11,6 +11,7 @@
 #include "lacon/operators/meshing/body.hpp"
 #include "lacon/operators/meshing/cut_order.hpp"
 #include "lacon/operators/meshing/quality.hpp"
+#include "lacon/operators/meshing/skin.hpp"
 #include "lacon/operators/meshing/subdivision.hpp"
 #include "lacon/structures/vector.hpp"
 
@@ -192,7 +193,8 @@ std::vector<Slave> find_slaves(const Mesh& mesh, std::span<const std::string> gr
     if (std::find(groups.begin(), groups.begin() + static_cast<std::ptrdiff_t>(zone), group) !=
         groups.begin() + static_cast<std::ptrdiff_t>(zone))
       fail("DECOUPE_1", {{"keyword", keyword}, {"group", group}});
-    for (const std::int32_t cell : cells_of_group(mesh, group, keyword)) {
+    const auto members = cells_of_group(mesh, group, keyword);
+    for (const std::int32_t cell : members) {
       const auto c = static_cast<std::size_t>(cell);
       if (mesh.row(c).dimension != skin_dimension)
         fail("DECOUPE_4", {{"keyword", keyword},
@@ -223,6 +225,7 @@ std::vector<Slave> find_slaves(const Mesh& mesh, std::span<const std::string> gr
       slaves.push_back({cell, body.cell, zone});
       quality.emplace_back(scaled_jacobian(mesh.types[b], mesh.cells[b], mesh.coordinates), body.cell);  // while it is at hand
     }
+    refuse_degenerate(mesh, members, std::string(keyword), group);
   }
   return slaves;
 }

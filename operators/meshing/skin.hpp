@@ -1,5 +1,5 @@
 #pragma once
-// On which side of a skin cell its body lies.
+// On which side of a skin cell its body lies, and whether it has any.
 #include "lacon/operators/meshing/body.hpp"
 
 namespace lacon {
@@ -25,5 +25,10 @@ class SkinSides {
   const Mesh& mesh_;
   NodeCells around_;
 };
+
+/// Refuse skin cells without length or area, which have no normal: SKIN_1. A length counts by the extent of them all, an area
+/// by the longest distance in its cell, as pairing judges them.
+void refuse_degenerate(const Mesh& mesh, std::span<const std::int32_t> cells, const std::string& keyword,
+                       const std::string& group);
 
 }  // namespace lacon

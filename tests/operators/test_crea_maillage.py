@@ -144,6 +144,14 @@ class CreaMaillage(OperatorTest):
         self.write_mesh("mesh_5", [[0, 0], [3, 0], [0.5, 0.5], [0, 3]], [("SEG2", [0, 1]), ("QUAD4", [0, 1, 2, 3])], {"LOW": [0]})
         self.assert_refuses("DECOUPE_6", "CREA_MAILLAGE", self.cut(["LOW"], "mesh_5"), "M2 under the slave cell M1, a QUAD4, has", result="mesh_6")
 
+    def test_refuses_a_skin_without_length_or_area(self):
+        """Newton's method found no normal there, as if it had not converged; a hexahedron whose top is drawn to a line is sound but for its corners."""
+        self.write_mesh("mesh_5", [[0, 0], [3, 0], [3, 0], [0, 3]], [("SEG2", [1, 2]), ("QUAD4", [0, 1, 2, 3])], {"AT": [0]})
+        self.assert_refuses("SKIN_1", "CREA_MAILLAGE", self.cut(["AT"], "mesh_5"), "SEG2 M1", "'AT'", "no length", "N2, N3", result="mesh_6")
+        wedge = [[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0], [0, 0.5, 1], [1, 0.5, 1], [1, 0.5, 1], [0, 0.5, 1]]
+        self.write_mesh("mesh_7", wedge, [("QUAD4", [4, 5, 6, 7]), ("HEXA8", list(range(8)))], {"ROOF": [0]})
+        self.assert_refuses("SKIN_1", "CREA_MAILLAGE", self.cut(["ROOF"], "mesh_7"), "QUAD4 M1", "'ROOF'", "no area", "N5, N6, N7, N8", result="mesh_8")
+
     def test_refuses_a_mesh_that_is_cut(self):
         self.run_command("CREA_MAILLAGE", self.cut(["LOW"]), "mesh_2", label="CUT")
         self.assert_refuses("MESH1_12", "CREA_MAILLAGE", self.cut(["TOP"], "mesh_2"), "'CUT'", result="mesh_3")

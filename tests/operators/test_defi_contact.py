@@ -124,6 +124,14 @@ class DefiContact(OperatorTest):
         with h5py.File(self.path("contact_3")) as file:
             return read_ragged(file["zones/held_open"])[0], self.ids(run)
 
+    def test_skins_without_length_are_refused(self):
+        """A slave stopped Newton's method, a master was passed over without a word."""
+        at = {number: list(place) for number, place in enumerate(COORDINATES)}
+        for node, keyword, words in ((1, "GROUP_MA_ESCL", ("SEG2 M1", "'ESCL'", "N1, N2")), (7, "GROUP_MA_MAIT", ("SEG2 M5", "'MAIT'", "N9, N8"))):
+            same = {1: at[0], 7: at[8]}[node]
+            self.make(coordinates=[same if number == node else place for number, place in at.items()])
+            self.refuses("SKIN_1", f"ZONE/{keyword}", "no length", *words)
+
     def test_a_master_between_two_body_cells_is_refused(self):
         """The slave would pass the surface of the body and rest on that line."""
         self.make(cells=[*CELLS, ("QUAD4", [7, 8, 12, 11])], of_cell=[*OF_CELL, 2])
