@@ -4,6 +4,8 @@
 #include <set>
 #include <utility>
 
+#include "lacon/catalog/messages.hpp"
+#include "lacon/catalog/wording.hpp"
 #include "lacon/operators/contact/contact_geometry.hpp"
 #include "lacon/structures/hdf5.hpp"
 
@@ -23,9 +25,22 @@ KeptPairing read_kept_pairing(const hdf5::Group& group) {
   return kept;
 }
 
-KeptPairing read_kept_pairing(const std::filesystem::path& field) {
+KeptContact read_kept_contact(const std::filesystem::path& field, std::string_view without) {
   const std::filesystem::path masters = path_of_masters(field);
-  return std::filesystem::exists(masters) ? read_kept_pairing(hdf5::Reader(masters)) : KeptPairing();
+  std::error_code error;
+  if (!std::filesystem::exists(masters, error)) return {};
+  try {
+    const hdf5::Reader root(masters);
+    if (const std::string found = root.text("lacon_type"); found != "masters")
+      fail("BASE_7", {{"file", masters.string()}, {"found", found}, {"expected", "masters"}});
+    KeptContact kept;
+    if (root.has("kept_covers")) kept.covers = root.read<std::int64_t>("kept_covers");
+    kept.pairing = read_kept_pairing(root);
+    return kept;
+  } catch (const Error& damage) {
+    inform("BASE_8", {{"reason", damage.message().text}, {"without", part(without)}});
+    return {};
+  }
 }
 
 std::filesystem::path path_of_masters(std::filesystem::path field) { return field.replace_extension(".masters.h5"); }

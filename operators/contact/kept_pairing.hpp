@@ -2,6 +2,7 @@
 // What looking at bodies has decided and keeps from instant to instant, for another process or computation to go on with.
 #include <cstdint>
 #include <filesystem>
+#include <string_view>
 #include <vector>
 
 namespace lacon::hdf5 {
@@ -20,8 +21,15 @@ struct KeptPairing {
 void write(const hdf5::Group& group, const KeptPairing& kept);
 /// Empty where there is none.
 KeptPairing read_kept_pairing(const hdf5::Group& group);
-/// Beside a field CONT_ELEM; empty too where another command made its result, which has no such file.
-KeptPairing read_kept_pairing(const std::filesystem::path& field);
+
+/// What the file of masters beside a field CONT_ELEM keeps for a computation to go on with.
+struct KeptContact {
+  std::vector<std::int64_t> covers;  ///< patches that keep their cover
+  KeptPairing pairing;
+};
+/// Empty where there is no file, as of a result that another command made, and where it cannot be read: then BASE_8 tells what
+/// is done without it. @param without a part of the message
+KeptContact read_kept_contact(const std::filesystem::path& field, std::string_view without);
 
 /// "CONT_ELEM_3.masters.h5" of "CONT_ELEM_3.h5", the file of an instant that has it.
 std::filesystem::path path_of_masters(std::filesystem::path field);

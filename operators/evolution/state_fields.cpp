@@ -328,13 +328,10 @@ StaticState archived_state(const StaticProblem& problem, const Base& base, const
   if (fresh >= 0) inform("EVOLUTION_13", {{"label", result.label}, {"cell", cell_name(fresh)}});
   if (!problem.contact || !has_field(result, "CONT_ELEM", order)) return state;
   state.patches = patches_of(base.field(result, "CONT_ELEM", order), problem.mesh, *problem.contact, result.label);
-  const std::filesystem::path masters = path_of_masters(base.folder() / result.fields.at("CONT_ELEM").at(order));
-  if (!std::filesystem::exists(masters)) return state;  // of a result that another command made
-  const hdf5::Reader root(masters);
-  if (root.has("kept_covers"))
-    for (const std::int64_t patch : root.read<std::int64_t>("kept_covers"))
-      if (patch >= 0 && patch < problem.n_patches()) state.kept_covers.push_back(static_cast<std::size_t>(patch));
-  state.kept_pairing = read_kept_pairing(root);
+  const KeptContact kept = read_kept_contact(base.folder() / result.fields.at("CONT_ELEM").at(order), "begun_without_masters");
+  for (const std::int64_t patch : kept.covers)
+    if (patch >= 0 && patch < problem.n_patches()) state.kept_covers.push_back(static_cast<std::size_t>(patch));
+  state.kept_pairing = kept.pairing;
   return state;
 }
 

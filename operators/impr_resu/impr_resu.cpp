@@ -188,7 +188,7 @@ void each_pairing(const Order& order, const Base& base, Concepts& concepts, cons
                           .offsets = viewed.offsets.at(depl.instant)};
     if (const auto files = result.fields.find("CONT_ELEM"); files != result.fields.end() && files->second.contains(number)) {
       instant.cont_elem = base.field(result, "CONT_ELEM", number);
-      instant.kept = read_kept_pairing(base.folder() / files->second.at(number));
+      instant.kept = read_kept_contact(base.folder() / files->second.at(number), "shown_without_masters").pairing;
     }
     visit({result.label, number, depl.instant, view_pairing(mesh, viewed.model, viewed.contact, registry, instant)});
   }

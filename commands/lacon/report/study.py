@@ -7,6 +7,7 @@ from ..base import contents
 from ..core import catalog
 from ..core.catalog import part
 from ..core.late import numpy
+from ..core.messages import AsterError, message, show
 from ..reader.result import FailedStep
 from . import proofs
 from .packing import Packing
@@ -31,12 +32,12 @@ def make(base, result):
 class _Page:
     def __init__(self, base, result):
         self.base, self.result, self.mesh = base, result, result.mesh
-        self.step = result if isinstance(result, FailedStep) else result.failed_step
+        self.notes = []
+        self.step = result if isinstance(result, FailedStep) else self._if_sound(lambda: result.failed_step, "read_without_failed_step")
         self.orders, self.instants = ([], numpy.zeros(0)) if result is self.step else (result.orders, result.instants)
         self.packing = Packing()
         self.zones = result.zones
         self.drawing = Drawing(self.mesh, self.zones)
-        self.notes = []
         self.fields = self._heads(result) if self.orders else {}
         self.drawn = self._instants()
 
@@ -92,6 +93,20 @@ class _Page:
             self.notes.append(part("instants_drawn", count=chosen, all=count))
         return numpy.unique(numpy.rint(numpy.linspace(count - 1, 0, chosen)).astype(int)).tolist()
 
+    def _if_sound(self, read, without):
+        """What is read of a file that the page can do without, or None and a note. @param without the part that says what is left out"""
+        try:
+            return read()
+        except AsterError as damage:
+            told = message("BASE_8", reason=damage.messages[0].text, without=part(without))
+            if told.text not in self.notes:
+                self.notes.append(told.text)
+                show(told)
+            return None
+
+    def _masters(self, patches):
+        return self._if_sound(lambda: patches.masters, "read_without_masters")
+
     def _bytes_of(self, heads):
         """What the fields of a state take in the page, about."""
         return 2 * _deflated * sum(len(components) * (len(self.drawing.nodes) if location in ("NOEU", "ELNO") else len(self.drawing.facet_cells))
@@ -102,7 +117,8 @@ class _Page:
         if not self.orders or "CONT_ELEM" not in self.result.fields:
             return 0.0
         patches = self.result.contact(order=self.result.field_orders("CONT_ELEM")[-1])
-        return _deflated * (4 * (len(_contact) + 1) * len(patches) + (6 * len(patches.masters[1]) if patches.masters else 0))
+        masters = self._masters(patches)
+        return _deflated * (4 * (len(_contact) + 1) * len(patches) + (6 * len(masters[1]) if masters else 0))
 
     def _bytes_of_an_instant(self):
         return sum(self.result.bytes_of_field(name) for name in self.fields)
@@ -177,8 +193,8 @@ class _Page:
 
     def _of_patches(self, patches):
         stored = {"values": self.packing.add(numpy.array([patches.pressure, patches.gap, patches.status, patches.coverage]), "f4")}
-        if patches.masters is not None:
-            offset, cells, shares = patches.masters
+        if (masters := self._masters(patches)) is not None:
+            offset, cells, shares = masters
             stored["masters"] = {"offset": self.packing.add(offset, "u4"), "cells": self.packing.add(cells + 1, "u4"),
                                  "shares": self.packing.add(numpy.rint(shares * _share), "u2")}
         return stored

@@ -103,8 +103,9 @@ def write(shelf, occurrence, folder):
             order = pathlib.Path(scratch) / "order.json"
             order.write_text(json.dumps(made, ensure_ascii=False), encoding="utf-8")
             done = subprocess.run([plugins.operator_folder() / "impr_resu", order], stdout=subprocess.PIPE, stdin=subprocess.DEVNULL,
-                                  text=True, check=False)
+                                  stderr=subprocess.PIPE if number else None, text=True, check=False)
         if done.returncode:
+            sys.stderr.write(done.stderr or "")
             if not any(folder.iterdir()):
                 folder.rmdir()
             return done.returncode if done.returncode > 0 else 4

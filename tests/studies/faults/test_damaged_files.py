@@ -109,6 +109,29 @@ FIN()
                 self.assertNotIn("Traceback", run.stderr)
                 place.write_bytes(sound)
 
+    def test_what_can_be_done_without_is_told_and_left_out(self):
+        """The files of masters beside CONT_ELEM: a computation that goes on, `lacon inspect` and `lacon report` were refused for them."""
+        (self.folder / "more.comm").write_text("""
+POURSUITE()
+Y = STAT_NON_LINE(MODELE=MODEL, CHAM_MATER=MATTER, CONTACT=CONTACT, EXCIT=(_F(CHARGE=HOLD), _F(CHARGE=PUSH)),
+                  ETAT_INIT=_F(EVOL_NOLI=RESULT), INCREMENT=_F(LIST_INST=DEFI_LIST_REEL(VALE=(1.0, 1.1))))
+FIN()
+""", encoding="utf-8")
+        (path,) = self.base.glob("result_*/CONT_ELEM_3.masters.h5")
+        sound = path.read_bytes()
+        (other,) = self.base.glob("result_*/DEPL_3.h5")
+        for spoilt in (sound[:600] + b"\xff" * 8 + sound[608:], sound[:300], b"junk" * 100, b"", other.read_bytes()):
+            path.write_bytes(spoilt)
+            for words in (("more.comm", "--base", self.base), ("inspect", self.base, "--result", "RESULT"), ("report", self.base, "--result", "RESULT", "--out", "page.html")):
+                run = self.run_tool(*words)
+                if "REPORT_1" in run.stderr:  # the page was not bundled: no npm
+                    continue
+                with self.subTest(words[0], content=spoilt[:8]):
+                    self.assertEqual(run.returncode, 0, run.stdout[-1000:] + run.stderr)
+                    self.assertRegex(run.stderr, rf"<A> <BASE_8> .*{path.name}")
+                    self.assertEqual(run.stderr.count("BASE_8"), 1)
+            path.write_bytes(sound)
+
     def test_a_result_with_a_field_that_was_touched_is_made_again(self):
         for cut, change in ((1000, b""), (-1, b"\xff")):
             (field,) = self.base.glob("result_*/DEPL_2*.h5")
