@@ -6,11 +6,12 @@
 #include <algorithm>
 #include <bit>
 #include <cerrno>
+#include <csignal>
 #include <cstdlib>
 #include <nlohmann/json.hpp>
-#include <stdexcept>
 
 #include "lacon/catalog/messages.hpp"
+#include "lacon/operators/program/ending.hpp"
 
 namespace lacon {
 namespace {
@@ -28,7 +29,7 @@ class FormulaPipe {
                                  std::size_t n, std::span<const double> columns) {
     const char* const descriptor = std::getenv("LACON_FORMULAS");
     if (!descriptor) fail("FORMULE_6", {{"name", label}});
-    const FormulaPipe pipe(std::atoi(descriptor));
+    const FormulaPipe pipe(std::atoi(descriptor), label);
     pipe.send(nlohmann::json{{"formula", id}, {"parameters", parameters}, {"count", n}}.dump() + "\n");
     pipe.send({reinterpret_cast<const char*>(columns.data()), columns.size_bytes()});
     const auto answer = nlohmann::json::parse(pipe.line());
@@ -43,22 +44,28 @@ class FormulaPipe {
   }
 
  private:
-  explicit FormulaPipe(int socket) : socket_(socket) {}
-  [[noreturn]] static void broken() { throw std::runtime_error("the launcher, which evaluates formulae, is gone"); }
+  FormulaPipe(int socket, const std::string& label) : socket_(socket), label_(label) {}
+
+  /// The launcher has ended, or is asked to, as this program is: it ends as by the signal that it gets for that (ending.hpp),
+  /// here, where nothing is half-done.
+  [[noreturn]] void give_up() const {
+    if (!ending()) std::raise(SIGTERM);
+    fail("FORMULE_7", {{"name", label_}});
+  }
 
   void send(std::string_view bytes) const {
     while (!bytes.empty()) {
       const ssize_t sent = ::send(socket_, bytes.data(), bytes.size(), MSG_NOSIGNAL);
-      if (sent < 0 && errno == EINTR) continue;
-      if (sent <= 0) broken();
+      if (sent < 0 && errno == EINTR && !ending()) continue;
+      if (sent <= 0) give_up();
       bytes.remove_prefix(static_cast<std::size_t>(sent));
     }
   }
   void receive(char* bytes, std::size_t size) const {
     while (size > 0) {
       const ssize_t got = ::recv(socket_, bytes, size, 0);
-      if (got < 0 && errno == EINTR) continue;
-      if (got <= 0) broken();
+      if (got < 0 && errno == EINTR && !ending()) continue;
+      if (got <= 0) give_up();
       bytes += got;
       size -= static_cast<std::size_t>(got);
     }
@@ -70,6 +77,7 @@ class FormulaPipe {
   }
 
   int socket_;
+  const std::string& label_;
 };
 
 }  // namespace

@@ -24,8 +24,8 @@ from .processor import available_cores
 patience = 1.8
 #: what messages of a solution that failed in the linear solver, or for want of memory, begin with; any other is one of Newton's method
 not_newton = ("SOLVER_", "MEMORY_")
-#: what an operator says that a signal has ended between two instants
-ended_by_signal = "EVOLUTION_30"
+#: what an operator says that a signal has ended between two instants, or while it waited for the values of a formula
+ended_by_signal = ("EVOLUTION_30", "FORMULE_7")
 #: of glibc's allocator: large blocks are to be in huge pages; older ones than 2.35 pass over it
 _huge_pages = "glibc.malloc.hugetlb"
 #: takes away the line of a terminal in which it stands
@@ -209,7 +209,7 @@ def _forward(stream, ignored, terminal):
 def raise_failure(outcome, program, where):
     """The Python exception of an operator that did not end with 0."""
     fatal = [m for m in outcome.messages if m.severity in "FS"]
-    if (outcome.status == -signal.SIGPIPE or any(m.id == ended_by_signal for m in fatal)) and streams.readers_gone():
+    if (outcome.status == -signal.SIGPIPE or any(m.id in ended_by_signal for m in fatal)) and streams.readers_gone():
         raise BrokenPipeError(errno.EPIPE, os.strerror(errno.EPIPE))
     if outcome.status == 2:
         raise AsterError(fatal or [message("COMMAND_6", where, program=program)], shown=bool(fatal))

@@ -208,6 +208,18 @@ class Ends(FaultTest):
     def test_the_launcher_is_killed(self):
         self.assertEqual(self.ended_by(signal.SIGKILL)[0], -signal.SIGKILL)
 
+    def test_the_launcher_is_killed_beside_a_formula(self):
+        """The operator waits for its values: it told an internal error."""
+        plain = STUDY.read_text(encoding="utf-8")
+        self.study = self.folder / "formula.comm"
+        self.study.write_text(plain.replace('ASIDE = DEFI_FONCTION(NOM_PARA="INST", VALE=(0.0, 0.0, 0.3, 0.0, 1.0, 0.04))',
+                                            'ASIDE = FORMULE(NOM_PARA="INST", VALE="aside(INST)", aside=aside)')
+                              .replace("DEBUT()\n", "import time\n\ndef aside(instant):\n    time.sleep(0.3)\n    return 0.04 * instant\n\nDEBUT()\n"), encoding="utf-8")
+        status, text = self.ended_by(signal.SIGKILL)
+        self.assertEqual(status, -signal.SIGKILL)
+        self.assertNotIn("INTERNAL_1", text)
+        self.assertRegex(text, "<F> <(FORMULE_7|EVOLUTION_30)>")
+
     def test_the_launcher_is_asked_to_end(self):
         for number in (signal.SIGTERM, signal.SIGINT, signal.SIGHUP, signal.SIGXCPU):
             status, text = self.ended_by(number)
