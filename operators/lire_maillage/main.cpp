@@ -27,6 +27,7 @@ void read_mesh(const Order& order, const Base& base) {
   }();
   {
     const Phase phase("check");
+    check_places(mesh);
     orient_body_cells(mesh);
     for (const Keywords& check : keywords.factors("VERI_MAIL"))
       if (check.yes("VERIF")) inspect(mesh, check.real("APLAT"));

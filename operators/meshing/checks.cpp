@@ -140,11 +140,14 @@ void turn_body_cells(Mesh& mesh) {
 
 namespace {
 
-/// Tells of a mesh that lies so far from the origin, for its size, that results keep less than the eight digits that are
-/// promised: a coordinate is exact to 1e-16 of itself, and results of a block that was moved follow it with a hundred times
-/// that, in parts of its size.
-void tell_distance(const Mesh& mesh) {
-  double least[3], greatest[3], size = 0, distance = 0;
+struct Extent {
+  double size = 0,
+         distance = 0;  ///< of the box around its cells; of the farthest node of a cell from the origin, along an axis
+};
+
+Extent extent_of(const Mesh& mesh) {
+  Extent extent;
+  double least[3], greatest[3];
   std::fill_n(least, 3, INFINITY);
   std::fill_n(greatest, 3, -INFINITY);
   for (const std::int32_t node : mesh.cells.values)
@@ -152,9 +155,17 @@ void tell_distance(const Mesh& mesh) {
       const double x = mesh.coordinates[3 * static_cast<std::size_t>(node) + k];
       least[k] = std::min(least[k], x);
       greatest[k] = std::max(greatest[k], x);
-      distance = std::max(distance, std::abs(x));
+      extent.distance = std::max(extent.distance, std::abs(x));
     }
-  for (std::size_t k = 0; k < 3; ++k) size = std::max(size, greatest[k] - least[k]);
+  for (std::size_t k = 0; k < 3; ++k) extent.size = std::max(extent.size, greatest[k] - least[k]);
+  return extent;
+}
+
+/// Tells of a mesh that lies so far from the origin, for its size, that results keep less than the eight digits that are
+/// promised: a coordinate is exact to 1e-16 of itself, and results of a block that was moved follow it with a hundred times
+/// that, in parts of its size.
+void tell_distance(const Mesh& mesh) {
+  const auto [size, distance] = extent_of(mesh);
   if (size > 0 && distance > 1e6 * size)
     inform("LIRE_6", {{"size", number(size)},
                       {"distance", number(distance)},
@@ -162,6 +173,18 @@ void tell_distance(const Mesh& mesh) {
 }
 
 }  // namespace
+
+void check_places(const Mesh& mesh) {
+  constexpr double largest = 1e50, smallest = 1e-50;
+  const auto far = std::ranges::find_if(mesh.coordinates, [](double x) { return !(std::abs(x) <= largest); });
+  if (far != mesh.coordinates.end())
+    fail("LIRE_8", {{"node", node_name((far - mesh.coordinates.begin()) / 3)},
+                    {"axis", std::string(1, "XYZ"[(far - mesh.coordinates.begin()) % 3])},
+                    {"value", number(*far)},
+                    {"largest", number(largest)}});
+  const double size = extent_of(mesh).size;
+  if (size > 0 && size < smallest) fail("LIRE_9", {{"size", number(size)}, {"smallest", number(smallest)}});
+}
 
 void inspect(const Mesh& mesh, double flatness) {
   std::vector<char> used(mesh.n_nodes(), 0);

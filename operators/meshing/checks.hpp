@@ -20,6 +20,10 @@ void turn_body_cells(Mesh& mesh);
 /// The groups that a cell is in, for messages: "BODY, ALL"; empty for none.
 std::string groups_with(const Mesh& mesh, std::int32_t cell);
 
+/// Refuse places and sizes whose volumes, or the squares of these, no number holds: a node beyond 1e50 from the origin or at no
+/// number (LIRE_8), a mesh smaller than 1e-50 (LIRE_9).
+void check_places(const Mesh& mesh);
+
 /// What VERI_MAIL looks at, each told once with LIRE_3 to LIRE_6: nodes of no cell, cells with the same nodes, flat cells,
 /// whose least distance between two vertices is under `flatness` times the greatest, a place far from the origin.
 void inspect(const Mesh& mesh, double flatness);

@@ -1,6 +1,7 @@
 #include "lacon/operators/modi_maillage/modi_maillage.hpp"
 
 #include "lacon/catalog/messages.hpp"
+#include "lacon/operators/meshing/checks.hpp"
 #include "lacon/operators/program/program.hpp"
 #include "lacon/structures/displacement.hpp"
 
@@ -31,6 +32,7 @@ int main(int argc, char** argv) {
                        Mesh mesh = base.mesh(id);
                        for (const Keywords& factor : order.keywords.factors("DEFORME")) deform(mesh, factor, base, id);
                        modi_maillage(mesh, order.keywords);
+                       check_places(mesh);
                        base.store(mesh);
                      });
 }

@@ -264,6 +264,10 @@ YC = { type = "real", default = 1.0, above = 0.0, help = "energy" }
     def test_out_of_range(self):
         self.one("KEYWORD_15", "DEFI_MATERIAU/ELAS/NU", "less than 0.5", command="DEFI_MATERIAU", ELAS={"E": 1, "NU": 0.5})
         self.one("KEYWORD_15", "DEFI_MATERIAU/ELAS/E", "greater than 0", command="DEFI_MATERIAU", ELAS={"E": 0, "NU": 0.3})
+        for number, words in ((1e300, "at most 1e+100"), (1e-300, "at least 1e-100"), (float("-inf"), None)):
+            identifier = "KEYWORD_15" if words else "KEYWORD_3"
+            self.one(identifier, "DEFI_MATERIAU/ELAS/E", *([words] if words else ()), command="DEFI_MATERIAU", ELAS={"E": number, "NU": 0.3})
+        self.one("KEYWORD_15", "MODI_MAILLAGE/TRANSLATION", "at least -1e+100", command="MODI_MAILLAGE", MAILLAGE=concept("mesh"), TRANSLATION=(-1e101, 0.0))
         self.one("KEYWORD_15", "LIRE_MAILLAGE/UNITE", "at most 99", command="LIRE_MAILLAGE", UNITE=100)
 
     def test_exclusive(self):

@@ -65,6 +65,16 @@ TABLE = {
     "the same with a cheaper factor": ("STAT_NON_LINE(MODELE=MODEL, CHAM_MATER=MATTER, EXCIT=[_F(CHARGE=c) for c in (HELD, RIGID, EVEN)], CONTACT=CONTACT, "
                                        "INCREMENT=_F(LIST_INST=TIMES), SOLVEUR=_F(METHODE='MUMPS', MIXER_PRECISION='OUI'))", "SOLVER_14",
                                        ["3 of the relations", "RIGID (LIAISON_SOLIDE"], SOLUTION),
+    # numbers whose squares or volumes are none: the matrix was singular, or MUMPS an internal error
+    "modulus out of range": ("DEFI_MATERIAU(ELAS=_F(E=1e300, NU=0.3))", "KEYWORD_15", ["DEFI_MATERIAU/ELAS/E is 1e+300", "at most 1e+100"], USER),
+    "modulus next to none": ("DEFI_MATERIAU(ELAS=_F(E=1e-300, NU=0.3))", "KEYWORD_15", ["DEFI_MATERIAU/ELAS/E is 1e-300", "at least 1e-100"], USER),
+    "pressure out of range": ("AFFE_CHAR_MECA(MODELE=MODEL, PRES_REP=_F(GROUP_MA='LOAD', PRES=-1e200))", "KEYWORD_15", ["PRES_REP[1]/PRES", "at least -1e+100"], USER),
+    "displacement out of range": ("AFFE_CHAR_CINE(MODELE=MODEL, MECA_IMPO=_F(GROUP_MA='LOAD', DX=1e200))", "KEYWORD_15", ["MECA_IMPO[1]/DX", "at most 1e+100"], USER),
+    "modulus that is no number": ("DEFI_MATERIAU(ELAS=_F(E=float('nan'), NU=0.3))", "KEYWORD_3", ["DEFI_MATERIAU/ELAS/E", "nan"], USER),
+    "node out of range": ("LIRE_MAILLAGE(UNITE=34)", "LIRE_8", ["N3", "X = 1e+200"], USER),
+    "node at no number": ("LIRE_MAILLAGE(UNITE=35)", "MED_9", ["N3"], USER),
+    "scale out of range": ("MODI_MAILLAGE(reuse=MESH, MAILLAGE=MESH, ECHELLE=1e99)", "LIRE_8", ["N2", "X = 3.33e+98"], USER),
+    "scale next to none": ("MODI_MAILLAGE(reuse=MESH, MAILLAGE=MESH, ECHELLE=1e-99)", "LIRE_9", ["e-99 large"], USER),
     "result in an unwritable folder": ("IMPR_RESU(FORMAT='MED', UNITE=80, RESU=_F(MAILLAGE=CUT))", "COMMAND_8", ["80", "out.med"], USER),
 }
 
@@ -82,7 +92,8 @@ class BadInputs(StudyTest):
         super().setUp()
         self.base = self.folder / "study.base"
         self.units = {number: self.folder / name for number, name in
-                      {20: "good.med", 21: "inward.med", 30: "nowhere.med", 31: "text.med", 32: "empty.med", 33: "arrow.med",
+                      {20: "good.med", 21: "inward.med", 30: "nowhere.med", 31: "text.med", 32: "empty.med", 33: "arrow.med", 34: "far.med",
+                       35: "none.med",
                        80: "text.med/out.med"}.items()}
         mesh = two_blocks()
         write_med(self.units[20], mesh)
@@ -95,6 +106,8 @@ class BadInputs(StudyTest):
             for name, value in (("MAJ", 4), ("MIN", 1), ("REL", 0)):
                 info.attrs[name] = np.int32(value)
         write_med(self.units[33], Mesh([(0, 0), (1, 0), (0.1, 0.1), (0, 1)], {"QUAD4": [(0, 1, 2, 3)]}, {"BODY": [("QUAD4", 0)]}))
+        for number, third in ((34, (1e200, 1.0)), (35, (float("nan"), 1.0))):
+            write_med(self.units[number], Mesh([(0, 0), (1, 0), third, (0, 1)], {"QUAD4": [(0, 1, 2, 3)]}, {"BODY": [("QUAD4", 0)]}))
 
     def run_text(self, text, base=None):
         comm = self.folder / "study.comm"

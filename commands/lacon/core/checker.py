@@ -23,7 +23,7 @@ _largest_count = 2**31 - 1  # of what is counted: iterations, steps, cells
 
 def complete(command, row, given, where=""):
     """@return (keywords with every default, in the order of the catalogue; problems, a list of messages; alarms, likewise)"""
-    check = _Check(where)
+    check = _Check(where, row.get("largest"))
     keywords = check.occurrence(command, row, given)
     return keywords, check.problems, check.alarms
 
@@ -36,8 +36,9 @@ def problems_of(path, keyword, value, where=""):
 
 
 class _Check:
-    def __init__(self, where):
-        self.where = where
+    def __init__(self, where, largest=None):
+        """@param largest magnitude of real values"""
+        self.where, self.largest = where, largest
         self.problems = []
         self.alarms = []
 
@@ -202,10 +203,13 @@ class _Check:
     def bounds(self, path, row, value):
         tests = {"above": (lambda x, b: x > b, "greater than"), "at_least": (lambda x, b: x >= b, "at least"),
                  "below": (lambda x, b: x < b, "less than"), "at_most": (lambda x, b: x <= b, "at most")}
+        if self.largest and isinstance(value, float):
+            row = {"at_least": -self.largest, "at_most": self.largest, **row}
         limits = {"at_least": -2**63, "at_most": _largest_count if "at_least" in row else 2**63 - 1, **row} if row["type"] == "integer" else row
         for key, (holds, words) in tests.items():
             if key in limits and not holds(value, limits[key]):
                 self.problem("KEYWORD_15", path, value=_show(value), bound=f"{words} {limits[key]:.10g}")
+                return
 
 
 def _is_given(name, given):
