@@ -1,10 +1,12 @@
 #include "lacon/assembly/petsc_processes.hpp"
 
 #include <sys/resource.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <chrono>
 #include <cstdint>
+#include <cstdlib>
 #include <cstring>
 #include <filesystem>
 #include <iostream>
@@ -22,6 +24,24 @@
 namespace lacon {
 namespace {
 
+/// What to do about processes of MPI that have ended before they had begun, by what may have ended them.
+std::string remedy(const std::string& hosts) {
+  if (!hosts.empty()) return part("mpi_look_at_hosts", {{"hosts", hosts}});
+  rlimit memory{};
+  getrlimit(RLIMIT_AS, &memory);
+  if (memory.rlim_cur == RLIM_INFINITY) return part("mpi_look_at_machine");
+  return part("mpi_look_at_memory", {{"limit", std::to_string(memory.rlim_cur >> 10)}});
+}
+
+/// mpirun is where a shell would find it. Throws SOLVER_18.
+void look_for_mpirun(int n_processes) {
+  const char* const set = std::getenv("PATH");
+  std::istringstream folders(set ? set : "");
+  for (std::string folder; std::getline(folders, folder, ':');)
+    if (access((std::filesystem::path(folder) / "mpirun").c_str(), X_OK) == 0) return;
+  fail("SOLVER_18", {{"count", std::to_string(n_processes)}, {"path", set ? set : ""}});
+}
+
 /// mpirun that has too few files open waits for ever. Throws SOLVER_10.
 void make_room_for_files(int n_processes) {
   const auto needed = static_cast<rlim_t>(6 * n_processes + 28);
@@ -32,7 +52,8 @@ void make_room_for_files(int n_processes) {
   setrlimit(RLIMIT_NOFILE, &files);
   if (files.rlim_cur < needed)
     fail("SOLVER_10",
-         {{"reason", part("few_open_files", {{"limit", std::to_string(files.rlim_cur)}, {"needed", std::to_string(needed)}})}});
+         {{"reason", part("few_open_files", {{"limit", std::to_string(files.rlim_cur)}, {"needed", std::to_string(needed)}})},
+          {"remedy", part("mpi_look_at_machine")}});
 }
 
 }  // namespace
@@ -43,13 +64,14 @@ void PetscProcesses::start() {
   try {
     start_ranks();
   } catch (const std::system_error& error) {
-    fail("SOLVER_10", {{"reason", error.what()}});
+    fail("SOLVER_10", {{"reason", error.what()}, {"remedy", remedy({})}});
   }
 }
 
 void PetscProcesses::start_ranks() {
   std::vector<std::string> command;
   if (program_.n_ranks > 1 || !program_.hosts.empty()) {
+    look_for_mpirun(program_.n_ranks);
     make_room_for_files(program_.n_ranks);
     command = {std::filesystem::path(program_.program).replace_filename("lacon_mpirun"),
                "mpirun",
@@ -95,11 +117,13 @@ std::string PetscProcesses::first_answer() {
 }
 
 void PetscProcesses::fail_without_start() {
-  const std::string end = ranks_->end();
-  // where nobody has killed them PETSc's libraries or mpirun are missing, or what these need of the machine is
-  const char* const message = !ranks_->has_started() ? "SOLVER_6" : ranks_->was_killed() ? "SOLVER_8" : "SOLVER_10";
+  const std::string reason = program_.program + ": " + ranks_->end();
+  const bool started = ranks_->has_started(), killed = ranks_->was_killed();
   ranks_.reset();
-  fail(message, {{"reason", program_.program + ": " + end}});
+  if (!started) fail("SOLVER_6", {{"reason", reason}});
+  if (killed) fail("SOLVER_8", {{"reason", reason}});
+  // PETSc's libraries are missing, or what these or mpirun need of the machine is
+  fail("SOLVER_10", {{"reason", reason}, {"remedy", remedy(program_.hosts)}});
 }
 
 std::string PetscProcesses::ask(const std::string& line) {

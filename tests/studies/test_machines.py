@@ -89,6 +89,15 @@ class Hosts(PartsTest):
             self.assertEqual(run.returncode, 2, hosts)
             self.assertIn("--hosts: give machines as mpirun takes them", run.stderr)
 
+    @unittest.skipUnless((LACON.parent / "lacon_petsc").exists() and shutil.which("mpirun"), "built without PETSc, or there is no mpirun")
+    def test_what_keeps_processes_from_beginning_is_named(self):
+        """A machine that nobody knows, no mpirun: the folder of MPI's files and a missing PETSc were named instead."""
+        for options, more, words in ((("--hosts", "nonsense.invalid:2"), {"OMPI_MCA_plm_rsh_agent": "/bin/false"}, "<F> <SOLVER_10> (.*\n)*.*machine of --hosts \\(nonsense.invalid:2\\)"),
+                                     (("--mpi", 2), {"PATH": ""}, "<F> <SOLVER_18> .*none of the folders of PATH \\(''\\)")):
+            run = self.run_tool(*self.options("run"), *options, **PETSC | more)
+            self.assertEqual(run.returncode, 2, run.stderr)
+            self.assertRegex(run.stderr, words)
+
     def test_a_factor_stays_on_this_machine(self):
         _, _, said = self.solve("--hosts", f"{HERE}:2", METHOD="MUMPS")
         self.assertEqual(said.count("<SOLVER_12>"), 1, said[-3000:])
