@@ -13,6 +13,7 @@ import shutil
 import time
 import weakref
 
+from ..core.catalog import part
 from ..core.concepts import concepts_in, dumps, type_of
 from ..core.files import write_whole
 from ..core.late import h5py
@@ -84,7 +85,10 @@ class Base:
                     time.sleep(0.05)
                     continue
                 os.close(self.lock)
-                who = f"process {holder['process']}, since {holder['since']}" if holder else "its process is not known"
+                others = ", ".join(_users_of(self.folder))
+                if holder and not _is_alive(holder["process"]) and others:
+                    fail("STUDY_46", where, folder=self.folder, **holder, others=others)
+                who = part("run_of_process", **holder) if holder else others or part("run_of_no_process")
                 fail("STUDY_5", where, folder=self.folder, who=who)
 
     def _holder(self):
@@ -375,6 +379,22 @@ def look_into(folder, where):
                 raise
             time.sleep(_pause)
     return ReadBase(folder, where)
+
+
+def _users_of(folder):
+    """"stat_non_line (process 4712)": other processes that have a folder open, as far as this user may see them."""
+    about = os.stat(folder)
+    for process in pathlib.Path("/proc").glob("[0-9]*"):
+        with contextlib.suppress(OSError):
+            if int(process.name) != os.getpid() and any(_is_same(link, about) for link in (process / "fd").iterdir()):
+                yield part("name_of_process", name=(process / "comm").read_text(errors="replace").strip(), process=process.name)
+
+
+def _is_same(path, about):
+    try:
+        return os.path.samestat(os.stat(path), about)
+    except OSError:  # closed meanwhile, or no file
+        return False
 
 
 def _is_alive(process):
