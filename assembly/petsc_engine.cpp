@@ -148,13 +148,7 @@ struct PetscEngine::State {
 
 bool PetscEngine::is_there() { return std::filesystem::exists(program_beside_this()); }
 
-bool PetscEngine::has_mpirun() {
-  const char* const path = std::getenv("PATH");
-  std::istringstream folders(path ? path : "");
-  for (std::string folder; std::getline(folders, folder, ':');)
-    if (access((std::filesystem::path(folder) / "mpirun").c_str(), X_OK) == 0) return true;
-  return false;
-}
+bool PetscEngine::has_mpirun() { return PetscProcesses::have_mpirun(); }
 
 PetscEngine::PetscEngine(const PetscOptions& options) : state_(std::make_unique<State>(options)) {}
 PetscEngine::~PetscEngine() = default;

@@ -33,15 +33,6 @@ std::string remedy(const std::string& hosts) {
   return part("mpi_look_at_memory", {{"limit", std::to_string(memory.rlim_cur >> 10)}});
 }
 
-/// mpirun is where a shell would find it. Throws SOLVER_18.
-void look_for_mpirun(int n_processes) {
-  const char* const set = std::getenv("PATH");
-  std::istringstream folders(set ? set : "");
-  for (std::string folder; std::getline(folders, folder, ':');)
-    if (access((std::filesystem::path(folder) / "mpirun").c_str(), X_OK) == 0) return;
-  fail("SOLVER_18", {{"count", std::to_string(n_processes)}, {"path", set ? set : ""}});
-}
-
 /// mpirun that has too few files open waits for ever. Throws SOLVER_10.
 void make_room_for_files(int n_processes) {
   const auto needed = static_cast<rlim_t>(6 * n_processes + 28);
@@ -58,6 +49,14 @@ void make_room_for_files(int n_processes) {
 
 }  // namespace
 
+bool PetscProcesses::have_mpirun() {
+  const char* const path = std::getenv("PATH");
+  std::istringstream folders(path ? path : "");
+  for (std::string folder; std::getline(folders, folder, ':');)
+    if (access((std::filesystem::path(folder) / "mpirun").c_str(), X_OK) == 0) return true;
+  return false;
+}
+
 void PetscProcesses::start() {
   if (ranks_) return;
   if (keeps_) fail_as_ended();
@@ -71,7 +70,10 @@ void PetscProcesses::start() {
 void PetscProcesses::start_ranks() {
   std::vector<std::string> command;
   if (program_.n_ranks > 1 || !program_.hosts.empty()) {
-    look_for_mpirun(program_.n_ranks);
+    if (!have_mpirun()) {
+      const char* const path = std::getenv("PATH");
+      fail("SOLVER_18", {{"count", std::to_string(program_.n_ranks)}, {"path", path ? path : ""}});
+    }
     make_room_for_files(program_.n_ranks);
     command = {std::filesystem::path(program_.program).replace_filename("lacon_mpirun"),
                "mpirun",

@@ -19,6 +19,8 @@ struct PetscProgram {
 
 class PetscProcesses : public PartProcesses {
  public:
+  /// Whether mpirun is where a shell would find it.
+  static bool have_mpirun();
   explicit PetscProcesses(PetscProgram program) : program_(std::move(program)) {}
   int size() const override { return program_.n_ranks; }
   int machines() const override { return machines_; }

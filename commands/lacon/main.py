@@ -63,6 +63,8 @@ def parse(arguments):
         asked.wrong("give_one_or_more", option="--mpi")
     if options.hosts is not None and not re.fullmatch(r"[^\s:,]+(:[1-9]\d*)?(,[^\s:,]+(:[1-9]\d*)?)*", options.hosts):
         asked.wrong("give_hosts", option="--hosts")
+    if options.base == "":
+        asked.wrong("give_folder", option="--base")
     return asked, options
 
 

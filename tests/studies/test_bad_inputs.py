@@ -65,6 +65,8 @@ TABLE = {
     "the same with a cheaper factor": ("STAT_NON_LINE(MODELE=MODEL, CHAM_MATER=MATTER, EXCIT=[_F(CHARGE=c) for c in (HELD, RIGID, EVEN)], CONTACT=CONTACT, "
                                        "INCREMENT=_F(LIST_INST=TIMES), SOLVEUR=_F(METHODE='MUMPS', MIXER_PRECISION='OUI'))", "SOLVER_14",
                                        ["3 of the relations", "RIGID (LIAISON_SOLIDE"], SOLUTION),
+    "a residual of nothing": ("STAT_NON_LINE(MODELE=MODEL, CHAM_MATER=MATTER, EXCIT=[_F(CHARGE=c) for c in (HELD, PUSH)], CONTACT=CONTACT, "
+                              "INCREMENT=_F(LIST_INST=TIMES), SOLVEUR=_F(METHODE='MUMPS', RESI_RELA=0.0))", "SOLVER_19", ["RESI_RELA is 0", "1e-16"], USER),
     # numbers whose squares or volumes are none: the matrix was singular, or MUMPS an internal error
     "modulus out of range": ("DEFI_MATERIAU(ELAS=_F(E=1e300, NU=0.3))", "KEYWORD_15", ["DEFI_MATERIAU/ELAS/E is 1e+300", "at most 1e+100"], USER),
     "modulus next to none": ("DEFI_MATERIAU(ELAS=_F(E=1e-300, NU=0.3))", "KEYWORD_15", ["DEFI_MATERIAU/ELAS/E is 1e-300", "at least 1e-100"], USER),
@@ -112,7 +114,7 @@ class BadInputs(StudyTest):
     def run_text(self, text, base=None):
         comm = self.folder / "study.comm"
         comm.write_text(text)
-        units = [word for number, path in self.units.items() for word in ("--unit", f"{number}={path}")]
+        units = [word for number, path in self.units.items() if number != 80 or "UNITE=80" in text for word in ("--unit", f"{number}={path}")]
         return self.run_lacon(comm, "--base", base or self.base, *units)
 
     def assert_refused(self, run, identifier, words, outcome):
@@ -153,6 +155,34 @@ class BadInputs(StudyTest):
         self.assertIn("text.med", run.stderr)
         self.assertEqual(run.diagnostic, "--- DIAGNOSTIC JOB : <F>_ERROR")
         self.assertEqual(self.units[31].read_text(), "this is no mesh\n")
+
+    def test_outputs_that_can_never_be_written_are_refused_before_the_work(self):
+        """They were refused behind it; a folder that is missing may be made by the command file."""
+        self.assertEqual(self.run_text(GOOD).status, 0)
+        solve = ("POURSUITE()\nRESULT = STAT_NON_LINE(MODELE=MODEL, CHAM_MATER=MATTER, EXCIT=[_F(CHARGE=c) for c in (HELD, PUSH)], CONTACT=CONTACT, "
+                 "INCREMENT=_F(LIST_INST=TIMES))\n{}IMPR_RESU(FORMAT='MED', UNITE=80, RESU=_F(RESULTAT=RESULT))\nFIN()\n")
+        for place in ("text.med/out.med", "."):
+            self.units[80] = self.folder / place
+            run = self.run_text(solve.format(""))
+            self.assertEqual(run.status, 2, run.stderr)
+            self.assertIn("<F> <COMMAND_8>", run.stderr)
+            self.assertNotIn("Converged", run.stdout)
+        self.units[80] = self.folder / "later/out.med"
+        run = self.run_text(solve.format(f"import os; os.mkdir({str(self.folder / 'later')!r})\n"))
+        self.assertEqual(run.status, 0, run.stderr)
+        self.assertEqual(run.stderr.count("<A> <COMMAND_19>"), 1)
+        self.assertTrue(self.units[80].exists())
+
+    def test_a_base_that_is_no_place(self):
+        for base, words in (("", "--base: give the name of a folder"), (self.folder / "link.base", "<F> <STUDY_47> .*link.base' is a symbolic link to 'gone'")):
+            if base:
+                base.symlink_to("gone")
+            comm = self.folder / "study.comm"
+            comm.write_text("DEBUT()\nFIN()\n")
+            run = self.run_tool(comm, "--base", base)
+            self.assertEqual(run.returncode, 2, run.stderr)
+            self.assertRegex(run.stderr, words)
+        self.assertFalse((self.folder / "gone").exists())
 
     def test_a_table_is_not_put_behind_a_med_file(self):
         self.units[80] = self.folder / "out.med"

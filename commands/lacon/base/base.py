@@ -46,6 +46,8 @@ class Base:
         @param kinds type of a concept -> class of its objects
         """
         self._start(folder, kinds)
+        if self.folder.is_symlink() and not self.folder.exists():
+            fail("STUDY_47", where, folder=self.folder, target=os.readlink(self.folder))
         if not self.folder.exists():
             if not make:
                 fail("STUDY_2", where, folder=self.folder)

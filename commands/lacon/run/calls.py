@@ -114,6 +114,7 @@ class Command:
                 return self._result(run, found, label, where, reused, named), orders.Outcome(0, [], {}, {}, 0.0)
         grows, ended_well = row.get("solves"), False
         if grows:
+            run.check_outputs(where)
             identifier = self._resume(run, kind, key, identifier, reused, result)
         copy = orders.keep_copy(run.base, identifier) if reused else None
         if grows:
@@ -212,6 +213,7 @@ class Command:
             return None
         identifier = reused.id if reused else run.base.new_id(_kind(row, keywords))
         if run.check.prepares(row, keywords):
+            run.check_outputs(where)
             result = {"id": identifier, "label": label, "reuse": bool(reused)}
             made = orders.order(self.name, run, keywords, where, result, self._units(run, row, keywords, where))
             outcome = orders.run(row["operator"], made, run, checks=True)

@@ -45,6 +45,7 @@ class Study:
         self.checks = []
         self.stage = None  #: a stage.Stage, where this run is one in a sandbox
         self.written_units = {}  #: number -> path
+        self.missing_told = set()  #: units whose folder was not there before a computation
         self.earlier_units = {}  #: number -> (file, file written) before DEFI_FICHIER gave it another one; None: none
         self.plots = {}  #: (unit, format) -> tables.curves.Plot that this run draws there
         self.sources = set()  #: files that the study is made from, and never writes
@@ -194,6 +195,21 @@ class Study:
             if other != number and os.path.realpath(self.units.get(other, written)) == os.path.realpath(path):
                 fail("COMMAND_17", where, unit=number, other=other, file=path)
         return self.stage.file(number, path) if staged else path
+
+    def check_outputs(self, where):
+        """Before a computation: a unit whose file can never be written is refused now, not behind it. A file that is there may be one that is read; a
+        folder that is missing may be made by the command file: an alarm."""
+        for number, path in sorted(self.units.items()):
+            if number in self.written_units or os.path.isfile(path):
+                continue
+            folder = there = os.path.dirname(os.path.abspath(path))
+            while not os.path.lexists(there):
+                there = os.path.dirname(there)
+            if os.path.isdir(path) or not (os.path.isdir(there) and (self.stage or os.access(there, os.W_OK | os.X_OK))):
+                fail("COMMAND_8", where, unit=number, file=path)
+            if there != folder and number not in self.missing_told:
+                self.missing_told.add(number)
+                self.inform("COMMAND_19", where, unit=number, file=path, folder=folder)
 
     def announced_output(self, number, suffix, where):
         """As output_unit(); says where the file goes when nobody gave one."""
