@@ -89,7 +89,7 @@ class Base:
                 os.close(self.lock)
                 others = ", ".join(_users_of(self.folder))
                 if holder and not _is_alive(holder["process"]) and others:
-                    fail("STUDY_46", where, folder=self.folder, **holder, others=others)
+                    fail("STUDY_46", where, folder=self.folder, process=holder["process"], since=holder["since"], others=others)
                 who = part("run_of_process", **holder) if holder else others or part("run_of_no_process")
                 fail("STUDY_5", where, folder=self.folder, who=who)
 
