@@ -133,6 +133,7 @@ ContactGeometry::ContactGeometry(const Mesh& mesh, const Model& model, const Con
   const std::size_t n = mesh.patches->size();
   gap_.assign(n, 0.0);
   size_ = weight_ = covered_ = whole_ = coverage_ = smallest_gap_ = largest_gap_ = gap_;
+  beside_wall_.assign(n, false);
   straight_.assign(n, 1);
   zone_of_.assign(n, -1);
   rejected_.assign(n_rejections, 0);
@@ -299,6 +300,7 @@ void ContactGeometry::look(std::vector<ZonePairing>* records) {
   std::fill(largest_gap_.begin(), largest_gap_.end(), -std::numeric_limits<double>::infinity());
   std::fill(straight_.begin(), straight_.end(), 1);
   walls_.clear();
+  beside_wall_.assign(n_patches(), false);
   if (records) records->clear();
   normals_.resize(zones_.size());
   if (std::exchange(cuts_end_, false) && mesh_.dimension == 3)
@@ -438,7 +440,10 @@ void ContactGeometry::add(const Zone& zone, const Block& block_of_zone, ZonePair
   for (const RejectedCouple& couple : block_of_zone.pairing.rejected) {
     if (couple.reason == Rejection::degenerate_slave) no_normal(contact_.slaves[zone.slaves[couple.slave]]);
     ++rejected_[static_cast<std::size_t>(couple.reason)];
-    if (couple.reason == Rejection::wall) walls_.emplace_back(zone.slaves[couple.slave], zone.masters[couple.master]);
+    if (couple.reason == Rejection::wall) {
+      walls_.emplace_back(zone.slaves[couple.slave], zone.masters[couple.master]);
+      beside_wall_[static_cast<std::size_t>(contact_.slaves[walls_.back().first].patch)] = true;
+    }
     if (couple.reason != Rejection::too_deep) continue;
     TooDeep& deep = too_deep_[static_cast<std::size_t>(&zone - zones_.data())];
     if (deep.count++ == 0) deep.slave = contact_.slaves[zone.slaves[couple.slave]].cell;

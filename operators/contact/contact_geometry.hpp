@@ -177,6 +177,8 @@ class ContactGeometry {
   double covered(std::size_t patch) const { return covered_[patch]; }    ///< measure, current geometry
   double whole(std::size_t patch) const { return whole_[patch]; }        ///< measure, current geometry
   double coverage(std::size_t patch) const { return coverage_[patch]; }  ///< covered over whole
+  /// Whether walls beside what is in front of it are left out (left_out.cpp).
+  bool is_beside_wall(std::size_t patch) const { return beside_wall_[patch]; }
   /// How many couples pairing rejected, for each `Rejection`, summed over the zones.
   std::span<const std::int64_t> rejected() const { return rejected_; }
   const TooDeep& too_deep(std::size_t zone) const { return too_deep_[zone]; }
@@ -255,6 +257,7 @@ class ContactGeometry {
   std::vector<double> largest_gap_;                           ///< likewise, either way, at all points
   std::vector<std::uint8_t> straight_;                        ///< likewise: no cell is of the second order
   std::vector<std::pair<std::int32_t, std::int32_t>> walls_;  ///< left out: index into Contact::slaves, cell of the mesh
+  std::vector<bool> beside_wall_;                             ///< (n_patches): whether it would see one of these
   std::vector<std::int32_t> zone_of_;
   std::vector<std::int64_t> rejected_;
   std::vector<TooDeep> too_deep_;          ///< of each zone

@@ -137,14 +137,14 @@ Patchwise ContactState::initial() const {
   const auto is_near = [&](std::size_t p) { return geometry_.gap(p) <= tolerances_.starting_gap * size_[p]; };
   std::vector<bool> comes_near(contact_.zones.size(), false);
   for (std::size_t p = 0; p < n_patches(); ++p)
-    if (geometry_.zone_of(p) >= 0 && geometry_.coverage(p) >= taking_coverage && is_near(p))
+    if (geometry_.zone_of(p) >= 0 && takes_contact(p) && is_near(p))
       comes_near[static_cast<std::size_t>(geometry_.zone_of(p))] = true;
   for (std::size_t p = 0; p < n_patches(); ++p) {
     if (geometry_.zone_of(p) < 0 || geometry_.coverage(p) <= tolerances_.unpaired) continue;
     const std::int32_t zone = geometry_.zone_of(p);
     const std::string& asked = contact_.zones[zone].initial_status;
-    const bool touches = geometry_.gap(p) <= tolerances_.initial_gap * smallest_edge_[zone] &&
-                         geometry_.coverage(p) >= least_coverage;
+    const bool touches =
+        geometry_.gap(p) <= tolerances_.initial_gap * smallest_edge_[zone] && geometry_.coverage(p) >= least_coverage;
     const bool starts = asked == "OUI" && (is_near(p) || !comes_near[static_cast<std::size_t>(zone)]);
     const bool active = !held_open_[p] && (starts || (asked == "INTERPENETRE" && touches));
     patches.status[p] = active ? Status::active : Status::open;
@@ -176,7 +176,7 @@ std::int64_t ContactState::update_statuses(Patchwise& patches) const {
       // inside the round-off of lambda and g a patch stays what it is: touching and unloaded, it must not flicker
       const bool was_active = status == Status::active;
       const bool pressed = was_active ? test <= round_off : test < -round_off;
-      const bool covered = geometry_.coverage(p) >= (was_active ? least_coverage : taking_coverage);
+      const bool covered = was_active ? is_covered(p) : takes_contact(p);
       const bool active = (pressed || gliding_[p]) && covered && !held_open_[p];
       next = active ? Status::active : Status::open;
     }
@@ -287,7 +287,7 @@ double ContactState::constraint_residual(const Patchwise& patches) const {
 std::vector<double> ContactState::gaps_over_size() const {
   std::vector<double> gaps(n_patches(), 0.0);
   for (std::size_t p = 0; p < n_patches(); ++p)
-    if (geometry_.coverage(p) >= taking_coverage) gaps[p] = geometry_.gap(p) / size_[p];
+    if (takes_contact(p)) gaps[p] = geometry_.gap(p) / size_[p];
   return gaps;
 }
 
@@ -344,9 +344,7 @@ std::optional<FacetOverlap> ContactState::facet_overlap(std::int32_t number) con
   std::optional<FacetOverlap> worst;
   for (std::size_t p = 0; p < n_patches(); ++p) {
     const double depth = -geometry_.gap(p) / size_[p];
-    if (geometry_.zone_of(p) != number || geometry_.coverage(p) < least_coverage ||
-        depth < tolerances_.facet_overlap)
-      continue;
+    if (geometry_.zone_of(p) != number || geometry_.coverage(p) < least_coverage || depth < tolerances_.facet_overlap) continue;
     if (-geometry_.gap(p) > tolerances_.facets * explained[p]) return std::nullopt;
     if (!worst || depth > worst->depth) worst = FacetOverlap{p, depth};
   }

@@ -214,6 +214,10 @@ class ContactState {
   bool is_locked(std::size_t patch) const { return locked_[patch]; }
   /// Whether its master covers as much of it as an active patch needs.
   bool is_covered(std::size_t patch) const { return geometry_.coverage(patch) >= least_coverage; }
+  /// Or as one that takes contact.
+  bool takes_contact(std::size_t patch) const {
+    return geometry_.coverage(patch) >= (geometry_.is_beside_wall(patch) ? least_crest : taking_coverage);
+  }
   /// Whether its master ends on it.
   bool is_covered_in_part(std::size_t patch) const {
     return is_covered(patch) && geometry_.coverage(patch) < 1 - tolerances_.bare;

@@ -26,8 +26,8 @@ std::vector<GapRow> ContactState::gap_rows(std::span<const std::size_t> patches)
 }
 
 bool ContactState::may_close(std::size_t patch, const Patchwise& patches, double reach) const {
-  return patches.status[patch] == Status::open && !held_open_[patch] && !locked_[patch] &&
-         geometry_.coverage(patch) >= taking_coverage && geometry_.gap(patch) <= reach * size_[patch];
+  return patches.status[patch] == Status::open && !held_open_[patch] && !locked_[patch] && takes_contact(patch) &&
+         geometry_.gap(patch) <= reach * size_[patch];
 }
 
 bool ContactState::may_open(std::size_t patch, const Patchwise& patches) const {

@@ -19,12 +19,12 @@
 namespace lacon {
 namespace {
 
-constexpr double far_behind = 0.5;      // of the size of the patch
-constexpr double still_far = 0.45;      // likewise, of what is left out already
-constexpr double deepest_nearest = 1;   // likewise: nothing is behind a master that a patch lies so deep in
-constexpr double round_off = 1e-9;      // of the patch: what less is seen of by accident
-constexpr double has_turned = 0.1;      // of a cosine: walls are decided anew where they have turned by more
-constexpr int most_levels = 4;          // of masters that lie one behind the other
+constexpr double far_behind = 0.5;     // of the size of the patch
+constexpr double still_far = 0.45;     // likewise, of what is left out already
+constexpr double deepest_nearest = 1;  // likewise: nothing is behind a master that a patch lies so deep in
+constexpr double round_off = 1e-9;     // of the patch: what less is seen of by accident
+constexpr double has_turned = 0.1;     // of a cosine: walls are decided anew where they have turned by more
+constexpr int most_levels = 4;         // of masters that lie one behind the other
 
 /// What belongs to one patch.
 auto of_patch(const std::set<PatchMaster>& all, std::int32_t patch) {
@@ -73,7 +73,7 @@ LeftOut ContactGeometry::to_leave_out(const LeftOut& before) const {
     }
     for (const auto& [face, part] : covered_by)
       if (cells[0]->least >= -deepest_nearest * size_[patch] &&
-          part >= (before.in_front.contains({number, face}) ? least_coverage : taking_coverage) * whole_[patch])
+          part >= (before.in_front.contains({number, face}) ? least_coverage : least_crest) * whole_[patch])
         found.in_front.insert({number, face});
     if (covered < taking_coverage * whole_[patch] || !may_see_far(patch)) continue;
     for (const std::int32_t master : far)

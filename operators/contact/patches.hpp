@@ -8,8 +8,9 @@ namespace lacon {
 
 enum class Status : std::int8_t { unpaired = -1, open = 0, active = 1 };
 
-/// Covered fraction of a patch that takes contact, and of one that keeps it: the sliver of a crest carries all.
-inline constexpr double taking_coverage = 1e-3, least_coverage = 1e-5;
+/// Covered fraction of a patch that takes contact; of one beside a wall that it does not see, where the sliver of a crest
+/// carries all; and of one that keeps contact.
+inline constexpr double taking_coverage = 2e-2, least_crest = 1e-3, least_coverage = 1e-5;
 
 /// Statuses and quantities of the patches: what a time step starts from and what is restored when it is cut.
 struct Patchwise {

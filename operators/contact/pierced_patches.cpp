@@ -25,8 +25,7 @@ std::optional<PiercedPatch> ContactState::deepest(std::int32_t zone,
                                                   const std::function<double(std::size_t patch)>& limit) const {
   std::optional<PiercedPatch> worst;
   for (std::size_t p = 0; p < n_patches(); ++p) {
-    if (geometry_.zone_of(p) != zone || locked_[p] || held_open_[p] || geometry_.coverage(p) < least_coverage)
-      continue;
+    if (geometry_.zone_of(p) != zone || locked_[p] || held_open_[p] || geometry_.coverage(p) < least_coverage) continue;
     const double depth = -geometry_.smallest_gap(p) / size_[p];
     if (depth < limit(p)) continue;
     if (!worst || depth > worst->depth) worst = PiercedPatch{p, depth, geometry_.gap(p)};
@@ -41,7 +40,7 @@ std::optional<SplitPatch> ContactState::split(std::int32_t zone, const Patchwise
   };
   const auto is_asked = [&](std::size_t p) {
     return geometry_.zone_of(p) == zone && patches.status[p] != Status::active && !locked_[p] && !held_open_[p] &&
-           geometry_.coverage(p) >= taking_coverage;
+           takes_contact(p);
   };
   std::map<std::size_t, Parts> parts;
   const auto for_each_cell = [&](const auto& use) {

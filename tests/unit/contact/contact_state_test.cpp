@@ -156,8 +156,8 @@ TEST_F(Touching, ToTakeContactAPatchIsCoveredByMoreThanToKeepIt) {
     Status before, expected;
   };
   for (const auto& [coverage, before, expected] :
-       {Case{2e-3, Status::open, Status::active}, Case{5e-4, Status::open, Status::open},
-        Case{5e-4, Status::unpaired, Status::open}, Case{5e-4, Status::active, Status::active},
+       {Case{0.03, Status::open, Status::active}, Case{0.01, Status::open, Status::open},
+        Case{0.01, Status::unpaired, Status::open}, Case{0.01, Status::active, Status::active},
         Case{1e-6, Status::active, Status::open}}) {
     lift(-0.1);  // inside the master, which ends at x = 1.5
     for (std::size_t node = 8; node < 16; ++node) displacement[2 * node] = 1.5 - coverage;
