@@ -19,12 +19,13 @@
 namespace lacon {
 namespace {
 
-constexpr double far_behind = 0.5;     // of the size of the patch
-constexpr double still_far = 0.45;     // likewise, of what is left out already
-constexpr double deepest_nearest = 1;  // likewise: nothing is behind a master that a patch lies so deep in
-constexpr double round_off = 1e-9;     // of the patch: what less is seen of by accident
-constexpr double has_turned = 0.1;     // of a cosine: walls are decided anew where they have turned by more
-constexpr int most_levels = 4;         // of masters that lie one behind the other
+constexpr double far_behind = 0.5;      // of the size of the patch
+constexpr double still_far = 0.45;      // likewise, of what is left out already
+constexpr double deepest_nearest = 1;   // likewise: nothing is behind a master that a patch lies so deep in
+constexpr double deepest_crest = 0.02;  // likewise: a sliver that lies deeper is no crest, but what another corner has gone by
+constexpr double round_off = 1e-9;      // of the patch: what less is seen of by accident
+constexpr double has_turned = 0.1;      // of a cosine: walls are decided anew where they have turned by more
+constexpr int most_levels = 4;          // of masters that lie one behind the other
 
 /// What belongs to one patch.
 auto of_patch(const std::set<PatchMaster>& all, std::int32_t patch) {
@@ -59,7 +60,7 @@ LeftOut ContactGeometry::to_leave_out(const LeftOut& before) const {
     const auto number = static_cast<std::int32_t>(patch);
     double most = cells[0]->most, covered = 0;
     std::set<std::int32_t> near, far;
-    std::map<std::int32_t, double> covered_by;  // faces
+    std::map<std::int32_t, double> covered_by, least_of;  // faces
     for (const Cell* const cell : cells) {
       if (!far.empty() ||
           cell->least - most > (before.far.contains({number, cell->master}) ? still_far : far_behind) * size_[patch]) {
@@ -69,12 +70,16 @@ LeftOut ContactGeometry::to_leave_out(const LeftOut& before) const {
       near.insert(cell->master);
       most = std::max(most, cell->most);
       covered += cell->measure;
-      if (!zone_of(*cell).one_face) covered_by[face_of(*cell)] += cell->measure;
+      if (zone_of(*cell).one_face) continue;
+      covered_by[face_of(*cell)] += cell->measure;
+      least_of.try_emplace(face_of(*cell), cell->least);
     }
-    for (const auto& [face, part] : covered_by)
-      if (cells[0]->least >= -deepest_nearest * size_[patch] &&
-          part >= (before.in_front.contains({number, face}) ? least_coverage : least_crest) * whole_[patch])
+    for (const auto& [face, part] : covered_by) {
+      const bool deep = least_of[face] < -deepest_crest * size_[patch];
+      const double enough = before.in_front.contains({number, face}) ? least_coverage : deep ? taking_coverage : least_crest;
+      if (cells[0]->least >= -deepest_nearest * size_[patch] && part >= enough * whole_[patch])
         found.in_front.insert({number, face});
+    }
     if (covered < taking_coverage * whole_[patch] || !may_see_far(patch)) continue;
     for (const std::int32_t master : far)
       if (!near.contains(master)) found.far.insert({number, master});

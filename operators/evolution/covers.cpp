@@ -36,7 +36,6 @@ bool Newton::keep_covers_that_sway(double instant, const StaticState& state, boo
     }
     if (!any) return false;
   }
-  if (last) return true;
   course_.start();
   statuses_.start_instant();
   return true;

@@ -65,14 +65,12 @@ std::int64_t follow_few(std::span<const MovingCover> covers, double size,
 
 void follow_many(std::span<const MovingCover> covers, double size, const std::function<void(std::vector<double>&)>& solve,
                  std::vector<double>& x) {
-  std::vector<double> motion, one_by_row;
+  const std::vector<double> alike(covers.size(), 1.0);
+  std::vector<double> motion;
   double squares = 0;
   for (const MovingCover& cover : covers) {
-    double row = 0;
-    for (const auto& [equation, value] : cover.row) row = std::max(row, std::abs(value));
-    one_by_row.push_back(row > 0 ? 1 / row : 1);  // as if all moved by displacements of the same size
     motion.push_back(product(cover.row, x));
-    squares += motion.back() * motion.back() * one_by_row.back() * one_by_row.back();
+    squares += motion.back() * motion.back();
   }
   if (!(squares > 0)) return;
   std::vector<double> answer;
@@ -82,7 +80,7 @@ void follow_many(std::span<const MovingCover> covers, double size, const std::fu
     if (!solve_scaled(answer, size, solve)) answer.assign(x.size(), 0.0);
     for (std::size_t k = 0; k < covers.size(); ++k) moved[k] = by[k] + product(covers[k].row, answer);
   };
-  const GmresResult found = gmres(multiply, [](std::span<double>) {}, one_by_row, motion,
+  const GmresResult found = gmres(multiply, [](std::span<double>) {}, alike, motion,
                                   {.goal = enough * std::sqrt(squares), .iterations = iterations, .cycles = 1});
   if (!(found.residual < in_vain * std::sqrt(squares))) return;
   // what the last product was made of: it says what is left
@@ -103,14 +101,17 @@ std::vector<MovingCover> Equilibrium::moving_covers(const StaticState& state, st
   std::vector<MovingCover> covers;
   if (!contact_) return covers;
   for (const CoverEnd& end : contact_->moving_ends(state.patches)) {
+    // all move by displacements of the same size: lines of small masters and of large ones are alike
+    const double size = largest_entry(end.row);
+    if (!(size > 0)) continue;
     MovingCover& cover = covers.emplace_back();
     for (std::size_t i = 0; i < end.unknowns.size(); ++i) {
       const std::int64_t unknown = system_.unknown(end.unknowns[i].vertex, end.unknowns[i].component);
       if (const std::int64_t e = system_.equation(unknown); e >= 0) {
-        cover.column.emplace_back(e, end.column[i]);
-        cover.row.emplace_back(e, end.row[i]);
+        cover.column.emplace_back(e, size * end.column[i]);
+        cover.row.emplace_back(e, end.row[i] / size);
       } else {
-        cover.step += end.row[i] * step[static_cast<std::size_t>(unknown)];
+        cover.step += end.row[i] / size * step[static_cast<std::size_t>(unknown)];
       }
     }
   }

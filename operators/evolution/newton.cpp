@@ -21,6 +21,8 @@ namespace {
 
 constexpr int most_times = 3;          // ITER_GLOB_MAXI, where each set of statuses has that many iterations to its equilibrium
 constexpr int drifting = 4;            // iterations without change of status, each of which leaves more than the one before
+constexpr int in_vain = 18;            // iterations whose residuals get nowhere: what flows or is soft may settle sooner
+constexpr int in_vain_to_the_end = 9;  // likewise, where the instant would fail
 constexpr double gap_share = 1e-2;     // of RESI_GEOM: largest |g_T| / h, 1e-8 by default
 constexpr double deepest = 1;          // sizes of a patch, by which bodies that began in a few patches may go into each other
 constexpr double through = 10;         // likewise, other bodies that only springs hold before they touch
@@ -281,9 +283,10 @@ int Newton::iterate(double instant, StaticState& state, const std::function<void
       finish_instant(instant, previous, state, external, line);
       return iteration;
     }
-    const bool other_forces = (course_.period() || course_.wanders() || (course_.stands() && settled_ > drifting) ||
+    const bool ends = iteration == last, goes_nowhere = course_.wanders(ends ? in_vain_to_the_end : in_vain);
+    const bool other_forces = (course_.period() || goes_nowhere || (course_.stands() && settled_ > drifting) ||
                                std::min(course_.growths(), settled_) >= drifting) &&
-                              keep_covers_that_sway(instant, state, iteration == last);
+                              keep_covers_that_sway(instant, state, ends);
     const int done = iteration + 1;
     if (elsewhere_ &&
         Prediction::leads_astray(done, line.longest, forces_before, there.in_equilibrium() ? HUGE_VAL : there.longest))

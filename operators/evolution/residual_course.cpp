@@ -10,13 +10,12 @@
 namespace lacon {
 namespace {
 
-constexpr double same = 1e-2;           // of a residual: the one of a period before
-constexpr double other = 1e-3;          // and what differs within a period,
-constexpr double clearly = 10;          // so many times more than from one period to the next: it does not merely crawl
-constexpr int long_enough = 6;          // iterations
-constexpr int in_vain = 9, recent = 4;  // iterations, the last of which are no better than those before
-constexpr double far = 1e-3;            // of the largest: these were not near an equilibrium, of other statuses or a law
-constexpr double more = 1e-1;           // of a residual that was smaller before
+constexpr double same = 1e-2;   // of a residual: the one of a period before
+constexpr double other = 1e-3;  // and what differs within a period,
+constexpr double clearly = 10;  // so many times more than from one period to the next: it does not merely crawl
+constexpr int long_enough = 6;  // iterations
+constexpr double far = 1e-3;    // of the largest: these were not near an equilibrium, of other statuses or a law
+constexpr double more = 1e-1;   // of a residual that was smaller before
 
 }  // namespace
 
@@ -79,9 +78,9 @@ bool ResidualCourse::stands() const {
   return *most <= (1 + same) * *least;
 }
 
-bool ResidualCourse::wanders() const {
-  if (residuals_.size() < in_vain || !finite()) return false;
-  const auto first = residuals_.end() - in_vain, late = residuals_.end() - recent;
+bool ResidualCourse::wanders(int iterations) const {
+  if (std::ssize(residuals_) < iterations || !finite()) return false;
+  const auto first = residuals_.end() - iterations, late = residuals_.end() - iterations / 2;
   const double least = *std::min_element(first, late), since = *std::min_element(late, residuals_.end());
   return since >= least && since < residuals_.back() && least >= far * *std::max_element(first, residuals_.end());
 }

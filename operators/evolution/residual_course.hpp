@@ -24,8 +24,8 @@ class ResidualCourse {
   std::optional<std::size_t> period() const;
   /// Whether the last six are the same, to a hundredth.
   bool stands() const;
-  /// Whether the last four of nine are no less than those before them, none is near its end, and the last one no way down.
-  bool wanders() const;
+  /// Whether of so many the later half is no less than those before them, none is near its end, and the last one no way down.
+  bool wanders(int iterations) const;
   /// How many of the last iterations have each left more than the one before.
   int growths() const;
   /// In how many iterations up to the last it has been largest at the same place.

