@@ -81,6 +81,22 @@ class Walls(StudyTest):
                     self.assertAlmostEqual(force, whole, delta=1e-4 * abs(whole), msg=(kind, side, share))  # crests are 1e5 times as stiff
                 self.assertAlmostEqual(abs(whole), 100 * 0.1 * (1 + flank), delta=1e-4 * abs(whole))
 
+    def test_a_sliver_that_lies_deep_is_no_crest(self):
+        """A block pressed by 0.03 near the end of a slab, their sides in the zone: of the side behind a patch sees the other's by as little as the bodies overlap,
+        and far inside. Were that its contact, the top would open: 0.35 for 4.2, and the iterations 'Converged'."""
+        for kind, slab_is_slave, strain, at in (("QUAD4", True, "PETIT", 0.951), ("QUAD4", True, "PETIT", 0.941), ("QUAD8", False, "GREEN_LAGRANGE", 0.871)):
+            forces = []
+            for with_sides in (True, False):
+                low = block(kind, lines(-1.5, 1, 13), lines(-1, 0, 5), None, "SLAB", {"top": "SLAB_SKIN", "bottom": "SLAB_BASE", **({"right": "SLAB_SKIN"} if with_sides else {})})
+                up = block(kind, lines(at, at + 1, 4), lines(0, 0.6, 3), None, "TOOL", {"bottom": "TOOL_SKIN", "top": "TOOL_BASE", **({"left": "TOOL_SKIN"} if with_sides else {})})
+                study = Study(name="end", mesh=union([low, up]), materials={"TOOL": elastic(1e3), "SLAB": elastic(1e3)}, zones=[zone("TOOL", "SLAB", int(slab_is_slave))],
+                              strain=strain, steps=1, asked={"per step": 8},
+                              moves=[held("SLAB"), {"GROUP_MA": "TOOL_BASE", "DX": 0.0, "DY": [[0, 0], [1, -0.03]]}])
+                figures = run(study, LACON, self.folder)
+                self.assertEqual(missed(study, figures), [], (kind, at, with_sides))
+                forces.append(self.forces(1)[-1])
+            self.assertAlmostEqual(forces[0], forces[1], delta=0.03 * abs(forces[1]), msg=(kind, at))  # sides in the zone take a part
+
     def test_a_square_key_in_a_square_hole_is_held_by_either_as_the_slave(self):
         """Turned by 0.06 about its middle. Patches of the hole beside the corners of the key met its other sides: half of the moment, or a stop."""
         grid = np.concatenate([lines(-2.5, -1, 4)[:-1], lines(-1, 1, 6), lines(1, 2.5, 4)[1:]])
