@@ -46,6 +46,9 @@ class Engine {
  public:
   virtual ~Engine() = default;
 
+  /// The graph of a matrix that has to be evaluated yet, and is most likely the next one to be analysed: what it says alone may
+  /// be found out meanwhile. It may be gone when this returns.
+  virtual void expect(const VertexGraph& /*graph*/) {}
   /// Symbolic work for the pattern of a matrix.
   virtual void analyse(const SparseMatrix& matrix) = 0;
   /// Make ready to solve with a matrix of the analysed pattern: factorise it, or set up what iterations need. The matrix must

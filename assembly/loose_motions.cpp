@@ -45,8 +45,10 @@ class Triangle {
   Eigen::Index count_ = 0;
 };
 
+}  // namespace
+
 /// What a row makes of the motions: of those of one body for nearly all, which meet no other one.
-struct Image {
+struct LooseMotions::Image {
   double most = 0;  ///< what its entries sum up to
   std::int32_t first = -1;
   MotionVector own = MotionVector::Zero();
@@ -59,7 +61,7 @@ struct Image {
 };
 
 /// Those of the rows that meet what moves.
-class Images {
+class LooseMotions::Images {
  public:
   explicit Images(std::int64_t n_rows) : at_(static_cast<std::size_t>(n_rows), -1) {}
   Image& of_row(std::int64_t row) {
@@ -75,8 +77,6 @@ class Images {
   std::vector<std::int32_t> at_;
   std::vector<Image> images_;
 };
-
-}  // namespace
 
 template <class Takes, class Use>
 void LooseMotions::for_each_row(const Takes& takes, const Use& use) const {
@@ -168,6 +168,7 @@ class LooseMotions::Resistance {
       : bodies_(bodies), negligible_(negligible), rows_(std::ssize(bodies)) {}
   void enter(const Image& image) {
     if (image.most == 0) return;
+    if (image.others.empty() && image.own.cwiseAbs().maxCoeff() <= negligible_ * image.most) return;  // most rows
     Eigen::VectorXd row = Eigen::VectorXd::Zero(std::ssize(bodies_));
     const auto put = [&](std::int32_t first, const MotionVector& values) {
       for (std::int32_t i = 0; i < 6 && first + i < std::ssize(bodies_) && bodies_[first + i] == bodies_[first]; ++i)
@@ -185,23 +186,48 @@ class LooseMotions::Resistance {
   Triangle rows_;
 };
 
-Eigen::MatrixXd LooseMotions::unresisted(const SparseMatrix& matrix, double negligible) {
-  const RowsElsewhere* const elsewhere = matrix.elsewhere();
-  if (elsewhere && !(others_ && others_->rows == elsewhere && others_->version == elsewhere->version()))
-    others_ = asked(*elsewhere, matrix.size());
+namespace {
 
-  // rows that entries are here of, and those of others that resist; all others map motions to nothing
-  std::vector<std::uint8_t> matters(static_cast<std::size_t>(matrix.size()), 0);
-  for (std::int64_t row = 0; row < matrix.size(); ++row)
-    for (std::int64_t k = matrix.rows()[row]; k < matrix.rows()[row + 1]; ++k)
-      if (matrix.values()[k] != 0) matters[row] = matters[matrix.columns()[k]] = 1;
-  if (elsewhere)
-    for (const std::int64_t equation : others_->resisting) matters[equation] = 1;
-  const std::vector<Moved> all = moved([&](std::int64_t equation) { return matters[equation] != 0; });
-  std::vector<std::int32_t> at(static_cast<std::size_t>(matrix.size()), -1);  // of an equation: its place in `all`
-  for (std::size_t i = 0; i < all.size(); ++i) at[all[i].equation] = static_cast<std::int32_t>(i);
+/// Vertices whose rows meet what belongs to several bodies, or to none: contact and relations. @param first of each vertex the
+/// first motion of its body, -1: nothing moves it
+std::vector<std::uint8_t> between_bodies(const SparseMatrix& matrix, std::span<const std::int32_t> first) {
+  const Numbering& numbering = matrix.numbering();
+  std::vector<std::uint8_t> between(first.size(), 0);
+  for (std::size_t v = 0; v < first.size(); ++v)
+    between[v] = static_cast<std::int64_t>(v) >= numbering.n_nodes || !matrix.is_symmetric() || matrix.elsewhere() ||
+                 std::ranges::any_of(matrix.neighbours()[v], [&](std::int32_t w) {
+                   return first[w] != first[v] && numbering.first[w + 1] > numbering.first[w];
+                 });
+  return between;
+}
 
-  Images images(matrix.size());
+}  // namespace
+
+void LooseMotions::multiply(const SparseMatrix& matrix, std::span<const Moved> all, std::span<const std::uint8_t> between,
+                            std::span<const std::int32_t> at, Images& images) const {
+  // rows within a body: one motion of each body at once, and magnitudes
+  Eigen::Index most = 0;
+  for (const auto& [body, left] : left_) most = std::max(most, left.motions.cols());
+  const auto width = static_cast<std::size_t>(most + 1);
+  const std::vector<std::int64_t>& first = matrix.numbering().first;
+  if (std::ranges::find(between, 0) != between.end()) {
+    std::vector<double> x(width * static_cast<std::size_t>(matrix.size())), y(x.size());
+    for (const Moved& moved : all) {
+      double* const own = &x[width * static_cast<std::size_t>(moved.equation)];
+      std::copy_n(moved.by.data(), moved.count, own);
+      own[most] = moved.moves().cwiseAbs().sum();
+    }
+    matrix.multiply_together(x, y, static_cast<int>(width));
+    for (std::size_t v = 0; v < between.size(); ++v)
+      for (std::int64_t row = first[v]; row < first[v + 1] && !between[v]; ++row) {
+        if (at[row] < 0) continue;
+        const double* const own = &y[width * static_cast<std::size_t>(row)];
+        Image& image = images.of_row(row);
+        image.of_body(all[at[row]].first).head(most) = Eigen::Map<const Eigen::VectorXd>(own, most);
+        image.most = own[most];
+      }
+  }
+
   const auto add = [&](std::int64_t row, std::int64_t column, double value) {
     if (at[column] < 0 || value == 0) return;
     const Moved& moved = all[at[column]];
@@ -209,12 +235,42 @@ Eigen::MatrixXd LooseMotions::unresisted(const SparseMatrix& matrix, double negl
     image.of_body(moved.first).head(moved.count) += value * moved.moves();
     image.most += std::abs(value) * moved.moves().cwiseAbs().sum();
   };
-  for (std::int64_t row = 0; row < matrix.size(); ++row)
-    for (std::int64_t k = matrix.rows()[row]; k < matrix.rows()[row + 1]; ++k) {
-      const std::int64_t column = matrix.columns()[k];
-      add(row, column, matrix.values()[k]);
-      if (matrix.is_symmetric() && column != row) add(column, row, matrix.values()[k]);
-    }
+  std::vector<std::uint8_t> is_between(static_cast<std::size_t>(matrix.size()));  // of equations
+  for (std::size_t v = 0; v < between.size(); ++v)
+    std::fill(is_between.begin() + first[v], is_between.begin() + first[v + 1], between[v]);
+  for (std::size_t v = 0; v < between.size(); ++v) {
+    if (!between[v] && std::ranges::none_of(matrix.neighbours()[v], [&](std::int32_t w) { return between[w]; })) continue;
+    for (std::int64_t row = first[v]; row < first[v + 1]; ++row)
+      for (std::int64_t k = matrix.rows()[row]; k < matrix.rows()[row + 1]; ++k) {
+        const std::int64_t column = matrix.columns()[k];
+        if (between[v]) add(row, column, matrix.values()[k]);
+        if (matrix.is_symmetric() && column != row && is_between[column]) add(column, row, matrix.values()[k]);
+      }
+  }
+}
+
+Eigen::MatrixXd LooseMotions::unresisted(const SparseMatrix& matrix, double negligible) {
+  const RowsElsewhere* const elsewhere = matrix.elsewhere();
+  if (elsewhere && !(others_ && others_->rows == elsewhere && others_->version == elsewhere->version()))
+    others_ = asked(*elsewhere, matrix.size());
+
+  // rows that entries are here of, and those of others that resist; all others map motions to nothing
+  std::vector<std::uint8_t> matters(static_cast<std::size_t>(matrix.size()), elsewhere ? 0 : 1);
+  if (elsewhere) {
+    for (std::int64_t row = 0; row < matrix.size(); ++row)
+      for (std::int64_t k = matrix.rows()[row]; k < matrix.rows()[row + 1]; ++k)
+        if (matrix.values()[k] != 0) matters[row] = matters[matrix.columns()[k]] = 1;
+    for (const std::int64_t equation : others_->resisting) matters[equation] = 1;
+  }
+  const std::vector<Moved> all = moved([&](std::int64_t equation) { return matters[equation] != 0; });
+  std::vector<std::int32_t> at(static_cast<std::size_t>(matrix.size()), -1);  // of an equation: its place in `all`
+  std::vector<std::int32_t> first(static_cast<std::size_t>(matrix.numbering().n_vertices()), -1);
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    at[all[i].equation] = static_cast<std::int32_t>(i);
+    first[all[i].dof / matrix.numbering().n_components] = all[i].first;
+  }
+  Images images(matrix.size());
+  multiply(matrix, all, between_bodies(matrix, first), at, images);
 
   Resistance resistance(bodies_, negligible);
   for (std::int64_t row = 0; row < matrix.size(); ++row) {

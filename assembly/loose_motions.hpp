@@ -60,6 +60,8 @@ class LooseMotions {
     const MotionVector* resistance_of(std::int64_t equation) const;
   };
   class Resistance;
+  struct Image;
+  class Images;
   /// @param takes whether a degree of freedom is one of those
   template <class Takes, class Use>
   void for_each_row(const Takes& takes, const Use& use) const;
@@ -69,6 +71,10 @@ class LooseMotions {
   template <class Takes>
   std::vector<Moved> moved(const Takes& takes) const;
   Others asked(const RowsElsewhere& rows, std::int64_t n_equations) const;
+  /// What the rows of the matrix that are here make of the motions. @param between vertices whose rows meet several bodies
+  /// @param at of each equation: its place in `all`, or -1
+  void multiply(const SparseMatrix& matrix, std::span<const Moved> all, std::span<const std::uint8_t> between,
+                std::span<const std::int32_t> at, Images& images) const;
   /// (n_motions, n): combinations of the motions that the matrix maps to nothing.
   Eigen::MatrixXd unresisted(const SparseMatrix& matrix, double negligible);
   /// Each of them with its bodies, and a degree of freedom that the others are made not to move.

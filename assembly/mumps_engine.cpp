@@ -13,9 +13,11 @@
 #include "lacon/assembly/gmres.hpp"
 #include "lacon/assembly/mumps.hpp"
 #include "lacon/assembly/ordering.hpp"
+#include "lacon/assembly/tree/ordering_ahead.hpp"
 #include "lacon/assembly/tree/tree_mumps.hpp"
 #include "lacon/catalog/messages.hpp"
 #include "lacon/catalog/wording.hpp"
+#include "lacon/structures/parallel.hpp"
 
 namespace lacon {
 namespace {
@@ -31,6 +33,8 @@ constexpr double own_low_rank_threshold = 1e-5;
 
 /// A factor that is not exact has to have no smaller pivot, of the scaled matrix.
 constexpr double doubtful_pivot = 1e-6;
+/// Rows that a thread scales at a time.
+constexpr std::size_t rows_together = 4096;
 /// GMRES between two residuals that are computed anew.
 constexpr double gain = 1e-7;
 constexpr int most_iterations = 30;
@@ -70,6 +74,7 @@ struct MumpsEngine::State {
   Ragged<std::int32_t> neighbours;  ///< of the whole matrix
   std::optional<VertexGraph> graph;
   Form form;
+  OrderingAhead ahead;
   std::optional<Subtrees> subtrees;  ///< where processes may share the factor
   std::shared_ptr<MumpsProcesses> processes;
   std::optional<std::string> unshared;        ///< Factorisation::unshared, empty once it is told
@@ -144,6 +149,16 @@ struct MumpsEngine::State {
     return std::make_unique<Mumps<Real>>(settings);
   }
 
+  bool may_share(std::int64_t n_equations) const { return options.processes > 1 && n_equations >= options.least_shared; }
+  /// Of the graph. @param[out] subtrees where processes may share the factor
+  std::vector<std::int32_t> ordered() {
+    subtrees.reset();
+    if (!may_share(graph->numbering.n_equations())) return elimination_order(*graph);
+    SharedOrder found = ahead.take(*graph, *processes);
+    subtrees = std::move(found.subtrees);
+    if (subtrees->process.size() < 2 || !has_processes()) subtrees.reset();  // one alone would wait for the others
+    return std::move(found.order);
+  }
   /// Throws SOLVER_8 where there have to be some.
   bool has_processes() {
     try {
@@ -210,12 +225,14 @@ struct MumpsEngine::State {
   template <class Real>
   Factorisation factorise_scaled(MumpsFactor<Real>& mumps, const SparseMatrix& of) {
     if (of.elsewhere()) return dynamic_cast<TreeMumps<Real>&>(mumps).factorise(of, scale);
-    std::vector<Real> values;
-    values.reserve(static_cast<std::size_t>(of.n_entries()));
-    for (std::int64_t i = 0; i < of.size(); ++i)
-      for (std::int64_t k = of.rows()[i]; k < of.rows()[i + 1]; ++k)
-        values.push_back(static_cast<Real>(scale[i] * of.values()[k] * scale[of.columns()[k]]));
-    return mumps.factorise(values);
+    const auto n = static_cast<std::size_t>(of.n_entries());
+    const auto values = std::make_unique_for_overwrite<Real[]>(n);
+    parallel_for(of.size(), rows_together, [&](const LoopBlock& rows) {
+      for (std::size_t i = rows.first; i < rows.last; ++i)
+        for (std::int64_t k = of.rows()[i]; k < of.rows()[i + 1]; ++k)
+          values[k] = static_cast<Real>(scale[i] * of.values()[k] * scale[of.columns()[k]]);
+    });
+    return mumps.factorise(std::span<const Real>(values.get(), n));
   }
 
   void take(const SparseMatrix& of) {
@@ -359,6 +376,10 @@ std::shared_ptr<PartProcesses> MumpsEngine::processes(std::int64_t n_equations) 
   return share ? state_->processes : nullptr;
 }
 
+void MumpsEngine::expect(const VertexGraph& graph) {
+  if (state_->may_share(graph.numbering.n_equations())) state_->ahead.begin(graph, *state_->processes);
+}
+
 void MumpsEngine::analyse(const SparseMatrix& matrix) {
   State& s = *state_;
   s.matrix = nullptr;
@@ -366,7 +387,7 @@ void MumpsEngine::analyse(const SparseMatrix& matrix) {
   s.single.reset();
   s.neighbours = matrix.elsewhere() ? matrix.elsewhere()->graph(matrix) : matrix.neighbours();
   s.graph.emplace(VertexGraph{s.neighbours, matrix.numbering()});
-  const std::vector<std::int32_t> order = elimination_order(*s.graph);
+  const std::vector<std::int32_t> order = s.ordered();
   s.place.assign(order.begin(), order.end());
   for (int& p : s.place) ++p;
   s.block.clear();
@@ -374,11 +395,6 @@ void MumpsEngine::analyse(const SparseMatrix& matrix) {
   for (std::size_t v = 0; v + 1 < first.size(); ++v)
     if (first[v] < first[v + 1]) s.block.push_back(static_cast<int>(first[v]) + 1);
   s.block.push_back(static_cast<int>(first.back()) + 1);
-  s.subtrees.reset();
-  if (s.options.processes > 1 && matrix.size() >= s.options.least_shared) {
-    s.subtrees = independent_subtrees(*s.graph, order, s.options.processes);
-    if (s.subtrees->process.size() < 2 || !s.has_processes()) s.subtrees.reset();  // one alone would wait for the others
-  }
   s.choose(matrix, order);
 }
 

@@ -41,6 +41,7 @@ class MumpsEngine : public FactorEngine {
   MumpsEngine(const MumpsEngine&) = delete;
   MumpsEngine& operator=(const MumpsEngine&) = delete;
 
+  void expect(const VertexGraph& graph) override;
   void analyse(const SparseMatrix& matrix) override;
   Factorisation factorise(const SparseMatrix& matrix) override;
   Factorisation factorise_to_solve(const SparseMatrix& matrix) override;

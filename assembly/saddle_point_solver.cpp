@@ -3,12 +3,14 @@
 #include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <utility>
 
 #include "lacon/assembly/gmres.hpp"
 #include "lacon/assembly/multiplier_row.hpp"
 #include "lacon/assembly/saddle_point_preconditioner.hpp"
 #include "lacon/assembly/stopwatch.hpp"
+#include "lacon/structures/parallel.hpp"
 
 namespace lacon {
 namespace {
@@ -25,26 +27,34 @@ constexpr double blur = 2;
 /// Of a motion that is looked for in a right side of any directions: what is left of it where its direction is unlucky.
 constexpr double least_share = 1e-2;
 constexpr int least_iterations = 8;
+/// Rows that a thread compares at a time.
+constexpr std::size_t rows_together = 8192;
 
 /// The largest change of the stiffness from `base` on, of a row's and a column's diagonal; infinite where the equations differ.
 /// Entries that either of the patterns lacks are zeros in it: bodies that slide take more couples in.
 double stiffness_change(const SparseMatrix& matrix, const SparseMatrix& base, std::int64_t first_multiplier) {
   if (matrix.size() != base.size()) return INFINITY;
-  double largest = matrix.elsewhere() ? matrix.elsewhere()->change() : 0;  // squared
   const std::vector<double> diagonal = base.diagonals();
-  for (std::int64_t row = 0; row < first_multiplier; ++row) {
-    std::int64_t k = matrix.rows()[row], j = base.rows()[row];
-    const std::int64_t last_k = matrix.rows()[row + 1], last_j = base.rows()[row + 1];
-    while (k < last_k || j < last_j) {
-      const std::int32_t column =
-          std::min(k < last_k ? matrix.columns()[k] : INT32_MAX, j < last_j ? base.columns()[j] : INT32_MAX);
-      double difference = 0;
-      if (k < last_k && matrix.columns()[k] == column) difference += matrix.values()[k++];
-      if (j < last_j && base.columns()[j] == column) difference -= base.values()[j++];
-      if (difference != 0) largest = std::max(largest, difference * difference / std::abs(diagonal[row] * diagonal[column]));
+  std::vector<double> largest(n_loop_blocks(first_multiplier, rows_together), 0.0);  // of each block, squared
+  parallel_for(first_multiplier, rows_together, [&](const LoopBlock& block) {
+    for (std::size_t row = block.first; row < block.last; ++row) {
+      std::int64_t k = matrix.rows()[row], j = base.rows()[row];
+      const std::int64_t last_k = matrix.rows()[row + 1], last_j = base.rows()[row + 1];
+      while (k < last_k || j < last_j) {
+        const std::int32_t column =
+            std::min(k < last_k ? matrix.columns()[k] : INT32_MAX, j < last_j ? base.columns()[j] : INT32_MAX);
+        double difference = 0;
+        if (k < last_k && matrix.columns()[k] == column) difference += matrix.values()[k++];
+        if (j < last_j && base.columns()[j] == column) difference -= base.values()[j++];
+        if (difference == 0) continue;
+        largest[block.index] =
+            std::max(largest[block.index], difference * difference / std::abs(diagonal[row] * diagonal[column]));
+      }
     }
-  }
-  return std::sqrt(largest);
+  });
+  const double elsewhere = matrix.elsewhere() ? matrix.elsewhere()->change() : 0;
+  return std::sqrt(
+      std::accumulate(largest.begin(), largest.end(), elsewhere, [](double a, double b) { return std::max(a, b); }));
 }
 
 bool same_pattern(const SparseMatrix& a, const SparseMatrix& b) {

@@ -104,6 +104,10 @@ class SaddlePointSolver {
   /// that call; is not called where there is no way to them
   SolutionReport columns(const SparseMatrix& matrix, const SparseSides& sides,
                          const std::function<void(std::span<const float>)>& use);
+  /// The graph of the matrix to be solved with next (Engine::expect): of the first one, for its factor may serve others.
+  void expect(const VertexGraph& graph) {
+    if (kept_ == Kept::nothing) engine_->expect(graph);
+  }
   /// Where nodes are for the matrices to come (Engine::place_nodes), (n_nodes, 3).
   void place_nodes(std::span<const double> coordinates) { engine_->place_nodes(coordinates); }
   /// Right sides so far were those of a computation that failed: they say nothing of how exact the next solution has to be.

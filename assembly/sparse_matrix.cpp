@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <memory>
 #include <numeric>
 #include <stdexcept>
@@ -13,6 +14,20 @@ namespace lacon {
 namespace {
 
 constexpr std::size_t vertices_at_once = 2048;  // in one block of a loop
+constexpr std::size_t values_at_once = 65536;   // likewise
+// of rows, in which sums are gathered: not more than this, however many threads there are, and one where sums take no time
+constexpr std::int64_t most_parts = 4, rows_of_a_part = 8192;
+
+/// In threads, for pages that are touched first take longer than all else.
+void fill_with_zeros(std::span<double> values) {
+  parallel_for(values.size(), values_at_once,
+               [&](const LoopBlock& block) { std::fill(values.begin() + block.first, values.begin() + block.last, 0.0); });
+}
+void copy_values(std::span<const double> from, double* to) {
+  parallel_for(from.size(), values_at_once, [&](const LoopBlock& block) {
+    std::copy(from.begin() + block.first, from.begin() + block.last, to + block.first);
+  });
+}
 
 /// The transposed list: for each vertex the cliques it belongs to.
 Ragged<std::int32_t> cliques_of_vertices(std::int64_t n_vertices, const Ragged<std::int32_t>& cliques) {
@@ -100,15 +115,17 @@ SparseMatrix::SparseMatrix(Ragged<std::int32_t> neighbours, const Numbering& num
     const std::int64_t width = n_equations(is_symmetric() ? before(v) : pattern_->neighbours[v]), own = first[v + 1] - first[v];
     for (std::int64_t i = 1; i <= own; ++i) rows.push_back(rows.back() + width + (is_symmetric() ? i : own));
   }
-  pattern->column.resize(rows.back());
+  const auto n_entries = static_cast<std::size_t>(rows.back());
+  pattern->column = std::make_unique_for_overwrite<std::int32_t[]>(n_entries);
   row_ = rows;
-  column_ = pattern->column;
-  values_ = std::make_shared<std::vector<double>>(rows.back());
-  value_ = *values_;
+  column_ = {pattern->column.get(), n_entries};
+  values_ = std::make_shared_for_overwrite<double[]>(n_entries);
+  value_ = {values_.get(), n_entries};
+  fill_with_zeros({values_.get(), n_entries});
   parallel_for(numbering.n_vertices(), vertices_at_once, [&](const LoopBlock& block) {
     for (std::size_t v = block.first; v < block.last; ++v)
       for (std::int64_t row = first[v]; row < first[v + 1]; ++row) {
-        auto column = pattern->column.begin() + row_[row];
+        std::int32_t* column = pattern->column.get() + row_[row];
         const auto add = [&](std::int64_t from, std::int64_t to) {
           for (; from < to; ++from) *column++ = static_cast<std::int32_t>(from);
         };
@@ -129,17 +146,21 @@ bool SparseMatrix::has_room_for(std::span<const Coupling> couplings) const {
 
 double* SparseMatrix::own_values() {
   if (values_.use_count() > 1) {
-    values_ = std::make_shared<std::vector<double>>(*values_);
-    value_ = *values_;
+    const std::span<const double> shared = value_;
+    std::shared_ptr<double[]> own = std::make_shared_for_overwrite<double[]>(shared.size());
+    copy_values(shared, own.get());
+    values_ = std::move(own);
+    value_ = {values_.get(), shared.size()};
   }
-  return values_->data();
+  return values_.get();
 }
 
 void SparseMatrix::set_zero(std::int64_t first_row) {
-  std::fill(own_values() + row_[first_row], own_values() + row_.back(), 0.0);
+  double* const values = own_values();
+  fill_with_zeros({values + row_[first_row], values + row_.back()});
 }
 
-void SparseMatrix::restore(std::span<const double> values) { std::copy(values.begin(), values.end(), own_values()); }
+void SparseMatrix::restore(std::span<const double> values) { copy_values(values, own_values()); }
 
 void SparseMatrix::set_row(std::int64_t row, std::span<const double> values) {
   std::copy(values.begin(), values.end(), own_values() + row_[row]);
@@ -225,18 +246,58 @@ std::vector<double> SparseMatrix::diagonals() const {
 
 void SparseMatrix::add_diagonal(std::int64_t equation, double value) { own_values()[diagonal_place(equation)] += value; }
 
-std::vector<SparseMatrix::RowSize> SparseMatrix::row_sizes(std::int64_t n) const {
-  std::vector<RowSize> sizes(static_cast<std::size_t>(n));
-  const auto count = [&](std::int64_t row, double value) {
-    sizes[static_cast<std::size_t>(row)].sum += std::abs(value);
-    ++sizes[static_cast<std::size_t>(row)].entries;
-  };
-  for (std::int64_t row = 0; row < n; ++row)
-    for (std::int64_t k = row_[row]; k < row_[row + 1]; ++k) {
-      if (column_[k] >= n) continue;
-      count(row, value_[k]);
-      if (is_symmetric() && column_[k] != row) count(column_[k], value_[k]);
+std::vector<std::int64_t> SparseMatrix::parts_of_rows() const {
+  const std::int64_t count = is_symmetric() ? std::clamp<std::int64_t>(size() / rows_of_a_part, 1, most_parts) : 1;
+  std::vector<std::int64_t> first{0};
+  for (std::int64_t part = 1; part < count; ++part)
+    first.push_back(std::lower_bound(row_.begin(), row_.end(), n_entries() / count * part) - row_.begin());
+  first.push_back(size());
+  return first;
+}
+
+template <class Work, class Join>
+void SparseMatrix::gather(std::span<double> y, std::size_t width, const Work& work, const Join& join) const {
+  const std::vector<std::int64_t> first = parts_of_rows();
+  const std::size_t last_part = first.size() - 2;
+  std::vector<std::vector<double>> sums(last_part);  // the last one's are y
+  parallel_for(last_part + 1, 1, [&](const LoopBlock& block) {
+    const std::int64_t from = first[block.first], to = first[block.last];
+    if (block.first < last_part) sums[block.first].assign(static_cast<std::size_t>(to) * width, 0.0);
+    const std::span<double> own = block.first < last_part ? std::span(sums[block.first]) : y;
+    if (block.first == last_part) std::fill(y.begin(), y.end(), 0.0);
+    work(from, to, own);
+  });
+  if (sums.empty()) return;
+  parallel_for(sums.back().size(), values_at_once, [&](const LoopBlock& block) {
+    for (std::size_t i = block.first; i < block.last; ++i) {
+      double joined = 0;
+      for (const std::vector<double>& own : sums)
+        if (i < own.size()) joined = join(joined, own[i]);
+      y[i] = join(joined, y[i]);
     }
+  });
+}
+
+std::vector<SparseMatrix::RowSize> SparseMatrix::row_sizes(std::int64_t n) const {
+  std::vector<double> counted(2 * static_cast<std::size_t>(size()));  // sums, and numbers of entries behind each
+  gather(
+      counted, 2,
+      [&](std::int64_t first, std::int64_t last, std::span<double> sums) {
+        const auto count = [&](std::int64_t row, double value) {
+          sums[2 * static_cast<std::size_t>(row)] += std::abs(value);
+          ++sums[2 * static_cast<std::size_t>(row) + 1];
+        };
+        for (std::int64_t row = first; row < std::min(last, n); ++row)
+          for (std::int64_t k = row_[row]; k < row_[row + 1]; ++k) {
+            if (column_[k] >= n) continue;
+            count(row, value_[k]);
+            if (is_symmetric() && column_[k] != row) count(column_[k], value_[k]);
+          }
+      },
+      std::plus());
+  std::vector<RowSize> sizes;
+  for (std::size_t row = 0; row < static_cast<std::size_t>(n); ++row)
+    sizes.push_back({counted[2 * row], static_cast<std::int32_t>(counted[2 * row + 1])});
   if (!elsewhere_) return sizes;
   const auto [sum, entries] = elsewhere_->row_sizes();
   for (std::size_t dof = 0; dof < sum.size(); ++dof)
@@ -249,21 +310,18 @@ std::vector<SparseMatrix::RowSize> SparseMatrix::row_sizes(std::int64_t n) const
 
 template <class Function>
 void SparseMatrix::multiply(std::span<const double> x, std::span<double> y, const Function& f) const {
-  std::fill(y.begin(), y.end(), 0.0);
-  if (!is_symmetric()) {
-    for (std::int64_t row = 0; row < size(); ++row)
-      for (std::int64_t k = row_[row]; k < row_[row + 1]; ++k) y[row] += f(value_[k]) * f(x[column_[k]]);
-    return;
-  }
-  for (std::int64_t row = 0; row < size(); ++row) {
-    double sum = 0;
-    const std::int64_t last = row_[row + 1] - 1;
-    for (std::int64_t k = row_[row]; k < last; ++k) {
-      sum += f(value_[k]) * f(x[column_[k]]);
-      y[column_[k]] += f(value_[k]) * f(x[row]);
+  const auto rows = [&](std::int64_t first, std::int64_t end, std::span<double> sums) {
+    for (std::int64_t row = first; row < end; ++row) {
+      double sum = 0;
+      const std::int64_t last = row_[row + 1] - 1;
+      for (std::int64_t k = row_[row]; k < last; ++k) {
+        sum += f(value_[k]) * f(x[column_[k]]);
+        if (is_symmetric()) sums[column_[k]] += f(value_[k]) * f(x[row]);
+      }
+      sums[row] += sum + f(value_[last]) * f(x[column_[last]]);
     }
-    y[row] += sum + f(value_[last]) * f(x[row]);
-  }
+  };
+  gather(y, 1, rows, std::plus());
 }
 
 void SparseMatrix::multiply(std::span<const double> x, std::span<double> y) const {
@@ -278,25 +336,27 @@ void SparseMatrix::multiply_magnitudes(std::span<const double> x, std::span<doub
 
 void SparseMatrix::multiply_together(std::span<const double> x, std::span<double> y, int n_columns) const {
   const auto n = static_cast<std::size_t>(n_columns);
-  std::fill(y.begin(), y.end(), 0.0);
-  std::vector<double> sum(n);
-  for (std::size_t row = 0; row < static_cast<std::size_t>(size()); ++row) {
-    std::fill(sum.begin(), sum.end(), 0.0);
-    const double* const own = &x[row * n];
-    const std::int64_t last = row_[row + 1] - 1;
-    for (std::int64_t k = row_[row]; k < last; ++k) {
-      const double value = value_[k], magnitude = std::abs(value);
-      const std::size_t at = static_cast<std::size_t>(column_[k]) * n;
-      for (std::size_t c = 0; c + 1 < n; ++c) {
-        sum[c] += value * x[at + c];
-        y[at + c] += value * own[c];
+  const auto rows = [&](std::int64_t first, std::int64_t end, std::span<double> sums) {
+    std::vector<double> sum(n);
+    for (auto row = static_cast<std::size_t>(first); row < static_cast<std::size_t>(end); ++row) {
+      std::fill(sum.begin(), sum.end(), 0.0);
+      const double* const own = &x[row * n];
+      const std::int64_t last = row_[row + 1] - 1;
+      for (std::int64_t k = row_[row]; k < last; ++k) {
+        const double value = value_[k], magnitude = std::abs(value);
+        const std::size_t at = static_cast<std::size_t>(column_[k]) * n;
+        for (std::size_t c = 0; c + 1 < n; ++c) {
+          sum[c] += value * x[at + c];
+          sums[at + c] += value * own[c];
+        }
+        sum[n - 1] += magnitude * std::abs(x[at + n - 1]);
+        sums[at + n - 1] += magnitude * std::abs(own[n - 1]);
       }
-      sum[n - 1] += magnitude * std::abs(x[at + n - 1]);
-      y[at + n - 1] += magnitude * std::abs(own[n - 1]);
+      for (std::size_t c = 0; c + 1 < n; ++c) sums[row * n + c] += sum[c] + value_[last] * own[c];
+      sums[row * n + n - 1] += sum[n - 1] + std::abs(value_[last]) * std::abs(own[n - 1]);
     }
-    for (std::size_t c = 0; c + 1 < n; ++c) y[row * n + c] += sum[c] + value_[last] * own[c];
-    y[row * n + n - 1] += sum[n - 1] + std::abs(value_[last]) * std::abs(own[n - 1]);
-  }
+  };
+  gather(y, n, rows, std::plus());
 }
 
 std::vector<double> SparseMatrix::nodal(std::span<const double> x) const {
@@ -334,13 +394,17 @@ std::vector<double> SparseMatrix::equilibration() const {
   bool done = false;
   for (int round = 0; round < most_rounds && !done; ++round) {
     done = true;
-    std::fill(largest.begin(), largest.end(), 0.0);
-    for (std::int64_t row = 0; row < size(); ++row)
-      for (std::int64_t k = row_[row]; k < row_[row + 1]; ++k) {
-        const double value = std::abs(value_[k]) * scale[row] * scale[column_[k]];
-        largest[row] = std::max(largest[row], value);
-        largest[column_[k]] = std::max(largest[column_[k]], value);
-      }
+    gather(
+        largest, 1,
+        [&](std::int64_t first, std::int64_t last, std::span<double> most) {
+          for (std::int64_t row = first; row < last; ++row)
+            for (std::int64_t k = row_[row]; k < row_[row + 1]; ++k) {
+              const double value = std::abs(value_[k]) * scale[row] * scale[column_[k]];
+              most[row] = std::max(most[row], value);
+              most[column_[k]] = std::max(most[column_[k]], value);
+            }
+        },
+        [](double a, double b) { return std::max(a, b); });
     if (elsewhere_) {
       const std::span<const double> more = elsewhere_->row_maxima(nodal(scale));
       for (std::size_t dof = 0; dof < more.size(); ++dof)
@@ -357,11 +421,16 @@ std::vector<double> SparseMatrix::equilibration() const {
 
 double SparseMatrix::norm() const {
   std::vector<double> sums(size(), 0.0);
-  for (std::int64_t row = 0; row < size(); ++row)
-    for (std::int64_t k = row_[row]; k < row_[row + 1]; ++k) {
-      sums[row] += std::abs(value_[k]);
-      if (is_symmetric() && column_[k] != row) sums[column_[k]] += std::abs(value_[k]);
-    }
+  gather(
+      sums, 1,
+      [&](std::int64_t first, std::int64_t last, std::span<double> own) {
+        for (std::int64_t row = first; row < last; ++row)
+          for (std::int64_t k = row_[row]; k < row_[row + 1]; ++k) {
+            own[row] += std::abs(value_[k]);
+            if (is_symmetric() && column_[k] != row) own[column_[k]] += std::abs(value_[k]);
+          }
+      },
+      std::plus());
   if (elsewhere_) {
     const std::span<const double> more = elsewhere_->row_sizes().sum;
     for (std::size_t dof = 0; dof < more.size(); ++dof)

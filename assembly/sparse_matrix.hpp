@@ -123,8 +123,8 @@ class SparseMatrix {
  private:
   struct Pattern {
     Ragged<std::int32_t> neighbours;
-    std::vector<std::int64_t> row;     ///< where the matrix is symmetric, the diagonal is the last entry of each row
-    std::vector<std::int32_t> column;  ///< ascending in each row
+    std::vector<std::int64_t> row;           ///< where the matrix is symmetric, the diagonal is the last entry of each row
+    std::unique_ptr<std::int32_t[]> column;  ///< ascending in each row
   };
   /// The values, of this matrix alone from now on.
   double* own_values();
@@ -142,11 +142,18 @@ class SparseMatrix {
   /// y = f(A) f(x), of numbers or of magnitudes.
   template <class Function>
   void multiply(std::span<const double> x, std::span<double> y, const Function& f) const;
+  /// Gather in y, (size, width), what the entries give to their rows and to their columns, in threads: work(first row, last
+  /// row, sums) does it for some rows, in sums that begin as zeros and are joined in the order of rows. The same bits for any
+  /// number of threads.
+  template <class Work, class Join>
+  void gather(std::span<double> y, std::size_t width, const Work& work, const Join& join) const;
+  /// First rows of the parts in which gather() takes them, and their end.
+  std::vector<std::int64_t> parts_of_rows() const;
 
   const Numbering* numbering_;
   Symmetry symmetry_;
   std::shared_ptr<const Pattern> pattern_;
-  std::shared_ptr<std::vector<double>> values_;
+  std::shared_ptr<double[]> values_;
   std::span<const std::int64_t> row_;     ///< of the pattern
   std::span<const std::int32_t> column_;  ///< likewise
   std::span<const double> value_;         ///< of the values

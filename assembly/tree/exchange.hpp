@@ -10,6 +10,8 @@
 //   reduce PIECE PATH PATH   likewise of sparse ones, which the second memory has (SparseSides)             -> done
 //   expand PIECE PATH        the same memory, with solutions of the border: right sides become solutions    -> done
 //   open PATH                to see whether it can                                                           -> done
+//   order PATH               OrderMemory: the order of elimination is found, and its subtrees
+//                                                              -> done FLOPS ENTRIES LONGEST, and the process of each subtree
 //   fill PRECISION MAP PATH PATH ...   entries that the process has itself, into values of pieces (EntryPlaces): PieceMemory
 //                                      and values of each, and of the top                             -> done
 //   forget                   all pieces                                                                     -> done
@@ -24,6 +26,13 @@
 #include "lacon/assembly/processes/shared_memory.hpp"
 
 namespace lacon {
+
+/// The next numbers of a memory.
+template <class T>
+void take(std::byte*& next, std::span<T>& part, std::int64_t size) {
+  part = {reinterpret_cast<T*>(next), static_cast<std::size_t>(size)};
+  next += part.size_bytes();
+}
 
 struct PieceSizes {
   std::int64_t size = 0, entries = 0, border = 0;
@@ -48,17 +57,43 @@ struct PieceMemory {
     PieceMemory piece{.sizes = *reinterpret_cast<const PieceSizes*>(memory.data())};
     const PieceSizes& s = piece.sizes;
     std::byte* next = memory.data() + sizeof s;
-    const auto take = [&]<class T>(std::span<T>& part, std::int64_t size) {
-      part = {reinterpret_cast<T*>(next), static_cast<std::size_t>(size)};
-      next += part.size_bytes();
-    };
-    take(piece.offset, s.size + 1);
-    take(piece.row, s.entries);
-    take(piece.column, s.entries);
-    take(piece.place, s.size);
-    take(piece.in_border, s.border);
-    take(piece.border, s.border);
+    take(next, piece.offset, s.size + 1);
+    take(next, piece.row, s.entries);
+    take(next, piece.column, s.entries);
+    take(next, piece.place, s.size);
+    take(next, piece.in_border, s.border);
+    take(next, piece.border, s.border);
     return piece;
+  }
+};
+
+struct OrderSizes {
+  std::int64_t vertices = 0, nodes = 0, neighbours = 0, equations = 0;
+  std::int32_t processes = 1;
+};
+
+/// A graph of vertices, and what is found of it: the place of each equation in the order of elimination, and its subtree.
+struct OrderMemory {
+  OrderSizes sizes;
+  std::span<std::int64_t> offset, first;   ///< of neighbours and of equations, (vertices + 1)
+  std::span<std::int32_t> neighbours;      ///< of each vertex
+  std::span<std::int32_t> order, subtree;  ///< (equations)
+
+  static std::size_t bytes(const OrderSizes& s) {
+    return sizeof s + 2 * sizeof(std::int64_t) * static_cast<std::size_t>(s.vertices + 1) +
+           sizeof(std::int32_t) * static_cast<std::size_t>(s.neighbours + 2 * s.equations);
+  }
+  /// Of memory that has sizes at its beginning.
+  static OrderMemory in(const SharedMemory& memory) {
+    OrderMemory graph{.sizes = *reinterpret_cast<const OrderSizes*>(memory.data())};
+    const OrderSizes& s = graph.sizes;
+    std::byte* next = memory.data() + sizeof s;
+    take(next, graph.offset, s.vertices + 1);
+    take(next, graph.first, s.vertices + 1);
+    take(next, graph.neighbours, s.neighbours);
+    take(next, graph.order, s.equations);
+    take(next, graph.subtree, s.equations);
+    return graph;
   }
 };
 

@@ -18,11 +18,20 @@
 #include "lacon/assembly/parts/cells.hpp"
 #include "lacon/assembly/processes/shared_memory.hpp"
 #include "lacon/assembly/tree/exchange.hpp"
+#include "lacon/assembly/tree/ordering_ahead.hpp"
 #include "lacon/catalog/messages.hpp"
 
 namespace {
 
 using lacon::SharedMemory, lacon::PieceSizes, lacon::Mumps;
+
+std::string said_of(const std::vector<double>& numbers) {
+  std::ostringstream line;
+  line.precision(17);
+  line << "done";
+  for (const double number : numbers) line << ' ' << number;
+  return line.str();
+}
 
 template <class Real>
 class Piece {
@@ -87,13 +96,7 @@ class Piece {
     Real* const first = reinterpret_cast<Real*>(memory.data());
     return {{first, count * size}, {first + count * size, count * border}};
   }
-  static std::string said(auto... numbers) {
-    std::ostringstream line;
-    line.precision(17);
-    line << "done";
-    ((line << ' ' << numbers), ...);
-    return line.str();
-  }
+  static std::string said(auto... numbers) { return said_of({static_cast<double>(numbers)...}); }
 
   SharedMemory pattern_;
   PieceSizes sizes_;
@@ -115,6 +118,10 @@ class Pieces {
       said >> path;
       SharedMemory::open(path);
       return "done";
+    }
+    if (verb == "order") {
+      said >> path;
+      return said_of(lacon::order_in(SharedMemory::open(path)));
     }
     said >> precision >> number >> path;
     SharedMemory memory = SharedMemory::open(path);

@@ -55,6 +55,16 @@ std::string MumpsProcesses::answer_of(int process) {
   fail("SOLVER_8", {{"reason", end_}});
 }
 
+std::string MumpsProcesses::answer_of_first() {
+  if (processes_.empty()) return {};
+  std::string answer = processes_.front()->answer();
+  if (answer.empty()) {
+    end_ = processes_.front()->end();
+    processes_.clear();
+  }
+  return answer;
+}
+
 std::string MumpsProcesses::ask(const std::string& line) {
   if (processes_.empty()) fail("SOLVER_8", {{"reason", end_.empty() ? part("cannot_be_started") : end_}});
   for (const auto& process : processes_) process->say(line);
@@ -66,15 +76,20 @@ std::string MumpsProcesses::ask(const std::string& line) {
 
 std::vector<std::vector<double>> MumpsProcesses::ask(const Question& question, std::span<const int> process,
                                                      const std::function<std::string(std::size_t)>& rest,
-                                                     const std::function<void()>& meanwhile) {
+                                                     const std::function<void()>& meanwhile,
+                                                     const std::function<void(std::size_t)>& answered) {
   if (processes_.empty()) fail("SOLVER_8", {{"reason", end_.empty() ? part("cannot_be_started") : end_}});
   for (std::size_t p = 0; p < process.size(); ++p) processes_[process[p]]->say(question.verb + rest(p));
   std::exception_ptr thrown;
-  try {
-    if (meanwhile) meanwhile();
-  } catch (...) {
-    thrown = std::current_exception();  // answers are on their way
-  }
+  const auto call = [&](const auto& function, auto... arguments) {
+    if (!function || thrown) return;
+    try {
+      function(arguments...);
+    } catch (...) {
+      thrown = std::current_exception();  // answers are on their way
+    }
+  };
+  call(meanwhile);
   std::vector<std::vector<double>> found(process.size());
   bool has_memory = true;
   std::string failure;
@@ -89,6 +104,7 @@ std::vector<std::vector<double>> MumpsProcesses::ask(const Question& question, s
       has_memory = false;
     else
       failure = answer;
+    if (has_memory && failure.empty()) call(answered, p);
   }
   if (!failure.empty()) throw std::runtime_error("lacon_mumps: " + failure);
   if (!has_memory) fail("SOLVER_2", {{"phase", question.phase}, {"equations", std::to_string(question.equations)}});

@@ -23,6 +23,11 @@ class MumpsProcesses : public PartProcesses {
   void start() override;
   void forget() noexcept;
   std::string ask(const std::string& line) override;
+  /// Tell the first one something. @return whether it was there to hear it; its answer comes by answer_of_first(), before
+  /// anything else is asked
+  bool tell_first(const std::string& line) { return !processes_.empty() && processes_.front()->say(line); }
+  /// Empty where it has ended: all have to be started again then.
+  std::string answer_of_first();
   void keep() override { keeps_ = true; }
   struct Question {
     const char* verb;
@@ -30,11 +35,13 @@ class MumpsProcesses : public PartProcesses {
     std::size_t equations;  ///< likewise
   };
   /// Ask about each piece, all before the first answer is waited for. @param process of each  @param rest of the line about it
-  /// @param meanwhile what is done before answers are waited for; what it throws comes behind them
+  /// @param meanwhile what is done before answers are waited for  @param answered what is done with each piece once it and
+  /// those before it are answered without complaint; what either throws comes behind all answers
   /// @return the numbers of each answer  Throws SOLVER_2, SOLVER_8, std::runtime_error.
   std::vector<std::vector<double>> ask(const Question& question, std::span<const int> process,
                                        const std::function<std::string(std::size_t piece)>& rest,
-                                       const std::function<void()>& meanwhile = {});
+                                       const std::function<void()>& meanwhile = {},
+                                       const std::function<void(std::size_t piece)>& answered = {});
 
  private:
   /// What a process has answered. Throws SOLVER_8 where it has ended.

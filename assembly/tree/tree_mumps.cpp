@@ -57,12 +57,13 @@ TreeMumps<Real>::~TreeMumps() {
 template <class Real>
 std::vector<std::vector<double>> TreeMumps<Real>::ask(const char* verb, const char* phase, std::span<const SharedMemory> memory,
                                                       const std::function<void()>& meanwhile,
-                                                      std::span<const SharedMemory> more) {
+                                                      std::span<const SharedMemory> more,
+                                                      const std::function<void(std::size_t)>& answered) {
   const auto rest = [&](std::size_t piece) {
     return (std::is_same_v<Real, float> ? " float " : " double ") + std::to_string(piece) + ' ' + memory[piece].path() +
            (more.empty() ? "" : ' ' + more[piece].path());
   };
-  return processes_.ask({verb, phase, local_.size()}, subtrees_.process, rest, meanwhile);
+  return processes_.ask({verb, phase, local_.size()}, subtrees_.process, rest, meanwhile, answered);
 }
 
 template <class Real>
@@ -95,7 +96,7 @@ void TreeMumps<Real>::number(const MumpsPattern& pattern) {
       if (subtrees_.of[i] < 0) pieces_[piece].border.push_back(local_[i]);
   });
   for (Piece& piece : pieces_) {
-    std::sort(piece.border.begin(), piece.border.end());
+    std::ranges::sort(piece.border);
     piece.border.erase(std::unique(piece.border.begin(), piece.border.end()), piece.border.end());
   }
 }
@@ -209,7 +210,7 @@ void TreeMumps<Real>::add_to_top(const Piece& piece, std::span<const Real> schur
 
 template <class Real>
 void TreeMumps<Real>::analyse_top() {
-  if (top_factor_ || top_.empty() || has_full_top()) return;
+  if (top_factor_ || top_.empty()) return;
   number_top();
   top_pattern_.place = ranks(top_, pattern_.place);
   auto factor = std::make_unique<Mumps<Real>>(settings_);
@@ -299,7 +300,10 @@ std::vector<std::vector<double>> TreeMumps<Real>::factorise_pieces(const Fill& f
     values.pieces.emplace_back(sizeof(Real) *
                                (static_cast<std::size_t>(piece.n_entries) + piece.border.size() * piece.border.size()));
   fill(values);
-  return ask("factorise", "factorisation", values.pieces, [&] { analyse_top(); });
+  if (!has_full_top()) return ask("factorise", "factorisation", values.pieces, [&] { analyse_top(); });
+  return ask(
+      "factorise", "factorisation", values.pieces, [&] { make_full_top(values); }, {},
+      [&](std::size_t p) { full_top_->add(pieces_[p].border, schur_of(p, values)); });
 }
 
 template <class Real>
@@ -335,14 +339,16 @@ Factorisation TreeMumps<Real>::factorise_top(Values& values) {
 }
 
 template <class Real>
-Factorisation TreeMumps<Real>::factorise_full_top(Values& values) {
+void TreeMumps<Real>::make_full_top(const Values& values) {
   full_top_ = std::make_unique<DenseFactor<Real>>(ranks(top_, pattern_.place));
   std::size_t k = 0;
   for_each_entry([&](std::size_t, std::int32_t row, std::int32_t column) {
     if (subtree_of(row, column) < 0) full_top_->entry(local_[row], local_[column]) = values.top[k++];
   });
-  for (std::size_t p = 0; p < pieces_.size(); ++p) full_top_->add(pieces_[p].border, schur_of(p, values));
-  values = {};
+}
+
+template <class Real>
+Factorisation TreeMumps<Real>::factorise_full_top() {
   Factorisation found{.flops = full_top_->flops(), .entries = full_top_->n_entries(), .whole_entries = full_top_->n_entries()};
   if (!full_top_->eliminate(-settings_.singular_pivot)) found.null_pivots.push_back(Factorisation::unknown);
   found.negative_pivots = full_top_->negative_pivots();
@@ -371,7 +377,8 @@ Factorisation TreeMumps<Real>::factorise_filled(const Fill& fill) try {
     whole.null_pivots.insert(whole.null_pivots.end(), numbers.size() - of_a_piece, 0);
   }
   if (top_.empty() || !whole.null_pivots.empty()) return whole;
-  const Factorisation top = has_full_top() ? factorise_full_top(values) : factorise_top(values);
+  if (has_full_top()) values = {};
+  const Factorisation top = has_full_top() ? factorise_full_top() : factorise_top(values);
   whole.flops += top.flops;
   whole.entries += top.entries;
   whole.whole_entries += top.whole_entries;

@@ -56,7 +56,8 @@ class TreeMumps : public MumpsFactor<Real> {
     std::vector<Real> top;
   };
   std::vector<std::vector<double>> ask(const char* verb, const char* phase, std::span<const SharedMemory> memory,
-                                       const std::function<void()>& meanwhile = {}, std::span<const SharedMemory> more = {});
+                                       const std::function<void()>& meanwhile = {}, std::span<const SharedMemory> more = {},
+                                       const std::function<void(std::size_t piece)>& answered = {});
   void number(const MumpsPattern& pattern);
   /// What the processes are told of each piece.
   void make_patterns();
@@ -77,11 +78,13 @@ class TreeMumps : public MumpsFactor<Real> {
     for (const Piece& piece : pieces_) entries += piece.border.size() * piece.border.size();
     return settings_.symmetric && settings_.as_ordered && top_.size() <= most && entries >= top_.size() * top_.size();
   }
-  /// Numbered and analysed, if it has not been yet and has to be.
+  /// Numbered and analysed, if it has not been yet.
   void analyse_top();
   /// Of what is left of the matrix there.
   Factorisation factorise_top(Values& values);
-  Factorisation factorise_full_top(Values& values);
+  /// With the matrix's own entries.
+  void make_full_top(const Values& values);
+  Factorisation factorise_full_top();
   /// The Schur complement of a piece, by rows, the lower triangle alone where symmetric.
   std::span<const Real> schur_of(std::size_t piece, const Values& values) const {
     const std::size_t n = pieces_[piece].border.size(), first = values.pieces[piece].size() / sizeof(Real) - n * n;
@@ -97,7 +100,7 @@ class TreeMumps : public MumpsFactor<Real> {
   void fill_in_order(std::span<const Real> entries, Values& values) const;
   /// From what the processes have, and from what is here.
   void fill_from_all(const SparseMatrix& here, std::span<const double> scale, Values& values);
-  /// Factorise pieces, and see that the top has its analysis, which takes the time of the largest of them anyway.
+  /// Factorise pieces, and add those that are done to a full top; another one gets its analysis meanwhile.
   /// @param[out] values with the Schur complement of each  @return what was answered of each
   std::vector<std::vector<double>> factorise_pieces(const Fill& fill, Values& values);
   /// Equations whose pivots pieces cannot take. @return whether there are any

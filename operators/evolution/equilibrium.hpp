@@ -139,6 +139,7 @@ class Equilibrium {
   std::string names(std::span<const std::int64_t> equations) const;
 
   const System& system() const { return system_; }
+  void on_new_graph(std::function<void(const VertexGraph&)> use) { system_.on_new_graph(std::move(use)); }
   const ContactState* contact() const { return contact_ ? &*contact_ : nullptr; }
   /// Let a state have what the points hold at the last assembly.
   void hold_points(StaticState& state) const;

@@ -45,6 +45,7 @@ Newton::Newton(const StaticProblem& problem, const NewtonOptions& options, std::
       prediction_(problem.imposed),
       solver_(std::move(engine)) {
   equilibrium_.measure_by(options.reference_forces);
+  equilibrium_.on_new_graph([this](const VertexGraph& graph) { solver_.expect(graph); });
   if (!problem.contact) return;
   options_.criteria.resi_geom = problem.contact->resi_geom;
   options_.criteria.constraint = gap_share * problem.contact->resi_geom;

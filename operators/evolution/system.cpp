@@ -15,7 +15,9 @@ std::int64_t System::equation(std::int64_t unknown) const {
 }
 
 void System::make_pattern() {
-  matrix_ = std::make_unique<SparseMatrix>(numbering_, elements_, couplings_, symmetry_);
+  Ragged<std::int32_t> graph = vertex_graph(numbering_.n_vertices(), elements_, couplings_);
+  if (on_new_graph_ && !elsewhere_) on_new_graph_({graph, numbering_});
+  matrix_ = std::make_unique<SparseMatrix>(std::move(graph), numbering_, symmetry_);
   matrix_->add_elsewhere(elsewhere_);
 }
 

@@ -1,9 +1,11 @@
 #pragma once
 // The tangent system of one Newton iteration: matrix, residual, and what imposed displacements bring to the right side.
 #include <cstdint>
+#include <functional>
 #include <map>
 #include <memory>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "lacon/assembly/sparse_matrix.hpp"
@@ -26,6 +28,9 @@ class System {
   }
   std::int64_t equation(std::int64_t unknown) const;
 
+  /// @param use what is done with the graph of a matrix that has a new pattern, before there is one; not where other processes
+  /// have entries of it
+  void on_new_graph(std::function<void(const VertexGraph&)> use) { on_new_graph_ = std::move(use); }
   /// Empty the matrix and the residual, and make room for these couplings.
   /// @param keep_stiffness what was added before stiffness_is_complete() stays in the matrix, and what was added behind it is
   /// gone: add() takes residuals alone of what belongs to the stiffness
@@ -72,6 +77,7 @@ class System {
   const Ragged<std::int32_t>& elements_;
   Symmetry symmetry_;
   const RowsElsewhere* elsewhere_;
+  std::function<void(const VertexGraph&)> on_new_graph_;
   std::vector<Coupling> couplings_;
   std::unique_ptr<SparseMatrix> matrix_;
   std::vector<double> residual_;

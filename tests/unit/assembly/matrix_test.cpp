@@ -7,6 +7,7 @@
 #include "dense.hpp"
 #include "lacon/assembly/dependent_rows.hpp"
 #include "lacon/assembly/ordering.hpp"
+#include "lattice.hpp"
 
 namespace lacon {
 namespace {
@@ -101,6 +102,57 @@ TEST(SparseMatrix, MultipliesBySymmetry) {
   matrix.multiply({x.data(), static_cast<std::size_t>(x.size())}, {y.data(), static_cast<std::size_t>(y.size())});
   EXPECT_LE((y - dense(matrix) * x).cwiseAbs().maxCoeff(), 1e-14);
   EXPECT_NEAR(matrix.norm(), dense(matrix).cwiseAbs().rowwise().sum().maxCoeff(), 1e-14);
+}
+
+// What is gathered in parts of a large matrix is what its entries give one by one, and has the same bits for any number of
+// threads.
+TEST(SparseMatrix, IsTheSameInParts) {
+  const test::Lattice lattice(36, 1e3);  // 45 360 equations
+  const SparseMatrix& matrix = lattice.matrix;
+  const auto n = static_cast<std::size_t>(matrix.size());
+  std::mt19937 random(6);
+  const std::vector<double> x = test::random_values(2 * n, random);
+  std::vector<double> product(n, 0.0), magnitudes(n, 0.0), sums(n, 0.0), first(n), second(n);
+  for (std::size_t i = 0; i < n; ++i) first[i] = x[2 * i], second[i] = x[2 * i + 1];
+  const auto add = [&](std::size_t i, std::size_t j, double value) {
+    product[i] += value * first[j];
+    magnitudes[i] += std::abs(value) * std::abs(second[j]);
+    sums[i] += std::abs(value);
+  };
+  for (std::size_t i = 0; i < n; ++i)
+    for (std::int64_t k = matrix.rows()[i]; k < matrix.rows()[i + 1]; ++k) {
+      const auto j = static_cast<std::size_t>(matrix.columns()[k]);
+      add(i, j, matrix.values()[k]);
+      if (i != j) add(j, i, matrix.values()[k]);
+    }
+  struct Found {
+    std::vector<double> product, magnitudes, together, scale;
+    double norm;
+    bool operator==(const Found&) const = default;
+  };
+  const auto find = [&](const char* threads) {
+    setenv("LACON_THREADS", threads, 1);
+    Found found{std::vector<double>(n), std::vector<double>(n), std::vector<double>(2 * n), matrix.equilibration(), matrix.norm()};
+    matrix.multiply(first, found.product);
+    matrix.multiply_magnitudes(second, found.magnitudes);
+    matrix.multiply_together(x, found.together, 2);
+    return found;
+  };
+  const Found found = find("1");
+  EXPECT_TRUE(found == find("2"));
+  EXPECT_TRUE(found == find("5"));
+  unsetenv("LACON_THREADS");
+  const std::vector<SparseMatrix::RowSize> sizes = matrix.row_sizes(matrix.size());
+  constexpr double round_off = 1e-15;  // of the sum of magnitudes of a row, 7 entries
+  for (std::size_t i = 0; i < n; ++i) {
+    ASSERT_NEAR(found.product[i], product[i], 7 * round_off * sums[i]);
+    ASSERT_NEAR(found.magnitudes[i], magnitudes[i], 7 * round_off * sums[i]);
+    ASSERT_EQ(found.together[2 * i], found.product[i]);
+    ASSERT_EQ(found.together[2 * i + 1], found.magnitudes[i]);
+    ASSERT_NEAR(sizes[i].sum, sums[i], 7 * round_off * sums[i]);
+    ASSERT_LE(sizes[i].entries, 7);
+  }
+  EXPECT_NEAR(found.norm, *std::ranges::max_element(sums), 7 * round_off * found.norm);
 }
 
 // A pattern knows what fits into it: the analysis may stand exactly then.

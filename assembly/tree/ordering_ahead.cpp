@@ -1,0 +1,84 @@
+#include "lacon/assembly/tree/ordering_ahead.hpp"
+
+#include <algorithm>
+#include <exception>
+#include <sstream>
+#include <string>
+
+#include "lacon/assembly/ordering.hpp"
+#include "lacon/assembly/tree/exchange.hpp"
+
+namespace lacon {
+namespace {
+
+SharedOrder shared_order(const VertexGraph& graph, int n_processes, OrderIn where) {
+  SharedOrder found{.order = elimination_order(graph, where), .subtrees = {}};
+  found.subtrees = independent_subtrees(graph, found.order, n_processes);
+  return found;
+}
+
+}  // namespace
+
+std::vector<double> order_in(const SharedMemory& memory) {
+  const OrderMemory asked = OrderMemory::in(memory);
+  Ragged<std::int32_t> neighbours;
+  neighbours.offset.assign(asked.offset.begin(), asked.offset.end());
+  neighbours.values.assign(asked.neighbours.begin(), asked.neighbours.end());
+  Numbering numbering{.n_nodes = asked.sizes.nodes, .n_components = 0, .first = {}, .equation = {}};
+  numbering.first.assign(asked.first.begin(), asked.first.end());
+  const SharedOrder found = shared_order({neighbours, numbering}, asked.sizes.processes, OrderIn::two_processes);
+  std::ranges::copy(found.order, asked.order.begin());
+  std::ranges::copy(found.subtrees.of, asked.subtree.begin());
+  std::vector<double> answer = {found.subtrees.whole.flops, found.subtrees.whole.entries, found.subtrees.longest};
+  answer.insert(answer.end(), found.subtrees.process.begin(), found.subtrees.process.end());
+  return answer;
+}
+
+void OrderingAhead::begin(const VertexGraph& graph, MumpsProcesses& processes) noexcept try {
+  if (memory_) return;
+  processes.start();
+  const OrderSizes sizes{.vertices = graph.numbering.n_vertices(),
+                         .nodes = graph.numbering.n_nodes,
+                         .neighbours = std::ssize(graph.neighbours.values),
+                         .equations = graph.numbering.n_equations(),
+                         .processes = processes.size()};
+  SharedMemory memory(OrderMemory::bytes(sizes));
+  std::copy_n(&sizes, 1, reinterpret_cast<OrderSizes*>(memory.data()));
+  const OrderMemory asked = OrderMemory::in(memory);
+  std::ranges::copy(graph.neighbours.offset, asked.offset.begin());
+  std::ranges::copy(graph.numbering.first, asked.first.begin());
+  std::ranges::copy(graph.neighbours.values, asked.neighbours.begin());
+  if (processes.tell_first("order " + memory.path())) memory_.emplace(std::move(memory));
+} catch (const std::exception&) {  // take() does without them
+}
+
+SharedOrder OrderingAhead::take(const VertexGraph& graph, MumpsProcesses& processes) {
+  std::optional<SharedOrder> found = end(graph, processes);
+  if (!found) {
+    begin(graph, processes);
+    found = end(graph, processes);
+  }
+  return found ? std::move(*found) : shared_order(graph, processes.size(), OrderIn::this_process);
+}
+
+std::optional<SharedOrder> OrderingAhead::end(const VertexGraph& graph, MumpsProcesses& processes) {
+  if (!memory_) return std::nullopt;
+  const SharedMemory memory = std::move(*memory_);
+  memory_.reset();
+  std::istringstream said(processes.answer_of_first());
+  std::string word;
+  said >> word;
+  const OrderMemory asked = OrderMemory::in(memory);
+  const bool is_the_same = std::ranges::equal(asked.offset, graph.neighbours.offset) &&
+                           std::ranges::equal(asked.first, graph.numbering.first) &&
+                           std::ranges::equal(asked.neighbours, graph.neighbours.values);
+  if (word != "done" || !is_the_same) return std::nullopt;
+  SharedOrder found;
+  found.order.assign(asked.order.begin(), asked.order.end());
+  found.subtrees.of.assign(asked.subtree.begin(), asked.subtree.end());
+  said >> found.subtrees.whole.flops >> found.subtrees.whole.entries >> found.subtrees.longest;
+  for (int process; said >> process;) found.subtrees.process.push_back(process);
+  return found;
+}
+
+}  // namespace lacon

@@ -1,0 +1,37 @@
+#pragma once
+// The order of elimination, found by a process that is to share the factor while the operator still evaluates the matrix: it
+// takes METIS as long as all else that comes before a factorisation, and needs the pattern alone.
+#include <optional>
+#include <vector>
+
+#include "lacon/assembly/processes/shared_memory.hpp"
+#include "lacon/assembly/sparse_matrix.hpp"
+#include "lacon/assembly/tree/mumps_processes.hpp"
+#include "lacon/assembly/tree/subtrees.hpp"
+
+namespace lacon {
+
+/// An order of elimination (elimination_order()) and its independent_subtrees().
+struct SharedOrder {
+  std::vector<std::int32_t> order;
+  Subtrees subtrees;
+};
+
+/// @param memory OrderMemory of a graph, which gets its order  @return the numbers of the answer (exchange.hpp)
+std::vector<double> order_in(const SharedMemory& memory);
+
+class OrderingAhead {
+ public:
+  /// Where none is being found yet. The processes are started, and are asked nothing else before take(), which does and tells
+  /// what they cannot.
+  void begin(const VertexGraph& graph, MumpsProcesses& processes) noexcept;
+  /// What was begun, if it is of this graph; else it is begun now, and found here where no process can do it.
+  SharedOrder take(const VertexGraph& graph, MumpsProcesses& processes);
+
+ private:
+  /// Nothing where none was begun, where it is that of another graph, or where its process has ended.
+  std::optional<SharedOrder> end(const VertexGraph& graph, MumpsProcesses& processes);
+  std::optional<SharedMemory> memory_;  ///< OrderMemory, while a process works on it
+};
+
+}  // namespace lacon
