@@ -25,20 +25,17 @@ bool Newton::keep_covers_that_sway(double instant, const StaticState& state, boo
   if (!contact() || problem_.contact->frozen_gap) return false;
   if (equilibrium_.go_on_where_flush()) {
     choice_.start_again();
-  } else {
-    if (course_.period() && ++times_round_ < 2 && !last) return false;
-    bool any = false;
-    for (std::size_t p = 0; p < contact()->n_patches(); ++p) {
-      const bool moves = !contact()->keeps_cover(p) && contact()->is_covered_in_part(p);
-      if (state.patches.status[p] != Status::active || !moves) continue;
-      keep_cover(instant, p);
-      any = true;
-    }
-    if (!any) return false;
+    return true;
   }
-  course_.start();
-  statuses_.start_instant();
-  return true;
+  if (course_.period() && ++times_round_ < 2 && !last) return false;
+  bool any = false;
+  for (std::size_t p = 0; p < contact()->n_patches(); ++p) {
+    const bool moves = !contact()->keeps_cover(p) && contact()->is_covered_in_part(p);
+    if (state.patches.status[p] != Status::active || !moves) continue;
+    keep_cover(instant, p);
+    any = true;
+  }
+  return any;
 }
 
 void Newton::keep_cover(double instant, std::size_t patch) {

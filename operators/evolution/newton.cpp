@@ -288,6 +288,11 @@ int Newton::iterate(double instant, StaticState& state, const std::function<void
     const bool other_forces = (course_.period() || goes_nowhere || (course_.stands() && settled_ > drifting) ||
                                std::min(course_.growths(), settled_) >= drifting) &&
                               keep_covers_that_sway(instant, state, ends);
+    if (std::exchange(other_covers_, false) || other_forces || line.pairs_anew) last = with_own_iterations(iteration);
+    if (other_forces && iteration < last && std::isfinite(line.maxi)) {  // a failure has to tell their course
+      course_.start();
+      statuses_.start_instant();
+    }
     const int done = iteration + 1;
     if (elsewhere_ &&
         Prediction::leads_astray(done, line.longest, forces_before, there.in_equilibrium() ? HUGE_VAL : there.longest))
@@ -302,13 +307,13 @@ int Newton::iterate(double instant, StaticState& state, const std::function<void
                                                .in_flow = equilibrium_.flows(previous),
                                                .statuses_change = line.status_changes > 0,
                                                .curved = equilibrium_.curves(state)});
-    if (statuses_.keeps() && line.status_changes > 0 && line.in_equilibrium()) {
+    // with other forces these statuses have another equilibrium
+    if (!other_forces && statuses_.keeps() && line.status_changes > 0 && line.in_equilibrium()) {
       state.patches.status = statuses_.change(state.patches.status, wanted);
       other_matrix = true;
       fail_if_endless(instant);
       last = with_own_iterations(iteration);
     }
-    if (std::exchange(other_covers_, false) || other_forces || line.pairs_anew) last = with_own_iterations(iteration);
     if (line.pairs_anew) choice_.forget_residual();
     if (other_matrix || other_forces || line.pairs_anew) assemble(state, previous, options_.matrix);
     if (!std::isfinite(line.maxi)) break;
