@@ -6,6 +6,7 @@
 #include "lacon/catalog/messages.hpp"
 #include "lacon/catalog/wording.hpp"
 #include "lacon/operators/meshing/quality.hpp"
+#include "lacon/pairing/pairing.hpp"
 #include "lacon/structures/vector.hpp"
 
 namespace lacon {
@@ -38,7 +39,7 @@ double extent_of(const Mesh& mesh, std::span<const std::int32_t> cells) {
   return norm(greatest - least);
 }
 
-constexpr double none = 1e-12;  // PairingTolerances::degenerate
+constexpr double none = PairingTolerances().degenerate;  // what pairing would leave out is refused
 
 /// @param extent of the skin
 bool is_degenerate(const Mesh& mesh, std::span<const std::int32_t> vertices, double extent) {
