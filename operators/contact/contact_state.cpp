@@ -317,9 +317,7 @@ std::int64_t ContactState::n_constraints(const Patchwise& patches) const {
 HeldOverlap ContactState::held_overlap() const {
   HeldOverlap overlap;
   for (std::size_t p = 0; p < n_patches(); ++p) {
-    if (!locked_[p] || held_open_[p] || geometry_.coverage(p) < least_coverage ||
-        geometry_.gap(p) >= -tolerances_.held_overlap * size_[p])
-      continue;
+    if (!locked_[p] || held_open_[p] || !is_covered(p) || geometry_.gap(p) >= -tolerances_.held_overlap * size_[p]) continue;
     ++overlap.count;
     if (geometry_.gap(p) < overlap.gap) overlap.deepest = p, overlap.gap = geometry_.gap(p);
   }
@@ -344,7 +342,7 @@ std::optional<FacetOverlap> ContactState::facet_overlap(std::int32_t number) con
   std::optional<FacetOverlap> worst;
   for (std::size_t p = 0; p < n_patches(); ++p) {
     const double depth = -geometry_.gap(p) / size_[p];
-    if (geometry_.zone_of(p) != number || geometry_.coverage(p) < least_coverage || depth < tolerances_.facet_overlap) continue;
+    if (geometry_.zone_of(p) != number || !is_covered(p) || depth < tolerances_.facet_overlap) continue;
     if (-geometry_.gap(p) > tolerances_.facets * explained[p]) return std::nullopt;
     if (!worst || depth > worst->depth) worst = FacetOverlap{p, depth};
   }

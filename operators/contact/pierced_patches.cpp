@@ -25,7 +25,7 @@ std::optional<PiercedPatch> ContactState::deepest(std::int32_t zone,
                                                   const std::function<double(std::size_t patch)>& limit) const {
   std::optional<PiercedPatch> worst;
   for (std::size_t p = 0; p < n_patches(); ++p) {
-    if (geometry_.zone_of(p) != zone || locked_[p] || held_open_[p] || geometry_.coverage(p) < least_coverage) continue;
+    if (geometry_.zone_of(p) != zone || locked_[p] || held_open_[p] || !is_covered(p)) continue;
     const double depth = -geometry_.smallest_gap(p) / size_[p];
     if (depth < limit(p)) continue;
     if (!worst || depth > worst->depth) worst = PiercedPatch{p, depth, geometry_.gap(p)};
@@ -72,7 +72,7 @@ std::optional<UncheckedOverlap> ContactState::unchecked_overlap(std::int32_t zon
   if (contact_.zones[zone].resolution != "NON") return std::nullopt;
   std::optional<UncheckedOverlap> worst;
   for (std::size_t p = 0; p < n_patches(); ++p) {
-    if (geometry_.zone_of(p) != zone || geometry_.coverage(p) < least_coverage) continue;
+    if (geometry_.zone_of(p) != zone || !is_covered(p)) continue;
     const double depth = -geometry_.smallest_gap(p);
     if (depth > std::max(contact_.zones[zone].overlap_tolerance, tolerances_.touching * size_[p]) &&
         (!worst || depth > worst->depth))
