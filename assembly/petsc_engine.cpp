@@ -22,6 +22,9 @@ namespace {
 
 /// What resists a motion less, of what resists most, iterations cannot tell from nothing.
 constexpr double hardly_resisted = 1e-6;
+/// Of the matrices that are spared a try behind each that was in vain: 1, 2, 4 and so on, for what makes iterations slow (a
+/// material, thin bodies) mostly stays.
+constexpr int most_doublings = 10;
 
 std::string program_beside_this() { return executable().parent_path() / "lacon_petsc"; }
 
@@ -34,7 +37,8 @@ std::string words_of(const std::string& reason, int iterations, const std::strin
                                                         {"DIVERGED_INDEFINITE_PC", "preconditioner_not_positive"},
                                                         {"DIVERGED_NANORINF", "residual_no_number"},
                                                         {"DIVERGED_PC_FAILED", "preconditioner_cannot_be_made"},
-                                                        {"STALLED", "residual_does_not_fall"}};
+                                                        {"STALLED", "residual_does_not_fall"},
+                                                        {"SLOW", "iterations_would_be_spent"}};
   const auto name = names.find(reason);
   return part("after_iterations", {{"reason", name == names.end() ? reason : part(name->second)},
                                    {"iterations", std::to_string(iterations)},
@@ -53,6 +57,8 @@ struct PetscEngine::State {
   const SparseMatrix* matrix = nullptr;
   std::unique_ptr<MumpsEngine> direct;  ///< where this matrix has a factor
   std::optional<SparseMatrix> whole;    ///< the same, where other processes have most of it
+  int in_vain = 0;                      ///< matrices in a row that were iterated on in vain
+  int spared = 0;                       ///< matrices to come that are factorised without a try
 
   explicit State(const PetscOptions& given) : options(given) {
     std::string& program = options.program;
@@ -168,6 +174,10 @@ Factorisation PetscEngine::factorise(const SparseMatrix& matrix) {
   s.matrix = &matrix;
   s.forget_factor();
   if (!s.loose->of(matrix, hardly_resisted).empty()) return s.factorise_directly(part("free_rigid_motion"));
+  if (s.spared > 0) {
+    --s.spared;
+    return s.factorise_directly({});
+  }
   s.processes->ask("forget");
   std::optional<SharedMemory> memory(s.system());
   std::string said = s.processes->ask("set up " + memory->path());
@@ -186,13 +196,17 @@ Solution PetscEngine::solve_to(double share, std::span<double> right_side) {
   if (s.direct) return s.direct->solve(right_side);
   Solution solution;
   const std::string why = s.iterate(std::max(share, s.options.tolerance), right_side, solution);
-  if (why.empty()) return solution;
+  if (why.empty()) {
+    s.in_vain = 0;
+    return solution;
+  }
   const Factorisation again = s.factorise_directly(why);
+  s.spared = 1 << std::min(s.in_vain++, most_doublings);
   Solution second;
   if (again.null_pivots.empty()) second = s.direct->solve(right_side);
   second.iterations += solution.iterations;
   if (!second.again) second.again = again;
-  second.again->stalled = why;
+  second.again->stalled = part("and_next_matrices", {{"reason", why}, {"count", std::to_string(s.spared)}});
   return second;
 }
 

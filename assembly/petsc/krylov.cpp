@@ -8,11 +8,12 @@
 #include "lacon/assembly/petsc/aij_matrix.hpp"
 #include "lacon/assembly/petsc/block_matrix.hpp"
 #include "lacon/assembly/petsc/near_null_space.hpp"
+#include "lacon/assembly/petsc/pace.hpp"
 
 namespace lacon {
 namespace {
 
-constexpr int restart = 60;
+constexpr int restart = Pace::window;
 /// Solutions of the residual that is left, where what the iterations follow is not the residual itself.
 constexpr int most_rounds = 4;
 
@@ -36,6 +37,28 @@ std::vector<double> whole_diagonal(const BlockSystem& system, const OwnEntries& 
 OwnedMat make_matrix(const Rows& rows, std::int64_t own_columns) {
   return aij_matrix(PETSC_COMM_WORLD, {rows.offset, rows.column, rows.value}, static_cast<PetscInt>(own_columns));
 }
+
+/// When iterations end: as PETSc has it, or as soon as they will not do.
+struct Ending {
+  Pace pace;
+  bool is_given_up = false;
+  void* standard = nullptr;
+
+  Ending(int most, double goal) : pace(most, goal) { checked(KSPConvergedDefaultCreate(&standard)); }
+  ~Ending() { KSPConvergedDefaultDestroy(standard); }
+  Ending(const Ending&) = delete;
+  Ending& operator=(const Ending&) = delete;
+
+  static PetscErrorCode test(KSP ksp, PetscInt iteration, PetscReal residual, KSPConvergedReason* reason, void* own) {
+    auto& ending = *static_cast<Ending*>(own);
+    const PetscErrorCode error = KSPConvergedDefault(ksp, iteration, residual, reason, ending.standard);
+    if (!error && *reason == KSP_CONVERGED_ITERATING && ending.pace.is_too_slow(residual)) {
+      ending.is_given_up = true;
+      *reason = KSP_DIVERGED_ITS;
+    }
+    return error;
+  }
+};
 
 /// How PETSc spells a name of SOLVEUR; whether its preconditioner has to be symmetric and positive.
 struct Algorithm {
@@ -221,6 +244,8 @@ KrylovResult Krylov::iterate(double share) {
     int most = options_.iterations - result.iterations;
     if (multigrid_.is_kept()) most = std::min(most, multigrid_.most_iterations(std::log10(left / (share * size))));
     checked(KSPSetTolerances(ksp_, share * size / left, PETSC_DEFAULT, PETSC_DEFAULT, std::max(1, most)));
+    Ending ending(most, share * size / left);
+    checked(KSPSetConvergenceTest(ksp_, Ending::test, &ending, nullptr));
     checked(KSPSolve(ksp_, residual_, step));
     KSPConvergedReason reason = KSP_CONVERGED_ITERATING;
     PetscInt iterations = 0;
@@ -231,7 +256,7 @@ KrylovResult Krylov::iterate(double share) {
     checked(MatMult(matrix, solution_, residual_));
     checked(VecAYPX(residual_, -1, side_));
     checked(VecNorm(residual_, NORM_2, &left));
-    result.failure = reason < 0 ? KSPConvergedReasons[reason] : "";
+    result.failure = ending.is_given_up ? "SLOW" : reason < 0 ? KSPConvergedReasons[reason] : "";
     if (reason < 0 || !std::isfinite(left)) break;
     multigrid_.note(static_cast<int>(iterations), std::log10(before / left));
   }

@@ -20,7 +20,7 @@ struct KrylovOptions {
 struct KrylovResult {
   int iterations = 0;
   double residual = 0;  ///< against the right side
-  std::string failure;  ///< why there is no solution, as PETSc names it, or STALLED; empty where there is
+  std::string failure;  ///< why there is no solution, as PETSc names it, STALLED or SLOW; empty where there is
 };
 
 class Krylov {

@@ -132,7 +132,8 @@ TEST(SparseMatrix, IsTheSameInParts) {
   };
   const auto find = [&](const char* threads) {
     setenv("LACON_THREADS", threads, 1);
-    Found found{std::vector<double>(n), std::vector<double>(n), std::vector<double>(2 * n), matrix.equilibration(), matrix.norm()};
+    Found found{std::vector<double>(n), std::vector<double>(n), std::vector<double>(2 * n), matrix.equilibration(),
+                matrix.norm()};
     matrix.multiply(first, found.product);
     matrix.multiply_magnitudes(second, found.magnitudes);
     matrix.multiply_together(x, found.together, 2);
