@@ -377,7 +377,9 @@ std::shared_ptr<PartProcesses> MumpsEngine::processes(std::int64_t n_equations) 
 }
 
 void MumpsEngine::expect(const VertexGraph& graph) {
-  if (state_->may_share(graph.numbering.n_equations())) state_->ahead.begin(graph, *state_->processes);
+  State& s = *state_;
+  if (s.full || s.single) return;  // whose processes have to hear that they may forget it, first
+  if (s.may_share(graph.numbering.n_equations())) s.ahead.begin(graph, *s.processes);
 }
 
 void MumpsEngine::analyse(const SparseMatrix& matrix) {

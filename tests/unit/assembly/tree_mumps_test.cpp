@@ -149,6 +149,25 @@ TEST(OrderingAhead, IsThatOfTheGraph) {
   EXPECT_EQ(without.take(large.matrix, none).order, elimination_order(large.matrix));
 }
 
+// A pattern that is expected while processes still have a factor, and one that never comes, leave them able to hear.
+TEST(OrderingAhead, KeepsProcessesInStep) {
+  const Stacked system;
+  const Lattice other(10);
+  MumpsEngine engine(shared_by(2));
+  const auto solves = [&](const SparseMatrix& matrix) {
+    engine.expect(matrix);
+    engine.analyse(matrix);
+    EXPECT_EQ(engine.factorise(matrix).processes, 2);
+    std::vector<double> x = any_force(matrix.size());
+    EXPECT_LE(engine.solve(x).residual, 1e-15);
+  };
+  solves(system.matrix);
+  solves(system.matrix);
+  engine.expect(other.matrix);
+  solves(system.matrix);
+  solves(other.matrix);
+}
+
 // A factor that processes share gives solutions, inertia and columns of the inverse as that of one process does, in the same
 // bits in every run.
 TEST(TreeMumps, SolvesAsOneProcessDoes) {
