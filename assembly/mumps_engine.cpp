@@ -74,9 +74,9 @@ struct MumpsEngine::State {
   Ragged<std::int32_t> neighbours;  ///< of the whole matrix
   std::optional<VertexGraph> graph;
   Form form;
-  OrderingAhead ahead;
   std::optional<Subtrees> subtrees;  ///< where processes may share the factor
   std::shared_ptr<MumpsProcesses> processes;
+  OrderingAhead ahead;
   std::optional<std::string> unshared;        ///< Factorisation::unshared, empty once it is told
   std::unique_ptr<MumpsFactor<double>> full;  ///< one of the two
   std::unique_ptr<MumpsFactor<float>> single;
@@ -377,9 +377,8 @@ std::shared_ptr<PartProcesses> MumpsEngine::processes(std::int64_t n_equations) 
 }
 
 void MumpsEngine::expect(const VertexGraph& graph) {
-  State& s = *state_;
-  if (s.full || s.single) return;  // whose processes have to hear that they may forget it, first
-  if (s.may_share(graph.numbering.n_equations())) s.ahead.begin(graph, *s.processes);
+  const bool has_factor = state_->full || state_->single;  // its processes have to hear first that they may forget it
+  if (!has_factor && state_->may_share(graph.numbering.n_equations())) state_->ahead.begin(graph, *state_->processes);
 }
 
 void MumpsEngine::analyse(const SparseMatrix& matrix) {

@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cerrno>
 #include <csignal>
 #include <functional>
 #include <numeric>
@@ -21,8 +22,8 @@
 namespace lacon {
 namespace {
 
-/// Vertices from which on two processes have something to share.
-constexpr idx_t least_halved = 5000;
+/// Vertices from which on two processes save more than a tenth of a second.
+constexpr idx_t least_halved = 30'000;
 
 /// A graph as METIS takes it: vertices that have equations, without gaps.
 struct MetisGraph {
@@ -76,9 +77,11 @@ class FoundElsewhere {
     void* const memory = mmap(nullptr, bytes_, PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0);
     if (memory == MAP_FAILED) return;
     memory_ = static_cast<idx_t*>(memory);
+    const pid_t parent = getpid();
     process_ = fork();
     if (process_ != 0) return;
     prctl(PR_SET_PDEATHSIG, SIGKILL);
+    if (getppid() != parent) _exit(1);
     try {
       find_({memory_, numbers.size()});
       is_done() = 1;
@@ -87,7 +90,7 @@ class FoundElsewhere {
     _exit(0);
   }
   ~FoundElsewhere() {
-    if (process_ > 0) waitpid(process_, nullptr, 0);
+    wait_for_its_end();
     if (memory_) munmap(memory_, bytes_);
   }
   FoundElsewhere(const FoundElsewhere&) = delete;
@@ -95,7 +98,7 @@ class FoundElsewhere {
 
   /// Found here, where there was no other process or it ended too early.
   void wait() {
-    if (process_ > 0) waitpid(std::exchange(process_, -1), nullptr, 0);
+    wait_for_its_end();
     if (memory_ && is_done())
       std::copy_n(memory_, numbers_.size(), numbers_.begin());
     else
@@ -103,6 +106,11 @@ class FoundElsewhere {
   }
 
  private:
+  void wait_for_its_end() {
+    while (process_ > 0 && waitpid(process_, nullptr, 0) < 0 && errno == EINTR) {
+    }
+    process_ = -1;
+  }
   char& is_done() { return reinterpret_cast<char*>(memory_)[numbers_.size_bytes()]; }
 
   std::span<idx_t> numbers_;

@@ -7,6 +7,7 @@
 #include <map>
 #include <optional>
 #include <sstream>
+#include <utility>
 
 #include "lacon/assembly/block_numbering.hpp"
 #include "lacon/assembly/loose_motions.hpp"
@@ -24,7 +25,7 @@ namespace {
 constexpr double hardly_resisted = 1e-6;
 /// Of the matrices that are spared a try behind each that was in vain: 1, 2, 4 and so on, for what makes iterations slow (a
 /// material, thin bodies) mostly stays.
-constexpr int most_doublings = 10;
+constexpr int most_doublings = 3;
 
 std::string program_beside_this() { return executable().parent_path() / "lacon_petsc"; }
 
@@ -131,20 +132,27 @@ struct PetscEngine::State {
     whole.reset();
   }
 
-  /// A factor instead. @param why
-  Factorisation factorise_directly(const std::string& why) {
+  /// A factor, where there is memory for it.
+  std::optional<Factorisation> factor() {
     direct = std::make_unique<MumpsEngine>(options.direct);
     try {
       if (matrix->elsewhere()) whole.emplace(matrix->elsewhere()->whole(*matrix));
       const SparseMatrix& own = whole ? *whole : *matrix;
       direct->analyse(own);
-      Factorisation found = direct->factorise(own);
-      found.stalled = why;
-      return found;
+      return direct->factorise(own);
     } catch (const Error& error) {
       if (error.message().id != "SOLVER_2") throw;
     }
     forget_factor();
+    return std::nullopt;
+  }
+
+  /// A factor instead. @param why
+  Factorisation factorise_directly(const std::string& why) {
+    if (std::optional<Factorisation> found = factor()) {
+      found->stalled = why;
+      return *found;
+    }
     fail("SOLVER_9", {{"reason", why}, {"equations", std::to_string(sizes.n)}});
   }
 };
@@ -174,11 +182,9 @@ Factorisation PetscEngine::factorise(const SparseMatrix& matrix) {
   s.matrix = &matrix;
   s.forget_factor();
   if (!s.loose->of(matrix, hardly_resisted).empty()) return s.factorise_directly(part("free_rigid_motion"));
-  if (s.spared > 0) {
-    --s.spared;
-    return s.factorise_directly({});
-  }
   s.processes->ask("forget");
+  if (std::exchange(s.spared, std::max(0, s.spared - 1)) > 0)
+    if (const std::optional<Factorisation> found = s.factor()) return *found;
   std::optional<SharedMemory> memory(s.system());
   std::string said = s.processes->ask("set up " + memory->path());
   memory.reset();  // before the multigrid takes most
@@ -201,12 +207,13 @@ Solution PetscEngine::solve_to(double share, std::span<double> right_side) {
     return solution;
   }
   const Factorisation again = s.factorise_directly(why);
-  s.spared = 1 << std::min(s.in_vain++, most_doublings);
+  if (solution.iterations > 0) s.spared = 1 << std::min(s.in_vain++, most_doublings);
   Solution second;
   if (again.null_pivots.empty()) second = s.direct->solve(right_side);
   second.iterations += solution.iterations;
   if (!second.again) second.again = again;
-  second.again->stalled = part("and_next_matrices", {{"reason", why}, {"count", std::to_string(s.spared)}});
+  second.again->stalled =
+      s.spared == 0 ? why : part("and_next_matrices", {{"reason", why}, {"count", std::to_string(s.spared)}});
   return second;
 }
 

@@ -40,11 +40,14 @@ OwnedMat make_matrix(const Rows& rows, std::int64_t own_columns) {
 
 /// When iterations end: as PETSc has it, or as soon as they will not do.
 struct Ending {
+  bool watches;
   Pace pace;
   bool is_given_up = false;
   void* standard = nullptr;
 
-  Ending(int most, double goal) : pace(most, goal) { checked(KSPConvergedDefaultCreate(&standard)); }
+  Ending(bool watches_pace, int most, double goal) : watches(watches_pace), pace(most, goal) {
+    checked(KSPConvergedDefaultCreate(&standard));
+  }
   ~Ending() { KSPConvergedDefaultDestroy(standard); }
   Ending(const Ending&) = delete;
   Ending& operator=(const Ending&) = delete;
@@ -52,7 +55,8 @@ struct Ending {
   static PetscErrorCode test(KSP ksp, PetscInt iteration, PetscReal residual, KSPConvergedReason* reason, void* own) {
     auto& ending = *static_cast<Ending*>(own);
     const PetscErrorCode error = KSPConvergedDefault(ksp, iteration, residual, reason, ending.standard);
-    if (!error && *reason == KSP_CONVERGED_ITERATING && ending.pace.is_too_slow(residual)) {
+    if (!error && *reason == KSP_CONVERGED_ITERATING && ending.watches &&
+        ending.pace.is_too_slow(static_cast<int>(iteration), residual)) {
       ending.is_given_up = true;
       *reason = KSP_DIVERGED_ITS;
     }
@@ -60,15 +64,16 @@ struct Ending {
   }
 };
 
-/// How PETSc spells a name of SOLVEUR; whether its preconditioner has to be symmetric and positive.
+/// How PETSc spells a name of SOLVEUR; whether its preconditioner has to be symmetric and positive, and whether residuals fall
+/// steadily (Pace).
 struct Algorithm {
   KSPType type;
-  bool is_symmetric = false;
+  bool is_symmetric = false, is_steady = true;
 };
 Algorithm algorithm_of(const std::string& name) {
-  if (name == "CG" || name == "CR") return {KSPMINRES, true};
+  if (name == "CG" || name == "CR") return {KSPMINRES, true, false};
   if (name == "GCR") return {KSPGCR};
-  if (name == "BCGS") return {KSPBCGS};
+  if (name == "BCGS") return {KSPBCGS, false, false};
   if (name == "GMRES" || name == "GMRES_LMP") return {KSPGMRES};
   return {KSPFGMRES};
 }
@@ -244,7 +249,7 @@ KrylovResult Krylov::iterate(double share) {
     int most = options_.iterations - result.iterations;
     if (multigrid_.is_kept()) most = std::min(most, multigrid_.most_iterations(std::log10(left / (share * size))));
     checked(KSPSetTolerances(ksp_, share * size / left, PETSC_DEFAULT, PETSC_DEFAULT, std::max(1, most)));
-    Ending ending(most, share * size / left);
+    Ending ending(algorithm_of(options_.algorithm).is_steady, most, share * size / left);
     checked(KSPSetConvergenceTest(ksp_, Ending::test, &ending, nullptr));
     checked(KSPSolve(ksp_, residual_, step));
     KSPConvergedReason reason = KSP_CONVERGED_ITERATING;

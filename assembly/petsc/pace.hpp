@@ -1,6 +1,8 @@
 #pragma once
-// Whether iterations will come to their end in time: those that will not need not go on.
+// Whether iterations will come to their end in time: those that will not need not go on. For GMRES and its like, whose
+// residuals never grow within a cycle; those of BiCGStab jump, those of MINRES stand for long.
 #include <cmath>
+#include <cstddef>
 #include <vector>
 
 namespace lacon {
@@ -16,12 +18,12 @@ class Pace {
   /// @param most iterations  @param goal residual, of the first one
   Pace(int most, double goal) : most_(most), goal_(goal) {}
 
-  /// @param residual behind so many iterations as there were calls before  @return whether the goal is out of reach
-  bool is_too_slow(double residual) {
-    residuals_.push_back(residual);
-    const int done = static_cast<int>(residuals_.size()) - 1;
+  /// @param done iterations, one more with each call or as many again  @param residual behind them
+  /// @return whether the goal is out of reach
+  bool is_too_slow(int done, double residual) {
+    residuals_.resize(static_cast<std::size_t>(done) + 1, residual);
     if (done < least) return false;
-    const double fall = std::log(residuals_[residuals_.size() - 1 - window] / residual) / window;
+    const double fall = std::log(residuals_[static_cast<std::size_t>(done - window)] / residual) / window;
     const double left = std::log(residual / (goal_ * residuals_.front()));
     return !(fall > 0) || done + left / fall > margin * most_;
   }

@@ -106,13 +106,17 @@ Companion::~Companion() {
     return !ended_.empty();
   };
   if (!wait(patience)) {
-    kill(process_, SIGTERM);
+    ::kill(process_, SIGTERM);
     if (!wait(patience)) {
-      kill(process_, SIGKILL);
+      ::kill(process_, SIGKILL);
       waitpid(process_, nullptr, 0);
     }
   }
   close(from_);
+}
+
+void Companion::kill() {
+  if (ended_.empty()) ::kill(process_, SIGKILL);
 }
 
 bool Companion::say(const std::string& line) {

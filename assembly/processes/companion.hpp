@@ -23,6 +23,8 @@ class Companion {
   std::string answer();
   /// Say a line and wait for the answer. @return likewise
   std::string ask(const std::string& line) { return say(line) ? answer() : std::string(); }
+  /// End it at once, whatever it does.
+  void kill();
   /// How it has ended, in words: after an empty answer.
   std::string end();
   /// Whether there was such a program (a shell's exit status 127 says that there was none): known after end().

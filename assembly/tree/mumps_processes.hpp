@@ -28,6 +28,10 @@ class MumpsProcesses : public PartProcesses {
   bool tell_first(const std::string& line) { return !processes_.empty() && processes_.front()->say(line); }
   /// Empty where it has ended: all have to be started again then.
   std::string answer_of_first();
+  /// End the first one, whose answer nobody waits for.
+  void kill_first() noexcept {
+    if (!processes_.empty()) processes_.front()->kill();
+  }
   void keep() override { keeps_ = true; }
   struct Question {
     const char* verb;

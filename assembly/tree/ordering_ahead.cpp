@@ -34,6 +34,10 @@ std::vector<double> order_in(const SharedMemory& memory) {
   return answer;
 }
 
+OrderingAhead::~OrderingAhead() {
+  if (memory_) at_work_->kill_first();
+}
+
 void OrderingAhead::begin(const VertexGraph& graph, MumpsProcesses& processes) noexcept try {
   if (memory_) return;
   processes.start();
@@ -48,7 +52,9 @@ void OrderingAhead::begin(const VertexGraph& graph, MumpsProcesses& processes) n
   std::ranges::copy(graph.neighbours.offset, asked.offset.begin());
   std::ranges::copy(graph.numbering.first, asked.first.begin());
   std::ranges::copy(graph.neighbours.values, asked.neighbours.begin());
-  if (processes.tell_first("order " + memory.path())) memory_.emplace(std::move(memory));
+  if (!processes.tell_first("order " + memory.path())) return;
+  memory_.emplace(std::move(memory));
+  at_work_ = &processes;
 } catch (const std::exception&) {  // take() does without them
 }
 

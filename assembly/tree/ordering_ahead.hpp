@@ -22,8 +22,13 @@ std::vector<double> order_in(const SharedMemory& memory);
 
 class OrderingAhead {
  public:
-  /// Where none is being found yet. The processes are started, and are asked nothing else before take(), which does and tells
-  /// what they cannot.
+  OrderingAhead() = default;
+  /// A process that still works on one is ended.
+  ~OrderingAhead();
+  OrderingAhead(const OrderingAhead&) = delete;
+  OrderingAhead& operator=(const OrderingAhead&) = delete;
+  /// Where none is being found yet. The processes, which must outlive this, are started, and are asked nothing else before
+  /// take(), which does and tells what they cannot.
   void begin(const VertexGraph& graph, MumpsProcesses& processes) noexcept;
   /// What was begun, if it is of this graph; else it is begun now, and found here where no process can do it.
   SharedOrder take(const VertexGraph& graph, MumpsProcesses& processes);
@@ -32,6 +37,7 @@ class OrderingAhead {
   /// Nothing where none was begun, where it is that of another graph, or where its process has ended.
   std::optional<SharedOrder> end(const VertexGraph& graph, MumpsProcesses& processes);
   std::optional<SharedMemory> memory_;  ///< OrderMemory, while a process works on it
+  MumpsProcesses* at_work_ = nullptr;   ///< likewise
 };
 
 }  // namespace lacon

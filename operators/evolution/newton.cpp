@@ -13,6 +13,7 @@
 #include "lacon/operators/evolution/free_bodies.hpp"
 #include "lacon/operators/evolution/instant_failure.hpp"
 #include "lacon/operators/evolution/parts.hpp"
+#include "lacon/operators/program/checking.hpp"
 #include "lacon/operators/program/program.hpp"
 #include "lacon/structures/hdf5.hpp"
 
@@ -45,7 +46,7 @@ Newton::Newton(const StaticProblem& problem, const NewtonOptions& options, std::
       prediction_(problem.imposed),
       solver_(std::move(engine)) {
   equilibrium_.measure_by(options.reference_forces);
-  equilibrium_.on_new_graph([this](const VertexGraph& graph) { solver_.expect(graph); });
+  if (!only_checks()) equilibrium_.on_new_graph([this](const VertexGraph& graph) { solver_.expect(graph); });
   if (!problem.contact) return;
   options_.criteria.resi_geom = problem.contact->resi_geom;
   options_.criteria.constraint = gap_share * problem.contact->resi_geom;

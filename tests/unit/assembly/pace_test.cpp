@@ -15,7 +15,7 @@ constexpr double goal = 1e-8;
 std::optional<int> given_up(const std::function<double(int)>& residual) {
   Pace pace(500, goal);
   for (int done = 0; done <= 500 && residual(done) > goal * residual(0); ++done)
-    if (pace.is_too_slow(residual(done))) return done;
+    if (pace.is_too_slow(done, residual(done))) return done;
   return std::nullopt;
 }
 

@@ -127,7 +127,7 @@ void expect_order(const Stacked& system, const std::vector<std::int32_t>& order)
 TEST(OrderingAhead, IsThatOfTheGraph) {
   const Stacked system;
   expect_order(system, elimination_order(system.matrix));
-  const Lattice large(22), other(21);  // graphs of some 10 000 vertices are ordered in halves
+  const Lattice large(33), other(10);  // a graph of 30 000 vertices is ordered in halves
   MumpsProcesses processes(3, shared_by(3).program);
   const auto ordered = [&](const VertexGraph& expected, const VertexGraph& graph) {
     OrderingAhead ahead;
