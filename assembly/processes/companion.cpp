@@ -115,6 +115,12 @@ Companion::~Companion() {
   close(from_);
 }
 
+bool Companion::is_running() const {
+  siginfo_t found{};
+  return ended_.empty() && waitid(P_PID, static_cast<id_t>(process_), &found, WEXITED | WNOHANG | WNOWAIT) == 0 &&
+         found.si_pid == 0;
+}
+
 void Companion::kill() {
   if (ended_.empty()) ::kill(process_, SIGKILL);
 }

@@ -23,6 +23,8 @@ class Companion {
   std::string answer();
   /// Say a line and wait for the answer. @return likewise
   std::string ask(const std::string& line) { return say(line) ? answer() : std::string(); }
+  /// Whether it has not ended yet.
+  bool is_running() const;
   /// End it at once, whatever it does.
   void kill();
   /// How it has ended, in words: after an empty answer.

@@ -1,5 +1,6 @@
 #include "lacon/assembly/tree/mumps_processes.hpp"
 
+#include <algorithm>
 #include <exception>
 #include <sstream>
 #include <stdexcept>
@@ -13,7 +14,9 @@
 namespace lacon {
 
 void MumpsProcesses::start() {
-  if (!processes_.empty()) return;
+  const auto runs = [](const auto& process) { return process->is_running(); };
+  if (!processes_.empty() && (keeps_ || std::ranges::all_of(processes_, runs))) return;
+  processes_.clear();
   if (keeps_) fail("SOLVER_8", {{"reason", end_}});
   std::string program = program_;
   if (program.empty()) program = executable().parent_path() / "lacon_mumps";

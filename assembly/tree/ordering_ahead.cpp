@@ -58,33 +58,35 @@ void OrderingAhead::begin(const VertexGraph& graph, MumpsProcesses& processes) n
 } catch (const std::exception&) {  // take() does without them
 }
 
-SharedOrder OrderingAhead::take(const VertexGraph& graph, MumpsProcesses& processes) {
-  std::optional<SharedOrder> found = end(graph, processes);
-  if (!found) {
-    begin(graph, processes);
-    found = end(graph, processes);
-  }
-  return found ? std::move(*found) : shared_order(graph, processes.size(), OrderIn::this_process);
-}
-
-std::optional<SharedOrder> OrderingAhead::end(const VertexGraph& graph, MumpsProcesses& processes) {
-  if (!memory_) return std::nullopt;
-  const SharedMemory memory = std::move(*memory_);
-  memory_.reset();
+std::vector<double> OrderingAhead::answer(MumpsProcesses& processes) {
   std::istringstream said(processes.answer_of_first());
   std::string word;
-  said >> word;
-  const OrderMemory asked = OrderMemory::in(memory);
-  const bool is_the_same = std::ranges::equal(asked.offset, graph.neighbours.offset) &&
-                           std::ranges::equal(asked.first, graph.numbering.first) &&
-                           std::ranges::equal(asked.neighbours, graph.neighbours.values);
-  if (word != "done" || !is_the_same) return std::nullopt;
-  SharedOrder found;
-  found.order.assign(asked.order.begin(), asked.order.end());
-  found.subtrees.of.assign(asked.subtree.begin(), asked.subtree.end());
-  said >> found.subtrees.whole.flops >> found.subtrees.whole.entries >> found.subtrees.longest;
-  for (int process; said >> process;) found.subtrees.process.push_back(process);
-  return found;
+  std::vector<double> numbers;
+  if (said >> word; word == "done")
+    for (double number; said >> number;) numbers.push_back(number);
+  return numbers;
+}
+
+SharedOrder OrderingAhead::take(const VertexGraph& graph, MumpsProcesses& processes) {
+  for (;;) {
+    const bool was_begun = memory_.has_value();
+    begin(graph, processes);
+    if (!memory_) return shared_order(graph, processes.size(), OrderIn::this_process);
+    const std::vector<double> numbers = answer(processes);
+    const SharedMemory memory = std::move(*memory_);
+    memory_.reset();
+    const OrderMemory asked = OrderMemory::in(memory);
+    const bool is_the_same = std::ranges::equal(asked.offset, graph.neighbours.offset) &&
+                             std::ranges::equal(asked.first, graph.numbering.first) &&
+                             std::ranges::equal(asked.neighbours, graph.neighbours.values);
+    if (is_the_same && !numbers.empty())
+      return {.order = {asked.order.begin(), asked.order.end()},
+              .subtrees = {.of = {asked.subtree.begin(), asked.subtree.end()},
+                           .process = {numbers.begin() + 3, numbers.end()},
+                           .whole = {.flops = numbers[0], .entries = numbers[1]},
+                           .longest = numbers[2]}};
+    if (!was_begun) return shared_order(graph, processes.size(), OrderIn::this_process);
+  }
 }
 
 }  // namespace lacon

@@ -30,12 +30,12 @@ class OrderingAhead {
   /// Where none is being found yet. The processes, which must outlive this, are started, and are asked nothing else before
   /// take(), which does and tells what they cannot.
   void begin(const VertexGraph& graph, MumpsProcesses& processes) noexcept;
-  /// What was begun, if it is of this graph; else it is begun now, and found here where no process can do it.
+  /// What was begun, if it is of this graph; else it is begun now. Found here where no process can do it.
   SharedOrder take(const VertexGraph& graph, MumpsProcesses& processes);
 
  private:
-  /// Nothing where none was begun, where it is that of another graph, or where its process has ended.
-  std::optional<SharedOrder> end(const VertexGraph& graph, MumpsProcesses& processes);
+  /// The numbers of the answer of the process that is at work; none where it has ended, or cannot.
+  std::vector<double> answer(MumpsProcesses& processes);
   std::optional<SharedMemory> memory_;  ///< OrderMemory, while a process works on it
   MumpsProcesses* at_work_ = nullptr;   ///< likewise
 };

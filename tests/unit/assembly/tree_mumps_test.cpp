@@ -1,7 +1,9 @@
 #include "lacon/assembly/tree/tree_mumps.hpp"
 
 #include <gtest/gtest.h>
+#include <unistd.h>
 
+#include <csignal>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
@@ -147,6 +149,40 @@ TEST(OrderingAhead, IsThatOfTheGraph) {
   OrderingAhead without;
   without.begin(large.matrix, none);
   EXPECT_EQ(without.take(large.matrix, none).order, elimination_order(large.matrix));
+}
+
+/// Processes of lacon_mumps that this one has started, and that have not ended. In the order in which they were started.
+std::vector<pid_t> own_processes() {
+  std::vector<pid_t> found;
+  for (const auto& folder : std::filesystem::directory_iterator("/proc")) {
+    std::ifstream status(folder.path() / "status");
+    const std::string text{std::istreambuf_iterator(status), {}};
+    if (text.starts_with("Name:\tlacon_mumps\n") && text.find("\nState:\tZ") == std::string::npos &&
+        text.find("\nPPid:\t" + std::to_string(getpid()) + '\n') != std::string::npos)
+      found.push_back(std::stoi(folder.path().filename()));
+  }
+  std::ranges::sort(found);
+  return found;
+}
+
+// Whichever process ends before there is work for it, others take their places.
+TEST(OrderingAhead, OutlivesProcesses) {
+  const Stacked system;
+  const std::vector<std::int32_t> expected = elimination_order(system.matrix);
+  for (const std::size_t which : {0U, 1U}) {
+    MumpsProcesses processes(2, shared_by(2).program);
+    processes.start();
+    const std::vector<pid_t> own = own_processes();
+    ASSERT_EQ(own.size(), 2U);
+    OrderingAhead ahead;
+    ahead.begin(system.matrix, processes);
+    kill(own[which], SIGKILL);
+    while (std::ranges::count(own_processes(), own[which]) > 0) usleep(1000);
+    EXPECT_EQ(ahead.take(system.matrix, processes).order, expected);
+    processes.start();
+    EXPECT_EQ(own_processes().size(), 2U);
+    EXPECT_EQ(processes.ask("forget"), "done");
+  }
 }
 
 // A pattern that is expected while processes still have a factor, and one that never comes, leave them able to hear.
