@@ -203,8 +203,9 @@ std::vector<std::uint8_t> between_bodies(const SparseMatrix& matrix, std::span<c
 
 }  // namespace
 
-void LooseMotions::multiply(const SparseMatrix& matrix, std::span<const Moved> all, std::span<const std::uint8_t> between,
+void LooseMotions::multiply(const SparseMatrix& matrix, std::span<const Moved> all, std::span<const std::int32_t> first_motion,
                             std::span<const std::int32_t> at, Images& images) const {
+  const std::vector<std::uint8_t> between = between_bodies(matrix, first_motion);
   // rows within a body: one motion of each body at once, and magnitudes
   Eigen::Index most = 0;
   for (const auto& [body, left] : left_) most = std::max(most, left.motions.cols());
@@ -220,10 +221,10 @@ void LooseMotions::multiply(const SparseMatrix& matrix, std::span<const Moved> a
     matrix.multiply_together(x, y, static_cast<int>(width));
     for (std::size_t v = 0; v < between.size(); ++v)
       for (std::int64_t row = first[v]; row < first[v + 1] && !between[v]; ++row) {
-        if (at[row] < 0) continue;
+        if (first_motion[v] < 0) continue;
         const double* const own = &y[width * static_cast<std::size_t>(row)];
         Image& image = images.of_row(row);
-        image.of_body(all[at[row]].first).head(most) = Eigen::Map<const Eigen::VectorXd>(own, most);
+        image.of_body(first_motion[v]).head(most) = Eigen::Map<const Eigen::VectorXd>(own, most);
         image.most = own[most];
       }
   }
@@ -270,7 +271,7 @@ Eigen::MatrixXd LooseMotions::unresisted(const SparseMatrix& matrix, double negl
     first[all[i].dof / matrix.numbering().n_components] = all[i].first;
   }
   Images images(matrix.size());
-  multiply(matrix, all, between_bodies(matrix, first), at, images);
+  multiply(matrix, all, first, at, images);
 
   Resistance resistance(bodies_, negligible);
   for (std::int64_t row = 0; row < matrix.size(); ++row) {

@@ -71,9 +71,9 @@ class LooseMotions {
   template <class Takes>
   std::vector<Moved> moved(const Takes& takes) const;
   Others asked(const RowsElsewhere& rows, std::int64_t n_equations) const;
-  /// What the rows of the matrix that are here make of the motions. @param between vertices whose rows meet several bodies
-  /// @param at of each equation: its place in `all`, or -1
-  void multiply(const SparseMatrix& matrix, std::span<const Moved> all, std::span<const std::uint8_t> between,
+  /// What the rows of the matrix that are here make of the motions. @param first_motion of each vertex the first
+  /// motion of its body, -1: nothing moves it  @param at of each equation: its place in `all`, or -1
+  void multiply(const SparseMatrix& matrix, std::span<const Moved> all, std::span<const std::int32_t> first_motion,
                 std::span<const std::int32_t> at, Images& images) const;
   /// (n_motions, n): combinations of the motions that the matrix maps to nothing.
   Eigen::MatrixXd unresisted(const SparseMatrix& matrix, double negligible);
