@@ -181,7 +181,8 @@ std::vector<std::int32_t> elimination_order(const VertexGraph& of, OrderIn where
   }
   const idx_t n = graph.size();
   std::vector<idx_t> place(n);
-  where == OrderIn::two_processes&& n >= least_halved ? order_halves(graph, place) : order(graph, place);
+  const bool in_halves = where == OrderIn::two_processes && n >= least_halved;
+  in_halves ? order_halves(graph, place) : order(graph, place);
 
   // (place, 1 behind it for a moved multiplier) sorts the vertices
   std::vector<std::pair<idx_t, bool>> key(n);
