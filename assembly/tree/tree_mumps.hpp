@@ -71,12 +71,13 @@ class TreeMumps : public MumpsFactor<Real> {
   /// Of each piece: its number of an equation of the top, from 0.
   std::vector<std::vector<int>> borders() const;
   void number_top();
-  /// Whether Schur complements fill it and no pivots are looked for in it.
+  /// Whether Schur complements fill it and no pivots are looked for in it. Half of its entries will do: as a sparse one it
+  /// would be analysed entry by entry, and eliminated by one thread.
   bool has_full_top() const {
     constexpr std::size_t most = 8192;  // low-rank blocks are less work for larger ones
     std::size_t entries = 0;            // that Schur complements add to
     for (const Piece& piece : pieces_) entries += piece.border.size() * piece.border.size();
-    return settings_.symmetric && settings_.as_ordered && top_.size() <= most && entries >= top_.size() * top_.size();
+    return settings_.symmetric && settings_.as_ordered && top_.size() <= most && 2 * entries >= top_.size() * top_.size();
   }
   /// Numbered and analysed, if it has not been yet.
   void analyse_top();
