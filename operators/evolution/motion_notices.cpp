@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
 #include <map>
@@ -19,33 +18,9 @@ namespace {
 
 constexpr double most_turned = 0.1;    // radians: taken for a strain of half of its square, 0.5 %
 constexpr double most_strained = 0.2;  // the strain of a length by its true and by its initial length differ by a tenth of it
-// Of a bar under the law of St. Venant and Kirchhoff: its force E (l^3 - l) / 2 at the stretch l is largest in compression
-// here.
-constexpr double least_stretch = 1 / std::numbers::sqrt3;
-constexpr double share = 0.1;  // of the cells of a body: edges that press are strained by any amount
+constexpr double share = 0.1;          // of the cells of a body: edges that press are strained by any amount
 
-CellMotion motion_of(const ElementSet& set, std::size_t i, const Mesh& mesh, std::span<const double> displacement) {
-  const int d = set.dimension(), n = set.n_nodes();
-  const auto nodes = mesh.cells[set.cells[i]];
-  const double* const slope = set.tabulation.gradient.data();  // of the first point
-  Eigen::Matrix3d map = Eigen::Matrix3d::Identity(), moved = Eigen::Matrix3d::Zero();
-  map.topLeftCorner(d, d).setZero();
-  for (int a = 0; a < n; ++a) {
-    const auto node = static_cast<std::size_t>(nodes[a]);
-    for (int r = 0; r < d; ++r)
-      for (int k = 0; k < d; ++k) {
-        map(k, r) += mesh.point(node)[static_cast<std::size_t>(k)] * slope[a * d + r];
-        moved(k, r) += displacement[node * static_cast<std::size_t>(set.n_components) +
-                                    static_cast<std::size_t>(set.columns[static_cast<std::size_t>(k)])] *
-                       slope[a * d + r];
-      }
-  }
-  const Eigen::Matrix3d gradient = moved * map.inverse(), strain = 0.5 * (gradient + gradient.transpose()),
-                        turn = 0.5 * (gradient - gradient.transpose());
-  return {set.cells[i], turn.norm() / std::numbers::sqrt2,
-          strain.selfadjointView<Eigen::Lower>().eigenvalues().cwiseAbs().maxCoeff(),
-          1 - (Eigen::Matrix3d::Identity() + gradient).jacobiSvd().singularValues().minCoeff()};
-}
+bool is_for_small_displacements(const ElementSet& set) { return set.option.ends_with("/PETIT"); }
 
 /// Which a share of them reach: the motion that one of ten cells exceeds.
 const CellMotion& nth(std::vector<CellMotion>& motions, double CellMotion::*value) {
@@ -56,12 +31,11 @@ const CellMotion& nth(std::vector<CellMotion>& motions, double CellMotion::*valu
 
 }  // namespace
 
-std::map<std::int32_t, std::vector<CellMotion>> MotionNotices::motions(
-    std::initializer_list<std::string_view> behaviours) const {
+std::map<std::int32_t, std::vector<CellMotion>> MotionNotices::motions(bool (*is_one)(const ElementSet&)) const {
   const StaticProblem& problem = present_.problem;
   std::map<std::int32_t, std::vector<CellMotion>> of_body;
   for (const ElementSet& set : problem.solids) {
-    if (std::ranges::none_of(behaviours, [&](std::string_view name) { return set.option.ends_with(name); })) continue;
+    if (!is_one(set)) continue;
     for (std::size_t i = 0; i < set.cells.size(); ++i) {
       const std::int32_t body = bodies_.of(problem.mesh.cells[set.cells[i]][0]);
       if (!told_.contains(body)) of_body[body].push_back(motion_of(set, i, problem.mesh, present_.state.displacement));
@@ -81,7 +55,7 @@ void MotionNotices::tell(std::string_view id, double instant, const CellMotion& 
 
 void MotionNotices::accept(const SolvedInstant& solved) {
   const auto percent = [](double part) { return fmt::format("{:.2g}", 100 * part); };
-  for (auto& [body, motions] : motions({"/PETIT"})) {
+  for (auto& [body, motions] : motions(is_for_small_displacements)) {
     const CellMotion turned = nth(motions, &CellMotion::turn), strained = nth(motions, &CellMotion::strain);
     if (turned.turn > most_turned)
       tell("EVOLUTION_59", solved.instant, turned,
@@ -90,8 +64,8 @@ void MotionNotices::accept(const SolvedInstant& solved) {
     else if (strained.strain > most_strained)
       tell("EVOLUTION_59", solved.instant, strained, part("cells_are_strained", {{"percent", percent(strained.strain)}}));
   }
-  for (auto& [body, motions] : motions({"ELAS/GREEN_LAGRANGE", "ELAS/GROT_GDEP"}))
-    if (const CellMotion shortened = nth(motions, &CellMotion::shortening); shortened.shortening > 1 - least_stretch)
+  for (auto& [body, motions] : motions(softens_in_compression))
+    if (const CellMotion shortened = nth(motions, &CellMotion::shortening); shortened.shortening > most_shortened)
       tell("EVOLUTION_61", solved.instant, shortened, percent(shortened.shortening));
 }
 

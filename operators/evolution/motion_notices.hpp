@@ -1,24 +1,17 @@
 #pragma once
 // Tells what laws are asked for beyond the displacements that they are for.
-#include <initializer_list>
 #include <map>
 #include <set>
 #include <string>
 #include <string_view>
 #include <vector>
 
+#include "lacon/operators/evolution/cell_motion.hpp"
 #include "lacon/operators/evolution/evolution.hpp"
 #include "lacon/operators/evolution/state_fields.hpp"
 #include "lacon/structures/bodies.hpp"
 
 namespace lacon {
-
-/// The motion of a cell, at one of its points: the turn and the largest strain that small displacements make of it, and by what
-/// its shortest length is less than it was.
-struct CellMotion {
-  std::int32_t cell;
-  double turn, strain, shortening;
-};
 
 class MotionNotices : public EvolutionObserver {
  public:
@@ -32,8 +25,8 @@ class MotionNotices : public EvolutionObserver {
   void resume(const hdf5::Group& group) override;
 
  private:
-  /// Of the cells with one of these behaviours, by bodies that nothing was told of.
-  std::map<std::int32_t, std::vector<CellMotion>> motions(std::initializer_list<std::string_view> behaviours) const;
+  /// Of the cells of such sets, by bodies that nothing was told of.
+  std::map<std::int32_t, std::vector<CellMotion>> motions(bool (*is_one)(const ElementSet&)) const;
   void tell(std::string_view id, double instant, const CellMotion& motion, const std::string& what);
 
   Present present_;

@@ -319,7 +319,7 @@ int Newton::iterate(double instant, StaticState& state, const std::function<void
     if (other_matrix || other_forces || line.pairs_anew) assemble(state, previous, options_.matrix);
     if (!std::isfinite(line.maxi)) break;
   }
-  fail_to_converge(instant, line, changing);
+  fail_to_converge(instant, line, previous, changing);
 }
 
 void Newton::note_stability() {

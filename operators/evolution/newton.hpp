@@ -178,14 +178,16 @@ class Newton {
   /// @param gaps ContactState::gaps_over_size() where the increment began
   void stay_shallow(std::span<const double> solution, std::span<const double> gaps, StaticState& state,
                     std::vector<double>& increment);
-  /// Throws EVOLUTION_4. @param line the last iteration  @param changing a patch that changes its status in it, if any does
-  [[noreturn]] void fail_to_converge(double instant, const IterationReport& line, std::size_t changing) const;
+  /// Throws EVOLUTION_4. @param line the last iteration  @param previous the last equilibrium  @param changing a patch that
+  /// changes its status in that iteration, if any does
+  [[noreturn]] void fail_to_converge(double instant, const IterationReport& line, const StaticState& previous,
+                                     std::size_t changing) const;
   /// What is known of a failure, one thing behind the other.
   static std::string said(std::initializer_list<std::string> what);
   /// What keeps the last iteration from being the solution, in words.
   std::string unmet_criteria(const IterationReport& line, std::size_t changing) const;
-  /// The one thing to do about it that fits.
-  std::string remedy(const IterationReport& line, double excess) const;
+  /// The one thing to do about it that fits. @param softened a law gave way in the last equilibrium (cell_motion.hpp)
+  std::string remedy(const IterationReport& line, double excess, bool softened) const;
 
   /// What accept() has to know of the instant that is solved.
   struct Found {

@@ -7,6 +7,7 @@
 
 #include "lacon/catalog/messages.hpp"
 #include "lacon/catalog/wording.hpp"
+#include "lacon/operators/evolution/cell_motion.hpp"
 #include "lacon/operators/evolution/instant_failure.hpp"
 #include "lacon/operators/evolution/newton.hpp"
 #include "lacon/operators/program/program.hpp"
@@ -88,12 +89,13 @@ std::string Newton::cells_of(const std::vector<std::size_t>& patches) const {
   return text + (patches.size() > most ? ", ..." : "");
 }
 
-void Newton::fail_to_converge(double instant, const IterationReport& line, std::size_t changing) const {
+void Newton::fail_to_converge(double instant, const IterationReport& line, const StaticState& previous,
+                              std::size_t changing) const {
   const ConvergenceCriteria& asked = options_.criteria;
   const double excess = std::max({asked.resi_glob_rela ? line.rela / *asked.resi_glob_rela : 0,
                                   asked.resi_glob_maxi ? line.maxi / *asked.resi_glob_maxi : 0,
                                   asked.resi_refe_rela ? line.refe / *asked.resi_refe_rela : 0});
-  std::string round_words, turned_words, hanging_words, unstable_words;
+  std::string round_words, turned_words, hanging_words, unstable_words, softened_words;
   if (const auto& round = statuses_.round())
     round_words = part("statuses_went_round", {{"count", std::to_string(round->patches.size())},
                                                {"cells", cells_of(round->patches)},
@@ -102,18 +104,23 @@ void Newton::fail_to_converge(double instant, const IterationReport& line, std::
     turned_words =
         part("cell_inside_out", {{"cell", cell_name(*cell)}, {"body", bodies_.name_at(problem_.mesh.cells[*cell][0])}});
   if (choice_.leaves_unstable()) unstable_words = part("equilibrium_unstable");
+  const std::optional<CellMotion> softened = most_softened(problem_, previous.displacement);
+  if (softened)
+    softened_words = part("cell_softened", {{"cell", cell_name(softened->cell)},
+                                            {"body", bodies_.name_at(problem_.mesh.cells[softened->cell][0])},
+                                            {"percent", fmt::format("{:.2g}", 100 * softened->shortening)}});
   if (!hanging_.empty()) hanging_words = part("body_hangs", {{"body", hanging_}});
   throw InstantFailure(
       message("EVOLUTION_4", {{"instant", fmt::format("{:.9g}", instant)},
                               {"iterations", std::to_string(line.iteration)},
-                              {"unmet", said({unmet_criteria(line, changing), course_.words(), unstable_words, round_words,
-                                              turned_words, hanging_words})},
-                              {"remedy", remedy(line, excess)}}),
+                              {"unmet", said({unmet_criteria(line, changing), course_.words(), unstable_words, softened_words,
+                                              round_words, turned_words, hanging_words})},
+                              {"remedy", remedy(line, excess, softened.has_value())}}),
       {.ratio = settled_ >= settled && !course_.period() && !course_.smaller_before() ? course_.ratio() : std::nullopt,
        .excess = excess});
 }
 
-std::string Newton::remedy(const IterationReport& line, double excess) const {
+std::string Newton::remedy(const IterationReport& line, double excess, bool softened) const {
   if (!hanging_.empty()) return part("remedy_hold_body", {{"body", hanging_}});
   const double ratio = course_.ratio().value_or(1);
   const bool diverges = !course_.finite() || ratio > worse || equilibrium_.cell_inside_out();
@@ -126,6 +133,7 @@ std::string Newton::remedy(const IterationReport& line, double excess) const {
       return part("remedy_more_iterations", {{"count", std::to_string(options_.iterations + static_cast<int>(more) + 1)}});
   }
   if (settled_ >= settled && line.rela < near_round_off) return part("remedy_ask_less");
+  if (softened && (choice_.leaves_unstable() || diverges)) return part("remedy_law_for_compression");
   // without what makes the matrix unstable the residual grows slowly first, and falls behind that
   if (choice_.leaves_unstable() && options_.iterations < enough_to_leave && course_.finite() && !course_.period() &&
       line.status_changes == 0 && !statuses_.round() && !equilibrium_.cell_inside_out())

@@ -383,6 +383,18 @@ class Skins(StudyTest):
             self.assertIn(words, said)
         self.assertEqual(run(dataclasses.replace(told, most=60), LACON, self.folder)["status"], "finished")
 
+    def test_where_a_law_gave_way_to_compression_another_one_is_told(self):
+        """A soft layer below a narrower plate, whose edges squeeze cells beyond 42 %: under Green-Lagrange strains they collapse, whatever the step; GDEF_LOG goes on."""
+        mesh = union([slab("QUAD8", "TOOL", (-0.5, 0.5), (0, 0.5), (4, 2), skin="bottom"), slab("QUAD8", "SLAB", (-1.5, 1.5), (-0.5, 0), (13, 3))])
+        layer = Study(name="layer", mesh=mesh, materials={"TOOL": elastic(1e6), "SLAB": elastic(1e3)}, zones=[zone("TOOL", "SLAB", 0)], strain="GREEN_LAGRANGE",
+                      cut=True, steps=4, asked={"per step": 6}, moves=[held("SLAB"), path("TOOL", [(0, 0), (4, 0)], [(0, 0), (4, -0.2)])])
+        self.assertIn("EVOLUTION_4", run(layer, LACON, self.folder)["status"])
+        *_, failure = (self.folder / "err").read_text().split("<S> <EVOLUTION_4>")
+        self.assertRegex(failure, r"in the last equilibrium cell M\d+ of SLAB is compressed by \d+ %")
+        self.assertIn("do:    take DEFORMATION='GDEF_LOG'", failure)
+        other = dataclasses.replace(layer, strain="GDEF_LOG")
+        self.assertEqual(missed(other, run(other, LACON, self.folder)), [])
+
     def test_iterations_that_are_nearly_at_their_end_are_told_to_go_on(self):
         """The residual falls quadratically: to say that the step should be cut would be wrong."""
         (_, study), = chosen(["hertz/30 % QUAD8 PETIT slab"])
