@@ -420,23 +420,9 @@ std::vector<double> SparseMatrix::equilibration() const {
 }
 
 double SparseMatrix::norm() const {
-  std::vector<double> sums(size(), 0.0);
-  gather(
-      sums, 1,
-      [&](std::int64_t first, std::int64_t last, std::span<double> own) {
-        for (std::int64_t row = first; row < last; ++row)
-          for (std::int64_t k = row_[row]; k < row_[row + 1]; ++k) {
-            own[row] += std::abs(value_[k]);
-            if (is_symmetric() && column_[k] != row) own[column_[k]] += std::abs(value_[k]);
-          }
-      },
-      std::plus());
-  if (elsewhere_) {
-    const std::span<const double> more = elsewhere_->row_sizes().sum;
-    for (std::size_t dof = 0; dof < more.size(); ++dof)
-      if (const std::int64_t e = numbering_->equation[dof]; e >= 0) sums[e] += more[dof];
-  }
-  return sums.empty() ? 0 : *std::max_element(sums.begin(), sums.end());
+  double largest = 0;
+  for (const RowSize& row : row_sizes(size())) largest = std::max(largest, row.sum);
+  return largest;
 }
 
 }  // namespace lacon
