@@ -125,7 +125,7 @@ std::string FailedStep::large_load() const {
 
 void FailedStep::tell(const Error& error) const {
   Message message = error.message();
-  const bool by_load = message.severity == 'S' && message.id != "SOLVER_2" && message.id != "SOLVER_8";  // memory, processes
+  const bool by_load = message.severity == 'S' && !is_of_the_machine(message);
   if (const std::string load = by_load ? large_load() : ""; !load.empty())
     message.advice = load + (message.advice.empty() ? "" : "; " + message.advice);
   if (!stored_) throw Error(std::move(message));

@@ -148,6 +148,7 @@ int Newton::solve(double instant, StaticState& state, const std::function<void(c
     return iterate(instant, state, report);
   } catch (const Error& error) {
     Message told = error.message();
+    if (is_of_the_machine(told)) throw;
     FailureNature nature = nature_of(error);
     nature.led_astray = elsewhere_ && told.severity == 'S';
     if (!nature.led_astray && told.severity == 'S' && unstable_path_.fail(choice_.leaves_unstable()))

@@ -38,7 +38,7 @@ std::optional<std::string> in_vain(const FailureNature& now, const FailureNature
 double cut(const StepCut& action, const Error& error, const FailureNature& before, double length, double to, int level,
            double smallest, const Tell& tell) {
   const double part = length / action.cut_into;
-  if (error.message().severity != 'S' || !action.cut || level >= action.cut_levels ||
+  if (error.message().severity != 'S' || is_of_the_machine(error.message()) || !action.cut || level >= action.cut_levels ||
       part < std::max(action.smallest, smallest))
     throw;
   if (const auto reason = in_vain(nature_of(error), before, action, level)) {
@@ -192,7 +192,8 @@ void step_through(const TimeSteps& steps, const SolveInstant& solve, const GoBac
       } catch (const Error& error) {
         const FailureNature nature = nature_of(error);
         if (!nature.begins_again()) {
-          if (error.message().severity == 'S' && unstable) throw InstantFailure(*unstable);
+          if (error.message().severity == 'S' && unstable && !is_of_the_machine(error.message()))
+            throw InstantFailure(*unstable);
           throw;
         }
         if (nature.left_unstable) unstable.emplace(error.message(), nature);

@@ -130,11 +130,14 @@ class PartsTest(StudyTest):
                 np.testing.assert_array_equal(one[1], found[1])
 
     def assert_killed_process_ends_all(self):
-        with self.started("killed", 1, INSTANTS="4") as (run, processes):
-            os.kill(processes[self.program][-1], signal.SIGKILL)
-        self.assertEqual(run.returncode, 3, run.said[-3000:])
-        self.assertEqual(run.said.count("<SOLVER_8>"), 1, run.said[-3000:])
-        self.assertGreaterEqual(self.archived("killed"), 1)
+        """In the second instant, and in a later one that begins where the last motion leads to: a failure there would begin again at the last state."""
+        for behind in (1, 3):
+            with self.started(f"killed_{behind}", behind, INSTANTS=str(behind + 3), STEP="0.1") as (run, processes):
+                os.kill(processes[self.program][-1], signal.SIGKILL)
+            self.assertEqual(run.returncode, 3, run.said[-3000:])
+            self.assertEqual(run.said.count("<SOLVER_8>"), 1, run.said[-3000:])
+            self.assertNotIn("EVOLUTION_48", run.said)
+            self.assertGreaterEqual(self.archived(f"killed_{behind}"), behind)
 
     def go_on_with_another(self, **case):
         """@return a result of four instants, and the same where the operator was killed behind the second one"""

@@ -174,18 +174,17 @@ TEST(TimeStepping, BeginsAnInstantAgainThatStayedAtAnUnstableEquilibrium) {
   EXPECT_EQ(returns, 1);
 }
 
-// An error of the user is no reason to try smaller steps.
+// An error of the user is no reason to try smaller steps, and neither are a process that was killed and memory that ended.
 TEST(TimeStepping, CutsOnlyFailuresOfTheSolution) {
   const TimeSteps steps{.values = {0, 1}, .action = {.cut = true}};
-  int returns = 0;
-  EXPECT_THROW(step_through(
-                   steps,
-                   [](double) {
-                     fail("ORDER_5", {{"unit", "20"}});
-                   },
-                   [&] { ++returns; }, [](double, bool) {}),
-               Error);
-  EXPECT_EQ(returns, 0);
+  for (const auto& [severity, id] : {std::pair{'F', "ORDER_5"}, {'S', "SOLVER_8"}, {'S', "SOLVER_2"}}) {
+    int returns = 0;
+    EXPECT_THROW(step_through(
+                     steps, [&](double) { throw Error({.severity = severity, .id = id, .text = "", .advice = ""}); },
+                     [&] { ++returns; }, [](double, bool) {}),
+                 Error);
+    EXPECT_EQ(returns, 0) << id;
+  }
 }
 
 // Each event has its own action: the residual's cuts into five where a failed solution would stop.
