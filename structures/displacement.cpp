@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <optional>
 #include <string>
 
@@ -58,6 +59,19 @@ void displace(const Mesh& mesh, std::span<const double> values, int dimension, s
   coordinates = mesh.coordinates;
   for (std::size_t node = 0; node < mesh.n_nodes(); ++node)
     for (std::size_t d = 0; d < axes; ++d) coordinates[3 * node + d] += values[node * width + d];
+}
+
+double extent(const Mesh& mesh) {
+  double longest = 0;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    double low = INFINITY, high = -INFINITY;
+    for (std::size_t i = axis; i < mesh.coordinates.size(); i += 3) {
+      low = std::min(low, mesh.coordinates[i]);
+      high = std::max(high, mesh.coordinates[i]);
+    }
+    longest = std::max(longest, high - low);
+  }
+  return longest;
 }
 
 std::vector<double> displaced(const Mesh& mesh, const Field& field) {

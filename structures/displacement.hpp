@@ -32,6 +32,9 @@ std::vector<HeldDirection> held_directions(const Mesh& mesh, std::span<const Loa
 /// @param coordinates to be overwritten, so that a caller may keep its memory
 void displace(const Mesh& mesh, std::span<const double> values, int dimension, std::vector<double>& coordinates);
 
+/// The longest side of the box around all nodes, where they are without displacements.
+double extent(const Mesh& mesh);
+
 /// Coordinates displaced by a field of nodes, (n_nodes, 3).
 std::vector<double> displaced(const Mesh& mesh, const Field& field);
 

@@ -44,7 +44,7 @@ double extent(const Hold& hold) {
 }  // namespace
 
 bool ContactState::may_hold(std::size_t patch, const Patchwise& patches) const {
-  return patches.status[patch] != Status::active && !held_open_[patch] && geometry_.coverage(patch) >= least_coverage &&
+  return patches.status[patch] != Status::active && !held_open_[patch] && takes_contact(patch) &&
          geometry_.gap(patch) <= tolerances_.holding_gap * size_[patch];
 }
 

@@ -8,6 +8,7 @@
 #include "lacon/catalog/messages.hpp"
 #include "lacon/catalog/wording.hpp"
 #include "lacon/operators/evolution/zone_records.hpp"
+#include "lacon/structures/displacement.hpp"
 
 namespace lacon {
 namespace {
@@ -97,17 +98,11 @@ void ContactNotices::tell_what_was_flung(double instant) {
   const int n_components = problem.n_components();
   const std::vector<ContactZone>& zones = problem.contact->zones;
   std::set<std::size_t> meeting = zones_that_meet();
-  double size = 0, moved = 0;  // of the model, and farthest in this step
-  for (int d = 0; d < problem.dimension; ++d) {
-    double low = INFINITY, high = -INFINITY;
-    for (std::size_t node = 0; node < problem.mesh.n_nodes(); ++node) {
-      const std::size_t dof = node * static_cast<std::size_t>(n_components) + static_cast<std::size_t>(d);
-      low = std::min(low, problem.mesh.coordinates[3 * node + static_cast<std::size_t>(d)]);
-      high = std::max(high, problem.mesh.coordinates[3 * node + static_cast<std::size_t>(d)]);
-      if (!last_displacement_.empty()) moved = std::max(moved, std::abs(now[dof] - last_displacement_[dof]));
-    }
-    size = std::max(size, high - low);
-  }
+  const double size = extent(problem.mesh);
+  double moved = 0;  // farthest in this step
+  for (std::size_t dof = 0; dof < last_displacement_.size(); ++dof)
+    if (static_cast<int>(dof) % n_components < problem.dimension)
+      moved = std::max(moved, std::abs(now[dof] - last_displacement_[dof]));
   for (const std::size_t zone : last_met_)
     if (moved > size && !meeting.contains(zone) && flung_.insert(zone).second)
       inform("EVOLUTION_66", {{"slave", zones[zone].slave_group},

@@ -15,6 +15,7 @@
 #include "lacon/operators/evolution/parts.hpp"
 #include "lacon/operators/program/checking.hpp"
 #include "lacon/operators/program/program.hpp"
+#include "lacon/structures/displacement.hpp"
 #include "lacon/structures/hdf5.hpp"
 
 namespace lacon {
@@ -36,6 +37,7 @@ Newton::Newton(const StaticProblem& problem, const NewtonOptions& options, std::
     : problem_(problem),
       options_(options),
       bodies_(problem.mesh),
+      extent_(extent(problem.mesh)),
       loose_(RigidMotions(geometry_of(problem, bodies_)), problem.numbering),
       equilibrium_(problem, parts_of(problem, *engine)),
       choice_({.linear = equilibrium_.is_linear(),

@@ -104,6 +104,8 @@ class Newton {
   /// first. Throws SOLVER_3 in the first iteration, EVOLUTION_42 in later ones.
   std::vector<double> solve_system(StaticState& state, const StaticState& previous, SolidMatrix asked,
                                    std::span<const double> step, const Accuracy& accuracy, IterationReport& line);
+  /// Whether forces alone move a body by more than the model is large: next to nothing resists that, though no pivot is zero.
+  bool flings(std::span<const double> solution, std::span<const double> step) const;
   /// What the matrix lacks of kept covers (moving_covers.hpp), as far as it is worth its solutions.
   std::vector<MovingCover> moving_covers(const StaticState& state, std::span<const double> step) const;
   /// Go on with statuses that satisfy all patches of the linear system (linear_statuses.hpp), as long as they change from
@@ -201,6 +203,7 @@ class Newton {
   const StaticProblem& problem_;
   NewtonOptions options_;
   Bodies bodies_;
+  double extent_;  ///< of the model
   LooseMotions loose_;
   Equilibrium equilibrium_;
   MatrixChoice choice_;

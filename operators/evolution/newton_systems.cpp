@@ -21,8 +21,12 @@ namespace lacon {
 namespace {
 
 constexpr int most_rests = 4;        // in an instant: how often bodies are led to patches by their load
+constexpr int most_flung = 6;        // in an iteration: how often bodies are held that it flings
 constexpr int most_rounds = 6;       // of statuses in an iteration
 constexpr double of_a_round = 1e-6;  // of what the solution before leaves of its right side, iterations may leave
+// Of what resists most: motions that are resisted by less, where bodies are flung. Rows of contact that say the same of a rigid
+// body differ by its strains, and that is all that is left to resist.
+constexpr double hardly = 1e-2;
 
 }  // namespace
 
@@ -41,6 +45,7 @@ std::vector<double> Newton::solve_system(StaticState& state, const StaticState& 
                                          std::span<const double> step, const Accuracy& accuracy, IterationReport& line) {
   const System& system = equilibrium_.system();
   hanging_.clear();
+  int flung = 0;
   for (Held held = Held::no;;) {
     line.constraints = equilibrium_.n_constraints(state);
     std::vector<LooseMotion> loose;
@@ -58,6 +63,11 @@ std::vector<double> Newton::solve_system(StaticState& state, const StaticState& 
       line.solution = solve_linear(solution, accuracy);
       null = line.solution.factorisation.null_pivots;
       if (null.empty()) {
+        if (flung < most_flung && flings(solution, step)) {
+          ++flung;
+          held = hold(loose_.of(system.matrix(), hardly), step, state, previous, asked);
+          if (held != Held::no) continue;
+        }
         // solutions by iterations cost more than the iterations of Newton's method that they would spare
         if (problem_.dimension == 2 || !line.solution.factorisation.is_iterative)
           line.constraints += follow_covers(
@@ -90,6 +100,16 @@ std::vector<double> Newton::solve_system(StaticState& state, const StaticState& 
   }
 }
 
+bool Newton::flings(std::span<const double> solution, std::span<const double> step) const {
+  if (settled_ > 0 || std::ranges::any_of(step, [](double value) { return value != 0; })) return false;
+  const std::vector<std::int64_t>& equation = problem_.numbering.equation;
+  for (std::size_t dof = 0; dof < equation.size(); ++dof)
+    if (equation[dof] >= 0 && static_cast<int>(dof) % problem_.n_components() < problem_.dimension &&
+        std::abs(solution[static_cast<std::size_t>(equation[dof])]) > extent_)
+      return true;
+  return false;
+}
+
 std::vector<MovingCover> Newton::moving_covers(const StaticState& state, std::span<const double> step) const {
   // in space they are many: as long as statuses change these are fitted to each other without them
   if (problem_.dimension == 3 && settled_ == 0) return {};
@@ -117,7 +137,8 @@ void Newton::fit_statuses(std::vector<double>& solution, std::span<const double>
       report = line.solution.factorisation.is_iterative ? solve_from(solution, step, other)
                                                         : solve_linear(other = equilibrium_.right_side(step), accuracy);
       const auto& negative = report.factorisation.negative_pivots;
-      return report.factorisation.null_pivots.empty() && (!negative || *negative <= equilibrium_.n_constraints(state));
+      return report.factorisation.null_pivots.empty() && !flings(other, step) &&
+             (!negative || *negative <= equilibrium_.n_constraints(state));
     };
     if (!serves()) {
       state.patches.status = before;
@@ -143,6 +164,7 @@ void Newton::fit_by_columns(LinearStatuses& fitted, std::size_t affordable, std:
   std::vector<double> more = fitted.correction(side);
   solve_linear(more, accuracy, true);
   for (std::size_t i = 0; i < side.size(); ++i) side[i] += more[i];
+  if (flings(side, step)) return;
   solution = std::move(side);
   fitted.take(state.patches, solution);
 }
@@ -192,7 +214,7 @@ void Newton::note_work(const SolutionReport& report) {
 
 Newton::Held Newton::hold(const std::vector<LooseMotion>& loose, std::span<const double> step, StaticState& state,
                           const StaticState& previous, SolidMatrix asked) {
-  if (!contact()) return Held::no;
+  if (!contact() || loose.empty()) return Held::no;
   const auto take_contact_and_assemble = [&](const std::vector<NearestPatches>& holds) {
     ++times_held_;
     take_contact(holds, state);
