@@ -44,7 +44,9 @@ void judge_forces(const ConvergenceCriteria& criteria, const ForceFigures& force
   report.rela = share_of(forces.unbalanced, forces.reference);
   report.longest = forces.unbalanced_vector;
   report.longest_share = share_of(forces.unbalanced_vector, forces.reference_vector);
-  report.rela_met = !criteria.resi_glob_rela || report.rela <= *criteria.resi_glob_rela || forces.significant == 0;
+  const bool small = !criteria.resi_glob_rela || report.rela <= *criteria.resi_glob_rela;
+  report.round_off = !small && forces.significant == 0 && forces.felt > 0;
+  report.rela_met = small || (forces.significant == 0 && (!report.round_off || report.rela <= near_balance));
   report.maxi_met = !criteria.resi_glob_maxi || report.maxi <= *criteria.resi_glob_maxi;
   report.refe = forces.over_own;
   report.refe_met = !criteria.resi_refe_rela || report.refe <= *criteria.resi_refe_rela;

@@ -26,6 +26,7 @@ struct ForceFigures {
   double unbalanced = 0;        ///< what is left of forces that should be in balance
   std::int64_t worst_dof = -1;  ///< where
   double significant = 0;       ///< what is left where it is more than round-off, below which no iteration gets
+  double felt = 0;              ///< external forces, those of relations and of contact, where they are far more than it
   /// External forces, reactions, forces of relations and of contact: what a residual is measured against.
   double reference = 0;
   double over_own = 0;  ///< the largest over that of its degree of freedom (reference_forces.hpp)
@@ -51,6 +52,7 @@ struct IterationReport {
   int iteration = 0;
   double rela = 0, maxi = 0, refe = 0;
   bool rela_met = true, maxi_met = true, refe_met = true;
+  bool round_off = false;  ///< RESI_GLOB_RELA is not met, though forces are there: what is left is round-off
   /// `maxi` and `rela` of the vectors of nodes: by them Newton's method goes on, for axes are no matter of bodies
   double longest = 0, longest_share = 0;
   std::int64_t worst_dof = -1;  ///< where the residual is largest
@@ -71,7 +73,8 @@ struct IterationReport {
 
 /// RESI_GLOB_RELA, RESI_GLOB_MAXI and RESI_REFE_RELA: fills in rela, maxi, refe and whether they are met. The relative residual
 /// is measured against the present equilibrium alone, whatever iterates or instants before it were; where its forces vanish,
-/// what round-off leaves of them meets it whatever it is of nothing. What is not finite meets nothing.
+/// what round-off leaves of them meets it whatever it is of nothing. Where forces are there, round-off of what is much stiffer
+/// meets it up to near_balance. What is not finite meets nothing.
 void judge_forces(const ConvergenceCriteria& criteria, const ForceFigures& forces, IterationReport& report);
 
 /// RESI_GEOM and the gaps of active patches: fills in geometry, constraint and whether they are met.

@@ -24,6 +24,7 @@ constexpr double vanishing_displacement = 1e-8;  // of the smallest patch, or of
 // A sum of n terms is off by about sqrt(n) units of round-off of each (Higham, Mary, A new approach to probabilistic rounding
 // error analysis, 2019).
 constexpr double round_off = std::numeric_limits<double>::epsilon();
+constexpr double far_beyond = 1e3;  // times the round-off of a degree of freedom: a force there is one
 
 /// Nodes of every element that has a matrix. @param with_solids or only of the others
 Ragged<std::int32_t> nodes_of_elements(const StaticProblem& problem, bool with_solids) {
@@ -351,8 +352,10 @@ ForceFigures Equilibrium::forces(const StaticState& state, const StaticState& pr
     figures.reference = std::max(figures.reference, largest_entry(forces));
     figures.reference_vector = std::max(figures.reference_vector, longest_force(forces, n_components, d));
   };
-  refer_to(relations_.forces(state.relations), width);
-  if (contact_) refer_to(contact_->forces(state.patches), d);
+  const std::vector<double> held = relations_.forces(state.relations),
+                            pushed = contact_ ? contact_->forces(state.patches) : std::vector<double>();
+  refer_to(held, width);
+  refer_to(pushed, d);
   std::vector<double> left(problem_.n_dofs(), 0.0), acting(problem_.n_dofs(), 0.0);
   // displacements that went to zero leave the round-off of those before them; a body that turns has that of its turn
   const double moved = std::max({longest_displacement(state.displacement, width, d),
@@ -382,6 +385,10 @@ ForceFigures Equilibrium::forces(const StaticState& state, const StaticState& pr
       const double noise = round_off * std::sqrt(row.entries) * summed;
       if (!(unbalanced <= noise) || !std::isfinite(noise))  // displacements that overflow excuse nothing
         figures.significant = std::max(figures.significant, unbalanced);
+      const std::size_t node = dof / width, component = dof % width;
+      const double pressed = pushed.empty() || component >= d ? 0 : pushed[node * d + component];
+      for (const double force : {external_[dof], held[dof], pressed})
+        if (std::abs(force) > far_beyond * noise) figures.felt = std::max(figures.felt, std::abs(force));
     }
   }
   figures.unbalanced_vector = longest_force(left, width, d);

@@ -201,11 +201,14 @@ void Newton::finish_instant(double instant, const StaticState& previous, StaticS
             .before = {.displacement = previous.displacement, .pressure = previous.patches.lambda},
             .external = external,
             .negative = negative.value_or(0),
-            .constraints = line.constraints};
+            .constraints = line.constraints,
+            .unbalanced = line.round_off ? line.rela : 0,
+            .worst_dof = line.worst_dof};
 }
 
 void Newton::accept(const StaticState& state) {
   note_stability();
+  note_round_off();
   equilibrium_.let_covers_go();
   tell_of_covers();
   prediction_.note(options_.start, found_.before,
@@ -323,6 +326,14 @@ int Newton::iterate(double instant, StaticState& state, const std::function<void
     if (!std::isfinite(line.maxi)) break;
   }
   fail_to_converge(instant, line, previous, changing);
+}
+
+void Newton::note_round_off() {
+  if (found_.unbalanced == 0 || std::exchange(round_off_told_, true)) return;
+  inform("EVOLUTION_69", {{"instant", fmt::format("{:.9g}", found_.instant)},
+                          {"residual", fmt::format("{:.2g}", found_.unbalanced)},
+                          {"asked", fmt::format("{:g}", *options_.criteria.resi_glob_rela)},
+                          {"place", equilibrium_.place(found_.worst_dof)}});
 }
 
 void Newton::note_stability() {

@@ -97,6 +97,8 @@ class Newton {
                       const IterationReport& line);
   /// Whether what is solved is an equilibrium that is not stable: EVOLUTION_54, once.
   void note_stability();
+  /// Whether round-off of what is stiff left more than is asked: EVOLUTION_69, once.
+  void note_round_off();
   /// SaddlePointSolver::place_nodes
   void place_nodes(const StaticState& state);
   void assemble(const StaticState& state, const StaticState& previous, SolidMatrix asked);
@@ -198,6 +200,8 @@ class Newton {
     std::vector<double> external;  ///< forces as the instant began with them
     std::int64_t negative = 0;     ///< pivots of the last iteration; 0 where it knows none
     std::int64_t constraints = 0;
+    double unbalanced = 0;  ///< forces over the largest, where that is round-off and more than asked
+    std::int64_t worst_dof = -1;
   };
 
   const StaticProblem& problem_;
@@ -217,6 +221,7 @@ class Newton {
   UnstablePath unstable_path_;
   Found found_;
   bool unstable_told_ = false;                   ///< EVOLUTION_54 was
+  bool round_off_told_ = false;                  ///< EVOLUTION_69 was
   std::map<std::int32_t, double> covers_since_;  ///< zones with covers that are kept since an instant that is not accepted yet
   std::set<std::int32_t> covers_told_;           ///< zones that EVOLUTION_50 was about
   ResidualCourse course_;                        ///< of the instant

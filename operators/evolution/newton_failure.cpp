@@ -122,6 +122,7 @@ void Newton::fail_to_converge(double instant, const IterationReport& line, const
 
 std::string Newton::remedy(const IterationReport& line, double excess, bool softened) const {
   if (!hanging_.empty()) return part("remedy_hold_body", {{"body", hanging_}});
+  if (line.round_off) return part("remedy_less_stiff");
   const double ratio = course_.ratio().value_or(1);
   const bool diverges = !course_.finite() || ratio > worse || equilibrium_.cell_inside_out();
   if (settled_ >= settled_quickly && course_.order().value_or(0) >= quadratic && line.rela >= near_round_off)

@@ -395,6 +395,17 @@ class Skins(StudyTest):
         other = dataclasses.replace(layer, strain="GDEF_LOG")
         self.assertEqual(missed(other, run(other, LACON, self.folder)), [])
 
+    def test_round_off_of_a_body_that_is_far_stiffer_is_told(self):
+        """At 1e12 times the stiffness it is 1e-4 of the forces, at 1e16 more than they are: that passed for an equilibrium, with reactions of the wrong sign."""
+        mesh = union([slab("QUAD4", "TOOL", (-0.5, 0.5), (0, 1), (4, 4), skin="bottom", sides={"left": "TOOL_SIDE"}), slab("QUAD4", "SLAB", (-1.5, 1.5), (-1, 0), (13, 4))])
+        for stiffness, ends, told in ((1e3, "finished", None), (1e15, "finished", "<A> <EVOLUTION_69>"), (1e19, "EVOLUTION_4", "make that body less stiff")):
+            study = Study(name="stiff", mesh=mesh, materials={"TOOL": elastic(stiffness), "SLAB": elastic(1e3)}, zones=[zone("TOOL", "SLAB", 0)], steps=1,
+                          moves=[held("SLAB"), {"GROUP_MA": "TOOL_SIDE", "DX": 0.0}, {"GROUP_MA": "TOOL_BASE", "DY": [[0, 0], [1, -0.02]]}], asked={})
+            self.assertIn(ends, run(study, LACON, self.folder)["status"])
+            said = (self.folder / "err").read_text()
+            self.assertEqual("EVOLUTION_69" in said or "less stiff" in said, told is not None)
+            self.assertIn(told or "", said)
+
     def test_iterations_that_are_nearly_at_their_end_are_told_to_go_on(self):
         """The residual falls quadratically: to say that the step should be cut would be wrong."""
         (_, study), = chosen(["hertz/30 % QUAD8 PETIT slab"])

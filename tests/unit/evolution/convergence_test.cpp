@@ -37,6 +37,22 @@ TEST(Convergence, RoundOffIsNoRelativeResidual) {
   EXPECT_FALSE(left.converged());
 }
 
+// Of a body that is far stiffer than its neighbour round-off is as large as the forces between them.
+TEST(Convergence, RoundOffBesideForcesIsToldAndNotAllOfThem) {
+  const ConvergenceCriteria criteria{.resi_glob_rela = 1e-6, .resi_glob_maxi = {}};
+  const auto left = [&](double unbalanced, double felt) {
+    return judged(criteria, {.unbalanced = unbalanced, .significant = 0, .felt = felt, .reference = 20});
+  };
+  EXPECT_FALSE(left(1e-6, 10).round_off);
+  EXPECT_TRUE(left(1e-6, 10).converged());
+  EXPECT_TRUE(left(1e-2, 10).round_off);
+  EXPECT_TRUE(left(1e-2, 10).converged());
+  EXPECT_TRUE(left(1, 10).round_off);
+  EXPECT_FALSE(left(1, 10).converged());
+  EXPECT_FALSE(left(1, 0).round_off);
+  EXPECT_TRUE(left(1, 0).converged());
+}
+
 TEST(Convergence, TheAbsoluteResidualCountsRoundOffToo) {
   const ConvergenceCriteria criteria{.resi_glob_rela = {}, .resi_glob_maxi = 1e-12};
   EXPECT_FALSE(judged(criteria, {.unbalanced = 1e-11, .significant = 0, .reference = 1}).converged());
