@@ -1,6 +1,7 @@
 """The base of a study: made, kept, emptied, cleaned, never half-written, and never somebody else's folder."""
 
 import fcntl
+import json
 import os
 import signal
 import subprocess
@@ -10,6 +11,8 @@ import unittest
 
 sys.path.insert(0, __file__.rpartition("/")[0] or ".")
 from support import ROOT, STUDY, LauncherTest  # noqa: E402
+import lacon  # noqa: E402
+from lacon.base import registry  # noqa: E402
 
 MATERIAL = "DEFI_MATERIAU(ELAS=_F(E=1, NU=0))"
 
@@ -69,6 +72,65 @@ class Life(LauncherTest):
             (self.work / "study.base" / "base.json").write_text(text)
             self.refused(self.run_study("DEBUT()\n"), "STUDY_6")
             self.assertEqual((self.work / "study.base" / "base.json").read_text(), text)
+
+    def change(self, old, new, seal=False):
+        """Change what is written in the registry; with `seal` it gets the seal of what it then is."""
+        path = self.work / "study.base/base.json"
+        text = path.read_text()
+        self.assertEqual(text.count(old), 1, text)
+        content = json.loads(text.replace(old, new))
+        path.write_text(registry.sealed({k: v for k, v in content.items() if k != "seal"}) if seal else text.replace(old, new))
+        return text
+
+    def test_a_byte_that_changes_in_the_registry_is_told(self):
+        """Without a seal "mesh_4" that became "mesh_3" gave the study another mesh, without a word."""
+        self.ok(self.run_study(STUDY + "N = [1.5, 'text']\nFIN()\n"))
+        path = self.work / "study.base/base.json"
+        text = path.read_bytes()
+        for at, byte in enumerate(text):
+            for other in {byte ^ 1, byte ^ 2, ord("0"), ord('"')} - {byte, 127}:
+                path.write_bytes(text[:at] + bytes((other,)) + text[at + 1:])
+                with self.assertRaises(registry.Unreadable, msg=f"{at}: {text[max(at - 20, 0):at + 20]} with {chr(other)}"):
+                    registry.read(path.parent)
+        for at in [text.index(b'"M": "mesh_4"') + 11, *range(0, len(text), len(text) // 7)]:
+            path.write_bytes(text[:at] + (b"3" if text[at] != ord("3") else b"4") + text[at + 1:])
+            changed = path.read_bytes()
+            self.refused(self.run_study("POURSUITE()\nprint('M', M)\nFIN()\n"), "STUDY_6", "study.base/base.json'")
+            self.assertEqual(path.read_bytes(), changed)
+        with self.assertRaisesRegex(lacon.Error, "STUDY_6.*study.base/base.json'"):
+            lacon.open(path.parent)
+        path.write_bytes(text)
+        self.ok(self.run_study("POURSUITE()\nFIN()\n"))
+
+    def test_a_registry_that_has_changed_is_one_all_the_same(self):
+        """It is ours, so --fresh empties its base, and takes nothing of it."""
+        self.ok(self.run_study(STUDY + "FIN()\n"))
+        self.change('"M": "mesh_4"', '"M": "mesh_3"')
+        self.ok(self.run_study("DEBUT()\nFIN()\n", "--fresh"))
+        self.assertEqual(self.registry()["labels"], {})
+
+    def test_a_registry_without_its_seal(self):
+        self.ok(self.run_study(STUDY + "FIN()\n"))
+        content = self.registry()
+        del content["seal"]
+        (self.work / "study.base/base.json").write_text(json.dumps(content))
+        self.refused(self.run_study("POURSUITE()\nFIN()\n"), "STUDY_6", "base.json", "has changed")
+        content["format"] = 1  # of earlier versions, which had none
+        (self.work / "study.base/base.json").write_text(json.dumps(content))
+        self.ok(self.run_study("POURSUITE()\nprint(M)\nFIN()\n"))
+        self.assertEqual((self.registry()["format"], "seal" in self.registry()), (2, True))
+
+    def test_a_registry_of_another_layout(self):
+        self.ok(self.run_study(STUDY + "FIN()\n"))
+        for old, new, key in (('"M0": "mesh_3"', '"M0": 1', "labels"), ('"M0": "mesh_3"', '"M0": "../mesh"', "labels"), ('"next": ', '"next": 0.', "next"),
+                              ('"running": false', '"running": true', "running"), ('"running": false', '"running": {"process": "1"}', "running"),
+                              ('"sources": [', '"sources": [1, ', "sources"), ('"made": {', '"made": {"mesh_99": [{"key": "a"}], ', "made"),
+                              ('"made": {', '"more": {}, "made": {', "more"), ('"running": false', '"unfinished": {"result_99": {"label": "R"}}', "unfinished"),
+                              ('"running": false', '"begun": {"files": [], "at": {"mesh_1": "0"}}', "begun"), ('"lost": {}', '"lost": {"A": 1}', "namespace"),
+                              ('"running": false', '"unused_contacts": {"contact_9": {}}', "unused_contacts")):
+            text = self.change(old, new, seal=True)
+            self.refused(self.run_study("POURSUITE()\nFIN()\n"), "STUDY_6", "base.json", f"'{key}'")
+            (self.work / "study.base/base.json").write_text(text)
 
     def test_a_folder_that_is_not_a_base_is_not_emptied(self):
         """Its base.json is another program's, and so are the rest of its files, whatever their names are."""

@@ -262,6 +262,8 @@ class Inspect(StudyTest):
         path = shutil.copytree(self.study("D_PLAN").folder / "study.base", self.folder / "study.base") / "base.json"
         registry = json.loads(path.read_text(encoding="utf-8"))
         registry["unfinished"] = {registry["labels"].pop("RESU"): {"label": "RESU", "key": None, "at": None, "where": "study.comm:1"}}
+        registry["format"] = 1  # which had no seal
+        del registry["seal"]
         path.write_text(json.dumps(registry), encoding="utf-8")
         for arguments in ((), ("--result", "RESU")):
             self.assertIn("Pairing of RESU at instant 1\n", self.inspect(self.folder, *arguments).stdout)

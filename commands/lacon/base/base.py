@@ -15,15 +15,13 @@ import weakref
 
 from ..core.catalog import part
 from ..core.concepts import concepts_in, dumps, type_of
-from ..core.files import write_whole
 from ..core.late import h5py
 from ..core.messages import AsterError, NeedsRun, fail
-from . import contents, kept, seal
+from . import contents, kept, registry, seal
 from .unfinished import Unfinished
 
-_registry = "base.json"
+_registry = registry.name
 _orders = "orders.partial"
-_no_registry = (OSError, ValueError, KeyError, TypeError, RecursionError)  #: what reading a file that is none throws
 #: seconds after which an operator whose launcher is gone has ended
 patience = 3.0
 _tries, _pause = 20, 0.01  # seconds, until a folder that a run has just made is a base
@@ -96,9 +94,8 @@ class Base:
     def _holder(self):
         """{"process", "since"} of the run that is under way, as it has entered itself."""
         try:
-            holder = json.loads((self.folder / _registry).read_text(encoding="utf-8"))["running"]
-            return {"process": int(holder["process"]), "since": str(holder["since"])}
-        except _no_registry:
+            return registry.read(self.folder).get("running") or None
+        except registry.Unreadable:
             return None
 
     def hold(self, where):
@@ -110,7 +107,7 @@ class Base:
         """What every base has, one that is only read too."""
         self.kinds = kinds
         self.folder = pathlib.Path(os.path.abspath(folder))
-        self.registry = {"format": 1, "next": 1, "labels": {}, "namespace": {}}
+        self.registry = registry.empty()
         self.unsolved = {}  #: of `lacon check`: id of a concept that is not really made -> its label, where it would be
         self._made = False
         self._references = {}  #: id -> state of its file, the ids in it
@@ -122,28 +119,18 @@ class Base:
             fail("STUDY_4", where, folder=self.folder)
         if fresh and (self.folder / _registry).exists():
             try:
-                self._registry_there()
-            except _no_registry:
-                fail("STUDY_4", where, folder=self.folder)
+                registry.read(self.folder)
+            except registry.Unreadable as error:
+                if not error.changed:
+                    fail("STUDY_4", where, folder=self.folder)
         if not may_be_base(self.folder):
             fail("STUDY_4", where, folder=self.folder)
 
-    def _registry_there(self):
-        """The registry in the folder. @throws one of _no_registry"""
-        registry = json.loads((self.folder / _registry).read_text(encoding="utf-8"))
-        if registry["format"] != 1:
-            raise ValueError(f"format {registry['format']}, this version reads format 1")
-        {}.update(registry["labels"])
-        {}.update(registry.get("made", {}))
-        int(registry["next"])
-        return registry
-
     def _read(self, where):
         try:
-            self.registry = self._registry_there()
-        except _no_registry as error:
-            fail("STUDY_6", where, folder=self.folder, reason=error)
-        self.registry.setdefault("namespace", {})
+            self.registry = registry.read(self.folder)
+        except registry.Unreadable as error:
+            fail("STUDY_6", where, file=self.folder / _registry, reason=error)
 
     def _empty(self):
         for path in self.folder.iterdir():
@@ -153,7 +140,7 @@ class Base:
     def write(self, where=""):
         """Replace the registry."""
         try:
-            write_whole(self.folder / _registry, json.dumps(self.registry))
+            registry.write(self.folder, self.registry)
         except OSError as error:
             fail("STUDY_3", where, folder=self.folder, reason=error.strerror)
 
