@@ -79,10 +79,10 @@ class Endings(LauncherTest):
     def test_syntax_errors(self):
         self.refused(self.run_study("DEBUT()\nM = (\n"), "STUDY_16", "study.comm:2")
         self.refused(self.run_study("DEBUT()\nM = DEFI_MATERIAU(ELAS=1, ELAS=2)\n"), "STUDY_16", "study.comm:2", "repeated")
-        for text, word in (("X = 1\0", "null"), ("X = " + " + ".join(["1"] * 20000), "recursion"), ("X = " + "(" * 5000 + "1" + ")" * 5000, "nested")):
+        for text, word in (("X = 1\0", "null"), ("X = " + " + ".join(["1"] * 20000), "nested too deeply"), ("X = " + "-" * 20000 + "1", "nested too deeply"), ("X = " + "(" * 5000 + "1" + ")" * 5000, "nested")):
             run = self.refused(self.run_study(f"DEBUT()\n{text}\n"), "STUDY_16", "study.comm", word)
             self.assertNotIn("Traceback", run.err)
-        self.refused(self.run_study(f"DEBUT()\nF = FORMULE(NOM_PARA='X', VALE='{' + '.join(['X'] * 20000)}')\n"), "FORMULE_1", "study.comm:2", "recursion")
+        self.refused(self.run_study(f"DEBUT()\nF = FORMULE(NOM_PARA='X', VALE='{' + '.join(['X'] * 20000)}')\n"), "FORMULE_1", "study.comm:2", "nested too deeply")
 
     def test_python_that_ends_in_odd_ways_is_told_as_any_other(self):
         """What is no Exception, an exception without a text, an output that is closed or put to None: a diagnosis, no traceback of the launcher's."""

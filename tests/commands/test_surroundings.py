@@ -3,10 +3,14 @@ or with a message of the user's."""
 
 import os
 import pathlib
+import shutil
 import subprocess
 import sys
+import types
+import unittest.mock
 
 from support import ROOT, STUDY, LauncherTest, main
+from lacon.base import kept
 
 PRINT = "IMPR_RESU(UNITE=80, RESU=_F(RESULTAT=R))\n"
 
@@ -209,6 +213,48 @@ FIN()
             self.refused(self.launch("study.comm", "--unit", f"20={path}"), "COMMAND_5", path)
             self.refused(self.launch("study.comm", "--unit", "20=mesh.med", "--unit", f"80={path}"), "COMMAND_8", path)
         self.assertTrue(pathlib.Path("/dev/null").is_char_device() and (self.work / "pipe").is_fifo())
+
+    def test_a_file_that_opens_and_cannot_be_read(self):
+        """As on a disk that fails; the command ended in a Python error of the command file."""
+        file = "/proc/self/mem"
+        for command in ("LIRE_MAILLAGE(UNITE=20)", "LIRE_FONCTION(UNITE=20, NOM_PARA='INST')", "LIRE_FONCTION(UNITE=20, NOM_PARA='INST', FORMAT='NUMPY')",
+                        "LIRE_TABLE(UNITE=20)", "INCLUDE(UNITE=20)"):
+            self.write("study.comm", f"DEBUT()\nX = {command}\n")
+            run = self.refused(self.launch("study.comm", "--unit", f"20={file}"), "COMMAND_5", f"'{file}'", "study.comm:2")
+            self.assertNotIn("Traceback", run.err)
+        self.refused(self.launch(file), "STUDY_14", f"'{file}'")
+
+    def test_a_file_whose_reading_fails_later_has_no_key(self):
+        """Its operator runs, and says what it cannot read."""
+        program = self.bin / "lire_maillage"
+        order = {"command": "LIRE_MAILLAGE", "keywords": {}, "result": {"id": "mesh_1", "label": "M", "reuse": False}}
+        records = kept.Kept(types.SimpleNamespace(registry={}))
+        self.assertTrue(records.order_key(order, program, {20: self.work / "mesh.med"}))
+        with unittest.mock.patch.object(kept, "_content", side_effect=OSError(5, "Input/output error")):
+            self.assertIsNone(records.order_key(order, program, {20: self.work / "mesh.med"}))
+
+    def test_a_limit_of_memory(self):
+        """Limits at which numpy and h5py do not fit; a little above, HDF5 itself may crash."""
+        self.write("study.comm", "DEBUT()\nF = DEFI_FONCTION(NOM_PARA='INST', VALE=(0, 0, 1, 1))\nprint(F(0.5))\nFIN()\n")
+        for limit, status in ((40_000, 3), (50_000, 3), (60_000, 3), (2_000_000, 0)):
+            run = self.shell("study.comm", f"ulimit -v {limit} &&")
+            self.assertEqual(run.returncode, status, run.stdout + run.stderr)
+            self.assertEqual("<S> <MEMORY_1> the memory is used up" in run.stderr, status == 3, run.stderr)
+            self.assertNotIn("Traceback", run.stderr)
+            self.assertTrue(run.stdout.endswith(f"--- DIAGNOSTIC JOB : {'<S>_ERROR' if status else 'OK'}\n"), run.stdout)
+
+    def test_memory_that_does_not_suffice_for_the_message(self):
+        """The catalogue is read when the first message is made."""
+        spoil = "from lacon.core import catalog\ndef no_memory(): raise MemoryError\ncatalog.messages = no_memory\n"
+        for text in ("DEBUT()\n" + spoil + "M = LIRE_MAILLAGE(UNITE=21)\n", spoil + "M = LIRE_MAILLAGE()\n"):
+            run = self.refused(self.run_study(text), status=3, diagnostic="<S>_ERROR")
+            self.assertEqual(run.err, "<S> <MEMORY_1> the memory is used up\n")
+
+    def test_an_array_of_a_command_file_that_is_too_large(self):
+        """numpy says which one: that is the command file's error."""
+        self.refused(self.run_study("import numpy\nDEBUT()\nnumpy.zeros(10**15)\n"), "STUDY_19", "Unable to allocate", "study.comm:3")
+        run = self.run_study("DEBUT()\nx = [0] * 10**15\n")
+        self.refused(run, "<S> <MEMORY_1>", "study.comm:2", status=3, diagnostic="<S>_ERROR")
 
 
 if __name__ == "__main__":

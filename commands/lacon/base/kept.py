@@ -106,10 +106,14 @@ class Kept:
         reached = self._reached(inputs)
         if reached is None:
             return None
+        try:
+            read = {unit: [pathlib.Path(path).stem, _of_file(path)] for unit, path in files.items()}
+        except OSError:  # a disk that fails: the operator says which file it cannot read
+            return None
         return _digest({
             "command": order["command"], "keywords": keywords, "label": result["label"], "reuse": result["reuse"],
             "inputs": reached, "program": _of_program(program), "version": _version(),
-            "files": {unit: [pathlib.Path(path).stem, _of_file(path)] for unit, path in files.items()},
+            "files": read,
         })
 
     def stand(self):

@@ -5,6 +5,7 @@ import keyword
 
 from ..base import names
 from ..base.expressions import Expression, hides
+from ..core.catalog import part
 from ..core.hdf5 import text_type
 from ..core.nearest import nearest
 
@@ -19,7 +20,9 @@ def formule(call):
     try:
         expression = Expression(text, parameters, values)
         used = expression.used()
-    except (SyntaxError, ValueError, RecursionError, MemoryError) as error:
+    except (RecursionError, MemoryError):
+        call.fail("FORMULE_1", "VALE", reason=part("too_nested"))
+    except (SyntaxError, ValueError) as error:
         call.fail("FORMULE_1", "VALE", reason=error.msg if isinstance(error, SyntaxError) else error)
     study, own = call.study.names.values, call.study.names.user()
     for name in used:

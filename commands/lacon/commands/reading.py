@@ -16,8 +16,11 @@ _missing = "-"
 def _lines(call):
     """(the file of UNITE, its lines)"""
     path = call.study.input_unit(call.keywords["UNITE"], f"{call.command}/UNITE, {call.where}")
-    with open(path, encoding="utf-8", errors="replace") as file:
-        lines = file.read().splitlines()
+    try:
+        with open(path, encoding="utf-8", errors="replace") as file:
+            lines = file.read().splitlines()
+    except OSError:
+        call.fail("COMMAND_5", "UNITE", unit=call.keywords["UNITE"], file=path)
     call.study.has_read(path)
     return path, lines
 

@@ -30,6 +30,16 @@ def write_whole(path, text):
         file.write(text)
 
 
+def is_readable(path):
+    """Whether a file gives its first byte: the rights alone do not say so, of a disk that fails or of a file of /proc."""
+    try:
+        with open(path, "rb") as file:
+            file.read(1)
+        return True
+    except OSError:
+        return False
+
+
 def link(source, target):
     """Give a file a second name, or a copy where the file system has no such thing; what has the name is replaced."""
     target.parent.mkdir(exist_ok=True)

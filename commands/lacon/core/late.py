@@ -1,6 +1,7 @@
 """numpy and h5py, imported when something of them is first asked for: a launcher that only starts operators does not pay for them."""
 
 import os
+import resource
 import sys
 
 
@@ -23,6 +24,10 @@ class _Late:
         try:
             __import__(self._name)
             return sys.modules[self._name]
+        except ImportError as error:
+            if "failed to map segment" in str(error) and resource.getrlimit(resource.RLIMIT_AS)[0] != resource.RLIM_INFINITY:  # ulimit -v
+                raise MemoryError from None
+            raise
         finally:
             if before is None:
                 os.environ.pop("OPENBLAS_NUM_THREADS", None)

@@ -1,5 +1,6 @@
 """How the launcher and its tools end: exit statuses, and errors that are shown."""
 
+import contextlib
 import os
 import sys
 
@@ -18,6 +19,16 @@ def _is_nowhere():
     return False
 
 
+def memory_used_up(where=""):
+    """Say so. @return (exit status, words of the diagnosis)"""
+    try:
+        messages.show(messages.message("MEMORY_1", where))
+    except MemoryError:  # there is none left for the catalogue either
+        with contextlib.suppress(OSError):
+            os.write(2, b"<S> <MEMORY_1> the memory is used up\n")
+    return solution_failed, "<S>_ERROR"
+
+
 def guarded(work):
     """What `work` returns, (exit status, words of the diagnosis); errors that it throws are shown."""
     try:
@@ -29,6 +40,9 @@ def guarded(work):
     except KeyboardInterrupt:  # before the study takes signals, or behind its end
         messages.show(messages.message("STUDY_18", signal="SIGINT"))
         return internal_error, "<F>_ABNORMAL_ABORT"
+    except MemoryError as error:
+        error.__traceback__ = None  # what the frames hold is free for the message
+        return memory_used_up()
     except OSError as error:
         lost = streams.unwritable(error)
         if lost:

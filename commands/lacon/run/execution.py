@@ -9,6 +9,7 @@ import pathlib
 import re
 import shutil
 import signal
+import site
 import sys
 import sysconfig
 import threading
@@ -17,8 +18,9 @@ import traceback
 import warnings
 
 from ..base import names as namespace
-from ..core import catalog, labels, messages, streams
+from ..core import catalog, labels, messages, outcome, streams
 from ..core.catalog import part
+from ..core.files import is_readable
 from ..core.messages import AsterError, NeedsRun, fail, message, show
 from ..core.nearest import nearest
 from ..peer import modules
@@ -39,7 +41,7 @@ def provided_names():
 def check_files(files):
     """@throws AsterError where a command file cannot be read, before anything runs"""
     for path in files:
-        if not os.path.isfile(path) or not os.access(path, os.R_OK):
+        if not os.path.isfile(path) or not is_readable(path):
             fail("STUDY_14", str(path), file=path, reason=part("file_not_there" if not os.path.exists(path) else "not_a_readable_file"))
         for name in ("numpy", "h5py"):  # the folder of a command file comes first where modules are looked for
             for hidden_by in (f"{name}.py", os.path.join(name, "__init__.py")):
@@ -190,6 +192,8 @@ def _read(path):
     except (SyntaxError, UnicodeDecodeError) as error:
         _refuse_other_encoding(path)
         fail("STUDY_16", str(path), reason=error)
+    except OSError as error:
+        fail("STUDY_14", str(path), file=path, reason=error.strerror)
 
 
 def _refuse_other_encoding(path):
@@ -213,8 +217,10 @@ def _compiled(path, source):
             return compile(ast.parse(source, path), path, "exec")
     except SyntaxError as error:
         fail("STUDY_16", f"{error.filename}:{error.lineno}", reason=error.msg)
-    except (ValueError, RecursionError, MemoryError) as error:  # a null byte; an expression that is nested too deeply for Python
+    except ValueError as error:  # a null byte
         fail("STUDY_16", str(path), reason=error)
+    except (RecursionError, MemoryError):
+        fail("STUDY_16", str(path), reason=part("too_nested"))
 
 
 def _run_file(study, path, source, values):
@@ -243,6 +249,8 @@ def _run_file(study, path, source, values):
         _print_traceback(error)
         show(_unknown_name(error, study))
         raise Failure(2, "<F>_ERROR") from None
+    except MemoryError as error:
+        _refuse_more_memory(error)
     except Exception as error:
         if _is_in(study.base_folder, error):
             show(message("STUDY_3", place(error), folder=error.filename, reason=error.strerror))
@@ -258,6 +266,16 @@ def _refuse_more_time(error):
     """@throws Failure"""
     show(message("STUDY_25", place(error), seconds=f"{error.seconds:g}"))
     raise Failure(3, "<S>_CPU_LIMIT") from None
+
+
+def _refuse_more_memory(error):
+    """@throws Failure"""
+    files = [entry.filename for entry in traceback.extract_tb(error.__traceback__) if not entry.filename.startswith((*_libraries, "<frozen"))]
+    if str(error) and files and not files[-1].startswith(labels.package):  # numpy says which array of the command file is too large
+        _refuse(error)
+    where = place(error)
+    error.__traceback__ = None  # what the frames hold is free for the message
+    raise Failure(*outcome.memory_used_up(where)) from None
 
 
 def _refuse(error):
@@ -293,7 +311,7 @@ def _user_entries(error):
 
 
 #: where the modules of Python and its packages are
-_libraries = tuple(set(sysconfig.get_paths().values()))
+_libraries = tuple({*sysconfig.get_paths().values(), *site.getsitepackages()})
 
 
 def place(error):

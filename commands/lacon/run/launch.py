@@ -69,6 +69,9 @@ def run_study(run, work):
             for item in error.messages:
                 messages.show(item)
             status, diagnostic = error.status, error.diagnostic
+        except MemoryError:
+            if status == outcome.done:
+                status, diagnostic = outcome.memory_used_up()
     return status, diagnostic
 
 

@@ -8,7 +8,7 @@ from ..base.base import Base
 from ..base.names import Names
 from ..core import streams
 from ..core.concepts import Concept
-from ..core.files import write_whole
+from ..core.files import is_readable, write_whole
 from ..core.messages import AsterError, Message, fail, message, show
 from ..objects.kinds import kinds
 from . import execution, unused_contacts
@@ -169,7 +169,7 @@ class Study:
         path = self.written_units.get(number) or self.units.get(number)
         if path is None:
             fail("COMMAND_4", where, unit=number)
-        if not os.path.isfile(path) or not os.access(path, os.R_OK):
+        if not os.path.isfile(path) or not is_readable(path):
             fail("COMMAND_5", where, unit=number, file=path)
         return os.path.abspath(path)
 
