@@ -6,6 +6,7 @@ import pathlib
 import shutil
 import subprocess
 import sys
+import time
 import types
 import unittest.mock
 
@@ -255,6 +256,98 @@ FIN()
         self.refused(self.run_study("import numpy\nDEBUT()\nnumpy.zeros(10**15)\n"), "STUDY_19", "Unable to allocate", "study.comm:3")
         run = self.run_study("DEBUT()\nx = [0] * 10**15\n")
         self.refused(run, "<S> <MEMORY_1>", "study.comm:2", status=3, diagnostic="<S>_ERROR")
+
+
+class Threads(LauncherTest):
+    """Of a command file, which call commands: they wait for one another. Half of such runs ended with STUDY_3."""
+
+    def test_six_at_once(self):
+        text = """
+import sys, threading
+sys.setswitchinterval(1e-5)
+DEBUT()
+meshes, errors = {}, []
+def make(i):
+    try:
+        mesh = LIRE_MAILLAGE(UNITE=20)
+        meshes[i] = MODI_MAILLAGE(reuse=mesh, MAILLAGE=mesh, ORIE_PEAU=_F(GROUP_MA_PEAU='SKIN')) if i % 2 else mesh
+        globals()[f'F{i}'] = DEFI_FONCTION(NOM_PARA='INST', VALE=(0, 0, 1, i))
+    except BaseException as error:
+        errors.append(error)
+threads = [threading.Thread(target=make, args=(i,)) for i in range(6)]
+for thread in threads: thread.start()
+for thread in threads: thread.join()
+assert not errors, errors
+FIN()
+"""
+        for options in (("--fresh",), ("--fresh",), ()):
+            self.ok(self.run_study(text, *options))
+            labels = self.registry()["labels"]
+            self.assertEqual({root for root in labels if root.startswith(("F", "meshes"))}, {f"{name}" for i in range(6) for name in (f"F{i}", f"meshes[{i}]")})
+            self.assertEqual(len(set(labels.values())), 12)
+
+    def test_the_end_of_the_file_waits_for_them(self):
+        text = """
+import threading, time
+DEBUT()
+def work():
+    global M
+    time.sleep(0.5)
+    M = LIRE_MAILLAGE(UNITE=20)
+threading.Thread(target=work).start()
+"""
+        self.ok(self.run_study(text))
+        self.assertEqual(self.registry()["labels"], {"M": "mesh_1"})
+
+    def test_a_pool_that_nobody_shuts_down(self):
+        text = "from concurrent.futures import ThreadPoolExecutor\nDEBUT()\npool = ThreadPoolExecutor(2)\nM = pool.submit(LIRE_MAILLAGE, UNITE=20).result()\nFIN()\n"
+        self.ok(self.run_study(text))
+
+    def test_a_command_that_fails_in_one(self):
+        text = "import threading\nDEBUT()\ndef work():\n    LIRE_MAILLAGE(UNITE=21)\nthreading.Thread(target=work).start()\n"
+        run = self.refused(self.run_study(text), "<COMMAND_4>", "study.comm:4")
+        self.assertNotIn("Traceback", run.err)
+        run = self.refused(self.run_study("import threading, time\nDEBUT()\ndef work():\n    time.sleep(0.5)\n    LIRE_MAILLAGE(UNITE=20)\nthreading.Thread(target=work).start()\nFIN()\n"),
+                           "<STUDY_12>", "study.comm:5")
+        self.assertNotIn("Traceback", run.err)
+
+    def test_an_error_ends_the_operator_of_another(self):
+        (self.bin / "lire_maillage").write_text("#!/bin/sh\ntouch started\nexec sleep 60\n")
+        text = """
+import os, threading, time
+DEBUT()
+threading.Thread(target=lambda: LIRE_MAILLAGE(UNITE=20)).start()
+while not os.path.exists('started'): time.sleep(0.01)
+1 / 0
+"""
+        before = time.monotonic()
+        self.refused(self.run_study(text), "<STUDY_19>", "ZeroDivisionError")
+        self.assertLess(time.monotonic() - before, 30)
+
+    def test_a_process_that_is_forked_during_a_command(self):
+        """The command of the process that it comes from is not under way in it."""
+        (self.bin / "lire_maillage").write_text("#!/bin/sh\ntouch started\nsleep 1\nexit 2\n")
+        text = """
+import os, threading, time
+DEBUT()
+def work():
+    try:
+        LIRE_MAILLAGE(UNITE=20)
+    except AsterError:
+        pass
+thread = threading.Thread(target=work)
+thread.start()
+while not os.path.exists('started'): time.sleep(0.01)
+child = os.fork()
+if not child:
+    try:
+        DEFI_LIST_REEL()
+    except AsterError:
+        os._exit(7)
+assert os.waitstatus_to_exitcode(os.waitpid(child, 0)[1]) == 7
+thread.join()
+"""
+        self.ok(self.run_study(text))
 
 
 if __name__ == "__main__":

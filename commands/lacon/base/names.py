@@ -59,7 +59,7 @@ def concepts_of(name, value, seen=()):
     if isinstance(value, Concept):
         yield name, value
     elif isinstance(value, (list, tuple, dict)) and id(value) not in seen and len(seen) < 50:
-        items = value.items() if isinstance(value, dict) else enumerate(value)
+        items = list(value.items()) if isinstance(value, dict) else enumerate(value)
         if not isinstance(value, dict) and _plain(value):
             return
         for key, item in items:
@@ -94,7 +94,7 @@ def encode(value, seen=()):
         plain = kinds <= {int, bool, str, type(None)} or (kinds == {float} and all(map(math.isfinite, value)))
         return {type(value).__name__: list(value) if plain else [encode(item, seen) for item in value]}
     if type(value) in (dict, _F):
-        return {"dict": [[encode(k, seen), encode(v, seen)] for k, v in value.items()]}
+        return {"dict": [[encode(k, seen), encode(v, seen)] for k, v in list(value.items())]}
     if type(value) is complex:
         return {"complex": [value.real, value.imag]}
     if type(value) is bytes:
@@ -181,7 +181,7 @@ class Names:
     def user(self):
         """name -> value of what the command files made"""
         missing = object()
-        return {k: v for k, v in self.values.items()
+        return {k: v for k, v in list(self.values.items())  # a thread of the command file may assign meanwhile
                 if not k.startswith("__") and self.provided.get(k, missing) is not v}
 
     def publish(self, name, concept):

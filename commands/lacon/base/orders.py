@@ -30,6 +30,7 @@ ended_by_signal = ("EVOLUTION_30", "FORMULE_7")
 _huge_pages = "glibc.malloc.hugetlb"
 #: takes away the line of a terminal in which it stands
 _empty_line = b"\r\033[K"
+_running = []  #: operators that have been started and not ended
 
 
 class Outcome:
@@ -124,6 +125,7 @@ def _start(arguments, study, theirs, terminal):
 def _wait(process, study, ours, terminal):
     """Until the operator has ended, evaluate its formulae, and hand on what it says."""
     forward = None
+    _running.append(process)
     try:
         late.load()  # while the operator works: checks, functions and FIN need it later
         if process.stderr:
@@ -138,6 +140,7 @@ def _wait(process, study, ours, terminal):
         _end(process)
         raise
     finally:
+        _running.remove(process)
         if terminal and process.returncode:  # an operator that was killed leaves its line
             with contextlib.suppress(OSError):  # the terminal is gone
                 os.write(terminal, _empty_line)
@@ -156,6 +159,12 @@ def _terminal(study):
         yield number
     finally:
         os.close(number)
+
+
+def end_running():
+    """End the operator that a thread of the command file waits for."""
+    for process in list(_running):
+        process.terminate()
 
 
 def _end(process):

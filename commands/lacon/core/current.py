@@ -1,5 +1,20 @@
 """The run of this process: commands, messages and the assertions of a command file ask for it."""
 
+import os
+import threading
+
+#: held by the thread that is in a command: those of a command file wait for one another
+turn = threading.RLock()
+
+
+def _forked():
+    """The thread that held it is not in this process."""
+    global turn
+    turn = threading.RLock()
+
+
+os.register_at_fork(after_in_child=_forked)
+
 #: a run.study.Study; nothing where no command file runs
 study = None
 

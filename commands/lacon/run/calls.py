@@ -29,6 +29,10 @@ class Command:
         return catalog.help_of(catalog.command(self.name))
 
     def __call__(self, *args, **given):
+        with current.turn:
+            return self._do(args, given)
+
+    def _do(self, args, given):
         started = time.perf_counter()
         run = current.study
         if run is None:

@@ -223,12 +223,35 @@ def _compiled(path, source):
         fail("STUDY_16", str(path), reason=part("too_nested"))
 
 
+@contextlib.contextmanager
+def _threads():
+    """A command file ends when its threads have, and fails by a command that has failed in one of them."""
+    failed, others = [], threading.excepthook
+
+    def told(thrown):
+        if isinstance(thrown.exc_value, AsterError):
+            failed.append(thrown.exc_value)
+        else:
+            others(thrown)
+
+    threading.excepthook = told  # and stays: what threads throw behind a failure is no more to be said
+    before = threading.enumerate()
+    yield
+    for thread in threading.enumerate():
+        # those of a pool wait for work until Python ends
+        pooled = getattr(getattr(thread, "_target", None), "__module__", "") == "concurrent.futures.thread"
+        if thread not in before and not thread.daemon and not pooled:
+            thread.join()
+    if failed:
+        raise failed[0]
+
+
 def _run_file(study, path, source, values):
     folder = os.path.dirname(os.path.abspath(path))
     if folder not in sys.path:
         sys.path.insert(0, folder)
     try:
-        with readers():
+        with readers(), _threads():
             exec(_compiled(path, source), values)
     except AsterError as error:
         _report(error)

@@ -64,7 +64,7 @@ def run_study(run, work):
         status, diagnostic = failure.status, failure.diagnostic
     finally:
         try:
-            run.close()
+            run.close(failed=status != outcome.done)
         except messages.AsterError as error:
             for item in error.messages:
                 messages.show(item)

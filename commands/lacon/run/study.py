@@ -4,9 +4,10 @@ import os
 import pathlib
 import sys
 
+from ..base import orders
 from ..base.base import Base
 from ..base.names import Names
-from ..core import streams
+from ..core import current, streams
 from ..core.concepts import Concept
 from ..core.files import is_readable, write_whole
 from ..core.messages import AsterError, Message, fail, message, show
@@ -113,10 +114,21 @@ class Study:
             self.base.registry.update(running=False, sources=sorted(self.sources))
             self.base.write()
 
-    def close(self):
-        """The end of the run, whatever brought it: save, and after FIN remove what no name refers to any more."""
+    def close(self, failed=False):
+        """The end of the run, whatever brought it: save, and after FIN remove what no name refers to any more. A command that a thread of the command
+        file is in comes to its end first; where the run has `failed` its operator is ended."""
         if os.getpid() != self.process:  # a process that the command file has forked: the base is that of the run
             return
+        while not current.turn.acquire(timeout=0.05):
+            if failed:
+                orders.end_running()
+        try:
+            self._close()
+        finally:
+            self.open = False
+            current.turn.release()
+
+    def _close(self):
         try:
             if self.base is not None:
                 self.save()
