@@ -60,7 +60,8 @@ def read(folder):
         raise Unreadable(part("registry_of_another"))
     if written > newest:
         raise Unreadable(part("registry_format", format=written, known=newest))
-    content = {"namespace": {}, **content, "format": newest}
+    content.setdefault("namespace", {})
+    content["format"] = newest
     wrong = next((key for key in {**_layout, **content} if not _fits(content, key)), None)
     if wrong is not None:
         raise Unreadable(part("registry_wrong", key=wrong))
