@@ -16,6 +16,7 @@ namespace {
 constexpr double gap_that_counts = 0.2;      // of what skins give way by: pressures of a fit are wrong by as much
 constexpr double share_that_counts = 1e-3;   // of the largest strain of a zone: pressures below are none to speak of
 constexpr double share_of_round_off = 1e-3;  // of the largest pressure of a zone, at the instant that strains it most
+constexpr double gap_of_closed = 1e-5;       // of h: below, the average gap of a patch in contact is its round-off
 constexpr double missed = 0.04;              // of h: a strain that the pressure would make that coarse patches do not feel
 
 }  // namespace
@@ -59,9 +60,11 @@ void ContactNotices::tell_what_nothing_presses(double instant) {
     press(cell.master, value);
   }
   constexpr double round_off = 1e-12;
-  for (const auto& [body, largest] : strain)
-    if (largest <= round_off && free_.erase(body) > 0)
-      inform("EVOLUTION_23", {{"body", bodies_.name_at(body)}, {"instant", fmt::format("{:.9g}", instant)}});
+  std::erase_if(free_, [&](std::int32_t body) {
+    const bool rests = strain[body] <= round_off;
+    if (rests) inform("EVOLUTION_23", {{"body", bodies_.name_at(body)}, {"instant", fmt::format("{:.9g}", instant)}});
+    return rests;
+  });
 }
 
 void ContactNotices::tell_what_overlaps(double instant) {
@@ -195,12 +198,16 @@ void ContactNotices::end(bool /*completed*/) {
     if (!pressed_.contains(zone)) told.emplace(zone, pierced);
   const auto tell = [&](std::string_view id, std::int32_t zone, const Pierced& pierced) {
     const ContactZone& names = present_.problem.contact->zones[zone];
+    const std::string gap = fmt::format("{:.3g}", pierced.worst.gap);
+    const bool is_open = pierced.worst.gap < -gap_of_closed * present_.contact->patch_size(pierced.worst.patch);
     inform(id, {{"slave", names.slave_group},
                 {"master", names.master_group},
                 {"cell", first_cell(pierced.worst.patch)},
                 {"instant", fmt::format("{:.9g}", pierced.instant)},
                 {"percent", fmt::format("{:.3g}", 100 * pierced.worst.depth)},
-                {"gap", fmt::format("{:.3g}", pierced.worst.gap)}});
+                {"gap", gap},
+                {"average", part(is_open ? "cover_takes_no_contact" : "contact_holds_average",
+                                 {{"gap", gap}, {"master", names.master_group}})}});
   };
   for (const auto& [zone, pierced] : told) tell("EVOLUTION_16", zone, pierced);
   for (const auto& [zone, pierced] : missed_)

@@ -144,6 +144,12 @@ class LooseBodies(StudyTest):
             self.assertIn("<EVOLUTION_20>", said)
             self.assertLessEqual(int(re.search(r"Converged at the instant 1 with (\d+) iteration", said)[1]), 3)
 
+    def test_a_block_that_nothing_presses_is_told_where_it_touches_nothing(self):
+        """Springs in the matrix alone keep it where it is, in the middle of the cell."""
+        for kind, cells in (("QUAD4", 3), ("QUAD8", 4)):
+            _, _, said = self.solve(self.cell(kind, cells, 0.002), 0.0, 0.0)
+            self.assertEqual(said.count("<EVOLUTION_23>"), 1)
+
     def test_a_pile_falls_together(self):
         """Three blocks above a slab, of which the middle one has no slave of its own."""
         sides = ({"bottom": "SKIN", "top": "TOP"}, {"bottom": "WALL", "top": "WALL"}, {"bottom": "SKIN", "top": "SKIN"}, {"bottom": "BASE", "top": "WALL"})
