@@ -24,7 +24,7 @@ constexpr double vanishing_displacement = 1e-8;  // of the smallest patch, or of
 // A sum of n terms is off by about sqrt(n) units of round-off of each (Higham, Mary, A new approach to probabilistic rounding
 // error analysis, 2019).
 constexpr double round_off = std::numeric_limits<double>::epsilon();
-constexpr double far_beyond = 1e3;  // times the round-off of a degree of freedom: a force there is one
+constexpr double far_beyond = 1e8;  // times the round-off of a degree of freedom: a force there is one
 
 /// Nodes of every element that has a matrix. @param with_solids or only of the others
 Ragged<std::int32_t> nodes_of_elements(const StaticProblem& problem, bool with_solids) {

@@ -21,6 +21,7 @@
 namespace lacon {
 namespace {
 
+constexpr double few_digits = 1e-4;    // of the largest force: round-off that is told
 constexpr int most_times = 3;          // ITER_GLOB_MAXI, where each set of statuses has that many iterations to its equilibrium
 constexpr int drifting = 4;            // iterations without change of status, each of which leaves more than the one before
 constexpr int in_vain = 18;            // iterations whose residuals get nowhere: what flows or is soft may settle sooner
@@ -38,6 +39,7 @@ Newton::Newton(const StaticProblem& problem, const NewtonOptions& options, std::
       options_(options),
       bodies_(problem.mesh),
       extent_(extent(problem.mesh)),
+      unsupported_(problem.contact ? free_bodies(problem, bodies_) : std::set<std::int32_t>()),
       loose_(RigidMotions(geometry_of(problem, bodies_)), problem.numbering),
       equilibrium_(problem, parts_of(problem, *engine)),
       choice_({.linear = equilibrium_.is_linear(),
@@ -202,7 +204,7 @@ void Newton::finish_instant(double instant, const StaticState& previous, StaticS
             .external = external,
             .negative = negative.value_or(0),
             .constraints = line.constraints,
-            .unbalanced = line.round_off ? line.rela : 0,
+            .unbalanced = line.round_off && line.rela > few_digits ? line.rela : 0,
             .worst_dof = line.worst_dof};
 }
 

@@ -190,6 +190,7 @@ class Newton {
   static std::string said(std::initializer_list<std::string> what);
   /// What keeps the last iteration from being the solution, in words.
   std::string unmet_criteria(const IterationReport& line, std::size_t changing) const;
+  bool diverges() const;
   /// The one thing to do about it that fits. @param softened a law gave way in the last equilibrium (cell_motion.hpp)
   std::string remedy(const IterationReport& line, double excess, bool softened) const;
 
@@ -207,7 +208,8 @@ class Newton {
   const StaticProblem& problem_;
   NewtonOptions options_;
   Bodies bodies_;
-  double extent_;  ///< of the model
+  double extent_;                       ///< of the model
+  std::set<std::int32_t> unsupported_;  ///< bodies that contact alone holds: free_bodies()
   LooseMotions loose_;
   Equilibrium equilibrium_;
   MatrixChoice choice_;

@@ -104,7 +104,8 @@ void Newton::fail_to_converge(double instant, const IterationReport& line, const
     turned_words =
         part("cell_inside_out", {{"cell", cell_name(*cell)}, {"body", bodies_.name_at(problem_.mesh.cells[*cell][0])}});
   if (choice_.leaves_unstable()) unstable_words = part("equilibrium_unstable");
-  const std::optional<CellMotion> softened = most_softened(problem_, previous.displacement);
+  const bool may_soften = choice_.leaves_unstable() || diverges();
+  const std::optional<CellMotion> softened = may_soften ? most_softened(problem_, previous.displacement) : std::nullopt;
   if (softened)
     softened_words = part("cell_softened", {{"cell", cell_name(softened->cell)},
                                             {"body", bodies_.name_at(problem_.mesh.cells[softened->cell][0])},
@@ -120,27 +121,30 @@ void Newton::fail_to_converge(double instant, const IterationReport& line, const
        .excess = excess});
 }
 
+bool Newton::diverges() const {
+  return !course_.finite() || course_.ratio().value_or(1) > worse || equilibrium_.cell_inside_out();
+}
+
 std::string Newton::remedy(const IterationReport& line, double excess, bool softened) const {
   if (!hanging_.empty()) return part("remedy_hold_body", {{"body", hanging_}});
-  if (line.round_off) return part("remedy_less_stiff");
+  if (line.round_off && !line.rela_met) return part("remedy_less_stiff");
   const double ratio = course_.ratio().value_or(1);
-  const bool diverges = !course_.finite() || ratio > worse || equilibrium_.cell_inside_out();
   if (settled_ >= settled_quickly && course_.order().value_or(0) >= quadratic && line.rela >= near_round_off)
     return part("remedy_more_iterations", {{"count", std::to_string(options_.iterations + few)}});
   // more iterations, where a few times as many come to the end
-  if (settled_ >= settled && ratio < no_better && !diverges && !course_.period() && !course_.smaller_before()) {
+  if (settled_ >= settled && ratio < no_better && !diverges() && !course_.period() && !course_.smaller_before()) {
     const double more = excess > 1 ? std::ceil(std::log(excess) / -std::log(ratio)) : settled;
     if (more <= 2.0 * options_.iterations)
       return part("remedy_more_iterations", {{"count", std::to_string(options_.iterations + static_cast<int>(more) + 1)}});
   }
   if (settled_ >= settled && line.rela < near_round_off) return part("remedy_ask_less");
-  if (softened && (choice_.leaves_unstable() || diverges)) return part("remedy_law_for_compression");
+  if (softened) return part("remedy_law_for_compression");
   // without what makes the matrix unstable the residual grows slowly first, and falls behind that
   if (choice_.leaves_unstable() && options_.iterations < enough_to_leave && course_.finite() && !course_.period() &&
       line.status_changes == 0 && !statuses_.round() && !equilibrium_.cell_inside_out())
     return part("remedy_leave_equilibrium", {{"count", std::to_string(enough_to_leave)}});
   if (!options_.cuts) return part("remedy_cut_step");
-  if (diverges) return part("remedy_coarser_load");
+  if (diverges()) return part("remedy_coarser_load");
   if (line.status_changes > 0 || statuses_.round()) return part("remedy_refine_slave");
   if (course_.period() && !options_.line_search && problem_.dimension == 3) return part("remedy_line_search");
   return part("remedy_look_at_table");

@@ -65,7 +65,11 @@ std::vector<double> Newton::solve_system(StaticState& state, const StaticState& 
       if (null.empty()) {
         if (flung < most_flung && flings(solution, step)) {
           ++flung;
-          held = hold(loose_.of(system.matrix(), hardly), step, state, previous, asked);
+          std::vector<LooseMotion> hardly_resisted = loose_.of(system.matrix(), hardly);
+          std::erase_if(hardly_resisted, [&](const LooseMotion& motion) {
+            return std::ranges::any_of(motion.bodies, [&](std::int32_t body) { return !unsupported_.contains(body); });
+          });
+          held = hold(hardly_resisted, step, state, previous, asked);
           if (held != Held::no) continue;
         }
         // solutions by iterations cost more than the iterations of Newton's method that they would spare
@@ -101,7 +105,7 @@ std::vector<double> Newton::solve_system(StaticState& state, const StaticState& 
 }
 
 bool Newton::flings(std::span<const double> solution, std::span<const double> step) const {
-  if (settled_ > 0 || std::ranges::any_of(step, [](double value) { return value != 0; })) return false;
+  if (unsupported_.empty() || settled_ > 0 || std::ranges::any_of(step, [](double value) { return value != 0; })) return false;
   const std::vector<std::int64_t>& equation = problem_.numbering.equation;
   for (std::size_t dof = 0; dof < equation.size(); ++dof)
     if (equation[dof] >= 0 && static_cast<int>(dof) % problem_.n_components() < problem_.dimension &&

@@ -261,6 +261,15 @@ FIN()
 class Threads(LauncherTest):
     """Of a command file, which call commands: they wait for one another. Half of such runs ended with STUDY_3."""
 
+    def test_one_that_an_included_file_waits_for(self):
+        """The command INCLUDE lets it have its turn."""
+        self.write("included.py", "import threading\nt = threading.Thread(target=lambda: DEFI_CONSTANTE(VALE=1.0))\nt.start()\nt.join()\nONE = DEFI_CONSTANTE(VALE=2.0)\n")
+        self.ok(self.run_study("DEBUT()\nINCLUDE(UNITE=21)\nFIN()\n", "--unit", "21=included.py"))
+
+    def test_one_that_fails_behind_an_exit(self):
+        run = self.run_study("import sys, threading, time\nDEBUT()\ndef late():\n    time.sleep(0.2)\n    LIRE_MAILLAGE(UNITE=77)\nthreading.Thread(target=late).start()\nsys.exit()\n")
+        self.refused(run, "COMMAND_4")
+
     def test_six_at_once(self):
         text = """
 import sys, threading

@@ -4,6 +4,7 @@ import math
 import os
 import signal
 
+from ..core import current
 from ..core.catalog import part
 from ..core.messages import fail
 from ..tables import storage
@@ -21,7 +22,8 @@ def include(call):
     else:
         path = run.input_unit(k["UNITE"], place)
     run.protect(path)
-    run.include(path)
+    with current.others_take_turns():
+        run.include(path)
 
 
 def defi_fichier(call):

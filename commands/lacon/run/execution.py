@@ -236,7 +236,13 @@ def _threads():
 
     threading.excepthook = told  # and stays: what threads throw behind a failure is no more to be said
     before = threading.enumerate()
-    yield
+    ended = None
+    try:
+        yield
+    except SystemExit as error:
+        if error.code not in (None, 0):
+            raise
+        ended = error
     for thread in threading.enumerate():
         # those of a pool wait for work until Python ends
         pooled = getattr(getattr(thread, "_target", None), "__module__", "") == "concurrent.futures.thread"
@@ -244,6 +250,8 @@ def _threads():
             thread.join()
     if failed:
         raise failed[0]
+    if ended:
+        raise ended
 
 
 def _run_file(study, path, source, values):

@@ -413,7 +413,7 @@ class Skins(StudyTest):
         study = Study(name="corner", mesh=union([tool, slab("QUAD4", "SLAB", (-6, 4), (-3, 0), (10, 6))]), materials={"TOOL": elastic(1e3), "SLAB": elastic(1e3)},
                       zones=[zone("TOOL", "SLAB", 1)], steps=4, moves=[held("SLAB"), path("TOOL", [(0, 0), (4, 0)], [(0, 0), (4, -0.1)])], asked={})
         self.assertEqual(run(study, LACON, self.folder)["status"], "finished")
-        self.assertRegex((self.folder / "err").read_text(), r"<EVOLUTION_16> .*: it is open, though its average gap is -0\.0883, for TOOL_SKIN ends on it")
+        self.assertRegex((self.folder / "err").read_text(), r"<EVOLUTION_16> .*: it is open, though its average gap is -0\.0883: where TOOL_SKIN ends")
 
     def test_iterations_that_are_nearly_at_their_end_are_told_to_go_on(self):
         """The residual falls quadratically: to say that the step should be cut would be wrong."""
