@@ -6,28 +6,19 @@
 namespace lacon {
 namespace {
 
-constexpr double small_enough = 0.1;  // of the power at the start, as RESI_LINE_RELA: what a part may overshoot by
-constexpr double too_short = 0.5;     // likewise: with more left, much of the way is ahead
+constexpr double small_enough = 0.1;  // of the power at the start, as RESI_LINE_RELA
 constexpr double least = 0.1;         // of the last part
 constexpr int evaluations = 6;
 
 }  // namespace
 
 double part_of_increment(double start, const std::function<double(double)>& power) {
-  struct Found {
-    double part, power;
-  };
-  Found low{0, start}, high{1, power(1)};
-  if (!(start > 0) || high.power >= -small_enough * start) return 1;
-  Found last = high;
-  for (int count = 1; count < evaluations && (last.power < -small_enough * start || last.power > too_short * start); ++count) {
-    const double width = high.part - low.part;
-    const double zero = low.part + width * low.power / (low.power - high.power);
-    const double part = std::clamp(zero, low.part + least * width, high.part - least * width);
-    last = {part, power(part)};
-    (last.power > 0 ? low : high) = last;
+  double part = 1;
+  for (int count = 1;; ++count) {
+    const double found = power(part);
+    if (!(start > 0) || found >= -small_enough * start || count == evaluations) return part;
+    part *= std::max(start / (start - found), least);
   }
-  return last.part;
 }
 
 double part_without_power(const LineSearch& search, double start, const std::function<double(double)>& power) {

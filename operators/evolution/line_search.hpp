@@ -5,8 +5,8 @@
 namespace lacon {
 
 /// The part, at most 1, of an increment up to which the unbalanced forces do work, roughly: where a whole increment overshoots,
-/// the zero of their power between nothing and the whole by regula falsi: beyond it by a tenth of `start`, or before it by a
-/// half. The energy of a step of plastic flow is convex: there it is the minimum along the increment.
+/// the zero of their power between nothing and the whole by regula falsi, to a tenth of `start`. The energy of a step of
+/// plastic flow is convex: there it is the minimum along the increment.
 /// @param start power of the unbalanced forces along the increment before it, or of what resists it, where gaps that close
 /// drive it
 /// @param power the same at a part; the last call is
