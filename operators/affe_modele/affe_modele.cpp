@@ -9,6 +9,7 @@
 
 #include "lacon/catalog/messages.hpp"
 #include "lacon/catalog/wording.hpp"
+#include "lacon/structures/displacement.hpp"
 
 namespace lacon {
 namespace {
@@ -61,20 +62,6 @@ void check_radius(const Mesh& mesh, std::int32_t cell, const std::string& modeli
   }
 }
 
-/// The largest coordinate difference along an axis.
-double extent_of(const Mesh& mesh) {
-  double extent = 0;
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    double low = INFINITY, high = -INFINITY;
-    for (std::size_t i = axis; i < mesh.coordinates.size(); i += 3) {
-      low = std::min(low, mesh.coordinates[i]);
-      high = std::max(high, mesh.coordinates[i]);
-    }
-    extent = std::max(extent, high - low);
-  }
-  return extent;
-}
-
 /// The cells that an occurrence of AFFE names; those of several groups may be there twice.
 std::vector<std::int32_t> cells_named_by(const Mesh& mesh, const Keywords& factor) {
   std::vector<std::int32_t> cells;
@@ -93,7 +80,7 @@ std::vector<std::int32_t> cells_named_by(const Mesh& mesh, const Keywords& facto
 class Assignment {
  public:
   explicit Assignment(const Mesh& mesh)
-      : mesh_(mesh), extent_(extent_of(mesh)), given_(mesh.n_cells(), nullptr), left_by_(mesh.n_cells()) {}
+      : mesh_(mesh), extent_(extent(mesh)), given_(mesh.n_cells(), nullptr), left_by_(mesh.n_cells()) {}
 
   /// Throws MODELE_1 to MODELE_4, MODELE_6 and MODELE_9.
   void assign(const Registry& registry, const Keywords& factor);

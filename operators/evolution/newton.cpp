@@ -121,6 +121,7 @@ void Newton::save(const hdf5::Group& group) const {
   group.set("waits", std::int64_t{choice_.waits()});
   group.write("told", std::vector<std::int64_t>(told_.begin(), told_.end()));
   group.set("unstable_told", std::int64_t{unstable_told_});
+  if (round_off_told_) group.create("round_off_told");
   group.write("covers_told", std::vector<std::int32_t>(covers_told_.begin(), covers_told_.end()));
   std::vector<std::int64_t> covers;
   for (std::size_t p = 0; contact() && p < contact()->n_patches(); ++p)
@@ -136,6 +137,7 @@ void Newton::resume(const hdf5::Group& group, const hdf5::Group* base, const Sta
   choice_.set_waits(group.integer("waits") != 0);
   for (const std::int64_t patch : group.read<std::int64_t>("told")) told_.insert(static_cast<std::size_t>(patch));
   unstable_told_ = group.integer("unstable_told") != 0;
+  round_off_told_ = group.has("round_off_told");
   for (const std::int32_t zone : group.read<std::int32_t>("covers_told")) covers_told_.insert(zone);
   for (const std::int64_t patch : group.read<std::int64_t>("covers")) equilibrium_.keep_cover(static_cast<std::size_t>(patch));
   unstable_path_.resume(group.open("unstable_path"));

@@ -108,6 +108,8 @@ class Newton {
                                    std::span<const double> step, const Accuracy& accuracy, IterationReport& line);
   /// Whether forces alone move a body by more than the model is large: next to nothing resists that, though no pivot is zero.
   bool flings(std::span<const double> solution, std::span<const double> step) const;
+  /// What next to nothing resists, of bodies that no support, spring or relation holds.
+  std::vector<LooseMotion> hardly_resisted();
   /// What the matrix lacks of kept covers (moving_covers.hpp), as far as it is worth its solutions.
   std::vector<MovingCover> moving_covers(const StaticState& state, std::span<const double> step) const;
   /// Go on with statuses that satisfy all patches of the linear system (linear_statuses.hpp), as long as they change from

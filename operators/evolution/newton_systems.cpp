@@ -65,11 +65,7 @@ std::vector<double> Newton::solve_system(StaticState& state, const StaticState& 
       if (null.empty()) {
         if (flung < most_flung && flings(solution, step)) {
           ++flung;
-          std::vector<LooseMotion> hardly_resisted = loose_.of(system.matrix(), hardly);
-          std::erase_if(hardly_resisted, [&](const LooseMotion& motion) {
-            return std::ranges::any_of(motion.bodies, [&](std::int32_t body) { return !unsupported_.contains(body); });
-          });
-          held = hold(hardly_resisted, step, state, previous, asked);
+          held = hold(hardly_resisted(), step, state, previous, asked);
           if (held != Held::no) continue;
         }
         // solutions by iterations cost more than the iterations of Newton's method that they would spare
@@ -107,11 +103,19 @@ std::vector<double> Newton::solve_system(StaticState& state, const StaticState& 
 bool Newton::flings(std::span<const double> solution, std::span<const double> step) const {
   if (unsupported_.empty() || settled_ > 0 || std::ranges::any_of(step, [](double value) { return value != 0; })) return false;
   const std::vector<std::int64_t>& equation = problem_.numbering.equation;
+  const auto width = static_cast<std::size_t>(problem_.n_components()), axes = static_cast<std::size_t>(problem_.dimension);
   for (std::size_t dof = 0; dof < equation.size(); ++dof)
-    if (equation[dof] >= 0 && static_cast<int>(dof) % problem_.n_components() < problem_.dimension &&
-        std::abs(solution[static_cast<std::size_t>(equation[dof])]) > extent_)
+    if (equation[dof] >= 0 && dof % width < axes && std::abs(solution[static_cast<std::size_t>(equation[dof])]) > extent_)
       return true;
   return false;
+}
+
+std::vector<LooseMotion> Newton::hardly_resisted() {
+  std::vector<LooseMotion> found = loose_.of(equilibrium_.system().matrix(), hardly);
+  std::erase_if(found, [&](const LooseMotion& motion) {
+    return std::ranges::any_of(motion.bodies, [&](std::int32_t body) { return !unsupported_.contains(body); });
+  });
+  return found;
 }
 
 std::vector<MovingCover> Newton::moving_covers(const StaticState& state, std::span<const double> step) const {

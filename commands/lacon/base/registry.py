@@ -79,8 +79,6 @@ def _is_text(value):
     return isinstance(value, str)
 
 
-
-
 def _all(check):
     return lambda value: isinstance(value, list) and all(map(check, value))
 
