@@ -81,7 +81,7 @@ struct MumpsEngine::State {
   std::unique_ptr<MumpsFactor<double>> full;  ///< one of the two
   std::unique_ptr<MumpsFactor<float>> single;
   const SparseMatrix* matrix = nullptr;  ///< whose factor is kept
-  std::vector<double> scale;             ///< of its rows and columns, where the factor is not exact
+  std::vector<double> scale;             ///< of its rows and columns, where it is scaled before
   std::vector<std::int64_t> alone;       ///< likewise: unknowns that their row alone decides, such as pressures of open patches
   bool has_folder = false;
   std::optional<FactorProof> proof;  ///< of a factor that is not exact, where it is to be given yet
@@ -207,10 +207,11 @@ struct MumpsEngine::State {
       list_entries(of.is_symmetric());
       single ? single->move_entries(row, column) : full->move_entries(row, column);
     }
-    if (form.is_exact()) {
+    scale = form.is_exact() ? of.multiplier_scale() : of.equilibration();
+    if (form.is_exact() && std::ranges::all_of(scale, [](double d) { return d == 1; })) {
+      scale.clear();
       found = full->factorise(of.values());
     } else {
-      scale = of.equilibration();
       alone = of.rows_alone();
       found = single ? factorise_scaled(*single, of) : factorise_scaled(*full, of);
     }
@@ -283,9 +284,7 @@ struct MumpsEngine::State {
   /// A factor that does without what has failed, now and from now on.
   Factorisation factorise_with_more_care(const std::string& doubt, double wasted) {
     care = form.as_ordered ? Care::pivots : Care::exact;
-    Form wanted{.out_of_core = form.out_of_core};
-    if (care == Care::pivots) wanted = form;
-    prepare(wanted, matrix->is_symmetric());
+    prepare(care == Care::pivots ? form : Form{.out_of_core = form.out_of_core}, matrix->is_symmetric());
     Factorisation found = factorise_safely();
     found.wasted_flops += wasted;
     if (care == Care::exact && found.doubt.empty()) found.doubt = doubt;
@@ -293,7 +292,7 @@ struct MumpsEngine::State {
   }
 
   void substitute(std::span<double> right_side) {
-    if (form.is_exact())
+    if (scale.empty())
       full->substitute(right_side);
     else
       substitute_scaled({&right_side, 1});
@@ -353,8 +352,7 @@ struct MumpsEngine::State {
   /// With another factor.
   Solution solve_with_more_care(const std::string& doubt, std::span<double> right_side) {
     const Factorisation again = factorise_with_more_care(doubt, 0);
-    Solution second;
-    if (again.null_pivots.empty()) second = solve(right_side);
+    Solution second = again.null_pivots.empty() ? solve(right_side) : Solution{};
     if (!second.again)
       second.again = again;
     else
@@ -418,7 +416,7 @@ std::vector<float> MumpsEngine::substitute(std::span<const std::int64_t> offset,
   const auto solve = [&]<class Real>(MumpsFactor<Real>& mumps) {
     std::vector<Real> values(value.begin(), value.end()), solution(size);
     std::vector<double> most(offset.size() - 1, 0.0);
-    if (!s.form.is_exact())
+    if (!s.scale.empty())
       for (std::size_t c = 0; c < most.size(); ++c) {
         for (std::int64_t k = offset[c]; k < offset[c + 1]; ++k)
           most[c] = std::max(most[c], std::abs(s.scale[index[k]] * value[k]));
@@ -426,15 +424,16 @@ std::vector<float> MumpsEngine::substitute(std::span<const std::int64_t> offset,
           values[k] = static_cast<Real>(s.scale[index[k]] * value[k] / most[c]);
       }
     mumps.substitute(offset, index, values, solution);
-    if (!s.form.is_exact())
-      for (std::size_t c = 0; c < most.size(); ++c) {
+    if (!s.scale.empty())
+      parallel_for(most.size(), 1, [&](const LoopBlock& side) {
+        const std::size_t c = side.first;
         for (std::size_t i = 0; i < n; ++i)
           solution[c * n + i] = static_cast<Real>(most[c] * s.scale[i] * static_cast<double>(solution[c * n + i]));
         for (const std::int64_t i : s.alone) solution[c * n + static_cast<std::size_t>(i)] = 0;
         for (std::int64_t k = offset[c]; k < offset[c + 1]; ++k)
           if (std::binary_search(s.alone.begin(), s.alone.end(), index[k]))
             solution[c * n + static_cast<std::size_t>(index[k])] += static_cast<Real>(value[k] / s.matrix->diagonal(index[k]));
-      }
+      });
     if constexpr (std::is_same_v<Real, float>)
       return solution;
     else
@@ -474,7 +473,7 @@ Solution MumpsEngine::State::solve(std::span<double> right_side) {
     for (std::size_t k = 0; k < n; ++k) residual[k] = right_side[k] - residual[k];
     const double magnitude = norm * largest(x) + largest(right_side);
     const double relative = magnitude > 0 ? largest(residual) / magnitude : 0,
-                 now = exact ? relative : residual_share(*matrix, scale, residual, x, right_side);
+                 now = scale.empty() ? relative : residual_share(*matrix, scale, residual, x, right_side);
     if (!(now < error)) break;  // refinement no longer helps: keep the solution before
     error = now;
     solution.residual = relative;

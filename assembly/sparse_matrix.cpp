@@ -388,8 +388,22 @@ std::vector<std::int64_t> SparseMatrix::rows_alone() const {
   return found;
 }
 
+std::vector<double> SparseMatrix::multiplier_scale() const {
+  const std::int64_t first = numbering_->first[numbering_->n_nodes];
+  std::vector<double> scale(size(), 1.0);
+  const std::vector<double> stiffness = diagonals();
+  for (std::int64_t row = 0; row < size(); ++row)
+    for (std::int64_t k = row_[row]; k < row_[row + 1]; ++k)
+      if (const std::int64_t column = column_[k], node = std::min(row, column), multiplier = std::max(row, column);
+          node < first && multiplier >= first)
+        if (const double coupling = std::abs(value_[k]), diagonal = std::abs(stiffness[node]);
+            diagonal > 0 && coupling * scale[multiplier] > diagonal)
+          scale[multiplier] = std::exp2(std::floor(std::log2(diagonal) - std::log2(coupling)));
+  return scale;
+}
+
 std::vector<double> SparseMatrix::equilibration() const {
-  std::vector<double> scale(size(), 1.0), largest(size());
+  std::vector<double> scale = multiplier_scale(), largest(size());
   constexpr int most_rounds = 20;  // each takes the square root of what is still to be done, at once where diagonals are large
   bool done = false;
   for (int round = 0; round < most_rounds && !done; ++round) {

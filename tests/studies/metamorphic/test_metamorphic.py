@@ -18,7 +18,7 @@ from meshes import brick  # noqa: E402
 
 #: study -> ways: corners with two slave edges, of beams (TRIA3); a ring (AXIS, QUAD8, LISSAGE); a box on a box (HEXA8); a plastic
 #: round whose residuals grow (TRIA6, LISSAGE); wedges whose slave cells warp and flatten from iterate to iterate (PENTA6, LISSAGE)
-SHORT = {1000: ("turned", "numbers", "vertex", "oriented", "threads"), 3: ("shifted", "extreme", "loads"), 1004: ("turned", "mirror", "bodies", "vertex"),
+SHORT = {1000: ("turned", "numbers", "vertex", "oriented", "threads"), 3: ("shifted", "extreme", "loads"), 1004: ("turned", "mirror", "bodies", "vertex", "nanometres"),
          1008: ("turned",), 8022: ("stages",)}
 LONG = {number: tuple(WAYS) for number in (0, 1, 2, 3, 100, 102, 1000, 1001, 1002, 1006, 1033)}
 HALVES = (10, 16)  # blocks: TRIA6 in plane stress, QUAD9 and GREEN_LAGRANGE

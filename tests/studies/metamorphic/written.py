@@ -278,6 +278,11 @@ def extreme(one, random):
     return moved(one, "extreme", scale=1e-6, stiffness=1e9)
 
 
+def nanometres(one, random):
+    """Written in nm and N: areas are larger than stiffnesses by far."""
+    return moved(one, "nanometres", scale=1e6, stiffness=1e-12)
+
+
 def numbers(one, random):
     other = one.copy("numbers")
     other.mesh = renumbered(one.mesh, 3)
@@ -393,7 +398,8 @@ def symmetric(number):
 
 #: what is as it was to the last bit; for others the tolerance in largest values of a field
 WAYS = {"ulp": (ulp, math.inf), "threads": (threads, 0.0), "turned": (turned, 1e-9), "quarter": (quarter, 1e-9), "shifted": (shifted, 1e-9), "mirror": (mirror, 1e-9), "oriented": (oriented, 1e-9),
-        "metres": (metres, 1e-9), "extreme": (extreme, 1e-9), "numbers": (numbers, 1e-11), "vertex": (vertex, 1e-11), "bodies": (bodies, 1e-11),
+        "metres": (metres, 1e-9), "extreme": (extreme, 1e-9), "nanometres": (nanometres, 1e-9),
+        "numbers": (numbers, 1e-11), "vertex": (vertex, 1e-11), "bodies": (bodies, 1e-11),
         "zones": (zones, 1e-6), "loads": (loads, 1e-11), "stages": (stages, 1e-6), "petsc": (petsc, 1e-6), "mpi": (mpi, 1e-9)}
 
 

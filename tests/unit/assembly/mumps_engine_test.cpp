@@ -203,6 +203,39 @@ TEST(MumpsEngine, SolvesWithSinglePrecisionInAnyUnits) {
   EXPECT_LE(left.tail(2).cwiseAbs().maxCoeff(), 1e-13 * 1e-30);
 }
 
+// Nor to couplings that are far larger than stiffnesses (areas in square nanometres beside N/nm): these are no zeros beside
+// them.
+TEST(MumpsEngine, SolvesWhereCouplingsAreFarLargerThanStiffnesses) {
+  for (const bool single : {false, true}) {
+    SCOPED_TRACE(single ? "in single precision" : "exact");
+    SaddlePoint system;
+    const Eigen::VectorXd b = Eigen::VectorXd::Random(system.matrix.size());
+    Eigen::VectorXd expected = dense(system.matrix).fullPivLu().solve(b), x = b;
+    constexpr double factor = 0x1p60;
+    std::vector<double> values(system.matrix.values().begin(), system.matrix.values().end());
+    for (std::int64_t row = system.chain.numbering.of_patch(0); row < system.matrix.size(); ++row) {
+      for (std::int64_t k = system.matrix.rows()[row]; k < system.matrix.rows()[row + 1]; ++k) values[k] *= factor;
+      x[row] *= factor;
+      expected[row] /= factor;
+    }
+    system.matrix.restore(values);
+    MumpsEngine engine({.single_precision = single ? always : MumpsOptions{}.single_precision});
+    engine.analyse(system.matrix);
+    const Factorisation found = engine.factorise(system.matrix);
+    EXPECT_TRUE(found.null_pivots.empty());
+    EXPECT_EQ(found.negative_pivots, 2);
+    EXPECT_EQ(found.single_precision, single);
+    std::vector<float> column =
+        engine.substitute(std::vector<std::int64_t>{0, 1}, std::vector<std::int32_t>{7}, std::vector<double>{1});
+    EXPECT_LE(engine.solve(entries(x)).residual, 1e-15);
+    for (const auto& part : {Eigen::seq(0, 57), Eigen::seq(58, 59)})
+      EXPECT_LE((x - expected)(part).cwiseAbs().maxCoeff(), 1e-11 * expected(part).cwiseAbs().maxCoeff());
+    Eigen::VectorXd unit = Eigen::VectorXd::Unit(system.matrix.size(), 7);
+    engine.solve(entries(unit));
+    for (int i = 0; i < unit.size(); ++i) EXPECT_NEAR(column[i], unit[i], 1e-5 * unit.head(58).cwiseAbs().maxCoeff());
+  }
+}
+
 // However near a matrix is to a singular one, the inertia is that of its eigenvalues: a factor that cannot tell is given up.
 TEST(MumpsEngine, KnowsTheInertiaInSinglePrecision) {
   const Lattice lattice(5);
