@@ -24,6 +24,8 @@ namespace {
 
 /// Vertices from which on two processes are worth it: of 18 000 halves made a factor worse (16 iterations for 5).
 constexpr idx_t least_halved = 30'000;
+/// Of even halves, how much larger than the mean one may be: in thousandths. METIS takes 200 for any.
+constexpr idx_t unevenness = 30;
 
 /// A graph as METIS takes it: vertices that have equations, without gaps.
 struct MetisGraph {
@@ -121,8 +123,9 @@ class FoundElsewhere {
 };
 
 /// The half of each vertex, 0 or 1; 2: it separates them.
-void separate(MetisGraph& graph, idx_t seed, std::span<idx_t> part) {
+void separate(MetisGraph& graph, Halves halves, idx_t seed, std::span<idx_t> part) {
   Options options(seed);
+  if (halves == Halves::even) options.values[METIS_OPTION_UFACTOR] = unevenness;
   idx_t n = graph.size(), size = 0;
   check(METIS_ComputeVertexSeparator(&n, graph.offset.data(), graph.adjacent.data(), nullptr, options.values.data(), &size,
                                      part.data()),
@@ -130,11 +133,11 @@ void separate(MetisGraph& graph, idx_t seed, std::span<idx_t> part) {
 }
 
 /// Nested dissection by two processes: the smaller one of two separators first, and then each half.
-void order_halves(MetisGraph& graph, std::span<idx_t> place) {
+void order_halves(MetisGraph& graph, Halves halves, std::span<idx_t> place) {
   std::vector<idx_t> part(place.size()), other(place.size());
   {
-    FoundElsewhere second(other, [&](std::span<idx_t> found) { separate(graph, 2, found); });
-    separate(graph, 1, part);
+    FoundElsewhere second(other, [&](std::span<idx_t> found) { separate(graph, halves, 2, found); });
+    separate(graph, halves, 1, part);
     second.wait();
   }
   if (std::ranges::count(other, 2) < std::ranges::count(part, 2)) part = other;
@@ -161,7 +164,7 @@ void order_halves(MetisGraph& graph, std::span<idx_t> place) {
 
 }  // namespace
 
-std::vector<std::int32_t> elimination_order(const VertexGraph& of, OrderIn where) {
+std::vector<std::int32_t> elimination_order(const VertexGraph& of, OrderIn where, Halves halves) {
   const Numbering& numbering = of.numbering;
   const std::int64_t n_vertices = numbering.n_vertices();
 
@@ -182,7 +185,7 @@ std::vector<std::int32_t> elimination_order(const VertexGraph& of, OrderIn where
   const idx_t n = graph.size();
   std::vector<idx_t> place(n);
   const bool in_halves = where == OrderIn::two_processes && n >= least_halved;
-  in_halves ? order_halves(graph, place) : order(graph, place);
+  in_halves ? order_halves(graph, halves, place) : order(graph, place);
 
   // (place, 1 behind it for a moved multiplier) sorts the vertices
   std::vector<std::pair<idx_t, bool>> key(n);

@@ -8,6 +8,7 @@
 #include "lacon/assembly/saddle_point_preconditioner.hpp"
 #include "lacon/assembly/saddle_point_solver.hpp"
 #include "lacon/assembly/stopwatch.hpp"
+#include "lacon/structures/parallel.hpp"
 
 namespace lacon {
 namespace {
@@ -200,9 +201,13 @@ void SaddlePointSolver::compute(SparseSides block) {
   const std::vector<float> found = substitution_->substitute(block.offset, block.index, block.value);
   const std::int64_t number = blocks_.empty() ? 0 : blocks_.rbegin()->first + 1;
   const auto n = static_cast<std::size_t>(base_->size());
-  for (std::size_t c = 0; c < block.size(); ++c) {
-    if (block.rows[c] < 0) continue;  // it was dropped
-    Column column{.index = {}, .coefficient = {}, .block = number, .whole = {}, .packed = {}, .seen = {}};
+  if (packs()) interface();  // it is made once
+  std::vector<Column> made(block.size());
+  parallel_for(block.size(), 1, [&](const LoopBlock& one) {
+    const std::size_t c = one.first;
+    if (block.rows[c] < 0) return;  // it was dropped
+    Column& column = made[c];
+    column.block = number;
     if (block.on[c]) {
       column.index.assign(block.index.begin() + block.offset[c], block.index.begin() + block.offset[c + 1]);
       column.coefficient.assign(block.value.begin() + block.offset[c], block.value.begin() + block.offset[c + 1]);
@@ -210,12 +215,13 @@ void SaddlePointSolver::compute(SparseSides block) {
     const std::span<const float> inverse = std::span(found).subspan(c * n, n);
     if (packs()) {
       column.packed = PackedVector(inverse);
-      for (const std::int32_t equation : interface()) column.seen.push_back(inverse[static_cast<std::size_t>(equation)]);
+      for (const std::int32_t equation : interface_) column.seen.push_back(inverse[static_cast<std::size_t>(equation)]);
     } else {
       column.whole.assign(inverse.begin(), inverse.end());
     }
-    columns_.insert_or_assign(block.rows[c], std::move(column));
-  }
+  });
+  for (std::size_t c = 0; c < block.size(); ++c)
+    if (block.rows[c] >= 0) columns_.insert_or_assign(block.rows[c], std::move(made[c]));
   blocks_.emplace(number, std::move(block));
   std::erase_if(blocks_, [&](const auto& entry) {
     return std::ranges::none_of(entry.second.rows, [&](std::int64_t row) {

@@ -12,7 +12,9 @@ namespace lacon {
 namespace {
 
 SharedOrder shared_order(const VertexGraph& graph, int n_processes, OrderIn where) {
-  SharedOrder found{.order = elimination_order(graph, where), .subtrees = {}};
+  // more processes than two share uneven halves well, and the smallest separator is the least work
+  const Halves halves = n_processes == 2 ? Halves::even : Halves::any;
+  SharedOrder found{.order = elimination_order(graph, where, halves), .subtrees = {}};
   found.subtrees = independent_subtrees(graph, found.order, n_processes);
   return found;
 }

@@ -399,29 +399,30 @@ std::vector<SharedMemory> TreeMumps<Real>::memory_of_sides(std::size_t count) co
 template <class Real>
 void TreeMumps<Real>::substitute_behind(std::vector<SharedMemory>& memory, std::span<Real> top, std::span<Real> solution) {
   const std::size_t n = local_.size(), m = top_.size(), count = solution.size() / n;
-  const auto for_each_border = [&](const auto& use) {  // of the value that a piece has in the memory, and that of the top
-    for (std::size_t p = 0; p < pieces_.size(); ++p) {
-      const std::vector<std::int32_t>& border = pieces_[p].border;
-      const std::span<Real> values = values_in<Real>(memory[p]).subspan(count * pieces_[p].size());
-      for (std::size_t c = 0; c < count; ++c)
-        for (std::size_t b = 0; b < border.size(); ++b) use(values[c * border.size() + b], top[c * m + border[b]]);
-    }
+  const auto for_each_side = [&](const auto& use) {  // and piece: with its unknowns, and what its border gives and gets
+    parallel_for(count, 1, [&](const LoopBlock& side) {
+      for (std::size_t p = 0; p < pieces_.size(); ++p) {
+        const std::span<Real> values = values_in<Real>(memory[p]);
+        const std::size_t size = pieces_[p].size(), border = pieces_[p].border.size(), c = side.first;
+        use(c, pieces_[p], values.subspan(c * size, size), values.subspan(count * size + c * border, border));
+      }
+    });
   };
-  for_each_border([](Real left, Real& of_top) { of_top += left; });
+  for_each_side([&](std::size_t c, const Piece& piece, std::span<Real>, std::span<Real> border) {
+    for (std::size_t b = 0; b < border.size(); ++b) top[c * m + piece.border[b]] += border[b];
+  });
   if (full_top_)
     full_top_->substitute(top);
   else if (top_factor_)
     top_factor_->substitute(top);
-  for_each_border([](Real& value, Real of_top) { value = of_top; });
-  for (std::size_t c = 0; c < count; ++c)
-    for (std::size_t i = 0; i < m; ++i) solution[c * n + top_[i]] = top[c * m + i];
+  for_each_side([&](std::size_t c, const Piece& piece, std::span<Real>, std::span<Real> border) {
+    for (std::size_t b = 0; b < border.size(); ++b) border[b] = top[c * m + piece.border[b]];
+  });
   ask("expand", "solution", memory);
-  for (std::size_t p = 0; p < pieces_.size(); ++p) {
-    const std::span<const Real> own = values_in<const Real>(memory[p]);
-    for (std::size_t c = 0; c < count; ++c)
-      for (std::size_t i = 0; i < pieces_[p].own.size(); ++i)
-        solution[c * n + pieces_[p].own[i]] = own[c * pieces_[p].size() + i];
-  }
+  for_each_side([&](std::size_t c, const Piece& piece, std::span<Real> own, std::span<Real>) {
+    for (std::size_t i = 0; i < piece.own.size(); ++i) solution[c * n + piece.own[i]] = own[i];
+  });
+  for (std::size_t k = 0; k < top.size(); ++k) solution[k / m * n + top_[k % m]] = top[k];
 }
 
 template <class Real>
@@ -436,8 +437,7 @@ void TreeMumps<Real>::substitute(std::span<Real> right_side) {
   }
   ask("reduce", "solution", memory);
   std::vector<Real> top(count * m);
-  for (std::size_t c = 0; c < count; ++c)
-    for (std::size_t i = 0; i < m; ++i) top[c * m + i] = right_side[c * n + top_[i]];
+  for (std::size_t k = 0; k < top.size(); ++k) top[k] = right_side[k / m * n + top_[k % m]];
   substitute_behind(memory, top, right_side);
 }
 

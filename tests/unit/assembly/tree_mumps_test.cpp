@@ -124,6 +124,24 @@ void expect_order(const Stacked& system, const std::vector<std::int32_t>& order)
   }
 }
 
+// Two processes have halves of one size: of a cube with a waist off its middle the waist is the smallest separator, but then
+// the larger side would be ready when the other one has long been waiting.
+TEST(OrderingAhead, CutsInHalvesForTwoProcesses) {
+  constexpr int n = 33, waist = 13, opening = 6;
+  std::vector<std::uint8_t> free(n * n * n, 1);
+  for (int i = waist * n * n; i < (waist + 1) * n * n; ++i) free[i] = i % n < opening && i / n % n < opening;
+  const Numbering numbering = number_equations(n * n * n, 1, free, 0);
+  const SparseMatrix matrix(numbering, Lattice::springs(n), {});
+  const auto taken = [&](int n_processes) {
+    MumpsProcesses processes(n_processes, shared_by(n_processes).program);
+    OrderingAhead ahead;
+    return ahead.take(matrix, processes).order;
+  };
+  const Subtrees even = independent_subtrees(matrix, taken(2), 2), any = independent_subtrees(matrix, taken(3), 2);
+  EXPECT_LT(even.longest, 0.9 * any.longest);
+  EXPECT_LT(even.longest, 0.6 * even.whole.flops);
+}
+
 // Processes order a graph while it is evaluated yet: in the same way in every run, not much worse than METIS does alone, and
 // where one is killed or another graph was expected, all the same.
 TEST(OrderingAhead, IsThatOfTheGraph) {
