@@ -349,7 +349,8 @@ std::optional<FacetOverlap> ContactState::facet_overlap(std::int32_t number) con
   return worst;
 }
 
-std::optional<AlternatingPressures> ContactState::alternation(std::int32_t zone, const Patchwise& patches) const {
+std::optional<AlternatingPressures> ContactState::alternation(std::int32_t zone, const Patchwise& patches,
+                                                              const std::function<bool()>& has_facets) const {
   constexpr double whole = 0.99;
   std::vector<bool> seen(n_patches()), pressed(n_patches());
   std::vector<double> area(n_patches());
@@ -359,10 +360,16 @@ std::optional<AlternatingPressures> ContactState::alternation(std::int32_t zone,
     area[p] = geometry_.whole(p);
   }
   const auto of_zone = static_cast<std::size_t>(zone);
-  for (const auto& found : {alternations_[of_zone].measure(patches.lambda, area, pressed),
-                            rows_[of_zone].measure(patches.lambda, area, seen, pressed)})
-    if (found && found->share > tolerances_.alternating) return found;
-  return std::nullopt;
+  const auto much = [&](const std::optional<AlternatingPressures>& found) {
+    return found && found->share > tolerances_.alternating ? found : std::nullopt;
+  };
+  const auto along_rows = [&](PressureRows::Part part) {
+    return much(rows_[of_zone].measure(patches.lambda, area, seen, pressed, part));
+  };
+  if (const auto found = much(alternations_[of_zone].measure(patches.lambda, area, pressed))) return found;
+  if (const auto found = along_rows(PressureRows::Part::all); !found || has_facets()) return found;
+  const auto found = along_rows(PressureRows::Part::inside);
+  return found && resists_its_master(found->patch) ? found : std::nullopt;
 }
 
 bool ContactState::presses(std::int32_t zone, const Patchwise& patches) const {

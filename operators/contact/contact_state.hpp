@@ -39,6 +39,7 @@ struct ContactTolerances {
   double far_behind = 0.5;          ///< of h: by how much parts of one patch may see masters at different distances
   double missed_pressure = 0.1;     ///< of the largest: what such points would press with, worth an alarm
   double alternating = 0.1;         ///< of the pressure: by how much neighbours may differ to opposite sides
+  double stiffer = 3;               ///< how many times as stiff as its master a slave is that answers bending by pressures
   double touching = 1e-8;           ///< of h: an overlap of patches without contact that is round-off
 };
 
@@ -248,7 +249,13 @@ class ContactState {
   /// @param strain as for missed()
   std::optional<SplitPatch> split(std::int32_t zone, const Patchwise& patches, double strain) const;
   /// Of a zone, where its pressures alternate by so much that it is worth an alarm.
-  std::optional<AlternatingPressures> alternation(std::int32_t zone, const Patchwise& patches) const;
+  /// @param has_facets whether its skins are curved and their cells are not; asked where rows alternate
+  std::optional<AlternatingPressures> alternation(std::int32_t zone, const Patchwise& patches,
+                                                  const std::function<bool()>& has_facets) const;
+  /// Whether the body of a patch is several times as stiff as what it faces.
+  bool resists_its_master(std::size_t patch) const {
+    return rho_[patch] * size_[patch] * own_[patch] < 1 / (1 + tolerances_.stiffer);  // own_ / (own_ + that of the master)
+  }
   bool presses(std::int32_t zone, const Patchwise& patches) const;
   /// What round-off of coordinates makes of the pressures of a zone's active patches, over the largest of them: patches that
   /// are pulled or pressed by less stay what they are. Nothing without a pressure.

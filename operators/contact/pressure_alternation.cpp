@@ -55,7 +55,7 @@ std::optional<AlternatingPressures> PressureAlternation::measure(std::span<const
     }
     mean.push_back(force / measure);
   }
-  AlternatingPressures found{0, 0, false};
+  AlternatingPressures found{0, 0, AlternatingBy::triangles};
   std::vector<double> differences;
   double largest = -1, squares = 0;
   int known = 0;

@@ -9,11 +9,15 @@
 
 namespace lacon {
 
+/// What pressures of a zone go up and down by: from triangle to triangle; from patch to patch of a row (pressure_rows.hpp),
+/// where facets of curved skins meet, or along skins that have none.
+enum class AlternatingBy { triangles, facets, rows };
+
 /// Pressures of a zone that alternate.
 struct AlternatingPressures {
   double share;       ///< root of the mean product of neighbours' distances from smooth pressures, over that of the pressure
   std::size_t patch;  ///< furthest from its smooth pressure
-  bool in_rows;       ///< from patch to patch of a row (pressure_rows.hpp), or else from triangle to triangle
+  AlternatingBy by;
 };
 
 /// A skin of linear triangles has two patches for each of its vertices. Pressures that alternate from patch to patch press on

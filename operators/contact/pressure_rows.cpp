@@ -41,8 +41,8 @@ PressureRows::PressureRows(const std::vector<std::vector<std::int32_t>>& nodes, 
 }
 
 std::optional<AlternatingPressures> PressureRows::measure(std::span<const double> pressure, std::span<const double> area,
-                                                          const std::vector<bool>& whole,
-                                                          const std::vector<bool>& pressed) const {
+                                                          const std::vector<bool>& whole, const std::vector<bool>& pressed,
+                                                          Part part) const {
   constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
   constexpr int least_couples = 8;  // of fewer a product says little
   constexpr int most_open = 2;      // in a row: more of them part two contacts
@@ -61,7 +61,7 @@ std::optional<AlternatingPressures> PressureRows::measure(std::span<const double
   const auto between = [&](std::size_t three) {
     return whole[threes_[three].middle] && presses_beyond(three, 0) && presses_beyond(three, 1);
   };
-  AlternatingPressures found{0, 0, true};
+  AlternatingPressures found{0, 0, part == Part::all ? AlternatingBy::facets : AlternatingBy::rows};
   std::vector<double> differences(threes_.size(), unknown);
   double largest = -1, squares = 0;
   int known = 0;
@@ -82,12 +82,17 @@ std::optional<AlternatingPressures> PressureRows::measure(std::span<const double
     ++known;
     if (std::abs(differences[i]) > largest) largest = std::abs(differences[i]), found.patch = three.middle;
   }
+  const auto counts = [&](std::size_t three) {
+    return !std::isnan(differences[three]) &&
+           (part == Part::all || std::ranges::all_of(threes_[three].next, [&](const std::optional<std::size_t>& next) {
+              return next && !std::isnan(differences[*next]);
+            }));
+  };
   double product = 0;
   int couples = 0;
   for (std::size_t i = 0; i < threes_.size(); ++i)
     for (const auto& next : threes_[i].next)
-      if (next && *next > i && !std::isnan(differences[i] * differences[*next]))
-        product += differences[i] * differences[*next], ++couples;
+      if (next && *next > i && counts(i) && counts(*next)) product += differences[i] * differences[*next], ++couples;
   if (couples < least_couples || squares == 0) return std::nullopt;
   found.share = product < 0 ? std::sqrt(-product / couples / (squares / known)) : 0;
   return found;

@@ -22,11 +22,15 @@ class PressureRows {
   /// where they turn by more than 60 degrees  @param shared how many nodes neighbours have in common: 1 in the plane, 2 or more
   /// in space
   PressureRows(const std::vector<std::vector<std::int32_t>>& nodes, const std::vector<Vec3>& normals, std::size_t shared);
+  /// Which patches of a row count: all, or those that have two others to either side, for beside a sharp edge, where pressures
+  /// have no bound, the next patch has too little.
+  enum class Part { all, inside };
   /// Nothing where too few patches in rows press.
   /// One or two open patches between pressed ones count as some without pressure.
   /// @param pressure, area of each patch  @param whole those that see a master everywhere  @param pressed those in contact
   std::optional<AlternatingPressures> measure(std::span<const double> pressure, std::span<const double> area,
-                                              const std::vector<bool>& whole, const std::vector<bool>& pressed) const;
+                                              const std::vector<bool>& whole, const std::vector<bool>& pressed,
+                                              Part part) const;
 
  private:
   /// A patch between two others that lie on opposite sides of it.

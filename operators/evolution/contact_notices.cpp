@@ -174,10 +174,10 @@ void ContactNotices::accept(const SolvedInstant& solved) {
     };
     note(contact.pierced(zone, patches, false), pierced_);
     note(contact.pierced(zone, patches, true), pierced_at_rest_);
-    const auto now = contact.alternation(zone, patches);
+    const auto now = contact.alternation(
+        zone, patches, [&] { return facet_gaps_->of(zone, patches, present_.state.displacement).has_value(); });
     const bool presses_as_before = contact.largest_strain(zone, patches) >= share_that_counts * strain;
-    if (now && presses_as_before &&
-        (!now->in_rows || facet_gaps_->of(zone, patches, present_.state.displacement)))  // along straight skins it is no facets
+    if (now && presses_as_before)
       if (const auto before = alternating_.find(zone); before == alternating_.end() || now->share > before->second.most.share)
         alternating_[zone] = {solved.instant, *now};
     if (const auto split = contact.split(zone, patches, strain); split && strain > 0)
@@ -215,7 +215,10 @@ void ContactNotices::end(bool /*completed*/) {
       tell("EVOLUTION_45", zone, pierced);
   for (const auto& [zone, alternating] : alternating_) {
     const ContactZone& names = present_.problem.contact->zones[zone];
-    inform(alternating.most.in_rows ? "EVOLUTION_67" : "EVOLUTION_47",
+    const AlternatingBy by = alternating.most.by;
+    inform(by == AlternatingBy::triangles ? "EVOLUTION_47"
+           : by == AlternatingBy::facets  ? "EVOLUTION_67"
+                                          : "EVOLUTION_70",
            {{"slave", names.slave_group},
             {"master", names.master_group},
             {"cell", first_cell(alternating.most.patch)},

@@ -51,7 +51,7 @@ class ContactNotices : public EvolutionObserver {
     AlternatingPressures most;
     template <class Use>
     void for_each_member(const Use& use) {
-      use("instant", instant), use("share", most.share), use("patch", most.patch), use("in_rows", most.in_rows);
+      use("instant", instant), use("share", most.share), use("patch", most.patch), use("in_rows", most.by);  // as bases call it
     }
   };
   struct Faceted {

@@ -11,12 +11,12 @@ COMM = pathlib.Path(__file__).resolve().parent / "contact.comm"
 
 def contact_study(mesh, hold, push=(), slaves=("SLAVE",), masters=("MASTER",), model="3D", **more):
     """@param mesh a meshes.Mesh or the path of a MED file; hold, push lists of occurrences of MECA_IMPO and PRES_REP, multiplied by the
-    instant; more: elastic (E, NU), times, cut (option of DECOUPE_HEXA), smooth (LISSAGE), orient (groups for
+    instant; more: elastic (E, NU), other (E or NU of the groups `others`), times, cut (option of DECOUPE_HEXA), smooth (LISSAGE), orient (groups for
     ORIE_PEAU), varying (group -> pressure as an expression of X, Y), zone (keywords of every ZONE), convergence"""
     zone = more.pop("zone", {})
     study = {"mesh": mesh, "model": model, "hold": list(hold), "push": list(push),
              "zones": [{"GROUP_MA_ESCL": slave, "GROUP_MA_MAIT": master, **zone} for slave, master in zip(slaves, masters)],
-             "elastic": {"E": 2000.0, "NU": 0.3}, "times": [0.0, 1.0], "smooth": "NON", "orient": [], "varying": {},
+             "elastic": {"E": 2000.0, "NU": 0.3}, "other": {}, "others": [], "times": [0.0, 1.0], "smooth": "NON", "orient": [], "varying": {},
              "convergence": {"RESI_GLOB_RELA": 1e-12, "ITER_GLOB_MAXI": 20}, **more}
     study["cut"] = {"GROUP_MA_ESCL": list(slaves), "DECOUPE_HEXA": more.get("cut", "PYRA")}
     return study

@@ -139,12 +139,40 @@ def belt(kind, cells):
                          model="3D" if in_space else "D_PLAN", elastic={"E": 210e3, "NU": 0.3}, convergence={"RESI_GLOB_RELA": 1e-9, "ITER_GLOB_MAXI": 40})
 
 
+def plate(kind, cells):
+    """A plate that is a thousand times as stiff as the base that a pressure of 10 lays it on. @param cells along (the plate, the base)"""
+    in_space = kind.startswith("HEXA")
+
+    def part(name, half, levels, n, skin, other):
+        along = np.linspace(-half, half, n + 1)
+        if not in_space:
+            return block(kind, along, levels, None, name, {skin: f"{name}_SKIN", other: f"{name}_OTHER"})
+        sides = {(2, ("bottom", "top").index(skin)): f"{name}_SKIN", (2, ("bottom", "top").index(other)): f"{name}_OTHER"}
+        return brick(kind, [along, along, levels], None, name, sides)
+
+    mesh = union([part("PLATE", 0.8, np.array([1.0, 1.1]), cells[0], "bottom", "top"), part("BASE", 1.0, np.linspace(0, 1, 4), cells[1], "top", "bottom")])
+    across = {"DX": 0.0, "DY": 0.0} if in_space else {"DX": 0.0}
+    hold = [{"GROUP_MA": "BASE_OTHER", **across, ("DZ" if in_space else "DY"): 0.0}, {"GROUP_MA": "PLATE_OTHER", **across}]
+    return contact_study(mesh, hold, [{"GROUP_MA": "PLATE_OTHER", "PRES": 10.0}], slaves=["PLATE_SKIN"], masters=["BASE_SKIN"],
+                         model="3D" if in_space else "D_PLAN", convergence={"RESI_GLOB_RELA": 1e-9, "ITER_GLOB_MAXI": 40},
+                         elastic={"E": 1e3, "NU": 0.3}, other={"E": 1e6}, others=["PLATE"])
+
+
 class Rows(StudyTest):
     def told(self, study):
         """@return (whether EVOLUTION_67 was, the largest pressure over that of the pull)"""
         run, (result,) = run_contact(self, [study], CONTACT_ALARMS="ALARME")
         pressure = result.on_cells("CONT_ELEM", result.orders[-1], "PRES")
         return "<EVOLUTION_67>" in run.stdout + run.stderr, -min(pressure.values()) / (100 * 0.2 / 10)
+
+    def test_a_stiff_slave_on_a_soft_coarser_master_is_told(self):
+        """Skins are straight. A master whose cells are half as long is right: its pressures rise to the edge, and nothing else."""
+        for kind, cells, expected in (("QUAD4", (24, 15), True), ("QUAD4", (12, 30), False), ("HEXA8", (16, 10), True), ("HEXA8", (8, 20), False)):
+            with self.subTest(kind=kind, cells=cells):
+                run, (result,) = run_contact(self, [plate(kind, cells)], CONTACT_ALARMS="ALARME")
+                said = run.stdout + run.stderr
+                self.assertEqual("<EVOLUTION_70> zone PLATE_SKIN on BASE_SKIN" in said, expected)
+                self.assertEqual(said.count("<EVOLUTION_67>") + said.count("<EVOLUTION_47>"), 0)
 
     def test_pressures_that_follow_facets_are_told(self):
         """By half of the pressure and more; where cells lie on the curve, or are as many on both skins, nothing is."""

@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <functional>
 
@@ -47,8 +49,8 @@ struct Skin {
     whole.push_back(true);
     pressed.push_back(true);
   }
-  std::optional<AlternatingPressures> measure() const {
-    return PressureRows(nodes, normals, shared).measure(pressure, area, whole, pressed);
+  std::optional<AlternatingPressures> measure(PressureRows::Part part = PressureRows::Part::all) const {
+    return PressureRows(nodes, normals, shared).measure(pressure, area, whole, pressed, part);
   }
 };
 
@@ -106,6 +108,30 @@ TEST(PressureRows, CountOpenPatchesBetweenPressedOnesAsSomeWithoutPressure) {
   Skin unseen = row(1);
   for (std::size_t p = 1; p < 16; p += 2) unseen.whole[p] = false;
   EXPECT_FALSE(unseen.measure());
+}
+
+// An edge under which the pressure is high, and low beside it; inside, what goes up and down does so for both.
+TEST(PressureRows, AreMeasuredWithoutTheEdgesOfAContact) {
+  const auto found = [](double edge, double waves) {
+    int at = 0;
+    const Skin skin = Skin::line(Skin::even(16), [&](double, double) {
+      const int from_edge = std::min(at, 15 - at);
+      return -1 - (from_edge == 0 ? edge : from_edge == 1 ? -edge / 3 : 0) - waves * sign(at++);
+    });
+    return std::array{skin.measure(PressureRows::Part::all)->share, skin.measure(PressureRows::Part::inside)->share};
+  };
+  EXPECT_GT(found(2, 0)[0], 0.1);
+  EXPECT_LT(found(2, 0)[1], 0.05);
+  EXPECT_NEAR(found(0, 0.3)[1], 0.3 / std::sqrt(1.09), 1e-12);
+  EXPECT_NEAR(found(0, 0.3)[0], found(0, 0.3)[1], 1e-12);
+  const auto measured = [](int n) {
+    return Skin::line(Skin::even(n), [](double, double) { return -1; }).measure(PressureRows::Part::inside);
+  };
+  EXPECT_FALSE(measured(12));  // seven couples inside
+  EXPECT_TRUE(measured(13));
+  const Skin one = Skin::line(Skin::even(20), [](double, double) { return -1; });
+  EXPECT_EQ(one.measure()->by, AlternatingBy::facets);
+  EXPECT_EQ(one.measure(PressureRows::Part::inside)->by, AlternatingBy::rows);
 }
 
 TEST(PressureRows, EndAtEdgesOfBodies) {
