@@ -212,7 +212,7 @@ struct MumpsEngine::State {
       scale.clear();
       found = full->factorise(of.values());
     } else {
-      alone = of.rows_alone();
+      alone = matrix->rows_alone();
       found = single ? factorise_scaled(*single, of) : factorise_scaled(*full, of);
     }
     row = std::vector<int>();  // with its memory

@@ -389,16 +389,24 @@ std::vector<std::int64_t> SparseMatrix::rows_alone() const {
 }
 
 std::vector<double> SparseMatrix::multiplier_scale() const {
-  const std::int64_t first = numbering_->first[numbering_->n_nodes];
-  std::vector<double> scale(size(), 1.0);
+  constexpr double counts = 0.01;  // of a multiplier's largest coupling: others may be next to nothing
+  const std::int64_t first = numbering_->first[numbering_->n_nodes], n_multipliers = size() - first;
+  const auto for_each_coupling = [&](const auto& use) {
+    for (std::int64_t row = is_symmetric() ? first : 0; row < size(); ++row)
+      for (std::int64_t k = row_[row]; k < row_[row + 1]; ++k)
+        if (const std::int64_t column = column_[k], node = std::min(row, column), multiplier = std::max(row, column) - first;
+            node < first && multiplier >= 0)
+          use(node, multiplier, std::abs(value_[k]));
+  };
+  std::vector<double> scale(size(), 1.0), largest(n_multipliers, 0.0),
+      most(n_multipliers, 0.0);  // most: diagonal over coupling
+  for_each_coupling([&](std::int64_t, std::int64_t i, double coupling) { largest[i] = std::max(largest[i], coupling); });
   const std::vector<double> stiffness = diagonals();
-  for (std::int64_t row = 0; row < size(); ++row)
-    for (std::int64_t k = row_[row]; k < row_[row + 1]; ++k)
-      if (const std::int64_t column = column_[k], node = std::min(row, column), multiplier = std::max(row, column);
-          node < first && multiplier >= first)
-        if (const double coupling = std::abs(value_[k]), diagonal = std::abs(stiffness[node]);
-            diagonal > 0 && coupling * scale[multiplier] > diagonal)
-          scale[multiplier] = std::exp2(std::floor(std::log2(diagonal) - std::log2(coupling)));
+  for_each_coupling([&](std::int64_t node, std::int64_t i, double coupling) {
+    if (coupling > counts * largest[i]) most[i] = std::max(most[i], std::abs(stiffness[node]) / coupling);
+  });
+  for (std::int64_t i = 0; i < n_multipliers; ++i)
+    if (most[i] > 0 && most[i] < 1) scale[first + i] = std::exp2(std::floor(std::log2(most[i])));
   return scale;
 }
 

@@ -100,11 +100,11 @@ class SparseMatrix {
   /// Some products of a symmetric matrix at once, each with the bits of multiply(), the last one with those of
   /// multiply_magnitudes(); what is elsewhere is left out. @param x, y (size, n_columns)
   void multiply_together(std::span<const double> x, std::span<double> y, int n_columns) const;
-  /// Powers of two, at most 1, that make no coupling of a multiplier larger than the diagonal that it meets, (size): areas in
-  /// square nanometres beside stiffnesses in N/nm would make these look like zeros.
+  /// Powers of two, at most 1, (size), for multipliers whose couplings, but those that are next to nothing, are all larger than
+  /// the diagonals that they meet: one is no larger then. Areas in square nanometres would make stiffnesses in N/nm look like
+  /// zeros.
   std::vector<double> multiplier_scale() const;
-  /// Powers of two d that make the largest entry of each row and column of d A d about 1, (size): no stiffness is small by its
-  /// couplings.
+  /// Powers of two d that make the largest entry of each row and column of d A d about 1, (size), from multiplier_scale() on.
   std::vector<double> equilibration() const;
   /// Unknowns that their row alone decides: nothing but a diagonal stands in it. Ascending; multipliers alone, where other
   /// processes have entries.

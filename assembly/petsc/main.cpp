@@ -1,4 +1,5 @@
 // lacon_petsc: the ranks of PETSc, which an operator starts and talks with over standard input and output (exchange.hpp).
+#include <fcntl.h>
 #include <malloc.h>
 #include <sys/prctl.h>
 #include <unistd.h>
@@ -53,9 +54,21 @@ std::string next_line() {
   return line;
 }
 
+/// What standard output was. PETSc's own words (-info, -log_view, -ksp_monitor of PETSC_OPTIONS) go where errors go.
+std::FILE* answers = nullptr;
+
+bool keep_answers_apart() {
+  answers = fdopen(fcntl(STDOUT_FILENO, F_DUPFD_CLOEXEC, STDERR_FILENO + 1), "w");
+  return answers && dup2(STDERR_FILENO, STDOUT_FILENO) >= 0;
+}
+void say(const std::string& line) {
+  std::fprintf(answers, "%s\n", line.c_str());
+  std::fflush(answers);
+}
+
 void answer(const std::string& line) {
   MPI_Barrier(PETSC_COMM_WORLD);  // what others have written is there
-  if (is_first()) std::cout << line << std::endl;
+  if (is_first()) say(line);
 }
 
 /// What is done while it is there is counted by itself: -log_view of PETSC_OPTIONS shows it under this name.
@@ -140,7 +153,7 @@ void serve(const KrylovOptions& options) {
       }
     } catch (const std::exception& error) {
       // other ranks may be anywhere: what is left of them is of no use
-      std::cout << "failed " << error.what() << std::endl;
+      say(std::string("failed ") + error.what());
       if (n_ranks() > 1) MPI_Abort(PETSC_COMM_WORLD, 1);
       krylov.reset();
       multigrid.forget();
@@ -159,6 +172,7 @@ int main(int argc, char** argv) {
   setenv("LACON_THREADS", "1", 1);                                 // processes are what works at the same time here
   if (const char* const folder = std::getenv("LACON_MPI_MEMORY"))  // of lacon_mpirun, on its machine
     setenv("OMPI_MCA_btl_vader_backing_directory", folder, 0);
+  if (!keep_answers_apart()) return 4;
   if (PetscInitialize(nullptr, nullptr, nullptr, nullptr)) return 4;
   lacon::catch_errors();
   give_back_at_once();

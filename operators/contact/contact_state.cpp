@@ -352,24 +352,23 @@ std::optional<FacetOverlap> ContactState::facet_overlap(std::int32_t number) con
 std::optional<AlternatingPressures> ContactState::alternation(std::int32_t zone, const Patchwise& patches,
                                                               const std::function<bool()>& has_facets) const {
   constexpr double whole = 0.99;
-  std::vector<bool> seen(n_patches()), pressed(n_patches());
+  std::vector<bool> seen(n_patches()), pressed(n_patches()), resisting(n_patches());
   std::vector<double> area(n_patches());
   for (std::size_t p = 0; p < n_patches(); ++p) {
     seen[p] = !locked_[p] && geometry_.coverage(p) > whole;
     pressed[p] = seen[p] && patches.status[p] == Status::active;
+    resisting[p] = seen[p] && resists_its_master(p);
     area[p] = geometry_.whole(p);
   }
   const auto of_zone = static_cast<std::size_t>(zone);
   const auto much = [&](const std::optional<AlternatingPressures>& found) {
     return found && found->share > tolerances_.alternating ? found : std::nullopt;
   };
-  const auto along_rows = [&](PressureRows::Part part) {
-    return much(rows_[of_zone].measure(patches.lambda, area, seen, pressed, part));
-  };
   if (const auto found = much(alternations_[of_zone].measure(patches.lambda, area, pressed))) return found;
-  if (const auto found = along_rows(PressureRows::Part::all); !found || has_facets()) return found;
-  const auto found = along_rows(PressureRows::Part::inside);
-  return found && resists_its_master(found->patch) ? found : std::nullopt;
+  const auto everywhere = much(rows_[of_zone].measure(patches.lambda, area, seen, pressed));
+  const auto inside = much(rows_[of_zone].measure_inside(patches.lambda, area, seen, pressed, resisting));
+  if (!everywhere && !inside) return std::nullopt;
+  return has_facets() ? everywhere : inside;
 }
 
 bool ContactState::presses(std::int32_t zone, const Patchwise& patches) const {

@@ -39,7 +39,7 @@ struct ContactTolerances {
   double far_behind = 0.5;          ///< of h: by how much parts of one patch may see masters at different distances
   double missed_pressure = 0.1;     ///< of the largest: what such points would press with, worth an alarm
   double alternating = 0.1;         ///< of the pressure: by how much neighbours may differ to opposite sides
-  double stiffer = 3;               ///< how many times as stiff as its master a slave is that answers bending by pressures
+  double stiffer = 2;               ///< how many times as stiff as its master a slave is that answers bending by pressures
   double touching = 1e-8;           ///< of h: an overlap of patches without contact that is round-off
 };
 

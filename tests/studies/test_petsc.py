@@ -169,6 +169,17 @@ class Mpi(StudyTest):
             np.testing.assert_array_equal(again[name], values)
 
     @unittest.skipUnless(PROGRAM.exists() and shutil.which("mpirun"), "built without PETSc, or there is no mpirun")
+    def test_what_petsc_prints_is_no_answer(self):
+        """It goes to standard error, and the study is what it is without."""
+        for options in ((), ("--mpi", 2)):
+            quiet, _, _ = self.solve("petsc", *options)
+            found, _, said = self.solve("petsc", *options, PETSC_OPTIONS="-ksp_converged_reason -ksp_monitor -info")
+            self.assertIn("solve converged due to", said)
+            self.assertIn("KSP Residual norm", said)
+            for name, values in found.items():
+                np.testing.assert_array_equal(quiet[name], values)
+
+    @unittest.skipUnless(PROGRAM.exists() and shutil.which("mpirun"), "built without PETSc, or there is no mpirun")
     def test_log_view_counts_products_in_blocks(self):
         """A cycle of the multigrid multiplies by the matrix nine times at least (polynomials of degree 4 on either side, a residual); a node sees 8 to 27."""
         log = self.folder / "log"

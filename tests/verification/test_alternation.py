@@ -139,8 +139,8 @@ def belt(kind, cells):
                          model="3D" if in_space else "D_PLAN", elastic={"E": 210e3, "NU": 0.3}, convergence={"RESI_GLOB_RELA": 1e-9, "ITER_GLOB_MAXI": 40})
 
 
-def plate(kind, cells):
-    """A plate that is a thousand times as stiff as the base that a pressure of 10 lays it on. @param cells along (the plate, the base)"""
+def plate(kind, cells, ratio, slave):
+    """A plate that a pressure of 10 lays on a base. @param cells along (the plate, the base) @param ratio of their stiffnesses"""
     in_space = kind.startswith("HEXA")
 
     def part(name, half, levels, n, skin, other):
@@ -153,9 +153,9 @@ def plate(kind, cells):
     mesh = union([part("PLATE", 0.8, np.array([1.0, 1.1]), cells[0], "bottom", "top"), part("BASE", 1.0, np.linspace(0, 1, 4), cells[1], "top", "bottom")])
     across = {"DX": 0.0, "DY": 0.0} if in_space else {"DX": 0.0}
     hold = [{"GROUP_MA": "BASE_OTHER", **across, ("DZ" if in_space else "DY"): 0.0}, {"GROUP_MA": "PLATE_OTHER", **across}]
-    return contact_study(mesh, hold, [{"GROUP_MA": "PLATE_OTHER", "PRES": 10.0}], slaves=["PLATE_SKIN"], masters=["BASE_SKIN"],
+    return contact_study(mesh, hold, [{"GROUP_MA": "PLATE_OTHER", "PRES": 10.0}], slaves=[f"{slave}_SKIN"], masters=["BASE_SKIN" if slave == "PLATE" else "PLATE_SKIN"],
                          model="3D" if in_space else "D_PLAN", convergence={"RESI_GLOB_RELA": 1e-9, "ITER_GLOB_MAXI": 40},
-                         elastic={"E": 1e3, "NU": 0.3}, other={"E": 1e6}, others=["PLATE"])
+                         elastic={"E": 1e3, "NU": 0.3}, other={"E": ratio * 1e3}, others=["PLATE"])
 
 
 class Rows(StudyTest):
@@ -166,10 +166,14 @@ class Rows(StudyTest):
         return "<EVOLUTION_67>" in run.stdout + run.stderr, -min(pressure.values()) / (100 * 0.2 / 10)
 
     def test_a_stiff_slave_on_a_soft_coarser_master_is_told(self):
-        """Skins are straight. A master whose cells are half as long is right: its pressures rise to the edge, and nothing else."""
-        for kind, cells, expected in (("QUAD4", (24, 15), True), ("QUAD4", (12, 30), False), ("HEXA8", (16, 10), True), ("HEXA8", (8, 20), False)):
-            with self.subTest(kind=kind, cells=cells):
-                run, (result,) = run_contact(self, [plate(kind, cells)], CONTACT_ALARMS="ALARME")
+        """Skins are straight. Where the master's cells are half as long pressures rise to the edge and nothing else; bodies of the same
+        stiffness bend alike, and a soft slave follows."""
+        for kind, cells, ratio, slave, expected in (("QUAD4", (24, 15), 1000, "PLATE", True), ("QUAD4", (12, 30), 1000, "PLATE", False),
+                                                    ("HEXA8", (16, 10), 1000, "PLATE", True), ("HEXA8", (8, 20), 1000, "PLATE", False),
+                                                    ("HEXA8", (16, 8), 4, "PLATE", True), ("HEXA8", (16, 8), 1.5, "PLATE", False),
+                                                    ("HEXA8", (8, 10), 1000, "BASE", False)):
+            with self.subTest(kind=kind, cells=cells, ratio=ratio, slave=slave):
+                run, _ = run_contact(self, [plate(kind, cells, ratio, slave)], CONTACT_ALARMS="ALARME")
                 said = run.stdout + run.stderr
                 self.assertEqual("<EVOLUTION_70> zone PLATE_SKIN on BASE_SKIN" in said, expected)
                 self.assertEqual(said.count("<EVOLUTION_67>") + said.count("<EVOLUTION_47>"), 0)

@@ -15,33 +15,16 @@
 #include "lacon/assembly/mumps_engine.hpp"
 #include "lacon/catalog/messages.hpp"
 #include "lattice.hpp"
+#include "saddle_point.hpp"
 
 namespace lacon {
 namespace {
 
 using test::Chain;
 using test::dense;
+using test::entries;
 using test::Lattice;
-
-/// A chain held at its first node, with multipliers that tie the x displacements of node pairs.
-struct SaddlePoint {
-  SaddlePoint() : chain(30, 2, held()), matrix(chain.numbering, chain.cliques, couplings()) { fill(matrix); }
-  void fill(SparseMatrix& to) const {
-    test::add_springs(to, chain);
-    for (const Coupling& c : couplings()) {
-      const std::vector<std::int64_t> equations{chain.numbering.of_patch(c.a - 30), chain.numbering.of(c.b, 0)};
-      to.add(equations, std::vector<double>{0, c.b % 2 ? 1.0 : -0.5, 0});
-    }
-  }
-  static std::vector<std::uint8_t> held() {
-    std::vector<std::uint8_t> free(60, 1);
-    free[0] = free[1] = 0;
-    return free;
-  }
-  static std::vector<Coupling> couplings() { return {{30, 5}, {30, 16}, {31, 9}, {31, 20}}; }
-  Chain chain;
-  SparseMatrix matrix;
-};
+using test::SaddlePoint;
 
 // The solution of a saddle-point system is that of dense LU, and the inertia counts the multipliers.
 TEST(MumpsEngine, SolvesSaddlePoints) {
@@ -165,8 +148,6 @@ TEST(MumpsEngine, RefusesABadSolution) {
 using Use = MumpsOptions::Use;
 constexpr MumpsOptions::Use always = Use::always, never = Use::never;
 
-std::span<double> entries(Eigen::VectorXd& x) { return {x.data(), static_cast<std::size_t>(x.size())}; }
-
 // A factor in single precision gives a solution as exact as one in double precision does, and the same inertia.
 TEST(MumpsEngine, SolvesWithSinglePrecision) {
   SaddlePoint system;
@@ -181,58 +162,6 @@ TEST(MumpsEngine, SolvesWithSinglePrecision) {
     EXPECT_LE(engine.solve(entries(x)).residual, 1e-15);
     const Eigen::VectorXd expected = dense(system.matrix).fullPivLu().solve(b);
     EXPECT_LE((x - expected).cwiseAbs().maxCoeff(), 1e-11 * expected.cwiseAbs().maxCoeff());
-  }
-}
-
-// Units make no difference to it: forces and lengths far outside the range of single precision.
-TEST(MumpsEngine, SolvesWithSinglePrecisionInAnyUnits) {
-  SaddlePoint system;
-  std::vector<double> values(system.matrix.values().begin(), system.matrix.values().end());
-  for (double& value : values) value *= 1e60;
-  for (std::int64_t row = system.chain.numbering.of_patch(0); row < system.matrix.size(); ++row)
-    for (std::int64_t k = system.matrix.rows()[row]; k < system.matrix.rows()[row + 1]; ++k) values[k] *= 1e-90;
-  system.matrix.restore(values);
-  MumpsEngine engine({.single_precision = always});
-  engine.analyse(system.matrix);
-  EXPECT_EQ(engine.factorise(system.matrix).doubt, "");
-  Eigen::VectorXd b = 1e60 * Eigen::VectorXd::Random(system.matrix.size()), x = b;
-  for (std::int64_t row = system.chain.numbering.of_patch(0); row < system.matrix.size(); ++row) b[row] = x[row] = 1e-30;
-  EXPECT_LE(engine.solve(entries(x)).residual, 1e-15);
-  const Eigen::VectorXd left = dense(system.matrix) * x - b;
-  EXPECT_LE(left.head(58).cwiseAbs().maxCoeff(), 1e-13 * b.head(58).cwiseAbs().maxCoeff());
-  EXPECT_LE(left.tail(2).cwiseAbs().maxCoeff(), 1e-13 * 1e-30);
-}
-
-// Nor to couplings that are far larger than stiffnesses (areas in square nanometres beside N/nm): these are no zeros beside
-// them.
-TEST(MumpsEngine, SolvesWhereCouplingsAreFarLargerThanStiffnesses) {
-  for (const bool single : {false, true}) {
-    SCOPED_TRACE(single ? "in single precision" : "exact");
-    SaddlePoint system;
-    const Eigen::VectorXd b = Eigen::VectorXd::Random(system.matrix.size());
-    Eigen::VectorXd expected = dense(system.matrix).fullPivLu().solve(b), x = b;
-    constexpr double factor = 0x1p60;
-    std::vector<double> values(system.matrix.values().begin(), system.matrix.values().end());
-    for (std::int64_t row = system.chain.numbering.of_patch(0); row < system.matrix.size(); ++row) {
-      for (std::int64_t k = system.matrix.rows()[row]; k < system.matrix.rows()[row + 1]; ++k) values[k] *= factor;
-      x[row] *= factor;
-      expected[row] /= factor;
-    }
-    system.matrix.restore(values);
-    MumpsEngine engine({.single_precision = single ? always : MumpsOptions{}.single_precision});
-    engine.analyse(system.matrix);
-    const Factorisation found = engine.factorise(system.matrix);
-    EXPECT_TRUE(found.null_pivots.empty());
-    EXPECT_EQ(found.negative_pivots, 2);
-    EXPECT_EQ(found.single_precision, single);
-    std::vector<float> column =
-        engine.substitute(std::vector<std::int64_t>{0, 1}, std::vector<std::int32_t>{7}, std::vector<double>{1});
-    EXPECT_LE(engine.solve(entries(x)).residual, 1e-15);
-    for (const auto& part : {Eigen::seq(0, 57), Eigen::seq(58, 59)})
-      EXPECT_LE((x - expected)(part).cwiseAbs().maxCoeff(), 1e-11 * expected(part).cwiseAbs().maxCoeff());
-    Eigen::VectorXd unit = Eigen::VectorXd::Unit(system.matrix.size(), 7);
-    engine.solve(entries(unit));
-    for (int i = 0; i < unit.size(); ++i) EXPECT_NEAR(column[i], unit[i], 1e-5 * unit.head(58).cwiseAbs().maxCoeff());
   }
 }
 

@@ -49,8 +49,14 @@ struct Skin {
     whole.push_back(true);
     pressed.push_back(true);
   }
-  std::optional<AlternatingPressures> measure(PressureRows::Part part = PressureRows::Part::all) const {
-    return PressureRows(nodes, normals, shared).measure(pressure, area, whole, pressed, part);
+  std::optional<AlternatingPressures> measure() const {
+    return PressureRows(nodes, normals, shared).measure(pressure, area, whole, pressed);
+  }
+  /// @param first patches from here on count
+  std::optional<AlternatingPressures> measure_inside(std::size_t first = 0) const {
+    std::vector<bool> counting(pressure.size());
+    std::fill(counting.begin() + static_cast<std::ptrdiff_t>(first), counting.end(), true);
+    return PressureRows(nodes, normals, shared).measure_inside(pressure, area, whole, pressed, counting);
   }
 };
 
@@ -112,26 +118,42 @@ TEST(PressureRows, CountOpenPatchesBetweenPressedOnesAsSomeWithoutPressure) {
 
 // An edge under which the pressure is high, and low beside it; inside, what goes up and down does so for both.
 TEST(PressureRows, AreMeasuredWithoutTheEdgesOfAContact) {
-  const auto found = [](double edge, double waves) {
+  const auto row = [](double edge, double waves) {
     int at = 0;
-    const Skin skin = Skin::line(Skin::even(16), [&](double, double) {
+    return Skin::line(Skin::even(16), [&](double, double) {
       const int from_edge = std::min(at, 15 - at);
       return -1 - (from_edge == 0 ? edge : from_edge == 1 ? -edge / 3 : 0) - waves * sign(at++);
     });
-    return std::array{skin.measure(PressureRows::Part::all)->share, skin.measure(PressureRows::Part::inside)->share};
   };
-  EXPECT_GT(found(2, 0)[0], 0.1);
-  EXPECT_LT(found(2, 0)[1], 0.05);
-  EXPECT_NEAR(found(0, 0.3)[1], 0.3 / std::sqrt(1.09), 1e-12);
-  EXPECT_NEAR(found(0, 0.3)[0], found(0, 0.3)[1], 1e-12);
-  const auto measured = [](int n) {
-    return Skin::line(Skin::even(n), [](double, double) { return -1; }).measure(PressureRows::Part::inside);
+  EXPECT_GT(row(2, 0).measure()->share, 0.1);
+  EXPECT_LT(row(2, 0).measure_inside()->share, 0.02);
+  EXPECT_NEAR(row(0, 0.3).measure_inside()->share, 0.3 / std::sqrt(1.09), 1e-12);
+  const std::size_t patch = row(2, 0.3).measure_inside()->patch;
+  EXPECT_TRUE(patch >= 2 && patch < 14) << patch;
+  EXPECT_NEAR(row(2, 0.3).measure_inside()->share, 0.3 / std::sqrt(1.09), 0.02);
+
+  // in space rows along an edge are left out as well
+  const auto square = [](double edge, double waves) {
+    return Skin::square(9, [&](int i, int j) {
+      const int from_edge = std::min({i, j, 8 - i, 8 - j});
+      return -1 - (from_edge < 2 ? edge * sign(i + j) : waves * sign(i + j));
+    });
   };
-  EXPECT_FALSE(measured(12));  // seven couples inside
-  EXPECT_TRUE(measured(13));
-  const Skin one = Skin::line(Skin::even(20), [](double, double) { return -1; });
-  EXPECT_EQ(one.measure()->by, AlternatingBy::facets);
-  EXPECT_EQ(one.measure(PressureRows::Part::inside)->by, AlternatingBy::rows);
+  EXPECT_GT(square(0.5, 0).measure()->share, 0.3);
+  EXPECT_LT(square(0.5, 0).measure_inside()->share, 0.2);  // what differs beside it, at the middle of a line
+  EXPECT_NEAR(square(0.3, 0.3).measure_inside()->share, 0.3 / std::sqrt(1.09), 2e-2);
+}
+
+TEST(PressureRows, AreMeasuredOverPatchesThatCount) {
+  int at = 0;
+  const Skin skin = Skin::line(Skin::even(40), [&](double from, double) { return from < 0.5 ? -1 : -1 - 0.3 * sign(at++); });
+  EXPECT_EQ(skin.measure_inside(24)->by, AlternatingBy::rows);
+  EXPECT_NEAR(skin.measure_inside(24)->share, 0.3 / std::sqrt(1.09), 1e-2);
+  EXPECT_LT(skin.measure()->share, 0.25);
+  EXPECT_EQ(skin.measure()->by, AlternatingBy::facets);
+  EXPECT_FALSE(skin.measure_inside(32));  // 32 to 37: five couples
+  EXPECT_TRUE(skin.measure_inside(29));   // eight
+  EXPECT_FALSE(skin.measure_inside(30));
 }
 
 TEST(PressureRows, EndAtEdgesOfBodies) {
