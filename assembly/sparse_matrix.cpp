@@ -398,15 +398,16 @@ std::vector<double> SparseMatrix::multiplier_scale() const {
             node < first && multiplier >= 0)
           use(node, multiplier, std::abs(value_[k]));
   };
-  std::vector<double> scale(size(), 1.0), largest(n_multipliers, 0.0),
-      most(n_multipliers, 0.0);  // most: diagonal over coupling
+  std::vector<double> largest(n_multipliers, 0.0);
   for_each_coupling([&](std::int64_t, std::int64_t i, double coupling) { largest[i] = std::max(largest[i], coupling); });
   const std::vector<double> stiffness = diagonals();
+  std::vector<double> ratio(n_multipliers, 0.0);  // the largest one of a diagonal to its coupling
   for_each_coupling([&](std::int64_t node, std::int64_t i, double coupling) {
-    if (coupling > counts * largest[i]) most[i] = std::max(most[i], std::abs(stiffness[node]) / coupling);
+    if (coupling > counts * largest[i]) ratio[i] = std::max(ratio[i], std::abs(stiffness[node]) / coupling);
   });
+  std::vector<double> scale(size(), 1.0);
   for (std::int64_t i = 0; i < n_multipliers; ++i)
-    if (most[i] > 0 && most[i] < 1) scale[first + i] = std::exp2(std::floor(std::log2(most[i])));
+    if (ratio[i] > 0 && ratio[i] < 1) scale[first + i] = std::exp2(std::floor(std::log2(ratio[i])));
   return scale;
 }
 

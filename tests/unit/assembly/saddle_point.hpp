@@ -11,7 +11,7 @@ namespace lacon::test {
 struct SaddlePoint {
   SaddlePoint() : chain(30, 2, held()), matrix(chain.numbering, chain.cliques, couplings()) { fill(matrix); }
   void fill(SparseMatrix& to) const {
-    test::add_springs(to, chain);
+    add_springs(to, chain);
     for (const Coupling& c : couplings()) {
       const std::vector<std::int64_t> equations{chain.numbering.of_patch(c.a - 30), chain.numbering.of(c.b, 0)};
       to.add(equations, std::vector<double>{0, c.b % 2 ? 1.0 : -0.5, 0});
