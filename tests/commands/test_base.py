@@ -109,6 +109,20 @@ class Life(LauncherTest):
         self.ok(self.run_study("DEBUT()\nFIN()\n", "--fresh"))
         self.assertEqual(self.registry()["labels"], {})
 
+    def test_fresh_begins_anew_where_the_registry_is_broken(self):
+        """Cut off anywhere, or no JSON at all: that it is a base is told by how it begins, or by the concepts beside it."""
+        path = self.work / "study.base/base.json"
+        for text, concepts in ((f"A = {MATERIAL}\n", ["material_1"]), ("", [])):
+            self.ok(self.run_study(f"DEBUT()\n{text}FIN()\n", "--fresh"))
+            whole = path.read_bytes()
+            for broken in (whole[:-1], whole[:60], whole[:8], b"", bytes(4096), *[b"no JSON", b"\xff\xfe{", b'{"format": ,'] * bool(concepts)):
+                path.write_bytes(broken)
+                self.refused(self.run_study("DEBUT()\nFIN()\n"), "STUDY_6", "base.json", "--fresh")
+                self.assertEqual(self.entries(), concepts)
+                self.ok(self.run_study("DEBUT()\nFIN()\n", "--fresh"))
+                self.assertEqual((self.entries(), self.registry()["labels"]), ([], {}))
+                self.ok(self.run_study(f"DEBUT()\n{text}FIN()\n", "--fresh"))
+
     def test_a_registry_without_its_seal(self):
         self.ok(self.run_study(STUDY + "FIN()\n"))
         content = self.registry()
@@ -136,11 +150,16 @@ class Life(LauncherTest):
         """Its base.json is another program's, and so are the rest of its files, whatever their names are."""
         other = self.work / "other"
         (other / "run_1").mkdir(parents=True)
-        for text in ('{"name": "other"}', "{", "[1]"):
+        (other / "mesh_1.h5").write_bytes(b"a mesh of its own, longer than any seal is")
+        for text in ('{"name": "other"}', "{", "[1]", "", '{"format": 1, "name"', "no JSON"):
             (other / "base.json").write_text(text)
             self.refused(self.run_study("DEBUT()\nFIN()\n", "--base", other, "--fresh"), "STUDY_4", "is not a base")
             self.assertEqual((other / "base.json").read_text(), text)
-            self.assertTrue((other / "run_1").is_dir())
+            self.assertEqual(sorted(os.listdir(other)), ["base.json", "mesh_1.h5", "run_1"])
+        (other / "run_1").rmdir()
+        (other / "mesh_1.h5").unlink()
+        (other / "base.json").write_text("no JSON")
+        self.refused(self.run_study("DEBUT()\nFIN()\n", "--base", other, "--fresh"), "STUDY_4", "is not a base")
 
     def test_a_disk_that_can_only_be_read(self):
         """A mount of its own, where the system lets us make one."""

@@ -30,7 +30,12 @@ _entry = re.compile(r"([a-z_]+_\d+)(\.h5)?(\.partial)?$")
 
 def may_be_base(folder):
     """Whether a folder is a base, empty, or one that a full disk kept from having a registry."""
-    return (folder / _registry).exists() or all(path.name.startswith((_registry, _orders)) for path in folder.iterdir())
+    return (folder / _registry).exists() or _has_no_more(folder)
+
+
+def _has_no_more(folder):
+    """Whether a folder has nothing but a registry and orders."""
+    return all(path.name.startswith((_registry, _orders)) for path in folder.iterdir())
 
 
 class Base:
@@ -114,17 +119,23 @@ class Base:
         self._objects = weakref.WeakValueDictionary()
 
     def _check_folder(self, where, fresh):
-        """A folder that is not a base is left alone. One that is to be emptied has to show a registry of ours."""
+        """A folder that is not a base is left alone. One that is to be emptied has to show a registry of ours, or concepts beside a broken one."""
         if not self.folder.is_dir():
             fail("STUDY_4", where, folder=self.folder)
         if fresh and (self.folder / _registry).exists():
             try:
                 registry.read(self.folder)
             except registry.Unreadable as error:
-                if not error.changed:
+                if not self._is_ours(error.origin):
                     fail("STUDY_4", where, folder=self.folder)
         if not may_be_base(self.folder):
             fail("STUDY_4", where, folder=self.folder)
+
+    def _is_ours(self, origin):
+        """Whether this is a base, whose registry cannot be read. @param origin of registry.Unreadable"""
+        if origin == "ours" or (origin == "blank" and _has_no_more(self.folder)):
+            return True
+        return origin in ("blank", "unknown") and any(seal.has_mark(self.path(identifier)) for identifier in self.ids())
 
     def _read(self, where):
         try:

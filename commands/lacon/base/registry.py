@@ -17,11 +17,12 @@ _id = re.compile(r"[a-z_]+_\d+").fullmatch
 
 
 class Unreadable(Exception):
-    """Why a registry is not read. `changed`: it is one of Lacon's, and its content is not what was written."""
+    """Why a registry is not read. `origin`: "ours", one of Lacon's whose content is not what was written; "blank", no more than the first letters of one; "unknown",
+    no JSON, so that it does not say whose it is; "other"."""
 
-    def __init__(self, reason, changed=False):
+    def __init__(self, reason, origin="other"):
         super().__init__(reason)
-        self.changed = changed
+        self.origin = origin
 
 
 def empty():
@@ -46,16 +47,18 @@ def write(folder, content):
 def read(folder):
     """The registry of a base, as this version writes it. @throws Unreadable"""
     try:
-        content = json.loads((folder / name).read_text(encoding="utf-8"))
+        text = (folder / name).read_bytes()
     except OSError as error:
         raise Unreadable(error.strerror) from None
+    try:
+        content = json.loads(text.decode())
     except (ValueError, RecursionError):
-        raise Unreadable(part("registry_no_json")) from None
+        raise Unreadable(part("registry_no_json"), _origin(text)) from None
     if not isinstance(content, dict):
         raise Unreadable(part("registry_of_another"))
     seal, written = content.pop("seal", None), content.get("format")
     if seal != _seal(json.dumps(content)) if seal is not None else written == newest:
-        raise Unreadable(part("registry_changed"), changed=seal is not None and {"format", "next", "labels"} <= set(content))
+        raise Unreadable(part("registry_changed"), "ours" if seal is not None and {"format", "next", "labels"} <= set(content) else "other")
     if not _is_count(written) or "labels" not in content:
         raise Unreadable(part("registry_of_another"))
     if written > newest:
@@ -66,6 +69,13 @@ def read(folder):
     if wrong is not None:
         raise Unreadable(part("registry_wrong", key=wrong))
     return content
+
+
+def _origin(broken):
+    """Whose a registry is that is no JSON: one of ours that was cut off begins as all of them do. A disk may leave zeros in its place."""
+    if re.match(rb'\{"format": \d+, "next": \d+, "labels": \{', broken):
+        return "ours"
+    return "blank" if b'{"format": '.startswith(broken.strip(b"\0 \t\r\n")) else "unknown"
 
 
 # ------------------------------------------------------------------------------------------- layout

@@ -58,6 +58,16 @@ def open_checked(path):
     return opened
 
 
+def has_mark(path):
+    """Whether a file ends with a seal, be it that of its content or not."""
+    try:
+        with open(path, "rb") as file:
+            file.seek(-_length, 2)
+            return file.read().startswith(_mark)
+    except OSError:  # one that is shorter too
+        return False
+
+
 def _is_sealed(path):
     """Whether a file has a seal. @throws AsterError BASE_5 where its content is another one, OSError"""
     with open(path, "rb") as file:
