@@ -12,7 +12,7 @@ import sys
 import threading
 import time
 
-from ..core import late, streams
+from ..core import late, stack, streams
 from ..core.catalog import part
 from ..core.concepts import to_json
 from ..core.messages import AsterError, ConvergenceError, InternalError, Message, SolutionError, fail, message
@@ -62,6 +62,7 @@ def run(program, made, study, checks=False):
     executable = operator_folder() / program
     if not os.access(executable, os.X_OK):
         raise InternalError([message("INTERNAL_2", made["source"], program=program, folder=operator_folder())])
+    stack.make_room(made["source"])
     order_file, status_file = _write_order(made, study)
     arguments = [executable, order_file, "--status", status_file, *["--verbose"] * study.verbose, *["--check"] * checks]
     sys.stdout.flush()

@@ -1,4 +1,4 @@
-"""What a shell or a batch system may give a run: standard streams that are closed, limits of files. The study comes to the same end, or says what is
+"""What a shell or a batch system may give a run: standard streams that are closed, limits of files and of the stack. The study comes to the same end, or says what is
 wrong and comes to it when it is run again."""
 
 import pathlib
@@ -43,6 +43,17 @@ class Surroundings(SmallStudy):
             self.assertNotIn("Traceback", run.stderr)
         run = self.shell("LACON")
         self.assertEqual(run.returncode, 0, run.stderr)
+
+    def test_a_stack_that_is_too_small(self):
+        """`ulimit -s`, in kB: a soft limit is raised, a hard one is told; operators ended by SIGSEGV, an internal error."""
+        run = self.shell("ulimit -s 100; LACON")
+        self.assertEqual(run.returncode, 2, run.stdout[-500:] + run.stderr)
+        self.assertIn("<F> <STUDY_48> the stack of a process is limited to 100 kB (ulimit -s)", run.stderr)
+        run = self.shell("ulimit -S -s 100; LACON")
+        self.assertEqual(run.returncode, 0, run.stderr)
+        for enough in ("-s 512", "-s unlimited"):
+            run = self.shell(f"ulimit {enough}; LACON --fresh")
+            self.assertEqual(run.returncode, 0, f"{enough}: {run.stderr}")
 
 
 class Limits(FaultTest):
