@@ -60,13 +60,14 @@ timespec after_patience() {
   return end;
 }
 
-/// Until it has ended; where this process is asked to end, mpirun is. @return its status as waitpid() has it
-int wait_for(pid_t process, const sigset_t& signals) {
+/// Until it has ended; where this process is asked to end, or its parent is gone, mpirun is. @return its status as waitpid()
+/// has it
+int wait_for(pid_t process, const sigset_t& signals, pid_t parent) {
   std::optional<timespec> end;
   for (int status = 0;;) {
     if (waitpid(process, &status, WNOHANG) == process) return status;
     const int signal = next(signals, end);
-    if (signal == SIGTERM && !end) {
+    if ((signal == SIGTERM || (signal == SIGCONT && getppid() != parent)) && !end) {
       kill(process, SIGTERM);
       end = after_patience();
     } else if (signal < 0) {
@@ -87,13 +88,16 @@ void wait_for_others(const sigset_t& signals) {
 
 /// Run it with folders of its own. @return its status
 int run(char** words) {
+  const pid_t parent = getppid();
   sigset_t signals, before;
   sigemptyset(&signals);
-  for (const int signal : {SIGCHLD, SIGTERM, SIGINT, SIGHUP}) sigaddset(&signals, signal);
+  for (const int signal : {SIGCHLD, SIGTERM, SIGCONT, SIGINT, SIGHUP}) sigaddset(&signals, signal);
   sigprocmask(SIG_BLOCK, &signals, &before);
   sigdelset(&signals, SIGINT);  // those of a terminal, which mpirun gets too
   sigdelset(&signals, SIGHUP);
   signal(SIGCHLD, SIG_DFL);
+  prctl(PR_SET_PDEATHSIG, SIGCONT);  // other signals do not wake who is stopped, and SIGKILL would leave what is to be removed
+  if (getppid() != parent) raise(SIGCONT);  // it has gone before
   prctl(PR_SET_CHILD_SUBREAPER, 1);
   const lacon::OwnFolder session(folder_of_sessions()), memory("/dev/shm");
   if (!session.path().empty()) setenv("TMPDIR", session.path().c_str(), 1);  // of this machine alone, as the next one
@@ -108,7 +112,7 @@ int run(char** words) {
     return W_EXITCODE(1, 0);
   }
   close(STDIN_FILENO);  // who talks with mpirun sees when it has ended
-  const int status = wait_for(process, signals);
+  const int status = wait_for(process, signals, parent);
   wait_for_others(signals);
   return status;
 }

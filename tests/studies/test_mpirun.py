@@ -6,10 +6,11 @@ import pathlib
 import shutil
 import signal
 import subprocess
+import time
 import unittest
 
 from study_test import LACON, StudyTest
-from test_parts import PETSC, PartsTest
+from test_parts import PETSC, PartsTest, session_of
 
 PROGRAM = LACON.with_name("lacon_mpirun")
 MEMORY = pathlib.Path("/dev/shm")
@@ -53,6 +54,29 @@ class Folders(StudyTest):
                 self.assertEqual(process.wait(5), status)
                 self.assert_there(folders, False)
 
+    def test_a_stopped_one_ends_with_its_parent(self):
+        """Whoever has started it is killed, and cannot continue it. Without that it stays as long as its parent is there."""
+        script = f"'{PROGRAM}' sh -c '{TALKS}exec sleep 60' & echo $!; wait"
+        with subprocess.Popen(["sh", "-c", script], env={**os.environ, "TMPDIR": str(self.tmp)}, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, text=True,
+                              start_new_session=True) as parent:
+            process = int(parent.stdout.readline())
+            folders = [pathlib.Path(name) for name in parent.stdout.readline().split()]
+            try:
+                os.kill(process, signal.SIGCONT)
+                time.sleep(0.2)
+                self.assert_there(folders, True)
+                os.kill(process, signal.SIGSTOP)
+                parent.kill()
+                for _ in range(500):
+                    if not session_of(parent.pid):
+                        break
+                    time.sleep(0.01)
+                self.assertEqual(session_of(parent.pid), {})
+                self.assert_there(folders, False)
+            finally:
+                for left in session_of(parent.pid):
+                    os.kill(left, signal.SIGKILL)
+
     def test_what_a_killed_one_leaves_goes_with_the_next_one(self):
         with self.started("exec sleep 60") as (living, of_living):
             with self.started("exec sleep 60") as (killed, left):
@@ -95,6 +119,26 @@ class Killed(PartsTest):
                 run.kill()
             self.assertEqual(list(tmp.iterdir()), [])
             self.assertEqual(made & set(MEMORY.iterdir()), set())
+
+    def test_a_stopped_process_ends_with_a_killed_run(self):
+        """mpirun, who keeps it, or a rank."""
+        before, tmp = set(MEMORY.iterdir()), self.folder / "t"
+        tmp.mkdir()
+        for name in ("lacon_mpirun", "mpirun", "lacon_petsc"):
+            with self.subTest(name), self.started(name, 1, INSTANTS="4", TMPDIR=str(tmp)) as (run, processes):
+                os.kill(processes[name][-1], signal.SIGSTOP)
+                run.kill()
+                run.wait()
+                for _ in range(1000):
+                    if not session_of(run.pid):
+                        break
+                    time.sleep(0.01)
+                left = session_of(run.pid)
+                for process in left:
+                    os.kill(process, signal.SIGKILL)
+                self.assertEqual(left, {})
+            self.assertEqual(list(tmp.iterdir()), [])
+            self.assertEqual(set(MEMORY.iterdir()) - before, set())
 
 
 if __name__ == "__main__":
