@@ -16,6 +16,7 @@
 #include <utility>
 #include <vector>
 
+#include "lacon/assembly/mpirun/own_folder.hpp"
 #include "lacon/assembly/processes/host.hpp"
 #include "lacon/assembly/processes/shared_memory.hpp"
 #include "lacon/catalog/messages.hpp"
@@ -119,7 +120,7 @@ std::string PetscProcesses::first_answer() {
 }
 
 void PetscProcesses::fail_without_start() {
-  const std::string reason = program_.program + ": " + ranks_->end();
+  const std::string reason = program_.program + ": " + end_of_ranks();
   const bool started = ranks_->has_started(), killed = ranks_->was_killed();
   ranks_.reset();
   if (!started) fail("SOLVER_6", {{"reason", reason}});
@@ -137,9 +138,19 @@ std::string PetscProcesses::answer() { return checked(ranks_->answer()); }
 
 std::string PetscProcesses::checked(std::string answer) {
   if (!answer.empty()) return answer;
-  end_ = ranks_->end();
+  end_ = end_of_ranks();
   ranks_.reset();
   fail_as_ended();
+}
+
+/// How they have ended. If lacon_mpirun was killed nobody has removed its folders; mpirun, whose output was at its end, is
+/// gone.
+std::string PetscProcesses::end_of_ranks() {
+  std::string end = ranks_->end();
+  if (ranks_->was_killed())
+    for (const std::filesystem::path& above : {folder_of_sessions(), std::filesystem::path(folder_of_memory)})
+      OwnFolder::remove_left(above);
+  return end;
 }
 
 void PetscProcesses::fail_as_ended() const { fail("SOLVER_8", {{"reason", end_}}); }

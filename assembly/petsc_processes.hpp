@@ -37,6 +37,7 @@ class PetscProcesses : public PartProcesses {
   void start_ranks();
   std::string first_answer();
   std::string checked(std::string answer);
+  std::string end_of_ranks();
 
   PetscProgram program_;
   std::unique_ptr<Companion> ranks_;

@@ -19,13 +19,6 @@ namespace {
 constexpr time_t patience = 1;
 constexpr int not_started = 127;
 
-/// Where Open MPI makes the folder of its session.
-const char* folder_of_sessions() {
-  for (const char* name : {"TMPDIR", "TEMP", "TMP"})
-    if (const char* const folder = std::getenv(name); folder && *folder) return folder;
-  return "/tmp";
-}
-
 /// Its signals are those of others again: mpirun answers to Ctrl-C by itself.
 pid_t start(char** words, const sigset_t& before) {
   const pid_t process = fork();
@@ -99,7 +92,7 @@ int run(char** words) {
   prctl(PR_SET_PDEATHSIG, SIGCONT);  // other signals do not wake who is stopped, and SIGKILL would leave what is to be removed
   if (getppid() != parent) raise(SIGCONT);  // it has gone before
   prctl(PR_SET_CHILD_SUBREAPER, 1);
-  const lacon::OwnFolder session(folder_of_sessions()), memory("/dev/shm");
+  const lacon::OwnFolder session(lacon::folder_of_sessions()), memory(lacon::folder_of_memory);
   if (!session.path().empty()) setenv("TMPDIR", session.path().c_str(), 1);  // of this machine alone, as the next one
   // for processes of this machine: mpirun would tell those of others what begins with OMPI_
   if (!memory.path().empty()) setenv("LACON_MPI_MEMORY", memory.path().c_str(), 1);

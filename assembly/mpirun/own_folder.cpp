@@ -35,17 +35,23 @@ void remove_if_left(const std::filesystem::path& folder) {
   close(lock);
 }
 
-void remove_what_is_left(const std::filesystem::path& above) {
+}  // namespace
+
+std::filesystem::path folder_of_sessions() {
+  for (const char* name : {"TMPDIR", "TEMP", "TMP"})
+    if (const char* const folder = std::getenv(name); folder && *folder) return folder;
+  return "/tmp";
+}
+
+void OwnFolder::remove_left(const std::filesystem::path& above) {
   std::error_code error;
   std::filesystem::directory_iterator entry(above, error);
   for (const std::filesystem::directory_iterator end; !error && entry != end; entry.increment(error))
     if (entry->path().filename().string().starts_with(beginning)) remove_if_left(entry->path());
 }
 
-}  // namespace
-
 OwnFolder::OwnFolder(const std::filesystem::path& above) {
-  remove_what_is_left(above);
+  remove_left(above);
   std::string made = above / (std::string(beginning) + "XXXXXX");
   if (!mkdtemp(made.data())) return;
   path_ = made;

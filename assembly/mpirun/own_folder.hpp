@@ -5,16 +5,22 @@
 
 namespace lacon {
 
+/// Where Open MPI makes the folder of its session.
+std::filesystem::path folder_of_sessions();
+/// And what processes share.
+constexpr const char* folder_of_memory = "/dev/shm";
+
 class OwnFolder {
  public:
-  /// Make one below a folder, and remove those there whose processes of this machine have died. Where it cannot be made its
-  /// path is empty.
+  /// Make one below a folder, once those that are left there are removed. Where it cannot be made its path is empty.
   explicit OwnFolder(const std::filesystem::path& above);
   ~OwnFolder();
   OwnFolder(const OwnFolder&) = delete;
   OwnFolder& operator=(const OwnFolder&) = delete;
 
   const std::filesystem::path& path() const { return path_; }
+  /// Remove those below a folder whose processes of this machine have died.
+  static void remove_left(const std::filesystem::path& above);
 
  private:
   std::filesystem::path path_;

@@ -172,6 +172,8 @@ int main(int argc, char** argv) {
   setenv("LACON_THREADS", "1", 1);                                 // processes are what works at the same time here
   if (const char* const folder = std::getenv("LACON_MPI_MEMORY"))  // of lacon_mpirun, on its machine
     setenv("OMPI_MCA_btl_vader_backing_directory", folder, 0);
+  if (!std::getenv("PMIX_NAMESPACE"))  // a process by itself, which mpirun has not started, needs no files of a session
+    setenv("OMPI_MCA_orte_create_session_dirs", "0", 0);
   if (!keep_answers_apart()) return 4;
   if (PetscInitialize(nullptr, nullptr, nullptr, nullptr)) return 4;
   lacon::catch_errors();

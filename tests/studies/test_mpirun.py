@@ -120,6 +120,22 @@ class Killed(PartsTest):
             self.assertEqual(list(tmp.iterdir()), [])
             self.assertEqual(made & set(MEMORY.iterdir()), set())
 
+    def test_any_process_is_killed(self):
+        """What a keeper of mpirun cannot remove any more the operator does; one process by itself makes no files."""
+        before, tmp = set(MEMORY.iterdir()), self.folder / "t"
+        tmp.mkdir()
+        for self.count, names in ((2, ("lacon_petsc", "mpirun", "lacon_mpirun", "stat_non_line")), (1, ("lacon_petsc", "stat_non_line", "group"))):
+            self.two = ("--mpi", str(self.count))
+            for name in names:
+                with self.subTest(name, processes=self.count):
+                    with self.started(f"{name}{self.count}", 1, INSTANTS="4", TMPDIR=str(tmp)) as (run, processes):
+                        if name == "group":
+                            os.killpg(run.pid, signal.SIGKILL)
+                        else:
+                            os.kill(processes[name][-1], signal.SIGKILL)
+                    self.assertEqual(run.returncode, {"group": -signal.SIGKILL, "stat_non_line": 4}.get(name, 3), run.said)
+                    self.assertEqual([list(tmp.iterdir()), set(MEMORY.iterdir()) - before], [[], set()])
+
     def test_a_stopped_process_ends_with_a_killed_run(self):
         """mpirun, who keeps it, or a rank."""
         before, tmp = set(MEMORY.iterdir()), self.folder / "t"

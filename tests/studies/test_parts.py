@@ -39,7 +39,7 @@ MUMPS = {"METHOD": "MUMPS", "LACON_MPI_FROM": "1"}
 
 class PartsTest(StudyTest):
     environment, program = PETSC, "lacon_petsc"
-    two = ("--mpi", "2")  #: processes
+    two, count = ("--mpi", "2"), 2  #: processes
 
     def setUp(self):
         super().setUp()
@@ -94,7 +94,7 @@ class PartsTest(StudyTest):
             of_name = {}
             for process, line in session_of(run.pid).items():
                 of_name.setdefault(line[line.index("(") + 1:line.rindex(")")], []).append(process)
-            self.assertEqual(len(of_name.get(self.program, [])), 2, of_name)
+            self.assertEqual(len(of_name.get(self.program, [])), self.count, of_name)
             yield run, of_name
             run.wait(SECONDS)
             for _ in range(500):
