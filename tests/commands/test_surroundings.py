@@ -314,6 +314,53 @@ threading.Thread(target=work).start()
         text = "from concurrent.futures import ThreadPoolExecutor\nDEBUT()\npool = ThreadPoolExecutor(2)\nM = pool.submit(LIRE_MAILLAGE, UNITE=20).result()\nFIN()\n"
         self.ok(self.run_study(text))
 
+    def test_what_a_pool_does_when_the_file_ends(self):
+        """The work is done, also that which other work has submitted; before, what had not begun was lost, with status 0. The next file goes on with the pool."""
+        self.write("next.comm", "def third():\n    global N\n    time.sleep(0.3)\n    N = LIRE_MAILLAGE(UNITE=20)\nthreading.Thread(target=lambda: (time.sleep(0.3), pool.submit(third))).start()\n")
+        text = """
+from concurrent.futures import ThreadPoolExecutor
+import threading, time
+DEBUT()
+pool = ThreadPoolExecutor(1)
+def first():
+    global L
+    time.sleep(0.3)
+    L = LIRE_MAILLAGE(UNITE=20)
+    threading.Thread(target=lambda: pool.submit(second)).start()
+def second():
+    global M
+    M = LIRE_MAILLAGE(UNITE=20)
+pool.submit(time.sleep, 0.1)
+pool.submit(first)
+"""
+        self.write("study.comm", text)
+        for file in (("next.comm",), ()):
+            self.ok(self.launch("study.comm", *file, "--unit", "20=mesh.med", "--fresh"))
+            self.assertEqual(sorted(self.registry()["labels"]), ["L", "M", *["N"] * len(file)])
+
+    def test_a_command_that_fails_in_a_pool(self):
+        """The run fails by it, unless the file has asked how it ended; the place is a line of the file."""
+        begin = "from concurrent.futures import ThreadPoolExecutor, wait\nimport os, time\nDEBUT()\npool = ThreadPoolExecutor(1)\n"
+        for text, message in (("pool.submit(LIRE_MAILLAGE, UNITE=77)\n", "COMMAND_4"), ("pool.map(lambda n: LIRE_MAILLAGE(UNITE=n), [77])\n", "COMMAND_4"),
+                              ("wait([pool.submit(LIRE_MAILLAGE, UNITE=77)])\nFIN()\n", "COMMAND_4"),
+                              ("pool.submit(lambda: (time.sleep(0.3), LIRE_MAILLAGE(UNITE=20)))\nFIN()\n", "STUDY_12")):
+            run = self.refused(self.run_study(begin + text), f"<{message}>", "study.comm:5")
+            self.assertNotIn("concurrent", run.err)
+        asked = """
+work = pool.submit(LIRE_MAILLAGE, UNITE=77)
+try:
+    {ask}
+except AsterError as error:
+    assert error.id_message == 'COMMAND_4', error
+else:
+    raise AssertionError
+"""
+        for ask in ("work.result()", "raise work.exception()"):
+            self.ok(self.run_study(begin + asked.format(ask=ask)))
+        self.ok(self.run_study(begin + "pool.submit(time.sleep, 0.5)\npool.submit(LIRE_MAILLAGE, UNITE=77).cancel()\nif os.fork() == 0:\n    1\nelse:\n    os.wait()\n"))
+        run = self.ok(self.run_study(begin + "pool.submit(lambda: 1 / 0)\nFIN()\n"))
+        self.assertIn("ZeroDivisionError", run.err)
+
     def test_a_command_that_fails_in_one(self):
         text = "import threading\nDEBUT()\ndef work():\n    LIRE_MAILLAGE(UNITE=21)\nthreading.Thread(target=work).start()\n"
         run = self.refused(self.run_study(text), "<COMMAND_4>", "study.comm:4")

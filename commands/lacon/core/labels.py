@@ -14,6 +14,7 @@ import sys
 #: the launcher's own folder, spelled as in the file names of its frames
 package = os.path.dirname(os.path.dirname(sys._getframe().f_code.co_filename)) + os.sep
 _tables = {}
+_pools = os.path.join(os.path.dirname(os.__file__), "concurrent", "futures", "")
 
 #: file name -> source of the command files of this run
 sources = {}
@@ -32,8 +33,17 @@ def is_own(frame):
     return frame.f_code.co_filename.startswith((package, "<formula>"))
 
 
+def is_of_pool(filename):
+    """Whether a file is one of concurrent.futures: between a command and the line of the user's it shows nothing."""
+    return filename.startswith(_pools)
+
+
 def location(frame):
-    """"study.comm:12"; empty without frame."""
+    """"study.comm:12"; empty without frame. What a pool of threads was given as it is was called where it was submitted."""
+    if frame and is_of_pool(frame.f_code.co_filename):
+        place = getattr(getattr(frame.f_locals.get("self"), "fn", None), "place", "")
+        if place:
+            return place
     return f"{frame.f_code.co_filename}:{frame.f_lineno}" if frame else ""
 
 
@@ -44,6 +54,8 @@ def label(frame):
     """
     while frame is not None:
         code = frame.f_code
+        if is_of_pool(code.co_filename):
+            return ""
         if not is_own(frame):
             table = _table(code.co_filename)
             position = _position(frame)

@@ -24,6 +24,7 @@ from ..core.files import is_readable
 from ..core.messages import AsterError, NeedsRun, fail, message, show
 from ..core.nearest import nearest
 from ..peer import modules
+from . import pools
 from .calls import all_commands
 
 
@@ -223,9 +224,23 @@ def _compiled(path, source):
         fail("STUDY_16", str(path), reason=part("too_nested"))
 
 
+def _wait_for_threads(others):
+    """Until those that the command file has started have ended, and its pools are idle: each may give work to the other."""
+    done = False
+    while not done:
+        done = pools.is_idle()
+        pools.wait()
+        for thread in threading.enumerate():
+            # those of a pool wait for work until Python ends
+            pooled = getattr(getattr(thread, "_target", None), "__module__", "") == "concurrent.futures.thread"
+            if thread not in others and not thread.daemon and not pooled:
+                thread.join()
+                done = False
+
+
 @contextlib.contextmanager
 def _threads():
-    """A command file ends when its threads have, and fails by a command that has failed in one of them."""
+    """A command file ends when its threads have, those of pools too, and fails by a command that has failed in one of them."""
     failed, others = [], threading.excepthook
 
     def told(thrown):
@@ -234,6 +249,7 @@ def _threads():
         else:
             others(thrown)
 
+    pools.follow()
     threading.excepthook = told  # and stays: what threads throw behind a failure is no more to be said
     before = threading.enumerate()
     ended = None
@@ -243,11 +259,8 @@ def _threads():
         if error.code not in (None, 0):
             raise
         ended = error
-    for thread in threading.enumerate():
-        # those of a pool wait for work until Python ends
-        pooled = getattr(getattr(thread, "_target", None), "__module__", "") == "concurrent.futures.thread"
-        if thread not in before and not thread.daemon and not pooled:
-            thread.join()
+    _wait_for_threads(before)
+    failed += pools.take_failures()
     if failed:
         raise failed[0]
     if ended:
@@ -337,8 +350,9 @@ def _report(error):
 
 
 def _user_entries(error):
-    """The traceback without the frames of this package."""
-    return [entry for entry in traceback.extract_tb(error.__traceback__) if not entry.filename.startswith((labels.package, "<frozen"))]
+    """The traceback without the frames of this package, and of what does the work of pools."""
+    return [entry for entry in traceback.extract_tb(error.__traceback__)
+            if not entry.filename.startswith((labels.package, "<frozen")) and not labels.is_of_pool(entry.filename)]
 
 
 #: where the modules of Python and its packages are
