@@ -52,6 +52,12 @@ void judge_forces(const ConvergenceCriteria& criteria, const ForceFigures& force
   report.refe_met = !criteria.resi_refe_rela || report.refe <= *criteria.resi_refe_rela;
 }
 
+double forces_over_asked(const ConvergenceCriteria& criteria, const IterationReport& report) {
+  return std::max({criteria.resi_glob_rela ? report.rela / *criteria.resi_glob_rela : 0,
+                   criteria.resi_glob_maxi ? report.maxi / *criteria.resi_glob_maxi : 0,
+                   criteria.resi_refe_rela ? report.refe / *criteria.resi_refe_rela : 0});
+}
+
 void judge_contact(const ConvergenceCriteria& criteria, const MotionFigures& motion, double constraint,
                    IterationReport& report) {
   report.geometry = motion.increment == 0 ? 0 : motion.increment / std::max(motion.whole, motion.vanishing);

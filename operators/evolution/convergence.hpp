@@ -77,6 +77,9 @@ struct IterationReport {
 /// meets it up to near_balance. What is not finite meets nothing.
 void judge_forces(const ConvergenceCriteria& criteria, const ForceFigures& forces, IterationReport& report);
 
+/// The largest of these over what is asked.
+double forces_over_asked(const ConvergenceCriteria& criteria, const IterationReport& report);
+
 /// RESI_GEOM and the gaps of active patches: fills in geometry, constraint and whether they are met.
 void judge_contact(const ConvergenceCriteria& criteria, const MotionFigures& motion, double constraint,
                    IterationReport& report);

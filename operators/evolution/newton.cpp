@@ -117,6 +117,8 @@ void Newton::restart(const StaticState& state) {
   assemble(state, state, options_.matrix);
 }
 
+bool Newton::search_increments(bool on) { return !options_.line_search && std::exchange(searches_, on) != on; }
+
 void Newton::save(const hdf5::Group& group) const {
   group.set("waits", std::int64_t{choice_.waits()});
   group.write("told", std::vector<std::int64_t>(told_.begin(), told_.end()));
@@ -242,7 +244,7 @@ int Newton::iterate(double instant, StaticState& state, const std::function<void
   bool settling = false;  // statuses change from iteration to iteration: a rough solution finds them as well
   IterationReport line;
   std::size_t changing = 0;
-  int last = options_.iterations;
+  int last = options_.iterations, beyond = last / 2;  // iterations that are made where they lead to the end
   const auto with_own_iterations = [&](int first) {
     return std::min(first + options_.iterations, most_times * options_.iterations);
   };
@@ -269,7 +271,7 @@ int Newton::iterate(double instant, StaticState& state, const std::function<void
     std::vector<double> increment = equilibrium_.add(solution, step, state);
     const bool driven = std::ranges::any_of(step, [](double value) { return value != 0; });
     std::fill(step.begin(), step.end(), 0.0);  // imposed displacements move in the first iteration alone
-    if (iteration > 0 && (options_.line_search || goes_round_ || equilibrium_.has_variables()))
+    if (iteration > 0 && (options_.line_search || searches_ || goes_round_ || equilibrium_.has_variables()))
       shorten(solution, previous, state, increment);
     else
       equilibrium_.pair(state.displacement);
@@ -294,6 +296,10 @@ int Newton::iterate(double instant, StaticState& state, const std::function<void
     if (line.converged()) {
       finish_instant(instant, previous, state, external, line);
       return iteration;
+    }
+    if (const auto left = iterations_left(line); iteration == last && left && *left <= beyond) {
+      ++last;
+      --beyond;
     }
     const bool ends = iteration == last, goes_nowhere = course_.wanders(ends ? in_vain_to_the_end : in_vain);
     const bool other_forces = (course_.period() || goes_nowhere || (course_.stands() && settled_ > drifting) ||
@@ -354,6 +360,7 @@ void Newton::shorten(std::span<const double> solution, const StaticState& previo
   const std::vector<double> at_rest(increment.size(), 0.0);
   const std::int64_t multipliers = equilibrium_.first_multiplier();
   std::optional<LineSearch> search = options_.line_search;
+  if (!search && searches_) search = {.keeps_bracket = true};
   if (!search && goes_round_) search = {.keeps_bracket = true, .most = 1};
   bool flows = equilibrium_.flows(previous);
   double reached = 1;

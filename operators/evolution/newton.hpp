@@ -62,6 +62,8 @@ class Newton {
   void accept(const StaticState& state);
   /// Go back to a state: contact, stresses and system are those of `state` again, as solve() needs them.
   void restart(const StaticState& state);
+  /// Search along increments from now on, as RECH_LINEAIRE with METHODE='MIXTE' does, or no longer. @return whether that is new
+  bool search_increments(bool on);
 
   /// For another process that goes on with the same bits: Equilibrium::save(), SaddlePointSolver::save().
   void save(const hdf5::Group& group) const;
@@ -193,8 +195,10 @@ class Newton {
   /// What keeps the last iteration from being the solution, in words.
   std::string unmet_criteria(const IterationReport& line, std::size_t changing) const;
   bool diverges() const;
+  /// How many iterations more lead to the equilibrium, as far as the last ones say; nothing where they do not lead there.
+  std::optional<int> iterations_left(const IterationReport& line) const;
   /// The one thing to do about it that fits. @param softened a law gave way in the last equilibrium (cell_motion.hpp)
-  std::string remedy(const IterationReport& line, double excess, bool softened) const;
+  std::string remedy(const IterationReport& line, bool softened) const;
 
   /// What accept() has to know of the instant that is solved.
   struct Found {
@@ -234,6 +238,7 @@ class Newton {
   int times_cut_ = 0, times_left_out_ = 0;       ///< in this instant: pairs_anew()
   bool looked_far_ = false;                      ///< in this instant: near balance, for what is to be left out
   bool goes_round_ = false;                      ///< residuals have come back: increments are searched (line_search.hpp)
+  bool searches_ = false;                        ///< increments are, whatever residuals do
   bool other_covers_ = false;          ///< patches have begun to keep their cover: what follows has its own iterations
   int times_round_ = 0;                ///< in this instant: residuals have come back
   std::vector<double> depths_before_;  ///< depths() as the instant began

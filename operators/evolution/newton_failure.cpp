@@ -15,14 +15,11 @@
 namespace lacon {
 namespace {
 
-constexpr double worse = 1.2;       // a residual that changes by this factor an iteration diverges
-constexpr double no_better = 0.97;  // or does not fall
+constexpr double worse = 1.2;  // a residual that changes by this factor an iteration diverges
 constexpr double near_round_off = 1e-9;
 constexpr int enough_to_leave = 60;  // iterations: from an equilibrium that is unstable to the next one
 constexpr int settled = 4;           // iterations without a change of status after which a ratio is that of the residual alone
-constexpr double quadratic = 1.5;    // order from which on the end is near, whatever was before
 constexpr int settled_quickly = 3;   // likewise, for an order
-constexpr int few = 4;               // iterations to the end from there
 constexpr double inside = 1, through = 10;  // sizes of a patch: what coarse patches overlap by stays below the one
 
 }  // namespace
@@ -91,10 +88,7 @@ std::string Newton::cells_of(const std::vector<std::size_t>& patches) const {
 
 void Newton::fail_to_converge(double instant, const IterationReport& line, const StaticState& previous,
                               std::size_t changing) const {
-  const ConvergenceCriteria& asked = options_.criteria;
-  const double excess = std::max({asked.resi_glob_rela ? line.rela / *asked.resi_glob_rela : 0,
-                                  asked.resi_glob_maxi ? line.maxi / *asked.resi_glob_maxi : 0,
-                                  asked.resi_refe_rela ? line.refe / *asked.resi_refe_rela : 0});
+  const double excess = forces_over_asked(options_.criteria, line);
   std::string round_words, turned_words, hanging_words, unstable_words, softened_words;
   if (const auto& round = statuses_.round())
     round_words = part("statuses_went_round", {{"count", std::to_string(round->patches.size())},
@@ -116,7 +110,7 @@ void Newton::fail_to_converge(double instant, const IterationReport& line, const
                               {"iterations", std::to_string(line.iteration)},
                               {"unmet", said({unmet_criteria(line, changing), course_.words(), unstable_words, softened_words,
                                               round_words, turned_words, hanging_words})},
-                              {"remedy", remedy(line, excess, softened.has_value())}}),
+                              {"remedy", remedy(line, softened.has_value())}}),
       {.ratio = settled_ >= settled && !course_.period() && !course_.smaller_before() ? course_.ratio() : std::nullopt,
        .excess = excess});
 }
@@ -125,18 +119,21 @@ bool Newton::diverges() const {
   return !course_.finite() || course_.ratio().value_or(1) > worse || equilibrium_.cell_inside_out();
 }
 
-std::string Newton::remedy(const IterationReport& line, double excess, bool softened) const {
+std::optional<int> Newton::iterations_left(const IterationReport& line) const {
+  const double forces = forces_over_asked(options_.criteria, line);
+  const bool at_round_off = line.rela < near_round_off && forces > 1;
+  if (settled_ < (course_.order().value_or(0) >= quadratic ? settled_quickly : settled) || at_round_off || diverges())
+    return std::nullopt;
+  const double motion = contact() ? line.geometry / options_.criteria.resi_geom : 0;
+  return course_.iterations_to(1 / std::max(forces, motion));
+}
+
+std::string Newton::remedy(const IterationReport& line, bool softened) const {
   if (!hanging_.empty()) return part("remedy_hold_body", {{"body", hanging_}});
   if (line.round_off && !line.rela_met) return part("remedy_less_stiff");
-  const double ratio = course_.ratio().value_or(1);
-  if (settled_ >= settled_quickly && course_.order().value_or(0) >= quadratic && line.rela >= near_round_off)
-    return part("remedy_more_iterations", {{"count", std::to_string(options_.iterations + few)}});
   // more iterations, where a few times as many come to the end
-  if (settled_ >= settled && ratio < no_better && !diverges() && !course_.period() && !course_.smaller_before()) {
-    const double more = excess > 1 ? std::ceil(std::log(excess) / -std::log(ratio)) : settled;
-    if (more <= 2.0 * options_.iterations)
-      return part("remedy_more_iterations", {{"count", std::to_string(options_.iterations + static_cast<int>(more) + 1)}});
-  }
+  if (const auto left = iterations_left(line); left && *left <= 2 * options_.iterations)
+    return part("remedy_more_iterations", {{"count", std::to_string(options_.iterations + *left + 1)}});
   if (settled_ >= settled && line.rela < near_round_off) return part("remedy_ask_less");
   if (softened) return part("remedy_law_for_compression");
   // without what makes the matrix unstable the residual grows slowly first, and falls behind that
@@ -146,7 +143,6 @@ std::string Newton::remedy(const IterationReport& line, double excess, bool soft
   if (!options_.cuts) return part("remedy_cut_step");
   if (diverges()) return part("remedy_coarser_load");
   if (line.status_changes > 0 || statuses_.round()) return part("remedy_refine_slave");
-  if (course_.period() && !options_.line_search && problem_.dimension == 3) return part("remedy_line_search");
   return part("remedy_look_at_table");
 }
 

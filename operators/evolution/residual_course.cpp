@@ -10,12 +10,13 @@
 namespace lacon {
 namespace {
 
-constexpr double same = 1e-2;   // of a residual: the one of a period before
-constexpr double other = 1e-3;  // and what differs within a period,
-constexpr double clearly = 10;  // so many times more than from one period to the next: it does not merely crawl
-constexpr int long_enough = 6;  // iterations
-constexpr double far = 1e-3;    // of the largest: these were not near an equilibrium, of other statuses or a law
-constexpr double more = 1e-1;   // of a residual that was smaller before
+constexpr double same = 1e-2;       // of a residual: the one of a period before
+constexpr double other = 1e-3;      // and what differs within a period,
+constexpr double clearly = 10;      // so many times more than from one period to the next: it does not merely crawl
+constexpr int long_enough = 6;      // iterations
+constexpr double far = 1e-3;        // of the largest: these were not near an equilibrium, of other statuses or a law
+constexpr double no_better = 0.97;  // from one iteration to the next: it does not fall
+constexpr double more = 1e-1;       // of a residual that was smaller before
 
 }  // namespace
 
@@ -48,6 +49,21 @@ std::optional<double> ResidualCourse::order() const {
   const double last = residuals_[n - 1] / residuals_[n - 2], before = residuals_[n - 2] / residuals_[n - 3];
   if (!(last < 1) || !(before < 1)) return std::nullopt;
   return std::log(last) / std::log(before);
+}
+
+std::optional<int> ResidualCourse::iterations_to(double part) const {
+  const std::size_t n = residuals_.size();
+  double factor = ratio().value_or(1), power = std::min(order().value_or(0), 2.0);
+  if (power < quadratic) {
+    if (period() || smaller_before()) return std::nullopt;
+    power = 1;
+  } else {
+    factor = std::pow(residuals_[n - 1] / residuals_[n - 2], power);
+  }
+  if (!(factor < no_better) || !(part > 0)) return std::nullopt;
+  int count = 1;
+  for (double reached = factor; reached > part; reached *= factor, ++count) factor = std::pow(factor, power);
+  return count;
 }
 
 int ResidualCourse::growths() const {

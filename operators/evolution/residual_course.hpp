@@ -7,6 +7,9 @@
 
 namespace lacon {
 
+/// Order of the last residuals from which on their end is near, whatever was before.
+inline constexpr double quadratic = 1.5;
+
 class ResidualCourse {
  public:
   void start() { *this = {}; }
@@ -20,6 +23,9 @@ class ResidualCourse {
   std::optional<std::size_t> smaller_before() const;
   /// Observed order of the last three, where they fall.
   std::optional<double> order() const;
+  /// How many iterations more make the last one this part of itself, if it goes on to fall as it did last: of an order, where
+  /// that is `quadratic`, or by the ratio; 1 at least. Nothing where it does not fall.
+  std::optional<int> iterations_to(double part) const;
   /// After how many iterations residuals come back, two whole periods long; nothing where they do not.
   std::optional<std::size_t> period() const;
   /// Whether the last six are the same, to a hundredth.

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <functional>
 #include <map>
+#include <set>
 
 #include "lacon/catalog/wording.hpp"
 #include "lacon/operators/evolution/instant_failure.hpp"
@@ -33,17 +34,24 @@ std::optional<std::string> in_vain(const FailureNature& now, const FailureNature
   return part("same_ratio_as_before", {{"factor", fmt::format("{:.2g}", *now.ratio)}});
 }
 
-/// The length of the parts into which the step to `to` is cut. Called while `error` is handled: throws it on where the step is
-/// not to be cut any more. @param before the failure of the step that it was cut from
-double cut(const StepCut& action, const Error& error, const FailureNature& before, double length, double to, int level,
-           double smallest, const Tell& tell) {
+/// Failures of iterations, which may come to an end by other increments. Others are events of the user, bodies that nothing
+/// holds, machines.
+bool is_of_increments(const Error& error) {
+  static const std::set<std::string, std::less<>> messages{"EVOLUTION_4", "EVOLUTION_18", "EVOLUTION_51"};
+  return messages.contains(error.message().id);
+}
+
+/// The length of the parts into which the step to `to` is cut, nothing where it is not to be cut any more.
+/// @param before the failure of the step that it was cut from
+std::optional<double> cut(const StepCut& action, const Error& error, const FailureNature& before, double length, double to,
+                          int level, double smallest, const Tell& tell) {
   const double part = length / action.cut_into;
   if (error.message().severity != 'S' || is_of_the_machine(error.message()) || !action.cut || level >= action.cut_levels ||
       part < std::max(action.smallest, smallest))
-    throw;
+    return std::nullopt;
   if (const auto reason = in_vain(nature_of(error), before, action, level)) {
     tell(message("EVOLUTION_19", {{"instant", fmt::format("{:.9g}", to)}, {"reason", *reason}}));
-    throw;
+    return std::nullopt;
   }
   tell(message("EVOLUTION_7", {{"instant", fmt::format("{:.9g}", to)},
                                {"parts", std::to_string(action.cut_into)},
@@ -57,7 +65,17 @@ struct Stepper {
   const SolveInstant& solve;
   const GoBack& go_back;
   const Solved& solved;
+  const Search& search;
   const Tell& tell;
+
+  /// Solve once more, with increments that are searched, a step that no cut helps. Called while `error` is handled: throws it
+  /// on where that is no use, and the failure of that attempt.
+  void solve_searched(double to, const Error& error) const {
+    if (!is_of_increments(error) || !search(true)) throw;
+    tell(message("EVOLUTION_71", {{"instant", fmt::format("{:.9g}", to)}, {"reason", error.message().text}}));
+    go_back();
+    solve(to);
+  }
 
   /// @param before the failure of the step that this one is a part of
   void advance(double from, double to, int level, bool asked, const FailureNature& before) const {
@@ -65,14 +83,16 @@ struct Stepper {
       solve(to);
     } catch (const Error& error) {
       const StepCut& action = action_for(steps, error);
-      const double part = cut(action, error, before, to - from, to, level, 0, tell);
-      const FailureNature failure = nature_of(error);
-      go_back();
-      for (int i = 1; i <= action.cut_into; ++i) {
-        const bool last = i == action.cut_into;
-        advance(from + (i - 1) * part, last ? to : from + i * part, level + 1, last && asked, failure);
+      if (const auto part = cut(action, error, before, to - from, to, level, 0, tell)) {
+        const FailureNature failure = nature_of(error);
+        go_back();
+        for (int i = 1; i <= action.cut_into; ++i) {
+          const bool last = i == action.cut_into;
+          advance(from + (i - 1) * *part, last ? to : from + i * *part, level + 1, last && asked, failure);
+        }
+        return;
       }
-      return;
+      solve_searched(to, error);
     }
     solved(to, asked);
   }
@@ -102,15 +122,20 @@ class AdaptiveStepper {
       try {
         stepper_.solve(to);
       } catch (const Error& error) {
-        step_ = cut(action_for(steps_, error), error, level_ > 0 ? failure_ : FailureNature{}, to - at, to, level_,
-                    rules_.smallest, stepper_.tell);
-        failure_ = nature_of(error);
-        ++level_;
-        easy_ = 0;
-        stepper_.go_back();
-        continue;
+        const auto part = cut(action_for(steps_, error), error, level_ > 0 ? failure_ : FailureNature{}, to - at, to, level_,
+                              rules_.smallest, stepper_.tell);
+        if (part) {
+          step_ = *part;
+          failure_ = nature_of(error);
+          ++level_;
+          easy_ = 0;
+          stepper_.go_back();
+          continue;
+        }
+        stepper_.solve_searched(to, error);
       }
       stepper_.solved(to, last);
+      stepper_.search(false);
       at = to;
       level_ = 0;
       change();
@@ -183,7 +208,7 @@ std::size_t check_number(const TimeSteps& steps, std::int64_t number) {
 }  // namespace
 
 void step_through(const TimeSteps& steps, const SolveInstant& solve, const GoBack& go_back, const Solved& solved,
-                  const Iterations& iterations, const Tell& tell) {
+                  const Iterations& iterations, const Search& search, const Tell& tell) {
   const SolveInstant in_any_way = [&](double to) {
     for (std::optional<InstantFailure> unstable;;) {
       try {
@@ -205,13 +230,16 @@ void step_through(const TimeSteps& steps, const SolveInstant& solve, const GoBac
       go_back();
     }
   };
-  const Stepper stepper{steps, in_any_way, go_back, solved, tell};
+  const Stepper stepper{steps, in_any_way, go_back, solved, search, tell};
   if (steps.adaptation) {
     AdaptiveStepper adaptive(steps, stepper, iterations);
     for (std::size_t i = 1; i < steps.values.size(); ++i) adaptive.advance(steps.values[i - 1], steps.values[i]);
     return;
   }
-  for (std::size_t i = 1; i < steps.values.size(); ++i) stepper.advance(steps.values[i - 1], steps.values[i], 0, true, {});
+  for (std::size_t i = 1; i < steps.values.size(); ++i) {
+    stepper.advance(steps.values[i - 1], steps.values[i], 0, true, {});
+    search(false);
+  }
 }
 
 TimeSteps restrict(const TimeSteps& steps, const Interval& interval) {

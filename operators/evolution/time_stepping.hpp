@@ -19,6 +19,8 @@ using Solved = std::function<void(double instant, bool asked)>;
 
 /// Number of iterations that the instant solved last took.
 using Iterations = std::function<int()>;
+/// Have the increments of iterations searched from now on, or no longer. @return whether that is new
+using Search = std::function<bool(bool on)>;
 /// What is told of steps.
 using Tell = std::function<void(const Message& message)>;
 
@@ -27,13 +29,16 @@ using Tell = std::function<void(const Message& message)>;
 /// EVOLUTION_19 says why. Which action holds is
 /// said by the event: STEP_1 (RESI_MAXI), STEP_2 (DELTA_GRANDEUR), STEP_4 (DIVE_RESI), any other failure of the solution.
 /// An instant that was led astray, or left an equilibrium that is not stable (FailureNature), is solved once more behind
-/// go_back(), before anything is cut. Where the latter fails again, its first failure is what counts.
-/// With `steps.adaptation` (METHODE='AUTO') steps also grow and shrink between the instants of the list, beginning with its
-/// first interval; a step that fails is then cut once, and the shorter one goes on. Throws STEP_3 after too many steps, STEP_5
-/// where they have become shorter than `smallest`, STEP_6 where it is known that they will not come to the end.
+/// go_back(), before anything is cut. Where the latter fails again, its first failure is what counts. A step whose iterations
+/// fail, and which is not to be cut, is solved once more with increments that are searched, and so is what follows up to the
+/// next instant of the list. With `steps.adaptation` (METHODE='AUTO') steps also grow and shrink between the instants of the
+/// list, beginning with its first interval; a step that fails is then cut once, and the shorter one goes on. Throws STEP_3
+/// after too many steps, STEP_5 where they have become shorter than `smallest`, STEP_6 where it is known that they will not
+/// come to the end.
 void step_through(
     const TimeSteps& steps, const SolveInstant& solve, const GoBack& go_back, const Solved& solved,
-    const Iterations& iterations = {}, const Tell& tell = [](const Message& told) { inform(told); });
+    const Iterations& iterations = {}, const Search& search = [](bool) { return false; },
+    const Tell& tell = [](const Message& told) { inform(told); });
 
 /// The instants that INCREMENT asks for, the initial one first: from INST_INIT or NUME_INST_INIT to INST_FIN or NUME_INST_FIN;
 /// without the former from the instant of the initial state, which need not be in the list.

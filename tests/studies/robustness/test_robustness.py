@@ -415,14 +415,6 @@ class Skins(StudyTest):
         self.assertEqual(run(study, LACON, self.folder)["status"], "finished")
         self.assertRegex((self.folder / "err").read_text(), r"<EVOLUTION_16> .*: it is open, though its average gap is -0\.0883: where TOOL_SKIN ends")
 
-    def test_iterations_that_are_nearly_at_their_end_are_told_to_go_on(self):
-        """The residual falls quadratically: to say that the step should be cut would be wrong."""
-        (_, study), = chosen(["hertz/30 % QUAD8 PETIT slab"])
-        told = dataclasses.replace(study, most=3)
-        self.assertIn("EVOLUTION_4", run(told, LACON, self.folder)["status"])
-        self.assertIn("the residual comes to its end within 7 (CONVERGENCE/ITER_GLOB_MAXI)", (self.folder / "err").read_text())
-        self.assertEqual(run(dataclasses.replace(told, most=7), LACON, self.folder)["status"], "finished")
-
     def test_where_no_other_is_found_an_equilibrium_that_is_not_stable_is_followed_and_told(self):
         """An arch that is pressed, and a tip, as above: both stopped behind 15 iterations that had left it. The tip leaves it for a stable one with 60; with 15 it
         may, where round-off, which pushes it off, is larger."""

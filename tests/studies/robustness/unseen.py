@@ -1,6 +1,6 @@
 """Studies that nobody has chosen: bodies, meshes, materials, motions and keywords of each are drawn from its number.
 
-    unseen.py FIRST [COUNT] [--json FILE] [--keep FOLDER]
+    unseen.py FIRST [COUNT] [--forming] [--json FILE] [--keep FOLDER]
 
 Runs the studies FIRST, FIRST + 1, ...; where one stops or takes long, its inputs and outputs are kept in FOLDER/NUMBER. What stops is
 not always a defect: a deep tip in a coarse soft body has no solution. Compare two versions by their files.
@@ -19,6 +19,7 @@ HERE = pathlib.Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE))
 
 from run import LACON, run  # noqa: E402, I001 (it says where meshes.py is)
+import forming  # noqa: E402
 from bodies import arch, lines, polygon, round_tool, round_tool_in_space, slab, slab_in_space, turned  # noqa: E402
 from meshes import block, union  # noqa: E402
 from studies import ORDERS, SIDES, STRAINS, Study, elastic, held, named, plastic, slave, zone  # noqa: E402
@@ -174,12 +175,13 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("first", type=int)
     parser.add_argument("count", type=int, nargs="?", default=1)
+    parser.add_argument("--forming", action="store_true", help="studies of forming.py")
     parser.add_argument("--json", type=pathlib.Path, help="a file for the figures")
     parser.add_argument("--keep", type=pathlib.Path, help="a folder for those that stop or take long")
     asked = parser.parse_args()
     found = {}
     for number in range(asked.first, asked.first + asked.count):
-        one = study(number)
+        one = (forming.study if asked.forming else study)(number)
         folder = pathlib.Path(tempfile.mkdtemp(prefix="lacon_unseen_"))
         figures = found[one.name] = run(one, LACON, folder)
         told = "" if figures["status"] == "finished" else figures["status"]

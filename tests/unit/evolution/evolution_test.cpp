@@ -7,6 +7,7 @@
 #include <array>
 #include <stdexcept>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "lacon/catalog/messages.hpp"
@@ -32,7 +33,14 @@ class Solver : public InstantSolver {
     log_.push_back("accepted");
   }
   void go_back() override { log_.push_back("back"); }
+  bool search_increments(bool on) override {
+    if (std::exchange(searches, on) == on) return false;
+    log_.push_back(on ? "searches" : "searches no more");
+    return true;
+  }
   void stands_at(double instant) { accepted_ = instant; }
+
+  bool searches = false;
 
  private:
   std::vector<std::string>& log_;
@@ -131,6 +139,29 @@ TEST(Evolution, NobodyIsToldOfThePastAgain) {
   evolve(asked, other, {}, past);
   set_message_sink(nullptr);
   EXPECT_THAT(told, ElementsAre("EVOLUTION_7"));  // of the step to 2
+}
+
+// Increments are searched up to the end of a step of the list, whichever process began to.
+TEST(Evolution, WhatIsSearchedInThePastIsSearchedOn) {
+  const InstantFailure failure({.severity = 'S', .id = "EVOLUTION_4", .text = "", .advice = ""}, {});
+  const Course past{{.instant = 1, .iterations = 0, .failure = failure},
+                    {.instant = 0.5, .iterations = 0, .failure = failure},
+                    {.instant = 0.5, .iterations = 1, .failure = {}}};
+  std::vector<std::string> log;
+  Solver solver(log, 1);
+  Witness witness(log);
+  const std::array<EvolutionObserver*, 1> observers{&witness};
+  solver.stands_at(0.5);
+  TimeSteps asked = steps({0, 1, 2}, true);
+  asked.action.cut_levels = 1;
+  set_message_sink([](const Message& message) { told.push_back(message.id); });
+  told.clear();
+  evolve(asked, solver, observers, past);
+  set_message_sink(nullptr);
+  std::erase_if(log, [](const std::string& line) { return line.starts_with("iterate") || line.starts_with("judge"); });
+  EXPECT_THAT(log, ElementsAre("searches", "begin 1", "accepted", "accept 1 step 1", "searches no more", "begin 2", "accepted",
+                               "accept 2 step 2 last", "end"));
+  EXPECT_THAT(told, testing::IsEmpty());
 }
 
 TEST(Evolution, WhateverBreaksItOffEveryObserverIsTold) {

@@ -24,6 +24,23 @@ TEST(ResidualCourse, HasTheRatioAndTheOrderOfItsEnd) {
   EXPECT_FALSE(course({1, 2, 1}).order());
 }
 
+// A ratio stays what it is, an order takes it to its power again and again.
+TEST(ResidualCourse, KnowsHowManyIterationsAreLeft) {
+  EXPECT_EQ(course({8, 4, 2, 1}).iterations_to(0.3), 2);
+  EXPECT_EQ(course({8, 4, 2, 1}).iterations_to(0.2), 3);
+  EXPECT_EQ(course({1e-1, 1e-2, 1e-4}).iterations_to(1e-3), 1);
+  EXPECT_EQ(course({1e-1, 1e-2, 1e-4}).iterations_to(1e-11), 2);
+  EXPECT_EQ(course({1e-1, 1e-2, 1e-4}).iterations_to(1e-13), 3);
+  EXPECT_EQ(course({1, 8, 1e-1, 1e-2, 1e-4}).iterations_to(1e-11), 2);  // it jumped on the way
+  EXPECT_EQ(course({8, 4, 2, 1}).iterations_to(2), 1);                  // there is another criterion
+  EXPECT_FALSE(course({1, 0.99, 0.98, 0.97}).iterations_to(0.9));
+  EXPECT_FALSE(course({1, 2, 4}).iterations_to(0.1));
+  EXPECT_FALSE(course({8, 1, 16, 8, 4, 2}).iterations_to(0.1));  // it was smaller before
+  EXPECT_FALSE(course({2, 1, 2, 1}).iterations_to(0.1));
+  EXPECT_FALSE(course({}).iterations_to(0.1));
+  EXPECT_FALSE(course({4, 2, 1}).iterations_to(0));
+}
+
 TEST(ResidualCourse, SaysBothInWords) {
   EXPECT_EQ(course({1}).words(), "");
   EXPECT_EQ(course({8, 4, 2, 1}).words(), "the residual changes by the factor 0.5 an iteration (order 1)");

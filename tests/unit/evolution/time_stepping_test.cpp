@@ -1,6 +1,8 @@
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 
 #include <algorithm>
+#include <string>
 
 #include "lacon/operators/evolution/instant_failure.hpp"
 #include "lacon/operators/evolution/time_stepping.hpp"
@@ -172,6 +174,72 @@ TEST(TimeStepping, BeginsAnInstantAgainThatStayedAtAnUnstableEquilibrium) {
   }
   EXPECT_EQ(tried, 2);
   EXPECT_EQ(returns, 1);
+}
+
+/// What a driver is asked for, in its order: instants, S and s where increments are searched from now on, or no longer.
+struct Searched {
+  std::vector<double> fails;  ///< instants, in their order
+  std::string id = "EVOLUTION_4";
+  bool has_search = true;  ///< false: increments are searched anyhow
+  std::size_t failed = 0;
+  std::string course;
+  bool on = false;
+
+  void run(const TimeSteps& steps) {
+    step_through(
+        steps,
+        [&](double to) {
+          course += fmt::format("{} ", to);
+          if (failed < fails.size() && to == fails[failed] && ++failed)
+            throw Error({.severity = 'S', .id = id, .text = on ? "searched" : "", .advice = ""});
+        },
+        [&] { course += "< "; }, [&](double, bool) { course += "= "; }, [] { return 9; },
+        [&](bool now) {
+          if (!has_search || now == on) return false;
+          on = now;
+          course += now ? "S " : "s ";
+          return true;
+        },
+        [&](const Message& told) { course += told.id == "EVOLUTION_71" ? "71 " : ""; });
+  }
+};
+
+// A step that no cut helps is solved once more with increments that are searched, and so is what follows up to the next instant
+// of the list; parts that fail are cut as before.
+TEST(TimeStepping, SearchesIncrementsBeforeItGivesUp) {
+  const TimeSteps uncut{.values = {0, 1, 2}}, cut{.values = {0, 1, 2}, .action = {.cut = true, .cut_into = 2, .cut_levels = 1}};
+  Searched once{.fails = {1}};
+  once.run(uncut);
+  EXPECT_EQ(once.course, "1 S 71 < 1 = s 2 = ");
+  Searched in_parts{.fails = {1, 0.5}};
+  in_parts.run(cut);
+  EXPECT_EQ(in_parts.course, "1 < 0.5 S 71 < 0.5 = 1 = s 2 = ");
+  TimeSteps adaptive = cut;
+  adaptive.adaptation.emplace();
+  adaptive.adaptation->event = "AUCUN";
+  Searched grown{.fails = {1, 0.5}};
+  grown.run(adaptive);
+  EXPECT_EQ(grown.course, "1 < 0.5 S 71 < 0.5 = s 1 = 1.5 = 2 = ");
+}
+
+TEST(TimeStepping, GivesUpWhereASearchIsNoUse) {
+  const TimeSteps steps{.values = {0, 1}};
+  Searched in_vain{.fails = {1, 1}};
+  try {
+    in_vain.run(steps);
+    FAIL();
+  } catch (const Error& error) {
+    EXPECT_EQ(error.message().text, "searched");  // the last attempt is what was looked at
+  }
+  EXPECT_EQ(in_vain.course, "1 S 71 < 1 ");
+  Searched anyhow{.fails = {1}, .has_search = false};
+  EXPECT_THROW(anyhow.run(steps), Error);
+  EXPECT_EQ(anyhow.course, "1 ");
+  for (const char* other : {"STEP_1", "STEP_2", "STEP_4", "EVOLUTION_42", "EVOLUTION_15", "SOLVER_3", "SOLVER_8"}) {
+    Searched of_another_kind{.fails = {1}, .id = other};
+    EXPECT_THROW(of_another_kind.run(steps), Error);
+    EXPECT_EQ(of_another_kind.course, "1 ") << other;
+  }
 }
 
 // An error of the user is no reason to try smaller steps, and neither are a process that was killed and memory that ended.
