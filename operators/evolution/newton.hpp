@@ -195,6 +195,8 @@ class Newton {
   /// What keeps the last iteration from being the solution, in words.
   std::string unmet_criteria(const IterationReport& line, std::size_t changing) const;
   bool diverges() const;
+  /// Whether the residual is as small as it gets, and more is asked.
+  bool is_at_round_off(const IterationReport& line) const;
   /// How many iterations more lead to the equilibrium, as far as the last ones say; nothing where they do not lead there.
   std::optional<int> iterations_left(const IterationReport& line) const;
   /// The one thing to do about it that fits. @param softened a law gave way in the last equilibrium (cell_motion.hpp)

@@ -111,12 +111,17 @@ void Newton::fail_to_converge(double instant, const IterationReport& line, const
                               {"unmet", said({unmet_criteria(line, changing), course_.words(), unstable_words, softened_words,
                                               round_words, turned_words, hanging_words})},
                               {"remedy", remedy(line, softened.has_value())}}),
-      {.ratio = settled_ >= settled && !course_.period() && !course_.smaller_before() ? course_.ratio() : std::nullopt,
+      {.depends_on_step = !is_at_round_off(line),
+       .ratio = settled_ >= settled && !course_.period() && !course_.smaller_before() ? course_.ratio() : std::nullopt,
        .excess = excess});
 }
 
 bool Newton::diverges() const {
   return !course_.finite() || course_.ratio().value_or(1) > worse || equilibrium_.cell_inside_out();
+}
+
+bool Newton::is_at_round_off(const IterationReport& line) const {
+  return settled_ >= settled && line.rela < near_round_off && forces_over_asked(options_.criteria, line) > 1;
 }
 
 std::optional<int> Newton::iterations_left(const IterationReport& line) const {
@@ -134,7 +139,7 @@ std::string Newton::remedy(const IterationReport& line, bool softened) const {
   // more iterations, where a few times as many come to the end
   if (const auto left = iterations_left(line); left && *left <= 2 * options_.iterations)
     return part("remedy_more_iterations", {{"count", std::to_string(options_.iterations + *left + 1)}});
-  if (settled_ >= settled && line.rela < near_round_off) return part("remedy_ask_less");
+  if (is_at_round_off(line)) return part("remedy_ask_less");
   if (softened) return part("remedy_law_for_compression");
   // without what makes the matrix unstable the residual grows slowly first, and falls behind that
   if (choice_.leaves_unstable() && options_.iterations < enough_to_leave && course_.finite() && !course_.period() &&

@@ -324,6 +324,7 @@ void Observations::start(double instant) {
 }
 
 void Observations::accept(const SolvedInstant& solved) {
+  if (!solved.kept) return;
   for (Watch& watch : watches_)
     if (!watch.instants || watch.instants->has(solved.instant, solved.step)) record(watch, solved.instant);
 }

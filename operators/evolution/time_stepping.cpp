@@ -35,10 +35,10 @@ std::optional<std::string> in_vain(const FailureNature& now, const FailureNature
 }
 
 /// Failures of iterations, which may come to an end by other increments. Others are events of the user, bodies that nothing
-/// holds, machines.
+/// holds, residuals that get no smaller, machines.
 bool is_of_increments(const Error& error) {
   static const std::set<std::string, std::less<>> messages{"EVOLUTION_4", "EVOLUTION_18", "EVOLUTION_51"};
-  return messages.contains(error.message().id);
+  return messages.contains(error.message().id) && nature_of(error).depends_on_step;
 }
 
 /// The length of the parts into which the step to `to` is cut, nothing where it is not to be cut any more.

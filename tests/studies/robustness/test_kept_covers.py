@@ -85,7 +85,7 @@ class GoOn(StudyTest):
         self.assertEqual((figures["status"], figures.get("alarms")), ("finished", None))
         orders = (HERE / "study.comm").read_text(encoding="utf-8")
         first = orders[orders.index("RESU = STAT_NON_LINE("):orders.index("CALC_CHAMP")]
-        last = "INCREMENT=_F(LIST_INST=DEFI_LIST_INST(DEFI_LIST=_F(LIST_INST=LIST)) if study[\"cut\"] else LIST),"
+        last = "INCREMENT=_F(LIST_INST=LIST),"
         self.assertIn(last, first)
         then = first.replace("RESU =", "MORE =").replace(last, "ETAT_INIT=_F(EVOL_NOLI=RESU), INCREMENT=_F(LIST_INST=LIST),")
         text = orders.replace(first, first.replace(last, "INCREMENT=_F(LIST_INST=LIST, INST_FIN=2.0),") + then)

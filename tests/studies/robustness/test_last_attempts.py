@@ -5,10 +5,14 @@ import pathlib
 import re
 import sys
 
+import numpy as np
+
 HERE = pathlib.Path(__file__).resolve().parent
 sys.path[:0] = [str(HERE), str(HERE.parent)]
 
 from study_test import LACON, StudyTest  # noqa: E402, I001 (it says where meshes.py is)
+import forming  # noqa: E402
+from results import Result  # noqa: E402
 from run import chosen, run  # noqa: E402
 from unseen import study as unseen  # noqa: E402
 
@@ -19,7 +23,7 @@ class NearlyAtTheirEnd(StudyTest):
 
     def of(self, most):
         (_, study), = chosen(["hertz/30 % QUAD8 PETIT slab"])
-        return run(dataclasses.replace(study, most=most), LACON, self.folder)
+        return run(dataclasses.replace(study, most=most, stops=True), LACON, self.folder)
 
     def test_iterations_go_on_that_are_nearly_at_their_end(self):
         figures = self.of(4)
@@ -35,13 +39,42 @@ class NearlyAtTheirEnd(StudyTest):
             self.assertEqual(self.of(count)["status"], "finished")
 
 
+class PlainList(StudyTest):
+    """A sheet that is bent over a roller in five steps, the first of which is too long."""
+
+    def bent(self, **more):
+        """@return status, what was told, and fields by instant"""
+        study = dataclasses.replace(forming.study(66), **more)
+        self.assertEqual((study.most, study.steps), (10, 5))
+        status = run(study, LACON, self.folder)["status"]
+        told = (self.folder / "err").read_text()
+        if status != "finished":
+            return status, told, {}
+        result = Result(self.folder / "study.base", "RESU")
+        return status, told, {result.instants[order]: result.at_nodes("DEPL", order, "DY") for order in result.orders}
+
+    def test_steps_are_cut_and_their_parts_are_no_part_of_the_result(self):
+        status, told, plain = self.bent(cut=False)
+        self.assertEqual((status, list(plain)), ("finished", [0, 1, 2, 3, 4, 5]))
+        self.assertIn("<EVOLUTION_7>", told)
+        status, _, whole = self.bent(cut=True)
+        self.assertEqual(status, "finished")
+        self.assertGreater(len(whole), len(plain))
+        for instant, displacement in plain.items():
+            np.testing.assert_array_equal(displacement, whole[instant])
+
+    def test_a_list_that_is_to_stop_does(self):
+        status, told, _ = self.bent(stops=True)
+        self.assertIn("EVOLUTION_4", status)
+        self.assertNotIn("<EVOLUTION_7>", told)
+
+
 class Searched(StudyTest):
     """Drawn studies that stopped, and finished with RECH_LINEAIRE=_F(METHODE='MIXTE') in all their instants."""
 
     def test_a_step_that_no_cut_helps_is_searched(self):
         for number in (3112, 70008):
-            study = unseen(number)
+            study = dataclasses.replace(unseen(number), stops=True)
             with self.subTest(study.name):
-                self.assertFalse(study.cut)
                 self.assertEqual(run(study, LACON, self.folder)["status"], "finished")
                 self.assertIn("<EVOLUTION_71>", (self.folder / "err").read_text())
