@@ -87,7 +87,7 @@ std::vector<double> Base::list_of_reals(std::string_view id) const {
 }
 
 TimeSteps Base::time_steps(std::string_view id) const {
-  if (type(id) == "list_of_reals") return {.values = list_of_reals(id), .alone = true, .action = {.cut = true}};
+  if (type(id) == "list_of_reals") return {.values = list_of_reals(id), .action = {.cut = true}};
   return storage::read_whatever(open_concept(*this, id, "time_steps"), storage::read_time_steps);
 }
 

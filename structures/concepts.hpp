@@ -184,7 +184,6 @@ struct StepAdaptation {
 
 struct TimeSteps {
   std::vector<double> values;
-  bool alone = false;                ///< a plain list: instants of parts of its steps are no part of a result
   StepCut action;                    ///< where the solution fails
   std::int64_t more_iterations = 0;  ///< PCENT_ITER_PLUS: percent of ITER_GLOB_MAXI that are allowed before that
   std::vector<StepEvent> events;

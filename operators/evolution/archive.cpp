@@ -126,7 +126,7 @@ void Archive::iterate(double /*instant*/, const IterationReport& report) {
 }
 
 void Archive::accept(const SolvedInstant& solved) {
-  if (!solved.kept || (!choice_.keeps(solved.instant, solved.step) && !solved.last)) return;
+  if (!choice_.keeps(solved.instant, solved.step) && !solved.last) return;
   add(solved.instant, solved.iterations);
   store(false);
 }

@@ -45,7 +45,7 @@ void EnergyBalance::accept(const SolvedInstant& solved) {
     of_internal_ += (now.internal[dof] + last_.internal[dof]) * half_way;
   }
   last_ = std::move(now);
-  if (solved.kept) add_row(solved.instant);
+  add_row(solved.instant);
 }
 
 void EnergyBalance::save(const hdf5::Group& group) const {

@@ -54,7 +54,6 @@ void evolve(const TimeSteps& steps, InstantSolver& solver, std::span<EvolutionOb
     const SolvedInstant now{.instant = instant,
                             .step = step,
                             .last = instant == steps.values.back(),
-                            .kept = asked || !steps.alone,
                             .iterations = course.back().iterations,
                             .course = &course};
     tell([&](EvolutionObserver& o) { o.accept(now); });

@@ -30,7 +30,6 @@ struct SolvedInstant {
   double instant = 0;
   std::int64_t step = 0;  ///< how many instants of the list are solved, with it
   bool last = false;      ///< of the list
-  bool kept = true;  ///< part of the result, where ARCHIVAGE or OBSERVATION choose it: not one that a cut of a plain list made
   int iterations = 0;
   const Course* course = nullptr;  ///< attempts so far, with it
 };

@@ -195,7 +195,7 @@ class Newton {
   /// What keeps the last iteration from being the solution, in words.
   std::string unmet_criteria(const IterationReport& line, std::size_t changing) const;
   bool diverges() const;
-  /// Whether the residual is as small as it gets, and more is asked.
+  /// Whether the residual is as small as it gets, and a smaller one is asked for.
   bool is_at_round_off(const IterationReport& line) const;
   /// How many iterations more lead to the equilibrium, as far as the last ones say; nothing where they do not lead there.
   std::optional<int> iterations_left(const IterationReport& line) const;

@@ -121,13 +121,13 @@ bool Newton::diverges() const {
 }
 
 bool Newton::is_at_round_off(const IterationReport& line) const {
-  return settled_ >= settled && line.rela < near_round_off && forces_over_asked(options_.criteria, line) > 1;
+  return settled_ >= settled && line.rela < near_round_off && !course_.falls() &&
+         forces_over_asked(options_.criteria, line) > 1;
 }
 
 std::optional<int> Newton::iterations_left(const IterationReport& line) const {
   const double forces = forces_over_asked(options_.criteria, line);
-  const bool at_round_off = line.rela < near_round_off && forces > 1;
-  if (settled_ < (course_.order().value_or(0) >= quadratic ? settled_quickly : settled) || at_round_off || diverges())
+  if (settled_ < (course_.order().value_or(0) >= quadratic ? settled_quickly : settled) || is_at_round_off(line) || diverges())
     return std::nullopt;
   const double motion = contact() ? line.geometry / options_.criteria.resi_geom : 0;
   return course_.iterations_to(1 / std::max(forces, motion));

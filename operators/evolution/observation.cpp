@@ -324,7 +324,6 @@ void Observations::start(double instant) {
 }
 
 void Observations::accept(const SolvedInstant& solved) {
-  if (!solved.kept) return;
   for (Watch& watch : watches_)
     if (!watch.instants || watch.instants->has(solved.instant, solved.step)) record(watch, solved.instant);
 }

@@ -16,6 +16,7 @@ constexpr double clearly = 10;      // so many times more than from one period t
 constexpr int long_enough = 6;      // iterations
 constexpr double far = 1e-3;        // of the largest: these were not near an equilibrium, of other statuses or a law
 constexpr double no_better = 0.97;  // from one iteration to the next: it does not fall
+constexpr double falling = 0.5;     // likewise: round-off does not
 constexpr double more = 1e-1;       // of a residual that was smaller before
 
 }  // namespace
@@ -38,7 +39,7 @@ std::optional<double> ResidualCourse::ratio() const {
 
 std::optional<std::size_t> ResidualCourse::smaller_before() const {
   if (residuals_.empty() || !finite()) return std::nullopt;
-  const auto least = std::min_element(residuals_.rbegin(), residuals_.rend());
+  const auto least = std::min_element(residuals_.rbegin(), residuals_.rend() - 1);
   if (!(*least < residuals_.back())) return std::nullopt;
   return static_cast<std::size_t>(least - residuals_.rbegin());
 }
@@ -50,6 +51,8 @@ std::optional<double> ResidualCourse::order() const {
   if (!(last < 1) || !(before < 1)) return std::nullopt;
   return std::log(last) / std::log(before);
 }
+
+bool ResidualCourse::falls() const { return ratio().value_or(1) < falling || order().value_or(0) >= quadratic; }
 
 std::optional<int> ResidualCourse::iterations_to(double part) const {
   const std::size_t n = residuals_.size();

@@ -19,10 +19,13 @@ class ResidualCourse {
   /// By which factor it has changed in an iteration, the geometric mean of the last three at most; nothing before there are
   /// two.
   std::optional<double> ratio() const;
-  /// How many iterations before the last it was smaller than there, at its least; nothing where it never was.
+  /// How many iterations before the last it was smaller than there, at its least; nothing where it never was. The first does
+  /// not count: bodies that have not met yet have next to no forces.
   std::optional<std::size_t> smaller_before() const;
   /// Observed order of the last three, where they fall.
   std::optional<double> order() const;
+  /// Whether it falls to less than a half an iteration, or quadratically: round-off does not.
+  bool falls() const;
   /// How many iterations more make the last one this part of itself, if it goes on to fall as it did last: of an order, where
   /// that is `quadratic`, or by the ratio; 1 at least. Nothing where it does not fall.
   std::optional<int> iterations_to(double part) const;

@@ -69,12 +69,18 @@ struct Stepper {
   const Tell& tell;
 
   /// Solve once more, with increments that are searched, a step that no cut helps. Called while `error` is handled: throws it
-  /// on where that is no use, and the failure of that attempt.
+  /// on where that is no use, or fails as well.
   void solve_searched(double to, const Error& error) const {
     if (!is_of_increments(error) || !search(true)) throw;
     tell(message("EVOLUTION_71", {{"instant", fmt::format("{:.9g}", to)}, {"reason", error.message().text}}));
     go_back();
-    solve(to);
+    try {
+      solve(to);
+      return;
+    } catch (const Error& again) {
+      if (again.message().severity != 'S' || is_of_the_machine(again.message())) throw;
+    }
+    throw;
   }
 
   /// @param before the failure of the step that this one is a part of
@@ -135,7 +141,6 @@ class AdaptiveStepper {
         stepper_.solve_searched(to, error);
       }
       stepper_.solved(to, last);
-      stepper_.search(false);
       at = to;
       level_ = 0;
       change();
@@ -233,7 +238,10 @@ void step_through(const TimeSteps& steps, const SolveInstant& solve, const GoBac
   const Stepper stepper{steps, in_any_way, go_back, solved, search, tell};
   if (steps.adaptation) {
     AdaptiveStepper adaptive(steps, stepper, iterations);
-    for (std::size_t i = 1; i < steps.values.size(); ++i) adaptive.advance(steps.values[i - 1], steps.values[i]);
+    for (std::size_t i = 1; i < steps.values.size(); ++i) {
+      adaptive.advance(steps.values[i - 1], steps.values[i]);
+      search(false);
+    }
     return;
   }
   for (std::size_t i = 1; i < steps.values.size(); ++i) {

@@ -31,10 +31,10 @@ using Tell = std::function<void(const Message& message)>;
 /// An instant that was led astray, or left an equilibrium that is not stable (FailureNature), is solved once more behind
 /// go_back(), before anything is cut. Where the latter fails again, its first failure is what counts. A step whose iterations
 /// fail, and which is not to be cut, is solved once more with increments that are searched, and so is what follows up to the
-/// next instant of the list. With `steps.adaptation` (METHODE='AUTO') steps also grow and shrink between the instants of the
-/// list, beginning with its first interval; a step that fails is then cut once, and the shorter one goes on. Throws STEP_3
-/// after too many steps, STEP_5 where they have become shorter than `smallest`, STEP_6 where it is known that they will not
-/// come to the end.
+/// next instant of the list; where that fails as well its first failure counts. With `steps.adaptation` (METHODE='AUTO') steps
+/// also grow and shrink between the instants of the list, beginning with its first interval; a step that fails is then cut
+/// once, and the shorter one goes on. Throws STEP_3 after too many steps, STEP_5 where they have become shorter than
+/// `smallest`, STEP_6 where it is known that they will not come to the end.
 void step_through(
     const TimeSteps& steps, const SolveInstant& solve, const GoBack& go_back, const Solved& solved,
     const Iterations& iterations = {}, const Search& search = [](bool) { return false; },

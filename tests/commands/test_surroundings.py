@@ -343,6 +343,7 @@ pool.submit(first)
         begin = "from concurrent.futures import ThreadPoolExecutor, wait\nimport os, time\nDEBUT()\npool = ThreadPoolExecutor(1)\n"
         for text, message in (("pool.submit(LIRE_MAILLAGE, UNITE=77)\n", "COMMAND_4"), ("pool.map(lambda n: LIRE_MAILLAGE(UNITE=n), [77])\n", "COMMAND_4"),
                               ("wait([pool.submit(LIRE_MAILLAGE, UNITE=77)])\nFIN()\n", "COMMAND_4"),
+                              ("wait([pool.submit(LIRE_MAILLAGE, UNITE=77)], return_when='FIRST_EXCEPTION')\nFIN()\n", "COMMAND_4"),
                               ("pool.submit(lambda: (time.sleep(0.3), LIRE_MAILLAGE(UNITE=20)))\nFIN()\n", "STUDY_12")):
             run = self.refused(self.run_study(begin + text), f"<{message}>", "study.comm:5")
             self.assertNotIn("concurrent", run.err)

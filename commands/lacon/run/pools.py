@@ -70,10 +70,11 @@ def _follow(module):
                 self.asked = self.asked or self.done()
 
         def exception(self, timeout=None):
+            by_itself = sys._getframe(1).f_globals.get("__name__", "").startswith("concurrent.")  # wait(return_when=FIRST_EXCEPTION)
             try:
                 return super().exception(timeout)
             finally:
-                self.asked = self.asked or self.done()
+                self.asked = self.asked or self.done() and not by_itself
 
     def end(future):
         with _lock:

@@ -34,7 +34,8 @@ class Study:
     loads: tuple = ()     # keywords of AFFE_CHAR_MECA_F, see study.comm
     instants: tuple = ()
     most: int = 60        # ITER_GLOB_MAXI
-    cut: bool = False     # whether the instants of steps that are cut are those of the result too (DEFI_LIST_INST)
+    residual: float = 1e-6  # RESI_GLOB_RELA
+    cut: bool = False     # whether DEFI_LIST_INST says that a step that fails is cut, which is the default of plain lists too
     stops: bool = False   # whether a step that fails ends the study: ACTION='ARRET'
     solver: str = "MUMPS"  # METHODE of SOLVEUR
     asked: dict = dataclasses.field(default_factory=dict)  # figure -> largest value; "finished" is always asked
@@ -48,7 +49,7 @@ class Study:
         """Write the inputs. @return (arguments of the launcher, variables of its environment)"""
         write_med(folder / "mesh.med", self.mesh)
         orders = {"model": self.model, "materials": self.materials, "moves": self.moves, "zones": self.zones, "contact": self.contact, "strain": self.strain,
-                  "cut": self.cut, "stops": self.stops, "loads": self.loads, "most": self.most, "solver": self.solver, "instants": self.instants or [float(k) for k in range(self.steps + 1)]}
+                  "cut": self.cut, "stops": self.stops, "loads": self.loads, "most": self.most, "residual": self.residual, "solver": self.solver, "instants": self.instants or [float(k) for k in range(self.steps + 1)]}
         (folder / "study.json").write_text(json.dumps(orders))
         return [HERE / "study.comm", "--unit", f"20={folder / 'mesh.med'}"], {"ROBUSTNESS_STUDY": str(folder / "study.json")}
 

@@ -64,13 +64,11 @@ class Witness : public EvolutionObserver {
   }
   void accept(const SolvedInstant& solved) override {
     log_.push_back(fmt::format("accept {} step {}{}", solved.instant, solved.step, solved.last ? " last" : ""));
-    kept.push_back(solved.kept);
     if (breaks) throw std::runtime_error("no room");
   }
   void end(bool completed) override { log_.push_back(completed ? "end" : "broken off"); }
 
   bool refuse = false, breaks = false;
-  std::vector<bool> kept;
 
  private:
   void say(const char* what, double instant) { log_.push_back(fmt::format("{} {}", what, instant)); }
@@ -103,19 +101,6 @@ TEST(Evolution, ACutStepCountsAsOneOfTheList) {
   std::erase_if(log, [](const std::string& line) { return line.starts_with("iterate"); });
   EXPECT_THAT(log, ElementsAre("start 0", "begin 1", "back", "begin 0.5", "judge 0.5", "accepted", "accept 0.5 step 0",
                                "begin 1", "judge 1", "accepted", "accept 1 step 1 last", "end"));
-}
-
-TEST(Evolution, PartsOfAPlainListAreNotKept) {
-  for (const bool alone : {true, false}) {
-    std::vector<std::string> log;
-    Solver solver(log, 0.5);
-    Witness witness(log);
-    const std::array<EvolutionObserver*, 1> observers{&witness};
-    TimeSteps asked = steps({0, 1, 1.5}, true);
-    asked.alone = alone;
-    evolve(asked, solver, observers);
-    EXPECT_THAT(witness.kept, ElementsAre(!alone, true, true));
-  }
 }
 
 TEST(Evolution, AnObserverThatRefusesASolvedInstantLetsTheStepBeCut) {

@@ -8,6 +8,7 @@
 
 #include "lacon/assembly/mumps_engine.hpp"
 #include "lacon/catalog/messages.hpp"
+#include "lacon/operators/evolution/instant_failure.hpp"
 #include "lacon/operators/evolution/state_fields.hpp"
 #include "lacon/structures/hdf5.hpp"
 #include "two_squares.hpp"
@@ -44,6 +45,45 @@ TEST(Newton, SquaresPressedTogetherAreUniform) {
   EXPECT_TRUE(lines.back().converged());
   expect_uniform(problem, state);
   EXPECT_EQ(solver.equilibrium().n_constraints(state), 1);
+}
+
+TEST(Newton, IterationsBeyondTheLastLeadToTheEnd) {
+  const StaticProblem problem = pressed_squares("ELAS/GREEN_LAGRANGE");
+  const auto iterations = [&](int most) {
+    Newton solver = newton(problem, 1e-13, most);
+    StaticState state = solver.initial_state();
+    return solver.solve(1.0, state, [](const IterationReport&) {});
+  };
+  const int needed = iterations(20);
+  EXPECT_EQ(iterations(needed - 1), needed);
+  EXPECT_THROW(iterations(needed / 2), Error);
+}
+
+// What no iteration meets fails in steps of any length.
+TEST(Newton, RoundOffIsNotCut) {
+  const StaticProblem problem = pressed_squares();
+  NewtonOptions options{.criteria = {.resi_glob_rela = {}, .resi_glob_maxi = 1e-30}, .iterations = 8};
+  Newton solver(problem, options, std::make_unique<MumpsEngine>());
+  StaticState state = solver.initial_state();
+  try {
+    solver.solve(1.0, state, [](const IterationReport&) {});
+    FAIL();
+  } catch (const Error& error) {
+    EXPECT_FALSE(nature_of(error).depends_on_step);
+  }
+}
+
+TEST(Newton, SearchesIncrementsUnlessItDoesAnyhow) {
+  const StaticProblem problem = pressed_squares();
+  NewtonOptions options{.criteria = {.resi_glob_rela = 1e-12, .resi_glob_maxi = {}}};
+  Newton solver(problem, options, std::make_unique<MumpsEngine>());
+  EXPECT_TRUE(solver.search_increments(true));
+  EXPECT_FALSE(solver.search_increments(true));
+  EXPECT_TRUE(solver.search_increments(false));
+  EXPECT_FALSE(solver.search_increments(false));
+  options.line_search = LineSearch{};
+  Newton searching(problem, options, std::make_unique<MumpsEngine>());
+  EXPECT_FALSE(searching.search_increments(true));
 }
 
 /// What elements, pressures, contact and the criteria make of displacements does not depend on what stands beside them.

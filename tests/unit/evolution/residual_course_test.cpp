@@ -24,6 +24,13 @@ TEST(ResidualCourse, HasTheRatioAndTheOrderOfItsEnd) {
   EXPECT_FALSE(course({1, 2, 1}).order());
 }
 
+TEST(ResidualCourse, FallsOrIsRoundOff) {
+  EXPECT_TRUE(course({1e-3, 1e-6, 1e-12}).falls());
+  EXPECT_TRUE(course({1, 1e-1, 1e-2, 1e-3}).falls());
+  EXPECT_FALSE(course({2e-13, 1e-13, 2e-13, 1e-13}).falls());
+  EXPECT_FALSE(course({1e-13}).falls());
+}
+
 // A ratio stays what it is, an order takes it to its power again and again.
 TEST(ResidualCourse, KnowsHowManyIterationsAreLeft) {
   EXPECT_EQ(course({8, 4, 2, 1}).iterations_to(0.3), 2);
@@ -36,6 +43,7 @@ TEST(ResidualCourse, KnowsHowManyIterationsAreLeft) {
   EXPECT_FALSE(course({1, 0.99, 0.98, 0.97}).iterations_to(0.9));
   EXPECT_FALSE(course({1, 2, 4}).iterations_to(0.1));
   EXPECT_FALSE(course({8, 1, 16, 8, 4, 2}).iterations_to(0.1));  // it was smaller before
+  EXPECT_EQ(course({1e-9, 16, 8, 4, 2}).iterations_to(0.3), 2);  // before bodies met
   EXPECT_FALSE(course({2, 1, 2, 1}).iterations_to(0.1));
   EXPECT_FALSE(course({}).iterations_to(0.1));
   EXPECT_FALSE(course({4, 2, 1}).iterations_to(0));
@@ -53,6 +61,8 @@ TEST(ResidualCourse, KnowsThatItWasSmallerBefore) {
   EXPECT_FALSE(course({}).smaller_before());
   EXPECT_FALSE(course({8, 4, 2, 1}).smaller_before());
   EXPECT_EQ(course({8, 1, 16, 8, 4, 2}).smaller_before(), 4U);
+  EXPECT_FALSE(course({1e-9, 16, 8, 4, 2}).smaller_before());
+  EXPECT_EQ(course({1e-9, 16, 1, 4, 2}).smaller_before(), 2U);
   EXPECT_EQ(course({8, 1, 16, 8, 4, 2}).words(),
             "the residual falls by the factor 0.5 an iteration, but 4 iteration(s) before it was 2 times smaller");
   EXPECT_EQ(course({1, 1.06, 1.05, 1.04, 1.03}).words(), "the residual changes by the factor 0.99 an iteration (order 1)");
