@@ -16,8 +16,8 @@ constexpr double clearly = 10;      // so many times more than from one period t
 constexpr int long_enough = 6;      // iterations
 constexpr double far = 1e-3;        // of the largest: these were not near an equilibrium, of other statuses or a law
 constexpr double no_better = 0.97;  // from one iteration to the next: it does not fall
-constexpr double falling = 0.5;     // likewise: round-off does not
-constexpr double more = 1e-1;       // of a residual that was smaller before
+constexpr double falling = 0.3, falling_at_once = 0.1;  // likewise, of three or of one: round-off does not
+constexpr double more = 1e-1;                           // of a residual that was smaller before
 
 }  // namespace
 
@@ -52,7 +52,10 @@ std::optional<double> ResidualCourse::order() const {
   return std::log(last) / std::log(before);
 }
 
-bool ResidualCourse::falls() const { return ratio().value_or(1) < falling || order().value_or(0) >= quadratic; }
+bool ResidualCourse::falls() const {
+  const std::size_t n = residuals_.size();
+  return n > 1 && (residuals_[n - 1] < falling_at_once * residuals_[n - 2] || ratio().value_or(1) < falling);
+}
 
 std::optional<int> ResidualCourse::iterations_to(double part) const {
   const std::size_t n = residuals_.size();

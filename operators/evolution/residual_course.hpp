@@ -24,7 +24,7 @@ class ResidualCourse {
   std::optional<std::size_t> smaller_before() const;
   /// Observed order of the last three, where they fall.
   std::optional<double> order() const;
-  /// Whether it falls to less than a half an iteration, or quadratically: round-off does not.
+  /// Whether the last iteration has left a tenth of it, or the last three less than a third each: round-off does not fall so.
   bool falls() const;
   /// How many iterations more make the last one this part of itself, if it goes on to fall as it did last: of an order, where
   /// that is `quadratic`, or by the ratio; 1 at least. Nothing where it does not fall.

@@ -28,6 +28,7 @@ TEST(ResidualCourse, FallsOrIsRoundOff) {
   EXPECT_TRUE(course({1e-3, 1e-6, 1e-12}).falls());
   EXPECT_TRUE(course({1, 1e-1, 1e-2, 1e-3}).falls());
   EXPECT_FALSE(course({2e-13, 1e-13, 2e-13, 1e-13}).falls());
+  EXPECT_FALSE(course({1e-13, 0.95e-13, 0.4e-13}).falls());  // which has an order, but means nothing by it
   EXPECT_FALSE(course({1e-13}).falls());
 }
 
