@@ -95,7 +95,7 @@ void set_options_of_gamg(PC pc) {
   set_option(own + "mg_levels_pc_type", "jacobi");  // SOR stops at an aggregate of one node, whose turns have no diagonal
   set_option(own + "mg_levels_ksp_max_it", std::to_string(degree));
   set_option(own + "mg_levels_ksp_chebyshev_esteig", "0," + std::to_string(lower_end) + ",0," + std::to_string(upper_end));
-  // PETSc's own choice adds what other processes send in the order in which it comes, which of more than one changes
+  // PETSc's own choice adds what others send as it comes: from more than one in an order that changes from run to run
   PetscMPIInt n_ranks = 1;
   MPI_Comm_size(PetscObjectComm(reinterpret_cast<PetscObject>(pc)), &n_ranks);
   if (n_ranks > 2) set_option("-matptap_via", "backend");

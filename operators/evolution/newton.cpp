@@ -244,7 +244,7 @@ int Newton::iterate(double instant, StaticState& state, const std::function<void
   bool settling = false;  // statuses change from iteration to iteration: a rough solution finds them as well
   IterationReport line;
   std::size_t changing = 0;
-  int last = options_.iterations, beyond = last / 2;  // iterations that are made where they lead to the end
+  int last = options_.iterations, beyond = last / 2;  // more iterations, which are made where they lead to the end
   const auto with_own_iterations = [&](int first) {
     return std::min(first + options_.iterations, most_times * options_.iterations);
   };
@@ -297,7 +297,7 @@ int Newton::iterate(double instant, StaticState& state, const std::function<void
       finish_instant(instant, previous, state, external, line);
       return iteration;
     }
-    if (const auto left = iterations_left(line); iteration == last && left && *left <= beyond) {
+    if (const auto left = iteration == last ? iterations_left(line) : std::nullopt; left && *left <= beyond) {
       ++last;
       --beyond;
     }
