@@ -35,11 +35,13 @@ struct ContactTolerances {
   double held_overlap = 1e-6;       ///< of h: an overlap of a locked patch that is worth an alarm
   double pierced = 0.05;            ///< of h: likewise of points of another active patch, whose average is closed
   double pierced_open = 0.04;       ///< of h: of points of an open patch, which nothing keeps out of the master
-  double pierced_at_rest = 0.005;   ///< of h: likewise, where nothing presses
+  double pierced_at_rest = 0.0005;  ///< of h: likewise, where nothing presses
+  double missed_depth = 0.005;      ///< of h: likewise, where others press
   double far_behind = 0.5;          ///< of h: by how much parts of one patch may see masters at different distances
   double missed_pressure = 0.1;     ///< of the largest: what such points would press with, worth an alarm
   double alternating = 0.1;         ///< of the pressure: by how much neighbours may differ to opposite sides
   double stiffer = 2;               ///< how many times as stiff as its master a slave is that answers bending by pressures
+  double unpressed = 0.3;           ///< of what a pressure presses in: how deep it leaves points inside that are pressed flat
   double touching = 1e-8;           ///< of h: an overlap of patches without contact that is round-off
 };
 
@@ -72,6 +74,13 @@ struct NearestPatches {
   std::vector<std::size_t> patches;  ///< the nearest of all first
   std::int32_t node;                 ///< of the body
   bool tips = false;                 ///< it is in contact beside them, and tips onto them
+};
+
+/// Patches that carry most of a zone's force, though the contact on them is smaller than they are.
+struct CoarseContact {
+  std::size_t patch;  ///< that of the largest force
+  double share;       ///< of the zone's force that they carry
+  double times;       ///< what that patch's deepest point lies inside, over what its pressure presses in
 };
 
 /// An open patch of which a part lies inside its master, and the rest sees another one far behind.
@@ -248,6 +257,8 @@ class ContactState {
   /// Of a zone the open patch of which a part lies deepest inside its master, where the other part alone keeps it open.
   /// @param strain as for missed()
   std::optional<SplitPatch> split(std::int32_t zone, const Patchwise& patches, double strain) const;
+  /// Of a zone, where patches that are not pressed flat, with others around them that are open, carry most of its force.
+  std::optional<CoarseContact> coarse(std::int32_t zone, const Patchwise& patches) const;
   /// Of a zone, where its pressures alternate by so much that it is worth an alarm.
   /// @param has_facets whether its skins are curved and their cells are not; asked where rows alternate
   std::optional<AlternatingPressures> alternation(std::int32_t zone, const Patchwise& patches,

@@ -14,7 +14,7 @@ std::optional<PiercedPatch> ContactState::pierced(std::int32_t zone, const Patch
 
 std::optional<PiercedPatch> ContactState::missed(std::int32_t zone, const Patchwise& patches, double strain) const {
   const auto is_active = [&](std::int32_t p) { return patches.status[static_cast<std::size_t>(p)] == Status::active; };
-  const double limit = std::max(tolerances_.pierced_at_rest, tolerances_.missed_pressure * strain);
+  const double limit = std::max(tolerances_.missed_depth, tolerances_.missed_pressure * strain);
   return deepest(zone, [&](std::size_t p) {
     const bool alone = !is_active(static_cast<std::int32_t>(p)) && std::ranges::none_of(neighbours_[p], is_active);
     return alone ? limit : INFINITY;
@@ -66,6 +66,29 @@ std::optional<SplitPatch> ContactState::split(std::int32_t zone, const Patchwise
     if (!worst || depth > worst->depth) worst = SplitPatch{patch, share, depth, of_patch.gap[1] / of_patch.measure[1]};
   }
   return worst;
+}
+
+std::optional<CoarseContact> ContactState::coarse(std::int32_t zone, const Patchwise& patches) const {
+  double whole = 0, coarse = 0, largest = 0;
+  CoarseContact found{};
+  for (std::size_t p = 0; p < n_patches(); ++p) {
+    if (geometry_.zone_of(p) != zone || patches.status[p] != Status::active || locked_[p]) continue;
+    const double force = std::abs(patches.lambda[p]) * geometry_.covered(p);
+    whole += force;
+    const double depth = -geometry_.smallest_gap(p), pressed_in = strain(p, patches) * size_[p];
+    // where bodies fit, points lie inside by what facets leave, and patches around are pressed too or open by no more than that
+    const auto ends_contact = [&](std::int32_t neighbour) {
+      const auto q = static_cast<std::size_t>(neighbour);
+      return patches.status[q] != Status::active && (!is_covered(q) || geometry_.gap(q) > depth);
+    };
+    const bool is_end = neighbours_[p].empty() || std::ranges::any_of(neighbours_[p], ends_contact);
+    if (!is_end || depth <= tolerances_.unpressed * pressed_in) continue;
+    coarse += force;
+    if (force > largest) largest = force, found = {p, 0, depth / pressed_in};
+  }
+  if (coarse <= whole / 2) return std::nullopt;
+  found.share = coarse / whole;
+  return found;
 }
 
 std::optional<UncheckedOverlap> ContactState::unchecked_overlap(std::int32_t zone) const {

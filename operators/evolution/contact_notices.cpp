@@ -17,6 +17,8 @@ constexpr double gap_that_counts = 0.2;      // of what skins give way by: press
 constexpr double share_that_counts = 1e-3;   // of the largest strain of a zone: pressures below are none to speak of
 constexpr double share_of_round_off = 1e-3;  // of the largest pressure of a zone, at the instant that strains it most
 constexpr double gap_of_closed = 1e-5;       // of h: below, the average gap of a patch in contact is its round-off
+constexpr double inside_at_rest = 0.005;     // of h: points inside from the beginning, where nothing ever presses
+constexpr double come_in = 5e-4;             // of h: points that have come inside, where nothing ever presses
 constexpr double missed = 0.04;              // of h: a strain that the pressure would make that coarse patches do not feel
 
 }  // namespace
@@ -164,6 +166,8 @@ void ContactNotices::accept(const SolvedInstant& solved) {
       faceted_.erase(zone);
       if (facets && std::abs(facets->gap) > gap_that_counts * facets->give)
         faceted_.emplace(zone, Faceted{solved.instant, *facets});
+      coarse_.erase(zone);
+      if (const auto coarse = contact.coarse(zone, patches)) coarse_.emplace(zone, Coarse{solved.instant, *coarse});
       undecided_.erase(zone);
       if (const auto share = contact.undecided(zone, patches); share && *share > share_of_round_off && *share < 1)
         undecided_.emplace(zone, Undecided{solved.instant, *share});
@@ -195,7 +199,8 @@ void ContactNotices::end(bool /*completed*/) {
       inform("EVOLUTION_43", {{"slave", names.slave_group}, {"master", names.master_group}});
   PiercedZones told = pierced_;
   for (const auto& [zone, pierced] : pierced_at_rest_)
-    if (!pressed_.contains(zone)) told.emplace(zone, pierced);
+    if (!pressed_.contains(zone) && (pierced.worst.depth >= inside_at_rest || came_in_by(zone, pierced) >= come_in))
+      told.emplace(zone, pierced);
   const auto tell = [&](std::string_view id, std::int32_t zone, const Pierced& pierced) {
     const ContactZone& names = present_.problem.contact->zones[zone];
     const std::string gap = fmt::format("{:.3g}", pierced.worst.gap);
@@ -213,6 +218,14 @@ void ContactNotices::end(bool /*completed*/) {
   for (const auto& [zone, pierced] : missed_)
     if (const auto other = told.find(zone); other == told.end() || other->second.worst.patch != pierced.worst.patch)
       tell("EVOLUTION_45", zone, pierced);
+  for (const auto& [zone, coarse] : coarse_)
+    if (const ContactZone& names = present_.problem.contact->zones[zone]; !told.contains(zone))
+      inform("EVOLUTION_72", {{"slave", names.slave_group},
+                              {"master", names.master_group},
+                              {"cell", first_cell(coarse.contact.patch)},
+                              {"instant", fmt::format("{:.9g}", coarse.instant)},
+                              {"percent", fmt::format("{:.3g}", 100 * coarse.contact.share)},
+                              {"times", fmt::format("{:.2g}", coarse.contact.times)}});
   for (const auto& [zone, alternating] : alternating_) {
     const ContactZone& names = present_.problem.contact->zones[zone];
     const AlternatingBy by = alternating.most.by;
@@ -255,25 +268,27 @@ void ContactNotices::end(bool /*completed*/) {
   }
 }
 
+double ContactNotices::came_in_by(std::int32_t zone, const Pierced& pierced) const {
+  const auto before = depth_before_.find(zone);
+  return pierced.worst.depth - (before == depth_before_.end() ? 0 : before->second);
+}
+
 void ContactNotices::fail_if_all_missed() const {
   if (!pressed_.empty()) return;
-  const auto came_in_by = [&](const auto& of_zone) {
-    const auto before = depth_before_.find(of_zone.first);
-    return of_zone.second.worst.depth - (before == depth_before_.end() ? 0 : before->second);
-  };
-  const auto most = std::ranges::max_element(pierced_at_rest_, {}, came_in_by);
-  if (most == pierced_at_rest_.end() || came_in_by(*most) < missed) return;
+  const auto depth = [&](const auto& of_zone) { return came_in_by(of_zone.first, of_zone.second); };
+  const auto most = std::ranges::max_element(pierced_at_rest_, {}, depth);
+  if (most == pierced_at_rest_.end() || depth(*most) < missed) return;
   const auto& [zone, pierced] = *most;
   const ContactZone& names = present_.problem.contact->zones[zone];
-  const double size = present_.contact->patch_size(pierced.worst.patch), depth = pierced.worst.depth * size;
+  const double size = present_.contact->patch_size(pierced.worst.patch), deepest = pierced.worst.depth * size;
   fail("EVOLUTION_64", {{"slave", names.slave_group},
                         {"master", names.master_group},
                         {"cell", first_cell(pierced.worst.patch)},
                         {"instant", fmt::format("{:.9g}", pierced.instant)},
-                        {"depth", fmt::format("{:.3g}", depth)},
+                        {"depth", fmt::format("{:.3g}", deepest)},
                         {"gap", fmt::format("{:.3g}", pierced.worst.gap)},
                         // where one body comes to a point the average gap less that at the point grows like the size
-                        {"size", fmt::format("{:.2g}", size * depth / (depth + std::max(pierced.worst.gap, 0.0)))}});
+                        {"size", fmt::format("{:.2g}", size * deepest / (deepest + std::max(pierced.worst.gap, 0.0)))}});
 }
 
 template <class Notices, class Use>
@@ -288,6 +303,7 @@ void ContactNotices::for_each_record(Notices& notices, const Use& use) {
   use("split", notices.split_);
   use("faceted", notices.faceted_);
   use("undecided", notices.undecided_);
+  use("coarse", notices.coarse_);
   use("flung", notices.flung_);
   use("met", notices.met_);
   use("too_deep", notices.too_deep_);

@@ -29,7 +29,7 @@ class ContactNotices : public EvolutionObserver {
   /// instant also where that is little; EVOLUTION_45: likewise where a contact is missed while, or after, others press;
   /// EVOLUTION_43: zones whose skins never met; EVOLUTION_47 or 67: zones whose pressures alternate; EVOLUTION_60:
   /// zones whose straight edges leave a gap that counts; EVOLUTION_68: open patches with a part inside; EVOLUTION_65: zones
-  /// whose pressures are near round-off.
+  /// whose pressures are near round-off; EVOLUTION_72: zones whose contact is smaller than the patches that carry it.
   void end(bool completed) override;
   /// Of a computation that has come to its end. Throws EVOLUTION_64 where nothing has pressed in any zone at any instant,
   /// though bodies have come to lie in each other: there is no force of contact in its result.
@@ -71,6 +71,14 @@ class ContactNotices : public EvolutionObserver {
           use("far", worst.far);
     }
   };
+  struct Coarse {
+    double instant;
+    CoarseContact contact;
+    template <class Use>
+    void for_each_member(const Use& use) {
+      use("instant", instant), use("patch", contact.patch), use("share", contact.share), use("times", contact.times);
+    }
+  };
   struct Undecided {
     double instant, share;
     template <class Use>
@@ -83,6 +91,8 @@ class ContactNotices : public EvolutionObserver {
   template <class Notices, class Use>
   static void for_each_record(Notices& notices, const Use& use);
   std::string first_cell(std::size_t patch) const;
+  /// How much deeper it is than it was at the initial state of the zone.
+  double came_in_by(std::int32_t zone, const Pierced& pierced) const;
   /// EVOLUTION_17, or 52 where COEF_MULT_APPA says how deep: couples of each zone that overlap too deep to be taken for
   /// contact, once a zone.
   void tell_what_is_too_deep(double instant);
@@ -111,6 +121,7 @@ class ContactNotices : public EvolutionObserver {
   std::map<std::int32_t, Alternating> alternating_;  ///< zones whose pressures do, at the instant where they do most
   std::map<std::int32_t, Split> split_;              ///< zones with such a patch, at the instant where it is deepest
   std::map<std::int32_t, Faceted> faceted_;          ///< zones with such a gap, at the instant that strains them most
+  std::map<std::int32_t, Coarse> coarse_;            ///< zones of so small a contact, at that instant
   std::map<std::int32_t, Undecided> undecided_;      ///< zones of so small pressures, at that instant
   std::vector<double> last_displacement_;            ///< of the last accepted state,
   std::set<std::size_t> last_met_;                   ///< and zones of which a patch had a master there
