@@ -44,6 +44,11 @@ double mean(const ContactGeometry& geometry, std::span<const std::size_t> around
   return measure > 0 ? sum / measure : 0;
 }
 
+/// The pressure on a patch, over all of it: where little is covered the multiplier says how much that little carries.
+double whole_pressure(std::size_t patch, const ContactGeometry& geometry, const Patchwise& patches) {
+  return patches.status[patch] == Status::unpaired ? 0 : geometry.coverage(patch) * patches.lambda[patch];
+}
+
 constexpr double cancelled = 1e-6;  // what opposite unit normals may leave of their sum
 
 /// Outward unit normals of all slave skins at the nodes, (n_nodes, 3), between those of the zones that meet there; zero
@@ -120,8 +125,8 @@ Field contact_field(const Contact& contact, const ContactGeometry& geometry, con
     field.support.push_back(slave.cell);
     field.values.push_back(static_cast<double>(patches.status[p]));
     for (const PatchQuantity& quantity : patch_quantities) field.values.push_back(paired ? (patches.*quantity.values)[p] : 0);
-    const double pressure = paired ? patches.lambda[p] : 0, coverage = paired ? geometry.coverage(p) : 0;
-    field.values.insert(field.values.end(), {paired ? geometry.gap(p) : -1.0, coverage, coverage * pressure});
+    field.values.insert(field.values.end(), {paired ? geometry.gap(p) : -1.0, paired ? geometry.coverage(p) : 0,
+                                             whole_pressure(p, geometry, patches)});
     for (const std::string& component : field.components)  // JEU is -1 where there is no gap
       field.present.push_back(paired || component != "JEU" ? Field::there : Field::stand_in);
   }
@@ -134,8 +139,8 @@ std::vector<std::pair<std::int32_t, double>> nodal_pressures(const Mesh& mesh, c
   const PatchesAround around(mesh, contact);
   std::vector<std::pair<std::int32_t, double>> pressures;
   for (std::size_t i = 0; i < around.nodes.size(); ++i)
-    pressures.emplace_back(around.nodes[i],
-                           mean(geometry, around.patches[i], [&](std::size_t p) { return patches.lambda[p]; }));
+    pressures.emplace_back(around.nodes[i], mean(geometry, around.patches[i],
+                                                 [&](std::size_t p) { return whole_pressure(p, geometry, patches); }));
   return pressures;
 }
 
@@ -158,7 +163,7 @@ Field nodal_contact_field(const Mesh& mesh, const Contact& contact, const Contac
     const bool active = std::ranges::any_of(all, [&](std::size_t p) { return patches.status[p] == Status::active; });
     field.values.push_back(active ? 2.0 : paired.empty() ? -1.0 : 0.0);
     field.values.push_back(paired.empty() ? -1.0 : mean(geometry, paired, [&](std::size_t p) { return geometry.gap(p); }));
-    field.values.push_back(mean(geometry, all, [&](std::size_t p) { return patches.lambda[p]; }));
+    field.values.push_back(mean(geometry, all, [&](std::size_t p) { return whole_pressure(p, geometry, patches); }));
     const std::size_t node = static_cast<std::size_t>(around.nodes[i]);
     const std::span<const double> force(forces.data() + node * dimension, dimension);
     double square = 0;

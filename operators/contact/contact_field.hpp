@@ -14,7 +14,8 @@ namespace lacon {
 /// CONT, PRES, JEU, COEFSURF, PRESCOOR on every slave cell, equal in the cells of one patch.
 Field contact_field(const Contact& contact, const ContactGeometry& geometry, const Patchwise& patches);
 
-/// The pressure at each node of the slave skins, by number: the mean over the patches around it, weighted with their measures.
+/// The pressure at each node of the slave skins, by number: the mean of PRESCOOR over the patches around it, weighted with
+/// their measures, so that what a patch carries counts and not how little of it carries that.
 std::vector<std::pair<std::int32_t, double>> nodal_pressures(const Mesh& mesh, const Contact& contact,
                                                              const ContactGeometry& geometry, const Patchwise& patches);
 

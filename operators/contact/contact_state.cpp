@@ -143,8 +143,7 @@ Patchwise ContactState::initial() const {
     if (geometry_.zone_of(p) < 0 || geometry_.coverage(p) <= tolerances_.unpaired) continue;
     const std::int32_t zone = geometry_.zone_of(p);
     const std::string& asked = contact_.zones[zone].initial_status;
-    const bool touches =
-        geometry_.gap(p) <= tolerances_.initial_gap * smallest_edge_[zone] && geometry_.coverage(p) >= least_coverage;
+    const bool touches = geometry_.gap(p) <= tolerances_.initial_gap * smallest_edge_[zone] && takes_contact(p);
     const bool starts = asked == "OUI" && (is_near(p) || !comes_near[static_cast<std::size_t>(zone)]);
     const bool active = !held_open_[p] && (starts || (asked == "INTERPENETRE" && touches));
     patches.status[p] = active ? Status::active : Status::open;

@@ -113,15 +113,20 @@ void NewtonTable::accept(const SolvedInstant& solved) {
 
 void NewtonTable::prove(const ContactState& contact) {
   const Patchwise& patches = present_.state.patches;
-  double least = std::numeric_limits<double>::infinity(), most = -least;
+  constexpr double half = 0.5, none = std::numeric_limits<double>::infinity();
+  double least = none, most = -none, least_of_covered = none;
   for (std::size_t p = 0; p < contact.n_patches(); ++p) {
     if (patches.status[p] != Status::active) continue;
     least = std::min(least, patches.lambda[p]);
     most = std::max(most, patches.lambda[p]);
+    if (contact.geometry().coverage(p) >= half) least_of_covered = std::min(least_of_covered, patches.lambda[p]);
   }
   if (least <= most)
-    out_ << ' ' << part("pressures_from_to", {{"least", fmt::format("{:.9g}", least)}, {"most", fmt::format("{:.9g}", most)}})
-         << '\n';
+    out_ << ' ' << part("pressures_from_to", {{"least", fmt::format("{:.9g}", least)}, {"most", fmt::format("{:.9g}", most)}});
+  if (least < least_of_covered)
+    out_ << (least_of_covered < none ? part("largest_of_covered", {{"least", fmt::format("{:.9g}", least_of_covered)}})
+                                     : part("largest_on_little"));
+  if (least <= most) out_ << '\n';
   for (const ZoneBalance& zone : contact.balance(patches)) {
     out_ << ' '
          << part("zone_statuses", {{"slave", zone.slave_group},

@@ -99,3 +99,22 @@ class CoarseContact(StudyTest):
                                                    convergence={"RESI_GLOB_RELA": 1e-9}))
         self.assertEqual(alarms, [])
         self.assertLess(min(result.on_cells("CONT_ELEM", result.orders[-1], "PRES").values()), 0)
+
+    def test_pressures_where_little_is_covered_are_told_apart(self):
+        """The corner of a punch, of which a hundredth of a patch has come in: the multiplier is the force over that hundredth."""
+        lower = block("QUAD4", np.linspace(-4, 4, 9), np.linspace(-4, 0, 5), None, "LOWER", {"top": "LOWER_SKIN", "bottom": "LOWER_BASE"})
+        tilt = math.radians(10)
+        upper = block("QUAD4", np.linspace(-2, 0, 9), np.linspace(0, 2, 9), lambda x, y: (0.01 + x * math.cos(tilt) + y * math.sin(tilt), y * math.cos(tilt) - x * math.sin(tilt)),
+                      "UPPER", {"bottom": "UPPER_SKIN", "top": "UPPER_BASE"})
+        hold = [{"GROUP_MA": "LOWER_BASE", "DX": 0.0, "DY": 0.0}, {"GROUP_MA": "UPPER_BASE", "DX": 0.0, "DY": -0.2}]
+        study = contact_study(union([lower, upper]), hold, slaves=["LOWER_SKIN"], masters=["UPPER_SKIN"], model="D_PLAN", times=[0.0, 0.5, 1.0],
+                              convergence={"RESI_GLOB_RELA": 1e-9, "ITER_GLOB_MAXI": 40})
+        run, (result,) = run_contact(self, [study], CONTACT_ALARMS="ALARME")
+        pressure, over_whole, covered = (result.on_cells("CONT_ELEM", result.orders[-1], name) for name in ("PRES", "PRESCOOR", "COEFSURF"))
+        pressed = [patch[0] for patch in result.patches if pressure[patch[0]] < 0]
+        half = [pressure[cell] for cell in pressed if covered[cell] >= 0.5]
+        self.assertTrue(half and min(pressure.values()) < 2 * min(half), pressure)
+        self.assertIn(f"LAGS_C of the patches in contact from {min(pressure.values()):.9g} to {max(pressure[cell] for cell in pressed):.9g} "
+                      f"(of patches that are covered by half or more: from {min(half):.9g}; PRESCOOR is over whole patches)", run.stdout)
+        at_nodes = result.at_nodes("CONT_NOEU", result.orders[-1], "PRES")
+        self.assertGreaterEqual(np.min(at_nodes), min(over_whole.values()) * (1 + 1e-12))

@@ -111,6 +111,15 @@ TEST_F(Touching, TheInitialStatusIsWhatTheZoneAsksFor) {
   }
 }
 
+TEST_F(Touching, APatchOfWhichLittleIsCoveredDoesNotStartActive) {
+  ContactState now = state();
+  for (const double coverage : {0.03, 0.01}) {
+    for (std::size_t node = 8; node < 16; ++node) displacement[2 * node] = 1.5 - coverage;
+    now.update_geometry(displacement);
+    EXPECT_EQ(now.initial().status[0], coverage > 0.02 ? Status::active : Status::open) << coverage;
+  }
+}
+
 // CONTACT_INIT='OUI': a gap that is far from closing stays open, unless all of the zone are as far.
 TEST_F(Touching, OfPatchesThatAreToCloseThoseThatAreFarDoNotWhereOthersAreNear) {
   add_second_patch();
@@ -149,23 +158,24 @@ TEST_F(Touching, APatchIsActiveWherePressureOrOverlapSaysSo) {
   }
 }
 
-TEST_F(Touching, ToTakeContactAPatchIsCoveredByMoreThanToKeepIt) {
+TEST_F(Touching, ToTakeContactAPatchIsCoveredByMoreThanToKeepItOrLiesDeep) {
   ContactState now = state();
   struct Case {
-    double coverage;
+    double coverage, depth;
     Status before, expected;
   };
-  for (const auto& [coverage, before, expected] :
-       {Case{0.03, Status::open, Status::active}, Case{0.01, Status::open, Status::open},
-        Case{0.01, Status::unpaired, Status::open}, Case{0.01, Status::active, Status::active},
-        Case{1e-6, Status::active, Status::open}}) {
-    lift(-0.1);  // inside the master, which ends at x = 1.5
+  for (const auto& [coverage, depth, before, expected] :
+       {Case{0.03, 0.03, Status::open, Status::active}, Case{0.01, 0.03, Status::open, Status::open},
+        Case{0.01, 0.03, Status::unpaired, Status::open}, Case{0.01, 0.03, Status::active, Status::active},
+        Case{0.01, 0.05, Status::open, Status::active}, Case{1e-6, 0.05, Status::open, Status::open},
+        Case{1e-6, 0.05, Status::active, Status::open}}) {
+    lift(-depth);  // inside the master, which ends at x = 1.5
     for (std::size_t node = 8; node < 16; ++node) displacement[2 * node] = 1.5 - coverage;
     now.update_geometry(displacement);
     Patchwise patches(1);
     patches.status[0] = before;
     now.update_statuses(patches);
-    EXPECT_EQ(patches.status[0], expected) << coverage;
+    EXPECT_EQ(patches.status[0], expected) << coverage << ' ' << depth;
   }
 }
 
@@ -529,6 +539,23 @@ TEST_F(Touching, ContNoeuHoldsWhatThePatchesAroundANodeCarryAndTheForceOnIt) {
   ASSERT_EQ(stand_in.size(), 5U);
   EXPECT_EQ(stand_in[1].first, 9);
   EXPECT_NEAR(stand_in[1].second, -4, 1e-14);
+}
+
+TEST_F(Touching, PressuresAtNodesAreOfWhatWholePatchesCarry) {
+  add_second_patch();
+  ContactState now = state();
+  for (std::size_t node = 8; node < 19; ++node) displacement[2 * node] = 1.5 - 0.25;  // the master ends at x = 1.5
+  now.update_geometry(displacement);
+  ASSERT_NEAR(now.geometry().coverage(0), 0.25, 1e-12);
+  Patchwise patches(2);
+  patches.status = {Status::active, Status::unpaired};
+  patches.lambda = {-6, 0};
+  now.linearise(patches, false);
+  const Field field = nodal_contact_field(mesh, contact, now, patches);
+  // 6 on a quarter of a patch of 1, beside one of 1/2 without a master
+  const double pressure[5] = {-1.5, -1, -1.5, 0, 0};
+  for (std::size_t row = 0; row < 5; ++row)
+    EXPECT_NEAR(field.at(row, static_cast<std::size_t>(field.component("PRES"))), pressure[row], 1e-12) << row;
 }
 
 TEST_F(Touching, ANodeWithoutAnyMasterHasAStandInForItsGap) {
