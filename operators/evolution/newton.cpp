@@ -333,7 +333,7 @@ int Newton::iterate(double instant, StaticState& state, const std::function<void
     }
     if (line.pairs_anew) choice_.forget_residual();
     if (other_matrix || other_forces || line.pairs_anew) assemble(state, previous, options_.matrix);
-    if (!std::isfinite(line.maxi)) break;
+    if (!std::isfinite(line.maxi) || (!other_forces && hangs_on_nothing())) break;
   }
   fail_to_converge(instant, line, previous, changing);
 }

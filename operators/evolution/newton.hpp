@@ -197,6 +197,9 @@ class Newton {
   bool diverges() const;
   /// Whether the residual is as small as it gets, and a smaller one is asked for.
   bool is_at_round_off(const IterationReport& line) const;
+  /// Whether springs of the matrix alone hold a body, and the force on it is the same in each iteration: each moves it by as
+  /// much again, and no contact comes.
+  bool hangs_on_nothing() const;
   /// How many iterations more lead to the equilibrium, as far as the last ones say; nothing where they do not lead there.
   std::optional<int> iterations_left(const IterationReport& line) const;
   /// The one thing to do about it that fits. @param softened a law gave way in the last equilibrium (cell_motion.hpp)

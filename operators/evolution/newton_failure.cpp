@@ -22,6 +22,10 @@ constexpr int settled = 4;           // iterations without a change of status af
 constexpr int settled_quickly = 3;   // likewise, for an order
 constexpr double inside = 1, through = 10;  // sizes of a patch: what coarse patches overlap by stays below the one
 
+bool presses_nowhere(const StaticState& state) {
+  return std::ranges::all_of(state.patches.lambda, [](double pressure) { return pressure == 0; });
+}
+
 }  // namespace
 
 std::string Newton::said(std::initializer_list<std::string> what) {
@@ -105,13 +109,14 @@ void Newton::fail_to_converge(double instant, const IterationReport& line, const
                                             {"body", bodies_.name_at(problem_.mesh.cells[softened->cell][0])},
                                             {"percent", fmt::format("{:.2g}", 100 * softened->shortening)}});
   if (!hanging_.empty()) hanging_words = part("body_hangs", {{"body", hanging_}});
+  const bool hangs = hangs_on_nothing();  // where nothing pressed before, a part of the load pulls it off as well
   throw InstantFailure(
       message("EVOLUTION_4", {{"instant", fmt::format("{:.9g}", instant)},
                               {"iterations", std::to_string(line.iteration)},
-                              {"unmet", said({unmet_criteria(line, changing), course_.words(), unstable_words, softened_words,
-                                              round_words, turned_words, hanging_words})},
+                              {"unmet", said({unmet_criteria(line, changing), hangs ? "" : course_.words(), unstable_words,
+                                              softened_words, round_words, turned_words, hanging_words})},
                               {"remedy", remedy(line, softened.has_value())}}),
-      {.depends_on_step = !is_at_round_off(line),
+      {.depends_on_step = !is_at_round_off(line) && !(hangs && presses_nowhere(previous)),
        .ratio = settled_ >= settled && !course_.period() && !course_.smaller_before() ? course_.ratio() : std::nullopt,
        .excess = excess});
 }
@@ -124,6 +129,8 @@ bool Newton::is_at_round_off(const IterationReport& line) const {
   return settled_ >= settled && line.rela < near_round_off && !course_.falls() &&
          forces_over_asked(options_.criteria, line) > 1;
 }
+
+bool Newton::hangs_on_nothing() const { return !hanging_.empty() && settled_ >= settled && course_.stands(); }
 
 std::optional<int> Newton::iterations_left(const IterationReport& line) const {
   const double forces = forces_over_asked(options_.criteria, line);
