@@ -2,6 +2,7 @@
 // Pairing for each dimension of the space; a user takes pairing.hpp.
 #include <array>
 #include <functional>
+#include <limits>
 #include <memory>
 #include <optional>
 
@@ -43,11 +44,14 @@ double give_way(const PairingOptions& options, const Surface& slave, std::size_t
 struct CoupleSize {
   double diameter;  ///< of its larger cell
   double cosine;    ///< between the normal of the slave and the opposite of the master's
-  double behind;    ///< behind_at_rest()
+  /// Of cells of one body: how far, along the normal of the slave, the master lay behind it when they were at rest (their
+  /// middles); of cells of two bodies 0.
+  double behind = 0;
+  /// Of cells of two bodies: half of what both are thick there (Surface::thickness); infinite where that is unknown.
+  double half = std::numeric_limits<double>::infinity();
 };
-/// Of cells of one body: how far, along the normal of the slave, the master lay behind it when they were at rest (their
-/// middles); of cells of two bodies 0.
-double behind_at_rest(const Surface& slave, std::size_t slave_cell, const Surface& master, std::size_t master_cell);
+CoupleSize size_of(const Surface& slave, std::size_t slave_cell, const Surface& master, std::size_t master_cell,
+                   double diameter, double cosine);
 /// Why PairingOptions leave a couple out, if they do.
 std::optional<Rejection> left_out(const PairingOptions& options, const Surface& slave, std::size_t slave_cell,
                                   const Surface& master, std::size_t master_cell);

@@ -55,11 +55,7 @@ void for_ends(const Surface& skin, const Visit& visit) {
     return norm(found) > 0 ? found / norm(found) : Vec3{};
   };
   const auto at = [&](std::int32_t node) { return vector_at(skin.coordinates.data() + 3 * std::ptrdiff_t{node}); };
-  const auto middle = [&](std::size_t cell) {
-    Vec3 sum{};
-    for (const std::int32_t node : skin.nodes[cell]) sum = sum + at(node);
-    return sum / static_cast<double>(skin.nodes[cell].size());
-  };
+  const auto middle = [&](std::size_t cell) { return middle_of(skin.nodes[cell], skin.coordinates); };
   const auto fold = [&](const std::pair<std::int32_t, std::int32_t>& nodes, const End& one, const End& other) {
     const Vec3 n = normal(one), m = normal(other), place = 0.5 * (at(nodes.first) + at(nodes.second));
     return Fold{dot(n, m), dot(n, middle(other.cell) - place) + dot(m, middle(one.cell) - place) < 0};

@@ -88,33 +88,38 @@ Vec3 normal_at_rest(const Surface& skin, std::size_t cell) {
   return normal_of(skin.types[cell], skin.nodes[cell], rest_of(skin));
 }
 
-/// The mean of the nodes of a cell.
-Vec3 middle_at_rest(const Surface& skin, std::size_t cell) {
-  Vec3 sum{};
-  for (const std::int32_t node : skin.nodes[cell])
-    sum = sum + vector_at(rest_of(skin).data() + 3 * static_cast<std::size_t>(node));
-  return sum / static_cast<double>(skin.nodes[cell].size());
+Vec3 middle_at_rest(const Surface& skin, std::size_t cell) { return middle_of(skin.nodes[cell], rest_of(skin)); }
+
+bool of_one_body(const Surface& slave, std::size_t slave_cell, const Surface& master, std::size_t master_cell) {
+  const auto body = [](const Surface& skin, std::size_t cell) {
+    return skin.body[static_cast<std::size_t>(skin.nodes[cell][0])];
+  };
+  return !slave.body.empty() && !master.body.empty() && body(slave, slave_cell) == body(master, master_cell);
 }
 
 }  // namespace
 
-double behind_at_rest(const Surface& slave, std::size_t slave_cell, const Surface& master, std::size_t master_cell) {
-  const auto body = [](const Surface& skin, std::size_t cell) {
-    return skin.body[static_cast<std::size_t>(skin.nodes[cell][0])];
-  };
-  if (slave.body.empty() || master.body.empty() || body(slave, slave_cell) != body(master, master_cell)) return 0;
-  const Vec3 normal = normal_at_rest(slave, slave_cell);
-  return dot(normal, middle_at_rest(slave, slave_cell) - middle_at_rest(master, master_cell));
+CoupleSize size_of(const Surface& slave, std::size_t slave_cell, const Surface& master, std::size_t master_cell,
+                   double diameter, double cosine) {
+  CoupleSize size{.diameter = diameter, .cosine = cosine};
+  if (of_one_body(slave, slave_cell, master, master_cell))
+    size.behind =
+        dot(normal_at_rest(slave, slave_cell), middle_at_rest(slave, slave_cell) - middle_at_rest(master, master_cell));
+  else if (!slave.thickness.empty() && !master.thickness.empty())
+    size.half = 0.5 * (slave.thickness[slave_cell] + master.thickness[master_cell]);
+  return size;
 }
 
 namespace {
 
 constexpr double infinite = std::numeric_limits<double>::infinity();
 
-/// The deepest overlap of a couple that has not moved.
+/// The deepest overlap of a couple that has not moved. Near sides of two bodies overlap by little, and a far side lies behind
+/// the other one by what both are thick: half of that is as far from the one as from the other.
 double deepest(const PairingOptions& options, const CoupleSize& couple) {
   if (options.distance_limit > 0) return options.distance_limit * couple.diameter;
-  return options.depth_limit > 0 ? options.depth_limit * couple.diameter * std::max(couple.cosine, 0.0) : infinite;
+  return options.depth_limit > 0 ? std::min(options.depth_limit * couple.diameter * std::max(couple.cosine, 0.0), couple.half)
+                                 : infinite;
 }
 
 /// Likewise of one body, whose other side the master is; infinite of others.

@@ -361,8 +361,8 @@ class PairerInPlane final : public detail::CellPairer {
               const double own = 2 * length(e.x.c[1]), other = length(along), diameter = std::max(own, other);
               // the way from x_e to its image by the middle of the slave and an end of the master, both of which may bulge
               const double largest = length(point(master, first) - e.origin) + own + 1.5 * other;
-              const detail::CoupleSize size{diameter, cosine(e, m),
-                                            detail::behind_at_rest(slave, cell, master, static_cast<std::size_t>(m))};
+              const detail::CoupleSize size =
+                  detail::size_of(slave, cell, master, static_cast<std::size_t>(m), diameter, cosine(e, m));
               if (detail::within_limits(options, largest, size)) return std::nullopt;
               const Vec2 t = e.tangent(-1) + e.tangent(1);
               const double moved = detail::give_way(

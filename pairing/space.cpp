@@ -267,8 +267,8 @@ class PairerInSpace final : public detail::CellPairer {
       }
       const Nodes nodes = nodes_of_master(view->master);
       const double other = diameter(nodes, master(view->master).n_vertices);
-      const detail::CoupleSize size{std::max(own, other), cosine(view->master),
-                                    detail::behind_at_rest(slave_skin, slave_cell, master_skin, master_cell)};
+      const detail::CoupleSize size =
+          detail::size_of(slave_skin, slave_cell, master_skin, master_cell, std::max(own, other), cosine(view->master));
       // the way from x_e to its image by the first nodes; a quadratic cell may bulge
       const auto reach = [](const FacetKind& f) { return (f.order == 1 ? 1 : 1.25) * f.size; };
       const double largest = norm(nodes[0] - e.f.nodes[0]) + reach(e.f) + reach(master(view->master));

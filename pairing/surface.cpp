@@ -22,6 +22,12 @@ Vec3 normal_of(CellType type, std::span<const std::int32_t> nodes, std::span<con
   return size > 0 ? normal / size : Vec3{};
 }
 
+Vec3 middle_of(std::span<const std::int32_t> nodes, std::span<const double> coordinates) {
+  Vec3 sum{};
+  for (const std::int32_t node : nodes) sum = sum + vector_at(coordinates.data() + 3 * static_cast<std::size_t>(node));
+  return sum / static_cast<double>(nodes.size());
+}
+
 Surface surface_of(const Mesh& mesh, std::span<const std::int32_t> cells, std::span<const double> coordinates) {
   Surface surface;
   surface.dimension = mesh.dimension;

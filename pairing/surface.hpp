@@ -50,6 +50,8 @@ struct Surface {
   /// (n_nodes): the body of each, any number; empty: unknown. Of a couple of one body that lies deep at rest, one cell is seen
   /// through it.
   std::span<const std::int32_t> body = {};
+  /// Of each cell how thick its body is there (thickness.hpp); empty: unknown.
+  std::span<const double> thickness = {};
   /// In space, of each cell of a slave: how it was cut before, which pairing refines; empty: each as its shape asks for now.
   std::span<SlaveCut> cuts = {};
 
@@ -62,6 +64,9 @@ struct Surface {
 
 /// Outward, unit, of the vertices of a skin cell; zero where they have none. @param coordinates (n_nodes, 3)
 Vec3 normal_of(CellType type, std::span<const std::int32_t> nodes, std::span<const double> coordinates);
+
+/// The mean of nodes. @param coordinates (n_nodes, 3)
+Vec3 middle_of(std::span<const std::int32_t> nodes, std::span<const double> coordinates);
 
 /// The cells `cells` of a mesh as a surface; cell i of it is mesh cell cells[i]. @param coordinates (n_nodes, 3), current
 Surface surface_of(const Mesh& mesh, std::span<const std::int32_t> cells, std::span<const double> coordinates);

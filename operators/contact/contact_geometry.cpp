@@ -151,6 +151,9 @@ ContactGeometry::ContactGeometry(const Mesh& mesh, const Model& model, const Con
         .pairing = {.distance_limit = data.distance_limit, .depth_limit = data.distance_limit > 0 ? -1 : deepest_overlap}};
     zone.slave.rest = zone.master.rest = rest_;
     zone.slave.body = zone.master.body = body_;
+    zone.thickness = thickness(zone.slave, zone.master);
+    zone.slave.thickness = zone.thickness.slave;
+    zone.master.thickness = zone.thickness.master;
     for (const std::int32_t cell : data.slave) zone.slaves.push_back(slave_of_cell.at(cell));
     for (std::size_t i = 0; i < zone.masters.size(); ++i) zone.places[zone.masters[i]] = static_cast<std::int32_t>(i);
     for (const std::int32_t patch : data.patches) zone_of_[patch] = static_cast<std::int32_t>(zones_.size());

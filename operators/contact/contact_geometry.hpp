@@ -16,6 +16,7 @@
 #include "lacon/operators/contact/mirrors.hpp"
 #include "lacon/operators/contact/normal_variation.hpp"
 #include "lacon/pairing/pairing.hpp"
+#include "lacon/pairing/thickness.hpp"
 #include "lacon/structures/concepts.hpp"
 
 namespace lacon {
@@ -65,6 +66,7 @@ class ContactGeometry {
     std::map<std::int32_t, std::int32_t> places;          ///< in `master` of cells of the mesh
     std::vector<std::int32_t> faces;                      ///< PairingOptions::faces
     bool one_face = true;                                 ///< of the master: there are no walls
+    Thickness thickness;                                  ///< Surface::thickness, before anything has moved
     Ragged<std::int32_t> in_front;                        ///< PairingOptions::in_front
     Surface slave, master;
     bool current_jacobian = false;

@@ -12,10 +12,6 @@
 namespace lacon::test {
 namespace {
 
-Path line(double y, double scale = 1) {
-  return [y, scale](double x) { return Point{scale * x, scale * y}; };
-}
-
 // Lengths have no unit: what counts as degenerate is relative, whatever power of ten coordinates are in.
 TEST(Covers, AreTheSameInAnyUnit) {
   for (const Kind kind : {Kind::linear, Kind::quadratic})

@@ -14,10 +14,6 @@
 namespace lacon::test {
 namespace {
 
-Path line(double y) {
-  return [y](double x) { return Point{x, y}; };
-}
-
 /// Turn, scale and shift by the same map.
 void move(Skin& skin, double angle, double scale, Point shift) {
   for (std::size_t i = 0; i < skin.coordinates.size(); i += 3) {

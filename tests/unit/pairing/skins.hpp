@@ -17,6 +17,10 @@ namespace lacon::test {
 using Point = std::array<double, 2>;
 using Path = std::function<Point(double)>;
 
+inline Path line(double y, double scale = 1) {
+  return [y, scale](double x) { return Point{scale * x, scale * y}; };
+}
+
 /// A surface that owns its coordinates.
 struct Skin {
   std::vector<double> coordinates;
