@@ -114,12 +114,16 @@ namespace {
 
 constexpr double infinite = std::numeric_limits<double>::infinity();
 
+constexpr double within_coarse = 0.5;  // diameters: so deep may points lie inside whose patch is closed on average
+
 /// The deepest overlap of a couple that has not moved. Near sides of two bodies overlap by little, and a far side lies behind
-/// the other one by what both are thick: half of that is as far from the one as from the other.
+/// the other one by what both are thick: half of that is as far from the one as from the other. Of foils that are thin against
+/// their cells a near side may lie as deep.
 double deepest(const PairingOptions& options, const CoupleSize& couple) {
   if (options.distance_limit > 0) return options.distance_limit * couple.diameter;
-  return options.depth_limit > 0 ? std::min(options.depth_limit * couple.diameter * std::max(couple.cosine, 0.0), couple.half)
-                                 : infinite;
+  if (!(options.depth_limit > 0)) return infinite;
+  return std::min(options.depth_limit * couple.diameter * std::max(couple.cosine, 0.0),
+                  std::max(couple.half, within_coarse * couple.diameter));
 }
 
 /// Likewise of one body, whose other side the master is; infinite of others.

@@ -79,8 +79,8 @@ struct PairingOptions {
   double distance_limit = -1;
   /// Likewise of an overlap alone, where distances have no limit, behind which normals reach through a body; not positive: no
   /// limit. It is multiplied by the cosine of the angle between both normals: a wall is met inside a body only by who looks
-  /// through it. Of two bodies whose thickness is known (Surface::thickness) it is no more than half of both together. What the
-  /// couple has come closer along the normal of either since Surface::rest comes on top.
+  /// through it. Of two bodies whose thickness is known (Surface::thickness) it is no more than half of both together, or half
+  /// a diameter. What the couple has come closer along the normal of either since Surface::rest comes on top.
   double depth_limit = -1;
   /// Likewise of couples of one body (Surface::body) whose master lay behind the slave by more than that at rest: it is the
   /// other side of the body, seen through it. Not positive: no such limit.

@@ -51,11 +51,11 @@ bool passes(const Way& way, const Box<3>& box) {
   double first = 0, last = infinite;
   for (int d = 0; d < 3; ++d) {
     const double from = component(way.from, d), along = component(way.along, d);
-    const double low = (box.low[d] - from) / along, high = (box.high[d] - from) / along;
     if (along == 0) {
       if (from < box.low[d] || from > box.high[d]) return false;
       continue;
     }
+    const double low = (box.low[d] - from) / along, high = (box.high[d] - from) / along;
     first = std::max(first, std::min(low, high));
     last = std::min(last, std::max(low, high));
   }

@@ -298,6 +298,13 @@ bool ContactState::presses_otherwise(std::span<const double> gaps, std::span<con
   return update_statuses(now) > 0;
 }
 
+bool ContactState::closes_within(int increments, std::span<const double> before) const {
+  const std::vector<double> now = gaps_over_size();
+  for (std::size_t p = 0; p < n_patches(); ++p)
+    if (now[p] > 0 && increments * (before[p] - now[p]) >= now[p]) return true;
+  return false;
+}
+
 double ContactState::part_to_depth(const Patchwise& patches, std::span<const double> before, double limit, double depth) const {
   const std::vector<double> now = gaps_over_size();
   double part = 1;

@@ -209,6 +209,8 @@ class ContactState {
   /// Whether patches that press have other gaps or another cover than before, or statuses change.
   /// @param gaps, covered ContactGeometry::gaps() and measures() then
   bool presses_otherwise(std::span<const double> gaps, std::span<const double> covered, const Patchwise& patches) const;
+  /// Whether some gap closes within so many increments more that change it as the last one has. @param before gaps_over_size()
+  bool closes_within(int increments, std::span<const double> before) const;
   /// The part of an increment, which has led to the present geometry, where the first open patch has come `depth` sizes deep
   /// into its master; 1 where none lies deeper than `limit` that did not when it began. @param before gaps_over_size() there
   double part_to_depth(const Patchwise& patches, std::span<const double> before, double limit, double depth) const;

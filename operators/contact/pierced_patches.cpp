@@ -69,7 +69,7 @@ std::optional<SplitPatch> ContactState::split(std::int32_t zone, const Patchwise
 }
 
 std::optional<CoarseContact> ContactState::coarse(std::int32_t zone, const Patchwise& patches) const {
-  double whole = 0, coarse = 0, largest = 0;
+  double whole = 0, carried = 0, largest = 0;
   CoarseContact found{};
   for (std::size_t p = 0; p < n_patches(); ++p) {
     if (geometry_.zone_of(p) != zone || patches.status[p] != Status::active || locked_[p]) continue;
@@ -83,11 +83,11 @@ std::optional<CoarseContact> ContactState::coarse(std::int32_t zone, const Patch
     };
     const bool is_end = neighbours_[p].empty() || std::ranges::any_of(neighbours_[p], ends_contact);
     if (!is_end || depth <= tolerances_.unpressed * pressed_in) continue;
-    coarse += force;
+    carried += force;
     if (force > largest) largest = force, found = {p, 0, depth / pressed_in};
   }
-  if (coarse <= whole / 2) return std::nullopt;
-  found.share = coarse / whole;
+  if (carried <= whole / 2) return std::nullopt;
+  found.share = carried / whole;
   return found;
 }
 

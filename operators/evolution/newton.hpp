@@ -198,7 +198,7 @@ class Newton {
   /// Whether the residual is as small as it gets, and a smaller one is asked for.
   bool is_at_round_off(const IterationReport& line) const;
   /// Whether springs of the matrix alone hold a body, and the force on it is the same in each iteration: each moves it by as
-  /// much again, and no contact comes.
+  /// much again, and no contact is near enough to come.
   bool hangs_on_nothing() const;
   /// How many iterations more lead to the equilibrium, as far as the last ones say; nothing where they do not lead there.
   std::optional<int> iterations_left(const IterationReport& line) const;
@@ -247,6 +247,7 @@ class Newton {
   bool other_covers_ = false;          ///< patches have begun to keep their cover: what follows has its own iterations
   int times_round_ = 0;                ///< in this instant: residuals have come back
   std::vector<double> depths_before_;  ///< depths() as the instant began
+  bool comes_near_ = false;            ///< increments as the last one would close a gap before iterations end
   std::string hanging_;                ///< a body that springs alone hold in the last system
   std::string doubt_;                  ///< why a cheaper factor is no use, where it has not been told
   int settled_ = 0;                    ///< iterations in a row in which no status has changed

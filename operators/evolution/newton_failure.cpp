@@ -130,7 +130,7 @@ bool Newton::is_at_round_off(const IterationReport& line) const {
          forces_over_asked(options_.criteria, line) > 1;
 }
 
-bool Newton::hangs_on_nothing() const { return !hanging_.empty() && settled_ >= settled && course_.stands(); }
+bool Newton::hangs_on_nothing() const { return !hanging_.empty() && settled_ >= settled && course_.stands() && !comes_near_; }
 
 std::optional<int> Newton::iterations_left(const IterationReport& line) const {
   const double forces = forces_over_asked(options_.criteria, line);

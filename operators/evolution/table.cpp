@@ -113,7 +113,7 @@ void NewtonTable::accept(const SolvedInstant& solved) {
 
 void NewtonTable::prove(const ContactState& contact) {
   const Patchwise& patches = present_.state.patches;
-  constexpr double half = 0.5, none = std::numeric_limits<double>::infinity();
+  constexpr double half = 0.5, much = 1.1, none = std::numeric_limits<double>::infinity();
   double least = none, most = -none, least_of_covered = none;
   for (std::size_t p = 0; p < contact.n_patches(); ++p) {
     if (patches.status[p] != Status::active) continue;
@@ -123,9 +123,10 @@ void NewtonTable::prove(const ContactState& contact) {
   }
   if (least <= most)
     out_ << ' ' << part("pressures_from_to", {{"least", fmt::format("{:.9g}", least)}, {"most", fmt::format("{:.9g}", most)}});
-  if (least < least_of_covered)
-    out_ << (least_of_covered < none ? part("largest_of_covered", {{"least", fmt::format("{:.9g}", least_of_covered)}})
-                                     : part("largest_on_little"));
+  const bool is_covered = least_of_covered < none;
+  if (least <= most && !(is_covered && least >= much * least_of_covered))
+    out_ << (is_covered ? part("largest_of_covered", {{"least", fmt::format("{:.9g}", least_of_covered)}})
+                        : part("largest_on_little"));
   if (least <= most) out_ << '\n';
   for (const ZoneBalance& zone : contact.balance(patches)) {
     out_ << ' '

@@ -585,6 +585,15 @@ TEST_F(Touching, AnIncrementIsCutWhereAnOpenPatchGoesIn) {
   patches.status[0] = Status::open;
   EXPECT_NEAR(contact_state.part_to_depth(patches, before, 10, 1), 1.5 / 20.5, 1e-12);
   EXPECT_EQ(contact_state.part_to_depth(patches, before, 21, 1), 1);
+  lift(0.4);  // a gap of 0.4 that has fallen by 0.1
+  contact_state.update_geometry(displacement);
+  EXPECT_TRUE(contact_state.closes_within(4, before));
+  EXPECT_FALSE(contact_state.closes_within(3, before));
+  lift(0.6);
+  contact_state.update_geometry(displacement);
+  EXPECT_FALSE(contact_state.closes_within(1000, before));
+  lift(-20);
+  contact_state.update_geometry(displacement);
   EXPECT_EQ(contact_state.part_to_depth(patches, std::vector<double>{-2.0}, 10, 1), 1);  // where it was in already
   patches.status[0] = Status::active;
   EXPECT_EQ(contact_state.part_to_depth(patches, before, 10, 1), 1);

@@ -67,8 +67,8 @@ TEST(Thickness, InSpaceMissesNoCellByRoundOff) {
 
 TEST(Thickness, OverlapsOfMoreThanHalfOfBothBodiesAreLeftOut) {
   const std::vector<std::int32_t> one(40, 7), other(40, 8);
-  // the lower one 0.75 thick: the far sides overlap by 1, near ones by nothing
-  Skin upper = plate(0, 0.25, 1), lower = plate(-0.75, 0, 1);
+  // the lower one 3 thick: the far sides overlap by 4, near ones by nothing
+  Skin upper = plate(0, 1, 1), lower = plate(-3, 0, 1);
   Surface slave = with_body(upper, one), master = with_body(lower, other);
   const Thickness thick = thickness(slave, master);
   const auto rejected = [&](double raised, const PairingOptions& options, double closer = 0) {
@@ -86,13 +86,19 @@ TEST(Thickness, OverlapsOfMoreThanHalfOfBothBodiesAreLeftOut) {
   EXPECT_EQ(rejected(0, deep), 1);
   EXPECT_EQ(rejected(0, {.distance_limit = 4}), 0);  // who gives a limit has it
   EXPECT_EQ(rejected(0, {}), 0);
-  // half of both is 0.5: a near side less deep than that stays, and a far one that deep goes
-  EXPECT_EQ(rejected(-0.499, deep), 1);
-  EXPECT_EQ(rejected(-0.501, deep), 1);  // the near side now
+  // half of both is 2: a near side less deep than that stays, and a far one that deep goes
+  EXPECT_EQ(rejected(-1.999, deep), 1);
+  EXPECT_EQ(rejected(-2.001, deep), 1);  // the near side now
   EXPECT_EQ(pair(slave, master, deep).cells.slave, std::vector<std::int32_t>{0});
   // what the near side has come closer since bodies were at rest comes on top
-  EXPECT_EQ(rejected(-0.75, deep, 0.251), 0);
-  EXPECT_EQ(rejected(-0.75, deep, 0.249), 1);
+  EXPECT_EQ(rejected(-3, deep, 1.001), 0);
+  EXPECT_EQ(rejected(-3, deep, 0.999), 1);
+  // of foils points of coarse patches may lie inside by more than they are thick: up to half a cell of 4
+  std::vector<double> thin(2, 0.01), thinner(2, 0.02);
+  slave.thickness = thin, master.thickness = thinner;
+  EXPECT_EQ(rejected(-1.999, deep), 1);  // the far sides
+  EXPECT_EQ(rejected(-2.001, deep), 2);
+  slave.thickness = thick.slave;
   // what one body is thick alone says nothing of the other
   const std::vector<double> unknown(2, infinite);
   master.thickness = unknown;
