@@ -96,8 +96,7 @@ TEST(Thickness, OverlapsOfMoreThanHalfOfBothBodiesAreLeftOut) {
   // of foils points of coarse patches may lie inside by more than they are thick: up to half a cell of 4
   std::vector<double> thin(2, 0.01), thinner(2, 0.02);
   slave.thickness = thin, master.thickness = thinner;
-  EXPECT_EQ(rejected(-1.999, deep), 1);  // the far sides
-  EXPECT_EQ(rejected(-2.001, deep), 2);
+  EXPECT_EQ(rejected(-1, deep), 1);  // the far sides alone, which overlap by 3
   slave.thickness = thick.slave;
   // what one body is thick alone says nothing of the other
   const std::vector<double> unknown(2, infinite);
