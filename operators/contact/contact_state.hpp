@@ -226,11 +226,9 @@ class ContactState {
   bool is_locked(std::size_t patch) const { return locked_[patch]; }
   /// Whether its master covers as much of it as an active patch needs.
   bool is_covered(std::size_t patch) const { return geometry_.coverage(patch) >= least_coverage; }
-  /// Or as one that takes contact, less where it has come deep into its master: nothing else would part the bodies there.
+  /// Or as one that takes contact.
   bool takes_contact(std::size_t patch) const {
-    const double coverage = geometry_.coverage(patch);
-    return coverage >= (geometry_.is_beside_wall(patch) ? least_crest : taking_coverage) ||
-           (coverage >= least_coverage && geometry_.gap(patch) < -tolerances_.pierced_open * size_[patch]);
+    return geometry_.coverage(patch) >= (geometry_.is_beside_wall(patch) ? least_crest : taking_coverage);
   }
   /// Whether its master ends on it.
   bool is_covered_in_part(std::size_t patch) const {

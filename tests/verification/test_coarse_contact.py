@@ -101,10 +101,10 @@ class CoarseContact(StudyTest):
         self.assertLess(min(result.on_cells("CONT_ELEM", result.orders[-1], "PRES").values()), 0)
 
     def test_pressures_where_little_is_covered_are_told_apart(self):
-        """The corner of a punch, of which a hundredth of a patch has come in: the multiplier is the force over that hundredth."""
+        """The corner of a punch, of which three hundredths of a patch have come in: the multiplier is the force over these."""
         lower = block("QUAD4", np.linspace(-4, 4, 9), np.linspace(-4, 0, 5), None, "LOWER", {"top": "LOWER_SKIN", "bottom": "LOWER_BASE"})
         tilt = math.radians(10)
-        upper = block("QUAD4", np.linspace(-2, 0, 9), np.linspace(0, 2, 9), lambda x, y: (0.01 + x * math.cos(tilt) + y * math.sin(tilt), y * math.cos(tilt) - x * math.sin(tilt)),
+        upper = block("QUAD4", np.linspace(-2, 0, 9), np.linspace(0, 2, 9), lambda x, y: (0.03 + x * math.cos(tilt) + y * math.sin(tilt), y * math.cos(tilt) - x * math.sin(tilt)),
                       "UPPER", {"bottom": "UPPER_SKIN", "top": "UPPER_BASE"})
         hold = [{"GROUP_MA": "LOWER_BASE", "DX": 0.0, "DY": 0.0}, {"GROUP_MA": "UPPER_BASE", "DX": 0.0, "DY": -0.2}]
         study = contact_study(union([lower, upper]), hold, slaves=["LOWER_SKIN"], masters=["UPPER_SKIN"], model="D_PLAN", times=[0.0, 0.5, 1.0],

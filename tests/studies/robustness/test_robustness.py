@@ -406,21 +406,14 @@ class Skins(StudyTest):
             self.assertEqual("EVOLUTION_69" in said or "less stiff" in said, told is not None)
             self.assertIn(told or "", said)
 
-    def test_a_patch_that_is_covered_little_takes_contact_where_it_lies_deep(self):
-        """The corner of a tilted block, a thousandth to a fiftieth of a patch beyond the end of its neighbour, whose average is open: that neighbour alone took 0 to
-        a third of the force, or stopped by EVOLUTION_64. By a move of a fiftieth of a patch the force changes by as much, times what the corner sinks less."""
-        for angle in (10, 20):
-            forces = []
-            for beyond in (0.021, 0.019, 0.005, 0.001):
-                tool = turned(block("QUAD4", lines(-3, 0, 9), lines(0, 2, 6), None, "TOOL", {"bottom": "TOOL_SKIN", "top": "TOOL_BASE"}), -angle)
-                tool.points = tool.points + [beyond, 0]
-                study = Study(name="corner", mesh=union([tool, slab("QUAD4", "SLAB", (-6, 4), (-3, 0), (10, 6))]), materials={"TOOL": elastic(1e3), "SLAB": elastic(1e3)},
-                              zones=[zone("TOOL", "SLAB", 1)], steps=4, moves=[held("SLAB"), path("TOOL", [(0, 0), (4, 0)], [(0, 0), (4, -0.1)])], asked={})
-                self.assertEqual(run(study, LACON, self.folder)["status"], "finished")
-                self.assertNotIn("EVOLUTION_16", (self.folder / "err").read_text())
-                forces.append(-float(re.findall(r"force on the slave \(\S+, (\S+)\)", (self.folder / "out").read_text())[-1]))
-            for force in forces[1:]:
-                self.assertLess(abs(force / forces[0] - 1), 0.1, forces)
+    def test_a_patch_that_is_covered_too_little_to_take_contact_is_told_so(self):
+        """The corner of a tilted block, a two hundredth of a patch beyond the end of its neighbour: contact does not hold the average there."""
+        tool = turned(block("QUAD4", lines(-3, 0, 9), lines(0, 2, 6), None, "TOOL", {"bottom": "TOOL_SKIN", "top": "TOOL_BASE"}), -10)
+        tool.points = tool.points + [0.005, 0]
+        study = Study(name="corner", mesh=union([tool, slab("QUAD4", "SLAB", (-6, 4), (-3, 0), (10, 6))]), materials={"TOOL": elastic(1e3), "SLAB": elastic(1e3)},
+                      zones=[zone("TOOL", "SLAB", 1)], steps=4, moves=[held("SLAB"), path("TOOL", [(0, 0), (4, 0)], [(0, 0), (4, -0.1)])], asked={})
+        self.assertEqual(run(study, LACON, self.folder)["status"], "finished")
+        self.assertRegex((self.folder / "err").read_text(), r"<EVOLUTION_16> .*: it is open, though its average gap is -0\.0883: where TOOL_SKIN ends")
 
     def test_where_no_other_is_found_an_equilibrium_that_is_not_stable_is_followed_and_told(self):
         """An arch that is pressed, and a tip, as above: both stopped behind 15 iterations that had left it. The tip leaves it for a stable one with 60; with 15 it
