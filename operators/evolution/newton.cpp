@@ -277,7 +277,7 @@ int Newton::iterate(double instant, StaticState& state, const std::function<void
       equilibrium_.pair(state.displacement);
     if (driven) equilibrium_.choose_masters();  // where what is imposed has brought bodies
     if (contact() && !driven) stay_shallow(solution, gaps, state, increment);
-    comes_near_ = contact() && contact()->closes_within(last - iteration, gaps);
+    comes_near_ = !hanging_.empty() && contact()->closes_within(last - iteration, gaps);
     const std::vector<Status> before = state.patches.status, wanted = wanted_statuses(state, line);
     // what imposed displacements alone have parted, the next iteration may bring together again: it starts from bodies that
     // touch

@@ -3,6 +3,8 @@
 import json
 import pathlib
 
+import numpy as np
+
 from meshes import write_med
 from results import Result
 
@@ -38,3 +40,17 @@ def run_contact(test, studies, **environment):
     run = test.run_study(COMM, "--fresh", *units, CONTACT_STUDIES=str(orders_file), **environment)
     test.assertEqual(run.status, 0, run.stdout[-3000:] + run.stderr[-3000:])
     return run, [Result(test.folder / f"{COMM.stem}.base", f"RESU[{k}]") for k in range(len(studies))]
+
+
+def normal_force(result):
+    """The sum of the normal forces of the contact on all slave cells at the last instant, of cells with straight edges."""
+    over_whole = result.on_cells("CONT_ELEM", result.orders[-1], "PRESCOOR")
+    force = 0.0
+    for patch in result.patches:
+        for cell in patch:
+            kind, nodes = result.cells[cell]
+            n = {"SEG": 2, "TRI": 3}.get(kind[:3], 4)
+            corners = np.array([result.points[node] for node in nodes[:n]])
+            size = np.linalg.norm(corners[1] - corners[0]) if n == 2 else np.linalg.norm(np.cross(corners[2] - corners[0], corners[-1] - corners[1])) / 2
+            force -= over_whole[cell] * size
+    return force

@@ -11,7 +11,7 @@ SOURCE = pathlib.Path(os.environ["LACON_SOURCE_DIR"])
 sys.path.insert(0, str(SOURCE / "tests/studies"))
 
 from study_test import StudyTest  # noqa: E402, I001 (it says where meshes.py is)
-from contact import contact_study, run_contact  # noqa: E402
+from contact import contact_study, normal_force, run_contact  # noqa: E402
 from meshes import block, brick, union  # noqa: E402
 from test_alternation import belt  # noqa: E402
 
@@ -46,14 +46,7 @@ def pressed(kind, cells, slave, depth):
 def share_of_peak(result, in_space):
     """The largest pressure of a patch over that of Hertz for the force that was found; nothing without a force."""
     pressure = result.on_cells("CONT_ELEM", result.orders[-1], "PRES")
-    force = 0.0
-    for patch in result.patches:
-        for cell in patch:
-            corners = np.array([result.points[node] for node in result.cells[cell][1]])[: 4 if in_space else 2]
-            sides = np.diff(corners, axis=0)
-            size = np.linalg.norm(np.cross(corners[2] - corners[0], corners[3] - corners[1])) / 2 if in_space and len(corners) == 4 else (
-                np.linalg.norm(np.cross(sides[0], sides[1])) / 2 if in_space else np.linalg.norm(sides[0]))
-            force -= pressure[cell] * size
+    force = normal_force(result)
     if force <= 0:
         return None
     modulus = YOUNG / (2 * (1 - POISSON**2))
