@@ -40,6 +40,7 @@ RESULT = STAT_NON_LINE(
     CONTACT=CONTACT,
     EXCIT=(_F(CHARGE=HELD), _F(CHARGE=PRESSED)),
     INCREMENT=_F(LIST_INST=DEFI_LIST_REEL(VALE=(0.0, 1.0))),
+    CONVERGENCE=_F(ITER_GLOB_MAXI={iterations}),
 )
 CALC_CHAMP(reuse=RESULT, RESULTAT=RESULT, FORCE="REAC_NODA")
 FIN()
@@ -48,11 +49,11 @@ FIXED = '_F(GROUP_MA="BASE", DX=0.0, DY=0.0),'
 
 
 class LooseBodies(StudyTest):
-    def solve(self, mesh, spring, pressure, held="", more="", status=0):
+    def solve(self, mesh, spring, pressure, held="", more="", status=0, iterations=10):
         """@return (displacement of the highest node, force on the base, what was said), of a run that stops what was said alone"""
         write_med(self.folder / "mesh.med", mesh)
         study = self.folder / "study.comm"
-        study.write_text(STUDY.format(spring=spring, pressure=pressure, held=FIXED + held, more=more), encoding="utf-8")
+        study.write_text(STUDY.format(spring=spring, pressure=pressure, held=FIXED + held, more=more, iterations=iterations), encoding="utf-8")
         run = self.run_lacon(study, "--unit", "20=mesh.med", "--fresh")
         self.assertEqual(run.status, status, run.stdout[-2000:] + run.stderr)
         if status:
@@ -149,6 +150,14 @@ class LooseBodies(StudyTest):
         for kind, cells in (("QUAD4", 3), ("QUAD8", 4)):
             _, _, said = self.solve(self.cell(kind, cells, 0.002), 0.0, 0.0)
             self.assertEqual(said.count("<EVOLUTION_23>"), 1)
+
+    def test_a_block_that_springs_of_the_matrix_carry_to_a_wall_gets_there(self):
+        """Each iteration moves it by as much, against the same force, and there are enough of them: it does not hang on nothing."""
+        walls = [block("QUAD4", np.linspace(start, start + 1, 3), np.linspace(-1, 2, n), None, "LOW", {near: "WALL", far: "BASE"})
+                 for start, n, near, far in ((-1, 6, "right", "left"), (1.201, 7, "left", "right"))]
+        body = block("QUAD4", np.linspace(0.001, 1.001, 4), np.linspace(0, 1, 4), None, "BODY", {"left": "SKIN", "right": "SKIN", "top": "TOP", "bottom": "FOOT"})
+        _, _, said = self.solve(union([body, *walls]), 0.0, 0.0, '_F(GROUP_MA="FOOT", DY=0.0),', ', FORCE_INTERNE=_F(GROUP_MA="BODY", FX=3000.0)', iterations=40)
+        self.assertGreater(int(re.search(r"Converged at the instant 1 with (\d+) iteration", said)[1]), 7)
 
     def test_a_pile_falls_together(self):
         """Three blocks above a slab, of which the middle one has no slave of its own."""
