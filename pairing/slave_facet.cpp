@@ -53,7 +53,7 @@ void SlaveFacet::lay_out(bool in_triangles) {
   plane = !cut_.curved && !(in_triangles && cut_.affine);
   set_chart();
   set_pieces(cut_.steps);
-  set_walls();
+  set_reach();
 }
 
 /// Nodal normals, where the surface has them (LISSAGE).
@@ -118,6 +118,8 @@ void SlaveFacet::set_pieces(int steps) {
     piece.polygon.clear();
     for (int i = 0; i < f.n_vertices; ++i) piece.polygon.push_back({dot(f.nodes[i], e1), dot(f.nodes[i], e2)});
     piece.normal = n;
+    piece.reach = Prism();  // the slave's own one is as good
+
   } else {
     pieces.clear();
     subdivide(plane ? steps : std::max(steps, 2));
@@ -143,7 +145,9 @@ void SlaveFacet::subdivide(int k) {
       piece.polygon.push_back(plane ? chart_(xi[i]).x : xi[i]);
       piece.normal = piece.normal + (1.0 / 3) * piece.n[i];
     }
-    if (double_area(piece.polygon) > 0) pieces.push_back(std::move(piece));  // not where the facet has collapsed
+    if (!(double_area(piece.polygon) > 0)) return;  // the facet has collapsed there
+    set_reach(piece);
+    pieces.push_back(std::move(piece));
   };
   if (f.family == Family::TRIA) {
     for (int j = 0; j < k; ++j)
@@ -161,35 +165,34 @@ void SlaveFacet::subdivide(int k) {
     }
 }
 
-void SlaveFacet::set_walls() {
-  walls_ = Walls{};
-  const auto push = [&](Vec3 x) {  // the walls outward, behind x
-    for (int i = 0; i < f.n_vertices; ++i)
-      walls_.offset[i] = std::max(walls_.offset[i], walls_.x[i] * x.x + walls_.y[i] * x.y + walls_.z[i] * x.z);
-  };
-  for (int i = 0; i < f.n_vertices; ++i) {
-    const Vec3 out = cross(f.nodes[(i + 1) % f.n_vertices] - f.nodes[i], n);
-    const double length = norm(out), scale = length > 0 ? 1 / length : 0;
-    walls_.x[i] = scale * out.x, walls_.y[i] = scale * out.y, walls_.z[i] = scale * out.z;
-    walls_.ax[i] = std::abs(walls_.x[i]), walls_.ay[i] = std::abs(walls_.y[i]), walls_.az[i] = std::abs(walls_.z[i]);
+/// What a piece sees is where affine functions are positive that the sides of its vertices' normals give (`side`). Along an
+/// edge of a master they differ from the sides of interpolated normals that start at interpolated points by less than a third
+/// of how far these normals turn over the piece.
+void SlaveFacet::set_reach(Piece& piece) {
+  double turn = 0, size = 0;
+  for (int i = 0; i < 3; ++i) {
+    turn = std::max(turn, norm(piece.n[(i + 1) % 3] - piece.n[i]));
+    size = std::max(size, norm(piece.x[(i + 1) % 3] - piece.x[i]));
   }
-  lean_ = height_ = 0;
+  piece.reach = Prism(piece.x, (1 / norm(piece.normal)) * piece.normal);
+  for (int i = 0; i < 3; ++i) {
+    piece.reach.hold(piece.x[i]);
+    piece.reach.lean(piece.n[i]);
+  }
+  piece.reach.widen(turn * size, turn * size);
+}
+
+void SlaveFacet::set_reach() {
+  reach_ = Prism(std::span(f.nodes).first(static_cast<std::size_t>(f.n_vertices)), n);
   if (constant) {
-    for (int k = 0; k < f.n_vertices; ++k) push(f.nodes[k]);
+    for (int k = 0; k < f.n_vertices; ++k) reach_.hold(f.nodes[k]);
     return;
   }
-  for (const Vec3 x : hull(f.family, f.order, [&](Vec2 xi) { return f.x(xi).x; })) {
-    push(x);
-    height_ = std::max(height_, std::abs(dot(n, x)));
-  }
-  height_ += 0.25 * f.size;
+  for (const Vec3 x : hull(f.family, f.order, [&](Vec2 xi) { return f.x(xi).x; })) reach_.hold(x);
+  reach_.widen(0, 0.25 * f.size);  // pieces go wrong along the border
   const int degree = smooth_ ? f.order : f.family == Family::TRIA ? std::max(1, 2 * f.order - 2) : 2 * f.order - 1;
-  for (const Vec3 m : hull(f.family, degree, [&](Vec2 xi) { return unscaled_direction(xi); })) {
-    const double up = dot(m, n);
-    if (norm(m) <= least_) continue;
-    lean_ = up > 0 ? std::max(lean_, norm(m - up * n) / up) : std::numeric_limits<double>::infinity();
-    if (!(up > 0)) break;
-  }
+  for (const Vec3 m : hull(f.family, degree, [&](Vec2 xi) { return unscaled_direction(xi); }))
+    if (norm(m) > least_) reach_.lean(m);
 }
 
 void SlaveFacet::places(std::span<const Vec2> y, const PairingTolerances& tolerances, std::vector<Line>& lines,

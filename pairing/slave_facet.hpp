@@ -4,14 +4,15 @@
 // The chart of a facet with straight edges is its mean plane. If it is flat and has one normal, the side on which a normal
 // passes an edge of a master is an affine function there: one piece, and exact polygons. Otherwise it is interpolated on a grid
 // of triangles. A facet with curved edges has its reference cell as chart.
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <optional>
 #include <span>
 #include <vector>
 
-#include "lacon/pairing/box_tree.hpp"
 #include "lacon/pairing/pairing.hpp"
+#include "lacon/pairing/prism.hpp"
 #include "lacon/pairing/skin_facet.hpp"
 
 namespace lacon::space {
@@ -21,6 +22,7 @@ struct Piece {
   std::array<Vec3, 3> x, n;  ///< at its vertices, where the normal is not constant
   std::array<Vec2, 3> xi;    ///< likewise
   Vec3 normal{};             ///< mean
+  Prism reach;               ///< of its normals; coordinates start at the slave's origin
 };
 
 class SlaveFacet {
@@ -85,18 +87,12 @@ class SlaveFacet {
     return {piece.polygon[0], {(ds * v.y - dt * u.y) / det, (dt * u.x - ds * v.x) / det}, s[0]};
   }
 
-  /// False only where no normal of the slave meets the box. A point q = x(xi) + t m(xi) has the height t = (q - x) . n over x
-  /// if m is scaled to m . n = 1; then m leans by at most `lean_` and q lies at most lean_ |t| beyond the walls around the
-  /// slave.
+  /// False only where no normal of the slave meets the box.
   bool touches(const Box<3>& box) const {
-    const Vec3 centre =
-        Vec3{0.5 * (box.low[0] + box.high[0]), 0.5 * (box.low[1] + box.high[1]), 0.5 * (box.low[2] + box.high[2])} - f.origin;
-    const Vec3 half{0.5 * (box.high[0] - box.low[0]), 0.5 * (box.high[1] - box.low[1]), 0.5 * (box.high[2] - box.low[2])};
-    const auto reach = [&](Vec3 d) { return half.x * std::abs(d.x) + half.y * std::abs(d.y) + half.z * std::abs(d.z); };
-    const double leaning = lean_ > 0 ? lean_ * (std::abs(dot(centre, n)) + reach(n) + height_) : 0;
-    const FourWalls beyond = walls_.x * centre.x + walls_.y * centre.y + walls_.z * centre.z -
-                             (walls_.ax * half.x + walls_.ay * half.y + walls_.az * half.z) - walls_.offset;
-    return !(std::max(std::max(beyond[0], beyond[1]), std::max(beyond[2], beyond[3])) > leaning);
+    const Vec3 low{box.low[0], box.low[1], box.low[2]}, high{box.high[0], box.high[1], box.high[2]};
+    const Vec3 centre = 0.5 * (low + high) - f.origin, half = 0.5 * (high - low);
+    return reach_.touches(centre, half) &&
+           std::any_of(pieces.begin(), pieces.end(), [&](const Piece& piece) { return piece.reach.touches(centre, half); });
   }
 
  private:
@@ -113,7 +109,8 @@ class SlaveFacet {
   SlaveCut suited_cut(double turn, const PairingTolerances& tolerances) const;
   void set_pieces(int steps);
   void subdivide(int k);
-  void set_walls();
+  void set_reach();
+  static void set_reach(Piece& piece);
 
   static constexpr double round_off = 1e-12;
 
@@ -124,16 +121,7 @@ class SlaveFacet {
   Map3 nodal_;
   Map2 chart_;
   Inverse from_chart_;
-  /// A number of each wall, in vector registers.
-  using FourWalls = double __attribute__((vector_size(4 * sizeof(double)), aligned(sizeof(double))));
-  /// Planes behind which the slave lies; out . x is nowhere larger than `offset` on it. A triangle's fourth one is everywhere.
-  struct Walls {
-    FourWalls x, y, z;     ///< out: unit, at a right angle to n
-    FourWalls ax, ay, az;  ///< |out|
-    FourWalls offset;
-  } walls_;
-  double lean_ = 0;    ///< tangent of the largest angle between a normal and n, or infinity
-  double height_ = 0;  ///< largest |n . x|, and an allowance for what pieces get wrong along the border
+  Prism reach_;  ///< of all of it
 };
 
 }  // namespace lacon::space

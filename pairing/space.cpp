@@ -186,12 +186,16 @@ class PairerInSpace final : public detail::CellPairer {
     FacetKind f = master(m);
     if (!traced_ && f.straight) f.whole_edge.fill(true);
     cut_in_parts(f, nodes_of_master(m), e, polygon, parts);
+    find_pieces_near();
+    if (near_.empty()) return;
     if (traced_) name_edges(m);
     bool couples = false, away = false, thin = false;
     for (const Part& part : parts) {
       const Vec3 area = area_vector(part);
-      for (std::size_t p = 0; p < e.pieces.size(); ++p) {
+      const Extent extent(part);
+      for (const std::size_t p : near_) {
         const Piece& piece = e.pieces[p];
+        if (!piece.reach.touches(extent.centre, extent.half)) continue;
         const bool faces = dot(area, piece.normal) < 0;
         if (faces || !e.constant) {
           see(e, piece, part, true, seen, scratch);
@@ -214,6 +218,28 @@ class PairerInSpace final : public detail::CellPairer {
     }
     if (!couples && away) reject(m, Rejection::facing_away);
     if (!couples && !away && thin) reject(m, Rejection::sliver);
+  }
+
+  /// The box around parts: its middle, and the halves of its sides.
+  struct Extent {
+    Vec3 centre, half;
+
+    explicit Extent(std::span<const Part> parts) {
+      Box<3> box = Box<3>::empty();
+      for (const Part& part : parts)
+        for (int i = 0; i < part.n; ++i) box.add(std::array{part.p[i].x, part.p[i].y, part.p[i].z}.data());
+      const Vec3 low{box.low[0], box.low[1], box.low[2]}, high{box.high[0], box.high[1], box.high[2]};
+      centre = 0.5 * (low + high), half = 0.5 * (high - low);
+    }
+    explicit Extent(const Part& part) : Extent(std::span(&part, 1)) {}
+  };
+
+  /// The pieces whose normals may meet some part of the master at hand.
+  void find_pieces_near() {
+    near_.clear();
+    const Extent extent(parts);
+    for (std::size_t p = 0; p < e.pieces.size(); ++p)
+      if (e.pieces[p].reach.touches(extent.centre, extent.half)) near_.push_back(p);
   }
 
   double share(std::int32_t m) const { return share_of_couple(cosine(m), masters_->skin.steep).value; }
@@ -439,6 +465,7 @@ class PairerInSpace final : public detail::CellPairer {
   // used again for every slave cell
   std::vector<Vec3> polygon;
   std::vector<Part> parts;
+  std::vector<std::size_t> near_;
   std::deque<View> store;
   std::size_t n_stored = 0;
   std::vector<View*> views, kept, todo;

@@ -1,5 +1,6 @@
 #include "lacon/pairing/target.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 namespace lacon::space {
@@ -82,13 +83,19 @@ void cut_in_parts(const FacetKind& f, const Nodes& nodes, const SlaveFacet& slav
 }
 
 void see(const SlaveFacet& slave, const Piece& piece, const Part& part, bool front, Region& seen, Polygon& scratch) {
-  seen.polygon = piece.polygon;
+  seen.polygon.clear();
   seen.halves.clear();
-  for (int i = 0; i < part.n && !seen.polygon.empty(); ++i) {
+  const auto outside = [](const HalfPlane& half) { return [&half](Vec2 y) { return half(y) < 0; }; };
+  for (int i = 0; i < part.n; ++i) {
     HalfPlane half = slave.side(piece, part.p[i], part.p[(i + 1) % part.n]);
     half.line = part.line[static_cast<std::size_t>(i)];
     seen.halves.push_back(front ? half : half.opposite());
-    clip(seen.polygon, seen.halves.back(), scratch);
+    // most masters that come near are seen by few pieces
+    if (std::all_of(piece.polygon.begin(), piece.polygon.end(), outside(seen.halves.back()))) return;
+  }
+  seen.polygon = piece.polygon;
+  for (const HalfPlane& half : seen.halves) {
+    clip(seen.polygon, half, scratch);
     seen.polygon.swap(scratch);
   }
 }

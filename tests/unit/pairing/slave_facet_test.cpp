@@ -73,6 +73,37 @@ TEST(SlaveFacets, TouchEveryBoxThatANormalPasses) {
   EXPECT_GT(met, 20'000);
 }
 
+// What a piece stands for are normals between those of its vertices: a box that one of them passes is never left out.
+TEST(SlaveFacets, PiecesReachWhatNormalsBetweenThoseOfTheirVerticesPass) {
+  std::mt19937 random(12);
+  std::uniform_real_distribution<double> uniform(0, 1);
+  std::size_t met = 0, left_out = 0;
+  for (const CellType type : kinds)
+    for (int trial = 0; trial < 100; ++trial) {
+      Skin3 skin = shaken_facet(type, trial % 2 ? 0.05 : 0.3, random);
+      space::SlaveFacet e;
+      e.set(skin.view(), 0, 2, {});
+      if (e.degenerate) continue;
+      e.lay_out(true);
+      for (const space::Piece& piece : e.pieces)
+        for (int sample = 0; sample < 10; ++sample) {
+          const double a = uniform(random), b = (1 - a) * uniform(random), c = 1 - a - b;
+          const Vec3 x = a * piece.x[0] + b * piece.x[1] + c * piece.x[2], n = a * piece.n[0] + b * piece.n[1] + c * piece.n[2];
+          const Vec3 q = x + (std::pow(10, 3 * uniform(random) - 1) * (sample % 2 ? 1 : -1)) * n;
+          const Vec3 half = 0.3 * Vec3{uniform(random), uniform(random), uniform(random)};
+          const Vec3 off{(2 * uniform(random) - 1) * half.x, (2 * uniform(random) - 1) * half.y,
+                         (2 * uniform(random) - 1) * half.z};
+          ++met;
+          ASSERT_TRUE(piece.reach.touches(q + off, half)) << catalog::cell(type).name << ", trial " << trial;
+          // and it leaves out others: what lies beside it by three times its size
+          const Vec3 side = cross(n, piece.x[1] - piece.x[0]);
+          left_out += !piece.reach.touches(x + (3 / norm(n)) * side, {});
+        }
+    }
+  EXPECT_GT(met, 50'000U);
+  EXPECT_GT(left_out, met / 10 * 9);
+}
+
 // A cell that straightens and bends again over the end of a master: the largest second difference of what is covered, over the
 // square of the step. A smooth course has some, a leap has more the smaller the step.
 double largest_leap(CellType type, bool keeps_cut) {
