@@ -62,7 +62,7 @@ void evolve(const TimeSteps& steps, InstantSolver& solver, std::span<EvolutionOb
     if (past.empty()) tell([&](EvolutionObserver& o) { o.start(steps.values.front()); });
     step_through(
         steps, solve, go_back, solved, [&] { return course.back().iterations; },
-        [&](bool on) { return solver.search_increments(on); },
+        [&](Effort effort) { return solver.take(effort); },
         [&](const Message& told) {
           if (!is_past()) inform(told);
         });

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "lacon/operators/evolution/convergence.hpp"
+#include "lacon/operators/evolution/effort.hpp"
 #include "lacon/operators/evolution/instant_failure.hpp"
 #include "lacon/structures/concepts.hpp"
 
@@ -44,8 +45,8 @@ class InstantSolver {
   /// From now on go_back() leads to the instant that was solved last.
   virtual void accept() = 0;
   virtual void go_back() = 0;
-  /// Search along the increments of iterations from now on, or no longer. @return whether that is new
-  virtual bool search_increments(bool /*on*/) { return false; }
+  /// What is done for an instant from now on. @return whether that is new
+  virtual bool take(Effort) { return false; }
   /// What the instants behind the one that was accepted last depend on, for another process that goes on with the same bits.
   virtual void save(const hdf5::Group&) const {}
   /// The part of it that is large and seldom changes: when its number does. 0: there is none.

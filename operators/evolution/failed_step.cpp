@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "lacon/catalog/wording.hpp"
 #include "lacon/operators/evolution/archive.hpp"
@@ -48,10 +49,7 @@ FailedStep::FailedStep(const Order& order, const Base& base, const Present& pres
       ends_(ends),
       there_(instant_in(file_)) {}
 
-void FailedStep::begin(double /*instant*/) {
-  iterates_.clear();
-  failure_.reset();
-}
+void FailedStep::begin(double /*instant*/) { iterates_.clear(); }
 
 void FailedStep::iterate(double /*instant*/, const IterationReport& report) {
   if (!std::isfinite(report.maxi) || report.converged()) return;  // numbers that nobody can draw, or that nobody asks for
@@ -73,29 +71,37 @@ void FailedStep::iterate(double /*instant*/, const IterationReport& report) {
 
 void FailedStep::failed(double instant, const Error& error) {
   if (error.message().severity != 'S') return;
-  failure_ = {.instant = instant, .message = error.message()};
+  // of the shortest step, and there of the first attempt; those that search increments or last for more iterations end anywhere
+  if (failure_ && instant >= failure_->instant && !failure_->tries_again && !is_of_the_machine(error.message())) return;
+  const FailureNature nature = nature_of(error);
+  failure_.emplace(Failure{.instant = instant,
+                           .message = error.message(),
+                           .tries_again = nature.led_astray || nature.stayed_unstable,
+                           .iterates = std::exchange(iterates_, {})});
+  std::deque<Iterate>& kept = failure_->iterates;
   // an iteration that cannot be judged (a cell is none any more) has moved the bodies all the same
   const std::vector<double>& moved = present_.state.displacement;
-  if (iterates_.empty() || moved == iterates_.back().displacement || !is_finite(moved)) return;
-  if (iterates_.size() == most) iterates_.pop_front();
-  iterates_.push_back({.iteration = iterates_.back().iteration + 1,
-                       .rela = unknown,
-                       .maxi = unknown,
-                       .changes = unknown,
-                       .displacement = moved,
-                       .unbalanced = {},
-                       .contact = {},
-                       .masters = {}});
+  if (kept.empty() || moved == kept.back().displacement || !is_finite(moved)) return;
+  if (kept.size() == most) kept.pop_front();
+  kept.push_back({.iteration = kept.back().iteration + 1,
+                  .rela = unknown,
+                  .maxi = unknown,
+                  .changes = unknown,
+                  .displacement = moved,
+                  .unbalanced = {},
+                  .contact = {},
+                  .masters = {}});
 }
 
 void FailedStep::accept(const SolvedInstant& solved) {
   begins_ = solved.instant;
+  failure_.reset();
   if (there_ && solved.instant >= *there_ * (1 - 1e-12)) remove();
 }
 
 void FailedStep::end(bool completed) {
   if (completed) remove();
-  if (completed || !failure_ || iterates_.empty()) return;
+  if (completed || !failure_ || failure_->iterates.empty()) return;
   try {
     store();
     stored_ = true;
@@ -129,9 +135,9 @@ void FailedStep::tell(const Error& error) const {
   if (const std::string load = by_load ? large_load() : ""; !load.empty())
     message.advice = load + (message.advice.empty() ? "" : "; " + message.advice);
   if (!stored_) throw Error(std::move(message));
-  message.advice +=
-      (message.advice.empty() ? "" : "; ") +
-      part("iterates_are_kept", {{"base", base_.folder().filename().string()}, {"count", std::to_string(iterates_.size())}});
+  message.advice += (message.advice.empty() ? "" : "; ") +
+                    part("iterates_are_kept",
+                         {{"base", base_.folder().filename().string()}, {"count", std::to_string(failure_->iterates.size())}});
   throw Error(std::move(message));
 }
 
@@ -150,7 +156,7 @@ void FailedStep::store() const {
     root.set("text", failure_->message.text);
     std::vector<std::int64_t> iterations;
     std::vector<double> rela, maxi, changes;
-    for (const Iterate& iterate : iterates_) {
+    for (const Iterate& iterate : failure_->iterates) {
       iterations.push_back(iterate.iteration);
       rela.push_back(iterate.rela);
       maxi.push_back(iterate.maxi);
@@ -168,7 +174,7 @@ void FailedStep::store() const {
       field.instant = failure_->instant;
       write_field_content(fields.create(fmt::format("{}/{}", field.name, iterate.iteration)), field);
     };
-    for (const Iterate& iterate : iterates_) {
+    for (const Iterate& iterate : failure_->iterates) {
       put(iterate, "DEPL", nodal_field(problem, iterate.displacement));
       if (!iterate.unbalanced.empty()) put(iterate, "RESI_NOEU", nodal_field(problem, iterate.unbalanced));
       if (!iterate.contact) continue;

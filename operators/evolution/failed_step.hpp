@@ -17,7 +17,8 @@ namespace lacon {
 /// In the folder of a result.
 inline constexpr const char* failed_step_file = "failed_step.h5";
 
-/// Remembers the last iterates of each step, and stores those of the one that fails for good. They are in the base until an
+/// Remembers the last iterates of each step, and stores those of the one that fails for good: of its attempts those whose
+/// failure is told (time_stepping.hpp). They are in the base until an
 /// instant as late as theirs converges, or another step of the same result fails.
 class FailedStep : public EvolutionObserver {
  public:
@@ -40,9 +41,12 @@ class FailedStep : public EvolutionObserver {
     std::optional<Field> contact;
     std::optional<PairedMasters> masters;
   };
+  /// An attempt that has failed.
   struct Failure {
     double instant;
     Message message;
+    bool tries_again;  ///< its own failure is not told where another attempt fails
+    std::deque<Iterate> iterates;
   };
   /// What there is to say of a pressure that is as large as moduli are, as where its unit is not theirs.
   std::string large_load() const;
@@ -53,10 +57,10 @@ class FailedStep : public EvolutionObserver {
   const Base& base_;
   Present present_;
   std::filesystem::path file_;
-  std::deque<Iterate> iterates_;    ///< of the present step
+  std::deque<Iterate> iterates_;    ///< of the present attempt
   double begins_;                   ///< the last instant in equilibrium
   double ends_;                     ///< the last instant that is asked for
-  std::optional<Failure> failure_;  ///< of the present step
+  std::optional<Failure> failure_;  ///< since the last instant in equilibrium, the one that is told if the step is given up
   std::optional<double> there_;     ///< the instant whose iterates an earlier computation has left
   bool stored_ = false;
 };

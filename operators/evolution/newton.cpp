@@ -32,6 +32,9 @@ constexpr double through = 10;         // likewise, other bodies that only sprin
 constexpr int most_times_anew = 2;     // that cells are cut, or masters left out, in an instant
 constexpr double other_stress = 1e-8;  // of the largest stress: that of another law
 
+/// Iterations of Effort::lasts: O-rings that leave an equilibrium for another one take 15 to 25.
+int lasting(int iterations) { return std::min(4 * iterations, 60); }
+
 }  // namespace
 
 Newton::Newton(const StaticProblem& problem, const NewtonOptions& options, std::unique_ptr<Engine> engine)
@@ -117,7 +120,11 @@ void Newton::restart(const StaticState& state) {
   assemble(state, state, options_.matrix);
 }
 
-bool Newton::search_increments(bool on) { return !options_.line_search && std::exchange(searches_, on) != on; }
+bool Newton::take(Effort effort) {
+  if (effort == Effort::searches && options_.line_search) return false;
+  if (effort == Effort::lasts && lasting(options_.iterations) <= options_.iterations) return false;
+  return std::exchange(effort_, effort) != effort;
+}
 
 void Newton::save(const hdf5::Group& group) const {
   group.set("waits", std::int64_t{choice_.waits()});
@@ -244,9 +251,10 @@ int Newton::iterate(double instant, StaticState& state, const std::function<void
   bool settling = false;  // statuses change from iteration to iteration: a rough solution finds them as well
   IterationReport line;
   std::size_t changing = 0;
-  int last = options_.iterations, beyond = last / 2;  // more iterations, which are made where they lead to the end
+  int last = effort_ == Effort::lasts ? lasting(options_.iterations) : options_.iterations,
+      beyond = last / 2;  // more iterations, which are made where they lead to the end
   const auto with_own_iterations = [&](int first) {
-    return std::min(first + options_.iterations, most_times * options_.iterations);
+    return std::max(last, std::min(first + options_.iterations, most_times * options_.iterations));
   };
   for (int iteration = 0; iteration <= last; ++iteration) {
     const auto start = std::chrono::steady_clock::now();
@@ -271,7 +279,7 @@ int Newton::iterate(double instant, StaticState& state, const std::function<void
     std::vector<double> increment = equilibrium_.add(solution, step, state);
     const bool driven = std::ranges::any_of(step, [](double value) { return value != 0; });
     std::fill(step.begin(), step.end(), 0.0);  // imposed displacements move in the first iteration alone
-    if (iteration > 0 && (options_.line_search || searches_ || goes_round_ || equilibrium_.has_variables()))
+    if (iteration > 0 && (options_.line_search || effort_ == Effort::searches || goes_round_ || equilibrium_.has_variables()))
       shorten(solution, previous, state, increment);
     else
       equilibrium_.pair(state.displacement);
@@ -361,7 +369,7 @@ void Newton::shorten(std::span<const double> solution, const StaticState& previo
   const std::vector<double> at_rest(increment.size(), 0.0);
   const std::int64_t multipliers = equilibrium_.first_multiplier();
   std::optional<LineSearch> search = options_.line_search;
-  if (!search && searches_) search = {.keeps_bracket = true};
+  if (!search && effort_ == Effort::searches) search = {.keeps_bracket = true};
   if (!search && goes_round_) search = {.keeps_bracket = true, .most = 1};
   bool flows = equilibrium_.flows(previous);
   double reached = 1;

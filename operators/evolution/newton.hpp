@@ -12,6 +12,7 @@
 #include "lacon/assembly/loose_motions.hpp"
 #include "lacon/assembly/saddle_point_solver.hpp"
 #include "lacon/catalog/messages.hpp"
+#include "lacon/operators/evolution/effort.hpp"
 #include "lacon/operators/evolution/equilibrium.hpp"
 #include "lacon/operators/evolution/forcing_term.hpp"
 #include "lacon/operators/evolution/line_search.hpp"
@@ -62,8 +63,9 @@ class Newton {
   void accept(const StaticState& state);
   /// Go back to a state: contact, stresses and system are those of `state` again, as solve() needs them.
   void restart(const StaticState& state);
-  /// Search along increments from now on, as RECH_LINEAIRE with METHODE='MIXTE' does, or no longer. @return whether that is new
-  bool search_increments(bool on);
+  /// What is done for every instant from now on: searching along increments is what RECH_LINEAIRE with METHODE='MIXTE' does.
+  /// @return whether that is new
+  bool take(Effort effort);
 
   /// For another process that goes on with the same bits: Equilibrium::save(), SaddlePointSolver::save().
   void save(const hdf5::Group& group) const;
@@ -243,7 +245,7 @@ class Newton {
   int times_cut_ = 0, times_left_out_ = 0;       ///< in this instant: pairs_anew()
   bool looked_far_ = false;                      ///< in this instant: near balance, for what is to be left out
   bool goes_round_ = false;                      ///< residuals have come back: increments are searched (line_search.hpp)
-  bool searches_ = false;                        ///< increments are, whatever residuals do
+  Effort effort_ = Effort::usual;
   bool other_covers_ = false;          ///< patches have begun to keep their cover: what follows has its own iterations
   int times_round_ = 0;                ///< in this instant: residuals have come back
   std::vector<double> depths_before_;  ///< depths() as the instant began

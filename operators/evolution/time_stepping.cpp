@@ -65,22 +65,42 @@ struct Stepper {
   const SolveInstant& solve;
   const GoBack& go_back;
   const Solved& solved;
-  const Search& search;
+  const Take& take;
   const Tell& tell;
 
   /// Solve once more, with increments that are searched, a step that no cut helps. Called while `error` is handled: throws it
   /// on where that is no use, or fails as well.
   void solve_searched(double to, const Error& error) const {
-    if (!is_of_increments(error) || !search(true)) throw;
+    if (!is_of_increments(error) || !take(Effort::searches)) throw;
     tell(message("EVOLUTION_71", {{"instant", fmt::format("{:.9g}", to)}, {"reason", error.message().text}}));
     go_back();
+    if (!solves(to)) throw;
+  }
+
+  /// Whether it does; throws what is no failure of the solution.
+  bool solves(double to) const {
     try {
       solve(to);
-      return;
+      return true;
     } catch (const Error& again) {
       if (again.message().severity != 'S' || is_of_the_machine(again.message())) throw;
+      return false;
     }
-    throw;
+  }
+
+  /// Advance to an instant of the list; where that fails, solve what is left of the way at once, by many more iterations: the
+  /// way by short steps may come to where an equilibrium ends, or splits, and others lie behind.
+  void reach(double to, const std::function<void()>& advances) const {
+    try {
+      advances();
+      return;
+    } catch (const Error& error) {
+      if (!is_of_increments(error) || !action_for(steps, error).cut || !take(Effort::lasts)) throw;
+      tell(message("EVOLUTION_73", {{"instant", fmt::format("{:.9g}", to)}, {"reason", error.message().text}}));
+      go_back();
+      if (!solves(to)) throw;
+    }
+    solved(to, true);
   }
 
   /// @param before the failure of the step that this one is a part of
@@ -119,6 +139,7 @@ class AdaptiveStepper {
   }
 
   void advance(double from, double target) {
+    level_ = 0;
     for (double at = from; at < target;) {
       const bool last = at + step_ * (1 + 1e-6) >= target;  // no sliver is left before an instant of the list
       const double to = last ? target : at + step_;
@@ -213,7 +234,7 @@ std::size_t check_number(const TimeSteps& steps, std::int64_t number) {
 }  // namespace
 
 void step_through(const TimeSteps& steps, const SolveInstant& solve, const GoBack& go_back, const Solved& solved,
-                  const Iterations& iterations, const Search& search, const Tell& tell) {
+                  const Iterations& iterations, const Take& take, const Tell& tell) {
   const SolveInstant in_any_way = [&](double to) {
     for (std::optional<InstantFailure> unstable;;) {
       try {
@@ -235,18 +256,13 @@ void step_through(const TimeSteps& steps, const SolveInstant& solve, const GoBac
       go_back();
     }
   };
-  const Stepper stepper{steps, in_any_way, go_back, solved, search, tell};
-  if (steps.adaptation) {
-    AdaptiveStepper adaptive(steps, stepper, iterations);
-    for (std::size_t i = 1; i < steps.values.size(); ++i) {
-      adaptive.advance(steps.values[i - 1], steps.values[i]);
-      search(false);
-    }
-    return;
-  }
+  const Stepper stepper{steps, in_any_way, go_back, solved, take, tell};
+  std::optional<AdaptiveStepper> adaptive;
+  if (steps.adaptation) adaptive.emplace(steps, stepper, iterations);
   for (std::size_t i = 1; i < steps.values.size(); ++i) {
-    stepper.advance(steps.values[i - 1], steps.values[i], 0, true, {});
-    search(false);
+    const double from = steps.values[i - 1], to = steps.values[i];
+    stepper.reach(to, [&] { adaptive ? adaptive->advance(from, to) : stepper.advance(from, to, 0, true, {}); });
+    take(Effort::usual);
   }
 }
 

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "lacon/catalog/messages.hpp"
+#include "lacon/operators/evolution/effort.hpp"
 #include "lacon/structures/concepts.hpp"
 
 namespace lacon {
@@ -19,8 +20,8 @@ using Solved = std::function<void(double instant, bool asked)>;
 
 /// Number of iterations that the instant solved last took.
 using Iterations = std::function<int()>;
-/// Have the increments of iterations searched from now on, or no longer. @return whether that is new
-using Search = std::function<bool(bool on)>;
+/// Have so much done for every instant from now on. @return whether that is new
+using Take = std::function<bool(Effort effort)>;
 /// What is told of steps.
 using Tell = std::function<void(const Message& message)>;
 
@@ -31,13 +32,14 @@ using Tell = std::function<void(const Message& message)>;
 /// An instant that was led astray, or left an equilibrium that is not stable (FailureNature), is solved once more behind
 /// go_back(), before anything is cut. Where the latter fails again, its first failure is what counts. A step whose iterations
 /// fail, and which is not to be cut, is solved once more with increments that are searched, and so is what follows up to the
-/// next instant of the list; where that fails as well its first failure counts. With `steps.adaptation` (METHODE='AUTO') steps
-/// also grow and shrink between the instants of the list, beginning with its first interval; a step that fails is then cut
-/// once, and the shorter one goes on. Throws STEP_3 after too many steps, STEP_5 where they have become shorter than
-/// `smallest`, STEP_6 where it is known that they will not come to the end.
+/// next instant of the list; where that fails as well its first failure counts. Where parts of a step to an instant of the list
+/// fail so, what is left of it is solved at once, with many more iterations, before the first failure is thrown on. With
+/// `steps.adaptation` (METHODE='AUTO') steps also grow and shrink between the instants of the list, beginning with its first
+/// interval; a step that fails is then cut once, and the shorter one goes on. Throws STEP_3 after too many steps, STEP_5 where
+/// they have become shorter than `smallest`, STEP_6 where it is known that they will not come to the end.
 void step_through(
     const TimeSteps& steps, const SolveInstant& solve, const GoBack& go_back, const Solved& solved,
-    const Iterations& iterations = {}, const Search& search = [](bool) { return false; },
+    const Iterations& iterations = {}, const Take& take = [](Effort) { return false; },
     const Tell& tell = [](const Message& told) { inform(told); });
 
 /// The instants that INCREMENT asks for, the initial one first: from INST_INIT or NUME_INST_INIT to INST_FIN or NUME_INST_FIN;

@@ -107,7 +107,7 @@ class QuasiStatic : public InstantSolver {
     state_ = last_;
     newton_.restart(state_);
   }
-  bool search_increments(bool on) override { return newton_.search_increments(on); }
+  bool take(Effort effort) override { return newton_.take(effort); }
   void save(const hdf5::Group& group) const override {
     write(group.create("state"), state_);
     group.write("rest", rest_);

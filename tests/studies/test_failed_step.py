@@ -1,6 +1,7 @@
 """The last iterates of a step that failed: kept beside the result, read as arrays and pictures, gone when the step is solved."""
 
 import os
+import re
 import signal
 import subprocess
 import sys
@@ -85,6 +86,17 @@ class FailedStep(StudyTest):
         subprocess.run([LACON, "go_on.comm", "--base", "study.base"], cwd=self.folder, capture_output=True, timeout=SECONDS, check=True)
         result = self.opened()["RESULT"]
         self.assertEqual((result.instants.tolist(), result.failed_step), ([0.0, 0.25, 0.5, 0.75, 1.0], None))
+
+    def test_those_of_the_attempt_that_is_told_are_kept(self):
+        """The shortest step fails, with increments that are searched as well, and what is left of the whole one with more iterations."""
+        fails = "CONVERGENCE=_F(RESI_GLOB_MAXI=1e-30, ITER_GLOB_MAXI=1)"
+        run = self.run_study(self.text.replace("INCREMENT=_F(LIST_INST=TIMES)", f"INCREMENT=_F(LIST_INST=TIMES), {fails}"), 3)
+        told = [line for line in run.stderr.splitlines() if line.startswith("<")]
+        self.assertEqual([line.split(">")[1].lstrip(" <") for line in told[-3:]], ["EVOLUTION_71", "EVOLUTION_73", "EVOLUTION_4"])
+        step = self.opened()["RESULT"]
+        instant, residual = re.search(r"no convergence at the instant (\S+) .* RESI_GLOB_MAXI (\S+) at", told[-1]).groups()
+        self.assertEqual((step.message, step.instant, step.orders), ("EVOLUTION_4", 0.25 / 4**3, [0, 1]))
+        self.assertEqual((instant, residual), (f"{step.instant:.9g}", f"{step.parameters['resi_glob_maxi'][-1]:.1e}"))
 
     def test_pictures_of_iterates_that_diverge_still_show_the_bodies(self):
         sys.path.insert(0, str(SOURCE / "commands"))

@@ -33,14 +33,14 @@ class Solver : public InstantSolver {
     log_.push_back("accepted");
   }
   void go_back() override { log_.push_back("back"); }
-  bool search_increments(bool on) override {
-    if (std::exchange(searches, on) == on) return false;
-    log_.push_back(on ? "searches" : "searches no more");
+  bool take(Effort now) override {
+    if (now == Effort::lasts || std::exchange(effort, now) == now) return false;
+    log_.push_back(now == Effort::searches ? "searches" : "searches no more");
     return true;
   }
   void stands_at(double instant) { accepted_ = instant; }
 
-  bool searches = false;
+  Effort effort = Effort::usual;
 
  private:
   std::vector<std::string>& log_;

@@ -77,13 +77,27 @@ TEST(Newton, SearchesIncrementsUnlessItDoesAnyhow) {
   const StaticProblem problem = pressed_squares();
   NewtonOptions options{.criteria = {.resi_glob_rela = 1e-12, .resi_glob_maxi = {}}};
   Newton solver(problem, options, std::make_unique<MumpsEngine>());
-  EXPECT_TRUE(solver.search_increments(true));
-  EXPECT_FALSE(solver.search_increments(true));
-  EXPECT_TRUE(solver.search_increments(false));
-  EXPECT_FALSE(solver.search_increments(false));
+  EXPECT_TRUE(solver.take(Effort::searches));
+  EXPECT_FALSE(solver.take(Effort::searches));
+  EXPECT_TRUE(solver.take(Effort::usual));
+  EXPECT_FALSE(solver.take(Effort::usual));
   options.line_search = LineSearch{};
   Newton searching(problem, options, std::make_unique<MumpsEngine>());
-  EXPECT_FALSE(searching.search_increments(true));
+  EXPECT_FALSE(searching.take(Effort::searches));
+}
+
+TEST(Newton, LastsForManyMoreIterations) {
+  const StaticProblem problem = pressed_squares();
+  for (const auto& [iterations, lasting] : {std::pair(2, 8), std::pair(20, 60), std::pair(70, 0)}) {
+    // nothing is in balance to less than round-off
+    const NewtonOptions options{.criteria = {.resi_glob_rela = {}, .resi_glob_maxi = 1e-300}, .iterations = iterations};
+    Newton solver(problem, options, std::make_unique<MumpsEngine>());
+    EXPECT_EQ(solver.take(Effort::lasts), lasting > 0);
+    StaticState state = solver.initial_state();
+    int last = 0;
+    EXPECT_THROW(solver.solve(1.0, state, [&](const IterationReport& report) { last = report.iteration; }), Error);
+    EXPECT_EQ(last, std::max(iterations, lasting));
+  }
 }
 
 /// What elements, pressures, contact and the criteria make of displacements does not depend on what stands beside them.

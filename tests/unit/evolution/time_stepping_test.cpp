@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <string>
+#include <utility>
 
 #include "lacon/operators/evolution/instant_failure.hpp"
 #include "lacon/operators/evolution/time_stepping.hpp"
@@ -176,14 +177,16 @@ TEST(TimeStepping, BeginsAnInstantAgainThatStayedAtAnUnstableEquilibrium) {
   EXPECT_EQ(returns, 1);
 }
 
-/// What a driver is asked for, in its order: instants, S and s where increments are searched from now on, or no longer.
-struct Searched {
+/// What a driver is asked for, in its order: instants, and how hard they are tried from now on: S (increments are searched), L
+/// (many iterations), or u (as usual).
+struct Tried {
   std::vector<double> fails;  ///< instants, in their order
   std::string id = "EVOLUTION_4";
   bool has_search = true;  ///< false: increments are searched anyhow
+  bool has_patience = false;
   std::size_t failed = 0;
   std::string course;
-  bool on = false;
+  Effort effort = Effort::usual;
 
   void run(const TimeSteps& steps) {
     step_through(
@@ -191,16 +194,19 @@ struct Searched {
         [&](double to) {
           course += fmt::format("{} ", to);
           if (failed < fails.size() && to == fails[failed] && ++failed)
-            throw Error({.severity = 'S', .id = id, .text = on ? "searched" : "", .advice = ""});
+            throw Error({.severity = 'S', .id = id, .text = effort == Effort::usual ? "" : "once more", .advice = ""});
         },
         [&] { course += "< "; }, [&](double, bool) { course += "= "; }, [] { return 9; },
-        [&](bool now) {
-          if (!has_search || now == on) return false;
-          on = now;
-          course += now ? "S " : "s ";
+        [&](Effort now) {
+          if ((now == Effort::searches && !has_search) || (now == Effort::lasts && !has_patience)) return false;
+          if (std::exchange(effort, now) == now) return false;
+          course += now == Effort::searches ? "S " : now == Effort::lasts ? "L " : "u ";
           return true;
         },
-        [&](const Message& told) { course += told.id == "EVOLUTION_71" ? "71 " : ""; });
+        [&](const Message& told) {
+          for (const char* number : {"71", "73"})
+            if (told.id == std::string("EVOLUTION_") + number) course += number + std::string(" ");
+        });
   }
 };
 
@@ -208,23 +214,23 @@ struct Searched {
 // of the list; parts that fail are cut as before.
 TEST(TimeStepping, SearchesIncrementsBeforeItGivesUp) {
   const TimeSteps uncut{.values = {0, 1, 2}}, cut{.values = {0, 1, 2}, .action = {.cut = true, .cut_into = 2, .cut_levels = 1}};
-  Searched once{.fails = {1}};
+  Tried once{.fails = {1}};
   once.run(uncut);
-  EXPECT_EQ(once.course, "1 S 71 < 1 = s 2 = ");
-  Searched in_parts{.fails = {1, 0.5}};
+  EXPECT_EQ(once.course, "1 S 71 < 1 = u 2 = ");
+  Tried in_parts{.fails = {1, 0.5}};
   in_parts.run(cut);
-  EXPECT_EQ(in_parts.course, "1 < 0.5 S 71 < 0.5 = 1 = s 2 = ");
+  EXPECT_EQ(in_parts.course, "1 < 0.5 S 71 < 0.5 = 1 = u 2 = ");
   TimeSteps adaptive = cut;
   adaptive.adaptation.emplace();
   adaptive.adaptation->event = "AUCUN";
-  Searched grown{.fails = {1, 0.5}};
+  Tried grown{.fails = {1, 0.5}};
   grown.run(adaptive);
-  EXPECT_EQ(grown.course, "1 < 0.5 S 71 < 0.5 = 1 = s 1.5 = 2 = ");
+  EXPECT_EQ(grown.course, "1 < 0.5 S 71 < 0.5 = 1 = u 1.5 = 2 = ");
 }
 
 TEST(TimeStepping, GivesUpWhereASearchIsNoUse) {
   const TimeSteps steps{.values = {0, 1}};
-  Searched in_vain{.fails = {1, 1}};
+  Tried in_vain{.fails = {1, 1}};
   try {
     in_vain.run(steps);
     FAIL();
@@ -232,14 +238,43 @@ TEST(TimeStepping, GivesUpWhereASearchIsNoUse) {
     EXPECT_EQ(error.message().text, "");  // the first failure counts
   }
   EXPECT_EQ(in_vain.course, "1 S 71 < 1 ");
-  Searched anyhow{.fails = {1}, .has_search = false};
+  Tried anyhow{.fails = {1}, .has_search = false};
   EXPECT_THROW(anyhow.run(steps), Error);
   EXPECT_EQ(anyhow.course, "1 ");
   for (const char* other : {"STEP_1", "STEP_2", "STEP_4", "EVOLUTION_42", "EVOLUTION_15", "SOLVER_3", "SOLVER_8"}) {
-    Searched of_another_kind{.fails = {1}, .id = other};
+    Tried of_another_kind{.fails = {1}, .id = other};
     EXPECT_THROW(of_another_kind.run(steps), Error);
     EXPECT_EQ(of_another_kind.course, "1 ") << other;
   }
+}
+
+// Where parts of a step fail as well, what is left of it is solved at once.
+TEST(TimeStepping, SolvesTheRestOfAStepAtOnceBeforeItGivesUp) {
+  const TimeSteps cut{.values = {0, 1, 2}, .action = {.cut = true, .cut_into = 2, .cut_levels = 1}};
+  Tried in_parts{.fails = {1, 1, 1}, .has_patience = true};
+  in_parts.run(cut);
+  EXPECT_EQ(in_parts.course, "1 < 0.5 = 1 S 71 < 1 L 73 < 1 = u 2 = ");
+  TimeSteps adaptive = cut;
+  adaptive.adaptation.emplace();
+  adaptive.adaptation->event = "AUCUN";
+  Tried grown{.fails = {1, 0.5, 0.5, 1.5}, .has_patience = true};
+  grown.run(adaptive);
+  EXPECT_EQ(grown.course, "1 < 0.5 S 71 < 0.5 L 73 < 1 = u 1.5 < 1.25 = 1.5 = 1.75 = 2 = ");
+  Tried in_vain{.fails = {1, 1, 1, 1}, .has_patience = true};
+  try {
+    in_vain.run(cut);
+    FAIL();
+  } catch (const Error& error) {
+    EXPECT_EQ(error.message().text, "");  // the first failure counts
+  }
+  EXPECT_EQ(in_vain.course, "1 < 0.5 = 1 S 71 < 1 L 73 < 1 ");
+  // not where the user wants it to stop
+  Tried stops{.fails = {1, 1}, .has_patience = true};
+  EXPECT_THROW(stops.run({.values = {0, 1}}), Error);
+  EXPECT_EQ(stops.course, "1 S 71 < 1 ");
+  Tried of_another_kind{.fails = {1}, .id = "EVOLUTION_15", .has_patience = true};
+  EXPECT_THROW(of_another_kind.run({.values = {0, 1}, .action = {.cut = true, .cut_into = 2, .cut_levels = 0}}), Error);
+  EXPECT_EQ(of_another_kind.course, "1 ");
 }
 
 // An error of the user is no reason to try smaller steps, and neither are a process that was killed and memory that ended.

@@ -1,0 +1,12 @@
+#pragma once
+// How hard an instant is tried.
+
+namespace lacon {
+
+enum class Effort {
+  usual,
+  searches,  ///< increments of iterations are searched along
+  lasts,     ///< there may be many more iterations
+};
+
+}  // namespace lacon
