@@ -49,6 +49,7 @@ struct CoupleSize {
   double behind = 0;
   /// Of cells of two bodies: half of what both are thick there (Surface::thickness); infinite where that is unknown.
   double half = std::numeric_limits<double>::infinity();
+  bool of_two_bodies = false;  ///< known to be
 };
 CoupleSize size_of(const Surface& slave, std::size_t slave_cell, const Surface& master, std::size_t master_cell,
                    double diameter, double cosine);
@@ -57,6 +58,8 @@ std::optional<Rejection> left_out(const PairingOptions& options, const Surface& 
                                   const Surface& master, std::size_t master_cell);
 /// Whether no gap up to this one is beyond a limit of `options`.
 bool within_limits(const PairingOptions& options, double largest_gap, const CoupleSize& couple);
+/// Whether an overlap is so deep that the way to it may leave a body. @param moved give_way()
+bool may_lie_behind(const PairingOptions& options, double gap, const CoupleSize& couple, double moved);
 /// Which limit a gap in the middle of what a couple has in common is beyond. @param moved give_way()
 std::optional<Rejection> beyond_limits(const PairingOptions& options, double gap, const CoupleSize& couple, double moved);
 

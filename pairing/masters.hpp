@@ -2,12 +2,15 @@
 // The master skin, examined once for all slave cells: what the plane and space have in common of it.
 #include <cmath>
 #include <cstdint>
+#include <memory>
+#include <mutex>
 #include <optional>
 #include <utility>
 #include <vector>
 
 #include "lacon/pairing/box_tree.hpp"
 #include "lacon/pairing/detail.hpp"
+#include "lacon/pairing/thickness.hpp"
 #include "lacon/structures/parallel.hpp"
 
 namespace lacon::detail {
@@ -47,6 +50,16 @@ struct Masters {
         steep(steep_cosine(pairing_options)),
         tree(boxes_of_usable(rejected, examine)) {}
 
+  /// Whether the straight way from a point of a slave cell to one of a master, which lies inside of it, leaves the body of
+  /// either: then both are far sides, or sides of a pocket, and not in contact.
+  bool leaves_a_body(std::size_t slave_cell, Vec3 from, std::size_t master_cell, Vec3 to) const {
+    std::call_once(*ways_known_, [&] { ways_.emplace(slave, master); });
+    const double length = norm(to - from);
+    const Vec3 along = (1 / length) * (to - from);
+    return ways_->to_leave(body_of(slave, slave_cell), from, along) < length ||
+           ways_->to_leave(body_of(master, master_cell), to, -1.0 * along) < length;
+  }
+
   /// Call couple(cell) for every master whose box `touches(box)`, or for all of them.
   template <class Touches, class Couple>
   void visit(const Touches& touches, const Couple& couple) const {
@@ -57,6 +70,9 @@ struct Masters {
   }
 
  private:
+  mutable std::optional<WaysThrough> ways_;  ///< at the present coordinates; few pairings ask for it
+  std::unique_ptr<std::once_flag> ways_known_ = std::make_unique<std::once_flag>();
+
   template <class Examine>
   std::vector<Box<D>> boxes_of_usable(std::vector<RejectedCouple>& rejected, const Examine& examine) {
     const double size = extent<D>(master), margin = options.tolerances.box * size;

@@ -91,10 +91,7 @@ Vec3 normal_at_rest(const Surface& skin, std::size_t cell) {
 Vec3 middle_at_rest(const Surface& skin, std::size_t cell) { return middle_of(skin.nodes[cell], rest_of(skin)); }
 
 bool of_one_body(const Surface& slave, std::size_t slave_cell, const Surface& master, std::size_t master_cell) {
-  const auto body = [](const Surface& skin, std::size_t cell) {
-    return skin.body[static_cast<std::size_t>(skin.nodes[cell][0])];
-  };
-  return !slave.body.empty() && !master.body.empty() && body(slave, slave_cell) == body(master, master_cell);
+  return !slave.body.empty() && !master.body.empty() && body_of(slave, slave_cell) == body_of(master, master_cell);
 }
 
 }  // namespace
@@ -107,6 +104,7 @@ CoupleSize size_of(const Surface& slave, std::size_t slave_cell, const Surface& 
         dot(normal_at_rest(slave, slave_cell), middle_at_rest(slave, slave_cell) - middle_at_rest(master, master_cell));
   else if (!slave.thickness.empty() && !master.thickness.empty())
     size.half = 0.5 * (slave.thickness[slave_cell] + master.thickness[master_cell]);
+  size.of_two_bodies = !slave.body.empty() && !master.body.empty() && !of_one_body(slave, slave_cell, master, master_cell);
   return size;
 }
 
@@ -146,7 +144,13 @@ std::optional<Rejection> left_out(const PairingOptions& options, const Surface& 
 
 bool within_limits(const PairingOptions& options, double largest_gap, const CoupleSize& couple) {
   return !(options.distance_limit > 0 && largest_gap > options.distance_limit * couple.diameter) &&
-         largest_gap <= std::min(deepest(options, couple), deepest_in_itself(options, couple));
+         largest_gap <= std::min(deepest(options, couple), deepest_in_itself(options, couple)) &&
+         !may_lie_behind(options, -largest_gap, couple, 0);
+}
+
+bool may_lie_behind(const PairingOptions& options, double gap, const CoupleSize& couple, double moved) {
+  return options.depth_limit > 0 && !(options.distance_limit > 0) && couple.of_two_bodies &&
+         -gap > within_coarse * couple.diameter + moved;
 }
 
 std::optional<Rejection> beyond_limits(const PairingOptions& options, double gap, const CoupleSize& couple, double moved) {

@@ -368,7 +368,14 @@ class PairerInPlane final : public detail::CellPairer {
               const double moved = detail::give_way(
                   options, slave, cell, master, static_cast<std::size_t>(m),
                   {.slave = {t.y / length(t), -t.x / length(t), 0}, .master = {along.y / other, -along.x / other, 0}});
-              return detail::beyond_limits(options, image(e, middle, master, m, tolerances).gap, size, moved);
+              const double gap = image(e, middle, master, m, tolerances).gap;
+              const auto limit = detail::beyond_limits(options, gap, size, moved);
+              if (limit || !detail::may_lie_behind(options, gap, size, moved)) return limit;
+              const Vec2 tangent = e.tangent(middle), normal = (1 / length(tangent)) * Vec2{tangent.y, -tangent.x},
+                         from = e.origin + e.x(middle), to = from + gap * normal;
+              return masters_->leaves_a_body(cell, {from.x, from.y, 0}, static_cast<std::size_t>(m), {to.x, to.y, 0})
+                         ? std::optional(Rejection::too_deep)
+                         : std::nullopt;
             };
             if (!(share(e, m) > tolerances.sliver))
               reject(m, Rejection::too_steep);

@@ -299,12 +299,18 @@ class PairerInSpace final : public detail::CellPairer {
       const auto reach = [](const FacetKind& f) { return (f.order == 1 ? 1 : 1.25) * f.size; };
       const double largest = norm(nodes[0] - e.f.nodes[0]) + reach(e.f) + reach(master(view->master));
       if (detail::within_limits(options(), largest, size)) return false;
-      const double found = gap(*view, middle(view->region.polygon));
+      const Vec2 y = middle(view->region.polygon);
+      const double found = gap(*view, y);
       if (!std::isfinite(found)) return false;
       const Vec3 n = mean_normal_, m = master(view->master).normal;
       const double moved = detail::give_way(options(), slave_skin, slave_cell, master_skin, master_cell,
                                             {.slave = {n.x, n.y, n.z}, .master = {m.x, m.y, m.z}});
-      const auto limit = detail::beyond_limits(options(), found, size, moved);
+      auto limit = detail::beyond_limits(options(), found, size, moved);
+      if (!limit && detail::may_lie_behind(options(), found, size, moved)) {
+        const Vec2 xi = e.place(y, tolerances()).xi;
+        const Vec3 x = e.f.origin + e.f.x(xi).x;
+        if (masters_->skin.leaves_a_body(slave_cell, x, master_cell, x + found * e.direction(xi))) limit = Rejection::too_deep;
+      }
       if (limit) reject(view->master, *limit);
       return limit.has_value();
     });

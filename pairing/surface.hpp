@@ -62,6 +62,11 @@ struct Surface {
   }
 };
 
+/// Of a skin that has Surface::body.
+inline std::int32_t body_of(const Surface& skin, std::size_t cell) {
+  return skin.body[static_cast<std::size_t>(skin.nodes[cell][0])];
+}
+
 /// Outward, unit, of the vertices of a skin cell; zero where they have none. @param coordinates (n_nodes, 3)
 Vec3 normal_of(CellType type, std::span<const std::int32_t> nodes, std::span<const double> coordinates);
 

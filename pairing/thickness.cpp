@@ -6,7 +6,6 @@
 #include <limits>
 #include <utility>
 
-#include "lacon/pairing/box_tree.hpp"
 #include "lacon/structures/parallel.hpp"
 #include "lacon/structures/vector.hpp"
 
@@ -76,39 +75,46 @@ Box<3> box_of(const Surface& skin, std::size_t cell) {
 
 }  // namespace
 
-Thickness thickness(const Surface& slave, const Surface& master) {
-  constexpr std::size_t block = 512;  // cells that a thread measures at a time
-  const std::size_t n_slaves = slave.size(), n = n_slaves + master.size();
-  const auto cell_at = [&](std::size_t i) { return i < n_slaves ? std::pair(&slave, i) : std::pair(&master, i - n_slaves); };
+std::pair<const Surface*, std::size_t> WaysThrough::cell_at(std::size_t i) const {
+  return i < slave_.size() ? std::pair(&slave_, i) : std::pair(&master_, i - slave_.size());
+}
+
+WaysThrough::WaysThrough(const Surface& slave, const Surface& master) : slave_(slave), master_(master), tree_({}) {
   std::vector<Box<3>> boxes;
-  std::vector<Vec3> normals;
-  for (std::size_t i = 0; i < n; ++i) {
+  for (std::size_t i = 0; i < slave.size() + master.size(); ++i) {
     const auto [skin, cell] = cell_at(i);
     boxes.push_back(box_of(*skin, cell));
-    normals.push_back(normal_of(skin->types[cell], skin->nodes[cell], skin->coordinates));
+    normals_.push_back(normal_of(skin->types[cell], skin->nodes[cell], skin->coordinates));
   }
-  const auto body = [&](std::size_t i) {
-    const auto [skin, cell] = cell_at(i);
-    return skin->body[static_cast<std::size_t>(skin->nodes[cell][0])];
+  tree_ = BoxTree<3>(std::move(boxes));
+}
+
+double WaysThrough::to_leave(std::int32_t body, Vec3 from, Vec3 along) const {
+  const Way way{from, along};
+  double nearest = infinite;
+  tree_.visit([&](const Box<3>& box) { return passes(way, box); },
+              [&](std::int32_t i) {
+                const auto [skin, cell] = cell_at(static_cast<std::size_t>(i));
+                if (!(dot(normals_[static_cast<std::size_t>(i)], along) > 0) || body_of(*skin, cell) != body) return;
+                const double far = to_cell(way, *skin, cell);
+                if (far > 0) nearest = std::min(nearest, far);
+              });
+  return nearest;
+}
+
+Thickness thickness(const Surface& slave, const Surface& master) {
+  constexpr std::size_t block = 512;  // cells that a thread measures at a time
+  const WaysThrough ways(slave, master);
+  const auto of = [&](const Surface& skin) {
+    std::vector<double> found(skin.size());
+    parallel_for(skin.size(), block, [&](const LoopBlock& cells) {
+      for (std::size_t cell = cells.first; cell < cells.last; ++cell)
+        found[cell] = ways.to_leave(body_of(skin, cell), middle_of(skin.nodes[cell], skin.coordinates),
+                                    -1.0 * normal_of(skin.types[cell], skin.nodes[cell], skin.coordinates));
+    });
+    return found;
   };
-  const BoxTree<3> tree(std::move(boxes));
-  std::vector<double> found(n, infinite);
-  parallel_for(n, block, [&](const LoopBlock& cells) {
-    for (std::size_t i = cells.first; i < cells.last; ++i) {
-      const auto [skin, cell] = cell_at(i);
-      const Way way{middle_of(skin->nodes[cell], skin->coordinates), -1.0 * normals[i]};
-      tree.visit([&](const Box<3>& box) { return passes(way, box); },
-                 [&](std::int32_t other) {
-                   const auto o = static_cast<std::size_t>(other);
-                   if (!(dot(normals[o], way.along) > 0) || body(o) != body(i)) return;
-                   const auto [other_skin, other_cell] = cell_at(o);
-                   const double far = to_cell(way, *other_skin, other_cell);
-                   if (far > 0) found[i] = std::min(found[i], far);
-                 });
-    }
-  });
-  const auto end_of_slaves = found.begin() + static_cast<std::ptrdiff_t>(n_slaves);
-  return {{found.begin(), end_of_slaves}, {end_of_slaves, found.end()}};
+  return {of(slave), of(master)};
 }
 
 }  // namespace lacon

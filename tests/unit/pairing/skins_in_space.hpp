@@ -44,6 +44,17 @@ struct Grid {
   double x0 = 0, x1 = 1, y0 = 0, y1 = 1;
 };
 
+/// Add the cells of another skin, with nodes of their own.
+inline void append(Skin3& skin, const Skin3& other) {
+  const auto shift = static_cast<std::int32_t>(skin.n_nodes());
+  skin.coordinates.insert(skin.coordinates.end(), other.coordinates.begin(), other.coordinates.end());
+  for (std::size_t c = 0; c < other.surface.size(); ++c) {
+    std::vector<std::int32_t> nodes(other.surface.nodes[c].begin(), other.surface.nodes[c].end());
+    for (std::int32_t& n : nodes) n += shift;
+    skin.surface.add_cell(other.surface.types[c], nodes);
+  }
+}
+
 /// A mesh of a rectangle, mapped by `place`; mid nodes are mapped too if `curved`, else they lie in the middle of edges.
 inline Skin3 mesh(const Grid& g, const Place3& place, std::mt19937& random, bool curved = false) {
   std::uniform_real_distribution<double> uniform(-1, 1);

@@ -391,17 +391,6 @@ TEST(PairingInSpace, DoesNotDependOnNumbersOrFirstNodes) {
   }
 }
 
-/// Add the cells of another skin, with nodes of their own.
-void append(Skin3& skin, const Skin3& other) {
-  const auto shift = static_cast<std::int32_t>(skin.n_nodes());
-  skin.coordinates.insert(skin.coordinates.end(), other.coordinates.begin(), other.coordinates.end());
-  for (std::size_t c = 0; c < other.surface.size(); ++c) {
-    std::vector<std::int32_t> nodes(other.surface.nodes[c].begin(), other.surface.nodes[c].end());
-    for (std::int32_t& n : nodes) n += shift;
-    skin.surface.add_cell(other.surface.types[c], nodes);
-  }
-}
-
 TEST(PairingInSpace, TreeEqualsBruteForceOnBrokenCurvedSurfaces) {
   // several loose pieces of every kind on both sides, bent by up to 85 degrees, some with their backs turned, some behind
   // others, apart and overlapping

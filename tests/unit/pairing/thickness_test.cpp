@@ -1,4 +1,4 @@
-// How thick bodies are, and what lies beyond them.
+// How thick bodies are, what lies beyond them, and ways through them.
 #include "lacon/pairing/thickness.hpp"
 
 #include <gtest/gtest.h>
@@ -71,6 +71,7 @@ TEST(Thickness, OverlapsOfMoreThanHalfOfBothBodiesAreLeftOut) {
   Skin upper = plate(0, 1, 1), lower = plate(-3, 0, 1);
   Surface slave = with_body(upper, one), master = with_body(lower, other);
   const Thickness thick = thickness(slave, master);
+  slave.body = master.body = {};  // so that no way through them is looked at
   const auto rejected = [&](double raised, const PairingOptions& options, double closer = 0) {
     const std::vector<double> now = moved(upper.coordinates, {0, raised, 0}), rest = moved(now, {0, closer, 0});
     Surface of_slave = slave;
@@ -102,6 +103,98 @@ TEST(Thickness, OverlapsOfMoreThanHalfOfBothBodiesAreLeftOut) {
   const std::vector<double> unknown(2, infinite);
   master.thickness = unknown;
   EXPECT_EQ(rejected(0, deep), 0);
+}
+
+/// A key that is 2 wide and 3 high in the keyway of a shaft, with its lower half. Cells go against the clock around the bodies.
+struct Keyway {
+  Skin shaft, key;
+  std::vector<std::int32_t> of_shaft = std::vector<std::int32_t>(40, 7), of_key = std::vector<std::int32_t>(40, 8);
+
+  /// @param moved the key, to the left
+  explicit Keyway(double moved = 0) {
+    const auto through = [](Skin& skin, const std::vector<Vec2>& corners) {
+      for (std::size_t i = 0; i + 1 < corners.size(); ++i) {
+        const Vec2 a = corners[i], b = corners[i + 1];
+        add_chain(
+            skin,
+            [=](double t) {
+              return std::array{a.x + t * (b.x - a.x), a.y + t * (b.y - a.y)};
+            },
+            {0, 1}, Kind::linear);
+      }
+    };
+    // the upper side falls to the left, so that normals below it lean into the keyway
+    through(shaft, {{1, 0}, {1, -1.5}, {-1, -1.5}, {-1, 0}, {-2, -0.5}});
+    std::vector<Vec2> corners{{-1, 1.5}, {-1, -1.5}, {1, -1.5}, {1, 1.5}};
+    for (Vec2& corner : corners) corner.x -= moved;
+    through(key, corners);
+  }
+  Pairing operator()(const PairingOptions& options, double closer = 0) {
+    Surface slave = with_body(shaft, of_shaft), master = with_body(key, of_key);
+    const std::vector<double> rest = moved(key.coordinates, {0, closer, 0});
+    master.rest = rest;
+    return pair(slave, master, options);
+  }
+};
+
+// The upper side of the shaft sees the bottom of the key, through a corner of the shaft and through the key.
+TEST(WaysThrough, WhatIsSeenThroughASideOfABodyIsLeftOut) {
+  Keyway keyway;
+  const auto sees = [](const Pairing& found, std::int32_t slave, std::int32_t master) {
+    bool any = false;
+    for (std::size_t c = 0; c < found.cells.size(); ++c)
+      any = any || (found.cells.slave[c] == slave && found.cells.master[c] == master);
+    return any;
+  };
+  const PairingOptions deep{.depth_limit = 4};
+  constexpr std::int32_t upper = 3, floor = 1, bottom = 1;
+  EXPECT_TRUE(sees(keyway({}), upper, bottom));
+  const Pairing found = keyway(deep);
+  EXPECT_FALSE(sees(found, upper, bottom));
+  EXPECT_EQ(found.count(Rejection::too_deep), 1);
+  EXPECT_TRUE(sees(found, floor, bottom));
+  EXPECT_TRUE(sees(keyway({.distance_limit = 4}), upper, bottom));  // who gives a limit has it
+  // what has come closer since bodies were at rest may be an iterate
+  EXPECT_TRUE(sees(keyway(deep, 1.5), upper, bottom));
+  // a key that lies in the wall by more than half of it: still in contact with it, for the way ends within both
+  Keyway pressed(0.9);
+  EXPECT_TRUE(sees(pressed(deep), 2, 0));
+  // of one body other limits hold
+  keyway.of_key.assign(40, 7);
+  EXPECT_EQ(keyway(deep).count(Rejection::too_deep), 0);
+}
+
+// The same in space, the upper side of a block beside a pocket and the bottom of what is in it, whatever the cells.
+TEST(WaysThrough, InSpaceAsInThePlane) {
+  std::mt19937 random(3);
+  const std::vector<std::int32_t> of_block(4000, 7), of_key(4000, 8);
+  const auto wall = [](double at) { return [=](double x, double y) { return Vec3{at, y, x}; }; };
+  for (const CellType type : kinds) {
+    // its normals lean by 0.5 into the pocket at x > 0
+    Skin3 block = mesh(
+        {1, 1, type, true, 0, -1, 0, 0, 1},
+        [](double x, double y) {
+          return Vec3{x, y, 0.5 * x};
+        },
+        random);
+    Skin3 key = mesh(
+        {1, 1, type, false, 0, 0, 1, 0, 1},
+        [](double x, double y) {
+          return Vec3{x, y, -1.5};
+        },
+        random);
+    block.surface.body = of_block, key.surface.body = of_key;
+    const PairingOptions deep{.depth_limit = 4};
+    EXPECT_GT(pair(block.view(), key.view(), deep).cells.size(), 0U);  // nothing is known of their walls
+    for (const bool wall_of_block : {true, false}) {
+      Skin3 slave = block, master = key;
+      append(wall_of_block ? slave : master, mesh({1, 1, CellType::QUAD4, !wall_of_block, 0, -1.5, 1, 0, 1}, wall(0), random));
+      slave.surface.body = of_block, master.surface.body = of_key;
+      const Pairing found = pair(slave.view(), master.view(), deep);
+      EXPECT_EQ(found.cells.size(), 0U) << catalog::cell(type).name;
+      EXPECT_GT(found.count(Rejection::too_deep), 0) << catalog::cell(type).name;
+    }
+  }
 }
 
 }  // namespace
