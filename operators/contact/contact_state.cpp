@@ -370,7 +370,12 @@ std::optional<AlternatingPressures> ContactState::alternation(std::int32_t zone,
   const auto much = [&](const std::optional<AlternatingPressures>& found) {
     return found && found->share > tolerances_.alternating ? found : std::nullopt;
   };
-  if (const auto found = much(alternations_[of_zone].measure(patches.lambda, area, pressed))) return found;
+  if (const auto found = much(alternations_[of_zone].measure(patches.lambda, area, pressed, pressed))) return found;
+  if (auto few = alternations_[of_zone].measure(patches.lambda, area, seen, pressed);
+      few && few->share > tolerances_.scattered && few->pressing < tolerances_.few) {
+    few->by = AlternatingBy::few_triangles;
+    return few;
+  }
   const auto everywhere = much(rows_[of_zone].measure(patches.lambda, area, seen, pressed));
   const auto inside = much(rows_[of_zone].measure_inside(patches.lambda, area, seen, pressed, resisting));
   if (!everywhere && !inside) return std::nullopt;

@@ -22,27 +22,28 @@
 namespace lacon {
 
 struct ContactTolerances {
-  double unpaired = 1e-14;          ///< covered fraction of a patch below which it has no master
-  double bare = 1e-9;               ///< fraction of a patch that no master covers, above round-off
-  double initial_gap = 1e-6;        ///< CONTACT_INIT='INTERPENETRE': largest gap, over the smallest edge
-  double lambda_round_off = 1e-10;  ///< of the largest |lambda|: below it a sign means nothing
-  double gap_round_off = 1e-14;     ///< of the size of the mesh
-  double starting_gap = 0.1;        ///< CONTACT_INIT='OUI': of h, largest gap that closes at once, where a patch has no more
-  double holding_gap = 0.5;         ///< of h: average gap up to which a patch may hold a body that is loose otherwise
-  double as_near = 1e-3;            ///< of h: by how much gaps of patches that hold it together may differ
-  double facet_overlap = 1e-3;      ///< of h: average overlap that is worth an alarm where facets make it
-  double facets = 1.5;              ///< largest overlap that facets make, over what they leave of the curves
-  double held_overlap = 1e-6;       ///< of h: an overlap of a locked patch that is worth an alarm
-  double pierced = 0.05;            ///< of h: likewise of points of another active patch, whose average is closed
-  double pierced_open = 0.04;       ///< of h: of points of an open patch, which nothing keeps out of the master
-  double pierced_at_rest = 0.0005;  ///< of h: likewise, where nothing presses
-  double missed_depth = 0.005;      ///< of h: likewise, where others press
-  double far_behind = 0.5;          ///< of h: by how much parts of one patch may see masters at different distances
-  double missed_pressure = 0.1;     ///< of the largest: what such points would press with, worth an alarm
-  double alternating = 0.1;         ///< of the pressure: by how much neighbours may differ to opposite sides
-  double stiffer = 2;               ///< how many times as stiff as its master a slave is that answers bending by pressures
-  double unpressed = 0.3;           ///< of what a pressure presses in: how deep it leaves points inside that are pressed flat
-  double touching = 1e-8;           ///< of h: an overlap of patches without contact that is round-off
+  double unpaired = 1e-14;            ///< covered fraction of a patch below which it has no master
+  double bare = 1e-9;                 ///< fraction of a patch that no master covers, above round-off
+  double initial_gap = 1e-6;          ///< CONTACT_INIT='INTERPENETRE': largest gap, over the smallest edge
+  double lambda_round_off = 1e-10;    ///< of the largest |lambda|: below it a sign means nothing
+  double gap_round_off = 1e-14;       ///< of the size of the mesh
+  double starting_gap = 0.1;          ///< CONTACT_INIT='OUI': of h, largest gap that closes at once, where a patch has no more
+  double holding_gap = 0.5;           ///< of h: average gap up to which a patch may hold a body that is loose otherwise
+  double as_near = 1e-3;              ///< of h: by how much gaps of patches that hold it together may differ
+  double facet_overlap = 1e-3;        ///< of h: average overlap that is worth an alarm where facets make it
+  double facets = 1.5;                ///< largest overlap that facets make, over what they leave of the curves
+  double held_overlap = 1e-6;         ///< of h: an overlap of a locked patch that is worth an alarm
+  double pierced = 0.05;              ///< of h: likewise of points of another active patch, whose average is closed
+  double pierced_open = 0.04;         ///< of h: of points of an open patch, which nothing keeps out of the master
+  double pierced_at_rest = 0.0005;    ///< of h: likewise, where nothing presses
+  double missed_depth = 0.005;        ///< of h: likewise, where others press
+  double far_behind = 0.5;            ///< of h: by how much parts of one patch may see masters at different distances
+  double missed_pressure = 0.1;       ///< of the largest: what such points would press with, worth an alarm
+  double alternating = 0.1;           ///< of the pressure: by how much neighbours may differ to opposite sides
+  double scattered = 0.2, few = 0.6;  ///< likewise, where open ones among them count, and how many of them all press
+  double stiffer = 2;                 ///< how many times as stiff as its master a slave is that answers bending by pressures
+  double unpressed = 0.3;             ///< of what a pressure presses in: how deep it leaves points inside that are pressed flat
+  double touching = 1e-8;             ///< of h: an overlap of patches without contact that is round-off
 };
 
 /// What the contact of a zone does at an instant: the figures by which a user trusts it.

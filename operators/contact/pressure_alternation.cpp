@@ -43,28 +43,34 @@ PressureAlternation::PressureAlternation(const std::vector<std::vector<std::int3
 }
 
 std::optional<AlternatingPressures> PressureAlternation::measure(std::span<const double> pressure, std::span<const double> area,
+                                                                 const std::vector<bool>& whole,
                                                                  const std::vector<bool>& pressed) const {
   constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
   constexpr int least_couples = 8;  // of fewer a product says little
   std::vector<double> mean;
   for (const std::vector<std::size_t>& ring : rings_) {
     double force = 0, measure = 0;
+    bool known = true, presses = false;
     for (const std::size_t patch : ring) {
-      force += pressed[patch] ? pressure[patch] * area[patch] : unknown;
+      known = known && whole[patch];
+      presses = presses || pressed[patch];
+      force += pressed[patch] ? pressure[patch] * area[patch] : 0;
       measure += area[patch];
     }
-    mean.push_back(force / measure);
+    mean.push_back(known && presses ? force / measure : unknown);
   }
   AlternatingPressures found{0, 0, AlternatingBy::triangles};
   std::vector<double> differences;
   double largest = -1, squares = 0;
-  int known = 0;
+  int known = 0, pressing = 0;
   for (const Inner& inner : inner_) {
-    const double difference = pressure[inner.patch] - (mean[inner.rings[0]] + mean[inner.rings[1]] + mean[inner.rings[2]]) / 3;
+    const double here = pressed[inner.patch] ? pressure[inner.patch] : 0;
+    const double difference = here - (mean[inner.rings[0]] + mean[inner.rings[1]] + mean[inner.rings[2]]) / 3;
     differences.push_back(difference);
     if (std::isnan(difference)) continue;
-    squares += pressure[inner.patch] * pressure[inner.patch];
+    squares += here * here;
     ++known;
+    pressing += pressed[inner.patch];
     if (std::abs(difference) > largest) largest = std::abs(difference), found.patch = inner.patch;
   }
   double product = 0;
@@ -73,6 +79,7 @@ std::optional<AlternatingPressures> PressureAlternation::measure(std::span<const
     if (const double both = differences[one] * differences[other]; !std::isnan(both)) product += both, ++couples;
   if (couples < least_couples || squares == 0) return std::nullopt;
   found.share = product < 0 ? std::sqrt(-product / couples / (squares / known)) : 0;
+  found.pressing = static_cast<double>(pressing) / known;
   return found;
 }
 

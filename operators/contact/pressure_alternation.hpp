@@ -9,15 +9,16 @@
 
 namespace lacon {
 
-/// What pressures of a zone go up and down by: from triangle to triangle; from patch to patch of a row (pressure_rows.hpp),
-/// where facets of curved skins meet, or along skins that have none.
-enum class AlternatingBy { triangles, facets, rows };
+/// What pressures of a zone go up and down by: from triangle to triangle; the same, with most of them open; from patch to patch
+/// of a row (pressure_rows.hpp), where facets of curved skins meet, or along skins that have none.
+enum class AlternatingBy { triangles, few_triangles, facets, rows };
 
 /// Pressures of a zone that alternate.
 struct AlternatingPressures {
   double share;       ///< root of the mean product of neighbours' distances from smooth pressures, over that of the pressure
   std::size_t patch;  ///< furthest from its smooth pressure
   AlternatingBy by;
+  double pressing = 1;  ///< part of the patches looked at
 };
 
 /// A skin of linear triangles has two patches for each of its vertices. Pressures that alternate from patch to patch press on
@@ -29,10 +30,14 @@ class PressureAlternation {
  public:
   /// @param corners vertices of each patch of a zone (others: none): nodes other than those that belong to the patch alone
   explicit PressureAlternation(const std::vector<std::vector<std::int32_t>>& corners);
-  /// Over the patches whose vertices have nothing but pressed triangles around; nothing where too few of them meet.
-  /// @param pressure, area of each patch  @param pressed those that are in contact as a whole
+  /// Over the patches whose vertices have nothing but whole triangles around, one of which is pressed; nothing where too few of
+  /// them meet. Where open ones count, smooth pressures and their ends have less than 0.01 (edges of punches up to 0.4), and
+  /// nine tenths press; of triangles that press alone, scattered among open ones, a third to a half does, and they have 0.25 to
+  /// 0.6.
+  /// @param pressure, area of each patch  @param whole those that count: all that see a master, or the pressed ones alone
+  /// @param pressed those that are in contact
   std::optional<AlternatingPressures> measure(std::span<const double> pressure, std::span<const double> area,
-                                              const std::vector<bool>& pressed) const;
+                                              const std::vector<bool>& whole, const std::vector<bool>& pressed) const;
 
  private:
   struct Inner {

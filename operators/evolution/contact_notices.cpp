@@ -229,14 +229,16 @@ void ContactNotices::end(bool /*completed*/) {
   for (const auto& [zone, alternating] : alternating_) {
     const ContactZone& names = present_.problem.contact->zones[zone];
     const AlternatingBy by = alternating.most.by;
-    inform(by == AlternatingBy::triangles ? "EVOLUTION_47"
-           : by == AlternatingBy::facets  ? "EVOLUTION_67"
-                                          : "EVOLUTION_70",
+    inform(by == AlternatingBy::triangles       ? "EVOLUTION_47"
+           : by == AlternatingBy::few_triangles ? "EVOLUTION_74"
+           : by == AlternatingBy::facets        ? "EVOLUTION_67"
+                                                : "EVOLUTION_70",
            {{"slave", names.slave_group},
             {"master", names.master_group},
             {"cell", first_cell(alternating.most.patch)},
             {"instant", fmt::format("{:.9g}", alternating.instant)},
-            {"percent", fmt::format("{:.3g}", 100 * alternating.most.share)}});
+            {"percent", fmt::format("{:.3g}", 100 * alternating.most.share)},
+            {"pressing", fmt::format("{:.2g}", 100 * alternating.most.pressing)}});
   }
   for (const auto& [zone, split] : split_) {
     const ContactZone& names = present_.problem.contact->zones[zone];

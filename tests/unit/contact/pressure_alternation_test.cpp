@@ -27,7 +27,13 @@ struct Square {
           pressed.push_back(true);
         }
   }
-  std::optional<AlternatingPressures> measure() const { return PressureAlternation(corners).measure(pressure, area, pressed); }
+  std::optional<AlternatingPressures> measure() const {
+    return PressureAlternation(corners).measure(pressure, area, pressed, pressed);
+  }
+  /// Open ones count.
+  std::optional<AlternatingPressures> measure_all() const {
+    return PressureAlternation(corners).measure(pressure, area, std::vector<bool>(pressed.size(), true), pressed);
+  }
 };
 
 TEST(PressureAlternation, IsTheAmplitudeOfWhatNoVertexFeels) {
@@ -65,6 +71,32 @@ TEST(PressureAlternation, IsOfPatchesInTheMiddleOfTheContact) {
   EXPECT_NEAR(square.measure()->share, share, 1e-12);
   square.pressed.assign(square.pressed.size(), false);
   EXPECT_FALSE(square.measure());
+}
+
+TEST(PressureAlternation, TellsTrianglesThatPressAloneFromContactsThatEnd) {
+  // one of two, of four and of six
+  for (const int every : {1, 2, 3}) {
+    Square square(12, [](double, double, bool) { return -7; });
+    for (std::size_t p = 0; p < square.pressed.size(); ++p) square.pressed[p] = p % 2 == 1 && (p / 2) % every == 0;
+    const auto found = square.measure_all();
+    ASSERT_TRUE(found);
+    EXPECT_GT(found->share, 0.45) << every;
+    EXPECT_LT(found->pressing, 0.51);
+    EXPECT_FALSE(square.measure());
+  }
+  // contacts that end inside the skin, smoothly or not
+  const auto share = [](const std::function<double(double)>& pressure, double radius) {
+    Square square(12, [&](double x, double y, bool) { return -pressure(std::hypot(x - 0.52, y - 0.47) / radius); });
+    for (std::size_t p = 0; p < square.pressed.size(); ++p) square.pressed[p] = square.pressure[p] < 0;
+    const AlternatingPressures found = square.measure_all().value();
+    EXPECT_GT(found.pressing, 0.8) << radius;
+    return found.share;
+  };
+  for (const double radius : {0.12, 0.2, 0.3, 0.4}) {
+    EXPECT_LT(share([](double r) { return std::sqrt(std::max(1 - r * r, 0.0)); }, radius), 0.01) << radius;
+    EXPECT_LT(share([](double r) { return r < 1 ? 1.0 : 0; }, radius), 0.1) << radius;
+    EXPECT_LT(share([](double r) { return r < 1 ? 1 / std::sqrt(1.02 - r * r) : 0; }, radius), 0.4) << radius;
+  }
 }
 
 TEST(PressureAlternation, IsMeasuredOnTrianglesAlone) {
