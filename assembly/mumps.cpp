@@ -5,6 +5,7 @@
 #include <smumps_c.h>
 
 #include <algorithm>
+#include <new>
 #include <stdexcept>
 #include <type_traits>
 #include <vector>
@@ -23,6 +24,9 @@ auto& at(Array& array, int number) {
 /// A count of MUMPS; in millions where it is negative.
 double count(int value) { return value < 0 ? -1e6 * value : value; }
 
+/// Codes of MUMPS: arrays that it could not have, of real numbers and of integers in the analysis, of any kind later, and one
+/// that has to be larger than its limit. What it has set apart too little of (-8, -9) is another matter.
+constexpr int without_room = -13, without_memory[] = {-5, -7, without_room, -19};
 constexpr int singular = -10;          // a pivot is zero, and nobody looked for another one
 constexpr int communicator = -987654;  // "MPI_COMM_WORLD" of the manual
 /// Columns that MUMPS eliminates one by one before they go to what follows as one product. Its own 32 take a quarter of the
@@ -57,6 +61,7 @@ struct Mumps<Real>::State {
     mumps.par = 1;
     mumps.comm_fortran = communicator;
     run(start);
+    if (at(mumps.infog, 1) == without_room) throw std::bad_alloc();
     for (int stream = 1; stream <= 3; ++stream) at(mumps.icntl, stream) = 0;
     at(mumps.icntl, 4) = 0;
     if (!settings.symmetric) at(mumps.icntl, 6) = 0;  // the pattern is symmetric: no columns to exchange
@@ -128,7 +133,8 @@ struct Mumps<Real>::State {
   void require(const char* phase) {
     const int code = at(mumps.infog, 1);
     if (code >= 0) return;
-    if (code == -13 || code == -19) fail("SOLVER_2", {{"phase", phase}, {"equations", std::to_string(mumps.n)}});
+    if (std::ranges::find(without_memory, code) != std::end(without_memory))
+      fail("SOLVER_2", {{"phase", phase}, {"equations", std::to_string(mumps.n)}});
     if (code == -90) fail("SOLVER_5", {{"folder", settings.folder}});
     throw std::runtime_error(fmt::format("MUMPS: {} returned INFOG(1) = {}, INFOG(2) = {}", phase, code, at(mumps.infog, 2)));
   }

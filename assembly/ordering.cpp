@@ -13,11 +13,10 @@
 #include <functional>
 #include <numeric>
 #include <span>
-#include <stdexcept>
-#include <string>
 #include <utility>
 
 #include "lacon/assembly/counts.hpp"
+#include "lacon/assembly/metis_status.hpp"
 
 namespace lacon {
 namespace {
@@ -41,10 +40,6 @@ struct Options {
   }
 };
 
-void check(int status, const char* function) {
-  if (status != METIS_OK) throw std::runtime_error(std::string(function) + " returned " + std::to_string(status));
-}
-
 /// Nested dissection. @param[out] place of each vertex
 void order(MetisGraph& graph, std::span<idx_t> place) {
   std::iota(place.begin(), place.end(), 0);
@@ -52,9 +47,9 @@ void order(MetisGraph& graph, std::span<idx_t> place) {
   Options options;
   idx_t n = graph.size();
   std::vector<idx_t> inverse(place.size());
-  check(METIS_NodeND(&n, graph.offset.data(), graph.adjacent.data(), nullptr, options.values.data(), inverse.data(),
-                     place.data()),
-        "METIS_NodeND");
+  check_metis(METIS_NodeND(&n, graph.offset.data(), graph.adjacent.data(), nullptr, options.values.data(), inverse.data(),
+                           place.data()),
+              "METIS_NodeND");
 }
 
 /// Some vertices of a graph and the edges between them.
@@ -127,9 +122,9 @@ void separate(MetisGraph& graph, Halves halves, idx_t seed, std::span<idx_t> par
   Options options(seed);
   if (halves == Halves::even) options.values[METIS_OPTION_UFACTOR] = unevenness;
   idx_t n = graph.size(), size = 0;
-  check(METIS_ComputeVertexSeparator(&n, graph.offset.data(), graph.adjacent.data(), nullptr, options.values.data(), &size,
-                                     part.data()),
-        "METIS_ComputeVertexSeparator");
+  check_metis(METIS_ComputeVertexSeparator(&n, graph.offset.data(), graph.adjacent.data(), nullptr, options.values.data(),
+                                           &size, part.data()),
+              "METIS_ComputeVertexSeparator");
 }
 
 /// Nested dissection by two processes: the smaller one of two separators first, and then each half.

@@ -5,17 +5,12 @@
 #include <algorithm>
 #include <map>
 #include <numeric>
-#include <stdexcept>
-#include <string>
 
 #include "lacon/assembly/counts.hpp"
+#include "lacon/assembly/metis_status.hpp"
 
 namespace lacon {
 namespace {
-
-void check(int status, const char* what) {
-  if (status != METIS_OK) throw std::runtime_error(std::string(what) + " returned " + std::to_string(status));
-}
 
 /// The cells around each node, as places in `cells`.
 Ragged<std::int32_t> cells_at_nodes(const Mesh& mesh, std::span<const std::int32_t> cells) {
@@ -72,8 +67,8 @@ Graph graph_of(const Mesh& mesh, std::span<const std::int32_t> cells, std::span<
   }
   auto n_cells = static_cast<idx_t>(cells.size()), n_nodes = static_cast<idx_t>(mesh.n_nodes());
   idx_t common = mesh.dimension, base = 0, *offset = nullptr, *adjacent = nullptr;
-  check(METIS_MeshToDual(&n_cells, &n_nodes, first.data(), nodes.data(), &common, &base, &offset, &adjacent),
-        "METIS_MeshToDual");
+  check_metis(METIS_MeshToDual(&n_cells, &n_nodes, first.data(), nodes.data(), &common, &base, &offset, &adjacent),
+              "METIS_MeshToDual");
   std::vector<std::vector<idx_t>> members(static_cast<std::size_t>(n_groups));
   for (idx_t i = 0; i < n_cells; ++i) members[group[i]].push_back(i);
   Graph graph;
@@ -112,9 +107,9 @@ Partition partition(const Mesh& mesh, std::span<const std::int32_t> cells, std::
     idx_t options[METIS_NOPTIONS];
     METIS_SetDefaultOptions(options);
     options[METIS_OPTION_SEED] = 1;  // the same parts in every run
-    check(METIS_PartGraphRecursive(&n_groups, &constraints, graph.offset.data(), graph.neighbour.data(), weights.data(),
-                                   nullptr, graph.faces.data(), &parts, nullptr, nullptr, options, &cut, part.data()),
-          "METIS_PartGraphRecursive");
+    check_metis(METIS_PartGraphRecursive(&n_groups, &constraints, graph.offset.data(), graph.neighbour.data(), weights.data(),
+                                         nullptr, graph.faces.data(), &parts, nullptr, nullptr, options, &cut, part.data()),
+                "METIS_PartGraphRecursive");
   }
   for (std::size_t i = 0; i < cells.size(); ++i) made.of_cell[i] = static_cast<std::int32_t>(part[group[i]]);
 

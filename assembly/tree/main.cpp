@@ -20,6 +20,7 @@
 #include "lacon/assembly/tree/exchange.hpp"
 #include "lacon/assembly/tree/ordering_ahead.hpp"
 #include "lacon/catalog/messages.hpp"
+#include "lacon/structures/openblas.hpp"
 
 namespace {
 
@@ -119,6 +120,7 @@ class Pieces {
       SharedMemory::open(path);
       return "done";
     }
+    if (verb == "analyse") reserve();
     if (verb == "order") {
       said >> path;
       return said_of(lacon::order_in(SharedMemory::open(path)));
@@ -145,6 +147,14 @@ class Pieces {
     return more ? piece.reduce(memory, *more) : piece.reduce(memory);
   }
 
+  /// What a factor works in, before its analysis says that there is room for the rest. Throws std::bad_alloc.
+  void reserve() {
+    if (is_reserved_) return;
+    lacon::reserve_blas_memory();
+    is_reserved_ = true;
+  }
+
+  bool is_reserved_ = false;
   std::map<int, Piece<float>> single_;
   std::map<int, Piece<double>> full_;
 };

@@ -9,9 +9,9 @@
 #include "lacon/operators/evolution/linear_solver.hpp"
 #include "lacon/operators/evolution/newton.hpp"
 #include "lacon/operators/evolution/state_fields.hpp"
-#include "lacon/operators/program/blas.hpp"
 #include "lacon/operators/program/checking.hpp"
 #include "lacon/operators/program/program.hpp"
+#include "lacon/structures/openblas.hpp"
 
 namespace lacon {
 namespace {

@@ -1,15 +1,12 @@
 #include "lacon/operators/program/blas.hpp"
 
-#include <dlfcn.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <cstdlib>
-#include <new>
 #include <string>
-#include <vector>
 
-#include "lacon/structures/parallel.hpp"
+#include "lacon/structures/openblas.hpp"
 
 namespace lacon {
 namespace {
@@ -24,12 +21,6 @@ constexpr struct {
 } kernels[] = {{"Nehalem", sse4_2},  {"Sandybridge", avx},   {"Bulldozer", avx},        {"Piledriver", avx},
                {"Steamroller", avx}, {"Excavator", avx2},    {"Haswell", avx2},         {"Zen", avx2},
                {"SkylakeX", avx512}, {"Cooperlake", avx512}, {"SapphireRapids", avx512}};
-
-/// A function of OpenBLAS; null where it is not linked.
-template <class Function>
-Function* openblas(const char* name) {
-  return reinterpret_cast<Function*>(dlsym(RTLD_DEFAULT, name));
-}
 
 std::string text_of(const char* function) {
   char* (*const call)() = openblas<char*()>(function);
@@ -85,25 +76,6 @@ void set_up_blas(char** argv) {
   }
   if (!std::getenv("OPENBLAS_NUM_THREADS"))
     if (void (*const set_threads)(int) = openblas<void(int)>("openblas_set_num_threads")) set_threads(1);
-}
-
-void reserve_blas_memory() {
-  void* (*const take)(int) = openblas<void*(int)>("blas_memory_alloc");
-  void (*const give_back)(void*) = openblas<void(void*)>("blas_memory_free");  // it stays OpenBLAS's, for its next product
-  if (!take || !give_back) return;
-  constexpr std::size_t more_than_it_takes = std::size_t{160} << 20;
-  constexpr std::size_t most = 16;  // threads: OpenBLAS has places for a few dozen
-  const std::size_t wanted = std::min(n_threads(), most);
-  std::vector<void*> taken;
-  while (taken.size() < wanted) {
-    void* const probe = std::malloc(more_than_it_takes);
-    if (!probe) break;
-    std::free(probe);
-    taken.push_back(take(0));
-  }
-  for (void* const memory : taken) give_back(memory);
-  if (taken.empty()) throw std::bad_alloc();
-  if (taken.size() < wanted) setenv("LACON_THREADS", std::to_string(taken.size()).c_str(), 1);
 }
 
 std::optional<Blas> present_blas() {

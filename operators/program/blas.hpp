@@ -27,11 +27,6 @@ std::string_view better_kernel(std::string_view taken, const Processor& processo
 /// not say otherwise: fronts are small, more of them only slow each other down. What the user has set stands.
 void set_up_blas(char** argv);
 
-/// Have OpenBLAS take the memory that its products work in, for each thread (128 MB of addresses, of which what is used becomes
-/// real). Where there is none a thread would try for ever at its first large product: std::bad_alloc instead, and fewer threads
-/// where there is less. Nothing where OpenBLAS is not linked.
-void reserve_blas_memory();
-
 struct Blas {
   std::string library;  ///< "OpenBLAS 0.3.21"
   std::string kernel;   ///< "SkylakeX"

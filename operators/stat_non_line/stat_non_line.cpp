@@ -24,10 +24,10 @@
 #include "lacon/operators/evolution/step_events.hpp"
 #include "lacon/operators/evolution/table.hpp"
 #include "lacon/operators/evolution/time_stepping.hpp"
-#include "lacon/operators/program/blas.hpp"
 #include "lacon/operators/program/checking.hpp"
 #include "lacon/operators/program/ending.hpp"
 #include "lacon/operators/program/program.hpp"
+#include "lacon/structures/openblas.hpp"
 
 namespace lacon {
 namespace {

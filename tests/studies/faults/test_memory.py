@@ -18,6 +18,13 @@ MEGABYTE = 1 << 20
 class Memory(SmallStudy):
     def test_a_limit_ends_the_solution_cleanly(self):
         """Limits from what the program itself takes to what the study needs. Below 120 MB of addresses it is not even loaded."""
+        self.assert_limits_end_it_cleanly()
+
+    def test_a_limit_ends_a_solution_by_several_processes_cleanly(self):
+        """Where one of them had no room for what OpenBLAS works in, it tried for ever."""
+        self.assert_limits_end_it_cleanly(LACON_MPI="2", LACON_MPI_FROM="1")
+
+    def assert_limits_end_it_cleanly(self, **environment):
         orders = self.folder / "orders"
         run = self.run_small("small", LACON_ORDERS=str(orders))
         self.assertEqual(run.returncode, 0, run.stderr)
@@ -28,7 +35,7 @@ class Memory(SmallStudy):
                 resource.setrlimit(resource.RLIMIT_AS, (limit * MEGABYTE,) * 2)
 
             done = subprocess.run([LACON.parent / "stat_non_line", order], capture_output=True, text=True, timeout=60, check=False,
-                                  preexec_fn=limited, env={**os.environ, "OPENBLAS_NUM_THREADS": "1"})
+                                  preexec_fn=limited, env={**os.environ, "OPENBLAS_NUM_THREADS": "1"} | environment)
             with self.subTest(limit=limit):
                 self.assertIn(done.returncode, (0, 3), done.stderr)
                 if done.returncode == 3:

@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include <malloc.h>
 #include <sys/resource.h>
 #include <unistd.h>
 
@@ -8,12 +9,15 @@
 #include <cmath>
 #include <filesystem>
 #include <fstream>
+#include <iostream>
+#include <new>
 #include <random>
 #include <utility>
 
 #include "dense.hpp"
 #include "lacon/assembly/mumps_engine.hpp"
 #include "lacon/catalog/messages.hpp"
+#include "lacon/structures/openblas.hpp"
 #include "lattice.hpp"
 #include "saddle_point.hpp"
 
@@ -401,6 +405,41 @@ TEST(MumpsEngine, GoesOnInFilesWhereMemoryEnds) {
   GTEST_FLAG_SET(death_test_style, "threadsafe");  // a process that has nothing to give back
   EXPECT_EXIT(_exit(solve(MumpsOptions::Memory::where_needed)), testing::ExitedWithCode(0), "");
   EXPECT_EXIT(_exit(solve(MumpsOptions::Memory::in_core)), testing::ExitedWithCode(3), "");
+}
+
+// The analysis as well, whatever it is that it can have no more of: each array of it is the first one for which there is no
+// room.
+TEST(MumpsEngine, SaysThatItsAnalysisHasNoMemory) {
+#ifdef __SANITIZE_ADDRESS__
+  GTEST_SKIP() << "the address sanitizer has tables of its own, and ends where memory does";
+#endif
+  const auto ends = [] {
+    constexpr std::size_t page = 4096, most = 64 << 20;
+    reserve_blas_memory();
+    const Lattice lattice(20);
+    mallopt(M_MMAP_THRESHOLD, page);  // what is given back counts no more
+    MumpsEngine({.single_precision = never}).analyse(lattice.matrix);
+    int n = 0;
+    for (std::size_t more = 0; more < most; more += 8 * page, ++n) {
+      const rlimit none{RLIM_INFINITY, RLIM_INFINITY}, limit{addresses() + more, RLIM_INFINITY};
+      setrlimit(RLIMIT_AS, &limit);
+      try {
+        MumpsEngine engine({.single_precision = never});
+        engine.analyse(lattice.matrix);
+        return n > 20 ? 0 : 1;
+      } catch (const Error& error) {
+        if (error.message().id != "SOLVER_2") return 2;
+      } catch (const std::bad_alloc&) {  // of our own
+      } catch (const std::exception& error) {
+        std::cerr << error.what() << '\n';
+        return 3;
+      }
+      setrlimit(RLIMIT_AS, &none);
+    }
+    return 4;
+  };
+  GTEST_FLAG_SET(death_test_style, "threadsafe");
+  EXPECT_EXIT(_exit(ends()), testing::ExitedWithCode(0), "");
 }
 
 }  // namespace
