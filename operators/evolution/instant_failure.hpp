@@ -35,7 +35,10 @@ inline FailureNature nature_of(const Error& error) {
   return known ? known->nature() : FailureNature{};
 }
 
-/// Whether the machine has failed, not the step: memory, processes that were killed. No other attempt at it is to hide that.
-inline bool is_of_the_machine(const Message& message) { return message.id == "SOLVER_2" || message.id == "SOLVER_8"; }
+/// Whether the machine has failed, not the step: memory, a full disk, processes that were killed. No other attempt at it is to
+/// hide that.
+inline bool is_of_the_machine(const Message& message) {
+  return message.id == "SOLVER_2" || message.id == "SOLVER_5" || message.id == "SOLVER_8";
+}
 
 }  // namespace lacon

@@ -277,10 +277,11 @@ TEST(TimeStepping, SolvesTheRestOfAStepAtOnceBeforeItGivesUp) {
   EXPECT_EQ(of_another_kind.course, "1 ");
 }
 
-// An error of the user is no reason to try smaller steps, and neither are a process that was killed and memory that ended.
+// An error of the user is no reason to try smaller steps, and neither are a process that was killed, and memory or a disk
+// that has no more room.
 TEST(TimeStepping, CutsOnlyFailuresOfTheSolution) {
   const TimeSteps steps{.values = {0, 1}, .action = {.cut = true}};
-  for (const auto& [severity, id] : {std::pair{'F', "ORDER_5"}, {'S', "SOLVER_8"}, {'S', "SOLVER_2"}}) {
+  for (const auto& [severity, id] : {std::pair{'F', "ORDER_5"}, {'S', "SOLVER_8"}, {'S', "SOLVER_2"}, {'S', "SOLVER_5"}}) {
     int returns = 0;
     EXPECT_THROW(step_through(
                      steps, [&](double) { throw Error({.severity = severity, .id = id, .text = "", .advice = ""}); },
