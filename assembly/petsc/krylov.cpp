@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
+#include <string_view>
 #include <utility>
 
 #include "lacon/assembly/petsc/aij_matrix.hpp"
@@ -78,6 +79,12 @@ Algorithm algorithm_of(const std::string& name) {
   return {KSPFGMRES};
 }
 
+/// Any name but those that set_up_displacements() knows: what PETSc may have under it is no better here.
+bool is_multigrid(const std::string& name) {
+  constexpr std::string_view others[] = {"BOOMER", "JACOBI", "SOR", "LDLT_INC", "SANS"};
+  return std::ranges::find(others, name) == std::end(others);
+}
+
 }  // namespace
 
 Krylov::Krylov(const BlockSystem& system, OwnEntries entries, const KrylovOptions& options, Multigrid& multigrid)
@@ -146,8 +153,8 @@ void Krylov::set_up_displacements(KSP displacements) {
   const char* prefix = nullptr;
   PC pc = nullptr;
   checked(KSPSetOperators(displacements, k_, k_));
-  if (name == "GAMG" && multigrid_.suits(nodes_)) return multigrid_.give_to(displacements);
-  if (name == "GAMG") return multigrid_.make(displacements, nodes_);
+  if (is_multigrid(name) && multigrid_.suits(nodes_)) return multigrid_.give_to(displacements);
+  if (is_multigrid(name)) return multigrid_.make(displacements, nodes_);
   const OwnedMat aij = as_aij(k_);
   checked(KSPSetOperators(displacements, k_, aij));
   checked(KSPGetPC(displacements, &pc));
