@@ -57,6 +57,7 @@ pid_t start(char* const* words, char* const* environment, int input, int output)
   const pid_t process = vfork();  // fork() would copy the tables of all the memory that a large study has
   if (process == 0) {
     prctl(PR_SET_PDEATHSIG, SIGTERM);  // mpirun ends its ranks
+    setpgid(0, 0);                     // Ctrl-C is for the operator, which ends it when it may
     dup2(input, STDIN_FILENO);
     dup2(output, STDOUT_FILENO);
     execvpe(words[0], words, environment);

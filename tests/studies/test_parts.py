@@ -139,6 +139,15 @@ class PartsTest(StudyTest):
             self.assertNotIn("EVOLUTION_48", run.said)
             self.assertGreaterEqual(self.archived(f"killed_{behind}"), behind)
 
+    def assert_interruption_is_all_that_is_told(self):
+        """Ctrl-C in a terminal, or whoever ends a job: all processes of the group get the signal."""
+        for number in (signal.SIGINT, signal.SIGTERM):
+            with self.started(f"ended_{number}", 1, INSTANTS="400", STEP="0.001") as (run, _):
+                os.killpg(run.pid, number)
+            self.assertEqual(run.returncode, 4, run.said[-3000:])
+            self.assertIn(f"<F> <STUDY_18> the run was ended by {number.name}", run.said)
+            self.assertNotIn("SOLVER_8", run.said)
+
     def go_on_with_another(self, **case):
         """@return a result of four instants, and the same where the operator was killed behind the second one"""
         case |= {"INSTANTS": "4"}
@@ -233,6 +242,9 @@ class Parts(PartsTest):
     def test_a_killed_process_ends_all(self):
         self.assert_killed_process_ends_all()
 
+    def test_an_interruption_is_all_that_is_told(self):
+        self.assert_interruption_is_all_that_is_told()
+
     def test_another_process_goes_on_with_the_same_bits(self):
         self.assert_same_bits(*self.go_on_with_another())
 
@@ -300,6 +312,9 @@ class PartsOfFactors(PartsTest):
 
     def test_a_killed_process_ends_all(self):
         self.assert_killed_process_ends_all()
+
+    def test_an_interruption_is_all_that_is_told(self):
+        self.assert_interruption_is_all_that_is_told()
 
     def test_another_process_goes_on(self):
         """Who goes on makes a factor of its own, where the processes have had one of an earlier stiffness."""

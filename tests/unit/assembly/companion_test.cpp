@@ -10,6 +10,7 @@
 #include <iostream>
 #include <iterator>
 #include <memory>
+#include <string>
 #include <vector>
 
 #include "lacon/assembly/processes/shared_memory.hpp"
@@ -85,6 +86,14 @@ TEST(Companion, SaysThatThereCanBeNoMoreProcesses) {
     _exit(0);
   };
   EXPECT_EXIT(start_as_another(), testing::ExitedWithCode(0), "Resource temporarily unavailable, it is there");
+}
+
+// Ctrl-C in a terminal is for the group of this process, which ends its programs as it sees fit.
+TEST(Companion, IsInNoGroupOfATerminal) {
+  Companion program(shell("echo $$; read line"));
+  const pid_t process = std::stoi(program.answer());
+  EXPECT_NE(getpgid(process), getpgrp());
+  EXPECT_EQ(getsid(process), getsid(0));
 }
 
 }  // namespace
