@@ -58,6 +58,7 @@ struct PetscEngine::State {
   const SparseMatrix* matrix = nullptr;
   std::unique_ptr<MumpsEngine> direct;  ///< where this matrix has a factor
   std::optional<SparseMatrix> whole;    ///< the same, where other processes have most of it
+  bool lacked_memory = false;           ///< the processes, so that iterations have ended
   int in_vain = 0;                      ///< matrices in a row that were iterated on in vain
   int spared = 0;                       ///< matrices to come that are factorised without a try
 
@@ -109,17 +110,24 @@ struct PetscEngine::State {
     return found;
   }
 
+  /// What an answer says that is none, in words.
+  std::string failure(const std::string& answer) {
+    lacked_memory = answer == no_memory;
+    return lacked_memory ? part("processes_without_memory") : reason_of(answer);
+  }
   /// In place. @return why there is no solution, in words
   std::string iterate(double share, std::span<double> right_side, Solution& solution) {
     const SharedMemory memory(right_side.size_bytes());
     const std::span<double> shared = memory.numbers();
     std::ranges::copy(right_side, shared.begin());
-    std::istringstream said(processes->ask(fmt::format("solve {:.3e} {}", share, memory.path())));
+    const std::string answer = processes->ask(fmt::format("solve {:.3e} {}", share, memory.path()));
+    std::istringstream said(answer);
     std::string word, left, why;
     said >> word;
-    if (word != "failed") said >> solution.iterations >> left;
+    if (word != "converged" && word != "diverged") return failure(answer);
+    said >> solution.iterations >> left;
     std::getline(said >> std::ws, why);
-    if (word != "converged") return word == "failed" ? why : words_of(why, solution.iterations, left);
+    if (word == "diverged") return words_of(why, solution.iterations, left);
     const auto exact = decided(right_side);
     std::ranges::copy(shared, right_side.begin());
     for (const auto& [row, value] : exact) right_side[row] = value;
@@ -153,6 +161,7 @@ struct PetscEngine::State {
       found->stalled = why;
       return *found;
     }
+    if (lacked_memory) fail("SOLVER_2", {{"phase", "factorisation"}, {"equations", std::to_string(sizes.n)}});
     fail("SOLVER_9", {{"reason", why}, {"equations", std::to_string(sizes.n)}});
   }
 };
@@ -182,6 +191,8 @@ Factorisation PetscEngine::factorise(const SparseMatrix& matrix) {
   s.matrix = &matrix;
   s.forget_factor();
   if (!s.loose->of(matrix, hardly_resisted).empty()) return s.factorise_directly(part("free_rigid_motion"));
+  s.lacked_memory = false;
+  s.processes->start();  // anew, where they have failed
   s.processes->ask("forget");
   if (std::exchange(s.spared, std::max(0, s.spared - 1)) > 0)
     if (const std::optional<Factorisation> found = s.factor()) return *found;
@@ -189,7 +200,7 @@ Factorisation PetscEngine::factorise(const SparseMatrix& matrix) {
   std::string said = s.processes->ask("set up " + memory->path());
   memory.reset();  // before the multigrid takes most
   if (said == "taken") said = s.processes->answer();
-  if (said != "ready") return s.factorise_directly(said);
+  if (said != "ready") return s.factorise_directly(s.failure(said));
   Factorisation made;
   made.is_iterative = true;
   return made;

@@ -9,9 +9,12 @@
 #include <cstdlib>
 #include <cstring>
 #include <filesystem>
+#include <initializer_list>
 #include <iostream>
+#include <new>
 #include <sstream>
 #include <string>
+#include <string_view>
 #include <system_error>
 #include <utility>
 #include <vector>
@@ -25,13 +28,35 @@
 namespace lacon {
 namespace {
 
-/// What to do about processes of MPI that have ended before they had begun, by what may have ended them.
-std::string remedy(const std::string& hosts) {
-  if (!hosts.empty()) return part("mpi_look_at_hosts", {{"hosts", hosts}});
+/// Variables of the environment by which mpirun is set, or takes itself to be in a batch job; some of them where there are
+/// many.
+std::string variables_of_mpirun() {
+  constexpr int most = 6;
+  int count = 0;
+  std::string names;
+  for (char** text = environ; *text; ++text) {
+    const std::string_view variable(*text);
+    const auto begins = [&](std::string_view name) { return variable.starts_with(name); };
+    if (std::ranges::none_of(std::initializer_list<std::string_view>{"OMPI_MCA_", "PMIX_MCA_", "SLURM_"}, begins)) continue;
+    if (++count > most) return names + ", ...";
+    names += (names.empty() ? "" : ", ") + std::string(variable.substr(0, variable.find('=')));
+  }
+  return names;
+}
+
+/// By what may have ended them on this machine.
+std::string remedy_here() {
   rlimit memory{};
   getrlimit(RLIMIT_AS, &memory);
   if (memory.rlim_cur == RLIM_INFINITY) return part("mpi_look_at_machine");
   return part("mpi_look_at_memory", {{"limit", std::to_string(memory.rlim_cur >> 10)}});
+}
+
+/// What to do about processes of MPI that have ended before they had begun.
+std::string remedy(const std::string& hosts) {
+  const std::string most_likely = hosts.empty() ? remedy_here() : part("mpi_look_at_hosts", {{"hosts", hosts}});
+  const std::string variables = variables_of_mpirun();
+  return variables.empty() ? most_likely : part("mpi_look_at_variables", {{"remedy", most_likely}, {"names", variables}});
 }
 
 /// mpirun that has too few files open waits for ever. Throws SOLVER_10.
@@ -137,9 +162,13 @@ std::string PetscProcesses::ask(const std::string& line) {
 std::string PetscProcesses::answer() { return checked(ranks_->answer()); }
 
 std::string PetscProcesses::checked(std::string answer) {
-  if (!answer.empty()) return answer;
-  end_ = end_of_ranks();
+  const bool have_failed = answer == no_memory || answer.starts_with(has_failed);
+  if (!answer.empty() && (!have_failed || program_.n_ranks == 1)) return answer;
+  end_ = end_of_ranks();  // the rank that has failed ends the others, whose own answers may be on their way
   ranks_.reset();
+  if (have_failed && !keeps_) return answer;
+  if (answer == no_memory) throw std::bad_alloc();
+  if (have_failed) end_ = reason_of(answer);
   fail_as_ended();
 }
 

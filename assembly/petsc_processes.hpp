@@ -26,6 +26,7 @@ class PetscProcesses : public PartProcesses {
   int machines() const override { return machines_; }
 
   void start() override;
+  /// Where one of several has failed there are no more of them; behind that they are started anew, unless they keep something.
   std::string ask(const std::string& line) override;
   /// The next line of their own. Throws likewise.
   std::string answer();

@@ -1,8 +1,24 @@
 #pragma once
 // Processes that may have cells (solid_parts.hpp): those of PETSc, or those that share a factor of MUMPS.
+#include <new>
 #include <string>
+#include <string_view>
+
+#include "lacon/catalog/messages.hpp"
 
 namespace lacon {
+
+/// What they answer where something goes wrong: the first word of failed WHY, or the whole.
+inline constexpr std::string_view has_failed = "failed ", no_memory = "no memory";
+/// WHY.
+inline std::string reason_of(std::string_view answer) {
+  return std::string(answer.starts_with(has_failed) ? answer.substr(has_failed.size()) : answer);
+}
+/// Throws std::bad_alloc or SOLVER_8 where an answer is another one than done.
+inline void require_done(const std::string& answer) {
+  if (answer == no_memory) throw std::bad_alloc();
+  if (answer != "done") fail("SOLVER_8", {{"reason", reason_of(answer)}});
+}
 
 class PartProcesses {
  public:

@@ -132,7 +132,7 @@ void SolidParts::ask(const std::string& line) const {
     for (const std::int64_t number : std::exchange(dropped_, {})) drop += ' ' + std::to_string(number);
     processes_->ask(drop);
   }
-  if (const std::string answer = processes_->ask(line); answer != "done") fail("SOLVER_8", {{"reason", answer}});
+  require_done(processes_->ask(line));
 }
 
 std::optional<std::int32_t> SolidParts::evaluate(std::span<const double> displacement, SolidMatrix wanted,

@@ -1,4 +1,5 @@
 // What PETSc says where something goes wrong, and options.
+#include <new>
 #include <stdexcept>
 #include <string>
 #include <utility>
@@ -22,6 +23,7 @@ PetscErrorCode note_error(MPI_Comm, int, const char* function, const char*, Pets
 }  // namespace
 
 void checked(PetscErrorCode code) {
+  if (code == PETSC_ERR_MEM) throw std::bad_alloc();
   if (code) throw std::runtime_error("PETSc: " + std::exchange(last_error, std::string()));
 }
 

@@ -6,7 +6,8 @@
 //   solve SHARE PATH   of a right side (n), of which that share may be left
 //                                          -> converged ITERATIONS RESIDUAL, with the solution in its place,
 //                                             diverged ITERATIONS RESIDUAL REASON (of PETSc), or failed WHY
-// Where the processes have cells (parts/), their rows are added to those of a system, and more is said (parts/cells.hpp).
+// Instead of failed WHY it may be: no memory. Where the processes have cells (parts/), their rows are added to those of a
+// system, and more is said (parts/cells.hpp).
 #include <cstdint>
 #include <cstring>
 #include <span>

@@ -11,6 +11,7 @@
 #include <cstring>
 #include <iostream>
 #include <memory>
+#include <new>
 #include <sstream>
 #include <string>
 #include <system_error>
@@ -20,6 +21,7 @@
 #include "lacon/assembly/petsc/krylov.hpp"
 #include "lacon/assembly/petsc/machines.hpp"
 #include "lacon/assembly/processes/host.hpp"
+#include "lacon/structures/openblas.hpp"
 
 namespace {
 
@@ -54,7 +56,7 @@ std::string next_line() {
   return line;
 }
 
-/// What standard output was. PETSc's own words (-info, -log_view, -ksp_monitor of PETSC_OPTIONS) go where errors go.
+/// What standard output was. PETSc's own words (-info, -log_view, -ksp_monitor of LACON_PETSC_OPTIONS) go where errors go.
 std::FILE* answers = nullptr;
 
 bool keep_answers_apart() {
@@ -71,7 +73,7 @@ void answer(const std::string& line) {
   if (is_first()) say(line);
 }
 
-/// What is done while it is there is counted by itself: -log_view of PETSC_OPTIONS shows it under this name.
+/// What is done while it is there is counted by itself: -log_view of LACON_PETSC_OPTIONS shows it under this name.
 class Stage {
  public:
   explicit Stage(const char* name) {
@@ -114,6 +116,18 @@ void give_back_at_once() {
   mallopt(M_TRIM_THRESHOLD, large);
 }
 
+/// SOLVEUR says how PETSc solves, not what is there for other programs (PETSC_OPTIONS, .petscrc): its options are those of
+/// LACON_PETSC_OPTIONS.
+bool set_up_petsc() {
+  for (const char* const others : {"PETSC_OPTIONS", "PETSC_OPTIONS_YAML"}) unsetenv(others);
+  if (const char* const own = std::getenv("LACON_PETSC_OPTIONS")) setenv("PETSC_OPTIONS", own, 1);
+  char name[] = "lacon_petsc", no_files[] = "-skip_petscrc";
+  char* words[] = {name, no_files, nullptr};
+  char** all = words;
+  int count = 2;
+  return PetscInitialize(&count, &all, nullptr, nullptr) == 0;
+}
+
 /// Whether memory is there that holds this number.
 bool sees(const std::string& path, std::int64_t number) {
   try {
@@ -130,6 +144,12 @@ void serve(const KrylovOptions& options) {
   lacon::Multigrid multigrid;
   std::unique_ptr<Krylov> krylov;
   Cells cells(own_rank(), n_ranks(), machines);
+  const auto give_up = [&](const std::string& why) {
+    say(why);
+    if (n_ranks() > 1) MPI_Abort(PETSC_COMM_WORLD, 1);  // others may be anywhere: what is left of them is of no use
+    krylov.reset();
+    multigrid.forget();
+  };
   for (std::string line = next_line(); !line.empty(); line = next_line()) {
     const std::string path = line.substr(line.rfind(' ') + 1);
     try {
@@ -151,12 +171,10 @@ void serve(const KrylovOptions& options) {
         const Stage stage("solve");
         answer(solved(machines, *krylov, std::stod(line.substr(line.find(' '))), path));
       }
+    } catch (const std::bad_alloc&) {
+      give_up("no memory");
     } catch (const std::exception& error) {
-      // other ranks may be anywhere: what is left of them is of no use
-      say(std::string("failed ") + error.what());
-      if (n_ranks() > 1) MPI_Abort(PETSC_COMM_WORLD, 1);
-      krylov.reset();
-      multigrid.forget();
+      give_up(std::string("failed ") + error.what());
     }
   }
 }
@@ -175,7 +193,12 @@ int main(int argc, char** argv) {
   if (!std::getenv("PMIX_NAMESPACE"))  // a process by itself, which mpirun has not started, needs no files of a session
     setenv("OMPI_MCA_orte_create_session_dirs", "0", 0);
   if (!keep_answers_apart()) return 4;
-  if (PetscInitialize(nullptr, nullptr, nullptr, nullptr)) return 4;
+  try {
+    lacon::reserve_blas_memory();
+  } catch (const std::bad_alloc&) {
+    return 4;  // before it has begun: the operator names the limit
+  }
+  if (!set_up_petsc()) return 4;
   lacon::catch_errors();
   give_back_at_once();
   int is_seen = is_first() && sees(argv[4], std::stoll(argv[5]));

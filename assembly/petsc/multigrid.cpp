@@ -84,8 +84,8 @@ bool is_of_type(PC pc, PCType type) {
   return is;
 }
 
-/// The levels of a multigrid that PETSC_OPTIONS of the user have not set otherwise. Squared graphs would cost more iterations
-/// than they save (42 for 27 of two blocks, H3). Polynomials end where aggregates take over.
+/// The levels of a multigrid that LACON_PETSC_OPTIONS of the user have not set otherwise. Squared graphs would cost more
+/// iterations than they save (42 for 27 of two blocks, H3). Polynomials end where aggregates take over.
 void set_options_of_gamg(PC pc) {
   const char* prefix = nullptr;
   checked(PCGetOptionsPrefix(pc, &prefix));
@@ -203,7 +203,7 @@ void Multigrid::make(KSP displacements, const OwnNodes& nodes) {
   checked(KSPSetOperators(displacements, exact, fine));
   set_up_levels(pc, fine, largest, std::move(coarse));
   checked(PCSetFromOptions(pc));
-  if (!is_of_type(pc, PCMG)) return leave_all_levels(displacements, nullptr);  // PETSC_OPTIONS of the user
+  if (!is_of_type(pc, PCMG)) return leave_all_levels(displacements, nullptr);  // LACON_PETSC_OPTIONS of the user
   checked(KSPSetUp(displacements));                                            // now, not in the first iteration
   KSP below = nullptr;
   PC gamg = nullptr;

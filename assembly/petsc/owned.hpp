@@ -40,7 +40,7 @@ inline OwnedMat referenced(Mat matrix) {
 
 /// Throws what PETSc says where a call of it failed.
 void checked(PetscErrorCode code);
-/// What PETSC_OPTIONS of the user says stands.
+/// What LACON_PETSC_OPTIONS of the user says stands.
 void set_option(const std::string& name, const std::string& value);
 /// From now on calls of PETSc that fail print nothing, and checked() tells what was wrong.
 void catch_errors();

@@ -285,7 +285,7 @@ void TreeMumps<Real>::fill_from_all(const SparseMatrix& here, std::span<const do
   };
   for (std::size_t p = 0; p < pieces_.size(); ++p) enter(patterns_[p], values.pieces[p]);
   enter(top, of_top);
-  if (const std::string answer = processes_.ask(line); answer != "done") fail("SOLVER_8", {{"reason", answer}});
+  require_done(processes_.ask(line));
   for (std::int64_t row = 0; row < here.size(); ++row)
     for (std::int64_t at = here.rows()[row]; at < here.rows()[row + 1]; ++at)
       if (here.values()[at] != 0) places.add(static_cast<std::int32_t>(row), here.columns()[at], here.values()[at]);

@@ -82,7 +82,7 @@ def run(build, folder, cells, ranks):
     write_med(mesh, two_blocks("scaled"))
     log.unlink(missing_ok=True)
     mark = f"LACON_SCALING_MARK={os.getpid()}_{ranks}"
-    environment = {**os.environ, "BLOCKS_FLAT": "1", "BLOCKS_DZ": str(PUSH), "BLOCKS_ENGINE": "PETSC", "PETSC_OPTIONS": f"-log_view :{log}",
+    environment = {**os.environ, "BLOCKS_FLAT": "1", "BLOCKS_DZ": str(PUSH), "BLOCKS_ENGINE": "PETSC", "LACON_PETSC_OPTIONS": f"-log_view :{log}",
                    **dict([mark.split("=")])}
     watch = Watch(mark)
     watch.start()

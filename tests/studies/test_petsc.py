@@ -173,18 +173,39 @@ class Mpi(StudyTest):
         """It goes to standard error, and the study is what it is without."""
         for options in ((), ("--mpi", 2)):
             quiet, _, _ = self.solve("petsc", *options)
-            found, _, said = self.solve("petsc", *options, PETSC_OPTIONS="-ksp_converged_reason -ksp_monitor -info")
+            found, _, said = self.solve("petsc", *options, LACON_PETSC_OPTIONS="-ksp_converged_reason -ksp_monitor -info")
             self.assertIn("solve converged due to", said)
             self.assertIn("KSP Residual norm", said)
             for name, values in found.items():
                 np.testing.assert_array_equal(quiet[name], values)
 
     @unittest.skipUnless(PROGRAM.exists() and shutil.which("mpirun"), "built without PETSc, or there is no mpirun")
+    def test_options_for_other_programs_do_nothing(self):
+        """Of PETSc, in the environment and in files where it looks for them."""
+        for folder in (self.folder, self.folder / "home"):
+            folder.mkdir(exist_ok=True)
+            (folder / ".petscrc").write_text("-ksp_monitor\n", encoding="utf-8")
+        for options in ((), ("--mpi", 2)):
+            quiet, counts, _ = self.solve("petsc", *options)
+            found, now, said = self.solve("petsc", *options, PETSC_OPTIONS="-ksp_type preonly -ksp_monitor", PETSC_OPTIONS_YAML="ksp_max_it: 1",
+                                          HOME=str(self.folder / "home"))
+            self.assertNotIn("Residual norm", said)
+            self.assertEqual(now["iterations of PETSc"], counts["iterations of PETSc"])
+            for name, values in found.items():
+                np.testing.assert_array_equal(quiet[name], values)
+
+    @unittest.skipUnless(PROGRAM.exists() and shutil.which("mpirun"), "built without PETSc, or there is no mpirun")
+    def test_what_petsc_cannot_do_is_told(self):
+        """By the process that cannot do it, which ends the others."""
+        with self.assertRaisesRegex(AssertionError, "<S> <SOLVER_8> [^\n]* have ended: PETSc: "):
+            self.solve("petsc", "--mpi", 2, LACON_PETSC_OPTIONS="-pc_type lu")
+
+    @unittest.skipUnless(PROGRAM.exists() and shutil.which("mpirun"), "built without PETSc, or there is no mpirun")
     def test_log_view_counts_products_in_blocks(self):
         """A cycle of the multigrid multiplies by the matrix nine times at least (polynomials of degree 4 on either side, a residual); a node sees 8 to 27."""
         log = self.folder / "log"
         for options, ranks in (((), 1), (("--mpi", 2), 2)):
-            _, counts, _ = self.solve("petsc", *options, PETSC_OPTIONS=f"-log_view :{log}")
+            _, counts, _ = self.solve("petsc", *options, LACON_PETSC_OPTIONS=f"-log_view :{log}")
             flops = scaling.counted(log.read_text(), ranks)["solve"]["flops"] * ranks
             nodes = len(Result(self.folder / "run.base", "RESULT").points)
             self.assertGreater(flops / counts["iterations of PETSc"], 9 * 2 * 9 * 8 * nodes)

@@ -5,6 +5,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <map>
@@ -14,6 +15,7 @@
 #include <utility>
 
 #include "dense.hpp"
+#include "lacon/assembly/parts/part_processes.hpp"
 #include "lacon/assembly/saddle_point_solver.hpp"
 #include "lacon/catalog/messages.hpp"
 
@@ -227,7 +229,7 @@ TEST_F(PetscEngineTest, FactorisesWhereIterationsStall) {
   for (int matrix = 0; matrix < 12; ++matrix) {
     Eigen::VectorXd x = b;
     const SolutionReport report = solver.solve(system.matrix, system.chain.numbering.first[n_nodes], span_of(x));
-    for (const char* const words : {"NMAX_ITER", "after 1 iterations"})
+    for (const char* const words : {"NMAX_ITER", "after 1 iteration(s)"})
       EXPECT_EQ(report.factorisation.stalled.find(words) != std::string::npos, tries.contains(matrix)) << matrix;
     EXPECT_EQ(report.factorisation.negative_pivots, 2);
     EXPECT_LE((x - system.expected(b)).cwiseAbs().maxCoeff(), 1e-10 * x.cwiseAbs().maxCoeff());
@@ -327,21 +329,23 @@ TEST_F(PetscEngineTest, SaysThatSoManyProcessesNeedMoreFiles) {
   EXPECT_EXIT(start_with_few_files(), testing::ExitedWithCode(0), "SOLVER_10.*30 files may be open.*needs about 46");
 }
 
-/// A program in the place of lacon_petsc.
+/// A program in the place of lacon_petsc, beside what starts several of it.
 class Script {
  public:
   explicit Script(const char* text)
-      : path_(std::filesystem::temp_directory_path() / ("lacon_petsc_" + std::to_string(getpid()))) {
-    std::ofstream(path_) << "#!/bin/sh\n" << text << '\n';
-    std::filesystem::permissions(path_, std::filesystem::perms::owner_all);
+      : folder_(std::filesystem::temp_directory_path() / ("lacon_petsc_" + std::to_string(getpid()))) {
+    std::filesystem::create_directory(folder_);
+    std::filesystem::create_symlink(std::filesystem::path(program).replace_filename("lacon_mpirun"), folder_ / "lacon_mpirun");
+    std::ofstream(path()) << "#!/bin/sh\n" << text << '\n';
+    std::filesystem::permissions(path(), std::filesystem::perms::owner_all);
   }
-  ~Script() { std::filesystem::remove(path_); }
+  ~Script() { std::filesystem::remove_all(folder_); }
   Script(const Script&) = delete;
   Script& operator=(const Script&) = delete;
-  std::string path() const { return path_; }
+  std::string path() const { return folder_ / "lacon_petsc"; }
 
  private:
-  std::filesystem::path path_;
+  std::filesystem::path folder_;
 };
 
 TEST(PetscEngine, SaysThatItsProcessesHaveEnded) {
@@ -392,6 +396,80 @@ TEST(PetscEngine, NamesNoMachineWhereThereIsNone) {
   const std::string said = said_of("echo There are not enough slots available; exit 1");
   EXPECT_EQ(said.substr(0, 10), "SOLVER_10 ") << said;
   EXPECT_NE(said.find("exit status 1"), std::string::npos) << said;
+}
+
+// What the processes say of themselves is why there is a factor instead, without the words that they say it in.
+TEST(PetscEngine, SaysWhyItsProcessesHaveFailed) {
+  const TwoBodies system;
+  for (const auto& [answer, why] :
+       {std::pair("no memory", "its processes have no memory"), std::pair("failed to map", "to map")}) {
+    const Script script(
+        (std::string("echo ready 1; read line; echo forgotten; read line; echo ") + answer + "; read line").c_str());
+    PetscOptions options = system.options();
+    options.program = script.path();
+    PetscEngine engine(options);
+    engine.analyse(system.matrix);
+    EXPECT_EQ(engine.factorise(system.matrix).stalled, why);
+  }
+}
+
+// Of several the one that has failed says why, whatever others were saying. They are started anew, unless they had something
+// that nobody else has.
+TEST_F(PetscEngineTest, SaysWhyOneOfItsProcessesHasFailed) {
+  if (!PetscEngine::has_mpirun()) GTEST_SKIP() << "there is no mpirun";
+  const TwoBodies system;
+  const Script script(R"(
+    if [ "$OMPI_COMM_WORLD_RANK" = 0 ]; then
+      echo ready 1; read line; echo forgotten; read line; touch "$0.go"; sleep 0.5; echo taken; sleep 30
+    else
+      until [ -e "$0.go" ]; do sleep 0.02; done
+      rm "$0.go"; echo failed of the second; sleep 1; exit 1
+    fi)");
+  PetscOptions options = system.options();
+  options.program = script.path();
+  options.n_ranks = 2;
+  PetscEngine engine(options);
+  engine.analyse(system.matrix);
+  for (int matrix = 0; matrix < 2; ++matrix) EXPECT_EQ(engine.factorise(system.matrix).stalled, "of the second");
+  engine.processes(0)->start();
+  engine.processes(0)->keep();
+  const std::string said = error_of([&] { engine.factorise(system.matrix); });
+  EXPECT_TRUE(said.starts_with("SOLVER_8")) << said;
+  EXPECT_TRUE(said.ends_with(": of the second")) << said;
+}
+
+// Variables that mpirun reads, for it is not seen which of them keeps it from starting.
+TEST(PetscEngine, NamesVariablesThatMpirunReads) {
+  const TwoBodies system;
+  PetscOptions options = system.options();
+  options.program = "/bin/false";
+  for (const bool are_there : {false, true}) {
+    are_there ? setenv("OMPI_MCA_of_a_test", "1", 1) : unsetenv("OMPI_MCA_of_a_test");
+    try {
+      PetscEngine(options).analyse(system.matrix);
+      ADD_FAILURE();
+    } catch (const Error& error) {
+      EXPECT_EQ(error.message().advice.find("OMPI_MCA_of_a_test") != std::string::npos, are_there) << error.message().advice;
+    }
+  }
+  unsetenv("OMPI_MCA_of_a_test");
+}
+
+// Preconditioners that PETSc does without here are the multigrid, as `lacon help` says.
+TEST_F(PetscEngineTest, TakesTheMultigridForOtherNames) {
+  const TwoBodies system;
+  const auto iterations = [&](const char* name) {
+    PetscOptions options = system.options();
+    options.preconditioner = name;
+    PetscEngine engine(options);
+    engine.analyse(system.matrix);
+    engine.factorise(system.matrix);
+    Eigen::VectorXd x = Eigen::VectorXd::Ones(system.matrix.size());
+    return engine.solve(span_of(x)).iterations;
+  };
+  const auto expected = iterations("GAMG");
+  for (const char* const name : {"ML", "HPDDM", "FIELDSPLIT", "BLOC_LAGR"}) EXPECT_EQ(iterations(name), expected) << name;
+  EXPECT_GT(iterations("SANS"), 2 * expected);
 }
 
 }  // namespace
