@@ -120,7 +120,7 @@ class Pieces {
       SharedMemory::open(path);
       return "done";
     }
-    if (verb == "analyse") reserve();
+    if (verb == "factorise") reserve();
     if (verb == "order") {
       said >> path;
       return said_of(lacon::order_in(SharedMemory::open(path)));
@@ -147,7 +147,7 @@ class Pieces {
     return more ? piece.reduce(memory, *more) : piece.reduce(memory);
   }
 
-  /// What a factor works in, before its analysis says that there is room for the rest. Throws std::bad_alloc.
+  /// What factors work in. Throws std::bad_alloc: the operator may do without this process.
   void reserve() {
     if (is_reserved_) return;
     lacon::reserve_blas_memory();

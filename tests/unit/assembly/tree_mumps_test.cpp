@@ -352,10 +352,10 @@ TEST(TreeMumps, LeavesUnknownsAsTheirRowAloneDecides) {
 }
 
 /// The message that a factorisation ends with.
-std::string end_of(const std::string& program) {
-  const Lattice lattice(10);
+std::string end_of(const std::string& program, const Lattice& lattice = Lattice(10)) {
   MumpsOptions options = shared_by(2);
   options.program = program;
+  options.memory = MumpsOptions::Memory::in_core;
   MumpsEngine engine(options);
   try {
     engine.analyse(lattice.matrix);
@@ -376,6 +376,19 @@ TEST(TreeMumps, SaysThatProcessesHaveEnded) {
   const std::string killed = end_of(script);
   EXPECT_TRUE(killed.starts_with("SOLVER_8")) << killed;
   EXPECT_NE(killed.find("Killed"), std::string::npos) << killed;
+  std::filesystem::remove(script);
+}
+
+// Where a process has no room for what OpenBLAS works in (128 MB), this would look for it for ever.
+TEST(TreeMumps, SaysThatProcessesHaveNoMemory) {
+#ifdef __SANITIZE_ADDRESS__
+  GTEST_SKIP() << "the address sanitizer has tables of its own";
+#endif
+  const std::filesystem::path script = std::filesystem::temp_directory_path() / "lacon_mumps_with_a_limit";
+  std::ofstream(script) << "#!/bin/sh\nulimit -v 200000\nexec " << shared_by(2).program << " \"$@\"\n";
+  std::filesystem::permissions(script, std::filesystem::perms::owner_all);
+  const std::string end = end_of(script, Lattice(24));
+  EXPECT_TRUE(end.starts_with("SOLVER_2")) << end;
   std::filesystem::remove(script);
 }
 
