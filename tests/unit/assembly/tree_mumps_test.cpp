@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <fstream>
 #include <iterator>
+#include <new>
 #include <random>
 #include <set>
 #include <stdexcept>
@@ -14,6 +15,7 @@
 #include "dense.hpp"
 #include "lacon/assembly/mumps_engine.hpp"
 #include "lacon/assembly/ordering.hpp"
+#include "lacon/assembly/parts/part_processes.hpp"
 #include "lacon/assembly/tree/ordering_ahead.hpp"
 #include "lacon/catalog/messages.hpp"
 #include "lattice.hpp"
@@ -377,6 +379,19 @@ TEST(TreeMumps, SaysThatProcessesHaveEnded) {
   EXPECT_TRUE(killed.starts_with("SOLVER_8")) << killed;
   EXPECT_NE(killed.find("Killed"), std::string::npos) << killed;
   std::filesystem::remove(script);
+}
+
+// Answers about cells: memory that ends is not a process that has ended, and why it has failed is said without that word.
+TEST(PartProcesses, HaveReasons) {
+  EXPECT_NO_THROW(require_done("done"));
+  EXPECT_THROW(require_done("no memory"), std::bad_alloc);
+  try {
+    require_done("failed to map segment");
+    ADD_FAILURE();
+  } catch (const Error& error) {
+    EXPECT_EQ(error.message().id, "SOLVER_8");
+    EXPECT_TRUE(error.message().text.ends_with(": to map segment")) << error.message().text;
+  }
 }
 
 // Where a process has no room for what OpenBLAS works in (128 MB), this would look for it for ever.
