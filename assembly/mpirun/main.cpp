@@ -86,7 +86,7 @@ int run(char** words) {
   sigemptyset(&signals);
   for (const int signal : {SIGCHLD, SIGTERM, SIGCONT, SIGINT, SIGHUP}) sigaddset(&signals, signal);
   sigprocmask(SIG_BLOCK, &signals, &before);
-  sigdelset(&signals, SIGINT);  // those of a terminal, which mpirun gets too
+  sigdelset(&signals, SIGINT);  // those of a terminal, should it be in its group: mpirun gets them too
   sigdelset(&signals, SIGHUP);
   signal(SIGCHLD, SIG_DFL);
   prctl(PR_SET_PDEATHSIG, SIGCONT);  // other signals do not wake who is stopped, and SIGKILL would leave what is to be removed

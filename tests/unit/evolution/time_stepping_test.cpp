@@ -277,11 +277,10 @@ TEST(TimeStepping, SolvesTheRestOfAStepAtOnceBeforeItGivesUp) {
   EXPECT_EQ(of_another_kind.course, "1 ");
 }
 
-// An error of the user is no reason to try smaller steps, and neither are a process that was killed, and memory or a disk
-// that has no more room.
+// An error of the user is no reason to try smaller steps, and neither are a process that was killed and memory that ended.
 TEST(TimeStepping, CutsOnlyFailuresOfTheSolution) {
   const TimeSteps steps{.values = {0, 1}, .action = {.cut = true}};
-  for (const auto& [severity, id] : {std::pair{'F', "ORDER_5"}, {'S', "SOLVER_8"}, {'S', "SOLVER_2"}, {'S', "SOLVER_5"}}) {
+  for (const auto& [severity, id] : {std::pair{'F', "ORDER_5"}, {'S', "SOLVER_8"}, {'S', "SOLVER_2"}}) {
     int returns = 0;
     EXPECT_THROW(step_through(
                      steps, [&](double) { throw Error({.severity = severity, .id = id, .text = "", .advice = ""}); },
@@ -405,6 +404,13 @@ TEST(TimeStepping, RestrictsTheListToAnInterval) {
   EXPECT_THROW(restrict(steps, {.first_number = 4}), Error);
   EXPECT_THROW(restrict(steps, {.first_number = 2, .last_number = 2}), Error);
   EXPECT_THROW(restrict({.values = {0}}, {}), Error);
+}
+
+// No shorter step has more memory, more room on the disk, or processes that run again.
+TEST(InstantFailure, MayBeOfTheMachine) {
+  for (const auto& [id, of_it] :
+       {std::pair("SOLVER_2", true), {"SOLVER_5", true}, {"SOLVER_8", true}, {"SOLVER_9", false}, {"EVOLUTION_4", false}})
+    EXPECT_EQ(is_of_the_machine({.severity = 'S', .id = id, .text = "", .advice = ""}), of_it) << id;
 }
 
 }  // namespace
