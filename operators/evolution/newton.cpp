@@ -209,11 +209,10 @@ void Newton::finish_instant(double instant, const StaticState& previous, StaticS
     fail("EVOLUTION_9", {{"instant", fmt::format("{:.9g}", instant)}, {"cell", cell_name(*cell)}});
   fail_if_passed_through(instant, state);
   equilibrium_.hold_points(state);
-  const auto& negative = line.solution.factorisation.negative_pivots;
   found_ = {.instant = instant,
             .before = {.displacement = previous.displacement, .pressure = previous.patches.lambda},
             .external = external,
-            .negative = negative.value_or(0),
+            .negative = line.solution.factorisation.negative_pivots,
             .constraints = line.constraints,
             .unbalanced = line.round_off && line.rela > few_digits ? line.rela : 0,
             .worst_dof = line.worst_dof};
@@ -356,11 +355,14 @@ void Newton::note_round_off() {
 }
 
 void Newton::note_stability() {
-  const bool unstable = choice_.follows_unstable() && found_.negative > found_.constraints;
+  const bool unknown = !found_.negative;
+  const bool unstable = choice_.follows_unstable() && (unknown || *found_.negative > found_.constraints);
   unstable_path_.solve(unstable);
   if (!unstable || std::exchange(unstable_told_, true)) return;
-  inform("EVOLUTION_54", {{"instant", fmt::format("{:.9g}", found_.instant)},
-                          {"negative", std::to_string(found_.negative)},
+  const std::string instant = fmt::format("{:.9g}", found_.instant);
+  if (unknown) return inform("EVOLUTION_75", {{"instant", instant}});
+  inform("EVOLUTION_54", {{"instant", instant},
+                          {"negative", std::to_string(*found_.negative)},
                           {"constraints", std::to_string(found_.constraints)}});
 }
 

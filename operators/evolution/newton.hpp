@@ -211,8 +211,8 @@ class Newton {
   struct Found {
     double instant = 0;
     KnownState before;
-    std::vector<double> external;  ///< forces as the instant began with them
-    std::int64_t negative = 0;     ///< pivots of the last iteration; 0 where it knows none
+    std::vector<double> external;          ///< forces as the instant began with them
+    std::optional<std::int64_t> negative;  ///< pivots of the last iteration; iterations of PETSc know none
     std::int64_t constraints = 0;
     double unbalanced = 0;  ///< forces over the largest, where that is round-off and more than asked
     std::int64_t worst_dof = -1;
@@ -235,7 +235,7 @@ class Newton {
   std::set<std::size_t> told_;  ///< patches that EVOLUTION_20 was about
   UnstablePath unstable_path_;
   Found found_;
-  bool unstable_told_ = false;                   ///< EVOLUTION_54 was
+  bool unstable_told_ = false;                   ///< EVOLUTION_54 was, or EVOLUTION_75
   bool round_off_told_ = false;                  ///< EVOLUTION_69 was
   std::map<std::int32_t, double> covers_since_;  ///< zones with covers that are kept since an instant that is not accepted yet
   std::set<std::int32_t> covers_told_;           ///< zones that EVOLUTION_50 was about
