@@ -58,7 +58,7 @@ std::optional<Rejection> left_out(const PairingOptions& options, const Surface& 
                                   const Surface& master, std::size_t master_cell);
 /// Whether no gap up to this one is beyond a limit of `options`.
 bool within_limits(const PairingOptions& options, double largest_gap, const CoupleSize& couple);
-/// Whether an overlap is so deep that the way to it may leave a body. @param moved give_way()
+/// Whether an overlap is so deep that the way to it may leave both bodies. @param moved give_way()
 bool may_lie_behind(const PairingOptions& options, double gap, const CoupleSize& couple, double moved);
 /// Which limit a gap in the middle of what a couple has in common is beyond. @param moved give_way()
 std::optional<Rejection> beyond_limits(const PairingOptions& options, double gap, const CoupleSize& couple, double moved);

@@ -50,14 +50,19 @@ struct Masters {
         steep(steep_cosine(pairing_options)),
         tree(boxes_of_usable(rejected, examine)) {}
 
-  /// Whether the straight way from a point of a slave cell to one of a master, which lies inside of it, leaves the body of
-  /// either: then both are far sides, or sides of a pocket, and not in contact.
-  bool leaves_a_body(std::size_t slave_cell, Vec3 from, std::size_t master_cell, Vec3 to) const {
+  /// Whether a couple is seen through bodies: the straight way from a point of the slave to one of the master, behind it,
+  /// leaves the body of the slave, and the way back that of the master, so that both are far sides, or sides of a pocket. A
+  /// thin body that lies inside of another one, as a spring in its free shape, is left on one of these ways alone. That is
+  /// enough for slivers of a slave cell, which see past a corner.
+  /// @param share of the slave cell
+  bool is_through_bodies(double share, std::size_t slave_cell, Vec3 from, std::size_t master_cell, Vec3 to) const {
     std::call_once(*ways_known_, [&] { ways_.emplace(slave, master); });
     const double length = norm(to - from);
     const Vec3 along = (1 / length) * (to - from);
-    return ways_->to_leave(body_of(slave, slave_cell), from, along) < length ||
-           ways_->to_leave(body_of(master, master_cell), to, -1.0 * along) < length;
+    const bool slave_is_left = ways_->to_leave(body_of(slave, slave_cell), from, along) < length,
+               master_is_left = ways_->to_leave(body_of(master, master_cell), to, -1.0 * along) < length;
+    constexpr double past_a_corner = 0.02;
+    return share < past_a_corner ? slave_is_left || master_is_left : slave_is_left && master_is_left;
   }
 
   /// Call couple(cell) for every master whose box `touches(box)`, or for all of them.

@@ -373,7 +373,8 @@ class PairerInPlane final : public detail::CellPairer {
               if (limit || !detail::may_lie_behind(options, gap, size, moved)) return limit;
               const Vec2 tangent = e.tangent(middle), normal = (1 / length(tangent)) * Vec2{tangent.y, -tangent.x},
                          from = e.origin + e.x(middle), to = from + gap * normal;
-              return masters_->leaves_a_body(cell, {from.x, from.y, 0}, static_cast<std::size_t>(m), {to.x, to.y, 0})
+              return masters_->is_through_bodies(0.5 * (b - a), cell, {from.x, from.y, 0}, static_cast<std::size_t>(m),
+                                                 {to.x, to.y, 0})
                          ? std::optional(Rejection::too_deep)
                          : std::nullopt;
             };

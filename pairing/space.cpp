@@ -309,7 +309,9 @@ class PairerInSpace final : public detail::CellPairer {
       if (!limit && detail::may_lie_behind(options(), found, size, moved)) {
         const Vec2 xi = e.place(y, tolerances()).xi;
         const Vec3 x = e.f.origin + e.f.x(xi).x;
-        if (masters_->skin.leaves_a_body(slave_cell, x, master_cell, x + found * e.direction(xi))) limit = Rejection::too_deep;
+        if (masters_->skin.is_through_bodies(double_area(view->region.polygon) / e.chart_area, slave_cell, x, master_cell,
+                                             x + found * e.direction(xi)))
+          limit = Rejection::too_deep;
       }
       if (limit) reject(view->master, *limit);
       return limit.has_value();

@@ -355,12 +355,11 @@ void Newton::note_round_off() {
 }
 
 void Newton::note_stability() {
-  const bool unknown = !found_.negative;
-  const bool unstable = choice_.follows_unstable() && (unknown || *found_.negative > found_.constraints);
-  unstable_path_.solve(unstable);
-  if (!unstable || std::exchange(unstable_told_, true)) return;
+  const Stability stability = stability_of(choice_.follows_unstable(), found_.negative, found_.constraints);
+  unstable_path_.solve(stability != Stability::stable);
+  if (stability == Stability::stable || std::exchange(unstable_told_, true)) return;
   const std::string instant = fmt::format("{:.9g}", found_.instant);
-  if (unknown) return inform("EVOLUTION_75", {{"instant", instant}});
+  if (stability == Stability::unknown) return inform("EVOLUTION_75", {{"instant", instant}});
   inform("EVOLUTION_54", {{"instant", instant},
                           {"negative", std::to_string(*found_.negative)},
                           {"constraints", std::to_string(found_.constraints)}});

@@ -7,6 +7,7 @@
 #include <functional>
 #include <map>
 #include <set>
+#include <utility>
 
 #include "lacon/catalog/wording.hpp"
 #include "lacon/operators/evolution/instant_failure.hpp"
@@ -139,7 +140,11 @@ class AdaptiveStepper {
   }
 
   void advance(double from, double target) {
-    level_ = 0;
+    if (!std::exchange(arrived_, false)) {  // the last instant was reached at once, however short its last steps had become
+      step_ = began_with_;
+      level_ = easy_ = 0;
+    }
+    began_with_ = step_;
     for (double at = from; at < target;) {
       const bool last = at + step_ * (1 + 1e-6) >= target;  // no sliver is left before an instant of the list
       const double to = last ? target : at + step_;
@@ -166,6 +171,7 @@ class AdaptiveStepper {
       level_ = 0;
       change();
     }
+    arrived_ = true;
   }
 
  private:
@@ -211,6 +217,8 @@ class AdaptiveStepper {
   const Stepper& stepper_;
   const Iterations& iterations_;
   double step_;
+  bool arrived_ = true;    ///< by its own steps, at the last instant of the list
+  double began_with_ = 0;  ///< the step behind the instant of the list before it
   int level_ = 0, easy_ = 0;
   FailureNature failure_;  ///< of the step that was cut last
   std::int64_t count_ = 0;

@@ -33,7 +33,7 @@ using Tell = std::function<void(const Message& message)>;
 /// go_back(), before anything is cut. Where the latter fails again, its first failure is what counts. A step whose iterations
 /// fail, and which is not to be cut, is solved once more with increments that are searched, and so is what follows up to the
 /// next instant of the list; where that fails as well its first failure counts. Where parts of a step to an instant of the list
-/// fail so, what is left of it is solved at once, with many more iterations, before the first failure is thrown on. With
+/// fail so, what is left of it is solved at once, with many more iterations, before the failure of the part is thrown on. With
 /// `steps.adaptation` (METHODE='AUTO') steps also grow and shrink between the instants of the list, beginning with its first
 /// interval; a step that fails is then cut once, and the shorter one goes on. Throws STEP_3 after too many steps, STEP_5 where
 /// they have become shorter than `smallest`, STEP_6 where it is known that they will not come to the end.

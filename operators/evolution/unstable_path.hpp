@@ -1,5 +1,8 @@
 #pragma once
 // Which instants follow an equilibrium that is not stable at once, and which look for a stable one first.
+#include <cstdint>
+#include <optional>
+
 #include "lacon/operators/evolution/doubling.hpp"
 
 namespace lacon::hdf5 {
@@ -7,6 +10,15 @@ class Group;
 }
 
 namespace lacon {
+
+/// What is known of the equilibrium that an instant ends with.
+enum class Stability { stable, unstable, unknown };
+/// @param follows the instant took the matrix as it is: others end with one of a minimum  @param negative pivots of it, where
+/// they are known
+inline Stability stability_of(bool follows, std::optional<std::int64_t> negative, std::int64_t constraints) {
+  if (!follows || (negative && *negative <= constraints)) return Stability::stable;
+  return negative ? Stability::unstable : Stability::unknown;
+}
 
 /// An instant whose iterations leave an unstable equilibrium, and find no other, is solved once more near it. To look for a
 /// stable one costs all the iterations that an instant may have; where there was none, there seldom is one a step later. So
@@ -19,7 +31,7 @@ class UnstablePath {
   /// The attempt has failed. @param left its iterations left an unstable equilibrium
   /// @return whether the other way is worth an attempt: it has not been tried
   bool fail(bool left);
-  /// The instant is solved. @param unstable as an equilibrium that is not stable
+  /// The instant is solved. @param unstable as an equilibrium that is not stable, or may not be
   void solve(bool unstable);
 
   void save(const hdf5::Group& group) const;

@@ -257,9 +257,10 @@ TEST(TimeStepping, SolvesTheRestOfAStepAtOnceBeforeItGivesUp) {
   TimeSteps adaptive = cut;
   adaptive.adaptation.emplace();
   adaptive.adaptation->event = "AUCUN";
-  Tried grown{.fails = {1, 0.5, 0.5, 1.5}, .has_patience = true};
+  // steps behind it are as long as before it, however short they had become
+  Tried grown{.fails = {1, 1, 0.75, 0.75, 2}, .has_patience = true};
   grown.run(adaptive);
-  EXPECT_EQ(grown.course, "1 < 0.5 S 71 < 0.5 L 73 < 1 = u 1.5 < 1.25 = 1.5 = 1.75 = 2 = ");
+  EXPECT_EQ(grown.course, "1 < 0.5 = 1 < 0.75 S 71 < 0.75 L 73 < 1 = u 2 < 1.5 = 2 = ");
   Tried in_vain{.fails = {1, 1, 1, 1}, .has_patience = true};
   try {
     in_vain.run(cut);

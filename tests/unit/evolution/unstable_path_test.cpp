@@ -11,6 +11,14 @@
 namespace lacon {
 namespace {
 
+TEST(Stability, IsUnknownWithoutPivotsWhereTheMatrixIsTakenAsItIs) {
+  EXPECT_EQ(stability_of(false, 9, 3), Stability::stable);
+  EXPECT_EQ(stability_of(false, {}, 3), Stability::stable);
+  EXPECT_EQ(stability_of(true, 3, 3), Stability::stable);
+  EXPECT_EQ(stability_of(true, 4, 3), Stability::unstable);
+  EXPECT_EQ(stability_of(true, {}, 3), Stability::unknown);
+}
+
 /// What instants do whose iterations leave an unstable equilibrium: L looks for a stable one, F follows. @param stable the
 /// instant that finds one when it looks, if any  @param lost the instant that finds nothing near the unstable one
 std::string attempts(UnstablePath& path, int instants, int stable = -1, int lost = -1) {

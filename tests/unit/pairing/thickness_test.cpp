@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <limits>
+#include <set>
 
 #include "moved.hpp"
 #include "skins.hpp"
@@ -156,12 +157,29 @@ TEST(WaysThrough, WhatIsSeenThroughASideOfABodyIsLeftOut) {
   EXPECT_TRUE(sees(keyway({.distance_limit = 4}), upper, bottom));  // who gives a limit has it
   // what has come closer since bodies were at rest may be an iterate
   EXPECT_TRUE(sees(keyway(deep, 1.5), upper, bottom));
-  // a key that lies in the wall by more than half of it: still in contact with it, for the way ends within both
-  Keyway pressed(0.9);
+  // a key that lies in the wall by more than half of its cells, but on no way out of both
+  Keyway pressed(1.8);
   EXPECT_TRUE(sees(pressed(deep), 2, 0));
   // of one body other limits hold
   keyway.of_key.assign(40, 7);
   EXPECT_EQ(keyway(deep).count(Rejection::too_deep), 0);
+}
+
+// A leaf of a spring in its free shape, which lies in a block by more than it is thick.
+TEST(WaysThrough, AThinBodyInsideOfAnotherOneStaysInContact) {
+  const std::vector<std::int32_t> one(82, 7), other(82, 8);
+  Skin leaf = plate(-0.6, -0.5, 40), block = plate(-3, 0, 40);  // 0.1 thick, the block 3
+  const PairingOptions deep{.depth_limit = 40};
+  Surface slave = with_body(leaf, one), master = with_body(block, other);
+  const Thickness thick = thickness(slave, master);
+  slave.thickness = thick.slave, master.thickness = thick.master;
+  const Pairing found = pair(slave, master, deep);
+  EXPECT_GE(found.count(Rejection::too_deep), 40);  // its upper side and the lower one of the block
+  std::set<std::int32_t> pressed;                   // of its lower side, by the upper one of the block
+  for (std::size_t c = 0; c < found.cells.size(); ++c)
+    if (found.cells.master[c] >= 40) pressed.insert(found.cells.slave[c]);
+  EXPECT_EQ(pressed.size(), 40U);
+  EXPECT_EQ(*pressed.rbegin(), 39);
 }
 
 // The same in space, the upper side of a block beside a pocket and the bottom of what is in it, whatever the cells.
@@ -185,15 +203,21 @@ TEST(WaysThrough, InSpaceAsInThePlane) {
         random);
     block.surface.body = of_block, key.surface.body = of_key;
     const PairingOptions deep{.depth_limit = 4};
-    EXPECT_GT(pair(block.view(), key.view(), deep).cells.size(), 0U);  // nothing is known of their walls
-    for (const bool wall_of_block : {true, false}) {
-      Skin3 slave = block, master = key;
-      append(wall_of_block ? slave : master, mesh({1, 1, CellType::QUAD4, !wall_of_block, 0, -1.5, 1, 0, 1}, wall(0), random));
-      slave.surface.body = of_block, master.surface.body = of_key;
-      const Pairing found = pair(slave.view(), master.view(), deep);
-      EXPECT_EQ(found.cells.size(), 0U) << catalog::cell(type).name;
-      EXPECT_GT(found.count(Rejection::too_deep), 0) << catalog::cell(type).name;
-    }
+    const auto n_upper = static_cast<std::int32_t>(block.surface.size()),
+               n_bottom = static_cast<std::int32_t>(key.surface.size());
+    for (const bool of_block_too : {true, false})
+      for (const bool of_key_too : {true, false}) {
+        Skin3 slave = block, master = key;
+        if (of_block_too) append(slave, mesh({1, 1, CellType::QUAD4, false, 0, -1.5, 0, 0, 1}, wall(0), random));
+        if (of_key_too) append(master, mesh({1, 1, CellType::QUAD4, true, 0, -1.5, 1, 0, 1}, wall(0), random));
+        slave.surface.body = of_block, master.surface.body = of_key;
+        const Pairing found = pair(slave.view(), master.view(), deep);
+        std::size_t count = 0;
+        for (std::size_t c = 0; c < found.cells.size(); ++c)
+          count += found.cells.slave[c] < n_upper && found.cells.master[c] < n_bottom;
+        EXPECT_EQ(count == 0, of_block_too && of_key_too) << catalog::cell(type).name;
+        EXPECT_EQ(found.count(Rejection::too_deep) > 0, of_block_too && of_key_too) << catalog::cell(type).name;
+      }
   }
 }
 
