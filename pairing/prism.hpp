@@ -5,7 +5,6 @@
 #include <limits>
 #include <span>
 
-#include "lacon/pairing/box_tree.hpp"
 #include "lacon/structures/vector.hpp"
 
 namespace lacon::space {
@@ -49,13 +48,7 @@ class Prism {
     height_ += upward;
   }
 
-  /// False only where no normal meets the box.
-  bool touches(const Box<3>& box) const {
-    const Vec3 centre{0.5 * (box.low[0] + box.high[0]), 0.5 * (box.low[1] + box.high[1]), 0.5 * (box.low[2] + box.high[2])};
-    const Vec3 half{0.5 * (box.high[0] - box.low[0]), 0.5 * (box.high[1] - box.low[1]), 0.5 * (box.high[2] - box.low[2])};
-    return touches(centre, half);
-  }
-  /// @param half the halves of a box's sides
+  /// False only where no normal meets a box. @param half the halves of its sides
   bool touches(Vec3 centre, Vec3 half) const {
     const auto reach = [&](Vec3 d) { return half.x * std::abs(d.x) + half.y * std::abs(d.y) + half.z * std::abs(d.z); };
     const double leaning = lean_ > 0 ? lean_ * (std::abs(dot(centre, n_)) + reach(n_) + height_) : 0;

@@ -11,6 +11,7 @@
 #include <span>
 #include <vector>
 
+#include "lacon/pairing/box_tree.hpp"
 #include "lacon/pairing/pairing.hpp"
 #include "lacon/pairing/prism.hpp"
 #include "lacon/pairing/skin_facet.hpp"

@@ -178,7 +178,7 @@ TEST(WaysThrough, AThinBodyInsideOfAnotherOneStaysInContact) {
   std::set<std::int32_t> pressed;                   // of its lower side, by the upper one of the block
   for (std::size_t c = 0; c < found.cells.size(); ++c)
     if (found.cells.master[c] >= 40) pressed.insert(found.cells.slave[c]);
-  EXPECT_EQ(pressed.size(), 40U);
+  ASSERT_EQ(pressed.size(), 40U);
   EXPECT_EQ(*pressed.rbegin(), 39);
 }
 
