@@ -1,10 +1,12 @@
 #pragma once
 // Pairing for each dimension of the space; a user takes pairing.hpp.
+#include <algorithm>
 #include <array>
 #include <functional>
 #include <limits>
 #include <memory>
 #include <optional>
+#include <vector>
 
 #include "lacon/pairing/pairing.hpp"
 
@@ -58,8 +60,29 @@ std::optional<Rejection> left_out(const PairingOptions& options, const Surface& 
                                   const Surface& master, std::size_t master_cell);
 /// Whether no gap up to this one is beyond a limit of `options`.
 bool within_limits(const PairingOptions& options, double largest_gap, const CoupleSize& couple);
-/// Whether an overlap is so deep that the way to it may leave both bodies. @param moved give_way()
-bool may_lie_behind(const PairingOptions& options, double gap, const CoupleSize& couple, double moved);
+/// Of the slave cell: slivers that see past a corner, and those that are next to nothing.
+inline constexpr double past_a_corner = 0.02, next_to_nothing = 1e-3;
+
+/// Drop slivers of a slave cell that see masters far away, past the ends of others that are near: where ends touch, as of a
+/// tooth in its groove, it is round-off whether the cell sees past them. However little that is, its derivative by the ends is
+/// as large as the gap. A cell that sees nothing near keeps them: iterates that are far off are led back by what they see.
+/// @param far(part) the gap, where may_be_through_bodies() says so, 0 elsewhere  @param share(part) of the slave cell
+/// @param is_through(part) Masters::is_through_bodies  @param reject(part, reason)
+template <class Part, class Far, class Share, class Through, class Reject>
+void drop_past_ends(std::vector<Part>& parts, const Far& far, const Share& share, const Through& is_through,
+                    const Reject& reject) {
+  if (std::ranges::all_of(parts, [&](const Part& part) { return far(part) != 0; })) return;
+  std::erase_if(parts, [&](const Part& part) {
+    if (far(part) == 0) return false;
+    const bool nothing = share(part) < next_to_nothing,
+               drops = nothing || (far(part) > 0 && share(part) < past_a_corner && is_through(part));
+    if (drops) reject(part, nothing ? Rejection::sliver : Rejection::hidden);
+    return drops;
+  });
+}
+
+/// Whether a gap or an overlap is so large that bodies may lie on the way. @param moved give_way()
+bool may_be_through_bodies(const PairingOptions& options, double gap, const CoupleSize& couple, double moved);
 /// Which limit a gap in the middle of what a couple has in common is beyond. @param moved give_way()
 std::optional<Rejection> beyond_limits(const PairingOptions& options, double gap, const CoupleSize& couple, double moved);
 

@@ -50,18 +50,25 @@ struct Masters {
         steep(steep_cosine(pairing_options)),
         tree(boxes_of_usable(rejected, examine)) {}
 
-  /// Whether a couple is seen through bodies: the straight way from a point of the slave to one of the master, behind it,
-  /// leaves the body of the slave, and the way back that of the master, so that both are far sides, or sides of a pocket. A
-  /// thin body that lies inside of another one, as a spring in its free shape, is left on one of these ways alone. That is
-  /// enough for slivers of a slave cell, which see past a corner.
-  /// @param share of the slave cell
-  bool is_through_bodies(double share, std::size_t slave_cell, Vec3 from, std::size_t master_cell, Vec3 to) const {
+  /// Whether a couple that is further apart, or deeper in each other, than cells are large is seen through bodies:
+  /// - one that overlaps where the straight way from a point of the slave to one of the master, behind it, leaves the body of
+  ///   the slave, and the way back that of the master, so that both are far sides, or sides of a pocket. A thin body that lies
+  ///   inside of another one, as a spring in its free shape, is left on one of these ways alone. That is enough for slivers of
+  ///   a slave cell, which see past a corner;
+  /// - one that is apart where the way leaves either body before its end, or the slave's at its end: a flank of the next tooth.
+  /// @param share of the slave cell  @param normal of the slave at `from`, unit
+  bool is_through_bodies(double share, std::size_t slave_cell, Vec3 from, Vec3 normal, std::size_t master_cell,
+                         double gap) const {
     std::call_once(*ways_known_, [&] { ways_.emplace(slave, master); });
-    const double length = norm(to - from);
-    const Vec3 along = (1 / length) * (to - from);
-    const bool slave_is_left = ways_->to_leave(body_of(slave, slave_cell), from, along) < length,
-               master_is_left = ways_->to_leave(body_of(master, master_cell), to, -1.0 * along) < length;
-    constexpr double past_a_corner = 0.02;
+    const std::int32_t own = body_of(slave, slave_cell), other = body_of(master, master_cell);
+    if (gap > 0) {
+      constexpr double near = 0.2, at_its_end = 1.05;  // of the way: facets are taken as flat, and those at both ends may bulge
+      const Vec3 start = from + near * gap * normal;
+      return ways_->to_leave(own, start, normal) < (at_its_end - near) * gap ||
+             ways_->to_leave(other, start, normal) < (1 - 2 * near) * gap;
+    }
+    const bool slave_is_left = ways_->to_leave(own, from, -1.0 * normal) < -gap,
+               master_is_left = ways_->to_leave(other, from + gap * normal, normal) < -gap;
     return share < past_a_corner ? slave_is_left || master_is_left : slave_is_left && master_is_left;
   }
 

@@ -60,9 +60,10 @@ struct PolygonTrace {
   std::vector<Point> point;
 };
 
-/// A master is a wall for a slave where the cosine between the slave's normal and the opposite of the master's is less: more
-/// than 60 degrees off facing it. A face goes over into another one by as much (free_ends.hpp).
-inline constexpr double wall_cosine = 0.5;
+/// A master is a wall for a slave where the cosine between the slave's normal and the opposite of the master's is less: 60
+/// degrees off facing it, or more, whatever round-off makes of teeth that have this angle. A face goes over into another one by
+/// as much (free_ends.hpp).
+inline constexpr double wall_cosine = 0.502;
 
 /// A slave cell and a master cell, by their numbers in the two surfaces.
 struct Couple {
@@ -112,8 +113,8 @@ double steep_cosine(const PairingOptions& options);
 /// Why a couple of cells that see each other gives no contact cell, or a smaller one.
 enum class Rejection : std::uint8_t {
   facing_away,        ///< n_e . n_m >= 0: the master shows its back
-  hidden,             ///< all or a part of it lies behind another master that is nearer along the normal
-  sliver,             ///< smaller than PairingTolerances::sliver
+  hidden,             ///< all or a part of it lies behind another master that is nearer along the normal, or behind a body
+  sliver,             ///< smaller than PairingTolerances::sliver, or than next to nothing past the end of what is near
   degenerate_slave,   ///< slave cells (not couples) without a normal: zero length, folded, coordinates not finite
   degenerate_master,  ///< master cells (not couples) of zero length or with coordinates that are not finite
   no_image,           ///< an integration point has no image on the master along the slave's normal

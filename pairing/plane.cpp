@@ -11,6 +11,7 @@
 #include "lacon/elements/reference.hpp"
 #include "lacon/pairing/fading.hpp"
 #include "lacon/pairing/masters.hpp"
+#include "lacon/pairing/overlaps.hpp"
 #include "lacon/pairing/polynomial.hpp"
 #include "lacon/structures/vector.hpp"
 
@@ -146,13 +147,6 @@ class Strip {
   std::array<double, 5> tx_, ty_, offset_;
 };
 
-/// A part of a slave cell that sees one master cell.
-struct Interval {
-  double a, b;
-  std::int32_t master;
-  std::int32_t node_a, node_b;  ///< whose normals end it; -1: the slave itself ends there
-};
-
 /// Sign changes of f_q by node, computed once for each slave cell.
 class Projections {
  public:
@@ -242,62 +236,6 @@ Image image(const SlaveCell& slave, double xi, const Surface& master, std::int32
   return image;
 }
 
-/// Where several masters cover a part of a slave cell, the nearest along the normal keeps it.
-class Overlaps {
- public:
-  /// @param[in,out] intervals sorted by (a, b)
-  /// @param gap(xi, master)  @param wins(interval, its gap, other one, its gap): whether the first keeps a part
-  template <class Gap, class Wins, class Hidden>
-  void resolve(std::vector<Interval>& intervals, double sliver, const Gap& gap, const Wins& wins, const Hidden& hidden) {
-    bool any = false;
-    double end = -1;
-    for (const Interval& i : intervals) {
-      any = any || i.a < end;
-      end = std::max(end, i.b);
-    }
-    if (!any) return;
-    breaks_.clear();
-    result_.clear();
-    for (const Interval& i : intervals) breaks_.insert(breaks_.end(), {Break{i.a, i.node_a}, Break{i.b, i.node_b}});
-    std::sort(breaks_.begin(), breaks_.end(), [](Break x, Break y) { return std::tie(x.at, x.node) < std::tie(y.at, y.node); });
-    breaks_.erase(std::unique(breaks_.begin(), breaks_.end(), [](Break x, Break y) { return x.at == y.at; }), breaks_.end());
-    lost_.assign(intervals.size(), 0.0);
-    for (std::size_t k = 0; k + 1 < breaks_.size(); ++k) {
-      const double a = breaks_[k].at, b = breaks_[k + 1].at;
-      const auto covers = [&](const Interval& i) { return i.a <= a && i.b >= b; };
-      const auto n = std::count_if(intervals.begin(), intervals.end(), covers);
-      if (n == 0) continue;
-      std::size_t nearest = intervals.size();
-      double its_gap = 0;
-      for (std::size_t i = 0; i < intervals.size(); ++i)
-        if (covers(intervals[i])) {
-          const double own = n == 1 ? 0 : gap(0.5 * (a + b), intervals[i].master);
-          if (nearest == intervals.size() || wins(intervals[i], own, intervals[nearest], its_gap)) nearest = i, its_gap = own;
-        }
-      for (std::size_t i = 0; i < intervals.size(); ++i)
-        if (i != nearest && covers(intervals[i])) lost_[i] += b - a;
-      if (!result_.empty() && result_.back().b == a && result_.back().master == intervals[nearest].master) {
-        result_.back().b = b;
-        result_.back().node_b = breaks_[k + 1].node;
-      } else {
-        result_.push_back({a, b, intervals[nearest].master, breaks_[k].node, breaks_[k + 1].node});
-      }
-    }
-    for (std::size_t i = 0; i < intervals.size(); ++i)
-      if (lost_[i] > 2 * sliver) hidden(intervals[i].master);
-    intervals.swap(result_);
-  }
-
- private:
-  struct Break {
-    double at;
-    std::int32_t node;
-  };
-  std::vector<Break> breaks_;
-  std::vector<double> lost_;
-  std::vector<Interval> result_;
-};
-
 /// The box of a master's ends, for where a normal passes between them decides, not where the cell bulges; nothing for a
 /// degenerate one.
 std::optional<Box<2>> box_of_ends(const Surface& master, std::size_t cell, double size, const PairingTolerances& tolerances) {
@@ -356,6 +294,7 @@ class PairerInPlane final : public detail::CellPairer {
           projections.of(e, master, first), projections.of(e, master, second),
           [&](double a, double b, int end_a, int end_b) {
             const double middle = 0.5 * (a + b);
+            Interval seen{a, b, m, node_of(end_a), node_of(end_b)};
             const Vec2 along = point(master, second) - point(master, first);
             const auto beyond_limits = [&]() -> std::optional<Rejection> {
               const double own = 2 * length(e.x.c[1]), other = length(along), diameter = std::max(own, other);
@@ -370,13 +309,9 @@ class PairerInPlane final : public detail::CellPairer {
                   {.slave = {t.y / length(t), -t.x / length(t), 0}, .master = {along.y / other, -along.x / other, 0}});
               const double gap = image(e, middle, master, m, tolerances).gap;
               const auto limit = detail::beyond_limits(options, gap, size, moved);
-              if (limit || !detail::may_lie_behind(options, gap, size, moved)) return limit;
-              const Vec2 tangent = e.tangent(middle), normal = (1 / length(tangent)) * Vec2{tangent.y, -tangent.x},
-                         from = e.origin + e.x(middle), to = from + gap * normal;
-              return masters_->is_through_bodies(0.5 * (b - a), cell, {from.x, from.y, 0}, static_cast<std::size_t>(m),
-                                                 {to.x, to.y, 0})
-                         ? std::optional(Rejection::too_deep)
-                         : std::nullopt;
+              if (detail::may_be_through_bodies(options, gap, size, moved)) seen.far = gap;
+              if (limit || !(seen.far < 0) || !is_through_bodies(cell, e, seen)) return limit;
+              return Rejection::too_deep;
             };
             if (!(share(e, m) > tolerances.sliver))
               reject(m, Rejection::too_steep);
@@ -385,7 +320,7 @@ class PairerInPlane final : public detail::CellPairer {
             else if (const auto limit = beyond_limits())
               reject(m, *limit);
             else
-              intervals.push_back({a, b, m, node_of(end_a), node_of(end_b)});
+              intervals.push_back(seen);
           },
           [&](double a, double b) { away += b - a; });
       if (away > 2 * tolerances.sliver) reject(m, Rejection::facing_away);
@@ -404,9 +339,13 @@ class PairerInPlane final : public detail::CellPairer {
                                       {other.master, other_gap, size_of(other.master)}, 2 * length(e.x.c[1]));
         },
         [&](std::int32_t m) { reject(m, Rejection::hidden); });
+    detail::drop_past_ends(
+        intervals, [](const Interval& i) { return i.far; }, [](const Interval& i) { return 0.5 * (i.b - i.a); },
+        [&](const Interval& i) { return is_through_bodies(cell, e, i); },
+        [&](const Interval& i, Rejection why) { reject(i.master, why); });
 
     for (std::size_t i = 0; i < intervals.size(); ++i) {
-      const auto& [first, last, m, node_a, node_b] = intervals[i];
+      const auto& [first, last, m, node_a, node_b, far] = intervals[i];
       const bool free_a = i == 0 || intervals[i - 1].b != first,
                  free_b = i + 1 == intervals.size() || intervals[i + 1].a != last;
       const double a = free_a && node_a >= 0 ? end_of_cover(cell, first) : first,
@@ -451,6 +390,14 @@ class PairerInPlane final : public detail::CellPairer {
 
   double share(const SlaveCell& slave, std::int32_t m) const {
     return share_of_couple(cosine(slave, m), masters_->steep).value;
+  }
+
+  /// Of a part that is far away.
+  bool is_through_bodies(std::size_t cell, const SlaveCell& slave, const Interval& part) const {
+    const double middle = 0.5 * (part.a + part.b);
+    const Vec2 t = slave.tangent(middle), normal = (1 / length(t)) * Vec2{t.y, -t.x}, from = slave.origin + slave.x(middle);
+    return masters_->is_through_bodies(0.5 * (part.b - part.a), cell, {from.x, from.y, 0}, {normal.x, normal.y, 0},
+                                       static_cast<std::size_t>(part.master), part.far);
   }
 
   /// Of the angle between the mean normal of the slave and the opposite of the master's.

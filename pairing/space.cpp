@@ -58,17 +58,6 @@ struct MastersInSpace {
   }
 };
 
-/// A part of a slave cell that sees one master.
-struct View {
-  std::int32_t piece, master;
-  Region region;
-};
-
-bool sooner(const View* a, const View* b) {
-  const Vec2 p = middle(a->region.polygon), q = middle(b->region.polygon);
-  return std::tie(a->piece, p.x, p.y, a->master) < std::tie(b->piece, q.x, q.y, b->master);
-}
-
 class PairerInSpace final : public detail::CellPairer {
  public:
   explicit PairerInSpace(std::shared_ptr<const MastersInSpace> masters) : masters_(std::move(masters)) {}
@@ -95,11 +84,12 @@ class PairerInSpace final : public detail::CellPairer {
   }
   void reject(std::int32_t m, Rejection reason) { found_->rejected.push_back({slave_, m, reason}); }
 
-  View* new_view(std::int32_t piece, std::int32_t m) {
+  View* new_view(std::int32_t piece, std::int32_t m, double far = 0) {
     if (n_stored == store.size()) store.emplace_back();
     View& view = store[n_stored++];
     view.piece = piece;
     view.master = m;
+    view.far = far;
     return &view;
   }
 
@@ -284,7 +274,7 @@ class PairerInSpace final : public detail::CellPairer {
 
   void drop_far_views() {
     const double own = diameter(e.f.nodes, e.f.n_vertices);
-    std::erase_if(views, [&](const View* view) {
+    std::erase_if(views, [&](View* view) {
       const Surface &slave_skin = masters_->skin.slave, &master_skin = masters_->skin.master;
       const auto slave_cell = static_cast<std::size_t>(slave_), master_cell = static_cast<std::size_t>(view->master);
       if (const auto reason = detail::left_out(options(), slave_skin, slave_cell, master_skin, master_cell)) {
@@ -306,16 +296,20 @@ class PairerInSpace final : public detail::CellPairer {
       const double moved = detail::give_way(options(), slave_skin, slave_cell, master_skin, master_cell,
                                             {.slave = {n.x, n.y, n.z}, .master = {m.x, m.y, m.z}});
       auto limit = detail::beyond_limits(options(), found, size, moved);
-      if (!limit && detail::may_lie_behind(options(), found, size, moved)) {
-        const Vec2 xi = e.place(y, tolerances()).xi;
-        const Vec3 x = e.f.origin + e.f.x(xi).x;
-        if (masters_->skin.is_through_bodies(double_area(view->region.polygon) / e.chart_area, slave_cell, x, master_cell,
-                                             x + found * e.direction(xi)))
-          limit = Rejection::too_deep;
-      }
+      if (detail::may_be_through_bodies(options(), found, size, moved)) view->far = found;
+      if (!limit && view->far < 0 && is_through_bodies(*view)) limit = Rejection::too_deep;
       if (limit) reject(view->master, *limit);
       return limit.has_value();
     });
+  }
+
+  double share(const View& view) const { return double_area(view.region.polygon) / e.chart_area; }
+
+  /// Of a view that is far away.
+  bool is_through_bodies(const View& view) const {
+    const Vec2 xi = e.place(middle(view.region.polygon), tolerances()).xi;
+    return masters_->skin.is_through_bodies(share(view), static_cast<std::size_t>(slave_), e.f.origin + e.f.x(xi).x,
+                                            e.direction(xi), static_cast<std::size_t>(view.master), view.far);
   }
 
   /// Where several masters cover a part of the slave, the nearest along the normal keeps it. @return whether there are such
@@ -331,6 +325,9 @@ class PairerInSpace final : public detail::CellPairer {
         if (stays_whole(*view, any_hidden)) kept.push_back(view);
       }
     }
+    detail::drop_past_ends(
+        kept, [](const View* v) { return v->far; }, [&](const View* v) { return share(*v); },
+        [&](const View* v) { return is_through_bodies(*v); }, [&](const View* v, Rejection why) { reject(v->master, why); });
     if (any_hidden) std::sort(kept.begin(), kept.end(), sooner);
     return any_hidden;
   }
@@ -357,7 +354,7 @@ class PairerInSpace final : public detail::CellPairer {
       subtract(loser.region, winner.region, sliver_, left);
       if (!old_wins) kept.erase(kept.begin() + static_cast<std::ptrdiff_t>(k));
       for (Region& region : left) {
-        View* const part = new_view(loser.piece, loser.master);
+        View* const part = new_view(loser.piece, loser.master, loser.far);
         std::swap(part->region, region);
         if (old_wins)
           todo.push_back(part);

@@ -3,6 +3,7 @@
 #include <array>
 #include <optional>
 #include <span>
+#include <tuple>
 #include <vector>
 
 #include "lacon/pairing/slave_facet.hpp"
@@ -30,6 +31,19 @@ class Target {
   Inverse along_;
   double size_ = 0;  ///< at least the distance between any two points of slave and master
 };
+
+/// A part of a slave cell that sees one master.
+struct View {
+  std::int32_t piece, master;
+  Region region;
+  double far = 0;  ///< the gap in its middle, where detail::may_be_through_bodies() says so
+};
+
+/// In an order that numbers of cells have no part in, as far as places decide.
+inline bool sooner(const View* a, const View* b) {
+  const Vec2 p = middle(a->region.polygon), q = middle(b->region.polygon);
+  return std::tie(a->piece, p.x, p.y, a->master) < std::tie(b->piece, q.x, q.y, b->master);
+}
 
 /// A convex part of a master's outline; coordinates start at the slave's origin.
 struct Part {

@@ -303,6 +303,12 @@ void Equilibrium::hold(std::span<const std::int64_t> dofs) {
   for (const std::int64_t dof : dofs) system_.add_diagonal(dof, rows[static_cast<std::size_t>(system_.equation(dof))].sum);
 }
 
+void Equilibrium::resist(std::span<const double> springs) {
+  for (std::size_t dof = 0; dof < problem_.n_dofs(); ++dof)
+    if (const std::int64_t e = problem_.numbering.equation[dof]; e >= 0)
+      system_.add_diagonal(static_cast<std::int64_t>(dof), springs[static_cast<std::size_t>(e)]);
+}
+
 std::vector<double> Equilibrium::add(std::span<const double> solution, std::span<const double> step, StaticState& state) const {
   std::vector<double> increment(step.begin(), step.end());
   for (std::size_t dof = 0; dof < increment.size(); ++dof)

@@ -90,6 +90,8 @@ class Equilibrium {
   /// Put a spring to each of these degrees of freedom into the matrix, about as stiff as what is around it: an increment meets
   /// it, forces and the equilibrium know nothing of it.
   void hold(std::span<const std::int64_t> dofs);
+  /// Likewise to all nodes. @param springs by equation of a node
+  void resist(std::span<const double> springs);
 
   /// What the next instant depends on beside the state, for another process that goes on with the same bits.
   void save(const hdf5::Group& group) const;

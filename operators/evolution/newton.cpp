@@ -159,6 +159,8 @@ void Newton::resume(const hdf5::Group& group, const hdf5::Group* base, const Sta
 int Newton::solve(double instant, StaticState& state, const std::function<void(const IterationReport&)>& report) {
   course_.start();
   elsewhere_ = false;
+  creep_.reset();
+  if (effort_ == Effort::creeps) creep_.emplace(problem_, equilibrium_.system());
   try {
     return iterate(instant, state, report);
   } catch (const Error& error) {
@@ -184,7 +186,9 @@ std::vector<double> Newton::begin_instant(double instant, const StaticState& sta
   equilibrium_.rest_at(state.displacement);
   equilibrium_.keep_gliding(state.patches);
   depths_before_ = depths(state);
-  choice_.start_instant(unstable_path_.begin());
+  const bool follows = unstable_path_.begin();
+  choice_.start_instant(follows || creep_);
+  if (creep_) choice_.set_waits(false);
   statuses_.start_instant();
   edges_ = {};
   lost_masters_.start_instant();
@@ -240,7 +244,7 @@ int Newton::iterate(double instant, StaticState& state, const std::function<void
   const auto assemble_first = [&] {
     assemble(state, goes_on ? previous : equilibrium_.at_rest(previous), options_.prediction);
   };
-  if (equilibrium_.has_memory() || equilibrium_.strains_freely(previous) || equilibrium_.has_new_gaps() ||
+  if (creep_ || equilibrium_.has_memory() || equilibrium_.strains_freely(previous) || equilibrium_.has_new_gaps() ||
       state.displacement != previous.displacement ||
       choice_.suited(options_.prediction, equilibrium_.touches(state)) != equilibrium_.matrix())
     assemble_first();
@@ -250,7 +254,8 @@ int Newton::iterate(double instant, StaticState& state, const std::function<void
   bool settling = false;  // statuses change from iteration to iteration: a rough solution finds them as well
   IterationReport line;
   std::size_t changing = 0;
-  int last = effort_ == Effort::lasts ? lasting(options_.iterations) : options_.iterations,
+  const bool long_one = effort_ == Effort::lasts || effort_ == Effort::creeps;
+  int last = long_one ? std::max(options_.iterations, lasting(options_.iterations)) : options_.iterations,
       beyond = last / 2;  // more iterations, which are made where they lead to the end
   const auto with_own_iterations = [&](int first) {
     return std::max(last, std::min(first + options_.iterations, most_times * options_.iterations));
@@ -262,13 +267,16 @@ int Newton::iterate(double instant, StaticState& state, const std::function<void
     line = {.iteration = iteration};
     const SolidMatrix asked = iteration == 0 ? options_.prediction : options_.matrix;
     std::vector<double> solution = solve_system(state, previous, asked, step, accuracy, line);
+    bool downhill = creep_ && resist(solution, state, previous, asked, step, accuracy, line);
     const auto& negative = line.solution.factorisation.negative_pivots;
-    if (negative && choice_.note_pivots(equilibrium_.matrix(), equilibrium_.curves(state), *negative, line.constraints)) {
+    if (!creep_ && negative &&
+        choice_.note_pivots(equilibrium_.matrix(), equilibrium_.curves(state), *negative, line.constraints)) {
       assemble(state, previous, SolidMatrix::tangent);
       solution = solve_system(state, previous, SolidMatrix::tangent, step, accuracy, line);
     }
     // a matrix that is not that of a minimum has statuses that answer to each other in any sense
-    if (!negative || *negative <= line.constraints)
+    if (!creep_) downhill = !negative || *negative <= line.constraints;
+    if (downhill)
       fit_statuses(solution, step, state, accuracy, line,
                    [&] { iteration == 0 ? assemble_first() : assemble(state, previous, options_.matrix); });
     // what iterates that go to and fro jump over lies between them. In space forces leap where the traces of facets change, and
@@ -289,9 +297,9 @@ int Newton::iterate(double instant, StaticState& state, const std::function<void
     // what imposed displacements alone have parted, the next iteration may bring together again: it starts from bodies that
     // touch
     const bool waits = iteration == 0 && parts_a_zone(before, wanted);
-    keep_lost_masters(instant, before, wanted, state);
+    if (!creep_) keep_lost_masters(instant, before, wanted, state);
     const bool kept = statuses_.keeps();
-    state.patches.status = waits ? before : statuses_.next(before, wanted);
+    state.patches.status = waits ? before : creep_ ? wanted : statuses_.next(before, wanted);
     if (statuses_.keeps() != kept) last = with_own_iterations(iteration);
     choice_.note_statuses(line.status_changes, equilibrium_.flows(previous));
     assemble(state, previous, options_.matrix);
@@ -300,6 +308,7 @@ int Newton::iterate(double instant, StaticState& state, const std::function<void
     line.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     report(line);
     course_.add(line.longest, line.worst_dof);
+    if (creep_) creep_->ease(line.longest);
     settled_ = line.status_changes > 0 ? 0 : settled_ + 1;
     if (line.converged()) {
       finish_instant(instant, previous, state, external, line);
@@ -340,7 +349,7 @@ int Newton::iterate(double instant, StaticState& state, const std::function<void
       last = with_own_iterations(iteration);
     }
     if (line.pairs_anew) choice_.forget_residual();
-    if (other_matrix || other_forces || line.pairs_anew) assemble(state, previous, options_.matrix);
+    if (other_matrix || other_forces || line.pairs_anew || creep_) assemble(state, previous, options_.matrix);
     if (!std::isfinite(line.maxi) || (!other_forces && hangs_on_nothing())) break;
   }
   fail_to_converge(instant, line, previous, changing);

@@ -12,6 +12,7 @@
 #include "lacon/assembly/loose_motions.hpp"
 #include "lacon/assembly/saddle_point_solver.hpp"
 #include "lacon/catalog/messages.hpp"
+#include "lacon/operators/evolution/creep.hpp"
 #include "lacon/operators/evolution/effort.hpp"
 #include "lacon/operators/evolution/equilibrium.hpp"
 #include "lacon/operators/evolution/forcing_term.hpp"
@@ -110,6 +111,11 @@ class Newton {
   /// first. Throws SOLVER_3 in the first iteration, EVOLUTION_42 in later ones.
   std::vector<double> solve_system(StaticState& state, const StaticState& previous, SolidMatrix asked,
                                    std::span<const double> step, const Accuracy& accuracy, IterationReport& line);
+  /// Raise the resistance of the matrix to all motion until it is that of a minimum and no node moves further than its cells
+  /// are large, as far as it keeps them from that; cut the solution short where rows of contact ask for more.
+  /// @return whether the matrix is that of a minimum; `line` tells its pivots before the resistance was raised
+  bool resist(std::vector<double>& solution, StaticState& state, const StaticState& previous, SolidMatrix asked,
+              std::span<const double> step, const Accuracy& accuracy, IterationReport& line);
   /// Whether forces alone move a body by more than the model is large: next to nothing resists that, though no pivot is zero.
   bool flings(std::span<const double> solution, std::span<const double> step) const;
   /// What next to nothing resists, of bodies that no support, spring or relation holds.
@@ -246,6 +252,7 @@ class Newton {
   bool looked_far_ = false;                      ///< in this instant: near balance, for what is to be left out
   bool goes_round_ = false;                      ///< residuals have come back: increments are searched (line_search.hpp)
   Effort effort_ = Effort::usual;
+  std::optional<Creep> creep_;         ///< in an instant that is tried so
   bool other_covers_ = false;          ///< patches have begun to keep their cover: what follows has its own iterations
   int times_round_ = 0;                ///< in this instant: residuals have come back
   std::vector<double> depths_before_;  ///< depths() as the instant began

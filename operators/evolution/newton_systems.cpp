@@ -23,6 +23,9 @@ namespace {
 constexpr int most_rests = 4;        // in an instant: how often bodies are led to patches by their load
 constexpr int most_flung = 6;        // in an iteration: how often bodies are held that it flings
 constexpr int most_rounds = 6;       // of statuses in an iteration
+constexpr int most_raised = 12;      // in an iteration: how often the resistance to creeping is
+constexpr double furthest = 0.5;     // cells, by which an iteration may creep
+constexpr double hardly_less = 0.8;  // of a motion: what is driven by gaps heeds no resistance
 constexpr double of_a_round = 1e-6;  // of what the solution before leaves of its right side, iterations may leave
 // Of what resists most: motions that are resisted by less, where bodies are flung. Rows of contact that say the same of a rigid
 // body differ by its strains, and that is all that is left to resist.
@@ -39,6 +42,7 @@ void Newton::place_nodes(const StaticState& state) {
 void Newton::assemble(const StaticState& state, const StaticState& previous, SolidMatrix asked) {
   place_nodes(state);
   equilibrium_.assemble(state, previous, choice_.suited(asked, equilibrium_.touches(state)));
+  if (creep_) equilibrium_.resist(creep_->resistance());
 }
 
 std::vector<double> Newton::solve_system(StaticState& state, const StaticState& previous, SolidMatrix asked,
@@ -98,6 +102,32 @@ std::vector<double> Newton::solve_system(StaticState& state, const StaticState& 
         message("EVOLUTION_42", {{"iteration", std::to_string(line.iteration)}, {"count", count}, {"names", names}}),
         {.depends_on_step = true});
   }
+}
+
+bool Newton::resist(std::vector<double>& solution, StaticState& state, const StaticState& previous, SolidMatrix asked,
+                    std::span<const double> step, const Accuracy& accuracy, IterationReport& line) {
+  const bool driven = std::ranges::any_of(step, [](double value) { return value != 0; });
+  const auto unstable = [&] {
+    const auto& negative = line.solution.factorisation.negative_pivots;
+    return negative && *negative > line.constraints;
+  };
+  const auto pivots = line.solution.factorisation.negative_pivots;  // next to no resistance is left at the end
+  const auto motion = [&] { return driven ? 0 : creep_->over_cells(solution); };
+  double reached = motion();
+  for (int raised = 0; raised < most_raised && (unstable() || reached > furthest); ++raised) {
+    const bool was_unstable = unstable();
+    const double before = reached;
+    creep_->raise();
+    assemble(state, previous, asked);
+    solution = solve_system(state, previous, asked, step, accuracy, line);
+    reached = motion();
+    if (!was_unstable && !unstable() && reached > hardly_less * before) break;
+  }
+  if (reached > furthest)
+    for (double& value : solution) value *= furthest / reached;
+  const bool downhill = !unstable();
+  line.solution.factorisation.negative_pivots = pivots;
+  return downhill;
 }
 
 bool Newton::flings(std::span<const double> solution, std::span<const double> step) const {

@@ -89,19 +89,27 @@ struct Stepper {
     }
   }
 
-  /// Advance to an instant of the list; where that fails, solve what is left of the way at once, by many more iterations: the
-  /// way by short steps may come to where an equilibrium ends, or splits, and others lie behind.
+  /// Advance to an instant of the list; where that fails, solve what is left of the way at once, by many more iterations, and
+  /// at last by iterations that creep: the way by short steps may come to where an equilibrium ends, or splits, and others lie
+  /// behind.
   void reach(double to, const std::function<void()>& advances) const {
     try {
       advances();
       return;
     } catch (const Error& error) {
-      if (!is_of_increments(error) || !action_for(steps, error).cut || !take(Effort::lasts)) throw;
-      tell(message("EVOLUTION_73", {{"instant", fmt::format("{:.9g}", to)}, {"reason", error.message().text}}));
-      go_back();
-      if (!solves(to)) throw;
+      if (!is_of_increments(error) || !action_for(steps, error).cut || !solves_at_once(to, error)) throw;
     }
     solved(to, true);
+  }
+
+  bool solves_at_once(double to, const Error& error) const {
+    for (const auto& [effort, told] : {std::pair(Effort::lasts, "EVOLUTION_73"), std::pair(Effort::creeps, "EVOLUTION_76")}) {
+      if (!take(effort)) continue;
+      tell(message(told, {{"instant", fmt::format("{:.9g}", to)}, {"reason", error.message().text}}));
+      go_back();
+      if (solves(to)) return true;
+    }
+    return false;
   }
 
   /// @param before the failure of the step that this one is a part of

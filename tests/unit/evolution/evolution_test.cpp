@@ -34,7 +34,7 @@ class Solver : public InstantSolver {
   }
   void go_back() override { log_.push_back("back"); }
   bool take(Effort now) override {
-    if (now == Effort::lasts || std::exchange(effort, now) == now) return false;
+    if (now == Effort::lasts || now == Effort::creeps || std::exchange(effort, now) == now) return false;
     log_.push_back(now == Effort::searches ? "searches" : "searches no more");
     return true;
   }

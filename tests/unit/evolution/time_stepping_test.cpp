@@ -178,12 +178,12 @@ TEST(TimeStepping, BeginsAnInstantAgainThatStayedAtAnUnstableEquilibrium) {
 }
 
 /// What a driver is asked for, in its order: instants, and how hard they are tried from now on: S (increments are searched), L
-/// (many iterations), or u (as usual).
+/// (many iterations), C (iterations creep), or u (as usual).
 struct Tried {
   std::vector<double> fails;  ///< instants, in their order
   std::string id = "EVOLUTION_4";
   bool has_search = true;  ///< false: increments are searched anyhow
-  bool has_patience = false;
+  bool has_patience = false, has_creep = false;
   std::size_t failed = 0;
   std::string course;
   Effort effort = Effort::usual;
@@ -198,13 +198,15 @@ struct Tried {
         },
         [&] { course += "< "; }, [&](double, bool) { course += "= "; }, [] { return 9; },
         [&](Effort now) {
-          if ((now == Effort::searches && !has_search) || (now == Effort::lasts && !has_patience)) return false;
+          if ((now == Effort::searches && !has_search) || (now == Effort::lasts && !has_patience) ||
+              (now == Effort::creeps && !has_creep))
+            return false;
           if (std::exchange(effort, now) == now) return false;
-          course += now == Effort::searches ? "S " : now == Effort::lasts ? "L " : "u ";
+          course += now == Effort::searches ? "S " : now == Effort::lasts ? "L " : now == Effort::creeps ? "C " : "u ";
           return true;
         },
         [&](const Message& told) {
-          for (const char* number : {"71", "73"})
+          for (const char* number : {"71", "73", "76"})
             if (told.id == std::string("EVOLUTION_") + number) course += number + std::string(" ");
         });
   }
@@ -269,8 +271,11 @@ TEST(TimeStepping, SolvesTheRestOfAStepAtOnceBeforeItGivesUp) {
     EXPECT_EQ(error.message().text, "");  // the first failure counts
   }
   EXPECT_EQ(in_vain.course, "1 < 0.5 = 1 S 71 < 1 L 73 < 1 ");
+  Tried at_last{.fails = {1, 1, 1, 1}, .has_patience = true, .has_creep = true};
+  at_last.run(cut);
+  EXPECT_EQ(at_last.course, "1 < 0.5 = 1 S 71 < 1 L 73 < 1 C 76 < 1 = u 2 = ");
   // not where the user wants it to stop
-  Tried stops{.fails = {1, 1}, .has_patience = true};
+  Tried stops{.fails = {1, 1}, .has_patience = true, .has_creep = true};
   EXPECT_THROW(stops.run({.values = {0, 1}}), Error);
   EXPECT_EQ(stops.course, "1 S 71 < 1 ");
   Tried of_another_kind{.fails = {1}, .id = "EVOLUTION_15", .has_patience = true};

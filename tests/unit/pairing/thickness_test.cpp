@@ -182,6 +182,48 @@ TEST(WaysThrough, AThinBodyInsideOfAnotherOneStaysInContact) {
   EXPECT_EQ(*pressed.rbegin(), 39);
 }
 
+/// A slave of length 1 under a ledge of the master, which ends above it at `end`; behind that the master is 3 further away.
+/// @param ledge whether it is there at all  @param bar whether a bar lies on the way, whose upper side alone is known
+Pairing under_ledge(double end, bool ledge, bool bar) {
+  Skin slave, master;
+  const auto add = [](Skin& skin, Vec2 a, Vec2 b) {
+    add_chain(
+        skin,
+        [=](double t) {
+          return std::array{a.x + t * (b.x - a.x), a.y + t * (b.y - a.y)};
+        },
+        {0, 1}, Kind::linear);
+  };
+  add(slave, {1, 0}, {0, 0});
+  if (ledge) add(master, {-1, 0}, {end, 0});
+  add(master, {end, 3}, {2, 3});
+  if (bar) add(master, {2, 1.5}, {0.5, 1.5});
+  const std::vector<std::int32_t> one(40, 7), other(40, 8);  // by node
+  return pair(with_body(slave, one), with_body(master, other), {.depth_limit = 4});
+}
+
+// Where ends lie on each other round-off decides whether a slave sees past them, and what it sees there has a derivative that
+// is as large as its gap.
+TEST(WaysThrough, SliversPastTheEndOfWhatIsNearAreLeftOut) {
+  constexpr double round_off = 1e-12, sliver = 9e-4, more = 0.011, much = 0.021;
+  const auto far = [](const Pairing& found) {
+    return std::ranges::count(found.cells.master, found.cells.master.empty() ? 0 : found.cells.master.back());
+  };
+  for (const double width : {round_off, sliver}) {
+    const Pairing found = under_ledge(1 - width, true, false);
+    EXPECT_EQ(found.cells.master, std::vector<std::int32_t>{0}) << width;
+    EXPECT_EQ(found.count(Rejection::sliver), 1) << width;
+    // where there is nothing near what is far is all that there is
+    EXPECT_EQ(far(under_ledge(1 - width, false, false)), 1) << width;
+  }
+  // through a bar, up to a fiftieth of the slave
+  EXPECT_EQ(under_ledge(1 - more, true, false).cells.master, (std::vector<std::int32_t>{1, 0}));
+  const Pairing behind = under_ledge(1 - more, true, true);
+  EXPECT_EQ(behind.cells.master, std::vector<std::int32_t>{0});
+  EXPECT_EQ(behind.count(Rejection::hidden), 1);
+  EXPECT_EQ(under_ledge(1 - much, true, true).cells.master, (std::vector<std::int32_t>{1, 0}));
+}
+
 // The same in space, the upper side of a block beside a pocket and the bottom of what is in it, whatever the cells.
 TEST(WaysThrough, InSpaceAsInThePlane) {
   std::mt19937 random(3);
