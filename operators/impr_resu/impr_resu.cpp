@@ -133,6 +133,7 @@ class Means {
 
 /// The pairing at an instant of a result, or of a contact before any.
 struct PrintedPairing {
+  std::string id;  ///< of the result or the contact
   std::string label;
   std::int64_t order = -1;  ///< of a result
   double instant = 0;
@@ -167,11 +168,12 @@ void each_pairing(const Order& order, const Base& base, Concepts& concepts, cons
     const std::string id = one.concept_id("CONTACT");
     const Mesh& mesh = concepts.mesh(base.contact(id).mesh);
     const ViewedContact viewed(base, mesh, id);
-    visit(
-        {base.label(id), -1, 0, view_pairing(mesh, viewed.model, viewed.contact, registry, {.offsets = viewed.offsets.at(0)})});
+    visit({id, base.label(id), -1, 0,
+           view_pairing(mesh, viewed.model, viewed.contact, registry, {.offsets = viewed.offsets.at(0)})});
     return;
   }
-  const Result& result = concepts.result(one.concept_id("RESULTAT"));
+  const std::string result_id = one.concept_id("RESULTAT");
+  const Result& result = concepts.result(result_id);
   std::vector<std::int64_t> orders = selected_orders(base, result, one);
   std::erase_if(orders, [&](std::int64_t number) { return result.stage(number).contact.empty(); });
   if (orders.empty()) fail("IMPR_7", {{"keyword", one.path("PAIRING")}, {"label", result.label}});
@@ -190,13 +192,18 @@ void each_pairing(const Order& order, const Base& base, Concepts& concepts, cons
       instant.cont_elem = base.field(result, "CONT_ELEM", number);
       instant.kept = read_kept_contact(base.folder() / files->second.at(number), "shown_without_masters").pairing;
     }
-    visit({result.label, number, depl.instant, view_pairing(mesh, viewed.model, viewed.contact, registry, instant)});
+    visit({result_id, result.label, number, depl.instant, view_pairing(mesh, viewed.model, viewed.contact, registry, instant)});
   }
 }
 
 void append_report(const PrintedPairing& printed, std::vector<std::string>& report) {
   report.push_back(printed.title());
   report.insert(report.end(), printed.view.report.begin(), printed.view.report.end());
+}
+
+/// Whose a field in a file is: variables of several results, made in a loop or in functions, may have one name.
+std::string owner_in_file(const Base& base, const std::string& id, const Field& field) {
+  return base.folder().filename().string() + "/" + id + "/" + field.name;
 }
 
 void print_med(const Order& order, const Base& base, Concepts& concepts, const fs::path& file, bool append, Written& written,
@@ -210,7 +217,8 @@ void print_med(const Order& order, const Base& base, Concepts& concepts, const f
                 layer.mesh, printed.label + "_" + layer.name + (printed.order < 0 ? "" : fmt::format("_{}", printed.order)));
             for (Field& field : layer.fields) {
               field.instant = printed.instant;
-              med.add_field(layer.mesh, name, field, name + "_" + field.name, printed.order);
+              med.add_field(layer.mesh, name, field, name + "_" + field.name, printed.order, {},
+                            owner_in_file(base, printed.id, field));
             }
             written.add(part("pairing_layer_of", {{"layer", layer.name}, {"label", printed.label}}));
           }
@@ -223,7 +231,7 @@ void print_med(const Order& order, const Base& base, Concepts& concepts, const f
         written.add(part("mesh") + " " + med.add_mesh(concepts.mesh(id), label_of_mesh(base, id)));
         if (!has_fields(one)) continue;
       }
-      const Result& result = concepts.source(one).second;
+      const auto& [id, result] = concepts.source(one);
       const Mesh& mesh = concepts.mesh(result.mesh);
       const std::string mesh_name = med.add_mesh(mesh, label_of_mesh(base, result.mesh));
       each_field(base, result, mesh, one, [&](PrintedField&& printed) {
@@ -233,7 +241,8 @@ void print_med(const Order& order, const Base& base, Concepts& concepts, const f
           return;
         }
         const auto rule = [](CellType type, int n) { return points_of(type, n).value(); };
-        for (const std::string& name : med.add_field(mesh, mesh_name, field, printed.name_in_med, field.order, rule))
+        for (const std::string& name :
+             med.add_field(mesh, mesh_name, field, printed.name_in_med, field.order, rule, owner_in_file(base, id, field)))
           written.add(part("field") + " " + name);
       });
     }
@@ -347,13 +356,17 @@ void print_listing(const Order& order, const Base& base, Concepts& concepts, con
 }
 
 /// One mesh as code_aster's text, or as gmsh's with the fields that live on it; what this run wrote to a .msh file stays before
-/// its further fields. Throws IMPR_8 for fields as code_aster's text, and for a second mesh.
+/// its further fields. Throws IMPR_8 for fields as code_aster's text, and for a second mesh, also one beside what this run
+/// wrote.
 void print_mesh_file(const Order& order, const Base& base, Concepts& concepts, const fs::path& file, bool append,
                      Written& written) {
   const bool gmsh = order.keywords.text("FORMAT") == "GMSH";
   std::error_code error;
-  const bool goes_on = gmsh && append && fs::exists(file, error);
+  const bool goes_on = append && fs::exists(file, error);
   std::string mesh_id, text = goes_on ? read_text(file) : "";
+  const auto text_of_mesh = [&](const std::string& id) {
+    return gmsh ? gmsh_mesh_text(concepts.mesh(id)) : mail_text(concepts.mesh(id), label_of_mesh(base, id));
+  };
   for (const Keywords& one : order.keywords.factors("RESU")) {
     const auto refuse = [&](const char* keyword, const char* what) {
       fail("IMPR_8", {{"keyword", one.path(keyword)}, {"what", part(what)}});
@@ -364,17 +377,22 @@ void print_mesh_file(const Order& order, const Base& base, Concepts& concepts, c
     const std::string id = has_fields(one) ? concepts.source(one).second.mesh : one.concept_id("MAILLAGE");
     const Mesh& mesh = concepts.mesh(id);
     if (!mesh_id.empty() && mesh_id != id) refuse(source, "second_mesh");
-    if (mesh_id.empty() && !goes_on) {
-      text += gmsh ? gmsh_mesh_text(mesh) : mail_text(mesh, label_of_mesh(base, id));
-      written.add(part("mesh") + " " + base.label(id));
-    }
+    const auto is_in_file = [&] {
+      if (gmsh && has_fields(one)) return mesh_id == id || is_gmsh_text_of(text, mesh);
+      return text.starts_with(text_of_mesh(id));  // its groups too
+    };
+    if (goes_on && !is_in_file()) refuse(source, "second_mesh");
+    if (mesh_id.empty() && !goes_on) text += text_of_mesh(id);
+    if (!has_fields(one) || (mesh_id.empty() && !goes_on)) written.add(part("mesh") + " " + base.label(id));
     mesh_id = id;
     if (!has_fields(one)) continue;
-    const Result& result = concepts.source(one).second;
+    const auto& [source_id, result] = concepts.source(one);
     Means means(result.label, "GMSH");
     each_field(base, result, mesh, one, [&](PrintedField&& printed) {
       means.add(printed.field);
-      text += gmsh_field_text(mesh, printed.field, printed.field.name);
+      const std::string name = one.has("CHAM_GD") ? printed.field.name : result.label + "_" + printed.field.name;
+      const std::string own = gmsh_view_name(text, name, owner_in_file(base, source_id, printed.field), file);
+      text += gmsh_field_text(mesh, printed.field, own);
       written.add(part("field_of", {{"field", printed.field.name}, {"result", result.label}}));
     });
     means.tell();

@@ -17,6 +17,15 @@ Mesh read_gmsh_mesh(const std::filesystem::path& file);
 /// The text of a .msh file of version 2.2: groups of cells are physical groups, groups of nodes are not written.
 std::string gmsh_mesh_text(const Mesh& mesh);
 
+/// Whether a text of that version has the nodes and cells of this mesh under the same numbers, so that fields may come behind
+/// it; groups do not matter.
+bool is_gmsh_text_of(const std::string& text, const Mesh& mesh);
+
+/// What views of a field are called behind this text: `name`, or `<name>_2`, and so on, where a field of another owner has it,
+/// which FORMAT_2 tells. A comment in the text keeps whose the name is.
+std::string gmsh_view_name(std::string& text, const std::string& name, const std::string& owner,
+                           const std::filesystem::path& file);
+
 /// Sections to put behind that text: a view of the vector DX, DY, DZ where there is one, and of each other component,
 /// `<name>_<component>`. Values at integration points become their mean in the cell, `<name>_<component>_MEAN`.
 std::string gmsh_field_text(const Mesh& mesh, const Field& field, const std::string& name);

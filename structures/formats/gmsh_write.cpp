@@ -1,7 +1,11 @@
 #include <fmt/format.h>
 
 #include <map>
+#include <set>
+#include <sstream>
 
+#include "lacon/catalog/messages.hpp"
+#include "lacon/structures/formats/file_names.hpp"
 #include "lacon/structures/formats/gmsh.hpp"
 
 namespace lacon {
@@ -33,7 +37,53 @@ std::vector<T> in_gmsh_order(const catalog::CellRow& row, const std::vector<T>& 
   return sorted;
 }
 
+/// What numbers in a text of version 2 mean, of a mesh with so many cells: the section of nodes, types and nodes of cells.
+std::string numbering(const std::string& text, std::size_t n_cells) {
+  std::istringstream lines(text);
+  std::string found, line;
+  std::set<std::string> cells;
+  const auto find = [&](const char* section) {
+    while (std::getline(lines, line))
+      if (line == section) return;
+  };
+  find("$Nodes");
+  while (std::getline(lines, line) && line != "$EndNodes") found += line + '\n';
+  find("$Elements");
+  std::getline(lines, line);  // how many lines
+  while (std::getline(lines, line) && line != "$EndElements") {
+    std::istringstream words(line);
+    std::size_t number = 0, type = 0, n_tags = 0;
+    std::string tag, nodes;
+    words >> number >> type >> n_tags;
+    for (std::size_t k = 0; k < n_tags; ++k) words >> tag;
+    std::getline(words, nodes);
+    const std::string cell = fmt::format("{}{}\n", type, nodes);
+    if (number > n_cells && cells.contains(cell)) continue;  // once more, for another group
+    cells.insert(cell);
+    found += fmt::format("{} {}", number, cell);
+  }
+  return found;
+}
+
 }  // namespace
+
+bool is_gmsh_text_of(const std::string& text, const Mesh& mesh) {
+  return numbering(text, mesh.n_cells()) == numbering(gmsh_mesh_text(mesh), mesh.n_cells());
+}
+
+std::string gmsh_view_name(std::string& text, const std::string& name, const std::string& owner,
+                           const std::filesystem::path& file) {
+  const auto line_of = [](const std::string& candidate) { return "$Comments\nviews \"" + candidate + "\" of "; };
+  const std::string chosen = free_name(name, [&](const std::string& candidate) {
+    const std::string line = line_of(candidate);
+    return text.find(line) == std::string::npos || text.find(line + owner + '\n') != std::string::npos;
+  });
+  const std::string own = line_of(chosen) + owner + '\n';
+  if (text.find(own) != std::string::npos) return chosen;
+  text += own + "$EndComments\n";
+  if (chosen != name) inform("FORMAT_2", {{"file", file.string()}, {"name", name}, {"own", chosen}});
+  return chosen;
+}
 
 std::string gmsh_mesh_text(const Mesh& mesh) {
   std::string text = "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n";

@@ -47,16 +47,18 @@ class MedFile {
 
   /// Put one step of a field into the file; what the field has at this step on the same nodes or cells is replaced.
   /// Components that exist on the same rows make one MED field, `name`; those that exist elsewhere make further ones,
-  /// `<name>_<component>`. A field on a part of the mesh gets a profile. Where a field of another mesh or with other components
-  /// has the name, the field is called `<name>_2`, and so on.
+  /// `<name>_<component>`. A field on a part of the mesh gets a profile. Where a field of another mesh, with other components
+  /// or of another owner has the name, the field is called `<name>_2`, and so on; FORMAT_2 tells of other owners.
   /// @param mesh_name as add_mesh() returned it
   /// @param step (NDT and NOR), negative for none @param rule only for gauss_points; without it these cannot be written
+  /// @param owner what steps of one field have in common; the file keeps it
   /// @return the names in the file
   std::vector<std::string> add_field(const Mesh& mesh, std::string_view mesh_name, const Field& field, std::string_view name,
-                                     std::int64_t step, const MedRule& rule = {});
+                                     std::int64_t step, const MedRule& rule = {}, std::string_view owner = {});
 
  private:
-  std::string field_group(const std::string& name, std::string_view mesh_name, const std::vector<std::string>& components);
+  std::string field_group(const std::string& name, std::string_view mesh_name, const std::vector<std::string>& components,
+                          std::string_view owner);
   hdf5::Group entity(const hdf5::Group& step, const std::string& name, const std::string& profile,
                      const std::string& localisation);
   std::string profile(const std::string& type, const std::vector<std::int32_t>& numbers);

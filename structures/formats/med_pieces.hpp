@@ -35,14 +35,6 @@ std::string in_columns(const std::vector<std::string>& names);
 void check_name(const hdf5::Group& root, const std::string& what, std::string_view name, std::size_t length,
                 bool is_link = true);
 
-/// `name`, or `name_2`, `name_3`, ...: the first that `fits`.
-template <class Fits>
-std::string free_name(const std::string& name, Fits fits) {
-  std::string candidate = name;
-  for (int k = 2; !fits(candidate); ++k) candidate = name + "_" + std::to_string(k);
-  return candidate;
-}
-
 /// Cells of one type, in the order of the mesh.
 struct CellList {
   std::vector<Run> runs;

@@ -3,7 +3,9 @@
 #include <cstdio>
 #include <utility>
 
+#include "lacon/catalog/messages.hpp"
 #include "lacon/catalog/wording.hpp"
+#include "lacon/structures/formats/file_names.hpp"
 #include "lacon/structures/formats/med.hpp"
 #include "lacon/structures/formats/med_pieces.hpp"
 #include "lacon/structures/formats/parts.hpp"
@@ -35,6 +37,9 @@ std::string step_name(std::int64_t ndt, std::int64_t nor) {
 /// The geometric types of MED, by which it numbers the bits of its masks: 100 x dimension + nodes, 1 for a point.
 constexpr std::int32_t geometries[] = {1,   102, 103, 104, 203, 204, 206, 207, 208, 209, 304,
                                        305, 306, 308, 310, 312, 313, 315, 318, 320, 327};
+
+/// Says of a field in the file whose it is; no other program looks for it.
+constexpr const char* owner_attribute = "OWNER";
 
 struct Entity {
   std::string_view prefix;  ///< of its groups in a step: "MAI." + type
@@ -107,11 +112,16 @@ MedFile::MedFile(const hdf5::Group& root) : root_(root) {
 }
 
 std::string MedFile::field_group(const std::string& name, std::string_view mesh_name,
-                                 const std::vector<std::string>& components) {
+                                 const std::vector<std::string>& components, std::string_view owner) {
   const std::string labels = in_columns(components);
+  bool is_anothers = false;
   const std::string chosen = free_name(name, [&](const std::string& candidate) {
     if (!root_.has("CHA/" + candidate)) return true;
     const H5Group group = root_.open("CHA/" + candidate);
+    if ((group.has_attribute(owner_attribute) ? group.text(owner_attribute) : "") != owner) {
+      is_anothers = true;
+      return false;
+    }
     std::string found = group.text("NOM");  // read without its trailing blanks
     found.resize(labels.size(), ' ');
     return group.text("MAI") == mesh_name && group.integer("NCO") == static_cast<std::int64_t>(components.size()) &&
@@ -126,6 +136,8 @@ std::string MedFile::field_group(const std::string& name, std::string_view mesh_
   set_text(group, "NOM", labels);
   set_text(group, "UNI", std::string(labels.size(), ' '));
   set_text(group, "UNT", "");
+  if (!owner.empty()) set_text(group, owner_attribute, owner);
+  if (is_anothers) inform("FORMAT_2", {{"file", root_.path().string()}, {"name", name}, {"own", chosen}});
   return chosen;
 }
 
@@ -189,7 +201,8 @@ hdf5::Group MedFile::entity(const hdf5::Group& step, const std::string& name, co
 }
 
 std::vector<std::string> MedFile::add_field(const Mesh& mesh, std::string_view mesh_name, const Field& field,
-                                            std::string_view name, std::int64_t step, const MedRule& rule) {
+                                            std::string_view name, std::int64_t step, const MedRule& rule,
+                                            std::string_view owner) {
   std::vector<std::string> names;
   const std::map<CellType, CellList> cells = by_type(mesh);
   std::vector<std::int32_t> rank(mesh.n_cells());  // of each cell among those of its type
@@ -221,7 +234,7 @@ std::vector<std::string> MedFile::add_field(const Mesh& mesh, std::string_view m
     }
     std::vector<std::string> labels;
     for (const std::size_t k : part.components) labels.push_back(field.components[k]);
-    names.push_back(field_group(part_name(field, part, name), mesh_name, labels));
+    names.push_back(field_group(part_name(field, part, name), mesh_name, labels, owner));
     const H5Group group = root_.open("CHA/" + names.back());
     const std::int64_t ndt = std::max<std::int64_t>(step, -1);
     const std::string in_file = step_name(ndt, ndt);

@@ -5,6 +5,7 @@
 
 #include "lacon/catalog/messages.hpp"
 #include "lacon/catalog/wording.hpp"
+#include "lacon/structures/formats/file_names.hpp"
 #include "lacon/structures/formats/med.hpp"
 #include "lacon/structures/formats/med_pieces.hpp"
 

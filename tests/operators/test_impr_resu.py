@@ -11,7 +11,7 @@ import h5py
 import numpy as np
 
 from impr_resu_test import INSTANTS, MESH_CELLS, NODE_GROUPS, POINTS, POINTS_PER_CELL, ImprResuTest, displacement, stress_at_points
-from lacon_test import CELLS, concept
+from lacon_test import CELLS, concept, fill_field
 
 
 class ImprResu(ImprResuTest):
@@ -59,15 +59,77 @@ class ImprResu(ImprResuTest):
                 self.assertEqual((float(lines[at + 4]), int(lines[at + 6])), (INSTANTS[2], 2))
                 views[lines[at + 2].strip('"')] = (line, int(lines[at + 7]), [[float(v) for v in row.split()] for row in lines[at + 9:at + 9 + count]])
         depl = displacement(2)
-        self.assertEqual(set(views), {"DEPL", "DEPL_LAGS_C", "CONT_ELEM_CONT", "CONT_ELEM_PRES", "SIEF_ELGA_SIXX_MEAN", "SIEF_ELGA_SIYY_MEAN", "SIEF_ELNO_SIXX"})
-        self.assertEqual(views["DEPL"], ("$NodeData", 3, [[n + 1, *depl["values"][n][:2], 0.0] for n in range(6)]))
-        self.assertEqual([row[0] for row in views["DEPL_LAGS_C"][2]], [1, 2])
-        self.assertEqual(views["CONT_ELEM_PRES"], ("$ElementData", 1, [[1, -50.0]]))
+        self.assertEqual({name.removeprefix("U_") for name in views}, {"DEPL", "DEPL_LAGS_C", "CONT_ELEM_CONT", "CONT_ELEM_PRES", "SIEF_ELGA_SIXX_MEAN", "SIEF_ELGA_SIYY_MEAN", "SIEF_ELNO_SIXX"})
+        self.assertTrue(all(name.startswith("U_") for name in views))
+        self.assertEqual(views["U_DEPL"], ("$NodeData", 3, [[n + 1, *depl["values"][n][:2], 0.0] for n in range(6)]))
+        self.assertEqual([row[0] for row in views["U_DEPL_LAGS_C"][2]], [1, 2])
+        self.assertEqual(views["U_CONT_ELEM_PRES"], ("$ElementData", 1, [[1, -50.0]]))
         points = np.asarray(stress_at_points(2)["values"], float).reshape(2, -1, 2)
-        self.assertEqual(views["SIEF_ELGA_SIYY_MEAN"][2], [[c + 1, v] for c, v in zip((1, 3), points.mean(axis=1)[:, 1])])
-        self.assertEqual(views["SIEF_ELNO_SIXX"], ("$ElementNodeData", 1, [[4, 4, 1.0, 2.0, 3.0, 4.0]]))
+        self.assertEqual(views["U_SIEF_ELGA_SIYY_MEAN"][2], [[c + 1, v] for c, v in zip((1, 3), points.mean(axis=1)[:, 1])])
+        self.assertEqual(views["U_SIEF_ELNO_SIXX"], ("$ElementNodeData", 1, [[4, 4, 1.0, 2.0, 3.0, 4.0]]))
         self.assertEqual(len(self.read_back("GMSH").cells), len(MESH_CELLS))
         self.refuses("IMPR_8", self.U, "RESU/RESULTAT", form="ASTER")
+
+    def write_namesake(self, identifier="result_5", mesh="mesh_1"):
+        """Another result whose variable had the name of U: made in a loop, or in a function."""
+        self.write_result(identifier, mesh, INSTANTS, {"DEPL": {1: {**displacement(1), "values": 7 * displacement(1)["values"]}}}, label="U")
+        return {"RESULTAT": concept(identifier), "NOM_CHAM": ["DEPL"], "NUME_ORDRE": [1]}
+
+    def test_results_of_one_name_lose_nothing_in_med(self):
+        """In one command and in several; the names do not depend on which."""
+        own, namesake = {**self.U, "NOM_CHAM": ["DEPL"], "NUME_ORDRE": [1]}, self.write_namesake()
+        for together in (True, False):
+            with self.subTest(together=together):
+                runs = [self.print([own, namesake])] if together else [self.print(own), self.print(namesake, append=True)]
+                self.assertEqual([run.status for run in runs], [0] * len(runs), runs[-1].stderr)
+                self.assertEqual(self.ids(runs[-1]), ["FORMAT_2"] * 2)  # of DEPL, and of DEPL_LAGS_C
+                self.assertIn(f"'{self.file}'", runs[-1].stderr)
+                self.assertIn(f"field U_______DEPL_2: {self.file}", runs[-1].stdout)
+                fields = self.library()["fields"]
+                self.assertEqual(set(fields), {"U_______DEPL", "U_______DEPL_LAGS_C", "U_______DEPL_2", "U_______DEPL_LAGS_C_2"})
+                for name, factor in (("U_______DEPL", 1), ("U_______DEPL_2", 7)):
+                    step, = fields[name]["steps"]
+                    np.testing.assert_array_equal(np.reshape(step["values"]["NOE"]["values"], (6, 2)), factor * displacement(1)["values"][:, :2])
+                again = self.print(own, append=True)  # goes where it was
+                self.assertEqual((self.ids(again), set(self.library()["fields"])), ([], set(fields)))
+        self.assert_conforms(self.file)
+
+    def test_fields_of_one_name_lose_nothing_in_med(self):
+        """Of CHAM_GD: variables of one name."""
+        for number, value in ((6, 1.0), (7, 2.0)):
+            with self.create(f"field_{number}", "field", "C", ["mesh_1"], mesh="mesh_1", location="NOEU", quantity="DEPL_R", order=0, instant=0.0,
+                             name="U") as file:
+                fill_field(file, ["DX"], range(6), [value] * 6)
+        self.assertEqual(self.print([{"CHAM_GD": concept(f"field_{number}")} for number in (6, 7)]).status, 0)
+        read = {name: field["steps"][0]["values"]["NOE"]["values"][0] for name, field in self.library()["fields"].items()}
+        self.assertEqual(read, {"C": 1.0, "C_2": 2.0})
+
+    def test_results_of_one_name_are_told_apart_in_gmsh(self):
+        own, namesake = {**self.U, "NOM_CHAM": ["DEPL"], "NUME_ORDRE": [1]}, self.write_namesake()
+        self.assertEqual(self.print(own, "GMSH").status, 0)
+        run = self.print(namesake, "GMSH", append=True)
+        self.assertEqual((run.status, self.ids(run)), (0, ["FORMAT_2"]), run.stderr)
+        self.assertEqual(self.print({**own, "NUME_ORDRE": [2]}, "GMSH", append=True).status, 0)
+        lines = self.file.read_text().splitlines()
+        views = [lines[at + 2].strip('"') for at, line in enumerate(lines) if line == "$NodeData"]
+        self.assertEqual(views, ["U_DEPL", "U_DEPL_LAGS_C", "U_DEPL_2", "U_DEPL_2_LAGS_C", "U_DEPL", "U_DEPL_LAGS_C"])
+        self.assertEqual(len(self.read_back("GMSH").cells), len(MESH_CELLS))
+
+    def test_a_second_mesh_behind_the_first_is_refused(self):
+        """By a later command as in one command; fields go on behind their mesh whatever groups it has got."""
+        first = {**self.U, "NOM_CHAM": ["DEPL"], "NUME_ORDRE": [1]}
+        for form in ("GMSH", "ASTER"):
+            self.print(self.MA, form)
+            self.assertEqual(self.print(self.MA, form, append=True).status, 0)
+            for points, cells in ((np.array(POINTS) + 1, MESH_CELLS), (POINTS, MESH_CELLS[:3]), (POINTS, MESH_CELLS[::-1])):
+                self.write_mesh("mesh_3", points, cells, label="MA")
+                self.refuses("IMPR_8", {"MAILLAGE": concept("mesh_3")}, "RESU/MAILLAGE", form=form, append=True)
+                if form == "GMSH":
+                    self.refuses("IMPR_8", self.write_namesake("result_6", "mesh_3"), "RESU/RESULTAT", form=form, append=True)
+            self.write_mesh("mesh_3", POINTS, MESH_CELLS, {"NEW": [0]}, label="MA")
+            self.refuses("IMPR_8", {"MAILLAGE": concept("mesh_3")}, "RESU/MAILLAGE", form=form, append=True)
+        self.assertEqual(self.print(first, "GMSH").status, 0)
+        self.assertEqual(self.print(self.write_namesake("result_6", "mesh_3"), "GMSH", append=True).status, 0)
 
     def test_mesh_is_read_back_by_the_library_and_by_lire_maillage(self):
         run = self.print(self.MA)
