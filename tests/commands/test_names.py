@@ -102,8 +102,24 @@ FIN()
 
     def test_what_is_not_a_new_name_is_refused(self):
         call = "MACR_ADAP_MAIL(ADAPTATION='RAFFINEMENT_UNIFORME', MAILLAGE_N={}, MAILLAGE_NP1={})"
-        for given, word in ((("M0", "M0"), "KEYWORD_16"), (("M0", "'N'"), "KEYWORD_3"), (("CO('N')", "CO('O')"), "has not been made")):
-            self.refused(self.run_study(STUDY + call.format(*given)), word)
+        for given, word in ((("M0", "M0"), "KEYWORD_16"), (("M0", "'N'"), "KEYWORD_3"), (("CO('N')", "CO('O')"), "has not been made"),
+                            (("M0", "CO('taken')"), "taken = [1]"), (("M0", "CO('LIRE_MAILLAGE')"), "KEYWORD_16")):
+            self.refused(self.run_study(STUDY + "\ntaken = [1]\n" + call.format(*given)), word)
+
+    def test_a_name_given_with_co_is_assigned_where_a_variable_has_it(self):
+        """Also to the mesh that the command starts from, and in a loop."""
+        self.ok(self.run_study(STUDY + """
+before, ids = M0, []
+for i in range(2):
+    MACR_ADAP_MAIL(ADAPTATION='RAFFINEMENT_UNIFORME', MAILLAGE_N=M0, MAILLAGE_NP1=CO('M0'))
+    ids.append(M0.id)
+MA = {1: CO('MA')}  # the name of what holds it
+MACR_ADAP_MAIL(ADAPTATION='RAFFINEMENT_UNIFORME', MAILLAGE_N=M0, MAILLAGE_NP1=MA[1])
+assert len({before.id, MA[1].id, *ids}) == 4 and isinstance(MA, dict)
+FIN()
+"""))
+        self.assertNotEqual(self.registry()["labels"]["M0"], self.registry()["labels"]["before"])
+        self.ok(self.run_study("POURSUITE()\nassert M0.id == ids[1] != before.id\nFIN()\n"))
 
     def test_two_names_of_one_concept(self):
         self.assertEqual(self.labels(f"A = {MATERIAL}\nB = A"), {"A": "material_1", "B": "material_1"})

@@ -67,6 +67,13 @@ def concepts_of(name, value, seen=()):
                 yield from concepts_of(f"{name}[{key!r}]", item, (*seen, id(value)))
 
 
+def _holds(value, wanted):
+    """Whether a list, tuple or dict has this object, itself or in those it holds."""
+    if not isinstance(value, (list, tuple, dict)):
+        return False
+    return any(item is wanted or _holds(item, wanted) for item in (value.values() if isinstance(value, dict) else value))
+
+
 def _plain(items):
     """True where a list holds numbers and texts only, or lists of such: quickly, for there may be a million."""
     kinds = set(map(type, items))
@@ -184,10 +191,15 @@ class Names:
         return {k: v for k, v in list(self.values.items())  # a thread of the command file may assign meanwhile
                 if not k.startswith("__") and self.provided.get(k, missing) is not v}
 
+    def taken(self, name, co):
+        """What a variable of this name holds where publish() cannot give it to the concept: no concept, and nothing with `co` in it. Otherwise None."""
+        held = self.values.get(name)
+        return None if isinstance(held, (Concept, CO)) or _holds(held, co) else held
+
     def publish(self, name, concept):
-        """Make the name given with CO() a variable, where the command file has none of that name."""
-        if name.isidentifier():
-            self.values.setdefault(name, concept)
+        """Make the name given with CO() a variable; one that holds a concept gets the new one, as if it were assigned."""
+        if name.isidentifier() and isinstance(self.values.setdefault(name, concept), (Concept, CO)):
+            self.values[name] = concept
 
     def update_labels(self, base, pending=None):
         """Bring the registry's labels up to date; `pending` = (label, id) of a concept that is not assigned yet.

@@ -55,10 +55,14 @@ class Command:
             refuse_other_methods(self.name, given, where, labels.label(frame))
         keywords, problems, alarms = checker.complete(self.name, row, given, where)
         reused = self._reuse(row, reuse, given, keywords, where, problems)
+        holder, named = next(((k, keywords[k]) for k, keyword in row.get("keyword", {}).items() if keyword.get("makes") and k in keywords), ("", None))
+        if isinstance(named, CO) and (taken := run.names.taken(named.name, named)) is not None:
+            found = f"{named.name} = {taken!r:.60}"
+            path = f"{self.name}/{holder}"
+            problems.append(message("KEYWORD_16", f"{path}, {where}", path=path, found=found, expected="CO('name')"))
         if problems:
             raise AsterError(problems)
         run.tell(alarms)
-        named = next((keywords[k] for k, keyword in row.get("keyword", {}).items() if keyword.get("makes") and k in keywords), None)
         label = reused.label if reused else named.name if named else labels.label(frame)
         keywords = prepared(Call(run, self.name, keywords, where, label, reused))
         if not self.name.startswith("TEST_"):  # its checks print a line each
