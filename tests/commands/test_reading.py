@@ -65,6 +65,11 @@ F = LIRE_FONCTION(UNITE=number, FORMAT='NUMPY', NOM_PARA='INST')
 G = LIRE_FONCTION(UNITE=number, FORMAT='NUMPY', NOM_PARA='INST', INDIC_RESU=(1, 3))
 """, "assert F.Valeurs() == [[0, 1], [5, 6]] and G.Ordo() == [1, 3]"))
         self.refused(self.read("LIRE_FONCTION(UNITE=51, FORMAT='NUMPY', NOM_PARA='INST')", "", npy="0 1\n"), "FUNCTION_20", "numpy.save")
+        self.refused(self.read("""
+import numpy
+numpy.save('points.npy', numpy.array([[0., 1.], [1., numpy.nan]]))
+LIRE_FONCTION(UNITE=DEFI_FICHIER(FICHIER='points.npy', TYPE='BINARY', ACCES='OLD'), FORMAT='NUMPY', NOM_PARA='INST')
+""", ""), "FUNCTION_20", "not finite")
 
     def told(self, calls, files):
         """Run commands that are all refused, and compare what is said: [(command, identifier, words)]"""
@@ -106,6 +111,21 @@ g = LIRE_FONCTION(UNITE=51, SEPAR=',', NOM_PARA='INST', INTERPOL='LIN')
         self.told([(f"LIRE_FONCTION(UNITE=51, SEPAR=',', NOM_PARA='X', {keywords})", identifier, word) for keywords, identifier, word in (
             ("INDIC_PARA=(3, 1)", "FUNCTION_16", "block 2: 4 columns, 2 lines"), ("INDIC_RESU=(1, 3)", "FUNCTION_16", "column 3"),
             ("INDIC_PARA=(2, 1), INDIC_RESU=(2, 2)", "DEFI_FONCTION_1", "2"))], {"data": data})
+
+    def test_a_mark_of_the_byte_order_is_no_part_of_a_file(self):
+        self.ok(self.read("f = LIRE_FONCTION(UNITE=51, NOM_PARA='INST')\nt = LIRE_TABLE(UNITE=52, FORMAT='LIBRE').EXTR_TABLE()",
+                          "assert f.Valeurs() == [[0, 0.5], [3, 5]] and t.values() == {'A': [1]}", txt="\ufeff0 3\n0.5 5\n", csv="\ufeffA\n1\n"))
+
+    def test_lines_that_are_no_row_of_numbers_lose_nothing(self):
+        cases = (("0 0 ! start\n1 2\n", "line 1: '!' is no number"), ("0 0\n1 nan\n", "line 2: 'nan' is no number"), ("0 0\n1 1e999\n", "line 2: '1e999' is no"),
+                 ("x\n0 0\n-inf 1\n", "line 3: '-inf' is no number"), ("0 0\n1 2 3\n", "line 2: 3 cells for 2 columns"), ("0 0\n1\n", "line 2: 1 cells for 2"))
+        self.told([(f"LIRE_FONCTION(UNITE={51 + i}, NOM_PARA='INST')", "FUNCTION_24", word) for i, (_, word) in enumerate(cases)],
+                  {f"data{i}": text for i, (text, _) in enumerate(cases)})
+
+    def test_values_that_are_not_finite_are_no_function(self):
+        tables = {f"data{i}": f"X Y\n0 1\n{row}\n" for i, row in enumerate(("1 nan", "inf 1"))}
+        self.told([(f"RECU_FONCTION(TABLE=LIRE_TABLE(UNITE={unit}, FORMAT='LIBRE'), PARA_X='X', PARA_Y='Y')", "FUNCTION_25", f"point 2 is to be ({point})")
+                   for unit, point in ((51, "1, nan"), (52, "inf, 1"))], tables)
 
 
 if __name__ == "__main__":

@@ -51,7 +51,10 @@ def defi_fonction(call):
 
 
 def increasing(call, x, y, check, path):
-    """Points in increasing order: as they are, or sorted where VERIF is 'NON'. @throws AsterError DEFI_FONCTION_1"""
+    """Points in increasing order: as they are, or sorted where VERIF is 'NON'. @throws AsterError DEFI_FONCTION_1, FUNCTION_25 (not finite)"""
+    bad = next((i for i, point in enumerate(zip(x, y)) if not all(map(math.isfinite, point))), None)
+    if bad is not None:
+        call.fail("FUNCTION_25", path, number=bad + 1, x=f"{x[bad]:g}", y=f"{y[bad]:g}")
     if any(not a < b for a, b in zip(x, x[1:])):
         if check == "CROISSANT":
             bad = next(i for i in range(len(x) - 1) if not x[i] < x[i + 1])

@@ -1,5 +1,7 @@
 """LIRE_TABLE, LIRE_FONCTION: tables and functions from text files."""
 
+import itertools
+import math
 import re
 
 from ..base.functions import Piecewise
@@ -17,7 +19,7 @@ def _lines(call):
     """(the file of UNITE, its lines)"""
     path = call.study.input_unit(call.keywords["UNITE"], f"{call.command}/UNITE, {call.where}")
     try:
-        with open(path, encoding="utf-8", errors="replace") as file:
+        with open(path, encoding="utf-8-sig", errors="replace") as file:
             lines = file.read().splitlines()
     except OSError:
         call.fail("COMMAND_5", "UNITE", unit=call.keywords["UNITE"], file=path)
@@ -158,7 +160,7 @@ def lire_fonction(call):
         path, blocks = _array(call)
     else:
         path, lines = _lines(call)
-        blocks = _blocks(lines, {"None": None}.get(k["SEPAR"], k["SEPAR"]))
+        blocks = _blocks(call, path, lines, {"None": None}.get(k["SEPAR"], k["SEPAR"]))
     if k["TYPE"] == "NAPPE":
         return _nappe(call, path, blocks)
     x, y = (_of_block(call, path, blocks, k[keyword], keyword) for keyword in ("INDIC_PARA", "INDIC_RESU"))
@@ -190,22 +192,31 @@ def _array(call):
         block = numpy.atleast_2d(numpy.asarray(array, float)).tolist()
         if array.ndim != 2:
             raise ValueError(f"it has {array.ndim} dimensions")
+        if not all(map(math.isfinite, itertools.chain.from_iterable(block))):
+            raise ValueError("it has numbers that are not finite")
     except (ValueError, TypeError, OSError, EOFError) as error:
         call.fail("FUNCTION_20", "UNITE", file=path, reason=error)
     call.study.has_read(path)
     return path, [block]
 
 
-def _blocks(lines, separator):
-    """Lines of numbers one behind the other are a block; any other line separates blocks."""
+def _blocks(call, path, lines, separator):
+    """Lines of numbers one behind the other are a block, of as many columns as its first line; any line that begins otherwise separates blocks.
+    @throws AsterError FUNCTION_24"""
     blocks, open_block = [], False
     first = _before([line for line in lines if line.strip() and not line.strip().startswith("#")], separator)
-    for line in lines:
-        row = [_number(word) for word in _words(line, separator, first)]
-        is_row = bool(row) and None not in row
-        if is_row and not open_block:
-            blocks.append([])
+    for number, line in enumerate(lines, 1):
+        words = _words(line, separator, first)
+        row = [_number(word) for word in words]
+        is_row = bool(row) and row[0] is not None
         if is_row:
+            bad = next((word for word, value in zip(words, row) if value is None or not math.isfinite(value)), None)
+            if bad is not None:
+                call.fail("FUNCTION_24", "UNITE", file=path, line=number, reason=part("text_is_no_number", text=bad))
+            if not open_block:
+                blocks.append([])
+            elif len(row) != len(blocks[-1][0]):
+                call.fail("FUNCTION_24", "UNITE", file=path, line=number, reason=part("cells_for_columns", cells=len(row), columns=len(blocks[-1][0])))
             blocks[-1].append(row)
         open_block = is_row
     return blocks
