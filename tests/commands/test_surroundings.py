@@ -73,6 +73,18 @@ class Surroundings(LauncherTest):
             self.refused(self.launch("study.comm", "--unit", "20=mesh.med", "--unit", "80=out", "--json", name), "STUDY_41", name)
             self.assertEqual((self.work / name).read_bytes(), before)
 
+    def test_no_page_replaces_a_file_of_its_study(self):
+        """Of `lacon report --out`; also through a link."""
+        self.ok(self.run_study(STUDY + "FIN()\n"))
+        (self.work / "link").symlink_to("mesh.med")
+        files = ("study.base/base.json", "study.base/new", "study.comm", "mesh.med", "link")
+        before = {path: path.read_bytes() for path in self.work.rglob("*") if path.is_file()}
+        for name in files:
+            run = self.launch("report", "study.base", "--out", name)
+            self.assertEqual(run.status, 2, run.err)
+            self.assertIn(f"<F> <STUDY_41> --out {name} would replace a file of this study", run.err)
+        self.assertEqual({path: path.read_bytes() for path in self.work.rglob("*") if path.is_file()}, before)
+
     def test_more_processes_than_any_machine_has(self):
         """They were started one by one, until nothing else ran."""
         self.write("study.comm", STUDY + "FIN()\n")
@@ -133,6 +145,16 @@ class Surroundings(LauncherTest):
             self.assertNotIn("Traceback", run.err)
             (self.work / name).unlink()
         self.ok(self.run_study("DEBUT()\nFIN()\n"))  # a folder of that name alone hides nothing
+
+    def test_files_named_as_modules_of_python_do_not_matter(self):
+        """numpy, h5py and Lacon find Python's own, whether or not the command file imports what lies beside it."""
+        names = ("copy", "random", "string", "logging", "inspect", "platform", "dis", "secrets", "subprocess")
+        for name in names:
+            self.write(f"{name}.py", "mine = True\n")
+        for first in ("", f"import {', '.join(names)}\nassert copy.mine and random.mine\n"):
+            self.ok(self.run_study(first + STUDY + "VALUES = DEFI_LIST_REEL(VALE=(0, 1))\nassert len(VALUES.getValues()) == 2\n"
+                                   + ("import copy\nassert copy.mine\n" if first else "") + "FIN()\n"))
+        self.refused(self.run_study("import copy\ncopy.deepcopy(1)\n"), "STUDY_19", "deepcopy")  # the command file itself finds its own
 
     def test_a_working_folder_that_was_removed(self):
         self.write("study.comm", "DEBUT()\nFIN()\n")

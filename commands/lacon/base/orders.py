@@ -15,6 +15,7 @@ import time
 from ..core import late, stack, streams
 from ..core.catalog import part
 from ..core.concepts import to_json
+from ..core.late import subprocess
 from ..core.messages import AsterError, ConvergenceError, InternalError, Message, SolutionError, fail, message
 from ..core.plugins import operator_folder
 from . import expressions
@@ -112,8 +113,6 @@ def _environment(study):
 
 def _start(arguments, study, theirs, terminal):
     """The operator's process. @param theirs its end of the socket for formulae @param terminal where it says how far it is, or None. @throws OSError"""
-    import subprocess  # start-up: a study without operators
-
     environment = {**_environment(study), "LACON_FORMULAS": str(theirs.fileno()), "LACON_LAUNCHER": str(os.getpid())}
     inherited = [study.base.lock, theirs.fileno()]
     if terminal:
@@ -170,8 +169,6 @@ def end_running():
 
 def _end(process):
     """End an operator: it stores or gives up what it has in hand, for which it has no more than a moment."""
-    import subprocess  # start-up: see _start()
-
     process.terminate()
     try:
         process.wait(patience)

@@ -1,5 +1,6 @@
 """A base that is looked at: `lacon.open("study.base")`."""
 
+import os
 import pathlib
 
 from ..base.base import look_into, once
@@ -29,6 +30,11 @@ class Base:
     def running(self):
         """{"process", "since"} of the run that uses the base now; None where there is none."""
         return self._registered().running()
+
+    def needs(self, path):
+        """Whether a file is one of this folder, or one that its study reads: no tool may replace it."""
+        path = os.path.realpath(path)
+        return pathlib.Path(path).is_relative_to(os.path.realpath(self.folder)) or path in self._registered().registry.get("sources", ())
 
     @property
     def meshes(self):

@@ -18,7 +18,7 @@ import traceback
 import warnings
 
 from ..base import names as namespace
-from ..core import catalog, labels, messages, outcome, streams
+from ..core import catalog, labels, late, messages, outcome, streams
 from ..core.catalog import part
 from ..core.files import is_readable
 from ..core.messages import AsterError, NeedsRun, fail, message, show
@@ -269,8 +269,7 @@ def _threads():
 
 def _run_file(study, path, source, values):
     folder = os.path.dirname(os.path.abspath(path))
-    if folder not in sys.path:
-        sys.path.insert(0, folder)
+    late.look_in(folder)
     try:
         with readers(), _threads():
             exec(_compiled(path, source), values)
@@ -403,8 +402,7 @@ def delivered(files):
                 continue
             shutil.copyfile(path, target)
             placed.append(target)
-        if os.getcwd() not in sys.path:
-            sys.path.insert(0, os.getcwd())
+        late.look_in(os.getcwd())
         yield
     finally:
         for target in placed:

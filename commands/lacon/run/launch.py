@@ -104,7 +104,7 @@ def run_command_line(options, units):
         """@throws AsterError where the report would replace a file of the study"""
         of_units = map(os.path.realpath, export.units.values())
         if report and (os.path.realpath(report) in {*run.sources, *of_units} or run.keeps(report)):
-            messages.fail("STUDY_41", file=options.json)
+            messages.fail("STUDY_41", option="--json", file=options.json)
 
     check_report()
 
