@@ -1,6 +1,7 @@
 #include "lacon/structures/formats/mail.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <charconv>
@@ -8,6 +9,7 @@
 #include <map>
 #include <numeric>
 #include <optional>
+#include <set>
 #include <unordered_map>
 #include <unordered_set>
 #include <utility>
@@ -340,6 +342,23 @@ std::string one_word(std::string name) {
   return name;
 }
 
+/// Names of groups as words that differ: those that are words stay, others get what is free, `<word>_2` and so on.
+/// @param changed lengthened by "'LOW A' -> 'LOW_A_2'"
+std::vector<std::string> words_of(const std::vector<Group>& groups, std::vector<std::string>& changed) {
+  std::set<std::string> taken = {"FINSF"};  // the end of a part
+  for (const Group& group : groups)
+    if (group.name == one_word(group.name)) taken.insert(group.name);
+  std::vector<std::string> words;
+  for (const Group& group : groups) {
+    const bool stays = group.name == one_word(group.name) && group.name != "FINSF";
+    words.push_back(stays ? group.name : free_name(one_word(group.name), [&](const std::string& word) {
+      return taken.insert(word).second;
+    }));
+    if (!stays) changed.push_back(fmt::format("'{}' -> '{}'", group.name, words.back()));
+  }
+  return words;
+}
+
 /// Words in lines of eight.
 void append_words(std::string& text, std::size_t count, const auto& word) {
   for (std::size_t i = 0; i < count; ++i) text += (i % 8 == 0 ? "\n " : " ") + word(i);
@@ -372,16 +391,18 @@ std::string mail_text(const Mesh& mesh, const std::string& title) {
     }
     text += "\nFINSF\n";
   });
-  for (const Group& group : mesh.node_groups) {
-    text += "GROUP_NO\n " + one_word(group.name);
-    append_words(text, group.members.size(), [&](std::size_t i) { return node_name(group.members[i]); });
-    text += "\nFINSF\n";
-  }
-  for (const Group& group : mesh.cell_groups) {
-    text += "GROUP_MA\n " + one_word(group.name);
-    append_words(text, group.members.size(), [&](std::size_t i) { return cell_name(group.members[i]); });
-    text += "\nFINSF\n";
-  }
+  std::vector<std::string> changed;
+  const auto append_groups = [&](const char* keyword, const std::vector<Group>& groups, const auto& name) {
+    const std::vector<std::string> words = words_of(groups, changed);
+    for (std::size_t g = 0; g < groups.size(); ++g) {
+      text += std::string(keyword) + "\n " + words[g];
+      append_words(text, groups[g].members.size(), [&](std::size_t i) { return name(groups[g].members[i]); });
+      text += "\nFINSF\n";
+    }
+  };
+  append_groups("GROUP_NO", mesh.node_groups, [](std::int32_t n) { return node_name(n); });
+  append_groups("GROUP_MA", mesh.cell_groups, [](std::int32_t n) { return cell_name(n); });
+  if (!changed.empty()) inform("MAIL_6", {{"mesh", title}, {"names", fmt::format("{}", fmt::join(changed, ", "))}});
   return text + "FIN\n";
 }
 

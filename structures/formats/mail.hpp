@@ -15,7 +15,8 @@ namespace lacon {
 Mesh read_mail_mesh(const std::filesystem::path& file);
 
 /// The text of a .mail file of a mesh, with the names N1, N2, ... and M1, M2, ...; in names of groups, which are
-/// one word there, '_' stands for blanks, '%' and '='. @param title one line
+/// one word there, '_' stands for blanks, '%' and '='; what two of them would share, and FINSF, gets `_2`. MAIL_6 tells what
+/// has another name there. @param title one line
 std::string mail_text(const Mesh& mesh, const std::string& title);
 
 }  // namespace lacon

@@ -119,6 +119,24 @@ TEST_F(Mail, EveryKindOfCellComesBackToTheBit) {
   EXPECT_EQ(back.find_cell_group("ALL")->members, mesh.cell_groups[0].members);
 }
 
+TEST_F(Mail, GroupsWhoseNamesWouldBeOneStayApart) {
+  Mesh mesh = test::mesh_of_all_types();
+  mesh.node_groups = {{"FINSF", {0}}, {"A B", {1}}};
+  mesh.cell_groups = {{"LOW A", {1}}, {"LOW_A", {0}}, {"LOW=A", {2}}, {"UP", {3}}};
+  static std::string told;
+  set_message_sink([](const Message& message) { told += message.id + message.text; });
+  const std::string text = mail_text(mesh, "M");
+  set_message_sink(nullptr);
+  EXPECT_NE(told.find("MAIL_6"), std::string::npos);
+  EXPECT_NE(told.find("'FINSF' -> 'FINSF_2', 'A B' -> 'A_B', 'LOW A' -> 'LOW_A_2', 'LOW=A' -> 'LOW_A_3'"), std::string::npos)
+      << told;
+  const Mesh back = read(text);
+  for (const auto& [name, cell] : {std::pair("LOW_A", 0), {"LOW_A_2", 1}, {"LOW_A_3", 2}, {"UP", 3}})
+    EXPECT_EQ(back.find_cell_group(name)->members, std::vector<std::int32_t>{cell});
+  EXPECT_EQ(back.find_node_group("FINSF_2")->members, std::vector<std::int32_t>{0});
+  EXPECT_EQ(back.find_node_group("A_B")->members, std::vector<std::int32_t>{1});
+}
+
 TEST_F(Mail, WhatIsDamagedIsRefusedWithItsLine) {
   const std::string nodes = "COOR_2D\n A 0. 0.\n B 1. 0.\nFINSF\n";
   struct Case {
