@@ -234,7 +234,11 @@ class Readings(LauncherTest):
                 self.assertEqual(made, [])
 
     def test_a_json_that_cannot_be_written(self):
-        self.refused(self.run_study("DEBUT()\nFIN()\n", "--json", "nowhere/checks.json"), "STUDY_3", "nowhere/checks.json")
+        """Before the study runs."""
+        for name, reason in (("nowhere/checks.json", "No such file"), (".", "Is a directory"), ("study.comm/checks.json", "No such file")):
+            run = self.run_study("DEBUT()\nFIN()\n", "--json", name)
+            self.assertEqual((run.status, "DEBUT" in run.out), (2, False), run.err)
+            self.assertIn(f"<F> <STUDY_3> '{name}' cannot be written: {reason}", run.err)
 
     def test_a_device_for_the_figures_stays_one(self):
         (self.work / "sink").symlink_to(os.devnull)

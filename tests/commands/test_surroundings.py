@@ -73,6 +73,40 @@ class Surroundings(LauncherTest):
             self.refused(self.launch("study.comm", "--unit", "20=mesh.med", "--unit", "80=out", "--json", name), "STUDY_41", name)
             self.assertEqual((self.work / name).read_bytes(), before)
 
+    def test_a_link_stays_one_and_its_file_is_written(self):
+        (self.work / "disk").mkdir()
+        for name in ("out", "checks.json"):
+            (self.work / name).symlink_to(f"disk/{name}")
+        for first in (True, False):  # before there is such a file, and when there is one
+            self.ok(self.run_study(STUDY + PRINT + "FIN()\n", "--unit", "80=out", "--json", "checks.json", behaviour={"impr_resu": {"unit": "80"}}))
+            for name in ("out", "checks.json"):
+                self.assertTrue((self.work / name).is_symlink(), name)
+                self.assertGreater((self.work / "disk" / name).stat().st_size, 0, name)
+            self.assertEqual(self.last_order("IMPR_RESU")["units"], {"80": os.path.realpath(self.work / "disk/out")})  # an operator renames what it has written
+
+    def test_no_result_replaces_what_is_included_later(self):
+        """Nor the export file."""
+        self.write("part.comm", "X = 1\n")
+        self.write("s.export", "F comm study.comm D 1\nF libr mesh.med D 20\nF libr out R 80\n")
+        text = STUDY + PRINT + "INCLUDE(DONNEE='part.comm')\nassert X == 1\nFIN()\n"
+        behaviour = {"impr_resu": {"unit": "80"}}
+        self.refused(self.run_study(text, "--unit", "80=part.comm", behaviour=behaviour), "COMMAND_12", "part.comm")
+        self.ok(self.run_study(text, "--unit", "80=out", behaviour=behaviour))
+        self.refused(self.launch("s.export", "--unit", "80=s.export", behaviour=behaviour), "COMMAND_12", "s.export")
+
+    def test_one_file_has_one_format(self):
+        """A second one would replace the first, or be put behind it; texts of several commands may follow one another, and a unit that has got another file is free."""
+        table = "T = CREA_TABLE(LISTE=_F(PARA='X', LISTE_R=(1., 2.)))\n"
+        med, listing, text = PRINT, PRINT.replace("RESU=", "FORMAT='RESULTAT', RESU="), "IMPR_TABLE(TABLE=T, UNITE=80)\n"
+        behaviour = {"impr_resu": {"unit": "80"}}
+        for first, second, words in ((med, listing, "FORMAT='MED', and FORMAT='RESULTAT'"), (listing, med, "FORMAT='RESULTAT', and FORMAT='MED'"),
+                                     (med, text, "FORMAT='MED', and FORMAT='RESULTAT'"), (text, med, "FORMAT='RESULTAT', and FORMAT='MED'")):
+            run = self.run_study(STUDY + table + first + second, "--unit", "80=out", behaviour=behaviour)
+            self.refused(run, "COMMAND_20", words, "study.comm:14")
+        again = "DEFI_FICHIER(UNITE=80, FICHIER='{}', ACCES='NEW')\n"
+        self.ok(self.run_study(STUDY + table + listing + text + again.format("two") + med + med + again.format("two") + text + "FIN()\n", "--unit", "80=out",
+                               behaviour=behaviour))
+
     def test_no_page_replaces_a_file_of_its_study(self):
         """Of `lacon report --out`; also through a link."""
         self.ok(self.run_study(STUDY + "FIN()\n"))

@@ -1,6 +1,7 @@
 """Files that are written wholly or not at all; second names of files."""
 
 import contextlib
+import errno
 import os
 import shutil
 
@@ -9,8 +10,9 @@ import shutil
 def whole(path):
     """`with whole(path) as partial:` write the file `partial`; behind it, the file has its name. Whatever goes wrong removes it and goes on.
 
-    A device, as /dev/stdout, which a renamed file would replace, is written itself.
+    A device, as /dev/stdout, which a renamed file would replace, is written itself; a link stays one, and the file that it means is written.
     """
+    path = os.path.realpath(path)
     if os.path.exists(path) and not os.path.isfile(path):
         yield path
         return
@@ -28,6 +30,18 @@ def write_whole(path, text):
     """A text file in UTF-8. @throws OSError"""
     with whole(path) as partial, open(partial, "w", encoding="utf-8") as file:
         file.write(text)
+
+
+def why_not_written(path):
+    """What the system says to who would write a file here; None where nothing is in the way."""
+    path = os.path.realpath(path)
+    folder = os.path.dirname(path)
+    if os.path.isdir(path):
+        return os.strerror(errno.EISDIR)
+    if not os.path.isdir(folder):
+        return os.strerror(errno.ENOENT)
+    is_device = os.path.exists(path) and not os.path.isfile(path)
+    return None if is_device or os.access(folder, os.W_OK) else os.strerror(errno.EACCES)
 
 
 def is_readable(path):

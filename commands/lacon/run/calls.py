@@ -255,8 +255,9 @@ class Command:
             elif self._is_printed(run, number, keywords):
                 units[number] = str(run.base.orders() / "printed")
             else:
-                suffix = {"MED": ".med", "VTU": ".pvd", "RESULTAT": ".resu"}.get(keywords.get("FORMAT"), "")
-                units[number] = run.announced_output(number, suffix, place)
+                form = keywords.get("FORMAT")
+                units[number] = run.announced_output(number, {"MED": ".med", "VTU": ".pvd", "RESULTAT": ".resu"}.get(form, ""), place)
+                run.enter_format(number, units[number], form, place)
         return units
 
     @staticmethod

@@ -167,8 +167,25 @@ def run_files(study, files):
         values["__builtins__"] = namespace.Builtins({})
     labels.sources.update(sources)
     for path, source in sources:
+        for included in _included(path, source):
+            study.protect(included)
+    for path, source in sources:
         values["__file__"] = path
         _run_file(study, path, source, values)
+
+
+def _included(path, source):
+    """The files that are there and that a text includes by names it gives: no result may replace them before it comes to that."""
+    if "INCLUDE" not in source:
+        return
+    with contextlib.suppress(AsterError):  # said where the text is run
+        for node in ast.walk(_as_python(path, lambda: ast.parse(source, path))):
+            if isinstance(node, ast.Call) and getattr(node.func, "id", "") == "INCLUDE":
+                for keyword in node.keywords:
+                    if keyword.arg == "DONNEE" and isinstance(keyword.value, ast.Constant):
+                        included = os.path.join(os.path.dirname(path), str(keyword.value.value))
+                        if os.path.isfile(included):
+                            yield included
 
 
 def run_text(study, name, text):
@@ -210,12 +227,17 @@ def _refuse_other_encoding(path):
 
 
 def _compiled(path, source):
+    return _as_python(path, lambda: compile(ast.parse(source, path), path, "exec"))
+
+
+def _as_python(path, read):
+    """What `read` makes of a text. @throws AsterError where it is not Python"""
     try:
         with warnings.catch_warnings():
             # titles hold escapes that Python does not know; they are no concern of the user's
             warnings.simplefilter("ignore", SyntaxWarning)
             warnings.simplefilter("ignore", DeprecationWarning)
-            return compile(ast.parse(source, path), path, "exec")
+            return read()
     except SyntaxError as error:
         fail("STUDY_16", f"{error.filename}:{error.lineno}", reason=error.msg)
     except ValueError as error:  # a null byte

@@ -5,6 +5,7 @@ import pathlib
 
 from ..commands import checks
 from ..core import current, messages, outcome
+from ..core.files import why_not_written
 from . import execution, study
 from .export import Export, read_export
 from .stage import Stage
@@ -97,7 +98,7 @@ def run_command_line(options, units):
     report = options.json and os.path.abspath(options.json)  # a command file may change its folder
     run.stage = Stage(options.stage) if options.stage else None
     run.files = [os.path.realpath(name) for name in export.commands]
-    for name in export.commands + export.named + export.data:
+    for name in [*options.files, *export.commands, *export.named, *export.data]:  # an export file too
         run.protect(name)
 
     def check_report():
@@ -107,6 +108,8 @@ def run_command_line(options, units):
             messages.fail("STUDY_41", option="--json", file=options.json)
 
     check_report()
+    if report and (reason := why_not_written(report)):
+        messages.fail("STUDY_3", "--json", folder=options.json, reason=reason)  # before anything is computed
 
     def work():
         with execution.signals(), execution.delivered(export.named), execution.time_limit(export.seconds()):

@@ -46,6 +46,7 @@ class Study:
         self.checks = []
         self.stage = None  #: a stage.Stage, where this run is one in a sandbox
         self.written_units = {}  #: number -> path
+        self._formats = {}  #: of files that this run wrote; text of any command is of RESULTAT
         self.missing_told = set()  #: units whose folder was not there before a computation
         self.earlier_units = {}  #: number -> (file, file written) before DEFI_FICHIER gave it another one; None: none
         self.plots = {}  #: (unit, format) -> tables.curves.Plot that this run draws there
@@ -194,6 +195,8 @@ class Study:
         """The file of a unit that a command writes; beside the command file where none was given."""
         path = os.path.abspath(self.units.get(number, self.base_folder.parent / f"{self.base_folder.stem}.{number}{suffix}"))
         staged = self.stage and (number not in self.units or self.units[number] == self.given_units.get(number))
+        if os.path.islink(path) and not staged:  # the link stays, and the file that it means is written
+            path = os.path.realpath(path)
         folder = os.path.dirname(path)
         # written whole by renaming, which would replace a device such as /dev/null
         is_other = os.path.exists(path) and not os.path.isfile(path)
@@ -232,6 +235,13 @@ class Study:
             self.inform("COMMAND_10", where, unit=number, file=os.path.relpath(self.base_folder.parent / os.path.basename(path)))
         return path
 
+    def enter_format(self, number, path, form, where):
+        """A command is about to write a unit in this format. @throws AsterError COMMAND_20 where this run has written another there, which would be lost"""
+        before = self._formats.get(path, form)
+        if number in self.written_units and before != form:
+            fail("COMMAND_20", where, unit=number, file=path, before=before, form=form)
+        self._formats[path] = form
+
     def is_terminal(self, number):
         """Unit 6 is the output of the run, as at code_aster, unless it has a file."""
         return number == 6 and number not in self.units
@@ -247,10 +257,12 @@ class Study:
                 with open(path, "rb") as file:
                     if file.read(4) == b"\x89HDF":
                         fail("COMMAND_13", where, unit=number, file=path)
+                self.enter_format(number, path, "RESULTAT", where)
                 with open(path, "a", encoding="utf-8") as file:
                     file.write(text)
             else:
                 write_whole(path, text)
+                self.enter_format(number, path, "RESULTAT", where)
         except OSError:
             fail("COMMAND_8", where, unit=number, file=path)
         self.written_units[number] = path
