@@ -139,6 +139,15 @@ class QuasiStatic : public InstantSolver {
   std::vector<double> rest_;  ///< displacements at the instant before the last
 };
 
+/// Throws what loads without a value at the first instant or the last one are refused for.
+void check_loads(const StaticProblem& problem, const StaticState& state, const TimeSteps& steps) {
+  for (const double instant : {steps.values[std::min<std::size_t>(1, steps.values.size() - 1)], steps.values.back()}) {
+    problem.external_force(instant, state.displacement);
+    problem.imposed_values(instant);
+    for (const TimedLoad& load : problem.loads) load.relation_values.at(instant);
+  }
+}
+
 }  // namespace
 
 void stat_non_line(const Order& order, const Base& base) {
@@ -183,7 +192,13 @@ void stat_non_line(const Order& order, const Base& base) {
                          {"motions", &motions},
                          {"notices", &notices},
                          {"observations", &observations}});
-  if (only_checks()) return;
+  if (only_checks()) {
+    check_loads(problem, present.state, steps);
+    if (record) return;  // whose state is read where the run goes on
+    observations.start(steps.values.front());
+    events.start(steps.values.front());
+    return;
+  }
   Interruption interruption;
   wait_with_ending();
   const Course past = record ? restart.go_on(*record) : Course();
