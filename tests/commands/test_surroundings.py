@@ -110,6 +110,8 @@ class Surroundings(LauncherTest):
     def test_no_page_replaces_a_file_of_its_study(self):
         """Of `lacon report --out`; also through a link."""
         self.ok(self.run_study(STUDY + "FIN()\n"))
+        (self.folder / "generated").mkdir()
+        (self.folder / "generated/report.html").write_text("the page without a study")
         (self.work / "link").symlink_to("mesh.med")
         files = ("study.base/base.json", "study.base/new", "study.comm", "mesh.med", "link")
         before = {path: path.read_bytes() for path in self.work.rglob("*") if path.is_file()}

@@ -30,11 +30,11 @@ def parser():
 def run(arguments):
     """@return exit status"""
     options = parser().parse_args(arguments)
+    page = template()
     base = open_base(options.base)
     target = pathlib.Path(options.out or base.folder.with_suffix(".html").name)
     if base.needs(target):
         fail("STUDY_41", "lacon report", option="--out", file=target)
-    page = template()
     told, packing = study.make(base, base.only_result(options.result))
     try:
         write_whole(target, filled(page, told, packing))
