@@ -66,16 +66,22 @@ inline constexpr double past_a_corner = 0.02, next_to_nothing = 1e-3;
 /// Drop slivers of a slave cell that see masters far away, past the ends of others that are near: where ends touch, as of a
 /// tooth in its groove, it is round-off whether the cell sees past them. However little that is, its derivative by the ends is
 /// as large as the gap. A cell that sees nothing near keeps them: iterates that are far off are led back by what they see.
+/// Parts count together, so that it does not matter how fine the masters are.
 /// @param far(part) the gap, where may_be_through_bodies() says so, 0 elsewhere  @param share(part) of the slave cell
 /// @param is_through(part) Masters::is_through_bodies  @param reject(part, reason)
 template <class Part, class Far, class Share, class Through, class Reject>
 void drop_past_ends(std::vector<Part>& parts, const Far& far, const Share& share, const Through& is_through,
                     const Reject& reject) {
-  if (std::ranges::all_of(parts, [&](const Part& part) { return far(part) != 0; })) return;
+  double seen = 0;
+  bool any_near = false;
+  for (const Part& part : parts) {
+    any_near = any_near || far(part) == 0;
+    if (far(part) != 0) seen += share(part);
+  }
+  if (!any_near || seen >= past_a_corner) return;
+  const bool nothing = seen < next_to_nothing;
   std::erase_if(parts, [&](const Part& part) {
-    if (far(part) == 0) return false;
-    const bool nothing = share(part) < next_to_nothing,
-               drops = nothing || (far(part) > 0 && share(part) < past_a_corner && is_through(part));
+    const bool drops = far(part) != 0 && (nothing || (far(part) > 0 && is_through(part)));
     if (drops) reject(part, nothing ? Rejection::sliver : Rejection::hidden);
     return drops;
   });

@@ -95,6 +95,9 @@ struct PairingOptions {
   /// Angle between the slave's normal and the opposite of the master's, in degrees, from which on a couple counts less and less
   /// (steepness.hpp); 90: none does.
   double steep_angle = 85;
+  /// Drop slivers of a slave cell that see masters far away, past the ends of others that are near (detail::drop_past_ends). No
+  /// use where gaps are not differentiated: there they do no harm, and a gap leaps where one goes.
+  bool drops_slivers = true;
   /// In space: integrate every couple to this degree whatever its facets ask for (integration_degree() in
   /// chart_points.hpp); 0: what they ask for. To measure what a degree leaves.
   int degree = 0;

@@ -339,10 +339,11 @@ class PairerInPlane final : public detail::CellPairer {
                                       {other.master, other_gap, size_of(other.master)}, 2 * length(e.x.c[1]));
         },
         [&](std::int32_t m) { reject(m, Rejection::hidden); });
-    detail::drop_past_ends(
-        intervals, [](const Interval& i) { return i.far; }, [](const Interval& i) { return 0.5 * (i.b - i.a); },
-        [&](const Interval& i) { return is_through_bodies(cell, e, i); },
-        [&](const Interval& i, Rejection why) { reject(i.master, why); });
+    if (options.drops_slivers)
+      detail::drop_past_ends(
+          intervals, [](const Interval& i) { return i.far; }, [](const Interval& i) { return 0.5 * (i.b - i.a); },
+          [&](const Interval& i) { return is_through_bodies(cell, e, i); },
+          [&](const Interval& i, Rejection why) { reject(i.master, why); });
 
     for (std::size_t i = 0; i < intervals.size(); ++i) {
       const auto& [first, last, m, node_a, node_b, far] = intervals[i];

@@ -325,9 +325,10 @@ class PairerInSpace final : public detail::CellPairer {
         if (stays_whole(*view, any_hidden)) kept.push_back(view);
       }
     }
-    detail::drop_past_ends(
-        kept, [](const View* v) { return v->far; }, [&](const View* v) { return share(*v); },
-        [&](const View* v) { return is_through_bodies(*v); }, [&](const View* v, Rejection why) { reject(v->master, why); });
+    if (options().drops_slivers)
+      detail::drop_past_ends(
+          kept, [](const View* v) { return v->far; }, [&](const View* v) { return share(*v); },
+          [&](const View* v) { return is_through_bodies(*v); }, [&](const View* v, Rejection why) { reject(v->master, why); });
     if (any_hidden) std::sort(kept.begin(), kept.end(), sooner);
     return any_hidden;
   }

@@ -142,13 +142,14 @@ ContactGeometry::ContactGeometry(const Mesh& mesh, const Model& model, const Con
   for (std::size_t s = 0; s < contact_.slaves.size(); ++s)
     slave_of_cell[contact_.slaves[s].cell] = static_cast<std::int32_t>(s);
   for (const ContactZone& data : contact_.zones) {
-    Zone zone{
-        .slaves = {},
-        .masters = data.master,
-        .slave = surface_of(mesh, data.slave, coordinates_),
-        .master = surface_of(mesh, data.master, coordinates_),
-        .current_jacobian = data.jacobian == "ACTUALISE",
-        .pairing = {.distance_limit = data.distance_limit, .depth_limit = data.distance_limit > 0 ? -1 : deepest_overlap}};
+    Zone zone{.slaves = {},
+              .masters = data.master,
+              .slave = surface_of(mesh, data.slave, coordinates_),
+              .master = surface_of(mesh, data.master, coordinates_),
+              .current_jacobian = data.jacobian == "ACTUALISE",
+              .pairing = {.distance_limit = data.distance_limit,
+                          .depth_limit = data.distance_limit > 0 ? -1 : deepest_overlap,
+                          .drops_slivers = !contact.frozen_gap}};
     zone.slave.rest = zone.master.rest = rest_;
     zone.slave.body = zone.master.body = body_;
     zone.thickness = thickness(zone.slave, zone.master);

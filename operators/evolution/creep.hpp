@@ -11,10 +11,11 @@ namespace lacon {
 
 /// Pseudo-transient continuation (Kelley and Keyes 1998, SIAM J. Numer. Anal. 35, 508): each iteration is an implicit step of
 /// a viscous motion under the unbalanced forces. It goes downhill, from an equilibrium that has ended or is not stable any more
-/// to the next one that is, however far; forces and the equilibrium know nothing of the resistance. As a mass, it hardly
-/// resists what is deformed in a few cells, and resists the motion of a whole body about as much as its stiffness does a
-/// deformation over the length of the model. It is raised until the matrix is that of a minimum and no node moves further than
-/// its cells are large, and eases while the residual falls, to nothing at the end: there iterations converge as Newton's.
+/// to the next one that is, as far as iterations of half a cell lead; forces and the equilibrium know nothing of the
+/// resistance. As a mass, it hardly resists what is deformed in a few cells, and resists the motion of a whole body about as
+/// much as its stiffness does a deformation over the length of the model. It is raised until the matrix is that of a minimum
+/// and no node moves further than its cells are large, and eases while the residual falls, to nothing at the end: there
+/// iterations converge as Newton's.
 class Creep {
  public:
   /// @param stiffness the system at a state in equilibrium

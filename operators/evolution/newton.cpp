@@ -111,6 +111,7 @@ void Newton::begin(StaticState& state, const std::string& label, bool as_given) 
 
 void Newton::restart(const StaticState& state) {
   equilibrium_.strain_as(state);
+  creep_.reset();
   choice_.start_instant();
   solver_.forget_right_sides();
   prediction_.distrust();
@@ -244,8 +245,8 @@ int Newton::iterate(double instant, StaticState& state, const std::function<void
   const auto assemble_first = [&] {
     assemble(state, goes_on ? previous : equilibrium_.at_rest(previous), options_.prediction);
   };
-  if (creep_ || equilibrium_.has_memory() || equilibrium_.strains_freely(previous) || equilibrium_.has_new_gaps() ||
-      state.displacement != previous.displacement ||
+  if (creep_.has_value() != resists_ || equilibrium_.has_memory() || equilibrium_.strains_freely(previous) ||
+      equilibrium_.has_new_gaps() || state.displacement != previous.displacement ||
       choice_.suited(options_.prediction, equilibrium_.touches(state)) != equilibrium_.matrix())
     assemble_first();
   IterationReport there;
@@ -265,9 +266,10 @@ int Newton::iterate(double instant, StaticState& state, const std::function<void
     const bool rough = settling && iteration < last;
     const Accuracy accuracy{.rough = rough, .share = iteration > 0 ? forcing_.next(line, rough) : 0};
     line = {.iteration = iteration};
+    const auto assemble_again = [&] { iteration == 0 ? assemble_first() : assemble(state, previous, options_.matrix); };
     const SolidMatrix asked = iteration == 0 ? options_.prediction : options_.matrix;
     std::vector<double> solution = solve_system(state, previous, asked, step, accuracy, line);
-    bool downhill = creep_ && resist(solution, state, previous, asked, step, accuracy, line);
+    bool downhill = creep_ && resist(solution, state, previous, asked, step, accuracy, line, assemble_again);
     const auto& negative = line.solution.factorisation.negative_pivots;
     if (!creep_ && negative &&
         choice_.note_pivots(equilibrium_.matrix(), equilibrium_.curves(state), *negative, line.constraints)) {
@@ -276,9 +278,7 @@ int Newton::iterate(double instant, StaticState& state, const std::function<void
     }
     // a matrix that is not that of a minimum has statuses that answer to each other in any sense
     if (!creep_) downhill = !negative || *negative <= line.constraints;
-    if (downhill)
-      fit_statuses(solution, step, state, accuracy, line,
-                   [&] { iteration == 0 ? assemble_first() : assemble(state, previous, options_.matrix); });
+    if (downhill) fit_statuses(solution, step, state, accuracy, line, assemble_again);
     // what iterates that go to and fro jump over lies between them. In space forces leap where the traces of facets change, and
     // a search for balance stops at each leap: there it ends with the period
     goes_round_ = course_.period() || (goes_round_ && problem_.dimension == 2);

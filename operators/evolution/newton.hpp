@@ -115,7 +115,8 @@ class Newton {
   /// are large, as far as it keeps them from that; cut the solution short where rows of contact ask for more.
   /// @return whether the matrix is that of a minimum; `line` tells its pivots before the resistance was raised
   bool resist(std::vector<double>& solution, StaticState& state, const StaticState& previous, SolidMatrix asked,
-              std::span<const double> step, const Accuracy& accuracy, IterationReport& line);
+              std::span<const double> step, const Accuracy& accuracy, IterationReport& line,
+              const std::function<void()>& assemble_again);
   /// Whether forces alone move a body by more than the model is large: next to nothing resists that, though no pivot is zero.
   bool flings(std::span<const double> solution, std::span<const double> step) const;
   /// What next to nothing resists, of bodies that no support, spring or relation holds.
@@ -253,6 +254,7 @@ class Newton {
   bool goes_round_ = false;                      ///< residuals have come back: increments are searched (line_search.hpp)
   Effort effort_ = Effort::usual;
   std::optional<Creep> creep_;         ///< in an instant that is tried so
+  bool resists_ = false;               ///< the matrix has its resistance
   bool other_covers_ = false;          ///< patches have begun to keep their cover: what follows has its own iterations
   int times_round_ = 0;                ///< in this instant: residuals have come back
   std::vector<double> depths_before_;  ///< depths() as the instant began

@@ -42,6 +42,7 @@ void Newton::place_nodes(const StaticState& state) {
 void Newton::assemble(const StaticState& state, const StaticState& previous, SolidMatrix asked) {
   place_nodes(state);
   equilibrium_.assemble(state, previous, choice_.suited(asked, equilibrium_.touches(state)));
+  resists_ = creep_.has_value();
   if (creep_) equilibrium_.resist(creep_->resistance());
 }
 
@@ -105,7 +106,8 @@ std::vector<double> Newton::solve_system(StaticState& state, const StaticState& 
 }
 
 bool Newton::resist(std::vector<double>& solution, StaticState& state, const StaticState& previous, SolidMatrix asked,
-                    std::span<const double> step, const Accuracy& accuracy, IterationReport& line) {
+                    std::span<const double> step, const Accuracy& accuracy, IterationReport& line,
+                    const std::function<void()>& assemble_again) {
   const bool driven = std::ranges::any_of(step, [](double value) { return value != 0; });
   const auto unstable = [&] {
     const auto& negative = line.solution.factorisation.negative_pivots;
@@ -118,7 +120,7 @@ bool Newton::resist(std::vector<double>& solution, StaticState& state, const Sta
     const bool was_unstable = unstable();
     const double before = reached;
     creep_->raise();
-    assemble(state, previous, asked);
+    assemble_again();
     solution = solve_system(state, previous, asked, step, accuracy, line);
     reached = motion();
     if (!was_unstable && !unstable() && reached > hardly_less * before) break;

@@ -184,7 +184,8 @@ TEST(WaysThrough, AThinBodyInsideOfAnotherOneStaysInContact) {
 
 /// A slave of length 1 under a ledge of the master, which ends above it at `end`; behind that the master is 3 further away.
 /// @param ledge whether it is there at all  @param bar whether a bar lies on the way, whose upper side alone is known
-Pairing under_ledge(double end, bool ledge, bool bar) {
+/// @param cells of the master behind it
+Pairing under_ledge(double end, bool ledge, bool bar, const PairingOptions& options = {.depth_limit = 4}, int cells = 1) {
   Skin slave, master;
   const auto add = [](Skin& skin, Vec2 a, Vec2 b) {
     add_chain(
@@ -196,10 +197,10 @@ Pairing under_ledge(double end, bool ledge, bool bar) {
   };
   add(slave, {1, 0}, {0, 0});
   if (ledge) add(master, {-1, 0}, {end, 0});
-  add(master, {end, 3}, {2, 3});
+  for (int i = 0; i < cells; ++i) add(master, {end + i * (2 - end) / cells, 3}, {end + (i + 1) * (2 - end) / cells, 3});
   if (bar) add(master, {2, 1.5}, {0.5, 1.5});
-  const std::vector<std::int32_t> one(40, 7), other(40, 8);  // by node
-  return pair(with_body(slave, one), with_body(master, other), {.depth_limit = 4});
+  const std::vector<std::int32_t> one(40, 7), other(5000, 8);  // by node
+  return pair(with_body(slave, one), with_body(master, other), options);
 }
 
 // Where ends lie on each other round-off decides whether a slave sees past them, and what it sees there has a derivative that
@@ -216,6 +217,11 @@ TEST(WaysThrough, SliversPastTheEndOfWhatIsNearAreLeftOut) {
     // where there is nothing near what is far is all that there is
     EXPECT_EQ(far(under_ledge(1 - width, false, false)), 1) << width;
   }
+  // not where gaps are not differentiated
+  EXPECT_EQ(under_ledge(1 - sliver, true, false, {.depth_limit = 4, .drops_slivers = false}).cells.master,
+            (std::vector<std::int32_t>{1, 0}));
+  // masters count together, however fine they are
+  EXPECT_GT(under_ledge(1 - 3e-3, true, false, {.depth_limit = 4}, 2000).cells.master.size(), 5U);
   // through a bar, up to a fiftieth of the slave
   EXPECT_EQ(under_ledge(1 - more, true, false).cells.master, (std::vector<std::int32_t>{1, 0}));
   const Pairing behind = under_ledge(1 - more, true, true);
