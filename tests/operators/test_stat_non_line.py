@@ -470,7 +470,7 @@ class StatNonLine(TwoSquares):
         with self.create("time_steps_10", "time_steps", cut=1, cut_into=2, cut_levels=2, smallest=0.0) as file:
             file["values"] = np.array([0.0, 1.0])
         run = self.solve(INCREMENT={"LIST_INST": concept("time_steps_10")}, CONVERGENCE={**UNREACHABLE, "ITER_GLOB_MAXI": 2})
-        self.assertEqual(self.ids(run), ["EVOLUTION_7", "EVOLUTION_7", "EVOLUTION_71", "EVOLUTION_73", "EVOLUTION_4"])  # two levels at most
+        self.assertEqual(self.ids(run), ["EVOLUTION_7", "EVOLUTION_7", "EVOLUTION_71", "EVOLUTION_73", "EVOLUTION_76", "EVOLUTION_4"])  # two levels at most
         self.assertEqual(run.status, 3)
         self.assertFalse(self.path("result_9").exists())
 

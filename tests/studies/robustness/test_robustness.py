@@ -377,12 +377,18 @@ class Skins(StudyTest):
         a side. Shorter steps stop as well; on the way to another equilibrium the residual grows for 15 iterations, and falls behind that."""
         tilted = unseen(451)
         self.assertEqual(tilted.most, 15)
-        told = dataclasses.replace(tilted, most=4)
+        told = dataclasses.replace(tilted, most=2)
         self.assertIn("EVOLUTION_4", run(told, LACON, self.folder)["status"])
         said = (self.folder / "err").read_text()
         for words in ("EVOLUTION_53", "the equilibrium that it comes from is not stable any more", "ITER_GLOB_MAXI=60"):
             self.assertIn(words, said)
-        self.assertEqual(run(dataclasses.replace(told, most=60), LACON, self.folder)["status"], "finished")
+        forces = []
+        for most in (60, 4):
+            self.assertEqual(run(dataclasses.replace(told, most=most), LACON, self.folder)["status"], "finished")
+            forces.append(re.findall(r"force on the slave \(([^)]*)\)", (self.folder / "out").read_text())[-1])
+        # with a few more it creeps there as well
+        self.assertIn("<EVOLUTION_76>", (self.folder / "err").read_text())
+        np.testing.assert_allclose(*([float(value) for value in force.split(",")] for force in forces), rtol=1e-4)
 
     def test_many_iterations_are_tried_before_a_step_is_given_up(self):
         """The same block with 15 iterations: no short step finds another equilibrium."""
