@@ -60,8 +60,8 @@ std::optional<Rejection> left_out(const PairingOptions& options, const Surface& 
                                   const Surface& master, std::size_t master_cell);
 /// Whether no gap up to this one is beyond a limit of `options`.
 bool within_limits(const PairingOptions& options, double largest_gap, const CoupleSize& couple);
-/// Of the slave cell: slivers that see past a corner, and those that are next to nothing.
-inline constexpr double past_a_corner = 0.02, next_to_nothing = 1e-3;
+/// Of the slave cell: what is less sees past a corner.
+inline constexpr double past_a_corner = 0.02;
 
 /// Drop slivers of a slave cell that see masters far away, past the ends of others that are near: where ends touch, as of a
 /// tooth in its groove, it is round-off whether the cell sees past them. However little that is, its derivative by the ends is
@@ -72,6 +72,7 @@ inline constexpr double past_a_corner = 0.02, next_to_nothing = 1e-3;
 template <class Part, class Far, class Share, class Through, class Reject>
 void drop_past_ends(std::vector<Part>& parts, const Far& far, const Share& share, const Through& is_through,
                     const Reject& reject) {
+  constexpr double next_to_nothing = 1e-3;
   double seen = 0;
   bool any_near = false;
   for (const Part& part : parts) {

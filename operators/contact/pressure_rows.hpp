@@ -19,7 +19,7 @@ namespace lacon {
 class PressureRows {
  public:
   /// @param nodes of each patch of a zone (others: none)  @param normals of each patch: a row ends at an edge of the body,
-  /// where they turn by 60 degrees or more  @param shared how many nodes neighbours have in common: 1 in the plane, 2 or more
+  /// where they turn by more than 60 degrees  @param shared how many nodes neighbours have in common: 1 in the plane, 2 or more
   /// in space
   PressureRows(const std::vector<std::vector<std::int32_t>>& nodes, const std::vector<Vec3>& normals, std::size_t shared);
   /// Nothing where too few patches in rows press.

@@ -14,7 +14,7 @@ namespace lacon {
 /// to the next one that is, as far as iterations of half a cell lead; forces and the equilibrium know nothing of the
 /// resistance. As a mass, it hardly resists what is deformed in a few cells, and resists the motion of a whole body about as
 /// much as its stiffness does a deformation over the length of the model. It is raised until the matrix is that of a minimum
-/// and no node moves further than its cells are large, and eases while the residual falls, to nothing at the end: there
+/// and no node moves by more than half of its cells, and eases while the residual falls, to nothing at the end: there
 /// iterations converge as Newton's.
 class Creep {
  public:

@@ -189,7 +189,7 @@ std::vector<double> Newton::begin_instant(double instant, const StaticState& sta
   depths_before_ = depths(state);
   const bool follows = unstable_path_.begin();
   choice_.start_instant(follows || creep_);
-  if (creep_) choice_.set_waits(false);
+  if (creep_) choice_.set_waits(false);  // it is far from balance, or was: second derivatives are worth their cost
   statuses_.start_instant();
   edges_ = {};
   lost_masters_.start_instant();
@@ -255,8 +255,8 @@ int Newton::iterate(double instant, StaticState& state, const std::function<void
   bool settling = false;  // statuses change from iteration to iteration: a rough solution finds them as well
   IterationReport line;
   std::size_t changing = 0;
-  const bool long_one = effort_ == Effort::lasts || effort_ == Effort::creeps;
-  int last = long_one ? std::max(options_.iterations, lasting(options_.iterations)) : options_.iterations,
+  const bool lasts = effort_ == Effort::lasts || effort_ == Effort::creeps;
+  int last = lasts ? std::max(options_.iterations, lasting(options_.iterations)) : options_.iterations,
       beyond = last / 2;  // more iterations, which are made where they lead to the end
   const auto with_own_iterations = [&](int first) {
     return std::max(last, std::min(first + options_.iterations, most_times * options_.iterations));
@@ -269,16 +269,18 @@ int Newton::iterate(double instant, StaticState& state, const std::function<void
     const auto assemble_again = [&] { iteration == 0 ? assemble_first() : assemble(state, previous, options_.matrix); };
     const SolidMatrix asked = iteration == 0 ? options_.prediction : options_.matrix;
     std::vector<double> solution = solve_system(state, previous, asked, step, accuracy, line);
-    bool downhill = creep_ && resist(solution, state, previous, asked, step, accuracy, line, assemble_again);
-    const auto& negative = line.solution.factorisation.negative_pivots;
-    if (!creep_ && negative &&
-        choice_.note_pivots(equilibrium_.matrix(), equilibrium_.curves(state), *negative, line.constraints)) {
+    auto& negative = line.solution.factorisation.negative_pivots;
+    const auto without_more = negative;  // resistance to creeping, of which next to nothing is left at the end
+    if (creep_) {
+      resist(solution, state, previous, asked, step, accuracy, line, assemble_again);
+    } else if (negative &&
+               choice_.note_pivots(equilibrium_.matrix(), equilibrium_.curves(state), *negative, line.constraints)) {
       assemble(state, previous, SolidMatrix::tangent);
       solution = solve_system(state, previous, SolidMatrix::tangent, step, accuracy, line);
     }
     // a matrix that is not that of a minimum has statuses that answer to each other in any sense
-    if (!creep_) downhill = !negative || *negative <= line.constraints;
-    if (downhill) fit_statuses(solution, step, state, accuracy, line, assemble_again);
+    if (!negative || *negative <= line.constraints) fit_statuses(solution, step, state, accuracy, line, assemble_again);
+    if (creep_) negative = without_more;
     // what iterates that go to and fro jump over lies between them. In space forces leap where the traces of facets change, and
     // a search for balance stops at each leap: there it ends with the period
     goes_round_ = course_.period() || (goes_round_ && problem_.dimension == 2);

@@ -111,10 +111,9 @@ class Newton {
   /// first. Throws SOLVER_3 in the first iteration, EVOLUTION_42 in later ones.
   std::vector<double> solve_system(StaticState& state, const StaticState& previous, SolidMatrix asked,
                                    std::span<const double> step, const Accuracy& accuracy, IterationReport& line);
-  /// Raise the resistance of the matrix to all motion until it is that of a minimum and no node moves further than its cells
-  /// are large, as far as it keeps them from that; cut the solution short where rows of contact ask for more.
-  /// @return whether the matrix is that of a minimum; `line` tells its pivots before the resistance was raised
-  bool resist(std::vector<double>& solution, StaticState& state, const StaticState& previous, SolidMatrix asked,
+  /// Raise the resistance of the matrix to all motion until it is that of a minimum and no node moves by more than half of its
+  /// cells, as far as it keeps them from that; cut the solution short where rows of contact ask for more.
+  void resist(std::vector<double>& solution, StaticState& state, const StaticState& previous, SolidMatrix asked,
               std::span<const double> step, const Accuracy& accuracy, IterationReport& line,
               const std::function<void()>& assemble_again);
   /// Whether forces alone move a body by more than the model is large: next to nothing resists that, though no pivot is zero.

@@ -105,7 +105,7 @@ std::vector<double> Newton::solve_system(StaticState& state, const StaticState& 
   }
 }
 
-bool Newton::resist(std::vector<double>& solution, StaticState& state, const StaticState& previous, SolidMatrix asked,
+void Newton::resist(std::vector<double>& solution, StaticState& state, const StaticState& previous, SolidMatrix asked,
                     std::span<const double> step, const Accuracy& accuracy, IterationReport& line,
                     const std::function<void()>& assemble_again) {
   const bool driven = std::ranges::any_of(step, [](double value) { return value != 0; });
@@ -113,7 +113,6 @@ bool Newton::resist(std::vector<double>& solution, StaticState& state, const Sta
     const auto& negative = line.solution.factorisation.negative_pivots;
     return negative && *negative > line.constraints;
   };
-  const auto pivots = line.solution.factorisation.negative_pivots;  // next to no resistance is left at the end
   const auto motion = [&] { return driven ? 0 : creep_->over_cells(solution); };
   double reached = motion();
   for (int raised = 0; raised < most_raised && (unstable() || reached > furthest); ++raised) {
@@ -127,9 +126,6 @@ bool Newton::resist(std::vector<double>& solution, StaticState& state, const Sta
   }
   if (reached > furthest)
     for (double& value : solution) value *= furthest / reached;
-  const bool downhill = !unstable();
-  line.solution.factorisation.negative_pivots = pivots;
-  return downhill;
 }
 
 bool Newton::flings(std::span<const double> solution, std::span<const double> step) const {
