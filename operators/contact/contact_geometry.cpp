@@ -5,11 +5,11 @@
 #include <limits>
 #include <map>
 #include <numeric>
-#include <tuple>
 #include <utility>
 
 #include "lacon/catalog/messages.hpp"
 #include "lacon/elements/reference.hpp"
+#include "lacon/operators/contact/facets.hpp"
 #include "lacon/operators/contact/facing.hpp"
 #include "lacon/pairing/free_ends.hpp"
 #include "lacon/pairing/normals.hpp"
@@ -75,24 +75,6 @@ constexpr double deepest_overlap = 4;  // diameters of the larger cell of a coup
 // covered by.
 constexpr double fading = 2e-3;
 constexpr double coverage_round_off = 1e-12;  // covered fractions above 1 by no more than this are 1
-
-/// Nodes that lie inside of a patch, (n_nodes).
-std::vector<std::uint8_t> inner_nodes(const Mesh& mesh, const Contact& contact, std::span<const std::int32_t> slaves) {
-  std::map<std::tuple<std::int32_t, std::int32_t, std::int32_t>, int> cells_at;  // sides of the cells of each patch
-  std::vector<std::uint8_t> inner(mesh.n_nodes(), 0);
-  for (const std::int32_t s : slaves) {
-    const auto nodes = mesh.cells[contact.slaves[s].cell];
-    const auto n = static_cast<std::size_t>(mesh.row(contact.slaves[s].cell).n_vertices);
-    for (std::size_t i = 0; i < n; ++i) {
-      const auto [a, b] = std::minmax(nodes[i], nodes[mesh.dimension == 2 ? i : (i + 1) % n]);
-      ++cells_at[{contact.slaves[s].patch, a, b}];
-      inner[static_cast<std::size_t>(nodes[i])] = 1;
-    }
-  }
-  for (const auto& [side, count] : cells_at)
-    if (count == 1) inner[static_cast<std::size_t>(std::get<1>(side))] = inner[static_cast<std::size_t>(std::get<2>(side))] = 0;
-  return inner;
-}
 
 /// Room for what is still to come. @param whole what will have come behind `first` in the end, over what has come so far
 template <class T>
@@ -160,7 +142,9 @@ ContactGeometry::ContactGeometry(const Mesh& mesh, const Model& model, const Con
     for (const std::int32_t patch : data.patches) zone_of_[patch] = static_cast<std::int32_t>(zones_.size());
     if (!contact.frozen_gap) {
       zone.pairing.fading = fading;
-      zone.inner = inner_nodes(mesh, contact, zone.slaves);
+      std::vector<std::int32_t> patches;
+      for (const std::int32_t slave : zone.slaves) patches.push_back(contact.slaves[slave].patch);
+      zone.inner = inner_nodes(zone.slave, patches);
       zone.slave.inner = zone.inner;
       zone.free_ends = free_ends(zone.master);
       zone.master.free_ends = zone.free_ends;

@@ -9,7 +9,6 @@
 #include "lacon/catalog/messages.hpp"
 #include "lacon/elements/contact_system.hpp"
 #include "lacon/operators/contact/contact_edge.hpp"
-#include "lacon/operators/contact/facets.hpp"
 #include "lacon/operators/contact/facing.hpp"
 #include "lacon/operators/meshing/body.hpp"
 #include "lacon/pairing/normals.hpp"
@@ -330,31 +329,6 @@ HeldOverlap ContactState::held_overlap() const {
   return overlap;
 }
 
-std::optional<FacetOverlap> ContactState::facet_overlap(std::int32_t number) const {
-  const ContactGeometry::Zone& zone = geometry_.zones()[number];
-  std::map<std::int32_t, double> missing;  // of each cell of both skins
-  const auto examine = [&](const Surface& skin, const auto& cell_of) {
-    const std::vector<Bulge> bulges = missing_bulge(skin);
-    for (std::size_t i = 0; i < bulges.size(); ++i) missing[cell_of(i)] = std::abs(bulges[i].missing);
-  };
-  examine(zone.slave, [&](std::size_t i) { return contact_.slaves[zone.slaves[i]].cell; });
-  examine(zone.master, [&](std::size_t i) { return zone.masters[i]; });
-  std::vector<double> explained(n_patches(), 0.0);
-  for (const ContactGeometry::Cell& cell : geometry_.cells()) {
-    const SlaveElement& slave = contact_.slaves[cell.slave];
-    if (geometry_.zone_of(slave.patch) != number) continue;
-    explained[slave.patch] = std::max(explained[slave.patch], missing[slave.cell] + missing[cell.master]);
-  }
-  std::optional<FacetOverlap> worst;
-  for (std::size_t p = 0; p < n_patches(); ++p) {
-    const double depth = -geometry_.gap(p) / size_[p];
-    if (geometry_.zone_of(p) != number || !is_covered(p) || depth < tolerances_.facet_overlap) continue;
-    if (-geometry_.gap(p) > tolerances_.facets * explained[p]) return std::nullopt;
-    if (!worst || depth > worst->depth) worst = FacetOverlap{p, depth};
-  }
-  return worst;
-}
-
 std::optional<AlternatingPressures> ContactState::alternation(std::int32_t zone, const Patchwise& patches,
                                                               const std::function<bool()>& has_facets) const {
   constexpr double whole = 0.99;
@@ -373,7 +347,7 @@ std::optional<AlternatingPressures> ContactState::alternation(std::int32_t zone,
   if (const auto found = much(alternations_[of_zone].measure(patches.lambda, area, pressed, pressed))) return found;
   if (auto few = alternations_[of_zone].measure(patches.lambda, area, seen, pressed);
       few && few->share > tolerances_.scattered && few->pressing < tolerances_.few) {
-    few->by = AlternatingBy::few_triangles;
+    few->by = AlternatingBy::few_patches;
     return few;
   }
   const auto everywhere = much(rows_[of_zone].measure(patches.lambda, area, seen, pressed));

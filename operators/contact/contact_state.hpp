@@ -30,8 +30,6 @@ struct ContactTolerances {
   double starting_gap = 0.1;          ///< CONTACT_INIT='OUI': of h, largest gap that closes at once, where a patch has no more
   double holding_gap = 0.5;           ///< of h: average gap up to which a patch may hold a body that is loose otherwise
   double as_near = 1e-3;              ///< of h: by how much gaps of patches that hold it together may differ
-  double facet_overlap = 1e-3;        ///< of h: average overlap that is worth an alarm where facets make it
-  double facets = 1.5;                ///< largest overlap that facets make, over what they leave of the curves
   double held_overlap = 1e-6;         ///< of h: an overlap of a locked patch that is worth an alarm
   double pierced = 0.05;              ///< of h: likewise of points of another active patch, whose average is closed
   double pierced_open = 0.04;         ///< of h: of points of an open patch, which nothing keeps out of the master
@@ -96,12 +94,6 @@ struct SplitPatch {
 struct UncheckedOverlap {
   std::size_t patch;
   double depth;  ///< of its deepest point
-};
-
-/// The patch of a zone that overlaps its master deepest, where that is nothing but what straight edges leave of curved skins.
-struct FacetOverlap {
-  std::size_t patch;
-  double depth;  ///< average, over h
 };
 
 /// What contact needs to know of the bodies under the skins.
@@ -248,8 +240,6 @@ class ContactState {
   /// @param loose bodies, numbered as body_of(node) does
   std::vector<NearestPatches> nearest_to_hold(const Patchwise& patches, const std::set<std::int32_t>& loose,
                                               const std::function<std::int32_t(std::int32_t node)>& body_of) const;
-  /// Of a zone, at the initial geometry: nothing where some patch overlaps by more than its facets explain.
-  std::optional<FacetOverlap> facet_overlap(std::int32_t zone) const;
   /// Of a zone the patch that is pierced deepest, over its size, where that is worth an alarm.
   /// @param at_rest nothing presses in this zone: less is
   std::optional<PiercedPatch> pierced(std::int32_t zone, const Patchwise& patches, bool at_rest) const;

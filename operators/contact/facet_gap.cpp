@@ -1,18 +1,24 @@
 #include "lacon/operators/contact/facet_gap.hpp"
 
+#include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <numeric>
 #include <set>
-#include <vector>
+
+#include "lacon/elements/reference.hpp"
+#include "lacon/operators/contact/facing.hpp"
+#include "lacon/pairing/normals.hpp"
 
 namespace lacon {
 namespace {
 
-// Radians, between a cell and the normals at its vertices: where they turn by more, half the angle of ten edges a turn, they
-// are means of what meets at a corner, and stand for no curve.
-constexpr double corner = 0.32;
-constexpr double negligible = 1e-5;      // of the radius
-constexpr double mean_of_arc = 2.0 / 3;  // height of an arc on average over its largest
+constexpr double negligible = 1e-5;    // of the radius
+constexpr double explained = 1.5;      // largest overlap that facets make, over what they leave of the curves
+constexpr double overlap_told = 1e-3;  // of h: average overlap that is worth an alarm where facets make it
+constexpr std::size_t fewest = 8;      // patches of a contact of which few press
+constexpr double few = 0.6;            // of them
 
 /// How some nodes move: all together, and the root of the mean square of what they do beside it.
 struct Motion {
@@ -41,67 +47,201 @@ double median(std::vector<double>& values) {
   return *middle;
 }
 
-/// The contact cells of a patch.
-struct Couples {
-  double missing = 0, curvature = 0;  // sums
-  int count = 0;
-  std::vector<std::int32_t> slaves, masters;  // cells of the mesh
+/// A cell of a skin and its nodes at one geometry.
+class PlacedCell {
+ public:
+  PlacedCell(const Mesh& mesh, std::int32_t cell, std::span<const double> coordinates) : type_(mesh.types[cell]) {
+    for (const std::int32_t node : mesh.cells[cell])
+      for (std::size_t k = 0; k < 3; ++k) points_.push_back(coordinates[3 * static_cast<std::size_t>(node) + k]);
+  }
+  Vec3 at(std::span<const double> xi) const {
+    shape_.resize(points_.size() / 3);
+    shape_functions(type_, xi, shape_);
+    Vec3 place{};
+    for (std::size_t i = 0; i < shape_.size(); ++i) place = place + shape_[i] * vector_at(&points_[3 * i]);
+    return place;
+  }
+  /// As long as the Jacobian.
+  Vec3 normal(std::span<const double> xi) const { return cell_normal(type_, points_, xi); }
+  /// The reference point where a line meets it; nothing beside it.
+  std::optional<std::vector<double>> met_by(Vec3 place, Vec3 direction) const {
+    constexpr int most_steps = 10;
+    constexpr double edge = 1e-9, solved = 1e-12;
+    const catalog::CellRow& row = catalog::cell(type_);
+    const auto dimension = static_cast<std::size_t>(row.dimension);
+    std::vector<double> xi(dimension, row.family == Family::TRIA ? 1.0 / 3 : 0.0), slopes(shape_.size() * dimension);
+    slopes.resize(points_.size() / 3 * dimension);
+    double along = 0;
+    for (int step = 0; step < most_steps; ++step) {
+      const Vec3 off = at(xi) - place - along * direction;
+      shape_gradients(type_, xi, slopes);
+      Eigen::Matrix3d matrix = Eigen::Matrix3d::Identity();  // in the plane the last equation is 0 = 0
+      for (std::size_t d = 0; d < dimension; ++d) {
+        Vec3 tangent{};
+        for (std::size_t i = 0; i < shape_.size(); ++i)
+          tangent = tangent + slopes[i * dimension + d] * vector_at(&points_[3 * i]);
+        matrix.col(static_cast<Eigen::Index>(d)) = Eigen::Vector3d(tangent.x, tangent.y, tangent.z);
+      }
+      matrix.col(static_cast<Eigen::Index>(dimension)) = -Eigen::Vector3d(direction.x, direction.y, direction.z);
+      const Eigen::Vector3d change = matrix.partialPivLu().solve(Eigen::Vector3d(off.x, off.y, off.z));
+      if (!change.allFinite()) return std::nullopt;
+      double moved = 0;
+      for (std::size_t d = 0; d < dimension; ++d) {
+        xi[d] -= change[static_cast<Eigen::Index>(d)];
+        moved = std::max(moved, std::abs(change[static_cast<Eigen::Index>(d)]));
+      }
+      along -= change[static_cast<Eigen::Index>(dimension)];
+      if (moved < solved) break;
+    }
+    const bool inside = row.family == Family::TRIA
+                            ? xi[0] >= -edge && xi[1] >= -edge && xi[0] + xi[1] <= 1 + edge
+                            : std::ranges::all_of(xi, [](double value) { return std::abs(value) <= 1 + edge; });
+    return inside ? std::optional(xi) : std::nullopt;
+  }
+
+ private:
+  CellType type_;
+  std::vector<double> points_;
+  mutable std::vector<double> shape_;
 };
 
 }  // namespace
 
-const FacetGaps::Bulges& FacetGaps::bulges(std::int32_t number) {
-  const auto [found, is_new] = bulges_.try_emplace(number);
-  if (!is_new) return found->second;
+const FacetGaps::Curves& FacetGaps::curves(std::int32_t number) {
+  const auto [found, is_new] = curves_.try_emplace(number);
+  Curves& curves = found->second;
+  if (!is_new) return curves;
   const ContactGeometry::Zone& zone = contact_.geometry().zones()[static_cast<std::size_t>(number)];
-  const auto add = [&](Surface skin, const auto& cell_of) {
+  const auto add = [&](Surface skin, std::span<const std::int32_t> facet_of, const auto& cell_of, Skin& to) {
     skin.coordinates = mesh_.coordinates;
-    const std::vector<Bulge> of_skin = missing_bulge(skin);
-    for (std::size_t i = 0; i < of_skin.size(); ++i)
-      if (of_skin[i].turn < corner) found->second[cell_of(i)] = of_skin[i];
+    const std::vector<FacetArc> arcs = arcs_of_cells(skin, facet_of);
+    for (std::size_t i = 0; i < arcs.size(); ++i) {
+      if (!arcs[i].is_of_curve()) continue;
+      const std::int32_t cell = cell_of(i);
+      to.arcs.emplace(cell, arcs[i]);
+      to.curvature = std::max(to.curvature, arcs[i].curvature());
+      const PlacedCell placed(mesh_, cell, mesh_.coordinates);
+      const Rule& rule = measuring_rule(skin.types[i]);
+      for (std::size_t p = 0; p < rule.weights.size() && !curves.are_left; ++p) {
+        const auto xi = std::span(rule.points)
+                            .subspan(p * static_cast<std::size_t>(rule.dimension), static_cast<std::size_t>(rule.dimension));
+        curves.are_left = std::abs(arcs[i].missing(placed.at(xi))) * arcs[i].curvature() > negligible;
+      }
+    }
   };
-  add(zone.slave, [&](std::size_t i) { return definition_.slaves[static_cast<std::size_t>(zone.slaves[i])].cell; });
-  add(zone.master, [&](std::size_t i) { return zone.masters[i]; });
-  return found->second;
+  std::vector<std::int32_t> patches, cells(zone.masters.size());
+  for (const std::int32_t slave : zone.slaves) patches.push_back(definition_.slaves[static_cast<std::size_t>(slave)].patch);
+  std::iota(cells.begin(), cells.end(), 0);
+  add(
+      zone.slave, patches, [&](std::size_t i) { return definition_.slaves[static_cast<std::size_t>(zone.slaves[i])].cell; },
+      curves.slave);
+  add(
+      zone.master, cells, [&](std::size_t i) { return zone.masters[i]; }, curves.master);
+  return curves;
+}
+
+std::map<std::size_t, double> FacetGaps::of_patches(std::int32_t zone) {
+  const ContactGeometry& geometry = contact_.geometry();
+  const Curves& curves = this->curves(zone);
+  std::map<std::size_t, double> of_patch;
+  if (!curves.are_left) return of_patch;
+  std::map<std::size_t, double> weights;
+  for (const ContactGeometry::Cell& cell : geometry.cells()) {
+    const SlaveElement& element = definition_.slaves[static_cast<std::size_t>(cell.slave)];
+    const auto patch = static_cast<std::size_t>(element.patch);
+    if (geometry.zone_of(patch) != zone) continue;
+    const auto slave = curves.slave.arcs.find(element.cell), master = curves.master.arcs.find(cell.master);
+    if (slave == curves.slave.arcs.end() || master == curves.master.arcs.end()) continue;
+    const PlacedCell slave_at_rest(mesh_, element.cell, mesh_.coordinates),
+        slave_now(mesh_, element.cell, geometry.coordinates()), master_at_rest(mesh_, cell.master, mesh_.coordinates),
+        master_now(mesh_, cell.master, geometry.coordinates());
+    const Rule& rule = measuring_rule(mesh_.types[element.cell]);
+    for (std::size_t p = 0; p < rule.weights.size(); ++p) {
+      const auto xi = std::span(rule.points)
+                          .subspan(p * static_cast<std::size_t>(rule.dimension), static_cast<std::size_t>(rule.dimension));
+      const Vec3 normal = slave_now.normal(xi);
+      const auto image = master_now.met_by(slave_now.at(xi), normal / norm(normal));
+      if (!image) continue;
+      const double weight = rule.weights[p] * norm(normal);
+      weights[patch] += weight;
+      of_patch[patch] +=
+          weight * (slave->second.missing(slave_at_rest.at(xi)) + master->second.missing(master_at_rest.at(*image)));
+    }
+  }
+  for (auto& [patch, gap] : of_patch) gap /= weights[patch];
+  return of_patch;
 }
 
 std::optional<FacetGap> FacetGaps::of(std::int32_t zone, const Patchwise& patches, std::span<const double> displacement) {
   const ContactGeometry& geometry = contact_.geometry();
-  const Bulges& bulges = this->bulges(zone);
-  std::map<std::int32_t, Couples> of_patch;
-  for (const ContactGeometry::Cell& cell : geometry.cells()) {
-    const SlaveElement& element = definition_.slaves[static_cast<std::size_t>(cell.slave)];
-    if (geometry.zone_of(static_cast<std::size_t>(element.patch)) != zone) continue;
-    const auto slave = bulges.find(element.cell), master = bulges.find(cell.master);
-    if (slave == bulges.end() || master == bulges.end()) continue;
-    Couples& couples = of_patch[element.patch];
-    couples.missing += slave->second.missing + master->second.missing;
-    couples.curvature += std::max(std::abs(slave->second.curvature), std::abs(master->second.curvature));
-    ++couples.count;
-    couples.slaves.push_back(element.cell);
-    couples.masters.push_back(cell.master);
-  }
-  std::vector<double> gaps, curvatures, strains;
-  std::set<std::int32_t> slave_nodes, master_nodes;
-  for (const auto& [number, couples] : of_patch) {
-    const auto patch = static_cast<std::size_t>(number);
-    const double gap = mean_of_arc * couples.missing / couples.count;
+  const std::map<std::size_t, double> gaps = of_patches(zone);
+  const Curves& curves = this->curves(zone);
+  std::set<std::size_t> near;
+  double sum = 0, area = 0;
+  std::vector<double> strains;
+  for (const auto& [patch, gap] : gaps) {
     const bool active = patches.status[patch] == Status::active;
     if (!active && !(contact_.is_covered(patch) && geometry.gap(patch) < gap)) continue;
-    gaps.push_back(gap);
-    curvatures.push_back(couples.curvature / couples.count);
+    near.insert(patch);
+    sum += geometry.whole(patch) * gap;
+    area += geometry.whole(patch);
     strains.push_back(active ? contact_.strain(patch, patches) : 0);
-    for (const std::int32_t cell : couples.slaves) slave_nodes.insert(mesh_.cells[cell].begin(), mesh_.cells[cell].end());
-    for (const std::int32_t cell : couples.masters) master_nodes.insert(mesh_.cells[cell].begin(), mesh_.cells[cell].end());
   }
-  if (gaps.empty()) return std::nullopt;
-  const double gap = median(gaps), curvature = median(curvatures);
+  if (near.empty()) return std::nullopt;
+  std::set<std::int32_t> slave_nodes, master_nodes;
+  std::vector<double> curvatures;
+  for (const ContactGeometry::Cell& cell : geometry.cells()) {
+    const SlaveElement& element = definition_.slaves[static_cast<std::size_t>(cell.slave)];
+    const auto slave = curves.slave.arcs.find(element.cell), master = curves.master.arcs.find(cell.master);
+    if (!near.contains(static_cast<std::size_t>(element.patch)) || slave == curves.slave.arcs.end() ||
+        master == curves.master.arcs.end())
+      continue;
+    curvatures.push_back(std::max(slave->second.curvature(), master->second.curvature()));
+    slave_nodes.insert(mesh_.cells[element.cell].begin(), mesh_.cells[element.cell].end());
+    master_nodes.insert(mesh_.cells[cell.master].begin(), mesh_.cells[cell.master].end());
+  }
+  const double gap = sum / area, curvature = median(curvatures);
   if (std::abs(gap) * curvature < negligible) return std::nullopt;
   const auto dimension = static_cast<std::size_t>(mesh_.dimension);
   const Motion slave = motion(slave_nodes, displacement, dimension), master = motion(master_nodes, displacement, dimension);
   double apart = 0;
   for (std::size_t k = 0; k < dimension; ++k) apart = std::hypot(apart, slave.mean[k] - master.mean[k]);
   return FacetGap{gap, std::max(slave.deviation + master.deviation + apart, median(strains) / (2 * curvature))};
+}
+
+std::optional<FacetOverlap> FacetGaps::overlap(std::int32_t zone) {
+  const ContactGeometry& geometry = contact_.geometry();
+  const std::map<std::size_t, double> gaps = of_patches(zone);
+  std::optional<FacetOverlap> worst;
+  for (std::size_t patch = 0; patch < geometry.n_patches(); ++patch) {
+    const double depth = -geometry.gap(patch) / contact_.patch_size(patch);
+    if (geometry.zone_of(patch) != zone || !contact_.is_covered(patch) || depth < overlap_told) continue;
+    const auto left = gaps.find(patch);
+    if (left == gaps.end() || geometry.gap(patch) < explained * left->second) return std::nullopt;
+    if (!worst || depth > worst->depth) worst = FacetOverlap{patch, depth};
+  }
+  return worst;
+}
+
+std::optional<AlternatingPressures> FacetGaps::few_press(std::int32_t zone, const Patchwise& patches) {
+  const ContactGeometry& geometry = contact_.geometry();
+  const std::map<std::size_t, double> gaps = of_patches(zone);
+  double nearest = -std::numeric_limits<double>::infinity(),
+         largest = 0;  // of those that press: the largest gap between curves
+  AlternatingPressures found{0, 0, AlternatingBy::few_patches};
+  std::size_t pressing = 0, near = 0;
+  for (const auto& [patch, gap] : gaps) {
+    if (patches.status[patch] != Status::active) continue;
+    ++pressing;
+    nearest = std::max(nearest, geometry.gap(patch) - gap);
+    if (const double strain = contact_.strain(patch, patches); strain >= largest) largest = strain, found.patch = patch;
+  }
+  for (const auto& [patch, gap] : gaps)
+    near += patches.status[patch] == Status::active || (contact_.is_covered(patch) && geometry.gap(patch) - gap <= nearest);
+  if (pressing == 0 || near < fewest) return std::nullopt;
+  found.pressing = static_cast<double>(pressing) / static_cast<double>(near);
+  found.share = 1 - found.pressing;
+  return found.pressing < few ? std::optional(found) : std::nullopt;
 }
 
 }  // namespace lacon

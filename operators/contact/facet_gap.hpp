@@ -1,9 +1,11 @@
 #pragma once
-// The gap that straight edges leave between two curved skins, against what these give way by.
+// The gap that flat facets leave between two curved skins, and what it does to pressures.
 #include <cstdint>
+#include <limits>
 #include <map>
 #include <optional>
 #include <span>
+#include <vector>
 
 #include "lacon/operators/contact/contact_state.hpp"
 #include "lacon/operators/contact/facets.hpp"
@@ -11,29 +13,50 @@
 namespace lacon {
 
 struct FacetGap {
-  double gap;   ///< that edges add on average: positive where they keep the skins apart
+  double gap;   ///< that facets add on average: positive where they keep the skins apart
   double give;  ///< of the skins, one over the other, or of bodies of their radius under the pressure: the larger one
+
+  /// Pressures of a fit over those of curved skins; infinite where these would not touch.
+  double times() const { return give + gap > 0 ? give / (give + gap) : std::numeric_limits<double>::infinity(); }
 };
 
-/// Of zones at an instant. What edges leave is that of the mesh: bodies bend by themselves.
+/// The patch of a zone that overlaps its master deepest, where that is nothing but what facets leave of curved skins.
+struct FacetOverlap {
+  std::size_t patch;
+  double depth;  ///< average, over h
+};
+
+/// Of zones at an instant. What facets leave is that of the mesh: bodies bend by themselves.
 class FacetGaps {
  public:
   /// All arguments must outlive it.
   FacetGaps(const Mesh& mesh, const Contact& definition, const ContactState& contact)
       : mesh_(mesh), definition_(definition), contact_(contact) {}
-  /// Medians over the patches that press, or would if edges were curved; nothing where these have no curves.
+  /// Averages over the patches that press, or would if skins were curved; nothing where these have no curves.
   /// @param displacement (n_nodes, dimension)
   std::optional<FacetGap> of(std::int32_t zone, const Patchwise& patches, std::span<const double> displacement);
+  /// At the initial geometry, the patch that overlaps most: nothing where some patch does by more than its facets explain.
+  std::optional<FacetOverlap> overlap(std::int32_t zone);
+  /// Where few of the patches press that would lie as near to their master as these if skins were curved.
+  std::optional<AlternatingPressures> few_press(std::int32_t zone, const Patchwise& patches);
 
  private:
-  using Bulges = std::map<std::int32_t, Bulge>;  ///< by cells of the mesh
-  /// Of both skins, without cells at corners.
-  const Bulges& bulges(std::int32_t zone);
+  struct Skin {
+    std::map<std::int32_t, FacetArc> arcs;  ///< by cells of the mesh, without corners of bodies
+    double curvature = 0;                   ///< the largest
+  };
+  struct Curves {
+    Skin slave, master;
+    bool are_left = false;  ///< by facets, anywhere
+  };
+  const Curves& curves(std::int32_t zone);
+  /// Of each patch that meets curves: what facets add to its gap.
+  std::map<std::size_t, double> of_patches(std::int32_t zone);
 
   const Mesh& mesh_;
   const Contact& definition_;
   const ContactState& contact_;
-  std::map<std::int32_t, Bulges> bulges_;  ///< of zones that have been asked for
+  std::map<std::int32_t, Curves> curves_;  ///< of zones that have been asked for
 };
 
 }  // namespace lacon

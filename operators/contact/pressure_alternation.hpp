@@ -9,9 +9,9 @@
 
 namespace lacon {
 
-/// What pressures of a zone go up and down by: from triangle to triangle; the same, with most of them open; from patch to patch
-/// of a row (pressure_rows.hpp), where facets of curved skins meet, or along skins that have none.
-enum class AlternatingBy { triangles, few_triangles, facets, rows };
+/// What pressures of a zone go up and down by: from triangle to triangle; with most patches
+/// open; from patch to patch of a row (pressure_rows.hpp), where facets of curved skins meet, or along skins that have none.
+enum class AlternatingBy { triangles, few_patches, facets, rows };
 
 /// Pressures of a zone that alternate.
 struct AlternatingPressures {

@@ -13,13 +13,14 @@
 namespace lacon {
 namespace {
 
-constexpr double gap_that_counts = 0.2;      // of what skins give way by: pressures of a fit are wrong by as much
-constexpr double share_that_counts = 1e-3;   // of the largest strain of a zone: pressures below are none to speak of
-constexpr double share_of_round_off = 1e-3;  // of the largest pressure of a zone, at the instant that strains it most
-constexpr double gap_of_closed = 1e-5;       // of h: below, the average gap of a patch in contact is its round-off
-constexpr double inside_at_rest = 0.005;     // of h: points inside from the beginning, where nothing ever presses
-constexpr double come_in = 5e-4;             // of h: points that have come inside, where nothing ever presses
-constexpr double missed = 0.04;              // of h: a strain that the pressure would make that coarse patches do not feel
+constexpr double pressure_that_counts = 0.1;  // of a fit: what facets make it wrong by
+constexpr double most_times = 3;              // beyond, what is right is a small difference of what is known
+constexpr double share_that_counts = 1e-3;    // of the largest strain of a zone: pressures below are none to speak of
+constexpr double share_of_round_off = 1e-3;   // of the largest pressure of a zone, at the instant that strains it most
+constexpr double gap_of_closed = 1e-5;        // of h: below, the average gap of a patch in contact is its round-off
+constexpr double inside_at_rest = 0.005;      // of h: points inside from the beginning, where nothing ever presses
+constexpr double come_in = 5e-4;              // of h: points that have come inside, where nothing ever presses
+constexpr double missed = 0.04;               // of h: a strain that the pressure would make that coarse patches do not feel
 
 }  // namespace
 
@@ -134,7 +135,7 @@ void ContactNotices::start(double instant) {
   const std::vector<double>& moved = present_.state.displacement;
   const bool initial = std::all_of(moved.begin(), moved.end(), [](double value) { return value == 0; });
   for (std::int32_t zone = 0; initial && zone < static_cast<std::int32_t>(contact->geometry().zones().size()); ++zone)
-    if (const std::optional<FacetOverlap> overlap = contact->facet_overlap(zone)) {
+    if (const std::optional<FacetOverlap> overlap = facet_gaps_->overlap(zone)) {
       const ContactZone& names = present_.problem.contact->zones[zone];
       inform("EVOLUTION_22", {{"slave", names.slave_group},
                               {"master", names.master_group},
@@ -164,7 +165,7 @@ void ContactNotices::accept(const SolvedInstant& solved) {
       strain = now;
       const auto facets = facet_gaps_->of(zone, patches, present_.state.displacement);
       faceted_.erase(zone);
-      if (facets && std::abs(facets->gap) > gap_that_counts * facets->give)
+      if (facets && std::abs(facets->times() - 1) > pressure_that_counts)
         faceted_.emplace(zone, Faceted{solved.instant, *facets});
       coarse_.erase(zone);
       if (const auto coarse = contact.coarse(zone, patches)) coarse_.emplace(zone, Coarse{solved.instant, *coarse});
@@ -178,8 +179,9 @@ void ContactNotices::accept(const SolvedInstant& solved) {
     };
     note(contact.pierced(zone, patches, false), pierced_);
     note(contact.pierced(zone, patches, true), pierced_at_rest_);
-    const auto now = contact.alternation(
-        zone, patches, [&] { return facet_gaps_->of(zone, patches, present_.state.displacement).has_value(); });
+    auto now = contact.alternation(zone, patches,
+                                   [&] { return facet_gaps_->of(zone, patches, present_.state.displacement).has_value(); });
+    if (!now) now = facet_gaps_->few_press(zone, patches);
     const bool presses_as_before = contact.largest_strain(zone, patches) >= share_that_counts * strain;
     if (now && presses_as_before)
       if (const auto before = alternating_.find(zone); before == alternating_.end() || now->share > before->second.most.share)
@@ -229,10 +231,10 @@ void ContactNotices::end(bool /*completed*/) {
   for (const auto& [zone, alternating] : alternating_) {
     const ContactZone& names = present_.problem.contact->zones[zone];
     const AlternatingBy by = alternating.most.by;
-    inform(by == AlternatingBy::triangles       ? "EVOLUTION_47"
-           : by == AlternatingBy::few_triangles ? "EVOLUTION_74"
-           : by == AlternatingBy::facets        ? "EVOLUTION_67"
-                                                : "EVOLUTION_70",
+    inform(by == AlternatingBy::triangles     ? "EVOLUTION_47"
+           : by == AlternatingBy::few_patches ? "EVOLUTION_74"
+           : by == AlternatingBy::facets      ? "EVOLUTION_67"
+                                              : "EVOLUTION_70",
            {{"slave", names.slave_group},
             {"master", names.master_group},
             {"cell", first_cell(alternating.most.patch)},
@@ -259,14 +261,15 @@ void ContactNotices::end(bool /*completed*/) {
   }
   for (const auto& [zone, faceted] : faceted_) {
     const ContactZone& names = present_.problem.contact->zones[zone];
-    const bool apart = faceted.facets.gap > 0;
+    const double times = faceted.facets.times();
     inform("EVOLUTION_60", {{"slave", names.slave_group},
                             {"master", names.master_group},
-                            {"what", part(apart ? "facets_keep_apart" : "facets_overlap")},
+                            {"what", part(faceted.facets.gap > 0 ? "facets_keep_apart" : "facets_overlap")},
                             {"gap", fmt::format("{:.3g}", std::abs(faceted.facets.gap))},
                             {"instant", fmt::format("{:.9g}", faceted.instant)},
                             {"give", fmt::format("{:.3g}", faceted.facets.give)},
-                            {"wrong", part(apart ? "pressure_too_low" : "pressure_too_high")}});
+                            {"times", times < most_times ? fmt::format("{:.2g}", times)
+                                                         : part("more_than", {{"value", fmt::format("{:g}", most_times)}})}});
   }
 }
 

@@ -464,24 +464,46 @@ class Skins(StudyTest):
             self.assertEqual(figures["status"], "finished")
             self.assertEqual("EVOLUTION_22" in figures.get("alarms", []), told, (outer, radius))
 
-    def test_fits_that_facets_spoil_are_told(self):
-        """Rings pressed on one another by 0.04 at a radius of 20: the chords of 24 and of 30 edges leave a sixth of half the difference of their squared angles of
-        it, more than the fit; a quarter of it by edges of half the length, a sixteenth by a quarter, which pressures show."""
+    def rings(self, inner, outer, overlap):
+        """Rings pressed on one another at a radius of 20. @param inner, outer (kind of cells, edges all around) @return figures of the run, and what it said"""
         def ring(kind, name, radii, cells, skin, base):
             return weld(block(kind, lines(*radii, 3), lines(0, 2 * math.pi, cells), lambda r, a: (r * math.cos(a), r * math.sin(a)), name,
                               {skin: f"{name}_SKIN", base: f"{name}_BASE"}))
 
+        mesh = union([ring(inner[0], "INNER", (10, 20 + overlap / 2), inner[1], "right", "left"),
+                      ring(outer[0], "OUTER", (20 - overlap / 2, 40), outer[1], "left", "right")])
+        study = Study(name="fit", mesh=mesh, materials={"INNER": elastic(2.1e5), "OUTER": elastic(2.1e5)}, zones=[zone("INNER", "OUTER", 0)],
+                      moves=[held("INNER"), held("OUTER")], steps=1)
+        figures = run(study, LACON, self.folder)
+        self.assertEqual(figures["status"], "finished")
+        return figures, (self.folder / "err").read_text()
+
+    def test_fits_that_facets_spoil_are_told(self):
+        """By an overlap of 0.04: the chords of 24 and of 30 edges leave a sixth of half the difference of their squared angles of it, more than the fit; a
+        quarter of it by edges of half the length, a sixteenth by a quarter, which pressures show. What both skins give way by is what is left of it."""
         for kind, finer, told in (("QUAD4", 1, True), ("QUAD4", 2, True), ("QUAD4", 4, False), ("QUAD8", 1, False)):
-            mesh = union([ring(kind, "INNER", (10, 20.02), 24 * finer, "right", "left"), ring(kind, "OUTER", (19.98, 40), 30 * finer, "left", "right")])
-            study = Study(name="fit", mesh=mesh, materials={"INNER": elastic(2.1e5), "OUTER": elastic(2.1e5)}, zones=[zone("INNER", "OUTER", 0)],
-                          moves=[held("INNER"), held("OUTER")], steps=1)
-            figures = run(study, LACON, self.folder)
-            self.assertEqual(figures["status"], "finished")
+            figures, err = self.rings((kind, 24 * finer), (kind, 30 * finer), 0.04)
             self.assertEqual("EVOLUTION_60" in figures.get("alarms", []), told, (kind, finer))
             if told:
                 gap = 20 / 12 * ((2 * math.pi / (24 * finer)) ** 2 - (2 * math.pi / (30 * finer)) ** 2)
-                said = re.search(r"keep them apart by (\S+) on average", (self.folder / "err").read_text())
+                said = re.search(r"keep them apart by (\S+) on average", err)
                 self.assertAlmostEqual(float(said[1]), gap, delta=0.03 * gap)
+            if told and gap < 0.04:
+                self.assertAlmostEqual(float(re.search(r"it is about (\S+) times", err)[1]), (0.04 - gap) / 0.04, delta=0.05)
+
+    def test_facets_that_lie_alike_spoil_no_fit(self):
+        """Chords of the same length, whose ends meet, leave nothing: their overlap is the one of the fit; nor do the sides of a hexagon, however their cells
+        lie, for they are no curve."""
+        figures, _ = self.rings(("QUAD4", 24), ("QUAD4", 24), 0.04)
+        self.assertEqual([a for a in figures.get("alarms", []) if a in ("EVOLUTION_22", "EVOLUTION_60")], [])
+
+    def test_fits_that_press_at_few_facets_are_told(self):
+        """Facets of a bore come nearest to a round shaft in their middles: a slave that is five times as fine presses there alone, by several times the pressure."""
+        for kind, told in (("QUAD4", True), ("QUAD8", False)):
+            figures, err = self.rings((kind, 120), (kind, 24), 0.04)
+            self.assertEqual("EVOLUTION_74" in figures.get("alarms", []), told, kind)
+            if told:
+                self.assertLess(float(re.search(r"at the instant 1 (\S+) % of the patches", err)[1]), 60)
 
     def test_linear_cells_of_a_material_without_change_of_volume_are_told(self):
         for kind, poisson, told in (("QUAD4", 0.4999, True), ("QUAD4", 0.49, False), ("QUAD8", 0.4999, False)):

@@ -6,12 +6,10 @@
 #include <cmath>
 #include <functional>
 #include <map>
-#include <numbers>
 #include <set>
 
 #include "lacon/operators/contact/contact_field.hpp"
 #include "lacon/operators/contact/contact_state.hpp"
-#include "lacon/operators/contact/facets.hpp"
 
 namespace lacon {
 namespace {
@@ -384,93 +382,6 @@ TEST(ContactField, HasTheNormalsOfSkinsAnyWayRound) {
     double shares = 0;
     for (const double share : masters.share) shares += share;
     EXPECT_NEAR(shares, 2, 1e-12);  // both patches are covered
-  }
-}
-
-/// What a skin of one cell lacks, with given normals of its neighbours: nodal normals come from cells alone, so that those of a
-/// polygon on a circle of radius r are radial.
-TEST(Facets, LackTheSagittaOfTheArcsThatTheyStandFor) {
-  // chords of a circle lie below it by r (1 - cos(t)), t half the angle of a chord; with t small by t^2 r / 2 = c^2 / 8 r
-  constexpr int n = 40;
-  constexpr double radius = 3, half = std::numbers::pi / n;
-  std::vector<double> coordinates;
-  for (int i = 0; i < 2 * n; ++i)
-    coordinates.insert(coordinates.end(), {radius * std::cos(half * i), radius * std::sin(half * i), 0});
-  Surface chords{.dimension = 2, .types = {}, .nodes = {}, .coordinates = coordinates, .normals = {}}, arcs = chords;
-  for (std::int32_t i = 0; i < n; ++i) {
-    chords.add_cell(CellType::SEG2, std::vector<std::int32_t>{2 * i, (2 * i + 2) % (2 * n)});
-    arcs.add_cell(CellType::SEG3, std::vector<std::int32_t>{2 * i, (2 * i + 2) % (2 * n), 2 * i + 1});
-  }
-  const double sagitta = radius * (1 - std::cos(half));
-  for (const Bulge& bulge : missing_bulge(chords)) {
-    EXPECT_NEAR(bulge.missing, sagitta, 0.01 * sagitta);
-    EXPECT_NEAR(bulge.curvature, 1 / radius, 0.01 / radius);
-    EXPECT_NEAR(bulge.turn, half, 1e-12);
-  }
-  for (const Bulge& bulge : missing_bulge(arcs)) EXPECT_LT(std::abs(bulge.missing), 0.01 * sagitta);
-}
-
-// Around the edge of a box nodal normals look between its sides.
-TEST(Facets, SeeEdgesOfBodiesByTheirTurn) {
-  constexpr int n = 3;  // cells along each of two sides that meet
-  std::vector<double> coordinates;
-  for (int i = 0; i <= 2 * n; ++i)
-    for (int j = 0; j <= n; ++j)
-      for (const double value : {std::min<double>(i, n), 1.0 * j, std::min<double>(2 * n - i, n)}) coordinates.push_back(value);
-  Surface skin{.dimension = 3, .types = {}, .nodes = {}, .coordinates = coordinates, .normals = {}};
-  for (int i = 0; i < 2 * n; ++i)
-    for (int j = 0; j < n; ++j) {
-      const std::int32_t a = i * (n + 1) + j;
-      skin.add_cell(CellType::QUAD4, std::vector<std::int32_t>{a, a + n + 1, a + n + 2, a + 1});
-    }
-  const std::vector<Bulge> bulges = missing_bulge(skin);
-  for (int i = 0; i < 2 * n; ++i)
-    for (int j = 0; j < n; ++j) EXPECT_NEAR(bulges[i * n + j].turn, i == n - 1 || i == n ? std::numbers::pi / 4 : 0, 1e-7) << i;
-}
-
-// The sagitta of a sphere, of triangles and quadrangles: edges and diagonals lie below it as chords do.
-TEST(Facets, LackTheSagittaOfSpheres) {
-  constexpr double radius = 2, t = 0.05;  // half an angle between two nodes
-  constexpr int n = 6;
-  for (const bool triangles : {false, true}) {
-    std::vector<double> coordinates;
-    for (int j = -n; j <= n; ++j)
-      for (int i = -n; i <= n; ++i) {
-        const double x = std::sin(t * i), y = std::sin(t * j);
-        for (const double value : {x, y, std::sqrt(1 - x * x - y * y)}) coordinates.push_back(radius * value);
-      }
-    Surface skin{.dimension = 3, .types = {}, .nodes = {}, .coordinates = coordinates, .normals = {}};
-    std::vector<double> longest;
-    std::vector<bool> inside;  // of the skin, where normals are those of the sphere
-    const auto add = [&](const std::vector<std::int32_t>& nodes) {
-      skin.add_cell(nodes.size() == 3 ? CellType::TRIA3 : CellType::QUAD4, nodes);
-      double most = 0;
-      for (const std::int32_t a : nodes)
-        for (const std::int32_t b : nodes)
-          most = std::max(most,
-                          std::hypot(coordinates[3 * a] - coordinates[3 * b], coordinates[3 * a + 1] - coordinates[3 * b + 1],
-                                     coordinates[3 * a + 2] - coordinates[3 * b + 2]));
-      longest.push_back(most);
-      inside.push_back(std::ranges::all_of(nodes, [&](std::int32_t node) {
-        return std::abs(node % (2 * n + 1) - n) < 2 && std::abs(node / (2 * n + 1) - n) < 2;
-      }));
-    };
-    for (int j = -2; j < 2; ++j)
-      for (int i = -2; i < 2; ++i) {
-        const std::int32_t a = (j + n) * (2 * n + 1) + i + n, b = a + 1, c = b + 2 * n + 1, d = c - 1;
-        if (triangles) {
-          add({a, b, c});
-          add({a, c, d});
-        } else {
-          add({a, b, c, d});
-        }
-      }
-    const std::vector<Bulge> missing = missing_bulge(skin);
-    EXPECT_EQ(std::ranges::count(inside, true), triangles ? 8 : 4);
-    for (std::size_t cell = 0; cell < missing.size(); ++cell)
-      if (inside[cell]) {
-        EXPECT_NEAR(missing[cell].missing, longest[cell] * longest[cell] / (8 * radius), 0.02 * t * t) << cell;
-      }
   }
 }
 

@@ -61,7 +61,9 @@ TEST(Creep, FindsTheSameEquilibrium) {
     std::vector<StaticState> found;
     for (const Effort effort : {Effort::usual, Effort::creeps}) {
       Newton solver(problem, {.criteria = {.resi_glob_rela = 1e-12, .resi_glob_maxi = {}}}, std::make_unique<MumpsEngine>());
-      if (effort != Effort::usual) EXPECT_TRUE(solver.take(effort));
+      if (effort != Effort::usual) {
+        EXPECT_TRUE(solver.take(effort));
+      }
       found.push_back(solver.initial_state());
       solver.solve(1.0, found.back(), [](const IterationReport&) {});
       solver.accept(found.back());
