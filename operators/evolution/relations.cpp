@@ -7,19 +7,32 @@
 
 #include "lacon/catalog/messages.hpp"
 #include "lacon/catalog/wording.hpp"
+#include "lacon/operators/evolution/dependent_relations.hpp"
 
 namespace lacon {
+namespace {
+
+constexpr double contradiction = 1e-9;  // of the largest term: coordinates that coefficients come from may have ten digits
+
+}  // namespace
 
 Relations::Relations(const StaticProblem& problem) : problem_(problem) {
+  std::vector<FreeRow> rows;
   for (const TimedLoad& load : problem.loads)
-    for (const DofRelation& row : load.relations)
-      relations_.push_back({&load, &row, std::all_of(row.dofs.begin(), row.dofs.end(), [&](std::int64_t dof) {
-                              return problem.numbering.equation[dof] < 0;
-                            })});
+    for (const DofRelation& row : load.relations) {
+      relations_.push_back({&load, &row, {}});
+      FreeRow& free = rows.emplace_back();
+      for (std::size_t i = 0; i < row.dofs.size(); ++i)
+        if (problem.numbering.equation[row.dofs[i]] >= 0) {
+          free.unknowns.push_back(row.dofs[i]);
+          free.coefficients.push_back(row.coefficients[i]);
+        }
+    }
+  for (DependentRelation& follows : dependent_relations(rows)) relations_[follows.relation].sum_of = std::move(follows.sum_of);
 }
 
 std::int64_t Relations::n_constraints() const {
-  return std::count_if(relations_.begin(), relations_.end(), [](const Held& held) { return !held.locked; });
+  return std::count_if(relations_.begin(), relations_.end(), [](const Held& held) { return !held.sum_of; });
 }
 
 std::int64_t Relations::unknown(std::size_t relation, const System& system) const {
@@ -28,6 +41,15 @@ std::int64_t Relations::unknown(std::size_t relation, const System& system) cons
 
 std::string Relations::name(std::size_t relation) const {
   return part("relation_of", {{"load", relations_[relation].load->label}, {"source", relations_[relation].row->source}});
+}
+
+void Relations::tell_dependent() const {
+  const auto is_dependent = [](const Held& held) { return held.sum_of.has_value(); };
+  const auto first = std::ranges::find_if(relations_, is_dependent);
+  if (first == relations_.end()) return;
+  inform("EVOLUTION_77", {{"count", std::to_string(std::ranges::count_if(relations_, is_dependent))},
+                          {"relation", name(static_cast<std::size_t>(first - relations_.begin()))},
+                          {"dof", problem_.dof_name(first->row->dofs.front())}});
 }
 
 std::vector<Coupling> Relations::couplings() const {
@@ -46,7 +68,7 @@ void Relations::assemble(std::span<const double> multipliers, std::span<const do
   for (std::size_t r = 0; r < relations_.size(); ++r) {
     const std::vector<std::int64_t>& dofs = relations_[r].row->dofs;
     const std::vector<double>& coefficients = relations_[r].row->coefficients;
-    if (relations_[r].locked) {
+    if (relations_[r].sum_of) {
       system.add_diagonal(unknown(r, system), 1.0);
       system.residual()[unknown(r, system)] = multipliers[r];
       continue;
@@ -80,21 +102,29 @@ std::vector<double> Relations::values(double instant, std::span<const double> im
     const double factor = load.multiplier(instant);
     for (const double value : load.relation_values.at(instant)) values.push_back(factor * value);
   }
+  const std::vector<double> wanted = values;
   for (std::size_t r = 0; r < relations_.size(); ++r) {
-    if (!relations_[r].locked) continue;
-    const DofRelation& row = *relations_[r].row;
-    double sum = 0, scale = std::abs(values[r]);
-    for (std::size_t i = 0; i < row.dofs.size(); ++i) {
-      const double term = row.coefficients[i] * imposed[row.dofs[i]];
+    if (!relations_[r].sum_of) continue;
+    double sum = 0, scale = std::abs(wanted[r]);
+    const auto add = [&](double term) {
       sum += term;
       scale = std::max(scale, std::abs(term));
+    };
+    const auto add_imposed = [&](const DofRelation& row, double factor) {
+      for (std::size_t i = 0; i < row.dofs.size(); ++i)
+        if (problem_.numbering.equation[row.dofs[i]] < 0) add(factor * row.coefficients[i] * imposed[row.dofs[i]]);
+    };
+    add_imposed(*relations_[r].row, 1);
+    for (const auto& [other, factor] : *relations_[r].sum_of) {
+      add(factor * wanted[other]);
+      add_imposed(*relations_[other].row, -factor);
     }
-    if (std::abs(sum - values[r]) > 1e-12 * scale)
+    if (std::abs(sum - wanted[r]) > contradiction * scale)
       fail("LOAD_6", {{"relation", name(r)},
-                      {"dof", problem_.dof_name(row.dofs.front())},
+                      {"dof", problem_.dof_name(relations_[r].row->dofs.front())},
                       {"instant", fmt::format("{:.15g}", instant)},
                       {"found", fmt::format("{:.15g}", sum)},
-                      {"expected", fmt::format("{:.15g}", values[r])}});
+                      {"expected", fmt::format("{:.15g}", wanted[r])}});
     values[r] = 0;  // its row is that of a multiplier that vanishes
   }
   return values;

@@ -11,6 +11,7 @@
 #include "lacon/catalog/wording.hpp"
 #include "lacon/operators/evolution/behaviours.hpp"
 #include "lacon/operators/evolution/prestrain.hpp"
+#include "lacon/operators/evolution/relations.hpp"
 #include "lacon/operators/evolution/revolution_axis.hpp"
 #include "lacon/structures/displacement.hpp"
 
@@ -291,6 +292,7 @@ StaticProblem read_problem(const Order& order, const Base& base) {
   for (const TimedLoad& load : problem.loads) n_multipliers += static_cast<std::int64_t>(load.relations.size());
   problem.numbering =
       number_equations(static_cast<std::int64_t>(problem.mesh.n_nodes()), problem.n_components(), free, n_multipliers);
+  Relations(problem).tell_dependent();
   return problem;
 }
 
