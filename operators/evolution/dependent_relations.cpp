@@ -83,8 +83,7 @@ std::vector<DependentRelation> dependent_relations(std::span<const FreeRow> rows
         if (static_cast<std::size_t>(other) != r) follows.sum_of.emplace_back(other, -factor);
       continue;
     }
-    reduced.pivot =
-        std::ranges::max_element(reduced.row, {}, [](const auto& entry) { return std::abs(entry.second); })->first;
+    reduced.pivot = std::ranges::max_element(reduced.row, {}, [](const auto& entry) { return std::abs(entry.second); })->first;
     before_with_pivot[reduced.pivot] = before.size();
     before.push_back(std::move(reduced));
   }

@@ -19,8 +19,8 @@ struct DependentRelation {
   std::vector<std::pair<std::size_t, double>> sum_of;  ///< relations that are none of these, and factors
 };
 
-/// Those that rows before them, and imposed displacements, make: a rigid face that planes of symmetry hold too, a tie said twice.
-/// With a multiplier each the system would be singular. In the order of the relations.
+/// Those that rows before them, and imposed displacements, make: a rigid face that planes of symmetry hold too, a tie said
+/// twice. With a multiplier each the system would be singular. In the order of the relations.
 std::vector<DependentRelation> dependent_relations(std::span<const FreeRow> rows);
 
 }  // namespace lacon
