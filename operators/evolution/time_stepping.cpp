@@ -107,7 +107,9 @@ struct Stepper {
       if (!take(effort)) continue;
       tell(message(told, {{"instant", fmt::format("{:.9g}", to)}, {"reason", error.message().text}}));
       go_back();
-      if (solves(to)) return true;
+      if (!solves(to)) continue;
+      tell(message("EVOLUTION_79", {{"instant", fmt::format("{:.9g}", to)}}));
+      return true;
     }
     return false;
   }
