@@ -217,7 +217,8 @@ std::optional<FacetOverlap> FacetGaps::overlap(std::int32_t zone) {
     const double depth = -geometry.gap(patch) / contact_.patch_size(patch);
     if (geometry.zone_of(patch) != zone || !contact_.is_covered(patch) || depth < overlap_told) continue;
     const auto left = gaps.find(patch);
-    if (left == gaps.end() || geometry.gap(patch) < explained * left->second) return std::nullopt;
+    if (left == gaps.end()) continue;
+    if (geometry.gap(patch) < explained * left->second) return std::nullopt;
     if (!worst || depth > worst->depth) worst = FacetOverlap{patch, depth};
   }
   return worst;
