@@ -2,8 +2,10 @@
 
 #include <fstream>
 #include <limits>
+#include <nlohmann/json.hpp>
 #include <set>
 #include <stdexcept>
+#include <utility>
 
 #include "lacon/catalog/keywords.hpp"
 #include "lacon/catalog/messages.hpp"
@@ -77,9 +79,18 @@ std::string id_of(const json& value, const std::string& path) {
 
 }  // namespace
 
+Keywords::Keywords() : Keywords(json::object(), "") {}
+
+Keywords::Keywords(json values, std::string prefix)
+    : values_(std::make_shared<const json>(std::move(values))), prefix_(std::move(prefix)) {}
+
+bool Keywords::has(std::string_view name) const { return values_->contains(name); }
+
+bool Keywords::is_concept(std::string_view name) const { return has(name) && value(name).is_object(); }
+
 const json& Keywords::value(std::string_view name) const {
-  const auto at = values_.find(name);
-  if (at == values_.end()) fail("ORDER_2", {{"keyword", path(name)}});
+  const auto at = values_->find(name);
+  if (at == values_->end()) fail("ORDER_2", {{"keyword", path(name)}});
   return *at;
 }
 

@@ -4,7 +4,7 @@
 #include <filesystem>
 #include <map>
 #include <memory>
-#include <nlohmann/json.hpp>
+#include <nlohmann/json_fwd.hpp>  // the rest of it takes a second to compile, in each file
 #include <optional>
 #include <set>
 #include <string>
@@ -19,10 +19,10 @@ namespace lacon {
 /// ORDER_4 where it is of another type; `path()` names the keyword in messages ("ZONE[1]/GROUP_MA_ESCL").
 class Keywords {
  public:
-  Keywords() = default;
-  Keywords(nlohmann::json values, std::string prefix) : values_(std::move(values)), prefix_(std::move(prefix)) {}
+  Keywords();
+  Keywords(nlohmann::json values, std::string prefix);
 
-  bool has(std::string_view name) const { return values_.contains(name); }
+  bool has(std::string_view name) const;
   double real(std::string_view name) const;
   std::int64_t integer(std::string_view name) const;
   std::string text(std::string_view name) const;
@@ -32,7 +32,7 @@ class Keywords {
   Vec3 vector(std::string_view name, int dimension) const;
   std::vector<std::int64_t> integers(std::string_view name) const;
   std::vector<std::string> texts(std::string_view name) const;  ///< empty where the keyword is absent
-  bool is_concept(std::string_view name) const { return has(name) && values_.at(std::string(name)).is_object(); }
+  bool is_concept(std::string_view name) const;
   std::string concept_id(std::string_view name) const;
   std::optional<double> optional_real(std::string_view name) const;
   std::optional<std::int64_t> optional_integer(std::string_view name) const;
@@ -44,12 +44,12 @@ class Keywords {
   Keywords factor(std::string_view name) const;
 
   std::string path(std::string_view name) const { return prefix_ + std::string(name); }
-  const nlohmann::json& values() const { return values_; }
+  const nlohmann::json& values() const { return *values_; }
 
  private:
   const nlohmann::json& value(std::string_view name) const;
 
-  nlohmann::json values_ = nlohmann::json::object();
+  std::shared_ptr<const nlohmann::json> values_;
   std::string prefix_;
 };
 

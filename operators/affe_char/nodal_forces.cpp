@@ -3,6 +3,7 @@
 #include <array>
 #include <cmath>
 #include <memory>
+#include <nlohmann/json.hpp>
 
 #include "lacon/catalog/messages.hpp"
 #include "lacon/catalog/wording.hpp"

@@ -23,6 +23,7 @@ constexpr double straight = 1e-9;  // a slope that is round-off
 FacetArc::FacetArc(std::span<const Vec3> corners, std::span<const Vec3> normals, Vec3 outward)
     : outward_(outward / norm(outward)) {
   const auto n = static_cast<Eigen::Index>(corners.size());
+  if (n < 2) return;  // of cells without extent
   const Eigen::Index directions = n == 2 ? 1 : 2;
   for (const Vec3 corner : corners) middle_ = middle_ + corner / static_cast<double>(n);
   for (const Vec3 corner : corners) corners_.push_back(corner - middle_);

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <limits>
+#include <nlohmann/json.hpp>
 
 #include "lacon/catalog/messages.hpp"
 #include "lacon/catalog/wording.hpp"

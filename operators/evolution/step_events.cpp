@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <nlohmann/json.hpp>
 
 #include "lacon/catalog/messages.hpp"
 #include "lacon/catalog/wording.hpp"

@@ -1,5 +1,6 @@
 // DECOUPE_LAC: METHOD.md 1.2 to 1.9.
 #include <algorithm>
+#include <nlohmann/json.hpp>
 #include <numeric>
 
 #include "lacon/catalog/contact.hpp"

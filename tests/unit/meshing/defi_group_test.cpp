@@ -1,6 +1,7 @@
 // DEFI_GROUP: groups from groups, from names, and their removal.
 #include "lacon/operators/defi_group/defi_group.hpp"
 
+#include <nlohmann/json.hpp>
 #include <numeric>
 
 #include "meshes.hpp"

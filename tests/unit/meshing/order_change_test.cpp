@@ -1,4 +1,5 @@
 // LINE_QUAD, QUAD_LINE and HEXA20_27.
+#include <nlohmann/json.hpp>
 #include <numeric>
 
 #include "lacon/elements/reference.hpp"

@@ -1,4 +1,6 @@
 // ORIE_PEAU: the normals of skin cells leave the body, by geometry.
+#include <nlohmann/json.hpp>
+
 #include "lacon/operators/meshing/orientation.hpp"
 #include "lacon/operators/modi_maillage/modi_maillage.hpp"
 #include "meshes.hpp"

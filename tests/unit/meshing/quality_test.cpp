@@ -1,5 +1,6 @@
 // The scaled Jacobian: 1 for ideal cells, closed forms for others, and what a cut does to it.
 #include <cstdio>
+#include <nlohmann/json.hpp>
 #include <numeric>
 #include <random>
 
