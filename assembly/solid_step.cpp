@@ -76,22 +76,52 @@ std::vector<double> starting_stress(const ElementSet& set, const PointValues& no
   return stress;
 }
 
+/// The internal variables that a step starts from; empty: as the state has them. The middle of a criterion (XCIN...) is the
+/// slope of the hardening times a plastic strain, which stays where the slope follows E.
+std::vector<double> starting_variable(const ElementSet& set, const PointValues& now, const PointValues* before) {
+  if (!before || before->parameter.empty() || now.parameter.empty()) return {};
+  const auto place = elastic_parameters(set);
+  const auto tension = parameter_place(set, "ECRO_LINE/D_SIGM_EPSI");
+  const auto n_variables = static_cast<std::size_t>(set.n_point_variables);
+  std::size_t n_middle = 0;
+  while (n_middle < n_variables && std::string_view(set.kernel->variables[n_middle]).starts_with("XCIN")) ++n_middle;
+  if (!place || !tension || n_middle == 0) return {};
+  std::vector<double> variable = before->variable;
+  const auto n_points = static_cast<std::size_t>(set.tabulation.n_points),
+             n_parameters = static_cast<std::size_t>(set.n_parameters);
+  for (std::size_t c = 0; c < set.cells.size(); ++c) {
+    const double* const own = now.parameter.data() + c * n_parameters;
+    const double* const old = before->parameter.data() + c * n_parameters;
+    // of E ET / (E - ET), whose ET is the same
+    const double share =
+        own[place->young] * (old[place->young] - old[*tension]) / (old[place->young] * (own[place->young] - own[*tension]));
+    for (std::size_t point = c * n_points; point < (c + 1) * n_points; ++point)
+      for (std::size_t v = 0; v < n_middle; ++v) variable[point * n_variables + v] *= share;
+  }
+  return variable;
+}
+
 }  // namespace
 
-std::optional<ElasticParameters> elastic_parameters(const ElementSet& set) {
+std::optional<std::size_t> parameter_place(const ElementSet& set, std::string_view path) {
   const char* const* const first = set.kernel->parameters;
   const char* const* const last = first + set.n_parameters;
-  const auto place = [&](std::string_view name) { return std::find(first, last, name); };
-  const auto young = place("ELAS/E"), poisson = place("ELAS/NU");
-  if (young == last || poisson == last) return std::nullopt;
-  return ElasticParameters{static_cast<std::size_t>(young - first), static_cast<std::size_t>(poisson - first)};
+  const auto found = std::find(first, last, path);
+  return found == last ? std::nullopt : std::optional(static_cast<std::size_t>(found - first));
+}
+
+std::optional<ElasticParameters> elastic_parameters(const ElementSet& set) {
+  const auto young = parameter_place(set, "ELAS/E"), poisson = parameter_place(set, "ELAS/NU");
+  if (!young || !poisson) return std::nullopt;
+  return ElasticParameters{*young, *poisson};
 }
 
 std::optional<std::int32_t> evaluate_step(const ElementSet& set, const Mesh& mesh, std::span<const double> displacement,
                                           PointValues& now, const SolidStart& start, SolidMatrix wanted,
                                           const std::function<void(const ElementValues&)>& use) {
   SolidInput input{.displacement = displacement, .thermal = now.thermal, .parameters = now.parameter};
-  const std::vector<double> stress = starting_stress(set, now, start.points);
+  const std::vector<double> stress = starting_stress(set, now, start.points),
+                            variable = starting_variable(set, now, start.points);
   if (const PointValues* const from = start.points) {
     input.previous_displacement = start.displacement;
     input.previous_stress = from->stress;
@@ -99,6 +129,7 @@ std::optional<std::int32_t> evaluate_step(const ElementSet& set, const Mesh& mes
     input.previous_thermal = from->thermal;
   }
   if (!stress.empty()) input.previous_stress = stress;
+  if (!variable.empty()) input.previous_variable = variable;
   return evaluate_solids(set, mesh, input, wanted, {now.stress, now.variable}, use);
 }
 

@@ -5,6 +5,7 @@
 #include <functional>
 #include <optional>
 #include <span>
+#include <string_view>
 #include <vector>
 
 #include "lacon/assembly/element_sets.hpp"
@@ -18,6 +19,9 @@ struct ElasticParameters {
 };
 /// Nothing where the kernel does not take both.
 std::optional<ElasticParameters> elastic_parameters(const ElementSet& set);
+
+/// Where a parameter of ECRO_LINE or another keyword stands among them: "ECRO_LINE/D_SIGM_EPSI".
+std::optional<std::size_t> parameter_place(const ElementSet& set, std::string_view path);
 
 /// A state from which a step starts.
 struct SolidStart {

@@ -43,9 +43,13 @@ class MaterialTable {
 };
 
 /// The hardening curve of a cell's material, (points, 3): plastic strain from 0 on, yield stress, slope behind it
-/// (lacon_solid_batch::curve). @param keyword of DEFI_MATERIAU that says it: ECRO_LINE, TRACTION
-/// Throws ELEMENT_3 (a parameter is missing), BEHAVIOUR_2 (it makes no sense).
+/// (lacon_solid_batch::curve). Where E is a function, a tension test has its own, and ECRO_LINE's slope is that at the
+/// reference temperature. @param keyword of DEFI_MATERIAU that says it: ECRO_LINE, TRACTION Throws ELEMENT_3 (a parameter is
+/// missing), BEHAVIOUR_2 (it makes no sense).
 std::vector<double> hardening_curve(const MaterialTable& materials, std::int32_t cell, std::string_view keyword,
                                     std::string_view element);
+/// That the curve of a cell whose E is a function goes with the E that it has at an instant. Throws BEHAVIOUR_2.
+void check_modulus(const MaterialTable& materials, std::int32_t cell, std::string_view keyword, std::string_view element,
+                   double young, double instant);
 
 }  // namespace lacon

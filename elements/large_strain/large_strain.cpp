@@ -105,7 +105,7 @@ double thermal_at(const double* strain, std::int64_t here, int lane) { return st
 /// A law of small strains, elasticity or plasticity upon it, in a measure that follows from C.
 template <Kind K, class M, Law L>
 void take_measured(const lacon_solid_batch& b, std::int64_t here, const Slopes<K>& slopes, const Moduli& moduli,
-                   Outputs<K>& outputs, LaneErrors& errors) {
+                   const Hardening& hardening, Outputs<K>& outputs, LaneErrors& errors) {
   constexpr int n = components_of(Kind::three_d), n_stress = components_of(K);
   Lanes stress[n] = {};
   for (int l = 0; l < LACON_LANES; ++l) {
@@ -125,7 +125,7 @@ void take_measured(const lacon_solid_batch& b, std::int64_t here, const Slopes<K
       p = lanes(b.previous_variable, here * n_plastic_variables);
       flows = lanes(b.previous_variable, here * n_plastic_variables + 1);
     }
-    return_to_criterion<Kind::three_d>(stress, tangent, p, flows, {b.curve, b.n_curve}, errors);
+    return_to_criterion<Kind::three_d>(stress, tangent, p, flows, hardening, errors);
     if (b.variable) {
       lanes(b.variable, here * n_plastic_variables) = p;
       lanes(b.variable, here * n_plastic_variables + 1) = flows;
@@ -150,7 +150,7 @@ void take_measured(const lacon_solid_batch& b, std::int64_t here, const Slopes<K
 
 template <Kind K, Law L>
 void take_simo_miehe(const lacon_solid_batch& b, std::int64_t here, const Slopes<K>& slopes, const Moduli& moduli,
-                     Outputs<K>& outputs, LaneErrors& errors) {
+                     const Hardening& hardening, Outputs<K>& outputs, LaneErrors& errors) {
   constexpr int n = n_plastic_variables + n_elastic_variables;
   constexpr bool plastic = L == Law::von_mises;
   for (int l = 0; l < LACON_LANES; ++l) {
@@ -160,7 +160,7 @@ void take_simo_miehe(const lacon_solid_batch& b, std::int64_t here, const Slopes
                         .plastic = plastic,
                         .elastic_matrix = b.elastic_matrix != 0,
                         .stressless_matrix = b.stressless_matrix != 0,
-                        .hardening = {b.curve, b.n_curve}};
+                        .hardening = hardening.of(l)};
     const bool starts = plastic && b.previous_variable;
     const double* const last = starts ? b.previous_variable + here * n * LACON_LANES + l : nullptr;
     const double p = last ? last[0] : 0;
@@ -228,8 +228,8 @@ LACON_INLINE void evaluate(const lacon_solid_batch& b) {
   constexpr int D = dimension_of(K), n_stress = components_of(K);
   constexpr int n_variables = !plastic ? 0 : n_plastic_variables + (M == Strain::simo_miehe ? n_elastic_variables : 0);
   const int nodes = b.n_nodes, dofs = D * nodes, entries = dofs * (dofs + 1) / 2;
-  if (b.dimension != D || nodes > max_nodes || b.n_stress != n_stress || b.n_parameters != 2 || b.n_variables != n_variables ||
-      (plastic && b.n_curve < 1))
+  if (b.dimension != D || nodes > max_nodes || b.n_stress != n_stress || !fits(b.n_parameters, plastic) ||
+      b.n_variables != n_variables || (plastic && b.n_curve < 1))
     return lacon::refuse(b);
   Block<K, Measure::green> block;
   alignas(lane_alignment) Lanes last[max_nodes * D];
@@ -248,6 +248,7 @@ LACON_INLINE void evaluate(const lacon_solid_batch& b) {
     if (whole) clear_lanes(whole, 0, dofs * dofs);
     if (force) clear_lanes(force, 0, dofs);
     const Moduli moduli{block.lambda, block.mu};
+    const Hardening hardening = hardening_of(b, block);
     Lanes sum = {};
     for (int p = 0; p < b.n_points; ++p) {
       const std::int64_t here = index * b.n_points + p;
@@ -256,11 +257,11 @@ LACON_INLINE void evaluate(const lacon_solid_batch& b) {
       take_slope(point, last, nodes, slopes.before, slopes.hoop_before);
       Outputs<K> outputs(b, here, answer, errors);
       if constexpr (M == Strain::simo_miehe)
-        take_simo_miehe<K, L>(b, here, slopes, moduli, outputs, errors);
+        take_simo_miehe<K, L>(b, here, slopes, moduli, hardening, outputs, errors);
       else if constexpr (M == Strain::logarithmic)
-        take_measured<K, LogarithmicMeasure, L>(b, here, slopes, moduli, outputs, errors);
+        take_measured<K, LogarithmicMeasure, L>(b, here, slopes, moduli, hardening, outputs, errors);
       else
-        take_measured<K, GreenMeasure, L>(b, here, slopes, moduli, outputs, errors);
+        take_measured<K, GreenMeasure, L>(b, here, slopes, moduli, hardening, outputs, errors);
       sum += point.dv;
       for (const Lanes& component : answer.force) sum += component;
       if (force) add_force(point, answer, nodes, force);
@@ -273,15 +274,17 @@ LACON_INLINE void evaluate(const lacon_solid_batch& b) {
 }
 
 const char* const isotropic[] = {"ELAS/E", "ELAS/NU", nullptr};
+const char* const with_slope[] = {"ELAS/E", "ELAS/NU", "ECRO_LINE/D_SIGM_EPSI", nullptr};
 
-constexpr lacon_kernel row(const char* name, void (*function)(const lacon_solid_batch*), Strain strain, Law law) {
+constexpr lacon_kernel row(const char* name, void (*function)(const lacon_solid_batch*), Strain strain, Law law,
+                           bool of_line = false) {
   const bool plastic = law == Law::von_mises, simo_miehe = strain == Strain::simo_miehe;
   return {.name = name,
           .kind = LACON_SOLID,
           .solid = function,
           .load = nullptr,
           .contact = nullptr,
-          .parameters = isotropic,
+          .parameters = of_line ? with_slope : isotropic,
           .variables = !plastic     ? nullptr
                        : simo_miehe ? simo_miehe_variables
                                     : plastic_variables,
@@ -299,13 +302,18 @@ constexpr lacon_kernel row(const char* name, void (*function)(const lacon_solid_
     evaluate<Kind::kind, Strain::strain, Law::law>(*batch);                   \
   }
 #define LACON_ROW(kind, strain, law) row(#kind "_" #strain "_" #law, kind##_##strain##_##law, Strain::strain, Law::law),
+// the same functions with the slope of ECRO_LINE
+#define LACON_LINE_ROW(kind, strain) \
+  row(#kind "_" #strain "_von_mises_line", kind##_##strain##_von_mises, Strain::strain, Law::von_mises, true),
+#define LACON_LINE_ROWS(kind) LACON_LINE_ROW(kind, logarithmic) LACON_LINE_ROW(kind, green) LACON_LINE_ROW(kind, simo_miehe)
 #define LACON_OF_KIND(apply, kind)                                                                    \
   apply(kind, logarithmic, elastic) apply(kind, logarithmic, von_mises) apply(kind, green, von_mises) \
       apply(kind, simo_miehe, elastic) apply(kind, simo_miehe, von_mises)
 #define LACON_ALL(apply) LACON_OF_KIND(apply, plane_strain) LACON_OF_KIND(apply, axis) LACON_OF_KIND(apply, three_d)
 
 LACON_ALL(LACON_FUNCTION)
-const lacon_kernel kernels[] = {LACON_ALL(LACON_ROW)};
+const lacon_kernel kernels[] = {LACON_ALL(LACON_ROW) LACON_LINE_ROWS(plane_strain) LACON_LINE_ROWS(axis)
+                                    LACON_LINE_ROWS(three_d)};
 const lacon_plugin_table table = {LACON_ABI,
                                   sizeof(lacon_solid_batch),
                                   sizeof(lacon_load_batch),

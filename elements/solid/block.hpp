@@ -2,6 +2,7 @@
 // What solid kernels take out of a batch: a block of elements, and its points with their gradients.
 #include "lacon/elements/axis.hpp"
 #include "stiffness.hpp"
+#include "von_mises.hpp"
 
 namespace lacon::solid {
 
@@ -11,8 +12,11 @@ struct Block {
   static constexpr int D = dimension_of(K);
   static constexpr bool updated = moves(M), green = M == Measure::green;
 
-  const double* place;                                ///< coordinates where strains and integrals are taken
-  Lanes lambda, mu, nu;                               ///< plane stress: the lambda that makes SIZZ zero
+  const double* place;   ///< coordinates where strains and integrals are taken
+  Lanes lambda, mu, nu;  ///< plane stress: the lambda that makes SIZZ zero
+  /// With ECRO_LINE/D_SIGM_EPSI behind E and NU: the slope of R(p), which follows E where that follows the temperature.
+  bool own_hardening;
+  Lanes hardening_slope;
   alignas(lane_alignment) Lanes side[max_nodes * D];  ///< from the first node on: a cell far from the origin loses no digits
   /// What strains come from: with Green-Lagrange the whole displacement, for they do not add up.
   alignas(lane_alignment) Lanes moved[max_nodes * D];
@@ -20,9 +24,15 @@ struct Block {
 
   LACON_INLINE void read(const lacon_solid_batch& b, std::int64_t block, LaneErrors& errors) {
     const int nodes = b.n_nodes, dofs = D * nodes;
-    const Lanes young = lanes(b.parameter, 2 * block);
-    nu = lanes(b.parameter, 2 * block + 1);
+    const Lanes young = lanes(b.parameter, b.n_parameters * block);
+    nu = lanes(b.parameter, b.n_parameters * block + 1);
     errors.set(~((young > 0) & (young - young == 0) & (nu > -1) & (nu < 0.5)), LACON_BAD_PARAMETER);
+    own_hardening = b.n_parameters > 2;
+    if (own_hardening) {
+      const Lanes tension = lanes(b.parameter, b.n_parameters * block + 2);
+      errors.set(~(tension < young), LACON_BAD_PARAMETER);
+      hardening_slope = young * tension / (young - tension);
+    }
     mu = young / (2 * (1 + nu));
     lambda = K == Kind::plane_stress ? young * nu / ((1 + nu) * (1 - nu)) : young * nu / ((1 + nu) * (1 - 2 * nu));
     const double* x = b.coordinates + block * dofs * LACON_LANES;
@@ -42,6 +52,15 @@ struct Block {
         errors.set(l, lacon::reaches_over_axis(nodes, [&](int i) { return lanes(x, i)[l]; }), LACON_BAD_RADIUS);
   }
 };
+
+/// Behind E and NU plastic laws may take ECRO_LINE/D_SIGM_EPSI.
+LACON_INLINE bool fits(int n_parameters, bool plastic) { return n_parameters == 2 || (plastic && n_parameters == 3); }
+
+/// Of all elements of a block.
+template <Kind K, Measure M>
+LACON_INLINE Hardening hardening_of(const lacon_solid_batch& b, const Block<K, M>& block) {
+  return {b.curve, b.n_curve, block.own_hardening ? reinterpret_cast<const double*>(&block.hardening_slope) : nullptr};
+}
 
 /// Gradient of a displacement (nodes, D) at a point, and its u_r / r.
 template <Kind K>

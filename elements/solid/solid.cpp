@@ -56,7 +56,7 @@ LACON_INLINE void take_stress(const lacon_solid_batch& b, std::int64_t here, con
       strain = lanes(b.previous_variable, here * n_plastic_variables);
       flows = lanes(b.previous_variable, here * n_plastic_variables + 1);
     }
-    return_to_criterion<K>(s, point.tangent, strain, flows, {b.curve, b.n_curve}, errors);
+    return_to_criterion<K>(s, point.tangent, strain, flows, hardening_of(b, block), errors);
     if (b.variable) {
       lanes(b.variable, here * n_plastic_variables) = strain;
       lanes(b.variable, here * n_plastic_variables + 1) = flows;
@@ -72,7 +72,9 @@ LACON_INLINE void take_stress(const lacon_solid_batch& b, std::int64_t here, con
       for (int i = 0; i < n_stress; ++i) middle[i] = lanes(b.previous_variable, first + i);
       flowing = lanes(b.previous_variable, first + last);
     }
-    return_to_moving_criterion<K>(s, point.tangent, middle, flowing, {b.curve, 1}, errors);
+    Hardening hardening = hardening_of(b, block);
+    hardening.size = 1;  // its first piece is the law
+    return_to_moving_criterion<K>(s, point.tangent, middle, flowing, hardening, errors);
     if (b.variable) {
       for (int i = 0; i < last; ++i) lanes(b.variable, first + i) = i < n_stress ? middle[i] : Lanes{};
       lanes(b.variable, first + last) = flowing;
@@ -159,8 +161,8 @@ LACON_INLINE void evaluate(const lacon_solid_batch& b) {
   constexpr bool same_moduli = M == Measure::small && L == Law::elastic;  // at all points
   constexpr int D = dimension_of(K), n_stress = components_of(K), n_variables = n_variables_of(L);
   const int nodes = b.n_nodes, dofs = D * nodes, entries = dofs * (dofs + 1) / 2;
-  if (b.dimension != D || nodes > max_nodes || b.n_stress != n_stress || b.n_parameters != 2 || b.n_variables != n_variables ||
-      (flows(L) && b.n_curve < 1))
+  if (b.dimension != D || nodes > max_nodes || b.n_stress != n_stress || !fits(b.n_parameters, flows(L)) ||
+      b.n_variables != n_variables || (flows(L) && b.n_curve < 1))
     return lacon::refuse(b);
   Block<K, M> block;
   alignas(lane_alignment) Point<K> points[same_moduli ? points_at_once : 1];
@@ -210,15 +212,17 @@ LACON_INLINE void evaluate(const lacon_solid_batch& b) {
 }
 
 const char* const isotropic[] = {"ELAS/E", "ELAS/NU", nullptr};
+const char* const with_slope[] = {"ELAS/E", "ELAS/NU", "ECRO_LINE/D_SIGM_EPSI", nullptr};
 
-constexpr lacon_kernel row(const char* name, void (*function)(const lacon_solid_batch*), Measure measure, Law law) {
+constexpr lacon_kernel row(const char* name, void (*function)(const lacon_solid_batch*), Measure measure, Law law,
+                           bool of_line) {
   const bool plastic = flows(law);
   return {.name = name,
           .kind = LACON_SOLID,
           .solid = function,
           .load = nullptr,
           .contact = nullptr,
-          .parameters = isotropic,
+          .parameters = of_line ? with_slope : isotropic,
           .variables = law == Law::kinematic ? kinematic_variables
                        : plastic             ? plastic_variables
                                              : nullptr,
@@ -235,7 +239,12 @@ constexpr lacon_kernel row(const char* name, void (*function)(const lacon_solid_
   LACON_KERNEL void kind##_##measure##_##law(const lacon_solid_batch* batch) { \
     evaluate<Kind::kind, Measure::measure, Law::law>(*batch);                  \
   }
-#define LACON_ROW(kind, measure, law) row(#kind "_" #measure "_" #law, kind##_##measure##_##law, Measure::measure, Law::law),
+#define LACON_ROW(kind, measure, law) \
+  row(#kind "_" #measure "_" #law, kind##_##measure##_##law, Measure::measure, Law::law, Law::law == Law::kinematic),
+// the same functions with the slope of ECRO_LINE
+#define LACON_LINE_ROW(kind, measure) \
+  row(#kind "_" #measure "_von_mises_line", kind##_##measure##_von_mises, Measure::measure, Law::von_mises, true),
+#define LACON_LINE_ROWS(kind) LACON_LINE_ROW(kind, small) LACON_LINE_ROW(kind, updated) LACON_LINE_ROW(kind, centred)
 #define LACON_OF_KIND(apply, kind)                                                                                    \
   apply(kind, small, elastic) apply(kind, updated, elastic) apply(kind, centred, elastic) apply(kind, green, elastic) \
       apply(kind, small, von_mises) apply(kind, updated, von_mises) apply(kind, centred, von_mises)
@@ -252,7 +261,8 @@ constexpr lacon_kernel row(const char* name, void (*function)(const lacon_solid_
   LACON_KINEMATIC(apply, three_d)
 
 LACON_ALL(LACON_FUNCTION)
-const lacon_kernel kernels[] = {LACON_ALL(LACON_ROW)};
+const lacon_kernel kernels[] = {LACON_ALL(LACON_ROW) LACON_LINE_ROWS(plane_strain) LACON_LINE_ROWS(plane_stress)
+                                    LACON_LINE_ROWS(axis) LACON_LINE_ROWS(three_d)};
 const lacon_plugin_table table = {LACON_ABI,
                                   sizeof(lacon_solid_batch),
                                   sizeof(lacon_load_batch),

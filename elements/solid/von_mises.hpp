@@ -34,13 +34,16 @@ struct Tangent {
 struct Hardening {
   const double* curve;  ///< lacon_solid_batch::curve
   int size;
+  const double* slopes = nullptr;  ///< of each lane, in the place of those of the curve; null: the curve's
+
+  Hardening of(int lane) const { return {curve, size, slopes ? slopes + lane : nullptr}; }
 
   struct Value {
     double stress, slope;
   };
   double strain(int piece) const { return curve[3 * piece]; }
   Value on(int piece, double p) const {
-    const double slope = curve[3 * piece + 2];
+    const double slope = slopes ? *slopes : curve[3 * piece + 2];
     return {p > strain(piece) ? curve[3 * piece + 1] + slope * (p - strain(piece)) : curve[3 * piece + 1], slope};
   }
   int piece_of(double p) const {
@@ -124,7 +127,8 @@ LACON_INLINE void return_to_criterion(Lanes (&stress)[components_of(K)], Tangent
   bool any = false;
   for (int l = 0; l < LACON_LANES; ++l) {
     q[l] = std::sqrt(1.5 * square[l]);
-    const auto [yield, present_slope] = hardening(p[l]);
+    const Hardening own = hardening.of(l);
+    const auto [yield, present_slope] = own(p[l]);
     const bool flowed = flows[l] != 0;
     flows[l] = q[l] > (1 + on_criterion) * yield;
     if (flows[l] == 0) {
@@ -140,9 +144,9 @@ LACON_INLINE void return_to_criterion(Lanes (&stress)[components_of(K)], Tangent
       // E / (1 - nu) = 2 (lambda + mu) with the lambda of plane stress
       const PlaneTrial trial{sum * sum / 6, difference * difference / 2 + 2 * stress[3][l] * stress[3][l],
                              2 * (tangent.lambda[l] + tangent.mu[l]) / 3, 2 * tangent.mu[l]};
-      step = plane_return(trial, p[l], hardening);
+      step = plane_return(trial, p[l], own);
     } else {
-      step = radial_return(q[l], p[l], 3 * tangent.mu[l], hardening);
+      step = radial_return(q[l], p[l], 3 * tangent.mu[l], own);
     }
     errors.set(l, step.error != LACON_FINE, step.error);
     dp[l] = step.dp;
@@ -155,7 +159,7 @@ LACON_INLINE void return_to_criterion(Lanes (&stress)[components_of(K)], Tangent
   if constexpr (K == Kind::plane_stress) {
     Lanes gamma = {};
     for (int l = 0; l < LACON_LANES; ++l)
-      if (yields[l] != 0) gamma[l] = 1.5 * dp[l] / hardening(p[l] + dp[l]).stress;
+      if (yields[l] != 0) gamma[l] = 1.5 * dp[l] / hardening.of(l)(p[l] + dp[l]).stress;
     const Lanes sum_stiffness = 2 * (tangent.lambda + tangent.mu);
     const Lanes by_sum = 1 / (1 + sum_stiffness / 3 * gamma), by_rest = 1 / (1 + 2 * tangent.mu * gamma);
     const Lanes half_sum = (stress[0] + stress[1]) / 2 * by_sum, half_difference = (stress[0] - stress[1]) / 2 * by_rest;
@@ -202,7 +206,8 @@ LACON_INLINE void return_to_moving_criterion(Lanes (&stress)[components_of(K)], 
   constexpr int n = components_of(K);
   // seen from the middle the stress comes back along its deviator to the size that isotropic hardening would reach in this one
   // step, by 3 mu dp; the middle goes the rest of the way, h dp
-  const Lanes share = hardening.on(0, 0).slope / (3 * tangent.mu);
+  Lanes share;
+  for (int l = 0; l < LACON_LANES; ++l) share[l] = hardening.of(l).on(0, 0).slope / (3 * tangent.mu[l]);
   Lanes relative[n], trial[n], dp = {};
   for (int i = 0; i < n; ++i) relative[i] = trial[i] = stress[i] - middle[i];
   return_to_criterion<K>(relative, tangent, dp, flows, hardening, errors);

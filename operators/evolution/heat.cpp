@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "lacon/assembly/solid_step.hpp"
 #include "lacon/catalog/messages.hpp"
+#include "lacon/operators/evolution/behaviours.hpp"
 #include "lacon/operators/program/program.hpp"
 
 namespace lacon {
@@ -13,6 +15,21 @@ namespace {
 /// Whether a law takes the whole thermal strain, from VALE_REF on, and not its changes.
 bool is_total(const ElementSet& set) {
   return set.option == "ELAS/GREEN_LAGRANGE" || set.option == "ELAS/GROT_GDEP" || set.option.ends_with("/SIMO_MIEHE");
+}
+
+/// BEHAVIOUR_2 where the hardening of a set does not go with the E of a cell. The limits are bounds: two cells tell of all.
+void check_moduli(const StaticProblem& problem, const ElementSet& set, std::span<const double> parameters, double instant) {
+  const auto place = set.kernel->takes_curve ? elastic_parameters(set) : std::nullopt;
+  if (!place) return;
+  const auto young = [&](std::size_t c) { return parameters[c * static_cast<std::size_t>(set.n_parameters) + place->young]; };
+  std::size_t least = 0, most = 0;
+  for (std::size_t c = 1; c < set.cells.size(); ++c) {
+    if (young(c) < young(least)) least = c;
+    if (young(c) > young(most)) most = c;
+  }
+  for (const std::size_t c : {least, most})
+    check_modulus(*problem.materials, set.cells[c], behaviour_rows(*problem.registry, set.option).relation.hardening,
+                  set.row->name, young(c), instant);
 }
 
 }  // namespace
@@ -39,6 +56,7 @@ void Heat::move_to(double instant, std::vector<PointValues>& points) {
     if (!problem_.thermal->has_functions(set.cells)) continue;
     const std::vector<std::string> paths(set.kernel->parameters, set.kernel->parameters + set.n_parameters);
     points[s].parameter = problem_.thermal->parameters(ground, instant, set.cells, n_points, paths, set.parameters);
+    check_moduli(problem_, set, points[s].parameter, instant);
   }
 }
 

@@ -7,6 +7,7 @@
 #include <map>
 #include <set>
 
+#include "lacon/assembly/solid_step.hpp"
 #include "lacon/catalog/messages.hpp"
 #include "lacon/catalog/wording.hpp"
 #include "lacon/operators/evolution/behaviours.hpp"
@@ -55,6 +56,12 @@ void warn_of_idle_temperatures(const StaticProblem& problem) {
     inform("THERMAL_8", {{"material", material}, {"count", std::to_string(cells.first)}, {"cell", cell_name(cells.second)}});
 }
 
+/// Whether the law takes the slope of ECRO_LINE by its curve, which does not follow E.
+bool has_rigid_slope(const StaticProblem& problem, const ElementSet& set) {
+  return set.kernel->takes_curve && behaviour_rows(*problem.registry, set.option).relation.hardening == "ECRO_LINE" &&
+         !parameter_place(set, "ECRO_LINE/D_SIGM_EPSI");
+}
+
 /// Keep temperatures, and functions of them, only where solids are concerned. Throws BEHAVIOUR_5 for a law that takes none.
 void check_temperatures(StaticProblem& problem) {
   warn_of_idle_temperatures(problem);
@@ -67,7 +74,7 @@ void check_temperatures(StaticProblem& problem) {
     // stresses that turn with the body do not keep their elastic strain where moduli change
     const bool turns = set.kernel->has_memory && behaviour_rows(*problem.registry, set.option).deformation.turns_stress;
     if (!(set.kernel->takes_thermal_strain || starts_elastically(*problem.registry, set)) ||
-        (turns && problem.thermal->has_functions(set.cells)))
+        ((turns || has_rigid_slope(problem, set)) && problem.thermal->has_functions(set.cells)))
       fail("BEHAVIOUR_5", {{"behaviour", set.option}, {"cell", cell_name(*cell)}});
   }
   if (!any) problem.thermal.reset();

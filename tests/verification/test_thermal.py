@@ -105,6 +105,90 @@ for matter, law in ((HOT, 'ELAS'), (YIELD, 'VMIS_ISOT_LINE'), (SOFT, 'ELAS')):
                 self.assertLessEqual(np.abs(found - stress).max(), 1e-8 * abs(stress), (k, order))
 
 
+#: a body at 20 degrees, then at 420, where E is half of what it is and NU less, and ALPHA 0; lengths are 1 along y
+HOT_METAL = f"""
+TIMES = DEFI_LIST_REEL(VALE=(0.0, 1.0, 2.0, 3.0))
+NOTHING = DEFI_CONSTANTE(VALE=0.0)
+CHANGING = dict(E=DEFI_FONCTION(NOM_PARA='TEMP', VALE=(20, {YOUNG}, 420, {YOUNG / 2})),
+                NU=DEFI_FONCTION(NOM_PARA='TEMP', VALE=(20, 0.4, 420, 0.2)), ALPHA=NOTHING)
+LINE = dict(SY=2.0, D_SIGM_EPSI=200.0)
+PULL = FORMULE(NOM_PARA='INST', VALE='0.01 * min(INST, 1) + 0.01 * max(INST - 2, 0)')
+LATE = FORMULE(NOM_PARA='INST', VALE='0.02 * max(INST - 2, 0)')
+
+def heated(unit, modelisation, matter):
+    global FIELD
+    model(unit, modelisation, matter)
+    cold, hot = (CREA_CHAMP(TYPE_CHAM='NOEU_TEMP_R', OPERATION='AFFE', MAILLAGE=MESH, AFFE=_F(TOUT='OUI', NOM_CMP='TEMP', VALE=t)) for t in (20., 420.))
+    course = CREA_RESU(OPERATION='AFFE', TYPE_RESU='EVOL_THER', NOM_CHAM='TEMP', AFFE=(_F(CHAM_GD=cold, INST=(0., 1.)), _F(CHAM_GD=hot, INST=(2., 3.))))
+    FIELD = AFFE_MATERIAU(MAILLAGE=MESH, AFFE=_F(TOUT='OUI', MATER=matter), AFFE_VARC=_F(NOM_VARC='TEMP', EVOL=course, VALE_REF=20.0))
+
+def pulled(modelisation, how, law, deformation='PETIT'):
+    held = {{'3D': [dict(GROUP_MA='LEFT', DX=0), dict(GROUP_MA='FRONT', DY=0), dict(GROUP_MA='BASE', DZ=0)], 'AXIS': [dict(GROUP_MA='BASE', DY=0)]}}.get(
+        modelisation, [dict(GROUP_MA='LEFT', DX=0), dict(GROUP_MA='BASE', DY=0)])
+    H = AFFE_CHAR_CINE(MODELE=MODEL, MECA_IMPO=held)
+    P = AFFE_CHAR_CINE(MODELE=MODEL, MECA_IMPO=dict(GROUP_MA='BACK', DY=1.0) if modelisation == '3D' else dict(GROUP_MA='TOP', DY=1.0))
+    solve(_F(CHARGE=H), _F(CHARGE=P, FONC_MULT=how), COMPORTEMENT=_F(RELATION=law, DEFORMATION=deformation))
+    return R[-1]
+
+def values(result, name, component):
+    return result.getField(name, 3).getValues(component)
+"""
+
+
+class HotMetal(LoadTest):
+    def test_the_tension_curve_has_its_slope_at_each_modulus(self):
+        """Behind SY the slope is D_SIGM_EPSI whatever E is, whether the body flowed before, when it was cold, or not: 2 + 200 (0.02 - 2 / 1000).
+        That of the cold modulus would be 200 / 0.9 for 200 / 0.8."""
+        text = HOT_METAL + """
+METAL = DEFI_MATERIAU(ELAS_FO=_F(**CHANGING), ECRO_LINE=_F(**LINE))
+TIMED = DEFI_MATERIAU(ELAS_FO=_F(**dict(CHANGING, E=DEFI_FONCTION(NOM_PARA='INST', VALE=(1, 2000, 2, 1000, 3, 1000), PROL_GAUCHE='CONSTANT'))), ECRO_LINE=_F(**LINE))
+for unit, modelisation, law in ((20, 'C_PLAN', 'VMIS_ISOT_LINE'), (20, 'AXIS', 'VMIS_ISOT_LINE'), (20, 'AXIS', 'VMIS_CINE_LINE'),
+                                (21, '3D', 'VMIS_ISOT_LINE'), (21, '3D', 'VMIS_CINE_LINE')):
+    for matter in (METAL, TIMED):
+        for how in (LATE, PULL):
+            heated(unit, modelisation, matter)
+            found = values(pulled(modelisation, how, law), 'SIEF_ELGA', 'SIYY')
+            assert max(abs(value - 5.6) for value in found) < 5.6e-8, (modelisation, law, how, found)
+"""
+        run = self.run_text([flat_block("QUAD4"), flat_brick("HEXA8")], text)
+        self.assertEqual(run.status, 0, run.stdout[-3000:] + run.stderr[-3000:])
+
+    def test_a_hot_body_is_one_of_its_modulus(self):
+        """Every law and measure: heated without load and then pulled, the body has the stresses of one that has always had the E and NU of the heat."""
+        text = HOT_METAL + f"""
+METAL = DEFI_MATERIAU(ELAS_FO=_F(**CHANGING), ECRO_LINE=_F(**LINE))
+OTHER = DEFI_MATERIAU(ELAS=_F(E={YOUNG / 2}, NU=0.2), ECRO_LINE=_F(**LINE))
+for unit, modelisation in ((20, 'D_PLAN'), (20, 'C_PLAN'), (20, 'AXIS'), (21, '3D')):
+    for law, deformation in (('VMIS_ISOT_LINE', 'PETIT'), ('VMIS_CINE_LINE', 'PETIT'), ('VMIS_ISOT_LINE', 'GDEF_LOG'), ('VMIS_ISOT_LINE', 'SIMO_MIEHE')):
+        if modelisation == 'C_PLAN' and (law, deformation) != ('VMIS_ISOT_LINE', 'PETIT'):
+            continue
+        heated(unit, modelisation, METAL)
+        hot = pulled(modelisation, LATE, law, deformation)
+        model(unit, modelisation, OTHER)
+        other = pulled(modelisation, LATE, law, deformation)
+        for component in ('SIXX', 'SIYY', 'SIZZ', 'SIXY'):
+            assert max(abs(a - b) for a, b in zip(values(hot, 'SIEF_ELGA', component), values(other, 'SIEF_ELGA', component))) < 1e-8, (modelisation, law, deformation)
+"""
+        run = self.run_text([flat_block("QUAD4"), flat_brick("HEXA8")], text)
+        self.assertEqual(run.status, 0, run.stdout[-3000:] + run.stderr[-3000:])
+
+    def test_two_reference_temperatures_of_one_material(self):
+        """Without ALPHA they mean nothing, whichever half comes first."""
+        text = HOT_METAL + """
+METAL = DEFI_MATERIAU(ELAS_FO=_F(**CHANGING), ECRO_LINE=_F(**LINE))
+for references in ((20.0, 420.0), (420.0, 20.0)):
+    heated(20, 'C_PLAN', METAL)
+    MESH = DEFI_GROUP(reuse=MESH, MAILLAGE=MESH, CREA_GROUP_MA=_F(NOM='RIGHT_HALF', OPTION='BANDE', POINT=(2.0, 0.0), VECT_NORMALE=(1.0, 0.0), DIST=0.5))
+    FIELD = AFFE_MATERIAU(MAILLAGE=MESH, AFFE=_F(TOUT='OUI', MATER=METAL), AFFE_VARC=[
+        dict(place, NOM_VARC='TEMP', CHAM_GD=CREA_CHAMP(TYPE_CHAM='NOEU_TEMP_R', OPERATION='AFFE', MAILLAGE=MESH, AFFE=_F(TOUT='OUI', NOM_CMP='TEMP', VALE=420.)),
+             VALE_REF=value) for place, value in zip(({}, dict(GROUP_MA='RIGHT_HALF')), references)])
+    found = values(pulled('C_PLAN', LATE, 'VMIS_ISOT_LINE'), 'SIEF_ELGA', 'SIYY')
+    assert max(abs(value - 5.6) for value in found) < 5.6e-8, (references, found)
+"""
+        run = self.run_text([flat_block("QUAD4")], text)
+        self.assertEqual(run.status, 0, run.stdout[-3000:] + run.stderr[-3000:])
+
+
 def lame_pressure(interference, a, b, c, young, poisson):
     """Of two rings a < b < c of one material in plane stress."""
     outer, inner = (c**2 + b**2) / (c**2 - b**2) + poisson, (b**2 + a**2) / (b**2 - a**2) - poisson
@@ -201,6 +285,14 @@ LAW = DEFI_FONCTION(NOM_PARA='TEMP', VALE=(-100, 2000, 200, 1000))
 SOFT = DEFI_MATERIAU(ELAS_FO=_F(E=LAW, NU=DEFI_CONSTANTE(VALE=0.3)), ECRO_LINE=_F(SY=10.0, D_SIGM_EPSI=100.0))
 FIELD = AFFE_MATERIAU(MAILLAGE=MESH, AFFE=_F(TOUT='OUI', MATER=SOFT), AFFE_VARC=_F(NOM_VARC='TEMP', CHAM_GD=temperature(20.0, 'BODY'), VALE_REF=20.0))
 assert said(COMPORTEMENT=_F(RELATION='VMIS_ISOT_LINE', DEFORMATION='GROT_GDEP')) == 'BEHAVIOUR_5'
+FLAT = DEFI_MATERIAU(ELAS_FO=_F(E=LAW, NU=DEFI_CONSTANTE(VALE=0.3)), ECRO_LINE=_F(SY=10.0, D_SIGM_EPSI=1700.0))
+FIELD = AFFE_MATERIAU(MAILLAGE=MESH, AFFE=_F(TOUT='OUI', MATER=FLAT), AFFE_VARC=_F(NOM_VARC='TEMP', CHAM_GD=temperature(20.0, 'BODY'), VALE_REF=-100.0))
+assert said(COMPORTEMENT=_F(RELATION='VMIS_ISOT_LINE')) == 'BEHAVIOUR_2'  # E is 1600 at 20 degrees
+for modulus, expected in ((1600.0, None), (2000.0, 'BEHAVIOUR_2')):  # that at VALE_REF says nothing
+    CURVE = DEFI_FONCTION(NOM_PARA='EPSI', VALE=(10 / modulus, 10.0, 1.0, 100.0))
+    METAL = DEFI_MATERIAU(ELAS_FO=_F(E=LAW, NU=DEFI_CONSTANTE(VALE=0.3)), TRACTION=_F(SIGM=CURVE))
+    FIELD = AFFE_MATERIAU(MAILLAGE=MESH, AFFE=_F(TOUT='OUI', MATER=METAL), AFFE_VARC=_F(NOM_VARC='TEMP', CHAM_GD=temperature(20.0, 'BODY'), VALE_REF=-100.0))
+    assert said(COMPORTEMENT=_F(RELATION='VMIS_ISOT_TRAC')) == expected, modulus
 """
         run = self.run_text([flat_block("QUAD4")], text)
         self.assertEqual(run.status, 0, run.stdout[-2000:] + run.stderr[-3000:])
