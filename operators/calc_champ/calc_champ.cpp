@@ -292,8 +292,7 @@ class Instant {
   }
 
   Field strain(Strain measure, const std::vector<char>& wanted, std::string name) {
-    Field field = strains(setting_.mesh(), setting_.points(), (*this)("DEPL"), wanted, measure, std::move(name),
-                          [&](std::int32_t cell) { return setting_.materials().elastic(cell, "NU"); });
+    Field field = strains(setting_.mesh(), setting_.points(), (*this)("DEPL"), wanted, measure, std::move(name));
     const auto across = [&](std::int32_t cell, catalog::TransverseStrain follows) {
       const auto c = static_cast<std::size_t>(cell);
       return setting_.points().is_plane_stress(c) && setting_.behaviours(order_).relation[c]->transverse_strain == follows;
@@ -305,7 +304,7 @@ class Instant {
               {"label", setting_.result().label},
               {"relation", std::string(setting_.behaviours(order_).relation[static_cast<std::size_t>(cell)]->name)}});
     const auto is_plastic = [&](std::int32_t cell) { return across(cell, catalog::TransverseStrain::isochoric); };
-    setting_.materials().add_free_strain_across(field);
+    setting_.materials().set_strain_across(field);
     if (std::none_of(field.support.begin(), field.support.end(), is_plastic)) return field;
     if (measure != Strain::small)
       fail("CALCCHAMP_3", {{"cell", cell_name(*std::find_if(field.support.begin(), field.support.end(), is_plastic))},
@@ -315,11 +314,12 @@ class Instant {
     const std::vector<std::int64_t> place = places(stress, setting_.mesh().n_cells());
     const TensorRows tensors(stress, "SI"), own(field, "EP");
     const std::vector<Eigen::Matrix3d> free = setting_.materials().free_strains(field);
+    const std::vector<double> moduli = setting_.materials().moduli(field);
     const auto zz = static_cast<std::size_t>(field.component("EPZZ"));
     for (std::size_t i = 0; i < field.support.size(); ++i) {
       const std::int32_t cell = field.support[i];
       if (!is_plastic(cell) || place[static_cast<std::size_t>(cell)] < 0) continue;
-      const double young = setting_.materials().elastic(cell, "E"), nu = setting_.materials().elastic(cell, "NU");
+      const double young = moduli[2 * i], nu = moduli[2 * i + 1];
       const std::size_t first = stress.first_row(static_cast<std::size_t>(place[static_cast<std::size_t>(cell)]));
       for (std::size_t row = field.first_row(i); row < field.first_row(i + 1); ++row) {
         const Eigen::Matrix3d in_plane = own[row];

@@ -40,7 +40,7 @@ Eigen::Matrix3d displacement_gradient(const CellPoints& at, int point, std::span
 }
 
 Field strains(const Mesh& mesh, ModelPoints& points, const Field& displacement, const std::vector<char>& wanted, Strain measure,
-              std::string name, const std::function<double(std::int32_t)>& poisson) {
+              std::string name) {
   Field field = field_like(displacement, std::move(name), Location::gauss_points);
   field.quantity = "EPSI_R";
   field.offset.assign(1, 0);
@@ -49,12 +49,10 @@ Field strains(const Mesh& mesh, ModelPoints& points, const Field& displacement, 
   const std::size_t width = dimension == 3 ? 6 : 4;
   for (std::size_t k = 0; k < width; ++k) field.components.push_back("EP" + std::string(tensor_axes[k].name));
   const std::vector<double> u = nodal_displacements(mesh, displacement, dimension);
-  std::vector<double> nu;  // of each cell in plane stress, for it may have to be read
   for (std::size_t cell = 0; cell < mesh.n_cells(); ++cell) {
     if (!wanted[cell] || !points.is_solid(cell)) continue;
     field.support.push_back(static_cast<std::int32_t>(cell));
     field.offset.push_back(field.offset.back() + points.n_points(cell));
-    nu.push_back(points.is_plane_stress(cell) ? poisson(static_cast<std::int32_t>(cell)) : 0.0);
   }
   field.values.resize(static_cast<std::size_t>(field.offset.back()) * width);
   parallel_for(field.support.size(), cells_at_once, [&](const LoopBlock& block) {
@@ -62,14 +60,13 @@ Field strains(const Mesh& mesh, ModelPoints& points, const Field& displacement, 
     for (std::size_t c = block.first; c < block.last; ++c) {
       const auto cell = static_cast<std::size_t>(field.support[c]);
       const CellPoints& at = own(cell, mesh.coordinates);
-      const bool axis = own.is_axisymmetric(cell), plane_stress = own.is_plane_stress(cell);
+      const bool axis = own.is_axisymmetric(cell);
       const auto nodes = mesh.cells[cell];
       for (int p = 0; p < at.n_points; ++p) {
         const Eigen::Matrix3d h = displacement_gradient(at, p, nodes, u, dimension, axis);
         Eigen::Matrix3d strain = 0.5 * (h + h.transpose());
         if (measure != Strain::small) strain += 0.5 * h.transpose() * h;
         if (measure == Strain::logarithmic) strain = logarithmic(strain);
-        if (plane_stress) strain(2, 2) = -nu[c] / (1 - nu[c]) * (strain(0, 0) + strain(1, 1));
         double* const row =
             field.values.data() + (static_cast<std::size_t>(field.offset[c]) + static_cast<std::size_t>(p)) * width;
         for (std::size_t k = 0; k < width; ++k) row[k] = strain(tensor_axes[k].i, tensor_axes[k].j);

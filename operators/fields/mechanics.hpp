@@ -1,7 +1,6 @@
 #pragma once
 // Strains at integration points from displacements, and nodal forces from stresses.
 #include <Eigen/Core>
-#include <functional>
 #include <span>
 #include <string>
 #include <vector>
@@ -18,11 +17,10 @@ enum class Strain {
 };
 
 /// Strains at the integration points of the body cells that `wanted` marks, components EPXX EPYY EPZZ EPXY (EPXZ EPYZ). EPZZ is
-/// 0 in plane strain, the hoop strain u_r / r in axisymmetry (Green-Lagrange: e + e^2 / 2), and in plane stress that of an
-/// isotropic elastic body, -nu / (1 - nu) (EPXX + EPYY). @param displacement nodal, DX DY (DZ) @param poisson of a cell, asked
-/// in plane stress only
+/// 0 in plane strain, the hoop strain u_r / r in axisymmetry (Green-Lagrange: e + e^2 / 2), and 0 in plane stress, where the
+/// material says it (ResultMaterials::set_strain_across). @param displacement nodal, DX DY (DZ)
 Field strains(const Mesh& mesh, ModelPoints& points, const Field& displacement, const std::vector<char>& wanted, Strain measure,
-              std::string name, const std::function<double(std::int32_t)>& poisson);
+              std::string name);
 
 /// Gradient of the displacement at a point of a cell; in axisymmetry with u_r / r round the axis. @param u (n_nodes of the
 /// mesh, dimension)

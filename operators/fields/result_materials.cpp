@@ -73,22 +73,33 @@ std::vector<Eigen::Matrix3d> ResultMaterials::free_strains(const Field& field) {
   return strains;
 }
 
-void ResultMaterials::add_free_strain_across(Field& strain) {
+void ResultMaterials::set_strain_across(Field& strain) {
   const auto in_plane_stress = [&](std::int32_t cell) { return points_.is_plane_stress(static_cast<std::size_t>(cell)); };
   if (std::none_of(strain.support.begin(), strain.support.end(), in_plane_stress)) return;
+  std::vector<double> moduli;
+  for (const std::int32_t cell : strain.support)
+    moduli.insert(moduli.end(), {0.0, in_plane_stress(cell) ? elastic(cell, "NU") : 0.0});  // E says nothing here
+  follow_temperature(strain, moduli);
   const std::vector<Eigen::Matrix3d> free = free_strains(strain);
-  const auto zz = static_cast<std::size_t>(strain.component("EPZZ"));
+  const auto xx = static_cast<std::size_t>(strain.component("EPXX")), yy = static_cast<std::size_t>(strain.component("EPYY")),
+             zz = static_cast<std::size_t>(strain.component("EPZZ"));
   for (std::size_t i = 0; i < strain.support.size(); ++i) {
     if (!in_plane_stress(strain.support[i])) continue;
-    const double nu = elastic(strain.support[i], "NU");  // SIZZ = 0
+    const double nu = moduli[2 * i + 1];  // SIZZ = 0
     for (std::size_t row = strain.first_row(i); row < strain.first_row(i + 1); ++row)
-      strain.at(row, zz) += free[row](2, 2) + nu / (1 - nu) * (free[row](0, 0) + free[row](1, 1));
+      strain.at(row, zz) =
+          free[row](2, 2) - nu / (1 - nu) * (strain.at(row, xx) + strain.at(row, yy) - free[row](0, 0) - free[row](1, 1));
   }
 }
 
 std::vector<double> ResultMaterials::moduli(const Field& field) {
   std::vector<double> moduli;
   for (const std::int32_t cell : field.support) moduli.insert(moduli.end(), {elastic(cell, "E"), elastic(cell, "NU")});
+  follow_temperature(field, moduli);
+  return moduli;
+}
+
+void ResultMaterials::follow_temperature(const Field& field, std::vector<double>& moduli) {
   const Ground ground(mesh_, points_);
   const std::string paths[] = {"ELAS/E", "ELAS/NU"};
   each_size(
@@ -103,7 +114,6 @@ std::vector<double> ResultMaterials::moduli(const Field& field) {
           moduli[2 * places[i] + 1] = found[2 * i + 1];
         }
       });
-  return moduli;
 }
 
 namespace {

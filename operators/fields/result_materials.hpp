@@ -18,16 +18,18 @@ class ResultMaterials {
   /// @param points of the result's model
   ResultMaterials(const Base& base, const Result& result, const Mesh& mesh, ModelPoints& points);
 
-  /// "E" or "NU" of a cell at the reference temperature. Throws ELEMENT_3.
-  double elastic(std::int32_t cell, const char* name) const;
   /// Strains that make no stress, thermal and initial ones (PRE_EPSI), of each row of a field at integration points.
   std::vector<Eigen::Matrix3d> free_strains(const Field& field);
-  /// Add to EPZZ in plane stress, which strains() takes for that of an isotropic elastic body, what strains without stress do.
-  void add_free_strain_across(Field& strain);
-  /// E and NU of each cell of a field at integration points, (cells, 2), at its instant.
+  /// Set EPZZ in plane stress to that of an isotropic elastic body, without stress across. Throws ELEMENT_3 without NU.
+  void set_strain_across(Field& strain);
+  /// E and NU of each cell of a field at integration points, (cells, 2), at its instant and temperature. Throws ELEMENT_3.
   std::vector<double> moduli(const Field& field);
 
  private:
+  /// "E" or "NU" of a cell, the number at the reference temperature. Throws ELEMENT_3.
+  double elastic(std::int32_t cell, const char* name) const;
+  /// Put into moduli (cells, 2) of a field those of cells whose material has functions.
+  void follow_temperature(const Field& field, std::vector<double>& moduli);
   /// Call use(cells, their places in the field's support, n_points) for cells that matter, of as many points.
   template <class Matters, class Use>
   static void each_size(const Field& field, const Matters& matters, const Use& use);

@@ -60,10 +60,9 @@ Table energies(const Order& order, const Base& base, const std::string& keyword)
     const Field energy = [&] {
       if (keyword == "ENER_ELAS")
         return energy_of_stress(base.field(subject.result, "SIEF_ELGA", number), "ENEL_ELGA", subject.materials);
-      Field strain =
-          strains(subject.mesh, subject.points, base.field(subject.result, "DEPL", number), everywhere, Strain::small,
-                  "EPSI_ELGA", [&](std::int32_t cell) { return subject.materials.elastic(cell, "NU"); });
-      subject.materials.add_free_strain_across(strain);
+      Field strain = strains(subject.mesh, subject.points, base.field(subject.result, "DEPL", number), everywhere,
+                             Strain::small, "EPSI_ELGA");
+      subject.materials.set_strain_across(strain);
       return energy_of_strain(strain, "EPOT_ELGA", subject.materials);
     }();
     const Field sums = cell_integrals(subject.mesh, subject.points, energy, "ENEL_ELEM");

@@ -188,6 +188,26 @@ for references in ((20.0, 420.0), (420.0, 20.0)):
         run = self.run_text([flat_block("QUAD4")], text)
         self.assertEqual(run.status, 0, run.stdout[-3000:] + run.stderr[-3000:])
 
+    def test_a_plate_grows_thin_by_the_ratio_of_its_temperature(self):
+        """Pulled along y: EPZZ is EPXX, an elastic body has not flowed, what has flowed keeps its volume, and both elastic energies are one."""
+        text = HOT_METAL + """
+METAL = DEFI_MATERIAU(ELAS_FO=_F(**CHANGING), ECRO_LINE=_F(**LINE))
+for law in ('ELAS', 'VMIS_ISOT_LINE'):
+    heated(20, 'C_PLAN', METAL)
+    result = pulled('C_PLAN', LATE, law)
+    CALC_CHAMP(reuse=result, RESULTAT=result, DEFORMATION=('EPSI_ELGA', 'EPSP_ELGA'))
+    for across, along in zip(values(result, 'EPSI_ELGA', 'EPZZ'), values(result, 'EPSI_ELGA', 'EPXX')):
+        assert abs(across - along) < 1e-12 and across < -0.003, (law, across, along)
+    flown = [values(result, 'EPSP_ELGA', name) for name in ('EPXX', 'EPYY', 'EPZZ')]
+    assert max(abs(sum(three)) for three in zip(*flown)) < 1e-12, (law, flown)
+    assert law != 'ELAS' or max(abs(value) for one in flown for value in one) < 1e-12, flown
+    if law == 'ELAS':
+        of_stress, of_strain = (POST_ELEM(RESULTAT=result, NUME_ORDRE=3, **{name: _F(TOUT='OUI')})['TOTALE', 1] for name in ('ENER_ELAS', 'ENER_POT'))
+        assert abs(of_stress - 0.5 * 1000 * 0.02**2 * 2) < 1e-10 and abs(of_strain - of_stress) < 1e-10, (of_stress, of_strain)
+"""
+        run = self.run_text([flat_block("QUAD4")], text)
+        self.assertEqual(run.status, 0, run.stdout[-3000:] + run.stderr[-3000:])
+
 
 def lame_pressure(interference, a, b, c, young, poisson):
     """Of two rings a < b < c of one material in plane stress."""
