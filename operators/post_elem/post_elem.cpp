@@ -127,6 +127,48 @@ class Subject {
     return taken;
   }
 
+  /// Whether the values of a field are integrals over its cells already, which add up. Throws POSTELEM_7, POSTELEM_8.
+  bool is_integrated(const Field& field) const {
+    const bool of_cells = field.location == Location::cells, said = keywords_.has("DEJA_INTEGRE"),
+               adds_up = said && keywords_.text("DEJA_INTEGRE") == "OUI",
+               known = name_ == "ENEL_ELEM" || name_ == "ETOT_ELEM";  // of CHAM_GD, means of cells too have this quantity
+    const auto refuse = [&](const char* id) { fail(id, {{"keyword", keywords_.path("DEJA_INTEGRE")}, {"field", name_}}); };
+    if (of_cells && field.quantity == "ENER_R" && (known ? !adds_up : !said)) refuse("POSTELEM_7");
+    if (adds_up && (!of_cells || field.quantity == "CLAC_R")) refuse("POSTELEM_8");
+    return adds_up;
+  }
+
+  /// Whether a component is one value for each patch, which some of its nodes keep: it has no values in cells. Throws
+  /// POSTELEM_9 where it is named.
+  bool is_of_patches(const Field& field, const std::string& component) const {
+    if (field.location != Location::nodes || component != "LAGS_C") return false;
+    if (keywords_.has("NOM_CMP")) fail("POSTELEM_9", {{"keyword", keywords_.path("NOM_CMP")}, {"field", name_}});
+    return true;
+  }
+
+  /// Of the marked cells those with an element, of the dimension of the taken ones, where no node has a value.
+  std::vector<std::int32_t> left_out(const std::vector<char>& marked, const std::vector<char>& taken) const {
+    const auto one = std::ranges::find(taken, 1) - taken.begin();
+    std::vector<std::int32_t> cells;
+    for (std::size_t c = 0; c < marked.size() && one < std::ssize(taken); ++c)
+      if (marked[c] && !taken[c] && points_->element(c) &&
+          mesh_.row(c).dimension == mesh_.row(static_cast<std::size_t>(one)).dimension)
+        cells.push_back(static_cast<std::int32_t>(c));
+    return cells;
+  }
+
+  /// POSTELEM_10: nodes of some cells lack a component.
+  void tell_missing(const std::string& place, const std::string& component, std::int64_t missing, std::int64_t count,
+                    std::int32_t first) const {
+    inform("POSTELEM_10", {{"keyword", keywords_.path("")},
+                           {"place", place},
+                           {"component", component},
+                           {"field", name_},
+                           {"missing", std::to_string(missing)},
+                           {"count", std::to_string(count)},
+                           {"cell", cell_name(first)}});
+  }
+
   [[noreturn]] void refuse_place(const std::string& place) const {
     fail("POSTELEM_2", {{"keyword", keywords_.path("GROUP_MA")}, {"place", place}, {"field", name_}});
   }
@@ -145,19 +187,25 @@ class Subject {
   std::set<std::string> told_;  ///< places of POSTELEM_6
 };
 
-/// Call use(row of the field, measure) at every integration point of the marked cells. @return how many cells that is
-std::size_t each_point(Subject& subject, const Field& field, const std::vector<char>& cells,
-                       const std::function<void(std::size_t, double)>& use) {
+/// Call use(cell, its first row, its points) for the marked cells of a field at integration points. @return how many that is
+std::size_t each_cell(Subject& subject, const Field& field, const std::vector<char>& cells,
+                      const std::function<void(std::int32_t, std::size_t, const CellPoints&)>& use) {
   std::size_t count = 0;
   for (std::size_t i = 0; i < field.support.size(); ++i) {
     const auto cell = static_cast<std::size_t>(field.support[i]);
     if (!cells[cell]) continue;
     ++count;
-    const CellPoints& at = subject.points()(cell, subject.mesh().coordinates);
-    for (int p = 0; p < at.n_points; ++p)
-      use(field.first_row(i) + static_cast<std::size_t>(p), at.measure[static_cast<std::size_t>(p)]);
+    use(field.support[i], field.first_row(i), subject.points()(cell, subject.mesh().coordinates));
   }
   return count;
+}
+
+/// Call use(row of the field, measure) at every integration point of the marked cells. @return how many cells that is
+std::size_t each_point(Subject& subject, const Field& field, const std::vector<char>& cells,
+                       const std::function<void(std::size_t, double)>& use) {
+  return each_cell(subject, field, cells, [&](std::int32_t, std::size_t first, const CellPoints& at) {
+    for (std::size_t p = 0; p < at.measure.size(); ++p) use(first + p, at.measure[p]);
+  });
 }
 
 Columns joined(Columns first, const Columns& second) {
@@ -198,7 +246,9 @@ Table norms(Subject& subject) {
   const std::string group = places.size() == 1 ? places.front().first : "UNION_GROUP_MA";
   subject.each_field([&](const Field& whole, const std::vector<Table::Cell>& head) {
     const Field field = subject.at_points(subject.named_components(whole));
-    const std::vector<double> factors = norm_factors(subject, field);
+    std::vector<double> factors = norm_factors(subject, field);
+    for (std::size_t c = 0; c < factors.size(); ++c)
+      if (subject.is_of_patches(whole, field.components[c])) factors[c] = 0;
     double sum = 0;
     const std::vector<char> taken = subject.integrated(field, group, cells);
     const std::size_t count = each_point(subject, field, taken, [&](std::size_t row, double measure) {
@@ -211,6 +261,13 @@ Table norms(Subject& subject) {
   return table;
 }
 
+/// What the cells of a group give for a component.
+struct ComponentSum {
+  double value = 0, over = 0;  ///< over: the measure of where it has values
+  std::int64_t missing = 0;    ///< cells that do not have it throughout
+  std::int32_t first_missing = -1;
+};
+
 Table integrals(Subject& subject) {
   std::optional<Table> table;
   subject.each_field([&](const Field& whole, const std::vector<Table::Cell>& head) {
@@ -221,26 +278,42 @@ Table integrals(Subject& subject) {
         for (const std::string& component : field.components) columns.emplace_back(prefix + component, "R");
       table = Table::of(columns);
     }
+    const bool adds_up = subject.is_integrated(whole), of_nodes = whole.location == Location::nodes;
+    std::vector<char> of_patches;
+    for (const std::string& component : field.components) of_patches.push_back(subject.is_of_patches(whole, component));
     for (const auto& [group, marked] : subject.places()) {
       const std::vector<char> cells = subject.integrated(field, group, marked);
       double volume = 0;
-      std::vector<double> sums(field.n_components(), 0.0), over(field.n_components(), 0.0);
-      const std::size_t count = each_point(subject, field, cells, [&](std::size_t row, double measure) {
-        volume += measure;
+      std::vector<ComponentSum> sums(field.n_components());
+      const auto add = [&](std::int32_t cell, std::size_t first, const CellPoints& at) {
+        for (const double measure : at.measure) volume += measure;
         for (std::size_t c = 0; c < sums.size(); ++c) {
-          if (!field.counts(row, c)) continue;
-          sums[c] += measure * field.at(row, c);
-          over[c] += measure;
+          bool is_whole = true;
+          for (std::size_t p = 0; p < at.measure.size(); ++p) {
+            if (!field.counts(first + p, c)) {
+              is_whole = false;
+              continue;
+            }
+            sums[c].over += at.measure[p];
+            if (!adds_up) sums[c].value += at.measure[p] * field.at(first + p, c);
+          }
+          if (adds_up && field.counts(first, c)) sums[c].value += field.at(first, c);  // the same at all points
+          if (!is_whole && sums[c].missing++ == 0) sums[c].first_missing = cell;
         }
-      });
+      };
+      const std::size_t count = each_cell(subject, field, cells, add);
       if (count == 0) subject.refuse_place(group);
+      const std::vector<std::int32_t> left = of_nodes ? subject.left_out(marked, cells) : std::vector<std::int32_t>();
       std::vector<Table::Cell> values{group, volume};
-      values.insert(values.end(), sums.begin(), sums.end());
+      for (std::size_t c = 0; c < sums.size(); ++c)
+        values.push_back(of_patches[c] ? Table::Cell() : Table::Cell(sums[c].value));
       for (std::size_t c = 0; c < sums.size(); ++c) {
-        if (over[c] > 0)
-          values.emplace_back(sums[c] / over[c]);
-        else
-          values.emplace_back();
+        const bool has_mean = sums[c].over > 0 && !of_patches[c];
+        values.push_back(has_mean ? Table::Cell(sums[c].value / sums[c].over) : Table::Cell());
+        const std::int64_t missing = sums[c].missing + std::ssize(left);
+        if (of_nodes && missing > 0 && !of_patches[c] && (has_mean || subject.keywords().has("NOM_CMP")))
+          subject.tell_missing(group, field.components[c], missing, static_cast<std::int64_t>(count) + std::ssize(left),
+                               sums[c].missing > 0 ? sums[c].first_missing : left.front());
       }
       add_row(*table, head, values);
     }

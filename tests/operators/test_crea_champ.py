@@ -368,6 +368,42 @@ class PostElem(FieldTest):
             cells = self.read_table(file)
         self.assertIsNone(cells[1]["MOYE_X2"])
 
+    def test_what_is_integrated_already_adds_up(self):
+        """ENEL_ELEM, the energy of each cell: its sum, and only if that is asked for. A field of means must be said to be one."""
+        energy = {"quantity": "ENER_R", "location": "ELEM", "components": ["TOTALE"], "support": [1, 2], "values": [4.0, 6.0]}
+        self.write_result("result_3", "mesh_1", [0.0], {"ENEL_ELEM": {0: energy}}, model="model_2")
+        self.own("field_3", "ELEM_ENER_R", ["TOTALE"], [1, 2], [4.0, 6.0])
+        self.own("field_4", "NOEU_DEPL_R", ["DX"], range(6), linear(POINTS))
+        self.own("field_5", "ELEM_CLAC_R", ["PRES"], range(3), np.ones(3))
+        of = {"RESULTAT": concept("result_3"), "NOM_CHAM": "ENEL_ELEM", "GROUP_MA": ["BODY", "RIGHT"]}
+        table = self.table(INTEGRALE={**of, "DEJA_INTEGRE": "OUI"})
+        np.testing.assert_allclose([table["INTE_TOTALE"], table["VOL"], table["MOYE_TOTALE"]], [[10, 6], [3, 2], [10 / 3, 3]], rtol=1e-14)
+        for more in ({}, {"DEJA_INTEGRE": "NON"}):
+            self.refuses("POSTELEM_7", "ENEL_ELEM", "DEJA_INTEGRE", command="POST_ELEM", INTEGRALE={**of, **more})
+        own = {"MODELE": concept("model_2"), "GROUP_MA": ["BODY"]}
+        self.refuses("POSTELEM_7", command="POST_ELEM", INTEGRALE={"CHAM_GD": concept("field_3"), **own})
+        for said, sum_ in (("NON", 4 + 2 * 6), ("OUI", 10)):
+            table = self.table(INTEGRALE={"CHAM_GD": concept("field_3"), "DEJA_INTEGRE": said, **own})
+            self.assertAlmostEqual(table["INTE_TOTALE"][0], sum_, 13)
+        for field in ("field_4", "field_5"):
+            self.refuses("POSTELEM_8", command="POST_ELEM", INTEGRALE={"CHAM_GD": concept(field), "DEJA_INTEGRE": "OUI", **own})
+
+    def test_cells_whose_nodes_lack_a_component_are_told(self):
+        """DX at the nodes of the left cell alone; LAGS_C, one value for each patch, is refused where it is named and empty where it is not."""
+        self.own("field_3", "NOEU_DEPL_R", ["DX", "DY", "LAGS_C"], range(6), np.ones((6, 3)), present=[(k in (0, 1, 3, 4), 1, k < 2) for k in range(6)])
+        of = {"CHAM_GD": concept("field_3"), "MODELE": concept("model_2")}
+        for components, ids in ((["DX"], ["POSTELEM_10"]), (["DY"], []), (None, ["POSTELEM_10"])):
+            named = {"NOM_CMP": components} if components else {}
+            run = self.run_command("POST_ELEM", {"INTEGRALE": {**of, **named, "GROUP_MA": ["BODY", "LEFT"]}}, result="table_9")
+            self.assertEqual((run.status, [message["id"] for message in run.messages]), (0, ids), run.stderr)
+            self.assertTrue(all("1 of 2 cell(s), the first M3" in message["text"] for message in run.messages), run.messages)
+        with h5py.File(self.path("table_9")) as file:
+            row = self.read_table(file)[0]
+        self.assertEqual((row["INTE_LAGS_C"], row["MOYE_LAGS_C"]), (None, None))
+        self.assertAlmostEqual(row["INTE_DY"], 3, 13)
+        for keyword, more in (("INTEGRALE", {}), ("NORME", {"TYPE_NORM": "L2"})):
+            self.refuses("POSTELEM_9", "LAGS_C", command="POST_ELEM", **{keyword: {**of, **more, "GROUP_MA": ["SKIN"], "NOM_CMP": ["LAGS_C"]}})
+
     def test_masses_ask_for_what_a_result_does_not_say(self):
         """A result that PROJ_CHAMP or CREA_RESU made names neither model nor materials."""
         depl = {"quantity": "DEPL_R", "location": "NOEU", "components": ["DX"], "support": range(6), "values": np.zeros(6)}
