@@ -140,24 +140,18 @@ class Field(Arithmetic, FieldData):
         return SimpleField(self, on_nodes=False)
 
     def getValuesWithDescription(self, components=(), groups=()):
-        """Values that exist, component after component, of nodes in these groups (of nodes, or of cells: their nodes), or of cells in them.
+        """Values that exist, node after node (x1, y1, z1, x2, ...), of nodes in these groups (of nodes, or of cells: their nodes), or of cells in them
+        point after point.
         @return (values, (numbers of the nodes from 0, names of the components)), of a field of cells (values, (cells, points, subpoints)), all from 0"""
+        rows, columns = self._places(components, groups)
+        values, (owner, place) = self.values[rows, columns].tolist(), self.rows()
         if self.location != "NOEU":
-            owner, place = self.rows()
-            rows = [rows for _, rows in self._chosen(components, groups)]
-            at = numpy.concatenate(rows) if rows else numpy.zeros(0, int)
-            return self.getValues(components, groups), (owner[at].tolist(), place[at].tolist(), [0] * len(at))
-        values, (nodes, names) = [], ([], [])
-        for name, rows in self._chosen(components, groups):
-            values += self.values[rows, self.components.index(name)].tolist()
-            nodes += self.support[rows].tolist()
-            names += [name] * len(rows)
-        return values, (nodes, names)
+            return values, (owner[rows].tolist(), place[rows].tolist(), [0] * len(rows))
+        return values, (self.support[rows].tolist(), [self.components[column] for column in columns])
 
     def getValues(self, components=(), groups=()):
         """As getValuesWithDescription: the values alone."""
-        parts = [self.values[rows, self.components.index(name)] for name, rows in self._chosen(components, groups)]
-        return numpy.concatenate(parts).tolist() if parts else []
+        return self.values[self._places(components, groups)].tolist()
 
     def EXTR_COMP(self, component=" ", groups=(), topo=0):
         """code_aster's older way: .valeurs (array); with topo=1 .noeud or .maille, .point, .sous_point (numbers from 1) and .comp."""
@@ -169,6 +163,14 @@ class Field(Arithmetic, FieldData):
         if unknown:
             raise ValueError(f"{self.name} has no component {unknown[0]}; it has {', '.join(self.components)}")
         return names
+
+    def _places(self, components, groups):
+        """(rows, columns) of what _chosen() has, row after row."""
+        chosen = self._chosen(components, groups)
+        rows = numpy.concatenate([rows for _, rows in chosen])
+        columns = numpy.concatenate([numpy.full(len(rows), self.components.index(name)) for name, rows in chosen])
+        order = numpy.argsort(rows, kind="stable")
+        return rows[order], columns[order]
 
     def _chosen(self, components, groups):
         """[(component, rows of the groups where it exists)]"""
