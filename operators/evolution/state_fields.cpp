@@ -361,6 +361,9 @@ StaticState given_state(const StaticProblem& problem, const Base& base, const Ke
   };
   fill("SIGM", "ELGA_SIEF_R", &PointValues::stress, stress_names);
   fill("VARI", "ELGA_VARI_R", &PointValues::variable, variable_names);
+  const bool has_fields = given.has("DEPL") || given.has("SIGM") || given.has("VARI");
+  if (has_fields && !problem.initial_strains.empty())
+    inform("EVOLUTION_78", {});  // nothing says what the stresses know of them
   return state;
 }
 

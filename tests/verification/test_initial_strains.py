@@ -210,6 +210,29 @@ for law in ('ELAS', 'VMIS_ISOT_LINE'):
             found = Result(self.folder / "loads.base", f"R[{k}]").at_nodes("SIEF_NOEU", 1, "SIXX")
             self.assertLessEqual(np.abs(found - stress).max(), 1e-10 * YOUNG * 1e-3, k)
 
+    def test_fields_with_the_strains_of_loads_are_told(self):
+        """A held bar whose stress, 2, is given by fields: it stays without the load that made it, and with it an alarm says that it counts twice."""
+        run = self.run_text([flat_block("QUAD4")], f"""
+model(20, 'C_PLAN')
+H = AFFE_CHAR_CINE(MODELE=MODEL, MECA_IMPO=(_F(GROUP_MA='LEFT', DX=0), _F(GROUP_MA='RIGHT', DX=0), _F(GROUP_MA='BASE', DY=0)))
+T = AFFE_CHAR_MECA(MODELE=MODEL, PRE_EPSI=_F(TOUT='OUI', EPXX={-2 / YOUNG!r}))
+A = MECA_STATIQUE(MODELE=MODEL, CHAM_MATER=FIELD, EXCIT=(_F(CHARGE=H), _F(CHARGE=T)), INST=1.0)
+U = CREA_CHAMP(OPERATION='EXTR', TYPE_CHAM='NOEU_DEPL_R', RESULTAT=A, NOM_CHAM='DEPL', INST=1.0)
+S = CREA_CHAMP(OPERATION='EXTR', TYPE_CHAM='ELGA_SIEF_R', RESULTAT=A, NOM_CHAM='SIEF_ELGA', INST=1.0)
+def go_on(*loads):
+    return STAT_NON_LINE(MODELE=MODEL, CHAM_MATER=FIELD, EXCIT=[_F(CHARGE=load) for load in loads], ETAT_INIT=_F(DEPL=U, SIGM=S),
+                         INCREMENT=_F(LIST_INST=TIMES, INST_INIT=0.5), COMPORTEMENT=_F(RELATION='ELAS'))
+found = go_on(H).getField('SIEF_ELGA', 1).getValues('SIXX')
+assert max(abs(value - 2.0) for value in found) < 1e-9, found
+try:
+    go_on(H, T)
+except AsterError as error:
+    assert error.id_message == 'EVOLUTION_78', error  # an alarm, which DEBUT makes an error
+else:
+    assert False
+""")
+        self.assertEqual(run.status, 0, run.stdout[-3000:] + run.stderr[-3000:])
+
     def test_a_strained_state_of_another_mesh_is_refused(self):
         """Its strains are those of cells that the mesh of the model need not have."""
         line = np.linspace(0.0, 1.0, 61)
