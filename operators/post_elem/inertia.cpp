@@ -1,10 +1,12 @@
 #include "lacon/operators/post_elem/inertia.hpp"
 
 #include <Eigen/Eigenvalues>
+#include <algorithm>
 #include <numbers>
 
 #include "lacon/catalog/messages.hpp"
 #include "lacon/operators/fields/expected.hpp"
+#include "lacon/operators/fields/selection.hpp"
 #include "lacon/operators/fields/thermal.hpp"
 #include "lacon/operators/post_elem/parts.hpp"
 
@@ -67,12 +69,25 @@ Table inertia(const Order& order, const Base& base) {
   const MaterialTemperatures temperatures = read_temperatures(base, bodies.material_field, mesh);
   const MaterialTable materials = read_materials(base, field, temperatures);
 
-  std::vector<std::pair<std::string, std::string>> columns{{"LIEU", "K24"}, {"ENTITE", "K8"}, {"MASSE", "R"}};
+  // of instants that are named the same rows for each: mass and initial geometry do not change
+  const bool of_instants = names_instants(keywords) || keywords.has("TOUT_ORDRE");
+  std::vector<std::vector<Table::Cell>> heads(1);
+  std::vector<std::pair<std::string, std::string>> columns;
+  if (of_instants) {
+    columns = {{"NUME_ORDRE", "I"}, {"INST", "R"}};
+    heads.clear();
+    const std::vector<std::int64_t> chosen = selected_orders(base, bodies, keywords);
+    for (std::size_t k = 0; k < bodies.orders.size(); ++k)
+      if (std::find(chosen.begin(), chosen.end(), bodies.orders[k]) != chosen.end())
+        heads.push_back({bodies.orders[k], bodies.instants[k]});
+  }
+  columns.insert(columns.end(), {{"LIEU", "K24"}, {"ENTITE", "K8"}, {"MASSE", "R"}});
   for (const char* name :
        {"CDG_X",     "CDG_Y", "CDG_Z", "IX_G", "IY_G", "IZ_G", "IXY_G", "IXZ_G", "IYZ_G", "IX_PRIN_G", "IY_PRIN_G",
         "IZ_PRIN_G", "X_P",   "Y_P",   "Z_P",  "IX_P", "IY_P", "IZ_P",  "IXY_P", "IXZ_P", "IYZ_P"})
     columns.emplace_back(name, "R");
   Table table = Table::of(columns);
+  std::vector<std::vector<Table::Cell>> rows;
   for (const Keywords& factor : keywords.factors("MASS_INER")) {
     for (const Part& part : parts_of(mesh, points, factor)) {
       Moments moments;
@@ -102,10 +117,16 @@ Table inertia(const Order& order, const Base& base) {
         for (const double value : point) row.emplace_back(value);
         put_moments(row, about_centre + moments.mass * arm * arm.transpose());
       }
-      row.resize(columns.size());
-      table.add(std::move(row));
+      row.resize(columns.size() - heads.front().size());
+      rows.push_back(std::move(row));
     }
   }
+  for (const std::vector<Table::Cell>& head : heads)
+    for (const std::vector<Table::Cell>& row : rows) {
+      std::vector<Table::Cell> whole = head;
+      whole.insert(whole.end(), row.begin(), row.end());
+      table.add(std::move(whole));
+    }
   return table;
 }
 

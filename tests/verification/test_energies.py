@@ -194,6 +194,11 @@ near(masses(ORIG_INER=(1., 0.)), IX_P=x + 6 * 0.25, IY_P=y, Z_P=0)
 model(22, 'AXIS')
 m = 3 * pi * (9 - 1)
 near(masses(), MASSE=m, CDG_X=0, CDG_Y=0.5, IY_G=m * 10 / 2, IX_G=m * (10 / 4 + 1 / 12), IZ_G=m * (10 / 4 + 1 / 12), IXY_G=0)
+H = AFFE_CHAR_CINE(MODELE=MODEL, MECA_IMPO=_F(GROUP_MA='BASE', DY=0))
+S = MECA_STATIQUE(MODELE=MODEL, CHAM_MATER=FIELD, EXCIT=_F(CHARGE=H), LIST_INST=DEFI_LIST_REEL(VALE=(0., 1., 2.)))
+timed = POST_ELEM(MASS_INER=_F(TOUT='OUI'), RESULTAT=S, INST=(1., 2.)).EXTR_TABLE()
+assert timed.NUME_ORDRE.values() == [2, 3] and timed.INST.values() == [1, 2] and abs(timed.MASSE.values()[1] - m) < 1e-11 * m, timed.values()
+assert 'INST' not in POST_ELEM(MASS_INER=_F(TOUT='OUI'), RESULTAT=S).EXTR_TABLE().para
 for error, factor in (('POSTELEM_5', _F(GROUP_MA='RIGHT')), ('MESH_1', _F(GROUP_MA='NONE'))):
     try:
         POST_ELEM(MASS_INER=factor, MODELE=MODEL, CHAM_MATER=FIELD)
