@@ -107,6 +107,41 @@ FIN()
         self.refused("RING", """C = DEFI_CONTACT(MODELE=MODEL, FORMULATION="CONTINUE", ALGO_RESO_GEOM="NEWTON", ALGO_RESO_CONT="NEWTON",
                              ZONE=_F(GROUP_MA_ESCL="SLAVE", GROUP_MA_MAIT="MASTER", ALGO_CONT="LAC", CONTACT_INIT="OUI"))""", "LAC_6")
 
+    def test_a_law_whose_hardening_does_not_know_the_temperature_is_refused_where_e_follows_it(self):
+        """A kernel that takes ECRO_LINE by its curve alone has the slope of E at VALE_REF; VMIS_ISOT_LINE itself takes D_SIGM_EPSI as well."""
+        (self.plugins / "rigid").mkdir()
+        (self.plugins / "rigid" / "plugin.toml").write_text("""
+[[relation]]
+name = "RIGID_LINE"
+hardening = "ECRO_LINE"
+starts_elastically = true
+help = "linear hardening by its curve"
+
+[[law]]
+relation = "RIGID_LINE"
+deformation = "PETIT"
+kernels = { D_PLAN = "solid/plane_strain_small_von_mises" }
+""", encoding="utf-8")
+        run = self.run_text(patch_mesh("QUAD4", "TRIA3"), HEAD + """
+MESH = LIRE_MAILLAGE(UNITE=20)
+MODEL = AFFE_MODELE(MAILLAGE=MESH, AFFE=_F(GROUP_MA="UPPER", PHENOMENE="MECANIQUE", MODELISATION="D_PLAN"))
+H = AFFE_CHAR_CINE(MODELE=MODEL, MECA_IMPO=_F(GROUP_MA="UPPER", DX=0, DY=0))
+E = DEFI_FONCTION(NOM_PARA="INST", VALE=(0, 2000.0, 1, 1000.0))
+LINE = _F(D_SIGM_EPSI=200.0, SY=20.0)
+def said(law, **elastic):
+    matter = DEFI_MATERIAU(ECRO_LINE=LINE, **elastic)
+    field = AFFE_MATERIAU(MAILLAGE=MESH, AFFE=_F(TOUT="OUI", MATER=matter))
+    try:
+        STAT_NON_LINE(MODELE=MODEL, CHAM_MATER=field, INCREMENT=_F(LIST_INST=TIMES), COMPORTEMENT=_F(RELATION=law), EXCIT=_F(CHARGE=H))
+    except AsterError as error:
+        return error.id_message
+follows = dict(ELAS_FO=_F(E=E, NU=DEFI_CONSTANTE(VALE=0.3)))
+found = [said("RIGID_LINE", ELAS=_F(E=2000.0, NU=0.3)), said("RIGID_LINE", **follows), said("VMIS_ISOT_LINE", **follows)]
+assert found == [None, "BEHAVIOUR_5", None], found
+FIN()
+""")
+        self.assertEqual(run.status, 0, run.stdout[-3000:] + run.stderr[-3000:])
+
 
 if __name__ == "__main__":
     unittest.main()
