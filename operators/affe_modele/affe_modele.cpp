@@ -9,6 +9,7 @@
 
 #include "lacon/catalog/messages.hpp"
 #include "lacon/catalog/wording.hpp"
+#include "lacon/operators/meshing/conformity.hpp"
 #include "lacon/structures/displacement.hpp"
 
 namespace lacon {
@@ -76,6 +77,37 @@ std::vector<std::int32_t> cells_named_by(const Mesh& mesh, const Keywords& facto
   return cells;
 }
 
+/// Displacements gape or overlap where cells do not share what they should, and nothing else ever says so: tell it here, before
+/// hours of computing (MODELE_10 to MODELE_13).
+void tell_misfits(const Mesh& mesh, int dimension, std::span<const char> solids) {
+  const auto named = [&](std::int32_t cell) {
+    return fmt::format("{} {}", mesh.row(static_cast<std::size_t>(cell)).name, cell_name(cell));
+  };
+  const auto with_place = [&](std::int32_t node) {
+    const auto p = mesh.point(static_cast<std::size_t>(node));
+    return dimension == 3 ? fmt::format("{} ({:g}, {:g}, {:g})", node_name(node), p[0], p[1], p[2])
+                          : fmt::format("{} ({:g}, {:g})", node_name(node), p[0], p[1]);
+  };
+  const auto vertices = [&](const Misfit& misfit) {
+    std::vector<std::string> names;
+    for (const std::int32_t node : misfit.vertices) names.push_back(with_place(node));
+    return join(names);
+  };
+  const Misfits all = misfits(mesh, dimension, solids);
+  const auto tell = [&](std::string_view id, const Misfit& misfit) {
+    if (misfit.count > 0)
+      inform(id, {{"count", std::to_string(misfit.count)},
+                  {"cell", named(misfit.cell)},
+                  {"other", misfit.other < 0 ? "" : named(misfit.other)},
+                  {"nodes", vertices(misfit)},
+                  {"node", misfit.node < 0 ? "" : with_place(misfit.node)}});
+  };
+  tell("MODELE_10", all.middles);
+  tell("MODELE_11", all.diagonals);
+  tell("MODELE_12", all.hanging);
+  tell("MODELE_13", all.coincident);
+}
+
 /// Gives elements to cells, one occurrence of AFFE after the other: the last one counts.
 class Assignment {
  public:
@@ -84,7 +116,8 @@ class Assignment {
 
   /// Throws MODELE_1 to MODELE_4, MODELE_6 and MODELE_9.
   void assign(const Registry& registry, const Keywords& factor);
-  /// Throws MODELE_8 where a body's cell has no element; says what elements there are (MODELE_5, MODELE_7).
+  /// Throws MODELE_8 where a body's cell has no element; says what elements there are (MODELE_5, MODELE_7), and
+  /// where bodies do not conform (MODELE_10 to MODELE_13).
   Model model();
 
  private:
@@ -143,7 +176,7 @@ void Assignment::assign(const Registry& registry, const Keywords& factor) {
 Model Assignment::model() {
   std::map<CellType, std::int64_t> without;
   std::map<std::string, std::int64_t> counts;
-  bool has_body = false;
+  std::vector<char> solid(given_.size(), 0);
   for (std::size_t cell = 0; cell < given_.size(); ++cell) {
     const catalog::ElementRow* const row = given_[cell];
     if (!row) {
@@ -155,7 +188,7 @@ Model Assignment::model() {
       model_.element.push_back(-1);
       continue;
     }
-    has_body = has_body || row->role == catalog::Role::solid;
+    solid[cell] = row->role == catalog::Role::solid;
     const std::string name(row->name);
     auto at = std::find(model_.elements.begin(), model_.elements.end(), name);
     if (at == model_.elements.end()) at = model_.elements.insert(at, name);
@@ -163,8 +196,10 @@ Model Assignment::model() {
     ++counts[name];
   }
   for (const auto& [name, count] : counts) fmt::print("  {:<24} {:>9} {}\n", name, count, part("cells"));
-  if (!has_body) inform("MODELE_7", {{"where", part(model_.dimension == 3 ? "in_space" : "in_the_plane")}});
+  if (std::ranges::count(solid, 0) == std::ssize(solid))
+    inform("MODELE_7", {{"where", part(model_.dimension == 3 ? "in_space" : "in_the_plane")}});
   if (!without.empty()) inform("MODELE_5", {{"cells", cell_types(without)}});
+  tell_misfits(mesh_, model_.dimension, solid);
   return std::move(model_);
 }
 

@@ -7,6 +7,7 @@
 
 #include "lacon/catalog/messages.hpp"
 #include "lacon/elements/reference.hpp"
+#include "lacon/operators/meshing/conformity.hpp"
 
 namespace lacon {
 namespace {
@@ -165,45 +166,12 @@ std::int64_t make_linear(Mesh& mesh, std::span<const std::int32_t> cells) {
 }
 
 void tell_what_hangs(const Mesh& mesh) {
-  /// Edges and quadrangular faces of a kind of cell. @param use(local vertices, has a node in its middle)
-  const auto each = [&](const catalog::CellRow& row, const auto& use) {
-    if (row.dimension < mesh.dimension - 1) return;  // lines in space carry neither volume nor skin
-    for (const auto& [first, second] : row.edges) use(std::array{first, second}, row.order == 2);
-    if (row.dimension == 2 && row.n_vertices == 4) use(std::array<std::int8_t, 4>{0, 1, 2, 3}, row.n_nodes == 9);
-    if (row.dimension == 3)
-      for (const catalog::FacetRow& facet : row.facets)
-        if (catalog::cell(facet.type).n_vertices == 4) use(facet.nodes.first(4), facet.nodes.size() == 9);
+  const Misfit found = mixed_orders(mesh, mesh.dimension - 1);  // lines in space carry neither volume nor skin
+  const auto named = [&](std::int32_t cell) {
+    return std::string(mesh.row(static_cast<std::size_t>(cell)).name) + " " + cell_name(cell);
   };
-  // without, with: most meshes have one of the two alone, and need no search
-  std::array<bool, 2> edges{}, faces{};
-  const auto kind = [&](const auto& vertices) -> std::array<bool, 2>& { return vertices.size() == 2 ? edges : faces; };
-  for_each_run(mesh, [&](const catalog::CellRow& row, std::size_t, std::size_t) {
-    each(row, [&](const auto& vertices, bool has_middle) { kind(vertices)[has_middle] = true; });
-  });
-
-  struct Neighbours {
-    std::int32_t without = -1, with = -1;  ///< the first cell that has no middle node, and that has one
-  };
-  std::map<std::vector<std::int32_t>, Neighbours> by_vertices;
-  for (std::size_t c = 0; c < mesh.n_cells(); ++c)
-    each(mesh.row(c), [&](const auto& vertices, bool has_middle) {
-      if (const auto& [without, with] = kind(vertices); !without || !with) return;
-      std::vector<std::int32_t> nodes;
-      for (const std::int8_t v : vertices) nodes.push_back(mesh.cells[c][static_cast<std::size_t>(v)]);
-      std::ranges::sort(nodes);
-      Neighbours& both = by_vertices[std::move(nodes)];
-      std::int32_t& own = has_middle ? both.with : both.without;
-      if (own < 0) own = static_cast<std::int32_t>(c);
-    });
-  std::int64_t count = 0;
-  Neighbours first;
-  for (const auto& [vertices, both] : by_vertices)
-    if (both.with >= 0 && both.without >= 0 && count++ == 0) first = both;
-  if (count > 0)
-    inform("ORDRE_3",
-           {{"count", std::to_string(count)},
-            {"with", std::string(mesh.row(static_cast<std::size_t>(first.with)).name) + " " + cell_name(first.with)},
-            {"without", std::string(mesh.row(static_cast<std::size_t>(first.without)).name) + " " + cell_name(first.without)}});
+  if (found.count > 0)
+    inform("ORDRE_3", {{"count", std::to_string(found.count)}, {"with", named(found.cell)}, {"without", named(found.other)}});
 }
 
 }  // namespace lacon

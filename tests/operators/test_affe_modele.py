@@ -103,6 +103,45 @@ class AffeModele(OperatorTest):
         self.write_mesh("mesh_3", np.column_stack([COORDINATES, np.zeros(5)]), CELLS, cell_groups=GROUPS)
         self.assertEqual(self.model(affe(TOUT="OUI"), mesh="mesh_3").status, 0)
 
+    def misfit(self, coordinates, cells, modelisation="D_PLAN", **groups):
+        """The one message of a model on this mesh about cells that do not fit their neighbours: (severity, identifier, text)."""
+        self.write_mesh("mesh_3", coordinates, cells, cell_groups=groups)
+        run = self.model(affe(GROUP_MA=list(groups), MODELISATION=modelisation), mesh="mesh_3")
+        self.assertEqual(run.status, 0, run.stderr)
+        said, = [m for m in run.messages if m["id"] != "MODELE_5"]
+        return said["severity"], said["id"], said["text"]
+
+    def test_a_vertex_that_hangs_on_an_edge_is_told_with_its_place(self):
+        points = [[0, 0], [2, 0], [2, 1], [0, 1], [1, 1], [0, 2], [1, 2], [2, 2]]
+        said = self.misfit(points, [("QUAD4", [0, 1, 2, 3]), ("QUAD4", [3, 4, 6, 5]), ("QUAD4", [4, 2, 7, 6])], ALL=[0, 1, 2])
+        self.assertEqual(said[:2], ("A", "MODELE_12"))
+        self.assertIn("1 edges or faces", said[2])
+        self.assertIn("QUAD4 M1 on the nodes N3 (2, 1), N4 (0, 1) has the node N5 (1, 1)", said[2])
+
+    def test_only_cells_of_the_model_are_looked_at(self):
+        points = [[0, 0], [2, 0], [2, 1], [0, 1], [1, 1], [0, 2], [1, 2], [2, 2]]
+        self.write_mesh("mesh_3", points, [("QUAD4", [0, 1, 2, 3]), ("QUAD4", [3, 4, 6, 5]), ("QUAD4", [4, 2, 7, 6])],
+                        cell_groups={"UP": [1, 2]})
+        self.assertEqual(self.ids(self.model(affe(GROUP_MA=["UP"]), mesh="mesh_3")), ["MODELE_5"])
+
+    def test_linear_beside_quadratic_cells_are_told(self):
+        points = [[0, 0], [1, 0], [1, 1], [0, 1], [2, 0], [2, 1], [0.5, 0], [1, 0.5], [0.5, 1], [0, 0.5]]
+        said = self.misfit(points, [("QUAD8", [0, 1, 2, 3, 6, 7, 8, 9]), ("QUAD4", [1, 4, 5, 2])], ALL=[0, 1])
+        self.assertEqual(said[:2], ("A", "MODELE_10"))
+        self.assertIn("between QUAD8 M1 and QUAD4 M2 on the nodes N2 (1, 0), N3 (1, 1)", said[2])
+
+    def test_tetrahedra_on_a_hexahedron_are_told(self):
+        points = [[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0], [0, 0, 1], [1, 0, 1], [1, 1, 1], [0, 1, 1], [0.5, 0.5, 2]]
+        said = self.misfit(points, [("HEXA8", range(8)), ("TETRA4", [4, 5, 6, 8]), ("TETRA4", [4, 6, 7, 8])], "3D", ALL=[0, 1, 2])
+        self.assertEqual(said[:2], ("A", "MODELE_11"))
+        self.assertIn("HEXA8 M1 on the nodes N5 (0, 0, 1)", said[2])
+
+    def test_nodes_that_are_not_merged_are_told_without_alarm(self):
+        points = [[0, 0], [1, 0], [2, 0], [0, 1], [1, 1], [2, 1], [1, 0]]
+        said = self.misfit(points, [("QUAD4", [0, 1, 4, 3]), ("QUAD4", [6, 2, 5, 4])], ALL=[0, 1])
+        self.assertEqual(said[:2], ("I", "MODELE_13"))
+        self.assertIn("QUAD4 M1 and QUAD4 M2 at the nodes", said[2])
+
     def test_groups_must_exist_and_have_cells(self):
         self.refuses("MESH_1", [affe(GROUP_MA=["LEFF"])], "LEFF", "LEFT")
         self.refuses("MESH_2", [affe(GROUP_MA=["EMPTY"])], "EMPTY")
