@@ -119,7 +119,8 @@ std::vector<double> Keywords::reals(std::string_view name) const {
 Vec3 Keywords::vector(std::string_view name, int dimension) const {
   std::vector<double> given = reals(name);
   if (given.size() != static_cast<std::size_t>(dimension))
-    wrong_type(path(name), part("a_number_for_each_dimension", {{"count", std::to_string(dimension)}}));
+    fail("KEYWORD_18",
+         {{"keyword", path(name)}, {"expected", part("a_number_for_each_dimension", {{"count", std::to_string(dimension)}})}});
   given.resize(3, 0.0);
   return vector_at(given.data());
 }
@@ -173,7 +174,7 @@ std::vector<Keywords> Keywords::factors(std::string_view name) const {
 
 Keywords Keywords::factor(std::string_view name) const {
   const std::vector<Keywords> occurrences = factors(name);
-  if (occurrences.size() != 1) fail("ORDER_4", {{"keyword", path(name)}, {"expected", part("given_once")}});
+  if (occurrences.size() != 1) fail("KEYWORD_18", {{"keyword", path(name)}, {"expected", part("given_once")}});
   return occurrences.front();
 }
 

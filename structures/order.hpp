@@ -28,7 +28,7 @@ class Keywords {
   std::string text(std::string_view name) const;
   bool yes(std::string_view name) const { return text(name) == "OUI"; }
   std::vector<double> reals(std::string_view name) const;
-  /// A vector of a plane or of space; throws ORDER_4 where it has not as many numbers as the mesh has dimensions.
+  /// A vector of a plane or of space; throws KEYWORD_18 where it has not as many numbers as the mesh has dimensions.
   Vec3 vector(std::string_view name, int dimension) const;
   std::vector<std::int64_t> integers(std::string_view name) const;
   std::vector<std::string> texts(std::string_view name) const;  ///< empty where the keyword is absent
@@ -40,7 +40,8 @@ class Keywords {
   std::vector<std::string> concept_ids(std::string_view name) const;
   /// Every occurrence of a factor keyword; empty where it is absent.
   std::vector<Keywords> factors(std::string_view name) const;
-  /// The one occurrence of a factor keyword whose defaults the launcher fills in. Throws ORDER_4 where there is another number.
+  /// The one occurrence of a factor keyword whose defaults the launcher fills in. Throws KEYWORD_18 where there is another
+  /// number.
   Keywords factor(std::string_view name) const;
 
   std::string path(std::string_view name) const { return prefix_ + std::string(name); }

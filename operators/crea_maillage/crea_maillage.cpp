@@ -29,7 +29,7 @@ LacCut cut_of(const Keywords& factor, std::int64_t info) {
              .details = info > 1,
              .keyword = factor.path("GROUP_MA_ESCL")};
   if (cut.option != "PYRA" && cut.option != "HEXA")
-    fail("ORDER_4", {{"keyword", factor.path("DECOUPE_HEXA")}, {"expected", "PYRA or HEXA"}});
+    fail("KEYWORD_18", {{"keyword", factor.path("DECOUPE_HEXA")}, {"expected", "PYRA, HEXA"}});
   return cut;
 }
 
@@ -157,7 +157,7 @@ Mesh crea_maillage(Mesh mesh, const Keywords& keywords, std::string_view label) 
   const std::size_t nodes = mesh.n_nodes(), cells = mesh.n_cells();
   if (keywords.has("DECOUPE_LAC")) {
     const auto occurrences = keywords.factors("DECOUPE_LAC");
-    if (occurrences.size() != 1) fail("ORDER_4", {{"keyword", "DECOUPE_LAC"}, {"expected", "given once"}});
+    if (occurrences.size() != 1) fail("KEYWORD_18", {{"keyword", "DECOUPE_LAC"}, {"expected", part("given_once")}});
     const LacCut cut = cut_of(occurrences[0], keywords.integer("INFO"));
     refuse_cut_mesh(mesh, cut.keyword, label);
     return cut_and_tell(std::move(mesh), cut);

@@ -30,6 +30,12 @@ struct Kind {
 const Kind cells{"cell", 'M', "DETR_GROUP_MA", &Mesh::cell_groups, cells_of_group};
 const Kind nodes{"node", 'N', "DETR_GROUP_NO", &Mesh::node_groups, nodes_of_group};
 
+/// A value that is none (KEYWORD_18). @param expected a part
+[[noreturn]] void refuse(const Keywords& factor, std::string_view keyword, std::string_view expected,
+                         std::initializer_list<MessageValue> values = {}) {
+  fail("KEYWORD_18", {{"keyword", factor.path(keyword)}, {"expected", part(expected, values)}});
+}
+
 /// The number behind `M12`, 0-based.
 std::int32_t number_of(const Mesh& mesh, std::string_view name, const Kind& kind, std::size_t count,
                        const std::string& keyword) {
@@ -143,8 +149,7 @@ void keep_positions(const Keywords& factor, Members& members) {
   }
   if (first > last || last > n) {
     const char* keyword = last > n ? "NUME_FIN" : "NUME_INIT";
-    fail("ORDER_4", {{"keyword", factor.path(keyword)},
-                     {"expected", "a number of the group's " + std::to_string(n) + " members, the first before the last"}});
+    refuse(factor, keyword, "number_of_a_member", {{"count", std::to_string(n)}});
   }
   members = Members(members.begin() + (first - 1), members.begin() + last);
 }
@@ -153,7 +158,7 @@ void keep_positions(const Keywords& factor, Members& members) {
 Vec3 direction_of(const Mesh& mesh, const Keywords& factor) {
   const Vec3 direction = factor.vector("VECT_NORMALE", mesh.dimension);
   const double length = norm(direction);
-  if (!(length > 0)) fail("ORDER_4", {{"keyword", factor.path("VECT_NORMALE")}, {"expected", "a vector other than zero"}});
+  if (!(length > 0)) refuse(factor, "VECT_NORMALE", "a_direction");
   return direction / length;
 }
 
@@ -257,15 +262,15 @@ std::optional<std::int32_t> end_node(const Mesh& mesh, const Keywords& factor, c
   const std::string keyword = "GROUP_NO_" + suffix;
   if (!factor.has(keyword)) return std::nullopt;
   const auto members = nodes_of_group(mesh, factor.text(keyword), factor.path(keyword));
-  if (members.size() != 1) fail("ORDER_4", {{"keyword", factor.path(keyword)}, {"expected", "a group of one node"}});
+  if (members.size() != 1) refuse(factor, keyword, "group_of_one_node");
   return members.front();
 }
 
 /// NOEUD_ORDO: the nodes of line cells in their order, from ORIG; a closed line goes along VECT_ORIE.
 Members nodes_along_cells(const Mesh& mesh, const Keywords& factor) {
-  const std::string group = factor.texts("GROUP_MA").front(), keyword = factor.path("GROUP_MA");
-  if (factor.texts("GROUP_MA").size() > 1) fail("ORDER_4", {{"keyword", keyword}, {"expected", "one group of cells"}});
-  Members line = chain_of_lines(mesh, group, keyword);
+  if (factor.texts("GROUP_MA").size() != 1) refuse(factor, "GROUP_MA", "one_group_of_cells");
+  const std::string group = factor.texts("GROUP_MA").front();
+  Members line = chain_of_lines(mesh, group, factor.path("GROUP_MA"));
   const std::optional<std::int32_t> first = end_node(mesh, factor, "ORIG"), last = end_node(mesh, factor, "EXTR");
   const bool closed = line.front() == line.back();
   if (closed) {
@@ -299,11 +304,10 @@ Members nodes_along_segment(const Mesh& mesh, const Keywords& factor) {
     members = *named;
   const std::optional<std::int32_t> first = end_node(mesh, factor, "ORIG"), last = end_node(mesh, factor, "EXTR");
   for (const auto& [node, suffix] : {std::pair(first, "ORIG"), {last, "EXTR"}})
-    if (!node) fail("ORDER_2", {{"keyword", factor.path(std::string("GROUP_NO_") + suffix)}});
+    if (!node) refuse(factor, std::string("GROUP_NO_") + suffix, "group_of_one_node");
   const Vec3 whole = step(mesh, *first, *last);
   const double length = norm(whole);
-  if (!(length > 0))
-    fail("ORDER_4", {{"keyword", factor.path("GROUP_NO_EXTR")}, {"expected", "another place than that of ORIG"}});
+  if (!(length > 0)) refuse(factor, factor.has("NOEUD_EXTR") ? "NOEUD_EXTR" : "GROUP_NO_EXTR", "another_place_than_orig");
   const double allowed = factor.real("PRECISION") * (factor.text("CRITERE") == "RELATIF" ? length : 1.0);
   std::vector<std::pair<double, std::int32_t>> places;
   double worst = 0;
@@ -382,7 +386,7 @@ Members nodes_of_cells(const Mesh& mesh, std::span<const std::int32_t> members, 
 /// The one name that a group takes which is not the nodes of a group of cells.
 std::string only_name(const Keywords& factor) {
   const std::vector<std::string> names = factor.texts("NOM");
-  if (names.size() != 1) fail("ORDER_4", {{"keyword", factor.path("NOM")}, {"expected", "one name"}});
+  if (names.size() != 1) refuse(factor, "NOM", "one_name");
   return names.front();
 }
 

@@ -10,7 +10,7 @@ namespace lacon {
 
 Mesh macr_adap_mail(const Mesh& mesh, const Keywords& keywords) {
   if (keywords.text("ADAPTATION") != "RAFFINEMENT_UNIFORME")
-    fail("ORDER_4", {{"keyword", "ADAPTATION"}, {"expected", "RAFFINEMENT_UNIFORME"}});
+    fail("KEYWORD_18", {{"keyword", "ADAPTATION"}, {"expected", "RAFFINEMENT_UNIFORME"}});
   RefinementReport report;
   Mesh made = refine(mesh, keywords.texts("GROUP_MA"), keywords.path("GROUP_MA"), report);
   fmt::print("  refined {:>8} cells, {} of them facets and edges of the others\n", report.refined, report.attached);

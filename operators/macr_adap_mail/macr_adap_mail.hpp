@@ -5,8 +5,8 @@
 
 namespace lacon {
 
-/// The mesh MAILLAGE_NP1; prints a summary on stdout. Errors: see operators/meshing/refine.hpp, and ORDER_4 for an ADAPTATION
-/// that is not RAFFINEMENT_UNIFORME.
+/// The mesh MAILLAGE_NP1; prints a summary on stdout. Errors: see operators/meshing/refine.hpp, and KEYWORD_18 for an
+/// ADAPTATION that is not RAFFINEMENT_UNIFORME.
 Mesh macr_adap_mail(const Mesh& mesh, const Keywords& keywords);
 
 }  // namespace lacon

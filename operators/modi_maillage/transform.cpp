@@ -15,7 +15,7 @@ namespace lacon {
 namespace {
 
 [[noreturn]] void refuse(const Keywords& keywords, const char* keyword, const char* expected) {
-  fail("ORDER_4", {{"keyword", keywords.path(keyword)}, {"expected", part(expected)}});
+  fail("KEYWORD_18", {{"keyword", keywords.path(keyword)}, {"expected", part(expected)}});
 }
 
 Vec3 unit(const Keywords& keywords, const char* keyword, Vec3 given) {

@@ -161,7 +161,7 @@ class CreaMaillage(OperatorTest):
     def test_refuses_incomplete_orders(self):
         self.assert_refuses("ORDER_2", "CREA_MAILLAGE", {"MAILLAGE": concept("mesh_1")}, "DECOUPE_LAC", result="mesh_2")
         self.assert_refuses("ORDER_2", "CREA_MAILLAGE", {"MAILLAGE": concept("mesh_1"), "LINE_QUAD": [{}]}, "TOUT", result="mesh_2")
-        self.assert_refuses("ORDER_4", "CREA_MAILLAGE", self.cut(["LOW"], DECOUPE_HEXA="TETRA"), "DECOUPE_HEXA", result="mesh_2")
+        self.assert_refuses("KEYWORD_18", "CREA_MAILLAGE", self.cut(["LOW"], DECOUPE_HEXA="TETRA"), "DECOUPE_HEXA", result="mesh_2")
         self.assert_refuses("ORDER_3", "CREA_MAILLAGE", self.cut(["LOW"], GROUP_NO="A"), "GROUP_NO", result="mesh_2")
         self.assert_refuses("BASE_1", "CREA_MAILLAGE", self.cut(["LOW"], "mesh_9"), "mesh_9", result="mesh_2")
 

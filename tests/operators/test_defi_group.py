@@ -39,7 +39,7 @@ class DefiGroup(OperatorTest):
         for name, group in (("A", "LOW"), ("B", "RIGHT")):
             self.assertEqual(list(mesh.node_groups[name]), list(both.node_groups[group]))
         self.refuse("GROUPE_4", "2 name(s)", "1 group(s)", CREA_GROUP_NO=[{"NOM": ["C", "D"], "GROUP_MA": ["LOW"]}])
-        self.refuse("ORDER_4", "one name", CREA_GROUP_NO=[{"NOM": ["C", "D"], "NOEUD": ["N1"]}])
+        self.refuse("KEYWORD_18", "one name", CREA_GROUP_NO=[{"NOM": ["C", "D"], "NOEUD": ["N1"]}])
 
     def place(self, kind="CREA_GROUP_MA", **keywords):
         """Members of a group made by its place on a strip of four squares, nodes 0 to 4 below and 5 to 9 above, cells 0 to 3."""
@@ -101,7 +101,8 @@ class DefiGroup(OperatorTest):
         for identifier, words, keywords in (("GROUPE_7", ("NOEUD_ORIG", "N3", "BENT"), {"GROUP_MA": ["BENT"], "NOEUD_ORIG": "N3"}),
                                             ("GROUPE_7", ("NOEUD_ORIG", "N1"), {"GROUP_MA": ["RING"], "NOEUD_ORIG": "N1", "NOEUD_EXTR": "N8"}),
                                             ("GROUPE_7", ("GROUP_NO_EXTR", "N1"), {"GROUP_MA": ["BENT"], "NOEUD_ORIG": "N1", "GROUP_NO_EXTR": "END"}),
-                                            ("ORDER_4", ("GROUP_NO_ORIG", "one node"), {"GROUP_MA": ["BENT"], "GROUP_NO_ORIG": "LEGS"}),
+                                            ("KEYWORD_18", ("GROUP_NO_ORIG", "one node"), {"GROUP_MA": ["BENT"], "GROUP_NO_ORIG": "LEGS"}),
+                                            ("KEYWORD_18", ("GROUP_MA", "one group"), {"NOEUD": ["N1"]}),
                                             ("LIGNCOUPE_4", ("M3",), {"GROUP_MA": ["SPLIT"]})):
             keywords = self.line(OPTION="NOEUD_ORDO", **keywords)
             self.define(CREA_GROUP_MA=[{"NOM": "SPLIT", "UNION": ["LEG", "ONE"]}])
@@ -117,7 +118,9 @@ class DefiGroup(OperatorTest):
         self.refuse("GROUPE_8", "1 nodes", "N3", "1.41421", **self.line(PRECISION=0.49, **bent))
         self.refuse("GROUPE_8", "3 nodes", "N3", **self.line(PRECISION=0.1, CRITERE="ABSOLU", **bent))
         self.refuse("GROUPE_8", "N1", **self.line(PRECISION=1e-6, **{**bent, "NOEUD_EXTR": "N3"}))
-        self.refuse("ORDER_4", "GROUP_NO_EXTR", **self.line(PRECISION=0.1, **{**bent, "NOEUD_EXTR": "N2"}))
+        self.refuse("KEYWORD_18", "NOEUD_EXTR", "another place", **self.line(PRECISION=0.1, **{**bent, "NOEUD_EXTR": "N2"}))
+        ends = {name: value for name, value in bent.items() if name != "NOEUD_EXTR"}
+        self.refuse("KEYWORD_18", "GROUP_NO_EXTR", "one node", **self.line(PRECISION=0.1, **ends))
 
     def test_vertices_middles_and_centres_of_cells(self):
         nodes = [[0, 0], [2, 0], [2, 2], [0, 2], [1, 0], [2, 1], [1, 2], [0, 1], [1, 1], [4, 0], [3, 0]]
@@ -141,7 +144,7 @@ class DefiGroup(OperatorTest):
                                ({"OPTION": "BANDE", "POINT": [0.0, 0.0], "VECT_NORMALE": [0.0, 0.0], "DIST": 1.0}, "VECT_NORMALE"),
                                ({"GROUP_MA": "LOW", "NUME_INIT": 2}, "NUME_INIT"), ({"GROUP_MA": "LOW", "NUME_FIN": 2}, "NUME_FIN")):
             with self.subTest(keywords=keywords):
-                self.refuse("ORDER_4", word, CREA_GROUP_MA=[{"NOM": "X", **keywords}])
+                self.refuse("KEYWORD_18", word, CREA_GROUP_MA=[{"NOM": "X", **keywords}])
 
     def test_an_empty_group_is_an_alarm_and_not_made(self):
         mesh, run = self.define(CREA_GROUP_MA=[{"NOM": "X", "INTERSEC": ["LOW", "RIGHT"]}])

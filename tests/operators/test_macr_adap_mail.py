@@ -44,7 +44,7 @@ class MacrAdapMail(OperatorTest):
 
     def test_refuses_other_groups_meshes_and_adaptations(self):
         self.assert_refuses("MESH_1", "MACR_ADAP_MAIL", self.refine(GROUP_MA=["BDY"]), "'BDY'", "BODY", result="mesh_2")
-        self.assert_refuses("ORDER_4", "MACR_ADAP_MAIL", {**self.refine(), "ADAPTATION": "RAFFINEMENT"}, "ADAPTATION", result="mesh_2")
+        self.assert_refuses("KEYWORD_18", "MACR_ADAP_MAIL", {**self.refine(), "ADAPTATION": "RAFFINEMENT"}, "ADAPTATION", result="mesh_2")
         self.run_command("CREA_MAILLAGE", {"MAILLAGE": concept("mesh_1"), "DECOUPE_LAC": [{"GROUP_MA_ESCL": ["LOW"]}]}, "mesh_4", label="CUT")
         self.assert_refuses("MESH1_12", "MACR_ADAP_MAIL", self.refine("mesh_4"), "'CUT'", result="mesh_2")
 
