@@ -101,21 +101,38 @@ bool fits(const LoadScene& scene, const CellKeyword& kind, std::int32_t cell) {
 /// Alarms and errors about the side of skin cells under pressure (VERI_NORM).
 class OrientationCheck {
  public:
-  OrientationCheck(const Mesh& mesh) : sides_(mesh) {}
+  OrientationCheck(const LoadScene& scene) : scene_(scene), sides_(scene.mesh) {}
   void operator()(std::span<const std::int32_t> cells, const std::string& source) const {
-    std::vector<std::int32_t> inward, alone;
+    std::vector<std::int32_t> inward, alone, between;
     for (const std::int32_t cell : cells) {
-      const Side side = sides_[cell];
+      const Side side = sides_.seen_from(bodies(cell));
       if (side == Side::inward) inward.push_back(cell);
       if (side == Side::alone) alone.push_back(cell);
+      if (side == Side::between) between.push_back(cell);
     }
     if (!inward.empty())
       fail("CHARGE_7", {{"keyword", source}, {"count", std::to_string(inward.size())}, {"cell", cell_name(inward.front())}});
     if (!alone.empty())
       inform("CHARGE_8", {{"keyword", source}, {"count", std::to_string(alone.size())}, {"cell", cell_name(alone.front())}});
+    if (between.empty()) return;
+    const auto around = bodies(between.front());
+    inform("CHARGE_27", {{"keyword", source},
+                         {"count", std::to_string(between.size())},
+                         {"cell", cell_name(between.front())},
+                         {"first", cell_name(around[0].cell)},
+                         {"second", cell_name(around[1].cell)}});
   }
 
  private:
+  /// Of several that have the skin cell as a facet those of the model: it is the outside of a model that ends there.
+  std::vector<BodyCell> bodies(std::int32_t skin_cell) const {
+    std::vector<BodyCell> found = sides_.bodies(skin_cell);
+    const auto elsewhere = [&](const BodyCell& body) { return !scene_.element(body.cell); };
+    if (found.size() > 1 && !std::ranges::all_of(found, elsewhere)) std::erase_if(found, elsewhere);
+    return found;
+  }
+
+  const LoadScene& scene_;
   SkinSides sides_;
 };
 
@@ -163,7 +180,7 @@ void load_cells(Load& load, const LoadScene& scene, const Keywords& keywords) {
           }
         }
         if (!is_pressure || !keywords.yes("VERI_NORM")) continue;
-        if (!orientation) orientation.emplace(scene.mesh);
+        if (!orientation) orientation.emplace(scene);
         (*orientation)(named.members, named.source);
       }
     }

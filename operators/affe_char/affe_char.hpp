@@ -11,7 +11,8 @@ namespace lacon {
 /// there), CHARGE_4 and CHARGE_5 (two values for one component), CHARGE_6 (cell that cannot carry the load), CHARGE_7 (skin
 /// that looks into its body, VERI_NORM='OUI'), CHARGE_9 (component that the element does not know), CHARGE_10 (direction of
 /// gravity), CHARGE_11 to CHARGE_15 (relations), FUNCTION_2 (function of another parameter than X, Y, Z, INST). CHARGE_8 alarms
-/// for a skin under pressure without body, CHARGE_26 for nodes that are not merged with the body where they lie.
+/// for a skin under pressure without body, CHARGE_27 for one inside a body, CHARGE_26 for nodes that are not merged with the
+/// body where they lie.
 Load affe_char(const Mesh& mesh, const Model& model, Registry& registry, const Base& base, const Keywords& keywords);
 
 }  // namespace lacon

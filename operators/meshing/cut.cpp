@@ -164,13 +164,6 @@ void straighten(CellType type, const CellNodes& sub_cell, const CellNodes& added
   }
 }
 
-/// What a slave skin of this mesh is made of, for a message.
-std::string skin_cells(const Mesh& mesh) {
-  if (mesh.dimension == 2) return part("segments");
-  const bool is_solid = std::ranges::any_of(mesh.types, [](CellType type) { return catalog::cell(type).dimension == 3; });
-  return part(is_solid ? "faces" : "faces_of_solids");
-}
-
 constexpr std::int64_t max_facets = 6;  ///< of a body cell
 
 /// Every check on the groups and their cells, before anything is cut.

@@ -6,6 +6,7 @@
 #include "lacon/operators/meshing/body.hpp"
 #include "lacon/operators/meshing/patch_turn.hpp"
 #include "lacon/operators/meshing/quality.hpp"
+#include "lacon/operators/meshing/skin.hpp"
 
 namespace lacon {
 
@@ -30,7 +31,7 @@ OrientationReport orient_skin(Mesh& mesh, const std::string& group, std::span<co
                       {"group", group},
                       {"cell", cell_name(skin)},
                       {"type", std::string(mesh.row(s).name)},
-                      {"skin", skin_dimension == 1 ? "SEG2, SEG3" : "TRIA3, TRIA6, QUAD4, QUAD8, QUAD9"}});
+                      {"skin", skin_cells(mesh)}});
     std::vector<BodyCell> bodies = body_cells(mesh, around, s);
     if (!allowed.empty()) std::erase_if(bodies, [&](const BodyCell& b) { return !allowed[static_cast<std::size_t>(b.cell)]; });
     if (bodies.empty()) {

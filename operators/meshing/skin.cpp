@@ -11,8 +11,7 @@
 
 namespace lacon {
 
-Side SkinSides::operator[](std::int32_t skin_cell) const {
-  const std::vector<BodyCell> found = bodies(skin_cell);
+Side SkinSides::seen_from(std::span<const BodyCell> found) const {
   if (found.size() > 1) return Side::between;
   if (found.empty()) return Side::alone;
   const auto body = static_cast<std::size_t>(found[0].cell);
@@ -55,6 +54,12 @@ bool is_degenerate(const Mesh& mesh, std::span<const std::int32_t> vertices, dou
 }
 
 }  // namespace
+
+std::string skin_cells(const Mesh& mesh) {
+  if (mesh.dimension == 2) return part("segments");
+  const bool is_solid = std::ranges::any_of(mesh.types, [](CellType type) { return catalog::cell(type).dimension == 3; });
+  return part(is_solid ? "faces" : "faces_of_solids");
+}
 
 void refuse_degenerate(const Mesh& mesh, std::span<const std::int32_t> cells, const std::string& keyword,
                        const std::string& group) {

@@ -15,7 +15,9 @@ enum class Side {
 class SkinSides {
  public:
   explicit SkinSides(const Mesh& mesh) : mesh_(mesh), around_(mesh) {}
-  Side operator[](std::int32_t skin_cell) const;
+  Side operator[](std::int32_t skin_cell) const { return seen_from(bodies(skin_cell)); }
+  /// The same where only some of the cells that have it as a facet count.
+  Side seen_from(std::span<const BodyCell> bodies) const;
   /// The cells that have it as a facet.
   std::vector<BodyCell> bodies(std::int32_t skin_cell) const {
     return body_cells(mesh_, around_, static_cast<std::size_t>(skin_cell));
@@ -25,6 +27,9 @@ class SkinSides {
   const Mesh& mesh_;
   NodeCells around_;
 };
+
+/// What a skin of this mesh is made of, for a message.
+std::string skin_cells(const Mesh& mesh);
 
 /// Refuse skin cells without length or area, which have no normal: SKIN_1. A length counts by the extent of them all, an area
 /// by the longest distance in its cell, as pairing judges them.

@@ -159,8 +159,22 @@ class Loads(OperatorTest):
         run = self.meca(model="model_2", PRES_REP=[{"GROUP_MA": ["LOOSE"], "PRES": 1.0}])
         self.assertEqual((run.status, self.ids(run)), (0, ["CHARGE_8"]))
 
-    def test_a_skin_between_two_bodies_has_no_wrong_side(self):
-        self.assertEqual(self.ids(self.meca(PRES_REP=[{"GROUP_MA": ["BETWEEN"], "PRES": 1.0}])), [])
+    def test_a_skin_under_pressure_inside_a_body_alarms_unless_told_otherwise(self):
+        run = self.meca(PRES_REP=[{"GROUP_MA": ["BETWEEN"], "PRES": 1.0}])
+        self.assertEqual((run.status, self.ids(run, "A"), self.pressure()), (0, ["CHARGE_27"], {5: 1}))
+        for word in ("BETWEEN", "1 cells", "M6", "M1 and M2"):
+            self.assertIn(word, run.messages[0]["text"])
+        self.path("load_4").unlink()
+        self.assertEqual(self.ids(self.meca(PRES_REP=[{"GROUP_MA": ["BETWEEN"], "PRES": 1.0}], VERI_NORM="NON")), [])
+
+    def test_where_the_model_ends_inside_the_mesh_a_skin_has_its_side(self):
+        pressure = [{"GROUP_MA": ["BETWEEN"], "PRES": 1.0}]
+        for without, status, said in ((0, 2, ["CHARGE_7"]), (1, 0, [])):  # N2-N5 leaves the right cell's neighbour, not the right cell
+            elements = [0, 0, 1, 1, 1, 1, -1, -1]
+            elements[without] = -1
+            self.write_model("model_5", "mesh_1", ["D_PLAN/QUAD4", "D_PLAN/SEG2"], elements)
+            run = self.meca(model="model_5", PRES_REP=pressure)
+            self.assertEqual((run.status, self.ids(run)), (status, said))
 
     def test_orientation_goes_by_geometry_not_by_the_order_of_body_nodes(self):
         cells = [("QUAD4", [0, 3, 4, 1]), *CELLS[1:]]  # the left quadrangle inside out

@@ -79,7 +79,7 @@ class ModiMaillage(OperatorTest):
                                      ("mesh_2", {"ROTATION": [{"POIN_1": [0.0, 0.0, 0.0], "DIR": [0.0, 0.0, 0.0]}]}, "DIR"),
                                      ("mesh_2", {"SYMETRIE": [{"POINT": [0.0, 0.0, 0.0], "AXE_1": [1.0, 0.0, 0.0], "AXE_2": [2.0, 0.0, 0.0]}]}, "AXE_1")):
             with self.subTest(keywords=keywords):
-                self.assert_refuses("ORDER_4", "MODI_MAILLAGE", {"MAILLAGE": concept(mesh), **keywords}, word, result=mesh, reuse=True)
+                self.assert_refuses("KEYWORD_18", "MODI_MAILLAGE", {"MAILLAGE": concept(mesh), **keywords}, word, result=mesh, reuse=True)
 
     def test_nodes_move_by_their_displacements(self):
         def write(identifier, mesh="mesh_1", location="NOEU", quantity="DEPL_R"):
@@ -121,6 +121,11 @@ class ModiMaillage(OperatorTest):
                             result="mesh_1", reuse=True)
         self.assert_refuses("ORIE_1", "MODI_MAILLAGE", self.orient({"GROUP_MA_PEAU": ["LEFT_BODY"]}), "M6", "QUAD4",
                             result="mesh_1", reuse=True)
+
+    def test_says_of_a_plane_mesh_that_is_lifted_why_it_has_no_skin(self):
+        self.write_mesh("mesh_1", [[*node, 1] for node in NODES], CELLS, GROUPS, dimension=3)
+        run = self.assert_refuses("ORIE_1", "MODI_MAILLAGE", self.orient({"GROUP_MA_PEAU": ["TOP"]}), "SEG2", "M3", result="mesh_1", reuse=True)
+        self.assertIn("only where every z is 0", run.messages[0]["do"])
 
     def test_turns_and_moves_a_mesh_that_is_cut(self):
         made = self.run_command("CREA_MAILLAGE", {"MAILLAGE": concept("mesh_1"), "DECOUPE_LAC": [{"GROUP_MA_ESCL": ["TOP"]}]}, "mesh_2")
